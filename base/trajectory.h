@@ -1,0 +1,35 @@
+#pragma once
+
+#include <mrpt/math/TPose2D.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/stamp.h"
+
+namespace rubble {
+
+struct StampedPose {
+  Stamp stamp;
+  mrpt::math::TPose2D pose;
+};
+
+/// Poses in the order of their stamps (strictly increasing).
+using Trajectory = std::vector<StampedPose>;
+
+/// Linear in x and y, shortest way round in the angle; u = 0 gives a, u = 1 gives b.
+mrpt::math::TPose2D interpolate(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b, double u);
+
+/// The pose at `stamp`, between its two neighbours; nothing outside the time the trajectory covers.
+std::optional<mrpt::math::TPose2D> pose_at(const Trajectory& trajectory, Stamp stamp);
+
+/// One line of TUM text, `time x y z qx qy qz qw`, one space, no trailing space (as evo reads it). z = 0.
+std::string tum_line(const StampedPose& stamped);
+
+void write_tum(const std::string& path, const Trajectory& trajectory);
+
+/// Reads TUM text; '#' starts a comment. Throws InputError with file and line.
+Trajectory read_tum(const std::string& path);
+
+}  // namespace rubble

@@ -1,0 +1,23 @@
+#pragma once
+
+namespace rubble::robot {
+
+/// Speed set point of the body.
+struct Drive {
+  double v = 0.0;  ///< forward [m/s]
+  double w = 0.0;  ///< counter-clockwise [rad/s]
+};
+
+/// Angles the servos shall hold the laser at, relative to the robot.
+struct LaserAim {
+  double pitch = 0.0;  ///< nose-up positive [rad]
+  double roll = 0.0;   ///< left side up positive [rad]
+};
+
+/// Holds until replaced; a robot stops its motors when no command came for RobotModel::command_timeout.
+struct Commands {
+  Drive drive;
+  LaserAim aim;
+};
+
+}  // namespace rubble::robot

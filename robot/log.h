@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "base/trajectory.h"
+#include "robot/robot.h"
+
+namespace rubble::robot {
+
+/// What the head of a log says about its origin.
+struct LogHeader {
+  RobotModel model;
+  std::string note;  ///< free text, e.g. the resolved scenario
+};
+
+/// Wraps any robot and writes everything it reads and is commanded to an append-only log that survives a kill:
+/// whole checked frames, a torn last frame is dropped on reading. docs/robot.md describes the format.
+class RecordingRobot : public Robot {
+ public:
+  /// Throws RunError when `path` cannot be written.
+  RecordingRobot(Robot& inner, const std::string& path, const std::string& note);
+  ~RecordingRobot() override;
+  const RobotModel& model() const override;
+  std::optional<Inputs> read() override;
+  void command(const Commands& commands) override;
+  /// Writes out what is buffered; called by the destructor too.
+  void flush();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Plays a log back, tick by tick; commands go nowhere. Formats by content: our own log, MRPT .rawlog (observation-only
+/// and action/frame form), CARMEN .log / .log.gz (FLASER, ROBOTLASER1, ODOM), CoreSLAM .dat.
+class ReplayRobot : public Robot {
+ public:
+  /// Throws InputError with place and remedy: missing, unknown format, wrong line, cut in the middle (foreign formats).
+  explicit ReplayRobot(const std::string& path);
+  ~ReplayRobot() override;
+  const RobotModel& model() const override;
+  std::optional<Inputs> read() override;
+  void command(const Commands& commands) override;
+
+  /// "rubble log", "CARMEN log", ...
+  const std::string& format() const;
+  /// The note of our own log; empty for others.
+  const std::string& note() const;
+  /// Commands recorded with the tick that read() returned last (our own log only; else the default).
+  const Commands& recorded_commands() const;
+  /// Reference poses that came with the log (CARMEN: corrected poses); empty when there are none.
+  const Trajectory& reference() const;
+  /// True when a torn last frame of our own log was dropped.
+  bool was_torn() const;
+  /// Share of the log played so far, 0..1.
+  double progress() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rubble::robot

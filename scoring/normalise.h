@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/grid.h"
+
+namespace rubble::scoring {
+
+struct LoadOptions {
+  std::optional<double> resolution;  ///< [m] a pixel, for plain images; overrides what a file says
+};
+
+/// A map image reduced to classes on a metric grid.
+struct LoadedMap {
+  OccupancyGrid grid;
+  std::string recognised;  ///< what was recognised, for people: "GeoTIFF 0.05 m, league colours"
+};
+
+/// Reads GeoTIFF (own tags or .tfw beside it), ROS yaml + pgm/png, or a plain image with options.resolution.
+/// Throws InputError: unreadable, no scale, absurd size.
+LoadedMap load_map(const std::string& path, const LoadOptions& options = {});
+
+}  // namespace rubble::scoring

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <mrpt/math/TPose2D.h>
+
+#include <string>
+
+#include "base/grid.h"
+
+namespace rubble::scoring {
+
+/// Writes a PNG of the map laid over the truth: agreeing walls dark, walls only in the map red, only in the truth blue,
+/// free space known by both white. Throws RunError when it cannot be written.
+void write_overlay(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
+                   const mrpt::math::TPose2D& T_truth_map);
+
+/// Writes a PNG of the truth in which each wall is coloured by its distance to the map's nearest wall, and each wall of
+/// the map by its distance to the truth (green 0 .. red >= tau).
+void write_error_map(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
+                     const mrpt::math::TPose2D& T_truth_map, double tau);
+
+/// Writes a grid as PNG: unknown grey, free white, occupied dark blue.
+void write_grid_png(const std::string& path, const OccupancyGrid& grid);
+
+}  // namespace rubble::scoring

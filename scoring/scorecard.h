@@ -1,0 +1,37 @@
+#pragma once
+
+#include <mrpt/math/TPose2D.h>
+
+#include <string>
+
+#include "base/grid.h"
+
+namespace rubble::scoring {
+
+struct ScoreConfig {
+  double tau = 0.5;                ///< distance at which a wall cell counts nothing [m]
+  double colour_absent_cap = 5.0;  ///< psi of a class that only one map has [m]
+};
+
+/// The verdict on one map. Lengths in metres, shares 0..1.
+struct MapScore {
+  bool aligned = false;               ///< a rigid transform was found that can be trusted
+  std::string note;                   ///< why not aligned, or what to know; one line
+  mrpt::math::TPose2D T_truth_map;    ///< the transform found
+  double runner_up = 0.0;             ///< quality of the best different pose relative to the best, 0..1 (1: ambiguous)
+  double score = 0.0;                 ///< min(precision, recall)
+  double precision = 0.0;             ///< share of map walls near true walls
+  double recall = 0.0;                ///< share of true walls near map walls
+  double psi_m = 0.0;                 ///< mean over {occupied, free} and both directions of eq. (6) [m]
+  double psi_literal_m = 0.0;         ///< the literal sum of eq. (5) over all classes [m]
+  double psi_occupied_map_m = 0.0;    ///< eq. (6), map -> truth, walls [m]
+  double psi_occupied_truth_m = 0.0;  ///< eq. (6), truth -> map, walls [m]
+  double psi_free_map_m = 0.0;
+  double psi_free_truth_m = 0.0;
+  double known = 0.0;  ///< share of the truth's free and occupied area that the map knows
+};
+
+/// Aligns `map` to `truth` without any initial guess and scores it. Never throws on poor maps: see `aligned`, `note`.
+MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const ScoreConfig& config = {});
+
+}  // namespace rubble::scoring

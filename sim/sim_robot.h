@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "arenas/arena.h"
+#include "base/trajectory.h"
+#include "robot/robot.h"
+
+namespace rubble::sim {
+
+/// Which effects are simulated and how strongly; defaults are the documented hardware.
+struct SimConfig {
+  double physics_step = 0.01;       ///< [s]
+  double range_noise = 1.0;         ///< factor on the URG-04LX noise model; 0: exact ranges (still 1 mm steps)
+  double acceleration_noise = 1.0;  ///< factor on the ADXL202 noise
+  double time_limit = 1200.0;       ///< read() ends after this much simulated time [s]
+  bool sweep = true;                ///< each beam from the pose at its own time; false: the whole scan at once
+};
+
+/// The simulated robot in its arena. The truth is offered beside the Robot interface, for the run folder and scoring
+/// only.
+class SimRobot : public robot::Robot {
+ public:
+  SimRobot(const arenas::Arena& arena, const robot::RobotModel& model, const SimConfig& config, std::uint64_t seed);
+  ~SimRobot() override;
+
+  const robot::RobotModel& model() const override;
+  std::optional<robot::Inputs> read() override;
+  void command(const robot::Commands& commands) override;
+
+  /// True pose of the base in the arena frame, one entry a tick, from stamp 0 on.
+  const Trajectory& truth() const;
+  /// Where the paper balls lie now (they are pushed about).
+  std::vector<arenas::PaperBall> balls() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rubble::sim

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+#include <mrpt/math/TPose2D.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "base/grid.h"
+
+namespace rubble::slam {
+
+/// The end points of one scan, in the frame of its stamping pose (usually T_map_base).
+struct ScanPoints {
+  std::vector<mrpt::math::TPoint2D> hits;    ///< returns [m]
+  std::vector<mrpt::math::TPoint2D> passes;  ///< ends of rays that met nothing: free up to there, no hit
+  mrpt::math::TPoint2D origin;               ///< where the rays start (the laser)
+};
+
+/// The paper's occupancy map, section III.B: one plane counts how often a cell was seen, one how often it was occupied.
+/// Grows in whole blocks when a scan reaches over its edge, up to `max_cells` a side.
+class CountMap {
+ public:
+  CountMap(int width, int height, double resolution, int max_cells = 8000);
+
+  const GridFrame& frame() const { return frame_; }
+  std::uint16_t seen(Cell c) const { return seen_[frame_.index(c)]; }
+  std::uint16_t occupied(Cell c) const { return occupied_[frame_.index(c)]; }
+  /// p_occ = occupied / seen (eq. 1); 0 for unseen cells and outside.
+  double p_occ(Cell c) const;
+  /// p_occ in 1/255, 0 where unseen: the plane the particle weights read.
+  const std::uint8_t* p_occ_plane() const { return p_occ_.data(); }
+
+  /// Stamps a scan taken at T_map_base: each touched cell counts once; a cell hit in this scan is not freed by its
+  /// other beams.
+  void stamp(const mrpt::math::TPose2D& T_map_base, const ScanPoints& scan);
+
+  /// Unknown where never seen; occupied where p_occ >= threshold, free elsewhere.
+  OccupancyGrid classify(double threshold = 0.5) const;
+
+  /// Rises with every stamp; tells readers that cached results are old.
+  std::uint64_t version() const { return version_; }
+
+ private:
+  void grow_to_hold(const mrpt::math::TPoint2D& low, const mrpt::math::TPoint2D& high);
+
+  GridFrame frame_;
+  int max_cells_;
+  std::vector<std::uint16_t> seen_;
+  std::vector<std::uint16_t> occupied_;
+  std::vector<std::uint8_t> p_occ_;
+  std::uint64_t version_ = 0;
+};
+
+}  // namespace rubble::slam
