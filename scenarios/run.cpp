@@ -205,11 +205,12 @@ void score_files(ordered_json& json, const RunFolder& folder, const Scenario& sc
   if (!score.aligned) return;
   scoring::write_overlay(folder.file("overlay.png"), map, truth, score.T_truth_map);
   scoring::write_error_map(folder.file("error.png"), map, truth, score.T_truth_map, scenario.scoring.tau);
-  std::vector<mrpt::math::TPoint2D> p_truth;
-  for (const auto& victim : reported) p_truth.push_back(score.T_truth_map.composePoint(in_picture(victim.p_map)));
-  const scoring::VictimScore victims = scoring::score_victims(p_truth, arena.victims);
+  std::vector<mrpt::math::TPoint2D> p_picture, p_truth;
+  for (const auto& victim : reported) p_picture.push_back(in_picture(victim.p_map));
+  for (const auto& victim : arena.victims) p_truth.emplace_back(victim.position.x, victim.position.y);
+  const scoring::VictimScore victims = scoring::score_victims(p_picture, p_truth, score.T_truth_map);
   json["victims_found"] = victims.found;
-  json["victims_false"] = victims.false_reports;
+  json["victims_false"] = victims.false_alarms;
   if (victims.found > 0) json["victims_error_m"] = victims.mean_error_m;
 }
 
