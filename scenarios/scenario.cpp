@@ -69,6 +69,18 @@ void bind(Binder& b, slam::MapperConfig& c) {
   b.boolean("icp", c.icp);
   b.boolean("carve_misses", c.carve_misses);
   b.number("max_range_m", c.max_range, 0.0, 1000.0);
+  b.boolean("deskew", c.deskew);
+  b.integer("first_scans", c.first_scans, 1, 1000);
+  b.integer("max_map_cells", c.max_map_cells, 16, 20000);
+  b.section("icp_limits", [&](Binder& m) {
+    m.number("first_distance_m", c.matcher.first_distance, 0.01, 5.0);
+    m.number("last_distance_m", c.matcher.last_distance, 0.005, 5.0);
+    m.number("min_goodness", c.matcher.min_goodness, 0.0, 1.0);
+    m.number("max_correction_m", c.matcher.max_correction, 0.0, 5.0);
+    m.degrees("max_turn_deg", c.matcher.max_turn, 0.0, 180.0);
+    m.number("point_spacing_m", c.matcher.point_spacing, 0.005, 1.0);
+    m.number("surface_spacing_m", c.matcher.surface_spacing, 0.005, 1.0);
+  });
 }
 
 void bind(Binder& b, explore::ExplorerConfig& c) {
