@@ -35,7 +35,8 @@ void Canvas::blend(int x, int y, const Colour& colour, double opacity) {
   }
 }
 
-void Canvas::fill(const Outline& outline, const Colour& colour, double opacity) {
+template <class Paint>
+void Canvas::for_samples(const Outline& outline, const Paint& paint) {
   Outline shape;
   double top = height_ * kSamples;
   double bottom = 0.0;
@@ -52,8 +53,19 @@ void Canvas::fill(const Outline& outline, const Colour& colour, double opacity) 
     if (!span) continue;
     const int first = static_cast<int>(std::ceil(span->from * right - 0.5));
     const int last = static_cast<int>(std::ceil(span->to * right - 0.5));
-    for (int x = first; x < last; ++x) blend(x, y, colour, opacity);
+    for (int x = first; x < last; ++x) paint(x, y);
   }
+}
+
+void Canvas::fill(const Outline& outline, const Colour& colour, double opacity) {
+  for_samples(outline, [&](int x, int y) { blend(x, y, colour, opacity); });
+}
+
+void Canvas::fill(const Outline& outline, const std::function<Colour(const TPoint2D&)>& colour) {
+  for_samples(outline, [&](int x, int y) {
+    const TPoint2D p{min_.x + (x + 0.5) / scale_, min_.y + (height_ * kSamples - y - 0.5) / scale_};
+    blend(x, y, colour(p), 1.0);
+  });
 }
 
 void Canvas::disc(const TPoint2D& centre, double radius, const Colour& colour, double opacity) {

@@ -3,6 +3,7 @@
 #include <mrpt/math/TPoint2D.h>
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "arenas/arena.h"
@@ -21,6 +22,8 @@ class Canvas {
 
   /// Fills a convex outline; `opacity` 0..1.
   void fill(const Outline& outline, const Colour& colour, double opacity = 1.0);
+  /// The same with a colour for each place.
+  void fill(const Outline& outline, const std::function<Colour(const mrpt::math::TPoint2D&)>& colour);
   void disc(const mrpt::math::TPoint2D& centre, double radius, const Colour& colour, double opacity = 1.0);
   /// A line with square ends, `width` [m].
   void line(const mrpt::math::TPoint2D& from, const mrpt::math::TPoint2D& to, double width, const Colour& colour,
@@ -33,6 +36,8 @@ class Canvas {
 
  private:
   mrpt::math::TPoint2D to_samples(const mrpt::math::TPoint2D& p) const;
+  template <class Paint>
+  void for_samples(const Outline& outline, const Paint& paint);
   void blend(int x, int y, const Colour& colour, double opacity);
 
   mrpt::math::TPoint2D min_;

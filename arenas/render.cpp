@@ -37,12 +37,16 @@ double highest(const FloorPatch& patch) {
   return z;
 }
 
-/// Lambert shading with the light from the north-west, 45 deg high; exaggerated, for 10 deg are hard to see.
-double shade(const FloorPatch& patch) {
+/// How much light falls on a slope; the lamp stands in the north-west. Exaggerated, for 10 deg are hard to see.
+double lit(const FloorPatch& patch) {
   const double towards_light = patch.gx - patch.gy;  // a slope that rises to the south-east faces the light
-  const double lit = 1.0 + 0.75 * towards_light / std::sqrt(1.0 + patch.gx * patch.gx + patch.gy * patch.gy);
-  const double mean_height = std::min(highest(patch), 2.0);
-  return std::clamp(lit, 0.6, 1.25) * (0.97 + 0.06 * mean_height);
+  return std::clamp(1.0 + 0.45 * towards_light / std::sqrt(1.0 + patch.gx * patch.gx + patch.gy * patch.gy), 0.75, 1.2);
+}
+
+/// Higher floor is lighter; most of the change lies in the first half metre, where ramps are.
+Colour floor_colour(const FloorPatch& patch, const TPoint2D& p, double light) {
+  const double z = std::max(0.0, patch.height(p));
+  return scaled(kWood, light * (0.93 + 0.28 * z / (z + 0.35)));
 }
 
 TPoint2D middle(const Outline& outline) {
@@ -63,7 +67,8 @@ void draw_floor(const Arena& arena, Canvas& canvas) {
   std::stable_sort(patches.begin(), patches.end(),
                    [](const FloorPatch* a, const FloorPatch* b) { return highest(*a) < highest(*b); });
   for (const FloorPatch* patch : patches) {
-    canvas.fill(patch->outline, scaled(kWood, shade(*patch)));
+    const double light = lit(*patch);
+    canvas.fill(patch->outline, [&](const TPoint2D& p) { return floor_colour(*patch, p, light); });
     draw_outline(patch->outline, 0.012, kSeam, 0.55, canvas);
     const double slope = std::hypot(patch->gx, patch->gy);
     const double size = std::sqrt(signed_area(patch->outline));

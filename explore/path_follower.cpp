@@ -119,8 +119,10 @@ int hits_on_path(const std::vector<PathPoint>& path, std::size_t from, double ah
     const bool inside_body = std::abs(cos_phi * dx + sin_phi * dy) < 0.5 * model.length &&
                              std::abs(cos_phi * dy - sin_phi * dx) < 0.5 * model.width;
     if (inside_body) continue;
+    // Only what the robot would come closer to: a wall beside it that it drives away from is no obstacle.
+    const double limit = std::min(radius, std::hypot(dx, dy) - 0.01);
     const bool near =
-        std::any_of(next.begin(), next.end(), [&](const TPoint2D& p) { return distance(p, hit) < radius; });
+        std::any_of(next.begin(), next.end(), [&](const TPoint2D& p) { return distance(p, hit) < limit; });
     if (near) ++count;
   }
   return count;

@@ -27,9 +27,9 @@ struct Mapper::Impl {
   bool ready(const LaserScan& scan, Stamp now) const;
   void process(const LaserScan& scan);
   void start(Stamp reference, const ScanPoints& points);
-  void keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points);
+  void keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points, const Surface& surface);
   TPose2D motion_since_last(Stamp reference) const;
-  TPose2D refined_motion(const ScanPoints& points, const TPose2D& T_last_now);
+  TPose2D refined_motion(const Surface& known, const TPose2D& T_last_prior);
   bool moved(const TPose2D& motion) const;
   std::optional<SweepMotion> sweep_motion(const LaserScan& scan) const;
 
@@ -50,6 +50,7 @@ struct Mapper::Impl {
   // The last mapping step.
   bool started_ = false;
   TPose2D T_map_last_;
+  SurfaceCoverage last_coverage_;
   std::optional<TPose2D> T_odom_last_;  ///< nothing while no odometry has come
   TPose2D last_motion_;                 ///< what the step before it moved (the prior where there is no odometry)
 };
@@ -92,7 +93,9 @@ void Mapper::Impl::process(const LaserScan& scan) {
     trajectory_.push_back({reference, T_map_last_ + T_last_prior});
     return;
   }
-  const TPose2D T_last_now = refined_motion(points, T_last_prior);
+  const Surface surface = surface_of(points, config_.surface);
+  const Surface known = covered_part(surface, last_coverage_, T_last_prior, config_.coverage_margin);
+  const TPose2D T_last_now = refined_motion(known, T_last_prior);
   if (!T_odom_last_ && !moved(T_last_now) && !warming_up) {
     trajectory_.push_back({reference, T_map_last_ + T_last_now});
     return;
@@ -100,23 +103,25 @@ void Mapper::Impl::process(const LaserScan& scan) {
 
   const Particles resampled = gate ? resample(particles_) : particles_;
   const Particles drifted = drift(resampled, T_last_now, motion_error_, drift_rng_);  // Fig. 5
-  const Particles measured = measure(drifted, points.hits, map_);                     // eq. (2)
+  const Particles measured =
+      measure(drifted, config_.covered_only ? hits_of(known, points) : points.hits, map_);  // eq. (2)
   particles_ = normalise(measured);
   const TPose2D T_map_now = mean_of_best(particles_, config_.top_share);
   last_motion_ = T_last_now;
-  keep(reference, T_map_now, points);
+  keep(reference, T_map_now, points, surface);
 }
 
 void Mapper::Impl::start(Stamp reference, const ScanPoints& points) {
   started_ = true;
   particles_ = particles_at(TPose2D(), config_.particles);
-  keep(reference, TPose2D(), points);
+  keep(reference, TPose2D(), points, surface_of(points, config_.surface));
 }
 
 /// Ends a mapping step: the scan enters the map, and the next step counts from here.
-void Mapper::Impl::keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points) {
+void Mapper::Impl::keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points, const Surface& surface) {
   map_.stamp(T_map_base, points);
-  matcher_.set_last(points);
+  matcher_.set_last(surface);
+  last_coverage_ = SurfaceCoverage(surface);
   T_map_last_ = T_map_base;
   if (!odometry_.empty()) T_odom_last_ = odometry_.pose_at(reference);
   last_hits_.clear();
@@ -130,9 +135,9 @@ TPose2D Mapper::Impl::motion_since_last(Stamp reference) const {
   return odometry_.pose_at(reference) - *T_odom_last_;
 }
 
-TPose2D Mapper::Impl::refined_motion(const ScanPoints& points, const TPose2D& T_last_prior) {
+TPose2D Mapper::Impl::refined_motion(const Surface& known, const TPose2D& T_last_prior) {
   if (!config_.icp) return T_last_prior;
-  const ScanMatch match = matcher_.match(points, T_last_prior);
+  const ScanMatch match = matcher_.match(known, T_last_prior);
   ++(match.accepted ? counts_.icp_accepted : counts_.icp_rejected);
   return match.T_last_now;
 }

@@ -5,19 +5,19 @@
 #include <memory>
 
 #include "base/angle.h"
-#include "slam/count_map.h"
+#include "slam/surface.h"
 
 namespace rubble::slam {
 
 struct ScanMatcherConfig {
   double first_distance = 0.30;        ///< farthest a correspondence may reach at the start [m]
   double last_distance = 0.05;         ///< and at the end [m]
+  int max_iterations = 40;             ///< of the ICP
   double min_goodness = 0.4;           ///< least share of points that found a partner
   double max_correction = 0.2;         ///< a larger one is not believed [m]
   double max_turn = deg_to_rad(10.0);  ///< a larger one is not believed [rad]
-  double point_spacing = 0.05;         ///< of the current scan's points along the surfaces [m]
-  double surface_spacing = 0.02;       ///< of the last scan's points; gaps are filled to this [m]
-  double max_gap = 0.3;                ///< neighbouring beams farther apart do not see one surface [m]
+  int min_points = 20;                 ///< with fewer points there is no match
+  double dense_spacing = 0.02;         ///< the last scan's surfaces are filled with points to this spacing [m]
 };
 
 struct ScanMatch {
@@ -32,10 +32,10 @@ class ScanMatcher {
   explicit ScanMatcher(const ScanMatcherConfig& config);
   ~ScanMatcher();
 
-  /// Makes `scan` the one that later scans are matched with.
-  void set_last(const ScanPoints& scan);
+  /// Makes `surface` the one that later scans are matched with.
+  void set_last(const Surface& surface);
   /// Refines the motion from the last scan to this one. Draws no random numbers.
-  ScanMatch match(const ScanPoints& scan, const mrpt::math::TPose2D& T_last_now_prior);
+  ScanMatch match(const Surface& now, const mrpt::math::TPose2D& T_last_now_prior);
 
  private:
   struct Impl;
