@@ -78,8 +78,7 @@ void bind(Binder& b, slam::MapperConfig& c) {
     m.number("min_goodness", c.matcher.min_goodness, 0.0, 1.0);
     m.number("max_correction_m", c.matcher.max_correction, 0.0, 5.0);
     m.degrees("max_turn_deg", c.matcher.max_turn, 0.0, 180.0);
-    m.number("point_spacing_m", c.matcher.point_spacing, 0.005, 1.0);
-    m.number("surface_spacing_m", c.matcher.surface_spacing, 0.005, 1.0);
+    m.number("dense_spacing_m", c.matcher.dense_spacing, 0.005, 1.0);
   });
 }
 
