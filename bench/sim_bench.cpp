@@ -76,10 +76,10 @@ void RayWalkScan(benchmark::State& state) {
   const sim::RayWalk walk(arenas::faces(maze()));
   const sim::BeamTable table(model.laser);
   sim::Beams beams;
-  sim::swept_beams(moving(), model, table, Stamp::from_seconds(0.0043), beams);
+  sim::swept_beams(moving(), model, table, Stamp::from_seconds(0.0043), model.laser.beam_period, beams);
   for (auto _ : state) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < beams.size(); ++i) sum += std::min(4.0, walk.cast(beams.ray(i), 4.0));
+    for (std::size_t i = 0; i < beams.count; ++i) sum += std::min(4.0, walk.cast(beams.ray(i), 4.0));
     benchmark::DoNotOptimize(sum);
   }
   state.SetItemsProcessed(state.iterations());

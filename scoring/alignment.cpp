@@ -34,8 +34,9 @@ Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const Alig
     h.T_truth_map = match.refine(guess.T_truth_map, 1.0, 15);
     h.T_truth_map = match.refine(h.T_truth_map, 0.5, 10);
     h.T_truth_map = match.refine(h.T_truth_map, 0.25, 10);
-    h.evidence = match.evidence(h.T_truth_map, config.tau);
-    h.quality = h.evidence.score;
+    h.evidence = match.evidence(match.rigid(h.T_truth_map), config.tau);
+    h.quality = h.evidence.map.known * (h.evidence.map.met - 0.4 - 0.5 * h.evidence.map.contradicted) +
+                h.evidence.truth.known * (h.evidence.truth.met - 0.4 - 0.5 * h.evidence.truth.contradicted);
     hypotheses.push_back(h);
   }
   std::stable_sort(hypotheses.begin(), hypotheses.end(),

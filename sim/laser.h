@@ -8,6 +8,8 @@
 #include "sim/range_noise.h"
 #include "sim/ray_walk.h"
 #include "sim/rays.h"
+#include "sim/scan_faces.h"
+#include "sim/sweep_cast.h"
 
 namespace rubble::sim {
 
@@ -23,11 +25,14 @@ struct SweepTimes {
 class Laser {
  public:
   Laser(const arenas::Arena& arena, const robot::RobotModel& model, double noise, bool sweep, std::uint64_t seed);
+  Laser(const Laser&) = delete;
+  Laser& operator=(const Laser&) = delete;
 
   /// The scan whose beam 0 leaves at `first`; `states` cover the sweep. `balls`: where they are now.
   robot::LaserScan scan(Stamp first, const std::vector<WorldState>& states, const std::vector<Sphere>& balls);
 
   const SweepTimes& times() const { return times_; }
+  /// The exact caster on the same faces, for single lines of sight.
   const RayWalk& walk() const { return walk_; }
 
  private:
@@ -36,6 +41,8 @@ class Laser {
   SweepTimes times_;
   BeamTable table_;
   RayWalk walk_;
+  ScanFaces faces_;
+  SweepCast sweep_cast_;
   RangeNoise noise_;
   Beams beams_;
 };
