@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <memory>
+#include <new>
 
 #include "base/error.h"
 #include "base/text_file.h"
@@ -174,7 +175,11 @@ GeoTiff read_geotiff(const std::string& path) {
     throw InputError(path + ": its scale or position tags are zero or no numbers; remove them and give a world file");
   const char* description = nullptr;
   if (TIFFGetField(tiff.get(), TIFFTAG_IMAGEDESCRIPTION, &description) == 1) result.description = description;
-  result.image = read_pixels(tiff.get(), path, complaint);
+  try {
+    result.image = read_pixels(tiff.get(), path, complaint);
+  } catch (const std::bad_alloc&) {
+    throw InputError(path + ": does not fit into memory; scale it down");
+  }
   return result;
 }
 
