@@ -4,6 +4,7 @@
 #include <mrpt/math/TPoint3D.h>
 #include <mrpt/math/TPose2D.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,9 @@ struct Face {
   std::vector<mrpt::math::TPoint3D> vertices;
 };
 
+/// Sets min_corner and max_corner to the box around floor, solids, sheets, balls and victims.
+void set_bounds(Arena& arena);
+
 /// All faces of floor and solids, with the risers where a floor patch stands above its neighbour or the ground.
 /// Paper balls are not in it: they move. Sheets are too thin to see.
 std::vector<Face> faces(const Arena& arena);
@@ -87,5 +91,11 @@ double floor_height(const Arena& arena, const mrpt::math::TPoint2D& p);
 /// `source` names the file or generator in the message; `start_clearance` is the radius the robot needs around the
 /// start.
 void check(const Arena& arena, const std::string& source, double start_clearance = 0.36);
+
+/// What check() finds wrong with the parts (first trouble, one line without a place), or nothing.
+std::optional<std::string> parts_trouble(const Arena& arena);
+
+/// What check() finds wrong with the start pose alone, or nothing.
+std::optional<std::string> start_trouble(const Arena& arena, double start_clearance = 0.36);
 
 }  // namespace rubble::arenas

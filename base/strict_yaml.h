@@ -8,15 +8,19 @@
 
 namespace rubble {
 
+struct YamlNode;
+
 /// A strict view of a YAML document. Every access names the place when it fails (InputError `file:line:column: ...`),
 /// duplicate keys fail on loading, and finish() fails on keys nobody asked for, with "did you mean".
 ///
 ///   const YamlMap root = YamlMap::load(path);
 ///   config.slope = root.number("slope_deg", 10.0, 0.0, 45.0);
 ///   root.finish();
+///
+/// Copies share one document. A key written without a value counts as an empty map or list, and as missing otherwise.
 class YamlMap {
  public:
-  /// Throws InputError: missing file, broken YAML, duplicate key, not a map at the top.
+  /// Throws InputError: missing file, broken YAML, duplicate key, not a map at the top. `name` stands for the file.
   static YamlMap load(const std::string& path);
   static YamlMap parse(const std::string& text, const std::string& name);
 
@@ -26,6 +30,7 @@ class YamlMap {
   YamlMap& operator=(YamlMap&&) noexcept;
   ~YamlMap();
 
+  /// The key is there and has a value. It still must be read: finish() fails on a key that only has() was asked about.
   bool has(const std::string& key) const;
   /// With a default the key may be absent; `low` and `high` are inclusive bounds.
   double number(const std::string& key, std::optional<double> fallback, double low, double high) const;
@@ -55,16 +60,16 @@ class YamlMap {
   /// `file:line:column` of a key, or of the map.
   std::string place(const std::string& key = "") const;
 
-  /// Sets `dotted.key` to a YAML scalar or flow value, creating maps on the way: what `--set key=value` does.
+  /// Sets `dotted.key` to a YAML scalar or flow value, creating maps on the way: what `--set key=value` does. A number
+  /// in the key counts the items of a list from 0 (`robots.0.name`). Call before reading: maps handed out stay as is.
   /// Errors about such a value then name "--set dotted.key" as the place.
   void set(const std::string& dotted_key, const std::string& value);
   /// The whole document as YAML text, overrides included.
   std::string dump() const;
 
  private:
-  struct Node;
-  explicit YamlMap(std::shared_ptr<Node> node);
-  std::shared_ptr<Node> node_;
+  explicit YamlMap(std::shared_ptr<YamlNode> node);
+  std::shared_ptr<YamlNode> node_;
 };
 
 }  // namespace rubble

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "explore/victim_search.h"
 #include "robot/commands.h"
 #include "robot/measurements.h"
 #include "robot/model.h"
@@ -27,15 +28,11 @@ struct ExplorerConfig {
   double turn_in_place = deg_to_rad(35.0);  ///< heading error above which the robot turns on the spot [rad]
   double look_ahead = 0.35;                 ///< distance of the point on the path the robot steers to [m]
   bool return_home = false;                 ///< drive back to the start when nothing is left to explore
-};
-
-/// A victim as the explorer believes in it.
-struct VictimReport {
-  int id = 0;                        ///< 1, 2, ... in the order of confirmation
-  mrpt::math::TPoint2D p_map;        ///< [m]
-  Stamp stamp;                       ///< of the confirmation
-  double confidence = 0.0;           ///< 0..1
-  std::vector<robot::CueKind> cues;  ///< kinds seen, ascending
+  double d_min_floor = 0.27;                ///< d_min may fall to this when nothing can be reached otherwise [m]
+  double switch_cost = 0.6;                 ///< a new target must be this much cheaper than the old one [m]
+  double scan_timeout = 0.3;                ///< without a scan for this long the robot stops [s]
+  double first_turn = deg_to_rad(130.0);    ///< turn at the start that shows the scanner what is behind [rad]
+  VictimSearchConfig victims;
 };
 
 enum class ExplorerState { Starting, Driving, BackingUp, GoingHome, Finished };

@@ -23,6 +23,8 @@ struct LevellingConfig {
 };
 
 /// PID on the two-axis accelerometer that keeps the laser's scan plane level (paper, section III.C).
+/// Platform: incremental PI(D), du = kp (e - e') + ki e dt + kd (e - 2 e' + e'') / dt with e the negative low-passed
+/// tilt; clamping u is the anti-windup. Body: u is the negative low-passed tilt.
 class Levelling {
  public:
   explicit Levelling(const LevellingConfig& config);
@@ -37,9 +39,11 @@ class Levelling {
     double last_error = 0.0;
     double older_error = 0.0;
     double command = 0.0;
-    bool started = false;
+    bool started = false;  ///< the filter holds a value
   };
 
+  void follow(const Odometry& odometry);
+  void follow(const Acceleration& acceleration);
   double step(Axis& axis, double tilt, double dt) const;
 
   LevellingConfig config_;
@@ -49,6 +53,7 @@ class Levelling {
   Odometry last_odometry_{Stamp::never(), {}, 0.0, 0.0, false};
   double forward_acceleration_ = 0.0;
   double lateral_acceleration_ = 0.0;
+  bool servos_known_ = false;
 };
 
 }  // namespace rubble::robot

@@ -10,6 +10,8 @@
 #include "robot/measurements.h"
 #include "robot/model.h"
 #include "slam/count_map.h"
+#include "slam/particle_filter.h"
+#include "slam/scan_matcher.h"
 
 namespace rubble::slam {
 
@@ -27,11 +29,13 @@ struct MapperConfig {
   bool icp = true;                               ///< refine the odometry by ICP of the last and the current scan
   bool carve_misses = false;                     ///< beams without a return free cells up to the range limit
   double max_range = 0.0;                        ///< returns beyond are dropped [m]; 0: the scanner's own limit
-};
-
-struct Particle {
-  mrpt::math::TPose2D T_map_base;
-  double weight = 0.0;
+  bool deskew = true;                            ///< place each beam by its own time; the paper does not, and pays for it
+  int first_scans = 5;                           ///< so many scans are mapped at the start although the robot stands
+  int max_map_cells = 8000;                      ///< the map grows up to so many cells a side
+  bool covered_only = true;                      ///< eq. (2) sums beams whose surface the last mapped scan saw as well
+  double coverage_margin = 0.1;                  ///< and went on for so much to either side [m]
+  SurfaceConfig surface;                         ///< how scans are thinned for the ICP
+  ScanMatcherConfig matcher;                     ///< thresholds of the ICP
 };
 
 struct MapperCounts {
@@ -39,6 +43,7 @@ struct MapperCounts {
   std::uint64_t mapped = 0;        ///< stamped into the map
   std::uint64_t icp_accepted = 0;  ///< ICP refined the a-priori pose
   std::uint64_t icp_rejected = 0;  ///< odometry was kept
+  std::uint64_t out_of_order = 0;  ///< scans dropped: empty, or not younger than the one before
 };
 
 /// Online SLAM as Robbie X does it: odometry interpolated at the scan stamp, ICP, particle filter, two-plane map.

@@ -1,0 +1,46 @@
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "app/commands.h"
+#include "arenas/arena_file.h"
+#include "arenas/generate.h"
+#include "arenas/render.h"
+#include "arenas/truth_map.h"
+#include "base/error.h"
+#include "base/geotiff.h"
+#include "scenarios/league_map.h"
+
+namespace rubble::app {
+
+int arena(const ArenaArguments& arguments) {
+  namespace fs = std::filesystem;
+  const std::string source = arguments.generate ? "generated arena" : arguments.file;
+  const std::string yaml = arguments.generate ? arenas::generate_arena(arguments.config) : std::string();
+  const arenas::Arena arena = arguments.generate ? arenas::parse_arena(yaml, source) : arenas::load_arena(source);
+  arenas::check(arena, source);
+
+  const std::string stem = arguments.generate ? arguments.config.kind + "-" + std::to_string(arguments.config.columns) +
+                                                    "x" + std::to_string(arguments.config.rows) + "-seed" +
+                                                    std::to_string(arguments.config.seed)
+                                              : fs::path(arguments.file).stem().string();
+  const std::string out = arguments.out.empty() ? "." : arguments.out;
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error) throw InputError(out + ": cannot be created (" + error.message() + "); give a writable folder with --out");
+  const std::string base = out + "/" + stem;
+
+  if (arguments.generate) {
+    std::ofstream file(base + ".yaml");
+    file << yaml;
+    file.close();
+    if (!file) throw InputError(base + ".yaml: cannot be written; give a writable folder with --out");
+    std::printf("%s.yaml\n", base.c_str());
+  }
+  scenarios::write_png(base + ".png", arenas::render(arena, 60.0));
+  write_geotiff(base + "-truth.tif", scenarios::draw_truth(arenas::truth_map(arena, arguments.resolution)));
+  std::printf("%s.png\n%s-truth.tif\n", base.c_str(), base.c_str());
+  return kOk;
+}
+
+}  // namespace rubble::app

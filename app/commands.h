@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/scenario.h"
+
+namespace rubble::app {
+
+/// Exit codes of the program.
+enum Exit : int { kOk = 0, kBroken = 1, kUsage = 2, kBadInput = 3, kFailed = 4, kInterrupted = 130 };
+
+/// What the subcommands that make a run folder share.
+struct CommonOptions {
+  std::string out;
+  bool force = false;
+  std::vector<scenarios::Override> overrides;
+};
+
+struct RunArguments {
+  std::string scenario;
+  std::optional<std::uint64_t> seed;
+  CommonOptions common;
+};
+
+struct MapArguments {
+  std::string log;
+  std::optional<std::uint64_t> seed;
+  CommonOptions common;
+};
+
+struct ScoreArguments {
+  std::string map;
+  std::string truth;
+  std::optional<double> map_resolution;
+  std::optional<double> truth_resolution;
+  double tau = 0.5;
+  std::string out;
+  bool json = false;
+};
+
+struct ReplayArguments {
+  std::string run;
+  std::string out;
+};
+
+struct ExportArguments {
+  std::string log;
+  std::string out;
+};
+
+struct ArenaArguments {
+  std::string file;
+  bool generate = false;
+  arenas::GenerateConfig config;
+  double resolution = 0.05;
+  std::string out;
+};
+
+int run(const RunArguments& arguments);
+int map(const MapArguments& arguments);
+int score(const ScoreArguments& arguments);
+int replay(const ReplayArguments& arguments);
+int export_log(const ExportArguments& arguments);
+int arena(const ArenaArguments& arguments);
+
+}  // namespace rubble::app

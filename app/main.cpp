@@ -1,0 +1,158 @@
+// The command line: parses, dispatches, and turns every failure into one line and an exit code.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <new>
+
+#include "app/commands.h"
+#include "base/error.h"
+#include "scenarios/run.h"
+
+namespace rubble::app {
+namespace {
+
+void add_common(CLI::App& command, CommonOptions& common, std::vector<std::string>& sets) {
+  command.add_option("--out", common.out, "Folder for the results (default: runs/NAME-seedN-NUMBER)");
+  command.add_flag("--force", common.force, "Replace an existing run folder");
+  command.add_option("--set", sets, "Override one value: --set key.key=value (repeatable)")
+      ->allow_extra_args(false)
+      ->take_all();
+}
+
+std::vector<scenarios::Override> parse_sets(const std::vector<std::string>& sets) {
+  std::vector<scenarios::Override> overrides;
+  for (const auto& set : sets) {
+    const auto equals = set.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw UsageError("--set " + set + ": needs the form key.key=value, for example --set robot.levelling=false");
+    overrides.emplace_back(set.substr(0, equals), set.substr(equals + 1));
+  }
+  return overrides;
+}
+
+void add_generate(CLI::App& command, ArenaArguments& arena, std::string& cells) {
+  command.add_option("--kind", arena.config.kind, "Kind of arena")->check(CLI::IsMember({"yellow"}));
+  command.add_option("--cells", cells, "Pallets west-east x south-north (default 8x8)");
+  command.add_option("--seed", arena.config.seed, "Seed of the layout");
+  command.add_option("--ramps", arena.config.ramps, "Share of pallets that are ramps, 0..1");
+  command.add_option("--paper", arena.config.paper, "Share of pallets with paper, 0..1");
+  command.add_option("--loops", arena.config.loops, "Share of inner walls taken away, 0..1");
+  command.add_option("--victims", arena.config.victims, "Number of victims");
+}
+
+void parse_cells(const std::string& cells, arenas::GenerateConfig& config) {
+  if (cells.empty()) return;
+  char rest = 0;
+  if (std::sscanf(cells.c_str(), "%dx%d%c", &config.columns, &config.rows, &rest) != 2)
+    throw UsageError("--cells " + cells + ": needs the form COLUMNSxROWS, for example --cells 10x12");
+}
+
+int dispatch(int argc, char** argv) {
+  CLI::App app(
+      "rubble: simulate, map and score rescue arenas.\n"
+      "Exit codes: 0 ok, 1 an expectation failed, 2 usage, 3 bad input, 4 run failed, 130 interrupted.");
+  app.name("rubble");
+  app.set_version_flag("--version", [] { return scenarios::versions().dump(); });
+  app.require_subcommand(1);
+  std::vector<std::string> sets;
+  std::uint64_t seed = 0;
+
+  RunArguments run_arguments;
+  CLI::App* run_command = app.add_subcommand("run", "Explore, map and score an arena in simulation");
+  run_command->add_option("scenario", run_arguments.scenario,
+                          "Scenario file, or the name of a shipped one (default: yellow)");
+  CLI::Option* run_seed = run_command->add_option("--seed", seed, "Seed of every random choice");
+  add_common(*run_command, run_arguments.common, sets);
+  run_command->footer(
+      "Examples:\n  rubble run\n  rubble run scenarios/yellow.yaml --seed 7\n"
+      "  rubble run --set robot.levelling=false --out runs/no-levelling");
+
+  MapArguments map_arguments;
+  CLI::App* map_command =
+      app.add_subcommand("map", "Map a recorded log (own log, MRPT .rawlog, CARMEN, CoreSLAM .dat)");
+  map_command->add_option("log", map_arguments.log, "Log file")->required();
+  CLI::Option* map_seed = map_command->add_option("--seed", seed, "Seed of the particle filter");
+  add_common(*map_command, map_arguments.common, sets);
+  map_command->footer("Examples:\n  rubble map intel.log.gz\n  rubble map lab.rawlog --set mapper.resolution_m=0.1");
+
+  ScoreArguments score_arguments;
+  CLI::App* score_command = app.add_subcommand("score", "Align a map to the ground truth and score it");
+  score_command->add_option("map", score_arguments.map, "GeoTIFF, ROS map.yaml, or image with --resolution")
+      ->required();
+  score_command->add_option("truth", score_arguments.truth, "Ground truth, same formats")->required();
+  score_command->add_option("--resolution", score_arguments.map_resolution, "Metres a pixel of the map image");
+  score_command->add_option("--truth-resolution", score_arguments.truth_resolution,
+                            "Metres a pixel of the truth image");
+  score_command->add_option("--tau", score_arguments.tau, "Distance at which a wall counts nothing [m]")
+      ->check(CLI::Range(0.05, 10.0));
+  score_command->add_option("--out", score_arguments.out, "Folder for overlay.png, error.png and score.json");
+  score_command->add_flag("--json", score_arguments.json, "Print JSON");
+  score_command->footer(
+      "Examples:\n  rubble score runs/latest/map.tif runs/latest/truth.tif\n"
+      "  rubble score team.png truth.tif --resolution 0.05 --out judged");
+
+  ReplayArguments replay_arguments;
+  CLI::App* replay_command =
+      app.add_subcommand("replay", "Run the mapper again on a recorded run and compare bit by bit");
+  replay_command->add_option("run", replay_arguments.run, "Run folder")->required();
+  replay_command->add_option("--out", replay_arguments.out, "Keep the re-made artefacts in this folder");
+  replay_command->footer("Example:\n  rubble replay runs/latest");
+
+  ExportArguments export_arguments;
+  CLI::App* export_command = app.add_subcommand("export", "Write a recorded log as MRPT .rawlog");
+  export_command->add_option("log", export_arguments.log, "Recorded log (log.rlog of a run folder)")->required();
+  export_command->add_option("out", export_arguments.out, "The .rawlog to write")->required();
+  export_command->footer("Example:\n  rubble export runs/latest/log.rlog run.rawlog");
+
+  ArenaArguments arena_arguments;
+  std::string cells;
+  CLI::App* arena_command =
+      app.add_subcommand("arena", "Picture and truth map of an arena file, or of a generated arena");
+  arena_command->add_option("file", arena_arguments.file, "Arena file, or the word 'generate'")->required();
+  add_generate(*arena_command, arena_arguments, cells);
+  arena_command->add_option("--resolution", arena_arguments.resolution, "Metres a pixel of the truth map")
+      ->check(CLI::Range(0.005, 1.0));
+  arena_command->add_option("--out", arena_arguments.out, "Folder for the files (default: here)");
+  arena_command->footer(
+      "Examples:\n  rubble arena arenas/yellow_8x8.yaml\n"
+      "  rubble arena generate --cells 10x12 --seed 3 --ramps 0.4 --paper 0.2 --victims 6 --loops 0.2");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kUsage;
+  }
+  if (*run_seed) run_arguments.seed = seed;
+  if (*map_seed) map_arguments.seed = seed;
+  run_arguments.common.overrides = map_arguments.common.overrides = parse_sets(sets);
+  arena_arguments.generate = arena_arguments.file == "generate";
+  parse_cells(cells, arena_arguments.config);
+  if (*run_command) return run(run_arguments);
+  if (*map_command) return map(map_arguments);
+  if (*score_command) return score(score_arguments);
+  if (*replay_command) return replay(replay_arguments);
+  if (*export_command) return export_log(export_arguments);
+  return arena(arena_arguments);
+}
+
+int guarded(int argc, char** argv) {
+  try {
+    return dispatch(argc, argv);
+  } catch (const UsageError& error) {
+    std::fprintf(stderr, "rubble: %s\n", error.what());
+    return kUsage;
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "rubble: %s\n", error.what());
+    return kBadInput;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "rubble: out of memory; use a coarser mapper.resolution_m or a smaller map\n");
+    return kFailed;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "rubble: %s\n", error.what());
+    return kFailed;
+  }
+}
+
+}  // namespace
+}  // namespace rubble::app
+
+int main(int argc, char** argv) { return rubble::app::guarded(argc, argv); }

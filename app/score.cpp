@@ -1,0 +1,90 @@
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "base/angle.h"
+#include "base/error.h"
+#include "scoring/normalise.h"
+#include "scoring/picture.h"
+#include "scoring/scorecard.h"
+
+namespace rubble::app {
+namespace {
+
+void print_table(const scoring::MapScore& s, const scoring::LoadedMap& map, const scoring::LoadedMap& truth) {
+  const auto row = [](const char* label, const char* format, double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, value);
+    std::printf("%-26s %s\n", label, text);
+  };
+  std::printf("%-26s %s\n%-26s %s\n", "map", map.recognised.c_str(), "truth", truth.recognised.c_str());
+  if (!s.aligned) std::printf("%-26s %s\n", "not aligned", s.note.c_str());
+  if (s.aligned) {
+    std::printf("%-26s turned %.2f deg, moved %.3f m, %.3f m\n", "aligned", rad_to_deg(s.T_truth_map.phi),
+                s.T_truth_map.x, s.T_truth_map.y);
+    row("runner-up pose", "%.3f of the best", s.runner_up);
+    row("known", "%.1f %%", 100.0 * s.known);
+    row("psi", "%.3f m", s.psi_m);
+    row("precision", "%.3f", s.precision);
+    row("recall", "%.3f", s.recall);
+  }
+  row("score", "%.3f", s.score);
+}
+
+nlohmann::ordered_json as_json(const scoring::MapScore& s, const scoring::LoadedMap& map,
+                               const scoring::LoadedMap& truth) {
+  return {{"score", s.score},
+          {"precision", s.precision},
+          {"recall", s.recall},
+          {"psi_m", s.psi_m},
+          {"aligned", s.aligned},
+          {"known", s.known},
+          {"psi_literal_m", s.psi_literal_m},
+          {"psi_occupied_map_m", s.psi_occupied_map_m},
+          {"psi_occupied_truth_m", s.psi_occupied_truth_m},
+          {"psi_free_map_m", s.psi_free_map_m},
+          {"psi_free_truth_m", s.psi_free_truth_m},
+          {"align_x_m", s.T_truth_map.x},
+          {"align_y_m", s.T_truth_map.y},
+          {"align_rad", s.T_truth_map.phi},
+          {"align_runner_up", s.runner_up},
+          {"align_note", s.note},
+          {"map", map.recognised},
+          {"truth", truth.recognised}};
+}
+
+}  // namespace
+
+int score(const ScoreArguments& arguments) {
+  const scoring::LoadedMap map = scoring::load_map(arguments.map, {arguments.map_resolution});
+  const scoring::LoadedMap truth = scoring::load_map(arguments.truth, {arguments.truth_resolution});
+  scoring::ScoreConfig config;
+  config.tau = arguments.tau;
+  const scoring::MapScore result = scoring::score_map(map.grid, truth.grid, config);
+  if (arguments.json) {
+    std::printf("%s\n", as_json(result, map, truth).dump(2).c_str());
+  } else {
+    print_table(result, map, truth);
+  }
+  if (!arguments.out.empty()) {
+    std::error_code error;
+    std::filesystem::create_directories(arguments.out, error);
+    if (error)
+      throw InputError(arguments.out + ": cannot be created (" + error.message() +
+                       "); give a writable folder with --out");
+    if (result.aligned) {
+      scoring::write_overlay(arguments.out + "/overlay.png", map.grid, truth.grid, result.T_truth_map);
+      scoring::write_error_map(arguments.out + "/error.png", map.grid, truth.grid, result.T_truth_map, config.tau);
+    }
+    const std::string path = arguments.out + "/score.json";
+    std::FILE* file = std::fopen(path.c_str(), "w");
+    if (file == nullptr) throw InputError(path + ": cannot be written; give a writable folder with --out");
+    const std::string text = as_json(result, map, truth).dump(2) + "\n";
+    const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+    if (std::fclose(file) != 0 || !written) throw RunError(path + ": cannot be written; check the free space");
+  }
+  return kOk;
+}
+
+}  // namespace rubble::app

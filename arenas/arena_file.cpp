@@ -1,0 +1,200 @@
+#include "arenas/arena_file.h"
+
+#include <cmath>
+
+#include "arenas/geometry.h"
+#include "arenas/plan.h"
+#include "arenas/victim_box.h"
+#include "base/angle.h"
+#include "base/strict_yaml.h"
+
+namespace rubble::arenas {
+namespace {
+
+using mrpt::math::TPoint2D;
+
+constexpr double kFar = 500.0;  ///< [m]
+
+double angle(const YamlMap& entry, const std::string& key, std::optional<double> fallback) {
+  return deg_to_rad(entry.number(key, fallback, -360.0, 360.0));
+}
+
+TPoint2D point(const YamlMap& entry, const std::string& key) {
+  const std::vector<double> xy = entry.numbers(key, 2);
+  if (xy.size() != 2) entry.fail(key, "give '" + key + ": [x, y]' in metres");
+  return {xy[0], xy[1]};
+}
+
+void read_floors(const YamlMap& root, Plan& plan, Arena& arena) {
+  for (const YamlMap& entry : root.maps("floors")) {
+    const double length = entry.number("length_m", plan.cell_size(), 0.01, kFar);
+    const double width = entry.number("width_m", plan.cell_size(), 0.01, kFar);
+    const double heading = angle(entry, "angle_deg", 0.0);
+    const double slope = std::tan(deg_to_rad(entry.number("slope_deg", 0.0, 0.0, 60.0)));
+    FloorPatch patch;
+    patch.z = entry.number("z_m", 0.0, -10.0, 10.0);
+    patch.gx = slope * std::cos(heading);
+    patch.gy = slope * std::sin(heading);
+    patch.element = entry.text("element", slope > 0.0 ? "ramp" : "platform");
+    for (const TPoint2D& p : plan.places(entry)) {
+      patch.outline = rectangle(p, length, width, heading);  // outline[0] lies at the foot
+      arena.floor.push_back(patch);
+    }
+  }
+}
+
+void read_walls(const YamlMap& root, const Plan& plan, Arena& arena) {
+  for (const YamlMap& entry : root.maps("walls")) {
+    const TPoint2D from = point(entry, "from_m");
+    const TPoint2D to = point(entry, "to_m");
+    if (!(std::hypot(to.x - from.x, to.y - from.y) > 1e-3)) entry.fail("to_m", "the wall has no length");
+    const double bottom = entry.number("bottom_m", 0.0, -10.0, 10.0);
+    const double height = entry.number("height_m", plan.wall_height(), 0.01, 10.0);
+    const double thickness = entry.number("thickness_m", plan.wall_thickness(), 0.005, 1.0);
+    arena.solids.push_back({strip(from, to, thickness), bottom, bottom + height, entry.text("element", "wall")});
+  }
+}
+
+void read_boxes(const YamlMap& root, Plan& plan, Arena& arena) {
+  for (const YamlMap& entry : root.maps("boxes")) {
+    const double length = entry.number("length_m", 0.4, 0.01, kFar);
+    const double width = entry.number("width_m", length, 0.01, kFar);
+    const double heading = angle(entry, "angle_deg", 0.0);
+    const double bottom = entry.number("bottom_m", 0.0, -10.0, 10.0);
+    const double height = entry.number("height_m", plan.wall_height(), 0.01, 10.0);
+    const std::string element = entry.text("element", "box");
+    for (const TPoint2D& p : plan.places(entry)) {
+      arena.solids.push_back({rectangle(p, length, width, heading), bottom, bottom + height, element});
+    }
+  }
+}
+
+/// `outline_m: [x, y, x, y, ...]`, in either sense of rotation.
+Outline read_outline(const YamlMap& entry) {
+  const std::vector<double> numbers = entry.numbers("outline_m");
+  if (numbers.size() < 6 || numbers.size() % 2 != 0) {
+    entry.fail("outline_m", "give three or more corners as x, y, x, y, ... in metres");
+  }
+  Outline outline;
+  for (std::size_t i = 0; i < numbers.size(); i += 2) outline.push_back({numbers[i], numbers[i + 1]});
+  if (signed_area(outline) < 0.0) outline = Outline(outline.rbegin(), outline.rend());
+  if (!is_convex(outline)) entry.fail("outline_m", "the outline is not convex: split it into convex sheets");
+  return outline;
+}
+
+void read_paper(const YamlMap& root, Plan& plan, Arena& arena) {
+  for (const YamlMap& entry : root.maps("paper")) {
+    const double friction = entry.number("friction", 0.25, 0.0, 2.0);
+    if (entry.has("outline_m")) {
+      arena.sheets.push_back({read_outline(entry), friction});
+      continue;
+    }
+    const double length = entry.number("length_m", 0.42, 0.01, kFar);  // DIN A3, landscape
+    const double width = entry.number("width_m", 0.297, 0.01, kFar);
+    const double heading = angle(entry, "angle_deg", 0.0);
+    for (const TPoint2D& p : plan.places(entry))
+      arena.sheets.push_back({rectangle(p, length, width, heading), friction});
+  }
+}
+
+void read_balls(const YamlMap& root, Plan& plan, Arena& arena) {
+  for (const YamlMap& entry : root.maps("balls")) {
+    const double radius = entry.number("radius_m", 0.12, 0.01, 1.0);
+    // Crumpled paper fills space with dimension 2.5 (Gomes 1987), so mass grows with radius^2.5; 30 g at 0.12 m.
+    const double relative = radius / 0.12;
+    const double mass = entry.number("mass_kg", 0.03 * relative * relative * std::sqrt(relative), 0.001, 10.0);
+    for (const TPoint2D& p : plan.places(entry)) arena.balls.push_back({p, radius, mass});
+  }
+}
+
+void read_cues(const YamlMap& entry, Victim& victim) {
+  if (!entry.has("cues")) return;
+  victim.appearance = victim.heat = false;
+  for (const std::string& cue : entry.texts("cues")) {
+    if (cue == "appearance") {
+      victim.appearance = true;
+    } else if (cue == "heat") {
+      victim.heat = true;
+    } else if (cue == "sound") {
+      victim.sound = true;
+    } else if (cue == "co2") {
+      victim.co2 = true;
+    } else {
+      entry.fail("cues", "unknown cue '" + cue + "': use appearance, heat, sound, co2");
+    }
+  }
+}
+
+/// With `wall`, the box stands with its back against that wall of the pallet; otherwise its middle is at the place.
+void read_victims(const YamlMap& root, Plan& plan, Arena& arena) {
+  for (const YamlMap& entry : root.maps("victims")) {
+    const double size = entry.number("box_m", 0.4, 0.0, 1.2);
+    TPoint2D p = plan.place(entry);
+    Victim victim;
+    victim.name = entry.text("name", std::nullopt);
+    if (entry.has("wall")) {
+      const std::string side = entry.choice("wall", std::nullopt, {"north", "east", "south", "west"});
+      const double back = 0.5 * (plan.cell_size() - plan.wall_thickness() - size);
+      const double outward = side == "east" ? 0.0 : side == "north" ? 0.5 * kPi : side == "west" ? kPi : -0.5 * kPi;
+      p = p + TPoint2D{back * std::cos(outward), back * std::sin(outward)};
+      victim.facing = wrap_angle(outward + kPi);
+    } else {
+      victim.facing = wrap_angle(angle(entry, "facing_deg", std::nullopt));
+    }
+    victim.position = {p.x, p.y, entry.number("height_m", 0.2, 0.0, 2.0)};
+    read_cues(entry, victim);
+    add_victim(arena, victim, size);
+  }
+}
+
+void read_start(const YamlMap& root, const Plan& plan, Arena& arena) {
+  const YamlMap start = root.map("start");
+  arena.start.phi = wrap_angle(angle(start, "heading_deg", 0.0));
+  if (start.has("x_m") || start.has("y_m")) {
+    if (plan.start_cell())
+      start.fail("x_m", "the drawing marks the start with S already: remove x_m and y_m, or the S");
+    arena.start.x = start.number("x_m", std::nullopt, -kFar, kFar);
+    arena.start.y = start.number("y_m", std::nullopt, -kFar, kFar);
+  } else if (plan.start_cell()) {
+    arena.start.x = plan.start().x;
+    arena.start.y = plan.start().y;
+  } else {
+    root.fail("start", "where does the robot start? write S into a pallet of the drawing, or 'start: {x_m: , y_m: }'");
+  }
+}
+
+void check_start(const YamlMap& root, const Plan& plan, const Arena& arena) {
+  const auto trouble = start_trouble(arena);
+  if (!trouble) return;
+  if (plan.start_cell()) root.fail_at("maze", plan.start_cell()->row, plan.start_cell()->column, *trouble);
+  root.fail("start", *trouble);
+}
+
+Arena build(const YamlMap& root, const std::string& source) {
+  Arena arena;
+  const std::string file = source.substr(source.find_last_of('/') + 1);
+  arena.name = root.text("name", file.substr(0, file.find_last_of('.')));
+  arena.floor_friction = root.number("floor_friction", 0.8, 0.01, 2.0);
+  Plan plan(root, arena);
+  read_floors(root, plan, arena);
+  read_walls(root, plan, arena);
+  read_boxes(root, plan, arena);
+  read_paper(root, plan, arena);
+  read_balls(root, plan, arena);
+  read_victims(root, plan, arena);
+  read_start(root, plan, arena);
+  root.finish();
+  plan.finish(root);
+  if (const auto trouble = parts_trouble(arena)) root.fail("", *trouble);
+  check_start(root, plan, arena);
+  set_bounds(arena);
+  return arena;
+}
+
+}  // namespace
+
+Arena load_arena(const std::string& path) { return build(YamlMap::load(path), path); }
+
+Arena parse_arena(const std::string& yaml, const std::string& name) { return build(YamlMap::parse(yaml, name), name); }
+
+}  // namespace rubble::arenas

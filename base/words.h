@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rubble {
+
+/// `text` on one line: line breaks and other control characters become escapes such as \n, \t, \x1b.
+std::string one_line(std::string_view text);
+
+/// 'text' in quotes for a message, on one line, cut at `limit` bytes.
+std::string quoted(std::string_view text, std::size_t limit = 60);
+
+/// Changes that turn a into b: insert, delete or replace a letter, swap two neighbours
+/// (optimal string alignment distance).
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// ", did you mean 'slope'?" with the nearest of `candidates` (the first among equals); empty when none is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+
+/// "a, b, c" for a list in a message.
+std::string joined(const std::vector<std::string>& words);
+
+}  // namespace rubble

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+
+#include <vector>
+
+namespace rubble::explore {
+
+/// Keeps account of the time spent on the way to each target, so that driving to and fro between targets that move out
+/// of reach ends some day.
+class Attempts {
+ public:
+  /// Spends `dt` seconds on a target that cost `cost` metres when it was first chosen; true when that is more time than
+  /// it deserves. The account is then closed: choosing the target again opens a new one.
+  bool overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt);
+
+ private:
+  struct Account {
+    mrpt::math::TPoint2D target;
+    double budget;  ///< [s]
+  };
+  std::vector<Account> accounts_;
+};
+
+}  // namespace rubble::explore

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+
+#include <vector>
+
+#include "base/stamp.h"
+
+namespace rubble::explore {
+
+/// Places not to drive to for a while: frontiers that could not be reached, or that stay although they were visited.
+class Blacklist {
+ public:
+  /// Bars the disc around p until `until`.
+  void bar(const mrpt::math::TPoint2D& p_map, double radius, Stamp until);
+  /// Bars the disc for as long as the blacklist lives.
+  void bar_for_good(const mrpt::math::TPoint2D& p_map, double radius);
+
+  bool barred(const mrpt::math::TPoint2D& p_map, Stamp now) const;
+  /// How often discs around p were barred so far, expired ones included.
+  int times_barred(const mrpt::math::TPoint2D& p_map) const;
+  /// Ends all bars that would end some day; says whether there was any in force.
+  bool pardon(Stamp now);
+
+ private:
+  struct Entry {
+    mrpt::math::TPoint2D p_map;
+    double radius;
+    Stamp until;
+  };
+  std::vector<Entry> entries_;
+};
+
+}  // namespace rubble::explore

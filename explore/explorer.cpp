@@ -1,0 +1,423 @@
+#include "explore/explorer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "base/trajectory.h"
+#include "explore/attempts.h"
+#include "explore/blacklist.h"
+#include "explore/motion_watch.h"
+#include "explore/path_follower.h"
+#include "explore/planner.h"
+#include "explore/traversable.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using robot::Drive;
+
+constexpr double kCheckPeriod = 0.2;             ///< fresh hits are held against the path this often [s]
+constexpr int kBlockingHits = 3;                 ///< fewer may be noise
+constexpr double kHitMemory = 10.0;              ///< hits that blocked the path count as obstacles this long [s]
+constexpr double kHitReach = 1.5;                ///< hits farther away are not remembered [m]
+constexpr double kCreepTime = 3.0;               ///< [s]
+constexpr double kCreepSpeed = 0.15;             ///< [m/s]
+constexpr double kBackUpTime = 1.0;              ///< [s]
+constexpr double kBackUpSpeed = 0.2;             ///< [m/s]
+constexpr double kVisited = 0.30;                ///< closer to its target the robot has been there [m]
+constexpr double kBarRadius = 0.60;              ///< [m]
+constexpr double kBarTime = 60.0;                ///< for the first failure; doubles with each one more [s]
+constexpr double kLookTurn = deg_to_rad(270.0);  ///< with a 240 deg scanner more than once around [rad]
+constexpr double kLookTimeout = 12.0;            ///< [s]
+constexpr double kTrailStep = 0.15;              ///< [m]
+constexpr double kTrailRadius = 0.20;            ///< [m]
+constexpr double kNearFrontier = 1.0;            ///< frontier this close at the start: turn to see it [m]
+constexpr int kMaxPardons = 2;                   ///< times that barred targets are tried again before giving up
+constexpr int kMaxStuckAtPlace = 6;
+
+TPoint2D position(const TPose2D& pose) { return {pose.x, pose.y}; }
+double distance(const TPoint2D& a, const TPoint2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+PlannerConfig planner_config(const ExplorerConfig& config) {
+  PlannerConfig planner;
+  planner.transform = {config.alpha, config.d_min, config.d_opt};
+  planner.d_min_floor = std::min(config.d_min_floor, config.d_min);
+  planner.min_frontier_cells = config.min_frontier_cells;
+  planner.switch_cost = config.switch_cost;
+  planner.clearance_cap = config.d_opt + 0.6;
+  return planner;
+}
+
+FollowerConfig follower_config(const ExplorerConfig& config) {
+  FollowerConfig follower;
+  follower.cruise_speed = config.cruise_speed;
+  follower.turn_speed = config.turn_speed;
+  follower.turn_in_place = config.turn_in_place;
+  follower.look_ahead = config.look_ahead;
+  return follower;
+}
+
+/// A turn on the spot to let the scanner see all around.
+struct LookAround {
+  double left = 0.0;  ///< [rad], signed; 0: none under way
+  Stamp until = Stamp::never();
+  bool to_the_end = false;  ///< not ended early by a new target
+  bool active() const { return left != 0.0; }
+};
+
+}  // namespace
+
+struct Explorer::Impl {
+  Impl(const robot::RobotModel& robot_model, const ExplorerConfig& explorer_config)
+      : model(robot_model),
+        config(explorer_config),
+        planner(planner_config(explorer_config)),
+        follower(robot_model, follower_config(explorer_config)),
+        search(explorer_config.victims) {}
+
+  void observe(const slam::Mapper& mapper, const robot::Inputs& inputs);
+  Drive decide(const slam::Mapper& mapper);
+  Drive start(const slam::Mapper& mapper);
+  Drive drive(const slam::Mapper& mapper);
+  Drive back_up();
+
+  Traversable floor_now(const slam::Mapper& mapper, bool with_hits) const;
+  void replan(const slam::Mapper& mapper);
+  Plan plan_on(const Traversable& floor);
+  void accept(Plan plan);
+  void visited_in_vain(const TPoint2D& target);
+  void nothing_left();
+  void finish_exploring();
+  void finish(const std::string& why);
+
+  void check_path(const slam::Mapper& mapper);
+  void got_stuck();
+  void bar_target(const TPoint2D& target);
+  void look_around(double angle, bool to_the_end);
+  Drive look();
+  void show_path();
+
+  const robot::RobotModel model;
+  const ExplorerConfig config;
+  Planner planner;
+  PathFollower follower;
+  VictimSearch search;
+  Blacklist blacklist;
+  Attempts attempts;
+  MotionWatch watch;
+
+  ExplorerState state = ExplorerState::Starting;
+  std::string reason;
+  std::vector<TPoint2D> shown_path;
+
+  Stamp now = Stamp::never();
+  double dt = 0.0;
+  TPose2D pose;
+  double turned = 0.0;
+  bool stalled = false;
+  Stamp last_scan = Stamp::never();
+  Drive commanded;
+  std::vector<TPoint2D> trail;
+  TPoint2D home;
+
+  std::uint64_t planned_version = 0;
+  Stamp next_plan = Stamp::never();
+  bool plan_forced = true;
+  std::optional<TPoint2D> target;
+  double target_cost = 0.0;
+  double path_d_min = 0.0;
+  std::size_t frontier_left = 0;
+
+  LookAround looking;
+  std::optional<TPoint2D> looked_from;
+  int failed_plans = 0;
+  int looks_in_vain = 0;
+  int pardons = 0;
+
+  Stamp next_check = Stamp::never();
+  std::vector<TPoint2D> remembered_hits;
+  Stamp forget_hits = Stamp::never();
+  bool blocked = false;
+  Stamp creep_until = Stamp::never();
+
+  Traversable last_floor;
+  ExplorerState after_back_up = ExplorerState::Driving;
+  Stamp back_up_until = Stamp::never();
+  bool back_up_turns = false;
+  std::optional<TPoint2D> stuck_place;
+  int stuck_there = 0;
+};
+
+/// Takes in what arrived in this tick.
+void Explorer::Impl::observe(const slam::Mapper& mapper, const robot::Inputs& inputs) {
+  dt = now == Stamp::never() ? 0.0 : inputs.now - now;
+  now = inputs.now;
+  const TPose2D before = pose;
+  pose = mapper.pose();
+  turned = wrap_angle(pose.phi - before.phi);
+  if (!inputs.scans.empty()) last_scan = now;
+  if (!inputs.odometry.empty()) stalled = inputs.odometry.back().stalled;
+  for (const robot::VictimCue& cue : inputs.cues)
+    search.add(cue, pose_at(mapper.trajectory(), cue.stamp).value_or(pose));
+  if (state != ExplorerState::Starting && (trail.empty() || distance(trail.back(), position(pose)) > kTrailStep))
+    trail.push_back(position(pose));
+}
+
+Drive Explorer::Impl::decide(const slam::Mapper& mapper) {
+  if (state == ExplorerState::Finished) return {};
+  if (last_scan == Stamp::never() || now - last_scan > config.scan_timeout) return {};
+  switch (state) {
+    case ExplorerState::Starting:
+      return start(mapper);
+    case ExplorerState::BackingUp:
+      return back_up();
+    default:
+      return drive(mapper);
+  }
+}
+
+/// Waits for the first scan in the map; when frontier is close by, the scanner's blind sector is worth a turn.
+Drive Explorer::Impl::start(const slam::Mapper& mapper) {
+  if (mapper.counts().mapped == 0) return {};
+  state = ExplorerState::Driving;
+  home = position(pose);
+  trail.push_back(home);
+  const Traversable floor = floor_now(mapper, false);
+  const std::vector<Cell> frontier = frontier_cells(floor);
+  const auto near = std::count_if(frontier.begin(), frontier.end(),
+                                  [&](Cell c) { return distance(floor.cells.centre(c), home) < kNearFrontier; });
+  if (near >= config.min_frontier_cells && config.first_turn > 0.0) look_around(config.first_turn, true);
+  return {};
+}
+
+Drive Explorer::Impl::drive(const slam::Mapper& mapper) {
+  if (watch.stuck(pose, commanded, stalled, dt)) {
+    got_stuck();
+    return {};
+  }
+  check_path(mapper);
+  if (target && state == ExplorerState::Driving && attempts.overdrawn(*target, target_cost, dt)) bar_target(*target);
+  if (plan_forced || now >= next_plan) replan(mapper);
+  if (state == ExplorerState::Finished) return {};
+  if (looking.active()) return look();
+  if (blocked && now >= creep_until) return {};
+  Drive drive = follower.drive(pose);
+  if (now < creep_until && std::abs(drive.v) > kCreepSpeed) {
+    drive.w *= kCreepSpeed / drive.v;
+    drive.v = kCreepSpeed;
+  }
+  return drive;
+}
+
+Traversable Explorer::Impl::floor_now(const slam::Mapper& mapper, bool with_hits) const {
+  Traversable floor = traversable(mapper.map(), config.occupied_threshold);
+  free_body(floor, pose, model.length, model.width, 0.0);
+  free_trail(floor, trail, kTrailRadius);
+  if (with_hits) add_obstacles(floor, remembered_hits, 0.15);
+  measure_clearance(floor, planner.clearance_cap());
+  return floor;
+}
+
+Plan Explorer::Impl::plan_on(const Traversable& floor) {
+  if (state == ExplorerState::GoingHome) return planner.to_point(floor, pose, home, 0.15);
+  return planner.to_frontier(
+      floor, pose, [this](const TPoint2D& p) { return blacklist.barred(p, now); }, target);
+}
+
+void Explorer::Impl::replan(const slam::Mapper& mapper) {
+  if (!plan_forced && mapper.map().version() == planned_version) return;
+  const bool new_map = mapper.map().version() != planned_version;
+  plan_forced = false;
+  planned_version = mapper.map().version();
+  next_plan = now + config.replan_period;
+  if (now >= forget_hits) remembered_hits.clear();
+
+  last_floor = floor_now(mapper, !remembered_hits.empty());
+  Plan plan = plan_on(last_floor);
+  if (!plan.found && !remembered_hits.empty()) {
+    // The map shows a way, the newest scans do not: go and see, slowly.
+    last_floor = floor_now(mapper, false);
+    plan = plan_on(last_floor);
+    if (plan.found) creep_until = now + kCreepTime;
+  }
+  frontier_left = plan.frontier_left;
+  if (plan.found) {
+    accept(std::move(plan));
+  } else {
+    follower.clear();
+    target.reset();
+    if (new_map) ++failed_plans;
+    nothing_left();
+  }
+  show_path();
+}
+
+void Explorer::Impl::accept(Plan plan) {
+  failed_plans = 0;
+  looks_in_vain = 0;
+  const bool near = distance(plan.target, position(pose)) < kVisited;
+  if (state == ExplorerState::GoingHome) {
+    if (distance(home, position(pose)) < kVisited) return finish("home again");
+  } else if (near) {
+    return visited_in_vain(plan.target);
+  }
+  if (looking.active() && !looking.to_the_end) looking = {};
+  if (!target || distance(*target, plan.target) > 0.5) target_cost = plan.cost;
+  target = plan.target;
+  path_d_min = plan.d_min;
+  blocked = false;
+  follower.set_path(std::move(plan.path));
+}
+
+/// The robot stands at a frontier that does not go away: look around, then bar it.
+void Explorer::Impl::visited_in_vain(const TPoint2D& where) {
+  follower.clear();
+  if (looking.active()) return;
+  if (!looked_from || distance(*looked_from, position(pose)) > kVisited) {
+    looked_from = position(pose);
+    return look_around(kLookTurn, false);
+  }
+  blacklist.bar_for_good(where, kBarRadius);
+  target.reset();
+  plan_forced = true;
+}
+
+/// No frontier can be reached: look around once more, try again what failed before, then finish.
+void Explorer::Impl::nothing_left() {
+  if (looking.active()) return;
+  if (state == ExplorerState::GoingHome) return finish("no way home is left");
+  if (looks_in_vain == 0 || (failed_plans < 2 && looks_in_vain < 2)) {
+    ++looks_in_vain;
+    return look_around(kLookTurn, false);
+  }
+  if (pardons < kMaxPardons && blacklist.pardon(now)) {
+    ++pardons;
+    plan_forced = true;
+    return;
+  }
+  finish_exploring();
+}
+
+void Explorer::Impl::finish_exploring() {
+  std::string why = "nothing reachable left to explore";
+  if (frontier_left == 1) why += " (1 frontier cannot be reached)";
+  if (frontier_left > 1) why += " (" + std::to_string(frontier_left) + " frontiers cannot be reached)";
+  if (!config.return_home) return finish(why);
+  reason = why;
+  state = ExplorerState::GoingHome;
+  plan_forced = true;
+}
+
+void Explorer::Impl::finish(const std::string& why) {
+  reason += (reason.empty() ? "" : ", ") + why;
+  state = ExplorerState::Finished;
+  follower.clear();
+  looking = {};
+  show_path();
+}
+
+/// Holds the newest hits against the path: things that moved, or that the map does not show yet.
+void Explorer::Impl::check_path(const slam::Mapper& mapper) {
+  if (now < next_check) return;
+  next_check = now + kCheckPeriod;
+  if (follower.arrived() || looking.active()) return;
+  const double brake_way = commanded.v * commanded.v / (2.0 * model.max_accel);
+  const double radius = std::min(0.5 * model.width + 0.03, path_d_min - 0.04);
+  const std::vector<TPoint2D>& hits = mapper.last_hits();
+  blocked =
+      hits_on_path(follower.path(), follower.progress(), 0.5 + brake_way, radius, hits, pose, model) >= kBlockingHits;
+  if (!blocked || now < creep_until) return;
+  remembered_hits.clear();
+  std::copy_if(hits.begin(), hits.end(), std::back_inserter(remembered_hits),
+               [&](const TPoint2D& p) { return distance(p, position(pose)) < kHitReach; });
+  forget_hits = now + kHitMemory;
+  plan_forced = true;
+}
+
+void Explorer::Impl::got_stuck() {
+  watch.reset();
+  looking = {};
+  const TPoint2D here = position(pose);
+  const bool again = stuck_place && distance(*stuck_place, here) < 0.5;
+  stuck_there = again ? stuck_there + 1 : 1;
+  stuck_place = here;
+  if (stuck_there > 1 && target) bar_target(*target);
+  if (stuck_there > kMaxStuckAtPlace) return finish("stuck");
+
+  // Whatever holds the robot stands before it: something the scanner cannot see.
+  for (int i = -2; i <= 2; ++i) {
+    const double ahead = 0.5 * model.length + 0.10;
+    const double aside = 0.1 * i;
+    remembered_hits.push_back({pose.x + ahead * std::cos(pose.phi) - aside * std::sin(pose.phi),
+                               pose.y + ahead * std::sin(pose.phi) + aside * std::cos(pose.phi)});
+  }
+  forget_hits = now + kHitMemory;
+  const TPoint2D rear{pose.x - 0.25 * std::cos(pose.phi), pose.y - 0.25 * std::sin(pose.phi)};
+  const Cell c = last_floor.clearance.cell(rear);
+  const bool rear_free = !last_floor.clearance.inside(c) || last_floor.clearance[c] > 0.5 * model.width;
+  back_up_turns = commanded.v < 0.0 || !rear_free || stuck_there % 3 == 0;
+  after_back_up = state;
+  back_up_until = now + kBackUpTime;
+  state = ExplorerState::BackingUp;
+}
+
+Drive Explorer::Impl::back_up() {
+  if (now < back_up_until) {
+    const double side = stuck_there % 2 == 0 ? 1.0 : -1.0;
+    return back_up_turns ? Drive{0.0, side * config.turn_speed} : Drive{-kBackUpSpeed, 0.0};
+  }
+  state = after_back_up;
+  plan_forced = true;
+  return {};
+}
+
+void Explorer::Impl::bar_target(const TPoint2D& where) {
+  const int times = std::min(blacklist.times_barred(where), 6);
+  blacklist.bar(where, kBarRadius, now + kBarTime * std::ldexp(1.0, times));
+  target.reset();
+  plan_forced = true;
+}
+
+void Explorer::Impl::look_around(double angle, bool to_the_end) {
+  looking = {angle, now + kLookTimeout, to_the_end};
+  follower.clear();
+}
+
+Drive Explorer::Impl::look() {
+  const bool was_positive = looking.left > 0.0;
+  looking.left -= turned;
+  if (was_positive != (looking.left > 0.0) || std::abs(looking.left) < deg_to_rad(5.0) || now >= looking.until) {
+    looking = {};
+    plan_forced = true;
+    return {};
+  }
+  return turn_on_the_spot(looking.left, config.turn_speed, 0.6 * model.max_turn_accel);
+}
+
+void Explorer::Impl::show_path() {
+  shown_path.clear();
+  for (const PathPoint& point : follower.path()) shown_path.push_back(point.p_map);
+}
+
+Explorer::Explorer(const robot::RobotModel& model, const ExplorerConfig& config)
+    : impl_(std::make_unique<Impl>(model, config)) {}
+
+Explorer::~Explorer() = default;
+
+robot::Commands Explorer::next(const slam::Mapper& mapper, const robot::Inputs& inputs) {
+  impl_->observe(mapper, inputs);
+  impl_->commanded = impl_->decide(mapper);
+  return {impl_->commanded, {}};
+}
+
+bool Explorer::finished() const { return impl_->state == ExplorerState::Finished; }
+const std::string& Explorer::reason() const { return impl_->reason; }
+ExplorerState Explorer::state() const { return impl_->state; }
+const std::vector<TPoint2D>& Explorer::path() const { return impl_->shown_path; }
+const std::vector<VictimReport>& Explorer::victims() const { return impl_->search.reports(); }
+
+}  // namespace rubble::explore

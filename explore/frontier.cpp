@@ -1,0 +1,54 @@
+#include "explore/frontier.h"
+
+#include <cstdint>
+#include <utility>
+
+namespace rubble::explore {
+
+std::vector<Cell> frontier_cells(const Traversable& floor) {
+  std::vector<Cell> found;
+  const int width = floor.cells.width();
+  for (int y = 1; y + 1 < floor.cells.height(); ++y) {
+    const Occupancy* row = floor.cells.row(y);
+    const Occupancy* below = floor.cells.row(y - 1);
+    const Occupancy* above = floor.cells.row(y + 1);
+    for (int x = 1; x + 1 < width; ++x) {
+      if (row[x] != Occupancy::Free) continue;
+      const bool open = row[x - 1] == Occupancy::Unknown || row[x + 1] == Occupancy::Unknown ||
+                        below[x] == Occupancy::Unknown || above[x] == Occupancy::Unknown;
+      if (open && floor.body[{x, y}] == 0) found.push_back({x, y});
+    }
+  }
+  return found;
+}
+
+std::vector<FrontierCluster> frontier_clusters(const Traversable& floor, int min_cells) {
+  const std::vector<Cell> frontier = frontier_cells(floor);
+  std::vector<FrontierCluster> clusters;
+  if (frontier.empty()) return clusters;
+  Grid<std::uint8_t> open(floor.frame());
+  for (const Cell c : frontier) open[c] = 1;
+
+  for (const Cell first : frontier) {
+    if (open[first] == 0) continue;
+    FrontierCluster cluster;
+    open[first] = 0;
+    cluster.cells.push_back(first);
+    for (std::size_t next = 0; next < cluster.cells.size(); ++next) {
+      const Cell c = cluster.cells[next];
+      for (int y = c.y - 1; y <= c.y + 1; ++y)
+        for (int x = c.x - 1; x <= c.x + 1; ++x) {
+          if (open[{x, y}] == 0) continue;  // the rim is never frontier, so all neighbours are inside
+          open[{x, y}] = 0;
+          cluster.cells.push_back({x, y});
+        }
+    }
+    if (static_cast<int>(cluster.cells.size()) < min_cells) continue;
+    for (const Cell c : cluster.cells) cluster.centroid += floor.cells.centre(c);
+    cluster.centroid *= 1.0 / static_cast<double>(cluster.cells.size());
+    clusters.push_back(std::move(cluster));
+  }
+  return clusters;
+}
+
+}  // namespace rubble::explore

@@ -1,0 +1,169 @@
+#include "explore/traversable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/distance_transform.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using slam::CountMap;
+
+constexpr int kWeakHits = 2;
+constexpr double kLoneRadius = 0.15;  ///< [m]
+
+/// A rectangle of cells, both corners inside it.
+struct Box {
+  Cell low;
+  Cell high;
+  bool empty() const { return high.x < low.x; }
+};
+
+bool any_seen(const CountMap& map, int y, int from, int to) {
+  unsigned seen = 0;
+  for (int x = from; x < to; ++x) seen |= map.seen({x, y});
+  return seen != 0;
+}
+
+Box seen_box(const CountMap& map) {
+  const GridFrame& frame = map.frame();
+  Box box{{frame.width, frame.height}, {-1, -1}};
+  for (int y = 0; y < frame.height; ++y) {
+    const bool left = any_seen(map, y, 0, box.low.x);
+    const bool middle = any_seen(map, y, box.low.x, box.high.x + 1);
+    const bool right = any_seen(map, y, std::max(box.low.x, box.high.x + 1), frame.width);
+    if (!left && !middle && !right) continue;
+    box.low.y = std::min(box.low.y, y);
+    box.high.y = y;
+    if (left) {
+      for (int x = 0; x < box.low.x; ++x)
+        if (map.seen({x, y}) != 0) {
+          box.low.x = x;
+          break;
+        }
+    }
+    for (int x = frame.width - 1; x > box.high.x; --x)
+      if (map.seen({x, y}) != 0) box.high.x = x;
+  }
+  return box;
+}
+
+/// The cells within `reach` of p, cut to the inside of the rim.
+Box cells_around(const GridFrame& frame, const TPoint2D& p, double reach) {
+  const Cell low = frame.cell({p.x - reach, p.y - reach});
+  const Cell high = frame.cell({p.x + reach, p.y + reach});
+  return {{std::max(low.x, 1), std::max(low.y, 1)},
+          {std::min(high.x, frame.width - 2), std::min(high.y, frame.height - 2)}};
+}
+
+bool stands_alone(const OccupancyGrid& cells, Cell c, int reach) {
+  for (int y = std::max(c.y - reach, 0); y <= std::min(c.y + reach, cells.height() - 1); ++y)
+    for (int x = std::max(c.x - reach, 0); x <= std::min(c.x + reach, cells.width() - 1); ++x)
+      if (Cell{x, y} != c && cells[{x, y}] == Occupancy::Occupied) return false;
+  return true;
+}
+
+bool has_obstacle(const Grid<std::uint8_t>& obstacle, const Box& box) {
+  for (int y = box.low.y; y <= box.high.y; ++y)
+    for (int x = box.low.x; x <= box.high.x; ++x)
+      if (obstacle[{x, y}] != 0) return true;
+  return false;
+}
+
+}  // namespace
+
+Traversable traversable(OccupancyGrid known) {
+  Traversable floor;
+  floor.obstacle = Grid<std::uint8_t>(known.frame());
+  floor.body = Grid<std::uint8_t>(known.frame());
+  std::transform(known.cells().begin(), known.cells().end(), floor.obstacle.cells().begin(),
+                 [](Occupancy o) { return static_cast<std::uint8_t>(o == Occupancy::Occupied); });
+  floor.cells = std::move(known);
+  return floor;
+}
+
+Traversable traversable(const CountMap& map, double occupied_threshold) {
+  const Box box = seen_box(map);
+  if (box.empty()) return {};
+  const GridFrame& whole = map.frame();
+  GridFrame frame = whole;
+  frame.width = box.high.x - box.low.x + 3;
+  frame.height = box.high.y - box.low.y + 3;
+  frame.x0 = whole.x0 + (box.low.x - 1) * whole.resolution;
+  frame.y0 = whole.y0 + (box.low.y - 1) * whole.resolution;
+
+  OccupancyGrid known(frame, Occupancy::Unknown);
+  std::vector<Cell> weak;
+  const float threshold = static_cast<float>(occupied_threshold);
+  for (int y = box.low.y; y <= box.high.y; ++y) {
+    Occupancy* row = known.row(y - box.low.y + 1) + 1;
+    for (int x = box.low.x; x <= box.high.x; ++x) {
+      const int seen = map.seen({x, y});
+      const int hits = map.occupied({x, y});
+      if (seen == 0) continue;
+      const bool occupied = hits > 0 && static_cast<float>(hits) >= threshold * static_cast<float>(seen);
+      row[x - box.low.x] = occupied ? Occupancy::Occupied : Occupancy::Free;
+      if (occupied && hits <= kWeakHits) weak.push_back({x - box.low.x + 1, y - box.low.y + 1});
+    }
+  }
+  Traversable floor = traversable(std::move(known));
+  const int reach = static_cast<int>(std::lround(kLoneRadius / frame.resolution));
+  for (const Cell c : weak)
+    if (stands_alone(floor.cells, c, reach)) floor.obstacle[c] = 0;
+  return floor;
+}
+
+void free_body(Traversable& floor, const TPose2D& T_map_base, double length, double width, double reach) {
+  const GridFrame& frame = floor.frame();
+  const double half_length = 0.5 * length + reach;
+  const double half_width = 0.5 * width + reach;
+  const double cos_phi = std::cos(T_map_base.phi);
+  const double sin_phi = std::sin(T_map_base.phi);
+  const Box box = cells_around(frame, {T_map_base.x, T_map_base.y}, std::hypot(half_length, half_width));
+  for (int y = box.low.y; y <= box.high.y; ++y)
+    for (int x = box.low.x; x <= box.high.x; ++x) {
+      const TPoint2D p = frame.centre({x, y});
+      const double dx = p.x - T_map_base.x;
+      const double dy = p.y - T_map_base.y;
+      if (std::abs(cos_phi * dx + sin_phi * dy) > half_length || std::abs(cos_phi * dy - sin_phi * dx) > half_width)
+        continue;
+      if (floor.cells[{x, y}] == Occupancy::Unknown) floor.body[{x, y}] = 1;
+      floor.cells[{x, y}] = Occupancy::Free;
+      floor.obstacle[{x, y}] = 0;
+    }
+}
+
+void free_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double radius) {
+  const GridFrame& frame = floor.frame();
+  for (const TPoint2D& passed : trail) {
+    const Box box = cells_around(frame, passed, radius);
+    for (int y = box.low.y; y <= box.high.y; ++y)
+      for (int x = box.low.x; x <= box.high.x; ++x) {
+        const Cell c{x, y};
+        if (floor.cells[c] != Occupancy::Unknown) continue;
+        const TPoint2D p = frame.centre(c);
+        if (std::hypot(p.x - passed.x, p.y - passed.y) > radius) continue;
+        floor.cells[c] = Occupancy::Free;
+        floor.body[c] = 1;
+      }
+  }
+}
+
+void add_obstacles(Traversable& floor, const std::vector<TPoint2D>& points, double near) {
+  const GridFrame& frame = floor.frame();
+  std::vector<Cell> news;
+  for (const TPoint2D& p : points) {
+    const Cell c = frame.cell(p);
+    if (!frame.inside(c) || floor.obstacle[c] != 0) continue;
+    if (!has_obstacle(floor.obstacle, cells_around(frame, p, near))) news.push_back(c);
+  }
+  for (const Cell c : news) floor.obstacle[c] = 1;
+}
+
+void measure_clearance(Traversable& floor, double cap) { floor.clearance = distance_transform(floor.obstacle, cap); }
+
+}  // namespace rubble::explore

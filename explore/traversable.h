@@ -1,0 +1,45 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+#include <mrpt/math/TPose2D.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "base/grid.h"
+#include "slam/count_map.h"
+
+namespace rubble::explore {
+
+/// The floor as the planner sees it: the known part of the map with a rim of unknown cells around it.
+struct Traversable {
+  OccupancyGrid cells;
+  Grid<std::uint8_t> obstacle;  ///< 1 where something must be kept away from
+  Grid<std::uint8_t> body;      ///< 1 where no scan has looked, but the robot's body stands or stood: free, no frontier
+  Grid<float> clearance;        ///< distance to the nearest obstacle [m], capped; empty until measure_clearance
+
+  const GridFrame& frame() const { return cells.frame(); }
+};
+
+/// Takes an occupancy grid whose outermost cells are unknown; every occupied cell is an obstacle.
+Traversable traversable(OccupancyGrid known);
+
+/// Cuts the known part out of the map, one unknown cell around it; a 0 x 0 grid when nothing was seen yet.
+/// Lone weak cells (hit at most twice, nothing else occupied within 0.15 m) are mixed pixels or noise more often than
+/// things: the robot does not drive over them, but they are no obstacles to keep away from.
+Traversable traversable(const slam::CountMap& map, double occupied_threshold);
+
+/// Makes the cells below the robot's body free: it stands there. `reach` widens the body on every side [m].
+void free_body(Traversable& floor, const mrpt::math::TPose2D& T_map_base, double length, double width, double reach);
+
+/// Makes unknown cells within `radius` of a place the robot's centre has passed free.
+void free_trail(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& trail, double radius);
+
+/// Adds obstacles the map does not show (yet), e.g. the hits of the newest scan. A point within `near` of an obstacle
+/// of the map is taken for that obstacle, displaced by the error of the pose, and left out.
+void add_obstacles(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& points, double near);
+
+/// Fills the clearance from the obstacles, capped at `cap` [m].
+void measure_clearance(Traversable& floor, double cap);
+
+}  // namespace rubble::explore

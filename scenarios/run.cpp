@@ -1,0 +1,342 @@
+#include "scenarios/run.h"
+
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "arenas/arena_file.h"
+#include "arenas/truth_map.h"
+#include "base/digest.h"
+#include "base/error.h"
+#include "robot/log.h"
+#include "scenarios/core.h"
+#include "scenarios/run_folder.h"
+#include "scoring/normalise.h"
+#include "scoring/picture.h"
+#include "scoring/scorecard.h"
+#include "scoring/trajectory_error.h"
+#include "scoring/victims.h"
+
+namespace rubble::scenarios {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using nlohmann::ordered_json;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+double known_area(const slam::CountMap& map) {
+  std::size_t cells = 0;
+  for (int y = 0; y < map.frame().height; ++y)
+    for (int x = 0; x < map.frame().width; ++x) cells += map.seen({x, y}) > 0 ? 1u : 0u;
+  return static_cast<double>(cells) * map.frame().resolution * map.frame().resolution;
+}
+
+/// How a loop ended.
+struct LoopEnd {
+  std::string reason;
+  std::string failure;
+  bool interrupted = false;
+  double sim_s = 0.0;
+};
+
+/// The one loop, for simulator, log and hardware alike. Saves the map every few seconds of wall time, the trajectories
+/// every second of run time.
+class Loop {
+ public:
+  Loop(const Scenario& scenario, const RunOptions& options, RunFolder& folder)
+      : scenario_(scenario), options_(options), folder_(folder) {}
+
+  /// `share` tells how far the robot is (0..1); `each_second` lets the caller append what only it knows.
+  LoopEnd run(robot::Robot& robot, Core& core, const std::function<double()>& share,
+              const std::function<void()>& each_second) {
+    LoopEnd end{"the robot's time is over", "", false, 0.0};
+    Stamp first = Stamp::never(), saved = Stamp::never();
+    try {
+      while (auto inputs = robot.read()) {
+        robot.command(core.step(*inputs));
+        if (first == Stamp::never()) first = saved = inputs->now;
+        end.sim_s = inputs->now - first + robot.model().tick;
+        if (inputs->now - saved >= 1.0) {
+          saved = inputs->now;
+          folder_.append_estimate(core.mapper().trajectory());
+          each_second();
+          report(core, end.sim_s, share());
+        }
+        if (core.finished()) {
+          end.reason = core.reason();
+          break;
+        }
+        if (options_.interrupted && options_.interrupted()) {
+          end.interrupted = true;
+          end.reason = "interrupted";
+          break;
+        }
+      }
+    } catch (const robot::DeviceLost& lost) {
+      end.failure = end.reason = lost.what();
+    }
+    folder_.append_estimate(core.mapper().trajectory());
+    each_second();
+    return end;
+  }
+
+ private:
+  void report(const Core& core, double sim_s, double share) {
+    if (seconds_since(last_save_) > 3.0) {
+      folder_.save_map(scenario_, core.mapper(), core.victims());
+      last_save_ = Clock::now();
+    }
+    if (options_.progress && seconds_since(last_report_) > 0.2) {
+      last_report_ = Clock::now();
+      options_.progress({sim_s, share, known_area(core.mapper().map()), sim_s / seconds_since(start_)});
+    }
+  }
+
+  const Scenario& scenario_;
+  const RunOptions& options_;
+  RunFolder& folder_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_save_ = start_;
+  Clock::time_point last_report_ = start_;
+};
+
+/// The keys users' scripts rely on, in order; null until something is known.
+ordered_json empty_score() {
+  ordered_json score;
+  for (const char* key : {"score", "precision", "recall", "psi_m", "aligned", "ate_first_m", "ate_aligned_m", "known",
+                          "victims_found", "victims_total", "sim_s", "wall_s", "real_time_factor", "peak_mb"})
+    score[key] = nullptr;
+  return score;
+}
+
+void add_map_score(ordered_json& json, const scoring::MapScore& s) {
+  json["score"] = s.score;
+  json["precision"] = s.precision;
+  json["recall"] = s.recall;
+  json["psi_m"] = s.psi_m;
+  json["aligned"] = s.aligned;
+  json["known"] = s.known;
+  json["psi_literal_m"] = s.psi_literal_m;
+  json["psi_occupied_map_m"] = s.psi_occupied_map_m;
+  json["psi_occupied_truth_m"] = s.psi_occupied_truth_m;
+  json["psi_free_map_m"] = s.psi_free_map_m;
+  json["psi_free_truth_m"] = s.psi_free_truth_m;
+  json["align_runner_up"] = s.runner_up;
+  json["align_x_m"] = s.T_truth_map.x;
+  json["align_y_m"] = s.T_truth_map.y;
+  json["align_rad"] = s.T_truth_map.phi;
+  json["align_note"] = s.note;
+}
+
+void add_trajectory_error(ordered_json& json, const Trajectory& estimate, const Trajectory& truth) {
+  const scoring::TrajectoryError error = scoring::trajectory_error(estimate, truth);
+  json["ate_matched"] = error.matched;
+  if (error.matched == 0) return;
+  json["ate_first_m"] = error.ate_first_m;
+  json["ate_aligned_m"] = error.ate_aligned_m;
+}
+
+void add_mapper_counts(ordered_json& json, const Core& core) {
+  const slam::MapperCounts& counts = core.mapper().counts();
+  json["area_known_m2"] = known_area(core.mapper().map());
+  json["scans"] = counts.scans;
+  json["scans_mapped"] = counts.mapped;
+  json["icp_accepted"] = counts.icp_accepted;
+  json["icp_rejected"] = counts.icp_rejected;
+}
+
+void add_timing(ordered_json& json, double sim_s, Clock::time_point start) {
+  const double wall = seconds_since(start);
+  json["sim_s"] = sim_s;
+  json["wall_s"] = wall;
+  json["real_time_factor"] = wall > 0.0 ? sim_s / wall : 0.0;
+  json["peak_mb"] = peak_megabytes();
+}
+
+std::string without_timing(const ordered_json& score) {
+  ordered_json kept;
+  for (const auto& [key, value] : score.items())
+    if (!is_timing_key(key)) kept[key] = value;
+  return kept.dump(2);
+}
+
+std::vector<std::string> broken_expectations(const Scenario& scenario, const ordered_json& score) {
+  std::vector<std::string> broken;
+  for (const auto& e : scenario.expect) {
+    const ordered_json value = score.contains(e.key) ? score[e.key] : ordered_json();
+    const double number = value.is_boolean()  ? (value.get<bool>() ? 1.0 : 0.0)
+                          : value.is_number() ? value.get<double>()
+                                              : std::nan("");
+    std::ostringstream line;
+    line << e.key << " is " << value.dump() << ", expected";
+    if (e.min) line << " at least " << *e.min;
+    if (e.max) line << (e.min ? " and" : "") << " at most " << *e.max;
+    const bool met = number == number && (!e.min || number >= *e.min) && (!e.max || number <= *e.max);
+    if (!met) broken.push_back(line.str());
+  }
+  return broken;
+}
+
+/// The league picture's easting and northing of a map point.
+mrpt::math::TPoint2D in_picture(const mrpt::math::TPoint2D& p_map) { return {-p_map.y, p_map.x}; }
+
+/// Scores what was written to disk, as a judge would who gets the two files.
+void score_files(ordered_json& json, const RunFolder& folder, const Scenario& scenario, const arenas::Arena& arena,
+                 const std::vector<explore::VictimReport>& reported) {
+  // The scenario may anchor the map on Earth; a rigid alignment does not care.
+  const OccupancyGrid map = scoring::load_map(folder.file("map.tif")).grid;
+  const OccupancyGrid truth = scoring::load_map(folder.file("truth.tif")).grid;
+  const scoring::MapScore score = scoring::score_map(map, truth, scenario.scoring);
+  add_map_score(json, score);
+  json["victims_total"] = arena.victims.size();
+  json["victims_reported"] = reported.size();
+  json["victims_found"] = 0;
+  if (!score.aligned) return;
+  scoring::write_overlay(folder.file("overlay.png"), map, truth, score.T_truth_map);
+  scoring::write_error_map(folder.file("error.png"), map, truth, score.T_truth_map, scenario.scoring.tau);
+  std::vector<mrpt::math::TPoint2D> p_picture, p_truth;
+  for (const auto& victim : reported) p_picture.push_back(in_picture(victim.p_map));
+  for (const auto& victim : arena.victims) p_truth.emplace_back(victim.position.x, victim.position.y);
+  const scoring::VictimScore victims = scoring::score_victims(p_picture, p_truth, score.T_truth_map);
+  json["victims_found"] = victims.found;
+  json["victims_false"] = victims.false_alarms;
+  if (victims.found > 0) json["victims_error_m"] = victims.mean_error_m;
+}
+
+std::string folder_for(const RunOptions& options, const Scenario& scenario) {
+  return options.out.empty() ? next_run_folder("runs", scenario.name, scenario.seed) : options.out;
+}
+
+void finish(RunReport& report, RunFolder& folder, const Scenario& scenario, double sim_s, Clock::time_point start) {
+  report.score["end"] = report.end;
+  const std::string hashed = without_timing(report.score);
+  folder.save_hashes(hashed);
+  add_timing(report.score, sim_s, start);
+  folder.write("score.json", report.score.dump(2) + "\n");
+  folder.close();
+  folder.link_latest();
+  report.folder = folder.path();
+  report.broken = broken_expectations(scenario, report.score);
+}
+
+}  // namespace
+
+bool is_timing_key(const std::string& key) { return key == "wall_s" || key == "real_time_factor" || key == "peak_mb"; }
+
+RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
+  const auto start = Clock::now();
+  const std::string yaml = arena_yaml(scenario);
+  const arenas::Arena arena =
+      arenas::parse_arena(yaml, scenario.arena_file.empty() ? "generated arena" : scenario.arena_file);
+  arenas::check(arena, scenario.arena_file.empty() ? "generated arena" : scenario.arena_file);
+
+  RunFolder folder(folder_for(options, scenario), options.replace);
+  Scenario resolved = scenario;
+  resolved.arena_file = "arena.yaml";
+  folder.write("arena.yaml", yaml);
+  folder.write("scenario.yaml", resolved_yaml(resolved));
+  folder.write("versions.json", versions().dump(2) + "\n");
+  folder.save_truth(arena, arenas::truth_map(arena));
+
+  sim::SimRobot simulated(arena, scenario.robot, scenario.sim, scenario.seed);
+  Core core(scenario, scenario.robot, true);
+  RunReport report;
+  report.score = empty_score();
+  LoopEnd end;
+  {
+    robot::RecordingRobot recorded(simulated, folder.file("log.rlog"), resolved_yaml(resolved));
+    Loop loop(scenario, options, folder);
+    end = loop.run(
+        recorded, core,
+        [&] {
+          return simulated.truth().empty() ? 0.0 : simulated.truth().back().stamp.seconds() / scenario.time_limit;
+        },
+        [&] { folder.append_truth(simulated.truth()); });
+    recorded.flush();
+  }
+  folder.save_map(scenario, core.mapper(), core.victims());
+  add_trajectory_error(report.score, core.mapper().trajectory(), simulated.truth());
+  score_files(report.score, folder, scenario, arena, core.victims());
+  add_mapper_counts(report.score, core);
+  report.end = end.reason;
+  report.interrupted = end.interrupted;
+  report.failure = end.failure;
+  finish(report, folder, scenario, end.sim_s, start);
+  return report;
+}
+
+RunReport map_log(const std::string& log, const Scenario& scenario, const RunOptions& options) {
+  const auto start = Clock::now();
+  robot::ReplayRobot robot(log);
+  Scenario resolved = scenario;
+  if (resolved.name == "map") resolved.name = "map-" + std::filesystem::path(log).stem().stem().string();
+  RunFolder folder(folder_for(options, resolved), options.replace);
+  folder.write("scenario.yaml", "# rubble map " + log + " (" + robot.format() + ")\n" + resolved_yaml(resolved));
+  folder.write("versions.json", versions().dump(2) + "\n");
+  Core core(resolved, robot.model(), false);
+  RunReport report;
+  report.score = empty_score();
+  Loop loop(resolved, options, folder);
+  if (!robot.reference().empty()) folder.append_truth(robot.reference());
+  const LoopEnd end = loop.run(
+      robot, core, [&] { return robot.progress(); }, [] {});
+  if (core.mapper().counts().scans == 0)
+    throw InputError(log + ": holds no laser scan; a log to map needs scans (and odometry)");
+  folder.save_map(resolved, core.mapper(), {});
+  if (!robot.reference().empty()) add_trajectory_error(report.score, core.mapper().trajectory(), robot.reference());
+  add_mapper_counts(report.score, core);
+  report.end = end.interrupted ? end.reason : "the log is over";
+  report.interrupted = end.interrupted;
+  finish(report, folder, resolved, end.sim_s, start);
+  return report;
+}
+
+ReplayReport replay_run(const std::string& path, const RunOptions& options) {
+  namespace fs = std::filesystem;
+  const std::string log = path + "/log.rlog";
+  if (!fs::exists(log))
+    throw InputError(path + ": is not a recorded run (no log.rlog in it); give a folder that 'rubble run' wrote");
+  const Scenario scenario = load_scenario(path + "/scenario.yaml");
+  robot::ReplayRobot robot(log);
+  Core core(scenario, robot.model(), true);
+  ReplayReport report;
+  while (auto inputs = robot.read()) {
+    const robot::Commands commands = core.step(*inputs);
+    const robot::Commands& recorded = robot.recorded_commands();
+    ++report.ticks;
+    if (commands.drive.v != recorded.drive.v || commands.drive.w != recorded.drive.w ||
+        commands.aim.pitch != recorded.aim.pitch || commands.aim.roll != recorded.aim.roll)
+      ++report.different_commands;
+    if (core.finished()) break;
+    if (options.interrupted && options.interrupted()) break;
+  }
+  const fs::path scratch =
+      fs::temp_directory_path() / ("rubble-replay-" + sha256_of_text(fs::absolute(path)).substr(0, 16));
+  RunFolder folder(options.out.empty() ? scratch.string() : options.out, options.replace || options.out.empty());
+  folder.write("scenario.yaml", resolved_yaml(scenario));
+  folder.append_estimate(core.mapper().trajectory());
+  folder.save_map(scenario, core.mapper(), core.victims());
+  report.identical = report.different_commands == 0;
+  for (const char* name : {"estimate.tum", "map.tif", "map.tfw", "map.png", "map.pgm", "map.yaml", "pois.csv"}) {
+    const bool same =
+        fs::exists(path + "/" + name) && sha256_of_file(path + "/" + name) == sha256_of_file(folder.file(name));
+    report.artefacts.push_back({name, same});
+    report.identical = report.identical && same;
+  }
+  folder.close();
+  if (options.out.empty()) fs::remove_all(scratch);
+  return report;
+}
+
+}  // namespace rubble::scenarios

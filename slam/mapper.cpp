@@ -1,0 +1,175 @@
+#include "slam/mapper.h"
+
+#include <cmath>
+#include <deque>
+#include <optional>
+
+#include "base/rng.h"
+#include "slam/level_scan.h"
+#include "slam/odometry_track.h"
+
+namespace rubble::slam {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using robot::LaserScan;
+
+struct Mapper::Impl {
+  Impl(const robot::RobotModel& model, const MapperConfig& config, std::uint64_t seed)
+      : config_(config),
+        motion_error_{config.rotation_error, config.heading_error_per_m, config.distance_error},
+        level_scan_(model.T_base_laser, {config.carve_misses, config.max_range, 0.1}),
+        matcher_(config.matcher),
+        map_(config.map_cells, config.map_cells, config.resolution, config.max_map_cells),
+        drift_rng_(seed, "drift") {}
+
+  void receive(const robot::Inputs& inputs);
+  bool ready(const LaserScan& scan, Stamp now) const;
+  void process(const LaserScan& scan);
+  void start(Stamp reference, const ScanPoints& points);
+  void keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points, const Surface& surface);
+  TPose2D motion_since_last(Stamp reference) const;
+  TPose2D refined_motion(const Surface& known, const TPose2D& T_last_prior);
+  bool moved(const TPose2D& motion) const;
+  std::optional<SweepMotion> sweep_motion(const LaserScan& scan) const;
+
+  const MapperConfig config_;
+  const MotionError motion_error_;
+  LevelScan level_scan_;
+  ScanMatcher matcher_;
+  OdometryTrack odometry_;
+  CountMap map_;
+  Rng drift_rng_;
+
+  std::deque<LaserScan> waiting_;  ///< for odometry from after their reference time
+  Stamp newest_scan_ = Stamp::never();
+  Particles particles_;
+  Trajectory trajectory_;
+  std::vector<TPoint2D> last_hits_;
+  MapperCounts counts_;
+  // The last mapping step.
+  bool started_ = false;
+  TPose2D T_map_last_;
+  SurfaceCoverage last_coverage_;
+  std::optional<TPose2D> T_odom_last_;  ///< nothing while no odometry has come
+  TPose2D last_motion_;                 ///< what the step before it moved (the prior where there is no odometry)
+};
+
+void Mapper::Impl::receive(const robot::Inputs& inputs) {
+  for (const robot::Odometry& odometry : inputs.odometry) odometry_.add(odometry);
+  if (started_ && !T_odom_last_ && !odometry_.empty()) T_odom_last_ = odometry_.pose_at(Stamp::never());
+  for (const LaserScan& scan : inputs.scans) {
+    ++counts_.scans;
+    if (scan.ranges.empty() || scan.middle() <= newest_scan_) {
+      ++counts_.out_of_order;
+      continue;
+    }
+    newest_scan_ = scan.middle();
+    waiting_.push_back(scan);
+  }
+  while (!waiting_.empty() && ready(waiting_.front(), inputs.now)) {
+    process(waiting_.front());
+    waiting_.pop_front();
+  }
+  odometry_.forget_before(waiting_.empty() ? odometry_.newest() : waiting_.front().stamp);
+}
+
+/// "Interpolated by the odometry data reported right before and right after": wait for the latter, but not for ever.
+bool Mapper::Impl::ready(const LaserScan& scan, Stamp now) const {
+  const Stamp reference = scan.middle();
+  return odometry_.newest() >= reference || now - reference > OdometryTrack::kMaxExtrapolation;
+}
+
+void Mapper::Impl::process(const LaserScan& scan) {
+  const Stamp reference = scan.middle();
+  const std::optional<SweepMotion> sweep = sweep_motion(scan);
+  const ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr);
+  if (!started_) return start(reference, points);
+
+  const TPose2D T_last_prior = motion_since_last(reference);
+  const bool gate = moved(T_last_prior);
+  const bool warming_up = counts_.mapped < static_cast<std::uint64_t>(config_.first_scans);
+  if (!gate && !warming_up && T_odom_last_) {
+    trajectory_.push_back({reference, T_map_last_ + T_last_prior});
+    return;
+  }
+  const Surface surface = surface_of(points, config_.surface);
+  const Surface known = covered_part(surface, last_coverage_, T_last_prior, config_.coverage_margin);
+  const TPose2D T_last_now = refined_motion(known, T_last_prior);
+  if (!T_odom_last_ && !moved(T_last_now) && !warming_up) {
+    trajectory_.push_back({reference, T_map_last_ + T_last_now});
+    return;
+  }
+
+  const Particles resampled = gate ? resample(particles_) : particles_;
+  const Particles drifted = drift(resampled, T_last_now, motion_error_, drift_rng_);  // Fig. 5
+  const Particles measured =
+      measure(drifted, config_.covered_only ? hits_of(known, points) : points.hits, map_);  // eq. (2)
+  particles_ = normalise(measured);
+  const TPose2D T_map_now = mean_of_best(particles_, config_.top_share);
+  last_motion_ = T_last_now;
+  keep(reference, T_map_now, points, surface);
+}
+
+void Mapper::Impl::start(Stamp reference, const ScanPoints& points) {
+  started_ = true;
+  particles_ = particles_at(TPose2D(), config_.particles);
+  keep(reference, TPose2D(), points, surface_of(points, config_.surface));
+}
+
+/// Ends a mapping step: the scan enters the map, and the next step counts from here.
+void Mapper::Impl::keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points, const Surface& surface) {
+  map_.stamp(T_map_base, points);
+  matcher_.set_last(surface);
+  last_coverage_ = SurfaceCoverage(surface);
+  T_map_last_ = T_map_base;
+  if (!odometry_.empty()) T_odom_last_ = odometry_.pose_at(reference);
+  last_hits_.clear();
+  for (const TPoint2D& p_base : points.hits) last_hits_.push_back(T_map_base.composePoint(p_base));
+  trajectory_.push_back({reference, T_map_base});
+  ++counts_.mapped;
+}
+
+TPose2D Mapper::Impl::motion_since_last(Stamp reference) const {
+  if (!T_odom_last_) return last_motion_;
+  return odometry_.pose_at(reference) - *T_odom_last_;
+}
+
+TPose2D Mapper::Impl::refined_motion(const Surface& known, const TPose2D& T_last_prior) {
+  if (!config_.icp) return T_last_prior;
+  const ScanMatch match = matcher_.match(known, T_last_prior);
+  ++(match.accepted ? counts_.icp_accepted : counts_.icp_rejected);
+  return match.T_last_now;
+}
+
+bool Mapper::Impl::moved(const TPose2D& motion) const {
+  return std::hypot(motion.x, motion.y) >= config_.gate_distance ||
+         std::abs(wrap_angle(motion.phi)) >= config_.gate_turn;
+}
+
+std::optional<SweepMotion> Mapper::Impl::sweep_motion(const LaserScan& scan) const {
+  if (!config_.deskew || scan.beam_period <= 0.0 || odometry_.empty()) return std::nullopt;
+  const Stamp reference = scan.middle();
+  return SweepMotion{odometry_.between(reference, scan.stamp),
+                     odometry_.between(reference, scan.beam_stamp(scan.ranges.size() - 1))};
+}
+
+Mapper::Mapper(const robot::RobotModel& model, const MapperConfig& config, std::uint64_t seed)
+    : impl_(std::make_unique<Impl>(model, config, seed)) {}
+Mapper::~Mapper() = default;
+
+void Mapper::update(const robot::Inputs& inputs) { impl_->receive(inputs); }
+
+const CountMap& Mapper::map() const { return impl_->map_; }
+
+TPose2D Mapper::pose() const {
+  if (!impl_->T_odom_last_) return impl_->T_map_last_;
+  return impl_->T_map_last_ + impl_->motion_since_last(impl_->odometry_.newest());
+}
+
+const Trajectory& Mapper::trajectory() const { return impl_->trajectory_; }
+const std::vector<Particle>& Mapper::particles() const { return impl_->particles_; }
+const std::vector<TPoint2D>& Mapper::last_hits() const { return impl_->last_hits_; }
+const MapperCounts& Mapper::counts() const { return impl_->counts_; }
+
+}  // namespace rubble::slam

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <mrpt/math/TPose2D.h>
+
+#include <deque>
+
+#include "robot/measurements.h"
+
+namespace rubble::slam {
+
+/// Keeps the odometry of the last while and answers for any stamp: "the a-priori robot pose at that moment is
+/// interpolated by the odometry data reported right before and right after the LRF measurement" (section III.B).
+class OdometryTrack {
+ public:
+  /// Takes the next odometry; one that is not younger than the newest is ignored.
+  void add(const robot::Odometry& odometry);
+
+  bool empty() const { return track_.empty(); }
+  /// Stamp of the newest odometry; Stamp::never() when empty.
+  Stamp newest() const { return track_.empty() ? Stamp::never() : track_.back().stamp; }
+
+  /// T_odom_base at `stamp`: linear in x and y, shortest way round in the angle; before the oldest: the oldest pose;
+  /// after the newest: carried on by its v and w for at most `kMaxExtrapolation`. Empty track: the identity.
+  mrpt::math::TPose2D pose_at(Stamp stamp) const;
+  /// Motion of the base from `from` to `to`, in the base frame at `from`: T_from_to.
+  mrpt::math::TPose2D between(Stamp from, Stamp to) const;
+  /// Forgets what no question about `oldest_needed` or later can touch.
+  void forget_before(Stamp oldest_needed);
+
+  std::size_t size() const { return track_.size(); }
+
+  static constexpr double kMaxExtrapolation = 0.2;  ///< [s]
+
+ private:
+  std::deque<robot::Odometry> track_;
+};
+
+}  // namespace rubble::slam

@@ -1,0 +1,48 @@
+# Shared by the tests that run the program: $rubble is the binary, $source the checkout, $work an empty folder.
+set -u
+rubble=$1
+source=$2
+export RUBBLE_HOME=$source
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+# expect_exit CODE "text that the one line on stderr must hold" COMMAND...
+expect_exit() {
+  local code=$1 text=$2
+  shift 2
+  "$@" >out.txt 2>err.txt
+  local got=$?
+  [[ $got == "$code" ]] || fail "'$*' ended with $got, not $code: $(head -c 300 err.txt)"
+  if [[ -n $text ]]; then
+    grep -qF -- "$text" err.txt || fail "'$*' does not say '$text' but: $(head -c 300 err.txt)"
+    [[ $(wc -l <err.txt) == 1 ]] || fail "'$*' needs more than one line: $(head -c 600 err.txt)"
+  fi
+}
+
+# small_scenario FILE [extra yaml]: a 3 x 3 arena that takes a second.
+small_scenario() {
+  cat >"$1" <<YAML
+name: small
+arena: {generate: {columns: 3, rows: 3, ramps: 0.2, paper: 0.2, loops: 0.3, victims: 1}}
+seed: 3
+time_limit_s: 240
+${2:-}
+YAML
+}
+
+# json FILE PYTHON-EXPRESSION over j: true or the test fails.
+json_holds() {
+  python3 -c "import json,sys; j=json.load(open('$1')); sys.exit(0 if ($2) else 1)" || fail "$1: not true: $2"
+}
+
+finish() {
+  ((failures == 0)) && echo "all checks passed"
+  exit $((failures > 0))
+}

@@ -1,0 +1,27 @@
+# Public logs: URG-04LX of a real robot, MRPT's and CARMEN's; and our own log as .rawlog in MRPT's programs.
+. "$(dirname "$0")/lib.sh"
+simul=/usr/share/mrpt/datasets/graphslam-engine-demos/action_observations_map/simul.rawlog
+if [[ -e $simul ]]; then
+  "$rubble" map $simul --out simul >/dev/null || fail "simul.rawlog ended with $?"
+  json_holds simul/score.json "j['scans'] > 100 and j['area_known_m2'] > 20"
+fi
+if [[ -n ${RUBBLE_DATA:-} ]]; then
+  "$rubble" map "$RUBBLE_DATA/logs/exp1.dat" --out exp1 >/dev/null || fail "exp1.dat ended with $?"
+  json_holds exp1/score.json "j['scans'] == 756 and j['score'] is None and j['area_known_m2'] > 50"
+  if command -v gdalinfo >/dev/null; then
+    gdalinfo exp1/map.tif | grep -q 'Pixel Size = (0.025' || fail "gdalinfo sees no metric pixel size"
+  fi
+  "$rubble" map "$RUBBLE_DATA/logs/intel-corrected.log.gz" --out intel >/dev/null || fail "intel ended with $?"
+  json_holds intel/score.json "j['scans'] == 910 and j['ate_first_m'] is not None and j['area_known_m2'] > 300"
+else
+  echo "RUBBLE_DATA is not set: exp1 and intel are skipped"
+fi
+small_scenario s.yaml
+"$rubble" run s.yaml --out run --set time_limit_s=60 >/dev/null || fail "run ended with $?"
+"$rubble" export run/log.rlog run.rawlog >/dev/null || fail "export ended with $?"
+if command -v rawlog-edit >/dev/null; then
+  rawlog-edit --info -i run.rawlog >info.txt 2>&1 || fail "rawlog-edit cannot read the export: $(tail -3 info.txt)"
+  grep -q LASER info.txt || fail "rawlog-edit sees no LASER"
+fi
+"$rubble" map run.rawlog --out from-rawlog >/dev/null || fail "our own export cannot be mapped"
+finish

@@ -1,0 +1,39 @@
+# A run writes its whole folder, the same seed gives the same bits, a replay is bit-identical.
+. "$(dirname "$0")/lib.sh"
+small_scenario s.yaml
+"$rubble" run s.yaml --out a >table.txt || fail "run ended with $?"
+grep -q 'times real time' table.txt || fail "no summary table"
+for name in scenario.yaml versions.json arena.yaml arena.png log.rlog truth.tum estimate.tum map.tif map.tfw map.png \
+  map.pgm map.yaml pois.csv truth.tif truth.png overlay.png error.png hashes.json score.json; do
+  [[ -s a/$name ]] || fail "a/$name is missing or empty"
+done
+[[ -e latest/score.json ]] || fail "the link latest does not lead to the run"
+json_holds a/score.json "all(k in j for k in 'score precision recall psi_m aligned ate_first_m ate_aligned_m known \
+victims_found victims_total sim_s wall_s real_time_factor peak_mb'.split())"
+json_holds a/score.json "j['aligned'] and 0.5 < j['score'] <= 1 and j['known'] > 0.7"
+json_holds a/score.json "j['score'] == min(j['precision'], j['recall'])"
+
+"$rubble" run s.yaml --out b >/dev/null || fail "second run ended with $?"
+cmp a/hashes.json b/hashes.json || fail "one seed, two results"
+"$rubble" run s.yaml --seed 4 --out c >/dev/null || fail "third run ended with $?"
+cmp -s a/hashes.json c/hashes.json && fail "two seeds, one result"
+"$rubble" run a/scenario.yaml --out d >/dev/null || fail "the resolved scenario does not run"
+cmp a/hashes.json d/hashes.json || fail "the resolved scenario gives another result"
+
+"$rubble" replay a >replay.txt || fail "replay ended with $?"
+grep -qx 'bit-identical' replay.txt || fail "replay: $(cat replay.txt)"
+sed -i 's/particles: 300/particles: 299/' d/scenario.yaml
+"$rubble" replay d >replay.txt && fail "replay must notice another mapper"
+grep -qx 'NOT bit-identical' replay.txt || fail "replay of a changed run: $(cat replay.txt)"
+
+"$rubble" score a/map.tif a/truth.tif --json --out judged >score.json || fail "score ended with $?"
+python3 - <<'PY' || fail "rubble score and the run disagree"
+import json, sys
+a, b = json.load(open('a/score.json')), json.load(open('score.json'))
+sys.exit(0 if all(a[k] == b[k] for k in ('score', 'precision', 'recall', 'psi_m', 'known')) else 1)
+PY
+[[ -s judged/overlay.png && -s judged/score.json ]] || fail "score --out leaves no pictures"
+if command -v gdalinfo >/dev/null; then
+  gdalinfo a/map.tif | grep -q 'Pixel Size = (0.025' || fail "gdalinfo sees no metric pixel size"
+fi
+finish

@@ -1,0 +1,179 @@
+#include "robot/levelling.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/levelling_rig.h"
+
+namespace rubble::robot {
+namespace {
+
+using levelling_test::Body;
+using levelling_test::Sample;
+
+constexpr double kStart = 1.0;  ///< [s] the body begins to move
+
+Body step_of_ten_degrees(double t) { return {t < kStart ? 0.0 : deg_to_rad(10.0), 0.0, 0.0, 0.0}; }
+
+/// Wheelbase on a 10 deg ramp: the pitch rises over 0.67 s.
+Body onto_a_ramp(double t) { return {deg_to_rad(10.0) * std::clamp((t - kStart) / 0.67, 0.0, 1.0), 0.0, 0.0, 0.0}; }
+
+/// Drives off at 0.3 m/s^2 for a second on level ground.
+Body drive_off(double t) {
+  const double v = 0.3 * std::clamp(t - kStart, 0.0, 1.0);
+  return {0.0, t >= kStart && t < kStart + 1.0 ? 0.3 : 0.0, v, 0.0};
+}
+
+double overshoot(const std::vector<Sample>& samples) {
+  double least = 0.0;
+  for (const Sample& s : samples) {
+    if (s.t > kStart) least = std::min(least, s.plane_pitch);
+  }
+  return -least;
+}
+
+Inputs standing(double t, double pitch, double roll) {
+  Inputs inputs;
+  inputs.now = Stamp::from_seconds(t);
+  const double g = 9.80665;
+  inputs.accelerations.push_back({inputs.now, g * std::sin(pitch), g * std::sin(roll) * std::cos(pitch)});
+  return inputs;
+}
+
+TEST(Levelling, LevelRobotKeepsTheLaserStill) {
+  Levelling levelling({});
+  for (int i = 0; i < 100; ++i) {
+    const LaserAim aim = levelling.update(standing(0.02 * i, 0.0, 0.0));
+    EXPECT_EQ(aim.pitch, 0.0);
+    EXPECT_EQ(aim.roll, 0.0);
+  }
+}
+
+TEST(Levelling, NoseUpRobotTurnsTheLaserNoseDown) {
+  const auto samples = levelling_test::run({}, 4.0, step_of_ten_degrees);
+  EXPECT_NEAR(rad_to_deg(samples.back().aim_pitch), -10.0, 1.0);
+}
+
+TEST(Levelling, TenDegreeStepIsLevelledInAboutHalfASecond) {
+  const auto samples = levelling_test::run({}, 4.0, step_of_ten_degrees);
+  const double settled = levelling_test::settled_after(samples, deg_to_rad(1.0)) - kStart;
+  EXPECT_GT(settled, 0.57 * 0.7);
+  EXPECT_LT(settled, 0.57 * 1.3);
+  EXPECT_LT(rad_to_deg(overshoot(samples)), 0.6);
+}
+
+TEST(Levelling, HigherIntegralGainIsFasterUntilItRings) {
+  double last = 10.0;
+  for (const double ki : {2.0, 4.0, 6.0}) {
+    LevellingConfig config;
+    config.ki = ki;
+    const auto samples = levelling_test::run(config, 5.0, step_of_ten_degrees);
+    const double settled = levelling_test::settled_after(samples, deg_to_rad(1.0)) - kStart;
+    EXPECT_LT(settled, last) << "ki " << ki;
+    last = settled;
+  }
+  LevellingConfig ringing;
+  ringing.ki = 12.0;
+  EXPECT_GT(rad_to_deg(overshoot(levelling_test::run(ringing, 5.0, step_of_ten_degrees))), 1.0);
+}
+
+TEST(Levelling, RampIsFollowedWithinAFewDegrees) {
+  const auto samples = levelling_test::run({}, 4.0, onto_a_ramp);
+  EXPECT_NEAR(rad_to_deg(levelling_test::largest(samples, kStart, 4.0)), 3.5, 1.05);
+  EXPECT_NEAR(levelling_test::settled_after(samples, deg_to_rad(1.0)) - kStart, 0.95, 0.285);
+}
+
+TEST(Levelling, SettledPlaneStaysWithinTheServosDeadBand) {
+  const auto samples = levelling_test::run({}, 6.0, step_of_ten_degrees);
+  EXPECT_LT(rad_to_deg(levelling_test::largest(samples, 4.0, 6.0)), 0.7);
+}
+
+TEST(Levelling, DrivingOffLooksLikeTiltWithoutFeedForward) {
+  LevellingConfig config;
+  config.feed_forward = false;
+  const auto samples = levelling_test::run(config, 4.0, drive_off);
+  EXPECT_NEAR(rad_to_deg(levelling_test::largest(samples, kStart, 4.0)), 1.75, 0.35);
+}
+
+TEST(Levelling, FeedForwardTakesMostOfTheFalseTiltAway) {
+  LevellingConfig without;
+  without.feed_forward = false;
+  const double plain = levelling_test::largest(levelling_test::run(without, 4.0, drive_off), kStart, 4.0);
+  const double helped = levelling_test::largest(levelling_test::run({}, 4.0, drive_off), kStart, 4.0);
+  EXPECT_LT(helped, 0.65 * plain);
+}
+
+TEST(Levelling, CurvesDoNotRollTheLaser) {
+  Levelling levelling({});
+  LaserAim aim;
+  for (int i = 0; i < 200; ++i) {
+    Inputs inputs;
+    inputs.now = Stamp::from_seconds(0.02 * i);
+    if (i % 5 == 0) inputs.odometry.push_back({inputs.now, {}, 0.3, 0.5, false});
+    inputs.accelerations.push_back({inputs.now, 0.0, 0.3 * 0.5});
+    aim = levelling.update(inputs);
+  }
+  EXPECT_NEAR(rad_to_deg(aim.roll), 0.0, 0.3);
+}
+
+TEST(Levelling, LeftSideUpTurnsTheLaserLeftSideDown) {
+  LevellingConfig config;
+  config.mount = AccelerometerMount::Body;
+  Levelling levelling(config);
+  LaserAim aim;
+  for (int i = 0; i < 100; ++i) aim = levelling.update(standing(0.02 * i, deg_to_rad(-4.0), deg_to_rad(6.0)));
+  EXPECT_NEAR(rad_to_deg(aim.pitch), 4.0, 0.01);
+  EXPECT_NEAR(rad_to_deg(aim.roll), -6.0, 0.01);
+}
+
+TEST(Levelling, BodyMountFollowsTheMeasuredTiltFaster) {
+  LevellingConfig config;
+  config.mount = AccelerometerMount::Body;
+  const auto samples = levelling_test::run(config, 4.0, step_of_ten_degrees);
+  const double settled = levelling_test::settled_after(samples, deg_to_rad(1.0)) - kStart;
+  EXPECT_LT(settled, 0.3);
+  const auto ramp = levelling_test::run(config, 4.0, onto_a_ramp);
+  EXPECT_LT(rad_to_deg(levelling_test::largest(ramp, kStart, 4.0)), 2.5);
+}
+
+TEST(Levelling, CommandNeverLeavesTheServosTravel) {
+  Levelling levelling({});
+  for (int i = 0; i < 500; ++i) {  // sensor on a platform that the servo cannot bring level
+    const LaserAim aim = levelling.update(standing(0.02 * i, deg_to_rad(40.0), deg_to_rad(-40.0)));
+    EXPECT_LE(std::abs(aim.pitch), deg_to_rad(30.0));
+    EXPECT_LE(std::abs(aim.roll), deg_to_rad(30.0));
+  }
+  LaserAim aim;
+  for (int i = 500; i < 600; ++i) aim = levelling.update(standing(0.02 * i, deg_to_rad(-10.0), 0.0));
+  EXPECT_GT(aim.pitch, deg_to_rad(20.0)) << "no wind-up: the command comes back at once";
+}
+
+TEST(Levelling, CommandRespectsTheSlewLimit) {
+  LevellingConfig config;
+  config.mount = AccelerometerMount::Body;
+  Levelling levelling(config);
+  levelling.update(standing(0.0, 0.0, 0.0));
+  double last = 0.0;
+  for (int i = 1; i < 50; ++i) {
+    const LaserAim aim = levelling.update(standing(0.02 * i, deg_to_rad(25.0), 0.0));
+    EXPECT_LE(std::abs(aim.pitch - last), config.max_rate * 0.02 + 1e-12);
+    last = aim.pitch;
+  }
+}
+
+TEST(Levelling, StartsFromTheServosAndKeepsStillWithoutASensor) {
+  Levelling levelling({});
+  Inputs inputs;
+  inputs.aims.push_back({Stamp{0}, 0.1, -0.05});
+  EXPECT_EQ(levelling.update(inputs).pitch, 0.1);
+  EXPECT_EQ(levelling.update(Inputs{}).roll, -0.05);
+}
+
+TEST(Levelling, SwitchedOffHoldsZero) {
+  LevellingConfig config;
+  config.on = false;
+  Levelling levelling(config);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(levelling.update(standing(0.02 * i, 0.3, 0.3)).pitch, 0.0);
+}
+
+}  // namespace
+}  // namespace rubble::robot
