@@ -20,11 +20,12 @@ struct Element {
 
 /// What is known about a type of element.
 enum class ElementKind {
-  Floor,    ///< lies on the pallet; `covers` tells whether it hides the ground
-  Wall,     ///< stands on the pallet's edge at the element's own +y
-  Item,     ///< stands or hangs on the pallet
-  Label,    ///< known, but without a shape a robot or a laser could meet: signs, eye charts, floor colour
-  Unknown,  ///< never heard of
+  Floor,     ///< lies on the pallet
+  Wall,      ///< stands on the pallet's edge at the element's own +y
+  Diagonal,  ///< a wall across the pallet
+  Item,      ///< stands or hangs on the pallet, or on either side of a wall
+  Label,     ///< known, but without a shape a robot or a laser could meet: signs, eye charts, floor colour
+  Unknown,   ///< never heard of
 };
 
 ElementKind kind_of(const std::string& type);

@@ -26,13 +26,12 @@ constexpr std::array<Cell, 4> kSteps{Cell{0, 1}, Cell{1, 0}, Cell{0, -1},
 
 /// The pallets of the file as a grid with a rim of one pallet all round.
 struct Layout {
-  Grid<int> frame;              ///< only its frame is used: cells to metres
-  Grid<std::uint8_t> occupied;  ///< something other than a wall stands or lies here
-  Grid<std::uint8_t> covered;   ///< a floor hides the ground
-  Grid<std::array<bool, 4>> walled;
+  Grid<std::uint8_t> occupied;       ///< something other than a wall stands or lies here
+  Grid<std::uint8_t> covered;        ///< a floor hides the ground
+  Grid<std::array<bool, 4>> walled;  ///< sides with a wall, in the order of kSteps
 
-  explicit Layout(const GridFrame& f) : frame(f), occupied(f), covered(f), walled(f) {}
-  Cell cell(const Element& e) const { return frame.cell(e.position); }
+  explicit Layout(const GridFrame& frame) : occupied(frame), covered(frame), walled(frame) {}
+  Cell cell(const Element& e) const { return occupied.cell(e.position); }
 };
 
 Cell step(Cell c, std::size_t direction) { return {c.x + kSteps[direction].x, c.y + kSteps[direction].y}; }
@@ -57,7 +56,7 @@ Layout layout_of(const std::vector<Element>& elements) {
       const std::size_t d = direction_of(e);
       layout.walled[c][d] = true;
       layout.walled[step(c, d)][(d + 2) % 4] = true;
-    } else if (kind_of(e.type) != ElementKind::Label) {
+    } else if (kind_of(e.type) == ElementKind::Floor || kind_of(e.type) == ElementKind::Diagonal) {
       layout.occupied[c] = 1;
     }
     if (covers_pallet(e.type)) layout.covered[c] = 1;
@@ -67,7 +66,7 @@ Layout layout_of(const std::vector<Element>& elements) {
 
 /// Pallets that are connected to the rim without a wall between, and empty: the hall round the arena.
 Grid<std::uint8_t> outside_of(const Layout& layout) {
-  Grid<std::uint8_t> outside(layout.frame.frame());
+  Grid<std::uint8_t> outside(layout.occupied.frame());
   std::vector<Cell> open{{0, 0}};
   outside[{0, 0}] = 1;
   while (!open.empty()) {
@@ -83,13 +82,25 @@ Grid<std::uint8_t> outside_of(const Layout& layout) {
   return outside;
 }
 
-/// Flat floor on every pallet inside the arena that has none of its own; all pallets when the walls enclose nothing.
-void lay_ground(const Layout& layout, Arena& arena) {
-  const Grid<std::uint8_t> outside = outside_of(layout);
-  const bool encloses = std::count(outside.cells().begin(), outside.cells().end(), std::uint8_t{0}) > 0;
+/// Whether some wall has the hall on both sides: then the arena is not closed, and its pallets cannot be told from the
+/// hall.
+bool is_open(const Layout& layout, const Grid<std::uint8_t>& outside) {
+  for (int y = 0; y < outside.height(); ++y) {
+    for (int x = 0; x < outside.width(); ++x) {
+      for (std::size_t d = 0; d < 2; ++d) {
+        if (outside[{x, y}] != 0 && layout.walled[{x, y}][d] && outside[step({x, y}, d)] != 0) return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Flat floor on every pallet inside the arena that has none of its own; on all pallets when the arena is open.
+void lay_ground(const Layout& layout, const Grid<std::uint8_t>& outside, Arena& arena) {
+  const bool everywhere = is_open(layout, outside);
   for (int y = 1; y + 1 < outside.height(); ++y) {
     for (int x = 1; x + 1 < outside.width(); ++x) {
-      if ((encloses && outside[{x, y}] != 0) || layout.covered[{x, y}] != 0) continue;
+      if ((!everywhere && outside[{x, y}] != 0) || layout.covered[{x, y}] != 0) continue;
       arena.floor.push_back({rectangle(outside.centre({x, y}), kPallet, kPallet), 0.0, 0.0, 0.0, "flat"});
     }
   }
@@ -103,20 +114,23 @@ double open_heading(const Layout& layout, Cell c) {
   return 0.0;
 }
 
-/// The file does not say where the robot starts: at the usable empty pallet nearest to (0, 0).
-void find_start(const Layout& layout, const std::string& name, Arena& arena) {
+/// The file does not say where the robot starts: at the usable flat pallet nearest to (0, 0), in the hall round an open
+/// arena only where a wall stands.
+void find_start(const Layout& layout, const Grid<std::uint8_t>& outside, const std::string& name, Arena& arena) {
   std::vector<Cell> cells;
-  for (int y = 0; y < layout.frame.height(); ++y) {
-    for (int x = 0; x < layout.frame.width(); ++x) cells.push_back({x, y});
+  for (int y = 0; y < layout.occupied.height(); ++y) {
+    for (int x = 0; x < layout.occupied.width(); ++x) cells.push_back({x, y});
   }
   const auto far = [&](Cell c) {
-    const TPoint2D p = layout.frame.centre(c);
-    return std::lround((p.x * p.x + p.y * p.y) / (kPallet * kPallet));
+    const TPoint2D p = layout.occupied.centre(c);
+    const std::array<bool, 4>& walled = layout.walled[c];
+    const bool is_hall = outside[c] != 0 && std::count(walled.begin(), walled.end(), true) == 0;
+    return std::pair(is_hall, std::lround((p.x * p.x + p.y * p.y) / (kPallet * kPallet)));
   };
   std::stable_sort(cells.begin(), cells.end(), [&](Cell a, Cell b) { return far(a) < far(b); });
   for (const bool flat_only : {true, false}) {
     for (const Cell c : cells) {
-      const TPoint2D p = layout.frame.centre(c);
+      const TPoint2D p = layout.occupied.centre(c);
       arena.start = {p.x, p.y, wrap_angle(open_heading(layout, c))};
       if (flat_only && layout.occupied[c] != 0) continue;
       if (!start_trouble(arena)) return;
@@ -157,7 +171,8 @@ RafImport parse_raf(const std::string& text, const std::string& name) {
   const std::string file = name.substr(name.find_last_of('/') + 1);
   import.arena.name = file.substr(0, file.find_last_of('.'));
   const Layout layout = layout_of(elements);
-  lay_ground(layout, import.arena);
+  const Grid<std::uint8_t> outside = outside_of(layout);
+  lay_ground(layout, outside, import.arena);
   for (const Element& element : elements) {
     const ElementKind kind = kind_of(element.type);
     if (kind == ElementKind::Unknown) {
@@ -169,7 +184,7 @@ RafImport parse_raf(const std::string& text, const std::string& name) {
       place(element, wall_behind(elements, element), import.arena);
     }
   }
-  find_start(layout, name, import.arena);
+  find_start(layout, outside, name, import.arena);
   set_bounds(import.arena);
   check(import.arena, name);
   return import;
