@@ -1,10 +1,12 @@
 #include "arenas/elements.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
 
 #include "arenas/element_shapes.h"
+#include "base/angle.h"
 
 namespace rubble::arenas {
 namespace {
@@ -97,8 +99,8 @@ const std::map<std::string, Entry>& table() {
 Mount mount_of(const Element& element, const Element* wall) {
   static const Mount kPoints[] = {{-0.3, 0.9}, {0.3, 0.6}, {-0.3, 0.3}};
   const bool has_holes = wall != nullptr && (wall->type == "wall_holes1" || wall->type == "small_wall_triple_holes");
-  const int point = element.mount_point.value_or(0);
-  if (!has_holes || point < 0 || point > 2) return {0.0, 0.2};  // stands on the ground
+  const int point = std::max(0, element.mount_point.value_or(0));
+  if (!has_holes || point > 2) return {0.0, 0.2};  // stands on the ground
   return kPoints[point];
 }
 
@@ -108,6 +110,24 @@ ElementKind kind_of(const std::string& type) {
   const auto found = table().find(type);
   if (found != table().end()) return found->second.kind;
   return type.rfind("hazmat", 0) == 0 ? ElementKind::Label : ElementKind::Unknown;
+}
+
+std::vector<std::string> element_types() {
+  std::vector<std::string> types;
+  for (const auto& [type, entry] : table()) {
+    if (entry.add) types.push_back(type);
+  }
+  return types;
+}
+
+const Element* wall_behind(const Element& item, const std::vector<Element>& elements) {
+  for (const Element& e : elements) {
+    const double turn = wrap_angle(e.rotation - item.rotation);
+    const mrpt::math::TPoint2D shift = e.position - item.position;
+    if (kind_of(e.type) != ElementKind::Wall || std::abs(turn) > 1e-6) continue;
+    if (std::hypot(shift.x, shift.y) < 1e-6) return &e;
+  }
+  return nullptr;
 }
 
 bool covers_pallet(const std::string& type) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "arenas/arena.h"
 
@@ -29,6 +30,12 @@ enum class ElementKind {
 };
 
 ElementKind kind_of(const std::string& type);
+
+/// All types that have a shape, in alphabetical order.
+std::vector<std::string> element_types();
+
+/// The wall on the same edge of the same pallet as an item, or null: victims hang at its holes.
+const Element* wall_behind(const Element& item, const std::vector<Element>& elements);
 
 /// Whether the element is a floor that hides the ground of its whole pallet.
 bool covers_pallet(const std::string& type);

@@ -139,15 +139,6 @@ void find_start(const Layout& layout, const Grid<std::uint8_t>& outside, const s
   throw InputError(name + ": no pallet of the arena has room for the robot to start: add an empty one");
 }
 
-const Element* wall_behind(const std::vector<Element>& elements, const Element& item) {
-  for (const Element& e : elements) {
-    if (kind_of(e.type) == ElementKind::Wall && e.position == item.position && direction_of(e) == direction_of(item)) {
-      return &e;
-    }
-  }
-  return nullptr;
-}
-
 std::string list(const std::map<std::string, int>& counts) {
   std::string text;
   for (const auto& [type, count] : counts) text += (text.empty() ? "" : ", ") + type + " " + std::to_string(count);
@@ -181,7 +172,8 @@ RafImport parse_raf(const std::string& text, const std::string& name) {
       ++import.labels[element.type];
     } else {
       ++import.built[element.type];
-      place(element, wall_behind(elements, element), import.arena);
+      import.elements.push_back(element);
+      place(element, wall_behind(element, elements), import.arena);
     }
   }
   find_start(layout, outside, name, import.arena);

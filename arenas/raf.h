@@ -2,8 +2,10 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "arenas/arena.h"
+#include "arenas/elements.h"
 
 namespace rubble::arenas {
 
@@ -11,6 +13,7 @@ namespace rubble::arenas {
 /// three.
 struct RafImport {
   Arena arena;
+  std::vector<Element> elements;       ///< the parts with a shape, in the order of the file
   std::map<std::string, int> built;    ///< parts with a shape, by type
   std::map<std::string, int> labels;   ///< known parts without a shape: signs, eye charts
   std::map<std::string, int> unknown;  ///< parts that are missing from the arena
@@ -25,5 +28,9 @@ RafImport import_raf(const std::string& path);
 
 /// The same from text; `name` stands for the file in messages.
 RafImport parse_raf(const std::string& text, const std::string& name);
+
+/// The import as an arena file to edit (docs/arenas.md): the ground as a drawing, the parts as `elements`. Its origin
+/// is the south-western corner of the drawing. What could not be built is named in a comment.
+std::string to_yaml(const RafImport& import);
 
 }  // namespace rubble::arenas

@@ -1,5 +1,6 @@
 #include "arenas/raf_reader.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <map>
@@ -144,7 +145,10 @@ Element element_of(const Reader& reader, const Tag& tag) {
   }
   Element element;
   element.type = tag.attributes.at("type");
-  if (element.type.empty()) reader.fail(tag.position, "the element's type is empty");
+  const bool is_name = std::all_of(element.type.begin(), element.type.end(), is_name_character);
+  if (element.type.empty() || !is_name) {
+    reader.fail(tag.position, "the element's type is not a name of letters, digits, '_' and '-'");
+  }
   element.position = {kPallet * number(reader, tag, "x", -300, 300), kPallet * number(reader, tag, "y", -300, 300)};
   element.rotation = deg_to_rad(number_or_zero(reader, tag, "rotation", -360, 360));
   element.offset = {kPallet * number_or_zero(reader, tag, "offset-x", -10, 10),

@@ -3,12 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "arenas/arena_file.h"
 #include "arenas/truth_map.h"
 #include "base/error.h"
 
@@ -63,6 +66,38 @@ TEST(Raf, NothingIsDroppedSilently) {
                                                  "<element type=\"mystery\" x=\"1\" y=\"0\"/>\n"),
                                      "f.raf");
   EXPECT_EQ(import.summary(), "6 parts built; without a shape: hazmat 1; UNKNOWN, left out: mystery 2");
+}
+
+/// The same shapes, moved by the shift between the two starts.
+void expect_same_shapes(const Arena& a, const Arena& b) {
+  const mrpt::math::TPoint2D shift{b.start.x - a.start.x, b.start.y - a.start.y};
+  const auto expect_moved = [&](const Outline& p, const Outline& q) {
+    ASSERT_EQ(p.size(), q.size());
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      EXPECT_NEAR(p[i].x + shift.x, q[i].x, 1e-9);
+      EXPECT_NEAR(p[i].y + shift.y, q[i].y, 1e-9);
+    }
+  };
+  ASSERT_EQ(a.floor.size(), b.floor.size());
+  for (std::size_t i = 0; i < a.floor.size(); ++i) {
+    expect_moved(a.floor[i].outline, b.floor[i].outline);
+    EXPECT_EQ(a.floor[i].z, b.floor[i].z);
+  }
+  ASSERT_EQ(a.solids.size(), b.solids.size());
+  for (std::size_t i = 0; i < a.solids.size(); ++i) {
+    expect_moved(a.solids[i].outline, b.solids[i].outline);
+    EXPECT_EQ(a.solids[i].z_top, b.solids[i].z_top);
+  }
+  EXPECT_EQ(a.victims.size(), b.victims.size());
+  EXPECT_NEAR(a.start.phi, b.start.phi, 1e-9);
+}
+
+TEST(Raf, AsAnArenaFileItIsTheSameArena) {
+  const RafImport import = parse_raf(raf(kRoom + "<element type=\"half_ramp\" rotation=\"90\" x=\"1\" y=\"0\"/>\n"
+                                                 "<element type=\"mystery\" x=\"0\" y=\"0\"/>\n"),
+                                     "f.raf");
+  EXPECT_THAT(to_yaml(import), HasSubstr("mystery 1"));
+  expect_same_shapes(import.arena, parse_arena(to_yaml(import), "f.yaml"));
 }
 
 TEST(Raf, ErrorsNameLineAndColumn) {
@@ -122,6 +157,15 @@ TEST_F(RafFiles, EveryPartOfEveryCompetitionArenaIsAccountedFor) {
     EXPECT_EQ(found, parts);
     EXPECT_TRUE(import.unknown.empty()) << import.summary();
     EXPECT_NO_THROW(check(import.arena, file));
+  }
+}
+
+TEST_F(RafFiles, CompetitionArenasCanBeTurnedIntoArenaFiles) {
+  for (const std::string& file : files_) {
+    SCOPED_TRACE(file);
+    const RafImport import = import_raf(file);
+    expect_same_shapes(import.arena, parse_arena(to_yaml(import), file));
+    expect_same_shapes(import.arena, load_arena(file));
   }
 }
 
