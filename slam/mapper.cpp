@@ -29,7 +29,9 @@ struct Mapper::Impl {
   void start(Stamp reference, const ScanPoints& points);
   void keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points, const Surface& surface);
   TPose2D motion_since_last(Stamp reference) const;
-  TPose2D refined_motion(const Surface& known, const TPose2D& T_last_prior);
+  TPose2D refined_motion(const Surface& surface, const TPose2D& T_last_prior);
+  std::vector<TPoint2D> hits_to_weigh(const ScanPoints& points, const Surface& surface,
+                                      const TPose2D& T_map_prior) const;
   bool moved(const TPose2D& motion) const;
   std::optional<SweepMotion> sweep_motion(const LaserScan& scan) const;
 
@@ -94,17 +96,16 @@ void Mapper::Impl::process(const LaserScan& scan) {
     return;
   }
   const Surface surface = surface_of(points, config_.surface);
-  const Surface known = covered_part(surface, last_coverage_, T_last_prior, config_.coverage_margin);
-  const TPose2D T_last_now = refined_motion(known, T_last_prior);
+  const TPose2D T_last_now = refined_motion(surface, T_last_prior);
   if (!T_odom_last_ && !moved(T_last_now) && !warming_up) {
     trajectory_.push_back({reference, T_map_last_ + T_last_now});
     return;
   }
 
+  const std::vector<TPoint2D> judged = hits_to_weigh(points, surface, T_map_last_ + T_last_now);
   const Particles resampled = gate ? resample(particles_) : particles_;
   const Particles drifted = drift(resampled, T_last_now, motion_error_, drift_rng_);  // Fig. 5
-  const Particles measured =
-      measure(drifted, config_.covered_only ? hits_of(known, points) : points.hits, map_);  // eq. (2)
+  const Particles measured = measure(drifted, judged, map_);                          // eq. (2)
   particles_ = normalise(measured);
   const TPose2D T_map_now = mean_of_best(particles_, config_.top_share);
   last_motion_ = T_last_now;
@@ -135,11 +136,18 @@ TPose2D Mapper::Impl::motion_since_last(Stamp reference) const {
   return odometry_.pose_at(reference) - *T_odom_last_;
 }
 
-TPose2D Mapper::Impl::refined_motion(const Surface& known, const TPose2D& T_last_prior) {
+TPose2D Mapper::Impl::refined_motion(const Surface& surface, const TPose2D& T_last_prior) {
   if (!config_.icp) return T_last_prior;
-  const ScanMatch match = matcher_.match(known, T_last_prior);
+  const Surface shared = covered_part(surface, last_coverage_, T_last_prior, config_.coverage_margin);
+  const ScanMatch match = matcher_.match(shared, T_last_prior);
   ++(match.accepted ? counts_.icp_accepted : counts_.icp_rejected);
   return match.T_last_now;
+}
+
+std::vector<TPoint2D> Mapper::Impl::hits_to_weigh(const ScanPoints& points, const Surface& surface,
+                                                  const TPose2D& T_map_prior) const {
+  if (!config_.known_only) return points.hits;
+  return hits_of(known_part(surface, map_, T_map_prior, config_.known_margin), points);
 }
 
 bool Mapper::Impl::moved(const TPose2D& motion) const {
