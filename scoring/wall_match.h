@@ -48,6 +48,8 @@ class WallMatch {
   /// RMS displacement of the map's walls that no rigid transform explains [m].
   double bend(const Warp& warp) const;
 
+  /// Both maps have walls to compare.
+  bool usable() const { return !map_.walls.empty() && !truth_.walls.empty(); }
   const mrpt::math::TPoint2D& map_centre() const { return map_.centre; }
 
  private:
