@@ -226,6 +226,7 @@ void finish(RunReport& report, RunFolder& folder, const Scenario& scenario, cons
   folder.save_hashes(hashed);
   add_timing(report.score, sim_s, start);
   folder.write("score.json", report.score.dump(2) + "\n");
+  folder.close();
   if (options.link_latest) folder.link_latest();
   report.folder = folder.path();
   report.broken = broken_expectations(scenario, report.score);
@@ -336,6 +337,7 @@ ReplayReport replay_run(const std::string& path, const RunOptions& options) {
     report.artefacts.push_back({name, same});
     report.identical = report.identical && same;
   }
+  folder.close();
   if (options.out.empty()) fs::remove_all(scratch);
   return report;
 }
