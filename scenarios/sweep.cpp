@@ -153,6 +153,7 @@ Sweep load_sweep(const std::string& path, const std::string& shipped) {
   Sweep sweep;
   sweep.path = path;
   sweep.name = root.text("name", fs::path(path).stem().string());
+  sweep.about = root.text("about", std::string());
   sweep.scenarios = read_scenarios(root, fs::path(path).parent_path(), shipped);
   sweep.seeds = read_seeds(root);
   sweep.configurations = read_configurations(root);

@@ -17,6 +17,7 @@ struct Configuration {
 /// What a sweep file asks for: every scenario with every configuration and every seed.
 struct Sweep {
   std::string name;                           ///< the file's `name`, or its stem
+  std::string about;                          ///< for people; stands in reports
   std::string path;                           ///< for messages
   std::vector<std::string> scenarios;         ///< paths that exist
   std::vector<std::uint64_t> seeds;           ///< in the order of the file, no repeats
