@@ -211,20 +211,21 @@ std::string report_markdown(const ResultSet& set, const SweepNote& note) {
   }
   out += "\n";
   if (note.configurations.size() < 2) return out;
-  const std::string& reference = note.configurations.front();
-  out += "Against `" + reference +
-         "`, paired by scenario and seed:\n\n| configuration | metric | pairs | difference | "
-         "95 % interval | better : worse | p | verdict |\n|---|---|---|---|---|---|---|---|\n";
-  for (std::size_t i = 1; i < note.configurations.size(); ++i) {
+  out +=
+      "Paired by scenario and seed:\n\n| configuration | against | metric | pairs | difference | "
+      "95 % interval | better : worse | p | verdict |\n|---|---|---|---|---|---|---|---|---|\n";
+  for (const auto& name : note.configurations) {
+    const std::string& reference = note.references.at(name);
+    if (name == reference) continue;
     CompareOptions options;
     options.configuration_a = reference;
-    options.configuration_b = note.configurations[i];
+    options.configuration_b = name;
     const Comparison comparison = compare(set, set, note.name, note.name, options);
     for (const auto& c : comparison.groups[0].metrics) {
       if (std::find(std::begin(kColumns), std::end(kColumns), c.metric.key) == std::end(kColumns)) continue;
       const std::string interval =
           std::isfinite(c.interval.low) ? "[" + figure(c.interval.low) + ", " + figure(c.interval.high) + "]" : "-";
-      out += "| " + note.configurations[i] + " | " + c.metric.label + " | " + std::to_string(c.pairs) + " | " +
+      out += "| " + name + " | " + reference + " | " + c.metric.label + " | " + std::to_string(c.pairs) + " | " +
              (c.difference > 0 ? "+" : "") + figure(c.difference) + " | " + interval + " | " +
              std::to_string(c.better) + " : " + std::to_string(c.worse) + " | " + figure(c.p_sign) + " | " +
              text_of(c.verdict) + " |\n";

@@ -11,6 +11,8 @@ namespace rubble::scenarios {
 /// A named set of overrides: one column of an experiment.
 struct Configuration {
   std::string name;
+  std::string reference;  ///< the configuration it is measured against: the first of `configs`, or the first value of
+                          ///< the grid's first key, all else equal; empty when there is nothing to choose from
   std::vector<Override> overrides;
 };
 

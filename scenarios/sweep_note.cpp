@@ -27,7 +27,8 @@ std::string name_of_path(const std::string& path) {
 
 void save_note(const Sweep& sweep, const std::string& folder) {
   ordered_json json{{"name", sweep.name}, {"about", sweep.about}, {"configurations", ordered_json::array()}};
-  for (const auto& configuration : sweep.configurations) json["configurations"].push_back(configuration.name);
+  for (const auto& configuration : sweep.configurations)
+    json["configurations"].push_back({{"name", configuration.name}, {"reference", configuration.reference}});
   write_text_file(folder + kFile, json.dump(2) + "\n");
 }
 
@@ -40,7 +41,10 @@ SweepNote note_of(const ResultSet& set, const std::string& path) {
       const ordered_json json = ordered_json::parse(read_text_file(file));
       note.name = json.at("name");
       note.about = json.at("about");
-      note.configurations = json.at("configurations").get<std::vector<std::string>>();
+      for (const auto& configuration : json.at("configurations")) {
+        note.configurations.push_back(configuration.at("name"));
+        note.references[note.configurations.back()] = configuration.at("reference");
+      }
     } catch (const ordered_json::exception&) {
       throw InputError(file + ": is not what 'rubble batch' wrote; remove it");
     }
@@ -52,6 +56,10 @@ SweepNote note_of(const ResultSet& set, const std::string& path) {
               names.end());
   for (const auto& name : present)
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  for (const auto& name : names) {
+    std::string& reference = note.references[name];
+    if (present.count(reference) == 0) reference = names.front();
+  }
   return note;
 }
 
