@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -47,12 +48,19 @@ std::vector<double> times(const std::vector<const RunRecord*>& runs, const Timin
   return values;
 }
 
+/// Three significant digits: more than the intervals are worth.
+std::string brief(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
 /// "0.812 [0.79, 0.83]".
 std::string mean_text(const std::vector<double>& values) {
   if (values.empty()) return "-";
   const Interval interval = bootstrap_mean(values, 1);
-  if (!std::isfinite(interval.low)) return figure(mean(values));
-  return figure(mean(values)) + " [" + figure(interval.low) + ", " + figure(interval.high) + "]";
+  if (!std::isfinite(interval.low)) return brief(mean(values));
+  return brief(mean(values)) + " [" + brief(interval.low) + ", " + brief(interval.high) + "]";
 }
 
 /// The columns of the table of configurations.
