@@ -325,7 +325,7 @@ ReplayReport replay_run(const std::string& path, const RunOptions& options) {
     if (options.interrupted && options.interrupted()) break;
   }
   const fs::path scratch =
-      fs::temp_directory_path() / ("rubble-replay-" + sha256_of_text(fs::absolute(path)).substr(0, 16));
+      fs::temp_directory_path() / ("rubble-replay-" + sha256_of_text(fs::absolute(path).string()).substr(0, 16));
   RunFolder folder(options.out.empty() ? scratch.string() : options.out, options.replace || options.out.empty());
   folder.write("scenario.yaml", resolved_yaml(scenario));
   folder.append_estimate(core.mapper().trajectory());
