@@ -76,10 +76,10 @@ void RayWalkScan(benchmark::State& state) {
   const sim::RayWalk walk(arenas::faces(maze()));
   const sim::BeamTable table(model.laser);
   sim::Beams beams;
-  sim::swept_beams(moving(), model, table, Stamp::from_seconds(0.0043), beams);
+  sim::swept_beams(moving(), model, table, Stamp::from_seconds(0.0043), model.laser.beam_period, beams);
   for (auto _ : state) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < beams.size(); ++i) sum += std::min(4.0, walk.cast(beams.ray(i), 4.0));
+    for (std::size_t i = 0; i < beams.count; ++i) sum += std::min(4.0, walk.cast(beams.ray(i), 4.0));
     benchmark::DoNotOptimize(sum);
   }
   state.SetItemsProcessed(state.iterations());
@@ -141,10 +141,13 @@ BENCHMARK(Box2dRayCastScan)->Unit(benchmark::kMicrosecond);
 void PhysicsStep(benchmark::State& state, double v, double w) {
   sim::World world(maze(), robot::RobotModel{}, sim::ServoParameters{}, 0.01);
   int step = 0;
+  double iterations = 0.0;
   for (auto _ : state) {
     if (step++ % 100 == 0) world.firmware().command({v, w});
     world.step();
+    iterations += world.drive().iterations();
   }
+  state.counters["iterations"] = iterations / static_cast<double>(state.iterations());
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK_CAPTURE(PhysicsStep, standing, 0.0, 0.0)->Unit(benchmark::kMicrosecond);

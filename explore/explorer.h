@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "explore/searched_area.h"
 #include "explore/victim_search.h"
 #include "robot/commands.h"
 #include "robot/measurements.h"
@@ -33,11 +34,13 @@ struct ExplorerConfig {
   double scan_timeout = 0.3;                ///< without a scan for this long the robot stops [s]
   double first_turn = deg_to_rad(130.0);    ///< turn at the start that shows the scanner what is behind [rad]
   VictimSearchConfig victims;
+  SearchConfig search;
 };
 
-enum class ExplorerState { Starting, Driving, BackingUp, GoingHome, Finished };
+enum class ExplorerState { Starting, Driving, Searching, BackingUp, GoingHome, Finished };
 
-/// Decides where to drive: Exploration Transform to a close frontier by a safe path, until nothing reachable is left.
+/// Decides where to drive: Exploration Transform to a close frontier by a safe path, until nothing reachable is left;
+/// then to places the victim sensors have not looked at, by the same transform.
 class Explorer {
  public:
   Explorer(const robot::RobotModel& model, const ExplorerConfig& config);

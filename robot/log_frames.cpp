@@ -69,7 +69,11 @@ Frames split_frames(std::string_view bytes, const std::string& path) {
     ByteReader head(rest.substr(0, kHeadSize));
     const std::size_t length = head.u32();
     const std::uint32_t payload_crc = head.u32();
-    if (head.u32() != crc_of(rest.substr(0, kHeadSize - 4))) fail_damaged(path, offset, "the frame's head is damaged");
+    if (head.u32() != crc_of(rest.substr(0, kHeadSize - 4))) {
+      frames.torn = all_zero(rest.substr(kHeadSize));
+      if (frames.torn) break;
+      fail_damaged(path, offset, "the frame's head is damaged");
+    }
     frames.torn = length > rest.size() - kHeadSize;
     if (frames.torn) break;
     const std::string_view payload = rest.substr(kHeadSize, length);

@@ -29,7 +29,7 @@ void to_mrpt(const Odometry& odometry, mrpt::obs::CObservationOdometry& out);
 Odometry from_mrpt(const mrpt::obs::CObservationOdometry& odometry);
 
 /// Writes laser scans and odometry as an MRPT .rawlog in observation-only form, labels LASER and ODOMETRY, sorted by
-/// stamp; no IMU entries (they spoil icp-slam's map). A first comment entry carries the robot model, so that
+/// stamp; no IMU entries (they spoil icp-slam's map). A comment entry at the end carries the robot model, so that
 /// read_rawlog() gives back what MRPT's types cannot hold. Debian's rawlog-edit and icp-slam open it.
 /// The source is any log ReplayRobot reads. Throws InputError for it, RunError when the rawlog cannot be written.
 void export_rawlog(const std::string& log_path, const std::string& rawlog_path);

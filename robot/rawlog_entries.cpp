@@ -8,10 +8,14 @@
 namespace rubble::robot {
 namespace {
 
-// MRPT's messages run over many lines and end with a call stack: their first line says what happened.
-std::string first_line(const std::string& text) {
-  std::string line = text.substr(0, text.find('\n'));
-  return line.size() > 200 ? line.substr(0, 200) + "..." : line;
+// MRPT's messages run over many lines with a call stack each; the innermost "Message:" says what happened.
+std::string reason_of(const std::string& text) {
+  constexpr std::string_view kMark = "Message:";
+  const std::size_t mark = text.rfind(kMark);
+  std::string line = mark == std::string::npos ? text : text.substr(mark + kMark.size());
+  line = line.substr(0, line.find('\n'));
+  line.erase(0, line.find_first_not_of(' '));
+  return line.substr(0, 200);
 }
 
 }  // namespace
@@ -32,7 +36,7 @@ void each_rawlog_entry(std::string_view bytes, const std::string& path,
       if (stream.getPosition() >= bytes.size())
         throw InputError(place + ": the rawlog ends in the middle of this entry, " + std::to_string(entry) +
                          " whole ones precede it; copy the file again");
-      throw InputError(place + ": cannot be understood (" + first_line(e.what()) +
+      throw InputError(place + ": cannot be understood (" + reason_of(e.what()) +
                        "); check the file with: rawlog-edit --info -i");
     }
     if (object) visit(entry, object);

@@ -15,8 +15,9 @@
 #include "base/error.h"
 #include "robot/file_bytes.h"
 #include "robot/mrpt_bridge.h"
-#include "robot/rawlog_comment.h"
+#include "robot/mrpt_stamp.h"
 #include "robot/rawlog_entries.h"
+#include "robot/rawlog_own.h"
 
 namespace rubble::robot {
 namespace {
@@ -34,12 +35,11 @@ TPose2D wrapped(TPose2D pose) {
 /// What the entries of a rawlog say, one scanner only: the one of the first scan.
 struct Contents {
   std::optional<RobotModel> own_model;  ///< we wrote the file
-  std::string label;
-  mrpt::math::TPose3D sensor_pose;
-  std::vector<LaserScan> scans;
+  std::vector<CObservation2DRangeScan::Ptr> scans;
+  std::vector<Odometry> driven;  ///< actions added up, one entry a scan
+  bool has_actions = false;
   std::vector<Odometry> observed;           ///< odometry entries
   std::vector<std::size_t> observed_frame;  ///< how many scans came before each
-  std::vector<Odometry> driven;             ///< actions added up, one entry a scan
 };
 
 /// The movement of one action: raw odometry when there is any.
@@ -76,9 +76,9 @@ class Collector {
     if (const auto actions = std::dynamic_pointer_cast<CActionCollection>(object)) {
       if (const auto movement = movement_of(*actions)) drive(*movement);
     } else if (const auto frame = std::dynamic_pointer_cast<CSensoryFrame>(object)) {
-      for (const auto& observation : *frame) take(*observation);
+      for (const auto& observation : *frame) take(observation);
     } else if (const auto observation = std::dynamic_pointer_cast<CObservation>(object)) {
-      take(*observation);
+      take(observation);
     }
   }
 
@@ -89,48 +89,39 @@ class Collector {
     now_.pose = wrapped(now_.pose + movement.step);
     now_.v = movement.v;
     now_.w = movement.w;
-    driving_ = true;
+    contents.has_actions = true;
   }
 
-  void take(const CObservation& observation) {
-    if (const auto* comment = dynamic_cast<const CObservationComment*>(&observation))
+  void take(const CObservation::Ptr& observation) {
+    if (const auto comment = std::dynamic_pointer_cast<CObservationComment>(observation))
       if (const auto model = model_of_comment(comment->text)) contents.own_model = model;
-    if (const auto* scan = dynamic_cast<const CObservation2DRangeScan*>(&observation)) take_scan(*scan);
-    if (const auto* odometry = dynamic_cast<const CObservationOdometry*>(&observation)) {
+    if (const auto scan = std::dynamic_pointer_cast<CObservation2DRangeScan>(observation)) take_scan(scan);
+    if (const auto odometry = std::dynamic_pointer_cast<CObservationOdometry>(observation)) {
       contents.observed.push_back(from_mrpt(*odometry));
       contents.observed_frame.push_back(contents.scans.size());
     }
   }
 
-  void take_scan(const CObservation2DRangeScan& scan) {
-    if (scan.getScanSize() < 2) return;
-    const mrpt::math::TPose3D pose = scan.sensorPose.asTPose();
-    if (contents.scans.empty()) {
-      contents.label = scan.sensorLabel;
-      contents.sensor_pose = pose;
+  void take_scan(const CObservation2DRangeScan::Ptr& scan) {
+    if (scan->getScanSize() < 2) return;
+    if (!contents.scans.empty()) {
+      const CObservation2DRangeScan& first = *contents.scans.front();
+      if (scan->sensorLabel != first.sensorLabel || scan->sensorPose.asTPose() != first.sensorPose.asTPose()) return;
     }
-    // Our own scans may differ in their bearings, which the sensor pose takes up.
-    const bool same_scanner =
-        scan.sensorLabel == contents.label && (contents.own_model || pose == contents.sensor_pose);
-    if (!same_scanner) return;
-    contents.scans.push_back(
-        from_mrpt(scan, contents.own_model ? contents.own_model->T_base_laser : contents.sensor_pose));
-    if (!driving_) return;
-    now_.stamp = contents.scans.back().middle();
+    contents.scans.push_back(scan);
+    now_.stamp = from_mrpt_time(scan->timestamp);
     contents.driven.push_back(now_);
   }
 
   Odometry now_;
-  bool driving_ = false;
 };
 
 /// Spreads scans without time stamps evenly, odometry along with the scan it came before.
-void space_evenly(Contents& contents) {
+void space_evenly(std::vector<LaserScan>& scans, Contents& contents) {
   const auto time_of = [](std::size_t frame) {
     return Stamp::from_seconds(static_cast<double>(frame) * kFrameSpacing);
   };
-  for (std::size_t i = 0; i < contents.scans.size(); ++i) contents.scans[i].stamp = time_of(i);
-  for (std::size_t i = 0; i < contents.driven.size(); ++i) contents.driven[i].stamp = time_of(i);
+  for (std::size_t i = 0; i < scans.size(); ++i) scans[i].stamp = contents.driven[i].stamp = time_of(i);
   for (std::size_t i = 0; i < contents.observed.size(); ++i)
     contents.observed[i].stamp = time_of(contents.observed_frame[i]);
 }
@@ -179,10 +170,31 @@ void restore_geometry(const LaserModel& laser, LaserScan& scan) {
   scan.range_max = laser.range_max;
 }
 
+ForeignLog own_log(const RobotModel& model, std::vector<LaserScan>& scans, std::vector<Odometry>& odometry) {
+  ForeignLog log;
+  log.model = model;
+  for (LaserScan& scan : scans) restore_geometry(model.laser, scan);
+  for (Odometry& o : odometry)
+    if (o.w == kStraightTurnRate) o.w = 0.0;
+  return log;
+}
+
 void start_at_zero(std::vector<Odometry>& odometry) {
   if (odometry.empty()) return;
   const TPose2D T_start_base = odometry.front().pose;
   for (Odometry& o : odometry) o.pose = wrapped(o.pose - T_start_base);
+}
+
+ForeignLog others_log(const CObservation2DRangeScan& first, std::vector<LaserScan>& scans,
+                      std::vector<Odometry>& odometry) {
+  ForeignLog log;
+  for (LaserScan& scan : scans) clean_ranges(scan);
+  start_at_zero(odometry);
+  log.model.name = "rawlog";
+  log.model.laser.name = first.sensorLabel.empty() ? "MRPT laser" : first.sensorLabel;
+  log.model.T_base_laser = first.sensorPose.asTPose();
+  describe_sensors(scans, odometry, log.model);
+  return log;
 }
 
 }  // namespace
@@ -194,29 +206,27 @@ ForeignLog read_rawlog_bytes(std::string_view bytes, const std::string& path) {
   if (contents.scans.empty())
     throw InputError(path + ": the rawlog holds no 2D laser scan; give one with CObservation2DRangeScan entries");
 
-  const bool untimed = std::any_of(contents.scans.begin(), contents.scans.end(),
-                                   [](const LaserScan& scan) { return scan.stamp == Stamp::never(); });
-  if (untimed) space_evenly(contents);
-  std::vector<Odometry> odometry = std::move(contents.observed.empty() ? contents.driven : contents.observed);
-  check_times(contents.scans, path, "laser scan");
+  const CObservation2DRangeScan& first = *contents.scans.front();
+  const auto T_base_laser = contents.own_model ? contents.own_model->T_base_laser : first.sensorPose.asTPose();
+  std::vector<LaserScan> scans;
+  for (const auto& scan : contents.scans) scans.push_back(from_mrpt(*scan, T_base_laser));
+  const bool untimed =
+      std::any_of(scans.begin(), scans.end(), [](const LaserScan& s) { return s.stamp == Stamp::never(); });
+  if (untimed) space_evenly(scans, contents);
+  std::vector<Odometry> odometry;
+  if (!contents.observed.empty())
+    odometry = std::move(contents.observed);
+  else if (contents.has_actions)
+    odometry = std::move(contents.driven);
+  check_times(scans, path, "laser scan");
   check_times(odometry, path, "odometry");
   check_finite(odometry, path);
 
-  ForeignLog log;
+  ForeignLog log =
+      contents.own_model ? own_log(*contents.own_model, scans, odometry) : others_log(first, scans, odometry);
   log.format = "MRPT rawlog";
-  if (contents.own_model) {
-    log.model = *contents.own_model;
-    for (LaserScan& scan : contents.scans) restore_geometry(log.model.laser, scan);
-  } else {
-    for (LaserScan& scan : contents.scans) clean_ranges(scan);
-    start_at_zero(odometry);
-    log.model.name = "rawlog";
-    log.model.laser.name = contents.label.empty() ? "MRPT laser" : contents.label;
-    log.model.T_base_laser = contents.sensor_pose;
-    describe_sensors(contents.scans, odometry, log.model);
-  }
   log.reference = read_rawlog_reference(path);
-  log.ticks = assemble_ticks(std::move(contents.scans), std::move(odometry));
+  log.ticks = assemble_ticks(std::move(scans), std::move(odometry));
   return log;
 }
 

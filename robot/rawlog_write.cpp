@@ -10,7 +10,7 @@
 #include "robot/log.h"
 #include "robot/mrpt_bridge.h"
 #include "robot/mrpt_stamp.h"
-#include "robot/rawlog_comment.h"
+#include "robot/rawlog_own.h"
 
 namespace rubble::robot {
 namespace {
@@ -24,6 +24,7 @@ std::vector<CObservation::Ptr> observations_of(ReplayRobot& replay) {
     for (const Odometry& odometry : inputs->odometry) {
       auto observation = mrpt::obs::CObservationOdometry::Create();
       to_mrpt(odometry, *observation);
+      if (odometry.v != 0.0 && odometry.w == 0.0) observation->velocityLocal.omega = kStraightTurnRate;
       observation->sensorLabel = "ODOMETRY";
       list.push_back(observation);
     }
@@ -49,9 +50,9 @@ void export_rawlog(const std::string& log_path, const std::string& rawlog_path) 
   mrpt::obs::CObservationComment comment;
   comment.text = comment_of_model(replay.model());
   comment.sensorLabel = "COMMENT";
-  comment.timestamp = observations.empty() ? to_mrpt_time(Stamp{0}) : observations.front()->timestamp;
-  archive << comment;
+  comment.timestamp = observations.empty() ? to_mrpt_time(Stamp{0}) : observations.back()->timestamp;
   for (const CObservation::Ptr& observation : observations) archive << *observation;
+  archive << comment;
   write_gzip(rawlog_path, std::string(static_cast<const char*>(stream.getRawBufferData()),
                                       static_cast<std::size_t>(stream.getTotalBytesCount())));
 }

@@ -6,6 +6,11 @@
 #include "base/angle.h"
 
 namespace rubble::sim {
+namespace {
+
+constexpr double kBeyond = 0.1;  ///< noise can bring back what lies a little out of range [m]
+
+}  // namespace
 
 SweepTimes::SweepTimes(const robot::LaserModel& laser) {
   constexpr double kRotorZero = -0.75 * kPi;
@@ -20,6 +25,9 @@ Laser::Laser(const arenas::Arena& arena, const robot::RobotModel& model, double 
       times_(model.laser),
       table_(model.laser),
       walk_(arenas::faces(arena)),
+      faces_(arenas::faces(arena)),
+      plane_cast_(faces_),
+      sweep_cast_(faces_),
       noise_(model.laser, noise, seed) {}
 
 robot::LaserScan Laser::scan(Stamp first, const std::vector<WorldState>& states, const std::vector<Sphere>& balls) {
@@ -30,19 +38,12 @@ robot::LaserScan Laser::scan(Stamp first, const std::vector<WorldState>& states,
   scan.beam_period = sweep_ ? model_.laser.beam_period : 0.0;
   scan.range_min = model_.laser.range_min;
   scan.range_max = model_.laser.range_max;
-  robot::RobotModel timing = model_;
-  timing.laser.beam_period = scan.beam_period;
-  swept_beams(states, timing, table_, first, beams_);
-  const std::size_t n = beams_.size();
-  scan.ranges.resize(n);
-  const double reach = model_.laser.range_max + 1.0;
-  std::vector<Sphere> near;
-  for (const Sphere& ball : balls) {
-    const double distance = std::hypot(ball.x - beams_.reference.x(), ball.y - beams_.reference.y());
-    if (distance < reach + ball.radius) near.push_back(ball);
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    scan.ranges[i] = static_cast<float>(walk_.cast(beams_.ray(i), model_.laser.range_max + 0.1, near));
+  const double reach = model_.laser.range_max + kBeyond;
+  if (!sweep_ || at_rest(states, first, scan.beam_stamp(table_.count - 1))) {
+    plane_cast_.cast(laser_placement_at(states, model_, first), table_, reach, balls, scan.ranges);
+  } else {
+    swept_beams(states, model_, table_, first, scan.beam_period, beams_);
+    sweep_cast_.cast(beams_, table_, reach, balls, scan.ranges);
   }
   noise_.apply(scan.ranges);
   return scan;

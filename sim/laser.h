@@ -5,9 +5,12 @@
 
 #include "arenas/arena.h"
 #include "robot/measurements.h"
+#include "sim/plane_cast.h"
 #include "sim/range_noise.h"
 #include "sim/ray_walk.h"
 #include "sim/rays.h"
+#include "sim/scan_faces.h"
+#include "sim/sweep_cast.h"
 
 namespace rubble::sim {
 
@@ -20,14 +23,19 @@ struct SweepTimes {
 };
 
 /// The scanner on its levelled platform. Phantom walls, walls missed and stretched ranges come out of the geometry.
+/// While the robot moves every beam starts from its own pose; standing still, or without sweep, the whole scan is drawn
+/// from one.
 class Laser {
  public:
   Laser(const arenas::Arena& arena, const robot::RobotModel& model, double noise, bool sweep, std::uint64_t seed);
+  Laser(const Laser&) = delete;
+  Laser& operator=(const Laser&) = delete;
 
   /// The scan whose beam 0 leaves at `first`; `states` cover the sweep. `balls`: where they are now.
   robot::LaserScan scan(Stamp first, const std::vector<WorldState>& states, const std::vector<Sphere>& balls);
 
   const SweepTimes& times() const { return times_; }
+  /// The exact caster on the same faces, for single lines of sight.
   const RayWalk& walk() const { return walk_; }
 
  private:
@@ -36,6 +44,9 @@ class Laser {
   SweepTimes times_;
   BeamTable table_;
   RayWalk walk_;
+  ScanFaces faces_;
+  PlaneCast plane_cast_;
+  SweepCast sweep_cast_;
   RangeNoise noise_;
   Beams beams_;
 };

@@ -35,13 +35,6 @@ b2PolygonShape body_shape(const robot::RobotModel& model) {
   return shape;
 }
 
-std::array<Ground, 4> ground_at(const Terrain& terrain, const robot::RobotModel& model, const TPose2D& pose) {
-  std::array<Ground, 4> ground;
-  const std::array<TPoint2D, 4> feet = wheel_feet(model);
-  for (std::size_t i = 0; i < 4; ++i) ground[i] = terrain.under_wheel(pose.composePoint(feet[i]));
-  return ground;
-}
-
 }  // namespace
 
 World::World(const arenas::Arena& arena, const robot::RobotModel& model, const ServoParameters& servos, double step)
@@ -51,10 +44,11 @@ World::World(const arenas::Arena& arena, const robot::RobotModel& model, const S
       terrain_(arena, model.climbable_step),
       box2d_(b2Vec2(0.0f, 0.0f)),
       obstacles_(box2d_, origin_, arena, model.climbable_step),
-      drive_(terrain_, model),
+      drive_(model),
       firmware_(model),
       servos_(servos),
-      attitude_(stance_on(ground_at(terrain_, model, arena.start), model)) {
+      ground_(ground_under(terrain_, model, arena.start)),
+      attitude_(stance_on(ground_, model)) {
   box2d_.SetContinuousPhysics(false);  // the robot moves 7 mm a step at most
   b2BodyDef definition;
   definition.type = b2_dynamicBody;
@@ -104,7 +98,7 @@ void World::step() {
   const PlanVelocity before{static_cast<double>(v.x), static_cast<double>(v.y),
                             static_cast<double>(body_->GetAngularVelocity())};
   find_stops();
-  const PlanVelocity driven = drive_.step(state_.pose, before, firmware_.demand(dt_), stops_, dt_);
+  const PlanVelocity driven = drive_.step(state_.pose, ground_, before, firmware_.demand(dt_), stops_, dt_);
   firmware_.observe(drive_.left(), drive_.right(), dt_);
   body_->SetLinearVelocity({static_cast<float>(driven.x), static_cast<float>(driven.y)});
   body_->SetAngularVelocity(static_cast<float>(driven.w));
@@ -117,7 +111,8 @@ void World::step() {
   const b2Vec2 after = body_->GetLinearVelocity();
   state_.velocity = {static_cast<double>(after.x), static_cast<double>(after.y),
                      static_cast<double>(body_->GetAngularVelocity())};
-  attitude_.step(stance_on(ground_at(terrain_, model_, state_.pose), model_), dt_);
+  ground_ = ground_under(terrain_, model_, state_.pose);
+  attitude_.step(stance_on(ground_, model_), dt_);
   state_.stance = attitude_.stance();
   obstacles_.move(body_handle_, robot_band());
   servos_.step(static_cast<int>(std::lround(dt_ * 1e3)));

@@ -4,6 +4,7 @@
 
 #include <box2d/box2d.h>
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -62,6 +63,7 @@ class World {
   Drive drive_;
   Firmware firmware_;
   Servos servos_;
+  std::array<Ground, 4> ground_;  ///< under the wheels now
   Attitude attitude_;
   std::vector<Stop> stops_;
   WorldState state_;
