@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "scenarios/compare.h"
 #include "scenarios/sweep.h"
 
 namespace CLI {
@@ -21,7 +22,12 @@ struct BatchArguments {
   scenarios::Shard shard;
   bool retry = false;
   bool record = false;
+  std::string save_baseline;
   std::vector<scenarios::Override> overrides;
+  bool slurm = false;
+  bool submit = true;
+  int shards = 8;
+  std::vector<std::string> slurm_options;
 };
 
 struct MergeArguments {
@@ -29,8 +35,33 @@ struct MergeArguments {
   std::string out;
 };
 
+struct ReportArguments {
+  std::vector<std::string> sources;
+  std::string out;
+  bool markdown = false;
+};
+
+struct CompareArguments {
+  std::string a;
+  std::string b;  ///< empty: A again, with another configuration
+  scenarios::CompareOptions options;
+  std::string csv, json, html;
+};
+
+struct CheckArguments {
+  std::string sweep = "regression";
+  std::string baseline;  ///< empty: beside the sweep file
+  std::string out;
+  std::string junit;
+  int workers = 0;
+  std::vector<scenarios::Override> overrides;
+};
+
 int batch(const BatchArguments& arguments);
 int batch_merge(const MergeArguments& arguments);
+int batch_report(const ReportArguments& arguments);
+int compare(const CompareArguments& arguments);
+int check(const CheckArguments& arguments);
 
 /// The subcommands about many runs: batch, compare, check. Kept apart from main.cpp's.
 class BatchCommands {

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -86,8 +87,8 @@ Entry entry_of(const Job& job, const TaskResult& result, const BatchOptions& opt
 }
 
 /// Throws RunError when the folder takes no more data: then a failed run says nothing about the run.
-void check_space(const std::string& folder) {
-  const std::string path = folder + "/.space";
+void check_space(const std::string& folder, const std::string& suffix) {
+  const std::string path = folder + "/.space" + suffix;
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   std::string why = file < 0 ? std::strerror(errno) : "";
   if (file >= 0) {
@@ -141,6 +142,16 @@ std::string shard_suffix(const Shard& shard) {
   return shard.count == 1 ? "" : "-" + std::to_string(shard.index) + "of" + std::to_string(shard.count);
 }
 
+ResultSet results_of(const std::vector<Job>& jobs, const std::string& folder) {
+  std::set<std::string> wanted;
+  for (const auto& job : jobs) wanted.insert(job.run_id);
+  ResultSet set = load_results(folder);
+  auto& runs = set.runs;
+  runs.erase(std::remove_if(runs.begin(), runs.end(), [&](const auto& run) { return wanted.count(run.run_id) == 0; }),
+             runs.end());
+  return set;
+}
+
 Runner simulating_runner(bool record) {
   return [record](const Job& job, const std::string& folder) {
     cv::setNumThreads(1);  // the processes are the parallelism
@@ -172,7 +183,7 @@ BatchReport run_batch(const std::vector<Job>& all, const Runner& runner, const B
   progress.skipped = jobs.size() - todo.size();
   const auto start = std::chrono::steady_clock::now();
   const auto finished = [&](const TaskResult& result) {
-    if (result.end != TaskEnd::Done) check_space(options.out);
+    if (result.end != TaskEnd::Done) check_space(options.out, shard_suffix(options.shard));
     const Entry entry = entry_of(*todo[result.task], result, options);
     file.append(entry.record, entry.timing);
     ++progress.done;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/merge.h"
 #include "scenarios/results.h"
 #include "scenarios/sweep.h"
 
@@ -57,6 +58,9 @@ struct BatchReport {
 /// Makes the runs that the folder does not hold yet. Safe to kill at any time and to call again. Records are the same
 /// whatever the number of workers and shards. Throws InputError, RunError (disk full: what is finished is kept).
 BatchReport run_batch(const std::vector<Job>& jobs, const Runner& runner, const BatchOptions& options);
+
+/// Those results in the folder that belong to these jobs: a folder may hold more than one sweep, or several versions.
+ResultSet results_of(const std::vector<Job>& jobs, const std::string& folder);
 
 /// The file name suffix of a shard's results: empty for the whole, `-2of4` for a part.
 std::string shard_suffix(const Shard& shard);

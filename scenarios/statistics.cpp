@@ -15,6 +15,13 @@ namespace {
 constexpr int kResamples = 10000;
 constexpr double kTail = 0.025;
 
+double sorted_quantile(const std::vector<double>& sorted, double share) {
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
 }  // namespace
 
 double mean(const std::vector<double>& values) {
@@ -25,10 +32,7 @@ double mean(const std::vector<double>& values) {
 double quantile(std::vector<double> values, double share) {
   assert(!values.empty());
   std::sort(values.begin(), values.end());
-  const double at = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
+  return sorted_quantile(values, share);
 }
 
 double median(const std::vector<double>& values) { return values.empty() ? std::nan("") : quantile(values, 0.5); }
@@ -43,6 +47,8 @@ double robust_deviation(const std::vector<double>& values) {
 Interval bootstrap_mean(const std::vector<double>& values, std::uint64_t seed) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (values.size() < 2) return {-kInfinity, kInfinity};
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  if (*least == *most) return {*least, *most};
   const auto n = static_cast<std::uint32_t>(values.size());
   Rng rng(seed, "bootstrap");
   std::vector<double> means;
@@ -54,7 +60,8 @@ Interval bootstrap_mean(const std::vector<double>& values, std::uint64_t seed) {
   // A resample varies by (n-1)/n of the sample's variance and has normal tails; Student's are wanted.
   const double z = student_quantile(kTail, static_cast<int>(n) - 1) * std::sqrt(n / (n - 1.0));
   const double tail = normal_cdf(z);
-  return {quantile(means, tail), quantile(means, 1.0 - tail)};
+  std::sort(means.begin(), means.end());
+  return {sorted_quantile(means, tail), sorted_quantile(means, 1.0 - tail)};
 }
 
 double sign_test(std::size_t positive, std::size_t negative) {

@@ -86,7 +86,7 @@ std::vector<Configuration> named_sets(const YamlMap& root) {
   std::vector<Configuration> configurations;
   for (const auto& name : sets.keys()) {
     const YamlMap set = sets.map(name);
-    Configuration configuration{name, {}};
+    Configuration configuration{name, "", {}};
     for (const auto& key : set.keys()) {
       refuse_reserved(set, key);
       configuration.overrides.emplace_back(key, set.text(key, std::nullopt));
@@ -94,7 +94,13 @@ std::vector<Configuration> named_sets(const YamlMap& root) {
     configurations.push_back(configuration);
   }
   if (configurations.empty()) configurations.push_back({});
+  if (configurations.size() > 1)
+    for (auto& configuration : configurations) configuration.reference = configurations.front().name;
   return configurations;
+}
+
+std::string with(const std::string& name, const std::string& key, const std::string& value) {
+  return name + (name.empty() ? "" : ", ") + key + "=" + value;
 }
 
 /// Each configuration once for each value of `key`.
@@ -105,7 +111,12 @@ std::vector<Configuration> crossed(const std::vector<Configuration>& configurati
     for (const auto& value : values) {
       Configuration next = configuration;
       // A key with one value is the same everywhere and would only lengthen every name.
-      if (values.size() > 1) next.name += (next.name.empty() ? "" : ", ") + key + "=" + value;
+      if (values.size() > 1) {
+        const bool first = configuration.reference.empty();  // this key is what the sweep varies first of all
+        next.reference =
+            with(first ? configuration.name : configuration.reference, key, first ? values.front() : value);
+        next.name = with(configuration.name, key, value);
+      }
       next.overrides.emplace_back(key, value);
       product.push_back(std::move(next));
     }
@@ -153,6 +164,7 @@ Sweep load_sweep(const std::string& path, const std::string& shipped) {
   Sweep sweep;
   sweep.path = path;
   sweep.name = root.text("name", fs::path(path).stem().string());
+  sweep.about = root.text("about", std::string());
   sweep.scenarios = read_scenarios(root, fs::path(path).parent_path(), shipped);
   sweep.seeds = read_seeds(root);
   sweep.configurations = read_configurations(root);

@@ -11,12 +11,15 @@ namespace rubble::scenarios {
 /// A named set of overrides: one column of an experiment.
 struct Configuration {
   std::string name;
+  std::string reference;  ///< the configuration it is measured against: the first of `configs`, or the first value of
+                          ///< the grid's first key, all else equal; empty when there is nothing to choose from
   std::vector<Override> overrides;
 };
 
 /// What a sweep file asks for: every scenario with every configuration and every seed.
 struct Sweep {
   std::string name;                           ///< the file's `name`, or its stem
+  std::string about;                          ///< for people; stands in reports
   std::string path;                           ///< for messages
   std::vector<std::string> scenarios;         ///< paths that exist
   std::vector<std::uint64_t> seeds;           ///< in the order of the file, no repeats

@@ -71,10 +71,10 @@ double coverage(int n, int trials, const Draw& draw) {
 }
 
 TEST(Statistics, BootstrapIntervalsHoldTheMeanAsOftenAsTheySay) {
-  EXPECT_NEAR(coverage(8, 400, [](Rng& rng) { return rng.gaussian(); }), 0.95, 0.03);
-  EXPECT_NEAR(coverage(24, 400, [](Rng& rng) { return rng.gaussian(); }), 0.95, 0.03);
+  EXPECT_NEAR(coverage(8, 200, [](Rng& rng) { return rng.gaussian(); }), 0.95, 0.035);
+  EXPECT_NEAR(coverage(24, 200, [](Rng& rng) { return rng.gaussian(); }), 0.95, 0.035);
   // A skewed population costs some coverage in a small sample, whatever the method.
-  EXPECT_GT(coverage(24, 400, [](Rng& rng) { return -std::log(1.0 - rng.uniform()) - 1.0; }), 0.88);
+  EXPECT_GT(coverage(24, 200, [](Rng& rng) { return -std::log(1.0 - rng.uniform()) - 1.0; }), 0.88);
 }
 
 }  // namespace

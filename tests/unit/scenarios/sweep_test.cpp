@@ -63,6 +63,18 @@ TEST_F(SweepFile, GridAndNamedSetsMultiply) {
   EXPECT_EQ(all[47].scenario.seed, 3u);
 }
 
+TEST_F(SweepFile, ConfigurationsAreMeasuredAgainstTheFirstValueOfTheFirstKeyAllElseEqual) {
+  const auto grid =
+      sweep("scenarios: [small.yaml]\nseeds: 1\nset: {robot.levelling: [false, true], mapper.particles: [50, 300]}\n");
+  for (const auto& c : grid.configurations)
+    EXPECT_EQ(c.reference, "robot.levelling=false" + c.name.substr(c.name.find(',')));
+  const auto sets = sweep(
+      "scenarios: [small.yaml]\nseeds: 1\nconfigs: {ours: {}, paper: {mapper.icp: true}}\nset: {mapper.particles: [50, "
+      "300]}\n");
+  EXPECT_EQ(sets.configurations[3].name, "paper, mapper.particles=300");
+  EXPECT_EQ(sets.configurations[3].reference, "ours, mapper.particles=300");
+}
+
 TEST_F(SweepFile, WithoutSetsThereIsOneDefaultConfiguration) {
   const auto all = jobs("scenarios: [small.yaml]\nseeds: 1-2\n");
   ASSERT_EQ(all.size(), 2u);
