@@ -45,7 +45,8 @@ constexpr double kSearchPeriod = 0.25;                ///< the searched area is 
 constexpr double kSearchTurnRate = deg_to_rad(40.0);  ///< turning faster the sensors see too little [rad/s]
 constexpr double kCueAge = 1.2;                       ///< an unconfirmed cue younger than this is worth waiting for [s]
 constexpr double kFacing = deg_to_rad(8.0);           ///< [rad]
-constexpr double kAtViewpoint = 0.20;    ///< viewpoints this close are served from where the robot stands [m]
+constexpr double kAtViewpoint = 0.12;    ///< viewpoints this close are served from where the robot stands [m]
+constexpr double kTurningRoom = 0.06;    ///< [m]
 constexpr double kSubjectRadius = 0.25;  ///< given up together with a place that cannot be seen [m]
 
 TPoint2D position(const TPose2D& pose) { return {pose.x, pose.y}; }
@@ -394,7 +395,9 @@ bool Explorer::Impl::dwelling() {
 }
 
 Plan Explorer::Impl::plan_search(const Traversable& floor) {
-  views = viewpoints(floor, searched, config.search, config.d_min_floor);
+  // The robot turns on the spot there, so its swing circle must be free, with room for stopping a little beside it.
+  const double room = std::max(config.d_min, model.swing_radius()) + kTurningRoom;
+  views = viewpoints(floor, searched, config.search, room);
   std::vector<Source> sources;
   for (const Viewpoint& view : views) {
     const TPoint2D p = floor.cells.centre(view.cell);
