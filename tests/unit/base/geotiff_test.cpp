@@ -338,7 +338,7 @@ TEST(GeoTiff, APixelThatIsAPointHasItsCornerHalfAPixelAway) {
   const GeoTiff tiff = geotiff(picture(40, 30), std::nullopt);
   const GeoTiff read = translated(folder, tiff, "-mo AREA_OR_POINT=Point");
   ASSERT_TRUE(read.transform);
-  EXPECT_NE(read_text_file(folder / "in.tif"), read_text_file(folder / "out.tif"));
+  EXPECT_EQ(gdalinfo(folder / "out.tif")["metadata"][""]["AREA_OR_POINT"], "Point");
   expect_near(*read.transform, *tiff.transform, 1e-9);
 }
 
