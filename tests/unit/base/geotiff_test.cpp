@@ -349,6 +349,17 @@ TEST(GeoTiff, FilesInDegreesAreRefused) {
   EXPECT_NE(error_of([&] { translated(folder, tiff, "-a_srs EPSG:4326"); }).find("is in degrees"), std::string::npos);
 }
 
+TEST(GeoTiff, ALocalFrameInFeetIsReadInMetres) {
+  NEED_GDAL();
+  const test::TempFolder folder;
+  const GeoTiff tiff = geotiff(picture(40, 30), std::nullopt);
+  const GeoTiff read = translated(folder, tiff, "-a_srs 'LOCAL_CS[\"hall\",UNIT[\"foot\",0.3048]]'");
+  ASSERT_TRUE(read.transform);
+  EXPECT_NEAR(read.transform->a, 0.05 * 0.3048, 1e-12);
+  EXPECT_NEAR(read.transform->f, 4.25 * 0.3048, 1e-12);
+  EXPECT_NE(error_of([&] { translated(folder, tiff, "-a_srs EPSG:2263"); }).find("not in metres"), std::string::npos);
+}
+
 TEST(GeoTiff, SignedAndFloatingSamplesAreRefused) {
   NEED_GDAL();
   const test::TempFolder folder;
