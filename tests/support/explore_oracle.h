@@ -22,8 +22,8 @@ inline Grid<double> heap_transform(const OccupancyGrid& cells, const Grid<float>
   Grid<double> weight(frame, inf);
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x)
-      if (cells[{x, y}] == Occupancy::Free)
-        weight[{x, y}] = 1.0 + config.alpha * explore::danger(clearance[{x, y}], config);
+      if (const double d = clearance[{x, y}]; cells[{x, y}] == Occupancy::Free && explore::danger(d, config) < inf)
+        weight[{x, y}] = 1.0 + config.alpha * explore::danger(d, config);
 
   Grid<double> cost(frame, inf);
   using Entry = std::pair<double, std::size_t>;
