@@ -92,7 +92,7 @@ void read_georeference(TIFF* tiff, const std::string& path, GeoTiff& result) {
   }
   const double metres = metres_per_unit(keys.get(), path);
   if (metres != 1.0 && result.epsg != 0)
-    throw InputError(path + ": is in feet; reproject it to metres (gdalwarp -t_srs EPSG:326<zone>)");
+    throw InputError(path + ": is not in metres; reproject it (gdalwarp -t_srs EPSG:326<zone>)");
   for (double* value : {&t.a, &t.b, &t.c, &t.d, &t.e, &t.f}) *value *= metres;
 }
 

@@ -142,6 +142,12 @@ class Reader {
     }
   }
 
+  /// Stored as it is returned.
+  bool is_plain_rgb() const {
+    return layout_.photometric == PHOTOMETRIC_RGB && layout_.bits == 8 && layout_.samples == 3 &&
+           layout_.planes == PLANARCONFIG_CONTIG;
+  }
+
   /// The sample is a colour or the opacity.
   bool is_used(std::size_t sample) const {
     return sample < (layout_.photometric == PHOTOMETRIC_RGB ? 3u : 1u) || static_cast<int>(sample) == layout_.alpha;
@@ -190,7 +196,12 @@ class Reader {
     const std::uint32_t columns = std::min(layout_.chunk_width, layout_.width - x0);
     const bool separate = planes.size() > 1;
     std::array<std::uint32_t, kMaxSamples> values{};
-    for (std::uint32_t y = 0; y < rows; ++y)
+    for (std::uint32_t y = 0; y < rows; ++y) {
+      if (is_plain_rgb()) {
+        const std::uint8_t* const row = planes[0].data() + y * row_size;
+        std::copy_n(row, std::size_t{3} * columns, image.pixel(static_cast<int>(x0), static_cast<int>(y0 + y)));
+        continue;
+      }
       for (std::uint32_t x = 0; x < columns; ++x) {
         for (std::size_t s = 0; s < layout_.samples; ++s) {
           if (!is_used(s)) continue;
@@ -199,6 +210,7 @@ class Reader {
         }
         draw_pixel(values, image.pixel(static_cast<int>(x0 + x), static_cast<int>(y0 + y)));
       }
+    }
   }
 
   void draw_pixel(const std::array<std::uint32_t, kMaxSamples>& values, std::uint8_t* rgb) const {

@@ -39,11 +39,14 @@ constexpr double kTrailRadius = 0.20;            ///< [m]
 constexpr double kNearFrontier = 1.0;            ///< frontier this close at the start: turn to see it [m]
 constexpr int kMaxPardons = 2;                   ///< times that barred targets are tried again before giving up
 constexpr int kMaxStuckAtPlace = 6;
+constexpr double kSearchReplan = 2.0;                 ///< on the way to a viewpoint [s]
+constexpr double kArrivedReplan = 0.3;                ///< standing at the end of the way [s]
 constexpr double kSearchPeriod = 0.25;                ///< the searched area is marked this often [s]
 constexpr double kSearchTurnRate = deg_to_rad(40.0);  ///< turning faster the sensors see too little [rad/s]
 constexpr double kCueAge = 1.2;                       ///< an unconfirmed cue younger than this is worth waiting for [s]
 constexpr double kFacing = deg_to_rad(8.0);           ///< [rad]
-constexpr double kAtViewpoint = 0.20;    ///< viewpoints this close are served from where the robot stands [m]
+constexpr double kAtViewpoint = 0.12;    ///< viewpoints this close are served from where the robot stands [m]
+constexpr double kTurningRoom = 0.06;    ///< [m]
 constexpr double kSubjectRadius = 0.25;  ///< given up together with a place that cannot be seen [m]
 
 TPoint2D position(const TPose2D& pose) { return {pose.x, pose.y}; }
@@ -142,6 +145,7 @@ struct Explorer::Impl {
 
   std::uint64_t planned_version = 0;
   Stamp next_plan = Stamp::never();
+  Stamp last_plan = Stamp::never();
   bool plan_forced = true;
   std::optional<TPoint2D> target;
   double target_cost = 0.0;
@@ -230,6 +234,8 @@ Drive Explorer::Impl::drive(const slam::Mapper& mapper) {
     if (state == ExplorerState::Searching) searched.give_up(last_floor, subject, kSubjectRadius);
     bar_target(*target);
   }
+  if (state == ExplorerState::Searching && follower.arrived() && !looking.active() && now - last_plan > kArrivedReplan)
+    plan_forced = true;
   if (plan_forced || now >= next_plan) replan(mapper);
   if (state == ExplorerState::Finished) return {};
   if (looking.active()) return look();
@@ -263,7 +269,8 @@ void Explorer::Impl::replan(const slam::Mapper& mapper) {
   const bool new_map = mapper.map().version() != planned_version;
   plan_forced = false;
   planned_version = mapper.map().version();
-  next_plan = now + config.replan_period;
+  last_plan = now;
+  next_plan = now + (state == ExplorerState::Searching ? kSearchReplan : config.replan_period);
   if (now >= forget_hits) remembered_hits.clear();
 
   last_floor = floor_now(mapper, !remembered_hits.empty());
@@ -359,6 +366,9 @@ void Explorer::Impl::mark_searched() {
   if (!config.search.on || now < next_mark || std::abs(turned) > kSearchTurnRate * dt) return;
   next_mark = now + kSearchPeriod;
   searched.look(last_floor, pose);
+  if (state != ExplorerState::Searching || !target) return;
+  const Cell c = last_floor.cells.cell(subject);
+  if (last_floor.cells.inside(c) && searched.searched(last_floor, c)) plan_forced = true;  // seen on the way
 }
 
 /// A first cue is no victim yet: the robot holds still for a few more looks.
@@ -385,7 +395,9 @@ bool Explorer::Impl::dwelling() {
 }
 
 Plan Explorer::Impl::plan_search(const Traversable& floor) {
-  views = viewpoints(floor, searched, config.search, config.d_min_floor);
+  // The robot turns on the spot there, so its swing circle must be free, with room for stopping a little beside it.
+  const double room = std::max(config.d_min, model.swing_radius()) + kTurningRoom;
+  views = viewpoints(floor, searched, config.search, room);
   std::vector<Source> sources;
   for (const Viewpoint& view : views) {
     const TPoint2D p = floor.cells.centre(view.cell);

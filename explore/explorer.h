@@ -18,7 +18,7 @@ namespace rubble::explore {
 
 /// Parameters of autonomous exploration (paper section III.D, eqs. 3 and 4).
 struct ExplorerConfig {
-  double alpha = 4.0;                       ///< weight of discomfort against length, per metre travelled
+  double alpha = 20.0;                      ///< weight of discomfort against length, per metre travelled
   double d_min = 0.35;                      ///< never closer to an obstacle [m]
   double d_opt = 0.60;                      ///< distance to obstacles the robot likes best [m]
   double occupied_threshold = 0.5;          ///< p_occ from which a cell is an obstacle

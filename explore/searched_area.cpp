@@ -9,7 +9,7 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr int kStride = 4;                             ///< subjects of a cluster are so many cells apart
+constexpr int kStride = 6;                             ///< subjects of a cluster are so many cells apart
 constexpr int kDirections = 16;                        ///< viewpoints tried around a subject
 constexpr double kDistances[] = {0.5, 0.8, 1.1, 1.4};  ///< [m]
 
@@ -40,13 +40,20 @@ std::vector<std::vector<Cell>> unsearched_clusters(const Traversable& floor, con
 
 }  // namespace
 
-bool in_sight(const Traversable& floor, const TPoint2D& from, const TPoint2D& to) {
-  const double length = std::hypot(to.x - from.x, to.y - from.y);
-  const int steps = std::max(1, static_cast<int>(std::ceil(length / (0.7 * floor.frame().resolution))));
-  for (int i = 1; i <= steps; ++i) {
-    const double u = static_cast<double>(i) / steps;
-    const Cell c = floor.cells.cell({from.x + u * (to.x - from.x), from.y + u * (to.y - from.y)});
-    if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free) return false;
+bool in_sight(const Traversable& floor, Cell from, Cell to) {
+  const int dx = to.x - from.x;
+  const int dy = to.y - from.y;
+  // One step a cell along the longer axis, then half a cell more often: no diagonal gap between two walls is slipped
+  // through.
+  const int steps = std::max(1, (3 * std::max(std::abs(dx), std::abs(dy)) + 1) / 2);
+  const double sx = static_cast<double>(dx) / steps;
+  const double sy = static_cast<double>(dy) / steps;
+  double x = from.x + 0.5;
+  double y = from.y + 0.5;
+  for (int i = 0; i < steps; ++i) {
+    x += sx;
+    y += sy;
+    if (floor.cells[{static_cast<int>(x), static_cast<int>(y)}] != Occupancy::Free) return false;
   }
   return true;
 }
@@ -127,20 +134,24 @@ bool SearchedArea::searched(const Traversable& floor, Cell c) const {
 
 std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& searched, const SearchConfig& config,
                                   double d_min) {
+  std::vector<Cell> offsets;
+  for (const double distance : kDistances)
+    for (int k = 0; k < kDirections && distance <= config.range; ++k) {
+      const double bearing = 2.0 * kPi * k / kDirections;
+      offsets.push_back({static_cast<int>(std::lround(distance * std::cos(bearing) / floor.frame().resolution)),
+                         static_cast<int>(std::lround(distance * std::sin(bearing) / floor.frame().resolution))});
+    }
   std::vector<Viewpoint> found;
   for (const auto& cluster : unsearched_clusters(floor, searched, config.min_cells))
-    for (const Cell subject : cluster) {
-      if (subject.x % kStride != 0 || subject.y % kStride != 0) continue;
-      const TPoint2D p = floor.cells.centre(subject);
-      for (const double distance : kDistances)
-        for (int k = 0; k < kDirections; ++k) {
-          const double bearing = 2.0 * kPi * k / kDirections;
-          const TPoint2D from{p.x + distance * std::cos(bearing), p.y + distance * std::sin(bearing)};
-          const Cell c = floor.cells.cell(from);
-          if (distance > config.range || !floor.cells.inside(c) || floor.cells[c] != Occupancy::Free) continue;
-          if (floor.clearance[c] < d_min || !in_sight(floor, from, p)) continue;
-          found.push_back({c, p});
-        }
+    for (std::size_t i = 0; i < cluster.size(); ++i) {
+      const Cell subject = cluster[i];
+      // Every few cells, and the first one of each cluster, so that none goes without.
+      if (i != 0 && (subject.x % kStride != 0 || subject.y % kStride != 0)) continue;
+      for (const Cell offset : offsets) {
+        const Cell c{subject.x + offset.x, subject.y + offset.y};
+        if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free || floor.clearance[c] < d_min) continue;
+        if (in_sight(floor, c, subject)) found.push_back({c, floor.cells.centre(subject)});
+      }
     }
   return found;
 }

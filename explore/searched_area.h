@@ -52,7 +52,7 @@ struct Viewpoint {
 std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& searched, const SearchConfig& config,
                                   double d_min);
 
-/// True when all cells between two places are free (the last one included).
-bool in_sight(const Traversable& floor, const mrpt::math::TPoint2D& from, const mrpt::math::TPoint2D& to);
+/// True when all cells between two cells of the floor are free (the last one included).
+bool in_sight(const Traversable& floor, Cell from, Cell to);
 
 }  // namespace rubble::explore

@@ -97,23 +97,35 @@ Stamp CarmenRecord::*choose_clock(const Records& records, const std::string& pat
                           " s; cut the log here, or sort its lines by time if two recordings were joined"));
 }
 
-Trajectory odometry_path(const Records& records, Stamp CarmenRecord::*clock) {
-  Trajectory path;
-  for (const CarmenRecord& record : records)
-    if (!record.is_scan) path.push_back({record.*clock, record.robot});
-  std::stable_sort(path.begin(), path.end(),
-                   [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; });
-  return path;
+/// Gives every record the stamp it is delivered with: in the order of the lines. A scan shares the stamp of the ODOM
+/// line before it that has the same time.
+void order_stamps(Records& records, Stamp CarmenRecord::*clock) {
+  const auto shares = [&](std::size_t i) {
+    return i > 0 && records[i].is_scan && !records[i - 1].is_scan && records[i].*clock == records[i - 1].*clock;
+  };
+  std::vector<Stamp> stamps;
+  for (std::size_t i = 0; i < records.size(); ++i)
+    if (!shares(i)) stamps.push_back(records[i].*clock);
+  stamps = sorted_stamps(std::move(stamps));
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (shares(i))
+      records[i].stamp = records[i - 1].stamp;
+    else
+      records[i].stamp = stamps[next++];
+  }
 }
 
 /// Whether the robot poses of the scans lie on the path of the ODOM lines (median of distances and of turns).
-bool scans_follow_odometry(const Records& records, Stamp CarmenRecord::*clock) {
-  const Trajectory path = odometry_path(records, clock);
+bool scans_follow_odometry(const Records& records) {
+  Trajectory path;
+  for (const CarmenRecord& record : records)
+    if (!record.is_scan) path.push_back({record.stamp, record.robot});
   std::vector<double> distances;
   std::vector<double> turns;
   for (const CarmenRecord& record : records) {
     if (!record.is_scan) continue;
-    const auto odometry = pose_at(path, record.*clock);
+    const auto odometry = pose_at(path, record.stamp);
     if (!odometry) continue;
     distances.push_back(std::hypot(record.robot.x - odometry->x, record.robot.y - odometry->y));
     turns.push_back(std::abs(wrap_angle(record.robot.phi - odometry->phi)));
@@ -148,17 +160,6 @@ void place_laser(const CarmenText& text, bool fixed, const TPose2D& seen, RobotM
   model.T_base_laser.yaw = wrap_angle(seen.phi);
 }
 
-void append_reference(Stamp stamp, const TPose2D& T_map_base, Trajectory& reference) {
-  reference.push_back({stamp, wrapped(T_map_base)});
-}
-
-void sort_reference(Trajectory& reference) {
-  std::stable_sort(reference.begin(), reference.end(),
-                   [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; });
-  const auto same_time = [](const StampedPose& a, const StampedPose& b) { return a.stamp == b.stamp; };
-  reference.erase(std::unique(reference.begin(), reference.end(), same_time), reference.end());
-}
-
 }  // namespace
 
 ForeignLog read_carmen(std::string_view text, const std::string& path) {
@@ -169,8 +170,8 @@ ForeignLog read_carmen(std::string_view text, const std::string& path) {
   const bool laser_fixed = laser_is_fixed(records, seen_mount);
   const bool reanchored = is_reanchored(records);
   const std::vector<TPose2D> corrected = reanchored ? undo_reanchoring(records) : std::vector<TPose2D>{};
-  const auto clock = choose_clock(records, path);
-  const bool scans_are_raw = reanchored || scans_follow_odometry(records, clock);
+  order_stamps(records, choose_clock(records, path));
+  const bool scans_are_raw = reanchored || scans_follow_odometry(records);
 
   ForeignLog log;
   log.format = "CARMEN log";
@@ -188,26 +189,24 @@ ForeignLog read_carmen(std::string_view text, const std::string& path) {
   double v = 0.0;
   double w = 0.0;
   for (CarmenRecord& record : records) {
-    const Stamp stamp = record.*clock;
     if (!record.is_scan || record.v != 0.0 || record.w != 0.0) {
       v = record.v;
       w = record.w;
     }
     if (record.is_scan) {
       if (reanchored)
-        append_reference(stamp, corrected[scans.size()], log.reference);
+        log.reference.push_back({record.stamp, wrapped(corrected[scans.size()])});
       else if (!scans_are_raw)
-        append_reference(stamp, record.robot, log.reference);
+        log.reference.push_back({record.stamp, wrapped(record.robot)});
       else if (!laser_fixed)
-        append_reference(stamp, record.laser + T_laser_base, log.reference);
-      record.scan.stamp = stamp;
+        log.reference.push_back({record.stamp, wrapped(record.laser + T_laser_base)});
+      record.scan.stamp = record.stamp;
       scans.push_back(std::move(record.scan));
     }
     if (record.is_scan && !scans_are_raw) continue;
     if (!T_start_base) T_start_base = record.robot;
-    odometry.push_back({stamp, wrapped(record.robot - *T_start_base), v, w, false});
+    odometry.push_back({record.stamp, wrapped(record.robot - *T_start_base), v, w, false});
   }
-  sort_reference(log.reference);
   describe_sensors(scans, odometry, log.model);
   log.ticks = assemble_ticks(std::move(scans), std::move(odometry));
   return log;

@@ -15,6 +15,7 @@ struct CarmenRecord {
   bool is_scan = false;
   Stamp measured;             ///< the sender's stamp
   Stamp logged;               ///< the logger's stamp
+  Stamp stamp;                ///< in order, set by read_carmen
   mrpt::math::TPose2D robot;  ///< the robot's pose as the line gives it
   mrpt::math::TPose2D laser;  ///< the laser's pose as the line gives it (scans only)
   double v = 0.0;             ///< [m/s] (ODOM and ROBOTLASER1)

@@ -77,8 +77,27 @@ Line take_line(TextFields& fields) {
     fields.text("end of line");
     fields.fail("more than 707 numbers in the line; correct or delete it");
   }
-  scan.stamp = line.stamp - kScanAge - kBeamPeriod * (kBeams / 2);
   return line;
+}
+
+/// All lines; where the clock jitters the stamps are sorted, the lines keep their order.
+std::vector<Line> take_lines(std::string_view text, const std::string& path) {
+  std::vector<Line> parsed;
+  std::vector<Stamp> stamps;
+  Stamp latest;
+  TextLines lines(text);
+  while (lines.next()) {
+    TextFields fields(path, lines);
+    if (fields.peek().empty()) continue;
+    parsed.push_back(take_line(fields));
+    stamps.push_back(parsed.back().stamp);
+    latest = std::max(latest, stamps.back());
+    if (latest - stamps.back() > kStampJitter)
+      throw InputError(at(path, lines.number(), 1, "the time jumps back; delete the line or cut the log here"));
+  }
+  stamps = sorted_stamps(std::move(stamps));
+  for (std::size_t i = 0; i < parsed.size(); ++i) parsed[i].stamp = stamps[i];
+  return parsed;
 }
 
 /// Differential drive; the chord of an arc points along the mean heading.
@@ -111,29 +130,20 @@ bool is_coreslam(std::string_view text) {
 }
 
 ForeignLog read_coreslam(std::string_view text, const std::string& path) {
+  const std::vector<Line> parsed = take_lines(text, path);
   ForeignLog log;
   log.format = "CoreSLAM log";
   log.model = mines_robot();
   std::vector<LaserScan> scans;
   std::vector<Odometry> odometry;
   Odometry now;
-  Line last;
-  Stamp latest = Stamp{0};
-  TextLines lines(text);
-  while (lines.next()) {
-    TextFields fields(path, lines);
-    if (fields.peek().empty()) continue;
-    Line line = take_line(fields);
-    if (!odometry.empty()) drive(last, line, now);
-    latest = std::max(latest, line.stamp);
-    if (latest - line.stamp > kStampJitter)
-      throw InputError(at(path, lines.number(), 1, "the time jumps back; delete the line or cut the log here"));
-    now.stamp = line.stamp;
+  for (std::size_t i = 0; i < parsed.size(); ++i) {
+    if (i > 0) drive(parsed[i - 1], parsed[i], now);
+    now.stamp = parsed[i].stamp;
     odometry.push_back(now);
-    scans.push_back(std::move(line.scan));
-    last = std::move(line);
+    scans.push_back(parsed[i].scan);
+    scans.back().stamp = parsed[i].stamp - kScanAge - kBeamPeriod * (kBeams / 2);
   }
-  if (scans.empty()) throw InputError(path + ": holds no line of numbers; give a CoreSLAM .dat log");
   describe_sensors(scans, odometry, log.model);
   log.ticks = assemble_ticks(std::move(scans), std::move(odometry));
   return log;

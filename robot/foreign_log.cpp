@@ -52,6 +52,12 @@ double median_interval(const std::vector<T>& list, double fallback) {
 
 }  // namespace
 
+std::vector<Stamp> sorted_stamps(std::vector<Stamp> stamps) {
+  std::sort(stamps.begin(), stamps.end());
+  for (std::size_t i = 1; i < stamps.size(); ++i) stamps[i].ns = std::max(stamps[i].ns, stamps[i - 1].ns + 1000);
+  return stamps;
+}
+
 std::vector<Inputs> assemble_ticks(std::vector<LaserScan> scans, std::vector<Odometry> odometry) {
   sort_by_stamp(scans);
   sort_by_stamp(odometry);

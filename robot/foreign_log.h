@@ -20,6 +20,10 @@ struct ForeignLog {
 /// How far a stamp may lie before an earlier one of the same list and still count as jitter of the recorder [s].
 constexpr double kStampJitter = 2.0;
 
+/// Stamps for measurements that keep the order of their lines: the same stamps sorted, equal ones set 1 us apart.
+/// A jittering clock would otherwise make the odometry run to and fro.
+std::vector<Stamp> sorted_stamps(std::vector<Stamp> stamps);
+
 /// Deals the measurements of a log out in ticks as a robot would deliver them: a tick ends when the first odometry at
 /// or after the middle of a scan has arrived, so that the scan's pose can be interpolated; scans behind the last
 /// odometry come in a last tick. Sorts both lists by stamp; of odometry with equal stamps the last one stays. Before

@@ -183,7 +183,7 @@ void read_expect(const YamlMap& root, Scenario& s) {
     if (std::find(kScoreKeys.begin(), kScoreKeys.end(), key) == kScoreKeys.end()) {
       std::string names;
       for (const auto& known : kScoreKeys) names += (names.empty() ? "" : ", ") + known;
-      expect.fail(key, "is not a number of score.json; known are " + names);
+      expect.fail(key, "'" + key + "' is not a number of score.json; known are " + names);
     }
     const YamlMap bounds = expect.map(key);
     Expectation expectation{key, {}, {}};

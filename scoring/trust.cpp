@@ -14,7 +14,10 @@ constexpr double kPerfectOther = 0.45;  // ... with this kappa for the walls of 
 constexpr double kPerfectShare = 0.2;   // ... and this share of the truth's walls found
 constexpr double kRivalWide = 0.9;      // share of the wide agreement that another pose may reach
 constexpr double kLeastKappa = 0.3;     // below, walls meet no more often than chance would have it
+constexpr double kCovered = 0.95;       // share of one map's walls inside the other from which nothing ...
+constexpr double kCoveredKappa = 0.5;   // ... excuses less agreement of them than this
 constexpr double kLeastWide = 0.1;
+constexpr double kLeastLogOdds = -0.9;
 
 double net(const WallEvidence& e, double chance, double contradiction) {
   return e.known * (e.met - chance - contradiction * e.contradicted);
@@ -34,6 +37,12 @@ bool perfect(const PoseEvidence& tight) {
   const double truth = tight.truth.kappa();
   return std::max(map, truth) >= kPerfect && std::min(map, truth) >= kPerfectOther &&
          tight.truth.known * truth >= kPerfectShare;
+}
+
+/// One map lies wholly inside the other, and yet its walls are not found there: wrong scale, or another place.
+bool covered_but_not_met(const PoseEvidence& tight) {
+  const WallEvidence& inner = tight.map.known > tight.truth.known ? tight.map : tight.truth;
+  return inner.known >= kCovered && inner.kappa() < kCoveredKappa;
 }
 
 }  // namespace
@@ -65,7 +74,7 @@ Trust judge(const PoseEvidence& wide, const PoseEvidence& tight, const Rivals& r
     out.note = "not aligned: at no pose do the walls of both maps meet more often than by chance";
   } else if (out.runner_up > kRivalWide) {
     out.note = "not aligned: another pose fits about as well";
-  } else if (log_odds(wide, tight, out.runner_up) < -0.3) {
+  } else if (covered_but_not_met(tight) || log_odds(wide, tight, out.runner_up) < kLeastLogOdds) {
     out.note = "not aligned: the walls of one map run through the free space of the other";
   } else {
     out.trusted = true;

@@ -72,7 +72,7 @@ Document random_document(Rng& rng) {
 }
 
 TEST(StrictYamlProperty, AnyTextIsReadAndSurvivesTheDump) {
-  for (std::uint64_t seed = 0; seed < 5000; ++seed) {
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     Rng rng(seed, "document");
     const Document document = random_document(rng);
     SCOPED_TRACE("seed " + std::to_string(seed) + "\n" + document.yaml);
@@ -126,7 +126,7 @@ TEST(StrictYamlProperty, DamagedDocumentsNeverCrash) {
       "fold: >-\n  a\n  b\nnothing:\n";
   static const std::string kLetters = ":-[]{},#|>&*!'\"\\%@` \n\n\t?abc019\r~<";
   int read = 0;
-  for (std::uint64_t seed = 0; seed < 20000; ++seed) {
+  for (std::uint64_t seed = 0; seed < 8000; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Rng rng(seed, "damage");
     std::string text = good;
@@ -159,7 +159,7 @@ TEST(StrictYamlProperty, DamagedDocumentsNeverCrash) {
       ASSERT_EQ(message.rfind("f:", 0), 0u) << message << "\n" << text;
     }
   }
-  EXPECT_GT(read, 1000);
+  EXPECT_GT(read, 500);
 }
 
 }  // namespace

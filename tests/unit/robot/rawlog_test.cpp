@@ -33,8 +33,9 @@ TPose2D pose_at_step(int step) {
   return pose;
 }
 
-/// A robot drives through a square room; its odometry is exact and arrives between the scans.
-std::vector<Inputs> drive_through_room(int steps, const RobotModel& model) {
+/// A robot drives through a square room; its odometry arrives between the scans and makes each way `slip` times as
+/// long.
+std::vector<Inputs> drive_through_room(int steps, const RobotModel& model, double slip = 1.0) {
   std::vector<Inputs> ticks;
   for (int step = 0; step < steps; ++step) {
     const double time = 0.1 * step;
@@ -43,6 +44,8 @@ std::vector<Inputs> drive_through_room(int steps, const RobotModel& model) {
     Odometry odometry;
     odometry.stamp = Stamp::from_seconds(time);
     odometry.pose = pose_at_step(step) - pose_at_step(0);
+    odometry.pose.x *= slip;
+    odometry.pose.y *= slip;
     odometry.v = 0.2;
     odometry.w = step <= 60 ? 0.0 : 0.04;
     inputs.odometry.push_back(odometry);
@@ -107,11 +110,11 @@ TEST(Rawlog, RawlogEditListsWhatWasExported) {
   EXPECT_NE(info.find("ODOMETRY /     30 /10.000"), std::string::npos) << info;
 }
 
-TEST(Rawlog, IcpSlamFollowsTheExportedRun) {
+TEST(Rawlog, IcpSlamFindsTheTrueMotionInTheExportedScans) {
   if (!installed("icp-slam")) GTEST_SKIP() << "needs icp-slam of mrpt-apps";
   const TempFolder folder;
   const int steps = 100;
-  testing::record(drive_through_room(steps, {}), folder.file("a.log"));
+  testing::record(drive_through_room(steps, {}, 1.08), folder.file("a.log"));
   export_rawlog(folder.file("a.log"), folder.file("a.rawlog"));
   testing::write_bytes(
       folder.file("icp.ini"),
@@ -135,8 +138,8 @@ TEST(Rawlog, IcpSlamFollowsTheExportedRun) {
   }
   const TPose2D truth = pose_at_step(steps - 1) - pose_at_step(0);
   EXPECT_GE(step, 2 * steps - 1);
-  EXPECT_NEAR(last.x, truth.x, 0.05);
-  EXPECT_NEAR(last.y, truth.y, 0.05);
+  EXPECT_NEAR(last.x, truth.x, 0.04) << "odometry alone is 0.16 m off";
+  EXPECT_NEAR(last.y, truth.y, 0.04);
   EXPECT_NEAR(last.phi, truth.phi, 0.03);
 }
 
