@@ -1,7 +1,11 @@
 // The command line: parses, dispatches, and turns every failure into one line and an exit code.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
+#include <sstream>
 
 #include "app/batch.h"
 #include "app/commands.h"
@@ -10,6 +14,30 @@
 
 namespace rubble::app {
 namespace {
+
+/// A number from low to high; unlike CLI::Range it refuses NaN.
+CLI::Validator between(double low, double high) {
+  const auto check = [low, high](const std::string& text) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    if (end != text.c_str() && *end == '\0' && value >= low && value <= high) return std::string();
+    std::ostringstream message;
+    message << "'" << text << "' is not a number from " << low << " to " << high;
+    return message.str();
+  };
+  return CLI::Validator(check, "");
+}
+
+/// 0 to 2^63 - 1 without a sign.
+CLI::Validator whole_number() {
+  const auto check = [](const std::string& text) {
+    std::int64_t value = 0;
+    const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool good = end.ec == std::errc() && end.ptr == text.data() + text.size() && value >= 0;
+    return good ? std::string() : "'" + text + "' is not a whole number from 0 on";
+  };
+  return CLI::Validator(check, "");
+}
 
 void add_common(CLI::App& command, CommonOptions& common, std::vector<std::string>& sets) {
   command.add_option("--out", common.out, "Folder for the results (default: runs/NAME-seedN-NUMBER)");
@@ -33,10 +61,10 @@ std::vector<scenarios::Override> parse_sets(const std::vector<std::string>& sets
 void add_generate(CLI::App& command, ArenaArguments& arena, std::string& cells) {
   command.add_option("--kind", arena.config.kind, "Kind of arena")->check(CLI::IsMember({"yellow"}));
   command.add_option("--cells", cells, "Pallets west-east x south-north (default 8x8)");
-  command.add_option("--seed", arena.config.seed, "Seed of the layout");
-  command.add_option("--ramps", arena.config.ramps, "Share of pallets that are ramps, 0..1");
-  command.add_option("--paper", arena.config.paper, "Share of pallets with paper, 0..1");
-  command.add_option("--loops", arena.config.loops, "Share of inner walls taken away, 0..1");
+  command.add_option("--seed", arena.config.seed, "Seed of the layout")->check(whole_number());
+  command.add_option("--ramps", arena.config.ramps, "Share of pallets that are ramps, 0..1")->check(between(0.0, 1.0));
+  command.add_option("--paper", arena.config.paper, "Share of pallets with paper, 0..1")->check(between(0.0, 1.0));
+  command.add_option("--loops", arena.config.loops, "Share of inner walls taken away, 0..1")->check(between(0.0, 1.0));
   command.add_option("--victims", arena.config.victims, "Number of victims");
 }
 
@@ -55,13 +83,13 @@ int dispatch(int argc, char** argv) {
   app.set_version_flag("--version", [] { return scenarios::versions().dump(); });
   app.require_subcommand(1);
   std::vector<std::string> sets;
-  std::uint64_t seed = 0;
+  std::int64_t seed = 0;
 
   RunArguments run_arguments;
   CLI::App* run_command = app.add_subcommand("run", "Explore, map and score an arena in simulation");
   run_command->add_option("scenario", run_arguments.scenario,
                           "Scenario file, or the name of a shipped one (default: yellow)");
-  CLI::Option* run_seed = run_command->add_option("--seed", seed, "Seed of every random choice");
+  CLI::Option* run_seed = run_command->add_option("--seed", seed, "Seed of every random choice")->check(whole_number());
   add_common(*run_command, run_arguments.common, sets);
   run_command->footer(
       "Examples:\n  rubble run\n  rubble run scenarios/yellow.yaml --seed 7\n"
@@ -71,7 +99,7 @@ int dispatch(int argc, char** argv) {
   CLI::App* map_command =
       app.add_subcommand("map", "Map a recorded log (own log, MRPT .rawlog, CARMEN, CoreSLAM .dat)");
   map_command->add_option("log", map_arguments.log, "Log file")->required();
-  CLI::Option* map_seed = map_command->add_option("--seed", seed, "Seed of the particle filter");
+  CLI::Option* map_seed = map_command->add_option("--seed", seed, "Seed of the particle filter")->check(whole_number());
   add_common(*map_command, map_arguments.common, sets);
   map_command->footer("Examples:\n  rubble map intel.log.gz\n  rubble map lab.rawlog --set mapper.resolution_m=0.1");
 
@@ -80,11 +108,12 @@ int dispatch(int argc, char** argv) {
   score_command->add_option("map", score_arguments.map, "GeoTIFF, ROS map.yaml, or image with --resolution")
       ->required();
   score_command->add_option("truth", score_arguments.truth, "Ground truth, same formats")->required();
-  score_command->add_option("--resolution", score_arguments.map_resolution, "Metres a pixel of the map image");
-  score_command->add_option("--truth-resolution", score_arguments.truth_resolution,
-                            "Metres a pixel of the truth image");
+  score_command->add_option("--resolution", score_arguments.map_resolution, "Metres a pixel of the map image")
+      ->check(between(0.001, 10.0));
+  score_command->add_option("--truth-resolution", score_arguments.truth_resolution, "Metres a pixel of the truth image")
+      ->check(between(0.001, 10.0));
   score_command->add_option("--tau", score_arguments.tau, "Distance at which a wall counts nothing [m]")
-      ->check(CLI::Range(0.05, 10.0));
+      ->check(between(0.05, 10.0));
   score_command->add_option("--out", score_arguments.out, "Folder for overlay.png, error.png and score.json");
   score_command->add_flag("--json", score_arguments.json, "Print JSON");
   score_command->footer(
@@ -111,7 +140,7 @@ int dispatch(int argc, char** argv) {
   arena_command->add_option("file", arena_arguments.file, "Arena file, or the word 'generate'")->required();
   add_generate(*arena_command, arena_arguments, cells);
   arena_command->add_option("--resolution", arena_arguments.resolution, "Metres a pixel of the truth map")
-      ->check(CLI::Range(0.005, 1.0));
+      ->check(between(0.005, 1.0));
   arena_command->add_option("--out", arena_arguments.out, "Folder for the files (default: here)");
   arena_command->footer(
       "Examples:\n  rubble arena arenas/yellow_8x8.yaml\n"
@@ -122,10 +151,15 @@ int dispatch(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kOk : kUsage;
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    std::string message = error.what();
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    const auto chosen = app.get_subcommands();
+    const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
+    throw UsageError(message + "; see rubble" + command + " --help");
   }
-  if (*run_seed) run_arguments.seed = seed;
-  if (*map_seed) map_arguments.seed = seed;
+  if (*run_seed) run_arguments.seed = static_cast<std::uint64_t>(seed);
+  if (*map_seed) map_arguments.seed = static_cast<std::uint64_t>(seed);
   run_arguments.common.overrides = map_arguments.common.overrides = parse_sets(sets);
   arena_arguments.generate = arena_arguments.file == "generate";
   parse_cells(cells, arena_arguments.config);

@@ -57,6 +57,16 @@ nlohmann::ordered_json as_json(const scoring::MapScore& s, const scoring::Loaded
 }  // namespace
 
 int score(const ScoreArguments& arguments) {
+  for (const std::string& path : {arguments.map, arguments.truth})
+    if (std::filesystem::is_directory(path))
+      throw InputError(path + ": is a folder; give a map file in it, for example " + path + "/map.tif");
+  if (!arguments.out.empty()) {
+    std::error_code error;
+    std::filesystem::create_directories(arguments.out, error);
+    if (error)
+      throw InputError(arguments.out + ": cannot be created (" + error.message() +
+                       "); give a writable folder with --out");
+  }
   const scoring::LoadedMap map = scoring::load_map(arguments.map, {arguments.map_resolution});
   const scoring::LoadedMap truth = scoring::load_map(arguments.truth, {arguments.truth_resolution});
   scoring::ScoreConfig config;
@@ -68,11 +78,6 @@ int score(const ScoreArguments& arguments) {
     print_table(result, map, truth);
   }
   if (!arguments.out.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories(arguments.out, error);
-    if (error)
-      throw InputError(arguments.out + ": cannot be created (" + error.message() +
-                       "); give a writable folder with --out");
     if (result.aligned) {
       scoring::write_overlay(arguments.out + "/overlay.png", map.grid, truth.grid, result.T_truth_map);
       scoring::write_error_map(arguments.out + "/error.png", map.grid, truth.grid, result.T_truth_map, config.tau);

@@ -299,7 +299,9 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   folder.save_map(resolved, core.mapper(), {});
   if (!robot.reference().empty()) add_trajectory_error(report.score, core.mapper().trajectory(), robot.reference());
   add_mapper_counts(report.score, core);
-  report.end = end.interrupted ? end.reason : "the log is over";
+  report.end = end.interrupted    ? end.reason
+               : robot.was_torn() ? "the log is cut: its torn last frame was dropped"
+                                  : "the log is over";
   report.interrupted = end.interrupted;
   finish(report, folder, resolved, options, end.sim_s, start);
   return report;

@@ -57,7 +57,7 @@ GridFrame picture_frame(GridFrame frame) {
 /// A picture of a metric frame, north up, with room for a legend below.
 struct Canvas {
   explicit Canvas(const GridFrame& map_frame) : frame(picture_frame(map_frame)), scale(pixels_per_cell(frame)) {
-    const int width = std::max(frame.width * scale, 720);
+    const int width = std::max(frame.width * scale, 900);
     image = cv::Mat(frame.height * scale + kStrip, width, CV_8UC3, cv::Scalar(206, 206, 206));
     image.rowRange(frame.height * scale, image.rows).setTo(cv::Scalar(250, 250, 250));
   }

@@ -1,8 +1,12 @@
 # Bad input gives one line and its exit code; kill and interrupt lose nothing.
 . "$(dirname "$0")/lib.sh"
 small_scenario s.yaml
-expect_exit 2 '' "$rubble"
-expect_exit 2 '' "$rubble" run --sed 3
+expect_exit 2 'see rubble --help' "$rubble"
+expect_exit 2 '--sed' "$rubble" run --sed 3
+expect_exit 2 '--seed' "$rubble" run s.yaml --seed -1
+expect_exit 2 '--tau' "$rubble" score a.tif b.tif --tau nan
+expect_exit 2 '--ramps' "$rubble" arena generate --ramps 2
+expect_exit 3 'is a folder' "$rubble" score . .
 expect_exit 2 'key.key=value' "$rubble" run s.yaml --set robot.levelling
 expect_exit 3 'nowhere.yaml' "$rubble" run nowhere.yaml
 expect_exit 3 '--set robot.leveling' "$rubble" run s.yaml --set robot.leveling=false
