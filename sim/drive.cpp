@@ -209,33 +209,24 @@ double Drive::drill(Motion& motion) {
   return std::abs(drill_impulse_ - old);
 }
 
-PlanVelocity Drive::step(const TPose2D& pose, const std::array<Ground, 4>& ground, const PlanVelocity& before,
-                         const SideDemand& demand, const std::vector<Stop>& stops, double dt) {
-  const double c = std::cos(pose.phi);
-  const double s = std::sin(pose.phi);
-  const std::array<TPoint2D, 4> feet = wheel_feet(model_);
-  const std::array<double, 4> load = loads(ground);
-  const double weight = model_.mass * kGravity;
-
+Drive::Motion Drive::start(const std::array<Ground, 4>& ground, const std::array<double, 4>& load,
+                           const PlanVelocity& before) const {
   Motion motion;
   motion.u = {before.x, before.y};
   motion.w = before.w;
   motion.rims = {sides_[0].speed, sides_[1].speed};
   motion.inverse_mass = 1.0 / model_.mass;
   motion.inverse_inertia = 1.0 / yaw_inertia_;
+  const double weight = model_.mass * kGravity;
   for (std::size_t i = 0; i < 4; ++i) {
     motion.gradient.x += load[i] / weight * ground[i].gx;
     motion.gradient.y += load[i] / weight * ground[i].gy;
   }
+  return motion;
+}
 
-  std::array<Wheel, 4> wheels;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const TPoint2D arm{c * feet[i].x - s * feet[i].y, s * feet[i].x + c * feet[i].y};
-    wheels[i] = contact(i, ground[i], load[i], arm, c, s, motion, dt);
-    // Gravity: the wheel's normal force leans downhill; the four together pull along the slope of potential energy.
-    motion.push(motion.axis({-ground[i].gx, -ground[i].gy}, arm), load[i] * dt);
-  }
-  // Warm start: the last step's impulses, cut to this step's limits.
+/// Begins with the last step's impulses, cut to this step's limits.
+void Drive::warm_start(Motion& motion, const std::array<Wheel, 4>& wheels, double motor_limit) {
   for (std::size_t i = 0; i < 4; ++i) {
     const double size2 = dot(wheel_impulse_[i], wheel_impulse_[i]);
     const double limit = wheels[i].limit;
@@ -246,12 +237,42 @@ PlanVelocity Drive::step(const TPose2D& pose, const std::array<Ground, 4>& groun
   }
   set_drilling(motion, wheels);
   motion.w += motion.inverse_inertia * drill_impulse_;
-  const std::array<double, 2> wanted{demand.relaxed ? 0.0 : demand.left, demand.relaxed ? 0.0 : demand.right};
-  const double motor_limit = (demand.relaxed ? parameters_.gear_friction : parameters_.side_force) * dt;
   for (std::size_t k = 0; k < 2; ++k) {
     motor_impulse_[k] = std::clamp(motor_impulse_[k], -motor_limit, motor_limit);
     motion.rims[k] += motor_impulse_[k] / parameters_.rotating_mass;
   }
+}
+
+/// The motors bring the rims to the demanded speeds as far as their force goes.
+double Drive::drive_rims(Motion& motion, const SideDemand& demand, double motor_limit) {
+  double change = 0.0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double wanted = demand.relaxed ? 0.0 : (k == 0 ? demand.left : demand.right);
+    const double old = motor_impulse_[k];
+    motor_impulse_[k] =
+        std::clamp(old + (wanted - motion.rims[k]) * parameters_.rotating_mass, -motor_limit, motor_limit);
+    motion.rims[k] += (motor_impulse_[k] - old) / parameters_.rotating_mass;
+    change = std::max(change, std::abs(motor_impulse_[k] - old));
+  }
+  return change;
+}
+
+PlanVelocity Drive::step(const TPose2D& pose, const std::array<Ground, 4>& ground, const PlanVelocity& before,
+                         const SideDemand& demand, const std::vector<Stop>& stops, double dt) {
+  const double c = std::cos(pose.phi);
+  const double s = std::sin(pose.phi);
+  const std::array<TPoint2D, 4> feet = wheel_feet(model_);
+  const std::array<double, 4> load = loads(ground);
+  Motion motion = start(ground, load, before);
+  std::array<Wheel, 4> wheels;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const TPoint2D arm{c * feet[i].x - s * feet[i].y, s * feet[i].x + c * feet[i].y};
+    wheels[i] = contact(i, ground[i], load[i], arm, c, s, motion, dt);
+    // Gravity: the wheel's normal force leans downhill; the four together pull along the slope of potential energy.
+    motion.push(motion.axis({-ground[i].gx, -ground[i].gy}, arm), load[i] * dt);
+  }
+  const double motor_limit = (demand.relaxed ? parameters_.gear_friction : parameters_.side_force) * dt;
+  warm_start(motion, wheels, motor_limit);
   std::vector<Axis> stop_axes;
   for (const Stop& stop : stops) {
     stop_axes.push_back(motion.axis(stop.normal, {stop.point.x - pose.x, stop.point.y - pose.y}));
@@ -259,20 +280,13 @@ PlanVelocity Drive::step(const TPose2D& pose, const std::array<Ground, 4>& groun
   std::vector<double> stop_impulse(stops.size(), 0.0);
 
   for (iterations_ = 1; iterations_ < kMaxIterations; ++iterations_) {
-    double change = 0.0;
-    for (std::size_t k = 0; k < 2; ++k) {
-      const double old = motor_impulse_[k];
-      motor_impulse_[k] =
-          std::clamp(old + (wanted[k] - motion.rims[k]) * parameters_.rotating_mass, -motor_limit, motor_limit);
-      motion.rims[k] += (motor_impulse_[k] - old) / parameters_.rotating_mass;
-      change = std::max(change, std::abs(motor_impulse_[k] - old));
-    }
+    double change = drive_rims(motion, demand, motor_limit);
     for (std::size_t i = 0; i < 4; ++i) {
       change = std::max(change, roll(motion, wheels[i], wheel_impulse_[i]));
       change = std::max(change, ruck(motion, wheels[i], ruck_impulse_[i]));
     }
     change = std::max(change, drill(motion));
-    for (std::size_t k = 0; k < stops.size(); ++k) {
+    for (std::size_t k = 0; k < stop_axes.size(); ++k) {
       const Axis& axis = stop_axes[k];
       const double old = stop_impulse[k];
       stop_impulse[k] = std::max(0.0, old - motion.speed(axis) / (dot(axis.direction, axis.du) + axis.arm * axis.dw));

@@ -13,15 +13,15 @@ namespace rubble::sim {
 
 /// What the data sheets leave open about a Pioneer 3-AT's running gear; docs/simulator.md gives the reasons.
 struct DriveParameters {
-  double centre_of_mass = 0.18;   ///< height above the wheels' feet [m]
-  double side_force = 50.0;       ///< what the motor of one side can push at the wheel rim [N]
-  double gear_friction = 10.0;    ///< holds a side whose motor is relaxed [N]
-  double rotating_mass = 2.0;     ///< wheels, belt, gears and rotor of one side, at the rim [kg]
-  double tyre_stiffness = 15e3;   ///< of one tyre against the floor [N/m]
-  double patch_length = 0.08;     ///< what of a soft tyre touches the floor [m]
-  double patch_width = 0.05;      ///< [m]
-  double sheet_creep = 0.25;      ///< slip ratio of a wheel on loose paper when it starts to slide
-  double sheet_resistance = 0.1;  ///< loose paper rucks up before a wheel: force over load
+  double centre_of_mass = 0.18;    ///< height above the wheels' feet [m]
+  double side_force = 50.0;        ///< what the motor of one side can push at the wheel rim [N]
+  double gear_friction = 10.0;     ///< holds a side whose motor is relaxed [N]
+  double rotating_mass = 2.0;      ///< wheels, belt, gears and rotor of one side, at the rim [kg]
+  double tyre_stiffness = 15e3;    ///< of one tyre against the floor [N/m]
+  double patch_length = 0.08;      ///< what of a soft tyre touches the floor [m]
+  double patch_width = 0.05;       ///< [m]
+  double sheet_creep = 0.4;        ///< slip ratio of a wheel on loose paper when it starts to slide
+  double sheet_resistance = 0.07;  ///< loose paper rucks up before a wheel: force over load
 };
 
 /// Motion in the plan view.
@@ -77,11 +77,15 @@ class Drive {
   struct Wheel;
 
   std::array<double, 4> loads(const std::array<Ground, 4>& ground) const;
+  Motion start(const std::array<Ground, 4>& ground, const std::array<double, 4>& load,
+               const PlanVelocity& before) const;
   Wheel contact(std::size_t i, const Ground& ground, double load, const mrpt::math::TPoint2D& arm, double heading_cos,
                 double heading_sin, const Motion& motion, double dt) const;
   void push(Motion& motion, const Wheel& wheel, double along, double across) const;
   double roll(Motion& motion, const Wheel& wheel, mrpt::math::TPoint2D& impulse) const;
   double ruck(Motion& motion, const Wheel& wheel, double& impulse) const;
+  void warm_start(Motion& motion, const std::array<Wheel, 4>& wheels, double motor_limit);
+  double drive_rims(Motion& motion, const SideDemand& demand, double motor_limit);
   void set_drilling(const Motion& motion, const std::array<Wheel, 4>& wheels);
   double drill(Motion& motion);
 

@@ -20,12 +20,16 @@ SweepTimes::SweepTimes(const robot::LaserModel& laser) {
 }
 
 Laser::Laser(const arenas::Arena& arena, const robot::RobotModel& model, double noise, bool sweep, std::uint64_t seed)
+    : Laser(arenas::faces(arena), model, noise, sweep, seed) {}
+
+Laser::Laser(const std::vector<arenas::Face>& faces, const robot::RobotModel& model, double noise, bool sweep,
+             std::uint64_t seed)
     : model_(model),
       sweep_(sweep),
       times_(model.laser),
       table_(model.laser),
-      walk_(arenas::faces(arena)),
-      faces_(arenas::faces(arena)),
+      walk_(faces),
+      faces_(faces),
       plane_cast_(faces_),
       sweep_cast_(faces_),
       noise_(model.laser, noise, seed) {}

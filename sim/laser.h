@@ -28,6 +28,8 @@ struct SweepTimes {
 class Laser {
  public:
   Laser(const arenas::Arena& arena, const robot::RobotModel& model, double noise, bool sweep, std::uint64_t seed);
+  Laser(const std::vector<arenas::Face>& faces, const robot::RobotModel& model, double noise, bool sweep,
+        std::uint64_t seed);
   Laser(const Laser&) = delete;
   Laser& operator=(const Laser&) = delete;
 

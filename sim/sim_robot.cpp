@@ -1,7 +1,9 @@
 #include "sim/sim_robot.h"
 
 #include <cmath>
-#include <deque>
+#include <string>
+
+#include "base/error.h"
 
 #include "sim/accelerometer.h"
 #include "sim/laser.h"
@@ -27,13 +29,27 @@ AccelerometerParameters accelerometer_parameters(const SimConfig& config) {
   return parameters;
 }
 
+/// Servos advance in whole milliseconds, and a tick is a whole number of steps.
+const SimConfig& checked(const SimConfig& config, const robot::RobotModel& model) {
+  const double milliseconds = config.physics_step * 1e3;
+  const double steps = model.tick / config.physics_step;
+  const bool fits = config.physics_step > 0.0 && std::abs(milliseconds - std::round(milliseconds)) < 1e-9 &&
+                    std::abs(steps - std::round(steps)) < 1e-9;
+  if (!fits) {
+    throw InputError("sim: a physics step of " + std::to_string(config.physics_step) +
+                     " s does not fit; use whole milliseconds that divide the robot's tick of " +
+                     std::to_string(model.tick) + " s");
+  }
+  return config;
+}
+
 }  // namespace
 
 struct SimRobot::Impl {
   Impl(const arenas::Arena& arena, const robot::RobotModel& robot_model, const SimConfig& sim_config,
        std::uint64_t seed)
       : model(robot_model),
-        config(sim_config),
+        config(checked(sim_config, robot_model)),
         world(arena, model, ServoParameters{}, config.physics_step),
         laser(arena, model, config.range_noise, config.sweep, seed),
         accelerometer(model, accelerometer_parameters(config), config.acceleration_noise, seed),

@@ -25,6 +25,7 @@ struct SimConfig {
 /// only.
 class SimRobot : public robot::Robot {
  public:
+  /// Throws InputError when config.physics_step is not whole milliseconds or does not divide model.tick.
   SimRobot(const arenas::Arena& arena, const robot::RobotModel& model, const SimConfig& config, std::uint64_t seed);
   ~SimRobot() override;
 

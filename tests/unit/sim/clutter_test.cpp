@@ -75,6 +75,28 @@ TEST(Clutter, BallsLeftAloneStayExactlyWhereTheyAre) {
   }
 }
 
+TEST(Clutter, ABallPressedAgainstAWallStaysBetweenWallAndRobot) {
+  for (const double offset : {0.0, 0.05, 0.2, 0.25}) {
+    for (const double mass : {0.008, 0.03, 0.3}) {
+      SCOPED_TRACE("offset " + std::to_string(offset) + " m, mass " + std::to_string(mass) + " kg");
+      arenas::Arena arena = room(-2, -2, 2, 2);
+      arena.balls = {{{1.0, offset}, 0.12, mass}};
+      SimRobot robot(arena, {}, exact(), 1);
+      double fastest = 0.0;
+      auto before = robot.balls()[0].position;
+      run(robot, drive(0.5), 8.0, [&](const robot::Inputs&) {
+        const auto now = robot.balls()[0].position;
+        fastest = std::max(fastest, std::hypot(now.x - before.x, now.y - before.y) / robot.model().tick);
+        before = now;
+      });
+      const auto ball = robot.balls()[0].position;
+      EXPECT_LE(ball.x, 1.98 - 0.12 + 0.02);
+      EXPECT_LE(fastest, 0.7);
+      EXPECT_LE(robot.truth().back().pose.x + 0.5 * robot.model().length, 1.99);
+    }
+  }
+}
+
 TEST(Clutter, ABallIsPushedAlongAndStaysWhereItIsLeft) {
   arenas::Arena arena = flat_floor(-3, -3, 6, 3);
   arena.balls = {{{1.0, 0.0}, 0.12, 0.03}};

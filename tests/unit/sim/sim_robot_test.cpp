@@ -63,7 +63,9 @@ std::uint64_t hash_of_a_run(std::uint64_t arena_seed, std::uint64_t seed) {
 
 TEST(SimRobot, SameSeedSameBits) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
-    EXPECT_EQ(hash_of_a_run(seed, 11), hash_of_a_run(seed, 11)) << "arena seed " << seed;
+    const std::uint64_t hash = hash_of_a_run(seed, 11);
+    std::cout << "arena seed " << seed << ": " << std::hex << hash << std::dec << '\n';
+    EXPECT_EQ(hash, hash_of_a_run(seed, 11)) << "arena seed " << seed;
   }
 }
 
@@ -133,6 +135,14 @@ TEST(SimRobot, EndsAtItsTimeLimit) {
   while (robot.read()) ++ticks;
   EXPECT_EQ(ticks, 25);
   EXPECT_FALSE(robot.read());
+}
+
+TEST(SimRobot, AStepThatDoesNotFitTheTickIsRefused) {
+  for (const double step : {0.0, -0.01, 0.003, 0.0105, 0.015}) {
+    SimConfig config;
+    config.physics_step = step;
+    EXPECT_THROW(SimRobot(flat_floor(-1, -1, 1, 1), {}, config, 1), InputError) << step;
+  }
 }
 
 TEST(SimRobot, WithoutLevellingUnitThereIsNeitherAccelerationNorAim) {
