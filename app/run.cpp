@@ -12,7 +12,7 @@ namespace {
 std::string find_scenario(const std::string& name) {
   namespace fs = std::filesystem;
   const char* home = std::getenv("RUBBLE_HOME");
-  const std::string shipped = std::string(home ? home : ".") + "/scenarios/";
+  const std::string shipped = std::string(home ? home : RUBBLE_SOURCE_DIR) + "/scenarios/";
   if (name.empty()) return shipped + "yellow.yaml";
   if (!fs::exists(name) && name.find('/') == std::string::npos && fs::exists(shipped + name + ".yaml"))
     return shipped + name + ".yaml";

@@ -13,7 +13,8 @@ namespace {
 
 using mrpt::math::TPoint2D;
 
-constexpr double kThin = 1e-4;  ///< thickness given to a riser [m]
+constexpr double kThin = 1e-4;   ///< thickness given to a riser [m]
+constexpr double kTouch = 1e-6;  ///< a solid that ends at a cell's edge is not in that cell; well below kThin [m]
 
 /// Cell centres lie on multiples of the resolution, so that a wall on a pallet line is one cell thick.
 GridFrame frame_around(const Arena& arena, double resolution, double margin) {
@@ -39,7 +40,7 @@ void for_cells_crossed(const GridFrame& frame, const Outline& outline, const Vis
   }
   const Cell first = frame.cell(low);
   const Cell last = frame.cell(high);
-  const double half = 0.5 * frame.resolution;
+  const double half = 0.5 * frame.resolution - kTouch;
   for (int y = std::max(first.y, 0); y <= std::min(last.y, frame.height - 1); ++y) {
     for (int x = std::max(first.x, 0); x <= std::min(last.x, frame.width - 1); ++x) {
       const TPoint2D c = frame.centre({x, y});

@@ -1,8 +1,11 @@
 #include "base/distance_transform.h"
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace rubble {
@@ -36,52 +39,64 @@ Grid<Steps> column_distance(const Grid<std::uint8_t>& mask, Steps limit) {
   return steps;
 }
 
+constexpr int kReach = 127;  ///< kReach^2 + (kReach + 1)^2 fits in 16 bits
+constexpr int kBlock = 64;   ///< cells that look around together: eight vectors of eight
+constexpr int kBatch = 4;    ///< steps outwards between two looks at whether it was enough
+
+/// best[x] = min over dx in [first, first + kBatch) of centre[x +- dx] + dx^2; returns the largest of `best`.
+/// Kept out of line and free of references: only so does the compiler see that it can use vectors.
+[[gnu::noinline]] int widen(const std::int16_t* __restrict centre, int first, std::int16_t* __restrict best) {
+  std::int16_t largest = 0;
+  for (int x = 0; x < kBlock; ++x) {
+    std::int16_t least = best[x];
+    for (int i = 0; i < kBatch; ++i) {
+      const int dx = first + i;
+      const std::int16_t left = centre[x - dx];
+      const std::int16_t right = centre[x + dx];
+      const auto through = static_cast<std::int16_t>((left < right ? left : right) + dx * dx);
+      least = through < least ? through : least;
+    }
+    best[x] = least;
+    largest = least > largest ? least : largest;
+  }
+  return largest;
+}
+
 /// Squared distances of one row from its column distances, cell by cell outwards: min over dx of steps(x + dx)^2 +
-/// dx^2. A cell at most n steps from a set cell of its column need not look further than n, and a block of cells stops
-/// looking as soon as dx^2 alone exceeds what all of them have. Exact for distances up to kReach.
+/// dx^2. A block of cells stops looking as soon as dx^2 alone exceeds what all of them have; so no cell looks further
+/// than its distance along the column. Exact for distances up to kReach.
 class WindowRow {
  public:
-  static constexpr int kReach = 127;  ///< kReach^2 + kReach^2 fits in 16 bits
-
   explicit WindowRow(int width)
-      : width_(width), squares_(static_cast<std::size_t>(width + 2 * kReach + kBlock), kReach * kReach) {}
+      : width_(width), squares_(static_cast<std::size_t>(width + 2 * kMargin + kBlock), kReach * kReach) {}
 
   void load(const Steps* steps) {
+    std::int16_t* const squares = squares_.data() + kMargin;
     for (int x = 0; x < width_; ++x) {
       const int s = std::min<int>(steps[x], kReach);
-      squares_[static_cast<std::size_t>(kReach + x)] = static_cast<std::int16_t>(s * s);
+      squares[x] = static_cast<std::int16_t>(s * s);
     }
   }
 
+  /// Calls emit(first cell, count, squared distances) for blocks that cover the row. Returns the largest square.
   template <class Emit>
-  void transform(Emit emit) const {
+  int transform(Emit emit) const {
+    int largest_of_row = 0;
     for (int start = 0; start < width_; start += kBlock) {
-      const std::int16_t* const centre = squares_.data() + kReach + start;
-      const int count = std::min(kBlock, width_ - start);
+      const int begin = std::max(0, std::min(start, width_ - kBlock));  // the last block overlaps the one before
+      const std::int16_t* const centre = squares_.data() + kMargin + begin;
       std::int16_t best[kBlock];
       std::copy_n(centre, kBlock, best);
-      int largest = *std::max_element(best, best + count);
-      for (int dx = 1; dx * dx < largest; dx += kBatch) {
-        for (int i = dx; i < dx + kBatch; ++i) widen(centre, std::min(i, kReach), best);
-        std::int16_t top = 0;
-        for (int x = 0; x < count; ++x) top = std::max(top, best[x]);
-        largest = top;
-      }
-      emit(start, count, best);
+      int largest = *std::max_element(best, best + kBlock);
+      for (int dx = 1; dx * dx < largest; dx += kBatch) largest = widen(centre, dx, best);
+      emit(begin, std::min(kBlock, width_ - begin), best);
+      largest_of_row = std::max(largest_of_row, largest);
     }
+    return largest_of_row;
   }
 
  private:
-  static constexpr int kBlock = 64;
-  static constexpr int kBatch = 4;
-
-  static void widen(const std::int16_t* centre, int dx, std::int16_t* best) {
-    const auto square = static_cast<std::int16_t>(dx * dx);
-    for (int x = 0; x < kBlock; ++x) {
-      const std::int16_t nearer = std::min(centre[x - dx], centre[x + dx]);
-      best[x] = std::min(best[x], static_cast<std::int16_t>(nearer + square));
-    }
-  }
+  static constexpr int kMargin = kReach + kBatch;  ///< cells outside that a batch may look at
 
   int width_;
   std::vector<std::int16_t> squares_;
@@ -91,96 +106,128 @@ class WindowRow {
 /// Felzenszwalb and Huttenlocher 2012, "Distance transforms of sampled functions", algorithm 1.
 class EnvelopeRow {
  public:
-  explicit EnvelopeRow(int width) : width_(width), parabolas_(static_cast<std::size_t>(width)) {}
+  explicit EnvelopeRow(int width)
+      : width_(width), parabolas_(static_cast<std::size_t>(width)), half_inverse_(static_cast<std::size_t>(width)) {
+    for (std::size_t i = 1; i < half_inverse_.size(); ++i) half_inverse_[i] = 0.5 / static_cast<double>(i);
+  }
 
-  /// `limit`: steps of a column without a set cell. Calls emit(x, squared distance); -1: no set cell in any column.
-  template <class Emit>
-  void transform(const Steps* steps, Steps limit, Emit emit) {
-    std::size_t count = 0;
-    for (int x = 0; x < width_; ++x) {
-      if (steps[x] == limit) continue;
-      const double square = static_cast<double>(steps[x]) * steps[x];
-      const double key = square + static_cast<double>(x) * x;
-      double from = -1.0;
-      while (count > 0) {
-        const Parabola& last = parabolas_[count - 1];
-        from = (key - last.key) / (2.0 * (x - last.x));
-        if (from > last.from) break;
-        --count;
-      }
-      parabolas_[count++] = {x, square, key, count == 1 ? -1.0 : from};
+  /// `limit`: steps of a column without a set cell. False: there is no set cell in any column.
+  bool transform(const Steps* steps, Steps limit, std::int32_t* squares) {
+    const int count = build(steps, limit);
+    int begin = 0;
+    for (int i = 0; i < count; ++i) {
+      const Parabola& p = parabolas_[static_cast<std::size_t>(i)];
+      const int end = i + 1 < count ? static_cast<int>(parabolas_[static_cast<std::size_t>(i) + 1].from + 1.0) : width_;
+      for (int x = begin; x < end; ++x) squares[x] = p.square + (x - p.x) * (x - p.x);
+      begin = std::max(begin, end);
     }
-    if (count == 0) {
-      for (int x = 0; x < width_; ++x) emit(x, -1.0);
-      return;
-    }
-    std::size_t i = 0;
-    for (int x = 0; x < width_; ++x) {
-      while (i + 1 < count && parabolas_[i + 1].from < x) ++i;
-      const double dx = x - parabolas_[i].x;
-      emit(x, parabolas_[i].square + dx * dx);
-    }
+    return count > 0;
   }
 
  private:
   struct Parabola {
     int x;
-    double square;
-    double key;   ///< square + x^2
+    std::int32_t square;
     double from;  ///< it is the lowest right of here
   };
+
+  int build(const Steps* steps, Steps limit) {
+    int count = 0;
+    for (int x = 0; x < width_; ++x) {
+      if (steps[x] == limit) continue;
+      const std::int32_t square = static_cast<std::int32_t>(steps[x]) * steps[x];
+      double from = -1.0;
+      for (; count > 0; --count) {
+        // Where both are equal. A rounding error matters nowhere: cells lie on whole numbers, and where two parabolas
+        // meet on a whole number either gives the value.
+        const Parabola& last = parabolas_[static_cast<std::size_t>(count) - 1];
+        const double rise = static_cast<double>(square) - static_cast<double>(last.square);
+        from = 0.5 * (x + last.x) + rise * half_inverse_[static_cast<std::size_t>(x - last.x)];
+        if (from > last.from) break;
+      }
+      if (count == 0) from = -1.0;
+      if (from < width_ - 1) parabolas_[static_cast<std::size_t>(count++)] = {x, square, from};
+    }
+    return count;
+  }
+
   int width_;
   std::vector<Parabola> parabolas_;
+  std::vector<double> half_inverse_;  ///< 1 / (2 i)
 };
+
+/// Few columns have a set cell and the cap is far: the envelope then beats looking around (measured).
+bool is_sparse(const Steps* steps, int width, Steps limit) {
+  int sites = 0;
+  for (int x = 0; x < width; ++x) sites += steps[x] < limit ? 1 : 0;
+  return limit > 40 && 5 * sites < width;
+}
+
+/// min(cap, resolution * root of the square), the same bits as one by one.
+void to_metres(const std::vector<std::int32_t>& squares, double resolution, double cap, float* out) {
+  const auto count = static_cast<Eigen::Index>(squares.size());
+  const Eigen::Map<const Eigen::Array<std::int32_t, Eigen::Dynamic, 1>> square(squares.data(), count);
+  Eigen::Map<Eigen::ArrayXf>(out, count) = (square.cast<double>().sqrt() * resolution).min(cap).cast<float>();
+}
+
+constexpr int kRows = 4;  ///< each sweep waits for itself from cell to cell; four of them fill the waiting
+
+/// steps(x) = min over u of steps(u) + |x - u|. Rows may be the same.
+void sweep_rows(const std::array<Steps*, kRows>& rows, int width) {
+  std::array<int, kRows> s;
+  const auto visit = [&](int x) {
+    for (std::size_t k = 0; k < kRows; ++k) {
+      s[k] = std::min<int>(rows[k][x], s[k] + 1);
+      rows[k][x] = static_cast<Steps>(s[k]);
+    }
+  };
+  s.fill(std::numeric_limits<Steps>::max());
+  for (int x = 0; x < width; ++x) visit(x);
+  for (int x = width - 1; x >= 0; --x) visit(x);
+}
 
 }  // namespace
 
 Grid<float> distance_transform(const Grid<std::uint8_t>& mask, double cap) {
   const int width = mask.width();
   const int height = mask.height();
-  assert(cap >= 0.0 && width + height < 65535);
-  Grid<float> distance(mask.frame());
+  assert(cap >= 0.0 && width + height < 46341);  // whose square still fits in 32 bits
+  Grid<float> distance(mask.frame(), static_cast<float>(cap));
   // Everything from `limit` cells on is at the cap; no two cells are width + height apart.
   const double cap_cells = std::ceil(cap / mask.resolution());
   const auto limit = static_cast<Steps>(std::min(cap_cells, static_cast<double>(width + height)));
   const Grid<Steps> steps = column_distance(mask, limit);
 
-  const double limit_square = static_cast<double>(limit) * limit;
-  const auto metres = [&](double square) {
-    if (square < 0.0 || square >= limit_square) return static_cast<float>(cap);
-    return static_cast<float>(std::min(cap, mask.resolution() * std::sqrt(square)));
-  };
-  constexpr int kReach = WindowRow::kReach;
-  std::vector<float> table(static_cast<std::size_t>(kReach * kReach + 1));
-  for (std::size_t i = 0; i < table.size(); ++i) table[i] = metres(static_cast<double>(i));
+  const int known = std::min<int>(limit, kReach);  // from here on a window tells nothing
+  std::vector<float> metres(static_cast<std::size_t>(kReach * kReach + 1), static_cast<float>(cap));
+  for (int i = 0; i < known * known; ++i)
+    metres[static_cast<std::size_t>(i)] = static_cast<float>(std::min(cap, mask.resolution() * std::sqrt(double(i))));
 
   WindowRow window(width);
   EnvelopeRow envelope(width);
+  std::vector<std::int32_t> squares(static_cast<std::size_t>(width));
   for (int y = 0; y < height; ++y) {
     float* const out = distance.row(y);
-    const Steps* const row = steps.row(y);
-    const Steps farthest = width > 0 ? *std::max_element(row, row + width) : Steps{0};
-    if (farthest <= kReach) {
-      window.load(row);
-      window.transform([&](int start, int count, const std::int16_t* squares) {
-        for (int i = 0; i < count; ++i) out[start + i] = table[static_cast<std::size_t>(squares[i])];
+    bool complete = false;
+    if (!is_sparse(steps.row(y), width, limit)) {
+      window.load(steps.row(y));
+      const int largest = window.transform([&](int start, int count, const std::int16_t* square) {
+        for (int i = 0; i < count; ++i) out[start + i] = metres[static_cast<std::size_t>(square[i])];
       });
-    } else {
-      envelope.transform(row, limit, [&](int x, double square) { out[x] = metres(square); });
+      complete = limit <= kReach || largest < kReach * kReach;
     }
+    if (!complete && envelope.transform(steps.row(y), limit, squares.data()))
+      to_metres(squares, mask.resolution(), cap, out);
   }
   return distance;
 }
 
 Grid<std::uint16_t> manhattan_transform(const Grid<std::uint8_t>& mask) {
-  Grid<Steps> steps = column_distance(mask, 65535);
-  const int width = mask.width();
-  const auto wider = [](int s) { return std::min(s + 1, 65535); };
-  for (int y = 0; y < mask.height(); ++y) {
-    Steps* const row = steps.row(y);
-    int s = 65535;
-    for (int x = 0; x < width; ++x) row[x] = static_cast<Steps>(s = std::min<int>(row[x], wider(s)));
-    for (int x = width - 1; x >= 0; --x) row[x] = static_cast<Steps>(s = std::min<int>(row[x], wider(s)));
+  Grid<Steps> steps = column_distance(mask, std::numeric_limits<Steps>::max());
+  for (int y = 0; y < steps.height(); y += kRows) {
+    std::array<Steps*, kRows> rows;
+    for (int k = 0; k < kRows; ++k) rows[static_cast<std::size_t>(k)] = steps.row(std::min(y + k, steps.height() - 1));
+    sweep_rows(rows, steps.width());
   }
   return steps;
 }

@@ -133,6 +133,9 @@ void RunFolder::save_hashes(const std::string& score_text) const {
     if (fs::exists(file(name))) hashes[name] = sha256_of_file(file(name));
   hashes["score"] = sha256_of_text(score_text);
   write("hashes.json", hashes.dump(2) + "\n");
+}
+
+void RunFolder::close() const {
   std::error_code error;
   fs::remove_all(file(kPartial), error);
 }

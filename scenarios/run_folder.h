@@ -34,7 +34,9 @@ class RunFolder {
   void save_truth(const arenas::Arena& arena, const OccupancyGrid& truth) const;
   /// hashes.json: SHA-256 of each deterministic artefact that exists, plus `score` over the given text.
   void save_hashes(const std::string& score_text) const;
-  /// Lets `latest` beside the folder point to it; a failure is not an error.
+  /// Nothing is written any more.
+  void close() const;
+  /// Lets `latest` beside the folder point to it, where links can be made.
   void link_latest() const;
 
  private:

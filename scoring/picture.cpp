@@ -57,7 +57,7 @@ GridFrame picture_frame(GridFrame frame) {
 /// A picture of a metric frame, north up, with room for a legend below.
 struct Canvas {
   explicit Canvas(const GridFrame& map_frame) : frame(picture_frame(map_frame)), scale(pixels_per_cell(frame)) {
-    const int width = std::max(frame.width * scale, 560);
+    const int width = std::max(frame.width * scale, 720);
     image = cv::Mat(frame.height * scale + kStrip, width, CV_8UC3, cv::Scalar(206, 206, 206));
     image.rowRange(frame.height * scale, image.rows).setTo(cv::Scalar(250, 250, 250));
   }
@@ -175,8 +175,8 @@ void write_overlay(const std::string& path, const OccupancyGrid& map, const Occu
   draw_legend(canvas, {{kInk, "walls agree"},
                        {kMapOnly, "only in map"},
                        {kTruthOnly, "only in truth"},
-                       {kMapFree, "map only"},
-                       {kTruthFree, "truth only"}});
+                       {kMapFree, "seen by map only"},
+                       {kTruthFree, "not seen by map"}});
   write(path, canvas.image);
 }
 

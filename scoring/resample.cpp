@@ -62,15 +62,17 @@ OccupancyGrid crop_to_known(const OccupancyGrid& grid, double margin) {
 GridFrame common_frame(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map,
                        double margin) {
   CellBox box = known_box(truth);
-  const CellBox map_box = known_box(map);
-  if (!map_box.empty()) {
-    if (box.empty()) box = {truth.width(), truth.height(), -1, -1};
-    const Cell corners[4] = {{map_box.x_min, map_box.y_min},
-                             {map_box.x_max, map_box.y_min},
-                             {map_box.x_min, map_box.y_max},
-                             {map_box.x_max, map_box.y_max}};
-    for (const Cell corner : corners) {
-      const Cell c = truth.cell(T_truth_map.composePoint(map.centre(corner)));
+  if (box.empty()) box = {truth.width(), truth.height(), -1, -1};
+  // The ends of each row's known stretch hold all extreme points, at any angle.
+  for (int y = 0; y < map.height(); ++y) {
+    const Occupancy* row = map.row(y);
+    const auto is_known = [](Occupancy o) { return o != Occupancy::Unknown; };
+    const Occupancy* first = std::find_if(row, row + map.width(), is_known);
+    if (first == row + map.width()) continue;
+    const Occupancy* last = row + map.width() - 1;
+    while (!is_known(*last)) --last;
+    for (const Occupancy* end : {first, last}) {
+      const Cell c = truth.cell(T_truth_map.composePoint(map.centre({static_cast<int>(end - row), y})));
       box.x_min = std::min(box.x_min, c.x);
       box.x_max = std::max(box.x_max, c.x);
       box.y_min = std::min(box.y_min, c.y);

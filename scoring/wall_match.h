@@ -6,43 +6,74 @@
 
 #include "base/grid.h"
 #include "scoring/wall_field.h"
+#include "scoring/warp.h"
 
 namespace rubble::scoring {
 
-/// What two maps say about each other at one pose. Shares are 0..1; a side with nothing to say gives 0.
+/// What the walls of one map find on the other. Shares are 0..1; a side with nothing to say gives 0.
+struct WallEvidence {
+  double known = 0.0;         ///< share of these walls that lie where the other map knows something
+  double met = 0.0;           ///< mean k(d) of those
+  double chance = 0.0;        ///< mean k(d) of a random known place of the other map
+  double contradicted = 0.0;  ///< share of those that lie deep in free space of the other map
+  /// Met, corrected for chance: 0 no better than random, 1 perfect.
+  double kappa() const { return chance < 0.95 && met > chance ? (met - chance) / (1.0 - chance) : 0.0; }
+};
+
 struct PoseEvidence {
-  double map_walls = 0.0;           ///< share of the map's walls that lie where the truth knows something
-  double map_met = 0.0;             ///< mean k(d) of those
-  double truth_walls = 0.0;         ///< share of the truth's walls that lie where the map knows something
-  double truth_met = 0.0;           ///< mean k(d) of those
-  double map_contradicted = 0.0;    ///< share of the map's known walls deep in free space of the truth
-  double truth_contradicted = 0.0;  ///< the same the other way round
-  double free_common = 0.0;         ///< share of the smaller free area that is free in both
-  double score = 0.0;               ///< one number to rank poses by
+  WallEvidence map;          ///< the map's walls on the truth
+  WallEvidence truth;        ///< the truth's walls on the map
+  double free_common = 0.0;  ///< share of the smaller free area that is free in both
 };
 
 /// Two maps prepared for comparing them at many poses: wall points, distance fields, free samples of both.
 class WallMatch {
  public:
-  /// `reach`: distances count up to here [m]. At most about `max_points` wall points a map are used (0: all).
+  /// `reach`: distances count up to here [m]. At most `max_points` wall points a map are used (0: all).
   WallMatch(const OccupancyGrid& map, const OccupancyGrid& truth, double reach, std::size_t max_points);
 
-  PoseEvidence evidence(const mrpt::math::TPose2D& T_truth_map, double tau) const;
+  /// k(d) = clip(1 - d / tau, 0, 1), with what a random place of either map would get.
+  struct Kernel {
+    double tau = 0.0;
+    double truth_chance = 0.0;  ///< on the truth
+    double map_chance = 0.0;    ///< on the map
+  };
+  Kernel kernel(double tau) const;
+
+  PoseEvidence evidence(const Warp& warp, const Kernel& kernel) const;
 
   /// Moves the pose so that walls meet: Gauss-Newton on both distance fields, walls further apart than about `sigma`
   /// [m] pull less and less (Geman-McClure weights).
   mrpt::math::TPose2D refine(mrpt::math::TPose2D T_truth_map, double sigma, int iterations) const;
 
+  /// The same with a mild quadratic displacement beside the pose. `stiffness` holds the displacement back.
+  Warp refine(Warp warp, double sigma, double stiffness, int iterations) const;
+
+  /// A warp without displacement, in the coordinates of this map.
+  Warp rigid(const mrpt::math::TPose2D& T_truth_map) const;
+  /// The rigid transform closest to the warp over the map's walls.
+  mrpt::math::TPose2D nearest_rigid(const Warp& warp) const;
+  /// RMS displacement of the map's walls that no rigid transform explains [m].
+  double bend(const Warp& warp) const;
+
+  /// Both maps have walls that fix a pose: more than one straight wall or a blob.
+  bool usable() const { return map_.breadth >= kLeastBreadth && truth_.breadth >= kLeastBreadth; }
   const mrpt::math::TPoint2D& map_centre() const { return map_.centre; }
 
  private:
+  static constexpr double kLeastBreadth = 0.4;  // [m]
   struct Side {
     Side(const OccupancyGrid& grid, double reach, std::size_t max_points);
+    double free_area() const { return sample_area * static_cast<double>(free.size()); }  // [m^2]
     OccupancyGrid grid;
     WallField field;
     std::vector<mrpt::math::TPoint2D> walls;
-    std::vector<mrpt::math::TPoint2D> free;
-    mrpt::math::TPoint2D centre;  ///< of the wall points
+    std::vector<mrpt::math::TPoint2D> free;   ///< samples of the free area
+    std::vector<mrpt::math::TPoint2D> known;  ///< samples of the free and occupied area
+    mrpt::math::TPoint2D centre;              ///< of the wall points
+    double sample_area = 0.0;                 ///< that one free or known sample stands for [m^2]
+    double breadth = 0.0;                     ///< standard deviation of the wall points across their main direction [m]
+    double extent = 1.0;                      ///< RMS distance of the wall points from it, twice [m]
   };
   Side map_;
   Side truth_;

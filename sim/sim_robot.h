@@ -6,6 +6,7 @@
 
 #include "arenas/arena.h"
 #include "base/trajectory.h"
+#include "robot/levelling.h"
 #include "robot/robot.h"
 
 namespace rubble::sim {
@@ -17,6 +18,7 @@ struct SimConfig {
   double acceleration_noise = 1.0;  ///< factor on the ADXL202 noise
   double time_limit = 1200.0;       ///< read() ends after this much simulated time [s]
   bool sweep = true;                ///< each beam from the pose at its own time; false: the whole scan at once
+  robot::AccelerometerMount accelerometer_mount = robot::AccelerometerMount::Platform;  ///< where it is screwed on
 };
 
 /// The simulated robot in its arena. The truth is offered beside the Robot interface, for the run folder and scoring

@@ -16,15 +16,21 @@ Grid<std::uint8_t> random_mask(Rng& rng, int width, int height, double density, 
   return mask;
 }
 
-/// By trying every pair of cells.
+/// By trying every set cell.
 Grid<float> brute_force(const Grid<std::uint8_t>& mask, double cap) {
-  Grid<float> distance(mask.frame(), static_cast<float>(cap));
+  std::vector<Cell> set;
+  for (int y = 0; y < mask.height(); ++y)
+    for (int x = 0; x < mask.width(); ++x)
+      if (mask[{x, y}] != 0) set.push_back({x, y});
+  Grid<float> distance(mask.frame());
   for (int y = 0; y < mask.height(); ++y)
     for (int x = 0; x < mask.width(); ++x) {
       double least = std::numeric_limits<double>::infinity();
-      for (int v = 0; v < mask.height(); ++v)
-        for (int u = 0; u < mask.width(); ++u)
-          if (mask[{u, v}] != 0) least = std::min(least, static_cast<double>((u - x) * (u - x) + (v - y) * (v - y)));
+      for (const Cell c : set) {
+        const double dx = c.x - x;
+        const double dy = c.y - y;
+        least = std::min(least, dx * dx + dy * dy);
+      }
       distance[{x, y}] = static_cast<float>(std::min(cap, mask.resolution() * std::sqrt(least)));
     }
   return distance;
@@ -43,6 +49,25 @@ TEST(DistanceTransform, EqualsBruteForceOnRandomMasks) {
     const Grid<float> distance = distance_transform(mask, cap);
     EXPECT_EQ(distance.frame(), mask.frame());
     EXPECT_EQ(distance.cells(), brute_force(mask, cap).cells());
+  }
+}
+
+// Rows with distances on both sides of the reach of the window search, sparse rows and crowded ones.
+TEST(DistanceTransform, EqualsBruteForceOnWideGapsAndCrowds) {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Rng rng(seed, "gaps");
+    const int width = 200 + static_cast<int>(rng.below(250));
+    const int height = 200 + static_cast<int>(rng.below(200));
+    Grid<std::uint8_t> mask(GridFrame{width, height, 0.05, 0.0, 0.0});
+    const int crowd = static_cast<int>(rng.below(120));
+    for (int i = 0; i < 150; ++i) {
+      const auto x = static_cast<int>(rng.below(static_cast<std::uint32_t>(width - crowd)));
+      const auto y = static_cast<int>(rng.below(20));
+      mask[{x, y}] = 1;
+    }
+    const double cap = rng.below(2) == 0 ? 1e9 : rng.uniform(0.0, 20.0);
+    ASSERT_EQ(distance_transform(mask, cap).cells(), brute_force(mask, cap).cells());
   }
 }
 

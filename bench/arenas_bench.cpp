@@ -1,0 +1,53 @@
+#include <benchmark/benchmark.h>
+
+#include "arenas/arena_file.h"
+#include "arenas/generate.h"
+#include "arenas/render.h"
+#include "arenas/truth_map.h"
+
+namespace {
+
+using namespace rubble::arenas;
+
+GenerateConfig square(std::int64_t pallets) {
+  GenerateConfig config;
+  config.columns = config.rows = static_cast<int>(pallets);
+  return config;
+}
+
+Arena generated(std::int64_t pallets) { return parse_arena(generate_arena(square(pallets)), "generated"); }
+
+void generate(benchmark::State& state) {
+  GenerateConfig config = square(state.range(0));
+  for (auto _ : state) {
+    ++config.seed;
+    benchmark::DoNotOptimize(generate_arena(config));
+  }
+}
+BENCHMARK(generate)->Arg(8)->Arg(20)->Arg(60)->Unit(benchmark::kMillisecond);
+
+void parse(benchmark::State& state) {
+  const std::string text = generate_arena(square(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(parse_arena(text, "generated"));
+}
+BENCHMARK(parse)->Arg(8)->Arg(60)->Unit(benchmark::kMillisecond);
+
+void all_faces(benchmark::State& state) {
+  const Arena arena = generated(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(faces(arena));
+}
+BENCHMARK(all_faces)->Arg(8)->Arg(60)->Unit(benchmark::kMillisecond);
+
+void ground_truth(benchmark::State& state) {
+  const Arena arena = generated(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(truth_map(arena));
+}
+BENCHMARK(ground_truth)->Arg(8)->Arg(60)->Unit(benchmark::kMillisecond);
+
+void plan_picture(benchmark::State& state) {
+  const Arena arena = generated(8);
+  for (auto _ : state) benchmark::DoNotOptimize(render(arena));
+}
+BENCHMARK(plan_picture)->Unit(benchmark::kMillisecond);
+
+}  // namespace

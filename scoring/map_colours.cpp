@@ -1,0 +1,25 @@
+#include "scoring/map_colours.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include "scoring/canvas_corners.h"
+#include "scoring/grey_levels.h"
+#include "scoring/league_colours.h"
+
+namespace rubble::scoring {
+
+ClassImage classify(const RgbImage& image) {
+  const LabelImage labels = is_league_map(image) ? classify_league(image) : classify_grey(image);
+  ClassImage out;
+  out.recognised = labels.recognised;
+  cv::Mat classes = labels.classes;
+  clear_canvas_corners(classes);
+  out.classes = Grid<Occupancy>(GridFrame{image.width, image.height, 1.0, 0.0, 0.0});
+  for (int y = 0; y < image.height; ++y) {
+    const unsigned char* row = classes.ptr<unsigned char>(image.height - 1 - y);
+    for (int x = 0; x < image.width; ++x) out.classes[{x, y}] = static_cast<Occupancy>(row[x]);
+  }
+  return out;
+}
+
+}  // namespace rubble::scoring

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "base/grid.h"
+
+namespace rubble::scoring {
+
+/// Reads a ROS map: YAML with image, resolution, origin, negate, occupied_thresh, free_thresh (map_server's rules, mode
+/// trinary), and the image beside it. Transparent pixels are unknown. The yaw of the origin does not turn the grid.
+/// Throws InputError with file and line.
+OccupancyGrid read_ros_map(const std::string& yaml_path);
+
+}  // namespace rubble::scoring

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <box2d/box2d.h>
+
+#include <vector>
+
+#include "arenas/arena.h"
+#include "sim/obstacles.h"
+#include "sim/terrain.h"
+
+namespace rubble::sim {
+
+/// A ball as the laser sees it.
+struct Sphere {
+  double x = 0.0, y = 0.0, z = 0.0;  ///< centre [m]
+  double radius = 0.0;               ///< [m]
+};
+
+/// Crumpled paper: Box2D circles that slide with friction when pushed and sleep when left alone.
+class Clutter {
+ public:
+  Clutter(b2World& world, const PlanOrigin& origin, const Terrain& terrain, Obstacles& obstacles,
+          const std::vector<arenas::PaperBall>& balls);
+
+  /// Friction of the floor on the moving balls; call before the world's step.
+  void brake(double dt);
+  /// Takes over where the balls are; call after the world's step. Whether one still moves.
+  bool settle();
+
+  const std::vector<Sphere>& spheres() const { return spheres_; }
+  std::vector<arenas::PaperBall> balls() const;
+
+ private:
+  void place(std::size_t i);
+
+  PlanOrigin origin_;
+  const Terrain& terrain_;
+  Obstacles& obstacles_;
+  std::vector<arenas::PaperBall> initial_;
+  std::vector<b2Body*> bodies_;
+  std::vector<std::uintptr_t> handles_;
+  std::vector<Sphere> spheres_;
+};
+
+}  // namespace rubble::sim

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/rng.h"
+#include "robot/model.h"
+
+namespace rubble::sim {
+
+/// From exact distances to what a URG-04LX reports. The data sheet allows +-10 mm up to 1 m and +-1 % beyond; that band
+/// A(r) holds a device's own bias (at most A/4, drawn once) and three sigma of noise (sigma = A/4). At depth edges a
+/// beam of 10 mrad lights both surfaces and reports something between, or an error code; so does a wall seen nearly
+/// edge on.
+class RangeNoise {
+ public:
+  /// `factor` scales bias and sigma; 0 also turns mixed pixels and grazing losses off.
+  RangeNoise(const robot::LaserModel& laser, double factor, std::uint64_t seed);
+
+  /// `ranges` [m], +inf: nothing met. On return in whole mm; +inf: a miss; NaN: no measurement (too near, mixed,
+  /// grazing).
+  void apply(std::vector<float>& ranges);
+
+ private:
+  void mix_edges(std::vector<float>& ranges);
+
+  robot::LaserModel laser_;
+  double factor_;
+  Rng range_;
+  Rng edge_;
+  float bias_ = 0.0f;             ///< share of the accuracy band
+  std::vector<float> quantiles_;  ///< of the standard normal, at the centres of 4096 equal shares
+  std::vector<float> clean_;      ///< scratch
+};
+
+/// Half width of the data sheet's accuracy band at range r [m].
+inline float accuracy_band(float r) { return r < 1.0f ? 0.01f : 0.01f * r; }
+
+}  // namespace rubble::sim

@@ -1,0 +1,183 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "sim/plane_cast.h"
+#include "sim/ray_walk.h"
+#include "sim/rays.h"
+#include "sim/sweep_cast.h"
+#include "tests/support/sim_random_scene.h"
+
+namespace rubble::sim::test {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+/// Plain geometry as a second oracle: every face, no index. The crossing number in the face's plane decides.
+double brute_force(const std::vector<arenas::Face>& faces, const Ray& ray, double max_range) {
+  double best = kInf;
+  for (const arenas::Face& face : faces) {
+    std::vector<Eigen::Vector3d> v;
+    for (const auto& p : face.vertices) v.emplace_back(p.x, p.y, p.z);
+    for (std::size_t i = 1; i + 1 < v.size(); ++i) {  // Moeller and Trumbore 1997, a fan of triangles
+      const Eigen::Vector3d e1 = v[i] - v[0];
+      const Eigen::Vector3d e2 = v[i + 1] - v[0];
+      const Eigen::Vector3d h = ray.direction.cross(e2);
+      const double a = e1.dot(h);
+      if (std::abs(a) < 1e-14) continue;
+      const Eigen::Vector3d s = ray.origin - v[0];
+      const double u = s.dot(h) / a;
+      const Eigen::Vector3d q = s.cross(e1);
+      const double w = ray.direction.dot(q) / a;
+      const double t = e2.dot(q) / a;
+      if (u >= -1e-9 && w >= -1e-9 && u + w <= 1.0 + 1e-9 && t > 0.0 && t <= max_range) best = std::min(best, t);
+    }
+  }
+  return best;
+}
+
+/// True when `range` is what the oracle sees along the ray or along one a hair beside it: a beam that passes an edge by
+/// 30 um may go either way.
+template <class Oracle>
+bool agrees(double range, const Ray& ray, const Oracle& oracle) {
+  double low = kInf;
+  double high = 0.0;
+  const Eigen::Vector3d side = ray.direction.unitOrthogonal();
+  const Eigen::Vector3d other = ray.direction.cross(side);
+  for (int i = 0; i <= 8; ++i) {
+    Ray beside = ray;
+    if (i > 0) {
+      const double a = kPi / 4.0 * i;
+      beside.origin += 3e-5 * (std::cos(a) * side + std::sin(a) * other);
+    }
+    const double seen = oracle(beside);
+    if (std::abs(seen - range) <= 1e-3 || seen == range) return true;
+    low = std::min(low, seen);
+    high = std::max(high, seen);
+  }
+  return high - low > 1e-3 && range >= low - 1e-3 && range <= high + 1e-3;
+}
+
+std::vector<WorldState> random_motion(const WorldState& start, Rng& rng) {
+  const double v = rng.uniform(-0.7, 0.7);
+  const double w = rng.uniform(-1.7, 1.7);
+  const double tilting = rng.uniform(-1.0, 1.0);
+  const double aiming = rng.uniform(-2.0, 2.0);
+  std::vector<WorldState> states(9, start);
+  for (std::size_t i = 1; i < states.size(); ++i) {
+    WorldState& s = states[i];
+    s = states[i - 1];
+    s.stamp = s.stamp + 0.01;
+    s.pose.x += 0.01 * v * std::cos(s.pose.phi);
+    s.pose.y += 0.01 * v * std::sin(s.pose.phi);
+    s.pose.phi += 0.01 * w;
+    s.stance.pitch += 0.01 * tilting;
+    s.aim.roll += 0.01 * aiming;
+  }
+  return states;
+}
+
+TEST(Casters, TheRayWalkSeesWhatPlainGeometrySees) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const arenas::Arena arena = random_maze(seed);
+    const std::vector<arenas::Face> faces = arenas::faces(arena);
+    const RayWalk walk(faces);
+    Rng rng(seed, "rays");
+    for (int i = 0; i < 5000; ++i) {
+      const WorldState state = random_state(arena, rng);
+      const double bearing = rng.uniform(-kPi, kPi);
+      const Placement laser = laser_placement(state, robot::RobotModel{});
+      const Ray ray{laser.p, laser.R * Eigen::Vector3d(std::cos(bearing), std::sin(bearing), 0.0)};
+      const double range = walk.cast(ray, 4.0);
+      ASSERT_TRUE(agrees(range, ray, [&](const Ray& r) { return brute_force(faces, r, 4.0); }))
+          << "bearing " << bearing << " range " << range << " truth " << brute_force(faces, ray, 4.0);
+    }
+  }
+}
+
+TEST(Casters, TheSweepAgreesWithTheRayWalkToOneMillimetre) {
+  const robot::RobotModel model;
+  const BeamTable table(model.laser);
+  double worst = 0.0;
+  int beside = 0;
+  long beams_seen = 0;
+  for (std::uint64_t seed = 1; beams_seen < 500000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const arenas::Arena arena = random_maze(seed);
+    const std::vector<arenas::Face> all = arenas::faces(arena);
+    const RayWalk walk(all);
+    const ScanFaces faces(all);
+    SweepCast sweep(faces);
+    Rng rng(seed, "sweeps");
+    for (int k = 0; k < 60; ++k) {
+      const WorldState state = random_state(arena, rng);
+      const std::vector<Sphere> balls = random_balls(arena, state, 5, rng);
+      Beams beams;
+      swept_beams(random_motion(state, rng), model, table, Stamp::from_seconds(0.0043), model.laser.beam_period, beams);
+      std::vector<float> ranges;
+      sweep.cast(beams, table, 4.0, balls, ranges);
+      for (std::size_t i = 0; i < beams.count; ++i) {
+        const Ray ray = beams.ray(i);
+        const double truth = walk.cast(ray, 4.0, balls);
+        const double range = ranges[i];
+        ++beams_seen;
+        if (range == truth) continue;
+        if (std::abs(range - truth) <= 1e-3) {
+          worst = std::max(worst, std::abs(range - truth));
+          continue;
+        }
+        ++beside;
+        ASSERT_TRUE(agrees(range, ray, [&](const Ray& r) { return walk.cast(r, 4.0001, balls); }))
+            << "scan " << k << " beam " << i << ": " << range << " m, walked " << truth << " m";
+      }
+    }
+  }
+  std::cout << beams_seen << " beams: within " << worst * 1e3 << " mm; " << beside << " passed an edge by a hair\n";
+}
+
+TEST(Casters, ThePlaneCastAgreesWithTheRayWalkToOneMillimetre) {
+  const robot::RobotModel model;
+  const BeamTable table(model.laser);
+  double worst = 0.0;
+  int beside = 0;
+  long beams_seen = 0;
+  for (std::uint64_t seed = 100; beams_seen < 1000000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const arenas::Arena arena = random_maze(seed);
+    const std::vector<arenas::Face> all = arenas::faces(arena);
+    const RayWalk walk(all);
+    const ScanFaces faces(all);
+    PlaneCast plane(faces);
+    Rng rng(seed, "planes");
+    for (int k = 0; k < 100; ++k) {
+      const WorldState state = random_state(arena, rng);
+      const std::vector<Sphere> balls = random_balls(arena, state, 5, rng);
+      const Placement laser = laser_placement(state, model);
+      std::vector<float> ranges;
+      plane.cast(laser, table, 4.0, balls, ranges);
+      for (std::size_t i = 0; i < table.count; ++i) {
+        const double bearing = table.angle_min + static_cast<double>(i) * table.angle_step;
+        const Ray ray{laser.p, laser.R * Eigen::Vector3d(std::cos(bearing), std::sin(bearing), 0.0)};
+        const double truth = walk.cast(ray, 4.0, balls);
+        const double range = ranges[i];
+        ++beams_seen;
+        if (range == truth) continue;
+        if (std::abs(range - truth) <= 1e-3) {
+          worst = std::max(worst, std::abs(range - truth));
+          continue;
+        }
+        ++beside;
+        ASSERT_TRUE(agrees(range, ray, [&](const Ray& r) { return walk.cast(r, 4.0001, balls); }))
+            << "scan " << k << " beam " << i << ": " << range << " m, walked " << truth << " m";
+      }
+    }
+  }
+  std::cout << beams_seen << " beams: within " << worst * 1e3 << " mm; " << beside << " passed an edge by a hair\n";
+}
+
+}  // namespace
+}  // namespace rubble::sim::test
