@@ -62,7 +62,7 @@ ScanPoints LevelScan::points(const robot::LaserScan& scan, const SweepMotion* mo
     }
     if (!points.rays.empty()) points.rays.back().joined = beam == last_beam + 1;
     last_beam = beam;
-    points.rays.push_back({end, hit, false});
+    points.rays.push_back({end, hit, false, static_cast<int>(beam)});
     (hit ? points.hits : points.passes).push_back(end);
   }
   if (upside_down_) {  // the beams run clockwise in the base frame

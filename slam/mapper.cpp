@@ -31,8 +31,7 @@ struct Mapper::Impl {
   void pass(Stamp reference, const TPose2D& T_last_now);
   TPose2D motion_since_scan(Stamp reference) const;
   TPose2D refined_motion(const Surface& surface, const TPose2D& T_last_prior);
-  std::vector<TPoint2D> hits_to_weigh(const ScanPoints& points, const Surface& surface,
-                                      const TPose2D& T_map_prior) const;
+  std::vector<TPoint2D> hits_to_weigh(const ScanPoints& points, const Surface& surface) const;
   bool moved(const TPose2D& motion) const;
   std::optional<SweepMotion> sweep_motion(const LaserScan& scan) const;
 
@@ -99,7 +98,7 @@ void Mapper::Impl::process(const LaserScan& scan) {
     return pass(reference, T_last_now);
   }
 
-  const std::vector<TPoint2D> judged = hits_to_weigh(points, surface, T_map_last_ + T_last_now);
+  const std::vector<TPoint2D> judged = hits_to_weigh(points, surface);
   const Particles resampled = gate ? resample(particles_) : particles_;
   const Particles drifted = drift(resampled, T_last_now, motion_error_, drift_rng_);  // Fig. 5
   const Particles measured = measure(drifted, judged, map_);                          // eq. (2)
@@ -146,10 +145,9 @@ TPose2D Mapper::Impl::refined_motion(const Surface& surface, const TPose2D& T_la
   return match.T_last_now;
 }
 
-std::vector<TPoint2D> Mapper::Impl::hits_to_weigh(const ScanPoints& points, const Surface& surface,
-                                                  const TPose2D& T_map_prior) const {
-  if (!config_.known_only) return points.hits;
-  return hits_of(known_part(surface, map_, T_map_prior, config_.known_margin), points);
+std::vector<TPoint2D> Mapper::Impl::hits_to_weigh(const ScanPoints& points, const Surface& surface) const {
+  if (config_.rim_margin <= 0.0) return points.hits;
+  return hits_of(settled_part(surface, config_.rim_margin), points);
 }
 
 bool Mapper::Impl::moved(const TPose2D& motion) const {

@@ -16,7 +16,7 @@ struct ScanMatcherConfig {
   double min_goodness = 0.4;           ///< least share of points that found a partner
   double max_correction = 0.2;         ///< a larger one is not believed [m]
   double max_turn = deg_to_rad(10.0);  ///< a larger one is not believed [rad]
-  int min_points = 20;                 ///< with fewer points there is no match
+  int min_points = 10;                 ///< with fewer points there is no match
   double dense_spacing = 0.02;         ///< the last scan's surfaces are filled with points to this spacing [m]
 };
 

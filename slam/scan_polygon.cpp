@@ -132,7 +132,7 @@ std::vector<ScanRay> rays_from_ends(const std::vector<TPoint2D>& hits, const std
   std::vector<Bearing> sorted;
   sorted.reserve(hits.size() + passes.size());
   const auto add = [&](const TPoint2D& p, bool hit) {
-    sorted.push_back({std::atan2(p.y - origin.y, p.x - origin.x), {p, hit, false}});
+    sorted.push_back({std::atan2(p.y - origin.y, p.x - origin.x), {p, hit, false, 0}});
   };
   for (const TPoint2D& p : hits) add(p, true);
   for (const TPoint2D& p : passes) add(p, false);
@@ -141,6 +141,7 @@ std::vector<ScanRay> rays_from_ends(const std::vector<TPoint2D>& hits, const std
   rays.reserve(sorted.size());
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     ScanRay ray = sorted[i].ray;
+    ray.beam = beam_width > 0.0 ? static_cast<int>(std::lround(sorted[i].angle / beam_width)) : static_cast<int>(i);
     ray.joined = i + 1 < sorted.size() && sorted[i + 1].angle - sorted[i].angle < 1.5 * beam_width;
     rays.push_back(ray);
   }

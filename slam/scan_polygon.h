@@ -13,6 +13,7 @@ struct ScanRay {
   mrpt::math::TPoint2D end;
   bool hit = true;      ///< false: nothing was met up to `end`
   bool joined = false;  ///< the next ray is the neighbouring beam: what lies between the two was seen as well
+  int beam = 0;         ///< number of the beam, ascending or descending: tells how many are missing in between
 };
 
 /// Sets the bits of all cells whose centre lies inside what the scan saw. That is one polygon for each run of joined

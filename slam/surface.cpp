@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
 
 namespace rubble::slam {
 
@@ -12,33 +14,20 @@ namespace {
 
 double distance(const TPoint2D& a, const TPoint2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-/// Unit vector along the surface at point i, from its neighbours; zero where it has none.
-TPoint2D along(const std::vector<SurfacePoint>& points, std::size_t i) {
-  const bool follows = i > 0 && points[i - 1].joined;
-  const bool goes_on = points[i].joined && i + 1 < points.size();
-  const TPoint2D& a = points[follows ? i - 1 : i].p;
-  const TPoint2D& b = points[goes_on ? i + 1 : i].p;
-  const double length = distance(a, b);
-  return length > 0.0 ? TPoint2D{(b.x - a.x) / length, (b.y - a.y) / length} : TPoint2D{};
-}
-
-bool occupied_near(const CountMap& map, const TPoint2D& p) {
-  const GridFrame& frame = map.frame();
-  const Cell c = frame.cell(p);
-  if (c.x < 1 || c.y < 1 || c.x > frame.width - 2 || c.y > frame.height - 2) return false;
-  for (int y = c.y - 1; y <= c.y + 1; ++y) {
-    const std::uint8_t* row = map.p_occ_plane() + frame.index({c.x - 1, y});
-    if ((row[0] | row[1] | row[2]) != 0) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 Surface surface_of(const ScanPoints& scan, const SurfaceConfig& config) {
   const std::vector<ScanRay>& rays = scan.rays;
+  const auto range = [&](std::size_t i) { return distance(rays[i].end, scan.origin); };
+  const auto beams_apart = [&](std::size_t i, std::size_t j) { return std::abs(rays[i].beam - rays[j].beam); };
   const auto connected = [&](std::size_t i) {
-    return rays[i].joined && rays[i + 1].hit && distance(rays[i].end, rays[i + 1].end) <= config.max_gap;
+    if (i + 1 == rays.size() || !rays[i + 1].hit || beams_apart(i, i + 1) > config.max_missing + 1) return false;
+    const double most = std::max(config.max_gap, config.flattest * scan.beam_width * std::min(range(i), range(i + 1)));
+    return distance(rays[i].end, rays[i + 1].end) <= most;
+  };
+  // A surface that ends next to a farther one really ends there; else it goes on where this scan cannot see it.
+  const auto fades = [&](std::size_t end, std::size_t next) {
+    return next >= rays.size() || beams_apart(end, next) > 1 || !rays[next].hit || range(next) < range(end);
   };
   Surface surface;
   surface.origin = scan.origin;
@@ -47,9 +36,12 @@ Surface surface_of(const ScanPoints& scan, const SurfaceConfig& config) {
     if (!rays[i].hit) continue;
     // The length of a run follows from its first range alone. To wait for a return that lies `spacing` away from the
     // last one would prefer long ranges on one side and short ones on the other, and turn every match a little.
-    const double step = std::max(1e-3, distance(rays[i].end, scan.origin) * scan.beam_width);
+    const double step = std::max(1e-3, range(i) * scan.beam_width);
     const std::size_t wanted = static_cast<std::size_t>(std::max(1.0, config.spacing / step));
-    SurfacePoint point{rays[i].end, hit, 1, false};
+    SurfacePoint point;
+    point.p = rays[i].end;
+    point.first_hit = hit;
+    point.fades_before = fades(i, i - 1);  // for i = 0: beyond the last
     for (; point.hits < wanted && connected(i); ++point.hits) {
       ++i;
       point.p = {point.p.x + rays[i].end.x, point.p.y + rays[i].end.y};
@@ -57,6 +49,7 @@ Surface surface_of(const ScanPoints& scan, const SurfaceConfig& config) {
     const double n = static_cast<double>(point.hits);
     point.p = {point.p.x / n, point.p.y / n};
     point.joined = connected(i);
+    point.fades_after = fades(i, i + 1);
     hit += point.hits;
     surface.points.push_back(point);
   }
@@ -102,16 +95,25 @@ Surface covered_part(const Surface& now, const SurfaceCoverage& last, const TPos
   return part;
 }
 
-Surface known_part(const Surface& now, const CountMap& map, const TPose2D& T_map_base, double margin) {
+Surface settled_part(const Surface& now, double margin) {
+  const std::vector<SurfacePoint>& points = now.points;
+  const double far = std::numeric_limits<double>::infinity();
+  std::vector<double> to_the_rim(points.size());
+  double length = far;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool follows = i > 0 && points[i - 1].joined;
+    length = follows ? length + distance(points[i - 1].p, points[i].p) : (points[i].fades_before ? 0.0 : far);
+    to_the_rim[i] = length;
+  }
+  for (std::size_t i = points.size(); i-- > 0;) {
+    const bool goes_on = points[i].joined && i + 1 < points.size();
+    length = goes_on ? length + distance(points[i].p, points[i + 1].p) : (points[i].fades_after ? 0.0 : far);
+    to_the_rim[i] = std::min(to_the_rim[i], length);
+  }
   Surface part;
   part.origin = now.origin;
-  for (std::size_t i = 0; i < now.points.size(); ++i) {
-    const TPoint2D p = T_map_base.composePoint(now.points[i].p);
-    const TPoint2D t = T_map_base.composePoint(along(now.points, i)) - TPoint2D{T_map_base.x, T_map_base.y};
-    if (occupied_near(map, p) && occupied_near(map, {p.x + margin * t.x, p.y + margin * t.y}) &&
-        occupied_near(map, {p.x - margin * t.x, p.y - margin * t.y})) {
-      part.points.push_back(now.points[i]);
-    }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (to_the_rim[i] >= margin) part.points.push_back(points[i]);
   }
   return part;
 }

@@ -11,7 +11,9 @@ namespace rubble::slam {
 
 struct SurfaceConfig {
   double spacing = 0.05;         ///< of the points along the surfaces [m]
-  double max_gap = kSurfaceGap;  ///< neighbouring beams farther apart do not see one surface [m]
+  double max_gap = kSurfaceGap;  ///< neighbouring returns farther apart do not lie on one surface [m] ...
+  double flattest = 8.0;         ///< ... unless the gap is at most so many beam widths: a far wall at a flat angle
+  int max_missing = 3;           ///< so many beams without a return do not end a surface
 };
 
 /// A point on a surface: the mean of a few neighbouring returns.
@@ -20,6 +22,8 @@ struct SurfacePoint {
   std::size_t first_hit = 0;  ///< the returns it stands for: ScanPoints::hits[first_hit] ...
   std::size_t hits = 1;       ///< ... so many
   bool joined = false;        ///< the next point lies on the same surface
+  bool fades_before = false;  ///< before it the surface goes on out of sight: out of range, of view, or hidden
+  bool fades_after = false;   ///< the same after it
 };
 
 /// The surfaces a scan saw, in the order of its beams.
@@ -61,9 +65,10 @@ class SurfaceCoverage {
 Surface covered_part(const Surface& now, const SurfaceCoverage& last, const mrpt::math::TPose2D& T_last_now,
                      double margin);
 
-/// The part of `now` that continues surfaces the map knows: there are occupied cells at the point and `margin` to
-/// either side along the surface.
-Surface known_part(const Surface& now, const CountMap& map, const mrpt::math::TPose2D& T_map_base, double margin);
+/// The part of `now` that lies at least `margin` [m] along the surface from where it goes out of sight. What lies
+/// nearer may have come into sight only now; the map cannot know it yet, and in eq. (2) would favour particles that lag
+/// behind.
+Surface settled_part(const Surface& now, double margin);
 
 /// The returns that the points of `part` stand for.
 std::vector<mrpt::math::TPoint2D> hits_of(const Surface& part, const ScanPoints& scan);

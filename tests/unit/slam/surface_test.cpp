@@ -8,7 +8,6 @@
 namespace rubble::slam {
 namespace {
 
-using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
 ScanPoints scan_of(const slam_test::World& world, const TPose2D& T_world_base, double sigma, std::uint64_t seed) {
@@ -78,22 +77,33 @@ TEST(SurfaceCoverage, WhatComesIntoRangeIsNotCovered) {
   EXPECT_GT(farthest_now, farthest_last);
 }
 
-TEST(KnownPart, SurfacesBeyondWhatTheMapHoldsAreLeftOut) {
+TEST(SettledPart, LeavesOutWhatMayHaveComeIntoSightOnlyNow) {
   slam_test::World corridor;
   corridor.push_back({{-20.0, -0.6}, {20.0, -0.6}});
   corridor.push_back({{20.0, 0.6}, {-20.0, 0.6}});
-  CountMap map(400, 400, 0.05);
-  const ScanPoints first = scan_of(corridor, {}, 0.0, 1);
-  map.stamp(TPose2D(), first);
-  double farthest_mapped = 0.0;
-  for (const TPoint2D& p : first.hits) farthest_mapped = std::max(farthest_mapped, p.x);
-  const TPose2D T_map_base{0.5, 0.0, 0.0};
-  const Surface now = surface_of(scan_of(corridor, T_map_base, 0.0, 2), {});
-  const Surface part = known_part(now, map, T_map_base, 0.15);
-  EXPECT_GT(part.points.size(), now.points.size() / 2);
-  EXPECT_LT(part.points.size(), now.points.size());
-  for (const SurfacePoint& point : part.points) EXPECT_LT(T_map_base.composePoint(point.p).x, farthest_mapped);
-  EXPECT_TRUE(known_part(now, CountMap(400, 400, 0.05), T_map_base, 0.15).points.empty());
+  const Surface now = surface_of(scan_of(corridor, {}, 0.0, 2), {});
+  double farthest = 0.0;
+  for (const SurfacePoint& point : now.points) farthest = std::max(farthest, point.p.x);
+  const Surface part = settled_part(now, 0.3);
+  EXPECT_GT(part.points.size(), now.points.size() * 3 / 4);
+  for (const SurfacePoint& point : part.points) EXPECT_LE(point.p.x, farthest - 0.3);
+  EXPECT_EQ(settled_part(now, 0.0).points.size(), now.points.size());
+}
+
+TEST(SettledPart, KeepsTheEndOfAWallThatDoesNotGoOn) {
+  slam_test::World world;
+  world.push_back({{1.0, -8.0}, {1.0, 0.0}});  // ends in front of ...
+  world.push_back({{2.0, 8.0}, {2.0, -8.0}});  // ... this one, which it hides in part
+  const Surface now = surface_of(scan_of(world, {}, 0.0, 1), {});
+  double near_end = -10.0;
+  double far_begin = 10.0;
+  for (const SurfacePoint& point : settled_part(now, 0.3).points) {
+    if (point.p.x < 1.5) near_end = std::max(near_end, point.p.y);
+    if (point.p.x > 1.5) far_begin = std::min(far_begin, point.p.y);
+  }
+  EXPECT_GT(near_end, -0.05);
+  EXPECT_GT(far_begin, 0.3);
+  EXPECT_LT(far_begin, 0.4);
 }
 
 TEST(SurfaceCoverage, NothingCoversNothing) {
