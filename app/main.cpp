@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <new>
 
+#include "app/batch.h"
 #include "app/commands.h"
 #include "base/error.h"
 #include "scenarios/run.h"
@@ -116,6 +117,8 @@ int dispatch(int argc, char** argv) {
       "Examples:\n  rubble arena arenas/yellow_8x8.yaml\n"
       "  rubble arena generate --cells 10x12 --seed 3 --ramps 0.4 --paper 0.2 --victims 6 --loops 0.2");
 
+  BatchCommands batch_commands(app);
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -126,6 +129,7 @@ int dispatch(int argc, char** argv) {
   run_arguments.common.overrides = map_arguments.common.overrides = parse_sets(sets);
   arena_arguments.generate = arena_arguments.file == "generate";
   parse_cells(cells, arena_arguments.config);
+  if (const auto code = batch_commands.run()) return *code;
   if (*run_command) return run(run_arguments);
   if (*map_command) return map(map_arguments);
   if (*score_command) return score(score_arguments);

@@ -25,12 +25,13 @@ struct FloorPatch {
   }
 };
 
-/// An upright prism that stops robots and laser beams: wall, victim box, post.
+/// An upright prism that stops laser beams and, unless it gives way, robots: wall, victim box, post.
 struct Solid {
   Outline outline;
-  double z_bottom = 0.0;  ///< [m]
-  double z_top = 1.2;     ///< [m]
-  std::string element;    ///< e.g. "wall", "victim_box"
+  double z_bottom = 0.0;   ///< [m]
+  double z_top = 1.2;      ///< [m]
+  std::string element;     ///< e.g. "wall", "victim_box"
+  bool gives_way = false;  ///< seen by the laser but no obstacle: the strips of a veil
 };
 
 /// Loose paper lying flat: wheels on it slip.

@@ -2,10 +2,13 @@
 
 #include <cmath>
 
+#include "arenas/elements.h"
 #include "arenas/geometry.h"
 #include "arenas/plan.h"
+#include "arenas/raf.h"
 #include "arenas/victim_box.h"
 #include "base/angle.h"
+#include "base/error.h"
 #include "base/strict_yaml.h"
 
 namespace rubble::arenas {
@@ -147,6 +150,24 @@ void read_victims(const YamlMap& root, Plan& plan, Arena& arena) {
   }
 }
 
+/// The league's building blocks by name, each on the ground in the middle of a pallet.
+void read_elements(const YamlMap& root, Plan& plan, Arena& arena) {
+  std::vector<Element> elements;
+  for (const YamlMap& entry : root.maps("elements")) {
+    Element element;
+    element.type = entry.choice("type", std::nullopt, element_types());
+    element.rotation = angle(entry, "rotation_deg", 0.0);
+    if (entry.has("mount_point")) {
+      element.mount_point = static_cast<int>(entry.integer("mount_point", std::nullopt, -1, 100));
+    }
+    for (const TPoint2D& p : plan.places(entry)) {
+      element.position = p;
+      elements.push_back(element);
+    }
+  }
+  for (const Element& element : elements) place(element, wall_behind(element, elements), arena);
+}
+
 void read_start(const YamlMap& root, const Plan& plan, Arena& arena) {
   const YamlMap start = root.map("start");
   arena.start.phi = wrap_angle(angle(start, "heading_deg", 0.0));
@@ -179,6 +200,7 @@ Arena build(const YamlMap& root, const std::string& source) {
   read_floors(root, plan, arena);
   read_walls(root, plan, arena);
   read_boxes(root, plan, arena);
+  read_elements(root, plan, arena);
   read_paper(root, plan, arena);
   read_balls(root, plan, arena);
   read_victims(root, plan, arena);
@@ -193,7 +215,13 @@ Arena build(const YamlMap& root, const std::string& source) {
 
 }  // namespace
 
-Arena load_arena(const std::string& path) { return build(YamlMap::load(path), path); }
+Arena load_arena(const std::string& path) {
+  const bool is_raf = path.size() > 4 && path.compare(path.size() - 4, 4, ".raf") == 0;
+  if (!is_raf) return build(YamlMap::load(path), path);
+  const RafImport import = import_raf(path);
+  if (!import.unknown.empty()) throw InputError(path + ": " + import.summary() + ": remove these parts from the file");
+  return import.arena;
+}
 
 Arena parse_arena(const std::string& yaml, const std::string& name) { return build(YamlMap::parse(yaml, name), name); }
 

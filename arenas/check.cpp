@@ -145,7 +145,7 @@ std::optional<std::string> start_trouble(const Arena& arena, double start_cleara
   if (const Trouble t = start_floor_trouble(arena, start, start_clearance)) return t;
   const double z = floor_height(arena, start);
   for (const Solid& solid : arena.solids) {
-    if (solid.z_top <= z || solid.z_bottom >= z + kRobotHeight) continue;
+    if (solid.gives_way || solid.z_top <= z || solid.z_bottom >= z + kRobotHeight) continue;
     const double gap = distance(solid.outline, start);
     if (gap == 0.0) return "start " + place(start) + " is in a solid '" + solid.element + "': move the start";
     if (gap < start_clearance) {

@@ -46,7 +46,7 @@ double lit(const FloorPatch& patch) {
 /// Higher floor is lighter; most of the change lies in the first half metre, where ramps are.
 Colour floor_colour(const FloorPatch& patch, const TPoint2D& p, double light) {
   const double z = std::max(0.0, patch.height(p));
-  return scaled(kWood, light * (0.93 + 0.28 * z / (z + 0.35)));
+  return scaled(kWood, std::min(1.14, light * (0.93 + 0.28 * z / (z + 0.35))));
 }
 
 TPoint2D middle(const Outline& outline) {

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <memory>
+#include <new>
 
 #include "base/error.h"
 #include "base/text_file.h"
@@ -91,7 +92,7 @@ void read_georeference(TIFF* tiff, const std::string& path, GeoTiff& result) {
   }
   const double metres = metres_per_unit(keys.get(), path);
   if (metres != 1.0 && result.epsg != 0)
-    throw InputError(path + ": is in feet; reproject it to metres (gdalwarp -t_srs EPSG:326<zone>)");
+    throw InputError(path + ": is not in metres; reproject it (gdalwarp -t_srs EPSG:326<zone>)");
   for (double* value : {&t.a, &t.b, &t.c, &t.d, &t.e, &t.f}) *value *= metres;
 }
 
@@ -174,7 +175,11 @@ GeoTiff read_geotiff(const std::string& path) {
     throw InputError(path + ": its scale or position tags are zero or no numbers; remove them and give a world file");
   const char* description = nullptr;
   if (TIFFGetField(tiff.get(), TIFFTAG_IMAGEDESCRIPTION, &description) == 1) result.description = description;
-  result.image = read_pixels(tiff.get(), path, complaint);
+  try {
+    result.image = read_pixels(tiff.get(), path, complaint);
+  } catch (const std::bad_alloc&) {
+    throw InputError(path + ": does not fit into memory; scale it down");
+  }
   return result;
 }
 

@@ -19,6 +19,18 @@ std::uint64_t hash_name(std::string_view name) {
 
 }  // namespace
 
+std::array<std::uint32_t, 4> philox4x32_10(std::array<std::uint32_t, 4> x, std::array<std::uint32_t, 2> key) {
+  for (int round = 0; round < 10; ++round) {
+    const std::uint64_t p0 = 0xD2511F53ull * x[0];
+    const std::uint64_t p1 = 0xCD9E8D57ull * x[2];
+    x = {static_cast<std::uint32_t>(p1 >> 32) ^ x[1] ^ key[0], static_cast<std::uint32_t>(p1),
+         static_cast<std::uint32_t>(p0 >> 32) ^ x[3] ^ key[1], static_cast<std::uint32_t>(p0)};
+    key[0] += 0x9E3779B9u;  // Weyl sequence: the golden ratio, and the root of 3 less 1
+    key[1] += 0xBB67AE85u;
+  }
+  return x;
+}
+
 Rng::Rng(std::uint64_t seed, std::string_view stream)
     : key_{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)} {
   const std::uint64_t name = hash_name(stream);
@@ -27,18 +39,7 @@ Rng::Rng(std::uint64_t seed, std::string_view stream)
 }
 
 void Rng::refill() {
-  std::array<std::uint32_t, 4> x = counter_;
-  std::uint32_t k0 = key_[0];
-  std::uint32_t k1 = key_[1];
-  for (int round = 0; round < 10; ++round) {
-    const std::uint64_t p0 = 0xD2511F53ull * x[0];
-    const std::uint64_t p1 = 0xCD9E8D57ull * x[2];
-    x = {static_cast<std::uint32_t>(p1 >> 32) ^ x[1] ^ k0, static_cast<std::uint32_t>(p1),
-         static_cast<std::uint32_t>(p0 >> 32) ^ x[3] ^ k1, static_cast<std::uint32_t>(p0)};
-    k0 += 0x9E3779B9u;
-    k1 += 0xBB67AE85u;
-  }
-  block_ = x;
+  block_ = philox4x32_10(counter_, key_);
   used_ = 0;
   if (++counter_[0] == 0) ++counter_[1];
 }

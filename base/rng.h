@@ -6,9 +6,12 @@
 
 namespace rubble {
 
+/// The block of four random words at `counter`: Philox4x32-10, a counter-based generator
+/// (Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3").
+std::array<std::uint32_t, 4> philox4x32_10(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
+
 /// A stream of random numbers that belongs to one owner: the same seed and name give the same numbers on every machine,
 /// and a new stream leaves the draws of all others unchanged.
-/// Philox4x32-10 counter-based generator (Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3").
 class Rng {
  public:
   Rng(std::uint64_t seed, std::string_view stream);

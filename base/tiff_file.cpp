@@ -15,18 +15,25 @@
 namespace rubble {
 namespace {
 
-int keep_first(TIFF*, void* user, const char*, const char* format, va_list arguments) {
-  auto& complaint = *static_cast<TiffComplaint*>(user);
-  if (complaint.text.empty()) {
-    char text[300];
-    std::vsnprintf(text, sizeof text, format, arguments);
-    complaint.text = one_line(text);
-    while (!complaint.text.empty() && complaint.text.back() == '.') complaint.text.pop_back();
-  }
-  return 1;  // handled: the handler that prints is not called
+void keep_first(std::string& kept, const char* format, va_list arguments) {
+  if (!kept.empty()) return;
+  char text[300];
+  std::vsnprintf(text, sizeof text, format, arguments);
+  kept = one_line(text);
+  while (!kept.empty() && kept.back() == '.') kept.pop_back();
 }
 
-int ignore(TIFF*, void*, const char*, const char*, va_list) { return 1; }
+// Both return 1: handled, libtiff does not print.
+int keep_error(TIFF*, void* user, const char*, const char* format, va_list arguments) {
+  keep_first(static_cast<TiffComplaint*>(user)->text, format, arguments);
+  return 1;
+}
+
+int keep_lost_tag(TIFF*, void* user, const char*, const char* format, va_list arguments) {
+  const bool is_lost = std::strncmp(format, "IO error", 8) == 0;  // other warnings are about harmless deviations
+  if (is_lost) keep_first(static_cast<TiffComplaint*>(user)->lost_tag, format, arguments);
+  return 1;
+}
 
 struct FreeOptions {
   void operator()(TIFFOpenOptions* options) const { TIFFOpenOptionsFree(options); }
@@ -35,8 +42,8 @@ struct FreeOptions {
 std::unique_ptr<TIFFOpenOptions, FreeOptions> quiet(TiffComplaint& complaint) {
   XTIFFInitialize();  // registers the GeoTIFF tags
   std::unique_ptr<TIFFOpenOptions, FreeOptions> options(TIFFOpenOptionsAlloc());
-  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_first, &complaint);
-  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore, nullptr);
+  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, &complaint);
+  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), keep_lost_tag, &complaint);
   return options;
 }
 
@@ -89,6 +96,8 @@ TiffFile open_tiff(const std::string& path, TiffComplaint& complaint) {
   if (S_ISDIR(status.st_mode)) throw InputError(path + ": is a folder; give the path of a TIFF file");
   TiffFile tiff(TIFFOpenExt(path.c_str(), "rm", quiet(complaint).get()));  // m: a file that shrinks is no crash
   if (!tiff) throw InputError(path + ": is no TIFF that can be read (" + complaint.text + ")");
+  if (!complaint.lost_tag.empty())
+    throw InputError(path + ": is truncated (" + complaint.lost_tag + "); copy it again");
   return tiff;
 }
 

@@ -7,9 +7,10 @@
 
 namespace rubble {
 
-/// The first thing libtiff complained about, instead of its chatter on stderr.
+/// The first error of libtiff, and the first tag it could not read, instead of its chatter on stderr.
 struct TiffComplaint {
   std::string text;
+  std::string lost_tag;
 };
 
 struct TiffCloser {
@@ -17,7 +18,8 @@ struct TiffCloser {
 };
 using TiffFile = std::unique_ptr<TIFF, TiffCloser>;
 
-/// Opens a TIFF for reading, GeoTIFF tags known to libtiff. Throws InputError: missing, a folder, not a TIFF.
+/// Opens a TIFF for reading, GeoTIFF tags known to libtiff. Throws InputError: missing, a folder, not a TIFF, tags that
+/// lie beyond the end of the file.
 /// `complaint` must outlive the file.
 TiffFile open_tiff(const std::string& path, TiffComplaint& complaint);
 

@@ -142,14 +142,27 @@ class Reader {
     }
   }
 
+  /// Stored as it is returned.
+  bool is_plain_rgb() const {
+    return layout_.photometric == PHOTOMETRIC_RGB && layout_.bits == 8 && layout_.samples == 3 &&
+           layout_.planes == PLANARCONFIG_CONTIG;
+  }
+
+  /// The sample is a colour or the opacity.
+  bool is_used(std::size_t sample) const {
+    return sample < (layout_.photometric == PHOTOMETRIC_RGB ? 3u : 1u) || static_cast<int>(sample) == layout_.alpha;
+  }
+
   void read_chunks(RgbImage& image) {
     const bool separate = layout_.planes == PLANARCONFIG_SEPARATE;
     const auto size = static_cast<std::size_t>(layout_.tiled ? TIFFTileSize(tiff_) : TIFFStripSize(tiff_));
-    std::vector<Bytes> planes(separate ? layout_.samples : 1, Bytes(size));
+    std::vector<Bytes> planes(separate ? layout_.samples : 1);
+    for (std::size_t plane = 0; plane < planes.size(); ++plane)
+      if (is_used(plane)) planes[plane].resize(size);
     for (std::uint32_t y = 0; y < layout_.height; y += layout_.chunk_height)
       for (std::uint32_t x = 0; x < layout_.width; x += layout_.chunk_width) {
         for (std::size_t plane = 0; plane < planes.size(); ++plane)
-          read_chunk(x, y, static_cast<std::uint16_t>(plane), planes[plane]);
+          if (!planes[plane].empty()) read_chunk(x, y, static_cast<std::uint16_t>(plane), planes[plane]);
         draw_chunk(x, y, planes, image);
       }
   }
@@ -183,14 +196,21 @@ class Reader {
     const std::uint32_t columns = std::min(layout_.chunk_width, layout_.width - x0);
     const bool separate = planes.size() > 1;
     std::array<std::uint32_t, kMaxSamples> values{};
-    for (std::uint32_t y = 0; y < rows; ++y)
+    for (std::uint32_t y = 0; y < rows; ++y) {
+      if (is_plain_rgb()) {
+        const std::uint8_t* const row = planes[0].data() + y * row_size;
+        std::copy_n(row, std::size_t{3} * columns, image.pixel(static_cast<int>(x0), static_cast<int>(y0 + y)));
+        continue;
+      }
       for (std::uint32_t x = 0; x < columns; ++x) {
         for (std::size_t s = 0; s < layout_.samples; ++s) {
+          if (!is_used(s)) continue;
           const std::uint8_t* const row = planes[separate ? s : 0].data() + y * row_size;
           values[s] = sample(row, separate ? x : static_cast<std::size_t>(x) * layout_.samples + s);
         }
         draw_pixel(values, image.pixel(static_cast<int>(x0 + x), static_cast<int>(y0 + y)));
       }
+    }
   }
 
   void draw_pixel(const std::array<std::uint32_t, kMaxSamples>& values, std::uint8_t* rgb) const {

@@ -1,15 +1,74 @@
 #include "base/trajectory.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cinttypes>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <sstream>
+#include <string_view>
 
 #include "base/angle.h"
 #include "base/error.h"
+#include "base/number_text.h"
+#include "base/text_file.h"
+#include "base/words.h"
 
 namespace rubble {
+namespace {
+
+struct Word {
+  std::string_view text;
+  int column = 1;
+};
+
+/// The words before a '#'.
+std::vector<Word> words_of(std::string_view line) {
+  line = line.substr(0, line.find('#'));
+  std::vector<Word> words;
+  std::size_t end = 0;
+  while (true) {
+    const std::size_t start = line.find_first_not_of(" \t\r", end);
+    if (start == std::string_view::npos) return words;
+    end = std::min(line.find_first_of(" \t\r", start), line.size());
+    words.push_back({line.substr(start, end - start), static_cast<int>(start) + 1});
+  }
+}
+
+/// Seconds to nanoseconds; a Unix time with nanoseconds needs more than the 53 bits of a double.
+std::optional<Stamp> parse_stamp(std::string_view text) {
+  long double seconds = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  if (error != std::errc{} || end != text.data() + text.size() || !(std::abs(seconds) < 9.2e9L)) return std::nullopt;
+  return Stamp{std::llround(seconds * 1e9L)};
+}
+
+StampedPose parse_tum_line(const std::vector<Word>& words, const std::string& path, int line) {
+  static constexpr const char* kFields = "'time x y z qx qy qz qw'";
+  if (words.size() != 8)
+    throw InputError(
+        at(path, line, words.front().column, std::to_string(words.size()) + " fields; give 8 numbers " + kFields));
+  std::array<double, 8> v{};
+  for (std::size_t i = 0; i < 8; ++i) {
+    const auto number = parse_number(words[i].text);
+    if (!number)
+      throw InputError(
+          at(path, line, words[i].column, quoted(words[i].text) + " is no number; give 8 numbers " + kFields));
+    v[i] = *number;
+  }
+  const auto stamp = parse_stamp(words[0].text);
+  if (!stamp) throw InputError(at(path, line, words[0].column, quoted(words[0].text) + " is no time in seconds"));
+  const double qx = v[4], qy = v[5], qz = v[6], qw = v[7];
+  const double norm = qx * qx + qy * qy + qz * qz + qw * qw;
+  if (!(std::abs(norm - 1.0) < 0.01))
+    throw InputError(
+        at(path, line, words[4].column, "the quaternion is not of length 1; give qx qy qz qw in this order"));
+  const double yaw = std::atan2(2.0 * (qw * qz + qx * qy), norm - 2.0 * (qy * qy + qz * qz));
+  return {*stamp, {v[1], v[2], yaw}};
+}
+
+}  // namespace
 
 using mrpt::math::TPose2D;
 
@@ -30,37 +89,32 @@ std::optional<TPose2D> pose_at(const Trajectory& trajectory, Stamp stamp) {
 std::string tum_line(const StampedPose& stamped) {
   char line[160];
   const double half = 0.5 * wrap_angle(stamped.pose.phi);
-  const long long seconds = static_cast<long long>(stamped.stamp.ns / 1000000000);
-  const long long nanos = static_cast<long long>(stamped.stamp.ns % 1000000000);
-  std::snprintf(line, sizeof line, "%lld.%09lld %.6f %.6f 0.000000 0.000000 0.000000 %.9f %.9f", seconds, nanos,
-                stamped.pose.x, stamped.pose.y, std::sin(half), std::cos(half));
+  const bool is_negative = stamped.stamp.ns < 0;
+  const auto ns =
+      is_negative ? -static_cast<std::uint64_t>(stamped.stamp.ns) : static_cast<std::uint64_t>(stamped.stamp.ns);
+  std::snprintf(line, sizeof line, "%s%" PRIu64 ".%09" PRIu64 " %.6f %.6f 0.000000 0.000000 0.000000 %.9f %.9f",
+                is_negative ? "-" : "", ns / 1000000000u, ns % 1000000000u, stamped.pose.x, stamped.pose.y,
+                std::sin(half), std::cos(half));
   return line;
 }
 
 void write_tum(const std::string& path, const Trajectory& trajectory) {
-  std::ofstream file(path);
-  for (const auto& stamped : trajectory) file << tum_line(stamped) << '\n';
-  file.flush();
-  if (!file) throw RunError(path + ": cannot be written; check the folder and the free space");
+  std::string text;
+  for (const auto& stamped : trajectory) text += tum_line(stamped) + '\n';
+  write_text_file(path, text);
 }
 
 Trajectory read_tum(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(path + ": cannot be opened; give the path of a TUM trajectory (time x y z qx qy qz qw)");
+  std::istringstream file(read_text_file(path));
   Trajectory trajectory;
   std::string text;
   for (int line = 1; std::getline(file, text); ++line) {
-    if (text.empty() || text[0] == '#' || text == "\r") continue;
-    std::istringstream fields(text);
-    long double t = 0;  // a Unix time with nanoseconds needs more than 53 bits
-    double x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1;
-    if (!(fields >> t >> x >> y >> z >> qx >> qy >> qz >> qw) || !std::isfinite(x + y + qx + qy + qz + qw))
-      throw InputError(at(path, line, 1, "needs 8 numbers 'time x y z qx qy qz qw'"));
-    const double yaw = std::atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz));
-    const Stamp stamp{static_cast<std::int64_t>(std::llround(t * 1e9L))};
-    if (!trajectory.empty() && stamp <= trajectory.back().stamp)
-      throw InputError(at(path, line, 1, "the time does not increase; sort the file by time"));
-    trajectory.push_back({stamp, {x, y, yaw}});
+    const std::vector<Word> words = words_of(text);
+    if (words.empty()) continue;
+    const StampedPose stamped = parse_tum_line(words, path, line);
+    if (!trajectory.empty() && stamped.stamp <= trajectory.back().stamp)
+      throw InputError(at(path, line, words[0].column, "the time does not increase; sort the file by time"));
+    trajectory.push_back(stamped);
   }
   return trajectory;
 }

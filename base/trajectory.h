@@ -27,9 +27,10 @@ std::optional<mrpt::math::TPose2D> pose_at(const Trajectory& trajectory, Stamp s
 /// One line of TUM text, `time x y z qx qy qz qw`, one space, no trailing space (as evo reads it). z = 0.
 std::string tum_line(const StampedPose& stamped);
 
+/// Throws RunError when the file cannot be written.
 void write_tum(const std::string& path, const Trajectory& trajectory);
 
-/// Reads TUM text; '#' starts a comment. Throws InputError with file and line.
+/// Reads TUM text; '#' starts a comment. z, roll and pitch are dropped. Throws InputError with file, line and column.
 Trajectory read_tum(const std::string& path);
 
 }  // namespace rubble

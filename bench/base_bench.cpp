@@ -1,9 +1,11 @@
 #include <benchmark/benchmark.h>
 
+#include <filesystem>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "base/distance_transform.h"
+#include "base/geotiff.h"
 #include "base/rng.h"
 
 namespace rubble {
@@ -50,6 +52,40 @@ void opencv(benchmark::State& state, const Grid<std::uint8_t>& mask, int kind, i
   cv::Mat distance;
   for (auto _ : state) cv::distanceTransform(image, distance, kind, size);
 }
+
+/// A league map: a few flat colours.
+GeoTiff league_map() {
+  GeoTiff tiff;
+  tiff.image = RgbImage(kSide, kSide);
+  const Grid<std::uint8_t> walls = maze();
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) std::fill_n(tiff.image.pixel(x, y), 3, walls[{x, y}] != 0 ? 20 : 226);
+  tiff.transform = georeference(-20.0, 20.0, 0.05, GeoAnchor{50.36, 7.56, 33.0}, tiff.epsg);
+  return tiff;
+}
+
+std::string map_path() { return (std::filesystem::temp_directory_path() / "rubble-bench.tif").string(); }
+
+void write_map(benchmark::State& state) {
+  const GeoTiff tiff = league_map();
+  for (auto _ : state) write_geotiff(map_path(), tiff);
+  std::filesystem::remove(map_path());
+}
+
+void read_map(benchmark::State& state) {
+  write_geotiff(map_path(), league_map());
+  for (auto _ : state) benchmark::DoNotOptimize(read_geotiff(map_path()));
+  std::filesystem::remove(map_path());
+}
+
+void gaussian(benchmark::State& state) {
+  Rng rng(1, "bench");
+  for (auto _ : state) benchmark::DoNotOptimize(rng.gaussian());
+}
+
+BENCHMARK(write_map)->Unit(benchmark::kMillisecond);
+BENCHMARK(read_map)->Unit(benchmark::kMillisecond);
+BENCHMARK(gaussian);
 
 constexpr double kNoCap = std::numeric_limits<double>::infinity();
 BENCHMARK_CAPTURE(euclidean, maze_cap_1m, maze(), 1.0)->Unit(benchmark::kMillisecond);

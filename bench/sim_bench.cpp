@@ -141,10 +141,13 @@ BENCHMARK(Box2dRayCastScan)->Unit(benchmark::kMicrosecond);
 void PhysicsStep(benchmark::State& state, double v, double w) {
   sim::World world(maze(), robot::RobotModel{}, sim::ServoParameters{}, 0.01);
   int step = 0;
+  double iterations = 0.0;
   for (auto _ : state) {
     if (step++ % 100 == 0) world.firmware().command({v, w});
     world.step();
+    iterations += world.drive().iterations();
   }
+  state.counters["iterations"] = iterations / static_cast<double>(state.iterations());
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK_CAPTURE(PhysicsStep, standing, 0.0, 0.0)->Unit(benchmark::kMicrosecond);

@@ -11,7 +11,7 @@
 namespace rubble::explore {
 
 struct TransformConfig {
-  double alpha = 4.0;   ///< weight of the discomfort against length, per metre travelled
+  double alpha = 20.0;  ///< weight of the discomfort against length, per metre travelled
   double d_min = 0.35;  ///< never closer to an obstacle [m]
   double d_opt = 0.60;  ///< distance to obstacles the robot likes best [m]
 };
@@ -29,8 +29,8 @@ struct Source {
 /// The Exploration Transform, eq. (3): for every free cell the cost of the cheapest way to any of the sources, where a
 /// metre costs 1 + alpha * danger metres. With all frontier cells as sources it is Wirth and Pellenz's transform
 /// (2007), with one source Zelinsky's path transform (1991). It has no local minima: every reached cell that is no
-/// source has a lower neighbour. Multi-source Dijkstra with Dial's bucket queue (1969) on steps of 12 : 17. Keeps its
-/// memory between runs.
+/// source has a lower neighbour. Multi-source Dijkstra on steps of 12 : 17 with a bucket queue (Dial 1969), the buckets
+/// as wide as the cheapest step allows (Dinitz 1978). Keeps its memory between runs.
 class ExplorationTransform {
  public:
   /// Runs over the free cells of `floor` (its clearance measured). With `until`, stops once the cost of that cell is
@@ -47,35 +47,29 @@ class ExplorationTransform {
   std::vector<Cell> descend(Cell from) const;
 
  private:
-  /// Cost of the steps into a cell, straight and diagonal; 0: impassable.
-  struct StepCost {
-    std::uint16_t straight = 0;
-    std::uint16_t diagonal = 0;
-  };
-  struct Entry {
-    std::uint32_t cell;
-    std::uint32_t next;
+  /// A cell's cost so far and the cost of a step out of it, straight and diagonal; steps of 0: impassable.
+  struct Node {
+    std::uint32_t cost;
+    std::uint16_t straight;
+    std::uint16_t diagonal;
   };
   struct Start {
     std::uint32_t cost;
     std::uint32_t cell;
   };
 
-  static constexpr std::uint32_t kBuckets = 4096;
+  static constexpr std::uint32_t kBuckets = 128;
 
   void prepare(const Traversable& floor, const TransformConfig& config);
   void expand(const std::vector<Start>& starts, std::uint32_t until);
   void push(std::uint32_t cell, std::uint32_t cost);
-  std::uint32_t next_cost(std::uint32_t from) const;
+  /// The first bucket >= `from` that is not empty; all of them lie in [from, from + kBuckets).
+  std::uint32_t next_bucket(std::uint32_t from) const;
   std::size_t index(Cell c) const { return frame_.index(c); }
 
   GridFrame frame_;
-  std::vector<StepCost> step_;
-  std::vector<std::uint32_t> cost_;
-  std::vector<Entry> entries_;
-  std::array<std::uint32_t, kBuckets> head_{};
-  std::array<std::uint64_t, kBuckets / 64> filled_{};
-  std::uint64_t filled_words_ = 0;
+  std::vector<Node> nodes_;
+  std::array<std::vector<std::uint32_t>, kBuckets> buckets_;  ///< of cells, by cost, in a ring
 };
 
 }  // namespace rubble::explore

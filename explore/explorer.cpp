@@ -11,6 +11,7 @@
 #include "explore/motion_watch.h"
 #include "explore/path_follower.h"
 #include "explore/planner.h"
+#include "explore/searched_area.h"
 #include "explore/traversable.h"
 
 namespace rubble::explore {
@@ -38,6 +39,15 @@ constexpr double kTrailRadius = 0.20;            ///< [m]
 constexpr double kNearFrontier = 1.0;            ///< frontier this close at the start: turn to see it [m]
 constexpr int kMaxPardons = 2;                   ///< times that barred targets are tried again before giving up
 constexpr int kMaxStuckAtPlace = 6;
+constexpr double kSearchReplan = 2.0;                 ///< on the way to a viewpoint [s]
+constexpr double kArrivedReplan = 0.3;                ///< standing at the end of the way [s]
+constexpr double kSearchPeriod = 0.25;                ///< the searched area is marked this often [s]
+constexpr double kSearchTurnRate = deg_to_rad(40.0);  ///< turning faster the sensors see too little [rad/s]
+constexpr double kCueAge = 1.2;                       ///< an unconfirmed cue younger than this is worth waiting for [s]
+constexpr double kFacing = deg_to_rad(8.0);           ///< [rad]
+constexpr double kAtViewpoint = 0.12;    ///< viewpoints this close are served from where the robot stands [m]
+constexpr double kTurningRoom = 0.06;    ///< [m]
+constexpr double kSubjectRadius = 0.25;  ///< given up together with a place that cannot be seen [m]
 
 TPoint2D position(const TPose2D& pose) { return {pose.x, pose.y}; }
 double distance(const TPoint2D& a, const TPoint2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
@@ -77,7 +87,8 @@ struct Explorer::Impl {
         config(explorer_config),
         planner(planner_config(explorer_config)),
         follower(robot_model, follower_config(explorer_config)),
-        search(explorer_config.victims) {}
+        search(explorer_config.victims),
+        searched(explorer_config.search) {}
 
   void observe(const slam::Mapper& mapper, const robot::Inputs& inputs);
   Drive decide(const slam::Mapper& mapper);
@@ -92,6 +103,7 @@ struct Explorer::Impl {
   void visited_in_vain(const TPoint2D& target);
   void nothing_left();
   void finish_exploring();
+  void finish_searching();
   void finish(const std::string& why);
 
   void check_path(const slam::Mapper& mapper);
@@ -101,11 +113,18 @@ struct Explorer::Impl {
   Drive look();
   void show_path();
 
+  void mark_searched();
+  bool staring();
+  bool dwelling();
+  Plan plan_search(const Traversable& floor);
+  void face_subject();
+
   const robot::RobotModel model;
   const ExplorerConfig config;
   Planner planner;
   PathFollower follower;
   VictimSearch search;
+  SearchedArea searched;
   Blacklist blacklist;
   Attempts attempts;
   MotionWatch watch;
@@ -126,6 +145,7 @@ struct Explorer::Impl {
 
   std::uint64_t planned_version = 0;
   Stamp next_plan = Stamp::never();
+  Stamp last_plan = Stamp::never();
   bool plan_forced = true;
   std::optional<TPoint2D> target;
   double target_cost = 0.0;
@@ -143,6 +163,13 @@ struct Explorer::Impl {
   Stamp forget_hits = Stamp::never();
   bool blocked = false;
   Stamp creep_until = Stamp::never();
+
+  std::vector<Viewpoint> views;
+  TPoint2D subject;
+  Stamp next_mark = Stamp::never();
+  Stamp dwell_until = Stamp::never();
+  Stamp stare_until = Stamp::never();
+  Stamp next_stare = Stamp::never();
 
   Traversable last_floor;
   ExplorerState after_back_up = ExplorerState::Driving;
@@ -195,12 +222,20 @@ Drive Explorer::Impl::start(const slam::Mapper& mapper) {
 }
 
 Drive Explorer::Impl::drive(const slam::Mapper& mapper) {
+  mark_searched();
+  if (staring() || dwelling()) return {};
   if (watch.stuck(pose, commanded, stalled, dt)) {
     got_stuck();
     return {};
   }
   check_path(mapper);
-  if (target && state == ExplorerState::Driving && attempts.overdrawn(*target, target_cost, dt)) bar_target(*target);
+  const bool to_target = target && (state == ExplorerState::Driving || state == ExplorerState::Searching);
+  if (to_target && attempts.overdrawn(*target, target_cost, dt)) {
+    if (state == ExplorerState::Searching) searched.give_up(last_floor, subject, kSubjectRadius);
+    bar_target(*target);
+  }
+  if (state == ExplorerState::Searching && follower.arrived() && !looking.active() && now - last_plan > kArrivedReplan)
+    plan_forced = true;
   if (plan_forced || now >= next_plan) replan(mapper);
   if (state == ExplorerState::Finished) return {};
   if (looking.active()) return look();
@@ -224,6 +259,7 @@ Traversable Explorer::Impl::floor_now(const slam::Mapper& mapper, bool with_hits
 
 Plan Explorer::Impl::plan_on(const Traversable& floor) {
   if (state == ExplorerState::GoingHome) return planner.to_point(floor, pose, home, 0.15);
+  if (state == ExplorerState::Searching) return plan_search(floor);
   return planner.to_frontier(
       floor, pose, [this](const TPoint2D& p) { return blacklist.barred(p, now); }, target);
 }
@@ -233,7 +269,8 @@ void Explorer::Impl::replan(const slam::Mapper& mapper) {
   const bool new_map = mapper.map().version() != planned_version;
   plan_forced = false;
   planned_version = mapper.map().version();
-  next_plan = now + config.replan_period;
+  last_plan = now;
+  next_plan = now + (state == ExplorerState::Searching ? kSearchReplan : config.replan_period);
   if (now >= forget_hits) remembered_hits.clear();
 
   last_floor = floor_now(mapper, !remembered_hits.empty());
@@ -262,6 +299,8 @@ void Explorer::Impl::accept(Plan plan) {
   const bool near = distance(plan.target, position(pose)) < kVisited;
   if (state == ExplorerState::GoingHome) {
     if (distance(home, position(pose)) < kVisited) return finish("home again");
+  } else if (state == ExplorerState::Searching) {
+    if (distance(plan.target, position(pose)) < kAtViewpoint) return face_subject();
   } else if (near) {
     return visited_in_vain(plan.target);
   }
@@ -290,6 +329,7 @@ void Explorer::Impl::visited_in_vain(const TPoint2D& where) {
 void Explorer::Impl::nothing_left() {
   if (looking.active()) return;
   if (state == ExplorerState::GoingHome) return finish("no way home is left");
+  if (state == ExplorerState::Searching) return finish_searching();
   if (looks_in_vain == 0 || (failed_plans < 2 && looks_in_vain < 2)) {
     ++looks_in_vain;
     return look_around(kLookTurn, false);
@@ -306,14 +346,89 @@ void Explorer::Impl::finish_exploring() {
   std::string why = "nothing reachable left to explore";
   if (frontier_left == 1) why += " (1 frontier cannot be reached)";
   if (frontier_left > 1) why += " (" + std::to_string(frontier_left) + " frontiers cannot be reached)";
-  if (!config.return_home) return finish(why);
   reason = why;
+  plan_forced = true;
+  if (config.search.on) {
+    state = ExplorerState::Searching;
+    return;
+  }
+  finish_searching();
+}
+
+void Explorer::Impl::finish_searching() {
+  if (!config.return_home) return finish(state == ExplorerState::Searching ? "all visible floor searched" : "");
   state = ExplorerState::GoingHome;
   plan_forced = true;
 }
 
+/// Records what the victim sensors see from here; not while turning too fast to see.
+void Explorer::Impl::mark_searched() {
+  if (!config.search.on || now < next_mark || std::abs(turned) > kSearchTurnRate * dt) return;
+  next_mark = now + kSearchPeriod;
+  searched.look(last_floor, pose);
+  if (state != ExplorerState::Searching || !target) return;
+  const Cell c = last_floor.cells.cell(subject);
+  if (last_floor.cells.inside(c) && searched.searched(last_floor, c)) plan_forced = true;  // seen on the way
+}
+
+/// A first cue is no victim yet: the robot holds still for a few more looks.
+bool Explorer::Impl::staring() {
+  if (!config.search.on || !search.undecided(now, kCueAge)) return false;
+  if (now >= next_stare) {
+    stare_until = now + config.search.stare;
+    next_stare = now + 4.0 * config.search.stare;
+  }
+  return now < stare_until;
+}
+
+/// Holds still before the subject; at the end of the time it counts as searched, seen or not.
+bool Explorer::Impl::dwelling() {
+  if (dwell_until == Stamp::never()) return false;
+  if (now < dwell_until) return true;
+  dwell_until = Stamp::never();
+  searched.look(last_floor, pose);
+  const Cell c = last_floor.cells.cell(subject);
+  if (last_floor.cells.inside(c) && !searched.searched(last_floor, c))
+    searched.give_up(last_floor, subject, kSubjectRadius);
+  plan_forced = true;
+  return false;
+}
+
+Plan Explorer::Impl::plan_search(const Traversable& floor) {
+  // The robot turns on the spot there, so its swing circle must be free, with room for stopping a little beside it.
+  const double room = std::max(config.d_min, model.swing_radius()) + kTurningRoom;
+  views = viewpoints(floor, searched, config.search, room);
+  std::vector<Source> sources;
+  for (const Viewpoint& view : views) {
+    const TPoint2D p = floor.cells.centre(view.cell);
+    if (blacklist.barred(p, now)) continue;
+    sources.push_back({view.cell, target && distance(p, *target) > 0.5 ? config.switch_cost : 0.0});
+  }
+  Plan plan = planner.to_cells(floor, pose, sources);
+  if (!plan.found) return plan;
+  for (const Viewpoint& view : views)
+    if (view.cell == floor.cells.cell(plan.target)) subject = view.subject;
+  return plan;
+}
+
+/// At a viewpoint: of all that can be seen from here, the place that needs the smallest turn comes first.
+void Explorer::Impl::face_subject() {
+  follower.clear();
+  if (looking.active()) return;
+  double turn = kPi;
+  for (const Viewpoint& view : views) {
+    if (distance(last_floor.cells.centre(view.cell), position(pose)) > kAtViewpoint) continue;
+    const double to = wrap_angle(std::atan2(view.subject.y - pose.y, view.subject.x - pose.x) - pose.phi);
+    if (std::abs(to) >= std::abs(turn)) continue;
+    turn = to;
+    subject = view.subject;
+  }
+  if (std::abs(turn) > kFacing) return look_around(turn, true);
+  dwell_until = now + config.search.dwell;
+}
+
 void Explorer::Impl::finish(const std::string& why) {
-  reason += (reason.empty() ? "" : ", ") + why;
+  reason += (reason.empty() || why.empty() ? "" : ", ") + why;
   state = ExplorerState::Finished;
   follower.clear();
   looking = {};

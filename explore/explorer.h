@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "explore/searched_area.h"
 #include "explore/victim_search.h"
 #include "robot/commands.h"
 #include "robot/measurements.h"
@@ -17,7 +18,7 @@ namespace rubble::explore {
 
 /// Parameters of autonomous exploration (paper section III.D, eqs. 3 and 4).
 struct ExplorerConfig {
-  double alpha = 4.0;                       ///< weight of discomfort against length, per metre travelled
+  double alpha = 20.0;                      ///< weight of discomfort against length, per metre travelled
   double d_min = 0.35;                      ///< never closer to an obstacle [m]
   double d_opt = 0.60;                      ///< distance to obstacles the robot likes best [m]
   double occupied_threshold = 0.5;          ///< p_occ from which a cell is an obstacle
@@ -33,11 +34,13 @@ struct ExplorerConfig {
   double scan_timeout = 0.3;                ///< without a scan for this long the robot stops [s]
   double first_turn = deg_to_rad(130.0);    ///< turn at the start that shows the scanner what is behind [rad]
   VictimSearchConfig victims;
+  SearchConfig search;
 };
 
-enum class ExplorerState { Starting, Driving, BackingUp, GoingHome, Finished };
+enum class ExplorerState { Starting, Driving, Searching, BackingUp, GoingHome, Finished };
 
-/// Decides where to drive: Exploration Transform to a close frontier by a safe path, until nothing reachable is left.
+/// Decides where to drive: Exploration Transform to a close frontier by a safe path, until nothing reachable is left;
+/// then to places the victim sensors have not looked at, by the same transform.
 class Explorer {
  public:
   Explorer(const robot::RobotModel& model, const ExplorerConfig& config);

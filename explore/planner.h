@@ -52,6 +52,11 @@ class Planner {
   Plan to_point(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const mrpt::math::TPoint2D& target,
                 double tolerance);
 
+  /// The cheapest way to one of several cells.
+  Plan to_cells(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const std::vector<Source>& sources) {
+    return plan(floor, T_map_base, sources);
+  }
+
   /// The transform of the last plan.
   const ExplorationTransform& transform() const { return transform_; }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/distance_transform.h"
+#include "explore/set_bytes.h"
 
 namespace rubble::explore {
 namespace {
@@ -22,6 +23,19 @@ struct Box {
   Cell high;
   bool empty() const { return high.x < low.x; }
 };
+
+/// Classifies cells by their counts. Branch-free and on plain arrays, so that compilers use vector code.
+void classify_row(const std::uint16_t* __restrict seen, const std::uint16_t* __restrict hits, int count,
+                  float threshold, Occupancy* __restrict cells, std::uint8_t* __restrict obstacle) {
+  static_assert(static_cast<int>(Occupancy::Free) == 1 && static_cast<int>(Occupancy::Occupied) == 2);
+  for (int i = 0; i < count; ++i) {
+    const int known = seen[i] != 0;
+    const int hit = hits[i] != 0;
+    const int often = static_cast<float>(hits[i]) >= threshold * static_cast<float>(seen[i]);
+    obstacle[i] = static_cast<std::uint8_t>(hit & often);
+    cells[i] = static_cast<Occupancy>(known + (hit & often));
+  }
+}
 
 bool any_seen(const CountMap& map, int y, int from, int to) {
   unsigned seen = 0;
@@ -46,6 +60,7 @@ Box seen_box(const CountMap& map) {
           break;
         }
     }
+    if (middle && !right) continue;
     for (int x = frame.width - 1; x > box.high.x; --x)
       if (map.seen({x, y}) != 0) box.high.x = x;
   }
@@ -96,21 +111,26 @@ Traversable traversable(const CountMap& map, double occupied_threshold) {
   frame.x0 = whole.x0 + (box.low.x - 1) * whole.resolution;
   frame.y0 = whole.y0 + (box.low.y - 1) * whole.resolution;
 
-  OccupancyGrid known(frame, Occupancy::Unknown);
-  std::vector<Cell> weak;
+  Traversable floor;
+  floor.cells = OccupancyGrid(frame, Occupancy::Unknown);
+  floor.obstacle = Grid<std::uint8_t>(frame);
+  floor.body = Grid<std::uint8_t>(frame);
   const float threshold = static_cast<float>(occupied_threshold);
+  const int columns = frame.width - 2;
+  std::vector<std::uint16_t> seen(static_cast<std::size_t>(columns));
+  std::vector<std::uint16_t> hits(static_cast<std::size_t>(columns));
+  std::vector<Cell> weak;
   for (int y = box.low.y; y <= box.high.y; ++y) {
-    Occupancy* row = known.row(y - box.low.y + 1) + 1;
-    for (int x = box.low.x; x <= box.high.x; ++x) {
-      const int seen = map.seen({x, y});
-      const int hits = map.occupied({x, y});
-      if (seen == 0) continue;
-      const bool occupied = hits > 0 && static_cast<float>(hits) >= threshold * static_cast<float>(seen);
-      row[x - box.low.x] = occupied ? Occupancy::Occupied : Occupancy::Free;
-      if (occupied && hits <= kWeakHits) weak.push_back({x - box.low.x + 1, y - box.low.y + 1});
+    const int row = y - box.low.y + 1;
+    for (int i = 0; i < columns; ++i) {
+      seen[static_cast<std::size_t>(i)] = map.seen({box.low.x + i, y});
+      hits[static_cast<std::size_t>(i)] = map.occupied({box.low.x + i, y});
     }
+    classify_row(seen.data(), hits.data(), columns, threshold, floor.cells.row(row) + 1, floor.obstacle.row(row) + 1);
+    for_each_set(floor.obstacle.row(row), frame.width, [&](int x) {
+      if (map.occupied({box.low.x + x - 1, y}) <= kWeakHits) weak.push_back({x, row});
+    });
   }
-  Traversable floor = traversable(std::move(known));
   const int reach = static_cast<int>(std::lround(kLoneRadius / frame.resolution));
   for (const Cell c : weak)
     if (stands_alone(floor.cells, c, reach)) floor.obstacle[c] = 0;

@@ -107,8 +107,15 @@ void VictimSearch::add(const robot::VictimCue& cue, const TPose2D& T_map_base) {
   if (static_cast<int>(sightings.size()) > config_.max_cues)
     sightings.erase(sightings.begin(), sightings.end() - config_.max_cues);
   locate(clusters_[index]);
+  clusters_[index].newest = std::max(clusters_[index].newest, cue.stamp);
   confirm(clusters_[index], cue.stamp);
   rebuild_reports();
+}
+
+bool VictimSearch::undecided(Stamp now, double age) const {
+  return std::any_of(clusters_.begin(), clusters_.end(), [&](const Cluster& cluster) {
+    return cluster.id == 0 && cluster.newest != Stamp::never() && now - cluster.newest < age;
+  });
 }
 
 void VictimSearch::rebuild_reports() {

@@ -35,6 +35,9 @@ class VictimSearch {
   /// Takes a cue that was sensed from T_map_base.
   void add(const robot::VictimCue& cue, const mrpt::math::TPose2D& T_map_base);
 
+  /// True when a cue younger than `age` [s] belongs to a victim that is not confirmed yet: worth another look.
+  bool undecided(Stamp now, double age) const;
+
   /// The confirmed victims by id. Of two that turn out to be one, the older id stays.
   const std::vector<VictimReport>& reports() const { return reports_; }
 
@@ -49,6 +52,7 @@ class VictimSearch {
     mrpt::math::TPoint2D p_map;
     int id = 0;  ///< 0: not confirmed
     Stamp confirmed;
+    Stamp newest = Stamp::never();
   };
 
   std::size_t cluster_near(const mrpt::math::TPoint2D& p_map) const;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 #include "arenas/arena_file.h"
@@ -218,14 +219,15 @@ std::string folder_for(const RunOptions& options, const Scenario& scenario) {
   return options.out.empty() ? next_run_folder("runs", scenario.name, scenario.seed) : options.out;
 }
 
-void finish(RunReport& report, RunFolder& folder, const Scenario& scenario, double sim_s, Clock::time_point start) {
+void finish(RunReport& report, RunFolder& folder, const Scenario& scenario, const RunOptions& options, double sim_s,
+            Clock::time_point start) {
   report.score["end"] = report.end;
   const std::string hashed = without_timing(report.score);
   folder.save_hashes(hashed);
   add_timing(report.score, sim_s, start);
   folder.write("score.json", report.score.dump(2) + "\n");
   folder.close();
-  folder.link_latest();
+  if (options.link_latest) folder.link_latest();
   report.folder = folder.path();
   report.broken = broken_expectations(scenario, report.score);
 }
@@ -255,15 +257,16 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   report.score = empty_score();
   LoopEnd end;
   {
-    robot::RecordingRobot recorded(simulated, folder.file("log.rlog"), resolved_yaml(resolved));
+    std::optional<robot::RecordingRobot> recorded;
+    if (options.record) recorded.emplace(simulated, folder.file("log.rlog"), resolved_yaml(resolved));
     Loop loop(scenario, options, folder);
     end = loop.run(
-        recorded, core,
+        recorded ? static_cast<robot::Robot&>(*recorded) : simulated, core,
         [&] {
           return simulated.truth().empty() ? 0.0 : simulated.truth().back().stamp.seconds() / scenario.time_limit;
         },
         [&] { folder.append_truth(simulated.truth()); });
-    recorded.flush();
+    if (recorded) recorded->flush();
   }
   folder.save_map(scenario, core.mapper(), core.victims());
   add_trajectory_error(report.score, core.mapper().trajectory(), simulated.truth());
@@ -272,7 +275,7 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   report.end = end.reason;
   report.interrupted = end.interrupted;
   report.failure = end.failure;
-  finish(report, folder, scenario, end.sim_s, start);
+  finish(report, folder, scenario, options, end.sim_s, start);
   return report;
 }
 
@@ -298,7 +301,7 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   add_mapper_counts(report.score, core);
   report.end = end.interrupted ? end.reason : "the log is over";
   report.interrupted = end.interrupted;
-  finish(report, folder, resolved, end.sim_s, start);
+  finish(report, folder, resolved, options, end.sim_s, start);
   return report;
 }
 
@@ -322,7 +325,7 @@ ReplayReport replay_run(const std::string& path, const RunOptions& options) {
     if (options.interrupted && options.interrupted()) break;
   }
   const fs::path scratch =
-      fs::temp_directory_path() / ("rubble-replay-" + sha256_of_text(fs::absolute(path)).substr(0, 16));
+      fs::temp_directory_path() / ("rubble-replay-" + sha256_of_text(fs::absolute(path).string()).substr(0, 16));
   RunFolder folder(options.out.empty() ? scratch.string() : options.out, options.replace || options.out.empty());
   folder.write("scenario.yaml", resolved_yaml(scenario));
   folder.append_estimate(core.mapper().trajectory());

@@ -20,6 +20,8 @@ struct Progress {
 struct RunOptions {
   std::string out;                                ///< run folder; empty: runs/<name>-seed<N>-<number>
   bool replace = false;                           ///< an existing run folder may be replaced
+  bool record = true;                             ///< keep log.rlog (a simulated run only)
+  bool link_latest = true;                        ///< let `latest` beside the folder point to it
   std::function<bool()> interrupted;              ///< asked each tick; true ends the run with its folder complete
   std::function<void(const Progress&)> progress;  ///< called a few times a second
 };

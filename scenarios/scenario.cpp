@@ -94,6 +94,19 @@ void bind(Binder& b, explore::ExplorerConfig& c) {
   b.degrees("turn_in_place_deg", c.turn_in_place, 1.0, 180.0);
   b.number("look_ahead_m", c.look_ahead, 0.05, 5.0);
   b.boolean("return_home", c.return_home);
+  b.number("d_min_floor_m", c.d_min_floor, 0.0, 2.0);
+  b.number("switch_cost_m", c.switch_cost, 0.0, 100.0);
+  b.section("victims", [&](Binder& v) {
+    v.integer("min_cues", c.victims.min_cues, 1, 1000);
+    v.number("min_evidence", c.victims.min_evidence, 0.0, 1000.0);
+    v.number("merge_distance_m", c.victims.merge_distance, 0.0, 10.0);
+    v.boolean("search", c.search.on);
+    v.degrees("field_of_view_deg", c.search.field_of_view, 5.0, 360.0);
+    v.number("range_m", c.search.range, 0.3, 20.0);
+    v.integer("min_cells", c.search.min_cells, 1, 100000);
+    v.number("stare_s", c.search.stare, 0.0, 60.0);
+    v.number("dwell_s", c.search.dwell, 0.0, 60.0);
+  });
 }
 
 void bind(Binder& b, scoring::ScoreConfig& c) {
@@ -170,7 +183,7 @@ void read_expect(const YamlMap& root, Scenario& s) {
     if (std::find(kScoreKeys.begin(), kScoreKeys.end(), key) == kScoreKeys.end()) {
       std::string names;
       for (const auto& known : kScoreKeys) names += (names.empty() ? "" : ", ") + known;
-      expect.fail(key, "is not a number of score.json; known are " + names);
+      expect.fail(key, "'" + key + "' is not a number of score.json; known are " + names);
     }
     const YamlMap bounds = expect.map(key);
     Expectation expectation{key, {}, {}};

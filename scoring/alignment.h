@@ -12,9 +12,12 @@ namespace rubble::scoring {
 
 struct AlignmentConfig {
   CorrelationConfig correlation;
-  double reach = 2.0;             ///< walls further apart than this do not pull on each other [m]
-  std::size_t max_points = 1500;  ///< wall points of each map used to refine the hypotheses
-  double tau = 0.6;               ///< distance at which a wall no longer counts as met when poses are ranked [m]
+  double reach = 2.0;               ///< walls further apart than this do not pull on each other [m]
+  std::size_t max_points = 800;     ///< wall points of each map used to refine the hypotheses
+  double tau_tight = 0.3;           ///< k(d) of the agreement that tells right from almost right [m]
+  double tau_wide = 0.6;            ///< k(d) of the agreement that ranks poses [m]
+  std::size_t bent_hypotheses = 8;  ///< of the best poses, those that may bend the map
+  double stiffness = 0.003;         ///< holds back the quadratic displacement of the check
 };
 
 /// The rigid transform between two maps, found without any initial guess.
@@ -22,13 +25,17 @@ struct Alignment {
   bool aligned = false;             ///< the transform can be trusted
   std::string note;                 ///< why not; one line
   mrpt::math::TPose2D T_truth_map;  ///< the best pose found, also when it cannot be trusted
-  double quality = 0.0;             ///< of the best pose
+  mrpt::math::TPose2D T_walls;      ///< the same, drawn to where most walls coincide; equal for undistorted maps
   double runner_up = 0.0;           ///< quality of the best clearly different pose relative to the best, 0..1
-  PoseEvidence evidence;            ///< at the best pose
+  double quality = 0.0;             ///< wide agreement of both maps' walls at the best pose; 1.2 at the most
+  double tight = 0.0;               ///< tight, chance-corrected agreement at the best pose; 2 at the most
+  PoseEvidence wide_evidence;
+  PoseEvidence tight_evidence;
 };
 
-/// Correlation of walls and free space over all rotations and shifts, the best hypotheses refined on the distance
-/// fields and ranked by what both maps say about each other. Scale is fixed at 1, mirror images are never tried.
+/// Correlation of walls and free space over all rotations and shifts; the best hypotheses refined on the distance
+/// fields and ranked by what the walls of both maps say about each other, after a mild bend of the map where that
+/// explains more. Scale is fixed at 1, mirror images are never tried. docs/scoring.md gives the rules of trust.
 Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config = {});
 
 }  // namespace rubble::scoring

@@ -135,16 +135,26 @@ cv::Mat rasterise(const std::vector<TPoint2D>& points, double angle, float mass,
   return raster;
 }
 
-cv::Mat correlation(const PointSet& map, double angle, const Targets& targets, const Canvas& canvas, float wall_mass,
-                    float free_mass) {
-  cv::Mat wall = rasterise(map.walls, angle, wall_mass, canvas);
-  cv::Mat free = rasterise(map.free, angle, free_mass, canvas);
-  cv::dft(wall, wall);
-  cv::dft(free, free);
+/// Spectra of a turned map.
+struct Turned {
+  cv::Mat wall;
+  cv::Mat free;
+};
+
+Turned turn(const PointSet& map, double angle, const Canvas& canvas, float wall_mass, float free_mass) {
+  Turned out{rasterise(map.walls, angle, wall_mass, canvas), rasterise(map.free, angle, free_mass, canvas)};
+  cv::dft(out.wall, out.wall);
+  cv::dft(out.free, out.free);
+  return out;
+}
+
+/// The evidence at every shift. `opposite`: for the map turned by another half turn, whose raster is the same read
+/// backwards, so that its correlation is a convolution.
+cv::Mat correlation(const Turned& map, const Targets& targets, bool opposite) {
   cv::Mat product;
   cv::Mat product_free;
-  cv::mulSpectrums(targets.wall, wall, product, 0, true);
-  cv::mulSpectrums(targets.free, free, product_free, 0, true);
+  cv::mulSpectrums(targets.wall, map.wall, product, 0, !opposite);
+  cv::mulSpectrums(targets.free, map.free, product_free, 0, !opposite);
   product += product_free;
   cv::Mat surface;
   cv::dft(product, surface, cv::DFT_INVERSE | cv::DFT_SCALE | cv::DFT_REAL_OUTPUT);
@@ -157,7 +167,7 @@ bool same(const TPose2D& a, const TPose2D& b, const TPoint2D& centre, const Corr
 }
 
 /// The highest local maxima of a surface, as poses.
-void collect_peaks(cv::Mat surface, double angle, const Canvas& canvas, const TPoint2D& centre,
+void collect_peaks(cv::Mat surface, double angle, bool opposite, const Canvas& canvas, const TPoint2D& centre,
                    const CorrelationConfig& config, std::vector<PoseGuess>& guesses) {
   const int clear = static_cast<int>(std::ceil(config.distinct_shift / canvas.cell));
   const double c = std::cos(angle);
@@ -167,11 +177,13 @@ void collect_peaks(cv::Mat surface, double angle, const Canvas& canvas, const TP
     cv::Point at;
     cv::minMaxLoc(surface, nullptr, &best, nullptr, &at);
     if (best <= 0.0) return;
-    // The raster's corner lies at shift `at`; shifts beyond the far edge of the canvas are negative ones.
-    const int x = at.x > canvas.width - 2 * canvas.half - 2 ? at.x - canvas.width : at.x;
-    const int y = at.y > canvas.height - 2 * canvas.half - 2 ? at.y - canvas.height : at.y;
-    const TPoint2D moved(canvas.x0 + (x + canvas.half + 0.5) * canvas.cell,
-                         canvas.y0 + (y + canvas.half + 0.5) * canvas.cell);
+    // Where the map's centre comes to lie. Shifts beyond the far edge of the canvas are negative ones.
+    const auto cell = [&](int shift, int size) {
+      if (opposite) return shift - canvas.half;
+      return (shift > size - 2 * canvas.half - 2 ? shift - size : shift) + canvas.half;
+    };
+    const TPoint2D moved(canvas.x0 + (cell(at.x, canvas.width) + 0.5) * canvas.cell,
+                         canvas.y0 + (cell(at.y, canvas.height) + 0.5) * canvas.cell);
     guesses.push_back(
         {TPose2D(moved.x - (c * centre.x - s * centre.y), moved.y - (s * centre.x + c * centre.y), angle), best});
     for (int dy = -clear; dy <= clear; ++dy)
@@ -210,12 +222,13 @@ std::vector<PoseGuess> correlate(const OccupancyGrid& map, const OccupancyGrid& 
   const double wall_share = sampled.resolution() / config.cell;
 
   std::vector<PoseGuess> all;
-  const int rotations = std::max(4, static_cast<int>(std::lround(2.0 * kPi / config.rotation_step)));
-  for (int i = 0; i < rotations; ++i) {
-    const double angle = wrap_angle(2.0 * kPi * i / rotations);
-    collect_peaks(
-        correlation(points, angle, targets, canvas, static_cast<float>(wall_share), static_cast<float>(free_share)),
-        angle, canvas, points.centre, config, all);
+  const int half_rotations = std::max(2, static_cast<int>(std::lround(kPi / config.rotation_step)));
+  for (int i = 0; i < half_rotations; ++i) {
+    const double angle = kPi * i / half_rotations;
+    const Turned turned = turn(points, angle, canvas, static_cast<float>(wall_share), static_cast<float>(free_share));
+    for (const bool opposite : {false, true})
+      collect_peaks(correlation(turned, targets, opposite), wrap_angle(opposite ? angle + kPi : angle), opposite,
+                    canvas, points.centre, config, all);
   }
   std::stable_sort(all.begin(), all.end(), [](const PoseGuess& a, const PoseGuess& b) { return a.score > b.score; });
   std::vector<PoseGuess> distinct;

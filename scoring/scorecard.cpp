@@ -53,7 +53,11 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
     fill_psi(out, psi_of_strangers(config.colour_absent_cap));
     return out;
   }
-  const Overlap walls = overlap(map_known, truth_known, out.T_truth_map, config.tau);
+  Overlap walls = overlap(map_known, truth_known, out.T_truth_map, config.tau);
+  if (const Overlap drawn = overlap(map_known, truth_known, alignment.T_walls, config.tau); drawn.score > walls.score) {
+    walls = drawn;
+    out.T_truth_map = alignment.T_walls;
+  }
   out.precision = walls.precision;
   out.recall = walls.recall;
   out.score = walls.score;

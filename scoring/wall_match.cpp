@@ -28,7 +28,8 @@ std::vector<TPoint2D> thin_out(const std::vector<TPoint2D>& points, std::size_t 
   return out;
 }
 
-void sample_known(const OccupancyGrid& grid, std::vector<TPoint2D>& free, std::vector<TPoint2D>& known) {
+/// Returns the area one sample stands for [m^2].
+double sample_known(const OccupancyGrid& grid, std::vector<TPoint2D>& free, std::vector<TPoint2D>& known) {
   const int step = std::max(1, static_cast<int>(std::lround(kSample / grid.resolution())));
   for (int y = step / 2; y < grid.height(); y += step) {
     for (int x = step / 2; x < grid.width(); x += step) {
@@ -37,6 +38,7 @@ void sample_known(const OccupancyGrid& grid, std::vector<TPoint2D>& free, std::v
       if (here != Occupancy::Unknown) known.push_back(grid.centre({x, y}));
     }
   }
+  return step * step * grid.resolution() * grid.resolution();
 }
 
 double ratio(double a, double b) { return b > 0.0 ? a / b : 0.0; }
@@ -88,28 +90,46 @@ struct Normal {
 
 WallMatch::Side::Side(const OccupancyGrid& source, double reach, std::size_t max_points)
     : grid(source), field(source, reach), walls(thin_out(wall_points(source), max_points)) {
-  sample_known(source, free, known);
+  sample_area = sample_known(source, free, known);
   if (walls.empty()) return;
   for (const TPoint2D& p : walls) centre += p;
   centre *= 1.0 / static_cast<double>(walls.size());
   double sum = 0.0;
   for (const TPoint2D& p : walls) sum += (p - centre).sqrNorm();
   extent = std::max(1.0, 2.0 * std::sqrt(sum / static_cast<double>(walls.size())));
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
+  for (const TPoint2D& p : walls) {
+    const TPoint2D d = p - centre;
+    xx += d.x * d.x;
+    xy += d.x * d.y;
+    yy += d.y * d.y;
+  }
+  const double n = static_cast<double>(walls.size());
+  // The smaller eigenvalue of the covariance.
+  const double variance = 0.5 * (xx + yy - std::sqrt((xx - yy) * (xx - yy) + 4.0 * xy * xy)) / n;
+  breadth = std::sqrt(std::max(0.0, variance));
 }
 
 WallMatch::WallMatch(const OccupancyGrid& map, const OccupancyGrid& truth, double reach, std::size_t max_points)
     : map_(map, reach, max_points), truth_(truth, reach, max_points) {}
 
-PoseEvidence WallMatch::evidence(const Warp& warp, double tau) const {
+WallMatch::Kernel WallMatch::kernel(double tau) const {
+  return {tau, chance(truth_.known, truth_.field, tau), chance(map_.known, map_.field, tau)};
+}
+
+PoseEvidence WallMatch::evidence(const Warp& warp, const Kernel& kernel) const {
+  const double tau = kernel.tau;
   PoseEvidence out;
   out.map = tally(map_.walls, truth_.grid, truth_.field, tau, [&](const TPoint2D& p) { return warp.forward(p); });
   out.truth = tally(truth_.walls, map_.grid, map_.field, tau, [&](const TPoint2D& p) { return warp.inverse(p); });
-  out.map.chance = chance(truth_.known, truth_.field, tau);
-  out.truth.chance = chance(map_.known, map_.field, tau);
+  out.map.chance = kernel.truth_chance;
+  out.truth.chance = kernel.map_chance;
   double common = 0.0;
   for (const TPoint2D& p : map_.free)
     if (at(truth_.grid, warp.forward(p)) == Occupancy::Free) common += 1.0;
-  out.free_common = ratio(common, static_cast<double>(std::min(map_.free.size(), truth_.free.size())));
+  out.free_common = std::min(1.0, ratio(common * map_.sample_area, std::min(map_.free_area(), truth_.free_area())));
   return out;
 }
 

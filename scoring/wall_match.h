@@ -32,7 +32,15 @@ class WallMatch {
   /// `reach`: distances count up to here [m]. At most `max_points` wall points a map are used (0: all).
   WallMatch(const OccupancyGrid& map, const OccupancyGrid& truth, double reach, std::size_t max_points);
 
-  PoseEvidence evidence(const Warp& warp, double tau) const;
+  /// k(d) = clip(1 - d / tau, 0, 1), with what a random place of either map would get.
+  struct Kernel {
+    double tau = 0.0;
+    double truth_chance = 0.0;  ///< on the truth
+    double map_chance = 0.0;    ///< on the map
+  };
+  Kernel kernel(double tau) const;
+
+  PoseEvidence evidence(const Warp& warp, const Kernel& kernel) const;
 
   /// Moves the pose so that walls meet: Gauss-Newton on both distance fields, walls further apart than about `sigma`
   /// [m] pull less and less (Geman-McClure weights).
@@ -48,17 +56,23 @@ class WallMatch {
   /// RMS displacement of the map's walls that no rigid transform explains [m].
   double bend(const Warp& warp) const;
 
+  /// Both maps have walls that fix a pose: more than one straight wall or a blob.
+  bool usable() const { return map_.breadth >= kLeastBreadth && truth_.breadth >= kLeastBreadth; }
   const mrpt::math::TPoint2D& map_centre() const { return map_.centre; }
 
  private:
+  static constexpr double kLeastBreadth = 0.4;  // [m]
   struct Side {
     Side(const OccupancyGrid& grid, double reach, std::size_t max_points);
+    double free_area() const { return sample_area * static_cast<double>(free.size()); }  // [m^2]
     OccupancyGrid grid;
     WallField field;
     std::vector<mrpt::math::TPoint2D> walls;
     std::vector<mrpt::math::TPoint2D> free;   ///< samples of the free area
     std::vector<mrpt::math::TPoint2D> known;  ///< samples of the free and occupied area
     mrpt::math::TPoint2D centre;              ///< of the wall points
+    double sample_area = 0.0;                 ///< that one free or known sample stands for [m^2]
+    double breadth = 0.0;                     ///< standard deviation of the wall points across their main direction [m]
     double extent = 1.0;                      ///< RMS distance of the wall points from it, twice [m]
   };
   Side map_;

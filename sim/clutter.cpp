@@ -48,10 +48,14 @@ void Clutter::brake(double dt) {
   }
 }
 
-void Clutter::settle() {
+bool Clutter::settle() {
+  bool moving = false;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (bodies_[i]->IsAwake()) place(i);
+    if (!bodies_[i]->IsAwake()) continue;
+    moving = true;
+    place(i);
   }
+  return moving;
 }
 
 void Clutter::place(std::size_t i) {

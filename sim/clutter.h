@@ -24,8 +24,8 @@ class Clutter {
 
   /// Friction of the floor on the moving balls; call before the world's step.
   void brake(double dt);
-  /// Takes over where the balls are; call after the world's step.
-  void settle();
+  /// Takes over where the balls are; call after the world's step. Whether one still moves.
+  bool settle();
 
   const std::vector<Sphere>& spheres() const { return spheres_; }
   std::vector<arenas::PaperBall> balls() const;

@@ -18,6 +18,8 @@ struct DriveParameters {
   double gear_friction = 10.0;    ///< holds a side whose motor is relaxed [N]
   double rotating_mass = 2.0;     ///< wheels, belt, gears and rotor of one side, at the rim [kg]
   double tyre_stiffness = 15e3;   ///< of one tyre against the floor [N/m]
+  double patch_length = 0.08;     ///< what of a soft tyre touches the floor [m]
+  double patch_width = 0.05;      ///< [m]
   double sheet_creep = 0.25;      ///< slip ratio of a wheel on loose paper when it starts to slide
   double sheet_resistance = 0.1;  ///< loose paper rucks up before a wheel: force over load
 };
@@ -57,35 +59,49 @@ struct Side {
 /// the slip, which is what makes a skid-steered robot turn less than its wheels say.
 class Drive {
  public:
-  Drive(const Terrain& terrain, const robot::RobotModel& model, const DriveParameters& parameters = {});
+  explicit Drive(const robot::RobotModel& model, const DriveParameters& parameters = {});
 
-  /// The plan velocity after `dt`, before anything but `stops` pushes back.
-  PlanVelocity step(const mrpt::math::TPose2D& pose, const PlanVelocity& before, const SideDemand& demand,
-                    const std::vector<Stop>& stops, double dt);
+  /// The plan velocity after `dt`, before anything but `stops` pushes back. `ground`: under the four wheels at `pose`.
+  PlanVelocity step(const mrpt::math::TPose2D& pose, const std::array<Ground, 4>& ground, const PlanVelocity& before,
+                    const SideDemand& demand, const std::vector<Stop>& stops, double dt);
 
   const Side& left() const { return sides_[0]; }
   const Side& right() const { return sides_[1]; }
   double yaw_inertia() const { return yaw_inertia_; }
-  /// The ground under front-left, rear-left, front-right, rear-right wheel at the last step.
-  const std::array<Ground, 4>& ground() const { return ground_; }
+  /// Of the last step.
+  int iterations() const { return iterations_; }
 
  private:
-  struct Wheel;
+  struct Axis;
   struct Motion;
+  struct Wheel;
 
-  std::array<double, 4> loads() const;
+  std::array<double, 4> loads(const std::array<Ground, 4>& ground) const;
+  Wheel contact(std::size_t i, const Ground& ground, double load, const mrpt::math::TPoint2D& arm, double heading_cos,
+                double heading_sin, const Motion& motion, double dt) const;
+  void push(Motion& motion, const Wheel& wheel, double along, double across) const;
+  double roll(Motion& motion, const Wheel& wheel, mrpt::math::TPoint2D& impulse) const;
+  double ruck(Motion& motion, const Wheel& wheel, double& impulse) const;
+  void set_drilling(const Motion& motion, const std::array<Wheel, 4>& wheels);
+  double drill(Motion& motion);
 
-  const Terrain& terrain_;
   robot::RobotModel model_;
   DriveParameters parameters_;
   double yaw_inertia_;
+  int iterations_ = 0;
   std::array<Side, 2> sides_;
-  std::array<Ground, 4> ground_;
-  std::array<double, 4> forward_impulse_{};  ///< of the last step: the first guess of the next
-  std::array<double, 4> lateral_impulse_{};
+  // Impulses of the last step: the first guess of the next.
+  std::array<mrpt::math::TPoint2D, 4> wheel_impulse_{};  ///< along, across [N s]
   std::array<double, 4> ruck_impulse_{};
   std::array<double, 2> motor_impulse_{};
+  double drill_impulse_ = 0.0;   ///< about the vertical [N m s]
+  double drill_softness_ = 0.0;  ///< turn rate per impulse [rad/s per N m s]
+  double drill_limit_ = 0.0;     ///< [N m s]
 };
+
+/// The ground under front-left, rear-left, front-right and rear-right wheel.
+std::array<Ground, 4> ground_under(const Terrain& terrain, const robot::RobotModel& model,
+                                   const mrpt::math::TPose2D& pose);
 
 /// Where the four wheels stand in the base frame: front-left, rear-left, front-right, rear-right [m].
 std::array<mrpt::math::TPoint2D, 4> wheel_feet(const robot::RobotModel& model);

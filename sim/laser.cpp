@@ -26,6 +26,7 @@ Laser::Laser(const arenas::Arena& arena, const robot::RobotModel& model, double 
       table_(model.laser),
       walk_(arenas::faces(arena)),
       faces_(arenas::faces(arena)),
+      plane_cast_(faces_),
       sweep_cast_(faces_),
       noise_(model.laser, noise, seed) {}
 
@@ -37,8 +38,13 @@ robot::LaserScan Laser::scan(Stamp first, const std::vector<WorldState>& states,
   scan.beam_period = sweep_ ? model_.laser.beam_period : 0.0;
   scan.range_min = model_.laser.range_min;
   scan.range_max = model_.laser.range_max;
-  swept_beams(states, model_, table_, first, scan.beam_period, beams_);
-  sweep_cast_.cast(beams_, table_, model_.laser.range_max + kBeyond, balls, scan.ranges);
+  const double reach = model_.laser.range_max + kBeyond;
+  if (!sweep_ || at_rest(states, first, scan.beam_stamp(table_.count - 1))) {
+    plane_cast_.cast(laser_placement_at(states, model_, first), table_, reach, balls, scan.ranges);
+  } else {
+    swept_beams(states, model_, table_, first, scan.beam_period, beams_);
+    sweep_cast_.cast(beams_, table_, reach, balls, scan.ranges);
+  }
   noise_.apply(scan.ranges);
   return scan;
 }

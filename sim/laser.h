@@ -5,6 +5,7 @@
 
 #include "arenas/arena.h"
 #include "robot/measurements.h"
+#include "sim/plane_cast.h"
 #include "sim/range_noise.h"
 #include "sim/ray_walk.h"
 #include "sim/rays.h"
@@ -22,6 +23,8 @@ struct SweepTimes {
 };
 
 /// The scanner on its levelled platform. Phantom walls, walls missed and stretched ranges come out of the geometry.
+/// While the robot moves every beam starts from its own pose; standing still, or without sweep, the whole scan is drawn
+/// from one.
 class Laser {
  public:
   Laser(const arenas::Arena& arena, const robot::RobotModel& model, double noise, bool sweep, std::uint64_t seed);
@@ -42,6 +45,7 @@ class Laser {
   BeamTable table_;
   RayWalk walk_;
   ScanFaces faces_;
+  PlaneCast plane_cast_;
   SweepCast sweep_cast_;
   RangeNoise noise_;
   Beams beams_;

@@ -34,6 +34,7 @@ Obstacles::Obstacles(b2World& world, const PlanOrigin& origin, const arenas::Are
   b2BodyDef definition;
   body_ = world.CreateBody(&definition);
   for (const arenas::Solid& solid : arena.solids) {
+    if (solid.gives_way) continue;  // veil strips: the laser sees them, the robot passes
     // Box2D polygons take at most eight corners: a fan of pieces serves outlines with more.
     const std::size_t n = solid.outline.size();
     for (std::size_t first = 1; first + 1 < n; first += b2_maxPolygonVertices - 2) {

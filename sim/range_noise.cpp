@@ -18,13 +18,15 @@ constexpr double kGrazingTo = deg_to_rad(88.0);    ///< at which all are
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-/// Inverse of the normal distribution by Newton's method on erfc.
-double normal_quantile(double p) {
-  double x = 0.0;
+/// Inverse of the normal distribution by Newton's method on erfc, from a guess nearby.
+double normal_quantile(double p, double guess) {
+  double x = guess;
   for (int i = 0; i < 60; ++i) {
     const double error = 0.5 * std::erfc(-x / std::sqrt(2.0)) - p;
     const double density = std::exp(-0.5 * x * x) / std::sqrt(2.0 * kPi);
-    x -= std::clamp(error / density, -0.5, 0.5);
+    const double step = std::clamp(error / density, -0.5, 0.5);
+    x -= step;
+    if (std::abs(step) < 1e-9) break;
   }
   return x;
 }
@@ -35,8 +37,10 @@ RangeNoise::RangeNoise(const robot::LaserModel& laser, double factor, std::uint6
     : laser_(laser), factor_(factor), range_(seed, "range"), edge_(seed, "range_edge") {
   bias_ = static_cast<float>(factor * range_.uniform(-0.25, 0.25));
   quantiles_.reserve(kQuantiles);
+  double x = 0.0;
   for (std::size_t i = 0; i < kQuantiles; ++i) {
-    quantiles_.push_back(static_cast<float>(normal_quantile((static_cast<double>(i) + 0.5) / kQuantiles)));
+    x = normal_quantile((static_cast<double>(i) + 0.5) / static_cast<double>(kQuantiles), x);
+    quantiles_.push_back(static_cast<float>(x));
   }
 }
 

@@ -61,11 +61,6 @@ struct Interval {
   double t0 = 0.0, t1 = 0.0;  ///< after the first beam [s]
 };
 
-double turned(const Matrix3d& a, const Matrix3d& b) {
-  // |a - b|_F = 2 sqrt(2) sin(angle / 2)
-  return 2.0 * std::asin(std::min(1.0, (a - b).norm() / (2.0 * std::sqrt(2.0))));
-}
-
 Placement blend(const Interval& interval, double t) {
   const double u = (t - interval.t0) / (interval.t1 - interval.t0);
   Placement p{interval.from.R + u * (interval.to.R - interval.from.R),
@@ -111,6 +106,37 @@ void fill(const Interval& interval, const BeamTable& table, double beam_period, 
 
 }  // namespace
 
+Placement laser_placement_at(const std::vector<WorldState>& states, const robot::RobotModel& model, Stamp stamp) {
+  std::size_t next = 0;
+  while (next + 1 < states.size() && states[next].stamp < stamp) ++next;
+  const std::size_t before = next > 0 ? next - 1 : 0;
+  Interval interval{laser_placement(states[before], model), laser_placement(states[next], model), 0.0, 0.0};
+  interval.t0 = states[before].stamp - stamp;
+  interval.t1 = states[next].stamp - stamp;
+  return interval.t1 > interval.t0 ? blend(interval, std::min(0.0, interval.t1)) : interval.to;
+}
+
+bool at_rest(const std::vector<WorldState>& states, Stamp from, Stamp to) {
+  constexpr double kStill = 1e-4;         // [m]
+  constexpr double kStillAngle = 1.7e-5;  // [rad]
+  const WorldState* first = nullptr;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const WorldState& s = states[i];
+    if (i + 1 < states.size() && states[i + 1].stamp <= from) continue;
+    if (first == nullptr) first = &s;
+    const WorldState& f = *first;
+    const bool still = std::abs(s.pose.x - f.pose.x) < kStill && std::abs(s.pose.y - f.pose.y) < kStill &&
+                       std::abs(s.stance.z - f.stance.z) < kStill && std::abs(s.pose.phi - f.pose.phi) < kStillAngle &&
+                       std::abs(s.stance.pitch - f.stance.pitch) < kStillAngle &&
+                       std::abs(s.stance.roll - f.stance.roll) < kStillAngle &&
+                       std::abs(s.aim.pitch - f.aim.pitch) < kStillAngle &&
+                       std::abs(s.aim.roll - f.aim.roll) < kStillAngle;
+    if (!still) return false;
+    if (s.stamp >= to) break;
+  }
+  return true;
+}
+
 void swept_beams(const std::vector<WorldState>& states, const robot::RobotModel& model, const BeamTable& table,
                  Stamp first, double beam_period, Beams& beams) {
   assert(!states.empty());
@@ -138,12 +164,16 @@ void swept_beams(const std::vector<WorldState>& states, const robot::RobotModel&
   std::size_t at = 0;
   while (at + 1 < intervals.size() && intervals[at].t1 < half) ++at;
   beams.middle = blend(intervals[at], half);
-  beams.travel = 0.0;
-  beams.turn = 0.0;
+  beams.travel = beams.lift = beams.turn = beams.tilt = 0.0;
   for (const Interval& interval : intervals) {
     for (const Placement* p : {&interval.from, &interval.to}) {
-      beams.travel = std::max(beams.travel, (p->p - beams.middle.p).norm());
-      beams.turn = std::max(beams.turn, turned(p->R, beams.middle.R));
+      const Vector3d moved = p->p - beams.middle.p;
+      const Vector3d ahead = beams.middle.R.transpose() * p->R.col(0);
+      const double leaning = (p->R.col(2) - beams.middle.R.col(2)).norm();  // 2 sin(angle / 2)
+      beams.travel = std::max(beams.travel, moved.norm());
+      beams.lift = std::max(beams.lift, std::abs(moved.dot(beams.middle.R.col(2))));
+      beams.turn = std::max(beams.turn, std::abs(std::atan2(ahead.y(), ahead.x())));
+      beams.tilt = std::max(beams.tilt, 1.05 * leaning);
     }
   }
 

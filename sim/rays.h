@@ -29,13 +29,21 @@ Placement base_placement(const WorldState& state);
 /// T_arena_laser: the platform turns about the laser's origin, first in pitch, then in roll.
 Placement laser_placement(const WorldState& state, const robot::RobotModel& model);
 
+/// T_arena_laser at `stamp`, between the two states around it (the last state's beyond it).
+Placement laser_placement_at(const std::vector<WorldState>& states, const robot::RobotModel& model, Stamp stamp);
+
+/// Whether laser and robot stood still (to 0.1 mm and 0.001 deg) from `from` to `to`.
+bool at_rest(const std::vector<WorldState>& states, Stamp from, Stamp to);
+
 /// The rays of one sweep, each from the laser's placement at its own time, about `middle` so that floats keep
 /// micrometres. Structure of arrays, padded to whole groups of four.
 struct Beams {
   std::size_t count = 0;
   Placement middle;               ///< of the laser, half way through the sweep
   double travel = 0.0;            ///< how far an origin is from middle.p at most [m]
-  double turn = 0.0;              ///< by how much a placement is turned against middle.R at most [rad]
+  double lift = 0.0;              ///< the part of it along the laser's axis [m]
+  double turn = 0.0;              ///< about the laser's axis, against middle.R, at most [rad]
+  double tilt = 0.0;              ///< of the laser's axis against the middle one's, at most [rad]
   std::vector<float> ox, oy, oz;  ///< origin minus middle.p [m]
   std::vector<float> dx, dy, dz;  ///< unit direction
 

@@ -17,39 +17,23 @@ constexpr double kLarge = 2.0;  ///< larger polygons are asked every time [m]
 }  // namespace
 
 ScanFaces::ScanFaces(const std::vector<arenas::Face>& faces) {
-  double x0 = 0.0, y0 = 0.0, x1 = 0.0, y1 = 0.0;
   for (const arenas::Face& face : faces) {
-    Polygon polygon;
-    polygon.first = static_cast<std::uint32_t>(vertices_.size());
-    Vector3d normal = Vector3d::Zero();
-    Vector3d sum = Vector3d::Zero();
     const auto& v = face.vertices;
-    const Vector3d corner(v[0].x, v[0].y, v[0].z);
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      const Vector3d a(v[i].x, v[i].y, v[i].z);
-      const auto& n = v[(i + 1) % v.size()];
-      normal += (a - corner).cross(Vector3d(n.x, n.y, n.z) - corner);
-      sum += a;
-      vertices_.push_back(a);
+    for (std::size_t first = 1; first + 1 < v.size(); first += kMostCorners - 2) {
+      const std::size_t last = std::min(first + kMostCorners - 2, v.size() - 1);
+      std::vector<Vector3d> corners{Vector3d(v[0].x, v[0].y, v[0].z)};
+      for (std::size_t i = first; i <= last; ++i) corners.emplace_back(v[i].x, v[i].y, v[i].z);
+      add(corners);
     }
-    if (normal.norm() < 1e-12) {
-      vertices_.resize(polygon.first);
-      continue;
-    }
-    polygon.count = static_cast<std::uint32_t>(v.size());
-    polygon.normal = normal.normalized();
-    polygon.offset = polygon.normal.dot(corner);
-    polygon.middle = sum / static_cast<double>(v.size());
-    for (std::uint32_t i = polygon.first; i < vertices_.size(); ++i) {
-      polygon.radius = std::max(polygon.radius, (vertices_[i] - polygon.middle).norm());
-    }
+  }
+  double x0 = 0.0, y0 = 0.0, x1 = 0.0, y1 = 0.0;
+  for (const Polygon& polygon : polygons_) {
     const Vector3d& m = polygon.middle;
-    if (polygons_.empty()) x0 = x1 = m.x(), y0 = y1 = m.y();
+    if (&polygon == polygons_.data()) x0 = x1 = m.x(), y0 = y1 = m.y();
     x0 = std::min(x0, m.x());
     y0 = std::min(y0, m.y());
     x1 = std::max(x1, m.x());
     y1 = std::max(y1, m.y());
-    polygons_.push_back(polygon);
   }
 
   frame_.resolution = kCell;
@@ -71,6 +55,24 @@ ScanFaces::ScanFaces(const std::vector<arenas::Face>& faces) {
     list_.insert(list_.end(), cell.begin(), cell.end());
   }
   start_.push_back(static_cast<std::uint32_t>(list_.size()));
+}
+
+void ScanFaces::add(const std::vector<Vector3d>& corners) {
+  Vector3d normal = Vector3d::Zero();
+  Polygon polygon;
+  polygon.middle = Vector3d::Zero();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    normal += (corners[i] - corners[0]).cross(corners[(i + 1) % corners.size()] - corners[0]);
+    polygon.middle += corners[i] / static_cast<double>(corners.size());
+  }
+  if (normal.norm() < 1e-12) return;  // no area, nothing to hit
+  polygon.normal = normal.normalized();
+  polygon.offset = polygon.normal.dot(corners[0]);
+  polygon.first = static_cast<std::uint32_t>(vertices_.size());
+  polygon.count = static_cast<std::uint32_t>(corners.size());
+  for (const Vector3d& corner : corners) polygon.radius = std::max(polygon.radius, (corner - polygon.middle).norm());
+  vertices_.insert(vertices_.end(), corners.begin(), corners.end());
+  polygons_.push_back(polygon);
 }
 
 void ScanFaces::near(const Vector3d& p, double range, double slack, std::vector<std::uint32_t>& found) const {

@@ -13,6 +13,8 @@ namespace rubble::sim {
 /// The arena's faces, found by place and cut by a scan plane: what both fast casters start from.
 class ScanFaces {
  public:
+  static constexpr std::size_t kMostCorners = 8;  ///< faces with more are cut into several polygons
+
   struct Polygon {
     Eigen::Vector3d normal;  ///< to the side it is seen from
     double offset = 0.0;     ///< normal . p of its points
@@ -33,6 +35,8 @@ class ScanFaces {
   const Eigen::Vector3d* vertices(const Polygon& polygon) const { return vertices_.data() + polygon.first; }
 
  private:
+  void add(const std::vector<Eigen::Vector3d>& corners);
+
   std::vector<Polygon> polygons_;
   std::vector<Eigen::Vector3d> vertices_;
   GridFrame frame_;

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr float kSeam = 2e-5f;  ///< faces reach so far beyond their edges: no light through seams [m]
 constexpr float kInf = std::numeric_limits<float>::infinity();
-constexpr std::size_t kMostCorners = 32;
+constexpr std::size_t kMostCorners = ScanFaces::kMostCorners;
 
 /// A linear function of position for four rays at once: value(o + t d) = at_origin + t * along.
 struct Plane4 {
@@ -34,47 +34,86 @@ double distance_to_segment(double ax, double ay, double bx, double by) {
   const double dy = by - ay;
   const double length2 = dx * dx + dy * dy;
   const double u = length2 > 0.0 ? std::clamp(-(ax * dx + ay * dy) / length2, 0.0, 1.0) : 0.0;
-  return std::hypot(ax + u * dx, ay + u * dy);
+  const double x = ax + u * dx;
+  const double y = ay + u * dy;
+  return std::sqrt(x * x + y * y);
 }
+
+/// An angle in [-2 pi, 2 pi] the short way round.
+double half_turn(double a) { return a > kPi ? a - 2.0 * kPi : (a < -kPi ? a + 2.0 * kPi : a); }
 
 }  // namespace
 
-/// Bearings low .. high, low in [-pi, pi], as groups of beams; the part beyond +pi is behind and comes round.
-void SweepCast::spans(double low, double high, const BeamTable& table, std::vector<Span>& found) const {
+/// Bearings low .. high with a margin on both sides as groups of beams; what lies beyond pi behind comes round.
+void SweepCast::spans(double low, double high, double margin, const BeamTable& table, std::vector<Span>& found) const {
   found.clear();
   const std::size_t groups = table.cosine.size() / 4;
+  low -= margin;
+  high += margin;
+  if (high - low >= 2.0 * kPi) {
+    found.push_back({0, groups});
+    return;
+  }
   const auto add = [&](double from, double to) {
     const double first = std::floor((from - table.angle_min) / table.angle_step);
     const double last = std::ceil((to - table.angle_min) / table.angle_step);
     if (last < 0.0 || first >= static_cast<double>(table.count)) return;
     const std::size_t begin = first > 0.0 ? static_cast<std::size_t>(first) / 4 : 0;
     const std::size_t end = std::min(groups, static_cast<std::size_t>(last) / 4 + 1);
-    // Two parts that touch must not share a group, or work is done twice.
-    found.push_back({found.empty() ? begin : std::max(begin, found.back().end), end});
+    found.push_back({begin, end});
   };
-  if (high - low >= 2.0 * kPi) {
-    found.push_back({0, groups});
-    return;
+  // A bearing is one of three turns; each shift that reaches the scanner's sector gives a part.
+  for (const double shift : {-2.0 * kPi, 0.0, 2.0 * kPi}) add(low + shift, high + shift);
+}
+
+SweepCast::Bearings SweepCast::bearings(const Vector3d* vertices, const double* z, std::size_t n, double slack,
+                                        const Placement& laser) const {
+  // The part of the polygon between the planes z = -slack and z = slack, corner by corner.
+  double x[4 * kMostCorners], y[4 * kMostCorners];
+  std::size_t count = 0;
+  const auto add = [&](const Vector3d& p) {
+    const Vector3d q = p - laser.p;
+    x[count] = laser.R.col(0).dot(q);
+    y[count] = laser.R.col(1).dot(q);
+    ++count;
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t k = i + 1 < n ? i + 1 : 0;
+    const double rise = z[k] - z[i];
+    double from = 0.0;
+    double to = 1.0;
+    if (z[i] > slack) from = z[k] > slack ? 2.0 : (slack - z[i]) / rise;
+    if (z[i] < -slack) from = z[k] < -slack ? 2.0 : (-slack - z[i]) / rise;
+    if (from > 1.0) continue;
+    if (z[k] > slack) to = (slack - z[i]) / rise;
+    if (z[k] < -slack) to = (-slack - z[i]) / rise;
+    add(vertices[i] + from * (vertices[k] - vertices[i]));
+    if (to < 1.0 || from > 0.0) add(vertices[i] + to * (vertices[k] - vertices[i]));
   }
-  if (low < -kPi) {
-    add(-kPi, high);
-    add(low + 2.0 * kPi, kPi);
-  } else if (high > kPi) {
-    add(-kPi, high - 2.0 * kPi);
-    add(low, kPi);
-  } else {
-    add(low, high);
+  Bearings b;
+  if (count == 0) return b;
+  const double first = rough_atan2(y[0], x[0]);
+  double bearing = first;
+  b.low = b.high = first;
+  b.nearest = distance_to_segment(x[count - 1], y[count - 1], x[0], y[0]);
+  for (std::size_t i = 1; i < count; ++i) {
+    b.nearest = std::min(b.nearest, distance_to_segment(x[i - 1], y[i - 1], x[i], y[i]));
+    bearing += half_turn(rough_atan2(y[i], x[i]) - bearing);
+    b.low = std::min(b.low, bearing);
+    b.high = std::max(b.high, bearing);
   }
+  b.around = std::abs(bearing + half_turn(first - bearing) - first) > 1.0;
+  return b;
 }
 
 void SweepCast::meet(const ScanFaces::Polygon& polygon, const Beams& beams, const BeamTable& table, double max_range) {
   const Vector3d* vertices = faces_.vertices(polygon);
-  const std::size_t n = std::min<std::size_t>(polygon.count, kMostCorners);
-  // In the laser's frame at mid sweep; a face all above or all below what the scan plane sweeps is never met.
+  const std::size_t n = polygon.count;
+  // Height over the scan plane at mid sweep; a face all above or all below what that plane sweeps is never met.
   double z[kMostCorners];
   double highest = -kInf;
   double lowest = kInf;
-  const double slack = beams.turn * (max_range + beams.travel) + beams.travel + 1e-4;
+  const double slack = beams.tilt * (max_range + beams.travel) + beams.lift + 1e-4;
   const Vector3d up = beams.middle.R.col(2);
   for (std::size_t i = 0; i < n; ++i) {
     z[i] = up.dot(vertices[i] - beams.middle.p);
@@ -82,43 +121,13 @@ void SweepCast::meet(const ScanFaces::Polygon& polygon, const Beams& beams, cons
     lowest = std::min(lowest, z[i]);
   }
   if (lowest > slack || highest < -slack) return;
-
-  double x[kMostCorners], y[kMostCorners];
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vector3d q = vertices[i] - beams.middle.p;
-    x[i] = beams.middle.R.col(0).dot(q);
-    y[i] = beams.middle.R.col(1).dot(q);
-  }
-  double nearest = kInf;
-  double low = 0.0, high = 0.0, bearing = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t k = i + 1 < n ? i + 1 : 0;
-    nearest = std::min(nearest, distance_to_segment(x[i], y[i], x[k], y[k]));
-    const double b = rough_atan2(y[i], x[i]);
-    if (i == 0) {
-      low = high = bearing = b;
-      continue;
-    }
-    bearing += wrap_angle(b - bearing);
-    low = std::min(low, bearing);
-    high = std::max(high, bearing);
-  }
-  if (nearest > max_range + beams.travel) return;
+  const Bearings b = bearings(vertices, z, n, slack, beams.middle);
+  if (b.nearest > max_range + beams.travel) return;
   // How far the bearing of a point of the face can differ between its beam's pose and the middle one.
-  const double tilt = std::max(std::abs(highest), std::abs(lowest));
-  const double margin =
-      nearest > 0.05 ? beams.turn * (1.0 + tilt / nearest) + beams.travel / nearest + 2.0 * kRoughAtan2Error : kPi;
-  const double closed = bearing + wrap_angle(rough_atan2(y[0], x[0]) - bearing);
-  const bool around = std::abs(closed - rough_atan2(y[0], x[0])) > 1.0;  // the laser's axis passes through the face
-  if (around || margin >= kPi) {
-    low = -kPi;
-    high = kPi;
-  } else {
-    const double shift = low < -kPi ? 2.0 * kPi : 0.0;
-    low += shift - margin;
-    high += shift + margin;
-  }
-  spans(low, high, table, spans_);
+  const double margin = b.around || b.nearest < 0.05 ? kPi
+                                                     : beams.turn + beams.tilt * (beams.tilt + slack / b.nearest) +
+                                                           beams.travel / b.nearest + 2.0 * kRoughAtan2Error;
+  spans(b.low, b.high, margin, table, spans_);
   if (spans_.empty()) return;
 
   // Only edges that cross the scan plane bound what the beams meet.
@@ -156,22 +165,20 @@ void SweepCast::meet(const Sphere& sphere, const Beams& beams, const BeamTable& 
   const Vector3d centre = Vector3d(sphere.x, sphere.y, sphere.z) - beams.middle.p;
   const double distance = centre.norm();
   if (distance > max_range + sphere.radius + beams.travel) return;
-  const double slack = beams.turn * (max_range + beams.travel) + beams.travel + 1e-4;
+  const double slack = beams.tilt * (max_range + beams.travel) + beams.lift + 1e-4;
   const double height = beams.middle.R.col(2).dot(centre);
   if (std::abs(height) > sphere.radius + slack) return;
   const double flat = std::sqrt(std::max(0.0, distance * distance - height * height));
   const double clear = flat - sphere.radius - beams.travel;
-  double low = -kPi;
-  double high = kPi;
+  double bearing = 0.0;
+  double margin = kPi;
   if (clear > 0.05) {
-    const double bearing = rough_atan2(beams.middle.R.col(1).dot(centre), beams.middle.R.col(0).dot(centre));
-    const double margin = std::asin(sphere.radius / flat) +
-                          beams.turn * (1.0 + (std::abs(height) + sphere.radius) / clear) + beams.travel / clear +
-                          2.0 * kRoughAtan2Error;
-    low = bearing - margin;
-    high = bearing + margin;
+    bearing = rough_atan2(beams.middle.R.col(1).dot(centre), beams.middle.R.col(0).dot(centre));
+    margin = std::asin(sphere.radius / flat) + beams.turn +
+             beams.tilt * (beams.tilt + (std::abs(height) + sphere.radius) / clear) + beams.travel / clear +
+             2.0 * kRoughAtan2Error;
   }
-  spans(low, high, table, spans_);
+  spans(bearing, bearing, margin, table, spans_);
   const Float4 cx = splat(static_cast<float>(centre.x()));
   const Float4 cy = splat(static_cast<float>(centre.y()));
   const Float4 cz = splat(static_cast<float>(centre.z()));

@@ -25,7 +25,15 @@ class SweepCast {
   };
   void meet(const ScanFaces::Polygon& polygon, const Beams& beams, const BeamTable& table, double max_range);
   void meet(const Sphere& sphere, const Beams& beams, const BeamTable& table, double max_range);
-  void spans(double low, double high, const BeamTable& table, std::vector<Span>& found) const;
+  /// What of a polygon the scan plane sweeps over, seen from the laser.
+  struct Bearings {
+    double low = 0.0, high = 0.0;  ///< [rad], high may exceed pi
+    double nearest = 1e9;          ///< [m]
+    bool around = false;           ///< the laser's axis passes through it
+  };
+  Bearings bearings(const Eigen::Vector3d* vertices, const double* z, std::size_t n, double slack,
+                    const Placement& laser) const;
+  void spans(double low, double high, double margin, const BeamTable& table, std::vector<Span>& found) const;
 
   const ScanFaces& faces_;
   std::vector<std::uint32_t> near_;

@@ -4,6 +4,7 @@
 
 #include <box2d/box2d.h>
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -29,7 +30,8 @@ struct WorldState {
   PlanVelocity velocity;
 };
 
-/// The physical world: robot, floor, walls and clutter, advanced in fixed steps. Nothing in it is random.
+/// The physical world: robot, floor, walls and clutter, advanced in fixed steps. Nothing in it is random. Box2D works
+/// only where something is near enough to be touched; on its own the robot moves in doubles.
 class World {
  public:
   World(const arenas::Arena& arena, const robot::RobotModel& model, const ServoParameters& servos, double step);
@@ -48,6 +50,9 @@ class World {
 
  private:
   void find_stops();
+  void move_freely(const PlanVelocity& velocity);
+  void move_among_others(const PlanVelocity& velocity);
+  double clearance() const;
   HeightBand robot_band() const;
 
   robot::RobotModel model_;
@@ -62,8 +67,11 @@ class World {
   Drive drive_;
   Firmware firmware_;
   Servos servos_;
+  std::array<Ground, 4> ground_;  ///< under the wheels now
   Attitude attitude_;
   std::vector<Stop> stops_;
+  bool moved_freely_ = false;  ///< Box2D does not know the pose
+  double free_way_ = 0.0;      ///< the outline cannot touch anything before it has moved so far [m]
   WorldState state_;
 };
 

@@ -104,6 +104,7 @@ void CountMap::stamp(const TPose2D& T_map_base, const ScanPoints& scan) {
   }
   passed_.reset(from, to.x - from.x + 1, to.y - from.y + 1);
   fill_scan_polygons(rays_, origin, scan.beam_width, passed_);
+  clear_surfaces(rays_, kSurfaceGap / frame_.resolution, passed_);
   count_hits(rays_);
   count_passes();
 }

@@ -41,8 +41,9 @@ class CountMap {
   const std::uint8_t* p_occ_plane() const { return p_occ_.data(); }
 
   /// Stamps a scan taken at T_map_base: each touched cell counts once; a cell hit in this scan is not freed by its
-  /// other beams. A cell is touched when it holds a hit, or when its centre lies inside the scan polygon
-  /// (scan_polygon.h). Counts that would overflow are halved, both planes alike.
+  /// other beams. A cell is touched when it holds a hit, or when its centre lies inside the scan polygon and no surface
+  /// runs through it between two neighbouring hits (scan_polygon.h). Counts that would overflow are halved, both planes
+  /// alike.
   void stamp(const mrpt::math::TPose2D& T_map_base, const ScanPoints& scan);
 
   /// Unknown where never seen; occupied where p_occ >= threshold, free elsewhere.

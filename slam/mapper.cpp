@@ -28,8 +28,11 @@ struct Mapper::Impl {
   void process(const LaserScan& scan);
   void start(Stamp reference, const ScanPoints& points);
   void keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points, const Surface& surface);
-  TPose2D motion_since_last(Stamp reference) const;
-  TPose2D refined_motion(const Surface& known, const TPose2D& T_last_prior);
+  void pass(Stamp reference, const TPose2D& T_last_now);
+  TPose2D motion_since_scan(Stamp reference) const;
+  TPose2D refined_motion(const Surface& surface, const TPose2D& T_last_prior);
+  std::vector<TPoint2D> hits_to_weigh(const ScanPoints& points, const Surface& surface,
+                                      const TPose2D& T_map_prior) const;
   bool moved(const TPose2D& motion) const;
   std::optional<SweepMotion> sweep_motion(const LaserScan& scan) const;
 
@@ -47,17 +50,18 @@ struct Mapper::Impl {
   Trajectory trajectory_;
   std::vector<TPoint2D> last_hits_;
   MapperCounts counts_;
-  // The last mapping step.
   bool started_ = false;
+  // The last mapping step.
   TPose2D T_map_last_;
   SurfaceCoverage last_coverage_;
-  std::optional<TPose2D> T_odom_last_;  ///< nothing while no odometry has come
-  TPose2D last_motion_;                 ///< what the step before it moved (the prior where there is no odometry)
+  // The last scan, mapped or not.
+  TPose2D T_last_scan_;                 ///< motion since the last mapping step
+  std::optional<TPose2D> T_odom_scan_;  ///< nothing while no odometry has come
 };
 
 void Mapper::Impl::receive(const robot::Inputs& inputs) {
   for (const robot::Odometry& odometry : inputs.odometry) odometry_.add(odometry);
-  if (started_ && !T_odom_last_ && !odometry_.empty()) T_odom_last_ = odometry_.pose_at(Stamp::never());
+  if (started_ && !T_odom_scan_ && !odometry_.empty()) T_odom_scan_ = odometry_.pose_at(Stamp::never());
   for (const LaserScan& scan : inputs.scans) {
     ++counts_.scans;
     if (scan.ranges.empty() || scan.middle() <= newest_scan_) {
@@ -86,28 +90,21 @@ void Mapper::Impl::process(const LaserScan& scan) {
   const ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr);
   if (!started_) return start(reference, points);
 
-  const TPose2D T_last_prior = motion_since_last(reference);
-  const bool gate = moved(T_last_prior);
-  const bool warming_up = counts_.mapped < static_cast<std::uint64_t>(config_.first_scans);
-  if (!gate && !warming_up && T_odom_last_) {
-    trajectory_.push_back({reference, T_map_last_ + T_last_prior});
-    return;
-  }
+  // Section III.B: odometry interpolated at the scan's time, refined by ICP of the last mapped and the current scan.
+  const TPose2D T_last_prior = T_last_scan_ + motion_since_scan(reference);
   const Surface surface = surface_of(points, config_.surface);
-  const Surface known = covered_part(surface, last_coverage_, T_last_prior, config_.coverage_margin);
-  const TPose2D T_last_now = refined_motion(known, T_last_prior);
-  if (!T_odom_last_ && !moved(T_last_now) && !warming_up) {
-    trajectory_.push_back({reference, T_map_last_ + T_last_now});
-    return;
+  const TPose2D T_last_now = refined_motion(surface, T_last_prior);
+  const bool gate = moved(T_last_now);
+  if (!gate && counts_.mapped >= static_cast<std::uint64_t>(config_.first_scans)) {
+    return pass(reference, T_last_now);
   }
 
+  const std::vector<TPoint2D> judged = hits_to_weigh(points, surface, T_map_last_ + T_last_now);
   const Particles resampled = gate ? resample(particles_) : particles_;
   const Particles drifted = drift(resampled, T_last_now, motion_error_, drift_rng_);  // Fig. 5
-  const Particles measured =
-      measure(drifted, config_.covered_only ? hits_of(known, points) : points.hits, map_);  // eq. (2)
+  const Particles measured = measure(drifted, judged, map_);                          // eq. (2)
   particles_ = normalise(measured);
   const TPose2D T_map_now = mean_of_best(particles_, config_.top_share);
-  last_motion_ = T_last_now;
   keep(reference, T_map_now, points, surface);
 }
 
@@ -117,29 +114,42 @@ void Mapper::Impl::start(Stamp reference, const ScanPoints& points) {
   keep(reference, TPose2D(), points, surface_of(points, config_.surface));
 }
 
-/// Ends a mapping step: the scan enters the map, and the next step counts from here.
+/// Ends a scan that is not mapped: the next one counts from here, but is matched with the last mapped one.
+void Mapper::Impl::pass(Stamp reference, const TPose2D& T_last_now) {
+  T_last_scan_ = T_last_now;
+  if (!odometry_.empty()) T_odom_scan_ = odometry_.pose_at(reference);
+  trajectory_.push_back({reference, T_map_last_ + T_last_now});
+}
+
+/// Ends a mapping step: the scan enters the map, and later ones are matched with it.
 void Mapper::Impl::keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points, const Surface& surface) {
   map_.stamp(T_map_base, points);
   matcher_.set_last(surface);
   last_coverage_ = SurfaceCoverage(surface);
   T_map_last_ = T_map_base;
-  if (!odometry_.empty()) T_odom_last_ = odometry_.pose_at(reference);
   last_hits_.clear();
   for (const TPoint2D& p_base : points.hits) last_hits_.push_back(T_map_base.composePoint(p_base));
-  trajectory_.push_back({reference, T_map_base});
   ++counts_.mapped;
+  pass(reference, TPose2D());
 }
 
-TPose2D Mapper::Impl::motion_since_last(Stamp reference) const {
-  if (!T_odom_last_) return last_motion_;
-  return odometry_.pose_at(reference) - *T_odom_last_;
+/// Nothing where there is no odometry: the scan matcher alone then finds the motion.
+TPose2D Mapper::Impl::motion_since_scan(Stamp reference) const {
+  return T_odom_scan_ ? odometry_.pose_at(reference) - *T_odom_scan_ : TPose2D();
 }
 
-TPose2D Mapper::Impl::refined_motion(const Surface& known, const TPose2D& T_last_prior) {
+TPose2D Mapper::Impl::refined_motion(const Surface& surface, const TPose2D& T_last_prior) {
   if (!config_.icp) return T_last_prior;
-  const ScanMatch match = matcher_.match(known, T_last_prior);
+  const Surface shared = covered_part(surface, last_coverage_, T_last_prior, config_.coverage_margin);
+  const ScanMatch match = matcher_.match(shared, T_last_prior);
   ++(match.accepted ? counts_.icp_accepted : counts_.icp_rejected);
   return match.T_last_now;
+}
+
+std::vector<TPoint2D> Mapper::Impl::hits_to_weigh(const ScanPoints& points, const Surface& surface,
+                                                  const TPose2D& T_map_prior) const {
+  if (!config_.known_only) return points.hits;
+  return hits_of(known_part(surface, map_, T_map_prior, config_.known_margin), points);
 }
 
 bool Mapper::Impl::moved(const TPose2D& motion) const {
@@ -163,8 +173,7 @@ void Mapper::update(const robot::Inputs& inputs) { impl_->receive(inputs); }
 const CountMap& Mapper::map() const { return impl_->map_; }
 
 TPose2D Mapper::pose() const {
-  if (!impl_->T_odom_last_) return impl_->T_map_last_;
-  return impl_->T_map_last_ + impl_->motion_since_last(impl_->odometry_.newest());
+  return impl_->T_map_last_ + impl_->T_last_scan_ + impl_->motion_since_scan(impl_->odometry_.newest());
 }
 
 const Trajectory& Mapper::trajectory() const { return impl_->trajectory_; }

@@ -32,10 +32,11 @@ struct MapperConfig {
   bool deskew = true;                            ///< place each beam by its own time; the paper does not, and pays for it
   int first_scans = 5;                           ///< so many scans are mapped at the start although the robot stands
   int max_map_cells = 8000;                      ///< the map grows up to so many cells a side
-  bool covered_only = true;                      ///< eq. (2) sums beams whose surface the last mapped scan saw as well
-  double coverage_margin = 0.1;                  ///< and went on for so much to either side [m]
-  SurfaceConfig surface;                         ///< how scans are thinned for the ICP
-  ScanMatcherConfig matcher;                     ///< thresholds of the ICP
+  double coverage_margin = 0.1;  ///< ICP pairs what both scans saw, and saw go on for so much to either side [m]
+  bool known_only = true;        ///< eq. (2) sums beams that end on surfaces the map knows; false: all beams
+  double known_margin = 0.15;    ///< and knows for so much to either side [m]
+  SurfaceConfig surface;         ///< how scans are thinned for the ICP
+  ScanMatcherConfig matcher;     ///< thresholds of the ICP
 };
 
 struct MapperCounts {

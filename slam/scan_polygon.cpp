@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rubble::slam {
 
@@ -63,7 +64,43 @@ TPoint2D turned(const TPoint2D& p, const TPoint2D& origin, double cosine, double
   return {origin.x + cosine * dx - sine * dy, origin.y + sine * dx + cosine * dy};
 }
 
+/// Clears all cells that the line from a to b runs through (Amanatides and Woo 1987).
+void clear_line(const TPoint2D& a, const TPoint2D& b, BitRaster& raster) {
+  const double dx = b.x - a.x;
+  const double dy = b.y - a.y;
+  Cell c{static_cast<int>(std::floor(a.x)), static_cast<int>(std::floor(a.y))};
+  const Cell end{static_cast<int>(std::floor(b.x)), static_cast<int>(std::floor(b.y))};
+  const int step_x = dx > 0.0 ? 1 : -1;
+  const int step_y = dy > 0.0 ? 1 : -1;
+  const double never = std::numeric_limits<double>::infinity();
+  double next_x = dx != 0.0 ? (c.x + (dx > 0.0 ? 1 : 0) - a.x) / dx : never;
+  double next_y = dy != 0.0 ? (c.y + (dy > 0.0 ? 1 : 0) - a.y) / dy : never;
+  const double per_x = dx != 0.0 ? std::abs(1.0 / dx) : never;
+  const double per_y = dy != 0.0 ? std::abs(1.0 / dy) : never;
+  for (int left = std::abs(end.x - c.x) + std::abs(end.y - c.y); left >= 0; --left) {
+    if (raster.inside(c)) raster.clear(c);
+    if (next_x < next_y) {
+      c.x += step_x;
+      next_x += per_x;
+    } else {
+      c.y += step_y;
+      next_y += per_y;
+    }
+  }
+}
+
 }  // namespace
+
+void clear_surfaces(const std::vector<ScanRay>& rays, double max_gap, BitRaster& raster) {
+  for (std::size_t i = 0; i + 1 < rays.size(); ++i) {
+    const ScanRay& a = rays[i];
+    const ScanRay& b = rays[i + 1];
+    if (!a.joined || !a.hit || !b.hit) continue;
+    const bool same_cell = std::floor(a.end.x) == std::floor(b.end.x) && std::floor(a.end.y) == std::floor(b.end.y);
+    if (same_cell || std::hypot(b.end.x - a.end.x, b.end.y - a.end.y) > max_gap) continue;
+    clear_line(a.end, b.end, raster);
+  }
+}
 
 void fill_scan_polygons(const std::vector<ScanRay>& rays, const TPoint2D& origin, double beam_width,
                         BitRaster& raster) {

@@ -23,6 +23,14 @@ struct ScanRay {
 void fill_scan_polygons(const std::vector<ScanRay>& rays, const mrpt::math::TPoint2D& origin, double beam_width,
                         BitRaster& raster);
 
+/// Neighbouring hits farther apart than this do not lie on one surface [m].
+constexpr double kSurfaceGap = 0.3;
+
+/// Clears the cells that the line between two neighbouring hits runs through, where they lie at most `max_gap` cells
+/// apart: along a wall seen at a flat angle the hits leave gaps, and the cells in between are wall, not free. To count
+/// them as free would make far walls faint, and a robot that lags behind would seem to fit the map better.
+void clear_surfaces(const std::vector<ScanRay>& rays, double max_gap, BitRaster& raster);
+
 /// Rays for ends whose beams are not known: sorted by bearing, joined where they lie closer than 1.5 beam widths.
 std::vector<ScanRay> rays_from_ends(const std::vector<mrpt::math::TPoint2D>& hits,
                                     const std::vector<mrpt::math::TPoint2D>& passes, const mrpt::math::TPoint2D& origin,

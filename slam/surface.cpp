@@ -12,6 +12,27 @@ namespace {
 
 double distance(const TPoint2D& a, const TPoint2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
+/// Unit vector along the surface at point i, from its neighbours; zero where it has none.
+TPoint2D along(const std::vector<SurfacePoint>& points, std::size_t i) {
+  const bool follows = i > 0 && points[i - 1].joined;
+  const bool goes_on = points[i].joined && i + 1 < points.size();
+  const TPoint2D& a = points[follows ? i - 1 : i].p;
+  const TPoint2D& b = points[goes_on ? i + 1 : i].p;
+  const double length = distance(a, b);
+  return length > 0.0 ? TPoint2D{(b.x - a.x) / length, (b.y - a.y) / length} : TPoint2D{};
+}
+
+bool occupied_near(const CountMap& map, const TPoint2D& p) {
+  const GridFrame& frame = map.frame();
+  const Cell c = frame.cell(p);
+  if (c.x < 1 || c.y < 1 || c.x > frame.width - 2 || c.y > frame.height - 2) return false;
+  for (int y = c.y - 1; y <= c.y + 1; ++y) {
+    const std::uint8_t* row = map.p_occ_plane() + frame.index({c.x - 1, y});
+    if ((row[0] | row[1] | row[2]) != 0) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Surface surface_of(const ScanPoints& scan, const SurfaceConfig& config) {
@@ -77,6 +98,20 @@ Surface covered_part(const Surface& now, const SurfaceCoverage& last, const TPos
   part.origin = now.origin;
   for (const SurfacePoint& point : now.points) {
     if (last.covers(T_last_now.composePoint(point.p), margin)) part.points.push_back(point);
+  }
+  return part;
+}
+
+Surface known_part(const Surface& now, const CountMap& map, const TPose2D& T_map_base, double margin) {
+  Surface part;
+  part.origin = now.origin;
+  for (std::size_t i = 0; i < now.points.size(); ++i) {
+    const TPoint2D p = T_map_base.composePoint(now.points[i].p);
+    const TPoint2D t = T_map_base.composePoint(along(now.points, i)) - TPoint2D{T_map_base.x, T_map_base.y};
+    if (occupied_near(map, p) && occupied_near(map, {p.x + margin * t.x, p.y + margin * t.y}) &&
+        occupied_near(map, {p.x - margin * t.x, p.y - margin * t.y})) {
+      part.points.push_back(now.points[i]);
+    }
   }
   return part;
 }

@@ -10,8 +10,8 @@
 namespace rubble::slam {
 
 struct SurfaceConfig {
-  double spacing = 0.05;  ///< of the points along the surfaces [m]
-  double max_gap = 0.3;   ///< neighbouring beams farther apart do not see one surface [m]
+  double spacing = 0.05;         ///< of the points along the surfaces [m]
+  double max_gap = kSurfaceGap;  ///< neighbouring beams farther apart do not see one surface [m]
 };
 
 /// A point on a surface: the mean of a few neighbouring returns.
@@ -34,7 +34,7 @@ Surface surface_of(const ScanPoints& scan, const SurfaceConfig& config);
 
 /// Knows where a scan saw surfaces, by bearing from its laser, and so which points of a later scan can have a partner
 /// in it. Points that have none (newly in range, in view or round a corner) would pair with the rim of what was seen
-/// and hold the robot back, in ICP and in eq. (2) alike.
+/// and hold the robot back.
 class SurfaceCoverage {
  public:
   SurfaceCoverage() = default;
@@ -60,6 +60,10 @@ class SurfaceCoverage {
 /// The part of `now` that `last` covers when the base moved by T_last_now in between.
 Surface covered_part(const Surface& now, const SurfaceCoverage& last, const mrpt::math::TPose2D& T_last_now,
                      double margin);
+
+/// The part of `now` that continues surfaces the map knows: there are occupied cells at the point and `margin` to
+/// either side along the surface.
+Surface known_part(const Surface& now, const CountMap& map, const mrpt::math::TPose2D& T_map_base, double margin);
 
 /// The returns that the points of `part` stand for.
 std::vector<mrpt::math::TPoint2D> hits_of(const Surface& part, const ScanPoints& scan);

@@ -30,19 +30,29 @@ expect_exit 1 '' "$rubble" run strict.yaml --out strict
 grep -q 'expected at least 1.5' out.txt || fail "the broken expectation is not named"
 expect_exit 0 '' "$rubble" run s.yaml --out strict --force
 
+# wait_for COMMAND...: until it succeeds, two minutes at most (a loaded machine is slow).
+wait_for() {
+  for ((i = 0; i < 1200; ++i)); do
+    "$@" 2>/dev/null && return
+    sleep 0.1
+  done
+  fail "waited in vain for: $*"
+}
+has_lines() { [[ $(wc -l <"$1") -gt $2 ]]; }
+
 # A long run is interrupted: 130, and the folder is complete.
 cat >long.yaml <<'YAML'
 name: long
-arena: {generate: {columns: 30, rows: 30, ramps: 0.2, loops: 0.3}}
+arena: {generate: {columns: 20, rows: 20, ramps: 0.2, loops: 0.3}}
 time_limit_s: 100000
 YAML
 "$rubble" run long.yaml --out stopped >out.txt 2>err.txt &
 pid=$!
-sleep 6
+wait_for has_lines stopped/estimate.tum 200
 kill -INT $pid
 wait $pid
 [[ $? == 130 ]] || fail "an interrupt must end with 130: $(cat err.txt)"
-for name in map.tif score.json hashes.json estimate.tum overlay.png; do
+for name in map.tif score.json hashes.json estimate.tum pois.csv; do
   [[ -s stopped/$name ]] || fail "after an interrupt $name is missing"
 done
 json_holds stopped/score.json "j['end'] == 'interrupted'"
@@ -50,7 +60,8 @@ json_holds stopped/score.json "j['end'] == 'interrupted'"
 # A kill leaves a readable log and the last map.
 "$rubble" run long.yaml --out killed >/dev/null 2>&1 &
 pid=$!
-sleep 8
+wait_for test -s killed/map.tif
+wait_for has_lines killed/estimate.tum 200
 kill -KILL $pid
 wait $pid 2>/dev/null
 [[ -s killed/map.tif && -s killed/estimate.tum ]] || fail "after a kill the last map is missing"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "sim/plane_cast.h"
 #include "sim/ray_walk.h"
 #include "sim/rays.h"
 #include "sim/sweep_cast.h"
@@ -121,6 +122,46 @@ TEST(Casters, TheSweepAgreesWithTheRayWalkToOneMillimetre) {
       sweep.cast(beams, table, 4.0, balls, ranges);
       for (std::size_t i = 0; i < beams.count; ++i) {
         const Ray ray = beams.ray(i);
+        const double truth = walk.cast(ray, 4.0, balls);
+        const double range = ranges[i];
+        ++beams_seen;
+        if (range == truth) continue;
+        if (std::abs(range - truth) <= 1e-3) {
+          worst = std::max(worst, std::abs(range - truth));
+          continue;
+        }
+        ++beside;
+        ASSERT_TRUE(agrees(range, ray, [&](const Ray& r) { return walk.cast(r, 4.0001, balls); }))
+            << "scan " << k << " beam " << i << ": " << range << " m, walked " << truth << " m";
+      }
+    }
+  }
+  std::cout << beams_seen << " beams: within " << worst * 1e3 << " mm; " << beside << " passed an edge by a hair\n";
+}
+
+TEST(Casters, ThePlaneCastAgreesWithTheRayWalkToOneMillimetre) {
+  const robot::RobotModel model;
+  const BeamTable table(model.laser);
+  double worst = 0.0;
+  int beside = 0;
+  long beams_seen = 0;
+  for (std::uint64_t seed = 100; beams_seen < 1000000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const arenas::Arena arena = random_maze(seed);
+    const std::vector<arenas::Face> all = arenas::faces(arena);
+    const RayWalk walk(all);
+    const ScanFaces faces(all);
+    PlaneCast plane(faces);
+    Rng rng(seed, "planes");
+    for (int k = 0; k < 100; ++k) {
+      const WorldState state = random_state(arena, rng);
+      const std::vector<Sphere> balls = random_balls(arena, state, 5, rng);
+      const Placement laser = laser_placement(state, model);
+      std::vector<float> ranges;
+      plane.cast(laser, table, 4.0, balls, ranges);
+      for (std::size_t i = 0; i < table.count; ++i) {
+        const double bearing = table.angle_min + static_cast<double>(i) * table.angle_step;
+        const Ray ray{laser.p, laser.R * Eigen::Vector3d(std::cos(bearing), std::sin(bearing), 0.0)};
         const double truth = walk.cast(ray, 4.0, balls);
         const double range = ranges[i];
         ++beams_seen;

@@ -142,6 +142,21 @@ TEST(ArenaFile, FreePartsLieWhereTheyAreGiven) {
   EXPECT_NEAR(a.balls[0].mass, 0.03, 1e-12);
 }
 
+TEST(ArenaFile, LeaguePartsStandWhereTheyArePut) {
+  const Arena a = arena({"+---+---+---+",  //
+                         "|A.  B.   S |",  //
+                         "+---+---+---+"},
+                        "elements:\n"
+                        "  - {type: stepfield_red_diagonal, cell: A}\n"
+                        "  - {type: wall_holes1, cell: B, rotation_deg: 180}\n"
+                        "  - {type: victim_with_box1, cell: B, rotation_deg: 180, mount_point: 1}\n");
+  EXPECT_NEAR(floor_height(a, {0.15, 0.15}), 0.4, 1e-12);
+  ASSERT_EQ(a.victims.size(), 1u);
+  EXPECT_NEAR(a.victims[0].position.z, 0.6, 1e-12) << "at the middle hole";
+  EXPECT_NEAR(a.victims[0].facing, -kPi / 2, 1e-12);
+  EXPECT_THAT(error_of(room("|A.   S |", "elements: [{type: stairs, cell: A}]\n")), HasSubstr("stairs_120"));
+}
+
 TEST(ArenaFile, ErrorsPointIntoTheDrawing) {
   EXPECT_THAT(error_of(room("| .   ? |")), StartsWith("f.yaml:3:9: '?' is no glyph"));
   EXPECT_THAT(error_of(room("| .^  S |")), StartsWith("f.yaml:3:6: a second floor glyph"));

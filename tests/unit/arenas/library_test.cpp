@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -52,6 +54,16 @@ TEST(Library, TheYellowArenaIsThatOfSeedOne) {
   std::ostringstream text;
   text << file.rdbuf();
   EXPECT_EQ(text.str(), generate_arena({}));
+}
+
+TEST(Library, TheExampleOfTheManualCanBeUsed) {
+  std::ifstream file(std::string(RUBBLE_SOURCE_DIR) + "/docs/arenas.md");
+  std::ostringstream text;
+  text << file.rdbuf();
+  const std::size_t begin = text.str().find("```yaml\n") + 8;
+  const std::size_t end = text.str().find("```", begin);
+  const Arena arena = parse_arena(text.str().substr(begin, end - begin), "docs/arenas.md");
+  EXPECT_EQ(arena.victims.size(), 1u);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ const std::map<std::string, std::set<std::string>>& allowed() {
       {"scoring", {"base", "arenas"}},
       {"scenarios", {"base", "robot", "arenas", "sim", "slam", "explore", "scoring"}},
       {"app", {"base", "robot", "arenas", "sim", "slam", "explore", "scoring", "scenarios"}},
-      {"bench", {"base", "robot", "arenas", "sim", "slam", "explore", "scoring", "scenarios"}},
+      {"bench", {"base", "robot", "arenas", "sim", "slam", "explore", "scoring", "scenarios", "tests"}},
   };
   return rooms;
 }

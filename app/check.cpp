@@ -1,0 +1,62 @@
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "app/batch.h"
+#include "app/batch_tools.h"
+#include "base/error.h"
+#include "base/text_file.h"
+#include "scenarios/baseline.h"
+#include "scenarios/sweep_note.h"
+
+namespace rubble::app {
+namespace {
+
+using namespace scenarios;
+
+/// What GitHub Actions reads, where its variables exist.
+void tell_github(const std::vector<CheckCase>& cases, const std::string& title) {
+  const char* actions = std::getenv("GITHUB_ACTIONS");
+  if (actions && std::string(actions) == "true") std::printf("%s", to_github_annotations(cases).c_str());
+  if (const char* summary = std::getenv("GITHUB_STEP_SUMMARY")) {
+    std::ofstream file(summary, std::ios::app);
+    file << to_markdown(cases, title);
+    file.flush();
+    if (!file) std::fprintf(stderr, "rubble: %s: the job summary cannot be written\n", summary);
+  }
+}
+
+}  // namespace
+
+int check(const CheckArguments& arguments) {
+  const Sweep sweep = load_sweep(find_sweep(arguments.sweep), shipped_folder());
+  const std::string beside = std::filesystem::path(sweep.path).replace_extension(".baseline.json").string();
+  const std::string baseline_path = arguments.baseline.empty() ? beside : arguments.baseline;
+  if (!std::filesystem::exists(baseline_path))
+    throw InputError(baseline_path + ": there is no baseline; make one with 'rubble batch " + arguments.sweep +
+                     " --save-baseline " + baseline_path + "'");
+  const Baseline baseline = load_baseline(baseline_path);
+  BatchOptions options;
+  options.code = code_version();
+  const std::vector<Job> jobs = expand(sweep, options.code, arguments.overrides);
+  options.out = arguments.out.empty() ? "runs/check-" + sweep.name : arguments.out;
+  options.workers = arguments.workers > 0 ? arguments.workers : usable_cores();
+  options.run_limit = sweep.run_limit;
+  const bool stopped = run_with_progress(jobs, options, false).interrupted;
+  save_note(sweep, options.out);
+  if (stopped) {
+    std::printf("%-12s give the same command again to go on\n", "interrupted");
+    return kInterrupted;
+  }
+  const std::vector<CheckCase> cases = check_runs(baseline, results_of(jobs, options.out).runs);
+  for (const auto& c : cases)
+    if (!c.passed) std::printf("%-12s %s: %s: %s\n", "REGRESSION", c.group.c_str(), c.name.c_str(), c.detail.c_str());
+  std::printf("%-12s %zu of %zu passed (%zu runs in %s)\n", "checks", cases.size() - failures(cases), cases.size(),
+              jobs.size(), options.out.c_str());
+  if (!arguments.junit.empty()) write_text_file(arguments.junit, to_junit(cases, "rubble." + sweep.name));
+  tell_github(cases, "rubble check " + sweep.name);
+  return failures(cases) == 0 ? kOk : kBroken;
+}
+
+}  // namespace rubble::app

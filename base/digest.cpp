@@ -1,0 +1,66 @@
+#include "base/digest.h"
+
+#include <openssl/evp.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "base/error.h"
+
+namespace rubble {
+namespace {
+
+struct FreeContext {
+  void operator()(EVP_MD_CTX* context) const { EVP_MD_CTX_free(context); }
+};
+
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new()) {
+    if (!context_ || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1) fail();
+  }
+
+  void add(std::string_view bytes) {
+    if (EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) != 1) fail();
+  }
+
+  std::string hex() {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
+    unsigned size = 0;
+    if (EVP_DigestFinal_ex(context_.get(), digest.data(), &size) != 1) fail();
+    static constexpr char kDigits[] = "0123456789abcdef";
+    std::string text;
+    for (unsigned i = 0; i < size; ++i) text += {kDigits[digest[i] >> 4], kDigits[digest[i] & 15]};
+    return text;
+  }
+
+ private:
+  [[noreturn]] static void fail() { throw RunError("SHA-256 is not available in OpenSSL; check its configuration"); }
+
+  std::unique_ptr<EVP_MD_CTX, FreeContext> context_;
+};
+
+}  // namespace
+
+std::string sha256_of_text(std::string_view text) {
+  Sha256 sha;
+  sha.add(text);
+  return sha.hex();
+}
+
+std::string sha256_of_file(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw InputError(path + ": is a folder; give the path of a file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path + ": cannot be opened; check the path");
+  Sha256 sha;
+  std::array<char, 65536> buffer;
+  while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0)
+    sha.add({buffer.data(), static_cast<std::size_t>(file.gcount())});
+  if (file.bad()) throw InputError(path + ": cannot be read");
+  return sha.hex();
+}
+
+}  // namespace rubble

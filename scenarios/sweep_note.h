@@ -1,0 +1,27 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scenarios/merge.h"
+#include "scenarios/sweep.h"
+
+namespace rubble::scenarios {
+
+/// What the results of a sweep do not say themselves: kept as sweep.json beside them.
+struct SweepNote {
+  std::string name;
+  std::string about;                              ///< for people
+  std::vector<std::string> configurations;        ///< in the order of the sweep file
+  std::map<std::string, std::string> references;  ///< which configuration each is measured against
+};
+
+void save_note(const Sweep& sweep, const std::string& folder);
+
+/// The note of the results; when there is none, one made of what the results hold (configurations in their order,
+/// measured against the first).
+/// Configurations without results are left out, unknown ones come last. Throws InputError.
+SweepNote note_of(const ResultSet& set, const std::string& path);
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,130 @@
+# Many runs: the same bytes for 1, 2 and 3 workers, kill and go on, disk full, merge, report, compare, check.
+. "$(dirname "$0")/lib.sh"
+small_scenario small.yaml
+cat >sweep.yaml <<'YAML'
+scenarios: [small.yaml]
+seeds: 1-6
+set: {time_limit_s: 60, robot.levelling: [true, false]}
+YAML
+
+for n in 1 2 3; do
+  "$rubble" batch sweep.yaml --workers $n --out w$n >table$n.txt || fail "$n workers ended with $?: $(cat table$n.txt)"
+  sort w$n/results.jsonl >sorted$n
+done
+[[ $(wc -l <sorted1) == 12 ]] || fail "not 12 runs: $(wc -l <sorted1)"
+cmp sorted1 sorted2 || fail "1 and 2 workers differ"
+cmp sorted1 sorted3 || fail "1 and 3 workers differ"
+[[ -e w1/latest || -e w1/runs/latest ]] && fail "a batch must not touch the link latest"
+[[ -e $(ls -d w1/runs/*/ | head -1)/log.rlog ]] && fail "logs are kept without --record"
+
+# A finished sweep is found finished.
+"$rubble" batch sweep.yaml --out w1 | grep -q '12 of 12 (0 made now' || fail "finished runs are made again"
+
+# Killed in the middle and started again: no run lost, none twice.
+for wait in 0.8 1.2 1.6; do
+  "$rubble" batch sweep.yaml --workers 2 --out killed >/dev/null 2>&1 &
+  pid=$!
+  sleep $wait
+  kill -KILL $pid 2>/dev/null
+  wait $pid 2>/dev/null
+done
+"$rubble" batch sweep.yaml --workers 2 --out killed >/dev/null || fail "going on after a kill ended with $?"
+sort killed/results.jsonl | cmp - sorted1 || fail "after kills the results differ"
+# A torn last line is dropped and its run made again.
+head -c -30 killed/results.jsonl >torn && cp torn killed/results.jsonl
+"$rubble" batch sweep.yaml --out killed | grep -q '12 of 12 (1 made now' || fail "a torn line must cost one run"
+sort killed/results.jsonl | cmp - sorted1 || fail "after a torn line the results differ"
+
+# Interrupted: 130, what is finished stays.
+"$rubble" batch sweep.yaml --workers 1 --out stopped --set time_limit_s=240 >out.txt 2>&1 &
+pid=$!
+sleep 2
+kill -INT $pid
+wait $pid
+code=$?
+[[ $code == 130 || $(wc -l <stopped/results.jsonl) == 12 ]] || fail "an interrupt must end with 130, not $code: $(cat out.txt)"
+
+# A run that takes too long, and one that cannot start, are recorded; the sweep goes on.
+cat >long.yaml <<'YAML'
+name: long
+arena: {generate: {columns: 20, rows: 20, loops: 0.3}}
+time_limit_s: 100000
+YAML
+cat >faults.yaml <<'YAML'
+scenarios: [small.yaml, long.yaml]
+seeds: 1
+run_limit_s: 6
+set: {scoring.tau_m: 0.5}
+YAML
+"$rubble" batch faults.yaml --out faults >/dev/null 2>err.txt
+[[ $? == 4 ]] || fail "a sweep with a run that hangs must end with 4: $(cat err.txt)"
+grep -q '"status":"timeout"' faults/results.jsonl || fail "the run that hangs is not recorded"
+[[ $(wc -l <faults/results.jsonl) == 2 ]] || fail "the sweep did not go on after a run that hangs"
+
+# Disk full: a clear end, nothing corrupt, and going on afterwards. Needs root for a small file system.
+mkdir full
+if mount -t tmpfs -o size=600k none full 2>/dev/null; then
+  expect_exit 4 'free some space' "$rubble" batch sweep.yaml --out full/out
+  python3 -c "import json; [json.loads(l) for l in open('full/out/results.jsonl')]" || fail "disk full tore a line"
+  mount -o remount,size=200m full
+  "$rubble" batch sweep.yaml --out full/out >/dev/null || fail "after a full disk it cannot go on: $?"
+  sort full/out/results.jsonl | cmp - sorted1 || fail "after a full disk the results differ"
+  umount full
+else
+  echo "no small file system without root: disk full is skipped"
+fi
+
+# Shards in one folder, merged: the same content as the whole, and idempotent.
+for i in 1 2 3; do
+  "$rubble" batch sweep.yaml --shard $i/3 --out shards >/dev/null || fail "shard $i ended with $?"
+done
+cat shards/results-*of3.jsonl | sort | cmp - sorted1 || fail "shards and whole differ"
+"$rubble" batch merge shards --out shards.sqlite >/dev/null || fail "merge ended with $?"
+"$rubble" batch merge w1 --out whole.sqlite >/dev/null || fail "merge ended with $?"
+python3 - <<'PY' || fail "merged shards and merged whole differ"
+import sqlite3, sys
+dump = lambda f: list(sqlite3.connect(f).execute('select * from runs order by run_id'))
+a, b = dump('shards.sqlite'), dump('whole.sqlite')
+sys.exit(0 if a == b and len(a) == 12 else 1)
+PY
+cp shards.sqlite before.sqlite
+"$rubble" batch merge shards --out shards.sqlite | grep -q '0 of them new' || fail "a second merge adds runs"
+cmp shards.sqlite before.sqlite || fail "a second merge changes the file"
+
+# Reports and comparison.
+grep -q '<svg' w1/report.html || fail "no plots in the report"
+grep -qE 'src="[^d]|https?://' w1/report.html && fail "the report refers to other files"
+"$rubble" batch report --markdown w1 | grep -q 'robot.levelling=false' || fail "no section for documents"
+"$rubble" compare w1 whole.sqlite --csv c.csv --json c.json --html c.html >c.txt || fail "compare ended with $?"
+grep -q 'identical' c.txt || fail "a result compared with itself is not identical: $(cat c.txt)"
+json_holds c.json "all(m['verdict'] == 'identical' for m in j['groups'][0]['metrics'].values()) and j['pairs'] == 12"
+"$rubble" compare w1 --config-a robot.levelling=false --config-b robot.levelling=true >c.txt || fail "compare: $(cat c.txt)"
+expect_exit 2 '--config-a' "$rubble" compare w1
+expect_exit 3 "'robot.levelling=false', 'robot.levelling=true'" "$rubble" compare w1 --config-a x --config-b robot.levelling=true
+
+# Regression: unchanged passes, a worse parameter is caught, CI systems are told.
+expect_exit 3 'there is no baseline' "$rubble" check sweep.yaml
+"$rubble" batch sweep.yaml --out w1 --save-baseline sweep.baseline.json >/dev/null || fail "save-baseline ended with $?"
+"$rubble" check sweep.yaml --out same --junit same.xml >check.txt || fail "check without a change ended with $?: $(cat check.txt)"
+export GITHUB_ACTIONS=true GITHUB_STEP_SUMMARY=$work/summary.md
+"$rubble" check sweep.yaml --out worse --junit worse.xml --set sim.range_noise=100 >check.txt
+[[ $? == 1 ]] || fail "a worse parameter is not caught: $(cat check.txt)"
+unset GITHUB_ACTIONS GITHUB_STEP_SUMMARY
+grep -q '^::error title=Regression' check.txt || fail "no annotation"
+grep -q 'FAILED' summary.md || fail "no job summary"
+python3 - <<'PY' || fail "the JUnit files are wrong"
+import sys, xml.etree.ElementTree as e
+same, worse = e.parse('same.xml').getroot(), e.parse('worse.xml').getroot()
+sys.exit(0 if same.get('failures') == '0' and int(worse.get('failures')) > 0
+         and len(worse.findall('.//failure')) == int(worse.get('failures')) else 1)
+PY
+
+# Bad input.
+expect_exit 2 'sweep file' "$rubble" batch
+expect_exit 2 '--shard' "$rubble" batch sweep.yaml --shard 4/3
+expect_exit 2 'seeds' "$rubble" batch sweep.yaml --set seed=3
+expect_exit 3 'nowhere.yaml' "$rubble" batch nowhere.yaml
+printf 'scenarios: [small.yaml]\nseeds: 1-2\nsets: {}\n' >typo.yaml
+expect_exit 3 'typo.yaml:3:1' "$rubble" batch typo.yaml
+expect_exit 3 'nowhere' "$rubble" batch merge nowhere --out x.sqlite
+finish

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/grid.h"
+#include "base/rng.h"
+#include "explore/traversable.h"
+
+namespace rubble::test {
+
+/// A grid drawn as text, north up: '.' free, '#' occupied, ' ' unknown.
+inline OccupancyGrid drawn(const std::vector<std::string>& rows, double resolution = 0.05) {
+  GridFrame frame;
+  frame.width = static_cast<int>(rows[0].size());
+  frame.height = static_cast<int>(rows.size());
+  frame.resolution = resolution;
+  OccupancyGrid grid(frame, Occupancy::Unknown);
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x) {
+      const char glyph = rows[static_cast<std::size_t>(frame.height - 1 - y)][static_cast<std::size_t>(x)];
+      if (glyph == '.') grid[{x, y}] = Occupancy::Free;
+      if (glyph == '#') grid[{x, y}] = Occupancy::Occupied;
+    }
+  return grid;
+}
+
+/// Free floor with random blocks of obstacles and of unknown; the rim is unknown.
+inline OccupancyGrid random_grid(int width, int height, std::uint64_t seed) {
+  Rng rng(seed, "test grid");
+  GridFrame frame;
+  frame.width = width;
+  frame.height = height;
+  OccupancyGrid grid(frame, Occupancy::Free);
+  const int blocks = width * height / 60;
+  for (int i = 0; i < blocks; ++i) {
+    const int x0 = static_cast<int>(rng.below(static_cast<std::uint32_t>(width)));
+    const int y0 = static_cast<int>(rng.below(static_cast<std::uint32_t>(height)));
+    const int x1 = x0 + static_cast<int>(rng.below(5));
+    const int y1 = y0 + static_cast<int>(rng.below(5));
+    const Occupancy what = rng.below(3) == 0 ? Occupancy::Unknown : Occupancy::Occupied;
+    for (int y = y0; y <= y1 && y < height; ++y)
+      for (int x = x0; x <= x1 && x < width; ++x) grid[{x, y}] = what;
+  }
+  for (int x = 0; x < width; ++x) grid[{x, 0}] = grid[{x, height - 1}] = Occupancy::Unknown;
+  for (int y = 0; y < height; ++y) grid[{0, y}] = grid[{width - 1, y}] = Occupancy::Unknown;
+  return grid;
+}
+
+inline explore::Traversable measured(OccupancyGrid grid, double cap = 1.2) {
+  explore::Traversable floor = explore::traversable(std::move(grid));
+  explore::measure_clearance(floor, cap);
+  return floor;
+}
+
+}  // namespace rubble::test

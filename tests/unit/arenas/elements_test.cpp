@@ -1,0 +1,158 @@
+#include "arenas/elements.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "arenas/geometry.h"
+#include "base/angle.h"
+
+namespace rubble::arenas {
+namespace {
+
+using mrpt::math::TPoint2D;
+
+Arena placed(const std::string& type, double rotation_deg = 0.0, const Element* wall = nullptr,
+             std::optional<int> mount = std::nullopt) {
+  Element element;
+  element.type = type;
+  element.rotation = deg_to_rad(rotation_deg);
+  element.mount_point = mount;
+  Arena arena;
+  place(element, wall, arena);
+  return arena;
+}
+
+/// Whether a solid stands at (x, y) at height z.
+bool blocked(const Arena& arena, double x, double y, double z) {
+  for (const Solid& s : arena.solids) {
+    if (contains(s.outline, {x, y}) && s.z_bottom <= z && z <= s.z_top) return true;
+  }
+  return false;
+}
+
+TEST(Elements, WallTurnsClockwiseFromTheNorthernEdge) {
+  const std::map<int, TPoint2D> edges{{0, {0.0, 0.6}}, {90, {0.6, 0.0}}, {180, {0.0, -0.6}}, {270, {-0.6, 0.0}}};
+  for (const auto& [rotation, middle] : edges) {
+    const Arena arena = placed("small_wall", rotation);
+    ASSERT_EQ(arena.solids.size(), 1u);
+    EXPECT_TRUE(blocked(arena, middle.x, middle.y, 1.19)) << rotation;
+    EXPECT_FALSE(blocked(arena, middle.x, middle.y, 1.21));
+    EXPECT_NEAR(signed_area(arena.solids[0].outline), 1.2 * 0.01, 1e-12);
+  }
+  EXPECT_TRUE(blocked(placed("tall_wall"), 0.0, 0.6, 2.39));
+}
+
+TEST(Elements, FullRampRisesAwayFromItsFrontHalfRampTowardsIt) {
+  const Arena full = placed("full_ramp");
+  EXPECT_NEAR(floor_height(full, {0.3, 0.6}), 0.0, 1e-12);
+  EXPECT_NEAR(floor_height(full, {0.3, -0.6}), 0.339, 1e-12);
+  const Arena half = placed("half_ramp");
+  EXPECT_NEAR(floor_height(half, {0.3, -0.6}), 0.0, 1e-12);
+  EXPECT_NEAR(floor_height(half, {0.3, 0.0}), 0.17, 1e-12);
+  EXPECT_EQ(floor_height(half, {0.3, 0.1}), -INFINITY);
+}
+
+TEST(Elements, RampsTurnWithTheirElement) {
+  for (const double rotation : {90.0, 180.0, 270.0}) {
+    const Arena arena = placed("full_ramp", rotation);
+    const double c = std::cos(deg_to_rad(-rotation));
+    const double s = std::sin(deg_to_rad(-rotation));
+    EXPECT_NEAR(floor_height(arena, {s * 0.5, -c * 0.5}), 0.339 * 1.1 / 1.2, 1e-9) << rotation;
+  }
+}
+
+TEST(Elements, ElevatedRampMeetsTheElevatedFloor) {
+  EXPECT_NEAR(floor_height(placed("simple_elev_ramp"), {0.0, 0.6}), 1.2, 1e-12);
+  EXPECT_NEAR(floor_height(placed("elevated_floor_120"), {0.0, -0.6}), 1.2, 1e-12);
+}
+
+TEST(Elements, StairsClimbInEqualRisers) {
+  const Arena arena = placed("stairs_120");
+  ASSERT_EQ(arena.floor.size(), 5u);
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(floor_height(arena, {0.0, -0.5 + 0.2325 * i}), 0.2 * (i + 1), 1e-12);
+}
+
+TEST(Elements, RedStepFieldHasTheCountsOfTheLeague) {
+  const Arena arena = placed("stepfield_red_diagonal");
+  std::map<long, int> columns;
+  for (int i = 0; i < 100; ++i) {
+    const double z = floor_height(arena, {-0.45 + 0.1 * (i % 10), -0.45 + 0.1 * (i / 10)});
+    ++columns[std::isfinite(z) ? std::lround(10.0 * z) : 0];
+    EXPECT_TRUE(i % 10 != i / 10 || std::abs(z - 0.4) < 1e-12) << "the diagonal is the highest";
+  }
+  EXPECT_EQ(columns, (std::map<long, int>{{0, 9}, {1, 27}, {2, 33}, {3, 21}, {4, 10}}));
+}
+
+TEST(Elements, HolesAreOpenAndTheRestOfTheWallIsNot) {
+  const Arena arena = placed("wall_holes1");
+  EXPECT_FALSE(blocked(arena, -0.28, 0.6, 0.31));
+  EXPECT_FALSE(blocked(arena, -0.29, 0.6, 0.90));
+  EXPECT_FALSE(blocked(arena, 0.29, 0.6, 0.59));
+  EXPECT_TRUE(blocked(arena, -0.28, 0.6, 0.6));
+  EXPECT_TRUE(blocked(arena, 0.0, 0.6, 0.59));
+  double area = 0.0;
+  for (const Solid& s : arena.solids) area += signed_area(s.outline) / 0.01 * (s.z_top - s.z_bottom);
+  EXPECT_NEAR(area, 1.2 * 1.2 - 3 * 0.133 * 0.133, 1e-9);
+}
+
+TEST(Elements, BoxedVictimHangsAtTheHoleItIsMountedAt) {
+  Element wall;
+  wall.type = "wall_holes1";
+  const std::array<double, 3> along{-0.3, 0.3, -0.3};
+  const std::array<double, 3> height{0.9, 0.6, 0.3};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Arena arena = placed("victim_with_box1", 0.0, &wall, static_cast<int>(i));
+    ASSERT_EQ(arena.victims.size(), 1u);
+    EXPECT_NEAR(arena.victims[0].position.x, along[i], 1e-12);
+    EXPECT_NEAR(arena.victims[0].position.z, height[i], 1e-12);
+    EXPECT_NEAR(arena.victims[0].facing, kPi / 2, 1e-12) << "it looks through the wall";
+  }
+  EXPECT_NEAR(placed("victim_with_box1").victims[0].position.z, 0.2, 1e-12) << "without a wall it stands on the ground";
+}
+
+TEST(Elements, VeilIsSeenButGivesWay) {
+  const Arena arena = placed("veil_wall");
+  int strips = 0;
+  for (const Solid& s : arena.solids) {
+    strips += s.gives_way ? 1 : 0;
+    EXPECT_TRUE(s.gives_way || s.z_bottom > 1.0) << "only the lath above the robot is hard";
+  }
+  EXPECT_EQ(strips, 9);
+}
+
+TEST(Elements, EveryShapeIsSoundInEveryTurn) {
+  for (const char* type :
+       {"small_wall", "tall_wall", "wall_holes1", "small_wall_triple_holes", "veil_wall", "corner_diag_120",
+        "wall_diag_120", "full_ramp", "half_ramp", "half_ramp_shifted", "simple_elev_ramp", "elevated_floor_120",
+        "stairs_120", "stepfield_red_diagonal", "fiducial_barrel", "fiducial_barrel_high", "manip_storage",
+        "spectator_120", "victim_with_box1"}) {
+    for (const double rotation : {0.0, 90.0, 180.0, 270.0, 30.0}) {
+      SCOPED_TRACE(std::string(type) + " " + std::to_string(rotation));
+      Arena arena = placed(type, rotation);
+      EXPECT_FALSE(arena.floor.empty() && arena.solids.empty());
+      arena.floor.push_back({rectangle({0.0, 0.0}, 4.0, 4.0), 0.0, 0.0, 0.0, "flat"});
+      EXPECT_EQ(parts_trouble(arena).value_or(""), "");
+      for (const Solid& s : arena.solids) {
+        for (const TPoint2D& p : s.outline) EXPECT_LT(std::hypot(p.x, p.y), 0.9) << "it stays on its pallet";
+      }
+    }
+  }
+}
+
+TEST(Elements, LabelsAndStrangersAddNothing) {
+  EXPECT_EQ(kind_of("hazmat_oxygen"), ElementKind::Label);
+  EXPECT_EQ(kind_of("start_check"), ElementKind::Label);
+  EXPECT_EQ(kind_of("flux_capacitor"), ElementKind::Unknown);
+  for (const char* type : {"hazmat", "start_check", "flux_capacitor"}) {
+    const Arena arena = placed(type);
+    EXPECT_TRUE(arena.floor.empty() && arena.solids.empty() && arena.victims.empty());
+  }
+}
+
+}  // namespace
+}  // namespace rubble::arenas
