@@ -16,7 +16,9 @@ struct LogHeader {
 };
 
 /// Wraps any robot and writes everything it reads and is commanded to an append-only log that survives a kill:
-/// whole checked frames, a torn last frame is dropped on reading. docs/robot.md describes the format.
+/// whole checked frames, handed to the system each second of log time; a torn last frame is dropped on reading.
+/// An existing file is replaced. docs/robot.md describes the format. read() and flush() throw RunError that names
+/// the path when nothing more can be written.
 class RecordingRobot : public Robot {
  public:
   /// Throws RunError when `path` cannot be written.
@@ -25,7 +27,7 @@ class RecordingRobot : public Robot {
   const RobotModel& model() const override;
   std::optional<Inputs> read() override;
   void command(const Commands& commands) override;
-  /// Writes out what is buffered; called by the destructor too.
+  /// Writes out what is buffered. The destructor does so too, but cannot report a full disk: call this at the end.
   void flush();
 
  private:
@@ -34,7 +36,7 @@ class RecordingRobot : public Robot {
 };
 
 /// Plays a log back, tick by tick; commands go nowhere. Formats by content: our own log, MRPT .rawlog (observation-only
-/// and action/frame form), CARMEN .log / .log.gz (FLASER, ROBOTLASER1, ODOM), CoreSLAM .dat.
+/// and action/frame form), CARMEN .log (FLASER, ROBOTLASER1, ODOM), CoreSLAM .dat; each gzip-compressed or not.
 class ReplayRobot : public Robot {
  public:
   /// Throws InputError with place and remedy: missing, unknown format, wrong line, cut in the middle (foreign formats).
@@ -48,9 +50,9 @@ class ReplayRobot : public Robot {
   const std::string& format() const;
   /// The note of our own log; empty for others.
   const std::string& note() const;
-  /// Commands recorded with the tick that read() returned last (our own log only; else the default).
+  /// The command in force after the tick that read() returned last: the answer to it (our own log only; else zero).
   const Commands& recorded_commands() const;
-  /// Reference poses that came with the log (CARMEN: corrected poses); empty when there are none.
+  /// T_map_base that came with the log (CARMEN: corrected poses; MRPT: `.GT.txt` beside it); empty when there are none.
   const Trajectory& reference() const;
   /// True when a torn last frame of our own log was dropped.
   bool was_torn() const;

@@ -70,6 +70,16 @@ std::optional<Movement> movement_of(const CActionCollection& actions) {
   return std::nullopt;
 }
 
+/// Label and place; the yaw may differ, as it takes up the bearings of scans that are not symmetric.
+bool same_scanner(const CObservation2DRangeScan& a, const CObservation2DRangeScan& b) {
+  const double tolerance = 1e-9;
+  const mrpt::math::TPose3D p = a.sensorPose.asTPose();
+  const mrpt::math::TPose3D q = b.sensorPose.asTPose();
+  return a.sensorLabel == b.sensorLabel && std::abs(p.x - q.x) < tolerance && std::abs(p.y - q.y) < tolerance &&
+         std::abs(p.z - q.z) < tolerance && std::abs(wrap_angle(p.pitch - q.pitch)) < tolerance &&
+         std::abs(wrap_angle(p.roll - q.roll)) < tolerance;
+}
+
 class Collector {
  public:
   void visit(const mrpt::serialization::CSerializable::Ptr& object) {
@@ -94,7 +104,7 @@ class Collector {
 
   void take(const CObservation::Ptr& observation) {
     if (const auto comment = std::dynamic_pointer_cast<CObservationComment>(observation))
-      if (const auto model = model_of_comment(comment->text)) contents.own_model = model;
+      if (auto model = model_of_comment(comment->text)) contents.own_model = std::move(model);
     if (const auto scan = std::dynamic_pointer_cast<CObservation2DRangeScan>(observation)) take_scan(scan);
     if (const auto odometry = std::dynamic_pointer_cast<CObservationOdometry>(observation)) {
       contents.observed.push_back(from_mrpt(*odometry));
@@ -104,10 +114,7 @@ class Collector {
 
   void take_scan(const CObservation2DRangeScan::Ptr& scan) {
     if (scan->getScanSize() < 2) return;
-    if (!contents.scans.empty()) {
-      const CObservation2DRangeScan& first = *contents.scans.front();
-      if (scan->sensorLabel != first.sensorLabel || scan->sensorPose.asTPose() != first.sensorPose.asTPose()) return;
-    }
+    if (!contents.scans.empty() && !same_scanner(*scan, *contents.scans.front())) return;
     contents.scans.push_back(scan);
     now_.stamp = from_mrpt_time(scan->timestamp);
     contents.driven.push_back(now_);
@@ -201,7 +208,14 @@ ForeignLog others_log(const CObservation2DRangeScan& first, std::vector<LaserSca
 
 ForeignLog read_rawlog_bytes(std::string_view bytes, const std::string& path) {
   Collector collector;
-  each_rawlog_entry(bytes, path, [&](std::size_t, const auto& object) { collector.visit(object); });
+  each_rawlog_entry(bytes, path, [&](std::size_t entry, const auto& object) {
+    try {
+      collector.visit(object);
+    } catch (const BadPayload& e) {
+      throw InputError(path + ": entry " + std::to_string(entry) + ": the comment with the robot model is damaged (" +
+                       e.what() + "); export the log again");
+    }
+  });
   Contents& contents = collector.contents;
   if (contents.scans.empty())
     throw InputError(path + ": the rawlog holds no 2D laser scan; give one with CObservation2DRangeScan entries");

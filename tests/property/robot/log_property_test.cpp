@@ -63,7 +63,7 @@ struct SmallLog {
 
 TEST(LogProperty, CutAtAnyByteLosesOnlyTheTornFrame) {
   const TempFolder folder;
-  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+  for (std::uint64_t seed = 0; seed < 2; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const SmallLog log(seed, folder);
     for (std::size_t size = log.bytes.size(); size > log.ends[2]; --size) {

@@ -2,6 +2,7 @@
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
+#include <mrpt/obs/CObservationComment.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
@@ -273,6 +274,37 @@ TEST(Rawlog, CutFileSaysWhereItEnds) {
   testing::write_bytes(folder.file("b.rawlog"), bytes.substr(0, 2 * bytes.size() / 3));
   const std::string message = message_of<InputError>([&] { ReplayRobot replay(folder.file("b.rawlog")); });
   EXPECT_NE(message.find("b.rawlog: the gzip data stop at byte"), std::string::npos) << message;
+}
+
+TEST(Rawlog, ScansOfDifferentWidthsAllSurviveTheExport) {
+  const TempFolder folder;
+  std::string carmen;
+  for (int i = 0; i < 6; ++i) {
+    const int beams = 4 + i % 2;
+    carmen += "FLASER " + std::to_string(beams);
+    for (int beam = 0; beam < beams; ++beam) carmen += " 2.5";
+    carmen += " 0 0 0 0 0 0 " + std::to_string(i) + ".5 h " + std::to_string(i) + ".5\n";
+  }
+  testing::write_bytes(folder.file("a.log"), carmen);
+  export_rawlog(folder.file("a.log"), folder.file("a.rawlog"));
+  const auto before = collect<LaserScan>(testing::play(folder.file("a.log")), &Inputs::scans);
+  const auto after = collect<LaserScan>(testing::play(folder.file("a.rawlog")), &Inputs::scans);
+  ASSERT_EQ(after.size(), 6u);
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    EXPECT_TRUE(testing::same(after[i].ranges, before[i].ranges));
+    EXPECT_NEAR(after[i].angle_min, before[i].angle_min, 1e-6);
+    EXPECT_NEAR(after[i].angle_step, before[i].angle_step, 1e-6);
+  }
+}
+
+TEST(Rawlog, DamagedModelCommentIsNamed) {
+  RawlogWriter writer;
+  writer.add(*mrpt_scan(to_mrpt_time(Stamp{0}), "LASER"));
+  mrpt::obs::CObservationComment comment;
+  comment.text = "rubble robot model: {\"name\": 3}";
+  writer.add(comment);
+  const std::string message = message_of<InputError>([&] { read_rawlog_bytes(writer.bytes(), "a.rawlog"); });
+  EXPECT_EQ(message.find("a.rawlog: entry 1: the comment"), 0u) << message;
 }
 
 TEST(Rawlog, OtherFilesAreRefused) {
