@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/planar.h"
+
 namespace rubble::explore {
 namespace {
 
@@ -14,7 +16,7 @@ constexpr double kSecondsPerMetre = 10;  ///< a quarter of the usual cruise spee
 bool Attempts::overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt) {
   for (std::size_t i = 0; i < accounts_.size(); ++i) {
     Account& account = accounts_[i];
-    if (std::hypot(account.target.x - target.x, account.target.y - target.y) > kSameTarget) continue;
+    if (distance(account.target, target) > kSameTarget) continue;
     account.budget -= dt;
     if (account.budget >= 0.0) return false;
     accounts_.erase(accounts_.begin() + static_cast<std::ptrdiff_t>(i));

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/planar.h"
+
 namespace rubble::explore {
 namespace {
 
@@ -11,9 +13,7 @@ using mrpt::math::TPoint2D;
 
 constexpr Stamp kForever{std::numeric_limits<std::int64_t>::max()};
 
-bool holds(const TPoint2D& centre, double radius, const TPoint2D& p) {
-  return std::hypot(p.x - centre.x, p.y - centre.y) <= radius;
-}
+bool holds(const TPoint2D& centre, double radius, const TPoint2D& p) { return distance(p, centre) <= radius; }
 
 }  // namespace
 

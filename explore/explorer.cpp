@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/planar.h"
 #include "base/trajectory.h"
 #include "explore/attempts.h"
 #include "explore/blacklist.h"
@@ -50,7 +51,6 @@ constexpr double kTurningRoom = 0.06;    ///< [m]
 constexpr double kSubjectRadius = 0.25;  ///< given up together with a place that cannot be seen [m]
 
 TPoint2D position(const TPose2D& pose) { return {pose.x, pose.y}; }
-double distance(const TPoint2D& a, const TPoint2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 PlannerConfig planner_config(const ExplorerConfig& config) {
   PlannerConfig planner;

@@ -2,12 +2,14 @@
 
 #include <cmath>
 
+#include "base/planar.h"
+
 namespace rubble::explore {
 
 void MotionWatch::reset() { *this = MotionWatch(config_); }
 
 bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, double dt) {
-  const bool moved = std::hypot(T_map_base.x - reference_.x, T_map_base.y - reference_.y) > config_.moved ||
+  const bool moved = length(T_map_base.x - reference_.x, T_map_base.y - reference_.y) > config_.moved ||
                      std::abs(wrap_angle(T_map_base.phi - reference_.phi)) > config_.turned;
   if (!has_reference_ || moved) {
     reference_ = T_map_base;

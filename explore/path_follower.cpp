@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/planar.h"
+
 namespace rubble::explore {
 namespace {
 
@@ -14,8 +16,6 @@ using robot::Drive;
 constexpr double kCurvatureSpan = 0.20;  ///< the path's direction is taken over this length on either side [m]
 constexpr double kEndSpeed = 0.10;       ///< [m/s]
 constexpr double kMinTurn = 0.20;        ///< skid steering does not turn more slowly than this [rad/s]
-
-double distance(const TPoint2D& a, const TPoint2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 double direction(const TPoint2D& from, const TPoint2D& to) { return std::atan2(to.y - from.y, to.x - from.x); }
 
@@ -120,7 +120,7 @@ int hits_on_path(const std::vector<PathPoint>& path, std::size_t from, double ah
                              std::abs(cos_phi * dy - sin_phi * dx) < 0.5 * model.width;
     if (inside_body) continue;
     // Only what the robot would come closer to: a wall beside it that it drives away from is no obstacle.
-    const double limit = std::min(radius, std::hypot(dx, dy) - 0.01);
+    const double limit = std::min(radius, length(dx, dy) - 0.01);
     const bool near =
         std::any_of(next.begin(), next.end(), [&](const TPoint2D& p) { return distance(p, hit) < limit; });
     if (near) ++count;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/planar.h"
+
 namespace rubble::explore {
 namespace {
 
@@ -11,8 +13,6 @@ using mrpt::math::TPose2D;
 
 constexpr double kRounding = 1e-4;    // [m] see eq. (4)
 constexpr double kSmoothSpan = 0.20;  ///< half the window of the moving average [m]
-
-double distance(const TPoint2D& a, const TPoint2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 }  // namespace
 

@@ -16,10 +16,7 @@ constexpr double kDistances[] = {0.5, 0.8, 1.1, 1.4};  ///< [m]
 /// Free cells that were not searched, as 8-connected clusters of at least `min_cells`.
 std::vector<std::vector<Cell>> unsearched_clusters(const Traversable& floor, const SearchedArea& searched,
                                                    int min_cells) {
-  Grid<std::uint8_t> open(floor.frame());
-  for (int y = 1; y + 1 < floor.cells.height(); ++y)
-    for (int x = 1; x + 1 < floor.cells.width(); ++x)
-      open[{x, y}] = floor.cells[{x, y}] == Occupancy::Free && !searched.searched(floor, {x, y}) ? 1 : 0;
+  Grid<std::uint8_t> open = searched.unsearched(floor);
   std::vector<std::vector<Cell>> clusters;
   for (int y = 1; y + 1 < floor.cells.height(); ++y)
     for (int x = 1; x + 1 < floor.cells.width(); ++x) {
@@ -58,11 +55,10 @@ bool in_sight(const Traversable& floor, Cell from, Cell to) {
   return true;
 }
 
-Cell SearchedArea::own_cell(const Traversable& floor, Cell c) const {
-  const GridFrame& f = floor.frame();
+Cell SearchedArea::shift_from(const GridFrame& f) const {
   const GridFrame& own = searched_.frame();
-  return {c.x + static_cast<int>(std::lround((f.x0 - own.x0) / f.resolution)),
-          c.y + static_cast<int>(std::lround((f.y0 - own.y0) / f.resolution))};
+  return {static_cast<int>(std::lround((f.x0 - own.x0) / f.resolution)),
+          static_cast<int>(std::lround((f.y0 - own.y0) / f.resolution))};
 }
 
 /// Lets the record hold at least `frame`; the map's cells keep their places when it grows.
@@ -100,6 +96,7 @@ void SearchedArea::cover(const GridFrame& frame) {
 void SearchedArea::look(const Traversable& floor, const TPose2D& T_map_base) {
   if (floor.cells.width() == 0) return;
   cover(floor.frame());
+  const Cell shift = shift_from(floor.frame());
   const double step = 0.7 * floor.frame().resolution;
   const double turn = step / config_.range;  // neighbouring rays end less than a cell apart
   const int rays = static_cast<int>(std::ceil(config_.field_of_view / turn));
@@ -110,7 +107,7 @@ void SearchedArea::look(const Traversable& floor, const TPose2D& T_map_base) {
     for (double r = 0.0; r <= config_.range; r += step) {
       const Cell c = floor.cells.cell({T_map_base.x + r * dx, T_map_base.y + r * dy});
       if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free) break;
-      searched_[own_cell(floor, c)] = 1;
+      searched_[{c.x + shift.x, c.y + shift.y}] = 1;
     }
   }
 }
@@ -118,18 +115,38 @@ void SearchedArea::look(const Traversable& floor, const TPose2D& T_map_base) {
 void SearchedArea::give_up(const Traversable& floor, const TPoint2D& place, double radius) {
   if (floor.cells.width() == 0) return;
   cover(floor.frame());
+  const Cell shift = shift_from(floor.frame());
   const Cell low = floor.cells.cell({place.x - radius, place.y - radius});
   const Cell high = floor.cells.cell({place.x + radius, place.y + radius});
   for (int y = low.y; y <= high.y; ++y)
     for (int x = low.x; x <= high.x; ++x)
       if (floor.cells.inside({x, y}) && (floor.cells.centre({x, y}) - place).norm() <= radius)
-        searched_[own_cell(floor, {x, y})] = 1;
+        searched_[{x + shift.x, y + shift.y}] = 1;
 }
 
 bool SearchedArea::searched(const Traversable& floor, Cell c) const {
   if (searched_.width() == 0) return false;
-  const Cell own = own_cell(floor, c);
+  const Cell shift = shift_from(floor.frame());
+  const Cell own{c.x + shift.x, c.y + shift.y};
   return searched_.inside(own) && searched_[own] != 0;
+}
+
+Grid<std::uint8_t> SearchedArea::unsearched(const Traversable& floor) const {
+  Grid<std::uint8_t> open(floor.frame());
+  const Cell shift = searched_.width() == 0 ? Cell{} : shift_from(floor.frame());
+  const int width = floor.cells.width();
+  for (int y = 1; y + 1 < floor.cells.height(); ++y) {
+    const Occupancy* cells = floor.cells.row(y);
+    std::uint8_t* row = open.row(y);
+    for (int x = 1; x + 1 < width; ++x) row[x] = cells[x] == Occupancy::Free ? 1 : 0;
+    const int own = y + shift.y;
+    if (own < 0 || own >= searched_.height()) continue;
+    const std::uint8_t* looked_at = searched_.row(own);
+    const int first = std::max(1, -shift.x);
+    const int last = std::min(width - 2, searched_.width() - 1 - shift.x);
+    for (int x = first; x <= last; ++x) row[x] = static_cast<std::uint8_t>(row[x] & (looked_at[x + shift.x] ^ 1u));
+  }
+  return open;
 }
 
 std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& searched, const SearchConfig& config,

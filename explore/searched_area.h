@@ -33,9 +33,12 @@ class SearchedArea {
   void give_up(const Traversable& floor, const mrpt::math::TPoint2D& place, double radius);
   /// Whether a cell of `floor` was looked at.
   bool searched(const Traversable& floor, Cell c) const;
+  /// 1 where a cell of `floor` is free and was not looked at; its outermost cells are 0.
+  Grid<std::uint8_t> unsearched(const Traversable& floor) const;
 
  private:
-  Cell own_cell(const Traversable& floor, Cell c) const;
+  /// What to add to a cell of `frame` to get the record's own.
+  Cell shift_from(const GridFrame& frame) const;
   void cover(const GridFrame& frame);
 
   SearchConfig config_;

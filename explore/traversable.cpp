@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/distance_transform.h"
+#include "base/planar.h"
 #include "explore/set_bytes.h"
 
 namespace rubble::explore {
@@ -37,32 +38,27 @@ void classify_row(const std::uint16_t* __restrict seen, const std::uint16_t* __r
   }
 }
 
-bool any_seen(const CountMap& map, int y, int from, int to) {
-  unsigned seen = 0;
-  for (int x = from; x < to; ++x) seen |= map.seen({x, y});
-  return seen != 0;
+/// Free of branches, so that compilers use vector code.
+bool any_seen(const std::uint16_t* seen, int from, int to) {
+  std::uint16_t any = 0;
+  for (int x = from; x < to; ++x) any = static_cast<std::uint16_t>(any | seen[x]);
+  return any != 0;
 }
 
 Box seen_box(const CountMap& map) {
   const GridFrame& frame = map.frame();
   Box box{{frame.width, frame.height}, {-1, -1}};
   for (int y = 0; y < frame.height; ++y) {
-    const bool left = any_seen(map, y, 0, box.low.x);
-    const bool middle = any_seen(map, y, box.low.x, box.high.x + 1);
-    const bool right = any_seen(map, y, std::max(box.low.x, box.high.x + 1), frame.width);
+    const std::uint16_t* seen = map.seen_row(y);
+    const bool left = any_seen(seen, 0, box.low.x);
+    const bool middle = any_seen(seen, box.low.x, box.high.x + 1);
+    const bool right = any_seen(seen, std::max(box.low.x, box.high.x + 1), frame.width);
     if (!left && !middle && !right) continue;
     box.low.y = std::min(box.low.y, y);
     box.high.y = y;
-    if (left) {
-      for (int x = 0; x < box.low.x; ++x)
-        if (map.seen({x, y}) != 0) {
-          box.low.x = x;
-          break;
-        }
-    }
-    if (middle && !right) continue;
-    for (int x = frame.width - 1; x > box.high.x; --x)
-      if (map.seen({x, y}) != 0) box.high.x = x;
+    if (left) box.low.x = static_cast<int>(std::find_if(seen, seen + box.low.x, [](auto n) { return n != 0; }) - seen);
+    for (int x = frame.width - 1; (right || !middle) && x > box.high.x; --x)
+      if (seen[x] != 0) box.high.x = x;
   }
   return box;
 }
@@ -117,18 +113,14 @@ Traversable traversable(const CountMap& map, double occupied_threshold) {
   floor.body = Grid<std::uint8_t>(frame);
   const float threshold = static_cast<float>(occupied_threshold);
   const int columns = frame.width - 2;
-  std::vector<std::uint16_t> seen(static_cast<std::size_t>(columns));
-  std::vector<std::uint16_t> hits(static_cast<std::size_t>(columns));
   std::vector<Cell> weak;
   for (int y = box.low.y; y <= box.high.y; ++y) {
     const int row = y - box.low.y + 1;
-    for (int i = 0; i < columns; ++i) {
-      seen[static_cast<std::size_t>(i)] = map.seen({box.low.x + i, y});
-      hits[static_cast<std::size_t>(i)] = map.occupied({box.low.x + i, y});
-    }
-    classify_row(seen.data(), hits.data(), columns, threshold, floor.cells.row(row) + 1, floor.obstacle.row(row) + 1);
+    const std::uint16_t* hits = map.occupied_row(y) + box.low.x;
+    classify_row(map.seen_row(y) + box.low.x, hits, columns, threshold, floor.cells.row(row) + 1,
+                 floor.obstacle.row(row) + 1);
     for_each_set(floor.obstacle.row(row), frame.width, [&](int x) {
-      if (map.occupied({box.low.x + x - 1, y}) <= kWeakHits) weak.push_back({x, row});
+      if (hits[x - 1] <= kWeakHits) weak.push_back({x, row});
     });
   }
   const int reach = static_cast<int>(std::lround(kLoneRadius / frame.resolution));
@@ -143,7 +135,7 @@ void free_body(Traversable& floor, const TPose2D& T_map_base, double length, dou
   const double half_width = 0.5 * width + reach;
   const double cos_phi = std::cos(T_map_base.phi);
   const double sin_phi = std::sin(T_map_base.phi);
-  const Box box = cells_around(frame, {T_map_base.x, T_map_base.y}, std::hypot(half_length, half_width));
+  const Box box = cells_around(frame, {T_map_base.x, T_map_base.y}, rubble::length(half_length, half_width));
   for (int y = box.low.y; y <= box.high.y; ++y)
     for (int x = box.low.x; x <= box.high.x; ++x) {
       const TPoint2D p = frame.centre({x, y});
@@ -166,7 +158,7 @@ void free_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double r
         const Cell c{x, y};
         if (floor.cells[c] != Occupancy::Unknown) continue;
         const TPoint2D p = frame.centre(c);
-        if (std::hypot(p.x - passed.x, p.y - passed.y) > radius) continue;
+        if (distance(p, passed) > radius) continue;
         floor.cells[c] = Occupancy::Free;
         floor.body[c] = 1;
       }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/planar.h"
+
 namespace rubble::explore {
 namespace {
 
@@ -12,8 +14,6 @@ using mrpt::math::TPose2D;
 using robot::CueKind;
 
 constexpr std::size_t kKinds = 4;
-
-double distance(const TPoint2D& a, const TPoint2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 }  // namespace
 

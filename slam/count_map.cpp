@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/planar.h"
+
 namespace rubble::slam {
 
 using mrpt::math::TPoint2D;
@@ -74,11 +76,12 @@ void CountMap::stamp(const TPose2D& T_map_base, const ScanPoints& scan) {
   rays_ = scan.rays.empty() ? rays_from_ends(scan.hits, scan.passes, scan.origin, scan.beam_width) : scan.rays;
   if (rays_.empty()) return;
 
-  TPoint2D origin = T_map_base.composePoint(scan.origin);
+  const PlanarTransform to_map(T_map_base);
+  TPoint2D origin = to_map(scan.origin);
   TPoint2D low = origin;
   TPoint2D high = origin;
   for (ScanRay& ray : rays_) {
-    ray.end = T_map_base.composePoint(ray.end);
+    ray.end = to_map(ray.end);
     low = {std::min(low.x, ray.end.x), std::min(low.y, ray.end.y)};
     high = {std::max(high.x, ray.end.x), std::max(high.y, ray.end.y)};
   }
@@ -93,8 +96,7 @@ void CountMap::stamp(const TPose2D& T_map_base, const ScanPoints& scan) {
   // One cell of margin: half a beam of widening may reach a little over the ends.
   const Cell first = frame_.cell(low);
   const Cell last = frame_.cell(high);
-  const int margin =
-      1 + static_cast<int>(0.5 * scan.beam_width * std::hypot(high.x - low.x, high.y - low.y) / frame_.resolution);
+  const int margin = 1 + static_cast<int>(0.5 * scan.beam_width * distance(low, high) / frame_.resolution);
   const Cell from{std::max(first.x - margin, 0), std::max(first.y - margin, 0)};
   const Cell to{std::min(last.x + margin, frame_.width - 1), std::min(last.y + margin, frame_.height - 1)};
   if (to.x < from.x || to.y < from.y) {  // all of it beyond the largest map

@@ -35,6 +35,9 @@ class CountMap {
   const GridFrame& frame() const { return frame_; }
   std::uint16_t seen(Cell c) const { return seen_[frame_.index(c)]; }
   std::uint16_t occupied(Cell c) const { return occupied_[frame_.index(c)]; }
+  /// Row `y` of the planes: frame().width counts, for code that reads many cells.
+  const std::uint16_t* seen_row(int y) const { return seen_.data() + frame_.index({0, y}); }
+  const std::uint16_t* occupied_row(int y) const { return occupied_.data() + frame_.index({0, y}); }
   /// p_occ = occupied / seen (eq. 1); 0 for unseen cells and outside.
   double p_occ(Cell c) const;
   /// p_occ in 1/255, 0 where unseen: the plane the particle weights read.

@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 
+#include "base/planar.h"
 #include "base/rng.h"
 #include "slam/level_scan.h"
 #include "slam/odometry_track.h"
@@ -127,7 +128,8 @@ void Mapper::Impl::keep(Stamp reference, const TPose2D& T_map_base, const ScanPo
   last_coverage_ = SurfaceCoverage(surface);
   T_map_last_ = T_map_base;
   last_hits_.clear();
-  for (const TPoint2D& p_base : points.hits) last_hits_.push_back(T_map_base.composePoint(p_base));
+  const PlanarTransform to_map(T_map_base);
+  for (const TPoint2D& p_base : points.hits) last_hits_.push_back(to_map(p_base));
   ++counts_.mapped;
   pass(reference, TPose2D());
 }
@@ -151,8 +153,7 @@ std::vector<TPoint2D> Mapper::Impl::hits_to_weigh(const ScanPoints& points, cons
 }
 
 bool Mapper::Impl::moved(const TPose2D& motion) const {
-  return std::hypot(motion.x, motion.y) >= config_.gate_distance ||
-         std::abs(wrap_angle(motion.phi)) >= config_.gate_turn;
+  return length(motion.x, motion.y) >= config_.gate_distance || std::abs(wrap_angle(motion.phi)) >= config_.gate_turn;
 }
 
 std::optional<SweepMotion> Mapper::Impl::sweep_motion(const LaserScan& scan) const {

@@ -29,9 +29,9 @@ struct MapperConfig {
   bool icp = true;                               ///< refine the odometry by ICP of the last and the current scan
   bool carve_misses = false;                     ///< beams without a return free cells up to the range limit
   double max_range = 0.0;                        ///< returns beyond are dropped [m]; 0: the scanner's own limit
-  bool deskew = true;                            ///< place each beam by its own time; the paper does not, and pays for it
-  int first_scans = 5;                           ///< so many scans are mapped at the start although the robot stands
-  int max_map_cells = 8000;                      ///< the map grows up to so many cells a side
+  bool deskew = true;            ///< place each beam by its own time; the paper does not, and pays for it
+  int first_scans = 5;           ///< so many scans are mapped at the start although the robot stands
+  int max_map_cells = 8000;      ///< the map grows up to so many cells a side
   double coverage_margin = 0.1;  ///< ICP pairs what both scans saw, and saw go on for so much to either side [m]
   double rim_margin = 0.1;    ///< eq. (2) leaves out beams so close to where a surface goes out of sight [m]; 0: none
   SurfaceConfig surface;      ///< how scans are thinned for the ICP

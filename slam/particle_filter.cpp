@@ -1,8 +1,11 @@
 #include "slam/particle_filter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+
+#include "base/planar.h"
 
 namespace rubble::slam {
 
@@ -11,13 +14,23 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-/// Indices of the particles, heaviest first; equal weights keep their order.
-std::vector<std::size_t> by_weight(const Particles& particles) {
-  std::vector<std::size_t> order(particles.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return particles[a].weight > particles[b].weight; });
-  return order;
+/// A particle's place in the order by weight: heaviest first, equal weights by their index.
+struct Rank {
+  double weight;
+  std::size_t index;
+  bool operator<(const Rank& other) const {
+    return weight != other.weight ? weight > other.weight : index < other.index;
+  }
+};
+
+/// The `count` heaviest in order, the others behind them in any.
+std::vector<Rank> heaviest_first(const Particles& particles, std::size_t count) {
+  std::vector<Rank> ranks(particles.size());
+  for (std::size_t i = 0; i < ranks.size(); ++i) ranks[i] = {particles[i].weight, i};
+  const auto end = ranks.begin() + static_cast<std::ptrdiff_t>(count);
+  if (count < ranks.size()) std::nth_element(ranks.begin(), end, ranks.end());
+  std::sort(ranks.begin(), end);
+  return ranks;
 }
 
 /// Beam ends in the base frame in cells, x and y apart so that the compiler can take four at a time.
@@ -34,7 +47,7 @@ Beams beams_in_cells(const std::vector<TPoint2D>& hits, double resolution) {
   for (const TPoint2D& p : hits) {
     beams.x.push_back(static_cast<float>(p.x / resolution));
     beams.y.push_back(static_cast<float>(p.y / resolution));
-    beams.reach = std::max(beams.reach, std::hypot(p.x, p.y) / resolution);
+    beams.reach = std::max(beams.reach, length(p) / resolution);
   }
   return beams;
 }
@@ -44,21 +57,49 @@ struct BeamTransform {
   float c, s, x, y;
 };
 
-/// Eq. (2) for a particle all of whose beams end inside the map.
-std::uint32_t sum_inside(const BeamTransform& T, const Beams& beams, const std::uint8_t* plane, int width,
-                         std::vector<std::int32_t>& cells) {
+/// Cell indices of the beam ends of a particle all of whose beams end inside the map. Coordinates are positive, so
+/// truncation is floor. Built twice from the same source: all operations are exact or rounded alike, so both give the
+/// same bits.
+__attribute__((always_inline)) inline void index_cells(const BeamTransform& T, const Beams& beams, int width,
+                                                       std::int32_t* __restrict cell) {
   const std::size_t n = beams.x.size();
-  const float* x = beams.x.data();
-  const float* y = beams.y.data();
-  std::int32_t* cell = cells.data();
-  for (std::size_t k = 0; k < n; ++k) {  // vectorised; coordinates are positive, so truncation is floor
+  const float* __restrict x = beams.x.data();
+  const float* __restrict y = beams.y.data();
+  for (std::size_t k = 0; k < n; ++k) {
     const std::int32_t column = static_cast<std::int32_t>(T.c * x[k] - T.s * y[k] + T.x);
     const std::int32_t row = static_cast<std::int32_t>(T.s * x[k] + T.c * y[k] + T.y);
     cell[k] = row * width + column;
   }
-  std::uint32_t sum = 0;
-  for (std::size_t k = 0; k < n; ++k) sum += plane[cell[k]];  // eq. (2)
-  return sum;
+}
+
+void index_cells_anywhere(const BeamTransform& T, const Beams& beams, int width, std::int32_t* cell) {
+  index_cells(T, beams, width, cell);
+}
+
+#if defined(__x86_64__)
+__attribute__((target("avx2"))) void index_cells_avx2(const BeamTransform& T, const Beams& beams, int width,
+                                                      std::int32_t* cell) {
+  index_cells(T, beams, width, cell);
+}
+const bool kHasAvx2 = __builtin_cpu_supports("avx2");
+const auto index_cells_here = kHasAvx2 ? index_cells_avx2 : index_cells_anywhere;
+#else
+const auto index_cells_here = index_cells_anywhere;
+#endif
+
+/// Eq. (2) for a particle all of whose beams end inside the map.
+std::uint32_t sum_inside(const BeamTransform& T, const Beams& beams, const std::uint8_t* plane, int width,
+                         std::vector<std::int32_t>& cells) {
+  index_cells_here(T, beams, width, cells.data());
+  const std::int32_t* cell = cells.data();
+  std::array<std::uint32_t, 4> sums{};  // four chains: the loads need not wait for each other's additions
+  const std::size_t n = cells.size();
+  std::size_t k = 0;
+  for (; k + 4 <= n; k += 4) {
+    for (std::size_t i = 0; i < 4; ++i) sums[i] += plane[cell[k + i]];
+  }
+  for (; k < n; ++k) sums[0] += plane[cell[k]];
+  return sums[0] + sums[1] + sums[2] + sums[3];
 }
 
 /// The same where beams may end outside.
@@ -87,22 +128,22 @@ Particles resample(Particles particles) {
   const std::size_t n = particles.size();
   Particles children;
   children.reserve(n);
-  for (const std::size_t parent : by_weight(particles)) {
-    const double share = static_cast<double>(n) * particles[parent].weight;
+  for (const Rank& parent : heaviest_first(particles, n)) {
+    const double share = static_cast<double>(n) * parent.weight;
     const double wanted = std::floor(share + 0.5 + 0.5);  // round(N w + 0.5): at least one, so N are always filled
     for (double child = 0.0; child < wanted && children.size() < n; child += 1.0) {
-      children.push_back({particles[parent].T_map_base, 1.0 / static_cast<double>(n)});
+      children.push_back({particles[parent.index].T_map_base, 1.0 / static_cast<double>(n)});
     }
   }
   return children;
 }
 
 Particles drift(Particles particles, const TPose2D& T_last_now, const MotionError& error, Rng& rng) {
-  const double distance = std::hypot(T_last_now.x, T_last_now.y);
+  const double path = length(T_last_now.x, T_last_now.y);
   const double turn = wrap_angle(T_last_now.phi);
   const double sigma_start = error.rotation * std::abs(turn);
-  const double sigma_scale = distance > 0.0 ? error.distance : 0.0;
-  const double sigma_end = error.heading_per_m * distance;
+  const double sigma_scale = path > 0.0 ? error.distance : 0.0;
+  const double sigma_end = error.heading_per_m * path;
   for (Particle& particle : particles) {
     const double start = rng.gaussian(sigma_start);        // initial orientation
     const double scale = 1.0 + rng.gaussian(sigma_scale);  // distance
@@ -145,12 +186,13 @@ Particles normalise(Particles particles) {
 }
 
 TPose2D mean_of_best(const Particles& particles, double share) {
-  const std::vector<std::size_t> order = by_weight(particles);
   const double wanted = std::round(share * static_cast<double>(particles.size()));
-  const std::size_t best = std::clamp<std::size_t>(static_cast<std::size_t>(std::max(0.0, wanted)), 1, order.size());
+  const std::size_t best =
+      std::clamp<std::size_t>(static_cast<std::size_t>(std::max(0.0, wanted)), 1, particles.size());
+  const std::vector<Rank> order = heaviest_first(particles, best);
   double x = 0.0, y = 0.0, c = 0.0, s = 0.0;
   for (std::size_t i = 0; i < best; ++i) {
-    const TPose2D& T = particles[order[i]].T_map_base;
+    const TPose2D& T = particles[order[i].index].T_map_base;
     x += T.x;
     y += T.y;
     c += std::cos(T.phi);

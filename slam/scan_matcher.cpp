@@ -1,10 +1,12 @@
 #include "slam/scan_matcher.h"
 
-#include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <mrpt/slam/CICP.h>
 
 #include <cmath>
+
+#include "base/planar.h"
+#include "slam/match_target.h"
 
 namespace rubble::slam {
 
@@ -34,7 +36,7 @@ void set_dense_points(CSimplePointsMap& map, const Surface& surface, double spac
     insert(map, p);
     if (!points[i].joined || i + 1 == points.size()) continue;
     const TPoint2D& q = points[i + 1].p;
-    const int pieces = static_cast<int>(std::ceil(std::hypot(q.x - p.x, q.y - p.y) / spacing));
+    const int pieces = static_cast<int>(std::ceil(distance(p, q) / spacing));
     for (int piece = 1; piece < pieces; ++piece) {
       const double u = static_cast<double>(piece) / pieces;
       insert(map, {p.x + u * (q.x - p.x), p.y + u * (q.y - p.y)});
@@ -48,7 +50,7 @@ void set_dense_points(CSimplePointsMap& map, const Surface& surface, double spac
 struct ScanMatcher::Impl {
   ScanMatcherConfig config;
   mrpt::slam::CICP icp;
-  CSimplePointsMap last;
+  MatchTarget last;
   CSimplePointsMap now;
 };
 
@@ -73,6 +75,7 @@ ScanMatcher::~ScanMatcher() = default;
 
 void ScanMatcher::set_last(const Surface& surface) {
   set_dense_points(impl_->last, surface, impl_->config.dense_spacing);
+  impl_->last.index();
 }
 
 ScanMatch ScanMatcher::match(const Surface& now, const TPose2D& T_last_now_prior) {
@@ -88,7 +91,7 @@ ScanMatch ScanMatcher::match(const Surface& now, const TPose2D& T_last_now_prior
   const TPose2D correction = refined - T_last_now_prior;
   match.goodness = info.goodness;
   match.accepted = info.goodness >= config.min_goodness &&
-                   std::hypot(correction.x, correction.y) <= config.max_correction &&
+                   length(correction.x, correction.y) <= config.max_correction &&
                    std::abs(wrap_angle(correction.phi)) <= config.max_turn;
   if (match.accepted) match.T_last_now = refined;
   return match;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/planar.h"
+
 namespace rubble::slam {
 
 using mrpt::math::TPoint2D;
@@ -97,7 +99,7 @@ void clear_surfaces(const std::vector<ScanRay>& rays, double max_gap, BitRaster&
     const ScanRay& b = rays[i + 1];
     if (!a.joined || !a.hit || !b.hit) continue;
     const bool same_cell = std::floor(a.end.x) == std::floor(b.end.x) && std::floor(a.end.y) == std::floor(b.end.y);
-    if (same_cell || std::hypot(b.end.x - a.end.x, b.end.y - a.end.y) > max_gap) continue;
+    if (same_cell || distance(a.end, b.end) > max_gap) continue;
     clear_line(a.end, b.end, raster);
   }
 }

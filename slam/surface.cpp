@@ -5,16 +5,12 @@
 #include <cstdlib>
 #include <limits>
 
+#include "base/planar.h"
+
 namespace rubble::slam {
 
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
-
-namespace {
-
-double distance(const TPoint2D& a, const TPoint2D& b) { return std::hypot(a.x - b.x, a.y - b.y); }
-
-}  // namespace
 
 Surface surface_of(const ScanPoints& scan, const SurfaceConfig& config) {
   const std::vector<ScanRay>& rays = scan.rays;
@@ -89,8 +85,9 @@ bool SurfaceCoverage::covers(const TPoint2D& p, double margin) const {
 Surface covered_part(const Surface& now, const SurfaceCoverage& last, const TPose2D& T_last_now, double margin) {
   Surface part;
   part.origin = now.origin;
+  const PlanarTransform to_last(T_last_now);
   for (const SurfacePoint& point : now.points) {
-    if (last.covers(T_last_now.composePoint(point.p), margin)) part.points.push_back(point);
+    if (last.covers(to_last(point.p), margin)) part.points.push_back(point);
   }
   return part;
 }
