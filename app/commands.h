@@ -59,6 +59,9 @@ struct ArenaArguments {
   std::string out;
 };
 
+/// A log file, or the log inside a run folder.
+std::string recorded_log(const std::string& path);
+
 int run(const RunArguments& arguments);
 int map(const MapArguments& arguments);
 int score(const ScoreArguments& arguments);

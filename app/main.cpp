@@ -129,7 +129,10 @@ int dispatch(int argc, char** argv) {
 
   ExportArguments export_arguments;
   CLI::App* export_command = app.add_subcommand("export", "Write a recorded log as MRPT .rawlog");
-  export_command->add_option("log", export_arguments.log, "Recorded log (log.rlog of a run folder)")->required();
+  export_command
+      ->add_option("log", export_arguments.log,
+                   "Recorded log: a run folder, or a log file of any format that `map` reads")
+      ->required();
   export_command->add_option("out", export_arguments.out, "The .rawlog to write")->required();
   export_command->footer("Example:\n  rubble export runs/latest/log.rlog run.rawlog");
 

@@ -1,7 +1,9 @@
 #include <cstdio>
+#include <filesystem>
 
 #include "app/commands.h"
 #include "app/terminal.h"
+#include "base/error.h"
 #include "robot/mrpt_bridge.h"
 
 namespace rubble::app {
@@ -18,8 +20,18 @@ int replay(const ReplayArguments& arguments) {
   return report.identical ? kOk : kBroken;
 }
 
+std::string recorded_log(const std::string& path) {
+  const std::string inside = path + "/log.rlog";
+  return std::filesystem::exists(inside) ? inside : path;
+}
+
 int export_log(const ExportArguments& arguments) {
-  robot::export_rawlog(arguments.log, arguments.out);
+  namespace fs = std::filesystem;
+  if (fs::is_directory(arguments.out)) throw InputError(arguments.out + ": is a folder; name the .rawlog to write");
+  const fs::path folder = fs::path(arguments.out).parent_path();
+  if (!folder.empty() && !fs::is_directory(folder))
+    throw InputError(arguments.out + ": the folder " + folder.string() + " does not exist; make it first");
+  robot::export_rawlog(recorded_log(arguments.log), arguments.out);
   std::printf("%s\n", arguments.out.c_str());
   return kOk;
 }

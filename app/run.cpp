@@ -37,7 +37,7 @@ int map(const MapArguments& arguments) {
   if (arguments.seed) overrides.emplace_back("seed", std::to_string(*arguments.seed));
   const scenarios::Scenario scenario = scenarios::default_scenario(overrides);
   const auto options = terminal_options(arguments.common.out, arguments.common.force);
-  const scenarios::RunReport report = scenarios::map_log(arguments.log, scenario, options);
+  const scenarios::RunReport report = scenarios::map_log(recorded_log(arguments.log), scenario, options);
   end_progress();
   print_summary(report);
   return exit_code(report);

@@ -95,7 +95,11 @@ TiffFile open_tiff(const std::string& path, TiffComplaint& complaint) {
     throw InputError(path + ": cannot be opened (" + std::strerror(errno) + "); check the path");
   if (S_ISDIR(status.st_mode)) throw InputError(path + ": is a folder; give the path of a TIFF file");
   TiffFile tiff(TIFFOpenExt(path.c_str(), "rm", quiet(complaint).get()));  // m: a file that shrinks is no crash
-  if (!tiff) throw InputError(path + ": is no TIFF that can be read (" + complaint.text + ")");
+  if (!tiff) {
+    std::string why = complaint.text;  // begins with the path
+    if (why.compare(0, path.size() + 2, path + ": ") == 0) why.erase(0, path.size() + 2);
+    throw InputError(path + ": is no TIFF that can be read, or a part of one (" + why + "); copy or export it again");
+  }
   if (!complaint.lost_tag.empty())
     throw InputError(path + ": is truncated (" + complaint.lost_tag + "); copy it again");
   return tiff;

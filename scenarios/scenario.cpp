@@ -72,6 +72,8 @@ void bind(Binder& b, slam::MapperConfig& c) {
   b.boolean("deskew", c.deskew);
   b.integer("first_scans", c.first_scans, 1, 1000);
   b.integer("max_map_cells", c.max_map_cells, 16, 20000);
+  b.number("coverage_margin_m", c.coverage_margin, 0.0, 1.0);
+  b.number("rim_margin_m", c.rim_margin, 0.0, 1.0);
   b.section("icp_limits", [&](Binder& m) {
     m.number("first_distance_m", c.matcher.first_distance, 0.01, 5.0);
     m.number("last_distance_m", c.matcher.last_distance, 0.005, 5.0);
