@@ -9,10 +9,10 @@
 #include "base/trajectory.h"
 #include "explore/attempts.h"
 #include "explore/blacklist.h"
+#include "explore/floor_search.h"
 #include "explore/motion_watch.h"
 #include "explore/path_follower.h"
 #include "explore/planner.h"
-#include "explore/searched_area.h"
 #include "explore/traversable.h"
 
 namespace rubble::explore {
@@ -40,15 +40,10 @@ constexpr double kTrailRadius = 0.20;            ///< [m]
 constexpr double kNearFrontier = 1.0;            ///< frontier this close at the start: turn to see it [m]
 constexpr int kMaxPardons = 2;                   ///< times that barred targets are tried again before giving up
 constexpr int kMaxStuckAtPlace = 6;
-constexpr double kSearchReplan = 2.0;                 ///< on the way to a viewpoint [s]
-constexpr double kArrivedReplan = 0.3;                ///< standing at the end of the way [s]
-constexpr double kSearchPeriod = 0.25;                ///< the searched area is marked this often [s]
-constexpr double kSearchTurnRate = deg_to_rad(40.0);  ///< turning faster the sensors see too little [rad/s]
-constexpr double kCueAge = 1.2;                       ///< an unconfirmed cue younger than this is worth waiting for [s]
-constexpr double kFacing = deg_to_rad(8.0);           ///< [rad]
-constexpr double kAtViewpoint = 0.12;    ///< viewpoints this close are served from where the robot stands [m]
-constexpr double kTurningRoom = 0.06;    ///< [m]
-constexpr double kSubjectRadius = 0.25;  ///< given up together with a place that cannot be seen [m]
+constexpr double kSearchReplan = 2.0;   ///< on the way to a viewpoint [s]
+constexpr double kArrivedReplan = 0.3;  ///< standing at the end of the way [s]
+constexpr double kCueAge = 1.2;         ///< an unconfirmed cue younger than this is worth waiting for [s]
+constexpr double kTurningRoom = 0.06;   ///< [m]
 
 TPoint2D position(const TPose2D& pose) { return {pose.x, pose.y}; }
 
@@ -88,7 +83,10 @@ struct Explorer::Impl {
         planner(planner_config(explorer_config)),
         follower(robot_model, follower_config(explorer_config)),
         search(explorer_config.victims),
-        searched(explorer_config.search) {}
+        // The robot turns on the spot there, so its swing circle must be free, with room for stopping a little beside
+        // it.
+        floor_search(explorer_config.search,
+                     std::max(explorer_config.d_min, robot_model.swing_radius()) + kTurningRoom) {}
 
   void observe(const slam::Mapper& mapper, const robot::Inputs& inputs);
   Drive decide(const slam::Mapper& mapper);
@@ -114,8 +112,7 @@ struct Explorer::Impl {
   void show_path();
 
   void mark_searched();
-  bool staring();
-  bool dwelling();
+  bool holding_still();
   Plan plan_search(const Traversable& floor);
   void face_subject();
 
@@ -124,7 +121,7 @@ struct Explorer::Impl {
   Planner planner;
   PathFollower follower;
   VictimSearch search;
-  SearchedArea searched;
+  FloorSearch floor_search;
   Blacklist blacklist;
   Attempts attempts;
   MotionWatch watch;
@@ -163,13 +160,6 @@ struct Explorer::Impl {
   Stamp forget_hits = Stamp::never();
   bool blocked = false;
   Stamp creep_until = Stamp::never();
-
-  std::vector<Viewpoint> views;
-  TPoint2D subject;
-  Stamp next_mark = Stamp::never();
-  Stamp dwell_until = Stamp::never();
-  Stamp stare_until = Stamp::never();
-  Stamp next_stare = Stamp::never();
 
   Traversable last_floor;
   ExplorerState after_back_up = ExplorerState::Driving;
@@ -223,7 +213,7 @@ Drive Explorer::Impl::start(const slam::Mapper& mapper) {
 
 Drive Explorer::Impl::drive(const slam::Mapper& mapper) {
   mark_searched();
-  if (staring() || dwelling()) return {};
+  if (holding_still()) return {};
   if (watch.stuck(pose, commanded, stalled, dt)) {
     got_stuck();
     return {};
@@ -231,7 +221,7 @@ Drive Explorer::Impl::drive(const slam::Mapper& mapper) {
   check_path(mapper);
   const bool to_target = target && (state == ExplorerState::Driving || state == ExplorerState::Searching);
   if (to_target && attempts.overdrawn(*target, target_cost, dt)) {
-    if (state == ExplorerState::Searching) searched.give_up(last_floor, subject, kSubjectRadius);
+    if (state == ExplorerState::Searching) floor_search.give_up_subject(last_floor);
     bar_target(*target);
   }
   if (state == ExplorerState::Searching && follower.arrived() && !looking.active() && now - last_plan > kArrivedReplan)
@@ -348,7 +338,7 @@ void Explorer::Impl::finish_exploring() {
   if (frontier_left > 1) why += " (" + std::to_string(frontier_left) + " frontiers cannot be reached)";
   reason = why;
   plan_forced = true;
-  if (config.search.on) {
+  if (floor_search.on()) {
     state = ExplorerState::Searching;
     return;
   }
@@ -361,70 +351,37 @@ void Explorer::Impl::finish_searching() {
   plan_forced = true;
 }
 
-/// Records what the victim sensors see from here; not while turning too fast to see.
+/// Records what the victim sensors see; a place seen on the way need not be driven to.
 void Explorer::Impl::mark_searched() {
-  if (!config.search.on || now < next_mark || std::abs(turned) > kSearchTurnRate * dt) return;
-  next_mark = now + kSearchPeriod;
-  searched.look(last_floor, pose);
-  if (state != ExplorerState::Searching || !target) return;
-  const Cell c = last_floor.cells.cell(subject);
-  if (last_floor.cells.inside(c) && searched.searched(last_floor, c)) plan_forced = true;  // seen on the way
+  const bool looked = floor_search.look(last_floor, pose, turned / std::max(dt, 1e-9), now);
+  if (looked && state == ExplorerState::Searching && target && floor_search.subject_seen(last_floor))
+    plan_forced = true;
 }
 
-/// A first cue is no victim yet: the robot holds still for a few more looks.
-bool Explorer::Impl::staring() {
-  if (!config.search.on || !search.undecided(now, kCueAge)) return false;
-  if (now >= next_stare) {
-    stare_until = now + config.search.stare;
-    next_stare = now + 4.0 * config.search.stare;
-  }
-  return now < stare_until;
-}
-
-/// Holds still before the subject; at the end of the time it counts as searched, seen or not.
-bool Explorer::Impl::dwelling() {
-  if (dwell_until == Stamp::never()) return false;
-  if (now < dwell_until) return true;
-  dwell_until = Stamp::never();
-  searched.look(last_floor, pose);
-  const Cell c = last_floor.cells.cell(subject);
-  if (last_floor.cells.inside(c) && !searched.searched(last_floor, c))
-    searched.give_up(last_floor, subject, kSubjectRadius);
-  plan_forced = true;
+bool Explorer::Impl::holding_still() {
+  if (floor_search.staring(search.undecided(now, kCueAge), now)) return true;
+  if (floor_search.dwelling(last_floor, pose, now)) return true;
+  plan_forced = plan_forced || floor_search.dwell_over();
   return false;
 }
 
 Plan Explorer::Impl::plan_search(const Traversable& floor) {
-  // The robot turns on the spot there, so its swing circle must be free, with room for stopping a little beside it.
-  const double room = std::max(config.d_min, model.swing_radius()) + kTurningRoom;
-  views = viewpoints(floor, searched, config.search, room);
-  std::vector<Source> sources;
-  for (const Viewpoint& view : views) {
-    const TPoint2D p = floor.cells.centre(view.cell);
-    if (blacklist.barred(p, now)) continue;
-    sources.push_back({view.cell, target && distance(p, *target) > 0.5 ? config.switch_cost : 0.0});
-  }
-  Plan plan = planner.to_cells(floor, pose, sources);
-  if (!plan.found) return plan;
-  for (const Viewpoint& view : views)
-    if (view.cell == floor.cells.cell(plan.target)) subject = view.subject;
+  const auto head_start = [&](const TPoint2D& p) -> std::optional<double> {
+    if (blacklist.barred(p, now)) return std::nullopt;
+    return target && distance(p, *target) > 0.5 ? config.switch_cost : 0.0;
+  };
+  Plan plan = planner.to_cells(floor, pose, floor_search.sources(floor, head_start));
+  if (plan.found) floor_search.choose_subject(floor.cells.cell(plan.target));
   return plan;
 }
 
-/// At a viewpoint: of all that can be seen from here, the place that needs the smallest turn comes first.
+/// At a viewpoint.
 void Explorer::Impl::face_subject() {
   follower.clear();
   if (looking.active()) return;
-  double turn = kPi;
-  for (const Viewpoint& view : views) {
-    if (distance(last_floor.cells.centre(view.cell), position(pose)) > kAtViewpoint) continue;
-    const double to = wrap_angle(std::atan2(view.subject.y - pose.y, view.subject.x - pose.x) - pose.phi);
-    if (std::abs(to) >= std::abs(turn)) continue;
-    turn = to;
-    subject = view.subject;
-  }
-  if (std::abs(turn) > kFacing) return look_around(turn, true);
-  dwell_until = now + config.search.dwell;
+  if (const std::optional<double> turn = floor_search.turn_to_subject(last_floor, pose))
+    return look_around(*turn, true);
+  floor_search.start_dwell(now);
 }
 
 void Explorer::Impl::finish(const std::string& why) {

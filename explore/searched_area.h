@@ -45,6 +45,8 @@ class SearchedArea {
   Grid<std::uint8_t> searched_;
 };
 
+constexpr double kAtViewpoint = 0.12;  ///< viewpoints this close are served from where the robot stands [m]
+
 /// A place from which an unsearched part of the floor can be seen.
 struct Viewpoint {
   Cell cell;
