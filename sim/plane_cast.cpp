@@ -16,14 +16,13 @@ constexpr float kSeam = 2e-5f;        ///< segments reach so far beyond their en
 constexpr float kBeamsSlack = 1e-3f;  ///< rounding of a bearing counted in beams
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-/// The two edges of a quadrilateral that cross the plane, by which of its corners lie above it (bit i: corner i).
+/// The two edges of a quadrilateral that cross the plane, by which of its corners lie above it (bit i: corner i). Edge
+/// i leads from corner i to the next.
 struct Crossing {
-  unsigned char from[2], to[2];
+  unsigned char edge[2];
 };
-constexpr Crossing kCrossings[16] = {{{0, 0}, {0, 0}}, {{3, 0}, {0, 1}}, {{0, 1}, {1, 2}}, {{3, 1}, {0, 2}},  //
-                                     {{1, 2}, {2, 3}}, {{3, 0}, {0, 1}}, {{0, 2}, {1, 3}}, {{3, 2}, {0, 3}},  //
-                                     {{2, 3}, {3, 0}}, {{2, 0}, {3, 1}}, {{0, 1}, {1, 2}}, {{2, 1}, {3, 2}},  //
-                                     {{1, 3}, {2, 0}}, {{1, 0}, {2, 1}}, {{0, 3}, {1, 0}}, {{0, 0}, {0, 0}}};
+constexpr Crossing kCrossings[16] = {{{0, 0}}, {{3, 0}}, {{0, 1}}, {{3, 1}}, {{1, 2}}, {{3, 0}}, {{0, 2}}, {{3, 2}},
+                                     {{2, 3}}, {{2, 0}}, {{0, 1}}, {{2, 1}}, {{1, 3}}, {{1, 0}}, {{0, 3}}, {{0, 0}}};
 
 }  // namespace
 
@@ -32,19 +31,13 @@ void PlaneCast::cut(std::uint32_t polygon, const ScanFaces::View& view) {
   const ScanFaces::Corners corners = faces_.corners(polygon, view);
   const int above = bits4(corners.z > splat(0.0f));
   if (above == 0 || above == 15) return;
-  float x[4], y[4], z[4];
-  store4(x, corners.x);
-  store4(y, corners.y);
-  store4(z, corners.z);
+  const Float4 share = corners.z / (corners.z - next4(corners.z));  // of the way along each edge
+  float x[4], y[4];
+  store4(x, corners.x + share * (next4(corners.x) - corners.x));
+  store4(y, corners.y + share * (next4(corners.y) - corners.y));
   const Crossing& crossing = kCrossings[above];
-  float ends_x[2], ends_y[2];
-  for (int i = 0; i < 2; ++i) {
-    const int from = crossing.from[i];
-    const int to = crossing.to[i];
-    const float t = z[from] / (z[from] - z[to]);
-    ends_x[i] = x[from] + t * (x[to] - x[from]);
-    ends_y[i] = y[from] + t * (y[to] - y[from]);
-  }
+  const float ends_x[2] = {x[crossing.edge[0]], x[crossing.edge[1]]};
+  const float ends_y[2] = {y[crossing.edge[0]], y[crossing.edge[1]]};
   const bool swap = ends_x[0] * (ends_y[1] - ends_y[0]) < ends_y[0] * (ends_x[1] - ends_x[0]);
   const std::size_t n = segments_.count++;
   segments_.x0[n] = ends_x[swap ? 1 : 0];
@@ -155,7 +148,8 @@ void PlaneCast::draw(const Sphere& sphere, const Placement& laser, const BeamTab
 void PlaneCast::cast(const Placement& laser, const BeamTable& table, double max_range,
                      const std::vector<Sphere>& spheres, std::vector<float>& ranges) {
   const std::size_t padded = table.cosine.size();
-  inverse_.assign(padded, 0.0f);
+  ranges.assign(padded, 0.0f);
+  inverse_ = ranges.data();
   faces_.near({laser, max_range, 0.0, 0.0}, near_);
   if (segments_.x0.size() < near_.size() + 4) {
     for (auto* list : {&segments_.x0, &segments_.y0, &segments_.x1, &segments_.y1}) list->resize(2 * near_.size() + 4);
@@ -170,7 +164,7 @@ void PlaneCast::cast(const Placement& laser, const BeamTable& table, double max_
     const Float4 range = one / load4(&inverse_[i]);
     store4(&inverse_[i], range <= longest ? range : miss);
   }
-  ranges.assign(inverse_.begin(), inverse_.begin() + static_cast<std::ptrdiff_t>(table.count));
+  ranges.resize(table.count);
 }
 
 }  // namespace rubble::sim

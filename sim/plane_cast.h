@@ -42,7 +42,7 @@ class PlaneCast {
   const ScanFaces& faces_;
   std::vector<std::uint32_t> near_;
   Segments segments_;
-  std::vector<float> inverse_;  ///< nearest so far, 1 / range
+  float* inverse_ = nullptr;  ///< nearest so far, 1 / range: the scan being drawn
 };
 
 }  // namespace rubble::sim

@@ -116,27 +116,36 @@ void RangeNoise::mix_edges(std::vector<float>& ranges) {
   for (const std::uint32_t i : grazing_) lose_grazing(i, ranges);
 }
 
-void RangeNoise::apply(std::vector<float>& ranges) {
-  if (factor_ > 0.0) mix_edges(ranges);
-  const std::size_t n = ranges.size();
-  const std::size_t padded = (n + 3) / 4 * 4;
-  ranges.resize(padded, kInf);
+/// Bias and noise on all ranges; misses and lost beams stay what they are. `ranges`: whole groups of four.
+void RangeNoise::blur(std::vector<float>& ranges) {
   // 16 bits a beam, drawn whether it hits or not: the noise of one beam does not depend on the others.
-  bits_.resize(padded / 2);
-  if (factor_ > 0.0) range_.fill(bits_.data(), bits_.size());
+  bits_.resize(ranges.size() / 2);
+  range_.fill(bits_.data(), bits_.size());
   const Float4 sigma = splat(0.25 * factor_), bias = splat(bias_);
-  const Float4 shortest = splat(laser_.range_min), longest = splat(laser_.range_max);
-  const Float4 miss = splat(kInf), none = splat(kNaN), one = splat(1.0f), percent = splat(0.01f);
-  for (std::size_t i = 0; i < padded; i += 4) {
+  const Float4 miss = splat(kInf), one = splat(1.0f), percent = splat(0.01f);  // accuracy_band
+  for (std::size_t i = 0; i < ranges.size(); i += 4) {
     const Float4 exact = load4(&ranges[i]);
     const std::uint32_t low = bits_[i / 2], high = bits_[i / 2 + 1];
     const Float4 gauss{quantiles_[low & (kQuantiles - 1)], quantiles_[low >> 16 & (kQuantiles - 1)],
                        quantiles_[high & (kQuantiles - 1)], quantiles_[high >> 16 & (kQuantiles - 1)]};
     const Float4 noisy = exact + percent * max4(exact, one) * (bias + sigma * gauss);
-    const Int4 measured = exact < miss;
-    const Float4 millimetres = truncate4((measured ? noisy : one) * splat(1000.0f) + splat(0.5f));
+    store4(&ranges[i], exact < miss ? noisy : exact);
+  }
+}
+
+void RangeNoise::apply(std::vector<float>& ranges) {
+  if (factor_ > 0.0) mix_edges(ranges);
+  const std::size_t n = ranges.size();
+  ranges.resize((n + 3) / 4 * 4, kInf);
+  if (factor_ > 0.0) blur(ranges);
+  const Float4 shortest = splat(laser_.range_min), longest = splat(laser_.range_max);
+  const Float4 zero = splat(0.0f), miss = splat(kInf), none = splat(kNaN), most = splat(1e6f);
+  for (std::size_t i = 0; i < ranges.size(); i += 4) {
+    const Float4 exact = load4(&ranges[i]);
+    const Float4 millimetres = truncate4(min4(exact, most) * splat(1000.0f) + splat(0.5f));
     const Float4 r = millimetres * splat(0.001f);
-    store4(&ranges[i], measured ? (r < shortest ? none : (r > longest ? miss : r)) : exact);
+    const Int4 measured = (exact >= zero) & (r >= shortest);  // not so NaN: a lost beam stays lost
+    store4(&ranges[i], measured ? (r > longest ? miss : r) : none);
   }
   ranges.resize(n);
 }

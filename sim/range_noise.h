@@ -25,6 +25,7 @@ class RangeNoise {
   void mix_edges(std::vector<float>& ranges);
   void mix_edge(std::size_t i, std::vector<float>& ranges);
   void lose_grazing(std::size_t i, std::vector<float>& ranges);
+  void blur(std::vector<float>& ranges);
 
   robot::LaserModel laser_;
   double factor_;

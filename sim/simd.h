@@ -38,6 +38,8 @@ inline Float4 sqrt4(const Float4& v) {
 }
 inline int bits4(const Int4& mask) { return (mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8); }
 #endif
+/// Lanes 1, 2, 3, 0.
+inline Float4 next4(const Float4& v) { return __builtin_shuffle(v, Int4{1, 2, 3, 0}); }
 inline bool any4(const Int4& mask) { return bits4(mask) != 0; }
 /// Towards zero, for |v| < 2^31.
 inline Float4 truncate4(const Float4& v) { return __builtin_convertvector(__builtin_convertvector(v, Int4), Float4); }

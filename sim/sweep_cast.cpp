@@ -225,18 +225,20 @@ void SweepCast::meet(const Sphere& sphere, const Beams& beams, const BeamTable& 
 
 void SweepCast::cast(const Beams& beams, const BeamTable& table, double max_range, const std::vector<Sphere>& spheres,
                      std::vector<float>& ranges) {
-  best_.assign(beams.ox.size(), kInf);
+  const std::size_t padded = beams.ox.size();
+  ranges.assign(padded, kInf);
+  best_ = ranges.data();
   slack_ = beams.tilt * (max_range + beams.travel) + beams.lift + 1e-4;
   faces_.near({beams.middle, max_range, beams.travel, slack_}, near_);
   const ScanFaces::View view(faces_, beams.middle);
   for (const std::uint32_t i : near_) meet(i, view, beams, table, max_range);
   for (const Sphere& sphere : spheres) meet(sphere, beams, table, max_range);
   const Float4 longest = splat(max_range), miss = splat(kInf);
-  for (std::size_t i = 0; i < best_.size(); i += 4) {
+  for (std::size_t i = 0; i < padded; i += 4) {
     const Float4 range = load4(&best_[i]);
     store4(&best_[i], range <= longest ? range : miss);
   }
-  ranges.assign(best_.begin(), best_.begin() + static_cast<std::ptrdiff_t>(beams.count));
+  ranges.resize(beams.count);
 }
 
 }  // namespace rubble::sim

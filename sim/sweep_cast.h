@@ -42,7 +42,7 @@ class SweepCast {
   const ScanFaces& faces_;
   double slack_ = 0.0;  ///< beams leave the middle scan plane by less [m]
   std::vector<std::uint32_t> near_;
-  std::vector<float> best_;
+  float* best_ = nullptr;  ///< nearest so far [m]: the scan being cast
 };
 
 }  // namespace rubble::sim
