@@ -2,6 +2,10 @@
 
 #include <cmath>
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 #include "base/angle.h"
 
 namespace rubble {
@@ -16,6 +20,52 @@ std::uint64_t hash_name(std::string_view name) {
   }
   return h;
 }
+
+#if defined(__SSE2__)
+/// Two blocks at once: word k of both in the low halves of x[k]'s two lanes; what the high halves hold does not matter.
+struct TwoBlocks {
+  __m128i x[4];
+};
+
+void philox_rounds(TwoBlocks (&b)[2], std::array<std::uint32_t, 2> key) {
+  const __m128i m0 = _mm_set1_epi64x(0xD2511F53), m1 = _mm_set1_epi64x(0xCD9E8D57);
+  for (int round = 0; round < 10; ++round) {
+    const __m128i k0 = _mm_set1_epi64x(key[0]), k1 = _mm_set1_epi64x(key[1]);
+    for (TwoBlocks& two : b) {
+      const __m128i p0 = _mm_mul_epu32(m0, two.x[0]);
+      const __m128i p1 = _mm_mul_epu32(m1, two.x[2]);
+      two.x[0] = _mm_xor_si128(_mm_xor_si128(_mm_srli_epi64(p1, 32), two.x[1]), k0);
+      two.x[2] = _mm_xor_si128(_mm_xor_si128(_mm_srli_epi64(p0, 32), two.x[3]), k1);
+      two.x[1] = p1;
+      two.x[3] = p0;
+    }
+    key[0] += 0x9E3779B9u;
+    key[1] += 0xBB67AE85u;
+  }
+}
+
+/// The 16 words of the four blocks from `counter` on; its word 0 must not run over.
+void four_blocks(const std::array<std::uint32_t, 4>& counter, const std::array<std::uint32_t, 2>& key,
+                 std::uint32_t* words) {
+  TwoBlocks b[2];
+  for (int i = 0; i < 2; ++i) {
+    const std::uint32_t first = counter[0] + 2u * static_cast<std::uint32_t>(i);
+    b[i].x[0] = _mm_set_epi64x(first + 1u, first);
+    for (std::size_t k = 1; k < 4; ++k) b[i].x[k] = _mm_set1_epi64x(counter[k]);
+  }
+  philox_rounds(b, key);
+  for (int i = 0; i < 2; ++i) {
+    const auto joined = [&](int k) {  // words k and k + 1 of either block
+      const __m128i low = _mm_shuffle_epi32(b[i].x[k], _MM_SHUFFLE(2, 0, 2, 0));
+      const __m128i high = _mm_shuffle_epi32(b[i].x[k + 1], _MM_SHUFFLE(2, 0, 2, 0));
+      return _mm_unpacklo_epi32(low, high);
+    };
+    const __m128i front = joined(0), back = joined(2);
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(words + 8 * i), _mm_unpacklo_epi64(front, back));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(words + 8 * i + 4), _mm_unpackhi_epi64(front, back));
+  }
+}
+#endif
 
 }  // namespace
 
@@ -47,6 +97,19 @@ void Rng::refill() {
 std::uint32_t Rng::next_u32() {
   if (used_ == 4) refill();
   return block_[static_cast<std::size_t>(used_++)];
+}
+
+void Rng::fill(std::uint32_t* words, std::size_t n) {
+  std::size_t i = 0;
+  while (i < n && used_ < 4) words[i++] = next_u32();
+#if defined(__SSE2__)
+  while (i + 16 <= n && counter_[0] < 0xfffffff0u) {
+    four_blocks(counter_, key_, words + i);
+    counter_[0] += 4;
+    i += 16;
+  }
+#endif
+  while (i < n) words[i++] = next_u32();
 }
 
 double Rng::uniform() {

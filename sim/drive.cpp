@@ -11,7 +11,7 @@ using mrpt::math::TPose2D;
 
 constexpr double kGravity = 9.80665;  ///< [m/s^2]
 constexpr int kMaxIterations = 40;    ///< a start against a wall takes about as many, steady driving one or two
-constexpr double kConverged = 1e-6;   ///< largest impulse change that counts as none: 0.07 um/s of 14 kg [N s]
+constexpr double kConverged = 1e-4;   ///< largest impulse change that counts as none: 7 um/s of 14 kg [N s]
 constexpr double kCreepSpeed = 0.02;  ///< below it the slip ratio is taken as if at this speed [m/s]
 
 double dot(const TPoint2D& a, const TPoint2D& b) { return a.x * b.x + a.y * b.y; }
@@ -68,7 +68,8 @@ struct Drive::Motion {
 /// A wheel's contact in this step.
 struct Drive::Wheel {
   Axis forward, left;
-  double kxx = 0.0, kyy = 0.0, kxy = 0.0;  ///< slip per impulse, softness included
+  double ixx = 0.0, iyy = 0.0, ixy = 0.0;  ///< impulse per slip: the inverse of slip per impulse, softness included
+  double step = 0.0;                       ///< impulse per slip in any direction that never overshoots
   double softness = 0.0;                   ///< slip a held impulse leaves: loose paper [m/s per N s]
   double limit = 0.0;                      ///< radius of the friction circle [N s]
   double ruck_limit = 0.0;                 ///< [N s]
@@ -95,6 +96,7 @@ std::array<Ground, 4> ground_under(const Terrain& terrain, const robot::RobotMod
 Drive::Drive(const robot::RobotModel& model, const DriveParameters& parameters)
     : model_(model),
       parameters_(parameters),
+      inverse_rotating_mass_(1.0 / parameters.rotating_mass),
       yaw_inertia_(model.mass * (model.length * model.length + model.width * model.width) / 12.0) {}
 
 /// Vertical load of each wheel [N]: a quarter each, shifted downhill by the height of the centre of mass, and shifted
@@ -136,29 +138,32 @@ Drive::Wheel Drive::contact(std::size_t i, const Ground& ground, double load, co
   }
   const Axis& f = wheel.forward;
   const Axis& l = wheel.left;
-  wheel.kxx = dot(f.direction, f.du) + f.arm * f.dw + 1.0 / parameters_.rotating_mass + wheel.softness;
-  wheel.kyy = dot(l.direction, l.du) + l.arm * l.dw + wheel.softness;
-  wheel.kxy = dot(l.direction, f.du) + l.arm * f.dw;
+  const double kxx = dot(f.direction, f.du) + f.arm * f.dw + inverse_rotating_mass_ + wheel.softness;
+  const double kyy = dot(l.direction, l.du) + l.arm * l.dw + wheel.softness;
+  const double kxy = dot(l.direction, f.du) + l.arm * f.dw;
+  const double inverse = 1.0 / (kxx * kyy - kxy * kxy);
+  wheel.ixx = kyy * inverse;
+  wheel.iyy = kxx * inverse;
+  wheel.ixy = -kxy * inverse;
+  wheel.step = 1.0 / std::max(kxx, kyy);
   return wheel;
 }
 
 void Drive::push(Motion& motion, const Wheel& wheel, double along, double across) const {
   motion.push(wheel.forward, along);
   motion.push(wheel.left, across);
-  motion.rims[wheel.side] -= along / parameters_.rotating_mass;
+  motion.rims[wheel.side] -= along * inverse_rotating_mass_;
 }
 
 /// One projection of a wheel's impulse onto its friction circle; returns the largest change.
 double Drive::roll(Motion& motion, const Wheel& wheel, TPoint2D& impulse) const {
   const double slip_x = motion.rims[wheel.side] - motion.speed(wheel.forward) - wheel.softness * impulse.x;
   const double slip_y = -motion.speed(wheel.left) - wheel.softness * impulse.y;
-  const double determinant = wheel.kxx * wheel.kyy - wheel.kxy * wheel.kxy;
-  TPoint2D next{impulse.x + (wheel.kyy * slip_x - wheel.kxy * slip_y) / determinant,
-                impulse.y + (wheel.kxx * slip_y - wheel.kxy * slip_x) / determinant};
+  TPoint2D next{impulse.x + wheel.ixx * slip_x + wheel.ixy * slip_y,
+                impulse.y + wheel.iyy * slip_y + wheel.ixy * slip_x};
   if (dot(next, next) > wheel.limit * wheel.limit) {
     // Sliding: the projection must step equally in both directions, or friction would not oppose the slip.
-    const double step = 1.0 / std::max(wheel.kxx, wheel.kyy);
-    next = {impulse.x + step * slip_x, impulse.y + step * slip_y};
+    next = {impulse.x + wheel.step * slip_x, impulse.y + wheel.step * slip_y};
     const double size2 = dot(next, next);
     if (size2 > wheel.limit * wheel.limit) {
       const double cut = wheel.limit / std::sqrt(size2);
@@ -239,7 +244,7 @@ void Drive::warm_start(Motion& motion, const std::array<Wheel, 4>& wheels, doubl
   motion.w += motion.inverse_inertia * drill_impulse_;
   for (std::size_t k = 0; k < 2; ++k) {
     motor_impulse_[k] = std::clamp(motor_impulse_[k], -motor_limit, motor_limit);
-    motion.rims[k] += motor_impulse_[k] / parameters_.rotating_mass;
+    motion.rims[k] += motor_impulse_[k] * inverse_rotating_mass_;
   }
 }
 
@@ -251,7 +256,7 @@ double Drive::drive_rims(Motion& motion, const SideDemand& demand, double motor_
     const double old = motor_impulse_[k];
     motor_impulse_[k] =
         std::clamp(old + (wanted - motion.rims[k]) * parameters_.rotating_mass, -motor_limit, motor_limit);
-    motion.rims[k] += (motor_impulse_[k] - old) / parameters_.rotating_mass;
+    motion.rims[k] += (motor_impulse_[k] - old) * inverse_rotating_mass_;
     change = std::max(change, std::abs(motor_impulse_[k] - old));
   }
   return change;

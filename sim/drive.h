@@ -91,6 +91,7 @@ class Drive {
 
   robot::RobotModel model_;
   DriveParameters parameters_;
+  double inverse_rotating_mass_;  ///< [1/kg]
   double yaw_inertia_;
   int iterations_ = 0;
   std::array<Side, 2> sides_;

@@ -21,13 +21,28 @@ class PlaneCast {
             std::vector<float>& ranges);
 
  private:
-  void draw(const ScanFaces::Polygon& polygon, const Placement& laser, const BeamTable& table);
-  void draw_segment(double x0, double y0, double x1, double y1, const BeamTable& table);
+  /// What the faces leave on the scan plane, from (x0, y0) counter-clockwise to (x1, y1), seen from the laser over less
+  /// than half a turn. Structure of arrays.
+  struct Segments {
+    std::vector<float> x0, y0, x1, y1;
+    std::size_t count = 0;
+  };
+  /// One segment, ready to be drawn; first .. last are the beams between its ends, to a fraction.
+  struct Stroke {
+    float a, b;    ///< 1/r = a cos + b sin
+    float margin;  ///< how far off first and last may be [beams]
+    float x0, y0, x1, y1;
+  };
+
+  void cut(std::uint32_t polygon, const ScanFaces::View& view);
+  void draw_segments(const BeamTable& table);
+  void draw(const Stroke& stroke, float first, float last, const BeamTable& table);
   void draw(const Sphere& sphere, const Placement& laser, const BeamTable& table, double max_range);
 
   const ScanFaces& faces_;
   std::vector<std::uint32_t> near_;
-  std::vector<float> inverse_;  ///< nearest so far, 1 / range
+  Segments segments_;
+  float* inverse_ = nullptr;  ///< nearest so far, 1 / range: the scan being drawn
 };
 
 }  // namespace rubble::sim

@@ -23,14 +23,19 @@ class RangeNoise {
 
  private:
   void mix_edges(std::vector<float>& ranges);
+  void mix_edge(std::size_t i, std::vector<float>& ranges);
+  void lose_grazing(std::size_t i, std::vector<float>& ranges);
+  void blur(std::vector<float>& ranges);
 
   robot::LaserModel laser_;
   double factor_;
   Rng range_;
   Rng edge_;
-  float bias_ = 0.0f;             ///< share of the accuracy band
-  std::vector<float> quantiles_;  ///< of the standard normal, at the centres of 4096 equal shares
-  std::vector<float> clean_;      ///< scratch
+  float bias_ = 0.0f;                           ///< share of the accuracy band
+  std::vector<float> quantiles_;                ///< of the standard normal, at the centres of 4096 equal shares
+  std::vector<float> clean_;                    ///< scratch: the exact ranges, with a margin of repeated ends
+  std::vector<std::uint32_t> bits_;             ///< scratch: 16 bits a beam
+  std::vector<std::uint32_t> edges_, grazing_;  ///< scratch: beams to look at closely
 };
 
 /// Half width of the data sheet's accuracy band at range r [m].

@@ -28,12 +28,18 @@ Placement base_placement(const WorldState& state) {
           Vector3d(state.pose.x, state.pose.y, state.stance.z)};
 }
 
-Placement laser_placement(const WorldState& state, const robot::RobotModel& model) {
+LaserMount::LaserMount(const robot::RobotModel& model)
+    : p(model.T_base_laser.x, model.T_base_laser.y, model.T_base_laser.z),
+      // mrpt counts pitch nose down.
+      R(rotation(model.T_base_laser.yaw, -model.T_base_laser.pitch, model.T_base_laser.roll)) {}
+
+Placement laser_placement(const WorldState& state, const LaserMount& mount) {
   const Placement base = base_placement(state);
-  const mrpt::math::TPose3D& mount = model.T_base_laser;
-  // mrpt counts pitch nose down.
-  return {base.R * rotation(0.0, state.aim.pitch, state.aim.roll) * rotation(mount.yaw, -mount.pitch, mount.roll),
-          base.p + base.R * Vector3d(mount.x, mount.y, mount.z)};
+  return {base.R * rotation(0.0, state.aim.pitch, state.aim.roll) * mount.R, base.p + base.R * mount.p};
+}
+
+Placement laser_placement(const WorldState& state, const robot::RobotModel& model) {
+  return laser_placement(state, LaserMount(model));
 }
 
 Ray Beams::ray(std::size_t beam) const {
@@ -44,7 +50,10 @@ Ray Beams::ray(std::size_t beam) const {
 }
 
 BeamTable::BeamTable(const robot::LaserModel& laser)
-    : count(static_cast<std::size_t>(laser.beams)), angle_min(laser.angle_min), angle_step(laser.angle_step) {
+    : count(static_cast<std::size_t>(laser.beams)),
+      angle_min(laser.angle_min),
+      angle_step(laser.angle_step),
+      beams_per_radian(1.0 / laser.angle_step) {
   const std::size_t padded = (count + 3) / 4 * 4;
   for (std::size_t i = 0; i < padded; ++i) {
     const double bearing = angle_min + static_cast<double>(i) * angle_step;
@@ -94,7 +103,8 @@ void fill(const Interval& interval, const BeamTable& table, double beam_period, 
     const Float4 x = c * (c0[0] + u * dc0[0]) + s * (c1[0] + u * dc1[0]);
     const Float4 y = c * (c0[1] + u * dc0[1]) + s * (c1[1] + u * dc1[1]);
     const Float4 z = c * (c0[2] + u * dc0[2]) + s * (c1[2] + u * dc1[2]);
-    const Float4 scale = splat(1.0f) / sqrt4(x * x + y * y + z * z);
+    // One Newton step from 1: between two states 3 deg apart the length is 1 to 4e-4, afterwards to 6e-8.
+    const Float4 scale = splat(1.5f) - splat(0.5f) * (x * x + y * y + z * z);
     store4(&beams.ox[i], p[0] + u * dp[0]);
     store4(&beams.oy[i], p[1] + u * dp[1]);
     store4(&beams.oz[i], p[2] + u * dp[2]);
@@ -145,14 +155,16 @@ void swept_beams(const std::vector<WorldState>& states, const robot::RobotModel&
   for (auto* list : {&beams.ox, &beams.oy, &beams.oz, &beams.dx, &beams.dy, &beams.dz}) list->resize(padded);
 
   const double last = static_cast<double>(table.count - 1) * beam_period;
+  const LaserMount mount(model);
   std::vector<Interval> intervals;
   std::size_t next = 0;
   while (next + 1 < states.size() && states[next].stamp <= first) ++next;
-  Placement from = laser_placement(states[next > 0 ? next - 1 : 0], model);
+  intervals.reserve(states.size() - next);
+  Placement from = laser_placement(states[next > 0 ? next - 1 : 0], mount);
   for (;; ++next) {
     Interval interval;
     interval.from = from;
-    interval.to = laser_placement(states[next], model);
+    interval.to = laser_placement(states[next], mount);
     interval.t0 = states[next > 0 ? next - 1 : 0].stamp - first;
     interval.t1 = std::max(interval.t0 + 1e-6, states[next].stamp - first);
     intervals.push_back(interval);
@@ -167,12 +179,13 @@ void swept_beams(const std::vector<WorldState>& states, const robot::RobotModel&
   beams.travel = beams.lift = beams.turn = beams.tilt = 0.0;
   for (const Interval& interval : intervals) {
     for (const Placement* p : {&interval.from, &interval.to}) {
+      if (p == &interval.from && &interval != intervals.data()) continue;  // the end of the one before
       const Vector3d moved = p->p - beams.middle.p;
       const Vector3d ahead = beams.middle.R.transpose() * p->R.col(0);
       const double leaning = (p->R.col(2) - beams.middle.R.col(2)).norm();  // 2 sin(angle / 2)
       beams.travel = std::max(beams.travel, moved.norm());
       beams.lift = std::max(beams.lift, std::abs(moved.dot(beams.middle.R.col(2))));
-      beams.turn = std::max(beams.turn, std::abs(std::atan2(ahead.y(), ahead.x())));
+      beams.turn = std::max(beams.turn, std::atan2(std::abs(ahead.y()), ahead.x()));
       beams.tilt = std::max(beams.tilt, 1.05 * leaning);
     }
   }

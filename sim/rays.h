@@ -26,7 +26,15 @@ Eigen::Matrix3d rotation(double yaw, double pitch, double roll);
 
 /// T_arena_base.
 Placement base_placement(const WorldState& state);
+/// T_base_laser with the servos at zero.
+struct LaserMount {
+  explicit LaserMount(const robot::RobotModel& model);
+  Eigen::Vector3d p;
+  Eigen::Matrix3d R;
+};
+
 /// T_arena_laser: the platform turns about the laser's origin, first in pitch, then in roll.
+Placement laser_placement(const WorldState& state, const LaserMount& mount);
 Placement laser_placement(const WorldState& state, const robot::RobotModel& model);
 
 /// T_arena_laser at `stamp`, between the two states around it (the last state's beyond it).
@@ -56,6 +64,7 @@ struct BeamTable {
   std::size_t count = 0;
   double angle_min = 0.0;
   double angle_step = 0.0;
+  double beams_per_radian = 0.0;
   std::vector<float> cosine, sine;
 };
 

@@ -1,53 +1,88 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "arenas/arena.h"
 #include "base/grid.h"
 #include "sim/rays.h"
+#include "sim/simd.h"
 
 namespace rubble::sim {
 
-/// The arena's faces, found by place and cut by a scan plane: what both fast casters start from.
+/// What a scan can meet at most: a slab about the scan plane, cut off at the range.
+struct ScanReach {
+  Placement laser;
+  double range = 0.0;   ///< of the beams [m]
+  double travel = 0.0;  ///< a beam may start so far beside the laser [m]
+  double lift = 0.0;    ///< and be so far above or below the plane [m]
+};
+
+/// The arena's faces, found by place and seen from the laser: what both fast casters start from.
 class ScanFaces {
  public:
-  static constexpr std::size_t kMostCorners = 8;  ///< faces with more are cut into several polygons
+  static constexpr std::size_t kCorners = 4;  ///< faces with more are cut into several polygons
 
+  /// An edge's plane, square to the polygon: inside is inward . p >= offset.
+  struct Edge {
+    Eigen::Vector3d inward;
+    double offset = 0.0;
+  };
   struct Polygon {
     Eigen::Vector3d normal;  ///< to the side it is seen from
     double offset = 0.0;     ///< normal . p of its points
-    std::uint32_t first = 0, count = 0;
-    Eigen::Vector3d middle;
-    double radius = 0.0;  ///< of the sphere about middle that holds it [m]
+    std::array<Edge, kCorners> edges;
+  };
+  /// The corners of a polygon in a laser's frame, a lane each; a triangle repeats its last.
+  struct Corners {
+    Float4 x, y, z;
+  };
+  /// A laser's placement, ready for `corners`.
+  struct View {
+    explicit View(const ScanFaces& faces, const Placement& laser);
+    std::array<Float4, 9> R;  ///< row by row of the inverse rotation
+    Float4 x, y, z;           ///< of the laser, about the faces' origin
   };
 
   /// `faces` turn counter-clockwise for a viewer on their visible side, as arenas::faces makes them; from behind they
   /// are never seen.
   explicit ScanFaces(const std::vector<arenas::Face>& faces);
 
-  /// Indices of the polygons that a ray of length `range` from p, or from up to `slack` beside it, may meet (and some
-  /// more), each once.
-  void near(const Eigen::Vector3d& p, double range, double slack, std::vector<std::uint32_t>& found) const;
+  /// Indices of the polygons within reach that show their front (and some more), each once.
+  void near(const ScanReach& reach, std::vector<std::uint32_t>& found) const;
 
   const Polygon& polygon(std::uint32_t i) const { return polygons_[i]; }
-  const Eigen::Vector3d* vertices(const Polygon& polygon) const { return vertices_.data() + polygon.first; }
+  Corners corners(std::uint32_t i, const View& view) const {
+    const Quad& quad = quads_[i];
+    const Float4 x = load4(quad.x) - view.x, y = load4(quad.y) - view.y, z = load4(quad.z) - view.z;
+    const auto& R = view.R;
+    return {R[0] * x + R[1] * y + R[2] * z, R[3] * x + R[4] * y + R[5] * z, R[6] * x + R[7] * y + R[8] * z};
+  }
 
  private:
-  void add(const std::vector<Eigen::Vector3d>& corners);
+  /// Corners about origin_, so that floats keep micrometres.
+  struct Quad {
+    float x[4], y[4], z[4];
+  };
+  /// What decides whether a polygon is near, polygon after polygon; padded to whole groups of four.
+  struct Bounds {
+    std::vector<float> x, y, z, radius;      ///< sphere that holds it, about origin_
+    std::vector<float> nx, ny, nz, nearest;  ///< normal, and its product with the polygon's points
+  };
+  struct Entry;
 
-  std::vector<Polygon> polygons_;
-  std::vector<Eigen::Vector3d> vertices_;
+  static void cut(const arenas::Face& face, std::vector<Entry>& entries);
+  void append(const Entry& entry);
+
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+  std::vector<Polygon> polygons_;  ///< cell by cell of the frame, then those too large for the cells
+  std::vector<Quad> quads_;
+  Bounds bounds_;
   GridFrame frame_;
-  double reach_ = 0.0;                ///< largest radius of the listed polygons [m]
-  std::vector<std::uint32_t> start_;  ///< of each cell's part of list_; a polygon is listed where its middle lies
-  std::vector<std::uint32_t> list_;
-  std::vector<std::uint32_t> large_;  ///< too large for the cells
+  double reach_ = 0.0;                ///< largest radius of the polygons in cells [m]
+  std::vector<std::uint32_t> start_;  ///< of each cell's polygons; they lie where their middle does
 };
-
-/// atan2 to 2e-5 rad: enough to tell which beams may meet something. Abramowitz and Stegun, 4.4.49.
-double rough_atan2(double y, double x);
-constexpr double kRoughAtan2Error = 2e-5;  ///< [rad]
 
 }  // namespace rubble::sim

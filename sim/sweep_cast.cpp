@@ -15,136 +15,157 @@ using Eigen::Vector3d;
 
 constexpr float kSeam = 2e-5f;  ///< faces reach so far beyond their edges: no light through seams [m]
 constexpr float kInf = std::numeric_limits<float>::infinity();
-constexpr std::size_t kMostCorners = ScanFaces::kMostCorners;
+constexpr std::size_t kCorners = ScanFaces::kCorners;
+constexpr std::size_t kMostPoints = 2 * kCorners;  ///< of a polygon cut by a slab
 
 /// A linear function of position for four rays at once: value(o + t d) = at_origin + t * along.
 struct Plane4 {
   Float4 x, y, z, c;
   Plane4() = default;
   Plane4(const Vector3d& normal, double offset)
-      : x(splat(static_cast<float>(normal.x()))),
-        y(splat(static_cast<float>(normal.y()))),
-        z(splat(static_cast<float>(normal.z()))),
-        c(splat(static_cast<float>(offset))) {}
+      : x(splat(normal.x())), y(splat(normal.y())), z(splat(normal.z())), c(splat(offset)) {}
 };
 
-/// Distance from the origin to the segment a b in the plane.
-double distance_to_segment(double ax, double ay, double bx, double by) {
-  const double dx = bx - ax;
-  const double dy = by - ay;
-  const double length2 = dx * dx + dy * dy;
-  const double u = length2 > 0.0 ? std::clamp(-(ax * dx + ay * dy) / length2, 0.0, 1.0) : 0.0;
-  const double x = ax + u * dx;
-  const double y = ay + u * dy;
-  return std::sqrt(x * x + y * y);
+/// An angle in [-2 pi, 2 pi] the short way round.
+float half_turn(float a) {
+  constexpr float kHalf = static_cast<float>(kPi);
+  return a > kHalf ? a - 2.0f * kHalf : (a < -kHalf ? a + 2.0f * kHalf : a);
 }
 
-/// An angle in [-2 pi, 2 pi] the short way round.
-double half_turn(double a) { return a > kPi ? a - 2.0 * kPi : (a < -kPi ? a + 2.0 * kPi : a); }
+/// Points in a scan's plane, padded so that a group of four and its successors can be loaded.
+struct Points {
+  float x[kMostPoints + 4], y[kMostPoints + 4];
+  std::size_t count = 0;
+  void add(float px, float py) {
+    x[count] = px;
+    y[count] = py;
+    ++count;
+  }
+  /// Repeats the first point at the end.
+  void close() {
+    for (std::size_t i = count; i < kMostPoints + 4; ++i) {
+      x[i] = x[0];
+      y[i] = y[0];
+    }
+  }
+};
+
+/// The part of the polygon between the planes z = -slack and z = slack, corner by corner.
+Points between(const ScanFaces::Corners& corners, float slack) {
+  float x[4], y[4], z[4];
+  store4(x, corners.x);
+  store4(y, corners.y);
+  store4(z, corners.z);
+  Points points;
+  for (std::size_t i = 0; i < kCorners; ++i) {
+    const std::size_t k = (i + 1) % kCorners;
+    const float rise = z[k] - z[i];
+    float from = 0.0f;
+    float to = 1.0f;
+    if (z[i] > slack) from = z[k] > slack ? 2.0f : (slack - z[i]) / rise;
+    if (z[i] < -slack) from = z[k] < -slack ? 2.0f : (-slack - z[i]) / rise;
+    if (from > 1.0f) continue;
+    if (z[k] > slack) to = (slack - z[i]) / rise;
+    if (z[k] < -slack) to = (-slack - z[i]) / rise;
+    points.add(x[i] + from * (x[k] - x[i]), y[i] + from * (y[k] - y[i]));
+    if (to < 1.0f || from > 0.0f) points.add(x[i] + to * (x[k] - x[i]), y[i] + to * (y[k] - y[i]));
+  }
+  points.close();
+  return points;
+}
+
+/// Distance from the origin to the nearest side of the closed line, squared.
+float nearest_side(const Points& points) {
+  Float4 nearest = splat(1e18f);
+  for (std::size_t i = 0; i < points.count; i += 4) {
+    const Float4 x = load4(&points.x[i]), y = load4(&points.y[i]);
+    const Float4 dx = load4(&points.x[i + 1]) - x, dy = load4(&points.y[i + 1]) - y;
+    const Float4 along = (splat(0.0f) - (x * dx + y * dy)) / max4(dx * dx + dy * dy, splat(1e-12f));
+    const Float4 u = min4(max4(along, splat(0.0f)), splat(1.0f));
+    const Float4 px = x + u * dx, py = y + u * dy;
+    nearest = min4(px * px + py * py, nearest);
+  }
+  return std::min(std::min(nearest[0], nearest[1]), std::min(nearest[2], nearest[3]));
+}
 
 }  // namespace
 
 /// Bearings low .. high with a margin on both sides as groups of beams; what lies beyond pi behind comes round.
-void SweepCast::spans(double low, double high, double margin, const BeamTable& table, std::vector<Span>& found) const {
-  found.clear();
+SweepCast::Spans SweepCast::spans(double low, double high, double margin, const BeamTable& table) const {
+  Spans found;
   const std::size_t groups = table.cosine.size() / 4;
   low -= margin;
   high += margin;
   if (high - low >= 2.0 * kPi) {
-    found.push_back({0, groups});
-    return;
+    found.span[found.count++] = {0, groups};
+    return found;
   }
-  const auto add = [&](double from, double to) {
-    const double first = std::floor((from - table.angle_min) / table.angle_step);
-    const double last = std::ceil((to - table.angle_min) / table.angle_step);
-    if (last < 0.0 || first >= static_cast<double>(table.count)) return;
-    const std::size_t begin = first > 0.0 ? static_cast<std::size_t>(first) / 4 : 0;
-    const std::size_t end = std::min(groups, static_cast<std::size_t>(last) / 4 + 1);
-    found.push_back({begin, end});
-  };
+  const double most = static_cast<double>(table.count);
   // A bearing is one of three turns; each shift that reaches the scanner's sector gives a part.
-  for (const double shift : {-2.0 * kPi, 0.0, 2.0 * kPi}) add(low + shift, high + shift);
+  for (const double shift : {-2.0 * kPi, 0.0, 2.0 * kPi}) {
+    const double first = (low + shift - table.angle_min) * table.beams_per_radian - 1.0;
+    const double last = (high + shift - table.angle_min) * table.beams_per_radian + 1.0;
+    if (last < 0.0 || first >= most) continue;
+    const std::size_t begin = static_cast<std::size_t>(std::max(0.0, first)) / 4;
+    const std::size_t end = static_cast<std::size_t>(std::min(last, most - 1.0)) / 4 + 1;
+    found.span[found.count++] = {begin, end};
+  }
+  return found;
 }
 
-SweepCast::Bearings SweepCast::bearings(const Vector3d* vertices, const double* z, std::size_t n, double slack,
-                                        const Placement& laser) const {
-  // The part of the polygon between the planes z = -slack and z = slack, corner by corner.
-  double x[4 * kMostCorners], y[4 * kMostCorners];
-  std::size_t count = 0;
-  const auto add = [&](const Vector3d& p) {
-    const Vector3d q = p - laser.p;
-    x[count] = laser.R.col(0).dot(q);
-    y[count] = laser.R.col(1).dot(q);
-    ++count;
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t k = i + 1 < n ? i + 1 : 0;
-    const double rise = z[k] - z[i];
-    double from = 0.0;
-    double to = 1.0;
-    if (z[i] > slack) from = z[k] > slack ? 2.0 : (slack - z[i]) / rise;
-    if (z[i] < -slack) from = z[k] < -slack ? 2.0 : (-slack - z[i]) / rise;
-    if (from > 1.0) continue;
-    if (z[k] > slack) to = (slack - z[i]) / rise;
-    if (z[k] < -slack) to = (-slack - z[i]) / rise;
-    add(vertices[i] + from * (vertices[k] - vertices[i]));
-    if (to < 1.0 || from > 0.0) add(vertices[i] + to * (vertices[k] - vertices[i]));
-  }
+SweepCast::Bearings SweepCast::bearings(const ScanFaces::Corners& corners, double slack) const {
+  const Points points = between(corners, static_cast<float>(slack));
   Bearings b;
-  if (count == 0) return b;
-  const double first = rough_atan2(y[0], x[0]);
-  double bearing = first;
-  b.low = b.high = first;
-  b.nearest = distance_to_segment(x[count - 1], y[count - 1], x[0], y[0]);
-  for (std::size_t i = 1; i < count; ++i) {
-    b.nearest = std::min(b.nearest, distance_to_segment(x[i - 1], y[i - 1], x[i], y[i]));
-    bearing += half_turn(rough_atan2(y[i], x[i]) - bearing);
-    b.low = std::min(b.low, bearing);
-    b.high = std::max(b.high, bearing);
+  if (points.count == 0) return b;
+  float angle[kMostPoints];
+  for (std::size_t i = 0; i < points.count; i += 4) {
+    store4(&angle[i], rough_atan2(load4(&points.y[i]), load4(&points.x[i])));
   }
-  b.around = std::abs(bearing + half_turn(first - bearing) - first) > 1.0;
+  float bearing = angle[0];
+  float low = bearing;
+  float high = bearing;
+  for (std::size_t i = 1; i < points.count; ++i) {
+    bearing += half_turn(half_turn(angle[i] - bearing));
+    low = std::min(low, bearing);
+    high = std::max(high, bearing);
+  }
+  b.low = low;
+  b.high = high;
+  b.nearest = std::sqrt(static_cast<double>(nearest_side(points)));
+  b.around = std::abs(bearing + half_turn(half_turn(angle[0] - bearing)) - angle[0]) > 1.0f;
   return b;
 }
 
-void SweepCast::meet(const ScanFaces::Polygon& polygon, const Beams& beams, const BeamTable& table, double max_range) {
-  const Vector3d* vertices = faces_.vertices(polygon);
-  const std::size_t n = polygon.count;
+void SweepCast::meet(std::uint32_t index, const ScanFaces::View& view, const Beams& beams, const BeamTable& table,
+                     double max_range) {
   // Height over the scan plane at mid sweep; a face all above or all below what that plane sweeps is never met.
-  double z[kMostCorners];
-  double highest = -kInf;
-  double lowest = kInf;
-  const double slack = beams.tilt * (max_range + beams.travel) + beams.lift + 1e-4;
-  const Vector3d up = beams.middle.R.col(2);
-  for (std::size_t i = 0; i < n; ++i) {
-    z[i] = up.dot(vertices[i] - beams.middle.p);
-    highest = std::max(highest, z[i]);
-    lowest = std::min(lowest, z[i]);
-  }
-  if (lowest > slack || highest < -slack) return;
-  const Bearings b = bearings(vertices, z, n, slack, beams.middle);
+  const ScanFaces::Corners corners = faces_.corners(index, view);
+  const int above = bits4(corners.z > splat(slack_));
+  const int below = bits4(corners.z < splat(-slack_));
+  if (above == 15 || below == 15) return;
+  const Bearings b = bearings(corners, slack_);
   if (b.nearest > max_range + beams.travel) return;
   // How far the bearing of a point of the face can differ between its beam's pose and the middle one.
   const double margin = b.around || b.nearest < 0.05 ? kPi
-                                                     : beams.turn + beams.tilt * (beams.tilt + slack / b.nearest) +
+                                                     : beams.turn + beams.tilt * (beams.tilt + slack_ / b.nearest) +
                                                            beams.travel / b.nearest + 2.0 * kRoughAtan2Error;
-  spans(b.low, b.high, margin, table, spans_);
-  if (spans_.empty()) return;
+  const Spans spans = this->spans(b.low, b.high, margin, table);
+  if (spans.count == 0) return;
 
   // Only edges that cross the scan plane bound what the beams meet.
+  const ScanFaces::Polygon& polygon = faces_.polygon(index);
   const Plane4 plane(polygon.normal, polygon.offset - polygon.normal.dot(beams.middle.p));
-  Plane4 edges[kMostCorners];
+  Plane4 edges[kCorners];
   std::size_t edge_count = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t k = i + 1 < n ? i + 1 : 0;
-    if ((z[i] > slack && z[k] > slack) || (z[i] < -slack && z[k] < -slack)) continue;
-    const Vector3d along = vertices[k] - vertices[i];
-    if (along.squaredNorm() < 1e-18) continue;
-    const Vector3d inward = polygon.normal.cross(along).normalized();
-    edges[edge_count++] = Plane4(inward, inward.dot(vertices[i] - beams.middle.p) - static_cast<double>(kSeam));
+  for (std::size_t i = 0; i < kCorners; ++i) {
+    const int ends = 1 << i | 1 << (i + 1) % kCorners;
+    if ((above & ends) == ends || (below & ends) == ends) continue;
+    const ScanFaces::Edge& edge = polygon.edges[i];
+    edges[edge_count++] = Plane4(edge.inward, edge.offset - edge.inward.dot(beams.middle.p) - double{kSeam});
   }
   const Float4 zero = splat(0.0f);
-  for (const Span& span : spans_) {
-    for (std::size_t i = 4 * span.begin; i < 4 * span.end; i += 4) {
+  for (std::size_t k = 0; k < spans.count; ++k) {
+    for (std::size_t i = 4 * spans.span[k].begin; i < 4 * spans.span[k].end; i += 4) {
       const Float4 ox = load4(&beams.ox[i]), oy = load4(&beams.oy[i]), oz = load4(&beams.oz[i]);
       const Float4 dx = load4(&beams.dx[i]), dy = load4(&beams.dy[i]), dz = load4(&beams.dz[i]);
       const Float4 gap = plane.c - (plane.x * ox + plane.y * oy + plane.z * oz);
@@ -152,6 +173,7 @@ void SweepCast::meet(const ScanFaces::Polygon& polygon, const Beams& beams, cons
       const Float4 t = gap / closing;
       const Float4 best = load4(&best_[i]);
       Int4 hit = (closing < zero) & (t > zero) & (t < best);
+      if (!any4(hit)) continue;
       const Float4 px = ox + t * dx, py = oy + t * dy, pz = oz + t * dz;
       for (std::size_t e = 0; e < edge_count; ++e) {
         hit &= edges[e].x * px + edges[e].y * py + edges[e].z * pz >= edges[e].c;
@@ -163,29 +185,28 @@ void SweepCast::meet(const ScanFaces::Polygon& polygon, const Beams& beams, cons
 
 void SweepCast::meet(const Sphere& sphere, const Beams& beams, const BeamTable& table, double max_range) {
   const Vector3d centre = Vector3d(sphere.x, sphere.y, sphere.z) - beams.middle.p;
-  const double distance = centre.norm();
-  if (distance > max_range + sphere.radius + beams.travel) return;
-  const double slack = beams.tilt * (max_range + beams.travel) + beams.lift + 1e-4;
+  const double distance2 = centre.squaredNorm();
+  const double limit = max_range + sphere.radius + beams.travel;
+  if (distance2 > limit * limit) return;
   const double height = beams.middle.R.col(2).dot(centre);
-  if (std::abs(height) > sphere.radius + slack) return;
-  const double flat = std::sqrt(std::max(0.0, distance * distance - height * height));
+  if (std::abs(height) > sphere.radius + slack_) return;
+  const double flat = std::sqrt(std::max(0.0, distance2 - height * height));
   const double clear = flat - sphere.radius - beams.travel;
   double bearing = 0.0;
   double margin = kPi;
   if (clear > 0.05) {
-    bearing = rough_atan2(beams.middle.R.col(1).dot(centre), beams.middle.R.col(0).dot(centre));
+    bearing = static_cast<double>(
+        rough_atan2(splat(beams.middle.R.col(1).dot(centre)), splat(beams.middle.R.col(0).dot(centre)))[0]);
     margin = std::asin(sphere.radius / flat) + beams.turn +
              beams.tilt * (beams.tilt + (std::abs(height) + sphere.radius) / clear) + beams.travel / clear +
              2.0 * kRoughAtan2Error;
   }
-  spans(bearing, bearing, margin, table, spans_);
-  const Float4 cx = splat(static_cast<float>(centre.x()));
-  const Float4 cy = splat(static_cast<float>(centre.y()));
-  const Float4 cz = splat(static_cast<float>(centre.z()));
-  const Float4 r2 = splat(static_cast<float>(sphere.radius * sphere.radius));
+  const Spans spans = this->spans(bearing, bearing, margin, table);
+  const Float4 cx = splat(centre.x()), cy = splat(centre.y()), cz = splat(centre.z());
+  const Float4 r2 = splat(sphere.radius * sphere.radius);
   const Float4 zero = splat(0.0f);
-  for (const Span& span : spans_) {
-    for (std::size_t i = 4 * span.begin; i < 4 * span.end; i += 4) {
+  for (std::size_t k = 0; k < spans.count; ++k) {
+    for (std::size_t i = 4 * spans.span[k].begin; i < 4 * spans.span[k].end; i += 4) {
       const Float4 dx = load4(&beams.dx[i]), dy = load4(&beams.dy[i]), dz = load4(&beams.dz[i]);
       const Float4 tx = cx - load4(&beams.ox[i]), ty = cy - load4(&beams.oy[i]), tz = cz - load4(&beams.oz[i]);
       const Float4 along = tx * dx + ty * dy + tz * dz;
@@ -204,13 +225,20 @@ void SweepCast::meet(const Sphere& sphere, const Beams& beams, const BeamTable& 
 
 void SweepCast::cast(const Beams& beams, const BeamTable& table, double max_range, const std::vector<Sphere>& spheres,
                      std::vector<float>& ranges) {
-  best_.assign(beams.ox.size(), kInf);
-  faces_.near(beams.middle.p, max_range, beams.travel + 1e-3, near_);
-  for (const std::uint32_t i : near_) meet(faces_.polygon(i), beams, table, max_range);
+  const std::size_t padded = beams.ox.size();
+  ranges.assign(padded, kInf);
+  best_ = ranges.data();
+  slack_ = beams.tilt * (max_range + beams.travel) + beams.lift + 1e-4;
+  faces_.near({beams.middle, max_range, beams.travel, slack_}, near_);
+  const ScanFaces::View view(faces_, beams.middle);
+  for (const std::uint32_t i : near_) meet(i, view, beams, table, max_range);
   for (const Sphere& sphere : spheres) meet(sphere, beams, table, max_range);
+  const Float4 longest = splat(max_range), miss = splat(kInf);
+  for (std::size_t i = 0; i < padded; i += 4) {
+    const Float4 range = load4(&best_[i]);
+    store4(&best_[i], range <= longest ? range : miss);
+  }
   ranges.resize(beams.count);
-  const float longest = static_cast<float>(max_range);
-  for (std::size_t i = 0; i < beams.count; ++i) ranges[i] = best_[i] <= longest ? best_[i] : kInf;
 }
 
 }  // namespace rubble::sim

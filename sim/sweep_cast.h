@@ -23,22 +23,26 @@ class SweepCast {
   struct Span {
     std::size_t begin = 0, end = 0;  ///< groups of four beams
   };
-  void meet(const ScanFaces::Polygon& polygon, const Beams& beams, const BeamTable& table, double max_range);
-  void meet(const Sphere& sphere, const Beams& beams, const BeamTable& table, double max_range);
+  struct Spans {
+    Span span[3];
+    std::size_t count = 0;
+  };
   /// What of a polygon the scan plane sweeps over, seen from the laser.
   struct Bearings {
     double low = 0.0, high = 0.0;  ///< [rad], high may exceed pi
     double nearest = 1e9;          ///< [m]
     bool around = false;           ///< the laser's axis passes through it
   };
-  Bearings bearings(const Eigen::Vector3d* vertices, const double* z, std::size_t n, double slack,
-                    const Placement& laser) const;
-  void spans(double low, double high, double margin, const BeamTable& table, std::vector<Span>& found) const;
+  void meet(std::uint32_t index, const ScanFaces::View& view, const Beams& beams, const BeamTable& table,
+            double max_range);
+  void meet(const Sphere& sphere, const Beams& beams, const BeamTable& table, double max_range);
+  Bearings bearings(const ScanFaces::Corners& corners, double slack) const;
+  Spans spans(double low, double high, double margin, const BeamTable& table) const;
 
   const ScanFaces& faces_;
+  double slack_ = 0.0;  ///< beams leave the middle scan plane by less [m]
   std::vector<std::uint32_t> near_;
-  std::vector<Span> spans_;
-  std::vector<float> best_;
+  float* best_ = nullptr;  ///< nearest so far [m]: the scan being cast
 };
 
 }  // namespace rubble::sim

@@ -24,6 +24,16 @@ TEST(Rng, SameSeedAndNameGiveTheSameNumbers) {
   for (int i = 0; i < 1000; ++i) EXPECT_EQ(a.next_u32(), b.next_u32());
 }
 
+TEST(Rng, FillingGivesWhatSingleDrawsGive) {
+  Rng single(7, "fill");
+  Rng filled(7, "fill");
+  for (const std::size_t n : {1u, 2u, 16u, 17u, 3u, 341u, 0u, 64u}) {
+    std::vector<std::uint32_t> words(n);
+    filled.fill(words.data(), n);
+    for (const std::uint32_t word : words) ASSERT_EQ(word, single.next_u32()) << "of " << n;
+  }
+}
+
 TEST(Rng, ACopyGoesOnByItself) {
   Rng a(42, "scan");
   a.gaussian();
