@@ -41,7 +41,8 @@ Hypothesis examine(const WallMatch& match, const TPose2D& T_wide, const Kernels&
 /// Takes a mild bend into account where that explains more.
 void bend(Hypothesis& h, const WallMatch& match, const Kernels& kernels, double stiffness) {
   Warp bent = match.rigid(h.T_wide);
-  for (const double sigma : {1.0, 0.5, 0.3}) bent = match.refine(bent, sigma, stiffness, 5);
+  for (const double sigma : {1.0, 0.5, 0.3})
+    bent = match.refine(bent, sigma, {0.0, stiffness, stiffness, stiffness}, 5);
   const PoseEvidence wide = match.evidence(bent, kernels.wide);
   const double quality = wide_agreement(wide) - kBendCosts;
   if (quality <= h.quality) return;
