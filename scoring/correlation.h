@@ -1,10 +1,8 @@
 #pragma once
 
-#include <mrpt/math/TPose2D.h>
-
 #include <vector>
 
-#include "base/grid.h"
+#include "scoring/pose_guess.h"
 
 namespace rubble::scoring {
 
@@ -21,12 +19,6 @@ struct CorrelationConfig {
   double wall_on_free = -0.7;
   double free_on_wall = -0.35;
   double free_on_free = 0.12;
-};
-
-/// A pose hypothesis with the evidence for it.
-struct PoseGuess {
-  mrpt::math::TPose2D T_truth_map;
-  double score = 0.0;
 };
 
 /// Scores every shift of `map` over `truth`, at every rotation that brings the walls' directions together, by FFT

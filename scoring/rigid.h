@@ -3,6 +3,7 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <cmath>
+#include <vector>
 
 namespace rubble::scoring {
 
@@ -33,10 +34,11 @@ class Rigid {
 };
 
 /// The rotation by phi that takes `from` to `to`.
-inline mrpt::math::TPose2D turned_onto(const mrpt::math::TPoint2D& from, const mrpt::math::TPoint2D& to, double phi) {
-  const double c = std::cos(phi);
-  const double s = std::sin(phi);
-  return {to.x - (c * from.x - s * from.y), to.y - (s * from.x + c * from.y), phi};
-}
+mrpt::math::TPose2D turned_onto(const mrpt::math::TPoint2D& from, const mrpt::math::TPoint2D& to, double phi);
+
+/// The rotation and shift, scale 1, that takes the points `from` closest to the points `to` in the mean square; the
+/// least squares of section IV.F (Arun 1987 in the plane). At least one pair.
+mrpt::math::TPose2D fit_rigid(const std::vector<mrpt::math::TPoint2D>& from,
+                              const std::vector<mrpt::math::TPoint2D>& to);
 
 }  // namespace rubble::scoring

@@ -132,26 +132,25 @@ Warp WallMatch::rigid(const TPose2D& T_truth_map, int degree) const {
   return warp;
 }
 
-TPose2D WallMatch::nearest_rigid(const Warp& warp) const {
-  TPoint2D mean_map(0.0, 0.0);
-  TPoint2D mean_truth(0.0, 0.0);
-  const double n = static_cast<double>(map_.walls.size());
+TPose2D WallMatch::nearest_rigid(const Warp& warp, double met) const {
+  std::vector<TPoint2D> from;
+  std::vector<TPoint2D> to;
   for (const TPoint2D& p : map_.walls) {
-    mean_map += p;
-    mean_truth += warp.forward(p);
+    const TPoint2D q = warp.forward(p);
+    if (met < kEverywhere && truth_.field.distance(q) >= met) continue;
+    from.push_back(p);
+    to.push_back(q);
   }
-  mean_map *= 1.0 / n;
-  mean_truth *= 1.0 / n;
-  double dot = 0.0;
-  double cross = 0.0;
-  for (const TPoint2D& p : map_.walls) {
-    const TPoint2D a = p - mean_map;
-    const TPoint2D b = warp.forward(p) - mean_truth;
-    dot += a.x * b.x + a.y * b.y;
-    cross += a.x * b.y - a.y * b.x;
-  }
-  const double phi = std::atan2(cross, dot);
-  return turned_onto(mean_map, mean_truth, phi);
+  if (from.empty()) return nearest_rigid(warp);
+  return fit_rigid(from, to);
+}
+
+TPose2D WallMatch::halfway(const TPose2D& a, const TPose2D& b) const {
+  const Rigid to_a(a);
+  const Rigid to_b(b);
+  std::vector<TPoint2D> to;
+  for (const TPoint2D& p : map_.walls) to.push_back((to_a.forward(p) + to_b.forward(p)) * 0.5);
+  return fit_rigid(map_.walls, to);
 }
 
 double WallMatch::bend(const Warp& warp) const {

@@ -30,6 +30,8 @@ struct PoseEvidence {
 /// Two maps prepared for comparing them at many poses: wall points, distance fields, free samples of both.
 class WallMatch {
  public:
+  static constexpr double kEverywhere = 1e9;
+
   /// `reach`: distances count up to here [m]. At most `max_points` wall points a map are used (0: all).
   WallMatch(const OccupancyGrid& map, const OccupancyGrid& truth, double reach, std::size_t max_points);
 
@@ -54,8 +56,11 @@ class WallMatch {
 
   /// A warp without displacement yet, in the coordinates of this map; `degree` 2 or 3.
   Warp rigid(const mrpt::math::TPose2D& T_truth_map, int degree = 2) const;
-  /// The rigid transform closest to the warp over the map's walls.
-  mrpt::math::TPose2D nearest_rigid(const Warp& warp) const;
+  /// The rigid transform closest to the warp over the map's walls; with `met` [m], over those that end up within it of
+  /// a wall of the truth, if there are any.
+  mrpt::math::TPose2D nearest_rigid(const Warp& warp, double met = kEverywhere) const;
+  /// The rigid transform between the two: closest to the mean of their images of the map's walls.
+  mrpt::math::TPose2D halfway(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
   /// RMS displacement of the map's walls that no rigid transform explains [m].
   double bend(const Warp& warp) const;
 
