@@ -12,6 +12,8 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
+constexpr double kMaxStrain = 0.08;  // a map that is stretched by more is of another scale
+
 struct Kernels {
   WallMatch::Kernel wide;
   WallMatch::Kernel tight;
@@ -32,6 +34,7 @@ void bend(Hypothesis& h, const WallMatch& match, const Kernels& kernels, double 
   Warp bent = match.rigid(h.T_wide);
   for (const double sigma : {1.0, 0.5, 0.3})
     bent = match.refine(bent, sigma, {0.0, stiffness, stiffness, stiffness}, 5);
+  if (bent.strain() > kMaxStrain) return;
   const PoseEvidence wide = match.evidence(bent, kernels.wide);
   const double quality = wide_agreement(wide) - kBendCosts;
   if (quality <= h.quality) return;

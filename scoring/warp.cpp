@@ -1,5 +1,6 @@
 #include "scoring/warp.h"
 
+#include <cmath>
 #include <cstddef>
 
 namespace rubble::scoring {
@@ -31,6 +32,14 @@ TPoint2D Warp::inverse(const TPoint2D& p_truth) const {
   TPoint2D p = p0;
   for (int i = 0; i < 3; ++i) p = p0 - displacement(p);
   return p;
+}
+
+double Warp::strain() const {
+  // Eigenvalues of the symmetric part; the rest is a rotation.
+  const double mean = 0.5 * (dx[0] + dy[1]) / extent;
+  const double half = 0.5 * (dx[0] - dy[1]) / extent;
+  const double shear = 0.5 * (dx[1] + dy[0]) / extent;
+  return std::abs(mean) + std::hypot(half, shear);
 }
 
 double Warp::jacobian(const TPoint2D& p_map) const {

@@ -28,6 +28,8 @@ struct Warp {
   mrpt::math::TPoint2D forward(const mrpt::math::TPoint2D& p_map) const;
   /// By fixed-point iteration; good to centimetres for the mild displacements allowed here.
   mrpt::math::TPoint2D inverse(const mrpt::math::TPoint2D& p_truth) const;
+  /// Largest stretch or shear that the linear terms ask for: 0.02 is a map drawn 2 % too large.
+  double strain() const;
   /// Determinant of the Jacobian of p + D(p): the area a small piece of the map takes; not above 0 where it folds.
   double jacobian(const mrpt::math::TPoint2D& p_map) const;
 };
