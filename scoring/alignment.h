@@ -6,18 +6,14 @@
 
 #include "base/grid.h"
 #include "scoring/correlation.h"
+#include "scoring/pose_search.h"
 #include "scoring/wall_match.h"
 
 namespace rubble::scoring {
 
 struct AlignmentConfig {
   CorrelationConfig correlation;
-  double reach = 2.0;               ///< walls further apart than this do not pull on each other [m]
-  std::size_t max_points = 800;     ///< wall points of each map used to refine the hypotheses
-  double tau_tight = 0.3;           ///< k(d) of the agreement that tells right from almost right [m]
-  double tau_wide = 0.6;            ///< k(d) of the agreement that ranks poses [m]
-  std::size_t bent_hypotheses = 8;  ///< of the best poses, those that may bend the map
-  double stiffness = 0.003;         ///< holds back the quadratic displacement of the check
+  SearchConfig search;
 };
 
 /// The rigid transform between two maps, found without any initial guess.

@@ -6,6 +6,7 @@
 
 #include "base/angle.h"
 #include "base/distance_transform.h"
+#include "scoring/wall_directions.h"
 #include "scoring/wall_field.h"
 
 namespace rubble::scoring {
@@ -184,8 +185,8 @@ void collect_peaks(cv::Mat surface, double angle, bool opposite, const Canvas& c
     };
     const TPoint2D moved(canvas.x0 + (cell(at.x, canvas.width) + 0.5) * canvas.cell,
                          canvas.y0 + (cell(at.y, canvas.height) + 0.5) * canvas.cell);
-    guesses.push_back(
-        {TPose2D(moved.x - (c * centre.x - s * centre.y), moved.y - (s * centre.x + c * centre.y), angle), best});
+    guesses.push_back({TPose2D(moved.x - (c * centre.x - s * centre.y), moved.y - (s * centre.x + c * centre.y), angle),
+                       best, "walls"});
     for (int dy = -clear; dy <= clear; ++dy)
       for (int dx = -clear; dx <= clear; ++dx)
         surface.at<float>((at.y + dy + canvas.height) % canvas.height, (at.x + dx + canvas.width) % canvas.width) =
@@ -223,7 +224,9 @@ std::vector<PoseGuess> correlate(const OccupancyGrid& map, const OccupancyGrid& 
 
   std::vector<PoseGuess> all;
   const int half_rotations = std::max(2, static_cast<int>(std::lround(kPi / config.rotation_step)));
+  const std::vector<bool> plausible = plausible_rotations(map, truth, half_rotations, config.direction_share);
   for (int i = 0; i < half_rotations; ++i) {
+    if (!plausible[static_cast<std::size_t>(i)]) continue;
     const double angle = kPi * i / half_rotations;
     const Turned turned = turn(points, angle, canvas, static_cast<float>(wall_share), static_cast<float>(free_share));
     for (const bool opposite : {false, true})

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angle.h"
+#include "scoring/rigid.h"
 #include "scoring/wall_field.h"
 
 namespace rubble::scoring {
@@ -52,9 +53,10 @@ Overlap overlap(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt
   const WallField to_truth(truth, tau + truth.resolution());
   const WallField to_map(map, tau + map.resolution());
 
+  const Rigid T(T_truth_map);
   double sum = 0.0;
   for (const mrpt::math::TPoint2D& p_map : wall_points(map)) {
-    const mrpt::math::TPoint2D p_truth = T_truth_map.composePoint(p_map);
+    const mrpt::math::TPoint2D p_truth = T.forward(p_map);
     if (!known(truth, p_truth)) continue;
     sum += kernel(to_wall(to_truth, p_truth, 0.5 * truth.resolution()) + truth_excess, tau);
     ++out.map_cells;
@@ -63,7 +65,7 @@ Overlap overlap(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt
 
   sum = 0.0;
   for (const mrpt::math::TPoint2D& p_truth : wall_points(truth)) {
-    sum += kernel(to_wall(to_map, T_truth_map.inverseComposePoint(p_truth), 0.5 * map.resolution()) + map_excess, tau);
+    sum += kernel(to_wall(to_map, T.inverse(p_truth), 0.5 * map.resolution()) + map_excess, tau);
     ++out.truth_cells;
   }
   if (out.truth_cells > 0) out.recall = sum / static_cast<double>(out.truth_cells);

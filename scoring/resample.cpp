@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scoring/rigid.h"
+
 namespace rubble::scoring {
 namespace {
 
@@ -63,6 +65,7 @@ GridFrame common_frame(const OccupancyGrid& map, const OccupancyGrid& truth, con
                        double margin) {
   CellBox box = known_box(truth);
   if (box.empty()) box = {truth.width(), truth.height(), -1, -1};
+  const Rigid T(T_truth_map);
   // The ends of each row's known stretch hold all extreme points, at any angle.
   for (int y = 0; y < map.height(); ++y) {
     const Occupancy* row = map.row(y);
@@ -72,7 +75,7 @@ GridFrame common_frame(const OccupancyGrid& map, const OccupancyGrid& truth, con
     const Occupancy* last = row + map.width() - 1;
     while (!is_known(*last)) --last;
     for (const Occupancy* end : {first, last}) {
-      const Cell c = truth.cell(T_truth_map.composePoint(map.centre({static_cast<int>(end - row), y})));
+      const Cell c = truth.cell(T.forward(map.centre({static_cast<int>(end - row), y})));
       box.x_min = std::min(box.x_min, c.x);
       box.x_max = std::max(box.x_max, c.x);
       box.y_min = std::min(box.y_min, c.y);
@@ -85,11 +88,12 @@ GridFrame common_frame(const OccupancyGrid& map, const OccupancyGrid& truth, con
 
 OccupancyGrid resample(const OccupancyGrid& map, const mrpt::math::TPose2D& T_frame_map, const GridFrame& frame) {
   OccupancyGrid out(frame);
-  const double c = std::cos(T_frame_map.phi);
-  const double s = std::sin(T_frame_map.phi);
+  const Rigid T(T_frame_map);
+  const double c = T.c();
+  const double s = T.s();
   const double step = frame.resolution / map.resolution();
   for (int y = 0; y < frame.height; ++y) {
-    const mrpt::math::TPoint2D first = T_frame_map.inverseComposePoint(frame.centre({0, y}));
+    const mrpt::math::TPoint2D first = T.inverse(frame.centre({0, y}));
     const double u = (first.x - map.frame().x0) / map.resolution();
     const double v = (first.y - map.frame().y0) / map.resolution();
     Occupancy* row = out.row(y);
@@ -102,7 +106,7 @@ OccupancyGrid resample(const OccupancyGrid& map, const mrpt::math::TPose2D& T_fr
   for (int y = 0; y < map.height(); ++y) {
     for (int x = 0; x < map.width(); ++x) {
       if (map[{x, y}] != Occupancy::Occupied) continue;
-      const Cell cell = frame.cell(T_frame_map.composePoint(map.centre({x, y})));
+      const Cell cell = frame.cell(T.forward(map.centre({x, y})));
       if (frame.inside(cell)) out[cell] = Occupancy::Occupied;
     }
   }

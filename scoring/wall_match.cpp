@@ -1,6 +1,5 @@
 #include "scoring/wall_match.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -73,24 +72,14 @@ double chance(const std::vector<TPoint2D>& known, const WallField& field, double
   return ratio(met, static_cast<double>(known.size()));
 }
 
-/// Normal equations of one Gauss-Newton step in (dx, dy, dphi) about a centre in truth coordinates.
-struct Normal {
-  Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  void add(double gx, double gy, const TPoint2D& arm, double d, double sigma) {
-    const double s = sigma * sigma / (sigma * sigma + d * d);
-    const double weight = s * s;
-    const Eigen::Vector3d j(gx, gy, -gx * arm.y + gy * arm.x);
-    a += weight * j * j.transpose();
-    b -= weight * d * j;
-  }
-};
-
 }  // namespace
 
 WallMatch::Side::Side(const OccupancyGrid& source, double reach, std::size_t max_points)
     : grid(source), field(source, reach), walls(thin_out(wall_points(source), max_points)) {
-  sample_area = sample_known(source, free, known);
+  const double sample_area = sample_known(source, free, known);
+  free_area = sample_area * static_cast<double>(free.size());
+  free = thin_out(free, kMaxSamples);
+  known = thin_out(known, kMaxSamples);
   if (walls.empty()) return;
   for (const TPoint2D& p : walls) centre += p;
   centre *= 1.0 / static_cast<double>(walls.size());
@@ -129,142 +118,45 @@ PoseEvidence WallMatch::evidence(const Warp& warp, const Kernel& kernel) const {
   double common = 0.0;
   for (const TPoint2D& p : map_.free)
     if (at(truth_.grid, warp.forward(p)) == Occupancy::Free) common += 1.0;
-  out.free_common = std::min(1.0, ratio(common * map_.sample_area, std::min(map_.free_area(), truth_.free_area())));
+  common *= ratio(map_.free_area, static_cast<double>(map_.free.size()));
+  out.free_common = std::min(1.0, ratio(common, std::min(map_.free_area, truth_.free_area)));
   return out;
 }
 
-TPose2D WallMatch::refine(TPose2D T_truth_map, double sigma, int iterations) const {
-  for (int i = 0; i < iterations; ++i) {
-    const TPoint2D centre = T_truth_map.composePoint(map_.centre);
-    const double c = std::cos(T_truth_map.phi);
-    const double s = std::sin(T_truth_map.phi);
-    Normal normal;
-    for (const TPoint2D& p : map_.walls) {
-      const TPoint2D q(c * p.x - s * p.y + T_truth_map.x, s * p.x + c * p.y + T_truth_map.y);
-      const WallField::Slope f = truth_.field.slope(q);
-      if (f.distance < truth_.field.cap()) normal.add(f.gx, f.gy, q - centre, f.distance, sigma);
-    }
-    for (const TPoint2D& q : truth_.walls) {
-      const double dx = q.x - T_truth_map.x;
-      const double dy = q.y - T_truth_map.y;
-      const WallField::Slope f = map_.field.slope({c * dx + s * dy, -s * dx + c * dy});
-      if (f.distance < map_.field.cap())
-        normal.add(-(c * f.gx - s * f.gy), -(s * f.gx + c * f.gy), q - centre, f.distance, sigma);
-    }
-    // A ridge of one wall point keeps the step finite where the walls leave a direction free.
-    normal.a.diagonal().array() += 1.0;
-    const Eigen::Vector3d step = normal.a.ldlt().solve(normal.b);
-    if (!step.allFinite()) break;
-    const TPoint2D moved(centre.x + step.x(), centre.y + step.y());
-    T_truth_map.phi += step.z();
-    const TPoint2D turned = TPose2D(0.0, 0.0, T_truth_map.phi).composePoint(map_.centre);
-    T_truth_map.x = moved.x - turned.x;
-    T_truth_map.y = moved.y - turned.y;
-    if (step.head<2>().norm() < 1e-4 && std::abs(step.z()) < 1e-5) break;
-  }
-  return T_truth_map;
-}
-
-Warp WallMatch::rigid(const TPose2D& T_truth_map) const {
+Warp WallMatch::rigid(const TPose2D& T_truth_map, int degree) const {
   Warp warp;
-  warp.T_truth_map = T_truth_map;
+  warp.terms = Warp::terms_of(degree);
+  warp.T_truth_map = Rigid(T_truth_map);
   warp.centre = map_.centre;
   warp.extent = map_.extent;
   return warp;
 }
 
-Warp WallMatch::refine(Warp warp, double sigma, double stiffness, int iterations) const {
-  constexpr int kTerms = Warp::kTerms;
-  constexpr int kUnknowns = 3 + 2 * kTerms;
-  using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
-  for (int iteration = 0; iteration < iterations; ++iteration) {
-    const TPoint2D centre = warp.T_truth_map.composePoint(map_.centre);
-    const double c = std::cos(warp.T_truth_map.phi);
-    const double s = std::sin(warp.T_truth_map.phi);
-    Matrix a = Matrix::Zero();
-    Vector b = Vector::Zero();
-    double total = 0.0;
-    // gx, gy: how the residual grows when the map point at p_map moves in the truth frame.
-    const auto add = [&](double gx, double gy, const TPoint2D& p_map, const TPoint2D& q, double d) {
-      const double r = sigma * sigma / (sigma * sigma + d * d);
-      const double weight = r * r;
-      const double map_gx = c * gx + s * gy;
-      const double map_gy = -s * gx + c * gy;
-      const auto phi = Warp::terms((p_map.x - warp.centre.x) / warp.extent, (p_map.y - warp.centre.y) / warp.extent);
-      Vector j;
-      j(0) = gx;
-      j(1) = gy;
-      j(2) = -gx * (q.y - centre.y) + gy * (q.x - centre.x);
-      for (int i = 0; i < kTerms; ++i) {
-        j(3 + i) = map_gx * phi[static_cast<std::size_t>(i)];
-        j(3 + kTerms + i) = map_gy * phi[static_cast<std::size_t>(i)];
-      }
-      a.selfadjointView<Eigen::Lower>().rankUpdate(j, weight);
-      b -= weight * d * j;
-      total += weight;
-    };
-    for (const TPoint2D& p : map_.walls) {
-      const TPoint2D q = warp.forward(p);
-      const WallField::Slope f = truth_.field.slope(q);
-      if (f.distance < truth_.field.cap()) add(f.gx, f.gy, p, q, f.distance);
-    }
-    for (const TPoint2D& q : truth_.walls) {
-      const TPoint2D p = warp.inverse(q);
-      const WallField::Slope f = map_.field.slope(p);
-      if (f.distance < map_.field.cap()) add(-(c * f.gx - s * f.gy), -(s * f.gx + c * f.gy), p, q, f.distance);
-    }
-    a.diagonal().head<3>().array() += 1.0;
-    for (int i = 0; i < kTerms; ++i) {
-      const double ridge = stiffness * (total + 1.0);
-      a(3 + i, 3 + i) += ridge;
-      a(3 + kTerms + i, 3 + kTerms + i) += ridge;
-      b(3 + i) -= ridge * warp.dx[static_cast<std::size_t>(i)];
-      b(3 + kTerms + i) -= ridge * warp.dy[static_cast<std::size_t>(i)];
-    }
-    const Vector step = a.selfadjointView<Eigen::Lower>().ldlt().solve(b);
-    if (!step.allFinite()) break;
-    const TPoint2D moved(centre.x + step(0), centre.y + step(1));
-    warp.T_truth_map.phi += step(2);
-    const TPoint2D turned = TPose2D(0.0, 0.0, warp.T_truth_map.phi).composePoint(map_.centre);
-    warp.T_truth_map.x = moved.x - turned.x;
-    warp.T_truth_map.y = moved.y - turned.y;
-    for (int i = 0; i < kTerms; ++i) {
-      warp.dx[static_cast<std::size_t>(i)] += step(3 + i);
-      warp.dy[static_cast<std::size_t>(i)] += step(3 + kTerms + i);
-    }
-    if (step.norm() < 1e-3) break;
+TPose2D WallMatch::nearest_rigid(const Warp& warp, double met) const {
+  std::vector<TPoint2D> from;
+  std::vector<TPoint2D> to;
+  for (const TPoint2D& p : map_.walls) {
+    const TPoint2D q = warp.forward(p);
+    if (met < kEverywhere && truth_.field.distance(q) >= met) continue;
+    from.push_back(p);
+    to.push_back(q);
   }
-  return warp;
+  if (from.empty()) return nearest_rigid(warp);
+  return fit_rigid(from, to);
 }
 
-TPose2D WallMatch::nearest_rigid(const Warp& warp) const {
-  TPoint2D mean_map(0.0, 0.0);
-  TPoint2D mean_truth(0.0, 0.0);
-  const double n = static_cast<double>(map_.walls.size());
-  for (const TPoint2D& p : map_.walls) {
-    mean_map += p;
-    mean_truth += warp.forward(p);
-  }
-  mean_map *= 1.0 / n;
-  mean_truth *= 1.0 / n;
-  double dot = 0.0;
-  double cross = 0.0;
-  for (const TPoint2D& p : map_.walls) {
-    const TPoint2D a = p - mean_map;
-    const TPoint2D b = warp.forward(p) - mean_truth;
-    dot += a.x * b.x + a.y * b.y;
-    cross += a.x * b.y - a.y * b.x;
-  }
-  const double phi = std::atan2(cross, dot);
-  const TPoint2D turned = TPose2D(0.0, 0.0, phi).composePoint(mean_map);
-  return {mean_truth.x - turned.x, mean_truth.y - turned.y, phi};
+TPose2D WallMatch::halfway(const TPose2D& a, const TPose2D& b) const {
+  const Rigid to_a(a);
+  const Rigid to_b(b);
+  std::vector<TPoint2D> to;
+  for (const TPoint2D& p : map_.walls) to.push_back((to_a.forward(p) + to_b.forward(p)) * 0.5);
+  return fit_rigid(map_.walls, to);
 }
 
 double WallMatch::bend(const Warp& warp) const {
-  const TPose2D T = nearest_rigid(warp);
+  const Rigid T(nearest_rigid(warp));
   double sum = 0.0;
-  for (const TPoint2D& p : map_.walls) sum += (warp.forward(p) - T.composePoint(p)).sqrNorm();
+  for (const TPoint2D& p : map_.walls) sum += (warp.forward(p) - T.forward(p)).sqrNorm();
   return std::sqrt(ratio(sum, static_cast<double>(map_.walls.size())));
 }
 

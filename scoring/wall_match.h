@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPose2D.h>
 
+#include <array>
 #include <vector>
 
 #include "base/grid.h"
@@ -29,6 +30,8 @@ struct PoseEvidence {
 /// Two maps prepared for comparing them at many poses: wall points, distance fields, free samples of both.
 class WallMatch {
  public:
+  static constexpr double kEverywhere = 1e9;
+
   /// `reach`: distances count up to here [m]. At most `max_points` wall points a map are used (0: all).
   WallMatch(const OccupancyGrid& map, const OccupancyGrid& truth, double reach, std::size_t max_points);
 
@@ -44,15 +47,20 @@ class WallMatch {
 
   /// Moves the pose so that walls meet: Gauss-Newton on both distance fields, walls further apart than about `sigma`
   /// [m] pull less and less (Geman-McClure weights).
-  mrpt::math::TPose2D refine(mrpt::math::TPose2D T_truth_map, double sigma, int iterations) const;
+  mrpt::math::TPose2D refine(const mrpt::math::TPose2D& T_truth_map, double sigma, int iterations) const;
 
-  /// The same with a mild quadratic displacement beside the pose. `stiffness` holds the displacement back.
-  Warp refine(Warp warp, double sigma, double stiffness, int iterations) const;
+  /// What holds back the displacement's terms of degree 1, 2, 3 (index 0 unused): the norm of eq. (8).
+  using Stiffness = std::array<double, 4>;
+  /// The same with a polynomial displacement beside the pose.
+  Warp refine(const Warp& warp, double sigma, const Stiffness& stiffness, int iterations) const;
 
-  /// A warp without displacement, in the coordinates of this map.
-  Warp rigid(const mrpt::math::TPose2D& T_truth_map) const;
-  /// The rigid transform closest to the warp over the map's walls.
-  mrpt::math::TPose2D nearest_rigid(const Warp& warp) const;
+  /// A warp without displacement yet, in the coordinates of this map; `degree` 2 or 3.
+  Warp rigid(const mrpt::math::TPose2D& T_truth_map, int degree = 2) const;
+  /// The rigid transform closest to the warp over the map's walls; with `met` [m], over those that end up within it of
+  /// a wall of the truth, if there are any.
+  mrpt::math::TPose2D nearest_rigid(const Warp& warp, double met = kEverywhere) const;
+  /// The rigid transform between the two: closest to the mean of their images of the map's walls.
+  mrpt::math::TPose2D halfway(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) const;
   /// RMS displacement of the map's walls that no rigid transform explains [m].
   double bend(const Warp& warp) const;
 
@@ -61,17 +69,20 @@ class WallMatch {
   const mrpt::math::TPoint2D& map_centre() const { return map_.centre; }
 
  private:
-  static constexpr double kLeastBreadth = 0.4;  // [m]
+  static constexpr double kLeastBreadth = 0.4;      // [m]
+  static constexpr std::size_t kMaxSamples = 3000;  // of an area: shares good to 1 %
+  template <int kTerms>
+  Warp refine_terms(Warp warp, double sigma, const Stiffness& stiffness, int iterations) const;
+
   struct Side {
     Side(const OccupancyGrid& grid, double reach, std::size_t max_points);
-    double free_area() const { return sample_area * static_cast<double>(free.size()); }  // [m^2]
     OccupancyGrid grid;
     WallField field;
     std::vector<mrpt::math::TPoint2D> walls;
     std::vector<mrpt::math::TPoint2D> free;   ///< samples of the free area
     std::vector<mrpt::math::TPoint2D> known;  ///< samples of the free and occupied area
+    double free_area = 0.0;                   ///< that all free samples stand for [m^2]
     mrpt::math::TPoint2D centre;              ///< of the wall points
-    double sample_area = 0.0;                 ///< that one free or known sample stands for [m^2]
     double breadth = 0.0;                     ///< standard deviation of the wall points across their main direction [m]
     double extent = 1.0;                      ///< RMS distance of the wall points from it, twice [m]
   };

@@ -55,6 +55,22 @@ TEST(Psi, EqualsBruteForceForEveryClassAndDirection) {
   }
 }
 
+/// Sizes around the blocks in which the sweeps go, and distances that bytes do not hold.
+TEST(Psi, EqualsBruteForceAcrossBlocksAndForLongDistances) {
+  for (const auto& [width, height] : {std::pair{64, 65}, {130, 63}, {1, 90}, {400, 3}, {3, 700}}) {
+    SCOPED_TRACE(std::to_string(width) + " x " + std::to_string(height));
+    OccupancyGrid a = random_grid(width, height, 1, 0.01, 0.9);
+    OccupancyGrid b(a.frame(), Occupancy::Free);
+    b[{0, 0}] = Occupancy::Occupied;
+    a[{width - 1, height - 1}] = Occupancy::Occupied;
+    const Psi result = psi(a, b, 5.0);
+    EXPECT_NEAR(result.occupied.map_to_truth, brute_force(a, b, Occupancy::Occupied), 1e-9);
+    EXPECT_NEAR(result.occupied.truth_to_map, brute_force(b, a, Occupancy::Occupied), 1e-9);
+    EXPECT_NEAR(result.free.map_to_truth, brute_force(a, b, Occupancy::Free), 1e-9);
+    EXPECT_NEAR(result.free.truth_to_map, brute_force(b, a, Occupancy::Free), 1e-9);
+  }
+}
+
 TEST(Psi, EqualImagesHaveNone) {
   const OccupancyGrid a = random_grid(40, 30, 3, 0.1, 0.6);
   const Psi result = psi(a, a, 5.0);
