@@ -1,0 +1,88 @@
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "scoring/room_picture.h"
+#include "tests/support/scoring_floor_maps.h"
+
+/// Rooms found on the public floor maps (RUBBLE_DATA/rooms), plain and furnished, against those drawn by hand.
+/// One table a method: bench/scoring_rooms_bench. With RUBBLE_PICTURES=FOLDER the rooms are drawn as well.
+namespace rubble::scoring {
+namespace {
+
+using namespace testing;
+
+void print_row(const char* name, const RoomAgreement& a) {
+  std::printf("  %-22s %9.1f %7.1f %6.3f %7.3f %9d %6d\n", name, 100.0 * a.precision, 100.0 * a.recall, a.iou, a.strict,
+              a.segments, a.rooms);
+}
+
+struct Mean {
+  RoomAgreement sum;
+  int maps = 0;
+  void add(const RoomAgreement& a) {
+    sum.precision += a.precision;
+    sum.recall += a.recall;
+    sum.iou += a.iou;
+    sum.strict += a.strict;
+    sum.segments += a.segments;
+    sum.rooms += a.rooms;
+    ++maps;
+  }
+  void print(const char* name) const {
+    RoomAgreement mean = sum;
+    for (double* value : {&mean.precision, &mean.recall, &mean.iou, &mean.strict}) *value /= maps;
+    print_row(name, mean);
+  }
+};
+
+void BM_Rooms(benchmark::State& state) {
+  const char* data = std::getenv("RUBBLE_DATA");
+  if (data == nullptr) {
+    state.SkipWithError("set RUBBLE_DATA to the folder with the public data");
+    return;
+  }
+  const char* pictures = std::getenv("RUBBLE_PICTURES");
+  RoomConfig config;
+  config.method = state.range(0) == 0 ? RoomMethod::Passages : RoomMethod::Visibility;
+  const bool furnished = state.range(1) != 0;
+  const std::string title =
+      std::string(state.range(0) == 0 ? "passages" : "visibility clusters") + (furnished ? ", furnished" : ", plain");
+  Mean all;
+  Mean tuned;
+  Mean held;
+  for (auto _ : state) {
+    std::printf("%-24s precision  recall    IoU  strict  segments  rooms\n", title.c_str());
+    for (const FloorMap& floor : floor_maps()) {
+      const std::string base = std::string(data) + "/rooms/" + floor.name;
+      state.PauseTiming();
+      const OccupancyGrid map = read_floor_map(base + (furnished ? "_furnitures.png" : ".png"));
+      const cv::Mat truth = read_true_rooms(base + "_gt_segmentation.png");
+      state.ResumeTiming();
+      const Rooms rooms = extract_rooms(map, config);
+      state.PauseTiming();
+      const RoomAgreement agreement = compare_rooms(rooms.labels, truth);
+      print_row(floor.name, agreement);
+      all.add(agreement);
+      (floor.tuned ? tuned : held).add(agreement);
+      if (pictures != nullptr)
+        write_rooms_png(std::string(pictures) + "/" + floor.name + (furnished ? "_furnished" : "_plain") +
+                            (state.range(0) == 0 ? ".png" : "_visibility.png"),
+                        map, rooms);
+      state.ResumeTiming();
+    }
+    tuned.print("mean, tuned on");
+    held.print("mean, not tuned on");
+    all.print("mean");
+  }
+  state.counters["maps"] = all.maps;
+}
+BENCHMARK(BM_Rooms)
+    ->ArgsProduct({{0, 1}, {0, 1}})
+    ->ArgNames({"visibility", "furnished"})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+
+}  // namespace
+}  // namespace rubble::scoring
