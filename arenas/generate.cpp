@@ -167,9 +167,9 @@ std::string generate_arena(const GenerateConfig& config) {
   const int ramps = static_cast<int>(std::llround(config.ramps * cells));
   const int tallest = config.kind == "yellow" ? 1 : 2;
   const Relief relief = grow_relief(config.columns, config.rows, ramps, start, tallest, relief_rng);
-  const Maze maze = carve_maze(relief, config.loops, maze_rng);
+  Maze maze = carve_maze(relief, config.loops, maze_rng);
+  const std::vector<RoughPallet> rough = lay_rough(config.kind, relief, start, config.rough, maze, rough_rng);
   const int heading_deg = start_heading(maze, start, start_rng);
-  const std::vector<RoughPallet> rough = lay_rough(config.kind, relief, maze, start, config.rough, rough_rng);
   std::vector<Cell> taken{start};
   for (const RoughPallet& pallet : rough) taken.push_back(pallet.cell);
   check_victims(config, taken.size());

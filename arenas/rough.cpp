@@ -12,15 +12,13 @@ constexpr double kSteep35 = 0.84025;  ///< 1.2 m tan 35 deg
 /// What lies where while obstacles are being laid.
 class Site {
  public:
-  Site(const Relief& relief, const Maze& maze, Cell start)
+  Site(const Relief& relief, Cell start, Maze& maze)
       : relief_(relief), maze_(maze), start_(start), barred_(relief.frame()), used_(relief.frame()) {
     used_[start] = 1;
   }
 
   /// Flat ground without anything on it.
-  bool is_plain(Cell c) const {
-    return relief_.inside(c) && used_[c] == 0 && !relief_[c].is_ramp() && relief_[c].level == 0;
-  }
+  bool is_plain(Cell c) const { return is_level(c) && used_[c] == 0; }
   /// Whether all pallets that are not barred reach each other over those with `more` barred, too.
   bool stays_connected(const std::vector<Cell>& more) const {
     Grid<std::uint8_t> seen = barred_;
@@ -40,16 +38,19 @@ class Site {
     }
     return left == 0;
   }
+  /// Flat ground, whatever lies on it.
+  bool is_level(Cell c) const { return relief_.inside(c) && !relief_[c].is_ramp() && relief_[c].level == 0; }
+
   void take(Cell c, bool bars) {
     used_[c] = 1;
     barred_[c] = bars ? 1 : 0;
   }
-  const Maze& maze() const { return maze_; }
+  Maze& maze() { return maze_; }
   bool is_barred(Cell c) const { return barred_[c] != 0; }
 
  private:
   const Relief& relief_;
-  const Maze& maze_;
+  Maze& maze_;
   Cell start_;
   Grid<std::uint8_t> barred_;
   Grid<std::uint8_t> used_;
@@ -69,15 +70,24 @@ bool lay_field(const std::string& type, Cell cell, int turn, Site& site, std::ve
   return true;
 }
 
-/// Up from the only way into a dead end: foot and top in line.
-bool lay_tower(int which, Cell top, Site& site, std::vector<RoughPallet>& laid) {
-  const std::vector<Cell> ways = open_neighbours(site.maze(), top);
-  if (ways.size() != 1) return false;
-  const Cell foot = ways[0];
-  const Cell before{2 * foot.x - top.x, 2 * foot.y - top.y};
-  if (!is_open(site.maze(), before, foot) || open_neighbours(site.maze(), foot).size() != 2) return false;
-  if (!site.is_plain(top) || !site.is_plain(foot) || site.is_barred(before)) return false;
+/// A foot and a top in line behind `before`, walled in on all other sides.
+bool lay_tower(int which, Cell top, int direction, Site& site, std::vector<RoughPallet>& laid) {
+  static constexpr std::array<Cell, 4> kSteps{Cell{0, 1}, Cell{1, 0}, Cell{0, -1}, Cell{-1, 0}};
+  const Cell up = kSteps[static_cast<std::size_t>(direction)];
+  const Cell foot{top.x - up.x, top.y - up.y};
+  const Cell before{foot.x - up.x, foot.y - up.y};
+  if (!site.is_plain(top) || !site.is_plain(foot) || !site.is_level(before) || site.is_barred(before)) return false;
   if (!site.stays_connected({top, foot})) return false;
+  for (const Cell cell : {top, foot}) {
+    for (const Cell next : open_neighbours(site.maze(), cell)) {
+      if (site.is_barred(next)) return false;  // an obstacle beyond would lose its way in
+    }
+  }
+  for (const Cell cell : {top, foot}) {
+    for (const Cell next : open_neighbours(site.maze(), cell)) set_open(site.maze(), cell, next, false);
+  }
+  set_open(site.maze(), before, foot, true);
+  set_open(site.maze(), foot, top, true);
   site.take(top, true);
   site.take(foot, true);
   static const std::array<const char*, 3> kWaysUp{"stairs_120", "steep_ramp_45", "steep_ramp_35"};
@@ -101,11 +111,11 @@ bool lay_tunnel(Cell cell, Site& site, std::vector<RoughPallet>& laid) {
 
 }  // namespace
 
-std::vector<RoughPallet> lay_rough(const std::string& kind, const Relief& relief, const Maze& maze, Cell start,
-                                   double share, Rng& rng) {
+std::vector<RoughPallet> lay_rough(const std::string& kind, const Relief& relief, Cell start, double share, Maze& maze,
+                                   Rng& rng) {
   std::vector<RoughPallet> laid;
   if (kind == "yellow") return laid;
-  Site site(relief, maze, start);
+  Site site(relief, start, maze);
   const auto wanted = static_cast<std::size_t>(std::llround(share * static_cast<double>(relief.frame().size())));
   constexpr int kPatience = 1500;  // proposals refused in a row
   for (int refused = 0; laid.size() < wanted && refused < kPatience; ++refused) {
@@ -118,7 +128,7 @@ std::vector<RoughPallet> lay_rough(const std::string& kind, const Relief& relief
     if (kind == "orange") {
       found = lay_field(what < 3 ? "stepfield_orange_diagonal" : "crossing_ramps", cell, turn, site, laid);
     } else if (what < 3) {
-      found = laid.size() + 2 <= wanted && lay_tower(what, cell, site, laid);
+      found = laid.size() + 2 <= wanted && lay_tower(what, cell, turn, site, laid);
     } else if (what == 3) {
       found = lay_tunnel(cell, site, laid);
     } else {

@@ -20,8 +20,9 @@ struct RoughPallet {
 
 /// Chooses pallets for the obstacles of orange (step fields of 0.2 m, crossing ramps) and red arenas (step fields of
 /// 0.4 m, stairs and steep ramps up to a floor, tunnels), about `share` of all. They lie on flat ground, never at the
-/// start, and so that all other pallets stay connected without them: towers stand in dead ends.
-std::vector<RoughPallet> lay_rough(const std::string& kind, const Relief& relief, const Maze& maze, Cell start,
-                                   double share, Rng& rng);
+/// start, and so that all other pallets stay connected without them. Ways up to a floor become dead ends: what was open
+/// to their sides is closed.
+std::vector<RoughPallet> lay_rough(const std::string& kind, const Relief& relief, Cell start, double share, Maze& maze,
+                                   Rng& rng);
 
 }  // namespace rubble::arenas
