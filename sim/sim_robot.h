@@ -37,6 +37,8 @@ class SimRobot : public robot::Robot {
   const Trajectory& truth() const;
   /// Where the paper balls lie now (they are pushed about).
   std::vector<arenas::PaperBall> balls() const;
+  /// Where the loose objects stand now.
+  std::vector<arenas::LooseObject> objects() const;
 
  private:
   struct Impl;
