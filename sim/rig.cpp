@@ -14,6 +14,13 @@ AccelerometerParameters accelerometer_parameters(const SimConfig& config) {
   return parameters;
 }
 
+VictimSensorParameters victim_parameters(const SimConfig& config) {
+  VictimSensorParameters parameters;
+  parameters.sound.fitted = config.microphones;
+  parameters.co2.fitted = config.co2_probe;
+  return parameters;
+}
+
 }  // namespace
 
 void check_step(const SimConfig& config, const robot::RobotModel& model) {
@@ -35,7 +42,7 @@ Rig::Rig(const arenas::Arena& arena, const robot::RobotModel& model, const SimCo
       config_(config),
       laser_(arena, model, config.range_noise, config.sweep, seed),
       accelerometer_(model, accelerometer_parameters(config), config.acceleration_noise, seed),
-      victims_(arena.victims, VictimSensorParameters{}, seed),
+      victims_(arena.victims, victim_parameters(config), seed),
       odometry_clock_(model.odometry_period),
       unit_clock_(model.acceleration_period, model.acceleration_period),
       victim_clock_(victims_.period()),
@@ -69,7 +76,8 @@ void Rig::measure(World& world, robot::Inputs& inputs) {
     unit_clock_.advance();
   }
   if (victim_clock_.due(state.stamp)) {
-    for (const robot::VictimCue& cue : victims_.look(state, laser_.walk())) inputs.cues.push_back(cue);
+    constexpr double kFarthest = 4.0;  // no sense reaches farther, with a robot's half length [m]
+    inputs.cues = victims_.look(state, laser_.walk(), world.moving_faces(index_, kFarthest));
     victim_clock_.advance();
   }
   if (rotor_clock_.due(state.stamp - laser_.times().sent)) {
