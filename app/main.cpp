@@ -59,10 +59,13 @@ std::vector<scenarios::Override> parse_sets(const std::vector<std::string>& sets
 }
 
 void add_generate(CLI::App& command, ArenaArguments& arena, std::string& cells) {
-  command.add_option("--kind", arena.config.kind, "Kind of arena")->check(CLI::IsMember({"yellow"}));
+  command.add_option("--kind", arena.config.kind, "Kind of arena")->check(CLI::IsMember({"yellow", "orange", "red"}));
   command.add_option("--cells", cells, "Pallets west-east x south-north (default 8x8)");
   command.add_option("--seed", arena.config.seed, "Seed of the layout")->check(whole_number());
   command.add_option("--ramps", arena.config.ramps, "Share of pallets that are ramps, 0..1")->check(between(0.0, 1.0));
+  command
+      .add_option("--rough", arena.config.rough, "Share of pallets with obstacles (orange, red), 0..1, default 0.25")
+      ->check(between(0.0, 1.0));
   command.add_option("--paper", arena.config.paper, "Share of pallets with paper, 0..1")->check(between(0.0, 1.0));
   command.add_option("--loops", arena.config.loops, "Share of inner walls taken away, 0..1")->check(between(0.0, 1.0));
   command.add_option("--victims", arena.config.victims, "Number of victims");

@@ -31,6 +31,7 @@ void set_bounds(Arena& arena) {
   for (const Solid& solid : arena.solids) include(arena, solid.outline);
   for (const PaperSheet& sheet : arena.sheets) include(arena, sheet.outline);
   for (const PaperBall& ball : arena.balls) include(arena, ball.position, ball.radius);
+  for (const LooseObject& object : arena.objects) include(arena, object.position, object.radius);
   for (const Victim& victim : arena.victims) include(arena, {victim.position.x, victim.position.y});
 }
 

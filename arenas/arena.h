@@ -47,6 +47,16 @@ struct PaperBall {
   double mass = 0.03;    ///< [kg]
 };
 
+/// Something of the blue arena to grasp: an upright cylinder the robot pushes and the laser sees while its plane meets
+/// it.
+struct LooseObject {
+  mrpt::math::TPoint2D position;
+  double radius = 0.033;  ///< [m]
+  double height = 0.23;   ///< [m]
+  double mass = 0.5;      ///< [kg]
+  std::string element;    ///< "bottle", "radio"
+};
+
 /// A simulated victim; which cues it gives.
 struct Victim {
   std::string name;
@@ -69,6 +79,7 @@ struct Arena {
   std::vector<Solid> solids;
   std::vector<PaperSheet> sheets;
   std::vector<PaperBall> balls;
+  std::vector<LooseObject> objects;
   std::vector<Victim> victims;
   mrpt::math::TPose2D start;
 };
@@ -78,11 +89,11 @@ struct Face {
   std::vector<mrpt::math::TPoint3D> vertices;
 };
 
-/// Sets min_corner and max_corner to the box around floor, solids, sheets, balls and victims.
+/// Sets min_corner and max_corner to the box around floor, solids, sheets, balls, objects and victims.
 void set_bounds(Arena& arena);
 
 /// All faces of floor and solids, with the risers where a floor patch stands above its neighbour or the ground.
-/// Paper balls are not in it: they move. Sheets are too thin to see.
+/// Paper balls and loose objects are not in it: they move. Sheets are too thin to see.
 std::vector<Face> faces(const Arena& arena);
 
 /// Height of the floor at p [m]; -inf where there is none.

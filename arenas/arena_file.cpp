@@ -110,6 +110,22 @@ void read_balls(const YamlMap& root, Plan& plan, Arena& arena) {
   }
 }
 
+/// What the blue arena's robots grasp and put down. Sizes of an 0.5 l bottle, full, and of a handheld radio.
+void read_objects(const YamlMap& root, Plan& plan, Arena& arena) {
+  for (const YamlMap& entry : root.maps("objects")) {
+    LooseObject object;
+    object.element = entry.choice("type", std::nullopt, {"bottle", "radio"});
+    const bool is_bottle = object.element == "bottle";
+    object.radius = entry.number("radius_m", is_bottle ? 0.033 : 0.03, 0.01, 0.5);
+    object.height = entry.number("height_m", is_bottle ? 0.23 : 0.26, 0.02, 2.0);
+    object.mass = entry.number("mass_kg", is_bottle ? 0.52 : 0.30, 0.01, 20.0);
+    for (const TPoint2D& p : plan.places(entry)) {
+      object.position = p;
+      arena.objects.push_back(object);
+    }
+  }
+}
+
 void read_cues(const YamlMap& entry, Victim& victim) {
   if (!entry.has("cues")) return;
   victim.appearance = victim.heat = false;
@@ -160,6 +176,10 @@ void read_elements(const YamlMap& root, Plan& plan, Arena& arena) {
     if (entry.has("mount_point")) {
       element.mount_point = static_cast<int>(entry.integer("mount_point", std::nullopt, -1, 100));
     }
+    if (entry.has("slope_deg")) {
+      if (!has_slope(element.type)) entry.fail("slope_deg", "a '" + element.type + "' has no slope: take the key out");
+      element.slope = deg_to_rad(entry.number("slope_deg", std::nullopt, 1.0, 60.0));
+    }
     for (const TPoint2D& p : plan.places(entry)) {
       element.position = p;
       elements.push_back(element);
@@ -203,6 +223,7 @@ Arena build(const YamlMap& root, const std::string& source) {
   read_elements(root, plan, arena);
   read_paper(root, plan, arena);
   read_balls(root, plan, arena);
+  read_objects(root, plan, arena);
   read_victims(root, plan, arena);
   read_start(root, plan, arena);
   root.finish();

@@ -84,6 +84,22 @@ Trouble paper_trouble(const Arena& arena) {
   return std::nullopt;
 }
 
+Trouble objects_trouble(const Arena& arena) {
+  for (const LooseObject& object : arena.objects) {
+    const std::string what = "object '" + object.element + "' at " + place(object.position);
+    if (!(object.radius > 0.0 && object.height > 0.0 && object.mass > 0.0)) {
+      return what + " needs a radius, a height and a mass above 0";
+    }
+    if (!std::isfinite(floor_height(arena, object.position))) return what + " is off the floor: move it onto a pallet";
+    for (const Solid& solid : arena.solids) {
+      if (distance(solid.outline, object.position) == 0.0 && solid.z_bottom < object.height) {
+        return what + " is in a solid '" + solid.element + "': move it";
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 Trouble victims_trouble(const Arena& arena) {
   std::set<std::string> names;
   for (const Victim& victim : arena.victims) {
@@ -131,7 +147,7 @@ Trouble start_floor_trouble(const Arena& arena, const TPoint2D& start, double cl
 std::optional<std::string> parts_trouble(const Arena& arena) {
   if (!(arena.cell_size >= 0.1 && arena.cell_size <= 10.0)) return "cell_m must be 0.1 to 10";
   if (!(arena.floor_friction > 0.0 && arena.floor_friction <= 2.0)) return "floor friction must be above 0, up to 2";
-  for (const auto& part_trouble : {floor_trouble, solids_trouble, paper_trouble, victims_trouble}) {
+  for (const auto& part_trouble : {floor_trouble, solids_trouble, paper_trouble, objects_trouble, victims_trouble}) {
     if (const Trouble t = part_trouble(arena)) return t;
   }
   return std::nullopt;
@@ -156,6 +172,11 @@ std::optional<std::string> start_trouble(const Arena& arena, double start_cleara
   for (const PaperBall& ball : arena.balls) {
     if (std::hypot(ball.position.x - start.x, ball.position.y - start.y) < ball.radius + start_clearance) {
       return "start " + place(start) + " is on the paper ball at " + place(ball.position) + ": move one of them";
+    }
+  }
+  for (const LooseObject& object : arena.objects) {
+    if (std::hypot(object.position.x - start.x, object.position.y - start.y) < object.radius + start_clearance) {
+      return "start " + place(start) + " is on the object '" + object.element + "': move one of them";
     }
   }
   return std::nullopt;

@@ -6,7 +6,6 @@
 
 #include "arenas/geometry.h"
 #include "base/angle.h"
-#include "base/rng.h"
 
 namespace rubble::arenas {
 namespace {
@@ -82,6 +81,10 @@ void add_wall(const ElementFrame& frame, double height, const std::vector<Openin
   }
 }
 
+void add_half_wall(const ElementFrame& frame, Arena& arena) {
+  add_block(frame, 0.0, kHalf - 0.5 * kBoard, kHalf, kHalf + 0.5 * kBoard, 0.0, 1.2, "wall", arena);
+}
+
 void add_diagonal_wall(const ElementFrame& frame, Arena& arena) {
   arena.solids.push_back({strip(frame.point(-kHalf, -kHalf), frame.point(kHalf, kHalf), kBoard), 0.0, 1.2, "wall"});
 }
@@ -116,8 +119,8 @@ void add_ramp(const ElementFrame& frame, double foot_y, double head_y, double ri
   arena.floor.push_back(patch);
 }
 
-void add_elevated_floor(const ElementFrame& frame, Arena& arena) {
-  add_platform(frame, -kHalf, -kHalf, kHalf, kHalf, 1.2, "elevated_floor", arena);
+void add_elevated_floor(const ElementFrame& frame, double height, Arena& arena) {
+  add_platform(frame, -kHalf, -kHalf, kHalf, kHalf, height, "elevated_floor", arena);
 }
 
 void add_stairs(const ElementFrame& frame, Arena& arena) {
@@ -129,35 +132,6 @@ void add_stairs(const ElementFrame& frame, Arena& arena) {
     const double end = i + 1 < kTreads ? y + kTread : kHalf;
     add_platform(frame, -0.59, y, 0.59, end, kRiser * (i + 1), "stair", arena);
   }
-}
-
-void add_red_step_field(const ElementFrame& frame, Arena& arena) {
-  constexpr int kColumns = 10;
-  constexpr double kEdge = 0.1;
-  // The league builds them at random; every field here is the same throw with the league's counts beside the diagonal.
-  std::vector<double> heights;
-  for (const auto& [height, count] : {std::pair{0.0, 9}, {0.1, 27}, {0.2, 33}, {0.3, 21}}) {
-    heights.insert(heights.end(), static_cast<std::size_t>(count), height);
-  }
-  Rng rng(1, "red step field");
-  for (std::size_t i = heights.size(); i > 1; --i) {
-    const std::size_t k = rng.below(static_cast<std::uint32_t>(i));
-    std::swap(heights[i - 1], heights[k]);
-  }
-  std::size_t next = 0;
-  for (int row = 0; row < kColumns; ++row) {
-    for (int column = 0; column < kColumns; ++column) {
-      const double height = row == column ? 0.4 : heights[next++];
-      const double x = kEdge * column - 0.5;
-      const double y = kEdge * row - 0.5;
-      if (height > 0.0) add_platform(frame, x, y, x + kEdge, y + kEdge, height, "step_field", arena);
-    }
-  }
-  constexpr double kPlank = 0.05;
-  add_platform(frame, -0.49, -0.59, 0.49, -0.5, kPlank, "step_field", arena);
-  add_platform(frame, -0.49, 0.5, 0.49, 0.59, kPlank, "step_field", arena);
-  add_platform(frame, -0.59, -0.49, -0.5, 0.49, kPlank, "step_field", arena);
-  add_platform(frame, 0.5, -0.49, 0.59, 0.49, kPlank, "step_field", arena);
 }
 
 void add_half_barrel(const ElementFrame& frame, double bottom, Arena& arena) {

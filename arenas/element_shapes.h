@@ -38,6 +38,8 @@ struct Mount {
 };
 
 void add_wall(const ElementFrame& frame, double height, const std::vector<Opening>& openings, Arena& arena);
+/// The half of a wall to the right of the middle, seen from the pallet.
+void add_half_wall(const ElementFrame& frame, Arena& arena);
 /// From corner to corner of the pallet.
 void add_diagonal_wall(const ElementFrame& frame, Arena& arena);
 /// From the two corners at +y to the middle.
@@ -46,10 +48,9 @@ void add_corner_wall(const ElementFrame& frame, Arena& arena);
 void add_veil(const ElementFrame& frame, Arena& arena);
 /// A ramp as wide as the pallet that rises by `rise` from foot_y to head_y.
 void add_ramp(const ElementFrame& frame, double foot_y, double head_y, double rise, Arena& arena);
-void add_elevated_floor(const ElementFrame& frame, Arena& arena);
+/// Flat, closed below. height: above the ground [m].
+void add_elevated_floor(const ElementFrame& frame, double height, Arena& arena);
 void add_stairs(const ElementFrame& frame, Arena& arena);
-/// 10 x 10 columns of 0 to 0.4 m, the diagonal highest, in a frame of 50 mm planks.
-void add_red_step_field(const ElementFrame& frame, Arena& arena);
 /// Half of a barrel that leans on the wall at +y, 0.89 m tall from `bottom` up.
 void add_half_barrel(const ElementFrame& frame, double bottom, Arena& arena);
 void add_shelves(const ElementFrame& frame, Arena& arena);

@@ -17,6 +17,7 @@ struct Element {
   double rotation = 0.0;           ///< clockwise seen from above, as in arena files [rad]
   std::optional<int> mount_point;  ///< which hole of the wall behind it a victim's box hangs at
   mrpt::math::TPoint2D offset;     ///< shift of a free item on its pallet [m]
+  std::optional<double> slope;     ///< of ramps: their angle instead of the model's own [rad]
 };
 
 /// What is known about a type of element.
@@ -33,6 +34,9 @@ ElementKind kind_of(const std::string& type);
 
 /// All types that have a shape, in alphabetical order.
 std::vector<std::string> element_types();
+
+/// Whether the type is a ramp whose angle may be given.
+bool has_slope(const std::string& type);
 
 /// The wall on the same edge of the same pallet as an item, or null: victims hang at its holes.
 const Element* wall_behind(const Element& item, const std::vector<Element>& elements);

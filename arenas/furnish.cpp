@@ -141,8 +141,9 @@ std::vector<Cell> all_but(const Relief& relief, const std::vector<Cell>& taken) 
 
 }  // namespace
 
-std::vector<PlacedVictim> place_victims(const Relief& relief, const Maze& maze, Cell start, int count, Rng& rng) {
-  std::vector<Cell> cells = all_but(relief, {start});
+std::vector<PlacedVictim> place_victims(const Relief& relief, const Maze& maze, const std::vector<Cell>& taken,
+                                        int count, Rng& rng) {
+  std::vector<Cell> cells = all_but(relief, taken);
   shuffle(cells, rng);
   std::stable_sort(cells.begin(), cells.end(),
                    [&](Cell a, Cell b) { return rank(relief, maze, a) < rank(relief, maze, b); });
@@ -152,8 +153,7 @@ std::vector<PlacedVictim> place_victims(const Relief& relief, const Maze& maze, 
   return victims;
 }
 
-void scatter_paper(const Relief& relief, Cell start, int count, Rng& rng, Furniture& furniture) {
-  std::vector<Cell> taken{start};
+void scatter_paper(const Relief& relief, std::vector<Cell> taken, int count, Rng& rng, Furniture& furniture) {
   for (const PlacedVictim& victim : furniture.victims) taken.push_back(victim.cell);
   std::vector<Cell> cells = all_but(relief, taken);
   shuffle(cells, rng);

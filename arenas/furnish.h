@@ -24,12 +24,13 @@ struct Furniture {
   std::vector<PaperBall> balls;
 };
 
-/// Puts `count` victims into boxes against walls, one a pallet, never in the start pallet; dead ends and corners come
-/// first, flat ones before ramps. Beside a box 0.8 m stay free.
-std::vector<PlacedVictim> place_victims(const Relief& relief, const Maze& maze, Cell start, int count, Rng& rng);
+/// Puts `count` victims into boxes against walls, one a pallet, never in a `taken` one (the start's, obstacles'); dead
+/// ends and corners come first, flat ones before ramps. Beside a box 0.8 m stay free.
+std::vector<PlacedVictim> place_victims(const Relief& relief, const Maze& maze, const std::vector<Cell>& taken,
+                                        int count, Rng& rng);
 
-/// Adds loose sheets (and in about half of the pallets crumpled balls) to `cells` random pallets without start or
-/// victim.
-void scatter_paper(const Relief& relief, Cell start, int cells, Rng& rng, Furniture& furniture);
+/// Adds loose sheets (and in about half of the pallets crumpled balls) to `cells` random pallets that are neither
+/// `taken` nor a victim's.
+void scatter_paper(const Relief& relief, std::vector<Cell> taken, int cells, Rng& rng, Furniture& furniture);
 
 }  // namespace rubble::arenas

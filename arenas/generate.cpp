@@ -6,6 +6,7 @@
 #include "arenas/furnish.h"
 #include "arenas/maze.h"
 #include "arenas/relief.h"
+#include "arenas/rough.h"
 #include "base/error.h"
 #include "base/rng.h"
 
@@ -38,16 +39,21 @@ void require(bool is_good, const std::string& message) {
 }
 
 void check_config(const GenerateConfig& config) {
-  require(config.kind == "yellow", "unknown kind '" + config.kind + "': use yellow");
+  require(config.kind == "yellow" || config.kind == "orange" || config.kind == "red",
+          "unknown kind '" + config.kind + "': use yellow, orange or red");
   require(config.columns >= 2 && config.columns <= 60, "columns must be 2 to 60");
   require(config.rows >= 2 && config.rows <= 60, "rows must be 2 to 60");
   require(config.ramps >= 0.0 && config.ramps <= 1.0, "ramps must be a share, 0 to 1");
   require(config.paper >= 0.0 && config.paper <= 1.0, "paper must be a share, 0 to 1");
   require(config.loops >= 0.0 && config.loops <= 1.0, "loops must be a share, 0 to 1");
+  require(config.rough >= 0.0 && config.rough <= 1.0, "rough must be a share, 0 to 1");
   require(config.ramp_deg >= 1.0 && config.ramp_deg <= 45.0, "ramp_deg must be 1 to 45");
-  const int room = config.columns * config.rows - 1;
+}
+
+void check_victims(const GenerateConfig& config, std::size_t taken) {
+  const int room = config.columns * config.rows - static_cast<int>(taken);
   require(config.victims >= 0 && config.victims <= room,
-          "victims must be 0 to " + std::to_string(room) + ", one a pallet and none at the start");
+          "victims must be 0 to " + std::to_string(room) + ", one a pallet, none at the start or on an obstacle");
 }
 
 Drawing drawing_of(const Relief& relief, const Maze& maze, Cell start) {
@@ -76,6 +82,38 @@ int start_heading(const Maze& maze, Cell start, Rng& rng) {
   const Cell next = ways[rng.below(static_cast<std::uint32_t>(ways.size()))];
   if (next.x != start.x) return next.x > start.x ? 0 : 180;
   return next.y > start.y ? 90 : -90;
+}
+
+TPoint2D middle_of(Cell cell) { return {1.2 * (cell.x + 0.5), 1.2 * (cell.y + 0.5)}; }
+
+std::string elements_text(const std::vector<RoughPallet>& rough) {
+  std::string text;
+  for (const RoughPallet& pallet : rough) {
+    const TPoint2D p = middle_of(pallet.cell);
+    text += text.empty() ? "\nelements:\n" : "";
+    text += "  - {type: " + pallet.type + ", x_m: " + number(p.x) + ", y_m: " + number(p.y) +
+            ", rotation_deg: " + std::to_string(90 * pallet.turn) + "}\n";
+  }
+  return text;
+}
+
+/// Walls that stand on those of the maze, so that elevated floors are closed in.
+std::string parapets_text(const std::vector<RoughPallet>& rough, const Maze& maze) {
+  std::string text;
+  for (const RoughPallet& pallet : rough) {
+    if (pallet.top == 0.0) continue;
+    const Cell c = pallet.cell;
+    const TPoint2D p = middle_of(c);
+    for (const Cell step : {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}}) {
+      if (is_open(maze, c, {c.x + step.x, c.y + step.y})) continue;
+      const TPoint2D m{p.x + 0.6 * step.x, p.y + 0.6 * step.y};
+      text += text.empty() ? "\nwalls:\n" : "";
+      text += "  - {from_m: [" + number(m.x - 0.6 * std::abs(step.y)) + ", " + number(m.y - 0.6 * std::abs(step.x)) +
+              "], to_m: [" + number(m.x + 0.6 * std::abs(step.y)) + ", " + number(m.y + 0.6 * std::abs(step.x)) +
+              "], bottom_m: 1.2, height_m: 1.2}\n";
+    }
+  }
+  return text;
 }
 
 std::string victims_text(const std::vector<PlacedVictim>& victims) {
@@ -118,6 +156,7 @@ std::string generate_arena(const GenerateConfig& config) {
   Rng start_rng(config.seed, "arena start");
   Rng relief_rng(config.seed, "arena relief");
   Rng maze_rng(config.seed, "arena maze");
+  Rng rough_rng(config.seed, "arena rough");
   Rng victim_rng(config.seed, "arena victims");
   Rng paper_rng(config.seed, "arena paper");
 
@@ -126,22 +165,29 @@ std::string generate_arena(const GenerateConfig& config) {
   const int start_y = static_cast<int>(start_rng.below(static_cast<std::uint32_t>(config.rows)));
   const Cell start{start_x, start_y};
   const int ramps = static_cast<int>(std::llround(config.ramps * cells));
-  const Relief relief = grow_relief(config.columns, config.rows, ramps, start, relief_rng);
-  const Maze maze = carve_maze(relief, config.loops, maze_rng);
+  const int tallest = config.kind == "yellow" ? 1 : 2;
+  const Relief relief = grow_relief(config.columns, config.rows, ramps, start, tallest, relief_rng);
+  Maze maze = carve_maze(relief, config.loops, maze_rng);
+  const std::vector<RoughPallet> rough = lay_rough(config.kind, relief, start, config.rough, maze, rough_rng);
   const int heading_deg = start_heading(maze, start, start_rng);
+  std::vector<Cell> taken{start};
+  for (const RoughPallet& pallet : rough) taken.push_back(pallet.cell);
+  check_victims(config, taken.size());
   Furniture furniture;
-  furniture.victims = place_victims(relief, maze, start, config.victims, victim_rng);
-  scatter_paper(relief, start, static_cast<int>(std::llround(config.paper * cells)), paper_rng, furniture);
+  furniture.victims = place_victims(relief, maze, taken, config.victims, victim_rng);
+  scatter_paper(relief, taken, static_cast<int>(std::llround(config.paper * cells)), paper_rng, furniture);
 
   const std::string size = std::to_string(config.columns) + "x" + std::to_string(config.rows);
   const std::string seed = std::to_string(config.seed);
+  const std::string obstacles = config.kind == "yellow" ? "" : ", rough " + number(config.rough);
   std::string text = "# A random " + config.kind + " arena: " + size + " pallets, seed " + seed + ", ramps " +
-                     number(config.ramps) + ", paper " + number(config.paper) + ", loops " + number(config.loops) +
-                     ", victims " + std::to_string(config.victims) + ".\n";
+                     number(config.ramps) + obstacles + ", paper " + number(config.paper) + ", loops " +
+                     number(config.loops) + ", victims " + std::to_string(config.victims) + ".\n";
   text += "name: " + config.kind + "_" + size + "_" + seed + "\n";
   text += "ramp_deg: " + number(config.ramp_deg) + "\n\nmaze: |\n";
   for (const std::string& line : draw(drawing_of(relief, maze, start))) text += "  " + line + "\n";
   text += "\nstart: {heading_deg: " + std::to_string(heading_deg) + "}\n";
+  text += elements_text(rough) + parapets_text(rough, maze);
   return text + victims_text(furniture.victims) + paper_text(furniture);
 }
 

@@ -34,6 +34,8 @@ bool is_open(const Maze& maze, Cell a, Cell b) {
   return maze[a.y < b.y ? a : b].north;
 }
 
+void set_open(Maze& maze, Cell a, Cell b, bool open) { side(maze, a, b) = open; }
+
 std::vector<Cell> open_neighbours(const Maze& maze, Cell cell) {
   std::vector<Cell> found;
   for (const Cell next :

@@ -17,6 +17,8 @@ struct Passages {
 using Maze = Grid<Passages>;
 
 bool is_open(const Maze& maze, Cell a, Cell b);
+/// Opens or closes the edge between two neighbours of the maze.
+void set_open(Maze& maze, Cell a, Cell b, bool open);
 
 /// Neighbours behind open sides, in the order east, north, west, south.
 std::vector<Cell> open_neighbours(const Maze& maze, Cell cell);

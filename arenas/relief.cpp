@@ -34,10 +34,15 @@ struct Stamp {
   int along;         ///< pallets along the slope
   int across;        ///< pallets side by side
   bool has_plateau;  ///< ramp up, flat on top, ramp down; otherwise up and down in turn
+  int height = 1;    ///< of the plateau, in ramps; 2: ramp up, ramp up, flat on top, and down again if it goes on
 };
 
 Tile tile_of(const Stamp& stamp, int i) {
   const std::size_t up = static_cast<std::size_t>(stamp.direction);
+  if (stamp.height > 1) {
+    if (i == stamp.height) return {'.', stamp.height};
+    return i < stamp.height ? Tile{kRising[up], i} : Tile{kRising[(up + 2) % 4], 2 * stamp.height - i};
+  }
   if (stamp.has_plateau && i > 0 && i + 1 < stamp.along) return {'.', 1};
   const bool rises = stamp.has_plateau ? i == 0 : i % 2 == 0;
   return {kRising[rises ? up : (up + 2) % 4], 0};
@@ -51,6 +56,15 @@ Stamp draw_stamp(int columns, int rows, Rng& rng) {
   const int across = 1 + static_cast<int>(rng.below(3));
   const bool has_plateau = along == 3 && rng.uniform() < 0.5;
   return {{x, y}, direction, along, across, has_plateau};
+}
+
+/// Two ramps in line up to a floor of 0.42 m (at 10 deg), and every second time down again behind it.
+Stamp draw_tower(int columns, int rows, Rng& rng) {
+  const int x = static_cast<int>(rng.below(static_cast<std::uint32_t>(columns)));
+  const int y = static_cast<int>(rng.below(static_cast<std::uint32_t>(rows)));
+  const int direction = static_cast<int>(rng.below(4));
+  const int along = rng.uniform() < 0.5 ? 3 : 5;
+  return {{x, y}, direction, along, 1, true, 2};
 }
 
 /// Lays the stamp; false: it does not fit, or would cover the start.
@@ -114,13 +128,15 @@ bool is_connected(const Relief& relief) {
   return reached == relief.frame().size();
 }
 
-Relief grow_relief(int columns, int rows, int ramps, Cell start, Rng& rng) {
+Relief grow_relief(int columns, int rows, int ramps, Cell start, int tallest, Rng& rng) {
   constexpr int kPatience = 1500;  // proposals refused in a row
   Relief relief(GridFrame{columns, rows, 1.0, 0.0, 0.0});
   int laid = 0;
   for (int refused = 0; laid < ramps && refused < kPatience; ++refused) {
     Relief proposal = relief;
-    if (!lay(draw_stamp(columns, rows, rng), start, proposal)) continue;
+    const bool is_tower = tallest > 1 && rng.uniform() < 0.5;
+    const Stamp stamp = is_tower ? draw_tower(columns, rows, rng) : draw_stamp(columns, rows, rng);
+    if (!lay(stamp, start, proposal)) continue;
     const int count = count_ramps(proposal);
     if (count <= laid || count > ramps || !is_connected(proposal)) continue;
     relief = proposal;

@@ -27,7 +27,7 @@ bool is_connected(const Relief& relief);
 
 /// A random relief with about `ramps` ramp pallets (never more), all connected over smooth edges; `start` stays flat.
 /// Grows by groups a driver meets in the league: single ramps, ramps side by side that are crossed sideways (roll),
-/// ridges, valleys and plateaus (pitch).
-Relief grow_relief(int columns, int rows, int ramps, Cell start, Rng& rng);
+/// ridges, valleys and plateaus (pitch). `tallest`: with 2, some plateaus are two ramps high.
+Relief grow_relief(int columns, int rows, int ramps, Cell start, int tallest, Rng& rng);
 
 }  // namespace rubble::arenas

@@ -21,6 +21,8 @@ constexpr Colour kBox{122, 72, 50};
 constexpr Colour kHanging{120, 120, 150};
 constexpr Colour kPaper{252, 252, 248};
 constexpr Colour kCrease{170, 170, 165};
+constexpr Colour kBottle{60, 120, 200};
+constexpr Colour kRadio{200, 150, 30};
 constexpr Colour kVictim{205, 38, 38};
 constexpr Colour kStart{28, 128, 76};
 constexpr double kMargin = 0.3;  ///< ground shown round the arena [m]
@@ -95,6 +97,17 @@ void draw_paper(const Arena& arena, Canvas& canvas) {
   }
 }
 
+/// Drawn at least 0.1 m wide, so that a bottle is seen.
+void draw_objects(const Arena& arena, Canvas& canvas) {
+  for (const LooseObject& object : arena.objects) {
+    const double r = std::max(0.05, object.radius);
+    const Colour& colour = object.element == "bottle" ? kBottle : kRadio;
+    canvas.disc(object.position + TPoint2D{0.25 * r, -0.25 * r}, r, {60, 50, 40}, 0.35);  // shadow
+    canvas.disc(object.position, r, colour);
+    canvas.disc(object.position, 0.4 * r, object.element == "bottle" ? kPaper : kWall);
+  }
+}
+
 /// Thin walls are drawn at least 40 mm wide, so that a small picture still shows them.
 void draw_solids(const Arena& arena, Canvas& canvas) {
   for (const Solid& solid : arena.solids) {
@@ -102,7 +115,8 @@ void draw_solids(const Arena& arena, Canvas& canvas) {
     const double floor = floor_height(arena, middle(solid.outline));
     const bool is_hanging = solid.z_bottom > (std::isfinite(floor) ? floor : 0.0) + 0.3;
     const Colour& colour = is_box ? kBox : is_hanging ? kHanging : kWall;
-    canvas.fill(solid.outline, colour);
+    const bool is_ceiling = is_hanging && signed_area(solid.outline) > 1.0;  // the floor below it shows through
+    canvas.fill(solid.outline, colour, is_ceiling ? 0.45 : 1.0);
     draw_outline(solid.outline, is_box ? 0.012 : 0.03, colour, 1.0, canvas);
   }
 }
@@ -138,6 +152,7 @@ RgbImage render(const Arena& arena, double pixels_per_metre) {
   Canvas canvas(min, max, pixels_per_metre, kGround);
   draw_floor(arena, canvas);
   draw_paper(arena, canvas);
+  draw_objects(arena, canvas);
   draw_solids(arena, canvas);
   draw_victims(arena, canvas);
   draw_start(arena, canvas);

@@ -13,27 +13,36 @@ constexpr double kLightest = 0.1;       ///< lighter bodies make the contact wit
 }  // namespace
 
 Clutter::Clutter(b2World& world, const PlanOrigin& origin, const Terrain& terrain, Obstacles& obstacles,
-                 const std::vector<arenas::PaperBall>& balls)
-    : origin_(origin), terrain_(terrain), obstacles_(obstacles), initial_(balls), spheres_(balls.size()) {
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    b2BodyDef definition;
-    definition.type = b2_dynamicBody;
-    definition.position = origin.to_box2d(balls[i].position);
-    definition.angularDamping = 5.0f;
-    definition.awake = false;
-    bodies_.push_back(world.CreateBody(&definition));
-    b2CircleShape shape;
-    shape.m_radius = static_cast<float>(balls[i].radius);
-    b2FixtureDef fixture;
-    fixture.shape = &shape;
-    fixture.friction = 0.3f;
-    fixture.density =
-        static_cast<float>(std::max(kLightest, balls[i].mass)) / (b2_pi * shape.m_radius * shape.m_radius);
-    handles_.push_back(obstacles.add_moving({}));
-    fixture.userData.pointer = handles_[i];
-    bodies_[i]->CreateFixture(&fixture);
-    place(i);
-  }
+                 const std::vector<arenas::PaperBall>& balls, const std::vector<arenas::LooseObject>& objects)
+    : origin_(origin),
+      terrain_(terrain),
+      obstacles_(obstacles),
+      initial_(balls),
+      objects_(objects),
+      spheres_(balls.size()),
+      cylinders_(objects.size()) {
+  for (const arenas::PaperBall& ball : balls) add(world, ball.position, ball.radius, ball.mass);
+  for (const arenas::LooseObject& object : objects) add(world, object.position, object.radius, object.mass);
+}
+
+void Clutter::add(b2World& world, const mrpt::math::TPoint2D& position, double radius, double mass) {
+  const std::size_t i = bodies_.size();
+  b2BodyDef definition;
+  definition.type = b2_dynamicBody;
+  definition.position = origin_.to_box2d(position);
+  definition.angularDamping = 5.0f;
+  definition.awake = false;
+  bodies_.push_back(world.CreateBody(&definition));
+  b2CircleShape shape;
+  shape.m_radius = static_cast<float>(radius);
+  b2FixtureDef fixture;
+  fixture.shape = &shape;
+  fixture.friction = 0.3f;
+  fixture.density = static_cast<float>(std::max(kLightest, mass)) / (b2_pi * shape.m_radius * shape.m_radius);
+  handles_.push_back(obstacles_.add_moving({}));
+  fixture.userData.pointer = handles_[i];
+  bodies_[i]->CreateFixture(&fixture);
+  place(i);
 }
 
 void Clutter::brake(double dt) {
@@ -61,15 +70,27 @@ bool Clutter::settle() {
 void Clutter::place(std::size_t i) {
   const mrpt::math::TPoint2D p = origin_.from_box2d(bodies_[i]->GetPosition());
   const double floor = terrain_.at(p).height;
-  const double radius = initial_[i].radius;
-  spheres_[i] = {p.x, p.y, floor + radius, radius};
-  obstacles_.move(handles_[i], {floor, floor + 2.0 * radius});
+  if (i < spheres_.size()) {
+    const double radius = initial_[i].radius;
+    spheres_[i] = {p.x, p.y, floor + radius, radius};
+    obstacles_.move(handles_[i], {floor, floor + 2.0 * radius});
+    return;
+  }
+  const std::size_t k = i - spheres_.size();
+  cylinders_[k] = {p.x, p.y, floor, objects_[k].height, objects_[k].radius};
+  obstacles_.move(handles_[i], {floor, floor + objects_[k].height});
 }
 
 std::vector<arenas::PaperBall> Clutter::balls() const {
   std::vector<arenas::PaperBall> balls = initial_;
   for (std::size_t i = 0; i < balls.size(); ++i) balls[i].position = {spheres_[i].x, spheres_[i].y};
   return balls;
+}
+
+std::vector<arenas::LooseObject> Clutter::objects() const {
+  std::vector<arenas::LooseObject> objects = objects_;
+  for (std::size_t i = 0; i < objects.size(); ++i) objects[i].position = {cylinders_[i].x, cylinders_[i].y};
+  return objects;
 }
 
 }  // namespace rubble::sim

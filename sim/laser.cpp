@@ -34,7 +34,8 @@ Laser::Laser(const std::vector<arenas::Face>& faces, const robot::RobotModel& mo
       sweep_cast_(faces_),
       noise_(model.laser, noise, seed) {}
 
-robot::LaserScan Laser::scan(Stamp first, const std::vector<WorldState>& states, const std::vector<Sphere>& balls) {
+robot::LaserScan Laser::scan(Stamp first, const std::vector<WorldState>& states, const std::vector<Sphere>& balls,
+                             const std::vector<arenas::Face>& moving) {
   robot::LaserScan scan;
   scan.stamp = first;
   scan.angle_min = model_.laser.angle_min;
@@ -42,12 +43,15 @@ robot::LaserScan Laser::scan(Stamp first, const std::vector<WorldState>& states,
   scan.beam_period = sweep_ ? model_.laser.beam_period : 0.0;
   scan.range_min = model_.laser.range_min;
   scan.range_max = model_.laser.range_max;
+  std::optional<ScanFaces> others;
+  if (!moving.empty()) others.emplace(moving);
+  const ScanFaces* beside = others ? &*others : nullptr;
   const double reach = model_.laser.range_max + kBeyond;
   if (!sweep_ || at_rest(states, first, scan.beam_stamp(table_.count - 1))) {
-    plane_cast_.cast(laser_placement_at(states, model_, first), table_, reach, balls, scan.ranges);
+    plane_cast_.cast(laser_placement_at(states, model_, first), table_, reach, balls, scan.ranges, beside);
   } else {
     swept_beams(states, model_, table_, first, scan.beam_period, beams_);
-    sweep_cast_.cast(beams_, table_, reach, balls, scan.ranges);
+    sweep_cast_.cast(beams_, table_, reach, balls, scan.ranges, beside);
   }
   noise_.apply(scan.ranges);
   return scan;

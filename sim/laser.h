@@ -33,8 +33,10 @@ class Laser {
   Laser(const Laser&) = delete;
   Laser& operator=(const Laser&) = delete;
 
-  /// The scan whose beam 0 leaves at `first`; `states` cover the sweep. `balls`: where they are now.
-  robot::LaserScan scan(Stamp first, const std::vector<WorldState>& states, const std::vector<Sphere>& balls);
+  /// The scan whose beam 0 leaves at `first`; `states` cover the sweep. `balls`: where they are now. `moving`: faces
+  /// of other robots and of loose objects, where they are now.
+  robot::LaserScan scan(Stamp first, const std::vector<WorldState>& states, const std::vector<Sphere>& balls,
+                        const std::vector<arenas::Face>& moving = {});
 
   const SweepTimes& times() const { return times_; }
   /// The exact caster on the same faces, for single lines of sight.

@@ -27,8 +27,7 @@ constexpr Crossing kCrossings[16] = {{{0, 0}}, {{3, 0}}, {{0, 1}}, {{3, 1}}, {{1
 }  // namespace
 
 /// Where the polygon crosses the scan plane becomes a segment.
-void PlaneCast::cut(std::uint32_t polygon, const ScanFaces::View& view) {
-  const ScanFaces::Corners corners = faces_.corners(polygon, view);
+void PlaneCast::cut(const ScanFaces::Corners& corners) {
   const int above = bits4(corners.z > splat(0.0f));
   if (above == 0 || above == 15) return;
   const Float4 share = corners.z / (corners.z - next4(corners.z));  // of the way along each edge
@@ -145,19 +144,24 @@ void PlaneCast::draw(const Sphere& sphere, const Placement& laser, const BeamTab
   }
 }
 
-void PlaneCast::cast(const Placement& laser, const BeamTable& table, double max_range,
-                     const std::vector<Sphere>& spheres, std::vector<float>& ranges) {
-  const std::size_t padded = table.cosine.size();
-  ranges.assign(padded, 0.0f);
-  inverse_ = ranges.data();
-  faces_.near({laser, max_range, 0.0, 0.0}, near_);
+void PlaneCast::draw_faces(const ScanFaces& faces, const Placement& laser, const BeamTable& table, double max_range) {
+  faces.near({laser, max_range, 0.0, 0.0}, near_);
   if (segments_.x0.size() < near_.size() + 4) {
     for (auto* list : {&segments_.x0, &segments_.y0, &segments_.x1, &segments_.y1}) list->resize(2 * near_.size() + 4);
   }
   segments_.count = 0;
-  const ScanFaces::View view(faces_, laser);
-  for (const std::uint32_t i : near_) cut(i, view);
+  const ScanFaces::View view(faces, laser);
+  for (const std::uint32_t i : near_) cut(faces.corners(i, view));
   draw_segments(table);
+}
+
+void PlaneCast::cast(const Placement& laser, const BeamTable& table, double max_range,
+                     const std::vector<Sphere>& spheres, std::vector<float>& ranges, const ScanFaces* moving) {
+  const std::size_t padded = table.cosine.size();
+  ranges.assign(padded, 0.0f);
+  inverse_ = ranges.data();
+  draw_faces(faces_, laser, table, max_range);
+  if (moving != nullptr) draw_faces(*moving, laser, table, max_range);
   for (const Sphere& sphere : spheres) draw(sphere, laser, table, max_range);
   const Float4 longest = splat(max_range), miss = splat(kInf), one = splat(1.0f);
   for (std::size_t i = 0; i < padded; i += 4) {

@@ -16,9 +16,9 @@ class PlaneCast {
  public:
   explicit PlaneCast(const ScanFaces& faces) : faces_(faces) {}
 
-  /// ranges: one a beam [m]; +inf when nothing is within max_range.
+  /// ranges: one a beam [m]; +inf when nothing is within max_range. `moving`: faces beside the arena's, or null.
   void cast(const Placement& laser, const BeamTable& table, double max_range, const std::vector<Sphere>& spheres,
-            std::vector<float>& ranges);
+            std::vector<float>& ranges, const ScanFaces* moving = nullptr);
 
  private:
   /// What the faces leave on the scan plane, from (x0, y0) counter-clockwise to (x1, y1), seen from the laser over less
@@ -34,7 +34,8 @@ class PlaneCast {
     float x0, y0, x1, y1;
   };
 
-  void cut(std::uint32_t polygon, const ScanFaces::View& view);
+  void draw_faces(const ScanFaces& faces, const Placement& laser, const BeamTable& table, double max_range);
+  void cut(const ScanFaces::Corners& corners);
   void draw_segments(const BeamTable& table);
   void draw(const Stroke& stroke, float first, float last, const BeamTable& table);
   void draw(const Sphere& sphere, const Placement& laser, const BeamTable& table, double max_range);

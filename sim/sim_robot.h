@@ -18,6 +18,8 @@ struct SimConfig {
   double acceleration_noise = 1.0;  ///< factor on the ADXL202 noise
   double time_limit = 1200.0;       ///< read() ends after this much simulated time [s]
   bool sweep = true;                ///< each beam from the pose at its own time; false: the whole scan at once
+  bool microphones = false;         ///< fitted: sound cues, heard all round and badly placed
+  bool co2_probe = false;           ///< fitted: CO2 cues, close by
   robot::AccelerometerMount accelerometer_mount = robot::AccelerometerMount::Platform;  ///< where it is screwed on
 };
 
@@ -37,6 +39,8 @@ class SimRobot : public robot::Robot {
   const Trajectory& truth() const;
   /// Where the paper balls lie now (they are pushed about).
   std::vector<arenas::PaperBall> balls() const;
+  /// Where the loose objects stand now.
+  std::vector<arenas::LooseObject> objects() const;
 
  private:
   struct Impl;

@@ -136,10 +136,9 @@ SweepCast::Bearings SweepCast::bearings(const ScanFaces::Corners& corners, doubl
   return b;
 }
 
-void SweepCast::meet(std::uint32_t index, const ScanFaces::View& view, const Beams& beams, const BeamTable& table,
-                     double max_range) {
+void SweepCast::meet(const ScanFaces::Polygon& polygon, const ScanFaces::Corners& corners, const Beams& beams,
+                     const BeamTable& table, double max_range) {
   // Height over the scan plane at mid sweep; a face all above or all below what that plane sweeps is never met.
-  const ScanFaces::Corners corners = faces_.corners(index, view);
   const int above = bits4(corners.z > splat(slack_));
   const int below = bits4(corners.z < splat(-slack_));
   if (above == 15 || below == 15) return;
@@ -153,7 +152,6 @@ void SweepCast::meet(std::uint32_t index, const ScanFaces::View& view, const Bea
   if (spans.count == 0) return;
 
   // Only edges that cross the scan plane bound what the beams meet.
-  const ScanFaces::Polygon& polygon = faces_.polygon(index);
   const Plane4 plane(polygon.normal, polygon.offset - polygon.normal.dot(beams.middle.p));
   Plane4 edges[kCorners];
   std::size_t edge_count = 0;
@@ -223,15 +221,20 @@ void SweepCast::meet(const Sphere& sphere, const Beams& beams, const BeamTable& 
   }
 }
 
+void SweepCast::meet(const ScanFaces& faces, const Beams& beams, const BeamTable& table, double max_range) {
+  faces.near({beams.middle, max_range, beams.travel, slack_}, near_);
+  const ScanFaces::View view(faces, beams.middle);
+  for (const std::uint32_t i : near_) meet(faces.polygon(i), faces.corners(i, view), beams, table, max_range);
+}
+
 void SweepCast::cast(const Beams& beams, const BeamTable& table, double max_range, const std::vector<Sphere>& spheres,
-                     std::vector<float>& ranges) {
+                     std::vector<float>& ranges, const ScanFaces* moving) {
   const std::size_t padded = beams.ox.size();
   ranges.assign(padded, kInf);
   best_ = ranges.data();
   slack_ = beams.tilt * (max_range + beams.travel) + beams.lift + 1e-4;
-  faces_.near({beams.middle, max_range, beams.travel, slack_}, near_);
-  const ScanFaces::View view(faces_, beams.middle);
-  for (const std::uint32_t i : near_) meet(i, view, beams, table, max_range);
+  meet(faces_, beams, table, max_range);
+  if (moving != nullptr) meet(*moving, beams, table, max_range);
   for (const Sphere& sphere : spheres) meet(sphere, beams, table, max_range);
   const Float4 longest = splat(max_range), miss = splat(kInf);
   for (std::size_t i = 0; i < padded; i += 4) {

@@ -15,9 +15,9 @@ class SweepCast {
  public:
   explicit SweepCast(const ScanFaces& faces) : faces_(faces) {}
 
-  /// ranges: one a beam [m]; +inf when nothing is within max_range.
+  /// ranges: one a beam [m]; +inf when nothing is within max_range. `moving`: faces beside the arena's, or null.
   void cast(const Beams& beams, const BeamTable& table, double max_range, const std::vector<Sphere>& spheres,
-            std::vector<float>& ranges);
+            std::vector<float>& ranges, const ScanFaces* moving = nullptr);
 
  private:
   struct Span {
@@ -33,8 +33,9 @@ class SweepCast {
     double nearest = 1e9;          ///< [m]
     bool around = false;           ///< the laser's axis passes through it
   };
-  void meet(std::uint32_t index, const ScanFaces::View& view, const Beams& beams, const BeamTable& table,
-            double max_range);
+  void meet(const ScanFaces& faces, const Beams& beams, const BeamTable& table, double max_range);
+  void meet(const ScanFaces::Polygon& polygon, const ScanFaces::Corners& corners, const Beams& beams,
+            const BeamTable& table, double max_range);
   void meet(const Sphere& sphere, const Beams& beams, const BeamTable& table, double max_range);
   Bearings bearings(const ScanFaces::Corners& corners, double slack) const;
   Spans spans(double low, double high, double margin, const BeamTable& table) const;

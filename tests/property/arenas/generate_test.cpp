@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iostream>
 #include <set>
 
 #include "arenas/arena_file.h"
@@ -69,7 +71,9 @@ bool are_joined(const Arena& arena, const PatchIndex& floor, Cell a, Cell b) {
          !is_blocked(arena, "victim_box", near - aside, far - aside);
 }
 
-std::size_t count_reachable(const Arena& arena, int columns, int rows) {
+/// Pallets the robot gets to from its start, never over a `barred` one.
+std::size_t count_reachable(const Arena& arena, int columns, int rows,
+                            const std::set<std::pair<int, int>>& barred = {}) {
   const PatchIndex floor(arena);
   std::set<std::pair<int, int>> seen{{static_cast<int>(arena.start.x / 1.2), static_cast<int>(arena.start.y / 1.2)}};
   std::vector<std::pair<int, int>> open(seen.begin(), seen.end());
@@ -78,6 +82,7 @@ std::size_t count_reachable(const Arena& arena, int columns, int rows) {
     open.pop_back();
     for (const auto& [nx, ny] : {std::pair{x + 1, y}, {x - 1, y}, {x, y + 1}, {x, y - 1}}) {
       if (nx < 0 || ny < 0 || nx >= columns || ny >= rows || seen.count({nx, ny}) > 0) continue;
+      if (barred.count({nx, ny}) > 0) continue;
       if (!are_joined(arena, floor, {x, y}, {nx, ny})) continue;
       seen.insert({nx, ny});
       open.push_back({nx, ny});
@@ -95,6 +100,59 @@ TEST(Generate, EveryPalletCanBeReachedWithoutAStep) {
     ASSERT_EQ(arena.floor.size(), static_cast<std::size_t>(config.columns * config.rows));
     ASSERT_EQ(arena.victims.size(), static_cast<std::size_t>(config.victims));
     EXPECT_EQ(count_reachable(arena, config.columns, config.rows), arena.floor.size());
+  }
+}
+
+/// Pallets with an obstacle that a P3-AT cannot cross, told by their floors.
+std::set<std::pair<int, int>> barred_pallets(const Arena& arena) {
+  std::set<std::pair<int, int>> barred;
+  for (const FloorPatch& patch : arena.floor) {
+    const bool is_steep = std::hypot(patch.gx, patch.gy) > 0.5;
+    if (patch.element == "flat" || (patch.element == "ramp" && !is_steep)) continue;
+    TPoint2D middle;
+    for (const TPoint2D& p : patch.outline) middle = middle + p * (1.0 / static_cast<double>(patch.outline.size()));
+    barred.insert({static_cast<int>(middle.x / 1.2), static_cast<int>(middle.y / 1.2)});
+  }
+  return barred;
+}
+
+bool has_wall_at(const Arena& arena, const TPoint2D& edge) {
+  return std::any_of(arena.solids.begin(), arena.solids.end(),
+                     [&](const Solid& s) { return s.element == "wall" && contains(s.outline, edge); });
+}
+
+/// Whatever can be driven is connected without crossing an obstacle, and every obstacle lies beside an open edge.
+TEST(Generate, ObstaclesOfOrangeAndRedCutNothingOff) {
+  for (const std::string kind : {"orange", "red"}) {
+    double share = 0.0;
+    constexpr std::uint64_t kSeeds = 300;
+    std::set<std::string> elements;
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+      SCOPED_TRACE(kind + " " + name_of(seed));
+      GenerateConfig config = config_of(seed);
+      config.kind = kind;
+      config.victims = static_cast<int>(seed % 2);
+      const Arena arena = parse_arena(generate_arena(config), "generated");
+      ASSERT_NO_THROW(check(arena, "generated"));
+      const std::set<std::pair<int, int>> barred = barred_pallets(arena);
+      const std::size_t pallets = static_cast<std::size_t>(config.columns * config.rows);
+      EXPECT_EQ(count_reachable(arena, config.columns, config.rows, barred), pallets - barred.size());
+      for (const auto& [x, y] : barred) {
+        const TPoint2D m{1.2 * x + 0.6, 1.2 * y + 0.6};
+        const bool closed = has_wall_at(arena, {m.x + 0.6, m.y}) && has_wall_at(arena, {m.x - 0.6, m.y}) &&
+                            has_wall_at(arena, {m.x, m.y + 0.6}) && has_wall_at(arena, {m.x, m.y - 0.6});
+        EXPECT_FALSE(closed) << x << " " << y;
+      }
+      share += static_cast<double>(barred.size()) / static_cast<double>(pallets) / kSeeds;
+      for (const FloorPatch& patch : arena.floor) elements.insert(patch.element);
+      for (const Solid& solid : arena.solids) elements.insert(solid.element);
+      EXPECT_EQ(generate_arena(config), generate_arena(config));
+    }
+    std::cout << kind << ": " << 100.0 * share << " % of the pallets have obstacles (25 % asked)\n";
+    EXPECT_GT(share, 0.1);
+    EXPECT_EQ(elements.count("step_field"), 1u);
+    EXPECT_EQ(elements.count(kind == "orange" ? "crossing_ramp" : "stair"), 1u);
+    EXPECT_EQ(elements.count("tunnel"), kind == "red" ? 1u : 0u);
   }
 }
 
