@@ -35,9 +35,9 @@ void BM_AlignSensorMaps(benchmark::State& state) {
       right += good ? 1 : 0;
       trusted += found.aligned ? 1 : 0;
       right_and_trusted += good && found.aligned ? 1 : 0;
-      std::printf("%-7s %-7s error %5.2f m, allowed %4.2f, %-5s %-11s quality %.2f tight %.2f runner-up %.2f\n",
+      std::printf("%-7s %-7s error %5.2f m, allowed %4.2f, %-5s %-11s log odds %.2f runner-up %.2f mirrored %.2f\n",
                   pair.map_a.c_str(), pair.map_b.c_str(), error, allowed_error(pair), good ? "right" : "WRONG",
-                  found.aligned ? "aligned" : "not aligned", found.quality, found.tight, found.runner_up);
+                  found.aligned ? "aligned" : "not aligned", found.log_odds, found.runner_up, found.mirrored);
     }
   }
   state.counters["pairs"] = static_cast<double>(pairs.size());

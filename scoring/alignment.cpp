@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "base/angle.h"
+#include "scoring/matching.h"
+#include "scoring/resample.h"
 #include "scoring/trust.h"
 
 namespace rubble::scoring {
@@ -17,9 +20,8 @@ constexpr WallMatch::Stiffness kSoft = {0.0, 0.0005, 0.0005, 0.001};
 
 /// Of the fits that belong to the best pose, the one with most walls within a metre and least contradicted: a bent map
 /// has a pose for each of its parts, and this is the one for the whole.
-TPose2D fit_to_the_whole(const std::vector<Hypothesis>& hypotheses, const WallMatch& match,
-                         const WallMatch::Kernel& metre) {
-  const Hypothesis& best = hypotheses.front();
+TPose2D fit_to_the_whole(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses, const WallMatch& match) {
+  const WallMatch::Kernel metre = match.kernel(1.0);
   TPose2D pick = best.T_best;
   double most = whole_agreement(match.evidence(match.rigid(pick), metre));
   for (const Hypothesis& h : hypotheses) {
@@ -36,39 +38,112 @@ TPose2D fit_to_the_whole(const std::vector<Hypothesis>& hypotheses, const WallMa
   return match.halfway(pick, match.nearest_rigid(bent, 0.4));
 }
 
+/// What the walls propose always takes part, as rivals of what others propose.
+std::vector<PoseGuess> propose(const OccupancyGrid& map, const OccupancyGrid& truth, AlignBy by,
+                               const AlignmentConfig& config) {
+  std::vector<PoseGuess> out = correlate(map, truth, config.correlation);
+  const auto add = [&](const std::vector<PoseGuess>& more) { out.insert(out.end(), more.begin(), more.end()); };
+  if (by == AlignBy::Features || by == AlignBy::Auto) add(propose_by_features(map, truth, config.feature_kind));
+  if ((by == AlignBy::Rooms || by == AlignBy::Auto) && config.rooms) add(config.rooms(map, truth));
+  return out;
+}
+
+bool may_win(const Hypothesis& h, AlignBy by) {
+  if (by == AlignBy::Features) return h.source.find("features") != std::string::npos;
+  if (by == AlignBy::Rooms) return h.source.find("rooms") != std::string::npos;
+  return true;
+}
+
+/// Two maps to be aligned, with what several methods share.
+class Aligner {
+ public:
+  Aligner(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config)
+      : map_(map), truth_(truth), config_(config), match_(map, truth, config.search.reach, config.search.max_points) {}
+
+  bool usable() const { return match_.usable(); }
+
+  Alignment by(AlignBy method) {
+    Alignment out;
+    const std::vector<Hypothesis> hypotheses = examine(propose(map_, truth_, method, config_), match_, config_.search);
+    const auto best =
+        std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) { return may_win(h, method); });
+    if (best == hypotheses.end()) {
+      out.note = "not aligned: no pose was proposed";
+      return out;
+    }
+    const Trust trust = judge(best->wide, best->tight, describe(*best, hypotheses, out));
+    out.aligned = trust.trusted;
+    out.note = trust.note;
+    out.T_walls = match_.refine(best->T_best, 0.1, 20);
+    out.T_walls.phi = wrap_angle(out.T_walls.phi);
+    out.T_truth_map = trust.tight ? out.T_walls : fit_to_the_whole(*best, hypotheses, match_);
+    out.T_truth_map.phi = wrap_angle(out.T_truth_map.phi);
+    return out;
+  }
+
+ private:
+  /// Fills in the contest and returns the rivals.
+  Rivals describe(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses, Alignment& out) {
+    out.source = best.source;
+    out.wide_evidence = best.wide;
+    out.tight_evidence = best.tight;
+    out.log_odds = log_odds(best.wide, best.tight);
+    const double shift = std::max(config_.search.distinct_shift, config_.search.distinct_share * match_.map_extent());
+    Rivals others;
+    double highest = -1.0;
+    for (const Hypothesis& h : hypotheses) {
+      if (same_pose(h.T_best, best.T_best, match_.map_centre(), shift, config_.search.distinct_turn)) continue;
+      others.meet(h.wide, h.tight);
+      if (h.quality <= highest) continue;
+      highest = h.quality;
+      out.T_runner_up = h.T_best;
+    }
+    const Rivals& mirrored = of_mirrored();
+    out.runner_up = relative(others, best.tight, out.log_odds);
+    out.mirrored = relative(mirrored, best.tight, out.log_odds);
+    return {std::max(others.log_odds, mirrored.log_odds), std::max(others.tight, mirrored.tight)};
+  }
+
+  /// How near the rivals come to the best, by the measure that `judge` uses.
+  static double relative(const Rivals& rivals, const PoseEvidence& tight, double odds) {
+    const double agreement = tight_agreement(tight);
+    if (agreement >= kTightEnough) return std::clamp(rivals.tight / agreement, 0.0, 1.0);
+    return std::min(1.0, std::exp(rivals.log_odds - odds));
+  }
+
+  /// A mirror image is as like the truth as the map itself in all but what counts: its best pose, which is wrong, shows
+  /// how far chance gets with these two maps.
+  const Rivals& of_mirrored() {
+    if (mirrored_) return *mirrored_;
+    mirrored_.emplace();
+    const OccupancyGrid mirrored = mirror_image(map_);
+    const WallMatch match(mirrored, truth_, config_.search.reach, config_.search.max_points);
+    for (const Hypothesis& h : examine(correlate(mirrored, truth_, config_.correlation), match, config_.search))
+      mirrored_->meet(h.wide, h.tight);
+    return *mirrored_;
+  }
+
+  const OccupancyGrid& map_;
+  const OccupancyGrid& truth_;
+  const AlignmentConfig& config_;
+  WallMatch match_;
+  std::optional<Rivals> mirrored_;
+};
+
 }  // namespace
 
 Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config) {
-  Alignment out;
-  const std::vector<PoseGuess> guesses = correlate(map, truth, config.correlation);
-  const WallMatch match(map, truth, config.search.reach, config.search.max_points);
-  if (guesses.empty() || !match.usable()) {
+  Aligner aligner(map, truth, config);
+  if (!aligner.usable()) {
+    Alignment out;
     out.note = "not aligned: one of the maps has too few walls to fix a pose";
     return out;
   }
-  const std::vector<Hypothesis> hypotheses = examine(guesses, match, config.search);
-  const Hypothesis& best = hypotheses.front();
-  out.wide_evidence = best.wide;
-  out.tight_evidence = best.tight;
-  out.quality = best.quality;
-  out.tight = tight_agreement(best.tight);
-
-  Rivals rivals;
-  for (const Hypothesis& h : hypotheses) {
-    if (same_pose(h.T_best, best.T_best, match.map_centre(), config.search.distinct_shift, config.search.distinct_turn))
-      continue;
-    rivals.wide = std::max(rivals.wide, h.quality);
-    rivals.tight = std::max(rivals.tight, tight_agreement(h.tight));
-  }
-  const Trust trust = judge(best.wide, best.tight, rivals);
-  out.aligned = trust.trusted;
-  out.note = trust.note;
-  out.runner_up = trust.runner_up;
-  out.T_walls = match.refine(best.T_best, 0.1, 20);
-  out.T_walls.phi = wrap_angle(out.T_walls.phi);
-  out.T_truth_map = trust.tight ? out.T_walls : fit_to_the_whole(hypotheses, match, match.kernel(1.0));
-  out.T_truth_map.phi = wrap_angle(out.T_truth_map.phi);
-  return out;
+  if (config.by != AlignBy::Auto) return aligner.by(config.by);
+  const Alignment walls = aligner.by(AlignBy::Walls);
+  if (walls.aligned) return walls;
+  const Alignment all = aligner.by(AlignBy::Auto);
+  return all.aligned || all.log_odds > walls.log_odds ? all : walls;
 }
 
 }  // namespace rubble::scoring

@@ -6,12 +6,19 @@
 
 #include "base/grid.h"
 #include "scoring/correlation.h"
+#include "scoring/features.h"
 #include "scoring/pose_search.h"
 #include "scoring/wall_match.h"
 
 namespace rubble::scoring {
 
+/// What proposes the poses. Auto: walls, and where these leave a doubt, features and rooms too.
+enum class AlignBy { Auto, Walls, Features, Rooms };
+
 struct AlignmentConfig {
+  AlignBy by = AlignBy::Auto;
+  FeatureKind feature_kind = FeatureKind::Surf;
+  Proposer rooms;  ///< proposes by rooms; where empty, rooms propose nothing
   CorrelationConfig correlation;
   SearchConfig search;
 };
@@ -20,18 +27,21 @@ struct AlignmentConfig {
 struct Alignment {
   bool aligned = false;             ///< the transform can be trusted
   std::string note;                 ///< why not; one line
+  std::string source;               ///< what proposed it: "walls", "features", "rooms" or several joined by +
   mrpt::math::TPose2D T_truth_map;  ///< the best pose found, also when it cannot be trusted
   mrpt::math::TPose2D T_walls;      ///< the same, drawn to where most walls coincide; equal for undistorted maps
-  double runner_up = 0.0;           ///< quality of the best clearly different pose relative to the best, 0..1
-  double quality = 0.0;             ///< wide agreement of both maps' walls at the best pose; 1.2 at the most
-  double tight = 0.0;               ///< tight, chance-corrected agreement at the best pose; 2 at the most
+  double log_odds = 0.0;            ///< of the best pose being right
+  double runner_up = 0.0;           ///< how near the best clearly different pose comes to the best, 0..1 (1: as good)
+  mrpt::math::TPose2D T_runner_up;  ///< that pose
+  double mirrored = 0.0;            ///< how near the mirrored map comes, which cannot be right, 0..1
   PoseEvidence wide_evidence;
   PoseEvidence tight_evidence;
 };
 
-/// Correlation of walls and free space over all rotations and shifts; the best hypotheses refined on the distance
-/// fields and ranked by what the walls of both maps say about each other, after a mild bend of the map where that
-/// explains more. Scale is fixed at 1, mirror images are never tried. docs/scoring.md gives the rules of trust.
+/// Poses proposed by walls, features or rooms; refined on the distance fields and ranked by what the walls of both maps
+/// say about each other, after a mild bend of the map where that explains more. The best is trusted if it stands out
+/// from all others and from the best of the mirrored map. Scale is fixed at 1. docs/scoring.md gives the rules of
+/// trust.
 Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config = {});
 
 }  // namespace rubble::scoring

@@ -58,10 +58,13 @@ std::vector<Hypothesis> examine(const std::vector<PoseGuess>& guesses, const Wal
   for (const PoseGuess& guess : guesses) {
     const TPose2D T_wide = match.refine(guess.T_truth_map, 1.0, 15);
     // Neighbouring peaks run into the same pose.
-    const bool seen = std::any_of(out.begin(), out.end(), [&](const Hypothesis& h) {
+    const auto seen = std::find_if(out.begin(), out.end(), [&](const Hypothesis& h) {
       return same_pose(h.T_wide, T_wide, match.map_centre(), 0.1, 0.005);
     });
-    if (seen) continue;
+    if (seen != out.end()) {
+      if (seen->source.find(guess.source) == std::string::npos) seen->source += "+" + guess.source;
+      continue;
+    }
     out.push_back(rigid_hypothesis(match, T_wide, kernels));
     out.back().source = guess.source;
   }

@@ -15,7 +15,8 @@ struct SearchConfig {
   double tau_wide = 0.6;            ///< k(d) of the agreement that ranks poses [m]
   std::size_t bent_hypotheses = 8;  ///< of the best poses, those that may bend the map
   double stiffness = 0.003;         ///< holds back the quadratic displacement of the check
-  double distinct_shift = 1.2;      ///< poses nearer than this ...
+  double distinct_shift = 1.2;      ///< poses nearer than this, or than ...
+  double distinct_share = 0.04;     ///< ... this share of the map's extent (the parts of a bent map have their own) ...
   double distinct_turn = 0.10;      ///< ... and turned by less are the same [m, rad]
 };
 

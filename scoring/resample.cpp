@@ -61,6 +61,12 @@ OccupancyGrid crop_to_known(const OccupancyGrid& grid, double margin) {
   return out;
 }
 
+OccupancyGrid mirror_image(const OccupancyGrid& grid) {
+  OccupancyGrid out(grid.frame());
+  for (int y = 0; y < grid.height(); ++y) std::reverse_copy(grid.row(y), grid.row(y) + grid.width(), out.row(y));
+  return out;
+}
+
 GridFrame common_frame(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map,
                        double margin) {
   CellBox box = known_box(truth);

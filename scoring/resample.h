@@ -15,6 +15,9 @@ std::optional<GridFrame> known_frame(const OccupancyGrid& grid, double margin);
 /// The part of `grid` inside its known frame. A grid without a known cell is returned as it is.
 OccupancyGrid crop_to_known(const OccupancyGrid& grid, double margin);
 
+/// The grid seen in a mirror: east and west exchanged, same frame.
+OccupancyGrid mirror_image(const OccupancyGrid& grid);
+
 /// The frame on the lattice of `truth` that holds the known cells of `truth` and those of the moved `map`. It does not
 /// depend on how much unknown canvas lies around either.
 GridFrame common_frame(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map,

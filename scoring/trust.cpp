@@ -5,44 +5,36 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr double kTight = 0.8;          // tight agreement from which it is the measure of the pose
-constexpr double kRivalTight = 0.85;    // share of it that another pose may reach
-constexpr double kRivalFar = 0.7;       // the same for the wide agreement, where the tight one leaves a doubt
-constexpr double kLeastEach = 0.25;     // kappa that the walls of either map must reach
-constexpr double kPerfect = 0.93;       // kappa of one map's walls that needs no comparison with other poses ...
-constexpr double kPerfectOther = 0.45;  // ... with this kappa for the walls of the other
-constexpr double kPerfectShare = 0.2;   // ... and this share of the truth's walls found
-constexpr double kRivalWide = 0.9;      // share of the wide agreement that another pose may reach
-constexpr double kLeastKappa = 0.3;     // below, walls meet no more often than chance would have it
-constexpr double kCovered = 0.95;       // share of one map's walls inside the other from which nothing ...
-constexpr double kCoveredKappa = 0.5;   // ... excuses less agreement of them than this
-constexpr double kLeastWide = 0.1;
-constexpr double kLeastLogOdds = -0.9;
+// Where the maps agree to the decimetre.
+constexpr double kAhead = 1.2;         // times the tight agreement of the best rival: trusted
+constexpr double kUnexplained = 1.65;  // or the rival leaves so many times as much wall unexplained
+constexpr double kLeastEach = 0.25;    // kappa that the walls of either map must reach
+constexpr double kFloor = 0.02;        // of what is left unexplained: less says nothing
+// Where they agree only loosely.
+constexpr double kLeastLogOdds = -1.2;
+constexpr double kLeastMargin = 0.75;  // of the log odds over those of the best rival
+constexpr double kLeastKappa = 0.3;    // below, walls meet no more often than chance would have it
 
 double net(const WallEvidence& e, double chance, double contradiction) {
   return e.known * (e.met - chance - contradiction * e.contradicted);
 }
 
-/// Log odds of a right pose where maps agree only loosely: logistic regression on right and wrong poses of public
-/// sensor maps.
-double log_odds(const PoseEvidence& wide, const PoseEvidence& tight, double runner_up) {
-  const double kappa = std::max(tight.map.kappa(), tight.truth.kappa());
-  const double contradicted = std::min(wide.map.contradicted, wide.truth.contradicted);
-  return -5.9 + 6.0 * wide_agreement(wide) - 2.0 * runner_up + 4.8 * kappa - 22.3 * contradicted +
-         8.7 * wide.free_common;
-}
+double known_share(const PoseEvidence& e) { return e.map.known + e.truth.known; }
 
-bool perfect(const PoseEvidence& tight) {
-  const double map = tight.map.kappa();
-  const double truth = tight.truth.kappa();
-  return std::max(map, truth) >= kPerfect && std::min(map, truth) >= kPerfectOther &&
-         tight.truth.known * truth >= kPerfectShare;
-}
-
-/// One map lies wholly inside the other, and yet its walls are not found there: wrong scale, or another place.
-bool covered_but_not_met(const PoseEvidence& tight) {
-  const WallEvidence& inner = tight.map.known > tight.truth.known ? tight.map : tight.truth;
-  return inner.known >= kCovered && inner.kappa() < kCoveredKappa;
+Trust judge_tight(const PoseEvidence& tight, const Rivals& rivals) {
+  Trust out;
+  out.tight = true;
+  const double best = tight_agreement(tight);
+  const double all = known_share(tight);
+  const double left = std::max(all - best, kFloor);
+  const bool ahead = best >= kAhead * rivals.tight || all - rivals.tight >= kUnexplained * left;
+  const bool mutual = std::min(tight.map.kappa(), tight.truth.kappa()) >= kLeastEach;
+  out.trusted = ahead && mutual;
+  if (!mutual)
+    out.note = "not aligned: walls of one map are missing in the other";
+  else if (!ahead)
+    out.note = "not aligned: another pose, or a mirror image, fits about as well";
+  return out;
 }
 
 }  // namespace
@@ -55,30 +47,32 @@ double tight_agreement(const PoseEvidence& tight) {
 
 double whole_agreement(const PoseEvidence& metre) { return net(metre.map, 0.3, 1.0) + net(metre.truth, 0.3, 1.0); }
 
+double log_odds(const PoseEvidence& wide, const PoseEvidence& tight) {
+  const auto both = [](const PoseEvidence& e, double WallEvidence::*share) {
+    return e.map.known * e.map.*share + e.truth.known * e.truth.*share;
+  };
+  return -5.1 - 31.0 * both(wide, &WallEvidence::contradicted) - 3.9 * both(wide, &WallEvidence::met) -
+         25.8 * both(wide, &WallEvidence::chance) + 4.3 * both(tight, &WallEvidence::contradicted) +
+         14.75 * wide.free_common + 15.7 * std::min(wide.map.known, wide.truth.known);
+}
+
+void Rivals::meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence) {
+  log_odds = std::max(log_odds, scoring::log_odds(wide, tight_evidence));
+  tight = std::max(tight, tight_agreement(tight_evidence));
+}
+
 Trust judge(const PoseEvidence& wide, const PoseEvidence& tight, const Rivals& rivals) {
+  if (tight_agreement(tight) >= kTightEnough) return judge_tight(tight, rivals);
   Trust out;
-  const double best_tight = tight_agreement(tight);
-  const double best_wide = wide_agreement(wide);
-  if (best_tight >= kTight) {
-    out.tight = true;
-    out.runner_up = std::clamp(rivals.tight / best_tight, 0.0, 1.0);
-    const bool unrivalled = out.runner_up <= kRivalTight || rivals.wide <= kRivalFar * best_wide;
-    const bool mutual = std::min(tight.map.kappa(), tight.truth.kappa()) >= kLeastEach;
-    out.trusted = (unrivalled && mutual) || perfect(tight);
-    if (!out.trusted) out.note = "not aligned: another pose fits about as well, the map's structure is not the truth's";
-    return out;
-  }
-  out.runner_up = best_wide > 0.0 ? std::clamp(rivals.wide / best_wide, 0.0, 1.0) : 1.0;
-  const bool better_than_chance = std::max(tight.map.kappa(), tight.truth.kappa()) >= kLeastKappa;
-  if (!better_than_chance || best_wide < kLeastWide) {
+  const double odds = log_odds(wide, tight);
+  if (std::max(tight.map.kappa(), tight.truth.kappa()) < kLeastKappa)
     out.note = "not aligned: at no pose do the walls of both maps meet more often than by chance";
-  } else if (out.runner_up > kRivalWide) {
-    out.note = "not aligned: another pose fits about as well";
-  } else if (covered_but_not_met(tight) || log_odds(wide, tight, out.runner_up) < kLeastLogOdds) {
+  else if (odds < kLeastLogOdds)
     out.note = "not aligned: the walls of one map run through the free space of the other";
-  } else {
+  else if (odds - rivals.log_odds < kLeastMargin)
+    out.note = "not aligned: another pose, or a mirror image, fits about as well";
+  else
     out.trusted = true;
-  }
   return out;
 }
 

@@ -6,7 +6,9 @@
 
 namespace rubble::scoring {
 
-constexpr double kBendCosts = 0.03;  ///< a bent map must agree by this much more than the straight one
+constexpr double kBendCosts = 0.03;   ///< a bent map must agree by this much more than the straight one
+constexpr double kTightEnough = 0.8;  ///< tight agreement from which it is the measure of a pose
+constexpr double kNoOdds = -99.0;     ///< log odds where there is no pose
 
 /// Walls of both maps that meet within the wider tau, less what chance and contradiction take away. At most 1.2.
 double wide_agreement(const PoseEvidence& wide);
@@ -14,18 +16,20 @@ double wide_agreement(const PoseEvidence& wide);
 double tight_agreement(const PoseEvidence& tight);
 /// Agreement within a metre, contradictions counted in full: of the map as a whole.
 double whole_agreement(const PoseEvidence& metre);
+/// Log odds of a pose being right: logistic regression on poses of public maps, docs/scoring.md.
+double log_odds(const PoseEvidence& wide, const PoseEvidence& tight);
 
-/// The best agreement reached at any clearly different pose.
+/// The best that poses reach which cannot be the right one if the best is: other poses, and all of the mirrored map.
 struct Rivals {
-  double wide = 0.0;
+  double log_odds = kNoOdds;
   double tight = 0.0;
+  void meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence);
 };
 
 struct Trust {
   bool trusted = false;
   bool tight = false;  ///< the maps agree to the decimetre, not only to the metre
-  double runner_up = 0.0;
-  std::string note;  ///< why not trusted
+  std::string note;    ///< why not trusted
 };
 
 /// Decides whether the best pose is the right one. Rules and how they were calibrated: docs/scoring.md.

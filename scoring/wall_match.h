@@ -67,6 +67,8 @@ class WallMatch {
   /// Both maps have walls that fix a pose: more than one straight wall or a blob.
   bool usable() const { return map_.breadth >= kLeastBreadth && truth_.breadth >= kLeastBreadth; }
   const mrpt::math::TPoint2D& map_centre() const { return map_.centre; }
+  /// Twice the RMS distance of the map's walls from their centre [m].
+  double map_extent() const { return map_.extent; }
 
  private:
   static constexpr double kLeastBreadth = 0.4;      // [m]
