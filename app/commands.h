@@ -39,10 +39,11 @@ struct ScoreArguments {
   double tau = 0.5;
   std::string out;
   bool json = false;
-  std::string pose;    ///< X,Y,DEG[,SCALE]: score there instead of aligning
-  std::string html;    ///< the evaluation page to write
-  std::string league;  ///< folder of maps to rank; `map` is the truth then
-  std::string judge;   ///< CSV of the judge's points
+  std::string pose;     ///< X,Y,DEG[,SCALE]: score there instead of aligning
+  std::string html;     ///< the evaluation page to write
+  std::string league;   ///< folder of maps to rank; `map` is the truth then
+  std::string judge;    ///< CSV of the judge's points
+  std::string victims;  ///< list of the true victims
 };
 
 struct ReplayArguments {

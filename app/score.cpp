@@ -75,13 +75,7 @@ int score(const ScoreArguments& arguments) {
   for (const std::string& path : {arguments.map, arguments.truth})
     if (std::filesystem::is_directory(path))
       throw InputError(path + ": is a folder; give a map file in it, for example " + path + "/map.tif");
-  if (!arguments.out.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories(arguments.out, error);
-    if (error)
-      throw InputError(arguments.out + ": cannot be created (" + error.message() +
-                       "); give a writable folder with --out");
-  }
+  if (!arguments.out.empty()) make_folder(arguments.out);
   const scoring::LoadedMap map = scoring::load_map(arguments.map, {arguments.map_resolution});
   const scoring::LoadedMap truth = scoring::load_map(arguments.truth, {arguments.truth_resolution});
   scoring::ScoreConfig config;

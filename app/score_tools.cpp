@@ -1,6 +1,7 @@
 #include "app/score_tools.h"
 
 #include <cstdio>
+#include <filesystem>
 #include <sstream>
 #include <vector>
 
@@ -27,6 +28,13 @@ std::optional<GivenPose> parse_pose(const std::string& text) {
   if (!(pose.scale >= 0.1 && pose.scale <= 10.0))
     throw UsageError("--pose " + text + ": the scale must be from 0.1 to 10");
   return pose;
+}
+
+void make_folder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error)
+    throw InputError(path + ": cannot be created (" + error.message() + "); give a writable folder with --out");
 }
 
 void write_evaluation_page(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,

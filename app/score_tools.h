@@ -19,6 +19,9 @@ struct GivenPose {
 /// X,Y,DEG[,SCALE]; nothing for an empty text. Throws UsageError for another form or a scale outside 0.1 to 10.
 std::optional<GivenPose> parse_pose(const std::string& text);
 
+/// Creates the folder of --out. Throws InputError when that is not possible.
+void make_folder(const std::string& path);
+
 /// Writes the Mapping Evaluation Tool page. Throws RunError.
 void write_evaluation_page(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
                            const scoring::EvaluationStart& start);
