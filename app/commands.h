@@ -68,6 +68,8 @@ int run(const RunArguments& arguments);
 int map(const MapArguments& arguments);
 int score(const ScoreArguments& arguments);
 int score_league(const ScoreArguments& arguments);
+bool is_trajectory(const std::string& path);
+int score_trajectory(const ScoreArguments& arguments);
 int replay(const ReplayArguments& arguments);
 int export_log(const ExportArguments& arguments);
 int arena(const ArenaArguments& arguments);

@@ -105,9 +105,11 @@ int dispatch(int argc, char** argv) {
 
   ScoreArguments score_arguments;
   CLI::App* score_command = app.add_subcommand("score", "Align a map to the ground truth and score it");
-  score_command->add_option("map", score_arguments.map, "GeoTIFF, ROS map.yaml, or image with --resolution")
+  score_command
+      ->add_option("map", score_arguments.map, "GeoTIFF, ROS map.yaml, image with --resolution, or trajectory .tum")
       ->required();
-  score_command->add_option("truth", score_arguments.truth, "Ground truth, same formats");
+  score_command->add_option("truth", score_arguments.truth,
+                            "Ground truth, same formats (for a trajectory also .relations)");
   score_command->add_option("--pose", score_arguments.pose,
                             "Score at this pose, X,Y,DEG[,SCALE], instead of aligning (write --pose=-1,2,90)");
   score_command->add_option("--html", score_arguments.html,
@@ -129,7 +131,8 @@ int dispatch(int argc, char** argv) {
       "Examples:\n  rubble score runs/latest/map.tif runs/latest/truth.tif\n"
       "  rubble score team.png truth.tif --resolution 0.05 --out judged\n"
       "  rubble score team.tif truth.tif --html judge.html\n"
-      "  rubble score --league maps/ truth.tif --out judged");
+      "  rubble score --league maps/ truth.tif --out judged\n"
+      "  rubble score runs/latest/estimate.tum runs/latest/truth.tum");
 
   ReplayArguments replay_arguments;
   CLI::App* replay_command =

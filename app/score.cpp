@@ -71,6 +71,7 @@ std::string command_of(const ScoreArguments& a) {
 int score(const ScoreArguments& arguments) {
   if (!arguments.league.empty()) return score_league(arguments);
   if (arguments.truth.empty()) throw UsageError("truth is required; see rubble score --help");
+  if (is_trajectory(arguments.map)) return score_trajectory(arguments);
   const std::optional<GivenPose> pose = parse_pose(arguments.pose);
   for (const std::string& path : {arguments.map, arguments.truth})
     if (std::filesystem::is_directory(path))
