@@ -39,6 +39,11 @@ struct ScoreArguments {
   double tau = 0.5;
   std::string out;
   bool json = false;
+  std::string pose;     ///< X,Y,DEG[,SCALE]: score there instead of aligning
+  std::string html;     ///< the evaluation page to write
+  std::string league;   ///< folder of maps to rank; `map` is the truth then
+  std::string judge;    ///< CSV of the judge's points
+  std::string victims;  ///< list of the true victims
 };
 
 struct ReplayArguments {
@@ -65,6 +70,9 @@ std::string recorded_log(const std::string& path);
 int run(const RunArguments& arguments);
 int map(const MapArguments& arguments);
 int score(const ScoreArguments& arguments);
+int score_league(const ScoreArguments& arguments);
+bool is_trajectory(const std::string& path);
+int score_trajectory(const ScoreArguments& arguments);
 int replay(const ReplayArguments& arguments);
 int export_log(const ExportArguments& arguments);
 int arena(const ArenaArguments& arguments);

@@ -108,9 +108,20 @@ int dispatch(int argc, char** argv) {
 
   ScoreArguments score_arguments;
   CLI::App* score_command = app.add_subcommand("score", "Align a map to the ground truth and score it");
-  score_command->add_option("map", score_arguments.map, "GeoTIFF, ROS map.yaml, or image with --resolution")
+  score_command
+      ->add_option("map", score_arguments.map, "GeoTIFF, ROS map.yaml, image with --resolution, or trajectory .tum")
       ->required();
-  score_command->add_option("truth", score_arguments.truth, "Ground truth, same formats")->required();
+  score_command->add_option("truth", score_arguments.truth,
+                            "Ground truth, same formats (for a trajectory also .relations)");
+  score_command->add_option("--pose", score_arguments.pose,
+                            "Score at this pose, X,Y,DEG[,SCALE], instead of aligning (write --pose=-1,2,90)");
+  score_command->add_option("--html", score_arguments.html,
+                            "Write a page to move, turn, scale and blend the two maps by hand");
+  score_command->add_option("--league", score_arguments.league,
+                            "Rank all maps of this folder against one truth: rubble score --league DIR TRUTH");
+  score_command->add_option("--victims", score_arguments.victims,
+                            "True victims for --league: arena file or CSV name,x,y (default: beside the truth)");
+  score_command->add_option("--judge", score_arguments.judge, "CSV team,points of the judge's points, for --league");
   score_command->add_option("--resolution", score_arguments.map_resolution, "Metres a pixel of the map image")
       ->check(between(0.001, 10.0));
   score_command->add_option("--truth-resolution", score_arguments.truth_resolution, "Metres a pixel of the truth image")
@@ -121,7 +132,10 @@ int dispatch(int argc, char** argv) {
   score_command->add_flag("--json", score_arguments.json, "Print JSON");
   score_command->footer(
       "Examples:\n  rubble score runs/latest/map.tif runs/latest/truth.tif\n"
-      "  rubble score team.png truth.tif --resolution 0.05 --out judged");
+      "  rubble score team.png truth.tif --resolution 0.05 --out judged\n"
+      "  rubble score team.tif truth.tif --html judge.html\n"
+      "  rubble score --league maps/ truth.tif --out judged\n"
+      "  rubble score runs/latest/estimate.tum runs/latest/truth.tum");
 
   ReplayArguments replay_arguments;
   CLI::App* replay_command =

@@ -3,10 +3,13 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/score_tools.h"
 #include "base/angle.h"
 #include "base/error.h"
+#include "base/number_text.h"
 #include "scoring/normalise.h"
 #include "scoring/picture.h"
+#include "scoring/pose_score.h"
 #include "scoring/scorecard.h"
 
 namespace rubble::app {
@@ -54,33 +57,46 @@ nlohmann::ordered_json as_json(const scoring::MapScore& s, const scoring::Loaded
           {"truth", truth.recognised}};
 }
 
+/// The command that scores the same two maps again.
+std::string command_of(const ScoreArguments& a) {
+  std::string command = "rubble score " + a.map + " " + a.truth;
+  if (a.map_resolution) command += " --resolution " + number_text(*a.map_resolution);
+  if (a.truth_resolution) command += " --truth-resolution " + number_text(*a.truth_resolution);
+  if (a.tau != ScoreArguments().tau) command += " --tau " + number_text(a.tau);
+  return command;
+}
+
 }  // namespace
 
 int score(const ScoreArguments& arguments) {
+  if (!arguments.league.empty()) return score_league(arguments);
+  if (arguments.truth.empty()) throw UsageError("truth is required; see rubble score --help");
+  if (is_trajectory(arguments.map)) return score_trajectory(arguments);
+  const std::optional<GivenPose> pose = parse_pose(arguments.pose);
   for (const std::string& path : {arguments.map, arguments.truth})
     if (std::filesystem::is_directory(path))
       throw InputError(path + ": is a folder; give a map file in it, for example " + path + "/map.tif");
-  if (!arguments.out.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories(arguments.out, error);
-    if (error)
-      throw InputError(arguments.out + ": cannot be created (" + error.message() +
-                       "); give a writable folder with --out");
-  }
+  if (!arguments.out.empty()) make_folder(arguments.out);
   const scoring::LoadedMap map = scoring::load_map(arguments.map, {arguments.map_resolution});
   const scoring::LoadedMap truth = scoring::load_map(arguments.truth, {arguments.truth_resolution});
   scoring::ScoreConfig config;
   config.tau = arguments.tau;
-  const scoring::MapScore result = scoring::score_map(map.grid, truth.grid, config);
+  const OccupancyGrid grid = pose ? scoring::scaled_frame(map.grid, pose->scale) : map.grid;
+  const scoring::MapScore result = pose ? scoring::score_at(grid, truth.grid, pose->T_truth_map, config)
+                                        : scoring::score_map(grid, truth.grid, config);
   if (arguments.json) {
     std::printf("%s\n", as_json(result, map, truth).dump(2).c_str());
   } else {
     print_table(result, map, truth);
   }
+  if (!arguments.html.empty())
+    write_evaluation_page(
+        arguments.html, map.grid, truth.grid,
+        {arguments.map, arguments.truth, command_of(arguments), result.T_truth_map, pose ? pose->scale : 1.0, config});
   if (!arguments.out.empty()) {
     if (result.aligned) {
-      scoring::write_overlay(arguments.out + "/overlay.png", map.grid, truth.grid, result.T_truth_map);
-      scoring::write_error_map(arguments.out + "/error.png", map.grid, truth.grid, result.T_truth_map, config.tau);
+      scoring::write_overlay(arguments.out + "/overlay.png", grid, truth.grid, result.T_truth_map);
+      scoring::write_error_map(arguments.out + "/error.png", grid, truth.grid, result.T_truth_map, config.tau);
     }
     const std::string path = arguments.out + "/score.json";
     std::FILE* file = std::fopen(path.c_str(), "w");

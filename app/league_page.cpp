@@ -1,0 +1,96 @@
+#include "app/league_page.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "scenarios/html.h"
+
+namespace rubble::app {
+namespace {
+
+using scenarios::escape_html;
+using scoring::LeagueEntry;
+
+std::string cell(const char* format, double value) {
+  char text[60];
+  std::snprintf(text, sizeof text, format, value);
+  return std::string("<td class=\"n\">") + text + "</td>";
+}
+
+std::string victims_cell(const LeagueEntry& e) {
+  if (!e.points) return "<td class=\"n\"></td>";
+  const auto& victims = e.points->victims;
+  const auto found = std::count_if(victims.begin(), victims.end(), [](const auto& v) { return v.found; });
+  std::string text = std::to_string(found) + " of " + std::to_string(victims.size());
+  if (e.points->false_alarms > 0) text += ", " + std::to_string(e.points->false_alarms) + " false";
+  return "<td class=\"n\">" + text + "</td>";
+}
+
+std::string row(const LeagueEntry& e, const LeaguePictures& pictures, bool with_points) {
+  std::string html = "<tr><td class=\"n\">" + std::to_string(e.rank) + "</td><td>" + escape_html(e.team) + "</td>";
+  if (!e.error.empty())
+    return html + "<td class=\"failed\" colspan=\"" + (with_points ? "12" : "7") + "\">" + escape_html(e.error) +
+           "</td></tr>\n";
+  if (with_points) {
+    const double quality = e.points ? e.points->quality : 0.0;
+    const double location = e.points ? e.points->location : 0.0;
+    html += cell("%.1f", e.total()) + cell("%.1f", quality) + cell("%.1f", location) + cell("%.1f", e.judge) +
+            victims_cell(e);
+  }
+  html += cell("%.3f", e.score.score) + cell("%.3f", e.score.precision) + cell("%.3f", e.score.recall) +
+          cell("%.3f", e.score.psi_m) + cell("%.0f %%", 100.0 * e.score.known) + "<td>" + escape_html(e.note()) +
+          "</td><td>" +
+          (pictures.tool.empty() ? "" : "<a href=\"" + escape_html(pictures.tool) + "\">lay by hand</a>") + "</td>";
+  return html + "</tr>\n";
+}
+
+std::string figure(const LeagueEntry& e, const std::string& picture, const std::string& what) {
+  if (picture.empty()) return "";
+  const std::string link = escape_html(picture);
+  return "<figure class=\"map\"><a href=\"" + link + "\"><img src=\"" + link + "\" alt=\"\"></a><figcaption>" +
+         escape_html(e.team) + ": " + what + "</figcaption></figure>\n";
+}
+
+std::string victim_table(const LeagueEntry& e) {
+  if (!e.points || e.points->victims.empty()) return "";
+  std::string html =
+      "<table><tr><th>victim</th><th class=\"n\">error [m]</th><th class=\"n\">map quality</th>"
+      "<th class=\"n\">location</th></tr>\n";
+  for (const auto& v : e.points->victims) {
+    html += "<tr><td>" + escape_html(v.victim) + "</td>";
+    html += v.found ? cell("%.2f", v.error_m) + cell("%.1f", v.quality) + cell("%.1f", v.location)
+                    : "<td class=\"none\" colspan=\"3\">not found</td>";
+    html += "</tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+}  // namespace
+
+std::string league_page(const std::string& truth, bool with_points, const std::vector<LeagueEntry>& entries,
+                        const std::vector<LeaguePictures>& pictures) {
+  std::string body =
+      "<style>figure.map { width: 26em; } td a, td:nth-child(2) { white-space: nowrap; }</style>\n<h1>League</h1>\n<p "
+      "class=\"note\">" +
+      std::to_string(entries.size()) + " maps against " + escape_html(truth) +
+      ". Ranked by points (to 0.1), then by score (to 0.001); equal maps share a rank. Score = "
+      "min(precision, recall) of the walls.</p>\n<table>\n<tr><th class=\"n\">rank</th><th>team</th>";
+  if (with_points)
+    body +=
+        "<th class=\"n\">points</th><th class=\"n\">map quality</th><th class=\"n\">location</th>"
+        "<th class=\"n\">judge</th><th class=\"n\">victims</th>";
+  body +=
+      "<th class=\"n\">score</th><th class=\"n\">precision</th><th class=\"n\">recall</th>"
+      "<th class=\"n\">psi [m]</th><th class=\"n\">known</th><th>note</th><th></th></tr>\n";
+  for (std::size_t i = 0; i < entries.size(); ++i) body += row(entries[i], pictures[i], with_points);
+  body += "</table>\n";
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (pictures[i].overlay.empty()) continue;
+    body += "<h2>" + std::to_string(entries[i].rank) + ". " + escape_html(entries[i].team) + "</h2>\n";
+    body += figure(entries[i], pictures[i].overlay, "laid over the truth") +
+            figure(entries[i], pictures[i].error, "distance of its walls") + victim_table(entries[i]);
+  }
+  return scenarios::html_page("League", body);
+}
+
+}  // namespace rubble::app

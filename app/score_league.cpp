@@ -1,0 +1,193 @@
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+
+#include "app/commands.h"
+#include "app/league_files.h"
+#include "app/league_page.h"
+#include "app/score_tools.h"
+#include "base/error.h"
+#include "base/text_file.h"
+#include "scoring/league.h"
+#include "scoring/normalise.h"
+#include "scoring/picture.h"
+
+namespace rubble::app {
+namespace {
+
+namespace fs = std::filesystem;
+using scoring::LeagueEntry;
+
+/// The list of victims that belongs to a truth map, when none is given.
+std::string victims_beside(const std::string& truth) {
+  const fs::path folder = fs::path(truth).parent_path();
+  std::string stem = fs::path(truth).stem().string();
+  std::vector<fs::path> candidates = {folder / (stem + ".csv")};
+  const std::string suffix = "-truth";
+  if (stem.size() > suffix.size() && stem.compare(stem.size() - suffix.size(), suffix.size(), suffix) == 0)
+    candidates.push_back(folder / (stem.substr(0, stem.size() - suffix.size()) + ".yaml"));
+  if (stem == "truth") candidates.push_back(folder / "arena.yaml");
+  for (const fs::path& path : candidates)
+    if (fs::is_regular_file(path)) return path.string();
+  return "";
+}
+
+/// Everything the teams are compared with.
+struct Truth {
+  std::string path;
+  OccupancyGrid grid;
+  std::vector<scoring::Poi> victims;
+  std::string victims_path;  ///< empty: not known
+};
+
+Truth load_truth(const ScoreArguments& arguments) {
+  Truth truth;
+  truth.path = arguments.map;
+  truth.grid = scoring::load_map(truth.path, {arguments.truth_resolution}).grid;
+  truth.victims_path = arguments.victims.empty() ? victims_beside(truth.path) : arguments.victims;
+  if (!truth.victims_path.empty()) truth.victims = scoring::read_pois(truth.victims_path);
+  return truth;
+}
+
+/// A file name of its own for each team, whatever the team calls itself.
+std::string safe_name(const std::string& team, std::size_t index) {
+  std::string name;
+  for (const char c : team)
+    name += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.' ? c : '_';
+  char number[16];
+  std::snprintf(number, sizeof number, "%03zu-", index + 1);
+  return number + name;
+}
+
+class League {
+ public:
+  League(const ScoreArguments& arguments, const Truth& truth) : arguments_(arguments), truth_(truth) {
+    config_.tau = arguments.tau;
+  }
+
+  /// Judges one team; what is wrong with its files becomes its note.
+  void judge(const LeagueFiles& files, double judge_points) {
+    LeagueEntry entry;
+    entry.team = files.team;
+    entry.file = files.map;
+    entry.judge = judge_points;
+    entry.error = files.error;
+    LeaguePictures pictures;
+    if (entry.error.empty()) try {
+        judge_map(files, entry, pictures);
+      } catch (const InputError& error) {
+        entry.error = error.what();
+      }
+    pictures_.emplace(entry.team + "\n" + entry.file, pictures);
+    entries_.push_back(entry);
+  }
+
+  void finish() {
+    scoring::rank_league(entries_);
+    print();
+    if (arguments_.out.empty()) return;
+    std::vector<LeaguePictures> pictures;
+    for (const LeagueEntry& entry : entries_) pictures.push_back(pictures_.at(entry.team + "\n" + entry.file));
+    write_text_file(arguments_.out + "/league.csv", scoring::league_csv(entries_));
+    write_text_file(arguments_.out + "/league.html", league_page(truth_.path, with_points(), entries_, pictures));
+    std::printf("written: %s/league.html, league.csv\n", arguments_.out.c_str());
+  }
+
+ private:
+  bool with_points() const {
+    return std::any_of(entries_.begin(), entries_.end(),
+                       [](const LeagueEntry& e) { return e.points || e.judge > 0.0; });
+  }
+
+  void judge_map(const LeagueFiles& files, LeagueEntry& entry, LeaguePictures& pictures) {
+    const OccupancyGrid map = scoring::load_map(files.map, {arguments_.map_resolution}).grid;
+    std::vector<scoring::Poi> reported;
+    if (!files.pois.empty()) reported = scoring::read_pois(files.pois);
+    entry.score = scoring::score_map(map, truth_.grid, config_);
+    if (!files.pois.empty() && !truth_.victims_path.empty()) {
+      entry.points = entry.score.aligned
+                         ? scoring::league_points(map, truth_.grid, entry.score.T_truth_map, reported, truth_.victims)
+                         : scoring::league_points({}, {}, {}, {}, truth_.victims);
+      if (!entry.score.aligned) entry.points->false_alarms = reported.size();
+    }
+    if (!arguments_.out.empty()) draw(entry, map, pictures);
+  }
+
+  void draw(const LeagueEntry& entry, const OccupancyGrid& map, LeaguePictures& pictures) const {
+    const std::string name = safe_name(entry.team, entries_.size());
+    if (entry.score.aligned) {
+      pictures.overlay = name + "-overlay.png";
+      pictures.error = name + "-error.png";
+      scoring::write_overlay(arguments_.out + "/" + pictures.overlay, map, truth_.grid, entry.score.T_truth_map);
+      scoring::write_error_map(arguments_.out + "/" + pictures.error, map, truth_.grid, entry.score.T_truth_map,
+                               config_.tau);
+    }
+    pictures.tool = name + ".html";
+    write_text_file(arguments_.out + "/" + pictures.tool,
+                    scoring::evaluation_page(map, truth_.grid,
+                                             {entry.file, truth_.path, "rubble score " + entry.file + " " + truth_.path,
+                                              entry.score.T_truth_map, 1.0, config_}));
+  }
+
+  void print() const {
+    const bool points = with_points();
+    std::size_t width = 4;
+    for (const LeagueEntry& e : entries_) width = std::max(width, e.team.size());
+    const int w = static_cast<int>(width);
+    std::printf("%4s  %-*s%s  %5s %9s %6s %7s %5s  %s\n", "rank", w, "team",
+                points ? "  points quality location judge" : "", "score", "precision", "recall", "psi [m]", "known",
+                "note");
+    for (const LeagueEntry& e : entries_) {
+      std::printf("%4d  %-*s", e.rank, w, e.team.c_str());
+      if (!e.error.empty()) {
+        std::printf("  %s\n", e.error.c_str());
+        continue;
+      }
+      if (points)
+        std::printf("  %6.1f %7.1f %8.1f %5.1f", e.total(), e.points ? e.points->quality : 0.0,
+                    e.points ? e.points->location : 0.0, e.judge);
+      std::printf("  %5.3f %9.3f %6.3f %7.3f %4.0f%%  %s\n", e.score.score, e.score.precision, e.score.recall,
+                  e.score.psi_m, 100.0 * e.score.known, e.score.note.c_str());
+    }
+  }
+
+  const ScoreArguments& arguments_;
+  const Truth& truth_;
+  scoring::ScoreConfig config_;
+  std::vector<LeagueEntry> entries_;
+  std::map<std::string, LeaguePictures> pictures_;  // of team and file
+};
+
+void check(const ScoreArguments& arguments) {
+  if (!arguments.truth.empty())
+    throw UsageError("--league needs the truth only: rubble score --league DIR TRUTH; see rubble score --help");
+  if (!arguments.pose.empty() || !arguments.html.empty() || arguments.json)
+    throw UsageError("--league goes without --pose, --html and --json; pages and CSV are written with --out");
+}
+
+}  // namespace
+
+int score_league(const ScoreArguments& arguments) {
+  check(arguments);
+  const std::vector<LeagueFiles> teams = find_league(arguments.league);
+  const Truth truth = load_truth(arguments);
+  std::map<std::string, double> judge;
+  if (!arguments.judge.empty()) judge = scoring::read_judge(arguments.judge);
+  for (const auto& [team, points] : judge)
+    if (std::none_of(teams.begin(), teams.end(), [&](const LeagueFiles& files) { return files.team == team; }))
+      throw InputError(arguments.judge + ": names team '" + team + "', but " + arguments.league +
+                       " holds no map of that name");
+  if (!arguments.out.empty()) make_folder(arguments.out);
+  League league(arguments, truth);
+  for (const LeagueFiles& files : teams) {
+    std::error_code error;
+    if (!files.map.empty() && fs::equivalent(files.map, truth.path, error)) continue;  // the truth is no team
+    const auto points = judge.find(files.team);
+    league.judge(files, points == judge.end() ? 0.0 : points->second);
+  }
+  league.finish();
+  return kOk;
+}
+
+}  // namespace rubble::app

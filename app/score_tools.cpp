@@ -1,0 +1,46 @@
+#include "app/score_tools.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+#include <vector>
+
+#include "base/angle.h"
+#include "base/error.h"
+#include "base/number_text.h"
+#include "base/text_file.h"
+
+namespace rubble::app {
+
+std::optional<GivenPose> parse_pose(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  std::vector<double> numbers;
+  std::stringstream fields(text);
+  for (std::string field; std::getline(fields, field, ',');) {
+    const std::optional<double> number = parse_number(field);
+    if (!number) break;
+    numbers.push_back(*number);
+  }
+  const bool whole = fields.eof() && text.back() != ',';
+  if (!whole || numbers.size() < 3 || numbers.size() > 4)
+    throw UsageError("--pose " + text + ": needs the form X,Y,DEG or X,Y,DEG,SCALE, for example --pose=1.5,-2,90");
+  GivenPose pose{{numbers[0], numbers[1], deg_to_rad(numbers[2])}, numbers.size() == 4 ? numbers[3] : 1.0};
+  if (!(pose.scale >= 0.1 && pose.scale <= 10.0))
+    throw UsageError("--pose " + text + ": the scale must be from 0.1 to 10");
+  return pose;
+}
+
+void make_folder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error)
+    throw InputError(path + ": cannot be created (" + error.message() + "); give a writable folder with --out");
+}
+
+void write_evaluation_page(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
+                           const scoring::EvaluationStart& start) {
+  write_text_file(path, scoring::evaluation_page(map, truth, start));
+  std::fprintf(stderr, "page: %s\n", path.c_str());
+}
+
+}  // namespace rubble::app

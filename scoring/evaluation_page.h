@@ -1,0 +1,26 @@
+#pragma once
+
+#include <mrpt/math/TPose2D.h>
+
+#include <string>
+
+#include "base/grid.h"
+#include "scoring/scorecard.h"
+
+namespace rubble::scoring {
+
+/// What the page starts with.
+struct EvaluationStart {
+  std::string map_name;  ///< as a person would type them
+  std::string truth_name;
+  std::string command;  ///< what scores the two at a pose when ` --pose=...` is added
+  mrpt::math::TPose2D T_truth_map;
+  double scale = 1.0;  ///< of the map: p_truth = T (scale p_map)
+  ScoreConfig config;
+};
+
+/// The Mapping Evaluation Tool of section IV.B as one HTML page that needs nothing else: two maps that a person moves,
+/// turns, scales and blends, and the figures of `score_at` for the pose, live. `map` in its own scale.
+std::string evaluation_page(const OccupancyGrid& map, const OccupancyGrid& truth, const EvaluationStart& start);
+
+}  // namespace rubble::scoring

@@ -1,0 +1,78 @@
+# Ranking many maps against one truth: order, ties, bad files, victims and the judge's points.
+. "$(dirname "$0")/lib.sh"
+arena() { "$rubble" arena generate --cells 5x4 --victims 3 "$@" >/dev/null || fail "arena $*"; }
+arena --seed 4 --out a
+arena --seed 9 --out b
+arena --seed 4 --resolution 0.12 --out coarse
+truth=a/yellow-5x4-seed4-truth.tif
+mkdir -p maps/good maps/empty
+cp $truth maps/good/map.tif
+cp $truth maps/twin.tif
+cp coarse/*truth.tif maps/coarse.tif
+cp b/*truth.tif maps/stranger.tif
+head -c 900 $truth >maps/cut.tif
+cp $truth maps/broken_list.tif
+echo 'no header' >maps/broken_list.csv
+
+# The same three victims in the league's form, in the plain form 0.65 m off, and one of three with a false alarm.
+python3 - <<'PY' || fail "no victims in the arena file"
+import re
+text = open('a/yellow-5x4-seed4.yaml').read()
+found = [(float(x), float(y)) for x, y in re.findall(r'x_m: ([-\d.]+), y_m: ([-\d.]+), facing', text)]
+assert len(found) == 3, found
+head = '"pois"\n"1.3"\n"t"\n""\n"1970-01-01"\n"00:00:00"\n"m"\ndetection,time,type,name,x,y,z,robot,mode\n'
+with open('maps/good/pois.csv', 'w') as f:
+    f.write(head + '0,00:00:01,qr,q,1,1,0,r,A\n')
+    for i, (x, y) in enumerate(found): f.write(f'{i+1},00:01:00,victim,v{i+1},{y},{-x},0,r,A\n')
+with open('maps/twin_pois.csv', 'w') as f:
+    f.write('name,x,y\r\n' + ''.join(f'"v, {i}",{x + 0.65},{y}\r\n' for i, (x, y) in enumerate(found)))
+with open('maps/coarse.csv', 'w') as f:
+    f.write(f'name,x,y\nv1,{found[0][0]},{found[0][1]}\nghost,50,50\n')
+PY
+printf 'team,victim,points\ntwin,v1,30\ntwin,v2,12.5\n' >judge.csv
+"$rubble" score --league maps $truth --out judged --judge judge.csv >table.txt 2>err.txt || fail "league: $(cat err.txt)"
+python3 - <<'PY' || fail "the ranking is not right: $(cat judged/league.csv)"
+import csv
+rows = list(csv.DictReader(open('judged/league.csv')))
+assert all(None not in r and None not in r.values() for r in rows), rows
+by = {r['team']: r for r in rows}
+assert [r['team'] for r in rows] == ['twin', 'good', 'coarse', 'stranger', 'broken_list', 'cut', 'empty'], rows
+assert [int(r['rank']) for r in rows] == [1, 2, 3, 4, 5, 5, 5], rows
+good, twin, coarse = by['good'], by['twin'], by['coarse']
+assert (good['points'], good['quality'], good['location']) == ('60.0', '30.0', '30.0'), good
+assert twin['quality'] == '30.0' and twin['location'] == '15.0' and twin['judge'] == '42.5', twin
+assert good['victims_found'] == twin['victims_found'] == '3' and coarse['victims_found'] == '1', rows
+assert coarse['false_alarms'] == '1' and float(coarse['location']) > 9, coarse
+assert good['score'] == '1.000' and good['psi_m'] == '0.000', good
+assert by['stranger']['aligned'] == 'no' and by['stranger']['score'] == '0.000', by['stranger']
+assert 'cut.tif' in by['cut']['note'] and by['cut']['score'] == '', by['cut']
+assert 'broken_list.csv' in by['broken_list']['note'] and 'map' in by['empty']['note'], rows
+page = open('judged/league.html').read()
+import os, re
+links = set(re.findall(r'(?:src|href)="([^"]+)"', page))
+assert links and all(os.path.exists('judged/' + l) for l in links), links
+PY
+grep -qE '^ *1 +twin ' table.txt || fail "the table does not show the first: $(cat table.txt)"
+
+# Other names in another order: the same figures and the same ranks; without victims equal maps share a rank.
+mkdir renamed
+cp $truth renamed/zz.tif; cp $truth renamed/aa.tif; cp maps/coarse.tif renamed/0.tif; cp maps/cut.tif renamed/1.tif
+touch no_victims.csv && echo 'name,x,y' >no_victims.csv
+"$rubble" score --league renamed $truth --out second >/dev/null || fail "second league"
+cut -d, -f1,2,7 second/league.csv >ranks.txt
+[[ $(sed -n '2,5p' ranks.txt | cut -d, -f1,2 | tr '\n' ' ') == '1,aa 1,zz 3,0 4,1 ' ]] || fail "ties: $(cat ranks.txt)"
+"$rubble" score --league renamed $truth --out third >/dev/null && cmp second/league.csv third/league.csv ||
+  fail "the same league twice gives other figures"
+
+expect_exit 2 'truth only' "$rubble" score --league maps $truth $truth
+expect_exit 2 '--pose' "$rubble" score --league maps $truth --pose 1,2,3
+expect_exit 3 'nowhere' "$rubble" score --league nowhere $truth
+expect_exit 3 'no maps' "$rubble" score --league maps/empty $truth
+expect_exit 3 'nowhere.tif' "$rubble" score --league maps nowhere.tif
+printf 'team,points\nnobody,3\n' >wrong.csv
+expect_exit 3 "team 'nobody'" "$rubble" score --league maps $truth --judge wrong.csv
+printf 'team,victim,points\ngood,v1,31\n' >wrong.csv
+expect_exit 3 'wrong.csv:2:1' "$rubble" score --league maps $truth --judge wrong.csv
+printf 'name,x,y\nv1,here,2\n' >wrong.csv
+expect_exit 3 'wrong.csv:2:1' "$rubble" score --league maps $truth --victims wrong.csv
+finish

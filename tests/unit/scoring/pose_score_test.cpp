@@ -1,0 +1,55 @@
+#include "scoring/pose_score.h"
+
+#include <gmock/gmock.h>
+
+#include "scoring/evaluation_page.h"
+#include "tests/support/scoring_maze.h"
+
+namespace rubble::scoring {
+namespace {
+
+using namespace testing;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(PoseScore, AtThePoseFoundItIsTheScoreOfTheSearch) {
+  const OccupancyGrid truth = maze({});
+  const OccupancyGrid map = with_phantoms(moved(truth, 0.4, 1.0, -2.0), 4, 1);
+  const MapScore found = score_map(map, truth);
+  ASSERT_TRUE(found.aligned);
+  const MapScore there = score_at(map, truth, found.T_truth_map);
+  EXPECT_EQ(there.score, found.score);
+  EXPECT_EQ(there.precision, found.precision);
+  EXPECT_EQ(there.psi_m, found.psi_m);
+  EXPECT_EQ(there.psi_literal_m, found.psi_literal_m);
+  EXPECT_EQ(there.known, found.known);
+}
+
+TEST(PoseScore, TrueScaleGivesBackAPerfectScore) {
+  const OccupancyGrid truth = maze({});
+  const OccupancyGrid half = scaled_frame(truth, 0.5);
+  EXPECT_LT(score_at(half, truth, {}).score, 0.5);
+  EXPECT_EQ(score_at(scaled_frame(half, 2.0), truth, {}).score, 1.0);
+}
+
+TEST(PoseScore, MapsWithoutAnythingScoreNothing) {
+  const OccupancyGrid truth = maze({});
+  const OccupancyGrid blank(truth.frame());
+  for (const auto& [a, b] : {std::pair(blank, truth), std::pair(truth, blank), std::pair(blank, blank)}) {
+    const MapScore score = score_at(a, b, {1.0, 2.0, 3.0});
+    EXPECT_EQ(score.score, 0.0);
+    EXPECT_TRUE(std::isfinite(score.psi_m));
+  }
+}
+
+TEST(EvaluationPage, NamesCannotBreakThePage) {
+  EvaluationStart start;
+  start.map_name = "</script><b>\"x\\";
+  const std::string page = evaluation_page(maze({}), maze({}), start);
+  EXPECT_THAT(page, Not(HasSubstr("</script><b>")));
+  EXPECT_THAT(page, Not(HasSubstr("@DATA@")));
+  EXPECT_THAT(page, HasSubstr("\\u003c/script\\u003e\\u003cb\\u003e\\u0022x\\u005c"));
+}
+
+}  // namespace
+}  // namespace rubble::scoring
