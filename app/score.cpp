@@ -6,7 +6,6 @@
 #include "app/score_tools.h"
 #include "base/angle.h"
 #include "base/error.h"
-#include "base/number_text.h"
 #include "scoring/normalise.h"
 #include "scoring/picture.h"
 #include "scoring/pose_score.h"
@@ -55,15 +54,6 @@ nlohmann::ordered_json as_json(const scoring::MapScore& s, const scoring::Loaded
           {"align_note", s.note},
           {"map", map.recognised},
           {"truth", truth.recognised}};
-}
-
-/// The command that scores the same two maps again.
-std::string command_of(const ScoreArguments& a) {
-  std::string command = "rubble score " + a.map + " " + a.truth;
-  if (a.map_resolution) command += " --resolution " + number_text(*a.map_resolution);
-  if (a.truth_resolution) command += " --truth-resolution " + number_text(*a.truth_resolution);
-  if (a.tau != ScoreArguments().tau) command += " --tau " + number_text(a.tau);
-  return command;
 }
 
 }  // namespace

@@ -30,6 +30,14 @@ std::optional<GivenPose> parse_pose(const std::string& text) {
   return pose;
 }
 
+std::string command_of(const ScoreArguments& a) {
+  std::string command = "rubble score " + a.map + " " + a.truth;
+  if (a.map_resolution) command += " --resolution " + number_text(*a.map_resolution);
+  if (a.truth_resolution) command += " --truth-resolution " + number_text(*a.truth_resolution);
+  if (a.tau != ScoreArguments().tau) command += " --tau " + number_text(a.tau);
+  return command;
+}
+
 void make_folder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "app/commands.h"
 #include "base/grid.h"
 #include "scoring/evaluation_page.h"
 
@@ -18,6 +19,9 @@ struct GivenPose {
 
 /// X,Y,DEG[,SCALE]; nothing for an empty text. Throws UsageError for another form or a scale outside 0.1 to 10.
 std::optional<GivenPose> parse_pose(const std::string& text);
+
+/// The command that scores the same two maps again.
+std::string command_of(const ScoreArguments& a);
 
 /// Creates the folder of --out. Throws InputError when that is not possible.
 void make_folder(const std::string& path);

@@ -3,8 +3,10 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "scoring/room_hypotheses.h"
 #include "scoring/room_picture.h"
 #include "tests/support/scoring_floor_maps.h"
+#include "tests/support/scoring_pairs.h"
 
 /// Rooms found on the public floor maps (RUBBLE_DATA/rooms), plain and furnished, against those drawn by hand.
 /// One table a method: bench/scoring_rooms_bench. With RUBBLE_PICTURES=FOLDER the rooms are drawn as well.
@@ -83,6 +85,38 @@ BENCHMARK(BM_Rooms)
     ->ArgNames({"visibility", "furnished"})
     ->Unit(benchmark::kMillisecond)
     ->Iterations(1);
+
+/// Poses that rooms alone propose for the 84 labelled sensor-map pairs: how often the first one, and any of the list,
+/// is right by the rule of the alignment benchmark made twice as wide, which refinement is meant to close.
+void BM_RoomHypotheses(benchmark::State& state) {
+  const char* data = std::getenv("RUBBLE_DATA");
+  if (data == nullptr) {
+    state.SkipWithError("set RUBBLE_DATA to the folder with the public data");
+    return;
+  }
+  const std::string folder = std::string(data) + "/alignment";
+  const std::vector<LabelledPair> pairs = load_pairs(folder);
+  const std::map<std::string, OccupancyGrid> maps = load_maps(folder, pairs);
+  int first = 0;
+  int any = 0;
+  double count = 0.0;
+  for (auto _ : state) {
+    for (const LabelledPair& pair : pairs) {
+      const auto found = room_hypotheses(maps.at(pair.map_a), maps.at(pair.map_b));
+      const auto right = [&](const RigidHypothesis& h) {
+        return mean_error(pair, h.T_truth_map) <= 2.0 * allowed_error(pair);
+      };
+      first += !found.empty() && right(found.front()) ? 1 : 0;
+      any += std::any_of(found.begin(), found.end(), right) ? 1 : 0;
+      count += static_cast<double>(found.size());
+    }
+  }
+  state.counters["pairs"] = static_cast<double>(pairs.size());
+  state.counters["first_right"] = first;
+  state.counters["any_right"] = any;
+  state.counters["hypotheses"] = count / static_cast<double>(pairs.size());
+}
+BENCHMARK(BM_RoomHypotheses)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 }  // namespace
 }  // namespace rubble::scoring

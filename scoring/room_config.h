@@ -15,6 +15,7 @@ struct RoomConfig {
 
   double clutter_area = 0.45;         ///< obstacles smaller than this [m^2] ...
   double clutter_extent = 1.1;        ///< ... and than this across, that touch no wall, are furniture and taken away
+  double dots_reach = 0.05;           ///< but a row of them, each nearer to the next than twice this, is a dotted wall
   double slit = 0.2;                  ///< holes in walls and gaps behind furniture narrower than this are closed
   double least_area = 1.5;            ///< smaller rooms join the neighbour with the widest passage [m^2]
   double least_isolated = 0.3;        ///< smaller free areas without any passage are no rooms [m^2]

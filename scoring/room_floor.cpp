@@ -15,23 +15,44 @@ cv::Mat free_mask(const OccupancyGrid& map) {
   return mask;
 }
 
-/// Turns islands of obstacles that are small enough to be furniture into floor.
-void clear_clutter(cv::Mat& floor, double resolution, const RoomConfig& config) {
-  const cv::Mat obstacles = floor == 0;
+/// Connected parts of the non-zero cells of a mask.
+struct Parts {
+  explicit Parts(const cv::Mat& mask) {
+    cv::Mat centres;
+    count = cv::connectedComponentsWithStats(mask, labels, stats, centres, 8);
+  }
+  int at(int x, int y) const { return labels.at<int>(y, x); }
+  int area(int part) const { return stats.at<int>(part, cv::CC_STAT_AREA); }
+  int across(int part) const {
+    return std::max(stats.at<int>(part, cv::CC_STAT_WIDTH), stats.at<int>(part, cv::CC_STAT_HEIGHT));
+  }
   cv::Mat labels;
   cv::Mat stats;
-  cv::Mat centres;
-  const int count = cv::connectedComponentsWithStats(obstacles, labels, stats, centres, 8);
-  std::vector<unsigned char> clutter(static_cast<std::size_t>(count), 0);
-  for (int i = 1; i < count; ++i) {
-    const int across = std::max(stats.at<int>(i, cv::CC_STAT_WIDTH), stats.at<int>(i, cv::CC_STAT_HEIGHT));
-    const double area = stats.at<int>(i, cv::CC_STAT_AREA) * resolution * resolution;
-    if (area < config.clutter_area && across * resolution < config.clutter_extent)
-      clutter[static_cast<std::size_t>(i)] = 255;
-  }
+  int count = 0;
+};
+
+/// Turns islands of obstacles that are small enough to be furniture into floor. Small islands in a row, each near the
+/// next, stay: they are the dots of a wall that a noisy sensor drew.
+void clear_clutter(cv::Mat& floor, double resolution, const RoomConfig& config) {
+  const Parts islands(floor == 0);
+  std::vector<unsigned char> is_small(static_cast<std::size_t>(islands.count), 0);
+  for (int i = 1; i < islands.count; ++i)
+    if (islands.area(i) * resolution * resolution < config.clutter_area &&
+        islands.across(i) * resolution < config.clutter_extent)
+      is_small[static_cast<std::size_t>(i)] = 255;
+  cv::Mat small(floor.size(), CV_8U);
   for (int y = 0; y < floor.rows; ++y)
     for (int x = 0; x < floor.cols; ++x)
-      floor.at<unsigned char>(y, x) |= clutter[static_cast<std::size_t>(labels.at<int>(y, x))];
+      small.at<unsigned char>(y, x) = is_small[static_cast<std::size_t>(islands.at(x, y))];
+  const int reach = std::max(1, static_cast<int>(std::lround(config.dots_reach / resolution)));
+  cv::Mat joined;
+  cv::dilate(small, joined, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
+  const Parts rows(joined);
+  for (int y = 0; y < floor.rows; ++y)
+    for (int x = 0; x < floor.cols; ++x)
+      if (small.at<unsigned char>(y, x) != 0 &&
+          (rows.across(rows.at(x, y)) - 2 * reach) * resolution < config.clutter_extent)
+        floor.at<unsigned char>(y, x) = 255;
 }
 
 }  // namespace

@@ -13,6 +13,8 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using PointPairs = std::vector<std::pair<TPoint2D, TPoint2D>>;
 
+constexpr double kOpennessOfPieces = 0.6;  // also cuts corridors where they bend or widen
+
 /// d(f, g) of all pairs of rooms, computed once.
 class Differences {
  public:
@@ -181,6 +183,13 @@ std::vector<RigidHypothesis> room_hypotheses(const std::vector<Room>& map, const
     if (out.size() == config.most) break;
   }
   return out;
+}
+
+std::vector<RigidHypothesis> room_hypotheses(const OccupancyGrid& map, const OccupancyGrid& truth,
+                                             const RoomMatchConfig& config) {
+  RoomConfig pieces;
+  pieces.openness = kOpennessOfPieces;
+  return room_hypotheses(extract_rooms(map, pieces).rooms, extract_rooms(truth, pieces).rooms, config);
 }
 
 }  // namespace rubble::scoring

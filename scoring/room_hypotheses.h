@@ -17,9 +17,9 @@ struct RigidHypothesis {
 };
 
 struct RoomMatchConfig {
-  double distance_tolerance = 0.5;  ///< two rooms of one map are as far apart as in the other, to this [m]
+  double distance_tolerance = 1.5;  ///< two rooms of one map are as far apart as in the other, to this [m]
   double least_baseline = 2.0;      ///< rooms nearer to each other do not fix a rotation [m]
-  double most_difference = 1.0;     ///< rooms that differ by more are never a pair: d(f, g) of eq. (7)
+  double most_difference = 2.0;     ///< rooms that differ by more are never a pair: d(f, g) of eq. (7)
   double lambda = 1.0;              ///< of eq. (7) [m^2]
   double cap = 2.0;                 ///< C: cost of a room without partner [m^2]
   std::size_t examined = 200;       ///< of all pairs of rooms, those that get the optimal association
@@ -41,6 +41,10 @@ RigidHypothesis match_rooms(const std::vector<Room>& map, const std::vector<Room
 /// Poses that lay two rooms of the map on two similar rooms of the truth, all such pairs tried, refitted to every room
 /// that then has a partner; best first. Needs two rooms in either map, else none.
 std::vector<RigidHypothesis> room_hypotheses(const std::vector<Room>& map, const std::vector<Room>& truth,
+                                             const RoomMatchConfig& config = {});
+
+/// The same from the maps themselves, cut into smaller pieces than rooms, which partial maps share more often.
+std::vector<RigidHypothesis> room_hypotheses(const OccupancyGrid& map, const OccupancyGrid& truth,
                                              const RoomMatchConfig& config = {});
 
 }  // namespace rubble::scoring

@@ -81,6 +81,26 @@ std::vector<cv::Point> core_of(const std::vector<cv::Point>& room, const cv::Rec
   return core.size() < kLeastHull ? room : core;
 }
 
+/// Takes away the niches that reach too deep into the wall, or not deep enough.
+void check_depth(const cv::Mat& room, const cv::Mat& parts, const cv::Mat& stats, double resolution,
+                 const RoomConfig& config, std::vector<unsigned char>& niche) {
+  const int margin = static_cast<int>(std::ceil(config.niche_depth / resolution)) + 1;
+  const cv::Rect whole(0, 0, parts.cols, parts.rows);
+  for (int part = 1; part < static_cast<int>(niche.size()); ++part) {
+    if (niche[static_cast<std::size_t>(part)] == 0) continue;
+    const cv::Rect box(stats.at<int>(part, cv::CC_STAT_LEFT) - margin, stats.at<int>(part, cv::CC_STAT_TOP) - margin,
+                       stats.at<int>(part, cv::CC_STAT_WIDTH) + 2 * margin,
+                       stats.at<int>(part, cv::CC_STAT_HEIGHT) + 2 * margin);
+    const cv::Rect around = box & whole;
+    cv::Mat distance;
+    cv::distanceTransform(room(around) == 0, distance, cv::DIST_L2, cv::DIST_MASK_3);
+    double deepest = 0.0;
+    cv::minMaxLoc(distance, nullptr, &deepest, nullptr, nullptr, parts(around) == part);
+    const double depth = deepest * resolution;
+    niche[static_cast<std::size_t>(part)] = depth > config.niche_least && depth < config.niche_depth;
+  }
+}
+
 /// Obstacles inside the hull of a room that count as its furniture, as a mask over `box`.
 cv::Mat niches_of(const RoomRegions& regions, const RoomFloor& floor, int room, const std::vector<cv::Point>& hull,
                   const cv::Rect& box, const RoomConfig& config) {
@@ -91,26 +111,22 @@ cv::Mat niches_of(const RoomRegions& regions, const RoomFloor& floor, int room, 
   const cv::Mat labels = regions.labels(box);
   pockets.setTo(0, labels != 0);
   pockets.setTo(0, floor.free(box));
-  cv::Mat distance;
-  cv::distanceTransform(labels != room, distance, cv::DIST_L2, cv::DIST_MASK_3);
   cv::Mat parts;
   cv::Mat stats;
   cv::Mat centres;
   const int count = cv::connectedComponentsWithStats(pockets, parts, stats, centres, 4);
-  std::vector<double> depth(static_cast<std::size_t>(count), 0.0);
+  // Parts of the right size first: few are left for the distances.
+  std::vector<unsigned char> niche(static_cast<std::size_t>(count), 0);
+  bool any = false;
+  for (int part = 1; part < count; ++part) {
+    const double area = stats.at<int>(part, cv::CC_STAT_AREA) * floor.resolution * floor.resolution;
+    niche[static_cast<std::size_t>(part)] = area < config.niche_area && area > config.niche_least * config.niche_least;
+    any = any || niche[static_cast<std::size_t>(part)] != 0;
+  }
+  if (any) check_depth(labels == room, parts, stats, floor.resolution, config, niche);
   for (int y = 0; y < parts.rows; ++y)
-    for (int x = 0; x < parts.cols; ++x) {
-      double& deepest = depth[static_cast<std::size_t>(parts.at<int>(y, x))];
-      deepest = std::max(deepest, distance.at<float>(y, x) * floor.resolution);
-    }
-  for (int y = 0; y < parts.rows; ++y)
-    for (int x = 0; x < parts.cols; ++x) {
-      const int part = parts.at<int>(y, x);
-      const double area = stats.at<int>(part, cv::CC_STAT_AREA) * floor.resolution * floor.resolution;
-      const double deep = depth[static_cast<std::size_t>(part)];
-      if (area >= config.niche_area || deep <= config.niche_least || deep >= config.niche_depth)
-        pockets.at<unsigned char>(y, x) = 0;
-    }
+    for (int x = 0; x < parts.cols; ++x)
+      if (niche[static_cast<std::size_t>(parts.at<int>(y, x))] == 0) pockets.at<unsigned char>(y, x) = 0;
   return pockets;
 }
 

@@ -59,6 +59,18 @@ TEST(Rooms, HolesInWallsAndClutterChangeNothing) {
   }
 }
 
+TEST(Rooms, RaggedWallsOfASensorMapStillSeparateRooms) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE(seed);
+    PlanSpec spec;
+    spec.seed = seed;
+    spec.table_legs = 5;
+    Plan plan = floor_plan(spec);
+    plan.grid = ragged(plan.grid, 2, seed);
+    EXPECT_GT(compare(extract_rooms(plan.grid), plan).iou, 0.85);
+  }
+}
+
 TEST(Rooms, VisibilityClustersFindTheRoomsOfAGeneratedPlan) {
   RoomConfig config;
   config.method = RoomMethod::Visibility;
