@@ -96,6 +96,9 @@ void set_bounds(Arena& arena);
 /// Paper balls and loose objects are not in it: they move. Sheets are too thin to see.
 std::vector<Face> faces(const Arena& arena);
 
+/// Adds the sides and the top (and, where light gets below, the bottom) of an upright prism.
+void add_prism(const Outline& outline, double bottom, double top, std::vector<Face>& faces, bool with_bottom = false);
+
 /// Height of the floor at p [m]; -inf where there is none.
 double floor_height(const Arena& arena, const mrpt::math::TPoint2D& p);
 

@@ -41,30 +41,32 @@ bool shows_bottom(const PatchIndex& floor, const Solid& solid) {
   return solid.z_bottom > lowest + 1e-3;
 }
 
-void add_faces(const Solid& solid, bool with_bottom, std::vector<Face>& faces) {
-  Face top;
-  Face bottom;
-  for (std::size_t i = 0; i < solid.outline.size(); ++i) {
-    const TPoint2D& a = solid.outline[i];
-    const TPoint2D& b = solid.outline[(i + 1) % solid.outline.size()];
-    faces.push_back({{lift(a, solid.z_bottom), lift(b, solid.z_bottom), lift(b, solid.z_top), lift(a, solid.z_top)}});
-    top.vertices.push_back(lift(a, solid.z_top));
-    bottom.vertices.push_back(lift(a, solid.z_bottom));
-  }
-  faces.push_back(top);
-  if (!with_bottom) return;
-  std::reverse(bottom.vertices.begin(), bottom.vertices.end());  // seen from below
-  faces.push_back(bottom);
-}
-
 }  // namespace
+
+void add_prism(const Outline& outline, double bottom, double top, std::vector<Face>& faces, bool with_bottom) {
+  Face lid;
+  Face base;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const TPoint2D& a = outline[i];
+    const TPoint2D& b = outline[(i + 1) % outline.size()];
+    faces.push_back({{lift(a, bottom), lift(b, bottom), lift(b, top), lift(a, top)}});
+    lid.vertices.push_back(lift(a, top));
+    base.vertices.push_back(lift(a, bottom));
+  }
+  faces.push_back(lid);
+  if (!with_bottom) return;
+  std::reverse(base.vertices.begin(), base.vertices.end());  // seen from below
+  faces.push_back(base);
+}
 
 std::vector<Face> faces(const Arena& arena) {
   std::vector<Face> result;
   for (const FloorPatch& patch : arena.floor) result.push_back(face_of(patch));
   for (const Riser& riser : risers(arena)) result.push_back(face_of(riser));
   const PatchIndex floor(arena);
-  for (const Solid& solid : arena.solids) add_faces(solid, shows_bottom(floor, solid), result);
+  for (const Solid& solid : arena.solids) {
+    add_prism(solid.outline, solid.z_bottom, solid.z_top, result, shows_bottom(floor, solid));
+  }
   return result;
 }
 
