@@ -7,6 +7,7 @@
 #include "arenas/generate.h"
 #include "arenas/render.h"
 #include "arenas/truth_map.h"
+#include "arenas/visible.h"
 #include "base/error.h"
 #include "base/geotiff.h"
 #include "scenarios/league_map.h"
@@ -38,8 +39,10 @@ int arena(const ArenaArguments& arguments) {
     std::printf("%s.yaml\n", base.c_str());
   }
   scenarios::write_png(base + ".png", arenas::render(arena, 60.0));
-  write_geotiff(base + "-truth.tif", scenarios::draw_truth(arenas::truth_map(arena, arguments.resolution)));
-  std::printf("%s.png\n%s-truth.tif\n", base.c_str(), base.c_str());
+  const OccupancyGrid truth = arenas::truth_map(arena, arguments.resolution);
+  write_geotiff(base + "-truth.tif", scenarios::draw_truth(truth));
+  write_geotiff(base + "-visible.tif", scenarios::draw_truth(arenas::visible_truth(arena, truth)));
+  std::printf("%s.png\n%s-truth.tif\n%s-visible.tif\n", base.c_str(), base.c_str(), base.c_str());
   return kOk;
 }
 

@@ -110,6 +110,10 @@ void check(const Arena& arena, const std::string& source, double start_clearance
 /// What check() finds wrong with the parts (first trouble, one line without a place), or nothing.
 std::optional<std::string> parts_trouble(const Arena& arena);
 
+/// What it finds wrong with one ball or object among the arena's floors and solids, or nothing.
+std::optional<std::string> ball_trouble(const Arena& arena, const PaperBall& ball);
+std::optional<std::string> object_trouble(const Arena& arena, const LooseObject& object);
+
 /// What check() finds wrong with the start pose alone, or nothing.
 std::optional<std::string> start_trouble(const Arena& arena, double start_clearance = 0.36);
 

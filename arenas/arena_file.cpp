@@ -1,5 +1,6 @@
 #include "arenas/arena_file.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "arenas/elements.h"
@@ -50,7 +51,8 @@ void read_walls(const YamlMap& root, const Plan& plan, Arena& arena) {
   for (const YamlMap& entry : root.maps("walls")) {
     const TPoint2D from = point(entry, "from_m");
     const TPoint2D to = point(entry, "to_m");
-    if (!(std::hypot(to.x - from.x, to.y - from.y) > 1e-3)) entry.fail("to_m", "the wall has no length");
+    if (!(std::hypot(to.x - from.x, to.y - from.y) > 1e-3))
+      entry.fail("to_m", "the wall has no length: give two different points");
     const double bottom = entry.number("bottom_m", 0.0, -10.0, 10.0);
     const double height = entry.number("height_m", plan.wall_height(), 0.01, 10.0);
     const double thickness = entry.number("thickness_m", plan.wall_thickness(), 0.005, 1.0);
@@ -106,7 +108,10 @@ void read_balls(const YamlMap& root, Plan& plan, Arena& arena) {
     // Crumpled paper fills space with dimension 2.5 (Gomes 1987), so mass grows with radius^2.5; 30 g at 0.12 m.
     const double relative = radius / 0.12;
     const double mass = entry.number("mass_kg", 0.03 * relative * relative * std::sqrt(relative), 0.001, 10.0);
-    for (const TPoint2D& p : plan.places(entry)) arena.balls.push_back({p, radius, mass});
+    for (const TPoint2D& p : plan.places(entry)) {
+      arena.balls.push_back({p, radius, mass});
+      if (const auto trouble = ball_trouble(arena, arena.balls.back())) entry.fail("", *trouble);
+    }
   }
 }
 
@@ -122,6 +127,7 @@ void read_objects(const YamlMap& root, Plan& plan, Arena& arena) {
     for (const TPoint2D& p : plan.places(entry)) {
       object.position = p;
       arena.objects.push_back(object);
+      if (const auto trouble = object_trouble(arena, object)) entry.fail("", *trouble);
     }
   }
 }
@@ -151,6 +157,10 @@ void read_victims(const YamlMap& root, Plan& plan, Arena& arena) {
     TPoint2D p = plan.place(entry);
     Victim victim;
     victim.name = entry.text("name", std::nullopt);
+    if (std::any_of(arena.victims.begin(), arena.victims.end(),
+                    [&](const Victim& v) { return v.name == victim.name; })) {
+      entry.fail("name", "two victims are named '" + victim.name + "': rename one");
+    }
     if (entry.has("wall")) {
       const std::string side = entry.choice("wall", std::nullopt, {"north", "east", "south", "west"});
       const double back = 0.5 * (plan.cell_size() - plan.wall_thickness() - size);

@@ -70,32 +70,14 @@ Trouble paper_trouble(const Arena& arena) {
     if (!(sheet.friction >= 0.0 && sheet.friction <= 2.0)) return "friction of a paper sheet must be 0 to 2";
   }
   for (const PaperBall& ball : arena.balls) {
-    if (!(ball.radius > 0.0 && ball.radius <= 1.0)) return "radius of a paper ball must be above 0, up to 1 m";
-    if (!(ball.mass > 0.0 && ball.mass <= 10.0)) return "mass of a paper ball must be above 0, up to 10 kg";
-    if (!std::isfinite(floor_height(arena, ball.position))) {
-      return "paper ball at " + place(ball.position) + " lies off the floor: move it onto a pallet";
-    }
-    for (const Solid& solid : arena.solids) {
-      if (distance(solid.outline, ball.position) == 0.0) {
-        return "paper ball at " + place(ball.position) + " lies in a solid '" + solid.element + "': move it";
-      }
-    }
+    if (const Trouble t = ball_trouble(arena, ball)) return t;
   }
   return std::nullopt;
 }
 
 Trouble objects_trouble(const Arena& arena) {
   for (const LooseObject& object : arena.objects) {
-    const std::string what = "object '" + object.element + "' at " + place(object.position);
-    if (!(object.radius > 0.0 && object.height > 0.0 && object.mass > 0.0)) {
-      return what + " needs a radius, a height and a mass above 0";
-    }
-    if (!std::isfinite(floor_height(arena, object.position))) return what + " is off the floor: move it onto a pallet";
-    for (const Solid& solid : arena.solids) {
-      if (distance(solid.outline, object.position) == 0.0 && solid.z_bottom < object.height) {
-        return what + " is in a solid '" + solid.element + "': move it";
-      }
-    }
+    if (const Trouble t = object_trouble(arena, object)) return t;
   }
   return std::nullopt;
 }
@@ -143,6 +125,34 @@ Trouble start_floor_trouble(const Arena& arena, const TPoint2D& start, double cl
 }
 
 }  // namespace
+
+std::optional<std::string> ball_trouble(const Arena& arena, const PaperBall& ball) {
+  if (!(ball.radius > 0.0 && ball.radius <= 1.0)) return "radius of a paper ball must be above 0, up to 1 m";
+  if (!(ball.mass > 0.0 && ball.mass <= 10.0)) return "mass of a paper ball must be above 0, up to 10 kg";
+  if (!std::isfinite(floor_height(arena, ball.position))) {
+    return "paper ball at " + place(ball.position) + " lies off the floor: move it onto a pallet";
+  }
+  for (const Solid& solid : arena.solids) {
+    if (distance(solid.outline, ball.position) == 0.0) {
+      return "paper ball at " + place(ball.position) + " lies in a solid '" + solid.element + "': move it";
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> object_trouble(const Arena& arena, const LooseObject& object) {
+  const std::string what = "object '" + object.element + "' at " + place(object.position);
+  if (!(object.radius > 0.0 && object.height > 0.0 && object.mass > 0.0)) {
+    return what + " needs a radius, a height and a mass above 0";
+  }
+  if (!std::isfinite(floor_height(arena, object.position))) return what + " is off the floor: move it onto a pallet";
+  for (const Solid& solid : arena.solids) {
+    if (distance(solid.outline, object.position) == 0.0 && solid.z_bottom < object.height) {
+      return what + " is in a solid '" + solid.element + "': move it";
+    }
+  }
+  return std::nullopt;
+}
 
 std::optional<std::string> parts_trouble(const Arena& arena) {
   if (!(arena.cell_size >= 0.1 && arena.cell_size <= 10.0)) return "cell_m must be 0.1 to 10";

@@ -117,6 +117,14 @@ std::vector<RoughPallet> lay_rough(const std::string& kind, const Relief& relief
   if (kind == "yellow") return laid;
   Site site(relief, start, maze);
   const auto wanted = static_cast<std::size_t>(std::llround(share * static_cast<double>(relief.frame().size())));
+  // Towers need the most room, so they come first: a third of the red obstacles.
+  for (int proposal = 0; kind == "red" && proposal < 400 && 3 * (laid.size() + 2) <= wanted + 3; ++proposal) {
+    const int x = static_cast<int>(rng.below(static_cast<std::uint32_t>(relief.width())));
+    const int y = static_cast<int>(rng.below(static_cast<std::uint32_t>(relief.height())));
+    const int turn = static_cast<int>(rng.below(4));
+    const int which = static_cast<int>(rng.below(3));
+    lay_tower(which, {x, y}, turn, site, laid);
+  }
   constexpr int kPatience = 1500;  // proposals refused in a row
   for (int refused = 0; laid.size() < wanted && refused < kPatience; ++refused) {
     const int x = static_cast<int>(rng.below(static_cast<std::uint32_t>(relief.width())));

@@ -6,6 +6,7 @@
 
 #include "arenas/geometry.h"
 #include "arenas/patch_index.h"
+#include "arenas/raster.h"
 #include "arenas/risers.h"
 
 namespace rubble::arenas {
@@ -13,8 +14,7 @@ namespace {
 
 using mrpt::math::TPoint2D;
 
-constexpr double kThin = 1e-4;   ///< thickness given to a riser [m]
-constexpr double kTouch = 1e-6;  ///< a solid that ends at a cell's edge is not in that cell; well below kThin [m]
+constexpr double kThin = 1e-4;  ///< thickness given to a riser, well above kRasterTouch [m]
 
 /// Cell centres lie on multiples of the resolution, so that a wall on a pallet line is one cell thick.
 GridFrame frame_around(const Arena& arena, double resolution, double margin) {
@@ -24,31 +24,6 @@ GridFrame frame_around(const Arena& arena, double resolution, double margin) {
   const double north = std::ceil((arena.max_corner.y + margin) / resolution) + 0.5;
   return {static_cast<int>(std::lround(east - west)), static_cast<int>(std::lround(north - south)), resolution,
           west * resolution, south * resolution};
-}
-
-/// Calls visit(cell) for each cell whose centre cross (the two lines from edge middle to edge middle) the convex
-/// outline meets. A walk between neighbouring cell centres follows such crosses, so no walk over cells that are not
-/// visited gets through the outline, however thin it is, and no cell is visited without need. Cohen-Or and Kaufman
-/// 1995, "Fundamentals of surface voxelization": the 4-separating cover.
-template <class Visit>
-void for_cells_crossed(const GridFrame& frame, const Outline& outline, const Visit& visit) {
-  TPoint2D low = outline[0];
-  TPoint2D high = outline[0];
-  for (const TPoint2D& p : outline) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-  const Cell first = frame.cell(low);
-  const Cell last = frame.cell(high);
-  const double half = 0.5 * frame.resolution - kTouch;
-  for (int y = std::max(first.y, 0); y <= std::min(last.y, frame.height - 1); ++y) {
-    for (int x = std::max(first.x, 0); x <= std::min(last.x, frame.width - 1); ++x) {
-      const TPoint2D c = frame.centre({x, y});
-      if (clip(outline, {c.x - half, c.y}, {c.x + half, c.y}) || clip(outline, {c.x, c.y - half}, {c.x, c.y + half})) {
-        visit(Cell{x, y});
-      }
-    }
-  }
 }
 
 /// Whether a level laser that stands somewhere in the cell meets the solid. Under a wall between two pallets both

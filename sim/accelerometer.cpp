@@ -60,7 +60,11 @@ Vector3d Accelerometer::specific_force(const WorldState& state, double dt) {
 void Accelerometer::step(const WorldState& state, double dt) {
   const bool first = history_ == 0;
   const Vector3d force = specific_force(state, dt);
-  const double blend = first ? 1.0 : 1.0 - std::exp(-2.0 * kPi * parameters_.bandwidth_hz * dt);
+  if (dt != dt_) {
+    dt_ = dt;
+    blend_ = 1.0 - std::exp(-2.0 * kPi * parameters_.bandwidth_hz * dt);
+  }
+  const double blend = first ? 1.0 : blend_;
   // A single pole's noise bandwidth is 1.57 times its corner.
   const double sigma = noise_ * parameters_.noise_density * std::sqrt(1.57 * parameters_.bandwidth_hz);
   for (std::size_t i = 0; i < 2; ++i) {

@@ -54,6 +54,8 @@ class Accelerometer {
   Rng rng_;
   Axis axes_[2];
   std::int64_t t2_ = 0;       ///< period summed [ticks]
+  double dt_ = 0.0;           ///< of the last step [s]
+  double blend_ = 0.0;        ///< how far the low pass goes in it
   int history_ = 0;           ///< states seen, up to 2
   Eigen::Vector3d lever_[2];  ///< base to sensor in world axes at the last two states [m]
   double height_[2] = {};     ///< of the base [m]

@@ -33,6 +33,9 @@ class Servo {
   double angle() const { return horn_; }
 
  private:
+  double target() const;
+  bool is_settled() const;
+
   ServoParameters parameters_;
   double commanded_ = 0.0;
   double latched_ = 0.0;

@@ -196,5 +196,32 @@ TEST(Laser, WithoutSweepTheWholeScanIsTakenAtItsStamp) {
   EXPECT_LT(worst, 0.004);
 }
 
+/// A tunnel's ceiling 0.60 m up: level beams pass below it, a laser that looks up by `tilt` meets it at
+/// (0.60 - 0.35) / sin(tilt), and one that stands higher than the ceiling meets its edge.
+TEST(Laser, ATunnelsCeilingIsSeenOnlyWhenTheLaserLooksUpOrStandsHigher) {
+  arenas::Arena arena = flat_floor(-5, -5, 5, 5);
+  arena.solids.push_back({rectangle(0.4, -0.6, 1.6, 0.6), 0.60, 0.62, "tunnel"});
+  const robot::RobotModel model;
+  const RayWalk walk(arenas::faces(arena));
+  const ScanFaces faces(arenas::faces(arena));
+  PlaneCast plane(faces);
+  const BeamTable table(model.laser);
+  const auto ahead = [&](double tilt, double floor) {
+    WorldState state;
+    state.stance.z = floor;
+    state.aim.pitch = tilt;
+    std::vector<float> ranges;
+    plane.cast(laser_placement(state, model), table, 4.0, {}, ranges);
+    return static_cast<double>(ranges[340]);
+  };
+  EXPECT_TRUE(std::isinf(ahead(0.0, 0.0)));
+  for (const double tilt_deg : {12.0, 20.0, 30.0}) {
+    const double tilt = deg_to_rad(tilt_deg);
+    EXPECT_NEAR(ahead(tilt, 0.0), 0.25 / std::sin(tilt), 1e-4) << tilt_deg;
+  }
+  EXPECT_NEAR(ahead(0.0, 0.26), 0.4 - 0.145, 1e-4);  // at 0.61 m: the board's edge
+  EXPECT_TRUE(std::isinf(ahead(0.0, 0.30)));         // above it
+}
+
 }  // namespace
 }  // namespace rubble::sim::test
