@@ -98,8 +98,9 @@ class Aligner {
       highest = h.quality;
       out.T_runner_up = h.T_best;
     }
-    const Rivals& mirrored = of_mirrored();
     out.runner_up = relative(others, best.tight, out.log_odds);
+    if (beyond_doubt(best.tight, others)) return others;
+    const Rivals& mirrored = of_mirrored();
     out.mirrored = relative(mirrored, best.tight, out.log_odds);
     return {std::max(others.log_odds, mirrored.log_odds), std::max(others.tight, mirrored.tight)};
   }

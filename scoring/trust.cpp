@@ -6,10 +6,13 @@ namespace rubble::scoring {
 namespace {
 
 // Where the maps agree to the decimetre.
-constexpr double kAhead = 1.2;         // times the tight agreement of the best rival: trusted
-constexpr double kUnexplained = 1.65;  // or the rival leaves so many times as much wall unexplained
-constexpr double kLeastEach = 0.25;    // kappa that the walls of either map must reach
-constexpr double kFloor = 0.02;        // of what is left unexplained: less says nothing
+constexpr double kAhead = 1.2;             // times the tight agreement of the best rival: trusted
+constexpr double kUnexplained = 1.65;      // or the rival leaves so many times as much wall unexplained
+constexpr double kLeastEach = 0.25;        // kappa that the walls of either map must reach
+constexpr double kFloor = 0.02;            // of what is left unexplained: less says nothing
+constexpr double kClearKappa = 0.8;        // of both maps' walls, ...
+constexpr double kClearKnown = 0.8;        // ... which must nearly all lie in the other map, ...
+constexpr double kClearUnexplained = 3.5;  // ... and every other pose must leave so many times as much unexplained
 // Where they agree only loosely.
 constexpr double kLeastLogOdds = -1.2;
 constexpr double kLeastMargin = 0.75;  // of the log odds over those of the best rival
@@ -59,6 +62,14 @@ double log_odds(const PoseEvidence& wide, const PoseEvidence& tight) {
 void Rivals::meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence) {
   log_odds = std::max(log_odds, scoring::log_odds(wide, tight_evidence));
   tight = std::max(tight, tight_agreement(tight_evidence));
+}
+
+bool beyond_doubt(const PoseEvidence& tight, const Rivals& other_poses) {
+  const double all = known_share(tight);
+  const double left = std::max(all - tight_agreement(tight), kFloor);
+  return std::min(tight.map.kappa(), tight.truth.kappa()) >= kClearKappa &&
+         std::min(tight.map.known, tight.truth.known) >= kClearKnown &&
+         all - other_poses.tight >= kClearUnexplained * left;
 }
 
 Trust judge(const PoseEvidence& wide, const PoseEvidence& tight, const Rivals& rivals) {
