@@ -7,6 +7,7 @@
 #include "scoring/overlap.h"
 #include "scoring/psi.h"
 #include "scoring/resample.h"
+#include "scoring/trust.h"
 #include "scoring/warp_fit.h"
 
 namespace rubble::scoring {
@@ -104,7 +105,9 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
   out.mirrored = alignment.mirrored;
   if (!out.aligned) {
     fill_psi(out, psi_of_strangers(config.colour_absent_cap));
-    out.scale_hint = alignment.source.empty() ? 0.0 : agreeing_scale(map_known, truth_known, config.alignment);
+    // Walls that do meet, only at too many poses, are of the right scale.
+    if (!alignment.source.empty() && tight_agreement(alignment.tight_evidence) < kTightEnough)
+      out.scale_hint = agreeing_scale(map_known, truth_known, config.alignment);
     if (out.scale_hint > 0.0) out.note = scale_note(out.scale_hint, map.resolution());
     return out;
   }
