@@ -36,6 +36,8 @@ struct ScoreArguments {
   std::string truth;
   std::optional<double> map_resolution;
   std::optional<double> truth_resolution;
+  std::string align = "auto";
+  bool warp = false;
   double tau = 0.5;
   std::string out;
   bool json = false;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/score_parts.h"
 #include "app/score_tools.h"
 #include "base/angle.h"
 #include "base/error.h"
@@ -25,6 +26,7 @@ void print_table(const scoring::MapScore& s, const scoring::LoadedMap& map, cons
   if (s.aligned) {
     std::printf("%-26s turned %.2f deg, moved %.3f m, %.3f m\n", "aligned", rad_to_deg(s.T_truth_map.phi),
                 s.T_truth_map.x, s.T_truth_map.y);
+    std::printf("%-26s %s\n", "proposed by", s.source.c_str());
     row("runner-up pose", "%.3f of the best", s.runner_up);
     row("known", "%.1f %%", 100.0 * s.known);
     row("psi", "%.3f m", s.psi_m);
@@ -32,28 +34,31 @@ void print_table(const scoring::MapScore& s, const scoring::LoadedMap& map, cons
     row("recall", "%.3f", s.recall);
   }
   row("score", "%.3f", s.score);
+  print_parts(s);
 }
 
 nlohmann::ordered_json as_json(const scoring::MapScore& s, const scoring::LoadedMap& map,
                                const scoring::LoadedMap& truth) {
-  return {{"score", s.score},
-          {"precision", s.precision},
-          {"recall", s.recall},
-          {"psi_m", s.psi_m},
-          {"aligned", s.aligned},
-          {"known", s.known},
-          {"psi_literal_m", s.psi_literal_m},
-          {"psi_occupied_map_m", s.psi_occupied_map_m},
-          {"psi_occupied_truth_m", s.psi_occupied_truth_m},
-          {"psi_free_map_m", s.psi_free_map_m},
-          {"psi_free_truth_m", s.psi_free_truth_m},
-          {"align_x_m", s.T_truth_map.x},
-          {"align_y_m", s.T_truth_map.y},
-          {"align_rad", s.T_truth_map.phi},
-          {"align_runner_up", s.runner_up},
-          {"align_note", s.note},
-          {"map", map.recognised},
-          {"truth", truth.recognised}};
+  nlohmann::ordered_json json = {{"score", s.score},
+                                 {"precision", s.precision},
+                                 {"recall", s.recall},
+                                 {"psi_m", s.psi_m},
+                                 {"aligned", s.aligned},
+                                 {"known", s.known},
+                                 {"psi_literal_m", s.psi_literal_m},
+                                 {"psi_occupied_map_m", s.psi_occupied_map_m},
+                                 {"psi_occupied_truth_m", s.psi_occupied_truth_m},
+                                 {"psi_free_map_m", s.psi_free_map_m},
+                                 {"psi_free_truth_m", s.psi_free_truth_m},
+                                 {"align_x_m", s.T_truth_map.x},
+                                 {"align_y_m", s.T_truth_map.y},
+                                 {"align_rad", s.T_truth_map.phi},
+                                 {"align_runner_up", s.runner_up},
+                                 {"align_note", s.note},
+                                 {"map", map.recognised},
+                                 {"truth", truth.recognised}};
+  add_parts(json, s);
+  return json;
 }
 
 }  // namespace
@@ -70,6 +75,8 @@ int score(const ScoreArguments& arguments) {
   const scoring::LoadedMap map = scoring::load_map(arguments.map, {arguments.map_resolution});
   const scoring::LoadedMap truth = scoring::load_map(arguments.truth, {arguments.truth_resolution});
   scoring::ScoreConfig config;
+  config.alignment = parse_align(arguments.align);
+  config.warp = arguments.warp;
   config.tau = arguments.tau;
   const OccupancyGrid grid = pose ? scoring::scaled_frame(map.grid, pose->scale) : map.grid;
   const scoring::MapScore result = pose ? scoring::score_at(grid, truth.grid, pose->T_truth_map, config)

@@ -38,16 +38,6 @@ TPose2D fit_to_the_whole(const Hypothesis& best, const std::vector<Hypothesis>& 
   return match.halfway(pick, match.nearest_rigid(bent, 0.4));
 }
 
-/// What the walls propose always takes part, as rivals of what others propose.
-std::vector<PoseGuess> propose(const OccupancyGrid& map, const OccupancyGrid& truth, AlignBy by,
-                               const AlignmentConfig& config) {
-  std::vector<PoseGuess> out = correlate(map, truth, config.correlation);
-  const auto add = [&](const std::vector<PoseGuess>& more) { out.insert(out.end(), more.begin(), more.end()); };
-  if (by == AlignBy::Features || by == AlignBy::Auto) add(propose_by_features(map, truth, config.feature_kind));
-  if ((by == AlignBy::Rooms || by == AlignBy::Auto) && config.rooms) add(config.rooms(map, truth));
-  return out;
-}
-
 bool may_win(const Hypothesis& h, AlignBy by) {
   if (by == AlignBy::Features) return h.source.find("features") != std::string::npos;
   if (by == AlignBy::Rooms) return h.source.find("rooms") != std::string::npos;
@@ -64,7 +54,7 @@ class Aligner {
 
   Alignment by(AlignBy method) {
     Alignment out;
-    const std::vector<Hypothesis> hypotheses = examine(propose(map_, truth_, method, config_), match_, config_.search);
+    const std::vector<Hypothesis> hypotheses = examine(proposals(method), match_, config_.search);
     const auto best =
         std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) { return may_win(h, method); });
     if (best == hypotheses.end()) {
@@ -82,6 +72,17 @@ class Aligner {
   }
 
  private:
+  /// What the walls propose always takes part, as rivals of what others propose.
+  std::vector<PoseGuess> proposals(AlignBy method) {
+    if (!by_walls_) by_walls_ = correlate(map_, truth_, config_.correlation);
+    std::vector<PoseGuess> out = *by_walls_;
+    const auto add = [&](const std::vector<PoseGuess>& more) { out.insert(out.end(), more.begin(), more.end()); };
+    if (method == AlignBy::Features || method == AlignBy::Auto)
+      add(propose_by_features(map_, truth_, config_.feature_kind));
+    if ((method == AlignBy::Rooms || method == AlignBy::Auto) && config_.rooms) add(config_.rooms(map_, truth_));
+    return out;
+  }
+
   /// Fills in the contest and returns the rivals.
   Rivals describe(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses, Alignment& out) {
     out.source = best.source;
@@ -98,8 +99,9 @@ class Aligner {
       highest = h.quality;
       out.T_runner_up = h.T_best;
     }
-    const Rivals& mirrored = of_mirrored();
     out.runner_up = relative(others, best.tight, out.log_odds);
+    if (beyond_doubt(best.tight, others)) return others;
+    const Rivals& mirrored = of_mirrored();
     out.mirrored = relative(mirrored, best.tight, out.log_odds);
     return {std::max(others.log_odds, mirrored.log_odds), std::max(others.tight, mirrored.tight)};
   }
@@ -127,6 +129,7 @@ class Aligner {
   const OccupancyGrid& truth_;
   const AlignmentConfig& config_;
   WallMatch match_;
+  std::optional<std::vector<PoseGuess>> by_walls_;
   std::optional<Rivals> mirrored_;
 };
 
@@ -141,7 +144,8 @@ Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const Alig
   }
   if (config.by != AlignBy::Auto) return aligner.by(config.by);
   const Alignment walls = aligner.by(AlignBy::Walls);
-  if (walls.aligned) return walls;
+  // Walls that agree to the decimetre at several poses leave a doubt that no other proposal resolves.
+  if (walls.aligned || tight_agreement(walls.tight_evidence) >= kTightEnough) return walls;
   const Alignment all = aligner.by(AlignBy::Auto);
   return all.aligned || all.log_odds > walls.log_odds ? all : walls;
 }

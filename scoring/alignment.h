@@ -33,7 +33,7 @@ struct Alignment {
   double log_odds = 0.0;            ///< of the best pose being right
   double runner_up = 0.0;           ///< how near the best clearly different pose comes to the best, 0..1 (1: as good)
   mrpt::math::TPose2D T_runner_up;  ///< that pose
-  double mirrored = 0.0;            ///< how near the mirrored map comes, which cannot be right, 0..1
+  double mirrored = 0.0;  ///< how near the mirrored map comes, which cannot be right, 0..1; 0 where it was not asked
   PoseEvidence wide_evidence;
   PoseEvidence tight_evidence;
 };

@@ -10,13 +10,6 @@
 namespace rubble::scoring {
 namespace {
 
-double kernel(double distance, double tau) { return std::clamp(1.0 - distance / tau, 0.0, 1.0); }
-
-/// From a point to the nearest wall cell, not to its centre: what lies on a wall cell is on the wall.
-double to_wall(const WallField& field, const mrpt::math::TPoint2D& p, double half_cell) {
-  return std::max(0.0, field.distance(p) - half_cell);
-}
-
 bool known(const OccupancyGrid& grid, const mrpt::math::TPoint2D& p) {
   const Cell c = grid.cell(p);
   return grid.inside(c) && grid[c] != Occupancy::Unknown;
@@ -44,33 +37,78 @@ double wall_half_thickness(const OccupancyGrid& grid) {
   return grid.resolution() * static_cast<double>(area) / boundary;
 }
 
-Overlap overlap(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map,
-                double tau) {
-  Overlap out;
-  const double excess = wall_half_thickness(map) - wall_half_thickness(truth);
-  const double map_excess = std::max(0.0, excess);
-  const double truth_excess = std::max(0.0, -excess);
-  const WallField to_truth(truth, tau + truth.resolution());
-  const WallField to_map(map, tau + map.resolution());
+WallOverlap::Side::Side(const OccupancyGrid& source, double tau)
+    : grid(&source),
+      field(source, tau + source.resolution()),
+      walls(wall_points(source)),
+      half_thickness(wall_half_thickness(source)) {
+  const double area = source.resolution() * source.resolution();
+  cell_length = half_thickness > 0.0 ? area / (2.0 * half_thickness) : 0.0;
+}
 
-  const Rigid T(T_truth_map);
-  double sum = 0.0;
-  for (const mrpt::math::TPoint2D& p_map : wall_points(map)) {
+/// From a point to the nearest wall cell, not to its centre: what lies on a wall cell is on the wall.
+double WallOverlap::Side::kernel(const mrpt::math::TPoint2D& p, double tau) const {
+  const double distance = std::max(0.0, field.distance(p) - 0.5 * grid->resolution()) + excess;
+  return std::clamp(1.0 - distance / tau, 0.0, 1.0);
+}
+
+WallOverlap::WallOverlap(const OccupancyGrid& map, const OccupancyGrid& truth, double tau)
+    : tau_(tau), map_(map, tau), truth_(truth, tau) {
+  const double excess = map_.half_thickness - truth_.half_thickness;
+  map_.excess = std::max(0.0, excess);
+  truth_.excess = std::max(0.0, -excess);
+}
+
+template <class Transform, class Take>
+void WallOverlap::visit_map(const Transform& T, const Take& take) const {
+  for (const mrpt::math::TPoint2D& p_map : map_.walls) {
     const mrpt::math::TPoint2D p_truth = T.forward(p_map);
-    if (!known(truth, p_truth)) continue;
-    sum += kernel(to_wall(to_truth, p_truth, 0.5 * truth.resolution()) + truth_excess, tau);
-    ++out.map_cells;
+    if (known(*truth_.grid, p_truth)) take(p_truth, truth_.kernel(p_truth, tau_));
   }
-  if (out.map_cells > 0) out.precision = sum / static_cast<double>(out.map_cells);
+}
 
+template <class Transform, class Take>
+void WallOverlap::visit_truth(const Transform& T, const Take& take) const {
+  for (const mrpt::math::TPoint2D& p_truth : truth_.walls) take(p_truth, map_.kernel(T.inverse(p_truth), tau_));
+}
+
+template <class Transform>
+Overlap WallOverlap::measure(const Transform& T) const {
+  Overlap out;
+  double sum = 0.0;
+  visit_map(T, [&](const mrpt::math::TPoint2D&, double k) {
+    sum += k;
+    ++out.map_cells;
+  });
+  if (out.map_cells > 0) out.precision = sum / static_cast<double>(out.map_cells);
   sum = 0.0;
-  for (const mrpt::math::TPoint2D& p_truth : wall_points(truth)) {
-    sum += kernel(to_wall(to_map, T.inverse(p_truth), 0.5 * map.resolution()) + map_excess, tau);
+  visit_truth(T, [&](const mrpt::math::TPoint2D&, double k) {
+    sum += k;
     ++out.truth_cells;
-  }
+  });
   if (out.truth_cells > 0) out.recall = sum / static_cast<double>(out.truth_cells);
   out.score = std::min(out.precision, out.recall);
   return out;
+}
+
+Overlap WallOverlap::at(const Rigid& T_truth_map) const { return measure(T_truth_map); }
+Overlap WallOverlap::at(const Warp& warp) const { return measure(warp); }
+
+std::vector<WallOverlap::Hit> WallOverlap::map_hits(const Rigid& T_truth_map) const {
+  std::vector<Hit> out;
+  visit_map(T_truth_map, [&](const mrpt::math::TPoint2D& p, double k) { out.push_back({p, k}); });
+  return out;
+}
+
+std::vector<WallOverlap::Hit> WallOverlap::truth_hits(const Rigid& T_truth_map) const {
+  std::vector<Hit> out;
+  visit_truth(T_truth_map, [&](const mrpt::math::TPoint2D& p, double k) { out.push_back({p, k}); });
+  return out;
+}
+
+Overlap overlap(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map,
+                double tau) {
+  return WallOverlap(map, truth, tau).at(Rigid(T_truth_map));
 }
 
 }  // namespace rubble::scoring

@@ -1,11 +1,14 @@
 #include "scoring/scorecard.h"
 
 #include <cmath>
+#include <cstdio>
 
 #include "scoring/alignment.h"
 #include "scoring/overlap.h"
 #include "scoring/psi.h"
 #include "scoring/resample.h"
+#include "scoring/trust.h"
+#include "scoring/warp_fit.h"
 
 namespace rubble::scoring {
 namespace {
@@ -38,29 +41,87 @@ Psi psi_of_strangers(double cap) {
   return {absent, absent, absent, 6.0 * cap, cap};
 }
 
+constexpr double kFeatureCap = 1.0;     // C of eq. (7) [m^2]
+constexpr double kFeatureWeight = 0.5;  // lambda of eq. (7): descriptors that differ by 1 weigh like this [m^2]
+
+/// E of eq. (7) over the SURF features of both maps.
+MatchError feature_error(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map) {
+  const FeatureSet of_map = find_features(map, FeatureKind::Surf);
+  const FeatureSet of_truth = find_features(truth, FeatureKind::Surf);
+  const auto places = [](const FeatureSet& set) {
+    std::vector<mrpt::math::TPoint2D> out;
+    for (const Feature& f : set.features) out.push_back(f.p);
+    return out;
+  };
+  const auto difference = [&](std::size_t i, std::size_t j) {
+    return kFeatureWeight * descriptor_distance(of_map, i, of_truth, j);
+  };
+  return match_error(places(of_map), places(of_truth), T_truth_map, difference, kFeatureCap);
+}
+
+/// The scale at which the maps do agree, of those that people mix up; 0 where there is none.
+double agreeing_scale(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config) {
+  AlignmentConfig by_walls = config;
+  by_walls.by = AlignBy::Walls;
+  for (const double scale : {0.5, 2.0}) {
+    GridFrame frame = map.frame();
+    frame.resolution *= scale;
+    OccupancyGrid rescaled(frame);
+    rescaled.cells() = map.cells();
+    if (align(rescaled, truth, by_walls).aligned) return scale;
+  }
+  return 0.0;
+}
+
+std::string scale_note(double scale, double resolution) {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "not aligned: wrong scale? The maps agree with the map at %g times its size; give --resolution %g",
+                scale, scale * resolution);
+  return text;
+}
+
+void fill_warp(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const WallOverlap& walls) {
+  const WarpedScore warped = fit_warp(map, truth, walls, out.T_truth_map);
+  out.warped = true;
+  out.warped_score = warped.overlap.score;
+  out.warp_m = warped.size;
+  out.penalised_score = warped.penalised;
+  out.features = feature_error(map, truth, out.T_truth_map);
+}
+
 }  // namespace
 
 MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const ScoreConfig& config) {
   MapScore out;
   const OccupancyGrid map_known = crop_to_known(map, 0.0);
   const OccupancyGrid truth_known = crop_to_known(truth, 0.0);
-  const Alignment alignment = align(map_known, truth_known);
+  const Alignment alignment = align(map_known, truth_known, config.alignment);
   out.aligned = alignment.aligned;
   out.note = alignment.note;
   out.T_truth_map = alignment.T_truth_map;
   out.runner_up = alignment.runner_up;
+  out.source = alignment.source;
+  out.mirrored = alignment.mirrored;
   if (!out.aligned) {
     fill_psi(out, psi_of_strangers(config.colour_absent_cap));
+    // Walls that do meet, only at too many poses, are of the right scale.
+    if (!alignment.source.empty() && tight_agreement(alignment.tight_evidence) < kTightEnough)
+      out.scale_hint = agreeing_scale(map_known, truth_known, config.alignment);
+    if (out.scale_hint > 0.0) out.note = scale_note(out.scale_hint, map.resolution());
     return out;
   }
-  Overlap walls = overlap(map_known, truth_known, out.T_truth_map, config.tau);
-  if (const Overlap drawn = overlap(map_known, truth_known, alignment.T_walls, config.tau); drawn.score > walls.score) {
+  const WallOverlap overlaps(map_known, truth_known, config.tau);
+  Overlap walls = overlaps.at(Rigid(out.T_truth_map));
+  if (const Overlap drawn = overlaps.at(Rigid(alignment.T_walls)); drawn.score > walls.score) {
     walls = drawn;
     out.T_truth_map = alignment.T_walls;
   }
   out.precision = walls.precision;
   out.recall = walls.recall;
   out.score = walls.score;
+  out.errors = wall_errors(overlaps, Rigid(out.T_truth_map), config.worst_places);
+  if (config.warp) fill_warp(out, map_known, truth_known, overlaps);
   const GridFrame frame = common_frame(map_known, truth_known, out.T_truth_map, kCanvasMargin);
   const OccupancyGrid map_on_frame = resample(map_known, out.T_truth_map, frame);
   const OccupancyGrid truth_on_frame = resample(truth_known, {}, frame);

@@ -5,12 +5,18 @@
 #include <string>
 
 #include "base/grid.h"
+#include "scoring/alignment.h"
+#include "scoring/matching.h"
+#include "scoring/wall_errors.h"
 
 namespace rubble::scoring {
 
 struct ScoreConfig {
   double tau = 0.5;                ///< distance at which a wall cell counts nothing [m]
   double colour_absent_cap = 5.0;  ///< psi of a class that only one map has [m]
+  AlignmentConfig alignment;
+  bool warp = false;              ///< also fit eq. (8) and the feature error of eq. (7)
+  std::size_t worst_places = 10;  ///< listed at the most
 };
 
 /// The verdict on one map. Lengths in metres, shares 0..1.
@@ -18,7 +24,7 @@ struct MapScore {
   bool aligned = false;               ///< a rigid transform was found that can be trusted
   std::string note;                   ///< why not aligned, or what to know; one line
   mrpt::math::TPose2D T_truth_map;    ///< the transform found
-  double runner_up = 0.0;             ///< quality of the best different pose relative to the best, 0..1 (1: ambiguous)
+  double runner_up = 0.0;             ///< how near the best different pose comes to the best, 0..1 (1: ambiguous)
   double score = 0.0;                 ///< min(precision, recall)
   double precision = 0.0;             ///< share of map walls near true walls
   double recall = 0.0;                ///< share of true walls near map walls
@@ -28,7 +34,16 @@ struct MapScore {
   double psi_occupied_truth_m = 0.0;  ///< eq. (6), truth -> map, walls [m]
   double psi_free_map_m = 0.0;
   double psi_free_truth_m = 0.0;
-  double known = 0.0;  ///< share of the truth's free and occupied area that the map knows
+  double known = 0.0;            ///< share of the truth's free and occupied area that the map knows
+  std::string source;            ///< what proposed the pose: "walls", "features", "rooms" or several joined by +
+  double mirrored = 0.0;         ///< how near the mirrored map comes to the best pose, 0..1; 0 where it was not asked
+  double scale_hint = 0.0;       ///< not aligned, but the maps agree when this is the map's scale; 0: no such scale
+  WallErrors errors;             ///< phantom and missing wall and the worst places
+  bool warped = false;           ///< the fields below are filled in
+  double warped_score = 0.0;     ///< score after the displacement of eq. (8); not below `score`
+  double warp_m = 0.0;           ///< ||b|| of eq. (8) [m]
+  double penalised_score = 0.0;  ///< warped score less the penalty; between `score` and `warped_score`
+  MatchError features;           ///< E of eq. (7) over all SURF features of both maps
 };
 
 /// Aligns `map` to `truth` without any initial guess and scores it. Never throws on poor maps: see `aligned`, `note`.

@@ -26,6 +26,9 @@ struct Rivals {
   void meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence);
 };
 
+/// The maps agree so well, and at no other pose nearly, that the mirrored map need not be asked.
+bool beyond_doubt(const PoseEvidence& tight, const Rivals& other_poses);
+
 struct Trust {
   bool trusted = false;
   bool tight = false;  ///< the maps agree to the decimetre, not only to the metre

@@ -9,6 +9,8 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
+constexpr double kStill = 1e-3;  // [m] a step shorter than this ends the refinement
+
 /// Geman-McClure: 1 for walls that meet, falling to a quarter at a distance of sigma.
 double pull(double distance, double sigma) {
   const double r = sigma * sigma / (sigma * sigma + distance * distance);
@@ -50,7 +52,7 @@ TPose2D WallMatch::refine(const TPose2D& start, double sigma, int iterations) co
     const Eigen::Vector3d step = a.ldlt().solve(b);
     if (!step.allFinite()) break;
     T = Rigid(stepped(T.pose(), map_.centre, centre, step.x(), step.y(), step.z()));
-    if (step.head<2>().norm() < 1e-4 && std::abs(step.z()) < 1e-5) break;
+    if (step.head<2>().norm() < kStill && std::abs(step.z()) < 0.1 * kStill) break;
   }
   return T.pose();
 }

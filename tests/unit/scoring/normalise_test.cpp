@@ -33,7 +33,6 @@ class LoadMap : public ::testing::Test {
   fs::path folder_;
 };
 
-
 /// The grid in grey levels, row 0 at the top.
 cv::Mat grey_image(const OccupancyGrid& grid, int wall, int unknown, int free) {
   cv::Mat image(grid.height(), grid.width(), CV_8U);

@@ -1,0 +1,125 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arenas/arena_file.h"
+#include "arenas/generate.h"
+#include "arenas/truth_map.h"
+#include "base/angle.h"
+#include "scoring/alignment.h"
+#include "scoring/resample.h"
+#include "scoring/scorecard.h"
+#include "tests/support/scoring_maze.h"
+
+/// Which maps belong together and which do not, on mazes and arenas that took no part in the calibration of trust.
+namespace rubble::scoring {
+namespace {
+
+using namespace testing;
+
+OccupancyGrid maze_of(std::uint64_t seed, int columns, int rows) {
+  MazeSpec spec;
+  spec.columns = columns;
+  spec.rows = rows;
+  spec.seed = seed;
+  return maze(spec);
+}
+
+OccupancyGrid arena_of(std::uint64_t seed) {
+  arenas::GenerateConfig config;
+  config.seed = seed;
+  config.columns = 9;
+  config.rows = 7;
+  return arenas::truth_map(arenas::parse_arena(arenas::generate_arena(config), "generated"));
+}
+
+TEST(Strangers, AreRefusedAndScoreNothing) {
+  for (const std::uint64_t seed : {1011, 1012}) {
+    for (const auto& [columns, rows] : {std::pair{6, 6}, {9, 7}}) {
+      const OccupancyGrid truth = maze_of(seed, columns, rows);
+      const std::vector<std::pair<std::string, OccupancyGrid>> strangers = {
+          {"mirrored", mirrored(truth)},
+          {"mirrored and damaged", mirrored(with_gaps(with_phantoms(truth, 5, seed), 10, seed))},
+          {"another", maze_of(seed + 100, columns, rows)},
+          {"another, larger", maze_of(seed + 200, columns + 1, rows + 1)},
+          {"another, half of it", with_coverage(maze_of(seed + 300, columns, rows), 0.5)},
+          {"double size", scaled(truth, 2.0)},
+          {"half size", scaled(truth, 0.5)}};
+      for (const auto& [name, map] : strangers) {
+        SCOPED_TRACE(name + ", maze " + std::to_string(columns) + " x " + std::to_string(rows) + ", seed " +
+                     std::to_string(seed));
+        const Alignment found = align(crop_to_known(moved(map, 0.5, 2.0, 1.0), 0.0), crop_to_known(truth, 0.0));
+        EXPECT_FALSE(found.aligned);
+        EXPECT_FALSE(found.note.empty());
+      }
+    }
+  }
+}
+
+TEST(Strangers, DamagedMapsOfTheSameArenaAreNone) {
+  for (const std::uint64_t seed : {2011, 2012}) {
+    for (const bool generated : {false, true}) {
+      const OccupancyGrid truth = generated ? arena_of(seed) : maze_of(seed, 9, 7);
+      const std::vector<std::pair<std::string, OccupancyGrid>> maps = {
+          {"gaps and phantoms", with_gaps(with_phantoms(truth, 12, seed), 20, seed)},
+          {"half of it", with_coverage(truth, 0.5)},
+          {"bent", bent(truth, 0.5)},
+          {"ragged", ragged(truth, 1, seed)},
+          {"ragged, bent part", with_coverage(ragged(bent(truth, 0.3), 1, seed), 0.7)}};
+      for (const auto& [name, map] : maps) {
+        SCOPED_TRACE(name + (generated ? ", arena" : ", maze") + " of seed " + std::to_string(seed));
+        const TPose2D T_map_truth(2.0, 1.0, 2.4);
+        const OccupancyGrid turned = moved(map, T_map_truth.phi, T_map_truth.x, T_map_truth.y);
+        const Alignment found = align(crop_to_known(turned, 0.0), crop_to_known(truth, 0.0));
+        EXPECT_TRUE(found.aligned) << found.note;
+        const TPose2D rest = found.T_truth_map + T_map_truth;
+        EXPECT_NEAR(wrap_angle(rest.phi), 0.0, 0.05);
+        EXPECT_NEAR(rest.norm(), 0.0, 0.6);
+      }
+    }
+  }
+}
+
+TEST(Strangers, EveryMethodThatAlignsFindsTheSamePoseAndSaysWhich) {
+  const OccupancyGrid truth = crop_to_known(maze_of(3011, 9, 7), 0.0);
+  const OccupancyGrid map = crop_to_known(moved(with_gaps(truth, 20, 1), 0.9, 1.0, 4.0), 0.0);
+  AlignmentConfig config;
+  config.by = AlignBy::Walls;
+  const Alignment walls = align(map, truth, config);
+  ASSERT_TRUE(walls.aligned);
+  EXPECT_EQ(walls.source, "walls");
+  for (const FeatureKind kind : {FeatureKind::Surf, FeatureKind::Akaze, FeatureKind::Orb}) {
+    config.by = AlignBy::Features;
+    config.feature_kind = kind;
+    const Alignment found = align(map, truth, config);
+    ASSERT_TRUE(found.aligned) << name_of(kind) << ": " << found.note;
+    EXPECT_NE(found.source.find("features"), std::string::npos);
+    EXPECT_NEAR(
+        (found.T_truth_map.composePoint(TPoint2D(3, 3)) - walls.T_truth_map.composePoint(TPoint2D(3, 3))).norm(), 0.0,
+        0.05);
+  }
+  config.by = AlignBy::Rooms;
+  EXPECT_FALSE(align(map, truth, config).aligned);
+  config.rooms = [&](const OccupancyGrid&, const OccupancyGrid&) {
+    return std::vector<PoseGuess>{{walls.T_truth_map, 1.0, "rooms"}};
+  };
+  const Alignment rooms = align(map, truth, config);
+  EXPECT_TRUE(rooms.aligned);
+  EXPECT_NE(rooms.source.find("rooms"), std::string::npos);
+}
+
+TEST(Strangers, AWrongScaleIsNamed) {
+  const OccupancyGrid truth = maze_of(4011, 9, 7);
+  for (const double wrong : {0.5, 2.0}) {
+    const MapScore score = score_map(scaled(truth, wrong), truth);
+    EXPECT_FALSE(score.aligned);
+    EXPECT_EQ(score.score, 0.0);
+    EXPECT_EQ(score.scale_hint, 1.0 / wrong);
+    EXPECT_NE(score.note.find("--resolution 0.05"), std::string::npos) << score.note;
+  }
+}
+
+}  // namespace
+}  // namespace rubble::scoring

@@ -1,0 +1,59 @@
+#include "scoring/wall_errors.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/scoring_maze.h"
+
+namespace rubble::scoring {
+namespace {
+
+using namespace testing;
+
+OccupancyGrid room() {
+  OccupancyGrid grid(GridFrame{220, 220, 0.05, -0.5, -0.5}, Occupancy::Free);
+  for (const auto& [a, b] : {std::pair{TPoint2D(0, 0), TPoint2D(10, 0)},
+                             {TPoint2D(10, 0), TPoint2D(10, 10)},
+                             {TPoint2D(10, 10), TPoint2D(0, 10)},
+                             {TPoint2D(0, 10), TPoint2D(0, 0)}})
+    draw_wall(grid, a, b, 2);
+  return grid;
+}
+
+TEST(WallErrors, AreNoneForThePerfectMap) {
+  const OccupancyGrid truth = room();
+  const WallErrors errors = wall_errors(WallOverlap(truth, truth, 0.5), Rigid(), 10);
+  EXPECT_EQ(errors.phantom_m, 0.0);
+  EXPECT_EQ(errors.missing_m, 0.0);
+  EXPECT_TRUE(errors.worst.empty());
+}
+
+TEST(WallErrors, MeasureAPhantomAndAMissingWallAndSayWhere) {
+  const OccupancyGrid truth = room();
+  OccupancyGrid with_wall = truth;
+  draw_wall(with_wall, {3.0, 4.4}, {5.0, 4.4}, 2);
+  const WallErrors phantom = wall_errors(WallOverlap(with_wall, truth, 0.5), Rigid(), 10);
+  EXPECT_NEAR(phantom.phantom_m, 2.0, 0.3);
+  EXPECT_EQ(phantom.missing_m, 0.0);
+  ASSERT_FALSE(phantom.worst.empty());
+  EXPECT_NEAR(phantom.worst.front().p_truth.x, 4.2, 0.9);
+  EXPECT_NEAR(phantom.worst.front().p_truth.y, 4.4, 0.1);
+
+  const WallErrors missing = wall_errors(WallOverlap(truth, with_wall, 0.5), Rigid(), 10);
+  EXPECT_NEAR(missing.missing_m, 2.0, 0.3);
+  EXPECT_EQ(missing.phantom_m, 0.0);
+  double listed = 0.0;
+  for (const WrongPlace& place : missing.worst) listed += place.missing_m;
+  EXPECT_NEAR(listed, missing.missing_m, 0.11);
+}
+
+TEST(WallErrors, ListTheWorstFirstAndNoMoreThanAsked) {
+  const OccupancyGrid truth = room();
+  const OccupancyGrid map = with_phantoms(truth, 40, 3);
+  const WallErrors errors = wall_errors(WallOverlap(map, truth, 0.5), Rigid(), 10);
+  ASSERT_EQ(errors.worst.size(), 10U);
+  for (std::size_t i = 1; i < errors.worst.size(); ++i)
+    EXPECT_GE(errors.worst[i - 1].wrong_m(), errors.worst[i].wrong_m());
+}
+
+}  // namespace
+}  // namespace rubble::scoring
