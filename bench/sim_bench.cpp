@@ -131,7 +131,7 @@ void Box2dRayCastScan(benchmark::State& state) {
   const sim::PlanOrigin origin{};
   sim::Obstacles obstacles(world, origin, maze(), model.climbable_step);
   const sim::Terrain terrain(maze(), model.climbable_step);
-  const sim::Clutter clutter(world, origin, terrain, obstacles, maze().balls);
+  const sim::Clutter clutter(world, origin, terrain, obstacles, maze().balls, {});
   const sim::BeamTable table(model.laser);
   const b2Vec2 from = origin.to_box2d({maze().start.x, maze().start.y});
   for (auto _ : state) {

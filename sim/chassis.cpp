@@ -11,8 +11,9 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kLookAround = 0.3;   ///< farther things are not looked for [m]
-constexpr double kTouch = 0.05;       ///< nearer things are Box2D's: 0.7 m/s and 1.7 rad/s make 14 mm a step [m]
+constexpr double kLookAround = 0.3;  ///< farther things are not looked for [m]
+constexpr double kTouch =
+    0.03;  ///< nearer things are Box2D's: two robots at 0.7 m/s and 1.7 rad/s close by 28 mm a step [m]
 constexpr double kAboveLaser = 0.05;  ///< the laser's housing ends so far above its beams [m]
 /// Two Box2D polygons keep a gap of both skins less the slop; the body is drawn smaller by it.
 constexpr double kSkin = 2.0 * static_cast<double>(b2_polygonRadius) - static_cast<double>(b2_linearSlop);
