@@ -4,6 +4,7 @@
 
 #include "scoring/alignment.h"
 #include "scoring/correlation.h"
+#include "scoring/features.h"
 #include "scoring/overlap.h"
 #include "scoring/psi.h"
 #include "scoring/resample.h"
@@ -115,6 +116,23 @@ void BM_ScoreMap(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(score_map(map, truth));
 }
 BENCHMARK(BM_ScoreMap)->Unit(benchmark::kMillisecond);
+
+void BM_ScoreMapWithWarp(benchmark::State& state) {
+  const OccupancyGrid truth = big_truth();
+  const OccupancyGrid map = moved(big_map(), 0.7, 3.0, 1.0);
+  ScoreConfig config;
+  config.warp = true;
+  for (auto _ : state) benchmark::DoNotOptimize(score_map(map, truth, config));
+}
+BENCHMARK(BM_ScoreMapWithWarp)->Unit(benchmark::kMillisecond);
+
+void BM_Features(benchmark::State& state) {
+  const OccupancyGrid map = big_map();
+  const auto kind = static_cast<FeatureKind>(state.range(0));
+  state.SetLabel(name_of(kind));
+  for (auto _ : state) benchmark::DoNotOptimize(find_features(map, kind));
+}
+BENCHMARK(BM_Features)->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace rubble::scoring

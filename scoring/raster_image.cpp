@@ -1,12 +1,35 @@
 #include "scoring/raster_image.h"
 
+#include <array>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string_view>
 
 #include "base/error.h"
 
 namespace rubble::scoring {
+namespace {
+
+/// Walks the chunks of a PNG: true if the file ends before the last one. libpng would say so on stderr, in its own
+/// words.
+bool is_cut_png(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 8> head{};
+  if (!file.read(head.data(), 8) || std::string_view(head.data(), 8) != "\x89PNG\r\n\x1a\n") return false;
+  const std::streamoff size = file.seekg(0, std::ios::end).tellg();
+  for (std::streamoff at = 8; at + 12 <= size;) {
+    file.seekg(at);
+    if (!file.read(head.data(), 8)) return true;
+    if (std::string_view(head.data() + 4, 4) == "IEND") return false;
+    std::streamoff length = 0;
+    for (std::size_t i = 0; i < 4; ++i) length = 256 * length + static_cast<unsigned char>(head[i]);
+    at += 12 + length;
+  }
+  return true;
+}
+
+}  // namespace
 
 void check_image_size(const std::string& path, std::int64_t width, std::int64_t height) {
   if (width < 1 || height < 1) throw InputError(path + ": the image is empty");
@@ -17,6 +40,7 @@ void check_image_size(const std::string& path, std::int64_t width, std::int64_t 
 
 cv::Mat read_raster(const std::string& path) {
   if (!std::ifstream(path)) throw InputError(path + ": cannot be opened; does the file exist?");
+  if (is_cut_png(path)) throw InputError(path + ": the PNG is cut short; copy the file again");
   cv::Mat image;
   try {
     image = cv::imread(path, cv::IMREAD_UNCHANGED);

@@ -1,0 +1,55 @@
+# Odd and bad map files: each gets a defined answer, none a good score; damaged ones one line.
+. "$(dirname "$0")/lib.sh"
+command -v gdal_translate >/dev/null || { echo "gdal-bin is not installed"; exit 77; }
+
+"$rubble" arena generate --cells 7x6 --seed 5 --out . >/dev/null || fail "no arena"
+truth=$(ls ./*-truth.tif)
+
+# expect_score EXPRESSION COMMAND...: python over j, what --json prints.
+expect_score() {
+  local expression=$1
+  shift
+  "$rubble" score "$@" --json >score.json 2>err.txt || fail "score $* ended with $?: $(head -c 300 err.txt)"
+  python3 -c "import json; j = json.load(open('score.json')); assert $expression, j" 2>err.txt ||
+    fail "score $*: not $expression: $(tail -c 600 err.txt)"
+}
+
+# Any layout of a TIFF is the same map.
+gdal_translate -q -co TILED=YES -co COMPRESS=DEFLATE "$truth" tiled.tif
+gdal_translate -q -co COMPRESS=LZW -co INTERLEAVE=BAND "$truth" planes.tif
+gdal_translate -q -ot UInt16 -scale 0 255 0 65535 "$truth" deep.tif
+for map in tiled.tif planes.tif deep.tif; do expect_score "j['aligned'] and j['score'] > 0.99" "$map" "$truth"; done
+
+# A mirror image, another arena, a wrong scale, no wall at all.
+python3 <<'PY'
+open("white.pgm", "wb").write(b"P5 300 300 255\n" + b"\xff" * 90000)
+wall = bytearray(b"\xff" * 90000)
+for x in range(50, 250):
+    wall[150 * 300 + x] = 0
+open("wall.pgm", "wb").write(b"P5 300 300 255\n" + bytes(wall))
+PY
+gdal_translate -q -of PNG "$truth" truth.png
+expect_score "not j['aligned'] and j['score'] == 0" white.pgm "$truth" --resolution 0.05
+expect_score "not j['aligned'] and j['score'] == 0" wall.pgm "$truth" --resolution 0.05
+expect_score "j['aligned']" truth.png "$truth" --resolution 0.05
+expect_score "not j['aligned'] and j['scale_hint'] == 0.5 and '--resolution 0.05' in j['align_note']" \
+  truth.png "$truth" --resolution 0.1
+expect_score "not j['aligned'] and j['score'] == 0" truth.png "$truth" --resolution 0.025
+"$rubble" arena generate --cells 7x6 --seed 77 --out other >/dev/null || fail "no other arena"
+expect_score "not j['aligned'] and j['score'] == 0 and j['align_note']" other/*-truth.tif "$truth"
+
+# Methods, and the parts of the score.
+expect_score "j['align_source'] == 'walls' and j['phantom_m'] == 0 and j['worst_places'] == []" "$truth" "$truth"
+expect_score "j['aligned'] and 'features' in j['align_source']" "$truth" "$truth" --align surf
+expect_score "j['warped_score'] == 1 and j['warp_m'] == 0 and j['feature_error_m2'] < 1e-9" "$truth" "$truth" --warp
+expect_exit 2 '--align' "$rubble" score "$truth" "$truth" --align magic
+
+# What cannot be read.
+head -c $(($(stat -c %s "$truth") / 2)) "$truth" >cut.tif
+expect_exit 3 'cut.tif' "$rubble" score cut.tif "$truth"
+head -c $(($(stat -c %s truth.png) / 2)) truth.png >cut.png
+expect_exit 3 'cut.png' "$rubble" score cut.png "$truth" --resolution 0.05
+printf 'P5 20000 20000 255\n' >huge.pgm
+head -c 400000000 /dev/zero >>huge.pgm
+expect_exit 3 '20000 x 20000' "$rubble" score huge.pgm "$truth" --resolution 0.05
+finish
