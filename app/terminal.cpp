@@ -81,6 +81,12 @@ void print_summary(const scenarios::RunReport& report) {
   if (score["victims_total"].is_number())
     std::printf("%-30s %d of %d\n", "victims found", score["victims_found"].get<int>(),
                 score["victims_total"].get<int>());
+  if (const auto lost = score.value("hits_outside", std::uint64_t{0}); lost > 0)
+    std::printf("%-30s %llu laser hits lay beyond the largest map (mapper.max_map_cells)\n", "NOT MAPPED",
+                static_cast<unsigned long long>(lost));
+  if (const auto dropped = score.value("scans_out_of_order", std::uint64_t{0}); dropped > 0)
+    std::printf("%-30s %llu scans were empty or not younger than the one before\n", "NOT MAPPED",
+                static_cast<unsigned long long>(dropped));
   for (const auto& broken : report.broken) std::printf("%-30s %s\n", "NOT AS EXPECTED", broken.c_str());
   std::printf("%-30s %s\n", "folder", report.folder.c_str());
 }

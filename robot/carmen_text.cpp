@@ -14,6 +14,7 @@ namespace {
 using mrpt::math::TPose2D;
 
 constexpr double kNoReturn = 30.0;  // FLASER says no limit; SICK scanners in these logs write 30 m and more for it [m]
+constexpr double kFarthestRange = 1000.0;  ///< of any scanner; more is a log in another unit [m]
 constexpr std::int64_t kMaxBeams = 100000;
 
 constexpr float kMiss = std::numeric_limits<float>::infinity();
@@ -83,9 +84,12 @@ void take_robotlaser(TextFields& fields, CarmenRecord& record) {
   scan.angle_min = fields.number("start_angle");
   fields.number("field_of_view");
   scan.angle_step = fields.number("angular_resolution");
-  if (scan.angle_step <= 0.0) fields.fail("'angular_resolution' must be positive; correct or delete the line");
+  if (!(scan.angle_step > 1e-6 && scan.angle_step <= kPi))
+    fields.fail("'angular_resolution' must be positive and at most half a turn [rad]; correct or delete the line");
   scan.range_max = fields.number("maximum_range");
-  if (scan.range_max <= 0.0) fields.fail("'maximum_range' must be positive; correct or delete the line");
+  if (!(scan.range_max > 0.0 && scan.range_max <= kFarthestRange))
+    fields.fail(
+        "'maximum_range' must be positive and at most 1000 m; is it in another unit? correct or delete the line");
   fields.number("accuracy");
   fields.number("remission_mode");
   take_ranges(fields, fields.integer("num_readings", 1, kMaxBeams), scan);

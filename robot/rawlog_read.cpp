@@ -192,9 +192,23 @@ void start_at_zero(std::vector<Odometry>& odometry) {
   for (Odometry& o : odometry) o.pose = wrapped(o.pose - T_start_base);
 }
 
+/// What no scanner measures is another unit or damage, and would make a map of the size of a town.
+void refuse_impossible(const std::vector<LaserScan>& scans, const std::string& path) {
+  constexpr double kFarthestRange = 1000.0;  // [m]
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const LaserScan& scan = scans[i];
+    const bool fan = scan.ranges.size() < 2 || (std::abs(scan.angle_step) > 1e-6 && std::abs(scan.angle_step) <= kPi);
+    if (scan.range_max > 0.0 && scan.range_max <= kFarthestRange && fan) continue;
+    throw InputError(path + ": scan " + std::to_string(i) +
+                     " (counted from 0) has a range limit that is not within 1000 m, or beams without an angle between"
+                     " them; is it in another unit? Cut the rawlog there with: rawlog-edit --cut");
+  }
+}
+
 ForeignLog others_log(const CObservation2DRangeScan& first, std::vector<LaserScan>& scans,
-                      std::vector<Odometry>& odometry) {
+                      std::vector<Odometry>& odometry, const std::string& path) {
   ForeignLog log;
+  refuse_impossible(scans, path);
   for (LaserScan& scan : scans) clean_ranges(scan);
   start_at_zero(odometry);
   log.model.name = "rawlog";
@@ -237,7 +251,7 @@ ForeignLog read_rawlog_bytes(std::string_view bytes, const std::string& path) {
   check_finite(odometry, path);
 
   ForeignLog log =
-      contents.own_model ? own_log(*contents.own_model, scans, odometry) : others_log(first, scans, odometry);
+      contents.own_model ? own_log(*contents.own_model, scans, odometry) : others_log(first, scans, odometry, path);
   log.format = "MRPT rawlog";
   log.reference = read_rawlog_reference(path);
   log.ticks = assemble_ticks(std::move(scans), std::move(odometry));

@@ -6,9 +6,6 @@
 #include "base/angle.h"
 
 namespace rubble::scenarios {
-namespace {
-
-/// A YAML double-quoted scalar.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -21,8 +18,6 @@ std::string quoted(const std::string& text) {
   }
   return out + "\"";
 }
-
-}  // namespace
 
 std::string shortest(double value) {
   char buffer[40];

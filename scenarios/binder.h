@@ -61,5 +61,7 @@ class YamlWriter : public Binder {
 
 /// The shortest decimal that reads back to the same double.
 std::string shortest(double value);
+/// A YAML double-quoted scalar.
+std::string quoted(const std::string& text);
 
 }  // namespace rubble::scenarios

@@ -140,7 +140,11 @@ void draw_victims(Canvas& canvas, const std::vector<explore::VictimReport>& vict
 
 GeoTiff draw_league_map(const slam::CountMap& map, const LeagueDrawing& drawing) {
   const Box box = known_box(map.frame(), 0.75, [&](Cell c) { return map.seen(c) > 0; });
-  Canvas canvas(box, drawing.resolution);
+  // A building of half a kilometre gets coarser pixels: nobody opens a picture of a gigabyte.
+  constexpr double kMostPixels = 8000.0;
+  double resolution = drawing.resolution;
+  while (std::max(box.x1 - box.x0, box.y1 - box.y0) > kMostPixels * resolution) resolution *= 2.0;
+  Canvas canvas(box, resolution);
   draw_cells(canvas, map, drawing.occupied_threshold);
   draw_scale(canvas, drawing.title);
   draw_path(canvas, drawing.path);
@@ -149,7 +153,7 @@ GeoTiff draw_league_map(const slam::CountMap& map, const LeagueDrawing& drawing)
   GeoTiff tiff;
   std::optional<GeoAnchor> anchor = drawing.geo;
   if (anchor) anchor->heading_deg += 90.0;  // the picture's easting axis is map -y: 90 deg clockwise of map x
-  tiff.transform = georeference(-box.y1, box.x1, drawing.resolution, anchor, tiff.epsg);
+  tiff.transform = georeference(-box.y1, box.x1, resolution, anchor, tiff.epsg);
   tiff.description =
       "{\"producer\": \"rubble\", \"frame\": \"easting = -map y, northing = map x\", \"resolution_m\": " +
       shortest(drawing.resolution) + ", \"victims\": " + std::to_string(drawing.victims.size()) + "}";

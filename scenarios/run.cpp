@@ -2,8 +2,10 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -51,8 +53,8 @@ struct LoopEnd {
   double sim_s = 0.0;
 };
 
-/// The one loop, for simulator, log and hardware alike. Saves the map every few seconds of wall time, the trajectories
-/// every second of run time.
+/// The one loop, for simulator, log and hardware alike. Saves the trajectories every second of run time and the map
+/// after the first of these, then ever more seldom up to every few seconds of wall time.
 class Loop {
  public:
   Loop(const Scenario& scenario, const RunOptions& options, RunFolder& folder)
@@ -94,9 +96,10 @@ class Loop {
 
  private:
   void report(const Core& core, double sim_s, double share) {
-    if (seconds_since(last_save_) > 3.0) {
+    if (seconds_since(last_save_) >= save_period_) {
       folder_.save_map(scenario_, core.mapper(), core.victims());
       last_save_ = Clock::now();
+      save_period_ = std::min(kLongestSavePeriod, 2.0 * save_period_ + kFirstSavePeriod);
     }
     if (options_.progress && seconds_since(last_report_) > 0.2) {
       last_report_ = Clock::now();
@@ -108,6 +111,9 @@ class Loop {
   const RunOptions& options_;
   RunFolder& folder_;
   Clock::time_point start_ = Clock::now();
+  static constexpr double kFirstSavePeriod = 0.4;    ///< [s]
+  static constexpr double kLongestSavePeriod = 3.0;  ///< [s]
+  double save_period_ = 0.0;  ///< grows: a run of a few seconds leaves a map too when it is killed [s]
   Clock::time_point last_save_ = start_;
   Clock::time_point last_report_ = start_;
 };
@@ -155,6 +161,8 @@ void add_mapper_counts(ordered_json& json, const Core& core) {
   json["scans_mapped"] = counts.mapped;
   json["icp_accepted"] = counts.icp_accepted;
   json["icp_rejected"] = counts.icp_rejected;
+  json["scans_out_of_order"] = counts.out_of_order;
+  json["hits_outside"] = core.mapper().map().dropped_hits();
 }
 
 void add_timing(ordered_json& json, double sim_s, Clock::time_point start) {
@@ -204,8 +212,12 @@ void score_files(ordered_json& json, const RunFolder& folder, const Scenario& sc
   json["victims_reported"] = reported.size();
   json["victims_found"] = 0;
   if (!score.aligned) return;
-  scoring::write_overlay(folder.file("overlay.png"), map, truth, score.T_truth_map);
-  scoring::write_error_map(folder.file("error.png"), map, truth, score.T_truth_map, scenario.scoring.tau);
+  folder.publish({"overlay.png"}, [&](const std::string& path) {
+    scoring::write_overlay(path + "overlay.png", map, truth, score.T_truth_map);
+  });
+  folder.publish({"error.png"}, [&](const std::string& path) {
+    scoring::write_error_map(path + "error.png", map, truth, score.T_truth_map, scenario.scoring.tau);
+  });
   std::vector<mrpt::math::TPoint2D> p_picture, p_truth;
   for (const auto& victim : reported) p_picture.push_back(in_picture(victim.p_map));
   for (const auto& victim : arena.victims) p_truth.emplace_back(victim.position.x, victim.position.y);
@@ -227,7 +239,8 @@ void finish(RunReport& report, RunFolder& folder, const Scenario& scenario, cons
   add_timing(report.score, sim_s, start);
   folder.write("score.json", report.score.dump(2) + "\n");
   folder.close();
-  if (options.link_latest) folder.link_latest();
+  const std::filesystem::path parent = std::filesystem::path(folder.path()).parent_path().filename();
+  if (options.link_latest && (options.out.empty() || parent == "runs")) folder.link_latest();
   report.folder = folder.path();
   report.broken = broken_expectations(scenario, report.score);
 }
@@ -294,7 +307,7 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   if (!robot.reference().empty()) folder.append_truth(robot.reference());
   const LoopEnd end = loop.run(
       robot, core, [&] { return robot.progress(); }, [] {});
-  if (core.mapper().counts().scans == 0)
+  if (core.mapper().counts().scans == 0 && !end.interrupted)
     throw InputError(log + ": holds no laser scan; a log to map needs scans (and odometry)");
   folder.save_map(resolved, core.mapper(), {});
   if (!robot.reference().empty()) add_trajectory_error(report.score, core.mapper().trajectory(), robot.reference());
@@ -306,6 +319,27 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   finish(report, folder, resolved, options, end.sim_s, start);
   return report;
 }
+
+namespace {
+
+std::string scratch_folder() {
+  std::string name = (std::filesystem::temp_directory_path() / "rubble-replay-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr)
+    throw RunError(name + ": cannot be created; make the temporary folder writable or give --out");
+  return name;
+}
+
+/// Whether the bytes of `beginning` are the first ones of `whole`.
+bool starts_with_file(const std::string& whole, const std::string& beginning) {
+  std::ifstream a(whole, std::ios::binary);
+  std::ifstream b(beginning, std::ios::binary);
+  const std::string first{std::istreambuf_iterator<char>(b), {}};
+  std::string same(first.size(), '\0');
+  a.read(same.data(), static_cast<std::streamsize>(same.size()));
+  return a.gcount() == static_cast<std::streamsize>(first.size()) && same == first;
+}
+
+}  // namespace
 
 ReplayReport replay_run(const std::string& path, const RunOptions& options) {
   namespace fs = std::filesystem;
@@ -326,18 +360,24 @@ ReplayReport replay_run(const std::string& path, const RunOptions& options) {
     if (core.finished()) break;
     if (options.interrupted && options.interrupted()) break;
   }
-  const fs::path scratch =
-      fs::temp_directory_path() / ("rubble-replay-" + sha256_of_text(fs::absolute(path).string()).substr(0, 16));
-  RunFolder folder(options.out.empty() ? scratch.string() : options.out, options.replace || options.out.empty());
+  const std::string scratch = options.out.empty() ? scratch_folder() : std::string();
+  RunFolder folder(options.out.empty() ? scratch : options.out, options.replace);
   folder.write("scenario.yaml", resolved_yaml(scenario));
   folder.append_estimate(core.mapper().trajectory());
   folder.save_map(scenario, core.mapper(), core.victims());
   report.identical = report.different_commands == 0;
+  // A run that was killed wrote its trajectory up to its last second and an older map.
+  report.ended = fs::exists(path + "/hashes.json");
+  const auto compare = [&](const std::string& name) {
+    const std::string then = path + "/" + name;
+    if (!fs::exists(then)) return false;
+    if (report.ended) return sha256_of_file(then) == sha256_of_file(folder.file(name));
+    return starts_with_file(folder.file(name), then);
+  };
   for (const char* name : {"estimate.tum", "map.tif", "map.tfw", "map.png", "map.pgm", "map.yaml", "pois.csv"}) {
-    const bool same =
-        fs::exists(path + "/" + name) && sha256_of_file(path + "/" + name) == sha256_of_file(folder.file(name));
-    report.artefacts.push_back({name, same});
-    report.identical = report.identical && same;
+    if (!report.ended && std::string(name) != "estimate.tum") continue;
+    report.artefacts.push_back({name, compare(name)});
+    report.identical = report.identical && report.artefacts.back().same;
   }
   folder.close();
   if (options.out.empty()) fs::remove_all(scratch);

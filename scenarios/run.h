@@ -50,6 +50,7 @@ struct ReplayedArtefact {
 struct ReplayReport {
   std::vector<ReplayedArtefact> artefacts;
   bool identical = false;
+  bool ended = true;                   ///< the recorded run ended; else only the trajectory so far can be compared
   std::size_t different_commands = 0;  ///< ticks in which the core commanded something else than recorded
   std::size_t ticks = 0;
 };

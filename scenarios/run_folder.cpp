@@ -22,11 +22,18 @@ constexpr const char* kPartial = ".partial";
   throw RunError(path + ": cannot be written (" + why + "); check the folder, its permissions and the free space");
 }
 
+/// A CSV field in quotes, as RFC 4180 has it.
+std::string csv_quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
 /// The league's list of points of interest: preamble, then one line a detection.
 std::string pois_csv(const Scenario& s, const std::vector<explore::VictimReport>& victims) {
   // Date and time would make two runs of one seed differ, so the preamble carries the start of the epoch.
-  std::string csv = "\"pois\"\n\"1.3\"\n\"" + s.team + "\"\n\"\"\n\"1970-01-01\"\n\"00:00:00\"\n\"" + s.mission +
-                    "\"\ndetection,time,type,name,x,y,z,robot,mode\n";
+  std::string csv = "\"pois\"\n\"1.3\"\n" + csv_quoted(s.team) + "\n\"\"\n\"1970-01-01\"\n\"00:00:00\"\n" +
+                    csv_quoted(s.mission) + "\ndetection,time,type,name,x,y,z,robot,mode\n";
   for (const auto& victim : victims) {
     const long seconds = static_cast<long>(victim.stamp.seconds());
     char line[200];
@@ -85,6 +92,17 @@ void RunFolder::write(const std::string& name, const std::string& content) const
   if (error) cannot_write(file(name), error.message());
 }
 
+void RunFolder::publish(const std::vector<std::string>& names,
+                        const std::function<void(const std::string&)>& write) const {
+  const std::string partial = file(kPartial) + "/";
+  write(partial);
+  for (const std::string& name : names) {
+    std::error_code error;
+    fs::rename(partial + name, file(name), error);
+    if (error) cannot_write(file(name), error.message());
+  }
+}
+
 void RunFolder::append(std::ofstream& out, std::size_t& written, const Trajectory& trajectory) {
   for (; written < trajectory.size(); ++written) out << tum_line(trajectory[written]) << '\n';
   out.flush();
@@ -107,24 +125,22 @@ void RunFolder::save_map(const Scenario& scenario, const slam::Mapper& mapper,
   drawing.victims = victims;
   drawing.geo = scenario.geo;
   const GeoTiff tiff = draw_league_map(mapper.map(), drawing);
-  const std::string partial = file(kPartial) + "/";
-  write_geotiff(partial + "map.tif", tiff);
-  write_world_file(partial + "map.tfw", *tiff.transform);
-  write_png(partial + "map.png", tiff.image);
-  write_ros_map(partial + "map", mapper.map().classify(drawing.occupied_threshold), drawing.occupied_threshold);
-  for (const char* name : {"map.tif", "map.tfw", "map.png", "map.pgm", "map.yaml"}) {
-    std::error_code error;
-    fs::rename(partial + name, file(name), error);
-    if (error) cannot_write(file(name), error.message());
-  }
+  publish({"map.tif", "map.tfw", "map.png", "map.pgm", "map.yaml"}, [&](const std::string& partial) {
+    write_geotiff(partial + "map.tif", tiff);
+    write_world_file(partial + "map.tfw", *tiff.transform);
+    write_png(partial + "map.png", tiff.image);
+    write_ros_map(partial + "map", mapper.map().classify(drawing.occupied_threshold), drawing.occupied_threshold);
+  });
   write("pois.csv", pois_csv(scenario, victims));
 }
 
 void RunFolder::save_truth(const arenas::Arena& arena, const OccupancyGrid& truth) const {
   const GeoTiff tiff = draw_truth(truth);
-  write_geotiff(file("truth.tif"), tiff);
-  write_png(file("truth.png"), tiff.image);
-  write_png(file("arena.png"), arenas::render(arena, 40.0));
+  publish({"truth.tif", "truth.png", "arena.png"}, [&](const std::string& partial) {
+    write_geotiff(partial + "truth.tif", tiff);
+    write_png(partial + "truth.png", tiff.image);
+    write_png(partial + "arena.png", arenas::render(arena, 40.0));
+  });
 }
 
 void RunFolder::save_hashes(const std::string& score_text) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fstream>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,8 @@
 namespace rubble::scenarios {
 
 /// One run's folder, written as the run goes: after a kill it holds all but the last second of the trajectories and the
-/// last saved map. Files are replaced whole (written beside, then renamed), so none is ever half a file.
+/// last saved map. The trajectories grow line by line; all other files are replaced whole (written beside, then
+/// renamed), so none of them is ever half a file.
 class RunFolder {
  public:
   /// Creates the folder. An existing one with content is refused unless `replace` is set and it is a run folder.
@@ -30,6 +32,9 @@ class RunFolder {
   /// Replaces map.tif, map.tfw, map.png, map.pgm, map.yaml and pois.csv.
   void save_map(const Scenario& scenario, const slam::Mapper& mapper,
                 const std::vector<explore::VictimReport>& victims) const;
+  /// Lets `write` make files of these names below the folder it is given (which ends in a slash), then puts them all in
+  /// their places at once.
+  void publish(const std::vector<std::string>& names, const std::function<void(const std::string&)>& write) const;
   /// Writes truth.tif, truth.png and arena.png.
   void save_truth(const arenas::Arena& arena, const OccupancyGrid& truth) const;
   /// hashes.json: SHA-256 of each deterministic artefact that exists, plus `score` over the given text.

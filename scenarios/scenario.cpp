@@ -54,6 +54,8 @@ void bind(Binder& b, sim::SimConfig& c) {
   b.number("range_noise", c.range_noise, 0.0, 100.0);
   b.number("acceleration_noise", c.acceleration_noise, 0.0, 100.0);
   b.boolean("sweep", c.sweep);
+  b.boolean("microphones", c.microphones);
+  b.boolean("co2_probe", c.co2_probe);
 }
 
 void bind(Binder& b, slam::MapperConfig& c) {
@@ -130,7 +132,7 @@ void bind_sections(Binder& b, Scenario& s) {
 }
 
 void bind_generate(Binder& b, arenas::GenerateConfig& g) {
-  b.choice("kind", g.kind, {"yellow"});
+  b.choice("kind", g.kind, {"yellow", "orange", "red"});
   b.integer("columns", g.columns, 2, 60);
   b.integer("rows", g.rows, 2, 60);
   b.number("ramps", g.ramps, 0.0, 1.0);
@@ -138,6 +140,7 @@ void bind_generate(Binder& b, arenas::GenerateConfig& g) {
   b.number("loops", g.loops, 0.0, 1.0);
   b.integer("victims", g.victims, 0, 1000);
   b.number("ramp_deg", g.ramp_deg, 0.0, 45.0);
+  b.number("rough", g.rough, 0.0, 1.0);
 }
 
 void read_arena(const YamlMap& root, const std::string& path, Scenario& s) {
@@ -207,6 +210,9 @@ void read_common(const YamlMap& root, Scenario& s) {
   }
   YamlReader reader(root);
   bind_sections(reader, s);
+  const robot::LaserModel& laser = s.robot.laser;
+  if (laser.scan_period < laser.beams * laser.beam_period)
+    root.fail("robot", "laser.scan_period_s is shorter than beams times beam_period_s");
   if (s.explorer.d_opt < s.explorer.d_min) root.fail("explorer", "d_opt_m must not be smaller than d_min_m");
   s.sim.time_limit = s.time_limit;
 }
@@ -240,7 +246,7 @@ Scenario default_scenario(const std::vector<Override>& overrides) {
 
 std::string resolved_yaml(const Scenario& scenario) {
   Scenario s = scenario;  // binding needs a mutable object; nothing is changed
-  std::string out = "name: " + s.name + "\nseed: " + std::to_string(s.seed) + "\n";
+  std::string out = "name: " + rubble::scenarios::quoted(s.name) + "\nseed: " + std::to_string(s.seed) + "\n";
   if (s.has_arena && !s.arena_file.empty()) {
     out += "arena:\n  file: \"" + s.arena_file + "\"\n";
   } else if (s.has_arena) {

@@ -8,6 +8,7 @@
 #include "base/angle.h"
 #include "scoring/matching.h"
 #include "scoring/resample.h"
+#include "scoring/room_hypotheses.h"
 #include "scoring/trust.h"
 
 namespace rubble::scoring {
@@ -79,7 +80,8 @@ class Aligner {
     const auto add = [&](const std::vector<PoseGuess>& more) { out.insert(out.end(), more.begin(), more.end()); };
     if (method == AlignBy::Features || method == AlignBy::Auto)
       add(propose_by_features(map_, truth_, config_.feature_kind));
-    if ((method == AlignBy::Rooms || method == AlignBy::Auto) && config_.rooms) add(config_.rooms(map_, truth_));
+    if (method == AlignBy::Rooms) add(config_.rooms ? config_.rooms(map_, truth_) : propose_by_rooms(map_, truth_));
+    if (method == AlignBy::Auto && config_.rooms) add(config_.rooms(map_, truth_));
     return out;
   }
 

@@ -18,7 +18,7 @@ enum class AlignBy { Auto, Walls, Features, Rooms };
 struct AlignmentConfig {
   AlignBy by = AlignBy::Auto;
   FeatureKind feature_kind = FeatureKind::Surf;
-  Proposer rooms;  ///< proposes by rooms; where empty, rooms propose nothing
+  Proposer rooms;  ///< proposes by rooms; where empty, Rooms means propose_by_rooms() and Auto goes without
   CorrelationConfig correlation;
   SearchConfig search;
 };

@@ -192,4 +192,10 @@ std::vector<RigidHypothesis> room_hypotheses(const OccupancyGrid& map, const Occ
   return room_hypotheses(extract_rooms(map, pieces).rooms, extract_rooms(truth, pieces).rooms, config);
 }
 
+std::vector<PoseGuess> propose_by_rooms(const OccupancyGrid& map, const OccupancyGrid& truth) {
+  std::vector<PoseGuess> guesses;
+  for (const RigidHypothesis& h : room_hypotheses(map, truth)) guesses.push_back({h.T_truth_map, h.score, "rooms"});
+  return guesses;
+}
+
 }  // namespace rubble::scoring

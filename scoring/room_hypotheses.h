@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "scoring/pose_guess.h"
 #include "scoring/rooms.h"
 
 namespace rubble::scoring {
@@ -46,5 +47,8 @@ std::vector<RigidHypothesis> room_hypotheses(const std::vector<Room>& map, const
 /// The same from the maps themselves, cut into smaller pieces than rooms, which partial maps share more often.
 std::vector<RigidHypothesis> room_hypotheses(const OccupancyGrid& map, const OccupancyGrid& truth,
                                              const RoomMatchConfig& config = {});
+
+/// The same as guesses for the alignment.
+std::vector<PoseGuess> propose_by_rooms(const OccupancyGrid& map, const OccupancyGrid& truth);
 
 }  // namespace rubble::scoring

@@ -15,6 +15,12 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using robot::LaserScan;
 
+namespace {
+
+constexpr double kLateScan = 2.0;  ///< a scan may begin so long before the newest odometry [s]
+
+}  // namespace
+
 struct Mapper::Impl {
   Impl(const robot::RobotModel& model, const MapperConfig& config, std::uint64_t seed)
       : config_(config),
@@ -29,6 +35,7 @@ struct Mapper::Impl {
   void process(const LaserScan& scan);
   void start(Stamp reference, const ScanPoints& points);
   void keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points, const Surface& surface);
+  void remember_hits(const TPose2D& T_map_base, const ScanPoints& points);
   void pass(Stamp reference, const TPose2D& T_last_now);
   TPose2D motion_since_scan(Stamp reference) const;
   TPose2D refined_motion(const Surface& surface, const TPose2D& T_last_prior);
@@ -75,7 +82,10 @@ void Mapper::Impl::receive(const robot::Inputs& inputs) {
     process(waiting_.front());
     waiting_.pop_front();
   }
-  odometry_.forget_before(waiting_.empty() ? odometry_.newest() : waiting_.front().stamp);
+  if (odometry_.empty()) return;
+  // The next scan may be old when it comes: it began a sweep and a transmission ago.
+  const Stamp oldest = odometry_.newest() - kLateScan;
+  odometry_.forget_before(waiting_.empty() ? oldest : std::min(oldest, waiting_.front().stamp));
 }
 
 /// "Interpolated by the odometry data reported right before and right after": wait for the latter, but not for ever.
@@ -96,6 +106,7 @@ void Mapper::Impl::process(const LaserScan& scan) {
   const TPose2D T_last_now = refined_motion(surface, T_last_prior);
   const bool gate = moved(T_last_now);
   if (!gate && counts_.mapped >= static_cast<std::uint64_t>(config_.first_scans)) {
+    remember_hits(T_map_last_ + T_last_now, points);
     return pass(reference, T_last_now);
   }
 
@@ -127,11 +138,15 @@ void Mapper::Impl::keep(Stamp reference, const TPose2D& T_map_base, const ScanPo
   matcher_.set_last(surface);
   last_coverage_ = SurfaceCoverage(surface);
   T_map_last_ = T_map_base;
-  last_hits_.clear();
-  const PlanarTransform to_map(T_map_base);
-  for (const TPoint2D& p_base : points.hits) last_hits_.push_back(to_map(p_base));
+  remember_hits(T_map_base, points);
   ++counts_.mapped;
   pass(reference, TPose2D());
+}
+
+void Mapper::Impl::remember_hits(const TPose2D& T_map_base, const ScanPoints& points) {
+  const PlanarTransform to_map(T_map_base);
+  last_hits_.clear();
+  for (const TPoint2D& p_base : points.hits) last_hits_.push_back(to_map(p_base));
 }
 
 /// Nothing where there is no odometry: the scan matcher alone then finds the motion.

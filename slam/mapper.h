@@ -24,15 +24,15 @@ struct MapperConfig {
   double rotation_error = 0.05;                  ///< initial rotation error, share of the turn
   double heading_error_per_m = deg_to_rad(5.0);  ///< rotation error while driving [rad/m]
   double distance_error = 0.15;                  ///< translation error, share of the distance
-  double gate_distance = 0.02;                   ///< mapping step after this much motion [m]
-  double gate_turn = deg_to_rad(5.0);            ///< or this much turn [rad]
-  bool icp = true;                               ///< refine the odometry by ICP of the last and the current scan
-  bool carve_misses = false;                     ///< beams without a return free cells up to the range limit
-  double max_range = 0.0;                        ///< returns beyond are dropped [m]; 0: the scanner's own limit
-  bool deskew = true;            ///< place each beam by its own time; the paper does not, and pays for it
-  int first_scans = 5;           ///< so many scans are mapped at the start although the robot stands
-  int max_map_cells = 8000;      ///< the map grows up to so many cells a side
-  double coverage_margin = 0.1;  ///< ICP pairs what both scans saw, and saw go on for so much to either side [m]
+  double gate_distance = 0.15;          ///< mapping step after this much motion [m]; at least 0.02 in the paper
+  double gate_turn = deg_to_rad(10.0);  ///< or this much turn [rad]; at least 5 deg in the paper
+  bool icp = true;                      ///< refine the odometry by ICP of the last and the current scan
+  bool carve_misses = false;            ///< beams without a return free cells up to the range limit
+  double max_range = 0.0;               ///< returns beyond are dropped [m]; 0: the scanner's own limit
+  bool deskew = true;                   ///< place each beam by its own time; the paper does not, and pays for it
+  int first_scans = 5;                  ///< so many scans are mapped at the start although the robot stands
+  int max_map_cells = 8000;             ///< the map grows up to so many cells a side
+  double coverage_margin = 0.1;         ///< ICP pairs what both scans saw, and saw go on for so much to either side [m]
   double rim_margin = 0.1;    ///< eq. (2) leaves out beams so close to where a surface goes out of sight [m]; 0: none
   SurfaceConfig surface;      ///< how scans are thinned for the ICP
   ScanMatcherConfig matcher;  ///< thresholds of the ICP
@@ -61,7 +61,8 @@ class Mapper {
   /// Estimated T_map_base at the reference time of each scan, in order.
   const Trajectory& trajectory() const;
   const std::vector<Particle>& particles() const;
-  /// The newest mapped scan's hits in the map frame (for pictures and for checking a path against fresh obstacles).
+  /// The newest scan's hits in the map frame, mapped or not (for pictures and for checking a path against fresh
+  /// obstacles).
   const std::vector<mrpt::math::TPoint2D>& last_hits() const;
   const MapperCounts& counts() const;
 

@@ -34,7 +34,8 @@ void MatchTarget::index() {
   y0_ = *y_range.first;
   const float wide = *x_range.second - x0_;
   const float high = *y_range.second - y0_;
-  edge_ = std::max(kEdge, std::sqrt(wide * high / kMostBuckets));
+  edge_ = std::max(
+      {kEdge, std::sqrt(wide) * std::sqrt(high) / std::sqrt(kMostBuckets), wide / kMostBuckets, high / kMostBuckets});
   inverse_edge_ = 1.0f / edge_;
   width_ = static_cast<int>(wide * inverse_edge_) + 1;
   height_ = static_cast<int>(high * inverse_edge_) + 1;
@@ -91,7 +92,7 @@ MatchTarget::Nearest MatchTarget::nearest(float x, float y, float reach) const {
   const float dv = v - static_cast<float>(cy);
   const float inner = std::min(std::min(du, 1.0f - du), std::min(dv, 1.0f - dv)) * edge_;
   search_row(cy, cx, cx, x, y, best);
-  for (int ring = 1;; ++ring) {
+  for (int ring = 1; ring <= std::max(width_, height_) + static_cast<int>(rings); ++ring) {
     const float clear = inner + static_cast<float>(ring - 1) * edge_;
     if (clear * clear > best.square) return best;
     search_row(cy - ring, cx - ring, cx + ring, x, y, best);
@@ -101,6 +102,7 @@ MatchTarget::Nearest MatchTarget::nearest(float x, float y, float reach) const {
     }
     search_row(cy + ring, cx - ring, cx + ring, x, y, best);
   }
+  return best;
 }
 
 void MatchTarget::determineMatching2D(const mrpt::maps::CMetricMap* other, const mrpt::poses::CPose2D& other_pose,

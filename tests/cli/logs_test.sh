@@ -3,7 +3,7 @@
 simul=/usr/share/mrpt/datasets/graphslam-engine-demos/action_observations_map/simul.rawlog
 if [[ -e $simul ]]; then
   "$rubble" map $simul --out simul >/dev/null || fail "simul.rawlog ended with $?"
-  json_holds simul/score.json "j['scans'] > 100 and j['area_known_m2'] > 20"
+  json_holds simul/score.json "j['scans'] > 100 and j['area_known_m2'] > 20 and j['ate_aligned_m'] < 4"
 fi
 if [[ -n ${RUBBLE_DATA:-} ]]; then
   "$rubble" map "$RUBBLE_DATA/logs/exp1.dat" --out exp1 >/dev/null || fail "exp1.dat ended with $?"
@@ -12,7 +12,7 @@ if [[ -n ${RUBBLE_DATA:-} ]]; then
     gdalinfo exp1/map.tif | grep -q 'Pixel Size = (0.025' || fail "gdalinfo sees no metric pixel size"
   fi
   "$rubble" map "$RUBBLE_DATA/logs/intel-corrected.log.gz" --out intel >/dev/null || fail "intel ended with $?"
-  json_holds intel/score.json "j['scans'] == 910 and j['ate_first_m'] is not None and j['area_known_m2'] > 300"
+  json_holds intel/score.json "j['scans'] == 910 and j['ate_aligned_m'] < 5 and j['area_known_m2'] > 300"
 else
   echo "RUBBLE_DATA is not set: exp1 and intel are skipped"
 fi
