@@ -90,6 +90,22 @@ void fill_warp(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& tru
   out.features = feature_error(map, truth, out.T_truth_map);
 }
 
+/// All numbers at the pose that `out` holds.
+void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const WallOverlap& overlaps,
+             const ScoreConfig& config) {
+  const Overlap walls = overlaps.at(Rigid(out.T_truth_map));
+  out.precision = walls.precision;
+  out.recall = walls.recall;
+  out.score = walls.score;
+  out.errors = wall_errors(overlaps, Rigid(out.T_truth_map), config.worst_places);
+  if (config.warp) fill_warp(out, map, truth, overlaps);
+  const GridFrame frame = common_frame(map, truth, out.T_truth_map, kCanvasMargin);
+  const OccupancyGrid map_on_frame = resample(map, out.T_truth_map, frame);
+  const OccupancyGrid truth_on_frame = resample(truth, {}, frame);
+  fill_psi(out, psi(map_on_frame, truth_on_frame, config.colour_absent_cap));
+  out.known = known_share(map_on_frame, truth_on_frame);
+}
+
 }  // namespace
 
 MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const ScoreConfig& config) {
@@ -112,21 +128,21 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
     return out;
   }
   const WallOverlap overlaps(map_known, truth_known, config.tau);
-  Overlap walls = overlaps.at(Rigid(out.T_truth_map));
-  if (const Overlap drawn = overlaps.at(Rigid(alignment.T_walls)); drawn.score > walls.score) {
-    walls = drawn;
+  if (overlaps.at(Rigid(alignment.T_walls)).score > overlaps.at(Rigid(out.T_truth_map)).score)
     out.T_truth_map = alignment.T_walls;
-  }
-  out.precision = walls.precision;
-  out.recall = walls.recall;
-  out.score = walls.score;
-  out.errors = wall_errors(overlaps, Rigid(out.T_truth_map), config.worst_places);
-  if (config.warp) fill_warp(out, map_known, truth_known, overlaps);
-  const GridFrame frame = common_frame(map_known, truth_known, out.T_truth_map, kCanvasMargin);
-  const OccupancyGrid map_on_frame = resample(map_known, out.T_truth_map, frame);
-  const OccupancyGrid truth_on_frame = resample(truth_known, {}, frame);
-  fill_psi(out, psi(map_on_frame, truth_on_frame, config.colour_absent_cap));
-  out.known = known_share(map_on_frame, truth_on_frame);
+  measure(out, map_known, truth_known, overlaps, config);
+  return out;
+}
+
+MapScore score_at_pose(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map,
+                       const ScoreConfig& config) {
+  const OccupancyGrid map_known = crop_to_known(map, 0.0);
+  const OccupancyGrid truth_known = crop_to_known(truth, 0.0);
+  MapScore out;
+  out.aligned = true;
+  out.source = "given";
+  out.T_truth_map = T_truth_map;
+  measure(out, map_known, truth_known, WallOverlap(map_known, truth_known, config.tau), config);
   return out;
 }
 

@@ -49,4 +49,8 @@ struct MapScore {
 /// Aligns `map` to `truth` without any initial guess and scores it. Never throws on poor maps: see `aligned`, `note`.
 MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const ScoreConfig& config = {});
 
+/// The same at a pose that is given, not searched.
+MapScore score_at_pose(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map,
+                       const ScoreConfig& config = {});
+
 }  // namespace rubble::scoring

@@ -24,7 +24,7 @@ MazeSpec spec(std::uint64_t seed, int side = 7) {
   return out;
 }
 
-const std::vector<std::uint64_t> kSeeds = {1, 2, 3};
+const std::vector<std::uint64_t> kSeeds = {1, 2};
 
 TEST(ScoreLaws, TheTruthItselfScoresOneAndHasNoPsi) {
   for (const std::uint64_t seed : kSeeds) {
@@ -201,6 +201,39 @@ TEST(ScoreLaws, TheTransformFoundIsTheOneApplied) {
     const TPose2D rest = score.T_truth_map + T_map_truth;
     EXPECT_NEAR(rest.norm(), 0.0, 0.05);
     EXPECT_NEAR(wrap_angle(rest.phi), 0.0, 0.005);
+  }
+}
+
+TEST(ScoreLaws, AtThePoseFoundTheGivenPoseScoresTheSame) {
+  const OccupancyGrid truth = maze(spec(6));
+  const OccupancyGrid map = moved(with_gaps(with_phantoms(truth, 8, 6), 12, 6), 0.8, 1.0, 0.0);
+  ScoreConfig config;
+  config.warp = true;
+  const MapScore searched = score_map(map, truth, config);
+  ASSERT_TRUE(searched.aligned) << searched.note;
+  const MapScore given = score_at_pose(map, truth, searched.T_truth_map, config);
+  EXPECT_EQ(given.score, searched.score);
+  EXPECT_EQ(given.psi_m, searched.psi_m);
+  EXPECT_EQ(given.errors.phantom_m, searched.errors.phantom_m);
+  EXPECT_EQ(given.warped_score, searched.warped_score);
+  EXPECT_EQ(given.source, "given");
+}
+
+/// Swapping the maps swaps precision and recall; what the map does not know costs recall only; what the truth does not
+/// know costs nothing.
+TEST(ScoreLaws, PrecisionAndRecallKeepTheirRoles) {
+  for (const std::uint64_t seed : kSeeds) {
+    SCOPED_TRACE("maze seed " + std::to_string(seed));
+    const OccupancyGrid truth = maze(spec(seed));
+    const OccupancyGrid map = with_gaps(with_phantoms(truth, 6, seed), 12, seed);
+    const MapScore there = score_at_pose(map, truth, {});
+    const MapScore back = score_at_pose(truth, map, {});
+    EXPECT_NEAR(there.precision, back.recall, 0.02);
+    EXPECT_NEAR(there.recall, back.precision, 0.02);
+    const MapScore part = score_at_pose(with_coverage(truth, 0.5), truth, {});
+    EXPECT_NEAR(part.precision, 1.0, 0.002);  // the cut changes the mean thickness a little
+    EXPECT_LT(part.recall, 0.7);
+    EXPECT_NEAR(score_at_pose(truth, with_coverage(truth, 0.5), {}).score, 1.0, 0.02);
   }
 }
 
