@@ -207,10 +207,11 @@ ManhattanSum::ManhattanSum(const OccupancyGrid& map, const OccupancyGrid& truth)
     std::uint8_t* const row = rows_.data() + offset(y, width_);
     combine(map.row(y), truth.row(y), map.width(), row);
     for (const Layer layer : {Layer::Map, Layer::Truth})
-      for (const Occupancy colour : {Occupancy::Unknown, Occupancy::Free, Occupancy::Occupied})
+      for (const Occupancy colour : {Occupancy::Free, Occupancy::Occupied})
         count_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(colour)] +=
             count_of(row, width_, wanted(layer, colour));
   }
+  for (auto& of_layer : count_) of_layer[0] = static_cast<std::int64_t>(map.cells().size()) - of_layer[1] - of_layer[2];
   for (int x = 0; x < width_; x += kBlock)
     transpose_strip(rows_.data() + x, static_cast<std::size_t>(width_), height_, columns_.data() + offset(x, height_));
 }
