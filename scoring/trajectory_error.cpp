@@ -3,6 +3,8 @@
 #include <cmath>
 #include <vector>
 
+#include "scoring/rigid.h"
+
 namespace rubble::scoring {
 namespace {
 
@@ -36,28 +38,13 @@ double rmse(const std::vector<PosePair>& pairs, const TPose2D& T_truth_estimate)
 
 /// Umeyama 1991 in the plane, scale 1: the rotation that turns the centred estimate onto the centred truth.
 TPose2D best_rigid(const std::vector<PosePair>& pairs) {
-  const double n = static_cast<double>(pairs.size());
-  TPoint2D mean_estimate(0.0, 0.0);
-  TPoint2D mean_truth(0.0, 0.0);
+  std::vector<TPoint2D> estimate;
+  std::vector<TPoint2D> truth;
   for (const PosePair& pair : pairs) {
-    mean_estimate.x += pair.estimate.x / n;
-    mean_estimate.y += pair.estimate.y / n;
-    mean_truth.x += pair.truth.x / n;
-    mean_truth.y += pair.truth.y / n;
+    estimate.push_back({pair.estimate.x, pair.estimate.y});
+    truth.push_back({pair.truth.x, pair.truth.y});
   }
-  double dot = 0.0;
-  double cross = 0.0;
-  for (const PosePair& pair : pairs) {
-    const double ax = pair.estimate.x - mean_estimate.x;
-    const double ay = pair.estimate.y - mean_estimate.y;
-    const double bx = pair.truth.x - mean_truth.x;
-    const double by = pair.truth.y - mean_truth.y;
-    dot += ax * bx + ay * by;
-    cross += ax * by - ay * bx;
-  }
-  const double phi = std::atan2(cross, dot);
-  const TPoint2D turned = TPose2D(0.0, 0.0, phi).composePoint(mean_estimate);
-  return {mean_truth.x - turned.x, mean_truth.y - turned.y, phi};
+  return fit_rigid(estimate, truth);
 }
 
 }  // namespace
