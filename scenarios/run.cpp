@@ -350,13 +350,15 @@ ReplayReport replay_run(const std::string& path, const RunOptions& options) {
   robot::ReplayRobot robot(log);
   Core core(scenario, robot.model(), true);
   ReplayReport report;
+  report.ended = fs::exists(path + "/hashes.json");
+  bool last_differs = false;
   while (auto inputs = robot.read()) {
     const robot::Commands commands = core.step(*inputs);
     const robot::Commands& recorded = robot.recorded_commands();
     ++report.ticks;
-    if (commands.drive.v != recorded.drive.v || commands.drive.w != recorded.drive.w ||
-        commands.aim.pitch != recorded.aim.pitch || commands.aim.roll != recorded.aim.roll)
-      ++report.different_commands;
+    last_differs = commands.drive.v != recorded.drive.v || commands.drive.w != recorded.drive.w ||
+                   commands.aim.pitch != recorded.aim.pitch || commands.aim.roll != recorded.aim.roll;
+    if (last_differs) ++report.different_commands;
     if (core.finished()) break;
     if (options.interrupted && options.interrupted()) break;
   }
@@ -365,9 +367,10 @@ ReplayReport replay_run(const std::string& path, const RunOptions& options) {
   folder.write("scenario.yaml", resolved_yaml(scenario));
   folder.append_estimate(core.mapper().trajectory());
   folder.save_map(scenario, core.mapper(), core.victims());
+  // A run that was killed wrote its trajectory up to its last second, an older map, and its last tick perhaps without
+  // the command that answered it.
+  if (!report.ended && last_differs) --report.different_commands;
   report.identical = report.different_commands == 0;
-  // A run that was killed wrote its trajectory up to its last second and an older map.
-  report.ended = fs::exists(path + "/hashes.json");
   const auto compare = [&](const std::string& name) {
     const std::string then = path + "/" + name;
     if (!fs::exists(then)) return false;

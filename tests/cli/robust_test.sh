@@ -32,6 +32,7 @@ expect_exit 3 'full' "$rubble" run s.yaml --out full --force
 expect_exit 3 '/proc/nothing' "$rubble" run s.yaml --out /proc/nothing
 small_scenario strict.yaml 'expect: {score: {min: 1.5}}'
 expect_exit 1 '' "$rubble" run strict.yaml --out strict
+grep -q 'expected at least 1.5' out.txt || fail "the broken expectation is not named"
 head -c 3000 strict/map.tif >cut.tif
 expect_exit 3 'cut.tif' "$rubble" score cut.tif strict/truth.tif
 cp strict/map.png bare.png
@@ -39,10 +40,9 @@ expect_exit 3 'resolution' "$rubble" score bare.png strict/truth.tif
 printf 'ROBOTLASER1 0 -1.57 3.14 0.0174 1e30 0.01 0 2 1.0 1e20 0 0 0 0 0 0 0 0 0 0 0 0 1.0 host 1.0\n' >far.log
 expect_exit 3 'far.log:1:' "$rubble" map far.log
 small_scenario odd.yaml
-"$rubble" run odd.yaml --set 'name=#x' --set 'team=a"b,c' --set time_limit_s=20 --out odd >/dev/null || fail "an odd name ended with $?"
+"$rubble" run odd.yaml --set 'name="#x"' --set 'team="a\"b,c"' --set time_limit_s=20 --out odd >/dev/null || fail "an odd name ended with $?"
 "$rubble" replay odd >/dev/null || fail "a run with an odd name cannot be replayed"
 grep -q '"a""b,c"' odd/pois.csv || fail "a quote in the team's name is not doubled"
-grep -q 'expected at least 1.5' out.txt || fail "the broken expectation is not named"
 expect_exit 0 '' "$rubble" run s.yaml --out strict --force
 
 # wait_for COMMAND...: until it succeeds, two minutes at most (a loaded machine is slow).

@@ -7,7 +7,9 @@ for name in scenario.yaml versions.json arena.yaml arena.png log.rlog truth.tum 
   map.pgm map.yaml pois.csv truth.tif truth.png overlay.png error.png hashes.json score.json; do
   [[ -s a/$name ]] || fail "a/$name is missing or empty"
 done
-[[ -e latest/score.json ]] || fail "the link latest does not lead to the run"
+(mkdir -p at && cd at && "$rubble" run ../s.yaml --set time_limit_s=5 >/dev/null)
+[[ -e at/runs/latest/score.json ]] || fail "the link latest does not lead to the run"
+[[ -e latest ]] && fail "a link was put beside a folder given with --out"
 json_holds a/score.json "all(k in j for k in 'score precision recall psi_m aligned ate_first_m ate_aligned_m known \
 victims_found victims_total sim_s wall_s real_time_factor peak_mb'.split())"
 json_holds a/score.json "j['aligned'] and 0.5 < j['score'] <= 1 and j['known'] > 0.7"

@@ -101,6 +101,7 @@ TEST(Strangers, EveryMethodThatAlignsFindsTheSamePoseAndSaysWhich) {
         0.05);
   }
   config.by = AlignBy::Rooms;
+  config.rooms = [](const OccupancyGrid&, const OccupancyGrid&) { return std::vector<PoseGuess>{}; };
   EXPECT_FALSE(align(map, truth, config).aligned);
   config.rooms = [&](const OccupancyGrid&, const OccupancyGrid&) {
     return std::vector<PoseGuess>{{walls.T_truth_map, 1.0, "rooms"}};

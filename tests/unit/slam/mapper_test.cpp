@@ -186,7 +186,8 @@ TEST(Mapper, BlindScansCarryThePoseOn) {
 TEST(Mapper, LastHitsLieOnTheWalls) {
   const RobotModel model;
   Mapper mapper(model, {}, 1);
-  play(mapper, standing(model, 6, 0.0));
+  const std::size_t scans = static_cast<std::size_t>(MapperConfig{}.first_scans);
+  play(mapper, standing(model, static_cast<int>(scans), 0.0));
   ASSERT_GT(mapper.last_hits().size(), 400u);
   int on_occupied = 0;
   for (const TPoint2D& p : mapper.last_hits()) on_occupied += mapper.map().p_occ(mapper.map().frame().cell(p)) > 0.0;
