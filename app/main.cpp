@@ -76,6 +76,15 @@ void parse_cells(const std::string& cells, arenas::GenerateConfig& config) {
   char rest = 0;
   if (std::sscanf(cells.c_str(), "%dx%d%c", &config.columns, &config.rows, &rest) != 2)
     throw UsageError("--cells " + cells + ": needs the form COLUMNSxROWS, for example --cells 10x12");
+  if (std::min(config.columns, config.rows) < 2 || std::max(config.columns, config.rows) > 60)
+    throw UsageError("--cells " + cells + ": an arena has 2 to 60 pallets a side");
+}
+
+/// The generator's options say nothing about an arena that is read from a file.
+void refuse_generator_options(const CLI::App& command) {
+  for (const char* name : {"--kind", "--cells", "--seed", "--ramps", "--rough", "--paper", "--loops", "--victims"})
+    if (command.count(name) > 0)
+      throw UsageError(std::string(name) + " is for 'rubble arena generate'; an arena file has its own layout");
 }
 
 int dispatch(int argc, char** argv) {
@@ -188,6 +197,7 @@ int dispatch(int argc, char** argv) {
   run_arguments.common.overrides = map_arguments.common.overrides = parse_sets(sets);
   arena_arguments.generate = arena_arguments.file == "generate";
   parse_cells(cells, arena_arguments.config);
+  if (*arena_command && !arena_arguments.generate) refuse_generator_options(*arena_command);
   if (const auto code = batch_commands.run()) return *code;
   if (*run_command) return run(run_arguments);
   if (*map_command) return map(map_arguments);

@@ -25,6 +25,8 @@ expect_exit 3 'noise.log' "$rubble" score noise.log noise.log
 printf 'name: cut\nmaze: |\n' >cut.yaml
 expect_exit 3 'cut.yaml' "$rubble" arena cut.yaml
 expect_exit 2 '--cells' "$rubble" arena generate --cells 10
+expect_exit 2 '--cells' "$rubble" arena generate --cells 1x1
+expect_exit 2 '--ramps' "$rubble" arena s.yaml --ramps 0.5
 mkdir full && touch full/something
 expect_exit 3 'full' "$rubble" run s.yaml --out full
 expect_exit 3 'full' "$rubble" run s.yaml --out full --force
