@@ -20,13 +20,14 @@ namespace fs = std::filesystem;
 using namespace scenarios;
 
 void write_report(const std::string& source, const std::string& page) {
-  const ResultSet set = load_results(source);
+  const ResultSet set = load_sweep_results(source);
   if (set.runs.empty()) throw InputError(source + ": holds no finished run to report on");
   write_text_file(page, report_html(set, note_of(set, source), fs::path(page).parent_path().string()));
   std::printf("%-12s %s\n", "report", page.c_str());
 }
 
-int submit(const BatchArguments& arguments, const Sweep& sweep, const std::string& out) {
+int submit(const BatchArguments& arguments, const Sweep& sweep, const std::vector<Job>& jobs_asked,
+           const std::string& out) {
   if (arguments.shard.count > 1 || !arguments.save_baseline.empty())
     throw UsageError("--slurm makes all shards itself and no baseline; leave out --shard and --save-baseline");
   SlurmPlan plan;
@@ -42,7 +43,7 @@ int submit(const BatchArguments& arguments, const Sweep& sweep, const std::strin
   plan.overrides = arguments.overrides;
   plan.options = arguments.slurm_options;
   const SlurmScripts paths = write_slurm(plan);
-  save_note(sweep, plan.out);
+  save_note(sweep, jobs_asked, plan.out);
   std::printf("%-12s %s\n%-12s %s\n", "array job", paths.array.c_str(), "merge job", paths.merge.c_str());
   if (!arguments.submit) return kOk;
   const SlurmJobs jobs = submit_slurm(paths);
@@ -70,7 +71,7 @@ int batch(const BatchArguments& arguments) {
   options.code = code_version();
   const std::vector<Job> jobs = expand(sweep, options.code, arguments.overrides);
   options.out = arguments.out.empty() ? "runs/" + sweep.name : arguments.out;
-  if (arguments.slurm) return submit(arguments, sweep, options.out);
+  if (arguments.slurm) return submit(arguments, sweep, jobs, options.out);
   const bool whole = arguments.shard.count == 1;
   if (!whole && !arguments.save_baseline.empty())
     throw UsageError("--save-baseline needs every run of the sweep; leave out --shard");
@@ -81,7 +82,7 @@ int batch(const BatchArguments& arguments) {
   const BatchReport report = run_with_progress(jobs, options, arguments.record);
   print_summary(report, options);
   if (report.interrupted) return kInterrupted;
-  save_note(sweep, options.out);
+  save_note(sweep, jobs, options.out);
   if (whole) write_report(options.out, options.out + "/report.html");
   if (!arguments.save_baseline.empty()) {
     save_baseline(make_baseline(sweep.name, results_of(jobs, options.out).runs), arguments.save_baseline);
@@ -100,7 +101,7 @@ int batch_report(const ReportArguments& arguments) {
   if (arguments.markdown) {
     std::string text;
     for (const auto& source : arguments.sources) {
-      const ResultSet set = load_results(source);
+      const ResultSet set = load_sweep_results(source);
       text += report_markdown(set, note_of(set, source));
     }
     if (arguments.out.empty()) {

@@ -37,7 +37,7 @@ void show(const BatchProgress& p) {
 
 std::string shipped_folder() {
   const char* home = std::getenv("RUBBLE_HOME");
-  return std::string(home ? home : ".") + "/scenarios";
+  return std::string(home ? home : RUBBLE_SOURCE_DIR) + "/scenarios";
 }
 
 std::string find_sweep(const std::string& name) {

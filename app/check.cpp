@@ -43,13 +43,20 @@ int check(const CheckArguments& arguments) {
   options.out = arguments.out.empty() ? "runs/check-" + sweep.name : arguments.out;
   options.workers = arguments.workers > 0 ? arguments.workers : usable_cores();
   options.run_limit = sweep.run_limit;
+  options.retry = true;  // a run that was killed on a busy machine is no verdict
   const bool stopped = run_with_progress(jobs, options, false).interrupted;
-  save_note(sweep, options.out);
+  save_note(sweep, jobs, options.out);
   if (stopped) {
     std::printf("%-12s give the same command again to go on\n", "interrupted");
     return kInterrupted;
   }
-  const std::vector<CheckCase> cases = check_runs(baseline, results_of(jobs, options.out).runs);
+  ResultSet set = results_of(jobs, options.out);
+  for (RunRecord& run : set.runs) {  // expectations on times are kept apart from what depends on the seed alone
+    const auto timing = set.timing.find(run.run_id);
+    if (timing == set.timing.end() || !timing->second.contains("broken")) continue;
+    for (const auto& line : timing->second["broken"]) run.broken.push_back(line.get<std::string>());
+  }
+  const std::vector<CheckCase> cases = check_runs(baseline, set.runs);
   for (const auto& c : cases)
     if (!c.passed) std::printf("%-12s %s: %s: %s\n", "REGRESSION", c.group.c_str(), c.name.c_str(), c.detail.c_str());
   std::printf("%-12s %zu of %zu passed (%zu runs in %s)\n", "checks", cases.size() - failures(cases), cases.size(),

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/text_file.h"
 #include "scenarios/compare_output.h"
+#include "scenarios/sweep_note.h"
 
 namespace rubble::app {
 
@@ -13,7 +14,8 @@ int compare(const CompareArguments& arguments) {
   if (arguments.b.empty() && (options.configuration_a.empty() || options.configuration_b.empty()))
     throw UsageError("compare: give two folders, or one with --config-a and --config-b");
   const std::string& b = arguments.b.empty() ? arguments.a : arguments.b;
-  const Comparison comparison = scenarios::compare(load_results(arguments.a), load_results(b), arguments.a, b, options);
+  const Comparison comparison =
+      scenarios::compare(load_sweep_results(arguments.a), load_sweep_results(b), arguments.a, b, options);
   std::printf("%s", to_text(comparison).c_str());
   if (!arguments.csv.empty()) write_text_file(arguments.csv, to_csv(comparison));
   if (!arguments.json.empty()) write_text_file(arguments.json, to_json(comparison));

@@ -62,11 +62,19 @@ CheckCase check_metric(const std::string& group, const BaselineMetric& wanted,
     c.detail = "no run has it any more; the baseline is " + figure(wanted.median);
     return c;
   }
+  const auto worse_by = [&](double before, double now) {
+    return metric->better == Better::Higher ? before - now : now - before;
+  };
   const double now = median(values);
-  const double worse_by = metric->better == Better::Higher ? wanted.median - now : now - wanted.median;
-  c.passed = worse_by <= wanted.tolerance;
-  c.detail =
-      "median " + figure(now) + ", baseline " + figure(wanted.median) + ", tolerance " + figure(wanted.tolerance);
+  const double mean_now = mean(values);
+  const std::size_t missing = runs.size() - values.size();
+  c.passed = worse_by(wanted.median, now) <= wanted.tolerance &&
+             worse_by(wanted.mean, mean_now) <= wanted.mean_tolerance && missing <= wanted.missing;
+  c.detail = "median " + figure(now) + ", baseline " + figure(wanted.median) + ", tolerance " +
+             figure(wanted.tolerance) + "; mean " + figure(mean_now) + ", baseline " + figure(wanted.mean) +
+             ", tolerance " + figure(wanted.mean_tolerance);
+  if (missing > 0)
+    c.detail += "; " + std::to_string(missing) + " runs lack it, baseline " + std::to_string(wanted.missing);
   return c;
 }
 
@@ -89,6 +97,12 @@ CheckCase check_expectations(const std::string& group, const std::vector<const R
       broken += (broken.empty() ? "seed " : "; seed ") + std::to_string(run->seed) + ": " + line;
   if (broken.empty()) return c;
   return {group, "expectations", false, broken};
+}
+
+std::size_t count_of(const ordered_json& json, const std::string& path) {
+  const auto value = json.get<std::int64_t>();
+  if (value < 0) throw InputError(path + ": 'failed' and 'missing' must be 0 or more");
+  return static_cast<std::size_t>(value);
 }
 
 std::string escaped_xml(const std::string& text) {
@@ -143,7 +157,12 @@ Baseline make_baseline(const std::string& sweep, const std::vector<RunRecord>& r
       const std::vector<double> values = numbers(members, metric.key);
       if (values.empty() || metric.key == "completed") continue;
       const double error = 1.2533 * robust_deviation(values) / std::sqrt(static_cast<double>(values.size()));
-      group.metrics.push_back({metric.key, median(values), std::max(metric.floor, rounded_tolerance(2.0 * error))});
+      const double n = static_cast<double>(values.size());
+      const double one_run = metric.floor > 0.0 ? metric.floor : 1.5 / n;
+      const double mean_error = standard_deviation(values) / std::sqrt(n);
+      group.metrics.push_back({metric.key, median(values), std::max(metric.floor, rounded_tolerance(2.0 * error)),
+                               mean(values), std::max(one_run, rounded_tolerance(3.0 * mean_error)),
+                               members.size() - values.size()});
     }
     baseline.groups.push_back(std::move(group));
   }
@@ -154,7 +173,12 @@ void save_baseline(const Baseline& baseline, const std::string& path) {
   ordered_json json{{"sweep", baseline.sweep}, {"code", baseline.code}, {"groups", ordered_json::array()}};
   for (const auto& group : baseline.groups) {
     ordered_json metrics = ordered_json::object();
-    for (const auto& m : group.metrics) metrics[m.key] = {{"median", m.median}, {"tolerance", m.tolerance}};
+    for (const auto& m : group.metrics)
+      metrics[m.key] = {{"median", m.median},
+                        {"tolerance", m.tolerance},
+                        {"mean", m.mean},
+                        {"mean_tolerance", m.mean_tolerance},
+                        {"missing", m.missing}};
     json["groups"].push_back({{"scenario", group.scenario},
                               {"config", group.configuration},
                               {"seeds", group.seeds},
@@ -175,12 +199,14 @@ Baseline load_baseline(const std::string& path) {
       BaselineGroup group{g.at("scenario"),
                           g.at("config"),
                           g.at("seeds").get<std::vector<std::uint64_t>>(),
-                          g.at("failed").get<std::size_t>(),
+                          count_of(g.at("failed"), path),
                           {}};
       for (const auto& [key, m] : g.at("metrics").items()) {
-        const double tolerance = m.at("tolerance");
-        if (!(tolerance >= 0.0)) throw InputError(path + ": the tolerance of '" + key + "' must be 0 or more");
-        group.metrics.push_back({key, m.at("median"), tolerance});
+        const BaselineMetric metric{key,          m.at("median"),         m.at("tolerance"),
+                                    m.at("mean"), m.at("mean_tolerance"), count_of(m.at("missing"), path)};
+        if (!(metric.tolerance >= 0.0 && metric.mean_tolerance >= 0.0))
+          throw InputError(path + ": the tolerances of '" + key + "' must be 0 or more");
+        group.metrics.push_back(metric);
       }
       baseline.groups.push_back(std::move(group));
     }

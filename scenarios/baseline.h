@@ -12,6 +12,9 @@ struct BaselineMetric {
   std::string key;
   double median = 0.0;     ///< over the seeds
   double tolerance = 0.0;  ///< a median worse by more than this is a regression
+  double mean = 0.0;       ///< over the seeds: a few ruined runs move it, though not the median
+  double mean_tolerance = 0.0;
+  std::size_t missing = 0;  ///< runs without the number: more of them are a regression
 };
 
 /// How one scenario with one configuration did.
@@ -29,9 +32,11 @@ struct Baseline {
   std::vector<BaselineGroup> groups;
 };
 
-/// Medians over seeds of every judged metric. The tolerance is twice the standard error of the median (1.2533 sigma /
-/// sqrt n, sigma from the median absolute deviation), at least the metric's floor: an unchanged program gives the same
-/// numbers to the bit, so the tolerance only has to cover changes that are neutral but move every run a little.
+/// Medians and means over seeds of every judged metric. The tolerance of the median is twice its standard error (1.2533
+/// sigma / sqrt n, sigma from the median absolute deviation), that of the mean three times its standard error, each at
+/// least the metric's floor; that of the mean also covers one run that loses one (a victim). An unchanged program gives
+/// the same numbers to the bit, so the tolerances only have to cover changes that are neutral but move every run a
+/// little.
 Baseline make_baseline(const std::string& sweep, const std::vector<RunRecord>& runs);
 
 /// A JSON file, made to be read, edited and kept under version control. Throws RunError.

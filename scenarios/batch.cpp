@@ -13,6 +13,7 @@
 
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/text_file.h"
 #include "scenarios/run.h"
 #include "scenarios/worker_pool.h"
 
@@ -116,8 +117,12 @@ void make_folder(const std::string& path) {
     throw InputError(path + ": cannot be created (" + error.message() + "); give a writable folder with --out");
 }
 
-/// Jobs whose result the folder does not hold, this shard's file or any other's.
-std::vector<const Job*> missing(const std::vector<Job>& jobs, const ResultsFile& file, const BatchOptions& options) {
+/// What the folder tells of the jobs, this shard's file or any other's.
+struct Found {
+  std::vector<const Job*> todo;  ///< no result yet
+  std::size_t failed = 0;        ///< made, but did not end well
+};
+Found look_up(const std::vector<Job>& jobs, const ResultsFile& file, const BatchOptions& options) {
   std::vector<RunRecord> known = file.records();
   // The file held open must not be opened again here: closing it would give up its lock.
   for (const auto& entry : fs::directory_iterator(options.out)) {
@@ -127,13 +132,29 @@ std::vector<const Job*> missing(const std::vector<Job>& jobs, const ResultsFile&
     const auto others = load_lines(entry.path().string());
     known.insert(known.end(), others.begin(), others.end());
   }
-  std::set<std::string> finished;
-  for (const auto& record : known)
-    if (record.ok() || !options.retry) finished.insert(record.run_id);
-  std::vector<const Job*> todo;
-  for (const auto& job : jobs)
-    if (finished.count(job.run_id) == 0) todo.push_back(&job);
-  return todo;
+  std::set<std::string> well, badly;
+  for (const auto& record : known) (record.ok() ? well : badly).insert(record.run_id);
+  Found found;
+  for (const auto& job : jobs) {
+    if (well.count(job.run_id) > 0) continue;
+    if (options.retry || badly.count(job.run_id) == 0) {
+      found.todo.push_back(&job);
+    } else {
+      ++found.failed;
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+namespace {
+
+/// Of all artefacts together; the log is there only where it was asked for and must not make a difference.
+std::string hash_of_artefacts(const std::string& path) {
+  auto hashes = nlohmann::ordered_json::parse(read_text_file(path));
+  hashes.erase("log.rlog");
+  return sha256_of_text(hashes.dump()).substr(0, 16);
 }
 
 }  // namespace
@@ -161,7 +182,7 @@ Runner simulating_runner(bool record) {
     options.link_latest = false;
     const RunReport report = run_scenario(job.scenario, options);
     return RunOutcome{report.score, report.end, report.failure, report.broken,
-                      sha256_of_file(folder + "/hashes.json").substr(0, 16)};
+                      hash_of_artefacts(folder + "/hashes.json")};
   };
 }
 
@@ -169,7 +190,8 @@ BatchReport run_batch(const std::vector<Job>& all, const Runner& runner, const B
   make_folder(options.out);
   ResultsFile file(options.out, shard_suffix(options.shard));
   const std::vector<Job> jobs = in_shard(all, options.shard);
-  const std::vector<const Job*> todo = missing(jobs, file, options);
+  const Found found = look_up(jobs, file, options);
+  const std::vector<const Job*>& todo = found.todo;
 
   const auto work = [&](std::size_t task) {
     const Job& job = *todo[task];
@@ -181,6 +203,7 @@ BatchReport run_batch(const std::vector<Job>& all, const Runner& runner, const B
   BatchProgress& progress = report.progress;
   progress.total = jobs.size();
   progress.skipped = jobs.size() - todo.size();
+  progress.failed = found.failed;
   const auto start = std::chrono::steady_clock::now();
   const auto finished = [&](const TaskResult& result) {
     if (result.end != TaskEnd::Done) check_space(options.out, shard_suffix(options.shard));

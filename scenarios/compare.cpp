@@ -32,8 +32,8 @@ std::map<Key, const RunRecord*> by_key(const ResultSet& set, const std::string& 
     const Key key{run.scenario, configuration.empty() ? run.configuration : "", run.seed};
     if (!runs.emplace(key, &run).second)
       throw InputError(name +
-                       ": holds results of several versions of the code for one scenario, configuration and "
-                       "seed; compare folders that one version wrote");
+                       ": holds several results for one scenario, configuration and seed, from several versions of "
+                       "the code or calls with other --set values; compare folders that one command wrote");
   }
   if (runs.empty()) {
     std::string known;
@@ -79,6 +79,9 @@ Verdict judge(const MetricComparison& c) {
   const bool clear = c.interval.low > 0.0 || c.interval.high < 0.0;
   if (!clear || c.p_sign > 0.05) return Verdict::NoEvidence;
   const bool up = c.difference > 0.0;
+  // A few large differences one way against many small ones the other way are no evidence for either.
+  const bool most_up = c.metric.better == Better::Lower ? c.worse > c.better : c.better > c.worse;
+  if (up != most_up) return Verdict::NoEvidence;
   if (c.metric.better == Better::Neither) return up ? Verdict::Higher : Verdict::Lower;
   return up == (c.metric.better == Better::Higher) ? Verdict::Better : Verdict::Worse;
 }

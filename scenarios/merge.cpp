@@ -33,7 +33,7 @@ CREATE VIEW metrics AS SELECT run_id, j.key AS key, CAST(j.value AS REAL) AS val
 bool is_database(const std::string& path) {
   char head[16] = {};
   std::ifstream(path, std::ios::binary).read(head, sizeof head);
-  return std::string(head) == kMagic;
+  return std::string(head, sizeof head) == std::string(kMagic, sizeof head);  // the end mark included
 }
 
 class Database {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 
+#include "arenas/raf.h"
 #include "base/error.h"
 #include "base/strict_yaml.h"
 #include "scenarios/binder.h"
@@ -276,6 +277,12 @@ std::string arena_yaml(const Scenario& scenario) {
     arenas::GenerateConfig config = scenario.generate;
     config.seed = scenario.arena_seed();
     return arenas::generate_arena(config);
+  }
+  if (std::filesystem::path(scenario.arena_file).extension() == ".raf") {
+    const arenas::RafImport import = arenas::import_raf(scenario.arena_file);
+    if (!import.unknown.empty())
+      throw InputError(scenario.arena_file + ": " + import.summary() + ": remove these parts from the file");
+    return arenas::to_yaml(import);
   }
   std::ifstream file(scenario.arena_file, std::ios::binary);
   std::ostringstream text;

@@ -7,6 +7,8 @@
 namespace rubble::scenarios {
 
 double mean(const std::vector<double>& values);
+/// Of a sample, n - 1 in the denominator; 0 for fewer than two values.
+double standard_deviation(const std::vector<double>& values);
 /// Linear between order statistics (type 7 of Hyndman and Fan 1996). `share` 0..1, values not empty, in any order.
 double quantile(std::vector<double> values, double share);
 double median(const std::vector<double>& values);

@@ -25,11 +25,28 @@ std::string name_of_path(const std::string& path) {
 
 }  // namespace
 
-void save_note(const Sweep& sweep, const std::string& folder) {
+void save_note(const Sweep& sweep, const std::vector<Job>& jobs, const std::string& folder) {
   ordered_json json{{"name", sweep.name}, {"about", sweep.about}, {"configurations", ordered_json::array()}};
   for (const auto& configuration : sweep.configurations)
     json["configurations"].push_back({{"name", configuration.name}, {"reference", configuration.reference}});
+  json["runs"] = ordered_json::array();
+  for (const Job& job : jobs) json["runs"].push_back(job.run_id);
   write_text_file(folder + kFile, json.dump(2) + "\n");
+}
+
+ResultSet load_sweep_results(const std::string& path) {
+  ResultSet set = load_results(path);
+  const std::string file = path + kFile;
+  if (!fs::is_directory(path) || !fs::exists(file)) return set;
+  const ordered_json json = ordered_json::parse(read_text_file(file), nullptr, false);
+  if (!json.is_object() || !json.contains("runs")) return set;
+  std::set<std::string> wanted;
+  for (const auto& id : json["runs"])
+    if (id.is_string()) wanted.insert(id.get<std::string>());
+  auto& runs = set.runs;
+  runs.erase(std::remove_if(runs.begin(), runs.end(), [&](const auto& run) { return wanted.count(run.run_id) == 0; }),
+             runs.end());
+  return set;
 }
 
 SweepNote note_of(const ResultSet& set, const std::string& path) {

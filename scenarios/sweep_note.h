@@ -17,7 +17,12 @@ struct SweepNote {
   std::map<std::string, std::string> references;  ///< which configuration each is measured against
 };
 
-void save_note(const Sweep& sweep, const std::string& folder);
+/// Keeps beside the results what `sweep` is and which runs its last call, `jobs`, asked for.
+void save_note(const Sweep& sweep, const std::vector<Job>& jobs, const std::string& folder);
+
+/// load_results(), of a folder only the runs that the last call of its sweep asked for: a folder may also hold those of
+/// older versions of the code, or of other --set values.
+ResultSet load_sweep_results(const std::string& path);
 
 /// The note of the results; when there is none, one made of what the results hold (configurations in their order,
 /// measured against the first).

@@ -69,6 +69,20 @@ TEST_F(BaselineFile, AWorseMedianIsARegressionAndABetterIsNot) {
   EXPECT_THAT(failed(check_runs(baseline, runs(+0.15))), testing::IsEmpty());
 }
 
+TEST_F(BaselineFile, AFewRuinedRunsAreARegressionThoughTheMedianStands) {
+  const Baseline baseline = make_baseline("regression", runs(0.0));
+  std::vector<RunRecord> ruined = runs(0.0);
+  for (std::size_t i = 0; i < 3; ++i) ruined[i].score["score"] = 0.2;
+  EXPECT_THAT(failed(check_runs(baseline, ruined)), testing::ElementsAre("yellow / one: score"));
+}
+
+TEST_F(BaselineFile, RunsThatLoseANumberAreARegression) {
+  const Baseline baseline = make_baseline("regression", runs(0.0));
+  std::vector<RunRecord> poorer = runs(0.0);
+  poorer[0].score["psi_m"] = nullptr;
+  EXPECT_THAT(failed(check_runs(baseline, poorer)), testing::ElementsAre("yellow / one: psi [m]"));
+}
+
 TEST_F(BaselineFile, FailedRunsBrokenExpectationsAndLostMetricsAreRegressions) {
   const Baseline baseline = make_baseline("regression", runs(0.0));
   auto now = runs(0.0);

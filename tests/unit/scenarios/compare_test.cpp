@@ -47,6 +47,16 @@ TEST(Compare, PairingFindsASmallChangeInALargeSpread) {
   EXPECT_EQ(metric(compare(b, a, "B", "A"), "score").verdict, Verdict::Worse);
 }
 
+TEST(Compare, AFewLargeGainsAgainstManySmallLossesAreNoEvidence) {
+  const ResultSet a = runs("c", 24, arena_score);
+  const ResultSet b =
+      runs("c", 24, [](std::uint64_t seed) { return arena_score(seed) + (seed % 4 == 0 ? 0.2 : -0.001); });
+  const MetricComparison c = metric(compare(a, b, "A", "B"), "score");
+  EXPECT_GT(c.interval.low, 0.0);
+  EXPECT_LE(c.p_sign, 0.05);
+  EXPECT_EQ(c.verdict, Verdict::NoEvidence);
+}
+
 TEST(Compare, TheSameResultsAreIdentical) {
   const ResultSet a = runs("c", 10, arena_score);
   for (const auto& c : compare(a, a, "A", "A").groups[0].metrics) EXPECT_EQ(c.verdict, Verdict::Identical);

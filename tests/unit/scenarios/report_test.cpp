@@ -65,7 +65,7 @@ TEST_F(Report, MarkdownMeasuresEachConfigurationAgainstItsReference) {
   sweep.name = "ramps";
   sweep.about = "What ramps cost.";
   sweep.configurations = {{"ramps <on>", "ramps <on>", {}}, {"off", "ramps <on>", {}}};
-  save_note(sweep, folder_);
+  save_note(sweep, {}, folder_);
   const ResultSet set = results();
   const std::string text = report_markdown(set, note_of(set, folder_));
   EXPECT_THAT(text, HasSubstr("## ramps\n\nWhat ramps cost.\n"));
