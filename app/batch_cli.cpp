@@ -119,7 +119,7 @@ void BatchCommands::Parsed::add_compare(CLI::App& app) {
   compare->add_option("--html", a.html, "Write a page");
   compare->footer(
       "Examples:\n  rubble compare runs/before runs/after\n"
-      "  rubble compare runs/levelling --config-a off --config-b on --html levelling.html");
+      "  rubble compare runs/icp --config-a mapper.icp=false --config-b mapper.icp=true --html icp.html");
 }
 
 void BatchCommands::Parsed::add_check(CLI::App& app) {

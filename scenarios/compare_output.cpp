@@ -20,7 +20,9 @@ std::string interval_text(const Interval& interval) {
 
 std::string split_text(const MetricComparison& c) {
   const std::size_t ties = c.pairs - c.better - c.worse;
-  return std::to_string(c.better) + " : " + std::to_string(c.worse) + (ties ? " (" + std::to_string(ties) + " =)" : "");
+  return std::to_string(c.better) + " : " + std::to_string(c.worse) +
+         (ties ? " (" + std::to_string(ties) + " =)" : "") +
+         (c.missing ? " (" + std::to_string(c.missing) + " missing)" : "");
 }
 
 std::string signed_figure(double value) { return (value > 0.0 ? "+" : "") + figure(value); }
