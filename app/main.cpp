@@ -189,6 +189,8 @@ int dispatch(int argc, char** argv) {
     std::string message = error.what();
     std::replace(message.begin(), message.end(), '\n', ' ');
     const auto chosen = app.get_subcommands();
+    if (chosen.empty() && argc > 1 && argv[1][0] != '-')
+      throw UsageError("'" + std::string(argv[1]) + "' is no subcommand; see rubble --help");
     const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
     throw UsageError(message + "; see rubble" + command + " --help");
   }

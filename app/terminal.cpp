@@ -44,6 +44,7 @@ constexpr Row kRows[] = {
 void catch_interrupts() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  std::signal(SIGHUP, on_signal);  // the terminal was closed
 }
 
 bool interrupted() { return signalled != 0; }

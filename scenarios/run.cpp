@@ -211,7 +211,10 @@ void score_files(ordered_json& json, const RunFolder& folder, const Scenario& sc
   json["victims_total"] = arena.victims.size();
   json["victims_reported"] = reported.size();
   json["victims_found"] = 0;
-  if (!score.aligned) return;
+  if (!score.aligned) {
+    json["known"] = nullptr;  // nobody can say what of the truth an unplaced map shows
+    return;
+  }
   folder.publish({"overlay.png"}, [&](const std::string& path) {
     scoring::write_overlay(path + "overlay.png", map, truth, score.T_truth_map);
   });

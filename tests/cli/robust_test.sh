@@ -2,6 +2,7 @@
 . "$(dirname "$0")/lib.sh"
 small_scenario s.yaml
 expect_exit 2 'see rubble --help' "$rubble"
+expect_exit 2 "'bogus' is no subcommand" "$rubble" bogus
 expect_exit 2 '--sed' "$rubble" run --sed 3
 expect_exit 2 '--seed' "$rubble" run s.yaml --seed -1
 expect_exit 2 '--tau' "$rubble" score a.tif b.tif --tau nan
