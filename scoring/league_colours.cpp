@@ -67,11 +67,12 @@ bool is_searched(const Rgb& c) { return c.g - c.r >= 20 && c.g - c.b >= 20 && st
 
 struct Census {
   std::size_t walls = 0;
+  std::size_t pure_walls = 0;
   std::size_t checkerboard = 0;
   std::size_t unexplored = 0;  ///< checkerboard or as light
   std::size_t pixels = 0;
   /// Never turned, scaled or compressed with loss: the colours of the table hold to the digit.
-  bool exact() const { return checkerboard > 0 && 10 * checkerboard >= 9 * unexplored; }
+  bool exact() const { return checkerboard > 0 && 10 * checkerboard >= 9 * unexplored && 10 * pure_walls >= 9 * walls; }
 };
 
 Census census(const RgbImage& image) {
@@ -82,7 +83,9 @@ Census census(const RgbImage& image) {
       ++out.pixels;
       if (is_checkerboard(c)) ++out.checkerboard;
       if (looks_unexplored(c) && c.b > c.r) ++out.unexplored;
-      if (near_colour(c, {0, 40, 120}, 45) && wall_share(c) > 0.5) ++out.walls;
+      if (!near_colour(c, {0, 40, 120}, 45) || wall_share(c) <= 0.5) continue;
+      ++out.walls;
+      if (near_colour(c, {0, 40, 120}, 0)) ++out.pure_walls;
     }
   }
   return out;
@@ -136,6 +139,17 @@ void drop_lettering(cv::Mat& labels) {
         labels.at<Label>(y, x) = kUnknown;
 }
 
+/// Turned pictures have ragged walls; a ragged rim is a long one, which makes walls seem thinner than they are
+/// (wall_half_thickness()). Notches of a pixel are filled. Their grid lines, blended with white, look unexplored: unknown
+/// lines of up to four pixels inside free space are free.
+void smooth(cv::Mat& labels) {
+  cv::Mat closed;
+  cv::morphologyEx(labels == static_cast<int>(kWall), closed, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8U));
+  labels.setTo(static_cast<int>(kWall), closed);
+  cv::morphologyEx(labels == static_cast<int>(kFree), closed, cv::MORPH_CLOSE, cv::Mat::ones(5, 5, CV_8U));
+  labels.setTo(static_cast<int>(kFree), closed & (labels == static_cast<int>(kUnknown)));
+}
+
 }  // namespace
 
 bool is_league_map(const RgbImage& image) {
@@ -157,6 +171,7 @@ LabelImage classify_league(const RgbImage& image) {
   }
   fill_drawings(out.classes);
   drop_lettering(out.classes);
+  if (!exact) smooth(out.classes);
   const double share =
       100.0 * static_cast<double>(drawn) / static_cast<double>(std::max<std::size_t>(1, out.classes.total()));
   out.recognised =

@@ -15,9 +15,11 @@ open('turned.tfw', 'w').write('\n'.join('%.9f' % v for v in (
     co * a - si * d, si * a + co * d, co * b - si * e, si * b + co * e, x, y)) + '\n')
 PY
 gdal_translate -q -co PROFILE=BASELINE a/map.tif turned.tif
-gdalwarp -q -r near -tr 0.025 0.025 -dstalpha turned.tif upright.tif 2>/dev/null || fail "gdalwarp"
-gdal_translate -q -b 1 -b 2 -b 3 upright.tif map37.tif
-for m in turned.tif map37.tif; do
+for method in near bilinear cubic; do
+  gdalwarp -q -r $method -tr 0.025 0.025 -dstalpha turned.tif upright-$method.tif 2>/dev/null || fail "gdalwarp"
+  gdal_translate -q -b 1 -b 2 -b 3 upright-$method.tif map37-$method.tif
+done
+for m in turned.tif map37-near.tif map37-bilinear.tif map37-cubic.tif; do
   "$rubble" score $m a/truth.tif --json >turned.json || fail "score of $m ended with $?"
   python3 - $m <<'PY' || fail "the score of $m differs"
 import json, sys
