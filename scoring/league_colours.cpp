@@ -140,8 +140,8 @@ void drop_lettering(cv::Mat& labels) {
 }
 
 /// Turned pictures have ragged walls; a ragged rim is a long one, which makes walls seem thinner than they are
-/// (wall_half_thickness()). Notches of a pixel are filled. Their grid lines, blended with white, look unexplored: unknown
-/// lines of up to four pixels inside free space are free.
+/// (wall_half_thickness()). Notches of a pixel are filled. Their grid lines, blended with white, look unexplored:
+/// unknown lines of up to four pixels inside free space are free.
 void smooth(cv::Mat& labels) {
   cv::Mat closed;
   cv::morphologyEx(labels == static_cast<int>(kWall), closed, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8U));
