@@ -7,6 +7,7 @@
 #include "app/score_tools.h"
 #include "base/angle.h"
 #include "base/error.h"
+#include "scenarios/score_json.h"
 #include "scoring/normalise.h"
 #include "scoring/picture.h"
 #include "scoring/pose_score.h"
@@ -39,24 +40,10 @@ void print_table(const scoring::MapScore& s, const scoring::LoadedMap& map, cons
 
 nlohmann::ordered_json as_json(const scoring::MapScore& s, const scoring::LoadedMap& map,
                                const scoring::LoadedMap& truth) {
-  nlohmann::ordered_json json = {{"score", s.score},
-                                 {"precision", s.precision},
-                                 {"recall", s.recall},
-                                 {"psi_m", s.psi_m},
-                                 {"aligned", s.aligned},
-                                 {"known", s.known},
-                                 {"psi_literal_m", s.psi_literal_m},
-                                 {"psi_occupied_map_m", s.psi_occupied_map_m},
-                                 {"psi_occupied_truth_m", s.psi_occupied_truth_m},
-                                 {"psi_free_map_m", s.psi_free_map_m},
-                                 {"psi_free_truth_m", s.psi_free_truth_m},
-                                 {"align_x_m", s.T_truth_map.x},
-                                 {"align_y_m", s.T_truth_map.y},
-                                 {"align_rad", s.T_truth_map.phi},
-                                 {"align_runner_up", s.runner_up},
-                                 {"align_note", s.note},
-                                 {"map", map.recognised},
-                                 {"truth", truth.recognised}};
+  nlohmann::ordered_json json;
+  scenarios::add_map_score(json, s);
+  json["map"] = map.recognised;
+  json["truth"] = truth.recognised;
   add_parts(json, s);
   return json;
 }

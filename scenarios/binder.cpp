@@ -1,9 +1,9 @@
 #include "scenarios/binder.h"
 
-#include <charconv>
 #include <cmath>
 
 #include "base/angle.h"
+#include "base/number_text.h"
 
 namespace rubble::scenarios {
 std::string quoted(const std::string& text) {
@@ -17,12 +17,6 @@ std::string quoted(const std::string& text) {
     }
   }
   return out + "\"";
-}
-
-std::string shortest(double value) {
-  char buffer[40];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-  return {buffer, end};
 }
 
 void Binder::degrees(const char* key, double& radians, double low, double high) {
@@ -60,7 +54,7 @@ void YamlWriter::line(const char* key, const std::string& value) {
   yaml_ += std::string(static_cast<std::size_t>(indent_), ' ') + key + ": " + value + "\n";
 }
 
-void YamlWriter::number(const char* key, double& value, double, double) { line(key, shortest(value)); }
+void YamlWriter::number(const char* key, double& value, double, double) { line(key, number_text(value)); }
 
 void YamlWriter::integer(const char* key, int& value, int, int) { line(key, std::to_string(value)); }
 

@@ -59,8 +59,6 @@ class YamlWriter : public Binder {
   std::string yaml_;
 };
 
-/// The shortest decimal that reads back to the same double.
-std::string shortest(double value);
 /// A YAML double-quoted scalar.
 std::string quoted(const std::string& text);
 

@@ -5,7 +5,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/binder.h"
+#include "base/number_text.h"
+#include "base/words.h"
 #include "scenarios/html.h"
 
 namespace rubble::scenarios {
@@ -29,12 +30,10 @@ std::string signed_figure(double value) { return (value > 0.0 ? "+" : "") + figu
 
 std::string quoted_csv(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
+  return csv_quoted(text);
 }
 
-std::string csv_number(double value) { return std::isfinite(value) ? shortest(value) : ""; }
+std::string csv_number(double value) { return std::isfinite(value) ? number_text(value) : ""; }
 
 ordered_json json_number(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(); }
 

@@ -9,7 +9,7 @@
 
 #include "base/angle.h"
 #include "base/error.h"
-#include "scenarios/binder.h"
+#include "base/number_text.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -156,7 +156,7 @@ GeoTiff draw_league_map(const slam::CountMap& map, const LeagueDrawing& drawing)
   tiff.transform = georeference(-box.y1, box.x1, resolution, anchor, tiff.epsg);
   tiff.description =
       "{\"producer\": \"rubble\", \"frame\": \"easting = -map y, northing = map x\", \"resolution_m\": " +
-      shortest(drawing.resolution) + ", \"victims\": " + std::to_string(drawing.victims.size()) + "}";
+      number_text(drawing.resolution) + ", \"victims\": " + std::to_string(drawing.victims.size()) + "}";
   tiff.image = std::move(canvas.image());
   return tiff;
 }
@@ -183,7 +183,7 @@ GeoTiff draw_truth(const OccupancyGrid& truth) {
   const GridFrame& f = truth.frame();
   tiff.transform = georeference(f.x0, f.y0 + f.height * f.resolution, f.resolution, std::nullopt, tiff.epsg);
   tiff.description =
-      "{\"producer\": \"rubble\", \"content\": \"ground truth\", \"resolution_m\": " + shortest(f.resolution) + "}";
+      "{\"producer\": \"rubble\", \"content\": \"ground truth\", \"resolution_m\": " + number_text(f.resolution) + "}";
   return tiff;
 }
 
@@ -204,9 +204,9 @@ void write_ros_map(const std::string& stem, const OccupancyGrid& grid, double oc
     }
   pgm.flush();
   std::ofstream yaml(stem + ".yaml");
-  yaml << "image: " << stem.substr(stem.find_last_of('/') + 1) << ".pgm\nresolution: " << shortest(f.resolution)
-       << "\norigin: [" << shortest(f.x0 + x0 * f.resolution) << ", " << shortest(f.y0 + y0 * f.resolution)
-       << ", 0.0]\nnegate: 0\noccupied_thresh: " << shortest(std::max(occupied_threshold, 0.25))
+  yaml << "image: " << stem.substr(stem.find_last_of('/') + 1) << ".pgm\nresolution: " << number_text(f.resolution)
+       << "\norigin: [" << number_text(f.x0 + x0 * f.resolution) << ", " << number_text(f.y0 + y0 * f.resolution)
+       << ", 0.0]\nnegate: 0\noccupied_thresh: " << number_text(std::max(occupied_threshold, 0.25))
        << "\nfree_thresh: 0.196\n";
   yaml.flush();
   if (!pgm || !yaml) throw RunError(stem + ".pgm: cannot be written; check the folder and the free space");

@@ -18,6 +18,7 @@
 #include "robot/log.h"
 #include "scenarios/core.h"
 #include "scenarios/run_folder.h"
+#include "scenarios/score_json.h"
 #include "scoring/normalise.h"
 #include "scoring/picture.h"
 #include "scoring/scorecard.h"
@@ -127,25 +128,6 @@ ordered_json empty_score() {
   return score;
 }
 
-void add_map_score(ordered_json& json, const scoring::MapScore& s) {
-  json["score"] = s.score;
-  json["precision"] = s.precision;
-  json["recall"] = s.recall;
-  json["psi_m"] = s.psi_m;
-  json["aligned"] = s.aligned;
-  json["known"] = s.known;
-  json["psi_literal_m"] = s.psi_literal_m;
-  json["psi_occupied_map_m"] = s.psi_occupied_map_m;
-  json["psi_occupied_truth_m"] = s.psi_occupied_truth_m;
-  json["psi_free_map_m"] = s.psi_free_map_m;
-  json["psi_free_truth_m"] = s.psi_free_truth_m;
-  json["align_runner_up"] = s.runner_up;
-  json["align_x_m"] = s.T_truth_map.x;
-  json["align_y_m"] = s.T_truth_map.y;
-  json["align_rad"] = s.T_truth_map.phi;
-  json["align_note"] = s.note;
-}
-
 void add_trajectory_error(ordered_json& json, const Trajectory& estimate, const Trajectory& truth) {
   const scoring::TrajectoryError error = scoring::trajectory_error(estimate, truth);
   json["ate_matched"] = error.matched;
@@ -211,10 +193,7 @@ void score_files(ordered_json& json, const RunFolder& folder, const Scenario& sc
   json["victims_total"] = arena.victims.size();
   json["victims_reported"] = reported.size();
   json["victims_found"] = 0;
-  if (!score.aligned) {
-    json["known"] = nullptr;  // nobody can say what of the truth an unplaced map shows
-    return;
-  }
+  if (!score.aligned) return;
   folder.publish({"overlay.png"}, [&](const std::string& path) {
     scoring::write_overlay(path + "overlay.png", map, truth, score.T_truth_map);
   });

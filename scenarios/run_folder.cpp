@@ -9,6 +9,7 @@
 #include "arenas/render.h"
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/words.h"
 #include "scenarios/league_map.h"
 
 namespace rubble::scenarios {
@@ -20,13 +21,6 @@ constexpr const char* kPartial = ".partial";
 
 [[noreturn]] void cannot_write(const std::string& path, const std::string& why) {
   throw RunError(path + ": cannot be written (" + why + "); check the folder, its permissions and the free space");
-}
-
-/// A CSV field in quotes, as RFC 4180 has it.
-std::string csv_quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
 }
 
 /// The league's list of points of interest: preamble, then one line a detection.

@@ -8,6 +8,7 @@
 
 #include "arenas/raf.h"
 #include "base/error.h"
+#include "base/number_text.h"
 #include "base/strict_yaml.h"
 #include "scenarios/binder.h"
 
@@ -256,17 +257,17 @@ std::string resolved_yaml(const Scenario& scenario) {
     out += "arena:\n  generate:\n    seed: " + std::to_string(s.arena_seed()) + "\n" + generate.yaml();
   }
   if (s.geo)
-    out += "geo:\n  latitude_deg: " + shortest(s.geo->latitude_deg) +
-           "\n  longitude_deg: " + shortest(s.geo->longitude_deg) + "\n  heading_deg: " + shortest(s.geo->heading_deg) +
-           "\n";
+    out += "geo:\n  latitude_deg: " + number_text(s.geo->latitude_deg) +
+           "\n  longitude_deg: " + number_text(s.geo->longitude_deg) +
+           "\n  heading_deg: " + number_text(s.geo->heading_deg) + "\n";
   YamlWriter writer;
   bind_sections(writer, s);
   out += writer.yaml();
   if (!s.expect.empty()) out += "expect:\n";
   for (const auto& e : s.expect) {
     out += "  " + e.key + ": {";
-    if (e.min) out += "min: " + shortest(*e.min);
-    if (e.max) out += std::string(e.min ? ", " : "") + "max: " + shortest(*e.max);
+    if (e.min) out += "min: " + number_text(*e.min);
+    if (e.max) out += std::string(e.min ? ", " : "") + "max: " + number_text(*e.max);
     out += "}\n";
   }
   return out;

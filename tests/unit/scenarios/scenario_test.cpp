@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "base/number_text.h"
 #include "scenarios/binder.h"
 
 namespace rubble::scenarios {
@@ -95,7 +96,7 @@ TEST_F(ScenarioFile, FaultsAreNamedWithTheirPlace) {
 
 TEST(Shortest, ReadsBackToTheSameBits) {
   for (const double value : {0.1, 1.0 / 3.0, 1e-300, 12345678.9, 0.05, -2.5})
-    EXPECT_EQ(std::stod(shortest(value)), value);
+    EXPECT_EQ(std::stod(number_text(value)), value);
 }
 
 }  // namespace
