@@ -1,5 +1,7 @@
 #include "sim/chassis.h"
 
+#include <box2d/b2_distance.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,9 +13,8 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kLookAround = 0.3;  ///< farther things are not looked for [m]
-constexpr double kTouch =
-    0.03;  ///< nearer things are Box2D's: two robots at 0.7 m/s and 1.7 rad/s close by 28 mm a step [m]
+constexpr double kLookAround = 0.3;   ///< farther things are not looked for [m]
+constexpr float kSurelyFar = 0.1f;    ///< a way that lasts for twenty steps and more need not be known exactly [m]
 constexpr double kAboveLaser = 0.05;  ///< the laser's housing ends so far above its beams [m]
 /// Two Box2D polygons keep a gap of both skins less the slop; the body is drawn smaller by it.
 constexpr double kSkin = 2.0 * static_cast<double>(b2_polygonRadius) - static_cast<double>(b2_linearSlop);
@@ -86,31 +87,60 @@ void Chassis::find_stops() {
   }
 }
 
-/// How far the robot's swing circle is from all others' bounding boxes, up to kLookAround [m].
-double Chassis::clearance() const {
+/// How far the outline moves in a step at the most [m].
+double Chassis::most_way(double dt) const {
+  return std::max(way(dt), (model_.max_v + model_.max_w * model_.swing_radius()) * dt);
+}
+
+/// How far the body can go before it touches anything that rests or takes a step, up to kLookAround [m]. Bounding boxes
+/// and the body's swing circle tell what is far; the outlines themselves only what is not.
+double Chassis::clearance(double dt) const {
   class Nearest : public b2QueryCallback {
    public:
-    Nearest(const b2Vec2& centre, const b2Body* own) : centre_(centre), own_(own) {}
+    Nearest(const b2Body& own, double swing_radius, double step)
+        : own_(own), swing_(static_cast<float>(swing_radius)), step_(static_cast<float>(step)) {
+      around_.Set(own.GetFixtureList()->GetShape(), 0);
+    }
     bool ReportFixture(b2Fixture* fixture) override {
-      if (fixture->GetBody() == own_) return true;
+      if (fixture->GetBody() == &own_) return true;
       const b2AABB& box = fixture->GetAABB(0);
-      const b2Vec2 outside = b2Max(b2Max(box.lowerBound - centre_, centre_ - box.upperBound), b2Vec2(0.0f, 0.0f));
-      nearest = std::min(nearest, static_cast<double>(outside.Length()));
+      const b2Vec2& centre = own_.GetPosition();
+      const b2Vec2 outside = b2Max(b2Max(box.lowerBound - centre, centre - box.upperBound), b2Vec2(0.0f, 0.0f));
+      const bool moves = fixture->GetBody()->GetType() == b2_dynamicBody && fixture->GetBody()->IsAwake();
+      const float approach = moves ? step_ : 0.0f;
+      const float boxes = outside.Length() - swing_ - approach;
+      if (boxes >= nearest) return true;
+      nearest = std::min(nearest, boxes > kSurelyFar ? boxes : outlines(*fixture) - approach);
       return true;
     }
-    double nearest = 1e9;
+    float nearest = static_cast<float>(kLookAround);
 
    private:
-    b2Vec2 centre_;
-    const b2Body* own_;
+    float outlines(const b2Fixture& fixture) const {
+      b2DistanceInput input;
+      input.proxyA = around_;
+      input.proxyB.Set(fixture.GetShape(), 0);
+      input.transformA = own_.GetTransform();
+      input.transformB = fixture.GetBody()->GetTransform();
+      input.useRadii = true;
+      b2SimplexCache cache;
+      cache.count = 0;
+      b2DistanceOutput output;
+      b2Distance(&output, &cache, &input);
+      return output.distance;
+    }
+
+    const b2Body& own_;
+    float swing_, step_;
+    b2DistanceProxy around_;
   };
   const float reach = static_cast<float>(model_.swing_radius() + kLookAround);
-  Nearest nearest(body_->GetPosition(), body_);
+  Nearest nearest(*body_, model_.swing_radius(), most_way(dt));
   b2AABB around;
   around.lowerBound = body_->GetPosition() - b2Vec2(reach, reach);
   around.upperBound = body_->GetPosition() + b2Vec2(reach, reach);
   box2d_.QueryAABB(&nearest, around);
-  return std::min(kLookAround, nearest.nearest - model_.swing_radius());
+  return static_cast<double>(nearest.nearest);
 }
 
 void Chassis::drive(double dt) {
@@ -145,13 +175,13 @@ void Chassis::enter_box2d() {
   body_->SetAngularVelocity(static_cast<float>(driven_.w));
 }
 
-void Chassis::leave_box2d(bool others_move) {
+void Chassis::leave_box2d(bool others_move, double dt) {
   const TPoint2D position = origin_.from_box2d(body_->GetPosition());
   state_.pose = {position.x, position.y, wrap_angle(static_cast<double>(body_->GetAngle()))};
   const b2Vec2 after = body_->GetLinearVelocity();
   state_.velocity = {static_cast<double>(after.x), static_cast<double>(after.y),
                      static_cast<double>(body_->GetAngularVelocity())};
-  free_way_ = others_move ? 0.0 : clearance() - kTouch;
+  free_way_ = others_move ? 0.0 : clearance(dt) - most_way(dt);
 }
 
 void Chassis::settle(double dt) {

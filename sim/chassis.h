@@ -46,7 +46,7 @@ class Chassis {
   /// Hands pose and velocity to Box2D, before the world's step.
   void enter_box2d();
   /// Takes over what Box2D made of it. `others_move`: something near may move on its own: stay with Box2D.
-  void leave_box2d(bool others_move);
+  void leave_box2d(bool others_move, double dt);
   /// Ground, attitude, servos and time after the move.
   void settle(double dt);
 
@@ -61,7 +61,8 @@ class Chassis {
 
  private:
   void find_stops();
-  double clearance() const;
+  double clearance(double dt) const;
+  double most_way(double dt) const;
   HeightBand band() const;
 
   b2World& box2d_;

@@ -11,6 +11,10 @@
 
 namespace rubble::sim {
 
+struct Inertia;
+struct Motion;
+struct Wheel;
+
 /// What the data sheets leave open about a Pioneer 3-AT's running gear; docs/simulator.md gives the reasons.
 struct DriveParameters {
   double centre_of_mass = 0.18;    ///< height above the wheels' feet [m]
@@ -72,22 +76,14 @@ class Drive {
   int iterations() const { return iterations_; }
 
  private:
-  struct Axis;
-  struct Motion;
-  struct Wheel;
-
   std::array<double, 4> loads(const std::array<Ground, 4>& ground) const;
-  Motion start(const std::array<Ground, 4>& ground, const std::array<double, 4>& load,
-               const PlanVelocity& before) const;
-  Wheel contact(std::size_t i, const Ground& ground, double load, const mrpt::math::TPoint2D& arm, double heading_cos,
-                double heading_sin, const Motion& motion, double dt) const;
-  void push(Motion& motion, const Wheel& wheel, double along, double across) const;
-  double roll(Motion& motion, const Wheel& wheel, mrpt::math::TPoint2D& impulse) const;
-  double ruck(Motion& motion, const Wheel& wheel, double& impulse) const;
-  void warm_start(Motion& motion, const std::array<Wheel, 4>& wheels, double motor_limit);
-  double drive_rims(Motion& motion, const SideDemand& demand, double motor_limit);
+  Inertia inertia(const std::array<Ground, 4>& ground, const std::array<double, 4>& load) const;
+  Wheel contact(std::size_t i, const Ground& ground, double load, const mrpt::math::TPoint2D& arm,
+                const mrpt::math::TPoint2D& heading, const Inertia& inertia, const Motion& motion, double dt) const;
+  void warm_start(Motion& motion, const std::array<Wheel, 4>& wheels);
+  double drive_rims(Motion& motion, std::array<Wheel, 4>& wheels, const SideDemand& demand, double motor_limit);
   void set_drilling(const Motion& motion, const std::array<Wheel, 4>& wheels);
-  double drill(Motion& motion);
+  double drill(Motion& motion, const Inertia& inertia);
 
   robot::RobotModel model_;
   DriveParameters parameters_;

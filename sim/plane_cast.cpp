@@ -151,7 +151,7 @@ void PlaneCast::draw_faces(const ScanFaces& faces, const Placement& laser, const
   }
   segments_.count = 0;
   const ScanFaces::View view(faces, laser);
-  for (const std::uint32_t i : near_) cut(faces.corners(i, view));
+  for (const NearFace& face : near_) cut(faces.corners(face.polygon, view));
   draw_segments(table);
 }
 

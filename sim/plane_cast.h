@@ -41,7 +41,7 @@ class PlaneCast {
   void draw(const Sphere& sphere, const Placement& laser, const BeamTable& table, double max_range);
 
   const ScanFaces& faces_;
-  std::vector<std::uint32_t> near_;
+  std::vector<NearFace> near_;
   Segments segments_;
   float* inverse_ = nullptr;  ///< nearest so far, 1 / range: the scan being drawn
 };

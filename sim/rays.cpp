@@ -13,9 +13,12 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 Matrix3d rotation(double yaw, double pitch, double roll) {
-  const double cy = std::cos(yaw), sy = std::sin(yaw);
-  const double cp = std::cos(pitch), sp = std::sin(pitch);
-  const double cr = std::cos(roll), sr = std::sin(roll);
+  // Levelled and on flat floor most angles are exactly zero.
+  const auto cosine = [](double angle) { return angle == 0.0 ? 1.0 : std::cos(angle); };
+  const auto sine = [](double angle) { return angle == 0.0 ? 0.0 : std::sin(angle); };
+  const double cy = cosine(yaw), sy = sine(yaw);
+  const double cp = cosine(pitch), sp = sine(pitch);
+  const double cr = cosine(roll), sr = sine(roll);
   Matrix3d R;
   R << cy * cp, -cy * sp * sr - sy * cr, -cy * sp * cr + sy * sr,  //
       sy * cp, -sy * sp * sr + cy * cr, -sy * sp * cr - cy * sr,   //

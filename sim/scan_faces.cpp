@@ -114,7 +114,7 @@ ScanFaces::ScanFaces(const std::vector<arenas::Face>& faces) {
   }
 }
 
-void ScanFaces::near(const ScanReach& reach, std::vector<std::uint32_t>& found) const {
+void ScanFaces::near(const ScanReach& reach, std::vector<NearFace>& found) const {
   found.clear();
   const Vector3d p = reach.laser.p - origin_;
   const Vector3d up = reach.laser.R.col(2);
@@ -131,11 +131,16 @@ void ScanFaces::near(const ScanReach& reach, std::vector<std::uint32_t>& found) 
       // Seen from the front and its plane in reach; its sphere in reach and cut by the slab.
       const Float4 height = load4(&bounds_.nx[i]) * px + load4(&bounds_.ny[i]) * py + load4(&bounds_.nz[i]) * pz -
                             load4(&bounds_.nearest[i]);
-      const Int4 hit = (height >= lowest) & (height <= far) & (dx * dx + dy * dy + dz * dz <= limit * limit) &
-                       (above <= radius + lift);
+      const Float4 distance2 = dx * dx + dy * dy + dz * dz;
+      const Int4 hit = (height >= lowest) & (height <= far) & (distance2 <= limit * limit) & (above <= radius + lift);
       int lanes = bits4(hit);
       if (end - i < 4) lanes &= (1 << (end - i)) - 1;
-      for (; lanes != 0; lanes &= lanes - 1) found.push_back(i + static_cast<std::uint32_t>(__builtin_ctz(lanes)));
+      if (lanes == 0) continue;
+      const Float4 nearest = max4(height, sqrt4(distance2) - radius);
+      for (; lanes != 0; lanes &= lanes - 1) {
+        const int lane = __builtin_ctz(lanes);
+        found.push_back({i + static_cast<std::uint32_t>(lane), nearest[lane]});
+      }
     }
   };
   consider(start_[frame_.size()], start_[frame_.size() + 1]);

@@ -20,6 +20,12 @@ struct ScanReach {
   double lift = 0.0;    ///< and be so far above or below the plane [m]
 };
 
+/// A polygon that a scan may meet.
+struct NearFace {
+  std::uint32_t polygon = 0;  ///< its index
+  float nearest = 0.0f;       ///< no point of it is nearer to the laser, for its plane and its sphere are not [m]
+};
+
 /// The arena's faces, found by place and seen from the laser: what both fast casters start from.
 class ScanFaces {
  public:
@@ -51,7 +57,7 @@ class ScanFaces {
   explicit ScanFaces(const std::vector<arenas::Face>& faces);
 
   /// Indices of the polygons within reach that show their front (and some more), each once.
-  void near(const ScanReach& reach, std::vector<std::uint32_t>& found) const;
+  void near(const ScanReach& reach, std::vector<NearFace>& found) const;
 
   const Polygon& polygon(std::uint32_t i) const { return polygons_[i]; }
   Corners corners(std::uint32_t i, const View& view) const {

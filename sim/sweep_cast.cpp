@@ -2,8 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/angle.h"
 #include "sim/simd.h"
@@ -13,7 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr float kSeam = 2e-5f;  ///< faces reach so far beyond their edges: no light through seams [m]
+constexpr float kSeam = 2e-5f;     ///< faces reach so far beyond their edges: no light through seams [m]
+constexpr double kStopped = 1e-3;  ///< beams that end so much before a face never reach it, rounding included [m]
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr std::size_t kCorners = ScanFaces::kCorners;
 constexpr std::size_t kMostPoints = 2 * kCorners;  ///< of a polygon cut by a slab
@@ -113,6 +116,23 @@ SweepCast::Spans SweepCast::spans(double low, double high, double margin, const 
   return found;
 }
 
+/// Whether all four beams of a group meet something nearer than `nearest`.
+bool SweepCast::is_stopped(std::size_t group, const Float4& nearest) const {
+  return bits4(load4(&best_[4 * group]) < nearest) == 15;
+}
+
+/// Takes beams that are stopped before `nearest` off both ends of the spans.
+void SweepCast::trim(Spans& spans, const Float4& nearest) const {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < spans.count; ++k) {
+    Span span = spans.span[k];
+    while (span.begin < span.end && is_stopped(span.begin, nearest)) ++span.begin;
+    while (span.begin < span.end && is_stopped(span.end - 1, nearest)) --span.end;
+    if (span.begin < span.end) spans.span[kept++] = span;
+  }
+  spans.count = kept;
+}
+
 SweepCast::Bearings SweepCast::bearings(const ScanFaces::Corners& corners, double slack) const {
   const Points points = between(corners, static_cast<float>(slack));
   Bearings b;
@@ -148,7 +168,9 @@ void SweepCast::meet(const ScanFaces::Polygon& polygon, const ScanFaces::Corners
   const double margin = b.around || b.nearest < 0.05 ? kPi
                                                      : beams.turn + beams.tilt * (beams.tilt + slack_ / b.nearest) +
                                                            beams.travel / b.nearest + 2.0 * kRoughAtan2Error;
-  const Spans spans = this->spans(b.low, b.high, margin, table);
+  Spans spans = this->spans(b.low, b.high, margin, table);
+  const Float4 nearest = splat(b.nearest - beams.travel - kStopped);
+  trim(spans, nearest);
   if (spans.count == 0) return;
 
   // Only edges that cross the scan plane bound what the beams meet.
@@ -163,7 +185,9 @@ void SweepCast::meet(const ScanFaces::Polygon& polygon, const ScanFaces::Corners
   }
   const Float4 zero = splat(0.0f);
   for (std::size_t k = 0; k < spans.count; ++k) {
-    for (std::size_t i = 4 * spans.span[k].begin; i < 4 * spans.span[k].end; i += 4) {
+    for (std::size_t group = spans.span[k].begin; group < spans.span[k].end; ++group) {
+      if (is_stopped(group, nearest)) continue;
+      const std::size_t i = 4 * group;
       const Float4 ox = load4(&beams.ox[i]), oy = load4(&beams.oy[i]), oz = load4(&beams.oz[i]);
       const Float4 dx = load4(&beams.dx[i]), dy = load4(&beams.dy[i]), dz = load4(&beams.dz[i]);
       const Float4 gap = plane.c - (plane.x * ox + plane.y * oy + plane.z * oz);
@@ -221,10 +245,26 @@ void SweepCast::meet(const Sphere& sphere, const Beams& beams, const BeamTable& 
   }
 }
 
+/// Sorts the faces into shells about the laser, so that most of those behind walls find all their beams stopped.
+void SweepCast::near_first() {
+  constexpr std::size_t kShells = 16;
+  constexpr float kThickness = 0.25f;  // [m]
+  const auto shell = [&](const NearFace& face) {
+    return std::min(kShells - 1, static_cast<std::size_t>(std::max(0.0f, face.nearest * (1.0f / kThickness))));
+  };
+  std::array<std::size_t, kShells> next{};
+  for (const NearFace& face : near_) ++next[shell(face)];
+  std::size_t first = 0;
+  for (std::size_t& count : next) first += std::exchange(count, first);
+  order_.resize(near_.size());
+  for (const NearFace& face : near_) order_[next[shell(face)]++] = face.polygon;
+}
+
 void SweepCast::meet(const ScanFaces& faces, const Beams& beams, const BeamTable& table, double max_range) {
   faces.near({beams.middle, max_range, beams.travel, slack_}, near_);
   const ScanFaces::View view(faces, beams.middle);
-  for (const std::uint32_t i : near_) meet(faces.polygon(i), faces.corners(i, view), beams, table, max_range);
+  near_first();
+  for (const std::uint32_t i : order_) meet(faces.polygon(i), faces.corners(i, view), beams, table, max_range);
 }
 
 void SweepCast::cast(const Beams& beams, const BeamTable& table, double max_range, const std::vector<Sphere>& spheres,

@@ -38,12 +38,16 @@ class SweepCast {
             const BeamTable& table, double max_range);
   void meet(const Sphere& sphere, const Beams& beams, const BeamTable& table, double max_range);
   Bearings bearings(const ScanFaces::Corners& corners, double slack) const;
+  void near_first();
+  bool is_stopped(std::size_t group, const Float4& nearest) const;
+  void trim(Spans& spans, const Float4& nearest) const;
   Spans spans(double low, double high, double margin, const BeamTable& table) const;
 
   const ScanFaces& faces_;
   double slack_ = 0.0;  ///< beams leave the middle scan plane by less [m]
-  std::vector<std::uint32_t> near_;
-  float* best_ = nullptr;  ///< nearest so far [m]: the scan being cast
+  std::vector<NearFace> near_;
+  std::vector<std::uint32_t> order_;  ///< polygons from near to far
+  float* best_ = nullptr;             ///< nearest so far [m]: the scan being cast
 };
 
 }  // namespace rubble::sim

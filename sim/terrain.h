@@ -17,6 +17,8 @@ struct Ground {
   double gy = 0.0;        ///< dz/dy
   double friction = 0.0;  ///< coefficient between wheel and what lies there
   bool on_sheet = false;  ///< loose paper lies between wheel and floor
+
+  bool is_level() const { return gx == 0.0 && gy == 0.0; }
 };
 
 /// Height, slope and friction at x, y in constant time: uniform buckets over floor patches, sheets and steps.

@@ -71,7 +71,7 @@ void World::move_among_others() {
   clutter_->brake(dt_);
   box2d_.Step(static_cast<float>(dt_), kVelocityIterations, kPositionIterations);
   const bool clutter_moves = clutter_->settle();
-  for (const auto& chassis : chassis_) chassis->leave_box2d(clutter_moves);
+  for (const auto& chassis : chassis_) chassis->leave_box2d(clutter_moves, dt_);
 }
 
 void World::step() {

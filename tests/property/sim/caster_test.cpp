@@ -99,13 +99,41 @@ TEST(Casters, TheRayWalkSeesWhatPlainGeometrySees) {
   }
 }
 
+/// Beams of a fast caster against the ray walk: how many, how far off, and how many passed an edge.
+struct Comparison {
+  long beams = 0;
+  int beside = 0;
+  double worst = 0.0;  ///< of those that met the same surface [m]
+
+  testing::AssertionResult add(double range, const Ray& ray, const RayWalk& walk, const std::vector<Sphere>& balls) {
+    const double truth = walk.cast(ray, 4.0, balls);
+    ++beams;
+    if (range == truth) return testing::AssertionSuccess();
+    if (std::abs(range - truth) <= 1e-3) {
+      worst = std::max(worst, std::abs(range - truth));
+      return testing::AssertionSuccess();
+    }
+    ++beside;
+    if (agrees(range, ray, [&](const Ray& r) { return walk.cast(r, 4.0001, balls); })) {
+      return testing::AssertionSuccess();
+    }
+    return testing::AssertionFailure() << range << " m, walked " << truth << " m";
+  }
+  void print() const {
+    std::cout << beams << " beams: within " << worst * 1e3 << " mm; " << beside << " passed an edge by a hair\n";
+  }
+};
+
+Ray level_ray(const Placement& laser, const BeamTable& table, std::size_t beam) {
+  const double bearing = table.angle_min + static_cast<double>(beam) * table.angle_step;
+  return {laser.p, laser.R * Eigen::Vector3d(std::cos(bearing), std::sin(bearing), 0.0)};
+}
+
 TEST(Casters, TheSweepAgreesWithTheRayWalkToOneMillimetre) {
   const robot::RobotModel model;
   const BeamTable table(model.laser);
-  double worst = 0.0;
-  int beside = 0;
-  long beams_seen = 0;
-  for (std::uint64_t seed = 1; beams_seen < 500000; ++seed) {
+  Comparison comparison;
+  for (std::uint64_t seed = 1; comparison.beams < 1000000; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const arenas::Arena arena = random_maze(seed);
     const std::vector<arenas::Face> all = arenas::faces(arena);
@@ -121,31 +149,18 @@ TEST(Casters, TheSweepAgreesWithTheRayWalkToOneMillimetre) {
       std::vector<float> ranges;
       sweep.cast(beams, table, 4.0, balls, ranges);
       for (std::size_t i = 0; i < beams.count; ++i) {
-        const Ray ray = beams.ray(i);
-        const double truth = walk.cast(ray, 4.0, balls);
-        const double range = ranges[i];
-        ++beams_seen;
-        if (range == truth) continue;
-        if (std::abs(range - truth) <= 1e-3) {
-          worst = std::max(worst, std::abs(range - truth));
-          continue;
-        }
-        ++beside;
-        ASSERT_TRUE(agrees(range, ray, [&](const Ray& r) { return walk.cast(r, 4.0001, balls); }))
-            << "scan " << k << " beam " << i << ": " << range << " m, walked " << truth << " m";
+        ASSERT_TRUE(comparison.add(ranges[i], beams.ray(i), walk, balls)) << "scan " << k << " beam " << i;
       }
     }
   }
-  std::cout << beams_seen << " beams: within " << worst * 1e3 << " mm; " << beside << " passed an edge by a hair\n";
+  comparison.print();
 }
 
 TEST(Casters, ThePlaneCastAgreesWithTheRayWalkToOneMillimetre) {
   const robot::RobotModel model;
   const BeamTable table(model.laser);
-  double worst = 0.0;
-  int beside = 0;
-  long beams_seen = 0;
-  for (std::uint64_t seed = 100; beams_seen < 1000000; ++seed) {
+  Comparison comparison;
+  for (std::uint64_t seed = 100; comparison.beams < 1000000; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const arenas::Arena arena = random_maze(seed);
     const std::vector<arenas::Face> all = arenas::faces(arena);
@@ -160,23 +175,12 @@ TEST(Casters, ThePlaneCastAgreesWithTheRayWalkToOneMillimetre) {
       std::vector<float> ranges;
       plane.cast(laser, table, 4.0, balls, ranges);
       for (std::size_t i = 0; i < table.count; ++i) {
-        const double bearing = table.angle_min + static_cast<double>(i) * table.angle_step;
-        const Ray ray{laser.p, laser.R * Eigen::Vector3d(std::cos(bearing), std::sin(bearing), 0.0)};
-        const double truth = walk.cast(ray, 4.0, balls);
-        const double range = ranges[i];
-        ++beams_seen;
-        if (range == truth) continue;
-        if (std::abs(range - truth) <= 1e-3) {
-          worst = std::max(worst, std::abs(range - truth));
-          continue;
-        }
-        ++beside;
-        ASSERT_TRUE(agrees(range, ray, [&](const Ray& r) { return walk.cast(r, 4.0001, balls); }))
-            << "scan " << k << " beam " << i << ": " << range << " m, walked " << truth << " m";
+        ASSERT_TRUE(comparison.add(ranges[i], level_ray(laser, table, i), walk, balls))
+            << "scan " << k << " beam " << i;
       }
     }
   }
-  std::cout << beams_seen << " beams: within " << worst * 1e3 << " mm; " << beside << " passed an edge by a hair\n";
+  comparison.print();
 }
 
 /// Other robots and loose objects come as faces of their own: with every third face handed over that way both casters
@@ -184,11 +188,7 @@ TEST(Casters, ThePlaneCastAgreesWithTheRayWalkToOneMillimetre) {
 TEST(Casters, FacesThatMoveAreSeenBesideThoseThatStand) {
   const robot::RobotModel model;
   const BeamTable table(model.laser);
-  const auto check = [](double range, const Ray& ray, const RayWalk& walk) {
-    const double truth = walk.cast(ray, 4.0);
-    if (range == truth || std::abs(range - truth) <= 1e-3) return true;
-    return agrees(range, ray, [&](const Ray& r) { return walk.cast(r, 4.0001); });
-  };
+  Comparison comparison;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const arenas::Arena arena = random_maze(seed);
@@ -209,10 +209,8 @@ TEST(Casters, FacesThatMoveAreSeenBesideThoseThatStand) {
       sweep.cast(beams, table, 4.0, {}, swept, &moving_faces);
       plane.cast(laser, table, 4.0, {}, flat, &moving_faces);
       for (std::size_t i = 0; i < table.count; ++i) {
-        const double bearing = table.angle_min + static_cast<double>(i) * table.angle_step;
-        const Ray ray{laser.p, laser.R * Eigen::Vector3d(std::cos(bearing), std::sin(bearing), 0.0)};
-        ASSERT_TRUE(check(swept[i], beams.ray(i), walk)) << "swept scan " << k << " beam " << i;
-        ASSERT_TRUE(check(flat[i], ray, walk)) << "scan " << k << " beam " << i;
+        ASSERT_TRUE(comparison.add(swept[i], beams.ray(i), walk, {})) << "swept scan " << k << " beam " << i;
+        ASSERT_TRUE(comparison.add(flat[i], level_ray(laser, table, i), walk, {})) << "scan " << k << " beam " << i;
       }
     }
   }

@@ -32,7 +32,7 @@ TEST(Drive, ZeroSlipOdometryIsExactOnStraightDrives) {
   EXPECT_LE(worst, 0.0006);
   EXPECT_EQ(last.pose.y, 0.0);
   EXPECT_EQ(last.pose.phi, 0.0);
-  EXPECT_NEAR(where(robot).y, 0.0, 1e-6);
+  EXPECT_NEAR(where(robot).y, 0.0, 1e-3 / 138.0);  // less than an encoder's tick
 }
 
 TEST(Drive, SkidSteeringWidensTheTrackAboutOneAndAHalfTimes) {
