@@ -19,9 +19,22 @@ namespace {
 namespace fs = std::filesystem;
 using namespace scenarios;
 
+/// Says when runs that the sweep in `folder` asked for are not there (a shard that failed or still works); true: all
+/// are.
+bool tell_missing(const std::string& folder, const std::vector<RunRecord>& runs) {
+  const MissingRuns missing = missing_runs(folder, runs);
+  if (missing.missing == 0) return true;
+  std::fprintf(stderr,
+               "rubble: %s: %zu of the %zu runs its sweep asked for are missing; give the batch command again to make "
+               "them\n",
+               folder.c_str(), missing.missing, missing.asked);
+  return false;
+}
+
 void write_report(const std::string& source, const std::string& page) {
   const ResultSet set = load_sweep_results(source);
   if (set.runs.empty()) throw InputError(source + ": holds no finished run to report on");
+  tell_missing(source, set.runs);
   write_text_file(page, report_html(set, note_of(set, source), fs::path(page).parent_path().string()));
   std::printf("%-12s %s\n", "report", page.c_str());
 }
@@ -94,7 +107,10 @@ int batch(const BatchArguments& arguments) {
 int batch_merge(const MergeArguments& arguments) {
   const MergeReport report = merge(arguments.sources, arguments.out);
   std::printf("%zu runs in %s, %zu of them new\n", report.runs, arguments.out.c_str(), report.added);
-  return kOk;
+  bool whole = true;
+  const std::vector<RunRecord> merged = load_results(arguments.out).runs;
+  for (const auto& source : arguments.sources) whole = tell_missing(source, merged) && whole;
+  return whole ? kOk : kFailed;
 }
 
 int batch_report(const ReportArguments& arguments) {

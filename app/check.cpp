@@ -27,6 +27,19 @@ void tell_github(const std::vector<CheckCase>& cases, const std::string& title) 
   }
 }
 
+/// Records of runs still to be made: a baseline that does not fit is told before, not after them.
+std::vector<RunRecord> planned(const std::vector<Job>& jobs) {
+  std::vector<RunRecord> runs;
+  for (const Job& job : jobs) {
+    RunRecord run;
+    run.scenario = job.scenario.name;
+    run.configuration = job.configuration;
+    run.seed = job.scenario.seed;
+    runs.push_back(run);
+  }
+  return runs;
+}
+
 }  // namespace
 
 int check(const CheckArguments& arguments) {
@@ -40,6 +53,7 @@ int check(const CheckArguments& arguments) {
   BatchOptions options;
   options.code = code_version();
   const std::vector<Job> jobs = expand(sweep, options.code, arguments.overrides);
+  require_fit(baseline, planned(jobs));
   options.out = arguments.out.empty() ? "runs/check-" + sweep.name : arguments.out;
   options.workers = arguments.workers > 0 ? arguments.workers : usable_cores();
   options.run_limit = sweep.run_limit;

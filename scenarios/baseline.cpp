@@ -48,14 +48,18 @@ std::string name_of(const std::string& scenario, const std::string& configuratio
   return scenario + " / " + configuration;
 }
 
+const Metric& judged_metric(const std::string& group, const std::string& key) {
+  const auto& known = judged_metrics();
+  const auto metric = std::find_if(known.begin(), known.end(), [&](const Metric& m) { return m.key == key; });
+  if (metric != known.end()) return *metric;
+  throw InputError("baseline of " + group + ": '" + key +
+                   "' is no metric that can be judged; remove it or save the baseline again");
+}
+
 CheckCase check_metric(const std::string& group, const BaselineMetric& wanted,
                        const std::vector<const RunRecord*>& runs) {
-  const auto& known = judged_metrics();
-  const auto metric = std::find_if(known.begin(), known.end(), [&](const Metric& m) { return m.key == wanted.key; });
-  if (metric == known.end())
-    throw InputError("baseline of " + group + ": '" + wanted.key +
-                     "' is no metric that can be judged; remove it or save the baseline again");
-  CheckCase c{group, metric->label, true, ""};
+  const Metric& metric = judged_metric(group, wanted.key);
+  CheckCase c{group, metric.label, true, ""};
   const std::vector<double> values = numbers(runs, wanted.key);
   if (values.empty()) {
     c.passed = false;
@@ -63,7 +67,7 @@ CheckCase check_metric(const std::string& group, const BaselineMetric& wanted,
     return c;
   }
   const auto worse_by = [&](double before, double now) {
-    return metric->better == Better::Higher ? before - now : now - before;
+    return metric.better == Better::Higher ? before - now : now - before;
   };
   const double now = median(values);
   const double mean_now = mean(values);
@@ -103,6 +107,12 @@ std::size_t count_of(const ordered_json& json, const std::string& path) {
   const auto value = json.get<std::int64_t>();
   if (value < 0) throw InputError(path + ": 'failed' and 'missing' must be 0 or more");
   return static_cast<std::size_t>(value);
+}
+
+/// A misspelt key must not quietly judge by something else.
+void allow_only(const ordered_json& json, const std::set<std::string>& keys, const std::string& path) {
+  for (const auto& entry : json.items())
+    if (keys.count(entry.key()) == 0) throw InputError(path + ": unknown key '" + entry.key() + "'; remove it");
 }
 
 std::string escaped_xml(const std::string& text) {
@@ -192,16 +202,19 @@ Baseline load_baseline(const std::string& path) {
   const std::string text = read_text_file(path);
   try {
     const ordered_json json = ordered_json::parse(text);
+    allow_only(json, {"sweep", "code", "groups"}, path);
     Baseline baseline;
     baseline.sweep = json.at("sweep");
     baseline.code = json.at("code");
     for (const auto& g : json.at("groups")) {
+      allow_only(g, {"scenario", "config", "seeds", "failed", "metrics"}, path);
       BaselineGroup group{g.at("scenario"),
                           g.at("config"),
                           g.at("seeds").get<std::vector<std::uint64_t>>(),
                           count_of(g.at("failed"), path),
                           {}};
       for (const auto& [key, m] : g.at("metrics").items()) {
+        allow_only(m, {"median", "tolerance", "mean", "mean_tolerance", "missing"}, path);
         const BaselineMetric metric{key,          m.at("median"),         m.at("tolerance"),
                                     m.at("mean"), m.at("mean_tolerance"), count_of(m.at("missing"), path)};
         if (!(metric.tolerance >= 0.0 && metric.mean_tolerance >= 0.0))
@@ -217,28 +230,36 @@ Baseline load_baseline(const std::string& path) {
   }
 }
 
-std::vector<CheckCase> check_runs(const Baseline& baseline, const std::vector<RunRecord>& runs) {
+void require_fit(const Baseline& baseline, const std::vector<RunRecord>& runs) {
+  const std::string remedy = "; save the baseline again with 'rubble batch SWEEP --save-baseline FILE'";
   const auto groups = grouped(runs);
   std::set<GroupKey> known;
-  std::vector<CheckCase> cases;
   for (const auto& group : baseline.groups) {
     const std::string name = name_of(group.scenario, group.configuration);
     known.insert({group.scenario, group.configuration});
     const auto members = groups.find({group.scenario, group.configuration});
-    const std::string remedy = "; save the baseline again with 'rubble batch SWEEP --save-baseline FILE'";
     if (members == groups.end()) throw InputError("baseline: has '" + name + "', which the sweep has not" + remedy);
     auto seeds = group.seeds;
     std::sort(seeds.begin(), seeds.end());
     if (seeds != seeds_of(members->second))
       throw InputError("baseline: was made with other seeds of '" + name + "' than the sweep has" + remedy);
-    cases.push_back(check_completed(name, group.failed, members->second));
-    cases.push_back(check_expectations(name, members->second));
-    for (const auto& metric : group.metrics) cases.push_back(check_metric(name, metric, members->second));
+    for (const auto& metric : group.metrics) judged_metric(name, metric.key);
   }
   for (const auto& [key, members] : groups)
-    if (known.count(key) == 0)
-      throw InputError("baseline: lacks '" + name_of(key.first, key.second) +
-                       "'; save the baseline again with 'rubble batch SWEEP --save-baseline FILE'");
+    if (known.count(key) == 0) throw InputError("baseline: lacks '" + name_of(key.first, key.second) + "'" + remedy);
+}
+
+std::vector<CheckCase> check_runs(const Baseline& baseline, const std::vector<RunRecord>& runs) {
+  require_fit(baseline, runs);
+  const auto groups = grouped(runs);
+  std::vector<CheckCase> cases;
+  for (const auto& group : baseline.groups) {
+    const std::string name = name_of(group.scenario, group.configuration);
+    const auto& members = groups.at({group.scenario, group.configuration});
+    cases.push_back(check_completed(name, group.failed, members));
+    cases.push_back(check_expectations(name, members));
+    for (const auto& metric : group.metrics) cases.push_back(check_metric(name, metric, members));
+  }
   return cases;
 }
 

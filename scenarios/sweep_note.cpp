@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "base/error.h"
@@ -23,6 +24,18 @@ std::string name_of_path(const std::string& path) {
   return name.empty() || name == "." ? "sweep" : name;
 }
 
+/// The ids of the runs that the sweep's last call asked for, if the folder tells.
+std::optional<std::set<std::string>> runs_asked(const std::string& folder) {
+  const std::string file = folder + kFile;
+  if (!fs::is_directory(folder) || !fs::exists(file)) return std::nullopt;
+  const ordered_json json = ordered_json::parse(read_text_file(file), nullptr, false);
+  if (!json.is_object() || !json.contains("runs")) return std::nullopt;
+  std::set<std::string> asked;
+  for (const auto& id : json["runs"])
+    if (id.is_string()) asked.insert(id.get<std::string>());
+  return asked;
+}
+
 }  // namespace
 
 void save_note(const Sweep& sweep, const std::vector<Job>& jobs, const std::string& folder) {
@@ -36,17 +49,20 @@ void save_note(const Sweep& sweep, const std::vector<Job>& jobs, const std::stri
 
 ResultSet load_sweep_results(const std::string& path) {
   ResultSet set = load_results(path);
-  const std::string file = path + kFile;
-  if (!fs::is_directory(path) || !fs::exists(file)) return set;
-  const ordered_json json = ordered_json::parse(read_text_file(file), nullptr, false);
-  if (!json.is_object() || !json.contains("runs")) return set;
-  std::set<std::string> wanted;
-  for (const auto& id : json["runs"])
-    if (id.is_string()) wanted.insert(id.get<std::string>());
+  const auto asked = runs_asked(path);
+  if (!asked) return set;
   auto& runs = set.runs;
-  runs.erase(std::remove_if(runs.begin(), runs.end(), [&](const auto& run) { return wanted.count(run.run_id) == 0; }),
+  runs.erase(std::remove_if(runs.begin(), runs.end(), [&](const auto& run) { return asked->count(run.run_id) == 0; }),
              runs.end());
   return set;
+}
+
+MissingRuns missing_runs(const std::string& folder, const std::vector<RunRecord>& runs) {
+  const auto asked = runs_asked(folder);
+  if (!asked) return {};
+  std::set<std::string> left = *asked;
+  for (const auto& run : runs) left.erase(run.run_id);
+  return {left.size(), asked->size()};
 }
 
 SweepNote note_of(const ResultSet& set, const std::string& path) {

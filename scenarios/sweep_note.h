@@ -24,6 +24,14 @@ void save_note(const Sweep& sweep, const std::vector<Job>& jobs, const std::stri
 /// older versions of the code, or of other --set values.
 ResultSet load_sweep_results(const std::string& path);
 
+/// How many runs the last call of the sweep in `folder` asked for that `runs` lacks, and of how many; {0, 0} where the
+/// folder says nothing.
+struct MissingRuns {
+  std::size_t missing = 0;
+  std::size_t asked = 0;
+};
+MissingRuns missing_runs(const std::string& folder, const std::vector<RunRecord>& runs);
+
 /// The note of the results; when there is none, one made of what the results hold (configurations in their order,
 /// measured against the first).
 /// Configurations without results are left out, unknown ones come last. Throws InputError.

@@ -74,8 +74,10 @@ else
   echo "no small file system without root: disk full is skipped"
 fi
 
-# Shards in one folder, merged: the same content as the whole, and idempotent.
-for i in 1 2 3; do
+# Shards in one folder, merged: missing ones are told, all give the same content as the whole, and idempotent.
+"$rubble" batch sweep.yaml --shard 1/3 --out shards >/dev/null || fail "shard 1 ended with $?"
+expect_exit 4 'of the 12 runs its sweep asked for are missing' "$rubble" batch merge shards --out part.sqlite
+for i in 2 3; do
   "$rubble" batch sweep.yaml --shard $i/3 --out shards >/dev/null || fail "shard $i ended with $?"
 done
 cat shards/results-*of3.jsonl | sort | cmp - sorted1 || fail "shards and whole differ"
@@ -105,6 +107,9 @@ expect_exit 3 "'robot.levelling=false', 'robot.levelling=true'" "$rubble" compar
 # Regression: unchanged passes, a worse parameter is caught, CI systems are told.
 expect_exit 3 'there is no baseline' "$rubble" check sweep.yaml
 "$rubble" batch sweep.yaml --out w1 --save-baseline sweep.baseline.json >/dev/null || fail "save-baseline ended with $?"
+sed 's/1-6/1-5/' sweep.yaml >fewer.yaml
+expect_exit 3 'other seeds' "$rubble" check fewer.yaml --baseline sweep.baseline.json --out unfit
+[[ ! -e unfit ]] || fail "runs are made for a baseline that does not fit"
 "$rubble" check sweep.yaml --out same --junit same.xml >check.txt || fail "check without a change ended with $?: $(cat check.txt)"
 export GITHUB_ACTIONS=true GITHUB_STEP_SUMMARY=$work/summary.md
 "$rubble" check sweep.yaml --out worse --junit worse.xml --set sim.range_noise=100 >check.txt

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/rng.h"
+#include "base/text_file.h"
 #include "tests/support/scenarios_batch.h"
 
 namespace rubble::scenarios {
@@ -112,6 +113,38 @@ TEST_F(BaselineFile, ForeignFilesAreNamed) {
   EXPECT_THROW(load_baseline(path("nowhere.json")), InputError);
   EXPECT_THROW(load_baseline(write("x.json", "{\"sweep\": 3}")), InputError);
   EXPECT_THROW(load_baseline(write("y.json", "not json")), InputError);
+}
+
+TEST_F(BaselineFile, MisspeltKeysAreNamed) {
+  save_baseline(make_baseline("regression", runs(0.0)), path("b.json"));
+  for (const char* key : {"code", "failed", "mean_tolerance"}) {
+    std::string text = read_text_file(path("b.json"));
+    const std::string quoted = std::string("\"") + key + "\":";
+    text.insert(text.find(quoted), std::string("\"") + key + "s\": 0, ");
+    try {
+      load_baseline(write("typo.json", text));
+      ADD_FAILURE() << key;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(std::string("unknown key '") + key + "s'"));
+    }
+  }
+}
+
+TEST_F(BaselineFile, WhetherItFitsIsKnownBeforeARunIsMade) {
+  const Baseline baseline = make_baseline("regression", runs(0.0));
+  std::vector<RunRecord> planned;
+  for (const RunRecord& run : runs(0.0)) {
+    planned.emplace_back();
+    planned.back().scenario = run.scenario;
+    planned.back().configuration = run.configuration;
+    planned.back().seed = run.seed;
+  }
+  EXPECT_NO_THROW(require_fit(baseline, planned));
+  Baseline foreign = baseline;
+  foreign.groups[0].metrics[0].key = "beauty";
+  EXPECT_THROW(require_fit(foreign, planned), InputError);
+  planned.back().seed = 99;
+  EXPECT_THROW(require_fit(baseline, planned), InputError);
 }
 
 TEST_F(BaselineFile, ReportsCarryWhatFailed) {
