@@ -2,50 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
-#include "base/planar.h"
 #include "base/trajectory.h"
-#include "explore/attempts.h"
-#include "explore/blacklist.h"
-#include "explore/floor_search.h"
-#include "explore/motion_watch.h"
-#include "explore/path_follower.h"
-#include "explore/planner.h"
-#include "explore/traversable.h"
+#include "explore/explorer_impl.h"
 
 namespace rubble::explore {
 namespace {
 
-using mrpt::math::TPoint2D;
-using mrpt::math::TPose2D;
-using robot::Drive;
-
-constexpr double kCheckPeriod = 0.2;             ///< fresh hits are held against the path this often [s]
-constexpr int kBlockingHits = 3;                 ///< fewer may be noise
-constexpr double kHitMemory = 10.0;              ///< hits that blocked the path count as obstacles this long [s]
-constexpr double kHitReach = 1.5;                ///< hits farther away are not remembered [m]
 constexpr double kCreepTime = 3.0;               ///< [s]
 constexpr double kCreepSpeed = 0.15;             ///< [m/s]
-constexpr double kBackUpTime = 1.0;              ///< [s]
-constexpr double kBackUpSpeed = 0.2;             ///< [m/s]
 constexpr double kVisited = 0.30;                ///< closer to its target the robot has been there [m]
-constexpr double kBarRadius = 0.60;              ///< [m]
-constexpr double kBarTime = 60.0;                ///< for the first failure; doubles with each one more [s]
 constexpr double kLookTurn = deg_to_rad(270.0);  ///< with a 240 deg scanner more than once around [rad]
-constexpr double kLookTimeout = 12.0;            ///< [s]
 constexpr double kTrailStep = 0.15;              ///< [m]
 constexpr double kTrailRadius = 0.20;            ///< [m]
 constexpr double kNearFrontier = 1.0;            ///< frontier this close at the start: turn to see it [m]
 constexpr int kMaxPardons = 2;                   ///< times that barred targets are tried again before giving up
-constexpr int kMaxStuckAtPlace = 6;
-constexpr double kSearchReplan = 2.0;   ///< on the way to a viewpoint [s]
-constexpr double kArrivedReplan = 0.3;  ///< standing at the end of the way [s]
-constexpr double kCueAge = 1.2;         ///< an unconfirmed cue younger than this is worth waiting for [s]
-constexpr double kTurningRoom = 0.06;   ///< [m]
-
-TPoint2D position(const TPose2D& pose) { return {pose.x, pose.y}; }
+constexpr double kSearchReplan = 2.0;            ///< on the way to a viewpoint [s]
+constexpr double kArrivedReplan = 0.3;           ///< standing at the end of the way [s]
+constexpr double kCueAge = 1.2;                  ///< an unconfirmed cue younger than this is worth waiting for [s]
+constexpr double kTurningRoom = 0.06;            ///< [m]
 
 PlannerConfig planner_config(const ExplorerConfig& config) {
   PlannerConfig planner;
@@ -66,108 +42,18 @@ FollowerConfig follower_config(const ExplorerConfig& config) {
   return follower;
 }
 
-/// A turn on the spot to let the scanner see all around.
-struct LookAround {
-  double left = 0.0;  ///< [rad], signed; 0: none under way
-  Stamp until = Stamp::never();
-  bool to_the_end = false;  ///< not ended early by a new target
-  bool active() const { return left != 0.0; }
-};
-
 }  // namespace
 
-struct Explorer::Impl {
-  Impl(const robot::RobotModel& robot_model, const ExplorerConfig& explorer_config)
-      : model(robot_model),
-        config(explorer_config),
-        planner(planner_config(explorer_config)),
-        follower(robot_model, follower_config(explorer_config)),
-        search(explorer_config.victims),
-        // The robot turns on the spot there, so its swing circle must be free, with room for stopping a little beside
-        // it.
-        floor_search(explorer_config.search,
-                     std::max(explorer_config.d_min, robot_model.swing_radius()) + kTurningRoom) {}
-
-  void observe(const slam::Mapper& mapper, const robot::Inputs& inputs);
-  Drive decide(const slam::Mapper& mapper);
-  Drive start(const slam::Mapper& mapper);
-  Drive drive(const slam::Mapper& mapper);
-  Drive back_up();
-
-  Traversable floor_now(const slam::Mapper& mapper, bool with_hits) const;
-  void replan(const slam::Mapper& mapper);
-  Plan plan_on(const Traversable& floor);
-  void accept(Plan plan);
-  void visited_in_vain(const TPoint2D& target);
-  void nothing_left();
-  void finish_exploring();
-  void finish_searching();
-  void finish(const std::string& why);
-
-  void check_path(const slam::Mapper& mapper);
-  void got_stuck();
-  void bar_target(const TPoint2D& target);
-  void look_around(double angle, bool to_the_end);
-  Drive look();
-  void show_path();
-
-  void mark_searched();
-  bool holding_still();
-  Plan plan_search(const Traversable& floor);
-  void face_subject();
-
-  const robot::RobotModel model;
-  const ExplorerConfig config;
-  Planner planner;
-  PathFollower follower;
-  VictimSearch search;
-  FloorSearch floor_search;
-  Blacklist blacklist;
-  Attempts attempts;
-  MotionWatch watch;
-
-  ExplorerState state = ExplorerState::Starting;
-  std::string reason;
-  std::vector<TPoint2D> shown_path;
-
-  Stamp now = Stamp::never();
-  double dt = 0.0;
-  TPose2D pose;
-  double turned = 0.0;
-  bool stalled = false;
-  Stamp last_scan = Stamp::never();
-  Drive commanded;
-  std::vector<TPoint2D> trail;
-  TPoint2D home;
-
-  std::uint64_t planned_version = 0;
-  Stamp next_plan = Stamp::never();
-  Stamp last_plan = Stamp::never();
-  bool plan_forced = true;
-  std::optional<TPoint2D> target;
-  double target_cost = 0.0;
-  double path_d_min = 0.0;
-  std::size_t frontier_left = 0;
-
-  LookAround looking;
-  std::optional<TPoint2D> looked_from;
-  int failed_plans = 0;
-  int looks_in_vain = 0;
-  int pardons = 0;
-
-  Stamp next_check = Stamp::never();
-  std::vector<TPoint2D> remembered_hits;
-  Stamp forget_hits = Stamp::never();
-  bool blocked = false;
-  Stamp creep_until = Stamp::never();
-
-  Traversable last_floor;
-  ExplorerState after_back_up = ExplorerState::Driving;
-  Stamp back_up_until = Stamp::never();
-  bool back_up_turns = false;
-  std::optional<TPoint2D> stuck_place;
-  int stuck_there = 0;
-};
+Explorer::Impl::Impl(const robot::RobotModel& robot_model, const ExplorerConfig& explorer_config)
+    : model(robot_model),
+      config(explorer_config),
+      planner(planner_config(explorer_config)),
+      follower(robot_model, follower_config(explorer_config)),
+      search(explorer_config.victims),
+      // The robot turns on the spot there, so its swing circle must be free, with room for stopping a little beside
+      // it.
+      floor_search(explorer_config.search, std::max(explorer_config.d_min, robot_model.swing_radius()) + kTurningRoom) {
+}
 
 /// Takes in what arrived in this tick.
 void Explorer::Impl::observe(const slam::Mapper& mapper, const robot::Inputs& inputs) {
@@ -390,84 +276,6 @@ void Explorer::Impl::finish(const std::string& why) {
   follower.clear();
   looking = {};
   show_path();
-}
-
-/// Holds the newest hits against the path: things that moved, or that the map does not show yet.
-void Explorer::Impl::check_path(const slam::Mapper& mapper) {
-  if (now < next_check) return;
-  next_check = now + kCheckPeriod;
-  if (follower.arrived() || looking.active()) return;
-  const double brake_way = commanded.v * commanded.v / (2.0 * model.max_accel);
-  const double radius = std::min(0.5 * model.width + 0.03, path_d_min - 0.04);
-  const std::vector<TPoint2D>& hits = mapper.last_hits();
-  blocked =
-      hits_on_path(follower.path(), follower.progress(), 0.5 + brake_way, radius, hits, pose, model) >= kBlockingHits;
-  if (!blocked || now < creep_until) return;
-  remembered_hits.clear();
-  std::copy_if(hits.begin(), hits.end(), std::back_inserter(remembered_hits),
-               [&](const TPoint2D& p) { return distance(p, position(pose)) < kHitReach; });
-  forget_hits = now + kHitMemory;
-  plan_forced = true;
-}
-
-void Explorer::Impl::got_stuck() {
-  watch.reset();
-  looking = {};
-  const TPoint2D here = position(pose);
-  const bool again = stuck_place && distance(*stuck_place, here) < 0.5;
-  stuck_there = again ? stuck_there + 1 : 1;
-  stuck_place = here;
-  if (stuck_there > 1 && target) bar_target(*target);
-  if (stuck_there > kMaxStuckAtPlace) return finish("stuck");
-
-  // Whatever holds the robot stands before it: something the scanner cannot see.
-  for (int i = -2; i <= 2; ++i) {
-    const double ahead = 0.5 * model.length + 0.10;
-    const double aside = 0.1 * i;
-    remembered_hits.push_back({pose.x + ahead * std::cos(pose.phi) - aside * std::sin(pose.phi),
-                               pose.y + ahead * std::sin(pose.phi) + aside * std::cos(pose.phi)});
-  }
-  forget_hits = now + kHitMemory;
-  const TPoint2D rear{pose.x - 0.25 * std::cos(pose.phi), pose.y - 0.25 * std::sin(pose.phi)};
-  const Cell c = last_floor.clearance.cell(rear);
-  const bool rear_free = !last_floor.clearance.inside(c) || last_floor.clearance[c] > 0.5 * model.width;
-  back_up_turns = commanded.v < 0.0 || !rear_free || stuck_there % 3 == 0;
-  after_back_up = state;
-  back_up_until = now + kBackUpTime;
-  state = ExplorerState::BackingUp;
-}
-
-Drive Explorer::Impl::back_up() {
-  if (now < back_up_until) {
-    const double side = stuck_there % 2 == 0 ? 1.0 : -1.0;
-    return back_up_turns ? Drive{0.0, side * config.turn_speed} : Drive{-kBackUpSpeed, 0.0};
-  }
-  state = after_back_up;
-  plan_forced = true;
-  return {};
-}
-
-void Explorer::Impl::bar_target(const TPoint2D& where) {
-  const int times = std::min(blacklist.times_barred(where), 6);
-  blacklist.bar(where, kBarRadius, now + kBarTime * std::ldexp(1.0, times));
-  target.reset();
-  plan_forced = true;
-}
-
-void Explorer::Impl::look_around(double angle, bool to_the_end) {
-  looking = {angle, now + kLookTimeout, to_the_end};
-  follower.clear();
-}
-
-Drive Explorer::Impl::look() {
-  const bool was_positive = looking.left > 0.0;
-  looking.left -= turned;
-  if (was_positive != (looking.left > 0.0) || std::abs(looking.left) < deg_to_rad(5.0) || now >= looking.until) {
-    looking = {};
-    plan_forced = true;
-    return {};
-  }
-  return turn_on_the_spot(looking.left, config.turn_speed, 0.6 * model.max_turn_accel);
 }
 
 void Explorer::Impl::show_path() {
