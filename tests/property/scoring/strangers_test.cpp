@@ -4,36 +4,17 @@
 #include <utility>
 #include <vector>
 
-#include "arenas/arena_file.h"
-#include "arenas/generate.h"
-#include "arenas/truth_map.h"
 #include "base/angle.h"
 #include "scoring/alignment.h"
 #include "scoring/resample.h"
 #include "scoring/scorecard.h"
-#include "tests/support/scoring_maze.h"
+#include "tests/support/scoring_grounds.h"
 
 /// Which maps belong together and which do not, on mazes and arenas that took no part in the calibration of trust.
 namespace rubble::scoring {
 namespace {
 
 using namespace testing;
-
-OccupancyGrid maze_of(std::uint64_t seed, int columns, int rows) {
-  MazeSpec spec;
-  spec.columns = columns;
-  spec.rows = rows;
-  spec.seed = seed;
-  return maze(spec);
-}
-
-OccupancyGrid arena_of(std::uint64_t seed) {
-  arenas::GenerateConfig config;
-  config.seed = seed;
-  config.columns = 9;
-  config.rows = 7;
-  return arenas::truth_map(arenas::parse_arena(arenas::generate_arena(config), "generated"));
-}
 
 TEST(Strangers, AreRefusedAndScoreNothing) {
   for (const std::uint64_t seed : {1011, 1012}) {
@@ -61,7 +42,7 @@ TEST(Strangers, AreRefusedAndScoreNothing) {
 TEST(Strangers, DamagedMapsOfTheSameArenaAreNone) {
   for (const std::uint64_t seed : {2011, 2012}) {
     for (const bool generated : {false, true}) {
-      const OccupancyGrid truth = generated ? arena_of(seed) : maze_of(seed, 9, 7);
+      const OccupancyGrid truth = truth_of({generated ? "yellow" : "maze", 9, 7, seed});
       const std::vector<std::pair<std::string, OccupancyGrid>> maps = {
           {"gaps and phantoms", with_gaps(with_phantoms(truth, 12, seed), 20, seed)},
           {"half of it", with_coverage(truth, 0.5)},
