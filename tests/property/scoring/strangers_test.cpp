@@ -63,6 +63,31 @@ TEST(Strangers, DamagedMapsOfTheSameArenaAreNone) {
   }
 }
 
+/// A corner of an arena as small as this lies well somewhere in most others.
+TEST(Strangers, AFragmentOfAnotherArenaIsRefused) {
+  for (const Ground& ground : {Ground{"maze", 9, 7, 5}, {"maze", 9, 7, 6}, {"yellow", 9, 6, 1}, {"yellow", 9, 6, 5}}) {
+    Ground other = ground;
+    other.seed += 1000;
+    const OccupancyGrid truth = truth_of(ground);
+    for (const int gaps : {0, 15}) {
+      SCOPED_TRACE(ground.name() + ", " + std::to_string(gaps) + " gaps");
+      const OccupancyGrid fragment = with_coverage(with_gaps(truth_of(other), gaps, ground.seed), 0.12);
+      EXPECT_FALSE(align(crop_to_known(moved(fragment, 0.4, 1.0, 2.0), 0.0), crop_to_known(truth, 0.0)).aligned);
+    }
+  }
+}
+
+/// The mirror image of these arenas fits their damaged maps nearly as well on the whole, but not where nothing is
+/// missing or nothing is added.
+TEST(Strangers, AMapThatIsPerfectOneWayIsToldFromItsMirrorImage) {
+  const OccupancyGrid gaps = truth_of({"yellow", 9, 6, 8});
+  const OccupancyGrid salt = truth_of({"yellow", 7, 7, 7});
+  EXPECT_TRUE(
+      align(crop_to_known(moved(with_gaps(gaps, 60, 8), 0.4, 1.0, 2.0), 0.0), crop_to_known(gaps, 0.0)).aligned);
+  EXPECT_TRUE(
+      align(crop_to_known(moved(with_salt(salt, 0.03, 7), 0.4, 1.0, 2.0), 0.0), crop_to_known(salt, 0.0)).aligned);
+}
+
 TEST(Strangers, EveryMethodThatAlignsFindsTheSamePoseAndSaysWhich) {
   const OccupancyGrid truth = crop_to_known(maze_of(3011, 9, 7), 0.0);
   const OccupancyGrid map = crop_to_known(moved(with_gaps(truth, 20, 1), 0.9, 1.0, 4.0), 0.0);
