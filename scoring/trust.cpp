@@ -12,10 +12,11 @@ constexpr double kSideUnexplained = 2.6;  // or so many times as much of the wal
 constexpr double kSideKnown = 0.8;        // ... if nearly all of both maps' walls lie in the other
 constexpr double kLeastEach = 0.25;       // kappa that the walls of either map must reach
 constexpr double kFloor = 0.02;           // of what is left unexplained: less says nothing
-// A fragment fits somewhere by chance: less than this of one map's walls and this much floor [m^2] are common. There
-// walls must meet better and rivals leave more unexplained.
+// A fragment fits somewhere by chance: less than this of one map's walls and this much floor are common. There walls
+// must meet better and rivals leave more unexplained.
 constexpr double kFragmentKnown = 0.3;
-constexpr double kFragmentArea = 20.0;
+constexpr double kFragmentArea = 20.0;       // [m^2]
+constexpr double kFragmentLeastArea = 10.0;  // less of it tells nothing [m^2]
 constexpr double kFragmentKappa = 0.8;
 constexpr double kFragmentUnexplained = 2.0;
 // A pose so clear that the mirrored map need not be asked.
@@ -43,15 +44,21 @@ bool side_ahead(const WallEvidence& best, double rival) {
   return unexplained(best.known, agreement(best), rival) >= kSideUnexplained;
 }
 
+bool is_fragment(const PoseEvidence& e) {
+  return std::min(e.map.known, e.truth.known) < kFragmentKnown && e.common_area < kFragmentArea;
+}
+
+double least_kappa(const PoseEvidence& e) { return std::min(e.map.kappa(), e.truth.kappa()); }
+
 /// No rival comes near the best.
 bool ahead_of(const PoseEvidence& tight, const Rivals& rivals) {
   const double best = tight_agreement(tight);
   const double ratio = unexplained(known_share(tight), best, rivals.tight);
-  const double least_known = std::min(tight.map.known, tight.truth.known);
   const bool ahead = best >= kAhead * rivals.tight || ratio >= kUnexplained;
-  if (least_known < kFragmentKnown && tight.common_area < kFragmentArea)
-    return ahead && ratio >= kFragmentUnexplained && std::min(tight.map.kappa(), tight.truth.kappa()) >= kFragmentKappa;
-  return ahead || (least_known >= kSideKnown &&
+  if (is_fragment(tight))
+    return ahead && ratio >= kFragmentUnexplained && least_kappa(tight) >= kFragmentKappa &&
+           tight.common_area >= kFragmentLeastArea;
+  return ahead || (std::min(tight.map.known, tight.truth.known) >= kSideKnown &&
                    (side_ahead(tight.map, rivals.map_tight) || side_ahead(tight.truth, rivals.truth_tight)));
 }
 
@@ -59,10 +66,12 @@ Trust judge_tight(const PoseEvidence& tight, const Rivals& rivals) {
   Trust out;
   out.tight = true;
   const bool ahead = ahead_of(tight, rivals);
-  const bool mutual = std::min(tight.map.kappa(), tight.truth.kappa()) >= kLeastEach;
+  const bool mutual = least_kappa(tight) >= kLeastEach;
   out.trusted = ahead && mutual;
   if (!mutual)
     out.note = "not aligned: walls of one map are missing in the other";
+  else if (!ahead && is_fragment(tight))
+    out.note = "not aligned: the maps have too little in common; such a fragment fits at some place by chance";
   else if (!ahead)
     out.note = "not aligned: another pose, or a mirror image, fits about as well";
   return out;
@@ -100,8 +109,7 @@ void Rivals::join(const Rivals& others) {
 }
 
 bool beyond_doubt(const PoseEvidence& tight, const Rivals& other_poses) {
-  return std::min(tight.map.kappa(), tight.truth.kappa()) >= kClearKappa &&
-         std::min(tight.map.known, tight.truth.known) >= kClearKnown &&
+  return least_kappa(tight) >= kClearKappa && std::min(tight.map.known, tight.truth.known) >= kClearKnown &&
          unexplained(known_share(tight), tight_agreement(tight), other_poses.tight) >= kClearUnexplained;
 }
 

@@ -65,7 +65,7 @@ TEST(Strangers, DamagedMapsOfTheSameArenaAreNone) {
 
 /// A corner of an arena as small as this lies well somewhere in most others.
 TEST(Strangers, AFragmentOfAnotherArenaIsRefused) {
-  for (const Ground& ground : {Ground{"maze", 9, 7, 5}, {"maze", 9, 7, 6}, {"yellow", 9, 6, 1}, {"yellow", 9, 6, 5}}) {
+  for (const Ground& ground : {Ground{"maze", 9, 7, 5}, {"maze", 9, 7, 6}, {"yellow", 9, 6, 1}, {"yellow", 7, 7, 10}}) {
     Ground other = ground;
     other.seed += 1000;
     const OccupancyGrid truth = truth_of(ground);
