@@ -14,7 +14,7 @@ constexpr double kLeastEach = 0.25;       // kappa that the walls of either map 
 constexpr double kFloor = 0.02;           // of what is left unexplained: less says nothing
 // A fragment fits somewhere by chance: less than this of one map's walls and this much floor are common. There walls
 // must meet better and rivals leave more unexplained.
-constexpr double kFragmentKnown = 0.3;
+constexpr double kFragmentKnown = 0.35;
 constexpr double kFragmentArea = 20.0;       // [m^2]
 constexpr double kFragmentLeastArea = 10.0;  // less of it tells nothing [m^2]
 constexpr double kFragmentKappa = 0.8;
