@@ -1,11 +1,10 @@
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
-#include <cstdlib>
 
+#include "bench/scoring_data.h"
 #include "scoring/alignment.h"
 #include "tests/support/scoring_maze.h"
-#include "tests/support/scoring_pairs.h"
 
 /// Alignment without a guess on the 84 labelled sensor-map pairs (RUBBLE_DATA/alignment), and on pairs that do not
 /// belong together: mirrored ones and maps of the other building.
@@ -15,14 +14,9 @@ namespace {
 using namespace testing;
 
 void BM_AlignSensorMaps(benchmark::State& state) {
-  const char* data = std::getenv("RUBBLE_DATA");
-  if (data == nullptr) {
-    state.SkipWithError("set RUBBLE_DATA to the folder with the public data");
-    return;
-  }
-  const std::string folder = std::string(data) + "/alignment";
-  const std::vector<LabelledPair> pairs = load_pairs(folder);
-  const std::map<std::string, OccupancyGrid> maps = load_maps(folder, pairs);
+  const std::optional<SensorMaps> data = load_sensor_maps(state);
+  if (!data) return;
+  const auto& [pairs, maps] = *data;
   int right = 0;
   int trusted = 0;
   int right_and_trusted = 0;
@@ -49,14 +43,9 @@ void BM_AlignSensorMaps(benchmark::State& state) {
 BENCHMARK(BM_AlignSensorMaps)->Unit(benchmark::kSecond)->Iterations(1);
 
 void BM_AlignStrangers(benchmark::State& state) {
-  const char* data = std::getenv("RUBBLE_DATA");
-  if (data == nullptr) {
-    state.SkipWithError("set RUBBLE_DATA to the folder with the public data");
-    return;
-  }
-  const std::string folder = std::string(data) + "/alignment";
-  const std::vector<LabelledPair> pairs = load_pairs(folder);
-  const std::map<std::string, OccupancyGrid> maps = load_maps(folder, pairs);
+  const std::optional<SensorMaps> data = load_sensor_maps(state);
+  if (!data) return;
+  const auto& [pairs, maps] = *data;
   int tried = 0;
   int accepted = 0;
   for (auto _ : state) {

@@ -1,10 +1,16 @@
 #include <benchmark/benchmark.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <opencv2/imgproc.hpp>
+#include <string>
 
+#include "base/geotiff.h"
+#include "scenarios/league_map.h"
 #include "scoring/alignment.h"
 #include "scoring/correlation.h"
 #include "scoring/features.h"
+#include "scoring/normalise.h"
 #include "scoring/overlap.h"
 #include "scoring/psi.h"
 #include "scoring/resample.h"
@@ -125,6 +131,21 @@ void BM_ScoreMapWithWarp(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(score_map(map, truth, config));
 }
 BENCHMARK(BM_ScoreMapWithWarp)->Unit(benchmark::kMillisecond);
+
+/// Both maps from files. With RUBBLE_MAPS=FOLDER `map.tif` and `truth.tif` stay there, to be scored by the program.
+void BM_ScoreFiles(benchmark::State& state) {
+  const char* kept = std::getenv("RUBBLE_MAPS");
+  const std::filesystem::path folder = kept != nullptr ? kept : std::filesystem::temp_directory_path();
+  const std::string map = folder / "map.tif";
+  const std::string truth = folder / "truth.tif";
+  write_geotiff(map, scenarios::draw_truth(moved(big_map(), 0.7, 3.0, 1.0)));
+  write_geotiff(truth, scenarios::draw_truth(big_truth()));
+  for (auto _ : state) benchmark::DoNotOptimize(score_map(load_map(map).grid, load_map(truth).grid));
+  if (kept != nullptr) return;
+  std::filesystem::remove(map);
+  std::filesystem::remove(truth);
+}
+BENCHMARK(BM_ScoreFiles)->Unit(benchmark::kMillisecond);
 
 void BM_Features(benchmark::State& state) {
   const OccupancyGrid map = big_map();

@@ -10,7 +10,7 @@
 
 #include "scoring/rigid.h"
 #include "scoring/scorecard.h"
-#include "tests/support/scoring_maze.h"
+#include "tests/support/scoring_damage.h"
 
 /// Does the score put maps of one arena in the right order? Pairs of maps of which one has more damage of the same kind
 /// than the other; and maps distorted in several ways, whose order is that of the trajectory error the distortion
@@ -20,40 +20,14 @@ namespace {
 
 using namespace testing;
 
-OccupancyGrid hall(std::uint64_t seed) {
-  MazeSpec spec;
-  spec.columns = 9;
-  spec.rows = 7;
-  spec.seed = seed;
-  return maze(spec);
-}
-
-struct Damage {
-  std::string name;
-  std::vector<double> levels;  ///< growing
-  std::function<OccupancyGrid(const OccupancyGrid&, double, std::uint64_t)> apply;
-};
-
-std::vector<Damage> kinds() {
-  using Grid = OccupancyGrid;
-  return {
-      {"bend [m]", {0.1, 0.3, 0.5, 0.8, 1.1}, [](const Grid& g, double v, std::uint64_t) { return bent(g, v); }},
-      {"phantom walls",
-       {3, 8, 15, 25, 40},
-       [](const Grid& g, double v, std::uint64_t s) { return with_phantoms(g, static_cast<int>(v), s); }},
-      {"gaps",
-       {5, 15, 30, 50, 75},
-       [](const Grid& g, double v, std::uint64_t s) { return with_gaps(g, static_cast<int>(v), s); }},
-      {"thickness [cells]",
-       {0, 1, 2, 3, 4},
-       [](const Grid& g, double v, std::uint64_t) { return thickened(g, static_cast<int>(v)); }},
-      {"share known",
-       {0.95, 0.85, 0.7, 0.55, 0.4},
-       [](const Grid& g, double v, std::uint64_t) { return with_coverage(g, v); }},
-      {"salt",
-       {0.005, 0.01, 0.02, 0.04, 0.07},
-       [](const Grid& g, double v, std::uint64_t s) { return with_salt(g, v, s); }},
-      {"scale", {1.005, 1.015, 1.03, 1.05, 1.08}, [](const Grid& g, double v, std::uint64_t) { return scaled(g, v); }}};
+std::vector<Damage> damages() {
+  return {bending({0.1, 0.3, 0.5, 0.8, 1.1}),
+          phantom_walls({3, 8, 15, 25, 40}),
+          erased_walls({5, 15, 30, 50, 75}),
+          thickening({0, 1, 2, 3, 4}),
+          lost_coverage({0.95, 0.85, 0.7, 0.55, 0.4}),
+          salting({0.005, 0.01, 0.02, 0.04, 0.07}),
+          scale_error({1.005, 1.015, 1.03, 1.05, 1.08})};
 }
 
 double score_of(const OccupancyGrid& map, const OccupancyGrid& truth) {
@@ -65,11 +39,11 @@ void BM_RankPairs(benchmark::State& state) {
   int right = 0;
   for (auto _ : state) {
     pairs = right = 0;
-    for (const Damage& damage : kinds()) {
+    for (const Damage& damage : damages()) {
       int of_kind = 0;
       int right_of_kind = 0;
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-        const OccupancyGrid truth = hall(seed);
+        const OccupancyGrid truth = maze_of(seed, 9, 7);
         std::vector<double> scores;
         for (const double level : damage.levels) scores.push_back(score_of(damage.apply(truth, level, seed), truth));
         for (std::size_t i = 0; i < scores.size(); ++i)
@@ -180,7 +154,7 @@ void BM_RankAcrossKinds(benchmark::State& state) {
   std::vector<double> minus_error;
   for (auto _ : state) {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-      const OccupancyGrid truth = hall(seed);
+      const OccupancyGrid truth = maze_of(seed, 9, 7);
       const double width = 9 * 1.2;
       const double height = 7 * 1.2;
       for (int kind = 0; kind < 5; ++kind)

@@ -3,10 +3,9 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "bench/scoring_data.h"
 #include "scoring/room_hypotheses.h"
 #include "scoring/room_picture.h"
-#include "tests/support/scoring_floor_maps.h"
-#include "tests/support/scoring_pairs.h"
 
 /// Rooms found on the public floor maps (RUBBLE_DATA/rooms), plain and furnished, against those drawn by hand.
 /// One table a method: bench/scoring_rooms_bench. With RUBBLE_PICTURES=FOLDER the rooms are drawn as well.
@@ -32,38 +31,32 @@ struct Mean {
     sum.rooms += a.rooms;
     ++maps;
   }
-  void print(const char* name) const {
+  RoomAgreement value() const {
     RoomAgreement mean = sum;
-    for (double* value : {&mean.precision, &mean.recall, &mean.iou, &mean.strict}) *value /= maps;
-    print_row(name, mean);
+    for (double* v : {&mean.precision, &mean.recall, &mean.iou, &mean.strict}) *v /= maps;
+    return mean;
   }
 };
 
 void BM_Rooms(benchmark::State& state) {
-  const char* data = std::getenv("RUBBLE_DATA");
-  if (data == nullptr) {
-    state.SkipWithError("set RUBBLE_DATA to the folder with the public data");
-    return;
-  }
+  const bool furnished = state.range(1) != 0;
+  const std::optional<std::vector<LabelledFloor>> floors = load_floors(state, furnished);
+  if (!floors) return;
   const char* pictures = std::getenv("RUBBLE_PICTURES");
   RoomConfig config;
   config.method = state.range(0) == 0 ? RoomMethod::Passages : RoomMethod::Visibility;
-  const bool furnished = state.range(1) != 0;
   const std::string title =
       std::string(state.range(0) == 0 ? "passages" : "visibility clusters") + (furnished ? ", furnished" : ", plain");
   Mean all;
   Mean tuned;
   Mean held;
+  double slowest_s = 0.0;
   for (auto _ : state) {
     std::printf("%-24s precision  recall    IoU  strict  segments  rooms\n", title.c_str());
-    for (const FloorMap& floor : floor_maps()) {
-      const std::string base = std::string(data) + "/rooms/" + floor.name;
-      state.PauseTiming();
-      const OccupancyGrid map = read_floor_map(base + (furnished ? "_furnitures.png" : ".png"));
-      const cv::Mat truth = read_true_rooms(base + "_gt_segmentation.png");
-      state.ResumeTiming();
+    for (const auto& [floor, map, truth] : *floors) {
+      const double start_s = cpu_s();
       const Rooms rooms = extract_rooms(map, config);
-      state.PauseTiming();
+      slowest_s = std::max(slowest_s, cpu_s() - start_s);
       const RoomAgreement agreement = compare_rooms(rooms.labels, truth);
       print_row(floor.name, agreement);
       all.add(agreement);
@@ -72,13 +65,17 @@ void BM_Rooms(benchmark::State& state) {
         write_rooms_png(std::string(pictures) + "/" + floor.name + (furnished ? "_furnished" : "_plain") +
                             (state.range(0) == 0 ? ".png" : "_visibility.png"),
                         map, rooms);
-      state.ResumeTiming();
     }
-    tuned.print("mean, tuned on");
-    held.print("mean, not tuned on");
-    all.print("mean");
+    print_row("mean, tuned on", tuned.value());
+    print_row("mean, not tuned on", held.value());
+    print_row("mean", all.value());
   }
   state.counters["maps"] = all.maps;
+  state.counters["precision"] = all.value().precision;
+  state.counters["recall"] = all.value().recall;
+  state.counters["iou"] = all.value().iou;
+  state.counters["strict_iou"] = all.value().strict;
+  state.counters["slowest_s"] = slowest_s;
 }
 BENCHMARK(BM_Rooms)
     ->ArgsProduct({{0, 1}, {0, 1}})
@@ -89,14 +86,9 @@ BENCHMARK(BM_Rooms)
 /// Poses that rooms alone propose for the 84 labelled sensor-map pairs: how often the first one, and any of the list,
 /// is right by the rule of the alignment benchmark made twice as wide, which refinement is meant to close.
 void BM_RoomHypotheses(benchmark::State& state) {
-  const char* data = std::getenv("RUBBLE_DATA");
-  if (data == nullptr) {
-    state.SkipWithError("set RUBBLE_DATA to the folder with the public data");
-    return;
-  }
-  const std::string folder = std::string(data) + "/alignment";
-  const std::vector<LabelledPair> pairs = load_pairs(folder);
-  const std::map<std::string, OccupancyGrid> maps = load_maps(folder, pairs);
+  const std::optional<SensorMaps> data = load_sensor_maps(state);
+  if (!data) return;
+  const auto& [pairs, maps] = *data;
   int first = 0;
   int any = 0;
   double count = 0.0;

@@ -105,7 +105,8 @@ class Aligner {
     if (beyond_doubt(best.tight, others)) return others;
     const Rivals& mirrored = of_mirrored();
     out.mirrored = relative(mirrored, best.tight, out.log_odds);
-    return {std::max(others.log_odds, mirrored.log_odds), std::max(others.tight, mirrored.tight)};
+    others.join(mirrored);
+    return others;
   }
 
   /// How near the rivals come to the best, by the measure that `judge` uses.

@@ -8,22 +8,22 @@
 namespace rubble::scoring {
 namespace {
 
-PsiClass psi_of(ManhattanSum& distances, Occupancy colour, double absent_cap, double resolution) {
-  const std::int64_t map_count = distances.count(Layer::Map, colour);
-  const std::int64_t truth_count = distances.count(Layer::Truth, colour);
+PsiClass psi_of(const ManhattanSums& distances, Occupancy colour, double absent_cap, double resolution) {
+  const std::int64_t map_count = distances.map_count[colour];
+  const std::int64_t truth_count = distances.truth_count[colour];
   if (map_count == 0 && truth_count == 0) return {};
   if (map_count == 0 || truth_count == 0) return {absent_cap, absent_cap};
-  const auto mean = [&](Layer from, std::int64_t n) {
-    return static_cast<double>(distances.from(from, colour)) / static_cast<double>(n) * resolution;  // eq. (6)
+  const auto mean = [&](std::int64_t sum, std::int64_t n) {
+    return static_cast<double>(sum) / static_cast<double>(n) * resolution;  // eq. (6)
   };
-  return {mean(Layer::Map, map_count), mean(Layer::Truth, truth_count)};
+  return {mean(distances.map_to_truth[colour], map_count), mean(distances.truth_to_map[colour], truth_count)};
 }
 
 }  // namespace
 
 Psi psi(const OccupancyGrid& map, const OccupancyGrid& truth, double absent_cap) {
   assert(map.width() == truth.width() && map.height() == truth.height());
-  ManhattanSum distances(map, truth);
+  const ManhattanSums distances = manhattan_sums(map, truth);
   const double resolution = truth.resolution();
   Psi out;
   out.occupied = psi_of(distances, Occupancy::Occupied, absent_cap, resolution);

@@ -19,11 +19,14 @@ double whole_agreement(const PoseEvidence& metre);
 /// Log odds of a pose being right: logistic regression on poses of public maps, docs/scoring.md.
 double log_odds(const PoseEvidence& wide, const PoseEvidence& tight);
 
-/// The best that poses reach which cannot be the right one if the best is: other poses, and all of the mirrored map.
+/// The most that poses reach which cannot be the right one if the best is: other poses, and all of the mirrored map.
 struct Rivals {
   double log_odds = kNoOdds;
   double tight = 0.0;
+  double map_tight = 0.0;    ///< of `tight`, what the map's walls contribute
+  double truth_tight = 0.0;  ///< the same for the truth's walls
   void meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence);
+  void join(const Rivals& others);
 };
 
 /// The maps agree so well, and at no other pose nearly, that the mirrored map need not be asked.

@@ -118,8 +118,8 @@ PoseEvidence WallMatch::evidence(const Warp& warp, const Kernel& kernel) const {
   double common = 0.0;
   for (const TPoint2D& p : map_.free)
     if (at(truth_.grid, warp.forward(p)) == Occupancy::Free) common += 1.0;
-  common *= ratio(map_.free_area, static_cast<double>(map_.free.size()));
-  out.free_common = std::min(1.0, ratio(common, std::min(map_.free_area, truth_.free_area)));
+  out.common_area = common * ratio(map_.free_area, static_cast<double>(map_.free.size()));
+  out.free_common = std::min(1.0, ratio(out.common_area, std::min(map_.free_area, truth_.free_area)));
   return out;
 }
 

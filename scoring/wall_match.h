@@ -25,6 +25,7 @@ struct PoseEvidence {
   WallEvidence map;          ///< the map's walls on the truth
   WallEvidence truth;        ///< the truth's walls on the map
   double free_common = 0.0;  ///< share of the smaller free area that is free in both
+  double common_area = 0.0;  ///< free in both [m^2]
 };
 
 /// Two maps prepared for comparing them at many poses: wall points, distance fields, free samples of both.

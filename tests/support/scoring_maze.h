@@ -106,6 +106,14 @@ inline OccupancyGrid maze(const MazeSpec& spec = {}) {
   return grid;
 }
 
+inline OccupancyGrid maze_of(std::uint64_t seed, int columns, int rows) {
+  MazeSpec spec;
+  spec.columns = columns;
+  spec.rows = rows;
+  spec.seed = seed;
+  return maze(spec);
+}
+
 /// The image turned and shifted, nearest neighbour, on a canvas that holds all of it.
 inline OccupancyGrid moved(const OccupancyGrid& grid, double angle, double dx, double dy, double resolution = 0.0) {
   const GridFrame& f = grid.frame();

@@ -4,36 +4,17 @@
 #include <utility>
 #include <vector>
 
-#include "arenas/arena_file.h"
-#include "arenas/generate.h"
-#include "arenas/truth_map.h"
 #include "base/angle.h"
 #include "scoring/alignment.h"
 #include "scoring/resample.h"
 #include "scoring/scorecard.h"
-#include "tests/support/scoring_maze.h"
+#include "tests/support/scoring_grounds.h"
 
 /// Which maps belong together and which do not, on mazes and arenas that took no part in the calibration of trust.
 namespace rubble::scoring {
 namespace {
 
 using namespace testing;
-
-OccupancyGrid maze_of(std::uint64_t seed, int columns, int rows) {
-  MazeSpec spec;
-  spec.columns = columns;
-  spec.rows = rows;
-  spec.seed = seed;
-  return maze(spec);
-}
-
-OccupancyGrid arena_of(std::uint64_t seed) {
-  arenas::GenerateConfig config;
-  config.seed = seed;
-  config.columns = 9;
-  config.rows = 7;
-  return arenas::truth_map(arenas::parse_arena(arenas::generate_arena(config), "generated"));
-}
 
 TEST(Strangers, AreRefusedAndScoreNothing) {
   for (const std::uint64_t seed : {1011, 1012}) {
@@ -61,7 +42,7 @@ TEST(Strangers, AreRefusedAndScoreNothing) {
 TEST(Strangers, DamagedMapsOfTheSameArenaAreNone) {
   for (const std::uint64_t seed : {2011, 2012}) {
     for (const bool generated : {false, true}) {
-      const OccupancyGrid truth = generated ? arena_of(seed) : maze_of(seed, 9, 7);
+      const OccupancyGrid truth = truth_of({generated ? "yellow" : "maze", 9, 7, seed});
       const std::vector<std::pair<std::string, OccupancyGrid>> maps = {
           {"gaps and phantoms", with_gaps(with_phantoms(truth, 12, seed), 20, seed)},
           {"half of it", with_coverage(truth, 0.5)},
@@ -80,6 +61,31 @@ TEST(Strangers, DamagedMapsOfTheSameArenaAreNone) {
       }
     }
   }
+}
+
+/// A corner of an arena as small as this lies well somewhere in most others.
+TEST(Strangers, AFragmentOfAnotherArenaIsRefused) {
+  for (const Ground& ground : {Ground{"maze", 9, 7, 5}, {"maze", 9, 7, 6}, {"yellow", 9, 6, 1}, {"yellow", 7, 7, 10}}) {
+    Ground other = ground;
+    other.seed += 1000;
+    const OccupancyGrid truth = truth_of(ground);
+    for (const int gaps : {0, 15}) {
+      SCOPED_TRACE(ground.name() + ", " + std::to_string(gaps) + " gaps");
+      const OccupancyGrid fragment = with_coverage(with_gaps(truth_of(other), gaps, ground.seed), 0.12);
+      EXPECT_FALSE(align(crop_to_known(moved(fragment, 0.4, 1.0, 2.0), 0.0), crop_to_known(truth, 0.0)).aligned);
+    }
+  }
+}
+
+/// The mirror image of these arenas fits their damaged maps nearly as well on the whole, but not where nothing is
+/// missing or nothing is added.
+TEST(Strangers, AMapThatIsPerfectOneWayIsToldFromItsMirrorImage) {
+  const OccupancyGrid gaps = truth_of({"yellow", 9, 6, 8});
+  const OccupancyGrid salt = truth_of({"yellow", 7, 7, 7});
+  EXPECT_TRUE(
+      align(crop_to_known(moved(with_gaps(gaps, 60, 8), 0.4, 1.0, 2.0), 0.0), crop_to_known(gaps, 0.0)).aligned);
+  EXPECT_TRUE(
+      align(crop_to_known(moved(with_salt(salt, 0.03, 7), 0.4, 1.0, 2.0), 0.0), crop_to_known(salt, 0.0)).aligned);
 }
 
 TEST(Strangers, EveryMethodThatAlignsFindsTheSamePoseAndSaysWhich) {

@@ -15,14 +15,6 @@ namespace {
 
 using namespace testing;
 
-OccupancyGrid hall(std::uint64_t seed) {
-  MazeSpec spec;
-  spec.columns = 10;
-  spec.rows = 8;
-  spec.seed = seed;
-  return maze(spec);
-}
-
 std::vector<TPoint2D> random_points(int n, Rng& rng) {
   std::vector<TPoint2D> out;
   for (int i = 0; i < n; ++i) {
@@ -104,7 +96,7 @@ class EachFeature : public ::testing::TestWithParam<FeatureKind> {};
 TEST_P(EachFeature, FindsTheMotionOfATurnedMapFromDescriptorsAlone) {
   for (const std::uint64_t seed : {1, 2}) {
     SCOPED_TRACE("maze seed " + std::to_string(seed));
-    const OccupancyGrid truth = hall(seed);
+    const OccupancyGrid truth = maze_of(seed, 10, 8);
     const TPose2D T_map_truth(4.0, -2.0, 0.7);
     const OccupancyGrid map = moved(with_gaps(truth, 15, seed), T_map_truth.phi, T_map_truth.x, T_map_truth.y);
     const std::vector<PoseGuess> guesses = propose_by_features(map, truth, GetParam());
@@ -116,7 +108,7 @@ TEST_P(EachFeature, FindsTheMotionOfATurnedMapFromDescriptorsAlone) {
 }
 
 TEST_P(EachFeature, GivesTheSameFeaturesTwiceAndNoneOnEmptyMaps) {
-  const OccupancyGrid map = hall(4);
+  const OccupancyGrid map = maze_of(4, 10, 8);
   const FeatureSet a = find_features(map, GetParam());
   const FeatureSet b = find_features(map, GetParam());
   ASSERT_FALSE(a.features.empty());

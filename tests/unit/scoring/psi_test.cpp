@@ -55,19 +55,23 @@ TEST(Psi, EqualsBruteForceForEveryClassAndDirection) {
   }
 }
 
-/// Sizes around the blocks in which the sweeps go, and distances that bytes do not hold.
+/// Sizes around the squares in which the sweeps go, and distances that bytes do not hold (255 and more).
 TEST(Psi, EqualsBruteForceAcrossBlocksAndForLongDistances) {
-  for (const auto& [width, height] : {std::pair{64, 65}, {130, 63}, {1, 90}, {400, 3}, {3, 700}}) {
+  for (const auto& [width, height] :
+       {std::pair{16, 16}, {17, 31}, {64, 65}, {130, 63}, {1, 90}, {255, 1}, {256, 1}, {1, 257}, {400, 3}, {3, 700}}) {
     SCOPED_TRACE(std::to_string(width) + " x " + std::to_string(height));
     OccupancyGrid a = random_grid(width, height, 1, 0.01, 0.9);
     OccupancyGrid b(a.frame(), Occupancy::Free);
     b[{0, 0}] = Occupancy::Occupied;
+    b[{width / 2, height / 2}] = Occupancy::Unknown;
     a[{width - 1, height - 1}] = Occupancy::Occupied;
     const Psi result = psi(a, b, 5.0);
     EXPECT_NEAR(result.occupied.map_to_truth, brute_force(a, b, Occupancy::Occupied), 1e-9);
     EXPECT_NEAR(result.occupied.truth_to_map, brute_force(b, a, Occupancy::Occupied), 1e-9);
     EXPECT_NEAR(result.free.map_to_truth, brute_force(a, b, Occupancy::Free), 1e-9);
     EXPECT_NEAR(result.free.truth_to_map, brute_force(b, a, Occupancy::Free), 1e-9);
+    EXPECT_NEAR(result.unknown.map_to_truth, brute_force(a, b, Occupancy::Unknown), 1e-9);
+    EXPECT_NEAR(result.unknown.truth_to_map, brute_force(b, a, Occupancy::Unknown), 1e-9);
   }
 }
 

@@ -11,14 +11,6 @@ namespace {
 
 using namespace testing;
 
-OccupancyGrid hall(std::uint64_t seed) {
-  MazeSpec spec;
-  spec.columns = 10;
-  spec.rows = 8;
-  spec.seed = seed;
-  return maze(spec);
-}
-
 /// Where `bent` takes a point: the sag of a parabola along y.
 TPoint2D sagged(const TPoint2D& p, const OccupancyGrid& truth, double bend) {
   const GridFrame frame = padded(truth, static_cast<int>(std::ceil(bend / truth.resolution())) + 1).frame();
@@ -59,7 +51,7 @@ TEST(Warp, RecoversAKnownBend) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     for (const double bend : {0.3, 0.8}) {
       SCOPED_TRACE("maze seed " + std::to_string(seed) + ", bend " + std::to_string(bend));
-      const OccupancyGrid truth = hall(seed);
+      const OccupancyGrid truth = maze_of(seed, 10, 8);
       const OccupancyGrid map = bent(truth, bend);
       const WallOverlap walls(map, truth, 0.5);
       const TPose2D start(0.0, -0.3 * bend, 0.0);
@@ -79,7 +71,7 @@ TEST(Warp, RecoversAKnownBend) {
 }
 
 TEST(Warp, NeedsNoneOnIdenticalMapsAndNeverLowersTheScore) {
-  const OccupancyGrid truth = hall(4);
+  const OccupancyGrid truth = maze_of(4, 10, 8);
   const WarpedScore same = fit_warp(truth, truth, WallOverlap(truth, truth, 0.5), {});
   EXPECT_EQ(same.size, 0.0);
   EXPECT_EQ(same.overlap.score, 1.0);

@@ -1,0 +1,163 @@
+#!/bin/bash
+# Measures and judges the figures of map scoring. Exit code 1: a figure missed its bound; 2: data or a program is missing.
+#
+#   tests/scoring_figures.sh [-v] [alignment] [strangers] [rooms] [ranking] [speed]      (default: all)
+#
+# RUBBLE_DATA   folder with `alignment` and `rooms` (docs/scoring.md), needed by the first three
+# RUBBLE_BUILD  build folder (default: build/release)
+# -v            also prints what the benchmarks print, pair by pair and map by map
+#
+# Times are CPU times, the least of several repetitions: other work on the machine does not count.
+set -u
+cd "$(dirname "$0")/.."
+build=${RUBBLE_BUILD:-build/release}
+export RUBBLE_HOME=$PWD
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+misses=0
+verbose=0
+
+stop() {
+  echo "scoring_figures: $*" >&2
+  exit 2
+}
+
+need_data() {
+  [[ -n ${RUBBLE_DATA:-} ]] || stop "set RUBBLE_DATA to the folder with '$1' (docs/scoring.md, \"Public data\")"
+  [[ -d $RUBBLE_DATA/$1 ]] || stop "$RUBBLE_DATA/$1: no such folder; docs/scoring.md, \"Public data\", says what belongs in it"
+}
+
+need_program() {
+  [[ -x $build/$1 ]] || stop "$build/$1 is missing: cmake --preset release && ninja -C build/release ${1##*/}"
+}
+
+# bench PROGRAM FILTER [option...]: runs it; `value` then reads its counters and times.
+bench() {
+  local program=$1 filter=$2 out=/dev/null
+  shift 2
+  need_program "bench/$program"
+  ((verbose)) && out=/dev/stdout
+  "$build/bench/$program" --benchmark_filter="$filter" --benchmark_out="$work/result.json" \
+    --benchmark_out_format=json "$@" >$out 2>"$work/errors.txt" || stop "$program: $(tail -1 "$work/errors.txt")"
+  local error
+  error=$(python3 - "$work/result.json" <<'PYTHON'
+import json, sys
+for run in json.load(open(sys.argv[1]))["benchmarks"]:
+    if run.get("error_occurred"):
+        print(run["error_message"])
+        break
+PYTHON
+  )
+  [[ -z $error ]] || stop "$error"
+}
+
+# value BENCHMARK KEY: of the last `bench`; the least of its repetitions.
+value() {
+  python3 - "$work/result.json" "$1" "$2" <<'PYTHON'
+import json, sys
+path, name, key = sys.argv[1:]
+runs = [run for run in json.load(open(path))["benchmarks"] if run.get("run_type") != "aggregate"]
+print(min(run[key] for run in runs if run["run_name"] == name or run["run_name"].startswith(name + "/iterations:")))
+PYTHON
+}
+
+# judge WHAT VALUE '>='|'<='|'==' BOUND [UNIT]
+judge() {
+  local verdict
+  verdict=$(awk -v a="$2" -v op="$3" -v b="$4" \
+    'BEGIN { good = op == ">=" ? a >= b : op == "<=" ? a <= b : a == b; print good ? "ok  " : "MISS" }')
+  [[ $verdict == MISS ]] && misses=$((misses + 1))
+  printf '%s  %-58s %8.4g %-3s (%s %g)\n' "$verdict" "$1" "$2" "${5:-}" "$3" "$4"
+}
+
+tell() { printf '      %-58s %8.4g %-3s\n' "$1" "$2" "${3:-}"; }
+
+percent() { awk -v a="$1" -v b="$2" 'BEGIN { print 100 * a / b }'; }
+
+alignment() {
+  need_data alignment
+  bench scoring_alignment_bench BM_AlignSensorMaps
+  local pairs aligned
+  pairs=$(value BM_AlignSensorMaps pairs)
+  aligned=$(value BM_AlignSensorMaps aligned)
+  tell "alignment: labelled pairs of sensor maps, no guess" "$pairs"
+  judge "alignment: right pose" "$(percent "$(value BM_AlignSensorMaps right)" "$pairs")" ">=" 95 %
+  judge "alignment: right pose, and said to be" "$(percent "$(value BM_AlignSensorMaps right_and_aligned)" "$pairs")" ">=" 95 %
+  judge "alignment: wrong ones among the $aligned said to be right" "$(value BM_AlignSensorMaps wrong_but_aligned)" "==" 0
+}
+
+strangers() {
+  need_data alignment
+  bench scoring_alignment_bench BM_AlignStrangers
+  tell "strangers: mirrored maps and maps of another building" "$(value BM_AlignStrangers tried)"
+  judge "strangers: said to be aligned" "$(value BM_AlignStrangers wrongly_aligned)" "==" 0
+}
+
+rooms() {
+  need_data rooms
+  bench scoring_rooms_bench BM_Rooms/visibility:0
+  local kind bound name
+  for kind in plain furnished; do
+    name=BM_Rooms/visibility:0/furnished:$([[ $kind == plain ]] && echo 0 || echo 1)
+    bound=$([[ $kind == plain ]] && echo 95 || echo 92)
+    judge "rooms, $kind: precision" "$(percent "$(value $name precision)" 1)" ">=" "$bound" %
+    judge "rooms, $kind: recall" "$(percent "$(value $name recall)" 1)" ">=" "$bound" %
+    judge "rooms, $kind: one-to-one IoU" "$(value $name iou)" ">=" 0.82
+    judge "rooms, $kind: slowest of $(value $name maps) maps" "$(value $name slowest_s)" "<=" 1 s
+  done
+}
+
+ranking() {
+  bench scoring_ranking_bench BM_Rank
+  local pairs
+  pairs=$(value BM_RankPairs pairs)
+  judge "ranking: pairs of maps with more and less damage" "$pairs" ">=" 200
+  judge "ranking: pairs in the right order" "$(percent "$(value BM_RankPairs right)" "$pairs")" "==" 100 %
+  tell "ranking: maps distorted in five ways" "$(value BM_RankAcrossKinds maps)"
+  tell "ranking: Spearman, score and trajectory error" "$(value BM_RankAcrossKinds spearman_score)"
+  tell "ranking: Spearman, psi and trajectory error" "$(value BM_RankAcrossKinds spearman_psi)"
+}
+
+# command_s COMMAND...: the least CPU time of five runs of a program [s].
+command_s() {
+  local TIMEFORMAT='%U %S'
+  for _ in 1 2 3 4 5; do
+    { time "$@" >/dev/null 2>"$work/errors.txt"; } 2>&1 || stop "$*: $(tail -1 "$work/errors.txt")"
+  done | awk '{ t = $1 + $2; if (NR == 1 || t < least) least = t } END { print least }'
+}
+
+# beside WHAT BENCHMARK WHAT BENCHMARK: ours and the one with nothing but OpenCV.
+beside() {
+  tell "speed: $1" "$(value "$2" cpu_time)" ms
+  tell "speed: $3" "$(value "$4" cpu_time)" ms
+}
+
+speed() {
+  need_program rubble
+  RUBBLE_MAPS=$work bench scoring_bench . --benchmark_repetitions=5 --benchmark_min_time=0.1
+  judge "speed: psi, 800 x 800" "$(value BM_Psi cpu_time)" "<=" 3 ms
+  tell "speed: psi, OpenCV only" "$(value BM_PsiOpenCv cpu_time)" ms
+  beside "poses from walls" BM_Correlate "poses from walls, OpenCV only" BM_CorrelateOpenCv
+  beside "features, SURF (dlib)" BM_Features/0 "features, AKAZE (OpenCV)" BM_Features/1
+  tell "speed: features, ORB (OpenCV)" "$(value BM_Features/2 cpu_time)" ms
+  judge "speed: score_map, 800 x 800" "$(value BM_ScoreMap cpu_time)" "<=" 400 ms
+  judge "speed: score_map from files" "$(value BM_ScoreFiles cpu_time)" "<=" 400 ms
+  judge "speed: score_map with warp and features" "$(value BM_ScoreMapWithWarp cpu_time)" "<=" 1000 ms
+  judge "speed: rubble score" "$(command_s "$build/rubble" score "$work/map.tif" "$work/truth.tif")" "<=" 0.7 s
+  judge "speed: rubble score --warp" "$(command_s "$build/rubble" score "$work/map.tif" "$work/truth.tif" --warp)" "<=" 1.3 s
+  judge "speed: start-up (rubble --version)" "$(command_s "$build/rubble" --version)" "<=" 0.3 s
+}
+
+figures=()
+for argument in "$@"; do
+  case $argument in
+    -v) verbose=1 ;;
+    alignment | strangers | rooms | ranking | speed) figures+=("$argument") ;;
+    *) stop "unknown figure '$argument': use alignment, strangers, rooms, ranking, speed" ;;
+  esac
+done
+((${#figures[@]})) || figures=(alignment strangers rooms ranking speed)
+command -v python3 >/dev/null || stop "python3 is missing: apt-get install python3"
+for figure in "${figures[@]}"; do "$figure"; done
+((misses == 0)) || echo "$misses of the figures missed their bounds"
+exit $((misses > 0))
