@@ -5,6 +5,7 @@
 
 #include "arenas/elements.h"
 #include "arenas/geometry.h"
+#include "arenas/include.h"
 #include "arenas/plan.h"
 #include "arenas/raf.h"
 #include "arenas/victim_box.h"
@@ -221,7 +222,8 @@ void check_start(const YamlMap& root, const Plan& plan, const Arena& arena) {
   root.fail("start", *trouble);
 }
 
-Arena build(const YamlMap& root, const std::string& source) {
+Arena build(const YamlMap& document, const std::string& source) {
+  const YamlMap root = compose(document, source);
   Arena arena;
   const std::string file = source.substr(source.find_last_of('/') + 1);
   arena.name = root.text("name", file.substr(0, file.find_last_of('.')));

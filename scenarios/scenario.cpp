@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
+#include "arenas/include.h"
 #include "arenas/raf.h"
 #include "base/error.h"
 #include "base/number_text.h"
@@ -285,11 +284,7 @@ std::string arena_yaml(const Scenario& scenario) {
       throw InputError(scenario.arena_file + ": " + import.summary() + ": remove these parts from the file");
     return arenas::to_yaml(import);
   }
-  std::ifstream file(scenario.arena_file, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) throw InputError(scenario.arena_file + ": cannot be read; check the path and its permissions");
-  return text.str();
+  return arenas::self_contained_arena(scenario.arena_file);
 }
 
 }  // namespace rubble::scenarios

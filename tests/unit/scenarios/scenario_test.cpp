@@ -79,6 +79,16 @@ TEST_F(ScenarioFile, ArenaFollowsTheSeedUnlessItHasItsOwn) {
   EXPECT_EQ(arena_yaml(load_scenario(own, {{"seed", "1"}})), arena_yaml(load_scenario(own, {{"seed", "2"}})));
 }
 
+/// The run folder's arena.yaml must not need the files that the arena included.
+TEST_F(ScenarioFile, AnArenaOfSeveralFilesBecomesOne) {
+  write("piece.yaml", "maze: |\n  +---+\n  | .\n  +---+\n");
+  write("arena.yaml",
+        "maze: |\n  +---+---+\n  |S.     |\n  +---+---+\ninclude: [{file: piece.yaml, at: [1, 0], turn: 180}]\n");
+  const std::string text = arena_yaml(load_scenario(write("s.yaml", "arena: {file: arena.yaml}\n")));
+  EXPECT_EQ(text.find("piece.yaml"), std::string::npos);
+  EXPECT_THAT(text, HasSubstr("|S.   . |"));
+}
+
 TEST_F(ScenarioFile, FaultsAreNamedWithTheirPlace) {
   EXPECT_THAT(error_of("arena: {generate: {}}\nmaper: {particles: 3}\n"), HasSubstr("s.yaml:2:1"));
   EXPECT_THAT(error_of("arena: {generate: {}}\nmaper: {particles: 3}\n"), HasSubstr("mapper"));
