@@ -158,7 +158,10 @@ void bind_sections(Binder& b, Scenario& s) {
   b.section("sim", [&](Binder& in) { bind(in, s.sim); });
   b.section("mapper", [&](Binder& in) { bind(in, s.mapper); });
   b.section("explorer", [&](Binder& in) { bind(in, s.explorer); });
-  b.section("scoring", [&](Binder& in) { bind(in, s.scoring); });
+  b.section("scoring", [&](Binder& in) {
+    bind(in, s.scoring);
+    in.boolean("visible_truth", s.visible_truth);
+  });
 }
 
 void bind_generate(Binder& b, arenas::GenerateConfig& g) {
@@ -318,18 +321,26 @@ std::string resolved_yaml(const Scenario& scenario) {
   return out;
 }
 
+namespace {
+
+bool is_raf(const Scenario& scenario) { return std::filesystem::path(scenario.arena_file).extension() == ".raf"; }
+
+}  // namespace
+
+std::vector<std::string> arena_notes(const Scenario& scenario) {
+  if (!is_raf(scenario)) return {};
+  std::vector<std::string> notes = arenas::import_raf(scenario.arena_file).notes();
+  for (std::string& note : notes) note = scenario.arena_file + ": " + note;
+  return notes;
+}
+
 std::string arena_yaml(const Scenario& scenario) {
   if (scenario.arena_file.empty()) {
     arenas::GenerateConfig config = scenario.generate;
     config.seed = scenario.arena_seed();
     return arenas::generate_arena(config);
   }
-  if (std::filesystem::path(scenario.arena_file).extension() == ".raf") {
-    const arenas::RafImport import = arenas::import_raf(scenario.arena_file);
-    if (!import.unknown.empty())
-      throw InputError(scenario.arena_file + ": " + import.summary() + ": remove these parts from the file");
-    return arenas::to_yaml(import);
-  }
+  if (is_raf(scenario)) return arenas::to_yaml(arenas::import_raf(scenario.arena_file));
   return arenas::self_contained_arena(scenario.arena_file);
 }
 
