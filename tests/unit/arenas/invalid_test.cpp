@@ -42,7 +42,7 @@ const std::map<std::string, std::string>& faults() {
       {"number_out_of_range.yaml", ":1:11: 'ramp_deg' is '80'; give a number from 0 to 45"},
       {"object_off_the_floor.yaml", ":6:5: object 'bottle' at (5.00, 5.00) is off the floor: move it"},
       {"open_tag.raf", ":4:1: "},
-      {"paper_not_convex.yaml", ":6:6: the outline is not convex: split it"},
+      {"paper_crosses_itself.yaml", ":6:6: the outline crosses itself or has no area"},
       {"place_missing.yaml", ":6:5: where is it? give 'cell: A'"},
       {"post_missing.yaml", ":4:3: '-' where a post belongs: draw '+'"},
       {"slope_of_a_wall.yaml", ":6:33: a 'small_wall' has no slope: take the key out"},
