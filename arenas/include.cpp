@@ -1,6 +1,7 @@
 #include "arenas/include.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <list>
 #include <set>
@@ -88,7 +89,7 @@ PiecePlace read_place(const YamlMap& entry) {
   if (entry.has("at")) {
     const std::vector<double> at = entry.numbers("at", 2);
     for (const double number : at) {
-      if (number != static_cast<int>(number) || number < 0 || number >= kMostCells)
+      if (!(number >= 0 && number < kMostCells) || number != std::floor(number))
         entry.fail("at", "give 'at: [columns, rows]' in whole pallets from the south-western one, 0 to " +
                              std::to_string(kMostCells - 1));
     }
@@ -326,7 +327,7 @@ class Composition {
     for (const Included& file : files_) {
       for (const YamlNode::Entry& entry : file.root.tree()->entries) {
         const bool is_list = std::find(list_keys().begin(), list_keys().end(), entry.key) != list_keys().end();
-        if (is_list || entry.key == "name" || entry.key == "maze" || entry.key == "start" ||
+        if (is_list || entry.key == "name" || entry.key == "maze" || entry.key == "include" || entry.key == "start" ||
             out_.tree()->find(entry.key) != nullptr) {
           continue;
         }

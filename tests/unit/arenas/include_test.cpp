@@ -214,6 +214,15 @@ TEST_F(Include, TheIncludingFilesStartCounts) {
   EXPECT_NEAR(one.start.phi, 100.0 / 180.0 * 3.14159265358979, 1e-9);
 }
 
+TEST_F(Include, AnEmptyListIncludesNothing) {
+  write("piece.yaml", "include:\nmaze: |\n  +---+\n  |S.\n  +---+\n");
+  EXPECT_EQ(load("include: [{file: piece.yaml}]\n").floor.size(), 1u);
+  EXPECT_EQ(load("include:\nmaze: |\n  +---+\n  |S.\n  +---+\n").floor.size(), 1u);
+  EXPECT_THAT(error_of("inclde: [{file: piece.yaml}]\n"), HasSubstr("where does the robot start"));
+  EXPECT_THAT(error_of("maze: |\n  +---+\n  |S.\n  +---+\ninclde: [{file: a}]\n"), HasSubstr("did you mean 'include'"));
+  EXPECT_THAT(error_of("include: [{file: piece.yaml, at: [1e300, 0]}]\n"), HasSubstr("in whole pallets"));
+}
+
 /// Doubling at each level would make 2^30 pieces.
 TEST_F(Include, PiecesOfPiecesOfPiecesAreLimited) {
   for (int i = 0; i < 30; ++i) {
