@@ -166,8 +166,8 @@ bool can_start(const Layout& layout, Cell c, Arena& arena) {
 
 /// A stretch of floor the robot can drive about on.
 struct Region {
-  Cell start;           ///< its first pallet in the order of ranked_pallets
-  double inside = 0.0;  ///< area between the walls that the robot's middle gets to [m2]
+  std::vector<Cell> pallets;  ///< in the order of ranked_pallets; the robot can start on the first
+  double inside = 0.0;        ///< area between the walls that the robot's middle gets to [m2]
 };
 
 std::vector<Region> regions_of(const Layout& layout, const Grid<std::uint8_t>& enclosed,
@@ -179,7 +179,7 @@ std::vector<Region> regions_of(const Layout& layout, const Grid<std::uint8_t>& e
     if (known[c] != 0 || !can_start(layout, c, arena)) continue;
     const OccupancyGrid truth = truth_map(arena, kCoarse);
     const Grid<std::uint8_t> reached = reachable_mask(arena, truth);
-    Region region{c};
+    Region region;
     for (int y = 0; y < reached.height(); ++y) {
       for (int x = 0; x < reached.width(); ++x) {
         const Cell pallet = known.cell(reached.frame().centre({x, y}));
@@ -188,10 +188,62 @@ std::vector<Region> regions_of(const Layout& layout, const Grid<std::uint8_t>& e
         if (enclosed[pallet] != 0) region.inside += kCoarse * kCoarse;
       }
     }
+    for (const Cell other : pallets) {
+      const Cell middle = reached.frame().cell(layout.occupied.centre(other));
+      if (other == c || (reached.frame().inside(middle) && reached[middle] != 0)) region.pallets.push_back(other);
+    }
     known[c] = 1;
     regions.push_back(region);
   }
   return regions;
+}
+
+constexpr int kRoom = 3;  ///< pallets between a good start and the next ramp or step field
+
+/// How far the next pallet with a part on it is, up to kRoom.
+int room_around(const Layout& layout, Cell c) {
+  for (int room = 1; room < kRoom; ++room) {
+    for (int y = c.y - room; y <= c.y + room; ++y) {
+      for (int x = c.x - room; x <= c.x + room; ++x) {
+        if (layout.occupied.inside({x, y}) && layout.occupied[{x, y}] != 0) return room;
+      }
+    }
+  }
+  return kRoom;
+}
+
+/// A pallet in the middle of ramps is a poor start: on the largest flat stretch between the walls, if there is any.
+Cell start_in(const Region& region, const Layout& layout, const Grid<std::uint8_t>& enclosed, Arena arena) {
+  Grid<std::uint8_t> open(layout.occupied.frame());
+  for (const Cell c : region.pallets) open[c] = enclosed[c] != 0 && layout.occupied[c] == 0 ? 1 : 0;
+  std::size_t most = 0;
+  Cell start = region.pallets.front();
+  for (const Cell c : region.pallets) {
+    if (open[c] == 0) continue;
+    std::vector<Cell> stretch{c};
+    open[c] = 0;
+    for (std::size_t i = 0; i < stretch.size(); ++i) {
+      for (std::size_t d = 0; d < 4; ++d) {
+        const Cell next = step(stretch[i], d);
+        if (!open.inside(next) || open[next] == 0 || layout.walled[stretch[i]][d]) continue;
+        open[next] = 0;
+        stretch.push_back(next);
+      }
+    }
+    if (stretch.size() <= most) continue;
+    const auto roomy = [&](int room) {
+      return std::find_if(region.pallets.begin(), region.pallets.end(), [&](Cell p) {
+        return std::find(stretch.begin(), stretch.end(), p) != stretch.end() && room_around(layout, p) >= room &&
+               can_start(layout, p, arena);
+      });
+    };
+    auto usable = region.pallets.end();
+    for (int room = kRoom; room > 0 && usable == region.pallets.end(); --room) usable = roomy(room);
+    if (usable == region.pallets.end()) continue;
+    most = stretch.size();
+    start = *usable;
+  }
+  return start;
 }
 
 std::string pallet_name(const Layout& layout, Cell c) {
@@ -238,12 +290,13 @@ void find_start(const Layout& layout, const std::vector<Element>& elements, cons
                      import.summary() + ")");
   const auto largest = std::max_element(regions.begin(), regions.end(),
                                         [](const Region& a, const Region& b) { return a.inside < b.inside; });
-  import.start_note = "the file names no start: the robot starts on pallet " + pallet_name(layout, largest->start) +
+  const Cell start = start_in(*largest, layout, enclosed, import.arena);
+  import.start_note = "the file names no start: the robot starts on pallet " + pallet_name(layout, start) +
                       ", in the largest of " + std::to_string(regions.size()) + " parts that can be driven on";
   if (regions.size() == 1) {
-    import.start_note = "the file names no start: the robot starts on pallet " + pallet_name(layout, largest->start);
+    import.start_note = "the file names no start: the robot starts on pallet " + pallet_name(layout, start);
   }
-  can_start(layout, largest->start, import.arena);
+  can_start(layout, start, import.arena);
 }
 
 std::string list(const std::map<std::string, int>& counts) {

@@ -88,6 +88,18 @@ TEST(Raf, TheRobotStartsWhereItCanDriveFarthest) {
       "driven on");
 }
 
+/// A hall of eight pallets, two of them ramps: two flat ones stay between them and the start.
+TEST(Raf, TheRobotStartsAwayFromRamps) {
+  std::string hall;
+  for (int x = 0; x < 8; ++x)
+    for (const char* side : {"0", "180"})
+      hall += "<element type='small_wall' rotation='" + std::string(side) + "' x='" + std::to_string(x) + "' y='0'/>\n";
+  for (const char* x : {"0", "8"})
+    hall += "<element type='small_wall' rotation='270' x='" + std::string(x) + "' y='0'/>\n";
+  for (const char* x : {"0", "1"}) hall += "<element type='half_ramp' x='" + std::string(x) + "' y='0'/>\n";
+  EXPECT_NEAR(parse_raf(raf(hall), "f.raf").arena.start.x, 4 * 1.2, 1e-9);
+}
+
 TEST(Raf, AStartCheckIsTheStart) {
   const RafImport import = parse_raf(raf(kRoom + "<element type=\"start_check\" x=\"1\" y=\"0\"/>\n"), "f.raf");
   EXPECT_NEAR(import.arena.start.x, 1.2, 1e-9);
