@@ -5,20 +5,42 @@
 #include "app/commands.h"
 #include "arenas/arena_file.h"
 #include "arenas/generate.h"
+#include "arenas/raf.h"
 #include "arenas/render.h"
 #include "arenas/truth_map.h"
 #include "arenas/visible.h"
+#include "arenas/wall_lines.h"
 #include "base/error.h"
 #include "base/geotiff.h"
+#include "base/text_file.h"
 #include "scenarios/league_map.h"
 
 namespace rubble::app {
 
+namespace {
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// A league's file may have parts nobody knows: they are named, and the rest is shown.
+arenas::Arena load(const std::string& path) {
+  if (!ends_with(path, ".raf")) return arenas::load_arena(path);
+  const arenas::RafImport import = arenas::import_raf(path);
+  for (const std::string& note : import.notes()) std::fprintf(stderr, "rubble: %s: %s\n", path.c_str(), note.c_str());
+  return import.arena;
+}
+
+}  // namespace
+
 int arena(const ArenaArguments& arguments) {
   namespace fs = std::filesystem;
+  const bool is_geojson = ends_with(arguments.walls, ".geojson") || ends_with(arguments.walls, ".json");
+  if (!arguments.walls.empty() && !is_geojson && !ends_with(arguments.walls, ".csv"))
+    throw UsageError("--walls " + arguments.walls + ": the name must end in .csv or .geojson");
   const std::string source = arguments.generate ? "generated arena" : arguments.file;
   const std::string yaml = arguments.generate ? arenas::generate_arena(arguments.config) : std::string();
-  const arenas::Arena arena = arguments.generate ? arenas::parse_arena(yaml, source) : arenas::load_arena(source);
+  const arenas::Arena arena = arguments.generate ? arenas::parse_arena(yaml, source) : load(source);
   arenas::check(arena, source);
 
   const std::string stem = arguments.generate ? arguments.config.kind + "-" + std::to_string(arguments.config.columns) +
@@ -39,10 +61,15 @@ int arena(const ArenaArguments& arguments) {
     std::printf("%s.yaml\n", base.c_str());
   }
   scenarios::write_png(base + ".png", arenas::render(arena, 60.0));
-  const OccupancyGrid truth = arenas::truth_map(arena, arguments.resolution);
+  const OccupancyGrid truth = arenas::truth_map(arena, arguments.resolution, arguments.slice_height);
   write_geotiff(base + "-truth.tif", scenarios::draw_truth(truth));
   write_geotiff(base + "-visible.tif", scenarios::draw_truth(arenas::visible_truth(arena, truth)));
   std::printf("%s.png\n%s-truth.tif\n%s-visible.tif\n", base.c_str(), base.c_str(), base.c_str());
+  if (!arguments.walls.empty()) {
+    const std::vector<arenas::WallLine> lines = arenas::wall_lines(arena);
+    write_text_file(arguments.walls, is_geojson ? arenas::walls_geojson(lines) : arenas::walls_csv(lines));
+    std::printf("%s\n", arguments.walls.c_str());
+  }
   return kOk;
 }
 

@@ -63,6 +63,8 @@ struct ArenaArguments {
   bool generate = false;
   arenas::GenerateConfig config;
   double resolution = 0.05;
+  double slice_height = 0.35;
+  std::string walls;  ///< .csv or .geojson to write
   std::string out;
 };
 

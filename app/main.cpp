@@ -175,9 +175,16 @@ int dispatch(int argc, char** argv) {
   add_generate(*arena_command, arena_arguments, cells);
   arena_command->add_option("--resolution", arena_arguments.resolution, "Metres a pixel of the truth map")
       ->check(between(0.005, 1.0));
+  arena_command
+      ->add_option("--slice-height", arena_arguments.slice_height,
+                   "Height above each floor at which the truth map is cut, default 0.35 [m]")
+      ->check(between(0.01, 5.0));
+  arena_command->add_option("--walls", arena_arguments.walls,
+                            "Also write the walls as lines: FILE.csv or FILE.geojson");
   arena_command->add_option("--out", arena_arguments.out, "Folder for the files (default: here)");
   arena_command->footer(
       "Examples:\n  rubble arena arenas/yellow_8x8.yaml\n"
+      "  rubble arena arenas/yellow_8x8.yaml --resolution 0.02 --slice-height 0.2 --walls walls.geojson\n"
       "  rubble arena generate --cells 10x12 --seed 3 --ramps 0.4 --paper 0.2 --victims 6 --loops 0.2");
 
   BatchCommands batch_commands(app);

@@ -5,6 +5,7 @@
 
 #include "arenas/elements.h"
 #include "arenas/geometry.h"
+#include "arenas/include.h"
 #include "arenas/plan.h"
 #include "arenas/raf.h"
 #include "arenas/victim_box.h"
@@ -74,24 +75,24 @@ void read_boxes(const YamlMap& root, Plan& plan, Arena& arena) {
   }
 }
 
-/// `outline_m: [x, y, x, y, ...]`, in either sense of rotation.
-Outline read_outline(const YamlMap& entry) {
+/// `outline_m: [x, y, x, y, ...]`, in either sense of rotation, as convex pieces.
+std::vector<Outline> read_outline(const YamlMap& entry) {
   const std::vector<double> numbers = entry.numbers("outline_m");
   if (numbers.size() < 6 || numbers.size() % 2 != 0) {
     entry.fail("outline_m", "give three or more corners as x, y, x, y, ... in metres");
   }
   Outline outline;
   for (std::size_t i = 0; i < numbers.size(); i += 2) outline.push_back({numbers[i], numbers[i + 1]});
-  if (signed_area(outline) < 0.0) outline = Outline(outline.rbegin(), outline.rend());
-  if (!is_convex(outline)) entry.fail("outline_m", "the outline is not convex: split it into convex sheets");
-  return outline;
+  const std::vector<Outline> pieces = convex_pieces(outline);
+  if (pieces.empty()) entry.fail("outline_m", "the outline crosses itself or has no area: go round it once");
+  return pieces;
 }
 
 void read_paper(const YamlMap& root, Plan& plan, Arena& arena) {
   for (const YamlMap& entry : root.maps("paper")) {
     const double friction = entry.number("friction", 0.25, 0.0, 2.0);
     if (entry.has("outline_m")) {
-      arena.sheets.push_back({read_outline(entry), friction});
+      for (const Outline& piece : read_outline(entry)) arena.sheets.push_back({piece, friction});
       continue;
     }
     const double length = entry.number("length_m", 0.42, 0.01, kFar);  // DIN A3, landscape
@@ -221,7 +222,9 @@ void check_start(const YamlMap& root, const Plan& plan, const Arena& arena) {
   root.fail("start", *trouble);
 }
 
-Arena build(const YamlMap& root, const std::string& source) {
+Arena build(const YamlMap& document, const std::string& source) {
+  const YamlMap root = compose(document, source);
+  root.maps("include");  // all done, or empty: a key that is known
   Arena arena;
   const std::string file = source.substr(source.find_last_of('/') + 1);
   arena.name = root.text("name", file.substr(0, file.find_last_of('.')));

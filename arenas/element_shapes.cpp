@@ -123,6 +123,34 @@ void add_elevated_floor(const ElementFrame& frame, double height, Arena& arena) 
   add_platform(frame, -kHalf, -kHalf, kHalf, kHalf, height, "elevated_floor", arena);
 }
 
+void add_roll_ramp(const ElementFrame& frame, double slope, Arena& arena) {
+  const ElementFrame across(frame.point(0.0, 0.0), kPi - frame.forward());  // +y is the other's +x
+  add_ramp(across, -kHalf, kHalf, slope * 2.0 * kHalf, arena);
+}
+
+void add_wooden_block(const ElementFrame& frame, Arena& arena) {
+  add_platform(frame, -0.05, -0.15, 0.05, 0.15, 0.1, "wooden_block", arena);
+}
+
+void add_post(const ElementFrame& frame, double radius, double height, const std::string& element, Arena& arena) {
+  constexpr int kCorners = 16;
+  Outline round;
+  for (int i = 0; i < kCorners; ++i) {
+    const double bearing = 2.0 * kPi * i / kCorners;
+    round.push_back({radius * std::cos(bearing), radius * std::sin(bearing)});
+  }
+  arena.solids.push_back({frame.outline(round), 0.0, height, element});
+}
+
+void add_free_victim(const ElementFrame& frame, Arena& arena) {
+  const TPoint2D p = frame.point(0.0, 0.0);
+  Victim victim;
+  victim.name = "victim" + std::to_string(arena.victims.size() + 1);
+  victim.position = {p.x, p.y, 0.1};
+  victim.facing = frame.forward();
+  arena.victims.push_back(victim);
+}
+
 void add_stairs(const ElementFrame& frame, Arena& arena) {
   constexpr int kTreads = 5;
   constexpr double kTread = 0.2325;

@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPoint2D.h>
 
+#include <string>
 #include <vector>
 
 #include "arenas/arena.h"
@@ -50,6 +51,14 @@ void add_veil(const ElementFrame& frame, Arena& arena);
 void add_ramp(const ElementFrame& frame, double foot_y, double head_y, double rise, Arena& arena);
 /// Flat, closed below. height: above the ground [m].
 void add_elevated_floor(const ElementFrame& frame, double height, Arena& arena);
+/// A ramp over the whole pallet that rises towards +x: driven along +y, it rolls the robot.
+void add_roll_ramp(const ElementFrame& frame, double slope, Arena& arena);
+/// A block of 0.10 x 0.30 x 0.10 m to drive over.
+void add_wooden_block(const ElementFrame& frame, Arena& arena);
+/// Something round that stands in the middle of the pallet.
+void add_post(const ElementFrame& frame, double radius, double height, const std::string& element, Arena& arena);
+/// A doll without a box.
+void add_free_victim(const ElementFrame& frame, Arena& arena);
 void add_stairs(const ElementFrame& frame, Arena& arena);
 /// Half of a barrel that leans on the wall at +y, 0.89 m tall from `bottom` up.
 void add_half_barrel(const ElementFrame& frame, double bottom, Arena& arena);

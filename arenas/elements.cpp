@@ -52,6 +52,10 @@ Entry ramp(bool covers, double foot_y, double head_y, double rise) {
           }};
 }
 
+auto post(double radius, double height, const char* element) {
+  return standing([=](const ElementFrame& frame, Arena& arena) { add_post(frame, radius, height, element, arena); });
+}
+
 auto boxed_victim(bool heat, bool sound, bool co2) {
   return [=](const ElementFrame& frame, const Mount& mount, Arena& arena) {
     add_hung_victim(frame, mount, heat, sound, co2, arena);
@@ -90,6 +94,13 @@ const std::map<std::string, Entry>& table() {
       {"crossing_ramps",
        {K::Floor, true, standing([](const ElementFrame& f, Arena& a) { add_crossing_ramps(f, kTan10, a); }),
         add_crossing_ramps}},
+      {"elevated_ramps",
+       {K::Floor, true, standing([](const ElementFrame& f, Arena& a) { add_elevated_ramps(f, 0.17 / 0.6, a); }),
+        add_elevated_ramps}},
+      {"flat", {K::Floor, true, elevated_floor(0.0), nullptr}},
+      {"pitch_ramp", ramp(true, -0.6, 0.6, 1.2 * kTan10)},
+      {"roll_ramp",
+       {K::Floor, true, standing([](const ElementFrame& f, Arena& a) { add_roll_ramp(f, kTan10, a); }), add_roll_ramp}},
       {"tunnel", {K::Floor, false, standing(add_tunnel), nullptr}},
       {"stepfield_orange_diagonal", {K::Floor, false, step_field(0.2), nullptr}},
       {"stairs_120", {K::Floor, false, standing(add_stairs), nullptr}},
@@ -97,6 +108,11 @@ const std::map<std::string, Entry>& table() {
       {"stepfield_red_diagonal", {K::Floor, false, step_field(0.4), nullptr}},
       {"fiducial_barrel", {K::Item, false, barrel(0.30), nullptr}},
       {"fiducial_barrel_high", {K::Item, false, barrel(1.50), nullptr}},
+      {"wooden_block", {K::Item, false, standing(add_wooden_block), nullptr}},
+      {"red_barrel", {K::Item, false, post(0.29, 0.88, "red_barrel"), nullptr}},
+      {"fire_extinguisher", {K::Item, false, post(0.08, 0.55, "fire_extinguisher"), nullptr}},
+      {"pvc_pipe", {K::Item, false, post(0.055, 0.6, "pvc_pipe"), nullptr}},
+      {"victim_1", {K::Item, false, standing(add_free_victim), nullptr}},
       {"manip_storage", {K::Item, false, standing(add_shelves), nullptr}},
       {"spectator_120", {K::Item, false, standing(add_spectator), nullptr}},
       {"victim_with_box1", {K::Item, false, boxed_victim(true, false, false), nullptr}},
@@ -111,10 +127,6 @@ const std::map<std::string, Entry>& table() {
       {"victim_with_box_q", {K::Item, false, boxed_victim(false, false, false), nullptr}},
       {"victim_doll_heat_with_box", {K::Item, false, boxed_victim(true, false, false), nullptr}},
       {"victim_doll_qr_with_box", {K::Item, false, boxed_victim(false, false, false), nullptr}},
-      {"start_check", {K::Label, false, nullptr, nullptr}},
-      {"start_check_board", {K::Label, false, nullptr, nullptr}},
-      {"floor_tile_black", {K::Label, false, nullptr, nullptr}},
-      {"floor_tile_white", {K::Label, false, nullptr, nullptr}},
   };
   return entries;
 }
@@ -133,7 +145,9 @@ Mount mount_of(const Element& element, const Element* wall) {
 ElementKind kind_of(const std::string& type) {
   const auto found = table().find(type);
   if (found != table().end()) return found->second.kind;
-  return type.rfind("hazmat", 0) == 0 ? ElementKind::Label : ElementKind::Unknown;
+  for (const char* label : {"hazmat", "start_check", "floor_tile"})
+    if (type.rfind(label, 0) == 0) return ElementKind::Label;
+  return ElementKind::Unknown;
 }
 
 std::vector<std::string> element_types() {

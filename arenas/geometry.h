@@ -3,6 +3,7 @@
 #include <mrpt/math/TPoint2D.h>
 
 #include <optional>
+#include <vector>
 
 #include "arenas/arena.h"
 
@@ -25,6 +26,11 @@ double signed_area(const Outline& outline);
 
 /// Three or more corners, counter-clockwise, nowhere bent inwards.
 bool is_convex(const Outline& outline);
+
+/// Convex, counter-clockwise pieces that together are a simple outline (either sense of rotation); empty when its edges
+/// cross or it has no area. Cuts off ears, then joins neighbours where the result stays convex (Hertel and Mehlhorn
+/// 1983).
+std::vector<Outline> convex_pieces(Outline outline);
 
 /// Whether p lies in a convex outline or at most `tolerance` [m] outside one of its edges.
 bool contains(const Outline& outline, const mrpt::math::TPoint2D& p, double tolerance = 1e-9);

@@ -3,16 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
+#include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "arenas/elements.h"
 #include "arenas/geometry.h"
 #include "arenas/raf_reader.h"
+#include "arenas/truth_map.h"
+#include "arenas/visible.h"
 #include "base/angle.h"
 #include "base/error.h"
 #include "base/grid.h"
+#include "base/number_text.h"
 #include "base/text_file.h"
 
 namespace rubble::arenas {
@@ -40,6 +44,11 @@ std::size_t direction_of(const Element& element) {
   return static_cast<std::size_t>((std::lround(rad_to_deg(element.rotation) / 90.0) % 4 + 4) % 4);
 }
 
+bool is_quarter_turn(const Element& element) {
+  const double quarters = rad_to_deg(element.rotation) / 90.0;
+  return std::abs(quarters - std::round(quarters)) < 1e-6;
+}
+
 Layout layout_of(const std::vector<Element>& elements) {
   TPoint2D low = elements[0].position;
   TPoint2D high = low;
@@ -52,7 +61,7 @@ Layout layout_of(const std::vector<Element>& elements) {
   Layout layout(GridFrame{width, height, kPallet, low.x - 1.5 * kPallet, low.y - 1.5 * kPallet});
   for (const Element& e : elements) {
     const Cell c = layout.cell(e);
-    if (kind_of(e.type) == ElementKind::Wall) {
+    if (kind_of(e.type) == ElementKind::Wall && is_quarter_turn(e)) {
       const std::size_t d = direction_of(e);
       layout.walled[c][d] = true;
       layout.walled[step(c, d)][(d + 2) % 4] = true;
@@ -114,29 +123,180 @@ double open_heading(const Layout& layout, Cell c) {
   return 0.0;
 }
 
-/// The file does not say where the robot starts: at the usable flat pallet nearest to (0, 0), in the hall round an open
-/// arena only where a wall stands.
-void find_start(const Layout& layout, const Grid<std::uint8_t>& outside, const std::string& name, Arena& arena) {
+/// Pallets with a wall or a part, or more of them, to all four sides: what lies between walls even where the arena is
+/// open.
+Grid<std::uint8_t> enclosed_by(const Layout& layout) {
+  const GridFrame& frame = layout.occupied.frame();
+  Grid<std::uint8_t> enclosed(frame);
+  const auto ends_view = [&](Cell from, std::size_t d) {
+    for (Cell c = from; frame.inside(c); c = step(c, d))
+      if (layout.walled[c][d] || (c != from && layout.occupied[c] != 0)) return true;
+    return false;
+  };
+  for (int y = 0; y < frame.height; ++y) {
+    for (int x = 0; x < frame.width; ++x) {
+      bool all = true;
+      for (std::size_t d = 0; d < 4; ++d) all = all && ends_view({x, y}, d);
+      enclosed[{x, y}] = all ? 1 : 0;
+    }
+  }
+  return enclosed;
+}
+
+/// All pallets, the likelier starts first: between walls, flat, near (0, 0).
+std::vector<Cell> ranked_pallets(const Layout& layout, const Grid<std::uint8_t>& enclosed) {
   std::vector<Cell> cells;
   for (int y = 0; y < layout.occupied.height(); ++y) {
     for (int x = 0; x < layout.occupied.width(); ++x) cells.push_back({x, y});
   }
-  const auto far = [&](Cell c) {
+  const auto rank = [&](Cell c) {
     const TPoint2D p = layout.occupied.centre(c);
-    const std::array<bool, 4>& walled = layout.walled[c];
-    const bool is_hall = outside[c] != 0 && std::count(walled.begin(), walled.end(), true) == 0;
-    return std::pair(is_hall, std::lround((p.x * p.x + p.y * p.y) / (kPallet * kPallet)));
+    return std::tuple(enclosed[c] == 0, layout.occupied[c] != 0,
+                      std::lround((p.x * p.x + p.y * p.y) / (kPallet * kPallet)));
   };
-  std::stable_sort(cells.begin(), cells.end(), [&](Cell a, Cell b) { return far(a) < far(b); });
-  for (const bool flat_only : {true, false}) {
-    for (const Cell c : cells) {
-      const TPoint2D p = layout.occupied.centre(c);
-      arena.start = {p.x, p.y, wrap_angle(open_heading(layout, c))};
-      if (flat_only && layout.occupied[c] != 0) continue;
-      if (!start_trouble(arena)) return;
+  std::stable_sort(cells.begin(), cells.end(), [&](Cell a, Cell b) { return rank(a) < rank(b); });
+  return cells;
+}
+
+bool can_start(const Layout& layout, Cell c, Arena& arena) {
+  const TPoint2D p = layout.occupied.centre(c);
+  arena.start = {p.x, p.y, wrap_angle(open_heading(layout, c))};
+  return !start_trouble(arena);
+}
+
+/// A stretch of floor the robot can drive about on.
+struct Region {
+  std::vector<Cell> pallets;  ///< in the order of ranked_pallets; the robot can start on the first
+  double inside = 0.0;        ///< area between the walls that the robot's middle gets to [m2]
+};
+
+std::vector<Region> regions_of(const Layout& layout, const Grid<std::uint8_t>& enclosed,
+                               const std::vector<Cell>& pallets, Arena arena) {
+  constexpr double kCoarse = 0.1;  ///< [m]
+  Grid<std::uint8_t> known(layout.occupied.frame());
+  std::vector<Region> regions;
+  for (const Cell c : pallets) {
+    if (known[c] != 0 || !can_start(layout, c, arena)) continue;
+    const OccupancyGrid truth = truth_map(arena, kCoarse);
+    const Grid<std::uint8_t> reached = reachable_mask(arena, truth);
+    Region region;
+    for (int y = 0; y < reached.height(); ++y) {
+      for (int x = 0; x < reached.width(); ++x) {
+        const Cell pallet = known.cell(reached.frame().centre({x, y}));
+        if (reached[{x, y}] == 0 || !known.inside(pallet)) continue;
+        known[pallet] = 1;
+        if (enclosed[pallet] != 0) region.inside += kCoarse * kCoarse;
+      }
+    }
+    for (const Cell other : pallets) {
+      const Cell middle = reached.frame().cell(layout.occupied.centre(other));
+      if (other == c || (reached.frame().inside(middle) && reached[middle] != 0)) region.pallets.push_back(other);
+    }
+    known[c] = 1;
+    regions.push_back(region);
+  }
+  return regions;
+}
+
+constexpr int kRoom = 3;  ///< pallets between a good start and the next ramp or step field
+
+/// How far the next pallet with a part on it is, up to kRoom.
+int room_around(const Layout& layout, Cell c) {
+  for (int room = 1; room < kRoom; ++room) {
+    for (int y = c.y - room; y <= c.y + room; ++y) {
+      for (int x = c.x - room; x <= c.x + room; ++x) {
+        if (layout.occupied.inside({x, y}) && layout.occupied[{x, y}] != 0) return room;
+      }
     }
   }
-  throw InputError(name + ": no pallet of the arena has room for the robot to start: add an empty one");
+  return kRoom;
+}
+
+/// A pallet in the middle of ramps is a poor start: on the largest flat stretch between the walls, if there is any.
+Cell start_in(const Region& region, const Layout& layout, const Grid<std::uint8_t>& enclosed, Arena arena) {
+  Grid<std::uint8_t> open(layout.occupied.frame());
+  for (const Cell c : region.pallets) open[c] = enclosed[c] != 0 && layout.occupied[c] == 0 ? 1 : 0;
+  std::size_t most = 0;
+  Cell start = region.pallets.front();
+  for (const Cell c : region.pallets) {
+    if (open[c] == 0) continue;
+    std::vector<Cell> stretch{c};
+    open[c] = 0;
+    for (std::size_t i = 0; i < stretch.size(); ++i) {
+      for (std::size_t d = 0; d < 4; ++d) {
+        const Cell next = step(stretch[i], d);
+        if (!open.inside(next) || open[next] == 0 || layout.walled[stretch[i]][d]) continue;
+        open[next] = 0;
+        stretch.push_back(next);
+      }
+    }
+    if (stretch.size() <= most) continue;
+    const auto roomy = [&](int room) {
+      return std::find_if(region.pallets.begin(), region.pallets.end(), [&](Cell p) {
+        return std::find(stretch.begin(), stretch.end(), p) != stretch.end() && room_around(layout, p) >= room &&
+               can_start(layout, p, arena);
+      });
+    };
+    auto usable = region.pallets.end();
+    for (int room = kRoom; room > 0 && usable == region.pallets.end(); --room) usable = roomy(room);
+    if (usable == region.pallets.end()) continue;
+    most = stretch.size();
+    start = *usable;
+  }
+  return start;
+}
+
+std::string pallet_name(const Layout& layout, Cell c) {
+  const TPoint2D p = layout.occupied.centre(c) * (1.0 / kPallet);
+  return "x=\"" + number_text(std::round(100.0 * p.x) / 100.0) + "\" y=\"" +
+         number_text(std::round(100.0 * p.y) / 100.0) + "\"";
+}
+
+/// The usable pallet nearest to a part whose name begins with `start`, at most two pallets away.
+std::optional<Cell> marked_start(const Layout& layout, const std::vector<Element>& elements,
+                                 const std::vector<Cell>& pallets, Arena arena, std::string& type) {
+  for (const Element& e : elements) {
+    if (e.type.rfind("start", 0) != 0) continue;
+    const auto far = [&](Cell c) {
+      const TPoint2D d = layout.occupied.centre(c) - e.position;
+      return std::hypot(d.x, d.y);
+    };
+    std::vector<Cell> near;
+    for (const Cell c : pallets)
+      if (far(c) < 2.0 * kPallet + 1e-6) near.push_back(c);
+    std::stable_sort(near.begin(), near.end(), [&](Cell a, Cell b) { return far(a) < far(b) - 1e-6; });
+    const auto usable = std::find_if(near.begin(), near.end(), [&](Cell c) { return can_start(layout, c, arena); });
+    if (usable == near.end()) continue;
+    type = e.type;
+    return *usable;
+  }
+  return std::nullopt;
+}
+
+/// The file does not say where the robot starts, unless it has a start check.
+void find_start(const Layout& layout, const std::vector<Element>& elements, const std::string& name,
+                RafImport& import) {
+  const Grid<std::uint8_t> enclosed = enclosed_by(layout);
+  const std::vector<Cell> pallets = ranked_pallets(layout, enclosed);
+  std::string type;
+  if (const auto marked = marked_start(layout, elements, pallets, import.arena, type)) {
+    import.start_note = "the robot starts on pallet " + pallet_name(layout, *marked) + ", at the '" + type + "'";
+    can_start(layout, *marked, import.arena);
+    return;
+  }
+  const std::vector<Region> regions = regions_of(layout, enclosed, pallets, import.arena);
+  if (regions.empty())
+    throw InputError(name + ": no pallet of the arena has room for the robot to start: add an empty one (" +
+                     import.summary() + ")");
+  const auto largest = std::max_element(regions.begin(), regions.end(),
+                                        [](const Region& a, const Region& b) { return a.inside < b.inside; });
+  const Cell start = start_in(*largest, layout, enclosed, import.arena);
+  import.start_note = "the file names no start: the robot starts on pallet " + pallet_name(layout, start) +
+                      ", in the largest of " + std::to_string(regions.size()) + " parts that can be driven on";
+  if (regions.size() == 1) {
+    import.start_note = "the file names no start: the robot starts on pallet " + pallet_name(layout, start);
+  }
+  can_start(layout, start, import.arena);
 }
 
 std::string list(const std::map<std::string, int>& counts) {
@@ -156,6 +316,14 @@ std::string RafImport::summary() const {
   return text;
 }
 
+std::vector<std::string> RafImport::notes() const {
+  std::vector<std::string> lines;
+  if (!labels.empty() || !unknown.empty()) lines.push_back(summary());
+  if (!askew.empty()) lines.push_back("at other than quarter turns: " + list(askew) + "; their walls close no room");
+  if (!start_note.empty()) lines.push_back(start_note);
+  return lines;
+}
+
 RafImport parse_raf(const std::string& text, const std::string& name) {
   const std::vector<Element> elements = read_raf_elements(text, name);
   RafImport import;
@@ -166,6 +334,7 @@ RafImport parse_raf(const std::string& text, const std::string& name) {
   lay_ground(layout, outside, import.arena);
   for (const Element& element : elements) {
     const ElementKind kind = kind_of(element.type);
+    if (!is_quarter_turn(element)) ++import.askew[element.type];
     if (kind == ElementKind::Unknown) {
       ++import.unknown[element.type];
     } else if (kind == ElementKind::Label) {
@@ -176,8 +345,8 @@ RafImport parse_raf(const std::string& text, const std::string& name) {
       place(element, wall_behind(element, elements), import.arena);
     }
   }
-  find_start(layout, outside, name, import.arena);
   set_bounds(import.arena);
+  find_start(layout, elements, name, import);
   check(import.arena, name);
   return import;
 }

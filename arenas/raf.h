@@ -17,13 +17,17 @@ struct RafImport {
   std::map<std::string, int> built;    ///< parts with a shape, by type
   std::map<std::string, int> labels;   ///< known parts without a shape: signs, eye charts
   std::map<std::string, int> unknown;  ///< parts that are missing from the arena
+  std::map<std::string, int> askew;    ///< parts that stand at other than quarter turns
+  std::string start_note;              ///< where the robot starts, and why there
   /// "160 parts built; without a shape: hazmat 1; UNKNOWN, left out: fire_extinguisher 2".
   std::string summary() const;
+  /// What whoever uses the arena should know, one line each: parts left out, parts askew, the start.
+  std::vector<std::string> notes() const;
 };
 
 /// Reads a `.raf` file (XML, one element a part, 1 unit = one pallet of 1.2 m, rotation clockwise in degrees). The
-/// ground is laid inside the outer walls; the robot starts near the pallet (0, 0). Throws InputError with file, line
-/// and column.
+/// ground is laid inside the outer walls. The robot starts at a part named start..., else inside the largest stretch of
+/// floor it can drive on. Throws InputError with file, line and column.
 RafImport import_raf(const std::string& path);
 
 /// The same from text; `name` stands for the file in messages.

@@ -27,7 +27,9 @@ struct Tag {
 
 class Reader {
  public:
-  Reader(const std::string& text, const std::string& name) : text_(text), name_(name) {}
+  Reader(const std::string& text, const std::string& name) : text_(text), name_(name) {
+    if (starts_with("\xef\xbb\xbf")) position_ = 3;  // byte order mark
+  }
 
   /// The next tag, without prolog and comments; false at the end.
   bool next(Tag& tag) {
@@ -38,6 +40,8 @@ class Reader {
         skip_past("?>");
       } else if (starts_with("<!--")) {
         skip_past("-->");
+      } else if (starts_with("<!DOCTYPE")) {
+        skip_past(">");
       } else if (text_[position_] == '<') {
         tag = read_tag();
         return true;
@@ -105,9 +109,14 @@ class Reader {
   void read_attribute(Tag& tag) {
     const std::size_t first = position_;
     const std::string name = read_name();
-    if (!starts_with("=\"")) fail(position_, "attribute '" + name + "' has no value: write " + name + "=\"...\"");
-    position_ += 2;
-    const std::size_t end = text_.find('"', position_);
+    skip_blanks();
+    const bool has_value = starts_with("=");
+    if (has_value) ++position_;
+    skip_blanks();
+    if (!has_value || !(starts_with("\"") || starts_with("'")))
+      fail(position_, "attribute '" + name + "' has no value: write " + name + "=\"...\"");
+    const char quote = text_[position_++];
+    const std::size_t end = text_.find(quote, position_);
     if (end == std::string::npos) fail(first, "the value of '" + name + "' has no closing quote");
     if (!tag.attributes.emplace(name, text_.substr(position_, end - position_)).second) {
       fail(first, "attribute '" + name + "' is given twice");
@@ -150,7 +159,7 @@ Element element_of(const Reader& reader, const Tag& tag) {
     reader.fail(tag.position, "the element's type is not a name of letters, digits, '_' and '-'");
   }
   element.position = {kPallet * number(reader, tag, "x", -300, 300), kPallet * number(reader, tag, "y", -300, 300)};
-  element.rotation = deg_to_rad(number_or_zero(reader, tag, "rotation", -360, 360));
+  element.rotation = deg_to_rad(std::fmod(number_or_zero(reader, tag, "rotation", -36000, 36000), 360.0));
   element.offset = {kPallet * number_or_zero(reader, tag, "offset-x", -10, 10),
                     kPallet * number_or_zero(reader, tag, "offset-y", -10, 10)};
   if (tag.attributes.count("mount-point") > 0) {

@@ -17,6 +17,7 @@ constexpr Colour kWood{214, 190, 152};
 constexpr Colour kSeam{150, 125, 90};
 constexpr Colour kUphill{120, 84, 44};
 constexpr Colour kWall{58, 56, 60};
+constexpr Colour kTall{96, 24, 96};  ///< walls higher than a yellow arena's
 constexpr Colour kBox{122, 72, 50};
 constexpr Colour kHanging{120, 120, 150};
 constexpr Colour kPaper{252, 252, 248};
@@ -25,7 +26,9 @@ constexpr Colour kBottle{60, 120, 200};
 constexpr Colour kRadio{200, 150, 30};
 constexpr Colour kVictim{205, 38, 38};
 constexpr Colour kStart{28, 128, 76};
-constexpr double kMargin = 0.3;  ///< ground shown round the arena [m]
+constexpr double kSteep = 0.5;     ///< slopes above it get two arrows [rise a metre]
+constexpr double kTallFrom = 1.5;  ///< [m]
+constexpr double kMargin = 0.3;    ///< ground shown round the arena [m]
 
 Colour scaled(const Colour& colour, double factor) {
   Colour result{};
@@ -77,7 +80,11 @@ void draw_floor(const Arena& arena, Canvas& canvas) {
     if (slope < 0.02 || size < 0.3) continue;
     const TPoint2D uphill{patch->gx / slope, patch->gy / slope};
     const TPoint2D m = middle(patch->outline);
-    canvas.arrow(m - uphill * (0.24 * size), m + uphill * (0.24 * size), 0.03 * size, kUphill, 0.75);
+    const TPoint2D aside{-uphill.y, uphill.x};
+    for (const double shift : slope > kSteep ? std::vector<double>{-0.12, 0.12} : std::vector<double>{0.0}) {
+      const TPoint2D p = m + aside * (shift * size);
+      canvas.arrow(p - uphill * (0.24 * size), p + uphill * (0.24 * size), 0.03 * size, kUphill, 0.75);
+    }
   }
 }
 
@@ -114,7 +121,10 @@ void draw_solids(const Arena& arena, Canvas& canvas) {
     const bool is_box = solid.element == "victim_box";
     const double floor = floor_height(arena, middle(solid.outline));
     const bool is_hanging = solid.z_bottom > (std::isfinite(floor) ? floor : 0.0) + 0.3;
-    const Colour& colour = is_box ? kBox : is_hanging ? kHanging : kWall;
+    const Colour& colour = is_box                                               ? kBox
+                           : is_hanging                                         ? kHanging
+                           : solid.element == "wall" && solid.z_top > kTallFrom ? kTall
+                                                                                : kWall;
     const bool is_ceiling = is_hanging && signed_area(solid.outline) > 1.0;  // the floor below it shows through
     canvas.fill(solid.outline, colour, is_ceiling ? 0.45 : 1.0);
     draw_outline(solid.outline, is_box ? 0.012 : 0.03, colour, 1.0, canvas);

@@ -1,5 +1,6 @@
 #include "arenas/rough_shapes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -51,25 +52,46 @@ void add_step_field(const ElementFrame& frame, double tallest, Arena& arena) {
   add_platform(frame, 0.5, -0.49, 0.59, 0.49, kPlank, "step_field", arena);
 }
 
-void add_crossing_ramps(const ElementFrame& frame, double slope, Arena& arena) {
-  // Quarter by quarter, counter-clockwise from the lower left: each rises a quarter turn further, +x first.
-  constexpr double kHalf = 0.6;
+namespace {
+
+/// A quarter of a pallet that slopes.
+struct Quarter {
+  double x, y;    ///< its corner with the smallest coordinates
+  double gx, gy;  ///< gradient in the own frame
+  double foot;    ///< height of its low edge [m]
+};
+
+void add_quarter(const ElementFrame& frame, const Quarter& q, const char* element, Arena& arena) {
+  constexpr double kEdge = 0.6;
   const mrpt::math::TPoint2D origin = frame.point(0.0, 0.0);
   const mrpt::math::TPoint2D right = frame.point(1.0, 0.0) - origin;
   const mrpt::math::TPoint2D ahead = frame.point(0.0, 1.0) - origin;
-  const struct {
-    double x, y;    // its corner with the smallest coordinates
-    double gx, gy;  // gradient in the own frame
-  } quarters[] = {
-      {-kHalf, -kHalf, slope, 0.0}, {0.0, -kHalf, 0.0, slope}, {0.0, 0.0, -slope, 0.0}, {-kHalf, 0.0, 0.0, -slope}};
-  for (const auto& q : quarters) {
-    FloorPatch patch;
-    patch.outline = frame.box(q.x, q.y, q.x + kHalf, q.y + kHalf);
-    patch.z = q.gx < 0.0 || q.gy < 0.0 ? slope * kHalf : 0.0;
-    patch.gx = q.gx * right.x + q.gy * ahead.x;
-    patch.gy = q.gx * right.y + q.gy * ahead.y;
-    patch.element = "crossing_ramp";
-    arena.floor.push_back(patch);
+  FloorPatch patch;
+  patch.outline = frame.box(q.x, q.y, q.x + kEdge, q.y + kEdge);
+  patch.z = q.foot + std::max(0.0, -(q.gx + q.gy)) * kEdge;  // one of the two is zero
+  patch.gx = q.gx * right.x + q.gy * ahead.x;
+  patch.gy = q.gx * right.y + q.gy * ahead.y;
+  patch.element = element;
+  arena.floor.push_back(patch);
+}
+
+}  // namespace
+
+void add_crossing_ramps(const ElementFrame& frame, double slope, Arena& arena) {
+  // Quarter by quarter, counter-clockwise from the lower left: each rises a quarter turn further, +x first.
+  constexpr double kHalf = 0.6;
+  for (const Quarter& q : {Quarter{-kHalf, -kHalf, slope, 0.0, 0.0}, Quarter{0.0, -kHalf, 0.0, slope, 0.0},
+                           Quarter{0.0, 0.0, -slope, 0.0, 0.0}, Quarter{-kHalf, 0.0, 0.0, -slope, 0.0}}) {
+    add_quarter(frame, q, "crossing_ramp", arena);
+  }
+}
+
+void add_elevated_ramps(const ElementFrame& frame, double slope, Arena& arena) {
+  constexpr double kHalf = 0.6;
+  const double raised = slope * kHalf;
+  for (const Quarter& q : {Quarter{-kHalf, -kHalf, -slope, 0.0, raised}, Quarter{0.0, -kHalf, 0.0, -slope, 0.0},
+                           Quarter{0.0, 0.0, -slope, 0.0, raised}, Quarter{-kHalf, 0.0, 0.0, slope, 0.0}}) {
+    add_quarter(frame, q, "elevated_ramp", arena);
   }
 }
 

@@ -17,8 +17,8 @@ using mrpt::math::TPoint2D;
 using Mask = Grid<std::uint8_t>;
 
 constexpr double kThin = 1e-4;  ///< thickness given to an edge [m]
-constexpr double kPoses = 0.2;  ///< distance between the poses looked from [m]
-constexpr int kRays = 1440;     ///< round about
+constexpr double kPoses = 0.4;  ///< distance between the poses looked from [m]
+constexpr double kFull = 8.0;   ///< up to here neighbouring rays end in neighbouring cells [m]
 
 /// Cells with something the body cannot pass: solids at its height, and steps too high to climb.
 Mask barriers(const Arena& arena, const GridFrame& frame, const Viewer& viewer) {
@@ -101,12 +101,13 @@ Mask visible_mask(const OccupancyGrid& truth, const Mask& reachable, const Viewe
   const GridFrame& frame = truth.frame();
   Mask seen(frame);
   const int stride = std::max(1, static_cast<int>(std::lround(kPoses / frame.resolution)));
+  const int rays = static_cast<int>(std::ceil(2.0 * kPi * std::min(viewer.range, kFull) / frame.resolution));
   for (int y = 0; y < frame.height; ++y) {
     for (int x = 0; x < frame.width; ++x) {
       if (reachable[{x, y}] == 0) continue;
       seen[{x, y}] = 1;
       if (x % stride != 0 || y % stride != 0) continue;
-      for (int i = 0; i < kRays; ++i) look(truth, {x, y}, 2.0 * kPi * (i + 0.5) / kRays, viewer.range, seen);
+      for (int i = 0; i < rays; ++i) look(truth, {x, y}, 2.0 * kPi * (i + 0.5) / rays, viewer.range, seen);
     }
   }
   return seen;

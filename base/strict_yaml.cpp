@@ -125,6 +125,8 @@ YamlMap YamlMap::parse(const std::string& text, const std::string& name) {
   return YamlMap(std::move(root));
 }
 
+YamlMap YamlMap::of(std::shared_ptr<YamlNode> tree) { return YamlMap(std::move(tree)); }
+
 bool YamlMap::has(const std::string& key) const {
   node_->known.insert(key);
   const YamlNode::Entry* const entry = node_->find(key);

@@ -23,6 +23,8 @@ class YamlMap {
   /// Throws InputError: missing file, broken YAML, duplicate key, not a map at the top. `name` stands for the file.
   static YamlMap load(const std::string& path);
   static YamlMap parse(const std::string& text, const std::string& name);
+  /// A view of a tree that was put together from documents; its values keep the places they came from.
+  static YamlMap of(std::shared_ptr<YamlNode> tree);
 
   YamlMap(const YamlMap&);
   YamlMap(YamlMap&&) noexcept;
@@ -66,6 +68,8 @@ class YamlMap {
   void set(const std::string& dotted_key, const std::string& value);
   /// The whole document as YAML text, overrides included.
   std::string dump() const;
+  /// The tree behind this map (base/yaml_node.h), shared, for who puts documents together.
+  const std::shared_ptr<YamlNode>& tree() const { return node_; }
 
  private:
   explicit YamlMap(std::shared_ptr<YamlNode> node);

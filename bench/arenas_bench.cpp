@@ -4,6 +4,7 @@
 #include "arenas/generate.h"
 #include "arenas/render.h"
 #include "arenas/truth_map.h"
+#include "arenas/visible.h"
 
 namespace {
 
@@ -43,6 +44,16 @@ void ground_truth(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(truth_map(arena));
 }
 BENCHMARK(ground_truth)->Arg(8)->Arg(60)->Unit(benchmark::kMillisecond);
+
+/// range(1): of the scanner [m].
+void visible(benchmark::State& state) {
+  const Arena arena = generated(state.range(0));
+  const rubble::OccupancyGrid truth = truth_map(arena);
+  Viewer viewer;
+  viewer.range = static_cast<double>(state.range(1));
+  for (auto _ : state) benchmark::DoNotOptimize(visible_truth(arena, truth, viewer));
+}
+BENCHMARK(visible)->Args({8, 4})->Args({8, 30})->Args({60, 4})->Unit(benchmark::kMillisecond);
 
 void plan_picture(benchmark::State& state) {
   const Arena arena = generated(8);

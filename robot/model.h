@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "base/angle.h"
 
@@ -19,7 +20,24 @@ struct LaserModel {
   double range_max = 4.0;                              ///< [m]
   double scan_period = 0.1;                            ///< one revolution [s]
   double beam_period = 0.1 / 1024.0;                   ///< 97.656 us [s]
+  // The data sheet's accuracy: a range is off by at most so much. Only the simulator asks.
+  double accuracy_near = 0.01;       ///< below accuracy_near_to [m]
+  double accuracy_near_to = 1.0;     ///< [m]
+  double accuracy_far = 0.0;         ///< beyond: accuracy_far + accuracy_far_share * range [m]
+  double accuracy_far_share = 0.01;  ///< share of the range
+
+  /// Angle between the first and the last beam [rad].
+  double field_of_view() const { return (beams - 1) * angle_step; }
 };
+
+/// The scanners known by name, the default first: URG-04LX, UTM-30LX, and `generic`, whose numbers are the user's.
+const std::vector<std::string>& laser_names();
+
+/// The scanner of that name; `name` must be one of laser_names().
+LaserModel laser_model(const std::string& name);
+
+/// Spreads the beams over `field_of_view` [deg], symmetrically about the front, and over `sweep` [s].
+void spread_beams(LaserModel& laser, double field_of_view_deg, double sweep);
 
 /// What the core knows about the robot it drives: the same for the simulated and the real one.
 /// Defaults: Pioneer 3-AT with a servo-levelled URG-04LX.

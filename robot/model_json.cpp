@@ -50,6 +50,15 @@ void each_field(Model& m, Field&& field) {
   field("laser_beam_period", m.laser.beam_period);
 }
 
+/// Fields that older logs do not have.
+template <class Model, class Field>
+void each_younger_field(Model& m, Field&& field) {
+  field("laser_accuracy_near", m.laser.accuracy_near);
+  field("laser_accuracy_near_to", m.laser.accuracy_near_to);
+  field("laser_accuracy_far", m.laser.accuracy_far);
+  field("laser_accuracy_far_share", m.laser.accuracy_far_share);
+}
+
 // JSON has no infinities: they travel as text.
 void put(json& to, double value) {
   if (std::isfinite(value))
@@ -81,7 +90,9 @@ void take(const json& from, T& value) {
 
 std::string model_to_json(const RobotModel& model) {
   json object = json::object();
-  each_field(model, [&](const char* key, const auto& value) { put(object[key], value); });
+  const auto put_field = [&](const char* key, const auto& value) { put(object[key], value); };
+  each_field(model, put_field);
+  each_younger_field(model, put_field);
   return object.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -90,6 +101,9 @@ RobotModel model_from_json(const std::string& text) {
   try {
     const json object = json::parse(text);
     each_field(model, [&](const char* key, auto& value) { take(object.at(key), value); });
+    each_younger_field(model, [&](const char* key, auto& value) {
+      if (object.contains(key)) take(object.at(key), value);
+    });
   } catch (const json::exception& e) {
     throw BadPayload(std::string("robot model: ") + e.what());
   }

@@ -24,6 +24,8 @@ void Binder::degrees(const char* key, double& radians, double low, double high) 
   double deg = rad_to_deg(radians);
   const double round = std::round(deg * 1e6) / 1e6;
   if (deg_to_rad(round) == radians) deg = round;
+  for (const double beside : {std::nextafter(deg, -1e9), std::nextafter(deg, 1e9)})
+    if (deg_to_rad(deg) != radians && deg_to_rad(beside) == radians) deg = beside;
   const double before = deg;
   number(key, deg, low, high);
   if (deg != before) radians = deg_to_rad(deg);

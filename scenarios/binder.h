@@ -21,6 +21,8 @@ class Binder {
   virtual void text(const char* key, std::string& value) = 0;
   virtual void choice(const char* key, std::string& value, const std::vector<std::string>& choices) = 0;
   virtual void section(const char* key, const std::function<void(Binder&)>& fields) = 0;
+  /// Whether the fields are written rather than read: what has its usual value may then be left out.
+  virtual bool writes() const { return false; }
   /// Radians inside, degrees in the file; the bounds are degrees.
   void degrees(const char* key, double& radians, double low, double high);
 };
@@ -50,6 +52,7 @@ class YamlWriter : public Binder {
   void text(const char* key, std::string& value) override;
   void choice(const char* key, std::string& value, const std::vector<std::string>& choices) override;
   void section(const char* key, const std::function<void(Binder&)>& fields) override;
+  bool writes() const override { return true; }
   const std::string& yaml() const { return yaml_; }
 
  private:

@@ -13,6 +13,7 @@
 
 #include "arenas/arena_file.h"
 #include "arenas/truth_map.h"
+#include "arenas/visible.h"
 #include "base/digest.h"
 #include "base/error.h"
 #include "robot/log.h"
@@ -231,6 +232,22 @@ void finish(RunReport& report, RunFolder& folder, const Scenario& scenario, cons
 
 bool is_timing_key(const std::string& key) { return key == "wall_s" || key == "real_time_factor" || key == "peak_mb"; }
 
+namespace {
+
+/// The truth map that the run folder keeps. What this robot can never see is unknown in it.
+OccupancyGrid truth_to_score_with(const arenas::Arena& arena, const Scenario& scenario) {
+  const OccupancyGrid truth = arenas::truth_map(arena);
+  if (!scenario.visible_truth) return truth;
+  constexpr double kAboveLaser = 0.05;  ///< the body ends so much above the laser [m]
+  arenas::Viewer viewer;
+  viewer.height = scenario.robot.T_base_laser.z + kAboveLaser;
+  viewer.climbable_step = scenario.robot.climbable_step;
+  viewer.range = scenario.robot.laser.range_max;
+  return arenas::visible_truth(arena, truth, viewer);
+}
+
+}  // namespace
+
 RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   const auto start = Clock::now();
   const std::string yaml = arena_yaml(scenario);
@@ -244,7 +261,7 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   folder.write("arena.yaml", yaml);
   folder.write("scenario.yaml", resolved_yaml(resolved));
   folder.write("versions.json", versions().dump(2) + "\n");
-  folder.save_truth(arena, arenas::truth_map(arena));
+  folder.save_truth(arena, truth_to_score_with(arena, scenario));
 
   sim::SimRobot simulated(arena, scenario.robot, scenario.sim, scenario.seed);
   Core core(scenario, scenario.robot, true);

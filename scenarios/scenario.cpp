@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
+#include "arenas/include.h"
 #include "arenas/raf.h"
+#include "base/angle.h"
 #include "base/error.h"
 #include "base/number_text.h"
 #include "base/strict_yaml.h"
@@ -14,6 +14,40 @@
 
 namespace rubble::scenarios {
 namespace {
+
+/// A scanner by its name, then what differs from it. Written are only the differences, so that a name given later, on
+/// the command line, is not undone by the numbers of the one before.
+void bind(Binder& b, robot::LaserModel& laser) {
+  std::string name = laser.name;
+  b.choice("model", name, robot::laser_names());
+  if (!b.writes() && name != laser.name) laser = robot::laser_model(name);
+  const robot::LaserModel usual = robot::laser_model(name);
+  const bool is_generic = name == "generic";  // has nothing that is usual
+  const auto bind_number = [&](const char* key, double robot::LaserModel::*field, double low, double high) {
+    if (is_generic || !b.writes() || laser.*field != usual.*field) b.number(key, laser.*field, low, high);
+  };
+  const auto bind_degrees = [&](const char* key, double robot::LaserModel::*field, double low, double high) {
+    if (is_generic || !b.writes() || laser.*field != usual.*field) b.degrees(key, laser.*field, low, high);
+  };
+  if (is_generic || !b.writes() || laser.beams != usual.beams) b.integer("beams", laser.beams, 2, 20000);
+  bind_number("scan_period_s", &robot::LaserModel::scan_period, 0.01, 1.0);
+  if (is_generic && !b.writes()) {
+    double field_of_view_deg = 270.0;
+    b.number("field_of_view_deg", field_of_view_deg, 1.0, 360.0);
+    double sweep = laser.scan_period * field_of_view_deg / 360.0;
+    b.number("sweep_s", sweep, 0.0, 1.0);
+    robot::spread_beams(laser, field_of_view_deg, sweep);
+  }
+  bind_degrees("first_beam_deg", &robot::LaserModel::angle_min, -180.0, 180.0);
+  bind_degrees("step_deg", &robot::LaserModel::angle_step, 0.01, 180.0);
+  bind_number("beam_period_s", &robot::LaserModel::beam_period, 0.0, 0.1);
+  bind_number("min_range_m", &robot::LaserModel::range_min, 0.0, 1.0);
+  bind_number("max_range_m", &robot::LaserModel::range_max, 0.5, 100.0);
+  bind_number("accuracy_m", &robot::LaserModel::accuracy_near, 0.0, 1.0);
+  bind_number("accuracy_to_m", &robot::LaserModel::accuracy_near_to, 0.0, 100.0);
+  bind_number("far_accuracy_m", &robot::LaserModel::accuracy_far, 0.0, 1.0);
+  bind_number("far_accuracy_share", &robot::LaserModel::accuracy_far_share, 0.0, 0.5);
+}
 
 void bind(Binder& b, robot::RobotModel& r, robot::LevellingConfig& levelling) {
   b.boolean("levelling", levelling.on);
@@ -27,13 +61,7 @@ void bind(Binder& b, robot::RobotModel& r, robot::LevellingConfig& levelling) {
     l.number("x_m", r.T_base_laser.x, -0.5, 0.5);
     l.number("y_m", r.T_base_laser.y, -0.5, 0.5);
     l.number("z_m", r.T_base_laser.z, 0.05, 1.1);
-    l.integer("beams", r.laser.beams, 2, 20000);
-    l.degrees("first_beam_deg", r.laser.angle_min, -180.0, 180.0);
-    l.degrees("step_deg", r.laser.angle_step, 0.01, 10.0);
-    l.number("min_range_m", r.laser.range_min, 0.0, 1.0);
-    l.number("max_range_m", r.laser.range_max, 0.5, 100.0);
-    l.number("scan_period_s", r.laser.scan_period, 0.01, 1.0);
-    l.number("beam_period_s", r.laser.beam_period, 0.0, 0.01);
+    bind(l, r.laser);
   });
 }
 
@@ -130,7 +158,10 @@ void bind_sections(Binder& b, Scenario& s) {
   b.section("sim", [&](Binder& in) { bind(in, s.sim); });
   b.section("mapper", [&](Binder& in) { bind(in, s.mapper); });
   b.section("explorer", [&](Binder& in) { bind(in, s.explorer); });
-  b.section("scoring", [&](Binder& in) { bind(in, s.scoring); });
+  b.section("scoring", [&](Binder& in) {
+    bind(in, s.scoring);
+    in.boolean("visible_truth", s.visible_truth);
+  });
 }
 
 void bind_generate(Binder& b, arenas::GenerateConfig& g) {
@@ -201,6 +232,25 @@ void read_expect(const YamlMap& root, Scenario& s) {
   }
 }
 
+/// What one key alone cannot say.
+void check_laser(const YamlMap& map, const robot::LaserModel& laser) {
+  for (const char* key : {"field_of_view_deg", "sweep_s"})
+    if (map.has(key) && laser.name != "generic")
+      map.fail(key, std::string("is for 'model: generic'; the ") + laser.name + " has its own");
+  if (map.has("field_of_view_deg") && (map.has("first_beam_deg") || map.has("step_deg")))
+    map.fail("field_of_view_deg", "beside 'first_beam_deg' or 'step_deg'; keep one way to say it");
+  if (map.has("sweep_s") && map.has("beam_period_s"))
+    map.fail("sweep_s", "beside 'beam_period_s'; keep one way to say it");
+  const double turn = 2.0 * kPi + 1e-9;
+  if (laser.field_of_view() > turn)
+    map.fail("beams", "beams times step_deg is more than a full turn; take fewer beams or a smaller step");
+  if (laser.scan_period < (laser.beams - 1) * laser.beam_period)
+    map.fail("scan_period_s",
+             "laser.scan_period_s is shorter than the sweep of all beams; lengthen it, or shorten "
+             "sweep_s or beam_period_s");
+  if (laser.range_max <= laser.range_min) map.fail("max_range_m", "max_range_m must be above min_range_m");
+}
+
 void read_common(const YamlMap& root, Scenario& s) {
   s.seed =
       static_cast<std::uint64_t>(root.integer("seed", std::int64_t{1}, 0, std::numeric_limits<std::int64_t>::max()));
@@ -212,9 +262,7 @@ void read_common(const YamlMap& root, Scenario& s) {
   }
   YamlReader reader(root);
   bind_sections(reader, s);
-  const robot::LaserModel& laser = s.robot.laser;
-  if (laser.scan_period < laser.beams * laser.beam_period)
-    root.fail("robot", "laser.scan_period_s is shorter than beams times beam_period_s");
+  check_laser(root.map("robot").map("laser"), s.robot.laser);
   if (s.explorer.d_opt < s.explorer.d_min) root.fail("explorer", "d_opt_m must not be smaller than d_min_m");
   s.sim.time_limit = s.time_limit;
 }
@@ -273,23 +321,27 @@ std::string resolved_yaml(const Scenario& scenario) {
   return out;
 }
 
+namespace {
+
+bool is_raf(const Scenario& scenario) { return std::filesystem::path(scenario.arena_file).extension() == ".raf"; }
+
+}  // namespace
+
+std::vector<std::string> arena_notes(const Scenario& scenario) {
+  if (!is_raf(scenario)) return {};
+  std::vector<std::string> notes = arenas::import_raf(scenario.arena_file).notes();
+  for (std::string& note : notes) note = scenario.arena_file + ": " + note;
+  return notes;
+}
+
 std::string arena_yaml(const Scenario& scenario) {
   if (scenario.arena_file.empty()) {
     arenas::GenerateConfig config = scenario.generate;
     config.seed = scenario.arena_seed();
     return arenas::generate_arena(config);
   }
-  if (std::filesystem::path(scenario.arena_file).extension() == ".raf") {
-    const arenas::RafImport import = arenas::import_raf(scenario.arena_file);
-    if (!import.unknown.empty())
-      throw InputError(scenario.arena_file + ": " + import.summary() + ": remove these parts from the file");
-    return arenas::to_yaml(import);
-  }
-  std::ifstream file(scenario.arena_file, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) throw InputError(scenario.arena_file + ": cannot be read; check the path and its permissions");
-  return text.str();
+  if (is_raf(scenario)) return arenas::to_yaml(arenas::import_raf(scenario.arena_file));
+  return arenas::self_contained_arena(scenario.arena_file);
 }
 
 }  // namespace rubble::scenarios

@@ -43,6 +43,7 @@ struct Scenario {
   slam::MapperConfig mapper;
   explore::ExplorerConfig explorer;
   scoring::ScoreConfig scoring;
+  bool visible_truth = true;  ///< what the robot can never see does not count
   std::vector<Expectation> expect;
 
   std::uint64_t arena_seed() const { return generate_seed_given ? generate.seed : seed; }
@@ -60,7 +61,10 @@ Scenario default_scenario(const std::vector<Override>& overrides = {});
 /// All values, defaults included, as YAML that load_scenario reads back to the same scenario.
 std::string resolved_yaml(const Scenario& scenario);
 
-/// The arena's YAML text: the file's, or the generated one. Throws InputError.
+/// What the user should know about the arena's file, one line each: of a .raf file parts left out, and the start.
+std::vector<std::string> arena_notes(const Scenario& scenario);
+
+/// The arena's YAML text: the file's with all it includes, or the generated one. Throws InputError.
 std::string arena_yaml(const Scenario& scenario);
 
 }  // namespace rubble::scenarios

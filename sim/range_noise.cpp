@@ -122,13 +122,15 @@ void RangeNoise::blur(std::vector<float>& ranges) {
   bits_.resize(ranges.size() / 2);
   range_.fill(bits_.data(), bits_.size());
   const Float4 sigma = splat(0.25 * factor_), bias = splat(bias_);
-  const Float4 miss = splat(kInf), one = splat(1.0f), percent = splat(0.01f);  // accuracy_band
+  const Float4 miss = splat(kInf), near_to = splat(laser_.accuracy_near_to), near = splat(laser_.accuracy_near);
+  const Float4 far = splat(laser_.accuracy_far), far_share = splat(laser_.accuracy_far_share);
   for (std::size_t i = 0; i < ranges.size(); i += 4) {
     const Float4 exact = load4(&ranges[i]);
     const std::uint32_t low = bits_[i / 2], high = bits_[i / 2 + 1];
     const Float4 gauss{quantiles_[low & (kQuantiles - 1)], quantiles_[low >> 16 & (kQuantiles - 1)],
                        quantiles_[high & (kQuantiles - 1)], quantiles_[high >> 16 & (kQuantiles - 1)]};
-    const Float4 noisy = exact + percent * max4(exact, one) * (bias + sigma * gauss);
+    const Float4 band = exact < near_to ? near : far + far_share * exact;  // accuracy_band
+    const Float4 noisy = exact + band * (bias + sigma * gauss);
     store4(&ranges[i], exact < miss ? noisy : exact);
   }
 }

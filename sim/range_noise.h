@@ -8,8 +8,8 @@
 
 namespace rubble::sim {
 
-/// From exact distances to what a URG-04LX reports. The data sheet allows +-10 mm up to 1 m and +-1 % beyond; that band
-/// A(r) holds a device's own bias (at most A/4, drawn once) and three sigma of noise (sigma = A/4). At depth edges a
+/// From exact distances to what a scanner reports. The data sheet's band A(r) (URG-04LX: +-10 mm up to 1 m and +-1 %
+/// beyond) holds a device's own bias (at most A/4, drawn once) and three sigma of noise (sigma = A/4). At depth edges a
 /// beam of 10 mrad lights both surfaces and reports something between, or an error code; so does a wall seen nearly
 /// edge on.
 class RangeNoise {
@@ -39,6 +39,8 @@ class RangeNoise {
 };
 
 /// Half width of the data sheet's accuracy band at range r [m].
-inline float accuracy_band(float r) { return r < 1.0f ? 0.01f : 0.01f * r; }
+inline double accuracy_band(const robot::LaserModel& laser, double r) {
+  return r < laser.accuracy_near_to ? laser.accuracy_near : laser.accuracy_far + laser.accuracy_far_share * r;
+}
 
 }  // namespace rubble::sim

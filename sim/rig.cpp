@@ -80,7 +80,7 @@ void Rig::measure(World& world, robot::Inputs& inputs) {
     inputs.cues = victims_.look(state, laser_.walk(), world.moving_faces(index_, kFarthest));
     victim_clock_.advance();
   }
-  if (rotor_clock_.due(state.stamp - laser_.times().sent)) {
+  while (rotor_clock_.due(state.stamp - laser_.times().sent)) {
     constexpr double kAround = 1.0;  // what others and the laser's mount stick out, and more [m]
     inputs.scans.push_back(laser_.scan(rotor_clock_.next + laser_.times().first_beam, states_,
                                        world.clutter().spheres(),

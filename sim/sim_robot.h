@@ -14,7 +14,7 @@ namespace rubble::sim {
 /// Which effects are simulated and how strongly; defaults are the documented hardware.
 struct SimConfig {
   double physics_step = 0.01;       ///< [s]
-  double range_noise = 1.0;         ///< factor on the URG-04LX noise model; 0: exact ranges (still 1 mm steps)
+  double range_noise = 1.0;         ///< factor on the scanner's noise model; 0: exact ranges (still 1 mm steps)
   double acceleration_noise = 1.0;  ///< factor on the ADXL202 noise
   double time_limit = 1200.0;       ///< read() ends after this much simulated time [s]
   bool sweep = true;                ///< each beam from the pose at its own time; false: the whole scan at once

@@ -183,7 +183,7 @@ TEST(ArenaFile, ErrorsNameKeyAndRemedy) {
   EXPECT_THAT(error_of(room("| .   S |", "paper: [{cell: Q}]\n")), HasSubstr("no pallet of the drawing is marked 'Q'"));
   EXPECT_THAT(error_of(room("| .   S |", "paper: [{friction: 0.2}]\n")), HasSubstr("where is it?"));
   EXPECT_THAT(error_of(room("| .   S |", "paper: [{outline_m: [0, 0, 1, 0]}]\n")), HasSubstr("three or more corners"));
-  EXPECT_THAT(error_of(room("| .   S |", "paper: [{outline_m: [0,0,2,0,1,0.2,1,1]}]\n")), HasSubstr("not convex"));
+  EXPECT_THAT(error_of(room("| .   S |", "paper: [{outline_m: [0,0,2,1,2,0,0,1]}]\n")), HasSubstr("crosses itself"));
   EXPECT_THAT(error_of(room("| .   S |", "walls: [{from_m: [1, 1], to_m: [1, 1]}]\n")), HasSubstr("no length"));
   EXPECT_THAT(error_of(room("|A. |A. |", "victims: [{name: a, cell: A, wall: east}]\n")),
               HasSubstr("letter of its own"));

@@ -126,15 +126,11 @@ TEST(Elements, VeilIsSeenButGivesWay) {
 }
 
 TEST(Elements, EveryShapeIsSoundInEveryTurn) {
-  for (const char* type :
-       {"small_wall", "tall_wall", "wall_holes1", "small_wall_triple_holes", "veil_wall", "corner_diag_120",
-        "wall_diag_120", "full_ramp", "half_ramp", "half_ramp_shifted", "simple_elev_ramp", "elevated_floor_120",
-        "stairs_120", "stepfield_red_diagonal", "fiducial_barrel", "fiducial_barrel_high", "manip_storage",
-        "spectator_120", "victim_with_box1"}) {
+  for (const std::string& type : element_types()) {
     for (const double rotation : {0.0, 90.0, 180.0, 270.0, 30.0}) {
-      SCOPED_TRACE(std::string(type) + " " + std::to_string(rotation));
+      SCOPED_TRACE(type + " " + std::to_string(rotation));
       Arena arena = placed(type, rotation);
-      EXPECT_FALSE(arena.floor.empty() && arena.solids.empty());
+      EXPECT_FALSE(arena.floor.empty() && arena.solids.empty() && arena.victims.empty());
       arena.floor.push_back({rectangle({0.0, 0.0}, 4.0, 4.0), 0.0, 0.0, 0.0, "flat"});
       EXPECT_EQ(parts_trouble(arena).value_or(""), "");
       for (const Solid& s : arena.solids) {
@@ -142,6 +138,34 @@ TEST(Elements, EveryShapeIsSoundInEveryTurn) {
       }
     }
   }
+}
+
+/// Named for what they do to a robot that drives along the element's own +y.
+TEST(Elements, APitchRampRisesAheadAndARollRampAside) {
+  const double rise = 1.2 * std::tan(deg_to_rad(10.0));
+  const Arena pitch = placed("pitch_ramp");
+  EXPECT_NEAR(floor_height(pitch, {0.3, 0.6}) - floor_height(pitch, {0.3, -0.6}), rise, 1e-6);
+  EXPECT_NEAR(floor_height(pitch, {-0.6, 0.1}), floor_height(pitch, {0.6, 0.1}), 1e-12);
+  const Arena roll = placed("roll_ramp");
+  EXPECT_NEAR(floor_height(roll, {0.6, 0.3}) - floor_height(roll, {-0.6, 0.3}), rise, 1e-6);
+  EXPECT_NEAR(floor_height(roll, {0.1, -0.6}), floor_height(roll, {0.1, 0.6}), 1e-12);
+  const Arena turned = placed("roll_ramp", 90.0);
+  EXPECT_NEAR(floor_height(turned, {0.0, -0.6}) - floor_height(turned, {0.0, 0.6}), rise, 1e-6) << "clockwise";
+  EXPECT_EQ(floor_height(placed("flat"), {0.59, -0.59}), 0.0);
+}
+
+/// Four half ramps: two from the ground to 0.17 m, two from there to 0.34 m.
+TEST(Elements, ElevatedRampsStandOnEachOthersHeights) {
+  const Arena arena = placed("elevated_ramps");
+  ASSERT_EQ(arena.floor.size(), 4u);
+  EXPECT_NEAR(floor_height(arena, {-0.599, -0.3}), 0.34, 1e-3);
+  EXPECT_NEAR(floor_height(arena, {-0.001, -0.3}), 0.17, 1e-3);
+  EXPECT_NEAR(floor_height(arena, {0.3, -0.599}), 0.17, 1e-3);
+  EXPECT_NEAR(floor_height(arena, {0.3, -0.001}), 0.0, 1e-3);
+  EXPECT_NEAR(floor_height(arena, {0.001, 0.3}), 0.34, 1e-3);
+  EXPECT_NEAR(floor_height(arena, {0.599, 0.3}), 0.17, 1e-3);
+  EXPECT_NEAR(floor_height(arena, {-0.3, 0.001}), 0.0, 1e-3);
+  EXPECT_NEAR(floor_height(arena, {-0.3, 0.599}), 0.17, 1e-3);
 }
 
 TEST(Elements, LabelsAndStrangersAddNothing) {

@@ -95,5 +95,32 @@ TEST(Geometry, DistanceIsThatToTheNearestOfManyPointsOnTheOutline) {
   }
 }
 
+/// Stars with random spikes: the pieces are convex, their areas add up, and they cover the same points.
+TEST(Geometry, ConvexPiecesAreTheOutlineCutUp) {
+  Rng rng(3, "stars");
+  for (int round = 0; round < 200; ++round) {
+    Outline star;
+    const int corners = 3 + static_cast<int>(rng.below(9));
+    for (int i = 0; i < corners; ++i) {
+      const double bearing = 6.283185307179586 * (i + rng.uniform(0.0, 0.8)) / corners;
+      const double r = rng.uniform(0.1, 1.0);
+      star.push_back({r * std::cos(bearing), r * std::sin(bearing)});
+    }
+    if (signed_area(star) < 0.02) continue;
+    if (round % 2 == 0) std::reverse(star.begin(), star.end());
+    const std::vector<Outline> pieces = convex_pieces(star);
+    if (corners < 5 && pieces.empty()) continue;  // the middle may lie outside: then edges can cross
+    double area = 0.0;
+    for (const Outline& piece : pieces) {
+      EXPECT_TRUE(is_convex(piece));
+      area += signed_area(piece);
+    }
+    EXPECT_NEAR(area, std::abs(signed_area(star)), 1e-12);
+    EXPECT_LE(pieces.size(), star.size() - 2);
+  }
+  EXPECT_TRUE(convex_pieces({{0, 0}, {1, 1}, {1, 0}, {0, 1}}).empty()) << "an hourglass crosses itself";
+  EXPECT_EQ(convex_pieces({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}).size(), 2u) << "an L is two rectangles";
+}
+
 }  // namespace
 }  // namespace rubble::arenas

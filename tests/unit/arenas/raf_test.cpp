@@ -6,6 +6,7 @@
 #include <string>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +14,7 @@
 
 #include "arenas/arena_file.h"
 #include "arenas/truth_map.h"
+#include "base/angle.h"
 #include "base/error.h"
 
 namespace rubble::arenas {
@@ -66,6 +68,87 @@ TEST(Raf, NothingIsDroppedSilently) {
                                                  "<element type=\"mystery\" x=\"1\" y=\"0\"/>\n"),
                                      "f.raf");
   EXPECT_EQ(import.summary(), "6 parts built; without a shape: hazmat 1; UNKNOWN, left out: mystery 2");
+}
+
+/// Rooms of one and of three pallets side by side: the larger one, although (0, 0) lies in the other.
+TEST(Raf, TheRobotStartsWhereItCanDriveFarthest) {
+  std::string rooms;
+  for (int x = 0; x < 4; ++x)
+    for (const char* side : {"0", "180"})
+      rooms +=
+          "<element type='small_wall' rotation='" + std::string(side) + "' x='" + std::to_string(x) + "' y='0'/>\n";
+  for (const char* x : {"0", "1", "4"})
+    rooms += "<element type='small_wall' rotation='270' x='" + std::string(x) + "' y='0'/>\n";
+  const RafImport import = parse_raf(raf(rooms), "f.raf");
+  EXPECT_NEAR(import.arena.start.x, 1.2, 1e-9);
+  ASSERT_EQ(import.notes().size(), 1u);
+  EXPECT_EQ(
+      import.notes()[0],
+      "the file names no start: the robot starts on pallet x=\"1\" y=\"0\", in the largest of 2 parts that can be "
+      "driven on");
+}
+
+/// A hall of eight pallets, two of them ramps: two flat ones stay between them and the start.
+TEST(Raf, TheRobotStartsAwayFromRamps) {
+  std::string hall;
+  for (int x = 0; x < 8; ++x)
+    for (const char* side : {"0", "180"})
+      hall += "<element type='small_wall' rotation='" + std::string(side) + "' x='" + std::to_string(x) + "' y='0'/>\n";
+  for (const char* x : {"0", "8"})
+    hall += "<element type='small_wall' rotation='270' x='" + std::string(x) + "' y='0'/>\n";
+  for (const char* x : {"0", "1"}) hall += "<element type='half_ramp' x='" + std::string(x) + "' y='0'/>\n";
+  EXPECT_NEAR(parse_raf(raf(hall), "f.raf").arena.start.x, 4 * 1.2, 1e-9);
+}
+
+TEST(Raf, AStartCheckIsTheStart) {
+  const RafImport import = parse_raf(raf(kRoom + "<element type=\"start_check\" x=\"1\" y=\"0\"/>\n"), "f.raf");
+  EXPECT_NEAR(import.arena.start.x, 1.2, 1e-9);
+  EXPECT_EQ(import.notes().back(), "the robot starts on pallet x=\"1\" y=\"0\", at the 'start_check'");
+}
+
+/// A wall that stands alone far away must not lure the robot out of an arena with a gap.
+TEST(Raf, AnOpenArenaIsEnteredNotCircled) {
+  std::string walls = "<element type='small_wall' x='9' y='-3'/>\n";
+  for (int i = 0; i < 3; ++i) {
+    const std::string at = std::to_string(i + 1);
+    walls += "<element type='small_wall' rotation='0' x='" + at + "' y='3'/>\n";
+    walls += "<element type='small_wall' rotation='270' x='1' y='" + at + "'/>\n";
+    walls += "<element type='small_wall' rotation='90' x='3' y='" + at + "'/>\n";
+    if (i != 1) walls += "<element type='small_wall' rotation='180' x='" + at + "' y='1'/>\n";
+  }
+  const RafImport import = parse_raf(raf(walls), "f.raf");
+  EXPECT_GT(import.arena.start.x, 0.6);
+  EXPECT_LT(import.arena.start.x, 4.2);
+  EXPECT_GT(import.arena.start.y, 0.6);
+  EXPECT_LT(import.arena.start.y, 4.2);
+}
+
+TEST(Raf, OddTurnsAreTakenAndTold) {
+  const auto wall = [](const std::string& rotation) {
+    return parse_raf(raf(kRoom + "<element type=\"small_wall\" rotation=\"" + rotation + "\" x=\"0\" y=\"0\"/>\n"),
+                     "f.raf");
+  };
+  for (const char* same : {"-90", "450", "90.0", "-270"}) {
+    const RafImport import = wall(same);
+    EXPECT_TRUE(import.askew.empty()) << same;
+    const double sine = std::sin(import.elements.back().rotation);
+    EXPECT_NEAR(sine, std::string(same) == "-90" ? -1.0 : 1.0, 1e-9) << same;
+    EXPECT_NO_THROW(parse_arena(to_yaml(import), "f.yaml"));
+  }
+  EXPECT_THAT(wall("45").notes()[0], StartsWith("at other than quarter turns: small_wall 1"));
+  EXPECT_THAT(error_of(raf("<element type=\"small_wall\" rotation=\"north\" x=\"0\" y=\"0\"/>\n")),
+              StartsWith("f.raf:3:1: rotation=\"north\" is not a number"));
+}
+
+TEST(Raf, XmlIsReadAsPeopleWriteIt) {
+  const RafImport import = parse_raf(
+      "\xef\xbb\xbf<elements>\r\n<!-- a room --><element type = 'small_wall' x='0.0' y=\"0\"></element>\r\n"
+      "<element y='1' x='0' type='small_wall'/>\r\n</elements>\r\n",
+      "f.raf");
+  EXPECT_EQ(import.built.at("small_wall"), 2);
+  EXPECT_THAT(error_of(""), HasSubstr("f.raf:1:1: no <element"));
+  EXPECT_THAT(error_of("<?xml version='1.0'?><!DOCTYPE elements><elements></elements>"), HasSubstr("no <element"));
+  EXPECT_THAT(error_of(raf("<element type='zorp' x='0' y='0'/>")), HasSubstr("UNKNOWN, left out: zorp 1"));
 }
 
 /// The same shapes, moved by the shift between the two starts.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/angle.h"
 #include "base/error.h"
 #include "base/number_text.h"
 #include "scenarios/binder.h"
@@ -77,6 +78,56 @@ TEST_F(ScenarioFile, ArenaFollowsTheSeedUnlessItHasItsOwn) {
   const std::string own = write("b.yaml", "arena: {generate: {columns: 3, rows: 3, seed: 5}}\n");
   EXPECT_NE(arena_yaml(load_scenario(follows, {{"seed", "1"}})), arena_yaml(load_scenario(follows, {{"seed", "2"}})));
   EXPECT_EQ(arena_yaml(load_scenario(own, {{"seed", "1"}})), arena_yaml(load_scenario(own, {{"seed", "2"}})));
+}
+
+TEST_F(ScenarioFile, AScannerIsChosenByName) {
+  const std::string path = write("s.yaml", "arena: {generate: {}}\n");
+  EXPECT_EQ(load_scenario(path).robot.laser.beams, 682);
+  const std::vector<Override> utm{{"robot.laser.model", "UTM-30LX"}};
+  const robot::LaserModel laser = load_scenario(path, utm).robot.laser;
+  EXPECT_EQ(laser.beams, 1081);
+  EXPECT_EQ(laser.range_max, 30.0);
+  EXPECT_NEAR(laser.field_of_view(), deg_to_rad(270.0), 1e-12);
+  const std::string resolved = write("again.yaml", resolved_yaml(load_scenario(path)));
+  EXPECT_EQ(load_scenario(resolved, utm).robot.laser.beams, 1081) << "no numbers of the other scanner stay behind";
+}
+
+TEST_F(ScenarioFile, AGenericScannersNumbersAreItsUsers) {
+  const Scenario s = load_scenario(write(
+      "s.yaml",
+      "arena: {generate: {}}\nrobot:\n  laser: {model: generic, field_of_view_deg: 100, beams: 361, scan_period_s: "
+      "0.05, sweep_s: 0.02, min_range_m: 0.1, max_range_m: 25, accuracy_m: 0.02, far_accuracy_m: 0.04}\n"));
+  const robot::LaserModel& laser = s.robot.laser;
+  EXPECT_NEAR(laser.angle_min, deg_to_rad(-50.0), 1e-12);
+  EXPECT_NEAR(laser.field_of_view(), deg_to_rad(100.0), 1e-12);
+  EXPECT_NEAR(360 * laser.beam_period, 0.02, 1e-12);
+  EXPECT_EQ(laser.accuracy_far, 0.04);
+  const robot::LaserModel again = load_scenario(write("again.yaml", resolved_yaml(s))).robot.laser;
+  EXPECT_EQ(again.angle_min, laser.angle_min) << "to the bit";
+  EXPECT_EQ(again.angle_step, laser.angle_step);
+  EXPECT_EQ(again.beam_period, laser.beam_period);
+  EXPECT_EQ(again.beams, laser.beams);
+}
+
+TEST_F(ScenarioFile, ScannersThatCannotBeAreRefused) {
+  const auto error = [&](const std::string& laser) {
+    return error_of("arena: {generate: {}}\nrobot:\n  laser: {" + laser + "}\n");
+  };
+  EXPECT_THAT(error("model: URG-4LX"), HasSubstr("did you mean 'URG-04LX'"));
+  EXPECT_THAT(error("sweep_s: 0.05"), HasSubstr("s.yaml:3:11: is for 'model: generic'"));
+  EXPECT_THAT(error("model: generic, field_of_view_deg: 90, step_deg: 1"), HasSubstr("keep one way to say it"));
+  EXPECT_THAT(error("step_deg: 1"), HasSubstr("more than a full turn"));
+  EXPECT_THAT(error("scan_period_s: 0.05"), HasSubstr("shorter than the sweep"));
+}
+
+/// The run folder's arena.yaml must not need the files that the arena included.
+TEST_F(ScenarioFile, AnArenaOfSeveralFilesBecomesOne) {
+  write("piece.yaml", "maze: |\n  +---+\n  | .\n  +---+\n");
+  write("arena.yaml",
+        "maze: |\n  +---+---+\n  |S.     |\n  +---+---+\ninclude: [{file: piece.yaml, at: [1, 0], turn: 180}]\n");
+  const std::string text = arena_yaml(load_scenario(write("s.yaml", "arena: {file: arena.yaml}\n")));
+  EXPECT_EQ(text.find("piece.yaml"), std::string::npos);
+  EXPECT_THAT(text, HasSubstr("|S.   . |"));
 }
 
 TEST_F(ScenarioFile, FaultsAreNamedWithTheirPlace) {

@@ -95,10 +95,10 @@ TEST_F(SweepFile, IdsNameEverythingThatDecidesARun) {
 }
 
 TEST_F(SweepFile, AnIdFollowsTheContentOfAnArenaFileNotItsPlace) {
-  const std::string arena = "arena one", scenario = "name: drawn\narena: {file: arena.yaml}\n";
+  const std::string arena = "name: one", scenario = "name: drawn\narena: {file: arena.yaml}\n";
   write("a/arena.yaml", arena), write("a/drawn.yaml", scenario);
   write("b/arena.yaml", arena), write("b/drawn.yaml", scenario);
-  write("c/arena.yaml", "arena two"), write("c/drawn.yaml", scenario);
+  write("c/arena.yaml", "name: two"), write("c/drawn.yaml", scenario);
   const auto id = [&](const std::string& where) {
     return jobs("scenarios: [" + where + "/drawn.yaml]\nseeds: 1\n")[0].run_id;
   };

@@ -35,6 +35,24 @@ TEST(Laser, LevelRobotSeesNoPhantomWall) {
   for (const float range : scan.ranges) EXPECT_EQ(range, std::numeric_limits<float>::infinity());
 }
 
+/// 1081 beams in 18.75 ms: its rotor's zero is where the first beam leaves, and the last one ends the sweep.
+TEST(Laser, AUtm30lxSeesTwentyMetresFar) {
+  robot::RobotModel model;
+  model.laser = robot::laser_model("UTM-30LX");
+  const SweepTimes times(model.laser);
+  EXPECT_NEAR(times.first_beam, 0.0, 1e-12);
+  EXPECT_NEAR(times.sent, 1080 * 0.025 / 1440, 1e-9);
+  Laser laser(room(-20, -20, 20, 20), model, 0.0, true, 1);
+  WorldState state;
+  WorldState later = state;
+  later.stamp = Stamp::from_seconds(0.1);
+  const robot::LaserScan scan = laser.scan(Stamp::from_seconds(0.0), {state, later}, {});
+  ASSERT_EQ(scan.ranges.size(), 1081u);
+  EXPECT_NEAR(scan.ranges[540], 19.98 - 0.145, 0.0011) << "straight ahead";
+  EXPECT_NEAR(scan.ranges[540 + 360], 19.98, 0.0011) << "to the left";
+  EXPECT_NEAR(scan.ranges[540 - 360], 19.98, 0.0011);
+}
+
 TEST(Laser, ALevelRobotInFrontOfARampSeesItAsAWall) {
   arenas::Arena arena = flat_floor(-5, -5, 1, 5);
   add_ramp(arena, 1, -5, 5, 5, deg_to_rad(10.0));

@@ -13,15 +13,15 @@ namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-TEST(RangeNoise, StaysInTheDataSheetsBandWithItsSigma) {
-  for (const float range : {0.3f, 0.9f, 2.0f, 3.8f}) {
+void expect_the_data_sheets_band(const robot::LaserModel& laser, std::initializer_list<float> distances) {
+  for (const float range : distances) {
     double worst_bias = 0.0;
     double spread = 0.0;
     int outside = 0;
     const int devices = 40;
     const int scans = 20;
     for (int seed = 1; seed <= devices; ++seed) {
-      RangeNoise noise(robot::LaserModel{}, 1.0, static_cast<std::uint64_t>(seed));
+      RangeNoise noise(laser, 1.0, static_cast<std::uint64_t>(seed));
       double sum = 0.0;
       double squares = 0.0;
       int n = 0;
@@ -34,7 +34,7 @@ TEST(RangeNoise, StaysInTheDataSheetsBandWithItsSigma) {
           sum += error;
           squares += error * error;
           ++n;
-          outside += std::abs(error) > accuracy_band(range) + 0.0005 ? 1 : 0;
+          outside += std::abs(error) > accuracy_band(laser, range) + 0.0005 ? 1 : 0;
         }
       }
       const double bias = sum / n;
@@ -43,11 +43,20 @@ TEST(RangeNoise, StaysInTheDataSheetsBandWithItsSigma) {
     }
     const double share = outside / (devices * scans * 682.0);
     std::cout << range << " m: sigma " << 1e3 * spread << " mm, largest bias " << 1e3 * worst_bias << " mm, outside +-"
-              << 1e3 * accuracy_band(range) << " mm: " << share << '\n';
-    EXPECT_NEAR(spread, 0.25 * accuracy_band(range), 0.04 * accuracy_band(range));
-    EXPECT_LE(worst_bias, 0.26 * accuracy_band(range) + 0.0002);
+              << 1e3 * accuracy_band(laser, range) << " mm: " << share << '\n';
+    EXPECT_NEAR(spread, 0.25 * accuracy_band(laser, range), 0.04 * accuracy_band(laser, range));
+    EXPECT_LE(worst_bias, 0.26 * accuracy_band(laser, range) + 0.0002);
     EXPECT_LT(share, 0.001);
   }
+}
+
+TEST(RangeNoise, StaysInTheDataSheetsBandWithItsSigma) { expect_the_data_sheets_band({}, {0.3f, 0.9f, 2.0f, 3.8f}); }
+
+TEST(RangeNoise, AUtm30lxIsOffByThirtyMillimetresToTenMetresAndByFiftyBeyond) {
+  const robot::LaserModel laser = robot::laser_model("UTM-30LX");
+  EXPECT_EQ(accuracy_band(laser, 9.9), 0.03);
+  EXPECT_EQ(accuracy_band(laser, 10.1), 0.05);
+  expect_the_data_sheets_band(laser, {0.3f, 9.0f, 11.0f, 29.0f});
 }
 
 TEST(RangeNoise, IsSilentWhenTurnedOff) {

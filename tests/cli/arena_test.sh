@@ -1,0 +1,62 @@
+# rubble arena: other tools read its files, and a league's file says in one line each what was made of it.
+. "$(dirname "$0")/lib.sh"
+arena=$source/arenas/demo_ramps.yaml
+expect_exit 0 '' "$rubble" arena "$arena" --resolution 0.02 --slice-height 0.2 --walls walls.csv --out out
+expect_exit 0 '' "$rubble" arena "$arena" --walls walls.geojson --out coarse
+head -1 walls.csv | grep -q '^x0,y0,x1,y1,bottom,top,kind' || fail "walls.csv begins with $(head -1 walls.csv)"
+json_holds walls.geojson "len(j['features']) == $(($(wc -l <walls.csv) - 1))"
+json_holds walls.geojson "{'wall', 'step', 'victim_box'} <= {f['properties']['kind'] for f in j['features']}"
+if command -v gdalinfo >/dev/null; then
+  gdalinfo out/demo_ramps-truth.tif | grep -q 'Pixel Size = (0.02' || fail "gdalinfo: $(gdalinfo out/demo_ramps-truth.tif)"
+fi
+if command -v ogrinfo >/dev/null; then
+  for file in walls.csv walls.geojson; do
+    ogrinfo -so "$file" walls | grep -q "Feature Count: $(($(wc -l <walls.csv) - 1))" || fail "ogrinfo $file"
+  done
+fi
+expect_exit 2 '.geojson' "$rubble" arena "$arena" --walls walls.shp
+expect_exit 2 '--slice-height' "$rubble" arena "$arena" --slice-height 0
+
+expect_exit 0 '' "$rubble" arena "$source/arenas/four_corners.yaml" --out out
+expect_exit 3 'pieces/cycle.yaml:6:6: the file includes itself' "$rubble" arena \
+  "$source/tests/invalid/arenas/include_cycle.yaml" --out out
+
+printf '<elements><element type="small_wall" x="0" y="0"/>\n<element type="zorp" x="1" y="0"/></elements>\n' >league.raf
+"$rubble" arena league.raf --out out >/dev/null 2>err.txt || fail "an unknown part stopped rubble arena"
+grep -qx 'rubble: league.raf: 1 parts built; UNKNOWN, left out: zorp 1' err.txt || fail "unknown part: $(cat err.txt)"
+grep -q 'the file names no start: the robot starts on pallet' err.txt || fail "start: $(cat err.txt)"
+printf 'arena: {file: league.raf}\ntime_limit_s: 2\n' >league.yaml
+"$rubble" run league.yaml --out run >/dev/null 2>err.txt || fail "rubble run of a league's file"
+[[ $(wc -l <err.txt) == 2 ]] || fail "two notes wanted: $(cat err.txt)"
+for bad in '' '<elements>' '<elements><element type="a" x="0"/></elements>' '<elements><element type="a" x="0" y=0/></elements>'; do
+  printf '%s' "$bad" >bad.raf
+  expect_exit 3 'bad.raf:1:' "$rubble" arena bad.raf --out out
+done
+
+# A room behind a gap too narrow to pass, with a corner nobody can look into: it counts against a map only when asked to.
+cat >gap.yaml <<YAML
+maze: |
+  +---+---+---+---+---+
+  |S.   .   .   .   . |
+  +   +---+   +---+---+
+  | .   . |
+  +---+---+
+boxes: [{x_m: 2.2, y_m: 2.3, length_m: 0.3, width_m: 0.2}]
+walls: [{from_m: [3.6, 1.2], to_m: [3.6, 2.2]}]
+YAML
+printf 'arena: {file: gap.yaml}\ntime_limit_s: 200\n' >gap_run.yaml
+expect_exit 0 '' "$rubble" run gap_run.yaml --out seen
+expect_exit 0 '' "$rubble" run gap_run.yaml --set scoring.visible_truth=false --out all
+for run in seen all; do
+  "$rubble" score $run/map.tif $run/truth.tif --json >$run/again.json || fail "rubble score of $run"
+done
+python3 - <<'PY' || fail "the visible truth does not count as it should"
+import json
+seen, all_, again = (json.load(open(f)) for f in ("seen/score.json", "all/score.json", "seen/again.json"))
+assert seen["aligned"] and all_["aligned"]
+assert seen["known"] > all_["known"] + 0.05, (seen["known"], all_["known"])
+assert abs(seen["score"] - again["score"]) < 1e-12 and abs(seen["known"] - again["known"]) < 1e-12
+PY
+cmp -s seen/map.tif all/map.tif || fail "the truth to score with changed the map"
+expect_exit 0 '' "$rubble" replay seen
+finish
