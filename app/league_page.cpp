@@ -23,6 +23,7 @@ std::string victims_cell(const LeagueEntry& e) {
   const auto found = std::count_if(victims.begin(), victims.end(), [](const auto& v) { return v.found; });
   std::string text = std::to_string(found) + " of " + std::to_string(victims.size());
   if (e.points->false_alarms > 0) text += ", " + std::to_string(e.points->false_alarms) + " false";
+  if (e.victims_from == "symbols") text += ", drawn";
   return "<td class=\"n\">" + text + "</td>";
 }
 

@@ -7,6 +7,7 @@
 #include "app/league_files.h"
 #include "app/league_page.h"
 #include "app/score_tools.h"
+#include "app/score_victims.h"
 #include "base/error.h"
 #include "base/text_file.h"
 #include "scoring/league.h"
@@ -19,34 +20,18 @@ namespace {
 namespace fs = std::filesystem;
 using scoring::LeagueEntry;
 
-/// The list of victims that belongs to a truth map, when none is given.
-std::string victims_beside(const std::string& truth) {
-  const fs::path folder = fs::path(truth).parent_path();
-  std::string stem = fs::path(truth).stem().string();
-  std::vector<fs::path> candidates = {folder / (stem + ".csv")};
-  const std::string suffix = "-truth";
-  if (stem.size() > suffix.size() && stem.compare(stem.size() - suffix.size(), suffix.size(), suffix) == 0)
-    candidates.push_back(folder / (stem.substr(0, stem.size() - suffix.size()) + ".yaml"));
-  if (stem == "truth") candidates.push_back(folder / "arena.yaml");
-  for (const fs::path& path : candidates)
-    if (fs::is_regular_file(path)) return path.string();
-  return "";
-}
-
 /// Everything the teams are compared with.
 struct Truth {
   std::string path;
   OccupancyGrid grid;
-  std::vector<scoring::Poi> victims;
-  std::string victims_path;  ///< empty: not known
+  TrueVictims victims;
 };
 
 Truth load_truth(const ScoreArguments& arguments) {
   Truth truth;
   truth.path = arguments.map;
   truth.grid = scoring::load_map(truth.path, {arguments.truth_resolution}).grid;
-  truth.victims_path = arguments.victims.empty() ? victims_beside(truth.path) : arguments.victims;
-  if (!truth.victims_path.empty()) truth.victims = scoring::read_pois(truth.victims_path);
+  truth.victims = true_victims(truth.path, arguments.victims);
   return truth;
 }
 
@@ -101,16 +86,13 @@ class League {
   }
 
   void judge_map(const LeagueFiles& files, LeagueEntry& entry, LeaguePictures& pictures) {
-    const OccupancyGrid map = scoring::load_map(files.map, {arguments_.map_resolution}).grid;
-    std::vector<scoring::Poi> reported;
-    if (!files.pois.empty()) reported = scoring::read_pois(files.pois);
+    const scoring::LoadedMap loaded = scoring::load_map(files.map, {arguments_.map_resolution});
+    const OccupancyGrid& map = loaded.grid;
+    const ReportedVictims reported = reported_victims(loaded, files.pois);
+    entry.victims_from = reported.from;
+    entry.symbols = reported.symbols;
     entry.score = scoring::score_map(map, truth_.grid, config_);
-    if (!files.pois.empty() && !truth_.victims_path.empty()) {
-      entry.points = entry.score.aligned
-                         ? scoring::league_points(map, truth_.grid, entry.score.T_truth_map, reported, truth_.victims)
-                         : scoring::league_points({}, {}, {}, {}, truth_.victims);
-      if (!entry.score.aligned) entry.points->false_alarms = reported.size();
-    }
+    entry.points = victim_points(map, truth_.grid, entry.score, reported, truth_.victims);
     if (!arguments_.out.empty()) draw(entry, map, pictures);
   }
 
@@ -136,8 +118,8 @@ class League {
     for (const LeagueEntry& e : entries_) width = std::max(width, e.team.size());
     const int w = static_cast<int>(width);
     std::printf("%4s  %-*s%s  %5s %9s %6s %7s %5s  %s\n", "rank", w, "team",
-                points ? "  points quality location judge" : "", "score", "precision", "recall", "psi [m]", "known",
-                "note");
+                points ? "  points quality location judge victims by" : "", "score", "precision", "recall", "psi [m]",
+                "known", "note");
     for (const LeagueEntry& e : entries_) {
       std::printf("%4d  %-*s", e.rank, w, e.team.c_str());
       if (!e.error.empty()) {
@@ -145,8 +127,8 @@ class League {
         continue;
       }
       if (points)
-        std::printf("  %6.1f %7.1f %8.1f %5.1f", e.total(), e.points ? e.points->quality : 0.0,
-                    e.points ? e.points->location : 0.0, e.judge);
+        std::printf("  %6.1f %7.1f %8.1f %5.1f %-10s", e.total(), e.points ? e.points->quality : 0.0,
+                    e.points ? e.points->location : 0.0, e.judge, e.victims_from.c_str());
       std::printf("  %5.3f %9.3f %6.3f %7.3f %4.0f%%  %s\n", e.score.score, e.score.precision, e.score.recall,
                   e.score.psi_m, 100.0 * e.score.known, e.score.note.c_str());
     }
@@ -162,8 +144,8 @@ class League {
 void check(const ScoreArguments& arguments) {
   if (!arguments.truth.empty())
     throw UsageError("--league needs the truth only: rubble score --league DIR TRUTH; see rubble score --help");
-  if (!arguments.pose.empty() || !arguments.html.empty() || arguments.json)
-    throw UsageError("--league goes without --pose, --html and --json; pages and CSV are written with --out");
+  if (!arguments.pose.empty() || !arguments.pois.empty() || !arguments.html.empty() || arguments.json)
+    throw UsageError("--league goes without --pose, --pois, --html and --json; pages and CSV are written with --out");
 }
 
 }  // namespace

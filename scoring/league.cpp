@@ -47,11 +47,11 @@ void rank_league(std::vector<LeagueEntry>& entries) {
 std::string league_csv(const std::vector<LeagueEntry>& entries) {
   std::string out =
       "rank,team,points,quality,location,judge,score,precision,recall,psi_m,known,aligned,victims_found,victims_total,"
-      "false_alarms,file,note\n";
+      "false_alarms,victims_from,victim_symbols,file,note\n";
   for (const LeagueEntry& e : entries) {
     out += std::to_string(e.rank) + "," + csv_field(e.team) + ",";
     if (!e.error.empty()) {
-      out += ",,,,,,,,,,,,,";
+      out += ",,,,,,,,,,,,,,,";
     } else {
       const LeaguePoints none;
       const LeaguePoints& points = e.points ? *e.points : none;
@@ -63,6 +63,7 @@ std::string league_csv(const std::vector<LeagueEntry>& entries) {
       out += e.points ? std::to_string(found(points)) + "," + std::to_string(points.victims.size()) + "," +
                             std::to_string(points.false_alarms) + ","
                       : ",,,";
+      out += e.victims_from + "," + std::to_string(e.symbols) + ",";
     }
     out += csv_field(e.file) + "," + csv_field(e.note()) + "\n";
   }

@@ -9,8 +9,9 @@
 namespace rubble::scoring {
 
 ClassImage classify(const RgbImage& image) {
-  const LabelImage labels = is_league_map(image) ? classify_league(image) : classify_grey(image);
   ClassImage out;
+  out.is_league = is_league_map(image);
+  const LabelImage labels = out.is_league ? classify_league(image) : classify_grey(image);
   out.recognised = labels.recognised;
   cv::Mat classes = labels.classes;
   clear_canvas_corners(classes);
