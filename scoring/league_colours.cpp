@@ -79,6 +79,7 @@ Census census(const RgbImage& image) {
   Census out;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
+      if (!image.alpha.empty() && image.alpha[image.index(x, y)] < 128) continue;
       const Rgb c = rgb(image.pixel(x, y));
       ++out.pixels;
       if (is_checkerboard(c)) ++out.checkerboard;

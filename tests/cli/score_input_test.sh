@@ -18,7 +18,8 @@ expect_score() {
 gdal_translate -q -co TILED=YES -co COMPRESS=DEFLATE "$truth" tiled.tif
 gdal_translate -q -co COMPRESS=LZW -co INTERLEAVE=BAND "$truth" planes.tif
 gdal_translate -q -ot UInt16 -scale 0 255 0 65535 "$truth" deep.tif
-for map in tiled.tif planes.tif deep.tif; do expect_score "j['aligned'] and j['score'] > 0.99" "$map" "$truth"; done
+gdal_translate -q -ot UInt16 "$truth" unscaled.tif
+for map in tiled.tif planes.tif deep.tif unscaled.tif; do expect_score "j['aligned'] and j['score'] > 0.99" "$map" "$truth"; done
 
 # A mirror image, another arena, a wrong scale, no wall at all.
 python3 <<'PY'

@@ -163,6 +163,47 @@ TEST_F(LoadMap, TurnedWithInterpolationItScoresTheSame) {
   }
 }
 
+TEST_F(LoadMap, DeepImagesAreScaledByTheRangeTheyUse) {
+  const OccupancyGrid grid = maze({5, 4, 2});
+  const cv::Mat grey = grey_image(grid, 0, 205, 254);
+  const cv::Mat league = league_image(grid, false);
+  for (const double factor : {1.0, 4.0, 16.0, 257.0})
+    for (const char* name : {"deep.png", "deep.pgm"}) {
+      SCOPED_TRACE(std::string(name) + " times " + std::to_string(factor));
+      cv::Mat deep;
+      grey.convertTo(deep, CV_16U, factor);
+      cv::imwrite(path(name), deep);
+      EXPECT_EQ(agreement(load_map(path(name), {0.05}).grid, grid), 1.0);
+      if (std::string(name) != "deep.png") continue;
+      league.convertTo(deep, CV_16U, factor == 1.0 ? 1.0 : 257.0);
+      cv::imwrite(path(name), deep);
+      EXPECT_EQ(agreement(load_map(path(name), {0.05}).grid, grid), 1.0);
+    }
+}
+
+TEST_F(LoadMap, TransparentPixelsAreUnknown) {
+  // Unknown cells transparent, whatever colour lies below, in grey maps and league maps of 8 and 16 bits.
+  const OccupancyGrid grid = maze({5, 4, 2});
+  for (const bool league : {false, true})
+    for (const int below : {0, 255})
+      for (const bool deep : {false, true}) {
+        SCOPED_TRACE(std::to_string(league) + " " + std::to_string(below) + " " + std::to_string(deep));
+        cv::Mat bgr = league ? league_image(grid, false) : grey_image(grid, 0, 205, 254);
+        if (!league) cv::cvtColor(bgr, bgr, cv::COLOR_GRAY2BGR);
+        cv::Mat image;
+        cv::cvtColor(bgr, image, cv::COLOR_BGR2BGRA);
+        for (int y = 0; y < image.rows; ++y)
+          for (int x = 0; x < image.cols; ++x)
+            if (grid[{x, grid.height() - 1 - y}] == Occupancy::Unknown) {
+              const auto b = static_cast<unsigned char>(below);
+              image.at<cv::Vec4b>(y, x) = {b, b, b, 0};
+            }
+        if (deep) image.convertTo(image, CV_16U, 257.0);
+        cv::imwrite(path("map.png"), image);
+        EXPECT_EQ(agreement(load_map(path("map.png"), {0.05}).grid, grid), 1.0);
+      }
+}
+
 TEST_F(LoadMap, BadInputIsOneLineWithTheRemedy) {
   const auto message = [&](const std::string& file, const LoadOptions& options = {}) {
     try {
