@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/geotiff.h"
+#include "scoring/lossy_colours.h"
 #include "scoring/scorecard.h"
 #include "tests/support/scoring_maze.h"
 
@@ -161,6 +162,45 @@ TEST_F(LoadMap, TurnedWithInterpolationItScoresTheSame) {
       }
     }
   }
+}
+
+// JPEG halves the colours' resolution and smears them over blocks of 16 pixels; brightness still shows the walls.
+TEST_F(LoadMap, JpegKeepsTheScoreOfALeagueMap) {
+  for (const std::uint64_t seed : {5, 6}) {
+    const OccupancyGrid grid = maze({7, 7, seed});
+    const cv::Mat straight = league_image(padded(grid, 20), true);
+    for (const double degrees : {0.0, 13.0, 37.0}) {
+      const int side = static_cast<int>(1.5 * std::max(straight.cols, straight.rows));
+      cv::Mat turn = cv::getRotationMatrix2D(cv::Point2d(0.5 * straight.cols, 0.5 * straight.rows), degrees, 1.0);
+      turn.at<double>(0, 2) += 0.5 * (side - straight.cols);
+      turn.at<double>(1, 2) += 0.5 * (side - straight.rows);
+      cv::Mat turned;
+      cv::warpAffine(straight, turned, turn, {side, side}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, {227, 226, 226});
+      cv::imwrite(path("clean.png"), turned);
+      const MapScore clean = score_map(load_map(path("clean.png"), {0.05}).grid, grid);
+      for (const int quality : {60, 75, 85, 95}) {
+        SCOPED_TRACE(std::to_string(degrees) + " deg, quality " + std::to_string(quality));
+        cv::imwrite(path("map.jpg"), turned, {cv::IMWRITE_JPEG_QUALITY, quality});
+        const MapScore score = score_map(load_map(path("map.jpg"), {0.05}).grid, grid);
+        EXPECT_TRUE(score.aligned) << score.note;
+        EXPECT_NEAR(score.score, clean.score, 0.02);
+      }
+    }
+  }
+}
+
+TEST_F(LoadMap, OnlyCompressionMakesColoursRun) {
+  const cv::Mat clean = league_image(padded(maze({6, 6, 2}), 10), true);
+  EXPECT_FALSE(has_run_colours(to_rgb(clean)));
+  const cv::Mat turn = cv::getRotationMatrix2D(cv::Point2d(0.5 * clean.cols, 0.5 * clean.rows), 20.0, 0.9);
+  for (const int interpolation : {cv::INTER_NEAREST, cv::INTER_LINEAR, cv::INTER_CUBIC, cv::INTER_LANCZOS4}) {
+    cv::Mat turned;
+    cv::warpAffine(clean, turned, turn, clean.size(), interpolation, cv::BORDER_CONSTANT, {255, 255, 255});
+    EXPECT_FALSE(has_run_colours(to_rgb(turned))) << interpolation;
+    cv::imwrite(path("map.jpg"), turned, {cv::IMWRITE_JPEG_QUALITY, 80});
+    EXPECT_TRUE(has_run_colours(to_rgb(cv::imread(path("map.jpg"))))) << interpolation;
+  }
+  EXPECT_FALSE(has_run_colours(RgbImage()));
 }
 
 TEST_F(LoadMap, DeepImagesAreScaledByTheRangeTheyUse) {
