@@ -139,10 +139,9 @@ int dispatch(int argc, char** argv) {
       ->check(between(0.001, 10.0));
   score_command->add_option("--tau", score_arguments.tau, "Distance at which a wall counts nothing [m]")
       ->check(between(0.05, 10.0));
-  score_command
-      ->add_option("--align", score_arguments.align,
-                   "What proposes poses: auto, walls, rooms, features, or one of surf, akaze, orb")
-      ->check(CLI::IsMember({"auto", "walls", "rooms", "features", "surf", "akaze", "orb"}));
+  score_command->add_option(
+      "--align", score_arguments.align,
+      "What proposes poses: auto, or walls, rooms and one of features, surf, akaze, orb, joined by commas");
   score_command->add_flag("--warp", score_arguments.warp, "Also undo the map's distortion, and match its features");
   score_command->add_option("--out", score_arguments.out, "Folder for overlay.png, error.png and score.json");
   score_command->add_flag("--json", score_arguments.json, "Print JSON");

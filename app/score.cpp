@@ -6,7 +6,6 @@
 #include "app/score_parts.h"
 #include "app/score_tools.h"
 #include "app/score_victims.h"
-#include "base/angle.h"
 #include "base/error.h"
 #include "scenarios/score_json.h"
 #include "scoring/normalise.h"
@@ -35,11 +34,8 @@ void print_table(const Verdict& verdict) {
   };
   std::printf("%-26s %s\n%-26s %s\n", "map", verdict.map.recognised.c_str(), "truth", verdict.truth.recognised.c_str());
   if (!s.aligned) std::printf("%-26s %s\n", "not aligned", s.note.c_str());
+  print_contest(s);
   if (s.aligned) {
-    std::printf("%-26s turned %.2f deg, moved %.3f m, %.3f m\n", "aligned", rad_to_deg(s.T_truth_map.phi),
-                s.T_truth_map.x, s.T_truth_map.y);
-    std::printf("%-26s %s\n", "proposed by", s.source.c_str());
-    row("runner-up pose", "%.3f of the best", s.runner_up);
     row("known", "%.1f %%", 100.0 * s.known);
     row("psi", "%.3f m", s.psi_m);
     row("precision", "%.3f", s.precision);
@@ -70,16 +66,16 @@ int score(const ScoreArguments& arguments) {
   for (const std::string& path : {arguments.map, arguments.truth})
     if (std::filesystem::is_directory(path))
       throw InputError(path + ": is a folder; give a map file in it, for example " + path + "/map.tif");
+  scoring::ScoreConfig config;
+  config.alignment = parse_align(arguments.align);
+  config.warp = arguments.warp;
+  config.tau = arguments.tau;
   if (!arguments.out.empty()) make_folder(arguments.out);
   Verdict verdict;
   verdict.map = scoring::load_map(arguments.map, {arguments.map_resolution});
   verdict.truth = scoring::load_map(arguments.truth, {arguments.truth_resolution});
   verdict.reported = reported_victims(verdict.map, arguments.pois);
   const TrueVictims victims = true_victims(arguments.truth, arguments.victims);
-  scoring::ScoreConfig config;
-  config.alignment = parse_align(arguments.align);
-  config.warp = arguments.warp;
-  config.tau = arguments.tau;
   const OccupancyGrid& truth = verdict.truth.grid;
   const OccupancyGrid grid = pose ? scoring::scaled_frame(verdict.map.grid, pose->scale) : verdict.map.grid;
   if (pose)

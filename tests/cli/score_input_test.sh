@@ -43,7 +43,16 @@ expect_score "not j['aligned'] and j['score'] == 0 and j['align_note']" other/*-
 expect_score "j['align_source'] == 'walls' and j['phantom_m'] == 0 and j['worst_places'] == []" "$truth" "$truth"
 expect_score "j['aligned'] and 'features' in j['align_source']" "$truth" "$truth" --align surf
 expect_score "j['warped_score'] == 1 and j['warp_m'] == 0 and j['feature_error_m2'] < 1e-9" "$truth" "$truth" --warp
-expect_exit 2 '--align' "$rubble" score "$truth" "$truth" --align magic
+expect_score "j['aligned'] and j['align_tried'] == 'features+rooms' and j['align_source'] != 'walls'" \
+  "$truth" "$truth" --align rooms,features
+expect_score "j['align_tried'] == 'walls' and j['align_measure'] == 'agreement' and 0 < j['align_margin'] <= j['align_agreement'] <= 2 and j['align_runner_up_source']" \
+  "$truth" "$truth"
+"$rubble" score "$truth" "$truth" >table.txt || fail "table"
+grep -qE '^proposed by +walls' table.txt && grep -qE '^runner-up pose +0\.[0-9]+ of the best .*by walls' table.txt ||
+  fail "the table does not name winner and runner-up: $(cat table.txt)"
+for wrong in magic rooms,magic auto,rooms surf,orb rooms, ,rooms; do
+  expect_exit 2 '--align' "$rubble" score "$truth" "$truth" --align "$wrong"
+done
 
 # What cannot be read.
 head -c $(($(stat -c %s "$truth") / 2)) "$truth" >cut.tif
