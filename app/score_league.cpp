@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "app/league_files.h"
 #include "app/league_page.h"
+#include "app/score_parts.h"
 #include "app/score_tools.h"
 #include "app/score_victims.h"
 #include "base/error.h"
@@ -48,6 +49,8 @@ std::string safe_name(const std::string& team, std::size_t index) {
 class League {
  public:
   League(const ScoreArguments& arguments, const Truth& truth) : arguments_(arguments), truth_(truth) {
+    config_.alignment = parse_align(arguments.align);
+    config_.warp = arguments.warp;
     config_.tau = arguments.tau;
   }
 
@@ -68,14 +71,19 @@ class League {
     entries_.push_back(entry);
   }
 
-  void finish() {
+  /// `skipped`: images that were taken for no team's map.
+  void finish(const std::vector<std::string>& skipped) {
     scoring::rank_league(entries_);
     print();
+    std::string left_out;
+    for (const std::string& path : skipped) left_out += (left_out.empty() ? "" : ", ") + path;
+    if (!left_out.empty()) std::printf("no team's maps: %s\n", left_out.c_str());
     if (arguments_.out.empty()) return;
     std::vector<LeaguePictures> pictures;
     for (const LeagueEntry& entry : entries_) pictures.push_back(pictures_.at(entry.team + "\n" + entry.file));
     write_text_file(arguments_.out + "/league.csv", scoring::league_csv(entries_));
-    write_text_file(arguments_.out + "/league.html", league_page(truth_.path, with_points(), entries_, pictures));
+    write_text_file(arguments_.out + "/league.html",
+                    league_page(truth_.path, with_points(), entries_, pictures, left_out));
     std::printf("written: %s/league.html, league.csv\n", arguments_.out.c_str());
   }
 
@@ -117,9 +125,9 @@ class League {
     std::size_t width = 4;
     for (const LeagueEntry& e : entries_) width = std::max(width, e.team.size());
     const int w = static_cast<int>(width);
-    std::printf("%4s  %-*s%s  %5s %9s %6s %7s %5s  %s\n", "rank", w, "team",
+    std::printf("%4s  %-*s%s  %5s %9s %6s %7s %5s %s %s\n", "rank", w, "team",
                 points ? "  points quality location judge victims by" : "", "score", "precision", "recall", "psi [m]",
-                "known", "note");
+                "known", config_.warp ? "warped" : "", "note");
     for (const LeagueEntry& e : entries_) {
       std::printf("%4d  %-*s", e.rank, w, e.team.c_str());
       if (!e.error.empty()) {
@@ -129,8 +137,10 @@ class League {
       if (points)
         std::printf("  %6.1f %7.1f %8.1f %5.1f %-10s", e.total(), e.points ? e.points->quality : 0.0,
                     e.points ? e.points->location : 0.0, e.judge, e.victims_from.c_str());
-      std::printf("  %5.3f %9.3f %6.3f %7.3f %4.0f%%  %s\n", e.score.score, e.score.precision, e.score.recall,
-                  e.score.psi_m, 100.0 * e.score.known, e.score.note.c_str());
+      std::printf("  %5.3f %9.3f %6.3f %7.3f %4.0f%%", e.score.score, e.score.precision, e.score.recall, e.score.psi_m,
+                  100.0 * e.score.known);
+      if (config_.warp) std::printf(" %6.3f", e.score.warped_score);
+      std::printf("  %s\n", e.score.note.c_str());
     }
   }
 
@@ -152,8 +162,9 @@ void check(const ScoreArguments& arguments) {
 
 int score_league(const ScoreArguments& arguments) {
   check(arguments);
-  const std::vector<LeagueFiles> teams = find_league(arguments.league);
   const Truth truth = load_truth(arguments);
+  const LeagueFolder folder = find_league(arguments.league, truth.path);
+  const std::vector<LeagueFiles>& teams = folder.teams;
   std::map<std::string, double> judge;
   if (!arguments.judge.empty()) judge = scoring::read_judge(arguments.judge);
   for (const auto& [team, points] : judge)
@@ -163,12 +174,10 @@ int score_league(const ScoreArguments& arguments) {
   if (!arguments.out.empty()) make_folder(arguments.out);
   League league(arguments, truth);
   for (const LeagueFiles& files : teams) {
-    std::error_code error;
-    if (!files.map.empty() && fs::equivalent(files.map, truth.path, error)) continue;  // the truth is no team
     const auto points = judge.find(files.team);
     league.judge(files, points == judge.end() ? 0.0 : points->second);
   }
-  league.finish();
+  league.finish(folder.skipped);
   return kOk;
 }
 
