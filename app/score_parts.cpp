@@ -68,7 +68,8 @@ void print_contest(const scoring::MapScore& s) {
 
 void print_parts(const scoring::MapScore& s) {
   if (!s.aligned) return;
-  std::printf("%-26s %.1f m phantom, %.1f m missing\n", "wall", s.errors.phantom_m, s.errors.missing_m);
+  std::printf("%-26s %.1f m phantom, %.1f m missing, %.1f m ignored (truth unknown)\n", "wall", s.errors.phantom_m,
+              s.errors.missing_m, s.errors.ignored_m);
   if (s.warped) {
     std::printf("%-26s %.3f, distorted by %.3f m, %.3f with penalty\n", "score after warp", s.warped_score, s.warp_m,
                 s.penalised_score);
@@ -95,6 +96,7 @@ void add_parts(nlohmann::ordered_json& json, const scoring::MapScore& s) {
   json["scale_hint"] = s.scale_hint;
   json["phantom_m"] = s.errors.phantom_m;
   json["missing_m"] = s.errors.missing_m;
+  json["ignored_m"] = s.errors.ignored_m;
   json["worst_places"] = nlohmann::ordered_json::array();
   for (const scoring::WrongPlace& place : s.errors.worst)
     json["worst_places"].push_back({{"x_m", place.p_truth.x},
