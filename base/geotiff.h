@@ -53,7 +53,7 @@ PixelToModel georeference(double x0, double y1, double resolution, const std::op
 void write_geotiff(const std::string& path, const GeoTiff& tiff);
 
 /// Reads any strip, tiled, compressed, 1..16-bit, grey, palette or RGB(A) TIFF with or without GeoTIFF tags.
-/// Throws InputError: missing, truncated, not a TIFF, over 20,000 pixels a side.
+/// Throws InputError: missing, truncated, not a TIFF, over 20,000 pixels a side or 10^8 in all.
 GeoTiff read_geotiff(const std::string& path);
 
 /// The six lines of a world file: a, d, b, e and the centre of the upper-left pixel.

@@ -15,6 +15,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint32_t kMaxSide = 20000;
+constexpr std::uint64_t kMaxPixels = 100000000;
 constexpr std::uint32_t kMaxSamples = 16;
 constexpr std::uint64_t kMaxChunk = 2u << 30;  ///< [bytes] of one strip or tile, unpacked
 constexpr std::array<std::uint8_t, 3> kUnexplored{226, 226, 227};
@@ -62,9 +63,9 @@ class Reader {
     if (TIFFGetField(tiff_, TIFFTAG_IMAGEWIDTH, &l.width) != 1 ||
         TIFFGetField(tiff_, TIFFTAG_IMAGELENGTH, &l.height) != 1 || l.width == 0 || l.height == 0)
       fail("has no size; it is no image");
-    if (l.width > kMaxSide || l.height > kMaxSide)
+    if (l.width > kMaxSide || l.height > kMaxSide || std::uint64_t{l.width} * l.height > kMaxPixels)
       fail("has " + std::to_string(l.width) + " x " + std::to_string(l.height) + " pixels; at most " +
-           std::to_string(kMaxSide) + " a side, scale it down");
+           std::to_string(kMaxSide) + " a side and 10000 x 10000 in all, scale it down");
     TIFFGetFieldDefaulted(tiff_, TIFFTAG_BITSPERSAMPLE, &l.bits);
     TIFFGetFieldDefaulted(tiff_, TIFFTAG_SAMPLESPERPIXEL, &l.samples);
     TIFFGetFieldDefaulted(tiff_, TIFFTAG_PLANARCONFIG, &l.planes);

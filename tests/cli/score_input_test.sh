@@ -39,6 +39,32 @@ expect_score "not j['aligned'] and j['score'] == 0" truth.png "$truth" --resolut
 "$rubble" arena generate --cells 7x6 --seed 77 --out other >/dev/null || fail "no other arena"
 expect_score "not j['aligned'] and j['score'] == 0 and j['align_note']" other/*-truth.tif "$truth"
 
+# The truth's mirror image, both ways; and every refusal says why in one line.
+gdal_translate -q -of PNM "$truth" truth.ppm
+python3 <<'PY'
+data = open("truth.ppm", "rb").read()
+_, size, top, rest = data.split(b"\n", 3) if data.split(b"\n", 3)[2] == b"255" else (None, None, None, None)
+w, h = map(int, size.split())
+rows = [rest[3 * w * y : 3 * w * (y + 1)] for y in range(h)]
+head = b"P6\n%d %d\n255\n" % (w, h)
+open("upside_down.ppm", "wb").write(head + b"".join(reversed(rows)))
+left = [b"".join(row[3 * x : 3 * x + 3] for x in range(w - 1, -1, -1)) for row in rows]
+open("mirrored.ppm", "wb").write(head + b"".join(left))
+PY
+for map in upside_down.ppm mirrored.ppm; do
+  expect_score "not j['aligned'] and j['score'] == 0 and j['psi_m'] >= 5" $map "$truth" --resolution 0.05
+done
+for map in white.pgm wall.pgm upside_down.ppm other/*-truth.tif; do
+  "$rubble" score $map "$truth" --resolution 0.05 >table.txt 2>err.txt || fail "$map ended with $?"
+  [[ $(grep -c '^not aligned ' table.txt) == 1 && ! -s err.txt ]] || fail "$map: no reason in one line: $(cat table.txt err.txt)"
+done
+
+# Walls that the truth knows nothing about are in no score, but counted.
+expect_score "j['ignored_m'] == 0" "$truth" "$truth"
+gdal_translate -q -srcwin 0 0 $(($(gdalinfo "$truth" | sed -n 's/^Size is \([0-9]*\), \([0-9]*\)/\1 * 7 \/ 10/p'))) \
+  $(($(gdalinfo "$truth" | sed -n 's/^Size is \([0-9]*\), \([0-9]*\)/\2/p'))) "$truth" part.tif
+expect_score "j['aligned'] and j['ignored_m'] > 3 and j['phantom_m'] < 0.5 and j['precision'] > 0.98" "$truth" part.tif
+
 # Methods, and the parts of the score.
 expect_score "j['align_source'] == 'walls' and j['phantom_m'] == 0 and j['worst_places'] == []" "$truth" "$truth"
 expect_score "j['aligned'] and 'features' in j['align_source']" "$truth" "$truth" --align surf
@@ -62,4 +88,9 @@ expect_exit 3 'cut.png' "$rubble" score cut.png "$truth" --resolution 0.05
 printf 'P5 20000 20000 255\n' >huge.pgm
 head -c 400000000 /dev/zero >>huge.pgm
 expect_exit 3 '20000 x 20000' "$rubble" score huge.pgm "$truth" --resolution 0.05
+rm huge.pgm
+gdal_create -q -outsize 20000 20000 -ot Byte -co SPARSE_OK=TRUE -co TILED=YES huge.tif 2>/dev/null &&
+  expect_exit 3 '20000 x 20000' "$rubble" score huge.tif "$truth" --resolution 0.05
+gdal_create -q -outsize 20001 3 -ot Byte wide.tif 2>/dev/null &&
+  expect_exit 3 '20001 x 3' "$rubble" score wide.tif "$truth" --resolution 0.05
 finish
