@@ -45,6 +45,7 @@ struct ScoreArguments {
   std::string html;     ///< the evaluation page to write
   std::string league;   ///< folder of maps to rank; `map` is the truth then
   std::string judge;    ///< CSV of the judge's points
+  std::string pois;     ///< list of the victims that the map reports; empty: those drawn on it
   std::string victims;  ///< list of the true victims
 };
 

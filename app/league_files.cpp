@@ -4,6 +4,8 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 
 #include "base/error.h"
@@ -30,22 +32,54 @@ std::string first_that_exists(const std::vector<fs::path>& candidates) {
   return "";
 }
 
-/// The best format of each stem among the files of a folder.
-std::map<std::string, fs::path> maps_in(const fs::path& folder) {
-  std::map<std::string, fs::path> maps;
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+bool same_content(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::file_size(a, error) != fs::file_size(b, error) || error) return false;
+  std::ifstream first(a, std::ios::binary);
+  std::ifstream second(b, std::ios::binary);
+  return std::equal(std::istreambuf_iterator<char>(first), {}, std::istreambuf_iterator<char>(second));
+}
+
+/// The truth, or a picture that a run, a scoring or an arena file leaves.
+bool is_no_map(const fs::path& path, const fs::path& truth) {
+  const std::string stem = path.stem().string();
+  for (const char* name : {"truth", "overlay", "error", "arena"})
+    if (stem == name) return true;
+  for (const char* end : {"-truth", "_truth", "-visible", "-overlay", "-error"})
+    if (ends_with(stem, end)) return true;
+  std::error_code error;
+  if (stem == truth.stem() && fs::equivalent(path.parent_path(), truth.parent_path() / ".", error)) return true;
+  if (path.filename() == truth.filename() && same_content(path, truth)) return true;
+  return fs::exists(path.parent_path() / (stem + "-truth.tif"), error);
+}
+
+struct MapsInFolder {
+  std::map<std::string, fs::path> maps;  ///< the best format of each stem
+  std::vector<fs::path> skipped;
+};
+
+MapsInFolder maps_in(const fs::path& folder, const fs::path& truth) {
+  MapsInFolder out;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const fs::path& path = entry.path();
     if (!entry.is_regular_file() || format_of(path) == kFormats.size()) continue;
-    fs::path& known = maps[path.stem().string()];
+    if (is_no_map(path, truth)) {
+      out.skipped.push_back(path);
+      continue;
+    }
+    fs::path& known = out.maps[path.stem().string()];
     if (known.empty() || std::make_pair(format_of(path), path) < std::make_pair(format_of(known), known)) known = path;
   }
-  return maps;
+  return out;
 }
 
-LeagueFiles team_in(const fs::path& folder) {
+LeagueFiles team_in(const fs::path& folder, const std::map<std::string, fs::path>& maps) {
   LeagueFiles out;
   out.team = folder.filename().string();
-  const std::map<std::string, fs::path> maps = maps_in(folder);
   const auto named = maps.find("map");
   if (named != maps.end()) {
     out.map = named->second.string();
@@ -61,21 +95,34 @@ LeagueFiles team_in(const fs::path& folder) {
 
 }  // namespace
 
-std::vector<LeagueFiles> find_league(const std::string& folder) {
+LeagueFolder find_league(const std::string& folder, const std::string& truth) {
   if (!fs::is_directory(folder))
     throw InputError(folder + ": is no folder; give the folder with the teams' maps to --league");
-  std::vector<LeagueFiles> out;
-  for (const auto& [stem, path] : maps_in(folder)) {
+  LeagueFolder out;
+  const auto skip = [&](const std::vector<fs::path>& paths) {
+    for (const fs::path& path : paths) out.skipped.push_back(path.lexically_relative(folder).string());
+  };
+  const MapsInFolder here = maps_in(folder, truth);
+  skip(here.skipped);
+  for (const auto& [stem, path] : here.maps) {
     const fs::path beside = path.parent_path() / stem;
-    out.push_back(
+    out.teams.push_back(
         {stem, path.string(), first_that_exists({beside.string() + ".csv", beside.string() + "_pois.csv"}), ""});
   }
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.is_directory() && !entry.is_symlink()) out.push_back(team_in(entry.path()));
-  if (out.empty()) throw InputError(folder + ": holds no maps (tif, yaml, png, jpg, pgm) and no folders with maps");
-  std::sort(out.begin(), out.end(), [](const LeagueFiles& a, const LeagueFiles& b) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (!entry.is_directory() || entry.is_symlink()) continue;
+    const MapsInFolder inside = maps_in(entry.path(), truth);
+    skip(inside.skipped);
+    if (inside.maps.empty() && !inside.skipped.empty()) continue;  // results of a league, or an arena's pictures
+    out.teams.push_back(team_in(entry.path(), inside.maps));
+  }
+  if (out.teams.empty())
+    throw InputError(folder + ": holds no maps (tif, yaml, png, jpg, pgm) and no folders with maps" +
+                     (out.skipped.empty() ? "" : ", only the truth or pictures of runs, as " + out.skipped.front()));
+  std::sort(out.teams.begin(), out.teams.end(), [](const LeagueFiles& a, const LeagueFiles& b) {
     return std::tie(a.team, a.map) < std::tie(b.team, b.map);
   });
+  std::sort(out.skipped.begin(), out.skipped.end());
   return out;
 }
 

@@ -13,9 +13,17 @@ struct LeagueFiles {
   std::string error;
 };
 
+/// The folder of a league.
+struct LeagueFolder {
+  std::vector<LeagueFiles> teams;    ///< sorted by name
+  std::vector<std::string> skipped;  ///< images in it that are no team's map, relative to it, sorted
+};
+
 /// A team is a map file in `folder` (its name without the ending, victims in NAME.csv or NAME_pois.csv) or a folder in
 /// it (map.tif and the like, victims in pois.csv or map.csv). Of a map in several formats tif counts, then yaml, png,
-/// jpg, pgm. Sorted by name. Throws InputError: no folder, nothing in it.
-std::vector<LeagueFiles> find_league(const std::string& folder);
+/// jpg, pgm. No team's maps are the truth (the file itself in any format, or a copy of it under its name) and what
+/// runs, scorings and arena files leave: truth, overlay, error, arena, NAME-truth, NAME-visible, NAME-overlay,
+/// NAME-error, and NAME.png beside NAME-truth. Throws InputError: no folder, no team in it.
+LeagueFolder find_league(const std::string& folder, const std::string& truth);
 
 }  // namespace rubble::app

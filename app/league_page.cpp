@@ -23,6 +23,7 @@ std::string victims_cell(const LeagueEntry& e) {
   const auto found = std::count_if(victims.begin(), victims.end(), [](const auto& v) { return v.found; });
   std::string text = std::to_string(found) + " of " + std::to_string(victims.size());
   if (e.points->false_alarms > 0) text += ", " + std::to_string(e.points->false_alarms) + " false";
+  if (e.victims_from == "symbols") text += ", drawn";
   return "<td class=\"n\">" + text + "</td>";
 }
 
@@ -42,6 +43,15 @@ std::string row(const LeagueEntry& e, const LeaguePictures& pictures, bool with_
           "</td><td>" +
           (pictures.tool.empty() ? "" : "<a href=\"" + escape_html(pictures.tool) + "\">lay by hand</a>") + "</td>";
   return html + "</tr>\n";
+}
+
+/// What eq. (8) makes of the map, where that was asked for.
+std::string warp_text(const LeagueEntry& e) {
+  if (!e.score.warped) return "";
+  char text[120];
+  std::snprintf(text, sizeof text, "<p>After warp %.3f, distorted by %.3f m, %.3f with penalty.</p>\n",
+                e.score.warped_score, e.score.warp_m, e.score.penalised_score);
+  return text;
 }
 
 std::string figure(const LeagueEntry& e, const std::string& picture, const std::string& what) {
@@ -68,7 +78,7 @@ std::string victim_table(const LeagueEntry& e) {
 }  // namespace
 
 std::string league_page(const std::string& truth, bool with_points, const std::vector<LeagueEntry>& entries,
-                        const std::vector<LeaguePictures>& pictures) {
+                        const std::vector<LeaguePictures>& pictures, const std::string& left_out) {
   std::string body =
       "<style>figure.map { width: 26em; } td a, td:nth-child(2) { white-space: nowrap; }</style>\n<h1>League</h1>\n<p "
       "class=\"note\">" +
@@ -84,11 +94,13 @@ std::string league_page(const std::string& truth, bool with_points, const std::v
       "<th class=\"n\">psi [m]</th><th class=\"n\">known</th><th>note</th><th></th></tr>\n";
   for (std::size_t i = 0; i < entries.size(); ++i) body += row(entries[i], pictures[i], with_points);
   body += "</table>\n";
+  if (!left_out.empty()) body += "<p class=\"note\">No team's maps: " + escape_html(left_out) + "</p>\n";
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (pictures[i].overlay.empty()) continue;
     body += "<h2>" + std::to_string(entries[i].rank) + ". " + escape_html(entries[i].team) + "</h2>\n";
     body += figure(entries[i], pictures[i].overlay, "laid over the truth") +
-            figure(entries[i], pictures[i].error, "distance of its walls") + victim_table(entries[i]);
+            figure(entries[i], pictures[i].error, "distance of its walls") + warp_text(entries[i]) +
+            victim_table(entries[i]);
   }
   return scenarios::html_page("League", body);
 }

@@ -14,8 +14,9 @@ struct LeaguePictures {
   std::string tool;
 };
 
-/// The ranking as an HTML page with the overlays; `pictures` in the order of `entries`.
+/// The ranking as an HTML page with the overlays; `pictures` in the order of `entries`; `left_out`: images that were
+/// taken for no team's map.
 std::string league_page(const std::string& truth, bool with_points, const std::vector<scoring::LeagueEntry>& entries,
-                        const std::vector<LeaguePictures>& pictures);
+                        const std::vector<LeaguePictures>& pictures, const std::string& left_out);
 
 }  // namespace rubble::app

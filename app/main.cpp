@@ -129,7 +129,9 @@ int dispatch(int argc, char** argv) {
   score_command->add_option("--league", score_arguments.league,
                             "Rank all maps of this folder against one truth: rubble score --league DIR TRUTH");
   score_command->add_option("--victims", score_arguments.victims,
-                            "True victims for --league: arena file or CSV name,x,y (default: beside the truth)");
+                            "True victims: arena file or CSV name,x,y (default: beside the truth)");
+  score_command->add_option("--pois", score_arguments.pois,
+                            "CSV of the victims that the map reports (default: the symbols drawn on it)");
   score_command->add_option("--judge", score_arguments.judge, "CSV team,points of the judge's points, for --league");
   score_command->add_option("--resolution", score_arguments.map_resolution, "Metres a pixel of the map image")
       ->check(between(0.001, 10.0));
@@ -137,10 +139,9 @@ int dispatch(int argc, char** argv) {
       ->check(between(0.001, 10.0));
   score_command->add_option("--tau", score_arguments.tau, "Distance at which a wall counts nothing [m]")
       ->check(between(0.05, 10.0));
-  score_command
-      ->add_option("--align", score_arguments.align,
-                   "What proposes poses: auto, walls, rooms, features, or one of surf, akaze, orb")
-      ->check(CLI::IsMember({"auto", "walls", "rooms", "features", "surf", "akaze", "orb"}));
+  score_command->add_option(
+      "--align", score_arguments.align,
+      "What proposes poses: auto, or walls, rooms and one of features, surf, akaze, orb, joined by commas");
   score_command->add_flag("--warp", score_arguments.warp, "Also undo the map's distortion, and match its features");
   score_command->add_option("--out", score_arguments.out, "Folder for overlay.png, error.png and score.json");
   score_command->add_flag("--json", score_arguments.json, "Print JSON");

@@ -6,7 +6,9 @@
 #include "app/commands.h"
 #include "app/league_files.h"
 #include "app/league_page.h"
+#include "app/score_parts.h"
 #include "app/score_tools.h"
+#include "app/score_victims.h"
 #include "base/error.h"
 #include "base/text_file.h"
 #include "scoring/league.h"
@@ -19,34 +21,18 @@ namespace {
 namespace fs = std::filesystem;
 using scoring::LeagueEntry;
 
-/// The list of victims that belongs to a truth map, when none is given.
-std::string victims_beside(const std::string& truth) {
-  const fs::path folder = fs::path(truth).parent_path();
-  std::string stem = fs::path(truth).stem().string();
-  std::vector<fs::path> candidates = {folder / (stem + ".csv")};
-  const std::string suffix = "-truth";
-  if (stem.size() > suffix.size() && stem.compare(stem.size() - suffix.size(), suffix.size(), suffix) == 0)
-    candidates.push_back(folder / (stem.substr(0, stem.size() - suffix.size()) + ".yaml"));
-  if (stem == "truth") candidates.push_back(folder / "arena.yaml");
-  for (const fs::path& path : candidates)
-    if (fs::is_regular_file(path)) return path.string();
-  return "";
-}
-
 /// Everything the teams are compared with.
 struct Truth {
   std::string path;
   OccupancyGrid grid;
-  std::vector<scoring::Poi> victims;
-  std::string victims_path;  ///< empty: not known
+  TrueVictims victims;
 };
 
 Truth load_truth(const ScoreArguments& arguments) {
   Truth truth;
   truth.path = arguments.map;
   truth.grid = scoring::load_map(truth.path, {arguments.truth_resolution}).grid;
-  truth.victims_path = arguments.victims.empty() ? victims_beside(truth.path) : arguments.victims;
-  if (!truth.victims_path.empty()) truth.victims = scoring::read_pois(truth.victims_path);
+  truth.victims = true_victims(truth.path, arguments.victims);
   return truth;
 }
 
@@ -63,6 +49,8 @@ std::string safe_name(const std::string& team, std::size_t index) {
 class League {
  public:
   League(const ScoreArguments& arguments, const Truth& truth) : arguments_(arguments), truth_(truth) {
+    config_.alignment = parse_align(arguments.align);
+    config_.warp = arguments.warp;
     config_.tau = arguments.tau;
   }
 
@@ -83,14 +71,19 @@ class League {
     entries_.push_back(entry);
   }
 
-  void finish() {
+  /// `skipped`: images that were taken for no team's map.
+  void finish(const std::vector<std::string>& skipped) {
     scoring::rank_league(entries_);
     print();
+    std::string left_out;
+    for (const std::string& path : skipped) left_out += (left_out.empty() ? "" : ", ") + path;
+    if (!left_out.empty()) std::printf("no team's maps: %s\n", left_out.c_str());
     if (arguments_.out.empty()) return;
     std::vector<LeaguePictures> pictures;
     for (const LeagueEntry& entry : entries_) pictures.push_back(pictures_.at(entry.team + "\n" + entry.file));
     write_text_file(arguments_.out + "/league.csv", scoring::league_csv(entries_));
-    write_text_file(arguments_.out + "/league.html", league_page(truth_.path, with_points(), entries_, pictures));
+    write_text_file(arguments_.out + "/league.html",
+                    league_page(truth_.path, with_points(), entries_, pictures, left_out));
     std::printf("written: %s/league.html, league.csv\n", arguments_.out.c_str());
   }
 
@@ -101,16 +94,13 @@ class League {
   }
 
   void judge_map(const LeagueFiles& files, LeagueEntry& entry, LeaguePictures& pictures) {
-    const OccupancyGrid map = scoring::load_map(files.map, {arguments_.map_resolution}).grid;
-    std::vector<scoring::Poi> reported;
-    if (!files.pois.empty()) reported = scoring::read_pois(files.pois);
+    const scoring::LoadedMap loaded = scoring::load_map(files.map, {arguments_.map_resolution});
+    const OccupancyGrid& map = loaded.grid;
+    const ReportedVictims reported = reported_victims(loaded, files.pois);
+    entry.victims_from = reported.from;
+    entry.symbols = reported.symbols;
     entry.score = scoring::score_map(map, truth_.grid, config_);
-    if (!files.pois.empty() && !truth_.victims_path.empty()) {
-      entry.points = entry.score.aligned
-                         ? scoring::league_points(map, truth_.grid, entry.score.T_truth_map, reported, truth_.victims)
-                         : scoring::league_points({}, {}, {}, {}, truth_.victims);
-      if (!entry.score.aligned) entry.points->false_alarms = reported.size();
-    }
+    entry.points = victim_points(map, truth_.grid, entry.score, reported, truth_.victims);
     if (!arguments_.out.empty()) draw(entry, map, pictures);
   }
 
@@ -135,9 +125,9 @@ class League {
     std::size_t width = 4;
     for (const LeagueEntry& e : entries_) width = std::max(width, e.team.size());
     const int w = static_cast<int>(width);
-    std::printf("%4s  %-*s%s  %5s %9s %6s %7s %5s  %s\n", "rank", w, "team",
-                points ? "  points quality location judge" : "", "score", "precision", "recall", "psi [m]", "known",
-                "note");
+    std::printf("%4s  %-*s%s  %5s %9s %6s %7s %5s %s %s\n", "rank", w, "team",
+                points ? "  points quality location judge victims by" : "", "score", "precision", "recall", "psi [m]",
+                "known", config_.warp ? "warped" : "", "note");
     for (const LeagueEntry& e : entries_) {
       std::printf("%4d  %-*s", e.rank, w, e.team.c_str());
       if (!e.error.empty()) {
@@ -145,10 +135,12 @@ class League {
         continue;
       }
       if (points)
-        std::printf("  %6.1f %7.1f %8.1f %5.1f", e.total(), e.points ? e.points->quality : 0.0,
-                    e.points ? e.points->location : 0.0, e.judge);
-      std::printf("  %5.3f %9.3f %6.3f %7.3f %4.0f%%  %s\n", e.score.score, e.score.precision, e.score.recall,
-                  e.score.psi_m, 100.0 * e.score.known, e.score.note.c_str());
+        std::printf("  %6.1f %7.1f %8.1f %5.1f %-10s", e.total(), e.points ? e.points->quality : 0.0,
+                    e.points ? e.points->location : 0.0, e.judge, e.victims_from.c_str());
+      std::printf("  %5.3f %9.3f %6.3f %7.3f %4.0f%%", e.score.score, e.score.precision, e.score.recall, e.score.psi_m,
+                  100.0 * e.score.known);
+      if (config_.warp) std::printf(" %6.3f", e.score.warped_score);
+      std::printf("  %s\n", e.score.note.c_str());
     }
   }
 
@@ -162,16 +154,17 @@ class League {
 void check(const ScoreArguments& arguments) {
   if (!arguments.truth.empty())
     throw UsageError("--league needs the truth only: rubble score --league DIR TRUTH; see rubble score --help");
-  if (!arguments.pose.empty() || !arguments.html.empty() || arguments.json)
-    throw UsageError("--league goes without --pose, --html and --json; pages and CSV are written with --out");
+  if (!arguments.pose.empty() || !arguments.pois.empty() || !arguments.html.empty() || arguments.json)
+    throw UsageError("--league goes without --pose, --pois, --html and --json; pages and CSV are written with --out");
 }
 
 }  // namespace
 
 int score_league(const ScoreArguments& arguments) {
   check(arguments);
-  const std::vector<LeagueFiles> teams = find_league(arguments.league);
   const Truth truth = load_truth(arguments);
+  const LeagueFolder folder = find_league(arguments.league, truth.path);
+  const std::vector<LeagueFiles>& teams = folder.teams;
   std::map<std::string, double> judge;
   if (!arguments.judge.empty()) judge = scoring::read_judge(arguments.judge);
   for (const auto& [team, points] : judge)
@@ -181,12 +174,10 @@ int score_league(const ScoreArguments& arguments) {
   if (!arguments.out.empty()) make_folder(arguments.out);
   League league(arguments, truth);
   for (const LeagueFiles& files : teams) {
-    std::error_code error;
-    if (!files.map.empty() && fs::equivalent(files.map, truth.path, error)) continue;  // the truth is no team
     const auto points = judge.find(files.team);
     league.judge(files, points == judge.end() ? 0.0 : points->second);
   }
-  league.finish();
+  league.finish(folder.skipped);
   return kOk;
 }
 

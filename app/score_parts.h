@@ -7,8 +7,12 @@
 
 namespace rubble::app {
 
-/// What --align says. auto, walls, rooms, features (SURF), surf, akaze or orb.
+/// What --align says: auto, or some of walls, rooms and a kind of features (features is surf; surf, akaze, orb), joined
+/// by commas. Throws UsageError.
 scoring::AlignmentConfig parse_align(const std::string& text);
+
+/// The rows about the pose: what proposed it, how far it is ahead, and of what.
+void print_contest(const scoring::MapScore& score);
 
 /// The rows below the score: what is wrong and where, the warp.
 void print_parts(const scoring::MapScore& score);

@@ -13,12 +13,13 @@ struct RgbImage {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgb;
+  std::vector<std::uint8_t> alpha;  ///< opacity of each pixel, already worked into `rgb`; empty: all opaque
   RgbImage() = default;
   RgbImage(int w, int h) : width(w), height(h), rgb(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * 3u) {}
-  std::uint8_t* pixel(int x, int y) {
-    return rgb.data() +
-           (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * 3u;
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
   }
+  std::uint8_t* pixel(int x, int y) { return rgb.data() + 3u * index(x, y); }
   const std::uint8_t* pixel(int x, int y) const { return const_cast<RgbImage*>(this)->pixel(x, y); }
 };
 
@@ -52,7 +53,7 @@ PixelToModel georeference(double x0, double y1, double resolution, const std::op
 void write_geotiff(const std::string& path, const GeoTiff& tiff);
 
 /// Reads any strip, tiled, compressed, 1..16-bit, grey, palette or RGB(A) TIFF with or without GeoTIFF tags.
-/// Throws InputError: missing, truncated, not a TIFF, over 20,000 pixels a side.
+/// Throws InputError: missing, truncated, not a TIFF, over 20,000 pixels a side or 10^8 in all.
 GeoTiff read_geotiff(const std::string& path);
 
 /// The six lines of a world file: a, d, b, e and the centre of the upper-left pixel.

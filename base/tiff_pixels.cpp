@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/sample_range.h"
 
 namespace rubble {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint32_t kMaxSide = 20000;
+constexpr std::uint64_t kMaxPixels = 100000000;
 constexpr std::uint32_t kMaxSamples = 16;
 constexpr std::uint64_t kMaxChunk = 2u << 30;  ///< [bytes] of one strip or tile, unpacked
 constexpr std::array<std::uint8_t, 3> kUnexplored{226, 226, 227};
@@ -29,6 +31,8 @@ struct Layout {
   bool premultiplied = false;  ///< colours are already scaled by it
 };
 
+using Samples = std::array<std::uint32_t, kMaxSamples>;  ///< of one pixel
+
 class Reader {
  public:
   Reader(TIFF* tiff, const std::string& path, const TiffComplaint& complaint)
@@ -39,6 +43,7 @@ class Reader {
     check_chunks();
     RgbImage image(static_cast<int>(layout_.width), static_cast<int>(layout_.height));
     if (is_simple()) {
+      find_white();
       read_tables();
       read_chunks(image);
     } else {
@@ -58,9 +63,9 @@ class Reader {
     if (TIFFGetField(tiff_, TIFFTAG_IMAGEWIDTH, &l.width) != 1 ||
         TIFFGetField(tiff_, TIFFTAG_IMAGELENGTH, &l.height) != 1 || l.width == 0 || l.height == 0)
       fail("has no size; it is no image");
-    if (l.width > kMaxSide || l.height > kMaxSide)
+    if (l.width > kMaxSide || l.height > kMaxSide || std::uint64_t{l.width} * l.height > kMaxPixels)
       fail("has " + std::to_string(l.width) + " x " + std::to_string(l.height) + " pixels; at most " +
-           std::to_string(kMaxSide) + " a side, scale it down");
+           std::to_string(kMaxSide) + " a side and 10000 x 10000 in all, scale it down");
     TIFFGetFieldDefaulted(tiff_, TIFFTAG_BITSPERSAMPLE, &l.bits);
     TIFFGetFieldDefaulted(tiff_, TIFFTAG_SAMPLESPERPIXEL, &l.samples);
     TIFFGetFieldDefaulted(tiff_, TIFFTAG_PLANARCONFIG, &l.planes);
@@ -120,13 +125,31 @@ class Reader {
            layout_.photometric == PHOTOMETRIC_RGB || layout_.photometric == PHOTOMETRIC_PALETTE;
   }
 
+  /// What stands for white and for opaque. Deep samples are read once more than needed: many hold 0..255 unscaled.
+  void find_white() {
+    white_ = opaque_ = (1u << layout_.bits) - 1;
+    if (layout_.bits <= 8) return;
+    std::uint32_t brightest = 0;
+    std::uint32_t most_opaque = 0;
+    visit_chunks([&](std::uint32_t x0, std::uint32_t y0, const std::vector<Bytes>& planes) {
+      visit_samples(x0, y0, planes, [&](int, int, const Samples& values) {
+        for (std::size_t s = 0; s < layout_.samples; ++s) {
+          if (!is_used(s)) continue;
+          std::uint32_t& most = static_cast<int>(s) == layout_.alpha ? most_opaque : brightest;
+          most = std::max(most, values[s]);
+        }
+      });
+    });
+    if (layout_.photometric != PHOTOMETRIC_PALETTE) white_ = white_of(brightest, white_);
+    opaque_ = white_of(most_opaque, opaque_);
+  }
+
   /// The 8-bit value of every sample value, and the colours of a palette.
   void read_tables() {
     const std::uint32_t values = 1u << layout_.bits;
-    const std::uint32_t top = values - 1;
     level_.resize(values);
     for (std::uint32_t v = 0; v < values; ++v) {
-      const std::uint32_t linear = (v * 255u + top / 2) / top;
+      const std::uint32_t linear = (std::min(v, white_) * 255u + white_ / 2) / white_;
       level_[v] = static_cast<std::uint8_t>(layout_.photometric == PHOTOMETRIC_MINISWHITE ? 255u - linear : linear);
     }
     if (layout_.photometric != PHOTOMETRIC_PALETTE) return;
@@ -154,6 +177,21 @@ class Reader {
   }
 
   void read_chunks(RgbImage& image) {
+    if (layout_.alpha >= 0) image.alpha.resize(image.rgb.size() / 3);
+    visit_chunks([&](std::uint32_t x0, std::uint32_t y0, const std::vector<Bytes>& planes) {
+      if (is_plain_rgb())
+        copy_chunk(x0, y0, planes[0], image);
+      else
+        visit_samples(x0, y0, planes, [&](int x, int y, const Samples& values) {
+          draw_pixel(values, image.pixel(x, y));
+          if (layout_.alpha >= 0) image.alpha[image.index(x, y)] = opacity(values);
+        });
+    });
+  }
+
+  /// Unpacks strip after strip or tile after tile: `take` gets its corner and its planes.
+  template <class Take>
+  void visit_chunks(const Take& take) const {
     const bool separate = layout_.planes == PLANARCONFIG_SEPARATE;
     const auto size = static_cast<std::size_t>(layout_.tiled ? TIFFTileSize(tiff_) : TIFFStripSize(tiff_));
     std::vector<Bytes> planes(separate ? layout_.samples : 1);
@@ -163,7 +201,7 @@ class Reader {
       for (std::uint32_t x = 0; x < layout_.width; x += layout_.chunk_width) {
         for (std::size_t plane = 0; plane < planes.size(); ++plane)
           if (!planes[plane].empty()) read_chunk(x, y, static_cast<std::uint16_t>(plane), planes[plane]);
-        draw_chunk(x, y, planes, image);
+        take(x, y, planes);
       }
   }
 
@@ -190,36 +228,49 @@ class Reader {
     return value;
   }
 
-  void draw_chunk(std::uint32_t x0, std::uint32_t y0, const std::vector<Bytes>& planes, RgbImage& image) const {
-    const auto row_size = static_cast<std::size_t>(layout_.tiled ? TIFFTileRowSize(tiff_) : TIFFScanlineSize(tiff_));
+  void copy_chunk(std::uint32_t x0, std::uint32_t y0, const Bytes& bytes, RgbImage& image) const {
+    const std::uint32_t rows = std::min(layout_.chunk_height, layout_.height - y0);
+    const std::uint32_t columns = std::min(layout_.chunk_width, layout_.width - x0);
+    for (std::uint32_t y = 0; y < rows; ++y)
+      std::copy_n(bytes.data() + y * row_size(), std::size_t{3} * columns,
+                  image.pixel(static_cast<int>(x0), static_cast<int>(y0 + y)));
+  }
+
+  std::size_t row_size() const {
+    return static_cast<std::size_t>(layout_.tiled ? TIFFTileRowSize(tiff_) : TIFFScanlineSize(tiff_));
+  }
+
+  /// `take` gets every pixel of a strip or tile.
+  template <class Take>
+  void visit_samples(std::uint32_t x0, std::uint32_t y0, const std::vector<Bytes>& planes, const Take& take) const {
+    const std::size_t row_bytes = row_size();
     const std::uint32_t rows = std::min(layout_.chunk_height, layout_.height - y0);
     const std::uint32_t columns = std::min(layout_.chunk_width, layout_.width - x0);
     const bool separate = planes.size() > 1;
-    std::array<std::uint32_t, kMaxSamples> values{};
-    for (std::uint32_t y = 0; y < rows; ++y) {
-      if (is_plain_rgb()) {
-        const std::uint8_t* const row = planes[0].data() + y * row_size;
-        std::copy_n(row, std::size_t{3} * columns, image.pixel(static_cast<int>(x0), static_cast<int>(y0 + y)));
-        continue;
-      }
+    Samples values{};
+    for (std::uint32_t y = 0; y < rows; ++y)
       for (std::uint32_t x = 0; x < columns; ++x) {
         for (std::size_t s = 0; s < layout_.samples; ++s) {
           if (!is_used(s)) continue;
-          const std::uint8_t* const row = planes[separate ? s : 0].data() + y * row_size;
+          const std::uint8_t* const row = planes[separate ? s : 0].data() + y * row_bytes;
           values[s] = sample(row, separate ? x : static_cast<std::size_t>(x) * layout_.samples + s);
         }
-        draw_pixel(values, image.pixel(static_cast<int>(x0 + x), static_cast<int>(y0 + y)));
+        take(static_cast<int>(x0 + x), static_cast<int>(y0 + y), values);
       }
-    }
   }
 
-  void draw_pixel(const std::array<std::uint32_t, kMaxSamples>& values, std::uint8_t* rgb) const {
-    const std::uint32_t top = (1u << layout_.bits) - 1;
+  std::uint8_t opacity(const Samples& values) const {
+    const std::uint32_t alpha = std::min(values[static_cast<std::size_t>(layout_.alpha)], opaque_);
+    return static_cast<std::uint8_t>((alpha * 255u + opaque_ / 2) / opaque_);
+  }
+
+  void draw_pixel(const Samples& values, std::uint8_t* rgb) const {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::uint32_t value = values[layout_.photometric == PHOTOMETRIC_RGB ? c : 0];
       std::uint32_t colour = layout_.photometric == PHOTOMETRIC_PALETTE ? palette_[c][value] : level_[value];
       if (layout_.alpha >= 0) {
-        const std::uint32_t alpha = values[static_cast<std::size_t>(layout_.alpha)];
+        const std::uint32_t top = opaque_;
+        const std::uint32_t alpha = std::min(values[static_cast<std::size_t>(layout_.alpha)], top);
         const std::uint32_t behind = (kUnexplored[c] * (top - alpha) + top / 2) / top;
         colour = (layout_.premultiplied ? colour : (colour * alpha + top / 2) / top) + behind;
       }
@@ -244,6 +295,8 @@ class Reader {
   const std::string& path_;
   const TiffComplaint& complaint_;
   Layout layout_;
+  std::uint32_t white_ = 255;   ///< sample value
+  std::uint32_t opaque_ = 255;  ///< sample value
   Bytes level_;
   std::array<Bytes, 3> palette_;
 };

@@ -39,10 +39,11 @@ TPose2D fit_to_the_whole(const Hypothesis& best, const std::vector<Hypothesis>& 
   return match.halfway(pick, match.nearest_rigid(bent, 0.4));
 }
 
+/// Who is asked by walls may also find what nobody else proposes: the search examines walls in any case.
 bool may_win(const Hypothesis& h, AlignBy by) {
-  if (by == AlignBy::Features) return h.source.find("features") != std::string::npos;
-  if (by == AlignBy::Rooms) return h.source.find("rooms") != std::string::npos;
-  return true;
+  const auto proposed = [&](const char* name) { return h.source.find(name) != std::string::npos; };
+  return includes(by, AlignBy::Walls) || (includes(by, AlignBy::Features) && proposed("features")) ||
+         (includes(by, AlignBy::Rooms) && proposed("rooms"));
 }
 
 /// Two maps to be aligned, with what several methods share.
@@ -53,8 +54,10 @@ class Aligner {
 
   bool usable() const { return match_.usable(); }
 
+  /// `method` is a union of methods, not Auto.
   Alignment by(AlignBy method) {
     Alignment out;
+    out.contest.tried = method;
     const std::vector<Hypothesis> hypotheses = examine(proposals(method), match_, config_.search);
     const auto best =
         std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) { return may_win(h, method); });
@@ -78,10 +81,12 @@ class Aligner {
     if (!by_walls_) by_walls_ = correlate(map_, truth_, config_.correlation);
     std::vector<PoseGuess> out = *by_walls_;
     const auto add = [&](const std::vector<PoseGuess>& more) { out.insert(out.end(), more.begin(), more.end()); };
-    if (method == AlignBy::Features || method == AlignBy::Auto)
-      add(propose_by_features(map_, truth_, config_.feature_kind));
-    if (method == AlignBy::Rooms) add(config_.rooms ? config_.rooms(map_, truth_) : propose_by_rooms(map_, truth_));
-    if (method == AlignBy::Auto && config_.rooms) add(config_.rooms(map_, truth_));
+    if (includes(method, AlignBy::Features)) {
+      if (!by_features_) by_features_ = propose_by_features(map_, truth_, config_.feature_kind);
+      add(*by_features_);
+    }
+    if (includes(method, AlignBy::Rooms))
+      add(config_.rooms ? config_.rooms(map_, truth_) : propose_by_rooms(map_, truth_));
     return out;
   }
 
@@ -99,9 +104,14 @@ class Aligner {
       others.meet(h.wide, h.tight);
       if (h.quality <= highest) continue;
       highest = h.quality;
-      out.T_runner_up = h.T_best;
+      out.contest.T_runner_up = h.T_best;
+      out.contest.runner_up_source = h.source;
     }
     out.runner_up = relative(others, best.tight, out.log_odds);
+    out.contest.agreement = tight_agreement(best.tight);
+    out.contest.by_agreement = out.contest.agreement >= kTightEnough;
+    out.contest.margin =
+        out.contest.by_agreement ? out.contest.agreement - others.tight : out.log_odds - others.log_odds;
     if (beyond_doubt(best.tight, others)) return others;
     const Rivals& mirrored = of_mirrored();
     out.mirrored = relative(mirrored, best.tight, out.log_odds);
@@ -133,10 +143,19 @@ class Aligner {
   const AlignmentConfig& config_;
   WallMatch match_;
   std::optional<std::vector<PoseGuess>> by_walls_;
+  std::optional<std::vector<PoseGuess>> by_features_;
   std::optional<Rivals> mirrored_;
 };
 
 }  // namespace
+
+std::string names_of(AlignBy methods) {
+  std::string out;
+  for (const auto& [method, name] :
+       {std::pair{AlignBy::Walls, "walls"}, {AlignBy::Features, "features"}, {AlignBy::Rooms, "rooms"}})
+    if (includes(methods, method)) out += (out.empty() ? "" : "+") + std::string(name);
+  return out;
+}
 
 Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config) {
   Aligner aligner(map, truth, config);
@@ -146,11 +165,16 @@ Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const Alig
     return out;
   }
   if (config.by != AlignBy::Auto) return aligner.by(config.by);
-  const Alignment walls = aligner.by(AlignBy::Walls);
-  // Walls that agree to the decimetre at several poses leave a doubt that no other proposal resolves.
-  if (walls.aligned || tight_agreement(walls.tight_evidence) >= kTightEnough) return walls;
-  const Alignment all = aligner.by(AlignBy::Auto);
-  return all.aligned || all.log_odds > walls.log_odds ? all : walls;
+  Alignment best = aligner.by(AlignBy::Walls);
+  const AlignBy with_features = AlignBy::Walls | AlignBy::Features;
+  for (const AlignBy method : {with_features, with_features | AlignBy::Rooms}) {
+    // Walls that agree to the decimetre at several poses leave a doubt that no other proposal resolves.
+    if (best.aligned || best.contest.by_agreement) break;
+    const Alignment more = aligner.by(method);
+    if (more.aligned || more.log_odds > best.log_odds) best = more;
+    best.contest.tried = method;
+  }
+  return best;
 }
 
 }  // namespace rubble::scoring

@@ -12,16 +12,36 @@
 
 namespace rubble::scoring {
 
-/// What proposes the poses. Auto: walls, and where these leave a doubt, features and rooms too.
-enum class AlignBy { Auto, Walls, Features, Rooms };
+/// What proposes the poses; joined by | they propose together. Auto: walls, where these leave a doubt features too, and
+/// where these leave one as well rooms too.
+enum class AlignBy : unsigned { Auto = 0, Walls = 1, Features = 2, Rooms = 4 };
+constexpr AlignBy operator|(AlignBy a, AlignBy b) {
+  return static_cast<AlignBy>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+constexpr bool includes(AlignBy set, AlignBy method) {
+  return (static_cast<unsigned>(set) & static_cast<unsigned>(method)) != 0;
+}
 
 struct AlignmentConfig {
   AlignBy by = AlignBy::Auto;
   FeatureKind feature_kind = FeatureKind::Surf;
-  Proposer rooms;  ///< proposes by rooms; where empty, Rooms means propose_by_rooms() and Auto goes without
+  Proposer rooms;  ///< proposes by rooms; where empty, propose_by_rooms()
   CorrelationConfig correlation;
   SearchConfig search;
 };
+
+/// How the best pose won.
+struct Contest {
+  AlignBy tried = AlignBy::Auto;  ///< what proposed poses before it was decided; Auto: nothing did
+  double agreement = 0.0;         ///< walls of both maps that meet within 0.3 m beyond chance, at most 2
+  bool by_agreement = false;      ///< agreement decides on trust; else the log odds do
+  double margin = 0.0;            ///< of that measure over the best clearly different pose
+  std::string runner_up_source;   ///< what proposed that pose; empty: there is none
+  mrpt::math::TPose2D T_runner_up;
+};
+
+/// "walls+features+rooms".
+std::string names_of(AlignBy methods);
 
 /// The rigid transform between two maps, found without any initial guess.
 struct Alignment {
@@ -32,7 +52,7 @@ struct Alignment {
   mrpt::math::TPose2D T_walls;      ///< the same, drawn to where most walls coincide; equal for undistorted maps
   double log_odds = 0.0;            ///< of the best pose being right
   double runner_up = 0.0;           ///< how near the best clearly different pose comes to the best, 0..1 (1: as good)
-  mrpt::math::TPose2D T_runner_up;  ///< that pose
+  Contest contest;                  ///< by how much the best pose is ahead, and of which
   double mirrored = 0.0;  ///< how near the mirrored map comes, which cannot be right, 0..1; 0 where it was not asked
   PoseEvidence wide_evidence;
   PoseEvidence tight_evidence;

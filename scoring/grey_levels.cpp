@@ -31,10 +31,11 @@ cv::Mat grey_of(const RgbImage& image) {
 
 using Histogram = std::array<std::size_t, 256>;
 
-Histogram histogram(const cv::Mat& grey) {
+Histogram histogram(const cv::Mat& grey, const cv::Mat& transparent) {
   Histogram count{};
   for (int y = 0; y < grey.rows; ++y)
-    for (int x = 0; x < grey.cols; ++x) ++count[grey.at<unsigned char>(y, x)];
+    for (int x = 0; x < grey.cols; ++x)
+      if (transparent.at<unsigned char>(y, x) == 0) ++count[grey.at<unsigned char>(y, x)];
   return count;
 }
 
@@ -51,10 +52,20 @@ bool is_pure(Histogram count, double total) {
 
 }  // namespace
 
+cv::Mat transparent_pixels(const RgbImage& image) {
+  cv::Mat out = cv::Mat::zeros(image.height, image.width, CV_8U);
+  if (image.alpha.empty()) return out;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      if (image.alpha[image.index(x, y)] < 128) out.at<unsigned char>(y, x) = 255;
+  return out;
+}
+
 LabelImage classify_grey(const RgbImage& image) {
   const cv::Mat grey = grey_of(image);
-  const Histogram count = histogram(grey);
-  const double total = static_cast<double>(grey.total());
+  const cv::Mat transparent = transparent_pixels(image);
+  const Histogram count = histogram(grey, transparent);
+  const double total = static_cast<double>(grey.total()) - cv::countNonZero(transparent);
   const int level = unknown_level(count, total);
   LabelImage out;
   out.classes = cv::Mat(grey.size(), CV_8U, cv::Scalar(static_cast<int>(Occupancy::Free)));

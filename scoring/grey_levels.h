@@ -13,7 +13,11 @@ struct LabelImage {
   std::string recognised;
 };
 
+/// 255 where the image is more transparent than not.
+cv::Mat transparent_pixels(const RgbImage& image);
+
 /// Walls dark, free light, unknown the most frequent grey between; without such a grey everything light is free.
+/// Transparent pixels have no say in what the levels are.
 LabelImage classify_grey(const RgbImage& image);
 
 }  // namespace rubble::scoring

@@ -47,11 +47,12 @@ void rank_league(std::vector<LeagueEntry>& entries) {
 std::string league_csv(const std::vector<LeagueEntry>& entries) {
   std::string out =
       "rank,team,points,quality,location,judge,score,precision,recall,psi_m,known,aligned,victims_found,victims_total,"
-      "false_alarms,file,note\n";
+      "false_alarms,victims_from,victim_symbols,align_source,phantom_m,missing_m,ignored_m,warped_score,warp_m,"
+      "penalised_score,file,note\n";
   for (const LeagueEntry& e : entries) {
     out += std::to_string(e.rank) + "," + csv_field(e.team) + ",";
     if (!e.error.empty()) {
-      out += ",,,,,,,,,,,,,";
+      out += std::string(22, ',');
     } else {
       const LeaguePoints none;
       const LeaguePoints& points = e.points ? *e.points : none;
@@ -63,6 +64,12 @@ std::string league_csv(const std::vector<LeagueEntry>& entries) {
       out += e.points ? std::to_string(found(points)) + "," + std::to_string(points.victims.size()) + "," +
                             std::to_string(points.false_alarms) + ","
                       : ",,,";
+      out += e.victims_from + "," + std::to_string(e.symbols) + "," + e.score.source + ",";
+      for (const double value : {e.score.errors.phantom_m, e.score.errors.missing_m, e.score.errors.ignored_m})
+        out += number("%.2f", value) + ",";
+      out += e.score.warped ? number("%.3f,", e.score.warped_score) + number("%.3f,", e.score.warp_m) +
+                                  number("%.3f,", e.score.penalised_score)
+                            : ",,,";
     }
     out += csv_field(e.file) + "," + csv_field(e.note()) + "\n";
   }

@@ -17,6 +17,8 @@ struct LeagueEntry {
   std::string error;  ///< why it cannot be judged; empty: it was
   MapScore score;
   std::optional<LeaguePoints> points;  ///< of victims the team reported
+  std::string victims_from = "none";   ///< "csv", "symbols" (drawn on the map) or "none"
+  std::size_t symbols = 0;             ///< of victims, recognised on the map
   double judge = 0.0;                  ///< the judge's points
   int rank = 0;                        ///< from 1; equal figures share the better one
   std::string note() const { return error.empty() ? score.note : error; }

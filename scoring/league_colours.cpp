@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/grid.h"
+#include "scoring/lossy_colours.h"
 
 namespace rubble::scoring {
 namespace {
@@ -79,6 +80,7 @@ Census census(const RgbImage& image) {
   Census out;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
+      if (!image.alpha.empty() && image.alpha[image.index(x, y)] < 128) continue;
       const Rgb c = rgb(image.pixel(x, y));
       ++out.pixels;
       if (is_checkerboard(c)) ++out.checkerboard;
@@ -154,18 +156,27 @@ void smooth(cv::Mat& labels) {
 
 bool is_league_map(const RgbImage& image) {
   const Census c = census(image);
-  return 20 * c.checkerboard >= c.pixels || (c.walls >= 20 && 5000 * c.walls >= c.pixels);
+  const auto are_walls = [&](std::size_t count) { return count >= 20 && 5000 * count >= c.pixels; };
+  if (20 * c.checkerboard >= c.pixels || are_walls(c.walls)) return true;
+  return has_run_colours(image) && are_walls(static_cast<std::size_t>(cv::countNonZero(walls_by_brightness(image))));
 }
 
 LabelImage classify_league(const RgbImage& image) {
   const bool exact = census(image).exact();
   LabelImage out;
   out.classes = cv::Mat(image.height, image.width, CV_8U);
+  const bool lossy = !exact && has_run_colours(image);
+  const cv::Mat dark_walls = lossy ? walls_by_brightness(image) : cv::Mat();
+  const cv::Mat unexplored = lossy ? unexplored_by_brightness(image) : cv::Mat();
   std::size_t drawn = 0;
   for (int y = 0; y < image.height; ++y) {
     Label* row = out.classes.ptr<Label>(y);
     for (int x = 0; x < image.width; ++x) {
       row[x] = label_of(rgb(image.pixel(x, y)), exact);
+      if (lossy && dark_walls.at<Label>(y, x) != 0)
+        row[x] = kWall;
+      else if (lossy && row[x] != kWall && row[x] != kDrawing)
+        row[x] = unexplored.at<Label>(y, x) != 0 ? kUnknown : kFree;
       if (row[x] == kDrawing) ++drawn;
     }
   }
@@ -174,8 +185,11 @@ LabelImage classify_league(const RgbImage& image) {
   if (!exact) smooth(out.classes);
   const double share =
       100.0 * static_cast<double>(drawn) / static_cast<double>(std::max<std::size_t>(1, out.classes.total()));
-  out.recognised =
-      cv::format("league colours%s, drawings removed from %.1f %% of the pixels", exact ? "" : " (resampled)", share);
+  out.recognised = cv::format("league colours%s, drawings removed from %.1f %% of the pixels",
+                              exact   ? ""
+                              : lossy ? " (compressed with loss)"
+                                      : " (resampled)",
+                              share);
   return out;
 }
 

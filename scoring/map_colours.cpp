@@ -9,10 +9,12 @@
 namespace rubble::scoring {
 
 ClassImage classify(const RgbImage& image) {
-  const LabelImage labels = is_league_map(image) ? classify_league(image) : classify_grey(image);
   ClassImage out;
+  out.is_league = is_league_map(image);
+  const LabelImage labels = out.is_league ? classify_league(image) : classify_grey(image);
   out.recognised = labels.recognised;
   cv::Mat classes = labels.classes;
+  if (!image.alpha.empty()) classes.setTo(static_cast<int>(Occupancy::Unknown), transparent_pixels(image));
   clear_canvas_corners(classes);
   out.classes = Grid<Occupancy>(GridFrame{image.width, image.height, 1.0, 0.0, 0.0});
   for (int y = 0; y < image.height; ++y) {

@@ -11,6 +11,7 @@ namespace rubble::scoring {
 struct ClassImage {
   Grid<Occupancy> classes;  ///< frame: 1 m a cell at the origin, row 0 is the image's lowest row
   std::string recognised;   ///< "league colours", "grey levels, unknown 205", ...
+  bool is_league = false;   ///< has the league's colours, so that its drawings mean something
 };
 
 /// Reduces any map image to {occupied, free, unknown}. League maps (RoboCupRescue GeoTIFF colours, as hector_geotiff

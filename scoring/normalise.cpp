@@ -11,6 +11,7 @@
 #include "scoring/map_colours.h"
 #include "scoring/raster_image.h"
 #include "scoring/ros_map.h"
+#include "scoring/victim_symbols.h"
 
 namespace rubble::scoring {
 namespace {
@@ -55,11 +56,13 @@ double pixel_size(const std::string& path, const PixelToModel& t) {
   return std::sqrt(along * across);
 }
 
+bool is_south_up(const std::optional<PixelToModel>& t) { return t && t->a * t->e - t->b * t->d > 0.0; }
+
 /// Puts the image's classes on a metric frame. A rotated georeference keeps its scale, not its rotation.
 OccupancyGrid place(const Grid<Occupancy>& classes, double resolution, const std::optional<PixelToModel>& t) {
   GridFrame frame = classes.frame();
   frame.resolution = resolution;
-  const bool south_up = t && t->a * t->e - t->b * t->d > 0.0;
+  const bool south_up = is_south_up(t);
   if (t && t->b == 0.0 && t->d == 0.0) {
     frame.x0 = std::min(t->c, t->c + t->a * frame.width);
     frame.y0 = std::min(t->f, t->f + t->e * frame.height);
@@ -68,6 +71,17 @@ OccupancyGrid place(const Grid<Occupancy>& classes, double resolution, const std
   for (int y = 0; y < frame.height; ++y) {
     const Occupancy* row = classes.row(south_up ? frame.height - 1 - y : y);
     std::copy(row, row + frame.width, out.row(y));
+  }
+  return out;
+}
+
+/// The victims drawn on a league map, on the same frame.
+std::vector<Poi> place_symbols(const RgbImage& image, const GridFrame& frame, bool south_up) {
+  std::vector<Poi> out;
+  for (const VictimSymbol& symbol : find_victim_symbols(image, frame.resolution)) {
+    const double up = south_up ? symbol.row : frame.height - symbol.row;
+    out.push_back({"symbol_" + std::to_string(out.size() + 1),
+                   {frame.x0 + symbol.column * frame.resolution, frame.y0 + up * frame.resolution}});
   }
   return out;
 }
@@ -96,6 +110,7 @@ LoadedMap load_image(const std::string& path, const LoadOptions& options) {
   const ClassImage classes = classify(tiff.image);
   LoadedMap out;
   out.grid = place(classes.classes, resolution, transform);
+  if (classes.is_league) out.symbols = place_symbols(tiff.image, out.grid.frame(), is_south_up(transform));
   out.recognised = source + cv::format(" %g m a pixel, %d x %d, ", resolution, out.grid.width(), out.grid.height()) +
                    classes.recognised;
   return out;

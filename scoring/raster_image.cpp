@@ -1,12 +1,15 @@
 #include "scoring/raster_image.h"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string_view>
+#include <vector>
 
 #include "base/error.h"
+#include "base/sample_range.h"
 
 namespace rubble::scoring {
 namespace {
@@ -27,6 +30,43 @@ bool is_cut_png(const std::string& path) {
     at += 12 + length;
   }
   return true;
+}
+
+/// 16-bit channels as 8 bit, each by the range it uses: colours by theirs, the opacity by its own.
+cv::Mat narrowed(const cv::Mat& image) {
+  std::vector<cv::Mat> channels;
+  cv::split(image, channels);
+  const std::size_t colours = channels.size() == 4 ? 3 : channels.size();
+  const auto most_of = [&](std::size_t from, std::size_t to) {
+    double most = 0.0;
+    for (std::size_t i = from; i < to; ++i) {
+      double here = 0.0;
+      cv::minMaxLoc(channels[i], nullptr, &here);
+      most = std::max(most, here);
+    }
+    return static_cast<std::uint32_t>(most);
+  };
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const std::uint32_t most = i < colours ? most_of(0, colours) : most_of(i, i + 1);
+    channels[i].convertTo(channels[i], CV_8U, 255.0 / white_of(most, 65535));
+  }
+  cv::Mat out;
+  cv::merge(channels, out);
+  return out;
+}
+
+/// Transparent pixels fade into the league's grey of unexplored ground, as in a TIFF.
+void work_in_alpha(const cv::Mat& bgra, RgbImage& out) {
+  constexpr std::array<int, 3> kUnexplored{226, 226, 227};
+  out.alpha.resize(bgra.total());
+  for (int y = 0; y < bgra.rows; ++y)
+    for (int x = 0; x < bgra.cols; ++x) {
+      const int alpha = bgra.at<cv::Vec4b>(y, x)[3];
+      out.alpha[out.index(x, y)] = static_cast<std::uint8_t>(alpha);
+      std::uint8_t* const p = out.pixel(x, y);
+      for (std::size_t c = 0; c < 3; ++c)
+        p[c] = static_cast<std::uint8_t>((p[c] * alpha + kUnexplored[c] * (255 - alpha) + 127) / 255);
+    }
 }
 
 }  // namespace
@@ -50,7 +90,7 @@ cv::Mat read_raster(const std::string& path) {
   if (image.empty()) throw InputError(path + ": not an image that can be read (PNG, PGM, BMP, JPEG), or cut short");
   check_image_size(path, image.cols, image.rows);
   if (image.depth() == CV_16U)
-    image.convertTo(image, CV_8U, 1.0 / 257.0);
+    image = narrowed(image);
   else if (image.depth() != CV_8U)
     throw InputError(path + ": pixels must have 8 or 16 bit a channel; convert the image");
   return image;
@@ -65,9 +105,10 @@ RgbImage read_rgb(const std::string& path) {
     cv::cvtColor(image, view, cv::COLOR_GRAY2RGB);
   else if (channels == 3)
     cv::cvtColor(image, view, cv::COLOR_BGR2RGB);
-  else if (channels == 4)
+  else if (channels == 4) {
     cv::cvtColor(image, view, cv::COLOR_BGRA2RGB);
-  else
+    work_in_alpha(image, out);
+  } else
     throw InputError(path + ": " + std::to_string(channels) + " channels; convert the image to grey or RGB");
   return out;
 }

@@ -118,6 +118,7 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
   out.T_truth_map = alignment.T_truth_map;
   out.runner_up = alignment.runner_up;
   out.source = alignment.source;
+  out.contest = alignment.contest;
   out.mirrored = alignment.mirrored;
   if (!out.aligned) {
     fill_psi(out, psi_of_strangers(config.colour_absent_cap));

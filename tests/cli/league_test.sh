@@ -64,6 +64,30 @@ cut -d, -f1,2,7 second/league.csv >ranks.txt
 "$rubble" score --league renamed $truth --out third >/dev/null && cmp second/league.csv third/league.csv ||
   fail "the same league twice gives other figures"
 
+# The truth and pictures of runs among the maps are no teams, and the program says so; the options of a single score hold.
+mkdir -p mixed/run mixed/old mixed/judged
+cp $truth mixed/truth.tif; cp $truth mixed/$(basename $truth); cp $truth mixed/good.tif
+for name in overlay error arena 001-x-overlay; do cp "$(ls judged/*-overlay.png | head -1)" mixed/$name.png; done
+cp $truth mixed/run/map.tif; cp $truth mixed/run/truth.tif; cp mixed/error.png mixed/run/error.png
+cp mixed/overlay.png mixed/old/001-x-overlay.png; cp mixed/error.png mixed/judged/error.png
+"$rubble" score --league mixed $truth --align rooms,features --warp --out mixed_out >table.txt || fail "mixed league"
+[[ $(tail -n +2 mixed_out/league.csv | cut -d, -f2 | sort | tr '\n' ' ') == 'good run ' ]] ||
+  fail "not only the teams: $(cut -d, -f2 mixed_out/league.csv | tr '\n' ' ')"
+for name in truth.tif overlay.png error.png arena.png run/truth.tif old/001-x-overlay.png; do
+  grep -q "^no team's maps:.*$name" table.txt || fail "does not say that $name was skipped: $(cat table.txt)"
+done
+python3 - <<'PY' || fail "--align and --warp do not reach the league: $(cat mixed_out/league.csv)"
+import csv
+for r in csv.DictReader(open('mixed_out/league.csv')):
+    assert r['align_source'] != 'walls' and r['align_source'], r
+    assert r['warped_score'] == '1.000' and r['phantom_m'] == '0.00' and r['ignored_m'] == '0.00', r
+PY
+"$rubble" score --league mixed $truth --align akaze --out akaze_out >/dev/null || fail "league by akaze"
+! cut -d, -f1-40 akaze_out/league.csv | grep -q ',walls,' || fail "akaze was not asked: $(cat akaze_out/league.csv)"
+expect_exit 2 '--align' "$rubble" score --league mixed $truth --align magic
+mkdir none && cp $truth none/truth.tif
+expect_exit 3 'truth.tif' "$rubble" score --league none $truth
+
 expect_exit 2 'truth only' "$rubble" score --league maps $truth $truth
 expect_exit 2 '--pose' "$rubble" score --league maps $truth --pose 1,2,3
 expect_exit 3 'nowhere' "$rubble" score --league nowhere $truth

@@ -18,7 +18,8 @@ expect_score() {
 gdal_translate -q -co TILED=YES -co COMPRESS=DEFLATE "$truth" tiled.tif
 gdal_translate -q -co COMPRESS=LZW -co INTERLEAVE=BAND "$truth" planes.tif
 gdal_translate -q -ot UInt16 -scale 0 255 0 65535 "$truth" deep.tif
-for map in tiled.tif planes.tif deep.tif; do expect_score "j['aligned'] and j['score'] > 0.99" "$map" "$truth"; done
+gdal_translate -q -ot UInt16 "$truth" unscaled.tif
+for map in tiled.tif planes.tif deep.tif unscaled.tif; do expect_score "j['aligned'] and j['score'] > 0.99" "$map" "$truth"; done
 
 # A mirror image, another arena, a wrong scale, no wall at all.
 python3 <<'PY'
@@ -38,11 +39,46 @@ expect_score "not j['aligned'] and j['score'] == 0" truth.png "$truth" --resolut
 "$rubble" arena generate --cells 7x6 --seed 77 --out other >/dev/null || fail "no other arena"
 expect_score "not j['aligned'] and j['score'] == 0 and j['align_note']" other/*-truth.tif "$truth"
 
+# The truth's mirror image, both ways; and every refusal says why in one line.
+gdal_translate -q -of PNM "$truth" truth.ppm
+python3 <<'PY'
+data = open("truth.ppm", "rb").read()
+_, size, top, rest = data.split(b"\n", 3) if data.split(b"\n", 3)[2] == b"255" else (None, None, None, None)
+w, h = map(int, size.split())
+rows = [rest[3 * w * y : 3 * w * (y + 1)] for y in range(h)]
+head = b"P6\n%d %d\n255\n" % (w, h)
+open("upside_down.ppm", "wb").write(head + b"".join(reversed(rows)))
+left = [b"".join(row[3 * x : 3 * x + 3] for x in range(w - 1, -1, -1)) for row in rows]
+open("mirrored.ppm", "wb").write(head + b"".join(left))
+PY
+for map in upside_down.ppm mirrored.ppm; do
+  expect_score "not j['aligned'] and j['score'] == 0 and j['psi_m'] >= 5" $map "$truth" --resolution 0.05
+done
+for map in white.pgm wall.pgm upside_down.ppm other/*-truth.tif; do
+  "$rubble" score $map "$truth" --resolution 0.05 >table.txt 2>err.txt || fail "$map ended with $?"
+  [[ $(grep -c '^not aligned ' table.txt) == 1 && ! -s err.txt ]] || fail "$map: no reason in one line: $(cat table.txt err.txt)"
+done
+
+# Walls that the truth knows nothing about are in no score, but counted.
+expect_score "j['ignored_m'] == 0" "$truth" "$truth"
+gdal_translate -q -srcwin 0 0 $(($(gdalinfo "$truth" | sed -n 's/^Size is \([0-9]*\), \([0-9]*\)/\1 * 7 \/ 10/p'))) \
+  $(($(gdalinfo "$truth" | sed -n 's/^Size is \([0-9]*\), \([0-9]*\)/\2/p'))) "$truth" part.tif
+expect_score "j['aligned'] and j['ignored_m'] > 3 and j['phantom_m'] < 0.5 and j['precision'] > 0.98" "$truth" part.tif
+
 # Methods, and the parts of the score.
 expect_score "j['align_source'] == 'walls' and j['phantom_m'] == 0 and j['worst_places'] == []" "$truth" "$truth"
 expect_score "j['aligned'] and 'features' in j['align_source']" "$truth" "$truth" --align surf
 expect_score "j['warped_score'] == 1 and j['warp_m'] == 0 and j['feature_error_m2'] < 1e-9" "$truth" "$truth" --warp
-expect_exit 2 '--align' "$rubble" score "$truth" "$truth" --align magic
+expect_score "j['aligned'] and j['align_tried'] == 'features+rooms' and j['align_source'] != 'walls'" \
+  "$truth" "$truth" --align rooms,features
+expect_score "j['align_tried'] == 'walls' and j['align_measure'] == 'agreement' and 0 < j['align_margin'] <= j['align_agreement'] <= 2 and j['align_runner_up_source']" \
+  "$truth" "$truth"
+"$rubble" score "$truth" "$truth" >table.txt || fail "table"
+grep -qE '^proposed by +walls' table.txt && grep -qE '^runner-up pose +0\.[0-9]+ of the best .*by walls' table.txt ||
+  fail "the table does not name winner and runner-up: $(cat table.txt)"
+for wrong in magic rooms,magic auto,rooms surf,orb rooms, ,rooms; do
+  expect_exit 2 '--align' "$rubble" score "$truth" "$truth" --align "$wrong"
+done
 
 # What cannot be read.
 head -c $(($(stat -c %s "$truth") / 2)) "$truth" >cut.tif
@@ -52,4 +88,9 @@ expect_exit 3 'cut.png' "$rubble" score cut.png "$truth" --resolution 0.05
 printf 'P5 20000 20000 255\n' >huge.pgm
 head -c 400000000 /dev/zero >>huge.pgm
 expect_exit 3 '20000 x 20000' "$rubble" score huge.pgm "$truth" --resolution 0.05
+rm huge.pgm
+gdal_create -q -outsize 20000 20000 -ot Byte -co SPARSE_OK=TRUE -co TILED=YES huge.tif 2>/dev/null &&
+  expect_exit 3 '20000 x 20000' "$rubble" score huge.tif "$truth" --resolution 0.05
+gdal_create -q -outsize 20001 3 -ot Byte wide.tif 2>/dev/null &&
+  expect_exit 3 '20001 x 3' "$rubble" score wide.tif "$truth" --resolution 0.05
 finish

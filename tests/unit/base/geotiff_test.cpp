@@ -214,7 +214,8 @@ TEST(GeoTiff, ReadsEveryLayoutThatGdalWrites) {
        {"-co TILED=YES -co BLOCKXSIZE=16 -co BLOCKYSIZE=32", "-co COMPRESS=LZW", "-co COMPRESS=LZW -co PREDICTOR=2",
         "-co COMPRESS=PACKBITS -co BLOCKYSIZE=5", "-co COMPRESS=DEFLATE -co TILED=YES", "-co INTERLEAVE=BAND",
         "-co INTERLEAVE=BAND -co TILED=YES -co COMPRESS=LZW", "-co BIGTIFF=YES", "-co ENDIANNESS=BIG",
-        "-co COMPRESS=ZSTD", "-co COMPRESS=LZMA", "-ot UInt16 -scale 0 255 0 65535",
+        "-co COMPRESS=PACKBITS -co TILED=YES -co INTERLEAVE=BAND", "-co COMPRESS=ZSTD", "-co COMPRESS=LZMA",
+        "-ot UInt16 -scale 0 255 0 65535",
         "-ot UInt16 -scale 0 255 0 65535 -co ENDIANNESS=BIG -co COMPRESS=LZW -co PREDICTOR=2"}) {
     SCOPED_TRACE(options);
     const GeoTiff read = translated(folder, tiff, options);
@@ -241,6 +242,63 @@ TEST(GeoTiff, ReadsGreyOfEveryDepth) {
       const double exact = std::floor(tiff.image.rgb[i] * top / 255.0 + 0.5) * 255.0 / top;
       ASSERT_NEAR(read.image.rgb[i], exact, 0.51) << i;
     }
+  }
+}
+
+// Many programs widen a picture to 16 bits without scaling it; GDAL's own Byte of it is the oracle.
+TEST(GeoTiff, DeepSamplesThatUseFewBitsAreScaledFromThose) {
+  NEED_GDAL();
+  const test::TempFolder folder;
+  const GeoTiff tiff = geotiff(picture(131, 77), std::nullopt);
+  for (const char* options :
+       {"-ot UInt16", "-ot UInt16 -co TILED=YES -co COMPRESS=LZW -co PREDICTOR=2", "-ot UInt16 -co INTERLEAVE=BAND",
+        "-ot UInt16 -co ENDIANNESS=BIG -co COMPRESS=DEFLATE", "-ot UInt16 -co NBITS=12 -co COMPRESS=PACKBITS"}) {
+    SCOPED_TRACE(options);
+    EXPECT_EQ(translated(folder, tiff, options).image.rgb, tiff.image.rgb);
+    ASSERT_EQ(
+        run("gdal_translate -q -ot Byte '" + (folder / "out.tif") + "' '" + (folder / "byte.tif") + "' 2>&1").code, 0);
+    EXPECT_EQ(read_geotiff(folder / "byte.tif").image.rgb, tiff.image.rgb);
+  }
+  for (const int top : {1023, 4095, 16383, 65535}) {
+    SCOPED_TRACE(top);
+    const GeoTiff read = translated(folder, tiff, "-ot UInt16 -scale 0 255 0 " + std::to_string(top));
+    for (std::size_t i = 0; i < read.image.rgb.size(); ++i) ASSERT_NEAR(read.image.rgb[i], tiff.image.rgb[i], 1) << i;
+  }
+  GeoTiff black = geotiff(RgbImage(20, 10), std::nullopt);
+  EXPECT_EQ(translated(folder, black, "-ot UInt16").image.rgb, black.image.rgb);
+  GeoTiff grey = geotiff(picture(131, 77, true), std::nullopt);
+  EXPECT_EQ(translated(folder, grey, "-b 1 -ot UInt16").image.rgb, grey.image.rgb);
+  RgbImage inverse = grey.image;
+  for (auto& value : inverse.rgb) value = static_cast<std::uint8_t>(255 - value);
+  EXPECT_EQ(translated(folder, grey, "-b 1 -ot UInt16 -co PHOTOMETRIC=MINISWHITE").image.rgb, inverse.rgb);
+}
+
+TEST(GeoTiff, ReadsPalettesOfFourBits) {
+  NEED_GDAL();
+  const test::TempFolder folder;
+  GeoTiff tiff = geotiff(picture(131, 77, true), std::nullopt);
+  for (auto& value : tiff.image.rgb) value = static_cast<std::uint8_t>(value / 16);
+  write_geotiff(folder / "in.tif", tiff);
+  std::string entries;
+  for (int i = 0; i < 16; ++i)
+    entries += "<Entry c1=\"" + std::to_string(i * 17) + "\" c2=\"" + std::to_string(255 - i * 10) + "\" c3=\"" +
+               std::to_string(i * i) + "\"/>";
+  std::ofstream(folder / "palette.vrt")
+      << "<VRTDataset rasterXSize=\"131\" rasterYSize=\"77\"><VRTRasterBand dataType=\"Byte\" band=\"1\">"
+      << "<ColorInterp>Palette</ColorInterp><ColorTable>" << entries << "</ColorTable><SimpleSource><SourceFilename "
+      << "relativeToVRT=\"1\">in.tif</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand>"
+      << "</VRTDataset>";
+  for (const char* options : {"-co NBITS=4", "-co NBITS=4 -co TILED=YES -co COMPRESS=LZW", "-co COMPRESS=PACKBITS"}) {
+    SCOPED_TRACE(options);
+    ASSERT_EQ(run("cd '" + folder.path() + "' && gdal_translate -q " + options + " palette.vrt palette.tif 2>&1 && " +
+                  "gdal_translate -q -expand rgb palette.tif expanded.tif 2>&1")
+                  .code,
+              0);
+    const RgbImage read = read_geotiff(folder / "palette.tif").image;
+    EXPECT_EQ(read.rgb, read_geotiff(folder / "expanded.tif").image.rgb);
+    const int value = tiff.image.pixel(100, 50)[0];
+    EXPECT_EQ(read.pixel(100, 50)[0], value * 17);
+    EXPECT_EQ(read.pixel(100, 50)[1], 255 - value * 10);
   }
 }
 
@@ -288,8 +346,9 @@ TEST(GeoTiff, ReadsJpegInTiff) {
   }
 }
 
-/// A 4 x 1 RGBA file, pixels of opacity 0, 1/3, 2/3 and 1.
-void write_rgba(const std::string& path, int bits, std::uint16_t kind, const std::array<int, 3>& colour, bool planes) {
+/// A 4 x 1 RGBA file, pixels of opacity 0, 1/3, 2/3 and 1. `white` is white and opaque; 0: all bits.
+void write_rgba(const std::string& path, int bits, std::uint16_t kind, const std::array<int, 3>& colour, bool planes,
+                int white = 0) {
   TIFF* const tiff = TIFFOpen(path.c_str(), "w");
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 4);
   TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 1);
@@ -299,7 +358,7 @@ void write_rgba(const std::string& path, int bits, std::uint16_t kind, const std
   TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, planes ? PLANARCONFIG_SEPARATE : PLANARCONFIG_CONTIG);
   TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, 1);
   TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &kind);
-  const int top = (1 << bits) - 1;
+  const int top = white > 0 ? white : (1 << bits) - 1;
   const auto sample = [&](int x, int s) {
     const int full = s < 3 ? colour[static_cast<std::size_t>(s)] * top / 255 : top;
     return s == 3 || kind == EXTRASAMPLE_ASSOCALPHA ? full * x / 3 : full;
@@ -319,11 +378,12 @@ void write_rgba(const std::string& path, int bits, std::uint16_t kind, const std
 TEST(GeoTiff, TransparentPixelsFadeIntoUnexploredGrey) {
   const test::TempFolder folder;
   const std::array<int, 3> colour{200, 50, 0};
-  for (const int bits : {8, 16})
+  for (const auto& [bits, white] : {std::pair{8, 0}, {16, 0}, {16, 255}, {16, 4095}})
     for (const std::uint16_t kind : std::array<std::uint16_t, 2>{EXTRASAMPLE_ASSOCALPHA, EXTRASAMPLE_UNASSALPHA})
       for (const bool planes : {false, true}) {
-        write_rgba(folder / "a.tif", bits, kind, colour, planes);
+        write_rgba(folder / "a.tif", bits, kind, colour, planes, white);
         const RgbImage image = read_geotiff(folder / "a.tif").image;
+        EXPECT_EQ(image.alpha, (std::vector<std::uint8_t>{0, 85, 170, 255}));
         for (int x = 0; x < 4; ++x)
           for (std::size_t c = 0; c < 3; ++c) {
             const double grey = c == 2 ? 227 : 226;
@@ -391,6 +451,29 @@ TEST(GeoTiff, ATruncatedFileIsNamedWhereverItEnds) {
     EXPECT_NE(error_of([&] { read_geotiff(folder / "b.tif"); }), "no error") << size;
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(GeoTiff, ATruncatedFileOfAnyLayoutIsNamed) {
+  NEED_GDAL();
+  const test::TempFolder folder;
+  write_geotiff(folder / "in.tif", geotiff(picture(131, 177), std::nullopt));
+  for (const char* options : {"-co TILED=YES", "-co COMPRESS=LZW", "-co COMPRESS=PACKBITS",
+                              "-co COMPRESS=DEFLATE -co INTERLEAVE=BAND", "-co COMPRESS=JPEG -co PHOTOMETRIC=YCBCR",
+                              "-ot UInt16 -co COMPRESS=DEFLATE", "-b 1 -scale 0 255 0 15 -co NBITS=4"}) {
+    SCOPED_TRACE(options);
+    ASSERT_EQ(run("gdal_translate -q " + std::string(options) + " '" + (folder / "in.tif") + "' '" +
+                  (folder / "out.tif") + "' 2>/dev/null")
+                  .code,
+              0);
+    const std::string bytes = read_text_file(folder / "out.tif");
+    testing::internal::CaptureStderr();
+    for (const double share : {0.1, 0.5, 0.9}) {
+      write_text_file(folder / "cut.tif",
+                      bytes.substr(0, static_cast<std::size_t>(share * static_cast<double>(bytes.size()))));
+      EXPECT_NE(error_of([&] { read_geotiff(folder / "cut.tif"); }).find("cut.tif"), std::string::npos);
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  }
 }
 
 // Whatever stands in the file: an image or one line of InputError, and nothing on stderr.

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/geotiff.h"
+#include "scoring/lossy_colours.h"
 #include "scoring/scorecard.h"
 #include "tests/support/scoring_maze.h"
 
@@ -161,6 +162,86 @@ TEST_F(LoadMap, TurnedWithInterpolationItScoresTheSame) {
       }
     }
   }
+}
+
+// JPEG halves the colours' resolution and smears them over blocks of 16 pixels; brightness still shows the walls.
+TEST_F(LoadMap, JpegKeepsTheScoreOfALeagueMap) {
+  for (const std::uint64_t seed : {5, 6}) {
+    const OccupancyGrid grid = maze({7, 7, seed});
+    const cv::Mat straight = league_image(padded(grid, 20), true);
+    for (const double degrees : {0.0, 13.0, 37.0}) {
+      const int side = static_cast<int>(1.5 * std::max(straight.cols, straight.rows));
+      cv::Mat turn = cv::getRotationMatrix2D(cv::Point2d(0.5 * straight.cols, 0.5 * straight.rows), degrees, 1.0);
+      turn.at<double>(0, 2) += 0.5 * (side - straight.cols);
+      turn.at<double>(1, 2) += 0.5 * (side - straight.rows);
+      cv::Mat turned;
+      cv::warpAffine(straight, turned, turn, {side, side}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, {227, 226, 226});
+      cv::imwrite(path("clean.png"), turned);
+      const MapScore clean = score_map(load_map(path("clean.png"), {0.05}).grid, grid);
+      for (const int quality : {60, 75, 85, 95}) {
+        SCOPED_TRACE(std::to_string(degrees) + " deg, quality " + std::to_string(quality));
+        cv::imwrite(path("map.jpg"), turned, {cv::IMWRITE_JPEG_QUALITY, quality});
+        const MapScore score = score_map(load_map(path("map.jpg"), {0.05}).grid, grid);
+        EXPECT_TRUE(score.aligned) << score.note;
+        EXPECT_NEAR(score.score, clean.score, 0.02);
+      }
+    }
+  }
+}
+
+TEST_F(LoadMap, OnlyCompressionMakesColoursRun) {
+  const cv::Mat clean = league_image(padded(maze({6, 6, 2}), 10), true);
+  EXPECT_FALSE(has_run_colours(to_rgb(clean)));
+  const cv::Mat turn = cv::getRotationMatrix2D(cv::Point2d(0.5 * clean.cols, 0.5 * clean.rows), 20.0, 0.9);
+  for (const int interpolation : {cv::INTER_NEAREST, cv::INTER_LINEAR, cv::INTER_CUBIC, cv::INTER_LANCZOS4}) {
+    cv::Mat turned;
+    cv::warpAffine(clean, turned, turn, clean.size(), interpolation, cv::BORDER_CONSTANT, {255, 255, 255});
+    EXPECT_FALSE(has_run_colours(to_rgb(turned))) << interpolation;
+    cv::imwrite(path("map.jpg"), turned, {cv::IMWRITE_JPEG_QUALITY, 80});
+    EXPECT_TRUE(has_run_colours(to_rgb(cv::imread(path("map.jpg"))))) << interpolation;
+  }
+  EXPECT_FALSE(has_run_colours(RgbImage()));
+}
+
+TEST_F(LoadMap, DeepImagesAreScaledByTheRangeTheyUse) {
+  const OccupancyGrid grid = maze({5, 4, 2});
+  const cv::Mat grey = grey_image(grid, 0, 205, 254);
+  const cv::Mat league = league_image(grid, false);
+  for (const double factor : {1.0, 4.0, 16.0, 257.0})
+    for (const char* name : {"deep.png", "deep.pgm"}) {
+      SCOPED_TRACE(std::string(name) + " times " + std::to_string(factor));
+      cv::Mat deep;
+      grey.convertTo(deep, CV_16U, factor);
+      cv::imwrite(path(name), deep);
+      EXPECT_EQ(agreement(load_map(path(name), {0.05}).grid, grid), 1.0);
+      if (std::string(name) != "deep.png") continue;
+      league.convertTo(deep, CV_16U, factor == 1.0 ? 1.0 : 257.0);
+      cv::imwrite(path(name), deep);
+      EXPECT_EQ(agreement(load_map(path(name), {0.05}).grid, grid), 1.0);
+    }
+}
+
+TEST_F(LoadMap, TransparentPixelsAreUnknown) {
+  // Unknown cells transparent, whatever colour lies below, in grey maps and league maps of 8 and 16 bits.
+  const OccupancyGrid grid = maze({5, 4, 2});
+  for (const bool league : {false, true})
+    for (const int below : {0, 255})
+      for (const bool deep : {false, true}) {
+        SCOPED_TRACE(std::to_string(league) + " " + std::to_string(below) + " " + std::to_string(deep));
+        cv::Mat bgr = league ? league_image(grid, false) : grey_image(grid, 0, 205, 254);
+        if (!league) cv::cvtColor(bgr, bgr, cv::COLOR_GRAY2BGR);
+        cv::Mat image;
+        cv::cvtColor(bgr, image, cv::COLOR_BGR2BGRA);
+        for (int y = 0; y < image.rows; ++y)
+          for (int x = 0; x < image.cols; ++x)
+            if (grid[{x, grid.height() - 1 - y}] == Occupancy::Unknown) {
+              const auto b = static_cast<unsigned char>(below);
+              image.at<cv::Vec4b>(y, x) = {b, b, b, 0};
+            }
+        if (deep) image.convertTo(image, CV_16U, 257.0);
+        cv::imwrite(path("map.png"), image);
+        EXPECT_EQ(agreement(load_map(path("map.png"), {0.05}).grid, grid), 1.0);
+      }
 }
 
 TEST_F(LoadMap, BadInputIsOneLineWithTheRemedy) {

@@ -46,6 +46,22 @@ TEST(WallErrors, MeasureAPhantomAndAMissingWallAndSayWhere) {
   EXPECT_NEAR(listed, missing.missing_m, 0.11);
 }
 
+TEST(WallErrors, WallsWhereTheTruthIsUnknownAreIgnoredAndSaySo) {
+  OccupancyGrid truth = room();
+  for (int y = 0; y < 220; ++y)
+    for (int x = 110; x < 220; ++x) truth[{x, y}] = Occupancy::Unknown;  // the half beyond x = 5
+  OccupancyGrid map = room();
+  draw_wall(map, {7.0, 4.0}, {9.0, 4.0}, 2);
+  const WallOverlap walls(map, truth, 0.5);
+  const WallErrors errors = wall_errors(walls, Rigid(), 10);
+  // Three sides of the room and the wall in it; lengths are known to 5 %, as thickness is.
+  EXPECT_NEAR(errors.ignored_m, 5.0 + 10.0 + 5.0 + 2.0, 1.5);
+  EXPECT_NEAR(errors.phantom_m, 0.0, 0.05);
+  EXPECT_NEAR(errors.missing_m, 0.0, 0.05);
+  EXPECT_NEAR(walls.at(Rigid()).score, 1.0, 0.001);
+  EXPECT_EQ(wall_errors(WallOverlap(truth, map, 0.5), Rigid(), 10).ignored_m, 0.0);
+}
+
 TEST(WallErrors, ListTheWorstFirstAndNoMoreThanAsked) {
   const OccupancyGrid truth = room();
   const OccupancyGrid map = with_phantoms(truth, 40, 3);
