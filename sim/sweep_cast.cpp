@@ -17,6 +17,8 @@ using Eigen::Vector3d;
 
 constexpr float kSeam = 2e-5f;     ///< faces reach so far beyond their edges: no light through seams [m]
 constexpr double kStopped = 1e-3;  ///< beams that end so much before a face never reach it, rounding included [m]
+constexpr double kBeside = 0.05;   ///< what is nearer may be at any bearing [m]
+constexpr std::size_t kFew = 12;   ///< groups of beams that cost less than to see which of them a face really needs
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr std::size_t kCorners = ScanFaces::kCorners;
 constexpr std::size_t kMostPoints = 2 * kCorners;  ///< of a polygon cut by a slab
@@ -156,21 +158,47 @@ SweepCast::Bearings SweepCast::bearings(const ScanFaces::Corners& corners, doubl
   return b;
 }
 
-void SweepCast::meet(const ScanFaces::Polygon& polygon, const ScanFaces::Corners& corners, const Beams& beams,
-                     const BeamTable& table, double max_range) {
+/// How far the bearing of a point at least `nearest` away can differ between its beam's pose and the middle one.
+double SweepCast::sway(const Beams& beams, double nearest) const {
+  return beams.turn + beams.tilt * (beams.tilt + slack_ / nearest) + beams.travel / nearest + 2.0 * kRoughAtan2Error;
+}
+
+/// Beams that may meet the whole face, not only what of it the scan plane sweeps: quick to find, seldom many more.
+/// Seen from outside, a convex outline spans less than half a turn.
+SweepCast::Spans SweepCast::rough_spans(const ScanFaces::Corners& corners, double nearest, const Beams& beams,
+                                        const BeamTable& table) const {
+  const Float4 angle = rough_atan2(corners.y, corners.x);
+  double low = 0.0;
+  double high = 0.0;
+  for (int i = 1; i < 4; ++i) {
+    const double turn = static_cast<double>(half_turn(angle[i] - angle[0]));
+    low = std::min(low, turn);
+    high = std::max(high, turn);
+  }
+  const bool outside = nearest > kBeside && high - low < kPi - 0.01;
+  const double first = static_cast<double>(angle[0]);
+  return outside ? spans(first + low, first + high, sway(beams, nearest), table) : spans(0.0, 0.0, kPi, table);
+}
+
+void SweepCast::meet(const NearFace& face, const ScanFaces::Polygon& polygon, const ScanFaces::Corners& corners,
+                     const Beams& beams, const BeamTable& table, double max_range) {
   // Height over the scan plane at mid sweep; a face all above or all below what that plane sweeps is never met.
   const int above = bits4(corners.z > splat(slack_));
   const int below = bits4(corners.z < splat(-slack_));
   if (above == 15 || below == 15) return;
-  const Bearings b = bearings(corners, slack_);
-  if (b.nearest > max_range + beams.travel) return;
-  // How far the bearing of a point of the face can differ between its beam's pose and the middle one.
-  const double margin = b.around || b.nearest < 0.05 ? kPi
-                                                     : beams.turn + beams.tilt * (beams.tilt + slack_ / b.nearest) +
-                                                           beams.travel / b.nearest + 2.0 * kRoughAtan2Error;
-  Spans spans = this->spans(b.low, b.high, margin, table);
-  const Float4 nearest = splat(b.nearest - beams.travel - kStopped);
+  // In the scan plane a face is nearer than in space, by its height over the plane at most.
+  const double closest = static_cast<double>(face.nearest) - slack_ - kStopped;
+  Float4 nearest = splat(closest - beams.travel);
+  Spans spans = rough_spans(corners, closest, beams, table);
   trim(spans, nearest);
+  if (spans.groups() > kFew) {
+    const Bearings b = bearings(corners, slack_);
+    if (b.nearest > max_range + beams.travel) return;
+    const double margin = b.around || b.nearest < kBeside ? kPi : sway(beams, b.nearest);
+    spans = this->spans(b.low, b.high, margin, table);
+    nearest = splat(b.nearest - beams.travel - kStopped);
+    trim(spans, nearest);
+  }
   if (spans.count == 0) return;
 
   // Only edges that cross the scan plane bound what the beams meet.
@@ -257,14 +285,16 @@ void SweepCast::near_first() {
   std::size_t first = 0;
   for (std::size_t& count : next) first += std::exchange(count, first);
   order_.resize(near_.size());
-  for (const NearFace& face : near_) order_[next[shell(face)]++] = face.polygon;
+  for (const NearFace& face : near_) order_[next[shell(face)]++] = face;
 }
 
 void SweepCast::meet(const ScanFaces& faces, const Beams& beams, const BeamTable& table, double max_range) {
   faces.near({beams.middle, max_range, beams.travel, slack_}, near_);
   const ScanFaces::View view(faces, beams.middle);
   near_first();
-  for (const std::uint32_t i : order_) meet(faces.polygon(i), faces.corners(i, view), beams, table, max_range);
+  for (const NearFace& face : order_) {
+    meet(face, faces.polygon(face.polygon), faces.corners(face.polygon, view), beams, table, max_range);
+  }
 }
 
 void SweepCast::cast(const Beams& beams, const BeamTable& table, double max_range, const std::vector<Sphere>& spheres,

@@ -26,6 +26,12 @@ class SweepCast {
   struct Spans {
     Span span[3];
     std::size_t count = 0;
+
+    std::size_t groups() const {
+      std::size_t sum = 0;
+      for (std::size_t i = 0; i < count; ++i) sum += span[i].end - span[i].begin;
+      return sum;
+    }
   };
   /// What of a polygon the scan plane sweeps over, seen from the laser.
   struct Bearings {
@@ -34,10 +40,13 @@ class SweepCast {
     bool around = false;           ///< the laser's axis passes through it
   };
   void meet(const ScanFaces& faces, const Beams& beams, const BeamTable& table, double max_range);
-  void meet(const ScanFaces::Polygon& polygon, const ScanFaces::Corners& corners, const Beams& beams,
-            const BeamTable& table, double max_range);
+  void meet(const NearFace& face, const ScanFaces::Polygon& polygon, const ScanFaces::Corners& corners,
+            const Beams& beams, const BeamTable& table, double max_range);
   void meet(const Sphere& sphere, const Beams& beams, const BeamTable& table, double max_range);
   Bearings bearings(const ScanFaces::Corners& corners, double slack) const;
+  Spans rough_spans(const ScanFaces::Corners& corners, double nearest, const Beams& beams,
+                    const BeamTable& table) const;
+  double sway(const Beams& beams, double nearest) const;
   void near_first();
   bool is_stopped(std::size_t group, const Float4& nearest) const;
   void trim(Spans& spans, const Float4& nearest) const;
@@ -46,8 +55,8 @@ class SweepCast {
   const ScanFaces& faces_;
   double slack_ = 0.0;  ///< beams leave the middle scan plane by less [m]
   std::vector<NearFace> near_;
-  std::vector<std::uint32_t> order_;  ///< polygons from near to far
-  float* best_ = nullptr;             ///< nearest so far [m]: the scan being cast
+  std::vector<NearFace> order_;  ///< from near to far
+  float* best_ = nullptr;        ///< nearest so far [m]: the scan being cast
 };
 
 }  // namespace rubble::sim
