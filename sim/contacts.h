@@ -63,7 +63,7 @@ struct Wheel {
   Axis forward, left;
   double kxx = 0.0, kyy = 0.0, kxy = 0.0;  ///< slip per impulse, softness included, the rims held
   double ixx = 0.0, iyy = 0.0, ixy = 0.0;  ///< impulse per slip: the inverse, for rims held or yielding
-  double step = 0.0;                       ///< impulse per slip in any direction that never overshoots
+  double step = 0.0;                       ///< impulse per slip in any direction: nearly as much as does not overshoot
   double softness = 0.0;                   ///< slip a held impulse leaves: loose paper [m/s per N s]
   double limit = 0.0;                      ///< radius of the friction circle [N s]
   double ruck_limit = 0.0;                 ///< [N s]

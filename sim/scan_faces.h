@@ -56,7 +56,7 @@ class ScanFaces {
   /// are never seen.
   explicit ScanFaces(const std::vector<arenas::Face>& faces);
 
-  /// Indices of the polygons within reach that show their front (and some more), each once.
+  /// The polygons within reach that show their front (and some more), each once.
   void near(const ScanReach& reach, std::vector<NearFace>& found) const;
 
   const Polygon& polygon(std::uint32_t i) const { return polygons_[i]; }

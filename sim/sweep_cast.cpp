@@ -153,8 +153,8 @@ SweepCast::Bearings SweepCast::bearings(const ScanFaces::Corners& corners, doubl
   }
   b.low = low;
   b.high = high;
-  b.nearest = std::sqrt(static_cast<double>(nearest_side(points)));
   b.around = std::abs(bearing + half_turn(half_turn(angle[0] - bearing)) - angle[0]) > 1.0f;
+  b.nearest = b.around ? 0.0 : std::sqrt(static_cast<double>(nearest_side(points)));
   return b;
 }
 

@@ -8,7 +8,9 @@
 #include "sim/plane_cast.h"
 #include "sim/ray_walk.h"
 #include "sim/rays.h"
+#include "sim/servos.h"
 #include "sim/sweep_cast.h"
+#include "tests/support/sim_arena.h"
 #include "tests/support/sim_random_scene.h"
 
 namespace rubble::sim::test {
@@ -61,11 +63,13 @@ bool agrees(double range, const Ray& ray, const Oracle& oracle) {
   return high - low > 1e-3 && range >= low - 1e-3 && range <= high + 1e-3;
 }
 
-std::vector<WorldState> random_motion(const WorldState& start, Rng& rng) {
+/// `most_tilting`, `most_aiming`: the fastest that the robot pitches and the servos turn [rad/s].
+std::vector<WorldState> random_motion(const WorldState& start, Rng& rng, double most_tilting = 1.0,
+                                      double most_aiming = 2.0) {
   const double v = rng.uniform(-0.7, 0.7);
   const double w = rng.uniform(-1.7, 1.7);
-  const double tilting = rng.uniform(-1.0, 1.0);
-  const double aiming = rng.uniform(-2.0, 2.0);
+  const double tilting = rng.uniform(-most_tilting, most_tilting);
+  const double aiming = rng.uniform(-most_aiming, most_aiming);
   std::vector<WorldState> states(9, start);
   for (std::size_t i = 1; i < states.size(); ++i) {
     WorldState& s = states[i];
@@ -105,8 +109,9 @@ struct Comparison {
   int beside = 0;
   double worst = 0.0;  ///< of those that met the same surface [m]
 
-  testing::AssertionResult add(double range, const Ray& ray, const RayWalk& walk, const std::vector<Sphere>& balls) {
-    const double truth = walk.cast(ray, 4.0, balls);
+  testing::AssertionResult add(double range, const Ray& ray, const RayWalk& walk, const std::vector<Sphere>& balls,
+                               double reach = 4.0) {
+    const double truth = walk.cast(ray, reach, balls);
     ++beams;
     if (range == truth) return testing::AssertionSuccess();
     if (std::abs(range - truth) <= 1e-3) {
@@ -114,12 +119,14 @@ struct Comparison {
       return testing::AssertionSuccess();
     }
     ++beside;
-    if (agrees(range, ray, [&](const Ray& r) { return walk.cast(r, 4.0001, balls); })) {
+    if (agrees(range, ray, [&](const Ray& r) { return walk.cast(r, reach + 1e-4, balls); })) {
       return testing::AssertionSuccess();
     }
     return testing::AssertionFailure() << range << " m, walked " << truth << " m";
   }
+  /// Prints, and sees to it that edges are no excuse for more than a beam in ten thousand.
   void print() const {
+    EXPECT_LE(beside, 1 + static_cast<int>(1e-4 * static_cast<double>(beams)));
     std::cout << beams << " beams: within " << worst * 1e3 << " mm; " << beside << " passed an edge by a hair\n";
   }
 };
@@ -154,6 +161,72 @@ TEST(Casters, TheSweepAgreesWithTheRayWalkToOneMillimetre) {
     }
   }
   comparison.print();
+}
+
+/// The laser's axis pierces a floor of one piece, whose sides are far away though the floor is near, while the servos
+/// turn as fast as they can.
+TEST(Casters, ASweepSeesAllOfAWideFloorWhileThePlatformTurnsAtItsLimit) {
+  const robot::RobotModel model;
+  const BeamTable table(model.laser);
+  const ServoParameters servos;
+  arenas::Arena arena = room(-12, -12, 12, 12);
+  add_wall(arena, 6.5, -1, 6.52, 3);
+  const std::vector<arenas::Face> all = arenas::faces(arena);
+  const RayWalk walk(all);
+  const ScanFaces faces(all);
+  SweepCast sweep(faces);
+  Rng rng(1, "wide floor");
+  Comparison comparison;
+  long floor_hits = 0;
+  for (int k = 0; k < 300; ++k) {
+    WorldState state;
+    state.pose = {rng.uniform(-6, 6), rng.uniform(-6, 6), rng.uniform(-kPi, kPi)};
+    state.stance.pitch = rng.uniform(-0.2, 0.2);
+    state.aim.roll = rng.uniform(-0.4, 0.4);
+    Beams beams;
+    swept_beams(random_motion(state, rng, servos.max_rate, servos.max_rate), model, table, Stamp::from_seconds(0.0043),
+                model.laser.beam_period, beams);
+    std::vector<float> ranges;
+    sweep.cast(beams, table, 4.0, {}, ranges);
+    for (std::size_t i = 0; i < beams.count; ++i) {
+      ASSERT_TRUE(comparison.add(ranges[i], beams.ray(i), walk, {})) << "scan " << k << " beam " << i;
+      floor_hits += ranges[i] < 4.0f;
+    }
+  }
+  comparison.print();
+  EXPECT_GT(floor_hits, 20000);
+}
+
+TEST(Casters, BothAgreeWithTheRayWalkAtLongRange) {
+  robot::RobotModel model;
+  model.laser = robot::laser_model("UTM-30LX");
+  const BeamTable table(model.laser);
+  Comparison swept, still;
+  for (std::uint64_t seed = 300; seed < 305; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const arenas::Arena arena = random_maze(seed);
+    const std::vector<arenas::Face> all = arenas::faces(arena);
+    const RayWalk walk(all);
+    const ScanFaces faces(all);
+    PlaneCast plane(faces);
+    SweepCast sweep(faces);
+    Rng rng(seed, "long range");
+    for (int k = 0; k < 15; ++k) {
+      const WorldState state = random_state(arena, rng);
+      Beams beams;
+      swept_beams(random_motion(state, rng), model, table, Stamp::from_seconds(0.0043), model.laser.beam_period, beams);
+      const Placement laser = laser_placement(state, model);
+      std::vector<float> ranges, flat;
+      sweep.cast(beams, table, 30.0, {}, ranges);
+      plane.cast(laser, table, 30.0, {}, flat);
+      for (std::size_t i = 0; i < table.count; ++i) {
+        ASSERT_TRUE(swept.add(ranges[i], beams.ray(i), walk, {}, 30.0)) << "swept scan " << k << " beam " << i;
+        ASSERT_TRUE(still.add(flat[i], level_ray(laser, table, i), walk, {}, 30.0)) << "scan " << k << " beam " << i;
+      }
+    }
+  }
+  swept.print();
+  still.print();
 }
 
 TEST(Casters, ThePlaneCastAgreesWithTheRayWalkToOneMillimetre) {

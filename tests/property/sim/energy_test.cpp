@@ -52,7 +52,7 @@ TEST(Energy, NeverAppearsWhileTheMotorsRest) {
       pose = {pose.x + 0.01 * v.x, pose.y + 0.01 * v.y, pose.phi + 0.01 * v.w};
       const double after = energy(model, parameters, drive, plane, pose, v);
       most = std::max(most, after - before);
-      ASSERT_LE(after, before + 1e-3) << "step " << i;
+      ASSERT_LE(after, before + 1e-5) << "step " << i;
       before = after;
     }
   }

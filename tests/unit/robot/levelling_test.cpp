@@ -97,17 +97,33 @@ TEST(Levelling, FiguresOfTheChoices) {
                 << (feed_forward ? ", feed forward" : ", plain") << ": step within 1 deg after " << settled
                 << " s, overshoot " << rad_to_deg(overshoot(step)) << " deg; ramp at most " << on_ramp
                 << " deg off; a start at 0.3 m/s2 tilts by " << false_tilt << " deg\n";
-      EXPECT_NEAR(settled, mount == AccelerometerMount::Platform ? 0.57 : 0.17, 0.18);
-      EXPECT_NEAR(on_ramp, mount == AccelerometerMount::Platform ? 3.5 : 1.6, 1.05);
+      const double wanted_settled = mount == AccelerometerMount::Platform ? 0.57 : 0.17;
+      const double wanted_on_ramp = mount == AccelerometerMount::Platform ? 3.5 : 1.6;
+      EXPECT_NEAR(settled, wanted_settled, 0.3 * wanted_settled);
+      EXPECT_NEAR(on_ramp, wanted_on_ramp, 0.3 * wanted_on_ramp);
     }
   }
-  for (const double ki : {2.0, 4.0, 6.0, 8.0, 12.0}) {
+}
+
+/// The design's simulation: 1.3, 0.57, 0.33 s; Ki 8 overshoots by 0.2 deg, Ki 12 rings. Here Ki 8 overshoots by a
+/// degree: docs/simulator.md.
+TEST(Levelling, FiguresOfTheGains) {
+  struct Wanted {
+    double ki, settled, least_overshoot, most_overshoot;
+  };
+  for (const Wanted& wanted : {Wanted{2.0, 1.3, 0.0, 0.3}, Wanted{4.0, 0.57, 0.0, 0.3}, Wanted{6.0, 0.33, 0.0, 0.3},
+                               Wanted{8.0, 0.0, 0.2, 1.5}, Wanted{12.0, 0.0, 1.7, 5.0}}) {
     LevellingConfig config;
-    config.ki = ki;
+    config.ki = wanted.ki;
     const auto step = levelling_test::run(config, 5.0, step_of_ten_degrees);
-    std::cout << "Ki " << ki << ": step within 1 deg after "
-              << levelling_test::settled_after(step, deg_to_rad(1.0)) - kStart << " s, overshoot "
-              << rad_to_deg(overshoot(step)) << " deg\n";
+    const double settled = levelling_test::settled_after(step, deg_to_rad(1.0)) - kStart;
+    const double over = rad_to_deg(overshoot(step));
+    std::cout << "Ki " << wanted.ki << ": step within 1 deg after " << settled << " s, overshoot " << over << " deg\n";
+    if (wanted.settled > 0.0) {
+      EXPECT_NEAR(settled, wanted.settled, 0.3 * wanted.settled);
+    }
+    EXPECT_GE(over, wanted.least_overshoot);
+    EXPECT_LE(over, wanted.most_overshoot);
   }
 }
 

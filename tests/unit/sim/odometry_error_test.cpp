@@ -11,7 +11,9 @@
 #include "arenas/generate.h"
 #include "base/angle.h"
 #include "base/rng.h"
+#include "sim/drive.h"
 #include "sim/sim_robot.h"
+#include "sim/terrain.h"
 #include "tests/support/sim_arena.h"
 
 // How wrong odometry is, in the terms of the mapping paper's motion model (Pellenz 2008, section III.B): it draws 5 %
@@ -64,8 +66,13 @@ double way_ahead(const robot::LaserScan& scan, double half_width) {
 
 /// Turns and ways in turns, stopping before walls; adds the error of every step that a mapper would take (0.1 m or
 /// 5 deg by the wheels, so that the odometry's whole millimetres count for little).
-void wander(const arenas::Arena& arena, std::uint64_t seed, Errors& errors) {
+void wander(const arenas::Arena& arena, std::uint64_t seed, Errors& errors, Errors& on_paper) {
   SimRobot robot(arena, {}, exact(), seed);
+  const Terrain terrain(arena, robot.model().climbable_step);
+  const auto papered = [&](const TPose2D& pose) {
+    const auto ground = ground_under(terrain, robot.model(), pose);
+    return std::any_of(ground.begin(), ground.end(), [](const Ground& g) { return g.on_sheet; });
+  };
   Rng rng(seed, "wander");
   double ahead = 0.0;
   std::optional<TPose2D> wheels_before, truth_before;
@@ -84,6 +91,10 @@ void wander(const arenas::Arena& arena, std::uint64_t seed, Errors& errors) {
       if (metres < 0.1 && std::abs(wheels.phi) < deg_to_rad(5.0)) continue;
       if (metres < 0.02) errors.add_turn(wheels, truth);
       if (metres >= 0.1) errors.add_way(wheels, truth);
+      if (papered(*truth_before) || papered(*truth_now)) {
+        if (metres < 0.02) on_paper.add_turn(wheels, truth);
+        if (metres >= 0.1) on_paper.add_way(wheels, truth);
+      }
       wheels_before = odometry.pose;
       truth_before = truth_now;
     }
@@ -100,36 +111,51 @@ void wander(const arenas::Arena& arena, std::uint64_t seed, Errors& errors) {
   }
 }
 
-Errors in_generated_arenas(double ramps, double paper) {
-  Errors errors;
+struct Measured {
+  Errors all;
+  Errors on_paper;  ///< of these the steps that began or ended with a wheel on a sheet
+};
+
+Measured in_generated_arenas(double ramps, double paper) {
+  Measured errors;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     arenas::GenerateConfig config;
     config.seed = seed;
     config.ramps = ramps;
     config.paper = paper;
-    wander(arenas::parse_arena(arenas::generate_arena(config), "generated"), seed, errors);
+    wander(arenas::parse_arena(arenas::generate_arena(config), "generated"), seed, errors.all, errors.on_paper);
   }
   return errors;
 }
 
 TEST(OdometryError, TenPercentPaperInAYellowArenaIsOfTheOrderTheMappingPaperAssumes) {
-  const Errors bare = in_generated_arenas(0.0, 0.0);
-  const Errors yellow = in_generated_arenas(0.3, 0.1);
-  bare.print("flat, no paper");
-  yellow.print("30 % ramps, 10 % paper");
-  ASSERT_GT(yellow.turns(), 1000);
-  ASSERT_GT(yellow.ways(), 1000);
-  // Rotation and drift within a factor of three. A way meets paper now and then only, and most often with some of the
-  // wheels: over all ways the error is a tenth of the assumption, which has to hold for a step on paper, too (a floor
-  // all of paper: 11 %, Drive.PaperMakesOdometryLongerThanTheTruth).
-  EXPECT_GT(yellow.rotation(), 0.05 / 3);
-  EXPECT_LT(yellow.rotation(), 0.05 * 3);
-  EXPECT_GT(yellow.drift(), 5.0 / 3);
-  EXPECT_LT(yellow.drift(), 5.0 * 3);
-  EXPECT_GT(yellow.distance(), 0.15 / 20);
-  EXPECT_LT(yellow.distance(), 0.15);
-  EXPECT_GT(yellow.rotation(), 1.5 * bare.rotation());
-  EXPECT_GT(yellow.distance(), 1.2 * bare.distance());
+  const Measured bare = in_generated_arenas(0.0, 0.0);
+  const Measured paper = in_generated_arenas(0.0, 0.1);
+  const Measured ramps = in_generated_arenas(0.3, 0.0);
+  const Measured yellow = in_generated_arenas(0.3, 0.1);
+  bare.all.print("flat, no paper");
+  paper.all.print("flat, 10 % paper");
+  ramps.all.print("30 % ramps, no paper");
+  yellow.all.print("30 % ramps, 10 % paper");
+  paper.on_paper.print("  flat, steps on paper");
+  yellow.on_paper.print("  yellow, steps on paper");
+  ASSERT_GT(yellow.all.turns(), 1000);
+  ASSERT_GT(yellow.all.ways(), 1000);
+  // Rotation and drift, with what whole millimetres, the heading's 0.09 deg and starts leave on a bare floor in them,
+  // are within a factor of three of the assumption.
+  EXPECT_GT(yellow.all.rotation(), 0.05 / 3);
+  EXPECT_LT(yellow.all.rotation(), 0.05 * 3);
+  EXPECT_GT(yellow.all.drift(), 5.0 / 3);
+  EXPECT_LT(yellow.all.drift(), 5.0 * 3);
+  // Distances are not: a wheel that rolls straight on needs next to no friction. A step on paper is a few per cent off;
+  // 15 % is a bound that holds for all of them, and 11 % is what a floor all of paper makes
+  // (Drive.PaperMakesOdometry...).
+  EXPECT_GT(paper.on_paper.distance(), 2.0 * bare.all.distance());
+  EXPECT_LT(yellow.on_paper.distance(), 0.15);
+  // What paper adds.
+  EXPECT_GT(paper.all.rotation(), 1.3 * bare.all.rotation());
+  EXPECT_GT(paper.on_paper.rotation(), 3.0 * bare.all.rotation());
+  EXPECT_GT(paper.on_paper.drift(), 2.0 * bare.all.drift());
 }
 
 TEST(OdometryError, TenPercentSheetsOnAFlatFloor) {
