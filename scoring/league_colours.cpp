@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdlib>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 #include <vector>
 
 #include "base/grid.h"
@@ -125,6 +126,34 @@ void fill_drawings(cv::Mat& labels) {
         labels.at<Label>(y, x) = ground[static_cast<std::size_t>(nearest.at<int>(y, x))];
 }
 
+/// Pictures made coarser blend a wall thinner than a pixel with the floor, over one pixel or two, and none of them may
+/// be wall enough. Where a line of such pixels runs between pixels without any blue, the bluer one of the two is wall.
+void add_thin_walls(const RgbImage& image, cv::Mat& labels) {
+  constexpr double kSome = 0.2;      // share of wall that a pixel of the line has
+  constexpr double kTogether = 0.4;  // and both that share the wall
+  constexpr double kNone = 0.12;     // share beside the line
+  cv::Mat share(labels.size(), CV_64F);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) share.at<double>(y, x) = wall_share(rgb(image.pixel(x, y)));
+  const auto at = [&](int x, int y) {
+    return x < 0 || y < 0 || x >= image.width || y >= image.height ? 0.0 : share.at<double>(y, x);
+  };
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const double own = at(x, y);
+      if (own < kSome || own >= 0.45) continue;
+      for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}}) {
+        const double before = at(x - dx, y - dy), after = at(x + dx, y + dy);
+        const bool alone = before < kNone && after < kNone;
+        const bool first = before < kNone && own >= after && at(x + 2 * dx, y + 2 * dy) < kNone;
+        const bool second = after < kNone && own > before && at(x - 2 * dx, y - 2 * dy) < kNone;
+        const double together = own + (first ? after : second ? before : 0.0);
+        if ((alone || first || second) && together >= kTogether) labels.at<Label>(y, x) = kWall;
+      }
+    }
+  }
+}
+
 /// Blurred lettering and scales look like wall, but lie in unexplored space: a wall that no free pixel touches is none.
 void drop_lettering(cv::Mat& labels) {
   cv::Mat components;
@@ -180,6 +209,7 @@ LabelImage classify_league(const RgbImage& image) {
       if (row[x] == kDrawing) ++drawn;
     }
   }
+  if (!exact && !lossy) add_thin_walls(image, out.classes);
   fill_drawings(out.classes);
   drop_lettering(out.classes);
   if (!exact) smooth(out.classes);
