@@ -133,7 +133,9 @@ int dispatch(int argc, char** argv) {
   score_command->add_option("--pois", score_arguments.pois,
                             "CSV of the victims that the map reports (default: the symbols drawn on it)");
   score_command->add_option("--judge", score_arguments.judge, "CSV team,points of the judge's points, for --league");
-  score_command->add_option("--resolution", score_arguments.map_resolution, "Metres a pixel of the map image")
+  score_command
+      ->add_option("--resolution", score_arguments.map_resolution,
+                   "Metres a pixel of the map image; in a league of images that do not say")
       ->check(between(0.001, 10.0));
   score_command->add_option("--truth-resolution", score_arguments.truth_resolution, "Metres a pixel of the truth image")
       ->check(between(0.001, 10.0));

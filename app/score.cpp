@@ -61,6 +61,7 @@ nlohmann::ordered_json as_json(const Verdict& verdict) {
 int score(const ScoreArguments& arguments) {
   if (!arguments.league.empty()) return score_league(arguments);
   if (arguments.truth.empty()) throw UsageError("truth is required; see rubble score --help");
+  if (!arguments.judge.empty()) throw UsageError("--judge goes with --league only; see rubble score --help");
   if (is_trajectory(arguments.map)) return score_trajectory(arguments);
   const std::optional<GivenPose> pose = parse_pose(arguments.pose);
   for (const std::string& path : {arguments.map, arguments.truth})
@@ -75,7 +76,7 @@ int score(const ScoreArguments& arguments) {
   verdict.map = scoring::load_map(arguments.map, {arguments.map_resolution});
   verdict.truth = scoring::load_map(arguments.truth, {arguments.truth_resolution});
   verdict.reported = reported_victims(verdict.map, arguments.pois);
-  const TrueVictims victims = true_victims(arguments.truth, arguments.victims);
+  const TrueVictims victims = true_victims(arguments.truth, verdict.truth.origin, arguments.victims);
   const OccupancyGrid& truth = verdict.truth.grid;
   const OccupancyGrid grid = pose ? scoring::scaled_frame(verdict.map.grid, pose->scale) : verdict.map.grid;
   if (pose)

@@ -2,6 +2,7 @@
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #include "app/commands.h"
 #include "app/league_files.h"
@@ -10,6 +11,7 @@
 #include "app/score_tools.h"
 #include "app/score_victims.h"
 #include "base/error.h"
+#include "base/number_text.h"
 #include "base/text_file.h"
 #include "scoring/league.h"
 #include "scoring/normalise.h"
@@ -31,8 +33,9 @@ struct Truth {
 Truth load_truth(const ScoreArguments& arguments) {
   Truth truth;
   truth.path = arguments.map;
-  truth.grid = scoring::load_map(truth.path, {arguments.truth_resolution}).grid;
-  truth.victims = true_victims(truth.path, arguments.victims);
+  scoring::LoadedMap loaded = scoring::load_map(truth.path, {arguments.truth_resolution});
+  truth.victims = true_victims(truth.path, loaded.origin, arguments.victims);
+  truth.grid = std::move(loaded.grid);
   return truth;
 }
 
@@ -94,7 +97,7 @@ class League {
   }
 
   void judge_map(const LeagueFiles& files, LeagueEntry& entry, LeaguePictures& pictures) {
-    const scoring::LoadedMap loaded = scoring::load_map(files.map, {arguments_.map_resolution});
+    const scoring::LoadedMap loaded = scoring::load_map(files.map, {arguments_.map_resolution, false});
     const OccupancyGrid& map = loaded.grid;
     const ReportedVictims reported = reported_victims(loaded, files.pois);
     entry.victims_from = reported.from;
@@ -158,6 +161,41 @@ void check(const ScoreArguments& arguments) {
     throw UsageError("--league goes without --pose, --pois, --html and --json; pages and CSV are written with --out");
 }
 
+/// The judge's points of teams that are there, no more than 30 a victim.
+std::map<std::string, double> judge_of(const ScoreArguments& arguments, const Truth& truth,
+                                       const std::vector<LeagueFiles>& teams) {
+  constexpr double kMostPerVictim = 30.0;
+  std::map<std::string, double> judge;
+  if (!arguments.judge.empty()) judge = scoring::read_judge(arguments.judge);
+  const double most = kMostPerVictim * static_cast<double>(truth.victims.victims.size());
+  for (const auto& [team, points] : judge) {
+    if (std::none_of(teams.begin(), teams.end(), [&](const LeagueFiles& files) { return files.team == team; }))
+      throw InputError(arguments.judge + ": names team '" + team + "', but " + arguments.league +
+                       " holds no map of that name");
+    if (!truth.victims.path.empty() && points > most)
+      throw InputError(arguments.judge + ": gives '" + team + "' " + number_text(points) + " points, but " +
+                       std::to_string(truth.victims.victims.size()) + " victims are worth " + number_text(most) +
+                       " at the most");
+  }
+  return judge;
+}
+
+/// Pages and pictures of teams from an earlier call: "001-..." with the endings that draw() gives.
+void remove_old_pages(const std::string& folder) {
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const auto ends = [&](const std::string& end) {
+      return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+    };
+    const bool numbered = name.size() > 4 && name[3] == '-' && std::all_of(name.begin(), name.begin() + 3, [](char c) {
+                            return std::isdigit(static_cast<unsigned char>(c)) != 0;
+                          });
+    if (numbered && (ends(".html") || ends("-overlay.png") || ends("-error.png"))) old.push_back(entry.path());
+  }
+  for (const auto& path : old) std::filesystem::remove(path);
+}
+
 }  // namespace
 
 int score_league(const ScoreArguments& arguments) {
@@ -165,13 +203,11 @@ int score_league(const ScoreArguments& arguments) {
   const Truth truth = load_truth(arguments);
   const LeagueFolder folder = find_league(arguments.league, truth.path);
   const std::vector<LeagueFiles>& teams = folder.teams;
-  std::map<std::string, double> judge;
-  if (!arguments.judge.empty()) judge = scoring::read_judge(arguments.judge);
-  for (const auto& [team, points] : judge)
-    if (std::none_of(teams.begin(), teams.end(), [&](const LeagueFiles& files) { return files.team == team; }))
-      throw InputError(arguments.judge + ": names team '" + team + "', but " + arguments.league +
-                       " holds no map of that name");
-  if (!arguments.out.empty()) make_folder(arguments.out);
+  const std::map<std::string, double> judge = judge_of(arguments, truth, teams);
+  if (!arguments.out.empty()) {
+    make_folder(arguments.out);
+    remove_old_pages(arguments.out);
+  }
   League league(arguments, truth);
   for (const LeagueFiles& files : teams) {
     const auto points = judge.find(files.team);

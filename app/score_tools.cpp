@@ -1,5 +1,6 @@
 #include "app/score_tools.h"
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
@@ -25,6 +26,9 @@ std::optional<GivenPose> parse_pose(const std::string& text) {
   if (!whole || numbers.size() < 3 || numbers.size() > 4)
     throw UsageError("--pose " + text + ": needs the form X,Y,DEG or X,Y,DEG,SCALE, for example --pose=1.5,-2,90");
   GivenPose pose{{numbers[0], numbers[1], deg_to_rad(numbers[2])}, numbers.size() == 4 ? numbers[3] : 1.0};
+  constexpr double kFarthest = 10e3;  // [m]
+  if (!(std::abs(numbers[0]) <= kFarthest && std::abs(numbers[1]) <= kFarthest && std::abs(numbers[2]) <= 3600.0))
+    throw UsageError("--pose " + text + ": X and Y must be within 10000 m, DEG within 3600");
   if (!(pose.scale >= 0.1 && pose.scale <= 10.0))
     throw UsageError("--pose " + text + ": the scale must be from 0.1 to 10");
   return pose;

@@ -4,20 +4,23 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/error.h"
+
 namespace rubble::app {
 namespace {
 
 namespace fs = std::filesystem;
 
 /// The list of victims that belongs to a truth map, when none is given.
-std::string victims_beside(const std::string& truth) {
+std::string victims_beside(const std::string& truth, scoring::MapOrigin origin) {
   const fs::path folder = fs::path(truth).parent_path();
   std::string stem = fs::path(truth).stem().string();
   std::vector<fs::path> candidates = {folder / (stem + ".csv")};
-  const std::string suffix = "-truth";
-  if (stem.size() > suffix.size() && stem.compare(stem.size() - suffix.size(), suffix.size(), suffix) == 0)
-    candidates.push_back(folder / (stem.substr(0, stem.size() - suffix.size()) + ".yaml"));
-  if (stem == "truth") candidates.push_back(folder / "arena.yaml");
+  for (const std::string suffix : {"-truth", "-visible"})
+    if (origin == scoring::MapOrigin::Local && stem.size() > suffix.size() &&
+        stem.compare(stem.size() - suffix.size(), suffix.size(), suffix) == 0)
+      candidates.push_back(folder / (stem.substr(0, stem.size() - suffix.size()) + ".yaml"));
+  if (origin == scoring::MapOrigin::Local && stem == "truth") candidates.push_back(folder / "arena.yaml");
   for (const fs::path& path : candidates)
     if (fs::is_regular_file(path)) return path.string();
   return "";
@@ -34,20 +37,42 @@ double mean_error(const scoring::LeaguePoints& points) {
 ReportedVictims reported_victims(const scoring::LoadedMap& map, const std::string& csv) {
   ReportedVictims out;
   out.symbols = map.symbols.size();
-  if (!csv.empty()) {
-    out.victims = scoring::read_pois(csv);
+  const scoring::PoiList list = csv.empty() ? scoring::PoiList{} : scoring::read_poi_list(csv);
+  const bool from_start = list.form == scoring::PoiForm::League;
+  const bool start_known = map.origin == scoring::MapOrigin::Local || map.origin == scoring::MapOrigin::Ros;
+  if (!csv.empty() && (!from_start || start_known)) {
+    out.victims = list.pois;
     out.from = "csv";
-  } else if (!map.symbols.empty()) {
+    if (from_start && map.origin == scoring::MapOrigin::Ros)  // x to the right instead of up
+      for (scoring::Poi& poi : out.victims) poi.p_picture = {poi.p_picture.y, -poi.p_picture.x};
+    return out;
+  }
+  if (!csv.empty())
+    std::fprintf(
+        stderr,
+        "rubble: %s: counts from where the robot started, which the map %s; %s, or give a list with the header "
+        "name,x,y in the map's own metres\n",
+        csv.c_str(),
+        map.origin == scoring::MapOrigin::Earth ? "(anchored on Earth) does not say"
+                                                : "(an image without a world file) does not say",
+        map.symbols.empty() ? "it is left out" : "the symbols on the map are taken");
+  if (!map.symbols.empty()) {
     out.victims = map.symbols;
     out.from = "symbols";
   }
   return out;
 }
 
-TrueVictims true_victims(const std::string& truth, const std::string& given) {
+TrueVictims true_victims(const std::string& truth, scoring::MapOrigin origin, const std::string& given) {
   TrueVictims out;
-  out.path = given.empty() ? victims_beside(truth) : given;
-  if (!out.path.empty()) out.victims = scoring::read_pois(out.path);
+  out.path = given.empty() ? victims_beside(truth, origin) : given;
+  if (out.path.empty()) return out;
+  const scoring::PoiList list = scoring::read_poi_list(out.path);
+  const bool own_metres = list.form == scoring::PoiForm::Plain;
+  if (!own_metres && origin != scoring::MapOrigin::Local && origin != scoring::MapOrigin::Ros)
+    throw InputError(out.path + ": has coordinates of its own, which " + truth +
+                     " does not say where to lay; give the truth as GeoTIFF or with a world file");
+  out.victims = list.pois;
   return out;
 }
 

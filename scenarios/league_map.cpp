@@ -136,7 +136,18 @@ void draw_victims(Canvas& canvas, const std::vector<explore::VictimReport>& vict
   }
 }
 
+/// The picture's easting axis is map -y: 90 deg clockwise of map x.
+std::optional<GeoAnchor> picture_anchor(std::optional<GeoAnchor> geo) {
+  if (geo) geo->heading_deg += 90.0;
+  return geo;
+}
+
 }  // namespace
+
+PixelToModel picture_of_start(const std::optional<GeoAnchor>& geo) {
+  int epsg = 0;
+  return georeference(0.0, 0.0, 1.0, picture_anchor(geo), epsg);
+}
 
 GeoTiff draw_league_map(const slam::CountMap& map, const LeagueDrawing& drawing) {
   const Box box = known_box(map.frame(), 0.75, [&](Cell c) { return map.seen(c) > 0; });
@@ -151,9 +162,7 @@ GeoTiff draw_league_map(const slam::CountMap& map, const LeagueDrawing& drawing)
   draw_victims(canvas, drawing.victims);
 
   GeoTiff tiff;
-  std::optional<GeoAnchor> anchor = drawing.geo;
-  if (anchor) anchor->heading_deg += 90.0;  // the picture's easting axis is map -y: 90 deg clockwise of map x
-  tiff.transform = georeference(-box.y1, box.x1, resolution, anchor, tiff.epsg);
+  tiff.transform = georeference(-box.y1, box.x1, resolution, picture_anchor(drawing.geo), tiff.epsg);
   tiff.description =
       "{\"producer\": \"rubble\", \"frame\": \"easting = -map y, northing = map x\", \"resolution_m\": " +
       number_text(drawing.resolution) + ", \"victims\": " + std::to_string(drawing.victims.size()) + "}";

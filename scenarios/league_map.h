@@ -22,6 +22,10 @@ struct LeagueDrawing {
   std::optional<GeoAnchor> geo;                ///< Earth position of the map origin and heading of its x axis
 };
 
+/// From metres right of and below the robot's start, on a picture with its start heading up, to the coordinates of a
+/// league map: a local frame or, with an anchor, UTM.
+PixelToModel picture_of_start(const std::optional<GeoAnchor>& geo);
+
 /// Draws a map with the league's colours and symbols, cropped to the known area; map x points up, map y left
 /// (easting = -y, northing = x), layers as the league orders them: checkerboard, map and grid, scale and axes, path,
 /// objects.

@@ -18,6 +18,7 @@
 #include "base/error.h"
 #include "robot/log.h"
 #include "scenarios/core.h"
+#include "scenarios/league_map.h"
 #include "scenarios/run_folder.h"
 #include "scenarios/score_json.h"
 #include "scoring/normalise.h"
@@ -180,14 +181,22 @@ std::vector<std::string> broken_expectations(const Scenario& scenario, const ord
   return broken;
 }
 
-/// The league picture's easting and northing of a map point.
-mrpt::math::TPoint2D in_picture(const mrpt::math::TPoint2D& p_map) { return {-p_map.y, p_map.x}; }
+/// Where a point of the map frame lies on the league picture that `draw_league_map` made, as it was read back.
+mrpt::math::TPoint2D in_picture(const scoring::LoadedMap& picture, const mrpt::math::TPoint2D& p_map,
+                                const std::optional<GeoAnchor>& geo) {
+  const PixelToModel T_model_start = picture_of_start(geo);
+  const double easting = -p_map.y;
+  const double southing = -p_map.x;
+  return scoring::in_grid(picture, {T_model_start.a * easting + T_model_start.b * southing + T_model_start.c,
+                                    T_model_start.d * easting + T_model_start.e * southing + T_model_start.f});
+}
 
 /// Scores what was written to disk, as a judge would who gets the two files.
 void score_files(ordered_json& json, const RunFolder& folder, const Scenario& scenario, const arenas::Arena& arena,
                  const std::vector<explore::VictimReport>& reported) {
   // The scenario may anchor the map on Earth; a rigid alignment does not care.
-  const OccupancyGrid map = scoring::load_map(folder.file("map.tif")).grid;
+  const scoring::LoadedMap picture = scoring::load_map(folder.file("map.tif"));
+  const OccupancyGrid& map = picture.grid;
   const OccupancyGrid truth = scoring::load_map(folder.file("truth.tif")).grid;
   const scoring::MapScore score = scoring::score_map(map, truth, scenario.scoring);
   add_map_score(json, score);
@@ -202,7 +211,7 @@ void score_files(ordered_json& json, const RunFolder& folder, const Scenario& sc
     scoring::write_error_map(path + "error.png", map, truth, score.T_truth_map, scenario.scoring.tau);
   });
   std::vector<mrpt::math::TPoint2D> p_picture, p_truth;
-  for (const auto& victim : reported) p_picture.push_back(in_picture(victim.p_map));
+  for (const auto& victim : reported) p_picture.push_back(in_picture(picture, victim.p_map, scenario.geo));
   for (const auto& victim : arena.victims) p_truth.emplace_back(victim.position.x, victim.position.y);
   const scoring::VictimScore victims = scoring::score_victims(p_picture, p_truth, score.T_truth_map);
   json["victims_found"] = victims.found;

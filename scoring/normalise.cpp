@@ -86,6 +86,12 @@ std::vector<Poi> place_symbols(const RgbImage& image, const GridFrame& frame, bo
   return out;
 }
 
+/// Local frames begin where the robot did, a few hundred metres away at the most; UTM eastings and northings do not.
+bool counts_from_the_start(const PixelToModel& t) {
+  constexpr double kLocal = 10e3;  // [m]
+  return t.b == 0.0 && t.d == 0.0 && std::abs(t.c) < kLocal && std::abs(t.f) < kLocal;
+}
+
 LoadedMap load_image(const std::string& path, const LoadOptions& options) {
   const std::string extension = lower_extension(path);
   const bool is_tiff = extension == ".tif" || extension == ".tiff";
@@ -103,12 +109,15 @@ LoadedMap load_image(const std::string& path, const LoadOptions& options) {
   if (!transform && !options.resolution)
     throw InputError(path + ": says nothing about its scale; give --resolution METRES_A_PIXEL or put a world file (" +
                      (is_tiff ? ".tfw" : ".wld") + ") beside it");
-  const double resolution = options.resolution ? *options.resolution : pixel_size(path, *transform);
+  const bool given = options.resolution && (options.overrides || !transform);
+  const double resolution = given ? *options.resolution : pixel_size(path, *transform);
   check_resolution(path, resolution);
-  if (options.resolution && transform && std::abs(pixel_size(path, *transform) - resolution) > 1e-9) transform.reset();
+  if (given && transform && std::abs(pixel_size(path, *transform) - resolution) > 1e-9) transform.reset();
 
   const ClassImage classes = classify(tiff.image);
   LoadedMap out;
+  out.transform = transform;
+  if (transform) out.origin = counts_from_the_start(*transform) ? MapOrigin::Local : MapOrigin::Earth;
   out.grid = place(classes.classes, resolution, transform);
   if (classes.is_league) out.symbols = place_symbols(tiff.image, out.grid.frame(), is_south_up(transform));
   out.recognised = source + cv::format(" %g m a pixel, %d x %d, ", resolution, out.grid.width(), out.grid.height()) +
@@ -118,12 +127,26 @@ LoadedMap load_image(const std::string& path, const LoadOptions& options) {
 
 }  // namespace
 
+mrpt::math::TPoint2D in_grid(const LoadedMap& map, const mrpt::math::TPoint2D& p_model) {
+  if (!map.transform) return p_model;
+  const PixelToModel& t = *map.transform;
+  const double x = p_model.x - t.c;
+  const double y = p_model.y - t.f;
+  const double determinant = t.a * t.e - t.b * t.d;
+  const double column = (t.e * x - t.b * y) / determinant;
+  const double row = (t.a * y - t.d * x) / determinant;
+  const GridFrame& f = map.grid.frame();
+  const double up = is_south_up(t) ? row : f.height - row;
+  return {f.x0 + column * f.resolution, f.y0 + up * f.resolution};
+}
+
 LoadedMap load_map(const std::string& path, const LoadOptions& options) {
   const std::string extension = lower_extension(path);
   if (extension != ".yaml" && extension != ".yml") return load_image(path, options);
   LoadedMap out;
+  out.origin = MapOrigin::Ros;
   out.grid = read_ros_map(path);
-  if (options.resolution) {
+  if (options.resolution && options.overrides) {
     check_resolution(path, *options.resolution);
     GridFrame frame = out.grid.frame();
     frame.resolution = *options.resolution;

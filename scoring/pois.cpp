@@ -41,8 +41,8 @@ double coordinate(const std::string& path, int line, const std::string& text) {
   return *value;
 }
 
-std::vector<Poi> read_csv(const std::string& path) {
-  std::vector<Poi> out;
+PoiList read_csv(const std::string& path) {
+  PoiList out;
   std::optional<Header> header;
   std::stringstream lines(read_text_file(path));
   int number = 0;
@@ -63,9 +63,10 @@ std::vector<Poi> read_csv(const std::string& path) {
     if (header->type && fields[*header->type] != "victim") continue;
     const double x = coordinate(path, number, fields[header->x]);
     const double y = coordinate(path, number, fields[header->y]);
-    out.push_back({fields[header->name], header->type ? mrpt::math::TPoint2D(-y, x) : mrpt::math::TPoint2D(x, y)});
+    out.pois.push_back({fields[header->name], header->type ? mrpt::math::TPoint2D(-y, x) : mrpt::math::TPoint2D(x, y)});
   }
   if (!header) throw InputError(path + ": has no header line with name, x and y; is it a list of victims?");
+  if (header->type) out.form = PoiForm::League;
   return out;
 }
 
@@ -97,12 +98,13 @@ std::string csv_field(const std::string& text) {
   return out + "\"";
 }
 
-std::vector<Poi> read_pois(const std::string& path) {
+PoiList read_poi_list(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   if (extension != ".yaml" && extension != ".yml") return read_csv(path);
-  std::vector<Poi> out;
+  PoiList out;
+  out.form = PoiForm::Arena;
   for (const arenas::Victim& victim : arenas::load_arena(path).victims)
-    out.push_back({victim.name, {victim.position.x, victim.position.y}});
+    out.pois.push_back({victim.name, {victim.position.x, victim.position.y}});
   return out;
 }
 

@@ -13,12 +13,25 @@ struct Poi {
   mrpt::math::TPoint2D p_picture;
 };
 
+/// Whose coordinates a list of victims counts in.
+enum class PoiForm {
+  League,  ///< the robot's: where it started, x ahead of it; in the picture as if it had started looking up
+  Plain,   ///< the map file's own: x to the right, y up
+  Arena    ///< the arena's, which are those of a truth map made from it
+};
+
+struct PoiList {
+  std::vector<Poi> pois;
+  PoiForm form = PoiForm::Plain;
+};
+
 /// Reads victims from CSV. The header tells the form:
 /// - `detection,time,type,name,x,y,...`: the league's, behind its preamble; only rows of type victim; x is up in the
 ///   picture and y to its left;
 /// - `name,x,y`: x to the right and y up.
 /// Or from an arena file (.yaml). Throws InputError with file and line.
-std::vector<Poi> read_pois(const std::string& path);
+PoiList read_poi_list(const std::string& path);
+inline std::vector<Poi> read_pois(const std::string& path) { return read_poi_list(path).pois; }
 
 /// The fields of one line of CSV: commas between, quotes around a field with commas, doubled inside.
 std::vector<std::string> csv_fields(const std::string& line);

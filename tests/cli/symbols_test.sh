@@ -38,6 +38,36 @@ pose=$(python3 -c "import json, math; j = json.load(open('drawn.json')); print('
 "$rubble" score a/map.tif a/truth.tif --pose="$pose" --json >posed.json || fail "pose"
 json_holds posed.json "j['victims_from'] == 'symbols' and j['victims_found'] >= 2 and j['victims_error_m'] < 0.3"
 expect_exit 3 'nowhere.csv' "$rubble" score a/map.tif a/truth.tif --pois nowhere.csv
+
+# A list that counts from the robot's start lies right on ROS maps, too; where the start is not known the symbols are taken.
+found=$(python3 -c "import json; print(json.load(open('a/score.json'))['victims_found'])")
+"$rubble" score a/map.yaml a/truth.tif --pois a/pois.csv --json >ros.json || fail "ROS map with a list"
+json_holds ros.json "j['victims_from'] == 'csv' and j['victims_found'] == $found and j['victims_error_m'] < 0.3"
+expect_exit 0 'does not say; the symbols on the map are taken' \
+  "$rubble" score a/map.png a/truth.tif --resolution 0.025 --pois a/pois.csv --json
+cp out.txt picture.json
+json_holds picture.json "j['victims_from'] == 'symbols' and j['victims_found'] == $found"
+"$rubble" score a/map.tif a/truth.png --truth-resolution 0.05 --json >bare.json || fail "truth without tags"
+json_holds bare.json "'victims_found' not in j"
+expect_exit 3 'does not say where to lay' \
+  "$rubble" score a/map.tif a/truth.png --truth-resolution 0.05 --victims a/arena.yaml
+# Anchored on Earth: the run's own score knows where the robot started, the judge's symbols need not.
+"$rubble" run s.yaml --out earth --set geo.latitude_deg=49 --set geo.longitude_deg=8.4 --set geo.heading_deg=30 >/dev/null ||
+  fail "run on Earth ended with $?"
+json_holds earth/score.json "j['victims_found'] == $found and j['victims_false'] == 0"
+expect_exit 0 'anchored on Earth' "$rubble" score earth/map.tif earth/truth.tif --pois earth/pois.csv --json
+cp out.txt earth.json
+json_holds earth.json "j['victims_from'] == 'symbols' and j['victims_found'] == $found"
+expect_exit 2 'within 10000 m' "$rubble" score a/map.tif a/truth.tif --pose=1e9,0,0
+expect_exit 2 '--league' "$rubble" score a/map.tif a/truth.tif --judge x.csv
+
+# One resolution for the images that say nothing of theirs leaves georeferenced teams alone.
+mkdir mixed && cp a/map.tif mixed/tags.tif && cp a/map.png mixed/bare.png
+"$rubble" score --league mixed a/truth.tif --resolution 0.025 >mixed.txt || fail "mixed league"
+grep -cE ' 0\.9[0-9]+ ' mixed.txt | grep -qx 2 || fail "one resolution for all: $(cat mixed.txt)"
+mkdir coarse && gdal_translate -q -outsize 50% 50% -co PROFILE=BASELINE a/map.tif coarse/bare.tif && cp a/map.tif coarse/tags.tif
+"$rubble" score --league coarse a/truth.tif --resolution 0.05 >coarse.txt || fail "mixed league"
+grep -cE ' 0\.[89][0-9]+ ' coarse.txt | grep -qx 2 || fail "the tags do not hold: $(cat coarse.txt)"
 expect_exit 2 '--pois' "$rubble" score --league . a/truth.tif --pois a/pois.csv
 
 # In a league a team with a list, one with symbols only, one with neither.
