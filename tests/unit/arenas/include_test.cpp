@@ -223,6 +223,21 @@ TEST_F(Include, AnEmptyListIncludesNothing) {
   EXPECT_THAT(error_of("include: [{file: piece.yaml, at: [1e300, 0]}]\n"), HasSubstr("in whole pallets"));
 }
 
+/// The outermost file says how large a pallet is; the ones between need not.
+TEST_F(Include, SettingsHoldForPiecesOfPieces) {
+  write("leaf.yaml",
+        "maze: |\n  +---+---+\n  |S.  A. |\n  +---+---+\n"
+        "boxes:\n  - {cell: A, height_m: 0.3}\nwalls:\n  - {from_m: [0.1, 0.2], to_m: [0.5, 0.2]}\n");
+  write("middle.yaml", "include:\n  - {file: leaf.yaml, at: [1, 0], turn: 90}\n");
+  const std::string settings = "cell_m: 2.0\nwall_height_m: 0.9\n";
+  const Arena nested = load(settings + "include:\n  - {file: middle.yaml, at: [0, 1]}\n");
+  const Arena direct = load(settings + "include:\n  - {file: leaf.yaml, at: [1, 1], turn: 90}\n");
+  expect_same(nested, direct, 1e-12);
+  EXPECT_NEAR(nested.start.x, 3.0, 1e-12);
+  write("sizes.yaml", settings);
+  expect_same(load("include:\n  - {file: middle.yaml, at: [0, 1]}\n  - {file: sizes.yaml}\n"), direct, 1e-12);
+}
+
 /// Doubling at each level would make 2^30 pieces.
 TEST_F(Include, PiecesOfPiecesOfPiecesAreLimited) {
   for (int i = 0; i < 30; ++i) {

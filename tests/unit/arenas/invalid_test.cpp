@@ -30,6 +30,7 @@ const std::map<std::string, std::string>& faults() {
       {"include_missing.yaml", ":6:6: there is no arena file '"},
       {"include_no_start.yaml", ":1:1: where does the robot start? write S"},
       {"include_overlap.yaml", ":6:6: room.yaml draws pallet [1, 0], which include_overlap.yaml has already; move"},
+      {"include_raf_size.yaml", "pieces/pallet.raf:1:1: 'cell_m' is 1.2 here but 2.0 at "},
       {"include_same_names.yaml", ":4:6: two victims are named 'anna'; give this piece a name"},
       {"include_settings.yaml", "pieces/steep.yaml:1:1: 'ramp_deg' is 15 here but 10 at "},
       {"include_turn.yaml", ":6:48: 'turn' is '45'; give one of 0, 90, 180, 270"},
