@@ -65,7 +65,8 @@ struct ArenaArguments {
   arenas::GenerateConfig config;
   double resolution = 0.05;
   double slice_height = 0.35;
-  std::string walls;  ///< .csv or .geojson to write
+  double range = 4.0;  ///< of the laser that NAME-visible.tif is for [m]
+  std::string walls;   ///< .csv or .geojson to write
   std::string out;
 };
 

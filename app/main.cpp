@@ -180,6 +180,9 @@ int dispatch(int argc, char** argv) {
       ->add_option("--slice-height", arena_arguments.slice_height,
                    "Height above each floor at which the truth map is cut, default 0.35 [m]")
       ->check(between(0.01, 5.0));
+  arena_command
+      ->add_option("--range", arena_arguments.range, "How far the laser sees of NAME-visible.tif, default 4 [m]")
+      ->check(between(0.1, 100.0));
   arena_command->add_option("--walls", arena_arguments.walls,
                             "Also write the walls as lines: FILE.csv or FILE.geojson");
   arena_command->add_option("--out", arena_arguments.out, "Folder for the files (default: here)");
