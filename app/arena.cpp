@@ -4,6 +4,7 @@
 
 #include "app/commands.h"
 #include "arenas/arena_file.h"
+#include "arenas/elements.h"
 #include "arenas/generate.h"
 #include "arenas/raf.h"
 #include "arenas/render.h"
@@ -73,6 +74,13 @@ int arena(const ArenaArguments& arguments) {
   std::printf("%s.png\n%s-truth.tif\n%s-visible.tif\n", base.c_str(), base.c_str(), base.c_str());
   if (!arguments.walls.empty()) std::printf("%s\n", arguments.walls.c_str());
   return kOk;
+}
+
+void list_elements() {
+  for (const std::string& type : arenas::element_types()) {
+    std::printf("%-26s%-10s%s\n", type.c_str(), arenas::name_of(arenas::kind_of(type)).c_str(),
+                arenas::description_of(type).c_str());
+  }
 }
 
 }  // namespace rubble::app

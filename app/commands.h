@@ -82,5 +82,6 @@ int score_trajectory(const ScoreArguments& arguments);
 int replay(const ReplayArguments& arguments);
 int export_log(const ExportArguments& arguments);
 int arena(const ArenaArguments& arguments);
+void list_elements();
 
 }  // namespace rubble::app

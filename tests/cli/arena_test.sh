@@ -18,6 +18,8 @@ expect_exit 2 '.geojson' "$rubble" arena "$arena" --walls walls.shp
 expect_exit 2 '--slice-height' "$rubble" arena "$arena" --slice-height 0
 expect_exit 4 'nowhere/walls.csv' "$rubble" arena "$arena" --walls nowhere/walls.csv --out untouched
 [[ -z $(ls untouched) ]] || fail "files beside walls that could not be written: $(ls untouched)"
+expect_exit 0 '' "$rubble" arena --elements
+"$rubble" arena --elements | grep -q '^half_ramp  *floor  *rises' || fail "rubble arena --elements"
 expect_exit 2 '--range' "$rubble" arena "$arena" --range 0
 expect_exit 0 '' "$rubble" arena "$arena" --range 0.6 --out near
 cmp -s near/demo_ramps-truth.tif coarse/demo_ramps-truth.tif || fail "--range changed the truth"

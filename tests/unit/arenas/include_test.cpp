@@ -66,6 +66,7 @@ void expect_same(const Arena& a, const Arena& b, double tolerance) {
     EXPECT_EQ(a.floor[i].z, b.floor[i].z);
     EXPECT_EQ(a.floor[i].gx, b.floor[i].gx);
     EXPECT_EQ(a.floor[i].gy, b.floor[i].gy);
+    EXPECT_EQ(a.floor[i].friction, b.floor[i].friction);
   }
   ASSERT_EQ(a.solids.size(), b.solids.size());
   for (std::size_t i = 0; i < a.solids.size(); ++i) {
@@ -221,6 +222,20 @@ TEST_F(Include, AnEmptyListIncludesNothing) {
   EXPECT_THAT(error_of("inclde: [{file: piece.yaml}]\n"), HasSubstr("where does the robot start"));
   EXPECT_THAT(error_of("maze: |\n  +---+\n  |S.\n  +---+\ninclde: [{file: a}]\n"), HasSubstr("did you mean 'include'"));
   EXPECT_THAT(error_of("include: [{file: piece.yaml, at: [1e300, 0]}]\n"), HasSubstr("in whole pallets"));
+}
+
+/// From a piece, turned, through the composed text and back.
+TEST_F(Include, FrictionOfAFloorStaysWithIt) {
+  write("ice.yaml",
+        "maze: |\n  +---+---+\n  |S.   . |\n  +---+---+\n"
+        "floors:\n  - {x_m: 1.8, y_m: 0.6, length_m: 0.5, friction: 0.1}\n"
+        "elements:\n  - {type: half_ramp, x_m: 1.8, y_m: 0.6, friction: 0.2}\n");
+  const Arena arena = load("include:\n  - {file: ice.yaml, turn: 180}\n");
+  ASSERT_EQ(arena.floor.size(), 4u);
+  EXPECT_EQ(arena.floor[0].friction, std::nullopt);
+  EXPECT_EQ(arena.floor[2].friction, 0.1);
+  EXPECT_EQ(arena.floor[3].friction, 0.2);
+  expect_same(arena, parse_arena(self_contained_arena(folder_ + "/arena.yaml"), "again"), 0.0);
 }
 
 /// The outermost file says how large a pallet is; the ones between need not.

@@ -19,6 +19,8 @@ const std::map<std::string, std::string>& faults() {
       {"ball_in_a_wall.yaml", ":6:5: paper ball at (2.40, 0.60) lies in a solid 'wall': move it"},
       {"double_key.yaml", ":2:1: key 'ramp_deg' is given twice"},
       {"even_rows.yaml", ":5:3: the drawing ends after a row of pallets: add the row"},
+      {"friction_of_a_wall.yaml", ":6:33: no wheel stands on a 'small_wall': take the key out"},
+      {"friction_of_nothing.yaml", ":6:51: 'friction' is '0'; give a number from 0.01 to 2"},
       {"half_a_wall.yaml", ":2:6: half a wall: draw '---' or three blanks"},
       {"include_at.yaml", ":6:30: give 'at: [columns, rows]' in whole pallets"},
       {"include_bad_point.yaml", "pieces/half_a_point.yaml:6:28: 'to_m' has 1 numbers; give a list of 2"},
