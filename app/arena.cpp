@@ -4,6 +4,7 @@
 
 #include "app/commands.h"
 #include "arenas/arena_file.h"
+#include "arenas/elements.h"
 #include "arenas/generate.h"
 #include "arenas/raf.h"
 #include "arenas/render.h"
@@ -53,6 +54,10 @@ int arena(const ArenaArguments& arguments) {
   if (error) throw InputError(out + ": cannot be created (" + error.message() + "); give a writable folder with --out");
   const std::string base = out + "/" + stem;
 
+  if (!arguments.walls.empty()) {  // first: its folder may be missing, and then nothing is written
+    const std::vector<arenas::WallLine> lines = arenas::wall_lines(arena);
+    write_text_file(arguments.walls, is_geojson ? arenas::walls_geojson(lines) : arenas::walls_csv(lines));
+  }
   if (arguments.generate) {
     std::ofstream file(base + ".yaml");
     file << yaml;
@@ -63,14 +68,19 @@ int arena(const ArenaArguments& arguments) {
   scenarios::write_png(base + ".png", arenas::render(arena, 60.0));
   const OccupancyGrid truth = arenas::truth_map(arena, arguments.resolution, arguments.slice_height);
   write_geotiff(base + "-truth.tif", scenarios::draw_truth(truth));
-  write_geotiff(base + "-visible.tif", scenarios::draw_truth(arenas::visible_truth(arena, truth)));
+  arenas::Viewer viewer;
+  viewer.range = arguments.range;
+  write_geotiff(base + "-visible.tif", scenarios::draw_truth(arenas::visible_truth(arena, truth, viewer)));
   std::printf("%s.png\n%s-truth.tif\n%s-visible.tif\n", base.c_str(), base.c_str(), base.c_str());
-  if (!arguments.walls.empty()) {
-    const std::vector<arenas::WallLine> lines = arenas::wall_lines(arena);
-    write_text_file(arguments.walls, is_geojson ? arenas::walls_geojson(lines) : arenas::walls_csv(lines));
-    std::printf("%s\n", arguments.walls.c_str());
-  }
+  if (!arguments.walls.empty()) std::printf("%s\n", arguments.walls.c_str());
   return kOk;
+}
+
+void list_elements() {
+  for (const std::string& type : arenas::element_types()) {
+    std::printf("%-26s%-10s%s\n", type.c_str(), arenas::name_of(arenas::kind_of(type)).c_str(),
+                arenas::description_of(type).c_str());
+  }
 }
 
 }  // namespace rubble::app

@@ -65,7 +65,8 @@ struct ArenaArguments {
   arenas::GenerateConfig config;
   double resolution = 0.05;
   double slice_height = 0.35;
-  std::string walls;  ///< .csv or .geojson to write
+  double range = 4.0;  ///< of the laser that NAME-visible.tif is for [m]
+  std::string walls;   ///< .csv or .geojson to write
   std::string out;
 };
 
@@ -81,5 +82,6 @@ int score_trajectory(const ScoreArguments& arguments);
 int replay(const ReplayArguments& arguments);
 int export_log(const ExportArguments& arguments);
 int arena(const ArenaArguments& arguments);
+void list_elements();
 
 }  // namespace rubble::app

@@ -182,8 +182,18 @@ int dispatch(int argc, char** argv) {
       ->add_option("--slice-height", arena_arguments.slice_height,
                    "Height above each floor at which the truth map is cut, default 0.35 [m]")
       ->check(between(0.01, 5.0));
+  arena_command
+      ->add_option("--range", arena_arguments.range, "How far the laser sees of NAME-visible.tif, default 4 [m]")
+      ->check(between(0.1, 100.0));
   arena_command->add_option("--walls", arena_arguments.walls,
                             "Also write the walls as lines: FILE.csv or FILE.geojson");
+  arena_command->add_flag_callback(
+      "--elements",
+      [] {
+        list_elements();
+        throw CLI::Success();
+      },
+      "List the league's parts that arena files can place, and what they are");
   arena_command->add_option("--out", arena_arguments.out, "Folder for the files (default: here)");
   arena_command->footer(
       "Examples:\n  rubble arena arenas/yellow_8x8.yaml\n"
@@ -195,7 +205,7 @@ int dispatch(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version, --elements
     std::string message = error.what();
     std::replace(message.begin(), message.end(), '\n', ' ');
     const auto chosen = app.get_subcommands();

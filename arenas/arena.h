@@ -15,10 +15,11 @@ using Outline = std::vector<mrpt::math::TPoint2D>;  ///< convex polygon, counter
 /// A plane piece of floor a wheel can stand on: flat pallet, ramp, top of a step. Overlaps: the higher one carries.
 struct FloorPatch {
   Outline outline;
-  double z = 0.0;       ///< height at outline[0] [m]
-  double gx = 0.0;      ///< dz/dx
-  double gy = 0.0;      ///< dz/dy
-  std::string element;  ///< the league's name of the part, e.g. "pitch_ramp"
+  double z = 0.0;                                 ///< height at outline[0] [m]
+  double gx = 0.0;                                ///< dz/dx
+  double gy = 0.0;                                ///< dz/dy
+  std::string element;                            ///< the league's name of the part, e.g. "pitch_ramp"
+  std::optional<double> friction = std::nullopt;  ///< wheel on it; default: the arena's floor_friction
 
   double height(const mrpt::math::TPoint2D& p) const {
     return z + gx * (p.x - outline[0].x) + gy * (p.y - outline[0].y);

@@ -20,6 +20,12 @@ using mrpt::math::TPoint2D;
 
 constexpr double kFar = 500.0;  ///< [m]
 
+/// Between wheel and floor, where an entry gives it.
+std::optional<double> friction(const YamlMap& entry) {
+  if (!entry.has("friction")) return std::nullopt;
+  return entry.number("friction", std::nullopt, 0.01, 2.0);
+}
+
 double angle(const YamlMap& entry, const std::string& key, std::optional<double> fallback) {
   return deg_to_rad(entry.number(key, fallback, -360.0, 360.0));
 }
@@ -41,6 +47,7 @@ void read_floors(const YamlMap& root, Plan& plan, Arena& arena) {
     patch.gx = slope * std::cos(heading);
     patch.gy = slope * std::sin(heading);
     patch.element = entry.text("element", slope > 0.0 ? "ramp" : "platform");
+    patch.friction = friction(entry);
     for (const TPoint2D& p : plan.places(entry)) {
       patch.outline = rectangle(p, length, width, heading);  // outline[0] lies at the foot
       arena.floor.push_back(patch);
@@ -191,6 +198,9 @@ void read_elements(const YamlMap& root, Plan& plan, Arena& arena) {
       if (!has_slope(element.type)) entry.fail("slope_deg", "a '" + element.type + "' has no slope: take the key out");
       element.slope = deg_to_rad(entry.number("slope_deg", std::nullopt, 1.0, 60.0));
     }
+    if (entry.has("friction") && !has_floor(element.type))
+      entry.fail("friction", "no wheel stands on a '" + element.type + "': take the key out");
+    element.friction = friction(entry);
     for (const TPoint2D& p : plan.places(entry)) {
       element.position = p;
       elements.push_back(element);

@@ -50,6 +50,9 @@ Trouble floor_trouble(const Arena& arena) {
     if (!std::isfinite(patch.z) || !(std::hypot(patch.gx, patch.gy) <= std::tan(kSteepest))) {
       return "floor '" + patch.element + "' at " + place(patch.outline[0]) + " is steeper than 60 deg";
     }
+    if (patch.friction && !(*patch.friction > 0.0 && *patch.friction <= 2.0)) {
+      return "floor '" + patch.element + "' at " + place(patch.outline[0]) + ": friction must be above 0, up to 2";
+    }
   }
   return std::nullopt;
 }

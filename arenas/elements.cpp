@@ -13,9 +13,12 @@ namespace {
 
 struct Entry {
   ElementKind kind;
-  bool covers = false;
+  const char* what;  ///< it does, one line
   std::function<void(const ElementFrame&, const Mount&, Arena&)> add;
-  std::function<void(const ElementFrame&, double slope, Arena&)> add_sloped;  ///< with another slope [rise a metre]
+  bool covers = false;
+  std::function<void(const ElementFrame&, double slope, Arena&)> add_sloped =
+      nullptr;                                    ///< another slope [rise a metre]
+  std::optional<double> friction = std::nullopt;  ///< of its floors; default: the arena's, for all are of wood
 };
 
 /// Shapes that do not hang on a wall.
@@ -44,10 +47,10 @@ auto elevated_floor(double height) {
   return standing([height](const ElementFrame& frame, Arena& arena) { add_elevated_floor(frame, height, arena); });
 }
 
-Entry ramp(bool covers, double foot_y, double head_y, double rise) {
-  return {ElementKind::Floor, covers,
+Entry ramp(const char* what, bool covers, double foot_y, double head_y, double rise) {
+  return {ElementKind::Floor, what,
           standing([=](const ElementFrame& frame, Arena& arena) { add_ramp(frame, foot_y, head_y, rise, arena); }),
-          [=](const ElementFrame& frame, double slope, Arena& arena) {
+          covers, [=](const ElementFrame& frame, double slope, Arena& arena) {
             add_ramp(frame, foot_y, head_y, slope * std::abs(head_y - foot_y), arena);
           }};
 }
@@ -72,61 +75,80 @@ const std::map<std::string, Entry>& table() {
       {-0.26, 0.27, 0.36, kHole}, {-0.24, 0.90, 0.36, kHole}, {0.31, 0.62, 0.36, kHole}};
   using K = ElementKind;
   static const std::map<std::string, Entry> entries{
-      {"small_wall", {K::Wall, false, straight_wall(1.2), nullptr}},
-      {"small_wall_no_tex", {K::Wall, false, straight_wall(1.2), nullptr}},
-      {"small_wall_qr", {K::Wall, false, straight_wall(1.2), nullptr}},
-      {"small_wall_start_check", {K::Wall, false, straight_wall(1.2), nullptr}},
-      {"tall_wall", {K::Wall, false, straight_wall(2.4), nullptr}},
-      {"wall_holes1", {K::Wall, false, holed_wall(kHoles), nullptr}},
-      {"small_wall_triple_holes", {K::Wall, false, holed_wall(kSlots), nullptr}},
-      {"half_wall", {K::Wall, false, standing(add_half_wall), nullptr}},
-      {"veil_wall", {K::Wall, false, standing(add_veil), nullptr}},
-      {"corner_diag_120", {K::Diagonal, false, standing(add_corner_wall), nullptr}},
-      {"wall_diag_120", {K::Diagonal, false, standing(add_diagonal_wall), nullptr}},
-      {"full_ramp", ramp(true, 0.6, -0.6, 0.339)},
-      {"half_ramp", ramp(false, -0.6, 0.0, 0.17)},
-      {"half_ramp_shifted", ramp(false, 0.0, -0.6, 0.17)},
-      {"simple_elev_ramp", ramp(true, -0.6, 0.6, 1.2)},
-      {"steep_ramp_35", ramp(true, -0.6, 0.6, 1.2 * kTan35)},
-      {"steep_ramp_45", ramp(true, -0.6, 0.6, 1.2)},
-      {"elevated_floor_120", {K::Floor, true, elevated_floor(1.2), nullptr}},
-      {"elevated_floor_084", {K::Floor, true, elevated_floor(1.2 * kTan35), nullptr}},
+      {"small_wall", {K::Wall, "a board of 1.2 m on the edge at +y", straight_wall(1.2)}},
+      {"small_wall_no_tex", {K::Wall, "a board of 1.2 m without a texture", straight_wall(1.2)}},
+      {"small_wall_qr", {K::Wall, "a board of 1.2 m with a QR code", straight_wall(1.2)}},
+      {"small_wall_start_check", {K::Wall, "a board of 1.2 m with the start check", straight_wall(1.2)}},
+      {"tall_wall", {K::Wall, "a board of 2.4 m on the edge at +y", straight_wall(2.4)}},
+      {"wall_holes1",
+       {K::Wall, "a board with three square openings: the laser and victims look through", holed_wall(kHoles)}},
+      {"small_wall_triple_holes",
+       {K::Wall, "a board with three slots: the laser and victims look through", holed_wall(kSlots)}},
+      {"half_wall", {K::Wall, "the right half of a board: a gap of 0.6 m stays", standing(add_half_wall)}},
+      {"veil_wall", {K::Wall, "strips that the laser sees and the robot pushes aside", standing(add_veil)}},
+      {"corner_diag_120", {K::Diagonal, "two boards from the corners at +y to the middle", standing(add_corner_wall)}},
+      {"wall_diag_120", {K::Diagonal, "a board from corner to corner", standing(add_diagonal_wall)}},
+      {"full_ramp", ramp("rises 0.339 m over the pallet towards -y", true, 0.6, -0.6, 0.339)},
+      {"half_ramp", ramp("rises 0.17 m over the southern half, towards +y", false, -0.6, 0.0, 0.17)},
+      {"half_ramp_shifted", ramp("rises 0.17 m over the southern half, towards -y", false, 0.0, -0.6, 0.17)},
+      {"simple_elev_ramp", ramp("45 deg up to the floor at 1.2 m", true, -0.6, 0.6, 1.2)},
+      {"steep_ramp_35", ramp("35 deg up to the floor at 0.84 m", true, -0.6, 0.6, 1.2 * kTan35)},
+      {"steep_ramp_45", ramp("45 deg up to the floor at 1.2 m", true, -0.6, 0.6, 1.2)},
+      {"elevated_floor_120", {K::Floor, "a floor at 1.2 m, closed below", elevated_floor(1.2), true}},
+      {"elevated_floor_084", {K::Floor, "a floor at 0.84 m, closed below", elevated_floor(1.2 * kTan35), true}},
       {"crossing_ramps",
-       {K::Floor, true, standing([](const ElementFrame& f, Arena& a) { add_crossing_ramps(f, kTan10, a); }),
-        add_crossing_ramps}},
+       {K::Floor, "four ramps of 10 deg that agree nowhere: pitches and rolls the robot at once",
+        standing([](const ElementFrame& f, Arena& a) { add_crossing_ramps(f, kTan10, a); }), true, add_crossing_ramps}},
       {"elevated_ramps",
-       {K::Floor, true, standing([](const ElementFrame& f, Arena& a) { add_elevated_ramps(f, 0.17 / 0.6, a); }),
+       {K::Floor, "four half ramps in turn, two of them 0.17 m up",
+        standing([](const ElementFrame& f, Arena& a) { add_elevated_ramps(f, 0.17 / 0.6, a); }), true,
         add_elevated_ramps}},
-      {"flat", {K::Floor, true, elevated_floor(0.0), nullptr}},
-      {"pitch_ramp", ramp(true, -0.6, 0.6, 1.2 * kTan10)},
+      {"flat", {K::Floor, "a flat pallet on the ground", elevated_floor(0.0), true}},
+      {"pitch_ramp", ramp("10 deg towards +y: pitches a robot that drives along +y", true, -0.6, 0.6, 1.2 * kTan10)},
       {"roll_ramp",
-       {K::Floor, true, standing([](const ElementFrame& f, Arena& a) { add_roll_ramp(f, kTan10, a); }), add_roll_ramp}},
-      {"tunnel", {K::Floor, false, standing(add_tunnel), nullptr}},
-      {"stepfield_orange_diagonal", {K::Floor, false, step_field(0.2), nullptr}},
-      {"stairs_120", {K::Floor, false, standing(add_stairs), nullptr}},
-      {"stairs_120_solid", {K::Floor, false, standing(add_stairs), nullptr}},
-      {"stepfield_red_diagonal", {K::Floor, false, step_field(0.4), nullptr}},
-      {"fiducial_barrel", {K::Item, false, barrel(0.30), nullptr}},
-      {"fiducial_barrel_high", {K::Item, false, barrel(1.50), nullptr}},
-      {"wooden_block", {K::Item, false, standing(add_wooden_block), nullptr}},
-      {"red_barrel", {K::Item, false, post(0.29, 0.88, "red_barrel"), nullptr}},
-      {"fire_extinguisher", {K::Item, false, post(0.08, 0.55, "fire_extinguisher"), nullptr}},
-      {"pvc_pipe", {K::Item, false, post(0.055, 0.6, "pvc_pipe"), nullptr}},
-      {"victim_1", {K::Item, false, standing(add_free_victim), nullptr}},
-      {"manip_storage", {K::Item, false, standing(add_shelves), nullptr}},
-      {"spectator_120", {K::Item, false, standing(add_spectator), nullptr}},
-      {"victim_with_box1", {K::Item, false, boxed_victim(true, false, false), nullptr}},
-      {"victim_with_box_t", {K::Item, false, boxed_victim(true, false, false), nullptr}},
-      {"victim_with_box_s", {K::Item, false, boxed_victim(false, true, false), nullptr}},
-      {"victim_with_box_c", {K::Item, false, boxed_victim(false, false, true), nullptr}},
-      {"victim_with_box_ts", {K::Item, false, boxed_victim(true, true, false), nullptr}},
-      {"victim_with_box_tc", {K::Item, false, boxed_victim(true, false, true), nullptr}},
-      {"victim_with_box_sc", {K::Item, false, boxed_victim(false, true, true), nullptr}},
-      {"victim_with_box_tsc", {K::Item, false, boxed_victim(true, true, true), nullptr}},
-      {"victim_with_box_v", {K::Item, false, boxed_victim(false, false, false), nullptr}},
-      {"victim_with_box_q", {K::Item, false, boxed_victim(false, false, false), nullptr}},
-      {"victim_doll_heat_with_box", {K::Item, false, boxed_victim(true, false, false), nullptr}},
-      {"victim_doll_qr_with_box", {K::Item, false, boxed_victim(false, false, false), nullptr}},
+       {K::Floor, "10 deg towards +x: rolls a robot that drives along +y",
+        standing([](const ElementFrame& f, Arena& a) { add_roll_ramp(f, kTan10, a); }), true, add_roll_ramp}},
+      {"tunnel", {K::Floor, "a ceiling at 0.60 m on two boards, to drive through along y", standing(add_tunnel)}},
+      {"stepfield_orange_diagonal", {K::Floor, "10 x 10 columns of 0 to 0.2 m", step_field(0.2)}},
+      {"stairs_120", {K::Floor, "five risers of 0.2 m towards +y", standing(add_stairs)}},
+      {"stairs_120_solid", {K::Floor, "five risers of 0.2 m towards +y", standing(add_stairs)}},
+      {"stepfield_red_diagonal", {K::Floor, "10 x 10 columns of 0 to 0.4 m", step_field(0.4)}},
+      {"fiducial_barrel", {K::Item, "half a barrel on the wall at +y, from 0.30 m up", barrel(0.30)}},
+      {"fiducial_barrel_high", {K::Item, "half a barrel on the wall at +y, from 1.50 m up", barrel(1.50)}},
+      {"wooden_block", {K::Item, "0.10 m high, to drive over", standing(add_wooden_block)}},
+      {"red_barrel", {K::Item, "a post 0.58 m wide and 0.88 m high", post(0.29, 0.88, "red_barrel")}},
+      {"fire_extinguisher", {K::Item, "a post 0.16 m wide and 0.55 m high", post(0.08, 0.55, "fire_extinguisher")}},
+      {"pvc_pipe", {K::Item, "a post 0.11 m wide and 0.6 m high", post(0.055, 0.6, "pvc_pipe")}},
+      {"victim_1", {K::Item, "a victim without a box: appearance and heat", standing(add_free_victim)}},
+      {"manip_storage", {K::Item, "shelves at 0.5 and 1.0 m", standing(add_shelves)}},
+      {"spectator_120", {K::Item, "a box at 1.07 to 1.70 m, above a level laser", standing(add_spectator)}},
+      {"victim_with_box1",
+       {K::Item, "a victim in a box behind the wall at +y: appearance and heat", boxed_victim(true, false, false)}},
+      {"victim_with_box_t",
+       {K::Item, "a victim in a box behind the wall at +y: appearance and heat", boxed_victim(true, false, false)}},
+      {"victim_with_box_s",
+       {K::Item, "a victim in a box behind the wall at +y: appearance and sound", boxed_victim(false, true, false)}},
+      {"victim_with_box_c",
+       {K::Item, "a victim in a box behind the wall at +y: appearance and co2", boxed_victim(false, false, true)}},
+      {"victim_with_box_ts",
+       {K::Item, "a victim in a box behind the wall at +y: appearance, heat and sound",
+        boxed_victim(true, true, false)}},
+      {"victim_with_box_tc",
+       {K::Item, "a victim in a box behind the wall at +y: appearance, heat and co2", boxed_victim(true, false, true)}},
+      {"victim_with_box_sc",
+       {K::Item, "a victim in a box behind the wall at +y: appearance, sound and co2",
+        boxed_victim(false, true, true)}},
+      {"victim_with_box_tsc",
+       {K::Item, "a victim in a box behind the wall at +y: appearance, heat, sound and co2",
+        boxed_victim(true, true, true)}},
+      {"victim_with_box_v",
+       {K::Item, "a victim in a box behind the wall at +y: appearance", boxed_victim(false, false, false)}},
+      {"victim_with_box_q",
+       {K::Item, "a victim in a box behind the wall at +y: appearance", boxed_victim(false, false, false)}},
+      {"victim_doll_heat_with_box",
+       {K::Item, "a victim in a box behind the wall at +y: appearance and heat", boxed_victim(true, false, false)}},
+      {"victim_doll_qr_with_box",
+       {K::Item, "a victim in a box behind the wall at +y: appearance", boxed_victim(false, false, false)}},
   };
   return entries;
 }
@@ -152,9 +174,7 @@ ElementKind kind_of(const std::string& type) {
 
 std::vector<std::string> element_types() {
   std::vector<std::string> types;
-  for (const auto& [type, entry] : table()) {
-    if (entry.add) types.push_back(type);
-  }
+  for (const auto& [type, entry] : table()) types.push_back(type);
   return types;
 }
 
@@ -178,15 +198,50 @@ bool has_slope(const std::string& type) {
   return found != table().end() && found->second.add_sloped != nullptr;
 }
 
+bool has_floor(const std::string& type) {
+  Element element;
+  element.type = type;
+  Arena alone;
+  place(element, nullptr, alone);
+  return !alone.floor.empty();
+}
+
+std::string description_of(const std::string& type) {
+  const auto found = table().find(type);
+  return found != table().end() ? found->second.what : "";
+}
+
+std::string name_of(ElementKind kind) {
+  switch (kind) {
+    case ElementKind::Floor:
+      return "floor";
+    case ElementKind::Wall:
+      return "wall";
+    case ElementKind::Diagonal:
+      return "diagonal";
+    case ElementKind::Item:
+      return "item";
+    case ElementKind::Label:
+      return "label";
+    case ElementKind::Unknown:
+      break;
+  }
+  return "unknown";
+}
+
 void place(const Element& element, const Element* wall, Arena& arena) {
   const auto found = table().find(element.type);
-  if (found == table().end() || !found->second.add) return;
+  if (found == table().end()) return;
+  const Entry& entry = found->second;
   const ElementFrame frame(element.position + element.offset, element.rotation);
-  if (element.slope && found->second.add_sloped) {
-    found->second.add_sloped(frame, std::tan(*element.slope), arena);
-    return;
+  const std::size_t first = arena.floor.size();
+  if (element.slope && entry.add_sloped) {
+    entry.add_sloped(frame, std::tan(*element.slope), arena);
+  } else {
+    entry.add(frame, mount_of(element, wall), arena);
   }
-  found->second.add(frame, mount_of(element, wall), arena);
+  for (std::size_t i = first; i < arena.floor.size(); ++i)
+    arena.floor[i].friction = element.friction ? element.friction : entry.friction;
 }
 
 }  // namespace rubble::arenas

@@ -18,6 +18,7 @@ struct Element {
   std::optional<int> mount_point;  ///< which hole of the wall behind it a victim's box hangs at
   mrpt::math::TPoint2D offset;     ///< shift of a free item on its pallet [m]
   std::optional<double> slope;     ///< of ramps: their angle instead of the model's own [rad]
+  std::optional<double> friction;  ///< of its floors instead of the type's
 };
 
 /// What is known about a type of element.
@@ -37,6 +38,15 @@ std::vector<std::string> element_types();
 
 /// Whether the type is a ramp whose angle may be given.
 bool has_slope(const std::string& type);
+
+/// Whether wheels can stand on the type, so that its friction may be given.
+bool has_floor(const std::string& type);
+
+/// What the type is and does, one line; empty for labels and unknown types.
+std::string description_of(const std::string& type);
+
+/// "floor", "wall", ...
+std::string name_of(ElementKind kind);
 
 /// The wall on the same edge of the same pallet as an item, or null: victims hang at its holes.
 const Element* wall_behind(const Element& item, const std::vector<Element>& elements);

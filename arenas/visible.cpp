@@ -40,6 +40,40 @@ Mask barriers(const Arena& arena, const GridFrame& frame, const Viewer& viewer) 
   return mask;
 }
 
+/// Reachable cells, the start first, so that every one is less than kPoses from a chosen one and no two of them are.
+std::vector<Cell> poses_among(const Mask& reachable, Cell start) {
+  const GridFrame& frame = reachable.frame();
+  const int apart = std::max(1, static_cast<int>(std::lround(kPoses / frame.resolution)));  // [cells]
+  const int columns = frame.width / apart + 1;
+  const int rows = frame.height / apart + 1;
+  std::vector<Cell> chosen;
+  std::vector<std::vector<Cell>> buckets(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  const auto bucket = [&](int x, int y) -> std::vector<Cell>& {
+    return buckets[static_cast<std::size_t>(y * columns + x)];
+  };
+  const auto is_covered = [&](Cell c) {
+    for (int y = std::max(0, c.y / apart - 1); y <= std::min(rows - 1, c.y / apart + 1); ++y) {
+      for (int x = std::max(0, c.x / apart - 1); x <= std::min(columns - 1, c.x / apart + 1); ++x) {
+        for (const Cell other : bucket(x, y)) {
+          const int dx = other.x - c.x;
+          const int dy = other.y - c.y;
+          if (dx * dx + dy * dy < apart * apart) return true;
+        }
+      }
+    }
+    return false;
+  };
+  const auto consider = [&](Cell c) {
+    if (reachable[c] == 0 || is_covered(c)) return;
+    bucket(c.x / apart, c.y / apart).push_back(c);
+    chosen.push_back(c);
+  };
+  if (frame.inside(start)) consider(start);
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x) consider({x, y});
+  return chosen;
+}
+
 /// Marks what one ray sees: a walk from cell to cell (Amanatides and Woo 1987).
 void look(const OccupancyGrid& truth, Cell from, double bearing, double range, Mask& seen) {
   const double dx = std::cos(bearing);
@@ -97,24 +131,18 @@ Mask reachable_mask(const Arena& arena, const OccupancyGrid& truth, const Viewer
   return reached;
 }
 
-Mask visible_mask(const OccupancyGrid& truth, const Mask& reachable, const Viewer& viewer) {
+Mask visible_mask(const OccupancyGrid& truth, const Mask& reachable, const TPoint2D& start, const Viewer& viewer) {
   const GridFrame& frame = truth.frame();
-  Mask seen(frame);
-  const int stride = std::max(1, static_cast<int>(std::lround(kPoses / frame.resolution)));
+  Mask seen = reachable;
   const int rays = static_cast<int>(std::ceil(2.0 * kPi * std::min(viewer.range, kFull) / frame.resolution));
-  for (int y = 0; y < frame.height; ++y) {
-    for (int x = 0; x < frame.width; ++x) {
-      if (reachable[{x, y}] == 0) continue;
-      seen[{x, y}] = 1;
-      if (x % stride != 0 || y % stride != 0) continue;
-      for (int i = 0; i < rays; ++i) look(truth, {x, y}, 2.0 * kPi * (i + 0.5) / rays, viewer.range, seen);
-    }
+  for (const Cell pose : poses_among(reachable, frame.cell(start))) {
+    for (int i = 0; i < rays; ++i) look(truth, pose, 2.0 * kPi * (i + 0.5) / rays, viewer.range, seen);
   }
   return seen;
 }
 
 OccupancyGrid visible_truth(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer) {
-  const Mask seen = visible_mask(truth, reachable_mask(arena, truth, viewer), viewer);
+  const Mask seen = visible_mask(truth, reachable_mask(arena, truth, viewer), {arena.start.x, arena.start.y}, viewer);
   OccupancyGrid known = truth;
   for (int y = 0; y < truth.height(); ++y) {
     for (int x = 0; x < truth.width(); ++x) {

@@ -17,9 +17,10 @@ struct Viewer {
 Grid<std::uint8_t> reachable_mask(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer = {});
 
 /// What a level laser could ever see from there: non-zero. Rays end at the first occupied cell, which they see.
-/// Poses are tried every 0.4 m, with rays that end a cell apart (at 8 m where the laser reaches farther).
+/// It looks round from the start and from poses so chosen that every reachable cell is less than 0.4 m from one, with
+/// rays that end a cell apart (at 8 m where the laser reaches farther).
 Grid<std::uint8_t> visible_mask(const OccupancyGrid& truth, const Grid<std::uint8_t>& reachable,
-                                const Viewer& viewer = {});
+                                const mrpt::math::TPoint2D& start, const Viewer& viewer = {});
 
 /// The truth as far as it could ever be mapped: what no reachable pose sees becomes unknown, so that it counts against
 /// no map.

@@ -249,6 +249,7 @@ OccupancyGrid truth_to_score_with(const arenas::Arena& arena, const Scenario& sc
   if (!scenario.visible_truth) return truth;
   constexpr double kAboveLaser = 0.05;  ///< the body ends so much above the laser [m]
   arenas::Viewer viewer;
+  viewer.radius = 0.5 * scenario.robot.width;
   viewer.height = scenario.robot.T_base_laser.z + kAboveLaser;
   viewer.climbable_step = scenario.robot.climbable_step;
   viewer.range = scenario.robot.laser.range_max;

@@ -58,7 +58,8 @@ Terrain::Terrain(const arenas::Arena& arena, double climbable_step)
     : floor_friction_(arena.floor_friction), reach_(climbable_step) {
   for (const arenas::FloorPatch& patch : arena.floor) {
     const TPoint2D& o = patch.outline[0];
-    patches_.push_back({patch.z - patch.gx * o.x - patch.gy * o.y, patch.gx, patch.gy, add_area(patch.outline)});
+    patches_.push_back({patch.z - patch.gx * o.x - patch.gy * o.y, patch.gx, patch.gy,
+                        patch.friction.value_or(floor_friction_), add_area(patch.outline)});
   }
   for (const arenas::PaperSheet& sheet : arena.sheets) sheets_.push_back({sheet.friction, add_area(sheet.outline)});
   for (const arenas::Riser& riser : arenas::risers(arena)) {
@@ -160,6 +161,7 @@ Ground Terrain::floor(const Bucket& bucket, const TPoint2D& p) const {
     ground.height = z;
     ground.gx = patch.gx;
     ground.gy = patch.gy;
+    ground.friction = patch.friction;
     found = true;
   }
   for (std::uint32_t i = bucket.sheets; i < bucket.sheets_end; ++i) {

@@ -43,6 +43,7 @@ class Terrain {
   };
   struct Patch {
     double c, gx, gy;  ///< z = c + gx x + gy y
+    double friction;
     Area area;
   };
   struct Sheet {

@@ -16,6 +16,14 @@ if command -v ogrinfo >/dev/null; then
 fi
 expect_exit 2 '.geojson' "$rubble" arena "$arena" --walls walls.shp
 expect_exit 2 '--slice-height' "$rubble" arena "$arena" --slice-height 0
+expect_exit 4 'nowhere/walls.csv' "$rubble" arena "$arena" --walls nowhere/walls.csv --out untouched
+[[ -z $(ls untouched) ]] || fail "files beside walls that could not be written: $(ls untouched)"
+expect_exit 0 '' "$rubble" arena --elements
+"$rubble" arena --elements | grep -q '^half_ramp  *floor  *rises' || fail "rubble arena --elements"
+expect_exit 2 '--range' "$rubble" arena "$arena" --range 0
+expect_exit 0 '' "$rubble" arena "$arena" --range 0.6 --out near
+cmp -s near/demo_ramps-truth.tif coarse/demo_ramps-truth.tif || fail "--range changed the truth"
+cmp -s near/demo_ramps-visible.tif coarse/demo_ramps-visible.tif && fail "--range 0.6 sees as far as 4 m"
 
 expect_exit 0 '' "$rubble" arena "$source/arenas/four_corners.yaml" --out out
 expect_exit 3 'pieces/cycle.yaml:6:6: the file includes itself' "$rubble" arena \

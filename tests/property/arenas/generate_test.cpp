@@ -181,14 +181,14 @@ TEST(Generate, WhereThereIsNoWallTheFloorIsSmooth) {
 
 TEST(Generate, SameSeedSameBytesAndAnotherSeedAnotherArena) {
   std::set<std::string> texts;
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     GenerateConfig config;
     config.seed = seed;
     const std::string text = generate_arena(config);
     EXPECT_EQ(text, generate_arena(config)) << name_of(seed);
     texts.insert(text.substr(text.find("maze:")));
   }
-  EXPECT_EQ(texts.size(), 200u);
+  EXPECT_EQ(texts.size(), 1000u);
 }
 
 TEST(Generate, MorePaperLeavesTheMazeAsItWas) {

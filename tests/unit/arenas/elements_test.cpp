@@ -6,7 +6,10 @@
 
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <map>
+#include <set>
+#include <sstream>
 
 #include "arenas/geometry.h"
 #include "base/angle.h"
@@ -175,6 +178,38 @@ TEST(Elements, LabelsAndStrangersAddNothing) {
   for (const char* type : {"hazmat", "start_check", "flux_capacitor"}) {
     const Arena arena = placed(type);
     EXPECT_TRUE(arena.floor.empty() && arena.solids.empty() && arena.victims.empty());
+  }
+}
+
+/// The first column of the table in docs/arenas.md names every type there is, and no other.
+TEST(Elements, EachIsDescribedAndInTheDocumentation) {
+  std::ifstream docs(std::string(RUBBLE_SOURCE_DIR) + "/docs/arenas.md");
+  std::set<std::string> documented;
+  std::string line;
+  while (std::getline(docs, line) && line != "| type | shape |") {
+  }
+  while (std::getline(docs, line) && line[0] == '|') {
+    std::istringstream names(line.substr(1, line.find('|', 1) - 1));
+    for (std::string text; std::getline(names, text, '`') && std::getline(names, text, '`');) documented.insert(text);
+  }
+  const std::vector<std::string> types = element_types();
+  EXPECT_EQ(documented, std::set<std::string>(types.begin(), types.end()));
+  for (const std::string& type : types) {
+    EXPECT_FALSE(description_of(type).empty()) << type;
+    EXPECT_NE(name_of(kind_of(type)), "unknown") << type;
+  }
+}
+
+TEST(Elements, FloorsHaveTheArenasFrictionUnlessGivenTheirOwn) {
+  for (const std::string& type : element_types()) {
+    for (const FloorPatch& patch : placed(type).floor) EXPECT_FALSE(patch.friction.has_value()) << type;
+    Element element;
+    element.type = type;
+    element.friction = 0.3;
+    Arena arena;
+    place(element, nullptr, arena);
+    EXPECT_EQ(has_floor(type), !arena.floor.empty()) << type;
+    for (const FloorPatch& patch : arena.floor) EXPECT_EQ(patch.friction, 0.3) << type;
   }
 }
 

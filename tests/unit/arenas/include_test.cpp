@@ -66,6 +66,7 @@ void expect_same(const Arena& a, const Arena& b, double tolerance) {
     EXPECT_EQ(a.floor[i].z, b.floor[i].z);
     EXPECT_EQ(a.floor[i].gx, b.floor[i].gx);
     EXPECT_EQ(a.floor[i].gy, b.floor[i].gy);
+    EXPECT_EQ(a.floor[i].friction, b.floor[i].friction);
   }
   ASSERT_EQ(a.solids.size(), b.solids.size());
   for (std::size_t i = 0; i < a.solids.size(); ++i) {
@@ -221,6 +222,35 @@ TEST_F(Include, AnEmptyListIncludesNothing) {
   EXPECT_THAT(error_of("inclde: [{file: piece.yaml}]\n"), HasSubstr("where does the robot start"));
   EXPECT_THAT(error_of("maze: |\n  +---+\n  |S.\n  +---+\ninclde: [{file: a}]\n"), HasSubstr("did you mean 'include'"));
   EXPECT_THAT(error_of("include: [{file: piece.yaml, at: [1e300, 0]}]\n"), HasSubstr("in whole pallets"));
+}
+
+/// From a piece, turned, through the composed text and back.
+TEST_F(Include, FrictionOfAFloorStaysWithIt) {
+  write("ice.yaml",
+        "maze: |\n  +---+---+\n  |S.   . |\n  +---+---+\n"
+        "floors:\n  - {x_m: 1.8, y_m: 0.6, length_m: 0.5, friction: 0.1}\n"
+        "elements:\n  - {type: half_ramp, x_m: 1.8, y_m: 0.6, friction: 0.2}\n");
+  const Arena arena = load("include:\n  - {file: ice.yaml, turn: 180}\n");
+  ASSERT_EQ(arena.floor.size(), 4u);
+  EXPECT_EQ(arena.floor[0].friction, std::nullopt);
+  EXPECT_EQ(arena.floor[2].friction, 0.1);
+  EXPECT_EQ(arena.floor[3].friction, 0.2);
+  expect_same(arena, parse_arena(self_contained_arena(folder_ + "/arena.yaml"), "again"), 0.0);
+}
+
+/// The outermost file says how large a pallet is; the ones between need not.
+TEST_F(Include, SettingsHoldForPiecesOfPieces) {
+  write("leaf.yaml",
+        "maze: |\n  +---+---+\n  |S.  A. |\n  +---+---+\n"
+        "boxes:\n  - {cell: A, height_m: 0.3}\nwalls:\n  - {from_m: [0.1, 0.2], to_m: [0.5, 0.2]}\n");
+  write("middle.yaml", "include:\n  - {file: leaf.yaml, at: [1, 0], turn: 90}\n");
+  const std::string settings = "cell_m: 2.0\nwall_height_m: 0.9\n";
+  const Arena nested = load(settings + "include:\n  - {file: middle.yaml, at: [0, 1]}\n");
+  const Arena direct = load(settings + "include:\n  - {file: leaf.yaml, at: [1, 1], turn: 90}\n");
+  expect_same(nested, direct, 1e-12);
+  EXPECT_NEAR(nested.start.x, 3.0, 1e-12);
+  write("sizes.yaml", settings);
+  expect_same(load("include:\n  - {file: middle.yaml, at: [0, 1]}\n  - {file: sizes.yaml}\n"), direct, 1e-12);
 }
 
 /// Doubling at each level would make 2^30 pieces.

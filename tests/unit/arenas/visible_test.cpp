@@ -63,6 +63,28 @@ TEST(Visible, NothingFartherThanTheRangeCounts) {
   EXPECT_EQ(view.at(5.5, 0.6), Occupancy::Unknown);
 }
 
+/// The robot's middle has 0.15 m to either side there: wherever the cells lie, it looks from all along the way.
+TEST(Visible, ANarrowCorridorIsSeenWhole) {
+  for (int i = 0; i < 8; ++i) {
+    const double at = 1.0 + i * 0.05625;  // eight phases of a cell, and of the 0.4 m between poses
+    const auto wall = [&](double x0, double y0, double x1, double y1) {
+      const auto point = [&](double x, double y) {
+        return "[" + std::to_string(at + x) + ", " + std::to_string(at + y) + "]";
+      };
+      return "  - {from_m: " + point(x0, y0) + ", to_m: " + point(x1, y1) + "}\n";
+    };
+    const View view(
+        parse_arena("floors: [{x_m: 4, y_m: 4, length_m: 8, width_m: 8}]\nstart: {x_m: " + std::to_string(at + 0.6) +
+                        ", y_m: " + std::to_string(at + 0.6) + "}\nwalls:\n" + wall(0, 0, 1.2, 0) + wall(0, 0, 0, 1.2) +
+                        wall(0, 1.2, 1.2, 1.2) + wall(1.2, 0, 1.2, 0.3) + wall(1.2, 0.95, 1.2, 1.2) +
+                        wall(1.2, 0.3, 4.65, 0.3) + wall(1.2, 0.95, 4.0, 0.95) + wall(4.65, 0.3, 4.65, 5.0) +
+                        wall(4.0, 0.95, 4.0, 5.0) + wall(4.0, 5.0, 4.65, 5.0),
+                    "corridor"));
+    EXPECT_EQ(count(view.known, Occupancy::Free), count(view.truth, Occupancy::Free)) << "at " << at;
+    EXPECT_EQ(view.at(at + 4.3, at + 4.9), Occupancy::Free) << "at " << at;
+  }
+}
+
 /// In a yellow arena everything can be reached, so all but slivers behind victims' boxes and in corners is seen.
 TEST(Visible, AYellowArenaIsSeenAlmostWhole) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
