@@ -36,25 +36,30 @@ bool ends_with(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-bool same_content(const fs::path& a, const fs::path& b) {
-  std::error_code error;
-  if (fs::file_size(a, error) != fs::file_size(b, error) || error) return false;
-  std::ifstream first(a, std::ios::binary);
-  std::ifstream second(b, std::ios::binary);
-  return std::equal(std::istreambuf_iterator<char>(first), {}, std::istreambuf_iterator<char>(second));
+bool is_image_beside(const fs::path& folder, const std::string& stem) {
+  return std::any_of(kFormats.begin(), kFormats.end(),
+                     [&](const char* format) { return fs::is_regular_file(folder / (stem + format)); });
+}
+
+/// A run, a scoring or a league has written into the folder.
+bool has_results(const fs::path& folder) {
+  return fs::exists(folder / "score.json") || fs::exists(folder / "league.csv");
 }
 
 /// The truth, or a picture that a run, a scoring or an arena file leaves.
 bool is_no_map(const fs::path& path, const fs::path& truth) {
   const std::string stem = path.stem().string();
-  for (const char* name : {"truth", "overlay", "error", "arena"})
-    if (stem == name) return true;
-  for (const char* end : {"-truth", "_truth", "-visible", "-overlay", "-error"})
-    if (ends_with(stem, end)) return true;
+  const fs::path folder = path.parent_path();
+  if (stem == "truth" || stem == "overlay") return true;
+  if ((stem == "error" || stem == "arena") && (has_results(folder) || is_image_beside(folder, "map"))) return true;
+  for (const std::string end : {"-truth", "_truth", "-visible", "-overlay", "-error"})
+    if (ends_with(stem, end) &&
+        (has_results(folder) || is_image_beside(folder, stem.substr(0, stem.size() - end.size()))))
+      return true;
   std::error_code error;
-  if (stem == truth.stem() && fs::equivalent(path.parent_path(), truth.parent_path() / ".", error)) return true;
-  if (path.filename() == truth.filename() && same_content(path, truth)) return true;
-  return fs::exists(path.parent_path() / (stem + "-truth.tif"), error);
+  if (stem == truth.stem() && fs::equivalent(folder, truth.parent_path() / ".", error)) return true;
+  if (path.filename() == truth.filename() && same_content(path.string(), truth.string())) return true;
+  return fs::exists(folder / (stem + "-truth.tif"), error);
 }
 
 struct MapsInFolder {
@@ -94,6 +99,14 @@ LeagueFiles team_in(const fs::path& folder, const std::map<std::string, fs::path
 }
 
 }  // namespace
+
+bool same_content(const std::string& a, const std::string& b) {
+  std::error_code error;
+  if (fs::file_size(a, error) != fs::file_size(b, error) || error) return false;
+  std::ifstream first(a, std::ios::binary);
+  std::ifstream second(b, std::ios::binary);
+  return std::equal(std::istreambuf_iterator<char>(first), {}, std::istreambuf_iterator<char>(second));
+}
 
 LeagueFolder find_league(const std::string& folder, const std::string& truth) {
   if (!fs::is_directory(folder))

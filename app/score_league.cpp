@@ -103,6 +103,8 @@ class League {
     entry.victims_from = reported.from;
     entry.symbols = reported.symbols;
     entry.score = scoring::score_map(map, truth_.grid, config_);
+    if (same_content(files.map, truth_.path))
+      entry.score.note += std::string(entry.score.note.empty() ? "" : "; ") + "a copy of the truth, byte for byte";
     entry.points = victim_points(map, truth_.grid, entry.score, reported, truth_.victims);
     if (!arguments_.out.empty()) draw(entry, map, pictures);
   }

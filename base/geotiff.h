@@ -14,6 +14,7 @@ struct RgbImage {
   int height = 0;
   std::vector<std::uint8_t> rgb;
   std::vector<std::uint8_t> alpha;  ///< opacity of each pixel, already worked into `rgb`; empty: all opaque
+  std::uint32_t white = 0;          ///< deep sample taken for white because it is the brightest; 0: a usual one
   RgbImage() = default;
   RgbImage(int w, int h) : width(w), height(h), rgb(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * 3u) {}
   std::size_t index(int x, int y) const {

@@ -44,6 +44,7 @@ class Reader {
     RgbImage image(static_cast<int>(layout_.width), static_cast<int>(layout_.height));
     if (is_simple()) {
       find_white();
+      if (is_odd_white(white_, (1u << layout_.bits) - 1)) image.white = white_;
       read_tables();
       read_chunks(image);
     } else {

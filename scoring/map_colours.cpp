@@ -13,6 +13,8 @@ ClassImage classify(const RgbImage& image) {
   out.is_league = is_league_map(image);
   const LabelImage labels = out.is_league ? classify_league(image) : classify_grey(image);
   out.recognised = labels.recognised;
+  if (image.white > 0)
+    out.recognised += ", scaled so that the brightest sample, " + std::to_string(image.white) + ", is white";
   cv::Mat classes = labels.classes;
   if (!image.alpha.empty()) classes.setTo(static_cast<int>(Occupancy::Unknown), transparent_pixels(image));
   clear_canvas_corners(classes);

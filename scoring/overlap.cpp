@@ -100,6 +100,19 @@ std::vector<WallOverlap::Hit> WallOverlap::map_hits(const Rigid& T_truth_map) co
   return out;
 }
 
+/// A truth that was seen from one side knows no more of a wall than its face: map walls that begin there and are no
+/// thicker than the map's walls are, to a cell, are the same wall.
+std::vector<WallOverlap::Hit> WallOverlap::ignored_hits(const Rigid& T_truth_map) const {
+  std::vector<Hit> out;
+  const double same_wall = map_.half_thickness + truth_.grid->resolution();
+  for (const mrpt::math::TPoint2D& p_map : map_.walls) {
+    const mrpt::math::TPoint2D p_truth = T_truth_map.forward(p_map);
+    if (!known(*truth_.grid, p_truth))
+      out.push_back({p_truth, truth_.field.distance(p_truth) <= same_wall ? 1.0 : truth_.kernel(p_truth, tau_)});
+  }
+  return out;
+}
+
 std::vector<WallOverlap::Hit> WallOverlap::truth_hits(const Rigid& T_truth_map) const {
   std::vector<Hit> out;
   visit_truth(T_truth_map, [&](const mrpt::math::TPoint2D& p, double k) { out.push_back({p, k}); });

@@ -40,8 +40,8 @@ class WallOverlap {
     mrpt::math::TPoint2D p_truth;
     double k = 0.0;
   };
-  std::size_t map_walls() const { return map_.walls.size(); }     ///< cells, also those that do not count
   std::vector<Hit> map_hits(const Rigid& T_truth_map) const;      ///< of the map's walls that count
+  std::vector<Hit> ignored_hits(const Rigid& T_truth_map) const;  ///< of those that do not: the truth is unknown there
   std::vector<Hit> truth_hits(const Rigid& T_truth_map) const;    ///< of the truth's walls
   double map_length_of_cell() const { return map_.cell_length; }  ///< metres of wall that one cell stands for
   double truth_length_of_cell() const { return truth_.cell_length; }

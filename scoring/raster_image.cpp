@@ -5,35 +5,18 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <string_view>
 #include <vector>
 
 #include "base/error.h"
 #include "base/sample_range.h"
+#include "scoring/image_damage.h"
 
 namespace rubble::scoring {
 namespace {
 
-/// Walks the chunks of a PNG: true if the file ends before the last one. libpng would say so on stderr, in its own
-/// words.
-bool is_cut_png(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::array<char, 8> head{};
-  if (!file.read(head.data(), 8) || std::string_view(head.data(), 8) != "\x89PNG\r\n\x1a\n") return false;
-  const std::streamoff size = file.seekg(0, std::ios::end).tellg();
-  for (std::streamoff at = 8; at + 12 <= size;) {
-    file.seekg(at);
-    if (!file.read(head.data(), 8)) return true;
-    if (std::string_view(head.data() + 4, 4) == "IEND") return false;
-    std::streamoff length = 0;
-    for (std::size_t i = 0; i < 4; ++i) length = 256 * length + static_cast<unsigned char>(head[i]);
-    at += 12 + length;
-  }
-  return true;
-}
-
 /// 16-bit channels as 8 bit, each by the range it uses: colours by theirs, the opacity by its own.
-cv::Mat narrowed(const cv::Mat& image) {
+/// `white`: set to the sample that stands for it where that is no usual one.
+cv::Mat narrowed(const cv::Mat& image, std::uint32_t& white) {
   std::vector<cv::Mat> channels;
   cv::split(image, channels);
   const std::size_t colours = channels.size() == 4 ? 3 : channels.size();
@@ -47,8 +30,9 @@ cv::Mat narrowed(const cv::Mat& image) {
     return static_cast<std::uint32_t>(most);
   };
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    const std::uint32_t most = i < colours ? most_of(0, colours) : most_of(i, i + 1);
-    channels[i].convertTo(channels[i], CV_8U, 255.0 / white_of(most, 65535));
+    const std::uint32_t here = white_of(i < colours ? most_of(0, colours) : most_of(i, i + 1), 65535);
+    if (i == 0 && is_odd_white(here, 65535)) white = here;
+    channels[i].convertTo(channels[i], CV_8U, 255.0 / here);
   }
   cv::Mat out;
   cv::merge(channels, out);
@@ -78,27 +62,40 @@ void check_image_size(const std::string& path, std::int64_t width, std::int64_t 
                      " pixels is too large for a map; scale it down to at most 10000 x 10000");
 }
 
-cv::Mat read_raster(const std::string& path) {
+namespace {
+
+cv::Mat read_raster(const std::string& path, std::uint32_t& white) {
   if (!std::ifstream(path)) throw InputError(path + ": cannot be opened; does the file exist?");
-  if (is_cut_png(path)) throw InputError(path + ": the PNG is cut short; copy the file again");
+  if (is_cut_short(path)) throw InputError(path + ": the image is cut short; copy the file again");
   cv::Mat image;
+  const StderrCapture capture;
   try {
     image = cv::imread(path, cv::IMREAD_UNCHANGED);
   } catch (const cv::Exception&) {
     throw InputError(path + ": the image cannot be decoded; is it complete, and at most 10000 x 10000 pixels?");
   }
-  if (image.empty()) throw InputError(path + ": not an image that can be read (PNG, PGM, BMP, JPEG), or cut short");
+  if (image.empty()) throw InputError(path + ": not an image that can be read (PNG, PGM, BMP, JPEG), or damaged");
+  if (tells_of_damage(capture.text())) throw InputError(path + ": the image is damaged; copy the file again");
   check_image_size(path, image.cols, image.rows);
   if (image.depth() == CV_16U)
-    image = narrowed(image);
+    image = narrowed(image, white);
   else if (image.depth() != CV_8U)
     throw InputError(path + ": pixels must have 8 or 16 bit a channel; convert the image");
   return image;
 }
 
+}  // namespace
+
+cv::Mat read_raster(const std::string& path) {
+  std::uint32_t white = 0;
+  return read_raster(path, white);
+}
+
 RgbImage read_rgb(const std::string& path) {
-  const cv::Mat image = read_raster(path);
+  std::uint32_t white = 0;
+  const cv::Mat image = read_raster(path, white);
   RgbImage out(image.cols, image.rows);
+  out.white = white;
   cv::Mat view(image.rows, image.cols, CV_8UC3, out.rgb.data());
   const int channels = image.channels();
   if (channels == 1)

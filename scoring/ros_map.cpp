@@ -6,6 +6,8 @@
 
 #include "base/error.h"
 #include "base/strict_yaml.h"
+#include "scoring/league_colours.h"
+#include "scoring/map_colours.h"
 #include "scoring/raster_image.h"
 
 namespace rubble::scoring {
@@ -27,6 +29,13 @@ OccupancyGrid read_ros_map(const std::string& yaml_path) {
   const cv::Mat image = read_raster(image_path.string());
   OccupancyGrid grid(GridFrame{image.cols, image.rows, resolution, origin.empty() ? 0.0 : origin[0],
                                origin.empty() ? 0.0 : origin[1]});
+  if (image.channels() >= 3) {
+    const RgbImage coloured = read_rgb(image_path.string());
+    if (is_league_map(coloured)) {
+      grid.cells() = classify(coloured).classes.cells();
+      return grid;
+    }
+  }
   const int channels = image.channels();
   const int colours = channels >= 3 ? 3 : 1;
   for (int y = 0; y < image.rows; ++y) {

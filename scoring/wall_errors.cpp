@@ -35,9 +35,9 @@ double collect(const std::vector<WallOverlap::Hit>& hits, double cell_length, do
 WallErrors wall_errors(const WallOverlap& walls, const Rigid& T_truth_map, std::size_t places) {
   WallErrors out;
   Windows windows;
-  const std::vector<WallOverlap::Hit> of_map = walls.map_hits(T_truth_map);
-  out.ignored_m = static_cast<double>(walls.map_walls() - of_map.size()) * walls.map_length_of_cell();
-  out.phantom_m = collect(of_map, walls.map_length_of_cell(), &WrongPlace::phantom_m, windows);
+  for (const WallOverlap::Hit& hit : walls.ignored_hits(T_truth_map))
+    out.ignored_m += (1.0 - hit.k) * walls.map_length_of_cell();
+  out.phantom_m = collect(walls.map_hits(T_truth_map), walls.map_length_of_cell(), &WrongPlace::phantom_m, windows);
   out.missing_m = collect(walls.truth_hits(T_truth_map), walls.truth_length_of_cell(), &WrongPlace::missing_m, windows);
   for (const auto& [window, place] : windows)
     if (place.wrong_m() >= kWorthSaying) out.worst.push_back(place);

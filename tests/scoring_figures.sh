@@ -33,12 +33,11 @@ need_program() {
 
 # bench PROGRAM FILTER [option...]: runs it; `value` then reads its counters and times.
 bench() {
-  local program=$1 filter=$2 out=/dev/null
+  local program=$1 filter=$2
   shift 2
   need_program "bench/$program"
-  ((verbose)) && out=/dev/stdout
   "$build/bench/$program" --benchmark_filter="$filter" --benchmark_out="$work/result.json" \
-    --benchmark_out_format=json "$@" >$out 2>"$work/errors.txt" || stop "$program: $(tail -1 "$work/errors.txt")"
+    --benchmark_out_format=json "$@" >&3 2>"$work/errors.txt" || stop "$program: $(tail -1 "$work/errors.txt")"
   local error
   error=$(python3 - "$work/result.json" <<'PYTHON'
 import json, sys
@@ -157,6 +156,7 @@ for argument in "$@"; do
   esac
 done
 ((${#figures[@]})) || figures=(alignment strangers rooms ranking speed)
+if ((verbose)); then exec 3>&1; else exec 3>/dev/null; fi
 command -v python3 >/dev/null || stop "python3 is missing: apt-get install python3"
 for figure in "${figures[@]}"; do "$figure"; done
 ((misses == 0)) || echo "$misses of the figures missed their bounds"

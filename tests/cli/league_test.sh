@@ -70,6 +70,7 @@ cp $truth mixed/truth.tif; cp $truth mixed/$(basename $truth); cp $truth mixed/g
 for name in overlay error arena 001-x-overlay; do cp "$(ls judged/*-overlay.png | head -1)" mixed/$name.png; done
 cp $truth mixed/run/map.tif; cp $truth mixed/run/truth.tif; cp mixed/error.png mixed/run/error.png
 cp mixed/overlay.png mixed/old/001-x-overlay.png; cp mixed/error.png mixed/judged/error.png
+cp judged/league.csv mixed; cp judged/league.csv mixed/old; touch mixed/judged/score.json
 "$rubble" score --league mixed $truth --align rooms,features --warp --out mixed_out >table.txt || fail "mixed league"
 [[ $(tail -n +2 mixed_out/league.csv | cut -d, -f2 | sort | tr '\n' ' ') == 'good run ' ]] ||
   fail "not only the teams: $(cut -d, -f2 mixed_out/league.csv | tr '\n' ' ')"
@@ -85,6 +86,16 @@ PY
 "$rubble" score --league mixed $truth --align akaze --out akaze_out >/dev/null || fail "league by akaze"
 ! cut -d, -f1-40 akaze_out/league.csv | grep -q ',walls,' || fail "akaze was not asked: $(cat akaze_out/league.csv)"
 expect_exit 2 '--align' "$rubble" score --league mixed $truth --align magic
+# Names that only look like pictures of runs take part; a copy of the truth is said to be one, and ranked.
+mkdir named
+for name in search-and-error error arena ground_truth half-visible copied x; do cp maps/coarse.tif named/$name.tif; done
+cp $truth named/copied.tif; cp "$(ls judged/*-overlay.png | head -1)" named/x-error.png
+"$rubble" score --league named $truth --out named_out >table.txt || fail "named league"
+[[ $(tail -n +2 named_out/league.csv | cut -d, -f2 | sort | tr '\n' ' ') == 'arena copied error ground_truth half-visible search-and-error x ' ]] ||
+  fail "not all teams: $(cat table.txt)"
+grep -q "^no team's maps: x-error.png$" table.txt || fail "x-error.png is no map of a team: $(cat table.txt)"
+[[ $(grep -c 'a copy of the truth' named_out/league.csv) == 1 ]] && grep -q '^1,copied,.*a copy of the truth' named_out/league.csv ||
+  fail "the copy of the truth is not said to be one: $(cat named_out/league.csv)"
 mkdir none && cp $truth none/truth.tif
 expect_exit 3 'truth.tif' "$rubble" score --league none $truth
 

@@ -83,8 +83,32 @@ done
 # What cannot be read.
 head -c $(($(stat -c %s "$truth") / 2)) "$truth" >cut.tif
 expect_exit 3 'cut.tif' "$rubble" score cut.tif "$truth"
-head -c $(($(stat -c %s truth.png) / 2)) truth.png >cut.png
-expect_exit 3 'cut.png' "$rubble" score cut.png "$truth" --resolution 0.05
+gdal_translate -q -of JPEG -co QUALITY=95 "$truth" truth.jpg
+gdal_translate -q -of BMP "$truth" truth.bmp
+gdal_translate -q -b 1 -of PNM "$truth" truth.pgm
+for type in png jpg bmp pgm ppm; do
+  for share in 10 50 90; do
+    head -c $(($(stat -c %s truth.$type) * share / 100)) truth.$type >cut.$type
+    expect_exit 3 "cut.$type" "$rubble" score cut.$type "$truth" --resolution 0.05
+  done
+done
+python3 <<'PY'
+for name in "truth.png", "truth.jpg":
+    data = bytearray(open(name, "rb").read())
+    open(name.replace("truth", "trailing"), "wb").write(data + b"anything" * 20)
+    data[len(data) // 2 : len(data) // 2 + 40] = b"\xff\x17" * 20
+    open(name.replace("truth", "damaged"), "wb").write(data)
+data = open("truth.jpg", "rb").read()
+open("endless.jpg", "wb").write(data[:-2])
+# Coded pixels of which a piece is gone: every marker is in its place.
+open("short.jpg", "wb").write(data[: len(data) // 2] + data[len(data) // 2 + 3000 :])
+PY
+for map in damaged.png damaged.jpg endless.jpg short.jpg; do
+  expect_exit 3 "$map" "$rubble" score $map "$truth" --resolution 0.05
+done
+expect_score "j['aligned']" trailing.png "$truth" --resolution 0.05
+expect_score "j['aligned']" trailing.jpg "$truth" --resolution 0.05
+[[ ! -s err.txt ]] || fail "a whole JPEG is complained of: $(cat err.txt)"
 printf 'P5 20000 20000 255\n' >huge.pgm
 head -c 400000000 /dev/zero >>huge.pgm
 expect_exit 3 '20000 x 20000' "$rubble" score huge.pgm "$truth" --resolution 0.05

@@ -11,4 +11,20 @@ done
 expect_exit 2 "unknown figure 'beauty': use alignment, strangers, rooms, ranking, speed" figures beauty
 RUBBLE_BUILD=$work expect_exit 2 "scoring_ranking_bench is missing: cmake --preset release && ninja" figures ranking
 
+# -v adds what a benchmark prints and loses nothing that was written before, also in a file.
+mkdir -p build/bench
+cat >build/bench/scoring_ranking_bench <<'BENCH'
+#!/bin/bash
+for argument in "$@"; do [[ $argument == --benchmark_out=* ]] && out=${argument#*=}; done
+echo '{"benchmarks": [{"run_name": "BM_RankPairs", "pairs": 200, "right": 200},
+  {"run_name": "BM_RankAcrossKinds", "maps": 1, "spearman_score": -1, "spearman_psi": 1}]}' >"$out"
+echo "table of the benchmark"
+BENCH
+chmod +x build/bench/scoring_ranking_bench
+RUBBLE_BUILD=$work/build figures -v ranking ranking >log.txt || fail "ranking ended with $?"
+[[ $(grep -c '^table of the benchmark' log.txt) == 2 && $(grep -c '^ok .*in the right order' log.txt) == 2 ]] ||
+  fail "-v loses its own lines: $(cat log.txt)"
+RUBBLE_BUILD=$work/build figures ranking >log.txt || fail "ranking ended with $?"
+! grep -q '^table' log.txt || fail "the tables are printed without -v"
+
 finish

@@ -207,18 +207,31 @@ TEST_F(LoadMap, DeepImagesAreScaledByTheRangeTheyUse) {
   const OccupancyGrid grid = maze({5, 4, 2});
   const cv::Mat grey = grey_image(grid, 0, 205, 254);
   const cv::Mat league = league_image(grid, false);
-  for (const double factor : {1.0, 4.0, 16.0, 257.0})
+  for (const double factor : {1.0, 260.0 / 254.0, 4.0, 16.0, 30000.0 / 254.0, 50000.0 / 254.0, 257.0})
     for (const char* name : {"deep.png", "deep.pgm"}) {
       SCOPED_TRACE(std::string(name) + " times " + std::to_string(factor));
       cv::Mat deep;
       grey.convertTo(deep, CV_16U, factor);
       cv::imwrite(path(name), deep);
-      EXPECT_EQ(agreement(load_map(path(name), {0.05}).grid, grid), 1.0);
+      const LoadedMap map = load_map(path(name), {0.05});
+      EXPECT_EQ(agreement(map.grid, grid), 1.0);
+      EXPECT_EQ(map.recognised.find("brightest") != std::string::npos,
+                factor != 1.0 && factor != 4.0 && factor != 16.0 && factor != 257.0)
+          << map.recognised;
       if (std::string(name) != "deep.png") continue;
       league.convertTo(deep, CV_16U, factor == 1.0 ? 1.0 : 257.0);
       cv::imwrite(path(name), deep);
       EXPECT_EQ(agreement(load_map(path(name), {0.05}).grid, grid), 1.0);
     }
+}
+
+TEST_F(LoadMap, RosMapsInLeagueColoursAreReadByThese) {
+  const OccupancyGrid grid = maze({5, 4, 2});
+  text("map.yaml", "image: map.png\nresolution: 0.05\norigin: [-1, 2, 0]\n");
+  cv::imwrite(path("map.png"), league_image(grid, false));
+  const OccupancyGrid read = load_map(path("map.yaml")).grid;
+  EXPECT_EQ(agreement(read, grid), 1.0);
+  EXPECT_EQ(read.frame().x0, -1.0);
 }
 
 TEST_F(LoadMap, TransparentPixelsAreUnknown) {
