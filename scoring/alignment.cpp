@@ -10,6 +10,7 @@
 #include "scoring/matching.h"
 #include "scoring/resample.h"
 #include "scoring/room_hypotheses.h"
+#include "scoring/specks.h"
 #include "scoring/trust.h"
 
 namespace rubble::scoring {
@@ -171,7 +172,9 @@ std::string names_of(AlignBy methods) {
 }
 
 Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config) {
-  Aligner aligner(map, truth, config);
+  const OccupancyGrid clean_map = without_specks(map);
+  const OccupancyGrid clean_truth = without_specks(truth);
+  Aligner aligner(clean_map, clean_truth, config);
   if (!aligner.usable()) {
     Alignment out;
     out.note = "not aligned: one of the maps has too few walls to fix a pose";
