@@ -94,8 +94,8 @@ void BM_RoomHypotheses(benchmark::State& state) {
   double count = 0.0;
   for (auto _ : state) {
     for (const LabelledPair& pair : pairs) {
-      const auto found = room_hypotheses(maps.at(pair.map_a), maps.at(pair.map_b));
-      const auto right = [&](const RigidHypothesis& h) {
+      const std::vector<PoseGuess> found = propose_by_rooms(maps.at(pair.map_a), maps.at(pair.map_b)).guesses;
+      const auto right = [&](const PoseGuess& h) {
         return mean_error(pair, h.T_truth_map) <= 2.0 * allowed_error(pair);
       };
       first += !found.empty() && right(found.front()) ? 1 : 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "scoring/matching.h"
 #include "scoring/resample.h"
 #include "scoring/room_hypotheses.h"
+#include "scoring/specks.h"
 #include "scoring/trust.h"
 
 namespace rubble::scoring {
@@ -17,6 +19,7 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
+constexpr double kTooWide = 10.0;  // walls so many times as wide as the truth's belong to something else
 constexpr WallMatch::Stiffness kSoft = {0.0, 0.0005, 0.0005, 0.001};
 
 /// Of the fits that belong to the best pose, the one with most walls within a metre and least contradicted: a bent map
@@ -53,6 +56,8 @@ class Aligner {
       : map_(map), truth_(truth), config_(config), match_(map, truth, config.search.reach, config.search.max_points) {}
 
   bool usable() const { return match_.usable(); }
+  /// How many times as wide as the truth's walls the map's are.
+  double times_as_wide() const { return match_.map_extent() / match_.truth_extent(); }
 
   /// `method` is a union of methods, not Auto.
   Alignment by(AlignBy method) {
@@ -62,12 +67,12 @@ class Aligner {
     const auto best =
         std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) { return may_win(h, method); });
     if (best == hypotheses.end()) {
-      out.note = "not aligned: no pose was proposed";
+      out.note = "not aligned: no pose was proposed" + about_rooms();
       return out;
     }
     const Trust trust = judge(best->wide, best->tight, describe(*best, hypotheses, out));
     out.aligned = trust.trusted;
-    out.note = trust.note;
+    out.note = trust.trusted ? trust.note : trust.note + about_rooms();
     out.T_walls = match_.refine(best->T_best, 0.1, 20);
     out.T_walls.phi = wrap_angle(out.T_walls.phi);
     out.T_truth_map = trust.tight ? out.T_walls : fit_to_the_whole(*best, hypotheses, match_);
@@ -85,10 +90,18 @@ class Aligner {
       if (!by_features_) by_features_ = propose_by_features(map_, truth_, config_.feature_kind);
       add(*by_features_);
     }
-    if (includes(method, AlignBy::Rooms))
-      add(config_.rooms ? config_.rooms(map_, truth_) : propose_by_rooms(map_, truth_));
+    if (!includes(method, AlignBy::Rooms)) return out;
+    if (config_.rooms) {
+      add(config_.rooms(map_, truth_));
+    } else {
+      const RoomGuesses by_rooms = propose_by_rooms(map_, truth_);
+      add(by_rooms.guesses);
+      rooms_note_ = by_rooms.note;
+    }
     return out;
   }
+
+  std::string about_rooms() const { return rooms_note_.empty() ? "" : "; " + rooms_note_; }
 
   /// Fills in the contest and returns the rivals.
   Rivals describe(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses, Alignment& out) {
@@ -145,6 +158,7 @@ class Aligner {
   std::optional<std::vector<PoseGuess>> by_walls_;
   std::optional<std::vector<PoseGuess>> by_features_;
   std::optional<Rivals> mirrored_;
+  std::string rooms_note_;
 };
 
 }  // namespace
@@ -158,10 +172,21 @@ std::string names_of(AlignBy methods) {
 }
 
 Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config) {
-  Aligner aligner(map, truth, config);
+  const OccupancyGrid clean_map = without_specks(map);
+  const OccupancyGrid clean_truth = without_specks(truth);
+  Aligner aligner(clean_map, clean_truth, config);
   if (!aligner.usable()) {
     Alignment out;
     out.note = "not aligned: one of the maps has too few walls to fix a pose";
+    return out;
+  }
+  if (const double times = aligner.times_as_wide(); times > kTooWide) {
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "not aligned: the map is %.0f times as wide as the truth; check its resolution, or cut it to the arena", times);
+    Alignment out;
+    out.note = text;
     return out;
   }
   if (config.by != AlignBy::Auto) return aligner.by(config.by);

@@ -11,10 +11,10 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr int kRays = 32;          // of a half disc
-constexpr double kEndCells = 1.5;  // of a passage lie on the walls it joins
-constexpr int kNeighbours = 3;     // a nearest point is nearer than so many on both sides along the wall
-constexpr double kDetour = 1.5;    // along one wall it is so many times further than across a passage
+constexpr int kRays = 32;               // of a half disc
+constexpr double kEndCells = 1.5;       // of a passage lie on the walls it joins
+constexpr std::size_t kNeighbours = 3;  // a nearest point is nearer than so many on both sides along the wall
+constexpr double kDetour = 1.5;         // along one wall it is so many times further than across a passage
 const double kIntoRoom[] = {0.06, 0.2, 0.4, 0.6};  // where the half disc is laid: doors may be as deep as walls [m]
 
 bool before(const cv::Point& a, const cv::Point& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); }
@@ -24,38 +24,67 @@ bool narrower(const Passage& p, const Passage& q) {
   return p.a == q.a ? before(p.b, q.b) : before(p.a, q.a);
 }
 
-/// Appends the passages from one corner to one wall.
-void join(const cv::Mat& floor, const WallCorner& corner, const WallContour& wall, bool same_wall, double narrowest,
-          double widest, std::vector<Passage>& out) {
-  const std::size_t n = wall.size();
-  const auto distance = [&](std::size_t i) { return cv::norm(wall[i % n] - corner.at); };
-  for (std::size_t i = 0; i < n; ++i) {
-    const double d = distance(i);
-    if (d > widest) {  // a step along the wall is sqrt(2) cells at the most
-      i += static_cast<std::size_t>((d - widest) / 1.5);
-      continue;
-    }
-    if (d < narrowest || distance(i + n - 1) == d) continue;
-    bool nearest = true;
-    for (std::size_t j = 1; nearest && j <= kNeighbours; ++j)
-      nearest = distance(i + j) >= d && distance(i + n - j) >= d;
-    if (!nearest) continue;
-    if (same_wall) {
-      const std::size_t along = i > corner.index ? i - corner.index : corner.index - i;
-      if (static_cast<double>(std::min(along, n - along)) < kDetour * d) continue;
-    }
-    if (sees(floor, corner.at, wall[i], kEndCells)) out.push_back({corner.at, wall[i], d});
+/// All points of the walls by where they lie: what is near one place is found without asking the others.
+class NearWalls {
+ public:
+  struct Point {
+    std::size_t wall = 0;
+    std::size_t index = 0;
+  };
+  NearWalls(const std::vector<WallContour>& walls, const cv::Size& floor)
+      : columns_(floor.width / kEdge + 1), buckets_(static_cast<std::size_t>(columns_ * (floor.height / kEdge + 1))) {
+    for (std::size_t w = 0; w < walls.size(); ++w)
+      for (std::size_t i = 0; i < walls[w].size(); ++i)
+        buckets_[static_cast<std::size_t>(walls[w][i].y / kEdge * columns_ + walls[w][i].x / kEdge)].push_back({w, i});
   }
+  /// Calls `visit` for all points in the buckets that a square around `centre` meets.
+  template <class Visit>
+  void around(const cv::Point& centre, int reach, const Visit& visit) const {
+    const int rows = static_cast<int>(buckets_.size()) / columns_;
+    const int last_x = std::min(columns_ - 1, (centre.x + reach) / kEdge);
+    const int last_y = std::min(rows - 1, (centre.y + reach) / kEdge);
+    for (int y = std::max(0, centre.y - reach) / kEdge; y <= last_y; ++y)
+      for (int x = std::max(0, centre.x - reach) / kEdge; x <= last_x; ++x)
+        for (const Point& point : buckets_[static_cast<std::size_t>(y * columns_ + x)]) visit(point);
+  }
+
+ private:
+  static constexpr int kEdge = 32;  // of a bucket [cells]
+  int columns_;
+  std::vector<std::vector<Point>> buckets_;
+};
+
+/// Whether a passage from the corner may end at point `i` of a wall: the nearest there, and no way along the same wall.
+bool may_end(const WallCorner& corner, const WallContour& wall, std::size_t i, bool same_wall, double d) {
+  const std::size_t n = wall.size();
+  const auto distance = [&](std::size_t k) { return cv::norm(wall[k % n] - corner.at); };
+  if (distance(i + n - 1) == d) return false;
+  for (std::size_t j = 1; j <= kNeighbours; ++j)
+    if (distance(i + j) < d || distance(i + kNeighbours * n - j) < d) return false;
+  if (!same_wall) return true;
+  const std::size_t along = i > corner.index ? i - corner.index : corner.index - i;
+  return static_cast<double>(std::min(along, n - along)) >= kDetour * d;
+}
+
+std::vector<WallCorner> corners_of(const std::vector<WallContour>& walls, double resolution, const RoomConfig& config) {
+  const int scale = std::max(3, static_cast<int>(std::lround(config.turn_scale / resolution)));
+  return wall_corners(walls, scale, config.least_turn);
 }
 
 std::vector<Passage> candidates(const cv::Mat& floor, double resolution, const RoomConfig& config) {
   const std::vector<WallContour> walls = wall_contours(floor);
-  const int scale = std::max(3, static_cast<int>(std::lround(config.turn_scale / resolution)));
+  const NearWalls near(walls, floor.size());
+  const double narrowest = config.narrowest / resolution;
+  const double widest = config.widest / resolution;
   std::vector<Passage> out;
-  for (const WallCorner& corner : wall_corners(walls, scale, config.least_turn))
-    for (std::size_t w = 0; w < walls.size(); ++w)
-      join(floor, corner, walls[w], w == corner.contour, config.narrowest / resolution, config.widest / resolution,
-           out);
+  for (const WallCorner& corner : corners_of(walls, resolution, config))
+    near.around(corner.at, static_cast<int>(std::ceil(widest)), [&](const NearWalls::Point& point) {
+      const WallContour& wall = walls[point.wall];
+      const cv::Point& end = wall[point.index];
+      const double d = cv::norm(end - corner.at);
+      if (d < narrowest || d > widest || !may_end(corner, wall, point.index, point.wall == corner.contour, d)) return;
+      if (sees(floor, corner.at, end, kEndCells)) out.push_back({corner.at, end, d});
+    });
   std::sort(out.begin(), out.end(), narrower);
   return out;
 }
@@ -135,6 +164,10 @@ bool is_corridor_end(const cv::Mat& floor, const cv::Mat& clearance, const Passa
 
 void close_passages(cv::Mat& floor, const std::vector<Passage>& passages) {
   for (const Passage& passage : passages) cv::line(floor, passage.a, passage.b, cv::Scalar(0), 1, cv::LINE_4);
+}
+
+std::size_t count_corners(const cv::Mat& floor, double resolution, const RoomConfig& config) {
+  return corners_of(wall_contours(floor), resolution, config).size();
 }
 
 std::vector<Passage> find_passages(const cv::Mat& floor, double resolution, const RoomConfig& config) {

@@ -21,6 +21,9 @@ struct Passage {
 /// Each passage taken is closed before the next is judged, so that of many lines across one door one remains.
 std::vector<Passage> find_passages(const cv::Mat& floor, double resolution, const RoomConfig& config);
 
+/// Corners of the walls, from which passages may begin: time and memory go with them.
+std::size_t count_corners(const cv::Mat& floor, double resolution, const RoomConfig& config);
+
 /// Makes the cells of the passages obstacles; 4-connected lines, so that no step leads across.
 void close_passages(cv::Mat& floor, const std::vector<Passage>& passages);
 

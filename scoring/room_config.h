@@ -27,10 +27,11 @@ struct RoomConfig {
   std::size_t most_cells = 1u << 24;  ///< larger maps are reduced until they have fewer cells
 
   // Passages
-  double turn_scale = 0.3;    ///< a wall's direction is taken over this length on both sides of a corner
-  double least_turn = 0.6;    ///< corners that turn less into the room are none [rad]
-  double narrowest = 0.09;    ///< passages are between this ...
-  double widest = 4.5;        ///< ... and this wide
+  double turn_scale = 0.3;          ///< a wall's direction is taken over this length on both sides of a corner
+  double least_turn = 0.6;          ///< corners that turn less into the room are none [rad]
+  std::size_t most_corners = 2000;  ///< floors with more are no floor plans: they have no rooms
+  double narrowest = 0.09;          ///< passages are between this ...
+  double widest = 4.5;              ///< ... and this wide
   double openness = 0.69;     ///< share of the half disc, as wide as the passage, that is seen from it on either side
   double least_reach = 0.8;   ///< radius of that half disc at the least
   double hall_ratio = 2.1;    ///< a corridor ends where a hall this many times as wide begins

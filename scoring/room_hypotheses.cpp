@@ -160,7 +160,7 @@ RigidHypothesis match_rooms(const std::vector<Room>& map, const std::vector<Room
 
 std::vector<RigidHypothesis> room_hypotheses(const std::vector<Room>& map, const std::vector<Room>& truth,
                                              const RoomMatchConfig& config) {
-  if (map.size() < 2 || truth.size() < 2) return {};
+  if (map.size() < 2 || truth.size() < 2 || too_many(map, truth, config)) return {};
   const Differences difference(map, truth);
   const TPoint2D centre = centre_of(map);
   std::vector<Draft> distinct;
@@ -185,17 +185,29 @@ std::vector<RigidHypothesis> room_hypotheses(const std::vector<Room>& map, const
   return out;
 }
 
-std::vector<RigidHypothesis> room_hypotheses(const OccupancyGrid& map, const OccupancyGrid& truth,
-                                             const RoomMatchConfig& config) {
-  RoomConfig pieces;
-  pieces.openness = kOpennessOfPieces;
-  return room_hypotheses(extract_rooms(map, pieces).rooms, extract_rooms(truth, pieces).rooms, config);
+bool too_many(const std::vector<Room>& map, const std::vector<Room>& truth, const RoomMatchConfig& config) {
+  return std::max(map.size(), truth.size()) > config.most_rooms ||
+         map.size() * truth.size() > config.most_rooms * config.most_rooms / 5;
 }
 
-std::vector<PoseGuess> propose_by_rooms(const OccupancyGrid& map, const OccupancyGrid& truth) {
-  std::vector<PoseGuess> guesses;
-  for (const RigidHypothesis& h : room_hypotheses(map, truth)) guesses.push_back({h.T_truth_map, h.score, "rooms"});
-  return guesses;
+RoomGuesses propose_by_rooms(const OccupancyGrid& map, const OccupancyGrid& truth) {
+  RoomConfig pieces;
+  pieces.openness = kOpennessOfPieces;
+  const RoomMatchConfig config;
+  RoomGuesses out;
+  const Rooms of_map = extract_rooms(map, pieces);
+  if (of_map.too_many_corners || of_map.rooms.size() > config.most_rooms) {
+    out.note = "the map's walls have too many corners for rooms";
+    return out;
+  }
+  const Rooms of_truth = extract_rooms(truth, pieces);
+  if (of_truth.too_many_corners || too_many(of_map.rooms, of_truth.rooms, config)) {
+    out.note = "the maps have too many rooms to compare";
+    return out;
+  }
+  for (const RigidHypothesis& h : room_hypotheses(of_map.rooms, of_truth.rooms, config))
+    out.guesses.push_back({h.T_truth_map, h.score, "rooms"});
+  return out;
 }
 
 }  // namespace rubble::scoring

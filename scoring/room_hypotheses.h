@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPose2D.h>
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct RoomMatchConfig {
   double cap = 2.0;                 ///< C: cost of a room without partner [m^2]
   std::size_t examined = 200;       ///< of all pairs of rooms, those that get the optimal association
   std::size_t most = 24;            ///< hypotheses returned
+  std::size_t most_rooms = 100;     ///< in either map, and a fifth of its square in pairs of rooms
   double distinct_shift = 0.6;      ///< poses nearer than this and ...
   double distinct_turn = 0.05;      ///< ... turned by less are one [m, rad]
 };
@@ -39,16 +41,21 @@ mrpt::math::TPose2D fit_rigid(const std::vector<std::pair<mrpt::math::TPoint2D, 
 RigidHypothesis match_rooms(const std::vector<Room>& map, const std::vector<Room>& truth,
                             const mrpt::math::TPose2D& T_truth_map, const RoomMatchConfig& config = {});
 
+/// More rooms than the time for all their pairs allows.
+bool too_many(const std::vector<Room>& map, const std::vector<Room>& truth, const RoomMatchConfig& config = {});
+
 /// Poses that lay two rooms of the map on two similar rooms of the truth, all such pairs tried, refitted to every room
-/// that then has a partner; best first. Needs two rooms in either map, else none.
+/// that then has a partner; best first. Needs two rooms in either map and not too many, else none.
 std::vector<RigidHypothesis> room_hypotheses(const std::vector<Room>& map, const std::vector<Room>& truth,
                                              const RoomMatchConfig& config = {});
 
-/// The same from the maps themselves, cut into smaller pieces than rooms, which partial maps share more often.
-std::vector<RigidHypothesis> room_hypotheses(const OccupancyGrid& map, const OccupancyGrid& truth,
-                                             const RoomMatchConfig& config = {});
+struct RoomGuesses {
+  std::vector<PoseGuess> guesses;
+  std::string note;  ///< why rooms were not compared; empty: they were
+};
 
-/// The same as guesses for the alignment.
-std::vector<PoseGuess> propose_by_rooms(const OccupancyGrid& map, const OccupancyGrid& truth);
+/// The same from the maps themselves, cut into smaller pieces than rooms, which partial maps share more often; as
+/// guesses for the alignment.
+RoomGuesses propose_by_rooms(const OccupancyGrid& map, const OccupancyGrid& truth);
 
 }  // namespace rubble::scoring

@@ -98,6 +98,12 @@ Rooms extract_rooms(const OccupancyGrid& map, const RoomConfig& config) {
   if (map.cells().empty()) return {};
   const OccupancyGrid grid = at_working_scale(map, config);
   const RoomFloor floor = room_floor(grid, config);
+  if (config.method == RoomMethod::Passages &&
+      count_corners(floor.open, floor.resolution, config) > config.most_corners) {
+    Rooms none;
+    none.too_many_corners = true;
+    return none;
+  }
   RoomRegions regions = config.method == RoomMethod::Passages
                             ? separate(floor, find_passages(floor.open, floor.resolution, config), config)
                             : cluster_rooms(floor, config);

@@ -25,8 +25,9 @@ struct Room {
 };
 
 struct Rooms {
-  std::vector<Room> rooms;     ///< largest first
-  Grid<std::uint16_t> labels;  ///< 0: no room; k: rooms[k - 1]. Cells of the map, or coarser: RoomConfig::finest
+  std::vector<Room> rooms;        ///< largest first
+  bool too_many_corners = false;  ///< more than RoomConfig::most_corners: not looked for
+  Grid<std::uint16_t> labels;     ///< 0: no room; k: rooms[k - 1]. Cells of the map, or coarser: RoomConfig::finest
 };
 
 /// Finds the rooms of a map (section IV.E). Unknown cells count as walls. A map without free cells has no rooms.

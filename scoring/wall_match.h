@@ -70,6 +70,7 @@ class WallMatch {
   const mrpt::math::TPoint2D& map_centre() const { return map_.centre; }
   /// Twice the RMS distance of the map's walls from their centre [m].
   double map_extent() const { return map_.extent; }
+  double truth_extent() const { return truth_.extent; }
 
  private:
   static constexpr double kLeastBreadth = 0.4;      // [m]
