@@ -7,14 +7,15 @@ namespace rubble {
 
 /// The value that stands for white in samples that could reach `nominal` but of which the largest is `most`. Programs
 /// that store a picture in 16 bits often keep its 0..255 as they are, or the 10, 12 or 14 bits of a camera. Where the
-/// largest is less than 0.8 of each of these (free or unknown ground of any map is brighter), it is white itself.
-constexpr std::uint32_t white_of(std::uint32_t most, std::uint32_t nominal) {
+/// largest is less than 0.78 of each of these (free or unknown ground of any map is brighter), it is white itself.
+/// Not so with `is_opacity`: nothing need be opaque.
+constexpr std::uint32_t white_of(std::uint32_t most, std::uint32_t nominal, bool is_opacity = false) {
   constexpr std::array<std::uint32_t, 4> kUsual{255, 1023, 4095, 16383};
   if (most == 0) return nominal;
   std::uint32_t white = nominal;
   for (const std::uint32_t usual : kUsual)
     if (most <= usual && usual < white) white = usual;
-  return 5 * most < 4 * white ? most : white;
+  return !is_opacity && 100 * most < 78 * white ? most : white;
 }
 
 /// White is no usual value but the brightest sample there is.

@@ -142,7 +142,7 @@ class Reader {
       });
     });
     if (layout_.photometric != PHOTOMETRIC_PALETTE) white_ = white_of(brightest, white_);
-    opaque_ = white_of(most_opaque, opaque_);
+    opaque_ = white_of(most_opaque, opaque_, true);
   }
 
   /// The 8-bit value of every sample value, and the colours of a palette.

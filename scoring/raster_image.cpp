@@ -30,7 +30,7 @@ cv::Mat narrowed(const cv::Mat& image, std::uint32_t& white) {
     return static_cast<std::uint32_t>(most);
   };
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    const std::uint32_t here = white_of(i < colours ? most_of(0, colours) : most_of(i, i + 1), 65535);
+    const std::uint32_t here = white_of(i < colours ? most_of(0, colours) : most_of(i, i + 1), 65535, i >= colours);
     if (i == 0 && is_odd_white(here, 65535)) white = here;
     channels[i].convertTo(channels[i], CV_8U, 255.0 / here);
   }
