@@ -18,8 +18,8 @@ struct ReportedVictims {
   std::size_t symbols = 0;            ///< recognised on the map, also where a list was given
 };
 
-/// Those of the list, if one is given (not empty), else those drawn on the map. A league list on a map that does not say
-/// where the robot started cannot be laid on it: those drawn are taken, and a line on stderr says so.
+/// Those of the list, if one is given (not empty), else those drawn on the map. A league list on a map that does not
+/// say where the robot started cannot be laid on it: those drawn are taken, and a line on stderr says so.
 ReportedVictims reported_victims(const scoring::LoadedMap& map, const std::string& csv);
 
 /// The victims there are.
@@ -29,8 +29,8 @@ struct TrueVictims {
 };
 
 /// Those of the list `given`, else of a list beside the truth: TRUTH.csv, X.yaml of X-truth.tif and X-visible.tif,
-/// arena.yaml of truth.tif. An arena's list needs a truth that has its coordinates: beside another it is not taken, given
-/// for another it throws InputError.
+/// arena.yaml of truth.tif. An arena's list needs a truth that has its coordinates: beside another it is not taken,
+/// given for another it throws InputError.
 TrueVictims true_victims(const std::string& truth, scoring::MapOrigin origin, const std::string& given);
 
 /// Points of what was reported; a map that is not aligned earns none. Nothing where either side is not known.
