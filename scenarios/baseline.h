@@ -52,8 +52,8 @@ struct CheckCase {
   std::string detail;  ///< what was found and what was wanted
 };
 
-/// Throws InputError when the baseline is about other scenarios, configurations, seeds (all that is looked at of `runs`,
-/// which need not be made yet) or metrics.
+/// Throws InputError when the baseline is about other scenarios, configurations, seeds (all that is looked at of
+/// `runs`, which need not be made yet) or metrics.
 void require_fit(const Baseline& baseline, const std::vector<RunRecord>& runs);
 
 /// Judges runs against a baseline, and each run against the expectations of its scenario. Only worse medians fail,
