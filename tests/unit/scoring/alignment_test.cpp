@@ -39,11 +39,20 @@ TEST(Alignment, AutoAsksRoomsOnlyWhereWallsAndFeaturesAreRefused) {
   EXPECT_TRUE(clean.aligned) << clean.note;
   EXPECT_EQ(names_of(clean.contest.tried), "walls");
   EXPECT_EQ(rooms.asked, 0);
-  const Alignment stranger = align(hall(22), truth, config);
-  EXPECT_FALSE(stranger.aligned);
-  ASSERT_FALSE(stranger.contest.by_agreement) << "another seed is needed: walls alone decide on this pair";
-  EXPECT_EQ(names_of(stranger.contest.tried), "walls+features+rooms");
-  EXPECT_EQ(rooms.asked, 1);
+  // Of strangers whose pallets are as large some pose agrees to the decimetre by chance, and walls alone decide; these
+  // are larger by an eighth.
+  int asked_for = 0;
+  for (std::uint64_t seed = 22; seed < 40; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const int before = rooms.asked;
+    const Alignment stranger = align(scaled(hall(seed), 1.13), truth, config);
+    EXPECT_FALSE(stranger.aligned);
+    EXPECT_EQ(names_of(stranger.contest.tried), stranger.contest.by_agreement ? "walls" : "walls+features+rooms");
+    EXPECT_EQ(rooms.asked - before, stranger.contest.by_agreement ? 0 : 1);
+    asked_for += rooms.asked - before;
+    if (asked_for == 2) break;
+  }
+  EXPECT_EQ(asked_for, 2);
 }
 
 TEST(Alignment, JoinedMethodsProposeTogether) {
