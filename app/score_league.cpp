@@ -166,10 +166,9 @@ void check(const ScoreArguments& arguments) {
 /// The judge's points of teams that are there, no more than 30 a victim.
 std::map<std::string, double> judge_of(const ScoreArguments& arguments, const Truth& truth,
                                        const std::vector<LeagueFiles>& teams) {
-  constexpr double kMostPerVictim = 30.0;
   std::map<std::string, double> judge;
   if (!arguments.judge.empty()) judge = scoring::read_judge(arguments.judge);
-  const double most = kMostPerVictim * static_cast<double>(truth.victims.victims.size());
+  const double most = scoring::kJudgesMostPerVictim * static_cast<double>(truth.victims.victims.size());
   for (const auto& [team, points] : judge) {
     if (std::none_of(teams.begin(), teams.end(), [&](const LeagueFiles& files) { return files.team == team; }))
       throw InputError(arguments.judge + ": names team '" + team + "', but " + arguments.league +
@@ -182,8 +181,10 @@ std::map<std::string, double> judge_of(const ScoreArguments& arguments, const Tr
   return judge;
 }
 
-/// Pages and pictures of teams from an earlier call: "001-..." with the endings that draw() gives.
+/// Pages and pictures of teams from an earlier call: beside its league.csv, "001-..." with the endings that draw()
+/// gives.
 void remove_old_pages(const std::string& folder) {
+  if (!std::filesystem::exists(folder + "/league.csv")) return;
   std::vector<std::filesystem::path> old;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();

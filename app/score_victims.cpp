@@ -50,11 +50,11 @@ ReportedVictims reported_victims(const scoring::LoadedMap& map, const std::strin
   if (!csv.empty())
     std::fprintf(
         stderr,
-        "rubble: %s: counts from where the robot started, which the map %s; %s, or give a list with the header "
+        "rubble: %s: counts from where the robot started, which the map (%s) does not say; %s, or give a list with the "
+        "header "
         "name,x,y in the map's own metres\n",
         csv.c_str(),
-        map.origin == scoring::MapOrigin::Earth ? "(anchored on Earth) does not say"
-                                                : "(an image without a world file) does not say",
+        map.origin == scoring::MapOrigin::Earth ? "turned or anchored on Earth" : "an image without a world file",
         map.symbols.empty() ? "it is left out" : "the symbols on the map are taken");
   if (!map.symbols.empty()) {
     out.victims = map.symbols;

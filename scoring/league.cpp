@@ -13,8 +13,6 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr double kMostPerVictim = 30.0;
-
 /// What decides, as the table prints it: judged, tenths of points, thousandths of score.
 std::tuple<bool, long, long> merit(const LeagueEntry& entry) {
   if (!entry.error.empty()) return {false, 0, 0};
@@ -94,7 +92,7 @@ std::map<std::string, double> read_judge(const std::string& path) {
       continue;
     }
     const std::optional<double> points = fields.size() == header.size() ? parse_number(fields.back()) : std::nullopt;
-    if (!points || *points < 0.0 || (header.size() == 3 && *points > kMostPerVictim))
+    if (!points || *points < 0.0 || (header.size() == 3 && *points > kJudgesMostPerVictim))
       throw InputError(
           at(path, line_number, 1,
              "needs " + std::to_string(header.size()) + " fields with the points last, from 0 (to 30 for a victim)"));

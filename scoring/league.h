@@ -34,6 +34,8 @@ void rank_league(std::vector<LeagueEntry>& entries);
 /// The ranking as CSV with a header; figures of unjudged entries empty.
 std::string league_csv(const std::vector<LeagueEntry>& entries);
 
+inline constexpr double kJudgesMostPerVictim = 30.0;  ///< points
+
 /// Reads the judge's points: CSV with the header `team,points` or `team,victim,points`; 0 to 30 a victim, rows of one
 /// team added up. Throws InputError with file and line.
 std::map<std::string, double> read_judge(const std::string& path);

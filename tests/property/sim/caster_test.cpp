@@ -197,10 +197,38 @@ TEST(Casters, ASweepSeesAllOfAWideFloorWhileThePlatformTurnsAtItsLimit) {
   EXPECT_GT(floor_hits, 20000);
 }
 
+/// Both casters, their oracle, and faces that they get beside their own.
+struct CastersAndOracle {
+  PlaneCast& plane;
+  SweepCast& sweep;
+  const RayWalk& walk;
+  const ScanFaces* moving;
+};
+
+/// Scans from anywhere in the arena, swept and from a pose at rest, beam by beam against the ray walk.
+void compare_both(const arenas::Arena& arena, const robot::RobotModel& model, const CastersAndOracle& casters,
+                  int scans, Rng& rng, Comparison& swept, Comparison& still) {
+  const BeamTable table(model.laser);
+  const double reach = model.laser.range_max;
+  for (int k = 0; k < scans; ++k) {
+    const WorldState state = random_state(arena, rng);
+    Beams beams;
+    swept_beams(random_motion(state, rng), model, table, Stamp::from_seconds(0.0043), model.laser.beam_period, beams);
+    const Placement laser = laser_placement(state, model);
+    std::vector<float> ranges, flat;
+    casters.sweep.cast(beams, table, reach, {}, ranges, casters.moving);
+    casters.plane.cast(laser, table, reach, {}, flat, casters.moving);
+    for (std::size_t i = 0; i < table.count; ++i) {
+      ASSERT_TRUE(swept.add(ranges[i], beams.ray(i), casters.walk, {}, reach)) << "swept scan " << k << " beam " << i;
+      ASSERT_TRUE(still.add(flat[i], level_ray(laser, table, i), casters.walk, {}, reach))
+          << "scan " << k << " beam " << i;
+    }
+  }
+}
+
 TEST(Casters, BothAgreeWithTheRayWalkAtLongRange) {
   robot::RobotModel model;
   model.laser = robot::laser_model("UTM-30LX");
-  const BeamTable table(model.laser);
   Comparison swept, still;
   for (std::uint64_t seed = 300; seed < 305; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -211,19 +239,7 @@ TEST(Casters, BothAgreeWithTheRayWalkAtLongRange) {
     PlaneCast plane(faces);
     SweepCast sweep(faces);
     Rng rng(seed, "long range");
-    for (int k = 0; k < 15; ++k) {
-      const WorldState state = random_state(arena, rng);
-      Beams beams;
-      swept_beams(random_motion(state, rng), model, table, Stamp::from_seconds(0.0043), model.laser.beam_period, beams);
-      const Placement laser = laser_placement(state, model);
-      std::vector<float> ranges, flat;
-      sweep.cast(beams, table, 30.0, {}, ranges);
-      plane.cast(laser, table, 30.0, {}, flat);
-      for (std::size_t i = 0; i < table.count; ++i) {
-        ASSERT_TRUE(swept.add(ranges[i], beams.ray(i), walk, {}, 30.0)) << "swept scan " << k << " beam " << i;
-        ASSERT_TRUE(still.add(flat[i], level_ray(laser, table, i), walk, {}, 30.0)) << "scan " << k << " beam " << i;
-      }
-    }
+    compare_both(arena, model, {plane, sweep, walk, nullptr}, 15, rng, swept, still);
   }
   swept.print();
   still.print();
@@ -260,8 +276,7 @@ TEST(Casters, ThePlaneCastAgreesWithTheRayWalkToOneMillimetre) {
 /// see what the ray walk sees in all of them together.
 TEST(Casters, FacesThatMoveAreSeenBesideThoseThatStand) {
   const robot::RobotModel model;
-  const BeamTable table(model.laser);
-  Comparison comparison;
+  Comparison swept, still_laser;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const arenas::Arena arena = random_maze(seed);
@@ -273,19 +288,7 @@ TEST(Casters, FacesThatMoveAreSeenBesideThoseThatStand) {
     PlaneCast plane(still_faces);
     SweepCast sweep(still_faces);
     Rng rng(seed, "moving");
-    for (int k = 0; k < 20; ++k) {
-      const WorldState state = random_state(arena, rng);
-      Beams beams;
-      swept_beams(random_motion(state, rng), model, table, Stamp::from_seconds(0.0043), model.laser.beam_period, beams);
-      const Placement laser = laser_placement(state, model);
-      std::vector<float> swept, flat;
-      sweep.cast(beams, table, 4.0, {}, swept, &moving_faces);
-      plane.cast(laser, table, 4.0, {}, flat, &moving_faces);
-      for (std::size_t i = 0; i < table.count; ++i) {
-        ASSERT_TRUE(comparison.add(swept[i], beams.ray(i), walk, {})) << "swept scan " << k << " beam " << i;
-        ASSERT_TRUE(comparison.add(flat[i], level_ray(laser, table, i), walk, {})) << "scan " << k << " beam " << i;
-      }
-    }
+    compare_both(arena, model, {plane, sweep, walk, &moving_faces}, 20, rng, swept, still_laser);
   }
 }
 
