@@ -3,18 +3,18 @@
 #include <fstream>
 
 #include "app/commands.h"
-#include "arenas/arena_file.h"
-#include "arenas/elements.h"
-#include "arenas/generate.h"
-#include "arenas/raf.h"
-#include "arenas/render.h"
-#include "arenas/truth_map.h"
-#include "arenas/visible.h"
-#include "arenas/wall_lines.h"
+#include "arenas/elements/elements.h"
+#include "arenas/files/arena_file.h"
+#include "arenas/generate/generate.h"
+#include "arenas/raf/raf.h"
+#include "arenas/truth/render.h"
+#include "arenas/truth/truth_map.h"
+#include "arenas/truth/visible.h"
+#include "arenas/truth/wall_lines.h"
 #include "base/error.h"
-#include "base/geotiff.h"
-#include "base/text_file.h"
-#include "scenarios/league_map.h"
+#include "base/image/geotiff.h"
+#include "base/text/text_file.h"
+#include "scenarios/run/league_map.h"
 
 namespace rubble::app {
 

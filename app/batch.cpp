@@ -6,12 +6,12 @@
 
 #include "app/batch_tools.h"
 #include "base/error.h"
-#include "base/text_file.h"
-#include "scenarios/baseline.h"
-#include "scenarios/merge.h"
-#include "scenarios/report.h"
-#include "scenarios/slurm.h"
-#include "scenarios/sweep_note.h"
+#include "base/text/text_file.h"
+#include "scenarios/batch/merge.h"
+#include "scenarios/batch/slurm.h"
+#include "scenarios/batch/sweep_note.h"
+#include "scenarios/evidence/baseline.h"
+#include "scenarios/evidence/report.h"
 
 namespace rubble::app {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "app/commands.h"
-#include "scenarios/compare.h"
-#include "scenarios/sweep.h"
+#include "scenarios/batch/sweep.h"
+#include "scenarios/evidence/compare.h"
 
 namespace CLI {
 class App;

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch.h"
+#include "scenarios/batch/batch.h"
 
 namespace rubble::app {
 

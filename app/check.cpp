@@ -6,9 +6,9 @@
 #include "app/batch.h"
 #include "app/batch_tools.h"
 #include "base/error.h"
-#include "base/text_file.h"
-#include "scenarios/baseline.h"
-#include "scenarios/sweep_note.h"
+#include "base/text/text_file.h"
+#include "scenarios/batch/sweep_note.h"
+#include "scenarios/evidence/baseline.h"
 
 namespace rubble::app {
 namespace {

@@ -2,9 +2,9 @@
 
 #include "app/batch.h"
 #include "base/error.h"
-#include "base/text_file.h"
-#include "scenarios/compare_output.h"
-#include "scenarios/sweep_note.h"
+#include "base/text/text_file.h"
+#include "scenarios/batch/sweep_note.h"
+#include "scenarios/evidence/compare_output.h"
 
 namespace rubble::app {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "scenarios/html.h"
+#include "scenarios/evidence/html.h"
 
 namespace rubble::app {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scoring/league.h"
+#include "scoring/league/league.h"
 
 namespace rubble::app {
 

@@ -10,7 +10,7 @@
 #include "app/batch.h"
 #include "app/commands.h"
 #include "base/error.h"
-#include "scenarios/run.h"
+#include "scenarios/run/run.h"
 
 namespace rubble::app {
 namespace {
@@ -196,8 +196,8 @@ int dispatch(int argc, char** argv) {
       "List the league's parts that arena files can place, and what they are");
   arena_command->add_option("--out", arena_arguments.out, "Folder for the files (default: here)");
   arena_command->footer(
-      "Examples:\n  rubble arena arenas/yellow_8x8.yaml\n"
-      "  rubble arena arenas/yellow_8x8.yaml --resolution 0.02 --slice-height 0.2 --walls walls.geojson\n"
+      "Examples:\n  rubble arena arenas/shipped/yellow_8x8.yaml\n"
+      "  rubble arena arenas/shipped/yellow_8x8.yaml --resolution 0.02 --slice-height 0.2 --walls walls.geojson\n"
       "  rubble arena generate --cells 10x12 --seed 3 --ramps 0.4 --paper 0.2 --victims 6 --loops 0.2");
 
   BatchCommands batch_commands(app);

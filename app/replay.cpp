@@ -4,7 +4,7 @@
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "base/error.h"
-#include "robot/mrpt_bridge.h"
+#include "robot/logs/foreign/mrpt_bridge.h"
 
 namespace rubble::app {
 

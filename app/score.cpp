@@ -7,9 +7,9 @@
 #include "app/score_tools.h"
 #include "app/score_victims.h"
 #include "base/error.h"
-#include "scenarios/score_json.h"
-#include "scoring/normalise.h"
-#include "scoring/picture.h"
+#include "scenarios/run/score_json.h"
+#include "scoring/maps/normalise.h"
+#include "scoring/pictures/picture.h"
 #include "scoring/pose_score.h"
 #include "scoring/scorecard.h"
 

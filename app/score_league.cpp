@@ -11,11 +11,11 @@
 #include "app/score_tools.h"
 #include "app/score_victims.h"
 #include "base/error.h"
-#include "base/number_text.h"
-#include "base/text_file.h"
-#include "scoring/league.h"
-#include "scoring/normalise.h"
-#include "scoring/picture.h"
+#include "base/text/number_text.h"
+#include "base/text/text_file.h"
+#include "scoring/league/league.h"
+#include "scoring/maps/normalise.h"
+#include "scoring/pictures/picture.h"
 
 namespace rubble::app {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "base/angle.h"
 #include "base/error.h"
-#include "base/number_text.h"
-#include "base/text_file.h"
+#include "base/text/number_text.h"
+#include "base/text/text_file.h"
 
 namespace rubble::app {
 

@@ -7,7 +7,7 @@
 
 #include "app/commands.h"
 #include "base/grid.h"
-#include "scoring/evaluation_page.h"
+#include "scoring/pictures/evaluation_page.h"
 
 namespace rubble::app {
 

@@ -5,9 +5,9 @@
 #include "app/score_tools.h"
 #include "base/angle.h"
 #include "base/error.h"
-#include "base/text_file.h"
-#include "scoring/relative_error.h"
-#include "scoring/trajectory_error.h"
+#include "base/text/text_file.h"
+#include "scoring/trajectory/relative_error.h"
+#include "scoring/trajectory/trajectory_error.h"
 
 namespace rubble::app {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "scoring/league_points.h"
-#include "scoring/normalise.h"
+#include "scoring/league/league_points.h"
+#include "scoring/maps/normalise.h"
 #include "scoring/scorecard.h"
 
 namespace rubble::app {

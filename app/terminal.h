@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "scenarios/run.h"
+#include "scenarios/run/run.h"
 
 namespace rubble::app {
 

@@ -11,9 +11,9 @@
 
 #include "base/angle.h"
 #include "base/error.h"
-#include "base/number_text.h"
-#include "base/text_file.h"
-#include "base/words.h"
+#include "base/text/number_text.h"
+#include "base/text/text_file.h"
+#include "base/text/words.h"
 
 namespace rubble {
 namespace {

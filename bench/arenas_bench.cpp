@@ -1,10 +1,10 @@
 #include <benchmark/benchmark.h>
 
-#include "arenas/arena_file.h"
-#include "arenas/generate.h"
-#include "arenas/render.h"
-#include "arenas/truth_map.h"
-#include "arenas/visible.h"
+#include "arenas/files/arena_file.h"
+#include "arenas/generate/generate.h"
+#include "arenas/truth/render.h"
+#include "arenas/truth/truth_map.h"
+#include "arenas/truth/visible.h"
 
 namespace {
 

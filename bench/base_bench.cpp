@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/distance_transform.h"
-#include "base/geotiff.h"
+#include "base/image/geotiff.h"
 #include "base/rng.h"
 
 namespace rubble {

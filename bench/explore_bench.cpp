@@ -4,8 +4,8 @@
 #include "explore/frontier.h"
 #include "explore/planner.h"
 #include "explore/traversable.h"
-#include "slam/count_map.h"
-#include "slam/level_scan.h"
+#include "slam/grid/count_map.h"
+#include "slam/scan/level_scan.h"
 #include "tests/support/explore_oracle.h"
 #include "tests/support/explore_world.h"
 

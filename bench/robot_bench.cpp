@@ -4,9 +4,9 @@
 #include <string>
 
 #include "base/rng.h"
-#include "robot/log_codec.h"
-#include "robot/log_frames.h"
-#include "robot/range_codec.h"
+#include "robot/logs/own/log_codec.h"
+#include "robot/logs/own/log_frames.h"
+#include "robot/logs/own/range_codec.h"
 
 namespace rubble::robot {
 namespace {

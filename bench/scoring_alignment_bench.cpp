@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "bench/scoring_data.h"
-#include "scoring/alignment.h"
+#include "scoring/alignment/alignment.h"
 #include "tests/support/scoring_maze.h"
 
 /// Alignment without a guess on the 84 labelled sensor-map pairs (RUBBLE_DATA/alignment), and on pairs that do not

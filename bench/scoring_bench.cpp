@@ -5,16 +5,16 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "base/geotiff.h"
-#include "scenarios/league_map.h"
-#include "scoring/alignment.h"
-#include "scoring/correlation.h"
-#include "scoring/features.h"
-#include "scoring/normalise.h"
-#include "scoring/overlap.h"
-#include "scoring/psi.h"
-#include "scoring/resample.h"
+#include "base/image/geotiff.h"
+#include "scenarios/run/league_map.h"
+#include "scoring/alignment/alignment.h"
+#include "scoring/maps/normalise.h"
+#include "scoring/measures/psi.h"
+#include "scoring/proposals/correlation.h"
+#include "scoring/proposals/features.h"
 #include "scoring/scorecard.h"
+#include "scoring/walls/overlap.h"
+#include "scoring/walls/resample.h"
 #include "tests/support/scoring_maze.h"
 
 /// Scoring of an 800 x 800 maze (0.05 m), beside the same steps with nothing but OpenCV.

@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "arenas/arena_file.h"
-#include "arenas/generate.h"
-#include "arenas/truth_map.h"
+#include "arenas/files/arena_file.h"
+#include "arenas/generate/generate.h"
+#include "arenas/truth/truth_map.h"
 #include "base/rng.h"
-#include "sim/laser.h"
-#include "sim/ray_walk.h"
-#include "sim/rays.h"
+#include "sim/body/world.h"
+#include "sim/laser/laser.h"
+#include "sim/laser/ray_walk.h"
+#include "sim/laser/rays.h"
 #include "sim/sim_robot.h"
-#include "sim/world.h"
 
 namespace {
 

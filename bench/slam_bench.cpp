@@ -2,12 +2,12 @@
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/poses/CPose2D.h>
 
-#include "slam/level_scan.h"
 #include "slam/mapper.h"
-#include "slam/match_target.h"
-#include "slam/particle_filter.h"
-#include "slam/scan_matcher.h"
-#include "slam/surface.h"
+#include "slam/paper/particle_filter.h"
+#include "slam/scan/level_scan.h"
+#include "slam/scan/match_target.h"
+#include "slam/scan/scan_matcher.h"
+#include "slam/scan/surface.h"
 #include "tests/support/slam_world.h"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/grid.h"
-#include "slam/count_map.h"
+#include "slam/grid/count_map.h"
 
 namespace rubble::explore {
 

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <cstdio>
 
-#include "scoring/alignment.h"
-#include "scoring/overlap.h"
-#include "scoring/psi.h"
-#include "scoring/resample.h"
-#include "scoring/trust.h"
-#include "scoring/warp_fit.h"
+#include "scoring/alignment/alignment.h"
+#include "scoring/alignment/trust.h"
+#include "scoring/measures/psi.h"
+#include "scoring/walls/overlap.h"
+#include "scoring/walls/resample.h"
+#include "scoring/walls/warp_fit.h"
 
 namespace rubble::scoring {
 namespace {

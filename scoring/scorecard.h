@@ -5,9 +5,9 @@
 #include <string>
 
 #include "base/grid.h"
-#include "scoring/alignment.h"
-#include "scoring/matching.h"
-#include "scoring/wall_errors.h"
+#include "scoring/alignment/alignment.h"
+#include "scoring/alignment/matching.h"
+#include "scoring/walls/wall_errors.h"
 
 namespace rubble::scoring {
 

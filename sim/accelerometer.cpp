@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/angle.h"
-#include "sim/rays.h"
+#include "sim/laser/rays.h"
 
 namespace rubble::sim {
 namespace {

@@ -7,7 +7,7 @@
 #include "robot/levelling.h"
 #include "robot/measurements.h"
 #include "robot/model.h"
-#include "sim/world.h"
+#include "sim/body/world.h"
 
 namespace rubble::sim {
 

@@ -3,14 +3,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "arenas/arena.h"
+#include "arenas/model/arena.h"
 #include "base/trajectory.h"
 #include "robot/measurements.h"
 #include "sim/accelerometer.h"
-#include "sim/laser.h"
+#include "sim/body/world.h"
+#include "sim/laser/laser.h"
 #include "sim/sim_robot.h"
 #include "sim/victim_sensor.h"
-#include "sim/world.h"
 
 namespace rubble::sim {
 

@@ -1,7 +1,7 @@
 #include "sim/sim_robot.h"
 
+#include "sim/body/world.h"
 #include "sim/rig.h"
-#include "sim/world.h"
 
 namespace rubble::sim {
 

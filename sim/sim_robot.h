@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "arenas/arena.h"
+#include "arenas/model/arena.h"
 #include "base/trajectory.h"
 #include "robot/levelling.h"
 #include "robot/robot.h"

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "base/error.h"
+#include "sim/body/world.h"
 #include "sim/rig.h"
-#include "sim/world.h"
 
 namespace rubble::sim {
 namespace {

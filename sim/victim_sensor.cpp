@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "sim/rays.h"
+#include "sim/laser/rays.h"
 
 namespace rubble::sim {
 namespace {

@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "arenas/arena.h"
+#include "arenas/model/arena.h"
 #include "base/angle.h"
 #include "base/rng.h"
 #include "robot/measurements.h"
-#include "sim/ray_walk.h"
-#include "sim/world.h"
+#include "sim/body/world.h"
+#include "sim/laser/ray_walk.h"
 
 namespace rubble::sim {
 

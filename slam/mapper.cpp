@@ -6,8 +6,8 @@
 
 #include "base/planar.h"
 #include "base/rng.h"
-#include "slam/level_scan.h"
-#include "slam/odometry_track.h"
+#include "slam/scan/level_scan.h"
+#include "slam/scan/odometry_track.h"
 
 namespace rubble::slam {
 

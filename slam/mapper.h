@@ -9,9 +9,9 @@
 #include "base/trajectory.h"
 #include "robot/measurements.h"
 #include "robot/model.h"
-#include "slam/count_map.h"
-#include "slam/particle_filter.h"
-#include "slam/scan_matcher.h"
+#include "slam/grid/count_map.h"
+#include "slam/paper/particle_filter.h"
+#include "slam/scan/scan_matcher.h"
 
 namespace rubble::slam {
 

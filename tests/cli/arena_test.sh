@@ -1,6 +1,6 @@
 # rubble arena: other tools read its files, and a league's file says in one line each what was made of it.
 . "$(dirname "$0")/lib.sh"
-arena=$source/arenas/demo_ramps.yaml
+arena=$source/arenas/shipped/demo_ramps.yaml
 expect_exit 0 '' "$rubble" arena "$arena" --resolution 0.02 --slice-height 0.2 --walls walls.csv --out out
 expect_exit 0 '' "$rubble" arena "$arena" --walls walls.geojson --out coarse
 head -1 walls.csv | grep -q '^x0,y0,x1,y1,bottom,top,kind' || fail "walls.csv begins with $(head -1 walls.csv)"
@@ -25,7 +25,7 @@ expect_exit 0 '' "$rubble" arena "$arena" --range 0.6 --out near
 cmp -s near/demo_ramps-truth.tif coarse/demo_ramps-truth.tif || fail "--range changed the truth"
 cmp -s near/demo_ramps-visible.tif coarse/demo_ramps-visible.tif && fail "--range 0.6 sees as far as 4 m"
 
-expect_exit 0 '' "$rubble" arena "$source/arenas/four_corners.yaml" --out out
+expect_exit 0 '' "$rubble" arena "$source/arenas/shipped/four_corners.yaml" --out out
 expect_exit 3 'pieces/cycle.yaml:6:6: the file includes itself' "$rubble" arena \
   "$source/tests/invalid/arenas/include_cycle.yaml" --out out
 

@@ -3,7 +3,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "arenas/arena_file.h"
+#include "arenas/files/arena_file.h"
 
 namespace rubble::testing {
 

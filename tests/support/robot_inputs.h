@@ -16,7 +16,7 @@
 
 #include "base/angle.h"
 #include "base/rng.h"
-#include "robot/log.h"
+#include "robot/logs/log.h"
 #include "robot/robot.h"
 
 namespace rubble::robot::testing {

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "scenarios/results.h"
+#include "scenarios/batch/results.h"
 
 namespace rubble::scenarios {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "scoring/rooms.h"
-#include "scoring/victims.h"
+#include "scoring/measures/victims.h"
+#include "scoring/rooms/rooms.h"
 
 /// Public floor maps with rooms drawn by hand (ipa_room_segmentation), and how found rooms are compared with them.
 namespace rubble::scoring::testing {

@@ -7,9 +7,9 @@
 #include <tuple>
 #include <vector>
 
-#include "arenas/arena_file.h"
-#include "arenas/generate.h"
-#include "arenas/truth_map.h"
+#include "arenas/files/arena_file.h"
+#include "arenas/generate/generate.h"
+#include "arenas/truth/truth_map.h"
 #include "tests/support/scoring_maze.h"
 
 /// The grounds over which the laws of the score are tried: plain mazes, and arenas of the project's own generator.

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "scoring/normalise.h"
-#include "scoring/resample.h"
+#include "scoring/maps/normalise.h"
+#include "scoring/walls/resample.h"
 
 /// The labelled sensor-map pairs of two Halmstad buildings and the rule by which an alignment of them succeeds.
 namespace rubble::scoring::testing {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "arenas/arena.h"
+#include "arenas/model/arena.h"
 #include "sim/sim_robot.h"
 
 namespace rubble::sim::test {

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "arenas/arena_file.h"
-#include "arenas/generate.h"
+#include "arenas/files/arena_file.h"
+#include "arenas/generate/generate.h"
 #include "base/angle.h"
 #include "base/rng.h"
-#include "sim/clutter.h"
-#include "sim/world.h"
+#include "sim/body/clutter.h"
+#include "sim/body/world.h"
 
 namespace rubble::sim::test {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/geotiff.h"
+#include "base/image/geotiff.h"
 
 /// League maps as other teams draw them, and what happens to pictures on their way. Places in pixels, x right, y down,
 /// (0, 0) the upper-left corner of the image. Colours as RGB.

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/angle.h"
-#include "scoring/resample.h"
 #include "scoring/scorecard.h"
+#include "scoring/walls/resample.h"
 #include "tests/support/scoring_damage.h"
 #include "tests/support/scoring_grounds.h"
 

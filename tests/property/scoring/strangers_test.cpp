@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "base/angle.h"
-#include "scoring/alignment.h"
-#include "scoring/resample.h"
+#include "scoring/alignment/alignment.h"
 #include "scoring/scorecard.h"
+#include "scoring/walls/resample.h"
 #include "tests/support/scoring_grounds.h"
 
 /// Which maps belong together and which do not, on mazes and arenas that took no part in the calibration of trust.

@@ -4,10 +4,10 @@
 
 #include "base/angle.h"
 #include "base/grid.h"
-#include "base/number_text.h"
 #include "base/rng.h"
 #include "base/stamp.h"
-#include "base/words.h"
+#include "base/text/number_text.h"
+#include "base/text/words.h"
 
 namespace rubble {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "base/digest.h"
 #include "base/error.h"
-#include "base/text_file.h"
+#include "base/text/text_file.h"
 #include "tests/support/base_files.h"
 
 namespace rubble {

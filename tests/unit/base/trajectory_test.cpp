@@ -8,7 +8,7 @@
 #include "base/angle.h"
 #include "base/error.h"
 #include "base/rng.h"
-#include "base/text_file.h"
+#include "base/text/text_file.h"
 #include "tests/support/base_files.h"
 
 namespace rubble {

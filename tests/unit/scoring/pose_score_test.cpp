@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "scoring/evaluation_page.h"
+#include "scoring/pictures/evaluation_page.h"
 #include "tests/support/scoring_maze.h"
 
 namespace rubble::scoring {

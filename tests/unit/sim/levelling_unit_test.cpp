@@ -7,7 +7,7 @@
 
 #include "base/angle.h"
 #include "sim/accelerometer.h"
-#include "sim/servos.h"
+#include "sim/body/servos.h"
 #include "tests/support/sim_arena.h"
 
 namespace rubble::sim::test {

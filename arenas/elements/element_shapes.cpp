@@ -1,0 +1,212 @@
+#include "arenas/elements/element_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "arenas/model/geometry.h"
+#include "base/angle.h"
+
+namespace rubble::arenas {
+namespace {
+
+using mrpt::math::TPoint2D;
+
+constexpr double kHalf = 0.6;    ///< half a pallet [m]
+constexpr double kBoard = 0.01;  ///< thickness of walls [m]
+
+void add_block(const ElementFrame& frame, double x0, double y0, double x1, double y1, double bottom, double top,
+               const std::string& element, Arena& arena, bool gives_way = false) {
+  arena.solids.push_back({frame.box(x0, y0, x1, y1), bottom, top, element, gives_way});
+}
+
+void add_platform(const ElementFrame& frame, double x0, double y0, double x1, double y1, double z,
+                  const std::string& element, Arena& arena) {
+  arena.floor.push_back({frame.box(x0, y0, x1, y1), z, 0.0, 0.0, element});
+}
+
+/// The board between x0 and x1, less the openings, which all span that stretch or none of it.
+void add_boards(const ElementFrame& frame, double x0, double x1, double height, const std::vector<Opening>& openings,
+                Arena& arena) {
+  std::vector<const Opening*> here;
+  for (const Opening& o : openings) {
+    if (std::abs(o.along - 0.5 * (x0 + x1)) < 0.5 * o.width) here.push_back(&o);
+  }
+  std::sort(here.begin(), here.end(), [](const Opening* a, const Opening* b) { return a->height < b->height; });
+  double bottom = 0.0;
+  const auto add = [&](double z0, double z1) {
+    add_block(frame, x0, kHalf - 0.5 * kBoard, x1, kHalf + 0.5 * kBoard, z0, z1, "wall", arena);
+  };
+  for (const Opening* o : here) {
+    add(bottom, o->height - 0.5 * o->tall);
+    bottom = o->height + 0.5 * o->tall;
+  }
+  add(bottom, height);
+}
+
+}  // namespace
+
+ElementFrame::ElementFrame(const TPoint2D& origin, double rotation)
+    : origin_(origin), cos_(std::cos(-rotation)), sin_(std::sin(-rotation)) {
+  // Quarter turns are exact, so that neighbours meet flush.
+  if (std::abs(cos_) < 1e-9) cos_ = 0.0;
+  if (std::abs(sin_) < 1e-9) sin_ = 0.0;
+}
+
+TPoint2D ElementFrame::point(double x, double y) const {
+  return {origin_.x + cos_ * x - sin_ * y, origin_.y + sin_ * x + cos_ * y};
+}
+
+Outline ElementFrame::outline(const Outline& own) const {
+  Outline result;
+  for (const TPoint2D& p : own) result.push_back(point(p.x, p.y));
+  return result;
+}
+
+Outline ElementFrame::box(double x0, double y0, double x1, double y1) const {
+  return outline({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
+}
+
+double ElementFrame::forward() const { return std::atan2(cos_, -sin_); }
+
+void add_wall(const ElementFrame& frame, double height, const std::vector<Opening>& openings, Arena& arena) {
+  std::vector<double> cuts{-kHalf, kHalf};
+  for (const Opening& o : openings) {
+    cuts.push_back(o.along - 0.5 * o.width);
+    cuts.push_back(o.along + 0.5 * o.width);
+  }
+  std::sort(cuts.begin(), cuts.end());
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    if (cuts[i + 1] - cuts[i] > 1e-6) add_boards(frame, cuts[i], cuts[i + 1], height, openings, arena);
+  }
+}
+
+void add_half_wall(const ElementFrame& frame, Arena& arena) {
+  add_block(frame, 0.0, kHalf - 0.5 * kBoard, kHalf, kHalf + 0.5 * kBoard, 0.0, 1.2, "wall", arena);
+}
+
+void add_diagonal_wall(const ElementFrame& frame, Arena& arena) {
+  arena.solids.push_back({strip(frame.point(-kHalf, -kHalf), frame.point(kHalf, kHalf), kBoard), 0.0, 1.2, "wall"});
+}
+
+void add_corner_wall(const ElementFrame& frame, Arena& arena) {
+  const TPoint2D middle = frame.point(0.0, 0.0);
+  arena.solids.push_back({strip(frame.point(-kHalf, kHalf), middle, kBoard), 0.0, 1.2, "wall"});
+  arena.solids.push_back({strip(middle, frame.point(kHalf, kHalf), kBoard), 0.0, 1.2, "wall"});
+}
+
+void add_veil(const ElementFrame& frame, Arena& arena) {
+  constexpr int kStrips = 9;
+  constexpr double kPitch = 0.131;
+  add_block(frame, -kHalf, kHalf - 0.5 * kBoard, kHalf, kHalf + 0.5 * kBoard, 1.14, 1.2, "veil", arena);
+  for (int i = 0; i < kStrips; ++i) {
+    const double x = kPitch * (i - kStrips / 2);
+    add_block(frame, x - 0.01, kHalf - 0.5 * kBoard, x + 0.01, kHalf + 0.5 * kBoard, 0.02, 1.14, "veil", arena, true);
+  }
+}
+
+void add_ramp(const ElementFrame& frame, double foot_y, double head_y, double rise, Arena& arena) {
+  const double uphill = frame.forward() + (head_y < foot_y ? kPi : 0.0);
+  const double slope = rise / std::abs(head_y - foot_y);
+  FloorPatch patch;
+  patch.outline = frame.box(-kHalf, std::min(foot_y, head_y), kHalf, std::max(foot_y, head_y));
+  patch.z = head_y < foot_y ? rise : 0.0;  // outline[0] lies at the smaller y
+  patch.gx = slope * std::cos(uphill);
+  patch.gy = slope * std::sin(uphill);
+  if (std::abs(patch.gx) < 1e-9) patch.gx = 0.0;
+  if (std::abs(patch.gy) < 1e-9) patch.gy = 0.0;
+  patch.element = "ramp";
+  arena.floor.push_back(patch);
+}
+
+void add_elevated_floor(const ElementFrame& frame, double height, Arena& arena) {
+  add_platform(frame, -kHalf, -kHalf, kHalf, kHalf, height, "elevated_floor", arena);
+}
+
+void add_roll_ramp(const ElementFrame& frame, double slope, Arena& arena) {
+  const ElementFrame across(frame.point(0.0, 0.0), kPi - frame.forward());  // +y is the other's +x
+  add_ramp(across, -kHalf, kHalf, slope * 2.0 * kHalf, arena);
+}
+
+void add_wooden_block(const ElementFrame& frame, Arena& arena) {
+  add_platform(frame, -0.05, -0.15, 0.05, 0.15, 0.1, "wooden_block", arena);
+}
+
+void add_post(const ElementFrame& frame, double radius, double height, const std::string& element, Arena& arena) {
+  constexpr int kCorners = 16;
+  Outline round;
+  for (int i = 0; i < kCorners; ++i) {
+    const double bearing = 2.0 * kPi * i / kCorners;
+    round.push_back({radius * std::cos(bearing), radius * std::sin(bearing)});
+  }
+  arena.solids.push_back({frame.outline(round), 0.0, height, element});
+}
+
+void add_free_victim(const ElementFrame& frame, Arena& arena) {
+  const TPoint2D p = frame.point(0.0, 0.0);
+  Victim victim;
+  victim.name = "victim" + std::to_string(arena.victims.size() + 1);
+  victim.position = {p.x, p.y, 0.1};
+  victim.facing = frame.forward();
+  arena.victims.push_back(victim);
+}
+
+void add_stairs(const ElementFrame& frame, Arena& arena) {
+  constexpr int kTreads = 5;
+  constexpr double kTread = 0.2325;
+  constexpr double kRiser = 0.2;
+  for (int i = 0; i < kTreads; ++i) {
+    const double y = -0.59 + kTread * i;
+    const double end = i + 1 < kTreads ? y + kTread : kHalf;
+    add_platform(frame, -0.59, y, 0.59, end, kRiser * (i + 1), "stair", arena);
+  }
+}
+
+void add_half_barrel(const ElementFrame& frame, double bottom, Arena& arena) {
+  constexpr double kRadius = 0.303;
+  constexpr double kTall = 0.89;
+  constexpr int kCorners = 12;
+  Outline half;
+  for (int i = 0; i <= kCorners; ++i) {
+    const double bearing = kPi + kPi * i / kCorners;  // the half on this side of the wall
+    half.push_back({kRadius * std::cos(bearing), 0.59 + kRadius * std::sin(bearing)});
+  }
+  arena.solids.push_back({frame.outline(half), bottom, bottom + kTall, "fiducial_barrel"});
+}
+
+void add_shelves(const ElementFrame& frame, Arena& arena) {
+  for (const double height : {0.5, 1.0}) {
+    add_block(frame, -0.59, -0.59, 0.59, 0.59, height - 0.005, height + 0.005, "shelf", arena);
+  }
+}
+
+void add_spectator(const ElementFrame& frame, Arena& arena) {
+  add_block(frame, -0.21, 0.08, 0.21, 0.53, 1.07, 1.70, "spectator", arena);
+}
+
+void add_hung_victim(const ElementFrame& frame, const Mount& mount, bool heat, bool sound, bool co2, Arena& arena) {
+  constexpr double kWidth = 0.25;  // half of 0.50 m
+  constexpr double kTall = 0.20;   // half of 0.40 m
+  constexpr double kBack = 0.35;
+  constexpr double kFront = 0.59;
+  constexpr double kSheet = 0.015;
+  const double x0 = mount.along - kWidth;
+  const double x1 = mount.along + kWidth;
+  const double z0 = mount.height - kTall;
+  const double z1 = mount.height + kTall;
+  add_block(frame, x0, kBack, x1, kBack + kSheet, z0, z1, "victim_box", arena);
+  add_block(frame, x0, kBack + kSheet, x0 + kSheet, kFront, z0, z1, "victim_box", arena);
+  add_block(frame, x1 - kSheet, kBack + kSheet, x1, kFront, z0, z1, "victim_box", arena);
+  add_block(frame, x0 + kSheet, kBack + kSheet, x1 - kSheet, kFront, z0, z0 + kSheet, "victim_box", arena);
+  const TPoint2D p = frame.point(mount.along, 0.5 * (kBack + kFront));
+  Victim victim;
+  victim.name = "victim" + std::to_string(arena.victims.size() + 1);
+  victim.position = {p.x, p.y, mount.height};
+  victim.facing = frame.forward();
+  victim.heat = heat;
+  victim.sound = sound;
+  victim.co2 = co2;
+  arena.victims.push_back(victim);
+}
+
+}  // namespace rubble::arenas

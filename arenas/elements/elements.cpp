@@ -1,0 +1,247 @@
+#include "arenas/elements/elements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "arenas/elements/rough_shapes.h"
+#include "base/angle.h"
+
+namespace rubble::arenas {
+namespace {
+
+struct Entry {
+  ElementKind kind;
+  const char* what;  ///< it does, one line
+  std::function<void(const ElementFrame&, const Mount&, Arena&)> add;
+  bool covers = false;
+  std::function<void(const ElementFrame&, double slope, Arena&)> add_sloped =
+      nullptr;                                    ///< another slope [rise a metre]
+  std::optional<double> friction = std::nullopt;  ///< of its floors; default: the arena's, for all are of wood
+};
+
+/// Shapes that do not hang on a wall.
+template <class Add>
+auto standing(Add add) {
+  return [add](const ElementFrame& frame, const Mount&, Arena& arena) { add(frame, arena); };
+}
+
+auto straight_wall(double height) {
+  return standing([height](const ElementFrame& frame, Arena& arena) { add_wall(frame, height, {}, arena); });
+}
+
+auto holed_wall(std::vector<Opening> openings) {
+  return standing([openings](const ElementFrame& frame, Arena& arena) { add_wall(frame, 1.2, openings, arena); });
+}
+
+auto barrel(double bottom) {
+  return standing([bottom](const ElementFrame& frame, Arena& arena) { add_half_barrel(frame, bottom, arena); });
+}
+
+auto step_field(double tallest) {
+  return standing([tallest](const ElementFrame& frame, Arena& arena) { add_step_field(frame, tallest, arena); });
+}
+
+auto elevated_floor(double height) {
+  return standing([height](const ElementFrame& frame, Arena& arena) { add_elevated_floor(frame, height, arena); });
+}
+
+Entry ramp(const char* what, bool covers, double foot_y, double head_y, double rise) {
+  return {ElementKind::Floor, what,
+          standing([=](const ElementFrame& frame, Arena& arena) { add_ramp(frame, foot_y, head_y, rise, arena); }),
+          covers, [=](const ElementFrame& frame, double slope, Arena& arena) {
+            add_ramp(frame, foot_y, head_y, slope * std::abs(head_y - foot_y), arena);
+          }};
+}
+
+auto post(double radius, double height, const char* element) {
+  return standing([=](const ElementFrame& frame, Arena& arena) { add_post(frame, radius, height, element, arena); });
+}
+
+auto boxed_victim(bool heat, bool sound, bool co2) {
+  return [=](const ElementFrame& frame, const Mount& mount, Arena& arena) {
+    add_hung_victim(frame, mount, heat, sound, co2, arena);
+  };
+}
+
+const std::map<std::string, Entry>& table() {
+  constexpr double kTan10 = 0.17632698;
+  constexpr double kTan35 = 0.70020754;
+  constexpr double kHole = 0.133;  // square of the same area as the round hole of 0.15 m
+  static const std::vector<Opening> kHoles{
+      {-0.28, 0.31, kHole, kHole}, {-0.29, 0.90, kHole, kHole}, {0.29, 0.59, kHole, kHole}};
+  static const std::vector<Opening> kSlots{
+      {-0.26, 0.27, 0.36, kHole}, {-0.24, 0.90, 0.36, kHole}, {0.31, 0.62, 0.36, kHole}};
+  using K = ElementKind;
+  static const std::map<std::string, Entry> entries{
+      {"small_wall", {K::Wall, "a board of 1.2 m on the edge at +y", straight_wall(1.2)}},
+      {"small_wall_no_tex", {K::Wall, "a board of 1.2 m without a texture", straight_wall(1.2)}},
+      {"small_wall_qr", {K::Wall, "a board of 1.2 m with a QR code", straight_wall(1.2)}},
+      {"small_wall_start_check", {K::Wall, "a board of 1.2 m with the start check", straight_wall(1.2)}},
+      {"tall_wall", {K::Wall, "a board of 2.4 m on the edge at +y", straight_wall(2.4)}},
+      {"wall_holes1",
+       {K::Wall, "a board with three square openings: the laser and victims look through", holed_wall(kHoles)}},
+      {"small_wall_triple_holes",
+       {K::Wall, "a board with three slots: the laser and victims look through", holed_wall(kSlots)}},
+      {"half_wall", {K::Wall, "the right half of a board: a gap of 0.6 m stays", standing(add_half_wall)}},
+      {"veil_wall", {K::Wall, "strips that the laser sees and the robot pushes aside", standing(add_veil)}},
+      {"corner_diag_120", {K::Diagonal, "two boards from the corners at +y to the middle", standing(add_corner_wall)}},
+      {"wall_diag_120", {K::Diagonal, "a board from corner to corner", standing(add_diagonal_wall)}},
+      {"full_ramp", ramp("rises 0.339 m over the pallet towards -y", true, 0.6, -0.6, 0.339)},
+      {"half_ramp", ramp("rises 0.17 m over the southern half, towards +y", false, -0.6, 0.0, 0.17)},
+      {"half_ramp_shifted", ramp("rises 0.17 m over the southern half, towards -y", false, 0.0, -0.6, 0.17)},
+      {"simple_elev_ramp", ramp("45 deg up to the floor at 1.2 m", true, -0.6, 0.6, 1.2)},
+      {"steep_ramp_35", ramp("35 deg up to the floor at 0.84 m", true, -0.6, 0.6, 1.2 * kTan35)},
+      {"steep_ramp_45", ramp("45 deg up to the floor at 1.2 m", true, -0.6, 0.6, 1.2)},
+      {"elevated_floor_120", {K::Floor, "a floor at 1.2 m, closed below", elevated_floor(1.2), true}},
+      {"elevated_floor_084", {K::Floor, "a floor at 0.84 m, closed below", elevated_floor(1.2 * kTan35), true}},
+      {"crossing_ramps",
+       {K::Floor, "four ramps of 10 deg that agree nowhere: pitches and rolls the robot at once",
+        standing([](const ElementFrame& f, Arena& a) { add_crossing_ramps(f, kTan10, a); }), true, add_crossing_ramps}},
+      {"elevated_ramps",
+       {K::Floor, "four half ramps in turn, two of them 0.17 m up",
+        standing([](const ElementFrame& f, Arena& a) { add_elevated_ramps(f, 0.17 / 0.6, a); }), true,
+        add_elevated_ramps}},
+      {"flat", {K::Floor, "a flat pallet on the ground", elevated_floor(0.0), true}},
+      {"pitch_ramp", ramp("10 deg towards +y: pitches a robot that drives along +y", true, -0.6, 0.6, 1.2 * kTan10)},
+      {"roll_ramp",
+       {K::Floor, "10 deg towards +x: rolls a robot that drives along +y",
+        standing([](const ElementFrame& f, Arena& a) { add_roll_ramp(f, kTan10, a); }), true, add_roll_ramp}},
+      {"tunnel", {K::Floor, "a ceiling at 0.60 m on two boards, to drive through along y", standing(add_tunnel)}},
+      {"stepfield_orange_diagonal", {K::Floor, "10 x 10 columns of 0 to 0.2 m", step_field(0.2)}},
+      {"stairs_120", {K::Floor, "five risers of 0.2 m towards +y", standing(add_stairs)}},
+      {"stairs_120_solid", {K::Floor, "five risers of 0.2 m towards +y", standing(add_stairs)}},
+      {"stepfield_red_diagonal", {K::Floor, "10 x 10 columns of 0 to 0.4 m", step_field(0.4)}},
+      {"fiducial_barrel", {K::Item, "half a barrel on the wall at +y, from 0.30 m up", barrel(0.30)}},
+      {"fiducial_barrel_high", {K::Item, "half a barrel on the wall at +y, from 1.50 m up", barrel(1.50)}},
+      {"wooden_block", {K::Item, "0.10 m high, to drive over", standing(add_wooden_block)}},
+      {"red_barrel", {K::Item, "a post 0.58 m wide and 0.88 m high", post(0.29, 0.88, "red_barrel")}},
+      {"fire_extinguisher", {K::Item, "a post 0.16 m wide and 0.55 m high", post(0.08, 0.55, "fire_extinguisher")}},
+      {"pvc_pipe", {K::Item, "a post 0.11 m wide and 0.6 m high", post(0.055, 0.6, "pvc_pipe")}},
+      {"victim_1", {K::Item, "a victim without a box: appearance and heat", standing(add_free_victim)}},
+      {"manip_storage", {K::Item, "shelves at 0.5 and 1.0 m", standing(add_shelves)}},
+      {"spectator_120", {K::Item, "a box at 1.07 to 1.70 m, above a level laser", standing(add_spectator)}},
+      {"victim_with_box1",
+       {K::Item, "a victim in a box behind the wall at +y: appearance and heat", boxed_victim(true, false, false)}},
+      {"victim_with_box_t",
+       {K::Item, "a victim in a box behind the wall at +y: appearance and heat", boxed_victim(true, false, false)}},
+      {"victim_with_box_s",
+       {K::Item, "a victim in a box behind the wall at +y: appearance and sound", boxed_victim(false, true, false)}},
+      {"victim_with_box_c",
+       {K::Item, "a victim in a box behind the wall at +y: appearance and co2", boxed_victim(false, false, true)}},
+      {"victim_with_box_ts",
+       {K::Item, "a victim in a box behind the wall at +y: appearance, heat and sound",
+        boxed_victim(true, true, false)}},
+      {"victim_with_box_tc",
+       {K::Item, "a victim in a box behind the wall at +y: appearance, heat and co2", boxed_victim(true, false, true)}},
+      {"victim_with_box_sc",
+       {K::Item, "a victim in a box behind the wall at +y: appearance, sound and co2",
+        boxed_victim(false, true, true)}},
+      {"victim_with_box_tsc",
+       {K::Item, "a victim in a box behind the wall at +y: appearance, heat, sound and co2",
+        boxed_victim(true, true, true)}},
+      {"victim_with_box_v",
+       {K::Item, "a victim in a box behind the wall at +y: appearance", boxed_victim(false, false, false)}},
+      {"victim_with_box_q",
+       {K::Item, "a victim in a box behind the wall at +y: appearance", boxed_victim(false, false, false)}},
+      {"victim_doll_heat_with_box",
+       {K::Item, "a victim in a box behind the wall at +y: appearance and heat", boxed_victim(true, false, false)}},
+      {"victim_doll_qr_with_box",
+       {K::Item, "a victim in a box behind the wall at +y: appearance", boxed_victim(false, false, false)}},
+  };
+  return entries;
+}
+
+/// Where an item hangs: the holes of its wall, as (along, height).
+Mount mount_of(const Element& element, const Element* wall) {
+  static const Mount kPoints[] = {{-0.3, 0.9}, {0.3, 0.6}, {-0.3, 0.3}};
+  const bool has_holes = wall != nullptr && (wall->type == "wall_holes1" || wall->type == "small_wall_triple_holes");
+  const int point = std::max(0, element.mount_point.value_or(0));
+  if (!has_holes || point > 2) return {0.0, 0.2};  // stands on the ground
+  return kPoints[point];
+}
+
+}  // namespace
+
+ElementKind kind_of(const std::string& type) {
+  const auto found = table().find(type);
+  if (found != table().end()) return found->second.kind;
+  for (const char* label : {"hazmat", "start_check", "floor_tile"})
+    if (type.rfind(label, 0) == 0) return ElementKind::Label;
+  return ElementKind::Unknown;
+}
+
+std::vector<std::string> element_types() {
+  std::vector<std::string> types;
+  for (const auto& [type, entry] : table()) types.push_back(type);
+  return types;
+}
+
+const Element* wall_behind(const Element& item, const std::vector<Element>& elements) {
+  for (const Element& e : elements) {
+    const double turn = wrap_angle(e.rotation - item.rotation);
+    const mrpt::math::TPoint2D shift = e.position - item.position;
+    if (kind_of(e.type) != ElementKind::Wall || std::abs(turn) > 1e-6) continue;
+    if (std::hypot(shift.x, shift.y) < 1e-6) return &e;
+  }
+  return nullptr;
+}
+
+bool covers_pallet(const std::string& type) {
+  const auto found = table().find(type);
+  return found != table().end() && found->second.covers;
+}
+
+bool has_slope(const std::string& type) {
+  const auto found = table().find(type);
+  return found != table().end() && found->second.add_sloped != nullptr;
+}
+
+bool has_floor(const std::string& type) {
+  Element element;
+  element.type = type;
+  Arena alone;
+  place(element, nullptr, alone);
+  return !alone.floor.empty();
+}
+
+std::string description_of(const std::string& type) {
+  const auto found = table().find(type);
+  return found != table().end() ? found->second.what : "";
+}
+
+std::string name_of(ElementKind kind) {
+  switch (kind) {
+    case ElementKind::Floor:
+      return "floor";
+    case ElementKind::Wall:
+      return "wall";
+    case ElementKind::Diagonal:
+      return "diagonal";
+    case ElementKind::Item:
+      return "item";
+    case ElementKind::Label:
+      return "label";
+    case ElementKind::Unknown:
+      break;
+  }
+  return "unknown";
+}
+
+void place(const Element& element, const Element* wall, Arena& arena) {
+  const auto found = table().find(element.type);
+  if (found == table().end()) return;
+  const Entry& entry = found->second;
+  const ElementFrame frame(element.position + element.offset, element.rotation);
+  const std::size_t first = arena.floor.size();
+  if (element.slope && entry.add_sloped) {
+    entry.add_sloped(frame, std::tan(*element.slope), arena);
+  } else {
+    entry.add(frame, mount_of(element, wall), arena);
+  }
+  for (std::size_t i = first; i < arena.floor.size(); ++i)
+    arena.floor[i].friction = element.friction ? element.friction : entry.friction;
+}
+
+}  // namespace rubble::arenas

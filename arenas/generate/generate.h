@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "arenas/model/arena.h"
+
+namespace rubble::arenas {
+
+/// What a generated arena shall be like.
+struct GenerateConfig {
+  std::string kind = "yellow";  ///< yellow: drivable throughout; orange, red: with that kind's obstacles
+  int columns = 8;              ///< pallets west-east, 2..60
+  int rows = 8;                 ///< pallets south-north, 2..60
+  std::uint64_t seed = 1;
+  double ramps = 0.3;   ///< share of pallets that are 10 deg ramps, 0..1 (reached as far as drivability allows)
+  double paper = 0.1;   ///< share of pallets with loose or crumpled paper, 0..1
+  double loops = 0.2;   ///< share of the inner walls of a perfect maze taken away, 0..1
+  double rough = 0.25;  ///< orange, red: share of pallets with the kind's obstacles (reached as far as the maze allows)
+  int victims = 4;
+  double ramp_deg = 10.0;
+};
+
+/// The YAML text of a random arena: a maze in which every pallet can be reached without a step the robot cannot take;
+/// in orange and red ones every pallet but those with obstacles, which all lie beside the others.
+/// Same config, same bytes. Throws InputError on values out of range.
+std::string generate_arena(const GenerateConfig& config);
+
+}  // namespace rubble::arenas

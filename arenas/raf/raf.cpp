@@ -1,0 +1,66 @@
+#include "arenas/raf/raf.h"
+
+#include "arenas/elements/elements.h"
+#include "arenas/model/geometry.h"
+#include "arenas/raf/raf_layout.h"
+#include "arenas/raf/raf_reader.h"
+#include "arenas/raf/raf_start.h"
+#include "base/text/text_file.h"
+
+namespace rubble::arenas {
+namespace {
+
+std::string list(const std::map<std::string, int>& counts) {
+  std::string text;
+  for (const auto& [type, count] : counts) text += (text.empty() ? "" : ", ") + type + " " + std::to_string(count);
+  return text;
+}
+
+}  // namespace
+
+std::string RafImport::summary() const {
+  int parts = 0;
+  for (const auto& [type, count] : built) parts += count;
+  std::string text = std::to_string(parts) + " parts built";
+  if (!labels.empty()) text += "; without a shape: " + list(labels);
+  if (!unknown.empty()) text += "; UNKNOWN, left out: " + list(unknown);
+  return text;
+}
+
+std::vector<std::string> RafImport::notes() const {
+  std::vector<std::string> lines;
+  if (!labels.empty() || !unknown.empty()) lines.push_back(summary());
+  if (!askew.empty()) lines.push_back("at other than quarter turns: " + list(askew) + "; their walls close no room");
+  if (!start_note.empty()) lines.push_back(start_note);
+  return lines;
+}
+
+RafImport parse_raf(const std::string& text, const std::string& name) {
+  const std::vector<Element> elements = read_raf_elements(text, name);
+  RafImport import;
+  const std::string file = name.substr(name.find_last_of('/') + 1);
+  import.arena.name = file.substr(0, file.find_last_of('.'));
+  const Layout layout = layout_of(elements);
+  lay_ground(layout, import.arena);
+  for (const Element& element : elements) {
+    const ElementKind kind = kind_of(element.type);
+    if (!is_quarter_turn(element)) ++import.askew[element.type];
+    if (kind == ElementKind::Unknown) {
+      ++import.unknown[element.type];
+    } else if (kind == ElementKind::Label) {
+      ++import.labels[element.type];
+    } else {
+      ++import.built[element.type];
+      import.elements.push_back(element);
+      place(element, wall_behind(element, elements), import.arena);
+    }
+  }
+  set_bounds(import.arena);
+  find_start(layout, elements, name, import);
+  check(import.arena, name);
+  return import;
+}
+
+RafImport import_raf(const std::string& path) { return parse_raf(read_text_file(path), path); }
+
+}  // namespace rubble::arenas

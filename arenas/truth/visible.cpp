@@ -1,0 +1,157 @@
+#include "arenas/truth/visible.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "arenas/model/patch_index.h"
+#include "arenas/model/raster.h"
+#include "arenas/model/risers.h"
+#include "base/angle.h"
+#include "base/distance_transform.h"
+
+namespace rubble::arenas {
+namespace {
+
+using mrpt::math::TPoint2D;
+using Mask = Grid<std::uint8_t>;
+
+constexpr double kThin = 1e-4;  ///< thickness given to an edge [m]
+constexpr double kPoses = 0.4;  ///< distance between the poses looked from [m]
+constexpr double kFull = 8.0;   ///< up to here neighbouring rays end in neighbouring cells [m]
+
+/// Cells with something the body cannot pass: solids at its height, and steps too high to climb.
+Mask barriers(const Arena& arena, const GridFrame& frame, const Viewer& viewer) {
+  Mask mask(frame);
+  const PatchIndex floor(arena);
+  for (const Solid& solid : arena.solids) {
+    if (solid.gives_way) continue;
+    for_cells_crossed(frame, solid.outline, [&](Cell c) {
+      const double z = floor.floor_height(frame.centre(c));
+      const double ground = std::isfinite(z) ? z : 0.0;
+      if (solid.z_top > ground + viewer.climbable_step && solid.z_bottom < ground + viewer.height) mask[c] = 1;
+    });
+  }
+  for (const Riser& riser : risers(arena, viewer.climbable_step)) {
+    const TPoint2D along = riser.b - riser.a;
+    if (std::hypot(along.x, along.y) < kThin) continue;
+    for_cells_crossed(frame, strip(riser.a, riser.b, kThin), [&](Cell c) { mask[c] = 1; });
+  }
+  return mask;
+}
+
+/// Reachable cells, the start first, so that every one is less than kPoses from a chosen one and no two of them are.
+std::vector<Cell> poses_among(const Mask& reachable, Cell start) {
+  const GridFrame& frame = reachable.frame();
+  const int apart = std::max(1, static_cast<int>(std::lround(kPoses / frame.resolution)));  // [cells]
+  const int columns = frame.width / apart + 1;
+  const int rows = frame.height / apart + 1;
+  std::vector<Cell> chosen;
+  std::vector<std::vector<Cell>> buckets(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  const auto bucket = [&](int x, int y) -> std::vector<Cell>& {
+    return buckets[static_cast<std::size_t>(y * columns + x)];
+  };
+  const auto is_covered = [&](Cell c) {
+    for (int y = std::max(0, c.y / apart - 1); y <= std::min(rows - 1, c.y / apart + 1); ++y) {
+      for (int x = std::max(0, c.x / apart - 1); x <= std::min(columns - 1, c.x / apart + 1); ++x) {
+        for (const Cell other : bucket(x, y)) {
+          const int dx = other.x - c.x;
+          const int dy = other.y - c.y;
+          if (dx * dx + dy * dy < apart * apart) return true;
+        }
+      }
+    }
+    return false;
+  };
+  const auto consider = [&](Cell c) {
+    if (reachable[c] == 0 || is_covered(c)) return;
+    bucket(c.x / apart, c.y / apart).push_back(c);
+    chosen.push_back(c);
+  };
+  if (frame.inside(start)) consider(start);
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x) consider({x, y});
+  return chosen;
+}
+
+/// Marks what one ray sees: a walk from cell to cell (Amanatides and Woo 1987).
+void look(const OccupancyGrid& truth, Cell from, double bearing, double range, Mask& seen) {
+  const double dx = std::cos(bearing);
+  const double dy = std::sin(bearing);
+  const double step_x = 1.0 / std::max(1e-12, std::abs(dx));  // [cells of way a column]
+  const double step_y = 1.0 / std::max(1e-12, std::abs(dy));
+  double next_x = 0.5 * step_x;
+  double next_y = 0.5 * step_y;
+  const double end = range / truth.resolution();
+  for (Cell c = from; truth.inside(c);) {
+    seen[c] = 1;
+    if (truth[c] == Occupancy::Occupied || std::min(next_x, next_y) > end) return;
+    if (next_x < next_y) {
+      c.x += dx > 0.0 ? 1 : -1;
+      next_x += step_x;
+    } else {
+      c.y += dy > 0.0 ? 1 : -1;
+      next_y += step_y;
+    }
+  }
+}
+
+/// Whether a free cell beside or at a corner of c is seen: corners of rooms are hidden behind the two walls they join.
+bool touches_seen(const OccupancyGrid& truth, const Mask& seen, Cell c) {
+  for (int y = c.y - 1; y <= c.y + 1; ++y) {
+    for (int x = c.x - 1; x <= c.x + 1; ++x) {
+      if (truth.inside({x, y}) && seen[{x, y}] != 0 && truth[{x, y}] == Occupancy::Free) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+Mask reachable_mask(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer) {
+  const GridFrame& frame = truth.frame();
+  const Grid<float> clearance = distance_transform(barriers(arena, frame, viewer), 1.0);
+  const float needed = static_cast<float>(viewer.radius);
+  Mask reached(frame);
+  std::vector<Cell> open;
+  const auto reach = [&](Cell c, bool is_start) {
+    if (!frame.inside(c) || reached[c] != 0 || truth[c] != Occupancy::Free) return;
+    if (!is_start && clearance[c] < needed) return;
+    reached[c] = 1;
+    open.push_back(c);
+  };
+  reach(frame.cell({arena.start.x, arena.start.y}), true);
+  while (!open.empty()) {
+    const Cell c = open.back();
+    open.pop_back();
+    for (const Cell next : {Cell{c.x + 1, c.y}, Cell{c.x - 1, c.y}, Cell{c.x, c.y + 1}, Cell{c.x, c.y - 1}}) {
+      reach(next, false);
+    }
+  }
+  return reached;
+}
+
+Mask visible_mask(const OccupancyGrid& truth, const Mask& reachable, const TPoint2D& start, const Viewer& viewer) {
+  const GridFrame& frame = truth.frame();
+  Mask seen = reachable;
+  const int rays = static_cast<int>(std::ceil(2.0 * kPi * std::min(viewer.range, kFull) / frame.resolution));
+  for (const Cell pose : poses_among(reachable, frame.cell(start))) {
+    for (int i = 0; i < rays; ++i) look(truth, pose, 2.0 * kPi * (i + 0.5) / rays, viewer.range, seen);
+  }
+  return seen;
+}
+
+OccupancyGrid visible_truth(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer) {
+  const Mask seen = visible_mask(truth, reachable_mask(arena, truth, viewer), {arena.start.x, arena.start.y}, viewer);
+  OccupancyGrid known = truth;
+  for (int y = 0; y < truth.height(); ++y) {
+    for (int x = 0; x < truth.width(); ++x) {
+      const Cell c{x, y};
+      const bool is_wall = truth[c] == Occupancy::Occupied;
+      if (seen[c] == 0 && !(is_wall && touches_seen(truth, seen, c))) known[c] = Occupancy::Unknown;
+    }
+  }
+  return known;
+}
+
+}  // namespace rubble::arenas

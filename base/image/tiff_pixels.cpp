@@ -1,0 +1,311 @@
+#include "base/image/tiff_pixels.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "base/error.h"
+#include "base/sample_range.h"
+
+namespace rubble {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::uint32_t kMaxSide = 20000;
+constexpr std::uint64_t kMaxPixels = 100000000;
+constexpr std::uint32_t kMaxSamples = 16;
+constexpr std::uint64_t kMaxChunk = 2u << 30;  ///< [bytes] of one strip or tile, unpacked
+constexpr std::array<std::uint8_t, 3> kUnexplored{226, 226, 227};
+
+/// How the samples of a TIFF are stored.
+struct Layout {
+  std::uint32_t width = 0, height = 0;
+  std::uint32_t chunk_width = 0, chunk_height = 0;  ///< of a strip or tile
+  std::uint16_t bits = 1, samples = 1, photometric = PHOTOMETRIC_MINISBLACK, planes = PLANARCONFIG_CONTIG;
+  std::uint16_t format = SAMPLEFORMAT_UINT;
+  bool tiled = false;
+  int alpha = -1;              ///< sample that is the opacity; -1: none
+  bool premultiplied = false;  ///< colours are already scaled by it
+};
+
+using Samples = std::array<std::uint32_t, kMaxSamples>;  ///< of one pixel
+
+class Reader {
+ public:
+  Reader(TIFF* tiff, const std::string& path, const TiffComplaint& complaint)
+      : tiff_(tiff), path_(path), complaint_(complaint) {}
+
+  RgbImage read() {
+    read_layout();
+    check_chunks();
+    RgbImage image(static_cast<int>(layout_.width), static_cast<int>(layout_.height));
+    if (is_simple()) {
+      find_white();
+      if (is_odd_white(white_, (1u << layout_.bits) - 1)) image.white = white_;
+      read_tables();
+      read_chunks(image);
+    } else {
+      read_by_libtiff(image);
+    }
+    return image;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const { throw InputError(path_ + ": " + message); }
+  [[noreturn]] void fail_read() const {
+    fail("is damaged or truncated (" + (complaint_.text.empty() ? "short read" : complaint_.text) + "); copy it again");
+  }
+
+  void read_layout() {
+    Layout& l = layout_;
+    if (TIFFGetField(tiff_, TIFFTAG_IMAGEWIDTH, &l.width) != 1 ||
+        TIFFGetField(tiff_, TIFFTAG_IMAGELENGTH, &l.height) != 1 || l.width == 0 || l.height == 0)
+      fail("has no size; it is no image");
+    if (l.width > kMaxSide || l.height > kMaxSide || std::uint64_t{l.width} * l.height > kMaxPixels)
+      fail("has " + std::to_string(l.width) + " x " + std::to_string(l.height) + " pixels; at most " +
+           std::to_string(kMaxSide) + " a side and 10000 x 10000 in all, scale it down");
+    TIFFGetFieldDefaulted(tiff_, TIFFTAG_BITSPERSAMPLE, &l.bits);
+    TIFFGetFieldDefaulted(tiff_, TIFFTAG_SAMPLESPERPIXEL, &l.samples);
+    TIFFGetFieldDefaulted(tiff_, TIFFTAG_PLANARCONFIG, &l.planes);
+    TIFFGetFieldDefaulted(tiff_, TIFFTAG_SAMPLEFORMAT, &l.format);
+    if (TIFFGetField(tiff_, TIFFTAG_PHOTOMETRIC, &l.photometric) != 1)
+      l.photometric = l.samples >= 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK;
+    if (l.format != SAMPLEFORMAT_UINT && l.format != SAMPLEFORMAT_VOID)
+      fail("has signed or floating samples; convert it: gdal_translate -ot Byte -scale");
+    if (l.bits < 1 || l.bits > 16 || l.samples < 1 || l.samples > kMaxSamples)
+      fail("has " + std::to_string(l.samples) + " samples of " + std::to_string(l.bits) +
+           " bits a pixel; convert it: gdal_translate -ot Byte");
+    const std::uint16_t colours = l.photometric == PHOTOMETRIC_RGB ? 3 : 1;
+    if (l.samples < colours) fail("says RGB but has " + std::to_string(l.samples) + " samples a pixel");
+    std::uint16_t extra_count = 0;
+    std::uint16_t* extra = nullptr;
+    TIFFGetFieldDefaulted(tiff_, TIFFTAG_EXTRASAMPLES, &extra_count, &extra);
+    for (int i = 0; i < extra_count && l.alpha < 0; ++i)
+      if (extra[i] == EXTRASAMPLE_ASSOCALPHA || extra[i] == EXTRASAMPLE_UNASSALPHA) {
+        l.alpha = static_cast<int>(l.samples) - static_cast<int>(extra_count) + i;
+        l.premultiplied = extra[i] == EXTRASAMPLE_ASSOCALPHA;
+      }
+    if (l.alpha < static_cast<int>(colours)) l.alpha = -1;
+    read_chunk_size();
+  }
+
+  void read_chunk_size() {
+    Layout& l = layout_;
+    l.tiled = TIFFIsTiled(tiff_) != 0;
+    if (l.tiled) {
+      TIFFGetField(tiff_, TIFFTAG_TILEWIDTH, &l.chunk_width);
+      TIFFGetField(tiff_, TIFFTAG_TILELENGTH, &l.chunk_height);
+    } else {
+      l.chunk_width = l.width;
+      TIFFGetFieldDefaulted(tiff_, TIFFTAG_ROWSPERSTRIP, &l.chunk_height);
+      l.chunk_height = std::min(l.chunk_height, l.height);
+    }
+    if (l.chunk_width == 0 || l.chunk_height == 0) fail("has strips or tiles of no size; it is damaged");
+  }
+
+  /// Every strip or tile lies inside the file: a truncated file is known before its pixels are unpacked.
+  void check_chunks() const {
+    struct stat status {};
+    if (fstat(TIFFFileno(tiff_), &status) != 0) return;
+    const std::uint32_t count = layout_.tiled ? TIFFNumberOfTiles(tiff_) : TIFFNumberOfStrips(tiff_);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint64_t offset = TIFFGetStrileOffset(tiff_, i);
+      const std::uint64_t size = TIFFGetStrileByteCount(tiff_, i);
+      const auto end = static_cast<std::uint64_t>(status.st_size);
+      if (size > end || offset > end - size) fail("is truncated: its pixels end after the file; copy it again");
+    }
+    const auto chunk = static_cast<std::uint64_t>(layout_.tiled ? TIFFTileSize64(tiff_) : TIFFStripSize64(tiff_));
+    if (chunk == 0 || chunk > kMaxChunk) fail("has strips or tiles of an absurd size; it is damaged");
+  }
+
+  bool is_simple() const {
+    return layout_.photometric == PHOTOMETRIC_MINISBLACK || layout_.photometric == PHOTOMETRIC_MINISWHITE ||
+           layout_.photometric == PHOTOMETRIC_RGB || layout_.photometric == PHOTOMETRIC_PALETTE;
+  }
+
+  /// What stands for white and for opaque. Deep samples are read once more than needed: many hold 0..255 unscaled.
+  void find_white() {
+    white_ = opaque_ = (1u << layout_.bits) - 1;
+    if (layout_.bits <= 8) return;
+    std::uint32_t brightest = 0;
+    std::uint32_t most_opaque = 0;
+    visit_chunks([&](std::uint32_t x0, std::uint32_t y0, const std::vector<Bytes>& planes) {
+      visit_samples(x0, y0, planes, [&](int, int, const Samples& values) {
+        for (std::size_t s = 0; s < layout_.samples; ++s) {
+          if (!is_used(s)) continue;
+          std::uint32_t& most = static_cast<int>(s) == layout_.alpha ? most_opaque : brightest;
+          most = std::max(most, values[s]);
+        }
+      });
+    });
+    if (layout_.photometric != PHOTOMETRIC_PALETTE) white_ = white_of(brightest, white_);
+    opaque_ = white_of(most_opaque, opaque_, true);
+  }
+
+  /// The 8-bit value of every sample value, and the colours of a palette.
+  void read_tables() {
+    const std::uint32_t values = 1u << layout_.bits;
+    level_.resize(values);
+    for (std::uint32_t v = 0; v < values; ++v) {
+      const std::uint32_t linear = (std::min(v, white_) * 255u + white_ / 2) / white_;
+      level_[v] = static_cast<std::uint8_t>(layout_.photometric == PHOTOMETRIC_MINISWHITE ? 255u - linear : linear);
+    }
+    if (layout_.photometric != PHOTOMETRIC_PALETTE) return;
+    std::array<std::uint16_t*, 3> map{};
+    if (TIFFGetField(tiff_, TIFFTAG_COLORMAP, &map[0], &map[1], &map[2]) != 1) fail("has a palette without colours");
+    bool is_wide = false;  // some writers store 8-bit colours in the 16-bit table
+    for (const std::uint16_t* channel : map)
+      for (std::uint32_t v = 0; v < values; ++v) is_wide = is_wide || channel[v] > 255;
+    for (std::size_t c = 0; c < 3; ++c) {
+      palette_[c].resize(values);
+      for (std::uint32_t v = 0; v < values; ++v)
+        palette_[c][v] = static_cast<std::uint8_t>(is_wide ? map[c][v] >> 8 : map[c][v]);
+    }
+  }
+
+  /// Stored as it is returned.
+  bool is_plain_rgb() const {
+    return layout_.photometric == PHOTOMETRIC_RGB && layout_.bits == 8 && layout_.samples == 3 &&
+           layout_.planes == PLANARCONFIG_CONTIG;
+  }
+
+  /// The sample is a colour or the opacity.
+  bool is_used(std::size_t sample) const {
+    return sample < (layout_.photometric == PHOTOMETRIC_RGB ? 3u : 1u) || static_cast<int>(sample) == layout_.alpha;
+  }
+
+  void read_chunks(RgbImage& image) {
+    if (layout_.alpha >= 0) image.alpha.resize(image.rgb.size() / 3);
+    visit_chunks([&](std::uint32_t x0, std::uint32_t y0, const std::vector<Bytes>& planes) {
+      if (is_plain_rgb())
+        copy_chunk(x0, y0, planes[0], image);
+      else
+        visit_samples(x0, y0, planes, [&](int x, int y, const Samples& values) {
+          draw_pixel(values, image.pixel(x, y));
+          if (layout_.alpha >= 0) image.alpha[image.index(x, y)] = opacity(values);
+        });
+    });
+  }
+
+  /// Unpacks strip after strip or tile after tile: `take` gets its corner and its planes.
+  template <class Take>
+  void visit_chunks(const Take& take) const {
+    const bool separate = layout_.planes == PLANARCONFIG_SEPARATE;
+    const auto size = static_cast<std::size_t>(layout_.tiled ? TIFFTileSize(tiff_) : TIFFStripSize(tiff_));
+    std::vector<Bytes> planes(separate ? layout_.samples : 1);
+    for (std::size_t plane = 0; plane < planes.size(); ++plane)
+      if (is_used(plane)) planes[plane].resize(size);
+    for (std::uint32_t y = 0; y < layout_.height; y += layout_.chunk_height)
+      for (std::uint32_t x = 0; x < layout_.width; x += layout_.chunk_width) {
+        for (std::size_t plane = 0; plane < planes.size(); ++plane)
+          if (!planes[plane].empty()) read_chunk(x, y, static_cast<std::uint16_t>(plane), planes[plane]);
+        take(x, y, planes);
+      }
+  }
+
+  void read_chunk(std::uint32_t x, std::uint32_t y, std::uint16_t plane, Bytes& bytes) const {
+    const auto size = static_cast<tmsize_t>(bytes.size());
+    std::fill(bytes.begin(), bytes.end(), std::uint8_t{0});
+    const std::uint32_t rows = std::min(layout_.chunk_height, layout_.height - y);
+    const tmsize_t wanted = layout_.tiled ? size : TIFFVStripSize(tiff_, rows);
+    const tmsize_t got =
+        layout_.tiled
+            ? TIFFReadEncodedTile(tiff_, TIFFComputeTile(tiff_, x, y, 0, plane), bytes.data(), size)
+            : TIFFReadEncodedStrip(tiff_, TIFFComputeStrip(tiff_, y, plane), bytes.data(), std::min(size, wanted));
+    if (got < wanted) fail_read();
+  }
+
+  /// Sample number i of a row: big-endian bits, but whole 16-bit words are in the machine's order.
+  std::uint32_t sample(const std::uint8_t* row, std::size_t i) const {
+    if (layout_.bits == 8) return row[i];
+    if (layout_.bits == 16) return reinterpret_cast<const std::uint16_t*>(row)[i];
+    std::uint32_t value = 0;
+    std::size_t bit = i * layout_.bits;
+    for (std::uint32_t left = layout_.bits; left > 0; --left, ++bit)
+      value = (value << 1) | ((row[bit >> 3] >> (7 - (bit & 7))) & 1u);
+    return value;
+  }
+
+  void copy_chunk(std::uint32_t x0, std::uint32_t y0, const Bytes& bytes, RgbImage& image) const {
+    const std::uint32_t rows = std::min(layout_.chunk_height, layout_.height - y0);
+    const std::uint32_t columns = std::min(layout_.chunk_width, layout_.width - x0);
+    for (std::uint32_t y = 0; y < rows; ++y)
+      std::copy_n(bytes.data() + y * row_size(), std::size_t{3} * columns,
+                  image.pixel(static_cast<int>(x0), static_cast<int>(y0 + y)));
+  }
+
+  std::size_t row_size() const {
+    return static_cast<std::size_t>(layout_.tiled ? TIFFTileRowSize(tiff_) : TIFFScanlineSize(tiff_));
+  }
+
+  /// `take` gets every pixel of a strip or tile.
+  template <class Take>
+  void visit_samples(std::uint32_t x0, std::uint32_t y0, const std::vector<Bytes>& planes, const Take& take) const {
+    const std::size_t row_bytes = row_size();
+    const std::uint32_t rows = std::min(layout_.chunk_height, layout_.height - y0);
+    const std::uint32_t columns = std::min(layout_.chunk_width, layout_.width - x0);
+    const bool separate = planes.size() > 1;
+    Samples values{};
+    for (std::uint32_t y = 0; y < rows; ++y)
+      for (std::uint32_t x = 0; x < columns; ++x) {
+        for (std::size_t s = 0; s < layout_.samples; ++s) {
+          if (!is_used(s)) continue;
+          const std::uint8_t* const row = planes[separate ? s : 0].data() + y * row_bytes;
+          values[s] = sample(row, separate ? x : static_cast<std::size_t>(x) * layout_.samples + s);
+        }
+        take(static_cast<int>(x0 + x), static_cast<int>(y0 + y), values);
+      }
+  }
+
+  std::uint8_t opacity(const Samples& values) const {
+    const std::uint32_t alpha = std::min(values[static_cast<std::size_t>(layout_.alpha)], opaque_);
+    return static_cast<std::uint8_t>((alpha * 255u + opaque_ / 2) / opaque_);
+  }
+
+  void draw_pixel(const Samples& values, std::uint8_t* rgb) const {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t value = values[layout_.photometric == PHOTOMETRIC_RGB ? c : 0];
+      std::uint32_t colour = layout_.photometric == PHOTOMETRIC_PALETTE ? palette_[c][value] : level_[value];
+      if (layout_.alpha >= 0) {
+        const std::uint32_t top = opaque_;
+        const std::uint32_t alpha = std::min(values[static_cast<std::size_t>(layout_.alpha)], top);
+        const std::uint32_t behind = (kUnexplored[c] * (top - alpha) + top / 2) / top;
+        colour = (layout_.premultiplied ? colour : (colour * alpha + top / 2) / top) + behind;
+      }
+      rgb[c] = static_cast<std::uint8_t>(std::min(colour, 255u));
+    }
+  }
+
+  void read_by_libtiff(RgbImage& image) {
+    TIFFSetField(tiff_, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
+    std::vector<std::uint32_t> raster(static_cast<std::size_t>(layout_.width) * layout_.height);
+    if (TIFFReadRGBAImageOriented(tiff_, layout_.width, layout_.height, raster.data(), ORIENTATION_TOPLEFT, 1) != 1)
+      fail("cannot be read (" + complaint_.text +
+           "); convert it to RGB: gdal_translate -expand rgb, or any image tool");
+    for (std::size_t i = 0; i < raster.size(); ++i) {
+      image.rgb[3 * i] = static_cast<std::uint8_t>(TIFFGetR(raster[i]));
+      image.rgb[3 * i + 1] = static_cast<std::uint8_t>(TIFFGetG(raster[i]));
+      image.rgb[3 * i + 2] = static_cast<std::uint8_t>(TIFFGetB(raster[i]));
+    }
+  }
+
+  TIFF* tiff_;
+  const std::string& path_;
+  const TiffComplaint& complaint_;
+  Layout layout_;
+  std::uint32_t white_ = 255;   ///< sample value
+  std::uint32_t opaque_ = 255;  ///< sample value
+  Bytes level_;
+  std::array<Bytes, 3> palette_;
+};
+
+}  // namespace
+
+RgbImage read_pixels(TIFF* tiff, const std::string& path, const TiffComplaint& complaint) {
+  return Reader(tiff, path, complaint).read();
+}
+
+}  // namespace rubble

@@ -1,0 +1,215 @@
+#include "robot/logs/foreign/carmen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/angle.h"
+#include "base/error.h"
+
+namespace rubble::robot {
+namespace {
+
+using mrpt::math::TPose2D;
+using Records = std::vector<CarmenRecord>;
+
+constexpr double kSameLength = 0.3;  ///< scan and odometry poses of one frame agree within this [m]
+constexpr double kSameAngle = 0.2;   ///< and this [rad]
+
+bool same_pose(const TPose2D& a, const TPose2D& b) { return a.x == b.x && a.y == b.y && a.phi == b.phi; }
+
+TPose2D wrapped(TPose2D pose) {
+  pose.phi = wrap_angle(pose.phi);
+  return pose;
+}
+
+bool repeats_scan_before(const Records& records, std::size_t i) {
+  return i > 0 && !records[i].is_scan && records[i - 1].is_scan && same_pose(records[i].robot, records[i - 1].robot);
+}
+
+/// A scan matcher's log: each scan carries the corrected pose, and right behind it an ODOM line with a meaningless
+/// stamp repeats that pose, from where the raw increments go on.
+bool is_reanchored(const Records& records) {
+  std::size_t scans = 0;
+  std::size_t marks = 0;
+  std::size_t marks_back_in_time = 0;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (records[i].is_scan) ++scans;
+    if (!repeats_scan_before(records, i)) continue;
+    ++marks;
+    if (records[i].measured < records[i - 1].measured) ++marks_back_in_time;
+  }
+  return marks > 0 && 20 * (scans - marks) <= scans && 2 * marks_back_in_time > marks;
+}
+
+/// Composes the raw increments again: ODOM to ODOM as they stand, none from ODOM to scan. Returns the corrected poses;
+/// the restart marks are dropped.
+std::vector<TPose2D> undo_reanchoring(Records& records) {
+  std::vector<TPose2D> corrected;
+  Records kept;
+  TPose2D T_odom_base(0, 0, 0);
+  TPose2D T_anchor_base = records.front().robot;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    CarmenRecord& record = records[i];
+    if (repeats_scan_before(records, i)) continue;
+    const TPose2D T_map_base = record.robot;
+    if (record.is_scan)
+      corrected.push_back(T_map_base);
+    else
+      T_odom_base = wrapped(T_odom_base + (T_map_base - T_anchor_base));
+    T_anchor_base = T_map_base;
+    kept.push_back(record);
+    kept.back().robot = T_odom_base;
+  }
+  records = std::move(kept);
+  return corrected;
+}
+
+double worst_step_back(const Records& records, Stamp CarmenRecord::*clock, int& line) {
+  double worst = 0.0;
+  Stamp latest = Stamp::never();
+  for (const CarmenRecord& record : records) {
+    const Stamp stamp = record.*clock;
+    if (latest != Stamp::never() && latest - stamp > worst) {
+      worst = latest - stamp;
+      line = record.line;
+    }
+    latest = std::max(latest, stamp);
+  }
+  return worst;
+}
+
+/// The sender's clock where it runs, else the logger's. Throws InputError when both jump back.
+Stamp CarmenRecord::*choose_clock(const Records& records, const std::string& path) {
+  int line = 0;
+  int unused = 0;
+  const bool stands =
+      records.size() > 1 && std::all_of(records.begin(), records.end(), [&](const CarmenRecord& record) {
+        return record.measured == records.front().measured;
+      });
+  const double back = worst_step_back(records, &CarmenRecord::measured, line);
+  if (!stands && back <= kStampJitter) return &CarmenRecord::measured;
+  if (worst_step_back(records, &CarmenRecord::logged, unused) <= kStampJitter) return &CarmenRecord::logged;
+  char seconds[32];
+  std::snprintf(seconds, sizeof seconds, "%.3f", back);
+  throw InputError(at(path, line, 1,
+                      std::string("the time jumps back by ") + seconds +
+                          " s; cut the log here, or sort its lines by time if two recordings were joined"));
+}
+
+/// Gives every record the stamp it is delivered with: in the order of the lines. A scan shares the stamp of the ODOM
+/// line before it that has the same time.
+void order_stamps(Records& records, Stamp CarmenRecord::*clock) {
+  const auto shares = [&](std::size_t i) {
+    return i > 0 && records[i].is_scan && !records[i - 1].is_scan && records[i].*clock == records[i - 1].*clock;
+  };
+  std::vector<Stamp> stamps;
+  for (std::size_t i = 0; i < records.size(); ++i)
+    if (!shares(i)) stamps.push_back(records[i].*clock);
+  stamps = sorted_stamps(std::move(stamps));
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (shares(i))
+      records[i].stamp = records[i - 1].stamp;
+    else
+      records[i].stamp = stamps[next++];
+  }
+}
+
+/// Whether the robot poses of the scans lie on the path of the ODOM lines (median of distances and of turns).
+bool scans_follow_odometry(const Records& records) {
+  Trajectory path;
+  for (const CarmenRecord& record : records)
+    if (!record.is_scan) path.push_back({record.stamp, record.robot});
+  std::vector<double> distances;
+  std::vector<double> turns;
+  for (const CarmenRecord& record : records) {
+    if (!record.is_scan) continue;
+    const auto odometry = pose_at(path, record.stamp);
+    if (!odometry) continue;
+    distances.push_back(std::hypot(record.robot.x - odometry->x, record.robot.y - odometry->y));
+    turns.push_back(std::abs(wrap_angle(record.robot.phi - odometry->phi)));
+  }
+  if (distances.empty()) return true;
+  const auto middle = static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), distances.begin() + middle, distances.end());
+  std::nth_element(turns.begin(), turns.begin() + middle, turns.end());
+  return distances[static_cast<std::size_t>(middle)] <= kSameLength &&
+         turns[static_cast<std::size_t>(middle)] <= kSameAngle;
+}
+
+/// Whether the laser keeps its place on the robot in all scans.
+bool laser_is_fixed(const Records& records, TPose2D& T_base_laser) {
+  bool found = false;
+  for (const CarmenRecord& record : records) {
+    if (!record.is_scan) continue;
+    const TPose2D mount = record.laser - record.robot;
+    if (!found) T_base_laser = mount;
+    found = true;
+    if (std::hypot(mount.x - T_base_laser.x, mount.y - T_base_laser.y) > 0.05 ||
+        std::abs(wrap_angle(mount.phi - T_base_laser.phi)) > 0.05)
+      return false;
+  }
+  return true;
+}
+
+void place_laser(const CarmenText& text, bool fixed, const TPose2D& seen, RobotModel& model) {
+  model.T_base_laser.x = text.front_laser_offset.value_or(fixed ? seen.x : 0.0);
+  if (!fixed || text.front_laser_offset) return;
+  model.T_base_laser.y = seen.y;
+  model.T_base_laser.yaw = wrap_angle(seen.phi);
+}
+
+}  // namespace
+
+ForeignLog read_carmen(std::string_view text, const std::string& path) {
+  CarmenText carmen = parse_carmen(text, path);
+  Records& records = carmen.records;
+
+  TPose2D seen_mount(0, 0, 0);
+  const bool laser_fixed = laser_is_fixed(records, seen_mount);
+  const bool reanchored = is_reanchored(records);
+  const std::vector<TPose2D> corrected = reanchored ? undo_reanchoring(records) : std::vector<TPose2D>{};
+  order_stamps(records, choose_clock(records, path));
+  const bool scans_are_raw = reanchored || scans_follow_odometry(records);
+
+  ForeignLog log;
+  log.format = "CARMEN log";
+  log.model.name = "carmen";
+  if (carmen.robot_length && *carmen.robot_length > 0.0) log.model.length = *carmen.robot_length;
+  if (carmen.robot_width && *carmen.robot_width > 0.0) log.model.width = *carmen.robot_width;
+  place_laser(carmen, laser_fixed, seen_mount, log.model);
+  log.model.laser.name = "CARMEN laser";
+
+  const mrpt::math::TPose3D& mount = log.model.T_base_laser;
+  const TPose2D T_laser_base = TPose2D(0, 0, 0) - TPose2D(mount.x, mount.y, mount.yaw);
+  std::vector<LaserScan> scans;
+  std::vector<Odometry> odometry;
+  std::optional<TPose2D> T_start_base;
+  double v = 0.0;
+  double w = 0.0;
+  for (CarmenRecord& record : records) {
+    if (!record.is_scan || record.v != 0.0 || record.w != 0.0) {
+      v = record.v;
+      w = record.w;
+    }
+    if (record.is_scan) {
+      if (reanchored)
+        log.reference.push_back({record.stamp, wrapped(corrected[scans.size()])});
+      else if (!scans_are_raw)
+        log.reference.push_back({record.stamp, wrapped(record.robot)});
+      else if (!laser_fixed)
+        log.reference.push_back({record.stamp, wrapped(record.laser + T_laser_base)});
+      record.scan.stamp = record.stamp;
+      scans.push_back(std::move(record.scan));
+    }
+    if (record.is_scan && !scans_are_raw) continue;
+    if (!T_start_base) T_start_base = record.robot;
+    odometry.push_back({record.stamp, wrapped(record.robot - *T_start_base), v, w, false});
+  }
+  describe_sensors(scans, odometry, log.model);
+  log.ticks = assemble_ticks(std::move(scans), std::move(odometry));
+  return log;
+}
+
+}  // namespace rubble::robot

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "robot/commands.h"
+#include "robot/logs/log.h"
+#include "robot/measurements.h"
+
+namespace rubble::robot {
+
+/// Kinds of frames; the first byte of a payload. Readers pass over kinds they do not know.
+enum class FrameKind : char { Header = 'H', Tick = 'T', Commands = 'C' };
+
+/// Appends one whole frame each.
+void append_header_frame(std::string& out, const LogHeader& header);
+void append_commands_frame(std::string& out, const Commands& commands);
+
+/// Times and scan geometry are written relative to the tick before, so encoder and decoder each keep a little state.
+struct TickContext {
+  Stamp last_now;
+  LaserScan last_geometry;  ///< without ranges
+};
+void append_tick_frame(std::string& out, const Inputs& inputs, TickContext& context);
+
+/// The inverse; `payload` with its kind byte. Throws BadPayload.
+LogHeader decode_header(std::string_view payload);
+Commands decode_commands(std::string_view payload);
+Inputs decode_tick(std::string_view payload, TickContext& context);
+
+}  // namespace rubble::robot

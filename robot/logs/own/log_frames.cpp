@@ -1,0 +1,92 @@
+#include "robot/logs/own/log_frames.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "robot/logs/own/bytes.h"
+
+namespace rubble::robot {
+namespace {
+
+// Length and CRC of the payload, then the CRC of these eight bytes: a damaged length is told from a torn frame.
+constexpr std::size_t kHeadSize = 12;
+
+std::uint32_t crc_of(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<z_size_t>(bytes.size())));
+}
+
+bool all_zero(std::string_view bytes) {
+  return std::all_of(bytes.begin(), bytes.end(), [](char c) { return c == 0; });
+}
+
+void check_magic(std::string_view bytes, const std::string& path) {
+  if (bytes.substr(0, kLogMagic.size()) == kLogMagic) return;
+  const std::size_t line = bytes.find('\n');
+  if (line != std::string_view::npos && bytes.substr(0, kLogMagicStem.size()) == kLogMagicStem) {
+    const std::string version(bytes.substr(kLogMagicStem.size(), line - kLogMagicStem.size()));
+    throw InputError(path + ": byte 0: a log of version '" + version.substr(0, 20) +
+                     "', but this program reads version 1; replay it with the release that recorded it");
+  }
+  throw InputError(path + ": byte 0: the first line is not 'RUBBLE LOG 1'; give a log that 'rubble' recorded");
+}
+
+[[noreturn]] void fail_damaged(const std::string& path, std::size_t offset, const std::string& what) {
+  throw InputError(path + ": byte " + std::to_string(offset) + ": " + what +
+                   "; copy the log again, or keep what precedes the damage: head -c " + std::to_string(offset) + " '" +
+                   path + "' > part.log");
+}
+
+}  // namespace
+
+std::size_t open_frame(std::string& out) {
+  const std::size_t start = out.size();
+  out.append(kHeadSize, '\0');
+  return start;
+}
+
+void close_frame(std::string& out, std::size_t start) {
+  const std::string_view payload = std::string_view(out).substr(start + kHeadSize);
+  std::string head;
+  ByteWriter writer(head);
+  writer.u32(static_cast<std::uint32_t>(payload.size()));
+  writer.u32(crc_of(payload));
+  writer.u32(crc_of(head));
+  out.replace(start, kHeadSize, head);
+}
+
+Frames split_frames(std::string_view bytes, const std::string& path) {
+  check_magic(bytes, path);
+  Frames frames;
+  std::size_t offset = kLogMagic.size();
+  while (offset < bytes.size()) {
+    const std::string_view rest = bytes.substr(offset);
+    // A power cut can leave a tail of zeros where the file system had reserved space.
+    frames.torn = rest.size() < kHeadSize || all_zero(rest);
+    if (frames.torn) break;
+    ByteReader head(rest.substr(0, kHeadSize));
+    const std::size_t length = head.u32();
+    const std::uint32_t payload_crc = head.u32();
+    if (head.u32() != crc_of(rest.substr(0, kHeadSize - 4))) {
+      frames.torn = all_zero(rest.substr(kHeadSize));
+      if (frames.torn) break;
+      fail_damaged(path, offset, "the frame's head is damaged");
+    }
+    frames.torn = length > rest.size() - kHeadSize;
+    if (frames.torn) break;
+    const std::string_view payload = rest.substr(kHeadSize, length);
+    if (crc_of(payload) != payload_crc) {
+      frames.torn = all_zero(rest.substr(kHeadSize + length));  // nothing follows: it was being written
+      if (frames.torn) break;
+      fail_damaged(path, offset, "the frame fails its check");
+    }
+    offset += kHeadSize + length;
+    frames.payloads.push_back(payload);
+    frames.ends.push_back(offset);
+  }
+  return frames;
+}
+
+}  // namespace rubble::robot

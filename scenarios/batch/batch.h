@@ -1,0 +1,68 @@
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "scenarios/batch/merge.h"
+#include "scenarios/batch/results.h"
+#include "scenarios/batch/sweep.h"
+
+namespace rubble::scenarios {
+
+/// What one run gives, before it becomes a record.
+struct RunOutcome {
+  nlohmann::ordered_json score;  ///< the content of score.json, times included
+  std::string end;
+  std::string failure;              ///< not empty: the run failed although it has results
+  std::vector<std::string> broken;  ///< expectations that were not met
+  std::string hash;                 ///< of the run's artefacts
+};
+
+/// Does one run into a folder. Called in worker processes; what it throws makes the run "failed".
+using Runner = std::function<RunOutcome(const Job&, const std::string& folder)>;
+
+/// The runner that simulates. `record`: keep each run's log.
+Runner simulating_runner(bool record);
+
+/// How far a batch is.
+struct BatchProgress {
+  std::size_t total = 0;    ///< runs of this shard
+  std::size_t skipped = 0;  ///< finished by an earlier call
+  std::size_t done = 0;     ///< finished by this call, failures included
+  std::size_t failed = 0;   ///< of `done`: failed or timed out
+  std::size_t running = 0;
+  double elapsed_s = 0.0;
+  double remaining_s = 0.0;  ///< expected; 0 until something is known
+
+  std::size_t finished() const { return skipped + done; }
+};
+
+struct BatchOptions {
+  std::string out;  ///< folder for results.jsonl, timing.jsonl, workers.log and runs/
+  int workers = 1;
+  Shard shard;
+  bool retry = false;  ///< make failed and timed-out runs of earlier calls again
+  double run_limit = 900.0;
+  std::string code;            ///< goes into every record
+  std::function<bool()> stop;  ///< true: hand out no more, kill what runs, keep what is finished
+  std::function<void(const BatchProgress&)> progress;
+};
+
+struct BatchReport {
+  BatchProgress progress;
+  bool interrupted = false;
+};
+
+/// Makes the runs that the folder does not hold yet. Safe to kill at any time and to call again. Records are the same
+/// whatever the number of workers and shards. Throws InputError, RunError (disk full: what is finished is kept).
+BatchReport run_batch(const std::vector<Job>& jobs, const Runner& runner, const BatchOptions& options);
+
+/// Those results in the folder that belong to these jobs: a folder may hold more than one sweep, or several versions.
+ResultSet results_of(const std::vector<Job>& jobs, const std::string& folder);
+
+/// The file name suffix of a shard's results: empty for the whole, `-2of4` for a part.
+std::string shard_suffix(const Shard& shard);
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,222 @@
+#include "scenarios/batch/sweep.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <set>
+
+#include "base/digest.h"
+#include "base/error.h"
+#include "base/yaml/strict_yaml.h"
+#include "scenarios/run/run.h"
+
+namespace rubble::scenarios {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostRuns = 1000000;
+
+/// The values of a key that may be one value or a list.
+std::vector<std::string> one_or_more(const YamlMap& map, const std::string& key) {
+  try {
+    return {map.text(key, std::nullopt)};
+  } catch (const InputError&) {
+    return map.texts(key);
+  }
+}
+
+std::optional<std::uint64_t> whole_number(const std::string& text) {
+  std::uint64_t value = 0;
+  const char* end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value);
+  if (parsed.ec != std::errc() || parsed.ptr != end || value > INT64_MAX) return std::nullopt;
+  return value;
+}
+
+std::vector<std::uint64_t> read_seeds(const YamlMap& root) {
+  const std::string remedy = "; write a range (seeds: 1-24) or a list (seeds: [1, 5, 9])";
+  if (!root.has("seeds")) root.fail("seeds", "a sweep needs 'seeds'" + remedy);
+  std::vector<std::uint64_t> seeds;
+  std::set<std::uint64_t> seen;
+  for (const auto& text : one_or_more(root, "seeds")) {
+    const auto dash = text.find('-');
+    const auto first = whole_number(text.substr(0, dash));
+    const auto last = dash == std::string::npos ? first : whole_number(text.substr(dash + 1));
+    if (!first || !last || *last < *first) root.fail("seeds", "'" + text + "' is neither a seed nor a range" + remedy);
+    if (*last - *first >= kMostRuns) root.fail("seeds", "'" + text + "' are more than a million seeds" + remedy);
+    for (std::uint64_t seed = *first;; ++seed) {
+      if (!seen.insert(seed).second) root.fail("seeds", "seed " + std::to_string(seed) + " is there twice" + remedy);
+      seeds.push_back(seed);
+      if (seed == *last) break;
+    }
+  }
+  if (seeds.empty()) root.fail("seeds", "the list is empty" + remedy);
+  return seeds;
+}
+
+std::vector<std::string> read_scenarios(const YamlMap& root, const fs::path& folder, const std::string& shipped) {
+  std::vector<std::string> paths;
+  for (const auto& name : root.texts("scenarios")) {
+    const fs::path beside = fs::path(name).is_absolute() ? fs::path(name) : folder / name;
+    const fs::path known = fs::path(shipped) / (name + ".yaml");
+    if (fs::is_regular_file(beside)) {
+      paths.push_back(beside.lexically_normal().string());
+    } else if (!shipped.empty() && name.find('/') == std::string::npos && fs::is_regular_file(known)) {
+      paths.push_back(known.lexically_normal().string());
+    } else {
+      root.fail("scenarios",
+                "there is no scenario file '" + beside.string() + "'; paths are relative to the sweep file");
+    }
+  }
+  if (paths.empty()) root.fail("scenarios", "a sweep needs scenario files: scenarios: [a.yaml, b.yaml]");
+  return paths;
+}
+
+/// The sweep gives these itself, once for all configurations.
+void refuse_reserved(const YamlMap& map, const std::string& key) {
+  if (key == "seed") map.fail(key, "cannot vary by configuration; list the seeds under 'seeds'");
+  if (key == "name") map.fail(key, "cannot vary by configuration; results are paired by the scenario's name");
+}
+
+std::vector<Configuration> named_sets(const YamlMap& root) {
+  const YamlMap sets = root.map("configs");
+  std::vector<Configuration> configurations;
+  for (const auto& name : sets.keys()) {
+    const YamlMap set = sets.map(name);
+    Configuration configuration{name, "", {}};
+    for (const auto& key : set.keys()) {
+      refuse_reserved(set, key);
+      configuration.overrides.emplace_back(key, set.text(key, std::nullopt));
+    }
+    configurations.push_back(configuration);
+  }
+  if (configurations.empty()) configurations.push_back({});
+  if (configurations.size() > 1)
+    for (auto& configuration : configurations) configuration.reference = configurations.front().name;
+  return configurations;
+}
+
+std::string with(const std::string& name, const std::string& key, const std::string& value) {
+  return name + (name.empty() ? "" : ", ") + key + "=" + value;
+}
+
+/// Each configuration once for each value of `key`.
+std::vector<Configuration> crossed(const std::vector<Configuration>& configurations, const std::string& key,
+                                   const std::vector<std::string>& values) {
+  std::vector<Configuration> product;
+  for (const auto& configuration : configurations)
+    for (const auto& value : values) {
+      Configuration next = configuration;
+      // A key with one value is the same everywhere and would only lengthen every name.
+      if (values.size() > 1) {
+        const bool first = configuration.reference.empty();  // this key is what the sweep varies first of all
+        next.reference =
+            with(first ? configuration.name : configuration.reference, key, first ? values.front() : value);
+        next.name = with(configuration.name, key, value);
+      }
+      next.overrides.emplace_back(key, value);
+      product.push_back(std::move(next));
+    }
+  return product;
+}
+
+std::vector<Configuration> read_configurations(const YamlMap& root) {
+  std::vector<Configuration> configurations = named_sets(root);
+  const YamlMap grid = root.map("set");
+  for (const auto& key : grid.keys()) {
+    refuse_reserved(grid, key);
+    const auto values = one_or_more(grid, key);
+    if (values.empty()) grid.fail(key, "has no values; give one or a list: " + key + ": [a, b]");
+    configurations = crossed(configurations, key, values);
+    if (configurations.size() > kMostRuns) root.fail("set", "is a grid of more than a million configurations");
+  }
+  std::set<std::string> names;
+  for (auto& configuration : configurations) {
+    if (configuration.name.empty()) configuration.name = "default";
+    if (!names.insert(configuration.name).second)
+      root.fail("set", "gives configuration '" + configuration.name + "' twice; remove the repeated value");
+  }
+  return configurations;
+}
+
+std::string run_id(const Scenario& scenario, const std::string& configuration, const std::string& code) {
+  Scenario portable = scenario;  // where the arena file lies does not matter, what is in it does
+  if (!scenario.arena_file.empty()) portable.arena_file = "arena.yaml";
+  std::string text = code + "\n" + configuration + "\n" + resolved_yaml(portable);
+  if (!scenario.arena_file.empty()) text += arena_yaml(scenario);
+  return sha256_of_text(text).substr(0, 16);
+}
+
+}  // namespace
+
+std::string Job::folder() const {
+  std::string name = scenario.name + "-" + configuration.substr(0, 80);
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.' && c != '=') c = '_';
+  return name + "-seed" + std::to_string(scenario.seed) + "-" + run_id.substr(0, 8);
+}
+
+Sweep load_sweep(const std::string& path, const std::string& shipped) {
+  const YamlMap root = YamlMap::load(path);
+  Sweep sweep;
+  sweep.path = path;
+  sweep.name = root.text("name", fs::path(path).stem().string());
+  sweep.about = root.text("about", std::string());
+  sweep.scenarios = read_scenarios(root, fs::path(path).parent_path(), shipped);
+  sweep.seeds = read_seeds(root);
+  sweep.configurations = read_configurations(root);
+  sweep.run_limit = root.number("run_limit_s", sweep.run_limit, 1.0, 1e6);
+  root.finish();
+  if (sweep.scenarios.size() * sweep.configurations.size() > kMostRuns / sweep.seeds.size())
+    root.fail("", "asks for more than a million runs; split the sweep");
+  return sweep;
+}
+
+std::vector<Job> expand(const Sweep& sweep, const std::string& code, const std::vector<Override>& overrides) {
+  std::vector<Job> jobs;
+  std::set<std::string> names;
+  for (const auto& path : sweep.scenarios) {
+    std::string name;
+    for (const auto& configuration : sweep.configurations) {
+      std::vector<Override> all = configuration.overrides;
+      all.insert(all.end(), overrides.begin(), overrides.end());
+      Scenario scenario;
+      try {
+        scenario = load_scenario(path, all);
+      } catch (const InputError& error) {
+        throw InputError(sweep.path + ": configuration '" + configuration.name + "': " + error.what());
+      }
+      name = scenario.name;
+      for (const auto seed : sweep.seeds) {
+        scenario.seed = seed;
+        jobs.push_back({run_id(scenario, configuration.name, code), configuration.name, scenario});
+      }
+    }
+    if (!names.insert(name).second)
+      throw InputError(sweep.path + ": two scenarios are named '" + name + "'; results are paired by name, rename one");
+  }
+  return jobs;
+}
+
+std::vector<Job> in_shard(const std::vector<Job>& jobs, const Shard& shard) {
+  std::vector<Job> chosen;
+  for (const auto& job : jobs) {
+    const std::uint64_t hash = std::stoull(job.run_id, nullptr, 16);
+    if (hash % static_cast<std::uint64_t>(shard.count) == static_cast<std::uint64_t>(shard.index - 1))
+      chosen.push_back(job);
+  }
+  return chosen;
+}
+
+std::string code_version() {
+  const nlohmann::ordered_json built = versions();
+  const std::string commit = built["commit"];
+  const std::string code = built["rubble"].get<std::string>() + " " + commit;
+  const bool unnamed = commit == "unknown" || commit.find("-dirty") != std::string::npos;
+  return unnamed ? code + " " + sha256_of_file("/proc/self/exe").substr(0, 16) : code;
+}
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,347 @@
+#include "scenarios/config/scenario.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+#include "arenas/files/include.h"
+#include "arenas/raf/raf.h"
+#include "base/angle.h"
+#include "base/error.h"
+#include "base/text/number_text.h"
+#include "base/yaml/strict_yaml.h"
+#include "scenarios/config/binder.h"
+
+namespace rubble::scenarios {
+namespace {
+
+/// A scanner by its name, then what differs from it. Written are only the differences, so that a name given later, on
+/// the command line, is not undone by the numbers of the one before.
+void bind(Binder& b, robot::LaserModel& laser) {
+  std::string name = laser.name;
+  b.choice("model", name, robot::laser_names());
+  if (!b.writes() && name != laser.name) laser = robot::laser_model(name);
+  const robot::LaserModel usual = robot::laser_model(name);
+  const bool is_generic = name == "generic";  // has nothing that is usual
+  const auto bind_number = [&](const char* key, double robot::LaserModel::*field, double low, double high) {
+    if (is_generic || !b.writes() || laser.*field != usual.*field) b.number(key, laser.*field, low, high);
+  };
+  const auto bind_degrees = [&](const char* key, double robot::LaserModel::*field, double low, double high) {
+    if (is_generic || !b.writes() || laser.*field != usual.*field) b.degrees(key, laser.*field, low, high);
+  };
+  if (is_generic || !b.writes() || laser.beams != usual.beams) b.integer("beams", laser.beams, 2, 20000);
+  bind_number("scan_period_s", &robot::LaserModel::scan_period, 0.01, 1.0);
+  if (is_generic && !b.writes()) {
+    double field_of_view_deg = 270.0;
+    b.number("field_of_view_deg", field_of_view_deg, 1.0, 360.0);
+    double sweep = laser.scan_period * field_of_view_deg / 360.0;
+    b.number("sweep_s", sweep, 0.0, 1.0);
+    robot::spread_beams(laser, field_of_view_deg, sweep);
+  }
+  bind_degrees("first_beam_deg", &robot::LaserModel::angle_min, -180.0, 180.0);
+  bind_degrees("step_deg", &robot::LaserModel::angle_step, 0.01, 180.0);
+  bind_number("beam_period_s", &robot::LaserModel::beam_period, 0.0, 0.1);
+  bind_number("min_range_m", &robot::LaserModel::range_min, 0.0, 1.0);
+  bind_number("max_range_m", &robot::LaserModel::range_max, 0.5, 100.0);
+  bind_number("accuracy_m", &robot::LaserModel::accuracy_near, 0.0, 1.0);
+  bind_number("accuracy_to_m", &robot::LaserModel::accuracy_near_to, 0.0, 100.0);
+  bind_number("far_accuracy_m", &robot::LaserModel::accuracy_far, 0.0, 1.0);
+  bind_number("far_accuracy_share", &robot::LaserModel::accuracy_far_share, 0.0, 0.5);
+}
+
+void bind(Binder& b, robot::RobotModel& r, robot::LevellingConfig& levelling) {
+  b.boolean("levelling", levelling.on);
+  b.number("max_v", r.max_v, 0.05, 2.0);
+  b.degrees("max_w_deg", r.max_w, 5.0, 360.0);
+  b.number("max_accel", r.max_accel, 0.05, 5.0);
+  b.degrees("max_turn_accel_deg", r.max_turn_accel, 5.0, 1000.0);
+  b.number("effective_track_m", r.effective_track, 0.2, 2.0);
+  b.number("climbable_step_m", r.climbable_step, 0.0, 0.5);
+  b.section("laser", [&](Binder& l) {
+    l.number("x_m", r.T_base_laser.x, -0.5, 0.5);
+    l.number("y_m", r.T_base_laser.y, -0.5, 0.5);
+    l.number("z_m", r.T_base_laser.z, 0.05, 1.1);
+    bind(l, r.laser);
+  });
+}
+
+void bind(Binder& b, robot::LevellingConfig& c) {
+  std::string mount = c.mount == robot::AccelerometerMount::Platform ? "platform" : "body";
+  b.choice("mount", mount, {"platform", "body"});
+  c.mount = mount == "platform" ? robot::AccelerometerMount::Platform : robot::AccelerometerMount::Body;
+  b.number("kp", c.kp, 0.0, 10.0);
+  b.number("ki", c.ki, 0.0, 100.0);
+  b.number("kd", c.kd, 0.0, 10.0);
+  b.number("filter_hz", c.filter_hz, 0.1, 100.0);
+  b.degrees("max_rate_deg", c.max_rate, 1.0, 1000.0);
+  b.degrees("max_angle_deg", c.max_angle, 0.0, 60.0);
+  b.degrees("dead_zone_deg", c.dead_zone, 0.0, 10.0);
+  b.boolean("feed_forward", c.feed_forward);
+}
+
+void bind(Binder& b, sim::SimConfig& c) {
+  b.number("physics_step_s", c.physics_step, 0.001, 0.02);
+  b.number("range_noise", c.range_noise, 0.0, 100.0);
+  b.number("acceleration_noise", c.acceleration_noise, 0.0, 100.0);
+  b.boolean("sweep", c.sweep);
+  b.boolean("microphones", c.microphones);
+  b.boolean("co2_probe", c.co2_probe);
+}
+
+void bind(Binder& b, slam::MapperConfig& c) {
+  b.integer("map_cells", c.map_cells, 16, 8000);
+  b.number("resolution_m", c.resolution, 0.01, 0.5);
+  b.integer("particles", c.particles, 1, 100000);
+  b.number("top_share", c.top_share, 0.0001, 1.0);
+  b.number("rotation_error", c.rotation_error, 0.0, 1.0);
+  b.degrees("heading_error_deg_per_m", c.heading_error_per_m, 0.0, 90.0);
+  b.number("distance_error", c.distance_error, 0.0, 1.0);
+  b.number("gate_distance_m", c.gate_distance, 0.0, 2.0);
+  b.degrees("gate_turn_deg", c.gate_turn, 0.0, 180.0);
+  b.boolean("icp", c.icp);
+  b.boolean("carve_misses", c.carve_misses);
+  b.number("max_range_m", c.max_range, 0.0, 1000.0);
+  b.boolean("deskew", c.deskew);
+  b.integer("first_scans", c.first_scans, 1, 1000);
+  b.integer("max_map_cells", c.max_map_cells, 16, 20000);
+  b.number("coverage_margin_m", c.coverage_margin, 0.0, 1.0);
+  b.number("rim_margin_m", c.rim_margin, 0.0, 1.0);
+  b.section("icp_limits", [&](Binder& m) {
+    m.number("first_distance_m", c.matcher.first_distance, 0.01, 5.0);
+    m.number("last_distance_m", c.matcher.last_distance, 0.005, 5.0);
+    m.number("min_goodness", c.matcher.min_goodness, 0.0, 1.0);
+    m.number("max_correction_m", c.matcher.max_correction, 0.0, 5.0);
+    m.degrees("max_turn_deg", c.matcher.max_turn, 0.0, 180.0);
+    m.number("dense_spacing_m", c.matcher.dense_spacing, 0.005, 1.0);
+  });
+}
+
+void bind(Binder& b, explore::ExplorerConfig& c) {
+  b.number("alpha", c.alpha, 0.0, 1000.0);
+  b.number("d_min_m", c.d_min, 0.0, 2.0);
+  b.number("d_opt_m", c.d_opt, 0.0, 5.0);
+  b.number("occupied_threshold", c.occupied_threshold, 0.01, 1.0);
+  b.integer("min_frontier_cells", c.min_frontier_cells, 1, 10000);
+  b.number("replan_period_s", c.replan_period, 0.02, 60.0);
+  b.number("cruise_speed", c.cruise_speed, 0.01, 2.0);
+  b.degrees("turn_speed_deg", c.turn_speed, 1.0, 360.0);
+  b.degrees("turn_in_place_deg", c.turn_in_place, 1.0, 180.0);
+  b.number("look_ahead_m", c.look_ahead, 0.05, 5.0);
+  b.boolean("return_home", c.return_home);
+  b.number("d_min_floor_m", c.d_min_floor, 0.0, 2.0);
+  b.number("switch_cost_m", c.switch_cost, 0.0, 100.0);
+  b.section("victims", [&](Binder& v) {
+    v.integer("min_cues", c.victims.min_cues, 1, 1000);
+    v.number("min_evidence", c.victims.min_evidence, 0.0, 1000.0);
+    v.number("merge_distance_m", c.victims.merge_distance, 0.0, 10.0);
+    v.boolean("search", c.search.on);
+    v.degrees("field_of_view_deg", c.search.field_of_view, 5.0, 360.0);
+    v.number("range_m", c.search.range, 0.3, 20.0);
+    v.integer("min_cells", c.search.min_cells, 1, 100000);
+    v.number("stare_s", c.search.stare, 0.0, 60.0);
+    v.number("dwell_s", c.search.dwell, 0.0, 60.0);
+  });
+}
+
+void bind(Binder& b, scoring::ScoreConfig& c) {
+  b.number("tau_m", c.tau, 0.05, 10.0);
+  b.number("colour_absent_cap_m", c.colour_absent_cap, 0.1, 1000.0);
+}
+
+/// The arena, geo and expect parts have a form of their own; everything else is a plain list of fields.
+void bind_sections(Binder& b, Scenario& s) {
+  b.number("time_limit_s", s.time_limit, 1.0, 1e6);
+  b.text("team", s.team);
+  b.text("mission", s.mission);
+  b.section("robot", [&](Binder& in) { bind(in, s.robot, s.levelling); });
+  b.section("levelling", [&](Binder& in) { bind(in, s.levelling); });
+  b.section("sim", [&](Binder& in) { bind(in, s.sim); });
+  b.section("mapper", [&](Binder& in) { bind(in, s.mapper); });
+  b.section("explorer", [&](Binder& in) { bind(in, s.explorer); });
+  b.section("scoring", [&](Binder& in) {
+    bind(in, s.scoring);
+    in.boolean("visible_truth", s.visible_truth);
+  });
+}
+
+void bind_generate(Binder& b, arenas::GenerateConfig& g) {
+  b.choice("kind", g.kind, {"yellow", "orange", "red"});
+  b.integer("columns", g.columns, 2, 60);
+  b.integer("rows", g.rows, 2, 60);
+  b.number("ramps", g.ramps, 0.0, 1.0);
+  b.number("paper", g.paper, 0.0, 1.0);
+  b.number("loops", g.loops, 0.0, 1.0);
+  b.integer("victims", g.victims, 0, 1000);
+  b.number("ramp_deg", g.ramp_deg, 0.0, 45.0);
+  b.number("rough", g.rough, 0.0, 1.0);
+}
+
+void read_arena(const YamlMap& root, const std::string& path, Scenario& s) {
+  const YamlMap arena = root.map("arena");
+  if (arena.has("file") == arena.has("generate"))
+    root.fail("arena", "needs exactly one of 'file: arena.yaml' or 'generate: {columns: 8, rows: 8}'");
+  if (arena.has("file")) {
+    const std::filesystem::path file = arena.text("file", std::nullopt);
+    s.arena_file = (file.is_absolute() ? file : std::filesystem::path(path).parent_path() / file).string();
+    if (!std::filesystem::exists(s.arena_file))
+      arena.fail("file", "there is no arena file '" + s.arena_file + "'; the path is relative to the scenario file");
+    return;
+  }
+  const YamlMap generate = arena.map("generate");
+  s.generate_seed_given = generate.has("seed");
+  s.generate.seed = static_cast<std::uint64_t>(
+      generate.integer("seed", std::int64_t{1}, 0, std::numeric_limits<std::int64_t>::max()));
+  YamlReader reader(generate);
+  bind_generate(reader, s.generate);
+}
+
+/// Numbers of score.json that `expect` may bound.
+const std::vector<std::string> kScoreKeys = {"score",
+                                             "precision",
+                                             "recall",
+                                             "psi_m",
+                                             "aligned",
+                                             "ate_first_m",
+                                             "ate_aligned_m",
+                                             "known",
+                                             "victims_found",
+                                             "victims_total",
+                                             "sim_s",
+                                             "wall_s",
+                                             "real_time_factor",
+                                             "peak_mb",
+                                             "area_known_m2",
+                                             "scans_mapped",
+                                             "victims_false",
+                                             "victims_reported"};
+
+void read_expect(const YamlMap& root, Scenario& s) {
+  const YamlMap expect = root.map("expect");
+  for (const auto& key : expect.keys()) {
+    if (std::find(kScoreKeys.begin(), kScoreKeys.end(), key) == kScoreKeys.end()) {
+      std::string names;
+      for (const auto& known : kScoreKeys) names += (names.empty() ? "" : ", ") + known;
+      expect.fail(key, "'" + key + "' is not a number of score.json; known are " + names);
+    }
+    const YamlMap bounds = expect.map(key);
+    Expectation expectation{key, {}, {}};
+    if (bounds.has("min")) expectation.min = bounds.number("min", std::nullopt, -1e12, 1e12);
+    if (bounds.has("max")) expectation.max = bounds.number("max", std::nullopt, -1e12, 1e12);
+    if (!expectation.min && !expectation.max) expect.fail(key, "needs 'min' or 'max', for example {min: 0.8}");
+    s.expect.push_back(expectation);
+  }
+}
+
+/// What one key alone cannot say.
+void check_laser(const YamlMap& map, const robot::LaserModel& laser) {
+  for (const char* key : {"field_of_view_deg", "sweep_s"})
+    if (map.has(key) && laser.name != "generic")
+      map.fail(key, std::string("is for 'model: generic'; the ") + laser.name + " has its own");
+  if (map.has("field_of_view_deg") && (map.has("first_beam_deg") || map.has("step_deg")))
+    map.fail("field_of_view_deg", "beside 'first_beam_deg' or 'step_deg'; keep one way to say it");
+  if (map.has("sweep_s") && map.has("beam_period_s"))
+    map.fail("sweep_s", "beside 'beam_period_s'; keep one way to say it");
+  const double turn = 2.0 * kPi + 1e-9;
+  if (laser.field_of_view() > turn)
+    map.fail("beams", "beams times step_deg is more than a full turn; take fewer beams or a smaller step");
+  if (laser.scan_period < (laser.beams - 1) * laser.beam_period)
+    map.fail("scan_period_s",
+             "laser.scan_period_s is shorter than the sweep of all beams; lengthen it, or shorten "
+             "sweep_s or beam_period_s");
+  if (laser.range_max <= laser.range_min) map.fail("max_range_m", "max_range_m must be above min_range_m");
+}
+
+void read_common(const YamlMap& root, Scenario& s) {
+  s.seed =
+      static_cast<std::uint64_t>(root.integer("seed", std::int64_t{1}, 0, std::numeric_limits<std::int64_t>::max()));
+  if (root.has("geo")) {
+    const YamlMap geo = root.map("geo");
+    s.geo = GeoAnchor{geo.number("latitude_deg", std::nullopt, -80.0, 84.0),
+                      geo.number("longitude_deg", std::nullopt, -180.0, 180.0),
+                      geo.number("heading_deg", 0.0, -360.0, 360.0)};
+  }
+  YamlReader reader(root);
+  bind_sections(reader, s);
+  check_laser(root.map("robot").map("laser"), s.robot.laser);
+  if (s.explorer.d_opt < s.explorer.d_min) root.fail("explorer", "d_opt_m must not be smaller than d_min_m");
+  s.sim.time_limit = s.time_limit;
+}
+
+}  // namespace
+
+Scenario load_scenario(const std::string& path, const std::vector<Override>& overrides) {
+  YamlMap root = YamlMap::load(path);
+  for (const auto& [key, value] : overrides) root.set(key, value);
+  Scenario s;
+  s.name = root.text("name", std::filesystem::path(path).stem().string());
+  if (s.name.empty() || s.name.find_first_of("/\\ ") != std::string::npos)
+    root.fail("name", "is used as a folder name: no spaces or slashes");
+  read_arena(root, path, s);
+  read_common(root, s);
+  read_expect(root, s);
+  root.finish();
+  return s;
+}
+
+Scenario default_scenario(const std::vector<Override>& overrides) {
+  YamlMap root = YamlMap::parse("{}", "defaults");
+  for (const auto& [key, value] : overrides) root.set(key, value);
+  Scenario s;
+  s.has_arena = false;
+  s.name = root.text("name", std::string("map"));
+  read_common(root, s);
+  root.finish();
+  return s;
+}
+
+std::string resolved_yaml(const Scenario& scenario) {
+  Scenario s = scenario;  // binding needs a mutable object; nothing is changed
+  std::string out = "name: " + rubble::scenarios::quoted(s.name) + "\nseed: " + std::to_string(s.seed) + "\n";
+  if (s.has_arena && !s.arena_file.empty()) {
+    out += "arena:\n  file: \"" + s.arena_file + "\"\n";
+  } else if (s.has_arena) {
+    YamlWriter generate(4);
+    bind_generate(generate, s.generate);
+    out += "arena:\n  generate:\n    seed: " + std::to_string(s.arena_seed()) + "\n" + generate.yaml();
+  }
+  if (s.geo)
+    out += "geo:\n  latitude_deg: " + number_text(s.geo->latitude_deg) +
+           "\n  longitude_deg: " + number_text(s.geo->longitude_deg) +
+           "\n  heading_deg: " + number_text(s.geo->heading_deg) + "\n";
+  YamlWriter writer;
+  bind_sections(writer, s);
+  out += writer.yaml();
+  if (!s.expect.empty()) out += "expect:\n";
+  for (const auto& e : s.expect) {
+    out += "  " + e.key + ": {";
+    if (e.min) out += "min: " + number_text(*e.min);
+    if (e.max) out += std::string(e.min ? ", " : "") + "max: " + number_text(*e.max);
+    out += "}\n";
+  }
+  return out;
+}
+
+namespace {
+
+bool is_raf(const Scenario& scenario) { return std::filesystem::path(scenario.arena_file).extension() == ".raf"; }
+
+}  // namespace
+
+std::vector<std::string> arena_notes(const Scenario& scenario) {
+  if (!is_raf(scenario)) return {};
+  std::vector<std::string> notes = arenas::import_raf(scenario.arena_file).notes();
+  for (std::string& note : notes) note = scenario.arena_file + ": " + note;
+  return notes;
+}
+
+std::string arena_yaml(const Scenario& scenario) {
+  if (scenario.arena_file.empty()) {
+    arenas::GenerateConfig config = scenario.generate;
+    config.seed = scenario.arena_seed();
+    return arenas::generate_arena(config);
+  }
+  if (is_raf(scenario)) return arenas::to_yaml(arenas::import_raf(scenario.arena_file));
+  return arenas::self_contained_arena(scenario.arena_file);
+}
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,162 @@
+#include "scenarios/run/run_folder.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "arenas/truth/render.h"
+#include "base/digest.h"
+#include "base/error.h"
+#include "base/text/words.h"
+#include "scenarios/run/league_map.h"
+
+namespace rubble::scenarios {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPartial = ".partial";
+
+[[noreturn]] void cannot_write(const std::string& path, const std::string& why) {
+  throw RunError(path + ": cannot be written (" + why + "); check the folder, its permissions and the free space");
+}
+
+/// The league's list of points of interest: preamble, then one line a detection.
+std::string pois_csv(const Scenario& s, const std::vector<explore::VictimReport>& victims) {
+  // Date and time would make two runs of one seed differ, so the preamble carries the start of the epoch.
+  std::string csv = "\"pois\"\n\"1.3\"\n" + csv_quoted(s.team) + "\n\"\"\n\"1970-01-01\"\n\"00:00:00\"\n" +
+                    csv_quoted(s.mission) + "\ndetection,time,type,name,x,y,z,robot,mode\n";
+  for (const auto& victim : victims) {
+    const long seconds = static_cast<long>(victim.stamp.seconds());
+    char line[200];
+    std::snprintf(line, sizeof line, "%d,%02ld:%02ld:%02ld,victim,victim_%d,%.3f,%.3f,0.000,%s,A\n", victim.id,
+                  seconds / 3600 % 24, seconds / 60 % 60, seconds % 60, victim.id, victim.p_map.x, victim.p_map.y,
+                  s.robot.name.c_str());
+    csv += line;
+  }
+  return csv;
+}
+
+}  // namespace
+
+const std::vector<std::string>& deterministic_artefacts() {
+  static const std::vector<std::string> names = {"arena.yaml", "arena.png",    "truth.tif", "truth.png",   "log.rlog",
+                                                 "truth.tum",  "estimate.tum", "map.tif",   "map.tfw",     "map.png",
+                                                 "map.pgm",    "map.yaml",     "pois.csv",  "overlay.png", "error.png"};
+  return names;
+}
+
+std::string next_run_folder(const std::string& parent, const std::string& name, std::uint64_t seed) {
+  for (int number = 1;; ++number) {
+    char suffix[16];
+    std::snprintf(suffix, sizeof suffix, "-%03d", number);
+    const std::string path = parent + "/" + name + "-seed" + std::to_string(seed) + suffix;
+    if (!fs::exists(path)) return path;
+  }
+}
+
+RunFolder::RunFolder(const std::string& path, bool replace) : path_(path) {
+  std::error_code error;
+  if (fs::exists(path, error) && !fs::is_directory(path, error))
+    throw InputError(path + ": is a file; give another folder with --out");
+  if (fs::is_directory(path, error) && !fs::is_empty(path, error)) {
+    if (!replace)
+      throw InputError(path + ": exists and is not empty; give another folder with --out, or --force to replace it");
+    if (!fs::exists(file("scenario.yaml")))
+      throw InputError(path + ": is not a run folder (no scenario.yaml), so --force does not replace it");
+    fs::remove_all(path, error);
+  }
+  fs::create_directories(file(kPartial), error);
+  if (error)
+    throw InputError(path + ": cannot be created (" + error.message() + "); give a writable folder with --out");
+  estimate_.open(file("estimate.tum"));
+  if (!estimate_) throw InputError(path + ": cannot be written to; give a writable folder with --out");
+}
+
+void RunFolder::write(const std::string& name, const std::string& content) const {
+  const std::string partial = file(std::string(kPartial) + "/" + name);
+  std::ofstream out(partial, std::ios::binary);
+  out << content;
+  out.close();
+  if (!out) cannot_write(partial, std::strerror(errno));
+  std::error_code error;
+  fs::rename(partial, file(name), error);
+  if (error) cannot_write(file(name), error.message());
+}
+
+void RunFolder::publish(const std::vector<std::string>& names,
+                        const std::function<void(const std::string&)>& write) const {
+  const std::string partial = file(kPartial) + "/";
+  write(partial);
+  for (const std::string& name : names) {
+    std::error_code error;
+    fs::rename(partial + name, file(name), error);
+    if (error) cannot_write(file(name), error.message());
+  }
+}
+
+void RunFolder::append(std::ofstream& out, std::size_t& written, const Trajectory& trajectory) {
+  for (; written < trajectory.size(); ++written) out << tum_line(trajectory[written]) << '\n';
+  out.flush();
+  if (!out) cannot_write(path_, std::strerror(errno));
+}
+
+void RunFolder::append_truth(const Trajectory& truth) {
+  if (!truth_.is_open()) truth_.open(file("truth.tum"));
+  append(truth_, truth_written_, truth);
+}
+
+void RunFolder::append_estimate(const Trajectory& estimate) { append(estimate_, estimate_written_, estimate); }
+
+void RunFolder::save_map(const Scenario& scenario, const slam::Mapper& mapper,
+                         const std::vector<explore::VictimReport>& victims) const {
+  LeagueDrawing drawing;
+  drawing.occupied_threshold = scenario.explorer.occupied_threshold;
+  drawing.title = "RoboCup-" + scenario.team + "-" + scenario.mission + "-map.tif";
+  drawing.path = mapper.trajectory();
+  drawing.victims = victims;
+  drawing.geo = scenario.geo;
+  const GeoTiff tiff = draw_league_map(mapper.map(), drawing);
+  publish({"map.tif", "map.tfw", "map.png", "map.pgm", "map.yaml"}, [&](const std::string& partial) {
+    write_geotiff(partial + "map.tif", tiff);
+    write_world_file(partial + "map.tfw", *tiff.transform);
+    write_png(partial + "map.png", tiff.image);
+    write_ros_map(partial + "map", mapper.map().classify(drawing.occupied_threshold), drawing.occupied_threshold);
+  });
+  write("pois.csv", pois_csv(scenario, victims));
+}
+
+void RunFolder::save_truth(const arenas::Arena& arena, const OccupancyGrid& truth) const {
+  const GeoTiff tiff = draw_truth(truth);
+  publish({"truth.tif", "truth.png", "arena.png"}, [&](const std::string& partial) {
+    write_geotiff(partial + "truth.tif", tiff);
+    write_png(partial + "truth.png", tiff.image);
+    write_png(partial + "arena.png", arenas::render(arena, 40.0));
+  });
+}
+
+void RunFolder::save_hashes(const std::string& score_text) const {
+  nlohmann::ordered_json hashes;
+  for (const auto& name : deterministic_artefacts())
+    if (fs::exists(file(name))) hashes[name] = sha256_of_file(file(name));
+  hashes["score"] = sha256_of_text(score_text);
+  write("hashes.json", hashes.dump(2) + "\n");
+}
+
+void RunFolder::close() const {
+  std::error_code error;
+  fs::remove_all(file(kPartial), error);
+}
+
+void RunFolder::link_latest() const {
+  std::error_code error;
+  const fs::path folder = fs::absolute(path_, error).lexically_normal();
+  const fs::path link = folder.parent_path() / "latest";
+  if (fs::exists(fs::symlink_status(link, error)) && !fs::is_symlink(link, error)) return;  // somebody's own file
+  fs::remove(link, error);
+  fs::create_directory_symlink(folder.filename(), link, error);
+}
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <fstream>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/trajectory.h"
+#include "explore/explorer.h"
+#include "scenarios/config/scenario.h"
+#include "slam/mapper.h"
+
+namespace rubble::scenarios {
+
+/// One run's folder, written as the run goes: after a kill it holds all but the last second of the trajectories and the
+/// last saved map. The trajectories grow line by line; all other files are replaced whole (written beside, then
+/// renamed), so none of them is ever half a file.
+class RunFolder {
+ public:
+  /// Creates the folder. An existing one with content is refused unless `replace` is set and it is a run folder.
+  /// Throws InputError (cannot be created, not empty).
+  RunFolder(const std::string& path, bool replace);
+
+  const std::string& path() const { return path_; }
+  std::string file(const std::string& name) const { return path_ + "/" + name; }
+
+  /// Replaces a text file.
+  void write(const std::string& name, const std::string& content) const;
+  /// Appends poses the files do not hold yet.
+  void append_truth(const Trajectory& truth);
+  void append_estimate(const Trajectory& estimate);
+  /// Replaces map.tif, map.tfw, map.png, map.pgm, map.yaml and pois.csv.
+  void save_map(const Scenario& scenario, const slam::Mapper& mapper,
+                const std::vector<explore::VictimReport>& victims) const;
+  /// Lets `write` make files of these names below the folder it is given (which ends in a slash), then puts them all in
+  /// their places at once.
+  void publish(const std::vector<std::string>& names, const std::function<void(const std::string&)>& write) const;
+  /// Writes truth.tif, truth.png and arena.png.
+  void save_truth(const arenas::Arena& arena, const OccupancyGrid& truth) const;
+  /// hashes.json: SHA-256 of each deterministic artefact that exists, plus `score` over the given text.
+  void save_hashes(const std::string& score_text) const;
+  /// Nothing is written any more.
+  void close() const;
+  /// Lets `latest` beside the folder point to it, where links can be made.
+  void link_latest() const;
+
+ private:
+  void append(std::ofstream& file, std::size_t& written, const Trajectory& trajectory);
+
+  std::string path_;
+  std::ofstream truth_;
+  std::ofstream estimate_;
+  std::size_t truth_written_ = 0;
+  std::size_t estimate_written_ = 0;
+};
+
+/// `parent/name-seedN-001` with the first free number.
+std::string next_run_folder(const std::string& parent, const std::string& name, std::uint64_t seed);
+
+/// The artefacts that must be the same on every run of one seed.
+const std::vector<std::string>& deterministic_artefacts();
+
+}  // namespace rubble::scenarios

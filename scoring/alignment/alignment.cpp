@@ -1,0 +1,205 @@
+#include "scoring/alignment/alignment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <vector>
+
+#include "base/angle.h"
+#include "scoring/alignment/matching.h"
+#include "scoring/alignment/trust.h"
+#include "scoring/rooms/room_hypotheses.h"
+#include "scoring/walls/resample.h"
+#include "scoring/walls/specks.h"
+
+namespace rubble::scoring {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+constexpr double kTooWide = 10.0;  // walls so many times as wide as the truth's belong to something else
+constexpr WallMatch::Stiffness kSoft = {0.0, 0.0005, 0.0005, 0.001};
+
+/// Of the fits that belong to the best pose, the one with most walls within a metre and least contradicted: a bent map
+/// has a pose for each of its parts, and this is the one for the whole.
+TPose2D fit_to_the_whole(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses, const WallMatch& match) {
+  const WallMatch::Kernel metre = match.kernel(1.0);
+  TPose2D pick = best.T_best;
+  double most = whole_agreement(match.evidence(match.rigid(pick), metre));
+  for (const Hypothesis& h : hypotheses) {
+    if (!same_pose(h.T_best, best.T_best, match.map_centre(), 2.5, 0.15)) continue;
+    const double agreement = whole_agreement(match.evidence(match.rigid(h.T_wide), metre));
+    if (agreement <= most) continue;
+    most = agreement;
+    pick = h.T_wide;
+  }
+  // A soft bend shows where each part of the map belongs; its nearest rigid transform errs differently from the pick,
+  // and their mean less than either.
+  Warp bent = match.rigid(best.T_wide);
+  for (const double sigma : {1.5, 1.0, 0.5, 0.3}) bent = match.refine(bent, sigma, kSoft, 6);
+  return match.halfway(pick, match.nearest_rigid(bent, 0.4));
+}
+
+/// Who is asked by walls may also find what nobody else proposes: the search examines walls in any case.
+bool may_win(const Hypothesis& h, AlignBy by) {
+  const auto proposed = [&](const char* name) { return h.source.find(name) != std::string::npos; };
+  return includes(by, AlignBy::Walls) || (includes(by, AlignBy::Features) && proposed("features")) ||
+         (includes(by, AlignBy::Rooms) && proposed("rooms"));
+}
+
+/// Two maps to be aligned, with what several methods share.
+class Aligner {
+ public:
+  Aligner(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config)
+      : map_(map), truth_(truth), config_(config), match_(map, truth, config.search.reach, config.search.max_points) {}
+
+  bool usable() const { return match_.usable(); }
+  /// How many times as wide as the truth's walls the map's are.
+  double times_as_wide() const { return match_.map_extent() / match_.truth_extent(); }
+
+  /// `method` is a union of methods, not Auto.
+  Alignment by(AlignBy method) {
+    Alignment out;
+    out.contest.tried = method;
+    const std::vector<Hypothesis> hypotheses = examine(proposals(method), match_, config_.search);
+    const auto best =
+        std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) { return may_win(h, method); });
+    if (best == hypotheses.end()) {
+      out.note = "not aligned: no pose was proposed" + about_rooms();
+      return out;
+    }
+    const Trust trust = judge(best->wide, best->tight, describe(*best, hypotheses, out));
+    out.aligned = trust.trusted;
+    out.note = trust.trusted ? trust.note : trust.note + about_rooms();
+    out.T_walls = match_.refine(best->T_best, 0.1, 20);
+    out.T_walls.phi = wrap_angle(out.T_walls.phi);
+    out.T_truth_map = trust.tight ? out.T_walls : fit_to_the_whole(*best, hypotheses, match_);
+    out.T_truth_map.phi = wrap_angle(out.T_truth_map.phi);
+    return out;
+  }
+
+ private:
+  /// What the walls propose always takes part, as rivals of what others propose.
+  std::vector<PoseGuess> proposals(AlignBy method) {
+    if (!by_walls_) by_walls_ = correlate(map_, truth_, config_.correlation);
+    std::vector<PoseGuess> out = *by_walls_;
+    const auto add = [&](const std::vector<PoseGuess>& more) { out.insert(out.end(), more.begin(), more.end()); };
+    if (includes(method, AlignBy::Features)) {
+      if (!by_features_) by_features_ = propose_by_features(map_, truth_, config_.feature_kind);
+      add(*by_features_);
+    }
+    if (!includes(method, AlignBy::Rooms)) return out;
+    if (config_.rooms) {
+      add(config_.rooms(map_, truth_));
+    } else {
+      const RoomGuesses by_rooms = propose_by_rooms(map_, truth_);
+      add(by_rooms.guesses);
+      rooms_note_ = by_rooms.note;
+    }
+    return out;
+  }
+
+  std::string about_rooms() const { return rooms_note_.empty() ? "" : "; " + rooms_note_; }
+
+  /// Fills in the contest and returns the rivals.
+  Rivals describe(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses, Alignment& out) {
+    out.source = best.source;
+    out.wide_evidence = best.wide;
+    out.tight_evidence = best.tight;
+    out.log_odds = log_odds(best.wide, best.tight);
+    const double shift = std::max(config_.search.distinct_shift, config_.search.distinct_share * match_.map_extent());
+    Rivals others;
+    double highest = -1.0;
+    for (const Hypothesis& h : hypotheses) {
+      if (same_pose(h.T_best, best.T_best, match_.map_centre(), shift, config_.search.distinct_turn)) continue;
+      others.meet(h.wide, h.tight);
+      if (h.quality <= highest) continue;
+      highest = h.quality;
+      out.contest.T_runner_up = h.T_best;
+      out.contest.runner_up_source = h.source;
+    }
+    out.runner_up = relative(others, best.tight, out.log_odds);
+    out.contest.agreement = tight_agreement(best.tight);
+    out.contest.by_agreement = out.contest.agreement >= kTightEnough;
+    out.contest.margin =
+        out.contest.by_agreement ? out.contest.agreement - others.tight : out.log_odds - others.log_odds;
+    if (beyond_doubt(best.tight, others)) return others;
+    const Rivals& mirrored = of_mirrored();
+    out.mirrored = relative(mirrored, best.tight, out.log_odds);
+    others.join(mirrored);
+    return others;
+  }
+
+  /// How near the rivals come to the best, by the measure that `judge` uses.
+  static double relative(const Rivals& rivals, const PoseEvidence& tight, double odds) {
+    const double agreement = tight_agreement(tight);
+    if (agreement >= kTightEnough) return std::clamp(rivals.tight / agreement, 0.0, 1.0);
+    return std::min(1.0, std::exp(rivals.log_odds - odds));
+  }
+
+  /// A mirror image is as like the truth as the map itself in all but what counts: its best pose, which is wrong, shows
+  /// how far chance gets with these two maps.
+  const Rivals& of_mirrored() {
+    if (mirrored_) return *mirrored_;
+    mirrored_.emplace();
+    const OccupancyGrid mirrored = mirror_image(map_);
+    const WallMatch match(mirrored, truth_, config_.search.reach, config_.search.max_points);
+    for (const Hypothesis& h : examine(correlate(mirrored, truth_, config_.correlation), match, config_.search))
+      mirrored_->meet(h.wide, h.tight);
+    return *mirrored_;
+  }
+
+  const OccupancyGrid& map_;
+  const OccupancyGrid& truth_;
+  const AlignmentConfig& config_;
+  WallMatch match_;
+  std::optional<std::vector<PoseGuess>> by_walls_;
+  std::optional<std::vector<PoseGuess>> by_features_;
+  std::optional<Rivals> mirrored_;
+  std::string rooms_note_;
+};
+
+}  // namespace
+
+std::string names_of(AlignBy methods) {
+  std::string out;
+  for (const auto& [method, name] :
+       {std::pair{AlignBy::Walls, "walls"}, {AlignBy::Features, "features"}, {AlignBy::Rooms, "rooms"}})
+    if (includes(methods, method)) out += (out.empty() ? "" : "+") + std::string(name);
+  return out;
+}
+
+Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config) {
+  const OccupancyGrid clean_map = without_specks(map);
+  const OccupancyGrid clean_truth = without_specks(truth);
+  Aligner aligner(clean_map, clean_truth, config);
+  if (!aligner.usable()) {
+    Alignment out;
+    out.note = "not aligned: one of the maps has too few walls to fix a pose";
+    return out;
+  }
+  if (const double times = aligner.times_as_wide(); times > kTooWide) {
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "not aligned: the map is %.0f times as wide as the truth; check its resolution, or cut it to the arena", times);
+    Alignment out;
+    out.note = text;
+    return out;
+  }
+  if (config.by != AlignBy::Auto) return aligner.by(config.by);
+  Alignment best = aligner.by(AlignBy::Walls);
+  const AlignBy with_features = AlignBy::Walls | AlignBy::Features;
+  for (const AlignBy method : {with_features, with_features | AlignBy::Rooms}) {
+    // Walls that agree to the decimetre at several poses leave a doubt that no other proposal resolves.
+    if (best.aligned || best.contest.by_agreement) break;
+    const Alignment more = aligner.by(method);
+    if (more.aligned || more.log_odds > best.log_odds) best = more;
+    best.contest.tried = method;
+  }
+  return best;
+}
+
+}  // namespace rubble::scoring

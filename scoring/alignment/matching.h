@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "scoring/proposals/features.h"
+#include "scoring/proposals/pose_guess.h"
+
+namespace rubble::scoring {
+
+struct MatchConfig {
+  std::size_t neighbours = 2;     ///< most similar features of the truth that each feature of the map may stand for
+  std::size_t max_matches = 800;  ///< of all, the most distinctive
+  double max_size_ratio = 1.5;    ///< features of maps of one scale have one size
+  double least_baseline = 2.0;    ///< between the two matches of a draw [m]
+  double stretch = 0.5;           ///< by which their distances may differ between the maps [m]
+  double twist = 0.35;            ///< by which their directions and the rotation may differ [rad]
+  double inlier = 0.5;            ///< a match within this distance supports a pose [m]
+  std::size_t least_inliers = 6;  ///< below, a pose is chance
+  int draws = 6000;
+  std::size_t guesses = 12;  ///< poses proposed
+  std::uint64_t seed = 1;
+};
+
+/// A feature of the map that may be a feature of the truth, w_ij = 1 of eq. (7).
+struct Match {
+  std::size_t map = 0;
+  std::size_t truth = 0;
+  double distance = 0.0;  ///< of the descriptors
+  double ratio = 1.0;     ///< to the distance of the next candidate: small is distinctive
+};
+
+/// Associates by descriptors only, section IV.F step 1: not only the best but reasonably good candidates, most
+/// distinctive first.
+std::vector<Match> associate(const FeatureSet& map, const FeatureSet& truth, const MatchConfig& config = {});
+
+/// Section IV.F step 2: poses by least squares from guessed associations. Draws pairs of matches, distinctive ones
+/// first (PROSAC, Chum 2005), and fits the pose at scale 1 to all matches that agree. Score: their number.
+std::vector<PoseGuess> poses_from(const FeatureSet& map, const FeatureSet& truth, const std::vector<Match>& matches,
+                                  const MatchConfig& config = {});
+
+/// The two steps for one kind of feature.
+std::vector<PoseGuess> propose_by_features(const OccupancyGrid& map, const OccupancyGrid& truth, FeatureKind kind,
+                                           const MatchConfig& config = {});
+
+/// What eq. (7) asks of a set of features at a pose, section IV.F step 3.
+struct MatchError {
+  double error = 0.0;        ///< E [m^2], 0 .. cap; the cap where nothing is matched: W = 0 is the worst, not the best
+  std::size_t matched = 0;   ///< pairs
+  double mean_offset = 0.0;  ///< mean distance of matched features [m]
+};
+
+/// The best one-to-one association W at a pose and its error: E = (sum over matched of c_ij + cap/2 for each unmatched
+/// feature of either map) / mean number of features, c_ij = squared distance + difference(i, j) [m^2], pairs with
+/// c_ij >= cap never matched. Exact: Hungarian method on each group of features that may compete.
+MatchError match_error(const std::vector<mrpt::math::TPoint2D>& map, const std::vector<mrpt::math::TPoint2D>& truth,
+                       const mrpt::math::TPose2D& T_truth_map,
+                       const std::function<double(std::size_t map, std::size_t truth)>& difference, double cap);
+
+}  // namespace rubble::scoring

@@ -1,0 +1,132 @@
+#include "scoring/alignment/trust.h"
+
+#include <algorithm>
+
+namespace rubble::scoring {
+namespace {
+
+// Where the maps agree to the decimetre.
+constexpr double kAhead = 1.2;            // times the tight agreement of the best rival: trusted
+constexpr double kUnexplained = 1.65;     // or the rival leaves so many times as much wall unexplained
+constexpr double kSideUnexplained = 2.6;  // or so many times as much of the walls of one map, ...
+constexpr double kSideKnown = 0.8;        // ... if nearly all of both maps' walls lie in the other
+constexpr double kLeastEach = 0.25;       // kappa that the walls of either map must reach
+constexpr double kFloor = 0.02;           // of what is left unexplained: less says nothing
+// A fragment fits somewhere by chance: less than this of one map's walls and this much floor are common. There walls
+// must meet better and rivals leave more unexplained.
+constexpr double kFragmentKnown = 0.35;
+constexpr double kFragmentArea = 20.0;       // [m^2]
+constexpr double kFragmentLeastArea = 10.0;  // less of it tells nothing [m^2]
+constexpr double kFragmentKappa = 0.8;
+constexpr double kFragmentUnexplained = 2.0;
+// A pose so clear that the mirrored map need not be asked.
+constexpr double kClearKappa = 0.8;        // of both maps' walls, ...
+constexpr double kClearKnown = 0.8;        // ... which must nearly all lie in the other map, ...
+constexpr double kClearUnexplained = 3.5;  // ... and every other pose must leave so many times as much unexplained
+// Where they agree only loosely.
+constexpr double kLeastLogOdds = -1.2;
+constexpr double kLeastMargin = 0.4;  // of the log odds over those of the best rival
+constexpr double kMostMargin = 3.0;   // more of it tells no more
+constexpr double kLeastSum = 1.6;     // of the log odds and twice the margin
+constexpr double kLeastKappa = 0.3;   // below, walls meet no more often than chance would have it
+
+double net(const WallEvidence& e, double chance, double contradiction) {
+  return e.known * (e.met - chance - contradiction * e.contradicted);
+}
+
+double known_share(const PoseEvidence& e) { return e.map.known + e.truth.known; }
+double agreement(const WallEvidence& e) { return e.known * e.kappa(); }
+
+/// How many times as much of `all` a rival leaves unexplained as the best does.
+double unexplained(double all, double best, double rival) { return (all - rival) / std::max(all - best, kFloor); }
+
+bool side_ahead(const WallEvidence& best, double rival) {
+  return unexplained(best.known, agreement(best), rival) >= kSideUnexplained;
+}
+
+bool is_fragment(const PoseEvidence& e) {
+  return std::min(e.map.known, e.truth.known) < kFragmentKnown && e.common_area < kFragmentArea;
+}
+
+double least_kappa(const PoseEvidence& e) { return std::min(e.map.kappa(), e.truth.kappa()); }
+
+/// No rival comes near the best.
+bool ahead_of(const PoseEvidence& tight, const Rivals& rivals) {
+  const double best = tight_agreement(tight);
+  const double ratio = unexplained(known_share(tight), best, rivals.tight);
+  const bool ahead = best >= kAhead * rivals.tight || ratio >= kUnexplained;
+  if (is_fragment(tight))
+    return ahead && ratio >= kFragmentUnexplained && least_kappa(tight) >= kFragmentKappa &&
+           tight.common_area >= kFragmentLeastArea;
+  return ahead || (std::min(tight.map.known, tight.truth.known) >= kSideKnown &&
+                   (side_ahead(tight.map, rivals.map_tight) || side_ahead(tight.truth, rivals.truth_tight)));
+}
+
+Trust judge_tight(const PoseEvidence& tight, const Rivals& rivals) {
+  Trust out;
+  out.tight = true;
+  const bool ahead = ahead_of(tight, rivals);
+  const bool mutual = least_kappa(tight) >= kLeastEach;
+  out.trusted = ahead && mutual;
+  if (!mutual)
+    out.note = "not aligned: walls of one map are missing in the other";
+  else if (!ahead && is_fragment(tight))
+    out.note = "not aligned: the maps have too little in common; such a fragment fits at some place by chance";
+  else if (!ahead)
+    out.note = "not aligned: another pose, or a mirror image, fits about as well";
+  return out;
+}
+
+}  // namespace
+
+double wide_agreement(const PoseEvidence& wide) { return net(wide.map, 0.4, 0.25) + net(wide.truth, 0.4, 0.25); }
+
+double tight_agreement(const PoseEvidence& tight) { return agreement(tight.map) + agreement(tight.truth); }
+
+double whole_agreement(const PoseEvidence& metre) { return net(metre.map, 0.3, 1.0) + net(metre.truth, 0.3, 1.0); }
+
+double log_odds(const PoseEvidence& wide, const PoseEvidence& tight) {
+  const auto both = [](const PoseEvidence& e, double WallEvidence::*share) {
+    return e.map.known * e.map.*share + e.truth.known * e.truth.*share;
+  };
+  return -5.1 - 31.0 * both(wide, &WallEvidence::contradicted) - 3.9 * both(wide, &WallEvidence::met) -
+         25.8 * both(wide, &WallEvidence::chance) + 4.3 * both(tight, &WallEvidence::contradicted) +
+         14.75 * wide.free_common + 15.7 * std::min(wide.map.known, wide.truth.known);
+}
+
+void Rivals::meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence) {
+  log_odds = std::max(log_odds, scoring::log_odds(wide, tight_evidence));
+  tight = std::max(tight, tight_agreement(tight_evidence));
+  map_tight = std::max(map_tight, agreement(tight_evidence.map));
+  truth_tight = std::max(truth_tight, agreement(tight_evidence.truth));
+}
+
+void Rivals::join(const Rivals& others) {
+  log_odds = std::max(log_odds, others.log_odds);
+  tight = std::max(tight, others.tight);
+  map_tight = std::max(map_tight, others.map_tight);
+  truth_tight = std::max(truth_tight, others.truth_tight);
+}
+
+bool beyond_doubt(const PoseEvidence& tight, const Rivals& other_poses) {
+  return least_kappa(tight) >= kClearKappa && std::min(tight.map.known, tight.truth.known) >= kClearKnown &&
+         unexplained(known_share(tight), tight_agreement(tight), other_poses.tight) >= kClearUnexplained;
+}
+
+Trust judge(const PoseEvidence& wide, const PoseEvidence& tight, const Rivals& rivals) {
+  if (tight_agreement(tight) >= kTightEnough) return judge_tight(tight, rivals);
+  Trust out;
+  const double odds = log_odds(wide, tight);
+  const double margin = odds - rivals.log_odds;
+  if (std::max(tight.map.kappa(), tight.truth.kappa()) < kLeastKappa)
+    out.note = "not aligned: at no pose do the walls of both maps meet more often than by chance";
+  else if (odds < kLeastLogOdds)
+    out.note = "not aligned: the walls of one map run through the free space of the other";
+  else if (margin < kLeastMargin || odds + 2.0 * std::min(margin, kMostMargin) < kLeastSum)
+    out.note = "not aligned: another pose, or a mirror image, fits about as well";
+  else
+    out.trusted = true;
+  return out;
+}
+
+}  // namespace rubble::scoring

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+
+#include "scoring/walls/wall_match.h"
+
+namespace rubble::scoring {
+
+constexpr double kBendCosts = 0.03;   ///< a bent map must agree by this much more than the straight one
+constexpr double kTightEnough = 0.8;  ///< tight agreement from which it is the measure of a pose
+constexpr double kNoOdds = -99.0;     ///< log odds where there is no pose
+
+/// Walls of both maps that meet within the wider tau, less what chance and contradiction take away. At most 1.2.
+double wide_agreement(const PoseEvidence& wide);
+/// Chance-corrected agreement of both maps' walls within the tighter tau. At most 2.
+double tight_agreement(const PoseEvidence& tight);
+/// Agreement within a metre, contradictions counted in full: of the map as a whole.
+double whole_agreement(const PoseEvidence& metre);
+/// Log odds of a pose being right: logistic regression on poses of public maps, docs/scoring.md.
+double log_odds(const PoseEvidence& wide, const PoseEvidence& tight);
+
+/// The most that poses reach which cannot be the right one if the best is: other poses, and all of the mirrored map.
+struct Rivals {
+  double log_odds = kNoOdds;
+  double tight = 0.0;
+  double map_tight = 0.0;    ///< of `tight`, what the map's walls contribute
+  double truth_tight = 0.0;  ///< the same for the truth's walls
+  void meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence);
+  void join(const Rivals& others);
+};
+
+/// The maps agree so well, and at no other pose nearly, that the mirrored map need not be asked.
+bool beyond_doubt(const PoseEvidence& tight, const Rivals& other_poses);
+
+struct Trust {
+  bool trusted = false;
+  bool tight = false;  ///< the maps agree to the decimetre, not only to the metre
+  std::string note;    ///< why not trusted
+};
+
+/// Decides whether the best pose is the right one. Rules and how they were calibrated: docs/scoring.md.
+Trust judge(const PoseEvidence& wide, const PoseEvidence& tight, const Rivals& rivals);
+
+}  // namespace rubble::scoring

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scoring/league/league_points.h"
+#include "scoring/scorecard.h"
+
+namespace rubble::scoring {
+
+/// One team's map in a league.
+struct LeagueEntry {
+  std::string team;
+  std::string file;
+  std::string error;  ///< why it cannot be judged; empty: it was
+  MapScore score;
+  std::optional<LeaguePoints> points;  ///< of victims the team reported
+  std::string victims_from = "none";   ///< "csv", "symbols" (drawn on the map) or "none"
+  std::size_t symbols = 0;             ///< of victims, recognised on the map
+  double judge = 0.0;                  ///< the judge's points
+  int rank = 0;                        ///< from 1; equal figures share the better one
+  std::string note() const { return error.empty() ? score.note : error; }
+  double total() const { return judge + (points ? points->quality + points->location : 0.0); }
+};
+
+/// Sorts and numbers the entries. Those that could be judged come first: more points (to 0.1) win, then the higher
+/// score (to 0.001). Entries equal in both share a rank and stand in the order of their names; the next rank is as many
+/// higher (1, 2, 2, 4). Entries that could not be judged share the last rank. Neither names nor the order of `entries`
+/// decide anything else.
+void rank_league(std::vector<LeagueEntry>& entries);
+
+/// The ranking as CSV with a header; figures of unjudged entries empty.
+std::string league_csv(const std::vector<LeagueEntry>& entries);
+
+inline constexpr double kJudgesMostPerVictim = 30.0;  ///< points
+
+/// Reads the judge's points: CSV with the header `team,points` or `team,victim,points`; 0 to 30 a victim, rows of one
+/// team added up. Throws InputError with file and line.
+std::map<std::string, double> read_judge(const std::string& path);
+
+}  // namespace rubble::scoring

@@ -1,0 +1,113 @@
+#include "scoring/maps/raster_image.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "base/error.h"
+#include "base/sample_range.h"
+#include "scoring/maps/image_damage.h"
+
+namespace rubble::scoring {
+namespace {
+
+/// 16-bit channels as 8 bit, each by the range it uses: colours by theirs, the opacity by its own.
+/// `white`: set to the sample that stands for it where that is no usual one.
+cv::Mat narrowed(const cv::Mat& image, std::uint32_t& white) {
+  std::vector<cv::Mat> channels;
+  cv::split(image, channels);
+  const std::size_t colours = channels.size() == 4 ? 3 : channels.size();
+  const auto most_of = [&](std::size_t from, std::size_t to) {
+    double most = 0.0;
+    for (std::size_t i = from; i < to; ++i) {
+      double here = 0.0;
+      cv::minMaxLoc(channels[i], nullptr, &here);
+      most = std::max(most, here);
+    }
+    return static_cast<std::uint32_t>(most);
+  };
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const std::uint32_t here = white_of(i < colours ? most_of(0, colours) : most_of(i, i + 1), 65535, i >= colours);
+    if (i == 0 && is_odd_white(here, 65535)) white = here;
+    channels[i].convertTo(channels[i], CV_8U, 255.0 / here);
+  }
+  cv::Mat out;
+  cv::merge(channels, out);
+  return out;
+}
+
+/// Transparent pixels fade into the league's grey of unexplored ground, as in a TIFF.
+void work_in_alpha(const cv::Mat& bgra, RgbImage& out) {
+  constexpr std::array<int, 3> kUnexplored{226, 226, 227};
+  out.alpha.resize(bgra.total());
+  for (int y = 0; y < bgra.rows; ++y)
+    for (int x = 0; x < bgra.cols; ++x) {
+      const int alpha = bgra.at<cv::Vec4b>(y, x)[3];
+      out.alpha[out.index(x, y)] = static_cast<std::uint8_t>(alpha);
+      std::uint8_t* const p = out.pixel(x, y);
+      for (std::size_t c = 0; c < 3; ++c)
+        p[c] = static_cast<std::uint8_t>((p[c] * alpha + kUnexplored[c] * (255 - alpha) + 127) / 255);
+    }
+}
+
+}  // namespace
+
+void check_image_size(const std::string& path, std::int64_t width, std::int64_t height) {
+  if (width < 1 || height < 1) throw InputError(path + ": the image is empty");
+  if (width > kMaxImageSide || height > kMaxImageSide || width * height > kMaxImageArea)
+    throw InputError(path + ": " + std::to_string(width) + " x " + std::to_string(height) +
+                     " pixels is too large for a map; scale it down to at most 10000 x 10000");
+}
+
+namespace {
+
+cv::Mat read_raster(const std::string& path, std::uint32_t& white) {
+  if (!std::ifstream(path)) throw InputError(path + ": cannot be opened; does the file exist?");
+  if (is_cut_short(path)) throw InputError(path + ": the image is cut short; copy the file again");
+  cv::Mat image;
+  const StderrCapture capture;
+  try {
+    image = cv::imread(path, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception&) {
+    throw InputError(path + ": the image cannot be decoded; is it complete, and at most 10000 x 10000 pixels?");
+  }
+  if (image.empty()) throw InputError(path + ": not an image that can be read (PNG, PGM, BMP, JPEG), or damaged");
+  if (tells_of_damage(capture.text())) throw InputError(path + ": the image is damaged; copy the file again");
+  check_image_size(path, image.cols, image.rows);
+  if (image.depth() == CV_16U)
+    image = narrowed(image, white);
+  else if (image.depth() != CV_8U)
+    throw InputError(path + ": pixels must have 8 or 16 bit a channel; convert the image");
+  return image;
+}
+
+}  // namespace
+
+cv::Mat read_raster(const std::string& path) {
+  std::uint32_t white = 0;
+  return read_raster(path, white);
+}
+
+RgbImage read_rgb(const std::string& path) {
+  std::uint32_t white = 0;
+  const cv::Mat image = read_raster(path, white);
+  RgbImage out(image.cols, image.rows);
+  out.white = white;
+  cv::Mat view(image.rows, image.cols, CV_8UC3, out.rgb.data());
+  const int channels = image.channels();
+  if (channels == 1)
+    cv::cvtColor(image, view, cv::COLOR_GRAY2RGB);
+  else if (channels == 3)
+    cv::cvtColor(image, view, cv::COLOR_BGR2RGB);
+  else if (channels == 4) {
+    cv::cvtColor(image, view, cv::COLOR_BGRA2RGB);
+    work_in_alpha(image, out);
+  } else
+    throw InputError(path + ": " + std::to_string(channels) + " channels; convert the image to grey or RGB");
+  return out;
+}
+
+}  // namespace rubble::scoring

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "base/image/geotiff.h"
+
+namespace rubble::scoring {
+
+constexpr int kMaxImageSide = 20000;               ///< [pixels]
+constexpr std::int64_t kMaxImageArea = 100000000;  ///< [pixels]
+
+/// Any image OpenCV reads, as stored (1, 3 or 4 channels of 8 bit; deeper ones are scaled by the range they use).
+/// Throws InputError: missing, not an image, too large.
+cv::Mat read_raster(const std::string& path);
+
+/// The same as RGB; transparent pixels show the league's grey of unexplored ground.
+RgbImage read_rgb(const std::string& path);
+
+/// Throws InputError when the sides are out of range.
+void check_image_size(const std::string& path, std::int64_t width, std::int64_t height);
+
+}  // namespace rubble::scoring

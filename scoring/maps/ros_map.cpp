@@ -1,0 +1,59 @@
+#include "scoring/maps/ros_map.h"
+
+#include <filesystem>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "base/error.h"
+#include "base/yaml/strict_yaml.h"
+#include "scoring/maps/league_colours.h"
+#include "scoring/maps/map_colours.h"
+#include "scoring/maps/raster_image.h"
+
+namespace rubble::scoring {
+
+OccupancyGrid read_ros_map(const std::string& yaml_path) {
+  const YamlMap root = YamlMap::load(yaml_path);
+  const std::string image_name = root.text("image", std::nullopt);
+  const double resolution = root.number("resolution", std::nullopt, 0.001, 10.0);
+  const double occupied_thresh = root.number("occupied_thresh", 0.65, 0.0, 1.0);
+  const double free_thresh = root.number("free_thresh", 0.196, 0.0, 1.0);
+  const std::vector<double> origin = root.numbers("origin");
+  if (!origin.empty() && origin.size() < 2) root.fail("origin", "must be [x, y, yaw]");
+  if (free_thresh > occupied_thresh) root.fail("free_thresh", "must not be above occupied_thresh");
+  // map_server accepts 0/1 as well as true/false.
+  const std::string negate_text = root.text("negate", "0");
+  const bool negate = negate_text == "1" || negate_text == "true" || negate_text == "True";
+
+  const std::filesystem::path image_path = std::filesystem::path(yaml_path).parent_path() / image_name;
+  const cv::Mat image = read_raster(image_path.string());
+  OccupancyGrid grid(GridFrame{image.cols, image.rows, resolution, origin.empty() ? 0.0 : origin[0],
+                               origin.empty() ? 0.0 : origin[1]});
+  if (image.channels() >= 3) {
+    const RgbImage coloured = read_rgb(image_path.string());
+    if (is_league_map(coloured)) {
+      grid.cells() = classify(coloured).classes.cells();
+      return grid;
+    }
+  }
+  const int channels = image.channels();
+  const int colours = channels >= 3 ? 3 : 1;
+  for (int y = 0; y < image.rows; ++y) {
+    const unsigned char* row = image.ptr<unsigned char>(image.rows - 1 - y);
+    for (int x = 0; x < image.cols; ++x) {
+      const unsigned char* p = row + x * channels;
+      if ((channels == 4 || channels == 2) && p[channels - 1] < 128) continue;
+      int sum = 0;
+      for (int i = 0; i < colours; ++i) sum += p[i];
+      const double light = sum / (255.0 * colours);
+      const double occupancy = negate ? light : 1.0 - light;
+      if (occupancy > occupied_thresh)
+        grid[{x, y}] = Occupancy::Occupied;
+      else if (occupancy < free_thresh)
+        grid[{x, y}] = Occupancy::Free;
+    }
+  }
+  return grid;
+}
+
+}  // namespace rubble::scoring

@@ -1,0 +1,98 @@
+#include "scoring/pictures/evaluation_page.h"
+
+#include <cstdint>
+#include <cstdio>
+#include <string_view>
+
+#include "base/angle.h"
+#include "base/text/number_text.h"
+#include "scoring/pictures/page_assets.h"
+#include "scoring/walls/overlap.h"
+#include "scoring/walls/resample.h"
+
+namespace rubble::scoring {
+namespace {
+
+/// Bytes of class * 64 + run length - 1, row by row from the south-west corner.
+std::string packed_cells(const OccupancyGrid& grid) {
+  constexpr int kLongest = 64;
+  std::string out;
+  const auto& cells = grid.cells();
+  for (std::size_t i = 0; i < cells.size();) {
+    int length = 1;
+    while (length < kLongest && i + static_cast<std::size_t>(length) < cells.size() &&
+           cells[i + static_cast<std::size_t>(length)] == cells[i])
+      ++length;
+    out += static_cast<char>(static_cast<unsigned char>(static_cast<int>(cells[i]) * kLongest + length - 1));
+    i += static_cast<std::size_t>(length);
+  }
+  return out;
+}
+
+std::string base64(const std::string& bytes) {
+  static const char* const kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](std::size_t k) -> std::uint32_t {
+      return k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0u;
+    };
+    const std::uint32_t bits = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+    out += kDigits[bits >> 18 & 63];
+    out += kDigits[bits >> 12 & 63];
+    out += i + 1 < bytes.size() ? kDigits[bits >> 6 & 63] : '=';
+    out += i + 2 < bytes.size() ? kDigits[bits & 63] : '=';
+  }
+  return out;
+}
+
+/// A JSON string that may stand inside an HTML script element.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\' || c == '<' || c == '>' || code < 0x20) {
+      char escape[8];
+      std::snprintf(escape, sizeof escape, "\\u%04x", static_cast<unsigned>(code));
+      out += escape;
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
+std::string grid_json(const OccupancyGrid& grid, const std::string& name) {
+  const GridFrame& f = grid.frame();
+  return "{\"name\":" + quoted(name) + ",\"w\":" + std::to_string(f.width) + ",\"h\":" + std::to_string(f.height) +
+         ",\"res\":" + number_text(f.resolution) + ",\"x0\":" + number_text(f.x0) + ",\"y0\":" + number_text(f.y0) +
+         ",\"half\":" + number_text(wall_half_thickness(grid)) + ",\"runs\":\"" + base64(packed_cells(grid)) + "\"}";
+}
+
+std::string data_json(const OccupancyGrid& map, const OccupancyGrid& truth, const EvaluationStart& start) {
+  const mrpt::math::TPose2D& T = start.T_truth_map;
+  return "{\"map\":" + grid_json(crop_to_known(map, 0.0), start.map_name) +
+         ",\n\"truth\":" + grid_json(crop_to_known(truth, 0.0), start.truth_name) +
+         ",\n\"pose\":{\"x\":" + number_text(T.x) + ",\"y\":" + number_text(T.y) +
+         ",\"deg\":" + number_text(rad_to_deg(T.phi)) + ",\"scale\":" + number_text(start.scale) +
+         "},\"tau\":" + number_text(start.config.tau) + ",\"cap\":" + number_text(start.config.colour_absent_cap) +
+         ",\"command\":" + quoted(start.command) + "}";
+}
+
+/// `page` with each placeholder replaced once.
+void replace(std::string& page, std::string_view placeholder, std::string_view text) {
+  const std::size_t at = page.find(placeholder);
+  if (at != std::string::npos) page.replace(at, placeholder.size(), text);
+}
+
+}  // namespace
+
+std::string evaluation_page(const OccupancyGrid& map, const OccupancyGrid& truth, const EvaluationStart& start) {
+  std::string page(kEvaluationHtml);
+  replace(page, "@STYLE@", kEvaluationCss);
+  replace(page, "@METRIC@", kMetricJs);
+  replace(page, "@TOOL@", kEvaluationJs);
+  replace(page, "@DATA@", data_json(map, truth, start));
+  return page;
+}
+
+}  // namespace rubble::scoring

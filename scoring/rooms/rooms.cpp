@@ -1,0 +1,122 @@
+#include "scoring/rooms/rooms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <opencv2/imgproc.hpp>
+
+#include "scoring/rooms/passages.h"
+#include "scoring/rooms/room_clusters.h"
+#include "scoring/rooms/room_floor.h"
+#include "scoring/rooms/room_regions.h"
+#include "scoring/walls/resample.h"
+
+namespace rubble::scoring {
+namespace {
+
+constexpr int kMostRooms = 65535;
+constexpr double kElongationWeight = 0.5;  // of d(f, g) against the area's logarithm
+constexpr double kShapeWeight = 2.0;
+
+/// Cells small enough for a door and large enough for the time there is.
+OccupancyGrid at_working_scale(const OccupancyGrid& map, const RoomConfig& config) {
+  GridFrame frame = map.frame();
+  int shrink = std::max(1, static_cast<int>(config.finest / frame.resolution + 1e-6));
+  const auto cells = [&](int by) { return frame.size() / static_cast<std::size_t>(by) / static_cast<std::size_t>(by); };
+  while (cells(shrink) > config.most_cells) ++shrink;
+  if (shrink == 1) return map;
+  frame.resolution *= shrink;
+  frame.width = (frame.width + shrink - 1) / shrink;
+  frame.height = (frame.height + shrink - 1) / shrink;
+  return resample(map, {}, frame);
+}
+
+/// Describes one room from its mask; `corner` is the mask's first cell in `frame`.
+Room describe(const cv::Mat& mask, const cv::Rect& box, const GridFrame& frame) {
+  const double cell = frame.resolution;
+  const cv::Moments m = cv::moments(mask, true);
+  Room room;
+  room.centre = {frame.x0 + (box.x + m.m10 / m.m00 + 0.5) * cell, frame.y0 + (box.y + m.m01 / m.m00 + 0.5) * cell};
+  room.box_min = {frame.x0 + box.x * cell, frame.y0 + box.y * cell};
+  room.box_max = {room.box_min.x + box.width * cell, room.box_min.y + box.height * cell};
+  room.area = m.m00 * cell * cell;
+  std::vector<std::vector<cv::Point>> outlines;
+  cv::findContours(mask.clone(), outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+  for (const auto& outline : outlines) room.perimeter = std::max(room.perimeter, cv::arcLength(outline, true) * cell);
+  const double xx = m.mu20 / m.m00 + 1.0 / 12.0;  // a cell is a square, not a point
+  const double yy = m.mu02 / m.m00 + 1.0 / 12.0;
+  const double xy = m.mu11 / m.m00;
+  const double root = std::hypot(0.5 * (xx - yy), xy);
+  room.elongation = std::sqrt((0.5 * (xx + yy) + root) / (0.5 * (xx + yy) - root));
+  room.direction = 0.5 * std::atan2(2.0 * xy, xx - yy);
+  double hu[7];
+  cv::HuMoments(m, hu);
+  room.shape = {hu[0], std::sqrt(std::abs(hu[1])), std::sqrt(std::abs(hu[2])), std::sqrt(std::abs(hu[3]))};
+  return room;
+}
+
+/// Boxes and sizes of the regions, then their order: largest first.
+std::vector<int> by_size(const RoomRegions& regions, std::vector<cv::Rect>& boxes) {
+  std::vector<std::size_t> size(static_cast<std::size_t>(regions.count) + 1, 0);
+  std::vector<cv::Rect> found(size.size());
+  for (int y = 0; y < regions.labels.rows; ++y)
+    for (int x = 0; x < regions.labels.cols; ++x) {
+      const auto label = static_cast<std::size_t>(regions.labels.at<int>(y, x));
+      if (label == 0) continue;
+      found[label] = ++size[label] == 1 ? cv::Rect(x, y, 1, 1) : found[label] | cv::Rect(x, y, 1, 1);
+    }
+  std::vector<int> order;
+  for (int label = 1; label <= regions.count; ++label)
+    if (size[static_cast<std::size_t>(label)] != 0) order.push_back(label);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return size[static_cast<std::size_t>(a)] > size[static_cast<std::size_t>(b)]; });
+  if (order.size() > kMostRooms) order.resize(kMostRooms);
+  boxes = std::move(found);
+  return order;
+}
+
+Rooms describe_all(const RoomRegions& regions, const GridFrame& frame) {
+  Rooms out;
+  out.labels = Grid<std::uint16_t>(frame, 0);
+  std::vector<cv::Rect> boxes;
+  const std::vector<int> order = by_size(regions, boxes);
+  std::vector<std::uint16_t> number(boxes.size(), 0);
+  for (const int label : order) {
+    const cv::Rect& box = boxes[static_cast<std::size_t>(label)];
+    out.rooms.push_back(describe(regions.labels(box) == label, box, frame));
+    number[static_cast<std::size_t>(label)] = static_cast<std::uint16_t>(out.rooms.size());
+  }
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x)
+      out.labels[{x, y}] = number[static_cast<std::size_t>(regions.labels.at<int>(y, x))];
+  return out;
+}
+
+}  // namespace
+
+Rooms extract_rooms(const OccupancyGrid& map, const RoomConfig& config) {
+  if (map.cells().empty()) return {};
+  const OccupancyGrid grid = at_working_scale(map, config);
+  const RoomFloor floor = room_floor(grid, config);
+  if (config.method == RoomMethod::Passages &&
+      count_corners(floor.open, floor.resolution, config) > config.most_corners) {
+    Rooms none;
+    none.too_many_corners = true;
+    return none;
+  }
+  RoomRegions regions = config.method == RoomMethod::Passages
+                            ? separate(floor, find_passages(floor.open, floor.resolution, config), config)
+                            : cluster_rooms(floor, config);
+  grow_regions(regions, floor);
+  fill_niches(regions, floor, config);
+  return describe_all(regions, grid.frame());
+}
+
+double room_difference(const Room& f, const Room& g) {
+  double shape = 0.0;
+  for (std::size_t i = 0; i < f.shape.size(); ++i) shape += std::abs(f.shape[i] - g.shape[i]);
+  return std::abs(std::log(f.area / g.area)) + kElongationWeight * std::abs(std::log(f.elongation / g.elongation)) +
+         kShapeWeight * shape;
+}
+
+}  // namespace rubble::scoring

@@ -1,0 +1,165 @@
+#include "scoring/trajectory/relative_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "base/angle.h"
+#include "base/error.h"
+#include "base/text/number_text.h"
+#include "base/text/text_file.h"
+
+namespace rubble::scoring {
+namespace {
+
+using mrpt::math::TPose2D;
+
+struct PosePair {
+  TPose2D estimate;
+  TPose2D truth;
+};
+
+std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& truth) {
+  std::vector<PosePair> pairs;
+  for (const StampedPose& stamped : estimate)
+    if (const auto true_pose = pose_at(truth, stamped.stamp)) pairs.push_back({stamped.pose, *true_pose});
+  return pairs;
+}
+
+double length_of(const TPose2D& pose) { return std::hypot(pose.x, pose.y); }
+
+/// b seen from a.
+TPose2D between(const TPose2D& a, const TPose2D& b) { return b - a; }
+
+RelativeError rmse(const std::vector<PosePair>& poses, const std::vector<std::pair<std::size_t, std::size_t>>& pairs) {
+  RelativeError out;
+  out.pairs = pairs.size();
+  if (pairs.empty()) return out;
+  double metres = 0.0;
+  double radians = 0.0;
+  for (const auto& [i, j] : pairs) {
+    const TPose2D error =
+        between(between(poses[i].truth, poses[j].truth), between(poses[i].estimate, poses[j].estimate));
+    metres += error.x * error.x + error.y * error.y;
+    radians += wrap_angle(error.phi) * wrap_angle(error.phi);
+  }
+  const double n = static_cast<double>(pairs.size());
+  out.rmse_m = std::sqrt(metres / n);
+  out.rmse_rad = std::sqrt(radians / n);
+  return out;
+}
+
+/// Indices at which the path since the last of them, at first since the start, reaches `length`.
+template <class Poses, class PoseOf>
+std::vector<std::size_t> milestones(const Poses& poses, double length, const PoseOf& pose_of) {
+  std::vector<std::size_t> out;
+  double path = 0.0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (i > 0) path += length_of(between(pose_of(poses[i - 1]), pose_of(poses[i])));
+    if (path < length) continue;
+    out.push_back(i);
+    path = 0.0;
+  }
+  return out;
+}
+
+/// Mean, standard deviation and mean square of positive numbers.
+struct Moments {
+  double sum = 0.0;
+  double squares = 0.0;
+  void add(double value) {
+    sum += value;
+    squares += value * value;
+  }
+  void store(double n, double& mean, double& deviation, double& mean_square) const {
+    mean = sum / n;
+    mean_square = squares / n;
+    deviation = std::sqrt(std::max(0.0, mean_square - mean * mean));
+  }
+};
+
+}  // namespace
+
+RelativeError rpe_frames(const Trajectory& estimate, const Trajectory& truth) {
+  const std::vector<PosePair> poses = associate(estimate, truth);
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t i = 1; i < poses.size(); ++i) pairs.emplace_back(i - 1, i);
+  return rmse(poses, pairs);
+}
+
+RelativeError rpe_path(const Trajectory& estimate, const Trajectory& truth, double length) {
+  const std::vector<PosePair> poses = associate(estimate, truth);
+  const std::vector<std::size_t> taken = milestones(poses, length, [](const PosePair& p) { return p.estimate; });
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t i = 1; i < taken.size(); ++i) pairs.emplace_back(taken[i - 1], taken[i]);
+  return rmse(poses, pairs);
+}
+
+RelationError relation_error(const Trajectory& estimate, const std::vector<Relation>& relations) {
+  RelationError out;
+  Moments metres;
+  Moments radians;
+  for (const Relation& relation : relations) {
+    const auto from = pose_at(estimate, relation.from);
+    const auto to = pose_at(estimate, relation.to);
+    if (!from || !to) {
+      ++out.missing;
+      continue;
+    }
+    const TPose2D error = between(relation.delta, between(*from, *to));
+    ++out.relations;
+    metres.add(length_of(error));
+    radians.add(std::abs(wrap_angle(error.phi)));
+  }
+  if (out.relations == 0) return out;
+  const double n = static_cast<double>(out.relations);
+  metres.store(n, out.mean_m, out.std_m, out.mean_m2);
+  radians.store(n, out.mean_rad, out.std_rad, out.mean_rad2);
+  return out;
+}
+
+std::vector<Relation> relations_of(const Trajectory& truth, double length, double near, double loop) {
+  const std::vector<std::size_t> taken = milestones(truth, length, [](const StampedPose& p) { return p.pose; });
+  const auto back = static_cast<std::size_t>(std::ceil(loop / length));
+  const auto relation = [&](std::size_t i, std::size_t j) {
+    return Relation{truth[i].stamp, truth[j].stamp, between(truth[i].pose, truth[j].pose)};
+  };
+  std::vector<Relation> out;
+  for (std::size_t k = 1; k < taken.size(); ++k) {
+    out.push_back(relation(taken[k - 1], taken[k]));
+    for (std::size_t m = 0; m + back <= k; ++m) {
+      if (length_of(between(truth[taken[m]].pose, truth[taken[k]].pose)) > near) continue;
+      out.push_back(relation(taken[m], taken[k]));
+      break;
+    }
+  }
+  return out;
+}
+
+std::vector<Relation> read_relations(const std::string& path) {
+  constexpr std::size_t kFields = 8;
+  std::vector<Relation> out;
+  std::stringstream lines(read_text_file(path));
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    std::stringstream fields(line.substr(0, line.find('#')));
+    std::vector<double> values;
+    for (std::string field; fields >> field;) {
+      const auto value = parse_number(field);
+      if (!value) throw InputError(at(path, number, 1, "'" + field + "' is no number"));
+      values.push_back(*value);
+    }
+    if (values.empty()) continue;
+    if (values.size() != kFields)
+      throw InputError(
+          at(path, number, 1,
+             "needs 8 numbers, stamp stamp x y z roll pitch yaw, but has " + std::to_string(values.size())));
+    out.push_back(
+        {Stamp::from_seconds(values[0]), Stamp::from_seconds(values[1]), TPose2D(values[2], values[3], values[7])});
+  }
+  if (out.empty()) throw InputError(path + ": holds no relations");
+  return out;
+}
+
+}  // namespace rubble::scoring

@@ -1,0 +1,128 @@
+#include "scoring/walls/wall_directions.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "base/angle.h"
+
+namespace rubble::scoring {
+namespace {
+
+constexpr double kLattice = 0.1;    // walls are looked at on cells of this edge [m]
+constexpr int kHalfWindow = 5;      // [cells of the lattice]
+constexpr double kSmooth = 0.035;   // half width of the triangle that smooths the histogram [rad]
+constexpr double kStandsOut = 0.2;  // rise over the mean, as a share of the mean, below which no rotation stands out
+
+/// Sums of 1, x, y, x^2, xy, y^2 over the wall cells of the rectangle from the origin.
+using Moments = std::array<double, 6>;
+
+std::vector<Cell> coarse_walls(const OccupancyGrid& grid, int& width, int& height) {
+  const int factor = std::max(1, static_cast<int>(std::lround(kLattice / grid.resolution())));
+  width = (grid.width() + factor - 1) / factor;
+  height = (grid.height() + factor - 1) / factor;
+  std::vector<char> seen(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
+  std::vector<Cell> walls;
+  for (int y = 0; y < grid.height(); ++y) {
+    const Occupancy* row = grid.row(y);
+    for (int x = 0; x < grid.width(); ++x) {
+      if (row[x] != Occupancy::Occupied) continue;
+      char& mark = seen[static_cast<std::size_t>(y / factor) * static_cast<std::size_t>(width) +
+                        static_cast<std::size_t>(x / factor)];
+      if (mark == 0) walls.push_back({x / factor, y / factor});
+      mark = 1;
+    }
+  }
+  return walls;
+}
+
+class WindowMoments {
+ public:
+  WindowMoments(const std::vector<Cell>& walls, int width, int height)
+      : width_(width + 1),
+        height_(height + 1),
+        sums_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), Moments{}) {
+    for (const Cell& c : walls) {
+      const double x = c.x;
+      const double y = c.y;
+      at(c.x + 1, c.y + 1) = {1.0, x, y, x * x, x * y, y * y};
+    }
+    for (int y = 1; y < height_; ++y)
+      for (int x = 1; x < width_; ++x)
+        for (std::size_t k = 0; k < 6; ++k) at(x, y)[k] += at(x - 1, y)[k] + at(x, y - 1)[k] - at(x - 1, y - 1)[k];
+  }
+
+  Moments around(const Cell& c) const {
+    const int x0 = std::max(0, c.x - kHalfWindow);
+    const int y0 = std::max(0, c.y - kHalfWindow);
+    const int x1 = std::min(width_ - 1, c.x + kHalfWindow + 1);
+    const int y1 = std::min(height_ - 1, c.y + kHalfWindow + 1);
+    Moments out{};
+    for (std::size_t k = 0; k < 6; ++k) out[k] = at(x1, y1)[k] - at(x0, y1)[k] - at(x1, y0)[k] + at(x0, y0)[k];
+    return out;
+  }
+
+ private:
+  const Moments& at(int x, int y) const {
+    return sums_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+  }
+  Moments& at(int x, int y) {
+    return sums_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+  }
+  int width_;
+  int height_;
+  std::vector<Moments> sums_;
+};
+
+std::vector<double> smoothed(const std::vector<double>& histogram, int half) {
+  const int n = static_cast<int>(histogram.size());
+  std::vector<double> out(histogram.size(), 0.0);
+  for (int i = 0; i < n; ++i)
+    for (int d = -half; d <= half; ++d)
+      out[static_cast<std::size_t>(i)] +=
+          histogram[static_cast<std::size_t>((i + d + n) % n)] * (1.0 - std::abs(d) / (half + 1.0));
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> wall_directions(const OccupancyGrid& grid, int bins) {
+  std::vector<double> histogram(static_cast<std::size_t>(bins), 0.0);
+  int width = 0;
+  int height = 0;
+  const std::vector<Cell> walls = coarse_walls(grid, width, height);
+  if (walls.empty()) return histogram;
+  const WindowMoments moments(walls, width, height);
+  for (const Cell& c : walls) {
+    const Moments m = moments.around(c);
+    const double xx = m[3] / m[0] - m[1] * m[1] / (m[0] * m[0]);
+    const double xy = m[4] / m[0] - m[1] * m[2] / (m[0] * m[0]);
+    const double yy = m[5] / m[0] - m[2] * m[2] / (m[0] * m[0]);
+    const double spread = std::hypot(xx - yy, 2.0 * xy);
+    if (spread <= 0.0) continue;
+    const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);
+    const double coherence = spread / (xx + yy);
+    const int bin = static_cast<int>(std::floor((angle < 0.0 ? angle + kPi : angle) / kPi * bins));
+    histogram[static_cast<std::size_t>(std::clamp(bin, 0, bins - 1))] += coherence * coherence;
+  }
+  return smoothed(histogram, std::max(1, static_cast<int>(std::lround(kSmooth / kPi * bins))));
+}
+
+std::vector<bool> plausible_rotations(const OccupancyGrid& map, const OccupancyGrid& truth, int half_rotations,
+                                      double share) {
+  const std::vector<double> of_map = wall_directions(map, half_rotations);
+  const std::vector<double> of_truth = wall_directions(truth, half_rotations);
+  const auto n = static_cast<std::size_t>(half_rotations);
+  std::vector<double> match(n, 0.0);
+  for (std::size_t turn = 0; turn < n; ++turn)
+    for (std::size_t i = 0; i < n; ++i) match[turn] += of_map[i] * of_truth[(i + turn) % n];
+  const double mean = std::accumulate(match.begin(), match.end(), 0.0) / static_cast<double>(n);
+  const double best = *std::max_element(match.begin(), match.end());
+  if (best <= (1.0 + kStandsOut) * mean) return std::vector<bool>(n, true);
+  std::vector<bool> out(n);
+  for (std::size_t turn = 0; turn < n; ++turn) out[turn] = match[turn] >= mean + share * (best - mean);
+  return out;
+}
+
+}  // namespace rubble::scoring

@@ -1,0 +1,84 @@
+#include "sim/body/obstacles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "arenas/model/risers.h"
+
+namespace rubble::sim {
+namespace {
+
+using mrpt::math::TPoint2D;
+
+constexpr float kWallFriction = 0.3f;  ///< body against wall
+constexpr double kGraze = 0.01;        ///< bands that overlap by less pass each other [m]
+
+/// The stretch of a riser where the step is higher than `limit`, as parameters along it; from >= to: none.
+struct Stretch {
+  double from = 0.0;
+  double to = 1.0;
+};
+
+Stretch too_high(const arenas::Riser& riser, double limit) {
+  const double a = riser.high_a - riser.low_a - limit;
+  const double b = riser.high_b - riser.low_b - limit;
+  if (a <= 0.0 && b <= 0.0) return {0.0, 0.0};
+  if (a > 0.0 && b > 0.0) return {0.0, 1.0};
+  const double crossing = a / (a - b);
+  return a > 0.0 ? Stretch{0.0, crossing} : Stretch{crossing, 1.0};
+}
+
+}  // namespace
+
+Obstacles::Obstacles(b2World& world, const PlanOrigin& origin, const arenas::Arena& arena, double climbable_step) {
+  b2BodyDef definition;
+  body_ = world.CreateBody(&definition);
+  for (const arenas::Solid& solid : arena.solids) {
+    if (solid.gives_way) continue;  // veil strips: the laser sees them, the robot passes
+    // Box2D polygons take at most eight corners: a fan of pieces serves outlines with more.
+    const std::size_t n = solid.outline.size();
+    for (std::size_t first = 1; first + 1 < n; first += b2_maxPolygonVertices - 2) {
+      std::vector<b2Vec2> corners{origin.to_box2d(solid.outline[0])};
+      const std::size_t last = std::min(first + b2_maxPolygonVertices - 2, n - 1);
+      for (std::size_t i = first; i <= last; ++i) corners.push_back(origin.to_box2d(solid.outline[i]));
+      b2PolygonShape shape;
+      shape.Set(corners.data(), static_cast<int32>(corners.size()));
+      add_fixture(shape, {solid.z_bottom, solid.z_top});
+    }
+  }
+  for (const arenas::Riser& riser : arenas::risers(arena, climbable_step)) {
+    const Stretch stretch = too_high(riser, climbable_step);
+    if (stretch.to - stretch.from < 1e-6) continue;
+    const TPoint2D along = riser.b - riser.a;
+    b2EdgeShape shape;
+    shape.SetTwoSided(origin.to_box2d(riser.a + along * stretch.from), origin.to_box2d(riser.a + along * stretch.to));
+    // From above the edge stops the robot too: driving off a cliff is not simulated.
+    add_fixture(shape, {std::min(riser.low_a, riser.low_b), std::max(riser.high_a, riser.high_b) + 2.0 * kGraze});
+  }
+  world.SetContactListener(this);
+}
+
+void Obstacles::add_fixture(const b2Shape& shape, const HeightBand& band) {
+  b2FixtureDef definition;
+  definition.shape = &shape;
+  definition.friction = kWallFriction;
+  definition.userData.pointer = add_moving(band);
+  body_->CreateFixture(&definition);
+}
+
+std::uintptr_t Obstacles::add_moving(const HeightBand& band) {
+  bands_.push_back(band);
+  return bands_.size();
+}
+
+bool Obstacles::meet(b2Contact& contact) const {
+  const HeightBand& a = bands_[contact.GetFixtureA()->GetUserData().pointer - 1];
+  const HeightBand& b = bands_[contact.GetFixtureB()->GetUserData().pointer - 1];
+  return std::min(a.top, b.top) - std::max(a.bottom, b.bottom) > kGraze;
+}
+
+void Obstacles::PreSolve(b2Contact* contact, const b2Manifold* /*old_manifold*/) {
+  if (!meet(*contact)) contact->SetEnabled(false);
+}
+
+}  // namespace rubble::sim

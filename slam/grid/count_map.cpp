@@ -1,0 +1,207 @@
+#include "slam/grid/count_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+#include "base/planar.h"
+
+namespace rubble::slam {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+namespace {
+
+constexpr int kBlock = 128;  ///< cells by which the map grows
+constexpr std::uint16_t kFull = std::numeric_limits<std::uint16_t>::max();
+
+/// Eq. (1), rounded to 1/255.
+std::uint8_t ratio(std::uint32_t occupied, std::uint32_t seen) {
+  return static_cast<std::uint8_t>((255u * occupied + seen / 2u) / seen);  // eq. (1)
+}
+
+struct Extent {
+  int low;   ///< cells to add below
+  int high;  ///< cells to add above
+};
+
+/// Whole blocks to add so that [low, high] fits, as far as `max_cells` allows.
+Extent growth(double low, double high, int size, int max_cells) {
+  const auto blocks = [](double cells) {
+    return cells <= 0.0 ? 0 : kBlock * static_cast<int>(std::ceil(std::min(cells, 1e6) / kBlock));
+  };
+  const int room = std::max(0, (max_cells - size) / kBlock * kBlock);
+  const int below = std::min(blocks(-low), room);
+  const int above = std::min(blocks(high + 1.0 - size), room - below);
+  return {below, above};
+}
+
+template <class T>
+void move_plane(std::vector<T>& plane, const GridFrame& from, const GridFrame& to, Extent x, Extent y) {
+  std::vector<T> grown(to.size(), T{0});
+  for (int row = 0; row < from.height; ++row) {
+    const auto source = plane.begin() + static_cast<std::ptrdiff_t>(from.index({0, row}));
+    std::copy(source, source + from.width, grown.begin() + static_cast<std::ptrdiff_t>(to.index({x.low, row + y.low})));
+  }
+  plane = std::move(grown);
+}
+
+}  // namespace
+
+CountMap::CountMap(int width, int height, double resolution, int max_cells) : max_cells_(max_cells) {
+  if (width <= 0 || height <= 0 || !(resolution > 0.0)) {
+    throw std::invalid_argument("CountMap: width, height and resolution must be positive");
+  }
+  frame_.width = width;
+  frame_.height = height;
+  frame_.resolution = resolution;
+  frame_.x0 = -0.5 * width * resolution;
+  frame_.y0 = -0.5 * height * resolution;
+  seen_.assign(frame_.size(), 0);
+  occupied_.assign(frame_.size(), 0);
+  p_occ_.assign(frame_.size(), 0);
+}
+
+double CountMap::p_occ(Cell c) const {
+  if (!frame_.inside(c)) return 0.0;
+  const std::size_t cell = frame_.index(c);
+  return seen_[cell] == 0 ? 0.0 : static_cast<double>(occupied_[cell]) / seen_[cell];  // eq. (1)
+}
+
+void CountMap::stamp(const TPose2D& T_map_base, const ScanPoints& scan) {
+  ++version_;
+  rays_ = scan.rays.empty() ? rays_from_ends(scan.hits, scan.passes, scan.origin, scan.beam_width) : scan.rays;
+  if (rays_.empty()) return;
+
+  const PlanarTransform to_map(T_map_base);
+  TPoint2D origin = to_map(scan.origin);
+  TPoint2D low = origin;
+  TPoint2D high = origin;
+  for (ScanRay& ray : rays_) {
+    ray.end = to_map(ray.end);
+    low = {std::min(low.x, ray.end.x), std::min(low.y, ray.end.y)};
+    high = {std::max(high.x, ray.end.x), std::max(high.y, ray.end.y)};
+  }
+  grow_to_hold(low, high);
+
+  const auto to_cells = [this](const TPoint2D& p) {
+    return TPoint2D{(p.x - frame_.x0) / frame_.resolution, (p.y - frame_.y0) / frame_.resolution};
+  };
+  origin = to_cells(origin);
+  for (ScanRay& ray : rays_) ray.end = to_cells(ray.end);
+
+  // One cell of margin: half a beam of widening may reach a little over the ends.
+  const Cell first = frame_.cell(low);
+  const Cell last = frame_.cell(high);
+  const int margin = 1 + static_cast<int>(0.5 * scan.beam_width * distance(low, high) / frame_.resolution);
+  const Cell from{std::max(first.x - margin, 0), std::max(first.y - margin, 0)};
+  const Cell to{std::min(last.x + margin, frame_.width - 1), std::min(last.y + margin, frame_.height - 1)};
+  if (to.x < from.x || to.y < from.y) {  // all of it beyond the largest map
+    dropped_hits_ += static_cast<std::uint64_t>(
+        std::count_if(rays_.begin(), rays_.end(), [](const ScanRay& ray) { return ray.hit; }));
+    return;
+  }
+  passed_.reset(from, to.x - from.x + 1, to.y - from.y + 1);
+  fill_scan_polygons(rays_, origin, scan.beam_width, passed_);
+  clear_surfaces(rays_, kSurfaceGap / frame_.resolution, passed_);
+  count_hits(rays_);
+  count_passes();
+}
+
+void CountMap::count_hits(const std::vector<ScanRay>& rays) {
+  hit_.reset(passed_.low(), passed_.width(), passed_.height());
+  for (const ScanRay& ray : rays) {
+    if (!ray.hit) continue;
+    const double x = std::floor(ray.end.x);
+    const double y = std::floor(ray.end.y);
+    if (!(x >= 0.0 && y >= 0.0 && x < frame_.width && y < frame_.height)) {
+      ++dropped_hits_;
+      continue;
+    }
+    const Cell c{static_cast<int>(x), static_cast<int>(y)};
+    if (hit_.test(c)) continue;  // counts once per scan
+    hit_.set(c);
+    passed_.clear(c);  // a hit cell is not freed by other beams of the scan
+    const std::size_t cell = frame_.index(c);
+    make_room(cell);
+    ++seen_[cell];
+    ++occupied_[cell];
+    p_occ_[cell] = ratio(occupied_[cell], seen_[cell]);
+  }
+}
+
+void CountMap::count_passes() {
+  const bool may_be_full = version_ >= kFull;
+  for (int y = 0; y < passed_.height(); ++y) {
+    const std::uint64_t* words = passed_.row(y);
+    const std::size_t row = frame_.index({passed_.low().x, passed_.low().y + y});
+    const int width = passed_.width();
+    for (int x = 0; x < width;) {
+      const std::uint64_t rest = words[x >> 6] >> (x & 63);
+      if (rest == 0) {
+        x = (x | 63) + 1;
+        continue;
+      }
+      x += __builtin_ctzll(rest);
+      int end = x;
+      while (end < width) {  // to the end of the run of set bits, over word borders
+        const std::uint64_t clear = ~words[end >> 6] >> (end & 63);
+        if (clear != 0) {
+          end += __builtin_ctzll(clear);
+          break;
+        }
+        end = (end | 63) + 1;
+      }
+      end = std::min(end, width);
+      const std::size_t begin_cell = row + static_cast<std::size_t>(x);
+      const std::size_t end_cell = row + static_cast<std::size_t>(end);
+      if (may_be_full) {
+        for (std::size_t cell = begin_cell; cell < end_cell; ++cell) make_room(cell);
+      }
+      for (std::size_t cell = begin_cell; cell < end_cell; ++cell) ++seen_[cell];
+      for (std::size_t cell = begin_cell; cell < end_cell; ++cell) {
+        if (p_occ_[cell] != 0) p_occ_[cell] = ratio(occupied_[cell], seen_[cell]);
+      }
+      x = end;
+    }
+  }
+}
+
+void CountMap::make_room(std::size_t cell) {
+  if (seen_[cell] != kFull) return;
+  seen_[cell] = static_cast<std::uint16_t>(seen_[cell] / 2);
+  occupied_[cell] = static_cast<std::uint16_t>(occupied_[cell] / 2);
+}
+
+void CountMap::grow_to_hold(const TPoint2D& low, const TPoint2D& high) {
+  const double cell = frame_.resolution;
+  const Extent x =
+      growth(std::floor((low.x - frame_.x0) / cell), std::floor((high.x - frame_.x0) / cell), frame_.width, max_cells_);
+  const Extent y = growth(std::floor((low.y - frame_.y0) / cell), std::floor((high.y - frame_.y0) / cell),
+                          frame_.height, max_cells_);
+  if (x.low + x.high + y.low + y.high == 0) return;
+  GridFrame grown = frame_;
+  grown.width += x.low + x.high;
+  grown.height += y.low + y.high;
+  grown.x0 -= x.low * cell;
+  grown.y0 -= y.low * cell;
+  move_plane(seen_, frame_, grown, x, y);
+  move_plane(occupied_, frame_, grown, x, y);
+  move_plane(p_occ_, frame_, grown, x, y);
+  frame_ = grown;
+}
+
+OccupancyGrid CountMap::classify(double threshold) const {
+  OccupancyGrid grid(frame_, Occupancy::Unknown);
+  Occupancy* out = grid.data();
+  for (std::size_t cell = 0; cell < seen_.size(); ++cell) {
+    if (seen_[cell] == 0) continue;
+    out[cell] = occupied_[cell] >= threshold * seen_[cell] ? Occupancy::Occupied : Occupancy::Free;
+  }
+  return grid;
+}
+
+}  // namespace rubble::slam

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+#include <mrpt/math/TPose2D.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "base/angle.h"
+#include "base/grid.h"
+#include "slam/grid/bit_raster.h"
+#include "slam/grid/scan_polygon.h"
+
+namespace rubble::slam {
+
+/// The end points of one scan, in the frame of its stamping pose (usually T_map_base).
+struct ScanPoints {
+  std::vector<mrpt::math::TPoint2D> hits;    ///< returns [m]
+  std::vector<mrpt::math::TPoint2D> passes;  ///< ends of rays that met nothing: free up to there, no hit
+  mrpt::math::TPoint2D origin;               ///< where the rays start (the laser)
+  double beam_width = deg_to_rad(1.0);       ///< angle between neighbouring beams [rad]
+  /// Hits and passes together, counter-clockwise around the origin, one turn at most. May be left empty by who does not
+  /// know the beams: the ends are then sorted by bearing and joined where they lie closer than 1.5 beam widths.
+  std::vector<ScanRay> rays;
+};
+
+/// The paper's occupancy map, section III.B: one plane counts how often a cell was seen, one how often it was occupied.
+/// Grows in whole blocks when a scan reaches over its edge, up to `max_cells` a side; what lies farther is dropped.
+class CountMap {
+ public:
+  /// Centred on the origin of the map frame. Throws std::invalid_argument when a size or the resolution is not
+  /// positive.
+  CountMap(int width, int height, double resolution, int max_cells = 8000);
+
+  const GridFrame& frame() const { return frame_; }
+  std::uint16_t seen(Cell c) const { return seen_[frame_.index(c)]; }
+  std::uint16_t occupied(Cell c) const { return occupied_[frame_.index(c)]; }
+  /// Row `y` of the planes: frame().width counts, for code that reads many cells.
+  const std::uint16_t* seen_row(int y) const { return seen_.data() + frame_.index({0, y}); }
+  const std::uint16_t* occupied_row(int y) const { return occupied_.data() + frame_.index({0, y}); }
+  /// p_occ = occupied / seen (eq. 1); 0 for unseen cells and outside.
+  double p_occ(Cell c) const;
+  /// p_occ in 1/255, 0 where unseen: the plane the particle weights read.
+  const std::uint8_t* p_occ_plane() const { return p_occ_.data(); }
+
+  /// Stamps a scan taken at T_map_base: each touched cell counts once; a cell hit in this scan is not freed by its
+  /// other beams. A cell is touched when it holds a hit, or when its centre lies inside the scan polygon and no surface
+  /// runs through it between two neighbouring hits (scan_polygon.h). Counts that would overflow are halved, both planes
+  /// alike.
+  void stamp(const mrpt::math::TPose2D& T_map_base, const ScanPoints& scan);
+
+  /// Unknown where never seen; occupied where p_occ >= threshold, free elsewhere.
+  OccupancyGrid classify(double threshold = 0.5) const;
+
+  /// Rises with every stamp; tells readers that cached results are old.
+  std::uint64_t version() const { return version_; }
+  /// Hits that lay beyond `max_cells` and were not mapped, since the start.
+  std::uint64_t dropped_hits() const { return dropped_hits_; }
+
+ private:
+  void grow_to_hold(const mrpt::math::TPoint2D& low, const mrpt::math::TPoint2D& high);
+  /// Takes the hit cells out of `passed`.
+  void count_hits(const std::vector<ScanRay>& rays);
+  void count_passes();
+  void make_room(std::size_t cell);
+
+  GridFrame frame_;
+  int max_cells_;
+  std::vector<std::uint16_t> seen_;
+  std::vector<std::uint16_t> occupied_;
+  std::vector<std::uint8_t> p_occ_;
+  std::uint64_t version_ = 0;
+  std::uint64_t dropped_hits_ = 0;
+  BitRaster passed_;           ///< work space of stamp()
+  BitRaster hit_;              ///< work space of stamp()
+  std::vector<ScanRay> rays_;  ///< work space of stamp()
+};
+
+}  // namespace rubble::slam

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <mrpt/math/TPose2D.h>
+#include <mrpt/math/TPose3D.h>
+
+#include <vector>
+
+#include "robot/measurements.h"
+#include "slam/grid/count_map.h"
+
+namespace rubble::slam {
+
+struct LevelScanConfig {
+  bool carve_misses = false;  ///< beams without a return free cells up to `miss_margin` before the range limit
+  double max_range = 0.0;     ///< returns beyond are no hits [m]; 0: the scanner's own limit
+  double miss_margin = 0.1;   ///< [m]
+};
+
+/// Motion of the base during a sweep, relative to the base at the scan's reference time.
+struct SweepMotion {
+  mrpt::math::TPose2D T_ref_first;  ///< base when beam 0 leaves
+  mrpt::math::TPose2D T_ref_last;   ///< base when the last beam leaves
+};
+
+/// Turns a scan of a levelled laser into end points in the base frame. Returns, misses and unmeasured beams stay apart:
+/// a NaN, a range below the scanner's least and (unless carved) a miss say nothing.
+class LevelScan {
+ public:
+  LevelScan(const mrpt::math::TPose3D& T_base_laser, const LevelScanConfig& config);
+
+  /// With `motion` each beam is placed where the base was when it left (linear in time); without, the scan is taken as
+  /// one instant, as the paper does.
+  ScanPoints points(const robot::LaserScan& scan, const SweepMotion* motion = nullptr);
+
+ private:
+  struct Direction {
+    double x;
+    double y;
+  };
+  void aim_beams(const robot::LaserScan& scan);
+
+  LevelScanConfig config_;
+  mrpt::math::TPoint2D p_base_laser_;
+  double m_[2][2];  ///< the mount's rotation, seen from above
+  bool upside_down_ = false;
+  double angle_min_ = 0.0;
+  double angle_step_ = 0.0;
+  std::vector<Direction> directions_;  ///< of the beams in the base frame, for the geometry seen last
+};
+
+}  // namespace rubble::slam

@@ -1,0 +1,100 @@
+#include "slam/scan/scan_matcher.h"
+
+#include <mrpt/poses/CPosePDFGaussian.h>
+#include <mrpt/slam/CICP.h>
+
+#include <cmath>
+
+#include "base/planar.h"
+#include "slam/scan/match_target.h"
+
+namespace rubble::slam {
+
+using mrpt::maps::CSimplePointsMap;
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+namespace {
+
+void insert(CSimplePointsMap& map, const TPoint2D& p) {
+  map.insertPointFast(static_cast<float>(p.x), static_cast<float>(p.y), 0.0f);
+}
+
+void set_points(CSimplePointsMap& map, const Surface& surface) {
+  map.clear();
+  for (const SurfacePoint& point : surface.points) insert(map, point.p);
+  map.mark_as_modified();
+}
+
+/// Fills the surfaces with points closer than `spacing`. Point-to-point ICP on bare beams drags the robot back along a
+/// corridor: the far, sparse points of both scans sit at the same bearings and pair with each other.
+void set_dense_points(CSimplePointsMap& map, const Surface& surface, double spacing) {
+  map.clear();
+  const std::vector<SurfacePoint>& points = surface.points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const TPoint2D& p = points[i].p;
+    insert(map, p);
+    if (!points[i].joined || i + 1 == points.size()) continue;
+    const TPoint2D& q = points[i + 1].p;
+    const int pieces = static_cast<int>(std::ceil(distance(p, q) / spacing));
+    for (int piece = 1; piece < pieces; ++piece) {
+      const double u = static_cast<double>(piece) / pieces;
+      insert(map, {p.x + u * (q.x - p.x), p.y + u * (q.y - p.y)});
+    }
+  }
+  map.mark_as_modified();
+}
+
+}  // namespace
+
+struct ScanMatcher::Impl {
+  ScanMatcherConfig config;
+  mrpt::slam::CICP icp;
+  MatchTarget last;
+  CSimplePointsMap now;
+};
+
+ScanMatcher::ScanMatcher(const ScanMatcherConfig& config) : impl_(std::make_unique<Impl>()) {
+  impl_->config = config;
+  auto& options = impl_->icp.options;
+  options.ICP_algorithm = mrpt::slam::icpClassic;
+  options.thresholdDist = config.first_distance;
+  options.thresholdAng = 0.0;
+  options.ALFA = 0.5;
+  options.smallestThresholdDist = config.last_distance;
+  options.maxIterations = static_cast<unsigned>(config.max_iterations);
+  options.minAbsStep_trans = 2e-4;
+  options.minAbsStep_rot = 2e-4;
+  options.corresponding_points_decimation = 1;  // the points are thinned already
+  options.doRANSAC = false;                     // it draws random numbers
+  options.skip_cov_calculation = true;
+  options.skip_quality_calculation = true;
+}
+
+ScanMatcher::~ScanMatcher() = default;
+
+void ScanMatcher::set_last(const Surface& surface) {
+  set_dense_points(impl_->last, surface, impl_->config.dense_spacing);
+  impl_->last.index();
+}
+
+ScanMatch ScanMatcher::match(const Surface& now, const TPose2D& T_last_now_prior) {
+  ScanMatch match{T_last_now_prior, false, 0.0};
+  const ScanMatcherConfig& config = impl_->config;
+  if (impl_->last.empty() || now.points.size() < static_cast<std::size_t>(config.min_points)) return match;
+
+  set_points(impl_->now, now);
+  mrpt::slam::CICP::TReturnInfo info;
+  const mrpt::poses::CPosePDFGaussian prior{mrpt::poses::CPose2D(T_last_now_prior)};
+  const auto pdf = impl_->icp.AlignPDF(&impl_->last, &impl_->now, prior, info);
+  const TPose2D refined = pdf->getMeanVal().asTPose();
+  const TPose2D correction = refined - T_last_now_prior;
+  match.goodness = info.goodness;
+  match.accepted = info.goodness >= config.min_goodness &&
+                   length(correction.x, correction.y) <= config.max_correction &&
+                   std::abs(wrap_angle(correction.phi)) <= config.max_turn;
+  if (match.accepted) match.T_last_now = refined;
+  return match;
+}
+
+}  // namespace rubble::slam

@@ -1,0 +1,218 @@
+#include "arenas/elements/elements.h"
+#include "tests/support/source_dir.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "arenas/model/geometry.h"
+#include "base/angle.h"
+
+namespace rubble::arenas {
+namespace {
+
+using mrpt::math::TPoint2D;
+
+Arena placed(const std::string& type, double rotation_deg = 0.0, const Element* wall = nullptr,
+             std::optional<int> mount = std::nullopt) {
+  Element element;
+  element.type = type;
+  element.rotation = deg_to_rad(rotation_deg);
+  element.mount_point = mount;
+  Arena arena;
+  place(element, wall, arena);
+  return arena;
+}
+
+/// Whether a solid stands at (x, y) at height z.
+bool blocked(const Arena& arena, double x, double y, double z) {
+  for (const Solid& s : arena.solids) {
+    if (contains(s.outline, {x, y}) && s.z_bottom <= z && z <= s.z_top) return true;
+  }
+  return false;
+}
+
+TEST(Elements, WallTurnsClockwiseFromTheNorthernEdge) {
+  const std::map<int, TPoint2D> edges{{0, {0.0, 0.6}}, {90, {0.6, 0.0}}, {180, {0.0, -0.6}}, {270, {-0.6, 0.0}}};
+  for (const auto& [rotation, middle] : edges) {
+    const Arena arena = placed("small_wall", rotation);
+    ASSERT_EQ(arena.solids.size(), 1u);
+    EXPECT_TRUE(blocked(arena, middle.x, middle.y, 1.19)) << rotation;
+    EXPECT_FALSE(blocked(arena, middle.x, middle.y, 1.21));
+    EXPECT_NEAR(signed_area(arena.solids[0].outline), 1.2 * 0.01, 1e-12);
+  }
+  EXPECT_TRUE(blocked(placed("tall_wall"), 0.0, 0.6, 2.39));
+}
+
+TEST(Elements, FullRampRisesAwayFromItsFrontHalfRampTowardsIt) {
+  const Arena full = placed("full_ramp");
+  EXPECT_NEAR(floor_height(full, {0.3, 0.6}), 0.0, 1e-12);
+  EXPECT_NEAR(floor_height(full, {0.3, -0.6}), 0.339, 1e-12);
+  const Arena half = placed("half_ramp");
+  EXPECT_NEAR(floor_height(half, {0.3, -0.6}), 0.0, 1e-12);
+  EXPECT_NEAR(floor_height(half, {0.3, 0.0}), 0.17, 1e-12);
+  EXPECT_EQ(floor_height(half, {0.3, 0.1}), -INFINITY);
+}
+
+TEST(Elements, RampsTurnWithTheirElement) {
+  for (const double rotation : {90.0, 180.0, 270.0}) {
+    const Arena arena = placed("full_ramp", rotation);
+    const double c = std::cos(deg_to_rad(-rotation));
+    const double s = std::sin(deg_to_rad(-rotation));
+    EXPECT_NEAR(floor_height(arena, {s * 0.5, -c * 0.5}), 0.339 * 1.1 / 1.2, 1e-9) << rotation;
+  }
+}
+
+TEST(Elements, ElevatedRampMeetsTheElevatedFloor) {
+  EXPECT_NEAR(floor_height(placed("simple_elev_ramp"), {0.0, 0.6}), 1.2, 1e-12);
+  EXPECT_NEAR(floor_height(placed("elevated_floor_120"), {0.0, -0.6}), 1.2, 1e-12);
+}
+
+TEST(Elements, StairsClimbInEqualRisers) {
+  const Arena arena = placed("stairs_120");
+  ASSERT_EQ(arena.floor.size(), 5u);
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(floor_height(arena, {0.0, -0.5 + 0.2325 * i}), 0.2 * (i + 1), 1e-12);
+}
+
+TEST(Elements, RedStepFieldHasTheCountsOfTheLeague) {
+  const Arena arena = placed("stepfield_red_diagonal");
+  std::map<long, int> columns;
+  for (int i = 0; i < 100; ++i) {
+    const double z = floor_height(arena, {-0.45 + 0.1 * (i % 10), -0.45 + 0.1 * (i / 10)});
+    ++columns[std::isfinite(z) ? std::lround(10.0 * z) : 0];
+    EXPECT_TRUE(i % 10 != i / 10 || std::abs(z - 0.4) < 1e-12) << "the diagonal is the highest";
+  }
+  EXPECT_EQ(columns, (std::map<long, int>{{0, 9}, {1, 27}, {2, 33}, {3, 21}, {4, 10}}));
+}
+
+TEST(Elements, HolesAreOpenAndTheRestOfTheWallIsNot) {
+  const Arena arena = placed("wall_holes1");
+  EXPECT_FALSE(blocked(arena, -0.28, 0.6, 0.31));
+  EXPECT_FALSE(blocked(arena, -0.29, 0.6, 0.90));
+  EXPECT_FALSE(blocked(arena, 0.29, 0.6, 0.59));
+  EXPECT_TRUE(blocked(arena, -0.28, 0.6, 0.6));
+  EXPECT_TRUE(blocked(arena, 0.0, 0.6, 0.59));
+  double area = 0.0;
+  for (const Solid& s : arena.solids) area += signed_area(s.outline) / 0.01 * (s.z_top - s.z_bottom);
+  EXPECT_NEAR(area, 1.2 * 1.2 - 3 * 0.133 * 0.133, 1e-9);
+}
+
+TEST(Elements, BoxedVictimHangsAtTheHoleItIsMountedAt) {
+  Element wall;
+  wall.type = "wall_holes1";
+  const std::array<double, 3> along{-0.3, 0.3, -0.3};
+  const std::array<double, 3> height{0.9, 0.6, 0.3};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Arena arena = placed("victim_with_box1", 0.0, &wall, static_cast<int>(i));
+    ASSERT_EQ(arena.victims.size(), 1u);
+    EXPECT_NEAR(arena.victims[0].position.x, along[i], 1e-12);
+    EXPECT_NEAR(arena.victims[0].position.z, height[i], 1e-12);
+    EXPECT_NEAR(arena.victims[0].facing, kPi / 2, 1e-12) << "it looks through the wall";
+  }
+  EXPECT_NEAR(placed("victim_with_box1").victims[0].position.z, 0.2, 1e-12) << "without a wall it stands on the ground";
+}
+
+TEST(Elements, VeilIsSeenButGivesWay) {
+  const Arena arena = placed("veil_wall");
+  int strips = 0;
+  for (const Solid& s : arena.solids) {
+    strips += s.gives_way ? 1 : 0;
+    EXPECT_TRUE(s.gives_way || s.z_bottom > 1.0) << "only the lath above the robot is hard";
+  }
+  EXPECT_EQ(strips, 9);
+}
+
+TEST(Elements, EveryShapeIsSoundInEveryTurn) {
+  for (const std::string& type : element_types()) {
+    for (const double rotation : {0.0, 90.0, 180.0, 270.0, 30.0}) {
+      SCOPED_TRACE(type + " " + std::to_string(rotation));
+      Arena arena = placed(type, rotation);
+      EXPECT_FALSE(arena.floor.empty() && arena.solids.empty() && arena.victims.empty());
+      arena.floor.push_back({rectangle({0.0, 0.0}, 4.0, 4.0), 0.0, 0.0, 0.0, "flat"});
+      EXPECT_EQ(parts_trouble(arena).value_or(""), "");
+      for (const Solid& s : arena.solids) {
+        for (const TPoint2D& p : s.outline) EXPECT_LT(std::hypot(p.x, p.y), 0.9) << "it stays on its pallet";
+      }
+    }
+  }
+}
+
+/// Named for what they do to a robot that drives along the element's own +y.
+TEST(Elements, APitchRampRisesAheadAndARollRampAside) {
+  const double rise = 1.2 * std::tan(deg_to_rad(10.0));
+  const Arena pitch = placed("pitch_ramp");
+  EXPECT_NEAR(floor_height(pitch, {0.3, 0.6}) - floor_height(pitch, {0.3, -0.6}), rise, 1e-6);
+  EXPECT_NEAR(floor_height(pitch, {-0.6, 0.1}), floor_height(pitch, {0.6, 0.1}), 1e-12);
+  const Arena roll = placed("roll_ramp");
+  EXPECT_NEAR(floor_height(roll, {0.6, 0.3}) - floor_height(roll, {-0.6, 0.3}), rise, 1e-6);
+  EXPECT_NEAR(floor_height(roll, {0.1, -0.6}), floor_height(roll, {0.1, 0.6}), 1e-12);
+  const Arena turned = placed("roll_ramp", 90.0);
+  EXPECT_NEAR(floor_height(turned, {0.0, -0.6}) - floor_height(turned, {0.0, 0.6}), rise, 1e-6) << "clockwise";
+  EXPECT_EQ(floor_height(placed("flat"), {0.59, -0.59}), 0.0);
+}
+
+/// Four half ramps: two from the ground to 0.17 m, two from there to 0.34 m.
+TEST(Elements, ElevatedRampsStandOnEachOthersHeights) {
+  const Arena arena = placed("elevated_ramps");
+  ASSERT_EQ(arena.floor.size(), 4u);
+  EXPECT_NEAR(floor_height(arena, {-0.599, -0.3}), 0.34, 1e-3);
+  EXPECT_NEAR(floor_height(arena, {-0.001, -0.3}), 0.17, 1e-3);
+  EXPECT_NEAR(floor_height(arena, {0.3, -0.599}), 0.17, 1e-3);
+  EXPECT_NEAR(floor_height(arena, {0.3, -0.001}), 0.0, 1e-3);
+  EXPECT_NEAR(floor_height(arena, {0.001, 0.3}), 0.34, 1e-3);
+  EXPECT_NEAR(floor_height(arena, {0.599, 0.3}), 0.17, 1e-3);
+  EXPECT_NEAR(floor_height(arena, {-0.3, 0.001}), 0.0, 1e-3);
+  EXPECT_NEAR(floor_height(arena, {-0.3, 0.599}), 0.17, 1e-3);
+}
+
+TEST(Elements, LabelsAndStrangersAddNothing) {
+  EXPECT_EQ(kind_of("hazmat_oxygen"), ElementKind::Label);
+  EXPECT_EQ(kind_of("start_check"), ElementKind::Label);
+  EXPECT_EQ(kind_of("flux_capacitor"), ElementKind::Unknown);
+  for (const char* type : {"hazmat", "start_check", "flux_capacitor"}) {
+    const Arena arena = placed(type);
+    EXPECT_TRUE(arena.floor.empty() && arena.solids.empty() && arena.victims.empty());
+  }
+}
+
+/// The first column of the table in docs/arenas.md names every type there is, and no other.
+TEST(Elements, EachIsDescribedAndInTheDocumentation) {
+  std::ifstream docs(std::string(RUBBLE_SOURCE_DIR) + "/docs/arenas.md");
+  std::set<std::string> documented;
+  std::string line;
+  while (std::getline(docs, line) && line != "| type | shape |") {
+  }
+  while (std::getline(docs, line) && line[0] == '|') {
+    std::istringstream names(line.substr(1, line.find('|', 1) - 1));
+    for (std::string text; std::getline(names, text, '`') && std::getline(names, text, '`');) documented.insert(text);
+  }
+  const std::vector<std::string> types = element_types();
+  EXPECT_EQ(documented, std::set<std::string>(types.begin(), types.end()));
+  for (const std::string& type : types) {
+    EXPECT_FALSE(description_of(type).empty()) << type;
+    EXPECT_NE(name_of(kind_of(type)), "unknown") << type;
+  }
+}
+
+TEST(Elements, FloorsHaveTheArenasFrictionUnlessGivenTheirOwn) {
+  for (const std::string& type : element_types()) {
+    for (const FloorPatch& patch : placed(type).floor) EXPECT_FALSE(patch.friction.has_value()) << type;
+    Element element;
+    element.type = type;
+    element.friction = 0.3;
+    Arena arena;
+    place(element, nullptr, arena);
+    EXPECT_EQ(has_floor(type), !arena.floor.empty()) << type;
+    for (const FloorPatch& patch : arena.floor) EXPECT_EQ(patch.friction, 0.3) << type;
+  }
+}
+
+}  // namespace
+}  // namespace rubble::arenas

@@ -1,0 +1,53 @@
+#include "arenas/truth/render.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "tests/support/arenas_draw.h"
+
+namespace rubble::arenas {
+namespace {
+
+using testing::arena;
+
+/// Brightness of the picture at a place of the arena.
+int brightness(const RgbImage& image, const Arena& a, double pixels_per_metre, double x, double y) {
+  const int column = static_cast<int>((x - a.min_corner.x + 0.3) * pixels_per_metre);
+  const int row = image.height - 1 - static_cast<int>((y - a.min_corner.y + 0.3) * pixels_per_metre);
+  const std::uint8_t* p = image.pixel(column, row);
+  return p[0] + p[1] + p[2];
+}
+
+TEST(Render, ShowsWallsDarkAndRampsLighterUphill) {
+  const Arena a = arena({"+---+---+",  //
+                         "| S | > |",  //
+                         "+---+---+"});
+  const RgbImage image = render(a, 100.0);
+  EXPECT_EQ(image.width, static_cast<int>((2.42 + 0.6) * 100.0));
+  EXPECT_LT(brightness(image, a, 100.0, 1.2, 0.3), 250);
+  EXPECT_GT(brightness(image, a, 100.0, 0.2, 0.2), 400);
+  EXPECT_GT(brightness(image, a, 100.0, 2.2, 0.2), brightness(image, a, 100.0, 1.4, 0.2) + 20);
+}
+
+TEST(Render, PaperIsBrightAndVictimsAreRed) {
+  const Arena a = arena({"+---+---+",  //
+                         "| S  A. |",  //
+                         "+---+---+"},
+                        "paper: [{x_m: 0.6, y_m: 0.2, length_m: 0.3, width_m: 0.3}]\n"
+                        "victims: [{name: v, cell: A, wall: east}]\n");
+  const RgbImage image = render(a, 50.0);
+  EXPECT_GT(brightness(image, a, 50.0, 0.6, 0.15), 700);
+  const int column = static_cast<int>((a.victims[0].position.x - a.min_corner.x + 0.3) * 50.0);
+  const int row = image.height - 1 - static_cast<int>((a.victims[0].position.y - a.min_corner.y + 0.3) * 50.0);
+  const std::uint8_t* p = image.pixel(column, row);
+  EXPECT_GT(p[0], 150);
+  EXPECT_LT(p[1], 80);
+}
+
+TEST(Render, RefusesAPictureTooLargeToLookAt) {
+  const Arena a = arena({"+---+", "| S |", "+---+"});
+  EXPECT_THROW(render(a, 1e5), InputError);
+}
+
+}  // namespace
+}  // namespace rubble::arenas

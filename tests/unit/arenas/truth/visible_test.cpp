@@ -1,0 +1,105 @@
+#include "arenas/truth/visible.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "arenas/files/arena_file.h"
+#include "arenas/generate/generate.h"
+#include "arenas/truth/truth_map.h"
+
+namespace rubble::arenas {
+namespace {
+
+using mrpt::math::TPoint2D;
+
+Arena parse(const std::string& maze, const std::string& rest = "") {
+  return parse_arena("maze: |\n" + maze + rest, "drawn");
+}
+
+struct View {
+  Arena arena;
+  OccupancyGrid truth, known;
+  explicit View(const Arena& a) : arena(a), truth(truth_map(a)), known(visible_truth(a, truth)) {}
+  Occupancy at(double x, double y) const { return known[known.cell({x, y})]; }
+};
+
+std::size_t count(const OccupancyGrid& map, Occupancy what) {
+  return static_cast<std::size_t>(std::count(map.cells().begin(), map.cells().end(), what));
+}
+
+TEST(Visible, AnOpenRoomIsSeenThroughout) {
+  const View view(parse("  +---+---+\n  |S.   . |\n  +   +   +\n  | .   . |\n  +---+---+\n"));
+  EXPECT_EQ(count(view.known, Occupancy::Free), count(view.truth, Occupancy::Free));
+  EXPECT_EQ(count(view.known, Occupancy::Occupied), count(view.truth, Occupancy::Occupied));
+}
+
+/// A gap of 0.3 m is too narrow to drive through, but the laser looks in as far as it can see round the edges.
+TEST(Visible, BehindANarrowGapOnlyWhatTheGapShowsCounts) {
+  const View view(parse("  +---+---+---+\n  |S.   .   . |\n  +---+---+---+\n",
+                        "walls:\n  - {from_m: [1.2, 0], to_m: [1.2, 0.9]}\n"));
+  EXPECT_EQ(view.at(0.6, 0.6), Occupancy::Free);
+  EXPECT_EQ(view.at(1.5, 1.05), Occupancy::Free);      // through the gap
+  EXPECT_EQ(view.at(1.35, 0.15), Occupancy::Unknown);  // round the corner
+  EXPECT_EQ(view.truth[view.truth.cell({1.35, 0.15})], Occupancy::Free);
+  const Grid<std::uint8_t> reachable = reachable_mask(view.arena, view.truth);
+  EXPECT_EQ(reachable[reachable.frame().cell({1.8, 0.6})], 0);
+  EXPECT_EQ(reachable[reachable.frame().cell({0.6, 0.6})], 1);
+}
+
+/// A platform 0.21 m up without a ramp: seen over its edge, never climbed.
+TEST(Visible, AStepTooHighIsNotClimbed) {
+  const View view(parse("  +---+---+\n  |S.   .1|\n  +---+---+\n"));
+  const Grid<std::uint8_t> reachable = reachable_mask(view.arena, view.truth);
+  EXPECT_EQ(reachable[reachable.frame().cell({1.8, 0.6})], 0);
+  EXPECT_EQ(view.at(1.8, 0.6), Occupancy::Free);
+}
+
+TEST(Visible, NothingFartherThanTheRangeCounts) {
+  const Arena arena = parse("  +---+---+---+---+---+---+\n  |S.   .   .   .   .   . |\n  +---+---+---+---+---+---+\n",
+                            "boxes:\n  - {x_m: 1.2, y_m: 0.6, length_m: 0.1, width_m: 1.2, height_m: 0.3}\n");
+  const View view(arena);  // the low box stops the robot, not the laser
+  EXPECT_EQ(view.at(4.5, 0.6), Occupancy::Free);
+  EXPECT_EQ(view.at(5.5, 0.6), Occupancy::Unknown);
+}
+
+/// The robot's middle has 0.15 m to either side there: wherever the cells lie, it looks from all along the way.
+TEST(Visible, ANarrowCorridorIsSeenWhole) {
+  for (int i = 0; i < 8; ++i) {
+    const double at = 1.0 + i * 0.05625;  // eight phases of a cell, and of the 0.4 m between poses
+    const auto wall = [&](double x0, double y0, double x1, double y1) {
+      const auto point = [&](double x, double y) {
+        return "[" + std::to_string(at + x) + ", " + std::to_string(at + y) + "]";
+      };
+      return "  - {from_m: " + point(x0, y0) + ", to_m: " + point(x1, y1) + "}\n";
+    };
+    const View view(
+        parse_arena("floors: [{x_m: 4, y_m: 4, length_m: 8, width_m: 8}]\nstart: {x_m: " + std::to_string(at + 0.6) +
+                        ", y_m: " + std::to_string(at + 0.6) + "}\nwalls:\n" + wall(0, 0, 1.2, 0) + wall(0, 0, 0, 1.2) +
+                        wall(0, 1.2, 1.2, 1.2) + wall(1.2, 0, 1.2, 0.3) + wall(1.2, 0.95, 1.2, 1.2) +
+                        wall(1.2, 0.3, 4.65, 0.3) + wall(1.2, 0.95, 4.0, 0.95) + wall(4.65, 0.3, 4.65, 5.0) +
+                        wall(4.0, 0.95, 4.0, 5.0) + wall(4.0, 5.0, 4.65, 5.0),
+                    "corridor"));
+    EXPECT_EQ(count(view.known, Occupancy::Free), count(view.truth, Occupancy::Free)) << "at " << at;
+    EXPECT_EQ(view.at(at + 4.3, at + 4.9), Occupancy::Free) << "at " << at;
+  }
+}
+
+/// In a yellow arena everything can be reached, so all but slivers behind victims' boxes and in corners is seen.
+TEST(Visible, AYellowArenaIsSeenAlmostWhole) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    GenerateConfig config;
+    config.seed = seed;
+    const View view(parse_arena(generate_arena(config), "generated"));
+    const double share = static_cast<double>(count(view.known, Occupancy::Free)) /
+                         static_cast<double>(count(view.truth, Occupancy::Free));
+    EXPECT_GT(share, 0.985) << "seed " << seed;
+    for (std::size_t i = 0; i < view.known.cells().size(); ++i) {
+      const Occupancy cell = view.known.cells()[i];
+      ASSERT_TRUE(cell == Occupancy::Unknown || cell == view.truth.cells()[i]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rubble::arenas

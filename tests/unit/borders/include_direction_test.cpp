@@ -1,0 +1,169 @@
+// The borders between the rooms and between their wings: which folder may include which. The truth must not leak into
+// the mapper, and what lies inside a room stays there.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/support/source_dir.h"
+
+namespace rubble {
+namespace {
+
+namespace fs = std::filesystem;
+using Folders = std::set<std::string>;
+
+/// Rooms that a room may include, besides itself.
+const std::map<std::string, Folders>& rooms() {
+  static const std::map<std::string, Folders> table = {
+      {"base", {}},
+      {"robot", {"base"}},
+      {"arenas", {"base"}},
+      {"sim", {"base", "robot", "arenas"}},
+      {"slam", {"base", "robot"}},
+      {"explore", {"base", "robot", "slam"}},
+      {"scoring", {"base", "arenas"}},
+      {"scenarios", {"base", "robot", "arenas", "sim", "slam", "explore", "scoring"}},
+      {"app", {"base", "robot", "arenas", "sim", "slam", "explore", "scoring", "scenarios"}},
+      {"bench", {"base", "robot", "arenas", "sim", "slam", "explore", "scoring", "scenarios", "tests"}},
+  };
+  return table;
+}
+
+/// Wings that each wing may include of its own room, besides itself. The room's top (its face) may include them all
+/// and be included by those that list the room's name.
+const std::map<std::string, Folders>& wings() {
+  static const std::map<std::string, Folders> table = {
+      {"base/text", {"base"}},
+      {"base/yaml", {"base", "base/text"}},
+      {"base/image", {"base", "base/text"}},
+      {"robot/logs", {"robot", "robot/logs/own", "robot/logs/foreign"}},
+      {"robot/logs/own", {"robot", "robot/logs"}},
+      {"robot/logs/foreign", {"robot", "robot/logs", "robot/logs/own"}},
+      {"arenas/model", {}},
+      {"arenas/elements", {"arenas/model"}},
+      {"arenas/truth", {"arenas/model"}},
+      {"arenas/generate", {"arenas/model"}},
+      {"arenas/raf", {"arenas/model", "arenas/elements", "arenas/truth"}},
+      {"arenas/files", {"arenas/model", "arenas/elements", "arenas/raf"}},
+      {"sim/body", {}},
+      {"sim/laser", {"sim/body"}},
+      {"slam/grid", {}},
+      {"slam/scan", {"slam/grid"}},
+      {"slam/paper", {"slam", "slam/grid", "slam/scan"}},
+      {"scoring/maps", {}},
+      {"scoring/walls", {}},
+      {"scoring/measures", {}},
+      {"scoring/proposals", {"scoring/walls"}},
+      {"scoring/rooms", {"scoring/walls", "scoring/proposals", "scoring/measures"}},
+      {"scoring/alignment", {"scoring/walls", "scoring/proposals", "scoring/rooms", "scoring/measures"}},
+      {"scoring/trajectory", {"scoring/walls"}},
+      {"scoring/league", {"scoring", "scoring/maps", "scoring/walls", "scoring/measures"}},
+      {"scoring/pictures", {"scoring", "scoring/maps", "scoring/walls"}},
+      {"scenarios/config", {}},
+      {"scenarios/run", {"scenarios/config"}},
+      {"scenarios/batch", {"scenarios/config", "scenarios/run"}},
+      {"scenarios/evidence", {"scenarios/batch"}},
+  };
+  return table;
+}
+
+/// Wings that nobody outside their room may include (tests and benchmarks apart).
+const Folders& insides() {
+  static const Folders table = {"robot/logs/own",    "sim/laser",     "sim/body",
+                                "slam/scan",         "slam/paper",    "scoring/walls",
+                                "scoring/proposals", "scoring/rooms", "scoring/alignment"};
+  return table;
+}
+
+std::string room_of(const std::string& folder) { return folder.substr(0, folder.find('/')); }
+
+/// What is wrong with a file of `folder` including a file of `included`; empty: nothing.
+std::string offence(const std::string& folder, const std::string& included) {
+  const std::string room = room_of(folder), other = room_of(included);
+  if (rooms().count(room) == 0) return folder + " is not in the table of rooms";
+  if (room != other) {
+    if (rooms().at(room).count(other) == 0) return room + " must not know " + other;
+    if (room != "bench" && insides().count(included) == 1) return included + " is an inside of " + other;
+    return "";
+  }
+  if (folder == included || folder == room) return "";
+  if (wings().count(folder) == 0) return folder + " is not in the table of wings";
+  return wings().at(folder).count(included) == 1 ? "" : folder + " must not know " + included;
+}
+
+/// Folders of the files that a text includes in lines `#include "folder/file.h"`.
+Folders included_folders(std::istream& in) {
+  static const std::regex include(R"re(^\s*#\s*include\s*"([a-z_/]+)/[a-z_0-9]+\.h")re");
+  Folders folders;
+  std::string line;
+  std::smatch match;
+  while (std::getline(in, line))
+    if (std::regex_search(line, match, include)) folders.insert(match[1]);
+  return folders;
+}
+
+TEST(IncludeDirection, NoFileIncludesWhatItMayNotKnow) {
+  const fs::path top = RUBBLE_SOURCE_DIR;
+  std::size_t files = 0;
+  for (const auto& [room, may] : rooms()) {
+    ASSERT_TRUE(fs::is_directory(top / room)) << room;
+    for (const auto& entry : fs::recursive_directory_iterator(top / room)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension != ".h" && extension != ".cpp") continue;
+      ++files;
+      const std::string folder = fs::relative(entry.path().parent_path(), top).generic_string();
+      std::ifstream in(entry.path());
+      for (const auto& included : included_folders(in))
+        EXPECT_EQ(offence(folder, included), "") << entry.path() << " includes a file of " << included;
+    }
+  }
+  EXPECT_GT(files, 300u);
+}
+
+TEST(IncludeDirection, NoTwoWingsKnowEachOtherThroughOthers) {
+  // The faces of a room apart, wings form layers: following the table never leads back.
+  for (const auto& [start, may] : wings()) {
+    Folders seen;
+    std::vector<std::string> left(may.begin(), may.end());
+    while (!left.empty()) {
+      const std::string wing = left.back();
+      left.pop_back();
+      if (wings().count(wing) == 0 || !seen.insert(wing).second) continue;
+      // A wing below another one may know the one above it, which is its face.
+      if (start.rfind(wing + "/", 0) == 0 || wing.rfind(start + "/", 0) == 0) continue;
+      EXPECT_NE(wing, start);
+      left.insert(left.end(), wings().at(wing).begin(), wings().at(wing).end());
+    }
+  }
+}
+
+TEST(IncludeDirection, EveryWingIsInTheTable) {
+  const fs::path top = RUBBLE_SOURCE_DIR;
+  for (const auto& [room, may] : rooms())
+    for (const auto& entry : fs::recursive_directory_iterator(top / room)) {
+      if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
+      const std::string folder = fs::relative(entry.path().parent_path(), top).generic_string();
+      if (folder != room) EXPECT_EQ(wings().count(folder), 1u) << folder;
+    }
+}
+
+TEST(IncludeDirection, APlantedWrongIncludeIsSeen) {
+  std::istringstream planted(
+      "#pragma once\n#include <vector>\n  #  include \"arenas/truth/truth_map.h\"\n#include \"slam/mapper.h\"\n");
+  const Folders folders = included_folders(planted);
+  EXPECT_EQ(folders, (Folders{"arenas/truth", "slam"}));
+  EXPECT_EQ(offence("slam/paper", "arenas/truth"), "slam must not know arenas");
+  EXPECT_EQ(offence("slam/grid", "slam/paper"), "slam/grid must not know slam/paper");
+  EXPECT_EQ(offence("scenarios/run", "scoring/alignment"), "scoring/alignment is an inside of scoring");
+  EXPECT_EQ(offence("explore", "slam"), "");
+  EXPECT_EQ(offence("slam", "slam/paper"), "");
+}
+
+}  // namespace
+}  // namespace rubble

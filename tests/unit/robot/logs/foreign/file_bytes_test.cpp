@@ -1,0 +1,66 @@
+#include "robot/logs/foreign/file_bytes.h"
+
+#include "base/error.h"
+#include "tests/support/robot_inputs.h"
+
+namespace rubble::robot {
+namespace {
+
+using testing::message_of;
+using testing::TempFolder;
+
+std::string long_text() {
+  std::string text;
+  for (int i = 0; i < 400000; ++i) text += std::to_string(i * i) + " ";
+  return text;
+}
+
+std::string gzipped(const std::string& text, const TempFolder& folder) {
+  write_gzip(folder.file("a.gz"), text);
+  return testing::read_bytes(folder.file("a.gz"));
+}
+
+TEST(FileBytes, GzipComesBackAndIsDeterministic) {
+  const TempFolder folder;
+  const std::string text = long_text();
+  const std::string packed = gzipped(text, folder);
+  EXPECT_LT(packed.size(), text.size());
+  EXPECT_EQ(inflate_if_gzip(packed, "a.gz"), text);
+  EXPECT_EQ(gzipped(text, folder), packed);
+  EXPECT_EQ(inflate_if_gzip("plain", "a"), "plain");
+}
+
+TEST(FileBytes, SeveralMembersAndPaddingAreRead) {
+  const TempFolder folder;
+  const std::string packed = gzipped("one ", folder) + gzipped("two", folder) + std::string(512, '\0');
+  EXPECT_EQ(inflate_if_gzip(packed, "a.gz"), "one two");
+}
+
+TEST(FileBytes, CutGzipSaysWhereItEnds) {
+  const TempFolder folder;
+  const std::string packed = gzipped(long_text(), folder);
+  Rng rng(2, "cuts");
+  for (int trial = 0; trial < 60; ++trial) {
+    const std::size_t size = 2 + rng.below(static_cast<std::uint32_t>(packed.size()) - 2);
+    const std::string message = message_of<InputError>([&] { inflate_if_gzip(packed.substr(0, size), "a.gz"); });
+    EXPECT_NE(message.find("a.gz: the gzip data stop at byte " + std::to_string(size)), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+}
+
+TEST(FileBytes, DamagedGzipIsRefused) {
+  const TempFolder folder;
+  std::string packed = gzipped(long_text(), folder);
+  packed[packed.size() / 2] = static_cast<char>(packed[packed.size() / 2] ^ 0x55);
+  EXPECT_THROW(inflate_if_gzip(packed, "a.gz"), InputError);
+  EXPECT_THROW(inflate_if_gzip(gzipped("text", folder) + "behind", "a.gz"), InputError);
+}
+
+TEST(FileBytes, UnwritablePathIsReported) {
+  EXPECT_NE(message_of<RunError>([] { write_gzip("/nowhere/a.gz", "x"); }).find("/nowhere/a.gz"), std::string::npos);
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "needs /dev/full";
+  EXPECT_THROW(write_gzip("/dev/full", long_text()), RunError);
+}
+
+}  // namespace
+}  // namespace rubble::robot

@@ -1,0 +1,104 @@
+#include "scenarios/batch/merge.h"
+
+#include <gmock/gmock.h>
+#include <sqlite3.h>
+
+#include "base/error.h"
+#include "tests/support/scenarios_batch.h"
+
+namespace rubble::scenarios {
+namespace {
+
+class Merge : public FolderTest {
+ protected:
+  void batch(const std::string& folder, const std::string& suffix, const std::vector<RunRecord>& records) const {
+    std::filesystem::create_directories(path(folder));
+    ResultsFile file(path(folder), suffix);
+    for (const auto& r : records) file.append(r, {{"wall_s", 2.5}, {"broken", {"x"}}});
+  }
+  /// The first column of the first row.
+  std::string query(const std::string& file, const char* sql) const {
+    sqlite3* db = nullptr;
+    sqlite3_open(path(file).c_str(), &db);
+    std::string answer;
+    sqlite3_exec(
+        db, sql,
+        [](void* to, int, char** columns, char**) {
+          *static_cast<std::string*>(to) = columns[0] ? columns[0] : "null";
+          return 0;
+        },
+        &answer, nullptr);
+    sqlite3_close(db);
+    return answer;
+  }
+};
+
+TEST_F(Merge, GivesTheSameBytesInAnyOrderAndAnyNumberOfTimes) {
+  std::vector<RunRecord> all;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed)
+    all.push_back(record("a", "c", seed, 1.0 / static_cast<double>(seed)));
+  batch("whole", "", all);
+  batch("one", "-1of2", {all.begin(), all.begin() + 7});
+  batch("two", "-2of2", {all.begin() + 7, all.end()});
+  EXPECT_EQ(merge({path("whole")}, path("whole.sqlite")).added, 20u);
+  const std::string bytes = read(path("whole.sqlite"));
+  merge({path("two"), path("one")}, path("parts.sqlite"));
+  EXPECT_EQ(read(path("parts.sqlite")), bytes);
+  EXPECT_EQ(merge({path("two"), path("one")}, path("parts.sqlite")).added, 0u);
+  EXPECT_EQ(read(path("parts.sqlite")), bytes);
+  EXPECT_EQ(merge({path("one")}, path("steps.sqlite")).runs, 7u);
+  EXPECT_EQ(merge({path("two")}, path("steps.sqlite")).runs, 20u) << "what is there stays";
+  EXPECT_EQ(read(path("steps.sqlite")), bytes);
+}
+
+TEST_F(Merge, WhatGoesInComesOut) {
+  RunRecord odd = record("a", "x='1', \"y\"", 3, 0.25);
+  odd.score["aligned"] = true;
+  odd.score["align_note"] = "it's fine";
+  odd.score["psi_m"] = nullptr;
+  odd.broken = {"score is 0.25, expected at least 0.5"};
+  RunRecord failed = record("a", "c", 4, 0.0);
+  failed.status = "timeout";
+  batch("out", "", {odd, failed});
+  merge({path("out")}, path("all.sqlite"));
+  const ResultSet lines = load_results(path("out")), table = load_results(path("all.sqlite"));
+  ASSERT_EQ(table.runs.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(to_line(table.runs[i]), to_line(lines.runs[i]));
+  EXPECT_EQ(table.timing.at(odd.run_id)["wall_s"], 2.5);
+}
+
+TEST_F(Merge, AnybodyCanQueryIt) {
+  RunRecord r = record("a", "c", 1, 0.5);
+  r.score["aligned"] = true;
+  r.score["note"] = "text";
+  batch("out", "", {r, record("a", "c", 2, 0.25)});
+  merge({path("out")}, path("all.sqlite"));
+  EXPECT_EQ(query("all.sqlite", "SELECT count(*) FROM runs WHERE status = 'ok'"), "2");
+  EXPECT_EQ(query("all.sqlite", "SELECT avg(value) FROM metrics WHERE key = 'score'"), "0.375");
+  EXPECT_EQ(query("all.sqlite", "SELECT value FROM metrics WHERE key = 'aligned'"), "1.0");
+  EXPECT_EQ(query("all.sqlite", "SELECT count(*) FROM metrics WHERE key = 'note'"), "0");
+  EXPECT_EQ(query("all.sqlite", "PRAGMA integrity_check"), "ok");
+}
+
+TEST_F(Merge, DifferentResultsOfOneRunAreRefused) {
+  batch("one", "", {record("a", "c", 1, 0.5)});
+  batch("two", "", {record("a", "c", 1, 0.6)});
+  merge({path("one")}, path("all.sqlite"));
+  const std::string bytes = read(path("all.sqlite"));
+  EXPECT_THROW(merge({path("two")}, path("all.sqlite")), InputError);
+  EXPECT_EQ(read(path("all.sqlite")), bytes);
+}
+
+TEST_F(Merge, ForeignFilesAreRefusedAndKept) {
+  write("notes.txt", "mine");
+  batch("one", "", {record("a", "c", 1, 0.5)});
+  EXPECT_THROW(merge({path("one")}, path("notes.txt")), InputError);
+  EXPECT_EQ(read(path("notes.txt")), "mine");
+  EXPECT_THROW(load_results(path("nowhere")), InputError);
+  EXPECT_THROW(load_results(path("notes.txt")), InputError);
+  EXPECT_THROW(load_results(write("fake.sqlite", std::string("SQLite format 3\0garbage", 23))), InputError);
+  EXPECT_THROW(merge({path("one")}, path("nowhere/all.sqlite")), RunError);
+}
+
+}  // namespace
+}  // namespace rubble::scenarios

@@ -1,0 +1,156 @@
+#include "scenarios/batch/sweep.h"
+
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "base/error.h"
+#include "tests/support/scenarios_batch.h"
+
+namespace rubble::scenarios {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class SweepFile : public FolderTest {
+ protected:
+  void SetUp() override {
+    FolderTest::SetUp();
+    write("small.yaml", "name: small\narena: {generate: {columns: 3, rows: 3}}\n");
+    write("other.yaml", "name: other\narena: {generate: {columns: 4, rows: 3}}\n");
+  }
+  Sweep sweep(const std::string& text) const { return load_sweep(write("sweep.yaml", text)); }
+  std::vector<Job> jobs(const std::string& text) const { return expand(sweep(text), "code"); }
+  std::string error_of(const std::string& text) const {
+    try {
+      jobs(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  static std::vector<std::string> ids(const std::vector<Job>& jobs) {
+    std::vector<std::string> ids;
+    for (const auto& job : jobs) ids.push_back(job.run_id);
+    return ids;
+  }
+};
+
+TEST_F(SweepFile, SeedsAreARangeAListOrOne) {
+  EXPECT_THAT(sweep("scenarios: [small.yaml]\nseeds: 2-5\n").seeds, ElementsAre(2, 3, 4, 5));
+  EXPECT_THAT(sweep("scenarios: [small.yaml]\nseeds: [9, 1, 4-5]\n").seeds, ElementsAre(9, 1, 4, 5));
+  EXPECT_THAT(sweep("scenarios: [small.yaml]\nseeds: 7\n").seeds, ElementsAre(7));
+}
+
+TEST_F(SweepFile, GridAndNamedSetsMultiply) {
+  const Sweep s = sweep(
+      "scenarios: [small.yaml, other.yaml]\nseeds: 1-3\n"
+      "configs: {paper: {mapper.icp: false}, ours: {}}\n"
+      "set: {mapper.particles: [50, 300], robot.levelling: [true, false], mapper.resolution_m: 0.1}\n");
+  ASSERT_EQ(s.configurations.size(), 8u);
+  EXPECT_EQ(s.configurations[0].name, "paper, mapper.particles=50, robot.levelling=true");
+  EXPECT_EQ(s.configurations[7].name, "ours, mapper.particles=300, robot.levelling=false");
+  const auto all = expand(s, "code");
+  ASSERT_EQ(all.size(), 2u * 8u * 3u);
+  EXPECT_EQ(all[0].scenario.name, "small");
+  EXPECT_EQ(all[0].scenario.seed, 1u);
+  EXPECT_FALSE(all[0].scenario.mapper.icp);
+  EXPECT_EQ(all[0].scenario.mapper.particles, 50);
+  EXPECT_EQ(all[0].scenario.mapper.resolution, 0.1) << "a single value sets the key without lengthening the names";
+  EXPECT_FALSE(all[23].scenario.levelling.on);
+  EXPECT_EQ(all[47].scenario.name, "other");
+  EXPECT_EQ(all[47].scenario.seed, 3u);
+}
+
+TEST_F(SweepFile, ConfigurationsAreMeasuredAgainstTheFirstValueOfTheFirstKeyAllElseEqual) {
+  const auto grid =
+      sweep("scenarios: [small.yaml]\nseeds: 1\nset: {robot.levelling: [false, true], mapper.particles: [50, 300]}\n");
+  for (const auto& c : grid.configurations)
+    EXPECT_EQ(c.reference, "robot.levelling=false" + c.name.substr(c.name.find(',')));
+  const auto sets = sweep(
+      "scenarios: [small.yaml]\nseeds: 1\nconfigs: {ours: {}, paper: {mapper.icp: true}}\nset: {mapper.particles: [50, "
+      "300]}\n");
+  EXPECT_EQ(sets.configurations[3].name, "paper, mapper.particles=300");
+  EXPECT_EQ(sets.configurations[3].reference, "ours, mapper.particles=300");
+}
+
+TEST_F(SweepFile, WithoutSetsThereIsOneDefaultConfiguration) {
+  const auto all = jobs("scenarios: [small.yaml]\nseeds: 1-2\n");
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].configuration, "default");
+}
+
+TEST_F(SweepFile, IdsNameEverythingThatDecidesARun) {
+  const std::string text = "scenarios: [small.yaml]\nseeds: 1-20\nset: {mapper.particles: [50, 300]}\n";
+  const Sweep s = sweep(text);
+  const auto first = ids(expand(s, "code"));
+  EXPECT_EQ(std::set<std::string>(first.begin(), first.end()).size(), 40u) << "no two runs share an id";
+  EXPECT_EQ(first, ids(expand(s, "code"))) << "the same sweep gives the same ids";
+  EXPECT_NE(first[0], ids(expand(s, "other code"))[0]);
+  EXPECT_NE(first[0], ids(expand(s, "code", {{"mapper.icp", "false"}}))[0]);
+  EXPECT_EQ(first[0].size(), 16u);
+  const auto fewer = ids(jobs("scenarios: [small.yaml]\nseeds: 3\nset: {mapper.particles: [50, 300]}\n"));
+  EXPECT_EQ(fewer[0], first[2]) << "an id does not depend on what else is in the sweep";
+}
+
+TEST_F(SweepFile, AnIdFollowsTheContentOfAnArenaFileNotItsPlace) {
+  const std::string arena = "name: one", scenario = "name: drawn\narena: {file: arena.yaml}\n";
+  write("a/arena.yaml", arena), write("a/drawn.yaml", scenario);
+  write("b/arena.yaml", arena), write("b/drawn.yaml", scenario);
+  write("c/arena.yaml", "name: two"), write("c/drawn.yaml", scenario);
+  const auto id = [&](const std::string& where) {
+    return jobs("scenarios: [" + where + "/drawn.yaml]\nseeds: 1\n")[0].run_id;
+  };
+  EXPECT_EQ(id("a"), id("b"));
+  EXPECT_NE(id("a"), id("c"));
+}
+
+TEST_F(SweepFile, ShardsAreDisjointAndCoverTheSweep) {
+  const auto all = jobs("scenarios: [small.yaml, other.yaml]\nseeds: 1-30\n");
+  std::multiset<std::string> parts;
+  for (int i = 1; i <= 7; ++i)
+    for (const auto& job : in_shard(all, {i, 7})) parts.insert(job.run_id);
+  const auto whole = ids(all);
+  EXPECT_EQ(parts, std::multiset<std::string>(whole.begin(), whole.end()));
+  EXPECT_EQ(ids(in_shard(all, {1, 1})), whole);
+}
+
+TEST_F(SweepFile, FoldersOfRunsAreReadableAndUnique) {
+  std::set<std::string> folders;
+  const auto all =
+      jobs("scenarios: [small.yaml]\nseeds: 1-3\nset: {mapper.particles: [50, 300], robot.levelling: [true, false]}\n");
+  for (const auto& job : all) {
+    folders.insert(job.folder());
+    EXPECT_EQ(job.folder().find_first_of("/ ,"), std::string::npos) << job.folder();
+    EXPECT_THAT(job.folder(), HasSubstr("small-"));
+  }
+  EXPECT_EQ(folders.size(), all.size());
+}
+
+TEST_F(SweepFile, ShippedScenariosAreKnownByName) {
+  write("shipped/yellow.yaml", "name: yellow\narena: {generate: {columns: 3, rows: 3}}\n");
+  const Sweep s = load_sweep(write("sweep.yaml", "scenarios: [yellow]\nseeds: 1\n"), path("shipped"));
+  EXPECT_EQ(expand(s, "code")[0].scenario.name, "yellow");
+}
+
+TEST_F(SweepFile, FaultsAreNamedWithPlaceAndRemedy) {
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\n"), HasSubstr("seeds: 1-24"));
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 5-2\n"), HasSubstr("sweep.yaml:2:1"));
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: [1, x]\n"), HasSubstr("'x'"));
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: [1, 3, 1-2]\n"), HasSubstr("seed 1 is there twice"));
+  EXPECT_THAT(error_of("seeds: 1-2\n"), HasSubstr("scenarios"));
+  EXPECT_THAT(error_of("scenarios: [nowhere.yaml]\nseeds: 1\n"), HasSubstr("nowhere.yaml"));
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\nsedes: 1\n"), HasSubstr("seeds"));
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 1\nset: {mapper.icp: []}\n"), HasSubstr("no values"));
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 1\nset: {seed: [1, 2]}\n"), HasSubstr("'seeds'"));
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 1\nset: {mapper.particles: [5, 5]}\n"), HasSubstr("twice"));
+  EXPECT_THAT(error_of("scenarios: [small.yaml, small.yaml]\nseeds: 1\n"),
+              HasSubstr("two scenarios are named 'small'"));
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 1\nconfigs: {bad: {mapper.icpp: 1}}\n"), HasSubstr("'bad'"));
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 1\nconfigs: {bad: {mapper.icpp: 1}}\n"), HasSubstr("icp"));
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 0-99999999\n"), HasSubstr("million"));
+}
+
+}  // namespace
+}  // namespace rubble::scenarios

@@ -1,0 +1,291 @@
+#include "scoring/maps/normalise.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "base/error.h"
+#include "base/image/geotiff.h"
+#include "scoring/maps/lossy_colours.h"
+#include "scoring/scorecard.h"
+#include "tests/support/scoring_maze.h"
+
+namespace rubble::scoring {
+namespace {
+
+using namespace testing;
+namespace fs = std::filesystem;
+
+class LoadMap : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / (std::string("rubble_load_map_") + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  void text(const std::string& name, const std::string& content) const { std::ofstream(path(name)) << content; }
+  fs::path folder_;
+};
+
+/// The grid in grey levels, row 0 at the top.
+cv::Mat grey_image(const OccupancyGrid& grid, int wall, int unknown, int free) {
+  cv::Mat image(grid.height(), grid.width(), CV_8U);
+  for (int y = 0; y < grid.height(); ++y)
+    for (int x = 0; x < grid.width(); ++x) {
+      const Occupancy o = grid[{x, grid.height() - 1 - y}];
+      image.at<unsigned char>(y, x) = static_cast<unsigned char>(o == Occupancy::Occupied ? wall
+                                                                 : o == Occupancy::Free   ? free
+                                                                                          : unknown);
+    }
+  return image;
+}
+
+/// The grid as a league map: checkerboard, walls, and all the drawings a team puts on it.
+cv::Mat league_image(const OccupancyGrid& grid, bool with_drawings) {
+  cv::Mat image(grid.height(), grid.width(), CV_8UC3);
+  const int metre = static_cast<int>(std::lround(1.0 / grid.resolution()));
+  for (int y = 0; y < image.rows; ++y)
+    for (int x = 0; x < image.cols; ++x) {
+      const Occupancy o = grid[{x, grid.height() - 1 - y}];
+      cv::Vec3b& p = image.at<cv::Vec3b>(y, x);
+      if (o == Occupancy::Occupied) p = {120, 40, 0};
+      if (o == Occupancy::Free)
+        p = (x % (metre / 2) == 0 || y % (metre / 2) == 0) ? cv::Vec3b(191, 190, 190) : cv::Vec3b(255, 255, 255);
+      if (o == Occupancy::Unknown)
+        p = ((x / metre + y / metre) % 2 != 0) ? cv::Vec3b(238, 237, 237) : cv::Vec3b(227, 226, 226);
+    }
+  if (!with_drawings) return image;
+  const int w = image.cols;
+  const int h = image.rows;
+  cv::line(image, {w / 2, h / 2}, {w / 2 + 15, h / 2 + 10}, {140, 0, 120}, 1);
+  cv::circle(image, {w / 2 + 6, h / 2 - 6}, 4, {10, 10, 240}, cv::FILLED);
+  cv::circle(image, {w / 2 - 30, h / 2 + 4}, 4, {240, 10, 10}, cv::FILLED);
+  cv::rectangle(image, {w / 2 + 30, h / 2}, {w / 2 + 35, h / 2 + 5}, {30, 100, 255}, cv::FILLED);
+  cv::arrowedLine(image, {w / 2 - 8, h / 2 + 8}, {w / 2 - 8, h / 2 + 2}, {0, 200, 255}, 2);
+  cv::line(image, {4, 6}, {4 + metre, 6}, {140, 50, 0}, 2);
+  cv::putText(image, "map", {30, 8}, cv::FONT_HERSHEY_PLAIN, 0.6, {207, 44, 0}, 1);
+  return image;
+}
+
+double agreement(const OccupancyGrid& a, const OccupancyGrid& b) {
+  EXPECT_EQ(a.width(), b.width());
+  EXPECT_EQ(a.height(), b.height());
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < a.cells().size(); ++i) same += a.cells()[i] == b.cells()[i] ? 1u : 0u;
+  return static_cast<double>(same) / static_cast<double>(a.cells().size());
+}
+
+RgbImage to_rgb(const cv::Mat& bgr) {
+  RgbImage out(bgr.cols, bgr.rows);
+  cv::Mat view(bgr.rows, bgr.cols, CV_8UC3, out.rgb.data());
+  cv::cvtColor(bgr, view, cv::COLOR_BGR2RGB);
+  return out;
+}
+
+TEST_F(LoadMap, RosMapKeepsClassesScaleAndOrigin) {
+  const OccupancyGrid grid = maze({4, 3, 1});
+  cv::imwrite(path("map.pgm"), grey_image(grid, 0, 205, 254));
+  text("map.yaml",
+       "image: map.pgm\nresolution: 0.05\norigin: [-0.5, -0.5, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n"
+       "free_thresh: 0.196\n");
+  const LoadedMap map = load_map(path("map.yaml"));
+  EXPECT_EQ(map.grid.frame(), grid.frame());
+  EXPECT_EQ(agreement(map.grid, grid), 1.0);
+  EXPECT_THAT(map.recognised, ::testing::HasSubstr("ROS map"));
+}
+
+TEST_F(LoadMap, RosMapHonoursNegate) {
+  const OccupancyGrid grid = maze({3, 3, 1});
+  cv::imwrite(path("map.png"), grey_image(grid, 255, 128, 0));
+  text("map.yaml",
+       "image: map.png\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 1\noccupied_thresh: 0.65\nfree_thresh: 0.2\n");
+  EXPECT_EQ(agreement(load_map(path("map.yaml")).grid, grid), 1.0);
+}
+
+TEST_F(LoadMap, GreyImagesAreUnderstoodWhateverGreyMeansUnknown) {
+  const OccupancyGrid grid = maze({5, 4, 2});
+  for (const int unknown : {127, 178, 205}) {
+    cv::imwrite(path("map.png"), grey_image(grid, 0, unknown, 255));
+    EXPECT_EQ(agreement(load_map(path("map.png"), {0.05}).grid, grid), 1.0) << "unknown " << unknown;
+  }
+}
+
+TEST_F(LoadMap, LeagueMapLosesItsDrawings) {
+  const OccupancyGrid grid = maze({6, 5, 3});
+  cv::imwrite(path("map.png"), league_image(grid, false));
+  EXPECT_EQ(agreement(load_map(path("map.png"), {0.05}).grid, grid), 1.0);
+  cv::imwrite(path("drawn.png"), league_image(grid, true));
+  const LoadedMap drawn = load_map(path("drawn.png"), {0.05});
+  EXPECT_GT(agreement(drawn.grid, grid), 0.993);
+  EXPECT_THAT(drawn.recognised, ::testing::HasSubstr("league colours"));
+}
+
+TEST_F(LoadMap, GeoTiffBringsItsOwnScaleAndPlace) {
+  const OccupancyGrid grid = maze({4, 4, 4});
+  GeoTiff tiff;
+  tiff.image = to_rgb(league_image(grid, true));
+  tiff.transform = georeference(grid.frame().x0, grid.frame().y0 + grid.height() * 0.05, 0.05, std::nullopt, tiff.epsg);
+  write_geotiff(path("map.tif"), tiff);
+  const LoadedMap map = load_map(path("map.tif"));
+  EXPECT_NEAR(map.grid.resolution(), 0.05, 1e-12);
+  EXPECT_NEAR(map.grid.frame().x0, grid.frame().x0, 1e-9);
+  EXPECT_NEAR(map.grid.frame().y0, grid.frame().y0, 1e-9);
+  EXPECT_GT(agreement(map.grid, grid), 0.99);
+}
+
+TEST_F(LoadMap, TurnedWithInterpolationItScoresTheSame) {
+  const OccupancyGrid grid = maze({7, 7, 5});
+  for (const bool league : {false, true}) {
+    cv::Mat image = league ? league_image(padded(grid, 20), true) : grey_image(padded(grid, 20), 0, 205, 254);
+    const int side = static_cast<int>(1.5 * std::max(image.cols, image.rows));
+    cv::Mat turn = cv::getRotationMatrix2D(cv::Point2d(0.5 * image.cols, 0.5 * image.rows), 37.0, 1.0);
+    turn.at<double>(0, 2) += 0.5 * (side - image.cols);
+    turn.at<double>(1, 2) += 0.5 * (side - image.rows);
+    for (const int interpolation : {cv::INTER_NEAREST, cv::INTER_LINEAR}) {
+      for (const cv::Scalar& canvas : {cv::Scalar::all(0), cv::Scalar::all(255)}) {
+        SCOPED_TRACE(std::string(league ? "league" : "grey") +
+                     (interpolation == cv::INTER_LINEAR ? ", linear" : ", nearest") + ", canvas " +
+                     std::to_string(canvas[0]));
+        cv::Mat turned;
+        cv::warpAffine(image, turned, turn, {side, side}, interpolation, cv::BORDER_CONSTANT, canvas);
+        cv::imwrite(path("turned.png"), turned);
+        const MapScore score = score_map(load_map(path("turned.png"), {0.05}).grid, grid);
+        EXPECT_TRUE(score.aligned) << score.note;
+        EXPECT_GT(score.score, 0.97);
+      }
+    }
+  }
+}
+
+// JPEG halves the colours' resolution and smears them over blocks of 16 pixels; brightness still shows the walls.
+TEST_F(LoadMap, JpegKeepsTheScoreOfALeagueMap) {
+  for (const std::uint64_t seed : {5, 6}) {
+    const OccupancyGrid grid = maze({7, 7, seed});
+    const cv::Mat straight = league_image(padded(grid, 20), true);
+    for (const double degrees : {0.0, 13.0, 37.0}) {
+      const int side = static_cast<int>(1.5 * std::max(straight.cols, straight.rows));
+      cv::Mat turn = cv::getRotationMatrix2D(cv::Point2d(0.5 * straight.cols, 0.5 * straight.rows), degrees, 1.0);
+      turn.at<double>(0, 2) += 0.5 * (side - straight.cols);
+      turn.at<double>(1, 2) += 0.5 * (side - straight.rows);
+      cv::Mat turned;
+      cv::warpAffine(straight, turned, turn, {side, side}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, {227, 226, 226});
+      cv::imwrite(path("clean.png"), turned);
+      const MapScore clean = score_map(load_map(path("clean.png"), {0.05}).grid, grid);
+      for (const int quality : {60, 75, 85, 95}) {
+        SCOPED_TRACE(std::to_string(degrees) + " deg, quality " + std::to_string(quality));
+        cv::imwrite(path("map.jpg"), turned, {cv::IMWRITE_JPEG_QUALITY, quality});
+        const MapScore score = score_map(load_map(path("map.jpg"), {0.05}).grid, grid);
+        EXPECT_TRUE(score.aligned) << score.note;
+        EXPECT_NEAR(score.score, clean.score, 0.02);
+      }
+    }
+  }
+}
+
+TEST_F(LoadMap, OnlyCompressionMakesColoursRun) {
+  const cv::Mat clean = league_image(padded(maze({6, 6, 2}), 10), true);
+  EXPECT_FALSE(has_run_colours(to_rgb(clean)));
+  const cv::Mat turn = cv::getRotationMatrix2D(cv::Point2d(0.5 * clean.cols, 0.5 * clean.rows), 20.0, 0.9);
+  for (const int interpolation : {cv::INTER_NEAREST, cv::INTER_LINEAR, cv::INTER_CUBIC, cv::INTER_LANCZOS4}) {
+    cv::Mat turned;
+    cv::warpAffine(clean, turned, turn, clean.size(), interpolation, cv::BORDER_CONSTANT, {255, 255, 255});
+    EXPECT_FALSE(has_run_colours(to_rgb(turned))) << interpolation;
+    cv::imwrite(path("map.jpg"), turned, {cv::IMWRITE_JPEG_QUALITY, 80});
+    EXPECT_TRUE(has_run_colours(to_rgb(cv::imread(path("map.jpg"))))) << interpolation;
+  }
+  EXPECT_FALSE(has_run_colours(RgbImage()));
+}
+
+TEST_F(LoadMap, DeepImagesAreScaledByTheRangeTheyUse) {
+  const OccupancyGrid grid = maze({5, 4, 2});
+  const cv::Mat grey = grey_image(grid, 0, 205, 254);
+  const cv::Mat league = league_image(grid, false);
+  for (const double factor : {1.0, 260.0 / 254.0, 4.0, 16.0, 30000.0 / 254.0, 50000.0 / 254.0, 257.0})
+    for (const char* name : {"deep.png", "deep.pgm"}) {
+      SCOPED_TRACE(std::string(name) + " times " + std::to_string(factor));
+      cv::Mat deep;
+      grey.convertTo(deep, CV_16U, factor);
+      cv::imwrite(path(name), deep);
+      const LoadedMap map = load_map(path(name), {0.05});
+      EXPECT_EQ(agreement(map.grid, grid), 1.0);
+      EXPECT_EQ(map.recognised.find("brightest") != std::string::npos,
+                factor != 1.0 && factor != 4.0 && factor != 16.0 && factor != 257.0)
+          << map.recognised;
+      if (std::string(name) != "deep.png") continue;
+      league.convertTo(deep, CV_16U, factor == 1.0 ? 1.0 : 257.0);
+      cv::imwrite(path(name), deep);
+      EXPECT_EQ(agreement(load_map(path(name), {0.05}).grid, grid), 1.0);
+    }
+}
+
+TEST_F(LoadMap, RosMapsInLeagueColoursAreReadByThese) {
+  const OccupancyGrid grid = maze({5, 4, 2});
+  text("map.yaml", "image: map.png\nresolution: 0.05\norigin: [-1, 2, 0]\n");
+  cv::imwrite(path("map.png"), league_image(grid, false));
+  const OccupancyGrid read = load_map(path("map.yaml")).grid;
+  EXPECT_EQ(agreement(read, grid), 1.0);
+  EXPECT_EQ(read.frame().x0, -1.0);
+}
+
+TEST_F(LoadMap, TransparentPixelsAreUnknown) {
+  // Unknown cells transparent, whatever colour lies below, in grey maps and league maps of 8 and 16 bits.
+  const OccupancyGrid grid = maze({5, 4, 2});
+  for (const bool league : {false, true})
+    for (const int below : {0, 255})
+      for (const bool deep : {false, true}) {
+        SCOPED_TRACE(std::to_string(league) + " " + std::to_string(below) + " " + std::to_string(deep));
+        cv::Mat bgr = league ? league_image(grid, false) : grey_image(grid, 0, 205, 254);
+        if (!league) cv::cvtColor(bgr, bgr, cv::COLOR_GRAY2BGR);
+        cv::Mat image;
+        cv::cvtColor(bgr, image, cv::COLOR_BGR2BGRA);
+        for (int y = 0; y < image.rows; ++y)
+          for (int x = 0; x < image.cols; ++x)
+            if (grid[{x, grid.height() - 1 - y}] == Occupancy::Unknown) {
+              const auto b = static_cast<unsigned char>(below);
+              image.at<cv::Vec4b>(y, x) = {b, b, b, 0};
+            }
+        if (deep) image.convertTo(image, CV_16U, 257.0);
+        cv::imwrite(path("map.png"), image);
+        EXPECT_EQ(agreement(load_map(path("map.png"), {0.05}).grid, grid), 1.0);
+      }
+}
+
+TEST_F(LoadMap, BadInputIsOneLineWithTheRemedy) {
+  const auto message = [&](const std::string& file, const LoadOptions& options = {}) {
+    try {
+      load_map(file, options);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  const OccupancyGrid grid = maze({2, 2, 1});
+  cv::imwrite(path("plain.png"), grey_image(grid, 0, 205, 254));
+  text("broken.png", "not a picture");
+  text("broken.tif", "not a picture");
+  text("broken.yaml", "image: [");
+  text("lonely.yaml", "image: nowhere.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n");
+  GeoTiff bare;
+  bare.image = to_rgb(league_image(grid, false));
+  write_geotiff(path("bare.tif"), bare);
+  EXPECT_THAT(message(path("plain.png")), ::testing::HasSubstr("--resolution"));
+  EXPECT_THAT(message(path("bare.tif")), ::testing::HasSubstr("--resolution"));
+  EXPECT_THAT(message(path("plain.png"), {50.0}), ::testing::HasSubstr("50"));
+  EXPECT_THAT(message(path("lonely.yaml")), ::testing::HasSubstr("nowhere.pgm"));
+  for (const std::string& file : {path("absent.png"), path("absent.tif"), path("absent.yaml"), path("broken.png"),
+                                  path("broken.tif"), path("broken.yaml"), path("plain.png")}) {
+    const std::string what = message(file);
+    EXPECT_THAT(what, ::testing::HasSubstr(fs::path(file).filename().string()));
+    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+  }
+}
+
+}  // namespace
+}  // namespace rubble::scoring
