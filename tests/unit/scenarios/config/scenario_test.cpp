@@ -9,7 +9,7 @@
 #include "base/angle.h"
 #include "base/error.h"
 #include "base/text/number_text.h"
-#include "scenarios/config/binder.h"
+#include "base/yaml/binder.h"
 
 namespace rubble::scenarios {
 namespace {
