@@ -3,7 +3,7 @@
 namespace rubble::scenarios {
 
 Core::Core(const Scenario& scenario, const robot::RobotModel& model, bool explore)
-    : mapper_(scenario.mapper.make(model, scenario.seed)), levelling_(scenario.levelling) {
+    : mapper_(scenario.mapper.make(model, scenario.seed)), levelling_(scenario.levelling, model.accelerometer_mount) {
   if (explore) explorer_.emplace(model, scenario.explorer);
 }
 
