@@ -54,6 +54,9 @@ class ReplayRobot : public Robot {
   const Commands& recorded_commands() const;
   /// T_map_base that came with the log (CARMEN: corrected poses; MRPT: `.GT.txt` beside it); empty when there are none.
   const Trajectory& reference() const;
+  /// The trajectory of its scans under the stamps the log itself gives them, by which relations and other programs know
+  /// them. Only CARMEN logs whose clock jitters are delivered with others; sorted, of equal stamps the first.
+  Trajectory in_own_stamps(const Trajectory& trajectory) const;
   /// True when a torn last frame of our own log was dropped.
   bool was_torn() const;
   /// Share of the log played so far, 0..1.

@@ -96,7 +96,7 @@ ForeignLog read_foreign(const std::string& bytes, const std::string& path) {
   if (is_coreslam(bytes)) return read_coreslam(bytes, path);
   if (is_carmen(bytes)) return read_carmen(bytes, path);
   throw InputError(path + ": byte 0: not a log of a known format; give a log recorded by rubble, an MRPT .rawlog, " +
-                   "a CARMEN .log or .log.gz, or a CoreSLAM .dat");
+                   "a CARMEN .log (.gz, .bz2), or a CoreSLAM .dat");
 }
 
 }  // namespace
@@ -143,6 +143,21 @@ const Commands& ReplayRobot::recorded_commands() const {
   return impl_->own ? impl_->own->commands() : impl_->no_commands;
 }
 const Trajectory& ReplayRobot::reference() const { return impl_->foreign.reference; }
+Trajectory ReplayRobot::in_own_stamps(const Trajectory& trajectory) const {
+  const std::vector<OwnStamp>& names = impl_->foreign.own_stamps;
+  Trajectory renamed = trajectory;
+  for (StampedPose& stamped : renamed) {
+    const auto name = std::lower_bound(names.begin(), names.end(), stamped.stamp,
+                                       [](const OwnStamp& n, Stamp s) { return n.delivered < s; });
+    if (name != names.end() && name->delivered == stamped.stamp) stamped.stamp = name->in_log;
+  }
+  const auto earlier = [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; };
+  const auto same = [](const StampedPose& a, const StampedPose& b) { return a.stamp == b.stamp; };
+  std::stable_sort(renamed.begin(), renamed.end(), earlier);
+  renamed.erase(std::unique(renamed.begin(), renamed.end(), same), renamed.end());
+  return renamed;
+}
+
 bool ReplayRobot::was_torn() const { return impl_->own && impl_->own->torn(); }
 
 double ReplayRobot::progress() const {

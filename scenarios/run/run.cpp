@@ -232,6 +232,22 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   return report;
 }
 
+namespace {
+
+/// Relations and other programs know the scans of a log by its own stamps.
+void name_as_the_log_does(const RunFolder& folder, const robot::ReplayRobot& robot, const slam::Mapper& mapper) {
+  const auto write = [&](const char* name, const Trajectory& trajectory) {
+    std::string text;
+    for (const StampedPose& stamped : robot.in_own_stamps(trajectory)) text += tum_line(stamped) + '\n';
+    folder.write(name, text);
+  };
+  write("estimate.tum", mapper.trajectory());
+  write("estimate_live.tum", mapper.live_trajectory());
+  if (!robot.reference().empty()) write("truth.tum", robot.reference());
+}
+
+}  // namespace
+
 RunReport map_log(const std::string& log, const Scenario& scenario, const RunOptions& options) {
   const auto start = Clock::now();
   robot::ReplayRobot robot(log);
@@ -249,6 +265,7 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   const LoopEnd end = Loop(resolved, folder, hooks).run(robot, core);
   if (core.mapper().counts().scans == 0 && !end.interrupted)
     throw InputError(log + ": holds no laser scan; a log to map needs scans (and odometry)");
+  name_as_the_log_does(folder, robot, core.mapper());
   if (!robot.reference().empty()) add_trajectory_error(report.score, core.mapper().trajectory(), robot.reference());
   add_mapper_counts(report.score, core);
   report.end = end.interrupted    ? end.reason

@@ -97,9 +97,9 @@ Stamp CarmenRecord::*choose_clock(const Records& records, const std::string& pat
                           " s; cut the log here, or sort its lines by time if two recordings were joined"));
 }
 
-/// Gives every record the stamp it is delivered with. Scans keep the log's own, for relations and reference poses name
-/// them by it (those that jump back among themselves are sorted). ODOM lines keep the order of the lines: they are held
-/// between the scans around them, else a clock that jitters would make the odometry run to and fro.
+/// Gives every record the stamp it is delivered with. The clocks of such logs jitter, and the order of the lines is the
+/// truth: scans share out their own stamps sorted. ODOM lines are held between the scans around them, behind the one
+/// before, so that none takes the place of the odometry that a scan itself carries.
 void order_stamps(Records& records, Stamp CarmenRecord::*clock) {
   std::vector<Stamp> scans;
   for (const CarmenRecord& record : records)
@@ -118,7 +118,7 @@ void order_stamps(Records& records, Stamp CarmenRecord::*clock) {
     for (; end < records.size() && !records[end].is_scan; ++end) between.push_back(records[end].*clock);
     between = sorted_stamps(std::move(between));
     for (const Stamp stamp : between) {
-      const Stamp after = std::max(stamp, newest);
+      const Stamp after = newest == Stamp::never() ? stamp : std::max(stamp, Stamp{newest.ns + 1000});
       records[i++].stamp = newest = next < scans.size() ? std::min(after, scans[next]) : after;
     }
   }
@@ -178,7 +178,8 @@ ForeignLog read_carmen(std::string_view text, const std::string& path) {
   const bool laser_fixed = laser_is_fixed(records, seen_mount);
   const bool reanchored = is_reanchored(records);
   const std::vector<TPose2D> corrected = reanchored ? undo_reanchoring(records) : std::vector<TPose2D>{};
-  order_stamps(records, choose_clock(records, path));
+  Stamp CarmenRecord::*const clock = choose_clock(records, path);
+  order_stamps(records, clock);
   const bool scans_are_raw = reanchored || scans_follow_odometry(records);
 
   ForeignLog log;
@@ -209,6 +210,7 @@ ForeignLog read_carmen(std::string_view text, const std::string& path) {
       else if (!laser_fixed)
         log.reference.push_back({record.stamp, wrapped(record.laser + T_laser_base)});
       record.scan.stamp = record.stamp;
+      log.own_stamps.push_back({record.stamp, record.*clock});
       scans.push_back(std::move(record.scan));
     }
     if (record.is_scan && !scans_are_raw) continue;

@@ -9,12 +9,20 @@
 
 namespace rubble::robot {
 
+/// A scan's stamp as delivered and as its log has it.
+struct OwnStamp {
+  Stamp delivered;
+  Stamp in_log;
+};
+
 /// A log of another program, brought into our terms.
 struct ForeignLog {
   std::string format;
   RobotModel model;
   std::vector<Inputs> ticks;
   Trajectory reference;  ///< T_map_base at the scans' reference times; empty when the log has none
+  /// What the log itself calls the scans, where a jittering clock made them be delivered with other stamps.
+  std::vector<OwnStamp> own_stamps;
 };
 
 /// How far a stamp may lie before an earlier one of the same list and still count as jitter of the recorder [s].
