@@ -29,18 +29,23 @@ void bind_fields(Binder& binder, Config& config) {
   bind(binder, config);
 }
 
-/// Parameters kept in a plain struct `Config` that a function bind(Binder&, Config&) beside it knows, of a mapper whose
-/// constructor takes (model, config, seed).
-template <class Config, class Kind>
-class ParametersOf : public MapperParameters {
+/// Parameters kept in a plain struct `Config` that a function bind(Binder&, Config&) beside it knows.
+template <class Config>
+class ParametersIn : public MapperParameters {
  public:
   void bind(Binder& binder) override { bind_fields(binder, config); }
-  std::unique_ptr<Mapper> make(const robot::RobotModel& model, std::uint64_t seed) const override {
-    return std::make_unique<Kind>(model, config, seed);
-  }
-  std::unique_ptr<MapperParameters> copy() const override { return std::make_unique<ParametersOf>(*this); }
 
   Config config;
+};
+
+/// The same, of a mapper whose constructor takes (model, config, seed).
+template <class Config, class Kind>
+class ParametersOf : public ParametersIn<Config> {
+ public:
+  std::unique_ptr<Mapper> make(const robot::RobotModel& model, std::uint64_t seed) const override {
+    return std::make_unique<Kind>(model, this->config, seed);
+  }
+  std::unique_ptr<MapperParameters> copy() const override { return std::make_unique<ParametersOf>(*this); }
 };
 
 /// A row of the table of mappers.
@@ -67,6 +72,11 @@ class MapperConfig {
   /// `kind` first, then the parameters of that kind.
   void bind(Binder& binder);
   std::unique_ptr<Mapper> make(const robot::RobotModel& model, std::uint64_t seed) const;
+  /// The parameters of a kind that keeps them in a `Config`. Throws std::bad_cast when the kind chosen does not.
+  template <class Config>
+  const Config& as() const {
+    return dynamic_cast<const ParametersIn<Config>&>(*parameters_).config;
+  }
 
  private:
   std::string kind_;
