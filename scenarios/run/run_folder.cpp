@@ -113,7 +113,7 @@ void RunFolder::append_estimate(const Trajectory& estimate) { append(estimate_, 
 void RunFolder::save_map(const Scenario& scenario, const slam::Mapper& mapper,
                          const std::vector<explore::VictimReport>& victims) const {
   LeagueDrawing drawing;
-  drawing.occupied_threshold = scenario.explorer.occupied_threshold;
+  drawing.occupied_threshold = scenario.explorer.occupied_threshold();
   drawing.title = "RoboCup-" + scenario.team + "-" + scenario.mission + "-map.tif";
   drawing.path = mapper.trajectory();
   drawing.victims = victims;

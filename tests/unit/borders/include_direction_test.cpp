@@ -56,6 +56,10 @@ const std::map<std::string, Folders>& wings() {
       {"slam/grid", {}},
       {"slam/scan", {"slam/grid"}},
       {"slam/paper", {"slam", "slam/grid", "slam/scan"}},
+      {"explore/plan", {}},
+      {"explore/caution", {}},
+      {"explore/search", {"explore", "explore/plan"}},
+      {"explore/paper", {"explore", "explore/plan", "explore/caution", "explore/search"}},
       {"scoring/maps", {}},
       {"scoring/walls", {}},
       {"scoring/measures", {}},
@@ -75,9 +79,10 @@ const std::map<std::string, Folders>& wings() {
 
 /// Wings that nobody outside their room may include (tests and benchmarks apart).
 const Folders& insides() {
-  static const Folders table = {"robot/logs/own",    "sim/laser",     "sim/body",
-                                "slam/scan",         "slam/paper",    "scoring/walls",
-                                "scoring/proposals", "scoring/rooms", "scoring/alignment"};
+  static const Folders table = {"robot/logs/own",   "sim/laser",     "sim/body",          "slam/scan",
+                                "slam/paper",       "explore/plan",  "explore/caution",   "explore/search",
+                                "explore/paper",    "scoring/walls", "scoring/proposals", "scoring/rooms",
+                                "scoring/alignment"};
   return table;
 }
 
