@@ -4,7 +4,7 @@ namespace rubble::scenarios {
 
 Core::Core(const Scenario& scenario, const robot::RobotModel& model, bool explore)
     : mapper_(scenario.mapper.make(model, scenario.seed)), levelling_(scenario.levelling, model.accelerometer_mount) {
-  if (explore) explorer_.emplace(model, scenario.explorer);
+  if (explore) explorer_ = scenario.explorer.make(model);
 }
 
 robot::Commands Core::step(const robot::Inputs& inputs) {

@@ -133,7 +133,7 @@ void RunFolder::save_estimate(const slam::Mapper& mapper) {
 void RunFolder::save_map(const Scenario& scenario, const slam::Mapper& mapper,
                          const std::vector<explore::VictimReport>& victims) const {
   LeagueDrawing drawing;
-  drawing.occupied_threshold = scenario.explorer.occupied_threshold;
+  drawing.occupied_threshold = scenario.explorer.occupied_threshold();
   drawing.title = "RoboCup-" + scenario.team + "-" + scenario.mission + "-map.tif";
   drawing.path = mapper.trajectory();
   drawing.victims = victims;

@@ -57,6 +57,10 @@ const std::map<std::string, Folders>& wings() {
       {"slam/scan", {"slam/grid"}},
       {"slam/paper", {"slam", "slam/grid", "slam/scan"}},
       {"slam/robust", {"slam", "slam/grid", "slam/scan"}},
+      {"explore/plan", {}},
+      {"explore/caution", {}},
+      {"explore/search", {"explore", "explore/plan"}},
+      {"explore/paper", {"explore", "explore/plan", "explore/caution", "explore/search"}},
       {"scoring/maps", {}},
       {"scoring/walls", {}},
       {"scoring/measures", {}},
@@ -76,9 +80,10 @@ const std::map<std::string, Folders>& wings() {
 
 /// Wings that nobody outside their room may include (tests and benchmarks apart).
 const Folders& insides() {
-  static const Folders table = {"robot/logs/own", "sim/laser",        "sim/body",      "slam/scan",
-                                "slam/paper",     "slam/robust",      "scoring/walls", "scoring/proposals",
-                                "scoring/rooms",  "scoring/alignment"};
+  static const Folders table = {"explore/caution", "explore/paper",     "explore/plan",      "explore/search",
+                                "robot/logs/own",  "scoring/alignment", "scoring/proposals", "scoring/rooms",
+                                "scoring/walls",   "sim/body",          "sim/laser",         "slam/paper",
+                                "slam/robust",     "slam/scan"};
   return table;
 }
 
