@@ -9,7 +9,7 @@
 namespace rubble::robot {
 
 struct ClockMapConfig {
-  double window = 90.0;       ///< so much of the past decides [s]
+  double window = 150.0;      ///< so much of the past decides [s]
   double max_drift = 300e-6;  ///< clocks of quartz differ by less [s/s]
   double resolution = 1e-3;   ///< the device cuts its time off to multiples of this [s]
   double usual_delay = 0.0;   ///< least time from the stamped moment to the arrival, where no anchor measured it [s]

@@ -38,7 +38,15 @@ struct Errors {
   double worst99;
 };
 
-Errors errors_after_a_minute(double drift, Jitter jitter, std::uint64_t seed, bool anchored) {
+/// The simulator's motor turns ten times a second of the computer's clock; a real one wanders.
+enum class Motor { Exact, Wanders };
+
+double turn_time(Device& device, Motor motor) {
+  if (motor == Motor::Exact) return kPeriod / (1.0 + device.drift);
+  return kPeriod + device.rng.gaussian(50e-6);
+}
+
+Errors errors_after_a_minute(double drift, Jitter jitter, Motor motor, std::uint64_t seed, bool anchored) {
   Device device{drift, 12.3456, Rng{seed, "device"}};
   ClockMapConfig config;
   config.usual_delay = kLeastDelay;
@@ -53,7 +61,7 @@ Errors errors_after_a_minute(double drift, Jitter jitter, std::uint64_t seed, bo
     }
   std::vector<double> errors;
   for (int turn = 0; turn < 2400; ++turn) {
-    exact += kPeriod * (1.0 + 20e-6);  // a motor keeps no whole milliseconds
+    exact += turn_time(device, motor);
     const double stamp = Device::cut(exact);
     map.add(stamp, device.host_of(exact) + (kLeastDelay + draw(device.rng, jitter)));
     if (turn >= 600) errors.push_back(map.host(stamp) - device.host_of(exact));
@@ -68,14 +76,22 @@ Errors errors_after_a_minute(double drift, Jitter jitter, std::uint64_t seed, bo
 }
 
 TEST(ClockMap, StampsAreRightAfterAMinuteOfJitterAndDrift) {
+  double worst_mean = 0.0, worst = 0.0;
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u})
     for (const double drift : {-50e-6, 0.0, 50e-6})
       for (const Jitter jitter : {Jitter::Uniform, Jitter::Exponential})
-        for (const bool anchored : {false, true}) {
-          const Errors e = errors_after_a_minute(drift, jitter, seed, anchored);
-          EXPECT_LT(std::abs(e.mean), 0.0005) << "seed " << seed << " drift " << drift << " anchored " << anchored;
-          EXPECT_LT(e.worst99, 0.0015) << "seed " << seed << " drift " << drift << " anchored " << anchored;
-        }
+        for (const Motor motor : {Motor::Exact, Motor::Wanders})
+          for (const bool anchored : {false, true}) {
+            // A part of a millisecond that never changes cannot be told from the delay: nothing is known better than
+            // half a millisecond then.
+            if (drift == 0.0 && motor == Motor::Exact) continue;
+            const Errors e = errors_after_a_minute(drift, jitter, motor, seed, anchored);
+            worst_mean = std::max(worst_mean, std::abs(e.mean));
+            worst = std::max(worst, e.worst99);
+            EXPECT_LT(std::abs(e.mean), 0.0005) << "seed " << seed << " drift " << drift << " anchored " << anchored;
+            EXPECT_LT(e.worst99, 0.0015) << "seed " << seed << " drift " << drift << " anchored " << anchored;
+          }
+  std::cout << "worst of all: mean " << worst_mean * 1e3 << " ms, 99 % below " << worst * 1e3 << " ms\n";
 }
 
 TEST(ClockMap, DriftIsFound) {
