@@ -45,6 +45,12 @@ const std::map<std::string, Folders>& wings() {
       {"robot/logs", {"robot", "robot/logs/own", "robot/logs/foreign"}},
       {"robot/logs/own", {"robot", "robot/logs"}},
       {"robot/logs/foreign", {"robot", "robot/logs", "robot/logs/own"}},
+      {"robot/drivers", {"robot"}},
+      {"robot/drivers/scip", {"robot", "robot/drivers"}},
+      {"robot/drivers/mrpt", {"robot", "robot/drivers"}},
+      {"robot/drivers/probe", {"robot", "robot/drivers", "robot/drivers/scip"}},
+      {"robot/emulators", {"robot", "robot/drivers"}},
+      {"robot/emulators/scip", {"robot", "robot/drivers", "robot/drivers/scip", "robot/emulators"}},
       {"arenas/model", {}},
       {"arenas/elements", {"arenas/model"}},
       {"arenas/truth", {"arenas/model"}},
@@ -157,6 +163,9 @@ TEST(IncludeDirection, EveryWingIsInTheTable) {
       const std::string folder = fs::relative(entry.path().parent_path(), top).generic_string();
       if (folder == room) continue;
       EXPECT_EQ(wings().count(folder), 1u) << folder;
+      if (folder != room) {
+        EXPECT_EQ(wings().count(folder), 1u) << folder;
+      }
     }
 }
 
