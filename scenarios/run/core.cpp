@@ -2,8 +2,8 @@
 
 namespace rubble::scenarios {
 
-Core::Core(const Scenario& scenario, const robot::RobotModel& model, bool explore)
-    : mapper_(scenario.mapper.make(model, scenario.seed)), levelling_(scenario.levelling) {
+Core::Core(const Scenario& scenario, const robot::RobotModel& model, bool explore, const std::string& run_folder)
+    : mapper_(scenario.mapper.make(model, {scenario.seed, run_folder})), levelling_(scenario.levelling) {
   if (explore) explorer_.emplace(model, scenario.explorer);
 }
 

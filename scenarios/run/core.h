@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "explore/explorer.h"
 #include "robot/levelling.h"
@@ -14,7 +15,8 @@ namespace rubble::scenarios {
 /// What drives a robot, whichever it is: mapper, levelling and (when asked to explore) explorer. It sees Inputs only.
 class Core {
  public:
-  Core(const Scenario& scenario, const robot::RobotModel& model, bool explore);
+  /// `run_folder`: takes what the mapper writes itself (mapper.log).
+  Core(const Scenario& scenario, const robot::RobotModel& model, bool explore, const std::string& run_folder);
 
   /// Digests one tick and decides the commands for the next.
   robot::Commands step(const robot::Inputs& inputs);

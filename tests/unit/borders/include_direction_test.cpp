@@ -56,6 +56,8 @@ const std::map<std::string, Folders>& wings() {
       {"slam/grid", {}},
       {"slam/scan", {"slam/grid"}},
       {"slam/paper", {"slam", "slam/grid", "slam/scan"}},
+      {"slam/process", {"slam", "slam/grid", "slam/scan"}},
+      {"slam/peers", {"slam", "slam/grid", "slam/scan", "slam/process"}},
       {"scoring/maps", {}},
       {"scoring/walls", {}},
       {"scoring/measures", {}},
@@ -75,9 +77,9 @@ const std::map<std::string, Folders>& wings() {
 
 /// Wings that nobody outside their room may include (tests and benchmarks apart).
 const Folders& insides() {
-  static const Folders table = {"robot/logs/own",    "sim/laser",     "sim/body",
-                                "slam/scan",         "slam/paper",    "scoring/walls",
-                                "scoring/proposals", "scoring/rooms", "scoring/alignment"};
+  static const Folders table = {"robot/logs/own", "sim/laser",        "sim/body",      "slam/scan",
+                                "slam/paper",     "slam/peers",       "scoring/walls", "scoring/proposals",
+                                "scoring/rooms",  "scoring/alignment"};
   return table;
 }
 
