@@ -8,12 +8,6 @@
 namespace rubble::sim {
 namespace {
 
-AccelerometerParameters accelerometer_parameters(const SimConfig& config) {
-  AccelerometerParameters parameters;
-  parameters.mount = config.accelerometer_mount;
-  return parameters;
-}
-
 VictimSensorParameters victim_parameters(const SimConfig& config) {
   VictimSensorParameters parameters;
   parameters.sound.fitted = config.microphones;
@@ -41,7 +35,7 @@ Rig::Rig(const arenas::Arena& arena, const robot::RobotModel& model, const SimCo
       model_(model),
       config_(config),
       laser_(arena, model, config.range_noise, config.sweep, seed),
-      accelerometer_(model, accelerometer_parameters(config), config.acceleration_noise, seed),
+      accelerometer_(model, {}, config.acceleration_noise, seed),
       victims_(arena.victims, victim_parameters(config), seed),
       odometry_clock_(model.odometry_period),
       unit_clock_(model.acceleration_period, model.acceleration_period),

@@ -65,10 +65,10 @@ void bind(Binder& b, robot::RobotModel& r, robot::LevellingConfig& levelling) {
   });
 }
 
-void bind(Binder& b, robot::LevellingConfig& c) {
-  std::string mount = c.mount == robot::AccelerometerMount::Platform ? "platform" : "body";
+void bind(Binder& b, robot::LevellingConfig& c, robot::AccelerometerMount& accelerometer) {
+  std::string mount = accelerometer == robot::AccelerometerMount::Platform ? "platform" : "body";
   b.choice("mount", mount, {"platform", "body"});
-  c.mount = mount == "platform" ? robot::AccelerometerMount::Platform : robot::AccelerometerMount::Body;
+  accelerometer = mount == "platform" ? robot::AccelerometerMount::Platform : robot::AccelerometerMount::Body;
   b.number("kp", c.kp, 0.0, 10.0);
   b.number("ki", c.ki, 0.0, 100.0);
   b.number("kd", c.kd, 0.0, 10.0);
@@ -126,7 +126,7 @@ void bind_sections(Binder& b, Scenario& s) {
   b.text("team", s.team);
   b.text("mission", s.mission);
   b.section("robot", [&](Binder& in) { bind(in, s.robot, s.levelling); });
-  b.section("levelling", [&](Binder& in) { bind(in, s.levelling); });
+  b.section("levelling", [&](Binder& in) { bind(in, s.levelling, s.robot.accelerometer_mount); });
   b.section("sim", [&](Binder& in) { bind(in, s.sim); });
   b.section("mapper", [&](Binder& in) { s.mapper.bind(in); });
   b.section("explorer", [&](Binder& in) { bind(in, s.explorer); });

@@ -89,7 +89,10 @@ class Loop {
           break;
         }
       }
+      core.finish();
     } catch (const robot::DeviceLost& lost) {
+      end.failure = end.reason = lost.what();
+    } catch (const slam::MapperLost& lost) {
       end.failure = end.reason = lost.what();
     }
     folder_.append_estimate(core.mapper().trajectory());
@@ -266,6 +269,7 @@ OccupancyGrid truth_to_score_with(const arenas::Arena& arena, const Scenario& sc
 
 RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   const auto start = Clock::now();
+  scenario.mapper.require_permission();
   const std::string yaml = arena_yaml(scenario);
   const arenas::Arena arena =
       arenas::parse_arena(yaml, scenario.arena_file.empty() ? "generated arena" : scenario.arena_file);
@@ -280,7 +284,7 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   folder.save_truth(arena, truth_to_score_with(arena, scenario));
 
   sim::SimRobot simulated(arena, scenario.robot, scenario.sim, scenario.seed);
-  Core core(scenario, scenario.robot, true);
+  Core core(scenario, scenario.robot, true, folder.path());
   RunReport report;
   report.score = empty_score();
   LoopEnd end;
@@ -309,28 +313,30 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
 
 RunReport map_log(const std::string& log, const Scenario& scenario, const RunOptions& options) {
   const auto start = Clock::now();
+  scenario.mapper.require_permission();
   robot::ReplayRobot robot(log);
   Scenario resolved = scenario;
   if (resolved.name == "map") resolved.name = "map-" + std::filesystem::path(log).stem().stem().string();
   RunFolder folder(folder_for(options, resolved), options.replace);
   folder.write("scenario.yaml", "# rubble map " + log + " (" + robot.format() + ")\n" + resolved_yaml(resolved));
   folder.write("versions.json", versions().dump(2) + "\n");
-  Core core(resolved, robot.model(), false);
+  Core core(resolved, robot.model(), false, folder.path());
   RunReport report;
   report.score = empty_score();
   Loop loop(resolved, options, folder);
   if (!robot.reference().empty()) folder.append_truth(robot.reference());
   const LoopEnd end = loop.run(
       robot, core, [&] { return robot.progress(); }, [] {});
-  if (core.mapper().counts().scans == 0 && !end.interrupted)
+  if (core.mapper().counts().scans == 0 && !end.interrupted && end.failure.empty())
     throw InputError(log + ": holds no laser scan; a log to map needs scans (and odometry)");
   folder.save_map(resolved, core.mapper(), {});
   if (!robot.reference().empty()) add_trajectory_error(report.score, core.mapper().trajectory(), robot.reference());
   add_mapper_counts(report.score, core);
-  report.end = end.interrupted    ? end.reason
-               : robot.was_torn() ? "the log is cut: its torn last frame was dropped"
-                                  : "the log is over";
+  report.end = end.interrupted || !end.failure.empty() ? end.reason
+               : robot.was_torn()                      ? "the log is cut: its torn last frame was dropped"
+                                                       : "the log is over";
   report.interrupted = end.interrupted;
+  report.failure = end.failure;
   finish(report, folder, resolved, options, end.sim_s, start);
   return report;
 }
@@ -356,14 +362,23 @@ bool starts_with_file(const std::string& whole, const std::string& beginning) {
 
 }  // namespace
 
-ReplayReport replay_run(const std::string& path, const RunOptions& options) {
-  namespace fs = std::filesystem;
-  const std::string log = path + "/log.rlog";
-  if (!fs::exists(log))
+Scenario recorded_scenario(const std::string& path, const std::vector<Override>& overrides) {
+  if (!std::filesystem::exists(path + "/log.rlog"))
     throw InputError(path + ": is not a recorded run (no log.rlog in it); give a folder that 'rubble run' wrote");
-  const Scenario scenario = load_scenario(path + "/scenario.yaml");
-  robot::ReplayRobot robot(log);
-  Core core(scenario, robot.model(), true);
+  return load_scenario(path + "/scenario.yaml", overrides);
+}
+
+ReplayReport replay_run(const std::string& path, const RunOptions& options) {
+  return replay_run(path, recorded_scenario(path), options);
+}
+
+ReplayReport replay_run(const std::string& path, const Scenario& scenario, const RunOptions& options) {
+  namespace fs = std::filesystem;
+  scenario.mapper.require_permission();
+  robot::ReplayRobot robot(path + "/log.rlog");
+  const std::string scratch = options.out.empty() ? scratch_folder() : std::string();
+  RunFolder folder(options.out.empty() ? scratch : options.out, options.replace);
+  Core core(scenario, robot.model(), true, folder.path());
   ReplayReport report;
   report.ended = fs::exists(path + "/hashes.json");
   bool last_differs = false;
@@ -377,8 +392,7 @@ ReplayReport replay_run(const std::string& path, const RunOptions& options) {
     if (core.finished()) break;
     if (options.interrupted && options.interrupted()) break;
   }
-  const std::string scratch = options.out.empty() ? scratch_folder() : std::string();
-  RunFolder folder(options.out.empty() ? scratch : options.out, options.replace);
+  core.finish();
   folder.write("scenario.yaml", resolved_yaml(scenario));
   folder.append_estimate(core.mapper().trajectory());
   folder.save_map(scenario, core.mapper(), core.victims());

@@ -57,6 +57,10 @@ struct ReplayReport {
 
 /// Runs mapper, levelling and explorer again on a recorded run and compares trajectory, map and commands bit by bit.
 ReplayReport replay_run(const std::string& folder, const RunOptions& options);
+/// The same with a scenario other than the recorded one.
+ReplayReport replay_run(const std::string& folder, const Scenario& scenario, const RunOptions& options);
+/// The scenario of a recorded run. Throws InputError for a folder that is none.
+Scenario recorded_scenario(const std::string& folder, const std::vector<Override>& overrides = {});
 
 /// The keys of score.json that depend on the machine, not on the seed.
 bool is_timing_key(const std::string& key);

@@ -111,7 +111,7 @@ void MrptMapper::take_grid() {
   std::vector<std::uint16_t> seen(frame.size(), 0), occupied(frame.size(), 0);
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x) {
-      const double p_occ = 1.0 - static_cast<double>(from.getCell_nocheck(x, y));
+      const double p_occ = 1.0 - static_cast<double>(from.getCell(x, y));
       if (std::abs(p_occ - 0.5) < kNothingKnown) continue;
       seen[frame.index({x, y})] = kCounts;
       occupied[frame.index({x, y})] = static_cast<std::uint16_t>(std::lround(p_occ * kCounts));

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "base/planar.h"
+#include "base/text/number_text.h"
 #include "base/text/words.h"
 #include "base/yaml/binder.h"
 #include "slam/process/request.h"
@@ -14,17 +15,17 @@ namespace {
 
 using mrpt::math::TPose2D;
 
-constexpr int kFirstCells = 2;        ///< of the map before the first one has come
-constexpr double kResolution = 0.05;  ///< of that map [m]
-constexpr double kRemembered = 10.0;  ///< so long poses of ticks are kept [s]
-constexpr double kLastWords = 4096;   ///< the end of the log that is looked at [bytes]
+constexpr int kFirstCells = 2;               ///< of the map before the first one has come
+constexpr double kResolution = 0.05;         ///< of that map [m]
+constexpr double kRemembered = 10.0;         ///< so long poses of ticks are kept [s]
+constexpr std::streamoff kLastWords = 4096;  ///< the end of the log that is looked at [bytes]
 
 /// The last line of a log that says anything: of a Python program, what was wrong.
 std::string last_words(const std::string& log) {
   std::ifstream in(log, std::ios::binary | std::ios::ate);
   if (!in) return "";
   const auto size = in.tellg();
-  in.seekg(size > kLastWords ? size - static_cast<std::streamoff>(kLastWords) : std::streampos(0));
+  in.seekg(std::max<std::streamoff>(0, std::streamoff(size) - kLastWords));
   std::string line, last;
   while (std::getline(in, line))
     if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;

@@ -33,6 +33,7 @@ void each_field(Model& m, Field&& field) {
   field("robot.tick_s", m.tick);
   field("robot.has_levelling_unit", m.has_levelling_unit);
   field("robot.max_aim_rad", m.max_aim);
+  field("robot.accelerometer_on_body", m.accelerometer_mount);
   field("laser.name", m.laser.name);
   field("laser.x_m", m.T_base_laser.x);
   field("laser.y_m", m.T_base_laser.y);
@@ -53,11 +54,15 @@ void put(std::string& text, const std::string& value) { text += ' ' + one_line(v
 void put(std::string& text, double value) { append_number(text, value); }
 void put(std::string& text, int value) { append_number(text, static_cast<std::int64_t>(value)); }
 void put(std::string& text, bool value) { text += value ? " 1" : " 0"; }
+void put(std::string& text, robot::AccelerometerMount value) { put(text, value == robot::AccelerometerMount::Body); }
 
 void take(Words& words, std::string& value) { value = words.rest(); }
 void take(Words& words, double& value) { value = words.real(); }
 void take(Words& words, int& value) { value = static_cast<int>(words.whole(0, std::numeric_limits<int>::max())); }
 void take(Words& words, bool& value) { value = words.whole(0, 1) != 0; }
+void take(Words& words, robot::AccelerometerMount& value) {
+  value = words.whole(0, 1) != 0 ? robot::AccelerometerMount::Body : robot::AccelerometerMount::Platform;
+}
 
 void append_stamp(std::string& text, Stamp stamp) { append_number(text, stamp.ns); }
 Stamp take_stamp(Words& words) { return {words.whole(-kAnyStamp, kAnyStamp)}; }

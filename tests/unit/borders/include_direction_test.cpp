@@ -151,7 +151,8 @@ TEST(IncludeDirection, EveryWingIsInTheTable) {
     for (const auto& entry : fs::recursive_directory_iterator(top / room)) {
       if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
       const std::string folder = fs::relative(entry.path().parent_path(), top).generic_string();
-      if (folder != room) EXPECT_EQ(wings().count(folder), 1u) << folder;
+      if (folder == room) continue;
+      EXPECT_EQ(wings().count(folder), 1u) << folder;
     }
 }
 
