@@ -53,7 +53,8 @@ int submit(const BatchArguments& arguments, const Sweep& sweep, const std::vecto
   plan.workers = arguments.workers > 0 ? arguments.workers : 1;
   plan.record = arguments.record;
   plan.retry = arguments.retry;
-  plan.overrides = arguments.overrides;
+  plan.overrides = with_mapper(arguments.mapper, arguments.overrides);
+  plan.allow_commands = arguments.mapper.allow_commands || !arguments.mapper.command.empty();
   plan.options = arguments.slurm_options;
   const SlurmScripts paths = write_slurm(plan);
   save_note(sweep, jobs_asked, plan.out);
@@ -82,7 +83,9 @@ int batch(const BatchArguments& arguments) {
   const Sweep sweep = load_sweep(find_sweep(arguments.sweep), shipped_folder());
   BatchOptions options;
   options.code = code_version();
-  const std::vector<Job> jobs = expand(sweep, options.code, arguments.overrides);
+  const auto overrides = with_mapper(arguments.mapper, arguments.overrides);
+  std::vector<Job> jobs = expand(sweep, options.code, overrides);
+  for (Job& job : jobs) permit_command(arguments.mapper, overrides, job.scenario);
   options.out = arguments.out.empty() ? "runs/" + sweep.name : arguments.out;
   if (arguments.slurm) return submit(arguments, sweep, jobs, options.out);
   const bool whole = arguments.shard.count == 1;

@@ -24,6 +24,7 @@ struct BatchArguments {
   bool record = false;
   std::string save_baseline;
   std::vector<scenarios::Override> overrides;
+  MapperChoice mapper;
   bool slurm = false;
   bool submit = true;
   int shards = 8;
@@ -55,6 +56,7 @@ struct CheckArguments {
   std::string junit;
   int workers = 0;
   std::vector<scenarios::Override> overrides;
+  MapperChoice mapper;
 };
 
 int batch(const BatchArguments& arguments);

@@ -34,6 +34,11 @@ void add_sets(CLI::App& command, std::vector<std::string>& sets) {
       ->take_all();
 }
 
+void add_mapper(CLI::App& command, MapperChoice& choice) {
+  command.add_option("--mapper-command", choice.command, "Map every run with this program (docs/mapper_protocol.md)");
+  command.add_flag("--allow-commands", choice.allow_commands, "Let commands that stand in the files run");
+}
+
 void add_workers(CLI::App& command, int& workers) {
   command.add_option("--workers", workers, "Processes (default: one a core)")->check(CLI::Range(1, 4096));
 }
@@ -74,6 +79,7 @@ void BatchCommands::Parsed::add_batch(CLI::App& app) {
   batch->add_flag("--record", a.record, "Keep the log of each run");
   batch->add_option("--save-baseline", a.save_baseline, "Write medians and tolerances for 'rubble check'");
   add_sets(*batch, sets);
+  add_mapper(*batch, a.mapper);
   CLI::Option* slurm = batch->add_flag("--slurm", a.slurm, "Submit to Slurm: an array job and a job that merges");
   batch->add_option("--shards", a.shards, "Tasks of the array job (default: 8)")
       ->check(CLI::Range(1, 100000))
@@ -131,6 +137,7 @@ void BatchCommands::Parsed::add_check(CLI::App& app) {
   check->add_option("--junit", a.junit, "Write JUnit XML");
   add_workers(*check, a.workers);
   add_sets(*check, sets);
+  add_mapper(*check, a.mapper);
   check->footer(
       "Prints GitHub annotations when GITHUB_ACTIONS is true, appends to GITHUB_STEP_SUMMARY when that is set.\n"
       "Examples:\n  rubble batch my.yaml --save-baseline my.baseline.json\n  rubble check my.yaml --junit check.xml");

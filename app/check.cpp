@@ -52,7 +52,9 @@ int check(const CheckArguments& arguments) {
   const Baseline baseline = load_baseline(baseline_path);
   BatchOptions options;
   options.code = code_version();
-  const std::vector<Job> jobs = expand(sweep, options.code, arguments.overrides);
+  const auto overrides = with_mapper(arguments.mapper, arguments.overrides);
+  std::vector<Job> jobs = expand(sweep, options.code, overrides);
+  for (Job& job : jobs) permit_command(arguments.mapper, overrides, job.scenario);
   require_fit(baseline, planned(jobs));
   options.out = arguments.out.empty() ? "runs/check-" + sweep.name : arguments.out;
   options.workers = arguments.workers > 0 ? arguments.workers : usable_cores();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/mapper_choice.h"
 #include "scenarios/config/scenario.h"
 
 namespace rubble::app {
@@ -16,6 +17,7 @@ enum Exit : int { kOk = 0, kBroken = 1, kUsage = 2, kBadInput = 3, kFailed = 4, 
 struct CommonOptions {
   std::string out;
   bool force = false;
+  MapperChoice mapper;
   std::vector<scenarios::Override> overrides;
 };
 
@@ -51,6 +53,7 @@ struct ScoreArguments {
 
 struct ReplayArguments {
   std::string run;
+  MapperChoice mapper;
   std::string out;
 };
 

@@ -11,6 +11,7 @@
 #include "app/commands.h"
 #include "base/error.h"
 #include "scenarios/run/run.h"
+#include "slam/process/mapper_server.h"
 
 namespace rubble::app {
 namespace {
@@ -39,9 +40,16 @@ CLI::Validator whole_number() {
   return CLI::Validator(check, "");
 }
 
+void add_mapper(CLI::App& command, MapperChoice& choice) {
+  command.add_option("--mapper-command", choice.command,
+                     "Map with this program (docs/mapper_protocol.md): --mapper-command \"python3 my_slam.py\"");
+  command.add_flag("--allow-commands", choice.allow_commands, "Let a command that stands in a file run");
+}
+
 void add_common(CLI::App& command, CommonOptions& common, std::vector<std::string>& sets) {
   command.add_option("--out", common.out, "Folder for the results (default: runs/NAME-seedN-NUMBER)");
   command.add_flag("--force", common.force, "Replace an existing run folder");
+  add_mapper(command, common.mapper);
   command.add_option("--set", sets, "Override one value: --set key.key=value (repeatable)")
       ->allow_extra_args(false)
       ->take_all();
@@ -159,6 +167,7 @@ int dispatch(int argc, char** argv) {
       app.add_subcommand("replay", "Run the mapper again on a recorded run and compare bit by bit");
   replay_command->add_option("run", replay_arguments.run, "Run folder")->required();
   replay_command->add_option("--out", replay_arguments.out, "Keep the re-made artefacts in this folder");
+  add_mapper(*replay_command, replay_arguments.mapper);
   replay_command->footer("Example:\n  rubble replay runs/latest");
 
   ExportArguments export_arguments;
@@ -259,4 +268,7 @@ int guarded(int argc, char** argv) {
 }  // namespace
 }  // namespace rubble::app
 
-int main(int argc, char** argv) { return rubble::app::guarded(argc, argv); }
+int main(int argc, char** argv) {
+  if (const auto code = rubble::slam::serve_mapper_if_asked(argc, argv)) return *code;
+  return rubble::app::guarded(argc, argv);
+}

@@ -11,7 +11,10 @@ namespace rubble::app {
 
 int replay(const ReplayArguments& arguments) {
   const auto options = terminal_options(arguments.out, false);
-  const scenarios::ReplayReport report = scenarios::replay_run(arguments.run, options);
+  const auto overrides = with_mapper(arguments.mapper, {});
+  scenarios::Scenario scenario = scenarios::recorded_scenario(arguments.run, overrides);
+  permit_command(arguments.mapper, overrides, scenario);
+  const scenarios::ReplayReport report = scenarios::replay_run(arguments.run, scenario, options);
   end_progress();
   if (interrupted()) return kInterrupted;
   for (const auto& artefact : report.artefacts)

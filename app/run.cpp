@@ -25,7 +25,9 @@ std::string find_scenario(const std::string& name) {
 int run(const RunArguments& arguments) {
   auto overrides = arguments.common.overrides;
   if (arguments.seed) overrides.emplace_back("seed", std::to_string(*arguments.seed));
-  const scenarios::Scenario scenario = scenarios::load_scenario(find_scenario(arguments.scenario), overrides);
+  overrides = with_mapper(arguments.common.mapper, overrides);
+  scenarios::Scenario scenario = scenarios::load_scenario(find_scenario(arguments.scenario), overrides);
+  permit_command(arguments.common.mapper, overrides, scenario);
   const auto options = terminal_options(arguments.common.out, arguments.common.force);
   for (const std::string& note : scenarios::arena_notes(scenario)) std::fprintf(stderr, "rubble: %s\n", note.c_str());
   const scenarios::RunReport report = scenarios::run_scenario(scenario, options);
@@ -37,7 +39,9 @@ int run(const RunArguments& arguments) {
 int map(const MapArguments& arguments) {
   auto overrides = arguments.common.overrides;
   if (arguments.seed) overrides.emplace_back("seed", std::to_string(*arguments.seed));
-  const scenarios::Scenario scenario = scenarios::default_scenario(overrides);
+  overrides = with_mapper(arguments.common.mapper, overrides);
+  scenarios::Scenario scenario = scenarios::default_scenario(overrides);
+  permit_command(arguments.common.mapper, overrides, scenario);
   const auto options = terminal_options(arguments.common.out, arguments.common.force);
   const scenarios::RunReport report = scenarios::map_log(recorded_log(arguments.log), scenario, options);
   end_progress();

@@ -93,6 +93,7 @@ void print_summary(const scenarios::RunReport& report) {
 }
 
 int exit_code(const scenarios::RunReport& report) {
+  if (!report.failure.empty()) std::fprintf(stderr, "rubble: %s\n", report.failure.c_str());
   if (report.interrupted) return kInterrupted;
   if (!report.failure.empty()) return kFailed;
   return report.broken.empty() ? kOk : kBroken;

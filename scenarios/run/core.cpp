@@ -2,8 +2,9 @@
 
 namespace rubble::scenarios {
 
-Core::Core(const Scenario& scenario, const robot::RobotModel& model, bool explore)
-    : mapper_(scenario.mapper.make(model, scenario.seed)), levelling_(scenario.levelling, model.accelerometer_mount) {
+Core::Core(const Scenario& scenario, const robot::RobotModel& model, bool explore, const std::string& run_folder)
+    : mapper_(scenario.mapper.make(model, {scenario.seed, run_folder})),
+      levelling_(scenario.levelling, model.accelerometer_mount) {
   if (explore) explorer_ = scenario.explorer.make(model);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "explore/explorer.h"
 #include "robot/levelling.h"
@@ -13,7 +14,8 @@ namespace rubble::scenarios {
 /// What drives a robot, whichever it is: mapper, levelling and (when asked to explore) explorer. It sees Inputs only.
 class Core {
  public:
-  Core(const Scenario& scenario, const robot::RobotModel& model, bool explore);
+  /// `run_folder`: takes what the mapper writes itself (mapper.log).
+  Core(const Scenario& scenario, const robot::RobotModel& model, bool explore, const std::string& run_folder);
 
   /// Digests one tick and decides the commands for the next.
   robot::Commands step(const robot::Inputs& inputs);

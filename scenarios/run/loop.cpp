@@ -25,11 +25,15 @@ Loop::Loop(const Scenario& scenario, RunFolder& folder, LoopHooks hooks)
 LoopEnd Loop::run(robot::Robot& robot, Core& core) {
   LoopEnd end{"the robot's time is over", "", false, 0.0};
   try {
-    drive(robot, core, end);
-  } catch (const robot::DeviceLost& lost) {
+    try {
+      drive(robot, core, end);
+    } catch (const robot::DeviceLost& lost) {
+      end.failure = end.reason = lost.what();
+    }
+    core.finish();
+  } catch (const slam::MapperLost& lost) {
     end.failure = end.reason = lost.what();
   }
-  core.finish();
   if (hooks_.each_second) hooks_.each_second();
   save_all(core);
   return end;

@@ -30,7 +30,7 @@ struct LoopHooks {
 /// How a loop ended.
 struct LoopEnd {
   std::string reason;
-  std::string failure;  ///< the robot was lost
+  std::string failure;  ///< the robot or the mapper was lost
   bool interrupted = false;
   double sim_s = 0.0;  ///< time covered [s]
 };

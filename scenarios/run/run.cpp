@@ -193,6 +193,7 @@ OccupancyGrid truth_to_score_with(const arenas::Arena& arena, const Scenario& sc
 
 RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   const auto start = Clock::now();
+  scenario.mapper.require_permission();
   const std::string yaml = arena_yaml(scenario);
   const arenas::Arena arena =
       arenas::parse_arena(yaml, scenario.arena_file.empty() ? "generated arena" : scenario.arena_file);
@@ -207,7 +208,7 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   folder.save_truth(arena, truth_to_score_with(arena, scenario));
 
   sim::SimRobot simulated(arena, scenario.robot, scenario.sim, scenario.seed);
-  Core core(scenario, scenario.robot, true);
+  Core core(scenario, scenario.robot, true, folder.path());
   RunReport report;
   report.score = empty_score();
   LoopHooks hooks = hooks_of(options);
@@ -234,27 +235,29 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
 
 RunReport map_log(const std::string& log, const Scenario& scenario, const RunOptions& options) {
   const auto start = Clock::now();
+  scenario.mapper.require_permission();
   robot::ReplayRobot robot(log);
   Scenario resolved = scenario;
   if (resolved.name == "map") resolved.name = "map-" + std::filesystem::path(log).stem().stem().string();
   RunFolder folder(folder_for(options, resolved), options.replace);
   folder.write("scenario.yaml", "# rubble map " + log + " (" + robot.format() + ")\n" + resolved_yaml(resolved));
   folder.write("versions.json", versions().dump(2) + "\n");
-  Core core(resolved, robot.model(), false);
+  Core core(resolved, robot.model(), false, folder.path());
   RunReport report;
   report.score = empty_score();
   if (!robot.reference().empty()) folder.append_truth(robot.reference());
   LoopHooks hooks = hooks_of(options);
   hooks.share = [&] { return robot.progress(); };
   const LoopEnd end = Loop(resolved, folder, hooks).run(robot, core);
-  if (core.mapper().counts().scans == 0 && !end.interrupted)
+  if (core.mapper().counts().scans == 0 && !end.interrupted && end.failure.empty())
     throw InputError(log + ": holds no laser scan; a log to map needs scans (and odometry)");
   if (!robot.reference().empty()) add_trajectory_error(report.score, core.mapper().trajectory(), robot.reference());
   add_mapper_counts(report.score, core);
-  report.end = end.interrupted    ? end.reason
-               : robot.was_torn() ? "the log is cut: its torn last frame was dropped"
-                                  : "the log is over";
+  report.end = end.interrupted || !end.failure.empty() ? end.reason
+               : robot.was_torn()                      ? "the log is cut: its torn last frame was dropped"
+                                                       : "the log is over";
   report.interrupted = end.interrupted;
+  report.failure = end.failure;
   finish(report, folder, resolved, options, end.sim_s, start);
   return report;
 }

@@ -67,6 +67,8 @@ const std::map<std::string, Folders>& wings() {
       {"explore/caution", {}},
       {"explore/search", {"explore", "explore/plan"}},
       {"explore/paper", {"explore", "explore/plan", "explore/caution", "explore/search"}},
+      {"slam/process", {"slam", "slam/grid", "slam/scan"}},
+      {"slam/peers", {"slam", "slam/grid", "slam/scan", "slam/process"}},
       {"scoring/maps", {}},
       {"scoring/walls", {}},
       {"scoring/measures", {}},
@@ -89,7 +91,7 @@ const Folders& insides() {
   static const Folders table = {"explore/caution", "explore/paper",     "explore/plan",      "explore/search",
                                 "robot/logs/own",  "scoring/alignment", "scoring/proposals", "scoring/rooms",
                                 "scoring/walls",   "sim/body",          "sim/laser",         "slam/paper",
-                                "slam/robust",     "slam/scan"};
+                                "slam/peers",      "slam/robust",       "slam/scan"};
   return table;
 }
 
