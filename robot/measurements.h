@@ -19,6 +19,9 @@ struct LaserScan {
   double range_min = 0.0;     ///< [m]
   double range_max = 0.0;     ///< [m]
   std::vector<float> ranges;  ///< [m]; +inf: nothing in range (a miss), NaN: no measurement (unknown)
+  /// What the scanner itself said of each beam that it could not measure (of a Hokuyo the number below 20 that stands
+  /// for the range); 0xFF: it measured. Empty: unknown.
+  std::vector<std::uint8_t> codes;
 
   double bearing(std::size_t beam) const { return angle_min + static_cast<double>(beam) * angle_step; }
   Stamp beam_stamp(std::size_t beam) const { return stamp + static_cast<double>(beam) * beam_period; }
