@@ -6,9 +6,9 @@
 namespace rubble::robot {
 namespace {
 
-constexpr double kGap = 1.0;      ///< after so long a silence the cycle starts anew [s]
+constexpr double kGap = 1.0;        ///< after so long a silence the cycle starts anew [s]
 constexpr double kLateShare = 0.1;  ///< of the cycle: much later than foretold
-constexpr int kPatience = 20;     ///< so many in a row: the device's cycle has shifted
+constexpr int kPatience = 20;       ///< so many in a row: the device's cycle has shifted
 
 }  // namespace
 

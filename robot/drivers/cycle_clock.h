@@ -4,8 +4,8 @@
 
 namespace rubble::robot {
 
-/// Gives stamps to reports that carry no time of their own but leave the device in a steady cycle: the earliest arrivals
-/// are believed, later ones were held up on their way. Drift of up to kSlew per cycle is followed.
+/// Gives stamps to reports that carry no time of their own but leave the device in a steady cycle: the earliest
+/// arrivals are believed, later ones were held up on their way. Drift of up to kSlew per cycle is followed.
 class CycleClock {
  public:
   static constexpr double kSlew = 0.2e-3;  ///< [s]

@@ -12,12 +12,12 @@ namespace {
 
 using arcos::command;
 
-constexpr double kReply = 0.5;           ///< an answer comes within this time [s]
-constexpr int kTries = 3;                ///< questions before the next bit rate
-constexpr double kConfigReply = 1.0;     ///< [s]
-constexpr double kSpacing = 0.004;       ///< the firmware wants so much between two commands [s]
-constexpr double kRefresh = 0.2;         ///< set points are sent again [s]; the firmware forgets them after 2 s
-constexpr double kAskMotors = 0.5;       ///< [s]
+constexpr double kReply = 0.5;        ///< an answer comes within this time [s]
+constexpr int kTries = 3;             ///< questions before the next bit rate
+constexpr double kConfigReply = 1.0;  ///< [s]
+constexpr double kSpacing = 0.004;    ///< the firmware wants so much between two commands [s]
+constexpr double kRefresh = 0.2;      ///< set points are sent again [s]; the firmware forgets them after 2 s
+constexpr double kAskMotors = 0.5;    ///< [s]
 constexpr double kHeadingUnit = 2.0 * kPi / 4096;  // [rad]
 constexpr double kMillimetre = 1e-3;
 /// Wheel speed difference to turn rate, per robot: half the effective track (parameter files of ARIA).
@@ -60,10 +60,14 @@ void Pioneer::ask(Stamp now) {
   since_ = now;
   ++tries_;
   switch (step_) {
-    case Step::Sync0: return send(command(arcos::kSync0));
-    case Step::Sync1: return send(command(arcos::kSync1));
-    case Step::Sync2: return send(command(arcos::kSync2));
-    default: return;
+    case Step::Sync0:
+      return send(command(arcos::kSync0));
+    case Step::Sync1:
+      return send(command(arcos::kSync1));
+    case Step::Sync2:
+      return send(command(arcos::kSync2));
+    default:
+      return;
   }
 }
 
@@ -78,7 +82,8 @@ void Pioneer::try_next_rate(Stamp now) {
 
 void Pioneer::advance(Stamp now) {
   switch (step_) {
-    case Step::Closed: return;
+    case Step::Closed:
+      return;
     case Step::Sync0:
     case Step::Sync1:
     case Step::Sync2:
@@ -93,7 +98,8 @@ void Pioneer::advance(Stamp now) {
     case Step::Opening:
       if (configured_ || now - since_ >= kConfigReply) return go(Step::Running, now);
       return;
-    case Step::Running: break;
+    case Step::Running:
+      break;
   }
   const Stamp heard = last_report_ == Stamp::never() ? since_ : last_report_;
   if (now - heard > settings_.silence) {
@@ -188,10 +194,10 @@ void Pioneer::follow(const arcos::StandardInformation& report, Stamp stamp) {
     double ahead = std::cos(before) * dx + std::sin(before) * dy;
     double aside = -std::sin(before) * dx + std::cos(before) * dy;
     double turn = dphi;
-    const double v = 0.5 * kMillimetre * std::max(std::abs(report.left + report.right),
-                                                  std::abs(information_.left + information_.right));
-    const double w = kMillimetre / (2.0 * half_track) * std::max(std::abs(report.right - report.left),
-                                                                 std::abs(information_.right - information_.left));
+    const double v = 0.5 * kMillimetre *
+                     std::max(std::abs(report.left + report.right), std::abs(information_.left + information_.right));
+    const double w = kMillimetre / (2.0 * half_track) *
+                     std::max(std::abs(report.right - report.left), std::abs(information_.right - information_.left));
     const double farthest = 0.03 + 1.5 * v * dt + 0.5 * settings_.max_accel * dt * dt;
     const double widest = deg_to_rad(3.0) + 1.5 * w * dt + 0.5 * settings_.max_turn_accel * dt * dt;
     if (length(dx, dy) > farthest || std::abs(turn) > widest) {
@@ -284,13 +290,18 @@ Stamp Pioneer::deadline() const {
 std::string Pioneer::state() const {
   const std::string rate = serial_ ? " at " + std::to_string(baud()) + " baud" : "";
   switch (step_) {
-    case Step::Closed: return "closed";
+    case Step::Closed:
+      return "closed";
     case Step::Sync0:
     case Step::Sync1:
-    case Step::Sync2: return "asks who is there" + rate;
-    case Step::Closing: return "closes an old connection" + rate;
-    case Step::Opening: return "opens " + identity_.subclass;
-    case Step::Running: break;
+    case Step::Sync2:
+      return "asks who is there" + rate;
+    case Step::Closing:
+      return "closes an old connection" + rate;
+    case Step::Opening:
+      return "opens " + identity_.subclass;
+    case Step::Running:
+      break;
   }
   return ready() ? identity_.subclass + " reports" : "waits for the first report of " + identity_.subclass;
 }

@@ -20,14 +20,14 @@ namespace rubble::robot {
 /// How the base is driven and its dead reckoning read.
 struct PioneerSettings {
   std::vector<int> bauds{9600, 38400, 19200, 115200, 57600};  ///< tried in turn on a serial line
-  double max_v = 0.7;                         ///< no command exceeds it [m/s]
-  double max_w = deg_to_rad(100.0);           ///< [rad/s]
-  double max_accel = 0.3;                     ///< [m/s^2]
-  double max_turn_accel = deg_to_rad(100.0);  ///< [rad/s^2]
-  double distance_scale = 1.0;                ///< true distance per reckoned distance
-  double turn_scale = 1.0;                    ///< true turn per reckoned turn
-  double delay = 0.0;                         ///< age of a report when its first byte leaves the robot [s]
-  double silence = 1.0;                       ///< without reports for so long the connection is made anew [s]
+  double max_v = 0.7;                                         ///< no command exceeds it [m/s]
+  double max_w = deg_to_rad(100.0);                           ///< [rad/s]
+  double max_accel = 0.3;                                     ///< [m/s^2]
+  double max_turn_accel = deg_to_rad(100.0);                  ///< [rad/s^2]
+  double distance_scale = 1.0;                                ///< true distance per reckoned distance
+  double turn_scale = 1.0;                                    ///< true turn per reckoned turn
+  double delay = 0.0;    ///< age of a report when its first byte leaves the robot [s]
+  double silence = 1.0;  ///< without reports for so long the connection is made anew [s]
 };
 
 /// Client of ARCOS and its kin, the firmware of Pioneer robots.

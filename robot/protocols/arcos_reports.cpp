@@ -24,11 +24,11 @@ void walk(Walk& w, Configuration& c) {
   w.fixed(500);  // most of the motors' pulse width
   w.text(c.name);
   w.byte(c.cycle_ms);
-  w.byte(0);     // host rate: 9600
-  w.byte(0);     // auxiliary rate
-  w.fixed(0);    // gripper
-  w.fixed(0);    // front sonar
-  w.byte(0);     // rear sonar
+  w.byte(0);   // host rate: 9600
+  w.byte(0);   // auxiliary rate
+  w.fixed(0);  // gripper
+  w.fixed(0);  // front sonar
+  w.byte(0);   // rear sonar
   w.word(c.low_battery);
   w.word(c.rev_count);
   w.word(c.watchdog_ms);

@@ -27,14 +27,14 @@ constexpr int kRightStall = 1 << 8;
 /// The standard server information packet, sent every cycle (Pioneer 3 operations manual, table of SIP contents).
 struct StandardInformation {
   bool moving = false;
-  std::uint16_t x = 0;      ///< dead reckoning [mm], rolls over
-  std::uint16_t y = 0;      ///< [mm], rolls over
-  std::int16_t heading = 0; ///< [4096ths of a turn], counter-clockwise
-  std::int16_t left = 0;    ///< wheel speed [mm/s]
-  std::int16_t right = 0;   ///< [mm/s]
-  double battery = 12.0;    ///< [V]
-  int stall = 0;            ///< bit 0 left, bit 8 right motor; the others are bumpers
-  std::int16_t control = 0; ///< set point of the heading servo [4096ths of a turn]
+  std::uint16_t x = 0;       ///< dead reckoning [mm], rolls over
+  std::uint16_t y = 0;       ///< [mm], rolls over
+  std::int16_t heading = 0;  ///< [4096ths of a turn], counter-clockwise
+  std::int16_t left = 0;     ///< wheel speed [mm/s]
+  std::int16_t right = 0;    ///< [mm/s]
+  double battery = 12.0;     ///< [V]
+  int stall = 0;             ///< bit 0 left, bit 8 right motor; the others are bumpers
+  std::int16_t control = 0;  ///< set point of the heading servo [4096ths of a turn]
   int flags = 0;
   std::vector<std::pair<int, int>> sonar;  ///< number and range [mm]
   std::optional<double> turn_rate;         ///< [deg/s], in steps of 0.1; older firmware does not send it
@@ -61,10 +61,10 @@ struct Configuration {
   std::string serial = "SIM";
   std::string name = "rubble";
   std::string firmware = "S.0";
-  int top_turn_rate = 300;     ///< [deg/s]
-  int top_speed = 1200;        ///< [mm/s]
-  int top_turn_accel = 300;    ///< [deg/s2]
-  int top_accel = 2000;        ///< [mm/s2]
+  int top_turn_rate = 300;   ///< [deg/s]
+  int top_speed = 1200;      ///< [mm/s]
+  int top_turn_accel = 300;  ///< [deg/s2]
+  int top_accel = 2000;      ///< [mm/s2]
   int cycle_ms = 100;
   int watchdog_ms = 2000;
   int low_battery = 115;       ///< [0.1 V]

@@ -65,7 +65,8 @@ std::string levelling_line(std::string_view body) {
 
 void LevellingLines::feed(std::string_view bytes) {
   waiting_.append(bytes);
-  if (waiting_.size() > 64 * kLongestLine && waiting_.find('\n') == std::string::npos) waiting_.clear();  // not our device
+  if (waiting_.size() > 64 * kLongestLine && waiting_.find('\n') == std::string::npos)
+    waiting_.clear();  // not our device
 }
 
 std::optional<std::vector<std::string>> LevellingLines::next() {

@@ -44,13 +44,13 @@ std::optional<LevellingIdentity> parse_identity(const std::vector<std::string>& 
 /// `$L,1,...`: one measurement.
 struct LevellingReport {
   static constexpr int kServosOn = 1, kSettled = 2, kWatchdog = 4, kSensorFault = 8, kClipped = 16;
-  int sequence = 0;          ///< mod 65536
-  std::uint32_t time_us = 0; ///< the unit's clock in the middle of the measurement, mod 2^32
-  long t1x = 0;              ///< high time, forward axis [ticks]; may be a sum over several periods
-  long t1y = 0;              ///< left axis
-  long t2 = 1;               ///< period, summed likewise
-  int pitch_us = 1500;       ///< pulse being output; longer: nose up
-  int roll_us = 1500;        ///< longer: left side up
+  int sequence = 0;           ///< mod 65536
+  std::uint32_t time_us = 0;  ///< the unit's clock in the middle of the measurement, mod 2^32
+  long t1x = 0;               ///< high time, forward axis [ticks]; may be a sum over several periods
+  long t1y = 0;               ///< left axis
+  long t2 = 1;                ///< period, summed likewise
+  int pitch_us = 1500;        ///< pulse being output; longer: nose up
+  int roll_us = 1500;         ///< longer: left side up
   int flags = 0;
 };
 std::string body(const LevellingReport& report);
