@@ -8,7 +8,7 @@ namespace rubble::robot {
 /// arrivals are believed, later ones were held up on their way. Drift of up to kSlew per cycle is followed.
 class CycleClock {
  public:
-  static constexpr double kSlew = 0.2e-3;  ///< [s]
+  static constexpr double kSlew = 0.05e-3;  ///< [s]
 
   /// The cycle the device says it has [s]; 0: unknown, arrivals count as they are.
   void set_cycle(double cycle) { cycle_ = cycle; }
