@@ -9,8 +9,9 @@ namespace {
 
 constexpr double kGravity = 9.80665;  ///< [m/s^2]
 /// A port that is opened may reset the controller, which then takes up to two seconds.
-constexpr double kAsk = 0.5;      ///< [s]
-constexpr double kRefresh = 0.1;  ///< of the servo pulses: well within the unit's watchdog [s]
+constexpr double kAsk = 0.5;           ///< [s]
+constexpr double kReportBytes = 50.0;  ///< of a report on the line
+constexpr double kRefresh = 0.1;       ///< of the servo pulses: well within the unit's watchdog [s]
 
 double specific_force(long t1, long t2, const AxisCalibration& axis) {
   const double duty = static_cast<double>(t1) / static_cast<double>(t2);
@@ -23,9 +24,10 @@ double angle(int pulse_us, const ServoCalibration& servo) {
 
 }  // namespace
 
-void LevellingUnit::opened(Stamp now, bool /*serial*/) {
+void LevellingUnit::opened(Stamp now, bool serial) {
+  serial_ = serial;
   lines_.reset();
-  clock_.reset();
+  restart_clock();
   identified_ = false;
   last_report_ = Stamp::never();
   sequence_ = -1;
@@ -56,8 +58,7 @@ void LevellingUnit::digest(const std::vector<std::string>& fields, Stamp now) {
     // Also when it was reset on its own: all settings are gone then.
     identity_ = *identity;
     identified_ = true;
-    clock_.reset();
-    clock_.set_cycle(1.0 / settings_.rate);
+    restart_clock();
     output_ += levelling_line("R," + std::to_string(settings_.rate));
     output_ += levelling_line("W," + std::to_string(settings_.watchdog_ms));
     output_ += levelling_line("E,1");
@@ -71,12 +72,32 @@ void LevellingUnit::follow(const LevellingReport& report, Stamp now) {
   sequence_ = report.sequence;
   flags_ = report.flags;
   last_report_ = now;
-  const Stamp stamp = clock_.stamp(now - settings_.delay);
+  const Stamp stamp = stamp_of(report, now);
   if (!sensor_fault()) {
     accelerations_.push_back({stamp, specific_force(report.t1x, report.t2, settings_.x),
                               specific_force(report.t1y, report.t2, settings_.y)});
   }
   aims_.push_back({stamp, angle(report.pitch_us, settings_.pitch), angle(report.roll_us, settings_.roll)});
+}
+
+void LevellingUnit::restart_clock() {
+  ClockMapConfig config;
+  config.resolution = 2e-6;
+  config.usual_delay = settings_.delay + (serial_ ? kReportBytes * 10.0 / baud() : 0.0);
+  clock_ = ClockMap(config);
+  counter_.clear();
+}
+
+/// The end of the measurement, by the unit's own clock: it tells the middle, and the sums how long it took.
+Stamp LevellingUnit::stamp_of(const LevellingReport& report, Stamp now) {
+  const WrappingClock::Reading reading = counter_.read(report.time_us >> 1, now);
+  if (reading.restarted) restart_clock();
+  const double end = reading.time + 0.5 * static_cast<double>(report.t2) / identity_.tick_hz;
+  clock_.add(end, now);
+  Stamp stamp = std::min(clock_.host(end), now);
+  if (last_stamp_ != Stamp::never() && stamp <= last_stamp_) stamp = {last_stamp_.ns + 1};
+  last_stamp_ = stamp;
+  return stamp;
 }
 
 void LevellingUnit::aim(const LaserAim& aim) {

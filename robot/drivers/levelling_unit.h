@@ -1,12 +1,11 @@
 #pragma once
 
-#include <deque>
 #include <string>
 #include <vector>
 
 #include "base/angle.h"
 #include "robot/commands.h"
-#include "robot/drivers/cycle_clock.h"
+#include "robot/drivers/clock_map.h"
 #include "robot/drivers/device.h"
 #include "robot/measurements.h"
 #include "robot/protocols/levelling_line.h"
@@ -67,6 +66,8 @@ class LevellingUnit : public Device {
  private:
   void digest(const std::vector<std::string>& fields, Stamp now);
   void follow(const LevellingReport& report, Stamp now);
+  Stamp stamp_of(const LevellingReport& report, Stamp now);
+  void restart_clock();
   int pulse(double angle, const ServoCalibration& servo) const;
 
   LevellingUnitSettings settings_;
@@ -79,7 +80,10 @@ class LevellingUnit : public Device {
   bool aimed_ = false;  ///< aim() was called once
   bool aim_due_ = false;
   Stamp aim_sent_ = Stamp::never();
-  CycleClock clock_;
+  bool serial_ = false;
+  WrappingClock counter_{1u << 31, 2e-6};  ///< every second microsecond of 2^32
+  ClockMap clock_{ClockMapConfig{}};
+  Stamp last_stamp_ = Stamp::never();
   Stamp last_report_ = Stamp::never();
   int sequence_ = -1;
   int flags_ = 0;

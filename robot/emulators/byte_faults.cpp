@@ -1,64 +1,58 @@
 #include "robot/emulators/byte_faults.h"
 
-#include <map>
+#include <algorithm>
 
 namespace rubble::robot {
-namespace {
-
-constexpr double kSilence = 2.0;  ///< [s]
-constexpr double kDamage = 1.0;   ///< the other faults last so long [s]
-constexpr std::size_t kMostJunk = 40;
-
-}  // namespace
 
 std::optional<ByteFault> byte_fault(const std::string& name) {
-  static const std::map<std::string, ByteFault> names = {
-      {"lost", ByteFault::Lost}, {"split", ByteFault::Split}, {"doubled", ByteFault::Doubled},
-      {"junk", ByteFault::Junk}, {"sums", ByteFault::Sums},   {"silence", ByteFault::Silence}};
-  const auto found = names.find(name);
-  return found == names.end() ? std::nullopt : std::optional<ByteFault>(found->second);
+  if (name == "lost") return ByteFault::Lost;
+  if (name == "split") return ByteFault::Split;
+  if (name == "doubled") return ByteFault::Doubled;
+  if (name == "junk") return ByteFault::Junk;
+  if (name == "sums") return ByteFault::WrongSum;
+  return std::nullopt;
 }
 
-void ByteFaults::begin(ByteFault fault, Stamp now) {
-  fault_ = fault;
-  until_ = now + (fault == ByteFault::Silence ? kSilence : kDamage);
+std::string BadLine::junk() {
+  std::string bytes(1 + rng_.below(40), '\0');
+  for (char& c : bytes) c = static_cast<char>(rng_.below(256));
+  return bytes;
 }
 
-std::size_t ByteFaults::place(const std::string& bytes) { return rng_.below(static_cast<std::uint32_t>(bytes.size())); }
-
-std::vector<std::string> ByteFaults::damage(const std::string& bytes, Stamp now) {
-  if (fault_ && now >= until_) fault_.reset();
-  if (!fault_ || bytes.empty()) return {bytes};
-  std::string out = bytes;
-  switch (*fault_) {
-    case ByteFault::Silence:
-      return {};
-    case ByteFault::Doubled:
-      return {bytes, bytes};
+std::vector<std::string> BadLine::spoil(const std::string& bytes, ByteFault fault) {
+  if (bytes.empty()) return {};
+  std::string changed = bytes;
+  switch (fault) {
+    case ByteFault::None:
+      return {bytes};
     case ByteFault::Lost: {
-      out.erase(place(out), 1 + rng_.below(4));
-      return {out};
+      const std::size_t at = somewhere(bytes);
+      changed.erase(at, 1 + rng_.below(8));
+      return changed.empty() ? std::vector<std::string>{} : std::vector<std::string>{changed};
     }
-    case ByteFault::Sums: {
-      const std::size_t at = place(out);
-      out[at] = static_cast<char>(out[at] ^ (1 << rng_.below(7)));
-      return {out};
+    case ByteFault::Split: {
+      std::size_t cut[2] = {somewhere(bytes), somewhere(bytes)};
+      std::sort(cut, cut + 2);
+      std::vector<std::string> pieces = {bytes.substr(0, cut[0]), bytes.substr(cut[0], cut[1] - cut[0]),
+                                         bytes.substr(cut[1])};
+      pieces.erase(std::remove(pieces.begin(), pieces.end(), std::string()), pieces.end());
+      return pieces;
     }
-    case ByteFault::Junk: {
-      std::string junk(1 + rng_.below(kMostJunk), '\0');
-      for (char& c : junk) c = static_cast<char>(rng_.below(256));
-      return {junk + out};
+    case ByteFault::Doubled: {
+      const std::size_t at = somewhere(bytes), size = 1 + rng_.below(8);
+      changed.insert(at, bytes.substr(at, size));
+      return {changed};
     }
-    case ByteFault::Split:
-      break;
+    case ByteFault::Junk:
+      changed.insert(somewhere(bytes), junk());
+      return {junk() + changed};
+    case ByteFault::WrongSum: {
+      const std::size_t at = somewhere(bytes);
+      changed[at] = static_cast<char>(changed[at] ^ 1);
+      return {changed};
+    }
   }
-  std::vector<std::string> pieces;
-  for (std::size_t at = 0; at < bytes.size();) {
-    const std::size_t size = 1 + rng_.below(16);
-    pieces.push_back(bytes.substr(at, size));
-    at += size;
-  }
-  return pieces;
+  return {bytes};
 }
 
 }  // namespace rubble::robot

@@ -1,34 +1,33 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/rng.h"
-#include "base/stamp.h"
 
 namespace rubble::robot {
 
-/// What a bad line does to the bytes on it, whatever they mean.
-enum class ByteFault { Lost, Split, Doubled, Junk, Sums, Silence };
+/// What goes wrong with the bytes of a line.
+enum class ByteFault { None, Lost, Split, Doubled, Junk, WrongSum };
 
-/// `lost`, `split`, `doubled`, `junk`, `sums`, `silence`; nothing for another word.
+/// The fault of that name: `lost`, `split`, `doubled`, `junk`, `sums`.
 std::optional<ByteFault> byte_fault(const std::string& name);
 
-/// Damages what a device sends for a while after a fault began. One seed, one damage.
-class ByteFaults {
+/// Does to whole replies what a bad line does; which bytes it meets is drawn from the seed.
+class BadLine {
  public:
-  explicit ByteFaults(std::uint64_t seed) : rng_(seed, "byte faults") {}
-  void begin(ByteFault fault, Stamp now);
-  /// The pieces to send instead of `bytes`, each on its own.
-  std::vector<std::string> damage(const std::string& bytes, Stamp now);
+  explicit BadLine(std::uint64_t seed) : rng_(seed, "bad line") {}
+
+  /// The pieces that are sent in place of `bytes`; with Split they are to be sent with pauses between them.
+  std::vector<std::string> spoil(const std::string& bytes, ByteFault fault);
 
  private:
-  std::size_t place(const std::string& bytes);
+  std::size_t somewhere(const std::string& bytes) { return rng_.below(static_cast<std::uint32_t>(bytes.size())); }
+  std::string junk();
 
   Rng rng_;
-  std::optional<ByteFault> fault_;
-  Stamp until_ = Stamp::never();
 };
 
 }  // namespace rubble::robot

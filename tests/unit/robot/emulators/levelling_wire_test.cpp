@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "robot/drivers/levelling_unit.h"
-#include "robot/emulators/byte_faults.h"
 #include "robot/emulators/levelling_emulator.h"
+#include "robot/emulators/line_faults.h"
 
 namespace rubble::robot {
 namespace {
@@ -32,7 +32,7 @@ class Wire {
     if (!cut) unit.receive(to_unit, now);
     unit.advance(now);
     if (++steps % 20 == 0) unit.measure(felt, {now, unit.aim().pitch, unit.aim().roll}, now);
-    for (const std::string& piece : faults.damage(unit.take_output(), now))
+    for (const std::string& piece : faults.pass(unit.take_output(), now))
       if (!cut) driver.receive(piece, now);
     for (const Acceleration& a : driver.take_accelerations()) accelerations.push_back(a);
     for (const AimState& a : driver.take_aims()) aims.push_back(a);
@@ -41,7 +41,7 @@ class Wire {
   Stamp now{1'700'000'000'000'000'000};
   LevellingEmulator unit;
   LevellingUnit driver;
-  ByteFaults faults{2};
+  LineFaults faults{2};
   Acceleration felt;
   std::vector<Acceleration> accelerations;
   std::vector<AimState> aims;
@@ -156,7 +156,7 @@ TEST(LevellingWire, DamagedLinesAreNeverMeasurements) {
     Wire wire;
     wire.felt = {{}, 1.0, -1.0};
     wire.run(1.0);
-    wire.faults.begin(*byte_fault(name), wire.now);
+    wire.faults.spoil(*byte_fault(name), wire.now + 1.0);
     wire.run(2.0);
     ASSERT_TRUE(wire.driver.ready()) << name;
     for (const Acceleration& a : wire.accelerations) EXPECT_NEAR(a.x, 1.0, 0.01) << name;

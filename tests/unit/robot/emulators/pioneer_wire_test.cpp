@@ -8,7 +8,7 @@
 #include "base/planar.h"
 #include "robot/drivers/pioneer.h"
 #include "robot/emulators/arcos_emulator.h"
-#include "robot/emulators/byte_faults.h"
+#include "robot/emulators/line_faults.h"
 
 namespace rubble::robot {
 namespace {
@@ -46,7 +46,7 @@ class Wire {
     truth.y += motion.v * std::sin(truth.phi) * kStep;
     ++steps;
     if (steps % 100 == 0) base.measure({now, truth, motion.v, motion.w, false}, now);
-    for (const std::string& piece : faults.damage(base.take_output(), now))
+    for (const std::string& piece : faults.pass(base.take_output(), now))
       if (!cut) driver.receive(piece, now);
     for (const Odometry& o : driver.take_odometry()) odometry.push_back(o);
   }
@@ -60,7 +60,7 @@ class Wire {
   Stamp now{1'700'000'000'000'000'000};
   ArcosEmulator base;
   Pioneer driver;
-  ByteFaults faults{1};
+  LineFaults faults{1};
   mrpt::math::TPose2D truth;
   std::vector<Odometry> odometry;
   bool cut = false;
@@ -214,7 +214,7 @@ TEST(PioneerWire, DamagedLinesNeitherMoveThePoseNorStopTheReports) {
     wire.run(1.0);
     wire.go(0.3, 0.3);
     wire.run(3.0);
-    wire.faults.begin(*byte_fault(name), wire.now);
+    wire.faults.spoil(*byte_fault(name), wire.now + 1.0);
     wire.run(3.0);
     wire.go(0.0, 0.0);
     wire.run(2.0);
