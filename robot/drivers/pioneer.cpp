@@ -171,7 +171,7 @@ void Pioneer::open(Stamp now) {
   send(command(arcos::kSetTurnRate, whole(rad_to_deg(settings_.max_w))));
   send(command(arcos::kSetTurnAcceleration, turn_accel));
   send(command(arcos::kSetTurnAcceleration, -turn_accel));
-  v_due_ = w_due_ = true;  // whatever set points a former client left
+  v_due_ = w_due_ = !settings_.passive;  // whatever set points a former client left
   asked_motors_ = Stamp::never();
 }
 
@@ -220,6 +220,7 @@ void Pioneer::follow(const arcos::StandardInformation& report, Stamp stamp) {
 }
 
 void Pioneer::drive(const Drive& drive) {
+  if (settings_.passive) return;
   target_.v = motors_ ? std::clamp(drive.v, -settings_.max_v, settings_.max_v) : 0.0;
   target_.w = motors_ ? std::clamp(drive.w, -settings_.max_w, settings_.max_w) : 0.0;
   // An answer to what was just seen leaves at once; the dithering goes on at its own pace.
@@ -228,6 +229,7 @@ void Pioneer::drive(const Drive& drive) {
 }
 
 void Pioneer::enable(bool on) {
+  if (settings_.passive) on = false;
   if (on != motors_) asked_motors_ = Stamp::never();
   motors_ = on;
   if (!on) drive({});
@@ -241,6 +243,11 @@ void Pioneer::emergency_stop() {
 
 /// Marks what must be said at `now`.
 void Pioneer::refresh(Stamp now) {
+  if (settings_.passive) {
+    if (refreshed_ != Stamp::never() && now - refreshed_ < kRefresh) return;
+    refreshed_ = now;
+    return send(command(arcos::kPulse));
+  }
   if (motors_ != motors_on() && (asked_motors_ == Stamp::never() || now - asked_motors_ >= kAskMotors)) {
     asked_motors_ = now;
     send(command(arcos::kEnable, motors_ ? 1 : 0));

@@ -355,7 +355,7 @@ ReplayReport replay_run(const std::string& path, const RunOptions& options) {
   const std::string log = path + "/log.rlog";
   if (!fs::exists(log))
     throw InputError(path + ": is not a recorded run (no log.rlog in it); give a folder that 'rubble run' wrote");
-  const Scenario scenario = load_scenario(path + "/scenario.yaml");
+  const Scenario scenario = load_recorded(path + "/scenario.yaml");
   robot::ReplayRobot robot(log);
   Core core(scenario, robot.model(), true);
   ReplayReport report;
