@@ -9,6 +9,7 @@
 
 #include "app/batch.h"
 #include "app/commands.h"
+#include "app/hardware.h"
 #include "base/error.h"
 #include "scenarios/run/run.h"
 
@@ -200,7 +201,16 @@ int dispatch(int argc, char** argv) {
       "  rubble arena arenas/shipped/yellow_8x8.yaml --resolution 0.02 --slice-height 0.2 --walls walls.geojson\n"
       "  rubble arena generate --cells 10x12 --seed 3 --ramps 0.4 --paper 0.2 --victims 6 --loops 0.2");
 
+  DevicesArguments devices_arguments;
+  CLI::App* devices_command = app.add_subcommand("devices", "Find the robot's devices and tell what they are and see");
+  devices_command->add_option("ports", devices_arguments.ports,
+                              "Ports to ask: /dev/ttyUSB0, pty:PATH or tcp:HOST:PORT (default: all USB serial lines)");
+  devices_command->add_option("--radius", devices_arguments.radius, "How much a scan's picture shows [m]")
+      ->check(between(0.1, 100.0));
+  devices_command->footer("Examples:\n  rubble devices\n  rubble devices /dev/ttyACM0 tcp:127.0.0.1:10940");
+
   BatchCommands batch_commands(app);
+  HardwareCommands hardware_commands(app);
 
   try {
     app.parse(argc, argv);
@@ -221,11 +231,13 @@ int dispatch(int argc, char** argv) {
   parse_cells(cells, arena_arguments.config);
   if (*arena_command && !arena_arguments.generate) refuse_generator_options(*arena_command);
   if (const auto code = batch_commands.run()) return *code;
+  if (const auto code = hardware_commands.run()) return *code;
   if (*run_command) return run(run_arguments);
   if (*map_command) return map(map_arguments);
   if (*score_command) return score(score_arguments);
   if (*replay_command) return replay(replay_arguments);
   if (*export_command) return export_log(export_arguments);
+  if (*devices_command) return devices(devices_arguments);
   return arena(arena_arguments);
 }
 

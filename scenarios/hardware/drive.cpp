@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "robot/drivers/black_box.h"
+#include "robot/drivers/mrpt_scanner.h"
 #include "robot/drivers/scip/scip_scanner.h"
 #include "robot/logs/log.h"
 #include "scenarios/hardware/delayed_scanner.h"
@@ -32,25 +33,45 @@ double known_area(const slam::CountMap& map) {
   return static_cast<double>(cells) * map.frame().resolution * map.frame().resolution;
 }
 
-std::unique_ptr<robot::Scanner> open_lidar(const RobotFile& file, robot::BlackBox& box) {
+std::unique_ptr<robot::Scanner> make_scanner(const RobotFile& file, robot::BlackBox& box) {
+  const robot::LaserModel& laser = file.settings.robot.laser;
+  if (file.lidar.driver == "mrpt") {
+    robot::MrptScannerConfig config;
+    config.type = file.lidar.mrpt_class;
+    config.port = file.lidar.port;
+    config.range_max = laser.range_max;
+    config.no_echo_is_miss = file.lidar.no_echo_is_miss;
+    config.scan_period = laser.scan_period;
+    return robot::mrpt_scanner(config);
+  }
   robot::ScipScannerConfig config;
   config.port = file.lidar.port;
-  config.range_max = file.settings.robot.laser.range_max;
+  config.range_max = laser.range_max;
   config.no_echo_is_miss = file.lidar.no_echo_is_miss;
   config.open = [&box](const std::string& word) { return robot::open_recorded(word, "urg", &box); };
-  auto scanner = std::make_unique<robot::ScipScanner>(config);
+  return std::make_unique<robot::ScipScanner>(config);
+}
+
+std::unique_ptr<robot::Scanner> open_lidar(const RobotFile& file, robot::BlackBox& box) {
+  auto scanner = make_scanner(file, box);
   if (file.lidar.delay == 0.0) return scanner;
   return std::make_unique<DelayedScanner>(std::move(scanner), file.lidar.delay);
 }
 
 const char* name_of(explore::ExplorerState state) {
   switch (state) {
-    case explore::ExplorerState::Starting: return "starting";
-    case explore::ExplorerState::Driving: return "driving";
-    case explore::ExplorerState::Searching: return "searching";
-    case explore::ExplorerState::BackingUp: return "backing up";
-    case explore::ExplorerState::GoingHome: return "going home";
-    case explore::ExplorerState::Finished: return "finished";
+    case explore::ExplorerState::Starting:
+      return "starting";
+    case explore::ExplorerState::Driving:
+      return "driving";
+    case explore::ExplorerState::Searching:
+      return "searching";
+    case explore::ExplorerState::BackingUp:
+      return "backing up";
+    case explore::ExplorerState::GoingHome:
+      return "going home";
+    case explore::ExplorerState::Finished:
+      return "finished";
   }
   return "";
 }
@@ -194,7 +215,9 @@ ordered_json score_of(const Core& core, const robot::RealRobot& robot, double se
   score["wall_s"] = seconds_since(start);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const auto time = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const auto time = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   score["cpu_share"] = (time(usage.ru_utime) + time(usage.ru_stime)) / std::max(1e-3, seconds_since(start));
   score["peak_mb"] = static_cast<double>(usage.ru_maxrss) / 1024.0;
   return score;

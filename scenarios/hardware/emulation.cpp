@@ -19,9 +19,9 @@
 namespace rubble::scenarios {
 namespace {
 
-constexpr double kDamage = 1.0;    ///< spoilt bytes last so long [s]
-constexpr double kSilence = 2.0;   ///< [s]
-constexpr double kUnplugged = 3.0; ///< [s]
+constexpr double kDamage = 1.0;               ///< spoilt bytes last so long [s]
+constexpr double kSilence = 2.0;              ///< [s]
+constexpr double kUnplugged = 3.0;            ///< [s]
 constexpr double kUrgClockWrap = 16777216.0;  ///< the scanner's clock counts milliseconds up to here
 
 robot::ArcosEmulatorSettings base_settings(const robot::RobotModel& model, const EmulateOptions& options) {
@@ -161,7 +161,8 @@ class Emulation {
   void begin(const std::string& device, const std::string& fault) {
     if (device == "urg") return begin_urg(fault);
     robot::DeviceServer* server = device == "base" ? base_.get() : levelling_.get();
-    robot::EmulatedDevice* emulated = device == "base" ? static_cast<robot::EmulatedDevice*>(arcos_.get()) : unit_.get();
+    robot::EmulatedDevice* emulated =
+        device == "base" ? static_cast<robot::EmulatedDevice*>(arcos_.get()) : unit_.get();
     if (server == nullptr) return;
     if (const auto bytes = robot::byte_fault(fault)) return server->spoil(*bytes, kDamage);
     if (fault == "silence") return server->fall_silent(kSilence);

@@ -22,13 +22,13 @@ FaultAt parse_fault(const std::string& text);
 const std::vector<std::string>& fault_names();
 
 struct EmulateOptions {
-  std::string urg;        ///< port words; empty: that device is not there
+  std::string urg;  ///< port words; empty: that device is not there
   std::string base;
   std::string levelling;
   std::vector<FaultAt> faults;
-  mrpt::math::TPose2D odometry_start;  ///< what the base's dead reckoning begins with
-  double time_limit = 0.0;             ///< 0: until interrupted [s]
-  std::string truth;                   ///< .tum file for the true trajectory; empty: none
+  mrpt::math::TPose2D odometry_start;                          ///< what the base's dead reckoning begins with
+  double time_limit = 0.0;                                     ///< 0: until interrupted [s]
+  std::string truth;                                           ///< .tum file for the true trajectory; empty: none
   std::function<void(const std::vector<std::string>&)> ready;  ///< the ports are open: their words
   std::function<void(const std::string&)> tell;                ///< a fault begins: one line
   std::function<bool()> interrupted;
@@ -36,7 +36,7 @@ struct EmulateOptions {
 
 struct EmulationReport {
   double seconds = 0.0;
-  double late_95 = 0.0;   ///< how late a tick began [s]
+  double late_95 = 0.0;  ///< how late a tick began [s]
   double late_worst = 0.0;
   std::uint64_t scans = 0;
 };

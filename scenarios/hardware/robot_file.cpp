@@ -23,6 +23,7 @@ void bind(Binder& b, robot::ServoCalibration& servo) {
 
 void bind_lidar(Binder& b, LidarSettings& lidar, robot::RobotModel& model) {
   b.choice("driver", lidar.driver, {"scip", "mrpt"});
+  b.text("class", lidar.mrpt_class);
   b.text("port", lidar.port);
   b.degrees("yaw_deg", model.T_base_laser.yaw, -180.0, 180.0);
   b.number("delay_s", lidar.delay, -1.0, 1.0);

@@ -10,7 +10,8 @@ namespace rubble::scenarios {
 
 /// The scanner of a robot file.
 struct LidarSettings {
-  std::string driver = "scip";  ///< our own, or `mrpt`
+  std::string driver = "scip";            ///< our own, or `mrpt`
+  std::string mrpt_class = "CHokuyoURG";  ///< which of MRPT's drivers
   std::string port;
   double delay = 0.0;            ///< scans are so much older than their stamps say [s]
   bool no_echo_is_miss = false;  ///< "no echo" counts as nothing in range

@@ -107,9 +107,13 @@ void Link::switch_to_scip2() {
   }
 }
 
-void Link::shake_hands(bool only_scip1) {
+bool Link::knock() {
   drain(0.01);
-  if (!find_device())
+  return find_device();
+}
+
+void Link::shake_hands(bool only_scip1) {
+  if (!knock())
     throw DeviceLost(
         port_->name() +
         ": no scanner answers; check its power and that no other program uses the port, or try another one");
@@ -203,6 +207,13 @@ void Link::start() {
   if (status != "00" && status != "99")
     refuse("the scanner does not send scans (MD: " + status + "); switch it off and on");
   receiver_.expect_echo(stream_, command.size());
+}
+
+std::string Link::state() {
+  if (!scip2_) return "";
+  const auto reply = ask("II", kAnswerTime);
+  const auto entries = reply ? entries_of(*reply, true) : std::nullopt;
+  return entries ? value_of(*entries, "STAT") : std::string();
 }
 
 std::optional<Sweep> Link::check_stream(const Reply& reply) {

@@ -24,6 +24,8 @@ class Link {
  public:
   explicit Link(std::unique_ptr<Port> port);
 
+  /// Whether a scanner answers, at any bit rate and in either protocol.
+  bool knock();
   /// Finds bit rate and protocol, switches to SCIP 2.0 where the device can, and asks who it is. `only_scip1`: does not
   /// switch.
   void shake_hands(bool only_scip1);
@@ -31,6 +33,8 @@ class Link {
   void ask_time(WrappingClock& clock, ClockMap& map);
   /// Laser on, and every turn is sent from now on (SCIP 1.1: each has to be asked for, see next_sweep).
   void start();
+  /// What the device says of its health; empty in SCIP 1.1 and where it does not say.
+  std::string state();
   /// Waits up to `timeout` [s] for the next turn; nothing when none came. What is damaged is counted and passed over.
   std::optional<Sweep> next_sweep(double timeout);
   /// Laser off, nothing is sent any more. Throws nothing.
