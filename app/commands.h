@@ -78,6 +78,9 @@ struct DevicesArguments {
   double radius = 4.0;             ///< of the picture of a scan [m]
 };
 
+/// A path, or the bare name of a file `folder/NAME.yaml` that ships with rubble; no name: the usual one.
+std::string find_shipped(const std::string& name, const std::string& folder, const std::string& usual);
+
 /// A log file, or the log inside a run folder.
 std::string recorded_log(const std::string& path);
 

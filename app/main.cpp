@@ -9,6 +9,7 @@
 
 #include "app/batch.h"
 #include "app/commands.h"
+#include "app/hardware.h"
 #include "base/error.h"
 #include "scenarios/run/run.h"
 #include "slam/process/mapper_server.h"
@@ -218,6 +219,7 @@ int dispatch(int argc, char** argv) {
   devices_command->footer("Examples:\n  rubble devices\n  rubble devices /dev/ttyACM0 tcp:127.0.0.1:10940");
 
   BatchCommands batch_commands(app);
+  HardwareCommands hardware_commands(app);
 
   try {
     app.parse(argc, argv);
@@ -238,6 +240,7 @@ int dispatch(int argc, char** argv) {
   parse_cells(cells, arena_arguments.config);
   if (*arena_command && !arena_arguments.generate) refuse_generator_options(*arena_command);
   if (const auto code = batch_commands.run()) return *code;
+  if (const auto code = hardware_commands.run()) return *code;
   if (*run_command) return run(run_arguments);
   if (*map_command) return map(map_arguments);
   if (*score_command) return score(score_arguments);

@@ -7,26 +7,23 @@
 #include "base/error.h"
 
 namespace rubble::app {
-namespace {
 
-/// A path, or the bare name of a scenario that ships with rubble; no name: the main job.
-std::string find_scenario(const std::string& name) {
+std::string find_shipped(const std::string& name, const std::string& folder, const std::string& usual) {
   namespace fs = std::filesystem;
   const char* home = std::getenv("RUBBLE_HOME");
-  const std::string shipped = std::string(home ? home : RUBBLE_SOURCE_DIR) + "/scenarios/";
-  if (name.empty()) return shipped + "yellow.yaml";
+  const std::string shipped = std::string(home ? home : RUBBLE_SOURCE_DIR) + "/" + folder + "/";
+  if (name.empty()) return shipped + usual + ".yaml";
   if (!fs::exists(name) && name.find('/') == std::string::npos && fs::exists(shipped + name + ".yaml"))
     return shipped + name + ".yaml";
   return name;
 }
 
-}  // namespace
-
 int run(const RunArguments& arguments) {
   auto overrides = arguments.common.overrides;
   if (arguments.seed) overrides.emplace_back("seed", std::to_string(*arguments.seed));
   overrides = with_mapper(arguments.common.mapper, overrides);
-  scenarios::Scenario scenario = scenarios::load_scenario(find_scenario(arguments.scenario), overrides);
+  scenarios::Scenario scenario =
+      scenarios::load_scenario(find_shipped(arguments.scenario, "scenarios", "yellow"), overrides);
   permit_command(arguments.common.mapper, overrides, scenario);
   const auto options = terminal_options(arguments.common.out, arguments.common.force);
   for (const std::string& note : scenarios::arena_notes(scenario)) std::fprintf(stderr, "rubble: %s\n", note.c_str());

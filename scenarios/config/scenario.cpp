@@ -196,7 +196,9 @@ void check_laser(const YamlMap& map, const robot::LaserModel& laser) {
   if (laser.range_max <= laser.range_min) map.fail("max_range_m", "max_range_m must be above min_range_m");
 }
 
-void read_common(const YamlMap& root, Scenario& s) {
+}  // namespace
+
+void read_settings(const YamlMap& root, Scenario& s) {
   s.seed =
       static_cast<std::uint64_t>(root.integer("seed", std::int64_t{1}, 0, std::numeric_limits<std::int64_t>::max()));
   if (root.has("geo")) {
@@ -212,20 +214,31 @@ void read_common(const YamlMap& root, Scenario& s) {
   s.sim.time_limit = s.time_limit;
 }
 
-}  // namespace
+namespace {
 
-Scenario load_scenario(const std::string& path, const std::vector<Override>& overrides) {
+Scenario load(const std::string& path, const std::vector<Override>& overrides, bool recorded) {
   YamlMap root = YamlMap::load(path);
   for (const auto& [key, value] : overrides) root.set(key, value);
   Scenario s;
   s.name = root.text("name", std::filesystem::path(path).stem().string());
   if (s.name.empty() || s.name.find_first_of("/\\ ") != std::string::npos)
     root.fail("name", "is used as a folder name: no spaces or slashes");
-  read_arena(root, path, s);
-  read_common(root, s);
+  s.has_arena = !recorded || root.has("arena");
+  if (s.has_arena) read_arena(root, path, s);
+  read_settings(root, s);
   read_expect(root, s);
   root.finish();
   return s;
+}
+
+}  // namespace
+
+Scenario load_scenario(const std::string& path, const std::vector<Override>& overrides) {
+  return load(path, overrides, false);
+}
+
+Scenario load_recorded(const std::string& path, const std::vector<Override>& overrides) {
+  return load(path, overrides, true);
 }
 
 Scenario default_scenario(const std::vector<Override>& overrides) {
@@ -234,7 +247,7 @@ Scenario default_scenario(const std::vector<Override>& overrides) {
   Scenario s;
   s.has_arena = false;
   s.name = root.text("name", std::string("map"));
-  read_common(root, s);
+  read_settings(root, s);
   root.finish();
   return s;
 }

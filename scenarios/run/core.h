@@ -27,6 +27,8 @@ class Core {
   /// Why the explorer finished; empty before.
   std::string reason() const { return explorer_ ? explorer_->reason() : std::string(); }
   std::vector<explore::VictimReport> victims() const;
+  /// Null when it was not asked to explore.
+  const explore::Explorer* explorer() const { return explorer_ ? &*explorer_ : nullptr; }
 
  private:
   std::unique_ptr<slam::Mapper> mapper_;

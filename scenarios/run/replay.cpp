@@ -62,7 +62,7 @@ std::vector<std::string> comparable(bool ended) {
 Scenario recorded_scenario(const std::string& path, const std::vector<Override>& overrides) {
   if (!fs::exists(path + "/log.rlog"))
     throw InputError(path + ": is not a recorded run (no log.rlog in it); give a folder that 'rubble run' wrote");
-  return load_scenario(path + "/scenario.yaml", overrides);
+  return load_recorded(path + "/scenario.yaml", overrides);
 }
 
 ReplayReport replay_run(const std::string& path, const RunOptions& options) {

@@ -42,6 +42,9 @@ class Chassis {
   /// Ground, attitude, servos and time after the move.
   void settle(double dt);
 
+  /// Puts the robot somewhere else, at rest.
+  void place(const mrpt::math::TPose2D& pose);
+
   /// The body's upright sides and top as the lasers of other robots see them.
   void add_shell(std::vector<arenas::Face>& faces) const;
 

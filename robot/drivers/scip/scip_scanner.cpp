@@ -67,7 +67,7 @@ struct ScipScanner::Impl {
 
   /// One connection, from the opened port until it breaks or the driver ends.
   void converse() {
-    scip::Link link(open_port(config.port));
+    scip::Link link(config.open(config.port));
     std::uint64_t counted = 0;  // damaged replies of this connection that the status knows
     const auto count_damaged = [&] {
       const std::uint64_t all = link.damaged();

@@ -1,14 +1,18 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
+#include "robot/drivers/port.h"
 #include "robot/drivers/scanner.h"
 
 namespace rubble::robot {
 
 struct ScipScannerConfig {
-  std::string port;              ///< as open_port takes it
+  std::string port;  ///< as open_port takes it
+  /// Opens the port; another one may record what passes.
+  std::function<std::unique_ptr<Port>(const std::string&)> open = open_port;
   double range_max = 4.0;        ///< beyond, a range counts as a miss [m]; the URG-04LX is specified up to here
   bool no_echo_is_miss = false;  ///< code 0, no echo, counts as "nothing in range"; black things give it too
   bool only_scip1 = false;       ///< do not switch the device to SCIP 2.0

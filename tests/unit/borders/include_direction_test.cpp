@@ -45,11 +45,12 @@ const std::map<std::string, Folders>& wings() {
       {"robot/logs", {"robot", "robot/logs/own", "robot/logs/foreign"}},
       {"robot/logs/own", {"robot", "robot/logs"}},
       {"robot/logs/foreign", {"robot", "robot/logs", "robot/logs/own"}},
-      {"robot/drivers", {"robot"}},
+      {"robot/protocols", {}},
+      {"robot/drivers", {"robot", "robot/protocols"}},
       {"robot/drivers/scip", {"robot", "robot/drivers"}},
       {"robot/drivers/mrpt", {"robot", "robot/drivers"}},
       {"robot/drivers/probe", {"robot", "robot/drivers", "robot/drivers/scip"}},
-      {"robot/emulators", {"robot", "robot/drivers"}},
+      {"robot/emulators", {"robot", "robot/drivers", "robot/protocols"}},
       {"robot/emulators/scip", {"robot", "robot/drivers", "robot/drivers/scip", "robot/emulators"}},
       {"arenas/model", {}},
       {"arenas/elements", {"arenas/model"}},
@@ -82,6 +83,7 @@ const std::map<std::string, Folders>& wings() {
       {"scenarios/run", {"scenarios/config"}},
       {"scenarios/batch", {"scenarios/config", "scenarios/run"}},
       {"scenarios/evidence", {"scenarios/batch"}},
+      {"scenarios/hardware", {"scenarios/config", "scenarios/run"}},
   };
   return table;
 }
