@@ -13,6 +13,7 @@
 #include "arenas/truth/wall_lines.h"
 #include "base/error.h"
 #include "base/image/geotiff.h"
+#include "base/image/png.h"
 #include "base/text/text_file.h"
 #include "scenarios/run/league_map.h"
 
@@ -65,7 +66,7 @@ int arena(const ArenaArguments& arguments) {
     if (!file) throw InputError(base + ".yaml: cannot be written; give a writable folder with --out");
     std::printf("%s.yaml\n", base.c_str());
   }
-  scenarios::write_png(base + ".png", arenas::render(arena, 60.0));
+  write_png(base + ".png", arenas::render(arena, 60.0));
   const OccupancyGrid truth = arenas::truth_map(arena, arguments.resolution, arguments.slice_height);
   write_geotiff(base + "-truth.tif", scenarios::draw_truth(truth));
   arenas::Viewer viewer;

@@ -16,6 +16,7 @@
 #include "base/text/text_file.h"
 #include "scenarios/batch/worker_pool.h"
 #include "scenarios/run/run.h"
+#include "scoring/figures/figures.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -40,8 +41,13 @@ RunOutcome unpack(const std::string& text) {
   return {json["score"], json["end"], json["failure"], json["broken"].get<std::vector<std::string>>(), json["hash"]};
 }
 
+bool depends_on_machine(const std::string& key) {
+  const scoring::Figure* figure = scoring::find_figure(key);
+  return figure != nullptr && figure->is(scoring::kMachine);
+}
+
 /// "wall_s is 12, expected at most 10": an expectation about the machine is no part of the result.
-bool about_timing(const std::string& broken) { return is_timing_key(broken.substr(0, broken.find(' '))); }
+bool about_machine(const std::string& broken) { return depends_on_machine(broken.substr(0, broken.find(' '))); }
 
 struct Entry {
   RunRecord record;
@@ -76,9 +82,9 @@ Entry entry_of(const Job& job, const TaskResult& result, const BatchOptions& opt
   r.end = outcome.end;
   r.hash = outcome.hash;
   for (const auto& [key, value] : outcome.score.items())
-    if (key != "end") (is_timing_key(key) ? entry.timing : r.score)[key] = value;
+    if (key != "end") (depends_on_machine(key) ? entry.timing : r.score)[key] = value;
   for (const auto& line : outcome.broken) {
-    if (about_timing(line)) {
+    if (about_machine(line)) {
       entry.timing["broken"].push_back(line);
     } else {
       r.broken.push_back(line);

@@ -9,8 +9,10 @@
 #include "base/angle.h"
 #include "base/error.h"
 #include "base/text/number_text.h"
+#include "base/text/words.h"
 #include "base/yaml/binder.h"
 #include "base/yaml/strict_yaml.h"
+#include "scoring/figures/figures.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -140,33 +142,16 @@ void read_arena(const YamlMap& root, const std::string& path, Scenario& s) {
   bind_generate(reader, s.generate);
 }
 
-/// Numbers of score.json that `expect` may bound.
-const std::vector<std::string> kScoreKeys = {"score",
-                                             "precision",
-                                             "recall",
-                                             "psi_m",
-                                             "aligned",
-                                             "ate_first_m",
-                                             "ate_aligned_m",
-                                             "known",
-                                             "victims_found",
-                                             "victims_total",
-                                             "sim_s",
-                                             "wall_s",
-                                             "real_time_factor",
-                                             "peak_mb",
-                                             "area_known_m2",
-                                             "scans_mapped",
-                                             "victims_false",
-                                             "victims_reported"};
-
 void read_expect(const YamlMap& root, Scenario& s) {
   const YamlMap expect = root.map("expect");
   for (const auto& key : expect.keys()) {
-    if (std::find(kScoreKeys.begin(), kScoreKeys.end(), key) == kScoreKeys.end()) {
-      std::string names;
-      for (const auto& known : kScoreKeys) names += (names.empty() ? "" : ", ") + known;
-      expect.fail(key, "'" + key + "' is not a number of score.json; known are " + names);
+    const scoring::Figure* figure = scoring::find_figure(key);
+    if (figure == nullptr || figure->is(scoring::kText)) {
+      std::vector<std::string> numbers;
+      for (const auto& known : scoring::figures())
+        if (!known.is(scoring::kText)) numbers.push_back(known.key);
+      expect.fail(key, "'" + key + "' is not a number of score.json" + did_you_mean(key, numbers) + "; known are " +
+                           joined(numbers));
     }
     const YamlMap bounds = expect.map(key);
     Expectation expectation{key, {}, {}};

@@ -8,8 +8,9 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "base/image/png.h"
+#include "base/text/html.h"
 #include "scenarios/evidence/compare.h"
-#include "scenarios/evidence/html.h"
 #include "scenarios/evidence/metrics.h"
 #include "scenarios/evidence/statistics.h"
 #include "scenarios/evidence/svg_plot.h"
@@ -63,25 +64,18 @@ std::string mean_text(const std::vector<double>& values) {
   return brief(mean(values)) + " [" + brief(interval.low) + ", " + brief(interval.high) + "]";
 }
 
-/// The columns of the table of configurations.
-constexpr const char* kColumns[] = {"score", "psi_m", "ate_aligned_m", "known", "victims_found"};
-
-std::string label_of(const std::string& key) {
-  for (const auto& metric : judged_metrics())
-    if (metric.key == key) return metric.label;
-  return key;
-}
-
 std::string summary_table(const ResultSet& set, const SweepNote& note) {
   std::string out = "<table>\n<tr><th>configuration</th><th class=n>runs</th><th class=n>failed</th>";
-  for (const char* key : kColumns) out += "<th class=n>" + escape_html(label_of(key)) + "</th>";
+  for (const Metric* column : figures_with(scoring::kReport))
+    out += "<th class=n>" + escape_html(heading(*column)) + "</th>";
   out += "<th class=n>time a run [s]</th></tr>\n";
   for (const auto& name : note.configurations) {
     const auto runs = of(set, name);
     const auto failed = std::count_if(runs.begin(), runs.end(), [](const auto* run) { return !run->ok(); });
     out += "<tr><td>" + escape_html(name) + "</td><td class=n>" + std::to_string(runs.size()) + "</td><td class=\"n" +
            (failed ? " failed" : "") + "\">" + std::to_string(failed) + "</td>";
-    for (const char* key : kColumns) out += "<td class=n>" + mean_text(numbers(runs, key)) + "</td>";
+    for (const Metric* column : figures_with(scoring::kReport))
+      out += "<td class=n>" + mean_text(numbers(runs, column->key)) + "</td>";
     out += "<td class=n>" + figure(median(times(runs, set.timing, "wall_s"))) + "</td></tr>\n";
   }
   return out + "</table>\n<p class=note>Means over runs with 95 % bootstrap intervals; the time is a median.</p>\n";
@@ -117,9 +111,7 @@ std::string thumbnail(const std::string& folder) {
     const double factor = std::min(1.0, static_cast<double>(kThumbnailPixels) / std::max(image.cols, image.rows));
     cv::Mat small;
     cv::resize(image, small, {}, factor, factor, cv::INTER_AREA);
-    std::vector<unsigned char> png;
-    cv::imencode(".png", small, png);
-    return "data:image/png;base64," + base64({png.begin(), png.end()});
+    return "data:image/png;base64," + base64(png_bytes(small));
   }
   return "";
 }
@@ -183,18 +175,6 @@ std::string codes(const ResultSet& set) {
 
 }  // namespace
 
-std::string base64(const std::string& bytes) {
-  constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? kLetters[group >> (18 - 6 * k) & 63u] : '=';
-  }
-  return out;
-}
-
 std::string report_html(const ResultSet& set, const SweepNote& note, const std::string& page_folder) {
   std::string body = "<h1>" + escape_html(note.name) + "</h1>\n";
   if (!note.about.empty()) body += "<p>" + escape_html(note.about) + "</p>\n";
@@ -208,13 +188,14 @@ std::string report_markdown(const ResultSet& set, const SweepNote& note) {
   if (!note.about.empty()) out += note.about + "\n\n";
   out += "| configuration | runs | failed |";
   std::string rule = "|---|---|---|";
-  for (const char* key : kColumns) out += " " + label_of(key) + " |", rule += "---|";
+  for (const Metric* column : figures_with(scoring::kReport)) out += " " + heading(*column) + " |", rule += "---|";
   out += "\n" + rule + "\n";
   for (const auto& name : note.configurations) {
     const auto runs = of(set, name);
     const auto failed = std::count_if(runs.begin(), runs.end(), [](const auto* run) { return !run->ok(); });
     out += "| " + name + " | " + std::to_string(runs.size()) + " | " + std::to_string(failed) + " |";
-    for (const char* key : kColumns) out += " " + mean_text(numbers(runs, key)) + " |";
+    for (const Metric* column : figures_with(scoring::kReport))
+      out += " " + mean_text(numbers(runs, column->key)) + " |";
     out += "\n";
   }
   out += "\n";
@@ -230,10 +211,10 @@ std::string report_markdown(const ResultSet& set, const SweepNote& note) {
     options.configuration_b = name;
     const Comparison comparison = compare(set, set, note.name, note.name, options);
     for (const auto& c : comparison.groups[0].metrics) {
-      if (std::find(std::begin(kColumns), std::end(kColumns), c.metric.key) == std::end(kColumns)) continue;
+      if (!c.metric.is(scoring::kReport)) continue;
       const std::string interval =
           std::isfinite(c.interval.low) ? "[" + figure(c.interval.low) + ", " + figure(c.interval.high) + "]" : "-";
-      out += "| " + name + " | " + reference + " | " + c.metric.label + " | " + std::to_string(c.pairs) + " | " +
+      out += "| " + name + " | " + reference + " | " + heading(c.metric) + " | " + std::to_string(c.pairs) + " | " +
              (c.difference > 0 ? "+" : "") + figure(c.difference) + " | " + interval + " | " +
              std::to_string(c.better) + " : " + std::to_string(c.worse) + " | " + figure(c.p_sign) + " | " +
              text_of(c.verdict) + " |\n";

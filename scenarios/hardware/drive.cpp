@@ -14,6 +14,7 @@
 #include "robot/logs/log.h"
 #include "scenarios/hardware/delayed_scanner.h"
 #include "scenarios/run/core.h"
+#include "scenarios/run/loop.h"
 #include "scenarios/run/run_folder.h"
 
 namespace rubble::scenarios {
@@ -25,13 +26,6 @@ using nlohmann::ordered_json;
 constexpr double kSavePeriod = 3.0;  ///< of the map [s]
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-double known_area(const slam::CountMap& map) {
-  std::size_t cells = 0;
-  for (int y = 0; y < map.frame().height; ++y)
-    for (int x = 0; x < map.frame().width; ++x) cells += map.seen({x, y}) > 0 ? 1u : 0u;
-  return static_cast<double>(cells) * map.frame().resolution * map.frame().resolution;
-}
 
 std::unique_ptr<robot::Scanner> make_scanner(const RobotFile& file, robot::BlackBox& box) {
   const robot::LaserModel& laser = file.settings.robot.laser;

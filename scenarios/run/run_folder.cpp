@@ -9,7 +9,8 @@
 #include "arenas/truth/render.h"
 #include "base/digest.h"
 #include "base/error.h"
-#include "base/text/words.h"
+#include "base/image/png.h"
+#include "base/text/csv.h"
 #include "scenarios/run/league_map.h"
 
 namespace rubble::scenarios {

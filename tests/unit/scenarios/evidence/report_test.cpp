@@ -4,7 +4,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "scenarios/evidence/html.h"
+#include "base/text/html.h"
 #include "scenarios/evidence/svg_plot.h"
 #include "tests/support/scenarios_batch.h"
 

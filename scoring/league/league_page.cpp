@@ -1,15 +1,12 @@
-#include "app/league_page.h"
+#include "scoring/league/league_page.h"
 
 #include <algorithm>
 #include <cstdio>
 
-#include "scenarios/evidence/html.h"
+#include "base/text/html.h"
 
-namespace rubble::app {
+namespace rubble::scoring {
 namespace {
-
-using scenarios::escape_html;
-using scoring::LeagueEntry;
 
 std::string cell(const char* format, double value) {
   char text[60];
@@ -19,18 +16,17 @@ std::string cell(const char* format, double value) {
 
 std::string victims_cell(const LeagueEntry& e) {
   if (!e.points) return "<td class=\"n\"></td>";
-  const auto& victims = e.points->victims;
-  const auto found = std::count_if(victims.begin(), victims.end(), [](const auto& v) { return v.found; });
-  std::string text = std::to_string(found) + " of " + std::to_string(victims.size());
+  std::string text = std::to_string(found_victims(*e.points)) + " of " + std::to_string(e.points->victims.size());
   if (e.points->false_alarms > 0) text += ", " + std::to_string(e.points->false_alarms) + " false";
-  if (e.victims_from == "symbols") text += ", drawn";
+  if (e.reported.from == VictimSource::Symbols) text += ", drawn";
   return "<td class=\"n\">" + text + "</td>";
 }
 
 std::string row(const LeagueEntry& e, const LeaguePictures& pictures, bool with_points) {
   std::string html = "<tr><td class=\"n\">" + std::to_string(e.rank) + "</td><td>" + escape_html(e.team) + "</td>";
   if (!e.error.empty())
-    return html + "<td class=\"failed\" colspan=\"" + (with_points ? "12" : "7") + "\">" + escape_html(e.error) +
+    return html + "<td class=\"failed\" colspan=\"" +
+           std::to_string((with_points ? 5 : 0) + figures_with(kRanking).size() + 2) + "\">" + escape_html(e.error) +
            "</td></tr>\n";
   if (with_points) {
     const double quality = e.points ? e.points->quality : 0.0;
@@ -38,9 +34,10 @@ std::string row(const LeagueEntry& e, const LeaguePictures& pictures, bool with_
     html += cell("%.1f", e.total()) + cell("%.1f", quality) + cell("%.1f", location) + cell("%.1f", e.judge) +
             victims_cell(e);
   }
-  html += cell("%.3f", e.score.score) + cell("%.3f", e.score.precision) + cell("%.3f", e.score.recall) +
-          cell("%.3f", e.score.psi_m) + cell("%.0f %%", 100.0 * e.score.known) + "<td>" + escape_html(e.note()) +
-          "</td><td>" +
+  const Evidence evidence = e.evidence();
+  for (const Figure* figure : figures_with(kRanking))
+    html += "<td class=\"n\">" + text_of(*figure, figure->get(evidence)) + "</td>";
+  html += "<td>" + escape_html(e.note()) + "</td><td>" +
           (pictures.tool.empty() ? "" : "<a href=\"" + escape_html(pictures.tool) + "\">lay by hand</a>") + "</td>";
   return html + "</tr>\n";
 }
@@ -89,9 +86,8 @@ std::string league_page(const std::string& truth, bool with_points, const std::v
     body +=
         "<th class=\"n\">points</th><th class=\"n\">map quality</th><th class=\"n\">location</th>"
         "<th class=\"n\">judge</th><th class=\"n\">victims</th>";
-  body +=
-      "<th class=\"n\">score</th><th class=\"n\">precision</th><th class=\"n\">recall</th>"
-      "<th class=\"n\">psi [m]</th><th class=\"n\">known</th><th>note</th><th></th></tr>\n";
+  for (const Figure* figure : figures_with(kRanking)) body += "<th class=\"n\">" + escape_html(figure->label) + "</th>";
+  body += "<th>note</th><th></th></tr>\n";
   for (std::size_t i = 0; i < entries.size(); ++i) body += row(entries[i], pictures[i], with_points);
   body += "</table>\n";
   if (!left_out.empty()) body += "<p class=\"note\">No team's maps: " + escape_html(left_out) + "</p>\n";
@@ -102,7 +98,7 @@ std::string league_page(const std::string& truth, bool with_points, const std::v
             figure(entries[i], pictures[i].error, "distance of its walls") + warp_text(entries[i]) +
             victim_table(entries[i]);
   }
-  return scenarios::html_page("League", body);
+  return html_page("League", body);
 }
 
-}  // namespace rubble::app
+}  // namespace rubble::scoring

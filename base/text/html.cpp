@@ -1,6 +1,6 @@
-#include "scenarios/evidence/html.h"
+#include "base/text/html.h"
 
-namespace rubble::scenarios {
+namespace rubble {
 namespace {
 
 constexpr const char* kStyle = R"css(
@@ -45,6 +45,18 @@ std::string escape_html(const std::string& text) {
   return out;
 }
 
+std::string base64(const std::string& bytes) {
+  constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? kLetters[group >> (18 - 6 * k) & 63u] : '=';
+  }
+  return out;
+}
+
 std::string html_page(const std::string& title, const std::string& body) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
@@ -52,4 +64,4 @@ std::string html_page(const std::string& title, const std::string& body) {
          "</body>\n</html>\n";
 }
 
-}  // namespace rubble::scenarios
+}  // namespace rubble

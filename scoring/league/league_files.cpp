@@ -1,4 +1,4 @@
-#include "app/league_files.h"
+#include "scoring/league/league_files.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 
-namespace rubble::app {
+namespace rubble::scoring {
 namespace {
 
 namespace fs = std::filesystem;
@@ -139,4 +139,4 @@ LeagueFolder find_league(const std::string& folder, const std::string& truth) {
   return out;
 }
 
-}  // namespace rubble::app
+}  // namespace rubble::scoring

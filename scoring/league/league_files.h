@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace rubble::app {
+namespace rubble::scoring {
 
 /// One team's files in the folder of a league.
 struct LeagueFiles {
@@ -30,4 +30,4 @@ LeagueFolder find_league(const std::string& folder, const std::string& truth);
 /// The files hold the same bytes.
 bool same_content(const std::string& a, const std::string& b);
 
-}  // namespace rubble::app
+}  // namespace rubble::scoring
