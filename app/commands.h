@@ -73,6 +73,11 @@ struct ArenaArguments {
   std::string out;
 };
 
+struct DevicesArguments {
+  std::vector<std::string> ports;  ///< empty: all serial lines of this machine
+  double radius = 4.0;             ///< of the picture of a scan [m]
+};
+
 /// A log file, or the log inside a run folder.
 std::string recorded_log(const std::string& path);
 
@@ -85,6 +90,7 @@ int score_trajectory(const ScoreArguments& arguments);
 int replay(const ReplayArguments& arguments);
 int export_log(const ExportArguments& arguments);
 int arena(const ArenaArguments& arguments);
+int devices(const DevicesArguments& arguments);
 void list_elements();
 
 }  // namespace rubble::app

@@ -209,6 +209,14 @@ int dispatch(int argc, char** argv) {
       "  rubble arena arenas/shipped/yellow_8x8.yaml --resolution 0.02 --slice-height 0.2 --walls walls.geojson\n"
       "  rubble arena generate --cells 10x12 --seed 3 --ramps 0.4 --paper 0.2 --victims 6 --loops 0.2");
 
+  DevicesArguments devices_arguments;
+  CLI::App* devices_command = app.add_subcommand("devices", "Find the robot's devices and tell what they are and see");
+  devices_command->add_option("ports", devices_arguments.ports,
+                              "Ports to ask: /dev/ttyUSB0, pty:PATH or tcp:HOST:PORT (default: all USB serial lines)");
+  devices_command->add_option("--radius", devices_arguments.radius, "How much a scan's picture shows [m]")
+      ->check(between(0.1, 100.0));
+  devices_command->footer("Examples:\n  rubble devices\n  rubble devices /dev/ttyACM0 tcp:127.0.0.1:10940");
+
   BatchCommands batch_commands(app);
 
   try {
@@ -235,6 +243,7 @@ int dispatch(int argc, char** argv) {
   if (*score_command) return score(score_arguments);
   if (*replay_command) return replay(replay_arguments);
   if (*export_command) return export_log(export_arguments);
+  if (*devices_command) return devices(devices_arguments);
   return arena(arena_arguments);
 }
 

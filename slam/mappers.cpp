@@ -5,6 +5,7 @@
 #include "slam/paper/paper_mapper.h"
 #include "slam/peers/mrpt_kinds.h"
 #include "slam/process/process_mapper.h"
+#include "slam/robust/robust_mapper.h"
 
 namespace rubble::slam {
 namespace {
@@ -25,6 +26,7 @@ std::vector<std::string> names() {
 const std::vector<MapperKind>& mapper_kinds() {
   static const std::vector<MapperKind> kinds = {
       row<PaperConfig, PaperMapper>("paper", "Pellenz 2008: ICP, 300 particles, two-plane count map; no loop closure"),
+      row<RobustConfig, RobustMapper>("robust", "local map matching, verified loops, pose graph, restamped map"),
       {"process", "a program of yours, over its standard input and output (docs/mapper_protocol.md)",
        process_parameters},
       {"mrpt-icp", "MRPT's icp-slam: scans matched to a map of points; for comparison", mrpt_icp_parameters},

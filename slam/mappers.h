@@ -41,18 +41,23 @@ void bind_fields(Binder& binder, Config& config) {
   bind(binder, config);
 }
 
-/// Parameters kept in a plain struct `Config` that a function bind(Binder&, Config&) beside it knows, of a mapper whose
-/// constructor takes (model, config, seed).
-template <class Config, class Kind>
-class ParametersOf : public MapperParameters {
+/// Parameters kept in a plain struct `Config` that a function bind(Binder&, Config&) beside it knows.
+template <class Config>
+class ParametersIn : public MapperParameters {
  public:
   void bind(Binder& binder) override { bind_fields(binder, config); }
-  std::unique_ptr<Mapper> make(const robot::RobotModel& model, const MapperSetting& setting) const override {
-    return std::make_unique<Kind>(model, config, setting.seed);
-  }
-  std::unique_ptr<MapperParameters> copy() const override { return std::make_unique<ParametersOf>(*this); }
 
   Config config;
+};
+
+/// The same, of a mapper whose constructor takes (model, config, seed).
+template <class Config, class Kind>
+class ParametersOf : public ParametersIn<Config> {
+ public:
+  std::unique_ptr<Mapper> make(const robot::RobotModel& model, const MapperSetting& setting) const override {
+    return std::make_unique<Kind>(model, this->config, setting.seed);
+  }
+  std::unique_ptr<MapperParameters> copy() const override { return std::make_unique<ParametersOf>(*this); }
 };
 
 /// A row of the table of mappers.
@@ -80,6 +85,12 @@ class MapperConfig {
   void bind(Binder& binder);
   /// Throws InputError for a command that was not permitted.
   std::unique_ptr<Mapper> make(const robot::RobotModel& model, const MapperSetting& setting) const;
+
+  /// The parameters of a kind that keeps them in a `Config`. Throws std::bad_cast when the kind chosen does not.
+  template <class Config>
+  const Config& as() const {
+    return dynamic_cast<const ParametersIn<Config>&>(*parameters_).config;
+  }
 
   /// The command that make() would run; empty: none.
   std::string command() const { return parameters_->command(); }

@@ -88,33 +88,6 @@ void bind(Binder& b, sim::SimConfig& c) {
   b.boolean("co2_probe", c.co2_probe);
 }
 
-void bind(Binder& b, explore::ExplorerConfig& c) {
-  b.number("alpha", c.alpha, 0.0, 1000.0);
-  b.number("d_min_m", c.d_min, 0.0, 2.0);
-  b.number("d_opt_m", c.d_opt, 0.0, 5.0);
-  b.number("occupied_threshold", c.occupied_threshold, 0.01, 1.0);
-  b.integer("min_frontier_cells", c.min_frontier_cells, 1, 10000);
-  b.number("replan_period_s", c.replan_period, 0.02, 60.0);
-  b.number("cruise_speed", c.cruise_speed, 0.01, 2.0);
-  b.degrees("turn_speed_deg", c.turn_speed, 1.0, 360.0);
-  b.degrees("turn_in_place_deg", c.turn_in_place, 1.0, 180.0);
-  b.number("look_ahead_m", c.look_ahead, 0.05, 5.0);
-  b.boolean("return_home", c.return_home);
-  b.number("d_min_floor_m", c.d_min_floor, 0.0, 2.0);
-  b.number("switch_cost_m", c.switch_cost, 0.0, 100.0);
-  b.section("victims", [&](Binder& v) {
-    v.integer("min_cues", c.victims.min_cues, 1, 1000);
-    v.number("min_evidence", c.victims.min_evidence, 0.0, 1000.0);
-    v.number("merge_distance_m", c.victims.merge_distance, 0.0, 10.0);
-    v.boolean("search", c.search.on);
-    v.degrees("field_of_view_deg", c.search.field_of_view, 5.0, 360.0);
-    v.number("range_m", c.search.range, 0.3, 20.0);
-    v.integer("min_cells", c.search.min_cells, 1, 100000);
-    v.number("stare_s", c.search.stare, 0.0, 60.0);
-    v.number("dwell_s", c.search.dwell, 0.0, 60.0);
-  });
-}
-
 void bind(Binder& b, scoring::ScoreConfig& c) {
   b.number("tau_m", c.tau, 0.05, 10.0);
   b.number("colour_absent_cap_m", c.colour_absent_cap, 0.1, 1000.0);
@@ -129,7 +102,7 @@ void bind_sections(Binder& b, Scenario& s) {
   b.section("levelling", [&](Binder& in) { bind(in, s.levelling, s.robot.accelerometer_mount); });
   b.section("sim", [&](Binder& in) { bind(in, s.sim); });
   b.section("mapper", [&](Binder& in) { s.mapper.bind(in); });
-  b.section("explorer", [&](Binder& in) { bind(in, s.explorer); });
+  b.section("explorer", [&](Binder& in) { s.explorer.bind(in); });
   b.section("scoring", [&](Binder& in) {
     bind(in, s.scoring);
     in.boolean("visible_truth", s.visible_truth);
@@ -235,7 +208,7 @@ void read_common(const YamlMap& root, Scenario& s) {
   YamlReader reader(root);
   bind_sections(reader, s);
   check_laser(root.map("robot").map("laser"), s.robot.laser);
-  if (s.explorer.d_opt < s.explorer.d_min) root.fail("explorer", "d_opt_m must not be smaller than d_min_m");
+  if (const std::string mistake = s.explorer.mistake(); !mistake.empty()) root.fail("explorer", mistake);
   s.sim.time_limit = s.time_limit;
 }
 

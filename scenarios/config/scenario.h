@@ -9,7 +9,7 @@
 #include "arenas/generate/generate.h"
 #include "arenas/model/arena.h"
 #include "base/image/geotiff.h"
-#include "explore/explorer.h"
+#include "explore/explorers.h"
 #include "robot/levelling.h"
 #include "robot/model.h"
 #include "scoring/scorecard.h"

@@ -5,7 +5,7 @@ namespace rubble::scenarios {
 Core::Core(const Scenario& scenario, const robot::RobotModel& model, bool explore, const std::string& run_folder)
     : mapper_(scenario.mapper.make(model, {scenario.seed, run_folder})),
       levelling_(scenario.levelling, model.accelerometer_mount) {
-  if (explore) explorer_.emplace(model, scenario.explorer);
+  if (explore) explorer_ = scenario.explorer.make(model);
 }
 
 robot::Commands Core::step(const robot::Inputs& inputs) {

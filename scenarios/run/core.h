@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "explore/explorer.h"
@@ -32,7 +31,7 @@ class Core {
  private:
   std::unique_ptr<slam::Mapper> mapper_;
   robot::Levelling levelling_;
-  std::optional<explore::Explorer> explorer_;
+  std::unique_ptr<explore::Explorer> explorer_;  ///< null: only mapping
 };
 
 }  // namespace rubble::scenarios

@@ -7,7 +7,7 @@
 
 #include "base/image/geotiff.h"
 #include "base/trajectory.h"
-#include "explore/explorer.h"
+#include "explore/victim_report.h"
 #include "slam/grid/count_map.h"
 
 namespace rubble::scenarios {

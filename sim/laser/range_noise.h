@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/rng.h"
+#include "robot/measurements.h"
 #include "robot/model.h"
 
 namespace rubble::sim {
@@ -19,7 +20,7 @@ class RangeNoise {
 
   /// `ranges` [m], +inf: nothing met. On return in whole mm; +inf: a miss; NaN: no measurement (too near, mixed,
   /// grazing).
-  /// `codes`, where given: the URG-04LX's code of each beam, 0 where it has a range or met nothing.
+  /// `codes`, where given: the URG-04LX's code of each beam (LaserScan::codes).
   void apply(std::vector<float>& ranges, std::vector<std::uint8_t>* codes = nullptr);
 
  private:
@@ -28,8 +29,8 @@ class RangeNoise {
   void lose_grazing(std::size_t i, std::vector<float>& ranges);
   void blur(std::vector<float>& ranges);
   void tell_lost(const std::vector<float>& ranges, std::vector<std::uint8_t>& codes) const;
-  /// What is left without a range, and not for want of an echo, is nearer than the scanner measures.
-  static void tell_too_near(const std::vector<float>& ranges, std::vector<std::uint8_t>& codes);
+  /// Misses, and what is left without a range: nearer than the scanner measures.
+  static void tell_rest(const std::vector<float>& ranges, std::vector<std::uint8_t>& codes);
 
   robot::LaserModel laser_;
   double factor_;

@@ -1,0 +1,121 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/planar.h"
+#include "explore/caution/attempts.h"
+#include "explore/caution/blacklist.h"
+#include "explore/caution/motion_watch.h"
+#include "explore/explorer.h"
+#include "explore/paper/backing_up.h"
+#include "explore/paper/look_around.h"
+#include "explore/paper/paper_config.h"
+#include "explore/paper/path_watch.h"
+#include "explore/plan/path_follower.h"
+#include "explore/plan/planner.h"
+#include "explore/plan/traversable.h"
+#include "explore/search/floor_search.h"
+#include "explore/search/victim_search.h"
+#include "robot/model.h"
+
+namespace rubble::explore {
+
+/// The paper's explorer: Exploration Transform to a close frontier by a safe path, until nothing reachable is left;
+/// then to places the victim sensors have not looked at, by the same transform. paper_explorer.cpp decides where to go,
+/// recovery.cpp what to do when the way is not as planned.
+class PaperExplorer : public Explorer {
+ public:
+  PaperExplorer(const robot::RobotModel& model, const PaperExplorerConfig& config);
+
+  robot::Commands next(const slam::Mapper& mapper, const robot::Inputs& inputs) override;
+  bool finished() const override { return state_ == ExplorerState::Finished; }
+  const std::string& reason() const override { return reason_; }
+  ExplorerState state() const override { return state_; }
+  const std::vector<mrpt::math::TPoint2D>& path() const override { return shown_path_; }
+  const std::vector<VictimReport>& victims() const override { return search_.reports(); }
+
+ private:
+  using TPoint2D = mrpt::math::TPoint2D;
+  using TPose2D = mrpt::math::TPose2D;
+  using Drive = robot::Drive;
+
+  static constexpr double kBarRadius = 0.60;  ///< about targets that cannot be had [m]
+
+  void observe(const slam::Mapper& mapper, const robot::Inputs& inputs);
+  Drive decide(const slam::Mapper& mapper);
+  Drive start(const slam::Mapper& mapper);
+  Drive drive(const slam::Mapper& mapper);
+  Drive back_up();
+
+  /// The floor with `hits` [map frame] as further obstacles.
+  Traversable floor_now(const slam::Mapper& mapper, const std::vector<TPoint2D>& hits) const;
+  void replan(const slam::Mapper& mapper);
+  Plan plan_on(const Traversable& floor);
+  void accept(Plan plan);
+  void visited_in_vain(const TPoint2D& target);
+  void nothing_left();
+  void finish_exploring();
+  void finish_searching();
+  void finish(const std::string& why);
+
+  void check_path(const slam::Mapper& mapper);
+  void got_stuck();
+  void bar_target(const TPoint2D& target);
+  void look_around(double angle, bool to_the_end);
+  void show_path();
+
+  void mark_searched();
+  bool holding_still();
+  Plan plan_search(const Traversable& floor);
+  void face_subject();
+
+  const robot::RobotModel model_;
+  const PaperExplorerConfig config_;
+  Planner planner_;
+  PathFollower follower_;
+  VictimSearch search_;
+  FloorSearch floor_search_;
+  Blacklist blacklist_;
+  Attempts attempts_;
+  MotionWatch watch_;
+  PathWatch path_watch_;
+  LookAround looking_;
+  BackingUp backing_up_;
+
+  ExplorerState state_ = ExplorerState::Starting;
+  std::string reason_;
+  std::vector<TPoint2D> shown_path_;
+
+  Stamp now_ = Stamp::never();
+  double dt_ = 0.0;
+  TPose2D pose_;
+  double turned_ = 0.0;  ///< since the last tick [rad]
+  bool stalled_ = false;
+  Stamp last_scan_ = Stamp::never();
+  Drive commanded_;
+  std::vector<TPoint2D> trail_;
+  TPoint2D home_;
+
+  Traversable last_floor_;
+  std::uint64_t planned_version_ = 0;
+  Stamp next_plan_ = Stamp::never();
+  Stamp last_plan_ = Stamp::never();
+  bool plan_forced_ = true;
+  std::optional<TPoint2D> target_;
+  double target_cost_ = 0.0;
+  double path_d_min_ = 0.0;
+  std::size_t frontier_left_ = 0;
+
+  std::optional<TPoint2D> looked_from_;
+  int failed_plans_ = 0;
+  int looks_in_vain_ = 0;
+  int pardons_ = 0;
+
+  ExplorerState after_back_up_ = ExplorerState::Driving;
+  std::optional<TPoint2D> stuck_place_;
+  int stuck_there_ = 0;
+};
+
+}  // namespace rubble::explore
