@@ -4,7 +4,7 @@
 
 #include "base/angle.h"
 #include "base/yaml/strict_yaml.h"
-#include "scenarios/config/binder.h"
+#include "base/yaml/binder.h"
 
 namespace rubble::scenarios {
 namespace {
