@@ -1,7 +1,7 @@
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 
+#include "app/batch_tools.h"
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "base/error.h"
@@ -12,8 +12,7 @@ namespace {
 /// A path, or the bare name of a scenario that ships with rubble; no name: the main job.
 std::string find_scenario(const std::string& name) {
   namespace fs = std::filesystem;
-  const char* home = std::getenv("RUBBLE_HOME");
-  const std::string shipped = std::string(home ? home : RUBBLE_SOURCE_DIR) + "/scenarios/";
+  const std::string shipped = shipped_folder() + "/";
   if (name.empty()) return shipped + "yellow.yaml";
   if (!fs::exists(name) && name.find('/') == std::string::npos && fs::exists(shipped + name + ".yaml"))
     return shipped + name + ".yaml";
