@@ -36,8 +36,11 @@ void show(const BatchProgress& p) {
 }  // namespace
 
 std::string shipped_folder() {
-  const char* home = std::getenv("RUBBLE_HOME");
-  return std::string(home ? home : RUBBLE_SOURCE_DIR) + "/scenarios";
+  if (const char* home = std::getenv("RUBBLE_HOME")) return std::string(home) + "/scenarios";
+  std::error_code error;
+  const fs::path installed = fs::read_symlink("/proc/self/exe", error).parent_path() / "../share/rubble/scenarios";
+  if (fs::is_directory(installed, error)) return installed.lexically_normal().string();
+  return std::string(RUBBLE_SOURCE_DIR) + "/scenarios";
 }
 
 std::string find_sweep(const std::string& name) {

@@ -1,7 +1,7 @@
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 
+#include "app/batch_tools.h"
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "base/error.h"

@@ -88,7 +88,8 @@ ReplayReport replay_run(const std::string& path, const Scenario& scenario, const
     last_differs = !same_commands(commands, robot.recorded_commands());
     if (last_differs) ++report.different_commands;
   };
-  Loop(scenario, folder, hooks).run(robot, core);
+  const LoopEnd end = Loop(scenario, folder, hooks).run(robot, core);
+  if (!end.failure.empty()) throw RunError(end.failure);
   // A run that was killed wrote its trajectory up to its last second, an older map, and its last tick perhaps without
   // the command that answered it.
   if (!report.ended && last_differs) --report.different_commands;

@@ -6,8 +6,11 @@
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CSensoryFrame.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "base/angle.h"
 #include "base/planar.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
 
@@ -55,10 +58,11 @@ void MrptMapper::take(const robot::LaserScan& scan) {
   motion.computeFromOdometry(mrpt::poses::CPose2D(T_odom_scan_ ? T_odom_base - *T_odom_scan_ : TPose2D()), {});
   T_odom_scan_ = T_odom_base;
 
-  robot::LaserScan level = scan;
-  level.stamp = reference;
+  const SweepMotion sweep{odometry_.between(reference, scan.stamp),
+                          odometry_.between(reference, scan.beam_stamp(scan.ranges.size() - 1))};
+  const ScanPoints points = level_scan_.points(scan, odometry_.empty() ? nullptr : &sweep);
   const auto observation = mrpt::obs::CObservation2DRangeScan::Create();
-  robot::to_mrpt(level, model_.T_base_laser, *observation);
+  robot::to_mrpt(as_instant(scan, points), model_.T_base_laser, *observation);
   observation->sensorLabel = "LASER";
   motion.timestamp = observation->timestamp;
   mrpt::obs::CActionCollection action;
@@ -74,7 +78,26 @@ void MrptMapper::take(const robot::LaserScan& scan) {
   covariance_ = uncertainty();
   const PlanarTransform to_map(trajectory_.back().pose);
   last_hits_.clear();
-  for (const auto& p_base : level_scan_.points(scan).hits) last_hits_.push_back(to_map(p_base));
+  for (const auto& p_base : points.hits) last_hits_.push_back(to_map(p_base));
+}
+
+/// The points of a sweep as beams of a scan taken all at once; of several in one beam the nearest.
+robot::LaserScan MrptMapper::as_instant(const robot::LaserScan& scan, const ScanPoints& points) const {
+  robot::LaserScan instant = scan;
+  instant.stamp = scan.middle();
+  instant.beam_period = 0.0;
+  std::fill(instant.ranges.begin(), instant.ranges.end(), std::numeric_limits<float>::quiet_NaN());
+  for (const auto& p_base : points.hits) {
+    const double dx = p_base.x - points.origin.x, dy = p_base.y - points.origin.y;
+    const double bearing = std::atan2(dy, dx) - model_.T_base_laser.yaw;
+    const double turned = std::fmod(bearing - scan.angle_min + 4.0 * kPi, 2.0 * kPi);
+    const double beam = std::round(turned / scan.angle_step);
+    if (beam >= static_cast<double>(scan.ranges.size())) continue;
+    float& range = instant.ranges[static_cast<std::size_t>(beam)];
+    const auto distance = static_cast<float>(length(dx, dy));
+    if (!(range <= distance)) range = distance;
+  }
+  return instant;
 }
 
 /// Between the builder's steps the odometry leads on. Where steps of the past have moved, everything on them moves.

@@ -20,8 +20,9 @@ class COccupancyGridMap2D;
 namespace rubble::slam {
 
 /// What MRPT's map builders share: scans and odometry become pairs of action and observation, one a scan, as MRPT's own
-/// programs make them of a log; their grid becomes our map. A scan waits for the odometry that follows it, and is taken
-/// as one instant: MRPT's builders know no sweep.
+/// programs make them of a log; their grid becomes our map. A scan waits for the odometry that follows it. MRPT's
+/// builders take a scan as one instant, so it is given to them as it would have looked at the middle of its sweep: a
+/// robot that turns would else bend their maps, which says nothing about their methods.
 class MrptMapper : public Mapper {
  public:
   void update(const robot::Inputs& inputs) override;
@@ -50,6 +51,7 @@ class MrptMapper : public Mapper {
 
  private:
   void take(const robot::LaserScan& scan);
+  robot::LaserScan as_instant(const robot::LaserScan& scan, const ScanPoints& points) const;
   void follow_path(Stamp stamp, const mrpt::math::TPose2D& T_odom_base);
   void take_grid();
 
