@@ -2,6 +2,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "base/error.h"
 #include "base/image/png.h"
 
 namespace rubble::scoring {
