@@ -25,7 +25,7 @@ std::string clock_text(double seconds) {
   return text;
 }
 
-void show(const BatchProgress& p) {
+void show_progress(const BatchProgress& p) {
   std::string line = std::to_string(p.finished()) + " of " + std::to_string(p.total) + " runs, " +
                      std::to_string(p.running) + " running";
   if (p.failed) line += ", " + std::to_string(p.failed) + " FAILED";
@@ -69,7 +69,7 @@ int usable_cores() {
 BatchReport run_with_progress(const std::vector<Job>& jobs, BatchOptions options, bool record) {
   catch_interrupts();
   options.stop = interrupted;
-  if (isatty(STDERR_FILENO)) options.progress = show;
+  if (isatty(STDERR_FILENO)) options.progress = show_progress;
   BatchReport report = run_batch(jobs, simulating_runner(record), options);
   end_progress();
   return report;
