@@ -1,6 +1,7 @@
 // `rubble devices`: who answers at the ports, and what a scanner sees.
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 
 #include "app/commands.h"
 #include "base/error.h"
@@ -36,7 +37,10 @@ bool ask(const std::string& port, double radius) {
   }
 }
 
-}  // namespace
+struct DevicesArguments {
+  std::vector<std::string> ports;  ///< empty: all serial lines of this machine
+  double radius = 4.0;             ///< of the picture of a scan [m]
+};
 
 int devices(const DevicesArguments& arguments) {
   for (const std::string& port : arguments.ports) robot::check_port_word(port);
@@ -50,6 +54,20 @@ int devices(const DevicesArguments& arguments) {
     std::fflush(stdout);
   }
   return known > 0 ? kOk : kFailed;
+}
+
+}  // namespace
+
+Command devices_command() {
+  return {"devices", "Find the robot's devices and tell what they are and see",
+          "Examples:\n  rubble devices\n  rubble devices /dev/ttyACM0 tcp:127.0.0.1:10940", [](Options& o) -> Action {
+            auto a = std::make_shared<DevicesArguments>();
+            o.arguments("ports", a->ports,
+                        "Ports to ask: /dev/ttyUSB0, pty:PATH or tcp:HOST:PORT (default: all USB serial lines)",
+                        Options::Need::Optional);
+            o.number("--radius", a->radius, 0.1, 100.0, "How much a scan's picture shows [m]");
+            return [a] { return devices(*a); };
+          }};
 }
 
 }  // namespace rubble::app

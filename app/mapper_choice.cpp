@@ -8,6 +8,12 @@
 
 namespace rubble::app {
 
+void add_mapper(Options& options, MapperChoice& choice) {
+  options.text("--mapper-command", choice.command,
+               "Map with this program (docs/mapper_protocol.md): --mapper-command \"python3 my_slam.py\"");
+  options.flag("--allow-commands", choice.allow_commands, "Let a command that stands in a file run");
+}
+
 std::vector<scenarios::Override> with_mapper(const MapperChoice& choice, std::vector<scenarios::Override> overrides) {
   if (!choice.command.empty())
     overrides.insert(overrides.begin(), {"mapper", slam::process_mapper_yaml(choice.command)});

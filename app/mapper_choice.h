@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "app/command.h"
 #include "scenarios/config/scenario.h"
 
 namespace rubble::app {
@@ -12,6 +13,9 @@ struct MapperChoice {
   std::string command;          ///< --mapper-command: use this program instead of the mapper of the file
   bool allow_commands = false;  ///< --allow-commands: a command that stands in a file may run
 };
+
+/// Declares --mapper-command and --allow-commands.
+void add_mapper(Options& options, MapperChoice& choice);
 
 /// `overrides` with the command first, so that what is set for it (mapper.timeout_s) comes after it.
 std::vector<scenarios::Override> with_mapper(const MapperChoice& choice, std::vector<scenarios::Override> overrides);

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
@@ -53,8 +54,6 @@ void print_table(const Verdict& verdict, const nlohmann::ordered_json& json) {
   print_worst_places(verdict.score);
 }
 
-}  // namespace
-
 int score(const ScoreArguments& arguments) {
   if (!arguments.league.empty()) return score_league(arguments);
   if (arguments.truth.empty()) throw UsageError("truth is required; see rubble score --help");
@@ -101,6 +100,41 @@ int score(const ScoreArguments& arguments) {
     write_text_file(arguments.out + "/score.json", json.dump(2) + "\n");
   }
   return kOk;
+}
+
+}  // namespace
+
+Command score_command() {
+  return {
+      "score", "Align a map to the ground truth and score it",
+      "Examples:\n  rubble score runs/latest/map.tif runs/latest/truth.tif\n"
+      "  rubble score team.png truth.tif --resolution 0.05 --out judged\n"
+      "  rubble score team.tif truth.tif --html judge.html\n"
+      "  rubble score --league maps/ truth.tif --out judged\n"
+      "  rubble score runs/latest/estimate.tum runs/latest/truth.tum",
+      [](Options& o) -> Action {
+        auto a = std::make_shared<ScoreArguments>();
+        o.argument("map", a->map, "GeoTIFF, ROS map.yaml, image with --resolution, or trajectory .tum");
+        o.argument("truth", a->truth, "Ground truth, same formats (for a trajectory also .relations)",
+                   Options::Need::Optional);
+        o.text("--pose", a->pose, "Score at this pose, X,Y,DEG[,SCALE], instead of aligning (write --pose=-1,2,90)");
+        o.text("--html", a->html, "Write a page to move, turn, scale and blend the two maps by hand");
+        o.text("--league", a->league,
+               "Rank all maps of this folder against one truth: rubble score --league DIR TRUTH");
+        o.text("--victims", a->victims, "True victims: arena file or CSV name,x,y (default: beside the truth)");
+        o.text("--pois", a->pois, "CSV of the victims that the map reports (default: the symbols drawn on it)");
+        o.text("--judge", a->judge, "CSV team,points of the judge's points, for --league");
+        o.number("--resolution", a->map_resolution, 0.001, 10.0,
+                 "Metres a pixel of the map image; in a league of images that do not say");
+        o.number("--truth-resolution", a->truth_resolution, 0.001, 10.0, "Metres a pixel of the truth image");
+        o.number("--tau", a->tau, 0.05, 10.0, "Distance at which a wall counts nothing [m]");
+        o.text("--align", a->align,
+               "What proposes poses: auto, or walls, rooms and one of features, surf, akaze, orb, joined by commas");
+        o.flag("--warp", a->warp, "Also undo the map's distortion, and match its features");
+        o.text("--out", a->out, "Folder for overlay.png, error.png and score.json");
+        o.flag("--json", a->json, "Print JSON");
+        return [a] { return score(*a); };
+      }};
 }
 
 }  // namespace rubble::app

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "app/commands.h"
 #include "app/score_parts.h"
 #include "app/score_tools.h"
 #include "base/error.h"

@@ -5,7 +5,7 @@
 #include <csignal>
 #include <cstdio>
 
-#include "app/commands.h"
+#include "app/command.h"
 #include "scenarios/run/score_json.h"
 
 namespace rubble::app {
@@ -68,7 +68,8 @@ void print_victims(const nlohmann::ordered_json& score) {
   print_row("victims found", text);
 }
 
-void print_summary(const scenarios::RunReport& report) {
+int show(const scenarios::RunReport& report) {
+  end_progress();
   const auto& score = report.score;
   print_row("ended", report.end);
   print_figures(score);
@@ -81,9 +82,6 @@ void print_summary(const scenarios::RunReport& report) {
     print_row("NOT MAPPED", std::to_string(dropped) + " scans were empty or not younger than the one before");
   for (const auto& broken : report.broken) print_row("NOT AS EXPECTED", broken);
   print_row("folder", report.folder);
-}
-
-int exit_code(const scenarios::RunReport& report) {
   if (!report.failure.empty()) std::fprintf(stderr, "rubble: %s\n", report.failure.c_str());
   if (report.interrupted) return kInterrupted;
   if (!report.failure.empty()) return kFailed;

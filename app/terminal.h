@@ -25,10 +25,7 @@ void print_figures(const nlohmann::ordered_json& score);
 /// How many victims were found, where that is known.
 void print_victims(const nlohmann::ordered_json& score);
 
-/// Prints the table that ends a run: one line a figure that is known.
-void print_summary(const scenarios::RunReport& report);
-
-/// The exit code of a finished run.
-int exit_code(const scenarios::RunReport& report);
+/// Prints the table that ends a run: one line a figure that is known. Returns the exit code.
+int show(const scenarios::RunReport& report);
 
 }  // namespace rubble::app

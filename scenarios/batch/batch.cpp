@@ -65,19 +65,19 @@ Entry entry_of(const Job& job, const TaskResult& result, const BatchOptions& opt
   r.code = options.code;
   r.score = ordered_json::object();
   if (result.end == TaskEnd::TimedOut) {
-    r.status = "timeout";
+    r.status = RunStatus::TimedOut;
     r.error = "killed after " + std::to_string(static_cast<long>(options.run_limit)) + " s";
     entry.timing["wall_s"] = result.wall_s;
     return entry;
   }
   if (result.end == TaskEnd::Failed) {
-    r.status = "failed";
+    r.status = RunStatus::Failed;
     r.error = result.text;
     entry.timing["wall_s"] = result.wall_s;
     return entry;
   }
   const RunOutcome outcome = unpack(result.text);
-  r.status = outcome.failure.empty() ? "ok" : "failed";
+  r.status = outcome.failure.empty() ? RunStatus::Ok : RunStatus::Failed;
   r.error = outcome.failure;
   r.end = outcome.end;
   r.hash = outcome.hash;

@@ -113,6 +113,24 @@ auto order_of(const RunRecord& r) { return std::tie(r.scenario, r.configuration,
 
 }  // namespace
 
+std::string name_of(RunStatus status) {
+  switch (status) {
+    case RunStatus::Ok:
+      return "ok";
+    case RunStatus::Failed:
+      return "failed";
+    case RunStatus::TimedOut:
+      return "timeout";
+  }
+  return "";
+}
+
+RunStatus status_named(const std::string& name) {
+  for (const RunStatus status : {RunStatus::Ok, RunStatus::Failed, RunStatus::TimedOut})
+    if (name == name_of(status)) return status;
+  throw InputError("'" + name + "' is no status of a run; known are ok, failed, timeout");
+}
+
 double RunRecord::metric(const std::string& key) const {
   if (key == "completed") return ok() ? 1.0 : 0.0;
   const auto found = score.find(key);
@@ -127,7 +145,7 @@ std::string to_line(const RunRecord& r) {
   json["scenario"] = r.scenario;
   json["config"] = r.configuration;
   json["seed"] = r.seed;
-  json["status"] = r.status;
+  json["status"] = name_of(r.status);
   json["error"] = r.error;
   json["end"] = r.end;
   json["broken"] = r.broken;
@@ -146,7 +164,7 @@ RunRecord from_line(const std::string& line, const std::string& place) {
     r.scenario = json.at("scenario");
     r.configuration = json.at("config");
     r.seed = json.at("seed");
-    r.status = json.at("status");
+    r.status = status_named(json.at("status"));
     r.error = json.at("error");
     r.end = json.at("end");
     r.broken = json.at("broken").get<std::vector<std::string>>();
@@ -155,7 +173,7 @@ RunRecord from_line(const std::string& line, const std::string& place) {
     r.folder = json.at("folder");
     r.code = json.at("code");
     return r;
-  } catch (const ordered_json::exception&) {
+  } catch (const std::exception&) {
     throw InputError(place + ": is no line that 'rubble batch' wrote; remove it, its run will be made again");
   }
 }

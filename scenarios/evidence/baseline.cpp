@@ -89,7 +89,7 @@ CheckCase check_completed(const std::string& group, std::size_t before, const st
              std::to_string(before);
   for (const RunRecord* run : runs)
     if (!run->ok() && !c.passed)
-      c.detail += "; seed " + std::to_string(run->seed) + ": " + run->status + " " + run->error;
+      c.detail += "; seed " + std::to_string(run->seed) + ": " + name_of(run->status) + " " + run->error;
   return c;
 }
 

@@ -154,7 +154,7 @@ std::string failed_table(const ResultSet& set) {
     for (const auto& broken : run.broken) what += (what.empty() ? "" : "; ") + broken;
     rows += "<tr><td>" + escape_html(run.scenario) + "</td><td>" + escape_html(run.configuration) +
             "</td><td class=n>" + std::to_string(run.seed) + "</td><td class=failed>" +
-            (run.ok() ? "not as expected" : run.status) + "</td><td>" + escape_html(what) + "</td></tr>\n";
+            (run.ok() ? "not as expected" : name_of(run.status)) + "</td><td>" + escape_html(what) + "</td></tr>\n";
   }
   if (count == 0) return "";
   std::string out =

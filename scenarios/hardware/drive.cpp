@@ -16,6 +16,7 @@
 #include "scenarios/run/core.h"
 #include "scenarios/run/loop.h"
 #include "scenarios/run/run_folder.h"
+#include "scenarios/run/score_json.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -184,18 +185,14 @@ double share(std::vector<double>& sorted, double part) {
   return sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1))];
 }
 
-ordered_json score_of(const Core& core, const robot::RealRobot& robot, double seconds, Clock::time_point start) {
-  ordered_json score;
-  for (const char* key : {"score", "precision", "recall", "psi_m", "aligned", "ate_first_m", "ate_aligned_m", "known",
-                          "victims_found", "victims_total"})
-    score[key] = nullptr;
-  const slam::MapperCounts& counts = core.mapper().counts();
-  score["area_known_m2"] = known_area(core.mapper().map());
-  score["scans"] = counts.scans;
-  score["scans_mapped"] = counts.mapped;
-  for (const slam::MapperFigure& figure : core.mapper().figures()) score[figure.key] = figure.value;
-  score["scans_out_of_order"] = counts.out_of_order;
-  score["hits_outside"] = core.mapper().map().dropped_hits();
+/// What the drive can say without knowing the truth; behind the table's figures those of the devices.
+ordered_json score_of(const Core& core, const robot::RealRobot& robot, double seconds, const std::string& end,
+                      Clock::time_point start) {
+  scoring::Evidence evidence;
+  evidence.run = run_figures(core, seconds, end);
+  const double wall = seconds_since(start);
+  evidence.machine = scoring::MachineFigures{wall, peak_megabytes()};
+  ordered_json score = score_json(evidence);
   const robot::RobotStatus status = robot.status();
   score["bad_packets"] = status.bad_packets;
   score["odometry_jumps"] = status.jumps;
@@ -204,15 +201,12 @@ ordered_json score_of(const Core& core, const robot::RealRobot& robot, double se
   std::vector<double> delays = robot.answer_delays();
   score["answer_ms_median"] = 1e3 * share(delays, 0.5);
   score["answer_ms_99"] = 1e3 * share(delays, 0.99);
-  score["sim_s"] = seconds;
-  score["wall_s"] = seconds_since(start);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   const auto time = [](const timeval& t) {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
-  score["cpu_share"] = (time(usage.ru_utime) + time(usage.ru_stime)) / std::max(1e-3, seconds_since(start));
-  score["peak_mb"] = static_cast<double>(usage.ru_maxrss) / 1024.0;
+  score["cpu_share"] = (time(usage.ru_utime) + time(usage.ru_stime)) / std::max(1e-3, wall);
   return score;
 }
 
@@ -242,13 +236,12 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     }
     report.interrupted = driver.interrupted();
     recorded.flush();
-    report.score = score_of(core, real, driver.seconds(), start);
+    report.score = score_of(core, real, driver.seconds(), report.end, start);
   }
   core.finish();
   folder.append_estimate(core.mapper());
   folder.save_estimate(core.mapper());
   folder.save_map(file.settings, core.mapper(), core.victims());
-  report.score["end"] = report.end;
   folder.save_hashes("");
   folder.write("score.json", report.score.dump(2) + "\n");
   folder.close();

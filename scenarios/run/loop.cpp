@@ -1,5 +1,7 @@
 #include "scenarios/run/loop.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -85,6 +87,26 @@ void Loop::save_all(const Core& core) {
 
 double Loop::seconds_since(Clock::time_point then) const {
   return std::chrono::duration<double>(Clock::now() - then).count();
+}
+
+scoring::RunFigures run_figures(const Core& core, double sim_s, const std::string& reason) {
+  const slam::Mapper& mapper = core.mapper();
+  scoring::RunFigures out;
+  out.end = reason;
+  out.sim_s = sim_s;
+  out.area_known_m2 = known_area(mapper.map());
+  out.scans = mapper.counts().scans;
+  out.scans_mapped = mapper.counts().mapped;
+  out.scans_out_of_order = mapper.counts().out_of_order;
+  out.hits_outside = mapper.map().dropped_hits();
+  for (const slam::MapperFigure& figure : mapper.figures()) out.own.emplace_back(figure.key, figure.value);
+  return out;
+}
+
+double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
 }  // namespace rubble::scenarios

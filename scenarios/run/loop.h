@@ -7,6 +7,7 @@
 #include "robot/robot.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/run_folder.h"
+#include "scoring/figures/evidence.h"
 
 namespace rubble::scenarios {
 
@@ -64,5 +65,11 @@ class Loop {
 
 /// Area of which the map knows something [m^2].
 double known_area(const slam::CountMap& map);
+
+/// What mapper and explorer did in `sim_s` seconds of run time. `reason`: why it ended, for people.
+scoring::RunFigures run_figures(const Core& core, double sim_s, const std::string& reason);
+
+/// The most memory this process has held so far.
+double peak_megabytes();
 
 }  // namespace rubble::scenarios

@@ -1,7 +1,5 @@
 #include "scenarios/run/run.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -34,26 +32,6 @@ using Clock = std::chrono::steady_clock;
 using nlohmann::ordered_json;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-double peak_megabytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
-
-scoring::RunFigures run_figures(const Core& core, const LoopEnd& end, const std::string& reason) {
-  const slam::Mapper& mapper = core.mapper();
-  scoring::RunFigures out;
-  out.end = reason;
-  out.sim_s = end.sim_s;
-  out.area_known_m2 = known_area(mapper.map());
-  out.scans = mapper.counts().scans;
-  out.scans_mapped = mapper.counts().mapped;
-  out.scans_out_of_order = mapper.counts().out_of_order;
-  out.hits_outside = mapper.map().dropped_hits();
-  for (const slam::MapperFigure& figure : mapper.figures()) out.own.emplace_back(figure.key, figure.value);
-  return out;
-}
 
 /// Trajectories of the mapper against the true one.
 void compare_trajectories(scoring::Evidence& evidence, const slam::Mapper& mapper, const Trajectory& truth) {
@@ -212,7 +190,7 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   evidence.map = &files.map.grid;
   evidence.truth = &files.truth.grid;
   evidence.victims = judge_victims(files, *evidence.score, scenario, arena, core.victims());
-  evidence.run = run_figures(core, end, end.reason);
+  evidence.run = run_figures(core, end.sim_s, end.reason);
   RunReport report;
   report.interrupted = end.interrupted;
   report.failure = end.failure;
@@ -238,7 +216,7 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
     throw InputError(log + ": holds no laser scan; a log to map needs scans (and odometry)");
   scoring::Evidence evidence;
   if (!robot.reference().empty()) compare_trajectories(evidence, core.mapper(), robot.reference());
-  evidence.run = run_figures(core, end,
+  evidence.run = run_figures(core, end.sim_s,
                              end.interrupted    ? end.reason
                              : robot.was_torn() ? "the log is cut: its torn last frame was dropped"
                                                 : "the log is over");

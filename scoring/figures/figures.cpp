@@ -103,7 +103,7 @@ std::vector<Figure> make_table() {
       {"aligned", "maps aligned", "", 0, kUp, 0.0, kLeague, of_score(&S::aligned)},
       {"victims_found", "victims found", "", 0, kUp, 0.0, kReport | kLeague, of_judged_victims(&VictimFigures::found)},
       {"victims_false", "false victims", "", 0, kDown, 0.0, kLeague, of_judged_victims(&VictimFigures::false_alarms)},
-      {"victims_error_m", "victim error", "m", 2, kDown, 0.02, kShown, victim_error},
+      {"victims_error_m", "victim error", "m", 2, kDown, 0.02, kPlain, victim_error},
       {"victims_total", "victims there are", "", 0, kNone, 0.0, kLeague, of_judged_victims(&VictimFigures::total)},
       {"victims_reported", "victims reported", "", 0, kNone, 0.0, kPlain, of_victims(&VictimFigures::reported)},
       {"victims_from", "victims taken from", "", 0, kNone, 0.0, kText | kLeague,
