@@ -84,7 +84,7 @@ int arena(const ArenaArguments& arguments) {
     const std::vector<arenas::WallLine> lines = arenas::wall_lines(arena);
     write_text_file(arguments.walls, is_geojson ? arenas::walls_geojson(lines) : arenas::walls_csv(lines));
   }
-  if (arguments.generate) {
+  if (arguments.generate()) {
     write_text_file(base + ".yaml", yaml);
     std::printf("%s.yaml\n", base.c_str());
   }
