@@ -217,9 +217,9 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   scoring::Evidence evidence;
   if (!robot.reference().empty()) compare_trajectories(evidence, core.mapper(), robot.reference());
   evidence.run = run_figures(core, end.sim_s,
-                             end.interrupted    ? end.reason
-                             : robot.was_torn() ? "the log is cut: its torn last frame was dropped"
-                                                : "the log is over");
+                             end.interrupted || !end.failure.empty() ? end.reason
+                             : robot.was_torn()                      ? "the log is cut: its torn last frame was dropped"
+                                                                     : "the log is over");
   RunReport report;
   report.interrupted = end.interrupted;
   report.failure = end.failure;
