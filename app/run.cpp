@@ -21,7 +21,8 @@ std::string find_shipped(const std::string& name, const std::string& folder, con
 int run(const RunArguments& arguments) {
   auto overrides = arguments.common.overrides;
   if (arguments.seed) overrides.emplace_back("seed", std::to_string(*arguments.seed));
-  const scenarios::Scenario scenario = scenarios::load_scenario(find_shipped(arguments.scenario, "scenarios", "yellow"), overrides);
+  const scenarios::Scenario scenario =
+      scenarios::load_scenario(find_shipped(arguments.scenario, "scenarios", "yellow"), overrides);
   const auto options = terminal_options(arguments.common.out, arguments.common.force);
   for (const std::string& note : scenarios::arena_notes(scenario)) std::fprintf(stderr, "rubble: %s\n", note.c_str());
   const scenarios::RunReport report = scenarios::run_scenario(scenario, options);
