@@ -27,7 +27,7 @@ struct PioneerSettings {
   double distance_scale = 1.0;                                ///< true distance per reckoned distance
   double turn_scale = 1.0;                                    ///< true turn per reckoned turn
   double delay = 0.0;    ///< age of a report when its first byte leaves the robot [s]
-  bool passive = false;   ///< reports are read, but somebody else drives
+  bool passive = false;  ///< reports are read, but somebody else drives
   double silence = 1.0;  ///< without reports for so long the connection is made anew [s]
 };
 
