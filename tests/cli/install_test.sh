@@ -13,7 +13,7 @@ grep -rl "$source" prefix/lib/cmake && fail "the installed package points into t
 
 "$work/prefix/bin/rubble" run --out run --set time_limit_s=2 >/dev/null || fail "the installed program ended with $?"
 [[ -s run/score.json ]] || fail "it left no score"
-grep -q "columns: 8" run/scenario.yaml || fail "it did not find the scenario that it ships"
+grep -q '^name: "yellow"' run/scenario.yaml || fail "it did not find the scenario that it ships"
 
 cp -r "$source/examples/library" project
 cmake -S project -B project/build -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" >configure.txt 2>&1 ||

@@ -67,6 +67,32 @@ fails "no whole answer within 3 s" "sleep 100"
 fails "where a line of the answer" "echo ready 1; $answer echo hello;; esac; done"
 fails "not within 1 to 8000" "echo ready 1; $answer echo map 100000 100000 0.05 0 0;; esac; done"
 
+# Whatever a mapper answers within the protocol, explorer, drawing and scoring go on.
+cat >chaos.py <<'PY'
+import random, sys
+rng = random.Random(int(sys.argv[1]))
+print("ready 1", flush=True)
+for line in sys.stdin:
+    if line.split()[0] != "end":
+        continue
+    out = []
+    if rng.random() < 0.3:
+        far = rng.choice((0.5, 3.0, 50.0, 1e8))
+        out.append("pose %r %r %r" % (rng.uniform(-far, far), rng.uniform(-far, far), rng.uniform(-100, 100)))
+    if rng.random() < 0.05:
+        w, h = rng.choice((1, 2, 7, 60, 200)), rng.choice((1, 2, 7, 60, 200))
+        out.append("map %d %d 0.05 %r %r" % (w, h, 0.05 * rng.randrange(-150, 150), 0.05 * rng.randrange(-150, 150)))
+        weights = rng.choice(((1, 1, 1), (0, 50, 1), (5, 60, 1), (1, 0, 0)))
+        out += ["".join(rng.choices("?.#", weights, k=w)) for _ in range(h)]
+    if rng.random() < 0.02:
+        out.append("trajectory 1\n%d 0 0 0" % rng.randrange(1000))
+    print("\n".join(out + ["end"]), flush=True)
+PY
+for seed in 1 2 3; do
+  "$rubble" run s.yaml --out chaos$seed --set time_limit_s=10 --mapper-command "python3 chaos.py $seed" >/dev/null ||
+    fail "a mapper of random answers, seed $seed: ended with $?"
+done
+
 # kill -9 of rubble leaves none of its processes.
 "$rubble" run s.yaml --out killed --set time_limit_s=100000 --mapper-command \
   "sleep 1234 & echo \$! >$work/pid1; (setsid sleep 1234 & echo \$! >$work/pid2); echo \$\$ >$work/pid3; sleep 1234" \
