@@ -19,6 +19,7 @@
 #include "robot/logs/log.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/league_map.h"
+#include "scenarios/run/mission_figures.h"
 #include "scenarios/run/run_folder.h"
 #include "scenarios/run/score_json.h"
 #include "scoring/maps/normalise.h"
@@ -299,6 +300,8 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   folder.save_map(scenario, core.mapper(), core.victims());
   add_trajectory_error(report.score, core.mapper().trajectory(), simulated.truth());
   score_files(report.score, folder, scenario, arena, core.victims());
+  add_mission_figures(report.score, arena, simulated.truth(), scenario.robot, core);
+  folder.write("decisions.txt", decisions_text(core));
   add_mapper_counts(report.score, core);
   report.end = end.reason;
   report.interrupted = end.interrupted;

@@ -57,7 +57,7 @@ const std::map<std::string, Folders>& wings() {
       {"slam/scan", {"slam/grid"}},
       {"slam/paper", {"slam", "slam/grid", "slam/scan"}},
       {"explore/plan", {}},
-      {"explore/caution", {}},
+      {"explore/caution", {"explore"}},
       {"explore/search", {"explore", "explore/plan"}},
       {"explore/paper", {"explore", "explore/plan", "explore/caution", "explore/search"}},
       {"scoring/maps", {}},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "explore/paper/paper_explorer.h"
+#include "slam/paper/paper_mapper.h"
 #include "tests/support/explore_world.h"
 
 namespace rubble::explore {
