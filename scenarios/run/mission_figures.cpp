@@ -43,9 +43,15 @@ class Edges {
             {solid.outline[i], solid.outline[(i + 1) % solid.outline.size()], solid.z_bottom, solid.z_top});
     }
     for (const arenas::Riser& riser : arenas::risers(arena, climbable_step)) {
-      const bool high = std::max(riser.high_a - riser.low_a, riser.high_b - riser.low_b) > climbable_step;
-      if (high)
-        edges_.push_back({riser.a, riser.b, std::min(riser.low_a, riser.low_b), std::max(riser.high_a, riser.high_b)});
+      // Only the stretch where the step is too high stops a wheel.
+      const double a = riser.high_a - riser.low_a - climbable_step;
+      const double b = riser.high_b - riser.low_b - climbable_step;
+      if (a <= 0.0 && b <= 0.0) continue;
+      const double crossing = a * b < 0.0 ? a / (a - b) : 0.0;
+      const TPoint2D way = riser.b - riser.a;
+      const TPoint2D from = a > 0.0 ? riser.a : riser.a + way * crossing;
+      const TPoint2D to = b > 0.0 ? riser.b : riser.a + way * crossing;
+      edges_.push_back({from, to, std::min(riser.low_a, riser.low_b), std::max(riser.high_a, riser.high_b)});
     }
     frame_.resolution = kBucket;
     frame_.x0 = arena.min_corner.x - 2.0 * kBucket;
