@@ -5,6 +5,7 @@
 #include "app/terminal.h"
 #include "base/error.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
+#include "scenarios/run/replay.h"
 
 namespace rubble::app {
 
@@ -14,9 +15,9 @@ int replay(const ReplayArguments& arguments) {
   end_progress();
   if (interrupted()) return kInterrupted;
   for (const auto& artefact : report.artefacts)
-    std::printf("%-14s %s\n", artefact.name.c_str(), artefact.same ? "identical" : "DIFFERENT");
-  if (!report.ended) std::printf("%-14s %s\n", "map", "not compared: the recorded run did not end");
-  std::printf("%-14s %zu of %zu ticks different\n", "commands", report.different_commands, report.ticks);
+    std::printf("%-18s %s\n", artefact.name.c_str(), artefact.same ? "identical" : "DIFFERENT");
+  if (!report.ended) std::printf("%-18s %s\n", "map", "not compared: the recorded run did not end");
+  std::printf("%-18s %zu of %zu ticks different\n", "commands", report.different_commands, report.ticks);
   std::printf("%s\n", report.identical ? "bit-identical" : "NOT bit-identical");
   return report.identical ? kOk : kBroken;
 }

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "slam/paper/paper_mapper.h"
+#include "slam/robust/robust_mapper.h"
 
 namespace rubble::slam {
 namespace {
@@ -22,6 +23,7 @@ std::vector<std::string> names() {
 const std::vector<MapperKind>& mapper_kinds() {
   static const std::vector<MapperKind> kinds = {
       row<PaperConfig, PaperMapper>("paper", "Pellenz 2008: ICP, 300 particles, two-plane count map; no loop closure"),
+      row<RobustConfig, RobustMapper>("robust", "local map matching, verified loops, pose graph, restamped map"),
   };
   return kinds;
 }

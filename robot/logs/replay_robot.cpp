@@ -112,7 +112,7 @@ struct ReplayRobot::Impl {
 };
 
 ReplayRobot::ReplayRobot(const std::string& path) : impl_(std::make_unique<Impl>()) {
-  std::string bytes = inflate_if_gzip(read_file(path), path);
+  std::string bytes = unpacked(read_file(path), path);
   if (std::string_view(bytes).substr(0, kLogMagicStem.size()) == kLogMagicStem) {
     impl_->own = std::make_unique<OwnLog>(std::move(bytes), path);
     impl_->format = "rubble log";

@@ -42,86 +42,6 @@ double peak_megabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-double known_area(const slam::CountMap& map) {
-  std::size_t cells = 0;
-  for (int y = 0; y < map.frame().height; ++y)
-    for (int x = 0; x < map.frame().width; ++x) cells += map.seen({x, y}) > 0 ? 1u : 0u;
-  return static_cast<double>(cells) * map.frame().resolution * map.frame().resolution;
-}
-
-/// How a loop ended.
-struct LoopEnd {
-  std::string reason;
-  std::string failure;
-  bool interrupted = false;
-  double sim_s = 0.0;
-};
-
-/// The one loop, for simulator, log and hardware alike. Saves the trajectories every second of run time and the map
-/// after the first of these, then ever more seldom up to every few seconds of wall time.
-class Loop {
- public:
-  Loop(const Scenario& scenario, const RunOptions& options, RunFolder& folder)
-      : scenario_(scenario), options_(options), folder_(folder) {}
-
-  /// `share` tells how far the robot is (0..1); `each_second` lets the caller append what only it knows.
-  LoopEnd run(robot::Robot& robot, Core& core, const std::function<double()>& share,
-              const std::function<void()>& each_second) {
-    LoopEnd end{"the robot's time is over", "", false, 0.0};
-    Stamp first = Stamp::never(), saved = Stamp::never();
-    try {
-      while (auto inputs = robot.read()) {
-        robot.command(core.step(*inputs));
-        if (first == Stamp::never()) first = saved = inputs->now;
-        end.sim_s = inputs->now - first + robot.model().tick;
-        if (inputs->now - saved >= 1.0) {
-          saved = inputs->now;
-          folder_.append_estimate(core.mapper().trajectory());
-          each_second();
-          report(core, end.sim_s, share());
-        }
-        if (core.finished()) {
-          end.reason = core.reason();
-          break;
-        }
-        if (options_.interrupted && options_.interrupted()) {
-          end.interrupted = true;
-          end.reason = "interrupted";
-          break;
-        }
-      }
-    } catch (const robot::DeviceLost& lost) {
-      end.failure = end.reason = lost.what();
-    }
-    folder_.append_estimate(core.mapper().trajectory());
-    each_second();
-    return end;
-  }
-
- private:
-  void report(const Core& core, double sim_s, double share) {
-    if (seconds_since(last_save_) >= save_period_) {
-      folder_.save_map(scenario_, core.mapper(), core.victims());
-      last_save_ = Clock::now();
-      save_period_ = std::min(kLongestSavePeriod, 2.0 * save_period_ + kFirstSavePeriod);
-    }
-    if (options_.progress && seconds_since(last_report_) > 0.2) {
-      last_report_ = Clock::now();
-      options_.progress({sim_s, share, known_area(core.mapper().map()), sim_s / seconds_since(start_)});
-    }
-  }
-
-  const Scenario& scenario_;
-  const RunOptions& options_;
-  RunFolder& folder_;
-  Clock::time_point start_ = Clock::now();
-  static constexpr double kFirstSavePeriod = 0.4;    ///< [s]
-  static constexpr double kLongestSavePeriod = 3.0;  ///< [s]
-  double save_period_ = 0.0;  ///< grows: a run of a few seconds leaves a map too when it is killed [s]
-  Clock::time_point last_save_ = start_;
-  Clock::time_point last_report_ = start_;
-};
-
 /// The keys users' scripts rely on, in order; null until something is known.
 ordered_json empty_score() {
   ordered_json score;
@@ -226,6 +146,13 @@ void score_files(ordered_json& json, const RunFolder& folder, const Scenario& sc
   if (victims.found > 0) json["victims_error_m"] = victims.mean_error_m;
 }
 
+LoopHooks hooks_of(const RunOptions& options) {
+  LoopHooks hooks;
+  hooks.interrupted = options.interrupted;
+  hooks.progress = options.progress;
+  return hooks;
+}
+
 std::string folder_for(const RunOptions& options, const Scenario& scenario) {
   return options.out.empty() ? next_run_folder("runs", scenario.name, scenario.seed) : options.out;
 }
@@ -284,20 +211,18 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   Core core(scenario, scenario.robot, true);
   RunReport report;
   report.score = empty_score();
+  LoopHooks hooks = hooks_of(options);
+  hooks.share = [&] {
+    return simulated.truth().empty() ? 0.0 : simulated.truth().back().stamp.seconds() / scenario.time_limit;
+  };
+  hooks.each_second = [&] { folder.append_truth(simulated.truth()); };
   LoopEnd end;
   {
     std::optional<robot::RecordingRobot> recorded;
     if (options.record) recorded.emplace(simulated, folder.file("log.rlog"), resolved_yaml(resolved));
-    Loop loop(scenario, options, folder);
-    end = loop.run(
-        recorded ? static_cast<robot::Robot&>(*recorded) : simulated, core,
-        [&] {
-          return simulated.truth().empty() ? 0.0 : simulated.truth().back().stamp.seconds() / scenario.time_limit;
-        },
-        [&] { folder.append_truth(simulated.truth()); });
+    end = Loop(scenario, folder, hooks).run(recorded ? static_cast<robot::Robot&>(*recorded) : simulated, core);
     if (recorded) recorded->flush();
   }
-  folder.save_map(scenario, core.mapper(), core.victims());
   add_trajectory_error(report.score, core.mapper().trajectory(), simulated.truth());
   score_files(report.score, folder, scenario, arena, core.victims());
   add_mission_figures(report.score, arena, simulated.truth(), scenario.robot, core);
@@ -321,13 +246,12 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   Core core(resolved, robot.model(), false);
   RunReport report;
   report.score = empty_score();
-  Loop loop(resolved, options, folder);
   if (!robot.reference().empty()) folder.append_truth(robot.reference());
-  const LoopEnd end = loop.run(
-      robot, core, [&] { return robot.progress(); }, [] {});
+  LoopHooks hooks = hooks_of(options);
+  hooks.share = [&] { return robot.progress(); };
+  const LoopEnd end = Loop(resolved, folder, hooks).run(robot, core);
   if (core.mapper().counts().scans == 0 && !end.interrupted)
     throw InputError(log + ": holds no laser scan; a log to map needs scans (and odometry)");
-  folder.save_map(resolved, core.mapper(), {});
   if (!robot.reference().empty()) add_trajectory_error(report.score, core.mapper().trajectory(), robot.reference());
   add_mapper_counts(report.score, core);
   report.end = end.interrupted    ? end.reason
@@ -335,73 +259,6 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
                                   : "the log is over";
   report.interrupted = end.interrupted;
   finish(report, folder, resolved, options, end.sim_s, start);
-  return report;
-}
-
-namespace {
-
-std::string scratch_folder() {
-  std::string name = (std::filesystem::temp_directory_path() / "rubble-replay-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr)
-    throw RunError(name + ": cannot be created; make the temporary folder writable or give --out");
-  return name;
-}
-
-/// Whether the bytes of `beginning` are the first ones of `whole`.
-bool starts_with_file(const std::string& whole, const std::string& beginning) {
-  std::ifstream a(whole, std::ios::binary);
-  std::ifstream b(beginning, std::ios::binary);
-  const std::string first{std::istreambuf_iterator<char>(b), {}};
-  std::string same(first.size(), '\0');
-  a.read(same.data(), static_cast<std::streamsize>(same.size()));
-  return a.gcount() == static_cast<std::streamsize>(first.size()) && same == first;
-}
-
-}  // namespace
-
-ReplayReport replay_run(const std::string& path, const RunOptions& options) {
-  namespace fs = std::filesystem;
-  const std::string log = path + "/log.rlog";
-  if (!fs::exists(log))
-    throw InputError(path + ": is not a recorded run (no log.rlog in it); give a folder that 'rubble run' wrote");
-  const Scenario scenario = load_scenario(path + "/scenario.yaml");
-  robot::ReplayRobot robot(log);
-  Core core(scenario, robot.model(), true);
-  ReplayReport report;
-  report.ended = fs::exists(path + "/hashes.json");
-  bool last_differs = false;
-  while (auto inputs = robot.read()) {
-    const robot::Commands commands = core.step(*inputs);
-    const robot::Commands& recorded = robot.recorded_commands();
-    ++report.ticks;
-    last_differs = commands.drive.v != recorded.drive.v || commands.drive.w != recorded.drive.w ||
-                   commands.aim.pitch != recorded.aim.pitch || commands.aim.roll != recorded.aim.roll;
-    if (last_differs) ++report.different_commands;
-    if (core.finished()) break;
-    if (options.interrupted && options.interrupted()) break;
-  }
-  const std::string scratch = options.out.empty() ? scratch_folder() : std::string();
-  RunFolder folder(options.out.empty() ? scratch : options.out, options.replace);
-  folder.write("scenario.yaml", resolved_yaml(scenario));
-  folder.append_estimate(core.mapper().trajectory());
-  folder.save_map(scenario, core.mapper(), core.victims());
-  // A run that was killed wrote its trajectory up to its last second, an older map, and its last tick perhaps without
-  // the command that answered it.
-  if (!report.ended && last_differs) --report.different_commands;
-  report.identical = report.different_commands == 0;
-  const auto compare = [&](const std::string& name) {
-    const std::string then = path + "/" + name;
-    if (!fs::exists(then)) return false;
-    if (report.ended) return sha256_of_file(then) == sha256_of_file(folder.file(name));
-    return starts_with_file(folder.file(name), then);
-  };
-  for (const char* name : {"estimate.tum", "map.tif", "map.tfw", "map.png", "map.pgm", "map.yaml", "pois.csv"}) {
-    if (!report.ended && std::string(name) != "estimate.tum") continue;
-    report.artefacts.push_back({name, compare(name)});
-    report.identical = report.identical && report.artefacts.back().same;
-  }
-  folder.close();
-  if (options.out.empty()) fs::remove_all(scratch);
   return report;
 }
 

@@ -6,16 +6,9 @@
 #include <vector>
 
 #include "scenarios/config/scenario.h"
+#include "scenarios/run/loop.h"
 
 namespace rubble::scenarios {
-
-/// How far a run is, for a progress line.
-struct Progress {
-  double sim_s = 0.0;     ///< time covered so far [s]
-  double share = 0.0;     ///< of the time limit or of the log, 0..1
-  double known_m2 = 0.0;  ///< area mapped so far [m^2]
-  double real_time_factor = 0.0;
-};
 
 struct RunOptions {
   std::string out;                                ///< run folder; empty: runs/<name>-seed<N>-<number>
@@ -40,23 +33,6 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options);
 
 /// Maps a recorded log (SLAM only). Scores the trajectory when the log carries reference poses. Throws InputError.
 RunReport map_log(const std::string& log, const Scenario& scenario, const RunOptions& options);
-
-/// One artefact of a re-run beside the recorded one.
-struct ReplayedArtefact {
-  std::string name;
-  bool same = false;
-};
-
-struct ReplayReport {
-  std::vector<ReplayedArtefact> artefacts;
-  bool identical = false;
-  bool ended = true;                   ///< the recorded run ended; else only the trajectory so far can be compared
-  std::size_t different_commands = 0;  ///< ticks in which the core commanded something else than recorded
-  std::size_t ticks = 0;
-};
-
-/// Runs mapper, levelling and explorer again on a recorded run and compares trajectory, map and commands bit by bit.
-ReplayReport replay_run(const std::string& folder, const RunOptions& options);
 
 /// The keys of score.json that depend on the machine, not on the seed.
 bool is_timing_key(const std::string& key);

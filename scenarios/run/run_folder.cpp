@@ -42,9 +42,9 @@ std::string pois_csv(const Scenario& s, const std::vector<explore::VictimReport>
 }  // namespace
 
 const std::vector<std::string>& deterministic_artefacts() {
-  static const std::vector<std::string> names = {"arena.yaml", "arena.png",    "truth.tif", "truth.png",   "log.rlog",
-                                                 "truth.tum",  "estimate.tum", "map.tif",   "map.tfw",     "map.png",
-                                                 "map.pgm",    "map.yaml",     "pois.csv",  "overlay.png", "error.png"};
+  static const std::vector<std::string> names = {
+      "arena.yaml", "arena.png", "truth.tif", "truth.png", "log.rlog", "truth.tum", "estimate.tum", "estimate_live.tum",
+      "map.tif",    "map.tfw",   "map.png",   "map.pgm",   "map.yaml", "pois.csv",  "overlay.png",  "error.png"};
   return names;
 }
 
@@ -71,8 +71,10 @@ RunFolder::RunFolder(const std::string& path, bool replace) : path_(path) {
   fs::create_directories(file(kPartial), error);
   if (error)
     throw InputError(path + ": cannot be created (" + error.message() + "); give a writable folder with --out");
-  estimate_.open(file("estimate.tum"));
-  if (!estimate_) throw InputError(path + ": cannot be written to; give a writable folder with --out");
+  estimate_.file.open(file("estimate.tum"));
+  live_.file.open(file("estimate_live.tum"));
+  if (!estimate_.file || !live_.file)
+    throw InputError(path + ": cannot be written to; give a writable folder with --out");
 }
 
 void RunFolder::write(const std::string& name, const std::string& content) const {
@@ -97,18 +99,36 @@ void RunFolder::publish(const std::vector<std::string>& names,
   }
 }
 
-void RunFolder::append(std::ofstream& out, std::size_t& written, const Trajectory& trajectory) {
-  for (; written < trajectory.size(); ++written) out << tum_line(trajectory[written]) << '\n';
-  out.flush();
-  if (!out) cannot_write(path_, std::strerror(errno));
+void RunFolder::append(Growing& growing, const Trajectory& trajectory) {
+  for (; growing.written < trajectory.size(); ++growing.written)
+    growing.file << tum_line(trajectory[growing.written]) << '\n';
+  growing.file.flush();
+  if (!growing.file) cannot_write(path_, std::strerror(errno));
 }
 
 void RunFolder::append_truth(const Trajectory& truth) {
-  if (!truth_.is_open()) truth_.open(file("truth.tum"));
-  append(truth_, truth_written_, truth);
+  if (!truth_.file.is_open()) truth_.file.open(file("truth.tum"));
+  append(truth_, truth);
 }
 
-void RunFolder::append_estimate(const Trajectory& estimate) { append(estimate_, estimate_written_, estimate); }
+void RunFolder::append_estimate(const slam::Mapper& mapper) {
+  append(live_, mapper.live_trajectory());
+  if (mapper.revision() == revision_) append(estimate_, mapper.trajectory());
+}
+
+void RunFolder::save_estimate(const slam::Mapper& mapper) {
+  append(live_, mapper.live_trajectory());
+  if (mapper.revision() != revision_) {
+    publish({"estimate.tum"}, [&](const std::string& partial) {
+      estimate_.file.close();
+      estimate_.file.open(partial + "estimate.tum");
+      estimate_.written = 0;
+      append(estimate_, mapper.trajectory());
+    });
+    revision_ = mapper.revision();
+  }
+  append(estimate_, mapper.trajectory());
+}
 
 void RunFolder::save_map(const Scenario& scenario, const slam::Mapper& mapper,
                          const std::vector<explore::VictimReport>& victims) const {

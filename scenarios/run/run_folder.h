@@ -14,7 +14,8 @@ namespace rubble::scenarios {
 
 /// One run's folder, written as the run goes: after a kill it holds all but the last second of the trajectories and the
 /// last saved map. The trajectories grow line by line; all other files are replaced whole (written beside, then
-/// renamed), so none of them is ever half a file.
+/// renamed), so none of them is ever half a file. estimate_live.tum only grows; estimate.tum is replaced whole when the
+/// mapper has moved poses of the past.
 class RunFolder {
  public:
   /// Creates the folder. An existing one with content is refused unless `replace` is set and it is a run folder.
@@ -28,7 +29,10 @@ class RunFolder {
   void write(const std::string& name, const std::string& content) const;
   /// Appends poses the files do not hold yet.
   void append_truth(const Trajectory& truth);
-  void append_estimate(const Trajectory& estimate);
+  /// Both trajectories of the mapper. Where its revision has changed, estimate.tum waits for save_estimate().
+  void append_estimate(const slam::Mapper& mapper);
+  /// Lets estimate.tum hold the trajectory as known now.
+  void save_estimate(const slam::Mapper& mapper);
   /// Replaces map.tif, map.tfw, map.png, map.pgm, map.yaml and pois.csv.
   void save_map(const Scenario& scenario, const slam::Mapper& mapper,
                 const std::vector<explore::VictimReport>& victims) const;
@@ -45,13 +49,18 @@ class RunFolder {
   void link_latest() const;
 
  private:
-  void append(std::ofstream& file, std::size_t& written, const Trajectory& trajectory);
+  /// A trajectory that grows on disk.
+  struct Growing {
+    std::ofstream file;
+    std::size_t written = 0;  ///< poses
+  };
+  void append(Growing& growing, const Trajectory& trajectory);
 
   std::string path_;
-  std::ofstream truth_;
-  std::ofstream estimate_;
-  std::size_t truth_written_ = 0;
-  std::size_t estimate_written_ = 0;
+  Growing truth_;
+  Growing estimate_;
+  Growing live_;
+  std::uint64_t revision_ = 0;  ///< of the mapper, that estimate.tum shows
 };
 
 /// `parent/name-seedN-001` with the first free number.

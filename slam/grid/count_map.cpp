@@ -71,10 +71,9 @@ double CountMap::p_occ(Cell c) const {
   return seen_[cell] == 0 ? 0.0 : static_cast<double>(occupied_[cell]) / seen_[cell];  // eq. (1)
 }
 
-void CountMap::stamp(const TPose2D& T_map_base, const ScanPoints& scan) {
-  ++version_;
+bool CountMap::draw(const TPose2D& T_map_base, const ScanPoints& scan) {
   rays_ = scan.rays.empty() ? rays_from_ends(scan.hits, scan.passes, scan.origin, scan.beam_width) : scan.rays;
-  if (rays_.empty()) return;
+  if (rays_.empty()) return false;
 
   const PlanarTransform to_map(T_map_base);
   TPoint2D origin = to_map(scan.origin);
@@ -99,42 +98,76 @@ void CountMap::stamp(const TPose2D& T_map_base, const ScanPoints& scan) {
   const int margin = 1 + static_cast<int>(0.5 * scan.beam_width * distance(low, high) / frame_.resolution);
   const Cell from{std::max(first.x - margin, 0), std::max(first.y - margin, 0)};
   const Cell to{std::min(last.x + margin, frame_.width - 1), std::min(last.y + margin, frame_.height - 1)};
-  if (to.x < from.x || to.y < from.y) {  // all of it beyond the largest map
+  if (to.x < from.x || to.y < from.y) return false;
+  passed_.reset(from, to.x - from.x + 1, to.y - from.y + 1);
+  fill_scan_polygons(rays_, origin, scan.beam_width, passed_);
+  clear_surfaces(rays_, kSurfaceGap / frame_.resolution, passed_);
+  return true;
+}
+
+void CountMap::stamp(const TPose2D& T_map_base, const ScanPoints& scan) {
+  ++version_;
+  if (!draw(T_map_base, scan)) {
     dropped_hits_ += static_cast<std::uint64_t>(
         std::count_if(rays_.begin(), rays_.end(), [](const ScanRay& ray) { return ray.hit; }));
     return;
   }
-  passed_.reset(from, to.x - from.x + 1, to.y - from.y + 1);
-  fill_scan_polygons(rays_, origin, scan.beam_width, passed_);
-  clear_surfaces(rays_, kSurfaceGap / frame_.resolution, passed_);
-  count_hits(rays_);
-  count_passes();
+  dropped_hits_ += each_hit([this](std::size_t cell) {
+    make_room(cell);
+    ++seen_[cell];
+    ++occupied_[cell];
+    p_occ_[cell] = ratio(occupied_[cell], seen_[cell]);
+  });
+  const bool may_be_full = version_ >= kFull;
+  each_pass([&](std::size_t begin, std::size_t end) {
+    if (may_be_full) {
+      for (std::size_t cell = begin; cell < end; ++cell) make_room(cell);
+    }
+    for (std::size_t cell = begin; cell < end; ++cell) ++seen_[cell];
+    for (std::size_t cell = begin; cell < end; ++cell) {
+      if (p_occ_[cell] != 0) p_occ_[cell] = ratio(occupied_[cell], seen_[cell]);
+    }
+  });
 }
 
-void CountMap::count_hits(const std::vector<ScanRay>& rays) {
+void CountMap::unstamp(const TPose2D& T_map_base, const ScanPoints& scan) {
+  ++version_;
+  if (!draw(T_map_base, scan)) return;
+  const auto forget = [this](std::size_t cell, bool hit) {
+    if (seen_[cell] > 0) --seen_[cell];
+    if (hit && occupied_[cell] > 0) --occupied_[cell];
+    occupied_[cell] = std::min(occupied_[cell], seen_[cell]);  // counts that were halved may not add up
+    p_occ_[cell] = occupied_[cell] == 0 ? std::uint8_t{0} : ratio(occupied_[cell], seen_[cell]);
+  };
+  each_hit([&](std::size_t cell) { forget(cell, true); });
+  each_pass([&](std::size_t begin, std::size_t end) {
+    for (std::size_t cell = begin; cell < end; ++cell) forget(cell, false);
+  });
+}
+
+template <class Count>
+std::uint64_t CountMap::each_hit(const Count& count) {
+  std::uint64_t beyond = 0;
   hit_.reset(passed_.low(), passed_.width(), passed_.height());
-  for (const ScanRay& ray : rays) {
+  for (const ScanRay& ray : rays_) {
     if (!ray.hit) continue;
     const double x = std::floor(ray.end.x);
     const double y = std::floor(ray.end.y);
     if (!(x >= 0.0 && y >= 0.0 && x < frame_.width && y < frame_.height)) {
-      ++dropped_hits_;
+      ++beyond;
       continue;
     }
     const Cell c{static_cast<int>(x), static_cast<int>(y)};
     if (hit_.test(c)) continue;  // counts once per scan
     hit_.set(c);
     passed_.clear(c);  // a hit cell is not freed by other beams of the scan
-    const std::size_t cell = frame_.index(c);
-    make_room(cell);
-    ++seen_[cell];
-    ++occupied_[cell];
-    p_occ_[cell] = ratio(occupied_[cell], seen_[cell]);
+    count(frame_.index(c));
   }
+  return beyond;
 }
 
-void CountMap::count_passes() {
-  const bool may_be_full = version_ >= kFull;
+template <class Count>
+void CountMap::each_pass(const Count& count) {
   for (int y = 0; y < passed_.height(); ++y) {
     const std::uint64_t* words = passed_.row(y);
     const std::size_t row = frame_.index({passed_.low().x, passed_.low().y + y});
@@ -156,15 +189,7 @@ void CountMap::count_passes() {
         end = (end | 63) + 1;
       }
       end = std::min(end, width);
-      const std::size_t begin_cell = row + static_cast<std::size_t>(x);
-      const std::size_t end_cell = row + static_cast<std::size_t>(end);
-      if (may_be_full) {
-        for (std::size_t cell = begin_cell; cell < end_cell; ++cell) make_room(cell);
-      }
-      for (std::size_t cell = begin_cell; cell < end_cell; ++cell) ++seen_[cell];
-      for (std::size_t cell = begin_cell; cell < end_cell; ++cell) {
-        if (p_occ_[cell] != 0) p_occ_[cell] = ratio(occupied_[cell], seen_[cell]);
-      }
+      count(row + static_cast<std::size_t>(x), row + static_cast<std::size_t>(end));
       x = end;
     }
   }

@@ -48,6 +48,8 @@ class CountMap {
   /// runs through it between two neighbouring hits (scan_polygon.h). Counts that would overflow are halved, both planes
   /// alike.
   void stamp(const mrpt::math::TPose2D& T_map_base, const ScanPoints& scan);
+  /// Takes back what stamp() with the same arguments counted (but for counts that were halved since).
+  void unstamp(const mrpt::math::TPose2D& T_map_base, const ScanPoints& scan);
 
   /// Unknown where never seen; occupied where p_occ >= threshold, free elsewhere.
   OccupancyGrid classify(double threshold = 0.5) const;
@@ -58,10 +60,15 @@ class CountMap {
   std::uint64_t dropped_hits() const { return dropped_hits_; }
 
  private:
+  /// Draws the scan into `rays_` (in cells) and `passed_`; false when all of it lies beyond the largest map.
+  bool draw(const mrpt::math::TPose2D& T_map_base, const ScanPoints& scan);
   void grow_to_hold(const mrpt::math::TPoint2D& low, const mrpt::math::TPoint2D& high);
-  /// Takes the hit cells out of `passed`.
-  void count_hits(const std::vector<ScanRay>& rays);
-  void count_passes();
+  /// Calls `count` with each hit cell once, and takes these out of `passed_`; returns the hits beyond the map.
+  template <class Count>
+  std::uint64_t each_hit(const Count& count);
+  /// Calls `count` with the first cell and the end of each run of passed cells.
+  template <class Count>
+  void each_pass(const Count& count);
   void make_room(std::size_t cell);
 
   GridFrame frame_;

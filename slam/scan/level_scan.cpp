@@ -53,10 +53,31 @@ class SweepingBase {
   std::size_t beam_ = 0;
 };
 
+/// Projects directions of the level plane that is held inclined to the ground.
+class TiltedPlane {
+ public:
+  explicit TiltedPlane(const ScanTilt& tilt)
+      : sp_(std::sin(tilt.pitch)), cp_(std::cos(tilt.pitch)), sr_(std::sin(tilt.roll)), cr_(std::cos(tilt.roll)) {}
+
+  double x(double c, double s) const { return c * cp_ - s * sp_ * sr_; }
+  double y(double s) const { return s * cr_; }
+  /// Climb per metre of range.
+  double climb(double c, double s) const { return c * sp_ + s * cp_ * sr_; }
+
+ private:
+  double sp_, cp_, sr_, cr_;
+};
+
+/// Where an inclined body holds a point that it holds at `p` and `height` when level.
+TPoint2D leaning(const TPoint2D& p, double height, const ScanTilt& tilt) {
+  return {p.x * std::cos(tilt.body_pitch) - height * std::sin(tilt.body_pitch),
+          p.y - height * std::sin(tilt.body_roll)};
+}
+
 }  // namespace
 
 LevelScan::LevelScan(const mrpt::math::TPose3D& T_base_laser, const LevelScanConfig& config)
-    : config_(config), p_base_laser_(T_base_laser.x, T_base_laser.y) {
+    : config_(config), p_base_laser_(T_base_laser.x, T_base_laser.y), laser_height_(T_base_laser.z) {
   const auto R = T_base_laser.getRotationMatrix();
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 2; ++j) m_[i][j] = R(i, j);
@@ -78,10 +99,12 @@ void LevelScan::aim_beams(const robot::LaserScan& scan) {
   }
 }
 
-ScanPoints LevelScan::points(const robot::LaserScan& scan, const SweepMotion* motion) {
+ScanPoints LevelScan::points(const robot::LaserScan& scan, const SweepMotion* motion, const ScanTilt* tilt) {
   aim_beams(scan);
+  const TiltedPlane plane(tilt != nullptr ? *tilt : ScanTilt{});
+  const TPoint2D laser = tilt != nullptr ? leaning(p_base_laser_, laser_height_, *tilt) : p_base_laser_;
   ScanPoints points;
-  points.origin = p_base_laser_;
+  points.origin = laser;
   points.beam_width = scan.angle_step;
   const double limit = scan.range_max > 0.0 ? scan.range_max : std::numeric_limits<double>::infinity();
   const double cap = config_.max_range > 0.0 ? std::min(config_.max_range, limit) : limit;
@@ -100,7 +123,12 @@ ScanPoints LevelScan::points(const robot::LaserScan& scan, const SweepMotion* mo
     const bool hit = range <= cap;
     if (!hit && !carve) continue;
     const double length = hit ? range : std::max(0.0, cap - config_.miss_margin);
-    TPoint2D end{p_base_laser_.x + length * directions_[beam].x, p_base_laser_.y + length * directions_[beam].y};
+    Direction d = directions_[beam];
+    if (tilt != nullptr) {
+      if (laser_height_ + length * plane.climb(d.x, d.y) < config_.floor_margin) continue;  // the floor
+      d = {plane.x(d.x, d.y), plane.y(d.y)};
+    }
+    TPoint2D end{laser.x + length * d.x, laser.y + length * d.y};
     if (motion != nullptr) end = base_at_beam.to(beam)(end);
     if (!points.rays.empty()) points.rays.back().joined = beam == last_beam + 1;
     last_beam = beam;

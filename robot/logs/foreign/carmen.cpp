@@ -97,22 +97,30 @@ Stamp CarmenRecord::*choose_clock(const Records& records, const std::string& pat
                           " s; cut the log here, or sort its lines by time if two recordings were joined"));
 }
 
-/// Gives every record the stamp it is delivered with: in the order of the lines. A scan shares the stamp of the ODOM
-/// line before it that has the same time.
+/// Gives every record the stamp it is delivered with. Scans keep the log's own, for relations and reference poses name
+/// them by it (those that jump back among themselves are sorted). ODOM lines keep the order of the lines: they are held
+/// between the scans around them, else a clock that jitters would make the odometry run to and fro.
 void order_stamps(Records& records, Stamp CarmenRecord::*clock) {
-  const auto shares = [&](std::size_t i) {
-    return i > 0 && records[i].is_scan && !records[i - 1].is_scan && records[i].*clock == records[i - 1].*clock;
-  };
-  std::vector<Stamp> stamps;
-  for (std::size_t i = 0; i < records.size(); ++i)
-    if (!shares(i)) stamps.push_back(records[i].*clock);
-  stamps = sorted_stamps(std::move(stamps));
+  std::vector<Stamp> scans;
+  for (const CarmenRecord& record : records)
+    if (record.is_scan) scans.push_back(record.*clock);
+  scans = sorted_stamps(std::move(scans));
+
   std::size_t next = 0;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    if (shares(i))
-      records[i].stamp = records[i - 1].stamp;
-    else
-      records[i].stamp = stamps[next++];
+  Stamp newest = Stamp::never();
+  for (std::size_t i = 0; i < records.size();) {
+    if (records[i].is_scan) {
+      records[i++].stamp = newest = scans[next++];
+      continue;
+    }
+    std::vector<Stamp> between;
+    std::size_t end = i;
+    for (; end < records.size() && !records[end].is_scan; ++end) between.push_back(records[end].*clock);
+    between = sorted_stamps(std::move(between));
+    for (const Stamp stamp : between) {
+      const Stamp after = std::max(stamp, newest);
+      records[i++].stamp = newest = next < scans.size() ? std::min(after, scans[next]) : after;
+    }
   }
 }
 

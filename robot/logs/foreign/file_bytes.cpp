@@ -1,5 +1,6 @@
 #include "robot/logs/foreign/file_bytes.h"
 
+#include <bzlib.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -58,6 +59,45 @@ class Inflater {
   z_stream stream_{};
 };
 
+bool is_bzip2(const std::string& bytes) { return bytes.size() >= 4 && bytes.compare(0, 3, "BZh") == 0; }
+
+class Bunzipper {
+ public:
+  Bunzipper() { BZ2_bzDecompressInit(&stream_, 0, 0); }
+  ~Bunzipper() { BZ2_bzDecompressEnd(&stream_); }
+  Bunzipper(const Bunzipper&) = delete;
+  Bunzipper& operator=(const Bunzipper&) = delete;
+
+  /// Unpacks one bzip2 stream that starts at `from`; returns where it ends. Throws InputError.
+  std::size_t member(const std::string& bytes, std::size_t from, std::string& out, const std::string& path) {
+    std::size_t at = from;
+    int status = BZ_OK;
+    while (status != BZ_STREAM_END) {
+      constexpr std::size_t kChunk = std::size_t{1} << 20;
+      const std::size_t written = out.size();
+      const std::size_t offered = std::min(bytes.size() - at, kChunk);
+      out.resize(written + kChunk);
+      stream_.next_in = const_cast<char*>(bytes.data() + at);
+      stream_.avail_in = static_cast<unsigned>(offered);
+      stream_.next_out = &out[written];
+      stream_.avail_out = static_cast<unsigned>(kChunk);
+      status = BZ2_bzDecompress(&stream_);
+      at += offered - stream_.avail_in;
+      out.resize(written + kChunk - stream_.avail_out);
+      if (status == BZ_OK && at == bytes.size() && stream_.avail_out != 0)
+        throw InputError(path + ": the bzip2 data stop at byte " + std::to_string(at) + " (after " +
+                         std::to_string(out.size()) + " bytes of content) without their end; copy the file again");
+      if (status != BZ_OK && status != BZ_STREAM_END)
+        throw InputError(path + ": the bzip2 data are damaged near byte " + std::to_string(at) +
+                         "; copy the file again, 'bzip2 -t' checks it");
+    }
+    return at;
+  }
+
+ private:
+  bz_stream stream_{};
+};
+
 }  // namespace
 
 std::string read_file(const std::string& path) {
@@ -74,7 +114,13 @@ std::string read_file(const std::string& path) {
   return bytes;
 }
 
-std::string inflate_if_gzip(std::string bytes, const std::string& path) {
+std::string unpacked(std::string bytes, const std::string& path) {
+  if (is_bzip2(bytes)) {
+    std::string out;
+    for (std::size_t at = 0; at < bytes.size();) at = Bunzipper().member(bytes, at, out, path);
+    if (out.empty()) throw InputError(path + ": holds no data behind its bzip2 header; give a log that holds data");
+    return out;
+  }
   if (!is_gzip(bytes)) return bytes;
   std::string out;
   Inflater inflater;

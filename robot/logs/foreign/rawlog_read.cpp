@@ -259,7 +259,7 @@ ForeignLog read_rawlog_bytes(std::string_view bytes, const std::string& path) {
 }
 
 std::vector<Inputs> read_rawlog(const std::string& path, RobotModel& model) {
-  const std::string bytes = inflate_if_gzip(read_file(path), path);
+  const std::string bytes = unpacked(read_file(path), path);
   if (!is_rawlog(bytes))
     throw InputError(path + ": byte 0: does not start with an MRPT object; give a .rawlog file of MRPT");
   ForeignLog log = read_rawlog_bytes(bytes, path);

@@ -56,6 +56,7 @@ const std::map<std::string, Folders>& wings() {
       {"slam/grid", {}},
       {"slam/scan", {"slam/grid"}},
       {"slam/paper", {"slam", "slam/grid", "slam/scan"}},
+      {"slam/robust", {"slam", "slam/grid", "slam/scan"}},
       {"explore/plan", {}},
       {"explore/caution", {"explore"}},
       {"explore/search", {"explore", "explore/plan"}},
@@ -79,10 +80,10 @@ const std::map<std::string, Folders>& wings() {
 
 /// Wings that nobody outside their room may include (tests and benchmarks apart).
 const Folders& insides() {
-  static const Folders table = {"robot/logs/own",   "sim/laser",     "sim/body",          "slam/scan",
-                                "slam/paper",       "explore/plan",  "explore/caution",   "explore/search",
-                                "explore/paper",    "scoring/walls", "scoring/proposals", "scoring/rooms",
-                                "scoring/alignment"};
+  static const Folders table = {"robot/logs/own", "sim/laser",        "sim/body",      "slam/scan",
+                                "slam/paper",     "slam/robust",      "explore/plan",  "explore/caution",
+                                "explore/search", "explore/paper",    "scoring/walls", "scoring/proposals",
+                                "scoring/rooms",  "scoring/alignment"};
   return table;
 }
 

@@ -65,7 +65,7 @@ TEST_P(CorrectedLogs, RawOdometryIsRecovered) {
   const std::string path = testing::data_folder() + "/logs/" + expected.name + "-corrected.log.gz";
   const Played log(path);
   EXPECT_EQ(log.format, "CARMEN log");
-  EXPECT_EQ(log.scans.size(), lines_starting_with(inflate_if_gzip(read_file(path), path), "FLASER "));
+  EXPECT_EQ(log.scans.size(), lines_starting_with(unpacked(read_file(path), path), "FLASER "));
   EXPECT_EQ(log.model.laser.beams, expected.beams);
   EXPECT_NEAR(path_length(log.reference), expected.length, 0.02 * expected.length);
   EXPECT_NEAR(path_length(log.odometry), expected.length, 0.08 * expected.length) << "no running to and fro";

@@ -25,15 +25,15 @@ TEST(FileBytes, GzipComesBackAndIsDeterministic) {
   const std::string text = long_text();
   const std::string packed = gzipped(text, folder);
   EXPECT_LT(packed.size(), text.size());
-  EXPECT_EQ(inflate_if_gzip(packed, "a.gz"), text);
+  EXPECT_EQ(unpacked(packed, "a.gz"), text);
   EXPECT_EQ(gzipped(text, folder), packed);
-  EXPECT_EQ(inflate_if_gzip("plain", "a"), "plain");
+  EXPECT_EQ(unpacked("plain", "a"), "plain");
 }
 
 TEST(FileBytes, SeveralMembersAndPaddingAreRead) {
   const TempFolder folder;
   const std::string packed = gzipped("one ", folder) + gzipped("two", folder) + std::string(512, '\0');
-  EXPECT_EQ(inflate_if_gzip(packed, "a.gz"), "one two");
+  EXPECT_EQ(unpacked(packed, "a.gz"), "one two");
 }
 
 TEST(FileBytes, CutGzipSaysWhereItEnds) {
@@ -42,7 +42,7 @@ TEST(FileBytes, CutGzipSaysWhereItEnds) {
   Rng rng(2, "cuts");
   for (int trial = 0; trial < 60; ++trial) {
     const std::size_t size = 2 + rng.below(static_cast<std::uint32_t>(packed.size()) - 2);
-    const std::string message = message_of<InputError>([&] { inflate_if_gzip(packed.substr(0, size), "a.gz"); });
+    const std::string message = message_of<InputError>([&] { unpacked(packed.substr(0, size), "a.gz"); });
     EXPECT_NE(message.find("a.gz: the gzip data stop at byte " + std::to_string(size)), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);
   }
@@ -52,8 +52,8 @@ TEST(FileBytes, DamagedGzipIsRefused) {
   const TempFolder folder;
   std::string packed = gzipped(long_text(), folder);
   packed[packed.size() / 2] = static_cast<char>(packed[packed.size() / 2] ^ 0x55);
-  EXPECT_THROW(inflate_if_gzip(packed, "a.gz"), InputError);
-  EXPECT_THROW(inflate_if_gzip(gzipped("text", folder) + "behind", "a.gz"), InputError);
+  EXPECT_THROW(unpacked(packed, "a.gz"), InputError);
+  EXPECT_THROW(unpacked(gzipped("text", folder) + "behind", "a.gz"), InputError);
 }
 
 TEST(FileBytes, UnwritablePathIsReported) {

@@ -1,0 +1,86 @@
+#include "scenarios/run/loop.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace rubble::scenarios {
+namespace {
+
+constexpr double kFirstSavePeriod = 0.4;    // [s]
+constexpr double kLongestSavePeriod = 3.0;  // [s]
+constexpr double kReportPeriod = 0.2;       // [s]
+
+}  // namespace
+
+double known_area(const slam::CountMap& map) {
+  std::size_t cells = 0;
+  for (int y = 0; y < map.frame().height; ++y)
+    for (int x = 0; x < map.frame().width; ++x) cells += map.seen({x, y}) > 0 ? 1u : 0u;
+  return static_cast<double>(cells) * map.frame().resolution * map.frame().resolution;
+}
+
+Loop::Loop(const Scenario& scenario, RunFolder& folder, LoopHooks hooks)
+    : scenario_(scenario), folder_(folder), hooks_(std::move(hooks)) {}
+
+LoopEnd Loop::run(robot::Robot& robot, Core& core) {
+  LoopEnd end{"the robot's time is over", "", false, 0.0};
+  try {
+    drive(robot, core, end);
+  } catch (const robot::DeviceLost& lost) {
+    end.failure = end.reason = lost.what();
+  }
+  core.finish();
+  if (hooks_.each_second) hooks_.each_second();
+  save_all(core);
+  return end;
+}
+
+void Loop::drive(robot::Robot& robot, Core& core, LoopEnd& end) {
+  Stamp first = Stamp::never(), saved = Stamp::never();
+  while (auto inputs = robot.read()) {
+    const robot::Commands commands = core.step(*inputs);
+    robot.command(commands);
+    if (hooks_.each_tick) hooks_.each_tick(commands);
+    if (first == Stamp::never()) first = saved = inputs->now;
+    end.sim_s = inputs->now - first + robot.model().tick;
+    if (inputs->now - saved >= 1.0) {
+      saved = inputs->now;
+      save(core, end.sim_s);
+    }
+    if (core.finished()) {
+      end.reason = core.reason();
+      return;
+    }
+    if (hooks_.interrupted && hooks_.interrupted()) {
+      end.interrupted = true;
+      end.reason = "interrupted";
+      return;
+    }
+  }
+}
+
+void Loop::save(const Core& core, double sim_s) {
+  folder_.append_estimate(core.mapper());
+  if (hooks_.each_second) hooks_.each_second();
+  if (seconds_since(last_save_) >= save_period_) {
+    save_all(core);
+    last_save_ = Clock::now();
+    save_period_ = std::min(kLongestSavePeriod, 2.0 * save_period_ + kFirstSavePeriod);
+  }
+  if (hooks_.progress && seconds_since(last_report_) > kReportPeriod) {
+    last_report_ = Clock::now();
+    hooks_.progress(
+        {sim_s, hooks_.share ? hooks_.share() : 0.0, known_area(core.mapper().map()), sim_s / seconds_since(start_)});
+  }
+}
+
+void Loop::save_all(const Core& core) {
+  folder_.save_estimate(core.mapper());
+  folder_.save_map(scenario_, core.mapper(), core.victims());
+}
+
+double Loop::seconds_since(Clock::time_point then) const {
+  return std::chrono::duration<double>(Clock::now() - then).count();
+}
+
+}  // namespace rubble::scenarios

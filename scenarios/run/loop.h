@@ -1,0 +1,68 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+
+#include "robot/robot.h"
+#include "scenarios/run/core.h"
+#include "scenarios/run/run_folder.h"
+
+namespace rubble::scenarios {
+
+/// How far a run is, for a progress line.
+struct Progress {
+  double sim_s = 0.0;     ///< time covered so far [s]
+  double share = 0.0;     ///< of the time limit or of the log, 0..1
+  double known_m2 = 0.0;  ///< area mapped so far [m^2]
+  double real_time_factor = 0.0;
+};
+
+/// What a loop asks and tells while it goes. Each may be empty.
+struct LoopHooks {
+  std::function<bool()> interrupted;                      ///< asked each tick; true ends the loop
+  std::function<double()> share;                          ///< how far the robot is, 0..1
+  std::function<void(const robot::Commands&)> each_tick;  ///< what the core commanded
+  std::function<void()> each_second;                      ///< of run time, and at the end
+  std::function<void(const Progress&)> progress;          ///< called a few times a second of wall time
+};
+
+/// How a loop ended.
+struct LoopEnd {
+  std::string reason;
+  std::string failure;  ///< the robot was lost
+  bool interrupted = false;
+  double sim_s = 0.0;  ///< time covered [s]
+};
+
+/// The one loop, for simulator, log and hardware alike: reads, maps, decides, commands, until the robot's time is over,
+/// the explorer has finished or somebody interrupts; then the mapper ends what it put off. Saves the trajectories every
+/// second of run time and the map after the first of these, then ever more seldom up to every few seconds of wall time.
+/// Afterwards the folder holds the final trajectory and map.
+class Loop {
+ public:
+  Loop(const Scenario& scenario, RunFolder& folder, LoopHooks hooks);
+
+  LoopEnd run(robot::Robot& robot, Core& core);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void drive(robot::Robot& robot, Core& core, LoopEnd& end);
+  void save(const Core& core, double sim_s);
+  void save_all(const Core& core);
+  double seconds_since(Clock::time_point then) const;
+
+  const Scenario& scenario_;
+  RunFolder& folder_;
+  LoopHooks hooks_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_save_ = start_;
+  Clock::time_point last_report_ = start_;
+  double save_period_ = 0.0;  ///< grows: a run of a few seconds leaves a map too when it is killed [s]
+};
+
+/// Area of which the map knows something [m^2].
+double known_area(const slam::CountMap& map);
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "scenarios/run/run.h"
+
+namespace rubble::scenarios {
+
+/// One artefact of a re-run beside the recorded one.
+struct ReplayedArtefact {
+  std::string name;
+  bool same = false;
+};
+
+struct ReplayReport {
+  std::vector<ReplayedArtefact> artefacts;
+  bool identical = false;
+  bool ended = true;                   ///< the recorded run ended; else only the trajectory so far can be compared
+  std::size_t different_commands = 0;  ///< ticks in which the core commanded something else than recorded
+  std::size_t ticks = 0;
+};
+
+/// Runs mapper, levelling and explorer again on a recorded run and compares trajectory, map and commands bit by bit.
+ReplayReport replay_run(const std::string& folder, const RunOptions& options);
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "slam/grid/count_map.h"
+
+namespace rubble::slam {
+
+/// A point on a surface, with the surface's normal where its neighbours tell it. Floats: there are millions of them.
+struct OrientedPoint {
+  float x = 0.0F, y = 0.0F;    ///< [m]
+  float nx = 0.0F, ny = 0.0F;  ///< unit normal towards the laser; both zero: unknown
+
+  bool has_normal() const { return nx != 0.0F || ny != 0.0F; }
+};
+
+/// How far a scan saw, in a fan of one-degree bins around the laser: nearest and farthest return of each.
+class SightFan {
+ public:
+  static constexpr int kBins = 360;
+
+  SightFan() {
+    nearest_.fill(kNothing);
+    farthest_.fill(0);
+  }
+  void add(double bearing, double range);
+
+  enum class Verdict { Nothing, InFront, Agrees, Behind };
+  /// Where a surface at (bearing, range) would lie in what was seen: in front of it (then the scan should have met it
+  /// and did not), with it, or hidden behind. Nothing where a neighbouring bin is empty.
+  Verdict judge(double bearing, double range) const;
+
+ private:
+  static constexpr std::uint16_t kNothing = std::numeric_limits<std::uint16_t>::max();
+  std::array<std::uint16_t, kBins> nearest_;   ///< [cm]
+  std::array<std::uint16_t, kBins> farthest_;  ///< [cm]
+};
+
+struct CloudConfig {
+  double spacing = 0.08;       ///< between matched points [m]
+  double wide_spacing = 0.10;  ///< between points filled in where beams are far apart [m]
+};
+
+/// A scan as the matching sees it, in the base frame.
+struct Cloud {
+  std::vector<OrientedPoint> points;  ///< thinned
+  std::vector<OrientedPoint> filled;  ///< between neighbouring points of one far surface; only to be matched with
+  mrpt::math::TPoint2D laser;
+  SightFan sight;
+};
+
+/// Thins the hits of a scan and finds their normals. Mixed pixels - single beams that hang between two depths because
+/// their spot lies on an edge - are left out.
+Cloud cloud_of(const ScanPoints& scan, const CloudConfig& config);
+
+}  // namespace rubble::slam

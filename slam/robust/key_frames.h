@@ -1,0 +1,74 @@
+#pragma once
+
+#include <mrpt/math/TPose2D.h>
+
+#include <vector>
+
+#include "base/stamp.h"
+#include "slam/robust/cloud.h"
+#include "slam/robust/pose_graph.h"
+#include "slam/robust/surfel_grid.h"
+
+namespace rubble::slam {
+
+/// A scan that is kept for matching.
+struct KeyFrame {
+  Stamp stamp;
+  Cloud cloud;
+  double path = 0.0;  ///< length of the robot's path up to here [m]
+};
+
+/// The key frames of a drive with the graph of their poses.
+class KeyFrames {
+ public:
+  int size() const { return static_cast<int>(frames_.size()); }
+  int last() const { return size() - 1; }
+  bool empty() const { return frames_.empty(); }
+  const KeyFrame& operator[](int i) const { return frames_[static_cast<std::size_t>(i)]; }
+  const mrpt::math::TPose2D& pose(int i) const { return graph_.nodes[static_cast<std::size_t>(i)]; }
+  const PoseGraph& graph() const { return graph_; }
+
+  /// Adds a key frame; `edge` (from the last one to it) is taken from the second on.
+  void add(KeyFrame frame, const mrpt::math::TPose2D& pose, const GraphEdge& edge);
+  /// Adds a loop of length `path` for the paths through the graph.
+  void add_loop(const GraphEdge& edge, double path);
+  /// Takes poses for the first nodes; those behind follow the last of them.
+  void move(const std::vector<mrpt::math::TPose2D>& poses);
+  /// Takes a loop out of the graph for good.
+  void switch_off(std::size_t edge);
+
+  /// Up to `most` key frames that end at i, no more than `path` behind it.
+  std::vector<int> ending_at(int i, int most, double path) const;
+  /// Up to `most` key frames around i, the closest by path first, all below `limit`.
+  std::vector<int> around(int i, int most, double path, int limit) const;
+  /// Surfels of key frames, seen from `origin`.
+  void draw(const std::vector<int>& frames, const mrpt::math::TPose2D& origin, double cell, SurfelGrid& grid) const;
+  /// Lengths of the shortest paths through the graph from i, up to `most` [m]; infinite for others.
+  std::vector<double> paths_from(int i, double most) const;
+
+  /// How points, seen from `origin` (a pose of the graph) at `T_origin_points`, agree with what key frames saw.
+  struct Agreement {
+    int contradicted = 0;  ///< points in front of what was seen there
+    int supported = 0;
+    double contradiction() const {
+      const int judged = contradicted + supported;
+      return judged > 0 ? static_cast<double>(contradicted) / judged : 1.0;
+    }
+  };
+  Agreement agreement(const std::vector<OrientedPoint>& points, const mrpt::math::TPose2D& T_origin_points,
+                      const mrpt::math::TPose2D& origin, const std::vector<int>& frames) const;
+
+ private:
+  struct Link {
+    int to;
+    double length;
+    std::size_t edge;
+  };
+  void link(const GraphEdge& edge, double length);
+
+  std::vector<KeyFrame> frames_;
+  PoseGraph graph_;
+  std::vector<std::vector<Link>> links_;
+};
+
+}  // namespace rubble::slam

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+
+#include "slam/robust/correlator.h"
+#include "slam/robust/key_frames.h"
+#include "slam/robust/scan_fit.h"
+
+namespace rubble::slam {
+
+struct TrackerConfig {
+  double cell = 0.10;  ///< of the surfels [m]
+  int frames = 30;     ///< key frames of the local map
+  double path = 4.0;   ///< but no older than so much path [m]
+  // Sigmas of the odometry, as the prior of the fit.
+  double distance_error = 0.15;    ///< share of the distance
+  double least_distance = 0.01;    ///< [m]
+  double turn_error = 0.20;        ///< share of the turn
+  double least_turn = 0.02;        ///< [rad]
+  double turn_error_per_m = 0.10;  ///< [rad/m]
+  double large_step = 0.35;        ///< longer steps between scans are searched first [m]
+  double large_turn = 0.2;         ///< and larger turns [rad]
+  double slip_chi2 = 16.0;         ///< odometry off by more (squared sigmas) is doubted
+  double lost_inliers = 0.35;      ///< share below which the place counts as lost
+  double search_cell = 0.05;       ///< raster of the search [m]
+  double search_blur = 0.06;       ///< [m]
+};
+
+/// How a scan lies on the local map.
+struct Tracked {
+  ScanFit fit;             ///< pose relative to the newest key frame
+  bool found = false;      ///< false: too little to see, the odometry stands
+  bool slipped = false;    ///< the odometry was doubted
+  bool relocated = false;  ///< found again after being lost
+};
+
+/// Follows the robot from scan to scan on a local map of the newest key frames, in the frame of the newest.
+class LocalTracker {
+ public:
+  explicit LocalTracker(const TrackerConfig& config) : config_(config) {}
+
+  /// Takes the newest key frames as the local map.
+  void redraw(const KeyFrames& frames, Work* work);
+  /// Finds the scan; `T_last_now`: what odometry says happened since the last scan; `T_frame_prior`: where it puts the
+  /// scan, relative to the newest key frame.
+  Tracked track(const Cloud& cloud, const mrpt::math::TPose2D& T_last_now, const mrpt::math::TPose2D& T_frame_prior,
+                Work* work);
+
+ private:
+  Eigen::Matrix3d prior_information(const mrpt::math::TPose2D& motion) const;
+  std::optional<CorrelativeSearch::Found> look_around(const Cloud& cloud, const SearchWindow& window, double floor,
+                                                      const std::optional<SearchExclusion>& exclusion, Work* work);
+  ScanFit best_of_several(const Cloud& cloud, const PosePrior& prior, double distance, double turn, ScanFit fit,
+                          Work* work);
+  void doubt_odometry(const Cloud& cloud, const PosePrior& prior, double distance, double turn, Tracked& tracked,
+                      Work* work);
+  std::optional<ScanFit> any_heading(const Cloud& cloud, const PosePrior& prior, double distance, Work* work);
+
+  const TrackerConfig config_;
+  SurfelGrid surfels_;
+  Correlator correlator_;
+  bool correlator_ready_ = false;
+};
+
+}  // namespace rubble::slam

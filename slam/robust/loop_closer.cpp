@@ -1,0 +1,366 @@
+#include "slam/robust/loop_closer.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/angle.h"
+#include "base/planar.h"
+
+namespace rubble::slam {
+
+using mrpt::math::TPose2D;
+
+namespace {
+
+constexpr std::size_t kLeastSurfels = 40;
+constexpr std::size_t kMostPoints = 350;  ///< of the new key frames, in a search
+constexpr int kLeastPairs = 30;
+constexpr double kRunnerUpAway = 0.45;   ///< another place lies at least so far away [m]
+constexpr double kRunnerUpTurned = 0.2;  ///< or is turned so much [rad]
+constexpr double kOtherCandidate = 3.0;  ///< candidates lie so far apart along the drive [m]
+constexpr double kNear = 0.8;            ///< near edges reach so far [m]
+constexpr double kLastNear = 1.0;        ///< at the end [m]
+constexpr double kLastNearPath = 25.0;   ///< [m]
+constexpr double kTightPath = 40.0;      ///< a loop of less path that hardly moves needs no confirmation [m]
+constexpr double kHardlyMoves = 0.12;    ///< [m]
+constexpr double kHardlyTurns = 0.04;    ///< [rad]
+constexpr double kExpectedMoves = 0.3;   ///< from here the null test asks [m]
+constexpr int kConfirmedWithin = 12;     ///< key frames
+constexpr std::size_t kMostWaiting = 400;
+constexpr int kSolveEvery = 15;     ///< key frames with near edges only
+constexpr double kSolveNow = 0.10;  ///< disagreement that is solved at once [m + 2 rad]
+constexpr double kSolveGradually = 0.25;
+constexpr double kWrongDistance = 0.4;  ///< a loop that ends up so far off is wrong [m]
+constexpr double kWrongAngle = 0.15;    ///< [rad]
+constexpr double kLoopLength = 0.3;     ///< what a loop adds to paths through the graph [m]
+constexpr Work kWorkPerDrawnFrame = 8000;
+constexpr Work kWorkPerJudged = 30;  ///< point and key frame
+
+double size_of(const TPose2D& T) { return length(T.x, T.y); }
+double disagreement_of(const TPose2D& T) { return size_of(T) + 2.0 * std::abs(wrap_angle(T.phi)); }
+
+/// Information with errors added that no match is free of.
+Eigen::Matrix3d limited(const Eigen::Matrix3d& information, double sigma_distance, double sigma_angle) {
+  const double d2 = sigma_distance * sigma_distance;
+  const Eigen::Matrix3d floor = Eigen::Vector3d(d2, d2, sigma_angle * sigma_angle).asDiagonal();
+  const Eigen::Matrix3d known = information + 1e-6 * Eigen::Matrix3d::Identity();
+  return (known.inverse() + floor).inverse();
+}
+
+/// Every n-th surfel as a point, at most about `most`.
+std::vector<OrientedPoint> sample(const SurfelGrid& grid, std::size_t stride) {
+  std::vector<OrientedPoint> points;
+  const std::vector<Surfel>& surfels = grid.surfels();
+  points.reserve(surfels.size() / stride + 1);
+  for (std::size_t k = 0; k < surfels.size(); k += stride)
+    points.push_back({surfels[k].x, surfels[k].y, surfels[k].nx, surfels[k].ny});
+  return points;
+}
+
+ScanFitConfig fit_config(double first_radius) {
+  ScanFitConfig config;
+  config.first_radius = first_radius;
+  config.iterations = 15;
+  return config;
+}
+
+}  // namespace
+
+LoopCloser::LoopCloser(const LoopConfig& config, double surfel_cell, KeyFrames& frames)
+    : config_(config),
+      wide_fit_(fit_config(0.15)),
+      near_fit_(fit_config(0.25)),
+      surfel_cell_(surfel_cell),
+      frames_(frames) {}
+
+void LoopCloser::look() {
+  const int i = frames_.last();
+  const std::vector<double> paths = frames_.paths_from(i, std::numeric_limits<double>::infinity());
+  std::vector<std::pair<double, Task>> candidates;
+  for (int j = 0; j < i; ++j) {
+    const double path = paths[static_cast<std::size_t>(j)];
+    if (path < config_.least_path || frames_[i].path - frames_[j].path < config_.least_path) continue;
+    const double window = std::min(config_.largest_window, config_.window + config_.window_per_m * path);
+    const double away = size_of(frames_.pose(i) - frames_.pose(j));
+    if (away >= config_.reach + window) continue;
+    const double angle = std::min(config_.largest_angle, config_.angle + config_.angle_per_m * path);
+    candidates.push_back({away, {Kind::Wide, i, j, window, angle, path}});
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<int> taken;
+  for (const auto& [away, task] : candidates) {
+    if (static_cast<int>(taken.size()) >= config_.searches) break;
+    const bool close = std::any_of(taken.begin(), taken.end(), [&, j = task.old](int k) {
+      return std::abs(frames_[k].path - frames_[j].path) < kOtherCandidate;
+    });
+    if (close) continue;
+    taken.push_back(task.old);
+    tasks_.push_back(task);
+  }
+  queue_near(i, paths);
+  tasks_.push_back({Kind::Solve, i, -1});
+}
+
+/// Where the graph is tight already, one edge to the closest old key frame.
+void LoopCloser::queue_near(int i, const std::vector<double>& paths) {
+  int closest = -1;
+  double least = kNear;
+  for (int j = 0; j < i; ++j) {
+    const double path = paths[static_cast<std::size_t>(j)];
+    if (path >= config_.least_path || path <= 0.25 || frames_[i].path - frames_[j].path <= config_.least_path) continue;
+    const double away = size_of(frames_.pose(i) - frames_.pose(j));
+    if (away >= least) continue;
+    least = away;
+    closest = j;
+  }
+  if (closest < 0 || linked_.count({i, closest}) != 0) return;
+  tasks_.push_back({Kind::Near, i, closest, config_.near_window, 0.05, paths[static_cast<std::size_t>(closest)]});
+}
+
+bool LoopCloser::work(Work& budget) {
+  bool moved = false;
+  while (budget > 0) {
+    if (solver_.running()) {
+      moved = solve(budget) || moved;
+    } else if (stage_ != Stage::Idle) {
+      go_on(budget);
+    } else if (!tasks_.empty()) {
+      const Task task = tasks_.front();
+      tasks_.pop_front();
+      begin(task);
+      budget -= kWorkPerDrawnFrame * static_cast<Work>(new_frames_.size() + old_frames_.size());
+      if (task.kind == Kind::Near && !points_.empty())
+        verify(task, frames_.pose(task.frame) - frames_.pose(task.old), budget);
+    } else {
+      break;
+    }
+  }
+  return moved;
+}
+
+void LoopCloser::begin(const Task& task) {
+  points_.clear();
+  new_frames_.clear();
+  old_frames_.clear();
+  if (task.kind == Kind::Solve) return consider_solving();
+  if (task.kind == Kind::Near && closed_for_ == task.frame) return;
+  ++counts_.searched;
+  if (!draw_both(task) || task.kind == Kind::Near) return;
+
+  correlator_.build(old_surfels_.surfels(), config_.cell, config_.blur);
+  task_ = task;
+  const TPose2D expected = frames_.pose(task.frame) - frames_.pose(task.old);
+  search_.start(correlator_, points_, {expected, task.window, task.angle}, config_.least_score);
+  stage_ = Stage::Best;
+}
+
+/// The two sub-maps of a task; false when one of them shows too little.
+bool LoopCloser::draw_both(const Task& task) {
+  new_frames_ = frames_.ending_at(task.frame, config_.new_frames, config_.new_path);
+  old_frames_ = frames_.around(task.old, config_.old_frames, config_.old_path, new_frames_.back());
+  frames_.draw(old_frames_, frames_.pose(task.old), surfel_cell_, old_surfels_);
+  if (old_surfels_.surfels().size() < kLeastSurfels) return false;
+  frames_.draw(new_frames_, frames_.pose(task.frame), surfel_cell_, new_surfels_);
+  points_ = sample(new_surfels_, std::max<std::size_t>(1, new_surfels_.surfels().size() / kMostPoints));
+  if (points_.size() < kLeastSurfels) {
+    points_.clear();
+    return false;
+  }
+  old_points_ = sample(old_surfels_, 2);
+  return true;
+}
+
+void LoopCloser::go_on(Work& budget) {
+  if (!search_.advance(budget)) return;
+  const TPose2D expected = frames_.pose(task_.frame) - frames_.pose(task_.old);
+  if (stage_ == Stage::Best) {
+    stage_ = Stage::Idle;
+    if (!search_.found()) return;
+    best_ = *search_.found();
+    search_.start(correlator_, points_, {expected, task_.window, task_.angle}, config_.runner_up * best_.score,
+                  SearchExclusion{best_.pose, kRunnerUpAway, kRunnerUpTurned});
+    stage_ = Stage::RunnerUp;
+    return;
+  }
+  stage_ = Stage::Idle;
+  if (search_.found())
+    ++counts_.ambiguous;
+  else
+    verify(task_, best_.pose, budget);
+}
+
+void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
+  const bool near = task.kind == Kind::Near;
+  Work used = 0;
+  const ScanFit fit = fit_scan(old_surfels_, points_, start, {start, 1e-3 * Eigen::Matrix3d::Identity()},
+                               near ? near_fit_ : wide_fit_, &used);
+  budget -= used;
+  if (fit.inliers < config_.least_inliers || fit.paired < kLeastPairs || !well_conditioned(fit)) return;
+  const TPose2D expected = frames_.pose(task.frame) - frames_.pose(task.old);
+  const TPose2D moved = fit.pose - expected;
+  if (near && size_of(moved) > 1.5 * task.window) return;
+  budget -= kWorkPerJudged * static_cast<Work>(points_.size() + old_points_.size()) *
+            static_cast<Work>(new_frames_.size() + old_frames_.size());
+  if (sees_through(task, fit.pose, expected)) return;
+
+  GraphEdge loop;
+  loop.from = task.old;
+  loop.to = task.frame;
+  loop.T_from_to = fit.pose;
+  loop.information = limited(fit.information, config_.sigma_distance, config_.sigma_angle);
+  loop.loop = true;
+  const bool hardly = size_of(moved) < kHardlyMoves && std::abs(wrap_angle(moved.phi)) < kHardlyTurns;
+  if (near || (hardly && task.path < kTightPath))
+    accept(loop, true);
+  else
+    confirm(loop);
+}
+
+/// A sub-map that can slide along the other (a corridor) closes no loop.
+bool LoopCloser::well_conditioned(const ScanFit& fit) const {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(fit.information.topLeftCorner<2, 2>());
+  return axes.eigenvalues()[0] >= 0.02 * axes.eigenvalues()[1] && axes.eigenvalues()[0] >= 150.0;
+}
+
+/// Whether the loop would have beams pass through walls; or, null test, whether the pose expected without it does not:
+/// in a maze of equal cells a wrong loop may contradict nothing, but neither does the truth.
+bool LoopCloser::sees_through(const Task& task, const TPose2D& T_old_new, const TPose2D& T_expected) {
+  const TPose2D& old_pose = frames_.pose(task.old);
+  const TPose2D& new_pose = frames_.pose(task.frame);
+  const auto there = frames_.agreement(points_, T_old_new, old_pose, old_frames_);
+  const auto back = frames_.agreement(old_points_, TPose2D() - T_old_new, new_pose, new_frames_);
+  if (std::max(there.contradiction(), back.contradiction()) > config_.most_contradiction) {
+    ++counts_.contradicted;
+    return true;
+  }
+  if (task.kind == Kind::Near || size_of(T_old_new - T_expected) <= kExpectedMoves) return false;
+  const auto expected_there = frames_.agreement(points_, T_expected, old_pose, old_frames_);
+  const auto expected_back = frames_.agreement(old_points_, TPose2D() - T_expected, new_pose, new_frames_);
+  const bool overlap = expected_there.supported + expected_back.supported > 0.15 * (there.supported + back.supported);
+  const double contradiction = std::max(expected_there.contradiction(), expected_back.contradiction());
+  if (!overlap || contradiction >= config_.expected_contradiction) return false;
+  ++counts_.needless;
+  return true;
+}
+
+/// A loop that moves the robot counts when others of the last key frames say the same.
+void LoopCloser::confirm(const GraphEdge& loop) {
+  std::vector<std::size_t> group;
+  for (std::size_t k = 0; k < waiting_.size(); ++k)
+    if (agree(loop, waiting_[k])) group.push_back(k);
+  if (static_cast<int>(group.size()) + 1 < config_.confirmations) {
+    waiting_.push_back(loop);
+    if (waiting_.size() > kMostWaiting) waiting_.pop_front();
+    return;
+  }
+  accept(loop, false);
+  for (const std::size_t k : group) accept(waiting_[k], false);
+  for (auto k = group.rbegin(); k != group.rend(); ++k)
+    waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(*k));
+}
+
+/// Whether two loops place the newer key frame of `b` alike, as seen from the older one of `a`.
+bool LoopCloser::agree(const GraphEdge& a, const GraphEdge& b) const {
+  if (a.to - b.to > kConfirmedWithin || a.to == b.to) return false;
+  const TPose2D by_a = a.T_from_to + (frames_.pose(b.to) - frames_.pose(a.to));
+  const TPose2D by_b = (frames_.pose(b.from) - frames_.pose(a.from)) + b.T_from_to;
+  const TPose2D off = by_b - by_a;
+  const double slack = 0.02 * (std::abs(frames_[a.to].path - frames_[b.to].path) +
+                               std::abs(frames_[a.from].path - frames_[b.from].path));
+  return size_of(off) < config_.agree_distance + slack &&
+         std::abs(wrap_angle(off.phi)) < config_.agree_angle + 0.1 * slack;
+}
+
+void LoopCloser::accept(const GraphEdge& loop, bool near) {
+  frames_.add_loop(loop, kLoopLength);
+  linked_.insert({loop.to, loop.from});
+  fresh_.push_back(loop);
+  closed_for_ = std::max(closed_for_, loop.to);
+  ++(near ? counts_.near_edges : counts_.closed);
+}
+
+void LoopCloser::consider_solving() {
+  ++frames_since_solve_;
+  if (fresh_.empty()) return;
+  double worst = 0.0;
+  for (const GraphEdge& edge : fresh_) worst = std::max(worst, disagreement_of(disagreement(frames_.graph(), edge)));
+  if (worst <= kSolveNow && frames_since_solve_ <= kSolveEvery) return;
+  fresh_.clear();
+  frames_since_solve_ = 0;
+  solver_.start(frames_.graph(), worst > kSolveGradually ? GraphSolver::Plan::Gradually : GraphSolver::Plan::Refine,
+                config_.scaling);
+}
+
+bool LoopCloser::solve(Work& budget) {
+  Work used = 0;
+  const bool more = solver_.step(used);
+  budget -= used;
+  if (more) return false;
+  take_solution();
+  return true;
+}
+
+void LoopCloser::take_solution() {
+  ++counts_.solved;
+  frames_.move(solver_.nodes());
+  covariance_ = solver_.covariance_of_last();
+  covariance_frame_ = static_cast<int>(solver_.nodes().size()) - 1;
+  remove_wrong_loops();
+}
+
+/// Loops that the rest of the graph has outvoted are out for good.
+void LoopCloser::remove_wrong_loops() {
+  const PoseGraph& graph = frames_.graph();
+  for (std::size_t k = 0; k < graph.edges.size(); ++k) {
+    if (!graph.edges[k].loop || !graph.edges[k].on) continue;
+    const bool unsolved = graph.edges[k].to > covariance_frame_;
+    const TPose2D off = disagreement(graph, graph.edges[k]);
+    if (unsolved || (size_of(off) <= kWrongDistance && std::abs(wrap_angle(off.phi)) <= kWrongAngle)) continue;
+    frames_.switch_off(k);
+    ++counts_.removed;
+  }
+}
+
+void LoopCloser::run_queue() {
+  Work budget = std::numeric_limits<Work>::max();
+  work(budget);
+}
+
+void LoopCloser::finish() {
+  run_queue();
+  if (frames_.size() < 2) return;
+  const auto solve_all = [this](GraphSolver::Plan plan) {
+    fresh_.clear();
+    solver_.start(frames_.graph(), plan, config_.scaling);
+    run_queue();
+  };
+  solve_all(GraphSolver::Plan::Gradually);
+  for (int i = 0; i < frames_.size(); ++i) {
+    const std::vector<double> paths = frames_.paths_from(i, kLastNearPath);
+    std::vector<std::pair<double, int>> close;
+    for (int j = 0; j + 6 < i; ++j) {
+      if (frames_[i].path - frames_[j].path <= config_.least_path || linked_.count({i, j}) != 0) continue;
+      const double away = size_of(frames_.pose(i) - frames_.pose(j));
+      if (away < kLastNear && paths[static_cast<std::size_t>(j)] < kLastNearPath) close.push_back({away, j});
+    }
+    std::sort(close.begin(), close.end());
+    int last = -100;
+    int tried = 0;
+    for (const auto& [away, j] : close) {
+      if (tried == 2) break;
+      if (std::abs(j - last) < 6) continue;
+      last = j;
+      ++tried;
+      closed_for_ = -1;
+      tasks_.push_back({Kind::Near, i, j, 0.15, 0.04, 0.0});
+      run_queue();
+    }
+  }
+  solve_all(GraphSolver::Plan::Gradually);
+  solve_all(GraphSolver::Plan::Final);
+}
+
+}  // namespace rubble::slam

@@ -1,0 +1,135 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "slam/robust/correlator.h"
+#include "slam/robust/key_frames.h"
+#include "slam/robust/scan_fit.h"
+
+namespace rubble::slam {
+
+/// How loops are looked for and what they must stand.
+struct LoopConfig {
+  double least_path = 6.0;               ///< a loop is at least so long, along the graph and along the drive [m]
+  double window = 0.30;                  ///< half width of the search [m] ...
+  double window_per_m = 0.03;            ///< ... and what it gains per metre of path through the graph
+  double largest_window = 4.0;           ///< [m]
+  double angle = 0.07;                   ///< the same for the heading [rad]
+  double angle_per_m = 0.006;            ///< [rad/m]
+  double largest_angle = 0.5;            ///< [rad]
+  double reach = 1.2;                    ///< old key frames so far beyond the window are candidates [m]
+  int searches = 2;                      ///< candidates tried per key frame
+  int new_frames = 6;                    ///< key frames that are matched ...
+  double new_path = 2.5;                 ///< ... and the path they cover at most [m]
+  int old_frames = 8;                    ///< key frames they are matched with
+  double old_path = 4.0;                 ///< [m]
+  double cell = 0.05;                    ///< raster of the search [m]
+  double blur = 0.06;                    ///< sigma of a surface in the raster [m]
+  double least_score = 0.55;             ///< of the search
+  double runner_up = 0.90;               ///< refused when another place scores so much of the best
+  double least_inliers = 0.55;           ///< of the fit
+  double most_contradiction = 0.15;      ///< share of points seen through, either way
+  double expected_contradiction = 0.15;  ///< null test: below, the pose expected without the loop stands
+  int confirmations = 3;                 ///< loops that must agree before they count
+  double agree_distance = 0.20;          ///< within this [m]
+  double agree_angle = 0.05;             ///< and this [rad]
+  double sigma_distance = 0.03;          ///< least error of a loop [m]
+  double sigma_angle = 0.008;            ///< [rad]
+  double scaling = 8.0;                  ///< of dynamic covariance scaling
+  double near_window = 0.20;             ///< of edges to old key frames where the graph is tight [m]
+};
+
+struct LoopCounts {
+  std::uint64_t searched = 0;      ///< candidates tried
+  std::uint64_t ambiguous = 0;     ///< refused: another place fits nearly as well
+  std::uint64_t contradicted = 0;  ///< refused: one would have seen through walls
+  std::uint64_t needless = 0;      ///< refused: the expected pose is not contradicted
+  std::uint64_t closed = 0;        ///< loops that count
+  std::uint64_t near_edges = 0;    ///< edges to old key frames where the graph was tight
+  std::uint64_t removed = 0;       ///< loops found wrong later
+  std::uint64_t solved = 0;        ///< solutions of the pose graph
+};
+
+/// Finds loops among the key frames and keeps their graph solved. What a new key frame asks for is queued and done by
+/// work(), in slices; what comes of it is the same for all sizes of slices that keep up with the drive.
+class LoopCloser {
+ public:
+  LoopCloser(const LoopConfig& config, double surfel_cell, KeyFrames& frames);
+
+  /// Queues the searches for the newest key frame.
+  void look();
+  /// Does queued work until `budget` is used up; returns whether poses moved.
+  bool work(Work& budget);
+  /// Does all that is queued, adds edges between all neighbours, and solves to the end.
+  void finish();
+
+  const LoopCounts& counts() const { return counts_; }
+  std::size_t queued() const { return tasks_.size(); }
+  /// Covariance of a key frame's pose, of the last solution; and that key frame.
+  const Eigen::Matrix3d& covariance() const { return covariance_; }
+  int covariance_frame() const { return covariance_frame_; }
+
+ private:
+  enum class Kind { Wide, Near, Solve };
+  struct Task {
+    Kind kind;
+    int frame;  ///< new key frame
+    int old;    ///< candidate; -1 with Solve
+    double window = 0.0;
+    double angle = 0.0;
+    double path = 0.0;  ///< through the graph
+  };
+  enum class Stage { Idle, Best, RunnerUp };
+
+  void begin(const Task& task);
+  bool draw_both(const Task& task);
+  void go_on(Work& budget);
+  void verify(const Task& task, const mrpt::math::TPose2D& start, Work& budget);
+  bool well_conditioned(const ScanFit& fit) const;
+  bool sees_through(const Task& task, const mrpt::math::TPose2D& T_old_new, const mrpt::math::TPose2D& T_expected);
+  void confirm(const GraphEdge& loop);
+  bool agree(const GraphEdge& a, const GraphEdge& b) const;
+  void accept(const GraphEdge& loop, bool near);
+  void queue_near(int frame, const std::vector<double>& paths);
+  void consider_solving();
+  bool solve(Work& budget);
+  void take_solution();
+  void remove_wrong_loops();
+  void run_queue();
+
+  const LoopConfig config_;
+  const ScanFitConfig wide_fit_;
+  const ScanFitConfig near_fit_;
+  const double surfel_cell_;
+  KeyFrames& frames_;
+
+  std::deque<Task> tasks_;
+  Stage stage_ = Stage::Idle;
+  Task task_{};                  ///< the one under way
+  int closed_for_ = -1;          ///< newest key frame with an edge of its own
+  std::vector<int> new_frames_;  ///< of the task under way
+  std::vector<int> old_frames_;
+  SurfelGrid old_surfels_;
+  SurfelGrid new_surfels_;
+  std::vector<OrientedPoint> points_;      ///< of the new key frames
+  std::vector<OrientedPoint> old_points_;  ///< of the old ones
+  Correlator correlator_;
+  CorrelativeSearch search_;
+  CorrelativeSearch::Found best_;
+
+  std::deque<GraphEdge> waiting_;         ///< loops that wait for others to agree
+  std::set<std::pair<int, int>> linked_;  ///< pairs with an edge already
+  std::vector<GraphEdge> fresh_;          ///< edges since the last solve
+  int frames_since_solve_ = 0;
+  GraphSolver solver_;
+  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
+  int covariance_frame_ = 0;
+  LoopCounts counts_;
+};
+
+}  // namespace rubble::slam

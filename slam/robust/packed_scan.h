@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "robot/measurements.h"
+#include "slam/scan/level_scan.h"
+
+namespace rubble::slam {
+
+/// A scan kept for later stamping: two bytes a beam, with how robot and plane moved and leant.
+struct PackedScan {
+  double angle_min = 0.0;   ///< [rad]
+  double angle_step = 0.0;  ///< [rad]
+  float range_min = 0.0F;   ///< [m]
+  float range_max = 0.0F;   ///< [m]
+  float quantum = 0.002F;   ///< of the ranges [m]
+  std::vector<std::uint16_t> ranges;
+  std::optional<SweepMotion> motion;
+  std::optional<ScanTilt> tilt;
+};
+
+PackedScan packed(const robot::LaserScan& scan, const std::optional<SweepMotion>& motion,
+                  const std::optional<ScanTilt>& tilt);
+
+/// The scan again, ranges rounded to the quantum; without stamps.
+robot::LaserScan unpacked(const PackedScan& scan);
+
+}  // namespace rubble::slam

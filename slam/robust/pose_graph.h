@@ -1,0 +1,70 @@
+#pragma once
+
+#include <mrpt/math/TPose2D.h>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "slam/robust/work.h"
+
+namespace rubble::slam {
+
+/// What was measured between two nodes.
+struct GraphEdge {
+  int from = 0;
+  int to = 0;
+  mrpt::math::TPose2D T_from_to;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Identity();  ///< along the axes of `from`
+  bool loop = false;  ///< may be wrong: scaled down where it disagrees with the rest
+  bool on = true;     ///< off: found wrong
+};
+
+/// Poses and what was measured between them. Node 0 is the origin.
+struct PoseGraph {
+  std::vector<mrpt::math::TPose2D> nodes;
+  std::vector<GraphEdge> edges;
+};
+
+/// How far the two ends of an edge lie from what it measured.
+mrpt::math::TPose2D disagreement(const PoseGraph& graph, const GraphEdge& edge);
+
+/// Finds the nodes that fit the edges best: Gauss-Newton on a sparse Cholesky factorisation, loops under dynamic
+/// covariance scaling (Agarwal et al. 2013), which switches off what disagrees. Works on a copy, one step at a time, so
+/// that a large graph is solved in slices.
+class GraphSolver {
+ public:
+  enum class Plan {
+    Refine,     ///< a few steps: loops agree nearly already
+    Gradually,  ///< at first loops count in full, then doubt grows: plain scaling would refuse a true loop of metres
+    Final       ///< gradually, and to the end
+  };
+
+  /// Takes the graph as it is now.
+  void start(const PoseGraph& graph, Plan plan, double scaling);
+  bool running() const { return running_; }
+  /// One Gauss-Newton step; returns whether more are needed.
+  bool step(Work& work);
+  /// The nodes so far; those of the start of the solve.
+  const std::vector<mrpt::math::TPose2D>& nodes() const { return graph_.nodes; }
+  /// Covariance of the last node, in the frame of node 0, as of the last step.
+  Eigen::Matrix3d covariance_of_last() const;
+
+ private:
+  struct Phase {
+    double scaling;
+    int steps;
+  };
+  void next_phase();
+
+  PoseGraph graph_;
+  std::vector<Phase> phases_;
+  std::size_t phase_ = 0;
+  int steps_left_ = 0;
+  bool running_ = false;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor_;
+  bool analysed_ = false;
+};
+
+}  // namespace rubble::slam

@@ -1,0 +1,54 @@
+#include "slam/robust/robust_mapper.h"
+
+namespace rubble::slam {
+
+void bind(Binder& b, RobustConfig& c) {
+  b.integer("map_cells", c.map_cells, 16, 8000);
+  b.number("resolution_m", c.resolution, 0.01, 0.5);
+  b.integer("max_map_cells", c.max_map_cells, 16, 20000);
+  b.number("max_range_m", c.max_range, 0.0, 1000.0);
+  b.boolean("carve_misses", c.carve_misses);
+  b.number("floor_margin_m", c.floor_margin, 0.0, 1.0);
+  b.boolean("use_tilt", c.use_tilt);
+  b.number("map_distance_m", c.map_distance, 0.0, 2.0);
+  b.degrees("map_turn_deg", c.map_turn, 0.0, 180.0);
+  b.integer("first_scans", c.first_scans, 1, 1000);
+  b.number("frame_distance_m", c.frame_distance, 0.02, 2.0);
+  b.number("frame_turn_rad", c.frame_turn, 0.02, 3.0);
+  b.number("frame_overlap", c.frame_overlap, 0.0, 1.0);
+  b.boolean("loops", c.loops);
+  b.number("budget_ms", c.budget_ms, 0.1, 1e6);
+  b.section("matching", [&](Binder& m) {
+    m.number("spacing_m", c.cloud.spacing, 0.01, 1.0);
+    m.number("cell_m", c.tracker.cell, 0.02, 1.0);
+    m.integer("frames", c.tracker.frames, 1, 1000);
+    m.number("path_m", c.tracker.path, 0.1, 1000.0);
+    m.number("distance_error", c.tracker.distance_error, 0.0, 10.0);
+    m.number("least_distance_m", c.tracker.least_distance, 0.001, 1.0);
+    m.number("turn_error", c.tracker.turn_error, 0.0, 10.0);
+    m.number("least_turn_rad", c.tracker.least_turn, 0.001, 1.0);
+    m.number("turn_error_rad_per_m", c.tracker.turn_error_per_m, 0.0, 10.0);
+    m.number("large_step_m", c.tracker.large_step, 0.05, 100.0);
+    m.number("large_turn_rad", c.tracker.large_turn, 0.05, 10.0);
+    m.number("slip_chi2", c.tracker.slip_chi2, 1.0, 1e9);
+    m.number("lost_inliers", c.tracker.lost_inliers, 0.0, 1.0);
+    m.number("search_blur_m", c.tracker.search_blur, 0.01, 1.0);
+  });
+  b.section("loop_search", [&](Binder& l) {
+    l.number("least_path_m", c.loop.least_path, 1.0, 1000.0);
+    l.number("window_m", c.loop.window, 0.05, 10.0);
+    l.number("window_per_m", c.loop.window_per_m, 0.0, 1.0);
+    l.number("largest_window_m", c.loop.largest_window, 0.1, 20.0);
+    l.integer("searches", c.loop.searches, 0, 100);
+    l.number("blur_m", c.loop.blur, 0.01, 1.0);
+    l.number("least_score", c.loop.least_score, 0.0, 1.0);
+    l.number("runner_up", c.loop.runner_up, 0.0, 1.0);
+    l.number("least_inliers", c.loop.least_inliers, 0.0, 1.0);
+    l.number("most_contradiction", c.loop.most_contradiction, 0.0, 1.0);
+    l.number("expected_contradiction", c.loop.expected_contradiction, 0.0, 1.0);
+    l.integer("confirmations", c.loop.confirmations, 1, 100);
+    l.number("scaling", c.loop.scaling, 0.1, 1e6);
+  });
+}
+
+}  // namespace rubble::slam

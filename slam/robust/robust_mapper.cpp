@@ -1,0 +1,371 @@
+#include "slam/robust/robust_mapper.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "base/planar.h"
+#include "slam/robust/key_frames.h"
+#include "slam/robust/stamped_map.h"
+#include "slam/scan/odometry_track.h"
+
+namespace rubble::slam {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using robot::LaserScan;
+
+namespace {
+
+constexpr double kLateScan = 2.0;        ///< a scan may begin so long before the newest odometry [s]
+constexpr double kFastest = 10.0;        ///< odometry that goes faster has jumped [m/s]
+constexpr double kFastestTurn = 20.0;    ///< or turns faster [rad/s]
+constexpr double kLeastJump = 0.5;       ///< below, a coarse clock may be to blame [m, rad]
+constexpr double kEdgeDistance = 0.008;  ///< least error between key frames [m]
+constexpr double kEdgeAngle = 0.003;     ///< [rad]
+constexpr Work kLeastBudget = 500'000;   ///< for work put off, each scan
+
+/// Derivative of a pose by the one it hangs on, in the map frame: d is the lever between the two.
+Eigen::Matrix3d lever(const TPose2D& from, const TPose2D& to) {
+  Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
+  J(0, 2) = -(to.y - from.y);
+  J(1, 2) = to.x - from.x;
+  return J;
+}
+
+Eigen::Matrix3d turned(const Eigen::Matrix3d& M, double phi) {
+  const double c = std::cos(phi);
+  const double s = std::sin(phi);
+  Eigen::Matrix3d R;
+  R << c, -s, 0, s, c, 0, 0, 0, 1;
+  return R * M * R.transpose();
+}
+
+bool finite(const robot::Odometry& o) {
+  return std::isfinite(o.pose.x) && std::isfinite(o.pose.y) && std::isfinite(o.pose.phi) && std::isfinite(o.v) &&
+         std::isfinite(o.w);
+}
+
+bool usable(const LaserScan& scan) {
+  return !scan.ranges.empty() && std::isfinite(scan.angle_min) && scan.angle_step > 0.0 &&
+         std::isfinite(scan.angle_step) && scan.beam_period >= 0.0;
+}
+
+}  // namespace
+
+struct RobustMapper::Impl {
+  Impl(const robot::RobotModel& model, const RobustConfig& config)
+      : config_(config),
+        level_scan_(model.T_base_laser, scan_config(config)),
+        tilt_(config.tilt),
+        tracker_(config.tracker),
+        closer_(config.loop, config.tracker.cell, frames_),
+        map_(CountMap(config.map_cells, config.map_cells, config.resolution, config.max_map_cells), model.T_base_laser,
+             scan_config(config)) {}
+
+  static LevelScanConfig scan_config(const RobustConfig& config) {
+    return {config.carve_misses, config.max_range, 0.1, config.floor_margin};
+  }
+
+  void receive(const robot::Inputs& inputs);
+  bool ready(const LaserScan& scan, Stamp now) const;
+  void process(const LaserScan& scan);
+  TPose2D motion_since_scan(Stamp reference) const;
+  TPose2D plausible_motion(Stamp reference);
+  bool asks_for_frame(const Tracked& tracked) const;
+  void add_frame(Stamp reference, Cloud cloud, const TPose2D& T_map_base, const GraphEdge& edge);
+  GraphEdge edge_to_now(const Tracked& tracked) const;
+  void put_into_map(const LaserScan& scan, const std::optional<SweepMotion>& sweep, const std::optional<ScanTilt>& tilt,
+                    Work& work);
+  void close_loops(Work& budget);
+  void remember_hits(const ScanPoints& points);
+  TPose2D now() const { return frames_.pose(frames_.last()) + T_frame_base_; }
+  std::optional<SweepMotion> sweep_motion(const LaserScan& scan) const;
+  const Trajectory& trajectory() const;
+  TPose2D pose_of(std::size_t scan) const { return frames_.pose(scans_[scan].frame) + scans_[scan].T_frame_base; }
+  std::optional<TPose2D> pose_at(Stamp stamp) const;
+
+  /// Where a scan was taken.
+  struct Place {
+    Stamp stamp;
+    int frame;
+    TPose2D T_frame_base;
+  };
+
+  const RobustConfig config_;
+  LevelScan level_scan_;
+  TiltTrack tilt_;
+  OdometryTrack odometry_;
+  KeyFrames frames_;
+  LocalTracker tracker_;
+  LoopCloser closer_;
+  StampedMap map_;
+
+  std::deque<LaserScan> waiting_;  ///< for odometry and tilt from after their reference time
+  Stamp newest_scan_ = Stamp::never();
+  std::optional<TPose2D> T_odom_scan_;  ///< at the last scan; nothing while no odometry has come
+  TPose2D T_frame_base_;                ///< at the last scan, relative to the newest key frame
+  TPose2D T_map_stamped_;               ///< where the map was stamped last
+  Eigen::Matrix3d frame_covariance_ = Eigen::Matrix3d::Zero();  ///< of the newest key frame, in the map
+  Eigen::Matrix3d scan_covariance_ = Eigen::Matrix3d::Zero();   ///< of T_frame_base_, along the frame's axes
+  std::vector<Place> scans_;
+  Trajectory live_;
+  mutable Trajectory trajectory_;
+  mutable std::uint64_t trajectory_revision_ = 0;
+  std::uint64_t revision_ = 0;
+  std::vector<TPoint2D> last_hits_;
+  MapperCounts counts_;
+  std::uint64_t slips_ = 0;
+  std::uint64_t relocated_ = 0;
+  std::uint64_t unseen_ = 0;
+  std::uint64_t odometry_jumps_ = 0;
+  Work most_work_ = 0;
+};
+
+void RobustMapper::Impl::receive(const robot::Inputs& inputs) {
+  tilt_.add(inputs);
+  for (const robot::Odometry& odometry : inputs.odometry)
+    if (finite(odometry)) odometry_.add(odometry);
+  if (!scans_.empty() && !T_odom_scan_ && !odometry_.empty()) T_odom_scan_ = odometry_.pose_at(Stamp::never());
+  for (const LaserScan& scan : inputs.scans) {
+    ++counts_.scans;
+    if (!usable(scan) || scan.middle() <= newest_scan_) {
+      ++counts_.out_of_order;
+      continue;
+    }
+    newest_scan_ = scan.middle();
+    waiting_.push_back(scan);
+  }
+  while (!waiting_.empty() && ready(waiting_.front(), inputs.now)) {
+    process(waiting_.front());
+    waiting_.pop_front();
+  }
+  if (odometry_.empty()) return;
+  const Stamp oldest = odometry_.newest() - kLateScan;
+  odometry_.forget_before(waiting_.empty() ? oldest : std::min(oldest, waiting_.front().stamp));
+  tilt_.forget_before(oldest);
+}
+
+bool RobustMapper::Impl::ready(const LaserScan& scan, Stamp now) const {
+  const Stamp reference = scan.middle();
+  const bool moved = odometry_.newest() >= reference || now - reference > OdometryTrack::kMaxExtrapolation;
+  return moved && (!config_.use_tilt || tilt_.ready(reference, now));
+}
+
+void RobustMapper::Impl::process(const LaserScan& scan) {
+  const Stamp reference = scan.middle();
+  const std::optional<SweepMotion> sweep = sweep_motion(scan);
+  const std::optional<ScanTilt> tilt = config_.use_tilt ? tilt_.at(reference) : std::nullopt;
+  const ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr, tilt ? &*tilt : nullptr);
+  Cloud cloud = cloud_of(points, config_.cloud);
+  Work work = 0;
+
+  if (frames_.empty()) {
+    add_frame(reference, std::move(cloud), TPose2D(), {});
+    tracker_.redraw(frames_, &work);
+  } else {
+    const TPose2D T_last_now = plausible_motion(reference);
+    const Tracked tracked = tracker_.track(cloud, T_last_now, T_frame_base_ + T_last_now, &work);
+    T_frame_base_ = tracked.fit.pose;
+    slips_ += tracked.slipped ? 1 : 0;
+    relocated_ += tracked.relocated ? 1 : 0;
+    unseen_ += tracked.found ? 0 : 1;
+    const GraphEdge edge = edge_to_now(tracked);
+    scan_covariance_ = edge.information.inverse();
+    if (asks_for_frame(tracked)) {
+      add_frame(reference, std::move(cloud), now(), edge);
+      if (config_.loops) closer_.look();
+      tracker_.redraw(frames_, &work);
+    }
+  }
+  if (!odometry_.empty()) T_odom_scan_ = odometry_.pose_at(reference);
+  scans_.push_back({reference, frames_.last(), T_frame_base_});
+
+  Work budget = std::max(kLeastBudget, static_cast<Work>(config_.budget_ms * 1e6) - work);
+  const Work given = budget;
+  if (config_.loops) close_loops(budget);
+  put_into_map(scan, sweep, tilt, budget);
+  map_.work(frames_, budget);
+  most_work_ = std::max(most_work_, work + given - budget);
+  live_.push_back({reference, now()});
+  remember_hits(points);
+}
+
+/// What odometry says; nothing where it cannot be true.
+TPose2D RobustMapper::Impl::plausible_motion(Stamp reference) {
+  const TPose2D motion = motion_since_scan(reference);
+  const double time = std::max(1e-3, reference - scans_.back().stamp);
+  const double path = length(motion.x, motion.y);
+  const double turn = std::abs(wrap_angle(motion.phi));
+  const bool jumped =
+      (path > kLeastJump && path > kFastest * time) || (turn > kLeastJump && turn > kFastestTurn * time);
+  if (!jumped) return motion;
+  ++odometry_jumps_;
+  return {};
+}
+
+bool RobustMapper::Impl::asks_for_frame(const Tracked& tracked) const {
+  const double path = length(T_frame_base_.x, T_frame_base_.y);
+  const double turn = std::abs(wrap_angle(T_frame_base_.phi));
+  if (path > config_.frame_distance || turn > config_.frame_turn) return true;
+  return tracked.fit.inliers < config_.frame_overlap && (path > 0.1 || turn > 0.08);
+}
+
+/// The newest key frame's edge to where the robot is now: what the scan says, and what odometry says at least.
+GraphEdge RobustMapper::Impl::edge_to_now(const Tracked& tracked) const {
+  const double path = length(T_frame_base_.x, T_frame_base_.y);
+  const double turn = std::abs(wrap_angle(T_frame_base_.phi));
+  const double distance = 0.01 + 0.1 * path;
+  const double angle = 0.01 + 0.1 * turn + 0.03 * path;
+  const Eigen::Matrix3d odometry =
+      Eigen::Vector3d(1.0 / (distance * distance), 1.0 / (distance * distance), 1.0 / (angle * angle)).asDiagonal();
+  Eigen::Matrix3d information = odometry;
+  if (tracked.found) information += tracked.fit.information;
+  const Eigen::Matrix3d floor =
+      Eigen::Vector3d(kEdgeDistance * kEdgeDistance, kEdgeDistance * kEdgeDistance, kEdgeAngle * kEdgeAngle)
+          .asDiagonal();
+  GraphEdge edge;
+  edge.from = frames_.last();
+  edge.to = frames_.last() + 1;
+  edge.T_from_to = T_frame_base_;
+  edge.information = (information.inverse() + floor).inverse();
+  return edge;
+}
+
+void RobustMapper::Impl::add_frame(Stamp reference, Cloud cloud, const TPose2D& T_map_base, const GraphEdge& edge) {
+  KeyFrame frame;
+  frame.stamp = reference;
+  frame.cloud = std::move(cloud);
+  if (!frames_.empty()) {
+    frame.path = frames_[frames_.last()].path + length(T_frame_base_.x, T_frame_base_.y);
+    const TPose2D& from = frames_.pose(frames_.last());
+    const Eigen::Matrix3d J = lever(from, T_map_base);
+    frame_covariance_ = J * frame_covariance_ * J.transpose() + turned(scan_covariance_, from.phi);
+  }
+  frames_.add(std::move(frame), T_map_base, edge);
+  T_frame_base_ = TPose2D();
+  scan_covariance_.setZero();
+}
+
+void RobustMapper::Impl::close_loops(Work& budget) {
+  if (!closer_.work(budget)) return;
+  ++revision_;
+  frame_covariance_ = closer_.covariance();
+  map_.moved();
+  tracker_.redraw(frames_, nullptr);
+}
+
+void RobustMapper::Impl::put_into_map(const LaserScan& scan, const std::optional<SweepMotion>& sweep,
+                                      const std::optional<ScanTilt>& tilt, Work& budget) {
+  const TPose2D moved = now() - T_map_stamped_;
+  const bool gate =
+      length(moved.x, moved.y) >= config_.map_distance || std::abs(wrap_angle(moved.phi)) >= config_.map_turn;
+  if (!gate && counts_.mapped >= static_cast<std::uint64_t>(config_.first_scans)) return;
+  Work used = 0;
+  map_.add(frames_, frames_.last(), T_frame_base_, packed(scan, sweep, tilt), &used);
+  budget -= used;
+  T_map_stamped_ = now();
+  ++counts_.mapped;
+}
+
+void RobustMapper::Impl::remember_hits(const ScanPoints& points) {
+  const PlanarTransform to_map(now());
+  last_hits_.clear();
+  for (const TPoint2D& p_base : points.hits) last_hits_.push_back(to_map(p_base));
+}
+
+TPose2D RobustMapper::Impl::motion_since_scan(Stamp reference) const {
+  return T_odom_scan_ ? odometry_.pose_at(reference) - *T_odom_scan_ : TPose2D();
+}
+
+std::optional<SweepMotion> RobustMapper::Impl::sweep_motion(const LaserScan& scan) const {
+  if (scan.beam_period <= 0.0 || odometry_.empty()) return std::nullopt;
+  const Stamp reference = scan.middle();
+  return SweepMotion{odometry_.between(reference, scan.stamp),
+                     odometry_.between(reference, scan.beam_stamp(scan.ranges.size() - 1))};
+}
+
+const Trajectory& RobustMapper::Impl::trajectory() const {
+  if (trajectory_revision_ != revision_) trajectory_.clear();
+  trajectory_revision_ = revision_;
+  while (trajectory_.size() < scans_.size())
+    trajectory_.push_back({scans_[trajectory_.size()].stamp, pose_of(trajectory_.size())});
+  return trajectory_;
+}
+
+std::optional<TPose2D> RobustMapper::Impl::pose_at(Stamp stamp) const {
+  if (scans_.empty() || stamp < scans_.front().stamp) return std::nullopt;
+  const auto after = std::lower_bound(scans_.begin(), scans_.end(), stamp,
+                                      [](const Place& place, Stamp s) { return place.stamp < s; });
+  if (after == scans_.end()) {
+    if (!T_odom_scan_ || stamp > odometry_.newest()) return std::nullopt;
+    return now() + motion_since_scan(stamp);
+  }
+  const auto index = static_cast<std::size_t>(after - scans_.begin());
+  if (after->stamp == stamp) return pose_of(index);
+  const Place& before = scans_[index - 1];
+  return interpolate(pose_of(index - 1), pose_of(index), (stamp - before.stamp) / (after->stamp - before.stamp));
+}
+
+RobustMapper::RobustMapper(const robot::RobotModel& model, const RobustConfig& config, std::uint64_t)
+    : impl_(std::make_unique<Impl>(model, config)) {}
+RobustMapper::~RobustMapper() = default;
+
+void RobustMapper::update(const robot::Inputs& inputs) { impl_->receive(inputs); }
+
+void RobustMapper::finish() {
+  if (impl_->frames_.empty()) return;
+  if (impl_->config_.loops) {
+    impl_->closer_.finish();
+    ++impl_->revision_;
+    impl_->frame_covariance_ = impl_->closer_.covariance();
+  }
+  impl_->map_.moved();
+  Work budget = std::numeric_limits<Work>::max();
+  impl_->map_.work(impl_->frames_, budget);
+  impl_->tracker_.redraw(impl_->frames_, nullptr);
+}
+
+const CountMap& RobustMapper::map() const { return impl_->map_.map(); }
+
+TPose2D RobustMapper::pose() const {
+  if (impl_->frames_.empty()) return {};
+  return impl_->now() + impl_->motion_since_scan(impl_->odometry_.newest());
+}
+
+Eigen::Matrix3d RobustMapper::covariance() const {
+  if (impl_->frames_.empty()) return Eigen::Matrix3d::Zero();
+  const TPose2D& frame = impl_->frames_.pose(impl_->frames_.last());
+  const Eigen::Matrix3d J = lever(frame, impl_->now());
+  return J * impl_->frame_covariance_ * J.transpose() + turned(impl_->scan_covariance_, frame.phi);
+}
+
+std::uint64_t RobustMapper::revision() const { return impl_->revision_; }
+std::optional<TPose2D> RobustMapper::pose_at(Stamp stamp) const { return impl_->pose_at(stamp); }
+const Trajectory& RobustMapper::trajectory() const { return impl_->trajectory(); }
+const Trajectory& RobustMapper::live_trajectory() const { return impl_->live_; }
+const std::vector<TPoint2D>& RobustMapper::last_hits() const { return impl_->last_hits_; }
+const MapperCounts& RobustMapper::counts() const { return impl_->counts_; }
+
+std::vector<MapperFigure> RobustMapper::figures() const {
+  const LoopCounts& loops = impl_->closer_.counts();
+  return {{"key_frames", static_cast<double>(impl_->frames_.size())},
+          {"slips", static_cast<double>(impl_->slips_)},
+          {"relocated", static_cast<double>(impl_->relocated_)},
+          {"unseen", static_cast<double>(impl_->unseen_)},
+          {"odometry_jumps", static_cast<double>(impl_->odometry_jumps_)},
+          {"loops_searched", static_cast<double>(loops.searched)},
+          {"loops_ambiguous", static_cast<double>(loops.ambiguous)},
+          {"loops_contradicted", static_cast<double>(loops.contradicted)},
+          {"loops_needless", static_cast<double>(loops.needless)},
+          {"loops_closed", static_cast<double>(loops.closed)},
+          {"loops_removed", static_cast<double>(loops.removed)},
+          {"near_edges", static_cast<double>(loops.near_edges)},
+          {"graph_solved", static_cast<double>(loops.solved)},
+          {"most_work_ms", static_cast<double>(impl_->most_work_) * 1e-6}};
+}
+
+}  // namespace rubble::slam

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/angle.h"
+#include "base/yaml/binder.h"
+#include "robot/model.h"
+#include "slam/mapper.h"
+#include "slam/robust/cloud.h"
+#include "slam/robust/local_tracker.h"
+#include "slam/robust/loop_closer.h"
+#include "slam/robust/tilt_track.h"
+
+namespace rubble::slam {
+
+/// Parameters of the robust mapper; docs/slam.md says what they were chosen by.
+struct RobustConfig {
+  int map_cells = 800;                 ///< cells a side at the start; the map grows when needed
+  double resolution = 0.05;            ///< cell edge [m]
+  int max_map_cells = 8000;            ///< the map grows up to so many cells a side
+  double max_range = 0.0;              ///< returns beyond are dropped [m]; 0: the scanner's own limit
+  bool carve_misses = false;           ///< beams without a return free cells up to the range limit
+  double floor_margin = 0.08;          ///< returns lower than this above the floor are the floor [m]
+  bool use_tilt = true;                ///< project scans by what the accelerometer says
+  double map_distance = 0.15;          ///< a scan enters the map after this much motion [m]
+  double map_turn = deg_to_rad(10.0);  ///< or this much turn [rad]
+  int first_scans = 5;                 ///< so many scans are mapped at the start although the robot stands
+  double frame_distance = 0.30;        ///< a key frame is taken after this much motion [m]
+  double frame_turn = 0.20;            ///< or this much turn [rad]
+  double frame_overlap = 0.60;         ///< or when fewer points lie on the local map
+  bool loops = true;                   ///< close loops
+  double budget_ms = 8.0;  ///< work put off to later scans beyond this; in work, not time: a unit is about 1 ns
+  CloudConfig cloud;
+  TiltConfig tilt;
+  TrackerConfig tracker;
+  LoopConfig loop;
+};
+
+void bind(Binder& binder, RobustConfig& config);
+
+/// Online SLAM by matching with a local map, key frames and a graph of their poses with verified loops
+/// (docs/slam.md). Poses of the past move when loops close: revision() then rises.
+class RobustMapper : public Mapper {
+ public:
+  RobustMapper(const robot::RobotModel& model, const RobustConfig& config, std::uint64_t seed);
+  ~RobustMapper() override;
+
+  void update(const robot::Inputs& inputs) override;
+  void finish() override;
+  const CountMap& map() const override;
+  mrpt::math::TPose2D pose() const override;
+  Eigen::Matrix3d covariance() const override;
+  std::uint64_t revision() const override;
+  std::optional<mrpt::math::TPose2D> pose_at(Stamp stamp) const override;
+  const Trajectory& trajectory() const override;
+  const Trajectory& live_trajectory() const override;
+  const std::vector<mrpt::math::TPoint2D>& last_hits() const override;
+  const MapperCounts& counts() const override;
+  std::vector<MapperFigure> figures() const override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rubble::slam
