@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/stamp.h"
 #include "explore/victim_report.h"
 #include "robot/commands.h"
 #include "robot/measurements.h"
@@ -13,6 +14,21 @@
 namespace rubble::explore {
 
 enum class ExplorerState { Starting, Driving, Searching, BackingUp, GoingHome, Finished };
+
+/// How a mission ended: still under way; nothing left to do; the same, or time running out, and back at the start; held
+/// by something with every way out tried.
+enum class MissionEnd { UnderWay, Explored, Home, Stuck };
+
+/// What the mission's frame asks of an explorer.
+struct Mission {
+  double time_limit = 0.0;  ///< from the first tick [s]; 0: none
+};
+
+/// Why the explorer did what it did, one line.
+struct Decision {
+  Stamp stamp;
+  std::string why;
+};
 
 /// Decides where to drive, from what a mapper knows and what the robot measured.
 ///
@@ -35,7 +51,10 @@ class Explorer {
   virtual bool finished() const = 0;
   /// Why it finished, for people; empty while it runs.
   virtual const std::string& reason() const = 0;
+  virtual MissionEnd end() const = 0;
   virtual ExplorerState state() const = 0;
+  /// All decisions so far, in order.
+  virtual const std::vector<Decision>& decisions() const = 0;
   /// The path being followed, map frame, robot first.
   virtual const std::vector<mrpt::math::TPoint2D>& path() const = 0;
   /// The victims it is sure of, by id.

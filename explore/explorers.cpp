@@ -7,15 +7,15 @@ namespace rubble::explore {
 namespace {
 
 /// Parameters kept in a plain struct `Config` that functions bind(Binder&, Config&) and mistake(const Config&) beside
-/// it know, of an explorer whose constructor takes (model, config).
+/// it know, of an explorer whose constructor takes (model, config, mission).
 template <class Config, class Kind>
 class ParametersOf : public ExplorerParameters {
  public:
   void bind(Binder& binder) override { explore::bind(binder, config_); }
   std::string mistake() const override { return explore::mistake(config_); }
   double occupied_threshold() const override { return config_.occupied_threshold; }
-  std::unique_ptr<Explorer> make(const robot::RobotModel& model) const override {
-    return std::make_unique<Kind>(model, config_);
+  std::unique_ptr<Explorer> make(const robot::RobotModel& model, const Mission& mission) const override {
+    return std::make_unique<Kind>(model, config_, mission);
   }
   std::unique_ptr<ExplorerParameters> copy() const override { return std::make_unique<ParametersOf>(*this); }
 

@@ -22,7 +22,7 @@ class ExplorerParameters {
   virtual std::string mistake() const = 0;
   /// p_occ from which a cell is an obstacle, for maps drawn as the explorer sees them.
   virtual double occupied_threshold() const = 0;
-  virtual std::unique_ptr<Explorer> make(const robot::RobotModel& model) const = 0;
+  virtual std::unique_ptr<Explorer> make(const robot::RobotModel& model, const Mission& mission) const = 0;
   virtual std::unique_ptr<ExplorerParameters> copy() const = 0;
 };
 
@@ -51,7 +51,9 @@ class ExplorerConfig {
   void bind(Binder& binder);
   std::string mistake() const { return parameters_->mistake(); }
   double occupied_threshold() const { return parameters_->occupied_threshold(); }
-  std::unique_ptr<Explorer> make(const robot::RobotModel& model) const { return parameters_->make(model); }
+  std::unique_ptr<Explorer> make(const robot::RobotModel& model, const Mission& mission) const {
+    return parameters_->make(model, mission);
+  }
 
  private:
   std::string kind_;

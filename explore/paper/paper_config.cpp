@@ -17,10 +17,13 @@ void bind(Binder& b, PaperExplorerConfig& c) {
   b.boolean("return_home", c.return_home);
   b.number("d_min_floor_m", c.planner.d_min_floor, 0.0, 2.0);
   b.number("switch_cost_m", c.planner.switch_cost, 0.0, 100.0);
+  b.number("felt_memory_s", c.felt.memory, 0.0, 1e6);
+  b.degrees("too_steep_deg", c.tilt.too_steep, 1.0, 90.0);
   b.section("victims", [&](Binder& v) {
     v.integer("min_cues", c.victims.min_cues, 1, 1000);
     v.number("min_evidence", c.victims.min_evidence, 0.0, 1000.0);
     v.number("merge_distance_m", c.victims.merge_distance, 0.0, 10.0);
+    v.number("memory_s", c.victims.memory, 0.0, 1e6);
     v.boolean("search", c.search.on);
     v.degrees("field_of_view_deg", c.search.field_of_view, 5.0, 360.0);
     v.number("range_m", c.search.range, 0.3, 20.0);

@@ -4,6 +4,8 @@
 
 #include "base/angle.h"
 #include "base/yaml/binder.h"
+#include "explore/caution/felt_obstacles.h"
+#include "explore/caution/tilt_watch.h"
 #include "explore/plan/path_follower.h"
 #include "explore/plan/planner.h"
 #include "explore/search/searched_area.h"
@@ -18,11 +20,13 @@ struct PaperExplorerConfig {
   FollowerConfig follower;
   VictimSearchConfig victims;
   SearchConfig search;
+  FeltConfig felt;
+  TiltWatchConfig tilt;
   double occupied_threshold = 0.5;        ///< p_occ from which a cell is an obstacle
   double replan_period = 0.5;             ///< [s]
   double scan_timeout = 0.3;              ///< without a scan for this long the robot stops [s]
   double first_turn = deg_to_rad(130.0);  ///< turn at the start that shows the scanner what is behind [rad]
-  bool return_home = false;               ///< drive back to the start when nothing is left to explore
+  bool return_home = true;                ///< drive back to the start in the end, in time
 };
 
 /// The keys of `explorer` with `kind: paper`.

@@ -5,11 +5,15 @@
 #include <vector>
 
 #include "base/planar.h"
+#include "explore/anchor.h"
 #include "explore/caution/attempts.h"
 #include "explore/caution/blacklist.h"
+#include "explore/caution/escape.h"
+#include "explore/caution/felt_obstacles.h"
 #include "explore/caution/motion_watch.h"
+#include "explore/caution/tilt_watch.h"
 #include "explore/explorer.h"
-#include "explore/paper/backing_up.h"
+#include "explore/paper/home_way.h"
 #include "explore/paper/look_around.h"
 #include "explore/paper/paper_config.h"
 #include "explore/paper/path_watch.h"
@@ -27,12 +31,14 @@ namespace rubble::explore {
 /// recovery.cpp what to do when the way is not as planned.
 class PaperExplorer : public Explorer {
  public:
-  PaperExplorer(const robot::RobotModel& model, const PaperExplorerConfig& config);
+  PaperExplorer(const robot::RobotModel& model, const PaperExplorerConfig& config, const Mission& mission = {});
 
   robot::Commands next(const slam::Mapper& mapper, const robot::Inputs& inputs) override;
   bool finished() const override { return state_ == ExplorerState::Finished; }
   const std::string& reason() const override { return reason_; }
+  MissionEnd end() const override { return end_; }
   ExplorerState state() const override { return state_; }
+  const std::vector<Decision>& decisions() const override { return decisions_; }
   const std::vector<mrpt::math::TPoint2D>& path() const override { return shown_path_; }
   const std::vector<VictimReport>& victims() const override { return search_.reports(); }
 
@@ -44,10 +50,13 @@ class PaperExplorer : public Explorer {
   static constexpr double kBarRadius = 0.60;  ///< about targets that cannot be had [m]
 
   void observe(const slam::Mapper& mapper, const robot::Inputs& inputs);
+  void follow_map(const slam::Mapper& mapper);
+  void hear(const slam::Mapper& mapper, const robot::VictimCue& cue);
+  void note(const std::string& why);
   Drive decide(const slam::Mapper& mapper);
   Drive start(const slam::Mapper& mapper);
   Drive drive(const slam::Mapper& mapper);
-  Drive back_up();
+  Drive escape();
 
   /// The floor with `hits` [map frame] as further obstacles.
   Traversable floor_now(const slam::Mapper& mapper, const std::vector<TPoint2D>& hits) const;
@@ -58,10 +67,12 @@ class PaperExplorer : public Explorer {
   void nothing_left();
   void finish_exploring();
   void finish_searching();
-  void finish(const std::string& why);
+  void finish(MissionEnd end, const std::string& why);
+  void go_home(const std::string& why);
+  bool must_turn_back();
 
   void check_path(const slam::Mapper& mapper);
-  void got_stuck();
+  void got_stuck(const std::string& how);
   void bar_target(const TPoint2D& target);
   void look_around(double angle, bool to_the_end);
   void show_path();
@@ -82,10 +93,15 @@ class PaperExplorer : public Explorer {
   MotionWatch watch_;
   PathWatch path_watch_;
   LookAround looking_;
-  BackingUp backing_up_;
+  TiltWatch tilt_;
+  FeltObstacles felt_;
+  Escape escape_;
+  HomeWay home_way_;
 
   ExplorerState state_ = ExplorerState::Starting;
+  MissionEnd end_ = MissionEnd::UnderWay;
   std::string reason_;
+  std::vector<Decision> decisions_;
   std::vector<TPoint2D> shown_path_;
 
   Stamp now_ = Stamp::never();
@@ -95,8 +111,10 @@ class PaperExplorer : public Explorer {
   bool stalled_ = false;
   Stamp last_scan_ = Stamp::never();
   Drive commanded_;
-  std::vector<TPoint2D> trail_;
-  TPoint2D home_;
+  std::uint64_t revision_ = 0;
+  std::vector<Anchor> trail_anchors_;
+  std::vector<TPoint2D> trail_;  ///< the anchors' places
+  Anchor home_;
 
   Traversable last_floor_;
   std::uint64_t planned_version_ = 0;
@@ -113,9 +131,10 @@ class PaperExplorer : public Explorer {
   int looks_in_vain_ = 0;
   int pardons_ = 0;
 
-  ExplorerState after_back_up_ = ExplorerState::Driving;
+  ExplorerState after_escape_ = ExplorerState::Driving;
   std::optional<TPoint2D> stuck_place_;
   int stuck_there_ = 0;
+  int failed_escapes_ = 0;
 };
 
 }  // namespace rubble::explore

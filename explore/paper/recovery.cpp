@@ -7,10 +7,14 @@ namespace rubble::explore {
 namespace {
 
 using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
 using robot::Drive;
 
-constexpr double kBarTime = 60.0;  ///< for the first failure; doubles with each one more [s]
-constexpr int kMaxStuckAtPlace = 6;
+constexpr double kBarTime = 60.0;       ///< for the first failure; doubles with each one more [s]
+constexpr double kSamePlace = 0.5;      ///< [m]
+constexpr double kTurningSpeed = 0.05;  ///< slower is a turn on the spot [m/s]
+constexpr double kLean = 0.03;          ///< getting free, the body may come so much closer to walls [m]
+constexpr int kMaxFailedEscapes = 2;    ///< in a row
 
 TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
 
@@ -21,38 +25,50 @@ void PaperExplorer::check_path(const slam::Mapper& mapper) {
   if (path_watch_.check(follower_, mapper.last_hits(), pose_, commanded_.v, path_d_min_, now_)) plan_forced_ = true;
 }
 
-void PaperExplorer::got_stuck() {
+/// Something holds the robot that the scanner cannot see: it is remembered, and the robot gets free of it.
+void PaperExplorer::got_stuck(const std::string& how) {
   watch_.reset();
+  tilt_.reset();
   looking_.end();
+  follower_.clear();
   const TPoint2D here = position(pose_);
-  const bool again = stuck_place_ && distance(*stuck_place_, here) < 0.5;
+  const bool again = stuck_place_ && distance(*stuck_place_, here) < kSamePlace;
   stuck_there_ = again ? stuck_there_ + 1 : 1;
   stuck_place_ = here;
-  if (stuck_there_ > 1 && target_) bar_target(*target_);
-  if (stuck_there_ > kMaxStuckAtPlace) return finish("stuck");
+  if (stuck_there_ > 1 && target_ && state_ != ExplorerState::GoingHome) bar_target(*target_);
 
-  // Whatever holds the robot stands before it: something the scanner cannot see.
-  std::vector<TPoint2D> felt;
-  for (int i = -2; i <= 2; ++i) {
-    const double ahead = 0.5 * model_.length + 0.10;
-    const double aside = 0.1 * i;
-    felt.push_back({pose_.x + ahead * std::cos(pose_.phi) - aside * std::sin(pose_.phi),
-                    pose_.y + ahead * std::sin(pose_.phi) + aside * std::cos(pose_.phi)});
-  }
-  path_watch_.remember(felt, now_);
-  const TPoint2D rear{pose_.x - 0.25 * std::cos(pose_.phi), pose_.y - 0.25 * std::sin(pose_.phi)};
-  const Cell c = last_floor_.clearance.cell(rear);
-  const bool rear_free = !last_floor_.clearance.inside(c) || last_floor_.clearance[c] > 0.5 * model_.width;
-  const bool turns = commanded_.v < 0.0 || !rear_free || stuck_there_ % 3 == 0;
-  const double side = stuck_there_ % 2 == 0 ? 1.0 : -1.0;
-  backing_up_.begin(turns ? side * config_.follower.turn_speed : 0.0, now_);
-  after_back_up_ = state_;
+  const Escape::Met met = std::abs(commanded_.v) < kTurningSpeed ? Escape::Met::Turning
+                          : commanded_.v > 0.0                   ? Escape::Met::Forwards
+                                                                 : Escape::Met::Backwards;
+  if (met != Escape::Met::Turning) felt_.feel({now_, pose_}, met == Escape::Met::Backwards, model_);
+  note(how + ": backs off and plans around it");
+  escape_.begin(met, pose_, now_);
+  after_escape_ = state_;
   state_ = ExplorerState::BackingUp;
 }
 
-Drive PaperExplorer::back_up() {
-  if (const std::optional<Drive> drive = backing_up_.drive(now_)) return *drive;
-  state_ = after_back_up_;
+Drive PaperExplorer::escape() {
+  const auto room = [&](const TPose2D& T_map_base) {
+    const double x = T_map_base.x, y = T_map_base.y;
+    const Cell c = last_floor_.clearance.cell({x, y});
+    return !last_floor_.clearance.inside(c) || last_floor_.clearance[c] > 0.5 * model_.width - kLean;
+  };
+  switch (escape_.step(pose_, commanded_, stalled_, dt_, now_, trail_, room)) {
+    case Escape::Result::UnderWay:
+      return escape_.drive();
+    case Escape::Result::Free:
+      failed_escapes_ = 0;
+      break;
+    case Escape::Result::Failed:
+      note("could not get free");
+      if (++failed_escapes_ >= kMaxFailedEscapes) {
+        finish(MissionEnd::Stuck, "stuck");
+        return {};
+      }
+      break;
+  }
+  watch_.reset();
+  state_ = after_escape_;
   plan_forced_ = true;
   return {};
 }

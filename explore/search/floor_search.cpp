@@ -10,7 +10,7 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kLookPeriod = 0.25;            ///< [s]
+constexpr double kLookPeriod = 0.35;            ///< [s]
 constexpr double kTurnRate = deg_to_rad(40.0);  ///< turning faster the sensors see too little [rad/s]
 constexpr double kFacing = deg_to_rad(8.0);     ///< [rad]
 constexpr double kSubjectRadius = 0.25;         ///< given up together with a place that cannot be seen [m]
@@ -21,15 +21,27 @@ bool FloorSearch::look(const Traversable& floor, const TPose2D& T_map_base, doub
   if (!config_.on || now < next_look_ || std::abs(turn_rate) > kTurnRate) return false;
   next_look_ = now + kLookPeriod;
   searched_.look(floor, T_map_base);
+  looks_.push_back({now, T_map_base});
   return true;
+}
+
+void FloorSearch::follow(const Traversable& floor, const slam::Mapper& mapper) {
+  searched_.clear();
+  for (Anchor& look : looks_) {
+    look.follow(mapper);
+    searched_.look(floor, look.T_map_base);
+  }
 }
 
 bool FloorSearch::subject_seen(const Traversable& floor) const {
   const Cell c = floor.cells.cell(subject_);
-  return floor.cells.inside(c) && searched_.searched(floor, c);
+  if (c.x < 1 || c.y < 1 || c.x + 1 >= floor.cells.width() || c.y + 1 >= floor.cells.height()) return false;
+  return (searched_.missing(floor, c) & subject_faces_) == 0;
 }
 
-void FloorSearch::give_up_subject(const Traversable& floor) { searched_.give_up(floor, subject_, kSubjectRadius); }
+void FloorSearch::give_up_subject(const Traversable& floor) {
+  searched_.give_up(floor, subject_, kSubjectRadius, subject_faces_);
+}
 
 std::vector<Source> FloorSearch::sources(const Traversable& floor,
                                          const std::function<std::optional<double>(const TPoint2D&)>& head_start) {
@@ -44,7 +56,10 @@ std::vector<Source> FloorSearch::sources(const Traversable& floor,
 
 void FloorSearch::choose_subject(Cell viewpoint) {
   for (const Viewpoint& view : views_)
-    if (view.cell == viewpoint) subject_ = view.subject;
+    if (view.cell == viewpoint) {
+      subject_ = view.subject;
+      subject_faces_ = view.faces;
+    }
 }
 
 std::optional<double> FloorSearch::turn_to_subject(const Traversable& floor, const TPose2D& T_map_base) {
@@ -56,6 +71,7 @@ std::optional<double> FloorSearch::turn_to_subject(const Traversable& floor, con
     if (std::abs(to) >= std::abs(turn)) continue;
     turn = to;
     subject_ = view.subject;
+    subject_faces_ = view.faces;
   }
   return std::abs(turn) > kFacing ? std::optional<double>(turn) : std::nullopt;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/stamp.h"
+#include "explore/anchor.h"
 #include "explore/plan/exploration_transform.h"
 #include "explore/search/searched_area.h"
 
@@ -23,6 +24,8 @@ class FloorSearch {
   bool look(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, double turn_rate, Stamp now);
   /// Whether the place to face has been looked at.
   bool subject_seen(const Traversable& floor) const;
+  /// The mapper corrected its past: all looks are repeated from where they were made as is known now.
+  void follow(const Traversable& floor, const slam::Mapper& mapper);
   /// Counts the place to face and what is around it as searched, seen or not.
   void give_up_subject(const Traversable& floor);
 
@@ -52,6 +55,8 @@ class FloorSearch {
   SearchedArea searched_;
   std::vector<Viewpoint> views_;
   mrpt::math::TPoint2D subject_;
+  Faces subject_faces_ = 0;
+  std::vector<Anchor> looks_;
   Stamp next_look_ = Stamp::never();
   Stamp dwell_until_ = Stamp::never();
   Stamp stare_until_ = Stamp::never();

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "base/planar.h"
 
 namespace rubble::explore {
 namespace {
@@ -16,7 +19,7 @@ constexpr double kDistances[] = {0.5, 0.8, 1.1, 1.4};  ///< [m]
 /// Free cells that were not searched, as 8-connected clusters of at least `min_cells`.
 std::vector<std::vector<Cell>> unsearched_clusters(const Traversable& floor, const SearchedArea& searched,
                                                    int min_cells) {
-  Grid<std::uint8_t> open = searched.unsearched(floor);
+  Grid<Faces> open = searched.unsearched(floor);
   std::vector<std::vector<Cell>> clusters;
   for (int y = 1; y + 1 < floor.cells.height(); ++y)
     for (int x = 1; x + 1 < floor.cells.width(); ++x) {
@@ -37,6 +40,26 @@ std::vector<std::vector<Cell>> unsearched_clusters(const Traversable& floor, con
 
 }  // namespace
 
+Faces faces_along(double x, double y) {
+  constexpr double kCosine = 0.5;  ///< of 60 deg
+  Faces faces = kFloor;
+  if (x >= kCosine) faces |= kEastFace;
+  if (y >= kCosine) faces |= kNorthFace;
+  if (x <= -kCosine) faces |= kWestFace;
+  if (y <= -kCosine) faces |= kSouthFace;
+  return faces;
+}
+
+Faces faces_of(const Traversable& floor, Cell c) {
+  const auto wall = [&](int dx, int dy) { return floor.cells[{c.x + dx, c.y + dy}] == Occupancy::Occupied; };
+  Faces faces = kFloor;
+  if (wall(1, 0)) faces |= kEastFace;
+  if (wall(0, 1)) faces |= kNorthFace;
+  if (wall(-1, 0)) faces |= kWestFace;
+  if (wall(0, -1)) faces |= kSouthFace;
+  return faces;
+}
+
 bool in_sight(const Traversable& floor, Cell from, Cell to) {
   const int dx = to.x - from.x;
   const int dy = to.y - from.y;
@@ -56,14 +79,14 @@ bool in_sight(const Traversable& floor, Cell from, Cell to) {
 }
 
 Cell SearchedArea::shift_from(const GridFrame& f) const {
-  const GridFrame& own = searched_.frame();
+  const GridFrame& own = twice_.frame();
   return {static_cast<int>(std::lround((f.x0 - own.x0) / f.resolution)),
           static_cast<int>(std::lround((f.y0 - own.y0) / f.resolution))};
 }
 
 /// Lets the record hold at least `frame`; the map's cells keep their places when it grows.
 void SearchedArea::cover(const GridFrame& frame) {
-  const GridFrame& own = searched_.frame();
+  const GridFrame own = twice_.frame();
   const double margin = 2.0;
   const auto east = [](const GridFrame& f) { return f.x0 + f.width * f.resolution; };
   const auto north = [](const GridFrame& f) { return f.y0 + f.height * f.resolution; };
@@ -85,12 +108,15 @@ void SearchedArea::cover(const GridFrame& frame) {
     wider.width = std::max(wider.width + west, cells(east(own) - wider.x0));
     wider.height = std::max(wider.height + south, cells(north(own) - wider.y0));
   }
-  Grid<std::uint8_t> grown(wider);
-  for (int y = 0; y < own.height; ++y)
-    for (int x = 0; x < own.width; ++x)
-      grown[{x + static_cast<int>(std::lround((own.x0 - wider.x0) / frame.resolution)),
-             y + static_cast<int>(std::lround((own.y0 - wider.y0) / frame.resolution))}] = searched_[{x, y}];
-  searched_ = std::move(grown);
+  for (Grid<Faces>* record : {&once_, &twice_}) {
+    Grid<Faces> grown(wider);
+    const Cell shift{static_cast<int>(std::lround((own.x0 - wider.x0) / frame.resolution)),
+                     static_cast<int>(std::lround((own.y0 - wider.y0) / frame.resolution))};
+    const GridFrame old = record->frame();
+    for (int y = 0; y < old.height; ++y)
+      for (int x = 0; x < old.width; ++x) grown[{x + shift.x, y + shift.y}] = (*record)[{x, y}];
+    *record = std::move(grown);
+  }
 }
 
 void SearchedArea::look(const Traversable& floor, const TPose2D& T_map_base) {
@@ -100,51 +126,66 @@ void SearchedArea::look(const Traversable& floor, const TPose2D& T_map_base) {
   const double step = 0.7 * floor.frame().resolution;
   const double turn = step / config_.range;  // neighbouring rays end less than a cell apart
   const int rays = static_cast<int>(std::ceil(config_.field_of_view / turn));
+  std::vector<std::pair<Cell, Faces>> seen;
   for (int i = 0; i <= rays; ++i) {
     const double bearing = T_map_base.phi + config_.field_of_view * (static_cast<double>(i) / rays - 0.5);
     const double dx = std::cos(bearing);
     const double dy = std::sin(bearing);
+    const Faces faces = faces_along(dx, dy);
     for (double r = 0.0; r <= config_.range; r += step) {
       const Cell c = floor.cells.cell({T_map_base.x + r * dx, T_map_base.y + r * dy});
       if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free) break;
-      searched_[{c.x + shift.x, c.y + shift.y}] = 1;
+      const Cell own{c.x + shift.x, c.y + shift.y};
+      twice_[own] = static_cast<Faces>(twice_[own] | (once_[own] & faces));  // `once_` is of earlier looks
+      seen.push_back({own, faces});
     }
   }
+  for (const auto& [own, faces] : seen) once_[own] = static_cast<Faces>(once_[own] | faces);
 }
 
-void SearchedArea::give_up(const Traversable& floor, const TPoint2D& place, double radius) {
+void SearchedArea::give_up(const Traversable& floor, const TPoint2D& place, double radius, Faces faces) {
   if (floor.cells.width() == 0) return;
   cover(floor.frame());
   const Cell shift = shift_from(floor.frame());
   const Cell low = floor.cells.cell({place.x - radius, place.y - radius});
   const Cell high = floor.cells.cell({place.x + radius, place.y + radius});
   for (int y = low.y; y <= high.y; ++y)
-    for (int x = low.x; x <= high.x; ++x)
-      if (floor.cells.inside({x, y}) && (floor.cells.centre({x, y}) - place).norm() <= radius)
-        searched_[{x + shift.x, y + shift.y}] = 1;
+    for (int x = low.x; x <= high.x; ++x) {
+      if (!floor.cells.inside({x, y}) || (floor.cells.centre({x, y}) - place).norm() > radius) continue;
+      Faces& record = twice_[{x + shift.x, y + shift.y}];
+      record = static_cast<Faces>(record | faces);
+    }
 }
 
-bool SearchedArea::searched(const Traversable& floor, Cell c) const {
-  if (searched_.width() == 0) return false;
+Faces SearchedArea::missing(const Traversable& floor, Cell c) const {
+  const Faces all = faces_of(floor, c);
+  if (twice_.width() == 0) return all;
   const Cell shift = shift_from(floor.frame());
   const Cell own{c.x + shift.x, c.y + shift.y};
-  return searched_.inside(own) && searched_[own] != 0;
+  return twice_.inside(own) ? static_cast<Faces>(all & ~twice_[own]) : all;
 }
 
-Grid<std::uint8_t> SearchedArea::unsearched(const Traversable& floor) const {
-  Grid<std::uint8_t> open(floor.frame());
-  const Cell shift = searched_.width() == 0 ? Cell{} : shift_from(floor.frame());
+Grid<Faces> SearchedArea::unsearched(const Traversable& floor) const {
+  Grid<Faces> open(floor.frame());
+  const Cell shift = twice_.width() == 0 ? Cell{} : shift_from(floor.frame());
   const int width = floor.cells.width();
   for (int y = 1; y + 1 < floor.cells.height(); ++y) {
     const Occupancy* cells = floor.cells.row(y);
-    std::uint8_t* row = open.row(y);
-    for (int x = 1; x + 1 < width; ++x) row[x] = cells[x] == Occupancy::Free ? 1 : 0;
+    const Occupancy* below = floor.cells.row(y - 1);
+    const Occupancy* above = floor.cells.row(y + 1);
+    Faces* row = open.row(y);
+    const auto face = [](Occupancy o, Faces f) { return o == Occupancy::Occupied ? f : Faces{0}; };
+    for (int x = 1; x + 1 < width; ++x)
+      row[x] = static_cast<Faces>(cells[x] == Occupancy::Free
+                                      ? kFloor | face(cells[x + 1], kEastFace) | face(above[x], kNorthFace) |
+                                            face(cells[x - 1], kWestFace) | face(below[x], kSouthFace)
+                                      : 0);
     const int own = y + shift.y;
-    if (own < 0 || own >= searched_.height()) continue;
-    const std::uint8_t* looked_at = searched_.row(own);
+    if (own < 0 || own >= twice_.height()) continue;
+    const Faces* looked_at = twice_.row(own);
     const int first = std::max(1, -shift.x);
-    const int last = std::min(width - 2, searched_.width() - 1 - shift.x);
-    for (int x = first; x <= last; ++x) row[x] = static_cast<std::uint8_t>(row[x] & (looked_at[x + shift.x] ^ 1u));
+    const int last = std::min(width - 2, twice_.width() - 1 - shift.x);
+    for (int x = first; x <= last; ++x) row[x] = static_cast<Faces>(row[x] & ~looked_at[x + shift.x]);
   }
   return open;
 }
@@ -162,12 +203,16 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
   for (const auto& cluster : unsearched_clusters(floor, searched, config.min_cells))
     for (std::size_t i = 0; i < cluster.size(); ++i) {
       const Cell subject = cluster[i];
+      const Faces missing = searched.missing(floor, subject);
       // Every few cells, and the first one of each cluster, so that none goes without.
       if (i != 0 && (subject.x % kStride != 0 || subject.y % kStride != 0)) continue;
       for (const Cell offset : offsets) {
         const Cell c{subject.x + offset.x, subject.y + offset.y};
         if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free || floor.clearance[c] < d_min) continue;
-        if (in_sight(floor, c, subject)) found.push_back({c, floor.cells.centre(subject)});
+        const double way = length(offset.x, offset.y);
+        const auto faces = static_cast<Faces>(missing & faces_along(-offset.x / way, -offset.y / way));
+        if (faces == 0) continue;
+        if (in_sight(floor, c, subject)) found.push_back({c, floor.cells.centre(subject), faces});
       }
     }
   return found;

@@ -38,12 +38,20 @@ TPoint2D geometric_median(const std::vector<TPoint2D>& points, const std::vector
   return median;
 }
 
-std::size_t VictimSearch::cluster_near(const TPoint2D& p_map) const {
+/// Whether two sightings are of the two sides of a wall.
+bool VictimSearch::apart(const Sighting& a, const Sighting& b, const SightFn& in_sight) const {
+  const double bearing_a = a.anchor.T_map_base.phi + std::atan2(a.p_base.y, a.p_base.x);
+  const double bearing_b = b.anchor.T_map_base.phi + std::atan2(b.p_base.y, b.p_base.x);
+  if (std::abs(wrap_angle(bearing_a - bearing_b)) < config_.other_side) return false;
+  return !in_sight({a.anchor.T_map_base.x, a.anchor.T_map_base.y}, {b.anchor.T_map_base.x, b.anchor.T_map_base.y});
+}
+
+std::size_t VictimSearch::cluster_near(const Sighting& sighting, const SightFn& in_sight) const {
   std::size_t best = clusters_.size();
   double best_distance = config_.merge_distance;
   for (std::size_t i = 0; i < clusters_.size(); ++i) {
-    const double d = distance(clusters_[i].p_map, p_map);
-    if (d >= best_distance) continue;
+    const double d = distance(clusters_[i].p_map, sighting.p_map);
+    if (d >= best_distance || apart(clusters_[i].sightings.front(), sighting, in_sight)) continue;
     best = i;
     best_distance = d;
   }
@@ -65,7 +73,7 @@ void VictimSearch::confirm(Cluster& cluster, Stamp stamp) {
   int cues = 0;
   double evidence = 0.0;
   for (const Sighting& s : cluster.sightings) {
-    if (distance(s.p_map, cluster.p_map) > config_.consistency) continue;
+    if (stamp - s.anchor.stamp > config_.memory || distance(s.p_map, cluster.p_map) > config_.consistency) continue;
     ++cues;
     evidence += s.confidence;
   }
@@ -75,9 +83,10 @@ void VictimSearch::confirm(Cluster& cluster, Stamp stamp) {
 }
 
 /// Joins the cluster with another one that its position has come too close to; returns where it is then.
-std::size_t VictimSearch::merge_into_neighbour(std::size_t index) {
+std::size_t VictimSearch::merge_into_neighbour(std::size_t index, const SightFn& in_sight) {
   for (std::size_t i = 0; i < clusters_.size(); ++i) {
     if (i == index || distance(clusters_[i].p_map, clusters_[index].p_map) >= config_.merge_distance) continue;
+    if (apart(clusters_[i].sightings.front(), clusters_[index].sightings.front(), in_sight)) continue;
     const std::size_t keep = std::min(i, index);
     const std::size_t drop = std::max(i, index);
     Cluster& kept = clusters_[keep];
@@ -94,21 +103,40 @@ std::size_t VictimSearch::merge_into_neighbour(std::size_t index) {
 }
 
 void VictimSearch::add(const robot::VictimCue& cue, const TPose2D& T_map_base) {
-  if (!std::isfinite(cue.bearing) || !std::isfinite(cue.range) || !(cue.confidence > 0.0)) return;
-  const double heading = T_map_base.phi + cue.bearing;
-  const TPoint2D p_map{T_map_base.x + cue.range * std::cos(heading), T_map_base.y + cue.range * std::sin(heading)};
+  add(cue, Anchor{cue.stamp, T_map_base}, [](const TPoint2D&, const TPoint2D&) { return true; });
+}
 
-  std::size_t index = cluster_near(p_map);
+void VictimSearch::add(const robot::VictimCue& cue, const Anchor& anchor, const SightFn& in_sight) {
+  if (!std::isfinite(cue.bearing) || !std::isfinite(cue.range) || !(cue.confidence > 0.0)) return;
+  Sighting sighting;
+  sighting.kind = cue.kind;
+  sighting.confidence = std::min(cue.confidence, 1.0);
+  sighting.anchor = anchor;
+  sighting.p_base = {cue.range * std::cos(cue.bearing), cue.range * std::sin(cue.bearing)};
+  sighting.p_map = anchor.T_map_base.composePoint(sighting.p_base);
+
+  std::size_t index = cluster_near(sighting, in_sight);
   if (index == clusters_.size()) clusters_.emplace_back();
-  clusters_[index].sightings.push_back({p_map, cue.kind, std::min(cue.confidence, 1.0)});
+  clusters_[index].sightings.push_back(sighting);
   locate(clusters_[index]);
-  index = merge_into_neighbour(index);
+  index = merge_into_neighbour(index, in_sight);
   std::vector<Sighting>& sightings = clusters_[index].sightings;
   if (static_cast<int>(sightings.size()) > config_.max_cues)
     sightings.erase(sightings.begin(), sightings.end() - config_.max_cues);
   locate(clusters_[index]);
   clusters_[index].newest = std::max(clusters_[index].newest, cue.stamp);
   confirm(clusters_[index], cue.stamp);
+  rebuild_reports();
+}
+
+void VictimSearch::follow(const slam::Mapper& mapper) {
+  for (Cluster& cluster : clusters_) {
+    for (Sighting& sighting : cluster.sightings) {
+      sighting.anchor.follow(mapper);
+      sighting.p_map = sighting.anchor.T_map_base.composePoint(sighting.p_base);
+    }
+    locate(cluster);
+  }
   rebuild_reports();
 }
 

@@ -3,29 +3,42 @@
 #include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
+#include <functional>
 #include <vector>
 
+#include "base/angle.h"
 #include "base/stamp.h"
+#include "explore/anchor.h"
 #include "explore/victim_report.h"
 #include "robot/measurements.h"
 
 namespace rubble::explore {
 
 struct VictimSearchConfig {
-  int min_cues = 3;             ///< consistent cues that confirm a victim
-  double min_evidence = 1.5;    ///< and their confidences together
-  double consistency = 0.5;     ///< a cue supports its cluster when this close to its position [m]
-  double merge_distance = 0.8;  ///< closer together: the same victim [m]
-  int max_cues = 200;           ///< per cluster; older ones are forgotten
+  int min_cues = 3;                      ///< consistent cues that confirm a victim
+  double min_evidence = 1.5;             ///< and their confidences together
+  double consistency = 0.5;              ///< a cue supports its cluster when this close to its position [m]
+  double merge_distance = 0.8;           ///< closer together: the same victim [m]
+  int max_cues = 200;                    ///< per cluster; older ones are forgotten
+  double memory = 40.0;                  ///< only cues younger than this confirm a victim together [s]
+  double other_side = deg_to_rad(90.0);  ///< looked at from so different bearings, it may be another victim [rad]
 };
 
-/// Collects victim cues in the map frame into victims.
+/// Whether nothing stands between two places of the map.
+using SightFn = std::function<bool(const mrpt::math::TPoint2D&, const mrpt::math::TPoint2D&)>;
+
+/// Collects victim cues in the map frame into victims. Cues from the two sides of a wall are about two victims, back to
+/// back.
 class VictimSearch {
  public:
   explicit VictimSearch(const VictimSearchConfig& config = {}) : config_(config) {}
 
-  /// Takes a cue that was sensed from T_map_base.
+  /// Takes a cue that was sensed from `anchor`.
+  void add(const robot::VictimCue& cue, const Anchor& anchor, const SightFn& in_sight);
+  /// The same in a place without walls.
   void add(const robot::VictimCue& cue, const mrpt::math::TPose2D& T_map_base);
+  /// The mapper corrected its past.
+  void follow(const slam::Mapper& mapper);
 
   /// True when a cue younger than `age` [s] belongs to a victim that is not confirmed yet: worth another look.
   bool undecided(Stamp now, double age) const;
@@ -38,6 +51,8 @@ class VictimSearch {
     mrpt::math::TPoint2D p_map;
     robot::CueKind kind;
     double confidence;
+    Anchor anchor;                ///< where it was sensed
+    mrpt::math::TPoint2D p_base;  ///< the same place as p_map
   };
   struct Cluster {
     std::vector<Sighting> sightings;
@@ -47,8 +62,9 @@ class VictimSearch {
     Stamp newest = Stamp::never();
   };
 
-  std::size_t cluster_near(const mrpt::math::TPoint2D& p_map) const;
-  std::size_t merge_into_neighbour(std::size_t index);
+  std::size_t cluster_near(const Sighting& sighting, const SightFn& in_sight) const;
+  std::size_t merge_into_neighbour(std::size_t index, const SightFn& in_sight);
+  bool apart(const Sighting& a, const Sighting& b, const SightFn& in_sight) const;
   void locate(Cluster& cluster) const;
   void confirm(Cluster& cluster, Stamp stamp);
   void rebuild_reports();

@@ -14,13 +14,6 @@ constexpr double kReportPeriod = 0.2;       // [s]
 
 }  // namespace
 
-double known_area(const slam::CountMap& map) {
-  std::size_t cells = 0;
-  for (int y = 0; y < map.frame().height; ++y)
-    for (int x = 0; x < map.frame().width; ++x) cells += map.seen({x, y}) > 0 ? 1u : 0u;
-  return static_cast<double>(cells) * map.frame().resolution * map.frame().resolution;
-}
-
 Loop::Loop(const Scenario& scenario, RunFolder& folder, LoopHooks hooks)
     : scenario_(scenario), folder_(folder), hooks_(std::move(hooks)) {}
 

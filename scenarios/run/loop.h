@@ -63,9 +63,6 @@ class Loop {
   double save_period_ = 0.0;  ///< grows: a run of a few seconds leaves a map too when it is killed [s]
 };
 
-/// Area of which the map knows something [m^2].
-double known_area(const slam::CountMap& map);
-
 /// What mapper and explorer did in `sim_s` seconds of run time. `reason`: why it ended, for people.
 scoring::RunFigures run_figures(const Core& core, double sim_s, const std::string& reason);
 

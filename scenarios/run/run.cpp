@@ -17,6 +17,7 @@
 #include "robot/logs/log.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/league_map.h"
+#include "scenarios/run/mission_figures.h"
 #include "scenarios/run/run_folder.h"
 #include "scenarios/run/score_json.h"
 #include "scoring/league/league_victims.h"
@@ -191,6 +192,8 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   evidence.truth = &files.truth.grid;
   evidence.victims = judge_victims(files, *evidence.score, scenario, arena, core.victims());
   evidence.run = run_figures(core, end.sim_s, end.reason);
+  evidence.mission = mission_figures(arena, simulated.truth(), scenario.robot, core);
+  folder.write("decisions.txt", decisions_text(core));
   RunReport report;
   report.interrupted = end.interrupted;
   report.failure = end.failure;

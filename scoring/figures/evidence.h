@@ -46,6 +46,26 @@ struct RunFigures {
   std::vector<std::pair<std::string, double>> own;  ///< of this kind of mapper alone; kept behind the table's figures
 };
 
+/// What the truth says about a drive. All of it follows from the arena and the true poses; the core knows nothing of
+/// it.
+struct DriveFigures {
+  double way_m = 0.0;            ///< driven in the plan view
+  double contact_s = 0.0;        ///< time within 12 mm of a solid or of a step too high to climb
+  std::uint64_t contacts = 0;    ///< spells of it
+  double contact_speed = 0.0;    ///< the fastest at which one began [m/s]
+  double min_clearance_m = 0.0;  ///< of the outline, to the nearest such thing (0.5 m when never nearer)
+  double home_m = 0.0;           ///< from the start at the end
+};
+
+/// How the mission of a simulated run went.
+struct MissionFigures {
+  std::string end_code;  ///< "explored", "home", "time", "stuck", "lost" or "fell"
+  DriveFigures drive;
+  std::uint64_t stalls = 0;           ///< reported by the motors
+  double area_per_min = 0.0;          ///< mapped, until 95 % of what is known at the end were [m^2/min]
+  std::uint64_t victims_visible = 0;  ///< that a camera could look at from where the robot can get
+};
+
 /// What depends on the machine, not on the seed.
 struct MachineFigures {
   double wall_s = 0.0;  ///< time taken from start to score [s]
@@ -67,6 +87,7 @@ struct Evidence {
   std::optional<TrajectoryError> live_error;  ///< of `live_estimate`
   std::optional<VictimFigures> victims;
   std::optional<RunFigures> run;
+  std::optional<MissionFigures> mission;
   std::optional<MachineFigures> machine;
 };
 

@@ -61,6 +61,11 @@ Getter of_run(Read read) {
 }
 
 template <class Read>
+Getter of_mission(Read read) {
+  return [read](const Evidence& e) { return e.mission ? Value(std::invoke(read, *e.mission)) : Value(); };
+}
+
+template <class Read>
 Getter of_machine(Read read) {
   return [read](const Evidence& e) { return e.machine ? Value(std::invoke(read, *e.machine)) : Value(); };
 }
@@ -88,6 +93,10 @@ std::vector<Figure> make_table() {
   };
   const auto feature = [](auto member) { return of_warped([member](const S& s) { return s.features.*member; }); };
   using Pose = mrpt::math::TPose2D;
+  const auto drive = [](auto member) {
+    return of_mission([member](const MissionFigures& m) { return m.drive.*member; });
+  };
+  using D = DriveFigures;
   return {
       // key, label, unit, decimals, which way is better, floor of noise, where it goes, how to get it
       {"score", "score", "", 3, kUp, 0.01, kShown | kReport | kRanking | kLeague, of_score(&S::score)},
@@ -158,6 +167,17 @@ std::vector<Figure> make_table() {
       {"scans_out_of_order", "scans out of order", "", 0, kNone, 0.0, kPlain, of_run(&RunFigures::scans_out_of_order)},
       {"hits_outside", "hits outside the map", "", 0, kNone, 0.0, kPlain, of_run(&RunFigures::hits_outside)},
       {"end", "ended", "", 0, kNone, 0.0, kText, of_run(&RunFigures::end)},
+      {"end_code", "end in a word", "", 0, kNone, 0.0, kText, of_mission(&MissionFigures::end_code)},
+      {"contact_s", "walls or steps touched for", "s", 1, kDown, 0.5, kShown, drive(&D::contact_s)},
+      {"contacts", "times touched", "", 0, kDown, 1.0, kPlain, drive(&D::contacts)},
+      {"contact_speed", "fastest touch", "m/s", 2, kDown, 0.02, kPlain, drive(&D::contact_speed)},
+      {"min_clearance_m", "least clearance", "m", 3, kUp, 0.01, kPlain, drive(&D::min_clearance_m)},
+      {"stalls", "stalls", "", 0, kDown, 1.0, kPlain, of_mission(&MissionFigures::stalls)},
+      {"way_m", "driven", "m", 1, kNone, 0.0, kShown, drive(&D::way_m)},
+      {"home_m", "from the start at the end", "m", 2, kDown, 0.1, kPlain, drive(&D::home_m)},
+      {"area_per_min", "area a minute", "m2", 1, kUp, 0.5, kPlain, of_mission(&MissionFigures::area_per_min)},
+      {"victims_visible", "victims that can be seen", "", 0, kNone, 0.0, kPlain,
+       of_mission(&MissionFigures::victims_visible)},
       {"sim_s", "time covered", "s", 1, kNone, 0.0, kShown, of_run(&RunFigures::sim_s)},
       {"wall_s", "time taken", "s", 1, kDown, 0.0, kShown | kMachine, of_machine(&MachineFigures::wall_s)},
       {"real_time_factor", "times real time", "", 0, kUp, 0.0, kShown | kMachine, real_time_factor},

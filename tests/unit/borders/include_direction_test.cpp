@@ -65,7 +65,7 @@ const std::map<std::string, Folders>& wings() {
       {"slam/paper", {"slam", "slam/grid", "slam/scan"}},
       {"slam/robust", {"slam", "slam/grid", "slam/scan"}},
       {"explore/plan", {}},
-      {"explore/caution", {}},
+      {"explore/caution", {"explore"}},
       {"explore/search", {"explore", "explore/plan"}},
       {"explore/paper", {"explore", "explore/plan", "explore/caution", "explore/search"}},
       {"slam/process", {"slam", "slam/grid", "slam/scan"}},
