@@ -21,11 +21,10 @@ struct LaserScan {
   double range_min = 0.0;     ///< [m]
   double range_max = 0.0;     ///< [m]
   std::vector<float> ranges;  ///< [m]; +inf: nothing in range (a miss), NaN: no measurement (unknown)
-  /// What the scanner itself said of each beam that it could not measure (of a Hokuyo the number below 20 that stands
-  /// for the range, docs/hardware.md: 0 no echo, which a dark or grazing surface close by can be too); kMeasured: it
-  /// measured. Empty: unknown.
+  /// The scanner's own code of each beam, 0 where it gave a range or saw nothing up to its greatest distance (URG-04LX:
+  /// 1..19, see docs/hardware.md); empty: the scanner has none. A miss whose code is 0 came without any echo, which a
+  /// dark or grazing surface close by can be too.
   std::vector<std::uint8_t> codes;
-  static constexpr std::uint8_t kMeasured = 0xFF;
 
   double bearing(std::size_t beam) const { return angle_min + static_cast<double>(beam) * angle_step; }
   Stamp beam_stamp(std::size_t beam) const { return stamp + static_cast<double>(beam) * beam_period; }

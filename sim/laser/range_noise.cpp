@@ -137,7 +137,7 @@ void RangeNoise::blur(std::vector<float>& ranges) {
 /// error.
 void RangeNoise::tell_lost(const std::vector<float>& ranges, std::vector<std::uint8_t>& codes) const {
   constexpr std::uint8_t kWeak = 1, kNeighbours = 7;
-  codes.assign(ranges.size(), robot::LaserScan::kMeasured);
+  codes.assign(ranges.size(), 0);
   if (factor_ <= 0.0) return;
   for (const std::uint32_t i : edges_)
     for (const std::size_t beam : {std::size_t{i}, std::size_t{i} + 1})
@@ -146,12 +146,10 @@ void RangeNoise::tell_lost(const std::vector<float>& ranges, std::vector<std::ui
     if (i < ranges.size() && std::isnan(ranges[i])) codes[i] = kWeak;
 }
 
-void RangeNoise::tell_rest(const std::vector<float>& ranges, std::vector<std::uint8_t>& codes) {
-  constexpr std::uint8_t kNoEcho = 0, kOther = 10;  // 10..17 are "other" in the manual
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    if (std::isinf(ranges[i])) codes[i] = kNoEcho;
-    if (std::isnan(ranges[i]) && codes[i] == robot::LaserScan::kMeasured) codes[i] = kOther;
-  }
+void RangeNoise::tell_too_near(const std::vector<float>& ranges, std::vector<std::uint8_t>& codes) {
+  constexpr std::uint8_t kOther = 10;  // 10..17 are "other" in the manual
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    if (std::isnan(ranges[i]) && codes[i] == 0) codes[i] = kOther;
 }
 
 void RangeNoise::apply(std::vector<float>& ranges, std::vector<std::uint8_t>* codes) {
@@ -172,7 +170,7 @@ void RangeNoise::apply(std::vector<float>& ranges, std::vector<std::uint8_t>* co
     store4(&ranges[i], measured ? (r > longest ? miss : r) : none);
   }
   ranges.resize(n);
-  if (codes) tell_rest(ranges, *codes);
+  if (codes) tell_too_near(ranges, *codes);
 }
 
 }  // namespace rubble::sim

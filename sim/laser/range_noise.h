@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "base/rng.h"
-#include "robot/measurements.h"
 #include "robot/model.h"
 
 namespace rubble::sim {
@@ -20,7 +19,7 @@ class RangeNoise {
 
   /// `ranges` [m], +inf: nothing met. On return in whole mm; +inf: a miss; NaN: no measurement (too near, mixed,
   /// grazing).
-  /// `codes`, where given: the URG-04LX's code of each beam (LaserScan::codes).
+  /// `codes`, where given: the URG-04LX's code of each beam, 0 where it has a range or met nothing.
   void apply(std::vector<float>& ranges, std::vector<std::uint8_t>* codes = nullptr);
 
  private:
@@ -29,8 +28,8 @@ class RangeNoise {
   void lose_grazing(std::size_t i, std::vector<float>& ranges);
   void blur(std::vector<float>& ranges);
   void tell_lost(const std::vector<float>& ranges, std::vector<std::uint8_t>& codes) const;
-  /// Misses, and what is left without a range: nearer than the scanner measures.
-  static void tell_rest(const std::vector<float>& ranges, std::vector<std::uint8_t>& codes);
+  /// What is left without a range, and not for want of an echo, is nearer than the scanner measures.
+  static void tell_too_near(const std::vector<float>& ranges, std::vector<std::uint8_t>& codes);
 
   robot::LaserModel laser_;
   double factor_;
