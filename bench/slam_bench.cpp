@@ -2,7 +2,7 @@
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/poses/CPose2D.h>
 
-#include "slam/mapper.h"
+#include "slam/paper/paper_mapper.h"
 #include "slam/paper/particle_filter.h"
 #include "slam/scan/level_scan.h"
 #include "slam/scan/match_target.h"
@@ -120,7 +120,7 @@ BENCHMARK(pairs<mrpt::maps::CSimplePointsMap>)->Unit(benchmark::kMicrosecond)->N
 
 /// The whole mapper on a scan after a motion of 4 cm.
 void BM_MapperStep(benchmark::State& state) {
-  Mapper mapper(kModel, {}, 1);
+  PaperMapper mapper(kModel, {}, 1);
   std::vector<robot::LaserScan> scans;
   for (int i = 0; i < 20; ++i) scans.push_back(scan_from({0.04 * i, 0.0, 0.02 * i}));
   std::int64_t tick = 0;

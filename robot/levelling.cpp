@@ -16,7 +16,7 @@ double tilt_of(double specific_force, double gravity) {
 
 }  // namespace
 
-Levelling::Levelling(const LevellingConfig& config) : config_(config) {}
+Levelling::Levelling(const LevellingConfig& config, AccelerometerMount mount) : config_(config), mount_(mount) {}
 
 LaserAim Levelling::update(const Inputs& inputs) {
   if (!config_.on) return {};
@@ -61,13 +61,13 @@ double Levelling::step(Axis& axis, double tilt, double dt) const {
     axis.started = true;
     axis.filtered = tilt;
     axis.last_error = axis.older_error = -tilt;
-    if (config_.mount == AccelerometerMount::Platform) return axis.command;
+    if (mount_ == AccelerometerMount::Platform) return axis.command;
   } else {
     axis.filtered += (1.0 - std::exp(-2.0 * kPi * config_.filter_hz * dt)) * (tilt - axis.filtered);
   }
   const double error = -axis.filtered;
   double wanted = axis.command;
-  if (config_.mount == AccelerometerMount::Body) {
+  if (mount_ == AccelerometerMount::Body) {
     if (std::abs(error - axis.command) > config_.dead_zone) wanted = error;
   } else if (std::abs(error) > config_.dead_zone) {
     wanted += config_.kp * (error - axis.last_error) + config_.ki * error * dt;

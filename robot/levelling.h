@@ -3,15 +3,12 @@
 #include "base/angle.h"
 #include "robot/commands.h"
 #include "robot/measurements.h"
+#include "robot/model.h"
 
 namespace rubble::robot {
 
-/// Where the accelerometer sits: on the levelled platform (closed loop) or on the robot's body (open loop).
-enum class AccelerometerMount { Platform, Body };
-
 struct LevellingConfig {
-  bool on = true;  ///< off: the laser stays fixed to the robot
-  AccelerometerMount mount = AccelerometerMount::Platform;
+  bool on = true;                       ///< off: the laser stays fixed to the robot
   double kp = 0.3;                      ///< proportional gain
   double ki = 4.0;                      ///< integral gain [1/s]
   double kd = 0.0;                      ///< derivative gain [s]
@@ -27,7 +24,7 @@ struct LevellingConfig {
 /// tilt; clamping u is the anti-windup. Body: u is the negative low-passed tilt.
 class Levelling {
  public:
-  explicit Levelling(const LevellingConfig& config);
+  explicit Levelling(const LevellingConfig& config, AccelerometerMount mount = AccelerometerMount::Platform);
   ~Levelling() = default;
 
   /// Digests the tick's accelerations, odometry and servo angles; returns the angles the servos shall take.
@@ -47,6 +44,7 @@ class Levelling {
   double step(Axis& axis, double tilt, double dt) const;
 
   LevellingConfig config_;
+  AccelerometerMount mount_;
   Axis pitch_;
   Axis roll_;
   Stamp last_ = Stamp::never();

@@ -3,9 +3,11 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/stamp.h"
+#include "robot/commands.h"
 
 namespace rubble::robot {
 
@@ -19,8 +21,9 @@ struct LaserScan {
   double range_min = 0.0;     ///< [m]
   double range_max = 0.0;     ///< [m]
   std::vector<float> ranges;  ///< [m]; +inf: nothing in range (a miss), NaN: no measurement (unknown)
-  /// What the scanner itself said of each beam that it could not measure (of a Hokuyo the number below 20 that stands
-  /// for the range); 0xFF: it measured. Empty: unknown.
+  /// The scanner's own code of each beam, 0 where it gave a range or saw nothing up to its greatest distance (URG-04LX:
+  /// 1..19, see docs/hardware.md); empty: the scanner has none. A miss whose code is 0 came without any echo, which a
+  /// dark or grazing surface close by can be too.
   std::vector<std::uint8_t> codes;
 
   double bearing(std::size_t beam) const { return angle_min + static_cast<double>(beam) * angle_step; }
@@ -73,6 +76,8 @@ struct Inputs {
   std::vector<Acceleration> accelerations;
   std::vector<AimState> aims;
   std::vector<VictimCue> cues;
+  /// In force during the tick: what the motors and servos were last told before it. Nothing: not known (foreign logs).
+  std::optional<Commands> command;
 };
 
 }  // namespace rubble::robot

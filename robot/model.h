@@ -39,6 +39,9 @@ LaserModel laser_model(const std::string& name);
 /// Spreads the beams over `field_of_view` [deg], symmetrically about the front, and over `sweep` [s].
 void spread_beams(LaserModel& laser, double field_of_view_deg, double sweep);
 
+/// Where the accelerometer sits: on the levelled platform (closed loop) or on the robot's body (open loop).
+enum class AccelerometerMount { Platform, Body };
+
 /// What the core knows about the robot it drives: the same for the simulated and the real one.
 /// Defaults: Pioneer 3-AT with a servo-levelled URG-04LX.
 struct RobotModel {
@@ -61,6 +64,7 @@ struct RobotModel {
   double acceleration_period = 0.02;          ///< [s]
   double tick = 0.02;                         ///< Robot::read covers this much time [s]
   bool has_levelling_unit = true;
+  AccelerometerMount accelerometer_mount = AccelerometerMount::Platform;
   double max_aim = deg_to_rad(30.0);  ///< servo travel either way [rad]
   /// Where the laser sits: T_base_laser with servos at zero. Base: ground point below the turn centre, x forward, z up.
   mrpt::math::TPose3D T_base_laser{0.145, 0.0, 0.35, 0.0, 0.0, 0.0};

@@ -34,7 +34,7 @@ Accelerometer::Accelerometer(const robot::RobotModel& model, const Accelerometer
 /// arm, from its last three positions: centripetal, tangential and the platform's own motion together.
 Vector3d Accelerometer::specific_force(const WorldState& state, double dt) {
   const Placement base = base_placement(state);
-  const bool on_platform = parameters_.mount == robot::AccelerometerMount::Platform;
+  const bool on_platform = model_.accelerometer_mount == robot::AccelerometerMount::Platform;
   const mrpt::math::TPose3D& mount = model_.T_base_laser;
   const Vector3d lever = base.R * Vector3d(on_platform ? mount.x : 0.0, on_platform ? mount.y : 0.0, mount.z);
   Eigen::Matrix3d R = base.R;

@@ -4,16 +4,14 @@
 #include <cstdint>
 
 #include "base/rng.h"
-#include "robot/levelling.h"
 #include "robot/measurements.h"
 #include "robot/model.h"
-#include "sim/body/world.h"
+#include "sim/body/world_state.h"
 
 namespace rubble::sim {
 
 /// A two-axis ADXL202 (data sheet, Analog Devices) with 0.10 uF filters and a 1 MHz counter.
 struct AccelerometerParameters {
-  robot::AccelerometerMount mount = robot::AccelerometerMount::Platform;
   double bandwidth_hz = 50.0;        ///< single pole of the filter capacitor
   double noise_density = 500e-6;     ///< [g / sqrt(Hz)]
   double period_ticks = 10000.0;     ///< T2 at 1 MHz: 10 ms

@@ -4,15 +4,10 @@
 #include <string>
 
 #include "base/error.h"
+#include "sim/body/world.h"
 
 namespace rubble::sim {
 namespace {
-
-AccelerometerParameters accelerometer_parameters(const SimConfig& config) {
-  AccelerometerParameters parameters;
-  parameters.mount = config.accelerometer_mount;
-  return parameters;
-}
 
 VictimSensorParameters victim_parameters(const SimConfig& config) {
   VictimSensorParameters parameters;
@@ -41,7 +36,7 @@ Rig::Rig(const arenas::Arena& arena, const robot::RobotModel& model, const SimCo
       model_(model),
       config_(config),
       laser_(arena, model, config.range_noise, config.sweep, seed),
-      accelerometer_(model, accelerometer_parameters(config), config.acceleration_noise, seed),
+      accelerometer_(model, {}, config.acceleration_noise, seed),
       victims_(arena.victims, victim_parameters(config), seed),
       odometry_clock_(model.odometry_period),
       unit_clock_(model.acceleration_period, model.acceleration_period),
@@ -62,6 +57,8 @@ void Rig::follow(World& world, robot::Inputs& inputs) {
   if (model_.has_levelling_unit) accelerometer_.step(world.state(index_), config_.physics_step);
   measure(world, inputs);
 }
+
+void Rig::remember(Stamp end, const World& world) { truth_.push_back({end, world.state(index_).pose}); }
 
 void Rig::measure(World& world, robot::Inputs& inputs) {
   const WorldState& state = world.state(index_);

@@ -15,6 +15,7 @@ struct SimRobot::Impl {
   World world;
   Rig rig;
   Stamp now;
+  robot::Commands in_force;
 };
 
 SimRobot::SimRobot(const arenas::Arena& arena, const robot::RobotModel& model, const SimConfig& config,
@@ -39,11 +40,13 @@ std::optional<robot::Inputs> SimRobot::read() {
   }
   sim.now = end;
   inputs.now = end;
+  inputs.command = sim.in_force;
   sim.rig.remember(end, sim.world);
   return inputs;
 }
 
 void SimRobot::command(const robot::Commands& commands) {
+  impl_->in_force = commands;
   impl_->world.firmware().command(commands.drive);
   if (model().has_levelling_unit) impl_->world.servos().command(commands.aim);
 }

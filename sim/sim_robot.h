@@ -6,7 +6,6 @@
 
 #include "arenas/model/arena.h"
 #include "base/trajectory.h"
-#include "robot/levelling.h"
 #include "robot/robot.h"
 
 namespace rubble::sim {
@@ -20,7 +19,6 @@ struct SimConfig {
   bool sweep = true;                ///< each beam from the pose at its own time; false: the whole scan at once
   bool microphones = false;         ///< fitted: sound cues, heard all round and badly placed
   bool co2_probe = false;           ///< fitted: CO2 cues, close by
-  robot::AccelerometerMount accelerometer_mount = robot::AccelerometerMount::Platform;  ///< where it is screwed on
 };
 
 /// The simulated robot in its arena. The truth is offered beside the Robot interface, for the run folder and scoring

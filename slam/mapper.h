@@ -1,74 +1,75 @@
 #pragma once
 
+#include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
+#include <Eigen/Core>
 #include <cstdint>
-#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "base/trajectory.h"
 #include "robot/measurements.h"
-#include "robot/model.h"
 #include "slam/grid/count_map.h"
-#include "slam/paper/particle_filter.h"
-#include "slam/scan/scan_matcher.h"
 
 namespace rubble::slam {
 
-/// Parameters of the paper-mode mapper (section III.B; where the paper is silent the origin is named in docs/slam.md).
-struct MapperConfig {
-  int map_cells = 800;       ///< cells a side at the start; the map grows when needed
-  double resolution = 0.05;  ///< cell edge [m]
-  int particles = 300;
-  double top_share = 0.05;                       ///< share of heaviest particles whose mean is the pose
-  double rotation_error = 0.05;                  ///< initial rotation error, share of the turn
-  double heading_error_per_m = deg_to_rad(5.0);  ///< rotation error while driving [rad/m]
-  double distance_error = 0.15;                  ///< translation error, share of the distance
-  double gate_distance = 0.15;          ///< mapping step after this much motion [m]; at least 0.02 in the paper
-  double gate_turn = deg_to_rad(10.0);  ///< or this much turn [rad]; at least 5 deg in the paper
-  bool icp = true;                      ///< refine the odometry by ICP of the last and the current scan
-  bool carve_misses = false;            ///< beams without a return free cells up to the range limit
-  double max_range = 0.0;               ///< returns beyond are dropped [m]; 0: the scanner's own limit
-  bool deskew = true;                   ///< place each beam by its own time; the paper does not, and pays for it
-  int first_scans = 5;                  ///< so many scans are mapped at the start although the robot stands
-  int max_map_cells = 8000;             ///< the map grows up to so many cells a side
-  double coverage_margin = 0.1;         ///< ICP pairs what both scans saw, and saw go on for so much to either side [m]
-  double rim_margin = 0.1;    ///< eq. (2) leaves out beams so close to where a surface goes out of sight [m]; 0: none
-  SurfaceConfig surface;      ///< how scans are thinned for the ICP
-  ScanMatcherConfig matcher;  ///< thresholds of the ICP
-};
-
+/// What every mapper counts.
 struct MapperCounts {
   std::uint64_t scans = 0;         ///< received
-  std::uint64_t mapped = 0;        ///< stamped into the map
-  std::uint64_t icp_accepted = 0;  ///< ICP refined the a-priori pose
-  std::uint64_t icp_rejected = 0;  ///< odometry was kept
-  std::uint64_t out_of_order = 0;  ///< scans dropped: empty, or not younger than the one before
+  std::uint64_t mapped = 0;        ///< in the map
+  std::uint64_t out_of_order = 0;  ///< dropped: empty, or not younger than the one before
 };
 
-/// Online SLAM as Robbie X does it: odometry interpolated at the scan stamp, ICP, particle filter, two-plane map.
-/// The map frame is the base frame at the first scan. Deterministic: same config, seed and inputs give the same bits.
+/// A number of one mapper's own, for score.json ("icp_accepted", "loops_closed").
+struct MapperFigure {
+  std::string key;
+  double value = 0.0;
+};
+
+/// Online SLAM: sees a robot's measurements tick by tick, keeps a map and knows where the robot is in it.
+///
+/// What a mapper promises:
+/// - The map frame is the base frame at the reference time of the first scan: x forward, y left, metres and radians.
+/// - Everything may be asked at any time, also before the first scan: the pose is then zero, the map all unknown.
+///   References stay valid, and what they show unchanged, until the next update.
+/// - Deterministic: same parameters, seed and inputs give the same bits, whatever the machine's speed. It reads no
+/// clock
+///   and knows the robot by its measurements alone; simulated, replayed and real ones look the same.
+/// - It accepts anything: scans without odometry, late, doubled or empty ones, silence. Poor data make a poor map,
+/// never
+///   an exception; those are for what cannot go on (out of memory, a process that died).
 class Mapper {
  public:
-  Mapper(const robot::RobotModel& model, const MapperConfig& config, std::uint64_t seed);
-  ~Mapper();
+  virtual ~Mapper() = default;
 
-  void update(const robot::Inputs& inputs);
+  /// Digests all that arrived in one tick.
+  virtual void update(const robot::Inputs& inputs) = 0;
+  /// The measurements are over: work put off is done now, so that map and trajectory are final.
+  virtual void finish() {}
 
-  const CountMap& map() const;
-  /// T_map_base at the newest odometry: the last mapped pose carried on by dead reckoning.
-  mrpt::math::TPose2D pose() const;
-  /// Estimated T_map_base at the reference time of each scan, in order.
-  const Trajectory& trajectory() const;
-  const std::vector<Particle>& particles() const;
+  virtual const CountMap& map() const = 0;
+  /// T_map_base at the newest odometry (or scan, where there is none).
+  virtual mrpt::math::TPose2D pose() const = 0;
+  /// Of pose(): x, y [m^2], heading [rad^2], in the map frame, relative to the map's origin. Zero: not estimated.
+  virtual Eigen::Matrix3d covariance() const = 0;
+  /// Rises whenever poses of the past move in the map (a closed loop). What is anchored to stamps by pose_at() is asked
+  /// anew then.
+  virtual std::uint64_t revision() const = 0;
+  /// Where the base was at a past `stamp`, in the map as it is now; interpolated between scans. Nothing for stamps
+  /// outside the trajectory and what dead reckoning adds to its end.
+  virtual std::optional<mrpt::math::TPose2D> pose_at(Stamp stamp) const = 0;
+  /// T_map_base at the reference time of each scan, in order, as known now.
+  virtual const Trajectory& trajectory() const = 0;
+  /// The same as known at the scan: nothing of it changes later.
+  virtual const Trajectory& live_trajectory() const = 0;
   /// The newest scan's hits in the map frame, mapped or not (for pictures and for checking a path against fresh
   /// obstacles).
-  const std::vector<mrpt::math::TPoint2D>& last_hits() const;
-  const MapperCounts& counts() const;
+  virtual const std::vector<mrpt::math::TPoint2D>& last_hits() const = 0;
 
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  virtual const MapperCounts& counts() const = 0;
+  virtual std::vector<MapperFigure> figures() const { return {}; }
 };
 
 }  // namespace rubble::slam

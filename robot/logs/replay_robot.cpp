@@ -31,6 +31,8 @@ class OwnLog {
     if (next_ == frames_.payloads.size()) return std::nullopt;
     Inputs inputs;
     decode(next_, [&] { inputs = decode_tick(frames_.payloads[next_], context_); });
+    inputs.command = commands_;  // the answers to the ticks before
+    hand_out_codes(inputs);
     ++next_;
     take_commands();
     return inputs;
@@ -44,11 +46,24 @@ class OwnLog {
   }
 
  private:
-  // Commands that answer a tick stand behind it, before the next tick.
+  // Between two ticks stand the commands that answer the first, then the codes of the second's scans.
   void take_commands() {
-    for (; next_ < frames_.payloads.size() && kind_of(frames_.payloads[next_]) != FrameKind::Tick; ++next_)
+    for (; next_ < frames_.payloads.size() && kind_of(frames_.payloads[next_]) != FrameKind::Tick; ++next_) {
       if (kind_of(frames_.payloads[next_]) == FrameKind::Commands)
         decode(next_, [&] { commands_ = decode_commands(frames_.payloads[next_]); });
+      if (kind_of(frames_.payloads[next_]) == FrameKind::Codes)
+        decode(next_, [&] { codes_ = decode_codes(frames_.payloads[next_]); });
+    }
+  }
+
+  void hand_out_codes(Inputs& inputs) {
+    if (!codes_.empty() && codes_.size() != inputs.scans.size()) fail(next_, "the codes before it are of other scans");
+    for (std::size_t i = 0; i < codes_.size(); ++i) {
+      if (!codes_[i].empty() && codes_[i].size() != inputs.scans[i].ranges.size())
+        fail(next_, "a scan's codes are not as many as its beams");
+      inputs.scans[i].codes = std::move(codes_[i]);
+    }
+    codes_.clear();
   }
 
   template <class Decode>
@@ -73,6 +88,7 @@ class OwnLog {
   std::size_t next_ = 0;
   TickContext context_;
   Commands commands_;
+  std::vector<std::vector<std::uint8_t>> codes_;  ///< of the scans of the next tick
 };
 
 ForeignLog read_foreign(const std::string& bytes, const std::string& path) {

@@ -9,8 +9,8 @@
 #include "base/angle.h"
 #include "base/error.h"
 #include "base/text/number_text.h"
+#include "base/yaml/binder.h"
 #include "base/yaml/strict_yaml.h"
-#include "scenarios/config/binder.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -65,10 +65,10 @@ void bind(Binder& b, robot::RobotModel& r, robot::LevellingConfig& levelling) {
   });
 }
 
-void bind(Binder& b, robot::LevellingConfig& c) {
-  std::string mount = c.mount == robot::AccelerometerMount::Platform ? "platform" : "body";
+void bind(Binder& b, robot::LevellingConfig& c, robot::AccelerometerMount& accelerometer) {
+  std::string mount = accelerometer == robot::AccelerometerMount::Platform ? "platform" : "body";
   b.choice("mount", mount, {"platform", "body"});
-  c.mount = mount == "platform" ? robot::AccelerometerMount::Platform : robot::AccelerometerMount::Body;
+  accelerometer = mount == "platform" ? robot::AccelerometerMount::Platform : robot::AccelerometerMount::Body;
   b.number("kp", c.kp, 0.0, 10.0);
   b.number("ki", c.ki, 0.0, 100.0);
   b.number("kd", c.kd, 0.0, 10.0);
@@ -86,34 +86,6 @@ void bind(Binder& b, sim::SimConfig& c) {
   b.boolean("sweep", c.sweep);
   b.boolean("microphones", c.microphones);
   b.boolean("co2_probe", c.co2_probe);
-}
-
-void bind(Binder& b, slam::MapperConfig& c) {
-  b.integer("map_cells", c.map_cells, 16, 8000);
-  b.number("resolution_m", c.resolution, 0.01, 0.5);
-  b.integer("particles", c.particles, 1, 100000);
-  b.number("top_share", c.top_share, 0.0001, 1.0);
-  b.number("rotation_error", c.rotation_error, 0.0, 1.0);
-  b.degrees("heading_error_deg_per_m", c.heading_error_per_m, 0.0, 90.0);
-  b.number("distance_error", c.distance_error, 0.0, 1.0);
-  b.number("gate_distance_m", c.gate_distance, 0.0, 2.0);
-  b.degrees("gate_turn_deg", c.gate_turn, 0.0, 180.0);
-  b.boolean("icp", c.icp);
-  b.boolean("carve_misses", c.carve_misses);
-  b.number("max_range_m", c.max_range, 0.0, 1000.0);
-  b.boolean("deskew", c.deskew);
-  b.integer("first_scans", c.first_scans, 1, 1000);
-  b.integer("max_map_cells", c.max_map_cells, 16, 20000);
-  b.number("coverage_margin_m", c.coverage_margin, 0.0, 1.0);
-  b.number("rim_margin_m", c.rim_margin, 0.0, 1.0);
-  b.section("icp_limits", [&](Binder& m) {
-    m.number("first_distance_m", c.matcher.first_distance, 0.01, 5.0);
-    m.number("last_distance_m", c.matcher.last_distance, 0.005, 5.0);
-    m.number("min_goodness", c.matcher.min_goodness, 0.0, 1.0);
-    m.number("max_correction_m", c.matcher.max_correction, 0.0, 5.0);
-    m.degrees("max_turn_deg", c.matcher.max_turn, 0.0, 180.0);
-    m.number("dense_spacing_m", c.matcher.dense_spacing, 0.005, 1.0);
-  });
 }
 
 void bind(Binder& b, explore::ExplorerConfig& c) {
@@ -154,9 +126,9 @@ void bind_sections(Binder& b, Scenario& s) {
   b.text("team", s.team);
   b.text("mission", s.mission);
   b.section("robot", [&](Binder& in) { bind(in, s.robot, s.levelling); });
-  b.section("levelling", [&](Binder& in) { bind(in, s.levelling); });
+  b.section("levelling", [&](Binder& in) { bind(in, s.levelling, s.robot.accelerometer_mount); });
   b.section("sim", [&](Binder& in) { bind(in, s.sim); });
-  b.section("mapper", [&](Binder& in) { bind(in, s.mapper); });
+  b.section("mapper", [&](Binder& in) { s.mapper.bind(in); });
   b.section("explorer", [&](Binder& in) { bind(in, s.explorer); });
   b.section("scoring", [&](Binder& in) {
     bind(in, s.scoring);
@@ -307,7 +279,7 @@ Scenario default_scenario(const std::vector<Override>& overrides) {
 
 std::string resolved_yaml(const Scenario& scenario) {
   Scenario s = scenario;  // binding needs a mutable object; nothing is changed
-  std::string out = "name: " + rubble::scenarios::quoted(s.name) + "\nseed: " + std::to_string(s.seed) + "\n";
+  std::string out = "name: " + rubble::quoted(s.name) + "\nseed: " + std::to_string(s.seed) + "\n";
   if (s.has_arena && !s.arena_file.empty()) {
     out += "arena:\n  file: \"" + s.arena_file + "\"\n";
   } else if (s.has_arena) {

@@ -15,7 +15,7 @@
 #include "robot/model.h"
 #include "scoring/scorecard.h"
 #include "sim/sim_robot.h"
-#include "slam/mapper.h"
+#include "slam/mappers.h"
 
 namespace rubble::scenarios {
 

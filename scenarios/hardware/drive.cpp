@@ -161,7 +161,7 @@ class Driver {
                    : options_.mode == DriveMode::MapOnly   ? "mapping"
                    : core_.explorer()                      ? name_of(core_.explorer()->state())
                                                            : "mapping";
-    if (!core_.mapper().trajectory().empty()) status.T_map_base = core_.mapper().trajectory().back().pose;
+    status.T_map_base = core_.mapper().pose();
     status.known_m2 = known_area(core_.mapper().map());
     status.scans_per_s = static_cast<double>(status.robot.scans - last_.scans) / since;
     status.odometry_per_s = static_cast<double>(status.robot.odometry - last_.odometry) / since;
@@ -199,8 +199,7 @@ ordered_json score_of(const Core& core, const robot::RealRobot& robot, double se
   score["area_known_m2"] = known_area(core.mapper().map());
   score["scans"] = counts.scans;
   score["scans_mapped"] = counts.mapped;
-  score["icp_accepted"] = counts.icp_accepted;
-  score["icp_rejected"] = counts.icp_rejected;
+  for (const slam::MapperFigure& figure : core.mapper().figures()) score[figure.key] = figure.value;
   score["scans_out_of_order"] = counts.out_of_order;
   score["hits_outside"] = core.mapper().map().dropped_hits();
   const robot::RobotStatus status = robot.status();
@@ -247,6 +246,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     } catch (const robot::DeviceLost& lost) {
       report.failure = report.end = lost.what();
     }
+    core.finish();
     report.interrupted = driver.interrupted();
     recorded.flush();
     report.score = score_of(core, real, driver.seconds(), start);

@@ -3,14 +3,14 @@
 namespace rubble::scenarios {
 
 Core::Core(const Scenario& scenario, const robot::RobotModel& model, bool explore)
-    : mapper_(model, scenario.mapper, scenario.seed), levelling_(scenario.levelling) {
+    : mapper_(scenario.mapper.make(model, scenario.seed)), levelling_(scenario.levelling, model.accelerometer_mount) {
   if (explore) explorer_.emplace(model, scenario.explorer);
 }
 
 robot::Commands Core::step(const robot::Inputs& inputs) {
-  mapper_.update(inputs);
+  mapper_->update(inputs);
   robot::Commands commands;
-  if (explorer_) commands = explorer_->next(mapper_, inputs);
+  if (explorer_) commands = explorer_->next(*mapper_, inputs);
   commands.aim = levelling_.update(inputs);
   return commands;
 }

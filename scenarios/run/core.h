@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "explore/explorer.h"
@@ -18,7 +19,9 @@ class Core {
   /// Digests one tick and decides the commands for the next.
   robot::Commands step(const robot::Inputs& inputs);
 
-  const slam::Mapper& mapper() const { return mapper_; }
+  const slam::Mapper& mapper() const { return *mapper_; }
+  /// The robot says no more: the mapper ends what it put off.
+  void finish() { mapper_->finish(); }
   bool finished() const { return explorer_ && explorer_->finished(); }
   /// Why the explorer finished; empty before.
   std::string reason() const { return explorer_ ? explorer_->reason() : std::string(); }
@@ -27,7 +30,7 @@ class Core {
   const explore::Explorer* explorer() const { return explorer_ ? &*explorer_ : nullptr; }
 
  private:
-  slam::Mapper mapper_;
+  std::unique_ptr<slam::Mapper> mapper_;
   robot::Levelling levelling_;
   std::optional<explore::Explorer> explorer_;
 };

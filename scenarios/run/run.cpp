@@ -138,13 +138,19 @@ void add_trajectory_error(ordered_json& json, const Trajectory& estimate, const 
   json["ate_aligned_m"] = error.ate_aligned_m;
 }
 
+/// Counts are written without a point.
+ordered_json as_json(double value) {
+  constexpr double kExact = 9007199254740992.0;  ///< 2^53: whole numbers below are exact
+  if (value == std::floor(value) && std::abs(value) < kExact) return static_cast<std::int64_t>(value);
+  return value;
+}
+
 void add_mapper_counts(ordered_json& json, const Core& core) {
   const slam::MapperCounts& counts = core.mapper().counts();
   json["area_known_m2"] = known_area(core.mapper().map());
   json["scans"] = counts.scans;
   json["scans_mapped"] = counts.mapped;
-  json["icp_accepted"] = counts.icp_accepted;
-  json["icp_rejected"] = counts.icp_rejected;
+  for (const slam::MapperFigure& figure : core.mapper().figures()) json[figure.key] = as_json(figure.value);
   json["scans_out_of_order"] = counts.out_of_order;
   json["hits_outside"] = core.mapper().map().dropped_hits();
 }

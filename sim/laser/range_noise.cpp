@@ -94,8 +94,6 @@ void RangeNoise::mix_edges(std::vector<float>& ranges) {
   clean_[0] = ranges[0];
   std::copy(ranges.begin(), ranges.end(), clean_.begin() + 1);
   std::fill(clean_.begin() + static_cast<std::ptrdiff_t>(n) + 1, clean_.end(), ranges[n - 1]);
-  edges_.clear();
-  grazing_.clear();
   // tan(incidence) = dr / (r dtheta), from the flatter side so that depth edges do not count; 5: below 78 deg.
   const Float4 edge = splat(kEdge), slope = splat(5.0f * static_cast<float>(laser_.angle_step));
   const Float4 zero = splat(0.0f), miss = splat(kInf);
@@ -135,8 +133,30 @@ void RangeNoise::blur(std::vector<float>& ranges) {
   }
 }
 
-void RangeNoise::apply(std::vector<float>& ranges) {
+/// Codes of the beams that mix_edges() has lost. The URG's manual: 1..5 too little light comes back, 7 neighbours in
+/// error.
+void RangeNoise::tell_lost(const std::vector<float>& ranges, std::vector<std::uint8_t>& codes) const {
+  constexpr std::uint8_t kWeak = 1, kNeighbours = 7;
+  codes.assign(ranges.size(), 0);
+  if (factor_ <= 0.0) return;
+  for (const std::uint32_t i : edges_)
+    for (const std::size_t beam : {std::size_t{i}, std::size_t{i} + 1})
+      if (beam < ranges.size() && std::isnan(ranges[beam])) codes[beam] = kNeighbours;
+  for (const std::uint32_t i : grazing_)
+    if (i < ranges.size() && std::isnan(ranges[i])) codes[i] = kWeak;
+}
+
+void RangeNoise::tell_too_near(const std::vector<float>& ranges, std::vector<std::uint8_t>& codes) {
+  constexpr std::uint8_t kOther = 10;  // 10..17 are "other" in the manual
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    if (std::isnan(ranges[i]) && codes[i] == 0) codes[i] = kOther;
+}
+
+void RangeNoise::apply(std::vector<float>& ranges, std::vector<std::uint8_t>* codes) {
+  edges_.clear();
+  grazing_.clear();
   if (factor_ > 0.0) mix_edges(ranges);
+  if (codes) tell_lost(ranges, *codes);
   const std::size_t n = ranges.size();
   ranges.resize((n + 3) / 4 * 4, kInf);
   if (factor_ > 0.0) blur(ranges);
@@ -150,6 +170,7 @@ void RangeNoise::apply(std::vector<float>& ranges) {
     store4(&ranges[i], measured ? (r > longest ? miss : r) : none);
   }
   ranges.resize(n);
+  if (codes) tell_too_near(ranges, *codes);
 }
 
 }  // namespace rubble::sim

@@ -19,13 +19,17 @@ class RangeNoise {
 
   /// `ranges` [m], +inf: nothing met. On return in whole mm; +inf: a miss; NaN: no measurement (too near, mixed,
   /// grazing).
-  void apply(std::vector<float>& ranges);
+  /// `codes`, where given: the URG-04LX's code of each beam, 0 where it has a range or met nothing.
+  void apply(std::vector<float>& ranges, std::vector<std::uint8_t>* codes = nullptr);
 
  private:
   void mix_edges(std::vector<float>& ranges);
   void mix_edge(std::size_t i, std::vector<float>& ranges);
   void lose_grazing(std::size_t i, std::vector<float>& ranges);
   void blur(std::vector<float>& ranges);
+  void tell_lost(const std::vector<float>& ranges, std::vector<std::uint8_t>& codes) const;
+  /// What is left without a range, and not for want of an echo, is nearer than the scanner measures.
+  static void tell_too_near(const std::vector<float>& ranges, std::vector<std::uint8_t>& codes);
 
   robot::LaserModel laser_;
   double factor_;

@@ -202,4 +202,23 @@ TPose2D mean_of_best(const Particles& particles, double share) {
   return {x / n, y / n, std::atan2(s, c)};
 }
 
+Eigen::Matrix3d spread(const Particles& particles) {
+  if (particles.empty()) return Eigen::Matrix3d::Zero();
+  double c = 0.0, s = 0.0, x = 0.0, y = 0.0;
+  for (const Particle& particle : particles) {
+    x += particle.weight * particle.T_map_base.x;
+    y += particle.weight * particle.T_map_base.y;
+    c += particle.weight * std::cos(particle.T_map_base.phi);
+    s += particle.weight * std::sin(particle.T_map_base.phi);
+  }
+  const double heading = std::atan2(s, c);
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Particle& particle : particles) {
+    const Eigen::Vector3d off(particle.T_map_base.x - x, particle.T_map_base.y - y,
+                              wrap_angle(particle.T_map_base.phi - heading));
+    covariance += particle.weight * off * off.transpose();
+  }
+  return covariance;
+}
+
 }  // namespace rubble::slam

@@ -3,6 +3,7 @@
 #include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "base/angle.h"
@@ -46,5 +47,8 @@ Particles normalise(Particles particles);
 
 /// Mean pose of the heaviest `share` of the particles (at least one), circular in the angle. Ties: lower index first.
 mrpt::math::TPose2D mean_of_best(const Particles& particles, double share);
+
+/// Weighted covariance of the poses: x, y [m^2], heading [rad^2]. Zero without particles.
+Eigen::Matrix3d spread(const Particles& particles);
 
 }  // namespace rubble::slam

@@ -46,8 +46,10 @@ class Servo {
 /// The whole loop in steps of a millisecond: body, servo, accelerometer that averages 20 ms and arrives 7 ms later,
 /// odometry every 100 ms, controller every 20 ms, command 5 ms on its way.
 inline std::vector<Sample> run(const robot::LevellingConfig& config, double seconds,
-                               const std::function<Body(double)>& body_at, double noise_deg = 0.1) {
-  robot::Levelling levelling(config);
+                               const std::function<Body(double)>& body_at,
+                               robot::AccelerometerMount mount = robot::AccelerometerMount::Platform,
+                               double noise_deg = 0.1) {
+  robot::Levelling levelling(config, mount);
   Servo servo;
   Rng noise(1, "accelerometer");
   std::vector<Sample> samples;
@@ -67,7 +69,7 @@ inline std::vector<Sample> run(const robot::LevellingConfig& config, double seco
     }
     servo.step(ms);
     const double plane = body.pitch + servo.angle();
-    const double felt = config.mount == robot::AccelerometerMount::Platform ? plane : body.pitch;
+    const double felt = mount == robot::AccelerometerMount::Platform ? plane : body.pitch;
     sum += g * std::sin(felt) + body.acceleration * std::cos(felt);
     if (ms % 20 == 19) {
       const double error = noise.gaussian(g * deg_to_rad(noise_deg));

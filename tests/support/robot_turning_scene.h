@@ -30,6 +30,8 @@ inline LaserScan numbered_scan(const LaserModel& laser, int number, Stamp step0)
   scan.ranges[0] = static_cast<float>((1000 + number) * 0.001);
   scan.ranges[100] = std::numeric_limits<float>::infinity();
   scan.ranges[200] = std::numeric_limits<float>::quiet_NaN();
+  scan.codes.assign(scan.ranges.size(), 0);
+  scan.codes[200] = 7;  // neighbours in error
   return scan;
 }
 

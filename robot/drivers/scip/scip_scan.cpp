@@ -22,7 +22,7 @@ LaserScan scan_of(const Sweep& sweep, const Geometry& geometry, const RangeRules
     const bool is_code = value < kFirstRange;
     // As the simulator and a log in whole millimetres have it: float of the product.
     const double range = 0.001 * value;
-    scan.codes.push_back(is_code ? static_cast<std::uint8_t>(value) : kMeasured);
+    scan.codes.push_back(is_code ? static_cast<std::uint8_t>(value) : std::uint8_t{0});
     if (is_code) {
       scan.ranges.push_back(value == kNoEcho && rules.no_echo_is_miss ? kMiss : kUnknown);
     } else if (range > scan.range_max) {

@@ -8,8 +8,8 @@ namespace rubble::robot::scip {
 
 /// How numbers become ranges.
 struct RangeRules {
-  double range_max = 4.0;        ///< beyond: a miss [m]
-  bool no_echo_is_miss = false;  ///< code 0 counts as a miss
+  double range_max = 4.0;       ///< beyond: a miss [m]
+  bool no_echo_is_miss = true;  ///< code 0 counts as a miss, else as no measurement
 };
 
 /// The scan of a turn whose step 0 was passed at `turn`.

@@ -14,7 +14,6 @@ constexpr std::uint32_t kFirstRange = 20;       ///< smaller numbers in the plac
 constexpr std::uint8_t kNoEcho = 0;             ///< code: no or a weak echo, or an object at 22 m
 constexpr std::uint8_t kOtherError = 6;         ///< code: other
 constexpr std::uint8_t kNotMeasurable = 19;     ///< code of the steps outside the field of view
-constexpr std::uint8_t kMeasured = 0xFF;        ///< LaserScan::codes of a beam that has a range
 
 /// Check character of a line: its bytes added, the low six bits, plus 0x30.
 char sum_of(std::string_view text);

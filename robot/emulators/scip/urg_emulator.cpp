@@ -33,7 +33,7 @@ std::uint32_t value_of(const LaserScan& scan, std::size_t beam, const scip::Geom
   const long mm = std::isnan(range) ? 0 : std::lround(1000.0 * static_cast<double>(range));
   if (mm >= static_cast<long>(scip::kFirstRange))
     return static_cast<std::uint32_t>(std::min<long>(mm, geometry.most_mm));
-  const bool has_code = beam < scan.codes.size() && scan.codes[beam] < scip::kFirstRange;
+  const bool has_code = beam < scan.codes.size() && scan.codes[beam] > 0 && scan.codes[beam] < scip::kFirstRange;
   return has_code ? scan.codes[beam] : scip::kOtherError;
 }
 

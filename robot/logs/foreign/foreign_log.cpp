@@ -72,9 +72,11 @@ std::vector<Inputs> assemble_ticks(std::vector<LaserScan> scans, std::vector<Odo
     for (const Odometry& odometry : tick.odometry) tick.now = std::max(tick.now, odometry.stamp);
     if (!ticks.empty()) tick.now = std::max(tick.now, Stamp{ticks.back().now.ns + 1});
     ticks.push_back(std::move(tick));
-    tick = Inputs{Stamp::never(), {}, {}, {}, {}, {}};
+    tick = Inputs{};
+    tick.now = Stamp::never();
   };
-  Inputs tick{Stamp::never(), {}, {}, {}, {}, {}};
+  Inputs tick;
+  tick.now = Stamp::never();
   for (; next_odometry < odometry.size(); ++next_odometry) {
     const Stamp arrived = odometry[next_odometry].stamp;
     tick.odometry.push_back(odometry[next_odometry]);

@@ -1,5 +1,6 @@
 #include "robot/logs/own/log_codec.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "robot/logs/own/bytes.h"
@@ -122,6 +123,41 @@ Commands decode_commands(std::string_view payload) {
     *value = bytes.f64();
   expect_end(bytes);
   return commands;
+}
+
+void append_codes_frame(std::string& out, const Inputs& inputs) {
+  if (std::all_of(inputs.scans.begin(), inputs.scans.end(), [](const LaserScan& s) { return s.codes.empty(); })) return;
+  const std::size_t start = open_frame(out);
+  ByteWriter bytes(out);
+  bytes.u8(static_cast<std::uint8_t>(FrameKind::Codes));
+  bytes.varint(inputs.scans.size());
+  for (const LaserScan& scan : inputs.scans) {
+    bytes.varint(scan.codes.size());
+    for (std::size_t first = 0, end = 0; first < scan.codes.size(); first = end) {
+      while (end < scan.codes.size() && scan.codes[end] == scan.codes[first]) ++end;
+      bytes.u8(scan.codes[first]);
+      bytes.varint(end - first);
+    }
+  }
+  close_frame(out, start);
+}
+
+std::vector<std::vector<std::uint8_t>> decode_codes(std::string_view payload) {
+  constexpr std::uint64_t kMostBeams = 1000000;
+  ByteReader bytes = open_payload(payload);
+  std::vector<std::vector<std::uint8_t>> scans(bytes.count(1));
+  for (auto& codes : scans) {
+    const std::uint64_t beams = bytes.varint();
+    if (beams > kMostBeams) throw BadPayload("a scan of " + std::to_string(beams) + " beams");
+    while (codes.size() < beams) {
+      const std::uint8_t code = bytes.u8();
+      const std::uint64_t run = bytes.varint();
+      if (run == 0 || run > beams - codes.size()) throw BadPayload("a run of codes that does not fit its scan");
+      codes.insert(codes.end(), static_cast<std::size_t>(run), code);
+    }
+  }
+  expect_end(bytes);
+  return scans;
 }
 
 void append_tick_frame(std::string& out, const Inputs& inputs, TickContext& context) {

@@ -53,6 +53,7 @@ void each_field(Model& m, Field&& field) {
 /// Fields that older logs do not have.
 template <class Model, class Field>
 void each_younger_field(Model& m, Field&& field) {
+  field("accelerometer_mount", m.accelerometer_mount);
   field("laser_accuracy_near", m.laser.accuracy_near);
   field("laser_accuracy_near_to", m.laser.accuracy_near_to);
   field("laser_accuracy_far", m.laser.accuracy_far);
@@ -65,6 +66,9 @@ void put(json& to, double value) {
     to = value;
   else
     to = std::isnan(value) ? "nan" : (value > 0 ? "inf" : "-inf");
+}
+void put(json& to, const AccelerometerMount& value) {
+  to = value == AccelerometerMount::Platform ? "platform" : "body";
 }
 template <class T>
 void put(json& to, const T& value) {
@@ -80,6 +84,11 @@ void take(const json& from, double& value) {
   if (text != "nan" && text != "inf" && text != "-inf") throw BadPayload("'" + text + "' is not a number");
   value = text == "nan" ? std::numeric_limits<double>::quiet_NaN() : std::numeric_limits<double>::infinity();
   if (text == "-inf") value = -value;
+}
+void take(const json& from, AccelerometerMount& value) {
+  const auto text = from.get<std::string>();
+  if (text != "platform" && text != "body") throw BadPayload("'" + text + "' is no place for the accelerometer");
+  value = text == "platform" ? AccelerometerMount::Platform : AccelerometerMount::Body;
 }
 template <class T>
 void take(const json& from, T& value) {

@@ -157,10 +157,31 @@ TEST(IncludeDirection, EveryWingIsInTheTable) {
     for (const auto& entry : fs::recursive_directory_iterator(top / room)) {
       if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
       const std::string folder = fs::relative(entry.path().parent_path(), top).generic_string();
-      if (folder != room) {
-        EXPECT_EQ(wings().count(folder), 1u) << folder;
-      }
+      if (folder == room) continue;
+      EXPECT_EQ(wings().count(folder), 1u) << folder;
     }
+}
+
+/// Everything that a header brings in, of our own files and of libraries.
+void gather(const fs::path& top, const std::string& name, Folders& seen) {
+  static const std::regex include(R"re(^\s*#\s*include\s*[<"]([^>"]+)[>"])re");
+  std::ifstream in(top / name);
+  std::string line;
+  std::smatch match;
+  while (std::getline(in, line))
+    if (std::regex_search(line, match, include) && seen.insert(match[1]).second) gather(top, match[1], seen);
+}
+
+TEST(IncludeDirection, CastersDoNotSeeBox2D) {
+  const fs::path top = RUBBLE_SOURCE_DIR;
+  for (const auto& entry : fs::directory_iterator(top / "sim" / "laser")) {
+    Folders seen;
+    gather(top, fs::relative(entry.path(), top).generic_string(), seen);
+    EXPECT_EQ(seen.count("box2d/box2d.h"), 0u) << entry.path();
+  }
+  Folders of_the_world;
+  gather(top, "sim/body/world.h", of_the_world);
+  EXPECT_EQ(of_the_world.count("box2d/box2d.h"), 1u);
 }
 
 TEST(IncludeDirection, APlantedWrongIncludeIsSeen) {

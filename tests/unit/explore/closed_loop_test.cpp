@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "explore/explorer.h"
+#include "slam/paper/paper_mapper.h"
 #include "tests/support/explore_world.h"
 
 namespace rubble::explore {
@@ -17,8 +18,8 @@ using test::Maze;
 using test::MazeRobot;
 
 /// Maps without any error, so that the laws below are about exploration alone.
-slam::MapperConfig exact_mapper() {
-  slam::MapperConfig config;
+slam::PaperConfig exact_mapper() {
+  slam::PaperConfig config;
   config.map_cells = 400;
   config.particles = 1;
   config.rotation_error = 0.0;
@@ -49,11 +50,11 @@ int pallets_seen(const slam::CountMap& map, const Maze& maze) {
   return count;
 }
 
-Outcome explore_maze(const Maze& maze, const ExplorerConfig& config, const slam::MapperConfig& mapping,
+Outcome explore_maze(const Maze& maze, const ExplorerConfig& config, const slam::PaperConfig& mapping,
                      double time_limit = 900.0) {
   const robot::RobotModel model;
   MazeRobot robot(maze, model);
-  slam::Mapper mapper(model, mapping, 1);
+  slam::PaperMapper mapper(model, mapping, 1);
   Explorer explorer(model, config);
   robot::Commands commands;
   Outcome run;

@@ -85,11 +85,10 @@ TEST(Levelling, FiguresOfTheChoices) {
   for (const AccelerometerMount mount : {AccelerometerMount::Platform, AccelerometerMount::Body}) {
     for (const bool feed_forward : {false, true}) {
       LevellingConfig config;
-      config.mount = mount;
       config.feed_forward = feed_forward;
-      const auto step = levelling_test::run(config, 4.0, step_of_ten_degrees);
-      const auto ramp = levelling_test::run(config, 4.0, onto_a_ramp);
-      const auto start = levelling_test::run(config, 4.0, drive_off);
+      const auto step = levelling_test::run(config, 4.0, step_of_ten_degrees, mount);
+      const auto ramp = levelling_test::run(config, 4.0, onto_a_ramp, mount);
+      const auto start = levelling_test::run(config, 4.0, drive_off, mount);
       const double settled = levelling_test::settled_after(step, deg_to_rad(1.0)) - kStart;
       const double on_ramp = rad_to_deg(levelling_test::largest(ramp, kStart, 4.0));
       const double false_tilt = rad_to_deg(levelling_test::largest(start, kStart, 4.0));
@@ -168,8 +167,8 @@ TEST(Levelling, CurvesDoNotRollTheLaser) {
 
 TEST(Levelling, LeftSideUpTurnsTheLaserLeftSideDown) {
   LevellingConfig config;
-  config.mount = AccelerometerMount::Body;
-  Levelling levelling(config);
+  const AccelerometerMount mount = AccelerometerMount::Body;
+  Levelling levelling(config, mount);
   LaserAim aim;
   for (int i = 0; i < 100; ++i) aim = levelling.update(standing(0.02 * i, deg_to_rad(-4.0), deg_to_rad(6.0)));
   EXPECT_NEAR(rad_to_deg(aim.pitch), 4.0, 0.01);
@@ -178,11 +177,11 @@ TEST(Levelling, LeftSideUpTurnsTheLaserLeftSideDown) {
 
 TEST(Levelling, BodyMountFollowsTheMeasuredTiltFaster) {
   LevellingConfig config;
-  config.mount = AccelerometerMount::Body;
-  const auto samples = levelling_test::run(config, 4.0, step_of_ten_degrees);
+  const AccelerometerMount mount = AccelerometerMount::Body;
+  const auto samples = levelling_test::run(config, 4.0, step_of_ten_degrees, mount);
   const double settled = levelling_test::settled_after(samples, deg_to_rad(1.0)) - kStart;
   EXPECT_LT(settled, 0.3);
-  const auto ramp = levelling_test::run(config, 4.0, onto_a_ramp);
+  const auto ramp = levelling_test::run(config, 4.0, onto_a_ramp, mount);
   EXPECT_LT(rad_to_deg(levelling_test::largest(ramp, kStart, 4.0)), 2.5);
 }
 
@@ -200,8 +199,8 @@ TEST(Levelling, CommandNeverLeavesTheServosTravel) {
 
 TEST(Levelling, CommandRespectsTheSlewLimit) {
   LevellingConfig config;
-  config.mount = AccelerometerMount::Body;
-  Levelling levelling(config);
+  const AccelerometerMount mount = AccelerometerMount::Body;
+  Levelling levelling(config, mount);
   levelling.update(standing(0.0, 0.0, 0.0));
   double last = 0.0;
   for (int i = 1; i < 50; ++i) {

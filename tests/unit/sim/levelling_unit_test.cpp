@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/angle.h"
+#include "robot/levelling.h"
 #include "sim/accelerometer.h"
 #include "sim/body/servos.h"
 #include "tests/support/sim_arena.h"
@@ -73,13 +74,35 @@ TEST(Accelerometer, OnThePlatformItSeesWhatTheServosLeave) {
   });
   EXPECT_NEAR(rad_to_deg(std::asin(x / kGravity)), 0.0, 0.35);  // the servo's dead band
 
-  SimConfig config = exact();
-  config.accelerometer_mount = robot::AccelerometerMount::Body;
-  SimRobot body(slope(-5, -5, 5, 5, slope_angle), {}, config, 1);
+  robot::RobotModel on_body;
+  on_body.accelerometer_mount = robot::AccelerometerMount::Body;
+  SimRobot body(slope(-5, -5, 5, 5, slope_angle), on_body, exact(), 1);
   run(body, {{0.0, 0.0}, {-slope_angle, 0.0}}, 2.0, [&](const robot::Inputs& inputs) {
     for (const auto& a : inputs.accelerations) x = a.x;
   });
   EXPECT_NEAR(rad_to_deg(std::asin(x / kGravity)), 10.0, 0.1);
+}
+
+/// One mount, read by the controller and by the simulated sensor: with the sensor on the body the servos undo the
+/// slope.
+TEST(Accelerometer, OnTheBodyControlAndSimulationAgree) {
+  const double slope_angle = deg_to_rad(8.0);
+  for (const auto mount : {robot::AccelerometerMount::Platform, robot::AccelerometerMount::Body}) {
+    robot::RobotModel model;
+    model.accelerometer_mount = mount;
+    SimRobot robot(slope(-5, -5, 5, 5, slope_angle), model, exact(), 1);
+    robot::Levelling levelling({}, robot.model().accelerometer_mount);
+    double pitch = 0.0;
+    for (int tick = 0; tick < 150; ++tick) {
+      const auto inputs = robot.read();
+      ASSERT_TRUE(inputs);
+      robot::Commands commands;
+      commands.aim = levelling.update(*inputs);
+      robot.command(commands);
+      if (!inputs->aims.empty()) pitch = inputs->aims.back().pitch;
+    }
+    EXPECT_NEAR(rad_to_deg(pitch), -8.0, 0.5) << (mount == robot::AccelerometerMount::Body ? "body" : "platform");
+  }
 }
 
 TEST(Accelerometer, NoiseIsThatOfTheDataSheet) {

@@ -90,6 +90,35 @@ TEST(Recording, CommandInForceComesBackWithEachTick) {
   EXPECT_FALSE(replay.read());
 }
 
+TEST(Recording, ScannerCodesAndTheCommandInForceAreInputs) {
+  TempFolder folder;
+  std::vector<Inputs> ticks = steady_ticks(0.08, 0.02);
+  ticks.resize(3);
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    LaserScan scan;
+    scan.stamp = ticks[i].now - 0.01;
+    scan.ranges = {1.0f, testing::kMiss, testing::kUnknown, 2.0f, testing::kUnknown};
+    if (i != 1) scan.codes = {0, 0, 7, 0, 19};
+    ticks[i].scans = {scan, scan};
+    if (i == 2) ticks[i].scans[0].codes.clear();
+  }
+  {
+    ScriptedRobot scripted(ticks);
+    RecordingRobot robot(scripted, folder.file("a.log"), "");
+    for (double v = 0.1; robot.read(); v += 0.1) robot.command({{v, 0.0}, {}});
+  }
+  ReplayRobot replayed(folder.file("a.log"));
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    const auto inputs = replayed.read();
+    ASSERT_TRUE(inputs);
+    ASSERT_EQ(inputs->scans.size(), 2u);
+    EXPECT_EQ(inputs->scans[0].codes, ticks[i].scans[0].codes) << i;
+    EXPECT_EQ(inputs->scans[1].codes, ticks[i].scans[1].codes) << i;
+    ASSERT_TRUE(inputs->command);
+    EXPECT_NEAR(inputs->command->drive.v, 0.1 * static_cast<double>(i), 1e-12);  // the answer to the tick before
+  }
+}
+
 TEST(Recording, UnchangedCommandsTakeNoSpace) {
   const TempFolder folder;
   ScriptedRobot robot({});

@@ -1,4 +1,4 @@
-#include "slam/mapper.h"
+#include "slam/paper/paper_mapper.h"
 
 #include <gtest/gtest.h>
 
@@ -23,17 +23,17 @@ Trajectory odometry_of(const std::vector<Inputs>& ticks) {
   return trajectory;
 }
 
-void play(Mapper& mapper, const std::vector<Inputs>& ticks) {
+void play(PaperMapper& mapper, const std::vector<Inputs>& ticks) {
   for (const Inputs& tick : ticks) mapper.update(tick);
 }
 
-TEST(Mapper, TrajectoryIsFarBetterThanTheOdometry) {
+TEST(PaperMapper, TrajectoryIsFarBetterThanTheOdometry) {
   const RobotModel model;
   const slam_test::Drive drive = slam_test::drive_through(kTour, 0.0);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const auto ticks = slam_test::record(slam_test::furnished_room(), drive, model, 1.5, 0.01, seed);
-    Mapper mapper(model, {}, seed);
+    PaperMapper mapper(model, {}, seed);
     play(mapper, ticks);
     const double odometry = slam_test::first_pose_rmse(odometry_of(ticks), drive.truth);
     const double mapped = slam_test::first_pose_rmse(mapper.trajectory(), drive.truth);
@@ -42,10 +42,10 @@ TEST(Mapper, TrajectoryIsFarBetterThanTheOdometry) {
   }
 }
 
-TEST(Mapper, RoomHasItsSize) {
+TEST(PaperMapper, RoomHasItsSize) {
   const RobotModel model;
   const slam_test::Drive drive = slam_test::drive_through(kTour, 0.0);
-  Mapper mapper(model, {}, 1);
+  PaperMapper mapper(model, {}, 1);
   play(mapper, slam_test::record(slam_test::furnished_room(), drive, model, 1.0, 0.01, 1));
   const OccupancyGrid grid = mapper.map().classify();
   // Walk from the middle of the room to the first wall cells west, east, south and north.
@@ -61,13 +61,13 @@ TEST(Mapper, RoomHasItsSize) {
   EXPECT_NEAR(height, 4.0, 0.15);
 }
 
-TEST(Mapper, SameSeedSameBits) {
+TEST(PaperMapper, SameSeedSameBits) {
   const RobotModel model;
   const auto ticks =
       slam_test::record(slam_test::furnished_room(), slam_test::drive_through(kTour, 0.0), model, 1.0, 0.01, 4);
-  Mapper a(model, {}, 7);
-  Mapper b(model, {}, 7);
-  Mapper other(model, {}, 8);
+  PaperMapper a(model, {}, 7);
+  PaperMapper b(model, {}, 7);
+  PaperMapper other(model, {}, 8);
   play(a, ticks);
   play(b, ticks);
   play(other, ticks);
@@ -79,10 +79,10 @@ TEST(Mapper, SameSeedSameBits) {
   EXPECT_NE(a.trajectory().back().pose, other.trajectory().back().pose);
 }
 
-TEST(Mapper, MapFrameIsTheBaseAtTheFirstScan) {
+TEST(PaperMapper, MapFrameIsTheBaseAtTheFirstScan) {
   const RobotModel model;
   const slam_test::Drive drive = slam_test::drive_through({{1.0, 0.5}, {2.0, 0.5}}, 2.0);
-  Mapper mapper(model, {}, 1);
+  PaperMapper mapper(model, {}, 1);
   play(mapper, slam_test::record(slam_test::furnished_room(), drive, model, 0.0, 0.01, 1));
   EXPECT_EQ(mapper.trajectory().front().pose, TPose2D());
   const TPose2D expected = drive.truth.back().pose - drive.truth.front().pose;
@@ -105,10 +105,10 @@ std::vector<Inputs> standing(const RobotModel& model, int ticks, double x) {
   return all;
 }
 
-TEST(Mapper, StandingStillMapsTheFirstScansOnly) {
+TEST(PaperMapper, StandingStillMapsTheFirstScansOnly) {
   const RobotModel model;
-  MapperConfig config;
-  Mapper mapper(model, config, 1);
+  PaperConfig config;
+  PaperMapper mapper(model, config, 1);
   play(mapper, standing(model, 50, 0.0));
   EXPECT_EQ(mapper.counts().scans, 50u);
   EXPECT_EQ(mapper.counts().mapped, static_cast<std::uint64_t>(config.first_scans));
@@ -116,9 +116,9 @@ TEST(Mapper, StandingStillMapsTheFirstScansOnly) {
   EXPECT_EQ(mapper.map().version(), mapper.counts().mapped);
 }
 
-TEST(Mapper, PoseIsCarriedOnByOdometryBetweenScans) {
+TEST(PaperMapper, PoseIsCarriedOnByOdometryBetweenScans) {
   const RobotModel model;
-  Mapper mapper(model, {}, 1);
+  PaperMapper mapper(model, {}, 1);
   play(mapper, standing(model, 10, 0.0));
   const TPose2D before = mapper.pose();
   Inputs inputs;
@@ -130,9 +130,9 @@ TEST(Mapper, PoseIsCarriedOnByOdometryBetweenScans) {
   EXPECT_NEAR(after.phi, 0.1, 1e-9);
 }
 
-TEST(Mapper, ScanWaitsForOdometryFromAfterIt) {
+TEST(PaperMapper, ScanWaitsForOdometryFromAfterIt) {
   const RobotModel model;
-  Mapper mapper(model, {}, 1);
+  PaperMapper mapper(model, {}, 1);
   std::vector<Inputs> ticks = standing(model, 2, 0.0);
   ticks[0].scans[0].beam_period = 1e-4;  // its middle lies 34 ms after the odometry
   mapper.update(ticks[0]);
@@ -143,28 +143,28 @@ TEST(Mapper, ScanWaitsForOdometryFromAfterIt) {
   EXPECT_EQ(mapper.trajectory()[0].stamp, ticks[0].scans[0].middle());
 }
 
-TEST(Mapper, ScanDoesNotWaitForEverWhenOdometryFallsSilent) {
+TEST(PaperMapper, ScanDoesNotWaitForEverWhenOdometryFallsSilent) {
   const RobotModel model;
-  Mapper mapper(model, {}, 1);
+  PaperMapper mapper(model, {}, 1);
   std::vector<Inputs> ticks = standing(model, 10, 0.0);
   for (std::size_t i = 1; i < ticks.size(); ++i) ticks[i].odometry.clear();
   play(mapper, ticks);
   EXPECT_GE(mapper.trajectory().size(), 7u);
 }
 
-TEST(Mapper, LogsWithoutOdometryAreMappedByScanMatchingAlone) {
+TEST(PaperMapper, LogsWithoutOdometryAreMappedByScanMatchingAlone) {
   const RobotModel model;
   const slam_test::Drive drive = slam_test::drive_through(kTour, 0.0);
   auto ticks = slam_test::record(slam_test::furnished_room(), drive, model, 1.0, 0.01, 1);
   for (Inputs& tick : ticks) tick.odometry.clear();
-  Mapper mapper(model, {}, 1);
+  PaperMapper mapper(model, {}, 1);
   play(mapper, ticks);
   EXPECT_LT(slam_test::first_pose_rmse(mapper.trajectory(), drive.truth), 0.15);
 }
 
-TEST(Mapper, RepeatedAndEmptyScansAreDroppedAndCounted) {
+TEST(PaperMapper, RepeatedAndEmptyScansAreDroppedAndCounted) {
   const RobotModel model;
-  Mapper mapper(model, {}, 1);
+  PaperMapper mapper(model, {}, 1);
   std::vector<Inputs> ticks = standing(model, 3, 0.0);
   ticks[1].scans.push_back(ticks[0].scans[0]);
   ticks[2].scans.push_back({});
@@ -174,19 +174,19 @@ TEST(Mapper, RepeatedAndEmptyScansAreDroppedAndCounted) {
   EXPECT_EQ(mapper.trajectory().size(), 3u);
 }
 
-TEST(Mapper, BlindScansCarryThePoseOn) {
+TEST(PaperMapper, BlindScansCarryThePoseOn) {
   const RobotModel model;
-  Mapper mapper(model, {}, 1);
+  PaperMapper mapper(model, {}, 1);
   auto ticks = slam_test::record({}, slam_test::drive_through({{0.0, 0.0}, {1.0, 0.0}}, 0.0), model, 0.0, 0.0, 1);
   play(mapper, ticks);
   EXPECT_GT(mapper.pose().x, 0.8);
   EXPECT_TRUE(mapper.last_hits().empty());
 }
 
-TEST(Mapper, LastHitsLieOnTheWalls) {
+TEST(PaperMapper, LastHitsLieOnTheWalls) {
   const RobotModel model;
-  Mapper mapper(model, {}, 1);
-  const std::size_t scans = static_cast<std::size_t>(MapperConfig{}.first_scans);
+  PaperMapper mapper(model, {}, 1);
+  const std::size_t scans = static_cast<std::size_t>(PaperConfig{}.first_scans);
   play(mapper, standing(model, static_cast<int>(scans), 0.0));
   ASSERT_GT(mapper.last_hits().size(), 400u);
   int on_occupied = 0;

@@ -1,4 +1,4 @@
-#include "slam/mapper.h"
+#include "slam/paper/paper_mapper.h"
 
 #include <cmath>
 #include <deque>
@@ -21,8 +21,36 @@ constexpr double kLateScan = 2.0;  ///< a scan may begin so long before the newe
 
 }  // namespace
 
-struct Mapper::Impl {
-  Impl(const robot::RobotModel& model, const MapperConfig& config, std::uint64_t seed)
+void bind(Binder& b, PaperConfig& c) {
+  b.integer("map_cells", c.map_cells, 16, 8000);
+  b.number("resolution_m", c.resolution, 0.01, 0.5);
+  b.integer("particles", c.particles, 1, 100000);
+  b.number("top_share", c.top_share, 0.0001, 1.0);
+  b.number("rotation_error", c.rotation_error, 0.0, 1.0);
+  b.degrees("heading_error_deg_per_m", c.heading_error_per_m, 0.0, 90.0);
+  b.number("distance_error", c.distance_error, 0.0, 1.0);
+  b.number("gate_distance_m", c.gate_distance, 0.0, 2.0);
+  b.degrees("gate_turn_deg", c.gate_turn, 0.0, 180.0);
+  b.boolean("icp", c.icp);
+  b.boolean("carve_misses", c.carve_misses);
+  b.number("max_range_m", c.max_range, 0.0, 1000.0);
+  b.boolean("deskew", c.deskew);
+  b.integer("first_scans", c.first_scans, 1, 1000);
+  b.integer("max_map_cells", c.max_map_cells, 16, 20000);
+  b.number("coverage_margin_m", c.coverage_margin, 0.0, 1.0);
+  b.number("rim_margin_m", c.rim_margin, 0.0, 1.0);
+  b.section("icp_limits", [&](Binder& m) {
+    m.number("first_distance_m", c.matcher.first_distance, 0.01, 5.0);
+    m.number("last_distance_m", c.matcher.last_distance, 0.005, 5.0);
+    m.number("min_goodness", c.matcher.min_goodness, 0.0, 1.0);
+    m.number("max_correction_m", c.matcher.max_correction, 0.0, 5.0);
+    m.degrees("max_turn_deg", c.matcher.max_turn, 0.0, 180.0);
+    m.number("dense_spacing_m", c.matcher.dense_spacing, 0.005, 1.0);
+  });
+}
+
+struct PaperMapper::Impl {
+  Impl(const robot::RobotModel& model, const PaperConfig& config, std::uint64_t seed)
       : config_(config),
         motion_error_{config.rotation_error, config.heading_error_per_m, config.distance_error},
         level_scan_(model.T_base_laser, {config.carve_misses, config.max_range, 0.1}),
@@ -43,7 +71,7 @@ struct Mapper::Impl {
   bool moved(const TPose2D& motion) const;
   std::optional<SweepMotion> sweep_motion(const LaserScan& scan) const;
 
-  const MapperConfig config_;
+  const PaperConfig config_;
   const MotionError motion_error_;
   LevelScan level_scan_;
   ScanMatcher matcher_;
@@ -57,6 +85,8 @@ struct Mapper::Impl {
   Trajectory trajectory_;
   std::vector<TPoint2D> last_hits_;
   MapperCounts counts_;
+  std::uint64_t icp_accepted_ = 0;
+  std::uint64_t icp_rejected_ = 0;
   bool started_ = false;
   // The last mapping step.
   TPose2D T_map_last_;
@@ -66,7 +96,7 @@ struct Mapper::Impl {
   std::optional<TPose2D> T_odom_scan_;  ///< nothing while no odometry has come
 };
 
-void Mapper::Impl::receive(const robot::Inputs& inputs) {
+void PaperMapper::Impl::receive(const robot::Inputs& inputs) {
   for (const robot::Odometry& odometry : inputs.odometry) odometry_.add(odometry);
   if (started_ && !T_odom_scan_ && !odometry_.empty()) T_odom_scan_ = odometry_.pose_at(Stamp::never());
   for (const LaserScan& scan : inputs.scans) {
@@ -89,12 +119,12 @@ void Mapper::Impl::receive(const robot::Inputs& inputs) {
 }
 
 /// "Interpolated by the odometry data reported right before and right after": wait for the latter, but not for ever.
-bool Mapper::Impl::ready(const LaserScan& scan, Stamp now) const {
+bool PaperMapper::Impl::ready(const LaserScan& scan, Stamp now) const {
   const Stamp reference = scan.middle();
   return odometry_.newest() >= reference || now - reference > OdometryTrack::kMaxExtrapolation;
 }
 
-void Mapper::Impl::process(const LaserScan& scan) {
+void PaperMapper::Impl::process(const LaserScan& scan) {
   const Stamp reference = scan.middle();
   const std::optional<SweepMotion> sweep = sweep_motion(scan);
   const ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr);
@@ -119,21 +149,22 @@ void Mapper::Impl::process(const LaserScan& scan) {
   keep(reference, T_map_now, points, surface);
 }
 
-void Mapper::Impl::start(Stamp reference, const ScanPoints& points) {
+void PaperMapper::Impl::start(Stamp reference, const ScanPoints& points) {
   started_ = true;
   particles_ = particles_at(TPose2D(), config_.particles);
   keep(reference, TPose2D(), points, surface_of(points, config_.surface));
 }
 
 /// Ends a scan that is not mapped: the next one counts from here, but is matched with the last mapped one.
-void Mapper::Impl::pass(Stamp reference, const TPose2D& T_last_now) {
+void PaperMapper::Impl::pass(Stamp reference, const TPose2D& T_last_now) {
   T_last_scan_ = T_last_now;
   if (!odometry_.empty()) T_odom_scan_ = odometry_.pose_at(reference);
   trajectory_.push_back({reference, T_map_last_ + T_last_now});
 }
 
 /// Ends a mapping step: the scan enters the map, and later ones are matched with it.
-void Mapper::Impl::keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points, const Surface& surface) {
+void PaperMapper::Impl::keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points,
+                             const Surface& surface) {
   map_.stamp(T_map_base, points);
   matcher_.set_last(surface);
   last_coverage_ = SurfaceCoverage(surface);
@@ -143,56 +174,65 @@ void Mapper::Impl::keep(Stamp reference, const TPose2D& T_map_base, const ScanPo
   pass(reference, TPose2D());
 }
 
-void Mapper::Impl::remember_hits(const TPose2D& T_map_base, const ScanPoints& points) {
+void PaperMapper::Impl::remember_hits(const TPose2D& T_map_base, const ScanPoints& points) {
   const PlanarTransform to_map(T_map_base);
   last_hits_.clear();
   for (const TPoint2D& p_base : points.hits) last_hits_.push_back(to_map(p_base));
 }
 
 /// Nothing where there is no odometry: the scan matcher alone then finds the motion.
-TPose2D Mapper::Impl::motion_since_scan(Stamp reference) const {
+TPose2D PaperMapper::Impl::motion_since_scan(Stamp reference) const {
   return T_odom_scan_ ? odometry_.pose_at(reference) - *T_odom_scan_ : TPose2D();
 }
 
-TPose2D Mapper::Impl::refined_motion(const Surface& surface, const TPose2D& T_last_prior) {
+TPose2D PaperMapper::Impl::refined_motion(const Surface& surface, const TPose2D& T_last_prior) {
   if (!config_.icp) return T_last_prior;
   const Surface shared = covered_part(surface, last_coverage_, T_last_prior, config_.coverage_margin);
   const ScanMatch match = matcher_.match(shared, T_last_prior);
-  ++(match.accepted ? counts_.icp_accepted : counts_.icp_rejected);
+  ++(match.accepted ? icp_accepted_ : icp_rejected_);
   return match.T_last_now;
 }
 
-std::vector<TPoint2D> Mapper::Impl::hits_to_weigh(const ScanPoints& points, const Surface& surface) const {
+std::vector<TPoint2D> PaperMapper::Impl::hits_to_weigh(const ScanPoints& points, const Surface& surface) const {
   if (config_.rim_margin <= 0.0) return points.hits;
   return hits_of(settled_part(surface, config_.rim_margin), points);
 }
 
-bool Mapper::Impl::moved(const TPose2D& motion) const {
+bool PaperMapper::Impl::moved(const TPose2D& motion) const {
   return length(motion.x, motion.y) >= config_.gate_distance || std::abs(wrap_angle(motion.phi)) >= config_.gate_turn;
 }
 
-std::optional<SweepMotion> Mapper::Impl::sweep_motion(const LaserScan& scan) const {
+std::optional<SweepMotion> PaperMapper::Impl::sweep_motion(const LaserScan& scan) const {
   if (!config_.deskew || scan.beam_period <= 0.0 || odometry_.empty()) return std::nullopt;
   const Stamp reference = scan.middle();
   return SweepMotion{odometry_.between(reference, scan.stamp),
                      odometry_.between(reference, scan.beam_stamp(scan.ranges.size() - 1))};
 }
 
-Mapper::Mapper(const robot::RobotModel& model, const MapperConfig& config, std::uint64_t seed)
+PaperMapper::PaperMapper(const robot::RobotModel& model, const PaperConfig& config, std::uint64_t seed)
     : impl_(std::make_unique<Impl>(model, config, seed)) {}
-Mapper::~Mapper() = default;
+PaperMapper::~PaperMapper() = default;
 
-void Mapper::update(const robot::Inputs& inputs) { impl_->receive(inputs); }
+void PaperMapper::update(const robot::Inputs& inputs) { impl_->receive(inputs); }
 
-const CountMap& Mapper::map() const { return impl_->map_; }
+const CountMap& PaperMapper::map() const { return impl_->map_; }
 
-TPose2D Mapper::pose() const {
+TPose2D PaperMapper::pose() const {
   return impl_->T_map_last_ + impl_->T_last_scan_ + impl_->motion_since_scan(impl_->odometry_.newest());
 }
 
-const Trajectory& Mapper::trajectory() const { return impl_->trajectory_; }
-const std::vector<Particle>& Mapper::particles() const { return impl_->particles_; }
-const std::vector<TPoint2D>& Mapper::last_hits() const { return impl_->last_hits_; }
-const MapperCounts& Mapper::counts() const { return impl_->counts_; }
+Eigen::Matrix3d PaperMapper::covariance() const { return spread(impl_->particles_); }
+
+std::optional<TPose2D> PaperMapper::pose_at(Stamp stamp) const { return rubble::pose_at(impl_->trajectory_, stamp); }
+
+const Trajectory& PaperMapper::trajectory() const { return impl_->trajectory_; }
+const std::vector<Particle>& PaperMapper::particles() const { return impl_->particles_; }
+const std::vector<TPoint2D>& PaperMapper::last_hits() const { return impl_->last_hits_; }
+const MapperCounts& PaperMapper::counts() const { return impl_->counts_; }
+
+std::vector<MapperFigure> PaperMapper::figures() const {
+  return {{"icp_accepted", static_cast<double>(impl_->icp_accepted_)},
+          {"icp_rejected", static_cast<double>(impl_->icp_rejected_)}};
+}
 
 }  // namespace rubble::slam

@@ -1,8 +1,11 @@
-#include "scoring/walls/rigid.h"
+#include "base/rigid.h"
 
 #include <cassert>
+#include <cmath>
 
-namespace rubble::scoring {
+#include "base/angle.h"
+
+namespace rubble {
 
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
@@ -38,4 +41,8 @@ TPose2D fit_rigid(const std::vector<TPoint2D>& from, const std::vector<TPoint2D>
   return turned_onto(mean_from, mean_to, std::atan2(cross, dot));
 }
 
-}  // namespace rubble::scoring
+bool same_pose(const TPose2D& a, const TPose2D& b, const TPoint2D& centre, double shift, double turn) {
+  return (a.composePoint(centre) - b.composePoint(centre)).norm() < shift && std::abs(wrap_angle(a.phi - b.phi)) < turn;
+}
+
+}  // namespace rubble

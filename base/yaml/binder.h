@@ -8,7 +8,7 @@
 
 #include "base/yaml/strict_yaml.h"
 
-namespace rubble::scenarios {
+namespace rubble {
 
 /// Walks over the fields of a configuration: one list of keys, units and bounds serves both reading and writing.
 class Binder {
@@ -65,4 +65,4 @@ class YamlWriter : public Binder {
 /// A YAML double-quoted scalar.
 std::string quoted(const std::string& text);
 
-}  // namespace rubble::scenarios
+}  // namespace rubble

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace rubble::scoring {
+namespace rubble {
 
 /// A pose with its cosine and sine at hand: TPose2D works them out anew for each point.
 class Rigid {
@@ -41,4 +41,8 @@ mrpt::math::TPose2D turned_onto(const mrpt::math::TPoint2D& from, const mrpt::ma
 mrpt::math::TPose2D fit_rigid(const std::vector<mrpt::math::TPoint2D>& from,
                               const std::vector<mrpt::math::TPoint2D>& to);
 
-}  // namespace rubble::scoring
+/// Whether two poses take `centre` to places less than `shift` [m] apart and turn by less than `turn` [rad] otherwise.
+bool same_pose(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b, const mrpt::math::TPoint2D& centre,
+               double shift, double turn);
+
+}  // namespace rubble

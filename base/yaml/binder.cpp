@@ -1,11 +1,11 @@
-#include "scenarios/config/binder.h"
+#include "base/yaml/binder.h"
 
 #include <cmath>
 
 #include "base/angle.h"
 #include "base/text/number_text.h"
 
-namespace rubble::scenarios {
+namespace rubble {
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -72,4 +72,4 @@ void YamlWriter::section(const char* key, const std::function<void(Binder&)>& fi
   yaml_ += std::string(static_cast<std::size_t>(indent_), ' ') + key + ":\n" + inner.yaml();
 }
 
-}  // namespace rubble::scenarios
+}  // namespace rubble

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/yaml/binder.h"
+#include "robot/model.h"
+#include "slam/mapper.h"
+
+namespace rubble::slam {
+
+/// The parameters of one kind of mapper, and how to build it. A new kind implements this beside its mapper and adds a
+/// row to mappers.cpp; scenario files, sweeps and the command line then know it.
+class MapperParameters {
+ public:
+  virtual ~MapperParameters() = default;
+  /// Names, units and bounds of the parameters: the keys of a scenario's `mapper` section beside `kind`.
+  virtual void bind(Binder& binder) = 0;
+  virtual std::unique_ptr<Mapper> make(const robot::RobotModel& model, std::uint64_t seed) const = 0;
+  virtual std::unique_ptr<MapperParameters> copy() const = 0;
+};
+
+/// Finds the bind() that stands beside the Config.
+template <class Config>
+void bind_fields(Binder& binder, Config& config) {
+  bind(binder, config);
+}
+
+/// Parameters kept in a plain struct `Config` that a function bind(Binder&, Config&) beside it knows.
+template <class Config>
+class ParametersIn : public MapperParameters {
+ public:
+  void bind(Binder& binder) override { bind_fields(binder, config); }
+
+  Config config;
+};
+
+/// The same, of a mapper whose constructor takes (model, config, seed).
+template <class Config, class Kind>
+class ParametersOf : public ParametersIn<Config> {
+ public:
+  std::unique_ptr<Mapper> make(const robot::RobotModel& model, std::uint64_t seed) const override {
+    return std::make_unique<Kind>(model, this->config, seed);
+  }
+  std::unique_ptr<MapperParameters> copy() const override { return std::make_unique<ParametersOf>(*this); }
+};
+
+/// A row of the table of mappers.
+struct MapperKind {
+  std::string name;   ///< `mapper.kind`
+  std::string about;  ///< one line, for people
+  std::function<std::unique_ptr<MapperParameters>()> parameters;
+};
+
+/// All kinds of mappers, the default first.
+const std::vector<MapperKind>& mapper_kinds();
+
+/// Which mapper a run uses, with its parameters. A value: copies are independent.
+class MapperConfig {
+ public:
+  /// The default kind with its usual parameters.
+  MapperConfig();
+  MapperConfig(const MapperConfig& other);
+  MapperConfig& operator=(const MapperConfig& other);
+
+  const std::string& kind() const { return kind_; }
+  /// Takes another kind, with its usual parameters. Throws InputError for an unknown one.
+  void choose(const std::string& kind);
+  /// `kind` first, then the parameters of that kind.
+  void bind(Binder& binder);
+  std::unique_ptr<Mapper> make(const robot::RobotModel& model, std::uint64_t seed) const;
+  /// The parameters of a kind that keeps them in a `Config`. Throws std::bad_cast when the kind chosen does not.
+  template <class Config>
+  const Config& as() const {
+    return dynamic_cast<const ParametersIn<Config>&>(*parameters_).config;
+  }
+
+ private:
+  std::string kind_;
+  std::unique_ptr<MapperParameters> parameters_;
+};
+
+}  // namespace rubble::slam
