@@ -163,6 +163,17 @@ struct RealRobot::Impl {
       waiting_scans.erase(waiting_scans.begin(), waiting_scans.end() - kMostScansKept);
   }
 
+  Commands commands_in_force() {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return commands;
+  }
+
+  /// What was asked for before a wait is not what is wanted after it.
+  void forget_drive() {
+    const std::lock_guard<std::mutex> lock(mutex);
+    commands.drive = {};
+  }
+
   Inputs collect() {
     Inputs inputs;
     inputs.scans = std::exchange(waiting_scans, {});
@@ -178,6 +189,7 @@ struct RealRobot::Impl {
     sort_by_stamp(inputs.scans);
     sort_by_stamp(inputs.accelerations);
     sort_by_stamp(inputs.aims);
+    inputs.command = commands_in_force();
     // A clock that is mapped may run ahead by microseconds; nothing lies behind the end of the tick.
     inputs.now = std::max(host_now(), last_now);
     const auto keep = [&](auto& list) {
@@ -200,7 +212,10 @@ struct RealRobot::Impl {
         return true;
       }
       if (emergency) return false;
-      if (held_since == Stamp::never()) held_since = now;
+      if (held_since == Stamp::never()) {
+        held_since = now;
+        forget_drive();
+      }
       const bool starting = first == Stamp::never();
       if (now - held_since > (starting ? settings.safety.start : settings.safety.give_up))
         throw DeviceLost(

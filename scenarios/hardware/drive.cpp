@@ -156,7 +156,7 @@ class Driver {
                    : options_.mode == DriveMode::MapOnly   ? "mapping"
                    : core_.explorer()                      ? name_of(core_.explorer()->state())
                                                            : "mapping";
-    if (!core_.mapper().trajectory().empty()) status.T_map_base = core_.mapper().trajectory().back().pose;
+    status.T_map_base = core_.mapper().pose();
     status.known_m2 = known_area(core_.mapper().map());
     status.scans_per_s = static_cast<double>(status.robot.scans - last_.scans) / since;
     status.odometry_per_s = static_cast<double>(status.robot.odometry - last_.odometry) / since;
@@ -234,11 +234,11 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     } catch (const robot::DeviceLost& lost) {
       report.failure = report.end = lost.what();
     }
+    core.finish();
     report.interrupted = driver.interrupted();
     recorded.flush();
     report.score = score_of(core, real, driver.seconds(), report.end, start);
   }
-  core.finish();
   folder.append_estimate(core.mapper());
   folder.save_estimate(core.mapper());
   folder.save_map(file.settings, core.mapper(), core.victims());

@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "base/angle.h"
-#include "base/yaml/strict_yaml.h"
 #include "base/yaml/binder.h"
+#include "base/yaml/strict_yaml.h"
 
 namespace rubble::scenarios {
 namespace {

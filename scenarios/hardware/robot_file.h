@@ -13,8 +13,8 @@ struct LidarSettings {
   std::string driver = "scip";            ///< our own, or `mrpt`
   std::string mrpt_class = "CHokuyoURG";  ///< which of MRPT's drivers
   std::string port;
-  double delay = 0.0;            ///< scans are so much older than their stamps say [s]
-  bool no_echo_is_miss = false;  ///< "no echo" counts as nothing in range
+  double delay = 0.0;           ///< scans are so much older than their stamps say [s]
+  bool no_echo_is_miss = true;  ///< "no echo" counts as nothing in range, else as no measurement
 };
 
 /// A real robot: devices, ports, mounts and limits, and how the core shall use them.
