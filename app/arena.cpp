@@ -1,6 +1,5 @@
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include "app/commands.h"
 #include "arenas/elements/elements.h"
@@ -14,6 +13,7 @@
 #include "base/error.h"
 #include "base/image/geotiff.h"
 #include "base/text/text_file.h"
+#include "base/text/words.h"
 #include "scenarios/run/league_map.h"
 
 namespace rubble::app {
@@ -28,7 +28,8 @@ bool ends_with(const std::string& text, const std::string& end) {
 arenas::Arena load(const std::string& path) {
   if (!ends_with(path, ".raf")) return arenas::load_arena(path);
   const arenas::RafImport import = arenas::import_raf(path);
-  for (const std::string& note : import.notes()) std::fprintf(stderr, "rubble: %s: %s\n", path.c_str(), note.c_str());
+  for (const std::string& note : import.notes())
+    std::fprintf(stderr, "rubble: %s\n", one_line(path + ": " + note).c_str());
   return import.arena;
 }
 
@@ -59,10 +60,7 @@ int arena(const ArenaArguments& arguments) {
     write_text_file(arguments.walls, is_geojson ? arenas::walls_geojson(lines) : arenas::walls_csv(lines));
   }
   if (arguments.generate) {
-    std::ofstream file(base + ".yaml");
-    file << yaml;
-    file.close();
-    if (!file) throw InputError(base + ".yaml: cannot be written; give a writable folder with --out");
+    write_text_file(base + ".yaml", yaml);
     std::printf("%s.yaml\n", base.c_str());
   }
   scenarios::write_png(base + ".png", arenas::render(arena, 60.0));

@@ -1,15 +1,20 @@
 // The command line: parses, dispatches, and turns every failure into one line and an exit code.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
 #include <new>
 #include <sstream>
 
 #include "app/batch.h"
 #include "app/commands.h"
 #include "base/error.h"
+#include "base/text/words.h"
 #include "scenarios/run/run.h"
 
 namespace rubble::app {
@@ -219,8 +224,12 @@ int dispatch(int argc, char** argv) {
   run_arguments.common.overrides = map_arguments.common.overrides = parse_sets(sets);
   arena_arguments.generate = arena_arguments.file == "generate";
   parse_cells(cells, arena_arguments.config);
+  if (arena_arguments.config.kind == "yellow" && arena_command->count("--rough") > 0)
+    throw UsageError("--rough: a yellow arena has no obstacles; add --kind orange or --kind red");
   if (*arena_command && !arena_arguments.generate) refuse_generator_options(*arena_command);
   if (const auto code = batch_commands.run()) return *code;
+  if (*run_command && run_command->count("scenario") > 0 && run_arguments.scenario.empty())
+    throw UsageError("run '': is no scenario; give a file or a name, or leave it out for the main job");
   if (*run_command) return run(run_arguments);
   if (*map_command) return map(map_arguments);
   if (*score_command) return score(score_arguments);
@@ -229,25 +238,49 @@ int dispatch(int argc, char** argv) {
   return arena(arena_arguments);
 }
 
+/// One line whatever stands in it: names and values of foreign files may hold line breaks and terminal escapes.
+int complain(const std::string& message, int code) {
+  std::fprintf(stderr, "rubble: %s\n", one_line(message).c_str());
+  return code;
+}
+
+/// A path that cannot be looked at is bad input, a disk that fails is not.
+int complain(const std::filesystem::filesystem_error& error) {
+  const std::error_code why = error.code();
+  const bool is_disk = why == std::errc::no_space_on_device || why == std::errc::io_error;
+  return complain(error.path1().string() + ": cannot be used (" + why.message() +
+                      "); check the path, its permissions and the free space",
+                  is_disk ? kFailed : kBadInput);
+}
+
+/// What was printed counts only when it arrived.
+int delivered(int code) {
+  std::cout.flush();
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return code;
+  if (code != kOk && code != kBroken) return code;  // it has had its one line
+  const std::string why = errno != 0 ? std::string(" (") + std::strerror(errno) + ")" : "";
+  return complain("standard output: cannot be written" + why + "; free some space and give the command again", kFailed);
+}
+
 int guarded(int argc, char** argv) {
   try {
     return dispatch(argc, argv);
   } catch (const UsageError& error) {
-    std::fprintf(stderr, "rubble: %s\n", error.what());
-    return kUsage;
+    return complain(error.what(), kUsage);
   } catch (const InputError& error) {
-    std::fprintf(stderr, "rubble: %s\n", error.what());
-    return kBadInput;
+    return complain(error.what(), kBadInput);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return complain(error);
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "rubble: out of memory; use a coarser mapper.resolution_m or a smaller map\n");
+    std::fputs("rubble: out of memory; use a coarser mapper.resolution_m or a smaller map\n", stderr);
     return kFailed;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "rubble: %s\n", error.what());
-    return kFailed;
+    return complain(error.what(), kFailed);
   }
 }
 
 }  // namespace
 }  // namespace rubble::app
 
-int main(int argc, char** argv) { return rubble::app::guarded(argc, argv); }
+int main(int argc, char** argv) { return rubble::app::delivered(rubble::app::guarded(argc, argv)); }

@@ -5,6 +5,7 @@
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "base/error.h"
+#include "base/text/words.h"
 
 namespace rubble::app {
 namespace {
@@ -27,7 +28,8 @@ int run(const RunArguments& arguments) {
   if (arguments.seed) overrides.emplace_back("seed", std::to_string(*arguments.seed));
   const scenarios::Scenario scenario = scenarios::load_scenario(find_scenario(arguments.scenario), overrides);
   const auto options = terminal_options(arguments.common.out, arguments.common.force);
-  for (const std::string& note : scenarios::arena_notes(scenario)) std::fprintf(stderr, "rubble: %s\n", note.c_str());
+  for (const std::string& note : scenarios::arena_notes(scenario))
+    std::fprintf(stderr, "rubble: %s\n", one_line(note).c_str());
   const scenarios::RunReport report = scenarios::run_scenario(scenario, options);
   end_progress();
   print_summary(report);

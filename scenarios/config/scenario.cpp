@@ -8,6 +8,7 @@
 #include "arenas/raf/raf.h"
 #include "base/angle.h"
 #include "base/error.h"
+#include "base/text/file_name.h"
 #include "base/text/number_text.h"
 #include "base/yaml/binder.h"
 #include "base/yaml/strict_yaml.h"
@@ -245,9 +246,8 @@ Scenario load_scenario(const std::string& path, const std::vector<Override>& ove
   YamlMap root = YamlMap::load(path);
   for (const auto& [key, value] : overrides) root.set(key, value);
   Scenario s;
-  s.name = root.text("name", std::filesystem::path(path).stem().string());
-  if (s.name.empty() || s.name.find_first_of("/\\ ") != std::string::npos)
-    root.fail("name", "is used as a folder name: no spaces or slashes");
+  s.name = root.text("name", as_file_name(std::filesystem::path(path).stem().string()));
+  if (const auto trouble = file_name_trouble(s.name)) root.fail("name", *trouble);
   read_arena(root, path, s);
   read_common(root, s);
   read_expect(root, s);
@@ -261,6 +261,7 @@ Scenario default_scenario(const std::vector<Override>& overrides) {
   Scenario s;
   s.has_arena = false;
   s.name = root.text("name", std::string("map"));
+  if (const auto trouble = file_name_trouble(s.name)) root.fail("name", *trouble);
   read_common(root, s);
   root.finish();
   return s;
