@@ -16,6 +16,7 @@
 #include "base/image/geotiff.h"
 #include "base/image/png.h"
 #include "base/text/text_file.h"
+#include "base/text/words.h"
 #include "scenarios/run/league_map.h"
 
 namespace rubble::app {
@@ -56,7 +57,8 @@ bool ends_with(const std::string& text, const std::string& end) {
 arenas::Arena load(const std::string& path) {
   if (!ends_with(path, ".raf")) return arenas::load_arena(path);
   const arenas::RafImport import = arenas::import_raf(path);
-  for (const std::string& note : import.notes()) std::fprintf(stderr, "rubble: %s: %s\n", path.c_str(), note.c_str());
+  for (const std::string& note : import.notes())
+    std::fprintf(stderr, "rubble: %s\n", one_line(path + ": " + note).c_str());
   return import.arena;
 }
 
@@ -107,6 +109,8 @@ void list_elements() {
 }
 
 int arena_or_list(ArenaArguments arguments, const Options& options) {
+  if (arguments.generate() && arguments.config.kind == "yellow" && options.given("--rough"))
+    throw UsageError("--rough: a yellow arena has no obstacles; add --kind orange or --kind red");
   if (arguments.elements) {
     list_elements();
     return kOk;

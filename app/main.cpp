@@ -1,9 +1,13 @@
 // The command line: parses, dispatches, and turns every failure into one line and an exit code.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
 #include <limits>
 #include <memory>
 #include <new>
@@ -11,6 +15,7 @@
 
 #include "app/command.h"
 #include "base/error.h"
+#include "base/text/words.h"
 #include "scenarios/run/run.h"
 #include "slam/process/mapper_server.h"
 
@@ -149,21 +154,45 @@ int dispatch(int argc, char** argv) {
   return chosen->action();
 }
 
+/// One line whatever stands in it: names and values of foreign files may hold line breaks and terminal escapes.
+int complain(const std::string& message, int code) {
+  std::fprintf(stderr, "rubble: %s\n", one_line(message).c_str());
+  return code;
+}
+
+/// A path that cannot be looked at is bad input, a disk that fails is not.
+int complain(const std::filesystem::filesystem_error& error) {
+  const std::error_code why = error.code();
+  const bool is_disk = why == std::errc::no_space_on_device || why == std::errc::io_error;
+  return complain(error.path1().string() + ": cannot be used (" + why.message() +
+                      "); check the path, its permissions and the free space",
+                  is_disk ? kFailed : kBadInput);
+}
+
+/// What was printed counts only when it arrived.
+int delivered(int code) {
+  std::cout.flush();
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return code;
+  if (code != kOk && code != kBroken) return code;  // it has had its one line
+  const std::string why = errno != 0 ? std::string(" (") + std::strerror(errno) + ")" : "";
+  return complain("standard output: cannot be written" + why + "; free some space and give the command again", kFailed);
+}
+
 int guarded(int argc, char** argv) {
   try {
     return dispatch(argc, argv);
   } catch (const UsageError& error) {
-    std::fprintf(stderr, "rubble: %s\n", error.what());
-    return kUsage;
+    return complain(error.what(), kUsage);
   } catch (const InputError& error) {
-    std::fprintf(stderr, "rubble: %s\n", error.what());
-    return kBadInput;
+    return complain(error.what(), kBadInput);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return complain(error);
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "rubble: out of memory; use a coarser mapper.resolution_m or a smaller map\n");
+    std::fputs("rubble: out of memory; use a coarser mapper.resolution_m or a smaller map\n", stderr);
     return kFailed;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "rubble: %s\n", error.what());
-    return kFailed;
+    return complain(error.what(), kFailed);
   }
 }
 
@@ -172,5 +201,5 @@ int guarded(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   if (const auto code = rubble::slam::serve_mapper_if_asked(argc, argv)) return *code;
-  return rubble::app::guarded(argc, argv);
+  return rubble::app::delivered(rubble::app::guarded(argc, argv));
 }

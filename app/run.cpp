@@ -4,6 +4,8 @@
 #include "app/commands.h"
 #include "app/scenario_options.h"
 #include "app/terminal.h"
+#include "base/error.h"
+#include "base/text/words.h"
 
 namespace rubble::app {
 namespace {
@@ -18,7 +20,8 @@ int run(const RunArguments& arguments) {
   scenarios::Scenario scenario = scenarios::load_scenario(find_scenario(arguments.scenario), overrides);
   permit_command(arguments.folder.mapper, overrides, scenario);
   const auto options = terminal_options(arguments.folder.out, arguments.folder.force);
-  for (const std::string& note : scenarios::arena_notes(scenario)) std::fprintf(stderr, "rubble: %s\n", note.c_str());
+  for (const std::string& note : scenarios::arena_notes(scenario))
+    std::fprintf(stderr, "rubble: %s\n", one_line(note).c_str());
   return show(scenarios::run_scenario(scenario, options));
 }
 
@@ -34,7 +37,11 @@ Command run_command() {
                        Options::Need::Optional);
             o.seed("--seed", a->folder.seed, "Seed of every random choice");
             a->folder.declare(o);
-            return [a] { return run(*a); };
+            return [a, &o] {
+              if (o.given("scenario") && a->scenario.empty())
+                throw UsageError("run '': is no scenario; give a file or a name, or leave it out for the main job");
+              return run(*a);
+            };
           }};
 }
 

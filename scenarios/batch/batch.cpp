@@ -96,7 +96,7 @@ Entry entry_of(const Job& job, const TaskResult& result, const BatchOptions& opt
 /// Throws RunError when the folder takes no more data: then a failed run says nothing about the run.
 void check_space(const std::string& folder, const std::string& suffix) {
   const std::string path = folder + "/.space" + suffix;
-  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
   std::string why = file < 0 ? std::strerror(errno) : "";
   if (file >= 0) {
     const std::string block(kProbeBytes, '\0');
@@ -118,6 +118,9 @@ void check_space(const std::string& folder, const std::string& suffix) {
 
 void make_folder(const std::string& path) {
   std::error_code error;
+  for (const std::string& link : {path + "/runs", path + "/results.jsonl", path + "/workers.log"})
+    if (fs::is_symlink(link, error))
+      throw InputError(link + ": is a symbolic link, results could go anywhere; remove it or give another --out");
   fs::create_directories(path + "/runs", error);
   if (error)
     throw InputError(path + ": cannot be created (" + error.message() + "); give a writable folder with --out");

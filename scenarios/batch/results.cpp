@@ -62,7 +62,7 @@ Parsed parse_lines(const std::string& text, const std::string& path) {
 }
 
 int open_to_append(const std::string& path) {
-  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (file < 0)
     throw InputError(path + ": cannot be written (" + std::strerror(errno) + "); give a writable folder with --out");
   return file;
@@ -78,6 +78,9 @@ void lock(int file, const std::string& path) {
 
 /// Appends all or nothing, and waits for the disk.
 void append_synced(int file, const std::string& path, const std::string& line) {
+  struct stat status {};
+  if (fstat(file, &status) == 0 && status.st_nlink == 0)
+    throw RunError(path + ": the folder was deleted under way; give the same command again");
   const off_t before = lseek(file, 0, SEEK_END);
   std::size_t done = 0;
   while (done < line.size()) {

@@ -10,6 +10,7 @@
 
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/text/file_name.h"
 #include "base/yaml/strict_yaml.h"
 #include "scenarios/run/run.h"
 
@@ -177,7 +178,8 @@ Sweep load_sweep(const std::string& path, const std::string& shipped) {
   const YamlMap root = YamlMap::load(path);
   Sweep sweep;
   sweep.path = path;
-  sweep.name = root.text("name", fs::path(path).stem().string());
+  sweep.name = root.text("name", as_file_name(fs::path(path).stem().string()));
+  if (const auto trouble = file_name_trouble(sweep.name)) root.fail("name", *trouble);
   sweep.about = root.text("about", std::string());
   sweep.scenarios = read_scenarios(root, fs::path(path).parent_path(), shipped);
   sweep.seeds = read_seeds(root);

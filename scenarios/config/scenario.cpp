@@ -8,6 +8,7 @@
 #include "arenas/raf/raf.h"
 #include "base/angle.h"
 #include "base/error.h"
+#include "base/text/file_name.h"
 #include "base/text/number_text.h"
 #include "base/text/words.h"
 #include "base/yaml/binder.h"
@@ -205,9 +206,8 @@ Scenario load(const std::string& path, const std::vector<Override>& overrides, b
   YamlMap root = YamlMap::load(path);
   for (const auto& [key, value] : overrides) root.set(key, value);
   Scenario s;
-  s.name = root.text("name", std::filesystem::path(path).stem().string());
-  if (s.name.empty() || s.name.find_first_of("/\\ ") != std::string::npos)
-    root.fail("name", "is used as a folder name: no spaces or slashes");
+  s.name = root.text("name", as_file_name(std::filesystem::path(path).stem().string()));
+  if (const auto trouble = file_name_trouble(s.name)) root.fail("name", *trouble);
   s.has_arena = !recorded || root.has("arena");
   if (s.has_arena) read_arena(root, path, s);
   read_settings(root, s);
@@ -232,6 +232,7 @@ Scenario default_scenario(const std::vector<Override>& overrides) {
   Scenario s;
   s.has_arena = false;
   s.name = root.text("name", std::string("map"));
+  if (const auto trouble = file_name_trouble(s.name)) root.fail("name", *trouble);
   read_settings(root, s);
   root.finish();
   return s;

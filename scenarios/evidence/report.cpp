@@ -3,17 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "base/error.h"
 #include "base/image/png.h"
 #include "base/text/html.h"
 #include "scenarios/evidence/compare.h"
 #include "scenarios/evidence/metrics.h"
 #include "scenarios/evidence/statistics.h"
 #include "scenarios/evidence/svg_plot.h"
+#include "scoring/maps/raster_image.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -106,8 +109,14 @@ std::string plots(const ResultSet& set, const SweepNote& note) {
 std::string thumbnail(const std::string& folder) {
   for (const char* name : {"/overlay.png", "/map.png"}) {
     if (!fs::exists(folder + name)) continue;
-    const cv::Mat image = cv::imread(folder + name, cv::IMREAD_COLOR);
-    if (image.empty()) continue;
+    RgbImage rgb;
+    try {
+      rgb = scoring::read_rgb(folder + name);
+    } catch (const InputError&) {
+      continue;  // the run was killed while it drew, or its folder is foreign
+    }
+    cv::Mat image;
+    cv::cvtColor(cv::Mat(rgb.height, rgb.width, CV_8UC3, rgb.rgb.data()), image, cv::COLOR_RGB2BGR);
     const double factor = std::min(1.0, static_cast<double>(kThumbnailPixels) / std::max(image.cols, image.rows));
     cv::Mat small;
     cv::resize(image, small, {}, factor, factor, cv::INTER_AREA);
@@ -116,15 +125,39 @@ std::string thumbnail(const std::string& folder) {
   return "";
 }
 
+/// Results may come from elsewhere: a run folder lies below its batch.
+bool is_below(const std::string& folder) {
+  const fs::path path = fs::path(folder).lexically_normal();
+  return !folder.empty() && !path.is_absolute() && *path.begin() != "..";
+}
+
+/// A path as a link of a page: no scheme ("javascript:"), no query, no fragment.
+std::string local_link(const std::string& path) {
+  if (path.empty()) return "";
+  static constexpr char kHex[] = "0123456789ABCDEF";
+  std::string out = path.front() == '/' ? "" : "./";
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = std::isalnum(byte) != 0 || std::strchr("/-_.~=+,", c) != nullptr;
+    if (plain && c != '\0') {
+      out += c;
+    } else {
+      out += {'%', kHex[byte >> 4], kHex[byte & 15]};
+    }
+  }
+  return out;
+}
+
 std::string figure_of(const RunRecord& run, const ResultSet& set, const std::string& page_folder) {
   const std::string folder = set.folder + "/" + run.folder;
-  const std::string picture = thumbnail(folder);
+  const bool is_inside = is_below(run.folder);
+  const std::string picture = is_inside ? thumbnail(folder) : "";
   std::error_code error;
-  const std::string link = fs::relative(folder, page_folder.empty() ? "." : page_folder, error).string();
+  const std::string link = local_link(fs::relative(folder, page_folder.empty() ? "." : page_folder, error).string());
   std::string out = "<figure>";
-  if (!link.empty()) out += "<a href=\"" + escape_html(link) + "/\">";
+  if (!link.empty() && is_inside) out += "<a href=\"" + escape_html(link) + "/\">";
   out += picture.empty() ? "(no picture)" : "<img src=\"" + picture + "\" alt=\"map over truth\">";
-  if (!link.empty()) out += "</a>";
+  if (!link.empty() && is_inside) out += "</a>";
   return out + "<figcaption>score " + figure(run.metric("score")) + "<br>" + escape_html(run.scenario) + ", seed " +
          std::to_string(run.seed) + "<br>" + escape_html(run.configuration) + "</figcaption></figure>\n";
 }

@@ -14,6 +14,8 @@
 #include "arenas/truth/visible.h"
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/text/file_name.h"
+#include "base/text/words.h"
 #include "robot/logs/log.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/league_map.h"
@@ -206,9 +208,10 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   scenario.mapper.require_permission();
   robot::ReplayRobot robot(log);
   Scenario resolved = scenario;
-  if (resolved.name == "map") resolved.name = "map-" + std::filesystem::path(log).stem().stem().string();
+  if (resolved.name == "map") resolved.name = as_file_name("map-" + std::filesystem::path(log).stem().stem().string());
   RunFolder folder(folder_for(options, resolved), options.replace);
-  folder.write("scenario.yaml", "# rubble map " + log + " (" + robot.format() + ")\n" + resolved_yaml(resolved));
+  folder.write("scenario.yaml",
+               "# rubble map " + one_line(log) + " (" + robot.format() + ")\n" + resolved_yaml(resolved));
   folder.write("versions.json", versions().dump(2) + "\n");
   Core core(resolved, robot.model(), false, folder.path());
   if (!robot.reference().empty()) folder.append_truth(robot.reference());
