@@ -4,6 +4,6 @@
 
 RUBBLE_FUZZ_TARGET {
   rubble::fuzz::refuses_or_reads(
-      [&] { rubble::robot::inflate_if_gzip(std::string(rubble::fuzz::text_of(data, size)), "input.gz"); });
+      [&] { rubble::robot::unpacked(std::string(rubble::fuzz::text_of(data, size)), "input.gz"); });
   return 0;
 }

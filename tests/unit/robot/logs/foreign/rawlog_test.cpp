@@ -281,7 +281,7 @@ TEST(Rawlog, WrongBeamCountIsOneLine) {
   const TempFolder folder;
   testing::record(drive_through_room(3, {}), folder.file("a.log"));
   export_rawlog(folder.file("a.log"), folder.file("a.rawlog"));
-  std::string bytes = inflate_if_gzip(testing::read_bytes(folder.file("a.rawlog")), "a.rawlog");
+  std::string bytes = unpacked(testing::read_bytes(folder.file("a.rawlog")), "a.rawlog");
   const std::size_t count = bytes.find(std::string("\xaa\x02\x00\x00", 4));
   ASSERT_NE(count, std::string::npos);
   for (const char top : {'\x01', '\x10', '\x7f', '\xf0'}) {
@@ -296,7 +296,7 @@ TEST(Rawlog, AnyDamageIsALogOrOneLineAndBoundedMemory) {
   const TempFolder folder;
   testing::record(drive_through_room(2, {}), folder.file("a.log"));
   export_rawlog(folder.file("a.log"), folder.file("a.rawlog"));
-  const std::string whole[] = {inflate_if_gzip(testing::read_bytes(folder.file("a.rawlog")), "a.rawlog"),
+  const std::string whole[] = {unpacked(testing::read_bytes(folder.file("a.rawlog")), "a.rawlog"),
                                action_frame_log(true, 3)};
   const std::uint64_t seed = 15;
   SCOPED_TRACE("seed " + std::to_string(seed));
