@@ -86,6 +86,7 @@ class Bunzipper {
       status = BZ2_bzDecompress(&stream_);
       at += offered - stream_.avail_in;
       out.resize(written + kChunk - stream_.avail_out);
+      check_inflated(out.size(), bytes.size(), path);
       if (status == BZ_OK && at == bytes.size() && stream_.avail_out != 0)
         throw InputError(path + ": the bzip2 data stop at byte " + std::to_string(at) + " (after " +
                          std::to_string(out.size()) + " bytes of content) without their end; copy the file again");
