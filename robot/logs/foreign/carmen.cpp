@@ -118,7 +118,7 @@ void order_stamps(Records& records, Stamp CarmenRecord::*clock) {
     for (; end < records.size() && !records[end].is_scan; ++end) between.push_back(records[end].*clock);
     between = sorted_stamps(std::move(between));
     for (const Stamp stamp : between) {
-      const Stamp after = std::max(stamp, newest);
+      const Stamp after = newest == Stamp::never() ? stamp : std::max(stamp, Stamp{newest.ns + 1000});
       records[i++].stamp = newest = next < scans.size() ? std::min(after, scans[next]) : after;
     }
   }
