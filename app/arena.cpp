@@ -1,6 +1,7 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 
 #include "app/commands.h"
 #include "arenas/elements/elements.h"
@@ -13,12 +14,40 @@
 #include "arenas/truth/wall_lines.h"
 #include "base/error.h"
 #include "base/image/geotiff.h"
+#include "base/image/png.h"
 #include "base/text/text_file.h"
+#include "base/text/words.h"
 #include "scenarios/run/league_map.h"
 
 namespace rubble::app {
-
 namespace {
+
+struct ArenaArguments {
+  std::string file;
+  bool elements = false;
+  std::string cells;
+  arenas::GenerateConfig config;
+  double resolution = 0.05;
+  double slice_height = 0.35;
+  double range = 4.0;  ///< of the laser that NAME-visible.tif is for [m]
+  std::string walls;   ///< .csv or .geojson to write
+  std::string out;
+
+  bool generate() const { return file == "generate"; }
+};
+
+void parse_cells(const std::string& cells, arenas::GenerateConfig& config) {
+  if (cells.empty()) return;
+  char rest = 0;
+  if (std::sscanf(cells.c_str(), "%dx%d%c", &config.columns, &config.rows, &rest) != 2)
+    throw UsageError("--cells " + cells + ": needs the form COLUMNSxROWS, for example --cells 10x12");
+  if (std::min(config.columns, config.rows) < 2 || std::max(config.columns, config.rows) > 60)
+    throw UsageError("--cells " + cells + ": an arena has 2 to 60 pallets a side");
+}
+
+/// Those that say nothing about an arena that is read from a file.
+constexpr const char* kGeneratorOptions[] = {"--kind",  "--cells", "--seed",  "--ramps",
+                                             "--rough", "--paper", "--loops", "--victims"};
 
 bool ends_with(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
@@ -28,26 +57,25 @@ bool ends_with(const std::string& text, const std::string& end) {
 arenas::Arena load(const std::string& path) {
   if (!ends_with(path, ".raf")) return arenas::load_arena(path);
   const arenas::RafImport import = arenas::import_raf(path);
-  for (const std::string& note : import.notes()) std::fprintf(stderr, "rubble: %s: %s\n", path.c_str(), note.c_str());
+  for (const std::string& note : import.notes())
+    std::fprintf(stderr, "rubble: %s\n", one_line(path + ": " + note).c_str());
   return import.arena;
 }
-
-}  // namespace
 
 int arena(const ArenaArguments& arguments) {
   namespace fs = std::filesystem;
   const bool is_geojson = ends_with(arguments.walls, ".geojson") || ends_with(arguments.walls, ".json");
   if (!arguments.walls.empty() && !is_geojson && !ends_with(arguments.walls, ".csv"))
     throw UsageError("--walls " + arguments.walls + ": the name must end in .csv or .geojson");
-  const std::string source = arguments.generate ? "generated arena" : arguments.file;
-  const std::string yaml = arguments.generate ? arenas::generate_arena(arguments.config) : std::string();
-  const arenas::Arena arena = arguments.generate ? arenas::parse_arena(yaml, source) : load(source);
+  const std::string source = arguments.generate() ? "generated arena" : arguments.file;
+  const std::string yaml = arguments.generate() ? arenas::generate_arena(arguments.config) : std::string();
+  const arenas::Arena arena = arguments.generate() ? arenas::parse_arena(yaml, source) : load(source);
   arenas::check(arena, source);
 
-  const std::string stem = arguments.generate ? arguments.config.kind + "-" + std::to_string(arguments.config.columns) +
-                                                    "x" + std::to_string(arguments.config.rows) + "-seed" +
-                                                    std::to_string(arguments.config.seed)
-                                              : fs::path(arguments.file).stem().string();
+  const std::string stem =
+      arguments.generate() ? arguments.config.kind + "-" + std::to_string(arguments.config.columns) + "x" +
+                                 std::to_string(arguments.config.rows) + "-seed" + std::to_string(arguments.config.seed)
+                           : fs::path(arguments.file).stem().string();
   const std::string out = arguments.out.empty() ? "." : arguments.out;
   std::error_code error;
   fs::create_directories(out, error);
@@ -58,14 +86,11 @@ int arena(const ArenaArguments& arguments) {
     const std::vector<arenas::WallLine> lines = arenas::wall_lines(arena);
     write_text_file(arguments.walls, is_geojson ? arenas::walls_geojson(lines) : arenas::walls_csv(lines));
   }
-  if (arguments.generate) {
-    std::ofstream file(base + ".yaml");
-    file << yaml;
-    file.close();
-    if (!file) throw InputError(base + ".yaml: cannot be written; give a writable folder with --out");
+  if (arguments.generate()) {
+    write_text_file(base + ".yaml", yaml);
     std::printf("%s.yaml\n", base.c_str());
   }
-  scenarios::write_png(base + ".png", arenas::render(arena, 60.0));
+  write_png(base + ".png", arenas::render(arena, 60.0));
   const OccupancyGrid truth = arenas::truth_map(arena, arguments.resolution, arguments.slice_height);
   write_geotiff(base + "-truth.tif", scenarios::draw_truth(truth));
   arenas::Viewer viewer;
@@ -81,6 +106,55 @@ void list_elements() {
     std::printf("%-26s%-10s%s\n", type.c_str(), arenas::name_of(arenas::kind_of(type)).c_str(),
                 arenas::description_of(type).c_str());
   }
+}
+
+int arena_or_list(ArenaArguments arguments, const Options& options) {
+  if (arguments.generate() && arguments.config.kind == "yellow" && options.given("--rough"))
+    throw UsageError("--rough: a yellow arena has no obstacles; add --kind orange or --kind red");
+  if (arguments.elements) {
+    list_elements();
+    return kOk;
+  }
+  if (arguments.file.empty()) throw UsageError("file is required; see rubble arena --help");
+  parse_cells(arguments.cells, arguments.config);
+  for (const char* name : kGeneratorOptions)
+    if (!arguments.generate() && options.given(name))
+      throw UsageError(std::string(name) + " is for 'rubble arena generate'; an arena file has its own layout");
+  return arena(arguments);
+}
+
+void declare_generator(Options& o, ArenaArguments& a) {
+  arenas::GenerateConfig& config = a.config;
+  o.choice("--kind", config.kind, {"yellow", "orange", "red"}, "Kind of arena");
+  o.text("--cells", a.cells, "Pallets west-east x south-north (default 8x8)");
+  o.seed("--seed", config.seed, "Seed of the layout");
+  o.number("--ramps", config.ramps, 0.0, 1.0, "Share of pallets that are ramps, 0..1");
+  o.number("--rough", config.rough, 0.0, 1.0, "Share of pallets with obstacles (orange, red), 0..1, default 0.25");
+  o.number("--paper", config.paper, 0.0, 1.0, "Share of pallets with paper, 0..1");
+  o.number("--loops", config.loops, 0.0, 1.0, "Share of inner walls taken away, 0..1");
+  o.whole("--victims", config.victims, 0, 1000, "Number of victims");
+}
+
+}  // namespace
+
+Command arena_command() {
+  return {"arena", "Picture and truth map of an arena file, or of a generated arena",
+          "Examples:\n  rubble arena arenas/shipped/yellow_8x8.yaml\n"
+          "  rubble arena arenas/shipped/yellow_8x8.yaml --resolution 0.02 --slice-height 0.2 --walls walls.geojson\n"
+          "  rubble arena generate --cells 10x12 --seed 3 --ramps 0.4 --paper 0.2 --victims 6 --loops 0.2",
+          [](Options& o) -> Action {
+            auto a = std::make_shared<ArenaArguments>();
+            o.argument("file", a->file, "Arena file, or the word 'generate'", Options::Need::Optional);
+            declare_generator(o, *a);
+            o.number("--resolution", a->resolution, 0.005, 1.0, "Metres a pixel of the truth map");
+            o.number("--slice-height", a->slice_height, 0.01, 5.0,
+                     "Height above each floor at which the truth map is cut, default 0.35 [m]");
+            o.number("--range", a->range, 0.1, 100.0, "How far the laser sees of NAME-visible.tif, default 4 [m]");
+            o.text("--walls", a->walls, "Also write the walls as lines: FILE.csv or FILE.geojson");
+            o.flag("--elements", a->elements, "List the league's parts that arena files can place, and what they are");
+            o.text("--out", a->out, "Folder for the files (default: here)");
+            return [a, &o] { return arena_or_list(*a, o); };
+          }};
 }
 
 }  // namespace rubble::app

@@ -1,17 +1,15 @@
-#include "app/batch.h"
-
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 
 #include "app/batch_tools.h"
+#include "app/commands.h"
+#include "app/scenario_options.h"
 #include "base/error.h"
-#include "base/text/text_file.h"
-#include "scenarios/batch/merge.h"
 #include "scenarios/batch/slurm.h"
 #include "scenarios/batch/sweep_note.h"
 #include "scenarios/evidence/baseline.h"
-#include "scenarios/evidence/report.h"
 
 namespace rubble::app {
 namespace {
@@ -19,29 +17,34 @@ namespace {
 namespace fs = std::filesystem;
 using namespace scenarios;
 
-/// Says when runs that the sweep in `folder` asked for are not there (a shard that failed or still works); true: all
-/// are.
-bool tell_missing(const std::string& folder, const std::vector<RunRecord>& runs) {
-  const MissingRuns missing = missing_runs(folder, runs);
-  if (missing.missing == 0) return true;
-  std::fprintf(stderr,
-               "rubble: %s: %zu of the %zu runs its sweep asked for are missing; give the batch command again to make "
-               "them\n",
-               folder.c_str(), missing.missing, missing.asked);
-  return false;
-}
+struct BatchArguments {
+  std::string sweep;
+  std::string out;
+  int workers = 0;  ///< 0: as many as this process may use
+  std::string shard;
+  bool retry = false;
+  bool record = false;
+  std::string save_baseline;
+  std::vector<std::string> sets;
+  MapperChoice mapper;
+  bool slurm = false;
+  bool no_submit = false;
+  int shards = 8;
+  std::vector<std::string> slurm_options;
+};
 
-void write_report(const std::string& source, const std::string& page) {
-  const ResultSet set = load_sweep_results(source);
-  if (set.runs.empty()) throw InputError(source + ": holds no finished run to report on");
-  tell_missing(source, set.runs);
-  write_text_file(page, report_html(set, note_of(set, source), fs::path(page).parent_path().string()));
-  std::printf("%-12s %s\n", "report", page.c_str());
+Shard parse_shard(const std::string& text) {
+  Shard shard;
+  char rest = 0;
+  if (!text.empty() && (std::sscanf(text.c_str(), "%d/%d%c", &shard.index, &shard.count, &rest) != 2 ||
+                        shard.count < 1 || shard.index < 1 || shard.index > shard.count))
+    throw UsageError("--shard " + text + ": needs the form i/N with i from 1 to N, for example --shard 2/8");
+  return shard;
 }
 
 int submit(const BatchArguments& arguments, const Sweep& sweep, const std::vector<Job>& jobs_asked,
            const std::string& out) {
-  if (arguments.shard.count > 1 || !arguments.save_baseline.empty())
+  if (!arguments.shard.empty() || !arguments.save_baseline.empty())
     throw UsageError("--slurm makes all shards itself and no baseline; leave out --shard and --save-baseline");
   SlurmPlan plan;
   plan.name = sweep.name;
@@ -53,12 +56,13 @@ int submit(const BatchArguments& arguments, const Sweep& sweep, const std::vecto
   plan.workers = arguments.workers > 0 ? arguments.workers : 1;
   plan.record = arguments.record;
   plan.retry = arguments.retry;
-  plan.overrides = arguments.overrides;
+  plan.overrides = with_mapper(arguments.mapper, parse_sweep_sets(arguments.sets));
+  plan.allow_commands = arguments.mapper.allow_commands || !arguments.mapper.command.empty();
   plan.options = arguments.slurm_options;
   const SlurmScripts paths = write_slurm(plan);
   save_note(sweep, jobs_asked, plan.out);
   std::printf("%-12s %s\n%-12s %s\n", "array job", paths.array.c_str(), "merge job", paths.merge.c_str());
-  if (!arguments.submit) return kOk;
+  if (arguments.no_submit) return kOk;
   const SlurmJobs jobs = submit_slurm(paths);
   std::printf("%-12s %s (%d shards), then %s merges to %s/results.sqlite\n", "submitted", jobs.array.c_str(),
               plan.shards, jobs.merge.c_str(), plan.out.c_str());
@@ -76,20 +80,21 @@ void print_summary(const BatchReport& report, const BatchOptions& options) {
   if (report.interrupted) std::printf("%-12s give the same command again to go on\n", "interrupted");
 }
 
-}  // namespace
-
 int batch(const BatchArguments& arguments) {
-  const Sweep sweep = load_sweep(find_sweep(arguments.sweep), shipped_folder());
+  if (arguments.sweep.empty()) throw UsageError("batch needs a sweep file; see 'rubble batch --help'");
   BatchOptions options;
+  options.shard = parse_shard(arguments.shard);
+  const std::vector<Override> overrides = with_mapper(arguments.mapper, parse_sweep_sets(arguments.sets));
+  const Sweep sweep = load_sweep(find_sweep(arguments.sweep), shipped_folder());
   options.code = code_version();
-  const std::vector<Job> jobs = expand(sweep, options.code, arguments.overrides);
+  std::vector<Job> jobs = expand(sweep, options.code, overrides);
+  for (Job& job : jobs) permit_command(arguments.mapper, overrides, job.scenario);
   options.out = arguments.out.empty() ? "runs/" + sweep.name : arguments.out;
   if (arguments.slurm) return submit(arguments, sweep, jobs, options.out);
-  const bool whole = arguments.shard.count == 1;
+  const bool whole = options.shard.count == 1;
   if (!whole && !arguments.save_baseline.empty())
     throw UsageError("--save-baseline needs every run of the sweep; leave out --shard");
   options.workers = arguments.workers > 0 ? arguments.workers : usable_cores();
-  options.shard = arguments.shard;
   options.retry = arguments.retry;
   options.run_limit = sweep.run_limit;
   const BatchReport report = run_with_progress(jobs, options, arguments.record);
@@ -104,34 +109,32 @@ int batch(const BatchArguments& arguments) {
   return report.progress.failed ? kFailed : kOk;
 }
 
-int batch_merge(const MergeArguments& arguments) {
-  const MergeReport report = merge(arguments.sources, arguments.out);
-  std::printf("%zu runs in %s, %zu of them new\n", report.runs, arguments.out.c_str(), report.added);
-  bool whole = true;
-  const std::vector<RunRecord> merged = load_results(arguments.out).runs;
-  for (const auto& source : arguments.sources) whole = tell_missing(source, merged) && whole;
-  return whole ? kOk : kFailed;
-}
+}  // namespace
 
-int batch_report(const ReportArguments& arguments) {
-  if (arguments.markdown) {
-    std::string text;
-    for (const auto& source : arguments.sources) {
-      const ResultSet set = load_sweep_results(source);
-      text += report_markdown(set, note_of(set, source));
-    }
-    if (arguments.out.empty()) {
-      std::printf("%s", text.c_str());
-    } else {
-      write_text_file(arguments.out, text);
-    }
-    return kOk;
-  }
-  if (arguments.sources.size() != 1) throw UsageError("batch report: a page is about one sweep; give one folder");
-  const std::string& source = arguments.sources.front();
-  const std::string beside = fs::is_directory(source) ? source + "/report.html" : "report.html";
-  write_report(source, arguments.out.empty() ? beside : arguments.out);
-  return kOk;
+Command batch_command() {
+  return {"batch", "Make many runs: scenarios x configurations x seeds, on all cores",
+          "Interrupted or killed, the same command goes on where it was.\n"
+          "Examples:\n  rubble batch levelling --workers 4\n  rubble batch my.yaml --out results --shard 2/8\n"
+          "  rubble batch my.yaml --out /shared/results --slurm --shards 40\n"
+          "  rubble batch merge results --out results.sqlite",
+          [](Options& o) -> Action {
+            auto a = std::make_shared<BatchArguments>();
+            o.argument("sweep", a->sweep, "Sweep file, or the name of a shipped one", Options::Need::Optional);
+            add_workers(o, a->workers);
+            o.text("--out", a->out, "Folder for the results (default: runs/NAME of the sweep)");
+            o.text("--shard", a->shard, "Make only part i of N: --shard i/N");
+            o.flag("--retry", a->retry, "Make failed and timed-out runs again");
+            o.flag("--record", a->record, "Keep the log of each run");
+            o.text("--save-baseline", a->save_baseline, "Write medians and tolerances for 'rubble check'");
+            add_mapper(o, a->mapper);
+            add_sets(o, a->sets);
+            o.flag("--slurm", a->slurm, "Submit to Slurm: an array job and a job that merges");
+            o.whole("--shards", a->shards, 1, 100000, "Tasks of the array job (default: 8)");
+            o.texts("--slurm-option", a->slurm_options, "One more option for sbatch: --slurm-option=--time=2:00:00");
+            o.flag("--no-submit", a->no_submit, "Only write the scripts for Slurm");
+            for (const char* option : {"--shards", "--slurm-option", "--no-submit"}) o.needs(option, "--slurm");
+            return [a] { return batch(*a); };
+          }};
 }
 
 }  // namespace rubble::app

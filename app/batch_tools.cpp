@@ -4,10 +4,13 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 
 #include "app/terminal.h"
+#include "base/error.h"
+#include "base/text/text_file.h"
+#include "scenarios/batch/sweep_note.h"
+#include "scenarios/evidence/report.h"
 
 namespace rubble::app {
 namespace {
@@ -22,7 +25,7 @@ std::string clock_text(double seconds) {
   return text;
 }
 
-void show(const BatchProgress& p) {
+void show_progress(const BatchProgress& p) {
   std::string line = std::to_string(p.finished()) + " of " + std::to_string(p.total) + " runs, " +
                      std::to_string(p.running) + " running";
   if (p.failed) line += ", " + std::to_string(p.failed) + " FAILED";
@@ -35,15 +38,26 @@ void show(const BatchProgress& p) {
 
 }  // namespace
 
-std::string shipped_folder() {
-  const char* home = std::getenv("RUBBLE_HOME");
-  return std::string(home ? home : RUBBLE_SOURCE_DIR) + "/scenarios";
+void add_workers(Options& options, int& workers) {
+  options.whole("--workers", workers, 1, 4096, "Processes (default: one a core)");
 }
 
-std::string find_sweep(const std::string& name) {
-  const std::string shipped = shipped_folder() + "/sweeps/" + name + ".yaml";
-  if (!fs::exists(name) && name.find('/') == std::string::npos && fs::exists(shipped)) return shipped;
-  return name;
+bool tell_missing(const std::string& folder, const std::vector<RunRecord>& runs) {
+  const MissingRuns missing = missing_runs(folder, runs);
+  if (missing.missing == 0) return true;
+  std::fprintf(stderr,
+               "rubble: %s: %zu of the %zu runs its sweep asked for are missing; give the batch command again to make "
+               "them\n",
+               folder.c_str(), missing.missing, missing.asked);
+  return false;
+}
+
+void write_report(const std::string& source, const std::string& page) {
+  const ResultSet set = load_sweep_results(source);
+  if (set.runs.empty()) throw InputError(source + ": holds no finished run to report on");
+  tell_missing(source, set.runs);
+  write_text_file(page, report_html(set, note_of(set, source), fs::path(page).parent_path().string()));
+  std::printf("%-12s %s\n", "report", page.c_str());
 }
 
 int usable_cores() {
@@ -55,7 +69,7 @@ int usable_cores() {
 BatchReport run_with_progress(const std::vector<Job>& jobs, BatchOptions options, bool record) {
   catch_interrupts();
   options.stop = interrupted;
-  if (isatty(STDERR_FILENO)) options.progress = show;
+  if (isatty(STDERR_FILENO)) options.progress = show_progress;
   BatchReport report = run_batch(jobs, simulating_runner(record), options);
   end_progress();
   return report;

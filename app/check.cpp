@@ -2,9 +2,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 
-#include "app/batch.h"
 #include "app/batch_tools.h"
+#include "app/commands.h"
+#include "app/scenario_options.h"
 #include "base/error.h"
 #include "base/text/text_file.h"
 #include "scenarios/batch/sweep_note.h"
@@ -14,6 +16,16 @@ namespace rubble::app {
 namespace {
 
 using namespace scenarios;
+
+struct CheckArguments {
+  std::string sweep = "regression";
+  std::string baseline;  ///< empty: beside the sweep file
+  std::string out;
+  std::string junit;
+  int workers = 0;  ///< 0: as many as this process may use
+  std::vector<std::string> sets;
+  MapperChoice mapper;
+};
 
 /// What GitHub Actions reads, where its variables exist.
 void tell_github(const std::vector<CheckCase>& cases, const std::string& title) {
@@ -40,8 +52,6 @@ std::vector<RunRecord> planned(const std::vector<Job>& jobs) {
   return runs;
 }
 
-}  // namespace
-
 int check(const CheckArguments& arguments) {
   const Sweep sweep = load_sweep(find_sweep(arguments.sweep), shipped_folder());
   const std::string beside = std::filesystem::path(sweep.path).replace_extension(".baseline.json").string();
@@ -52,7 +62,9 @@ int check(const CheckArguments& arguments) {
   const Baseline baseline = load_baseline(baseline_path);
   BatchOptions options;
   options.code = code_version();
-  const std::vector<Job> jobs = expand(sweep, options.code, arguments.overrides);
+  const auto overrides = with_mapper(arguments.mapper, parse_sweep_sets(arguments.sets));
+  std::vector<Job> jobs = expand(sweep, options.code, overrides);
+  for (Job& job : jobs) permit_command(arguments.mapper, overrides, job.scenario);
   require_fit(baseline, planned(jobs));
   options.out = arguments.out.empty() ? "runs/check-" + sweep.name : arguments.out;
   options.workers = arguments.workers > 0 ? arguments.workers : usable_cores();
@@ -78,6 +90,27 @@ int check(const CheckArguments& arguments) {
   if (!arguments.junit.empty()) write_text_file(arguments.junit, to_junit(cases, "rubble." + sweep.name));
   tell_github(cases, "rubble check " + sweep.name);
   return failures(cases) == 0 ? kOk : kBroken;
+}
+
+}  // namespace
+
+Command check_command() {
+  return {"check", "Run the regression suite; exit code 1 when mapping got worse",
+          "Prints GitHub annotations when GITHUB_ACTIONS is true, appends to GITHUB_STEP_SUMMARY when that is set.\n"
+          "Examples:\n  rubble batch my.yaml --save-baseline my.baseline.json\n"
+          "  rubble check my.yaml --junit check.xml",
+          [](Options& o) -> Action {
+            auto a = std::make_shared<CheckArguments>();
+            o.argument("sweep", a->sweep, "Sweep file, or the name of a shipped one (default: regression)",
+                       Options::Need::Optional);
+            o.text("--baseline", a->baseline, "Baseline file (default: NAME.baseline.json beside the sweep file)");
+            o.text("--out", a->out, "Folder for the results (default: runs/check-NAME)");
+            o.text("--junit", a->junit, "Write JUnit XML");
+            add_workers(o, a->workers);
+            add_mapper(o, a->mapper);
+            add_sets(o, a->sets);
+            return [a] { return check(*a); };
+          }};
 }
 
 }  // namespace rubble::app

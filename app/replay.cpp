@@ -1,17 +1,27 @@
-#include <cstdio>
-#include <filesystem>
-
-#include "app/commands.h"
-#include "app/terminal.h"
-#include "base/error.h"
-#include "robot/logs/foreign/mrpt_bridge.h"
 #include "scenarios/run/replay.h"
 
+#include <cstdio>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/mapper_choice.h"
+#include "app/terminal.h"
+
 namespace rubble::app {
+namespace {
+
+struct ReplayArguments {
+  std::string run;
+  std::string out;
+  MapperChoice mapper;
+};
 
 int replay(const ReplayArguments& arguments) {
   const auto options = terminal_options(arguments.out, false);
-  const scenarios::ReplayReport report = scenarios::replay_run(arguments.run, options);
+  const auto overrides = with_mapper(arguments.mapper, {});
+  scenarios::Scenario scenario = scenarios::recorded_scenario(arguments.run, overrides);
+  permit_command(arguments.mapper, overrides, scenario);
+  const scenarios::ReplayReport report = scenarios::replay_run(arguments.run, scenario, options);
   end_progress();
   if (interrupted()) return kInterrupted;
   for (const auto& artefact : report.artefacts)
@@ -22,20 +32,17 @@ int replay(const ReplayArguments& arguments) {
   return report.identical ? kOk : kBroken;
 }
 
-std::string recorded_log(const std::string& path) {
-  const std::string inside = path + "/log.rlog";
-  return std::filesystem::exists(inside) ? inside : path;
-}
+}  // namespace
 
-int export_log(const ExportArguments& arguments) {
-  namespace fs = std::filesystem;
-  if (fs::is_directory(arguments.out)) throw InputError(arguments.out + ": is a folder; name the .rawlog to write");
-  const fs::path folder = fs::path(arguments.out).parent_path();
-  if (!folder.empty() && !fs::is_directory(folder))
-    throw InputError(arguments.out + ": the folder " + folder.string() + " does not exist; make it first");
-  robot::export_rawlog(recorded_log(arguments.log), arguments.out);
-  std::printf("%s\n", arguments.out.c_str());
-  return kOk;
+Command replay_command() {
+  return {"replay", "Run the mapper again on a recorded run and compare bit by bit",
+          "Example:\n  rubble replay runs/latest", [](Options& o) -> Action {
+            auto a = std::make_shared<ReplayArguments>();
+            o.argument("run", a->run, "Run folder");
+            o.text("--out", a->out, "Keep the re-made artefacts in this folder");
+            add_mapper(o, a->mapper);
+            return [a] { return replay(*a); };
+          }};
 }
 
 }  // namespace rubble::app

@@ -1,48 +1,48 @@
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
+#include <memory>
 
 #include "app/commands.h"
+#include "app/scenario_options.h"
 #include "app/terminal.h"
 #include "base/error.h"
+#include "base/text/words.h"
 
 namespace rubble::app {
 namespace {
 
-/// A path, or the bare name of a scenario that ships with rubble; no name: the main job.
-std::string find_scenario(const std::string& name) {
-  namespace fs = std::filesystem;
-  const char* home = std::getenv("RUBBLE_HOME");
-  const std::string shipped = std::string(home ? home : RUBBLE_SOURCE_DIR) + "/scenarios/";
-  if (name.empty()) return shipped + "yellow.yaml";
-  if (!fs::exists(name) && name.find('/') == std::string::npos && fs::exists(shipped + name + ".yaml"))
-    return shipped + name + ".yaml";
-  return name;
+struct RunArguments {
+  std::string scenario;
+  RunFolderOptions folder;
+};
+
+int run(const RunArguments& arguments) {
+  const auto overrides = arguments.folder.overrides();
+  scenarios::Scenario scenario = scenarios::load_scenario(find_scenario(arguments.scenario), overrides);
+  permit_command(arguments.folder.mapper, overrides, scenario);
+  const auto options = terminal_options(arguments.folder.out, arguments.folder.force);
+  for (const std::string& note : scenarios::arena_notes(scenario))
+    std::fprintf(stderr, "rubble: %s\n", one_line(note).c_str());
+  return show(scenarios::run_scenario(scenario, options));
 }
 
 }  // namespace
 
-int run(const RunArguments& arguments) {
-  auto overrides = arguments.common.overrides;
-  if (arguments.seed) overrides.emplace_back("seed", std::to_string(*arguments.seed));
-  const scenarios::Scenario scenario = scenarios::load_scenario(find_scenario(arguments.scenario), overrides);
-  const auto options = terminal_options(arguments.common.out, arguments.common.force);
-  for (const std::string& note : scenarios::arena_notes(scenario)) std::fprintf(stderr, "rubble: %s\n", note.c_str());
-  const scenarios::RunReport report = scenarios::run_scenario(scenario, options);
-  end_progress();
-  print_summary(report);
-  return exit_code(report);
-}
-
-int map(const MapArguments& arguments) {
-  auto overrides = arguments.common.overrides;
-  if (arguments.seed) overrides.emplace_back("seed", std::to_string(*arguments.seed));
-  const scenarios::Scenario scenario = scenarios::default_scenario(overrides);
-  const auto options = terminal_options(arguments.common.out, arguments.common.force);
-  const scenarios::RunReport report = scenarios::map_log(recorded_log(arguments.log), scenario, options);
-  end_progress();
-  print_summary(report);
-  return exit_code(report);
+Command run_command() {
+  return {"run", "Explore, map and score an arena in simulation",
+          "Examples:\n  rubble run\n  rubble run scenarios/yellow.yaml --seed 7\n"
+          "  rubble run --set robot.levelling=false --out runs/no-levelling",
+          [](Options& o) -> Action {
+            auto a = std::make_shared<RunArguments>();
+            o.argument("scenario", a->scenario, "Scenario file, or the name of a shipped one (default: yellow)",
+                       Options::Need::Optional);
+            o.seed("--seed", a->folder.seed, "Seed of every random choice");
+            a->folder.declare(o);
+            return [a, &o] {
+              if (o.given("scenario") && a->scenario.empty())
+                throw UsageError("run '': is no scenario; give a file or a name, or leave it out for the main job");
+              return run(*a);
+            };
+          }};
 }
 
 }  // namespace rubble::app

@@ -1,13 +1,16 @@
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/score_parts.h"
 #include "app/score_tools.h"
-#include "app/score_victims.h"
+#include "app/terminal.h"
 #include "base/error.h"
+#include "base/text/text_file.h"
 #include "scenarios/run/score_json.h"
+#include "scoring/league/league_victims.h"
 #include "scoring/maps/normalise.h"
 #include "scoring/pictures/picture.h"
 #include "scoring/pose_score.h"
@@ -21,42 +24,35 @@ struct Verdict {
   scoring::LoadedMap map;
   scoring::LoadedMap truth;
   scoring::MapScore score;
-  ReportedVictims reported;
+  scoring::ReportedVictims reported;
   std::optional<scoring::LeaguePoints> points;
 };
 
-void print_table(const Verdict& verdict) {
-  const scoring::MapScore& s = verdict.score;
-  const auto row = [](const char* label, const char* format, double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, value);
-    std::printf("%-26s %s\n", label, text);
-  };
-  std::printf("%-26s %s\n%-26s %s\n", "map", verdict.map.recognised.c_str(), "truth", verdict.truth.recognised.c_str());
-  if (!s.aligned) std::printf("%-26s %s\n", "not aligned", s.note.c_str());
-  print_contest(s);
-  if (s.aligned) {
-    row("known", "%.1f %%", 100.0 * s.known);
-    row("psi", "%.3f m", s.psi_m);
-    row("precision", "%.3f", s.precision);
-    row("recall", "%.3f", s.recall);
-  }
-  row("score", "%.3f", s.score);
-  print_victims(verdict.reported, verdict.points);
-  print_parts(s);
+/// `grid`: the map as it was laid on the truth.
+nlohmann::ordered_json as_json(const Verdict& verdict, const OccupancyGrid& grid) {
+  scoring::Evidence evidence;
+  evidence.score = verdict.score;
+  evidence.map = &grid;
+  evidence.truth = &verdict.truth.grid;
+  evidence.map_read_as = verdict.map.recognised;
+  evidence.truth_read_as = verdict.truth.recognised;
+  evidence.victims = scoring::victim_figures(verdict.reported, verdict.points);
+  return scenarios::score_json(evidence);
 }
 
-nlohmann::ordered_json as_json(const Verdict& verdict) {
-  nlohmann::ordered_json json;
-  scenarios::add_map_score(json, verdict.score);
-  json["map"] = verdict.map.recognised;
-  json["truth"] = verdict.truth.recognised;
-  add_parts(json, verdict.score);
-  add_victims(json, verdict.reported, verdict.points);
-  return json;
+void print_table(const Verdict& verdict, const nlohmann::ordered_json& json) {
+  print_row("map", verdict.map.recognised);
+  print_row("truth", verdict.truth.recognised);
+  if (!verdict.score.aligned) print_row("not aligned", verdict.score.note);
+  print_contest(verdict.score);
+  print_figures(json);
+  const scoring::ReportedVictims& reported = verdict.reported;
+  if (reported.from != scoring::VictimSource::None)
+    print_row("victims reported", std::to_string(reported.victims.size()) + " from " + name_of(reported.from) + ", " +
+                                      std::to_string(reported.symbols) + " symbols on the map");
+  print_victims(json);
+  print_worst_places(verdict.score);
 }
-
-}  // namespace
 
 int score(const ScoreArguments& arguments) {
   if (!arguments.league.empty()) return score_league(arguments);
@@ -75,8 +71,9 @@ int score(const ScoreArguments& arguments) {
   Verdict verdict;
   verdict.map = scoring::load_map(arguments.map, {arguments.map_resolution});
   verdict.truth = scoring::load_map(arguments.truth, {arguments.truth_resolution});
-  verdict.reported = reported_victims(verdict.map, arguments.pois);
-  const TrueVictims victims = true_victims(arguments.truth, verdict.truth.origin, arguments.victims);
+  verdict.reported = scoring::reported_victims(verdict.map, arguments.pois);
+  if (!verdict.reported.note.empty()) std::fprintf(stderr, "rubble: %s\n", verdict.reported.note.c_str());
+  const scoring::TrueVictims victims = scoring::true_victims(arguments.truth, verdict.truth.origin, arguments.victims);
   const OccupancyGrid& truth = verdict.truth.grid;
   const OccupancyGrid grid = pose ? scoring::scaled_frame(verdict.map.grid, pose->scale) : verdict.map.grid;
   if (pose)
@@ -84,11 +81,12 @@ int score(const ScoreArguments& arguments) {
   verdict.score =
       pose ? scoring::score_at(grid, truth, pose->T_truth_map, config) : scoring::score_map(grid, truth, config);
   const scoring::MapScore& result = verdict.score;
-  verdict.points = victim_points(grid, truth, result, verdict.reported, victims);
+  verdict.points = scoring::victim_points(grid, truth, result, verdict.reported, victims);
+  const nlohmann::ordered_json json = as_json(verdict, grid);
   if (arguments.json) {
-    std::printf("%s\n", as_json(verdict).dump(2).c_str());
+    std::printf("%s\n", json.dump(2).c_str());
   } else {
-    print_table(verdict);
+    print_table(verdict, json);
   }
   if (!arguments.html.empty())
     write_evaluation_page(
@@ -99,14 +97,44 @@ int score(const ScoreArguments& arguments) {
       scoring::write_overlay(arguments.out + "/overlay.png", grid, truth, result.T_truth_map);
       scoring::write_error_map(arguments.out + "/error.png", grid, truth, result.T_truth_map, config.tau);
     }
-    const std::string path = arguments.out + "/score.json";
-    std::FILE* file = std::fopen(path.c_str(), "w");
-    if (file == nullptr) throw InputError(path + ": cannot be written; give a writable folder with --out");
-    const std::string text = as_json(verdict).dump(2) + "\n";
-    const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-    if (std::fclose(file) != 0 || !written) throw RunError(path + ": cannot be written; check the free space");
+    write_text_file(arguments.out + "/score.json", json.dump(2) + "\n");
   }
   return kOk;
+}
+
+}  // namespace
+
+Command score_command() {
+  return {
+      "score", "Align a map to the ground truth and score it",
+      "Examples:\n  rubble score runs/latest/map.tif runs/latest/truth.tif\n"
+      "  rubble score team.png truth.tif --resolution 0.05 --out judged\n"
+      "  rubble score team.tif truth.tif --html judge.html\n"
+      "  rubble score --league maps/ truth.tif --out judged\n"
+      "  rubble score runs/latest/estimate.tum runs/latest/truth.tum",
+      [](Options& o) -> Action {
+        auto a = std::make_shared<ScoreArguments>();
+        o.argument("map", a->map, "GeoTIFF, ROS map.yaml, image with --resolution, or trajectory .tum");
+        o.argument("truth", a->truth, "Ground truth, same formats (for a trajectory also .relations)",
+                   Options::Need::Optional);
+        o.text("--pose", a->pose, "Score at this pose, X,Y,DEG[,SCALE], instead of aligning (write --pose=-1,2,90)");
+        o.text("--html", a->html, "Write a page to move, turn, scale and blend the two maps by hand");
+        o.text("--league", a->league,
+               "Rank all maps of this folder against one truth: rubble score --league DIR TRUTH");
+        o.text("--victims", a->victims, "True victims: arena file or CSV name,x,y (default: beside the truth)");
+        o.text("--pois", a->pois, "CSV of the victims that the map reports (default: the symbols drawn on it)");
+        o.text("--judge", a->judge, "CSV team,points of the judge's points, for --league");
+        o.number("--resolution", a->map_resolution, 0.001, 10.0,
+                 "Metres a pixel of the map image; in a league of images that do not say");
+        o.number("--truth-resolution", a->truth_resolution, 0.001, 10.0, "Metres a pixel of the truth image");
+        o.number("--tau", a->tau, 0.05, 10.0, "Distance at which a wall counts nothing [m]");
+        o.text("--align", a->align,
+               "What proposes poses: auto, or walls, rooms and one of features, surf, akaze, orb, joined by commas");
+        o.flag("--warp", a->warp, "Also undo the map's distortion, and match its features");
+        o.text("--out", a->out, "Folder for overlay.png, error.png and score.json");
+        o.flag("--json", a->json, "Print JSON");
+        return [a] { return score(*a); };
+      }};
 }
 
 }  // namespace rubble::app

@@ -4,16 +4,14 @@
 #include <filesystem>
 #include <utility>
 
-#include "app/commands.h"
-#include "app/league_files.h"
-#include "app/league_page.h"
 #include "app/score_parts.h"
 #include "app/score_tools.h"
-#include "app/score_victims.h"
 #include "base/error.h"
 #include "base/text/number_text.h"
 #include "base/text/text_file.h"
 #include "scoring/league/league.h"
+#include "scoring/league/league_files.h"
+#include "scoring/league/league_page.h"
 #include "scoring/maps/normalise.h"
 #include "scoring/pictures/picture.h"
 
@@ -27,14 +25,14 @@ using scoring::LeagueEntry;
 struct Truth {
   std::string path;
   OccupancyGrid grid;
-  TrueVictims victims;
+  scoring::TrueVictims victims;
 };
 
 Truth load_truth(const ScoreArguments& arguments) {
   Truth truth;
   truth.path = arguments.map;
   scoring::LoadedMap loaded = scoring::load_map(truth.path, {arguments.truth_resolution});
-  truth.victims = true_victims(truth.path, loaded.origin, arguments.victims);
+  truth.victims = scoring::true_victims(truth.path, loaded.origin, arguments.victims);
   truth.grid = std::move(loaded.grid);
   return truth;
 }
@@ -58,13 +56,13 @@ class League {
   }
 
   /// Judges one team; what is wrong with its files becomes its note.
-  void judge(const LeagueFiles& files, double judge_points) {
+  void judge(const scoring::LeagueFiles& files, double judge_points) {
     LeagueEntry entry;
     entry.team = files.team;
     entry.file = files.map;
     entry.judge = judge_points;
     entry.error = files.error;
-    LeaguePictures pictures;
+    scoring::LeaguePictures pictures;
     if (entry.error.empty()) try {
         judge_map(files, entry, pictures);
       } catch (const InputError& error) {
@@ -82,11 +80,11 @@ class League {
     for (const std::string& path : skipped) left_out += (left_out.empty() ? "" : ", ") + path;
     if (!left_out.empty()) std::printf("no team's maps: %s\n", left_out.c_str());
     if (arguments_.out.empty()) return;
-    std::vector<LeaguePictures> pictures;
+    std::vector<scoring::LeaguePictures> pictures;
     for (const LeagueEntry& entry : entries_) pictures.push_back(pictures_.at(entry.team + "\n" + entry.file));
     write_text_file(arguments_.out + "/league.csv", scoring::league_csv(entries_));
     write_text_file(arguments_.out + "/league.html",
-                    league_page(truth_.path, with_points(), entries_, pictures, left_out));
+                    scoring::league_page(truth_.path, with_points(), entries_, pictures, left_out));
     std::printf("written: %s/league.html, league.csv\n", arguments_.out.c_str());
   }
 
@@ -96,20 +94,19 @@ class League {
                        [](const LeagueEntry& e) { return e.points || e.judge > 0.0; });
   }
 
-  void judge_map(const LeagueFiles& files, LeagueEntry& entry, LeaguePictures& pictures) {
+  void judge_map(const scoring::LeagueFiles& files, LeagueEntry& entry, scoring::LeaguePictures& pictures) {
     const scoring::LoadedMap loaded = scoring::load_map(files.map, {arguments_.map_resolution, false});
     const OccupancyGrid& map = loaded.grid;
-    const ReportedVictims reported = reported_victims(loaded, files.pois);
-    entry.victims_from = reported.from;
-    entry.symbols = reported.symbols;
+    entry.reported = scoring::reported_victims(loaded, files.pois);
+    if (!entry.reported.note.empty()) std::fprintf(stderr, "rubble: %s\n", entry.reported.note.c_str());
     entry.score = scoring::score_map(map, truth_.grid, config_);
-    if (same_content(files.map, truth_.path))
+    if (scoring::same_content(files.map, truth_.path))
       entry.score.note += std::string(entry.score.note.empty() ? "" : "; ") + "a copy of the truth, byte for byte";
-    entry.points = victim_points(map, truth_.grid, entry.score, reported, truth_.victims);
+    entry.points = scoring::victim_points(map, truth_.grid, entry.score, entry.reported, truth_.victims);
     if (!arguments_.out.empty()) draw(entry, map, pictures);
   }
 
-  void draw(const LeagueEntry& entry, const OccupancyGrid& map, LeaguePictures& pictures) const {
+  void draw(const LeagueEntry& entry, const OccupancyGrid& map, scoring::LeaguePictures& pictures) const {
     const std::string name = safe_name(entry.team, entries_.size());
     if (entry.score.aligned) {
       pictures.overlay = name + "-overlay.png";
@@ -130,9 +127,11 @@ class League {
     std::size_t width = 4;
     for (const LeagueEntry& e : entries_) width = std::max(width, e.team.size());
     const int w = static_cast<int>(width);
-    std::printf("%4s  %-*s%s  %5s %9s %6s %7s %5s %s %s\n", "rank", w, "team",
-                points ? "  points quality location judge victims by" : "", "score", "precision", "recall", "psi [m]",
-                "known", config_.warp ? "warped" : "", "note");
+    std::printf("%4s  %-*s%s", "rank", w, "team", points ? "  points quality location judge victims by" : "");
+    std::vector<const scoring::Figure*> columns = scoring::figures_with(scoring::kRanking);
+    if (config_.warp) columns.push_back(scoring::find_figure("warped_score"));
+    for (const scoring::Figure* column : columns) std::printf("  %s", column->label.c_str());
+    std::printf("  note\n");
     for (const LeagueEntry& e : entries_) {
       std::printf("%4d  %-*s", e.rank, w, e.team.c_str());
       if (!e.error.empty()) {
@@ -141,10 +140,11 @@ class League {
       }
       if (points)
         std::printf("  %6.1f %7.1f %8.1f %5.1f %-10s", e.total(), e.points ? e.points->quality : 0.0,
-                    e.points ? e.points->location : 0.0, e.judge, e.victims_from.c_str());
-      std::printf("  %5.3f %9.3f %6.3f %7.3f %4.0f%%", e.score.score, e.score.precision, e.score.recall, e.score.psi_m,
-                  100.0 * e.score.known);
-      if (config_.warp) std::printf(" %6.3f", e.score.warped_score);
+                    e.points ? e.points->location : 0.0, e.judge, scoring::name_of(e.reported.from).c_str());
+      const scoring::Evidence evidence = e.evidence();
+      for (const scoring::Figure* column : columns)
+        std::printf("  %*s", static_cast<int>(column->label.size()),
+                    scoring::text_of(*column, column->get(evidence)).c_str());
       std::printf("  %s\n", e.score.note.c_str());
     }
   }
@@ -153,7 +153,7 @@ class League {
   const Truth& truth_;
   scoring::ScoreConfig config_;
   std::vector<LeagueEntry> entries_;
-  std::map<std::string, LeaguePictures> pictures_;  // of team and file
+  std::map<std::string, scoring::LeaguePictures> pictures_;  // of team and file
 };
 
 void check(const ScoreArguments& arguments) {
@@ -165,12 +165,12 @@ void check(const ScoreArguments& arguments) {
 
 /// The judge's points of teams that are there, no more than 30 a victim.
 std::map<std::string, double> judge_of(const ScoreArguments& arguments, const Truth& truth,
-                                       const std::vector<LeagueFiles>& teams) {
+                                       const std::vector<scoring::LeagueFiles>& teams) {
   std::map<std::string, double> judge;
   if (!arguments.judge.empty()) judge = scoring::read_judge(arguments.judge);
   const double most = scoring::kJudgesMostPerVictim * static_cast<double>(truth.victims.victims.size());
   for (const auto& [team, points] : judge) {
-    if (std::none_of(teams.begin(), teams.end(), [&](const LeagueFiles& files) { return files.team == team; }))
+    if (std::none_of(teams.begin(), teams.end(), [&](const scoring::LeagueFiles& files) { return files.team == team; }))
       throw InputError(arguments.judge + ": names team '" + team + "', but " + arguments.league +
                        " holds no map of that name");
     if (!truth.victims.path.empty() && points > most)
@@ -204,15 +204,15 @@ void remove_old_pages(const std::string& folder) {
 int score_league(const ScoreArguments& arguments) {
   check(arguments);
   const Truth truth = load_truth(arguments);
-  const LeagueFolder folder = find_league(arguments.league, truth.path);
-  const std::vector<LeagueFiles>& teams = folder.teams;
+  const scoring::LeagueFolder folder = scoring::find_league(arguments.league, truth.path);
+  const std::vector<scoring::LeagueFiles>& teams = folder.teams;
   const std::map<std::string, double> judge = judge_of(arguments, truth, teams);
   if (!arguments.out.empty()) {
     make_folder(arguments.out);
     remove_old_pages(arguments.out);
   }
   League league(arguments, truth);
-  for (const LeagueFiles& files : teams) {
+  for (const scoring::LeagueFiles& files : teams) {
     const auto points = judge.find(files.team);
     league.judge(files, points == judge.end() ? 0.0 : points->second);
   }

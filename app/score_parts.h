@@ -1,6 +1,5 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "scoring/scorecard.h"
@@ -14,8 +13,7 @@ scoring::AlignmentConfig parse_align(const std::string& text);
 /// The rows about the pose: what proposed it, how far it is ahead, and of what.
 void print_contest(const scoring::MapScore& score);
 
-/// The rows below the score: what is wrong and where, the warp.
-void print_parts(const scoring::MapScore& score);
-void add_parts(nlohmann::ordered_json& json, const scoring::MapScore& score);
+/// The rows about where the map is wrong, worst first.
+void print_worst_places(const scoring::MapScore& score);
 
 }  // namespace rubble::app

@@ -5,11 +5,34 @@
 #include <optional>
 #include <string>
 
-#include "app/commands.h"
+#include "app/command.h"
 #include "base/grid.h"
 #include "scoring/pictures/evaluation_page.h"
 
 namespace rubble::app {
+
+struct ScoreArguments {
+  std::string map;
+  std::string truth;
+  std::optional<double> map_resolution;
+  std::optional<double> truth_resolution;
+  std::string align = "auto";
+  bool warp = false;
+  double tau = 0.5;
+  std::string out;
+  bool json = false;
+  std::string pose;     ///< X,Y,DEG[,SCALE]: score there instead of aligning
+  std::string html;     ///< the evaluation page to write
+  std::string league;   ///< folder of maps to rank; `map` is the truth then
+  std::string judge;    ///< CSV of the judge's points
+  std::string pois;     ///< list of the victims that the map reports; empty: those drawn on it
+  std::string victims;  ///< list of the true victims
+};
+
+// The other kinds of scoring that the command leads to, each in the file of its name.
+int score_league(const ScoreArguments& arguments);
+bool is_trajectory(const std::string& path);
+int score_trajectory(const ScoreArguments& arguments);
 
 /// A pose typed by a person: p_truth = T (scale p_map).
 struct GivenPose {

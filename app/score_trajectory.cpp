@@ -1,7 +1,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "app/commands.h"
 #include "app/score_tools.h"
 #include "base/angle.h"
 #include "base/error.h"

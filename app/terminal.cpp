@@ -5,7 +5,8 @@
 #include <csignal>
 #include <cstdio>
 
-#include "app/commands.h"
+#include "app/command.h"
+#include "scenarios/run/score_json.h"
 
 namespace rubble::app {
 namespace {
@@ -16,28 +17,6 @@ void on_signal(int signal) {
   signalled = 1;
   std::signal(signal, SIG_DFL);  // the second one is not asked twice
 }
-
-struct Row {
-  const char* key;
-  const char* label;
-  const char* format;
-  double factor;
-};
-
-constexpr Row kRows[] = {
-    {"area_known_m2", "area mapped", "%.1f m2", 1.0},
-    {"known", "of the arena known", "%.1f %%", 100.0},
-    {"ate_first_m", "trajectory error, first pose", "%.3f m", 1.0},
-    {"ate_aligned_m", "trajectory error, aligned", "%.3f m", 1.0},
-    {"psi_m", "psi", "%.3f m", 1.0},
-    {"precision", "precision", "%.3f", 1.0},
-    {"recall", "recall", "%.3f", 1.0},
-    {"score", "score", "%.3f", 1.0},
-    {"sim_s", "time covered", "%.1f s", 1.0},
-    {"wall_s", "time taken", "%.1f s", 1.0},
-    {"real_time_factor", "times real time", "%.0f", 1.0},
-    {"peak_mb", "memory", "%.0f MB", 1.0},
-};
 
 }  // namespace
 
@@ -68,31 +47,42 @@ void end_progress() {
   if (isatty(STDERR_FILENO)) std::fprintf(stderr, "\r\033[K");
 }
 
-void print_summary(const scenarios::RunReport& report) {
-  const auto& score = report.score;
-  std::printf("%-30s %s\n", "ended", report.end.c_str());
-  for (const Row& row : kRows) {
-    if (!score.contains(row.key) || !score[row.key].is_number()) continue;
-    char value[64];
-    std::snprintf(value, sizeof value, row.format, score[row.key].get<double>() * row.factor);
-    std::printf("%-30s %s\n", row.label, value);
-  }
-  if (score["aligned"].is_boolean() && !score["aligned"].get<bool>())
-    std::printf("%-30s %s\n", "not aligned", score["align_note"].get<std::string>().c_str());
-  if (score["victims_total"].is_number())
-    std::printf("%-30s %d of %d\n", "victims found", score["victims_found"].get<int>(),
-                score["victims_total"].get<int>());
-  if (const auto lost = score.value("hits_outside", std::uint64_t{0}); lost > 0)
-    std::printf("%-30s %llu laser hits lay beyond the largest map (mapper.max_map_cells)\n", "NOT MAPPED",
-                static_cast<unsigned long long>(lost));
-  if (const auto dropped = score.value("scans_out_of_order", std::uint64_t{0}); dropped > 0)
-    std::printf("%-30s %llu scans were empty or not younger than the one before\n", "NOT MAPPED",
-                static_cast<unsigned long long>(dropped));
-  for (const auto& broken : report.broken) std::printf("%-30s %s\n", "NOT AS EXPECTED", broken.c_str());
-  std::printf("%-30s %s\n", "folder", report.folder.c_str());
+void print_row(const std::string& label, const std::string& value) {
+  constexpr int kWidth = 34;
+  std::printf("%-*s %s\n", kWidth, label.c_str(), value.c_str());
 }
 
-int exit_code(const scenarios::RunReport& report) {
+void print_figures(const nlohmann::ordered_json& score) {
+  for (const scoring::Figure* figure : scoring::figures_with(scoring::kShown)) {
+    const std::string text = scoring::text_of(*figure, scenarios::value_of(score.at(figure->key)));
+    if (!text.empty()) print_row(figure->label, text);
+  }
+}
+
+void print_victims(const nlohmann::ordered_json& score) {
+  if (!score.at("victims_found").is_number()) return;
+  std::string text = score["victims_found"].dump() + " of " + score["victims_total"].dump();
+  text += ", " + score["victims_false"].dump() + " false";
+  if (const auto& error = score["victims_error_m"]; error.is_number())
+    text += ", " + scoring::text_of(*scoring::find_figure("victims_error_m"), scenarios::value_of(error)) + " off";
+  print_row("victims found", text);
+}
+
+int show(const scenarios::RunReport& report) {
+  end_progress();
+  const auto& score = report.score;
+  print_row("ended", report.end);
+  print_figures(score);
+  if (score["aligned"].is_boolean() && !score["aligned"].get<bool>())
+    print_row("not aligned", score["align_note"].get<std::string>());
+  print_victims(score);
+  if (const auto lost = score["hits_outside"].get<std::uint64_t>(); lost > 0)
+    print_row("NOT MAPPED", std::to_string(lost) + " laser hits lay beyond the largest map (mapper.max_map_cells)");
+  if (const auto dropped = score["scans_out_of_order"].get<std::uint64_t>(); dropped > 0)
+    print_row("NOT MAPPED", std::to_string(dropped) + " scans were empty or not younger than the one before");
+  for (const auto& broken : report.broken) print_row("NOT AS EXPECTED", broken);
+  print_row("folder", report.folder);
+  if (!report.failure.empty()) std::fprintf(stderr, "rubble: %s\n", report.failure.c_str());
   if (report.interrupted) return kInterrupted;
   if (!report.failure.empty()) return kFailed;
   return report.broken.empty() ? kOk : kBroken;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "scenarios/run/run.h"
@@ -15,10 +16,16 @@ scenarios::RunOptions terminal_options(const std::string& out, bool force);
 /// Wipes the progress line.
 void end_progress();
 
-/// Prints the table that ends a run: one line a figure that is known.
-void print_summary(const scenarios::RunReport& report);
+/// One row of a table on stdout.
+void print_row(const std::string& label, const std::string& value);
 
-/// The exit code of a finished run.
-int exit_code(const scenarios::RunReport& report);
+/// Every row of the table of figures that is meant for people and known. `score`: the content of score.json.
+void print_figures(const nlohmann::ordered_json& score);
+
+/// How many victims were found, where that is known.
+void print_victims(const nlohmann::ordered_json& score);
+
+/// Prints the table that ends a run: one line a figure that is known. Returns the exit code.
+int show(const scenarios::RunReport& report);
 
 }  // namespace rubble::app

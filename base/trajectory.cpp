@@ -86,6 +86,13 @@ std::optional<TPose2D> pose_at(const Trajectory& trajectory, Stamp stamp) {
   return interpolate(before->pose, after->pose, (stamp - before->stamp) / (after->stamp - before->stamp));
 }
 
+std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& truth) {
+  std::vector<PosePair> pairs;
+  for (const StampedPose& stamped : estimate)
+    if (const auto true_pose = pose_at(truth, stamped.stamp)) pairs.push_back({stamped.pose, *true_pose});
+  return pairs;
+}
+
 std::string tum_line(const StampedPose& stamped) {
   char line[160];
   const double half = 0.5 * wrap_angle(stamped.pose.phi);

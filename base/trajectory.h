@@ -24,6 +24,15 @@ mrpt::math::TPose2D interpolate(const mrpt::math::TPose2D& a, const mrpt::math::
 /// The pose at `stamp`, between its two neighbours; nothing outside the time the trajectory covers.
 std::optional<mrpt::math::TPose2D> pose_at(const Trajectory& trajectory, Stamp stamp);
 
+/// Two poses of one instant.
+struct PosePair {
+  mrpt::math::TPose2D estimate;
+  mrpt::math::TPose2D truth;
+};
+
+/// Pairs each pose of the estimate with the truth at its stamp; those outside the time of the truth have no partner.
+std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& truth);
+
 /// One line of TUM text, `time x y z qx qy qz qw`, one space, no trailing space (as evo reads it). z = 0.
 std::string tum_line(const StampedPose& stamped);
 

@@ -1,9 +1,9 @@
 #include <benchmark/benchmark.h>
 
-#include "explore/exploration_transform.h"
-#include "explore/frontier.h"
-#include "explore/planner.h"
-#include "explore/traversable.h"
+#include "explore/plan/exploration_transform.h"
+#include "explore/plan/frontier.h"
+#include "explore/plan/planner.h"
+#include "explore/plan/traversable.h"
 #include "slam/grid/count_map.h"
 #include "slam/scan/level_scan.h"
 #include "tests/support/explore_oracle.h"

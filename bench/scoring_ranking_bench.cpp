@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "base/rigid.h"
 #include "scoring/scorecard.h"
-#include "scoring/walls/rigid.h"
 #include "tests/support/scoring_damage.h"
 
 /// Does the score put maps of one arena in the right order? Pairs of maps of which one has more damage of the same kind

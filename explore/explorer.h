@@ -2,64 +2,63 @@
 
 #include <mrpt/math/TPoint2D.h>
 
-#include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "explore/searched_area.h"
-#include "explore/victim_search.h"
+#include "base/stamp.h"
+#include "explore/victim_report.h"
 #include "robot/commands.h"
 #include "robot/measurements.h"
-#include "robot/model.h"
 #include "slam/mapper.h"
 
 namespace rubble::explore {
 
-/// Parameters of autonomous exploration (paper section III.D, eqs. 3 and 4).
-struct ExplorerConfig {
-  double alpha = 20.0;                      ///< weight of discomfort against length, per metre travelled
-  double d_min = 0.35;                      ///< never closer to an obstacle [m]
-  double d_opt = 0.60;                      ///< distance to obstacles the robot likes best [m]
-  double occupied_threshold = 0.5;          ///< p_occ from which a cell is an obstacle
-  int min_frontier_cells = 5;               ///< smaller frontier clusters are not worth a drive
-  double replan_period = 0.5;               ///< [s]
-  double cruise_speed = 0.4;                ///< [m/s]
-  double turn_speed = deg_to_rad(60.0);     ///< [rad/s]
-  double turn_in_place = deg_to_rad(35.0);  ///< heading error above which the robot turns on the spot [rad]
-  double look_ahead = 0.35;                 ///< distance of the point on the path the robot steers to [m]
-  bool return_home = false;                 ///< drive back to the start when nothing is left to explore
-  double d_min_floor = 0.27;                ///< d_min may fall to this when nothing can be reached otherwise [m]
-  double switch_cost = 0.6;                 ///< a new target must be this much cheaper than the old one [m]
-  double scan_timeout = 0.3;                ///< without a scan for this long the robot stops [s]
-  double first_turn = deg_to_rad(130.0);    ///< turn at the start that shows the scanner what is behind [rad]
-  VictimSearchConfig victims;
-  SearchConfig search;
-};
-
 enum class ExplorerState { Starting, Driving, Searching, BackingUp, GoingHome, Finished };
 
-/// Decides where to drive: Exploration Transform to a close frontier by a safe path, until nothing reachable is left;
-/// then to places the victim sensors have not looked at, by the same transform.
+/// How a mission ended: still under way; nothing left to do; the same, or time running out, and back at the start; held
+/// by something with every way out tried.
+enum class MissionEnd { UnderWay, Explored, Home, Stuck };
+
+/// What the mission's frame asks of an explorer.
+struct Mission {
+  double time_limit = 0.0;  ///< from the first tick [s]; 0: none
+};
+
+/// Why the explorer did what it did, one line.
+struct Decision {
+  Stamp stamp;
+  std::string why;
+};
+
+/// Decides where to drive, from what a mapper knows and what the robot measured.
+///
+/// What an explorer promises:
+/// - `next` is called once a tick, after the mapper has seen the same inputs, always with the same mapper. The answer
+///   holds for the tick to come; its laser aim is zero, for levelling owns the laser.
+/// - It asks for no motion while it cannot see: before the first mapped scan and while the scanner is silent.
+/// - Deterministic: same robot, parameters and inputs give the same commands. It reads no clock but the inputs' and
+///   knows nothing of the truth; simulated, replayed and real robots look the same.
+/// - It accepts anything a mapper and a robot may deliver; poor data make a poor mission, never an exception.
+/// - Once finished it stays finished, asks for no motion, and `reason` says in a few words why.
+/// - Everything may be asked at any time; references stay valid, and what they show unchanged, until the next `next`.
 class Explorer {
  public:
-  Explorer(const robot::RobotModel& model, const ExplorerConfig& config);
-  ~Explorer();
+  virtual ~Explorer() = default;
 
-  /// The drive command for this tick (the laser aim is left at zero: levelling owns it).
-  robot::Commands next(const slam::Mapper& mapper, const robot::Inputs& inputs);
+  /// The command for the tick to come.
+  virtual robot::Commands next(const slam::Mapper& mapper, const robot::Inputs& inputs) = 0;
 
-  bool finished() const;
+  virtual bool finished() const = 0;
   /// Why it finished, for people; empty while it runs.
-  const std::string& reason() const;
-  ExplorerState state() const;
+  virtual const std::string& reason() const = 0;
+  virtual MissionEnd end() const = 0;
+  virtual ExplorerState state() const = 0;
+  /// All decisions so far, in order.
+  virtual const std::vector<Decision>& decisions() const = 0;
   /// The path being followed, map frame, robot first.
-  const std::vector<mrpt::math::TPoint2D>& path() const;
-  const std::vector<VictimReport>& victims() const;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  virtual const std::vector<mrpt::math::TPoint2D>& path() const = 0;
+  /// The victims it is sure of, by id.
+  virtual const std::vector<VictimReport>& victims() const = 0;
 };
 
 }  // namespace rubble::explore

@@ -6,7 +6,7 @@
 #include "base/rng.h"
 #include "robot/measurements.h"
 #include "robot/model.h"
-#include "sim/body/world.h"
+#include "sim/body/world_state.h"
 
 namespace rubble::sim {
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "sim/body/world.h"
 
 namespace rubble::sim {
 namespace {
@@ -56,6 +57,8 @@ void Rig::follow(World& world, robot::Inputs& inputs) {
   if (model_.has_levelling_unit) accelerometer_.step(world.state(index_), config_.physics_step);
   measure(world, inputs);
 }
+
+void Rig::remember(Stamp end, const World& world) { truth_.push_back({end, world.state(index_).pose}); }
 
 void Rig::measure(World& world, robot::Inputs& inputs) {
   const WorldState& state = world.state(index_);

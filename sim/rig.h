@@ -7,12 +7,14 @@
 #include "base/trajectory.h"
 #include "robot/measurements.h"
 #include "sim/accelerometer.h"
-#include "sim/body/world.h"
+#include "sim/body/world_state.h"
 #include "sim/laser/laser.h"
 #include "sim/sim_robot.h"
 #include "sim/victim_sensor.h"
 
 namespace rubble::sim {
+
+class World;
 
 /// Something that happens every `period`, counted in nanoseconds so that it never drifts.
 struct Clock {
@@ -36,7 +38,7 @@ class Rig {
   /// What arrives at the very start.
   void measure(World& world, robot::Inputs& inputs);
   /// The tick is over.
-  void remember(Stamp end, const World& world) { truth_.push_back({end, world.state(index_).pose}); }
+  void remember(Stamp end, const World& world);
 
   const robot::RobotModel& model() const { return model_; }
   const Trajectory& truth() const { return truth_; }

@@ -33,6 +33,9 @@ class SimRobot : public robot::Robot {
   std::optional<robot::Inputs> read() override;
   void command(const robot::Commands& commands) override;
 
+  /// Puts the robot somewhere else in the arena, at rest; its odometry does not notice.
+  void place(const mrpt::math::TPose2D& T_arena_base);
+
   /// True pose of the base in the arena frame, one entry a tick, from stamp 0 on.
   const Trajectory& truth() const;
   /// Where the paper balls lie now (they are pushed about).

@@ -7,7 +7,7 @@
 #include "base/angle.h"
 #include "base/rng.h"
 #include "robot/measurements.h"
-#include "sim/body/world.h"
+#include "sim/body/world_state.h"
 #include "sim/laser/ray_walk.h"
 
 namespace rubble::sim {

@@ -9,11 +9,19 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/trajectory.h"
 #include "robot/measurements.h"
 #include "slam/grid/count_map.h"
 
 namespace rubble::slam {
+
+/// A mapper cannot go on (its process died, hangs or talks nonsense); what() is one line. The run fails, with its
+/// folder complete up to there.
+class MapperLost : public RunError {
+ public:
+  using RunError::RunError;
+};
 
 /// What every mapper counts.
 struct MapperCounts {
@@ -39,7 +47,8 @@ struct MapperFigure {
 ///   and knows the robot by its measurements alone; simulated, replayed and real ones look the same.
 /// - It accepts anything: scans without odometry, late, doubled or empty ones, silence. Poor data make a poor map,
 /// never
-///   an exception; those are for what cannot go on (out of memory, a process that died).
+///   an exception; those are for what cannot go on (out of memory, MapperLost). After one it can still be
+///   asked, and shows what it knew.
 class Mapper {
  public:
   virtual ~Mapper() = default;

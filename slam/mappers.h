@@ -12,6 +12,12 @@
 
 namespace rubble::slam {
 
+/// What a mapper is told about its run beside the robot.
+struct MapperSetting {
+  std::uint64_t seed = 1;
+  std::string run_folder;  ///< for files of its own (mapper.log); empty: there is none
+};
+
 /// The parameters of one kind of mapper, and how to build it. A new kind implements this beside its mapper and adds a
 /// row to mappers.cpp; scenario files, sweeps and the command line then know it.
 class MapperParameters {
@@ -19,8 +25,14 @@ class MapperParameters {
   virtual ~MapperParameters() = default;
   /// Names, units and bounds of the parameters: the keys of a scenario's `mapper` section beside `kind`.
   virtual void bind(Binder& binder) = 0;
-  virtual std::unique_ptr<Mapper> make(const robot::RobotModel& model, std::uint64_t seed) const = 0;
+  virtual std::unique_ptr<Mapper> make(const robot::RobotModel& model, const MapperSetting& setting) const = 0;
   virtual std::unique_ptr<MapperParameters> copy() const = 0;
+  /// The same mapper in this process, where make() gives it one of its own; what `rubble mapper-process` serves.
+  virtual std::unique_ptr<Mapper> make_here(const robot::RobotModel& model, const MapperSetting& setting) const {
+    return make(model, setting);
+  }
+  /// The command that make() runs, when the user names one; empty: none.
+  virtual std::string command() const { return ""; }
 };
 
 /// Finds the bind() that stands beside the Config.
@@ -29,18 +41,23 @@ void bind_fields(Binder& binder, Config& config) {
   bind(binder, config);
 }
 
-/// Parameters kept in a plain struct `Config` that a function bind(Binder&, Config&) beside it knows, of a mapper whose
-/// constructor takes (model, config, seed).
-template <class Config, class Kind>
-class ParametersOf : public MapperParameters {
+/// Parameters kept in a plain struct `Config` that a function bind(Binder&, Config&) beside it knows.
+template <class Config>
+class ParametersIn : public MapperParameters {
  public:
   void bind(Binder& binder) override { bind_fields(binder, config); }
-  std::unique_ptr<Mapper> make(const robot::RobotModel& model, std::uint64_t seed) const override {
-    return std::make_unique<Kind>(model, config, seed);
-  }
-  std::unique_ptr<MapperParameters> copy() const override { return std::make_unique<ParametersOf>(*this); }
 
   Config config;
+};
+
+/// The same, of a mapper whose constructor takes (model, config, seed).
+template <class Config, class Kind>
+class ParametersOf : public ParametersIn<Config> {
+ public:
+  std::unique_ptr<Mapper> make(const robot::RobotModel& model, const MapperSetting& setting) const override {
+    return std::make_unique<Kind>(model, this->config, setting.seed);
+  }
+  std::unique_ptr<MapperParameters> copy() const override { return std::make_unique<ParametersOf>(*this); }
 };
 
 /// A row of the table of mappers.
@@ -66,11 +83,33 @@ class MapperConfig {
   void choose(const std::string& kind);
   /// `kind` first, then the parameters of that kind.
   void bind(Binder& binder);
-  std::unique_ptr<Mapper> make(const robot::RobotModel& model, std::uint64_t seed) const;
+  /// Throws InputError for a command that was not permitted.
+  std::unique_ptr<Mapper> make(const robot::RobotModel& model, const MapperSetting& setting) const;
+
+  /// The parameters of a kind that keeps them in a `Config`. Throws std::bad_cast when the kind chosen does not.
+  template <class Config>
+  const Config& as() const {
+    return dynamic_cast<const ParametersIn<Config>&>(*parameters_).config;
+  }
+
+  /// The command that make() would run; empty: none.
+  std::string command() const { return parameters_->command(); }
+  /// A command in a file that came from somebody else must not run by itself: the user has to say so. It is no part of
+  /// the configuration, so that no file can permit it.
+  void permit_command() { permitted_ = true; }
+  /// Throws InputError when there is a command that was not permitted.
+  void require_permission() const;
 
  private:
+  friend std::unique_ptr<Mapper> make_here(const MapperConfig&, const robot::RobotModel&, const MapperSetting&);
+
+  bool permitted_ = false;
   std::string kind_;
   std::unique_ptr<MapperParameters> parameters_;
 };
+
+/// The mapper in this process, for those who serve one.
+std::unique_ptr<Mapper> make_here(const MapperConfig& config, const robot::RobotModel& model,
+                                  const MapperSetting& setting);
 
 }  // namespace rubble::slam

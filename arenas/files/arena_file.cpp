@@ -192,7 +192,7 @@ void read_elements(const YamlMap& root, Plan& plan, Arena& arena) {
     element.type = entry.choice("type", std::nullopt, element_types());
     element.rotation = angle(entry, "rotation_deg", 0.0);
     if (entry.has("mount_point")) {
-      element.mount_point = static_cast<int>(entry.integer("mount_point", std::nullopt, -1, 100));
+      element.mount_point = static_cast<int>(entry.integer("mount_point", std::nullopt, -1, 2));
     }
     if (entry.has("slope_deg")) {
       if (!has_slope(element.type)) entry.fail("slope_deg", "a '" + element.type + "' has no slope: take the key out");

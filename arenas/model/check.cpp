@@ -17,6 +17,7 @@ using Trouble = std::optional<std::string>;
 constexpr double kRobotHeight = 0.5;     ///< body with lidar: what a solid must not reach into at the start [m]
 constexpr double kClimbableStep = 0.10;  ///< Pioneer 3-AT data sheet [m]
 constexpr double kLargest = 500.0;       ///< an arena beyond this was drawn in another unit [m]
+constexpr double kBesideFloor = 10.0;    ///< farther away nothing can be seen from the arena [m]
 constexpr double kSteepest = deg_to_rad(60.0);
 
 /// Two decimals, a point in any locale.
@@ -93,6 +94,14 @@ Trouble victims_trouble(const Arena& arena) {
     if (!std::isfinite(victim.position.x) || !std::isfinite(victim.position.y) || !std::isfinite(victim.position.z) ||
         !std::isfinite(victim.facing)) {
       return "victim '" + victim.name + "' has a position that is not a number";
+    }
+    const TPoint2D p{victim.position.x, victim.position.y};
+    const bool is_near = std::any_of(arena.floor.begin(), arena.floor.end(), [&](const FloorPatch& patch) {
+      return distance(patch.outline, p) <= kBesideFloor;
+    });
+    if (!is_near) {
+      return "victim '" + victim.name + "' at " + place(p) +
+             " is more than 10 m from any floor: move it into the arena";
     }
     if (!(victim.appearance || victim.heat || victim.sound || victim.co2)) {
       return "victim '" + victim.name + "' gives no cue: nobody could find it";

@@ -12,6 +12,7 @@
 namespace rubble::arenas {
 namespace {
 
+constexpr std::size_t kMostElements = 5000;
 constexpr double kPallet = 1.2;  ///< one unit of the file [m]
 
 bool is_name_character(char c) {
@@ -179,6 +180,8 @@ std::vector<Element> read_raf_elements(const std::string& text, const std::strin
     if (tag.name == "elements" && !is_open && elements.empty()) {
       is_open = true;
     } else if (tag.name == "element" && is_open) {
+      if (elements.size() == kMostElements)
+        reader.fail(tag.position, "more than 5,000 elements, where an arena of the league has some hundreds: split it");
       elements.push_back(element_of(reader, tag));
     } else if (tag.name == "/elements" && is_open) {
       is_open = false;

@@ -15,12 +15,15 @@ constexpr int kSamples = 4;  ///< a pixel, along x and along y
 
 }  // namespace
 
-Canvas::Canvas(const TPoint2D& min, const TPoint2D& max, double pixels_per_metre, const Colour& paper)
+Canvas::Canvas(const TPoint2D& min, const TPoint2D& max, double pixels_per_metre, const Colour& paper, int first_row,
+               int rows)
     : min_(min),
       scale_(pixels_per_metre * kSamples),
       width_(std::max(1, static_cast<int>(std::ceil((max.x - min.x) * pixels_per_metre)))),
       height_(std::max(1, static_cast<int>(std::ceil((max.y - min.y) * pixels_per_metre)))),
-      samples_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * kSamples * kSamples,
+      first_row_(first_row),
+      rows_(std::min(rows, height_ - first_row)),
+      samples_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(rows_) * kSamples * kSamples,
                {static_cast<float>(paper[0]), static_cast<float>(paper[1]), static_cast<float>(paper[2])}) {}
 
 TPoint2D Canvas::to_samples(const TPoint2D& p) const {
@@ -28,8 +31,8 @@ TPoint2D Canvas::to_samples(const TPoint2D& p) const {
 }
 
 void Canvas::blend(int x, int y, const Colour& colour, double opacity) {
-  auto& sample =
-      samples_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ * kSamples) + static_cast<std::size_t>(x)];
+  const auto row = static_cast<std::size_t>(y - first_row_ * kSamples);
+  auto& sample = samples_[row * static_cast<std::size_t>(width_ * kSamples) + static_cast<std::size_t>(x)];
   for (std::size_t i = 0; i < 3; ++i) {
     sample[i] = static_cast<float>(static_cast<double>(sample[i]) * (1.0 - opacity) + colour[i] * opacity);
   }
@@ -47,8 +50,8 @@ void Canvas::for_samples(const Outline& outline, const Paint& paint) {
   }
   if (signed_area(shape) < 0.0) std::reverse(shape.begin(), shape.end());  // y points down in the picture
   const double right = width_ * kSamples;
-  for (int y = std::max(0, static_cast<int>(top)); y < std::min(height_ * kSamples, static_cast<int>(bottom) + 1);
-       ++y) {
+  const int end = std::min((first_row_ + rows_) * kSamples, static_cast<int>(bottom) + 1);
+  for (int y = std::max(first_row_ * kSamples, static_cast<int>(top)); y < end; ++y) {
     const auto span = clip(shape, {0.0, y + 0.5}, {right, y + 0.5});
     if (!span) continue;
     const int first = static_cast<int>(std::ceil(span->from * right - 0.5));
@@ -92,9 +95,8 @@ void Canvas::arrow(const TPoint2D& tail, const TPoint2D& tip, double width, cons
   fill({neck - left * (2.0 * width), tip, neck + left * (2.0 * width)}, colour, opacity);
 }
 
-RgbImage Canvas::image() const {
-  RgbImage result(width_, height_);
-  for (int y = 0; y < height_; ++y) {
+void Canvas::copy_to(RgbImage& picture) const {
+  for (int y = 0; y < rows_; ++y) {
     for (int x = 0; x < width_; ++x) {
       Colour sum{};
       for (int k = 0; k < kSamples * kSamples; ++k) {
@@ -104,11 +106,10 @@ RgbImage Canvas::image() const {
         for (std::size_t i = 0; i < 3; ++i) sum[i] += static_cast<double>(sample[i]);
       }
       for (std::size_t i = 0; i < 3; ++i) {
-        result.pixel(x, y)[i] = static_cast<std::uint8_t>(std::lround(sum[i] / (kSamples * kSamples)));
+        picture.pixel(x, first_row_ + y)[i] = static_cast<std::uint8_t>(std::lround(sum[i] / (kSamples * kSamples)));
       }
     }
   }
-  return result;
 }
 
 }  // namespace rubble::arenas

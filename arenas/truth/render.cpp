@@ -26,9 +26,11 @@ constexpr Colour kBottle{60, 120, 200};
 constexpr Colour kRadio{200, 150, 30};
 constexpr Colour kVictim{205, 38, 38};
 constexpr Colour kStart{28, 128, 76};
-constexpr double kSteep = 0.5;     ///< slopes above it get two arrows [rise a metre]
-constexpr double kTallFrom = 1.5;  ///< [m]
-constexpr double kMargin = 0.3;    ///< ground shown round the arena [m]
+constexpr double kSteep = 0.5;          ///< slopes above it get two arrows [rise a metre]
+constexpr double kTallFrom = 1.5;       ///< [m]
+constexpr double kMargin = 0.3;         ///< ground shown round the arena [m]
+constexpr double kMostPixels = 6000.0;  ///< a side
+constexpr int kBand = 256;              ///< rows painted at a time
 
 Colour scaled(const Colour& colour, double factor) {
   Colour result{};
@@ -156,17 +158,21 @@ RgbImage render(const Arena& arena, double pixels_per_metre) {
   const TPoint2D margin{kMargin, kMargin};
   const TPoint2D min = arena.min_corner - margin;
   const TPoint2D max = arena.max_corner + margin;
-  if (std::max(max.x - min.x, max.y - min.y) * pixels_per_metre > 10000.0) {
-    throw InputError("the picture of " + arena.name + " would exceed 10,000 pixels a side: ask for fewer a metre");
+  const double side = std::max(max.x - min.x, max.y - min.y);
+  const double scale = std::min(pixels_per_metre, (kMostPixels - 1.0) / side);
+  RgbImage picture;
+  for (int row = 0; row == 0 || row < picture.height; row += kBand) {
+    Canvas canvas(min, max, scale, kGround, row, kBand);
+    if (row == 0) picture = RgbImage(canvas.width(), canvas.height());
+    draw_floor(arena, canvas);
+    draw_paper(arena, canvas);
+    draw_objects(arena, canvas);
+    draw_solids(arena, canvas);
+    draw_victims(arena, canvas);
+    draw_start(arena, canvas);
+    canvas.copy_to(picture);
   }
-  Canvas canvas(min, max, pixels_per_metre, kGround);
-  draw_floor(arena, canvas);
-  draw_paper(arena, canvas);
-  draw_objects(arena, canvas);
-  draw_solids(arena, canvas);
-  draw_victims(arena, canvas);
-  draw_start(arena, canvas);
-  return canvas.image();
+  return picture;
 }
 
 }  // namespace rubble::arenas

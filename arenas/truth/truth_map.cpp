@@ -8,12 +8,14 @@
 #include "arenas/model/patch_index.h"
 #include "arenas/model/raster.h"
 #include "arenas/model/risers.h"
+#include "base/error.h"
 
 namespace rubble::arenas {
 namespace {
 
 using mrpt::math::TPoint2D;
 
+constexpr double kMostCells = 6e7;
 constexpr double kThin = 1e-4;  ///< thickness given to a riser, well above kRasterTouch [m]
 
 /// Cell centres lie on multiples of the resolution, so that a wall on a pallet line is one cell thick.
@@ -22,6 +24,10 @@ GridFrame frame_around(const Arena& arena, double resolution, double margin) {
   const double south = std::floor((arena.min_corner.y - margin) / resolution) - 0.5;
   const double east = std::ceil((arena.max_corner.x + margin) / resolution) + 0.5;
   const double north = std::ceil((arena.max_corner.y + margin) / resolution) + 0.5;
+  if ((east - west) * (north - south) > kMostCells)
+    throw InputError("the truth map of arena '" + arena.name + "' would have " +
+                     std::to_string(std::lround(east - west)) + " x " + std::to_string(std::lround(north - south)) +
+                     " cells, a map has at most 60 million: ask for a coarser resolution, or move its parts together");
   return {static_cast<int>(std::lround(east - west)), static_cast<int>(std::lround(north - south)), resolution,
           west * resolution, south * resolution};
 }

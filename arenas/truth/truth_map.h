@@ -9,6 +9,7 @@ namespace rubble::arenas {
 
 /// The ground-truth map: what a level laser at `slice_height` above each floor would call occupied and free.
 /// Unknown: where there is no floor, and the inside of solids. `margin` of unknown cells is left around the arena.
+/// Throws InputError when the map would have more than 60 million cells.
 OccupancyGrid truth_map(const Arena& arena, double resolution = 0.05, double slice_height = 0.35, double margin = 0.5);
 
 }  // namespace rubble::arenas

@@ -65,7 +65,11 @@ tmsize_t read_memory(thandle_t handle, void* data, tmsize_t size) {
 tmsize_t write_memory(thandle_t handle, void* data, tmsize_t size) {
   auto& memory = *static_cast<Memory*>(handle);
   const std::size_t end = memory.at + static_cast<std::size_t>(size);
-  if (end > memory.bytes->size()) memory.bytes->resize(end);
+  try {
+    if (end > memory.bytes->size()) memory.bytes->resize(end);
+  } catch (const std::bad_alloc&) {
+    return -1;  // nothing may be thrown through the library's C
+  }
   std::memcpy(memory.bytes->data() + memory.at, data, static_cast<std::size_t>(size));
   memory.at = end;
   return size;

@@ -69,10 +69,4 @@ std::string joined(const std::vector<std::string>& words) {
   return list;
 }
 
-std::string csv_quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 }  // namespace rubble

@@ -22,7 +22,4 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 /// "a, b, c" for a list in a message.
 std::string joined(const std::vector<std::string>& words);
 
-/// A CSV field in quotes, as RFC 4180 has it.
-std::string csv_quoted(const std::string& text);
-
 }  // namespace rubble

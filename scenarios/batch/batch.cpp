@@ -16,6 +16,7 @@
 #include "base/text/text_file.h"
 #include "scenarios/batch/worker_pool.h"
 #include "scenarios/run/run.h"
+#include "scoring/figures/figures.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -40,8 +41,13 @@ RunOutcome unpack(const std::string& text) {
   return {json["score"], json["end"], json["failure"], json["broken"].get<std::vector<std::string>>(), json["hash"]};
 }
 
+bool depends_on_machine(const std::string& key) {
+  const scoring::Figure* figure = scoring::find_figure(key);
+  return figure != nullptr && figure->is(scoring::kMachine);
+}
+
 /// "wall_s is 12, expected at most 10": an expectation about the machine is no part of the result.
-bool about_timing(const std::string& broken) { return is_timing_key(broken.substr(0, broken.find(' '))); }
+bool about_machine(const std::string& broken) { return depends_on_machine(broken.substr(0, broken.find(' '))); }
 
 struct Entry {
   RunRecord record;
@@ -59,26 +65,26 @@ Entry entry_of(const Job& job, const TaskResult& result, const BatchOptions& opt
   r.code = options.code;
   r.score = ordered_json::object();
   if (result.end == TaskEnd::TimedOut) {
-    r.status = "timeout";
+    r.status = RunStatus::TimedOut;
     r.error = "killed after " + std::to_string(static_cast<long>(options.run_limit)) + " s";
     entry.timing["wall_s"] = result.wall_s;
     return entry;
   }
   if (result.end == TaskEnd::Failed) {
-    r.status = "failed";
+    r.status = RunStatus::Failed;
     r.error = result.text;
     entry.timing["wall_s"] = result.wall_s;
     return entry;
   }
   const RunOutcome outcome = unpack(result.text);
-  r.status = outcome.failure.empty() ? "ok" : "failed";
+  r.status = outcome.failure.empty() ? RunStatus::Ok : RunStatus::Failed;
   r.error = outcome.failure;
   r.end = outcome.end;
   r.hash = outcome.hash;
   for (const auto& [key, value] : outcome.score.items())
-    if (key != "end") (is_timing_key(key) ? entry.timing : r.score)[key] = value;
+    if (key != "end") (depends_on_machine(key) ? entry.timing : r.score)[key] = value;
   for (const auto& line : outcome.broken) {
-    if (about_timing(line)) {
+    if (about_machine(line)) {
       entry.timing["broken"].push_back(line);
     } else {
       r.broken.push_back(line);
@@ -90,7 +96,7 @@ Entry entry_of(const Job& job, const TaskResult& result, const BatchOptions& opt
 /// Throws RunError when the folder takes no more data: then a failed run says nothing about the run.
 void check_space(const std::string& folder, const std::string& suffix) {
   const std::string path = folder + "/.space" + suffix;
-  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
   std::string why = file < 0 ? std::strerror(errno) : "";
   if (file >= 0) {
     const std::string block(kProbeBytes, '\0');
@@ -112,6 +118,9 @@ void check_space(const std::string& folder, const std::string& suffix) {
 
 void make_folder(const std::string& path) {
   std::error_code error;
+  for (const std::string& link : {path + "/runs", path + "/results.jsonl", path + "/workers.log"})
+    if (fs::is_symlink(link, error))
+      throw InputError(link + ": is a symbolic link, results could go anywhere; remove it or give another --out");
   fs::create_directories(path + "/runs", error);
   if (error)
     throw InputError(path + ": cannot be created (" + error.message() + "); give a writable folder with --out");

@@ -108,7 +108,7 @@ ResultSet read_database(const std::string& path) {
       RunRecord r;
       r.run_id = runs.text(0), r.scenario = runs.text(1), r.configuration = runs.text(2);
       r.seed = static_cast<std::uint64_t>(runs.integer(3));
-      r.status = runs.text(4), r.error = runs.text(5), r.end = runs.text(6);
+      r.status = status_named(runs.text(4)), r.error = runs.text(5), r.end = runs.text(6);
       r.broken = ordered_json::parse(runs.text(7)).get<std::vector<std::string>>();
       r.score = ordered_json::parse(runs.text(8));
       r.hash = runs.text(9), r.folder = runs.text(10), r.code = runs.text(11);
@@ -129,7 +129,7 @@ void write_database(const std::string& path, const ResultSet& set) {
   for (const RunRecord& r : set.runs) {
     run.bind(0, r.run_id), run.bind(1, r.scenario), run.bind(2, r.configuration);
     run.bind(3, static_cast<std::int64_t>(r.seed));
-    run.bind(4, r.status), run.bind(5, r.error), run.bind(6, r.end);
+    run.bind(4, name_of(r.status)), run.bind(5, r.error), run.bind(6, r.end);
     run.bind(7, ordered_json(r.broken).dump()), run.bind(8, r.score.dump());
     run.bind(9, r.hash), run.bind(10, r.folder), run.bind(11, r.code);
     run.step();

@@ -62,7 +62,7 @@ Parsed parse_lines(const std::string& text, const std::string& path) {
 }
 
 int open_to_append(const std::string& path) {
-  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (file < 0)
     throw InputError(path + ": cannot be written (" + std::strerror(errno) + "); give a writable folder with --out");
   return file;
@@ -78,6 +78,9 @@ void lock(int file, const std::string& path) {
 
 /// Appends all or nothing, and waits for the disk.
 void append_synced(int file, const std::string& path, const std::string& line) {
+  struct stat status {};
+  if (fstat(file, &status) == 0 && status.st_nlink == 0)
+    throw RunError(path + ": the folder was deleted under way; give the same command again");
   const off_t before = lseek(file, 0, SEEK_END);
   std::size_t done = 0;
   while (done < line.size()) {
@@ -113,6 +116,24 @@ auto order_of(const RunRecord& r) { return std::tie(r.scenario, r.configuration,
 
 }  // namespace
 
+std::string name_of(RunStatus status) {
+  switch (status) {
+    case RunStatus::Ok:
+      return "ok";
+    case RunStatus::Failed:
+      return "failed";
+    case RunStatus::TimedOut:
+      return "timeout";
+  }
+  return "";
+}
+
+RunStatus status_named(const std::string& name) {
+  for (const RunStatus status : {RunStatus::Ok, RunStatus::Failed, RunStatus::TimedOut})
+    if (name == name_of(status)) return status;
+  throw InputError("'" + name + "' is no status of a run; known are ok, failed, timeout");
+}
+
 double RunRecord::metric(const std::string& key) const {
   if (key == "completed") return ok() ? 1.0 : 0.0;
   const auto found = score.find(key);
@@ -127,7 +148,7 @@ std::string to_line(const RunRecord& r) {
   json["scenario"] = r.scenario;
   json["config"] = r.configuration;
   json["seed"] = r.seed;
-  json["status"] = r.status;
+  json["status"] = name_of(r.status);
   json["error"] = r.error;
   json["end"] = r.end;
   json["broken"] = r.broken;
@@ -146,7 +167,7 @@ RunRecord from_line(const std::string& line, const std::string& place) {
     r.scenario = json.at("scenario");
     r.configuration = json.at("config");
     r.seed = json.at("seed");
-    r.status = json.at("status");
+    r.status = status_named(json.at("status"));
     r.error = json.at("error");
     r.end = json.at("end");
     r.broken = json.at("broken").get<std::vector<std::string>>();
@@ -155,7 +176,7 @@ RunRecord from_line(const std::string& line, const std::string& place) {
     r.folder = json.at("folder");
     r.code = json.at("code");
     return r;
-  } catch (const ordered_json::exception&) {
+  } catch (const std::exception&) {
     throw InputError(place + ": is no line that 'rubble batch' wrote; remove it, its run will be made again");
   }
 }

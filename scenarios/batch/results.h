@@ -8,13 +8,21 @@
 
 namespace rubble::scenarios {
 
+/// How a run of a batch ended: with a result, without one, or killed because it took too long.
+enum class RunStatus { Ok, Failed, TimedOut };
+
+/// "ok", "failed" or "timeout", as files call them.
+std::string name_of(RunStatus status);
+/// Throws InputError for another name.
+RunStatus status_named(const std::string& name);
+
 /// What is kept of one run: only what depends on scenario, seed and code. Times are kept apart (see Timing).
 struct RunRecord {
   std::string run_id;
   std::string scenario;
   std::string configuration;
   std::uint64_t seed = 0;
-  std::string status;               ///< "ok", "failed" or "timeout"
+  RunStatus status = RunStatus::Failed;
   std::string error;                ///< why it is not ok
   std::string end;                  ///< why the run ended, for people
   std::vector<std::string> broken;  ///< expectations that were not met
@@ -23,7 +31,7 @@ struct RunRecord {
   std::string folder;               ///< of the run, relative to the folder of the results
   std::string code;                 ///< code_version() of the program that made it
 
-  bool ok() const { return status == "ok"; }
+  bool ok() const { return status == RunStatus::Ok; }
   /// A number of the score; booleans are 0 and 1; NaN where there is none. `completed` is 1 for ok, else 0.
   double metric(const std::string& key) const;
 };

@@ -76,6 +76,7 @@ SlurmScripts slurm_scripts(const SlurmPlan& plan) {
            shell_word(plan.out) + " --workers " + std::to_string(plan.workers);
   if (plan.record) array += " --record";
   if (plan.retry) array += " --retry";
+  if (plan.allow_commands) array += " --allow-commands";
   for (const auto& [key, value] : plan.overrides) array += " --set " + shell_word(key + "=" + value);
   array += " --shard \"$SLURM_ARRAY_TASK_ID/" + std::to_string(plan.shards) + "\"\n";
 

@@ -17,6 +17,7 @@ struct SlurmPlan {
   int shards = 8;
   int workers = 1;  ///< cores of a task
   bool record = false;
+  bool allow_commands = false;  ///< of mappers, when the user allowed them
   bool retry = false;
   std::vector<Override> overrides;
   std::vector<std::string> options;  ///< for sbatch, of the array job: "--partition=x", "--time=2:00:00"

@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <optional>
 #include <set>
+#include <sstream>
 
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/text/file_name.h"
 #include "base/yaml/strict_yaml.h"
 #include "scenarios/run/run.h"
 
@@ -142,11 +144,24 @@ std::vector<Configuration> read_configurations(const YamlMap& root) {
   return configurations;
 }
 
+/// What the files hold that a mapper's command names: a changed program is another mapper.
+std::string files_of_command(const std::string& command) {
+  std::string digests;
+  std::istringstream words(command);
+  for (std::string word; words >> word;) {
+    word.erase(std::remove_if(word.begin(), word.end(), [](char c) { return c == '"' || c == '\''; }), word.end());
+    std::error_code error;
+    if (fs::is_regular_file(word, error)) digests += sha256_of_file(word) + "\n";
+  }
+  return digests;
+}
+
 std::string run_id(const Scenario& scenario, const std::string& configuration, const std::string& code) {
   Scenario portable = scenario;  // where the arena file lies does not matter, what is in it does
   if (!scenario.arena_file.empty()) portable.arena_file = "arena.yaml";
   std::string text = code + "\n" + configuration + "\n" + resolved_yaml(portable);
   if (!scenario.arena_file.empty()) text += arena_yaml(scenario);
+  text += files_of_command(scenario.mapper.command());
   return sha256_of_text(text).substr(0, 16);
 }
 
@@ -163,7 +178,8 @@ Sweep load_sweep(const std::string& path, const std::string& shipped) {
   const YamlMap root = YamlMap::load(path);
   Sweep sweep;
   sweep.path = path;
-  sweep.name = root.text("name", fs::path(path).stem().string());
+  sweep.name = root.text("name", as_file_name(fs::path(path).stem().string()));
+  if (const auto trouble = file_name_trouble(sweep.name)) root.fail("name", *trouble);
   sweep.about = root.text("about", std::string());
   sweep.scenarios = read_scenarios(root, fs::path(path).parent_path(), shipped);
   sweep.seeds = read_seeds(root);

@@ -57,7 +57,7 @@ bool receive_all(int socket, void* data, std::size_t size) {
 }
 
 void redirect_output(const std::string& log) {
-  const int file = open(log.empty() ? "/dev/null" : log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+  const int file = open(log.empty() ? "/dev/null" : log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW, 0644);
   if (file < 0) return;
   dup2(file, STDOUT_FILENO);
   dup2(file, STDERR_FILENO);

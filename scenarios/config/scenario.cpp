@@ -8,9 +8,12 @@
 #include "arenas/raf/raf.h"
 #include "base/angle.h"
 #include "base/error.h"
+#include "base/text/file_name.h"
 #include "base/text/number_text.h"
+#include "base/text/words.h"
 #include "base/yaml/binder.h"
 #include "base/yaml/strict_yaml.h"
+#include "scoring/figures/figures.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -88,33 +91,6 @@ void bind(Binder& b, sim::SimConfig& c) {
   b.boolean("co2_probe", c.co2_probe);
 }
 
-void bind(Binder& b, explore::ExplorerConfig& c) {
-  b.number("alpha", c.alpha, 0.0, 1000.0);
-  b.number("d_min_m", c.d_min, 0.0, 2.0);
-  b.number("d_opt_m", c.d_opt, 0.0, 5.0);
-  b.number("occupied_threshold", c.occupied_threshold, 0.01, 1.0);
-  b.integer("min_frontier_cells", c.min_frontier_cells, 1, 10000);
-  b.number("replan_period_s", c.replan_period, 0.02, 60.0);
-  b.number("cruise_speed", c.cruise_speed, 0.01, 2.0);
-  b.degrees("turn_speed_deg", c.turn_speed, 1.0, 360.0);
-  b.degrees("turn_in_place_deg", c.turn_in_place, 1.0, 180.0);
-  b.number("look_ahead_m", c.look_ahead, 0.05, 5.0);
-  b.boolean("return_home", c.return_home);
-  b.number("d_min_floor_m", c.d_min_floor, 0.0, 2.0);
-  b.number("switch_cost_m", c.switch_cost, 0.0, 100.0);
-  b.section("victims", [&](Binder& v) {
-    v.integer("min_cues", c.victims.min_cues, 1, 1000);
-    v.number("min_evidence", c.victims.min_evidence, 0.0, 1000.0);
-    v.number("merge_distance_m", c.victims.merge_distance, 0.0, 10.0);
-    v.boolean("search", c.search.on);
-    v.degrees("field_of_view_deg", c.search.field_of_view, 5.0, 360.0);
-    v.number("range_m", c.search.range, 0.3, 20.0);
-    v.integer("min_cells", c.search.min_cells, 1, 100000);
-    v.number("stare_s", c.search.stare, 0.0, 60.0);
-    v.number("dwell_s", c.search.dwell, 0.0, 60.0);
-  });
-}
-
 void bind(Binder& b, scoring::ScoreConfig& c) {
   b.number("tau_m", c.tau, 0.05, 10.0);
   b.number("colour_absent_cap_m", c.colour_absent_cap, 0.1, 1000.0);
@@ -129,7 +105,7 @@ void bind_sections(Binder& b, Scenario& s) {
   b.section("levelling", [&](Binder& in) { bind(in, s.levelling, s.robot.accelerometer_mount); });
   b.section("sim", [&](Binder& in) { bind(in, s.sim); });
   b.section("mapper", [&](Binder& in) { s.mapper.bind(in); });
-  b.section("explorer", [&](Binder& in) { bind(in, s.explorer); });
+  b.section("explorer", [&](Binder& in) { s.explorer.bind(in); });
   b.section("scoring", [&](Binder& in) {
     bind(in, s.scoring);
     in.boolean("visible_truth", s.visible_truth);
@@ -167,33 +143,16 @@ void read_arena(const YamlMap& root, const std::string& path, Scenario& s) {
   bind_generate(reader, s.generate);
 }
 
-/// Numbers of score.json that `expect` may bound.
-const std::vector<std::string> kScoreKeys = {"score",
-                                             "precision",
-                                             "recall",
-                                             "psi_m",
-                                             "aligned",
-                                             "ate_first_m",
-                                             "ate_aligned_m",
-                                             "known",
-                                             "victims_found",
-                                             "victims_total",
-                                             "sim_s",
-                                             "wall_s",
-                                             "real_time_factor",
-                                             "peak_mb",
-                                             "area_known_m2",
-                                             "scans_mapped",
-                                             "victims_false",
-                                             "victims_reported"};
-
 void read_expect(const YamlMap& root, Scenario& s) {
   const YamlMap expect = root.map("expect");
   for (const auto& key : expect.keys()) {
-    if (std::find(kScoreKeys.begin(), kScoreKeys.end(), key) == kScoreKeys.end()) {
-      std::string names;
-      for (const auto& known : kScoreKeys) names += (names.empty() ? "" : ", ") + known;
-      expect.fail(key, "'" + key + "' is not a number of score.json; known are " + names);
+    const scoring::Figure* figure = scoring::find_figure(key);
+    if (figure == nullptr || figure->is(scoring::kText)) {
+      std::vector<std::string> numbers;
+      for (const auto& known : scoring::figures())
+        if (!known.is(scoring::kText)) numbers.push_back(known.key);
+      expect.fail(key, "'" + key + "' is not a number of score.json" + did_you_mean(key, numbers) + "; known are " +
+                           joined(numbers));
     }
     const YamlMap bounds = expect.map(key);
     Expectation expectation{key, {}, {}};
@@ -223,7 +182,9 @@ void check_laser(const YamlMap& map, const robot::LaserModel& laser) {
   if (laser.range_max <= laser.range_min) map.fail("max_range_m", "max_range_m must be above min_range_m");
 }
 
-void read_common(const YamlMap& root, Scenario& s) {
+}  // namespace
+
+void read_settings(const YamlMap& root, Scenario& s) {
   s.seed =
       static_cast<std::uint64_t>(root.integer("seed", std::int64_t{1}, 0, std::numeric_limits<std::int64_t>::max()));
   if (root.has("geo")) {
@@ -235,24 +196,34 @@ void read_common(const YamlMap& root, Scenario& s) {
   YamlReader reader(root);
   bind_sections(reader, s);
   check_laser(root.map("robot").map("laser"), s.robot.laser);
-  if (s.explorer.d_opt < s.explorer.d_min) root.fail("explorer", "d_opt_m must not be smaller than d_min_m");
+  if (const std::string mistake = s.explorer.mistake(); !mistake.empty()) root.fail("explorer", mistake);
   s.sim.time_limit = s.time_limit;
+}
+
+namespace {
+
+Scenario load(const std::string& path, const std::vector<Override>& overrides, bool recorded) {
+  YamlMap root = YamlMap::load(path);
+  for (const auto& [key, value] : overrides) root.set(key, value);
+  Scenario s;
+  s.name = root.text("name", as_file_name(std::filesystem::path(path).stem().string()));
+  if (const auto trouble = file_name_trouble(s.name)) root.fail("name", *trouble);
+  s.has_arena = !recorded || root.has("arena");
+  if (s.has_arena) read_arena(root, path, s);
+  read_settings(root, s);
+  read_expect(root, s);
+  root.finish();
+  return s;
 }
 
 }  // namespace
 
 Scenario load_scenario(const std::string& path, const std::vector<Override>& overrides) {
-  YamlMap root = YamlMap::load(path);
-  for (const auto& [key, value] : overrides) root.set(key, value);
-  Scenario s;
-  s.name = root.text("name", std::filesystem::path(path).stem().string());
-  if (s.name.empty() || s.name.find_first_of("/\\ ") != std::string::npos)
-    root.fail("name", "is used as a folder name: no spaces or slashes");
-  read_arena(root, path, s);
-  read_common(root, s);
-  read_expect(root, s);
-  root.finish();
-  return s;
+  return load(path, overrides, false);
+}
+
+Scenario load_recorded(const std::string& path, const std::vector<Override>& overrides) {
+  return load(path, overrides, true);
 }
 
 Scenario default_scenario(const std::vector<Override>& overrides) {
@@ -261,7 +232,8 @@ Scenario default_scenario(const std::vector<Override>& overrides) {
   Scenario s;
   s.has_arena = false;
   s.name = root.text("name", std::string("map"));
-  read_common(root, s);
+  if (const auto trouble = file_name_trouble(s.name)) root.fail("name", *trouble);
+  read_settings(root, s);
   root.finish();
   return s;
 }

@@ -9,7 +9,8 @@
 #include "arenas/generate/generate.h"
 #include "arenas/model/arena.h"
 #include "base/image/geotiff.h"
-#include "explore/explorer.h"
+#include "base/yaml/strict_yaml.h"
+#include "explore/explorers.h"
 #include "robot/levelling.h"
 #include "robot/model.h"
 #include "scoring/scorecard.h"
@@ -54,6 +55,12 @@ using Override = std::pair<std::string, std::string>;
 
 /// Reads a scenario file strictly; overrides are applied before anything is read. Throws InputError.
 Scenario load_scenario(const std::string& path, const std::vector<Override>& overrides = {});
+
+/// Reads what a scenario shares with a robot file: all but arena, name and expectations. Throws InputError.
+void read_settings(const YamlMap& root, Scenario& scenario);
+
+/// The settings of a recorded run, which has no arena when a real robot was driven. Throws InputError.
+Scenario load_recorded(const std::string& path, const std::vector<Override>& overrides = {});
 
 /// The defaults with overrides: what `rubble map` uses. Throws InputError.
 Scenario default_scenario(const std::vector<Override>& overrides = {});

@@ -59,7 +59,7 @@ const Metric& judged_metric(const std::string& group, const std::string& key) {
 CheckCase check_metric(const std::string& group, const BaselineMetric& wanted,
                        const std::vector<const RunRecord*>& runs) {
   const Metric& metric = judged_metric(group, wanted.key);
-  CheckCase c{group, metric.label, true, ""};
+  CheckCase c{group, heading(metric), true, ""};
   const std::vector<double> values = numbers(runs, wanted.key);
   if (values.empty()) {
     c.passed = false;
@@ -89,7 +89,7 @@ CheckCase check_completed(const std::string& group, std::size_t before, const st
              std::to_string(before);
   for (const RunRecord* run : runs)
     if (!run->ok() && !c.passed)
-      c.detail += "; seed " + std::to_string(run->seed) + ": " + run->status + " " + run->error;
+      c.detail += "; seed " + std::to_string(run->seed) + ": " + name_of(run->status) + " " + run->error;
   return c;
 }
 

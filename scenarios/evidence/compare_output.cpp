@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/text/csv.h"
+#include "base/text/html.h"
 #include "base/text/number_text.h"
-#include "base/text/words.h"
-#include "scenarios/evidence/html.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -27,11 +27,6 @@ std::string split_text(const MetricComparison& c) {
 }
 
 std::string signed_figure(double value) { return (value > 0.0 ? "+" : "") + figure(value); }
-
-std::string quoted_csv(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  return csv_quoted(text);
-}
 
 std::string csv_number(double value) { return std::isfinite(value) ? number_text(value) : ""; }
 
@@ -75,7 +70,7 @@ std::string to_text(const Comparison& comparison) {
                   "95 % interval", "better : worse", "p", "B is");
     out += line;
     for (const auto& c : group.metrics) {
-      std::snprintf(line, sizeof line, "%-33s %9s %9s %10s  %-22s %-16s %7.2g  %s\n", c.metric.label.c_str(),
+      std::snprintf(line, sizeof line, "%-33s %9s %9s %10s  %-22s %-16s %7.2g  %s\n", heading(c.metric).c_str(),
                     figure(c.mean_a).c_str(), figure(c.mean_b).c_str(), signed_figure(c.difference).c_str(),
                     interval_text(c.interval).c_str(), split_text(c).c_str(), c.p_sign, text_of(c.verdict));
       out += line;
@@ -89,11 +84,11 @@ std::string to_csv(const Comparison& comparison) {
       "group,metric,pairs,missing,mean_a,mean_b,difference,interval_low,interval_high,better,worse,p_sign,verdict\r\n";
   for (const auto& group : comparison.groups)
     for (const auto& c : group.metrics)
-      out += quoted_csv(group.name) + "," + quoted_csv(c.metric.key) + "," + std::to_string(c.pairs) + "," +
-             std::to_string(c.missing) + "," + csv_number(c.mean_a) + "," + csv_number(c.mean_b) + "," +
-             csv_number(c.difference) + "," + csv_number(c.interval.low) + "," + csv_number(c.interval.high) + "," +
-             std::to_string(c.better) + "," + std::to_string(c.worse) + "," + csv_number(c.p_sign) + "," +
-             text_of(c.verdict) + "\r\n";
+      out += csv_line({group.name, c.metric.key, std::to_string(c.pairs), std::to_string(c.missing),
+                       csv_number(c.mean_a), csv_number(c.mean_b), csv_number(c.difference), csv_number(c.interval.low),
+                       csv_number(c.interval.high), std::to_string(c.better), std::to_string(c.worse),
+                       csv_number(c.p_sign), text_of(c.verdict)}) +
+             "\r\n";
   return out;
 }
 
@@ -128,8 +123,8 @@ std::string to_html(const Comparison& comparison) {
             "<th class=n>B &minus; A</th><th>95 % interval</th><th></th><th class=n>better : worse</th>"
             "<th class=n>p</th><th>B is</th></tr>\n";
     for (const auto& c : group.metrics)
-      body += "<tr><td>" + escape_html(c.metric.label) + "</td><td class=n>" + figure(c.mean_a) + "</td><td class=n>" +
-              figure(c.mean_b) + "</td><td class=n>" + signed_figure(c.difference) + "</td><td>" +
+      body += "<tr><td>" + escape_html(heading(c.metric)) + "</td><td class=n>" + figure(c.mean_a) +
+              "</td><td class=n>" + figure(c.mean_b) + "</td><td class=n>" + signed_figure(c.difference) + "</td><td>" +
               interval_text(c.interval) + "</td><td>" + interval_bar(c) + "</td><td class=n>" + split_text(c) +
               "</td><td class=n>" + figure(c.p_sign) + "</td><td class=" + class_of(c.verdict) + ">" +
               text_of(c.verdict) + "</td></tr>\n";
@@ -151,7 +146,7 @@ std::string to_markdown(const Comparison& comparison) {
     out +=
         "| metric | A | B | B - A | 95 % interval | better : worse | p | B is |\n|---|---|---|---|---|---|---|---|\n";
     for (const auto& c : group.metrics)
-      out += "| " + c.metric.label + " | " + figure(c.mean_a) + " | " + figure(c.mean_b) + " | " +
+      out += "| " + heading(c.metric) + " | " + figure(c.mean_a) + " | " + figure(c.mean_b) + " | " +
              signed_figure(c.difference) + " | " + interval_text(c.interval) + " | " + split_text(c) + " | " +
              figure(c.p_sign) + " | " + text_of(c.verdict) + " |\n";
     out += "\n";

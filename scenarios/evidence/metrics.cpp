@@ -7,21 +7,28 @@
 
 namespace rubble::scenarios {
 
+namespace {
+
+Metric bare(const std::string& key, const std::string& label, Better better) {
+  Metric metric;
+  metric.key = key;
+  metric.label = label;
+  metric.better = better;
+  return metric;
+}
+
+std::vector<Metric> make_judged() {
+  std::vector<Metric> metrics;
+  for (const scoring::Figure& figure : scoring::figures())
+    if (figure.judged()) metrics.push_back(figure);
+  metrics.push_back(bare("completed", "runs completed", Better::Higher));  // of the record, not of its score
+  return metrics;
+}
+
+}  // namespace
+
 const std::vector<Metric>& judged_metrics() {
-  static const std::vector<Metric> metrics = {
-      {"score", "score", Better::Higher, 0.01},
-      {"precision", "precision", Better::Higher, 0.01},
-      {"recall", "recall", Better::Higher, 0.01},
-      {"psi_m", "psi [m]", Better::Lower, 0.01},
-      {"ate_first_m", "trajectory error, first pose [m]", Better::Lower, 0.02},
-      {"ate_aligned_m", "trajectory error, aligned [m]", Better::Lower, 0.02},
-      {"known", "arena known", Better::Higher, 0.01},
-      {"aligned", "maps aligned", Better::Higher, 0.0},
-      {"victims_found", "victims found", Better::Higher, 0.0},
-      {"victims_false", "false victims", Better::Lower, 0.0},
-      {"victims_error_m", "victim error [m]", Better::Lower, 0.02},
-      {"completed", "runs completed", Better::Higher, 0.0},
-  };
+  static const std::vector<Metric> metrics = make_judged();
   return metrics;
 }
 
@@ -32,7 +39,10 @@ std::vector<Metric> all_metrics(const std::vector<RunRecord>& runs) {
   for (const auto& run : runs)
     for (const auto& [key, value] : run.score.items())
       if ((value.is_number() || value.is_boolean()) && judged.count(key) == 0) others.insert(key);
-  for (const auto& key : others) metrics.push_back({key, key, Better::Neither, 0.0});
+  for (const auto& key : others) {
+    const scoring::Figure* row = scoring::find_figure(key);
+    metrics.push_back(row != nullptr ? *row : bare(key, key, Better::Neither));
+  }
   return metrics;
 }
 

@@ -4,20 +4,15 @@
 #include <vector>
 
 #include "scenarios/batch/results.h"
+#include "scoring/figures/figures.h"
 
 namespace rubble::scenarios {
 
-enum class Better { Higher, Lower, Neither };
+/// A number that runs are compared by: a row of the table of figures, or one that only some mapper has.
+using Metric = scoring::Figure;
+using scoring::Better;
 
-/// A number of the score, and how to judge it.
-struct Metric {
-  std::string key;
-  std::string label;
-  Better better = Better::Neither;
-  double floor = 0.0;  ///< a change of the median smaller than this is of no interest to anybody
-};
-
-/// The metrics that are judged, most important first; `completed` (did the run end well) is among them.
+/// The rows of the table that are judged, most important first; then `completed` (did the run end well).
 const std::vector<Metric>& judged_metrics();
 
 /// The judged metrics, then every other number that any of the runs has, in alphabetical order.

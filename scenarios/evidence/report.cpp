@@ -3,16 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "base/error.h"
+#include "base/image/png.h"
+#include "base/text/html.h"
 #include "scenarios/evidence/compare.h"
-#include "scenarios/evidence/html.h"
 #include "scenarios/evidence/metrics.h"
 #include "scenarios/evidence/statistics.h"
 #include "scenarios/evidence/svg_plot.h"
+#include "scoring/maps/raster_image.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -63,25 +67,18 @@ std::string mean_text(const std::vector<double>& values) {
   return brief(mean(values)) + " [" + brief(interval.low) + ", " + brief(interval.high) + "]";
 }
 
-/// The columns of the table of configurations.
-constexpr const char* kColumns[] = {"score", "psi_m", "ate_aligned_m", "known", "victims_found"};
-
-std::string label_of(const std::string& key) {
-  for (const auto& metric : judged_metrics())
-    if (metric.key == key) return metric.label;
-  return key;
-}
-
 std::string summary_table(const ResultSet& set, const SweepNote& note) {
   std::string out = "<table>\n<tr><th>configuration</th><th class=n>runs</th><th class=n>failed</th>";
-  for (const char* key : kColumns) out += "<th class=n>" + escape_html(label_of(key)) + "</th>";
+  for (const Metric* column : figures_with(scoring::kReport))
+    out += "<th class=n>" + escape_html(heading(*column)) + "</th>";
   out += "<th class=n>time a run [s]</th></tr>\n";
   for (const auto& name : note.configurations) {
     const auto runs = of(set, name);
     const auto failed = std::count_if(runs.begin(), runs.end(), [](const auto* run) { return !run->ok(); });
     out += "<tr><td>" + escape_html(name) + "</td><td class=n>" + std::to_string(runs.size()) + "</td><td class=\"n" +
            (failed ? " failed" : "") + "\">" + std::to_string(failed) + "</td>";
-    for (const char* key : kColumns) out += "<td class=n>" + mean_text(numbers(runs, key)) + "</td>";
+    for (const Metric* column : figures_with(scoring::kReport))
+      out += "<td class=n>" + mean_text(numbers(runs, column->key)) + "</td>";
     out += "<td class=n>" + figure(median(times(runs, set.timing, "wall_s"))) + "</td></tr>\n";
   }
   return out + "</table>\n<p class=note>Means over runs with 95 % bootstrap intervals; the time is a median.</p>\n";
@@ -112,27 +109,55 @@ std::string plots(const ResultSet& set, const SweepNote& note) {
 std::string thumbnail(const std::string& folder) {
   for (const char* name : {"/overlay.png", "/map.png"}) {
     if (!fs::exists(folder + name)) continue;
-    const cv::Mat image = cv::imread(folder + name, cv::IMREAD_COLOR);
-    if (image.empty()) continue;
+    RgbImage rgb;
+    try {
+      rgb = scoring::read_rgb(folder + name);
+    } catch (const InputError&) {
+      continue;  // the run was killed while it drew, or its folder is foreign
+    }
+    cv::Mat image;
+    cv::cvtColor(cv::Mat(rgb.height, rgb.width, CV_8UC3, rgb.rgb.data()), image, cv::COLOR_RGB2BGR);
     const double factor = std::min(1.0, static_cast<double>(kThumbnailPixels) / std::max(image.cols, image.rows));
     cv::Mat small;
     cv::resize(image, small, {}, factor, factor, cv::INTER_AREA);
-    std::vector<unsigned char> png;
-    cv::imencode(".png", small, png);
-    return "data:image/png;base64," + base64({png.begin(), png.end()});
+    return "data:image/png;base64," + base64(png_bytes(small));
   }
   return "";
 }
 
+/// Results may come from elsewhere: a run folder lies below its batch.
+bool is_below(const std::string& folder) {
+  const fs::path path = fs::path(folder).lexically_normal();
+  return !folder.empty() && !path.is_absolute() && *path.begin() != "..";
+}
+
+/// A path as a link of a page: no scheme ("javascript:"), no query, no fragment.
+std::string local_link(const std::string& path) {
+  if (path.empty()) return "";
+  static constexpr char kHex[] = "0123456789ABCDEF";
+  std::string out = path.front() == '/' ? "" : "./";
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = std::isalnum(byte) != 0 || std::strchr("/-_.~=+,", c) != nullptr;
+    if (plain && c != '\0') {
+      out += c;
+    } else {
+      out += {'%', kHex[byte >> 4], kHex[byte & 15]};
+    }
+  }
+  return out;
+}
+
 std::string figure_of(const RunRecord& run, const ResultSet& set, const std::string& page_folder) {
   const std::string folder = set.folder + "/" + run.folder;
-  const std::string picture = thumbnail(folder);
+  const bool is_inside = is_below(run.folder);
+  const std::string picture = is_inside ? thumbnail(folder) : "";
   std::error_code error;
-  const std::string link = fs::relative(folder, page_folder.empty() ? "." : page_folder, error).string();
+  const std::string link = local_link(fs::relative(folder, page_folder.empty() ? "." : page_folder, error).string());
   std::string out = "<figure>";
-  if (!link.empty()) out += "<a href=\"" + escape_html(link) + "/\">";
+  if (!link.empty() && is_inside) out += "<a href=\"" + escape_html(link) + "/\">";
   out += picture.empty() ? "(no picture)" : "<img src=\"" + picture + "\" alt=\"map over truth\">";
-  if (!link.empty()) out += "</a>";
+  if (!link.empty() && is_inside) out += "</a>";
   return out + "<figcaption>score " + figure(run.metric("score")) + "<br>" + escape_html(run.scenario) + ", seed " +
          std::to_string(run.seed) + "<br>" + escape_html(run.configuration) + "</figcaption></figure>\n";
 }
@@ -162,7 +187,7 @@ std::string failed_table(const ResultSet& set) {
     for (const auto& broken : run.broken) what += (what.empty() ? "" : "; ") + broken;
     rows += "<tr><td>" + escape_html(run.scenario) + "</td><td>" + escape_html(run.configuration) +
             "</td><td class=n>" + std::to_string(run.seed) + "</td><td class=failed>" +
-            (run.ok() ? "not as expected" : run.status) + "</td><td>" + escape_html(what) + "</td></tr>\n";
+            (run.ok() ? "not as expected" : name_of(run.status)) + "</td><td>" + escape_html(what) + "</td></tr>\n";
   }
   if (count == 0) return "";
   std::string out =
@@ -183,18 +208,6 @@ std::string codes(const ResultSet& set) {
 
 }  // namespace
 
-std::string base64(const std::string& bytes) {
-  constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? kLetters[group >> (18 - 6 * k) & 63u] : '=';
-  }
-  return out;
-}
-
 std::string report_html(const ResultSet& set, const SweepNote& note, const std::string& page_folder) {
   std::string body = "<h1>" + escape_html(note.name) + "</h1>\n";
   if (!note.about.empty()) body += "<p>" + escape_html(note.about) + "</p>\n";
@@ -208,13 +221,14 @@ std::string report_markdown(const ResultSet& set, const SweepNote& note) {
   if (!note.about.empty()) out += note.about + "\n\n";
   out += "| configuration | runs | failed |";
   std::string rule = "|---|---|---|";
-  for (const char* key : kColumns) out += " " + label_of(key) + " |", rule += "---|";
+  for (const Metric* column : figures_with(scoring::kReport)) out += " " + heading(*column) + " |", rule += "---|";
   out += "\n" + rule + "\n";
   for (const auto& name : note.configurations) {
     const auto runs = of(set, name);
     const auto failed = std::count_if(runs.begin(), runs.end(), [](const auto* run) { return !run->ok(); });
     out += "| " + name + " | " + std::to_string(runs.size()) + " | " + std::to_string(failed) + " |";
-    for (const char* key : kColumns) out += " " + mean_text(numbers(runs, key)) + " |";
+    for (const Metric* column : figures_with(scoring::kReport))
+      out += " " + mean_text(numbers(runs, column->key)) + " |";
     out += "\n";
   }
   out += "\n";
@@ -230,10 +244,10 @@ std::string report_markdown(const ResultSet& set, const SweepNote& note) {
     options.configuration_b = name;
     const Comparison comparison = compare(set, set, note.name, note.name, options);
     for (const auto& c : comparison.groups[0].metrics) {
-      if (std::find(std::begin(kColumns), std::end(kColumns), c.metric.key) == std::end(kColumns)) continue;
+      if (!c.metric.is(scoring::kReport)) continue;
       const std::string interval =
           std::isfinite(c.interval.low) ? "[" + figure(c.interval.low) + ", " + figure(c.interval.high) + "]" : "-";
-      out += "| " + name + " | " + reference + " | " + c.metric.label + " | " + std::to_string(c.pairs) + " | " +
+      out += "| " + name + " | " + reference + " | " + heading(c.metric) + " | " + std::to_string(c.pairs) + " | " +
              (c.difference > 0 ? "+" : "") + figure(c.difference) + " | " + interval + " | " +
              std::to_string(c.better) + " : " + std::to_string(c.worse) + " | " + figure(c.p_sign) + " | " +
              text_of(c.verdict) + " |\n";

@@ -15,7 +15,4 @@ std::string report_html(const ResultSet& set, const SweepNote& note, const std::
 /// against the first one.
 std::string report_markdown(const ResultSet& set, const SweepNote& note);
 
-/// RFC 4648.
-std::string base64(const std::string& bytes);
-
 }  // namespace rubble::scenarios

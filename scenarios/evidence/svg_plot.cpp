@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "scenarios/evidence/html.h"
+#include "base/text/html.h"
 #include "scenarios/evidence/metrics.h"
 #include "scenarios/evidence/statistics.h"
 

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <memory>
-#include <optional>
+#include <string>
+#include <vector>
 
 #include "explore/explorer.h"
 #include "robot/levelling.h"
@@ -14,7 +15,8 @@ namespace rubble::scenarios {
 /// What drives a robot, whichever it is: mapper, levelling and (when asked to explore) explorer. It sees Inputs only.
 class Core {
  public:
-  Core(const Scenario& scenario, const robot::RobotModel& model, bool explore);
+  /// `run_folder`: takes what the mapper writes itself (mapper.log).
+  Core(const Scenario& scenario, const robot::RobotModel& model, bool explore, const std::string& run_folder);
 
   /// Digests one tick and decides the commands for the next.
   robot::Commands step(const robot::Inputs& inputs);
@@ -26,11 +28,30 @@ class Core {
   /// Why the explorer finished; empty before.
   std::string reason() const { return explorer_ ? explorer_->reason() : std::string(); }
   std::vector<explore::VictimReport> victims() const;
+  /// How often the motors reported a stall that was not reported before.
+  int stalls() const { return stalls_; }
+  /// Area mapped per minute until 95 % of what is known now were [m^2/min].
+  double area_per_minute() const;
+  /// Null when only mapping.
+  const explore::Explorer* explorer() const { return explorer_.get(); }
 
  private:
   std::unique_ptr<slam::Mapper> mapper_;
   robot::Levelling levelling_;
-  std::optional<explore::Explorer> explorer_;
+  struct KnownArea {
+    double time;  ///< since the first tick [s]
+    double area;  ///< [m^2]
+  };
+  void watch(const robot::Inputs& inputs);
+
+  int stalls_ = 0;
+  bool stalled_ = false;
+  Stamp first_ = Stamp::never();
+  std::vector<KnownArea> known_;                 ///< every few seconds
+  std::unique_ptr<explore::Explorer> explorer_;  ///< null: only mapping
 };
+
+/// Area of which the map knows something [m^2].
+double known_area(const slam::CountMap& map);
 
 }  // namespace rubble::scenarios

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "base/angle.h"
@@ -219,18 +218,6 @@ void write_ros_map(const std::string& stem, const OccupancyGrid& grid, double oc
        << "\nfree_thresh: 0.196\n";
   yaml.flush();
   if (!pgm || !yaml) throw RunError(stem + ".pgm: cannot be written; check the folder and the free space");
-}
-
-void write_png(const std::string& path, const RgbImage& image) {
-  cv::Mat bgr;
-  const cv::Mat rgb(image.height, image.width, CV_8UC3, const_cast<std::uint8_t*>(image.rgb.data()));
-  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-  bool written = false;
-  try {
-    written = cv::imwrite(path, bgr, {cv::IMWRITE_PNG_COMPRESSION, 3});
-  } catch (const cv::Exception&) {
-  }
-  if (!written) throw RunError(path + ": cannot be written; check the folder and the free space");
 }
 
 }  // namespace rubble::scenarios

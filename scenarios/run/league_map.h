@@ -7,7 +7,7 @@
 
 #include "base/image/geotiff.h"
 #include "base/trajectory.h"
-#include "explore/explorer.h"
+#include "explore/victim_report.h"
 #include "slam/grid/count_map.h"
 
 namespace rubble::scenarios {
@@ -36,8 +36,5 @@ GeoTiff draw_truth(const OccupancyGrid& truth);
 
 /// Writes `stem`.pgm and `stem`.yaml as ROS map_server reads them, cropped to the known area. Throws RunError.
 void write_ros_map(const std::string& stem, const OccupancyGrid& grid, double occupied_threshold);
-
-/// Writes an RGB picture as PNG. Throws RunError.
-void write_png(const std::string& path, const RgbImage& image);
 
 }  // namespace rubble::scenarios

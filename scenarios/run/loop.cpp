@@ -1,5 +1,7 @@
 #include "scenarios/run/loop.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -12,24 +14,21 @@ constexpr double kReportPeriod = 0.2;       // [s]
 
 }  // namespace
 
-double known_area(const slam::CountMap& map) {
-  std::size_t cells = 0;
-  for (int y = 0; y < map.frame().height; ++y)
-    for (int x = 0; x < map.frame().width; ++x) cells += map.seen({x, y}) > 0 ? 1u : 0u;
-  return static_cast<double>(cells) * map.frame().resolution * map.frame().resolution;
-}
-
 Loop::Loop(const Scenario& scenario, RunFolder& folder, LoopHooks hooks)
     : scenario_(scenario), folder_(folder), hooks_(std::move(hooks)) {}
 
 LoopEnd Loop::run(robot::Robot& robot, Core& core) {
   LoopEnd end{"the robot's time is over", "", false, 0.0};
   try {
-    drive(robot, core, end);
-  } catch (const robot::DeviceLost& lost) {
+    try {
+      drive(robot, core, end);
+    } catch (const robot::DeviceLost& lost) {
+      end.failure = end.reason = lost.what();
+    }
+    core.finish();
+  } catch (const slam::MapperLost& lost) {
     end.failure = end.reason = lost.what();
   }
-  core.finish();
   if (hooks_.each_second) hooks_.each_second();
   save_all(core);
   return end;
@@ -81,6 +80,26 @@ void Loop::save_all(const Core& core) {
 
 double Loop::seconds_since(Clock::time_point then) const {
   return std::chrono::duration<double>(Clock::now() - then).count();
+}
+
+scoring::RunFigures run_figures(const Core& core, double sim_s, const std::string& reason) {
+  const slam::Mapper& mapper = core.mapper();
+  scoring::RunFigures out;
+  out.end = reason;
+  out.sim_s = sim_s;
+  out.area_known_m2 = known_area(mapper.map());
+  out.scans = mapper.counts().scans;
+  out.scans_mapped = mapper.counts().mapped;
+  out.scans_out_of_order = mapper.counts().out_of_order;
+  out.hits_outside = mapper.map().dropped_hits();
+  for (const slam::MapperFigure& figure : mapper.figures()) out.own.emplace_back(figure.key, figure.value);
+  return out;
+}
+
+double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
 }  // namespace rubble::scenarios

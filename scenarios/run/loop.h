@@ -7,6 +7,7 @@
 #include "robot/robot.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/run_folder.h"
+#include "scoring/figures/evidence.h"
 
 namespace rubble::scenarios {
 
@@ -30,7 +31,7 @@ struct LoopHooks {
 /// How a loop ended.
 struct LoopEnd {
   std::string reason;
-  std::string failure;  ///< the robot was lost
+  std::string failure;  ///< the robot or the mapper was lost
   bool interrupted = false;
   double sim_s = 0.0;  ///< time covered [s]
 };
@@ -62,7 +63,10 @@ class Loop {
   double save_period_ = 0.0;  ///< grows: a run of a few seconds leaves a map too when it is killed [s]
 };
 
-/// Area of which the map knows something [m^2].
-double known_area(const slam::CountMap& map);
+/// What mapper and explorer did in `sim_s` seconds of run time. `reason`: why it ended, for people.
+scoring::RunFigures run_figures(const Core& core, double sim_s, const std::string& reason);
+
+/// The most memory this process has held so far.
+double peak_megabytes();
 
 }  // namespace rubble::scenarios

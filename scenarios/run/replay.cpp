@@ -59,17 +59,24 @@ std::vector<std::string> comparable(bool ended) {
 
 }  // namespace
 
-ReplayReport replay_run(const std::string& path, const RunOptions& options) {
-  const std::string log = path + "/log.rlog";
-  if (!fs::exists(log))
+Scenario recorded_scenario(const std::string& path, const std::vector<Override>& overrides) {
+  if (!fs::exists(path + "/log.rlog"))
     throw InputError(path + ": is not a recorded run (no log.rlog in it); give a folder that 'rubble run' wrote");
-  const Scenario scenario = load_scenario(path + "/scenario.yaml");
-  robot::ReplayRobot robot(log);
-  Core core(scenario, robot.model(), true);
-  ReplayReport report;
-  report.ended = fs::exists(path + "/hashes.json");
+  return load_recorded(path + "/scenario.yaml", overrides);
+}
+
+ReplayReport replay_run(const std::string& path, const RunOptions& options) {
+  return replay_run(path, recorded_scenario(path), options);
+}
+
+ReplayReport replay_run(const std::string& path, const Scenario& scenario, const RunOptions& options) {
+  scenario.mapper.require_permission();
+  robot::ReplayRobot robot(path + "/log.rlog");
   const Scratch scratch(options.out);
   RunFolder folder(scratch.path(), options.replace);
+  Core core(scenario, robot.model(), true, folder.path());
+  ReplayReport report;
+  report.ended = fs::exists(path + "/hashes.json");
   folder.write("scenario.yaml", resolved_yaml(scenario));
   bool last_differs = false;
   LoopHooks hooks;
@@ -81,7 +88,8 @@ ReplayReport replay_run(const std::string& path, const RunOptions& options) {
     last_differs = !same_commands(commands, robot.recorded_commands());
     if (last_differs) ++report.different_commands;
   };
-  Loop(scenario, folder, hooks).run(robot, core);
+  const LoopEnd end = Loop(scenario, folder, hooks).run(robot, core);
+  if (!end.failure.empty()) throw RunError(end.failure);
   // A run that was killed wrote its trajectory up to its last second, an older map, and its last tick perhaps without
   // the command that answered it.
   if (!report.ended && last_differs) --report.different_commands;

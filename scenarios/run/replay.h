@@ -24,5 +24,9 @@ struct ReplayReport {
 
 /// Runs mapper, levelling and explorer again on a recorded run and compares trajectory, map and commands bit by bit.
 ReplayReport replay_run(const std::string& folder, const RunOptions& options);
+/// The same with a scenario other than the recorded one.
+ReplayReport replay_run(const std::string& folder, const Scenario& scenario, const RunOptions& options);
+/// The scenario of a recorded run. Throws InputError for a folder that is none.
+Scenario recorded_scenario(const std::string& folder, const std::vector<Override>& overrides = {});
 
 }  // namespace rubble::scenarios

@@ -1,7 +1,5 @@
 #include "scenarios/run/run.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,13 +14,16 @@
 #include "arenas/truth/visible.h"
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/text/file_name.h"
+#include "base/text/words.h"
 #include "robot/logs/log.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/league_map.h"
+#include "scenarios/run/mission_figures.h"
 #include "scenarios/run/run_folder.h"
 #include "scenarios/run/score_json.h"
+#include "scoring/league/league_victims.h"
 #include "scoring/maps/normalise.h"
-#include "scoring/measures/victims.h"
 #include "scoring/pictures/picture.h"
 #include "scoring/scorecard.h"
 #include "scoring/trajectory/trajectory_error.h"
@@ -35,59 +36,13 @@ using nlohmann::ordered_json;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-double peak_megabytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
-
-/// The keys users' scripts rely on, in order; null until something is known.
-ordered_json empty_score() {
-  ordered_json score;
-  for (const char* key : {"score", "precision", "recall", "psi_m", "aligned", "ate_first_m", "ate_aligned_m", "known",
-                          "victims_found", "victims_total", "sim_s", "wall_s", "real_time_factor", "peak_mb"})
-    score[key] = nullptr;
-  return score;
-}
-
-void add_trajectory_error(ordered_json& json, const Trajectory& estimate, const Trajectory& truth) {
-  const scoring::TrajectoryError error = scoring::trajectory_error(estimate, truth);
-  json["ate_matched"] = error.matched;
-  if (error.matched == 0) return;
-  json["ate_first_m"] = error.ate_first_m;
-  json["ate_aligned_m"] = error.ate_aligned_m;
-}
-
-/// Counts are written without a point.
-ordered_json as_json(double value) {
-  constexpr double kExact = 9007199254740992.0;  ///< 2^53: whole numbers below are exact
-  if (value == std::floor(value) && std::abs(value) < kExact) return static_cast<std::int64_t>(value);
-  return value;
-}
-
-void add_mapper_counts(ordered_json& json, const Core& core) {
-  const slam::MapperCounts& counts = core.mapper().counts();
-  json["area_known_m2"] = known_area(core.mapper().map());
-  json["scans"] = counts.scans;
-  json["scans_mapped"] = counts.mapped;
-  for (const slam::MapperFigure& figure : core.mapper().figures()) json[figure.key] = as_json(figure.value);
-  json["scans_out_of_order"] = counts.out_of_order;
-  json["hits_outside"] = core.mapper().map().dropped_hits();
-}
-
-void add_timing(ordered_json& json, double sim_s, Clock::time_point start) {
-  const double wall = seconds_since(start);
-  json["sim_s"] = sim_s;
-  json["wall_s"] = wall;
-  json["real_time_factor"] = wall > 0.0 ? sim_s / wall : 0.0;
-  json["peak_mb"] = peak_megabytes();
-}
-
-std::string without_timing(const ordered_json& score) {
-  ordered_json kept;
-  for (const auto& [key, value] : score.items())
-    if (!is_timing_key(key)) kept[key] = value;
-  return kept.dump(2);
+/// Trajectories of the mapper against the true one.
+void compare_trajectories(scoring::Evidence& evidence, const slam::Mapper& mapper, const Trajectory& truth) {
+  evidence.estimate = &mapper.trajectory();
+  evidence.live_estimate = &mapper.live_trajectory();
+  evidence.true_path = &truth;
+  evidence.error = scoring::trajectory_error(*evidence.estimate, truth);
+  evidence.live_error = scoring::trajectory_error(*evidence.live_estimate, truth);
 }
 
 std::vector<std::string> broken_expectations(const Scenario& scenario, const ordered_json& score) {
@@ -117,32 +72,45 @@ mrpt::math::TPoint2D in_picture(const scoring::LoadedMap& picture, const mrpt::m
                                     T_model_start.d * easting + T_model_start.e * southing + T_model_start.f});
 }
 
-/// Scores what was written to disk, as a judge would who gets the two files.
-void score_files(ordered_json& json, const RunFolder& folder, const Scenario& scenario, const arenas::Arena& arena,
-                 const std::vector<explore::VictimReport>& reported) {
-  // The scenario may anchor the map on Earth; a rigid alignment does not care.
-  const scoring::LoadedMap picture = scoring::load_map(folder.file("map.tif"));
-  const OccupancyGrid& map = picture.grid;
-  const OccupancyGrid truth = scoring::load_map(folder.file("truth.tif")).grid;
+/// What was written to disk, as a judge gets it.
+struct WrittenMaps {
+  scoring::LoadedMap map;
+  scoring::LoadedMap truth;
+};
+
+/// Scores it. The scenario may anchor the map on Earth; a rigid alignment does not care.
+WrittenMaps score_files(scoring::Evidence& evidence, const RunFolder& folder, const Scenario& scenario) {
+  WrittenMaps files{scoring::load_map(folder.file("map.tif")), scoring::load_map(folder.file("truth.tif"))};
+  evidence.map_read_as = files.map.recognised;
+  evidence.truth_read_as = files.truth.recognised;
+  const OccupancyGrid& map = files.map.grid;
+  const OccupancyGrid& truth = files.truth.grid;
   const scoring::MapScore score = scoring::score_map(map, truth, scenario.scoring);
-  add_map_score(json, score);
-  json["victims_total"] = arena.victims.size();
-  json["victims_reported"] = reported.size();
-  json["victims_found"] = 0;
-  if (!score.aligned) return;
+  evidence.score = score;
+  if (!score.aligned) return files;
   folder.publish({"overlay.png"}, [&](const std::string& path) {
     scoring::write_overlay(path + "overlay.png", map, truth, score.T_truth_map);
   });
   folder.publish({"error.png"}, [&](const std::string& path) {
     scoring::write_error_map(path + "error.png", map, truth, score.T_truth_map, scenario.scoring.tau);
   });
-  std::vector<mrpt::math::TPoint2D> p_picture, p_truth;
-  for (const auto& victim : reported) p_picture.push_back(in_picture(picture, victim.p_map, scenario.geo));
-  for (const auto& victim : arena.victims) p_truth.emplace_back(victim.position.x, victim.position.y);
-  const scoring::VictimScore victims = scoring::score_victims(p_picture, p_truth, score.T_truth_map);
-  json["victims_found"] = victims.found;
-  json["victims_false"] = victims.false_alarms;
-  if (victims.found > 0) json["victims_error_m"] = victims.mean_error_m;
+  return files;
+}
+
+/// What the victims that were reported are worth: their list counts from where the robot started.
+scoring::VictimFigures judge_victims(const WrittenMaps& files, const scoring::MapScore& score, const Scenario& scenario,
+                                     const arenas::Arena& arena, const std::vector<explore::VictimReport>& victims) {
+  scoring::ReportedVictims reported;
+  reported.from = scoring::VictimSource::List;
+  reported.symbols = files.map.symbols.size();
+  for (const auto& victim : victims)
+    reported.victims.push_back({"", in_picture(files.map, victim.p_map, scenario.geo)});
+  scoring::TrueVictims there_are;
+  there_are.path = "arena.yaml";
+  for (const auto& victim : arena.victims)
+    there_are.victims.push_back({victim.name, {victim.position.x, victim.position.y}});
+  return scoring::victim_figures(reported,
+                                 scoring::victim_points(files.map.grid, files.truth.grid, score, reported, there_are));
 }
 
 LoopHooks hooks_of(const RunOptions& options) {
@@ -156,12 +124,12 @@ std::string folder_for(const RunOptions& options, const Scenario& scenario) {
   return options.out.empty() ? next_run_folder("runs", scenario.name, scenario.seed) : options.out;
 }
 
-void finish(RunReport& report, RunFolder& folder, const Scenario& scenario, const RunOptions& options, double sim_s,
-            Clock::time_point start) {
-  report.score["end"] = report.end;
-  const std::string hashed = without_timing(report.score);
-  folder.save_hashes(hashed);
-  add_timing(report.score, sim_s, start);
+void finish(RunReport& report, scoring::Evidence& evidence, RunFolder& folder, const Scenario& scenario,
+            const RunOptions& options, Clock::time_point start) {
+  report.end = evidence.run->end;
+  evidence.machine = scoring::MachineFigures{seconds_since(start), peak_megabytes()};
+  report.score = score_json(evidence);
+  folder.save_hashes(without_machine(report.score).dump(2));
   folder.write("score.json", report.score.dump(2) + "\n");
   folder.close();
   const std::filesystem::path parent = std::filesystem::path(folder.path()).parent_path().filename();
@@ -171,8 +139,6 @@ void finish(RunReport& report, RunFolder& folder, const Scenario& scenario, cons
 }
 
 }  // namespace
-
-bool is_timing_key(const std::string& key) { return key == "wall_s" || key == "real_time_factor" || key == "peak_mb"; }
 
 namespace {
 
@@ -193,6 +159,7 @@ OccupancyGrid truth_to_score_with(const arenas::Arena& arena, const Scenario& sc
 
 RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   const auto start = Clock::now();
+  scenario.mapper.require_permission();
   const std::string yaml = arena_yaml(scenario);
   const arenas::Arena arena =
       arenas::parse_arena(yaml, scenario.arena_file.empty() ? "generated arena" : scenario.arena_file);
@@ -207,9 +174,7 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   folder.save_truth(arena, truth_to_score_with(arena, scenario));
 
   sim::SimRobot simulated(arena, scenario.robot, scenario.sim, scenario.seed);
-  Core core(scenario, scenario.robot, true);
-  RunReport report;
-  report.score = empty_score();
+  Core core(scenario, scenario.robot, true, folder.path());
   LoopHooks hooks = hooks_of(options);
   hooks.share = [&] {
     return simulated.truth().empty() ? 0.0 : simulated.truth().back().stamp.seconds() / scenario.time_limit;
@@ -222,13 +187,19 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
     end = Loop(scenario, folder, hooks).run(recorded ? static_cast<robot::Robot&>(*recorded) : simulated, core);
     if (recorded) recorded->flush();
   }
-  add_trajectory_error(report.score, core.mapper().trajectory(), simulated.truth());
-  score_files(report.score, folder, scenario, arena, core.victims());
-  add_mapper_counts(report.score, core);
-  report.end = end.reason;
+  scoring::Evidence evidence;
+  compare_trajectories(evidence, core.mapper(), simulated.truth());
+  const WrittenMaps files = score_files(evidence, folder, scenario);
+  evidence.map = &files.map.grid;
+  evidence.truth = &files.truth.grid;
+  evidence.victims = judge_victims(files, *evidence.score, scenario, arena, core.victims());
+  evidence.run = run_figures(core, end.sim_s, end.reason);
+  evidence.mission = mission_figures(arena, simulated.truth(), scenario.robot, core);
+  folder.write("decisions.txt", decisions_text(core));
+  RunReport report;
   report.interrupted = end.interrupted;
   report.failure = end.failure;
-  finish(report, folder, scenario, options, end.sim_s, start);
+  finish(report, evidence, folder, scenario, options, start);
   return report;
 }
 
@@ -250,29 +221,32 @@ void name_as_the_log_does(const RunFolder& folder, const robot::ReplayRobot& rob
 
 RunReport map_log(const std::string& log, const Scenario& scenario, const RunOptions& options) {
   const auto start = Clock::now();
+  scenario.mapper.require_permission();
   robot::ReplayRobot robot(log);
   Scenario resolved = scenario;
-  if (resolved.name == "map") resolved.name = "map-" + std::filesystem::path(log).stem().stem().string();
+  if (resolved.name == "map") resolved.name = as_file_name("map-" + std::filesystem::path(log).stem().stem().string());
   RunFolder folder(folder_for(options, resolved), options.replace);
-  folder.write("scenario.yaml", "# rubble map " + log + " (" + robot.format() + ")\n" + resolved_yaml(resolved));
+  folder.write("scenario.yaml",
+               "# rubble map " + one_line(log) + " (" + robot.format() + ")\n" + resolved_yaml(resolved));
   folder.write("versions.json", versions().dump(2) + "\n");
-  Core core(resolved, robot.model(), false);
-  RunReport report;
-  report.score = empty_score();
+  Core core(resolved, robot.model(), false, folder.path());
   if (!robot.reference().empty()) folder.append_truth(robot.reference());
   LoopHooks hooks = hooks_of(options);
   hooks.share = [&] { return robot.progress(); };
   const LoopEnd end = Loop(resolved, folder, hooks).run(robot, core);
-  if (core.mapper().counts().scans == 0 && !end.interrupted)
+  if (core.mapper().counts().scans == 0 && !end.interrupted && end.failure.empty())
     throw InputError(log + ": holds no laser scan; a log to map needs scans (and odometry)");
   name_as_the_log_does(folder, robot, core.mapper());
-  if (!robot.reference().empty()) add_trajectory_error(report.score, core.mapper().trajectory(), robot.reference());
-  add_mapper_counts(report.score, core);
-  report.end = end.interrupted    ? end.reason
-               : robot.was_torn() ? "the log is cut: its torn last frame was dropped"
-                                  : "the log is over";
+  scoring::Evidence evidence;
+  if (!robot.reference().empty()) compare_trajectories(evidence, core.mapper(), robot.reference());
+  evidence.run = run_figures(core, end.sim_s,
+                             end.interrupted || !end.failure.empty() ? end.reason
+                             : robot.was_torn()                      ? "the log is cut: its torn last frame was dropped"
+                                                                     : "the log is over");
+  RunReport report;
   report.interrupted = end.interrupted;
-  finish(report, folder, resolved, options, end.sim_s, start);
+  report.failure = end.failure;
+  finish(report, evidence, folder, resolved, options, start);
   return report;
 }
 

@@ -34,9 +34,6 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options);
 /// Maps a recorded log (SLAM only). Scores the trajectory when the log carries reference poses. Throws InputError.
 RunReport map_log(const std::string& log, const Scenario& scenario, const RunOptions& options);
 
-/// The keys of score.json that depend on the machine, not on the seed.
-bool is_timing_key(const std::string& key);
-
 /// This program's version and what it was built with, for versions.json.
 nlohmann::ordered_json versions();
 

@@ -9,7 +9,8 @@
 #include "arenas/truth/render.h"
 #include "base/digest.h"
 #include "base/error.h"
-#include "base/text/words.h"
+#include "base/image/png.h"
+#include "base/text/csv.h"
 #include "scenarios/run/league_map.h"
 
 namespace rubble::scenarios {
@@ -49,11 +50,18 @@ const std::vector<std::string>& deterministic_artefacts() {
 }
 
 std::string next_run_folder(const std::string& parent, const std::string& name, std::uint64_t seed) {
+  std::error_code error;
+  fs::create_directories(parent, error);
+  if (error)
+    throw InputError(parent + ": cannot be created (" + error.message() + "); give a writable folder with --out");
   for (int number = 1;; ++number) {
     char suffix[16];
     std::snprintf(suffix, sizeof suffix, "-%03d", number);
     const std::string path = parent + "/" + name + "-seed" + std::to_string(seed) + suffix;
-    if (!fs::exists(path)) return path;
+    // To make it is the test: of two runs that start together only one can.
+    if (fs::create_directory(path, error)) return path;
+    if (error && error != std::errc::file_exists)
+      throw InputError(path + ": cannot be created (" + error.message() + "); give a writable folder with --out");
   }
 }
 
@@ -104,6 +112,8 @@ void RunFolder::append(Growing& growing, const Trajectory& trajectory) {
     growing.file << tum_line(trajectory[growing.written]) << '\n';
   growing.file.flush();
   if (!growing.file) cannot_write(path_, std::strerror(errno));
+  std::error_code error;
+  if (!fs::exists(path_, error)) throw RunError(path_ + ": the folder was deleted under way; run again");
 }
 
 void RunFolder::append_truth(const Trajectory& truth) {
@@ -133,7 +143,7 @@ void RunFolder::save_estimate(const slam::Mapper& mapper) {
 void RunFolder::save_map(const Scenario& scenario, const slam::Mapper& mapper,
                          const std::vector<explore::VictimReport>& victims) const {
   LeagueDrawing drawing;
-  drawing.occupied_threshold = scenario.explorer.occupied_threshold;
+  drawing.occupied_threshold = scenario.explorer.occupied_threshold();
   drawing.title = "RoboCup-" + scenario.team + "-" + scenario.mission + "-map.tif";
   drawing.path = mapper.trajectory();
   drawing.victims = victims;

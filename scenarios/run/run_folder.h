@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/trajectory.h"
-#include "explore/explorer.h"
+#include "explore/victim_report.h"
 #include "scenarios/config/scenario.h"
 #include "slam/mapper.h"
 

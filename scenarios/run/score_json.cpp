@@ -1,24 +1,68 @@
 #include "scenarios/run/score_json.h"
 
-namespace rubble::scenarios {
+#include <cmath>
+#include <cstdint>
+#include <type_traits>
 
-void add_map_score(nlohmann::ordered_json& json, const scoring::MapScore& s) {
-  json["score"] = s.score;
-  json["precision"] = s.precision;
-  json["recall"] = s.recall;
-  json["psi_m"] = s.psi_m;
-  json["aligned"] = s.aligned;
-  json["known"] = s.aligned ? nlohmann::ordered_json(s.known) : nlohmann::ordered_json();
-  json["psi_literal_m"] = s.psi_literal_m;
-  json["psi_occupied_map_m"] = s.psi_occupied_map_m;
-  json["psi_occupied_truth_m"] = s.psi_occupied_truth_m;
-  json["psi_free_map_m"] = s.psi_free_map_m;
-  json["psi_free_truth_m"] = s.psi_free_truth_m;
-  json["align_runner_up"] = s.runner_up;
-  json["align_x_m"] = s.T_truth_map.x;
-  json["align_y_m"] = s.T_truth_map.y;
-  json["align_rad"] = s.T_truth_map.phi;
-  json["align_note"] = s.note;
+namespace rubble::scenarios {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json as_json(const scoring::Value& value) {
+  return std::visit(
+      [](const auto& v) -> ordered_json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::monostate>)
+          return nullptr;
+        else
+          return v;
+      },
+      value);
+}
+
+/// Counts are written without a point.
+ordered_json as_json(double value) {
+  constexpr double kExact = 9007199254740992.0;  // 2^53: whole numbers below are exact
+  if (value == std::floor(value) && std::abs(value) < kExact) return static_cast<std::int64_t>(value);
+  return value;
+}
+
+ordered_json places_json(const std::vector<scoring::WrongPlace>& places) {
+  ordered_json json = ordered_json::array();
+  for (const scoring::WrongPlace& place : places)
+    json.push_back({{"x_m", place.p_truth.x},
+                    {"y_m", place.p_truth.y},
+                    {"phantom_m", place.phantom_m},
+                    {"missing_m", place.missing_m}});
+  return json;
+}
+
+}  // namespace
+
+ordered_json score_json(const scoring::Evidence& evidence) {
+  ordered_json json;
+  for (const scoring::Figure& figure : scoring::figures()) json[figure.key] = as_json(figure.get(evidence));
+  json["worst_places"] = evidence.score ? places_json(evidence.score->errors.worst) : ordered_json();
+  if (evidence.run)
+    for (const auto& [key, value] : evidence.run->own) json[key] = as_json(value);
+  return json;
+}
+
+scoring::Value value_of(const ordered_json& json) {
+  if (json.is_boolean()) return json.get<bool>();
+  if (json.is_number_unsigned()) return json.get<std::uint64_t>();
+  if (json.is_number()) return json.get<double>();
+  if (json.is_string()) return json.get<std::string>();
+  return {};
+}
+
+ordered_json without_machine(const ordered_json& score) {
+  ordered_json kept;
+  for (const auto& [key, value] : score.items()) {
+    const scoring::Figure* figure = scoring::find_figure(key);
+    if (figure == nullptr || !figure->is(scoring::kMachine)) kept[key] = value;
+  }
+  return kept;
 }
 
 }  // namespace rubble::scenarios

@@ -2,12 +2,18 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scoring/scorecard.h"
+#include "scoring/figures/figures.h"
 
 namespace rubble::scenarios {
 
-/// Puts the numbers of a scored map under the keys of score.json. `known` is null for a map that was not placed: nobody
-/// can say what of the truth it shows.
-void add_map_score(nlohmann::ordered_json& json, const scoring::MapScore& score);
+/// The content of score.json, of a run and of `rubble score` alike: every row of the table of figures, null where it is
+/// not known; then the worst places (null without a verdict), then the figures of that kind of mapper alone.
+nlohmann::ordered_json score_json(const scoring::Evidence& evidence);
+
+/// A number, word or yes-or-no of score.json as the table of figures has it; lists are unknown.
+scoring::Value value_of(const nlohmann::ordered_json& json);
+
+/// Without what depends on the machine: equal for equal seeds.
+nlohmann::ordered_json without_machine(const nlohmann::ordered_json& score);
 
 }  // namespace rubble::scenarios

@@ -1,4 +1,5 @@
 #include "scoring/alignment/alignment.h"
+#include "base/rigid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/assignment.h"
+#include "base/rigid.h"
 #include "scoring/alignment/matching.h"
 #include "scoring/measures/victims.h"
-#include "scoring/walls/rigid.h"
 
 namespace rubble::scoring {
 namespace {

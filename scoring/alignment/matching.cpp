@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "base/angle.h"
+#include "base/rigid.h"
 #include "base/rng.h"
 #include "scoring/alignment/pose_search.h"
-#include "scoring/walls/rigid.h"
 
 namespace rubble::scoring {
 namespace {

@@ -1,4 +1,5 @@
 #include "scoring/alignment/pose_search.h"
+#include "base/rigid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,10 +46,6 @@ void bend(Hypothesis& h, const WallMatch& match, const Kernels& kernels, double 
 }
 
 }  // namespace
-
-bool same_pose(const TPose2D& a, const TPose2D& b, const TPoint2D& centre, double shift, double turn) {
-  return (a.composePoint(centre) - b.composePoint(centre)).norm() < shift && std::abs(wrap_angle(a.phi - b.phi)) < turn;
-}
 
 std::vector<Hypothesis> examine(const std::vector<PoseGuess>& guesses, const WallMatch& match,
                                 const SearchConfig& config) {

@@ -35,8 +35,4 @@ struct Hypothesis {
 std::vector<Hypothesis> examine(const std::vector<PoseGuess>& guesses, const WallMatch& match,
                                 const SearchConfig& config);
 
-/// The two poses are one as far as ambiguity goes: their images of `centre` and their angles are close.
-bool same_pose(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b, const mrpt::math::TPoint2D& centre,
-               double shift, double turn);
-
 }  // namespace rubble::scoring

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "base/text/csv.h"
 #include "base/text/number_text.h"
 #include "base/text/text_file.h"
 
@@ -25,11 +26,6 @@ std::string number(const char* format, double value) {
   return text;
 }
 
-std::size_t found(const LeaguePoints& points) {
-  return static_cast<std::size_t>(
-      std::count_if(points.victims.begin(), points.victims.end(), [](const VictimPoints& v) { return v.found; }));
-}
-
 }  // namespace
 
 void rank_league(std::vector<LeagueEntry>& entries) {
@@ -42,34 +38,27 @@ void rank_league(std::vector<LeagueEntry>& entries) {
         i > 0 && merit(entries[i]) == merit(entries[i - 1]) ? entries[i - 1].rank : static_cast<int>(i) + 1;
 }
 
+Evidence LeagueEntry::evidence() const {
+  Evidence out;
+  if (!error.empty()) return out;
+  out.score = score;
+  out.victims = victim_figures(reported, points);
+  return out;
+}
+
 std::string league_csv(const std::vector<LeagueEntry>& entries) {
-  std::string out =
-      "rank,team,points,quality,location,judge,score,precision,recall,psi_m,known,aligned,victims_found,victims_total,"
-      "false_alarms,victims_from,victim_symbols,align_source,phantom_m,missing_m,ignored_m,warped_score,warp_m,"
-      "penalised_score,file,note\n";
+  std::vector<std::string> header = {"rank", "team", "points", "judge"};
+  for (const Figure* figure : figures_with(kLeague)) header.push_back(figure->key);
+  header.insert(header.end(), {"file", "note"});
+  std::string out = csv_line(header) + "\n";
   for (const LeagueEntry& e : entries) {
-    out += std::to_string(e.rank) + "," + csv_field(e.team) + ",";
-    if (!e.error.empty()) {
-      out += std::string(22, ',');
-    } else {
-      const LeaguePoints none;
-      const LeaguePoints& points = e.points ? *e.points : none;
-      for (const double value : {e.total(), points.quality, points.location, e.judge})
-        out += number("%.1f", value) + ",";
-      for (const double value : {e.score.score, e.score.precision, e.score.recall, e.score.psi_m, e.score.known})
-        out += number("%.3f", value) + ",";
-      out += e.score.aligned ? "yes," : "no,";
-      out += e.points ? std::to_string(found(points)) + "," + std::to_string(points.victims.size()) + "," +
-                            std::to_string(points.false_alarms) + ","
-                      : ",,,";
-      out += e.victims_from + "," + std::to_string(e.symbols) + "," + e.score.source + ",";
-      for (const double value : {e.score.errors.phantom_m, e.score.errors.missing_m, e.score.errors.ignored_m})
-        out += number("%.2f", value) + ",";
-      out += e.score.warped ? number("%.3f,", e.score.warped_score) + number("%.3f,", e.score.warp_m) +
-                                  number("%.3f,", e.score.penalised_score)
-                            : ",,,";
-    }
-    out += csv_field(e.file) + "," + csv_field(e.note()) + "\n";
+    const bool judged = e.error.empty();
+    std::vector<std::string> fields = {std::to_string(e.rank), e.team, judged ? number("%.1f", e.total()) : "",
+                                       judged ? number("%.1f", e.judge) : ""};
+    const Evidence evidence = e.evidence();
+    for (const Figure* figure : figures_with(kLeague)) fields.push_back(plain_text_of(*figure, figure->get(evidence)));
+    fields.insert(fields.end(), {e.file, e.note()});
+    out += csv_line(fields) + "\n";
   }
   return out;
 }

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "scoring/league/league_points.h"
+#include "scoring/figures/figures.h"
+#include "scoring/league/league_victims.h"
 #include "scoring/scorecard.h"
 
 namespace rubble::scoring {
@@ -16,12 +17,13 @@ struct LeagueEntry {
   std::string file;
   std::string error;  ///< why it cannot be judged; empty: it was
   MapScore score;
+  ReportedVictims reported;
   std::optional<LeaguePoints> points;  ///< of victims the team reported
-  std::string victims_from = "none";   ///< "csv", "symbols" (drawn on the map) or "none"
-  std::size_t symbols = 0;             ///< of victims, recognised on the map
   double judge = 0.0;                  ///< the judge's points
   int rank = 0;                        ///< from 1; equal figures share the better one
   std::string note() const { return error.empty() ? score.note : error; }
+  /// What the table of figures reads.
+  Evidence evidence() const;
   double total() const { return judge + (points ? points->quality + points->location : 0.0); }
 };
 
@@ -31,7 +33,8 @@ struct LeagueEntry {
 /// decide anything else.
 void rank_league(std::vector<LeagueEntry>& entries);
 
-/// The ranking as CSV with a header; figures of unjudged entries empty.
+/// The ranking as CSV with a header: rank, team, points, judge, the figures that the table has for it, file, note.
+/// Figures of unjudged entries are empty.
 std::string league_csv(const std::vector<LeagueEntry>& entries);
 
 inline constexpr double kJudgesMostPerVictim = 30.0;  ///< points

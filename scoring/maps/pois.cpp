@@ -1,4 +1,5 @@
 #include "scoring/maps/pois.h"
+#include "base/text/csv.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -71,32 +72,6 @@ PoiList read_csv(const std::string& path) {
 }
 
 }  // namespace
-
-std::vector<std::string> csv_fields(const std::string& line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (quoted && c == '"' && i + 1 < line.size() && line[i + 1] == '"') {
-      fields.back() += '"';
-      ++i;
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
-
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : c == '\n' || c == '\r' ? " " : std::string(1, c);
-  return out + "\"";
-}
 
 PoiList read_poi_list(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();

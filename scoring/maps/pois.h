@@ -33,10 +33,4 @@ struct PoiList {
 PoiList read_poi_list(const std::string& path);
 inline std::vector<Poi> read_pois(const std::string& path) { return read_poi_list(path).pois; }
 
-/// The fields of one line of CSV: commas between, quotes around a field with commas, doubled inside.
-std::vector<std::string> csv_fields(const std::string& line);
-
-/// A field as CSV wants it.
-std::string csv_field(const std::string& text);
-
 }  // namespace rubble::scoring

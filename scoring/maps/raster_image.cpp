@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -10,6 +11,7 @@
 #include "base/error.h"
 #include "base/sample_range.h"
 #include "scoring/maps/image_damage.h"
+#include "scoring/maps/image_header.h"
 
 namespace rubble::scoring {
 namespace {
@@ -64,8 +66,27 @@ void check_image_size(const std::string& path, std::int64_t width, std::int64_t 
 
 namespace {
 
+/// The header decides before anything is unpacked: a few bytes may stand for gigabytes.
+void check_header(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw InputError(path + ": is a folder; give the path of an image");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path + ": cannot be opened; does the file exist?");
+  if (!std::filesystem::is_regular_file(path, error))
+    throw InputError(path + ": is no file; give the path of an image");
+  constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 30;
+  if (std::filesystem::file_size(path, error) > kLargestFile && !error)
+    throw InputError(path + ": is over 1 GB; scale the map down to at most 10000 x 10000 pixels");
+  std::string bytes(std::size_t{1} << 20, '\0');  // colour profiles may come before the size of a JPEG
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  const auto header = image_header(bytes);
+  if (!header) throw InputError(path + ": not an image that can be read (PNG, PGM, BMP, JPEG), or damaged");
+  check_image_size(path, header->width, header->height);
+}
+
 cv::Mat read_raster(const std::string& path, std::uint32_t& white) {
-  if (!std::ifstream(path)) throw InputError(path + ": cannot be opened; does the file exist?");
+  check_header(path);
   if (is_cut_short(path)) throw InputError(path + ": the image is cut short; copy the file again");
   cv::Mat image;
   const StderrCapture capture;

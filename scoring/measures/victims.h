@@ -29,8 +29,4 @@ VictimScore score_victims(const std::vector<mrpt::math::TPoint2D>& reported,
                           const std::vector<mrpt::math::TPoint2D>& truth, const mrpt::math::TPose2D& T_truth_map,
                           double reach = 1.2);
 
-/// Minimum-cost assignment of every row to a column of its own; rows <= columns. Returns the column of each row.
-/// Kuhn 1955 with potentials, O(rows^2 columns).
-std::vector<std::size_t> assign(const std::vector<std::vector<double>>& cost);
-
 }  // namespace rubble::scoring

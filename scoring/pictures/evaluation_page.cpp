@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/angle.h"
+#include "base/text/html.h"
 #include "base/text/number_text.h"
 #include "scoring/pictures/page_assets.h"
 #include "scoring/walls/overlap.h"
@@ -25,22 +26,6 @@ std::string packed_cells(const OccupancyGrid& grid) {
       ++length;
     out += static_cast<char>(static_cast<unsigned char>(static_cast<int>(cells[i]) * kLongest + length - 1));
     i += static_cast<std::size_t>(length);
-  }
-  return out;
-}
-
-std::string base64(const std::string& bytes) {
-  static const char* const kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto byte = [&](std::size_t k) -> std::uint32_t {
-      return k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0u;
-    };
-    const std::uint32_t bits = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
-    out += kDigits[bits >> 18 & 63];
-    out += kDigits[bits >> 12 & 63];
-    out += i + 1 < bytes.size() ? kDigits[bits >> 6 & 63] : '=';
-    out += i + 2 < bytes.size() ? kDigits[bits & 63] : '=';
   }
   return out;
 }

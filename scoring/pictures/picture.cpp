@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "base/image/png.h"
 #include "scoring/walls/resample.h"
 #include "scoring/walls/wall_field.h"
 
@@ -117,16 +116,6 @@ void draw_legend(Canvas& canvas, const std::vector<LegendEntry>& entries) {
   draw_scale_bar(canvas);
 }
 
-void write(const std::string& path, const cv::Mat& image) {
-  bool written = false;
-  try {
-    written = cv::imwrite(path, image);
-  } catch (const cv::Exception&) {
-    written = false;
-  }
-  if (!written) throw RunError(path + ": cannot write the picture; is the folder there and writable?");
-}
-
 /// Green over yellow to red.
 Colour heat(double share) {
   const double t = std::clamp(share, 0.0, 1.0);
@@ -177,7 +166,7 @@ void write_overlay(const std::string& path, const OccupancyGrid& map, const Occu
                        {kTruthOnly, "only in truth"},
                        {kMapFree, "seen by map only"},
                        {kTruthFree, "not seen by map"}});
-  write(path, canvas.image);
+  write_png(path, canvas.image);
 }
 
 void write_error_map(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
@@ -200,7 +189,7 @@ void write_error_map(const std::string& path, const OccupancyGrid& map, const Oc
     }
   }
   draw_heat_bar(canvas, tau);
-  write(path, canvas.image);
+  write_png(path, canvas.image);
 }
 
 void write_grid_png(const std::string& path, const OccupancyGrid& grid) {
@@ -214,7 +203,7 @@ void write_grid_png(const std::string& path, const OccupancyGrid& grid) {
     }
   }
   draw_legend(canvas, {{kWall, "wall"}, {kBothFree, "free"}, {kUnknown, "unknown"}});
-  write(path, canvas.image);
+  write_png(path, canvas.image);
 }
 
 }  // namespace rubble::scoring

@@ -1,4 +1,6 @@
 #include "scoring/rooms/room_hypotheses.h"
+#include "base/assignment.h"
+#include "base/rigid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -119,8 +121,7 @@ std::vector<Draft> drafts(const std::vector<Room>& map, const std::vector<Room>&
 }
 
 bool same(const TPose2D& a, const TPose2D& b, const TPoint2D& centre, const RoomMatchConfig& config) {
-  return (a.composePoint(centre) - b.composePoint(centre)).norm() < config.distinct_shift &&
-         std::abs(wrap_angle(a.phi - b.phi)) < config.distinct_turn;
+  return same_pose(a, b, centre, config.distinct_shift, config.distinct_turn);
 }
 
 TPoint2D centre_of(const std::vector<Room>& rooms) {
@@ -133,24 +134,12 @@ TPoint2D centre_of(const std::vector<Room>& rooms) {
 
 TPose2D fit_rigid(const PointPairs& pairs) {
   if (pairs.empty()) return {};
-  const double n = static_cast<double>(pairs.size());
-  TPoint2D mean_a(0.0, 0.0);
-  TPoint2D mean_b(0.0, 0.0);
+  std::vector<TPoint2D> from, to;
   for (const auto& [a, b] : pairs) {
-    mean_a += a * (1.0 / n);
-    mean_b += b * (1.0 / n);
+    from.push_back(a);
+    to.push_back(b);
   }
-  double dot = 0.0;
-  double cross = 0.0;
-  for (const auto& [a, b] : pairs) {
-    const TPoint2D u = a - mean_a;
-    const TPoint2D v = b - mean_b;
-    dot += u.x * v.x + u.y * v.y;
-    cross += u.x * v.y - u.y * v.x;
-  }
-  const double phi = std::atan2(cross, dot);
-  const TPoint2D turned = TPose2D(0.0, 0.0, phi).composePoint(mean_a);
-  return {mean_b.x - turned.x, mean_b.y - turned.y, phi};
+  return rubble::fit_rigid(from, to);
 }
 
 RigidHypothesis match_rooms(const std::vector<Room>& map, const std::vector<Room>& truth, const TPose2D& T_truth_map,

@@ -1,9 +1,9 @@
 #include "scoring/rooms/room_picture.h"
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
+#include "base/image/png.h"
 
 namespace rubble::scoring {
 namespace {
@@ -42,7 +42,7 @@ void write_rooms_png(const std::string& path, const OccupancyGrid& map, const Ro
     const Cell c = map.cell(room.centre);
     cv::circle(picture, cv::Point(c.x, map.height() - 1 - c.y), 3, cv::Scalar(50, 46, 44), cv::FILLED, cv::LINE_AA);
   }
-  if (!cv::imwrite(path, picture)) throw RunError(path + ": cannot be written; check the folder and the free space");
+  write_png(path, picture);
 }
 
 }  // namespace rubble::scoring

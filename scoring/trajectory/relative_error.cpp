@@ -14,18 +14,6 @@ namespace {
 
 using mrpt::math::TPose2D;
 
-struct PosePair {
-  TPose2D estimate;
-  TPose2D truth;
-};
-
-std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& truth) {
-  std::vector<PosePair> pairs;
-  for (const StampedPose& stamped : estimate)
-    if (const auto true_pose = pose_at(truth, stamped.stamp)) pairs.push_back({stamped.pose, *true_pose});
-  return pairs;
-}
-
 double length_of(const TPose2D& pose) { return std::hypot(pose.x, pose.y); }
 
 /// b seen from a.

@@ -3,27 +3,13 @@
 #include <cmath>
 #include <vector>
 
-#include "scoring/walls/rigid.h"
+#include "base/rigid.h"
 
 namespace rubble::scoring {
 namespace {
 
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
-
-struct PosePair {
-  TPose2D estimate;
-  TPose2D truth;
-};
-
-std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& truth) {
-  std::vector<PosePair> pairs;
-  for (const StampedPose& stamped : estimate) {
-    const std::optional<TPose2D> true_pose = pose_at(truth, stamped.stamp);
-    if (true_pose) pairs.push_back({stamped.pose, *true_pose});
-  }
-  return pairs;
-}
 
 double rmse(const std::vector<PosePair>& pairs, const TPose2D& T_truth_estimate) {
   double sum = 0.0;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/angle.h"
-#include "scoring/walls/rigid.h"
+#include "base/rigid.h"
 #include "scoring/walls/wall_field.h"
 
 namespace rubble::scoring {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/grid.h"
-#include "scoring/walls/rigid.h"
+#include "base/rigid.h"
 #include "scoring/walls/wall_field.h"
 #include "scoring/walls/warp.h"
 

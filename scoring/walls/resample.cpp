@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scoring/walls/rigid.h"
+#include "base/rigid.h"
 
 namespace rubble::scoring {
 namespace {

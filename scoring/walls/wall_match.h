@@ -75,8 +75,6 @@ class WallMatch {
  private:
   static constexpr double kLeastBreadth = 0.4;      // [m]
   static constexpr std::size_t kMaxSamples = 3000;  // of an area: shares good to 1 %
-  template <int kTerms>
-  Warp refine_terms(Warp warp, double sigma, const Stiffness& stiffness, int iterations) const;
 
   struct Side {
     Side(const OccupancyGrid& grid, double reach, std::size_t max_points);

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "scoring/walls/rigid.h"
+#include "base/rigid.h"
 
 namespace rubble::scoring {
 

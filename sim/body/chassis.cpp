@@ -194,6 +194,19 @@ void Chassis::settle(double dt) {
   state_.stamp = state_.stamp + dt;
 }
 
+void Chassis::place(const TPose2D& pose) {
+  state_.pose = pose;
+  state_.velocity = driven_ = {};
+  ground_ = ground_under(terrain_, model_, pose);
+  attitude_ = Attitude(stance_on(ground_, model_));
+  state_.stance = attitude_.stance();
+  obstacles_.move(body_handle_, band());
+  stops_.clear();
+  free_way_ = 0.0;
+  moved_freely_ = true;
+  enter_box2d();
+}
+
 void Chassis::add_shell(std::vector<arenas::Face>& faces) const {
   const HeightBand height = band();
   const double c = std::cos(state_.pose.phi);

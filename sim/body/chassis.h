@@ -15,17 +15,9 @@
 #include "sim/body/obstacles.h"
 #include "sim/body/servos.h"
 #include "sim/body/terrain.h"
+#include "sim/body/world_state.h"
 
 namespace rubble::sim {
-
-/// Where everything of the robot is at one instant.
-struct WorldState {
-  Stamp stamp;
-  mrpt::math::TPose2D pose;  ///< of the base in the arena, plan view
-  Stance stance;
-  robot::LaserAim aim;  ///< true servo angles
-  PlanVelocity velocity;
-};
 
 /// One robot's running gear and body in the physical world. On its own it moves in doubles; where something is near
 /// enough to be touched, Box2D moves its body.
@@ -49,6 +41,9 @@ class Chassis {
   void leave_box2d(bool others_move, double dt);
   /// Ground, attitude, servos and time after the move.
   void settle(double dt);
+
+  /// Puts the robot somewhere else, at rest.
+  void place(const mrpt::math::TPose2D& pose);
 
   /// The body's upright sides and top as the lasers of other robots see them.
   void add_shell(std::vector<arenas::Face>& faces) const;

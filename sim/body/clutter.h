@@ -7,21 +7,9 @@
 #include "arenas/model/arena.h"
 #include "sim/body/obstacles.h"
 #include "sim/body/terrain.h"
+#include "sim/body/world_state.h"
 
 namespace rubble::sim {
-
-/// A ball as the laser sees it.
-struct Sphere {
-  double x = 0.0, y = 0.0, z = 0.0;  ///< centre [m]
-  double radius = 0.0;               ///< [m]
-};
-
-/// An upright cylinder as the laser sees it: bottle, radio.
-struct Cylinder {
-  double x = 0.0, y = 0.0;            ///< axis [m]
-  double bottom = 0.0, height = 0.0;  ///< [m]
-  double radius = 0.0;                ///< [m]
-};
 
 /// Crumpled paper and loose objects: Box2D circles that slide with friction when pushed and sleep when left alone.
 /// Objects stay upright.

@@ -37,6 +37,9 @@ class World {
 
   void step();
 
+  /// Puts a robot somewhere else, at rest.
+  void place(const mrpt::math::TPose2D& pose, std::size_t robot = 0) { chassis_[robot]->place(pose); }
+
   std::size_t robots() const { return chassis_.size(); }
   const WorldState& state(std::size_t robot = 0) const { return chassis_[robot]->state(); }
   const Drive& drive(std::size_t robot = 0) const { return chassis_[robot]->wheels(); }

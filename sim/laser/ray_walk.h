@@ -5,7 +5,7 @@
 
 #include "arenas/model/arena.h"
 #include "base/grid.h"
-#include "sim/body/clutter.h"
+#include "sim/body/world_state.h"
 #include "sim/laser/rays.h"
 
 namespace rubble::sim {

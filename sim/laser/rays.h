@@ -5,7 +5,7 @@
 
 #include "robot/model.h"
 #include "sim/body/attitude.h"
-#include "sim/body/world.h"
+#include "sim/body/world_state.h"
 
 namespace rubble::sim {
 

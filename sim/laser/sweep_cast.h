@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/body/clutter.h"
+#include "sim/body/world_state.h"
 #include "sim/laser/rays.h"
 #include "sim/laser/scan_faces.h"
 

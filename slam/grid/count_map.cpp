@@ -65,6 +65,22 @@ CountMap::CountMap(int width, int height, double resolution, int max_cells) : ma
   p_occ_.assign(frame_.size(), 0);
 }
 
+void CountMap::assign(const GridFrame& frame, std::vector<std::uint16_t> seen, std::vector<std::uint16_t> occupied) {
+  if (frame.width <= 0 || frame.height <= 0 || !(frame.resolution > 0.0) || seen.size() != frame.size() ||
+      occupied.size() != frame.size())
+    throw std::invalid_argument("CountMap: two planes of the frame's size are needed");
+  std::vector<std::uint8_t> p_occ(frame.size(), 0);
+  for (std::size_t cell = 0; cell < seen.size(); ++cell) {
+    if (occupied[cell] > seen[cell]) throw std::invalid_argument("CountMap: occupied more often than seen");
+    if (occupied[cell] > 0) p_occ[cell] = ratio(occupied[cell], seen[cell]);
+  }
+  frame_ = frame;
+  seen_ = std::move(seen);
+  occupied_ = std::move(occupied);
+  p_occ_ = std::move(p_occ);
+  ++version_;
+}
+
 double CountMap::p_occ(Cell c) const {
   if (!frame_.inside(c)) return 0.0;
   const std::size_t cell = frame_.index(c);

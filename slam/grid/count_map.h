@@ -51,10 +51,15 @@ class CountMap {
   /// Takes back what stamp() with the same arguments counted (but for counts that were halved since).
   void unstamp(const mrpt::math::TPose2D& T_map_base, const ScanPoints& scan);
 
+  /// Takes over a whole map that was counted elsewhere; both planes are frame.size() counts, row-major. Throws
+  /// std::invalid_argument when a plane has another size, the frame is empty, or a cell was occupied more often than
+  /// seen.
+  void assign(const GridFrame& frame, std::vector<std::uint16_t> seen, std::vector<std::uint16_t> occupied);
+
   /// Unknown where never seen; occupied where p_occ >= threshold, free elsewhere.
   OccupancyGrid classify(double threshold = 0.5) const;
 
-  /// Rises with every stamp; tells readers that cached results are old.
+  /// Rises with every stamp or assignment; tells readers that cached results are old.
   std::uint64_t version() const { return version_; }
   /// Hits that lay beyond `max_cells` and were not mapped, since the start.
   std::uint64_t dropped_hits() const { return dropped_hits_; }

@@ -6,7 +6,7 @@
 
 #include "base/grid.h"
 #include "base/rng.h"
-#include "explore/traversable.h"
+#include "explore/plan/traversable.h"
 
 namespace rubble::test {
 

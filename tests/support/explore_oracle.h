@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/grid.h"
-#include "explore/exploration_transform.h"
+#include "explore/plan/exploration_transform.h"
 
 namespace rubble::test {
 

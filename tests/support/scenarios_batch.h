@@ -48,7 +48,7 @@ inline RunRecord record(const std::string& scenario, const std::string& configur
   r.scenario = scenario;
   r.configuration = configuration;
   r.seed = seed;
-  r.status = "ok";
+  r.status = RunStatus::Ok;
   r.end = "explored";
   r.score = {{"score", score}};
   r.folder = "runs/" + r.run_id;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/assignment.h"
 #include "base/error.h"
 #include "scoring/measures/victims.h"
 #include "scoring/rooms/rooms.h"

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/text/text_file.h"
 
 namespace rubble::robot {
 namespace {
@@ -43,6 +44,7 @@ class Inflater {
       status = inflate(&stream_, Z_NO_FLUSH);
       at += offered - stream_.avail_in;
       out.resize(written + kChunk - stream_.avail_out);
+      check_inflated(out.size(), bytes.size(), path);
       const bool starved = at == bytes.size() && stream_.avail_out != 0;
       if (status != Z_STREAM_END && (status == Z_BUF_ERROR || status == Z_OK) && starved)
         throw InputError(path + ": the gzip data stop at byte " + std::to_string(at) + " (after " +
@@ -84,6 +86,7 @@ class Bunzipper {
       status = BZ2_bzDecompress(&stream_);
       at += offered - stream_.avail_in;
       out.resize(written + kChunk - stream_.avail_out);
+      check_inflated(out.size(), bytes.size(), path);
       if (status == BZ_OK && at == bytes.size() && stream_.avail_out != 0)
         throw InputError(path + ": the bzip2 data stop at byte " + std::to_string(at) + " (after " +
                          std::to_string(out.size()) + " bytes of content) without their end; copy the file again");
@@ -100,15 +103,36 @@ class Bunzipper {
 
 }  // namespace
 
+std::size_t most_inflated(std::size_t packed) {
+  constexpr std::size_t kAlways = std::size_t{64} << 20;
+  return std::min(kLargestLog, kAlways + 40 * std::min(packed, kLargestLog));
+}
+
+void check_inflated(std::size_t inflated, std::size_t packed, const std::string& path) {
+  if (inflated <= most_inflated(packed)) return;
+  throw InputError(path + ": its " + std::to_string(packed) + " bytes unpack to more than " +
+                   std::to_string(most_inflated(packed) >> 20) +
+                   " MB, which no log does; if it is one, unpack it first and give the result");
+}
+
 std::string read_file(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) throw InputError(path + ": is a folder; give the log file inside it");
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status))
+    throw InputError(path + ": is a device, not a log; give the path of a log");
+  const std::string too_large = path + ": is over 2 GB, the most that is read at once; cut the log into parts";
+  if (const auto size = std::filesystem::file_size(path, error); !error && size > kLargestLog)
+    throw InputError(too_large);
+  errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path + ": cannot be opened (" + std::strerror(errno) + "); give the path of a log");
   std::string bytes;
   std::vector<char> chunk(std::size_t{1} << 20);
-  while (file.read(chunk.data(), static_cast<std::streamsize>(chunk.size())) || file.gcount() > 0)
+  while (file.read(chunk.data(), static_cast<std::streamsize>(chunk.size())) || file.gcount() > 0) {
     bytes.append(chunk.data(), static_cast<std::size_t>(file.gcount()));
+    if (bytes.size() > kLargestLog) throw InputError(too_large);  // a pipe does not say its size
+  }
   if (file.bad()) throw InputError(path + ": cannot be read to its end; check the disk and copy the file again");
   if (bytes.empty()) throw InputError(path + ": is empty; give a log that holds data");
   return bytes;
@@ -131,15 +155,27 @@ std::string unpacked(std::string bytes, const std::string& path) {
 }
 
 void write_gzip(const std::string& path, const std::string& bytes) {
-  gzFile file = gzopen(path.c_str(), "wb");
-  bool good = file != nullptr;
-  for (std::size_t at = 0; good && at < bytes.size();) {
-    const auto size = static_cast<unsigned>(std::min<std::size_t>(bytes.size() - at, std::size_t{1} << 20));
-    good = gzwrite(file, bytes.data() + at, size) == static_cast<int>(size);
-    at += size;
+  z_stream stream{};
+  constexpr int kMemory = 8;  // zlib's usual
+  if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzipOnly, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
+    throw RunError(path + ": cannot be packed for want of memory");
+  std::string packed;
+  std::size_t at = 0;
+  for (int status = Z_OK; status != Z_STREAM_END;) {
+    constexpr std::size_t kChunk = std::size_t{1} << 20;
+    const std::size_t offered = std::min(bytes.size() - at, kChunk);
+    const std::size_t written = packed.size();
+    packed.resize(written + kChunk);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + at));
+    stream.avail_in = static_cast<uInt>(offered);
+    stream.next_out = reinterpret_cast<Bytef*>(&packed[written]);
+    stream.avail_out = static_cast<uInt>(kChunk);
+    status = deflate(&stream, at + offered == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
+    at += offered - stream.avail_in;
+    packed.resize(written + kChunk - stream.avail_out);
   }
-  if (file != nullptr) good = gzclose(file) == Z_OK && good;
-  if (!good) throw RunError(path + ": cannot be written; check the folder and the free space");
+  deflateEnd(&stream);
+  write_text_file(path, packed);
 }
 
 }  // namespace rubble::robot

@@ -1,10 +1,20 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace rubble::robot {
 
-/// The whole file. Throws InputError: missing, a folder, unreadable, empty.
+/// What a log file may hold, packed or not [bytes].
+constexpr std::size_t kLargestLog = std::size_t{1} << 31;
+
+/// How many bytes `packed` bytes of a compressed log may become: 64 MB and forty times as many, up to kLargestLog. Text
+/// logs shrink to a fifth; what shrinks to a hundredth is no log. Readers check it while they inflate.
+std::size_t most_inflated(std::size_t packed);
+/// Throws InputError when `inflated` is more than that.
+void check_inflated(std::size_t inflated, std::size_t packed, const std::string& path);
+
+/// The whole file. Throws InputError: missing, a folder, a device, unreadable, empty, over 2 GB.
 std::string read_file(const std::string& path);
 
 /// What a gzip or bzip2 file holds; other bytes as they are. Throws InputError that says where the compressed data end

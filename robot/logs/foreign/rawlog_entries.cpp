@@ -3,7 +3,10 @@
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>
 
+#include <new>
+
 #include "base/error.h"
+#include "base/text/words.h"
 
 namespace rubble::robot {
 namespace {
@@ -15,7 +18,7 @@ std::string reason_of(const std::string& text) {
   std::string line = mark == std::string::npos ? text : text.substr(mark + kMark.size());
   line = line.substr(0, line.find('\n'));
   line.erase(0, line.find_first_not_of(' '));
-  return line.substr(0, 200);
+  return one_line(line.substr(0, 200));
 }
 
 }  // namespace
@@ -32,6 +35,8 @@ void each_rawlog_entry(std::string_view bytes, const std::string& path,
         path + ": entry " + std::to_string(entry) + " (byte " + std::to_string(start) + " of the uncompressed rawlog)";
     try {
       object = archive.ReadObject();
+    } catch (const std::bad_alloc&) {
+      throw InputError(place + ": asks for more memory than the file can hold; copy the file again");
     } catch (const std::exception& e) {
       if (stream.getPosition() >= bytes.size())
         throw InputError(place + ": the rawlog ends in the middle of this entry, " + std::to_string(entry) +

@@ -1,10 +1,4 @@
-#include <mrpt/obs/CActionCollection.h>
-#include <mrpt/obs/CActionRobotMovement2D.h>
-#include <mrpt/obs/CActionRobotMovement3D.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
-#include <mrpt/obs/CObservationComment.h>
-#include <mrpt/obs/CObservationOdometry.h>
-#include <mrpt/obs/CSensoryFrame.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +10,7 @@
 #include "robot/logs/foreign/file_bytes.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
 #include "robot/logs/foreign/mrpt_stamp.h"
-#include "robot/logs/foreign/rawlog_entries.h"
+#include "robot/logs/foreign/rawlog_facts.h"
 #include "robot/logs/foreign/rawlog_own.h"
 
 namespace rubble::robot {
@@ -42,34 +36,6 @@ struct Contents {
   std::vector<std::size_t> observed_frame;  ///< how many scans came before each
 };
 
-/// The movement of one action: raw odometry when there is any.
-struct Movement {
-  TPose2D step;
-  double v = 0.0;
-  double w = 0.0;
-};
-
-std::optional<Movement> movement_of(const CActionCollection& actions) {
-  const CActionRobotMovement2D* planar = nullptr;
-  const CActionRobotMovement3D* spatial = nullptr;
-  for (const auto& action : actions) {
-    const auto* candidate = dynamic_cast<const CActionRobotMovement2D*>(action.get_ptr().get());
-    const bool better = candidate != nullptr &&
-                        (planar == nullptr || (planar->estimationMethod != CActionRobotMovement2D::emOdometry &&
-                                               candidate->estimationMethod == CActionRobotMovement2D::emOdometry));
-    if (better) planar = candidate;
-    if (spatial == nullptr) spatial = dynamic_cast<const CActionRobotMovement3D*>(action.get_ptr().get());
-  }
-  if (planar != nullptr) {
-    const bool raw = planar->estimationMethod == CActionRobotMovement2D::emOdometry;
-    const TPose2D step = (raw ? planar->rawOdometryIncrementReading : planar->poseChange->getMeanVal()).asTPose();
-    if (!planar->hasVelocities) return Movement{step};
-    return Movement{step, planar->velocityLocal.vx, planar->velocityLocal.omega};
-  }
-  if (spatial != nullptr) return Movement{mrpt::poses::CPose2D(spatial->poseChange.getMeanVal()).asTPose()};
-  return std::nullopt;
-}
-
 /// Label and place; the yaw may differ, as it takes up the bearings of scans that are not symmetric.
 bool same_scanner(const CObservation2DRangeScan& a, const CObservation2DRangeScan& b) {
   const double tolerance = 1e-9;
@@ -80,39 +46,32 @@ bool same_scanner(const CObservation2DRangeScan& a, const CObservation2DRangeSca
          std::abs(wrap_angle(p.roll - q.roll)) < tolerance;
 }
 
-class Collector {
+class Collector : public RawlogVisitor {
  public:
-  void visit(const mrpt::serialization::CSerializable::Ptr& object) {
-    if (const auto actions = std::dynamic_pointer_cast<CActionCollection>(object)) {
-      if (const auto movement = movement_of(*actions)) drive(*movement);
-    } else if (const auto frame = std::dynamic_pointer_cast<CSensoryFrame>(object)) {
-      for (const auto& observation : *frame) take(observation);
-    } else if (const auto observation = std::dynamic_pointer_cast<CObservation>(object)) {
-      take(observation);
+  explicit Collector(const std::string& path) : path_(path) {}
+
+  void comment(std::size_t entry, const std::string& text) override {
+    try {
+      if (auto model = model_of_comment(text)) contents.own_model = std::move(model);
+    } catch (const BadPayload& e) {
+      throw InputError(path_ + ": entry " + std::to_string(entry) + ": the comment with the robot model is damaged (" +
+                       e.what() + "); export the log again");
     }
   }
 
-  Contents contents;
-
- private:
-  void drive(const Movement& movement) {
+  void movement(std::size_t, const Movement& movement) override {
     now_.pose = wrapped(now_.pose + movement.step);
     now_.v = movement.v;
     now_.w = movement.w;
     contents.has_actions = true;
   }
 
-  void take(const CObservation::Ptr& observation) {
-    if (const auto comment = std::dynamic_pointer_cast<CObservationComment>(observation))
-      if (auto model = model_of_comment(comment->text)) contents.own_model = std::move(model);
-    if (const auto scan = std::dynamic_pointer_cast<CObservation2DRangeScan>(observation)) take_scan(scan);
-    if (const auto odometry = std::dynamic_pointer_cast<CObservationOdometry>(observation)) {
-      contents.observed.push_back(from_mrpt(*odometry));
-      contents.observed_frame.push_back(contents.scans.size());
-    }
+  void odometry(std::size_t, const Odometry& odometry) override {
+    contents.observed.push_back(odometry);
+    contents.observed_frame.push_back(contents.scans.size());
   }
 
-  void take_scan(const CObservation2DRangeScan::Ptr& scan) {
+  void scan(std::size_t, const CObservation2DRangeScan::Ptr& scan) override {
     if (scan->getScanSize() < 2) return;
     if (!contents.scans.empty() && !same_scanner(*scan, *contents.scans.front())) return;
     contents.scans.push_back(scan);
@@ -120,6 +79,10 @@ class Collector {
     contents.driven.push_back(now_);
   }
 
+  Contents contents;
+
+ private:
+  const std::string& path_;
   Odometry now_;
 };
 
@@ -198,7 +161,7 @@ void refuse_impossible(const std::vector<LaserScan>& scans, const std::string& p
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const LaserScan& scan = scans[i];
     const bool fan = scan.ranges.size() < 2 || (std::abs(scan.angle_step) > 1e-6 && std::abs(scan.angle_step) <= kPi);
-    if (scan.range_max > 0.0 && scan.range_max <= kFarthestRange && fan) continue;
+    if (scan.range_max > 0.0 && scan.range_max <= kFarthestRange && fan && std::isfinite(scan.angle_min)) continue;
     throw InputError(path + ": scan " + std::to_string(i) +
                      " (counted from 0) has a range limit that is not within 1000 m, or beams without an angle between"
                      " them; is it in another unit? Cut the rawlog there with: rawlog-edit --cut");
@@ -206,9 +169,8 @@ void refuse_impossible(const std::vector<LaserScan>& scans, const std::string& p
 }
 
 ForeignLog others_log(const CObservation2DRangeScan& first, std::vector<LaserScan>& scans,
-                      std::vector<Odometry>& odometry, const std::string& path) {
+                      std::vector<Odometry>& odometry) {
   ForeignLog log;
-  refuse_impossible(scans, path);
   for (LaserScan& scan : scans) clean_ranges(scan);
   start_at_zero(odometry);
   log.model.name = "rawlog";
@@ -221,15 +183,8 @@ ForeignLog others_log(const CObservation2DRangeScan& first, std::vector<LaserSca
 }  // namespace
 
 ForeignLog read_rawlog_bytes(std::string_view bytes, const std::string& path) {
-  Collector collector;
-  each_rawlog_entry(bytes, path, [&](std::size_t entry, const auto& object) {
-    try {
-      collector.visit(object);
-    } catch (const BadPayload& e) {
-      throw InputError(path + ": entry " + std::to_string(entry) + ": the comment with the robot model is damaged (" +
-                       e.what() + "); export the log again");
-    }
-  });
+  Collector collector(path);
+  visit_rawlog(bytes, path, collector);
   Contents& contents = collector.contents;
   if (contents.scans.empty())
     throw InputError(path + ": the rawlog holds no 2D laser scan; give one with CObservation2DRangeScan entries");
@@ -249,9 +204,13 @@ ForeignLog read_rawlog_bytes(std::string_view bytes, const std::string& path) {
   check_times(scans, path, "laser scan");
   check_times(odometry, path, "odometry");
   check_finite(odometry, path);
+  refuse_impossible(scans, path);
+  const mrpt::math::TPose3D mount = first.sensorPose.asTPose();
+  if (!std::isfinite(mount.x + mount.y + mount.z + mount.yaw + mount.pitch + mount.roll))
+    throw InputError(path + ": the first scan's mount on the robot is not finite; the file is damaged, copy it again");
 
   ForeignLog log =
-      contents.own_model ? own_log(*contents.own_model, scans, odometry) : others_log(first, scans, odometry, path);
+      contents.own_model ? own_log(*contents.own_model, scans, odometry) : others_log(first, scans, odometry);
   log.format = "MRPT rawlog";
   log.reference = read_rawlog_reference(path);
   log.ticks = assemble_ticks(std::move(scans), std::move(odometry));

@@ -45,6 +45,13 @@ const std::map<std::string, Folders>& wings() {
       {"robot/logs", {"robot", "robot/logs/own", "robot/logs/foreign"}},
       {"robot/logs/own", {"robot", "robot/logs"}},
       {"robot/logs/foreign", {"robot", "robot/logs", "robot/logs/own"}},
+      {"robot/protocols", {}},
+      {"robot/drivers", {"robot", "robot/protocols"}},
+      {"robot/drivers/scip", {"robot", "robot/drivers"}},
+      {"robot/drivers/mrpt", {"robot", "robot/drivers"}},
+      {"robot/drivers/probe", {"robot", "robot/drivers", "robot/drivers/scip"}},
+      {"robot/emulators", {"robot", "robot/drivers", "robot/protocols"}},
+      {"robot/emulators/scip", {"robot", "robot/drivers", "robot/drivers/scip", "robot/emulators"}},
       {"arenas/model", {}},
       {"arenas/elements", {"arenas/model"}},
       {"arenas/truth", {"arenas/model"}},
@@ -57,6 +64,12 @@ const std::map<std::string, Folders>& wings() {
       {"slam/scan", {"slam/grid"}},
       {"slam/paper", {"slam", "slam/grid", "slam/scan"}},
       {"slam/robust", {"slam", "slam/grid", "slam/scan"}},
+      {"explore/plan", {}},
+      {"explore/caution", {"explore"}},
+      {"explore/search", {"explore", "explore/plan"}},
+      {"explore/paper", {"explore", "explore/plan", "explore/caution", "explore/search"}},
+      {"slam/process", {"slam", "slam/grid", "slam/scan"}},
+      {"slam/peers", {"slam", "slam/grid", "slam/scan", "slam/process"}},
       {"scoring/maps", {}},
       {"scoring/walls", {}},
       {"scoring/measures", {}},
@@ -64,21 +77,24 @@ const std::map<std::string, Folders>& wings() {
       {"scoring/rooms", {"scoring/walls", "scoring/proposals", "scoring/measures"}},
       {"scoring/alignment", {"scoring/walls", "scoring/proposals", "scoring/rooms", "scoring/measures"}},
       {"scoring/trajectory", {"scoring/walls"}},
-      {"scoring/league", {"scoring", "scoring/maps", "scoring/walls", "scoring/measures"}},
+      {"scoring/figures", {"scoring", "scoring/trajectory"}},
+      {"scoring/league", {"scoring", "scoring/figures", "scoring/maps", "scoring/walls", "scoring/measures"}},
       {"scoring/pictures", {"scoring", "scoring/maps", "scoring/walls"}},
       {"scenarios/config", {}},
       {"scenarios/run", {"scenarios/config"}},
       {"scenarios/batch", {"scenarios/config", "scenarios/run"}},
       {"scenarios/evidence", {"scenarios/batch"}},
+      {"scenarios/hardware", {"scenarios/config", "scenarios/run"}},
   };
   return table;
 }
 
 /// Wings that nobody outside their room may include (tests and benchmarks apart).
 const Folders& insides() {
-  static const Folders table = {"robot/logs/own", "sim/laser",        "sim/body",      "slam/scan",
-                                "slam/paper",     "slam/robust",      "scoring/walls", "scoring/proposals",
-                                "scoring/rooms",  "scoring/alignment"};
+  static const Folders table = {"explore/caution", "explore/paper",     "explore/plan",      "explore/search",
+                                "robot/logs/own",  "scoring/alignment", "scoring/proposals", "scoring/rooms",
+                                "scoring/walls",   "sim/body",          "sim/laser",         "slam/paper",
+                                "slam/peers",      "slam/robust",       "slam/scan"};
   return table;
 }
 
@@ -152,7 +168,32 @@ TEST(IncludeDirection, EveryWingIsInTheTable) {
       const std::string folder = fs::relative(entry.path().parent_path(), top).generic_string();
       if (folder == room) continue;
       EXPECT_EQ(wings().count(folder), 1u) << folder;
+      if (folder != room) {
+        EXPECT_EQ(wings().count(folder), 1u) << folder;
+      }
     }
+}
+
+/// Everything that a header brings in, of our own files and of libraries.
+void gather(const fs::path& top, const std::string& name, Folders& seen) {
+  static const std::regex include(R"re(^\s*#\s*include\s*[<"]([^>"]+)[>"])re");
+  std::ifstream in(top / name);
+  std::string line;
+  std::smatch match;
+  while (std::getline(in, line))
+    if (std::regex_search(line, match, include) && seen.insert(match[1]).second) gather(top, match[1], seen);
+}
+
+TEST(IncludeDirection, CastersDoNotSeeBox2D) {
+  const fs::path top = RUBBLE_SOURCE_DIR;
+  for (const auto& entry : fs::directory_iterator(top / "sim" / "laser")) {
+    Folders seen;
+    gather(top, fs::relative(entry.path(), top).generic_string(), seen);
+    EXPECT_EQ(seen.count("box2d/box2d.h"), 0u) << entry.path();
+  }
+  Folders of_the_world;
+  gather(top, "sim/body/world.h", of_the_world);
+  EXPECT_EQ(of_the_world.count("box2d/box2d.h"), 1u);
 }
 
 TEST(IncludeDirection, APlantedWrongIncludeIsSeen) {

@@ -83,7 +83,8 @@ TEST(Accelerometer, OnThePlatformItSeesWhatTheServosLeave) {
   EXPECT_NEAR(rad_to_deg(std::asin(x / kGravity)), 10.0, 0.1);
 }
 
-/// One mount, read by the controller and by the simulated sensor: with the sensor on the body the servos undo the slope.
+/// One mount, read by the controller and by the simulated sensor: with the sensor on the body the servos undo the
+/// slope.
 TEST(Accelerometer, OnTheBodyControlAndSimulationAgree) {
   const double slope_angle = deg_to_rad(8.0);
   for (const auto mount : {robot::AccelerometerMount::Platform, robot::AccelerometerMount::Body}) {

@@ -81,6 +81,7 @@ TEST(Check, FindsEveryBrokenPart) {
   EXPECT_THAT(with([](Arena& a) { a.balls[0].position = {1.0, 1.0}; }), HasSubstr("in a solid"));
   EXPECT_THAT(with([](Arena& a) { a.victims.push_back(a.victims[0]); }), HasSubstr("named 'anna'"));
   EXPECT_THAT(with([](Arena& a) { a.victims[0].heat = a.victims[0].appearance = false; }), HasSubstr("no cue"));
+  EXPECT_THAT(with([](Arena& a) { a.victims[0].position.x = 400.0; }), HasSubstr("more than 10 m from any floor"));
   EXPECT_THAT(with([](Arena& a) { a.floor_friction = 0.0; }), HasSubstr("friction"));
   EXPECT_THAT(with([](Arena& a) { a.sheets.push_back({{{0, 0}, {0, 1}, {1, 0}}, 0.2}); }), HasSubstr("paper sheet"));
 }

@@ -200,6 +200,18 @@ TEST(Raf, ErrorsNameLineAndColumn) {
 }
 
 /// Any damage to a file ends in an arena or in one line of complaint, never in a crash.
+TEST(Raf, FileWithFarTooManyElementsIsRefusedAtOnce) {
+  std::string many;
+  for (int i = 0; i < 60000; ++i)
+    many += "<element type=\"small_wall\" x=\"" + std::to_string(i % 250) + "\" y=\"0\"/>\n";
+  try {
+    parse_raf(raf(many), "f.raf");
+    FAIL() << "was read";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("more than 5,000 elements"), std::string::npos) << e.what();
+  }
+}
+
 TEST(Raf, DamagedFilesAreRefusedCleanly) {
   const std::string good = raf(kRoom);
   for (std::size_t cut = 0; cut < good.size(); ++cut) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "arenas/truth/canvas.h"
 #include "tests/support/arenas_draw.h"
 
 namespace rubble::arenas {
@@ -44,9 +44,29 @@ TEST(Render, PaperIsBrightAndVictimsAreRed) {
   EXPECT_LT(p[1], 80);
 }
 
-TEST(Render, RefusesAPictureTooLargeToLookAt) {
-  const Arena a = arena({"+---+", "| S |", "+---+"});
-  EXPECT_THROW(render(a, 1e5), InputError);
+TEST(Render, LargeArenaGetsFewerPixelsAMetre) {
+  const Arena a = arena({"+---+---+---+---+---+---+---+---+", "| S   .   .   .   .   .   .   . |", "+---+---+---+---+---+---+---+---+"});
+  const RgbImage image = render(a, 1e5);
+  EXPECT_LE(std::max(image.width, image.height), 6000);
+  EXPECT_GT(std::max(image.width, image.height), 5900);
+}
+
+TEST(Render, PaintedInBandsIsTheWholePicture) {
+  const auto paint = [](int band) {
+    RgbImage picture;
+    for (int row = 0; row == 0 || row < picture.height; row += band) {
+      Canvas canvas({-1.0, -2.0}, {3.0, 2.5}, 37.0, {250, 250, 240}, row, band);
+      if (row == 0) picture = RgbImage(canvas.width(), canvas.height());
+      canvas.fill({{-0.5, -1.9}, {2.9, -1.0}, {1.0, 2.2}}, [](const auto& p) { return Colour{60 * p.x + 60, 90, 30}; });
+      canvas.disc({0.3, 0.4}, 1.1, {200, 30, 30}, 0.6);
+      canvas.arrow({-0.8, -1.5}, {2.0, 2.0}, 0.1, {0, 0, 0}, 0.8);
+      canvas.copy_to(picture);
+    }
+    return picture;
+  };
+  const RgbImage whole = paint(1000);
+  EXPECT_EQ(whole.height, 167);
+  for (const int band : {1, 7, 64, 166, 167}) EXPECT_EQ(paint(band).rgb, whole.rgb) << "bands of " << band << " rows";
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "arenas/generate/generate.h"
 #include "arenas/model/geometry.h"
+#include "base/error.h"
 #include "tests/support/arenas_draw.h"
 
 namespace rubble::arenas {
@@ -181,6 +182,17 @@ TEST(TruthMap, NoWallRunsThroughTheMiddleOfAFreeCell) {
         EXPECT_FALSE(is_middle && map[map.cell(p)] == Occupancy::Free);
       }
     }
+  }
+}
+
+TEST(TruthMap, TooFineForTheArenaIsOneLineWithTheRemedy) {
+  const Arena a = arena({"+---+", "| S |", "+---+"});
+  try {
+    truth_map(a, 1e-4);
+    FAIL() << "a map of half a billion cells was made";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("at most 60 million"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("resolution"), std::string::npos) << e.what();
   }
 }
 

@@ -112,10 +112,10 @@ TEST_F(Batch, FailuresAndHangsAreRecordedAndMadeAgainOnlyWhenAsked) {
   EXPECT_EQ(report.progress.failed, 4u);
   const auto records = load_lines(with_limit.out);
   ASSERT_EQ(records.size(), 8u);
-  EXPECT_EQ(records[1].status + ": " + records[1].error, "failed: arena 2 has no start");
+  EXPECT_EQ(name_of(records[1].status) + ": " + records[1].error, "failed: arena 2 has no start");
   EXPECT_THAT(records[2].error, testing::HasSubstr("signal 6"));
-  EXPECT_EQ(records[3].status, "timeout");
-  EXPECT_EQ(records[4].status + ": " + records[4].error, "failed: laser lost");
+  EXPECT_EQ(records[3].status, RunStatus::TimedOut);
+  EXPECT_EQ(name_of(records[4].status) + ": " + records[4].error, "failed: laser lost");
   EXPECT_EQ(records[4].metric("score"), 0.2) << "a lost robot still has a score";
   EXPECT_TRUE(records[5].ok());
   EXPECT_EQ(run_batch(jobs(8), fake, with_limit).progress.done, 0u);

@@ -58,7 +58,7 @@ TEST_F(Merge, WhatGoesInComesOut) {
   odd.score["psi_m"] = nullptr;
   odd.broken = {"score is 0.25, expected at least 0.5"};
   RunRecord failed = record("a", "c", 4, 0.0);
-  failed.status = "timeout";
+  failed.status = RunStatus::TimedOut;
   batch("out", "", {odd, failed});
   merge({path("out")}, path("all.sqlite"));
   const ResultSet lines = load_results(path("out")), table = load_results(path("all.sqlite"));

@@ -116,7 +116,7 @@ TEST_F(Results, TwoProcessesCannotWriteOneFile) {
 
 TEST_F(Results, OneRecordARunStands) {
   RunRecord failed = record("a", "c", 1, 0.0);
-  failed.status = "failed";
+  failed.status = RunStatus::Failed;
   const RunRecord good = record("a", "c", 1, 0.5), other = record("a", "b", 9, 0.1);
   const auto unique = unique_runs({good, failed, good, other}, "test");
   ASSERT_EQ(unique.size(), 2u);

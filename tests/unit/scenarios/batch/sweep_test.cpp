@@ -1,4 +1,5 @@
 #include "scenarios/batch/sweep.h"
+#include "slam/paper/paper_mapper.h"
 
 #include <gmock/gmock.h>
 
@@ -55,9 +56,10 @@ TEST_F(SweepFile, GridAndNamedSetsMultiply) {
   ASSERT_EQ(all.size(), 2u * 8u * 3u);
   EXPECT_EQ(all[0].scenario.name, "small");
   EXPECT_EQ(all[0].scenario.seed, 1u);
-  EXPECT_FALSE(all[0].scenario.mapper.icp);
-  EXPECT_EQ(all[0].scenario.mapper.particles, 50);
-  EXPECT_EQ(all[0].scenario.mapper.resolution, 0.1) << "a single value sets the key without lengthening the names";
+  EXPECT_FALSE(all[0].scenario.mapper.as<slam::PaperConfig>().icp);
+  EXPECT_EQ(all[0].scenario.mapper.as<slam::PaperConfig>().particles, 50);
+  EXPECT_EQ(all[0].scenario.mapper.as<slam::PaperConfig>().resolution, 0.1)
+      << "a single value sets the key without lengthening the names";
   EXPECT_FALSE(all[23].scenario.levelling.on);
   EXPECT_EQ(all[47].scenario.name, "other");
   EXPECT_EQ(all[47].scenario.seed, 3u);

@@ -1,4 +1,5 @@
 #include "scenarios/config/scenario.h"
+#include "slam/paper/paper_mapper.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -59,7 +60,8 @@ TEST_F(ScenarioFile, ResolvedScenarioReadsBackToItself) {
   EXPECT_FALSE(again.levelling.on);
   EXPECT_EQ(again.seed, 42u);
   EXPECT_EQ(again.arena_seed(), 42u);
-  EXPECT_EQ(again.mapper.gate_turn, scenario.mapper.gate_turn) << "angles must survive the trip through degrees";
+  EXPECT_EQ(again.mapper.as<slam::PaperConfig>().gate_turn, scenario.mapper.as<slam::PaperConfig>().gate_turn)
+      << "angles must survive the trip through degrees";
   EXPECT_EQ(again.robot.laser.angle_min, scenario.robot.laser.angle_min);
   ASSERT_EQ(again.expect.size(), 2u);
   EXPECT_EQ(*again.expect[1].max, 0.4);
@@ -70,7 +72,7 @@ TEST_F(ScenarioFile, OverridesWinOverTheFile) {
   const Scenario s = load_scenario(path, {{"robot.levelling", "false"}, {"seed", "9"}, {"mapper.particles", "50"}});
   EXPECT_FALSE(s.levelling.on);
   EXPECT_EQ(s.seed, 9u);
-  EXPECT_EQ(s.mapper.particles, 50);
+  EXPECT_EQ(s.mapper.as<slam::PaperConfig>().particles, 50);
 }
 
 TEST_F(ScenarioFile, ArenaFollowsTheSeedUnlessItHasItsOwn) {

@@ -87,7 +87,7 @@ TEST_F(BaselineFile, RunsThatLoseANumberAreARegression) {
 TEST_F(BaselineFile, FailedRunsBrokenExpectationsAndLostMetricsAreRegressions) {
   const Baseline baseline = make_baseline("regression", runs(0.0));
   auto now = runs(0.0);
-  now[0].status = "timeout";
+  now[0].status = RunStatus::TimedOut;
   now[3].broken = {"score is 0.2, expected at least 0.5"};
   for (auto& r : now)
     if (r.configuration == "two") r.score.erase("psi_m");

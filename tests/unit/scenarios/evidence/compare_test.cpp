@@ -102,7 +102,7 @@ TEST(Compare, NumbersWithoutADirectionAreOnlyHigherOrLower) {
 TEST(Compare, FailedRunsCountAsNotCompleted) {
   ResultSet a = runs("c", 10, arena_score), b = a;
   for (auto& r : b.runs) {
-    r.status = "timeout";
+    r.status = RunStatus::TimedOut;
     r.score.clear();
   }
   const Comparison c = compare(a, b, "A", "B");

@@ -4,7 +4,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "scenarios/evidence/html.h"
+#include "base/text/html.h"
 #include "scenarios/evidence/svg_plot.h"
 #include "tests/support/scenarios_batch.h"
 
@@ -30,7 +30,7 @@ class Report : public FolderTest {
         set.runs.push_back(r);
         set.timing[r.run_id] = {{"wall_s", 2.0}};
       }
-    set.runs[3].status = "timeout";
+    set.runs[3].status = RunStatus::TimedOut;
     set.runs[3].error = "killed after 60 s";
     set.runs[3].score.clear();
     std::filesystem::create_directories(path("runs/on-1"));
@@ -78,7 +78,7 @@ TEST_F(Report, MarkdownMeasuresEachConfigurationAgainstItsReference) {
 TEST_F(Report, NothingFinishedIsStillAPage) {
   ResultSet set = results();
   for (auto& run : set.runs) {
-    run.status = "failed";
+    run.status = RunStatus::Failed;
     run.score.clear();
   }
   EXPECT_THAT(report_html(set, note_of(set, folder_), folder_), HasSubstr("no numbers for score"));

@@ -3,6 +3,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/image/geotiff.h"
+#include "base/image/png.h"
 #include "base/rng.h"
 #include "scenarios/run/league_map.h"
 #include "scoring/maps/normalise.h"

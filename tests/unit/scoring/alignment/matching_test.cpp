@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "base/angle.h"
+#include "base/rigid.h"
 #include "base/rng.h"
-#include "scoring/walls/rigid.h"
 #include "tests/support/scoring_maze.h"
 
 namespace rubble::scoring {

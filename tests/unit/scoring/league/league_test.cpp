@@ -1,4 +1,5 @@
 #include "scoring/league/league.h"
+#include "base/text/csv.h"
 
 #include <gtest/gtest.h>
 

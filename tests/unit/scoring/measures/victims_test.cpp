@@ -1,4 +1,5 @@
 #include "scoring/measures/victims.h"
+#include "base/assignment.h"
 
 #include <gtest/gtest.h>
 

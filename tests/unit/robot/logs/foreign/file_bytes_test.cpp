@@ -62,5 +62,26 @@ TEST(FileBytes, UnwritablePathIsReported) {
   EXPECT_THROW(write_gzip("/dev/full", long_text()), RunError);
 }
 
+TEST(FileBytes, GzipOfZerosIsRefusedBeforeItFillsTheMemory) {
+  const TempFolder folder;
+  const std::string bomb = gzipped(std::string(std::size_t{100} << 20, '\0'), folder);
+  ASSERT_LT(bomb.size(), 200000u);
+  const std::string message = message_of<InputError>([&] { unpacked(bomb, "a.gz"); });
+  EXPECT_NE(message.find("unpack to more than"), std::string::npos) << message;
+}
+
+TEST(FileBytes, DevicesAreNoLogs) {
+  const std::string message = message_of<InputError>([&] { read_file("/dev/zero"); });
+  EXPECT_EQ(message, "/dev/zero: is a device, not a log; give the path of a log");
+}
+
+TEST(FileBytes, HugeFileIsRefusedByItsSize) {
+  const TempFolder folder;
+  testing::write_bytes(folder.file("a.log"), "x");
+  std::filesystem::resize_file(folder.file("a.log"), kLargestLog + 1);  // sparse
+  const std::string message = message_of<InputError>([&] { read_file(folder.file("a.log")); });
+  EXPECT_NE(message.find("is over 2 GB"), std::string::npos) << message;
+}
+
 }  // namespace
 }  // namespace rubble::robot

@@ -6,6 +6,7 @@
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
+#include <sys/resource.h>
 
 #include "base/error.h"
 #include "robot/logs/foreign/file_bytes.h"
@@ -264,6 +265,83 @@ TEST(Rawlog, CutInsideAnEntrySaysWhere) {
     }
   }
   EXPECT_GT(refused, 80);
+}
+
+/// What a reader makes of damaged bytes: a log (empty message), or one line.
+std::string reading_message(const std::string& bytes) {
+  try {
+    read_rawlog_bytes(bytes, "a.rawlog");
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Rawlog, WrongBeamCountIsOneLine) {
+  const TempFolder folder;
+  testing::record(drive_through_room(3, {}), folder.file("a.log"));
+  export_rawlog(folder.file("a.log"), folder.file("a.rawlog"));
+  std::string bytes = unpacked(testing::read_bytes(folder.file("a.rawlog")), "a.rawlog");
+  const std::size_t count = bytes.find(std::string("\xaa\x02\x00\x00", 4));
+  ASSERT_NE(count, std::string::npos);
+  for (const char top : {'\x01', '\x10', '\x7f', '\xf0'}) {
+    bytes[count + 3] = top;
+    const std::string message = reading_message(bytes);
+    EXPECT_EQ(message.find("a.rawlog: entry "), 0u) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+TEST(Rawlog, AnyDamageIsALogOrOneLineAndBoundedMemory) {
+  const TempFolder folder;
+  testing::record(drive_through_room(2, {}), folder.file("a.log"));
+  export_rawlog(folder.file("a.log"), folder.file("a.rawlog"));
+  const std::string whole[] = {unpacked(testing::read_bytes(folder.file("a.rawlog")), "a.rawlog"),
+                               action_frame_log(true, 3)};
+  const std::uint64_t seed = 15;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  Rng rng(seed, "damage");
+  int refused = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    std::string bytes = whole[trial % 2];
+    for (std::uint32_t n = 1 + rng.below(3); n > 0; --n) {
+      // Mostly where the lengths and names are: near the beginning of an entry.
+      const auto size = static_cast<std::uint32_t>(bytes.size());
+      const std::size_t at = rng.below(2) == 0 ? rng.below(size) : rng.below(std::min<std::uint32_t>(size, 400));
+      bytes[at] = static_cast<char>(rng.below(256));
+    }
+    const std::string message = reading_message(bytes);
+    EXPECT_EQ(message.find('\n'), std::string::npos) << "trial " << trial << ": " << message;
+    if (!message.empty()) ++refused;
+  }
+  EXPECT_GT(refused, 100);
+  rusage use{};
+  getrusage(RUSAGE_CHILDREN, &use);
+#if !defined(__SANITIZE_ADDRESS__)
+  EXPECT_LT(use.ru_maxrss, 512 * 1024) << "kB in the largest child";
+#endif
+}
+
+TEST(Rawlog, TimeBeyondOurRangeIsRefused) {
+  RawlogWriter writer;
+  writer.add(*mrpt_scan(mrpt::Clock::time_point(mrpt::Clock::duration(std::numeric_limits<std::int64_t>::max())), "A"));
+  const std::string message = reading_message(writer.bytes());
+  EXPECT_EQ(message.find("a.rawlog: entry 0: is damaged (a time"), 0u) << message;
+}
+
+TEST(Rawlog, FlagOfAnyByteIsTrueOrFalse) {
+  RawlogWriter writer;
+  auto scan = mrpt_scan(to_mrpt_time(Stamp::from_seconds(1.0)), "LASER");
+  scan->rightToLeft = true;
+  writer.add(*scan);
+  std::string bytes = writer.bytes();
+  const std::string aperture("\x00\x00\x40\x40", 4);  // 3 rad
+  const std::size_t flag = bytes.find(aperture) + 4;
+  ASSERT_EQ(bytes[flag], '\x01');
+  const ForeignLog straight = read_rawlog_bytes(bytes, "a.rawlog");
+  bytes[flag] = '\xff';
+  const ForeignLog odd = read_rawlog_bytes(bytes, "a.rawlog");
+  EXPECT_TRUE(testing::same(odd.ticks.at(0).scans.at(0).ranges, straight.ticks.at(0).scans.at(0).ranges));
 }
 
 TEST(Rawlog, CutFileSaysWhereItEnds) {

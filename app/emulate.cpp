@@ -1,0 +1,90 @@
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "app/commands.h"
+#include "app/scenario_options.h"
+#include "app/terminal.h"
+#include "base/angle.h"
+#include "base/error.h"
+#include "scenarios/hardware/emulation.h"
+
+namespace rubble::app {
+namespace {
+
+struct EmulateArguments {
+  std::string scenario;
+  std::optional<std::uint64_t> seed;
+  std::string urg, base, levelling;
+  std::vector<std::string> faults;  ///< NAME@SECONDS
+  std::string odometry_start;       ///< X,Y,DEG
+  double time_limit = 0.0;
+  std::string truth;
+  std::vector<std::string> sets;
+};
+
+mrpt::math::TPose2D parse_pose(const std::string& text) {
+  mrpt::math::TPose2D pose;
+  double degrees = 0.0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &pose.x, &pose.y, &degrees, &rest) != 3)
+    throw UsageError("--odometry-start " + text + ": needs the form X,Y,DEG, for example --odometry-start 65,0,90");
+  pose.phi = deg_to_rad(degrees);
+  return pose;
+}
+
+int emulate(const EmulateArguments& arguments) {
+  if (arguments.urg.empty() && arguments.base.empty() && arguments.levelling.empty())
+    throw UsageError("emulate: no device is asked for; give --urg, --base or --levelling, see rubble emulate --help");
+  auto overrides = parse_sets(arguments.sets);
+  if (arguments.seed) overrides.emplace_back("seed", std::to_string(*arguments.seed));
+  const scenarios::Scenario scenario = scenarios::load_scenario(find_scenario(arguments.scenario), overrides);
+  scenarios::EmulateOptions options;
+  options.urg = arguments.urg;
+  options.base = arguments.base;
+  options.levelling = arguments.levelling;
+  for (const std::string& fault : arguments.faults) options.faults.push_back(scenarios::parse_fault(fault));
+  if (!arguments.odometry_start.empty()) options.odometry_start = parse_pose(arguments.odometry_start);
+  options.time_limit = arguments.time_limit;
+  options.truth = arguments.truth;
+  options.ready = [](const std::vector<std::string>& ports) {
+    for (const std::string& port : ports) std::printf("%s\n", port.c_str());
+    std::printf("ready\n");
+    std::fflush(stdout);
+  };
+  options.tell = [](const std::string& fault) {
+    std::printf("fault %s\n", fault.c_str());
+    std::fflush(stdout);
+  };
+  catch_interrupts();
+  options.interrupted = interrupted;
+  const scenarios::EmulationReport report = scenarios::emulate(scenario, options);
+  std::printf("%.1f s, %llu scans; ticks began late by at most %.2f ms (95 %%), %.2f ms (worst)\n", report.seconds,
+              static_cast<unsigned long long>(report.scans), 1e3 * report.late_95, 1e3 * report.late_worst);
+  return kOk;
+}
+
+}  // namespace
+
+Command emulate_command() {
+  return {"emulate", "Play the devices of a simulated robot in real time",
+          "Example:\n  rubble emulate yellow --urg tcp:127.0.0.1:10940 --base tcp:127.0.0.1:8101 "
+          "--levelling tcp:127.0.0.1:8102",
+          [](Options& o) -> Action {
+            auto a = std::make_shared<EmulateArguments>();
+            o.argument("scenario", a->scenario, "Scenario file, or the name of a shipped one (default: yellow)",
+                       Options::Need::Optional);
+            o.seed("--seed", a->seed, "Seed of every random choice");
+            o.text("--urg", a->urg, "Offer the laser scanner there: tcp:HOST:PORT or pty:PATH");
+            o.text("--base", a->base, "Offer the base there");
+            o.text("--levelling", a->levelling, "Offer the levelling unit there");
+            o.texts("--fault", a->faults, "NAME@SECONDS: let something go wrong (repeatable); docs/hardware.md");
+            o.text("--odometry-start", a->odometry_start, "X,Y,DEG: where the base's dead reckoning begins [m, deg]");
+            o.number("--time-limit", a->time_limit, 0.0, 1e6, "Ends after so long (default: Ctrl-C ends it) [s]");
+            o.text("--truth", a->truth, "Write the true trajectory to this .tum file");
+            add_sets(o, a->sets);
+            return [a] { return emulate(*a); };
+          }};
+}
+
+}  // namespace rubble::app

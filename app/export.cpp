@@ -1,0 +1,41 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/scenario_options.h"
+#include "base/error.h"
+#include "robot/logs/foreign/mrpt_bridge.h"
+
+namespace rubble::app {
+namespace {
+
+struct ExportArguments {
+  std::string log;
+  std::string out;
+};
+
+int export_log(const ExportArguments& arguments) {
+  namespace fs = std::filesystem;
+  if (fs::is_directory(arguments.out)) throw InputError(arguments.out + ": is a folder; name the .rawlog to write");
+  const fs::path folder = fs::path(arguments.out).parent_path();
+  if (!folder.empty() && !fs::is_directory(folder))
+    throw InputError(arguments.out + ": the folder " + folder.string() + " does not exist; make it first");
+  robot::export_rawlog(recorded_log(arguments.log), arguments.out);
+  std::printf("%s\n", arguments.out.c_str());
+  return kOk;
+}
+
+}  // namespace
+
+Command export_command() {
+  return {"export", "Write a recorded log as MRPT .rawlog", "Example:\n  rubble export runs/latest/log.rlog run.rawlog",
+          [](Options& o) -> Action {
+            auto a = std::make_shared<ExportArguments>();
+            o.argument("log", a->log, "Recorded log: a run folder, or a log file of any format that `map` reads");
+            o.argument("out", a->out, "The .rawlog to write");
+            return [a] { return export_log(*a); };
+          }};
+}
+
+}  // namespace rubble::app

@@ -1,0 +1,42 @@
+#include "app/mapper_choice.h"
+
+#include <cstdio>
+#include <set>
+
+#include "base/text/words.h"
+#include "slam/process/process_mapper.h"
+
+namespace rubble::app {
+
+void add_mapper(Options& options, MapperChoice& choice) {
+  options.text("--mapper-command", choice.command,
+               "Map with this program (docs/mapper_protocol.md): --mapper-command \"python3 my_slam.py\"");
+  options.flag("--allow-commands", choice.allow_commands, "Let a command that stands in a file run");
+}
+
+std::vector<scenarios::Override> with_mapper(const MapperChoice& choice, std::vector<scenarios::Override> overrides) {
+  if (!choice.command.empty())
+    overrides.insert(overrides.begin(), {"mapper", slam::process_mapper_yaml(choice.command)});
+  return overrides;
+}
+
+void permit_command(const MapperChoice& choice, const std::vector<scenarios::Override>& overrides,
+                    scenarios::Scenario& scenario) {
+  const std::string command = scenario.mapper.command();
+  if (command.empty()) return;
+  std::string typed = choice.command;
+  for (const auto& [key, value] : overrides)
+    if (key == "mapper.command") typed = value;
+  if (choice.allow_commands || command == typed) scenario.mapper.permit_command();
+  scenario.mapper.require_permission();
+  tell_command(command);
+}
+
+void tell_command(const std::string& command) {
+  static std::set<std::string> told;
+  if (!told.insert(command).second) return;
+  std::printf("%-30s %s\n", "mapper command", one_line(command).c_str());
+  std::fflush(stdout);
+}
+
+}  // namespace rubble::app

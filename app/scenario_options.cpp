@@ -1,0 +1,82 @@
+#include "app/scenario_options.h"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "base/error.h"
+
+namespace rubble::app {
+namespace {
+
+/// `name`, unless it is the bare name of a file in `folder`.
+std::string find_shipped(const std::string& name, const std::string& folder) {
+  namespace fs = std::filesystem;
+  const std::string shipped = folder + "/" + name + ".yaml";
+  return !fs::exists(name) && name.find('/') == std::string::npos && fs::exists(shipped) ? shipped : name;
+}
+
+}  // namespace
+
+void add_sets(Options& options, std::vector<std::string>& sets) {
+  options.texts("--set", sets, "Override one value: --set key.key=value (repeatable)");
+}
+
+std::vector<scenarios::Override> parse_sets(const std::vector<std::string>& sets) {
+  std::vector<scenarios::Override> overrides;
+  for (const auto& set : sets) {
+    const auto equals = set.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw UsageError("--set " + set + ": needs the form key.key=value, for example --set robot.levelling=false");
+    overrides.emplace_back(set.substr(0, equals), set.substr(equals + 1));
+  }
+  return overrides;
+}
+
+std::vector<scenarios::Override> parse_sweep_sets(const std::vector<std::string>& sets) {
+  const std::vector<scenarios::Override> overrides = parse_sets(sets);
+  for (const auto& [key, value] : overrides)
+    if (key == "seed" || key == "name")
+      throw UsageError("--set " + key + "=" + value +
+                       ": cannot be the same in every run; seeds and names come from the sweep file");
+  return overrides;
+}
+
+void RunFolderOptions::declare(Options& options) {
+  options.text("--out", out, "Folder for the results (default: runs/NAME-seedN-NUMBER)");
+  options.flag("--force", force, "Replace an existing run folder");
+  add_mapper(options, mapper);
+  add_sets(options, sets);
+}
+
+std::vector<scenarios::Override> RunFolderOptions::overrides() const {
+  auto all = parse_sets(sets);
+  if (seed) all.emplace_back("seed", std::to_string(*seed));
+  return with_mapper(mapper, all);
+}
+
+std::string recorded_log(const std::string& path) {
+  const std::string inside = path + "/log.rlog";
+  return std::filesystem::exists(inside) ? inside : path;
+}
+
+std::string shipped_folder(const std::string& kind) {
+  namespace fs = std::filesystem;
+  if (const char* home = std::getenv("RUBBLE_HOME")) return std::string(home) + "/" + kind;
+  std::error_code error;
+  const fs::path installed = fs::read_symlink("/proc/self/exe", error).parent_path() / "../share/rubble" / kind;
+  if (fs::is_directory(installed, error)) return installed.lexically_normal().string();
+  return std::string(RUBBLE_SOURCE_DIR) + "/" + kind;
+}
+
+std::string find_scenario(const std::string& name) {
+  return name.empty() ? shipped_folder() + "/yellow.yaml" : find_shipped(name, shipped_folder());
+}
+
+std::string find_robot(const std::string& name) {
+  const std::string folder = shipped_folder("robots");
+  return name.empty() ? folder + "/pioneer_urg.yaml" : find_shipped(name, folder);
+}
+
+std::string find_sweep(const std::string& name) { return find_shipped(name, shipped_folder() + "/sweeps"); }
+
+}  // namespace rubble::app

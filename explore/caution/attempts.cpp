@@ -1,0 +1,29 @@
+#include "explore/caution/attempts.h"
+
+#include <cmath>
+
+#include "base/planar.h"
+
+namespace rubble::explore {
+namespace {
+
+constexpr double kSameTarget = 0.5;      ///< [m]
+constexpr double kBaseBudget = 20.0;     ///< [s]
+constexpr double kSecondsPerMetre = 10;  ///< a quarter of the usual cruise speed
+
+}  // namespace
+
+bool Attempts::overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt) {
+  for (std::size_t i = 0; i < accounts_.size(); ++i) {
+    Account& account = accounts_[i];
+    if (distance(account.target, target) > kSameTarget) continue;
+    account.budget -= dt;
+    if (account.budget >= 0.0) return false;
+    accounts_.erase(accounts_.begin() + static_cast<std::ptrdiff_t>(i));
+    return true;
+  }
+  accounts_.push_back({target, kBaseBudget + kSecondsPerMetre * cost - dt});
+  return false;
+}
+
+}  // namespace rubble::explore

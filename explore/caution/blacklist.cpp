@@ -1,0 +1,44 @@
+#include "explore/caution/blacklist.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/planar.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+
+constexpr Stamp kForever{std::numeric_limits<std::int64_t>::max()};
+
+bool holds(const TPoint2D& centre, double radius, const TPoint2D& p) { return distance(p, centre) <= radius; }
+
+}  // namespace
+
+void Blacklist::bar(const TPoint2D& p_map, double radius, Stamp until) { entries_.push_back({p_map, radius, until}); }
+
+void Blacklist::bar_for_good(const TPoint2D& p_map, double radius) { bar(p_map, radius, kForever); }
+
+bool Blacklist::barred(const TPoint2D& p_map, Stamp now) const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [&](const Entry& e) { return now < e.until && holds(e.p_map, e.radius, p_map); });
+}
+
+int Blacklist::times_barred(const TPoint2D& p_map) const {
+  return static_cast<int>(
+      std::count_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return holds(e.p_map, e.radius, p_map); }));
+}
+
+bool Blacklist::pardon(Stamp now) {
+  bool any = false;
+  for (Entry& e : entries_) {
+    if (e.until <= now || e.until == kForever) continue;
+    e.until = now;
+    any = true;
+  }
+  return any;
+}
+
+}  // namespace rubble::explore

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+#include <mrpt/math/TPose2D.h>
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "base/stamp.h"
+#include "explore/caution/motion_watch.h"
+#include "robot/commands.h"
+
+namespace rubble::explore {
+
+/// How the robot gets free of what holds it: back the way it came for half a metre; where that fails turns, other
+/// directions and the same again, until it has moved away or everything was tried.
+class Escape {
+ public:
+  enum class Result { UnderWay, Free, Failed };
+  /// What stopped the robot was met driving forwards, backwards, or turning.
+  enum class Met { Forwards, Backwards, Turning };
+  /// Whether half a body has room about a pose, as far as is known.
+  using RoomFn = std::function<bool(const mrpt::math::TPose2D&)>;
+
+  explicit Escape(double turn_speed) : turn_speed_(turn_speed) {}
+
+  void begin(Met met, const mrpt::math::TPose2D& T_map_base, Stamp now);
+  /// One tick of `dt` [s] under the command that was in force. `trail`: where the robot came along, oldest first.
+  Result step(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, double dt, Stamp now,
+              const std::vector<mrpt::math::TPoint2D>& trail, const RoomFn& room);
+  /// The command for the tick to come.
+  const robot::Drive& drive() const { return drive_; }
+
+ private:
+  enum class Move { Back, Ahead, Left, Right };
+
+  void start_move(const mrpt::math::TPose2D& T_map_base, Stamp now);
+  robot::Drive command(const mrpt::math::TPose2D& T_map_base, const std::vector<mrpt::math::TPoint2D>& trail) const;
+
+  double turn_speed_;  ///< [rad/s]
+  std::vector<Move> moves_;
+  std::size_t at_ = 0;
+  MotionWatch watch_;
+  mrpt::math::TPose2D begun_;       ///< where the escape began
+  mrpt::math::TPose2D move_begun_;  ///< where the present move began
+  Stamp move_until_ = Stamp::never();
+  robot::Drive drive_;
+};
+
+}  // namespace rubble::explore

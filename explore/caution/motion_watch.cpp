@@ -1,0 +1,26 @@
+#include "explore/caution/motion_watch.h"
+
+#include <cmath>
+
+#include "base/planar.h"
+
+namespace rubble::explore {
+
+void MotionWatch::reset() { *this = MotionWatch(config_); }
+
+bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, double dt) {
+  const bool moved = length(T_map_base.x - reference_.x, T_map_base.y - reference_.y) > config_.moved ||
+                     std::abs(wrap_angle(T_map_base.phi - reference_.phi)) > config_.turned;
+  if (!has_reference_ || moved) {
+    reference_ = T_map_base;
+    has_reference_ = true;
+    way_ = 0.0;
+    turn_ = 0.0;
+  }
+  way_ += std::abs(commanded.v) * dt;
+  turn_ += std::abs(commanded.w) * dt;
+  stalled_for_ = stalled ? stalled_for_ + dt : 0.0;
+  return way_ > config_.patience || turn_ > config_.turn_patience || stalled_for_ > config_.stall_time;
+}
+
+}  // namespace rubble::explore

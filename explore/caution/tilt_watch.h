@@ -1,0 +1,38 @@
+#pragma once
+
+#include "base/angle.h"
+#include "robot/measurements.h"
+
+namespace rubble::explore {
+
+struct TiltWatchConfig {
+  double too_steep = deg_to_rad(18.0);  ///< more than the ramps of an arena: a step field, or a fall to come [rad]
+  double patience = 0.3;                ///< for so long [s]
+  double smoothing = 0.2;               ///< time constant: levelling answers to bumps as well [s]
+};
+
+/// How the body leans. The servos hold the laser level, so their angles are the body's tilt, negated.
+class TiltWatch {
+ public:
+  explicit TiltWatch(const TiltWatchConfig& config = {}) : config_(config) {}
+
+  /// Takes in the servo angles of one tick of `dt` [s].
+  void update(const robot::Inputs& inputs, double dt);
+  /// Nose-up positive [rad].
+  double pitch() const { return pitch_; }
+  /// Left side up positive [rad].
+  double roll() const { return roll_; }
+  /// Of the ground below the robot against the horizontal [rad].
+  double slope() const;
+  /// The robot leans more than it should, and has for a while.
+  bool too_steep() const { return steep_for_ > config_.patience; }
+  void reset() { steep_for_ = 0.0; }
+
+ private:
+  TiltWatchConfig config_;
+  double pitch_ = 0.0;
+  double roll_ = 0.0;
+  double steep_for_ = 0.0;  ///< [s]
+};
+
+}  // namespace rubble::explore

@@ -1,0 +1,41 @@
+#include "explore/paper/home_way.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace rubble::explore {
+namespace {
+
+constexpr double kPeriod = 4.0;       ///< the way home is measured this often [s]
+constexpr double kUsualSpeed = 0.22;  ///< turns and stops included, until the robot's own is known [m/s]
+constexpr double kSlowest = 0.08;     ///< [m/s]
+constexpr double kUsualTime = 60.0;   ///< the usual speed counts as if driven for so long [s]
+constexpr double kSpare = 1.4;        ///< the way may take so much longer than the mean speed says
+constexpr double kSpareTime = 25.0;   ///< and this [s]
+
+}  // namespace
+
+void HomeWay::moved(double way, double dt, bool driving) {
+  if (!driving) return;
+  way_ += way;
+  time_ += dt;
+}
+
+bool HomeWay::due(Stamp now) {
+  if (start_ == Stamp::never()) start_ = now;
+  if (time_limit_ <= 0.0 || now < next_) return false;
+  next_ = now + kPeriod;
+  return true;
+}
+
+double HomeWay::left(Stamp now) const {
+  if (time_limit_ <= 0.0 || start_ == Stamp::never()) return std::numeric_limits<double>::infinity();
+  return time_limit_ - (now - start_);
+}
+
+bool HomeWay::must_turn_back(double way_home, Stamp now) const {
+  const double speed = std::max(kSlowest, (way_ + kUsualSpeed * kUsualTime) / (time_ + kUsualTime));
+  return left(now) < kSpare * way_home / speed + kSpareTime;
+}
+
+}  // namespace rubble::explore

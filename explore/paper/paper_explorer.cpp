@@ -1,0 +1,383 @@
+#include "explore/paper/paper_explorer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "base/trajectory.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using robot::Drive;
+
+constexpr double kVisited = 0.30;                ///< closer to its target the robot has been there [m]
+constexpr double kLookTurn = deg_to_rad(270.0);  ///< with a 240 deg scanner more than once around [rad]
+constexpr double kTrailStep = 0.15;              ///< [m]
+constexpr double kSameThing = 0.15;              ///< a hit this close to a wall of the map is that wall [m]
+constexpr double kTrailRadius = 0.20;            ///< [m]
+constexpr double kNearFrontier = 1.0;            ///< frontier this close at the start: turn to see it [m]
+constexpr int kMaxPardons = 2;                   ///< times that barred targets are tried again before giving up
+constexpr double kSearchReplan = 2.0;            ///< on the way to a viewpoint [s]
+constexpr double kArrivedReplan = 0.3;           ///< standing at the end of the way [s]
+constexpr double kCueAge = 1.2;                  ///< an unconfirmed cue younger than this is worth waiting for [s]
+constexpr double kUnsure = 0.40;                 ///< a pose that errs by so much places no victim [m]
+constexpr double kSameTarget = 0.5;              ///< [m]
+constexpr double kTurningRoom = 0.06;            ///< [m]
+
+TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
+
+std::string text(const TPoint2D& p) {
+  std::array<char, 40> line{};
+  std::snprintf(line.data(), line.size(), "(%.1f, %.1f)", p.x, p.y);
+  return line.data();
+}
+
+std::string target_text(ExplorerState state, const Plan& plan) {
+  const char* what = state == ExplorerState::GoingHome   ? "home"
+                     : state == ExplorerState::Searching ? "a place to search from"
+                                                         : "the frontier";
+  std::array<char, 40> cost{};
+  std::snprintf(cost.data(), cost.size(), ", cost %.1f m", plan.cost);
+  return std::string("drives to ") + what + " at " + text(plan.target) + cost.data();
+}
+
+double way_of(const Plan& plan) {
+  double way = 0.0;
+  for (std::size_t i = 1; i < plan.path.size(); ++i) way += distance(plan.path[i - 1].p_map, plan.path[i].p_map);
+  return way;
+}
+
+double way_of(const std::vector<TPoint2D>& points) {
+  double way = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) way += distance(points[i - 1], points[i]);
+  return way;
+}
+
+}  // namespace
+
+PaperExplorer::PaperExplorer(const robot::RobotModel& model, const PaperExplorerConfig& config, const Mission& mission)
+    : model_(model),
+      config_(config),
+      planner_(config.planner),
+      follower_(model, config.follower),
+      search_(config.victims),
+      // The robot turns on the spot there, so its swing circle must be free, with room for stopping a little beside
+      // it.
+      floor_search_(config.search, std::max(config.planner.transform.d_min, model.swing_radius()) + kTurningRoom),
+      path_watch_(model),
+      looking_(model, config.follower.turn_speed),
+      tilt_(config.tilt),
+      felt_(config.felt),
+      escape_(config.follower.turn_speed),
+      home_way_(mission.time_limit) {}
+
+robot::Commands PaperExplorer::next(const slam::Mapper& mapper, const robot::Inputs& inputs) {
+  observe(mapper, inputs);
+  commanded_ = decide(mapper);
+  return {commanded_, {}};
+}
+
+/// Takes in what arrived in this tick.
+void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inputs) {
+  dt_ = now_ == Stamp::never() ? 0.0 : inputs.now - now_;
+  now_ = inputs.now;
+  const TPose2D before = pose_;
+  pose_ = mapper.pose();
+  turned_ = wrap_angle(pose_.phi - before.phi);
+  if (mapper.revision() != revision_) follow_map(mapper);
+  if (!inputs.scans.empty()) last_scan_ = now_;
+  if (!inputs.odometry.empty()) stalled_ = inputs.odometry.back().stalled;
+  tilt_.update(inputs, dt_);
+  for (const robot::VictimCue& cue : inputs.cues) hear(mapper, cue);
+  const bool on_its_way = state_ == ExplorerState::Driving || state_ == ExplorerState::GoingHome;
+  home_way_.moved(distance(position(before), position(pose_)), dt_, on_its_way);
+  if (state_ == ExplorerState::Starting || state_ == ExplorerState::BackingUp) return;
+  felt_.passed(pose_, model_);
+  if (!trail_.empty() && distance(trail_.back(), position(pose_)) <= kTrailStep) return;
+  trail_anchors_.push_back({now_, pose_});
+  trail_.push_back(position(pose_));
+}
+
+/// A cue seen while the pose is unsure would put a victim where none is.
+void PaperExplorer::hear(const slam::Mapper& mapper, const robot::VictimCue& cue) {
+  const Eigen::Matrix3d covariance = mapper.covariance();
+  if (covariance(0, 0) + covariance(1, 1) > kUnsure * kUnsure) return;
+  const Anchor anchor{cue.stamp, mapper.pose_at(cue.stamp).value_or(pose_)};
+  const auto same_side = [this](const TPoint2D& a, const TPoint2D& b) {
+    const Cell from = last_floor_.cells.cell(a);
+    const Cell to = last_floor_.cells.cell(b);
+    if (!last_floor_.cells.inside(from) || !last_floor_.cells.inside(to)) return true;
+    return in_sight(last_floor_, from, to);
+  };
+  const std::size_t before = search_.reports().size();
+  search_.add(cue, anchor, same_side);
+  if (search_.reports().size() > before) note("victim " + std::to_string(search_.reports().back().id) + " confirmed");
+}
+
+/// The mapper moved poses of the past: all that is kept moves with them, and the way is planned anew.
+void PaperExplorer::follow_map(const slam::Mapper& mapper) {
+  revision_ = mapper.revision();
+  home_.follow(mapper);
+  for (std::size_t i = 0; i < trail_.size(); ++i) {
+    trail_anchors_[i].follow(mapper);
+    trail_[i] = position(trail_anchors_[i].T_map_base);
+  }
+  felt_.follow(mapper);
+  search_.follow(mapper);
+  last_floor_ = floor_now(mapper, {});
+  floor_search_.follow(last_floor_, mapper);
+  target_.reset();
+  plan_forced_ = true;
+}
+
+void PaperExplorer::note(const std::string& why) {
+  if (decisions_.empty() || decisions_.back().why != why) decisions_.push_back({now_, why});
+}
+
+Drive PaperExplorer::decide(const slam::Mapper& mapper) {
+  if (state_ == ExplorerState::Finished) return {};
+  if (last_scan_ == Stamp::never() || now_ - last_scan_ > config_.scan_timeout) return {};
+  switch (state_) {
+    case ExplorerState::Starting:
+      return start(mapper);
+    case ExplorerState::BackingUp:
+      return escape();
+    default:
+      return drive(mapper);
+  }
+}
+
+/// Waits for the first scan in the map; when frontier is close by, the scanner's blind sector is worth a turn.
+Drive PaperExplorer::start(const slam::Mapper& mapper) {
+  if (mapper.counts().mapped == 0) return {};
+  state_ = ExplorerState::Driving;
+  home_ = {now_, pose_};
+  const TPoint2D here = position(pose_);
+  const Traversable floor = floor_now(mapper, {});
+  const std::vector<Cell> frontier = frontier_cells(floor);
+  const auto near = std::count_if(frontier.begin(), frontier.end(),
+                                  [&](Cell c) { return distance(floor.cells.centre(c), here) < kNearFrontier; });
+  if (near >= config_.planner.min_frontier_cells && config_.first_turn > 0.0) look_around(config_.first_turn, true);
+  return {};
+}
+
+Drive PaperExplorer::drive(const slam::Mapper& mapper) {
+  mark_searched();
+  if (holding_still()) return {};
+  if (tilt_.too_steep() || watch_.stuck(pose_, commanded_, stalled_, dt_)) {
+    got_stuck(tilt_.too_steep() ? "it leans too much here" : stalled_ ? "the motors stall" : "it does not move");
+    return {};
+  }
+  check_path(mapper);
+  const bool to_target = target_ && (state_ == ExplorerState::Driving || state_ == ExplorerState::Searching);
+  if (to_target && attempts_.overdrawn(*target_, target_cost_, dt_)) {
+    if (state_ == ExplorerState::Searching) floor_search_.give_up_subject(last_floor_);
+    bar_target(*target_);
+  }
+  if (state_ == ExplorerState::Searching && follower_.arrived() && !looking_.active() &&
+      now_ - last_plan_ > kArrivedReplan)
+    plan_forced_ = true;
+  if (must_turn_back()) go_home("the time left is for the way home");
+  if (plan_forced_ || now_ >= next_plan_) replan(mapper);
+  if (state_ == ExplorerState::Finished) return {};
+  if (looking_.active()) {
+    const std::optional<Drive> turn = looking_.turn(turned_, now_);
+    plan_forced_ = plan_forced_ || !turn;
+    return turn.value_or(Drive{});
+  }
+  if (path_watch_.waits(now_)) return {};
+  return path_watch_.limited(follower_.drive(pose_), now_);
+}
+
+Traversable PaperExplorer::floor_now(const slam::Mapper& mapper, const std::vector<TPoint2D>& hits) const {
+  Traversable floor = traversable(mapper.map(), config_.occupied_threshold);
+  free_body(floor, pose_, model_.length, model_.width, 0.0);
+  free_trail(floor, trail_, kTrailRadius);
+  add_obstacles(floor, hits, kSameThing);
+  add_obstacles(floor, felt_.points(now_), kSameThing);
+  measure_clearance(floor, planner_.clearance_cap());
+  return floor;
+}
+
+Plan PaperExplorer::plan_on(const Traversable& floor) {
+  if (state_ == ExplorerState::GoingHome) return planner_.to_point(floor, pose_, position(home_.T_map_base), 0.15);
+  if (state_ == ExplorerState::Searching) return plan_search(floor);
+  return planner_.to_frontier(
+      floor, pose_, [this](const TPoint2D& p) { return blacklist_.barred(p, now_); }, target_);
+}
+
+void PaperExplorer::replan(const slam::Mapper& mapper) {
+  if (!plan_forced_ && mapper.map().version() == planned_version_) return;
+  const bool new_map = mapper.map().version() != planned_version_;
+  plan_forced_ = false;
+  planned_version_ = mapper.map().version();
+  last_plan_ = now_;
+  next_plan_ = now_ + (state_ == ExplorerState::Searching ? kSearchReplan : config_.replan_period);
+
+  const std::vector<TPoint2D>& new_things = path_watch_.obstacles(now_);
+  last_floor_ = floor_now(mapper, new_things);
+  Plan plan = plan_on(last_floor_);
+  if (!plan.found && !new_things.empty()) {
+    // The map shows a way, the newest scans do not: go and see, slowly.
+    last_floor_ = floor_now(mapper, {});
+    plan = plan_on(last_floor_);
+    if (plan.found) path_watch_.creep(now_);
+  }
+  frontier_left_ = plan.frontier_left;
+  if (plan.found) {
+    accept(std::move(plan));
+  } else {
+    follower_.clear();
+    target_.reset();
+    if (new_map) ++failed_plans_;
+    nothing_left();
+  }
+  show_path();
+}
+
+void PaperExplorer::accept(Plan plan) {
+  failed_plans_ = 0;
+  looks_in_vain_ = 0;
+  const bool near = distance(plan.target, position(pose_)) < kVisited;
+  if (state_ == ExplorerState::GoingHome) {
+    if (distance(position(home_.T_map_base), position(pose_)) < kVisited) return finish(MissionEnd::Home, "home again");
+  } else if (state_ == ExplorerState::Searching) {
+    if (distance(plan.target, position(pose_)) < kAtViewpoint) return face_subject();
+  } else if (near) {
+    return visited_in_vain(plan.target);
+  }
+  if (looking_.active() && !looking_.to_the_end()) looking_.end();
+  if (!target_ || distance(*target_, plan.target) > kSameTarget) {
+    target_cost_ = plan.cost;
+    note(target_text(state_, plan));
+  }
+  target_ = plan.target;
+  path_d_min_ = plan.d_min;
+  path_watch_.unblock();
+  follower_.set_path(std::move(plan.path));
+}
+
+/// The robot stands at a frontier that does not go away: look around, then bar it.
+void PaperExplorer::visited_in_vain(const TPoint2D& where) {
+  follower_.clear();
+  if (looking_.active()) return;
+  if (!looked_from_ || distance(*looked_from_, position(pose_)) > kVisited) {
+    looked_from_ = position(pose_);
+    return look_around(kLookTurn, false);
+  }
+  note("the frontier at " + text(where) + " stays although it was visited: left alone");
+  blacklist_.bar_for_good(where, kBarRadius);
+  target_.reset();
+  plan_forced_ = true;
+}
+
+/// No frontier can be reached: look around once more, try again what failed before, then finish.
+void PaperExplorer::nothing_left() {
+  if (looking_.active()) return;
+  if (state_ == ExplorerState::Searching) return finish_searching();
+  if (looks_in_vain_ == 0 || (failed_plans_ < 2 && looks_in_vain_ < 2)) {
+    ++looks_in_vain_;
+    return look_around(kLookTurn, false);
+  }
+  if (pardons_ < kMaxPardons && (blacklist_.pardon(now_) | felt_.pardon(now_))) {
+    ++pardons_;
+    note("nothing else can be reached: what failed before is tried again");
+    plan_forced_ = true;
+    return;
+  }
+  if (state_ == ExplorerState::GoingHome) return finish(MissionEnd::Explored, "no way home is left");
+  finish_exploring();
+}
+
+void PaperExplorer::finish_exploring() {
+  std::string why = "nothing reachable left to explore";
+  if (frontier_left_ == 1) why += " (1 frontier cannot be reached)";
+  if (frontier_left_ > 1) why += " (" + std::to_string(frontier_left_) + " frontiers cannot be reached)";
+  reason_ = why;
+  note(why);
+  plan_forced_ = true;
+  if (floor_search_.on()) {
+    state_ = ExplorerState::Searching;
+    return;
+  }
+  finish_searching();
+}
+
+void PaperExplorer::finish_searching() {
+  const std::string why = state_ == ExplorerState::Searching ? "all visible floor searched" : "";
+  if (!config_.return_home) return finish(MissionEnd::Explored, why);
+  go_home(why);
+}
+
+void PaperExplorer::go_home(const std::string& why) {
+  reason_ += (reason_.empty() || why.empty() ? "" : ", ") + why;
+  note("drives home: " + (why.empty() ? reason_ : why));
+  state_ = ExplorerState::GoingHome;
+  pardons_ = std::min(pardons_, kMaxPardons - 1);  // one more for the way home
+  looks_in_vain_ = 1;                              // no looking round first
+  target_.reset();
+  looking_.end();
+  plan_forced_ = true;
+}
+
+/// Measures the way home from time to time.
+bool PaperExplorer::must_turn_back() {
+  if (!config_.return_home || state_ == ExplorerState::GoingHome || !home_way_.due(now_)) return false;
+  const Plan way = planner_.to_point(last_floor_, pose_, position(home_.T_map_base), 0.15);
+  return home_way_.must_turn_back(way.found ? way_of(way) : way_of(trail_), now_);
+}
+
+/// Records what the victim sensors see; a place seen on the way need not be driven to.
+void PaperExplorer::mark_searched() {
+  const bool looked = floor_search_.look(last_floor_, pose_, turned_ / std::max(dt_, 1e-9), now_);
+  if (looked && state_ == ExplorerState::Searching && target_ && floor_search_.subject_seen(last_floor_))
+    plan_forced_ = true;
+}
+
+bool PaperExplorer::holding_still() {
+  if (floor_search_.staring(search_.undecided(now_, kCueAge), now_)) return true;
+  if (floor_search_.dwelling(last_floor_, pose_, now_)) return true;
+  plan_forced_ = plan_forced_ || floor_search_.dwell_over();
+  return false;
+}
+
+Plan PaperExplorer::plan_search(const Traversable& floor) {
+  const auto head_start = [&](const TPoint2D& p) -> std::optional<double> {
+    if (blacklist_.barred(p, now_)) return std::nullopt;
+    return target_ && distance(p, *target_) > 0.5 ? config_.planner.switch_cost : 0.0;
+  };
+  Plan plan = planner_.to_cells(floor, pose_, floor_search_.sources(floor, head_start));
+  if (plan.found) floor_search_.choose_subject(floor.cells.cell(plan.target));
+  return plan;
+}
+
+/// At a viewpoint.
+void PaperExplorer::face_subject() {
+  follower_.clear();
+  if (looking_.active()) return;
+  if (const std::optional<double> turn = floor_search_.turn_to_subject(last_floor_, pose_))
+    return look_around(*turn, true);
+  floor_search_.start_dwell(now_);
+}
+
+void PaperExplorer::finish(MissionEnd end, const std::string& why) {
+  end_ = end;
+  reason_ += (reason_.empty() || why.empty() ? "" : ", ") + why;
+  note("ends: " + reason_);
+  state_ = ExplorerState::Finished;
+  follower_.clear();
+  looking_.end();
+  show_path();
+}
+
+void PaperExplorer::show_path() {
+  shown_path_.clear();
+  for (const PathPoint& point : follower_.path()) shown_path_.push_back(point.p_map);
+}
+
+}  // namespace rubble::explore

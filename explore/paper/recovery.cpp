@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <cmath>
+
+#include "explore/paper/paper_explorer.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using robot::Drive;
+
+constexpr double kBarTime = 60.0;       ///< for the first failure; doubles with each one more [s]
+constexpr double kSamePlace = 0.5;      ///< [m]
+constexpr double kTurningSpeed = 0.05;  ///< slower is a turn on the spot [m/s]
+constexpr double kLean = 0.03;          ///< getting free, the body may come so much closer to walls [m]
+constexpr int kMaxFailedEscapes = 2;    ///< in a row
+
+TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
+
+}  // namespace
+
+void PaperExplorer::check_path(const slam::Mapper& mapper) {
+  if (!path_watch_.due(now_) || follower_.arrived() || looking_.active()) return;
+  if (path_watch_.check(follower_, mapper.last_hits(), pose_, commanded_.v, path_d_min_, now_)) plan_forced_ = true;
+}
+
+/// Something holds the robot that the scanner cannot see: it is remembered, and the robot gets free of it.
+void PaperExplorer::got_stuck(const std::string& how) {
+  watch_.reset();
+  tilt_.reset();
+  looking_.end();
+  follower_.clear();
+  const TPoint2D here = position(pose_);
+  const bool again = stuck_place_ && distance(*stuck_place_, here) < kSamePlace;
+  stuck_there_ = again ? stuck_there_ + 1 : 1;
+  stuck_place_ = here;
+  if (stuck_there_ > 1 && target_ && state_ != ExplorerState::GoingHome) bar_target(*target_);
+
+  const Escape::Met met = std::abs(commanded_.v) < kTurningSpeed ? Escape::Met::Turning
+                          : commanded_.v > 0.0                   ? Escape::Met::Forwards
+                                                                 : Escape::Met::Backwards;
+  if (met != Escape::Met::Turning) felt_.feel({now_, pose_}, met == Escape::Met::Backwards, model_);
+  note(how + ": backs off and plans around it");
+  escape_.begin(met, pose_, now_);
+  after_escape_ = state_;
+  state_ = ExplorerState::BackingUp;
+}
+
+Drive PaperExplorer::escape() {
+  const auto room = [&](const TPose2D& T_map_base) {
+    const double x = T_map_base.x, y = T_map_base.y;
+    const Cell c = last_floor_.clearance.cell({x, y});
+    return !last_floor_.clearance.inside(c) || last_floor_.clearance[c] > 0.5 * model_.width - kLean;
+  };
+  switch (escape_.step(pose_, commanded_, stalled_, dt_, now_, trail_, room)) {
+    case Escape::Result::UnderWay:
+      return escape_.drive();
+    case Escape::Result::Free:
+      failed_escapes_ = 0;
+      break;
+    case Escape::Result::Failed:
+      note("could not get free");
+      if (++failed_escapes_ >= kMaxFailedEscapes) {
+        finish(MissionEnd::Stuck, "stuck");
+        return {};
+      }
+      break;
+  }
+  watch_.reset();
+  state_ = after_escape_;
+  plan_forced_ = true;
+  return {};
+}
+
+void PaperExplorer::bar_target(const TPoint2D& where) {
+  const int times = std::min(blacklist_.times_barred(where), 6);
+  blacklist_.bar(where, kBarRadius, now_ + kBarTime * std::ldexp(1.0, times));
+  target_.reset();
+  plan_forced_ = true;
+}
+
+void PaperExplorer::look_around(double angle, bool to_the_end) {
+  looking_.begin(angle, to_the_end, now_);
+  follower_.clear();
+}
+
+}  // namespace rubble::explore

@@ -1,0 +1,152 @@
+#include "explore/plan/exploration_transform.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace rubble::explore {
+namespace {
+
+// Steps of 12 : 17 come within 0.2 % of 1 : sqrt(2); six times that, so that discomfort is resolved to 1 %.
+constexpr int kStraight = 6 * 12;
+constexpr int kDiagonal = 6 * 17;
+constexpr std::uint32_t kFar = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr float kMaxWeight = 60.0f;  ///< of a metre; dearer ones would not fit into the ring of buckets
+constexpr double kRounding = 1e-4;   // [m] 7 cells of 0.05 m are 0.35 m, also in float
+
+// No step is cheaper than a bucket is wide: cells of one bucket cannot improve each other, so their order is free.
+constexpr std::uint32_t kBucketWidth = 64;
+static_assert(kBucketWidth <= kStraight);
+
+unsigned lowest_bit(unsigned word) { return static_cast<unsigned>(__builtin_ctz(word)); }
+
+}  // namespace
+
+double danger(double d, const TransformConfig& config) {
+  if (d < config.d_min - kRounding) return std::numeric_limits<double>::infinity();
+  return (config.d_opt - d) * (config.d_opt - d);  // eq. (4)
+}
+
+void ExplorationTransform::prepare(const Traversable& floor, const TransformConfig& config) {
+  assert(floor.clearance.frame() == floor.frame());
+  frame_ = floor.frame();
+  nodes_.resize(frame_.size());
+  for (std::vector<std::uint32_t>& bucket : buckets_) bucket.clear();
+
+  const float alpha = static_cast<float>(config.alpha);
+  const float d_min = static_cast<float>(config.d_min - kRounding);
+  const float d_opt = static_cast<float>(config.d_opt);
+  const Occupancy* cells = floor.cells.data();
+  const float* clearance = floor.clearance.data();
+  for (std::size_t i = 0; i < frame_.size(); ++i) {
+    const float d = clearance[i];
+    const bool passable = cells[i] == Occupancy::Free && d >= d_min;
+    const float discomfort = (d_opt - d) * (d_opt - d);  // eq. (4)
+    const float weight = passable ? std::min(1.0f + alpha * discomfort, kMaxWeight) : 0.0f;
+    // A cost of zero is never undercut: impassable cells need no test in the inner loop.
+    nodes_[i] = {passable ? kFar : 0, static_cast<std::uint16_t>(weight * kStraight + 0.5f),
+                 static_cast<std::uint16_t>(weight * kDiagonal + 0.5f)};
+  }
+}
+
+void ExplorationTransform::push(std::uint32_t cell, std::uint32_t cost) {
+  buckets_[cost / kBucketWidth % kBuckets].push_back(cell);
+}
+
+std::uint32_t ExplorationTransform::next_bucket(std::uint32_t from) const {
+  for (std::uint32_t b = from; b < from + kBuckets; ++b)
+    if (!buckets_[b % kBuckets].empty()) return b;
+  return kFar;
+}
+
+void ExplorationTransform::expand(const std::vector<Start>& starts, std::uint32_t until) {
+  const std::int32_t width = frame_.width;
+  const std::int32_t offset[8] = {-width - 1, -width, -width + 1, -1, 1, width - 1, width, width + 1};
+  constexpr unsigned kIsDiagonal = 0b10100101;
+  Node* const nodes = nodes_.data();
+  std::size_t next_start = 0;
+  for (std::uint32_t now = 0;;) {
+    std::uint32_t upcoming = next_bucket(now);
+    for (; next_start < starts.size() && starts[next_start].cost / kBucketWidth <= upcoming; ++next_start) {
+      const Start& start = starts[next_start];
+      if (start.cost >= nodes[start.cell].cost) continue;
+      nodes[start.cell].cost = start.cost;
+      push(start.cell, start.cost);
+      upcoming = start.cost / kBucketWidth;
+    }
+    if (upcoming == kFar) return;
+    now = upcoming;
+
+    std::vector<std::uint32_t>& bucket = buckets_[now % kBuckets];
+    for (const std::uint32_t c : bucket) {
+      const std::uint32_t cost = nodes[c].cost;
+      if (cost / kBucketWidth != now) continue;  // it was done when a cheaper way had been found
+      // First find which neighbours gain, without branches (they would often be mispredicted), then visit those.
+      const auto gain = [&](unsigned i, std::uint16_t Node::*step) {
+        const Node& node = nodes[c + static_cast<std::uint32_t>(offset[i])];
+        return static_cast<unsigned>(cost + node.*step < node.cost) << i;
+      };
+      unsigned gains = gain(0, &Node::diagonal) | gain(1, &Node::straight) | gain(2, &Node::diagonal) |
+                       gain(3, &Node::straight) | gain(4, &Node::straight) | gain(5, &Node::diagonal) |
+                       gain(6, &Node::straight) | gain(7, &Node::diagonal);
+      for (; gains != 0; gains &= gains - 1) {
+        const unsigned i = lowest_bit(gains);
+        const std::uint32_t n = c + static_cast<std::uint32_t>(offset[i]);
+        Node& node = nodes[n];
+        node.cost = cost + ((kIsDiagonal >> i & 1u) != 0 ? node.diagonal : node.straight);  // eq. (3)
+        push(n, node.cost);
+      }
+    }
+    bucket.clear();
+    if (until != kNone && nodes[until].cost / kBucketWidth <= now) return;
+  }
+}
+
+void ExplorationTransform::run(const Traversable& floor, const std::vector<Source>& sources,
+                               const TransformConfig& config, std::optional<Cell> until) {
+  prepare(floor, config);
+  std::vector<Start> starts;
+  starts.reserve(sources.size());
+  for (const Source& s : sources) {
+    if (!passable(s.cell)) continue;
+    const double cost = std::max(s.head_start, 0.0) / frame_.resolution * kStraight;
+    starts.push_back({static_cast<std::uint32_t>(std::lround(cost)), static_cast<std::uint32_t>(index(s.cell))});
+  }
+  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
+  expand(starts, until && frame_.inside(*until) ? static_cast<std::uint32_t>(index(*until)) : kNone);
+}
+
+bool ExplorationTransform::passable(Cell c) const { return frame_.inside(c) && nodes_[index(c)].straight != 0; }
+
+bool ExplorationTransform::reached(Cell c) const { return passable(c) && nodes_[index(c)].cost != kFar; }
+
+double ExplorationTransform::cost(Cell c) const {
+  if (!reached(c)) return std::numeric_limits<double>::infinity();
+  return static_cast<double>(nodes_[index(c)].cost) / kStraight * frame_.resolution;
+}
+
+std::vector<Cell> ExplorationTransform::descend(Cell from) const {
+  std::vector<Cell> way;
+  if (!reached(from)) return way;
+  Cell direction{0, 0};
+  for (Cell c = from;;) {
+    way.push_back(c);
+    // The neighbour this cell got its cost from; straight on where several did.
+    const Node& own = nodes_[index(c)];
+    std::optional<Cell> best;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Cell n{c.x + dx, c.y + dy};
+        if ((dx == 0 && dy == 0) || !reached(n)) continue;
+        const std::uint32_t through = nodes_[index(n)].cost + (dx != 0 && dy != 0 ? own.diagonal : own.straight);
+        if (through == own.cost && (!best || Cell{dx, dy} == direction)) best = Cell{dx, dy};
+      }
+    if (!best) return way;
+    direction = *best;
+    c = {c.x + direction.x, c.y + direction.y};
+  }
+}
+
+}  // namespace rubble::explore

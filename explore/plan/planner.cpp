@@ -1,0 +1,122 @@
+#include "explore/plan/planner.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/planar.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+constexpr double kRounding = 1e-4;    // [m] see eq. (4)
+constexpr double kSmoothSpan = 0.20;  ///< half the window of the moving average [m]
+
+}  // namespace
+
+std::vector<Cell> climb_clearance(const Traversable& floor, Cell start, double d_min) {
+  std::vector<Cell> way{start};
+  while (floor.clearance[way.back()] < d_min - kRounding) {
+    const Cell c = way.back();
+    Cell best = c;
+    double best_slope = 0.0;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Cell n{c.x + dx, c.y + dy};
+        if (!floor.cells.inside(n) || floor.cells[n] != Occupancy::Free) continue;
+        const double slope = (floor.clearance[n] - floor.clearance[c]) / (dx != 0 && dy != 0 ? std::sqrt(2.0) : 1.0);
+        if (slope <= best_slope) continue;
+        best = n;
+        best_slope = slope;
+      }
+    if (best == c) break;
+    way.push_back(best);
+  }
+  return way;
+}
+
+std::vector<PathPoint> smooth_path(const Traversable& floor, const std::vector<Cell>& cells, double d_min) {
+  const int count = static_cast<int>(cells.size());
+  const int span = static_cast<int>(std::lround(kSmoothSpan / floor.frame().resolution));
+  std::vector<PathPoint> path;
+  path.reserve(cells.size());
+  for (int i = 0; i < count; ++i) {
+    const int reach = std::min({span, i, count - 1 - i});  // shrinks towards both ends, which stay
+    TPoint2D mean;
+    for (int k = i - reach; k <= i + reach; ++k) mean += floor.cells.centre(cells[static_cast<std::size_t>(k)]);
+    mean *= 1.0 / (2 * reach + 1);
+    const Cell own = cells[static_cast<std::size_t>(i)];
+    const Cell there = floor.cells.cell(mean);
+    const double own_clearance = floor.clearance[own];
+    const bool safe =
+        floor.cells[there] == Occupancy::Free && floor.clearance[there] >= std::min(own_clearance, d_min) - kRounding;
+    path.push_back(safe ? PathPoint{mean, floor.clearance[there]} : PathPoint{floor.cells.centre(own), own_clearance});
+  }
+  return path;
+}
+
+Plan Planner::plan(const Traversable& floor, const TPose2D& T_map_base, const std::vector<Source>& sources) {
+  Plan plan;
+  const Cell start = floor.cells.cell({T_map_base.x, T_map_base.y});
+  if (sources.empty() || !floor.cells.inside(start)) return plan;
+  TransformConfig transform = config_.transform;
+  const double floor_of_d_min = std::min(config_.d_min_floor, transform.d_min);
+  for (;;) {
+    const std::vector<Cell> climb = climb_clearance(floor, start, transform.d_min);
+    transform_.run(floor, sources, transform, climb.back());
+    if (transform_.reached(climb.back())) {
+      std::vector<Cell> cells = climb;
+      const std::vector<Cell> way = transform_.descend(climb.back());
+      cells.insert(cells.end(), way.begin() + 1, way.end());
+      plan.found = true;
+      plan.path = smooth_path(floor, cells, transform.d_min);
+      plan.target = floor.cells.centre(cells.back());
+      plan.cost = transform_.cost(climb.back());
+      plan.d_min = transform.d_min;
+      return plan;
+    }
+    if (transform.d_min <= floor_of_d_min + kRounding) return plan;
+    transform.d_min = std::max(transform.d_min - config_.d_min_step, floor_of_d_min);
+  }
+}
+
+Plan Planner::to_frontier(const Traversable& floor, const TPose2D& T_map_base, const BarredFn& barred,
+                          const std::optional<TPoint2D>& previous) {
+  std::vector<Source> sources;
+  std::size_t left = 0;
+  for (const FrontierCluster& cluster : frontier_clusters(floor, config_.min_frontier_cells)) {
+    const std::size_t before = sources.size();
+    bool of_previous = false;
+    for (const Cell c : cluster.cells) {
+      const TPoint2D p = floor.cells.centre(c);
+      if (barred(p)) continue;
+      of_previous = of_previous || (previous && distance(p, *previous) <= config_.same_target);
+      sources.push_back({c, 0.0});
+    }
+    if (sources.size() > before) ++left;
+    if (!previous || of_previous) continue;
+    for (std::size_t i = before; i < sources.size(); ++i) sources[i].head_start = config_.switch_cost;
+  }
+  Plan found = plan(floor, T_map_base, sources);
+  found.frontier_left = left;
+  return found;
+}
+
+Plan Planner::to_point(const Traversable& floor, const TPose2D& T_map_base, const TPoint2D& target, double tolerance) {
+  std::vector<Source> sources;
+  const Cell low = floor.cells.cell({target.x - tolerance, target.y - tolerance});
+  const Cell high = floor.cells.cell({target.x + tolerance, target.y + tolerance});
+  for (int y = low.y; y <= high.y; ++y)
+    for (int x = low.x; x <= high.x; ++x) {
+      const Cell c{x, y};
+      if (!floor.cells.inside(c)) continue;
+      const double off = distance(floor.cells.centre(c), target);
+      // Ending beside the target is worth less than the way it saves.
+      if (off <= std::max(tolerance, floor.frame().resolution)) sources.push_back({c, 2.0 * off});
+    }
+  return plan(floor, T_map_base, sources);
+}
+
+}  // namespace rubble::explore

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+#include <mrpt/math/TPose2D.h>
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "explore/plan/exploration_transform.h"
+#include "explore/plan/frontier.h"
+#include "explore/plan/path_follower.h"
+#include "explore/plan/traversable.h"
+
+namespace rubble::explore {
+
+struct PlannerConfig {
+  TransformConfig transform;
+  double d_min_floor = 0.27;   ///< d_min falls to this step by step when nothing can be reached otherwise [m]
+  double d_min_step = 0.04;    ///< [m]
+  int min_frontier_cells = 5;  ///< smaller clusters are no targets
+  double switch_cost = 0.6;    ///< a new target must be this much cheaper than the one being driven to [m]
+  double same_target = 0.5;    ///< a frontier cell this close to the old target belongs to it [m]
+};
+
+/// A way to a target, or the news that there is none.
+struct Plan {
+  bool found = false;
+  std::vector<PathPoint> path;    ///< from the robot to the target
+  mrpt::math::TPoint2D target;    ///< last cell of the path [m]
+  double cost = 0.0;              ///< of eq. (3), head starts included [m]
+  double d_min = 0.0;             ///< the one the way keeps [m]
+  std::size_t frontier_left = 0;  ///< frontier clusters that are big enough and hold a cell that is not barred
+};
+
+/// What the planner asks about a place: whether it is barred as a target.
+using BarredFn = std::function<bool(const mrpt::math::TPoint2D&)>;
+
+/// Finds ways on a Traversable by Exploration Transform (to a close frontier) and path transform (to a point).
+class Planner {
+ public:
+  explicit Planner(const PlannerConfig& config) : config_(config) {}
+
+  /// Distances to obstacles need not be told apart beyond [m].
+  double clearance_cap() const { return config_.transform.d_opt + kBeyondOptimum; }
+
+  /// The cheapest way to a frontier; `previous` is the target being driven to, which is given a head start.
+  Plan to_frontier(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const BarredFn& barred,
+                   const std::optional<mrpt::math::TPoint2D>& previous);
+
+  /// The cheapest way to within `tolerance` of a point.
+  Plan to_point(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const mrpt::math::TPoint2D& target,
+                double tolerance);
+
+  /// The cheapest way to one of several cells.
+  Plan to_cells(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const std::vector<Source>& sources) {
+    return plan(floor, T_map_base, sources);
+  }
+
+  /// The transform of the last plan.
+  const ExplorationTransform& transform() const { return transform_; }
+
+ private:
+  Plan plan(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const std::vector<Source>& sources);
+
+  static constexpr double kBeyondOptimum = 0.6;  ///< [m]
+
+  PlannerConfig config_;
+  ExplorationTransform transform_;
+};
+
+/// Climbs the clearance from `start` through free cells until it is at least `d_min`: the cells on the way, `start`
+/// first. Ends early on a local maximum.
+std::vector<Cell> climb_clearance(const Traversable& floor, Cell start, double d_min);
+
+/// Takes the stairs out of a path of cells (moving average over 0.4 m) where that keeps the clearance.
+std::vector<PathPoint> smooth_path(const Traversable& floor, const std::vector<Cell>& cells, double d_min);
+
+}  // namespace rubble::explore

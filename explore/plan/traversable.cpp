@@ -1,0 +1,181 @@
+#include "explore/plan/traversable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/distance_transform.h"
+#include "base/planar.h"
+#include "explore/plan/set_bytes.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using slam::CountMap;
+
+constexpr int kWeakHits = 2;
+constexpr double kLoneRadius = 0.15;  ///< [m]
+
+/// A rectangle of cells, both corners inside it.
+struct Box {
+  Cell low;
+  Cell high;
+  bool empty() const { return high.x < low.x; }
+};
+
+/// Classifies cells by their counts. Branch-free and on plain arrays, so that compilers use vector code.
+void classify_row(const std::uint16_t* __restrict seen, const std::uint16_t* __restrict hits, int count,
+                  float threshold, Occupancy* __restrict cells, std::uint8_t* __restrict obstacle) {
+  static_assert(static_cast<int>(Occupancy::Free) == 1 && static_cast<int>(Occupancy::Occupied) == 2);
+  for (int i = 0; i < count; ++i) {
+    const int known = seen[i] != 0;
+    const int hit = hits[i] != 0;
+    const int often = static_cast<float>(hits[i]) >= threshold * static_cast<float>(seen[i]);
+    obstacle[i] = static_cast<std::uint8_t>(hit & often);
+    cells[i] = static_cast<Occupancy>(known + (hit & often));
+  }
+}
+
+/// Free of branches, so that compilers use vector code.
+bool any_seen(const std::uint16_t* seen, int from, int to) {
+  std::uint16_t any = 0;
+  for (int x = from; x < to; ++x) any = static_cast<std::uint16_t>(any | seen[x]);
+  return any != 0;
+}
+
+Box seen_box(const CountMap& map) {
+  const GridFrame& frame = map.frame();
+  Box box{{frame.width, frame.height}, {-1, -1}};
+  for (int y = 0; y < frame.height; ++y) {
+    const std::uint16_t* seen = map.seen_row(y);
+    const bool left = any_seen(seen, 0, box.low.x);
+    const bool middle = any_seen(seen, box.low.x, box.high.x + 1);
+    const bool right = any_seen(seen, std::max(box.low.x, box.high.x + 1), frame.width);
+    if (!left && !middle && !right) continue;
+    box.low.y = std::min(box.low.y, y);
+    box.high.y = y;
+    if (left) box.low.x = static_cast<int>(std::find_if(seen, seen + box.low.x, [](auto n) { return n != 0; }) - seen);
+    for (int x = frame.width - 1; (right || !middle) && x > box.high.x; --x)
+      if (seen[x] != 0) box.high.x = x;
+  }
+  return box;
+}
+
+/// The cells within `reach` of p, cut to the inside of the rim.
+Box cells_around(const GridFrame& frame, const TPoint2D& p, double reach) {
+  const Cell low = frame.cell({p.x - reach, p.y - reach});
+  const Cell high = frame.cell({p.x + reach, p.y + reach});
+  return {{std::max(low.x, 1), std::max(low.y, 1)},
+          {std::min(high.x, frame.width - 2), std::min(high.y, frame.height - 2)}};
+}
+
+bool stands_alone(const OccupancyGrid& cells, Cell c, int reach) {
+  for (int y = std::max(c.y - reach, 0); y <= std::min(c.y + reach, cells.height() - 1); ++y)
+    for (int x = std::max(c.x - reach, 0); x <= std::min(c.x + reach, cells.width() - 1); ++x)
+      if (Cell{x, y} != c && cells[{x, y}] == Occupancy::Occupied) return false;
+  return true;
+}
+
+bool has_obstacle(const Grid<std::uint8_t>& obstacle, const Box& box) {
+  for (int y = box.low.y; y <= box.high.y; ++y)
+    for (int x = box.low.x; x <= box.high.x; ++x)
+      if (obstacle[{x, y}] != 0) return true;
+  return false;
+}
+
+}  // namespace
+
+Traversable traversable(OccupancyGrid known) {
+  Traversable floor;
+  floor.obstacle = Grid<std::uint8_t>(known.frame());
+  floor.body = Grid<std::uint8_t>(known.frame());
+  std::transform(known.cells().begin(), known.cells().end(), floor.obstacle.cells().begin(),
+                 [](Occupancy o) { return static_cast<std::uint8_t>(o == Occupancy::Occupied); });
+  floor.cells = std::move(known);
+  return floor;
+}
+
+Traversable traversable(const CountMap& map, double occupied_threshold) {
+  const Box box = seen_box(map);
+  if (box.empty()) return {};
+  const GridFrame& whole = map.frame();
+  GridFrame frame = whole;
+  frame.width = box.high.x - box.low.x + 3;
+  frame.height = box.high.y - box.low.y + 3;
+  frame.x0 = whole.x0 + (box.low.x - 1) * whole.resolution;
+  frame.y0 = whole.y0 + (box.low.y - 1) * whole.resolution;
+
+  Traversable floor;
+  floor.cells = OccupancyGrid(frame, Occupancy::Unknown);
+  floor.obstacle = Grid<std::uint8_t>(frame);
+  floor.body = Grid<std::uint8_t>(frame);
+  const float threshold = static_cast<float>(occupied_threshold);
+  const int columns = frame.width - 2;
+  std::vector<Cell> weak;
+  for (int y = box.low.y; y <= box.high.y; ++y) {
+    const int row = y - box.low.y + 1;
+    const std::uint16_t* hits = map.occupied_row(y) + box.low.x;
+    classify_row(map.seen_row(y) + box.low.x, hits, columns, threshold, floor.cells.row(row) + 1,
+                 floor.obstacle.row(row) + 1);
+    for_each_set(floor.obstacle.row(row), frame.width, [&](int x) {
+      if (hits[x - 1] <= kWeakHits) weak.push_back({x, row});
+    });
+  }
+  const int reach = static_cast<int>(std::lround(kLoneRadius / frame.resolution));
+  for (const Cell c : weak)
+    if (stands_alone(floor.cells, c, reach)) floor.obstacle[c] = 0;
+  return floor;
+}
+
+void free_body(Traversable& floor, const TPose2D& T_map_base, double length, double width, double reach) {
+  const GridFrame& frame = floor.frame();
+  const double half_length = 0.5 * length + reach;
+  const double half_width = 0.5 * width + reach;
+  const double cos_phi = std::cos(T_map_base.phi);
+  const double sin_phi = std::sin(T_map_base.phi);
+  const Box box = cells_around(frame, {T_map_base.x, T_map_base.y}, rubble::length(half_length, half_width));
+  for (int y = box.low.y; y <= box.high.y; ++y)
+    for (int x = box.low.x; x <= box.high.x; ++x) {
+      const TPoint2D p = frame.centre({x, y});
+      const double dx = p.x - T_map_base.x;
+      const double dy = p.y - T_map_base.y;
+      if (std::abs(cos_phi * dx + sin_phi * dy) > half_length || std::abs(cos_phi * dy - sin_phi * dx) > half_width)
+        continue;
+      if (floor.cells[{x, y}] == Occupancy::Unknown) floor.body[{x, y}] = 1;
+      floor.cells[{x, y}] = Occupancy::Free;
+      floor.obstacle[{x, y}] = 0;
+    }
+}
+
+void free_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double radius) {
+  const GridFrame& frame = floor.frame();
+  for (const TPoint2D& passed : trail) {
+    const Box box = cells_around(frame, passed, radius);
+    for (int y = box.low.y; y <= box.high.y; ++y)
+      for (int x = box.low.x; x <= box.high.x; ++x) {
+        const Cell c{x, y};
+        if (floor.cells[c] != Occupancy::Unknown) continue;
+        const TPoint2D p = frame.centre(c);
+        if (distance(p, passed) > radius) continue;
+        floor.cells[c] = Occupancy::Free;
+        floor.body[c] = 1;
+      }
+  }
+}
+
+void add_obstacles(Traversable& floor, const std::vector<TPoint2D>& points, double near) {
+  const GridFrame& frame = floor.frame();
+  std::vector<Cell> news;
+  for (const TPoint2D& p : points) {
+    const Cell c = frame.cell(p);
+    if (!frame.inside(c) || floor.obstacle[c] != 0) continue;
+    if (!has_obstacle(floor.obstacle, cells_around(frame, p, near))) news.push_back(c);
+  }
+  for (const Cell c : news) floor.obstacle[c] = 1;
+}
+
+void measure_clearance(Traversable& floor, double cap) { floor.clearance = distance_transform(floor.obstacle, cap); }
+
+}  // namespace rubble::explore

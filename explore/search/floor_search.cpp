@@ -1,0 +1,99 @@
+#include "explore/search/floor_search.h"
+
+#include <cmath>
+
+#include "base/planar.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+constexpr double kLookPeriod = 0.35;            ///< [s]
+constexpr double kTurnRate = deg_to_rad(40.0);  ///< turning faster the sensors see too little [rad/s]
+constexpr double kFacing = deg_to_rad(8.0);     ///< [rad]
+constexpr double kSubjectRadius = 0.25;         ///< given up together with a place that cannot be seen [m]
+
+}  // namespace
+
+bool FloorSearch::look(const Traversable& floor, const TPose2D& T_map_base, double turn_rate, Stamp now) {
+  if (!config_.on || now < next_look_ || std::abs(turn_rate) > kTurnRate) return false;
+  next_look_ = now + kLookPeriod;
+  searched_.look(floor, T_map_base);
+  looks_.push_back({now, T_map_base});
+  return true;
+}
+
+void FloorSearch::follow(const Traversable& floor, const slam::Mapper& mapper) {
+  searched_.clear();
+  for (Anchor& look : looks_) {
+    look.follow(mapper);
+    searched_.look(floor, look.T_map_base);
+  }
+}
+
+bool FloorSearch::subject_seen(const Traversable& floor) const {
+  const Cell c = floor.cells.cell(subject_);
+  if (c.x < 1 || c.y < 1 || c.x + 1 >= floor.cells.width() || c.y + 1 >= floor.cells.height()) return false;
+  return (searched_.missing(floor, c) & subject_faces_) == 0;
+}
+
+void FloorSearch::give_up_subject(const Traversable& floor) {
+  searched_.give_up(floor, subject_, kSubjectRadius, subject_faces_);
+}
+
+std::vector<Source> FloorSearch::sources(const Traversable& floor,
+                                         const std::function<std::optional<double>(const TPoint2D&)>& head_start) {
+  views_ = viewpoints(floor, searched_, config_, room_);
+  std::vector<Source> sources;
+  for (const Viewpoint& view : views_) {
+    if (const std::optional<double> start = head_start(floor.cells.centre(view.cell)))
+      sources.push_back({view.cell, *start});
+  }
+  return sources;
+}
+
+void FloorSearch::choose_subject(Cell viewpoint) {
+  for (const Viewpoint& view : views_)
+    if (view.cell == viewpoint) {
+      subject_ = view.subject;
+      subject_faces_ = view.faces;
+    }
+}
+
+std::optional<double> FloorSearch::turn_to_subject(const Traversable& floor, const TPose2D& T_map_base) {
+  double turn = kPi;
+  for (const Viewpoint& view : views_) {
+    if (distance(floor.cells.centre(view.cell), {T_map_base.x, T_map_base.y}) > kAtViewpoint) continue;
+    const double bearing = std::atan2(view.subject.y - T_map_base.y, view.subject.x - T_map_base.x);
+    const double to = wrap_angle(bearing - T_map_base.phi);
+    if (std::abs(to) >= std::abs(turn)) continue;
+    turn = to;
+    subject_ = view.subject;
+    subject_faces_ = view.faces;
+  }
+  return std::abs(turn) > kFacing ? std::optional<double>(turn) : std::nullopt;
+}
+
+bool FloorSearch::dwelling(const Traversable& floor, const TPose2D& T_map_base, Stamp now) {
+  dwell_over_ = false;
+  if (dwell_until_ == Stamp::never()) return false;
+  if (now < dwell_until_) return true;
+  dwell_until_ = Stamp::never();
+  dwell_over_ = true;
+  searched_.look(floor, T_map_base);
+  if (!subject_seen(floor)) give_up_subject(floor);
+  return false;
+}
+
+bool FloorSearch::staring(bool undecided, Stamp now) {
+  if (!config_.on || !undecided) return false;
+  if (now >= next_stare_) {
+    stare_until_ = now + config_.stare;
+    next_stare_ = now + 4.0 * config_.stare;
+  }
+  return now < stare_until_;
+}
+
+}  // namespace rubble::explore

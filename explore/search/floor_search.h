@@ -1,0 +1,67 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "base/stamp.h"
+#include "explore/anchor.h"
+#include "explore/plan/exploration_transform.h"
+#include "explore/search/searched_area.h"
+
+namespace rubble::explore {
+
+/// The search of the mapped floor for victims: what was looked at, from where to look next, and holding still there.
+class FloorSearch {
+ public:
+  /// `room`: clearance a viewpoint needs, for the robot turns on the spot there [m].
+  FloorSearch(const SearchConfig& config, double room) : config_(config), room_(room), searched_(config) {}
+
+  bool on() const { return config_.on; }
+
+  /// Records what the victim sensors see from here, a few times a second, and not while turning (at `turn_rate`
+  /// [rad/s]) too fast to see. True when it did.
+  bool look(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, double turn_rate, Stamp now);
+  /// Whether the place to face has been looked at.
+  bool subject_seen(const Traversable& floor) const;
+  /// The mapper corrected its past: all looks are repeated from where they were made as is known now.
+  void follow(const Traversable& floor, const slam::Mapper& mapper);
+  /// Counts the place to face and what is around it as searched, seen or not.
+  void give_up_subject(const Traversable& floor);
+
+  /// The cells from which something unsearched can be seen, each with the head start that `head_start` gives to its
+  /// centre; without one it is left out.
+  std::vector<Source> sources(const Traversable& floor,
+                              const std::function<std::optional<double>(const mrpt::math::TPoint2D&)>& head_start);
+  /// Makes what can be seen from `viewpoint` the place to face.
+  void choose_subject(Cell viewpoint);
+  /// Of all that can be seen from here makes that the place to face which needs the smallest turn; returns the turn
+  /// [rad]; nothing when it already lies ahead.
+  std::optional<double> turn_to_subject(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
+
+  void start_dwell(Stamp now) { dwell_until_ = now + config_.dwell; }
+  /// True while the robot holds still before the place to face. At the end that place counts as searched.
+  bool dwelling(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, Stamp now);
+  /// True in the tick in which a dwell ended.
+  bool dwell_over() const { return dwell_over_; }
+
+  /// True while the robot holds still for a cue: a first one is no victim yet, a few more looks decide. `undecided`:
+  /// there is a fresh cue that is not.
+  bool staring(bool undecided, Stamp now);
+
+ private:
+  SearchConfig config_;
+  double room_;
+  SearchedArea searched_;
+  std::vector<Viewpoint> views_;
+  mrpt::math::TPoint2D subject_;
+  Faces subject_faces_ = 0;
+  std::vector<Anchor> looks_;
+  Stamp next_look_ = Stamp::never();
+  Stamp dwell_until_ = Stamp::never();
+  Stamp stare_until_ = Stamp::never();
+  Stamp next_stare_ = Stamp::never();
+  bool dwell_over_ = false;
+};
+
+}  // namespace rubble::explore

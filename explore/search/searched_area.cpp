@@ -1,0 +1,221 @@
+#include "explore/search/searched_area.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/planar.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+constexpr int kStride = 6;                             ///< subjects of a cluster are so many cells apart
+constexpr int kDirections = 16;                        ///< viewpoints tried around a subject
+constexpr double kDistances[] = {0.5, 0.8, 1.1, 1.4};  ///< [m]
+
+/// Free cells that were not searched, as 8-connected clusters of at least `min_cells`.
+std::vector<std::vector<Cell>> unsearched_clusters(const Traversable& floor, const SearchedArea& searched,
+                                                   int min_cells) {
+  Grid<Faces> open = searched.unsearched(floor);
+  std::vector<std::vector<Cell>> clusters;
+  for (int y = 1; y + 1 < floor.cells.height(); ++y)
+    for (int x = 1; x + 1 < floor.cells.width(); ++x) {
+      if (open[{x, y}] == 0) continue;
+      std::vector<Cell> cluster{{x, y}};
+      open[{x, y}] = 0;
+      for (std::size_t next = 0; next < cluster.size(); ++next)
+        for (int v = cluster[next].y - 1; v <= cluster[next].y + 1; ++v)
+          for (int u = cluster[next].x - 1; u <= cluster[next].x + 1; ++u) {
+            if (open[{u, v}] == 0) continue;  // the rim is never open, so all neighbours are inside
+            open[{u, v}] = 0;
+            cluster.push_back({u, v});
+          }
+      if (static_cast<int>(cluster.size()) >= min_cells) clusters.push_back(std::move(cluster));
+    }
+  return clusters;
+}
+
+}  // namespace
+
+Faces faces_along(double x, double y) {
+  constexpr double kCosine = 0.5;  ///< of 60 deg
+  Faces faces = kFloor;
+  if (x >= kCosine) faces |= kEastFace;
+  if (y >= kCosine) faces |= kNorthFace;
+  if (x <= -kCosine) faces |= kWestFace;
+  if (y <= -kCosine) faces |= kSouthFace;
+  return faces;
+}
+
+Faces faces_of(const Traversable& floor, Cell c) {
+  const auto wall = [&](int dx, int dy) { return floor.cells[{c.x + dx, c.y + dy}] == Occupancy::Occupied; };
+  Faces faces = kFloor;
+  if (wall(1, 0)) faces |= kEastFace;
+  if (wall(0, 1)) faces |= kNorthFace;
+  if (wall(-1, 0)) faces |= kWestFace;
+  if (wall(0, -1)) faces |= kSouthFace;
+  return faces;
+}
+
+bool in_sight(const Traversable& floor, Cell from, Cell to) {
+  const int dx = to.x - from.x;
+  const int dy = to.y - from.y;
+  // One step a cell along the longer axis, then half a cell more often: no diagonal gap between two walls is slipped
+  // through.
+  const int steps = std::max(1, (3 * std::max(std::abs(dx), std::abs(dy)) + 1) / 2);
+  const double sx = static_cast<double>(dx) / steps;
+  const double sy = static_cast<double>(dy) / steps;
+  double x = from.x + 0.5;
+  double y = from.y + 0.5;
+  for (int i = 0; i < steps; ++i) {
+    x += sx;
+    y += sy;
+    if (floor.cells[{static_cast<int>(x), static_cast<int>(y)}] != Occupancy::Free) return false;
+  }
+  return true;
+}
+
+Cell SearchedArea::shift_from(const GridFrame& f) const {
+  const GridFrame& own = twice_.frame();
+  return {static_cast<int>(std::lround((f.x0 - own.x0) / f.resolution)),
+          static_cast<int>(std::lround((f.y0 - own.y0) / f.resolution))};
+}
+
+/// Lets the record hold at least `frame`; the map's cells keep their places when it grows.
+void SearchedArea::cover(const GridFrame& frame) {
+  const GridFrame own = twice_.frame();
+  const double margin = 2.0;
+  const auto east = [](const GridFrame& f) { return f.x0 + f.width * f.resolution; };
+  const auto north = [](const GridFrame& f) { return f.y0 + f.height * f.resolution; };
+  if (own.width > 0 && frame.x0 >= own.x0 && frame.y0 >= own.y0 && east(frame) <= east(own) + 1e-9 &&
+      north(frame) <= north(own) + 1e-9)
+    return;
+  const int rim = static_cast<int>(std::ceil(margin / frame.resolution));
+  GridFrame wider = frame;
+  wider.x0 -= rim * frame.resolution;
+  wider.y0 -= rim * frame.resolution;
+  wider.width += 2 * rim;
+  wider.height += 2 * rim;
+  if (own.width > 0) {
+    const int west = std::max(0, static_cast<int>(std::lround((wider.x0 - own.x0) / frame.resolution)));
+    const int south = std::max(0, static_cast<int>(std::lround((wider.y0 - own.y0) / frame.resolution)));
+    wider.x0 -= west * frame.resolution;
+    wider.y0 -= south * frame.resolution;
+    const auto cells = [&](double length) { return static_cast<int>(std::lround(length / frame.resolution)); };
+    wider.width = std::max(wider.width + west, cells(east(own) - wider.x0));
+    wider.height = std::max(wider.height + south, cells(north(own) - wider.y0));
+  }
+  for (Grid<Faces>* record : {&once_, &twice_}) {
+    Grid<Faces> grown(wider);
+    const Cell shift{static_cast<int>(std::lround((own.x0 - wider.x0) / frame.resolution)),
+                     static_cast<int>(std::lround((own.y0 - wider.y0) / frame.resolution))};
+    const GridFrame old = record->frame();
+    for (int y = 0; y < old.height; ++y)
+      for (int x = 0; x < old.width; ++x) grown[{x + shift.x, y + shift.y}] = (*record)[{x, y}];
+    *record = std::move(grown);
+  }
+}
+
+void SearchedArea::look(const Traversable& floor, const TPose2D& T_map_base) {
+  if (floor.cells.width() == 0) return;
+  cover(floor.frame());
+  const Cell shift = shift_from(floor.frame());
+  const double step = 0.7 * floor.frame().resolution;
+  const double turn = step / config_.range;  // neighbouring rays end less than a cell apart
+  const int rays = static_cast<int>(std::ceil(config_.field_of_view / turn));
+  std::vector<std::pair<Cell, Faces>> seen;
+  for (int i = 0; i <= rays; ++i) {
+    const double bearing = T_map_base.phi + config_.field_of_view * (static_cast<double>(i) / rays - 0.5);
+    const double dx = std::cos(bearing);
+    const double dy = std::sin(bearing);
+    const Faces faces = faces_along(dx, dy);
+    for (double r = 0.0; r <= config_.range; r += step) {
+      const Cell c = floor.cells.cell({T_map_base.x + r * dx, T_map_base.y + r * dy});
+      if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free) break;
+      const Cell own{c.x + shift.x, c.y + shift.y};
+      twice_[own] = static_cast<Faces>(twice_[own] | (once_[own] & faces));  // `once_` is of earlier looks
+      seen.push_back({own, faces});
+    }
+  }
+  for (const auto& [own, faces] : seen) once_[own] = static_cast<Faces>(once_[own] | faces);
+}
+
+void SearchedArea::give_up(const Traversable& floor, const TPoint2D& place, double radius, Faces faces) {
+  if (floor.cells.width() == 0) return;
+  cover(floor.frame());
+  const Cell shift = shift_from(floor.frame());
+  const Cell low = floor.cells.cell({place.x - radius, place.y - radius});
+  const Cell high = floor.cells.cell({place.x + radius, place.y + radius});
+  for (int y = low.y; y <= high.y; ++y)
+    for (int x = low.x; x <= high.x; ++x) {
+      if (!floor.cells.inside({x, y}) || (floor.cells.centre({x, y}) - place).norm() > radius) continue;
+      Faces& record = twice_[{x + shift.x, y + shift.y}];
+      record = static_cast<Faces>(record | faces);
+    }
+}
+
+Faces SearchedArea::missing(const Traversable& floor, Cell c) const {
+  const Faces all = faces_of(floor, c);
+  if (twice_.width() == 0) return all;
+  const Cell shift = shift_from(floor.frame());
+  const Cell own{c.x + shift.x, c.y + shift.y};
+  return twice_.inside(own) ? static_cast<Faces>(all & ~twice_[own]) : all;
+}
+
+Grid<Faces> SearchedArea::unsearched(const Traversable& floor) const {
+  Grid<Faces> open(floor.frame());
+  const Cell shift = twice_.width() == 0 ? Cell{} : shift_from(floor.frame());
+  const int width = floor.cells.width();
+  for (int y = 1; y + 1 < floor.cells.height(); ++y) {
+    const Occupancy* cells = floor.cells.row(y);
+    const Occupancy* below = floor.cells.row(y - 1);
+    const Occupancy* above = floor.cells.row(y + 1);
+    Faces* row = open.row(y);
+    const auto face = [](Occupancy o, Faces f) { return o == Occupancy::Occupied ? f : Faces{0}; };
+    for (int x = 1; x + 1 < width; ++x)
+      row[x] = static_cast<Faces>(cells[x] == Occupancy::Free
+                                      ? kFloor | face(cells[x + 1], kEastFace) | face(above[x], kNorthFace) |
+                                            face(cells[x - 1], kWestFace) | face(below[x], kSouthFace)
+                                      : 0);
+    const int own = y + shift.y;
+    if (own < 0 || own >= twice_.height()) continue;
+    const Faces* looked_at = twice_.row(own);
+    const int first = std::max(1, -shift.x);
+    const int last = std::min(width - 2, twice_.width() - 1 - shift.x);
+    for (int x = first; x <= last; ++x) row[x] = static_cast<Faces>(row[x] & ~looked_at[x + shift.x]);
+  }
+  return open;
+}
+
+std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& searched, const SearchConfig& config,
+                                  double d_min) {
+  std::vector<Cell> offsets;
+  for (const double distance : kDistances)
+    for (int k = 0; k < kDirections && distance <= config.range; ++k) {
+      const double bearing = 2.0 * kPi * k / kDirections;
+      offsets.push_back({static_cast<int>(std::lround(distance * std::cos(bearing) / floor.frame().resolution)),
+                         static_cast<int>(std::lround(distance * std::sin(bearing) / floor.frame().resolution))});
+    }
+  std::vector<Viewpoint> found;
+  for (const auto& cluster : unsearched_clusters(floor, searched, config.min_cells))
+    for (std::size_t i = 0; i < cluster.size(); ++i) {
+      const Cell subject = cluster[i];
+      const Faces missing = searched.missing(floor, subject);
+      // Every few cells, and the first one of each cluster, so that none goes without.
+      if (i != 0 && (subject.x % kStride != 0 || subject.y % kStride != 0)) continue;
+      for (const Cell offset : offsets) {
+        const Cell c{subject.x + offset.x, subject.y + offset.y};
+        if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free || floor.clearance[c] < d_min) continue;
+        const double way = length(offset.x, offset.y);
+        const auto faces = static_cast<Faces>(missing & faces_along(-offset.x / way, -offset.y / way));
+        if (faces == 0) continue;
+        if (in_sight(floor, c, subject)) found.push_back({c, floor.cells.centre(subject), faces});
+      }
+    }
+  return found;
+}
+
+}  // namespace rubble::explore

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+#include <mrpt/math/TPose2D.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "base/angle.h"
+#include "explore/plan/traversable.h"
+
+namespace rubble::explore {
+
+/// What the explorer counts on from the robot's victim sensors.
+struct SearchConfig {
+  bool on = true;                           ///< look for victims everywhere before finishing
+  double field_of_view = deg_to_rad(50.0);  ///< full angle, ahead of the robot; less than the sensor's: poses err
+  double range = 1.8;                       ///< [m]; likewise
+  int min_cells = 8;                        ///< smaller unsearched places are left alone
+  double stare = 3.0;                       ///< a cue not yet confirmed holds the robot at most this long [s]
+  double dwell = 1.2;                       ///< time at a viewpoint, facing the place to search [s]
+};
+
+/// What has to be looked at in a cell of free floor, and what was: the floor itself, and the face of a wall at each of
+/// its four sides.
+using Faces = std::uint8_t;
+constexpr Faces kFloor = 1;     ///< from anywhere
+constexpr Faces kEastFace = 2;  ///< of a wall to the east: looked at towards the east, and so on
+constexpr Faces kNorthFace = 4;
+constexpr Faces kWestFace = 8;
+constexpr Faces kSouthFace = 16;
+
+/// The faces that can be inspected along a direction (unit vector): those whose normal is within 60 deg of it.
+Faces faces_along(double x, double y);
+/// What there is to be looked at in a cell.
+Faces faces_of(const Traversable& floor, Cell c);
+
+/// The floor and the wall faces the victim sensors have looked at. Places mapped from afar are known but not searched
+/// ("inner exploration"); a wall passed by at a grazing angle is not either, for what hangs on it or stands behind its
+/// holes was not to be seen. A single look may overlook something, so a place counts after two.
+class SearchedArea {
+ public:
+  explicit SearchedArea(const SearchConfig& config) : config_(config) {}
+
+  /// Marks the free floor in view from T_map_base: in the cone, in range, nothing occupied or unknown between.
+  void look(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
+  /// Counts `faces` within `radius` of a place that turned out not to be visible as looked at.
+  void give_up(const Traversable& floor, const mrpt::math::TPoint2D& place, double radius, Faces faces);
+  /// What is left to be looked at in a cell of `floor`.
+  Faces missing(const Traversable& floor, Cell c) const;
+  /// The same of all free cells; the outermost cells are 0.
+  Grid<Faces> unsearched(const Traversable& floor) const;
+  /// Forgets everything, for the map was corrected.
+  void clear() { once_ = twice_ = Grid<Faces>(); }
+
+ private:
+  /// What to add to a cell of `frame` to get the record's own.
+  Cell shift_from(const GridFrame& frame) const;
+  void cover(const GridFrame& frame);
+
+  SearchConfig config_;
+  Grid<Faces> once_;
+  Grid<Faces> twice_;
+};
+
+constexpr double kAtViewpoint = 0.12;  ///< viewpoints this close are served from where the robot stands [m]
+
+/// A place from which something unsearched can be seen.
+struct Viewpoint {
+  Cell cell;
+  mrpt::math::TPoint2D subject;  ///< what to face there [m]
+  Faces faces = 0;               ///< what can be inspected of it from there
+};
+
+/// Viewpoints with at least `d_min` clearance for every unsearched cluster of free floor, in raster order.
+std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& searched, const SearchConfig& config,
+                                  double d_min);
+
+/// True when all cells between two cells of the floor are free (the last one included).
+bool in_sight(const Traversable& floor, Cell from, Cell to);
+
+}  // namespace rubble::explore

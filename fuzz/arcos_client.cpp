@@ -1,0 +1,46 @@
+// What a base may send to the Pioneer driver, with time and set points in between: odometry stays finite and in order.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+
+#include "robot/drivers/pioneer.h"
+
+namespace {
+
+using namespace rubble;
+using namespace rubble::robot;
+
+void require(bool law) {
+  if (!law) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  Pioneer driver{PioneerSettings{}};
+  Stamp now{1'000'000'000};
+  driver.opened(now, size % 2 == 1);
+  driver.enable(true);
+  Stamp last = Stamp::never();
+  for (std::size_t at = 0; at < size;) {
+    // Each piece: its length, the milliseconds before it, and its bytes.
+    const std::size_t length = data[at] % 64u;
+    now = now + 0.001 * (at + 1 < size ? data[at + 1] : 0);
+    at += 2;
+    if (at >= size) break;
+    const std::size_t piece = std::min(length, size - at);
+    driver.receive({reinterpret_cast<const char*>(data + at), piece}, now);
+    at += piece;
+    driver.drive({0.01 * static_cast<double>(length), 0.3});
+    driver.advance(now);
+    require(driver.take_output(now).size() <= 200);
+    driver.deadline();
+    for (const Odometry& o : driver.take_odometry()) {
+      require(std::isfinite(o.pose.x) && std::isfinite(o.pose.y) && std::abs(o.pose.phi) <= 3.1416);
+      require(last == Stamp::never() || o.stamp > last);
+      last = o.stamp;
+    }
+  }
+  return 0;
+}

@@ -1,0 +1,125 @@
+#include "robot/drivers/black_box.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "base/error.h"
+#include "robot/drivers/host_clock.h"
+
+namespace rubble::robot {
+namespace {
+
+// An entry: name length, name, direction (one byte each), stamp (8 bytes), byte count (4 bytes), bytes; little-endian.
+constexpr std::size_t kNumbers = 8 + 4;
+
+void put(std::string& out, std::uint64_t value, int bytes) {
+  for (int i = 0; i < bytes; ++i) out.push_back(static_cast<char>((value >> (8 * i)) & 0xFF));
+}
+
+std::uint64_t take(const std::string& bytes, std::size_t at, int count) {
+  std::uint64_t value = 0;
+  for (int i = 0; i < count; ++i)
+    value |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[at + static_cast<std::size_t>(i)])) << (8 * i);
+  return value;
+}
+
+class RecordedPort : public Port {
+ public:
+  RecordedPort(std::unique_ptr<Port> inner, std::string device, BlackBox& box)
+      : inner_(std::move(inner)), device_(std::move(device)), box_(box) {
+    box_.add(device_, Direction::Opened, inner_->name(), host_now());
+  }
+
+  std::size_t read(std::uint8_t* to, std::size_t size, double timeout) override {
+    try {
+      const std::size_t got = inner_->read(to, size, timeout);
+      if (got > 0) box_.add(device_, Direction::FromDevice, {reinterpret_cast<const char*>(to), got}, host_now());
+      return got;
+    } catch (const DeviceLost& lost) {
+      box_.add(device_, Direction::Lost, lost.what(), host_now());
+      throw;
+    }
+  }
+  void write(const std::uint8_t* from, std::size_t size) override {
+    box_.add(device_, Direction::ToDevice, {reinterpret_cast<const char*>(from), size}, host_now());
+    inner_->write(from, size);
+  }
+  int descriptor() const override { return inner_->descriptor(); }
+  const std::string& name() const override { return inner_->name(); }
+  void set_baud(int baud) override { inner_->set_baud(baud); }
+  bool is_serial() const override { return inner_->is_serial(); }
+
+ private:
+  std::unique_ptr<Port> inner_;
+  std::string device_;
+  BlackBox& box_;
+};
+
+}  // namespace
+
+BlackBox::BlackBox(const std::string& path)
+    : file_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+  const std::string magic = kBlackBoxMagic;
+  if (!file_ || ::write(file_.get(), magic.data(), magic.size()) != static_cast<ssize_t>(magic.size()))
+    throw RunError(path + ": cannot be written (" + std::strerror(errno) +
+                   "); give a folder that exists and may be written");
+}
+
+void BlackBox::add(const std::string& device, Direction direction, std::string_view bytes, Stamp stamp) {
+  std::string entry;
+  put(entry, device.size(), 1);
+  entry += device;
+  put(entry, static_cast<std::uint64_t>(direction), 1);
+  put(entry, static_cast<std::uint64_t>(stamp.ns), 8);
+  put(entry, bytes.size(), 4);
+  entry += bytes;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (failed_) return;
+  failed_ = ::write(file_.get(), entry.data(), entry.size()) != static_cast<ssize_t>(entry.size());
+}
+
+bool BlackBox::failed() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return failed_;
+}
+
+std::vector<BlackBoxEntry> read_black_box(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw InputError(path + ": cannot be read; give a black box that 'rubble drive' wrote");
+  const std::string all{std::istreambuf_iterator<char>(in), {}};
+  const std::string magic = kBlackBoxMagic;
+  if (all.compare(0, magic.size(), magic) != 0)
+    throw InputError(path +
+                     ": is not a black box (it does not begin with 'RUBBLE BYTES 1'); give devices.bytes of a run");
+  std::vector<BlackBoxEntry> entries;
+  for (std::size_t at = magic.size(); at < all.size();) {
+    const std::size_t name = take(all, at, 1);
+    if (all.size() - at < 2 + name + kNumbers) break;
+    BlackBoxEntry entry;
+    entry.device = all.substr(at + 1, name);
+    at += 1 + name;
+    entry.direction = static_cast<Direction>(take(all, at, 1));
+    entry.stamp = {static_cast<std::int64_t>(take(all, at + 1, 8))};
+    const std::size_t size = take(all, at + 9, 4);
+    at += 1 + kNumbers;
+    if (all.size() - at < size) break;
+    entry.bytes = all.substr(at, size);
+    at += size;
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+std::unique_ptr<Port> open_recorded(const std::string& word, const std::string& device, BlackBox* box) {
+  std::unique_ptr<Port> port = open_port(word);
+  if (box == nullptr) return port;
+  return std::make_unique<RecordedPort>(std::move(port), device, *box);
+}
+
+}  // namespace rubble::robot

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "base/stamp.h"
+#include "robot/drivers/descriptor.h"
+#include "robot/drivers/port.h"
+
+namespace rubble::robot {
+
+/// First line of a black box; the number is the format's version.
+constexpr const char* kBlackBoxMagic = "RUBBLE BYTES 1\n";
+
+enum class Direction : std::uint8_t { FromDevice = 0, ToDevice = 1, Opened = 2, Lost = 3 };
+
+/// Some bytes on the line of a device.
+struct BlackBoxEntry {
+  std::string device;
+  Direction direction = Direction::FromDevice;
+  Stamp stamp;
+  std::string bytes;  ///< of Opened the port's name, of Lost the reason
+};
+
+/// Keeps all raw bytes of all devices with their times, so that what happened in the field can be played to the drivers
+/// again. Appended to as it goes; a torn last entry is dropped on reading. For any number of threads.
+class BlackBox {
+ public:
+  /// An existing file is replaced. Throws RunError when `path` cannot be written.
+  explicit BlackBox(const std::string& path);
+  /// Failures to write are kept quiet: a full disk must not stop a robot's drivers. `failed()` tells.
+  void add(const std::string& device, Direction direction, std::string_view bytes, Stamp stamp);
+  bool failed() const;
+
+ private:
+  mutable std::mutex mutex_;
+  Descriptor file_;
+  bool failed_ = false;
+};
+
+/// All whole entries of a black box in their order. Throws InputError: missing, of another kind.
+std::vector<BlackBoxEntry> read_black_box(const std::string& path);
+
+/// Opens a port whose bytes go to `box` (null: nowhere) under the device's name.
+std::unique_ptr<Port> open_recorded(const std::string& word, const std::string& device, BlackBox* box);
+
+}  // namespace rubble::robot

@@ -1,0 +1,41 @@
+#include "robot/drivers/black_box_replay.h"
+
+#include <iterator>
+
+namespace rubble::robot {
+namespace {
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T>&& from) {
+  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+/// What the driver would send is thrown away: the device has long answered what was sent then.
+void play(Device& device, const BlackBoxEntry& entry) {
+  if (entry.direction == Direction::Opened) return device.opened(entry.stamp, entry.bytes.rfind("tcp:", 0) != 0);
+  device.advance(entry.stamp);
+  if (entry.direction == Direction::FromDevice) device.receive(entry.bytes, entry.stamp);
+  device.take_output(entry.stamp);
+}
+
+}  // namespace
+
+ReplayedBox replay_black_box(const std::vector<BlackBoxEntry>& entries, const PioneerSettings& base,
+                             const LevellingUnitSettings& levelling) {
+  Pioneer pioneer(base);
+  LevellingUnit unit(levelling);
+  ReplayedBox replayed;
+  for (const BlackBoxEntry& entry : entries) {
+    if (entry.device == "base") play(pioneer, entry);
+    if (entry.device == "levelling") play(unit, entry);
+    append(replayed.odometry, pioneer.take_odometry());
+    append(replayed.accelerations, unit.take_accelerations());
+    append(replayed.aims, unit.take_aims());
+  }
+  replayed.bad_sums = pioneer.bad_sums();
+  replayed.jumps = pioneer.jumps();
+  replayed.bad_lines = unit.bad_lines();
+  return replayed;
+}
+
+}  // namespace rubble::robot

@@ -1,0 +1,31 @@
+#include "robot/drivers/cycle_clock.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rubble::robot {
+namespace {
+
+constexpr double kGap = 1.0;        ///< after so long a silence the cycle starts anew [s]
+constexpr double kLateShare = 0.1;  ///< of the cycle: much later than foretold
+constexpr int kPatience = 20;       ///< so many in a row: the device's cycle has shifted
+
+}  // namespace
+
+Stamp CycleClock::stamp(Stamp received) {
+  Stamp stamp = received;
+  if (last_ != Stamp::never() && cycle_ > 0.0 && received - last_ < kGap) {
+    // Reports may be missing in between. One is not held up by more than most of a cycle.
+    const double cycles = std::max(1.0, std::floor((received - last_) / cycle_ + 0.3));
+    const Stamp foretold = last_ + cycles * cycle_;
+    const double late = received - foretold;
+    late_ = late > kLateShare * cycle_ ? late_ + 1 : 0;
+    if (late > 0.0 && late_ < kPatience) stamp = foretold + std::min(late, kSlew);
+    if (late_ >= kPatience) late_ = 0;
+  }
+  if (last_ != Stamp::never() && stamp <= last_) stamp = {last_.ns + 1};
+  last_ = stamp;
+  return stamp;
+}
+
+}  // namespace rubble::robot

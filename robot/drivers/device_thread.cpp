@@ -1,0 +1,107 @@
+#include "robot/drivers/device_thread.h"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "robot/drivers/host_clock.h"
+
+namespace rubble::robot {
+namespace {
+
+constexpr double kTurn = 0.02;       ///< the thread looks around so often at least [s]
+constexpr double kOpenAgain = 0.25;  ///< [s]
+
+void wait_for(int port, int wake, double timeout) {
+  std::array<pollfd, 2> files{pollfd{wake, POLLIN, 0}, pollfd{port, POLLIN, 0}};
+  const double bounded = std::clamp(timeout, 0.0, kTurn);
+  const timespec limit{0, static_cast<long>(bounded * 1e9)};
+  ::ppoll(files.data(), port < 0 ? 1 : 2, &limit, nullptr);
+  std::uint64_t count = 0;
+  [[maybe_unused]] const ssize_t got = ::read(wake, &count, sizeof count);
+}
+
+}  // namespace
+
+DeviceThread::DeviceThread(std::string name, std::string port, Device& device, BlackBox* box,
+                           std::function<void(Stamp)> each_turn)
+    : name_(std::move(name)),
+      word_(std::move(port)),
+      device_(device),
+      box_(box),
+      each_turn_(std::move(each_turn)),
+      wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+  check_port_word(word_);
+  error_ = word_ + ": not opened yet";
+  thread_ = std::thread([this] { run(); });
+}
+
+DeviceThread::~DeviceThread() {
+  with([this] { ending_ = true; });
+  wake();
+  thread_.join();
+}
+
+void DeviceThread::wake() const {
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const ssize_t written = ::write(wake_.get(), &one, sizeof one);
+}
+
+std::string DeviceThread::error() const {
+  return with([this] { return error_; });
+}
+
+bool DeviceThread::is_ending() const {
+  return with([this] { return ending_; });
+}
+
+void DeviceThread::send(const std::string& bytes) {
+  if (!bytes.empty()) port_->write(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+}
+
+void DeviceThread::run() {
+  while (!is_ending()) {
+    try {
+      port_ = open_recorded(word_, name_, box_);
+      baud_ = 0;
+      converse();
+    } catch (const std::exception& lost) {
+      port_.reset();
+      with([&] { error_ = lost.what(); });
+      for (const Stamp again = host_now() + kOpenAgain; host_now() < again && !is_ending();)
+        wait_for(-1, wake_.get(), kTurn);
+    }
+  }
+}
+
+void DeviceThread::converse() {
+  with([this] {
+    error_.clear();
+    device_.opened(host_now(), port_->is_serial());
+  });
+  while (!is_ending()) {
+    const int baud = with([this] { return device_.baud(); });
+    if (baud > 0 && baud != baud_ && port_->is_serial()) port_->set_baud(baud);
+    baud_ = baud;
+    std::array<std::uint8_t, 4096> bytes;
+    const std::size_t got = port_->read(bytes.data(), bytes.size(), 0.0);
+    std::string out;
+    const Stamp now = host_now();
+    const Stamp deadline = with([&] {
+      if (got > 0) device_.receive({reinterpret_cast<const char*>(bytes.data()), got}, now);
+      if (each_turn_) each_turn_(now);
+      device_.advance(now);
+      out = device_.take_output(now);
+      return device_.deadline();
+    });
+    send(out);
+    if (got < bytes.size()) wait_for(port_->descriptor(), wake_.get(), deadline - host_now());
+  }
+  send(with([this] { return device_.farewell(); }));
+}
+
+}  // namespace rubble::robot

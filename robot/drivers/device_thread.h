@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "robot/drivers/black_box.h"
+#include "robot/drivers/descriptor.h"
+#include "robot/drivers/device.h"
+#include "robot/drivers/port.h"
+
+namespace rubble::robot {
+
+/// Runs one device's conversation on its port in a thread of its own. Opens the port again and again after it was lost.
+class DeviceThread {
+ public:
+  /// `each_turn` is called under the lock before time is let pass in the device: every 20 ms at the latest. Throws
+  /// InputError on a bad port word.
+  DeviceThread(std::string name, std::string port, Device& device, BlackBox* box,
+               std::function<void(Stamp)> each_turn = {});
+  /// Sends the device's farewell and ends.
+  ~DeviceThread();
+  DeviceThread(const DeviceThread&) = delete;
+  DeviceThread& operator=(const DeviceThread&) = delete;
+
+  /// Calls `use()` while the thread leaves the device alone.
+  template <class Use>
+  auto with(const Use& use) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return use();
+  }
+  /// Lets the thread look at the device at once.
+  void wake() const;
+
+  const std::string& name() const { return name_; }
+  /// Why the port is not open; empty while it is.
+  std::string error() const;
+
+ private:
+  void run();
+  void converse();
+  void send(const std::string& bytes);
+  bool is_ending() const;
+
+  std::string name_;
+  std::string word_;
+  Device& device_;
+  BlackBox* box_;
+  std::function<void(Stamp)> each_turn_;
+  Descriptor wake_;
+  mutable std::mutex mutex_;
+  bool ending_ = false;
+  std::string error_;
+  std::unique_ptr<Port> port_;
+  int baud_ = 0;
+  std::thread thread_;
+};
+
+}  // namespace rubble::robot

@@ -1,0 +1,142 @@
+#include "robot/drivers/levelling_unit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace rubble::robot {
+namespace {
+
+constexpr double kGravity = 9.80665;  ///< [m/s^2]
+/// A port that is opened may reset the controller, which then takes up to two seconds.
+constexpr double kAsk = 0.5;           ///< [s]
+constexpr double kReportBytes = 50.0;  ///< of a report on the line
+constexpr double kRefresh = 0.1;       ///< of the servo pulses: well within the unit's watchdog [s]
+
+double specific_force(long t1, long t2, const AxisCalibration& axis) {
+  const double duty = static_cast<double>(t1) / static_cast<double>(t2);
+  return kGravity * (duty - axis.zero) / axis.sensitivity;
+}
+
+double angle(int pulse_us, const ServoCalibration& servo) {
+  return (pulse_us - servo.centre_us) * servo.radians_per_us;
+}
+
+}  // namespace
+
+void LevellingUnit::opened(Stamp now, bool serial) {
+  serial_ = serial;
+  lines_.reset();
+  restart_clock();
+  identified_ = false;
+  last_report_ = Stamp::never();
+  sequence_ = -1;
+  output_ = levelling_line("V");
+  asked_ = now;
+}
+
+void LevellingUnit::advance(Stamp now) {
+  if (asked_ == Stamp::never()) return;
+  if (identified_ && last_report_ != Stamp::never() && now - last_report_ > settings_.silence) {
+    identified_ = false;
+    last_report_ = Stamp::never();
+  }
+  if (!ready() && now - asked_ >= kAsk) {
+    asked_ = now;
+    output_ = levelling_line("V");
+  }
+  if (ready() && aimed_ && now - aim_sent_ >= kRefresh) aim_due_ = true;
+}
+
+void LevellingUnit::receive(std::string_view bytes, Stamp now) {
+  lines_.feed(bytes);
+  while (const auto fields = lines_.next()) digest(*fields, now);
+}
+
+void LevellingUnit::digest(const std::vector<std::string>& fields, Stamp now) {
+  if (const auto identity = parse_identity(fields)) {
+    // Also when it was reset on its own: all settings are gone then.
+    identity_ = *identity;
+    identified_ = true;
+    restart_clock();
+    output_ += levelling_line("R," + std::to_string(settings_.rate));
+    output_ += levelling_line("W," + std::to_string(settings_.watchdog_ms));
+    output_ += levelling_line("E,1");
+    return;
+  }
+  if (const auto report = parse_report(fields); report && identified_) follow(*report, now);
+}
+
+void LevellingUnit::follow(const LevellingReport& report, Stamp now) {
+  if (sequence_ >= 0) missing_ += static_cast<std::size_t>((report.sequence - sequence_ - 1) & 0xFFFF);
+  sequence_ = report.sequence;
+  flags_ = report.flags;
+  last_report_ = now;
+  const Stamp stamp = stamp_of(report, now);
+  if (!sensor_fault()) {
+    accelerations_.push_back({stamp, specific_force(report.t1x, report.t2, settings_.x),
+                              specific_force(report.t1y, report.t2, settings_.y)});
+  }
+  aims_.push_back({stamp, angle(report.pitch_us, settings_.pitch), angle(report.roll_us, settings_.roll)});
+}
+
+void LevellingUnit::restart_clock() {
+  ClockMapConfig config;
+  config.resolution = 2e-6;
+  config.usual_delay = settings_.delay + (serial_ ? kReportBytes * 10.0 / baud() : 0.0);
+  clock_ = ClockMap(config);
+  counter_.clear();
+}
+
+/// The end of the measurement, by the unit's own clock: it tells the middle, and the sums how long it took.
+Stamp LevellingUnit::stamp_of(const LevellingReport& report, Stamp now) {
+  const WrappingClock::Reading reading = counter_.read(report.time_us >> 1, now);
+  if (reading.restarted) restart_clock();
+  const double end = reading.time + 0.5 * static_cast<double>(report.t2) / identity_.tick_hz;
+  clock_.add(end, now);
+  Stamp stamp = std::min(clock_.host(end), now);
+  if (last_stamp_ != Stamp::never() && stamp <= last_stamp_) stamp = {last_stamp_.ns + 1};
+  last_stamp_ = stamp;
+  return stamp;
+}
+
+void LevellingUnit::aim(const LaserAim& aim) {
+  const bool changed = pulse(aim.pitch, settings_.pitch) != pulse(aim_.pitch, settings_.pitch) ||
+                       pulse(aim.roll, settings_.roll) != pulse(aim_.roll, settings_.roll);
+  if (changed || !aimed_) aim_due_ = true;
+  aim_ = aim;
+  aimed_ = true;
+}
+
+int LevellingUnit::pulse(double angle, const ServoCalibration& servo) const {
+  const long us = std::lround(servo.centre_us + angle / servo.radians_per_us);
+  return static_cast<int>(std::clamp<long>(us, identity_.us_min, identity_.us_max));
+}
+
+std::string LevellingUnit::take_output(Stamp now) {
+  std::string out = std::exchange(output_, "");
+  if (aim_due_ && ready()) {
+    out += levelling_line("S," + std::to_string(pulse(aim_.pitch, settings_.pitch)) + "," +
+                          std::to_string(pulse(aim_.roll, settings_.roll)));
+    aim_due_ = false;
+    aim_sent_ = now;
+  }
+  return out;
+}
+
+Stamp LevellingUnit::deadline() const {
+  if (asked_ == Stamp::never()) return {};
+  if (!ready()) return asked_ + kAsk;
+  return aimed_ && aim_sent_ != Stamp::never() ? aim_sent_ + kRefresh : last_report_ + settings_.silence;
+}
+
+std::string LevellingUnit::state() const {
+  if (!identified_) return "asks who is there";
+  return ready() ? identity_.model + " reports" : "waits for the first report of " + identity_.model;
+}
+
+std::vector<Acceleration> LevellingUnit::take_accelerations() { return std::exchange(accelerations_, {}); }
+
+std::vector<AimState> LevellingUnit::take_aims() { return std::exchange(aims_, {}); }
+
+}  // namespace rubble::robot

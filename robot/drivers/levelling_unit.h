@@ -1,0 +1,95 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/angle.h"
+#include "robot/commands.h"
+#include "robot/drivers/clock_map.h"
+#include "robot/drivers/device.h"
+#include "robot/measurements.h"
+#include "robot/protocols/levelling_line.h"
+
+namespace rubble::robot {
+
+/// One axis of the accelerometer: duty cycle at 0 g and per g (data sheet of the ADXL202: 50 % and 12.5 %, but every
+/// part is different).
+struct AxisCalibration {
+  double zero = 0.5;
+  double sensitivity = 0.125;  ///< [1/g]
+};
+
+/// One servo: the pulse at which it holds the laser level, and its turn per microsecond.
+struct ServoCalibration {
+  double centre_us = 1500.0;
+  double radians_per_us = deg_to_rad(0.09);
+};
+
+struct LevellingUnitSettings {
+  AxisCalibration x;  ///< forward
+  AxisCalibration y;  ///< left
+  ServoCalibration pitch;
+  ServoCalibration roll;
+  int rate = 50;          ///< reports a second asked for
+  int watchdog_ms = 500;  ///< the unit holds its servos after so long a silence
+  double delay = 0.0;     ///< age of a report when it arrives [s]
+  double silence = 1.0;   ///< without reports for so long it is asked anew [s]
+};
+
+/// Client of the levelling unit: a microcontroller with a two-axis accelerometer and two servos.
+class LevellingUnit : public Device {
+ public:
+  explicit LevellingUnit(const LevellingUnitSettings& settings) : settings_(settings) {}
+
+  void opened(Stamp now, bool serial) override;
+  void receive(std::string_view bytes, Stamp now) override;
+  void advance(Stamp now) override;
+  std::string take_output(Stamp now) override;
+  Stamp deadline() const override;
+  int baud() const override { return 115200; }
+  bool ready() const override { return identified_ && last_report_ != Stamp::never(); }
+  Stamp last_report() const override { return last_report_; }
+  std::string state() const override;
+
+  /// Angles the servos shall hold; refreshed until replaced.
+  void aim(const LaserAim& aim);
+
+  std::vector<Acceleration> take_accelerations();
+  std::vector<AimState> take_aims();
+
+  const LevellingIdentity& identity() const { return identity_; }
+  bool sensor_fault() const { return (flags_ & LevellingReport::kSensorFault) != 0; }
+  std::size_t bad_lines() const { return lines_.bad_lines(); }
+  /// Reports that never arrived, by their numbers.
+  std::size_t missing() const { return missing_; }
+
+ private:
+  void digest(const std::vector<std::string>& fields, Stamp now);
+  void follow(const LevellingReport& report, Stamp now);
+  Stamp stamp_of(const LevellingReport& report, Stamp now);
+  void restart_clock();
+  int pulse(double angle, const ServoCalibration& servo) const;
+
+  LevellingUnitSettings settings_;
+  LevellingLines lines_;
+  LevellingIdentity identity_;
+  bool identified_ = false;
+  Stamp asked_ = Stamp::never();
+  std::string output_;
+  LaserAim aim_;
+  bool aimed_ = false;  ///< aim() was called once
+  bool aim_due_ = false;
+  Stamp aim_sent_ = Stamp::never();
+  bool serial_ = false;
+  WrappingClock counter_{1u << 31, 2e-6};  ///< every second microsecond of 2^32
+  ClockMap clock_{ClockMapConfig{}};
+  Stamp last_stamp_ = Stamp::never();
+  Stamp last_report_ = Stamp::never();
+  int sequence_ = -1;
+  int flags_ = 0;
+  std::size_t missing_ = 0;
+  std::vector<Acceleration> accelerations_;
+  std::vector<AimState> aims_;
+};
+
+}  // namespace rubble::robot

@@ -1,0 +1,318 @@
+#include "robot/drivers/pioneer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/planar.h"
+#include "robot/protocols/arcos_commands.h"
+
+namespace rubble::robot {
+namespace {
+
+using arcos::command;
+
+constexpr double kReply = 0.5;        ///< an answer comes within this time [s]
+constexpr int kTries = 3;             ///< questions before the next bit rate
+constexpr double kConfigReply = 1.0;  ///< [s]
+constexpr double kSpacing = 0.004;    ///< the firmware wants so much between two commands [s]
+constexpr double kRefresh = 0.2;      ///< set points are sent again [s]; the firmware forgets them after 2 s
+constexpr double kAskMotors = 0.5;    ///< [s]
+constexpr double kHeadingUnit = 2.0 * kPi / 4096;  // [rad]
+constexpr double kMillimetre = 1e-3;
+/// Wheel speed difference to turn rate, per robot: half the effective track (parameter files of ARIA).
+constexpr double kHalfTrackAt = 1e-3 / 0.0034;  // [m]
+constexpr double kHalfTrackDx = 1e-3 / 0.0056;  // [m]
+
+/// Difference of two rolled-over coordinates; older firmware rolls over at 15 bits, so only these are compared [mm].
+int rolled_difference(std::uint16_t to, std::uint16_t from) {
+  const int low = (to - from) & 0x7FFF;
+  return low >= 0x4000 ? low - 0x8000 : low;
+}
+
+int heading_difference(std::int16_t to, std::int16_t from) {
+  const int low = (to - from) & 0x0FFF;
+  return low >= 0x0800 ? low - 0x1000 : low;
+}
+
+int whole(double value) { return static_cast<int>(std::lround(value)); }
+
+}  // namespace
+
+void Pioneer::go(Step step, Stamp now) {
+  step_ = step;
+  tries_ = 0;
+  since_ = now;
+}
+
+void Pioneer::opened(Stamp now, bool serial) {
+  serial_ = serial;
+  parser_.reset();
+  clock_.reset();
+  queue_.clear();
+  based_ = false;
+  last_report_ = Stamp::never();
+  go(Step::Sync0, now);
+  ask(now);
+}
+
+void Pioneer::ask(Stamp now) {
+  since_ = now;
+  ++tries_;
+  switch (step_) {
+    case Step::Sync0:
+      return send(command(arcos::kSync0));
+    case Step::Sync1:
+      return send(command(arcos::kSync1));
+    case Step::Sync2:
+      return send(command(arcos::kSync2));
+    default:
+      return;
+  }
+}
+
+int Pioneer::baud() const { return serial_ ? settings_.bauds[rate_ % settings_.bauds.size()] : 0; }
+
+void Pioneer::try_next_rate(Stamp now) {
+  if (serial_) ++rate_;
+  parser_.reset();
+  go(Step::Sync0, now);
+  ask(now);
+}
+
+void Pioneer::advance(Stamp now) {
+  switch (step_) {
+    case Step::Closed:
+      return;
+    case Step::Sync0:
+    case Step::Sync1:
+    case Step::Sync2:
+      if (now - since_ < kReply) return;
+      if (tries_ >= kTries) return try_next_rate(now);
+      return ask(now);
+    case Step::Closing:
+      if (now - since_ < kReply) return;
+      parser_.reset();
+      go(Step::Sync0, now);
+      return ask(now);
+    case Step::Opening:
+      if (configured_ || now - since_ >= kConfigReply) return go(Step::Running, now);
+      return;
+    case Step::Running:
+      break;
+  }
+  const Stamp heard = last_report_ == Stamp::never() ? since_ : last_report_;
+  if (now - heard > settings_.silence) {
+    // The robot was switched off and on, or somebody closed it: all over again.
+    queue_.clear();
+    send(command(arcos::kClose));
+    last_report_ = Stamp::never();
+    based_ = false;
+    clock_.reset();
+    return go(Step::Closing, now);
+  }
+  refresh(now);
+}
+
+void Pioneer::receive(std::string_view bytes, Stamp now) {
+  parser_.feed(bytes);
+  while (const auto payload = parser_.next()) digest(*payload, now);
+}
+
+void Pioneer::digest(const std::string& payload, Stamp now) {
+  const auto report = arcos::parse_information(payload);
+  const bool syncing = step_ == Step::Sync0 || step_ == Step::Sync1 || step_ == Step::Sync2;
+  if (syncing && report) {
+    // Open since a client that died: SYNC0 was a PULSE to it.
+    send(command(arcos::kClose));
+    return go(Step::Closing, now);
+  }
+  if (syncing) {
+    const auto echo = static_cast<std::uint8_t>(payload[0]);
+    const int expected = step_ == Step::Sync0 ? 0 : step_ == Step::Sync1 ? 1 : 2;
+    if (echo != expected) return go(Step::Sync0, now);
+    if (step_ == Step::Sync2) {
+      const auto identity = arcos::parse_identity(payload);
+      if (!identity) return;
+      identity_ = *identity;
+      return open(now);
+    }
+    go(step_ == Step::Sync0 ? Step::Sync1 : Step::Sync2, now);
+    return ask(now);
+  }
+  if (step_ != Step::Opening && step_ != Step::Running) return;
+  if (const auto configuration = arcos::parse_configuration(payload)) {
+    configuration_ = *configuration;
+    configured_ = true;
+    clock_.set_cycle(1e-3 * configuration_.cycle_ms);
+  }
+  if (!report) return;
+  follow(*report, clock_.stamp(sampled(payload.size() + 5, now)));
+  last_report_ = now;
+}
+
+/// When the robot took what it sent in so many bytes.
+Stamp Pioneer::sampled(std::size_t bytes, Stamp received) const {
+  const double on_the_line = serial_ ? 10.0 * static_cast<double>(bytes) / baud() : 0.0;  // 8N1: ten bits a byte
+  return received - (on_the_line + settings_.delay);
+}
+
+void Pioneer::open(Stamp now) {
+  go(Step::Opening, now);
+  configured_ = false;
+  based_ = false;
+  send(command(arcos::kOpen, 1));
+  send(command(arcos::kConfig, 1));
+  const int accel = whole(settings_.max_accel / kMillimetre);
+  const int turn_accel = whole(rad_to_deg(settings_.max_turn_accel));
+  send(command(arcos::kSetSpeed, whole(settings_.max_v / kMillimetre)));
+  send(command(arcos::kSetAcceleration, accel));
+  send(command(arcos::kSetAcceleration, -accel));
+  send(command(arcos::kSetTurnRate, whole(rad_to_deg(settings_.max_w))));
+  send(command(arcos::kSetTurnAcceleration, turn_accel));
+  send(command(arcos::kSetTurnAcceleration, -turn_accel));
+  v_due_ = w_due_ = !settings_.passive;  // whatever set points a former client left
+  asked_motors_ = Stamp::never();
+}
+
+/// Adds the motion between two reports to the pose. A report that jumps farther than the robot can have moved comes
+/// from an origin set anew (or a firmware that was restarted): it becomes the reference, and the wheels' speeds say
+/// what happened meanwhile.
+void Pioneer::follow(const arcos::StandardInformation& report, Stamp stamp) {
+  const double half_track = identity_.subclass.rfind("p3dx", 0) == 0 ? kHalfTrackDx : kHalfTrackAt;
+  Odometry odometry;
+  odometry.stamp = stamp;
+  odometry.v = 0.5 * kMillimetre * (report.left + report.right) * settings_.distance_scale;
+  odometry.w = kMillimetre * (report.right - report.left) / (2.0 * half_track) * settings_.turn_scale;
+  odometry.stalled = (report.stall & (arcos::kLeftStall | arcos::kRightStall)) != 0;
+  if (based_) {
+    const double dx = kMillimetre * rolled_difference(report.x, information_.x);
+    const double dy = kMillimetre * rolled_difference(report.y, information_.y);
+    const double dphi = kHeadingUnit * heading_difference(report.heading, information_.heading);
+    const double dt = std::clamp(stamp - last_stamp_, 0.1, 2.0);
+    const double before = kHeadingUnit * information_.heading;
+    double ahead = std::cos(before) * dx + std::sin(before) * dy;
+    double aside = -std::sin(before) * dx + std::cos(before) * dy;
+    double turn = dphi;
+    const double v = 0.5 * kMillimetre *
+                     std::max(std::abs(report.left + report.right), std::abs(information_.left + information_.right));
+    const double w = kMillimetre / (2.0 * half_track) *
+                     std::max(std::abs(report.right - report.left), std::abs(information_.right - information_.left));
+    const double farthest = 0.03 + 1.5 * v * dt + 0.5 * settings_.max_accel * dt * dt;
+    const double widest = deg_to_rad(3.0) + 1.5 * w * dt + 0.5 * settings_.max_turn_accel * dt * dt;
+    if (length(dx, dy) > farthest || std::abs(turn) > widest) {
+      ++jumps_;
+      turn = odometry.w / settings_.turn_scale * dt;
+      ahead = odometry.v / settings_.distance_scale * dt;
+      aside = 0.0;
+    }
+    ahead *= settings_.distance_scale;
+    aside *= settings_.distance_scale;
+    pose_.x += std::cos(pose_.phi) * ahead - std::sin(pose_.phi) * aside;
+    pose_.y += std::sin(pose_.phi) * ahead + std::cos(pose_.phi) * aside;
+    pose_.phi = wrap_angle(pose_.phi + turn * settings_.turn_scale);
+  }
+  based_ = true;
+  information_ = report;
+  last_stamp_ = stamp;
+  odometry.pose = pose_;
+  odometry_.push_back(odometry);
+}
+
+void Pioneer::drive(const Drive& drive) {
+  if (settings_.passive) return;
+  target_.v = motors_ ? std::clamp(drive.v, -settings_.max_v, settings_.max_v) : 0.0;
+  target_.w = motors_ ? std::clamp(drive.w, -settings_.max_w, settings_.max_w) : 0.0;
+  // An answer to what was just seen leaves at once; the dithering goes on at its own pace.
+  if (whole(target_.v / kMillimetre) != v_sent_) v_due_ = true;
+  if (std::abs(rad_to_deg(target_.w) - w_sent_) >= 1.0 || (target_.w == 0.0 && w_sent_ != 0)) w_due_ = true;
+}
+
+void Pioneer::enable(bool on) {
+  if (settings_.passive) on = false;
+  if (on != motors_) asked_motors_ = Stamp::never();
+  motors_ = on;
+  if (!on) drive({});
+}
+
+void Pioneer::emergency_stop() {
+  enable(false);
+  queue_.push_front(command(arcos::kEnable, 0));
+  queue_.push_front(command(arcos::kEmergencyStop));
+}
+
+/// Marks what must be said at `now`.
+void Pioneer::refresh(Stamp now) {
+  if (settings_.passive) {
+    if (refreshed_ != Stamp::never() && now - refreshed_ < kRefresh) return;
+    refreshed_ = now;
+    return send(command(arcos::kPulse));
+  }
+  if (motors_ != motors_on() && (asked_motors_ == Stamp::never() || now - asked_motors_ >= kAskMotors)) {
+    asked_motors_ = now;
+    send(command(arcos::kEnable, motors_ ? 1 : 0));
+  }
+  if (turn_.restless() && now - turn_decided_ >= RateDither::kPeriod - 1e-4) w_due_ = true;
+  if (refreshed_ == Stamp::never() || now - refreshed_ >= kRefresh) {
+    refreshed_ = now;
+    v_due_ = w_due_ = true;
+  }
+}
+
+std::string Pioneer::take_output(Stamp now) {
+  if (sent_ != Stamp::never() && now - sent_ < kSpacing && now >= sent_) return "";
+  std::string out;
+  if (!queue_.empty()) {
+    out = std::move(queue_.front());
+    queue_.pop_front();
+  } else if (v_due_ && step_ == Step::Running) {
+    v_sent_ = whole(target_.v / kMillimetre);
+    out = command(arcos::kVelocity, v_sent_);
+    v_due_ = false;
+  } else if (w_due_ && step_ == Step::Running) {
+    w_sent_ = turn_.next(rad_to_deg(target_.w), now);
+    turn_decided_ = now;
+    out = command(arcos::kTurnRate, w_sent_);
+    w_due_ = false;
+  }
+  if (!out.empty()) sent_ = now;
+  return out;
+}
+
+std::string Pioneer::farewell() {
+  if (step_ == Step::Closed) return "";
+  return command(arcos::kStop) + command(arcos::kEnable, 0) + command(arcos::kClose);
+}
+
+Stamp Pioneer::deadline() const {
+  if (step_ == Step::Closed) return {since_.ns + 1'000'000'000};
+  const bool waiting = !queue_.empty() || (step_ == Step::Running && (v_due_ || w_due_));
+  if (waiting) return sent_ == Stamp::never() ? since_ : sent_ + kSpacing;
+  if (step_ != Step::Running) return since_ + (step_ == Step::Opening && configured_ ? 0.0 : kReply);
+  Stamp next = refreshed_ == Stamp::never() ? since_ : refreshed_ + kRefresh;
+  if (turn_.restless()) next = std::min(next, turn_decided_ + RateDither::kPeriod);
+  return next;
+}
+
+std::string Pioneer::state() const {
+  const std::string rate = serial_ ? " at " + std::to_string(baud()) + " baud" : "";
+  switch (step_) {
+    case Step::Closed:
+      return "closed";
+    case Step::Sync0:
+    case Step::Sync1:
+    case Step::Sync2:
+      return "asks who is there" + rate;
+    case Step::Closing:
+      return "closes an old connection" + rate;
+    case Step::Opening:
+      return "opens " + identity_.subclass;
+    case Step::Running:
+      break;
+  }
+  return ready() ? identity_.subclass + " reports" : "waits for the first report of " + identity_.subclass;
+}
+
+std::vector<Odometry> Pioneer::take_odometry() { return std::exchange(odometry_, {}); }
+
+}  // namespace rubble::robot

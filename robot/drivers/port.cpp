@@ -1,0 +1,201 @@
+#include "robot/drivers/port.h"
+
+#include <fcntl.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <termios.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "base/error.h"
+#include "robot/drivers/descriptor.h"
+#include "robot/drivers/host_clock.h"
+#include "robot/drivers/port_word.h"
+
+namespace rubble::robot {
+namespace {
+
+constexpr double kConnectTimeout = 2.0;  // [s]
+constexpr double kWriteTimeout = 0.5;    // a device that takes nothing for so long is gone [s]
+constexpr int kFirstBaud = 115200;
+
+/// Waits for `events`; false: the time is over. Signals do not shorten the wait.
+bool wait_for(int descriptor, short events, double timeout) {
+  const Stamp until = host_now() + timeout;
+  for (;;) {
+    pollfd entry{descriptor, events, 0};
+    const double left = std::max(0.0, until - host_now());
+    timespec wait{};
+    wait.tv_sec = static_cast<time_t>(left);
+    wait.tv_nsec = static_cast<long>((left - std::floor(left)) * 1e9);
+    const int ready = ppoll(&entry, 1, &wait, nullptr);
+    if (ready > 0) return true;
+    if (ready == 0) return false;
+    if (errno != EINTR) return true;  // the read or write that follows tells what is wrong
+  }
+}
+
+/// Reads and writes of every kind of descriptor that does not block.
+class DescriptorPort : public Port {
+ public:
+  DescriptorPort(std::string word, Descriptor descriptor) : name_(std::move(word)), file_(std::move(descriptor)) {}
+
+  std::size_t read(std::uint8_t* to, std::size_t size, double timeout) override {
+    const Stamp until = host_now() + timeout;
+    for (;;) {
+      const ssize_t got = ::read(file_.get(), to, size);
+      if (got > 0) return static_cast<std::size_t>(got);
+      if (got == 0) throw DeviceLost(name_ + ": the device closed the line; " + remedy());
+      if (errno == EINTR) continue;
+      if (errno != EAGAIN && errno != EWOULDBLOCK)
+        throw DeviceLost(name_ + ": the device is gone (" + std::strerror(errno) + "); " + remedy());
+      if (!wait_for(file_.get(), POLLIN, until - host_now())) return 0;
+    }
+  }
+
+  void write(const std::uint8_t* from, std::size_t size) override {
+    for (std::size_t sent = 0; sent < size;) {
+      // MSG_NOSIGNAL has no counterpart for a tty, but a tty raises no SIGPIPE either.
+      const ssize_t step = is_serial() ? ::write(file_.get(), from + sent, size - sent)
+                                       : ::send(file_.get(), from + sent, size - sent, MSG_NOSIGNAL);
+      if (step > 0) {
+        sent += static_cast<std::size_t>(step);
+        continue;
+      }
+      if (step < 0 && errno == EINTR) continue;
+      if (step < 0 && errno != EAGAIN && errno != EWOULDBLOCK)
+        throw DeviceLost(name_ + ": the device is gone (" + std::strerror(errno) + "); " + remedy());
+      if (!wait_for(file_.get(), POLLOUT, kWriteTimeout))
+        throw DeviceLost(name_ + ": the device takes no bytes; " + remedy());
+    }
+  }
+
+  int descriptor() const override { return file_.get(); }
+  const std::string& name() const override { return name_; }
+
+ protected:
+  virtual std::string remedy() const = 0;
+  std::string name_;
+  Descriptor file_;
+};
+
+class TcpPort : public DescriptorPort {
+ public:
+  using DescriptorPort::DescriptorPort;
+  void set_baud(int) override {}
+  bool is_serial() const override { return false; }
+
+ private:
+  std::string remedy() const override { return "see that the other side still runs"; }
+};
+
+speed_t speed_of(int baud, const std::string& name) {
+  static const std::vector<std::pair<int, speed_t>> table = {{9600, B9600},     {19200, B19200},    {38400, B38400},
+                                                             {57600, B57600},   {115200, B115200},  {230400, B230400},
+                                                             {500000, B500000}, {1000000, B1000000}};
+  for (const auto& [rate, speed] : table)
+    if (rate == baud) return speed;
+  throw InputError(name + ": no serial line runs at " + std::to_string(baud) +
+                   " baud; give 9600, 19200, 38400, 57600, 115200, 230400, 500000 or 1000000");
+}
+
+class SerialPort : public DescriptorPort {
+ public:
+  SerialPort(std::string word, Descriptor descriptor) : DescriptorPort(std::move(word), std::move(descriptor)) {
+    set_baud(kFirstBaud);
+    tcflush(file_.get(), TCIOFLUSH);
+  }
+
+  void set_baud(int baud) override {
+    const speed_t speed = speed_of(baud, name_);
+    tcdrain(file_.get());  // what was sent at the old rate must leave first
+    termios settings{};
+    if (tcgetattr(file_.get(), &settings) != 0)
+      throw DeviceLost(name_ + ": is no serial line (" + std::strerror(errno) + "); " + remedy());
+    cfmakeraw(&settings);
+    settings.c_cflag |= CLOCAL | CREAD;
+    settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
+    settings.c_cc[VMIN] = 1;  // without O_NONBLOCK's EAGAIN a silent line could not be told from a lost one
+    settings.c_cc[VTIME] = 0;
+    cfsetspeed(&settings, speed);
+    if (tcsetattr(file_.get(), TCSANOW, &settings) != 0)
+      throw DeviceLost(name_ + ": takes no settings (" + std::strerror(errno) + "); " + remedy());
+  }
+
+  bool is_serial() const override { return true; }
+
+ private:
+  std::string remedy() const override { return "check its plug and power, `rubble devices` lists what is there"; }
+};
+
+std::string why_not_opened(int error) {
+  if (error == ENOENT || error == ENXIO || error == ENODEV)
+    return "there is no such device; plug it in, `rubble devices` lists what is there";
+  if (error == EACCES || error == EPERM) return "no permission; add yourself to the group dialout and log in again";
+  if (error == EBUSY) return "another program uses it; end that first";
+  return std::string("cannot be opened (") + std::strerror(error) + "); `rubble devices` lists what is there";
+}
+
+std::unique_ptr<Port> open_serial(const std::string& word, const std::string& path) {
+  Descriptor line(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (!line) throw DeviceLost(word + ": " + why_not_opened(errno));
+  if (!isatty(line.get())) throw InputError(word + ": is no serial line; give the path of one, as /dev/ttyUSB0");
+  return std::make_unique<SerialPort>(word, std::move(line));
+}
+
+struct FreeAddresses {
+  void operator()(addrinfo* list) const { freeaddrinfo(list); }
+};
+
+/// 0, or the error that kept the socket from being connected in time.
+int connect_in_time(int socket, const addrinfo& address) {
+  if (::connect(socket, address.ai_addr, address.ai_addrlen) == 0) return 0;
+  if (errno != EINPROGRESS) return errno;
+  if (!wait_for(socket, POLLOUT, kConnectTimeout)) return ETIMEDOUT;
+  int error = 0;
+  socklen_t size = sizeof error;
+  getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size);
+  return error;
+}
+
+std::unique_ptr<Port> open_tcp(const std::string& word, const PortWord& parts) {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  const int failure = getaddrinfo(parts.host.c_str(), parts.port.c_str(), &hints, &found);
+  if (failure != 0)
+    throw DeviceLost(word + ": the host '" + parts.host + "' is not known (" + gai_strerror(failure) +
+                     "); check its name, or give its address");
+  const std::unique_ptr<addrinfo, FreeAddresses> addresses(found);
+  int error = ECONNREFUSED;
+  for (const addrinfo* address = found; address != nullptr; address = address->ai_next) {
+    Descriptor socket(::socket(address->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    if (!socket) continue;
+    error = connect_in_time(socket.get(), *address);
+    if (error != 0) continue;
+    const int on = 1;
+    setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    setsockopt(socket.get(), SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
+    return std::make_unique<TcpPort>(word, std::move(socket));
+  }
+  throw DeviceLost(word + ": nobody answers (" + std::strerror(error) +
+                   "); switch the device on or start `rubble emulate` there");
+}
+
+}  // namespace
+
+std::unique_ptr<Port> open_port(const std::string& word) {
+  const PortWord parts = parse_port_word(word);
+  if (parts.kind == PortKind::Tcp) return open_tcp(word, parts);
+  return open_serial(word, parts.path);
+}
+
+}  // namespace rubble::robot

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "robot/robot.h"
+
+namespace rubble::robot {
+
+/// A line to a device: bytes either way. One thread may read while another writes.
+class Port {
+ public:
+  virtual ~Port() = default;
+  /// Waits up to `timeout` [s] for bytes and takes at most `size` of them; 0: none came. Throws DeviceLost when the
+  /// device is gone.
+  virtual std::size_t read(std::uint8_t* to, std::size_t size, double timeout) = 0;
+  /// Sends all bytes. Throws DeviceLost when the device is gone or takes nothing for half a second.
+  virtual void write(const std::uint8_t* from, std::size_t size) = 0;
+  /// For poll(): readable when bytes wait or the device is gone.
+  virtual int descriptor() const = 0;
+  /// The word that opened it, `tcp:127.0.0.1:10940`.
+  virtual const std::string& name() const = 0;
+  /// Bit rate of a serial line, 8N1; without effect on TCP. Throws InputError on a rate that no serial line has.
+  virtual void set_baud(int baud) = 0;
+  /// Whether the bit rate means something: a serial line or a pty.
+  virtual bool is_serial() const = 0;
+};
+
+/// Opens the device side's other end: `/dev/ttyUSB0` (any path of a serial line), `pty:PATH` or `tcp:HOST:PORT`. A
+/// serial line is raw, 8N1, without flow control, at 115200 baud, and what waited in it is thrown away. Throws
+/// InputError on a word of another form and DeviceLost when nothing answers there.
+std::unique_ptr<Port> open_port(const std::string& word);
+
+/// Throws InputError unless `word` has one of the forms that open_port and serve_port take; opens nothing.
+void check_port_word(const std::string& word);
+
+}  // namespace rubble::robot

@@ -1,0 +1,300 @@
+#include "robot/drivers/real_robot.h"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <utility>
+
+#include "robot/drivers/device_thread.h"
+#include "robot/drivers/heartbeat.h"
+#include "robot/drivers/host_clock.h"
+
+namespace rubble::robot {
+namespace {
+
+constexpr double kAsk = 0.05;               ///< pause of a waiting read() [s]
+constexpr std::size_t kMostScansKept = 20;  ///< while the robot is held
+
+std::string silent_for(const std::string& name, Stamp last, Stamp now, const std::string& why) {
+  char text[80];
+  if (last == Stamp::never()) {
+    std::snprintf(text, sizeof text, ": has not reported yet");
+  } else {
+    std::snprintf(text, sizeof text, ": silent for %.1f s", now - last);
+  }
+  return name + text + (why.empty() ? "" : " (" + why + ")");
+}
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T>&& from) {
+  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+template <class T>
+void sort_by_stamp(std::vector<T>& list) {
+  std::stable_sort(list.begin(), list.end(), [](const T& a, const T& b) { return a.stamp < b.stamp; });
+}
+
+}  // namespace
+
+struct RealRobot::Impl {
+  RealRobotSettings settings;
+  Scanner& lidar;
+  Pioneer pioneer;
+  LevellingUnit unit;
+  Heartbeat heartbeat;  ///< asked by the base's thread alone
+  std::function<bool(const RobotStatus&)> ask;
+
+  std::atomic<bool> emergency{false};
+  std::atomic<std::int64_t> operator_ns{Stamp::never().ns};
+  std::atomic<std::int64_t> scan_ns{Stamp::never().ns};  ///< arrival of the newest scan
+  std::uint64_t scans_counted = 0;                       ///< by the base's thread
+  std::atomic<std::uint64_t> scans{0}, odometry{0}, accelerations{0};
+
+  std::mutex mutex;  ///< of what core and base thread share
+  Commands commands;
+  Stamp commanded = Stamp::never();
+  bool armed = false;                    ///< all devices have reported: the motors may go on
+  Stamp scan_answered = Stamp::never();  ///< arrival of the scan whose answer is on its way
+  std::vector<double> delays;
+
+  std::vector<LaserScan> waiting_scans;
+  Stamp scan_arrived = Stamp::never();  ///< of the scan that read() returned last
+  Stamp created = host_now();
+  Stamp first = Stamp::never();
+  Stamp tick_end = Stamp::never();
+  Stamp last_now = Stamp::never();
+  Stamp held_since = Stamp::never();
+
+  std::unique_ptr<DeviceThread> unit_thread;
+  std::unique_ptr<DeviceThread> base_thread;  // last: it asks all the others
+
+  Impl(const RealRobotSettings& given, Scanner& scanner, BlackBox* box)
+      : settings(given), lidar(scanner), pioneer(given.base), unit(given.levelling), heartbeat(given.heartbeat) {
+    if (!settings.levelling_port.empty())
+      unit_thread = std::make_unique<DeviceThread>("levelling", settings.levelling_port, unit, box);
+    base_thread =
+        std::make_unique<DeviceThread>("base", settings.base_port, pioneer, box, [this](Stamp now) { watch(now); });
+  }
+
+  /// In the base's thread, every 20 ms at the latest: what the motors may do now.
+  void watch(Stamp now) {
+    operator_ns = heartbeat.last(now).ns;
+    if (const std::uint64_t count = lidar.status().scans; count != scans_counted) {
+      scans_counted = count;
+      scan_ns = now.ns;
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    const bool fresh = commanded != Stamp::never() && now - commanded <= settings.safety.core_silence;
+    const bool free = armed && !emergency && fresh && is_lidar_well(now) && is_unit_well(now) && is_operator_well(now);
+    if (armed && !emergency) pioneer.enable(true);
+    pioneer.drive(free ? commands.drive : Drive{});
+    if (scan_answered != Stamp::never()) {
+      delays.push_back(now - scan_answered);
+      scan_answered = Stamp::never();
+    }
+  }
+
+  bool is_lidar_well(Stamp now) const {
+    const Stamp last{scan_ns.load()};
+    return last != Stamp::never() && now - last <= settings.safety.lidar_silence;
+  }
+  bool is_unit_well(Stamp now) const {
+    if (!unit_thread) return true;
+    const Stamp last = unit_thread->with([this] { return unit.last_report(); });
+    return last != Stamp::never() && now - last <= settings.safety.levelling_silence;
+  }
+  bool is_operator_well(Stamp now) const {
+    if (settings.heartbeat.empty()) return true;
+    const Stamp last{operator_ns.load()};
+    return last != Stamp::never() && now - last <= settings.safety.operator_silence;
+  }
+
+  /// What keeps the robot from being driven at `now`, one line each.
+  std::vector<std::string> silent(Stamp now) const {
+    std::vector<std::string> lines;
+    if (!is_lidar_well(now)) lines.push_back(silent_for("urg", {scan_ns.load()}, now, lidar.status().error));
+    const auto [last, ready, state] =
+        base_thread->with([this] { return std::make_tuple(pioneer.last_report(), pioneer.ready(), pioneer.state()); });
+    if (!ready || now - last > settings.safety.base_silence) {
+      const std::string error = base_thread->error();
+      lines.push_back(silent_for("base", last, now, error.empty() ? state : error));
+    }
+    if (!is_unit_well(now)) {
+      const auto [reported, how] =
+          unit_thread->with([this] { return std::make_pair(unit.last_report(), unit.state()); });
+      const std::string error = unit_thread->error();
+      lines.push_back(silent_for("levelling", reported, now, error.empty() ? how : error));
+    }
+    if (!is_operator_well(now))
+      lines.push_back(silent_for("heartbeat", {operator_ns.load()}, now, settings.heartbeat + " must be touched"));
+    return lines;
+  }
+
+  RobotStatus status(Stamp now) const {
+    RobotStatus s;
+    s.silent = silent(now);
+    s.emergency = emergency;
+    s.scans = scans;
+    s.odometry = odometry;
+    s.accelerations = accelerations;
+    base_thread->with([&] {
+      s.motors_on = pioneer.motors_on();
+      s.battery = pioneer.battery();
+      s.bad_packets = pioneer.bad_sums();
+      s.jumps = pioneer.jumps();
+    });
+    if (unit_thread) unit_thread->with([&] { s.bad_packets += unit.bad_lines(); });
+    const ScannerStatus scanner = lidar.status();
+    s.scans_damaged = scanner.damaged;
+    s.scans_missed = scanner.missed;
+    return s;
+  }
+
+  void take_scans(Stamp now) {
+    std::vector<LaserScan> fresh = lidar.take();
+    if (fresh.empty()) return;
+    scan_arrived = now;
+    scans += fresh.size();
+    append(waiting_scans, std::move(fresh));
+    if (waiting_scans.size() > kMostScansKept)
+      waiting_scans.erase(waiting_scans.begin(), waiting_scans.end() - kMostScansKept);
+  }
+
+  Commands commands_in_force() {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return commands;
+  }
+
+  /// What was asked for before a wait is not what is wanted after it.
+  void forget_drive() {
+    const std::lock_guard<std::mutex> lock(mutex);
+    commands.drive = {};
+  }
+
+  Inputs collect() {
+    Inputs inputs;
+    inputs.scans = std::exchange(waiting_scans, {});
+    inputs.odometry = base_thread->with([this] { return pioneer.take_odometry(); });
+    if (unit_thread) {
+      unit_thread->with([&] {
+        inputs.accelerations = unit.take_accelerations();
+        inputs.aims = unit.take_aims();
+      });
+    }
+    odometry += inputs.odometry.size();
+    accelerations += inputs.accelerations.size();
+    sort_by_stamp(inputs.scans);
+    sort_by_stamp(inputs.accelerations);
+    sort_by_stamp(inputs.aims);
+    inputs.command = commands_in_force();
+    // A clock that is mapped may run ahead by microseconds; nothing lies behind the end of the tick.
+    inputs.now = std::max(host_now(), last_now);
+    const auto keep = [&](auto& list) {
+      for (auto& entry : list) entry.stamp = std::min(entry.stamp, inputs.now);
+    };
+    keep(inputs.odometry);
+    keep(inputs.accelerations);
+    keep(inputs.aims);
+    last_now = inputs.now;
+    return inputs;
+  }
+
+  /// Waits while something is silent. False: the run was ended meanwhile.
+  bool wait_for_all() {
+    for (;;) {
+      const Stamp now = host_now();
+      const std::vector<std::string> lines = silent(now);
+      if (lines.empty()) {
+        held_since = Stamp::never();
+        return true;
+      }
+      if (emergency) return false;
+      if (held_since == Stamp::never()) {
+        held_since = now;
+        forget_drive();
+      }
+      const bool starting = first == Stamp::never();
+      if (now - held_since > (starting ? settings.safety.start : settings.safety.give_up))
+        throw DeviceLost(
+            lines.front() + "; " +
+            (starting ? "check its cable, power and port" : "it did not come back; plug it in and run again"));
+      if (ask && !ask(status(now))) return false;
+      take_scans(now);
+      sleep_until(now + kAsk);
+    }
+  }
+
+  std::optional<Inputs> read() {
+    if (emergency) return std::nullopt;
+    if (!wait_for_all()) return std::nullopt;
+    Stamp now = host_now();
+    if (first == Stamp::never()) {
+      first = now;
+      waiting_scans.clear();
+      lidar.take();
+      collect();  // what came before the run belongs to nobody
+      const std::lock_guard<std::mutex> lock(mutex);
+      armed = true;
+      tick_end = now;
+    }
+    if (settings.time_limit > 0.0 && now - first >= settings.time_limit) return std::nullopt;
+    tick_end = tick_end + settings.model.tick;
+    if (tick_end < now) tick_end = now;  // the core took longer than a tick, or devices were waited for
+    for (;;) {
+      pollfd file{lidar.descriptor(), POLLIN, 0};
+      const double left = std::max(0.0, tick_end - host_now());
+      const timespec limit{static_cast<time_t>(left), static_cast<long>((left - static_cast<int>(left)) * 1e9)};
+      const int ready = ::ppoll(&file, 1, &limit, nullptr);
+      now = host_now();
+      if (ready > 0) take_scans(now);
+      if (!waiting_scans.empty()) tick_end = now;
+      if (emergency) return std::nullopt;
+      if (now >= tick_end) return collect();
+    }
+  }
+};
+
+RealRobot::RealRobot(const RealRobotSettings& settings, Scanner& lidar, BlackBox* box)
+    : impl_(std::make_unique<Impl>(settings, lidar, box)) {}
+
+RealRobot::~RealRobot() = default;
+
+const RobotModel& RealRobot::model() const { return impl_->settings.model; }
+
+std::optional<Inputs> RealRobot::read() { return impl_->read(); }
+
+void RealRobot::command(const Commands& commands) {
+  Impl& robot = *impl_;
+  const Stamp now = host_now();
+  {
+    const std::lock_guard<std::mutex> lock(robot.mutex);
+    robot.commands = commands;
+    robot.commanded = now;
+    robot.scan_answered = std::exchange(robot.scan_arrived, Stamp::never());
+  }
+  robot.base_thread->wake();
+  if (robot.unit_thread && robot.settings.model.has_levelling_unit) {
+    robot.unit_thread->with([&] { robot.unit.aim(commands.aim); });
+    robot.unit_thread->wake();
+  }
+}
+
+void RealRobot::emergency_stop() {
+  impl_->emergency = true;
+  impl_->base_thread->with([this] { impl_->pioneer.emergency_stop(); });
+  impl_->base_thread->wake();
+}
+
+void RealRobot::while_waiting(std::function<bool(const RobotStatus&)> ask) { impl_->ask = std::move(ask); }
+
+RobotStatus RealRobot::status() const { return impl_->status(host_now()); }
+
+std::vector<double> RealRobot::answer_delays() const {
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
+  return impl_->delays;
+}
+
+}  // namespace rubble::robot

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "robot/drivers/black_box.h"
+#include "robot/drivers/levelling_unit.h"
+#include "robot/drivers/pioneer.h"
+#include "robot/drivers/scanner.h"
+#include "robot/robot.h"
+
+namespace rubble::robot {
+
+/// When the robot stands still, and when it is given up.
+struct SafetySettings {
+  double lidar_silence = 0.3;      ///< no scan for so long: stop [s]
+  double base_silence = 1.0;       ///< no report of the base [s]
+  double levelling_silence = 1.0;  ///< no report of the levelling unit [s]
+  double core_silence = 1.0;       ///< no command of the core [s]
+  double operator_silence = 1.0;   ///< no heartbeat, if one is asked for [s]
+  double start = 30.0;             ///< all devices must report within [s]
+  double give_up = 60.0;           ///< a lost device must be back within [s]
+};
+
+struct RealRobotSettings {
+  RobotModel model;
+  PioneerSettings base;
+  LevellingUnitSettings levelling;
+  std::string base_port;
+  std::string levelling_port;  ///< empty: there is none
+  SafetySettings safety;
+  std::string heartbeat;    ///< file or pipe that must be touched; empty: none
+  double time_limit = 0.0;  ///< from the first tick on; 0: none [s]
+};
+
+/// How the robot is doing, for people.
+struct RobotStatus {
+  std::vector<std::string> silent;  ///< what holds the robot, one line each
+  bool motors_on = false;
+  bool emergency = false;
+  double battery = 0.0;     ///< [V]
+  std::uint64_t scans = 0;  ///< since the start
+  std::uint64_t odometry = 0;
+  std::uint64_t accelerations = 0;
+  std::size_t bad_packets = 0;  ///< with wrong sums, of the base and the levelling unit
+  std::size_t jumps = 0;        ///< of the base's odometry
+  std::uint64_t scans_damaged = 0;
+  std::uint64_t scans_missed = 0;
+};
+
+/// The real robot: a scanner, a Pioneer base and a levelling unit behind the one interface.
+///
+/// A tick ends after model().tick, or as soon as a scan is there, so that the answer to it is not kept waiting. Until
+/// all devices report, and while one is silent, the motors stand and read() waits; what the core commands can never
+/// exceed the limits nor outlive the core.
+class RealRobot : public Robot {
+ public:
+  /// `box` may be null. Both must outlive the robot. Throws InputError on a bad port word.
+  RealRobot(const RealRobotSettings& settings, Scanner& lidar, BlackBox* box);
+  /// Stops, switches the motors off and closes the connection.
+  ~RealRobot() override;
+
+  const RobotModel& model() const override;
+  /// Throws DeviceLost when a device does not come (back) in time.
+  std::optional<Inputs> read() override;
+  void command(const Commands& commands) override;
+
+  /// Stops hard and for good; read() ends. May be called from any thread.
+  void emergency_stop();
+  /// Called about twenty times a second while read() waits for devices; false ends the run.
+  void while_waiting(std::function<bool(const RobotStatus&)> ask);
+  RobotStatus status() const;
+  /// Delays from the arrival of a scan to the moment its answer has left for the base [s].
+  std::vector<double> answer_delays() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rubble::robot

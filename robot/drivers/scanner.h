@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "robot/measurements.h"
+#include "robot/model.h"
+
+namespace rubble::robot {
+
+/// What a scanner told of itself.
+struct ScannerInfo {
+  std::string model;     ///< as the device calls itself
+  std::string firmware;  ///< version and date
+  std::string serial;    ///< number
+  std::string protocol;  ///< in use: `SCIP 2.0`, `SCIP 1.1`, or the MRPT class that speaks it
+  LaserModel laser;      ///< geometry, ranges and timing as the device gives them
+  std::vector<std::pair<std::string, std::string>> lines;  ///< every `KEY:value` it sent, in order
+};
+
+/// How the line to a scanner is doing.
+struct ScannerStatus {
+  bool connected = false;      ///< scans are coming, or are about to
+  std::string error;           ///< why not: one line that names the port and the remedy
+  std::uint64_t scans = 0;     ///< whole scans received
+  std::uint64_t damaged = 0;   ///< replies thrown away: wrong sum, wrong length, lost or doubled bytes
+  std::uint64_t missed = 0;    ///< revolutions of which no whole scan came, by the device's clock
+  std::uint64_t connects = 0;  ///< how often the handshake succeeded
+  double latency = 0.0;        ///< from the last beam to the arrival of the scan's last byte, of the last scan [s]
+  double worst_latency = 0.0;  ///< the most of it since the last connect [s]
+  double clock_drift = 0.0;    ///< of the device's clock against the computer's, + : it runs slow [s/s]
+  double clock_doubt = 0.0;    ///< the constant part of the stamps is known to +- so much [s]; 0: not measured, nominal
+};
+
+/// A scanner that is read in a thread of its own. It connects by itself, also again after the device was gone.
+class Scanner {
+ public:
+  virtual ~Scanner() = default;
+  /// Scans that arrived since the last call, the oldest first; stamps are host_now()'s.
+  virtual std::vector<LaserScan> take() = 0;
+  virtual ScannerStatus status() const = 0;
+  /// Of the last connect; empty strings before.
+  virtual ScannerInfo info() const = 0;
+  /// For poll(): readable while scans wait to be taken.
+  virtual int descriptor() const = 0;
+};
+
+}  // namespace rubble::robot

@@ -1,0 +1,266 @@
+#include "robot/drivers/scip/scip_link.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "robot/drivers/host_clock.h"
+#include "robot/drivers/scip/scip_text.h"
+
+namespace rubble::robot::scip {
+namespace {
+
+constexpr double kAnswerTime = 0.3;  // Hokuyo's own library waits 0.14 s; a busy USB hub may need more [s]
+constexpr int kTries = 3;            // of a question whose answer got lost
+constexpr int kTimeQuestions = 12;
+constexpr double kAskAgain = 0.85;  // SCIP 1.1: share of a turn after which the next one is asked for
+constexpr std::array<int, 4> kBauds{115200, 19200, 57600, 500000};
+
+std::string four(int value) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%04d", value);
+  return text;
+}
+
+std::string three(int value) { return four(value).substr(1); }
+
+std::string value_of(const Entries& entries, const std::string& key) {
+  const auto found = std::find_if(entries.begin(), entries.end(), [&](const auto& e) { return e.first == key; });
+  return found == entries.end() ? std::string() : found->second;
+}
+
+}  // namespace
+
+Link::Link(std::unique_ptr<Port> port) : port_(std::move(port)) {}
+
+void Link::refuse(const std::string& what) const { throw Refused(port_->name() + ": " + what); }
+
+void Link::send(const std::string& command) {
+  const std::string line = command + "\n";
+  port_->write(reinterpret_cast<const std::uint8_t*>(line.data()), line.size());
+}
+
+void Link::pull(double timeout) {
+  std::array<std::uint8_t, 4096> bytes;
+  const std::size_t size = port_->read(bytes.data(), bytes.size(), timeout);
+  if (size > 0) receiver_.push(bytes.data(), size, host_now());
+}
+
+/// Throws away what comes until the line has been silent for so long, but for a second at most.
+void Link::drain(double silence) {
+  std::array<std::uint8_t, 4096> bytes;
+  const Stamp end = host_now() + 1.0;
+  while (host_now() < end && port_->read(bytes.data(), bytes.size(), silence) > 0) {
+  }
+  receiver_.clear();
+}
+
+std::optional<Reply> Link::ask(const std::string& command, double timeout) {
+  receiver_.expect_echo(command, command.size());
+  send(command);
+  const Stamp end = host_now() + timeout;
+  for (;;) {
+    while (auto reply = receiver_.next()) {
+      if (reply->lines[0] == command && status_of(*reply)) return reply;
+      if (stream_.empty() || reply->lines[0].rfind(stream_, 0) != 0) ++damaged_;
+    }
+    const double left = end - host_now();
+    if (left <= 0.0) return std::nullopt;
+    pull(left);
+  }
+}
+
+Reply Link::insist(const std::string& command) {
+  for (int i = 0; i < kTries; ++i)
+    if (auto reply = ask(command, kAnswerTime)) return *reply;
+  refuse("the scanner does not answer '" + command + "'; unplug it and plug it in again");
+}
+
+bool Link::find_at(int baud) {
+  if (port_->is_serial()) port_->set_baud(baud);
+  baud_ = baud;
+  send("");  // ends whatever half a command the device has got
+  for (int i = 0; i < 2; ++i) {
+    const auto reply = ask("QT", kAnswerTime);
+    if (!reply) continue;
+    const std::string status = *status_of(*reply);
+    scip2_ = status.size() == 2;
+    // 0E: the device was left in the mode in which its clock is asked.
+    if (status == "0E") ask("TM2", kAnswerTime);
+    return true;
+  }
+  return false;
+}
+
+bool Link::find_device() {
+  if (!port_->is_serial()) return find_at(kBauds[0]);
+  return std::any_of(kBauds.begin(), kBauds.end(), [this](int baud) { return find_at(baud); });
+}
+
+void Link::switch_to_scip2() {
+  const auto reply = ask("SCIP2.0", kAnswerTime);
+  scip2_ = reply && *status_of(*reply) == "0";
+  // The answer may be lost though the device has switched: then it answers this in the new form.
+  if (!reply) {
+    const auto now = ask("QT", kAnswerTime);
+    scip2_ = now && status_of(*now)->size() == 2;
+  }
+}
+
+bool Link::knock() {
+  drain(0.01);
+  return find_device();
+}
+
+void Link::shake_hands(bool only_scip1) {
+  if (!knock())
+    throw DeviceLost(
+        port_->name() +
+        ": no scanner answers; check its power and that no other program uses the port, or try another one");
+  if (!scip2_ && !only_scip1) switch_to_scip2();
+  if (scip2_ && only_scip1) refuse("the scanner has been switched to SCIP 2.0; switch it off and on to speak SCIP 1.1");
+  // A serial line at 19200 baud carries one scan a second; over USB the rate means nothing and costs nothing.
+  if (scip2_ && baud_ != kBauds[0] && ask("SS115200", kAnswerTime)) {
+    baud_ = kBauds[0];
+    port_->set_baud(baud_);
+  }
+  if (scip2_) {
+    identify();
+  } else {
+    identify_scip1();
+  }
+}
+
+void Link::identify() {
+  const auto ask_entries = [this](const std::string& command) {
+    for (int i = 0; i < kTries; ++i) {
+      const Reply reply = insist(command);
+      const auto entries = entries_of(reply, true);
+      if (*status_of(reply) == "00" && entries) return *entries;
+      ++damaged_;
+    }
+    refuse("the scanner answers '" + command + "' with wrong sums; check the cable");
+  };
+  const Entries version = ask_entries("VV"), sensor = ask_entries("PP");
+  const auto geometry = geometry_of(sensor);
+  if (!geometry) refuse("the scanner's geometry (PP) makes no sense; is it a Hokuyo scanner of SCIP 2.0?");
+  geometry_ = *geometry;
+  info_ = {};
+  info_.model = value_of(sensor, "MODL");
+  info_.firmware = value_of(version, "FIRM");
+  info_.serial = value_of(version, "SERI");
+  info_.protocol = "SCIP 2.0";
+  info_.laser = laser_of(geometry_, info_.model);
+  info_.lines = version;
+  info_.lines.insert(info_.lines.end(), sensor.begin(), sensor.end());
+}
+
+void Link::identify_scip1() {
+  const Reply reply = insist("V");
+  const auto version = entries_of(reply, false);
+  const auto geometry = version ? geometry_of_firmware(value_of(*version, "FIRM")) : std::nullopt;
+  if (!geometry) refuse("the scanner does not tell its geometry in SCIP 1.1; use SCIP 2.0");
+  geometry_ = *geometry;
+  info_ = {};
+  info_.model = value_of(*version, "PROD");
+  info_.firmware = value_of(*version, "FIRM");
+  info_.serial = value_of(*version, "SERI");
+  info_.protocol = "SCIP 1.1";
+  info_.laser = laser_of(geometry_, info_.model);
+  info_.lines = *version;
+}
+
+void Link::ask_time(WrappingClock& clock, ClockMap& map) {
+  if (!scip2_) return;
+  const auto on = ask("TM0", kAnswerTime);
+  if (!on || (*status_of(*on) != "00" && *status_of(*on) != "02"))
+    return;  // an old firmware: the usual delay has to do
+  for (int i = 0; i < kTimeQuestions; ++i) {
+    // The questions fall on different parts of the device's millisecond, which narrows the offset down further.
+    sleep_until(host_now() + (i % 4) * 0.00027);
+    const Stamp asked = host_now();
+    const auto reply = ask("TM1", kAnswerTime);
+    if (!reply || *status_of(*reply) != "00" || reply->lines.size() < 3) continue;
+    const auto text = checked(reply->lines[2]);
+    const auto count = text && text->size() == 4 ? decode(*text) : std::nullopt;
+    if (!count) continue;
+    const WrappingClock::Reading reading = clock.read(*count, reply->ended);
+    if (reading.restarted) map.clear();
+    map.anchor(reading.time, asked, reply->ended);
+  }
+  insist("TM2");
+}
+
+void Link::start() {
+  if (!scip2_) {
+    ask("L1", kAnswerTime);  // on from power-up; a device that does not know the command needs none
+    stream_ = "G" + three(geometry_.first_step) + three(geometry_.last_step) + "01";
+    receiver_.expect_echo(stream_, stream_.size());
+    send(stream_);
+    return;
+  }
+  const std::string on = *status_of(insist("BM"));
+  if (on != "00" && on != "02") refuse("the laser does not light up (BM: " + on + "); the scanner is broken");
+  stream_ = "MD" + four(geometry_.first_step) + four(geometry_.last_step) + "010";
+  const std::string command = stream_ + "00";
+  const std::string status = *status_of(insist(command));
+  if (status != "00" && status != "99")
+    refuse("the scanner does not send scans (MD: " + status + "); switch it off and on");
+  receiver_.expect_echo(stream_, command.size());
+}
+
+std::string Link::state() {
+  if (!scip2_) return "";
+  const auto reply = ask("II", kAnswerTime);
+  const auto entries = reply ? entries_of(*reply, true) : std::nullopt;
+  return entries ? value_of(*entries, "STAT") : std::string();
+}
+
+std::optional<Sweep> Link::check_stream(const Reply& reply) {
+  if (reply.lines[0].rfind(stream_, 0) != 0) {
+    ++damaged_;
+    return std::nullopt;
+  }
+  const auto status = status_of(reply);
+  if (scip2_ && status && *status == "00" && reply.lines.size() == 2) return std::nullopt;  // the command's own answer
+  std::optional<Sweep> sweep;
+  if (status && *status == (scip2_ ? "99" : "0"))
+    sweep = scip2_ ? sweep_of(reply, geometry_.steps()) : old_sweep_of(reply, geometry_.steps());
+  if (status && scip2_ && *status != "99" && *status != "98")
+    refuse("the scanner reports trouble (status " + *status + "); it is started anew");
+  if (!sweep) {
+    ++damaged_;
+    return std::nullopt;
+  }
+  begun_ = reply.begun;
+  ended_ = reply.ended;
+  return sweep;
+}
+
+std::optional<Sweep> Link::next_sweep(double timeout) {
+  const Stamp end = host_now() + timeout;
+  for (;;) {
+    while (const auto reply = receiver_.next()) {
+      auto sweep = check_stream(*reply);
+      if (!scip2_) {
+        // One question a turn: an emulator or a fast device would answer the same turn again and again.
+        if (sweep) sleep_until(begun_ + kAskAgain * geometry_.period());
+        send(stream_);
+      }
+      if (sweep) return sweep;
+    }
+    const double left = end - host_now();
+    if (left <= 0.0) return std::nullopt;
+    pull(left);
+  }
+}
+
+void Link::stop() {
+  try {
+    if (scip2_) ask("QT", kAnswerTime);
+  } catch (const std::exception&) {
+    // The device is gone; there is nothing to switch off.
+  }
+}
+
+}  // namespace rubble::robot::scip

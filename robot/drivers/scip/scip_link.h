@@ -1,0 +1,76 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "robot/drivers/clock_map.h"
+#include "robot/drivers/port.h"
+#include "robot/drivers/scanner.h"
+#include "robot/drivers/scip/scip_receiver.h"
+#include "robot/drivers/scip/scip_reply.h"
+
+namespace rubble::robot::scip {
+
+/// The device answered, but not as a scanner that works: what() names the port and the remedy.
+class Refused : public RunError {
+ public:
+  using RunError::RunError;
+};
+
+/// One connection to a SCIP device: question and answer, the handshake, the stream. Every call may throw DeviceLost;
+/// those that need an answer throw Refused without one.
+class Link {
+ public:
+  explicit Link(std::unique_ptr<Port> port);
+
+  /// Whether a scanner answers, at any bit rate and in either protocol.
+  bool knock();
+  /// Finds bit rate and protocol, switches to SCIP 2.0 where the device can, and asks who it is. `only_scip1`: does not
+  /// switch.
+  void shake_hands(bool only_scip1);
+  /// Asks the device's clock some ten times; nothing to do in SCIP 1.1.
+  void ask_time(WrappingClock& clock, ClockMap& map);
+  /// Laser on, and every turn is sent from now on (SCIP 1.1: each has to be asked for, see next_sweep).
+  void start();
+  /// What the device says of its health; empty in SCIP 1.1 and where it does not say.
+  std::string state();
+  /// Waits up to `timeout` [s] for the next turn; nothing when none came. What is damaged is counted and passed over.
+  std::optional<Sweep> next_sweep(double timeout);
+  /// Laser off, nothing is sent any more. Throws nothing.
+  void stop();
+
+  bool is_scip2() const { return scip2_; }
+  const Geometry& geometry() const { return geometry_; }
+  const ScannerInfo& info() const { return info_; }
+  /// Arrival of the first and of the last byte of the last sweep.
+  Stamp begun() const { return begun_; }
+  Stamp ended() const { return ended_; }
+  std::uint64_t damaged() const { return damaged_ + receiver_.broken(); }
+
+ private:
+  std::optional<Reply> ask(const std::string& command, double timeout);
+  Reply insist(const std::string& command);
+  void send(const std::string& command);
+  void pull(double timeout);
+  void drain(double silence);
+  bool find_device();
+  bool find_at(int baud);
+  void switch_to_scip2();
+  void identify();
+  void identify_scip1();
+  std::optional<Sweep> check_stream(const Reply& reply);
+  [[noreturn]] void refuse(const std::string& what) const;
+
+  std::unique_ptr<Port> port_;
+  Receiver receiver_;
+  bool scip2_ = false;
+  int baud_ = 115200;
+  std::string stream_;  ///< the command of the stream, without the number of scans that ends it
+  Geometry geometry_;
+  ScannerInfo info_;
+  Stamp begun_, ended_;
+  std::uint64_t damaged_ = 0;
+};
+
+}  // namespace rubble::robot::scip

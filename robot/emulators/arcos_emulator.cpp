@@ -1,0 +1,336 @@
+#include "robot/emulators/arcos_emulator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/planar.h"
+
+namespace rubble::robot {
+namespace {
+
+using namespace arcos;
+
+constexpr double kHeadingUnit = 2.0 * kPi / 4096;  // [rad]
+constexpr double kMillimetre = 1e-3;
+constexpr double kWheelSpeedStep = 0.02;        // of kWheelSpeeds [m/s]
+constexpr double kStillSpeed = 1e-3;            // slower counts as standing [m/s]
+constexpr double kStillTurn = deg_to_rad(0.5);  // [rad/s]
+constexpr double kReached = 0.002;              // a commanded way is done [m]
+constexpr double kHeadingReached = deg_to_rad(0.2);
+constexpr double kStallFault = 1.0;  // [s]
+constexpr double kDeafFault = 3.0;   // [s]
+
+double approach(double from, double to, double accel, double decel, double dt) {
+  const bool faster = std::abs(to) > std::abs(from) && to * from >= 0.0;
+  const double most = (faster ? accel : decel) * dt;
+  return from + std::clamp(to - from, -most, most);
+}
+
+/// The speed from which `left` is just enough to stop.
+double stopping_speed(double left, double decel, double top) {
+  return std::copysign(std::min(top, std::sqrt(2.0 * decel * std::abs(left))), left);
+}
+
+int rounded(double value) { return static_cast<int>(std::lround(value)); }
+
+}  // namespace
+
+ArcosEmulator::ArcosEmulator(const ArcosEmulatorSettings& settings) : settings_(settings), limits_(flash()) {}
+
+ArcosEmulator::Limits ArcosEmulator::flash() const {
+  const Configuration& c = settings_.configuration;
+  Limits limits;
+  limits.v = kMillimetre * c.max_speed;
+  limits.w = deg_to_rad(c.max_turn_rate);
+  limits.accel = limits.decel = kMillimetre * c.accel;
+  limits.turn_accel = limits.turn_decel = deg_to_rad(c.turn_accel);
+  return limits;
+}
+
+/// Back to where a client must synchronise; the settings of the flash return.
+void ArcosEmulator::start_anew() {
+  session_ = Session::Sync0;
+  limits_ = flash();
+  mode_ = Mode::Speed;
+  target_ = {};
+  motors_ = held_ = false;
+  encoders_ = status_ = 0;
+}
+
+void ArcosEmulator::client_came(Stamp /*now*/) {
+  start_anew();
+  parser_.reset();
+  output_.clear();
+}
+
+void ArcosEmulator::client_left(Stamp /*now*/) { start_anew(); }
+
+void ArcosEmulator::receive(std::string_view bytes, Stamp now) {
+  if (now < deaf_until_) return;
+  parser_.feed(bytes);
+  while (const auto payload = parser_.next()) {
+    heard_ = now;
+    held_ = false;
+    if (const auto order = parse_order(*payload)) obey(*order, now);
+  }
+}
+
+void ArcosEmulator::synchronise(std::uint8_t number) {
+  const int expected = session_ == Session::Sync0 ? kSync0 : session_ == Session::Sync1 ? kSync1 : kSync2;
+  if (number != expected) {
+    session_ = Session::Sync0;
+    if (number != kSync0) return;
+  }
+  if (number == kSync2) {
+    send(encode(settings_.identity));
+    return;
+  }
+  send(std::string(1, static_cast<char>(number)));
+  session_ = number == kSync0 ? Session::Sync1 : Session::Sync2;
+}
+
+void ArcosEmulator::open_session(Stamp now) {
+  session_ = Session::Open;
+  heard_ = now;
+  set_origin();
+}
+
+void ArcosEmulator::obey(const Order& order, Stamp now) {
+  if (session_ != Session::Open) {
+    // Asked for out of its turn, a number means the same as in it; OPEN and the second SYNC differ by it.
+    const bool opens = session_ == Session::Sync2 && order.number == kOpen;
+    if (opens) return open_session(now);
+    if (order.number <= kSync2) return synchronise(order.number);
+    return;
+  }
+  switch (order.number) {
+    case kPulse:
+    case kOpen:
+      return;
+    case kClose:
+    case kReset:
+    case kMaintenance:
+      return start_anew();
+    case kEnable:
+      motors_ = order.value.value_or(0) != 0;
+      if (!motors_) target_ = {};
+      if (!motors_) mode_ = Mode::Speed;
+      return;
+    case kSetOrigin:
+      return set_origin();
+    case kConfig:
+      return send(encode(settings_.configuration));
+    case kEncoder:
+      encoders_ = order.value.value_or(0);
+      return;
+    case kStop:
+    case kEmergencyStop:
+      mode_ = Mode::Speed;
+      target_ = {};
+      braking_ = order.number == kEmergencyStop;
+      return;
+    case kSetAcceleration:
+    case kSetSpeed:
+    case kSetTurnRate:
+    case kSetTurnAcceleration:
+      return set_limit(order);
+    case kMove:
+    case kRotate:
+    case kVelocity:
+    case kHead:
+    case kTurnBy:
+    case kTurnRate:
+    case kWheelSpeeds:
+      return move_by(order);
+    default:
+      return simulate(order);
+  }
+}
+
+void ArcosEmulator::set_limit(const Order& order) {
+  const int value = order.value.value_or(0);
+  if (value == 0) return;  // nothing moves at such a limit
+  const Configuration& top = settings_.configuration;
+  const double magnitude = std::abs(value);
+  switch (order.number) {
+    case kSetSpeed:
+      limits_.v = kMillimetre * std::min<double>(magnitude, top.top_speed);
+      return;
+    case kSetTurnRate:
+      limits_.w = deg_to_rad(std::min<double>(magnitude, top.top_turn_rate));
+      return;
+    case kSetAcceleration:
+      (value > 0 ? limits_.accel : limits_.decel) = kMillimetre * std::min<double>(magnitude, top.top_accel);
+      return;
+    default:
+      (value > 0 ? limits_.turn_accel : limits_.turn_decel) =
+          deg_to_rad(std::min<double>(magnitude, top.top_turn_accel));
+  }
+}
+
+void ArcosEmulator::move_by(const Order& order) {
+  if (!order.value || !motors_) return;
+  const int value = *order.value;
+  braking_ = false;
+  switch (order.number) {
+    case kMove:
+      mode_ = Mode::Move;
+      move_start_ = odometry_.pose;
+      move_target_ = kMillimetre * value;
+      target_ = {};
+      return;
+    case kHead:
+    case kTurnBy:
+      if (mode_ == Mode::Move) target_ = {};
+      mode_ = Mode::Head;
+      heading_target_ = wrap_angle(deg_to_rad(value) + (order.number == kTurnBy ? reckoned().phi : 0.0));
+      return;
+    case kWheelSpeeds: {
+      const WheelSpeeds wheels = wheel_speeds(value);
+      const double left = kWheelSpeedStep * wheels.left;
+      const double right = kWheelSpeedStep * wheels.right;
+      mode_ = Mode::Speed;
+      target_ = {0.5 * (left + right), 0.5 * (right - left) / settings_.half_track};
+      return;
+    }
+    case kVelocity:
+      if (mode_ == Mode::Move) mode_ = Mode::Speed;
+      target_.v = kMillimetre * value;
+      return;
+    default:  // kTurnRate, kRotate
+      if (mode_ == Mode::Move) target_.v = 0.0;
+      mode_ = Mode::Speed;
+      target_.w = deg_to_rad(value);
+  }
+}
+
+/// What only simulators understand; unknown numbers are passed over in silence.
+void ArcosEmulator::simulate(const Order& order) {
+  switch (order.number) {
+    case kSimSetPose: {
+      Fields fields(order.rest, 1);
+      const double x = kMillimetre * fields.i32();
+      const double y = kMillimetre * fields.i32();
+      placed_ = mrpt::math::TPose2D{x, y, deg_to_rad(fields.i32())};
+      return;
+    }
+    case kSimStat:
+      status_ = order.value.value_or(0);
+      return;
+    case kBatteryTest:
+      battery_ = 0.1 * std::clamp(order.value.value_or(128), 0, 255);
+      return;
+    default:
+      return;
+  }
+}
+
+/// The client's odometry frame, so that the present pose becomes the start's.
+void ArcosEmulator::set_origin() {
+  const mrpt::math::TPose2D& start = settings_.odometry_start;
+  const double phi = odometry_.pose.phi - start.phi;
+  const mrpt::math::TPoint2D back = PlanarTransform({0.0, 0.0, phi})({start.x, start.y});
+  origin_ = {odometry_.pose.x - back.x, odometry_.pose.y - back.y, phi};
+}
+
+mrpt::math::TPose2D ArcosEmulator::reckoned() const {
+  const double dx = odometry_.pose.x - origin_.x;
+  const double dy = odometry_.pose.y - origin_.y;
+  const double c = std::cos(origin_.phi);
+  const double s = std::sin(origin_.phi);
+  return {c * dx + s * dy, -s * dx + c * dy, wrap_angle(odometry_.pose.phi - origin_.phi)};
+}
+
+Drive ArcosEmulator::wanted() const {
+  if (!motors_ || held_ || session_ != Session::Open) return {};
+  Drive drive = target_;
+  if (mode_ == Mode::Head) {
+    const double left = wrap_angle(heading_target_ - reckoned().phi);
+    drive.w = std::abs(left) < kHeadingReached ? 0.0 : stopping_speed(left, limits_.turn_decel, limits_.w);
+  } else if (mode_ == Mode::Move) {
+    const double dx = odometry_.pose.x - move_start_.x;
+    const double dy = odometry_.pose.y - move_start_.y;
+    const double done = std::cos(odometry_.pose.phi) * dx + std::sin(odometry_.pose.phi) * dy;
+    const double left = move_target_ - done;
+    drive.v = std::abs(left) < kReached ? 0.0 : stopping_speed(left, limits_.decel, limits_.v);
+  }
+  drive.v = std::clamp(drive.v, -limits_.v, limits_.v);
+  drive.w = std::clamp(drive.w, -limits_.w, limits_.w);
+  return drive;
+}
+
+void ArcosEmulator::advance(Stamp now) {
+  const double dt = advanced_ == Stamp::never() ? 0.0 : std::max(0.0, now - advanced_);
+  advanced_ = now;
+  const double watchdog = 1e-3 * settings_.configuration.watchdog_ms;
+  if (session_ == Session::Open && watchdog > 0.0 && heard_ != Stamp::never() && now - heard_ > watchdog) held_ = true;
+  const Drive drive = wanted();
+  if (!motors_ || braking_) {
+    motion_ = drive;
+    return;
+  }
+  motion_.v = approach(motion_.v, drive.v, limits_.accel, limits_.decel, dt);
+  motion_.w = approach(motion_.w, drive.w, limits_.turn_accel, limits_.turn_decel, dt);
+}
+
+void ArcosEmulator::measure(const Odometry& odometry, Stamp now) {
+  const double dt = odometry.stamp > odometry_.stamp ? odometry.stamp - odometry_.stamp : 0.0;
+  odometry_ = odometry;
+  if (now < stalled_until_) odometry_.stalled = true;
+  left_travel_ += left_speed() * dt;
+  right_travel_ += right_speed() * dt;
+  if (session_ == Session::Open) report();
+}
+
+void ArcosEmulator::report() {
+  const mrpt::math::TPose2D pose = reckoned();
+  StandardInformation s;
+  s.moving = std::abs(odometry_.v) > kStillSpeed || std::abs(odometry_.w) > kStillTurn;
+  s.x = static_cast<std::uint16_t>(rounded(pose.x / kMillimetre) & 0xFFFF);
+  s.y = static_cast<std::uint16_t>(rounded(pose.y / kMillimetre) & 0xFFFF);
+  const auto units = [](double angle) {
+    const int whole = rounded(angle / kHeadingUnit);
+    return static_cast<std::int16_t>(whole >= 2048 ? whole - 4096 : whole);
+  };
+  s.heading = units(pose.phi);
+  s.left = static_cast<std::int16_t>(rounded(left_speed() / kMillimetre));
+  s.right = static_cast<std::int16_t>(rounded(right_speed() / kMillimetre));
+  s.battery = battery_;
+  s.stall = odometry_.stalled ? kLeftStall | kRightStall : 0;
+  s.control = units(mode_ == Mode::Head ? heading_target_ : pose.phi);
+  s.flags = motors_ ? kMotorsOn : 0;
+  s.turn_rate = rad_to_deg(odometry_.w);
+  send(encode(s));
+  if (encoders_ > 0) {
+    const double ticks = settings_.configuration.ticks_mm / kMillimetre;
+    send(encode_encoders(static_cast<std::int32_t>(std::llround(left_travel_ * ticks)),
+                         static_cast<std::int32_t>(std::llround(right_travel_ * ticks))));
+  }
+  if (encoders_ == 1) encoders_ = 0;
+  if (status_ > 0)
+    send(encode(SimStatus{settings_.configuration.cycle_ms, rounded(truth_.x / kMillimetre),
+                          rounded(truth_.y / kMillimetre), rounded(rad_to_deg(truth_.phi))}));
+  if (status_ == 1) status_ = 0;
+}
+
+bool ArcosEmulator::fail(const std::string& fault, Stamp now) {
+  if (fault == "seto") {
+    set_origin();
+  } else if (fault == "stall") {
+    stalled_until_ = now + kStallFault;
+  } else if (fault == "reset") {
+    start_anew();
+  } else if (fault == "watchdog") {
+    deaf_until_ = now + kDeafFault;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+std::optional<mrpt::math::TPose2D> ArcosEmulator::take_placed() { return std::exchange(placed_, std::nullopt); }
+
+std::string ArcosEmulator::take_output() { return std::exchange(output_, ""); }
+
+}  // namespace rubble::robot

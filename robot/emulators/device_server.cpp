@@ -1,0 +1,95 @@
+#include "robot/emulators/device_server.h"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <array>
+
+#include "base/error.h"
+#include "robot/drivers/host_clock.h"
+
+namespace rubble::robot {
+namespace {
+
+constexpr int kTurnMs = 10;  // the device's own timers are looked at so often at least
+
+}  // namespace
+
+DeviceServer::DeviceServer(const std::string& port, EmulatedDevice& device, std::uint64_t seed)
+    : device_(device),
+      server_(serve_port(port)),
+      port_(server_->name()),
+      wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)),
+      faults_(seed) {
+  thread_ = std::thread([this] { run(); });
+}
+
+DeviceServer::~DeviceServer() {
+  with([this] { ending_ = true; });
+  thread_.join();
+}
+
+void DeviceServer::wake() {
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const ssize_t written = ::write(wake_.get(), &one, sizeof one);
+}
+
+void DeviceServer::spoil(ByteFault fault, double duration) {
+  with([&] { faults_.spoil(fault, host_now() + duration); });
+}
+
+void DeviceServer::fall_silent(double duration) {
+  with([&] { faults_.fall_silent(host_now() + duration); });
+}
+
+void DeviceServer::unplug(double duration) {
+  with([&] { unplug_until_ = host_now() + duration; });
+}
+
+/// Pulls the plug or puts it back, as it is due.
+void DeviceServer::replug(Stamp now) {
+  if (!unplugged_ && now < unplug_until_) {
+    server_->unplug();
+    device_.client_left(now);
+    unplugged_ = true;
+  } else if (unplugged_ && now >= unplug_until_) {
+    try {
+      server_->plug_in();
+      unplugged_ = false;
+    } catch (const RunError&) {
+      // Somebody has taken the name meanwhile; the next turn tries again.
+    }
+  }
+}
+
+void DeviceServer::turn() {
+  std::array<std::uint8_t, 4096> bytes;
+  const Served served = server_->read(bytes.data(), bytes.size(), 0.0);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const Stamp now = host_now();
+  if (served.client_left) device_.client_left(now);
+  if (served.client_came) device_.client_came(now);
+  if (served.size > 0 && !faults_.is_silent(now))
+    device_.receive({reinterpret_cast<const char*>(bytes.data()), served.size}, now);
+  device_.advance(now);
+  for (const std::string& piece : faults_.pass(device_.take_output(), now))
+    server_->write(reinterpret_cast<const std::uint8_t*>(piece.data()), piece.size());
+  replug(now);
+}
+
+void DeviceServer::run() {
+  for (;;) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (ending_) return;
+    }
+    turn();
+    std::array<pollfd, 2> files{pollfd{wake_.get(), POLLIN, 0}, pollfd{server_->descriptor(), POLLIN, 0}};
+    ::poll(files.data(), unplugged_ ? 1 : 2, kTurnMs);
+    std::uint64_t count = 0;
+    [[maybe_unused]] const ssize_t got = ::read(wake_.get(), &count, sizeof count);
+  }
+}
+
+}  // namespace rubble::robot

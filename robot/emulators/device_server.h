@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "robot/drivers/descriptor.h"
+#include "robot/emulators/emulated_device.h"
+#include "robot/emulators/line_faults.h"
+#include "robot/emulators/port_server.h"
+
+namespace rubble::robot {
+
+/// Serves an emulated device on a port, in a thread of its own.
+class DeviceServer {
+ public:
+  /// Opens the port. Throws InputError and RunError as serve_port does.
+  DeviceServer(const std::string& port, EmulatedDevice& device, std::uint64_t seed);
+  ~DeviceServer();
+  DeviceServer(const DeviceServer&) = delete;
+  DeviceServer& operator=(const DeviceServer&) = delete;
+
+  /// The word for clients, with the true port number.
+  const std::string& port() const { return port_; }
+
+  /// Calls `use()` while the thread leaves the device alone; what the device has to say then is sent at once.
+  template <class Use>
+  void with(const Use& use) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      use();
+    }
+    wake();
+  }
+
+  /// For `duration` [s] all that the device sends is spoilt so.
+  void spoil(ByteFault fault, double duration);
+  /// For `duration` [s] the device neither hears nor speaks.
+  void fall_silent(double duration);
+  /// The plug is pulled and comes back after `duration` [s].
+  void unplug(double duration);
+
+ private:
+  void run();
+  void turn();
+  void replug(Stamp now);
+  void wake();
+
+  EmulatedDevice& device_;
+  std::unique_ptr<PortServer> server_;
+  std::string port_;
+  Descriptor wake_;
+  std::mutex mutex_;
+  bool ending_ = false;
+  LineFaults faults_;
+  Stamp unplug_until_ = Stamp::never();
+  bool unplugged_ = false;
+  std::thread thread_;
+};
+
+}  // namespace rubble::robot

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "base/stamp.h"
+
+namespace rubble::robot {
+
+/// The device's side of a protocol apart from its port and from any clock: bytes of the client, time and measurements
+/// go in, bytes and set points come out. Whoever owns the port and the robot moves them.
+class EmulatedDevice {
+ public:
+  virtual ~EmulatedDevice() = default;
+  /// A client has come (never told on a pty).
+  virtual void client_came(Stamp now) = 0;
+  /// The client is gone, or the plug was pulled.
+  virtual void client_left(Stamp now) = 0;
+  virtual void receive(std::string_view bytes, Stamp now) = 0;
+  /// Lets time pass: watchdog, ramps, reports that are due.
+  virtual void advance(Stamp now) = 0;
+  /// Bytes for the client.
+  virtual std::string take_output() = 0;
+  /// A fault of the device itself begins: one of its own names, as in docs/hardware.md. False: it has none of that
+  /// name.
+  virtual bool fail(const std::string& /*fault*/, Stamp /*now*/) { return false; }
+};
+
+}  // namespace rubble::robot

@@ -1,0 +1,255 @@
+#include "scenarios/hardware/drive.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include "base/error.h"
+#include "robot/drivers/black_box.h"
+#include "robot/drivers/mrpt_scanner.h"
+#include "robot/drivers/scip/scip_scanner.h"
+#include "robot/logs/log.h"
+#include "scenarios/hardware/delayed_scanner.h"
+#include "scenarios/run/core.h"
+#include "scenarios/run/loop.h"
+#include "scenarios/run/run_folder.h"
+#include "scenarios/run/score_json.h"
+
+namespace rubble::scenarios {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using nlohmann::ordered_json;
+
+constexpr double kSavePeriod = 3.0;  ///< of the map [s]
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::unique_ptr<robot::Scanner> make_scanner(const RobotFile& file, robot::BlackBox& box) {
+  const robot::LaserModel& laser = file.settings.robot.laser;
+  if (file.lidar.driver == "mrpt") {
+    robot::MrptScannerConfig config;
+    config.type = file.lidar.mrpt_class;
+    config.port = file.lidar.port;
+    config.range_max = laser.range_max;
+    config.no_echo_is_miss = file.lidar.no_echo_is_miss;
+    config.scan_period = laser.scan_period;
+    return robot::mrpt_scanner(config);
+  }
+  robot::ScipScannerConfig config;
+  config.port = file.lidar.port;
+  config.range_max = laser.range_max;
+  config.no_echo_is_miss = file.lidar.no_echo_is_miss;
+  config.open = [&box](const std::string& word) { return robot::open_recorded(word, "urg", &box); };
+  return std::make_unique<robot::ScipScanner>(config);
+}
+
+std::unique_ptr<robot::Scanner> open_lidar(const RobotFile& file, robot::BlackBox& box) {
+  auto scanner = make_scanner(file, box);
+  if (file.lidar.delay == 0.0) return scanner;
+  return std::make_unique<DelayedScanner>(std::move(scanner), file.lidar.delay);
+}
+
+const char* name_of(explore::ExplorerState state) {
+  switch (state) {
+    case explore::ExplorerState::Starting:
+      return "starting";
+    case explore::ExplorerState::Driving:
+      return "driving";
+    case explore::ExplorerState::Searching:
+      return "searching";
+    case explore::ExplorerState::BackingUp:
+      return "backing up";
+    case explore::ExplorerState::GoingHome:
+      return "going home";
+    case explore::ExplorerState::Finished:
+      return "finished";
+  }
+  return "";
+}
+
+/// One drive from the first tick to the last: what run.cpp's loop is to the simulator.
+class Driver {
+ public:
+  Driver(const RobotFile& file, const DriveOptions& options, RunFolder& folder, robot::RealRobot& real, Core& core)
+      : file_(file), options_(options), folder_(folder), real_(real), core_(core) {
+    real_.while_waiting([this](const robot::RobotStatus& status) { return wait(status); });
+  }
+
+  /// Why the drive ended. Throws DeviceLost.
+  std::string run(robot::Robot& robot) {
+    while (auto inputs = robot.read()) {
+      if (!told_.empty()) tell_back();
+      robot.command(answer(*inputs));
+      if (first_ == Stamp::never()) first_ = saved_ = inputs->now;
+      seconds_ = inputs->now - first_;
+      if (inputs->now - saved_ >= 1.0) each_second(inputs->now);
+      if (core_.finished()) return core_.reason();
+      if (options_.emergency && options_.emergency()) {
+        real_.emergency_stop();
+        return "emergency stop";
+      }
+      if (options_.interrupted && options_.interrupted()) {
+        interrupted_ = true;
+        return "interrupted";
+      }
+    }
+    if (real_.status().emergency) return "emergency stop";
+    return interrupted_ ? "interrupted" : "the time is over";
+  }
+
+  double seconds() const { return seconds_; }
+  bool interrupted() const { return interrupted_; }
+
+ private:
+  robot::Commands answer(const robot::Inputs& inputs) {
+    robot::Commands commands = core_.step(inputs);
+    if (options_.mode == DriveMode::Teleoperate) commands.drive = options_.keys ? options_.keys() : robot::Drive{};
+    if (options_.mode == DriveMode::MapOnly) commands.drive = {};
+    return commands;
+  }
+
+  /// While devices are silent: tells which, and saves the map at once. False ends the run.
+  bool wait(const robot::RobotStatus& status) {
+    if (status.silent != told_ && names(status.silent) != names(told_)) {
+      if (options_.tell)
+        for (const std::string& line : status.silent) options_.tell(line);
+      if (first_ != Stamp::never()) save_map();
+    }
+    told_ = status.silent;
+    if (options_.emergency && options_.emergency()) real_.emergency_stop();
+    if (options_.interrupted && options_.interrupted()) interrupted_ = true;
+    return !interrupted_ && !(options_.emergency && options_.emergency());
+  }
+
+  static std::vector<std::string> names(const std::vector<std::string>& lines) {
+    std::vector<std::string> out;
+    for (const std::string& line : lines) out.push_back(line.substr(0, line.find(':')));
+    return out;
+  }
+
+  void tell_back() {
+    if (options_.tell)
+      for (const std::string& name : names(told_)) options_.tell(name + ": reports");
+    told_.clear();
+  }
+
+  void save_map() {
+    folder_.save_estimate(core_.mapper());
+    folder_.save_map(file_.settings, core_.mapper(), core_.victims());
+    map_saved_ = Clock::now();
+  }
+
+  void each_second(Stamp now) {
+    const double since = now - saved_;
+    saved_ = now;
+    folder_.append_estimate(core_.mapper());
+    if (seconds_since(map_saved_) >= kSavePeriod) save_map();
+    if (!options_.each_second) return;
+    DriveStatus status;
+    status.seconds = seconds_;
+    status.robot = real_.status();
+    status.state = options_.mode == DriveMode::Teleoperate ? "by hand"
+                   : options_.mode == DriveMode::MapOnly   ? "mapping"
+                   : core_.explorer()                      ? name_of(core_.explorer()->state())
+                                                           : "mapping";
+    status.T_map_base = core_.mapper().pose();
+    status.known_m2 = known_area(core_.mapper().map());
+    status.scans_per_s = static_cast<double>(status.robot.scans - last_.scans) / since;
+    status.odometry_per_s = static_cast<double>(status.robot.odometry - last_.odometry) / since;
+    status.accelerations_per_s = static_cast<double>(status.robot.accelerations - last_.accelerations) / since;
+    last_ = status.robot;
+    options_.each_second(status);
+  }
+
+  const RobotFile& file_;
+  const DriveOptions& options_;
+  RunFolder& folder_;
+  robot::RealRobot& real_;
+  Core& core_;
+  Stamp first_ = Stamp::never();
+  Stamp saved_ = Stamp::never();
+  double seconds_ = 0.0;
+  bool interrupted_ = false;
+  std::vector<std::string> told_;
+  robot::RobotStatus last_;
+  Clock::time_point map_saved_ = Clock::now();
+};
+
+double share(std::vector<double>& sorted, double part) {
+  if (sorted.empty()) return 0.0;
+  std::sort(sorted.begin(), sorted.end());
+  return sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1))];
+}
+
+/// What the drive can say without knowing the truth; behind the table's figures those of the devices.
+ordered_json score_of(const Core& core, const robot::RealRobot& robot, double seconds, const std::string& end,
+                      Clock::time_point start) {
+  scoring::Evidence evidence;
+  evidence.run = run_figures(core, seconds, end);
+  const double wall = seconds_since(start);
+  evidence.machine = scoring::MachineFigures{wall, peak_megabytes()};
+  ordered_json score = score_json(evidence);
+  const robot::RobotStatus status = robot.status();
+  score["bad_packets"] = status.bad_packets;
+  score["odometry_jumps"] = status.jumps;
+  score["scans_damaged"] = status.scans_damaged;
+  score["scans_missed"] = status.scans_missed;
+  std::vector<double> delays = robot.answer_delays();
+  score["answer_ms_median"] = 1e3 * share(delays, 0.5);
+  score["answer_ms_99"] = 1e3 * share(delays, 0.99);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto time = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  score["cpu_share"] = (time(usage.ru_utime) + time(usage.ru_stime)) / std::max(1e-3, wall);
+  return score;
+}
+
+}  // namespace
+
+RunReport drive(const RobotFile& file, const DriveOptions& options) {
+  const auto start = Clock::now();
+  RunFolder folder(options.out.empty() ? next_run_folder("runs", file.settings.name, file.settings.seed) : options.out,
+                   options.replace);
+  folder.write("scenario.yaml", resolved_yaml(file.settings));
+  folder.write("robot.yaml", robot_file_yaml(file));
+  folder.write("versions.json", versions().dump(2) + "\n");
+  robot::BlackBox box(folder.file("devices.bytes"));
+  Core core(file.settings, file.robot.model, options.mode == DriveMode::Explore, folder.path());
+  RunReport report;
+  {
+    const std::unique_ptr<robot::Scanner> lidar = open_lidar(file, box);
+    robot::RealRobotSettings settings = file.robot;
+    settings.base.passive = options.mode == DriveMode::MapOnly;
+    robot::RealRobot real(settings, *lidar, &box);
+    robot::RecordingRobot recorded(real, folder.file("log.rlog"), resolved_yaml(file.settings));
+    Driver driver(file, options, folder, real, core);
+    try {
+      report.end = driver.run(recorded);
+    } catch (const robot::DeviceLost& lost) {
+      report.failure = report.end = lost.what();
+    }
+    core.finish();
+    report.interrupted = driver.interrupted();
+    recorded.flush();
+    report.score = score_of(core, real, driver.seconds(), report.end, start);
+  }
+  folder.append_estimate(core.mapper());
+  folder.save_estimate(core.mapper());
+  folder.save_map(file.settings, core.mapper(), core.victims());
+  folder.save_hashes("");
+  folder.write("score.json", report.score.dump(2) + "\n");
+  folder.close();
+  if (options.out.empty()) folder.link_latest();
+  report.folder = folder.path();
+  if (box.failed())
+    throw RunError(folder.file("devices.bytes") + ": could not be written to its end; free some space and run again");
+  return report;
+}
+
+}  // namespace rubble::scenarios

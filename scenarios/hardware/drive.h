@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "robot/commands.h"
+#include "robot/drivers/real_robot.h"
+#include "scenarios/hardware/robot_file.h"
+#include "scenarios/run/run.h"
+
+namespace rubble::scenarios {
+
+/// Who drives.
+enum class DriveMode { Explore, Teleoperate, MapOnly };
+
+/// What the terminal shows once a second.
+struct DriveStatus {
+  double seconds = 0.0;  ///< since the first tick
+  std::string state;     ///< what the robot is doing, in one word or two
+  mrpt::math::TPose2D T_map_base;
+  double known_m2 = 0.0;
+  robot::RobotStatus robot;
+  double scans_per_s = 0.0;  ///< over the last second
+  double odometry_per_s = 0.0;
+  double accelerations_per_s = 0.0;
+};
+
+struct DriveOptions {
+  DriveMode mode = DriveMode::Explore;
+  std::string out;
+  bool replace = false;
+  std::function<bool()> interrupted;   ///< asked each tick; true ends the run
+  std::function<bool()> emergency;     ///< asked each tick; true stops hard and ends the run
+  std::function<robot::Drive()> keys;  ///< what the operator wants (Teleoperate)
+  std::function<void(const DriveStatus&)> each_second;
+  std::function<void(const std::string&)> tell;  ///< a device was lost or came back: one line
+};
+
+/// Drives a real robot: explores (or lets somebody drive) and maps. The run folder is that of run_scenario(), with all
+/// raw bytes of the devices in devices.bytes. Throws InputError, RunError; a robot that is lost on the way is told in
+/// the report, its folder is complete.
+RunReport drive(const RobotFile& file, const DriveOptions& options);
+
+}  // namespace rubble::scenarios

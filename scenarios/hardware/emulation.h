@@ -1,0 +1,47 @@
+#pragma once
+
+#include <mrpt/math/TPose2D.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/config/scenario.h"
+
+namespace rubble::scenarios {
+
+/// Something goes wrong with an emulated device.
+struct FaultAt {
+  std::string name;      ///< DEVICE-FAULT, one of fault_names()
+  double seconds = 0.0;  ///< after the start
+};
+
+/// Reads NAME@SECONDS. Throws UsageError.
+FaultAt parse_fault(const std::string& text);
+const std::vector<std::string>& fault_names();
+
+struct EmulateOptions {
+  std::string urg;  ///< port words; empty: that device is not there
+  std::string base;
+  std::string levelling;
+  std::vector<FaultAt> faults;
+  mrpt::math::TPose2D odometry_start;                          ///< what the base's dead reckoning begins with
+  double time_limit = 0.0;                                     ///< 0: until interrupted [s]
+  std::string truth;                                           ///< .tum file for the true trajectory; empty: none
+  std::function<void(const std::vector<std::string>&)> ready;  ///< the ports are open: their words
+  std::function<void(const std::string&)> tell;                ///< a fault begins: one line
+  std::function<bool()> interrupted;
+};
+
+struct EmulationReport {
+  double seconds = 0.0;
+  double late_95 = 0.0;  ///< how late a tick began [s]
+  double late_worst = 0.0;
+  std::uint64_t scans = 0;
+};
+
+/// Simulates the robot of a scenario in real time and offers its devices on ports. Throws InputError, RunError.
+EmulationReport emulate(const Scenario& scenario, const EmulateOptions& options);
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,117 @@
+#include "scenarios/hardware/robot_file.h"
+
+#include <filesystem>
+
+#include "base/angle.h"
+#include "base/yaml/binder.h"
+#include "base/yaml/strict_yaml.h"
+
+namespace rubble::scenarios {
+namespace {
+
+constexpr const char* kNone = "none";
+
+void bind(Binder& b, robot::AxisCalibration& axis) {
+  b.number("zero_duty", axis.zero, 0.05, 0.95);
+  b.number("duty_per_g", axis.sensitivity, 0.01, 0.5);
+}
+
+void bind(Binder& b, robot::ServoCalibration& servo) {
+  b.number("centre_us", servo.centre_us, 500.0, 2500.0);
+  b.degrees("deg_per_us", servo.radians_per_us, -1.0, 1.0);
+}
+
+void bind_lidar(Binder& b, LidarSettings& lidar, robot::RobotModel& model) {
+  b.choice("driver", lidar.driver, {"scip", "mrpt"});
+  b.text("class", lidar.mrpt_class);
+  b.text("port", lidar.port);
+  b.degrees("yaw_deg", model.T_base_laser.yaw, -180.0, 180.0);
+  b.number("delay_s", lidar.delay, -1.0, 1.0);
+  b.boolean("no_echo_is_miss", lidar.no_echo_is_miss);
+}
+
+void bind_base(Binder& b, robot::RealRobotSettings& r) {
+  std::string driver = "arcos";
+  b.choice("driver", driver, {"arcos"});
+  b.text("port", r.base_port);
+  b.number("distance_scale", r.base.distance_scale, 0.5, 2.0);
+  b.number("turn_scale", r.base.turn_scale, 0.3, 3.0);
+  b.number("delay_s", r.base.delay, -0.5, 0.5);
+}
+
+void bind_levelling(Binder& b, robot::RealRobotSettings& r) {
+  std::string driver = r.model.has_levelling_unit ? "lev1" : kNone;
+  b.choice("driver", driver, {"lev1", kNone});
+  r.model.has_levelling_unit = driver != kNone;
+  b.text("port", r.levelling_port);
+  b.section("x", [&](Binder& in) { bind(in, r.levelling.x); });
+  b.section("y", [&](Binder& in) { bind(in, r.levelling.y); });
+  b.section("pitch", [&](Binder& in) { bind(in, r.levelling.pitch); });
+  b.section("roll", [&](Binder& in) { bind(in, r.levelling.roll); });
+  b.number("delay_s", r.levelling.delay, -0.5, 0.5);
+}
+
+void bind(Binder& b, robot::SafetySettings& s) {
+  b.number("lidar_silence_s", s.lidar_silence, 0.1, 10.0);
+  b.number("base_silence_s", s.base_silence, 0.2, 10.0);
+  b.number("levelling_silence_s", s.levelling_silence, 0.1, 10.0);
+  b.number("core_silence_s", s.core_silence, 0.1, 10.0);
+  b.number("operator_silence_s", s.operator_silence, 0.1, 60.0);
+  b.number("start_s", s.start, 1.0, 3600.0);
+  b.number("give_up_s", s.give_up, 1.0, 3600.0);
+}
+
+void bind_devices(Binder& b, RobotFile& file) {
+  b.section("devices", [&](Binder& devices) {
+    devices.section("urg", [&](Binder& in) { bind_lidar(in, file.lidar, file.robot.model); });
+    devices.section("base", [&](Binder& in) { bind_base(in, file.robot); });
+    devices.section("levelling", [&](Binder& in) { bind_levelling(in, file.robot); });
+  });
+  b.section("safety", [&](Binder& in) { bind(in, file.robot.safety); });
+}
+
+/// The limits of the model are those that the driver enforces.
+void settle(RobotFile& file, const robot::RobotModel& devices) {
+  robot::RobotModel& model = file.settings.robot;
+  model.T_base_laser.yaw = devices.T_base_laser.yaw;
+  model.has_levelling_unit = devices.has_levelling_unit;
+  file.settings.has_arena = false;
+  file.settings.levelling.on = file.settings.levelling.on && model.has_levelling_unit;
+  robot::RealRobotSettings& robot = file.robot;
+  robot.model = model;
+  if (!model.has_levelling_unit) robot.levelling_port.clear();
+  robot.base.max_v = model.max_v;
+  robot.base.max_w = model.max_w;
+  robot.base.max_accel = model.max_accel;
+  robot.base.max_turn_accel = model.max_turn_accel;
+  robot.time_limit = file.settings.time_limit;
+}
+
+}  // namespace
+
+RobotFile load_robot_file(const std::string& path, const std::vector<Override>& overrides) {
+  YamlMap root = YamlMap::load(path);
+  for (const auto& [key, value] : overrides) root.set(key, value);
+  RobotFile file;
+  file.lidar.port = "/dev/ttyACM0";
+  file.robot.base_port = "/dev/ttyUSB0";
+  file.robot.levelling_port = "/dev/ttyUSB1";
+  file.settings.name = root.text("name", std::filesystem::path(path).stem().string());
+  if (file.settings.name.empty() || file.settings.name.find_first_of("/\\ ") != std::string::npos)
+    root.fail("name", "is used as a folder name: no spaces or slashes");
+  YamlReader reader(root);
+  bind_devices(reader, file);
+  read_settings(root, file.settings);
+  root.finish();
+  settle(file, robot::RobotModel(file.robot.model));
+  return file;
+}
+
+std::string robot_file_yaml(const RobotFile& file) {
+  RobotFile copy = file;  // binding needs a mutable object
+  YamlWriter devices;
+  bind_devices(devices, copy);
+  return devices.yaml() + resolved_yaml(file.settings);
+}
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "robot/drivers/real_robot.h"
+#include "scenarios/config/scenario.h"
+
+namespace rubble::scenarios {
+
+/// The scanner of a robot file.
+struct LidarSettings {
+  std::string driver = "scip";            ///< our own, or `mrpt`
+  std::string mrpt_class = "CHokuyoURG";  ///< which of MRPT's drivers
+  std::string port;
+  double delay = 0.0;           ///< scans are so much older than their stamps say [s]
+  bool no_echo_is_miss = true;  ///< "no echo" counts as nothing in range, else as no measurement
+};
+
+/// A real robot: devices, ports, mounts and limits, and how the core shall use them.
+struct RobotFile {
+  LidarSettings lidar;
+  robot::RealRobotSettings robot;  ///< its model is settings.robot
+  Scenario settings;               ///< mapper, explorer, levelling, robot model; no arena
+};
+
+/// Reads a robot file strictly. Throws InputError.
+RobotFile load_robot_file(const std::string& path, const std::vector<Override>& overrides = {});
+
+/// The file as YAML that load_robot_file reads back to the same settings.
+std::string robot_file_yaml(const RobotFile& file);
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,244 @@
+#include "scenarios/run/mission_figures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "arenas/model/risers.h"
+#include "arenas/truth/truth_map.h"
+#include "arenas/truth/visible.h"
+#include "base/angle.h"
+#include "base/planar.h"
+
+namespace rubble::scenarios {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+constexpr double kContact = 0.012;              ///< nearer, the body touches [m]
+constexpr double kFar = 0.5;                    ///< clearances are not told apart beyond [m]
+constexpr double kCameraRange = 2.0;            ///< of the cameras with a free line of sight [m]
+constexpr double kOpenSide = deg_to_rad(75.0);  ///< from within so much of a box's facing it can be looked into [rad]
+constexpr double kAboveLaser = 0.05;            ///< the body ends so much above the laser [m]
+constexpr double kBucket = 1.2;                 ///< [m]
+constexpr double kPeriod = 0.1;                 ///< the truth is looked at this often [s]
+
+/// An upright piece of something the body cannot pass.
+struct Edge {
+  TPoint2D a, b;
+  double bottom, top;  ///< [m]
+};
+
+/// The edges of an arena, found by place.
+class Edges {
+ public:
+  Edges(const arenas::Arena& arena, double climbable_step) {
+    for (const arenas::Solid& solid : arena.solids) {
+      if (solid.gives_way) continue;
+      for (std::size_t i = 0; i < solid.outline.size(); ++i)
+        edges_.push_back(
+            {solid.outline[i], solid.outline[(i + 1) % solid.outline.size()], solid.z_bottom, solid.z_top});
+    }
+    for (const arenas::Riser& riser : arenas::risers(arena, climbable_step)) {
+      // Only the stretch where the step is too high stops a wheel.
+      const double a = riser.high_a - riser.low_a - climbable_step;
+      const double b = riser.high_b - riser.low_b - climbable_step;
+      if (a <= 0.0 && b <= 0.0) continue;
+      const double crossing = a * b < 0.0 ? a / (a - b) : 0.0;
+      const TPoint2D way = riser.b - riser.a;
+      const TPoint2D from = a > 0.0 ? riser.a : riser.a + way * crossing;
+      const TPoint2D to = b > 0.0 ? riser.b : riser.a + way * crossing;
+      edges_.push_back({from, to, std::min(riser.low_a, riser.low_b), std::max(riser.high_a, riser.high_b)});
+    }
+    frame_.resolution = kBucket;
+    frame_.x0 = arena.min_corner.x - 2.0 * kBucket;
+    frame_.y0 = arena.min_corner.y - 2.0 * kBucket;
+    frame_.width = static_cast<int>((arena.max_corner.x - frame_.x0) / kBucket) + 3;
+    frame_.height = static_cast<int>((arena.max_corner.y - frame_.y0) / kBucket) + 3;
+    near_.resize(static_cast<std::size_t>(frame_.width) * static_cast<std::size_t>(frame_.height));
+    for (std::size_t i = 0; i < edges_.size(); ++i) put(i);
+  }
+
+  const Edge& operator[](std::size_t i) const { return edges_[i]; }
+  /// Those that may lie within a metre of p.
+  const std::vector<std::size_t>& near(const TPoint2D& p) const {
+    static const std::vector<std::size_t> none;
+    const Cell c = frame_.cell(p);
+    return frame_.inside(c) ? near_[frame_.index(c)] : none;
+  }
+
+ private:
+  void put(std::size_t i) {
+    const Edge& e = edges_[i];
+    constexpr double kReach = 1.0;
+    const Cell low = frame_.cell({std::min(e.a.x, e.b.x) - kReach, std::min(e.a.y, e.b.y) - kReach});
+    const Cell high = frame_.cell({std::max(e.a.x, e.b.x) + kReach, std::max(e.a.y, e.b.y) + kReach});
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x)
+        if (frame_.inside({x, y})) near_[frame_.index({x, y})].push_back(i);
+  }
+
+  std::vector<Edge> edges_;
+  GridFrame frame_;
+  std::vector<std::vector<std::size_t>> near_;
+};
+
+double to_segment(const TPoint2D& p, const TPoint2D& a, const TPoint2D& b) {
+  const TPoint2D way = b - a;
+  const double size2 = way.x * way.x + way.y * way.y;
+  const double t = size2 > 0.0 ? std::clamp(((p.x - a.x) * way.x + (p.y - a.y) * way.y) / size2, 0.0, 1.0) : 0.0;
+  return distance(p, {a.x + t * way.x, a.y + t * way.y});
+}
+
+bool cross(const TPoint2D& a, const TPoint2D& b, const TPoint2D& c, const TPoint2D& d) {
+  const auto side = [](const TPoint2D& p, const TPoint2D& q, const TPoint2D& r) {
+    return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x) > 0.0;
+  };
+  return side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b);
+}
+
+double between(const TPoint2D& a, const TPoint2D& b, const TPoint2D& c, const TPoint2D& d) {
+  if (cross(a, b, c, d)) return 0.0;
+  return std::min({to_segment(a, c, d), to_segment(b, c, d), to_segment(c, a, b), to_segment(d, a, b)});
+}
+
+/// The body from above: a rectangle whose corners are cut by a tenth of the length.
+std::array<TPoint2D, 8> outline(const robot::RobotModel& model, const TPose2D& pose) {
+  const double x = 0.5 * model.length, y = 0.5 * model.width, cut = 0.1 * model.length;
+  const std::array<TPoint2D, 8> own{TPoint2D{x, y - cut},  TPoint2D{x - cut, y},  TPoint2D{cut - x, y},
+                                    TPoint2D{-x, y - cut}, TPoint2D{-x, cut - y}, TPoint2D{cut - x, -y},
+                                    TPoint2D{x - cut, -y}, TPoint2D{x, cut - y}};
+  std::array<TPoint2D, 8> placed;
+  const PlanarTransform T(pose);
+  std::transform(own.begin(), own.end(), placed.begin(), T);
+  return placed;
+}
+
+double clearance(const arenas::Arena& arena, const Edges& edges, const robot::RobotModel& model, const TPose2D& pose) {
+  const std::array<TPoint2D, 8> body = outline(model, pose);
+  const double floor = arenas::floor_height(arena, {pose.x, pose.y});
+  const double bottom = std::isfinite(floor) ? floor : 0.0;
+  const double top = bottom + model.T_base_laser.z + kAboveLaser;
+  double nearest = kFar;
+  for (const std::size_t i : edges.near({pose.x, pose.y})) {
+    const Edge& e = edges[i];
+    constexpr double kGraze = 0.01;
+    if (std::min(e.top, top) - std::max(e.bottom, bottom) < kGraze) continue;
+    for (std::size_t k = 0; k < body.size(); ++k)
+      nearest = std::min(nearest, between(body[k], body[(k + 1) % body.size()], e.a, e.b));
+  }
+  return nearest;
+}
+
+arenas::Viewer viewer_of(const robot::RobotModel& model) {
+  arenas::Viewer viewer;
+  viewer.radius = 0.5 * model.width;
+  viewer.height = model.T_base_laser.z + kAboveLaser;
+  viewer.climbable_step = model.climbable_step;
+  viewer.range = model.laser.range_max;
+  return viewer;
+}
+
+/// Whether nothing stands between two places; the last stretch, the victim's own box, is not asked about.
+bool in_sight(const OccupancyGrid& truth, const TPoint2D& from, const TPoint2D& victim) {
+  constexpr double kOwnBox = 0.35;  ///< [m]
+  const double way = distance(from, victim);
+  const double step = 0.5 * truth.frame().resolution;
+  for (double at = 0.0; at < way - kOwnBox; at += step) {
+    const Cell c = truth.cell(from + (victim - from) * (at / way));
+    if (truth.inside(c) && truth[c] == Occupancy::Occupied) return false;
+  }
+  return true;
+}
+
+const char* code_of(explore::MissionEnd end) {
+  switch (end) {
+    case explore::MissionEnd::UnderWay:
+      return "time";
+    case explore::MissionEnd::Explored:
+      return "explored";
+    case explore::MissionEnd::Home:
+      return "home";
+    case explore::MissionEnd::Stuck:
+      return "stuck";
+  }
+  return "time";
+}
+
+}  // namespace
+
+scoring::DriveFigures drive_figures(const arenas::Arena& arena, const Trajectory& truth,
+                                    const robot::RobotModel& model) {
+  scoring::DriveFigures figures;
+  figures.min_clearance_m = kFar;
+  if (truth.empty()) return figures;
+  const Edges edges(arena, model.climbable_step);
+  bool touches = false;
+  StampedPose last = truth.front();
+  for (const StampedPose& at : truth) {
+    const double dt = at.stamp - last.stamp;
+    if (dt < kPeriod - 1e-6) continue;
+    const double way = distance({last.pose.x, last.pose.y}, {at.pose.x, at.pose.y});
+    figures.way_m += way;
+    const double nearest = clearance(arena, edges, model, at.pose);
+    figures.min_clearance_m = std::min(figures.min_clearance_m, nearest);
+    const bool touched = touches;
+    touches = nearest < kContact;
+    if (touches) figures.contact_s += dt;
+    if (touches && !touched) {
+      ++figures.contacts;
+      figures.contact_speed = std::max(figures.contact_speed, way / dt);
+    }
+    last = at;
+  }
+  const TPose2D& end = truth.back().pose;
+  figures.home_m = distance({arena.start.x, arena.start.y}, {end.x, end.y});
+  return figures;
+}
+
+int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model) {
+  const OccupancyGrid truth = arenas::truth_map(arena);
+  const Grid<std::uint8_t> reachable = arenas::reachable_mask(arena, truth, viewer_of(model));
+  const auto seen_from = [&](const arenas::Victim& victim) {
+    const TPoint2D at{victim.position.x, victim.position.y};
+    const Cell low = truth.cell({at.x - kCameraRange, at.y - kCameraRange});
+    const Cell high = truth.cell({at.x + kCameraRange, at.y + kCameraRange});
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x) {
+        if (!reachable.inside({x, y}) || reachable[{x, y}] == 0) continue;
+        const TPoint2D p = truth.centre({x, y});
+        if (distance(p, at) > kCameraRange) continue;
+        if (std::abs(wrap_angle(std::atan2(p.y - at.y, p.x - at.x) - victim.facing)) > kOpenSide) continue;
+        if (in_sight(truth, p, at)) return true;
+      }
+    return false;
+  };
+  return static_cast<int>(std::count_if(arena.victims.begin(), arena.victims.end(), seen_from));
+}
+
+scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajectory& truth,
+                                        const robot::RobotModel& model, const Core& core) {
+  scoring::MissionFigures out;
+  out.end_code = core.explorer() != nullptr ? code_of(core.explorer()->end()) : "time";
+  out.drive = drive_figures(arena, truth, model);
+  out.stalls = static_cast<std::uint64_t>(core.stalls());
+  out.area_per_min = core.area_per_minute();
+  out.victims_visible = static_cast<std::uint64_t>(visible_victims(arena, model));
+  return out;
+}
+
+std::string decisions_text(const Core& core) {
+  std::string text;
+  if (core.explorer() == nullptr) return text;
+  for (const explore::Decision& decision : core.explorer()->decisions()) {
+    std::array<char, 24> time{};
+    std::snprintf(time.data(), time.size(), "%8.2f ", decision.stamp.seconds());
+    text += time.data() + decision.why + "\n";
+  }
+  return text;
+}
+
+}  // namespace rubble::scenarios

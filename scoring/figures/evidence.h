@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/grid.h"
+#include "base/trajectory.h"
+#include "scoring/scorecard.h"
+#include "scoring/trajectory/trajectory_error.h"
+
+namespace rubble::scoring {
+
+/// Where the victims that a map reports were found.
+enum class VictimSource { None, List, Symbols };
+
+/// "none", "csv" or "symbols": as files and tables call them.
+std::string name_of(VictimSource source);
+
+/// The victims a map reports, and what they are worth.
+struct VictimFigures {
+  VictimSource from = VictimSource::None;
+  std::size_t symbols = 0;  ///< recognised on the map, also where a list was given
+  std::size_t reported = 0;
+  bool judged = false;    ///< the true victims are known; else the fields below say nothing
+  std::size_t total = 0;  ///< victims there are
+  std::size_t found = 0;
+  std::size_t false_alarms = 0;
+  double error_m = 0.0;   ///< mean over those found [m]
+  double quality = 0.0;   ///< points for the map around them
+  double location = 0.0;  ///< points for where they lie
+};
+
+/// What a mapper and an explorer did in one run.
+struct RunFigures {
+  std::string end;             ///< why the run ended, for people
+  double sim_s = 0.0;          ///< time covered [s]
+  double area_known_m2 = 0.0;  ///< of the map
+  std::uint64_t scans = 0;
+  std::uint64_t scans_mapped = 0;
+  std::uint64_t scans_out_of_order = 0;
+  std::uint64_t hits_outside = 0;                   ///< laser hits beyond the largest map
+  std::vector<std::pair<std::string, double>> own;  ///< of this kind of mapper alone; kept behind the table's figures
+};
+
+/// What the truth says about a drive. All of it follows from the arena and the true poses; the core knows nothing of
+/// it.
+struct DriveFigures {
+  double way_m = 0.0;            ///< driven in the plan view
+  double contact_s = 0.0;        ///< time within 12 mm of a solid or of a step too high to climb
+  std::uint64_t contacts = 0;    ///< spells of it
+  double contact_speed = 0.0;    ///< the fastest at which one began [m/s]
+  double min_clearance_m = 0.0;  ///< of the outline, to the nearest such thing (0.5 m when never nearer)
+  double home_m = 0.0;           ///< from the start at the end
+};
+
+/// How the mission of a simulated run went.
+struct MissionFigures {
+  std::string end_code;  ///< "explored", "home", "time", "stuck", "lost" or "fell"
+  DriveFigures drive;
+  std::uint64_t stalls = 0;           ///< reported by the motors
+  double area_per_min = 0.0;          ///< mapped, until 95 % of what is known at the end were [m^2/min]
+  std::uint64_t victims_visible = 0;  ///< that a camera could look at from where the robot can get
+};
+
+/// What depends on the machine, not on the seed.
+struct MachineFigures {
+  double wall_s = 0.0;  ///< time taken from start to score [s]
+  double peak_mb = 0.0;
+};
+
+/// All that is known about one run or one map when it is judged; what the table's figures are taken from. A part that
+/// is empty or null makes its figures unknown: a log without truth, a judge's map without a run.
+struct Evidence {
+  std::optional<MapScore> score;
+  const OccupancyGrid* map = nullptr;  ///< as it was read back from its file
+  const OccupancyGrid* truth = nullptr;
+  std::string map_read_as;  ///< what the file was recognised as
+  std::string truth_read_as;
+  const Trajectory* estimate = nullptr;       ///< T_map_base as known in the end
+  const Trajectory* live_estimate = nullptr;  ///< as known at each scan
+  const Trajectory* true_path = nullptr;
+  std::optional<TrajectoryError> error;       ///< of `estimate`
+  std::optional<TrajectoryError> live_error;  ///< of `live_estimate`
+  std::optional<VictimFigures> victims;
+  std::optional<RunFigures> run;
+  std::optional<MissionFigures> mission;
+  std::optional<MachineFigures> machine;
+};
+
+}  // namespace rubble::scoring

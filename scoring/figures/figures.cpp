@@ -1,0 +1,246 @@
+#include "scoring/figures/figures.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+
+namespace rubble::scoring {
+namespace {
+
+using Getter = std::function<Value(const Evidence&)>;
+
+// Where a row takes its figure from: a member of that part, or a function of it. Unknown where the part is missing.
+
+template <class Read>
+Getter of_score(Read read) {
+  return [read](const Evidence& e) { return e.score ? Value(std::invoke(read, *e.score)) : Value(); };
+}
+
+/// Only where the map was placed: else nobody can say what of the truth it shows.
+template <class Read>
+Getter of_placed(Read read) {
+  return
+      [read](const Evidence& e) { return e.score && e.score->aligned ? Value(std::invoke(read, *e.score)) : Value(); };
+}
+
+template <class Read>
+Getter of_warped(Read read) {
+  return
+      [read](const Evidence& e) { return e.score && e.score->warped ? Value(std::invoke(read, *e.score)) : Value(); };
+}
+
+template <class Read>
+Getter of_error(Read read) {
+  return [read](const Evidence& e) {
+    return e.error && e.error->matched > 0 ? Value(std::invoke(read, *e.error)) : Value();
+  };
+}
+
+template <class Read>
+Getter of_live(Read read) {
+  return [read](const Evidence& e) {
+    return e.live_error && e.live_error->matched > 0 ? Value(std::invoke(read, *e.live_error)) : Value();
+  };
+}
+
+template <class Read>
+Getter of_victims(Read read) {
+  return [read](const Evidence& e) { return e.victims ? Value(std::invoke(read, *e.victims)) : Value(); };
+}
+
+template <class Read>
+Getter of_judged_victims(Read read) {
+  return [read](const Evidence& e) {
+    return e.victims && e.victims->judged ? Value(std::invoke(read, *e.victims)) : Value();
+  };
+}
+
+template <class Read>
+Getter of_run(Read read) {
+  return [read](const Evidence& e) { return e.run ? Value(std::invoke(read, *e.run)) : Value(); };
+}
+
+template <class Read>
+Getter of_mission(Read read) {
+  return [read](const Evidence& e) { return e.mission ? Value(std::invoke(read, *e.mission)) : Value(); };
+}
+
+template <class Read>
+Getter of_machine(Read read) {
+  return [read](const Evidence& e) { return e.machine ? Value(std::invoke(read, *e.machine)) : Value(); };
+}
+
+Value victim_error(const Evidence& e) {
+  return e.victims && e.victims->judged && e.victims->found > 0 ? Value(e.victims->error_m) : Value();
+}
+
+Value real_time_factor(const Evidence& e) {
+  return e.run && e.machine && e.machine->wall_s > 0.0 ? Value(e.run->sim_s / e.machine->wall_s) : Value();
+}
+
+Value text_or_unknown(const std::string& text) { return text.empty() ? Value() : Value(text); }
+
+constexpr Better kUp = Better::Higher, kDown = Better::Lower, kNone = Better::Neither;
+
+std::vector<Figure> make_table() {
+  using S = MapScore;
+  using C = Contest;
+  const auto contest = [](auto member) { return of_score([member](const S& s) { return s.contest.*member; }); };
+  const auto wall = [](auto member) { return of_placed([member](const S& s) { return s.errors.*member; }); };
+  const auto pose = [](auto member) { return of_score([member](const S& s) { return s.T_truth_map.*member; }); };
+  const auto rival = [](auto member) {
+    return of_score([member](const S& s) { return s.contest.T_runner_up.*member; });
+  };
+  const auto feature = [](auto member) { return of_warped([member](const S& s) { return s.features.*member; }); };
+  using Pose = mrpt::math::TPose2D;
+  const auto drive = [](auto member) {
+    return of_mission([member](const MissionFigures& m) { return m.drive.*member; });
+  };
+  using D = DriveFigures;
+  return {
+      // key, label, unit, decimals, which way is better, floor of noise, where it goes, how to get it
+      {"score", "score", "", 3, kUp, 0.01, kShown | kReport | kRanking | kLeague, of_score(&S::score)},
+      {"precision", "precision", "", 3, kUp, 0.01, kShown | kRanking | kLeague, of_score(&S::precision)},
+      {"recall", "recall", "", 3, kUp, 0.01, kShown | kRanking | kLeague, of_score(&S::recall)},
+      {"psi_m", "psi", "m", 3, kDown, 0.01, kShown | kReport | kRanking | kLeague, of_score(&S::psi_m)},
+      {"ate_first_m", "trajectory error, first pose", "m", 3, kDown, 0.02, kShown,
+       of_error(&TrajectoryError::ate_first_m)},
+      {"ate_aligned_m", "trajectory error, aligned", "m", 3, kDown, 0.02, kShown | kReport,
+       of_error(&TrajectoryError::ate_aligned_m)},
+      {"ate_live_m", "trajectory error, live", "m", 3, kDown, 0.02, kShown, of_live(&TrajectoryError::ate_aligned_m)},
+      {"known", "arena known", "%", 3, kUp, 0.01, kShown | kReport | kRanking | kLeague, of_placed(&S::known)},
+      {"aligned", "maps aligned", "", 0, kUp, 0.0, kLeague, of_score(&S::aligned)},
+      {"victims_found", "victims found", "", 0, kUp, 0.0, kReport | kLeague, of_judged_victims(&VictimFigures::found)},
+      {"victims_false", "false victims", "", 0, kDown, 0.0, kLeague, of_judged_victims(&VictimFigures::false_alarms)},
+      {"victims_error_m", "victim error", "m", 2, kDown, 0.02, kPlain, victim_error},
+      {"victims_total", "victims there are", "", 0, kNone, 0.0, kLeague, of_judged_victims(&VictimFigures::total)},
+      {"victims_reported", "victims reported", "", 0, kNone, 0.0, kPlain, of_victims(&VictimFigures::reported)},
+      {"victims_from", "victims taken from", "", 0, kNone, 0.0, kText | kLeague,
+       of_victims([](const VictimFigures& v) { return name_of(v.from); })},
+      {"victim_symbols", "victim symbols on the map", "", 0, kNone, 0.0, kLeague, of_victims(&VictimFigures::symbols)},
+      {"points_quality", "points for map quality", "", 1, kUp, 0.5, kShown | kLeague,
+       of_judged_victims(&VictimFigures::quality)},
+      {"points_location", "points for location", "", 1, kUp, 0.5, kShown | kLeague,
+       of_judged_victims(&VictimFigures::location)},
+      {"phantom_m", "phantom wall", "m", 2, kDown, 0.1, kShown | kLeague, wall(&WallErrors::phantom_m)},
+      {"missing_m", "missing wall", "m", 2, kDown, 0.1, kShown | kLeague, wall(&WallErrors::missing_m)},
+      {"ignored_m", "wall where the truth is unknown", "m", 2, kNone, 0.0, kShown | kLeague,
+       wall(&WallErrors::ignored_m)},
+      {"warped_score", "score after warp", "", 3, kNone, 0.0, kShown | kLeague, of_warped(&S::warped_score)},
+      {"warp_m", "distorted by", "m", 3, kNone, 0.0, kShown | kLeague, of_warped(&S::warp_m)},
+      {"penalised_score", "score with penalty for the warp", "", 3, kNone, 0.0, kShown | kLeague,
+       of_warped(&S::penalised_score)},
+      {"feature_error_m2", "feature error", "m2", 3, kNone, 0.0, kShown, feature(&MatchError::error)},
+      {"feature_matched", "features matched", "", 0, kNone, 0.0, kShown, feature(&MatchError::matched)},
+      {"feature_offset_m", "features apart", "m", 3, kNone, 0.0, kShown, feature(&MatchError::mean_offset)},
+      {"area_known_m2", "area mapped", "m2", 1, kNone, 0.0, kShown, of_run(&RunFigures::area_known_m2)},
+      {"ate_matched", "poses compared", "", 0, kNone, 0.0, kPlain,
+       [](const Evidence& e) { return e.error ? Value(e.error->matched) : Value(); }},
+      {"psi_literal_m", "psi, sum of eq. (5)", "m", 3, kNone, 0.0, kPlain, of_score(&S::psi_literal_m)},
+      {"psi_occupied_map_m", "psi, walls, map to truth", "m", 3, kNone, 0.0, kPlain, of_score(&S::psi_occupied_map_m)},
+      {"psi_occupied_truth_m", "psi, walls, truth to map", "m", 3, kNone, 0.0, kPlain,
+       of_score(&S::psi_occupied_truth_m)},
+      {"psi_free_map_m", "psi, free space, map to truth", "m", 3, kNone, 0.0, kPlain, of_score(&S::psi_free_map_m)},
+      {"psi_free_truth_m", "psi, free space, truth to map", "m", 3, kNone, 0.0, kPlain, of_score(&S::psi_free_truth_m)},
+      {"align_x_m", "map moved in x", "m", 3, kNone, 0.0, kPlain, pose(&Pose::x)},
+      {"align_y_m", "map moved in y", "m", 3, kNone, 0.0, kPlain, pose(&Pose::y)},
+      {"align_rad", "map turned", "rad", 4, kNone, 0.0, kPlain, pose(&Pose::phi)},
+      {"align_note", "note on the alignment", "", 0, kNone, 0.0, kText, of_score(&S::note)},
+      {"align_source", "pose proposed by", "", 0, kNone, 0.0, kText | kLeague, of_score(&S::source)},
+      {"align_tried", "proposals tried", "", 0, kNone, 0.0, kText,
+       of_score([](const S& s) { return names_of(s.contest.tried); })},
+      {"align_agreement", "agreement of walls", "", 3, kNone, 0.0, kPlain, contest(&C::agreement)},
+      {"align_measure", "decided by", "", 0, kNone, 0.0, kText,
+       of_score([](const S& s) { return std::string(s.contest.by_agreement ? "agreement" : "log odds"); })},
+      {"align_margin", "ahead by", "", 3, kNone, 0.0, kPlain, contest(&C::margin)},
+      {"align_runner_up", "runner-up pose, of the best", "", 3, kNone, 0.0, kPlain, of_score(&S::runner_up)},
+      {"align_runner_up_source", "runner-up proposed by", "", 0, kNone, 0.0, kText, contest(&C::runner_up_source)},
+      {"align_runner_up_x_m", "runner-up moved in x", "m", 3, kNone, 0.0, kPlain, rival(&Pose::x)},
+      {"align_runner_up_y_m", "runner-up moved in y", "m", 3, kNone, 0.0, kPlain, rival(&Pose::y)},
+      {"align_runner_up_rad", "runner-up turned", "rad", 4, kNone, 0.0, kPlain, rival(&Pose::phi)},
+      {"align_mirrored", "mirror image, of the best", "", 3, kNone, 0.0, kPlain, of_score(&S::mirrored)},
+      {"scale_hint", "scale at which the maps agree", "", 2, kNone, 0.0, kPlain, of_score(&S::scale_hint)},
+      {"map", "map", "", 0, kNone, 0.0, kText, [](const Evidence& e) { return text_or_unknown(e.map_read_as); }},
+      {"truth", "truth", "", 0, kNone, 0.0, kText, [](const Evidence& e) { return text_or_unknown(e.truth_read_as); }},
+      {"scans", "scans", "", 0, kNone, 0.0, kPlain, of_run(&RunFigures::scans)},
+      {"scans_mapped", "scans mapped", "", 0, kNone, 0.0, kPlain, of_run(&RunFigures::scans_mapped)},
+      {"scans_out_of_order", "scans out of order", "", 0, kNone, 0.0, kPlain, of_run(&RunFigures::scans_out_of_order)},
+      {"hits_outside", "hits outside the map", "", 0, kNone, 0.0, kPlain, of_run(&RunFigures::hits_outside)},
+      {"end", "ended", "", 0, kNone, 0.0, kText, of_run(&RunFigures::end)},
+      {"end_code", "end in a word", "", 0, kNone, 0.0, kText, of_mission(&MissionFigures::end_code)},
+      {"contact_s", "walls or steps touched for", "s", 1, kDown, 0.5, kShown, drive(&D::contact_s)},
+      {"contacts", "times touched", "", 0, kDown, 1.0, kPlain, drive(&D::contacts)},
+      {"contact_speed", "fastest touch", "m/s", 2, kDown, 0.02, kPlain, drive(&D::contact_speed)},
+      {"min_clearance_m", "least clearance", "m", 3, kUp, 0.01, kPlain, drive(&D::min_clearance_m)},
+      {"stalls", "stalls", "", 0, kDown, 1.0, kPlain, of_mission(&MissionFigures::stalls)},
+      {"way_m", "driven", "m", 1, kNone, 0.0, kShown, drive(&D::way_m)},
+      {"home_m", "from the start at the end", "m", 2, kDown, 0.1, kPlain, drive(&D::home_m)},
+      {"area_per_min", "area a minute", "m2", 1, kUp, 0.5, kPlain, of_mission(&MissionFigures::area_per_min)},
+      {"victims_visible", "victims that can be seen", "", 0, kNone, 0.0, kPlain,
+       of_mission(&MissionFigures::victims_visible)},
+      {"sim_s", "time covered", "s", 1, kNone, 0.0, kShown, of_run(&RunFigures::sim_s)},
+      {"wall_s", "time taken", "s", 1, kDown, 0.0, kShown | kMachine, of_machine(&MachineFigures::wall_s)},
+      {"real_time_factor", "times real time", "", 0, kUp, 0.0, kShown | kMachine, real_time_factor},
+      {"peak_mb", "memory", "MB", 0, kDown, 0.0, kShown | kMachine, of_machine(&MachineFigures::peak_mb)},
+  };
+}
+
+std::string with_decimals(double value, int decimals) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  return text;
+}
+
+}  // namespace
+
+std::string name_of(VictimSource source) {
+  switch (source) {
+    case VictimSource::None:
+      return "none";
+    case VictimSource::List:
+      return "csv";
+    case VictimSource::Symbols:
+      return "symbols";
+  }
+  return "";
+}
+
+const std::vector<Figure>& figures() {
+  static const std::vector<Figure> table = make_table();
+  return table;
+}
+
+const Figure* find_figure(const std::string& key) {
+  const auto& table = figures();
+  const auto row = std::find_if(table.begin(), table.end(), [&](const Figure& figure) { return figure.key == key; });
+  return row == table.end() ? nullptr : &*row;
+}
+
+std::vector<const Figure*> figures_with(Traits trait) {
+  std::vector<const Figure*> chosen;
+  for (const Figure& figure : figures())
+    if (figure.is(trait)) chosen.push_back(&figure);
+  return chosen;
+}
+
+std::string heading(const Figure& figure) {
+  return figure.label + (figure.unit.empty() || figure.unit == "%" ? "" : " [" + figure.unit + "]");
+}
+
+std::string plain_text_of(const Figure& figure, const Value& value) {
+  if (const auto* yes = std::get_if<bool>(&value)) return *yes ? "yes" : "no";
+  if (const auto* count = std::get_if<std::uint64_t>(&value)) return std::to_string(*count);
+  if (const auto* number = std::get_if<double>(&value)) return with_decimals(*number, figure.decimals);
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  return "";
+}
+
+std::string text_of(const Figure& figure, const Value& value) {
+  const auto* number = std::get_if<double>(&value);
+  if (figure.unit == "%" && number != nullptr)
+    return with_decimals(100.0 * *number, std::max(0, figure.decimals - 2)) + " %";
+  const std::string text = plain_text_of(figure, value);
+  return text.empty() || figure.unit.empty() ? text : text + " " + figure.unit;
+}
+
+}  // namespace rubble::scoring

@@ -1,0 +1,142 @@
+#include "scoring/league/league_files.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "base/error.h"
+
+namespace rubble::scoring {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Best first.
+constexpr std::array<const char*, 10> kFormats = {".tif", ".tiff", ".yaml", ".yml", ".png",
+                                                  ".jpg", ".jpeg", ".bmp",  ".pgm", ".ppm"};
+
+std::size_t format_of(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return static_cast<std::size_t>(std::find(kFormats.begin(), kFormats.end(), extension) - kFormats.begin());
+}
+
+std::string first_that_exists(const std::vector<fs::path>& candidates) {
+  for (const fs::path& path : candidates)
+    if (fs::is_regular_file(path)) return path.string();
+  return "";
+}
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+bool is_image_beside(const fs::path& folder, const std::string& stem) {
+  return std::any_of(kFormats.begin(), kFormats.end(),
+                     [&](const char* format) { return fs::is_regular_file(folder / (stem + format)); });
+}
+
+/// A run, a scoring or a league has written into the folder.
+bool has_results(const fs::path& folder) {
+  return fs::exists(folder / "score.json") || fs::exists(folder / "league.csv");
+}
+
+/// The truth, or a picture that a run, a scoring or an arena file leaves.
+bool is_no_map(const fs::path& path, const fs::path& truth) {
+  const std::string stem = path.stem().string();
+  const fs::path folder = path.parent_path();
+  if (stem == "truth" || stem == "overlay") return true;
+  if ((stem == "error" || stem == "arena") && (has_results(folder) || is_image_beside(folder, "map"))) return true;
+  for (const std::string end : {"-truth", "_truth", "-visible", "-overlay", "-error"})
+    if (ends_with(stem, end) &&
+        (has_results(folder) || is_image_beside(folder, stem.substr(0, stem.size() - end.size()))))
+      return true;
+  std::error_code error;
+  if (stem == truth.stem() && fs::equivalent(folder, truth.parent_path() / ".", error)) return true;
+  if (path.filename() == truth.filename() && same_content(path.string(), truth.string())) return true;
+  return fs::exists(folder / (stem + "-truth.tif"), error);
+}
+
+struct MapsInFolder {
+  std::map<std::string, fs::path> maps;  ///< the best format of each stem
+  std::vector<fs::path> skipped;
+};
+
+MapsInFolder maps_in(const fs::path& folder, const fs::path& truth) {
+  MapsInFolder out;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const fs::path& path = entry.path();
+    if (!entry.is_regular_file() || format_of(path) == kFormats.size()) continue;
+    if (is_no_map(path, truth)) {
+      out.skipped.push_back(path);
+      continue;
+    }
+    fs::path& known = out.maps[path.stem().string()];
+    if (known.empty() || std::make_pair(format_of(path), path) < std::make_pair(format_of(known), known)) known = path;
+  }
+  return out;
+}
+
+LeagueFiles team_in(const fs::path& folder, const std::map<std::string, fs::path>& maps) {
+  LeagueFiles out;
+  out.team = folder.filename().string();
+  const auto named = maps.find("map");
+  if (named != maps.end()) {
+    out.map = named->second.string();
+  } else if (maps.size() == 1) {
+    out.map = maps.begin()->second.string();
+  } else {
+    out.error = folder.string() + ": holds " + (maps.empty() ? "no map" : "several images") + "; name one map.tif";
+  }
+  if (!out.map.empty())
+    out.pois = first_that_exists({folder / "pois.csv", fs::path(out.map).replace_extension(".csv")});
+  return out;
+}
+
+}  // namespace
+
+bool same_content(const std::string& a, const std::string& b) {
+  std::error_code error;
+  if (fs::file_size(a, error) != fs::file_size(b, error) || error) return false;
+  std::ifstream first(a, std::ios::binary);
+  std::ifstream second(b, std::ios::binary);
+  return std::equal(std::istreambuf_iterator<char>(first), {}, std::istreambuf_iterator<char>(second));
+}
+
+LeagueFolder find_league(const std::string& folder, const std::string& truth) {
+  if (!fs::is_directory(folder))
+    throw InputError(folder + ": is no folder; give the folder with the teams' maps to --league");
+  LeagueFolder out;
+  const auto skip = [&](const std::vector<fs::path>& paths) {
+    for (const fs::path& path : paths) out.skipped.push_back(path.lexically_relative(folder).string());
+  };
+  const MapsInFolder here = maps_in(folder, truth);
+  skip(here.skipped);
+  for (const auto& [stem, path] : here.maps) {
+    const fs::path beside = path.parent_path() / stem;
+    out.teams.push_back(
+        {stem, path.string(), first_that_exists({beside.string() + ".csv", beside.string() + "_pois.csv"}), ""});
+  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (!entry.is_directory() || entry.is_symlink()) continue;
+    const MapsInFolder inside = maps_in(entry.path(), truth);
+    skip(inside.skipped);
+    if (inside.maps.empty() && !inside.skipped.empty()) continue;  // results of a league, or an arena's pictures
+    out.teams.push_back(team_in(entry.path(), inside.maps));
+  }
+  if (out.teams.empty())
+    throw InputError(folder + ": holds no maps (tif, yaml, png, jpg, pgm) and no folders with maps" +
+                     (out.skipped.empty() ? "" : ", only the truth or pictures of runs, as " + out.skipped.front()));
+  std::sort(out.teams.begin(), out.teams.end(), [](const LeagueFiles& a, const LeagueFiles& b) {
+    return std::tie(a.team, a.map) < std::tie(b.team, b.map);
+  });
+  std::sort(out.skipped.begin(), out.skipped.end());
+  return out;
+}
+
+}  // namespace rubble::scoring

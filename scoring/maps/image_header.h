@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace rubble::scoring {
+
+/// What the header of an image says, before anything is unpacked.
+struct ImageHeader {
+  std::int64_t width = 0;   ///< [pixels]
+  std::int64_t height = 0;  ///< [pixels]
+};
+
+/// Width and height in the header of a PNG, JPEG, BMP or PNM file (its beginning is enough, of a JPEG all up to its
+/// frame header). Nothing for other formats, or where the header is not whole.
+std::optional<ImageHeader> image_header(std::string_view bytes);
+
+}  // namespace rubble::scoring

@@ -1,0 +1,152 @@
+#include "slam/peers/mrpt_mapper.h"
+
+#include <mrpt/maps/COccupancyGridMap2D.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
+#include <mrpt/obs/CSensoryFrame.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/angle.h"
+#include "base/planar.h"
+#include "robot/logs/foreign/mrpt_bridge.h"
+
+namespace rubble::slam {
+namespace {
+
+using mrpt::math::TPose2D;
+
+constexpr double kLateScan = 2.0;       ///< odometry is kept for scans that come so late [s]
+constexpr int kCounts = 100;            ///< a cell of MRPT's grid becomes so many counts
+constexpr double kNothingKnown = 0.01;  ///< p_occ this close to one half was never observed
+
+}  // namespace
+
+MrptMapper::MrptMapper(const robot::RobotModel& model, double resolution)
+    : model_(model), level_scan_(model.T_base_laser, {}), map_(2, 2, resolution) {}
+
+void MrptMapper::update(const robot::Inputs& inputs) {
+  for (const robot::Odometry& odometry : inputs.odometry) odometry_.add(odometry);
+  for (const robot::LaserScan& scan : inputs.scans) {
+    ++counts_.scans;
+    if (scan.ranges.empty() || scan.middle() <= newest_scan_) {
+      ++counts_.out_of_order;
+      continue;
+    }
+    newest_scan_ = scan.middle();
+    waiting_.push_back(scan);
+  }
+  const auto ready = [&](Stamp reference) {
+    return odometry_.newest() >= reference || inputs.now - reference > OdometryTrack::kMaxExtrapolation;
+  };
+  while (!waiting_.empty() && ready(waiting_.front().middle())) {
+    take(waiting_.front());
+    waiting_.pop_front();
+  }
+  if (odometry_.empty()) return;
+  const Stamp oldest = odometry_.newest() - kLateScan;
+  odometry_.forget_before(waiting_.empty() ? oldest : std::min(oldest, waiting_.front().stamp));
+}
+
+void MrptMapper::take(const robot::LaserScan& scan) {
+  const Stamp reference = scan.middle();
+  const TPose2D T_odom_base = odometry_.pose_at(reference);
+  mrpt::obs::CActionRobotMovement2D motion;
+  motion.computeFromOdometry(mrpt::poses::CPose2D(T_odom_scan_ ? T_odom_base - *T_odom_scan_ : TPose2D()), {});
+  T_odom_scan_ = T_odom_base;
+
+  const SweepMotion sweep{odometry_.between(reference, scan.stamp),
+                          odometry_.between(reference, scan.beam_stamp(scan.ranges.size() - 1))};
+  const ScanPoints points = level_scan_.points(scan, odometry_.empty() ? nullptr : &sweep);
+  const auto observation = mrpt::obs::CObservation2DRangeScan::Create();
+  robot::to_mrpt(as_instant(scan, points), model_.T_base_laser, *observation);
+  observation->sensorLabel = "LASER";
+  motion.timestamp = observation->timestamp;
+  mrpt::obs::CActionCollection action;
+  action.insert(motion);
+  mrpt::obs::CSensoryFrame frame;
+  frame.insert(observation);
+  process(action, frame);
+
+  follow_path(reference, T_odom_base);
+  if (inserted() != mapped_) take_grid();
+  mapped_ = inserted();
+  counts_.mapped = mapped_;
+  covariance_ = uncertainty();
+  const PlanarTransform to_map(trajectory_.back().pose);
+  last_hits_.clear();
+  for (const auto& p_base : points.hits) last_hits_.push_back(to_map(p_base));
+}
+
+/// The points of a sweep as beams of a scan taken all at once; of several in one beam the nearest.
+robot::LaserScan MrptMapper::as_instant(const robot::LaserScan& scan, const ScanPoints& points) const {
+  robot::LaserScan instant = scan;
+  instant.stamp = scan.middle();
+  instant.beam_period = 0.0;
+  std::fill(instant.ranges.begin(), instant.ranges.end(), std::numeric_limits<float>::quiet_NaN());
+  for (const auto& p_base : points.hits) {
+    const double dx = p_base.x - points.origin.x, dy = p_base.y - points.origin.y;
+    const double bearing = std::atan2(dy, dx) - model_.T_base_laser.yaw;
+    const double turned = std::fmod(bearing - scan.angle_min + 4.0 * kPi, 2.0 * kPi);
+    const double beam = std::round(turned / scan.angle_step);
+    if (beam >= static_cast<double>(scan.ranges.size())) continue;
+    float& range = instant.ranges[static_cast<std::size_t>(beam)];
+    const auto distance = static_cast<float>(length(dx, dy));
+    if (!(range <= distance)) range = distance;
+  }
+  return instant;
+}
+
+/// Between the builder's steps the odometry leads on. Where steps of the past have moved, everything on them moves.
+void MrptMapper::follow_path(Stamp stamp, const TPose2D& T_odom_base) {
+  const std::vector<TPose2D> now = path();
+  if (now.size() != path_.size() || path_.empty()) T_odom_step_ = T_odom_base;
+  bool moved = false;
+  for (std::size_t i = 0; i < std::min(now.size(), path_.size()); ++i)
+    moved = moved || now[i].x != path_[i].x || now[i].y != path_[i].y || now[i].phi != path_[i].phi;
+  path_ = now;
+  const auto step_pose = [&](const Anchor& anchor) {
+    return anchor.step < path_.size() ? path_[anchor.step] + anchor.T_step_base : anchor.T_step_base;
+  };
+  const Anchor here{stamp, path_.empty() ? 0 : path_.size() - 1, T_odom_base - T_odom_step_};
+  anchors_.push_back(here);
+  live_.push_back({stamp, step_pose(here)});
+  trajectory_.push_back(live_.back());
+  if (!moved) return;
+  ++revision_;
+  for (std::size_t i = 0; i < anchors_.size(); ++i) trajectory_[i].pose = step_pose(anchors_[i]);
+}
+
+void MrptMapper::take_grid() {
+  const mrpt::maps::COccupancyGridMap2D& from = grid();
+  GridFrame frame;
+  frame.width = static_cast<int>(from.getSizeX());
+  frame.height = static_cast<int>(from.getSizeY());
+  frame.resolution = map_.frame().resolution;
+  const auto on_grid = [&](float edge) {
+    return std::round(static_cast<double>(edge) / frame.resolution) * frame.resolution;
+  };
+  frame.x0 = on_grid(from.getXMin());
+  frame.y0 = on_grid(from.getYMin());
+  std::vector<std::uint16_t> seen(frame.size(), 0), occupied(frame.size(), 0);
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x) {
+      const double p_occ = 1.0 - static_cast<double>(from.getCell(x, y));
+      if (std::abs(p_occ - 0.5) < kNothingKnown) continue;
+      seen[frame.index({x, y})] = kCounts;
+      occupied[frame.index({x, y})] = static_cast<std::uint16_t>(std::lround(p_occ * kCounts));
+    }
+  map_.assign(frame, std::move(seen), std::move(occupied));
+}
+
+TPose2D MrptMapper::pose() const {
+  const TPose2D last = trajectory_.empty() ? TPose2D() : trajectory_.back().pose;
+  return T_odom_scan_ && !odometry_.empty() ? last + (odometry_.pose_at(odometry_.newest()) - *T_odom_scan_) : last;
+}
+
+std::optional<TPose2D> MrptMapper::pose_at(Stamp stamp) const { return rubble::pose_at(trajectory_, stamp); }
+
+}  // namespace rubble::slam

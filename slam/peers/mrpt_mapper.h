@@ -1,0 +1,85 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "robot/model.h"
+#include "slam/mapper.h"
+#include "slam/scan/level_scan.h"
+#include "slam/scan/odometry_track.h"
+
+namespace mrpt::obs {
+class CActionCollection;
+class CSensoryFrame;
+}  // namespace mrpt::obs
+namespace mrpt::maps {
+class COccupancyGridMap2D;
+}
+
+namespace rubble::slam {
+
+/// What MRPT's map builders share: scans and odometry become pairs of action and observation, one a scan, as MRPT's own
+/// programs make them of a log; their grid becomes our map. A scan waits for the odometry that follows it. MRPT's
+/// builders take a scan as one instant, so it is given to them as it would have looked at the middle of its sweep: a
+/// robot that turns would else bend their maps, which says nothing about their methods.
+class MrptMapper : public Mapper {
+ public:
+  void update(const robot::Inputs& inputs) override;
+  const CountMap& map() const override { return map_; }
+  mrpt::math::TPose2D pose() const override;
+  Eigen::Matrix3d covariance() const override { return covariance_; }
+  std::uint64_t revision() const override { return revision_; }
+  std::optional<mrpt::math::TPose2D> pose_at(Stamp stamp) const override;
+  const Trajectory& trajectory() const override { return trajectory_; }
+  const Trajectory& live_trajectory() const override { return live_; }
+  const std::vector<mrpt::math::TPoint2D>& last_hits() const override { return last_hits_; }
+  const MapperCounts& counts() const override { return counts_; }
+
+ protected:
+  MrptMapper(const robot::RobotModel& model, double resolution);
+
+  /// One pair of action and observation.
+  virtual void process(mrpt::obs::CActionCollection& action, mrpt::obs::CSensoryFrame& frame) = 0;
+  /// T_map_base at each step of the builder so far; steps may be fewer than scans. `odometry` is carried on from the
+  /// last one.
+  virtual std::vector<mrpt::math::TPose2D> path() const = 0;
+  virtual Eigen::Matrix3d uncertainty() const = 0;
+  virtual const mrpt::maps::COccupancyGridMap2D& grid() const = 0;
+  /// Observations in the map: when it changes, so did the map.
+  virtual std::size_t inserted() const = 0;
+
+ private:
+  void take(const robot::LaserScan& scan);
+  robot::LaserScan as_instant(const robot::LaserScan& scan, const ScanPoints& points) const;
+  void follow_path(Stamp stamp, const mrpt::math::TPose2D& T_odom_base);
+  void take_grid();
+
+  robot::RobotModel model_;
+  OdometryTrack odometry_;
+  std::deque<robot::LaserScan> waiting_;  ///< for odometry from after their reference time
+  Stamp newest_scan_ = Stamp::never();
+  std::optional<mrpt::math::TPose2D> T_odom_scan_;  ///< at the last scan
+
+  /// Where a scan lies on the builder's path.
+  struct Anchor {
+    Stamp stamp;
+    std::size_t step;
+    mrpt::math::TPose2D T_step_base;  ///< by odometry
+  };
+  std::vector<Anchor> anchors_;
+  std::vector<mrpt::math::TPose2D> path_;
+  mrpt::math::TPose2D T_odom_step_;  ///< at the last step
+  std::size_t mapped_ = 0;
+
+  LevelScan level_scan_;
+  CountMap map_;
+  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
+  std::uint64_t revision_ = 0;
+  Trajectory trajectory_;
+  Trajectory live_;
+  std::vector<mrpt::math::TPoint2D> last_hits_;
+  MapperCounts counts_;
+};
+
+}  // namespace rubble::slam

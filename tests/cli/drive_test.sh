@@ -1,0 +1,80 @@
+#!/bin/bash
+# A robot in real time: 'rubble emulate' plays its devices, 'rubble drive' maps with it as with a real one.
+source "$(dirname "$0")/lib.sh"
+
+emulator=
+trap '[[ -n $emulator ]] && kill $emulator 2>/dev/null; rm -rf "$work"' EXIT
+
+# start_emulator [options]: ports in $ports. Waits until they are open.
+start_emulator() {
+  "$rubble" emulate small.yaml --urg tcp:127.0.0.1:0 --base tcp:127.0.0.1:0 --levelling tcp:127.0.0.1:0 "$@" \
+    >emulator.txt 2>emulator_err.txt &
+  emulator=$!
+  for _ in $(seq 200); do
+    grep -q '^ready$' emulator.txt && break
+    sleep 0.1
+  done
+  grep -q '^ready$' emulator.txt || fail "the emulator is not ready: $(cat emulator.txt emulator_err.txt)"
+  ports=
+  while read -r device port; do
+    case $device in urg | base | levelling) ports+=" --$device $port" ;; esac
+  done <emulator.txt
+}
+
+stop_emulator() {
+  kill -INT $emulator
+  wait $emulator
+  emulator=
+}
+
+small_scenario small.yaml
+robot=$source/robots/pioneer_urg.yaml
+
+# Bad words and files: one line, and the documented exit codes.
+expect_exit 2 "no device is asked for" "$rubble" emulate small.yaml
+expect_exit 2 "there is no fault 'base-fire'" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --fault base-fire@3
+expect_exit 2 "NAME@SECONDS" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --fault base-silence
+expect_exit 3 "did you mean" "$rubble" drive "$robot" --set safety.lidar_silense_s=1
+expect_exit 3 "tcp:nowhere" "$rubble" drive "$robot" --urg tcp:nowhere
+expect_exit 3 "nonsense.yaml" "$rubble" drive nonsense.yaml
+
+# Nobody there: exit 4, and the device is named.
+"$rubble" drive "$robot" --urg pty:no1 --base pty:no2 --levelling pty:no3 --set safety.start_s=1 --out nobody \
+  >out.txt 2>err.txt
+[[ $? == 4 ]] || fail "a drive without devices must fail with 4: $(cat err.txt)"
+for device in urg base levelling; do grep -q "rubble: $device: has not reported yet" err.txt || fail "$device is not named"; done
+
+# The whole job in real time, with a fault of the base on the way.
+"$rubble" run small.yaml --out in_process >/dev/null || fail "the same scenario in process fails"
+start_emulator --fault base-unplug@12
+# shellcheck disable=SC2086
+"$rubble" drive "$robot" $ports --time-limit 70 --out driven --set explorer.victims.search=true >out.txt 2>err.txt
+code=$?
+stop_emulator
+[[ $code == 0 ]] || fail "the drive ended with $code: $(tail -3 err.txt)"
+grep -q "base: " err.txt || fail "the unplugged base is not named"
+grep -q "base: reports" err.txt || fail "the base did not come back"
+for file in log.rlog devices.bytes robot.yaml scenario.yaml estimate.tum map.tif map.png score.json; do
+  [[ -s driven/$file ]] || fail "driven/$file is missing"
+done
+"$rubble" score driven/map.tif in_process/truth.tif --json >driven_score.json
+python3 - driven_score.json in_process/score.json <<'PY' || fail "the driven map is not as good as the one in process"
+import json, sys
+driven, simulated = (json.load(open(name))["score"] for name in sys.argv[1:])
+print(f"driven {driven:.3f}, in process {simulated:.3f}")
+sys.exit(0 if driven >= simulated - 0.05 else 1)
+PY
+"$rubble" replay driven >replay.txt || fail "the driven run does not replay to the same bits: $(tail -3 replay.txt)"
+
+# Ctrl-C: the robot is left at rest, its folder complete.
+start_emulator
+# shellcheck disable=SC2086
+"$rubble" drive "$robot" $ports --out stopped >out.txt 2>err.txt &
+drive=$!
+sleep 5
+kill -INT $drive
+wait $drive
+[[ $? == 130 ]] || fail "Ctrl-C must end a drive with 130"
+[[ -s stopped/score.json ]] || fail "an interrupted drive leaves its folder incomplete"
+stop_emulator
+finish

@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# Names, messages and outputs in the hands of somebody hostile: one line, the documented exit code, nothing outside.
+source "$(dirname "$0")/lib.sh"
+umask 022
+
+# --- names and folders
+small_scenario s.yaml
+printf 'name: ../../evil\nscenarios: [s.yaml]\nseeds: 1-1\n' >sweep.yaml
+expect_exit 3 "is used as a folder name" "$rubble" batch sweep.yaml
+[[ ! -e ../../evil && ! -e evil ]] || fail "a sweep left its folder"
+sed 's/^name: small/name: "a\\eb"/' s.yaml >named.yaml
+expect_exit 3 "is used as a folder name" "$rubble" run named.yaml
+expect_exit 3 "is used as a folder name" "$rubble" run s.yaml --set name=-rf
+
+small_scenario short.yaml
+sed -i 's/time_limit_s: 240/time_limit_s: 5/' short.yaml
+for i in 1 2 3; do "$rubble" run short.yaml >start$i.txt 2>&1 & done
+wait
+[[ $(ls -d runs/small-seed3-* | wc -l) == 3 ]] || fail "three same starts share folders: $(ls runs)"
+for folder in runs/small-seed3-*; do [[ -s $folder/score.json ]] || fail "$folder is not whole"; done
+
+printf 'name: b\nscenarios: [short.yaml]\nseeds: 1-1\n' >b.yaml
+mkdir -p planted elsewhere
+ln -s ../elsewhere planted/runs
+expect_exit 3 "is a symbolic link" "$rubble" batch b.yaml --out planted
+[[ -z $(ls -A elsewhere) ]] || fail "batch followed a planted link"
+
+"$rubble" run --out gone >gone.txt 2>gone_err.txt &
+pid=$!
+for _ in $(seq 200); do [[ -s gone/estimate.tum ]] && break; sleep 0.05; done
+mv gone moved
+wait $pid
+[[ $? == 4 ]] || fail "a folder deleted under way is not told: $(cat gone.txt gone_err.txt)"
+
+# --- messages
+expect_exit 2 "run '': is no scenario" "$rubble" run ''
+expect_exit 2 "a yellow arena has no obstacles" "$rubble" arena generate --rough 0.5
+long=$(printf 'x%.0s' $(seq 300))
+expect_exit 3 "name too long" "$rubble" run s.yaml --out "$long"
+expect_exit 3 "" "$rubble" score "$long.tif" "$long.tif"
+[[ $(wc -l <err.txt) == 1 ]] || fail "a long name gives more than one line"
+"$rubble" run $'no\nsuch\e[2J.yaml' 2>err.txt
+[[ $? == 3 && $(wc -l <err.txt) == 1 ]] || fail "a path with a line break gives several lines: $(cat -v err.txt)"
+grep -q $'\e' err.txt && fail "a raw escape reaches the terminal"
+printf 'not a picture' >bad.png
+expect_exit 3 "not an image that can be read" "$rubble" score bad.png bad.png --resolution 0.05
+if [[ $(id -u) != 0 ]]; then
+  mkdir locked && chmod 000 locked
+  expect_exit 3 "ermission denied" "$rubble" run locked/s.yaml
+  chmod 700 locked
+fi
+"$rubble" run short.yaml --out replayed >/dev/null 2>&1
+TMPDIR=/nowhere expect_exit 3 "check the path" "$rubble" replay replayed
+
+# --- lost output
+if [[ -e /dev/full ]]; then
+  "$rubble" arena --elements >/dev/full 2>err.txt
+  [[ $? == 4 ]] || fail "a full disk behind stdout ends well"
+  grep -q "standard output: cannot be written" err.txt || fail "stdout on a full disk says: $(cat err.txt)"
+  "$rubble" --help >/dev/full 2>err.txt
+  [[ $? == 4 ]] || fail "help on a full disk ends well"
+fi
+echo "older" >out.rawlog
+(ulimit -f 1; trap '' XFSZ; "$rubble" export replayed out.rawlog >/dev/null 2>err.txt)
+[[ $(cat out.rawlog) == older ]] || fail "export destroyed an older file on a full disk"
+
+# --- sizes
+expect_exit 3 "is a device" "$rubble" map /dev/zero
+head -c 200000000 /dev/zero | gzip -1 >zeros.gz
+([[ $rubble == */asan/* || $rubble == */tsan/* ]] || ulimit -v 1500000; expect_exit 3 "unpack to more than" "$rubble" map zeros.gz; exit $((failures > 0))) || failures=1
+
+finish

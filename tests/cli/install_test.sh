@@ -1,0 +1,24 @@
+# An installed rubble: the program finds what it ships, and a project outside the tree builds with its libraries.
+. "$(dirname "$0")/lib.sh"
+unset RUBBLE_HOME
+build=$(dirname "$rubble")
+[[ -f $build/CMakeCache.txt ]] || exit 77
+for room in base robot slam explore arenas sim scoring scenarios; do
+  [[ -f $build/librubble_$room.a ]] || exit 77
+done
+[[ -f $build/rubble_mrpt_devices.so ]] || exit 77
+grep -q '^CMAKE_CXX_FLAGS:.*-fsanitize' "$build/CMakeCache.txt" && exit 77
+cmake --install "$build" --prefix "$work/prefix" >install.txt || fail "install: $(tail -n 3 install.txt)"
+grep -rl "$source" prefix/lib/cmake && fail "the installed package points into the source tree"
+
+"$work/prefix/bin/rubble" run --out run --set time_limit_s=2 >/dev/null || fail "the installed program ended with $?"
+[[ -s run/score.json ]] || fail "it left no score"
+grep -q '^name: "yellow"' run/scenario.yaml || fail "it did not find the scenario that it ships"
+
+cp -r "$source/examples/library" project
+cmake -S project -B project/build -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" >configure.txt 2>&1 ||
+  fail "configure: $(tail -n 5 configure.txt)"
+cmake --build project/build >build.txt 2>&1 || fail "build: $(grep -m 3 error build.txt)"
+./project/build/my_robot >said.txt || fail "the project's program ended with $?"
+awk '{ known = $(NF - 2) } END { exit !(known > 25 && known < 40) }' said.txt || fail "it mapped: $(cat said.txt)"
+finish

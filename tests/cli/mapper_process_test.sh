@@ -1,0 +1,124 @@
+# Mappers that are programs of the user's: they map, they fail in one line with a saved folder, they run only when the
+# user says so, and nothing of them is left behind.
+. "$(dirname "$0")/lib.sh"
+small_scenario s.yaml
+python_mapper="python3 $source/examples/python_mapper.py"
+
+# The examples map.
+"$rubble" run s.yaml --out py --mapper-command "$python_mapper" >table.txt || fail "the Python example ended with $?"
+head -n 1 table.txt | grep -q "^mapper command .*python_mapper.py" || fail "the command is not told first"
+json_holds py/score.json "j['aligned'] and j['score'] > 0.8 and j['scans_mapped'] > 20"
+[[ -e py/mapper.log ]] || fail "there is no mapper.log"
+"$rubble" run s.yaml --out py2 --mapper-command "$python_mapper" >/dev/null
+cmp py/hashes.json py2/hashes.json || fail "the Python example is not deterministic"
+"$rubble" map py/log.rlog --out mapped --mapper-command "$python_mapper" >/dev/null || fail "map with it ended with $?"
+cmp py/estimate.tum mapped/estimate.tum || fail "mapping its log gives another trajectory"
+c++ -O1 -Wall -Wextra -Werror -o cpp_mapper "$source/examples/cpp_mapper/mapper.cpp" || fail "the C++ example does not compile"
+"$rubble" run s.yaml --out cpp --mapper-command ./cpp_mapper >/dev/null || fail "the C++ example ended with $?"
+json_holds cpp/score.json "j['score'] is not None and j['area_known_m2'] > 8"
+
+# Our own mapper, asked through the protocol, gives the same bits.
+"$rubble" run s.yaml --out paper >/dev/null
+"$rubble" run s.yaml --out served --mapper-command "$rubble mapper-process paper" >/dev/null || fail "served: $?"
+for name in map.tif map.png map.pgm estimate.tum truth.tum pois.csv; do
+  cmp "paper/$name" "served/$name" || fail "$name of the served mapper differs"
+done
+
+# A command runs only when the user says so.
+cat >evil.yaml <<YAML
+name: evil
+arena: {generate: {columns: 2, rows: 2}}
+mapper: {kind: process, command: "touch $work/ran"}
+YAML
+cat >evil_sweep.yaml <<YAML
+scenarios: [s.yaml]
+seeds: 1-2
+configs: {x: {mapper.kind: process, mapper.command: "touch $work/ran"}}
+YAML
+cp -r py foreign
+sed -i "s#command: .*#command: \"touch $work/ran\"#" foreign/scenario.yaml
+not_allowed="runs only with --allow-commands"
+expect_exit 3 "$not_allowed" "$rubble" run evil.yaml --out evil
+expect_exit 3 "$not_allowed" "$rubble" run evil.yaml --out evil --set mapper.timeout_s=5
+expect_exit 3 "$not_allowed" "$rubble" batch evil_sweep.yaml --out evil
+expect_exit 3 "$not_allowed" "$rubble" replay foreign
+expect_exit 3 "$not_allowed" "$rubble" run foreign/scenario.yaml --out evil
+[[ -e ran || -e evil ]] && fail "a command of a file ran, or a folder was made for it"
+"$rubble" replay py --allow-commands >replay.txt || fail "replay with its command ended with $?: $(cat replay.txt)"
+grep -qx 'bit-identical' replay.txt || fail "replay: $(cat replay.txt)"
+"$rubble" run s.yaml --out typed --set mapper.kind=process --set "mapper.command=$python_mapper" \
+  --set time_limit_s=2 >/dev/null || fail "a command typed with --set ended with $?"
+
+# Whatever goes wrong: exit code 4, one line, the folder saved.
+number=0
+fails() {  # fails TEXT COMMAND
+  number=$((number + 1))
+  expect_exit 4 "$1" "$rubble" run s.yaml --out "f$number" --set mapper.timeout_s=3 --mapper-command "$2"
+  for name in score.json hashes.json map.png scenario.yaml mapper.log; do
+    [[ -e f$number/$name ]] || fail "f$number/$name is missing after '$2'"
+  done
+}
+answer='while read -r word rest; do case $word in end)'
+fails "ended with exit code 127" "no-such-program"
+fails "its last words: 'ValueError: no luck'" "$python_mapper & exec python3 -c 'raise ValueError(\"no luck\")'"
+fails "was ended by signal 9" "echo ready 1; n=0; $answer n=\$((n+1)); [ \$n = 500 ] && kill -9 \$\$; echo end;; esac; done"
+grep -q . f3/estimate.tum || fail "the trajectory up to the death is lost"
+fails "no whole answer within 3 s" "sleep 100"
+fails "where a line of the answer" "echo ready 1; $answer echo hello;; esac; done"
+fails "not within 1 to 8000" "echo ready 1; $answer echo map 100000 100000 0.05 0 0;; esac; done"
+
+# Whatever a mapper answers within the protocol, explorer, drawing and scoring go on.
+cat >chaos.py <<'PY'
+import random, sys
+rng = random.Random(int(sys.argv[1]))
+print("ready 1", flush=True)
+for line in sys.stdin:
+    if line.split()[0] != "end":
+        continue
+    out = []
+    if rng.random() < 0.3:
+        far = rng.choice((0.5, 3.0, 50.0, 1e8))
+        out.append("pose %r %r %r" % (rng.uniform(-far, far), rng.uniform(-far, far), rng.uniform(-100, 100)))
+    if rng.random() < 0.05:
+        w, h = rng.choice((1, 2, 7, 60, 200)), rng.choice((1, 2, 7, 60, 200))
+        out.append("map %d %d 0.05 %r %r" % (w, h, 0.05 * rng.randrange(-150, 150), 0.05 * rng.randrange(-150, 150)))
+        weights = rng.choice(((1, 1, 1), (0, 50, 1), (5, 60, 1), (1, 0, 0)))
+        out += ["".join(rng.choices("?.#", weights, k=w)) for _ in range(h)]
+    if rng.random() < 0.02:
+        out.append("trajectory 1\n%d 0 0 0" % rng.randrange(1000))
+    print("\n".join(out + ["end"]), flush=True)
+PY
+for seed in 1 2 3; do
+  "$rubble" run s.yaml --out chaos$seed --set time_limit_s=10 --mapper-command "python3 chaos.py $seed" >/dev/null ||
+    fail "a mapper of random answers, seed $seed: ended with $?"
+done
+
+# kill -9 of rubble leaves none of its processes.
+"$rubble" run s.yaml --out killed --set time_limit_s=100000 --mapper-command \
+  "sleep 1234 & echo \$! >$work/pid1; (setsid sleep 1234 & echo \$! >$work/pid2); echo \$\$ >$work/pid3; sleep 1234" \
+  >/dev/null 2>&1 &
+running=$!
+for _ in $(seq 500); do [[ -s pid3 ]] && break; sleep 0.02; done
+kill -9 "$running"
+wait "$running" 2>/dev/null
+for name in pid1 pid2 pid3; do
+  for _ in $(seq 500); do kill -0 "$(cat $name)" 2>/dev/null || break; sleep 0.02; done
+  kill -0 "$(cat $name)" 2>/dev/null && fail "$name is left behind by kill -9"
+done
+
+# MRPT's builders: a run's bits depend on its seed, not on what ran before it.
+cat >peers.yaml <<YAML
+scenarios: [s.yaml]
+seeds: [5, 3, 4]
+set: {mapper.kind: [mrpt-rbpf, mrpt-icp], time_limit_s: 30}
+YAML
+"$rubble" batch peers.yaml --out peers --workers 1 >/dev/null || fail "a batch of peers ended with $?"
+"$rubble" batch peers.yaml --out peers2 --workers 3 >/dev/null || fail "a second batch of peers ended with $?"
+for kind in mrpt-rbpf mrpt-icp; do
+  "$rubble" run s.yaml --out "alone-$kind" --set mapper.kind=$kind --set time_limit_s=30 >/dev/null || fail "$kind: $?"
+  for file in map.tif estimate.tum; do
+    cmp alone-$kind/$file peers/runs/*"$kind"*-seed3-*/$file || fail "$file of $kind depends on what ran before"
+    cmp peers/runs/*"$kind"*-seed4-*/$file peers2/runs/*"$kind"*-seed4-*/$file || fail "$file of $kind depends on workers"
+  done
+done
+finish

@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# The long suite and its table: whole suite, sanitizers, faults at 100 moments, 10 minutes of fuzzing for each parser.
+# Prints the table and puts it into docs/reliability.md between its marks.
+#   tests/nightly.sh [--only "suite sanitize threads faults fuzz"] [--fuzz-seconds 600] [--moments 100] [--keep-docs]
+set -uo pipefail
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+only="suite sanitize threads faults fuzz"
+fuzz_seconds=600
+moments=100
+keep=0
+while (($#)); do
+  case $1 in
+    --only) only=$2; shift 2 ;;
+    --fuzz-seconds) fuzz_seconds=$2; shift 2 ;;
+    --moments) moments=$2; shift 2 ;;
+    --keep-docs) keep=1; shift ;;
+    *) echo "unknown option $1; see the head of $0" >&2; exit 2 ;;
+  esac
+done
+out=$top/build/nightly
+mkdir -p "$out"
+table=$out/table.md
+failed=0
+printf '| tests | count | findings | skipped | time |\n|---|---|---|---|---|\n' >"$table"
+
+# row NAME COUNT FINDINGS SKIPPED SECONDS
+row() {
+  printf '| %s | %s | %s | %s | %d min |\n' "$1" "$2" "$3" "$4" $(($5 / 60)) | tee -a "$table"
+  [[ $3 == 0 ]] || failed=1
+}
+
+# counted NAME LOG COMMAND...: a run of ctest and its last words.
+counted() {
+  local name=$1 log=$out/$2.txt start=$SECONDS
+  shift 2
+  "$@" >"$log" 2>&1
+  local total bad skipped
+  total=$(sed -n 's/.*tests failed out of \([0-9]*\).*/\1/p' "$log" | tail -1)
+  bad=$(sed -n 's/.* \([0-9]*\) tests failed out of.*/\1/p' "$log" | tail -1)
+  skipped=$(grep -c '\*\*\*Skipped' "$log")
+  row "$name" "${total:-0 (did not run)}" "${bad:-1}" "$skipped" $((SECONDS - start))
+}
+
+has() { [[ " $only " == *" $1 "* ]]; }
+
+has suite && counted "whole suite (Release)" suite "$top/rubble" test
+has sanitize && counted "whole suite under ASan and UBSan" sanitize "$top/rubble" test --sanitize
+has threads && counted "batch, drivers and emulators under TSan" threads "$top/rubble" test --sanitize=thread
+if has faults; then
+  for script in "$top"/tests/faults/*_test.sh; do
+    name=$(basename "$script" _test.sh)
+    start=$SECONDS
+    RUBBLE_MOMENTS=$moments bash "$script" "$top/build/release/rubble" "$top" >"$out/faults-$name.txt" 2>&1
+    words=$(grep '^faults: ' "$out/faults-$name.txt" | tail -1)
+    count=${words#faults: }
+    row "faults: $name" "${count%%,*}" "${words##*findings: }" 0 $((SECONDS - start))
+  done
+fi
+if has fuzz; then
+  start=$SECONDS
+  "$top/tests/fuzz.sh" "$fuzz_seconds" >"$out/fuzz.txt" 2>&1
+  while read -r target runs found memory; do
+    [[ $target == target || -z $memory || ! $runs =~ ^[0-9]+$ ]] && continue
+    row "fuzz: $target (largest memory $memory MB)" "$runs" "$found" 0 "$fuzz_seconds"
+  done <"$out/fuzz.txt"
+  grep -q '^target' "$out/fuzz.txt" || row "fuzz" "0 (did not build)" 1 0 $((SECONDS - start))
+fi
+if ((!keep)); then
+  python3 - "$top/docs/reliability.md" "$table" <<'PY'
+import sys
+page, table = sys.argv[1:]
+text = open(page).read()
+begin, end = "<!-- table: made by tests/nightly.sh -->\n", "<!-- end of table -->\n"
+head, rest = text.split(begin)
+tail = rest.split(end)[1]
+open(page, "w").write(head + begin + open(table).read() + end + tail)
+PY
+fi
+exit $failed

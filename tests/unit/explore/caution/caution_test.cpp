@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include "explore/caution/attempts.h"
+#include "explore/caution/blacklist.h"
+#include "explore/caution/motion_watch.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPose2D;
+
+TEST(Blacklist, BarsADiscUntilItExpires) {
+  Blacklist list;
+  list.bar({1.0, 1.0}, 0.5, Stamp::from_seconds(10.0));
+  EXPECT_TRUE(list.barred({1.3, 1.3}, Stamp::from_seconds(5.0)));
+  EXPECT_FALSE(list.barred({1.5, 1.5}, Stamp::from_seconds(5.0)));
+  EXPECT_FALSE(list.barred({1.3, 1.3}, Stamp::from_seconds(10.0)));
+  EXPECT_EQ(list.times_barred({1.0, 1.2}), 1) << "it remembers what has expired";
+}
+
+TEST(Blacklist, PardonsWhatWouldExpireAndNothingElse) {
+  Blacklist list;
+  const Stamp now = Stamp::from_seconds(5.0);
+  EXPECT_FALSE(list.pardon(now));
+  list.bar({1.0, 1.0}, 0.5, Stamp::from_seconds(10.0));
+  list.bar_for_good({5.0, 5.0}, 0.5);
+  EXPECT_TRUE(list.pardon(now));
+  EXPECT_FALSE(list.barred({1.0, 1.0}, now));
+  EXPECT_TRUE(list.barred({5.0, 5.0}, now));
+  EXPECT_FALSE(list.pardon(now)) << "nothing is left to pardon";
+}
+
+TEST(MotionWatch, ARobotThatMovesAsToldIsNotStuck) {
+  MotionWatch watch;
+  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(watch.stuck({0.4 * 0.02 * i, 0.0, 0.0}, {0.4, 0.0}, false, 0.02));
+  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(watch.stuck({8.0, 0.0, 1.0 * 0.02 * i}, {0.0, 1.0}, false, 0.02));
+  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(watch.stuck({8.0, 0.0, 20.0}, {0.0, 0.0}, false, 0.02)) << "it may stand";
+}
+
+TEST(MotionWatch, SpinningWheelsAreFoundOutWithinTwoSeconds) {
+  MotionWatch watch;
+  int ticks = 0;
+  while (!watch.stuck({1.0 + 0.0002 * (ticks % 3), 0.0, 0.0}, {0.4, 0.0}, false, 0.02)) ASSERT_LT(++ticks, 100);
+  MotionWatch turning;
+  ticks = 0;
+  while (!turning.stuck({1.0, 0.0, 0.0}, {0.0, 1.0}, false, 0.02)) ASSERT_LT(++ticks, 100);
+}
+
+TEST(MotionWatch, AStallCountsWhenItLasts) {
+  MotionWatch watch;
+  const TPose2D pose;
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(watch.stuck(pose, {}, true, 0.02));
+  EXPECT_FALSE(watch.stuck(pose, {}, false, 0.02)) << "a short stall is forgotten";
+  bool stuck = false;
+  for (int i = 0; i < 20; ++i) stuck = watch.stuck(pose, {}, true, 0.02);
+  EXPECT_TRUE(stuck);
+  watch.reset();
+  EXPECT_FALSE(watch.stuck(pose, {}, true, 0.02));
+}
+
+TEST(Attempts, ATargetGetsTimeByItsCostAndIsThenOverdrawn) {
+  Attempts attempts;
+  double spent = 0.0;
+  while (!attempts.overdrawn({5.0, 5.0}, 10.0, 0.1)) ASSERT_LT(spent += 0.1, 1000.0);
+  EXPECT_GT(spent, 10.0 / 0.4) << "more than the drive takes";
+  EXPECT_FALSE(attempts.overdrawn({5.0, 5.0}, 10.0, 0.1)) << "a new account";
+}
+
+TEST(Attempts, GoingToAndFroBetweenTargetsDoesNotRenewTheirTime) {
+  Attempts attempts;
+  double spent = 0.0;
+  bool overdrawn = false;
+  for (int i = 0; !overdrawn; ++i) {
+    overdrawn =
+        attempts.overdrawn(i % 2 == 0 ? mrpt::math::TPoint2D{0.0, 0.0} : mrpt::math::TPoint2D{9.0, 0.0}, 2.0, 0.5);
+    ASSERT_LT(spent += 0.5, 200.0);
+  }
+}
+
+}  // namespace
+}  // namespace rubble::explore

@@ -1,0 +1,109 @@
+#include "explore/caution/escape.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/angle.h"
+#include "base/planar.h"
+#include "explore/caution/tilt_watch.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+constexpr double kTick = 0.02;
+
+/// A point robot that does what it is told where `may` lets it.
+struct Puppet {
+  TPose2D pose;
+  std::function<bool(const TPose2D&)> may = [](const TPose2D&) { return true; };
+  void obey(const robot::Drive& drive) {
+    const TPose2D next = pose + TPose2D{drive.v * kTick, 0.0, drive.w * kTick};
+    if (may(next)) pose = next;
+  }
+};
+
+struct Outcome {
+  Escape::Result result = Escape::Result::UnderWay;
+  double seconds = 0.0;
+};
+
+Outcome run(Puppet& puppet, Escape::Met met, const std::vector<TPoint2D>& trail, const Escape::RoomFn& room) {
+  Escape escape(deg_to_rad(60.0));
+  Stamp now = Stamp::from_seconds(1.0);
+  escape.begin(met, puppet.pose, now);
+  Outcome outcome;
+  while (outcome.result == Escape::Result::UnderWay && outcome.seconds < 300.0) {
+    outcome.result = escape.step(puppet.pose, escape.drive(), false, kTick, now, trail, room);
+    puppet.obey(escape.drive());
+    now = now + kTick;
+    outcome.seconds += kTick;
+  }
+  return outcome;
+}
+
+const Escape::RoomFn kRoom = [](const TPose2D&) { return true; };
+
+TEST(Escape, GoesBackHalfAMetreTheWayItCame) {
+  Puppet puppet;
+  const Outcome outcome = run(puppet, Escape::Met::Forwards, {}, kRoom);
+  EXPECT_EQ(outcome.result, Escape::Result::Free);
+  EXPECT_NEAR(puppet.pose.x, -0.5, 0.02);
+  EXPECT_NEAR(puppet.pose.y, 0.0, 0.02);
+}
+
+TEST(Escape, FollowsATrailThatBends) {
+  std::vector<TPoint2D> trail;
+  for (double a = 60.0; a > 0.0; a -= 5.0) trail.push_back({-std::sin(deg_to_rad(a)), 1.0 - std::cos(deg_to_rad(a))});
+  Puppet puppet;
+  run(puppet, Escape::Met::Forwards, trail, kRoom);
+  EXPECT_GT(puppet.pose.y, 0.04);
+}
+
+TEST(Escape, TriesOtherWaysWhereTheWayBackIsHeldToo) {
+  Puppet puppet;
+  puppet.may = [](const TPose2D& pose) { return pose.x > -0.1; };  // a half plane behind it
+  EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, kRoom).result, Escape::Result::Free);
+  EXPECT_GT(puppet.pose.x, -0.11);
+}
+
+TEST(Escape, DoesNotBackIntoAWallItKnows) {
+  Puppet puppet;
+  const Escape::RoomFn room = [](const TPose2D& pose) { return pose.x > -0.3; };
+  double least = 0.0;
+  puppet.may = [&](const TPose2D& pose) {
+    least = std::min(least, pose.x);
+    return true;
+  };
+  run(puppet, Escape::Met::Forwards, {}, room);
+  EXPECT_GT(least, -0.3);
+}
+
+TEST(Escape, SaysSoWhenNothingHelps) {
+  Puppet puppet;
+  puppet.may = [](const TPose2D&) { return false; };
+  const Outcome outcome = run(puppet, Escape::Met::Forwards, {}, kRoom);
+  EXPECT_EQ(outcome.result, Escape::Result::Failed);
+  EXPECT_LT(outcome.seconds, 90.0);
+}
+
+TEST(TiltWatch, TakesTheServosAnglesForTheBodysTiltAndAsksForPatience) {
+  TiltWatchConfig config;
+  TiltWatch tilt(config);
+  robot::Inputs inputs;
+  inputs.aims.push_back({Stamp{}, deg_to_rad(-25.0), 0.0});  // the laser looks down to stay level: nose up
+  tilt.update(inputs, kTick);
+  EXPECT_FALSE(tilt.too_steep());
+  for (int i = 0; i < 100; ++i) tilt.update(inputs, kTick);
+  EXPECT_NEAR(tilt.pitch(), deg_to_rad(25.0), 0.01);
+  EXPECT_TRUE(tilt.too_steep());
+  inputs.aims.back().pitch = deg_to_rad(-10.0);  // a ramp of the arena
+  for (int i = 0; i < 100; ++i) tilt.update(inputs, kTick);
+  EXPECT_FALSE(tilt.too_steep());
+}
+
+}  // namespace
+}  // namespace rubble::explore

@@ -1,0 +1,89 @@
+#include "explore/caution/felt_obstacles.h"
+
+#include <gtest/gtest.h>
+
+#include "base/angle.h"
+#include "base/planar.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+const robot::RobotModel kModel;
+
+Stamp at(double seconds) { return Stamp::from_seconds(seconds); }
+
+double nearest(const std::vector<TPoint2D>& points, const TPoint2D& p) {
+  double least = 1e9;
+  for (const TPoint2D& q : points) least = std::min(least, distance(p, q));
+  return least;
+}
+
+TEST(FeltObstacles, StandBeforeTheBodyThatFeltThem) {
+  FeltObstacles felt;
+  felt.feel({at(1.0), TPose2D{2.0, 3.0, deg_to_rad(90.0)}}, false, kModel);
+  const std::vector<TPoint2D> points = felt.points(at(2.0));
+  ASSERT_FALSE(points.empty());
+  for (const TPoint2D& p : points) {
+    EXPECT_GT(p.y, 3.0 + 0.5 * kModel.length);
+    EXPECT_LT(p.y, 3.0 + 0.5 * kModel.length + 0.2);
+    EXPECT_LT(std::abs(p.x - 2.0), 0.5 * kModel.width);
+  }
+}
+
+TEST(FeltObstacles, StandBehindTheBodyThatDroveBackwards) {
+  FeltObstacles felt;
+  felt.feel({at(1.0), TPose2D{2.0, 3.0, 0.0}}, true, kModel);
+  for (const TPoint2D& p : felt.points(at(2.0))) EXPECT_LT(p.x, 2.0 - 0.5 * kModel.length);
+}
+
+TEST(FeltObstacles, AreForgottenLaterTheMoreOftenTheyWereFeltAndInTheEndNever) {
+  FeltConfig config;
+  FeltObstacles felt(config);
+  double now = 0.0;
+  double last_memory = 0.0;
+  for (int times = 1; times < config.certain; ++times) {
+    felt.feel({at(now), TPose2D{}}, false, kModel);
+    double memory = 0.0;
+    while (felt.count(at(now + memory)) > 0) memory += 1.0;
+    EXPECT_GT(memory, last_memory);
+    last_memory = memory;
+    now += memory + 1.0;
+  }
+  felt.feel({at(now), TPose2D{}}, false, kModel);
+  EXPECT_EQ(felt.count(at(now + 1e6)), 1);
+}
+
+TEST(FeltObstacles, WhatIsFeltElsewhereIsAnotherThing) {
+  FeltConfig config;
+  FeltObstacles felt(config);
+  for (int i = 0; i < 5; ++i) felt.feel({at(0.0), TPose2D{2.0 * i, 0.0, 0.0}}, false, kModel);
+  EXPECT_EQ(felt.count(at(0.5 * config.memory)), 5);
+  EXPECT_EQ(felt.count(at(1.5 * config.memory)), 0);
+}
+
+TEST(FeltObstacles, PardonSparesWhatIsCertain) {
+  FeltConfig config;
+  FeltObstacles felt(config);
+  felt.feel({at(0.0), TPose2D{5.0, 0.0, 0.0}}, false, kModel);
+  for (int i = 0; i < config.certain; ++i) felt.feel({at(0.0), TPose2D{}}, false, kModel);
+  EXPECT_TRUE(felt.pardon(at(1.0)));
+  const std::vector<TPoint2D> left = felt.points(at(2.0));
+  EXPECT_LT(nearest(left, {0.5 * kModel.length + 0.1, 0.0}), 1e-6);
+  EXPECT_GT(nearest(left, {5.0 + 0.5 * kModel.length + 0.1, 0.0}), 1.0);
+  EXPECT_FALSE(felt.pardon(at(3.0)));
+}
+
+TEST(FeltObstacles, AreGoneWhereTheRobotStoodInGoodOrder) {
+  FeltObstacles felt;
+  felt.feel({at(0.0), TPose2D{}}, false, kModel);
+  felt.passed(TPose2D{-0.3, 0.0, 0.0}, kModel);
+  EXPECT_EQ(felt.count(at(1.0)), 1);
+  felt.passed(TPose2D{0.5 * kModel.length + 0.1, 0.0, 1.0}, kModel);
+  EXPECT_EQ(felt.count(at(1.0)), 0);
+}
+
+}  // namespace
+}  // namespace rubble::explore

@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "explore/paper/paper_explorer.h"
+#include "slam/paper/paper_mapper.h"
+#include "tests/support/explore_world.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using test::Maze;
+using test::MazeRobot;
+
+/// Maps without any error, so that the laws below are about exploration alone.
+slam::PaperConfig exact_mapper() {
+  slam::PaperConfig config;
+  config.map_cells = 400;
+  config.particles = 1;
+  config.rotation_error = 0.0;
+  config.heading_error_per_m = 0.0;
+  config.distance_error = 0.0;
+  config.icp = false;
+  return config;
+}
+
+struct Outcome {
+  bool finished = false;
+  std::string reason;
+  double seconds = 0.0;
+  double way = 0.0;              ///< [m]
+  double least_clearance = 1e9;  ///< [m]
+  int touches = 0;               ///< ticks in which a wall reached into the body
+  int pallets_seen = 0;
+  TPose2D end;  ///< arena frame
+};
+
+int pallets_seen(const slam::CountMap& map, const Maze& maze) {
+  int count = 0;
+  for (int row = 0; row < maze.rows; ++row)
+    for (int column = 0; column < maze.columns; ++column) {
+      const Cell c = map.frame().cell(maze.start.inverseComposePoint(maze.centre(column, row)));
+      if (map.frame().inside(c) && map.seen(c) > 0) ++count;
+    }
+  return count;
+}
+
+Outcome explore_maze(const Maze& maze, const PaperExplorerConfig& config, const slam::PaperConfig& mapping,
+                     double time_limit = 900.0) {
+  const robot::RobotModel model;
+  MazeRobot robot(maze, model);
+  slam::PaperMapper mapper(model, mapping, 1);
+  PaperExplorer explorer(model, config);
+  robot::Commands commands;
+  Outcome run;
+  while (robot.now().seconds() < time_limit && !explorer.finished()) {
+    const TPose2D before = robot.pose();
+    const robot::Inputs inputs = robot.step(commands);
+    mapper.update(inputs);
+    commands = explorer.next(mapper, inputs);
+    run.way += std::hypot(robot.pose().x - before.x, robot.pose().y - before.y);
+    run.least_clearance = std::min(run.least_clearance, robot.clearance());
+    run.touches += robot.touches() ? 1 : 0;
+  }
+  run.finished = explorer.finished();
+  run.reason = explorer.reason();
+  run.seconds = robot.now().seconds();
+  run.pallets_seen = pallets_seen(mapper.map(), maze);
+  run.end = robot.pose();
+  return run;
+}
+
+class RandomMaze : public testing::TestWithParam<int> {};
+
+TEST_P(RandomMaze, IsSeenWholeWithoutATouchAndTheExplorerFinishesByItself) {
+  const std::uint64_t seed = static_cast<std::uint64_t>(GetParam());
+  const int columns = 4 + GetParam() % 5;
+  const int rows = 4 + (GetParam() / 2) % 5;
+  SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << columns << " x " << rows);
+  const Maze maze = test::random_maze(columns, rows, 0.2, seed);
+  const Outcome run = explore_maze(maze, {}, exact_mapper());
+  RecordProperty("seconds", std::to_string(run.seconds));
+  std::cout << "  " << columns << "x" << rows << " " << run.seconds << " s, " << run.way << " m, clearance "
+            << run.least_clearance << ", touches " << run.touches << ", " << run.reason << "\n";
+  EXPECT_TRUE(run.finished);
+  EXPECT_FALSE(run.reason.empty());
+  EXPECT_EQ(run.pallets_seen, columns * rows);
+  EXPECT_GE(run.least_clearance, 0.5 * robot::RobotModel().width);
+  EXPECT_EQ(run.touches, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomMaze, testing::Range(1, 11));
+
+}  // namespace
+}  // namespace rubble::explore

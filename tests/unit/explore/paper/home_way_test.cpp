@@ -1,0 +1,46 @@
+#include "explore/paper/home_way.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rubble::explore {
+namespace {
+
+Stamp at(double seconds) { return Stamp::from_seconds(seconds); }
+
+/// The time left when a robot `way_home` away is first told to turn back.
+double turns_back_with(HomeWay& home, double way_home, double limit) {
+  for (double t = 0.0; t < limit; t += 1.0)
+    if (home.must_turn_back(way_home, at(t))) return limit - t;
+  return 0.0;
+}
+
+TEST(HomeWay, LeavesTimeForTheWayAndMoreForALongerOne) {
+  HomeWay home(1000.0);
+  home.due(at(0.0));
+  const double near = turns_back_with(home, 2.0, 1000.0);
+  const double far = turns_back_with(home, 40.0, 1000.0);
+  EXPECT_GT(far, near);
+  EXPECT_GT(far, 40.0 / 0.4);
+}
+
+TEST(HomeWay, ASlowRobotTurnsBackEarlier) {
+  HomeWay fast(1000.0), slow(1000.0);
+  fast.due(at(0.0));
+  slow.due(at(0.0));
+  fast.moved(120.0, 400.0, true);
+  slow.moved(40.0, 400.0, true);
+  slow.moved(100.0, 1.0, false);  // not on its way: does not count
+  EXPECT_GT(turns_back_with(slow, 20.0, 1000.0), turns_back_with(fast, 20.0, 1000.0));
+}
+
+TEST(HomeWay, WithoutATimeLimitItNeverPresses) {
+  HomeWay home(0.0);
+  EXPECT_FALSE(home.due(at(1.0)));
+  EXPECT_FALSE(home.must_turn_back(1e6, at(1e6)));
+  EXPECT_TRUE(std::isinf(home.left(at(5.0))));
+}
+
+}  // namespace
+}  // namespace rubble::explore

@@ -1,0 +1,144 @@
+#include "explore/plan/traversable.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/angle.h"
+#include "base/rng.h"
+#include "tests/support/explore_grids.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using slam::CountMap;
+using slam::ScanPoints;
+
+/// Stamps a scan whose rays fan out from `origin` to the given hits.
+void stamp(CountMap& map, const TPoint2D& origin, const std::vector<TPoint2D>& hits) {
+  ScanPoints scan;
+  scan.origin = origin;
+  scan.hits = hits;
+  map.stamp({}, scan);
+}
+
+std::vector<TPoint2D> circle(const TPoint2D& centre, double radius) {
+  std::vector<TPoint2D> hits;
+  for (int i = 0; i < 720; ++i) {
+    const double a = deg_to_rad(0.5 * i);
+    hits.emplace_back(centre.x + radius * std::cos(a), centre.y + radius * std::sin(a));
+  }
+  return hits;
+}
+
+TEST(Traversable, ShowsWhatTheMapSaysAndOnlyTheKnownPartOfIt) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Rng rng(seed, "scans");
+    CountMap map(160, 120, 0.05);
+    for (int i = 0; i < 6; ++i) {
+      const double x = rng.uniform(-2.0, 2.0);
+      const double y = rng.uniform(-1.0, 1.0);
+      const double radius = rng.uniform(0.3, 1.2);
+      stamp(map, {x, y}, circle({x, y}, radius));
+    }
+    const Traversable floor = traversable(map, 0.5);
+    const OccupancyGrid whole = map.classify(0.5);
+    int known = 0;
+    for (int y = 0; y < whole.height(); ++y)
+      for (int x = 0; x < whole.width(); ++x) {
+        if (whole[{x, y}] == Occupancy::Unknown) continue;
+        ++known;
+        const Cell c = floor.cells.cell(whole.centre({x, y}));
+        ASSERT_TRUE(floor.cells.inside(c));
+        ASSERT_EQ(floor.cells[c], (whole[{x, y}]));
+      }
+    bool touches[4] = {false, false, false, false};
+    for (int y = 0; y < floor.cells.height(); ++y)
+      for (int x = 0; x < floor.cells.width(); ++x) {
+        if (floor.cells[{x, y}] == Occupancy::Unknown) continue;
+        --known;
+        touches[0] |= x == 1;
+        touches[1] |= y == 1;
+        touches[2] |= x == floor.cells.width() - 2;
+        touches[3] |= y == floor.cells.height() - 2;
+      }
+    EXPECT_EQ(known, 0);
+    EXPECT_TRUE(touches[0] && touches[1] && touches[2] && touches[3]) << "one rim of unknown cells, not more";
+  }
+}
+
+TEST(Traversable, OfAnUnseenMapIsEmpty) {
+  const Traversable floor = traversable(CountMap(100, 100, 0.05), 0.5);
+  EXPECT_EQ(floor.cells.width(), 0);
+  EXPECT_EQ(floor.cells.height(), 0);
+}
+
+TEST(Traversable, ALoneWeakCellIsNoObstacleAndAStrongOneIs) {
+  CountMap map(160, 160, 0.05);
+  const TPoint2D speck{1.02, 0.02};
+  stamp(map, {0.02, 0.02}, {speck});
+  stamp(map, {0.02, 0.02}, {speck});
+  Traversable floor = traversable(map, 0.5);
+  EXPECT_EQ(floor.cells[floor.cells.cell(speck)], Occupancy::Occupied);
+  EXPECT_EQ(floor.obstacle[floor.cells.cell(speck)], 0);
+  stamp(map, {0.02, 0.02}, {speck});
+  floor = traversable(map, 0.5);
+  EXPECT_EQ(floor.obstacle[floor.cells.cell(speck)], 1);
+}
+
+TEST(Traversable, WeakCellsInARowAreAWall) {
+  CountMap map(160, 160, 0.05);
+  std::vector<TPoint2D> wall;
+  for (int i = 0; i < 5; ++i) wall.emplace_back(1.02, 0.02 + 0.15 * i);  // seen at a grazing angle: every third cell
+  stamp(map, {0.02, 0.02}, wall);
+  const Traversable floor = traversable(map, 0.5);
+  for (const TPoint2D& p : wall) EXPECT_EQ(floor.obstacle[floor.cells.cell(p)], 1);
+}
+
+TEST(Traversable, TheRobotStandsOnFreeFloorWhateverTheMapSays) {
+  OccupancyGrid grid = test::random_grid(60, 60, 3);
+  for (Occupancy& o : grid.cells()) o = Occupancy::Occupied;
+  Traversable floor = traversable(grid);
+  const mrpt::math::TPose2D pose{1.5, 1.4, deg_to_rad(30.0)};
+  free_body(floor, pose, 0.5, 0.3, 0.0);
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 60; ++x) {
+      const TPoint2D p = pose.inverseComposePoint(floor.cells.centre({x, y}));
+      const bool below = std::abs(p.x) <= 0.25 && std::abs(p.y) <= 0.15;
+      ASSERT_EQ((floor.obstacle[{x, y}] == 0), below);
+      ASSERT_EQ((floor.cells[{x, y}] == Occupancy::Free), below);
+      ASSERT_EQ((floor.body[{x, y}]), 0) << "known cells are no secret of the body's";
+    }
+}
+
+TEST(Traversable, TheTrailFreesOnlyWhatWasNeverSeen) {
+  OccupancyGrid grid = test::drawn({"          ",  //
+                                    " ...##    ",  //
+                                    " ...##    ",  //
+                                    "          "},
+                                   0.1);
+  Traversable floor = traversable(grid);
+  free_trail(floor, {{0.55, 0.2}}, 0.25);
+  EXPECT_EQ((floor.cells[{4, 1}]), Occupancy::Occupied);
+  EXPECT_EQ((floor.cells[{6, 1}]), Occupancy::Free);
+  EXPECT_EQ((floor.body[{6, 1}]), 1);
+  EXPECT_EQ((floor.cells[{9, 1}]), Occupancy::Unknown);
+}
+
+TEST(Traversable, FreshHitsNearAnObstacleAreThatObstacle) {
+  std::vector<std::string> rows(20, " " + std::string(30, '.') + " ");
+  rows.front() = rows.back() = std::string(32, ' ');
+  rows[10] = " " + std::string(10, '#') + std::string(20, '.') + " ";
+  Traversable floor = traversable(test::drawn(rows));
+  const double wall_y = floor.cells.centre({1, 9}).y;
+  const TPoint2D displaced{0.3, wall_y + 0.1};
+  const TPoint2D fresh{1.2, wall_y};
+  add_obstacles(floor, {displaced, fresh, {50.0, 50.0}}, 0.15);
+  EXPECT_EQ(floor.obstacle[floor.cells.cell(displaced)], 0);
+  EXPECT_EQ(floor.obstacle[floor.cells.cell(fresh)], 1);
+}
+
+}  // namespace
+}  // namespace rubble::explore

@@ -1,0 +1,137 @@
+#include "explore/search/searched_area.h"
+
+#include <gtest/gtest.h>
+
+#include "base/angle.h"
+#include "explore/search/victim_search.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+/// A free room of 3 x 3 m about the origin with a wall along its north side, at y = 1.5 m.
+Traversable room() {
+  GridFrame frame;
+  frame.width = frame.height = 64;
+  frame.resolution = 0.05;
+  frame.x0 = frame.y0 = -1.6;
+  OccupancyGrid grid(frame, Occupancy::Unknown);
+  for (int y = 2; y < 62; ++y)
+    for (int x = 2; x < 62; ++x) grid[{x, y}] = y == 61 ? Occupancy::Occupied : Occupancy::Free;
+  Traversable floor = traversable(std::move(grid));
+  measure_clearance(floor, 1.2);
+  return floor;
+}
+
+Cell at_wall(const Traversable& floor, double x) {
+  Cell c = floor.cells.cell({x, 1.4});
+  while (floor.cells[{c.x, c.y + 1}] == Occupancy::Free) ++c.y;
+  return c;
+}
+
+void look_twice(SearchedArea& area, const Traversable& floor, const TPose2D& T_map_base) {
+  area.look(floor, T_map_base);
+  area.look(floor, T_map_base);
+}
+
+TEST(SearchedArea, AWallIsInspectedFromTheFront) {
+  const Traversable floor = room();
+  SearchedArea area{SearchConfig{}};
+  const Cell c = at_wall(floor, 0.0);
+  EXPECT_EQ(area.missing(floor, c), kFloor | kNorthFace);
+  look_twice(area, floor, {0.0, 0.5, deg_to_rad(90.0)});
+  EXPECT_EQ(area.missing(floor, c), 0);
+}
+
+TEST(SearchedArea, AWallSeenAtAGrazingAngleIsNotInspected) {
+  const Traversable floor = room();
+  SearchedArea area{SearchConfig{}};
+  look_twice(area, floor, {-1.2, 1.2, deg_to_rad(10.0)});
+  EXPECT_EQ(area.missing(floor, at_wall(floor, 0.0)), kNorthFace);
+}
+
+TEST(SearchedArea, OneLookIsNotEnough) {
+  const Traversable floor = room();
+  SearchedArea area{SearchConfig{}};
+  area.look(floor, {0.0, 0.5, deg_to_rad(90.0)});
+  EXPECT_NE(area.missing(floor, at_wall(floor, 0.0)), 0);
+}
+
+TEST(SearchedArea, EveryViewpointSeesTheFaceItIsFor) {
+  const Traversable floor = room();
+  const SearchConfig config;
+  SearchedArea area{config};
+  const std::vector<Viewpoint> views = viewpoints(floor, area, config, 0.4);
+  ASSERT_FALSE(views.empty());
+  for (const Viewpoint& view : views) {
+    SearchedArea fresh{config};
+    const TPoint2D from = floor.cells.centre(view.cell);
+    look_twice(fresh, floor, {from.x, from.y, std::atan2(view.subject.y - from.y, view.subject.x - from.x)});
+    EXPECT_EQ(fresh.missing(floor, floor.cells.cell(view.subject)) & view.faces, 0)
+        << "from " << from.x << " " << from.y << " to " << view.subject.x << " " << view.subject.y;
+  }
+}
+
+TEST(SearchedArea, TheRecordGrowsWithTheMap) {
+  const Traversable floor = room();
+  SearchedArea area{SearchConfig{}};
+  look_twice(area, floor, {0.0, 0.5, deg_to_rad(90.0)});
+  GridFrame wide = floor.frame();
+  wide.x0 -= 200 * wide.resolution;
+  wide.width += 400;
+  OccupancyGrid grid(wide, Occupancy::Unknown);
+  for (int y = 0; y < floor.cells.height(); ++y)
+    for (int x = 0; x < floor.cells.width(); ++x) grid[{x + 200, y}] = floor.cells[{x, y}];
+  const Traversable wider = traversable(std::move(grid));
+  area.look(wider, {0.0, -1.0, deg_to_rad(-90.0)});
+  const Cell c = at_wall(floor, 0.0);
+  EXPECT_EQ(area.missing(wider, {c.x + 200, c.y}), 0);
+}
+
+TEST(SearchedArea, WhatIsGivenUpIsGivenUpForTheseFacesOnly) {
+  const Traversable floor = room();
+  SearchedArea area{SearchConfig{}};
+  const Cell c = at_wall(floor, 0.0);
+  area.give_up(floor, floor.cells.centre(c), 0.1, kFloor);
+  EXPECT_EQ(area.missing(floor, c), kNorthFace);
+}
+
+robot::VictimCue cue_of(const TPoint2D& victim, const TPose2D& pose, double seconds) {
+  const TPoint2D seen = pose.inverseComposePoint(victim);
+  return {Stamp::from_seconds(seconds), robot::CueKind::Appearance, std::atan2(seen.y, seen.x),
+          std::hypot(seen.x, seen.y), 0.9};
+}
+
+/// A wall along y = 0.
+bool same_side(const TPoint2D& a, const TPoint2D& b) { return (a.y > 0.0) == (b.y > 0.0); }
+
+TEST(VictimSearch, TwoBackToBackBehindOneWallStayTwo) {
+  VictimSearch search;
+  for (int i = 0; i < 6; ++i) {
+    const bool north = i % 2 == 0;
+    const TPose2D from{0.1 * i, north ? 1.0 : -1.0, 0.0};
+    search.add(cue_of({0.0, north ? 0.15 : -0.15}, from, i), Anchor{Stamp::from_seconds(i), from}, same_side);
+  }
+  ASSERT_EQ(search.reports().size(), 2u);
+  EXPECT_NEAR(std::abs(search.reports()[0].p_map.y - search.reports()[1].p_map.y), 0.3, 1e-6);
+}
+
+TEST(VictimSearch, OneSeenFromLeftAndRightIsOne) {
+  VictimSearch search;
+  for (int i = 0; i < 6; ++i) {
+    const TPose2D from{i % 2 == 0 ? -1.0 : 1.0, 0.4, 0.0};
+    search.add(cue_of({0.0, 0.1}, from, i), Anchor{Stamp::from_seconds(i), from}, same_side);
+  }
+  EXPECT_EQ(search.reports().size(), 1u);
+}
+
+TEST(VictimSearch, FalseAlarmsMinutesApartMakeNoVictim) {
+  VictimSearch search;
+  for (int i = 0; i < 6; ++i) search.add(cue_of({1.0, 0.0}, TPose2D{}, 100.0 * i), TPose2D{});
+  EXPECT_TRUE(search.reports().empty());
+}
+
+}  // namespace
+}  // namespace rubble::explore

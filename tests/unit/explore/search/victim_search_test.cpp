@@ -1,0 +1,146 @@
+#include "explore/search/victim_search.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/angle.h"
+#include "base/rng.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using robot::CueKind;
+using robot::VictimCue;
+
+VictimCue cue_of(const TPoint2D& victim, const TPose2D& pose, double seconds, CueKind kind = CueKind::Appearance,
+                 double confidence = 0.8) {
+  const TPoint2D seen = pose.inverseComposePoint(victim);
+  return {Stamp::from_seconds(seconds), kind, std::atan2(seen.y, seen.x), std::hypot(seen.x, seen.y), confidence};
+}
+
+const TPoint2D kVictim{2.0, 1.0};
+
+TEST(VictimSearch, ThreeConsistentCuesMakeAVictimWhereItIs) {
+  VictimSearch search;
+  const TPose2D poses[] = {{0.5, 1.0, 0.1}, {1.0, 0.5, 0.6}, {1.2, 1.4, -0.5}};
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(search.reports().empty());
+    search.add(cue_of(kVictim, poses[i], i), poses[i]);
+  }
+  ASSERT_EQ(search.reports().size(), 1u);
+  const VictimReport& report = search.reports()[0];
+  EXPECT_EQ(report.id, 1);
+  EXPECT_NEAR(report.p_map.x, kVictim.x, 1e-9);
+  EXPECT_NEAR(report.p_map.y, kVictim.y, 1e-9);
+  EXPECT_EQ(report.stamp, Stamp::from_seconds(2.0));
+  EXPECT_GT(report.confidence, 0.5);
+  EXPECT_LE(report.confidence, 1.0);
+  EXPECT_EQ(report.cues, std::vector<CueKind>{CueKind::Appearance});
+}
+
+TEST(VictimSearch, AFaintCueIsNoVictimHoweverOftenItComesAlone) {
+  VictimSearch search;
+  const TPose2D pose;
+  for (int i = 0; i < 3; ++i) search.add(cue_of(kVictim, pose, i, CueKind::Heat, 0.3), pose);
+  EXPECT_TRUE(search.reports().empty());
+}
+
+TEST(VictimSearch, ScatteredFalseAlarmsMakeNoVictim) {
+  VictimSearch search;
+  const TPose2D pose;
+  for (int i = 0; i < 12; ++i) search.add(cue_of({1.7 * i, 0.0}, pose, i), pose);
+  EXPECT_TRUE(search.reports().empty());
+}
+
+TEST(VictimSearch, OutliersDoNotMoveAVictim) {
+  VictimSearch search;
+  const TPose2D pose;
+  for (int i = 0; i < 6; ++i) search.add(cue_of(kVictim, pose, i), pose);
+  for (int i = 0; i < 3; ++i) search.add(cue_of({kVictim.x + 0.7, kVictim.y}, pose, 10 + i), pose);
+  ASSERT_EQ(search.reports().size(), 1u);
+  EXPECT_NEAR(search.reports()[0].p_map.x, kVictim.x, 0.03);
+}
+
+TEST(VictimSearch, TwoVictimsStayTwoAndKeepTheOrderOfConfirmation) {
+  VictimSearch search;
+  const TPose2D pose;
+  const TPoint2D other{2.0, 2.5};
+  search.add(cue_of(other, pose, 0), pose);
+  for (int i = 1; i < 4; ++i) search.add(cue_of(kVictim, pose, i), pose);
+  for (int i = 4; i < 6; ++i) search.add(cue_of(other, pose, i, CueKind::Heat), pose);
+  ASSERT_EQ(search.reports().size(), 2u);
+  EXPECT_EQ(search.reports()[0].id, 1);
+  EXPECT_NEAR(search.reports()[0].p_map.y, kVictim.y, 1e-9);
+  EXPECT_EQ(search.reports()[1].id, 2);
+  EXPECT_EQ(search.reports()[1].cues, (std::vector<CueKind>{CueKind::Appearance, CueKind::Heat}));
+  EXPECT_EQ(search.reports()[1].stamp, Stamp::from_seconds(5.0));
+}
+
+TEST(VictimSearch, ClustersThatGrowTogetherAreOneVictim) {
+  VictimSearch search;
+  const TPose2D pose;
+  for (int i = 0; i < 3; ++i) search.add(cue_of({2.0, 0.0}, pose, i), pose);
+  for (int i = 0; i < 3; ++i) search.add(cue_of({2.0, 0.9}, pose, 3 + i), pose);
+  ASSERT_EQ(search.reports().size(), 2u);
+  for (int i = 0; i < 12; ++i) search.add(cue_of({2.0, 0.55}, pose, 10 + i), pose);
+  ASSERT_EQ(search.reports().size(), 1u);
+  EXPECT_EQ(search.reports()[0].id, 1) << "the older report stays";
+}
+
+TEST(VictimSearch, MoreKindsOfCuesRaiseTheConfidence) {
+  VictimSearch one;
+  VictimSearch two;
+  const TPose2D pose;
+  for (int i = 0; i < 6; ++i) {
+    one.add(cue_of(kVictim, pose, i), pose);
+    two.add(cue_of(kVictim, pose, i, i % 2 == 0 ? CueKind::Appearance : CueKind::Heat), pose);
+  }
+  EXPECT_GT(two.reports()[0].confidence, one.reports()[0].confidence);
+  EXPECT_LE(two.reports()[0].confidence, 1.0);
+}
+
+TEST(VictimSearch, NoisyCuesAverageOut) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Rng rng(seed, "cues");
+    VictimSearch search;
+    for (int i = 0; i < 40; ++i) {
+      const double x = rng.uniform(0.2, 1.2);
+      const double y = rng.uniform(0.2, 1.8);
+      const double phi = rng.uniform(-0.4, 0.4);
+      const double bearing_error = rng.gaussian(deg_to_rad(2.0));
+      const double range_error = rng.gaussian(0.05);
+      VictimCue cue = cue_of(kVictim, {x, y, phi}, i);
+      cue.bearing += bearing_error;
+      cue.range *= 1.0 + range_error;
+      search.add(cue, {x, y, phi});
+    }
+    ASSERT_EQ(search.reports().size(), 1u);
+    EXPECT_NEAR(std::hypot(search.reports()[0].p_map.x - kVictim.x, search.reports()[0].p_map.y - kVictim.y), 0.0,
+                0.05);
+  }
+}
+
+TEST(VictimSearch, CuesThatAreNoNumbersAreLeftOut) {
+  VictimSearch search;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (int i = 0; i < 5; ++i) {
+    search.add({Stamp{i}, CueKind::Heat, nan, 1.0, 0.9}, {});
+    search.add({Stamp{i}, CueKind::Heat, 0.0, nan, 0.9}, {});
+    search.add({Stamp{i}, CueKind::Heat, 0.0, 1.0, nan}, {});
+    search.add({Stamp{i}, CueKind::Heat, 0.0, 1.0, 0.0}, {});
+  }
+  EXPECT_TRUE(search.reports().empty());
+}
+
+TEST(GeometricMedian, OfCollinearPointsIsTheMiddleOne) {
+  const TPoint2D median = geometric_median({{0.0, 0.0}, {1.0, 0.0}, {10.0, 0.0}}, {1.0, 1.0, 1.0});
+  EXPECT_NEAR(median.x, 1.0, 0.02);
+}
+
+}  // namespace
+}  // namespace rubble::explore

@@ -1,0 +1,184 @@
+// The levelling unit's driver against its emulator, over a wire without ports or clocks.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "robot/drivers/levelling_unit.h"
+#include "robot/emulators/levelling_emulator.h"
+#include "robot/emulators/line_faults.h"
+
+namespace rubble::robot {
+namespace {
+
+constexpr double kGravity = 9.80665;
+constexpr double kStep = 0.001;  // [s]
+
+class Wire {
+ public:
+  explicit Wire(LevellingEmulatorSettings emulator = {}, LevellingUnitSettings settings = {})
+      : unit(emulator), driver(settings) {
+    unit.client_came(now);
+    driver.opened(now, true);
+  }
+
+  void run(double seconds) {
+    for (const Stamp end = now + seconds; now < end;) step();
+  }
+
+  void step() {
+    now = now + kStep;
+    driver.advance(now);
+    const std::string to_unit = driver.take_output(now);
+    if (!cut) unit.receive(to_unit, now);
+    unit.advance(now);
+    if (++steps % 20 == 0) unit.measure(felt, {now, unit.aim().pitch, unit.aim().roll}, now);
+    for (const std::string& piece : faults.pass(unit.take_output(), now))
+      if (!cut) driver.receive(piece, now);
+    for (const Acceleration& a : driver.take_accelerations()) accelerations.push_back(a);
+    for (const AimState& a : driver.take_aims()) aims.push_back(a);
+  }
+
+  Stamp now{1'700'000'000'000'000'000};
+  LevellingEmulator unit;
+  LevellingUnit driver;
+  LineFaults faults{2};
+  Acceleration felt;
+  std::vector<Acceleration> accelerations;
+  std::vector<AimState> aims;
+  bool cut = false;
+  int steps = 0;
+};
+
+TEST(LevellingWire, TiltsArriveWithinATick) {
+  Wire wire;
+  const double pitch = deg_to_rad(10.0), roll = deg_to_rad(-5.0);
+  wire.felt = {{}, kGravity * std::sin(pitch), kGravity * std::sin(roll) * std::cos(pitch)};
+  wire.run(2.0);
+  ASSERT_TRUE(wire.driver.ready()) << wire.driver.state();
+  // A tick of 20,000 (two periods) is 0.4 mg.
+  EXPECT_NEAR(wire.accelerations.back().x, wire.felt.x, kGravity * 0.0004);
+  EXPECT_NEAR(wire.accelerations.back().y, wire.felt.y, kGravity * 0.0004);
+  EXPECT_NEAR(static_cast<double>(wire.accelerations.size()), 100.0, 6.0);
+}
+
+TEST(LevellingWire, APartsOwnZeroAndSensitivityAreTakenOut) {
+  LevellingEmulatorSettings part;
+  part.zero_x = 0.57;
+  part.zero_y = 0.44;
+  part.sensitivity = 0.131;
+  LevellingUnitSettings calibrated;
+  calibrated.x = {0.57, 0.131};
+  calibrated.y = {0.44, 0.131};
+  Wire wire(part, calibrated);
+  wire.felt = {{}, 1.0, -2.0};
+  wire.run(1.0);
+  EXPECT_NEAR(wire.accelerations.back().x, 1.0, 0.005);
+  EXPECT_NEAR(wire.accelerations.back().y, -2.0, 0.005);
+}
+
+TEST(LevellingWire, ServosTakeTheAnglesAndTellThem) {
+  Wire wire;
+  wire.run(1.0);
+  wire.driver.aim({deg_to_rad(9.0), deg_to_rad(-4.5)});
+  wire.run(0.2);
+  EXPECT_TRUE(wire.unit.servos_on());
+  EXPECT_NEAR(wire.unit.aim().pitch, deg_to_rad(9.0), deg_to_rad(0.05));
+  EXPECT_NEAR(wire.aims.back().roll, deg_to_rad(-4.5), deg_to_rad(0.05));
+  wire.driver.aim({deg_to_rad(80.0), 0.0});
+  wire.run(0.2);
+  EXPECT_NEAR(wire.unit.aim().pitch, deg_to_rad(54.0), deg_to_rad(0.1));  // 2100 us
+}
+
+TEST(LevellingWire, WithoutACommandTheServosHold) {
+  Wire wire;
+  wire.run(1.0);
+  wire.driver.aim({deg_to_rad(9.0), 0.0});
+  wire.run(1.0);
+  EXPECT_NEAR(wire.unit.aim().pitch, deg_to_rad(9.0), deg_to_rad(0.05));
+  wire.cut = true;
+  wire.run(1.0);
+  wire.unit.receive(levelling_line("S,1500,1500"), wire.now);
+  wire.unit.take_output();
+  wire.run(0.01);
+  EXPECT_NEAR(wire.unit.aim().pitch, 0.0, deg_to_rad(0.05)) << "the first command after the watchdog is obeyed";
+}
+
+TEST(LevellingWire, TheWatchdogsFlagIsRaised) {
+  LevellingEmulator unit({});
+  Stamp now{0};
+  unit.client_came(now);
+  unit.receive(levelling_line("E,1") + levelling_line("W,500"), now);
+  unit.take_output();
+  LevellingLines lines;
+  int flags = 0;
+  for (int i = 0; i < 40; ++i) {
+    now = now + 0.02;
+    unit.advance(now);
+    unit.measure({}, {}, now);
+    lines.feed(unit.take_output());
+    while (const auto fields = lines.next())
+      if (const auto report = parse_report(*fields)) flags = report->flags;
+    const bool tripped = (flags & LevellingReport::kWatchdog) != 0;
+    if (now.seconds() < 0.49) {
+      EXPECT_FALSE(tripped) << now.seconds();
+    }
+    if (now.seconds() > 0.53) {
+      EXPECT_TRUE(tripped) << now.seconds();
+    }
+  }
+}
+
+TEST(LevellingWire, AResetUnitIsSetUpAgain) {
+  Wire wire;
+  wire.run(1.0);
+  wire.unit.fail("reset", wire.now);
+  EXPECT_FALSE(wire.unit.servos_on());
+  wire.run(0.2);
+  EXPECT_TRUE(wire.unit.servos_on());
+  EXPECT_TRUE(wire.driver.ready());
+}
+
+TEST(LevellingWire, ADeadSensorIsSilentButTold) {
+  Wire wire;
+  wire.run(1.0);
+  wire.unit.fail("sensor", wire.now);
+  wire.run(0.1);
+  const std::size_t before = wire.accelerations.size();
+  wire.run(0.5);
+  EXPECT_EQ(wire.accelerations.size(), before);
+  EXPECT_TRUE(wire.driver.sensor_fault());
+  wire.run(1.0);
+  EXPECT_GT(wire.accelerations.size(), before);
+}
+
+TEST(LevellingWire, DamagedLinesAreNeverMeasurements) {
+  for (const char* name : {"lost", "split", "doubled", "junk", "sums"}) {
+    Wire wire;
+    wire.felt = {{}, 1.0, -1.0};
+    wire.run(1.0);
+    wire.faults.spoil(*byte_fault(name), wire.now + 1.0);
+    wire.run(2.0);
+    ASSERT_TRUE(wire.driver.ready()) << name;
+    for (const Acceleration& a : wire.accelerations) EXPECT_NEAR(a.x, 1.0, 0.01) << name;
+    for (std::size_t i = 1; i < wire.accelerations.size(); ++i)
+      ASSERT_GT(wire.accelerations[i].stamp, wire.accelerations[i - 1].stamp) << name;
+  }
+}
+
+TEST(LevellingEmulator, AnswersWhatItDoesNotKnow) {
+  LevellingEmulator unit({});
+  unit.client_came({0});
+  unit.take_output();
+  unit.receive(
+      "$Q,1*"
+      "2C\r\n",
+      {0});
+  EXPECT_EQ(unit.take_output(), "$N,BADSUM*6E\r\n");
+  unit.receive(levelling_line("Q,1"), {0});
+  EXPECT_EQ(unit.take_output(), levelling_line("N,UNKNOWN"));
+  unit.receive(levelling_line("S,5000,1500"), {0});
+  EXPECT_EQ(unit.take_output(), levelling_line("N,RANGE"));
+}
+
+}  // namespace
+}  // namespace rubble::robot

@@ -1,0 +1,312 @@
+// The Pioneer's driver against its emulator, byte by byte over a wire without ports or clocks.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "base/planar.h"
+#include "robot/drivers/pioneer.h"
+#include "robot/emulators/arcos_emulator.h"
+#include "robot/emulators/line_faults.h"
+
+namespace rubble::robot {
+namespace {
+
+constexpr double kStep = 0.001;  // [s]
+constexpr double kCycle = 0.1;   // of the reports [s]
+
+/// A robot whose wheels do what the emulator asks, exactly.
+class Wire {
+ public:
+  explicit Wire(ArcosEmulatorSettings emulator = {}, PioneerSettings settings = {}) : base(emulator), driver(settings) {
+    base.client_came(now);
+    driver.opened(now, false);
+  }
+
+  void run(double seconds) {
+    for (const Stamp end = now + seconds; now < end;) step();
+  }
+
+  /// Until it is true, at most so long; whether it became.
+  bool run_until(const std::function<bool()>& reached, double seconds) {
+    for (const Stamp end = now + seconds; now < end && !reached();) step();
+    return reached();
+  }
+
+  void step() {
+    now = now + kStep;
+    driver.advance(now);
+    const std::string to_base = driver.take_output(now);
+    if (!cut && !to_base.empty()) base.receive(to_base, now);
+    base.advance(now);
+    const Drive& motion = base.motion();
+    truth.phi += motion.w * kStep;
+    truth.x += motion.v * std::cos(truth.phi) * kStep;
+    truth.y += motion.v * std::sin(truth.phi) * kStep;
+    ++steps;
+    if (steps % 100 == 0) base.measure({now, truth, motion.v, motion.w, false}, now);
+    for (const std::string& piece : faults.pass(base.take_output(), now))
+      if (!cut) driver.receive(piece, now);
+    for (const Odometry& o : driver.take_odometry()) odometry.push_back(o);
+  }
+
+  void go(double v, double w) {
+    driver.enable(true);
+    run_until([&] { return driver.motors_on(); }, 2.0);
+    driver.drive({v, w});
+  }
+
+  Stamp now{1'700'000'000'000'000'000};
+  ArcosEmulator base;
+  Pioneer driver;
+  LineFaults faults{1};
+  mrpt::math::TPose2D truth;
+  std::vector<Odometry> odometry;
+  bool cut = false;
+  int steps = 0;
+};
+
+TEST(PioneerWire, TheHandshakeEndsInReports) {
+  Wire wire;
+  ASSERT_TRUE(wire.run_until([&] { return wire.driver.ready(); }, 2.0)) << wire.driver.state();
+  EXPECT_EQ(wire.driver.identity().subclass, "p3at-sh");
+  wire.run(0.2);
+  EXPECT_EQ(wire.driver.configuration().cycle_ms, 100);
+  EXPECT_NEAR(wire.driver.battery(), 12.8, 1e-9);
+  EXPECT_FALSE(wire.base.motors_on());
+}
+
+TEST(PioneerWire, NothingMovesBeforeTheMotorsAreOn) {
+  Wire wire;
+  wire.run(1.0);
+  wire.driver.drive({0.5, 0.5});
+  wire.run(1.0);
+  EXPECT_EQ(wire.truth.x, 0.0);
+  wire.go(0.3, 0.0);
+  wire.run(2.0);
+  EXPECT_GT(wire.truth.x, 0.3);
+  wire.driver.enable(false);
+  wire.run(0.5);
+  const double there = wire.truth.x;
+  wire.run(1.0);
+  EXPECT_EQ(wire.truth.x, there);
+}
+
+TEST(PioneerWire, OdometryFollowsTheWheels) {
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.4, 0.5);
+  wire.run(20.0);
+  wire.go(-0.2, -0.8);
+  wire.run(10.0);
+  wire.go(0.0, 0.0);
+  wire.run(2.0);
+  const auto& last = wire.odometry.back();
+  // Each report is rounded to whole millimetres and 4096ths; differences of rounded numbers do not add up.
+  EXPECT_NEAR(last.pose.x, wire.truth.x, 2e-3);
+  EXPECT_NEAR(last.pose.y, wire.truth.y, 2e-3);
+  EXPECT_NEAR(wrap_angle(last.pose.phi - wire.truth.phi), 0.0, 2e-3);
+}
+
+TEST(PioneerWire, CoordinatesThatRollOverGoOn) {
+  ArcosEmulatorSettings settings;
+  settings.odometry_start = {65.5, -0.03, deg_to_rad(178.0)};
+  Wire wire(settings);
+  wire.run(1.0);
+  wire.go(-0.5, 0.1);
+  wire.run(10.0);
+  wire.go(0.0, 0.0);
+  wire.run(2.0);
+  EXPECT_NEAR(wire.odometry.back().pose.x, wire.truth.x, 3e-3);
+  EXPECT_NEAR(wire.odometry.back().pose.y, wire.truth.y, 3e-3);
+  EXPECT_EQ(wire.driver.jumps(), 0u);
+  EXPECT_GT(length(wire.truth.x, wire.truth.y), 2.0);
+}
+
+TEST(PioneerWire, AnOriginSetAnewIsNoMotion) {
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.4, 0.0);
+  wire.run(5.0);
+  wire.base.fail("seto", wire.now);
+  wire.run(5.0);
+  wire.go(0.0, 0.0);
+  wire.run(2.0);
+  EXPECT_EQ(wire.driver.jumps(), 1u);
+  EXPECT_NEAR(wire.odometry.back().pose.x, wire.truth.x, 0.02);
+  EXPECT_NEAR(wire.odometry.back().pose.y, 0.0, 0.02);
+}
+
+TEST(PioneerWire, SlowTurnsAreRightInTheMean) {
+  for (const double wanted : {0.3, 1.1, -2.47, 6.6}) {
+    Wire wire;
+    wire.run(1.0);
+    wire.go(0.0, deg_to_rad(wanted));
+    wire.run(1.0);
+    for (int i = 0; i < 8; ++i) {
+      const double before = wire.truth.phi;
+      wire.run(1.0);
+      EXPECT_NEAR(rad_to_deg(wire.truth.phi - before), wanted, 0.1);
+    }
+  }
+}
+
+TEST(PioneerWire, TheWatchdogStopsARobotWithoutCommandsAndFreshOnesDoNotTripIt) {
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.3, 0.0);
+  wire.run(10.0);
+  EXPECT_FALSE(wire.base.is_held());
+  wire.cut = true;
+  wire.run(2.2);
+  EXPECT_TRUE(wire.base.is_held());
+  wire.run(1.5);
+  EXPECT_EQ(wire.base.motion().v, 0.0);
+}
+
+TEST(PioneerWire, TheSpeedLimitHoldsWhateverIsAskedFor) {
+  PioneerSettings settings;
+  settings.max_v = 0.25;
+  settings.max_w = deg_to_rad(30.0);
+  Wire wire({}, settings);
+  wire.run(1.0);
+  wire.go(5.0, -9.0);
+  for (int i = 0; i < 3000; ++i) {
+    wire.step();
+    ASSERT_LE(std::abs(wire.base.motion().v), 0.25 + 1e-9);
+    ASSERT_LE(std::abs(wire.base.motion().w), deg_to_rad(30.0) + 1e-9);
+  }
+  EXPECT_NEAR(wire.base.motion().v, 0.25, 1e-9);
+}
+
+TEST(PioneerWire, AfterAResetTheConnectionIsMadeAnewAndThePoseGoesOn) {
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.4, 0.0);
+  wire.run(3.0);
+  wire.base.fail("reset", wire.now);
+  wire.run(0.5);
+  const double there = wire.truth.x;
+  EXPECT_FALSE(wire.base.motors_on());
+  ASSERT_TRUE(wire.run_until([&] { return wire.base.open() && wire.base.motors_on(); }, 6.0)) << wire.driver.state();
+  wire.run(1.0);
+  EXPECT_GT(wire.truth.x, there);
+  wire.go(0.0, 0.0);
+  wire.run(2.0);
+  // What it rolled on unseen, half a second at most, is lost.
+  EXPECT_NEAR(wire.odometry.back().pose.x, wire.truth.x, 0.3);
+}
+
+TEST(PioneerWire, ARobotThatIsStillOpenIsClosedFirst) {
+  Wire wire;
+  wire.run(1.0);
+  ASSERT_TRUE(wire.driver.ready());
+  // The client was killed without CLOSE, on a line that tells nobody.
+  wire.driver = Pioneer({});
+  wire.driver.opened(wire.now, false);
+  EXPECT_TRUE(wire.run_until([&] { return wire.driver.ready(); }, 3.0)) << wire.driver.state();
+}
+
+TEST(PioneerWire, DamagedLinesNeitherMoveThePoseNorStopTheReports) {
+  for (const char* name : {"lost", "split", "doubled", "junk", "sums"}) {
+    Wire wire;
+    wire.run(1.0);
+    wire.go(0.3, 0.3);
+    wire.run(3.0);
+    wire.faults.spoil(*byte_fault(name), wire.now + 1.0);
+    wire.run(3.0);
+    wire.go(0.0, 0.0);
+    wire.run(2.0);
+    ASSERT_TRUE(wire.driver.ready()) << name;
+    EXPECT_NEAR(wire.odometry.back().pose.x, wire.truth.x, 0.01) << name;
+    EXPECT_NEAR(wire.odometry.back().pose.y, wire.truth.y, 0.01) << name;
+    EXPECT_NEAR(wrap_angle(wire.odometry.back().pose.phi - wire.truth.phi), 0.0, 0.01) << name;
+  }
+}
+
+TEST(PioneerWire, StallsAreTold) {
+  Wire wire;
+  wire.run(1.0);
+  wire.base.fail("stall", wire.now);
+  wire.run(0.3);
+  EXPECT_TRUE(wire.odometry.back().stalled);
+  wire.run(1.5);
+  EXPECT_FALSE(wire.odometry.back().stalled);
+}
+
+TEST(PioneerWire, AnEmergencyStopStopsAtOnceAndStaysUntilEnabled) {
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.5, 0.0);
+  wire.run(4.0);
+  wire.driver.emergency_stop();
+  wire.run(0.05);
+  EXPECT_EQ(wire.base.motion().v, 0.0);
+  wire.driver.drive({0.5, 0.0});
+  wire.run(1.0);
+  EXPECT_EQ(wire.base.motion().v, 0.0);
+  EXPECT_FALSE(wire.base.motors_on());
+}
+
+TEST(PioneerWire, TheFarewellLeavesARobotAtRest) {
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.5, 0.0);
+  wire.run(2.0);
+  wire.base.receive(wire.driver.farewell(), wire.now);
+  EXPECT_FALSE(wire.base.open());
+  EXPECT_FALSE(wire.base.motors_on());
+}
+
+TEST(ArcosEmulator, SynchronisesOnlyInOrder) {
+  using namespace arcos;
+  ArcosEmulator base({});
+  const Stamp now{0};
+  base.client_came(now);
+  base.receive(command(kSync1), now);
+  EXPECT_EQ(base.take_output(), "");
+  base.receive(command(kSync0), now);
+  EXPECT_EQ(base.take_output(), command(kSync0));
+  base.receive(command(kSync1), now);
+  EXPECT_EQ(base.take_output(), command(kSync1));
+  base.receive(command(kSync2), now);
+  EXPECT_EQ(base.take_output(), packet(encode(Identity{"MobileSim", "Pioneer", "p3at-sh"})));
+  base.receive(command(kOpen), now);
+  EXPECT_TRUE(base.open());
+}
+
+TEST(ArcosEmulator, HeadAndMoveEndWhereTheyWereSent) {
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.0, 0.0);
+  wire.base.receive(arcos::command(arcos::kHead, -170), wire.now);
+  wire.cut = true;  // the driver's own set points would take over
+  for (int i = 0; i < 60; ++i) {
+    wire.base.receive(arcos::command(arcos::kPulse), wire.now);
+    wire.run(0.1);
+  }
+  EXPECT_NEAR(rad_to_deg(wrap_angle(wire.truth.phi - deg_to_rad(-170.0))), 0.0, 3.0);
+  wire.base.receive(arcos::command(arcos::kMove, 500), wire.now);
+  const mrpt::math::TPose2D start = wire.truth;
+  for (int i = 0; i < 60; ++i) {
+    wire.base.receive(arcos::command(arcos::kPulse), wire.now);
+    wire.run(0.1);
+  }
+  EXPECT_NEAR(length(wire.truth.x - start.x, wire.truth.y - start.y), 0.5, 0.06);
+}
+
+TEST(ArcosEmulator, ASimulatorsClientCanSetThePose) {
+  Wire wire;
+  wire.run(1.0);
+  wire.base.receive(arcos::sim_set_pose(1500, -2500, 90), wire.now);
+  const auto placed = wire.base.take_placed();
+  ASSERT_TRUE(placed);
+  EXPECT_DOUBLE_EQ(placed->x, 1.5);
+  EXPECT_DOUBLE_EQ(placed->y, -2.5);
+  EXPECT_DOUBLE_EQ(placed->phi, deg_to_rad(90.0));
+  EXPECT_FALSE(wire.base.take_placed());
+}
+
+}  // namespace
+}  // namespace rubble::robot

@@ -1,0 +1,229 @@
+// A port and its server, both ends of one line.
+#include "robot/drivers/port.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <vector>
+
+#include "robot/drivers/host_clock.h"
+#include "robot/emulators/port_server.h"
+
+namespace rubble::robot {
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::vector<std::uint8_t>;
+
+Bytes bytes(const std::string& text) { return {text.begin(), text.end()}; }
+
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "portXXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~Folder() { fs::remove_all(path_); }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  fs::path path_;
+};
+
+/// Takes what the server gets until `size` bytes are there or a second has passed.
+Bytes served(PortServer& server, std::size_t size) {
+  Bytes all(size + 100);
+  std::size_t got = 0;
+  for (const Stamp end = host_now() + 1.0; got < size && host_now() < end;)
+    got += server.read(all.data() + got, all.size() - got, 0.05).size;
+  all.resize(got);
+  return all;
+}
+
+Bytes received(Port& port, std::size_t size, PortServer* server = nullptr) {
+  Bytes all(size + 100);
+  std::size_t got = 0;
+  for (const Stamp end = host_now() + 1.0; got < size && host_now() < end;) {
+    if (server != nullptr) {
+      std::uint8_t none;
+      server->read(&none, 0, 0.0);  // sends on what waits
+    }
+    got += port.read(all.data() + got, all.size() - got, 0.02);
+  }
+  all.resize(got);
+  return all;
+}
+
+class Line : public testing::TestWithParam<std::string> {
+ protected:
+  std::string word() const { return GetParam() == "tcp" ? "tcp:127.0.0.1:0" : "pty:" + folder_.file("line"); }
+  Folder folder_;
+};
+
+TEST_P(Line, AllBytesPassUnchangedBothWays) {
+  const auto server = serve_port(word());
+  const auto port = open_port(server->name());
+  Bytes all(256);
+  std::iota(all.begin(), all.end(), std::uint8_t{0});  // among them CR, LF, ^C, ^Q, ^S, EOF
+  port->write(all.data(), all.size());
+  EXPECT_EQ(served(*server, all.size()), all);
+  EXPECT_TRUE(server->write(all.data(), all.size()));
+  EXPECT_EQ(received(*port, all.size()), all);
+  EXPECT_EQ(port->is_serial(), GetParam() == "pty");
+}
+
+TEST_P(Line, NothingIsReadWhenNothingCame) {
+  const auto server = serve_port(word());
+  const auto port = open_port(server->name());
+  std::uint8_t byte;
+  EXPECT_EQ(port->read(&byte, 1, 0.001), 0u);
+}
+
+TEST_P(Line, AClientThatComesBackIsServedAgain) {
+  const auto server = serve_port(word());
+  for (int round = 0; round < 3; ++round) {
+    const auto port = open_port(server->name());
+    const Bytes hello = bytes("hello");
+    port->write(hello.data(), hello.size());
+    EXPECT_EQ(served(*server, hello.size()), hello) << round;
+  }
+}
+
+TEST_P(Line, PulledPlugIsLostDeviceAndItsReturnIsFound) {
+  const auto server = serve_port(word());
+  const std::string name = server->name();
+  auto port = open_port(name);
+  const Bytes hello = bytes("hello");
+  port->write(hello.data(), hello.size());
+  served(*server, hello.size());
+  server->unplug();
+  std::uint8_t byte;
+  EXPECT_THROW(port->read(&byte, 1, 0.5), DeviceLost);
+  EXPECT_THROW(open_port(name), DeviceLost);
+  server->plug_in();
+  EXPECT_EQ(server->name(), name);
+  port = open_port(name);
+  port->write(hello.data(), hello.size());
+  EXPECT_EQ(served(*server, hello.size()), hello);
+}
+
+TEST_P(Line, ABlockIsSentWholeOrNotAtAll) {
+  const auto server = serve_port(word());
+  const auto port = open_port(server->name());
+  std::uint8_t none;
+  server->read(&none, 1, 0.05);  // accepts
+  const Bytes block(2137, 'x');
+  std::size_t taken = 0;
+  while (taken < 100000 && server->write(block.data(), block.size())) ++taken;
+  ASSERT_GT(taken, 0u);
+  ASSERT_LT(taken, 100000u) << "nobody reads, so at last a block must be refused";
+  EXPECT_EQ(received(*port, taken * block.size(), server.get()).size(), taken * block.size());
+}
+
+TEST_P(Line, DescriptorIsReadableWhenBytesWait) {
+  const auto server = serve_port(word());
+  const auto port = open_port(server->name());
+  const int before = server->descriptor();
+  const Bytes hello = bytes("hello");
+  port->write(hello.data(), hello.size());
+  EXPECT_EQ(served(*server, hello.size()), hello);
+  EXPECT_EQ(server->descriptor(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, Line, testing::Values("tcp", "pty"), [](const auto& info) { return info.param; });
+
+TEST(TcpLine, ServerTellsThatAClientCameAndLeft) {
+  const auto server = serve_port("tcp:127.0.0.1:0");
+  std::uint8_t byte;
+  auto port = open_port(server->name());
+  EXPECT_TRUE(server->read(&byte, 1, 0.5).client_came);
+  port.reset();
+  EXPECT_TRUE(server->read(&byte, 1, 0.5).client_left);
+  EXPECT_FALSE(server->write(&byte, 1));
+}
+
+TEST(TcpLine, SecondClientWaitsForTheFirst) {
+  const auto server = serve_port("tcp:127.0.0.1:0");
+  auto first = open_port(server->name());
+  const auto second = open_port(server->name());
+  std::uint8_t byte;
+  server->read(&byte, 1, 0.5);
+  const Bytes hello = bytes("hello");
+  second->write(hello.data(), hello.size());
+  EXPECT_EQ(server->read(&byte, 1, 0.02).size, 0u);
+  first.reset();
+  EXPECT_EQ(served(*server, hello.size()), hello);
+}
+
+TEST(PtyLine, LinkGoesWithTheServerAndReplacesAnOldOne) {
+  const Folder folder;
+  const std::string path = folder.file("line");
+  fs::create_symlink("/nowhere", path);
+  auto server = serve_port("pty:" + path);
+  EXPECT_TRUE(fs::is_character_file(path));
+  server.reset();
+  EXPECT_FALSE(fs::is_symlink(path));
+}
+
+TEST(PtyLine, FileOfThatNameIsLeftAlone) {
+  const Folder folder;
+  const std::string path = folder.file("line");
+  std::ofstream(path) << "precious";
+  EXPECT_THROW(serve_port("pty:" + path), RunError);
+  EXPECT_EQ(fs::file_size(path), 8u);
+  EXPECT_THROW(open_port("pty:" + path), InputError) << "a file is no serial line";
+}
+
+std::string refusal(const std::string& word) {
+  try {
+    open_port(word);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(PortWord, BadWordsSayWhatAndHowToMend) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"", "the path is missing"},       {"ttyUSB0", "is no port; give /dev/ttyUSB0"},
+      {"tcp:", "host or port number"},   {"tcp:localhost", "host or port number"},
+      {"tcp:h:70000", "no port number"}, {"tcp:h:1x", "no port number"},
+      {"tcp:::1:80", "no host"},         {"pty:", "the path is missing"},
+  };
+  for (const auto& [word, text] : cases) {
+    EXPECT_THROW(open_port(word), InputError) << word;
+    EXPECT_THROW(serve_port(word), InputError) << word;
+    EXPECT_THROW(check_port_word(word), InputError) << word;
+    EXPECT_THAT(refusal(word), testing::HasSubstr(text));
+    EXPECT_EQ(refusal(word).find('\n'), std::string::npos);
+  }
+}
+
+TEST(PortWord, MissingDevicesAreLostNotBadInput) {
+  EXPECT_THROW(open_port("/dev/no-such-line"), DeviceLost);
+  EXPECT_THAT(refusal("/dev/no-such-line"), testing::HasSubstr("plug it in"));
+  std::string name;
+  {
+    const auto server = serve_port("tcp:127.0.0.1:0");
+    name = server->name();
+  }
+  EXPECT_THROW(open_port(name), DeviceLost);
+  EXPECT_THAT(refusal(name), testing::HasSubstr("nobody answers"));
+}
+
+TEST(PortWord, ServersTakeNoSerialLines) { EXPECT_THROW(serve_port("/dev/ttyUSB0"), InputError); }
+
+TEST(Port, UnknownBaudIsRefused) {
+  const Folder folder;
+  const auto server = serve_port("pty:" + folder.file("line"));
+  const auto port = open_port(server->name());
+  port->set_baud(19200);
+  EXPECT_THROW(port->set_baud(12345), InputError);
+}
+
+}  // namespace
+}  // namespace rubble::robot

@@ -1,0 +1,270 @@
+// The real robot against its emulated devices, over TCP on this machine.
+#include "robot/drivers/real_robot.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "robot/drivers/black_box_replay.h"
+#include "robot/drivers/heartbeat.h"
+#include "robot/drivers/host_clock.h"
+#include "robot/drivers/scan_queue.h"
+#include "robot/emulators/arcos_emulator.h"
+#include "robot/emulators/device_server.h"
+#include "robot/emulators/levelling_emulator.h"
+
+namespace rubble::robot {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "robotXXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~Folder() { fs::remove_all(path_); }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  fs::path path_;
+};
+
+/// A scanner that gives a scan whenever it is told to.
+class ToldScanner : public Scanner {
+ public:
+  std::vector<LaserScan> take() override { return queue_.take(); }
+  ScannerStatus status() const override { return queue_.status(); }
+  ScannerInfo info() const override { return queue_.info(); }
+  int descriptor() const override { return queue_.descriptor(); }
+  void scan(Stamp now) {
+    LaserScan scan;
+    scan.stamp = now - 0.08;
+    scan.ranges.assign(10, 1.0f);
+    queue_.update([](ScannerStatus& status) { ++status.scans; });
+    queue_.put(scan);
+  }
+
+ private:
+  ScanQueue queue_;
+};
+
+/// A robot on a bench: its wheels do at once what the base's emulator asks.
+class Bench {
+ public:
+  explicit Bench(RealRobotSettings settings = {}) : box(folder.file("devices.bytes")) {
+    settings.base_port = base_server.port();
+    settings.levelling_port = unit_server.port();
+    settings.safety.start = 10.0;
+    settings.safety.give_up = 10.0;
+    robot = std::make_unique<RealRobot>(settings, scanner, &box);
+    world = std::thread([this] { turn(); });
+  }
+  ~Bench() {
+    ending = true;
+    world.join();
+  }
+
+  void turn() {
+    const Stamp start = host_now();
+    for (int i = 0; !ending; ++i) {
+      const Stamp now = start + 0.01 * i;
+      sleep_until(now);
+      Drive motion;
+      base_server.with([&] { motion = arcos.motion(); });
+      pose.phi += motion.w * 0.01;
+      pose.x += motion.v * std::cos(pose.phi) * 0.01;
+      pose.y += motion.v * std::sin(pose.phi) * 0.01;
+      speed = motion.v;
+      if (i % 10 == 0) base_server.with([&] { arcos.measure({now, pose, motion.v, motion.w, false}, now); });
+      if (i % 2 == 0) unit_server.with([&] { unit.measure({now, 0.0, 0.0}, {now, 0.0, 0.0}, now); });
+      if (i % 10 == 5 && scans) scanner.scan(now);
+    }
+  }
+
+  /// Reads and commands for so long; all that came.
+  std::vector<Inputs> drive(double v, double seconds) {
+    std::vector<Inputs> all;
+    for (const Stamp end = host_now() + seconds; host_now() < end;) {
+      auto inputs = robot->read();
+      if (!inputs) break;
+      robot->command({{v, 0.0}, {}});
+      all.push_back(std::move(*inputs));
+    }
+    return all;
+  }
+
+  /// Whether it becomes so within some seconds.
+  template <class Law>
+  static bool soon(const Law& law, double seconds = 5.0) {
+    for (const Stamp end = host_now() + seconds; host_now() < end; sleep_until(host_now() + 0.01))
+      if (law()) return true;
+    return law();
+  }
+
+  Folder folder;
+  BlackBox box;
+  ArcosEmulator arcos{ArcosEmulatorSettings{}};
+  LevellingEmulator unit{LevellingEmulatorSettings{}};
+  DeviceServer base_server{"tcp:127.0.0.1:0", arcos, 1};
+  DeviceServer unit_server{"tcp:127.0.0.1:0", unit, 2};
+  ToldScanner scanner;
+  mrpt::math::TPose2D pose;
+  std::atomic<double> speed{0.0};
+  std::atomic<bool> scans{true};
+  std::atomic<bool> ending{false};
+  std::unique_ptr<RealRobot> robot;
+  std::thread world;
+};
+
+TEST(RealRobot, MergesWhatArrivesAndDrives) {
+  Bench bench;
+  const std::vector<Inputs> all = bench.drive(0.3, 3.0);
+  std::size_t scans = 0, odometry = 0, accelerations = 0;
+  Stamp last = Stamp::never();
+  for (const Inputs& inputs : all) {
+    EXPECT_GT(inputs.now, last);
+    last = inputs.now;
+    scans += inputs.scans.size();
+    odometry += inputs.odometry.size();
+    accelerations += inputs.accelerations.size();
+    for (const LaserScan& s : inputs.scans) EXPECT_LE(s.stamp, inputs.now);
+    for (const Odometry& o : inputs.odometry) EXPECT_LE(o.stamp, inputs.now);
+    for (const Acceleration& a : inputs.accelerations) EXPECT_LE(a.stamp, inputs.now);
+  }
+  EXPECT_GT(scans, 5u);
+  EXPECT_GT(odometry, 5u);
+  EXPECT_GT(accelerations, 20u);
+  EXPECT_TRUE(bench.robot->status().motors_on);
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0 || bench.pose.x > 0.1; }));
+}
+
+TEST(RealRobot, MotorsStayOffUntilAllReport) {
+  Bench bench;
+  bench.scans = false;
+  int asked = 0;
+  bench.robot->while_waiting([&](const RobotStatus& status) {
+    EXPECT_FALSE(status.motors_on);
+    EXPECT_FALSE(status.silent.empty());
+    return ++asked < 30;
+  });
+  EXPECT_FALSE(bench.robot->read()) << "the wait was ended";
+  EXPECT_EQ(bench.pose.x, 0.0);
+  bench.base_server.with([&] { EXPECT_FALSE(bench.arcos.motors_on()); });
+}
+
+TEST(RealRobot, ASilentScannerStopsIt) {
+  Bench bench;
+  bench.drive(0.3, 3.0);
+  ASSERT_TRUE(Bench::soon([&] { return bench.speed > 0.0; }));
+  bench.scans = false;
+  std::thread core([&] { bench.drive(0.3, 2.0); });
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed == 0.0; }));
+  bench.scans = true;
+  core.join();
+}
+
+TEST(RealRobot, ASilentCoreStopsIt) {
+  RealRobotSettings settings;
+  settings.safety.core_silence = 0.3;
+  Bench bench(settings);
+  bench.drive(0.3, 3.0);
+  ASSERT_TRUE(Bench::soon([&] { return bench.speed > 0.0; }));
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed == 0.0; })) << "nobody commands any more";
+}
+
+TEST(RealRobot, AnUnpluggedBaseIsNamedAndPickedUpAgain) {
+  Bench bench;
+  bench.drive(0.1, 2.0);
+  std::vector<std::string> named;
+  bench.robot->while_waiting([&](const RobotStatus& status) {
+    named.insert(named.end(), status.silent.begin(), status.silent.end());
+    return true;
+  });
+  bench.base_server.unplug(2.0);
+  bench.drive(0.1, 6.0);
+  EXPECT_THAT(named, testing::Contains(testing::StartsWith("base: ")));
+  EXPECT_TRUE(bench.robot->status().silent.empty());
+  EXPECT_TRUE(Bench::soon([&] { return bench.robot->status().motors_on; }));
+}
+
+TEST(RealRobot, AnEmergencyStopEndsTheRun) {
+  Bench bench;
+  bench.drive(0.3, 2.0);
+  bench.robot->emergency_stop();
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed == 0.0; }));
+  EXPECT_FALSE(bench.robot->read());
+  EXPECT_TRUE(bench.robot->status().emergency);
+}
+
+TEST(RealRobot, ItsEndLeavesTheBaseAtRest) {
+  Bench bench;
+  bench.drive(0.3, 2.0);
+  bench.robot.reset();
+  EXPECT_TRUE(Bench::soon([&] {
+    bool open = true;
+    bench.base_server.with([&] { open = bench.arcos.open(); });
+    return !open;
+  }));
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed == 0.0; }));
+}
+
+TEST(RealRobot, TheBlackBoxGivesTheDriversTheSameAgain) {
+  Bench bench;
+  std::vector<Odometry> odometry;
+  for (const Inputs& inputs : bench.drive(0.2, 3.0))
+    odometry.insert(odometry.end(), inputs.odometry.begin(), inputs.odometry.end());
+  bench.robot.reset();
+  ASSERT_FALSE(bench.box.failed());
+  const ReplayedBox replayed = replay_black_box(read_black_box(bench.folder.file("devices.bytes")), {}, {});
+  ASSERT_GE(replayed.odometry.size(), odometry.size());
+  EXPECT_GT(replayed.accelerations.size(), 50u);
+  std::size_t found = 0;
+  for (const Odometry& then : odometry)
+    for (const Odometry& now : replayed.odometry)
+      if (std::abs(now.stamp - then.stamp) < 0.005 && now.pose.x == then.pose.x && now.v == then.v) ++found;
+  EXPECT_EQ(found, odometry.size());
+}
+
+TEST(Heartbeat, AFileMustBeTouchedAgain) {
+  Folder folder;
+  Heartbeat heartbeat(folder.file("alive"));
+  const Stamp start{1'000'000'000};
+  EXPECT_EQ(heartbeat.last(start), Stamp::never()) << "no file yet";
+  std::ofstream(folder.file("alive")) << "a";
+  EXPECT_EQ(heartbeat.last(start + 1.0), Stamp::never()) << "it may be an old file";
+  fs::last_write_time(folder.file("alive"), fs::file_time_type::clock::now() + std::chrono::seconds(3));
+  EXPECT_EQ(heartbeat.last(start + 2.0), start + 2.0);
+  EXPECT_EQ(heartbeat.last(start + 5.0), start + 2.0);
+  EXPECT_EQ(Heartbeat("").last(start), start) << "nobody is asked for";
+}
+
+TEST(BlackBox, ATornEndIsDroppedAndOtherFilesAreRefused) {
+  Folder folder;
+  {
+    BlackBox box(folder.file("a"));
+    box.add("base", Direction::FromDevice, "hello", {5});
+    box.add("urg", Direction::ToDevice, std::string("\0x", 2), {6});
+  }
+  const auto whole = read_black_box(folder.file("a"));
+  ASSERT_EQ(whole.size(), 2u);
+  EXPECT_EQ(whole[0].bytes, "hello");
+  EXPECT_EQ(whole[1].device, "urg");
+  EXPECT_EQ(whole[1].bytes, std::string("\0x", 2));
+  for (auto size = fs::file_size(folder.file("a")) - 1; size > 40; --size) {
+    fs::resize_file(folder.file("a"), size);
+    EXPECT_EQ(read_black_box(folder.file("a")).size(), 1u) << size;
+  }
+  std::ofstream(folder.file("b")) << "something else";
+  EXPECT_THROW(read_black_box(folder.file("b")), InputError);
+}
+
+}  // namespace
+}  // namespace rubble::robot

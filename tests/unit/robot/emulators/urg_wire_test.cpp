@@ -1,0 +1,237 @@
+// Our driver against the emulated scanner over real lines, in real time.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <vector>
+
+#include "base/error.h"
+#include "robot/drivers/host_clock.h"
+#include "robot/drivers/scip/scip_scanner.h"
+#include "robot/drivers/scip/scip_text.h"
+#include "robot/emulators/port_server.h"
+#include "robot/emulators/scip/urg_emulator.h"
+#include "tests/support/robot_turning_scene.h"
+
+namespace rubble::robot {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Waits until `done` or the time is over.
+bool wait_for(const std::function<bool()>& done, double timeout) {
+  for (const Stamp end = host_now() + timeout; host_now() < end; sleep_until(host_now() + 0.005))
+    if (done()) return true;
+  return done();
+}
+
+struct Bench {
+  explicit Bench(const std::string& kind, UrgEmulatorConfig config = {}) {
+    std::string name = (fs::temp_directory_path() / "urgXXXXXX").string();
+    folder = ::mkdtemp(name.data());
+    config.port = kind == "tcp" ? "tcp:127.0.0.1:0" : "pty:" + (folder / "urg").string();
+    emulator = std::make_unique<UrgEmulator>(config);
+    scene = std::make_unique<TurningScene>(config.laser, [this](const LaserScan& scan) { emulator->publish(scan); });
+  }
+  ~Bench() {
+    scanner.reset();
+    scene.reset();
+    emulator.reset();
+    fs::remove_all(folder);
+  }
+
+  void connect(ScipScannerConfig config = {}) {
+    config.port = emulator->port();
+    config.retry = 0.1;
+    scanner = std::make_unique<ScipScanner>(config);
+  }
+  /// Takes scans until there are `count` more.
+  bool more(std::size_t count, double timeout = 2.5) {
+    const std::size_t wanted = scans.size() + count;
+    return wait_for(
+        [&] {
+          for (LaserScan& scan : scanner->take()) scans.push_back(std::move(scan));
+          return scans.size() >= wanted;
+        },
+        timeout);
+  }
+
+  fs::path folder;
+  std::unique_ptr<UrgEmulator> emulator;
+  std::unique_ptr<TurningScene> scene;
+  std::unique_ptr<ScipScanner> scanner;
+  std::vector<LaserScan> scans;
+};
+
+/// Every beam of the scan is what was published under its number, and so is its stamp.
+void expect_true(const Bench& bench, const LaserScan& scan, double stamp_tolerance) {
+  const int number = number_of(scan);
+  const LaserScan truth = numbered_scan({}, number, Stamp{});
+  ASSERT_EQ(scan.ranges.size(), truth.ranges.size());
+  ASSERT_EQ(scan.codes.size(), truth.ranges.size());
+  for (std::size_t i = 0; i < truth.ranges.size(); ++i) {
+    EXPECT_NEAR(scan.bearing(i), truth.bearing(i), 1e-12);
+    if (i == 200) {
+      EXPECT_TRUE(std::isnan(scan.ranges[i])) << i;
+    } else {
+      EXPECT_EQ(scan.ranges[i], truth.ranges[i]) << i;
+    }
+    EXPECT_EQ(scan.codes[i], i == 200 ? 7 : 0) << i;
+  }
+  EXPECT_NEAR(scan.stamp - bench.scene->stamp(number), 0.0, stamp_tolerance) << number;
+}
+
+class UrgWire : public testing::TestWithParam<std::string> {};
+
+TEST_P(UrgWire, EveryBeamCodeAndStampArrives) {
+  Bench bench(GetParam());
+  bench.connect();
+  ASSERT_TRUE(bench.more(8)) << bench.scanner->status().error;
+  for (std::size_t i = 0; i < bench.scans.size(); ++i) {
+    expect_true(bench, bench.scans[i], 0.002);
+    if (i > 0) {
+      EXPECT_EQ(number_of(bench.scans[i]), number_of(bench.scans[i - 1]) + 1);
+    }
+  }
+  const ScannerInfo info = bench.scanner->info();
+  EXPECT_EQ(info.protocol, "SCIP 2.0");
+  EXPECT_THAT(info.model, testing::HasSubstr("URG-04LX"));
+  EXPECT_EQ(info.laser.beams, 682);
+  EXPECT_EQ(info.lines.size(), 13u);
+  const ScannerStatus status = bench.scanner->status();
+  EXPECT_TRUE(status.connected);
+  EXPECT_EQ(status.damaged, 0u);
+  EXPECT_EQ(status.connects, 1u);
+  EXPECT_GT(status.clock_doubt, 0.0);
+  EXPECT_LT(status.clock_doubt, 0.005);
+}
+
+TEST_P(UrgWire, OldProtocolGivesTheSameBeams) {
+  Bench bench(GetParam());
+  ScipScannerConfig config;
+  config.only_scip1 = true;
+  bench.connect(config);
+  ASSERT_TRUE(bench.more(5)) << bench.scanner->status().error;
+  EXPECT_EQ(bench.scanner->info().protocol, "SCIP 1.1");
+  for (const LaserScan& scan : bench.scans) expect_true(bench, scan, 0.2);
+  for (std::size_t i = 1; i < bench.scans.size(); ++i) EXPECT_GT(bench.scans[i].stamp, bench.scans[i - 1].stamp);
+}
+
+TEST_P(UrgWire, RangesBeyondTheLimitAreMissesAndNoEchoIsWhatTheUserSays) {
+  Bench bench(GetParam());
+  ScipScannerConfig config;
+  config.no_echo_is_miss = false;
+  config.range_max = 2.0;
+  bench.connect(config);
+  ASSERT_TRUE(bench.more(1));
+  EXPECT_TRUE(std::isnan(bench.scans[0].ranges[100]));
+  EXPECT_TRUE(std::isnan(bench.scans[0].ranges[200]));
+  EXPECT_TRUE(std::isinf(bench.scans[0].ranges[600])) << "2.3 m is beyond 2 m";
+}
+
+TEST_P(UrgWire, ClockWrapsUnnoticed) {
+  UrgEmulatorConfig config;
+  config.clock_start = (1u << 24) - 900;
+  Bench bench(GetParam(), config);
+  bench.connect();
+  ASSERT_TRUE(bench.more(15));
+  for (const LaserScan& scan : bench.scans) expect_true(bench, scan, 0.002);
+  EXPECT_EQ(bench.scanner->status().missed, 0u);
+}
+
+TEST_P(UrgWire, UnpluggedScannerIsNamedAndFoundAgain) {
+  Bench bench(GetParam());
+  bench.connect();
+  ASSERT_TRUE(bench.more(2));
+  bench.emulator->unplug(0.4);
+  ASSERT_TRUE(wait_for([&] { return !bench.scanner->status().connected; }, 1.0));
+  EXPECT_THAT(bench.scanner->status().error, testing::HasSubstr(bench.emulator->port()));
+  bench.scanner->take();
+  ASSERT_TRUE(bench.more(4, 2.0)) << bench.scanner->status().error;
+  expect_true(bench, bench.scans.back(), 0.002);
+  EXPECT_EQ(bench.scanner->status().connects, 2u);
+}
+
+TEST_P(UrgWire, RestartedScannerIsSwitchedToTheNewProtocolAgain) {
+  Bench bench(GetParam());
+  bench.connect();
+  ASSERT_TRUE(bench.more(2));
+  bench.emulator->cycle_power();
+  ASSERT_TRUE(wait_for([&] { return bench.scanner->status().connects == 2; }, 2.0)) << bench.scanner->status().error;
+  bench.scanner->take();
+  ASSERT_TRUE(bench.more(3));
+  expect_true(bench, bench.scans.back(), 0.002);
+  EXPECT_EQ(bench.scanner->info().protocol, "SCIP 2.0");
+}
+
+TEST_P(UrgWire, SilentScannerIsReportedAndScansComeBack) {
+  Bench bench(GetParam());
+  bench.connect();
+  ASSERT_TRUE(bench.more(2));
+  bench.emulator->fall_silent(1.0);
+  ASSERT_TRUE(wait_for([&] { return !bench.scanner->status().connected; }, 1.0));
+  EXPECT_THAT(bench.scanner->status().error, testing::HasSubstr("silent"));
+  bench.scanner->take();
+  ASSERT_TRUE(bench.more(3, 2.5)) << bench.scanner->status().error;
+  expect_true(bench, bench.scans.back(), 0.002);
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, UrgWire, testing::Values("tcp", "pty"), [](const auto& info) { return info.param; });
+
+using Spoilt = std::tuple<std::string, ByteFault>;
+class SpoiltWire : public testing::TestWithParam<Spoilt> {};
+
+TEST_P(SpoiltWire, NoWrongScanPassesAndGoodOnesComeBack) {
+  const auto& [kind, fault] = GetParam();
+  Bench bench(kind);
+  bench.connect();
+  ASSERT_TRUE(bench.more(2));
+  bench.emulator->spoil(fault, 1.0);
+  sleep_until(host_now() + 1.05);
+  ASSERT_TRUE(bench.more(4, 1.5)) << bench.scanner->status().error;
+  // The sums have six bits a line, the lengths are known: what got through is true, beam by beam.
+  for (const LaserScan& scan : bench.scans) expect_true(bench, scan, 0.002);
+  const ScannerStatus status = bench.scanner->status();
+  if (fault == ByteFault::Split) {
+    EXPECT_EQ(status.damaged, 0u);
+    EXPECT_EQ(status.missed, 0u);
+  } else {
+    EXPECT_GT(status.damaged + status.missed, 0u);
+  }
+}
+
+std::string spoilt_name(const testing::TestParamInfo<Spoilt>& info) {
+  static const std::vector<std::string> names = {"None", "Lost", "Split", "Doubled", "Junk", "WrongSum"};
+  return std::get<0>(info.param) + names[static_cast<std::size_t>(std::get<1>(info.param))];
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SpoiltWire,
+                         testing::Combine(testing::Values("tcp", "pty"),
+                                          testing::Values(ByteFault::Lost, ByteFault::Split, ByteFault::Doubled,
+                                                          ByteFault::Junk, ByteFault::WrongSum)),
+                         spoilt_name);
+
+TEST(UrgEmulator, ScannerThatIsNotThereIsAStatusNotAnException) {
+  ScipScannerConfig config;
+  config.port = "/dev/no-such-scanner";
+  ScipScanner scanner(config);
+  ASSERT_TRUE(wait_for([&] { return !scanner.status().error.empty(); }, 1.0));
+  EXPECT_THAT(scanner.status().error, testing::HasSubstr("/dev/no-such-scanner: there is no such device"));
+  config.port = "nonsense";
+  EXPECT_THROW(ScipScanner{config}, InputError);
+}
+
+TEST(UrgEmulator, ADeviceThatIsNoScannerIsNamed) {
+  const auto server = serve_port("tcp:127.0.0.1:0");  // accepts and says nothing
+  ScipScannerConfig config;
+  config.port = server->name();
+  ScipScanner scanner(config);
+  ASSERT_TRUE(wait_for([&] { return !scanner.status().error.empty(); }, 2.5));
+  EXPECT_THAT(scanner.status().error, testing::HasSubstr("no scanner answers"));
+}
+
+}  // namespace
+}  // namespace rubble::robot

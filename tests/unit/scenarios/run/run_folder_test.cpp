@@ -1,0 +1,75 @@
+#include "scenarios/run/run_folder.h"
+
+#include "tests/support/scenarios_batch.h"
+
+namespace rubble::scenarios {
+namespace {
+
+/// Knows what it is told to know.
+class ToldMapper : public slam::Mapper {
+ public:
+  void update(const robot::Inputs&) override {}
+  const slam::CountMap& map() const override { return map_; }
+  mrpt::math::TPose2D pose() const override { return {}; }
+  Eigen::Matrix3d covariance() const override { return Eigen::Matrix3d::Zero(); }
+  std::uint64_t revision() const override { return moved; }
+  std::optional<mrpt::math::TPose2D> pose_at(Stamp) const override { return std::nullopt; }
+  const Trajectory& trajectory() const override { return now; }
+  const Trajectory& live_trajectory() const override { return live; }
+  const std::vector<mrpt::math::TPoint2D>& last_hits() const override { return hits_; }
+  const slam::MapperCounts& counts() const override { return counts_; }
+
+  void see(double seconds, double x) {
+    const StampedPose pose{Stamp::from_seconds(seconds), {x, 0.0, 0.0}};
+    now.push_back(pose);
+    live.push_back(pose);
+  }
+
+  Trajectory now, live;
+  std::uint64_t moved = 0;
+
+ private:
+  slam::CountMap map_{10, 10, 0.1};
+  std::vector<mrpt::math::TPoint2D> hits_;
+  slam::MapperCounts counts_;
+};
+
+class RunFolderFiles : public FolderTest {
+ protected:
+  std::string text_of(const Trajectory& trajectory) const {
+    std::string text;
+    for (const auto& pose : trajectory) text += tum_line(pose) + "\n";
+    return text;
+  }
+};
+
+TEST_F(RunFolderFiles, ClosedLoopsMoveTheEstimateButNotTheLiveOne) {
+  RunFolder folder(path("run"), false);
+  const auto estimate = [&] { return read(folder.file("estimate.tum")); };
+  const auto live = [&] { return read(folder.file("estimate_live.tum")); };
+  ToldMapper mapper;
+  mapper.see(0.0, 1.0);
+  mapper.see(0.1, 2.0);
+  folder.append_estimate(mapper);
+  EXPECT_EQ(estimate(), text_of(mapper.now));
+  EXPECT_EQ(live(), text_of(mapper.live));
+
+  const std::string before = estimate();
+  mapper.now[0].pose.x = 1.5;
+  ++mapper.moved;
+  mapper.see(0.2, 3.0);
+  folder.append_estimate(mapper);
+  EXPECT_EQ(estimate(), before) << "never half the old trajectory and half the new one";
+  EXPECT_EQ(live(), text_of(mapper.live));
+  folder.save_estimate(mapper);
+  EXPECT_EQ(estimate(), text_of(mapper.now));
+  EXPECT_NE(estimate(), live());
+
+  mapper.see(0.3, 4.0);
+  folder.append_estimate(mapper);
+  EXPECT_EQ(estimate(), text_of(mapper.now)) << "it grows again";
+  EXPECT_EQ(live(), text_of(mapper.live));
+}
+
+}  // namespace
+}  // namespace rubble::scenarios
