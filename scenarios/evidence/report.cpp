@@ -131,11 +131,11 @@ bool is_below(const std::string& folder) {
   return !folder.empty() && !path.is_absolute() && *path.begin() != "..";
 }
 
-/// A path as a link of a page: no scheme ("javascript:"), no query, no fragment.
+/// A path as a link of a page: its colons are coded, so that it has no scheme ("javascript:"), no query, no fragment.
 std::string local_link(const std::string& path) {
   if (path.empty()) return "";
   static constexpr char kHex[] = "0123456789ABCDEF";
-  std::string out = path.front() == '/' ? "" : "./";
+  std::string out;
   for (const char c : path) {
     const auto byte = static_cast<unsigned char>(c);
     const bool plain = std::isalnum(byte) != 0 || std::strchr("/-_.~=+,", c) != nullptr;

@@ -118,8 +118,12 @@ void order_stamps(Records& records, Stamp CarmenRecord::*clock) {
     for (; end < records.size() && !records[end].is_scan; ++end) between.push_back(records[end].*clock);
     between = sorted_stamps(std::move(between));
     for (const Stamp stamp : between) {
+      // The odometry that the scan behind it carries too, told once more.
+      const bool is_of_scan = end < records.size() && records[i].*clock == records[end].*clock &&
+                              same_pose(records[i].robot, records[end].robot);
       const Stamp after = newest == Stamp::never() ? stamp : std::max(stamp, Stamp{newest.ns + 1000});
-      records[i++].stamp = newest = next < scans.size() ? std::min(after, scans[next]) : after;
+      const bool held = next < scans.size() && (is_of_scan || scans[next] < after);
+      records[i++].stamp = newest = held ? scans[next] : after;
     }
   }
 }

@@ -59,6 +59,7 @@ TEST(Figures, EveryFigureHasACaseInWhichItIsKnown) {
   all.victims->judged = true;
   all.victims->found = 1;
   all.run = RunFigures();
+  all.mission = MissionFigures();
   all.machine = MachineFigures{1.0, 1.0};
   for (const Figure& figure : figures()) {
     const Value value = figure.get(all);
