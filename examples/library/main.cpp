@@ -9,7 +9,7 @@
 int main() {
   MyRobot robot;
   MyMapper mapper(robot.model());
-  const auto explorer = rubble::explore::ExplorerConfig().make(robot.model());
+  const auto explorer = rubble::explore::ExplorerConfig().make(robot.model(), {});
   while (const auto inputs = robot.read()) {
     mapper.update(*inputs);
     robot.command(explorer->next(mapper, *inputs));
