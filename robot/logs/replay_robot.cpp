@@ -154,7 +154,11 @@ Trajectory ReplayRobot::in_own_stamps(const Trajectory& trajectory) const {
   const auto earlier = [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; };
   const auto same = [](const StampedPose& a, const StampedPose& b) { return a.stamp == b.stamp; };
   std::stable_sort(renamed.begin(), renamed.end(), earlier);
-  renamed.erase(std::unique(renamed.begin(), renamed.end(), same), renamed.end());
+  // Stamps of few digits tell no two scans apart: such a log's own names are of no use.
+  constexpr std::size_t kMostLost = 100;  // one in so many
+  const auto end = std::unique(renamed.begin(), renamed.end(), same);
+  if (static_cast<std::size_t>(renamed.end() - end) > trajectory.size() / kMostLost) return trajectory;
+  renamed.erase(end, renamed.end());
   return renamed;
 }
 

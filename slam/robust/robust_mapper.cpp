@@ -23,6 +23,7 @@ namespace {
 constexpr double kLateScan = 2.0;        ///< a scan may begin so long before the newest odometry [s]
 constexpr double kFastest = 10.0;        ///< odometry that goes faster has jumped [m/s]
 constexpr double kFastestTurn = 20.0;    ///< or turns faster [rad/s]
+constexpr double kNoDuration = 1e-3;     ///< stamps closer than any scanner's say the order, not how long it took [s]
 constexpr double kLeastJump = 0.5;       ///< below, a coarse clock may be to blame [m, rad]
 constexpr double kEdgeDistance = 0.008;  ///< least error between key frames [m]
 constexpr double kEdgeAngle = 0.003;     ///< [rad]
@@ -197,7 +198,8 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
 /// What odometry says; nothing where it cannot be true.
 TPose2D RobustMapper::Impl::plausible_motion(Stamp reference) {
   const TPose2D motion = motion_since_scan(reference);
-  const double time = std::max(1e-3, reference - scans_.back().stamp);
+  const double time = reference - scans_.back().stamp;
+  if (time < kNoDuration) return motion;
   const double path = length(motion.x, motion.y);
   const double turn = std::abs(wrap_angle(motion.phi));
   const bool jumped =

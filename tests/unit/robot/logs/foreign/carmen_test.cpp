@@ -212,6 +212,28 @@ TEST(Carmen, JitteringClockLeavesTheOrderOfTheLinesAndALargeJumpIsRefused) {
   EXPECT_EQ(message.find("a.log:9:1: the time jumps back by 7.000 s"), 0u) << message;
 }
 
+/// Trajectories are named by the log's own stamps where these tell the scans apart, and lose no pose where they do not.
+TEST(Carmen, TrajectoriesGetTheLogsOwnStampsWhereTheseTellScansApart) {
+  const testing::TempFolder folder;
+  const auto trajectory_of = [&](const std::vector<double>& times) {
+    CarmenWriter log;
+    const auto path = arc(static_cast<int>(times.size()));
+    for (std::size_t i = 0; i < times.size(); ++i) log.flaser(kRanges, path[i], path[i], times[i]);
+    testing::write_bytes(folder.file("a.log"), log.text);
+    ReplayRobot robot(folder.file("a.log"));
+    Trajectory delivered;
+    while (const auto inputs = robot.read())
+      for (const LaserScan& scan : inputs->scans) delivered.push_back({scan.stamp, {}});
+    EXPECT_EQ(delivered.size(), times.size());
+    return robot.in_own_stamps(delivered);
+  };
+  const Trajectory jittering = trajectory_of({1.0, 1.9, 1.2, 2.0});
+  const double own[] = {1.0, 1.2, 1.9, 2.0};
+  ASSERT_EQ(jittering.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(jittering[i].stamp, Stamp::from_seconds(own[i]));
+  EXPECT_EQ(trajectory_of({5.0, 5.0, 5.0, 5.0, 5.0}).size(), 5u);
+}
+
 TEST(Carmen, LinesOfEqualTimeAllStay) {
   CarmenWriter log;
   const auto path = arc(5);
