@@ -65,9 +65,9 @@ PY
 "$rubble" replay driven >replay.txt || fail "the driven run does not replay to the same bits: $(tail -3 replay.txt)"
 
 # A base that is unplugged on the way is named, and picked up again when it returns.
-start_emulator --fault base-unplug@4
+start_emulator --fault base-unplug@8
 # shellcheck disable=SC2086
-"$rubble" drive "$robot" $ports --time-limit 14 --out unplugged >out.txt 2>err.txt ||
+"$rubble" drive "$robot" $ports --time-limit 40 --out unplugged >out.txt 2>err.txt ||
   fail "the drive with a fault ended with $?: $(tail -3 err.txt)"
 stop_emulator
 grep -q "base: " err.txt || fail "the unplugged base is not named"
