@@ -1,6 +1,7 @@
 #include "robot/drivers/probe/probe.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <set>
@@ -8,7 +9,10 @@
 
 #include "base/angle.h"
 #include "robot/drivers/host_clock.h"
+#include "robot/drivers/levelling_unit.h"
+#include "robot/drivers/pioneer.h"
 #include "robot/drivers/port.h"
+#include "robot/drivers/port_word.h"
 #include "robot/drivers/scip/scip_link.h"
 #include "robot/drivers/scip/scip_scan.h"
 
@@ -17,7 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFirstScan = 1.0;  // a scanner sends its first one within [s]
+constexpr double kFirstScan = 1.0;            // a scanner sends its first one within [s]
+constexpr double kTurn = 0.01;                // a driver is asked what to send so often [s]
+constexpr double kLevellingPatience = 1.5;    // asked to identify itself a few times [s]
+constexpr double kBasePatience = 3.0;         // over TCP there is but one bit rate [s]
+constexpr double kSerialBasePatience = 12.0;  // each bit rate takes a second or two [s]
 
 std::string text(const char* format, double a, double b = 0.0) {
   char line[128];
@@ -60,9 +68,64 @@ std::optional<FoundDevice> probe_scanner(const std::string& word) {
   return found;
 }
 
+/// Lets a device's driver and the device talk until the driver is ready; false: it did not come to that in time.
+bool becomes_ready(Device& device, const std::string& word, double patience) {
+  const auto port = open_port(word);
+  const auto send = [&](const std::string& bytes) {
+    if (!bytes.empty()) port->write(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  };
+  const Stamp end = host_now() + patience;
+  device.opened(host_now(), port->is_serial());
+  int baud = 0;
+  while (!device.ready() && host_now() < end) {
+    if (port->is_serial() && device.baud() > 0 && device.baud() != baud) port->set_baud(baud = device.baud());
+    std::array<std::uint8_t, 1024> bytes;
+    const std::size_t got = port->read(bytes.data(), bytes.size(), kTurn);
+    if (got > 0) device.receive({reinterpret_cast<const char*>(bytes.data()), got}, host_now());
+    device.advance(host_now());
+    send(device.take_output(host_now()));
+  }
+  send(device.farewell());
+  return device.ready();
+}
+
+/// The unit that levels the scanner; its servos stay where they are.
+std::optional<FoundDevice> probe_levelling(const std::string& word) {
+  LevellingUnit unit({});
+  if (!becomes_ready(unit, word, kLevellingPatience)) return std::nullopt;
+  const LevellingIdentity& said = unit.identity();
+  FoundDevice found;
+  found.kind = "levelling unit";
+  found.facts = {{"model", said.model},
+                 {"sensor", said.sensor},
+                 {"reports", std::to_string(said.rate) + " a second"},
+                 {"servo pulses", std::to_string(said.us_min) + " to " + std::to_string(said.us_max) + " us"}};
+  const auto felt = unit.take_accelerations();
+  if (!felt.empty())
+    found.facts.emplace_back("feels", text("%.2f m/s^2 forward, %.2f m/s^2 left", felt.back().x, felt.back().y));
+  return found;
+}
+
+/// A Pioneer or one of its kin; its motors stay off, its own odometry is set to zero.
+std::optional<FoundDevice> probe_base(const std::string& word) {
+  PioneerSettings settings;
+  settings.passive = true;
+  Pioneer base(settings);
+  const bool is_tcp = parse_port_word(word).kind == PortKind::Tcp;
+  if (!becomes_ready(base, word, is_tcp ? kBasePatience : kSerialBasePatience)) return std::nullopt;
+  FoundDevice found;
+  found.kind = "robot base (ARCOS)";
+  found.facts = {{"name", base.identity().name},
+                 {"type", base.identity().type + " " + base.identity().subclass},
+                 {"serial number", base.configuration().serial},
+                 {"battery", text("%.1f V", base.battery())}};
+  if (base.emergency_button()) found.facts.emplace_back("trouble", "the emergency button is pressed");
+  return found;
+}
+
 /// Every kind of device that can be told apart; the first one that answers has it.
 using Probe = std::optional<FoundDevice> (*)(const std::string& word);
-constexpr Probe kProbes[] = {probe_scanner};
+constexpr Probe kProbes[] = {probe_scanner, probe_levelling, probe_base};
 
 }  // namespace
 

@@ -49,7 +49,7 @@ const std::map<std::string, Folders>& wings() {
       {"robot/drivers", {"robot", "robot/protocols"}},
       {"robot/drivers/scip", {"robot", "robot/drivers"}},
       {"robot/drivers/mrpt", {"robot", "robot/drivers"}},
-      {"robot/drivers/probe", {"robot", "robot/drivers", "robot/drivers/scip"}},
+      {"robot/drivers/probe", {"robot", "robot/drivers", "robot/drivers/scip", "robot/protocols"}},
       {"robot/emulators", {"robot", "robot/drivers", "robot/protocols"}},
       {"robot/emulators/scip", {"robot", "robot/drivers", "robot/drivers/scip", "robot/emulators"}},
       {"arenas/model", {}},

@@ -5,12 +5,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <thread>
 
 #include "base/angle.h"
 #include "base/error.h"
+#include "robot/drivers/host_clock.h"
+#include "robot/emulators/arcos_emulator.h"
+#include "robot/emulators/device_server.h"
+#include "robot/emulators/levelling_emulator.h"
 #include "robot/emulators/port_server.h"
 #include "robot/emulators/scip/urg_emulator.h"
 #include "robot/robot.h"
@@ -42,6 +48,47 @@ TEST(Probe, ScannerTellsWhoItIsAndWhatItSees) {
   EXPECT_EQ(fact(*found, "state"), "Sensor works well.");
   ASSERT_TRUE(found->scan);
   EXPECT_EQ(found->scan->ranges.size(), 682u);
+}
+
+/// Serves an emulated device and feeds it until it is destroyed.
+template <typename Feed>
+class Fed {
+ public:
+  Fed(DeviceServer& server, Feed feed)
+      : thread_([this, &server, feed] {
+          for (; !ending_; sleep_until(host_now() + 0.02)) server.with(feed);
+        }) {}
+  ~Fed() {
+    ending_ = true;
+    thread_.join();
+  }
+
+ private:
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+TEST(Probe, BaseTellsWhoItIsAndStandsStill) {
+  ArcosEmulator base({});
+  DeviceServer server("tcp:127.0.0.1:0", base, 1);
+  const Fed feed(server, [&] { base.measure({host_now(), {}, 0.0, 0.0, false}, host_now()); });
+  const auto found = probe_port(server.port());
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->kind, "robot base (ARCOS)");
+  EXPECT_EQ(fact(*found, "type"), "Pioneer p3at-sh");
+  EXPECT_THAT(fact(*found, "battery"), testing::EndsWith(" V"));
+  server.with([&] { EXPECT_FALSE(base.motors_on()); });
+}
+
+TEST(Probe, LevellingUnitTellsWhoItIsAndWhatItFeels) {
+  LevellingEmulator unit({});
+  DeviceServer server("tcp:127.0.0.1:0", unit, 1);
+  const Fed feed(server, [&] { unit.measure({host_now(), 1.0, -0.5}, {host_now(), 0.0, 0.0}, host_now()); });
+  const auto found = probe_port(server.port());
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->kind, "levelling unit");
+  EXPECT_EQ(fact(*found, "model"), "LEV1");
+  EXPECT_EQ(fact(*found, "feels"), "1.00 m/s^2 forward, -0.50 m/s^2 left");
 }
 
 TEST(Probe, SilentPortIsNoDeviceAndAClosedOneIsLost) {
