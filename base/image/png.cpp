@@ -1,11 +1,11 @@
 #include "base/image/png.h"
 
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "base/error.h"
+#include "base/text/text_file.h"
 
 namespace rubble {
 namespace {
@@ -30,13 +30,7 @@ std::string png_bytes(const cv::Mat& bgr) {
 
 std::string png_bytes(const RgbImage& image) { return png_bytes(bgr_of(image)); }
 
-void write_png(const std::string& path, const cv::Mat& bgr) {
-  const std::string bytes = png_bytes(bgr);
-  std::ofstream file(path, std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) throw RunError(path + ": cannot be written; check the folder and the free space");
-}
+void write_png(const std::string& path, const cv::Mat& bgr) { write_text_file(path, png_bytes(bgr)); }
 
 void write_png(const std::string& path, const RgbImage& image) { write_png(path, bgr_of(image)); }
 

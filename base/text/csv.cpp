@@ -1,5 +1,7 @@
 #include "base/text/csv.h"
 
+#include "base/text/formula.h"
+
 namespace rubble {
 
 std::string csv_quoted(const std::string& text) {
@@ -18,7 +20,8 @@ std::string csv_field(const std::string& text) {
 
 std::string csv_line(const std::vector<std::string>& fields) {
   std::string line;
-  for (const std::string& field : fields) line += (&field == &fields.front() ? "" : ",") + csv_field(field);
+  for (const std::string& field : fields)
+    line += (&field == &fields.front() ? "" : ",") + csv_field(not_a_formula(field));
   return line;
 }
 

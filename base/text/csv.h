@@ -11,7 +11,7 @@ std::string csv_quoted(const std::string& text);
 /// `text` as one CSV field: in quotes where it needs them, line breaks as spaces (every record stays one line).
 std::string csv_field(const std::string& text);
 
-/// The fields of one record, joined; no line end.
+/// The fields of one record, joined; no line end. What a spreadsheet would run gets an apostrophe before it.
 std::string csv_line(const std::vector<std::string>& fields);
 
 /// Fields of one line of CSV; quotes keep commas.

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <opencv2/imgproc.hpp>
+#include <sstream>
 
 #include "base/angle.h"
-#include "base/error.h"
 #include "base/text/number_text.h"
+#include "base/text/text_file.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -203,21 +203,19 @@ void write_ros_map(const std::string& stem, const OccupancyGrid& grid, double oc
   };
   const int x0 = std::clamp(index(box.x0, f.x0), 0, f.width), x1 = std::clamp(index(box.x1, f.x0), 0, f.width);
   const int y0 = std::clamp(index(box.y0, f.y0), 0, f.height), y1 = std::clamp(index(box.y1, f.y0), 0, f.height);
-  std::ofstream pgm(stem + ".pgm", std::ios::binary);
-  pgm << "P5\n" << x1 - x0 << " " << y1 - y0 << "\n255\n";
+  std::string pgm = "P5\n" + std::to_string(x1 - x0) + " " + std::to_string(y1 - y0) + "\n255\n";
   for (int y = y1 - 1; y >= y0; --y)
     for (int x = x0; x < x1; ++x) {
       const Occupancy o = grid[{x, y}];
-      pgm.put(static_cast<char>(o == Occupancy::Unknown ? 205 : o == Occupancy::Free ? 254 : 0));
+      pgm.push_back(static_cast<char>(o == Occupancy::Unknown ? 205 : o == Occupancy::Free ? 254 : 0));
     }
-  pgm.flush();
-  std::ofstream yaml(stem + ".yaml");
+  write_text_file(stem + ".pgm", pgm);
+  std::ostringstream yaml;
   yaml << "image: " << stem.substr(stem.find_last_of('/') + 1) << ".pgm\nresolution: " << number_text(f.resolution)
        << "\norigin: [" << number_text(f.x0 + x0 * f.resolution) << ", " << number_text(f.y0 + y0 * f.resolution)
        << ", 0.0]\nnegate: 0\noccupied_thresh: " << number_text(std::max(occupied_threshold, 0.25))
        << "\nfree_thresh: 0.196\n";
-  yaml.flush();
-  if (!pgm || !yaml) throw RunError(stem + ".pgm: cannot be written; check the folder and the free space");
+  write_text_file(stem + ".yaml", yaml.str());
 }
 
 }  // namespace rubble::scenarios

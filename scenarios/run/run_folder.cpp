@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/image/png.h"
 #include "base/text/csv.h"
+#include "base/text/formula.h"
 #include "scenarios/run/league_map.h"
 
 namespace rubble::scenarios {
@@ -27,8 +28,9 @@ constexpr const char* kPartial = ".partial";
 /// The league's list of points of interest: preamble, then one line a detection.
 std::string pois_csv(const Scenario& s, const std::vector<explore::VictimReport>& victims) {
   // Date and time would make two runs of one seed differ, so the preamble carries the start of the epoch.
-  std::string csv = "\"pois\"\n\"1.3\"\n" + csv_quoted(s.team) + "\n\"\"\n\"1970-01-01\"\n\"00:00:00\"\n" +
-                    csv_quoted(s.mission) + "\ndetection,time,type,name,x,y,z,robot,mode\n";
+  std::string csv = "\"pois\"\n\"1.3\"\n" + csv_quoted(not_a_formula(s.team)) +
+                    "\n\"\"\n\"1970-01-01\"\n\"00:00:00\"\n" + csv_quoted(not_a_formula(s.mission)) +
+                    "\ndetection,time,type,name,x,y,z,robot,mode\n";
   for (const auto& victim : victims) {
     const long seconds = static_cast<long>(victim.stamp.seconds());
     char line[200];
