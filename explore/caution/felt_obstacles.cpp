@@ -15,6 +15,7 @@ using mrpt::math::TPose2D;
 constexpr Stamp kForGood{std::numeric_limits<std::int64_t>::max()};
 constexpr double kBeforeBody = 0.10;  ///< [m]
 constexpr double kHalfBar = 0.2;      ///< [m]
+constexpr double kNarrowBar = 0.0;    ///< the same of a pardoned thing [m]
 constexpr double kBarStep = 0.1;      ///< [m]
 
 }  // namespace
@@ -24,7 +25,7 @@ TPoint2D FeltObstacles::Thing::at(double aside) const {
 }
 
 void FeltObstacles::feel(const Anchor& anchor, bool behind, const robot::RobotModel& model) {
-  Thing thing{anchor, behind ? -1.0 : 1.0, 0.5 * model.length + kBeforeBody, 1, Stamp::never()};
+  Thing thing{anchor, behind ? -1.0 : 1.0, 0.5 * model.length + kBeforeBody, kHalfBar, 1, Stamp::never()};
   for (const Thing& known : things_)
     if (distance(known.at(0.0), thing.at(0.0)) < config_.same_thing)
       thing.times = std::max(thing.times, known.times + 1);
@@ -50,7 +51,7 @@ std::vector<TPoint2D> FeltObstacles::points(Stamp now) const {
   std::vector<TPoint2D> points;
   for (const Thing& thing : things_) {
     if (now >= thing.until) continue;
-    for (double aside = -kHalfBar; aside < kHalfBar + 0.5 * kBarStep; aside += kBarStep)
+    for (double aside = -thing.half_bar; aside < thing.half_bar + 0.5 * kBarStep; aside += kBarStep)
       points.push_back(thing.at(aside));
   }
   return points;
@@ -63,6 +64,12 @@ int FeltObstacles::count(Stamp now) const {
 
 bool FeltObstacles::pardon(Stamp now) {
   bool any = false;
+  for (Thing& thing : things_) {
+    if (now >= thing.until || thing.half_bar <= kNarrowBar) continue;
+    thing.half_bar = kNarrowBar;
+    any = true;
+  }
+  if (any) return true;
   for (Thing& thing : things_) {
     if (thing.until <= now || thing.times >= config_.certain) continue;
     thing.until = now;

@@ -36,14 +36,17 @@ class FeltObstacles {
   std::vector<mrpt::math::TPoint2D> points(Stamp now) const;
   /// How many things count now.
   int count(Stamp now) const;
-  /// Forgets, until they are felt again, the things that are not certain; says whether there were any that counted.
+  /// Counts less as an obstacle, for nothing else can be reached: first every bar shrinks to its middle, which leaves a
+  /// lane beside it in a corridor; the next time things that are not certain are forgotten until they are felt again.
+  /// Says whether anything changed.
   bool pardon(Stamp now);
 
  private:
   struct Thing {
     Anchor anchor;
-    double side = 1.0;   ///< 1: before the body, -1: behind it
-    double reach = 0.0;  ///< of the bar from the base origin [m]
+    double side = 1.0;      ///< 1: before the body, -1: behind it
+    double reach = 0.0;     ///< of the bar from the base origin [m]
+    double half_bar = 0.0;  ///< [m]
     int times = 1;
     Stamp until = Stamp::never();
 

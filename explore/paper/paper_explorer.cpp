@@ -21,13 +21,15 @@ constexpr double kTrailStep = 0.15;              ///< [m]
 constexpr double kSameThing = 0.15;              ///< a hit this close to a wall of the map is that wall [m]
 constexpr double kTrailRadius = 0.20;            ///< [m]
 constexpr double kNearFrontier = 1.0;            ///< frontier this close at the start: turn to see it [m]
-constexpr int kMaxPardons = 2;                   ///< times that barred targets are tried again before giving up
+constexpr int kMaxPardons = 3;                   ///< times that barred targets are tried again before giving up
 constexpr double kSearchReplan = 2.0;            ///< on the way to a viewpoint [s]
 constexpr double kArrivedReplan = 0.3;           ///< standing at the end of the way [s]
 constexpr double kCueAge = 1.2;                  ///< an unconfirmed cue younger than this is worth waiting for [s]
+constexpr double kDetour = 3.0;                  ///< way over distance where no way is known
 constexpr double kUnsure = 0.40;                 ///< a pose that errs by so much places no victim [m]
-constexpr double kSameTarget = 0.5;              ///< [m]
-constexpr double kTurningRoom = 0.06;            ///< [m]
+constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
+constexpr double kSameTarget = 0.5;                     ///< [m]
+constexpr double kTurningRoom = 0.06;                   ///< [m]
 
 TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
 
@@ -205,10 +207,20 @@ Traversable PaperExplorer::floor_now(const slam::Mapper& mapper, const std::vect
 }
 
 Plan PaperExplorer::plan_on(const Traversable& floor) {
-  if (state_ == ExplorerState::GoingHome) return planner_.to_point(floor, pose_, position(home_.T_map_base), 0.15);
+  if (state_ == ExplorerState::GoingHome) return plan_home(floor);
   if (state_ == ExplorerState::Searching) return plan_search(floor);
   return planner_.to_frontier(
       floor, pose_, [this](const TPoint2D& p) { return blacklist_.barred(p, now_); }, target_);
+}
+
+/// To the start, or as near to it as can be reached.
+Plan PaperExplorer::plan_home(const Traversable& floor) {
+  Plan plan;
+  for (const double tolerance : kHomeTolerances) {
+    plan = planner_.to_point(floor, pose_, position(home_.T_map_base), tolerance);
+    if (plan.found) break;
+  }
+  return plan;
 }
 
 void PaperExplorer::replan(const slam::Mapper& mapper) {
@@ -245,7 +257,7 @@ void PaperExplorer::accept(Plan plan) {
   looks_in_vain_ = 0;
   const bool near = distance(plan.target, position(pose_)) < kVisited;
   if (state_ == ExplorerState::GoingHome) {
-    if (distance(position(home_.T_map_base), position(pose_)) < kVisited) return finish(MissionEnd::Home, "home again");
+    if (near) return finish(MissionEnd::Home, "home again");
   } else if (state_ == ExplorerState::Searching) {
     if (distance(plan.target, position(pose_)) < kAtViewpoint) return face_subject();
   } else if (near) {
@@ -328,8 +340,11 @@ void PaperExplorer::go_home(const std::string& why) {
 /// Measures the way home from time to time.
 bool PaperExplorer::must_turn_back() {
   if (!config_.return_home || state_ == ExplorerState::GoingHome || !home_way_.due(now_)) return false;
-  const Plan way = planner_.to_point(last_floor_, pose_, position(home_.T_map_base), 0.15);
-  return home_way_.must_turn_back(way.found ? way_of(way) : way_of(trail_), now_);
+  const Plan way = plan_home(last_floor_);
+  if (way.found) return home_way_.must_turn_back(way_of(way), now_);
+  // Blocked at the moment: a detour, but hardly longer than all the way it came.
+  const double straight = distance(position(home_.T_map_base), position(pose_));
+  return home_way_.must_turn_back(std::min(way_of(trail_), kDetour * straight), now_);
 }
 
 /// Records what the victim sensors see; a place seen on the way need not be driven to.

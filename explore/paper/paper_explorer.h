@@ -62,6 +62,7 @@ class PaperExplorer : public Explorer {
   Traversable floor_now(const slam::Mapper& mapper, const std::vector<TPoint2D>& hits) const;
   void replan(const slam::Mapper& mapper);
   Plan plan_on(const Traversable& floor);
+  Plan plan_home(const Traversable& floor);
   void accept(Plan plan);
   void visited_in_vain(const TPoint2D& target);
   void nothing_left();

@@ -64,11 +64,24 @@ TEST(FeltObstacles, WhatIsFeltElsewhereIsAnotherThing) {
   EXPECT_EQ(felt.count(at(1.5 * config.memory)), 0);
 }
 
+TEST(FeltObstacles, PardonLeavesALaneBesideAThingBeforeItForgetsIt) {
+  FeltObstacles felt;
+  felt.feel({at(0.0), TPose2D{}}, false, kModel);
+  const std::size_t wide = felt.points(at(1.0)).size();
+  EXPECT_TRUE(felt.pardon(at(1.0)));
+  EXPECT_LT(felt.points(at(1.0)).size(), wide);
+  EXPECT_EQ(felt.count(at(1.0)), 1);
+  EXPECT_TRUE(felt.pardon(at(2.0)));
+  EXPECT_EQ(felt.count(at(2.0)), 0);
+  EXPECT_FALSE(felt.pardon(at(3.0)));
+}
+
 TEST(FeltObstacles, PardonSparesWhatIsCertain) {
   FeltConfig config;
   FeltObstacles felt(config);
   felt.feel({at(0.0), TPose2D{5.0, 0.0, 0.0}}, false, kModel);
   for (int i = 0; i < config.certain; ++i) felt.feel({at(0.0), TPose2D{}}, false, kModel);
+  EXPECT_TRUE(felt.pardon(at(1.0)));
   EXPECT_TRUE(felt.pardon(at(1.0)));
   const std::vector<TPoint2D> left = felt.points(at(2.0));
   EXPECT_LT(nearest(left, {0.5 * kModel.length + 0.1, 0.0}), 1e-6);
