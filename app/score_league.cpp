@@ -127,7 +127,7 @@ class League {
     std::size_t width = 4;
     for (const LeagueEntry& e : entries_) width = std::max(width, e.team.size());
     const int w = static_cast<int>(width);
-    std::printf("%4s  %-*s%s", "rank", w, "team", points ? "  points quality location judge victims by" : "");
+    std::printf("%4s  %-*s%s", "rank", w, "team", points ? "  points quality location  fine judge victims by" : "");
     std::vector<const scoring::Figure*> columns = scoring::figures_with(scoring::kRanking);
     if (config_.warp) columns.push_back(scoring::find_figure("warped_score"));
     for (const scoring::Figure* column : columns) std::printf("  %s", column->label.c_str());
@@ -139,8 +139,9 @@ class League {
         continue;
       }
       if (points)
-        std::printf("  %6.1f %7.1f %8.1f %5.1f %-10s", e.total(), e.points ? e.points->quality : 0.0,
-                    e.points ? e.points->location : 0.0, e.judge, scoring::name_of(e.reported.from).c_str());
+        std::printf("  %6.1f %7.1f %8.1f %5.1f %5.1f %-10s", e.total(), e.points ? e.points->quality : 0.0,
+                    e.points ? e.points->location : 0.0, e.points ? e.points->fine : 0.0, e.judge,
+                    scoring::name_of(e.reported.from).c_str());
       const scoring::Evidence evidence = e.evidence();
       for (const scoring::Figure* column : columns)
         std::printf("  %*s", static_cast<int>(column->label.size()),

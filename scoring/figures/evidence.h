@@ -32,6 +32,8 @@ struct VictimFigures {
   double error_m = 0.0;   ///< mean over those found [m]
   double quality = 0.0;   ///< points for the map around them
   double location = 0.0;  ///< points for where they lie
+  double fine = 0.0;      ///< points that the false reports cost
+  double points() const { return quality + location - fine; }
 };
 
 /// What a mapper and an explorer did in one run.

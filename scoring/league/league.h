@@ -24,7 +24,7 @@ struct LeagueEntry {
   std::string note() const { return error.empty() ? score.note : error; }
   /// What the table of figures reads.
   Evidence evidence() const;
-  double total() const { return judge + (points ? points->quality + points->location : 0.0); }
+  double total() const { return judge + (points ? points->points() : 0.0); }
 };
 
 /// Sorts and numbers the entries. Those that could be judged come first: more points (to 0.1) win, then the higher

@@ -26,13 +26,13 @@ std::string row(const LeagueEntry& e, const LeaguePictures& pictures, bool with_
   std::string html = "<tr><td class=\"n\">" + std::to_string(e.rank) + "</td><td>" + escape_html(e.team) + "</td>";
   if (!e.error.empty())
     return html + "<td class=\"failed\" colspan=\"" +
-           std::to_string((with_points ? 5 : 0) + figures_with(kRanking).size() + 2) + "\">" + escape_html(e.error) +
+           std::to_string((with_points ? 6 : 0) + figures_with(kRanking).size() + 2) + "\">" + escape_html(e.error) +
            "</td></tr>\n";
   if (with_points) {
     const double quality = e.points ? e.points->quality : 0.0;
     const double location = e.points ? e.points->location : 0.0;
-    html += cell("%.1f", e.total()) + cell("%.1f", quality) + cell("%.1f", location) + cell("%.1f", e.judge) +
-            victims_cell(e);
+    html += cell("%.1f", e.total()) + cell("%.1f", quality) + cell("%.1f", location) +
+            cell("%.1f", e.points ? e.points->fine : 0.0) + cell("%.1f", e.judge) + victims_cell(e);
   }
   const Evidence evidence = e.evidence();
   for (const Figure* figure : figures_with(kRanking))
@@ -84,7 +84,7 @@ std::string league_page(const std::string& truth, bool with_points, const std::v
       "min(precision, recall) of the walls.</p>\n<table>\n<tr><th class=\"n\">rank</th><th>team</th>";
   if (with_points)
     body +=
-        "<th class=\"n\">points</th><th class=\"n\">map quality</th><th class=\"n\">location</th>"
+        "<th class=\"n\">points</th><th class=\"n\">map quality</th><th class=\"n\">location</th><th class=\"n\">fine</th>"
         "<th class=\"n\">judge</th><th class=\"n\">victims</th>";
   for (const Figure* figure : figures_with(kRanking)) body += "<th class=\"n\">" + escape_html(figure->label) + "</th>";
   body += "<th>note</th><th></th></tr>\n";

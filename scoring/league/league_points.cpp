@@ -81,6 +81,7 @@ LeaguePoints league_points(const OccupancyGrid& map, const OccupancyGrid& truth,
     out.quality += points.quality;
     out.location += points.location;
   }
+  out.fine = std::min(out.unfined(), config.false_report * static_cast<double>(out.false_alarms));
   return out;
 }
 

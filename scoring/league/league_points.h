@@ -14,11 +14,12 @@ namespace rubble::scoring {
 /// Section IV.A: of 50 points a victim earns, 10 are for the map around it, 10 for where it lies on the map. The other
 /// 30 are the judge's.
 struct LeaguePointsConfig {
-  double window = 2.4;      ///< side of the part of the map judged around a victim [m]
-  double tau = 0.5;         ///< k(d) of the walls in it [m]
-  double perfect = 0.1;     ///< errors of location up to here cost nothing [m]
-  double worthless = 1.2;   ///< errors from here on earn nothing: one pallet [m]
-  double most_drift = 1.2;  ///< the map around a victim may be off by so much before its walls are compared [m]
+  double window = 2.4;         ///< side of the part of the map judged around a victim [m]
+  double tau = 0.5;            ///< k(d) of the walls in it [m]
+  double perfect = 0.1;        ///< errors of location up to here cost nothing [m]
+  double worthless = 1.2;      ///< errors from here on earn nothing: one pallet [m]
+  double false_report = 10.0;  ///< what each report costs that belongs to no victim: half a victim [points]
+  double most_drift = 1.2;     ///< the map around a victim may be off by so much before its walls are compared [m]
 };
 
 struct VictimPoints {
@@ -34,6 +35,9 @@ struct LeaguePoints {
   std::size_t false_alarms = 0;
   double quality = 0.0;  ///< sums
   double location = 0.0;
+  double fine = 0.0;  ///< for the false reports, and no more than was earned
+  double unfined() const { return quality + location; }
+  double points() const { return unfined() - fine; }
 };
 
 /// Points of one aligned map. `reported` in the map's coordinates, `victims` in the truth's.

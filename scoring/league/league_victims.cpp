@@ -98,6 +98,7 @@ VictimFigures victim_figures(const ReportedVictims& reported, const std::optiona
   out.error_m = mean_error(*points);
   out.quality = points->quality;
   out.location = points->location;
+  out.fine = points->fine;
   return out;
 }
 

@@ -60,6 +60,26 @@ TEST(LeaguePoints, LocationFallsInALineToOnePallet) {
   }
 }
 
+/// Whoever reports victims everywhere finds them all and earns nothing; far outside the arena a report is as false.
+TEST(LeaguePoints, FalseReportsCostHalfAVictimEachDownToNothing) {
+  const OccupancyGrid truth = maze({});
+  const std::vector<Poi> victims = {{"v1", {0.6, 0.6}}, {"v2", {5.4, 4.2}}};
+  std::vector<Poi> reports = victims;
+  const double honest = league_points(truth, truth, {}, reports, victims).points();
+  EXPECT_NEAR(honest, 40.0, 0.1);
+  reports.push_back({"far away", {500.0, -80.0}});
+  const LeaguePoints once = league_points(truth, truth, {}, reports, victims);
+  EXPECT_EQ(once.false_alarms, 1u);
+  EXPECT_NEAR(once.points(), honest - 10.0, 1e-9);
+  EXPECT_NEAR(once.unfined(), honest, 1e-9);
+  std::vector<Poi> everywhere;
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 42; ++x) everywhere.push_back({"r", {0.25 * x, 0.25 * y}});
+  const LeaguePoints grid = league_points(truth, truth, {}, everywhere, victims);
+  EXPECT_EQ(grid.points(), 0.0);
+  EXPECT_GT(grid.unfined(), 30.0);
+}
+
 TEST(LeaguePoints, DriftCostsLocationButNotLocalQuality) {
   const OccupancyGrid truth = maze({});
   const OccupancyGrid drifted = moved(truth, 0.0, 0.3, 0.2);
