@@ -43,7 +43,8 @@ void clear_canvas_corners(cv::Mat& classes) {
     cv::Mat mask = cv::Mat::zeros(classes.rows + 2, classes.cols + 2, CV_8U);
     cv::floodFill(classes, mask, corner, cv::Scalar(), nullptr, cv::Scalar(), cv::Scalar(),
                   4 | cv::FLOODFILL_MASK_ONLY | (255 << 8));
-    const cv::Mat region = mask(cv::Rect(1, 1, classes.cols, classes.rows));
+    // A copy: filters look beyond a part of an image, and flood fill writes a border into its mask.
+    const cv::Mat region = mask(cv::Rect(1, 1, classes.cols, classes.rows)).clone();
     if (!is_canvas(region, classes)) continue;
     cv::Mat grown;
     cv::dilate(region, grown, cv::Mat::ones(3, 3, CV_8U));
