@@ -73,7 +73,7 @@ class Aligner {
     }
     const Trust trust = judge(best->wide, best->tight, describe(*best, hypotheses, out));
     out.aligned = trust.trusted;
-    out.note = trust.trusted ? trust.note : trust.note + about_rooms();
+    out.note = trust.trusted ? trust.note : why_not(trust, best->tight) + about_rooms();
     out.T_walls = match_.refine(best->T_best, 0.1, 20);
     out.T_walls.phi = wrap_angle(out.T_walls.phi);
     out.T_truth_map = trust.tight ? out.T_walls : fit_to_the_whole(*best, hypotheses, match_);
@@ -103,6 +103,15 @@ class Aligner {
   }
 
   std::string about_rooms() const { return rooms_note_.empty() ? "" : "; " + rooms_note_; }
+
+  /// A mirror image that fits to the decimetre, and clearly better than the map itself, is named as what it is.
+  std::string why_not(const Trust& trust, const PoseEvidence& tight) const {
+    constexpr double kAhead = 1.2;
+    const bool is_mirror_image =
+        mirrored_ && mirrored_->tight >= kTightEnough && mirrored_->tight >= kAhead * tight_agreement(tight);
+    return is_mirror_image ? "not aligned: the map is a mirror image of the truth; flip it and score it again"
+                           : trust.note;
+  }
 
   /// Fills in the contest and returns the rivals.
   Rivals describe(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses, Alignment& out) {
