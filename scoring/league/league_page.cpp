@@ -84,7 +84,8 @@ std::string league_page(const std::string& truth, bool with_points, const std::v
       "min(precision, recall) of the walls.</p>\n<table>\n<tr><th class=\"n\">rank</th><th>team</th>";
   if (with_points)
     body +=
-        "<th class=\"n\">points</th><th class=\"n\">map quality</th><th class=\"n\">location</th><th class=\"n\">fine</th>"
+        "<th class=\"n\">points</th><th class=\"n\">map quality</th><th class=\"n\">location</th><th "
+        "class=\"n\">fine</th>"
         "<th class=\"n\">judge</th><th class=\"n\">victims</th>";
   for (const Figure* figure : figures_with(kRanking)) body += "<th class=\"n\">" + escape_html(figure->label) + "</th>";
   body += "<th>note</th><th></th></tr>\n";

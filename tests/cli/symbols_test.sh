@@ -85,3 +85,14 @@ assert abs(float(by['listed']['points']) - float(by['drawn']['points'])) < 1, by
 PY
 grep -q 'symbols' league.txt || fail "the league's table does not say where victims came from"
 finish
+
+# 1680 reports all over the arena and far outside earn nothing, on the terminal too.
+python3 - >grid.csv <<'PY'
+print('name,x,y')
+for y in range(40):
+    for x in range(42): print(f'r{x}_{y},{0.3 * x - 4:.2f},{0.3 * y - 4:.2f}')
+PY
+"$rubble" score a/map.tif a/truth.tif --pois grid.csv --json >grid.json || fail "grid"
+json_holds grid.json "j['victims_found'] == 3 and j['victims_false'] == 1677 and j['points_victims'] == 0 and j['points_quality'] > 20"
+"$rubble" score a/map.tif a/truth.tif --pois grid.csv >table.txt || fail "grid"
+grep -qE '^points for victims +0\.0' table.txt || fail "the table does not show what the grid earns: $(cat table.txt)"
