@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "arenas/model/geometry.h"
 #include "base/angle.h"
+#include "base/rng.h"
 
 namespace rubble::arenas {
 namespace {
@@ -42,6 +45,32 @@ void add_boards(const ElementFrame& frame, double x0, double x1, double height, 
     bottom = o->height + 0.5 * o->tall;
   }
   add(bottom, height);
+}
+
+/// A quarter of a pallet that slopes.
+struct Quarter {
+  double x, y;    ///< its corner with the smallest coordinates
+  double gx, gy;  ///< gradient in the own frame
+  double foot;    ///< height of its low edge [m]
+};
+
+void add_quarter(const ElementFrame& frame, const Quarter& q, const char* element, Arena& arena) {
+  constexpr double kEdge = 0.6;
+  const mrpt::math::TPoint2D origin = frame.point(0.0, 0.0);
+  const mrpt::math::TPoint2D right = frame.point(1.0, 0.0) - origin;
+  const mrpt::math::TPoint2D ahead = frame.point(0.0, 1.0) - origin;
+  FloorPatch patch;
+  patch.outline = frame.box(q.x, q.y, q.x + kEdge, q.y + kEdge);
+  patch.z = q.foot + std::max(0.0, -(q.gx + q.gy)) * kEdge;  // one of the two is zero
+  patch.gx = q.gx * right.x + q.gy * ahead.x;
+  patch.gy = q.gx * right.y + q.gy * ahead.y;
+  patch.element = element;
+  arena.floor.push_back(patch);
+}
+
+double floor_or_ground(const Arena& arena, const TPoint2D& p) {
+  const double z = floor_height(arena, p);
+  return std::isfinite(z) ? z : 0.0;
 }
 
 }  // namespace
@@ -207,6 +236,84 @@ void add_hung_victim(const ElementFrame& frame, const Mount& mount, bool heat, b
   victim.sound = sound;
   victim.co2 = co2;
   arena.victims.push_back(victim);
+}
+
+void add_step_field(const ElementFrame& frame, double tallest, Arena& arena) {
+  constexpr int kColumns = 10;
+  constexpr double kEdge = 0.1;
+  const double step = 0.25 * tallest;
+  // The league builds them at random; every field here is the same throw with the league's counts beside the diagonal.
+  std::vector<double> heights;
+  for (const auto& [steps, count] : {std::pair{0, 9}, {1, 27}, {2, 33}, {3, 21}}) {
+    heights.insert(heights.end(), static_cast<std::size_t>(count), step * steps);
+  }
+  Rng rng(1, "red step field");
+  for (std::size_t i = heights.size(); i > 1; --i) {
+    const std::size_t k = rng.below(static_cast<std::uint32_t>(i));
+    std::swap(heights[i - 1], heights[k]);
+  }
+  std::size_t next = 0;
+  for (int row = 0; row < kColumns; ++row) {
+    for (int column = 0; column < kColumns; ++column) {
+      const double height = row == column ? tallest : heights[next++];
+      const double x = kEdge * column - 0.5;
+      const double y = kEdge * row - 0.5;
+      if (height > 0.0) add_platform(frame, x, y, x + kEdge, y + kEdge, height, "step_field", arena);
+    }
+  }
+  constexpr double kPlank = 0.05;
+  add_platform(frame, -0.49, -0.59, 0.49, -0.5, kPlank, "step_field", arena);
+  add_platform(frame, -0.49, 0.5, 0.49, 0.59, kPlank, "step_field", arena);
+  add_platform(frame, -0.59, -0.49, -0.5, 0.49, kPlank, "step_field", arena);
+  add_platform(frame, 0.5, -0.49, 0.59, 0.49, kPlank, "step_field", arena);
+}
+
+void add_crossing_ramps(const ElementFrame& frame, double slope, Arena& arena) {
+  // Quarter by quarter, counter-clockwise from the lower left: each rises a quarter turn further, +x first.
+  for (const Quarter& q : {Quarter{-kHalf, -kHalf, slope, 0.0, 0.0}, Quarter{0.0, -kHalf, 0.0, slope, 0.0},
+                           Quarter{0.0, 0.0, -slope, 0.0, 0.0}, Quarter{-kHalf, 0.0, 0.0, -slope, 0.0}}) {
+    add_quarter(frame, q, "crossing_ramp", arena);
+  }
+}
+
+void add_elevated_ramps(const ElementFrame& frame, double slope, Arena& arena) {
+  const double raised = slope * kHalf;
+  for (const Quarter& q : {Quarter{-kHalf, -kHalf, -slope, 0.0, raised}, Quarter{0.0, -kHalf, 0.0, -slope, 0.0},
+                           Quarter{0.0, 0.0, -slope, 0.0, raised}, Quarter{-kHalf, 0.0, 0.0, slope, 0.0}}) {
+    add_quarter(frame, q, "elevated_ramp", arena);
+  }
+}
+
+void add_tunnel(const ElementFrame& frame, Arena& arena) {
+  add_block(frame, -kHalf, -kHalf, kHalf, kHalf, 0.60, 0.62, "tunnel", arena);
+  for (const double x : {-kHalf, kHalf}) {
+    add_block(frame, x - 0.5 * kBoard, -kHalf, x + 0.5 * kBoard, kHalf, 0.0, 0.60, "tunnel", arena);
+  }
+}
+
+void add_victim(Arena& arena, Victim victim, double size) {
+  constexpr double kSheet = 0.015;
+  const TPoint2D centre{victim.position.x, victim.position.y};
+  victim.position.z += floor_or_ground(arena, centre);
+  arena.victims.push_back(victim);
+  if (size <= 0.0) return;
+
+  double lowest = floor_or_ground(arena, centre);
+  double highest = lowest;
+  for (const TPoint2D& corner : rectangle(centre, size, size, victim.facing)) {
+    const double z = floor_or_ground(arena, corner);
+    lowest = std::min(lowest, z);
+    highest = std::max(highest, z);
+  }
+  const TPoint2D forward{std::cos(victim.facing), std::sin(victim.facing)};
+  const TPoint2D left{-forward.y, forward.x};
+  const double aside = 0.5 * (size - kSheet);
+  const auto add_board = [&](const TPoint2D& middle, double length, double width) {
+    arena.solids.push_back({rectangle(middle, length, width, victim.facing), lowest, highest + size, "victim_box"});
+  };
+  add_board(centre - forward * aside, kSheet, size);
+  add_board(centre + left * aside, size, kSheet);
+  add_board(centre - left * aside, size, kSheet);
 }
 
 }  // namespace rubble::arenas

@@ -5,7 +5,7 @@
 #include <functional>
 #include <map>
 
-#include "arenas/elements/rough_shapes.h"
+#include "arenas/elements/element_shapes.h"
 #include "base/angle.h"
 
 namespace rubble::arenas {
