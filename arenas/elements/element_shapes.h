@@ -9,6 +9,9 @@
 
 namespace rubble::arenas {
 
+constexpr double kHalfPallet = 0.6;       ///< [m]
+constexpr double kBoardThickness = 0.01;  ///< of walls [m]
+
 /// An element's own frame: origin in the middle of its pallet, walls on the edge y = +0.6 m.
 class ElementFrame {
  public:
@@ -37,6 +40,14 @@ struct Opening {
 struct Mount {
   double along, height;
 };
+
+/// A box that stands or hangs, between two corners in the own frame. gives_way: the laser sees it, the robot pushes it
+/// aside.
+void add_block(const ElementFrame& frame, double x0, double y0, double x1, double y1, double bottom, double top,
+               const std::string& element, Arena& arena, bool gives_way = false);
+/// A level floor at height z to drive on, closed below.
+void add_platform(const ElementFrame& frame, double x0, double y0, double x1, double y1, double z,
+                  const std::string& element, Arena& arena);
 
 void add_wall(const ElementFrame& frame, double height, const std::vector<Opening>& openings, Arena& arena);
 /// The half of a wall to the right of the middle, seen from the pallet.
