@@ -32,9 +32,15 @@ constexpr std::size_t kMostWaiting = 400;
 constexpr int kSolveEvery = 15;     ///< key frames with near edges only
 constexpr double kSolveNow = 0.10;  ///< disagreement that is solved at once [m + 2 rad]
 constexpr double kSolveGradually = 0.25;
-constexpr double kWrongDistance = 0.4;  ///< a loop that ends up so far off is wrong [m]
-constexpr double kWrongAngle = 0.15;    ///< [rad]
-constexpr double kLoopLength = 0.3;     ///< what a loop adds to paths through the graph [m]
+constexpr double kWrongDistance = 0.4;    ///< a loop that ends up so far off is wrong [m]
+constexpr double kWrongAngle = 0.15;      ///< [rad]
+constexpr int kMostRemovals = 30;         ///< at the end, each with a solution of the whole graph
+constexpr double kStrained = 1.0;         ///< loops off by less (squared sigmas) bend nothing
+constexpr double kExplainedWithin = 1.5;  ///< old key frames so close explain what is seen [m]
+constexpr double kAsFar = 0.7;            ///< and are so much of the loop's path away ...
+constexpr double kExplained = 0.8;        ///< when they support so much of what the loop's would ...
+constexpr double kAsGood = 0.03;          ///< ... and contradict hardly more
+constexpr double kLoopLength = 0.3;       ///< what a loop adds to paths through the graph [m]
 constexpr Work kWorkPerDrawnFrame = 8000;
 constexpr Work kWorkPerJudged = 30;  ///< point and key frame
 
@@ -241,9 +247,28 @@ bool LoopCloser::sees_through(const Task& task, const TPose2D& T_old_new, const 
   const auto expected_back = frames_.agreement(old_points_, TPose2D() - T_expected, new_pose, new_frames_);
   const bool overlap = expected_there.supported + expected_back.supported > 0.15 * (there.supported + back.supported);
   const double contradiction = std::max(expected_there.contradiction(), expected_back.contradiction());
-  if (!overlap || contradiction >= config_.expected_contradiction) return false;
-  ++counts_.needless;
-  return true;
+  const bool stands = overlap ? contradiction < config_.expected_contradiction : explained_already(task, there);
+  counts_.needless += stands ? 1 : 0;
+  return stands;
+}
+
+/// Whether the map as it stands, with other old key frames than the loop's, shows what the new ones see: with equal
+/// cells all around, the cell that the robot is expected in fits as well as the loop's.
+bool LoopCloser::explained_already(const Task& task, const KeyFrames::Agreement& by_loop) const {
+  const std::vector<double> paths = frames_.paths_from(task.frame, std::numeric_limits<double>::infinity());
+  int closest = -1;
+  double least = kExplainedWithin;
+  for (int j = 0; j < new_frames_.back(); ++j) {
+    if (paths[static_cast<std::size_t>(j)] < kAsFar * task.path) continue;  // what moves along explains nothing
+    const double away = size_of(frames_.pose(task.frame) - frames_.pose(j));
+    if (away >= least) continue;
+    least = away;
+    closest = j;
+  }
+  if (closest < 0) return false;
+  const std::vector<int> there = frames_.around(closest, config_.old_frames, config_.old_path, new_frames_.back());
+  const auto now = frames_.agreement(points_, {}, frames_.pose(task.frame), there);
+  return now.supported >= kExplained * by_loop.supported && now.contradiction() <= by_loop.contradiction() + kAsGood;
 }
 
 /// A loop that moves the robot counts when others of the last key frames say the same.
@@ -308,20 +333,49 @@ void LoopCloser::take_solution() {
   frames_.move(solver_.nodes());
   covariance_ = solver_.covariance_of_last();
   covariance_frame_ = static_cast<int>(solver_.nodes().size()) - 1;
-  remove_wrong_loops();
+  if (remove_worst_loop(Suspects::Some)) solver_.start(frames_.graph(), GraphSolver::Plan::Gradually, config_.scaling);
 }
 
-/// Loops that the rest of the graph has outvoted are out for good.
-void LoopCloser::remove_wrong_loops() {
+/// Loops that may be wrong: those that the rest has outvoted, and those that pull - of these only the one that pulls
+/// hardest, unless all are asked for.
+std::vector<std::size_t> LoopCloser::suspects(Suspects which) const {
   const PoseGraph& graph = frames_.graph();
+  std::vector<std::size_t> suspects;
+  std::optional<std::size_t> hardest;
+  double most = kStrained;
   for (std::size_t k = 0; k < graph.edges.size(); ++k) {
-    if (!graph.edges[k].loop || !graph.edges[k].on) continue;
-    const bool unsolved = graph.edges[k].to > covariance_frame_;
-    const TPose2D off = disagreement(graph, graph.edges[k]);
-    if (unsolved || (size_of(off) <= kWrongDistance && std::abs(wrap_angle(off.phi)) <= kWrongAngle)) continue;
-    frames_.switch_off(k);
-    ++counts_.removed;
+    const GraphEdge& edge = graph.edges[k];
+    if (!edge.loop || !edge.on || edge.to > covariance_frame_) continue;
+    const TPose2D off = disagreement(graph, edge);
+    const double strain = squared_sigmas(graph, edge);
+    const bool outvoted = size_of(off) > kWrongDistance || std::abs(wrap_angle(off.phi)) > kWrongAngle;
+    if (outvoted || (which == Suspects::All && strain > kStrained)) {
+      suspects.push_back(k);
+    } else if (strain > most) {
+      most = strain;
+      hardest = k;
+    }
   }
+  if (hardest) suspects.push_back(*hardest);
+  return suspects;
+}
+
+/// Takes out for good the loop that disagrees most with all others; a single one may bend the whole graph until it
+/// seems to agree, and others to disagree. One at a time, each followed by a new solution, therefore.
+bool LoopCloser::remove_worst_loop(Suspects which) {
+  std::optional<std::size_t> worst;
+  double most = 1.0;
+  for (const std::size_t k : suspects(which)) {
+    const Eigen::Vector3d off = solver_.disagreement_without(frames_.graph().edges[k]);
+    const double wrong = std::max(length(off[0], off[1]) / kWrongDistance, std::abs(off[2]) / kWrongAngle);
+    if (wrong <= most) continue;
+    most = wrong;
+    worst = k;
+  }
+  if (!worst) return false;
+  frames_.switch_off(*worst);
+  ++counts_.removed;
+  return true;
 }
 
 void LoopCloser::run_queue() {
@@ -361,6 +415,8 @@ void LoopCloser::finish() {
   }
   solve_all(GraphSolver::Plan::Gradually);
   solve_all(GraphSolver::Plan::Final);
+  for (int round = 0; round < kMostRemovals && remove_worst_loop(Suspects::All); ++round)
+    solve_all(GraphSolver::Plan::Final);
 }
 
 }  // namespace rubble::slam

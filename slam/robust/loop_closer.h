@@ -99,7 +99,10 @@ class LoopCloser {
   void consider_solving();
   bool solve(Work& budget);
   void take_solution();
-  void remove_wrong_loops();
+  enum class Suspects { Some, All };
+  bool remove_worst_loop(Suspects suspects);
+  std::vector<std::size_t> suspects(Suspects which) const;
+  bool explained_already(const Task& task, const KeyFrames::Agreement& by_loop) const;
   void run_queue();
 
   const LoopConfig config_;

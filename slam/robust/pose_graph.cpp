@@ -1,7 +1,9 @@
 #include "slam/robust/pose_graph.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/angle.h"
 
@@ -64,6 +66,12 @@ TPose2D disagreement(const PoseGraph& graph, const GraphEdge& edge) {
   const TPose2D T_from_to =
       graph.nodes[static_cast<std::size_t>(edge.to)] - graph.nodes[static_cast<std::size_t>(edge.from)];
   return T_from_to - edge.T_from_to;
+}
+
+double squared_sigmas(const PoseGraph& graph, const GraphEdge& edge) {
+  const Linearised lin =
+      linearise(edge, graph.nodes[static_cast<std::size_t>(edge.from)], graph.nodes[static_cast<std::size_t>(edge.to)]);
+  return lin.r.dot(edge.information * lin.r);
 }
 
 void GraphSolver::start(const PoseGraph& graph, Plan plan, double scaling) {
@@ -140,6 +148,23 @@ Eigen::Matrix3d GraphSolver::covariance_of_last() const {
     covariance.col(column) = solved.tail<3>();
   }
   return 0.5 * (covariance + covariance.transpose());
+}
+
+/// With P the covariance that all edges leave to the residual, W what the edge puts in: r_without = (I - P W)^-1 r.
+Eigen::Vector3d GraphSolver::disagreement_without(const GraphEdge& edge) const {
+  constexpr double kAlone = 1e-6;
+  const Linearised lin = linearise(edge, graph_.nodes[static_cast<std::size_t>(edge.from)],
+                                   graph_.nodes[static_cast<std::size_t>(edge.to)]);
+  if (!analysed_ || factor_.info() != Eigen::Success) return lin.r;
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(3 * graph_.nodes.size()), 3);
+  J.middleRows<3>(3 * edge.from) = lin.by_from.transpose();
+  J.middleRows<3>(3 * edge.to) = lin.by_to.transpose();
+  const Eigen::MatrixXd solved = factor_.solve(J);
+  const Eigen::Matrix3d P = J.transpose() * solved;
+  const Eigen::Matrix3d W = share(edge, lin.r, phases_.back().scaling) * edge.information;
+  const Eigen::Matrix3d rest = Eigen::Matrix3d::Identity() - P * W;
+  if (std::abs(rest.determinant()) < kAlone) return Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  return rest.inverse() * lin.r;
 }
 
 }  // namespace rubble::slam

@@ -29,6 +29,8 @@ struct PoseGraph {
 
 /// How far the two ends of an edge lie from what it measured.
 mrpt::math::TPose2D disagreement(const PoseGraph& graph, const GraphEdge& edge);
+/// The same in squared sigmas of the edge.
+double squared_sigmas(const PoseGraph& graph, const GraphEdge& edge);
 
 /// Finds the nodes that fit the edges best: Gauss-Newton on a sparse Cholesky factorisation, loops under dynamic
 /// covariance scaling (Agarwal et al. 2013), which switches off what disagrees. Works on a copy, one step at a time, so
@@ -50,6 +52,10 @@ class GraphSolver {
   const std::vector<mrpt::math::TPose2D>& nodes() const { return graph_.nodes; }
   /// Covariance of the last node, in the frame of node 0, as of the last step.
   Eigen::Matrix3d covariance_of_last() const;
+  /// How far the ends of an edge that took part would lie from what it measured, had it not taken part (to first
+  /// order): what all others say about it (Baarda's data snooping). x, y along the axes of `from` [m], angle [rad];
+  /// infinite when nothing else ties the two ends together.
+  Eigen::Vector3d disagreement_without(const GraphEdge& edge) const;
 
  private:
   struct Phase {

@@ -1,0 +1,156 @@
+#include "slam/robust/robust_mapper.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/planar.h"
+#include "tests/support/slam_world.h"
+
+namespace rubble::slam {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using robot::Inputs;
+using robot::RobotModel;
+
+const std::vector<TPoint2D> kTour{{0.0, 0.0},   {3.2, 0.2},  {3.2, 1.0}, {0.0, 0.5},
+                                  {-1.4, -0.8}, {1.0, -0.6}, {0.0, 0.0}};
+
+/// A room whose furniture a seed places, with a tour round it.
+slam_test::World random_room(std::uint64_t seed) {
+  Rng rng(seed, "room");
+  slam_test::World world;
+  slam_test::add_box(world, -2.0, -1.5, 4.0, 2.5);
+  for (const TPoint2D& corner : {TPoint2D(2.0, 1.5), TPoint2D(-1.6, 0.9), TPoint2D(1.6, -1.4), TPoint2D(-0.6, 1.6)}) {
+    const double x = corner.x + rng.uniform(0.0, 0.2);
+    const double y = corner.y + rng.uniform(0.0, 0.2);
+    slam_test::add_box(world, x, y, x + rng.uniform(0.1, 0.6), y + rng.uniform(0.1, 0.5));
+  }
+  return world;
+}
+
+void play(Mapper& mapper, const std::vector<Inputs>& ticks) {
+  for (const Inputs& tick : ticks) mapper.update(tick);
+  mapper.finish();
+}
+
+/// What a mirror sees: left is right. The scanner's fan must be symmetric.
+std::vector<Inputs> mirrored(std::vector<Inputs> ticks) {
+  for (Inputs& tick : ticks) {
+    for (robot::Odometry& o : tick.odometry) {
+      o.pose = {o.pose.x, -o.pose.y, -o.pose.phi};
+      o.w = -o.w;
+    }
+    for (robot::LaserScan& scan : tick.scans) {
+      std::reverse(scan.ranges.begin(), scan.ranges.end());
+      scan.angle_min = -(scan.angle_min + scan.angle_step * static_cast<double>(scan.ranges.size() - 1));
+    }
+  }
+  return ticks;
+}
+
+TEST(RobustMapper, WithoutNoiseTheErrorIsBelowAFifthOfACell) {
+  const RobotModel model;
+  const RobustConfig config;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const slam_test::Drive drive = slam_test::drive_through(kTour, 0.0);
+    RobustMapper mapper(model, config, 1);
+    play(mapper, slam_test::record(random_room(seed), drive, model, 0.0, 0.0, seed));
+    EXPECT_LT(slam_test::first_pose_rmse(mapper.trajectory(), drive.truth), 0.2 * config.resolution);
+  }
+}
+
+TEST(RobustMapper, WithNoiseTheTrajectoryIsFarBetterThanTheOdometry) {
+  const RobotModel model;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const slam_test::Drive drive = slam_test::drive_through(kTour, 0.0);
+    RobustMapper mapper(model, {}, 1);
+    play(mapper, slam_test::record(random_room(seed), drive, model, 1.5, 0.01, seed));
+    EXPECT_LT(slam_test::first_pose_rmse(mapper.trajectory(), drive.truth), 0.02);
+    EXPECT_LT(slam_test::first_pose_rmse(mapper.live_trajectory(), drive.truth), 0.04);
+  }
+}
+
+TEST(RobustMapper, AMirroredWorldGivesAMirroredResult) {
+  const RobotModel model;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const auto ticks =
+        slam_test::record(random_room(seed), slam_test::drive_through(kTour, 0.0), model, 1.0, 0.01, seed);
+    RobustMapper mapper(model, {}, 1);
+    RobustMapper other(model, {}, 1);
+    play(mapper, ticks);
+    play(other, mirrored(ticks));
+    ASSERT_EQ(mapper.trajectory().size(), other.trajectory().size());
+    double most = 0.0;
+    for (std::size_t i = 0; i < mapper.trajectory().size(); ++i) {
+      const TPose2D& a = mapper.trajectory()[i].pose;
+      const TPose2D& b = other.trajectory()[i].pose;
+      most = std::max(most, length(a.x - b.x, a.y + b.y));
+      EXPECT_NEAR(wrap_angle(a.phi + b.phi), 0.0, 0.02);
+    }
+    EXPECT_LT(most, 0.03);
+  }
+}
+
+TEST(RobustMapper, APureRotationDoesNotMoveThePose) {
+  const RobotModel model;
+  slam_test::Drive drive;
+  for (int k = 0; k <= 160; ++k) drive.truth.push_back({Stamp{k * 100000000ll}, {0.0, 0.0, wrap_angle(0.08 * k)}});
+  for (const double wheel_error : {0.0, 1.0}) {
+    SCOPED_TRACE(wheel_error);
+    RobustMapper mapper(model, {}, 1);
+    const auto ticks = slam_test::record(slam_test::furnished_room(), drive, model, wheel_error, 0.005, 3);
+    for (const Inputs& tick : ticks) {
+      mapper.update(tick);
+      EXPECT_LT(length(mapper.pose().x, mapper.pose().y), 0.02);
+    }
+    EXPECT_NEAR(wrap_angle(mapper.pose().phi - drive.truth.back().pose.phi), 0.0, 0.01);
+  }
+}
+
+TEST(RobustMapper, SameInputsSameBits) {
+  const RobotModel model;
+  const auto ticks =
+      slam_test::record(slam_test::furnished_room(), slam_test::drive_through(kTour, 0.0), model, 1.0, 0.01, 4);
+  RobustMapper a(model, {}, 7);
+  RobustMapper b(model, {}, 8);  // it draws no random numbers
+  play(a, ticks);
+  play(b, ticks);
+  ASSERT_EQ(a.trajectory().size(), b.trajectory().size());
+  for (std::size_t i = 0; i < a.trajectory().size(); ++i) {
+    EXPECT_EQ(a.trajectory()[i].pose, b.trajectory()[i].pose);
+    EXPECT_EQ(a.live_trajectory()[i].pose, b.live_trajectory()[i].pose);
+  }
+  ASSERT_EQ(a.map().frame(), b.map().frame());
+  EXPECT_EQ(std::vector<std::uint8_t>(a.map().p_occ_plane(), a.map().p_occ_plane() + a.map().frame().size()),
+            std::vector<std::uint8_t>(b.map().p_occ_plane(), b.map().p_occ_plane() + b.map().frame().size()));
+}
+
+TEST(RobustMapper, TheWorldsPlaceAndHeadingDoNotMatter) {
+  const RobotModel model;
+  const slam_test::Drive drive = slam_test::drive_through(kTour, 0.0);
+  const auto ticks = slam_test::record(slam_test::furnished_room(), drive, model, 1.0, 0.01, 5);
+  auto moved = ticks;
+  const TPose2D there{40.0, -25.0, 2.0};  // where the odometry begins
+  for (Inputs& tick : moved)
+    for (robot::Odometry& o : tick.odometry) o.pose = there + o.pose;
+  RobustMapper a(model, {}, 1);
+  RobustMapper b(model, {}, 1);
+  play(a, ticks);
+  play(b, moved);
+  ASSERT_EQ(a.trajectory().size(), b.trajectory().size());
+  for (std::size_t i = 0; i < a.trajectory().size(); ++i) {
+    EXPECT_NEAR(a.trajectory()[i].pose.x, b.trajectory()[i].pose.x, 2e-3);
+    EXPECT_NEAR(a.trajectory()[i].pose.y, b.trajectory()[i].pose.y, 2e-3);
+  }
+}
+
+}  // namespace
+}  // namespace rubble::slam

@@ -1,0 +1,203 @@
+#include "slam/robust/loop_closer.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "tests/support/slam_key_frames.h"
+
+namespace rubble::slam {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using robot::RobotModel;
+
+constexpr double kSurfelCell = 0.10;
+constexpr double kBend = 0.008;  ///< of the estimate [rad/m]
+
+/// A corridor round a block, each side with niches of its own.
+slam_test::World ring_corridor() {
+  slam_test::World world;
+  slam_test::add_box(world, 0.0, 0.0, 9.0, 7.0);
+  slam_test::add_box(world, 1.5, 1.5, 7.5, 5.5);
+  slam_test::add_box(world, 2.3, 0.0, 2.7, 0.35);
+  slam_test::add_box(world, 5.1, 1.2, 6.2, 1.5);
+  slam_test::add_box(world, 8.6, 2.0, 9.0, 3.1);
+  slam_test::add_box(world, 7.5, 4.0, 7.8, 4.3);
+  slam_test::add_box(world, 5.0, 6.7, 6.8, 7.0);
+  slam_test::add_box(world, 2.2, 5.5, 2.9, 5.8);
+  slam_test::add_box(world, 0.0, 4.4, 0.3, 5.0);
+  slam_test::add_box(world, 1.25, 2.4, 1.5, 2.9);
+  return world;
+}
+
+std::vector<TPose2D> twice_round() {
+  std::vector<TPoint2D> way;
+  for (int round = 0; round < 2; ++round)
+    for (const TPoint2D& corner : {TPoint2D(0.8, 0.75), TPoint2D(8.2, 0.75), TPoint2D(8.2, 6.2), TPoint2D(0.8, 6.2)})
+      way.push_back(corner);
+  way.push_back({0.8, 0.75});
+  return slam_test::places_along(way, 0.3);
+}
+
+/// Drives round, asking for loops at each key frame; each gets `budget`.
+void drive(KeyFrames& frames, LoopCloser& closer, Work budget) {
+  const RobotModel model;
+  const auto places = twice_round();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    slam_test::add_key_frame(frames, ring_corridor(), places, kBend, model);
+    closer.look();
+    Work left = budget;
+    closer.work(left);
+  }
+}
+
+TEST(LoopCloser, ClosesTheRing) {
+  KeyFrames open;
+  KeyFrames frames;
+  LoopCloser closer({}, kSurfelCell, frames);
+  const RobotModel model;
+  const auto places = twice_round();
+  for (std::size_t i = 0; i < places.size(); ++i) slam_test::add_key_frame(open, ring_corridor(), places, kBend, model);
+  drive(frames, closer, 1000000000);
+  EXPECT_LT(slam_test::key_frame_rmse(frames, places), 0.3 * slam_test::key_frame_rmse(open, places));
+  closer.finish();
+  EXPECT_GT(slam_test::key_frame_rmse(open, places), 0.4);
+  EXPECT_LT(slam_test::key_frame_rmse(frames, places), 0.05);
+  EXPECT_GT(closer.counts().closed + closer.counts().near_edges, 20u);
+  EXPECT_EQ(slam_test::false_loops(frames, places, 0.25), 0);
+}
+
+TEST(LoopCloser, SlicesThatKeepUpGiveTheSameGraph) {
+  KeyFrames whole;
+  KeyFrames sliced;
+  LoopCloser at_once({}, kSurfelCell, whole);
+  LoopCloser by_slices({}, kSurfelCell, sliced);
+  const RobotModel model;
+  const auto places = twice_round();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    slam_test::add_key_frame(whole, ring_corridor(), places, kBend, model);
+    slam_test::add_key_frame(sliced, ring_corridor(), places, kBend, model);
+    at_once.look();
+    by_slices.look();
+    Work all = std::numeric_limits<Work>::max();
+    at_once.work(all);
+    int slices = 0;
+    for (Work slice = 0; slice <= 0; ++slices) {
+      slice = 200000;
+      by_slices.work(slice);
+      ASSERT_LT(slices, 100000);
+    }
+    ASSERT_EQ(whole.graph().edges.size(), sliced.graph().edges.size());
+    for (int k = 0; k < whole.size(); ++k) ASSERT_EQ(whole.pose(k), sliced.pose(k));
+  }
+  EXPECT_GT(at_once.counts().solved, 3u);
+}
+
+TEST(LoopCloser, AFalseLoopPlantedByHandIsRemoved) {
+  for (const double by : {0.8, 1.2, 2.5}) {
+    SCOPED_TRACE(by);
+    KeyFrames frames;
+    LoopCloser closer({}, kSurfelCell, frames);
+    drive(frames, closer, 1000000000);
+    const auto places = twice_round();
+    GraphEdge planted;
+    planted.from = 20;
+    planted.to = frames.last() - 20;
+    planted.T_from_to = places[static_cast<std::size_t>(planted.to)] - places[20];
+    planted.T_from_to.x += by;
+    planted.information = Eigen::Vector3d(1000.0, 1000.0, 10000.0).asDiagonal();
+    planted.loop = true;
+    frames.add_loop(planted, 0.3);
+    const std::size_t index = frames.graph().edges.size() - 1;
+    closer.finish();
+    EXPECT_FALSE(frames.graph().edges[index].on);
+    EXPECT_GE(closer.counts().removed, 1u);
+    EXPECT_LT(slam_test::key_frame_rmse(frames, places), 0.05);
+    EXPECT_EQ(slam_test::false_loops(frames, places, 0.25), 0);
+  }
+}
+
+TEST(LoopCloser, NothingToDoTakesNothing) {
+  KeyFrames frames;
+  LoopCloser closer({}, kSurfelCell, frames);
+  Work budget = 1000;
+  EXPECT_FALSE(closer.work(budget));
+  EXPECT_EQ(budget, 1000);
+  closer.finish();
+  EXPECT_EQ(closer.counts().searched, 0u);
+}
+
+/// Equal cells of 1.2 m on both sides of a corridor, their walls 0.8 m deep. Nothing but its ends tells one from the
+/// next.
+slam_test::World comb(int cells) {
+  slam_test::World world;
+  const double end = 1.2 * cells;
+  slam_test::add_box(world, 0.0, 0.0, end, 3.6);
+  for (int k = 1; k < cells; ++k)
+    for (const double y : {0.0, 2.4}) slam_test::add_box(world, 1.2 * k - 0.02, y, 1.2 * k + 0.02, y + 1.2);
+  return world;
+}
+
+/// Equal rooms of 2.4 m in two rows, each open to a corridor between them.
+slam_test::World rooms(int count) {
+  slam_test::World world;
+  const double end = 2.4 * count;
+  slam_test::add_box(world, 0.0, 0.0, end, 6.0);
+  for (int k = 0; k < count; ++k) {
+    for (const double y : {2.36, 3.6}) {
+      slam_test::add_box(world, 2.4 * k, y, 2.4 * k + 0.7, y + 0.04);
+      slam_test::add_box(world, 2.4 * k + 1.7, y, 2.4 * (k + 1), y + 0.04);
+    }
+    if (k == 0) continue;
+    slam_test::add_box(world, 2.4 * k - 0.02, 0.0, 2.4 * k + 0.02, 2.4);
+    slam_test::add_box(world, 2.4 * k - 0.02, 3.6, 2.4 * k + 0.02, 6.0);
+  }
+  return world;
+}
+
+TEST(LoopCloser, KeepsNoFalseLoopInMazesOfEqualCells) {
+  struct Maze {
+    const char* name;
+    slam_test::World world;
+    std::vector<TPoint2D> way;
+  };
+  const std::vector<Maze> mazes{
+      {"comb", comb(10), {{0.6, 1.8}, {11.4, 1.8}, {0.6, 1.8}, {11.4, 1.8}}},
+      {"rooms",
+       rooms(5),
+       {{0.6, 3.0},
+        {11.4, 3.0},
+        {1.2, 3.0},
+        {1.2, 1.0},
+        {1.2, 3.0},
+        {10.8, 3.0},
+        {10.8, 5.0},
+        {10.8, 3.0},
+        {0.6, 3.0}}},
+  };
+  LoopConfig config;
+  config.window = config.largest_window = 2.5;
+  const RobotModel model;
+  for (const Maze& maze : mazes) {
+    SCOPED_TRACE(maze.name);
+    const auto places = slam_test::places_along(maze.way, 0.3);
+    KeyFrames frames;
+    LoopCloser closer(config, kSurfelCell, frames);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      slam_test::add_key_frame(frames, maze.world, places, 0.001, model);
+      closer.look();
+      Work budget = 1000000000;
+      closer.work(budget);
+    }
+    closer.finish();
+    EXPECT_GT(closer.counts().searched, 20u);
+    EXPECT_EQ(slam_test::false_loops(frames, places, 0.4), 0);
+    EXPECT_LT(slam_test::key_frame_rmse(frames, places), 0.05);
+  }
+}
+
+}  // namespace
+}  // namespace rubble::slam
