@@ -17,6 +17,7 @@ Command batch_report_command();
 Command compare_command();
 Command check_command();
 Command devices_command();
+Command calibrate_command();
 Command drive_command();
 Command emulate_command();
 

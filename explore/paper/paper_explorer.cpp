@@ -30,9 +30,6 @@ constexpr double kUnsure = 0.40;                 ///< a pose that errs by so muc
 constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
 constexpr double kSameTarget = 0.5;                     ///< [m]
 constexpr double kTurningRoom = 0.06;                   ///< [m]
-constexpr double kLongestTick = 0.2;                    ///< commands of longer ticks are taken to have ended [s]
-constexpr double kHeld = 0.5;                           ///< a tick so long: the robot was held, a device was away [s]
-constexpr double kPatience = 2.0;                       ///< then its motors may still be off for a while [s]
 
 TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
 
@@ -89,13 +86,8 @@ robot::Commands PaperExplorer::next(const slam::Mapper& mapper, const robot::Inp
 
 /// Takes in what arrived in this tick.
 void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inputs) {
-  const double passed = now_ == Stamp::never() ? 0.0 : inputs.now - now_;
-  dt_ = std::min(passed, kLongestTick);
+  dt_ = now_ == Stamp::never() ? 0.0 : inputs.now - now_;
   now_ = inputs.now;
-  if (passed > kHeld) {
-    watch_.reset();
-    patient_until_ = now_ + kPatience;
-  }
   const TPose2D before = pose_;
   pose_ = mapper.pose();
   turned_ = wrap_angle(pose_.phi - before.phi);
@@ -179,8 +171,7 @@ Drive PaperExplorer::start(const slam::Mapper& mapper) {
 Drive PaperExplorer::drive(const slam::Mapper& mapper) {
   mark_searched();
   if (holding_still()) return {};
-  const bool patient = now_ < patient_until_;
-  if (tilt_.too_steep() || watch_.stuck(pose_, patient ? Drive{} : commanded_, stalled_, dt_)) {
+  if (tilt_.too_steep() || watch_.stuck(pose_, commanded_, stalled_, dt_)) {
     got_stuck(tilt_.too_steep() ? "it leans too much here" : stalled_ ? "the motors stall" : "it does not move");
     return {};
   }
@@ -305,14 +296,11 @@ void PaperExplorer::nothing_left() {
     ++looks_in_vain_;
     return look_around(kLookTurn, false);
   }
-  if (pardons_ < kMaxPardons) {
-    const bool barred = blacklist_.pardon(now_), felt = felt_.pardon(now_);
-    if (barred || felt) {
-      ++pardons_;
-      note("nothing else can be reached: what failed before is tried again");
-      plan_forced_ = true;
-      return;
-    }
+  if (pardons_ < kMaxPardons && (blacklist_.pardon(now_) | felt_.pardon(now_))) {
+    ++pardons_;
+    note("nothing else can be reached: what failed before is tried again");
+    plan_forced_ = true;
+    return;
   }
   if (state_ == ExplorerState::GoingHome) return finish(MissionEnd::Explored, "no way home is left");
   finish_exploring();

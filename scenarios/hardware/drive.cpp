@@ -88,6 +88,7 @@ class Driver {
       seconds_ = inputs->now - first_;
       if (inputs->now - saved_ >= 1.0) each_second(inputs->now);
       if (core_.finished()) return core_.reason();
+      if (piloted_out_) return "the drive is complete";
       if (options_.emergency && options_.emergency()) {
         real_.emergency_stop();
         return "emergency stop";
@@ -109,6 +110,11 @@ class Driver {
     robot::Commands commands = core_.step(inputs);
     if (options_.mode == DriveMode::Teleoperate) commands.drive = options_.keys ? options_.keys() : robot::Drive{};
     if (options_.mode == DriveMode::MapOnly) commands.drive = {};
+    if (options_.mode == DriveMode::Calibrate) {
+      const auto wanted = options_.pilot ? options_.pilot(inputs, core_.mapper().pose()) : std::nullopt;
+      piloted_out_ = !wanted;
+      commands = {wanted.value_or(robot::Drive{}), {}};  // the servos stay at zero, else they would follow its error
+    }
     return commands;
   }
 
@@ -154,6 +160,7 @@ class Driver {
     status.robot = real_.status();
     status.state = options_.mode == DriveMode::Teleoperate ? "by hand"
                    : options_.mode == DriveMode::MapOnly   ? "mapping"
+                   : options_.mode == DriveMode::Calibrate ? "calibrate"
                    : core_.explorer()                      ? name_of(core_.explorer()->state())
                                                            : "mapping";
     status.T_map_base = core_.mapper().pose();
@@ -174,6 +181,7 @@ class Driver {
   Stamp saved_ = Stamp::never();
   double seconds_ = 0.0;
   bool interrupted_ = false;
+  bool piloted_out_ = false;
   std::vector<std::string> told_;
   robot::RobotStatus last_;
   Clock::time_point map_saved_ = Clock::now();

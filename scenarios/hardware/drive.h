@@ -6,13 +6,14 @@
 
 #include "robot/commands.h"
 #include "robot/drivers/real_robot.h"
+#include "robot/measurements.h"
 #include "scenarios/hardware/robot_file.h"
 #include "scenarios/run/run.h"
 
 namespace rubble::scenarios {
 
 /// Who drives.
-enum class DriveMode { Explore, Teleoperate, MapOnly };
+enum class DriveMode { Explore, Teleoperate, MapOnly, Calibrate };
 
 /// What the terminal shows once a second.
 struct DriveStatus {
@@ -33,6 +34,8 @@ struct DriveOptions {
   std::function<bool()> interrupted;   ///< asked each tick; true ends the run
   std::function<bool()> emergency;     ///< asked each tick; true stops hard and ends the run
   std::function<robot::Drive()> keys;  ///< what the operator wants (Teleoperate)
+  /// What comes next (Calibrate), told where the mapper takes the robot to be; nothing ends the drive.
+  std::function<std::optional<robot::Drive>(const robot::Inputs&, const mrpt::math::TPose2D& T_map_base)> pilot;
   std::function<void(const DriveStatus&)> each_second;
   std::function<void(const std::string&)> tell;  ///< a device was lost or came back: one line
 };

@@ -64,6 +64,7 @@ const std::map<std::string, Folders>& wings() {
       {"slam/scan", {"slam/grid"}},
       {"slam/paper", {"slam", "slam/grid", "slam/scan"}},
       {"slam/robust", {"slam", "slam/grid", "slam/scan"}},
+      {"slam/calibration", {"slam/grid", "slam/scan", "slam/robust"}},
       {"explore/plan", {}},
       {"explore/caution", {"explore"}},
       {"explore/search", {"explore", "explore/plan"}},

@@ -1,0 +1,59 @@
+#include "app/robot_options.h"
+
+#include <csignal>
+#include <cstdio>
+
+#include "app/terminal.h"
+#include "base/angle.h"
+
+namespace rubble::app {
+namespace {
+
+constexpr const char* kPort = "/dev/ttyUSB0, pty:PATH or tcp:HOST:PORT";
+
+volatile std::sig_atomic_t emergency_signalled = 0;
+
+void on_emergency(int /*signal*/) { emergency_signalled = 1; }
+
+void print_status(const scenarios::DriveStatus& s) {
+  std::fprintf(
+      stderr,
+      "%6.0f s  %-10s  x %6.2f y %6.2f m %4.0f deg  %5.1f m2  %4.1f V  motors %-3s  scans %4.1f odometry %4.1f "
+      "levelling %4.1f /s\n",
+      s.seconds, s.state.c_str(), s.T_map_base.x, s.T_map_base.y, rad_to_deg(s.T_map_base.phi), s.known_m2,
+      s.robot.battery, s.robot.motors_on ? "on" : "off", s.scans_per_s, s.odometry_per_s, s.accelerations_per_s);
+}
+
+}  // namespace
+
+void RobotOptions::declare(Options& o) {
+  o.argument("robot", robot, "Robot file, or the name of a shipped one (default: pioneer_urg)",
+             Options::Need::Optional);
+  o.text("--urg", urg, std::string("Port of the laser scanner; ") + kPort);
+  o.text("--base", base, std::string("Port of the base; ") + kPort);
+  o.text("--levelling", levelling, std::string("Port of the levelling unit, or 'none'; ") + kPort);
+}
+
+std::vector<scenarios::Override> RobotOptions::with_ports(std::vector<scenarios::Override> overrides) const {
+  if (!urg.empty()) overrides.emplace_back("devices.urg.port", urg);
+  if (!base.empty()) overrides.emplace_back("devices.base.port", base);
+  if (levelling == "none") {
+    overrides.emplace_back("devices.levelling.driver", "none");
+  } else if (!levelling.empty()) {
+    overrides.emplace_back("devices.levelling.port", levelling);
+  }
+  return overrides;
+}
+
+scenarios::DriveOptions drive_options(Keyboard& keyboard, bool keys_stop) {
+  catch_interrupts();
+  std::signal(SIGUSR1, on_emergency);
+  scenarios::DriveOptions options;
+  options.interrupted = [&keyboard] { return interrupted() || keyboard.quit(); };
+  options.emergency = [&keyboard, keys_stop] { return emergency_signalled != 0 || (keys_stop && keyboard.pressed()); };
+  options.each_second = print_status;
+  options.tell = [](const std::string& line) { std::fprintf(stderr, "rubble: %s\n", line.c_str()); };
+  return options;
+}
+
+}  // namespace rubble::app

@@ -1,0 +1,191 @@
+#include "scenarios/hardware/calibrate.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "base/angle.h"
+#include "base/error.h"
+#include "robot/logs/log.h"
+#include "tests/support/sim_arena.h"
+#include "tests/support/source_dir.h"
+
+namespace rubble::scenarios {
+namespace {
+
+namespace fs = std::filesystem;
+
+arenas::Arena furnished_room() {
+  arenas::Arena arena = sim::test::room(-1.5, -1.5, 2.5, 2.5);
+  sim::test::add_wall(arena, 1.9, -0.6, 2.3, -0.2);
+  sim::test::add_wall(arena, -1.2, 1.8, -0.7, 2.2);
+  return arena;
+}
+
+/// A folder that goes away again.
+class Scratch {
+ public:
+  Scratch() : path_((fs::temp_directory_path() / "rubble-calibrate-XXXXXX").string()) {
+    if (mkdtemp(path_.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  }
+  ~Scratch() { fs::remove_all(path_); }
+  std::string file(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_;
+};
+
+struct Driven {
+  std::string trouble;
+  double reckoned = 0.0;  ///< turn by the wheels, to and fro [rad]
+  double turned = 0.0;    ///< in truth [rad]
+  double lag = 0.0;       ///< of the body behind its wheels [s]
+};
+
+/// How late the true heading follows that of the wheels: the body of the simulated robot does so by half a step of the
+/// physics, which the scanner sees as a delay of its own. By least squares, truth = a wheels - lag rate + b.
+class Lag {
+ public:
+  void add(double wheels, double truth, double rate) {
+    const Eigen::Vector3d row(wheels, -rate, 1.0);
+    N_ += row * row.transpose();
+    b_ += truth * row;
+  }
+  double value() const { return N_.ldlt().solve(b_)[1]; }
+
+ private:
+  Eigen::Matrix3d N_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b_ = Eigen::Vector3d::Zero();
+};
+
+/// Lets the pilot drive a simulated robot, recorded as `rubble calibrate` does.
+Driven drive_simulated(const arenas::Arena& arena, const robot::RobotModel& model, std::uint64_t seed,
+                       const std::string& log) {
+  sim::SimRobot robot(arena, model, {}, seed);
+  robot::RecordingRobot recorded(robot, log, "");
+  CalibrationDrive pilot(model, {});
+  Driven driven;
+  std::optional<mrpt::math::TPose2D> last;
+  std::optional<mrpt::math::TPose2D> last_truth;
+  Lag lag;
+  double wheels = 0.0;
+  double heading = 0.0;
+  while (auto inputs = recorded.read()) {
+    const mrpt::math::TPose2D truth = robot.truth().back().pose;
+    if (last_truth) driven.turned += std::abs(wrap_angle(truth.phi - last_truth->phi));
+    if (last_truth) heading += wrap_angle(truth.phi - last_truth->phi);
+    last_truth = truth;
+    for (const robot::Odometry& odometry : inputs->odometry) {
+      if (last) driven.reckoned += std::abs(wrap_angle(odometry.pose.phi - last->phi));
+      if (last) wheels += wrap_angle(odometry.pose.phi - last->phi);
+      last = odometry.pose;
+      if (odometry.stamp == robot.truth().back().stamp) lag.add(wheels, heading, odometry.w);
+    }
+    const auto wanted = pilot.next(*inputs, truth.phi);
+    if (!wanted) break;
+    recorded.command({*wanted, {}});
+  }
+  driven.trouble = pilot.trouble();
+  driven.lag = lag.value();
+  return driven;
+}
+
+RobotFile shipped() { return load_robot_file(std::string(RUBBLE_SOURCE_DIR) + "/robots/pioneer_urg.yaml"); }
+
+TEST(Calibrate, ASimulatedRobotsTrueNumbersComeBack) {
+  const Scratch scratch;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    RobotFile file = shipped();
+    robot::RobotModel model = file.settings.robot;
+    model.effective_track = seed == 1 ? 0.55 : 0.62;  // what this robot's firmware divides by
+    const std::string log = scratch.file(std::to_string(seed) + ".rlog");
+    const Driven driven = drive_simulated(furnished_room(), model, seed, log);
+    ASSERT_EQ(driven.trouble, "");
+
+    file.settings.robot.effective_track = model.effective_track;
+    const CalibratedRobot robot = calibrate_from_log(log, file, file);
+    const double track = model.effective_track * driven.reckoned / driven.turned;
+    std::cout << "seed " << seed << ": effective track " << robot.effective_track << " +- "
+              << robot.effective_track_sigma << ", true " << track << "; laser x " << robot.setup.T_base_laser.x
+              << " y " << robot.setup.T_base_laser.y << " yaw " << rad_to_deg(robot.setup.T_base_laser.phi)
+              << " deg, delay " << 1e3 * robot.setup.delay << " ms, true lag " << 1e3 * driven.lag << " ms\n";
+    EXPECT_NEAR(robot.effective_track / track, 1.0, 0.01);
+    EXPECT_NEAR(robot.setup.distance_scale, 1.0, 0.01);
+    EXPECT_NEAR(robot.setup.T_base_laser.x, model.T_base_laser.x, 0.005);
+    EXPECT_NEAR(robot.setup.T_base_laser.y, 0.0, 0.005);
+    EXPECT_NEAR(rad_to_deg(robot.setup.T_base_laser.phi), 0.0, 0.3);
+    EXPECT_NEAR(robot.setup.delay, driven.lag, 0.002);
+    EXPECT_NEAR(driven.lag, 0.0, 0.007);
+    ASSERT_TRUE(robot.calibration.level);
+    // What the simulated part's own calibration leaves is 0.11 deg (one sigma); it is not told.
+    EXPECT_NEAR(rad_to_deg(robot.calibration.level->pitch), 0.0, 0.4);
+    EXPECT_NEAR(rad_to_deg(robot.calibration.level->slope), 0.0, 0.1);
+  }
+}
+
+TEST(Calibrate, TheFileIsReadBackWithTheNumbersOfTheDriveAppliedToThoseInForce) {
+  const Scratch scratch;
+  const std::string log = scratch.file("log.rlog");
+  RobotFile file = shipped();
+  ASSERT_EQ(drive_simulated(furnished_room(), file.settings.robot, 4, log).trouble, "");
+  RobotFile in_force = file;  // the same drive, had it been recorded under these numbers
+  in_force.robot.base.distance_scale = 1.1;
+  in_force.robot.base.turn_scale = 0.9;
+  in_force.lidar.delay = 0.02;
+  in_force.robot.levelling.x.zero = 0.52;
+  in_force.robot.levelling.x.sensitivity = 0.12;
+  const CalibratedRobot plain = calibrate_from_log(log, file, file);
+  const CalibratedRobot robot = calibrate_from_log(log, in_force, file);
+  EXPECT_NEAR(robot.setup.distance_scale, 1.1 * plain.setup.distance_scale, 1e-9);
+  EXPECT_NEAR(robot.setup.turn_scale, 0.9 * plain.setup.turn_scale, 1e-9);
+  EXPECT_NEAR(robot.setup.delay, 0.02 + plain.setup.delay, 1e-9);
+
+  const std::string path = scratch.file("calibrated.yaml");
+  std::ofstream(path) << calibrated_yaml(robot, log);
+  const RobotFile back = load_robot_file(path);
+  EXPECT_NEAR(back.robot.base.distance_scale, robot.setup.distance_scale, 1e-6);
+  EXPECT_NEAR(back.robot.base.turn_scale, robot.setup.turn_scale, 1e-6);
+  EXPECT_NEAR(back.lidar.delay, robot.setup.delay, 1e-6);
+  EXPECT_NEAR(back.settings.robot.T_base_laser.x, robot.setup.T_base_laser.x, 1e-6);
+  EXPECT_NEAR(back.settings.robot.T_base_laser.y, robot.setup.T_base_laser.y, 1e-6);
+  EXPECT_NEAR(back.settings.robot.T_base_laser.yaw, robot.setup.T_base_laser.phi, 1e-6);
+  EXPECT_NEAR(back.robot.model.T_base_laser.yaw, robot.setup.T_base_laser.phi, 1e-6);
+  EXPECT_NEAR(back.robot.levelling.x.zero, 0.52 + 0.12 * std::sin(robot.calibration.level->pitch), 1e-6);
+  EXPECT_EQ(back.robot.base_port, file.robot.base_port);
+}
+
+TEST(CalibrationDrive, AWallInTheWayEndsItBeforeItIsTouched) {
+  const Scratch scratch;
+  arenas::Arena arena = sim::test::room(-1.5, -1.5, 2.5, 2.5);
+  sim::test::add_wall(arena, 0.8, -1.0, 0.9, 1.0);
+  const RobotFile file = shipped();
+  const Driven driven = drive_simulated(arena, file.settings.robot, 1, scratch.file("log.rlog"));
+  EXPECT_NE(driven.trouble.find("something stands in the way"), std::string::npos) << driven.trouble;
+  robot::ReplayRobot log(scratch.file("log.rlog"));
+  double farthest = 0.0;
+  while (const auto inputs = log.read())
+    for (const robot::Odometry& odometry : inputs->odometry) farthest = std::max(farthest, odometry.pose.x);
+  EXPECT_GT(farthest, 0.2);
+  EXPECT_LT(farthest, 0.8 - 0.5 * file.settings.robot.length);
+  EXPECT_THROW(calibrate_from_log(scratch.file("log.rlog"), file, file), InputError);
+}
+
+TEST(CalibrationDrive, WheelsThatDoNotFollowEndIt) {
+  CalibrationDrive pilot(robot::RobotModel{}, {});
+  robot::Inputs inputs;
+  std::optional<robot::Drive> wanted = robot::Drive{};
+  for (int tick = 0; wanted && tick < 10000; ++tick) {
+    inputs.now = Stamp::from_seconds(0.02 * tick);
+    inputs.odometry = {{inputs.now, {}, 0.0, 0.0, false}};
+    wanted = pilot.next(inputs, 0.0);
+  }
+  EXPECT_FALSE(wanted);
+  EXPECT_NE(pilot.trouble().find("wheels do not follow"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace rubble::scenarios
