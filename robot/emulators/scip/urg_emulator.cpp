@@ -215,6 +215,7 @@ struct UrgEmulator::Impl {
       outgoing.pop_front();
       const Stamp now = host_now();
       const bool taken = server->write(reinterpret_cast<const std::uint8_t*>(next.bytes.data()), next.bytes.size());
+      if (next.is_scan && taken && config.scan_sent) config.scan_sent(host_now());
       const std::lock_guard<std::mutex> lock(mutex);
       status.dropped += taken ? 0 : 1;
       if (!next.is_scan || !taken) continue;

@@ -1,0 +1,225 @@
+"""Drives emulated robots as an operator does, at a terminal: rubble emulate, rubble drive on a pty, keys and signals.
+
+usage: operator.py RUBBLE ROBOT.yaml SCENARIO.yaml; run in an empty folder. Prints what happened, ends with 1 when a law is
+broken. Times are printed and not judged but for a bound that no loaded machine breaks.
+"""
+import math
+import os
+import pty
+import select
+import signal
+import subprocess
+import sys
+import time
+
+RUBBLE, ROBOT, SCENARIO = sys.argv[1:]
+LONGEST_STOP = 6.0  # [s] 0.3 s and 0.4 m/s at 0.3 m/s2 are 1.7 s; the rest is for a machine that has other work
+failures = 0
+
+
+def check(law, text):
+    global failures
+    print(("ok      " if law else "FAILED  ") + text, flush=True)
+    failures += 0 if law else 1
+
+
+def truth():
+    """(time, x, y, heading) of every tick so far."""
+    rows = []
+    for line in open("truth.tum").read().splitlines():
+        field = line.split()
+        if len(field) == 8:
+            t, x, y, _, _, _, qz, qw = map(float, field)
+            rows.append((t, x, y, 2 * math.atan2(qz, qw)))
+    return rows
+
+
+def moves(rows, i, span=5):
+    """Whether the robot moves about row i: over 50 ms."""
+    a, b = rows[max(0, i - span)], rows[i]
+    dt = max(1e-3, b[0] - a[0])
+    turn = (b[3] - a[3] + math.pi) % (2 * math.pi) - math.pi
+    return math.hypot(b[1] - a[1], b[2] - a[2]) / dt > 0.01 or abs(turn) / dt > 0.03
+
+
+def speed(rows, t):
+    i = next((k for k, row in enumerate(rows) if row[0] >= t), len(rows) - 1)
+    a, b = rows[max(0, i - 5)], rows[i]
+    return math.hypot(b[1] - a[1], b[2] - a[2]) / max(1e-3, b[0] - a[0])
+
+
+def standstill(t0, window=LONGEST_STOP):
+    """Seconds from t0 until the robot rests (for half a second at least); None: it does not."""
+    deadline = time.time() + window + 3
+    while time.time() < deadline:
+        rows = truth()
+        if rows and rows[-1][0] > t0 + window:
+            break
+        time.sleep(0.2)
+    rows = truth()
+    rest_since = None
+    for i, row in enumerate(rows):
+        if row[0] < t0 or i < 5:
+            continue
+        if moves(rows, i):
+            rest_since = None
+        elif rest_since is None:
+            rest_since = row[0]
+        elif row[0] - rest_since > 0.5:
+            return rest_since - t0
+    return None
+
+
+def check_stop(what, t0):
+    took = standstill(t0)
+    v = speed(truth(), t0)
+    told = "never" if took is None else "%.2f s" % took
+    check(took is not None and took < LONGEST_STOP, "%s at %.2f m/s: at rest after %s" % (what, v, told))
+
+
+def wait_for(law, seconds=40.0):
+    deadline = time.time() + seconds
+    while time.time() < deadline:
+        if law():
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def drives_now():
+    rows = truth()
+    return len(rows) > 10 and speed(rows, rows[-1][0]) > 0.1
+
+
+class Drive:
+    """rubble drive on a terminal of its own."""
+
+    def __init__(self, out, *words):
+        self.text = ""
+        self.pid, self.file = pty.fork()
+        if self.pid == 0:
+            os.execv(RUBBLE, [RUBBLE, "drive", ROBOT, *PORTS, "--out", out, *words])
+
+    def look(self, seconds=0.0):
+        """Takes what the drive has printed meanwhile."""
+        deadline = time.time() + seconds
+        while True:
+            ready, _, _ = select.select([self.file], [], [], max(0.0, deadline - time.time()))
+            if not ready:
+                return self.text
+            try:
+                piece = os.read(self.file, 4096)
+            except OSError:  # the other end is closed
+                return self.text
+            if not piece:
+                return self.text
+            self.text += piece.decode(errors="replace")
+
+    def press(self, keys):
+        os.write(self.file, keys.encode())
+
+    def hold(self, key, seconds):
+        """As a terminal repeats a held key: 0.3 s pause, then 20 a second."""
+        self.press(key)
+        end = time.time() + seconds
+        time.sleep(0.3)
+        while time.time() < end:
+            self.press(key)
+            self.look(0.05)
+
+    def wait(self, seconds=30.0):
+        """Exit code; None: it does not end."""
+        deadline = time.time() + seconds
+        while time.time() < deadline:
+            self.look(0.1)
+            pid, status = os.waitpid(self.pid, os.WNOHANG)
+            if pid:
+                return os.waitstatus_to_exitcode(status)
+        os.kill(self.pid, signal.SIGKILL)
+        os.waitpid(self.pid, 0)
+        return None
+
+
+emulator = subprocess.Popen(
+    [RUBBLE, "emulate", SCENARIO, "--urg", "tcp:127.0.0.1:0", "--base", "tcp:127.0.0.1:0", "--levelling",
+     "tcp:127.0.0.1:0", "--truth", "truth.tum"], stdout=subprocess.PIPE, text=True)
+PORTS = []
+for line in emulator.stdout:
+    if line.strip() == "ready":
+        break
+    device, port = line.split()
+    PORTS += ["--" + device, port]
+
+try:
+    # Teleoperation: a held key drives, letting go stops, space stops, Q ends.
+    drive = Drive("teleop", "--teleop")
+    check(wait_for(lambda: "motors on" in drive.look()), "teleoperation: ready, motors on")
+    drive.hold("w", 2.5)
+    let_go = time.time()
+    check_stop("teleoperation: key let go", let_go)
+    rows = truth()
+    check(math.hypot(rows[-1][1] - rows[0][1], rows[-1][2] - rows[0][2]) > 0.3, "teleoperation: the robot drove")
+    before = truth()[-1][3]
+    drive.hold("\x1b[D", 1.5)
+    drive.press(" ")
+    check_stop("teleoperation: arrow held, then space", time.time())
+    turned = (truth()[-1][3] - before + math.pi) % (2 * math.pi) - math.pi
+    check(turned > 0.3, "teleoperation: arrow left turned it left by %.0f deg" % math.degrees(turned))
+    drive.press("q")
+    check(drive.wait() == 130, "teleoperation: Q ends the drive with 130")
+    check(os.path.getsize("teleop/score.json") > 0, "teleoperation: its folder is complete")
+
+    # Any key is the emergency stop.
+    drive = Drive("key")
+    check(wait_for(lambda: drive.look() is not None and drives_now()), "exploring: it drives")
+    pressed = time.time()
+    drive.press("x")
+    code = drive.wait()
+    check(code is not None and "emergency stop" in drive.text, "a key ends the drive (exit code %s)" % code)
+    check_stop("a key", pressed)
+
+    # So is SIGUSR1.
+    drive = Drive("signal")
+    check(wait_for(lambda: drive.look() is not None and drives_now()), "exploring: it drives")
+    sent = time.time()
+    os.kill(drive.pid, signal.SIGUSR1)
+    code = drive.wait()
+    check(code is not None and "emergency stop" in drive.text, "SIGUSR1 ends the drive (exit code %s)" % code)
+    check_stop("SIGUSR1", sent)
+
+    # Ctrl-C at the terminal.
+    drive = Drive("interrupt")
+    check(wait_for(lambda: drive.look() is not None and drives_now()), "exploring: it drives")
+    sent = time.time()
+    drive.press("\x03")
+    check(drive.wait() == 130, "Ctrl-C ends the drive with 130")
+    check_stop("Ctrl-C", sent)
+    check(os.path.getsize("interrupt/score.json") > 0, "Ctrl-C: its folder is complete")
+
+    # An operator who falls silent, and comes back.
+    def touch():
+        open("beat", "a").close()
+        os.utime("beat")
+
+    drive = Drive("heartbeat", "--heartbeat", "beat", "--set", "safety.operator_silence_s=0.3")
+
+    def beat_until_driving():
+        touch()
+        drive.look()
+        return drives_now()
+
+    check(wait_for(beat_until_driving, 60.0), "heartbeat: it drives while the file is touched")
+    touch()
+    last = time.time()
+    check_stop("heartbeat: silent", last)
+    check("heartbeat: silent" in drive.look() and "must be touched" in drive.text, "heartbeat: its silence is told")
+    check(wait_for(beat_until_driving, 60.0), "heartbeat: it drives on when the file is touched again")
+    check("heartbeat: reports" in drive.look(), "heartbeat: its return is told")
+    drive.press("x")
+    check(drive.wait() is not None, "heartbeat: a key ends the drive")
+finally:
+    emulator.send_signal(signal.SIGINT)
+    emulator.wait(20)
+
+print("load of the machine:", open("/proc/loadavg").read().split()[0])
+sys.exit(1 if failures else 0)
