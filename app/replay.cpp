@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "app/mapper_choice.h"
 #include "app/terminal.h"
+#include "scenarios/hardware/raw_replay.h"
 
 namespace rubble::app {
 namespace {
@@ -13,10 +14,25 @@ namespace {
 struct ReplayArguments {
   std::string run;
   std::string out;
+  bool raw = false;
   MapperChoice mapper;
 };
 
+/// The drivers again on the bytes of the devices.
+int replay_bytes(const std::string& run) {
+  const scenarios::RawReplay replay = scenarios::replay_raw(run);
+  for (const auto& kind : replay.kinds)
+    std::printf("%-18s %zu of %zu the same, stamps within %.2f ms (%zu in the bytes)\n", kind.name.c_str(), kind.same,
+                kind.recorded, 1e3 * kind.worst_stamp, kind.replayed);
+  std::printf(
+      "%-18s %zu scans, %zu packets of the base, %zu lines of the levelling unit; the odometry jumped %zu times\n",
+      "damaged", replay.damaged_scans, replay.bad_sums, replay.bad_lines, replay.jumps);
+  std::printf("%s\n", replay.identical ? "the drivers say the same again" : "NOT the same");
+  return replay.identical ? kOk : kBroken;
+}
+
 int replay(const ReplayArguments& arguments) {
+  if (arguments.raw) return replay_bytes(arguments.run);
   const auto options = terminal_options(arguments.out, false);
   const auto overrides = with_mapper(arguments.mapper, {});
   scenarios::Scenario scenario = scenarios::recorded_scenario(arguments.run, overrides);
@@ -40,6 +56,8 @@ Command replay_command() {
             auto a = std::make_shared<ReplayArguments>();
             o.argument("run", a->run, "Run folder");
             o.text("--out", a->out, "Keep the re-made artefacts in this folder");
+            o.flag("--raw", a->raw, "Run the drivers again on the raw bytes of a real drive instead");
+            o.excludes("--raw", "--out");
             add_mapper(o, a->mapper);
             return [a] { return replay(*a); };
           }};

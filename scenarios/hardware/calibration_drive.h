@@ -21,8 +21,8 @@ struct CalibrationDriveConfig {
 };
 
 /// Drives what a calibration needs: a square, the same one back the other way round, and a turn on the spot either way,
-/// with a rest after each leg. Ways are measured by the wheels; turns, whose scale may be far off, also by the map: what
-/// is left of one at its end is turned after it.
+/// with a rest after each leg. Ways are measured by the wheels; turns, whose scale may be far off, also by the map:
+/// what is left of one at its end is turned after it.
 class CalibrationDrive {
  public:
   CalibrationDrive(const robot::RobotModel& model, const CalibrationDriveConfig& config);

@@ -2,23 +2,19 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
 
-#include "robot/drivers/clock_map.h"
 #include "robot/drivers/host_clock.h"
 #include "robot/drivers/port_word.h"
 #include "robot/drivers/scan_queue.h"
+#include "robot/drivers/scip/scan_maker.h"
 #include "robot/drivers/scip/scip_link.h"
-#include "robot/drivers/scip/scip_scan.h"
-#include "robot/drivers/scip/scip_text.h"
 
 namespace rubble::robot {
 namespace {
 
-constexpr double kMillisecond = 1e-3;
 constexpr double kPause = 0.05;  // the thread asks so often whether it shall end [s]
 
 }  // namespace
@@ -75,11 +71,8 @@ struct ScipScanner::Impl {
       counted = all;
     };
     link.shake_hands(config.only_scip1);
-    ClockMapConfig clock_config;
-    clock_config.usual_delay = usual_delay(link.geometry());
-    ClockMap map(clock_config);
-    WrappingClock clock(scip::kClockWrap, kMillisecond);
-    link.ask_time(clock, map);
+    scip::ScanMaker maker(link.geometry(), link.is_scip2(), {config.range_max, config.no_echo_is_miss});
+    link.ask_time(maker.clock(), maker.map());
     link.start();
     queue.set_info(link.info());
     queue.update([](ScannerStatus& status) {
@@ -89,13 +82,12 @@ struct ScipScanner::Impl {
       ++status.connects;
     });
     Stamp last_heard = host_now();
-    double last_turn = -1.0;
     while (!is_ending()) {
       const auto sweep = link.next_sweep(kPause);
       if (link.damaged() != counted) count_damaged();
       if (sweep) {
         last_heard = host_now();
-        deliver(link, *sweep, clock, map, last_turn);
+        deliver(link, *sweep, maker);
       } else if (host_now() - last_heard > config.silence) {
         throw DeviceLost(config.port + ": the scanner is silent; it is started anew, check its cable and power");
       }
@@ -103,41 +95,18 @@ struct ScipScanner::Impl {
     link.stop();
   }
 
-  /// From step 0 to the arrival at the soonest: the device sends when the last step is measured.
-  static double usual_delay(const scip::Geometry& geometry) {
-    const double last_of_turn = 0.75 * geometry.period();  // step 768 of 1024: the rest of the turn is blind
-    return std::max(last_of_turn, geometry.after_sweep());
-  }
-
-  void deliver(const scip::Link& link, const scip::Sweep& sweep, WrappingClock& clock, ClockMap& map,
-               double& last_turn) {
-    const double period = link.geometry().period();
-    Stamp turn = link.begun() - usual_delay(link.geometry());
-    double missed = 0.0;
-    if (link.is_scip2()) {
-      const WrappingClock::Reading reading = clock.read(sweep.clock_ms, link.begun());
-      if (reading.restarted) {
-        map.clear();
-        last_turn = -1.0;
-      }
-      // A doubled turn says nothing new; one that goes back would break the order that all readers count on.
-      if (last_turn >= 0.0 && reading.time - last_turn < 0.5 * period) return;
-      if (last_turn >= 0.0) missed = std::round((reading.time - last_turn) / period) - 1.0;
-      last_turn = reading.time;
-      map.add(reading.time, link.begun());
-      turn = map.host(reading.time);
-    }
-    LaserScan scan = scip::scan_of(sweep, link.geometry(), {config.range_max, config.no_echo_is_miss}, turn);
-    const double latency = link.ended() - (turn + link.geometry().after_sweep());
+  void deliver(const scip::Link& link, const scip::Sweep& sweep, scip::ScanMaker& maker) {
+    auto made = maker.make(sweep, link.begun(), link.ended());
+    if (!made) return;
     queue.update([&](ScannerStatus& status) {
       ++status.scans;
-      status.missed += static_cast<std::uint64_t>(std::max(0.0, missed));
-      status.latency = latency;
-      status.worst_latency = std::max(status.worst_latency, latency);
-      status.clock_drift = map.drift();
-      status.clock_doubt = map.doubt().value_or(0.0);
+      status.missed += static_cast<std::uint64_t>(made->missed);
+      status.latency = made->latency;
+      status.worst_latency = std::max(status.worst_latency, made->latency);
+      status.clock_drift = maker.map().drift();
+      status.clock_doubt = maker.map().doubt().value_or(0.0);
     });
-    queue.put(std::move(scan));
+    queue.put(std::move(made->scan));
   }
 };
 

@@ -160,7 +160,7 @@ TEST_P(UrgWire, RestartedScannerIsSwitchedToTheNewProtocolAgain) {
   bench.connect();
   ASSERT_TRUE(bench.more(2));
   bench.emulator->cycle_power();
-  ASSERT_TRUE(wait_for([&] { return bench.scanner->status().connects == 2; }, 2.0)) << bench.scanner->status().error;
+  ASSERT_TRUE(wait_for([&] { return bench.scanner->status().connects == 2; }, 10.0)) << bench.scanner->status().error;
   bench.scanner->take();
   ASSERT_TRUE(bench.more(3));
   expect_true(bench, bench.scans.back(), 0.002);

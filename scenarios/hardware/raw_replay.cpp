@@ -1,0 +1,90 @@
+#include "scenarios/hardware/raw_replay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "robot/drivers/black_box_replay.h"
+#include "robot/drivers/scip/scip_replay.h"
+#include "robot/logs/log.h"
+#include "scenarios/hardware/robot_file.h"
+
+namespace rubble::scenarios {
+namespace {
+
+bool same(const robot::LaserScan& a, const robot::LaserScan& b) {
+  return a.ranges.size() == b.ranges.size() && a.codes == b.codes &&
+         std::memcmp(a.ranges.data(), b.ranges.data(), a.ranges.size() * sizeof(float)) == 0;
+}
+bool same(const robot::Odometry& a, const robot::Odometry& b) {
+  return a.pose.x == b.pose.x && a.pose.y == b.pose.y && a.pose.phi == b.pose.phi && a.v == b.v && a.w == b.w &&
+         a.stalled == b.stalled;
+}
+bool same(const robot::Acceleration& a, const robot::Acceleration& b) { return a.x == b.x && a.y == b.y; }
+bool same(const robot::AimState& a, const robot::AimState& b) { return a.pitch == b.pitch && a.roll == b.roll; }
+
+/// Finds each recorded entry among the replayed ones, in order: of equal ones that whose stamp is closest.
+template <class T>
+RawReplay::Kind compared(const std::string& name, const std::vector<T>& recorded, const std::vector<T>& replayed) {
+  constexpr double kNear = 1.0;  ///< entries farther apart are not the same [s]
+  RawReplay::Kind kind;
+  kind.name = name;
+  kind.recorded = recorded.size();
+  kind.replayed = replayed.size();
+  std::size_t next = 0;
+  for (const T& then : recorded) {
+    while (next < replayed.size() && replayed[next].stamp < then.stamp - kNear) ++next;
+    std::size_t best = replayed.size();
+    for (std::size_t i = next; i < replayed.size() && replayed[i].stamp < then.stamp + kNear; ++i) {
+      if (!same(then, replayed[i])) continue;
+      if (best == replayed.size() ||
+          std::abs(replayed[i].stamp - then.stamp) < std::abs(replayed[best].stamp - then.stamp))
+        best = i;
+    }
+    if (best == replayed.size()) continue;
+    ++kind.same;
+    kind.worst_stamp = std::max(kind.worst_stamp, std::abs(replayed[best].stamp - then.stamp));
+    next = best + 1;
+  }
+  return kind;
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+}  // namespace
+
+RawReplay replay_raw(const std::string& run_folder) {
+  const RobotFile file = load_robot_file(run_folder + "/robot.yaml");
+  const std::vector<robot::BlackBoxEntry> entries = robot::read_black_box(run_folder + "/devices.bytes");
+  robot::Inputs recorded;
+  robot::ReplayRobot log(run_folder + "/log.rlog");
+  while (const auto inputs = log.read()) {
+    append(recorded.scans, inputs->scans);
+    append(recorded.odometry, inputs->odometry);
+    append(recorded.accelerations, inputs->accelerations);
+    append(recorded.aims, inputs->aims);
+  }
+
+  RawReplay result;
+  if (file.lidar.driver == "scip") {  // MRPT opens its port itself: its bytes are not there
+    robot::ReplayedScans scans =
+        robot::replay_scanner(entries, {file.settings.robot.laser.range_max, file.lidar.no_echo_is_miss});
+    for (robot::LaserScan& scan : scans.scans) scan.stamp = scan.stamp - file.lidar.delay;
+    result.kinds.push_back(compared("scans", recorded.scans, scans.scans));
+    result.damaged_scans = scans.damaged;
+  }
+  const robot::ReplayedBox box = robot::replay_black_box(entries, file.robot.base, file.robot.levelling);
+  result.kinds.push_back(compared("odometry", recorded.odometry, box.odometry));
+  result.kinds.push_back(compared("accelerations", recorded.accelerations, box.accelerations));
+  result.kinds.push_back(compared("servo angles", recorded.aims, box.aims));
+  result.bad_sums = box.bad_sums;
+  result.jumps = box.jumps;
+  result.bad_lines = box.bad_lines;
+  for (const RawReplay::Kind& kind : result.kinds) result.identical = result.identical && kind.same == kind.recorded;
+  return result;
+}
+
+}  // namespace rubble::scenarios
