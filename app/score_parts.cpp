@@ -63,6 +63,7 @@ void print_contest(const scoring::MapScore& s) {
   print_row(s.aligned ? "proposed by" : "best pose, not trusted, by",
             s.source + ", of " + scoring::names_of(s.contest.tried) + "; agreement " +
                 thousandths(s.contest.agreement) + " of 2");
+  if (!s.aligned) print_row("score there, not trusted", thousandths(s.score_at_best_pose));
   print_row("runner-up pose", s.contest.runner_up_source.empty()
                                   ? "none"
                                   : thousandths(s.runner_up) + " of the best (" +

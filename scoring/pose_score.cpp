@@ -5,7 +5,7 @@ namespace rubble::scoring {
 MapScore score_at(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map,
                   const ScoreConfig& config) {
   MapScore out = score_at_pose(map, truth, T_truth_map, config);
-  out.note = "pose given, not searched";
+  out.note = "pose given, not searched" + (out.note.empty() ? "" : "; " + out.note);
   return out;
 }
 

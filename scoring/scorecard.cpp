@@ -1,11 +1,14 @@
 #include "scoring/scorecard.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "scoring/alignment/alignment.h"
 #include "scoring/alignment/trust.h"
+#include "scoring/measures/detached.h"
 #include "scoring/measures/psi.h"
+#include "scoring/measures/sight_lines.h"
 #include "scoring/walls/overlap.h"
 #include "scoring/walls/resample.h"
 #include "scoring/walls/warp_fit.h"
@@ -81,24 +84,51 @@ std::string scale_note(double scale, double resolution) {
   return text;
 }
 
-void fill_warp(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const WallOverlap& walls) {
-  const WarpedScore warped = fit_warp(map, truth, walls, out.T_truth_map);
+/// Both measures of the walls of one map and the truth, for many poses.
+struct Walls {
+  Walls(const OccupancyGrid& the_map, const OccupancyGrid& truth, double tau)
+      : map(the_map), overlaps(the_map, truth, tau), sights(truth) {}
+  /// Where the truth has no lines of sight worth asking about, the overlap stands for them.
+  template <class Transform>
+  double score(const Transform& T) const {
+    return sights.usable() ? sights.at(map, T).score : overlaps.at(T).score;
+  }
+  const OccupancyGrid& map;
+  WallOverlap overlaps;
+  SightLines sights;
+};
+
+void fill_warp(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls) {
+  const WarpedScore warped = fit_warp(map, truth, walls.overlaps, out.T_truth_map);
   out.warped = true;
-  out.warped_score = warped.overlap.score;
   out.warp_m = warped.size;
-  out.penalised_score = warped.penalised;
+  out.warped_score = std::max(out.score, walls.score(warped.warp) * (1.0 - out.detached));
+  out.penalised_score = std::max(out.score, out.warped_score * warped.kept);
   out.features = feature_error(map, truth, out.T_truth_map);
 }
 
+/// A second drawing on the canvas is a second guess: each is worth its share.
+void fill_sights(MapScore& out, const OccupancyGrid& truth, const Walls& walls) {
+  const SightAgreement sights = walls.sights.at(walls.map, Rigid(out.T_truth_map));
+  out.sight_known = sights.known;
+  out.sight_kappa = sights.kappa;
+  out.detached = detached_share(walls.map, truth, Rigid(out.T_truth_map));
+  out.score_at_best_pose = walls.score(Rigid(out.T_truth_map)) * (1.0 - out.detached);
+}
+
 /// All numbers at the pose that `out` holds.
-void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const WallOverlap& overlaps,
+void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls,
              const ScoreConfig& config) {
-  const Overlap walls = overlaps.at(Rigid(out.T_truth_map));
-  out.precision = walls.precision;
-  out.recall = walls.recall;
-  out.score = walls.score;
-  out.errors = wall_errors(overlaps, Rigid(out.T_truth_map), config.worst_places);
-  if (config.warp) fill_warp(out, map, truth, overlaps);
+  const Overlap overlap = walls.overlaps.at(Rigid(out.T_truth_map));
+  out.precision = overlap.precision;
+  out.recall = overlap.recall;
+  out.overlap = overlap.score;
+  fill_sights(out, truth, walls);
+  out.score = out.score_at_best_pose;
+  if (!walls.sights.usable())
+    out.note = "the truth has too few walls with free space on both sides; the score is the overlap";
+  out.errors = wall_errors(walls.overlaps, Rigid(out.T_truth_map), config.worst_places);
+  if (config.warp) fill_warp(out, map, truth, walls);
   const GridFrame frame = common_frame(map, truth, out.T_truth_map, kCanvasMargin);
   const OccupancyGrid map_on_frame = resample(map, out.T_truth_map, frame);
   const OccupancyGrid truth_on_frame = resample(truth, {}, frame);
@@ -122,16 +152,16 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
   out.mirrored = alignment.mirrored;
   if (!out.aligned) {
     fill_psi(out, psi_of_strangers(config.colour_absent_cap));
+    if (!alignment.source.empty()) fill_sights(out, truth_known, Walls(map_known, truth_known, config.tau));
     // Walls that do meet, only at too many poses, are of the right scale.
     if (!alignment.source.empty() && tight_agreement(alignment.tight_evidence) < kTightEnough)
       out.scale_hint = agreeing_scale(map_known, truth_known, config.alignment);
     if (out.scale_hint > 0.0) out.note = scale_note(out.scale_hint, map.resolution());
     return out;
   }
-  const WallOverlap overlaps(map_known, truth_known, config.tau);
-  if (overlaps.at(Rigid(alignment.T_walls)).score > overlaps.at(Rigid(out.T_truth_map)).score)
-    out.T_truth_map = alignment.T_walls;
-  measure(out, map_known, truth_known, overlaps, config);
+  const Walls walls(map_known, truth_known, config.tau);
+  if (walls.score(Rigid(alignment.T_walls)) > walls.score(Rigid(out.T_truth_map))) out.T_truth_map = alignment.T_walls;
+  measure(out, map_known, truth_known, walls, config);
   return out;
 }
 
@@ -143,7 +173,7 @@ MapScore score_at_pose(const OccupancyGrid& map, const OccupancyGrid& truth, con
   out.aligned = true;
   out.source = "given";
   out.T_truth_map = T_truth_map;
-  measure(out, map_known, truth_known, WallOverlap(map_known, truth_known, config.tau), config);
+  measure(out, map_known, truth_known, Walls(map_known, truth_known, config.tau), config);
   return out;
 }
 

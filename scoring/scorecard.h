@@ -19,17 +19,26 @@ struct ScoreConfig {
   std::size_t worst_places = 10;  ///< listed at the most
 };
 
+/// Counts up whenever the same map and truth come to another `score`: scores of different versions cannot be compared.
+/// 1: min(precision, recall). 2: agreement of lines of sight beyond chance.
+constexpr int kScoreVersion = 2;
+
 /// The verdict on one map. Lengths in metres, shares 0..1.
 struct MapScore {
-  bool aligned = false;               ///< a rigid transform was found that can be trusted
-  std::string note;                   ///< why not aligned, or what to know; one line
-  mrpt::math::TPose2D T_truth_map;    ///< the transform found
-  double runner_up = 0.0;             ///< how near the best different pose comes to the best, 0..1 (1: ambiguous)
-  double score = 0.0;                 ///< min(precision, recall)
-  double precision = 0.0;             ///< share of map walls near true walls
-  double recall = 0.0;                ///< share of true walls near map walls
-  double psi_m = 0.0;                 ///< mean over {occupied, free} and both directions of eq. (6) [m]
-  double psi_literal_m = 0.0;         ///< the literal sum of eq. (5) over all classes [m]
+  bool aligned = false;             ///< a rigid transform was found that can be trusted
+  std::string note;                 ///< why not aligned, or what to know; one line
+  mrpt::math::TPose2D T_truth_map;  ///< the transform found
+  double runner_up = 0.0;           ///< how near the best different pose comes to the best, 0..1 (1: ambiguous)
+  double score = 0.0;               ///< what the lines of sight say, 0 if not aligned: measures/sight_lines.h
+  double score_at_best_pose = 0.0;  ///< the same at `T_truth_map`, also where that pose is not to be trusted
+  double sight_known = 0.0;         ///< share of the truth's lines of sight that the map knows, at that pose
+  double sight_kappa = 0.0;         ///< how right it is about those, at that pose: 1 wholly, 0 like a guess
+  double detached = 0.0;       ///< share of the map that is drawn apart from what lies on the truth; it costs score
+  double overlap = 0.0;        ///< min(precision, recall)
+  double precision = 0.0;      ///< share of map walls near true walls
+  double recall = 0.0;         ///< share of true walls near map walls
+  double psi_m = 0.0;          ///< mean over {occupied, free} and both directions of eq. (6) [m]
+  double psi_literal_m = 0.0;  ///< the literal sum of eq. (5) over all classes [m]
   double psi_occupied_map_m = 0.0;    ///< eq. (6), map -> truth, walls [m]
   double psi_occupied_truth_m = 0.0;  ///< eq. (6), truth -> map, walls [m]
   double psi_free_map_m = 0.0;
@@ -41,7 +50,7 @@ struct MapScore {
   double scale_hint = 0.0;       ///< not aligned, but the maps agree when this is the map's scale; 0: no such scale
   WallErrors errors;             ///< phantom and missing wall and the worst places
   bool warped = false;           ///< the fields below are filled in
-  double warped_score = 0.0;     ///< score after the displacement of eq. (8); not below `score`
+  double warped_score = 0.0;     ///< `score` after the displacement of eq. (8); not below `score`
   double warp_m = 0.0;           ///< ||b|| of eq. (8) [m]
   double penalised_score = 0.0;  ///< warped score less the penalty; between `score` and `warped_score`
   MatchError features;           ///< E of eq. (7) over all SURF features of both maps

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Measures and judges the figures of map scoring. Exit code 1: a figure missed its bound; 2: data or a program is missing.
 #
-#   tests/scoring_figures.sh [-v] [alignment] [strangers] [rooms] [ranking] [speed]      (default: all)
+#   tests/scoring_figures.sh [-v] [alignment] [strangers] [rooms] [ranking] [attacks] [speed]      (default: all)
 #
 # RUBBLE_DATA   folder with `alignment` and `rooms` (docs/scoring.md), needed by the first three
 # RUBBLE_BUILD  build folder (default: build/release)
@@ -113,8 +113,21 @@ ranking() {
   judge "ranking: pairs of maps with more and less damage" "$pairs" ">=" 200
   judge "ranking: pairs in the right order" "$(percent "$(value BM_RankPairs right)" "$pairs")" "==" 100 %
   tell "ranking: maps distorted in five ways" "$(value BM_RankAcrossKinds maps)"
-  tell "ranking: Spearman, score and trajectory error" "$(value BM_RankAcrossKinds spearman_score)"
+  judge "ranking: Spearman, score and trajectory error" "$(value BM_RankAcrossKinds spearman_score)" ">=" 0.959
   tell "ranking: Spearman, psi and trajectory error" "$(value BM_RankAcrossKinds spearman_psi)"
+}
+
+attacks() {
+  bench scoring_attacks_bench .
+  judge "attacks: seeds" "$(value BM_Attacks seeds)" ">=" 50
+  judge "attacks: most that one kind gains in the mean" "$(value BM_Attacks most_gained)" "<=" 0.01
+  judge "attacks: an arena out of nothing, mean" "$(value BM_Attacks guess)" "<=" 0.03
+  judge "attacks: the truth with walls 10 cm thicker, lowest" "$(value BM_Attacks thicker_10cm)" ">=" 0.95
+  judge "attacks: the truth with walls 20 cm thicker, lowest" "$(value BM_Attacks thicker_20cm)" ">=" 0.9
+  judge "attacks: half a map, off its share, most" "$(value BM_Shares most_off)" "<=" 0.05
+  judge "attacks: another arena at its best pose, mean" "$(value BM_OtherArenas mean)" "<=" 0.1
+  judge "attacks: another arena at its best pose, worst" "$(value BM_OtherArenas worst)" "<=" 0.2
+  judge "attacks: other arenas said to be aligned" "$(value BM_OtherArenas aligned)" "==" 0
 }
 
 # command_s COMMAND...: the least CPU time of five runs of a program [s].
@@ -151,11 +164,11 @@ figures=()
 for argument in "$@"; do
   case $argument in
     -v) verbose=1 ;;
-    alignment | strangers | rooms | ranking | speed) figures+=("$argument") ;;
-    *) stop "unknown figure '$argument': use alignment, strangers, rooms, ranking, speed" ;;
+    alignment | strangers | rooms | ranking | attacks | speed) figures+=("$argument") ;;
+    *) stop "unknown figure '$argument': use alignment, strangers, rooms, ranking, attacks, speed" ;;
   esac
 done
-((${#figures[@]})) || figures=(alignment strangers rooms ranking speed)
+((${#figures[@]})) || figures=(alignment strangers rooms ranking attacks speed)
 if ((verbose)); then exec 3>&1; else exec 3>/dev/null; fi
 command -v python3 >/dev/null || stop "python3 is missing: apt-get install python3"
 for figure in "${figures[@]}"; do "$figure"; done

@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 
 #include "base/error.h"
+#include "scenarios/batch/score_version.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -176,8 +178,16 @@ MergeReport merge(const std::vector<std::string>& sources, const std::string& ou
     all = load_results(out);
   }
   const std::size_t before = all.runs.size();
+  std::optional<int> version = score_version_of(all.runs, out);
+  std::string first = out;
   for (const auto& source : sources) {
     ResultSet set = load_results(source);
+    const std::optional<int> of_source = score_version_of(set.runs, source);
+    require_same_score(version, first, of_source, source);
+    if (!version && of_source) {
+      version = of_source;
+      first = source;
+    }
     all.runs.insert(all.runs.end(), set.runs.begin(), set.runs.end());
     for (auto& entry : set.timing) all.timing[entry.first] = std::move(entry.second);
   }

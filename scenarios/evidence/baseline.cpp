@@ -8,7 +8,9 @@
 
 #include "base/error.h"
 #include "base/text/text_file.h"
+#include "scenarios/batch/score_version.h"
 #include "scenarios/evidence/statistics.h"
+#include "scoring/scorecard.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -103,6 +105,13 @@ CheckCase check_expectations(const std::string& group, const std::vector<const R
   return {group, "expectations", false, broken};
 }
 
+bool judges_scores(const Baseline& baseline) {
+  for (const auto& group : baseline.groups)
+    for (const auto& metric : group.metrics)
+      if (metric.key == "score") return true;
+  return false;
+}
+
 std::size_t count_of(const ordered_json& json, const std::string& path) {
   const auto value = json.get<std::int64_t>();
   if (value < 0) throw InputError(path + ": 'failed' and 'missing' must be 0 or more");
@@ -161,6 +170,7 @@ Baseline make_baseline(const std::string& sweep, const std::vector<RunRecord>& r
   Baseline baseline;
   baseline.sweep = sweep;
   if (!runs.empty()) baseline.code = runs.front().code;
+  baseline.score_version = score_version_of(runs, sweep).value_or(scoring::kScoreVersion);
   for (const auto& [key, members] : grouped(runs)) {
     BaselineGroup group{key.first, key.second, seeds_of(members), failed_runs(members), {}};
     for (const Metric& metric : judged_metrics()) {
@@ -180,7 +190,10 @@ Baseline make_baseline(const std::string& sweep, const std::vector<RunRecord>& r
 }
 
 void save_baseline(const Baseline& baseline, const std::string& path) {
-  ordered_json json{{"sweep", baseline.sweep}, {"code", baseline.code}, {"groups", ordered_json::array()}};
+  ordered_json json{{"sweep", baseline.sweep},
+                    {"code", baseline.code},
+                    {"score_version", baseline.score_version},
+                    {"groups", ordered_json::array()}};
   for (const auto& group : baseline.groups) {
     ordered_json metrics = ordered_json::object();
     for (const auto& m : group.metrics)
@@ -202,10 +215,11 @@ Baseline load_baseline(const std::string& path) {
   const std::string text = read_text_file(path);
   try {
     const ordered_json json = ordered_json::parse(text);
-    allow_only(json, {"sweep", "code", "groups"}, path);
+    allow_only(json, {"sweep", "code", "score_version", "groups"}, path);
     Baseline baseline;
     baseline.sweep = json.at("sweep");
     baseline.code = json.at("code");
+    baseline.score_version = json.value("score_version", 1);
     for (const auto& g : json.at("groups")) {
       allow_only(g, {"scenario", "config", "seeds", "failed", "metrics"}, path);
       BaselineGroup group{g.at("scenario"),
@@ -247,6 +261,11 @@ void require_fit(const Baseline& baseline, const std::vector<RunRecord>& runs) {
   }
   for (const auto& [key, members] : groups)
     if (known.count(key) == 0) throw InputError("baseline: lacks '" + name_of(key.first, key.second) + "'" + remedy);
+  const int judged_by = score_version_of(runs, baseline.sweep).value_or(scoring::kScoreVersion);
+  if (judges_scores(baseline) && baseline.score_version != judged_by)
+    throw InputError("baseline: has a score of version " + std::to_string(baseline.score_version) +
+                     ", this program's is of version " + std::to_string(judged_by) + ": they cannot be compared" +
+                     remedy);
 }
 
 std::vector<CheckCase> check_runs(const Baseline& baseline, const std::vector<RunRecord>& runs) {

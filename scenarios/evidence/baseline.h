@@ -29,6 +29,7 @@ struct BaselineGroup {
 struct Baseline {
   std::string sweep;
   std::string code;
+  int score_version = 1;  ///< of the scores in it; files that do not say are of version 1
   std::vector<BaselineGroup> groups;
 };
 
@@ -52,8 +53,8 @@ struct CheckCase {
   std::string detail;  ///< what was found and what was wanted
 };
 
-/// Throws InputError when the baseline is about other scenarios, configurations, seeds (all that is looked at of
-/// `runs`, which need not be made yet) or metrics.
+/// Throws InputError when the baseline is about other scenarios, configurations, seeds, another version of the score or
+/// other metrics. `runs` need not be made yet: without scores they count as judged by this program.
 void require_fit(const Baseline& baseline, const std::vector<RunRecord>& runs);
 
 /// Judges runs against a baseline, and each run against the expectations of its scenario. Only worse medians fail,

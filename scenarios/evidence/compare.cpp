@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "scenarios/batch/score_version.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -141,6 +142,7 @@ const char* text_of(Verdict verdict) {
 
 Comparison compare(const ResultSet& a, const ResultSet& b, const std::string& name_a, const std::string& name_b,
                    const CompareOptions& options) {
+  require_same_score(score_version_of(a.runs, name_a), name_a, score_version_of(b.runs, name_b), name_b);
   const bool named = !options.configuration_a.empty() || !options.configuration_b.empty();
   const std::string only_a =
       named && options.configuration_a.empty() ? options.configuration_b : options.configuration_a;

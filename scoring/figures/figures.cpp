@@ -100,6 +100,13 @@ std::vector<Figure> make_table() {
   return {
       // key, label, unit, decimals, which way is better, floor of noise, where it goes, how to get it
       {"score", "score", "", 3, kUp, 0.01, kShown | kReport | kRanking | kLeague, of_score(&S::score)},
+      {"score_version", "version of the score", "", 0, kNone, 0.0, kLeague,
+       of_score([](const S&) { return std::uint64_t{kScoreVersion}; })},
+      {"score_at_best_pose", "score at the best pose", "", 3, kNone, 0.0, kLeague, of_score(&S::score_at_best_pose)},
+      {"sight_known", "lines of sight known", "%", 3, kNone, 0.0, kShown, of_score(&S::sight_known)},
+      {"sight_kappa", "lines of sight right", "", 3, kNone, 0.0, kShown, of_score(&S::sight_kappa)},
+      {"detached", "drawn apart from the arena", "%", 3, kNone, 0.0, kPlain, of_score(&S::detached)},
+      {"overlap", "overlap of walls", "", 3, kUp, 0.01, kShown | kRanking | kLeague, of_score(&S::overlap)},
       {"precision", "precision", "", 3, kUp, 0.01, kShown | kRanking | kLeague, of_score(&S::precision)},
       {"recall", "recall", "", 3, kUp, 0.01, kShown | kRanking | kLeague, of_score(&S::recall)},
       {"psi_m", "psi", "m", 3, kDown, 0.01, kShown | kReport | kRanking | kLeague, of_score(&S::psi_m)},

@@ -80,8 +80,8 @@ std::string league_page(const std::string& truth, bool with_points, const std::v
       "<style>figure.map { width: 26em; } td a, td:nth-child(2) { white-space: nowrap; }</style>\n<h1>League</h1>\n<p "
       "class=\"note\">" +
       std::to_string(entries.size()) + " maps against " + escape_html(truth) +
-      ". Ranked by points (to 0.1), then by score (to 0.001); equal maps share a rank. Score = "
-      "min(precision, recall) of the walls.</p>\n<table>\n<tr><th class=\"n\">rank</th><th>team</th>";
+      ". Ranked by points (to 0.1), then by score (to 0.001); equal maps share a rank. Score: lines "
+      "of sight that are right beyond chance; overlap = min(precision, recall) of the walls.</p>\n<table>\n<tr><th class=\"n\">rank</th><th>team</th>";
   if (with_points)
     body +=
         "<th class=\"n\">points</th><th class=\"n\">map quality</th><th class=\"n\">location</th><th "

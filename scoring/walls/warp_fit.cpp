@@ -28,11 +28,9 @@ bool keeps_order(const Warp& warp, const GridFrame& frame) {
 WarpedScore fit_warp(const OccupancyGrid& map, const OccupancyGrid& truth, const WallOverlap& walls,
                      const mrpt::math::TPose2D& T_truth_map, const WarpConfig& config) {
   const WallMatch match(map, truth, kReach, config.max_points);
-  const double rigid_score = walls.at(Rigid(T_truth_map)).score;
   WarpedScore best;
   best.warp = match.rigid(T_truth_map, config.degree);
   best.overlap = walls.at(Rigid(T_truth_map));
-  best.penalised = rigid_score;
   for (const double stiffer : {1.0, 10.0, 100.0}) {
     const Warp warp = fit(match, T_truth_map, config.degree, stiffer * config.stiffness);
     if (!keeps_order(warp, map.frame())) continue;
@@ -41,8 +39,7 @@ WarpedScore fit_warp(const OccupancyGrid& map, const OccupancyGrid& truth, const
     best.warp = warp;
     best.overlap = overlap;
     best.size = match.bend(warp);
-    const double kept = std::max(0.0, 1.0 - best.size / config.intolerable);
-    best.penalised = std::max(rigid_score, overlap.score * kept);
+    best.kept = std::max(0.0, 1.0 - best.size / config.intolerable);
   }
   return best;
 }

@@ -16,13 +16,13 @@ struct WarpConfig {
 /// What a map would score if its distortion were undone, and how large that is: eq. (8).
 struct WarpedScore {
   Warp warp;
-  Overlap overlap;         ///< after the warp; never below the rigid one
-  double size = 0.0;       ///< ||b||: RMS displacement of the map's walls that no rigid transform explains [m]
-  double penalised = 0.0;  ///< warped score times 1 - size / intolerable, and the rigid score at the least
+  Overlap overlap;    ///< after the warp; never below the rigid one
+  double size = 0.0;  ///< ||b||: RMS displacement of the map's walls that no rigid transform explains [m]
+  double kept = 1.0;  ///< what the penalty for it leaves of a score: 1 - size / intolerable, at least 0
 };
 
 /// Fits a polynomial displacement beside the pose, stiffly first. One that folds the map (Jacobian not above 0 anywhere
-/// on it) or does not raise the score is not used: then the warp is rigid and its size 0.
+/// on it) or does not raise the overlap is not used: then the warp is rigid and its size 0.
 WarpedScore fit_warp(const OccupancyGrid& map, const OccupancyGrid& truth, const WallOverlap& walls,
                      const mrpt::math::TPose2D& T_truth_map, const WarpConfig& config = {});
 

@@ -8,7 +8,7 @@ for figure in alignment strangers rooms; do
   RUBBLE_DATA=$work expect_exit 2 "" env "$source/tests/scoring_figures.sh" $figure
   grep -q "no such folder; docs/scoring.md" err.txt || fail "$figure does not say where the data is described"
 done
-expect_exit 2 "unknown figure 'beauty': use alignment, strangers, rooms, ranking, speed" figures beauty
+expect_exit 2 "unknown figure 'beauty': use alignment, strangers, rooms, ranking, attacks, speed" figures beauty
 RUBBLE_BUILD=$work expect_exit 2 "scoring_ranking_bench is missing: cmake --preset release && ninja" figures ranking
 
 # -v adds what a benchmark prints and loses nothing that was written before, also in a file.
@@ -17,7 +17,7 @@ cat >build/bench/scoring_ranking_bench <<'BENCH'
 #!/bin/bash
 for argument in "$@"; do [[ $argument == --benchmark_out=* ]] && out=${argument#*=}; done
 echo '{"benchmarks": [{"run_name": "BM_RankPairs", "pairs": 200, "right": 200},
-  {"run_name": "BM_RankAcrossKinds", "maps": 1, "spearman_score": -1, "spearman_psi": 1}]}' >"$out"
+  {"run_name": "BM_RankAcrossKinds", "maps": 1, "spearman_score": 1, "spearman_psi": 1}]}' >"$out"
 echo "table of the benchmark"
 BENCH
 chmod +x build/bench/scoring_ranking_bench

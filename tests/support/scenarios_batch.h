@@ -8,6 +8,7 @@
 #include <string>
 
 #include "scenarios/batch/results.h"
+#include "scoring/scorecard.h"
 
 namespace rubble::scenarios {
 
@@ -50,7 +51,7 @@ inline RunRecord record(const std::string& scenario, const std::string& configur
   r.seed = seed;
   r.status = RunStatus::Ok;
   r.end = "explored";
-  r.score = {{"score", score}};
+  r.score = {{"score", score}, {"score_version", scoring::kScoreVersion}};
   r.folder = "runs/" + r.run_id;
   r.code = "test";
   return r;

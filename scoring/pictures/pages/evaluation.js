@@ -6,7 +6,7 @@
   data.truth = Metric.decode(data.truth);
   data.fields = {};
   const ROWS = [
-    ['score', 'score', 3, ''], ['precision', 'precision', 3, ''], ['recall', 'recall', 3, ''],
+    ['overlap', 'overlap', 3, ''], ['precision', 'precision', 3, ''], ['recall', 'recall', 3, ''],
     ['psi_m', 'psi', 3, ' m'], ['psi_literal_m', 'psi, eq. (5)', 3, ' m'],
     ['psi_occupied_map_m', 'psi, walls of the map', 3, ' m'],
     ['psi_occupied_truth_m', 'psi, walls of the truth', 3, ' m'], ['known', 'known', 3, ''],
@@ -98,7 +98,7 @@
   function showFigures() {
     const figures = Metric.figures(data, pose);
     $('figures').innerHTML = ROWS.map(([key, label, digits, unit]) =>
-      `<tr class="${key === 'score' ? 'main' : ''}"><th>${label}</th>` +
+      `<tr class="${key === 'overlap' ? 'main' : ''}"><th>${label}</th>` +
       `<td id="figure-${key}" data-value="${figures[key]}">${figures[key].toFixed(digits)}${unit}</td></tr>`).join('');
     $('figures').classList.remove('stale');
   }

@@ -124,7 +124,7 @@ const Metric = (() => {
         ++count;
       }
     const recall = count > 0 ? sum / count : 0;
-    return {precision, recall, score: Math.min(precision, recall)};
+    return {precision, recall, overlap: Math.min(precision, recall)};
   }
 
   /** The frame on the truth's lattice that holds what both maps know. */

@@ -73,7 +73,7 @@ const std::map<std::string, Folders>& wings() {
       {"slam/peers", {"slam", "slam/grid", "slam/scan", "slam/process"}},
       {"scoring/maps", {}},
       {"scoring/walls", {}},
-      {"scoring/measures", {}},
+      {"scoring/measures", {"scoring/walls"}},
       {"scoring/proposals", {"scoring/walls"}},
       {"scoring/rooms", {"scoring/walls", "scoring/proposals", "scoring/measures"}},
       {"scoring/alignment", {"scoring/walls", "scoring/proposals", "scoring/rooms", "scoring/measures"}},

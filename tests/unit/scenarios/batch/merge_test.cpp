@@ -89,6 +89,36 @@ TEST_F(Merge, DifferentResultsOfOneRunAreRefused) {
   EXPECT_EQ(read(path("all.sqlite")), bytes);
 }
 
+/// Runs of before versions existed are of version 1.
+TEST_F(Merge, ScoresOfOtherVersionsAreRefusedByName) {
+  RunRecord old = record("a", "c", 1, 0.5);
+  old.score.erase("score_version");
+  batch("old", "", {old});
+  batch("new", "", {record("a", "c", 2, 0.6)});
+  RunRecord without = record("a", "c", 3, 0.0);
+  without.score = {{"aligned", false}};
+  batch("without", "", {without});
+  EXPECT_EQ(merge({path("old"), path("without")}, path("all.sqlite")).runs, 2u) << "no score, no version";
+  const std::string bytes = read(path("all.sqlite"));
+  const auto refusal = [&](const std::vector<std::string>& sources, const std::string& out) -> std::string {
+    try {
+      merge(sources, out);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  const std::string into = refusal({path("new")}, path("all.sqlite"));
+  EXPECT_NE(into.find("all.sqlite has a score of version 1"), std::string::npos) << into;
+  EXPECT_NE(into.find("new a score of version " + std::to_string(scoring::kScoreVersion)), std::string::npos) << into;
+  EXPECT_EQ(into.find('\n'), std::string::npos);
+  EXPECT_EQ(read(path("all.sqlite")), bytes);
+  EXPECT_NE(refusal({path("new"), path("without"), path("old")}, path("other.sqlite")), "");
+  batch("both", "", {old, record("a", "c", 2, 0.6)});
+  const std::string within = refusal({path("both")}, path("third.sqlite"));
+  EXPECT_NE(within.find("both: run " + old.run_id), std::string::npos) << within;
+}
+
 TEST_F(Merge, ForeignFilesAreRefusedAndKept) {
   write("notes.txt", "mine");
   batch("one", "", {record("a", "c", 1, 0.5)});

@@ -147,6 +147,25 @@ TEST_F(BaselineFile, WhetherItFitsIsKnownBeforeARunIsMade) {
   EXPECT_THROW(require_fit(baseline, planned), InputError);
 }
 
+/// A baseline of an older program, whose file does not say a version, is refused before runs are made and after.
+TEST_F(BaselineFile, AnotherVersionOfTheScoreIsNoRegressionButAnError) {
+  save_baseline(make_baseline("regression", runs(0.0)), path("b.json"));
+  std::string text = read_text_file(path("b.json"));
+  const std::string line = "  \"score_version\": " + std::to_string(scoring::kScoreVersion) + ",\n";
+  ASSERT_NE(text.find(line), std::string::npos) << text;
+  text.erase(text.find(line), line.size());
+  const Baseline older = load_baseline(write("older.json", text));
+  std::vector<RunRecord> planned = runs(0.0);
+  for (RunRecord& run : planned) run.score = nullptr;
+  for (const auto& made : {planned, runs(0.0)}) try {
+      require_fit(older, made);
+      ADD_FAILURE() << "fits";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("score of version 1"));
+      EXPECT_THAT(error.what(), HasSubstr("save the baseline again"));
+    }
+}
+
 TEST_F(BaselineFile, ReportsCarryWhatFailed) {
   const auto cases = check_runs(make_baseline("regression", runs(0.0)), runs(-0.15));
   const std::string junit = to_junit(cases, "a & b");

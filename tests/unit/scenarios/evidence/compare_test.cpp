@@ -57,6 +57,21 @@ TEST(Compare, AFewLargeGainsAgainstManySmallLossesAreNoEvidence) {
   EXPECT_EQ(c.verdict, Verdict::NoEvidence);
 }
 
+TEST(Compare, ScoresOfOtherVersionsAreRefusedByName) {
+  const ResultSet now = runs("c", 4, arena_score);
+  ResultSet before = now;
+  for (RunRecord& run : before.runs) run.score["score_version"] = 1;
+  try {
+    compare(before, now, "A", "B");
+    ADD_FAILURE() << "compared";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("A has a score of version 1, B a score of version"));
+  }
+  EXPECT_NO_THROW(compare(before, before, "A", "B"));
+  for (RunRecord& run : before.runs) run.score["score"] = nullptr;
+  EXPECT_NO_THROW(compare(before, now, "A", "B")) << "logs without truth have no score";
+}
+
 TEST(Compare, TheSameResultsAreIdentical) {
   const ResultSet a = runs("c", 10, arena_score);
   for (const auto& c : compare(a, a, "A", "A").groups[0].metrics) EXPECT_EQ(c.verdict, Verdict::Identical);

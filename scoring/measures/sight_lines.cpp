@@ -1,0 +1,312 @@
+#include "scoring/measures/sight_lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/angle.h"
+#include "base/distance_transform.h"
+#include "scoring/measures/lattice_shifts.h"
+#include "scoring/measures/wall_pieces.h"
+
+namespace rubble::scoring {
+namespace {
+
+using mrpt::math::TPoint2D;
+
+constexpr double kShortest = 0.5;       // line [m]
+constexpr double kLongest = 1.8;        // [m]
+constexpr double kClearEnds = 0.25;     // of walls at both ends [m]
+constexpr double kClearBeside = 0.12;   // open lines have no wall so near, blocked ones are blocked so far aside [m]
+constexpr double kGap = 0.15;           // free space between two pieces of one wall [m]
+constexpr double kUnseen = 0.1;         // unknown stretch that leaves a line known [m]
+constexpr double kTau = 0.5;            // distance from which a wall is another one [m]
+constexpr double kRaster = 0.5;         // of a cell: what drawing on a raster moves a wall by
+constexpr double kMostRaster = 0.05;    // [m]
+constexpr double kThickness = 0.04;     // what a metre of wrong thickness counts as a metre of wrong place
+constexpr double kFee = 0.25;           // kappa that maps of other arenas reach at their best pose
+constexpr double kPrior = 2.0;          // laid-over lines that the mean of all stands for
+constexpr double kLinesPerArea = 16.0;  // of each kind, a square metre of free space
+constexpr std::size_t kFewest = 40;     // of each kind
+constexpr double kLeastLines = 1500.0;  // of each kind
+constexpr double kMostLines = 3000.0;
+constexpr int kTries = 30;           // for each line wanted
+constexpr std::size_t kShifts = 24;  // at which the truth is laid over itself
+
+/// One wall on a line, [m] from its start.
+struct Crossing {
+  double from = 0.0;
+  double to = 0.0;
+  double strength = 0.0;
+  double middle() const { return 0.5 * (from + to); }
+  double thickness() const { return to - from; }
+};
+
+struct Sight {
+  std::vector<Crossing> walls;
+  double unknown = 0.0;  ///< [m]
+};
+
+/// A map and what its walls count.
+struct Ground {
+  explicit Ground(const OccupancyGrid& source) : grid(source), pieces(wall_pieces(source)) {}
+  bool is(const TPoint2D& p, Occupancy what) const {
+    const Cell c = grid.cell(p);
+    return grid.inside(c) && grid[c] == what;
+  }
+  bool known(const TPoint2D& p) const {
+    const Cell c = grid.cell(p);
+    return grid.inside(c) && grid[c] != Occupancy::Unknown;
+  }
+  /// Walks from a to b, which lie in this map and are `length` apart in the truth.
+  void look(const TPoint2D& a, const TPoint2D& b, double length, Sight& out) const;
+
+  const OccupancyGrid& grid;
+  WallPieces pieces;
+};
+
+void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& out) const {
+  out.walls.clear();
+  out.unknown = 0.0;
+  const GridFrame& f = grid.frame();
+  const int steps = std::max(1, static_cast<int>(std::ceil(2.0 * length / f.resolution)));
+  const double step = length / steps;
+  const double x0 = (a.x - f.x0) / f.resolution;
+  const double y0 = (a.y - f.y0) / f.resolution;
+  const double dx = (b.x - a.x) / f.resolution / steps;
+  const double dy = (b.y - a.y) / f.resolution / steps;
+  double free = 0.0;
+  Cell last{static_cast<int>(std::floor(x0)), static_cast<int>(std::floor(y0))};
+  for (int i = 0; i <= steps; ++i) {
+    const Cell c{static_cast<int>(std::floor(x0 + i * dx)), static_cast<int>(std::floor(y0 + i * dy))};
+    const double slipped = pieces.between(last, c);
+    last = c;
+    if (!grid.inside(c)) {
+      out.unknown += step;
+      continue;
+    }
+    const std::size_t at = f.index(c);
+    const double wall = std::max(slipped, static_cast<double>(pieces.strength.cells()[at]));
+    if (wall > 0.0) {
+      if (out.walls.empty() || free > kGap) out.walls.push_back({i * step, i * step, wall});
+      out.walls.back().to = i * step;
+      out.walls.back().strength = std::max(out.walls.back().strength, wall);
+      free = 0.0;
+    } else if (grid.cells()[at] == Occupancy::Unknown) {
+      out.unknown += step;
+    } else {
+      free += step;
+    }
+  }
+}
+
+/// The truth, asked which lines across it are worth asking a map about.
+class Asker {
+ public:
+  explicit Asker(const OccupancyGrid& truth) : ground_(truth) {
+    Grid<std::uint8_t> walls(truth.frame());
+    for (std::size_t i = 0; i < truth.cells().size(); ++i)
+      walls.cells()[i] = truth.cells()[i] == Occupancy::Occupied ? 1 : 0;
+    distance_ = distance_transform(walls, 1.0);
+    for (int y = 0; y < truth.height(); ++y)
+      for (int x = 0; x < truth.width(); ++x) {
+        if (may_end(truth.centre({x, y}))) ends_.push_back(truth.centre({x, y}));
+        if (truth[{x, y}] == Occupancy::Occupied) walls_.push_back(truth.centre({x, y}));
+      }
+  }
+  /// Where a line may begin and end.
+  const std::vector<TPoint2D>& ends() const { return ends_; }
+  const std::vector<TPoint2D>& walls() const { return walls_; }
+  double area() const { return static_cast<double>(ends_.size()) * std::pow(ground_.grid.resolution(), 2); }
+
+  /// The line, if it is clearly open or clearly blocked by one wall.
+  std::optional<SightLines::Line> ask(const TPoint2D& from, const TPoint2D& to) {
+    if (!may_end(from) || !may_end(to)) return std::nullopt;
+    const double length = (to - from).norm();
+    ground_.look(from, to, length, sight_);
+    SightLines::Line line{from, to};
+    if (sight_.walls.empty()) {
+      if (sight_.unknown > 0.0 || !clear(from, to, length)) return std::nullopt;
+      return line;
+    }
+    if (sight_.walls.size() > 1) return std::nullopt;
+    line.blocked = true;
+    line.middle = sight_.walls[0].middle();
+    line.thickness = sight_.walls[0].thickness();
+    line.strength = sight_.walls[0].strength;
+    const TPoint2D aside((from.y - to.y) * kClearBeside / length, (to.x - from.x) * kClearBeside / length);
+    for (const TPoint2D& side : {aside, aside * -1.0}) {
+      ground_.look(from + side, to + side, length, sight_);
+      if (sight_.walls.size() != 1) return std::nullopt;
+    }
+    return line;
+  }
+
+ private:
+  bool may_end(const TPoint2D& p) const {
+    return ground_.is(p, Occupancy::Free) && static_cast<double>(distance_[distance_.cell(p)]) >= kClearEnds;
+  }
+  bool clear(const TPoint2D& from, const TPoint2D& to, double length) const {
+    const int steps = static_cast<int>(std::ceil(length / kClearBeside));
+    for (int i = 1; i < steps; ++i) {
+      const Cell c = distance_.cell(from + (to - from) * (static_cast<double>(i) / steps));
+      if (static_cast<double>(distance_[c]) <= kClearBeside) return false;
+    }
+    return true;
+  }
+
+  Ground ground_;
+  Grid<float> distance_;  ///< to the next wall [m]
+  std::vector<TPoint2D> ends_;
+  std::vector<TPoint2D> walls_;
+  Sight sight_;
+};
+
+/// Points that fill the unit cube evenly (Roberts 2018, generalised golden ratio): no random numbers needed.
+struct EvenPoints {
+  std::array<double, 4> next() {
+    ++i_;
+    std::array<double, 4> out;
+    const double steps[] = {0.8566748838545029, 0.733891856627126, 0.6287067210378087, 0.5385972572236101};
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      const double v = 0.5 + static_cast<double>(i_) * steps[k];
+      out[k] = v - std::floor(v);
+    }
+    return out;
+  }
+
+ private:
+  std::size_t i_ = 0;
+};
+
+const TPoint2D& pick(const std::vector<TPoint2D>& from, double share) {
+  return from[std::min(from.size() - 1, static_cast<std::size_t>(share * static_cast<double>(from.size())))];
+}
+
+/// Lines of one kind, spread evenly over places and directions.
+std::vector<SightLines::Line> spread(Asker& asker, bool blocked, std::size_t wanted) {
+  std::vector<SightLines::Line> out;
+  const std::vector<TPoint2D>& places = blocked ? asker.walls() : asker.ends();
+  if (places.empty() || asker.ends().empty()) return out;
+  EvenPoints points;
+  for (std::size_t i = 0; i < kTries * wanted && out.size() < wanted; ++i) {
+    const auto [place, turn, stretch, split] = points.next();
+    const double angle = 2.0 * kPi * turn;
+    const TPoint2D along = TPoint2D(std::cos(angle), std::sin(angle)) * (kShortest + stretch * (kLongest - kShortest));
+    const TPoint2D from = pick(places, place) - along * (blocked ? split : 0.0);
+    std::optional<SightLines::Line> line = asker.ask(from, from + along);
+    if (line && line->blocked == blocked) out.push_back(*line);
+  }
+  return out;
+}
+
+/// How often the line is blocked where the truth is laid over itself.
+double chance_of(const SightLines::Line& line, Asker& asker, const std::vector<TPoint2D>& shifts, double mean) {
+  double blocked = kPrior * mean;
+  double asked = kPrior;
+  for (const TPoint2D& shift : shifts) {
+    const std::optional<SightLines::Line> other = asker.ask(line.from + shift, line.to + shift);
+    if (!other) continue;
+    asked += 1.0;
+    blocked += other->blocked ? 1.0 : 0.0;
+  }
+  return blocked / asked;
+}
+
+/// Share of the lines between places that are blocked.
+double blocked_share(Asker& asker) {
+  constexpr std::size_t kSamples = 4000;
+  double open = 0.0;
+  double blocked = 0.0;
+  EvenPoints points;
+  if (asker.ends().empty()) return 0.0;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const auto [place, turn, stretch, unused] = points.next();
+    const double angle = 2.0 * kPi * turn;
+    const TPoint2D along = TPoint2D(std::cos(angle), std::sin(angle)) * (kShortest + stretch * (kLongest - kShortest));
+    const TPoint2D from = pick(asker.ends(), place);
+    if (const auto line = asker.ask(from, from + along)) (line->blocked ? blocked : open) += 1.0;
+  }
+  return open + blocked > 0.0 ? blocked / (open + blocked) : 0.0;
+}
+
+/// -1..1: how far a map's sight along a line says that it is blocked; with the wall in its place.
+double said_blocked(const SightLines::Line& line, const Sight& sight, double raster) {
+  double all = 0.0;
+  double best = 0.0;
+  for (const Crossing& wall : sight.walls) {
+    const double off = std::max(0.0, std::abs(wall.middle() - line.middle) - raster) +
+                       kThickness * std::abs(wall.thickness() - line.thickness);
+    const double strength = std::min(1.0, wall.strength / line.strength);
+    all += strength;
+    best = std::max(best, strength * std::clamp(1.0 - off / kTau, 0.0, 1.0));
+  }
+  // A wall drawn twice is half wrong.
+  return 2.0 * best / std::max(1.0, all) - 1.0;
+}
+
+double said_open(const Sight& sight) {
+  double all = 0.0;
+  for (const Crossing& wall : sight.walls) all += wall.strength;
+  return 1.0 - 2.0 * std::min(1.0, all);
+}
+
+template <class Transform>
+SightAgreement agreement(const std::vector<SightLines::Line>& lines, const OccupancyGrid& map, const Transform& T) {
+  const Ground ground(map);
+  const double raster = std::min(kMostRaster, kRaster * map.resolution());
+  Sight sight;
+  double all = 0.0;
+  double known = 0.0;
+  double gain = 0.0;
+  for (const SightLines::Line& line : lines) {
+    all += line.weight;
+    const TPoint2D a = T.inverse(line.from);
+    const TPoint2D b = T.inverse(line.to);
+    ground.look(a, b, (line.to - line.from).norm(), sight);
+    if (sight.walls.empty() && sight.unknown > kUnseen) continue;
+    // A wall seen from one side only, or at the edge of what the map knows, is half a line.
+    const double weight = line.weight * (0.5 * ground.known(a) + 0.5 * ground.known(b));
+    known += weight;
+    gain += weight * (line.blocked ? said_blocked(line, sight, raster) : said_open(sight));
+  }
+  SightAgreement out;
+  if (known <= 0.0) return out;
+  out.known = known / all;
+  out.kappa = gain / known;
+  out.score = std::clamp((gain / all - kFee * out.known) / (1.0 - kFee), 0.0, 1.0);
+  return out;
+}
+
+}  // namespace
+
+SightLines::SightLines(const OccupancyGrid& truth) {
+  Asker asker(truth);
+  const auto wanted = static_cast<std::size_t>(std::clamp(kLinesPerArea * asker.area(), kLeastLines, kMostLines));
+  const std::vector<TPoint2D> shifts = lattice_shifts(truth, kShifts);
+  const double mean = blocked_share(asker);
+  for (const bool blocked : {false, true}) {
+    const std::size_t first = lines_.size();
+    for (const Line& line : spread(asker, blocked, wanted)) lines_.push_back(line);
+    count_[blocked] = lines_.size() - first;
+    double sum = 0.0;
+    for (std::size_t i = first; i < lines_.size(); ++i) {
+      Line& line = lines_[i];
+      const double chance = chance_of(line, asker, shifts, mean);
+      // Lines through a wall were found by its cells: as often as it is thick along them.
+      line.weight = blocked ? (1.0 - chance) / std::max(line.thickness, truth.resolution()) : chance;
+      sum += line.weight;
+    }
+    for (std::size_t i = first; i < lines_.size(); ++i) lines_[i].weight *= sum > 0.0 ? 0.5 / sum : 0.0;
+  }
+}
+
+bool SightLines::usable() const { return count_[0] >= kFewest && count_[1] >= kFewest; }
+
+SightAgreement SightLines::at(const OccupancyGrid& map, const Rigid& T_truth_map) const {
+  return agreement(lines_, map, T_truth_map);
+}
+
+SightAgreement SightLines::at(const OccupancyGrid& map, const Warp& warp) const { return agreement(lines_, map, warp); }
+
+}  // namespace rubble::scoring

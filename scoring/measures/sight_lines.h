@@ -1,0 +1,58 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "base/grid.h"
+#include "base/rigid.h"
+#include "scoring/walls/warp.h"
+
+namespace rubble::scoring {
+
+/// What a map says about the lines of sight of the truth.
+struct SightAgreement {
+  double score = 0.0;  ///< 0..1: what it knows, times how far it agrees beyond a map that knows only the lattice
+  double known = 0.0;  ///< share of the lines, by weight, that the map knows
+  double kappa = 0.0;  ///< of those: 1 all right, 0 no better than a guess, -1 all wrong
+};
+
+/// Lines between two free places of the truth, 0.5 to 1.8 m apart: open, or blocked by one wall. A map agrees where it
+/// says the same and has the wall in the same place.
+///
+/// Chance is taken off line by line. A line that is blocked although, where the truth is laid over itself, such lines
+/// are blocked in a share c of cases, weighs 1 - c; one that is open weighs c. So whoever draws walls without knowing
+/// the arena earns nothing in the mean, however many he draws; all free and all walls earn 0 exactly; what is unknown
+/// earns and costs nothing; and knowing a part without error earns that part. Two arenas on one lattice agree by luck
+/// at the best of many poses: each known line costs a fee that outweighs this.
+///
+/// Walls are compared by their middle, so a fat pencil costs little: only lines clear of the truth's walls by 0.25 m at
+/// the ends and 0.12 m beside them count.
+class SightLines {
+ public:
+  explicit SightLines(const OccupancyGrid& truth);
+
+  /// Too few open or blocked lines to say anything: a single room, or a truth without free space.
+  bool usable() const;
+  SightAgreement at(const OccupancyGrid& map, const Rigid& T_truth_map) const;
+  SightAgreement at(const OccupancyGrid& map, const Warp& warp) const;
+
+  struct Line {
+    mrpt::math::TPoint2D from;
+    mrpt::math::TPoint2D to;
+    bool blocked = false;
+    double middle = 0.0;     ///< of the wall that blocks it, from `from` [m]
+    double thickness = 0.0;  ///< of that wall along the line [m]
+    double strength = 1.0;   ///< of that wall: less than 1 if it is a small piece
+    double weight = 0.0;     ///< of all blocked (open) lines together 0.5
+  };
+  const std::vector<Line>& lines() const { return lines_; }
+
+ private:
+  std::vector<Line> lines_;
+  std::array<std::size_t, 2> count_{};  ///< open and blocked
+};
+
+}  // namespace rubble::scoring

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <algorithm>
+
+#include "base/grid.h"
+
+namespace rubble::scoring {
+
+/// What each place of a map counts as a wall.
+struct WallPieces {
+  /// 0..1: extent of the piece of wall here over half a metre; 0 where there is none. A speck hides next to nothing,
+  /// and a map with salt is not a map full of walls.
+  Grid<float> strength;
+  /// The wall that a step over a corner slips through: the lesser of the two cells beside it; 0 for a step over an
+  /// edge.
+  double between(const Cell& from, const Cell& to) const {
+    if (from.x == to.x || from.y == to.y || !strength.inside(from)) return 0.0;
+    return static_cast<double>(std::min(strength[{from.x, to.y}], strength[{to.x, from.y}]));
+  }
+};
+
+WallPieces wall_pieces(const OccupancyGrid& grid);
+
+}  // namespace rubble::scoring
