@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# The long suite and its table: whole suite, sanitizers, faults at 100 moments, 10 minutes of fuzzing for each parser.
+# The long suite and its table: whole suite, sanitizers, faults at 100 moments, each fault of each device, 10 minutes of
+# fuzzing for each parser.
 # Prints the table and puts it into docs/reliability.md between its marks.
-#   tests/nightly.sh [--only "suite sanitize threads faults fuzz"] [--fuzz-seconds 600] [--moments 100] [--keep-docs]
+#   tests/nightly.sh [--only "suite sanitize threads faults devices fuzz"] [--fuzz-seconds 600] [--moments 100] [--keep-docs]
 set -uo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-only="suite sanitize threads faults fuzz"
+only="suite sanitize threads faults devices fuzz"
 fuzz_seconds=600
 moments=100
 keep=0
@@ -55,6 +56,14 @@ if has faults; then
     count=${words#faults: }
     row "faults: $name" "${count%%,*}" "${words##*findings: }" 0 $((SECONDS - start))
   done
+fi
+if has devices; then
+  start=$SECONDS
+  python3 "$top/tests/device_faults.py" >"$out/device-faults.txt" 2>&1
+  words=$(grep '^faults: ' "$out/device-faults.txt" | tail -1)
+  found=${words##*findings: }
+  count=${words#faults: }
+  row "faults of devices, in real time" "${count%%,*}" "${found%% *}" 0 $((SECONDS - start))
 fi
 if has fuzz; then
   start=$SECONDS

@@ -17,10 +17,11 @@ namespace {
 constexpr double kAsk = 0.05;               ///< pause of a waiting read() [s]
 constexpr std::size_t kMostScansKept = 20;  ///< while the robot is held
 
-std::string silent_for(const std::string& name, Stamp last, Stamp now, const std::string& why) {
+/// `underway`: all have reported before; a connection that is made anew knows nothing of the last report.
+std::string silent_for(const std::string& name, bool underway, Stamp last, Stamp now, const std::string& why) {
   char text[80];
   if (last == Stamp::never()) {
-    std::snprintf(text, sizeof text, ": has not reported yet");
+    std::snprintf(text, sizeof text, underway ? ": does not report" : ": has not reported yet");
   } else {
     std::snprintf(text, sizeof text, ": silent for %.1f s", now - last);
   }
@@ -115,21 +116,23 @@ struct RealRobot::Impl {
   /// What keeps the robot from being driven at `now`, one line each.
   std::vector<std::string> silent(Stamp now) const {
     std::vector<std::string> lines;
-    if (!is_lidar_well(now)) lines.push_back(silent_for("urg", {scan_ns.load()}, now, lidar.status().error));
+    const bool underway = first != Stamp::never();
+    if (!is_lidar_well(now)) lines.push_back(silent_for("urg", underway, {scan_ns.load()}, now, lidar.status().error));
     const auto [last, ready, state] =
         base_thread->with([this] { return std::make_tuple(pioneer.last_report(), pioneer.ready(), pioneer.state()); });
     if (!ready || now - last > settings.safety.base_silence) {
       const std::string error = base_thread->error();
-      lines.push_back(silent_for("base", last, now, error.empty() ? state : error));
+      lines.push_back(silent_for("base", underway, last, now, error.empty() ? state : error));
     }
     if (!is_unit_well(now)) {
       const auto [reported, how] =
           unit_thread->with([this] { return std::make_pair(unit.last_report(), unit.state()); });
       const std::string error = unit_thread->error();
-      lines.push_back(silent_for("levelling", reported, now, error.empty() ? how : error));
+      lines.push_back(silent_for("levelling", underway, reported, now, error.empty() ? how : error));
     }
     if (!is_operator_well(now))
-      lines.push_back(silent_for("heartbeat", {operator_ns.load()}, now, settings.heartbeat + " must be touched"));
+      lines.push_back(
+          silent_for("heartbeat", underway, {operator_ns.load()}, now, settings.heartbeat + " must be touched"));
     return lines;
   }
 
