@@ -50,7 +50,12 @@ TEST(Figures, NothingIsKnownOfNothing) {
 }
 
 TEST(Figures, EveryFigureHasACaseInWhichItIsKnown) {
+  const OccupancyGrid map(20, 20, 0.05), truth = map;
+  const Trajectory path = {{Stamp{0}, {}}, {Stamp{1000000000}, {1.0, 0.0, 0.0}}};
   Evidence all;
+  all.map = &map;
+  all.truth = &truth;
+  all.estimate = all.live_estimate = all.true_path = &path;
   all.score = MapScore();
   all.score->aligned = all.score->warped = true;
   all.map_read_as = all.truth_read_as = "GeoTIFF";
