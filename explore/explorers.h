@@ -1,11 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "base/yaml/binder.h"
+#include "base/yaml/kinds.h"
 #include "explore/explorer.h"
 #include "robot/model.h"
 
@@ -26,38 +25,21 @@ class ExplorerParameters {
   virtual std::unique_ptr<ExplorerParameters> copy() const = 0;
 };
 
-/// A row of the table of explorers.
-struct ExplorerKind {
-  std::string name;   ///< `explorer.kind`
-  std::string about;  ///< one line, for people
-  std::function<std::unique_ptr<ExplorerParameters>()> parameters;
-};
+using ExplorerKind = Kind<ExplorerParameters>;
 
 /// All kinds of explorers, the default first.
 const std::vector<ExplorerKind>& explorer_kinds();
 
-/// Which explorer a run uses, with its parameters. A value: copies are independent.
-class ExplorerConfig {
+/// Which explorer a run uses, with its parameters.
+class ExplorerConfig : public KindChoice<ExplorerParameters> {
  public:
-  /// The default kind with its usual parameters.
-  ExplorerConfig();
-  ExplorerConfig(const ExplorerConfig& other);
-  ExplorerConfig& operator=(const ExplorerConfig& other);
+  ExplorerConfig() : KindChoice("explorer", explorer_kinds()) {}
 
-  const std::string& kind() const { return kind_; }
-  /// Takes another kind, with its usual parameters. Throws InputError for an unknown one.
-  void choose(const std::string& kind);
-  /// `kind` first, then the parameters of that kind.
-  void bind(Binder& binder);
-  std::string mistake() const { return parameters_->mistake(); }
-  double occupied_threshold() const { return parameters_->occupied_threshold(); }
+  std::string mistake() const { return parameters().mistake(); }
+  double occupied_threshold() const { return parameters().occupied_threshold(); }
   std::unique_ptr<Explorer> make(const robot::RobotModel& model, const Mission& mission) const {
-    return parameters_->make(model, mission);
+    return parameters().make(model, mission);
   }
-
- private:
-  std::string kind_;
-  std::unique_ptr<ExplorerParameters> parameters_;
 };
 
 }  // namespace rubble::explore

@@ -10,15 +10,9 @@
 namespace rubble::slam {
 namespace {
 
-template <class Config, class Kind>
+template <class Config, class Mine>
 MapperKind row(const std::string& name, const std::string& about) {
-  return {name, about, [] { return std::make_unique<ParametersOf<Config, Kind>>(); }};
-}
-
-std::vector<std::string> names() {
-  std::vector<std::string> all;
-  for (const MapperKind& kind : mapper_kinds()) all.push_back(kind.name);
-  return all;
+  return {name, about, [] { return std::make_unique<ParametersOf<Config, Mine>>(); }};
 }
 
 }  // namespace
@@ -35,36 +29,6 @@ const std::vector<MapperKind>& mapper_kinds() {
   return kinds;
 }
 
-MapperConfig::MapperConfig() { choose(mapper_kinds().front().name); }
-MapperConfig::MapperConfig(const MapperConfig& other)
-    : permitted_(other.permitted_), kind_(other.kind_), parameters_(other.parameters_->copy()) {}
-
-MapperConfig& MapperConfig::operator=(const MapperConfig& other) {
-  permitted_ = other.permitted_;
-  kind_ = other.kind_;
-  parameters_ = other.parameters_->copy();
-  return *this;
-}
-
-void MapperConfig::choose(const std::string& kind) {
-  for (const MapperKind& row : mapper_kinds())
-    if (row.name == kind) {
-      kind_ = kind;
-      parameters_ = row.parameters();
-      return;
-    }
-  std::string known;
-  for (const std::string& name : names()) known += (known.empty() ? "" : ", ") + name;
-  throw InputError("mapper.kind: '" + kind + "' is no mapper; known are " + known);
-}
-
-void MapperConfig::bind(Binder& binder) {
-  std::string kind = kind_;
-  binder.choice("kind", kind, names());
-  if (kind != kind_) choose(kind);
-  parameters_->bind(binder);
-}
-
 void MapperConfig::require_permission() const {
   if (permitted_ || command().empty()) return;
   throw InputError("mapper.command: " + quoted(command(), 200) +
@@ -73,13 +37,13 @@ void MapperConfig::require_permission() const {
 
 std::unique_ptr<Mapper> MapperConfig::make(const robot::RobotModel& model, const MapperSetting& setting) const {
   require_permission();
-  return parameters_->make(model, setting);
+  return parameters().make(model, setting);
 }
 
 std::unique_ptr<Mapper> make_here(const MapperConfig& config, const robot::RobotModel& model,
                                   const MapperSetting& setting) {
   config.require_permission();
-  return config.parameters_->make_here(model, setting);
+  return config.parameters().make_here(model, setting);
 }
 
 }  // namespace rubble::slam

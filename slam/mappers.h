@@ -1,12 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "base/yaml/binder.h"
+#include "base/yaml/kinds.h"
 #include "robot/model.h"
 #include "slam/mapper.h"
 
@@ -35,65 +34,38 @@ class MapperParameters {
   virtual std::string command() const { return ""; }
 };
 
-/// Finds the bind() that stands beside the Config.
-template <class Config>
-void bind_fields(Binder& binder, Config& config) {
-  bind(binder, config);
-}
-
-/// Parameters kept in a plain struct `Config` that a function bind(Binder&, Config&) beside it knows.
-template <class Config>
-class ParametersIn : public MapperParameters {
- public:
-  void bind(Binder& binder) override { bind_fields(binder, config); }
-
-  Config config;
-};
-
-/// The same, of a mapper whose constructor takes (model, config, seed).
-template <class Config, class Kind>
-class ParametersOf : public ParametersIn<Config> {
+/// Parameters kept in a plain struct `Config` that a function bind(Binder&, Config&) beside it knows, of a mapper whose
+/// constructor takes (model, config, seed).
+template <class Config, class Mine>
+class ParametersOf : public ParametersIn<MapperParameters, Config> {
  public:
   std::unique_ptr<Mapper> make(const robot::RobotModel& model, const MapperSetting& setting) const override {
-    return std::make_unique<Kind>(model, this->config, setting.seed);
+    return std::make_unique<Mine>(model, this->config, setting.seed);
   }
   std::unique_ptr<MapperParameters> copy() const override { return std::make_unique<ParametersOf>(*this); }
 };
 
-/// A row of the table of mappers.
-struct MapperKind {
-  std::string name;   ///< `mapper.kind`
-  std::string about;  ///< one line, for people
-  std::function<std::unique_ptr<MapperParameters>()> parameters;
-};
+using MapperKind = Kind<MapperParameters>;
 
 /// All kinds of mappers, the default first.
 const std::vector<MapperKind>& mapper_kinds();
 
-/// Which mapper a run uses, with its parameters. A value: copies are independent.
-class MapperConfig {
+/// Which mapper a run uses, with its parameters.
+class MapperConfig : public KindChoice<MapperParameters> {
  public:
-  /// The default kind with its usual parameters.
-  MapperConfig();
-  MapperConfig(const MapperConfig& other);
-  MapperConfig& operator=(const MapperConfig& other);
+  MapperConfig() : KindChoice("mapper", mapper_kinds()) {}
 
-  const std::string& kind() const { return kind_; }
-  /// Takes another kind, with its usual parameters. Throws InputError for an unknown one.
-  void choose(const std::string& kind);
-  /// `kind` first, then the parameters of that kind.
-  void bind(Binder& binder);
   /// Throws InputError for a command that was not permitted.
   std::unique_ptr<Mapper> make(const robot::RobotModel& model, const MapperSetting& setting) const;
 
   /// The parameters of a kind that keeps them in a `Config`. Throws std::bad_cast when the kind chosen does not.
   template <class Config>
   const Config& as() const {
-    return dynamic_cast<const ParametersIn<Config>&>(*parameters_).config;
+    return dynamic_cast<const ParametersIn<MapperParameters, Config>&>(parameters()).config;
   }
 
   /// The command that make() would run; empty: none.
-  std::string command() const { return parameters_->command(); }
+  std::string command() const { return parameters().command(); }
   /// A command in a file that came from somebody else must not run by itself: the user has to say so. It is no part of
   /// the configuration, so that no file can permit it.
   void permit_command() { permitted_ = true; }
@@ -104,8 +76,6 @@ class MapperConfig {
   friend std::unique_ptr<Mapper> make_here(const MapperConfig&, const robot::RobotModel&, const MapperSetting&);
 
   bool permitted_ = false;
-  std::string kind_;
-  std::unique_ptr<MapperParameters> parameters_;
 };
 
 /// The mapper in this process, for those who serve one.

@@ -3,27 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "arenas/model/geometry.h"
 #include "base/angle.h"
+#include "base/rng.h"
 
 namespace rubble::arenas {
 namespace {
 
 using mrpt::math::TPoint2D;
-
-constexpr double kHalf = 0.6;    ///< half a pallet [m]
-constexpr double kBoard = 0.01;  ///< thickness of walls [m]
-
-void add_block(const ElementFrame& frame, double x0, double y0, double x1, double y1, double bottom, double top,
-               const std::string& element, Arena& arena, bool gives_way = false) {
-  arena.solids.push_back({frame.box(x0, y0, x1, y1), bottom, top, element, gives_way});
-}
-
-void add_platform(const ElementFrame& frame, double x0, double y0, double x1, double y1, double z,
-                  const std::string& element, Arena& arena) {
-  arena.floor.push_back({frame.box(x0, y0, x1, y1), z, 0.0, 0.0, element});
-}
 
 /// The board between x0 and x1, less the openings, which all span that stretch or none of it.
 void add_boards(const ElementFrame& frame, double x0, double x1, double height, const std::vector<Opening>& openings,
@@ -35,13 +25,39 @@ void add_boards(const ElementFrame& frame, double x0, double x1, double height, 
   std::sort(here.begin(), here.end(), [](const Opening* a, const Opening* b) { return a->height < b->height; });
   double bottom = 0.0;
   const auto add = [&](double z0, double z1) {
-    add_block(frame, x0, kHalf - 0.5 * kBoard, x1, kHalf + 0.5 * kBoard, z0, z1, "wall", arena);
+    add_block(frame, x0, kHalfPallet - 0.5 * kBoardThickness, x1, kHalfPallet + 0.5 * kBoardThickness, z0, z1, "wall",
+              arena);
   };
   for (const Opening* o : here) {
     add(bottom, o->height - 0.5 * o->tall);
     bottom = o->height + 0.5 * o->tall;
   }
   add(bottom, height);
+}
+
+/// A quarter of a pallet that slopes.
+struct Quarter {
+  double x, y;    ///< its corner with the smallest coordinates
+  double gx, gy;  ///< gradient in the own frame
+  double foot;    ///< height of its low edge [m]
+};
+
+void add_quarter(const ElementFrame& frame, const Quarter& q, const char* element, Arena& arena) {
+  const mrpt::math::TPoint2D origin = frame.point(0.0, 0.0);
+  const mrpt::math::TPoint2D right = frame.point(1.0, 0.0) - origin;
+  const mrpt::math::TPoint2D ahead = frame.point(0.0, 1.0) - origin;
+  FloorPatch patch;
+  patch.outline = frame.box(q.x, q.y, q.x + kHalfPallet, q.y + kHalfPallet);
+  patch.z = q.foot + std::max(0.0, -(q.gx + q.gy)) * kHalfPallet;  // one of the two is zero
+  patch.gx = q.gx * right.x + q.gy * ahead.x;
+  patch.gy = q.gx * right.y + q.gy * ahead.y;
+  patch.element = element;
+  arena.floor.push_back(patch);
+}
+
+double floor_or_ground(const Arena& arena, const TPoint2D& p) {
+  const double z = floor_height(arena, p);
+  return std::isfinite(z) ? z : 0.0;
 }
 
 }  // namespace
@@ -69,8 +85,18 @@ Outline ElementFrame::box(double x0, double y0, double x1, double y1) const {
 
 double ElementFrame::forward() const { return std::atan2(cos_, -sin_); }
 
+void add_block(const ElementFrame& frame, double x0, double y0, double x1, double y1, double bottom, double top,
+               const std::string& element, Arena& arena, bool gives_way) {
+  arena.solids.push_back({frame.box(x0, y0, x1, y1), bottom, top, element, gives_way});
+}
+
+void add_platform(const ElementFrame& frame, double x0, double y0, double x1, double y1, double z,
+                  const std::string& element, Arena& arena) {
+  arena.floor.push_back({frame.box(x0, y0, x1, y1), z, 0.0, 0.0, element});
+}
+
 void add_wall(const ElementFrame& frame, double height, const std::vector<Opening>& openings, Arena& arena) {
-  std::vector<double> cuts{-kHalf, kHalf};
+  std::vector<double> cuts{-kHalfPallet, kHalfPallet};
   for (const Opening& o : openings) {
     cuts.push_back(o.along - 0.5 * o.width);
     cuts.push_back(o.along + 0.5 * o.width);
@@ -82,26 +108,31 @@ void add_wall(const ElementFrame& frame, double height, const std::vector<Openin
 }
 
 void add_half_wall(const ElementFrame& frame, Arena& arena) {
-  add_block(frame, 0.0, kHalf - 0.5 * kBoard, kHalf, kHalf + 0.5 * kBoard, 0.0, 1.2, "wall", arena);
+  add_block(frame, 0.0, kHalfPallet - 0.5 * kBoardThickness, kHalfPallet, kHalfPallet + 0.5 * kBoardThickness, 0.0, 1.2,
+            "wall", arena);
 }
 
 void add_diagonal_wall(const ElementFrame& frame, Arena& arena) {
-  arena.solids.push_back({strip(frame.point(-kHalf, -kHalf), frame.point(kHalf, kHalf), kBoard), 0.0, 1.2, "wall"});
+  arena.solids.push_back(
+      {strip(frame.point(-kHalfPallet, -kHalfPallet), frame.point(kHalfPallet, kHalfPallet), kBoardThickness), 0.0, 1.2,
+       "wall"});
 }
 
 void add_corner_wall(const ElementFrame& frame, Arena& arena) {
   const TPoint2D middle = frame.point(0.0, 0.0);
-  arena.solids.push_back({strip(frame.point(-kHalf, kHalf), middle, kBoard), 0.0, 1.2, "wall"});
-  arena.solids.push_back({strip(middle, frame.point(kHalf, kHalf), kBoard), 0.0, 1.2, "wall"});
+  arena.solids.push_back({strip(frame.point(-kHalfPallet, kHalfPallet), middle, kBoardThickness), 0.0, 1.2, "wall"});
+  arena.solids.push_back({strip(middle, frame.point(kHalfPallet, kHalfPallet), kBoardThickness), 0.0, 1.2, "wall"});
 }
 
 void add_veil(const ElementFrame& frame, Arena& arena) {
   constexpr int kStrips = 9;
   constexpr double kPitch = 0.131;
-  add_block(frame, -kHalf, kHalf - 0.5 * kBoard, kHalf, kHalf + 0.5 * kBoard, 1.14, 1.2, "veil", arena);
+  add_block(frame, -kHalfPallet, kHalfPallet - 0.5 * kBoardThickness, kHalfPallet, kHalfPallet + 0.5 * kBoardThickness,
+            1.14, 1.2, "veil", arena);
   for (int i = 0; i < kStrips; ++i) {
     const double x = kPitch * (i - kStrips / 2);
-    add_block(frame, x - 0.01, kHalf - 0.5 * kBoard, x + 0.01, kHalf + 0.5 * kBoard, 0.02, 1.14, "veil", arena, true);
+    add_block(frame, x - 0.01, kHalfPallet - 0.5 * kBoardThickness, x + 0.01, kHalfPallet + 0.5 * kBoardThickness, 0.02,
+              1.14, "veil", arena, true);
   }
 }
 
@@ -109,7 +140,7 @@ void add_ramp(const ElementFrame& frame, double foot_y, double head_y, double ri
   const double uphill = frame.forward() + (head_y < foot_y ? kPi : 0.0);
   const double slope = rise / std::abs(head_y - foot_y);
   FloorPatch patch;
-  patch.outline = frame.box(-kHalf, std::min(foot_y, head_y), kHalf, std::max(foot_y, head_y));
+  patch.outline = frame.box(-kHalfPallet, std::min(foot_y, head_y), kHalfPallet, std::max(foot_y, head_y));
   patch.z = head_y < foot_y ? rise : 0.0;  // outline[0] lies at the smaller y
   patch.gx = slope * std::cos(uphill);
   patch.gy = slope * std::sin(uphill);
@@ -120,12 +151,12 @@ void add_ramp(const ElementFrame& frame, double foot_y, double head_y, double ri
 }
 
 void add_elevated_floor(const ElementFrame& frame, double height, Arena& arena) {
-  add_platform(frame, -kHalf, -kHalf, kHalf, kHalf, height, "elevated_floor", arena);
+  add_platform(frame, -kHalfPallet, -kHalfPallet, kHalfPallet, kHalfPallet, height, "elevated_floor", arena);
 }
 
 void add_roll_ramp(const ElementFrame& frame, double slope, Arena& arena) {
   const ElementFrame across(frame.point(0.0, 0.0), kPi - frame.forward());  // +y is the other's +x
-  add_ramp(across, -kHalf, kHalf, slope * 2.0 * kHalf, arena);
+  add_ramp(across, -kHalfPallet, kHalfPallet, slope * 2.0 * kHalfPallet, arena);
 }
 
 void add_wooden_block(const ElementFrame& frame, Arena& arena) {
@@ -157,7 +188,7 @@ void add_stairs(const ElementFrame& frame, Arena& arena) {
   constexpr double kRiser = 0.2;
   for (int i = 0; i < kTreads; ++i) {
     const double y = -0.59 + kTread * i;
-    const double end = i + 1 < kTreads ? y + kTread : kHalf;
+    const double end = i + 1 < kTreads ? y + kTread : kHalfPallet;
     add_platform(frame, -0.59, y, 0.59, end, kRiser * (i + 1), "stair", arena);
   }
 }
@@ -207,6 +238,87 @@ void add_hung_victim(const ElementFrame& frame, const Mount& mount, bool heat, b
   victim.sound = sound;
   victim.co2 = co2;
   arena.victims.push_back(victim);
+}
+
+void add_step_field(const ElementFrame& frame, double tallest, Arena& arena) {
+  constexpr int kColumns = 10;
+  constexpr double kEdge = 0.1;
+  const double step = 0.25 * tallest;
+  // The league builds them at random; every field here is the same throw with the league's counts beside the diagonal.
+  std::vector<double> heights;
+  for (const auto& [steps, count] : {std::pair{0, 9}, {1, 27}, {2, 33}, {3, 21}}) {
+    heights.insert(heights.end(), static_cast<std::size_t>(count), step * steps);
+  }
+  Rng rng(1, "red step field");
+  for (std::size_t i = heights.size(); i > 1; --i) {
+    const std::size_t k = rng.below(static_cast<std::uint32_t>(i));
+    std::swap(heights[i - 1], heights[k]);
+  }
+  std::size_t next = 0;
+  for (int row = 0; row < kColumns; ++row) {
+    for (int column = 0; column < kColumns; ++column) {
+      const double height = row == column ? tallest : heights[next++];
+      const double x = kEdge * column - 0.5;
+      const double y = kEdge * row - 0.5;
+      if (height > 0.0) add_platform(frame, x, y, x + kEdge, y + kEdge, height, "step_field", arena);
+    }
+  }
+  constexpr double kPlank = 0.05;
+  add_platform(frame, -0.49, -0.59, 0.49, -0.5, kPlank, "step_field", arena);
+  add_platform(frame, -0.49, 0.5, 0.49, 0.59, kPlank, "step_field", arena);
+  add_platform(frame, -0.59, -0.49, -0.5, 0.49, kPlank, "step_field", arena);
+  add_platform(frame, 0.5, -0.49, 0.59, 0.49, kPlank, "step_field", arena);
+}
+
+void add_crossing_ramps(const ElementFrame& frame, double slope, Arena& arena) {
+  // Quarter by quarter, counter-clockwise from the lower left: each rises a quarter turn further, +x first.
+  for (const Quarter& q :
+       {Quarter{-kHalfPallet, -kHalfPallet, slope, 0.0, 0.0}, Quarter{0.0, -kHalfPallet, 0.0, slope, 0.0},
+        Quarter{0.0, 0.0, -slope, 0.0, 0.0}, Quarter{-kHalfPallet, 0.0, 0.0, -slope, 0.0}}) {
+    add_quarter(frame, q, "crossing_ramp", arena);
+  }
+}
+
+void add_elevated_ramps(const ElementFrame& frame, double slope, Arena& arena) {
+  const double raised = slope * kHalfPallet;
+  for (const Quarter& q :
+       {Quarter{-kHalfPallet, -kHalfPallet, -slope, 0.0, raised}, Quarter{0.0, -kHalfPallet, 0.0, -slope, 0.0},
+        Quarter{0.0, 0.0, -slope, 0.0, raised}, Quarter{-kHalfPallet, 0.0, 0.0, slope, 0.0}}) {
+    add_quarter(frame, q, "elevated_ramp", arena);
+  }
+}
+
+void add_tunnel(const ElementFrame& frame, Arena& arena) {
+  add_block(frame, -kHalfPallet, -kHalfPallet, kHalfPallet, kHalfPallet, 0.60, 0.62, "tunnel", arena);
+  for (const double x : {-kHalfPallet, kHalfPallet}) {
+    add_block(frame, x - 0.5 * kBoardThickness, -kHalfPallet, x + 0.5 * kBoardThickness, kHalfPallet, 0.0, 0.60,
+              "tunnel", arena);
+  }
+}
+
+void add_victim(Arena& arena, Victim victim, double size) {
+  constexpr double kSheet = 0.015;
+  const TPoint2D centre{victim.position.x, victim.position.y};
+  victim.position.z += floor_or_ground(arena, centre);
+  arena.victims.push_back(victim);
+  if (size <= 0.0) return;
+
+  double lowest = floor_or_ground(arena, centre);
+  double highest = lowest;
+  for (const TPoint2D& corner : rectangle(centre, size, size, victim.facing)) {
+    const double z = floor_or_ground(arena, corner);
+    lowest = std::min(lowest, z);
+    highest = std::max(highest, z);
+  }
+  const TPoint2D forward{std::cos(victim.facing), std::sin(victim.facing)};
+  const TPoint2D left{-forward.y, forward.x};
+  const double aside = 0.5 * (size - kSheet);
+  const auto add_board = [&](const TPoint2D& middle, double length, double width) {
+    arena.solids.push_back({rectangle(middle, length, width, victim.facing), lowest, highest + size, "victim_box"});
+  };
+  add_board(centre - forward * aside, kSheet, size);
+  add_board(centre + left * aside, size, kSheet);
+  add_board(centre - left * aside, size, kSheet);
 }
 
 }  // namespace rubble::arenas

@@ -9,6 +9,9 @@
 
 namespace rubble::arenas {
 
+constexpr double kHalfPallet = 0.6;       ///< [m]
+constexpr double kBoardThickness = 0.01;  ///< of walls [m]
+
 /// An element's own frame: origin in the middle of its pallet, walls on the edge y = +0.6 m.
 class ElementFrame {
  public:
@@ -38,6 +41,14 @@ struct Mount {
   double along, height;
 };
 
+/// A box that stands or hangs, between two corners in the own frame. gives_way: the laser sees it, the robot pushes it
+/// aside.
+void add_block(const ElementFrame& frame, double x0, double y0, double x1, double y1, double bottom, double top,
+               const std::string& element, Arena& arena, bool gives_way = false);
+/// A level floor at height z to drive on, closed below.
+void add_platform(const ElementFrame& frame, double x0, double y0, double x1, double y1, double z,
+                  const std::string& element, Arena& arena);
+
 void add_wall(const ElementFrame& frame, double height, const std::vector<Opening>& openings, Arena& arena);
 /// The half of a wall to the right of the middle, seen from the pallet.
 void add_half_wall(const ElementFrame& frame, Arena& arena);
@@ -66,5 +77,22 @@ void add_shelves(const ElementFrame& frame, Arena& arena);
 void add_spectator(const ElementFrame& frame, Arena& arena);
 /// A box behind the wall at +y, open to the wall; the victim looks through the hole.
 void add_hung_victim(const ElementFrame& frame, const Mount& mount, bool heat, bool sound, bool co2, Arena& arena);
+
+/// 10 x 10 columns of 0.1 m in a frame of 50 mm planks: the diagonal is `tallest` high, the others 0 to 3 quarters of
+/// it. Red 0.4 m, orange 0.2 m.
+void add_step_field(const ElementFrame& frame, double tallest, Arena& arena);
+/// Four ramps of half a pallet that rise in turn, each to the side the next begins at: their floors agree nowhere.
+/// slope: rise per metre.
+void add_crossing_ramps(const ElementFrame& frame, double slope, Arena& arena);
+/// Four half ramps that rise in turn, two on the ground and two one rise higher.
+void add_elevated_ramps(const ElementFrame& frame, double slope, Arena& arena);
+/// A ceiling over the pallet from 0.60 to 0.62 m, a wall of 1.2 m above it to either side: the ways in are at +y and
+/// -y.
+void add_tunnel(const ElementFrame& frame, Arena& arena);
+
+/// Adds a victim in the middle of its box: a back and two side boards of 15 mm, open to `facing` and to the top.
+/// The boards reach from the lowest floor below the box to `size` above the highest. position.z of `victim` is taken
+/// as height above the floor there and is replaced by the absolute height. size [m] 0: no box.
+void add_victim(Arena& arena, Victim victim, double size = 0.4);
 
 }  // namespace rubble::arenas

@@ -5,7 +5,7 @@
 #include <functional>
 #include <map>
 
-#include "arenas/elements/rough_shapes.h"
+#include "arenas/elements/element_shapes.h"
 #include "base/angle.h"
 
 namespace rubble::arenas {
@@ -19,6 +19,7 @@ struct Entry {
   std::function<void(const ElementFrame&, double slope, Arena&)> add_sloped =
       nullptr;                                    ///< another slope [rise a metre]
   std::optional<double> friction = std::nullopt;  ///< of its floors; default: the arena's, for all are of wood
+  bool has_holes = false;                         ///< a wall at whose mount points items hang
 };
 
 /// Shapes that do not hang on a wall.
@@ -31,8 +32,11 @@ auto straight_wall(double height) {
   return standing([height](const ElementFrame& frame, Arena& arena) { add_wall(frame, height, {}, arena); });
 }
 
-auto holed_wall(std::vector<Opening> openings) {
-  return standing([openings](const ElementFrame& frame, Arena& arena) { add_wall(frame, 1.2, openings, arena); });
+Entry holed_wall(const char* what, std::vector<Opening> openings) {
+  Entry entry{ElementKind::Wall, what,
+              standing([openings](const ElementFrame& frame, Arena& arena) { add_wall(frame, 1.2, openings, arena); })};
+  entry.has_holes = true;
+  return entry;
 }
 
 auto barrel(double bottom) {
@@ -80,10 +84,8 @@ const std::map<std::string, Entry>& table() {
       {"small_wall_qr", {K::Wall, "a board of 1.2 m with a QR code", straight_wall(1.2)}},
       {"small_wall_start_check", {K::Wall, "a board of 1.2 m with the start check", straight_wall(1.2)}},
       {"tall_wall", {K::Wall, "a board of 2.4 m on the edge at +y", straight_wall(2.4)}},
-      {"wall_holes1",
-       {K::Wall, "a board with three square openings: the laser and victims look through", holed_wall(kHoles)}},
-      {"small_wall_triple_holes",
-       {K::Wall, "a board with three slots: the laser and victims look through", holed_wall(kSlots)}},
+      {"wall_holes1", holed_wall("a board with three square openings: the laser and victims look through", kHoles)},
+      {"small_wall_triple_holes", holed_wall("a board with three slots: the laser and victims look through", kSlots)},
       {"half_wall", {K::Wall, "the right half of a board: a gap of 0.6 m stays", standing(add_half_wall)}},
       {"veil_wall", {K::Wall, "strips that the laser sees and the robot pushes aside", standing(add_veil)}},
       {"corner_diag_120", {K::Diagonal, "two boards from the corners at +y to the middle", standing(add_corner_wall)}},
@@ -153,20 +155,24 @@ const std::map<std::string, Entry>& table() {
   return entries;
 }
 
+const Entry* find(const std::string& type) {
+  const auto found = table().find(type);
+  return found != table().end() ? &found->second : nullptr;
+}
+
 /// Where an item hangs: the holes of its wall, as (along, height).
 Mount mount_of(const Element& element, const Element* wall) {
   static const Mount kPoints[] = {{-0.3, 0.9}, {0.3, 0.6}, {-0.3, 0.3}};
-  const bool has_holes = wall != nullptr && (wall->type == "wall_holes1" || wall->type == "small_wall_triple_holes");
+  const Entry* behind = wall != nullptr ? find(wall->type) : nullptr;
   const int point = std::max(0, element.mount_point.value_or(0));
-  if (!has_holes || point > 2) return {0.0, 0.2};  // stands on the ground
+  if (behind == nullptr || !behind->has_holes || point > 2) return {0.0, 0.2};  // stands on the ground
   return kPoints[point];
 }
 
 }  // namespace
 
 ElementKind kind_of(const std::string& type) {
-  const auto found = table().find(type);
-  if (found != table().end()) return found->second.kind;
+  if (const Entry* entry = find(type)) return entry->kind;
   for (const char* label : {"hazmat", "start_check", "floor_tile"})
     if (type.rfind(label, 0) == 0) return ElementKind::Label;
   return ElementKind::Unknown;
@@ -189,13 +195,13 @@ const Element* wall_behind(const Element& item, const std::vector<Element>& elem
 }
 
 bool covers_pallet(const std::string& type) {
-  const auto found = table().find(type);
-  return found != table().end() && found->second.covers;
+  const Entry* entry = find(type);
+  return entry != nullptr && entry->covers;
 }
 
 bool has_slope(const std::string& type) {
-  const auto found = table().find(type);
-  return found != table().end() && found->second.add_sloped != nullptr;
+  const Entry* entry = find(type);
+  return entry != nullptr && entry->add_sloped != nullptr;
 }
 
 bool has_floor(const std::string& type) {
@@ -207,8 +213,8 @@ bool has_floor(const std::string& type) {
 }
 
 std::string description_of(const std::string& type) {
-  const auto found = table().find(type);
-  return found != table().end() ? found->second.what : "";
+  const Entry* entry = find(type);
+  return entry != nullptr ? entry->what : "";
 }
 
 std::string name_of(ElementKind kind) {
@@ -230,18 +236,17 @@ std::string name_of(ElementKind kind) {
 }
 
 void place(const Element& element, const Element* wall, Arena& arena) {
-  const auto found = table().find(element.type);
-  if (found == table().end()) return;
-  const Entry& entry = found->second;
+  const Entry* entry = find(element.type);
+  if (entry == nullptr) return;
   const ElementFrame frame(element.position + element.offset, element.rotation);
   const std::size_t first = arena.floor.size();
-  if (element.slope && entry.add_sloped) {
-    entry.add_sloped(frame, std::tan(*element.slope), arena);
+  if (element.slope && entry->add_sloped) {
+    entry->add_sloped(frame, std::tan(*element.slope), arena);
   } else {
-    entry.add(frame, mount_of(element, wall), arena);
+    entry->add(frame, mount_of(element, wall), arena);
   }
   for (std::size_t i = first; i < arena.floor.size(); ++i)
-    arena.floor[i].friction = element.friction ? element.friction : entry.friction;
+    arena.floor[i].friction = element.friction ? element.friction : entry->friction;
 }
 
 }  // namespace rubble::arenas

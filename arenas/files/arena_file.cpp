@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "arenas/elements/element_shapes.h"
 #include "arenas/elements/elements.h"
-#include "arenas/elements/victim_box.h"
 #include "arenas/files/include.h"
 #include "arenas/files/plan.h"
 #include "arenas/model/geometry.h"

@@ -36,7 +36,8 @@ const std::map<std::string, Folders>& rooms() {
 }
 
 /// Wings that each wing may include of its own room, besides itself. The room's top (its face) may include them all
-/// and be included by those that list the room's name.
+/// and be included by those that list the room's name. "slam/*" stands for every wing of slam that has no row: those
+/// are what can be had in several kinds, know nothing of each other, and are insides.
 const std::map<std::string, Folders>& wings() {
   static const std::map<std::string, Folders> table = {
       {"base/text", {"base"}},
@@ -62,13 +63,12 @@ const std::map<std::string, Folders>& wings() {
       {"sim/laser", {"sim/body"}},
       {"slam/grid", {}},
       {"slam/scan", {"slam/grid"}},
-      {"slam/paper", {"slam", "slam/grid", "slam/scan"}},
-      {"slam/robust", {"slam", "slam/grid", "slam/scan"}},
+      {"slam/*", {"slam", "slam/grid", "slam/scan"}},
       {"slam/calibration", {"slam/grid", "slam/scan", "slam/robust"}},
       {"explore/plan", {}},
       {"explore/caution", {"explore"}},
       {"explore/search", {"explore", "explore/plan"}},
-      {"explore/paper", {"explore", "explore/plan", "explore/caution", "explore/search"}},
+      {"explore/*", {"explore", "explore/plan", "explore/caution", "explore/search"}},
       {"slam/process", {"slam", "slam/grid", "slam/scan"}},
       {"slam/peers", {"slam", "slam/grid", "slam/scan", "slam/process"}},
       {"scoring/maps", {}},
@@ -93,14 +93,26 @@ const std::map<std::string, Folders>& wings() {
 
 /// Wings that nobody outside their room may include (tests and benchmarks apart).
 const Folders& insides() {
-  static const Folders table = {"explore/caution", "explore/paper",     "explore/plan",      "explore/search",
-                                "robot/logs/own",  "scoring/alignment", "scoring/proposals", "scoring/rooms",
-                                "scoring/walls",   "sim/body",          "sim/laser",         "slam/paper",
-                                "slam/peers",      "slam/robust",       "slam/scan"};
+  static const Folders table = {"explore/caution",   "explore/plan",      "explore/search", "robot/logs/own",
+                                "scoring/alignment", "scoring/proposals", "scoring/rooms",  "scoring/walls",
+                                "sim/body",          "sim/laser",         "slam/peers",     "slam/scan"};
   return table;
 }
 
 std::string room_of(const std::string& folder) { return folder.substr(0, folder.find('/')); }
+
+/// The wing's row, or that of its room's kinds, or null.
+const Folders* row_of(const std::string& wing) {
+  for (const std::string& name : {wing, room_of(wing) + "/*"}) {
+    const auto found = wings().find(name);
+    if (found != wings().end() && wing != room_of(wing)) return &found->second;
+  }
+  return nullptr;
+}
+
+bool is_inside(const std::string& folder) {
+  return insides().count(folder) == 1 || (wings().count(folder) == 0 && row_of(folder) != nullptr);
+}
 
 /// What is wrong with a file of `folder` including a file of `included`; empty: nothing.
 std::string offence(const std::string& folder, const std::string& included) {
@@ -108,12 +120,13 @@ std::string offence(const std::string& folder, const std::string& included) {
   if (rooms().count(room) == 0) return folder + " is not in the table of rooms";
   if (room != other) {
     if (rooms().at(room).count(other) == 0) return room + " must not know " + other;
-    if (room != "bench" && insides().count(included) == 1) return included + " is an inside of " + other;
+    if (room != "bench" && is_inside(included)) return included + " is an inside of " + other;
     return "";
   }
   if (folder == included || folder == room) return "";
-  if (wings().count(folder) == 0) return folder + " is not in the table of wings";
-  return wings().at(folder).count(included) == 1 ? "" : folder + " must not know " + included;
+  const Folders* may = row_of(folder);
+  if (may == nullptr) return folder + " is not in the table of wings";
+  return may->count(included) == 1 ? "" : folder + " must not know " + included;
 }
 
 /// Folders of the files that a text includes in lines `#include "folder/file.h"`.
@@ -169,10 +182,7 @@ TEST(IncludeDirection, EveryWingIsInTheTable) {
       if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
       const std::string folder = fs::relative(entry.path().parent_path(), top).generic_string();
       if (folder == room) continue;
-      EXPECT_EQ(wings().count(folder), 1u) << folder;
-      if (folder != room) {
-        EXPECT_EQ(wings().count(folder), 1u) << folder;
-      }
+      EXPECT_NE(row_of(folder), nullptr) << folder;
     }
 }
 
@@ -208,6 +218,20 @@ TEST(IncludeDirection, APlantedWrongIncludeIsSeen) {
   EXPECT_EQ(offence("scenarios/run", "scoring/alignment"), "scoring/alignment is an inside of scoring");
   EXPECT_EQ(offence("explore", "slam"), "");
   EXPECT_EQ(offence("slam", "slam/paper"), "");
+  EXPECT_EQ(offence("scoring/alignment", "scoring/league"), "scoring/alignment must not know scoring/league");
+  EXPECT_EQ(offence("scoring/yours", "scoring"), "scoring/yours is not in the table of wings");
+}
+
+TEST(IncludeDirection, ANewKindNeedsNoRowAndSeesOnlyWhatAllKindsSee) {
+  EXPECT_EQ(offence("slam/yours", "slam/scan"), "");
+  EXPECT_EQ(offence("slam/yours", "slam"), "");
+  EXPECT_EQ(offence("slam/yours", "slam/robust"), "slam/yours must not know slam/robust");
+  EXPECT_EQ(offence("slam/yours", "sim"), "slam must not know sim");
+  EXPECT_EQ(offence("slam/grid", "slam/yours"), "slam/grid must not know slam/yours");
+  EXPECT_EQ(offence("scenarios/run", "slam/yours"), "slam/yours is an inside of slam");
+  EXPECT_EQ(offence("explore/yours", "explore/search"), "");
+  EXPECT_EQ(offence("explore/yours", "slam/robust"), "slam/robust is an inside of slam");
+  EXPECT_EQ(offence("scenarios/run", "slam/process"), "") << "has a row of its own, and is no inside";
 }
 
 }  // namespace
