@@ -103,13 +103,9 @@ class Line {
   std::vector<std::uint8_t> waiting_;
 };
 
-class TcpServer : public PortServer {
+/// What both kinds of lines have in common.
+class LineServer : public PortServer {
  public:
-  explicit TcpServer(const PortWord& parts) : host_(parts.host), port_(parts.port) {
-    name_ = "tcp:" + host_ + ":" + port_;
-    plug_in();
-  }
-
   const std::string& name() const override { return name_; }
   int descriptor() const override { return line_.descriptor(); }
 
@@ -121,6 +117,22 @@ class TcpServer : public PortServer {
     line_.flush();
     take(to, size, result);
     return result;
+  }
+
+ protected:
+  explicit LineServer(std::string name) : name_(std::move(name)) {}
+  /// Takes what is there, if anything is.
+  virtual bool take(std::uint8_t* to, std::size_t size, Served& result) = 0;
+
+  std::string name_;
+  Line line_;
+};
+
+class TcpServer : public LineServer {
+ public:
+  explicit TcpServer(const PortWord& parts)
+      : LineServer("tcp:" + parts.host + ":" + parts.port), host_(parts.host), port_(parts.port) {
+    plug_in();
   }
 
   bool write(const std::uint8_t* from, std::size_t size) override { return client_ && line_.write(from, size); }
@@ -170,7 +182,7 @@ class TcpServer : public PortServer {
   }
 
   /// Accepts a client or takes bytes; whether there is something to tell.
-  bool take(std::uint8_t* to, std::size_t size, Served& result) {
+  bool take(std::uint8_t* to, std::size_t size, Served& result) override {
     if (left_) result.client_left = true;
     left_ = false;
     if (!client_ && listener_) accept_client(result);
@@ -196,29 +208,15 @@ class TcpServer : public PortServer {
     result.client_came = true;
   }
 
-  std::string host_, port_, name_;
+  std::string host_, port_;
   Descriptor listener_, client_;
   bool left_ = false;
-  Line line_;
 };
 
-class PtyServer : public PortServer {
+class PtyServer : public LineServer {
  public:
-  explicit PtyServer(const PortWord& parts) : path_(parts.path), name_("pty:" + parts.path) { plug_in(); }
+  explicit PtyServer(const PortWord& parts) : LineServer("pty:" + parts.path), path_(parts.path) { plug_in(); }
   ~PtyServer() override { unplug(); }
-
-  const std::string& name() const override { return name_; }
-  int descriptor() const override { return line_.descriptor(); }
-
-  Served read(std::uint8_t* to, std::size_t size, double timeout) override {
-    Served result;
-    line_.flush();
-    if (take(to, size, result)) return result;
-    line_.wait(timeout);
-    line_.flush();
-    take(to, size, result);
-    return result;
-  }
 
   bool write(const std::uint8_t* from, std::size_t size) override { return ours_ && line_.write(from, size); }
 
@@ -270,16 +268,15 @@ class PtyServer : public PortServer {
     return size < 0 ? std::string() : std::string(target, static_cast<std::size_t>(size));
   }
 
-  bool take(std::uint8_t* to, std::size_t size, Served& result) {
+  bool take(std::uint8_t* to, std::size_t size, Served& result) override {
     if (!ours_ || size == 0) return false;
     const ssize_t got = ::read(ours_.get(), to, size);
     if (got > 0) result.size = static_cast<std::size_t>(got);
     return result.size > 0;
   }
 
-  std::string path_, name_, device_;
+  std::string path_, device_;
   Descriptor ours_, theirs_;
-  Line line_;
 };
 
 }  // namespace
