@@ -50,7 +50,7 @@ TEST(Figures, NothingIsKnownOfNothing) {
 }
 
 TEST(Figures, EveryFigureHasACaseInWhichItIsKnown) {
-  const OccupancyGrid map(20, 20, 0.05), truth = map;
+  const OccupancyGrid map(GridFrame{20, 20, 0.05, 0.0, 0.0}), truth = map;
   const Trajectory path = {{Stamp{0}, {}}, {Stamp{1000000000}, {1.0, 0.0, 0.0}}};
   Evidence all;
   all.map = &map;
