@@ -14,6 +14,7 @@ Command arena_command();
 Command batch_command();
 Command batch_merge_command();
 Command batch_report_command();
+Command benchmark_command();
 Command compare_command();
 Command check_command();
 Command devices_command();

@@ -123,9 +123,34 @@ double Correlator::value(const std::vector<Cell>& cells, int x, int y, int level
   return sum / (255.0 * static_cast<double>(cells.size()));
 }
 
+double Correlator::bound(const std::vector<Cell>& cells, int x, int y, int level, double floor, Work& looked_at) const {
+  constexpr std::size_t kStretch = 48;  ///< cells between two looks at what can still come
+  const int pad = (1 << level) - 1;
+  const auto width = static_cast<unsigned>(width_ + pad);
+  const auto height = static_cast<unsigned>(height_ + pad);
+  const std::uint8_t* raster = levels_[static_cast<std::size_t>(level)].data();
+  const double whole = 255.0 * static_cast<double>(cells.size());
+  const auto enough = static_cast<std::uint32_t>(std::max(0.0, floor * whole));
+  std::uint32_t sum = 0;
+  for (std::size_t k = 0; k < cells.size();) {
+    const std::size_t end = std::min(cells.size(), k + kStretch);
+    for (; k < end; ++k) {
+      const auto u = static_cast<unsigned>(cells[k].x + x + pad);
+      const auto v = static_cast<unsigned>(cells[k].y + y + pad);
+      if (u < width && v < height) sum += raster[static_cast<std::size_t>(v) * width + u];
+    }
+    const std::uint32_t most = sum + 255U * static_cast<std::uint32_t>(cells.size() - k);
+    if (most > enough) continue;
+    looked_at += static_cast<Work>(k);
+    return most / whole;
+  }
+  looked_at += static_cast<Work>(cells.size());
+  return sum / whole;
+}
+
 void CorrelativeSearch::start(const Correlator& target, const std::vector<OrientedPoint>& points,
-                              const SearchWindow& window, double floor,
-                              const std::optional<SearchExclusion>& exclusion) {
+                              const SearchWindow& window, double floor, const std::optional<SearchExclusion>& exclusion,
+                              double later_floor) {
   target_ = &target;
   points_ = points;
   window_ = window;
@@ -136,11 +161,20 @@ void CorrelativeSearch::start(const Correlator& target, const std::vector<Orient
   angles_ = static_cast<int>(std::ceil(window.angle / angle_step_));
   cells_ = static_cast<int>(std::ceil(window.distance / target.resolution()));
   best_ = floor;
+  kept_ = std::min(floor, later_floor);
   found_.reset();
   turned_.clear();
   roots_.clear();
   next_root_ = 0;
   sorted_ = false;
+  stack_.clear();
+}
+
+void CorrelativeSearch::start_again(double floor, const SearchExclusion& exclusion) {
+  exclusion_ = exclusion;
+  best_ = std::max(floor, kept_);
+  found_.reset();
+  next_root_ = 0;
   stack_.clear();
 }
 
@@ -184,14 +218,16 @@ void CorrelativeSearch::open_angle() {
   for (const OrientedPoint& p : points_) cells.push_back(target_->cell(c * p.x - s * p.y + x, s * p.x + c * p.y + y));
   for (int v = -cells_; v <= cells_; v += kSpan)
     for (int u = -cells_; u <= cells_; u += kSpan) {
-      const Node root = node(index, u, v, kTopLevel);
-      if (root.bound > best_) roots_.push_back(root);
+      const Node root = node(index, u, v, kTopLevel, kept_);
+      if (root.bound > kept_) roots_.push_back(root);
     }
 }
 
-CorrelativeSearch::Node CorrelativeSearch::node(int angle, int x, int y, int level) {
-  used_ += kWorkPerLookup * static_cast<Work>(points_.size());
-  return {angle, x, y, level, target_->value(turned_[static_cast<std::size_t>(angle)], x, y, level)};
+CorrelativeSearch::Node CorrelativeSearch::node(int angle, int x, int y, int level, double floor) {
+  Work looked_at = 0;
+  const double bound = target_->bound(turned_[static_cast<std::size_t>(angle)], x, y, level, floor, looked_at);
+  used_ += kWorkPerLookup * looked_at;
+  return {angle, x, y, level, bound};
 }
 
 void CorrelativeSearch::expand(const Node& parent) {
@@ -208,7 +244,7 @@ void CorrelativeSearch::expand(const Node& parent) {
     for (int u = 0; u < 2; ++u) {
       const int x = parent.x + u * half;
       const int y = parent.y + v * half;
-      if (x <= cells_ && y <= cells_) stack_.push_back(node(parent.angle, x, y, parent.level - 1));
+      if (x <= cells_ && y <= cells_) stack_.push_back(node(parent.angle, x, y, parent.level - 1, best_));
     }
   // The best on top.
   std::sort(stack_.begin() + before, stack_.end(), [](const Node& a, const Node& b) { return better(b, a); });

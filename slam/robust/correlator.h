@@ -28,6 +28,9 @@ class Correlator {
   }
   /// Mean over `cells`, shifted by (x, y), of the largest value within 2^level cells up and right, 0..1.
   double value(const std::vector<Cell>& cells, int x, int y, int level) const;
+  /// The same where it is above `floor`; elsewhere something at most `floor` and no less than the value. Counts the
+  /// cells it had to look at.
+  double bound(const std::vector<Cell>& cells, int x, int y, int level, double floor, Work& looked_at) const;
 
  private:
   void draw(const std::vector<Surfel>& surfels, double blur);
@@ -64,9 +67,12 @@ class CorrelativeSearch {
     double score = 0.0;  ///< 0..1
   };
 
-  /// Looks for scores above `floor`. `target` must stay as it is until the search is over.
+  /// Looks for scores above `floor`. `target` must stay as it is until the search is over. `later_floor`: what
+  /// start_again() may ask for at least.
   void start(const Correlator& target, const std::vector<OrientedPoint>& points, const SearchWindow& window,
-             double floor, const std::optional<SearchExclusion>& exclusion = std::nullopt);
+             double floor, const std::optional<SearchExclusion>& exclusion = std::nullopt, double later_floor = 1.0);
+  /// After a search is over: looks in the same window once more, for another place, with what is known of it.
+  void start_again(double floor, const SearchExclusion& exclusion);
   /// Goes on until the search is over (then true) or `budget` is used up; takes what it used from `budget`.
   bool advance(Work& budget);
   /// The best pose; nothing when none scores above the floor.
@@ -79,7 +85,7 @@ class CorrelativeSearch {
   };
   void open_angle();
   void expand(const Node& parent);
-  Node node(int angle, int x, int y, int level);
+  Node node(int angle, int x, int y, int level, double floor);
   mrpt::math::TPose2D pose_of(const Node& node) const;
   bool excluded(const mrpt::math::TPose2D& pose) const;
 
@@ -91,6 +97,7 @@ class CorrelativeSearch {
   int angles_ = 0;  ///< to each side
   int cells_ = 0;   ///< to each side
   double best_ = 0.0;
+  double kept_ = 0.0;  ///< roots are kept from this bound
   std::optional<Found> found_;
   std::vector<std::vector<Cell>> turned_;  ///< cells of the points, for each angle looked at so far
   std::vector<Node> roots_;

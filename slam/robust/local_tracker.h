@@ -9,9 +9,9 @@
 namespace rubble::slam {
 
 struct TrackerConfig {
-  double cell = 0.10;  ///< of the surfels [m]
-  int frames = 30;     ///< key frames of the local map
-  double path = 4.0;   ///< but no older than so much path [m]
+  double cell = 0.0;  ///< of the surfels [m]; 0, here and below: by the reach of the scanner, see suited_to()
+  int frames = 30;    ///< key frames of the local map
+  double path = 0.0;  ///< but no older than so much path [m]
   // Sigmas of the odometry, as the prior of the fit.
   double distance_error = 0.15;    ///< share of the distance
   double least_distance = 0.01;    ///< [m]
@@ -22,8 +22,8 @@ struct TrackerConfig {
   double large_turn = 0.2;         ///< and larger turns [rad]
   double slip_chi2 = 16.0;         ///< odometry off by more (squared sigmas) is doubted
   double lost_inliers = 0.35;      ///< share below which the place counts as lost
-  double search_cell = 0.05;       ///< raster of the search [m]
-  double search_blur = 0.06;       ///< [m]
+  double search_cell = 0.0;        ///< raster of the search [m]
+  double search_blur = 0.0;        ///< [m]
 };
 
 /// How a scan lies on the local map.

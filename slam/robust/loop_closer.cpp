@@ -159,7 +159,8 @@ void LoopCloser::begin(const Task& task) {
   correlator_.build(old_surfels_.surfels(), config_.cell, config_.blur);
   task_ = task;
   const TPose2D expected = frames_.pose(task.frame) - frames_.pose(task.old);
-  search_.start(correlator_, points_, {expected, task.window, task.angle}, config_.least_score);
+  search_.start(correlator_, points_, {expected, task.window, task.angle}, config_.least_score, std::nullopt,
+                config_.runner_up * config_.least_score);
   stage_ = Stage::Best;
 }
 
@@ -181,13 +182,11 @@ bool LoopCloser::draw_both(const Task& task) {
 
 void LoopCloser::go_on(Work& budget) {
   if (!search_.advance(budget)) return;
-  const TPose2D expected = frames_.pose(task_.frame) - frames_.pose(task_.old);
   if (stage_ == Stage::Best) {
     stage_ = Stage::Idle;
     if (!search_.found()) return;
     best_ = *search_.found();
-    search_.start(correlator_, points_, {expected, task_.window, task_.angle}, config_.runner_up * best_.score,
-                  SearchExclusion{best_.pose, kRunnerUpAway, kRunnerUpTurned});
+    search_.start_again(config_.runner_up * best_.score, {best_.pose, kRunnerUpAway, kRunnerUpTurned});
     stage_ = Stage::RunnerUp;
     return;
   }

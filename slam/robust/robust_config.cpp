@@ -1,6 +1,29 @@
+#include <algorithm>
+
 #include "slam/robust/robust_mapper.h"
 
 namespace rubble::slam {
+
+namespace {
+
+constexpr double kFarSight = 8.0;  ///< from this reach a scanner sees surfaces from afar, thinly [m]
+
+}  // namespace
+
+RobustConfig suited_to(const robot::LaserModel& laser, RobustConfig config) {
+  const double reach = config.max_range > 0.0 ? std::min(config.max_range, laser.range_max) : laser.range_max;
+  const bool far = reach > kFarSight;
+  const auto choose = [far](double& value, double near_by, double from_afar) {
+    if (value == 0.0) value = far ? from_afar : near_by;
+  };
+  choose(config.tracker.cell, 0.10, 0.15);
+  choose(config.tracker.path, 4.0, 10.0);
+  choose(config.tracker.search_cell, 0.05, 0.05);
+  choose(config.tracker.search_blur, 0.06, 0.10);
+  choose(config.loop.cell, 0.05, 0.05);
+  choose(config.loop.blur, 0.06, 0.10);
+  return config;
+}
 
 void bind(Binder& b, RobustConfig& c) {
   b.integer("map_cells", c.map_cells, 16, 8000);
@@ -20,9 +43,9 @@ void bind(Binder& b, RobustConfig& c) {
   b.number("budget_ms", c.budget_ms, 0.1, 1e6);
   b.section("matching", [&](Binder& m) {
     m.number("spacing_m", c.cloud.spacing, 0.01, 1.0);
-    m.number("cell_m", c.tracker.cell, 0.02, 1.0);
+    m.number("cell_m", c.tracker.cell, 0.0, 1.0);
     m.integer("frames", c.tracker.frames, 1, 1000);
-    m.number("path_m", c.tracker.path, 0.1, 1000.0);
+    m.number("path_m", c.tracker.path, 0.0, 1000.0);
     m.number("distance_error", c.tracker.distance_error, 0.0, 10.0);
     m.number("least_distance_m", c.tracker.least_distance, 0.001, 1.0);
     m.number("turn_error", c.tracker.turn_error, 0.0, 10.0);
@@ -32,7 +55,8 @@ void bind(Binder& b, RobustConfig& c) {
     m.number("large_turn_rad", c.tracker.large_turn, 0.05, 10.0);
     m.number("slip_chi2", c.tracker.slip_chi2, 1.0, 1e9);
     m.number("lost_inliers", c.tracker.lost_inliers, 0.0, 1.0);
-    m.number("search_blur_m", c.tracker.search_blur, 0.01, 1.0);
+    m.number("search_cell_m", c.tracker.search_cell, 0.0, 0.5);
+    m.number("search_blur_m", c.tracker.search_blur, 0.0, 1.0);
   });
   b.section("loop_search", [&](Binder& l) {
     l.number("least_path_m", c.loop.least_path, 1.0, 1000.0);
@@ -40,7 +64,8 @@ void bind(Binder& b, RobustConfig& c) {
     l.number("window_per_m", c.loop.window_per_m, 0.0, 1.0);
     l.number("largest_window_m", c.loop.largest_window, 0.1, 20.0);
     l.integer("searches", c.loop.searches, 0, 100);
-    l.number("blur_m", c.loop.blur, 0.01, 1.0);
+    l.number("cell_m", c.loop.cell, 0.0, 0.5);
+    l.number("blur_m", c.loop.blur, 0.0, 1.0);
     l.number("least_score", c.loop.least_score, 0.0, 1.0);
     l.number("runner_up", c.loop.runner_up, 0.0, 1.0);
     l.number("least_inliers", c.loop.least_inliers, 0.0, 1.0);

@@ -313,7 +313,7 @@ std::optional<TPose2D> RobustMapper::Impl::pose_at(Stamp stamp) const {
 }
 
 RobustMapper::RobustMapper(const robot::RobotModel& model, const RobustConfig& config, std::uint64_t)
-    : impl_(std::make_unique<Impl>(model, config)) {}
+    : impl_(std::make_unique<Impl>(model, suited_to(model.laser, config))) {}
 RobustMapper::~RobustMapper() = default;
 
 void RobustMapper::update(const robot::Inputs& inputs) { impl_->receive(inputs); }

@@ -16,6 +16,8 @@ namespace rubble::slam {
 
 /// Parameters of the robust mapper; docs/slam.md says what they were chosen by.
 struct RobustConfig {
+  RobustConfig() { loop.cell = loop.blur = 0.0; }  // by the reach of the scanner, see suited_to()
+
   int map_cells = 800;                 ///< cells a side at the start; the map grows when needed
   double resolution = 0.05;            ///< cell edge [m]
   int max_map_cells = 8000;            ///< the map grows up to so many cells a side
@@ -38,6 +40,10 @@ struct RobustConfig {
 };
 
 void bind(Binder& binder, RobustConfig& config);
+
+/// The parameters left at 0, by how far the scanner sees: what is seen from afar is seen thinly, and stays in sight
+/// longer.
+RobustConfig suited_to(const robot::LaserModel& laser, RobustConfig config);
 
 /// Online SLAM by matching with a local map, key frames and a graph of their poses with verified loops
 /// (docs/slam.md). Poses of the past move when loops close: revision() then rises.

@@ -56,10 +56,16 @@ void SurfelGrid::put(float x, float y, float nx, float ny) {
 
 void SurfelGrid::finish() {
   surfels_.reserve(sums_.size());
-  for (const Sum& sum : sums_) {
-    const float norm = std::sqrt(sum.nx * sum.nx + sum.ny * sum.ny);
-    surfels_.push_back({sum.x / sum.count, sum.y / sum.count, sum.nx / norm, sum.ny / norm});
+  first_.resize(head_.size() + 1);
+  for (std::size_t cell = 0; cell < head_.size(); ++cell) {
+    first_[cell] = static_cast<int>(surfels_.size());
+    for (int k = head_[cell]; k >= 0; k = next_[static_cast<std::size_t>(k)]) {
+      const Sum& sum = sums_[static_cast<std::size_t>(k)];
+      const float norm = std::sqrt(sum.nx * sum.nx + sum.ny * sum.ny);
+      surfels_.push_back({sum.x / sum.count, sum.y / sum.count, sum.nx / norm, sum.ny / norm});
+    }
   }
+  first_.back() = static_cast<int>(surfels_.size());
 }
 
 const Surfel* SurfelGrid::nearest(float x, float y, float nx, float ny, float radius) const {
@@ -71,17 +77,15 @@ const Surfel* SurfelGrid::nearest(float x, float y, float nx, float ny, float ra
   float best = radius * radius;
   const Surfel* found = nullptr;
   for (int v = row - reach; v <= row + reach; ++v) {
-    const int* cells = &head_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_)];
-    for (int u = column - reach; u <= column + reach; ++u) {
-      for (int k = cells[u]; k >= 0; k = next_[static_cast<std::size_t>(k)]) {
-        const Surfel& surfel = surfels_[static_cast<std::size_t>(k)];
-        const float dx = surfel.x - x;
-        const float dy = surfel.y - y;
-        const float d2 = dx * dx + dy * dy;
-        if (d2 < best && (any_side || surfel.nx * nx + surfel.ny * ny > kSameSide)) {
-          best = d2;
-          found = &surfel;
-        }
+    const int* cells = &first_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_)];
+    const Surfel* end = surfels_.data() + cells[column + reach + 1];
+    for (const Surfel* surfel = surfels_.data() + cells[column - reach]; surfel != end; ++surfel) {
+      const float dx = surfel->x - x;
+      const float dy = surfel->y - y;
+      const float d2 = dx * dx + dy * dy;
+      if (d2 < best && (any_side || surfel->nx * nx + surfel->ny * ny > kSameSide)) {
+        best = d2;
+        found = surfel;
       }
     }
   }

@@ -40,10 +40,11 @@ class SurfelGrid {
   float cells_per_m_ = 10.0F;
   float x0_ = 0.0F, y0_ = 0.0F;
   int width_ = 0, height_ = 0;
-  std::vector<int> head_;  ///< first surfel of each cell, -1: none
-  std::vector<int> next_;  ///< of each surfel: the next in its cell, -1: none
-  std::vector<Sum> sums_;
-  std::vector<Surfel> surfels_;
+  std::vector<int> head_;        ///< while filling: newest sum of each cell, -1: none
+  std::vector<int> next_;        ///< of each sum: the next in its cell, -1: none
+  std::vector<Sum> sums_;        ///< while filling
+  std::vector<int> first_;       ///< first surfel of each cell; one more than there are cells
+  std::vector<Surfel> surfels_;  ///< row by row: what is near lies near in memory
 };
 
 }  // namespace rubble::slam

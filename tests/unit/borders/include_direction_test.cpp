@@ -85,6 +85,7 @@ const std::map<std::string, Folders>& wings() {
       {"scenarios/config", {}},
       {"scenarios/run", {"scenarios/config"}},
       {"scenarios/batch", {"scenarios/config", "scenarios/run"}},
+      {"scenarios/benchmark", {"scenarios/config", "scenarios/run"}},
       {"scenarios/evidence", {"scenarios/batch"}},
       {"scenarios/hardware", {"scenarios/config", "scenarios/run"}},
   };

@@ -143,6 +143,52 @@ TEST(CorrelativeSearch, FindsTheBestOfAllPoses) {
   }
 }
 
+TEST(CorrelativeSearch, LookingAgainFindsWhatANewSearchFinds) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Rng rng(seed, "search");
+    const Scene scene = random_scene(rng, {0.1, -0.1, 0.05});
+    const SearchWindow window{{0.05, 0.0, 0.0}, 0.5, 0.2};
+    CorrelativeSearch twice;
+    twice.start(scene.correlator, scene.points, window, 0.4, std::nullopt, 0.2);
+    Work budget = std::numeric_limits<Work>::max();
+    ASSERT_TRUE(twice.advance(budget));
+    ASSERT_TRUE(twice.found());
+    const SearchExclusion exclusion{twice.found()->pose, 0.2, 0.1};
+    twice.start_again(0.25, exclusion);
+    ASSERT_TRUE(twice.advance(budget));
+    const auto anew = search(scene.correlator, scene.points, window, 0.25, exclusion);
+    ASSERT_EQ(twice.found().has_value(), anew.has_value());
+    if (!anew) continue;
+    EXPECT_EQ(twice.found()->pose, anew->pose);
+    EXPECT_EQ(twice.found()->score, anew->score);
+  }
+}
+
+TEST(Correlator, BoundsAreExactAboveTheFloorAndNeverTooLow) {
+  Rng rng(7, "bounds");
+  const Scene scene = random_scene(rng, {});
+  int exact = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const std::vector<Cell> cells =
+        cells_at(scene, rng.uniform(-0.3, 0.3), rng.uniform(-0.5, 0.5), rng.uniform(-0.5, 0.5));
+    const int level = static_cast<int>(rng.below(Correlator::kLevels));
+    const double floor = rng.uniform(0.0, 1.0);
+    Work looked_at = 0;
+    const double value = scene.correlator.value(cells, 0, 0, level);
+    const double bound = scene.correlator.bound(cells, 0, 0, level, floor, looked_at);
+    EXPECT_GE(bound, value - 1e-12);
+    EXPECT_LE(looked_at, static_cast<Work>(cells.size()));
+    if (value > floor) {
+      EXPECT_EQ(bound, value);
+      ++exact;
+    } else {
+      EXPECT_LE(bound, floor + 1e-12);
+    }
+  }
+  EXPECT_GT(exact, 100);
+}
+
 TEST(CorrelativeSearch, NothingIsFoundBelowTheFloor) {
   Rng rng(3, "search");
   const Scene scene = random_scene(rng, {0.1, 0.1, 0.1});

@@ -67,6 +67,12 @@ Eigen::Matrix3d numerical_hessian(const std::function<double(const TPose2D&)>& f
   return H;
 }
 
+PosePrior nothing_known(const TPose2D& pose) {
+  PosePrior prior;
+  prior.pose = pose;
+  return prior;
+}
+
 TEST(ScanFit, FindsThePoseOfPointsWithoutNoise) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -75,7 +81,7 @@ TEST(ScanFit, FindsThePoseOfPointsWithoutNoise) {
     const auto points = slam_test::seen_from(truth, slam_test::surface_points(walls(), 0.08));
     const TPose2D start{truth.x + rng.uniform(-0.1, 0.1), truth.y + rng.uniform(-0.1, 0.1),
                         truth.phi + rng.uniform(-0.08, 0.08)};
-    const ScanFit fit = fit_scan(grid_of(walls()), points, start, {start, {}}, {});
+    const ScanFit fit = fit_scan(grid_of(walls()), points, start, nothing_known(start), {});
     EXPECT_NEAR(fit.pose.x, truth.x, 2e-3);
     EXPECT_NEAR(fit.pose.y, truth.y, 2e-3);
     EXPECT_NEAR(wrap_angle(fit.pose.phi - truth.phi), 0.0, 1e-3);
@@ -98,7 +104,7 @@ TEST(ScanFit, InformationIsTheSecondDerivativeOfTheSquaredErrors) {
       if (!at_end) inner.push_back(p);
     }
     const auto points = slam_test::seen_from(truth, inner);
-    const ScanFit fit = fit_scan(grid_of(walls()), points, truth, {truth, {}}, config);
+    const ScanFit fit = fit_scan(grid_of(walls()), points, truth, nothing_known(truth), config);
     const Eigen::Matrix3d expected =
         numerical_hessian([&](const TPose2D& T) { return half_chi2(points, walls(), T, config.sigma); }, fit.pose);
     EXPECT_LT((fit.information - expected).norm(), 0.01 * expected.norm()) << fit.information << "\n\n" << expected;
@@ -121,7 +127,7 @@ TEST(ScanFit, PosesScatterAsTheInformationSays) {
       p.x += e * p.nx;
       p.y += e * p.ny;
     }
-    const ScanFit fit = fit_scan(grid, noisy, truth, {truth, {}}, config);
+    const ScanFit fit = fit_scan(grid, noisy, truth, nothing_known(truth), config);
     const Eigen::Vector3d off(fit.pose.x - truth.x, fit.pose.y - truth.y, wrap_angle(fit.pose.phi - truth.phi));
     sum += off.dot(fit.information * off);
   }
@@ -176,11 +182,12 @@ TEST(ScanFit, PriorIsMeasuredAlongItsOwnAxes) {
 
 TEST(ScanFit, WithoutPartnersThePoseStays) {
   const TPose2D start{40.0, 3.0, 0.5};
-  const ScanFit fit = fit_scan(grid_of(walls()), slam_test::surface_points(walls(), 0.1), start, {start, {}}, {});
+  const ScanFit fit =
+      fit_scan(grid_of(walls()), slam_test::surface_points(walls(), 0.1), start, nothing_known(start), {});
   EXPECT_EQ(fit.pose, start);
   EXPECT_EQ(fit.paired, 0);
   EXPECT_EQ(fit.inliers, 0.0);
-  const ScanFit none = fit_scan(grid_of(walls()), {}, start, {start, {}}, {});
+  const ScanFit none = fit_scan(grid_of(walls()), {}, start, nothing_known(start), {});
   EXPECT_EQ(none.pose, start);
 }
 

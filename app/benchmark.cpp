@@ -1,0 +1,102 @@
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/scenario_options.h"
+#include "app/terminal.h"
+#include "base/error.h"
+#include "base/text/text_file.h"
+#include "scenarios/benchmark/benchmark_output.h"
+
+namespace rubble::app {
+namespace {
+
+using namespace scenarios;
+
+struct BenchmarkArguments {
+  std::string list;
+  std::vector<std::string> data;
+  std::vector<std::string> only;
+  std::string html;
+  std::string markdown;
+  bool json = false;
+  MapperChoice mapper;
+};
+
+/// A path, or the list that ships with rubble.
+std::string find_list(const std::string& name) {
+  return name.empty() ? (std::filesystem::path(shipped_folder()) / "benchmark.yaml").string() : name;
+}
+
+/// Keeps the mappers asked for by name.
+void keep_only(BenchmarkList& list, const std::vector<std::string>& names) {
+  if (names.empty()) return;
+  std::vector<BenchmarkMapper> kept;
+  for (const std::string& name : names) {
+    bool known = false;
+    for (const BenchmarkMapper& mapper : list.mappers) {
+      if (mapper.name != name) continue;
+      kept.push_back(mapper);
+      known = true;
+    }
+    if (!known) throw UsageError("--mapper " + name + ": " + list.path + " has no mapper of that name");
+  }
+  list.mappers = kept;
+}
+
+int benchmark(const BenchmarkArguments& arguments) {
+  BenchmarkList list = load_benchmark(find_list(arguments.list));
+  keep_only(list, arguments.only);
+  if (!arguments.mapper.command.empty()) list.mappers.push_back({"process", with_mapper(arguments.mapper, {})});
+  BenchmarkOptions options;
+  options.folders = arguments.data;
+  if (const char* data = std::getenv("RUBBLE_DATA")) options.folders.push_back(std::string(data) + "/logs");
+  catch_interrupts();
+  options.interrupted = interrupted;
+  options.progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); };
+  options.permit = [&](Scenario& scenario) {
+    permit_command(arguments.mapper, with_mapper(arguments.mapper, {}), scenario);
+  };
+  const Benchmark result = run_benchmark(list, options);
+  if (!arguments.html.empty()) write_text_file(arguments.html, to_html(result));
+  if (!arguments.markdown.empty()) write_text_file(arguments.markdown, to_markdown(result));
+  std::fputs((arguments.json ? to_json(result) : to_text(result)).c_str(), stdout);
+  if (interrupted()) return kInterrupted;
+  bool any = false, failed = false;
+  for (const BenchmarkRow& row : result.rows)
+    for (const BenchmarkResult& r : row.results) {
+      any = any || r.missing.empty();
+      failed = failed || !r.failure.empty();
+    }
+  if (!any)
+    throw InputError(list.path +
+                     ": none of its logs and scenarios is there; lay them beside the list, or give their "
+                     "folder with --data");
+  return failed ? kFailed : kOk;
+}
+
+}  // namespace
+
+Command benchmark_command() {
+  return {"benchmark", "Run mappers over logs and arenas and lay them beside published figures",
+          "Logs that are not there are told and left out. RUBBLE_DATA/logs is searched too, where that is set.\n"
+          "Examples:\n  rubble benchmark --data ~/logs --html benchmark.html\n"
+          "  rubble benchmark my.yaml --mapper robust --json\n"
+          "  rubble benchmark my.yaml --mapper-command './my_mapper --fast'",
+          [](Options& o) -> Action {
+            auto a = std::make_shared<BenchmarkArguments>();
+            o.argument("list", a->list, "List of mappers, logs and arenas (default: the one that ships with rubble)",
+                       Options::Need::Optional);
+            o.texts("--data", a->data, "A folder with logs of the list");
+            o.texts("--mapper", a->only, "Only this mapper of the list; may be given again");
+            o.flag("--json", a->json, "Print JSON");
+            o.text("--html", a->html, "Write a page");
+            o.text("--markdown", a->markdown, "Write a table for documents");
+            add_mapper(o, a->mapper);
+            return [a] { return benchmark(*a); };
+          }};
+}
+
+}  // namespace rubble::app

@@ -1,0 +1,241 @@
+#include "scenarios/benchmark/benchmark.h"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "arenas/files/arena_file.h"
+#include "base/angle.h"
+#include "base/error.h"
+#include "robot/logs/log.h"
+#include "scenarios/run/core.h"
+#include "scenarios/run/run.h"
+#include "scoring/trajectory/relative_error.h"
+#include "scoring/trajectory/trajectory_error.h"
+#include "sim/sim_robot.h"
+
+namespace rubble::scenarios {
+namespace {
+
+using nlohmann::json;
+
+/// CPU time of this process with all its threads: a mapper may have some [s].
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// The mapper inside, with the time that each of its updates takes.
+class TimedMapper {
+ public:
+  explicit TimedMapper(slam::Mapper& mapper) : mapper_(mapper) {}
+
+  void update(const robot::Inputs& inputs) {
+    const double start = cpu_seconds();
+    mapper_.update(inputs);
+    const double taken = cpu_seconds() - start;
+    all_ += taken;
+    if (!inputs.scans.empty()) ms_.push_back(1e3 * taken);
+    scans_ += inputs.scans.size();
+  }
+  void finish() {
+    const double start = cpu_seconds();
+    mapper_.finish();
+    finish_ = cpu_seconds() - start;
+  }
+  json figures() {
+    std::sort(ms_.begin(), ms_.end());
+    const auto share = [&](std::size_t percent) {
+      return ms_.empty() ? 0.0 : ms_[std::min(ms_.size() - 1, ms_.size() * percent / 100)];
+    };
+    json out = {{"scans", scans_},
+                {"scans_per_second", all_ > 0.0 ? static_cast<double>(scans_) / all_ : 0.0},
+                {"usual_ms", share(50)},
+                {"slow_ms", share(99)},
+                {"worst_ms", ms_.empty() ? 0.0 : ms_.back()},
+                {"finish_ms", 1e3 * finish_}};
+    for (const slam::MapperFigure& figure : mapper_.figures())
+      if (figure.key == "loops_closed" || figure.key == "loops_removed") out[figure.key] = figure.value;
+    return out;
+  }
+
+ private:
+  slam::Mapper& mapper_;
+  std::vector<double> ms_;
+  std::size_t scans_ = 0;
+  double all_ = 0.0;
+  double finish_ = 0.0;
+};
+
+void add_aligned(json& out, const slam::Mapper& mapper, const Trajectory& truth) {
+  const scoring::TrajectoryError error = scoring::trajectory_error(mapper.trajectory(), truth);
+  const scoring::TrajectoryError live = scoring::trajectory_error(mapper.live_trajectory(), truth);
+  if (error.matched < 2) return;
+  out["error_m"] = error.ate_aligned_m;
+  out["live_error_m"] = live.ate_aligned_m;
+}
+
+json run_log(const std::string& log, const std::string& relations, const Scenario& scenario) {
+  robot::ReplayRobot robot(log);
+  const auto mapper = slam::make_here(scenario.mapper, robot.model(), {scenario.seed, ""});
+  TimedMapper timed(*mapper);
+  while (const auto inputs = robot.read()) timed.update(*inputs);
+  timed.finish();
+  json out = timed.figures();
+  if (relations.empty()) {
+    if (!robot.reference().empty()) add_aligned(out, *mapper, robot.reference());
+    return out;
+  }
+  const auto known = scoring::read_relations(relations);
+  const auto error = scoring::relation_error(robot.in_own_stamps(mapper->trajectory()), known);
+  const auto live = scoring::relation_error(robot.in_own_stamps(mapper->live_trajectory()), known);
+  if (error.relations == 0)
+    throw InputError(relations + ": none of its moments lies in " + log + "; are both of the same drive?");
+  out["error_m"] = error.mean_m;
+  out["error_deg"] = rad_to_deg(error.mean_rad);
+  out["live_error_m"] = live.mean_m;
+  return out;
+}
+
+/// The robot explores by its own map: another mapper sees another drive.
+json run_arena(const Scenario& scenario) {
+  const std::string yaml = arena_yaml(scenario);
+  const arenas::Arena arena = arenas::parse_arena(yaml, scenario.name);
+  sim::SimRobot robot(arena, scenario.robot, scenario.sim, scenario.seed);
+  const auto mapper = slam::make_here(scenario.mapper, scenario.robot, {scenario.seed, ""});
+  const auto explorer = scenario.explorer.make(scenario.robot, {scenario.time_limit});
+  robot::Levelling levelling(scenario.levelling, scenario.robot.accelerometer_mount);
+  TimedMapper timed(*mapper);
+  while (const auto inputs = robot.read()) {
+    timed.update(*inputs);
+    robot::Commands commands = explorer->next(*mapper, *inputs);
+    commands.aim = levelling.update(*inputs);
+    robot.command(commands);
+    if (explorer->finished()) break;
+  }
+  timed.finish();
+  json out = timed.figures();
+  add_aligned(out, *mapper, robot.truth());
+  return out;
+}
+
+/// What a child says through a pipe, and the most memory it held.
+struct ChildAnswer {
+  std::string text;
+  double peak_mb = 0.0;
+};
+
+ChildAnswer in_child(const std::function<json()>& work) {
+  int ends[2];
+  if (pipe(ends) != 0) throw RunError("a pipe cannot be made; close other programs and try again");
+  std::fflush(nullptr);
+  const pid_t child = fork();
+  if (child < 0) throw RunError("a process cannot be made; close other programs and try again");
+  if (child == 0) {
+    close(ends[0]);
+    json answer;
+    try {
+      answer = work();
+    } catch (const std::exception& error) {
+      answer = {{"failure", error.what()}};
+    }
+    const std::string text = answer.dump();
+    std::size_t sent = 0;
+    while (sent < text.size()) {
+      const ssize_t n = write(ends[1], text.data() + sent, text.size() - sent);
+      if (n <= 0) break;
+      sent += static_cast<std::size_t>(n);
+    }
+    _exit(0);
+  }
+  close(ends[1]);
+  ChildAnswer answer;
+  char buffer[4096];
+  for (ssize_t n; (n = read(ends[0], buffer, sizeof buffer)) != 0;) {
+    if (n > 0) answer.text.append(buffer, static_cast<std::size_t>(n));
+    if (n < 0 && errno != EINTR) break;
+  }
+  close(ends[0]);
+  rusage usage{};
+  int status = 0;
+  while (wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
+  }
+  answer.peak_mb = static_cast<double>(usage.ru_maxrss) / 1024.0;
+  return answer;
+}
+
+void take(BenchmarkResult& result, const ChildAnswer& answer) {
+  const json said = json::parse(answer.text, nullptr, false);
+  if (!said.is_object()) {
+    result.failure = "its process ended without an answer";
+    return;
+  }
+  result.failure = said.value("failure", "");
+  if (!result.failure.empty()) return;
+  const auto number = [&](const char* key) {
+    return said.contains(key) ? std::optional<double>(said[key].get<double>()) : std::nullopt;
+  };
+  result.error_m = number("error_m");
+  result.live_error_m = number("live_error_m");
+  result.error_deg = number("error_deg");
+  result.loops_closed = number("loops_closed");
+  result.loops_removed = number("loops_removed");
+  result.scans = said["scans"].get<std::uint64_t>();
+  result.scans_per_second = said["scans_per_second"].get<double>();
+  result.usual_ms = said["usual_ms"].get<double>();
+  result.slow_ms = said["slow_ms"].get<double>();
+  result.worst_ms = said["worst_ms"].get<double>();
+  result.finish_ms = said["finish_ms"].get<double>();
+  result.peak_mb = answer.peak_mb;
+}
+
+BenchmarkResult run_one(const BenchmarkCase& what, const BenchmarkMapper& mapper,
+                        const std::vector<std::string>& folders, const BenchmarkOptions& options) {
+  BenchmarkResult result;
+  result.mapper = mapper.name;
+  std::string log, relations, scenario_file;
+  const auto find = [&](const std::string& wanted, std::string& found) {
+    if (wanted.empty()) return;
+    found = find_in(folders, wanted);
+    if (found.empty() && result.missing.empty()) result.missing = wanted;
+  };
+  find(what.log, log);
+  find(what.relations, relations);
+  find(what.scenario, scenario_file);
+  if (!result.missing.empty()) return result;
+  Scenario scenario =
+      scenario_file.empty() ? default_scenario(mapper.overrides) : load_scenario(scenario_file, mapper.overrides);
+  scenario.seed = what.seed;
+  if (options.permit) options.permit(scenario);
+  scenario.mapper.require_permission();
+  take(result, in_child([&] { return log.empty() ? run_arena(scenario) : run_log(log, relations, scenario); }));
+  if (what.goal && result.error_m) result.goal_met = *result.error_m <= *what.goal;
+  return result;
+}
+
+}  // namespace
+
+Benchmark run_benchmark(const BenchmarkList& list, const BenchmarkOptions& options) {
+  std::vector<std::string> folders{list.folder};
+  folders.insert(folders.end(), options.folders.begin(), options.folders.end());
+  Benchmark benchmark{list.name, list.about, {}};
+  for (const BenchmarkCase& what : list.cases) {
+    BenchmarkRow row{what, {}};
+    for (const BenchmarkMapper& mapper : list.mappers) {
+      if (options.interrupted && options.interrupted()) return benchmark;
+      if (options.progress) options.progress(what.name + ", " + mapper.name);
+      row.results.push_back(run_one(what, mapper, folders, options));
+    }
+    benchmark.rows.push_back(std::move(row));
+  }
+  return benchmark;
+}
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/benchmark/benchmark_list.h"
+
+namespace rubble::scenarios {
+
+/// What one mapper made of one case.
+struct BenchmarkResult {
+  std::string mapper;
+  std::string missing;                 ///< a file that is not there: nothing was run; says which
+  std::string failure;                 ///< the mapper was lost or the input refused; says why
+  std::optional<double> error_m;       ///< the case's measure, of the final trajectory [m]
+  std::optional<double> live_error_m;  ///< the same of the poses as known at each scan [m]
+  std::optional<double> error_deg;     ///< of relations [deg]
+  std::uint64_t scans = 0;
+  double scans_per_second = 0.0;  ///< CPU time of update(), all in all
+  double usual_ms = 0.0;          ///< of a scan: the median,
+  double slow_ms = 0.0;           ///< what 99 of 100 stay below,
+  double worst_ms = 0.0;          ///< and the worst [ms]
+  double finish_ms = 0.0;         ///< after the last scan [ms]
+  double peak_mb = 0.0;
+  std::optional<double> loops_closed;
+  std::optional<double> loops_removed;
+  std::optional<bool> goal_met;  ///< nothing: the case has no goal, or nothing was measured
+};
+
+struct BenchmarkRow {
+  BenchmarkCase what;
+  std::vector<BenchmarkResult> results;  ///< in the order of the list's mappers
+};
+
+struct Benchmark {
+  std::string name;
+  std::string about;
+  std::vector<BenchmarkRow> rows;
+};
+
+struct BenchmarkOptions {
+  std::vector<std::string> folders;                  ///< where logs are looked for, beside the list's own
+  std::function<void(const std::string&)> progress;  ///< told what is run next
+  std::function<bool()> interrupted;
+  std::function<void(Scenario&)> permit;  ///< asked before a mapper that is a program of the user's
+};
+
+/// Runs each mapper on each case, each in a process of its own, one after the other: memory and time are then its own.
+/// Throws InputError for parameters that no mapper has, RunError when a process cannot be made.
+Benchmark run_benchmark(const BenchmarkList& list, const BenchmarkOptions& options);
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,78 @@
+#include "scenarios/benchmark/benchmark_list.h"
+
+#include <filesystem>
+#include <set>
+
+namespace rubble::scenarios {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLargestError = 1e4;  // [m]
+
+BenchmarkMapper read_mapper(const YamlMap& map) {
+  BenchmarkMapper mapper;
+  const std::string kind = map.text("kind", std::nullopt);
+  mapper.name = map.text("name", kind);
+  mapper.overrides.emplace_back("mapper.kind", kind);
+  const YamlMap set = map.map("set");
+  for (const std::string& key : set.keys()) mapper.overrides.emplace_back("mapper." + key, set.text(key, std::nullopt));
+  return mapper;
+}
+
+BenchmarkCase read_case(const YamlMap& map) {
+  BenchmarkCase c;
+  c.name = map.text("name", std::nullopt);
+  c.about = map.text("about", "");
+  c.log = map.text("log", "");
+  c.relations = map.text("relations", "");
+  c.scenario = map.text("scenario", "");
+  c.seed = static_cast<std::uint64_t>(map.integer("seed", 1, 0, INT64_MAX));
+  if (c.log.empty() == c.scenario.empty()) map.fail("name", "a case needs either 'log' or 'scenario'");
+  if (!c.relations.empty() && c.log.empty()) map.fail("relations", "belong to a log; give 'log' beside them");
+  c.measure = c.relations.empty() ? BenchmarkMeasure::Aligned : BenchmarkMeasure::Relations;
+  if (map.has("goal_m")) c.goal = map.number("goal_m", std::nullopt, 0.0, kLargestError);
+  for (const YamlMap& row : map.maps("published"))
+    c.published.push_back({row.text("by", std::nullopt), row.text("source", std::nullopt),
+                           row.number("error_m", std::nullopt, 0.0, kLargestError)});
+  return c;
+}
+
+}  // namespace
+
+BenchmarkList load_benchmark(const std::string& path) {
+  const YamlMap root = YamlMap::load(path);
+  BenchmarkList list;
+  list.path = path;
+  list.folder = fs::path(path).parent_path().string();
+  list.name = root.text("name", fs::path(path).stem().string());
+  list.about = root.text("about", "");
+  std::set<std::string> names;
+  for (const YamlMap& row : root.maps("mappers")) {
+    list.mappers.push_back(read_mapper(row));
+    if (!names.insert(list.mappers.back().name).second)
+      row.fail("name", "mapper '" + list.mappers.back().name + "' is there twice; give them names");
+  }
+  names.clear();
+  for (const YamlMap& row : root.maps("cases")) {
+    list.cases.push_back(read_case(row));
+    if (!names.insert(list.cases.back().name).second)
+      row.fail("name", "case '" + list.cases.back().name + "' is there twice");
+  }
+  if (list.mappers.empty()) root.fail("mappers", "a benchmark needs one mapper at least: mappers: [{kind: robust}]");
+  if (list.cases.empty())
+    root.fail("cases", "a benchmark needs one case at least: cases: [{name: lab, log: lab.rawlog}]");
+  root.finish();
+  return list;
+}
+
+std::string find_in(const std::vector<std::string>& folders, const std::string& path) {
+  if (fs::path(path).is_absolute()) return fs::exists(path) ? path : "";
+  for (const std::string& folder : folders) {
+    const fs::path candidate = folder.empty() ? fs::path(path) : fs::path(folder) / path;
+    if (fs::exists(candidate)) return candidate.string();
+  }
+  return "";
+}
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/yaml/strict_yaml.h"
+#include "scenarios/config/scenario.h"
+
+namespace rubble::scenarios {
+
+/// One of the mappers that are compared.
+struct BenchmarkMapper {
+  std::string name;
+  std::vector<Override> overrides;  ///< mapper.kind and what belongs to it
+};
+
+/// What others have published on a case.
+struct PublishedFigure {
+  std::string by;
+  std::string source;  ///< where it is printed
+  double value = 0.0;  ///< in the unit of the case's measure
+};
+
+/// What a case is judged by, in metres.
+enum class BenchmarkMeasure {
+  Aligned,   ///< RMS error of the positions after the best rigid alignment with the reference
+  Relations  ///< mean error of relations between pairs of moments (Kuemmerle et al. 2009)
+};
+
+/// A log or an arena that each mapper is run on.
+struct BenchmarkCase {
+  std::string name;
+  std::string about;
+  std::string log;        ///< path as written in the list; empty: an arena
+  std::string relations;  ///< path as written; empty: none
+  std::string scenario;   ///< path as written; empty: a log
+  std::uint64_t seed = 1;
+  BenchmarkMeasure measure = BenchmarkMeasure::Aligned;
+  std::optional<double> goal;  ///< of the measure, at most [m]
+  std::vector<PublishedFigure> published;
+};
+
+struct BenchmarkList {
+  std::string name;
+  std::string about;
+  std::string path;    ///< for messages
+  std::string folder;  ///< of the file: paths are relative to it
+  std::vector<BenchmarkMapper> mappers;
+  std::vector<BenchmarkCase> cases;
+};
+
+/// Reads a list strictly. Whether its logs exist is not asked. Throws InputError.
+BenchmarkList load_benchmark(const std::string& path);
+
+/// Where a file of the list lies: as it is when absolute, else below one of `folders` (the first that has it). Empty
+/// when it is nowhere.
+std::string find_in(const std::vector<std::string>& folders, const std::string& path);
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,216 @@
+#include "scenarios/benchmark/benchmark_output.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace rubble::scenarios {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// One table, from which text, page and document are made.
+struct Table {
+  std::vector<std::string> head;
+  std::vector<std::vector<std::string>> rows;
+};
+
+std::string number(double value, const char* format = "%.3g") {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string optional_number(const std::optional<double>& value, const char* format) {
+  return value ? number(*value, format) : "";
+}
+
+std::string measure_name(BenchmarkMeasure measure) {
+  return measure == BenchmarkMeasure::Relations ? "relations" : "aligned";
+}
+
+std::string error_of(const BenchmarkResult& result) {
+  if (!result.missing.empty()) return "not there: " + result.missing;
+  if (!result.failure.empty()) return "failed: " + result.failure;
+  return optional_number(result.error_m, "%.4f");
+}
+
+Table results_table(const Benchmark& benchmark) {
+  Table table;
+  table.head = {"case",    "measure",  "mapper",    "error m",   "as known at the scan m",
+                "deg",     "goal m",   "goal met",  "scans/s",   "usual ms",
+                "99 % ms", "worst ms", "finish ms", "memory MB", "loops closed",
+                "removed"};
+  for (const BenchmarkRow& row : benchmark.rows)
+    for (const BenchmarkResult& r : row.results) {
+      const bool ran = r.missing.empty() && r.failure.empty();
+      const auto timed = [&](double value, const char* format) { return ran ? number(value, format) : std::string(); };
+      table.rows.push_back({row.what.name, measure_name(row.what.measure), r.mapper, error_of(r),
+                            optional_number(r.live_error_m, "%.4f"), optional_number(r.error_deg, "%.3f"),
+                            optional_number(row.what.goal, "%g"),
+                            !r.goal_met   ? ""
+                            : *r.goal_met ? "yes"
+                                          : "no",
+                            timed(r.scans_per_second, "%.0f"), timed(r.usual_ms, "%.2f"), timed(r.slow_ms, "%.2f"),
+                            timed(r.worst_ms, "%.1f"), timed(r.finish_ms, "%.0f"), timed(r.peak_mb, "%.0f"),
+                            optional_number(r.loops_closed, "%.0f"), optional_number(r.loops_removed, "%.0f")});
+    }
+  return table;
+}
+
+Table published_table(const Benchmark& benchmark) {
+  Table table;
+  table.head = {"case", "measure", "by", "error m", "source"};
+  for (const BenchmarkRow& row : benchmark.rows)
+    for (const PublishedFigure& p : row.what.published)
+      table.rows.push_back({row.what.name, measure_name(row.what.measure), p.by, number(p.value, "%.4g"), p.source});
+  return table;
+}
+
+std::string as_text(const Table& table) {
+  std::vector<std::size_t> widths(table.head.size());
+  const auto widen = [&](const std::vector<std::string>& row) {
+    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+  };
+  widen(table.head);
+  for (const auto& row : table.rows) widen(row);
+  std::string text;
+  const auto add = [&](const std::vector<std::string>& row) {
+    std::string line;
+    for (std::size_t k = 0; k < row.size(); ++k) line += row[k] + std::string(widths[k] - row[k].size() + 2, ' ');
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + '\n';
+  };
+  add(table.head);
+  for (const auto& row : table.rows) add(row);
+  return text;
+}
+
+/// `text` where `|` would end a cell and a line break the row.
+std::string in_cell(std::string text) {
+  std::replace(text.begin(), text.end(), '|', '/');
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::string as_markdown(const Table& table) {
+  std::string text;
+  const auto add = [&](const std::vector<std::string>& row) {
+    text += "|";
+    for (const std::string& cell : row) text += " " + in_cell(cell) + " |";
+    text += "\n";
+  };
+  add(table.head);
+  add(std::vector<std::string>(table.head.size(), "---"));
+  for (const auto& row : table.rows) add(row);
+  return text;
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '&')
+      out += "&amp;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string as_html(const Table& table) {
+  std::string text = "<table><thead><tr>";
+  for (const std::string& cell : table.head) text += "<th>" + escaped(cell) + "</th>";
+  text += "</tr></thead><tbody>\n";
+  for (const auto& row : table.rows) {
+    text += "<tr>";
+    for (const std::string& cell : row) {
+      const char* kind = cell == "yes" ? " class=\"met\"" : cell == "no" ? " class=\"missed\"" : "";
+      text += "<td" + std::string(kind) + ">" + escaped(cell) + "</td>";
+    }
+    text += "</tr>\n";
+  }
+  return text + "</tbody></table>\n";
+}
+
+constexpr const char* kNote =
+    "Error: relations are mean errors between pairs of moments (Kuemmerle et al. 2009), aligned is the RMS error of "
+    "the "
+    "positions after the best rigid alignment with the reference that came with the log or the arena. Times are CPU "
+    "time of the mapper alone, of this machine.";
+
+}  // namespace
+
+std::string to_text(const Benchmark& benchmark) {
+  std::string text = as_text(results_table(benchmark));
+  const Table published = published_table(benchmark);
+  if (!published.rows.empty()) text += "\npublished\n" + as_text(published);
+  return text;
+}
+
+std::string to_json(const Benchmark& benchmark) {
+  ordered_json cases = ordered_json::array();
+  const auto set = [](ordered_json& json, const char* key, const std::optional<double>& value) {
+    json[key] = value ? ordered_json(*value) : ordered_json();
+  };
+  for (const BenchmarkRow& row : benchmark.rows) {
+    ordered_json c = {{"name", row.what.name}, {"measure", measure_name(row.what.measure)}};
+    set(c, "goal_m", row.what.goal);
+    c["results"] = ordered_json::array();
+    for (const BenchmarkResult& r : row.results) {
+      ordered_json j = {{"mapper", r.mapper}};
+      if (!r.missing.empty()) j["missing"] = r.missing;
+      if (!r.failure.empty()) j["failure"] = r.failure;
+      set(j, "error_m", r.error_m);
+      set(j, "live_error_m", r.live_error_m);
+      set(j, "error_deg", r.error_deg);
+      j["goal_met"] = r.goal_met ? ordered_json(*r.goal_met) : ordered_json();
+      j["scans"] = r.scans;
+      j["scans_per_second"] = r.scans_per_second;
+      j["usual_ms"] = r.usual_ms;
+      j["slow_ms"] = r.slow_ms;
+      j["worst_ms"] = r.worst_ms;
+      j["finish_ms"] = r.finish_ms;
+      j["peak_mb"] = r.peak_mb;
+      set(j, "loops_closed", r.loops_closed);
+      set(j, "loops_removed", r.loops_removed);
+      c["results"].push_back(j);
+    }
+    c["published"] = ordered_json::array();
+    for (const PublishedFigure& p : row.what.published)
+      c["published"].push_back({{"by", p.by}, {"source", p.source}, {"error_m", p.value}});
+    cases.push_back(c);
+  }
+  return ordered_json{{"name", benchmark.name}, {"about", benchmark.about}, {"cases", cases}}.dump(2) + "\n";
+}
+
+std::string to_html(const Benchmark& benchmark) {
+  std::string text = "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>" +
+                     escaped(benchmark.name) +
+                     "</title><style>body{font:15px/1.5 "
+                     "sans-serif;margin:2em;color:#222;background:#fff}table{border-collapse:collapse;"
+                     "margin:1em 0}td,th{padding:.25em .6em;border-bottom:1px solid "
+                     "#ccc;text-align:left}.met{color:#06662f;font-weight:"
+                     "bold}.missed{color:#a11212;font-weight:bold}</style></head><body>\n<h1>" +
+                     escaped(benchmark.name) + "</h1>\n<p>" + escaped(benchmark.about) + "</p>\n<p>" + kNote + "</p>\n";
+  text += as_html(results_table(benchmark));
+  const Table published = published_table(benchmark);
+  if (!published.rows.empty()) text += "<h2>Published</h2>\n" + as_html(published);
+  return text + "</body></html>\n";
+}
+
+std::string to_markdown(const Benchmark& benchmark) {
+  std::string text = "# Benchmark of the mappers: " + benchmark.name + "\n\n";
+  if (!benchmark.about.empty()) text += benchmark.about + "\n\n";
+  text += std::string(kNote) + " Made by `rubble benchmark --markdown`.\n\n" + as_markdown(results_table(benchmark));
+  const Table published = published_table(benchmark);
+  if (!published.rows.empty()) text += "\n## Published\n\n" + as_markdown(published);
+  return text;
+}
+
+}  // namespace rubble::scenarios

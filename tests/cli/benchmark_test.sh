@@ -1,0 +1,48 @@
+# rubble benchmark: a small list by all outputs; logs that are not there; lists that cannot be.
+. "$(dirname "$0")/lib.sh"
+small_scenario s.yaml
+"$rubble" run s.yaml --out run --set time_limit_s=60 >/dev/null || fail "run ended with $?"
+"$rubble" export run/log.rlog drive.rawlog >/dev/null || fail "export ended with $?"
+cat >list.yaml <<'YAML'
+name: small
+about: a drive <by> a robot
+mappers:
+  - {kind: paper}
+  - {kind: robust}
+  - {kind: robust, name: open, set: {loops: false}}
+cases:
+  - {name: arena, scenario: s.yaml, seed: 3, goal_m: 5}
+  - name: drive
+    log: drive.rawlog
+    published: [{by: Somebody, error_m: 0.5, source: "A paper | with a bar"}]
+  - {name: lost, log: nowhere.log, goal_m: 1}
+YAML
+"$rubble" benchmark list.yaml --json --html b.html --markdown b.md >b.json 2>err.txt || fail "benchmark ended with $?: $(cat err.txt)"
+json_holds b.json "[c['name'] for c in j['cases']] == ['arena', 'drive', 'lost']"
+json_holds b.json "all([r['mapper'] for r in c['results']] == ['paper', 'robust', 'open'] for c in j['cases'])"
+json_holds b.json "all(r['goal_met'] and r['error_m'] < 0.5 and r['scans'] > 100 and r['peak_mb'] > 5 for r in j['cases'][0]['results'])"
+json_holds b.json "all(0 < r['usual_ms'] <= r['slow_ms'] <= r['worst_ms'] for r in j['cases'][0]['results'])"
+json_holds b.json "all(r['scans'] > 100 and r['goal_met'] is None for r in j['cases'][1]['results'])"
+json_holds b.json "all(r['missing'] == 'nowhere.log' and r['error_m'] is None and r['goal_met'] is None for r in j['cases'][2]['results'])"
+json_holds b.json "j['cases'][1]['published'][0]['error_m'] == 0.5"
+json_holds b.json "j['cases'][0]['results'][2]['loops_closed'] == 0"
+grep -q '&lt;by&gt;' b.html || fail "the page does not escape what the list says"
+grep -qE '(src|href)=' b.html && fail "the page refers to other files"
+grep -q 'A paper / with a bar' b.md || fail "the document's table is broken by a bar"
+"$rubble" benchmark list.yaml --mapper robust >b.txt 2>/dev/null || fail "the table ended with $?"
+grep -q 'not there: nowhere.log' b.txt || fail "the table does not tell the missing log"
+grep -q 'paper  ' b.txt && fail "--mapper robust ran others"
+
+expect_exit 2 '--mapper nobody' "$rubble" benchmark list.yaml --mapper nobody
+expect_exit 3 'nowhere.yaml' "$rubble" benchmark nowhere.yaml
+printf 'mappers: [{kind: robust}]\n' >none.yaml
+expect_exit 3 'none.yaml' "$rubble" benchmark none.yaml
+printf 'mappers: [{kind: robust}]\ncases: [{name: a, log: x, scenario: y}]\n' >both.yaml
+expect_exit 3 'both.yaml:2' "$rubble" benchmark both.yaml
+printf 'mappers: [{kind: robust}, {kind: robust}]\ncases: [{name: a, log: x}]\n' >twice.yaml
+expect_exit 3 'twice' "$rubble" benchmark twice.yaml
+printf 'mappers: [{kind: robust}]\ncases: [{name: a, log: gone.log}]\n' >gone.yaml
+"$rubble" benchmark gone.yaml >out.txt 2>err.txt
+[[ $? == 3 ]] || fail "a list without any of its logs must end with 3"
+grep -q -- '--data' err.txt || fail "it is not told where logs are looked for"
+finish
