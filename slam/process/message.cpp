@@ -61,7 +61,8 @@ bool MessageReader::line(std::string_view& text, std::size_t limit) {
     const void* const found = held > searched ? std::memchr(start + searched, '\n', held - searched) : nullptr;
     const std::size_t length = found ? static_cast<std::size_t>(static_cast<const char*>(found) - start) : held;
     if (length > limit)
-      throw BadMessage("a line is longer than " + std::to_string(limit) + " bytes: " + quoted({start, 40}));
+      throw BadMessage("a line is longer than " + std::to_string(limit) +
+                       " bytes: " + quoted({start, std::min<std::size_t>(length, 40)}));
     if (found) {
       text = {start, length};
       if (!text.empty() && text.back() == '\r') text.remove_suffix(1);

@@ -220,7 +220,7 @@ TEST(MapperProtocol, NonsenseIsRefusedWithItsReason) {
       {"map 2 2 0 0 0\nend\n", "resolution"},
       {"map 2 2 0.05 0 0 7\n..\n..\nend\n", "'7' is too much"},
       {"map 2 2 0.05 0 0\n..\n...\nend\n", "row 1 of the map has 3 cells, not 2"},
-      {"map 2 2 0.05 0 0\n..\n....\nend\n", "longer than 3"},
+      {"map 2 2 0.05 0 0\n..\n....\nend\n", "longer than 3 bytes: '....'"},
       {"map 5 2 0.05 0 0\n..\n...\nend\n", "row 0 of the map has 2 cells, not 5"},
       {"map 2 2 0.05 0 0\n..\n.x\nend\n", "one of ? . #"},
       {"map 2 2 0.05 0 0\n..\n", "fewer rows"},
