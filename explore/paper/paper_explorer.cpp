@@ -296,11 +296,14 @@ void PaperExplorer::nothing_left() {
     ++looks_in_vain_;
     return look_around(kLookTurn, false);
   }
-  if (pardons_ < kMaxPardons && (blacklist_.pardon(now_) | felt_.pardon(now_))) {
-    ++pardons_;
-    note("nothing else can be reached: what failed before is tried again");
-    plan_forced_ = true;
-    return;
+  if (pardons_ < kMaxPardons) {
+    const bool barred = blacklist_.pardon(now_), felt = felt_.pardon(now_);
+    if (barred || felt) {
+      ++pardons_;
+      note("nothing else can be reached: what failed before is tried again");
+      plan_forced_ = true;
+      return;
+    }
   }
   if (state_ == ExplorerState::GoingHome) return finish(MissionEnd::Explored, "no way home is left");
   finish_exploring();

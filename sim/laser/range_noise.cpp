@@ -104,10 +104,10 @@ void RangeNoise::mix_edges(std::vector<float>& ranges) {
     const Int4 jumps = abs4(after) > edge;
     const Int4 grazes = (before * after > zero) & (next < miss) & (min4(abs4(before), abs4(after)) >= slope * own);
     for (int lanes = bits4(jumps); lanes != 0; lanes &= lanes - 1) {
-      edges_.push_back(static_cast<std::uint32_t>(i) + static_cast<std::uint32_t>(__builtin_ctz(lanes)));
+      edges_.push_back(static_cast<std::uint32_t>(i) + lowest4(lanes));
     }
     for (int lanes = bits4(grazes); lanes != 0; lanes &= lanes - 1) {
-      grazing_.push_back(static_cast<std::uint32_t>(i) + static_cast<std::uint32_t>(__builtin_ctz(lanes)));
+      grazing_.push_back(static_cast<std::uint32_t>(i) + lowest4(lanes));
     }
   }
   for (const std::uint32_t i : edges_) mix_edge(i, ranges);

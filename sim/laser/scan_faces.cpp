@@ -138,8 +138,8 @@ void ScanFaces::near(const ScanReach& reach, std::vector<NearFace>& found) const
       if (lanes == 0) continue;
       const Float4 nearest = max4(height, sqrt4(distance2) - radius);
       for (; lanes != 0; lanes &= lanes - 1) {
-        const int lane = __builtin_ctz(lanes);
-        found.push_back({i + static_cast<std::uint32_t>(lane), nearest[lane]});
+        const std::uint32_t lane = lowest4(lanes);
+        found.push_back({i + lane, nearest[lane]});
       }
     }
   };

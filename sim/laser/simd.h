@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -39,7 +40,11 @@ inline Float4 sqrt4(const Float4& v) {
 inline int bits4(const Int4& mask) { return (mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8); }
 #endif
 /// Lanes 1, 2, 3, 0.
-inline Float4 next4(const Float4& v) { return __builtin_shuffle(v, Int4{1, 2, 3, 0}); }
+inline Float4 next4(const Float4& v) { return __builtin_shufflevector(v, v, 1, 2, 3, 0); }
+/// Number of the lowest set lane; `lanes` is not 0.
+inline std::uint32_t lowest4(int lanes) {
+  return static_cast<std::uint32_t>(__builtin_ctz(static_cast<unsigned>(lanes)));
+}
 inline bool any4(const Int4& mask) { return bits4(mask) != 0; }
 /// Towards zero, for |v| < 2^31.
 inline Float4 truncate4(const Float4& v) { return __builtin_convertvector(__builtin_convertvector(v, Int4), Float4); }
