@@ -30,6 +30,9 @@ constexpr double kUnsure = 0.40;                 ///< a pose that errs by so muc
 constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
 constexpr double kSameTarget = 0.5;                     ///< [m]
 constexpr double kTurningRoom = 0.06;                   ///< [m]
+constexpr double kLongestTick = 0.2;                    ///< commands of longer ticks are taken to have ended [s]
+constexpr double kHeld = 0.5;                           ///< a tick so long: the robot was held, a device was away [s]
+constexpr double kPatience = 2.0;                       ///< then its motors may still be off for a while [s]
 
 TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
 
@@ -86,8 +89,13 @@ robot::Commands PaperExplorer::next(const slam::Mapper& mapper, const robot::Inp
 
 /// Takes in what arrived in this tick.
 void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inputs) {
-  dt_ = now_ == Stamp::never() ? 0.0 : inputs.now - now_;
+  const double passed = now_ == Stamp::never() ? 0.0 : inputs.now - now_;
+  dt_ = std::min(passed, kLongestTick);
   now_ = inputs.now;
+  if (passed > kHeld) {
+    watch_.reset();
+    patient_until_ = now_ + kPatience;
+  }
   const TPose2D before = pose_;
   pose_ = mapper.pose();
   turned_ = wrap_angle(pose_.phi - before.phi);
@@ -171,7 +179,8 @@ Drive PaperExplorer::start(const slam::Mapper& mapper) {
 Drive PaperExplorer::drive(const slam::Mapper& mapper) {
   mark_searched();
   if (holding_still()) return {};
-  if (tilt_.too_steep() || watch_.stuck(pose_, commanded_, stalled_, dt_)) {
+  const bool patient = now_ < patient_until_;
+  if (tilt_.too_steep() || watch_.stuck(pose_, patient ? Drive{} : commanded_, stalled_, dt_)) {
     got_stuck(tilt_.too_steep() ? "it leans too much here" : stalled_ ? "the motors stall" : "it does not move");
     return {};
   }

@@ -106,7 +106,8 @@ class PaperExplorer : public Explorer {
   std::vector<TPoint2D> shown_path_;
 
   Stamp now_ = Stamp::never();
-  double dt_ = 0.0;
+  double dt_ = 0.0;                       ///< of commands: a robot that was held meanwhile did not follow them
+  Stamp patient_until_ = Stamp::never();  ///< the base may not obey yet
   TPose2D pose_;
   double turned_ = 0.0;  ///< since the last tick [rad]
   bool stalled_ = false;

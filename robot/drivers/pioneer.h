@@ -28,7 +28,9 @@ struct PioneerSettings {
   double turn_scale = 1.0;                                    ///< true turn per reckoned turn
   double delay = 0.0;    ///< age of a report when its first byte leaves the robot [s]
   bool passive = false;  ///< reports are read, but somebody else drives
-  double silence = 1.0;  ///< without reports for so long the connection is made anew [s]
+  /// Without reports for so long the connection is made anew [s]. Not sooner: OPEN sets the odometry to zero, while a
+  /// report after a gap still tells all the motion within it. Standing still meanwhile is the caller's business.
+  double silence = 3.0;
 };
 
 /// Client of ARCOS and its kin, the firmware of Pioneer robots.

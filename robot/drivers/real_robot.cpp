@@ -14,8 +14,9 @@
 namespace rubble::robot {
 namespace {
 
-constexpr double kAsk = 0.05;               ///< pause of a waiting read() [s]
-constexpr std::size_t kMostScansKept = 20;  ///< while the robot is held
+constexpr double kAsk = 0.05;                 ///< pause of a waiting read() [s]
+constexpr std::size_t kMostScansKept = 240;   ///< while the robot is held
+constexpr std::size_t kNewestScansKept = 40;  ///< of these all remain when the others are thinned
 
 /// `underway`: all have reported before; a connection that is made anew knows nothing of the last report.
 std::string silent_for(const std::string& name, bool underway, Stamp last, Stamp now, const std::string& why) {
@@ -162,8 +163,17 @@ struct RealRobot::Impl {
     scan_arrived = now;
     scans += fresh.size();
     append(waiting_scans, std::move(fresh));
-    if (waiting_scans.size() > kMostScansKept)
-      waiting_scans.erase(waiting_scans.begin(), waiting_scans.end() - kMostScansKept);
+    if (waiting_scans.size() > kMostScansKept) thin_waiting_scans();
+  }
+
+  /// The robot is held for long: every second of the older scans goes. How it was moved while it came to rest, when
+  /// nothing but scans can tell, stays known.
+  void thin_waiting_scans() {
+    const std::size_t older = waiting_scans.size() - kNewestScansKept;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < waiting_scans.size(); ++i)
+      if (i >= older || i % 2 == 0) waiting_scans[kept++] = std::move(waiting_scans[i]);
+    waiting_scans.resize(kept);
   }
 
   Commands commands_in_force() {

@@ -16,6 +16,7 @@ constexpr int kLeastPairs = 15;
 constexpr std::size_t kLeastPoints = 15;
 constexpr double kLeastScore = 0.25;
 constexpr double kWidestSearch = 1.0;  ///< [m]
+constexpr double kDoubted = 0.5;       ///< so much doubt, and the odometry is but one of several starts
 constexpr double kDoubt = 0.01;        ///< what is left of the odometry's information once it is doubted
 constexpr double kFound = 0.6;         ///< inliers (or score) that leave no doubt
 constexpr double kFoundAgain = 0.5;    ///< inliers after a search of all headings
@@ -37,27 +38,64 @@ void LocalTracker::redraw(const KeyFrames& frames, Work* work) {
   if (work != nullptr) *work += kWorkPerDrawnFrame * static_cast<Work>(newest.size());
 }
 
-Eigen::Matrix3d LocalTracker::prior_information(const TPose2D& motion) const {
-  const double path = length(motion.x, motion.y);
-  const double turn = std::abs(wrap_angle(motion.phi));
-  const double distance = config_.least_distance + config_.distance_error * path + 0.02 * turn;
-  const double angle = config_.least_turn + config_.turn_error * turn + config_.turn_error_per_m * path;
+LocalTracker::Reach LocalTracker::reach(const ExpectedMotion& motion) const {
+  const double path = length(motion.T_last_now.x, motion.T_last_now.y);
+  const double turn = std::abs(wrap_angle(motion.T_last_now.phi));
+  return {std::min(kWidestSearch, 0.25 + 0.5 * path + motion.doubt * config_.most_speed * motion.time),
+          std::min(kPi, 0.15 + 0.5 * turn + motion.doubt * config_.most_turn_rate * motion.time)};
+}
+
+Eigen::Matrix3d LocalTracker::prior_information(const ExpectedMotion& motion) const {
+  const double path = length(motion.T_last_now.x, motion.T_last_now.y);
+  const double turn = std::abs(wrap_angle(motion.T_last_now.phi));
+  const double distance = config_.least_distance + config_.distance_error * path + 0.02 * turn +
+                          motion.doubt * (0.02 + config_.most_speed * motion.time);
+  const double angle = config_.least_turn + config_.turn_error * turn + config_.turn_error_per_m * path +
+                       motion.doubt * (0.02 + config_.most_turn_rate * motion.time);
   return Eigen::Vector3d(1.0 / (distance * distance), 1.0 / (distance * distance), 1.0 / (angle * angle)).asDiagonal();
 }
 
-Tracked LocalTracker::track(const Cloud& cloud, const TPose2D& T_last_now, const TPose2D& T_frame_prior, Work* work) {
-  const double distance = length(T_last_now.x, T_last_now.y);
-  const double turn = std::abs(wrap_angle(T_last_now.phi));
-  const PosePrior prior{T_frame_prior, prior_information(T_last_now)};
+Tracked LocalTracker::track(const Cloud& cloud, const ExpectedMotion& motion, const TPose2D& T_frame_last, Work* work) {
+  const double distance = length(motion.T_last_now.x, motion.T_last_now.y);
+  const double turn = std::abs(wrap_angle(motion.T_last_now.phi));
+  const bool doubted = motion.doubt >= kDoubted;
+  const PosePrior prior{T_frame_last + motion.T_last_now, prior_information(motion)};
+  const std::optional<TPose2D> carried = motion.carried ? std::optional(T_frame_last + *motion.carried) : std::nullopt;
   Tracked tracked;
-  tracked.fit = fit_scan(surfels_, cloud.points, T_frame_prior, prior, {}, work);
-  if (distance > config_.large_step || turn > config_.large_turn)
+  tracked.fit = fit_scan(surfels_, cloud.points, prior.pose, prior, {}, work);
+  if (doubted)
+    tracked.fit = without_odometry(cloud, motion, prior, carried, tracked.fit, work);
+  else if (distance > config_.large_step || turn > config_.large_turn)
     tracked.fit = best_of_several(cloud, prior, distance, turn, tracked.fit, work);
   if (tracked.fit.prior_chi2 > config_.slip_chi2 || tracked.fit.inliers < config_.lost_inliers)
-    doubt_odometry(cloud, prior, distance, turn, tracked, work);
+    doubt_odometry(cloud, prior, carried, reach(motion), tracked, work);
   tracked.found = tracked.fit.paired >= kLeastPairs;
-  if (!tracked.found) tracked.fit.pose = T_frame_prior;
+  tracked.lost = doubted && (!tracked.found || tracked.fit.inliers < config_.lost_inliers);
+  if (!tracked.found) tracked.fit.pose = prior.pose;
+  const TPose2D off = tracked.fit.pose - prior.pose;
+  ExpectedMotion undoubted = motion;
+  undoubted.doubt = 0.0;
+  const Eigen::Vector3d d(off.x, off.y, wrap_angle(off.phi));
+  tracked.odometry_chi2 = d.dot(prior_information(undoubted) * d);
   return tracked;
+}
+
+/// Odometry says nothing: it is one guess, that the motion goes on another, and where there is no good match a search
+/// as wide as a robot could have moved a third.
+ScanFit LocalTracker::without_odometry(const Cloud& cloud, const ExpectedMotion& motion, const PosePrior& prior,
+                                       const std::optional<TPose2D>& carried, ScanFit fit, Work* work) {
+  const auto better = [&](const TPose2D& start) {
+    const PosePrior about{start, prior.information};
+    const ScanFit other = fit_scan(surfels_, cloud.points, start, about, {}, work);
+    if (other.cost < fit.cost) fit = other;
+  };
+  if (carried) better(*carried);
+  if (fit.inliers >= kFound) return fit;
+  const Reach far = reach(motion);
+  const TPose2D& centre = carried ? *carried : prior.pose;
+  if (const auto found = look_around(cloud, {centre, far.distance, far.turn}, kLeastScore, std::nullopt, work))
+    better(found->pose);
+  return fit;
 }
 
 std::optional<CorrelativeSearch::Found> LocalTracker::look_around(const Cloud& cloud, const SearchWindow& window,
@@ -87,20 +125,22 @@ ScanFit LocalTracker::best_of_several(const Cloud& cloud, const PosePrior& prior
   return fit;
 }
 
-void LocalTracker::doubt_odometry(const Cloud& cloud, const PosePrior& prior, double distance, double turn,
-                                  Tracked& tracked, Work* work) {
+void LocalTracker::doubt_odometry(const Cloud& cloud, const PosePrior& prior, const std::optional<TPose2D>& carried,
+                                  const Reach& reach, Tracked& tracked, Work* work) {
   tracked.slipped = true;
   const PosePrior loose{prior.pose, kDoubt * prior.information};
   ScanFit fit = fit_scan(surfels_, cloud.points, tracked.fit.pose, loose, {}, work);
-  if (fit.inliers < kFound) {
-    const SearchWindow window{prior.pose, std::min(kWidestSearch, 0.25 + 0.5 * distance), 0.15 + 0.5 * turn};
-    if (const auto found = look_around(cloud, window, kLeastScore, std::nullopt, work)) {
-      const ScanFit other = fit_scan(surfels_, cloud.points, found->pose, loose, tight(), work);
-      if (other.inliers > fit.inliers + 0.03) fit = other;
-    }
+  for (const auto& centre : {std::optional(prior.pose), carried}) {
+    if (!centre || fit.inliers >= kFound) continue;
+    const SearchWindow window{*centre, reach.distance, reach.turn};
+    const auto found = look_around(cloud, window, kLeastScore, std::nullopt, work);
+    if (!found) continue;
+    const PosePrior about{*centre, loose.information};
+    const ScanFit other = fit_scan(surfels_, cloud.points, found->pose, about, tight(), work);
+    if (other.inliers > fit.inliers + 0.03) fit = other;
   }
   if (fit.inliers < config_.lost_inliers) {
-    const auto other = any_heading(cloud, prior, distance, work);
+    const auto other = any_heading(cloud, prior, reach.distance, work);
     if (other && other->inliers > std::max(kFoundAgain, fit.inliers + 0.2)) {
       fit = *other;
       tracked.relocated = true;
@@ -112,7 +152,7 @@ void LocalTracker::doubt_odometry(const Cloud& cloud, const PosePrior& prior, do
 /// Lost: any heading will do, if there is but one.
 std::optional<ScanFit> LocalTracker::any_heading(const Cloud& cloud, const PosePrior& prior, double distance,
                                                  Work* work) {
-  const SearchWindow window{prior.pose, std::min(kWidestSearch, 0.3 + 0.5 * distance), kPi};
+  const SearchWindow window{prior.pose, std::min(kWidestSearch, 0.05 + distance), kPi};
   const auto found = look_around(cloud, window, kFound, std::nullopt, work);
   if (!found) return std::nullopt;
   const auto runner_up =

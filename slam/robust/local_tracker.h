@@ -21,17 +21,30 @@ struct TrackerConfig {
   double large_step = 0.35;        ///< longer steps between scans are searched first [m]
   double large_turn = 0.2;         ///< and larger turns [rad]
   double slip_chi2 = 16.0;         ///< odometry off by more (squared sigmas) is doubted
+  double most_speed = 0.8;         ///< of a robot whose odometry is of no use [m/s] ...
+  double most_turn_rate = 1.8;     ///< ... [rad/s]
   double lost_inliers = 0.35;      ///< share below which the place counts as lost
   double search_cell = 0.0;        ///< raster of the search [m]
   double search_blur = 0.0;        ///< [m]
 };
 
+/// What is known of the motion since the last scan before the scan is looked at.
+struct ExpectedMotion {
+  mrpt::math::TPose2D T_last_now;  ///< as odometry says
+  /// As the last scans' motion would go on; nothing when they are too long ago to say.
+  std::optional<mrpt::math::TPose2D> carried;
+  double time = 0.0;   ///< since the last scan [s]
+  double doubt = 0.0;  ///< of the odometry, 0: as good as wheels are, 1: it says nothing
+};
+
 /// How a scan lies on the local map.
 struct Tracked {
-  ScanFit fit;             ///< pose relative to the newest key frame
-  bool found = false;      ///< false: too little to see, the odometry stands
-  bool slipped = false;    ///< the odometry was doubted
-  bool relocated = false;  ///< found again after being lost
+  ScanFit fit;                 ///< pose relative to the newest key frame
+  bool found = false;          ///< false: too little to see, the odometry stands
+  bool slipped = false;        ///< the odometry was doubted
+  bool relocated = false;      ///< found again after being lost
+  double odometry_chi2 = 0.0;  ///< squared sigmas between the pose found and what undoubted odometry expects
+  bool lost = false;           ///< neither odometry nor the scan tell where the robot is
 };
 
 /// Follows the robot from scan to scan on a local map of the newest key frames, in the frame of the newest.
@@ -41,19 +54,25 @@ class LocalTracker {
 
   /// Takes the newest key frames as the local map.
   void redraw(const KeyFrames& frames, Work* work);
-  /// Finds the scan; `T_last_now`: what odometry says happened since the last scan; `T_frame_prior`: where it puts the
-  /// scan, relative to the newest key frame.
-  Tracked track(const Cloud& cloud, const mrpt::math::TPose2D& T_last_now, const mrpt::math::TPose2D& T_frame_prior,
-                Work* work);
+  /// Finds the scan; `T_frame_last`: the last one, relative to the newest key frame.
+  Tracked track(const Cloud& cloud, const ExpectedMotion& motion, const mrpt::math::TPose2D& T_frame_last, Work* work);
 
  private:
-  Eigen::Matrix3d prior_information(const mrpt::math::TPose2D& motion) const;
+  /// How far a robot may be from where it is expected.
+  struct Reach {
+    double distance;  ///< [m]
+    double turn;      ///< [rad]
+  };
+  Reach reach(const ExpectedMotion& motion) const;
+  Eigen::Matrix3d prior_information(const ExpectedMotion& motion) const;
   std::optional<CorrelativeSearch::Found> look_around(const Cloud& cloud, const SearchWindow& window, double floor,
                                                       const std::optional<SearchExclusion>& exclusion, Work* work);
   ScanFit best_of_several(const Cloud& cloud, const PosePrior& prior, double distance, double turn, ScanFit fit,
                           Work* work);
-  void doubt_odometry(const Cloud& cloud, const PosePrior& prior, double distance, double turn, Tracked& tracked,
-                      Work* work);
+  ScanFit without_odometry(const Cloud& cloud, const ExpectedMotion& motion, const PosePrior& prior,
+                           const std::optional<mrpt::math::TPose2D>& carried, ScanFit fit, Work* work);
+  void doubt_odometry(const Cloud& cloud, const PosePrior& prior, const std::optional<mrpt::math::TPose2D>& carried,
+                      const Reach& reach, Tracked& tracked, Work* work);
   std::optional<ScanFit> any_heading(const Cloud& cloud, const PosePrior& prior, double distance, Work* work);
 
   const TrackerConfig config_;

@@ -20,14 +20,25 @@ using robot::LaserScan;
 
 namespace {
 
-constexpr double kLateScan = 2.0;        ///< a scan may begin so long before the newest odometry [s]
-constexpr double kFastest = 10.0;        ///< odometry that goes faster has jumped [m/s]
-constexpr double kFastestTurn = 20.0;    ///< or turns faster [rad/s]
-constexpr double kNoDuration = 1e-3;     ///< stamps closer than any scanner's say the order, not how long it took [s]
-constexpr double kLeastJump = 0.5;       ///< below, a coarse clock may be to blame [m, rad]
-constexpr double kEdgeDistance = 0.008;  ///< least error between key frames [m]
-constexpr double kEdgeAngle = 0.003;     ///< [rad]
-constexpr Work kLeastBudget = 500'000;   ///< for work put off, each scan
+constexpr double kAhead = 1.0;             ///< stamps so far in the future are wrong [s]
+constexpr double kLateScan = 2.0;          ///< a scan may begin so long before the newest odometry [s]
+constexpr double kFastest = 10.0;          ///< odometry that goes faster has jumped [m/s]
+constexpr double kFastestTurn = 20.0;      ///< or turns faster [rad/s]
+constexpr double kFastestSweep = 3.0;      ///< the same within one sweep [m/s]
+constexpr double kFastestSweepTurn = 6.0;  ///< [rad/s]
+constexpr double kNoDuration = 1e-3;       ///< stamps closer than any scanner's say the order, not how long it took [s]
+constexpr double kLeastJump = 0.5;         ///< below, a coarse clock may be to blame [m, rad]
+constexpr double kEdgeDistance = 0.008;    ///< least error between key frames [m]
+constexpr double kEdgeAngle = 0.003;       ///< [rad]
+constexpr Work kLeastBudget = 500'000;     ///< for work put off, each scan
+constexpr double kBelieved = 0.5;          ///< share of inliers with which a scan overrules the odometry
+constexpr double kForgiving = 0.6;         ///< what is left of the doubt after each scan that agrees with the odometry
+constexpr double kNoDoubt = 0.05;
+constexpr double kLongestCarry = 0.5;  ///< motion is taken to go on for so long [s]
+constexpr double kLongestLost = 3.0;   ///< then the map goes on from where the robot is thought to be [s]
+constexpr double kLostDistance = 0.5;  ///< uncertainty of a robot that was lost [m]
+constexpr double kLostAngle = 0.5;     ///< [rad]
+constexpr double kNotLost = 0.5;       ///< share of inliers of a scan that may be mapped though the odometry is doubted
 
 /// Derivative of a pose by the one it hangs on, in the map frame: d is the lever between the two.
 Eigen::Matrix3d lever(const TPose2D& from, const TPose2D& to) {
@@ -75,7 +86,9 @@ struct RobustMapper::Impl {
   bool ready(const LaserScan& scan, Stamp now) const;
   void process(const LaserScan& scan);
   TPose2D motion_since_scan(Stamp reference) const;
-  TPose2D plausible_motion(Stamp reference);
+  ExpectedMotion expected_motion(const LaserScan& scan);
+  bool jumps_within(const LaserScan& scan) const;
+  std::optional<TPose2D> carried(double time) const;
   bool asks_for_frame(const Tracked& tracked) const;
   void add_frame(Stamp reference, Cloud cloud, const TPose2D& T_map_base, const GraphEdge& edge);
   GraphEdge edge_to_now(const Tracked& tracked) const;
@@ -85,6 +98,8 @@ struct RobustMapper::Impl {
   void remember_hits(const ScanPoints& points);
   TPose2D now() const { return frames_.pose(frames_.last()) + T_frame_base_; }
   std::optional<SweepMotion> sweep_motion(const LaserScan& scan) const;
+  std::optional<SweepMotion> sweep_at(const LaserScan& scan, const TPose2D& motion, double time) const;
+  bool may_be_mapped(const Tracked& tracked, double doubt, Stamp reference);
   const Trajectory& trajectory() const;
   TPose2D pose_of(std::size_t scan) const { return frames_.pose(scans_[scan].frame) + scans_[scan].T_frame_base; }
   std::optional<TPose2D> pose_at(Stamp stamp) const;
@@ -119,7 +134,14 @@ struct RobustMapper::Impl {
   std::uint64_t revision_ = 0;
   std::vector<TPoint2D> last_hits_;
   MapperCounts counts_;
+  TPose2D last_step_;            ///< between the last two scans, as matched
+  double last_step_time_ = 0.0;  ///< [s]
+  double doubt_ = 0.0;           ///< of the odometry, by what the last scans said of it
+  Stamp lost_since_ = Stamp::never();
+  bool lost_on_the_way_ = false;  ///< since the newest key frame
   std::uint64_t slips_ = 0;
+  std::uint64_t silent_ = 0;
+  std::uint64_t lost_ = 0;
   std::uint64_t relocated_ = 0;
   std::uint64_t unseen_ = 0;
   std::uint64_t odometry_jumps_ = 0;
@@ -129,11 +151,11 @@ struct RobustMapper::Impl {
 void RobustMapper::Impl::receive(const robot::Inputs& inputs) {
   tilt_.add(inputs);
   for (const robot::Odometry& odometry : inputs.odometry)
-    if (finite(odometry)) odometry_.add(odometry);
+    if (finite(odometry) && odometry.stamp - inputs.now <= kAhead) odometry_.add(odometry);
   if (!scans_.empty() && !T_odom_scan_ && !odometry_.empty()) T_odom_scan_ = odometry_.pose_at(Stamp::never());
   for (const LaserScan& scan : inputs.scans) {
     ++counts_.scans;
-    if (!usable(scan) || scan.middle() <= newest_scan_) {
+    if (!usable(scan) || scan.middle() <= newest_scan_ || scan.middle() - inputs.now > kAhead) {
       ++counts_.out_of_order;
       continue;
     }
@@ -158,25 +180,45 @@ bool RobustMapper::Impl::ready(const LaserScan& scan, Stamp now) const {
 
 void RobustMapper::Impl::process(const LaserScan& scan) {
   const Stamp reference = scan.middle();
-  const std::optional<SweepMotion> sweep = sweep_motion(scan);
+  const ExpectedMotion motion = frames_.empty() ? ExpectedMotion{} : expected_motion(scan);
+  std::optional<SweepMotion> sweep =
+      motion.doubt >= 1.0 && motion.carried ? sweep_at(scan, *motion.carried, motion.time) : sweep_motion(scan);
   const std::optional<ScanTilt> tilt = config_.use_tilt ? tilt_.at(reference) : std::nullopt;
-  const ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr, tilt ? &*tilt : nullptr);
+  ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr, tilt ? &*tilt : nullptr);
   Cloud cloud = cloud_of(points, config_.cloud);
   Work work = 0;
+  bool sure = true;
 
   if (frames_.empty()) {
     add_frame(reference, std::move(cloud), TPose2D(), {});
     tracker_.redraw(frames_, &work);
   } else {
-    const TPose2D T_last_now = plausible_motion(reference);
-    const Tracked tracked = tracker_.track(cloud, T_last_now, T_frame_base_ + T_last_now, &work);
+    const TPose2D T_frame_last = T_frame_base_;
+    Tracked tracked = tracker_.track(cloud, motion, T_frame_last, &work);
+    const bool contradicted = tracked.odometry_chi2 > config_.tracker.slip_chi2 && tracked.fit.inliers >= kBelieved;
+    if (motion.doubt >= 1.0 || contradicted) {
+      // The sweep was straightened by a motion that was wrong; now a better one is known.
+      if (const auto found = sweep_at(scan, tracked.fit.pose - T_frame_last, motion.time)) {
+        sweep = found;
+        points = level_scan_.points(scan, &*sweep, tilt ? &*tilt : nullptr);
+        cloud = cloud_of(points, config_.cloud);
+        ExpectedMotion better = motion;
+        better.carried = tracked.fit.pose - T_frame_last;
+        better.doubt = 1.0;
+        tracked = tracker_.track(cloud, better, T_frame_last, &work);
+      }
+    }
+    doubt_ = contradicted ? 1.0 : doubt_ < kNoDoubt ? 0.0 : kForgiving * doubt_;
+    sure = may_be_mapped(tracked, motion.doubt, reference);
     T_frame_base_ = tracked.fit.pose;
+    last_step_ = T_frame_base_ - T_frame_last;
+    last_step_time_ = motion.time;
     slips_ += tracked.slipped ? 1 : 0;
     relocated_ += tracked.relocated ? 1 : 0;
     unseen_ += tracked.found ? 0 : 1;
     const GraphEdge edge = edge_to_now(tracked);
     scan_covariance_ = edge.information.inverse();
-    if (asks_for_frame(tracked)) {
+    if (sure && asks_for_frame(tracked)) {
       add_frame(reference, std::move(cloud), now(), edge);
       if (config_.loops) closer_.look();
       tracker_.redraw(frames_, &work);
@@ -188,25 +230,77 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
   Work budget = std::max(kLeastBudget, static_cast<Work>(config_.budget_ms * 1e6) - work);
   const Work given = budget;
   if (config_.loops) close_loops(budget);
-  put_into_map(scan, sweep, tilt, budget);
+  if (sure) put_into_map(scan, sweep, tilt, budget);
   map_.work(frames_, budget);
   most_work_ = std::max(most_work_, work + given - budget);
   live_.push_back({reference, now()});
   remember_hits(points);
 }
 
-/// What odometry says; nothing where it cannot be true.
-TPose2D RobustMapper::Impl::plausible_motion(Stamp reference) {
-  const TPose2D motion = motion_since_scan(reference);
-  const double time = reference - scans_.back().stamp;
-  if (time < kNoDuration) return motion;
-  const double path = length(motion.x, motion.y);
-  const double turn = std::abs(wrap_angle(motion.phi));
-  const bool jumped =
-      (path > kLeastJump && path > kFastest * time) || (turn > kLeastJump && turn > kFastestTurn * time);
-  if (!jumped) return motion;
-  ++odometry_jumps_;
-  return {};
+/// What odometry says; how the motion would go on where that cannot be true or nothing was reported.
+ExpectedMotion RobustMapper::Impl::expected_motion(const LaserScan& scan) {
+  const Stamp reference = scan.middle();
+  const Stamp last = scans_.back().stamp;
+  ExpectedMotion motion;
+  motion.T_last_now = motion_since_scan(reference);
+  motion.time = reference - last;
+  motion.carried = carried(motion.time);
+  motion.doubt = doubt_;
+  if (motion.time < kNoDuration) return motion;
+  const double path = length(motion.T_last_now.x, motion.T_last_now.y);
+  const double turn = std::abs(wrap_angle(motion.T_last_now.phi));
+  const bool jumped = (path > kLeastJump && path > kFastest * motion.time) ||
+                      (turn > kLeastJump && turn > kFastestTurn * motion.time) || jumps_within(scan);
+  const bool silent = T_odom_scan_ && (odometry_.silent_at(last) || odometry_.silent_at(reference));
+  odometry_jumps_ += jumped ? 1 : 0;
+  silent_ += silent ? 1 : 0;
+  if (jumped || silent) motion.doubt = 1.0;
+  if (jumped) motion.T_last_now = motion.carried.value_or(TPose2D());
+  return motion;
+}
+
+/// A jump between two reports shows sooner within a sweep that lies between them, and its time is the scanner's own.
+bool RobustMapper::Impl::jumps_within(const LaserScan& scan) const {
+  const std::optional<SweepMotion> sweep = sweep_motion(scan);
+  if (!sweep) return false;
+  const double time = scan.beam_stamp(scan.ranges.size() - 1) - scan.stamp;
+  const TPose2D motion = sweep->T_ref_last - sweep->T_ref_first;
+  return length(motion.x, motion.y) > 0.05 + kFastestSweep * time ||
+         std::abs(wrap_angle(motion.phi)) > 0.05 + kFastestSweepTurn * time;
+}
+
+/// As the last two scans were apart, for `time`.
+std::optional<TPose2D> RobustMapper::Impl::carried(double time) const {
+  if (last_step_time_ < kNoDuration || time < kNoDuration || std::max(time, last_step_time_) > kLongestCarry)
+    return std::nullopt;
+  const double share = time / last_step_time_;
+  return TPose2D{share * last_step_.x, share * last_step_.y, share * wrap_angle(last_step_.phi)};
+}
+
+/// How the base moved during a sweep if it moved by `motion` in `time`.
+std::optional<SweepMotion> RobustMapper::Impl::sweep_at(const LaserScan& scan, const TPose2D& motion,
+                                                        double time) const {
+  if (scan.beam_period <= 0.0 || time < kNoDuration || time > kLongestCarry) return sweep_motion(scan);
+  const Stamp reference = scan.middle();
+  const auto part = [&](Stamp stamp) {
+    const double share = (stamp - reference) / time;
+    return TPose2D{share * motion.x, share * motion.y, share * wrap_angle(motion.phi)};
+  };
+  return SweepMotion{part(scan.stamp), part(scan.beam_stamp(scan.ranges.size() - 1))};
+}
+
+/// A scan that may lie anywhere spoils the map: it waits until the place is known again, but not for ever.
+bool RobustMapper::Impl::may_be_mapped(const Tracked& tracked, double doubt, Stamp reference) {
+  if (tracked.lost) {
+    ++lost_;
+    lost_on_the_way_ = true;
+    if (lost_since_ == Stamp::never()) lost_since_ = reference;
+  } else if (tracked.fit.inliers >= kNotLost) {
+    lost_since_ = Stamp::never();
+  }
+  if (lost_since_ != Stamp::never() && reference - lost_since_ > kLongestLost && doubt < 1.0)
+    lost_since_ = Stamp::never();
+  return lost_since_ == Stamp::never() && (doubt < 1.0 || tracked.fit.inliers >= kNotLost);
 }
 
 bool RobustMapper::Impl::asks_for_frame(const Tracked& tracked) const {
@@ -220,8 +314,8 @@ bool RobustMapper::Impl::asks_for_frame(const Tracked& tracked) const {
 GraphEdge RobustMapper::Impl::edge_to_now(const Tracked& tracked) const {
   const double path = length(T_frame_base_.x, T_frame_base_.y);
   const double turn = std::abs(wrap_angle(T_frame_base_.phi));
-  const double distance = 0.01 + 0.1 * path;
-  const double angle = 0.01 + 0.1 * turn + 0.03 * path;
+  const double distance = lost_on_the_way_ ? kLostDistance : 0.01 + 0.1 * path;
+  const double angle = lost_on_the_way_ ? kLostAngle : 0.01 + 0.1 * turn + 0.03 * path;
   const Eigen::Matrix3d odometry =
       Eigen::Vector3d(1.0 / (distance * distance), 1.0 / (distance * distance), 1.0 / (angle * angle)).asDiagonal();
   Eigen::Matrix3d information = odometry;
@@ -249,6 +343,7 @@ void RobustMapper::Impl::add_frame(Stamp reference, Cloud cloud, const TPose2D& 
   }
   frames_.add(std::move(frame), T_map_base, edge);
   T_frame_base_ = TPose2D();
+  lost_on_the_way_ = false;
   scan_covariance_.setZero();
 }
 
@@ -358,6 +453,8 @@ std::vector<MapperFigure> RobustMapper::figures() const {
           {"slips", static_cast<double>(impl_->slips_)},
           {"relocated", static_cast<double>(impl_->relocated_)},
           {"unseen", static_cast<double>(impl_->unseen_)},
+          {"odometry_silent", static_cast<double>(impl_->silent_)},
+          {"lost", static_cast<double>(impl_->lost_)},
           {"odometry_jumps", static_cast<double>(impl_->odometry_jumps_)},
           {"loops_searched", static_cast<double>(loops.searched)},
           {"loops_ambiguous", static_cast<double>(loops.ambiguous)},

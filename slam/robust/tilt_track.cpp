@@ -13,6 +13,7 @@ constexpr double kGravity = 9.80665;  ///< [m/s^2]
 constexpr double kSilence = 0.5;      ///< after so long without a sample the filter starts anew [s]
 constexpr double kFarthest = 0.25;    ///< a sample this far from a stamp says nothing about it [s]
 constexpr double kLongestWait = 0.2;  ///< for samples after a scan [s]
+constexpr double kSteepest = 0.6;     ///< a robot that leans more lies on its side, or its sensor is broken [rad]
 constexpr double kImplausible = 2.0;  ///< more than so many g is no tilt but a fault
 
 double tilt_of(double specific_force, double gravity) {
@@ -76,6 +77,7 @@ std::optional<ScanTilt> TiltTrack::at(Stamp stamp) const {
     pitch = before.pitch + u * (pitch - before.pitch);
     roll = before.roll + u * (roll - before.roll);
   }
+  if (std::max(std::abs(pitch), std::abs(roll)) > kSteepest) return std::nullopt;
   const robot::AimState aim = aim_at(stamp);
   return ScanTilt{pitch, roll, pitch - aim.pitch, roll - aim.roll};
 }

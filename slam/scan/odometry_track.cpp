@@ -12,6 +12,9 @@ using robot::Odometry;
 
 namespace {
 
+constexpr double kGapOfIntervals = 4.0;  ///< an interval so many times the usual one is a gap
+constexpr double kLearning = 0.05;       ///< weight of a new interval in the usual one
+
 /// The arc that constant v and w describe in `dt`.
 TPose2D arc(double v, double w, double dt) {
   const double turn = w * dt;
@@ -23,7 +26,26 @@ TPose2D arc(double v, double w, double dt) {
 }  // namespace
 
 void OdometryTrack::add(const Odometry& odometry) {
-  if (track_.empty() || odometry.stamp > track_.back().stamp) track_.push_back(odometry);
+  if (!track_.empty() && odometry.stamp <= track_.back().stamp) return;
+  if (!track_.empty()) {
+    const double interval = odometry.stamp - track_.back().stamp;
+    const bool first = usual_interval_ <= 0.0;
+    usual_interval_ +=
+        (first ? 1.0 : kLearning) * (std::min(interval, first ? 1.0 : 4.0 * usual_interval_) - usual_interval_);
+  }
+  track_.push_back(odometry);
+}
+
+bool OdometryTrack::silent_at(Stamp stamp) const {
+  if (track_.empty()) return true;
+  const double longest = std::max(kShortestGap, kGapOfIntervals * usual_interval_);
+  const double close = 0.25 * longest;
+  if (stamp <= track_.front().stamp) return track_.front().stamp - stamp > longest;
+  if (stamp >= track_.back().stamp) return stamp - track_.back().stamp > longest;
+  const auto after = std::lower_bound(track_.begin(), track_.end(), stamp,
+                                      [](const Odometry& odometry, Stamp s) { return odometry.stamp < s; });
+  const auto before = after - 1;
+  return after->stamp - before->stamp > longest && after->stamp - stamp > close && stamp - before->stamp > close;
 }
 
 TPose2D OdometryTrack::pose_at(Stamp stamp) const {

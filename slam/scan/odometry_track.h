@@ -24,15 +24,20 @@ class OdometryTrack {
   mrpt::math::TPose2D pose_at(Stamp stamp) const;
   /// Motion of the base from `from` to `to`, in the base frame at `from`: T_from_to.
   mrpt::math::TPose2D between(Stamp from, Stamp to) const;
+  /// Whether nothing was reported about the motion at `stamp`: it lies in a gap much longer than the odometry's usual
+  /// interval (and kShortestGap), and not next to a report.
+  bool silent_at(Stamp stamp) const;
   /// Forgets what no question about `oldest_needed` or later can touch.
   void forget_before(Stamp oldest_needed);
 
   std::size_t size() const { return track_.size(); }
 
   static constexpr double kMaxExtrapolation = 0.2;  ///< [s]
+  static constexpr double kShortestGap = 0.4;       ///< [s]
 
  private:
   std::deque<robot::Odometry> track_;
+  double usual_interval_ = 0.0;  ///< [s]
 };
 
 }  // namespace rubble::slam

@@ -165,6 +165,12 @@ class MazeRobot {
     return inputs;
   }
 
+  /// Time passes without a tick while the robot comes to rest: a device was away.
+  void wait(double seconds) {
+    now_ = now_ + seconds;
+    v_ = w_ = 0.0;
+  }
+
   /// Distance from the turn centre to the nearest wall [m].
   double clearance() const {
     double d = std::numeric_limits<double>::infinity();

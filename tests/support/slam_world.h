@@ -88,8 +88,8 @@ struct Drive {
   double tick = 0.1;
 };
 
-/// Drives straight from point to point at 0.3 m/s and turns on the spot at 45 deg/s in between.
-inline Drive drive_through(const std::vector<TPoint2D>& points, double heading) {
+/// Drives straight from point to point at 0.3 m/s and turns on the spot in between, by default at 45 deg/s.
+inline Drive drive_through(const std::vector<TPoint2D>& points, double heading, double turn_rate = deg_to_rad(45.0)) {
   Drive drive;
   TPose2D pose{points.front().x, points.front().y, heading};
   std::int64_t step = 0;
@@ -98,7 +98,7 @@ inline Drive drive_through(const std::vector<TPoint2D>& points, double heading) 
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double bearing = std::atan2(points[i].y - pose.y, points[i].x - pose.x);
     const double turn = wrap_angle(bearing - pose.phi);
-    const int turns = static_cast<int>(std::ceil(std::abs(turn) / deg_to_rad(4.5)));
+    const int turns = static_cast<int>(std::ceil(std::abs(turn) / (turn_rate * 0.1)));
     for (int k = 0; k < turns; ++k) {
       pose.phi = wrap_angle(pose.phi + turn / turns);
       keep();
@@ -154,6 +154,30 @@ inline std::vector<robot::Inputs> record(const World& world, const Drive& drive,
     inputs.scans.push_back(scan_at(world, drive.truth[i].pose, model, inputs.now, range_sigma, scan_rng));
     ticks.push_back(std::move(inputs));
   }
+  return ticks;
+}
+
+/// The same with a laser that takes `sweep` seconds for a scan: beams leave one after the other while the base moves,
+/// and a scan arrives with the tick after its last beam.
+inline std::vector<robot::Inputs> record_sweeping(const World& world, const Drive& drive,
+                                                  const robot::RobotModel& model, double odometry_error,
+                                                  double range_sigma, double sweep, std::uint64_t seed) {
+  std::vector<robot::Inputs> ticks = record(world, drive, model, odometry_error, range_sigma, seed);
+  Rng noise(seed, "sweep");
+  const TPose2D T_base_laser{model.T_base_laser.x, model.T_base_laser.y, model.T_base_laser.yaw};
+  for (std::size_t i = ticks.size() - 1; i > 0; --i) {
+    robot::LaserScan scan = ticks[i - 1].scans.front();
+    scan.beam_period = sweep / static_cast<double>(scan.ranges.size());
+    for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) {
+      const auto base = pose_at(drive.truth, scan.beam_stamp(beam));
+      const TPose2D laser = *base + T_base_laser;
+      const double range =
+          cast(world, {laser.x, laser.y}, laser.phi + scan.bearing(beam)) + noise.gaussian(range_sigma);
+      scan.ranges[beam] = range <= scan.range_max ? static_cast<float>(range) : std::numeric_limits<float>::infinity();
+    }
+    ticks[i].scans.front() = std::move(scan);
+  }
+  ticks.front().scans.clear();
   return ticks;
 }
 

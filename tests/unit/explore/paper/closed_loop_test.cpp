@@ -75,6 +75,32 @@ Outcome explore_maze(const Maze& maze, const PaperExplorerConfig& config, const 
   return run;
 }
 
+/// A robot that was held while a device was away, and whose motors are off for a while after, is not stuck: nothing is
+/// barred for it.
+TEST(PaperExplorer, AHeldRobotIsNotTakenForStuck) {
+  const Maze maze = test::random_maze(5, 5, 0.2, 4);
+  const robot::RobotModel model;
+  MazeRobot robot(maze, model);
+  slam::PaperMapper mapper(model, exact_mapper(), 1);
+  PaperExplorer explorer(model, {});
+  robot::Commands commands;
+  int holds = 0;
+  Stamp held_until = Stamp::never();
+  for (int tick = 0; tick < 6000 && holds < 5; ++tick) {
+    if (commands.drive.v > 0.3 && (held_until == Stamp::never() || robot.now() > held_until + 3.0)) {
+      robot.wait(3.5);
+      held_until = robot.now() + 1.2;
+      ++holds;
+    }
+    robot.held = held_until != Stamp::never() && robot.now() < held_until;
+    const robot::Inputs inputs = robot.step(commands);
+    mapper.update(inputs);
+    commands = explorer.next(mapper, inputs);
+    ASSERT_NE(explorer.state(), ExplorerState::BackingUp) << "after " << inputs.now.seconds() << " s";
+  }
+  EXPECT_EQ(holds, 5);
+}
+
 class RandomMaze : public testing::TestWithParam<int> {};
 
 TEST_P(RandomMaze, IsSeenWholeWithoutATouchAndTheExplorerFinishesByItself) {

@@ -225,6 +225,22 @@ TEST(PioneerWire, DamagedLinesNeitherMoveThePoseNorStopTheReports) {
   }
 }
 
+TEST(PioneerWire, NoMotionIsLostInAGapOfTheReports) {
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.2, 1.0);
+  wire.run(3.0);
+  wire.cut = true;
+  wire.run(1.7);
+  wire.cut = false;
+  wire.run(1.0);
+  wire.go(0.0, 0.0);
+  wire.run(2.0);
+  EXPECT_EQ(wire.driver.jumps(), 0u);
+  EXPECT_NEAR(wrap_angle(wire.odometry.back().pose.phi - wire.truth.phi), 0.0, 0.01);
+  EXPECT_NEAR(wire.odometry.back().pose.x, wire.truth.x, 0.01);
+}
+
 TEST(PioneerWire, StallsAreTold) {
   Wire wire;
   wire.run(1.0);

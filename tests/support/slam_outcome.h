@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "slam/mapper.h"
+#include "tests/support/slam_world.h"
+
+namespace rubble::slam_test {
+
+/// How well a mapper has done on a drive through a world of axis-parallel walls.
+struct Outcome {
+  double rmse = 0.0;     ///< of the positions, first poses laid on each other [m]
+  double heading = 0.0;  ///< worst error [rad]
+  double outside = 0.0;  ///< share of the occupied cells that lie more than 0.1 m off the walls
+  int occupied = 0;      ///< cells
+};
+
+inline double distance_to(const World& world, const TPoint2D& p) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Segment& s : world) {
+    const double dx = std::max({std::min(s.a.x, s.b.x) - p.x, p.x - std::max(s.a.x, s.b.x), 0.0});
+    const double dy = std::max({std::min(s.a.y, s.b.y) - p.y, p.y - std::max(s.a.y, s.b.y), 0.0});
+    nearest = std::min(nearest, std::hypot(dx, dy));
+  }
+  return nearest;
+}
+
+/// Plays `ticks` of a drive that begins at the world's origin with heading 0.
+inline Outcome play(slam::Mapper& mapper, const std::vector<robot::Inputs>& ticks, const World& world,
+                    const Trajectory& truth) {
+  for (const robot::Inputs& tick : ticks) mapper.update(tick);
+  mapper.finish();
+  Outcome out;
+  out.rmse = first_pose_rmse(mapper.trajectory(), truth);
+  for (const StampedPose& e : mapper.trajectory()) {
+    const auto t = pose_at(truth, e.stamp);
+    if (t) out.heading = std::max(out.heading, std::abs(wrap_angle(e.pose.phi - (*t - truth.front().pose).phi)));
+  }
+  const OccupancyGrid grid = mapper.map().classify();
+  int off = 0;
+  for (int y = 0; y < grid.height(); ++y)
+    for (int x = 0; x < grid.width(); ++x) {
+      if (grid[{x, y}] != Occupancy::Occupied) continue;
+      ++out.occupied;
+      off += distance_to(world, grid.centre({x, y})) > 0.10 ? 1 : 0;
+    }
+  out.outside = out.occupied > 0 ? static_cast<double>(off) / out.occupied : 1.0;
+  return out;
+}
+
+}  // namespace rubble::slam_test

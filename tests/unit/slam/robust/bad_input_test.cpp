@@ -1,0 +1,217 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "slam/robust/robust_mapper.h"
+#include "tests/support/slam_outcome.h"
+#include "tests/support/slam_world.h"
+
+/// What the robust mapper makes of measurements that are wrong: none may spoil the map.
+namespace rubble::slam {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using robot::Inputs;
+using robot::LaserScan;
+using robot::RobotModel;
+using Ticks = std::vector<Inputs>;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+const std::vector<TPoint2D> kTour{{0.0, 0.0}, {0.6, 0.0},   {3.2, 0.2},  {3.2, 1.0},
+                                  {0.0, 0.5}, {-1.4, -0.8}, {1.0, -0.6}, {0.0, 0.0}};
+
+slam_test::Drive drive() { return slam_test::drive_through(kTour, 0.0); }
+
+Ticks tour(std::uint64_t seed, const RobotModel& model = {}) {
+  return slam_test::record(slam_test::furnished_room(), drive(), model, 1.0, 0.01, seed);
+}
+
+slam_test::Outcome outcome(const Ticks& ticks, const RobotModel& model = {}) {
+  RobustMapper mapper(model, {}, 1);
+  return slam_test::play(mapper, ticks, slam_test::furnished_room(), drive().truth);
+}
+
+void expect_good(const slam_test::Outcome& o) {
+  EXPECT_LT(o.rmse, 0.05);
+  EXPECT_LT(o.heading, deg_to_rad(3.0));
+  EXPECT_LT(o.outside, 0.02);
+  EXPECT_GT(o.occupied, 300);
+}
+
+/// Changes every scan with a number (from 0) for which `which` holds.
+Ticks with_scans(Ticks ticks, const std::function<bool(std::size_t)>& which,
+                 const std::function<void(LaserScan&)>& change) {
+  std::size_t i = 0;
+  for (Inputs& tick : ticks)
+    for (LaserScan& scan : tick.scans)
+      if (which(i++)) change(scan);
+  return ticks;
+}
+
+TEST(RobustBadInput, GoodInputIsMappedWell) { expect_good(outcome(tour(1))); }
+
+TEST(RobustBadInput, ScansThatSayNothing) {
+  for (const float value : {kNaN, kInf, 0.0F, -1.0F}) {
+    SCOPED_TRACE("value " + std::to_string(value));
+    const auto blind = [&](LaserScan& scan) { scan.ranges.assign(scan.ranges.size(), value); };
+    expect_good(outcome(with_scans(
+        tour(1), [](std::size_t i) { return i % 5 == 2; }, blind)));
+    expect_good(outcome(with_scans(
+        tour(1), [](std::size_t i) { return i < 8; }, blind)));  // the first
+    expect_good(outcome(with_scans(
+        tour(1), [](std::size_t i) { return i >= 60 && i < 80; }, blind)));  // 2 s
+  }
+}
+
+TEST(RobustBadInput, ABlindScannerLeavesTheMapUnknownAndThePoseToTheOdometry) {
+  const Ticks ticks = with_scans(
+      tour(1), [](std::size_t) { return true; }, [](LaserScan& scan) { scan.ranges.assign(scan.ranges.size(), kNaN); });
+  RobustMapper mapper(RobotModel(), {}, 1);
+  for (const Inputs& tick : ticks) mapper.update(tick);
+  mapper.finish();
+  const OccupancyGrid grid = mapper.map().classify();
+  for (std::size_t i = 0; i < grid.frame().size(); ++i) ASSERT_EQ(grid.data()[i], Occupancy::Unknown);
+  const TPose2D expected = ticks.back().odometry.back().pose - ticks.front().odometry.front().pose;
+  EXPECT_NEAR(mapper.pose().x, expected.x, 1e-6);
+  EXPECT_NEAR(mapper.pose().y, expected.y, 1e-6);
+}
+
+TEST(RobustBadInput, NumbersThatAreNone) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Ticks ticks = tour(1);
+  for (std::size_t i = 3; i < ticks.size(); i += 4) {
+    robot::Odometry& o = ticks[i].odometry.front();
+    (i % 3 == 0   ? o.pose.x
+     : i % 3 == 1 ? o.pose.phi
+                  : o.w) = i % 8 == 3 ? nan : std::numeric_limits<double>::infinity();
+  }
+  expect_good(outcome(ticks));
+  expect_good(outcome(with_scans(
+      tour(1), [](std::size_t i) { return i % 4 == 1; }, [&](LaserScan& scan) { scan.angle_step = nan; })));
+  expect_good(outcome(with_scans(
+      tour(1), [](std::size_t i) { return i % 4 == 1; }, [&](LaserScan& scan) { scan.angle_min = nan; })));
+}
+
+/// Measurements out of order are left out; those that follow in order are used again.
+TEST(RobustBadInput, TimeThatRunsBackwards) {
+  Ticks ticks = tour(1);
+  for (std::size_t i = 40; i < ticks.size(); i += 7) {
+    ticks[i].scans.front().stamp = ticks[i].scans.front().stamp - 1.5;
+    ticks[i].odometry.front().stamp = ticks[i].odometry.front().stamp - 1.5;
+  }
+  RobustMapper mapper(RobotModel(), {}, 1);
+  expect_good(slam_test::play(mapper, ticks, slam_test::furnished_room(), drive().truth));
+  EXPECT_GT(mapper.counts().out_of_order, 0u);
+  for (std::size_t i = 1; i < mapper.trajectory().size(); ++i)
+    EXPECT_LT(mapper.trajectory()[i - 1].stamp, mapper.trajectory()[i].stamp);
+}
+
+/// A stamp from the future must not make all that follow look old.
+TEST(RobustBadInput, AStampFarAhead) {
+  Ticks ticks = tour(1);
+  ticks[50].scans.front().stamp = ticks[50].scans.front().stamp + 3600.0;
+  ticks[90].odometry.front().stamp = ticks[90].odometry.front().stamp + 3600.0;
+  RobustMapper mapper(RobotModel(), {}, 1);
+  expect_good(slam_test::play(mapper, ticks, slam_test::furnished_room(), drive().truth));
+  EXPECT_EQ(mapper.counts().out_of_order, 1u);
+}
+
+TEST(RobustBadInput, GapsOfSeconds) {
+  for (const std::size_t from : {40u, 110u, 180u}) {
+    SCOPED_TRACE("from tick " + std::to_string(from));
+    Ticks ticks = tour(3);
+    ASSERT_GT(ticks.size(), from + 30);
+    ticks.erase(ticks.begin() + static_cast<std::ptrdiff_t>(from),
+                ticks.begin() + static_cast<std::ptrdiff_t>(from) + 30);
+    expect_good(outcome(ticks));
+  }
+}
+
+TEST(RobustBadInput, DoubledScansCountOnce) {
+  Ticks ticks = tour(1);
+  RobustMapper once(RobotModel(), {}, 1);
+  slam_test::play(once, ticks, slam_test::furnished_room(), drive().truth);
+  for (Inputs& tick : ticks) tick.scans.push_back(tick.scans.front());
+  RobustMapper twice(RobotModel(), {}, 1);
+  slam_test::play(twice, ticks, slam_test::furnished_room(), drive().truth);
+  EXPECT_EQ(twice.counts().out_of_order, once.counts().scans);
+  ASSERT_EQ(once.trajectory().size(), twice.trajectory().size());
+  for (std::size_t i = 0; i < once.trajectory().size(); ++i)
+    EXPECT_EQ(once.trajectory()[i].pose, twice.trajectory()[i].pose);
+}
+
+TEST(RobustBadInput, NoOdometryAtAll) {
+  Ticks ticks = tour(1);
+  for (Inputs& tick : ticks) tick.odometry.clear();
+  expect_good(outcome(ticks));
+}
+
+TEST(RobustBadInput, OdometryThatJumps) {
+  Ticks ticks = tour(1);
+  Rng rng(5, "jumps");
+  for (std::size_t i = 20; i < ticks.size(); i += 25) {
+    robot::Odometry& o = ticks[i].odometry.front();
+    o.pose = o.pose + TPose2D(rng.uniform(-5.0, 5.0), rng.uniform(-5.0, 5.0), rng.uniform(-3.0, 3.0));
+  }
+  expect_good(outcome(ticks));
+}
+
+TEST(RobustBadInput, LidarMountedUpsideDownOrBackwards) {
+  RobotModel backwards;
+  backwards.T_base_laser.yaw = kPi;
+  RobotModel upside_down;
+  upside_down.T_base_laser.roll = kPi;
+  expect_good(outcome(tour(1, backwards), backwards));
+  // The scan of a laser on its head is that of one upright, told from right to left.
+  const Ticks mirrored = with_scans(
+      tour(1), [](std::size_t) { return true; },
+      [](LaserScan& scan) {
+        std::reverse(scan.ranges.begin(), scan.ranges.end());
+        scan.angle_min = -scan.bearing(scan.ranges.size() - 1);
+      });
+  expect_good(outcome(mirrored, upside_down));
+}
+
+TEST(RobustBadInput, NoBeamOneBeamAndVeryMany) {
+  for (const std::size_t beams : {0u, 1u, 2u}) {
+    SCOPED_TRACE(std::to_string(beams) + " beams");
+    expect_good(outcome(with_scans(
+        tour(1), [](std::size_t i) { return i % 3 == 1; }, [&](LaserScan& scan) { scan.ranges.resize(beams); })));
+  }
+  RobotModel fine;
+  fine.laser.beams = 10000;
+  fine.laser.angle_min = -kPi;
+  fine.laser.angle_step = 2.0 * kPi / 10000;
+  expect_good(outcome(tour(1, fine), fine));
+}
+
+TEST(RobustBadInput, AccelerometerWrongOrGone) {
+  const auto with = [](const std::function<robot::Acceleration(Stamp, Rng&)>& feel) {
+    Ticks ticks = tour(1);
+    Rng rng(3, "accelerometer");
+    for (Inputs& tick : ticks)
+      for (int k = 4; k >= 0; --k) {
+        const robot::Acceleration a = feel(tick.now - 0.02 * k, rng);
+        tick.accelerations.push_back(a);
+      }
+    return ticks;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  expect_good(outcome(with([&](Stamp s, Rng&) { return robot::Acceleration{s, nan, nan}; })));
+  expect_good(outcome(with([](Stamp s, Rng&) { return robot::Acceleration{s, 9.8, -9.8}; })));  // stuck at an end
+  expect_good(outcome(with([](Stamp s, Rng&) { return robot::Acceleration{s, 300.0, 0.0}; })));
+  expect_good(outcome(with([](Stamp s, Rng& rng) {
+    return robot::Acceleration{s, rng.gaussian(1.0), rng.gaussian(1.0)};
+  })));
+  Ticks gone = with([](Stamp s, Rng&) { return robot::Acceleration{s, 0.0, 0.0}; });
+  for (std::size_t i = 100; i < gone.size(); ++i) gone[i].accelerations.clear();
+  expect_good(outcome(gone));
+}
+
+}  // namespace
+}  // namespace rubble::slam
