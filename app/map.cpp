@@ -28,7 +28,7 @@ Command map_command() {
           [](Options& o) -> Action {
             auto a = std::make_shared<MapArguments>();
             o.argument("log", a->log, "Log file");
-            o.seed("--seed", a->folder.seed, "Seed of the particle filter");
+            o.seed("--seed", a->folder.seed, "Seed of the mapper's random numbers (the robust mapper has none)");
             a->folder.declare(o);
             return [a] { return map(*a); };
           }};

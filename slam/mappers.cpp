@@ -19,8 +19,8 @@ MapperKind row(const std::string& name, const std::string& about) {
 
 const std::vector<MapperKind>& mapper_kinds() {
   static const std::vector<MapperKind> kinds = {
-      row<PaperConfig, PaperMapper>("paper", "Pellenz 2008: ICP, 300 particles, two-plane count map; no loop closure"),
       row<RobustConfig, RobustMapper>("robust", "local map matching, verified loops, pose graph, restamped map"),
+      row<PaperConfig, PaperMapper>("paper", "Pellenz 2008: ICP, 300 particles, two-plane count map; no loop closure"),
       {"process", "a program of yours, over its standard input and output (docs/mapper_protocol.md)",
        process_parameters},
       {"mrpt-icp", "MRPT's icp-slam: scans matched to a map of points; for comparison", mrpt_icp_parameters},

@@ -81,6 +81,16 @@ void CountMap::assign(const GridFrame& frame, std::vector<std::uint16_t> seen, s
   ++version_;
 }
 
+void CountMap::begin_anew(double dx, double dy) {
+  frame_.x0 += dx;
+  frame_.y0 += dy;
+  std::fill(seen_.begin(), seen_.end(), std::uint16_t{0});
+  std::fill(occupied_.begin(), occupied_.end(), std::uint16_t{0});
+  std::fill(p_occ_.begin(), p_occ_.end(), std::uint8_t{0});
+  dropped_hits_ = 0;
+  ++version_;
+}
+
 double CountMap::p_occ(Cell c) const {
   if (!frame_.inside(c)) return 0.0;
   const std::size_t cell = frame_.index(c);

@@ -59,6 +59,9 @@ class CountMap {
   /// Unknown where never seen; occupied where p_occ >= threshold, free elsewhere.
   OccupancyGrid classify(double threshold = 0.5) const;
 
+  /// Forgets all; the raster then lies (dx, dy) metres further.
+  void begin_anew(double dx, double dy);
+
   /// Rises with every stamp or assignment; tells readers that cached results are old.
   std::uint64_t version() const { return version_; }
   /// Hits that lay beyond `max_cells` and were not mapped, since the start.

@@ -39,6 +39,7 @@ void bind(Binder& b, RobustConfig& c) {
   b.number("frame_distance_m", c.frame_distance, 0.02, 2.0);
   b.number("frame_turn_rad", c.frame_turn, 0.02, 3.0);
   b.number("frame_overlap", c.frame_overlap, 0.0, 1.0);
+  b.boolean("thin_walls", c.thin_walls);
   b.boolean("loops", c.loops);
   b.number("budget_ms", c.budget_ms, 0.1, 1e6);
   b.section("matching", [&](Binder& m) {

@@ -191,6 +191,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
 
   if (frames_.empty()) {
     add_frame(reference, std::move(cloud), TPose2D(), {});
+    map_.lay_raster(frames_);
     tracker_.redraw(frames_, &work);
   } else {
     const TPose2D T_frame_last = T_frame_base_;
@@ -423,6 +424,8 @@ void RobustMapper::finish() {
   impl_->map_.moved();
   Work budget = std::numeric_limits<Work>::max();
   impl_->map_.work(impl_->frames_, budget);
+  impl_->map_.lay_raster(impl_->frames_);
+  if (impl_->config_.thin_walls) impl_->map_.thin();
   impl_->tracker_.redraw(impl_->frames_, nullptr);
 }
 

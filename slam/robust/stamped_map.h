@@ -21,6 +21,12 @@ class StampedMap {
   std::size_t scans() const { return scans_.size(); }
   /// Stamps a scan taken at T_frame_base from a key frame.
   void add(const KeyFrames& frames, int frame, const mrpt::math::TPose2D& T_frame_base, PackedScan scan, Work* work);
+  /// Lays the raster so that walls along its axes fall into the middle of cells, as far as key frames tell where those
+  /// are: a wall on the border of two cells fills both. Everything is stamped anew where the raster moves by more than
+  /// a tenth of a cell.
+  void lay_raster(const KeyFrames& frames);
+  /// Thins the walls of the map, once no more scans come.
+  void thin();
   /// Says that key frames have moved.
   void moved() { to_check_ = scans_.size(); }
   /// Stamps scans anew that lie wrong by a good part of a cell, newest first, until the budget is used up.

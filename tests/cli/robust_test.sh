@@ -11,7 +11,7 @@ expect_exit 3 'is a folder' "$rubble" score . .
 expect_exit 2 'key.key=value' "$rubble" run s.yaml --set robot.levelling
 expect_exit 3 'nowhere.yaml' "$rubble" run nowhere.yaml
 expect_exit 3 '--set robot.leveling' "$rubble" run s.yaml --set robot.leveling=false
-expect_exit 3 'particles' "$rubble" run s.yaml --set mapper.particles=-1
+expect_exit 3 'particles' "$rubble" run s.yaml --set mapper.kind=paper --set mapper.particles=-1
 printf 'name: x\nname: y\n' >twice.yaml
 expect_exit 3 'twice.yaml:2:1' "$rubble" run twice.yaml
 printf 'name: x\narena: {generate: [}\n' >broken.yaml

@@ -51,7 +51,7 @@ TEST_F(ScenarioFile, ResolvedScenarioReadsBackToItself) {
                                  "name: x\nseed: 42\narena: {generate: {columns: 5, rows: 6, ramps: 0.35}}\n"
                                  "geo: {latitude_deg: 50.36, longitude_deg: 7.56, heading_deg: 12.5}\n"
                                  "robot: {levelling: false, laser: {z_m: 0.3}}\n"
-                                 "mapper: {rotation_error: 0.07, gate_turn_deg: 3.3}\n"
+                                 "mapper: {kind: paper, rotation_error: 0.07, gate_turn_deg: 3.3}\n"
                                  "expect: {score: {min: 0.5}, ate_aligned_m: {min: 0, max: 0.4}}\n");
   const Scenario scenario = load_scenario(path);
   const std::string resolved = resolved_yaml(scenario);
@@ -68,7 +68,7 @@ TEST_F(ScenarioFile, ResolvedScenarioReadsBackToItself) {
 }
 
 TEST_F(ScenarioFile, OverridesWinOverTheFile) {
-  const std::string path = write("s.yaml", "arena: {generate: {}}\nseed: 1\nrobot: {levelling: true}\n");
+  const std::string path = write("s.yaml", "arena: {generate: {}}\nseed: 1\nrobot: {levelling: true}\nmapper: {kind: paper}\n");
   const Scenario s = load_scenario(path, {{"robot.levelling", "false"}, {"seed", "9"}, {"mapper.particles", "50"}});
   EXPECT_FALSE(s.levelling.on);
   EXPECT_EQ(s.seed, 9u);

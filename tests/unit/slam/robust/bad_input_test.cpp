@@ -81,6 +81,21 @@ TEST(RobustBadInput, ABlindScannerLeavesTheMapUnknownAndThePoseToTheOdometry) {
   EXPECT_NEAR(mapper.pose().y, expected.y, 1e-6);
 }
 
+/// Beams that are wrong alone are left out; two that agree by chance are not told from a thing, and remain where no
+/// scan sees through them again.
+TEST(RobustBadInput, SingleBeamsOfNonsense) {
+  Rng rng(11, "nonsense");
+  const auto spoil = [&](LaserScan& scan) {
+    for (float& range : scan.ranges)
+      if (rng.uniform() < 0.1) range = rng.uniform() < 0.5 ? kNaN : static_cast<float>(rng.uniform(0.1, 4.0));
+  };
+  const slam_test::Outcome o = outcome(with_scans(
+      tour(2), [](std::size_t) { return true; }, spoil));
+  EXPECT_LT(o.rmse, 0.05);
+  EXPECT_LT(o.heading, deg_to_rad(3.0));
+  EXPECT_LT(o.outside, 0.2);
+}
+
 TEST(RobustBadInput, NumbersThatAreNone) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Ticks ticks = tour(1);
