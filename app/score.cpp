@@ -93,10 +93,12 @@ int score(const ScoreArguments& arguments) {
         arguments.html, verdict.map.grid, truth,
         {arguments.map, arguments.truth, command_of(arguments), result.T_truth_map, pose ? pose->scale : 1.0, config});
   if (!arguments.out.empty()) {
-    if (result.aligned) {
-      scoring::write_overlay(arguments.out + "/overlay.png", grid, truth, result.T_truth_map);
+    // A map that was refused is drawn at the best pose, so that a person can see why; score.json says that too.
+    if (result.aligned || !result.source.empty())
+      scoring::write_overlay(arguments.out + "/overlay.png", grid, truth, result.T_truth_map,
+                             result.aligned ? "" : "NOT TRUSTED: " + result.note);
+    if (result.aligned)
       scoring::write_error_map(arguments.out + "/error.png", grid, truth, result.T_truth_map, config.tau);
-    }
     write_text_file(arguments.out + "/score.json", json.dump(2) + "\n");
   }
   return kOk;

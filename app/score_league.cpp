@@ -108,10 +108,13 @@ class League {
 
   void draw(const LeagueEntry& entry, const OccupancyGrid& map, scoring::LeaguePictures& pictures) const {
     const std::string name = safe_name(entry.team, entries_.size());
-    if (entry.score.aligned) {
+    if (entry.score.aligned || !entry.score.source.empty()) {
       pictures.overlay = name + "-overlay.png";
+      scoring::write_overlay(arguments_.out + "/" + pictures.overlay, map, truth_.grid, entry.score.T_truth_map,
+                             entry.score.aligned ? "" : "NOT TRUSTED: " + entry.score.note);
+    }
+    if (entry.score.aligned) {
       pictures.error = name + "-error.png";
-      scoring::write_overlay(arguments_.out + "/" + pictures.overlay, map, truth_.grid, entry.score.T_truth_map);
       scoring::write_error_map(arguments_.out + "/" + pictures.error, map, truth_.grid, entry.score.T_truth_map,
                                config_.tau);
     }

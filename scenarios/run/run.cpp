@@ -87,10 +87,12 @@ WrittenMaps score_files(scoring::Evidence& evidence, const RunFolder& folder, co
   const OccupancyGrid& truth = files.truth.grid;
   const scoring::MapScore score = scoring::score_map(map, truth, scenario.scoring);
   evidence.score = score;
-  if (!score.aligned) return files;
+  if (!score.aligned && score.source.empty()) return files;
   folder.publish({"overlay.png"}, [&](const std::string& path) {
-    scoring::write_overlay(path + "overlay.png", map, truth, score.T_truth_map);
+    scoring::write_overlay(path + "overlay.png", map, truth, score.T_truth_map,
+                           score.aligned ? "" : "NOT TRUSTED: " + score.note);
   });
+  if (!score.aligned) return files;
   folder.publish({"error.png"}, [&](const std::string& path) {
     scoring::write_error_map(path + "error.png", map, truth, score.T_truth_map, scenario.scoring.tau);
   });

@@ -81,7 +81,8 @@ std::string league_page(const std::string& truth, bool with_points, const std::v
       "class=\"note\">" +
       std::to_string(entries.size()) + " maps against " + escape_html(truth) +
       ". Ranked by points (to 0.1), then by score (to 0.001); equal maps share a rank. Score: lines "
-      "of sight that are right beyond chance; overlap = min(precision, recall) of the walls.</p>\n<table>\n<tr><th class=\"n\">rank</th><th>team</th>";
+      "of sight that are right beyond chance; overlap = min(precision, recall) of the walls.</p>\n<table>\n<tr><th "
+      "class=\"n\">rank</th><th>team</th>";
   if (with_points)
     body +=
         "<th class=\"n\">points</th><th class=\"n\">map quality</th><th class=\"n\">location</th><th "
@@ -95,7 +96,8 @@ std::string league_page(const std::string& truth, bool with_points, const std::v
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (pictures[i].overlay.empty()) continue;
     body += "<h2>" + std::to_string(entries[i].rank) + ". " + escape_html(entries[i].team) + "</h2>\n";
-    body += figure(entries[i], pictures[i].overlay, "laid over the truth") +
+    body += figure(entries[i], pictures[i].overlay,
+                   entries[i].score.aligned ? "laid over the truth" : "best pose, not trusted") +
             figure(entries[i], pictures[i].error, "distance of its walls") + warp_text(entries[i]) +
             victim_table(entries[i]);
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/image/png.h"
@@ -18,11 +19,13 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using Colour = cv::Vec3b;  // blue, green, red
 
-constexpr double kAgree = 0.15;  // walls this near count as the same in the overlay [m]
+constexpr double kAgree = 0.05;  // walls this near count as the same in the overlay [m]
+constexpr double kNear = 0.15;   // walls this near as displaced [m]
 constexpr int kStrip = 34;       // height of the legend strip [pixels]
 constexpr int kMaxSide = 3000;   // of the picture [pixels]
 
 const Colour kInk(40, 34, 30);
+const Colour kDisplaced(40, 150, 225);
 const Colour kMapOnly(48, 48, 214);
 const Colour kTruthOnly(205, 110, 20);
 const Colour kBothFree(255, 255, 255);
@@ -116,13 +119,28 @@ void draw_legend(Canvas& canvas, const std::vector<LegendEntry>& entries) {
   draw_scale_bar(canvas);
 }
 
-/// Green over yellow to red.
-Colour heat(double share) {
-  const double t = std::clamp(share, 0.0, 1.0);
-  const double red = t < 0.5 ? 40.0 + 2.0 * t * 200.0 : 240.0 - (t - 0.5) * 2.0 * 30.0;
-  const double green = t < 0.5 ? 160.0 + 2.0 * t * 30.0 : 190.0 - (t - 0.5) * 2.0 * 170.0;
-  return Colour(30, static_cast<unsigned char>(green), static_cast<unsigned char>(red));
+Colour mixed(const Colour& a, const Colour& b, double share) {
+  Colour out;
+  for (int i = 0; i < 3; ++i) out[i] = cv::saturate_cast<unsigned char>((1.0 - share) * a[i] + share * b[i]);
+  return out;
 }
+
+/// From green to the colour of a wall that only one of the maps has: red for the map's (phantom), blue for the truth's
+/// (missing), so that nobody takes one for the other.
+Colour heat(double share, const Colour& only) {
+  const double t = std::clamp(share, 0.0, 1.0);
+  const Colour good(40, 160, 40);
+  const Colour middle = mixed(mixed(good, only, 0.5), Colour(160, 235, 235), 0.6);
+  return t < 0.5 ? mixed(good, middle, 2.0 * t) : mixed(middle, only, 2.0 * t - 1.0);
+}
+
+/// From a point to the edge of the nearest wall cell [m], as the score has it.
+double to_wall(const WallField& field, const TPoint2D& p, const OccupancyGrid& grid) {
+  return std::max(0.0, field.distance(p) - 0.5 * grid.resolution());
+}
+
+/// How a wall `off` metres from the nearest of the other map is drawn.
+Colour wall_colour(double off, const Colour& only) { return off <= kAgree ? kInk : off <= kNear ? kDisplaced : only; }
 
 Colour background(Occupancy map, Occupancy truth) {
   const bool map_known = map != Occupancy::Unknown;
@@ -133,18 +151,32 @@ Colour background(Occupancy map, Occupancy truth) {
 
 void draw_heat_bar(Canvas& canvas, double tau) {
   const int y = canvas.map_rows() + kStrip / 2;
-  const std::string words = "distance to the nearest wall of the other map: 0";
-  text(canvas, words, 10, y + 5);
-  const int x = 10 + text_width(words) + 8;
-  for (int i = 0; i < 90; ++i) cv::line(canvas.image, {x + i, y - 6}, {x + i, y + 6}, cv::Scalar(heat(i / 89.0)));
-  text(canvas, cv::format("%.2g m or more", tau), x + 98, y + 5);
+  int x = 10;
+  for (const auto& [words, only] : {std::pair{"map's walls off the truth's: 0", kMapOnly},
+                                    std::pair{"truth's walls off the map's: 0", kTruthOnly}}) {
+    text(canvas, words, x, y + 5);
+    x += text_width(words) + 8;
+    for (int i = 0; i < 60; ++i)
+      cv::line(canvas.image, {x + i, y - 6}, {x + i, y + 6}, cv::Scalar(heat(i / 59.0, only)));
+    const std::string most =
+        cv::format("%.2g m or more: ", tau) + std::string(only == kMapOnly ? "phantom" : "missing");
+    text(canvas, most, x + 66, y + 5);
+    x += 66 + text_width(most) + 16;
+  }
   draw_scale_bar(canvas);
+}
+
+/// A band over the picture's top that nobody overlooks.
+void draw_warning(Canvas& canvas, const std::string& words) {
+  if (words.empty()) return;
+  cv::rectangle(canvas.image, {0, 0}, {canvas.image.cols - 1, 26}, cv::Scalar(kMapOnly), cv::FILLED);
+  cv::putText(canvas.image, words, {10, 18}, cv::FONT_HERSHEY_SIMPLEX, 0.5, cv::Scalar(255, 255, 255), 1, cv::LINE_AA);
 }
 
 }  // namespace
 
 void write_overlay(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
-                   const TPose2D& T_truth_map) {
+                   const TPose2D& T_truth_map, const std::string& warning) {
   Canvas canvas(common_frame(map, truth, T_truth_map, 0.5));
   const WallField to_map(map, 0.5);
   const WallField to_truth(truth, 0.5);
@@ -155,13 +187,15 @@ void write_overlay(const std::string& path, const OccupancyGrid& map, const Occu
       const Occupancy in_map = at(map, p_map);
       const Occupancy in_truth = at(truth, p_truth);
       Colour colour = background(in_map, in_truth);
-      if (in_truth == Occupancy::Occupied) colour = to_map.distance(p_map) <= kAgree ? kInk : kTruthOnly;
+      if (in_truth == Occupancy::Occupied) colour = wall_colour(to_wall(to_map, p_map, map), kTruthOnly);
       if (in_map == Occupancy::Occupied && colour != kInk)
-        colour = to_truth.distance(p_truth) <= kAgree ? kInk : kMapOnly;
+        colour = wall_colour(to_wall(to_truth, p_truth, truth), kMapOnly);
       canvas.image.at<Colour>(row, column) = colour;
     }
   }
-  draw_legend(canvas, {{kInk, "walls agree"},
+  draw_warning(canvas, warning);
+  draw_legend(canvas, {{kInk, "walls within 5 cm"},
+                       {kDisplaced, "within 15 cm"},
                        {kMapOnly, "only in map"},
                        {kTruthOnly, "only in truth"},
                        {kMapFree, "seen by map only"},
@@ -182,9 +216,9 @@ void write_error_map(const std::string& path, const OccupancyGrid& map, const Oc
       const Occupancy in_truth = at(truth, p_truth);
       Colour colour = background(in_map, in_truth);
       if (in_truth == Occupancy::Occupied)
-        colour = heat(to_map.distance(p_map) / tau);
+        colour = heat(to_wall(to_map, p_map, map) / tau, kTruthOnly);
       else if (in_map == Occupancy::Occupied)
-        colour = heat(to_truth.distance(p_truth) / tau);
+        colour = heat(to_wall(to_truth, p_truth, truth) / tau, kMapOnly);
       canvas.image.at<Colour>(row, column) = colour;
     }
   }

@@ -1,0 +1,88 @@
+#include "scoring/pictures/picture.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+
+#include "tests/support/scoring_maze.h"
+
+namespace rubble::scoring {
+namespace {
+
+using namespace testing;
+
+struct Tints {
+  int red = 0;     ///< clearly more red than blue
+  int blue = 0;    ///< clearly more blue than red
+  int orange = 0;  ///< red, and green between
+  int dark = 0;
+};
+
+/// A free room with one wall in its middle, `shift` metres further right.
+OccupancyGrid room(double shift, bool wall = true) {
+  OccupancyGrid grid(GridFrame{100, 60, 0.05, 0.0, 0.0}, Occupancy::Free);
+  if (wall) draw_wall(grid, {2.5 + shift, 0.5}, {2.5 + shift, 2.5}, 2);
+  return grid;
+}
+
+class Picture : public ::testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove(path_); }
+  /// Of the picture above the legend, between `from` and `to` of its height.
+  Tints tints(double from = 0.0) const {
+    const cv::Mat image = cv::imread(path_);
+    Tints out;
+    const int height = image.rows - 40;
+    for (int y = static_cast<int>(from * height); y < height; ++y)
+      for (int x = 0; x < image.cols; ++x) {
+        const cv::Vec3b c = image.at<cv::Vec3b>(y, x);
+        const int red = c[2];
+        const int blue = c[0];
+        if (red - blue > 120 && c[1] < 100) ++out.red;
+        if (red - blue > 120 && c[1] >= 120) ++out.orange;
+        if (blue - red > 120) ++out.blue;
+        if (red < 60 && blue < 60) ++out.dark;
+      }
+    return out;
+  }
+  const std::string path_ =
+      (std::filesystem::temp_directory_path() /
+       (std::string("rubble_picture_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".png"))
+          .string();
+};
+
+TEST_F(Picture, WallsAgreeWithinFiveCentimetresAndAreNearWithinFifteen) {
+  for (const double shift : {0.0, 0.05}) {
+    write_overlay(path_, room(shift), room(0.0), {});
+    EXPECT_GT(tints().dark, 0) << shift;
+    EXPECT_EQ(tints().orange + tints().red + tints().blue, 0) << shift;
+  }
+  write_overlay(path_, room(0.2), room(0.0), {});
+  EXPECT_GT(tints().orange, 0);
+  write_overlay(path_, room(0.6), room(0.0), {});
+  EXPECT_EQ(tints().orange + tints().dark, 0);
+  EXPECT_GT(tints().red, 0);
+  EXPECT_GT(tints().blue, 0);
+}
+
+TEST_F(Picture, TheErrorMapTellsPhantomFromMissing) {
+  write_error_map(path_, room(0.0), room(0.0, false), {}, 0.5);
+  EXPECT_GT(tints().red, 0);
+  EXPECT_EQ(tints().blue, 0);
+  write_error_map(path_, room(0.0, false), room(0.0), {}, 0.5);
+  EXPECT_EQ(tints().red, 0);
+  EXPECT_GT(tints().blue, 0);
+  write_error_map(path_, room(0.0), room(0.0), {}, 0.5);
+  EXPECT_EQ(tints().red + tints().blue, 0);
+}
+
+TEST_F(Picture, AWarningStandsOverAMapThatIsNotTrusted) {
+  write_overlay(path_, room(0.0), room(0.0), {}, "NOT TRUSTED: another pose fits about as well");
+  EXPECT_GT(tints().red, 5000);
+  EXPECT_EQ(tints(0.5).red, 0) << "only at the top";
+}
+
+}  // namespace
+}  // namespace rubble::scoring
