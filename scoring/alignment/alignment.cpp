@@ -104,11 +104,15 @@ class Aligner {
 
   std::string about_rooms() const { return rooms_note_.empty() ? "" : "; " + rooms_note_; }
 
-  /// A mirror image that fits to the decimetre, and clearly better than the map itself, is named as what it is.
+  /// A mirror image that fits to the decimetre, and clearly better than the map itself, is named as what it is. A
+  /// building that is nearly its own mirror image fits both ways: there what is left unexplained decides.
   std::string why_not(const Trust& trust, const PoseEvidence& tight) const {
     constexpr double kAhead = 1.2;
-    const bool is_mirror_image =
-        mirrored_ && mirrored_->tight >= kTightEnough && mirrored_->tight >= kAhead * tight_agreement(tight);
+    constexpr double kLeft = 0.5;
+    const double own = tight_agreement(tight);
+    const double most = tight.map.known + tight.truth.known;
+    const bool is_mirror_image = mirrored_ && mirrored_->tight >= kTightEnough &&
+                                 (mirrored_->tight >= kAhead * own || most - mirrored_->tight <= kLeft * (most - own));
     return is_mirror_image ? "not aligned: the map is a mirror image of the truth; flip it and score it again"
                            : trust.note;
   }
@@ -135,7 +139,6 @@ class Aligner {
     out.contest.by_agreement = out.contest.agreement >= kTightEnough;
     out.contest.margin =
         out.contest.by_agreement ? out.contest.agreement - others.tight : out.log_odds - others.log_odds;
-    if (beyond_doubt(best.tight, others)) return others;
     const Rivals& mirrored = of_mirrored();
     out.mirrored = relative(mirrored, best.tight, out.log_odds);
     others.join(mirrored);

@@ -53,7 +53,7 @@ struct Alignment {
   double log_odds = 0.0;            ///< of the best pose being right
   double runner_up = 0.0;           ///< how near the best clearly different pose comes to the best, 0..1 (1: as good)
   Contest contest;                  ///< by how much the best pose is ahead, and of which
-  double mirrored = 0.0;  ///< how near the mirrored map comes, which cannot be right, 0..1; 0 where it was not asked
+  double mirrored = 0.0;  ///< how near the mirrored map comes, which cannot be right, 0..1; 0 where there was no pose
   PoseEvidence wide_evidence;
   PoseEvidence tight_evidence;
 };

@@ -19,10 +19,6 @@ constexpr double kFragmentArea = 20.0;       // [m^2]
 constexpr double kFragmentLeastArea = 10.0;  // less of it tells nothing [m^2]
 constexpr double kFragmentKappa = 0.8;
 constexpr double kFragmentUnexplained = 2.0;
-// A pose so clear that the mirrored map need not be asked.
-constexpr double kClearKappa = 0.8;        // of both maps' walls, ...
-constexpr double kClearKnown = 0.8;        // ... which must nearly all lie in the other map, ...
-constexpr double kClearUnexplained = 3.5;  // ... and every other pose must leave so many times as much unexplained
 // Where they agree only loosely.
 constexpr double kLeastLogOdds = -1.2;
 constexpr double kLeastMargin = 0.4;  // of the log odds over those of the best rival
@@ -106,11 +102,6 @@ void Rivals::join(const Rivals& others) {
   tight = std::max(tight, others.tight);
   map_tight = std::max(map_tight, others.map_tight);
   truth_tight = std::max(truth_tight, others.truth_tight);
-}
-
-bool beyond_doubt(const PoseEvidence& tight, const Rivals& other_poses) {
-  return least_kappa(tight) >= kClearKappa && std::min(tight.map.known, tight.truth.known) >= kClearKnown &&
-         unexplained(known_share(tight), tight_agreement(tight), other_poses.tight) >= kClearUnexplained;
 }
 
 Trust judge(const PoseEvidence& wide, const PoseEvidence& tight, const Rivals& rivals) {

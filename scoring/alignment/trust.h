@@ -29,9 +29,6 @@ struct Rivals {
   void join(const Rivals& others);
 };
 
-/// The maps agree so well, and at no other pose nearly, that the mirrored map need not be asked.
-bool beyond_doubt(const PoseEvidence& tight, const Rivals& other_poses);
-
 struct Trust {
   bool trusted = false;
   bool tight = false;  ///< the maps agree to the decimetre, not only to the metre

@@ -88,6 +88,22 @@ TEST(Strangers, AMapThatIsPerfectOneWayIsToldFromItsMirrorImage) {
       align(crop_to_known(moved(with_salt(salt, 0.03, 7), 0.4, 1.0, 2.0), 0.0), crop_to_known(salt, 0.0)).aligned);
 }
 
+/// An office of two equal wings: all but one wall of the mirror image lies right.
+TEST(Strangers, TheMirrorImageOfABuildingThatIsNearlySymmetricIsNamed) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    OccupancyGrid truth = maze_of(seed, 10, 6);
+    for (int y = 0; y < truth.height(); ++y)
+      for (int x = 0; x < truth.width() / 2; ++x) truth[{truth.width() - 1 - x, y}] = truth[{x, y}];
+    draw_wall(truth, {8.0, 1.8}, {9.0, 1.8}, 2);
+    draw_wall(truth, {9.6, 3.0}, {9.6, 4.2}, 2);
+    const Alignment found = align(crop_to_known(mirrored(truth), 0.0), crop_to_known(truth, 0.0));
+    EXPECT_FALSE(found.aligned);
+    EXPECT_NE(found.note.find("mirror image"), std::string::npos) << found.note;
+    EXPECT_GT(found.mirrored, 0.9);
+  }
+}
+
 TEST(Strangers, EveryMethodThatAlignsFindsTheSamePoseAndSaysWhich) {
   const OccupancyGrid truth = crop_to_known(maze_of(3011, 9, 7), 0.0);
   const OccupancyGrid map = crop_to_known(moved(with_gaps(truth, 20, 1), 0.9, 1.0, 4.0), 0.0);
