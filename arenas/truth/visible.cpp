@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "arenas/model/geometry.h"
 #include "arenas/model/patch_index.h"
 #include "arenas/model/raster.h"
 #include "arenas/model/risers.h"
@@ -20,7 +21,7 @@ constexpr double kThin = 1e-4;  ///< thickness given to an edge [m]
 constexpr double kPoses = 0.4;  ///< distance between the poses looked from [m]
 constexpr double kFull = 8.0;   ///< up to here neighbouring rays end in neighbouring cells [m]
 
-/// Cells with something the body cannot pass: solids at its height, and steps too high to climb.
+/// Cells with something the body cannot pass: solids at its height, steps too high to climb, floor too steep.
 Mask barriers(const Arena& arena, const GridFrame& frame, const Viewer& viewer) {
   Mask mask(frame);
   const PatchIndex floor(arena);
@@ -30,6 +31,13 @@ Mask barriers(const Arena& arena, const GridFrame& frame, const Viewer& viewer) 
       const double z = floor.floor_height(frame.centre(c));
       const double ground = std::isfinite(z) ? z : 0.0;
       if (solid.z_top > ground + viewer.climbable_step && solid.z_bottom < ground + viewer.height) mask[c] = 1;
+    });
+  }
+  for (const FloorPatch& patch : arena.floor) {
+    if (std::hypot(patch.gx, patch.gy) <= std::tan(viewer.max_slope)) continue;
+    for_cells_crossed(frame, patch.outline, [&](Cell c) {
+      const TPoint2D p = frame.centre(c);
+      if (contains(patch.outline, p) && patch.height(p) >= floor.floor_height(p) - kThin) mask[c] = 1;
     });
   }
   for (const Riser& riser : risers(arena, viewer.climbable_step)) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "arenas/model/arena.h"
+#include "base/angle.h"
 #include "base/grid.h"
 
 namespace rubble::arenas {
@@ -11,6 +12,7 @@ struct Viewer {
   double height = 0.40;          ///< of the body with the laser [m]
   double climbable_step = 0.10;  ///< [m]
   double range = 4.0;            ///< of the level laser [m]
+  double max_slope = deg_to_rad(22.0);  ///< steeper floor it does not drive on (data sheet of the P3-AT: 40 %) [rad]
 };
 
 /// Where the robot's middle can stand, reached from the start: non-zero. Cells as those of `truth`.

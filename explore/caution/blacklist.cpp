@@ -31,6 +31,16 @@ int Blacklist::times_barred(const TPoint2D& p_map) const {
       std::count_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return holds(e.p_map, e.radius, p_map); }));
 }
 
+bool Blacklist::pardon_all(Stamp now) {
+  bool any = false;
+  for (Entry& e : entries_) {
+    if (e.until <= now) continue;
+    e.until = now;
+    any = true;
+  }
+  return any;
+}
+
 bool Blacklist::pardon(Stamp now) {
   bool any = false;
   for (Entry& e : entries_) {

@@ -21,6 +21,8 @@ class Blacklist {
   int times_barred(const mrpt::math::TPoint2D& p_map) const;
   /// Ends all bars that would end some day; says whether there was any in force.
   bool pardon(Stamp now);
+  /// Ends all bars, those for good as well; says whether there was any in force.
+  bool pardon_all(Stamp now);
 
  private:
   struct Entry {

@@ -62,6 +62,12 @@ int FeltObstacles::count(Stamp now) const {
       std::count_if(things_.begin(), things_.end(), [&](const Thing& thing) { return now < thing.until; }));
 }
 
+bool FeltObstacles::forget(Stamp now) {
+  const bool any = count(now) > 0;
+  for (Thing& thing : things_) thing.until = std::min(thing.until, now);
+  return any;
+}
+
 bool FeltObstacles::pardon(Stamp now) {
   bool any = false;
   for (Thing& thing : things_) {

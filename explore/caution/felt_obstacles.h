@@ -40,6 +40,8 @@ class FeltObstacles {
   /// lane beside it in a corridor; the next time things that are not certain are forgotten until they are felt again.
   /// Says whether anything changed.
   bool pardon(Stamp now);
+  /// Forgets everything until it is felt again; says whether anything counted.
+  bool forget(Stamp now);
 
  private:
   struct Thing {

@@ -27,12 +27,18 @@ constexpr double kArrivedReplan = 0.3;           ///< standing at the end of the
 constexpr double kCueAge = 1.2;                  ///< an unconfirmed cue younger than this is worth waiting for [s]
 constexpr double kDetour = 3.0;                  ///< way over distance where no way is known
 constexpr double kUnsure = 0.40;                 ///< a pose that errs by so much places no victim [m]
+constexpr double kWorthARound = 0.25;            ///< newly known floor that makes one more round worth while [m^2]
+constexpr int kBarrenRounds = 2;                 ///< rounds in a row that gain nothing end the mission
+constexpr double kDetourCost = 2.0;              ///< a frontier may cost so much more than the next viewpoint [m]
 constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
 constexpr double kSameTarget = 0.5;                     ///< [m]
 constexpr double kTurningRoom = 0.06;                   ///< [m]
 constexpr double kLongestTick = 0.2;                    ///< commands of longer ticks are taken to have ended [s]
 constexpr double kHeld = 0.5;                           ///< a tick so long: the robot was held, a device was away [s]
 constexpr double kPatience = 2.0;                       ///< then its motors may still be off for a while [s]
+constexpr double kLittleRoom = 0.01;                    ///< [m]
+constexpr double kPaper = 0.5;                          ///< what stands alone and is not wider may be paper [m]
+constexpr int kHomeTries = 6;                           ///< times that all that was felt is forgotten on the way home
 
 TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
 
@@ -49,6 +55,14 @@ std::string target_text(ExplorerState state, const Plan& plan) {
   std::array<char, 40> cost{};
   std::snprintf(cost.data(), cost.size(), ", cost %.1f m", plan.cost);
   return std::string("drives to ") + what + " at " + text(plan.target) + cost.data();
+}
+
+std::size_t known_cells(const Traversable& floor) {
+  std::size_t known = 0;
+  for (int y = 0; y < floor.cells.height(); ++y)
+    known += static_cast<std::size_t>(std::count_if(floor.cells.row(y), floor.cells.row(y) + floor.cells.width(),
+                                                    [](Occupancy o) { return o != Occupancy::Unknown; }));
+  return known;
 }
 
 double way_of(const Plan& plan) {
@@ -73,7 +87,8 @@ PaperExplorer::PaperExplorer(const robot::RobotModel& model, const PaperExplorer
       search_(config.victims),
       // The robot turns on the spot there, so its swing circle must be free, with room for stopping a little beside
       // it.
-      floor_search_(config.search, std::max(config.planner.transform.d_min, model.swing_radius()) + kTurningRoom),
+      floor_search_(config.search, std::max(config.planner.transform.d_min, model.swing_radius()) + kTurningRoom,
+                    model.swing_radius() + kLittleRoom),
       path_watch_(model),
       looking_(model, config.follower.turn_speed),
       tilt_(config.tilt),
@@ -187,7 +202,7 @@ Drive PaperExplorer::drive(const slam::Mapper& mapper) {
   check_path(mapper);
   const bool to_target = target_ && (state_ == ExplorerState::Driving || state_ == ExplorerState::Searching);
   if (to_target && attempts_.overdrawn(*target_, target_cost_, dt_)) {
-    if (state_ == ExplorerState::Searching) floor_search_.give_up_subject(last_floor_);
+    if (state_ == ExplorerState::Searching) floor_search_.give_up_subject(last_floor_, {now_, pose_});
     bar_target(*target_);
   }
   if (state_ == ExplorerState::Searching && follower_.arrived() && !looking_.active() &&
@@ -207,6 +222,7 @@ Drive PaperExplorer::drive(const slam::Mapper& mapper) {
 
 Traversable PaperExplorer::floor_now(const slam::Mapper& mapper, const std::vector<TPoint2D>& hits) const {
   Traversable floor = traversable(mapper.map(), config_.occupied_threshold);
+  if (pushing_) free_small_things(floor, kPaper);
   free_body(floor, pose_, model_.length, model_.width, 0.0);
   free_trail(floor, trail_, kTrailRadius);
   add_obstacles(floor, hits, kSameThing);
@@ -217,9 +233,18 @@ Traversable PaperExplorer::floor_now(const slam::Mapper& mapper, const std::vect
 
 Plan PaperExplorer::plan_on(const Traversable& floor) {
   if (state_ == ExplorerState::GoingHome) return plan_home(floor);
-  if (state_ == ExplorerState::Searching) return plan_search(floor);
-  return planner_.to_frontier(
-      floor, pose_, [this](const TPoint2D& p) { return blacklist_.barred(p, now_); }, target_);
+  const auto to_frontier = [&](const std::optional<TPoint2D>& previous) {
+    return planner_.to_frontier(
+        floor, pose_, [this](const TPoint2D& p) { return blacklist_.barred(p, now_); }, previous);
+  };
+  if (state_ == ExplorerState::Driving) return to_frontier(target_);
+  Plan frontier = to_frontier(std::nullopt);
+  Plan search = plan_search(floor);
+  search.frontier_left = frontier.frontier_left;
+  if (!frontier.found || (search.found && frontier.cost > search.cost + kDetourCost)) return search;
+  note("a frontier has come into reach");
+  state_ = ExplorerState::Driving;
+  return frontier;
 }
 
 /// To the start, or as near to it as can be reached.
@@ -301,6 +326,7 @@ void PaperExplorer::visited_in_vain(const TPoint2D& where) {
 void PaperExplorer::nothing_left() {
   if (looking_.active()) return;
   if (state_ == ExplorerState::Searching) return finish_searching();
+  if (state_ == ExplorerState::Driving && frontiers_done_) return finish_exploring();
   if (looks_in_vain_ == 0 || (failed_plans_ < 2 && looks_in_vain_ < 2)) {
     ++looks_in_vain_;
     return look_around(kLookTurn, false);
@@ -314,7 +340,19 @@ void PaperExplorer::nothing_left() {
       return;
     }
   }
-  if (state_ == ExplorerState::GoingHome) return finish(MissionEnd::Explored, "no way home is left");
+  if (!pushing_ && (frontier_left_ > 0 || state_ == ExplorerState::GoingHome)) {
+    pushing_ = true;
+    note("nothing else can be reached: small things that stand alone are pushed aside");
+    plan_forced_ = true;
+    return;
+  }
+  if (state_ == ExplorerState::GoingHome) {
+    if (home_tries_ >= kHomeTries || !felt_.forget(now_)) return finish(MissionEnd::Explored, "no way home is left");
+    ++home_tries_;
+    note("no way home: all that was felt is forgotten");
+    plan_forced_ = true;
+    return;
+  }
   finish_exploring();
 }
 
@@ -323,7 +361,9 @@ void PaperExplorer::finish_exploring() {
   if (frontier_left_ == 1) why += " (1 frontier cannot be reached)";
   if (frontier_left_ > 1) why += " (" + std::to_string(frontier_left_) + " frontiers cannot be reached)";
   reason_ = why;
-  note(why);
+  if (!frontiers_done_) note(why);
+  frontiers_done_ = true;
+  pushing_ = false;
   plan_forced_ = true;
   if (floor_search_.on()) {
     state_ = ExplorerState::Searching;
@@ -332,7 +372,32 @@ void PaperExplorer::finish_exploring() {
   finish_searching();
 }
 
+/// What could not be reached or seen may be had from another side, or when the map has changed: as long as that gains
+/// something and time is left, all of it is tried once more.
+bool PaperExplorer::another_round() {
+  const std::size_t known = known_cells(last_floor_);
+  const double cell = last_floor_.frame().resolution;
+  const double gained = known > known_then_ ? static_cast<double>(known - known_then_) * cell * cell : 0.0;
+  const bool barren = gained < kWorthARound && search_.reports().size() <= victims_then_;
+  barren_rounds_ = barren ? barren_rounds_ + 1 : 0;
+  known_then_ = known;
+  victims_then_ = search_.reports().size();
+  if (barren_rounds_ >= kBarrenRounds) return false;
+  const bool barred = blacklist_.pardon_all(now_);
+  const bool felt = felt_.pardon(now_);
+  const bool given_up = floor_search_.reconsider(last_floor_);
+  if (!barred && !felt && !given_up) return false;
+  note("round " + std::to_string(++rounds_) + ": what could not be reached or seen is tried again");
+  state_ = ExplorerState::Driving;
+  frontiers_done_ = false;
+  failed_plans_ = looks_in_vain_ = pardons_ = 0;
+  looked_from_.reset();
+  plan_forced_ = true;
+  return true;
+}
+
 void PaperExplorer::finish_searching() {
+  if (another_round()) return;
   const std::string why = state_ == ExplorerState::Searching ? "all visible floor searched" : "";
   if (!config_.return_home) return finish(MissionEnd::Explored, why);
   go_home(why);

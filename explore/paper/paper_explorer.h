@@ -68,6 +68,7 @@ class PaperExplorer : public Explorer {
   void nothing_left();
   void finish_exploring();
   void finish_searching();
+  bool another_round();
   void finish(MissionEnd end, const std::string& why);
   void go_home(const std::string& why);
   bool must_turn_back();
@@ -132,6 +133,13 @@ class PaperExplorer : public Explorer {
   int failed_plans_ = 0;
   int looks_in_vain_ = 0;
   int pardons_ = 0;
+  bool pushing_ = false;  ///< small things that stand alone are pushed aside
+  int home_tries_ = 0;
+  bool frontiers_done_ = false;   ///< this round's; what comes into reach later is a detour of the search
+  int rounds_ = 1;                ///< of exploring and searching, this one included
+  int barren_rounds_ = 0;         ///< that gained nothing, in a row
+  std::size_t known_then_ = 0;    ///< cells, at the end of the last round
+  std::size_t victims_then_ = 0;  ///< likewise
 
   ExplorerState after_escape_ = ExplorerState::Driving;
   std::optional<TPoint2D> stuck_place_;

@@ -176,6 +176,37 @@ void add_obstacles(Traversable& floor, const std::vector<TPoint2D>& points, doub
   for (const Cell c : news) floor.obstacle[c] = 1;
 }
 
+bool free_small_things(Traversable& floor, double extent) {
+  const int width = floor.cells.width(), height = floor.cells.height();
+  const int gap = static_cast<int>(std::lround(kLoneRadius / std::max(floor.frame().resolution, 1e-9)));
+  const int most = static_cast<int>(std::lround(extent / std::max(floor.frame().resolution, 1e-9)));
+  Grid<std::uint8_t> visited(floor.frame());
+  bool any = false;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      if (floor.cells[{x, y}] != Occupancy::Occupied || visited[{x, y}] != 0) continue;
+      visited[{x, y}] = 1;
+      std::vector<Cell> thing{{x, y}};
+      Box box{{x, y}, {x, y}};
+      for (std::size_t next = 0; next < thing.size(); ++next)
+        for (int v = std::max(0, thing[next].y - gap); v <= std::min(height - 1, thing[next].y + gap); ++v)
+          for (int u = std::max(0, thing[next].x - gap); u <= std::min(width - 1, thing[next].x + gap); ++u) {
+            if (floor.cells[{u, v}] != Occupancy::Occupied || visited[{u, v}] != 0) continue;
+            visited[{u, v}] = 1;
+            thing.push_back({u, v});
+            box = {{std::min(box.low.x, u), std::min(box.low.y, v)},
+                   {std::max(box.high.x, u), std::max(box.high.y, v)}};
+          }
+      if (box.high.x - box.low.x >= most || box.high.y - box.low.y >= most) continue;
+      for (const Cell c : thing) {
+        floor.cells[c] = Occupancy::Free;
+        floor.obstacle[c] = 0;
+      }
+      any = true;
+    }
+  return any;
+}
+
 void measure_clearance(Traversable& floor, double cap) { floor.clearance = distance_transform(floor.obstacle, cap); }
 
 }  // namespace rubble::explore

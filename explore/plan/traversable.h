@@ -39,6 +39,10 @@ void free_trail(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& tra
 /// of the map is taken for that obstacle, displaced by the error of the pose, and left out.
 void add_obstacles(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& points, double near);
 
+/// Makes free what stands alone and is small, no wider than `extent` [m] and nothing else within 0.15 m: paper that
+/// can be pushed aside, as a rule. Says whether there was any.
+bool free_small_things(Traversable& floor, double extent);
+
 /// Fills the clearance from the obstacles, capped at `cap` [m].
 void measure_clearance(Traversable& floor, double cap);
 

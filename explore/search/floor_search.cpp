@@ -13,7 +13,7 @@ using mrpt::math::TPose2D;
 constexpr double kLookPeriod = 0.35;            ///< [s]
 constexpr double kTurnRate = deg_to_rad(40.0);  ///< turning faster the sensors see too little [rad/s]
 constexpr double kFacing = deg_to_rad(8.0);     ///< [rad]
-constexpr double kSubjectRadius = 0.25;         ///< given up together with a place that cannot be seen [m]
+constexpr double kSubjectRadius = 0.15;         ///< given up together with a place that cannot be seen [m]
 
 }  // namespace
 
@@ -26,11 +26,23 @@ bool FloorSearch::look(const Traversable& floor, const TPose2D& T_map_base, doub
 }
 
 void FloorSearch::follow(const Traversable& floor, const slam::Mapper& mapper) {
+  for (Anchor& look : looks_) look.follow(mapper);
+  for (GivenUp& place : given_up_) place.anchor.follow(mapper);
+  look_again(floor);
+}
+
+void FloorSearch::look_again(const Traversable& floor) {
   searched_.clear();
-  for (Anchor& look : looks_) {
-    look.follow(mapper);
-    searched_.look(floor, look.T_map_base);
-  }
+  for (const Anchor& look : looks_) searched_.look(floor, look.T_map_base);
+  for (const GivenUp& place : given_up_)
+    searched_.give_up(floor, place.anchor.T_map_base.composePoint(place.p_base), kSubjectRadius, place.faces);
+}
+
+bool FloorSearch::reconsider(const Traversable& floor) {
+  if (given_up_.empty()) return false;
+  given_up_.clear();
+  look_again(floor);
+  return true;
 }
 
 bool FloorSearch::subject_seen(const Traversable& floor) const {
@@ -39,13 +51,14 @@ bool FloorSearch::subject_seen(const Traversable& floor) const {
   return (searched_.missing(floor, c) & subject_faces_) == 0;
 }
 
-void FloorSearch::give_up_subject(const Traversable& floor) {
+void FloorSearch::give_up_subject(const Traversable& floor, const Anchor& here) {
+  given_up_.push_back({here, here.T_map_base.inverseComposePoint(subject_), subject_faces_});
   searched_.give_up(floor, subject_, kSubjectRadius, subject_faces_);
 }
 
 std::vector<Source> FloorSearch::sources(const Traversable& floor,
                                          const std::function<std::optional<double>(const TPoint2D&)>& head_start) {
-  views_ = viewpoints(floor, searched_, config_, room_);
+  views_ = viewpoints(floor, searched_, config_, room_, tight_);
   std::vector<Source> sources;
   for (const Viewpoint& view : views_) {
     if (const std::optional<double> start = head_start(floor.cells.centre(view.cell)))
@@ -83,7 +96,7 @@ bool FloorSearch::dwelling(const Traversable& floor, const TPose2D& T_map_base, 
   dwell_until_ = Stamp::never();
   dwell_over_ = true;
   searched_.look(floor, T_map_base);
-  if (!subject_seen(floor)) give_up_subject(floor);
+  if (!subject_seen(floor)) give_up_subject(floor, {now, T_map_base});
   return false;
 }
 

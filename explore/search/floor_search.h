@@ -14,8 +14,10 @@ namespace rubble::explore {
 /// The search of the mapped floor for victims: what was looked at, from where to look next, and holding still there.
 class FloorSearch {
  public:
-  /// `room`: clearance a viewpoint needs, for the robot turns on the spot there [m].
-  FloorSearch(const SearchConfig& config, double room) : config_(config), room_(room), searched_(config) {}
+  /// `room`: clearance a viewpoint should have, for the robot turns on the spot there [m]; `tight`: where none has,
+  /// this.
+  FloorSearch(const SearchConfig& config, double room, double tight)
+      : config_(config), room_(room), tight_(tight), searched_(config) {}
 
   bool on() const { return config_.on; }
 
@@ -26,8 +28,10 @@ class FloorSearch {
   bool subject_seen(const Traversable& floor) const;
   /// The mapper corrected its past: all looks are repeated from where they were made as is known now.
   void follow(const Traversable& floor, const slam::Mapper& mapper);
-  /// Counts the place to face and what is around it as searched, seen or not.
-  void give_up_subject(const Traversable& floor);
+  /// Counts the place to face and what is around it as searched, seen or not, until it is reconsidered.
+  void give_up_subject(const Traversable& floor, const Anchor& here);
+  /// Everything that was given up is to be looked at again; says whether there was anything.
+  bool reconsider(const Traversable& floor);
 
   /// The cells from which something unsearched can be seen, each with the head start that `head_start` gives to its
   /// centre; without one it is left out.
@@ -50,13 +54,23 @@ class FloorSearch {
   bool staring(bool undecided, Stamp now);
 
  private:
+  /// A place that could not be looked at, kept relative to where the robot gave it up.
+  struct GivenUp {
+    Anchor anchor;
+    mrpt::math::TPoint2D p_base;
+    Faces faces;
+  };
+  void look_again(const Traversable& floor);
+
   SearchConfig config_;
   double room_;
+  double tight_;
   SearchedArea searched_;
   std::vector<Viewpoint> views_;
   mrpt::math::TPoint2D subject_;
   Faces subject_faces_ = 0;
   std::vector<Anchor> looks_;
+  std::vector<GivenUp> given_up_;
   Stamp next_look_ = Stamp::never();
   Stamp dwell_until_ = Stamp::never();
   Stamp stare_until_ = Stamp::never();

@@ -12,7 +12,8 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr int kStride = 6;                             ///< subjects of a cluster are so many cells apart
+constexpr int kStride = 6;                             ///< subjects on open floor are so many cells apart
+constexpr int kFaceStride = 4;                         ///< subjects along a wall likewise
 constexpr int kDirections = 16;                        ///< viewpoints tried around a subject
 constexpr double kDistances[] = {0.5, 0.8, 1.1, 1.4};  ///< [m]
 
@@ -191,7 +192,7 @@ Grid<Faces> SearchedArea::unsearched(const Traversable& floor) const {
 }
 
 std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& searched, const SearchConfig& config,
-                                  double d_min) {
+                                  double room, double tight) {
   std::vector<Cell> offsets;
   for (const double distance : kDistances)
     for (int k = 0; k < kDirections && distance <= config.range; ++k) {
@@ -205,14 +206,19 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
       const Cell subject = cluster[i];
       const Faces missing = searched.missing(floor, subject);
       // Every few cells, and the first one of each cluster, so that none goes without.
-      if (i != 0 && (subject.x % kStride != 0 || subject.y % kStride != 0)) continue;
-      for (const Cell offset : offsets) {
-        const Cell c{subject.x + offset.x, subject.y + offset.y};
-        if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free || floor.clearance[c] < d_min) continue;
-        const double way = length(offset.x, offset.y);
-        const auto faces = static_cast<Faces>(missing & faces_along(-offset.x / way, -offset.y / way));
-        if (faces == 0) continue;
-        if (in_sight(floor, c, subject)) found.push_back({c, floor.cells.centre(subject), faces});
+      const bool on_face = (missing & ~kFloor) != 0 && (subject.x + subject.y) % kFaceStride == 0;
+      if (i != 0 && !on_face && (subject.x % kStride != 0 || subject.y % kStride != 0)) continue;
+      const std::size_t before = found.size();
+      for (const double d_min : {room, tight}) {
+        for (const Cell offset : offsets) {
+          const Cell c{subject.x + offset.x, subject.y + offset.y};
+          if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free || floor.clearance[c] < d_min) continue;
+          const double way = length(offset.x, offset.y);
+          const auto faces = static_cast<Faces>(missing & faces_along(-offset.x / way, -offset.y / way));
+          if (faces == 0) continue;
+          if (in_sight(floor, c, subject)) found.push_back({c, floor.cells.centre(subject), faces});
+        }
+        if (found.size() > before) break;
       }
     }
   return found;

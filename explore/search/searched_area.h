@@ -72,9 +72,10 @@ struct Viewpoint {
   Faces faces = 0;               ///< what can be inspected of it from there
 };
 
-/// Viewpoints with at least `d_min` clearance for every unsearched cluster of free floor, in raster order.
+/// Viewpoints with at least `room` clearance for every unsearched cluster of free floor, in raster order; where a place
+/// has none, as before a victim's box in a corridor, with at least `tight`.
 std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& searched, const SearchConfig& config,
-                                  double d_min);
+                                  double room, double tight);
 
 /// True when all cells between two cells of the floor are free (the last one included).
 bool in_sight(const Traversable& floor, Cell from, Cell to);

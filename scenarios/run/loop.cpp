@@ -46,6 +46,10 @@ void Loop::drive(robot::Robot& robot, Core& core, LoopEnd& end) {
       saved = inputs->now;
       save(core, end.sim_s);
     }
+    if (const std::string why = hooks_.over ? hooks_.over() : std::string(); !why.empty()) {
+      end.reason = why;
+      return;
+    }
     if (core.finished()) {
       end.reason = core.reason();
       return;

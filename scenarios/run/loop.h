@@ -22,6 +22,7 @@ struct Progress {
 /// What a loop asks and tells while it goes. Each may be empty.
 struct LoopHooks {
   std::function<bool()> interrupted;                      ///< asked each tick; true ends the loop
+  std::function<std::string()> over;                      ///< asked each tick; says why the run is over, else nothing
   std::function<double()> share;                          ///< how far the robot is, 0..1
   std::function<void(const robot::Commands&)> each_tick;  ///< what the core commanded
   std::function<void()> each_second;                      ///< of run time, and at the end

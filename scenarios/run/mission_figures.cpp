@@ -219,14 +219,30 @@ int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model) 
   return static_cast<int>(std::count_if(arena.victims.begin(), arena.victims.end(), seen_from));
 }
 
+double visible_share(const arenas::Arena& arena, const robot::RobotModel& model) {
+  const OccupancyGrid truth = arenas::truth_map(arena);
+  const OccupancyGrid visible = arenas::visible_truth(arena, truth, viewer_of(model));
+  const auto free = [](const OccupancyGrid& grid) {
+    return std::count(grid.cells().begin(), grid.cells().end(), Occupancy::Free);
+  };
+  const auto all = free(truth);
+  return all == 0 ? 0.0 : static_cast<double>(free(visible)) / static_cast<double>(all);
+}
+
+bool off_the_floor(const arenas::Arena& arena, const TPose2D& T_arena_base) {
+  return !std::isfinite(arenas::floor_height(arena, {T_arena_base.x, T_arena_base.y}));
+}
+
 scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajectory& truth,
                                         const robot::RobotModel& model, const Core& core) {
   scoring::MissionFigures out;
   out.end_code = core.explorer() != nullptr ? code_of(core.explorer()->end()) : "time";
+  if (!truth.empty() && off_the_floor(arena, truth.back().pose)) out.end_code = "fell";
   out.drive = drive_figures(arena, truth, model);
   out.stalls = static_cast<std::uint64_t>(core.stalls());
   out.area_per_min = core.area_per_minute();
   out.victims_visible = static_cast<std::uint64_t>(visible_victims(arena, model));
+  out.visible_share = visible_share(arena, model);
   return out;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <mrpt/math/TPose2D.h>
+
 #include <string>
 
 #include "arenas/model/arena.h"
@@ -17,6 +19,12 @@ scoring::DriveFigures drive_figures(const arenas::Arena& arena, const Trajectory
 
 /// How many victims could be looked at by a camera from where the robot's middle can get.
 int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model);
+
+/// What of an arena's floor the laser can see from where the robot can get, 0 to 1.
+double visible_share(const arenas::Arena& arena, const robot::RobotModel& model);
+
+/// Whether no floor is below the robot's middle: it drove over the rim.
+bool off_the_floor(const arenas::Arena& arena, const mrpt::math::TPose2D& T_arena_base);
 
 /// How the mission went: what the truth and the explorer say.
 scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajectory& truth,

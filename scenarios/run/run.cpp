@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "arenas/files/arena_file.h"
+#include "arenas/model/patch_index.h"
 #include "arenas/truth/truth_map.h"
 #include "arenas/truth/visible.h"
 #include "base/digest.h"
@@ -180,6 +181,12 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   LoopHooks hooks = hooks_of(options);
   hooks.share = [&] {
     return simulated.truth().empty() ? 0.0 : simulated.truth().back().stamp.seconds() / scenario.time_limit;
+  };
+  const arenas::PatchIndex floor(arena);
+  hooks.over = [&]() -> std::string {
+    if (simulated.truth().empty()) return "";
+    const mrpt::math::TPose2D& pose = simulated.truth().back().pose;
+    return std::isfinite(floor.floor_height({pose.x, pose.y})) ? "" : "the robot drove off the floor";
   };
   hooks.each_second = [&] { folder.append_truth(simulated.truth()); };
   LoopEnd end;

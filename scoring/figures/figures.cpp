@@ -189,6 +189,8 @@ std::vector<Figure> make_table() {
       {"area_per_min", "area a minute [m2]", "", 1, kUp, 0.5, kPlain, of_mission(&MissionFigures::area_per_min)},
       {"victims_visible", "victims that can be seen", "", 0, kNone, 0.0, kPlain,
        of_mission(&MissionFigures::victims_visible)},
+      {"visible_share", "floor that can be seen", "%", 3, kNone, 0.0, kPlain,
+       of_mission(&MissionFigures::visible_share)},
       {"sim_s", "time covered", "s", 1, kNone, 0.0, kShown, of_run(&RunFigures::sim_s)},
       {"wall_s", "time taken", "s", 1, kDown, 0.0, kShown | kMachine, of_machine(&MachineFigures::wall_s)},
       {"real_time_factor", "times real time", "", 0, kUp, 0.0, kShown | kMachine, real_time_factor},

@@ -30,6 +30,17 @@ TEST(Blacklist, PardonsWhatWouldExpireAndNothingElse) {
   EXPECT_FALSE(list.pardon(now)) << "nothing is left to pardon";
 }
 
+TEST(Blacklist, PardonOfAllEndsBarsForGoodAsWell) {
+  const Stamp now = Stamp::from_seconds(10.0);
+  Blacklist list;
+  list.bar_for_good({1.0, 0.0}, 0.5);
+  EXPECT_FALSE(list.pardon(now));
+  EXPECT_TRUE(list.barred({1.0, 0.0}, now));
+  EXPECT_TRUE(list.pardon_all(now));
+  EXPECT_FALSE(list.barred({1.0, 0.0}, now));
+  EXPECT_FALSE(list.pardon_all(now)) << "nothing is left to pardon";
+}
+
 TEST(MotionWatch, ARobotThatMovesAsToldIsNotStuck) {
   MotionWatch watch;
   for (int i = 0; i < 1000; ++i) EXPECT_FALSE(watch.stuck({0.4 * 0.02 * i, 0.0, 0.0}, {0.4, 0.0}, false, 0.02));

@@ -76,6 +76,17 @@ TEST(FeltObstacles, PardonLeavesALaneBesideAThingBeforeItForgetsIt) {
   EXPECT_FALSE(felt.pardon(at(3.0)));
 }
 
+TEST(FeltObstacles, ForgettingTakesTheCertainOnesToo) {
+  const FeltConfig config;
+  FeltObstacles felt(config);
+  for (int i = 0; i < config.certain; ++i) felt.feel({at(0.0), TPose2D{}}, false, kModel);
+  EXPECT_TRUE(felt.forget(at(1.0)));
+  EXPECT_EQ(felt.count(at(1.0)), 0);
+  EXPECT_FALSE(felt.forget(at(1.0)));
+  felt.feel({at(2.0), TPose2D{}}, false, kModel);
+  EXPECT_EQ(felt.count(at(3.0)), 1);
+}
+
 TEST(FeltObstacles, PardonSparesWhatIsCertain) {
   FeltConfig config;
   FeltObstacles felt(config);

@@ -140,5 +140,25 @@ TEST(Traversable, FreshHitsNearAnObstacleAreThatObstacle) {
   EXPECT_EQ(floor.obstacle[floor.cells.cell(fresh)], 1);
 }
 
+TEST(Traversable, OnlySmallThingsThatStandAloneAreMadeFree) {
+  Traversable floor = traversable(
+      drawn({"                    ", " #################  ", " ................#  ", " ................#  ",
+             " ................#  ", " ...##...........#  ", " ...##..........##  ", " ...............##  ",
+             " ................#  ", " .##########.....#  ", " ................#  ", "                    "}));
+  const OccupancyGrid before = floor.cells;
+  EXPECT_TRUE(free_small_things(floor, 0.3));
+  int freed = 0;
+  for (int y = 0; y < before.height(); ++y)
+    for (int x = 0; x < before.width(); ++x) {
+      if (floor.cells[{x, y}] == before[{x, y}]) continue;
+      ++freed;
+      EXPECT_TRUE(x == 4 || x == 5) << x << " " << y;
+      EXPECT_EQ((floor.obstacle[{x, y}]), 0);
+      EXPECT_EQ((floor.cells[{x, y}]), Occupancy::Free);
+    }
+  EXPECT_EQ(freed, 4) << "the thing beside the wall and the long one stay";
+  EXPECT_FALSE(free_small_things(floor, 0.3));
+}
+
 }  // namespace
 }  // namespace rubble::explore

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "base/angle.h"
 #include "explore/search/victim_search.h"
 
@@ -63,7 +65,7 @@ TEST(SearchedArea, EveryViewpointSeesTheFaceItIsFor) {
   const Traversable floor = room();
   const SearchConfig config;
   SearchedArea area{config};
-  const std::vector<Viewpoint> views = viewpoints(floor, area, config, 0.4);
+  const std::vector<Viewpoint> views = viewpoints(floor, area, config, 0.4, 0.4);
   ASSERT_FALSE(views.empty());
   for (const Viewpoint& view : views) {
     SearchedArea fresh{config};
@@ -72,6 +74,39 @@ TEST(SearchedArea, EveryViewpointSeesTheFaceItIsFor) {
     EXPECT_EQ(fresh.missing(floor, floor.cells.cell(view.subject)) & view.faces, 0)
         << "from " << from.x << " " << from.y << " to " << view.subject.x << " " << view.subject.y;
   }
+}
+
+/// A corridor along x, 1.2 m wide, with a box of 0.4 m at its north wall that opens to the south.
+Traversable corridor_with_box() {
+  GridFrame frame;
+  frame.width = 84;
+  frame.height = 30;
+  frame.resolution = 0.05;
+  OccupancyGrid grid(frame, Occupancy::Unknown);
+  for (int x = 1; x < 83; ++x)
+    for (int y = 2; y < 28; ++y) grid[{x, y}] = y == 2 || y == 27 ? Occupancy::Occupied : Occupancy::Free;
+  for (int y = 19; y < 27; ++y) grid[{36, y}] = grid[{45, y}] = Occupancy::Occupied;
+  Traversable floor = traversable(std::move(grid));
+  measure_clearance(floor, 1.2);
+  return floor;
+}
+
+TEST(SearchedArea, ABoxInACorridorHasAViewpointIfOnlyATightOne) {
+  const Traversable floor = corridor_with_box();
+  const SearchConfig config;
+  SearchedArea area{config};
+  const Cell back{40, 26};
+  ASSERT_NE(area.missing(floor, back) & kNorthFace, 0);
+  const auto sees_back = [&](const std::vector<Viewpoint>& views) {
+    return std::any_of(views.begin(), views.end(), [&](const Viewpoint& view) {
+      SearchedArea fresh{config};
+      const TPoint2D from = floor.cells.centre(view.cell);
+      look_twice(fresh, floor, {from.x, from.y, std::atan2(view.subject.y - from.y, view.subject.x - from.x)});
+      return (fresh.missing(floor, back) & kNorthFace) == 0 && view.subject.y > 19 * 0.05;
+    });
+  };
+  EXPECT_FALSE(sees_back(viewpoints(floor, area, config, 0.46, 0.46)));
+  EXPECT_TRUE(sees_back(viewpoints(floor, area, config, 0.46, 0.38)));
 }
 
 TEST(SearchedArea, TheRecordGrowsWithTheMap) {
