@@ -13,7 +13,7 @@ using mrpt::math::TPose2D;
 constexpr double kLookPeriod = 0.35;            ///< [s]
 constexpr double kTurnRate = deg_to_rad(40.0);  ///< turning faster the sensors see too little [rad/s]
 constexpr double kFacing = deg_to_rad(8.0);     ///< [rad]
-constexpr double kSubjectRadius = 0.15;         ///< given up together with a place that cannot be seen [m]
+constexpr double kSubjectRadius = 0.25;         ///< given up together with a place that cannot be seen [m]
 
 }  // namespace
 

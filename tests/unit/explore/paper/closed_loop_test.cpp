@@ -51,7 +51,7 @@ int pallets_seen(const slam::CountMap& map, const Maze& maze) {
 }
 
 Outcome explore_maze(const Maze& maze, const PaperExplorerConfig& config, const slam::PaperConfig& mapping,
-                     double time_limit = 900.0) {
+                     double time_limit = 1200.0) {
   const robot::RobotModel model;
   MazeRobot robot(maze, model);
   slam::PaperMapper mapper(model, mapping, 1);
