@@ -19,7 +19,7 @@ class SweepFile : public FolderTest {
   void SetUp() override {
     FolderTest::SetUp();
     write("small.yaml", "name: small\narena: {generate: {columns: 3, rows: 3}}\nmapper: {kind: paper}\n");
-    write("other.yaml", "name: other\narena: {generate: {columns: 4, rows: 3}}\n");
+    write("other.yaml", "name: other\narena: {generate: {columns: 4, rows: 3}}\nmapper: {kind: paper}\n");
   }
   Sweep sweep(const std::string& text) const { return load_sweep(write("sweep.yaml", text)); }
   std::vector<Job> jobs(const std::string& text) const { return expand(sweep(text), "code"); }
