@@ -152,14 +152,13 @@ Colour background(Occupancy map, Occupancy truth) {
 void draw_heat_bar(Canvas& canvas, double tau) {
   const int y = canvas.map_rows() + kStrip / 2;
   int x = 10;
-  for (const auto& [words, only] : {std::pair{"map's walls off the truth's: 0", kMapOnly},
-                                    std::pair{"truth's walls off the map's: 0", kTruthOnly}}) {
+  for (const auto& [words, only] :
+       {std::pair{"map's wall off: 0", kMapOnly}, std::pair{"truth's wall off: 0", kTruthOnly}}) {
     text(canvas, words, x, y + 5);
     x += text_width(words) + 8;
     for (int i = 0; i < 60; ++i)
       cv::line(canvas.image, {x + i, y - 6}, {x + i, y + 6}, cv::Scalar(heat(i / 59.0, only)));
-    const std::string most =
-        cv::format("%.2g m or more: ", tau) + std::string(only == kMapOnly ? "phantom" : "missing");
+    const std::string most = cv::format("%.2g m: ", tau) + std::string(only == kMapOnly ? "phantom" : "missing");
     text(canvas, most, x + 66, y + 5);
     x += 66 + text_width(most) + 16;
   }
