@@ -222,6 +222,7 @@ ordered_json score_of(const Core& core, const robot::RealRobot& robot, double se
 
 RunReport drive(const RobotFile& file, const DriveOptions& options) {
   const auto start = Clock::now();
+  file.settings.mapper.require_permission();
   RunFolder folder(options.out.empty() ? next_run_folder("runs", file.settings.name, file.settings.seed) : options.out,
                    options.replace);
   folder.write("scenario.yaml", resolved_yaml(file.settings));
@@ -238,11 +239,15 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     robot::RecordingRobot recorded(real, folder.file("log.rlog"), resolved_yaml(file.settings));
     Driver driver(file, options, folder, real, core);
     try {
-      report.end = driver.run(recorded);
-    } catch (const robot::DeviceLost& lost) {
+      try {
+        report.end = driver.run(recorded);
+      } catch (const robot::DeviceLost& lost) {
+        report.failure = report.end = lost.what();
+      }
+      core.finish();
+    } catch (const slam::MapperLost& lost) {
       report.failure = report.end = lost.what();
     }
-    core.finish();
     report.interrupted = driver.interrupted();
     recorded.flush();
     report.score = score_of(core, real, driver.seconds(), report.end, start);

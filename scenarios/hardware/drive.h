@@ -41,8 +41,8 @@ struct DriveOptions {
 };
 
 /// Drives a real robot: explores (or lets somebody drive) and maps. The run folder is that of run_scenario(), with all
-/// raw bytes of the devices in devices.bytes. Throws InputError, RunError; a robot that is lost on the way is told in
-/// the report, its folder is complete.
+/// raw bytes of the devices in devices.bytes. Throws InputError, RunError; a robot or mapper that is lost on the way is
+/// told in the report, its folder is complete.
 RunReport drive(const RobotFile& file, const DriveOptions& options);
 
 }  // namespace rubble::scenarios

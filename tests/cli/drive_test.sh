@@ -67,6 +67,32 @@ sys.exit(0 if driven >= simulated - 0.05 else 1)
 PY
 "$rubble" replay driven >replay.txt || fail "the driven run does not replay to the same bits: $(tail -3 replay.txt)"
 
+# A mapper of the user's whose program dies on the way, or when all is said: exit 4, one line, the folder complete. A
+# command of the robot file runs only when the user says so, and no folder is made before.
+sed 's#^time_limit_s:.*#&\nmapper: {kind: process, command: "touch ran"}#' "$robot" >evil.yaml
+expect_exit 3 "runs only with --allow-commands" "$rubble" drive evil.yaml --out evil
+[[ -e ran || -e evil ]] && fail "a command of a robot file ran, or a folder was made for it"
+answer='while read -r word rest; do case $word in end)'
+dies_early="echo ready 1; n=0; $answer n=\$((n+1)); [ \$n = 200 ] && exit 7; echo pose 0.25 0 0; echo end;; esac; done"
+dies_late="echo ready 1; $answer echo pose 0.25 0 0; echo end;; finish) exit 8;; esac; done"
+for death in early late; do
+  start_emulator
+  command=dies_$death
+  # shellcheck disable=SC2086
+  "$rubble" drive "$robot" $ports --map-only --time-limit 6 --out "lost_$death" --mapper-command "${!command}" \
+    >out.txt 2>err.txt
+  code=$?
+  stop_emulator
+  [[ $code == 4 ]] || fail "a drive whose mapper dies ($death) ended with $code: $(tail -3 err.txt)"
+  grep '^rubble: mapper' err.txt >said.txt
+  [[ $(wc -l <said.txt) == 1 ]] && grep -q "ended with exit code [78]" said.txt || fail "the mapper's death: $(cat said.txt)"
+  for file in log.rlog devices.bytes scenario.yaml mapper.log map.tif map.png score.json hashes.json; do
+    [[ -e lost_$death/$file ]] || fail "lost_$death/$file is missing"
+  done
+  grep -q '^[0-9.]* 0.25' "lost_$death/estimate.tum" || fail "the trajectory up to the death is lost"
+  [[ -e lost_$death/.partial ]] && fail "lost_$death is not closed"
+done
+
 # Ctrl-C: the robot is left at rest, its folder complete.
 start_emulator
 # shellcheck disable=SC2086
