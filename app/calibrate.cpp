@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/mapper_choice.h"
 #include "app/robot_options.h"
 #include "app/scenario_options.h"
 #include "app/terminal.h"
@@ -25,6 +26,7 @@ struct CalibrateArguments {
   std::string folder;  ///< of the drive
   bool force = false;
   std::vector<std::string> sets;
+  MapperChoice mapper;
   scenarios::CalibrationDriveConfig drive;
 };
 
@@ -73,7 +75,7 @@ std::string recorded_robot(const std::string& run) {
 int calibrate(const CalibrateArguments& arguments) {
   if (fs::exists(arguments.out) && !arguments.force)
     throw UsageError(arguments.out + ": exists already; give another --out, or --force to replace it");
-  const auto overrides = arguments.robot.with_ports(parse_sets(arguments.sets));
+  const auto overrides = with_mapper(arguments.mapper, arguments.robot.with_ports(parse_sets(arguments.sets)));
   std::string run = arguments.log;
   scenarios::RobotFile file;
   scenarios::RobotFile in_force;
@@ -85,7 +87,9 @@ int calibrate(const CalibrateArguments& arguments) {
     file = scenarios::load_robot_file(named ? find_robot(arguments.robot.robot) : recorded, overrides);
     in_force = recorded.empty() ? file : scenarios::load_robot_file(recorded);
   } else {
-    in_force = file = scenarios::load_robot_file(find_robot(arguments.robot.robot), overrides);
+    file = scenarios::load_robot_file(find_robot(arguments.robot.robot), overrides);
+    permit_command(arguments.mapper, overrides, file.settings);
+    in_force = file;
     Keyboard keyboard;
     scenarios::DriveOptions options = drive_options(keyboard, true);
     options.out = arguments.folder;
@@ -124,6 +128,8 @@ Command calibrate_command() {
             o.number("--speed", a->drive.speed, 0.05, 1.0, "[m/s]");
             o.number("--turn-rate", a->drive.turn_rate, 0.1, 3.0, "[rad/s]");
             o.excludes("--log", "--folder");
+            add_mapper(o, a->mapper);
+            o.excludes("--log", "--mapper-command");
             add_sets(o, a->sets);
             return [a] { return calibrate(*a); };
           }};

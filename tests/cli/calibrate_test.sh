@@ -8,6 +8,18 @@ expect_exit 2 "exists already" "$rubble" calibrate "$robot" --out there.yaml
 expect_exit 3 "nowhere" "$rubble" calibrate "$robot" --log nowhere --out new.yaml
 expect_exit 3 "did you mean" "$rubble" calibrate "$robot" --set devices.base.turn_skale=1 --out new.yaml
 
+# A command of the robot file runs only when the user says so; no folder is made before.
+sed 's#^time_limit_s:.*#&\nmapper: {kind: process, command: "touch ran"}#' "$robot" >evil.yaml
+expect_exit 3 "runs only with --allow-commands" "$rubble" calibrate evil.yaml --folder evil --out new.yaml
+[[ -e ran || -e evil ]] && fail "a command of a robot file ran, or a folder was made for it"
+ports="--urg pty:no1 --base pty:no2 --levelling pty:no3 --set safety.start_s=1"
+# shellcheck disable=SC2086
+"$rubble" calibrate evil.yaml $ports --allow-commands --folder allowed --out new.yaml >out.txt 2>err.txt
+[[ $? == 4 ]] || fail "calibrate does not take an allowed command: $(cat err.txt)"
+# shellcheck disable=SC2086
+"$rubble" calibrate "$robot" $ports --mapper-command "true" --folder typed --out new.yaml >out.txt 2>err.txt
+[[ $? == 4 ]] || fail "calibrate does not take a typed command: $(cat err.txt)"
+
 # A run that explores turns and drives enough in a flat arena; its truth: distance 1, laser as in the scenario.
 cat >flat.yaml <<YAML
 name: flat
