@@ -2,6 +2,7 @@
 // the mapper, and what lies inside a room stays there.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -100,6 +101,32 @@ const Folders& insides() {
   return table;
 }
 
+/// Wings of devices and of others' files, with those below them: who outside their room may include them (benchmarks
+/// and tests apart). The core and the simulator know a robot by its face alone.
+const std::map<std::string, Folders>& reserved() {
+  static const std::map<std::string, Folders> table = {
+      {"robot/drivers", {"scenarios", "app"}},
+      {"robot/emulators", {"scenarios", "app"}},
+      {"robot/protocols", {"scenarios", "app"}},
+      {"robot/logs/foreign",
+       {"scenarios", "app", "slam/peers"}},  // peers see MRPT's observations, as its logs hold them
+  };
+  return table;
+}
+
+bool lies_in(const std::string& folder, const std::string& above) {
+  return folder == above || folder.rfind(above + "/", 0) == 0;
+}
+
+/// Whether `folder`, of another room, may include a file of `included` as far as that one is reserved.
+bool is_let_in(const std::string& folder, const std::string& included) {
+  for (const auto& [wing, guests] : reserved()) {
+    if (!lies_in(included, wing)) continue;
+    return std::any_of(guests.begin(), guests.end(), [&](const std::string& guest) { return lies_in(folder, guest); });
+  }
+  return true;
+}
+
 std::string room_of(const std::string& folder) { return folder.substr(0, folder.find('/')); }
 
 /// The wing's row, or that of its room's kinds, or null.
@@ -121,7 +148,8 @@ std::string offence(const std::string& folder, const std::string& included) {
   if (rooms().count(room) == 0) return folder + " is not in the table of rooms";
   if (room != other) {
     if (rooms().at(room).count(other) == 0) return room + " must not know " + other;
-    if (room != "bench" && is_inside(included)) return included + " is an inside of " + other;
+    if (room != "bench" && (is_inside(included) || !is_let_in(folder, included)))
+      return included + " is an inside of " + other;
     return "";
   }
   if (folder == included || folder == room) return "";
@@ -221,6 +249,20 @@ TEST(IncludeDirection, APlantedWrongIncludeIsSeen) {
   EXPECT_EQ(offence("slam", "slam/paper"), "");
   EXPECT_EQ(offence("scoring/alignment", "scoring/league"), "scoring/alignment must not know scoring/league");
   EXPECT_EQ(offence("scoring/yours", "scoring"), "scoring/yours is not in the table of wings");
+}
+
+TEST(IncludeDirection, OnlyWhoRunsRobotsSeesTheirDevices) {
+  for (const char* wing : {"robot/drivers", "robot/drivers/scip", "robot/emulators", "robot/emulators/scip",
+                           "robot/protocols", "robot/logs/foreign"}) {
+    const std::string inside = std::string(wing) + " is an inside of robot";
+    for (const char* core : {"slam", "slam/robust", "explore", "explore/search", "sim", "sim/body"})
+      EXPECT_EQ(offence(core, wing), inside) << core;
+    for (const char* runs : {"scenarios/hardware", "scenarios/run", "app", "bench"})
+      EXPECT_EQ(offence(runs, wing), "") << runs << " and " << wing;
+  }
+  EXPECT_EQ(offence("slam/peers", "robot/logs/foreign"), "");
+  EXPECT_EQ(offence("slam/peers", "robot/drivers"), "robot/drivers is an inside of robot");
+  for (const char* face : {"robot", "robot/logs"}) EXPECT_EQ(offence("slam/robust", face), "");
 }
 
 TEST(IncludeDirection, ANewKindNeedsNoRowAndSeesOnlyWhatAllKindsSee) {
