@@ -16,7 +16,7 @@ foreach(room ${rubble_rooms})
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rubble
           FILES_MATCHING PATTERN "*.h"
           PATTERN "shipped" EXCLUDE PATTERN "sweeps" EXCLUDE PATTERN "pages" EXCLUDE
-          PATTERN "drivers" EXCLUDE PATTERN "emulators" EXCLUDE)
+          PATTERN "drivers" EXCLUDE PATTERN "emulators" EXCLUDE PATTERN "hardware" EXCLUDE)
 endforeach()
 install(TARGETS ${rubble_targets} rubble_geotiff_system EXPORT rubble ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT rubble NAMESPACE rubble:: DESTINATION ${rubble_package})
@@ -28,6 +28,6 @@ install(FILES ${CMAKE_BINARY_DIR}/rubble-config.cmake ${CMAKE_BINARY_DIR}/rubble
 
 install(TARGETS rubble RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS rubble_mrpt_devices LIBRARY DESTINATION lib/rubble)
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/scenarios ${CMAKE_SOURCE_DIR}/arenas DESTINATION ${CMAKE_INSTALL_DATADIR}/rubble
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/scenarios ${CMAKE_SOURCE_DIR}/arenas ${CMAKE_SOURCE_DIR}/robots DESTINATION ${CMAKE_INSTALL_DATADIR}/rubble
         FILES_MATCHING PATTERN "*.yaml" PATTERN "*.baseline.json")
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/rubble)

@@ -15,6 +15,17 @@ grep -rl "$source" prefix/lib/cmake && fail "the installed package points into t
 [[ -s run/score.json ]] || fail "it left no score"
 grep -q '^name: "yellow"' run/scenario.yaml || fail "it did not find the scenario that it ships"
 
+"$work/prefix/bin/rubble" drive --urg pty:no1 --base pty:no2 --levelling pty:no3 --set safety.start_s=1 --out driven \
+  >/dev/null 2>err.txt
+[[ $? == 4 ]] || fail "the installed program does not take the robot that it ships: $(tail -n 1 err.txt)"
+
+# Nothing that an installed header includes of ours was left at home.
+(cd prefix/include/rubble && grep -rhoE '^#include "[a-z_/0-9]+\.h"' . | sort -u | sed 's/.*"\(.*\)"/\1/') >included.txt
+[[ $(wc -l <included.txt) -gt 20 ]] || fail "the installed headers include only $(wc -l <included.txt) files"
+while read -r header; do
+  [[ -f prefix/include/rubble/$header ]] || fail "an installed header includes $header, which is not installed"
+done <included.txt
+
 cp -r "$source/examples/library" project
 cmake -S project -B project/build -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" >configure.txt 2>&1 ||
   fail "configure: $(tail -n 5 configure.txt)"
