@@ -22,11 +22,18 @@ static_assert(kBucketWidth <= kStraight);
 
 unsigned lowest_bit(unsigned word) { return static_cast<unsigned>(__builtin_ctz(word)); }
 
+/// Eq. (4) in the precision asked for; nothing where it is infinite.
+template <typename Real>
+std::optional<Real> discomfort(Real d, const TransformConfig& config) {
+  if (!(d >= static_cast<Real>(config.d_min - kRounding))) return std::nullopt;
+  const Real from_best = static_cast<Real>(config.d_opt) - d;
+  return from_best * from_best;
+}
+
 }  // namespace
 
 double danger(double d, const TransformConfig& config) {
-  if (d < config.d_min - kRounding) return std::numeric_limits<double>::infinity();
-  return (config.d_opt - d) * (config.d_opt - d);  // eq. (4)
+  return discomfort(d, config).value_or(std::numeric_limits<double>::infinity());
 }
 
 void ExplorationTransform::prepare(const Traversable& floor, const TransformConfig& config) {
@@ -36,17 +43,13 @@ void ExplorationTransform::prepare(const Traversable& floor, const TransformConf
   for (std::vector<std::uint32_t>& bucket : buckets_) bucket.clear();
 
   const float alpha = static_cast<float>(config.alpha);
-  const float d_min = static_cast<float>(config.d_min - kRounding);
-  const float d_opt = static_cast<float>(config.d_opt);
   const Occupancy* cells = floor.cells.data();
   const float* clearance = floor.clearance.data();
   for (std::size_t i = 0; i < frame_.size(); ++i) {
-    const float d = clearance[i];
-    const bool passable = cells[i] == Occupancy::Free && d >= d_min;
-    const float discomfort = (d_opt - d) * (d_opt - d);  // eq. (4)
-    const float weight = passable ? std::min(1.0f + alpha * discomfort, kMaxWeight) : 0.0f;
+    const std::optional<float> danger = cells[i] == Occupancy::Free ? discomfort(clearance[i], config) : std::nullopt;
+    const float weight = danger ? std::min(1.0f + alpha * *danger, kMaxWeight) : 0.0f;
     // A cost of zero is never undercut: impassable cells need no test in the inner loop.
-    nodes_[i] = {passable ? kFar : 0, static_cast<std::uint16_t>(weight * kStraight + 0.5f),
+    nodes_[i] = {danger ? kFar : 0, static_cast<std::uint16_t>(weight * kStraight + 0.5f),
                  static_cast<std::uint16_t>(weight * kDiagonal + 0.5f)};
   }
 }

@@ -34,7 +34,6 @@ enum Command : std::uint8_t {
   kWheelSpeeds = 32,  ///< low byte right, high byte left, signed, 20 mm/s
   kEmergencyStop = 55,
   kSimSetPose = 224,
-  kSimReset = 225,
   kSimStat = 237,
   kBatteryTest = 250,  ///< 0.1 V
   kReset = 253,

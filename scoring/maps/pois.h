@@ -31,6 +31,5 @@ struct PoiList {
 /// - `name,x,y`: x to the right and y up.
 /// Or from an arena file (.yaml). Throws InputError with file and line.
 PoiList read_poi_list(const std::string& path);
-inline std::vector<Poi> read_pois(const std::string& path) { return read_poi_list(path).pois; }
 
 }  // namespace rubble::scoring

@@ -225,18 +225,4 @@ void write_error_map(const std::string& path, const OccupancyGrid& map, const Oc
   write_png(path, canvas.image);
 }
 
-void write_grid_png(const std::string& path, const OccupancyGrid& grid) {
-  Canvas canvas(grid.frame());
-  for (int row = 0; row < canvas.map_rows(); ++row) {
-    for (int column = 0; column < canvas.map_columns(); ++column) {
-      const Occupancy in_grid = at(grid, canvas.point(column, row));
-      canvas.image.at<Colour>(row, column) = in_grid == Occupancy::Occupied ? kWall
-                                             : in_grid == Occupancy::Free   ? kBothFree
-                                                                            : kUnknown;
-    }
-  }
-  draw_legend(canvas, {{kWall, "wall"}, {kBothFree, "free"}, {kUnknown, "unknown"}});
-  write_png(path, canvas.image);
-}
-
 }  // namespace rubble::scoring

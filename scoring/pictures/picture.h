@@ -19,7 +19,4 @@ void write_overlay(const std::string& path, const OccupancyGrid& map, const Occu
 void write_error_map(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
                      const mrpt::math::TPose2D& T_truth_map, double tau);
 
-/// Writes a grid as PNG: unknown grey, free white, occupied dark blue.
-void write_grid_png(const std::string& path, const OccupancyGrid& grid);
-
 }  // namespace rubble::scoring

@@ -70,9 +70,8 @@ class LoopCloser {
 
   const LoopCounts& counts() const { return counts_; }
   std::size_t queued() const { return tasks_.size(); }
-  /// Covariance of a key frame's pose, of the last solution; and that key frame.
+  /// Covariance of the newest key frame's pose as of the last solution.
   const Eigen::Matrix3d& covariance() const { return covariance_; }
-  int covariance_frame() const { return covariance_frame_; }
 
  private:
   enum class Kind { Wide, Near, Solve };
@@ -131,7 +130,7 @@ class LoopCloser {
   int frames_since_solve_ = 0;
   GraphSolver solver_;
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
-  int covariance_frame_ = 0;
+  int covariance_frame_ = 0;  ///< whose covariance it is
   LoopCounts counts_;
 };
 
