@@ -42,13 +42,13 @@ struct MapperFigure {
 /// - The map frame is the base frame at the reference time of the first scan: x forward, y left, metres and radians.
 /// - Everything may be asked at any time, also before the first scan: the pose is then zero, the map all unknown.
 ///   References stay valid, and what they show unchanged, until the next update.
-/// - Deterministic: same parameters, seed and inputs give the same bits, whatever the machine's speed. It reads no
-/// clock
-///   and knows the robot by its measurements alone; simulated, replayed and real ones look the same.
-/// - It accepts anything: scans without odometry, late, doubled or empty ones, silence. Poor data make a poor map,
-/// never
-///   an exception; those are for what cannot go on (out of memory, MapperLost). After one it can still be
-///   asked, and shows what it knew.
+/// - Deterministic: same parameters, seed and inputs give the same bits, whatever the machine's speed.
+///   It reads no clock and knows the robot by its measurements alone; simulated, replayed and real ones
+///   look the same.
+/// - It accepts anything: scans without odometry, late, doubled or empty ones, silence.
+///   Poor data make a poor map, never an exception; those are for what cannot go on (out of memory,
+///   MapperLost).
+///   After one it can still be asked, and shows what it knew.
 class Mapper {
  public:
   virtual ~Mapper() = default;
