@@ -99,7 +99,6 @@ int calibrate(const CalibrateArguments& arguments) {
     print_row("folder", report.folder);
     run = report.folder;
     if (report.interrupted) return kInterrupted;
-    if (report.end == "emergency stop") return kFailed;
     if (!report.failure.empty()) throw RunError(report.failure);
   }
   const scenarios::CalibratedRobot robot = scenarios::calibrate_from_log(recorded_log(run), in_force, file);

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -29,6 +30,9 @@ mrpt::math::TPose2D parse_pose(const std::string& text) {
   char rest = 0;
   if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &pose.x, &pose.y, &degrees, &rest) != 3)
     throw UsageError("--odometry-start " + text + ": needs the form X,Y,DEG, for example --odometry-start 65,0,90");
+  constexpr double kFarthest = 1000.0, kMostDegrees = 3600.0;
+  if (!(std::abs(pose.x) <= kFarthest && std::abs(pose.y) <= kFarthest && std::abs(degrees) <= kMostDegrees))
+    throw UsageError("--odometry-start " + text + ": X and Y are at most 1000 m, DEG at most 3600, either way");
   pose.phi = deg_to_rad(degrees);
   return pose;
 }
@@ -43,7 +47,13 @@ int emulate(const EmulateArguments& arguments) {
   options.urg = arguments.urg;
   options.base = arguments.base;
   options.levelling = arguments.levelling;
-  for (const std::string& fault : arguments.faults) options.faults.push_back(scenarios::parse_fault(fault));
+  for (const std::string& text : arguments.faults) {
+    const scenarios::FaultAt fault = scenarios::parse_fault(text);
+    const std::string device = fault.name.substr(0, fault.name.find('-'));
+    const std::string& port = device == "urg" ? options.urg : device == "base" ? options.base : options.levelling;
+    if (port.empty()) throw UsageError("--fault " + text + ": that device is not played; give --" + device + " too");
+    options.faults.push_back(fault);
+  }
   if (!arguments.odometry_start.empty()) options.odometry_start = parse_pose(arguments.odometry_start);
   options.time_limit = arguments.time_limit;
   options.truth = arguments.truth;

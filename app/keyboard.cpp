@@ -3,12 +3,14 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <utility>
 
 namespace rubble::app {
 namespace {
 
 constexpr double kFirstHold = 0.6;  ///< a terminal repeats a held key after so long at the latest [s]
 constexpr double kHold = 0.2;       ///< and then more often than this [s]
+constexpr double kRearm = 0.5;      ///< R means something else for so long after it was last waited for [s]
 constexpr int kEscape = 27;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -32,15 +34,19 @@ int letter_of_arrow(int last) {
 }  // namespace
 
 Keyboard::Keyboard() {
-  if (!isatty(STDIN_FILENO) || tcgetattr(STDIN_FILENO, &before_) != 0) return;
+  if (!isatty(STDIN_FILENO) || tcgetpgrp(STDIN_FILENO) != getpgrp() || tcgetattr(STDIN_FILENO, &before_) != 0) return;
   termios raw = before_;
   raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   raw.c_cc[VMIN] = 0;
   raw.c_cc[VTIME] = 0;
+  // A program that is ended or suspended on the spot leaves the robot to its watchdog: these become keys like others.
+  raw.c_cc[VQUIT] = raw.c_cc[VSUSP] = _POSIX_VDISABLE;
   active_ = tcsetattr(STDIN_FILENO, TCSANOW, &raw) == 0;
 }
 
-Keyboard::~Keyboard() {
+Keyboard::~Keyboard() { restore(); }
+
+void Keyboard::restore() {
   if (active_) tcsetattr(STDIN_FILENO, TCSANOW, &before_);
 }
 
@@ -50,26 +56,56 @@ int Keyboard::next() {
   return active_ && ::read(STDIN_FILENO, &key, 1) == 1 ? key : 0;
 }
 
+void Keyboard::take(int key) {
+  if (key == 'r' && now() < rearm_until_) {
+    rearmed_ = true;
+    return;
+  }
+  any_ = true;
+  quit_ = quit_ || key == 'q';
+  const double v = key == 'w' ? 1.0 : key == 's' ? -1.0 : 0.0;
+  const double w = key == 'a' ? 1.0 : key == 'd' ? -1.0 : 0.0;
+  const bool repeated = v == v_ && w == w_ && now() < until_;
+  v_ = v;
+  w_ = w;
+  until_ = now() + (repeated ? kHold : kFirstHold);
+}
+
+void Keyboard::look() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (int key = next(); key != 0; key = next()) {
+    if (key == kEscape && next() == '[') key = letter_of_arrow(next());
+    take(key);
+  }
+}
+
 bool Keyboard::pressed() {
-  bool any = false;
-  while (next() != 0) any = true;
-  return any;
+  look();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::exchange(any_, false);
+}
+
+bool Keyboard::rearmed() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  rearm_until_ = now() + kRearm;
+  return std::exchange(rearmed_, false);
+}
+
+void Keyboard::forget() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  until_ = 0.0;
+}
+
+bool Keyboard::quit() {
+  look();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return quit_;
 }
 
 robot::Drive Keyboard::drive(double v, double w) {
-  for (int key = next(); key != 0; key = next()) {
-    if (key == kEscape && next() == '[') key = letter_of_arrow(next());
-    robot::Drive wanted;
-    if (key == 'w') wanted.v = v;
-    if (key == 's') wanted.v = -v;
-    if (key == 'a') wanted.w = w;
-    if (key == 'd') wanted.w = -w;
-    quit_ = quit_ || key == 'q';
-    const bool repeated = wanted.v == drive_.v && wanted.w == drive_.w && now() < until_;
-    drive_ = wanted;
-    until_ = now() + (repeated ? kHold : kFirstHold);
-  }
-  return now() < until_ ? drive_ : robot::Drive{};
+  look();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return now() < until_ ? robot::Drive{v_ * v, w_ * w} : robot::Drive{};
 }
 
 }  // namespace rubble::app

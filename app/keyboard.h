@@ -2,9 +2,8 @@
 
 #include <termios.h>
 
-#include <atomic>
+#include <mutex>
 
-#include "base/stamp.h"
 #include "robot/commands.h"
 
 namespace rubble::app {
@@ -17,20 +16,33 @@ class Keyboard {
   Keyboard(const Keyboard&) = delete;
   Keyboard& operator=(const Keyboard&) = delete;
 
+  /// Takes the keys that wait; from then on they count as pressed. May be called from any thread, as all here.
+  void look();
   /// Whether any key was pressed since the last call.
   bool pressed();
+  /// Whether R was pressed since the last call, which is one of many while that is waited for.
+  bool rearmed();
+  /// What was pressed up to now drives nothing.
+  void forget();
+  /// The terminal is as it was before.
+  void restore();
   /// Teleoperation: arrow keys or W, A, S, D drive as long as they are held, space and every other key stops, Q ends.
   /// To be asked each tick.
   robot::Drive drive(double v, double w);
-  bool quit() const { return quit_; }
+  bool quit();
 
  private:
   int next();
+  void take(int key);
 
+  std::mutex mutex_;
+  double v_ = 0.0, w_ = 0.0;  ///< of a held key, in units of what drive() is asked with
+  bool any_ = false;
+  bool rearmed_ = false;
+  double rearm_until_ = 0.0;  ///< R is waited for up to here
   bool active_ = false;
   bool quit_ = false;
   termios before_{};
-  robot::Drive drive_;
   double until_ = 0.0;  ///< a key counts as held up to here, by the monotonic clock [s]
 };
 

@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 
 #include "app/terminal.h"
 #include "base/angle.h"
@@ -13,7 +14,10 @@ constexpr const char* kPort = "/dev/ttyUSB0, pty:PATH or tcp:HOST:PORT";
 
 volatile std::sig_atomic_t emergency_signalled = 0;
 
+volatile std::sig_atomic_t rearm_signalled = 0;
+
 void on_emergency(int /*signal*/) { emergency_signalled = 1; }
+void on_rearm(int /*signal*/) { rearm_signalled = 1; }
 
 void print_status(const scenarios::DriveStatus& s) {
   std::fprintf(
@@ -46,11 +50,24 @@ std::vector<scenarios::Override> RobotOptions::with_ports(std::vector<scenarios:
 }
 
 scenarios::DriveOptions drive_options(Keyboard& keyboard, bool keys_stop) {
-  catch_interrupts();
+  catch_stops();
   std::signal(SIGUSR1, on_emergency);
+  std::signal(SIGUSR2, on_rearm);
   scenarios::DriveOptions options;
   options.interrupted = [&keyboard] { return interrupted() || keyboard.quit(); };
   options.emergency = [&keyboard, keys_stop] { return emergency_signalled != 0 || (keys_stop && keyboard.pressed()); };
+  options.insisted = insisted;
+  options.left = [&keyboard] {
+    keyboard.restore();
+    std::fprintf(stderr, "rubble: the base was told to stop and left; the folder is not complete\n");
+    std::_Exit(kInterrupted);
+  };
+  options.rearm = [&keyboard] {
+    const bool signalled = rearm_signalled != 0;
+    rearm_signalled = 0;
+    return keyboard.rearmed() || signalled;
+  };
+  options.forget_keys = [&keyboard] { keyboard.forget(); };
   options.each_second = print_status;
   options.tell = [](const std::string& line) { std::fprintf(stderr, "rubble: %s\n", line.c_str()); };
   return options;

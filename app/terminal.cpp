@@ -18,7 +18,19 @@ void on_signal(int signal) {
   std::signal(signal, SIG_DFL);  // the second one is not asked twice
 }
 
+void on_stop(int /*signal*/) {
+  if (signalled >= 2) _exit(kInterrupted);
+  signalled = signalled + 1;
+}
+
 }  // namespace
+
+void catch_stops() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP}) std::signal(signal, on_stop);
+  for (const int signal : {SIGPIPE, SIGTTIN, SIGTTOU}) std::signal(signal, SIG_IGN);
+}
+
+bool insisted() { return signalled >= 2; }
 
 void catch_interrupts() {
   std::signal(SIGINT, on_signal);

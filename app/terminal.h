@@ -11,6 +11,12 @@ namespace rubble::app {
 void catch_interrupts();
 bool interrupted();
 
+/// For whoever has a robot in hand: all signals that a terminal can send (also Ctrl-\\, Ctrl-Z and the end of a pipe
+/// that reads us) end the work as above or are ignored. The second asks for an end at once, see insisted(); only the
+/// third ends the program on the spot.
+void catch_stops();
+bool insisted();
+
 /// Run options whose progress is one line on a terminal and nothing elsewhere.
 scenarios::RunOptions terminal_options(const std::string& out, bool force);
 /// Wipes the progress line.

@@ -40,10 +40,13 @@ DeviceThread::DeviceThread(std::string name, std::string port, Device& device, B
   thread_ = std::thread([this] { run(); });
 }
 
-DeviceThread::~DeviceThread() {
+DeviceThread::~DeviceThread() { end(); }
+
+void DeviceThread::end() {
   with([this] { ending_ = true; });
   wake();
-  thread_.join();
+  const std::lock_guard<std::mutex> lock(ending_mutex_);
+  if (thread_.joinable()) thread_.join();
 }
 
 void DeviceThread::wake() const {

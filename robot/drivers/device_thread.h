@@ -22,6 +22,8 @@ class DeviceThread {
                std::function<void(Stamp)> each_turn = {});
   /// Sends the device's farewell and ends.
   ~DeviceThread();
+  /// The same while the object goes on; a second call does nothing. May be called from any other thread.
+  void end();
   DeviceThread(const DeviceThread&) = delete;
   DeviceThread& operator=(const DeviceThread&) = delete;
 
@@ -55,6 +57,7 @@ class DeviceThread {
   std::string error_;
   std::unique_ptr<Port> port_;
   int baud_ = 0;
+  std::mutex ending_mutex_;
   std::thread thread_;
 };
 

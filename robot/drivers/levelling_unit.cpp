@@ -59,6 +59,7 @@ void LevellingUnit::digest(const std::vector<std::string>& fields, Stamp now) {
     identity_ = *identity;
     identified_ = true;
     restart_clock();
+    if (settings_.passive) return;
     output_ += levelling_line("R," + std::to_string(settings_.rate));
     output_ += levelling_line("W," + std::to_string(settings_.watchdog_ms));
     output_ += levelling_line("E,1");
@@ -101,6 +102,7 @@ Stamp LevellingUnit::stamp_of(const LevellingReport& report, Stamp now) {
 }
 
 void LevellingUnit::aim(const LaserAim& aim) {
+  if (aimed_ && sensor_fault()) return;
   const bool changed = pulse(aim.pitch, settings_.pitch) != pulse(aim_.pitch, settings_.pitch) ||
                        pulse(aim.roll, settings_.roll) != pulse(aim_.roll, settings_.roll);
   if (changed || !aimed_) aim_due_ = true;

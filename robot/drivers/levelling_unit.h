@@ -34,6 +34,7 @@ struct LevellingUnitSettings {
   int watchdog_ms = 500;  ///< the unit holds its servos after so long a silence
   double delay = 0.0;     ///< age of a report when it arrives [s]
   double silence = 1.0;   ///< without reports for so long it is asked anew [s]
+  bool passive = false;   ///< only listened to: servo power and settings stay as they are
 };
 
 /// Client of the levelling unit: a microcontroller with a two-axis accelerometer and two servos.
@@ -51,7 +52,8 @@ class LevellingUnit : public Device {
   Stamp last_report() const override { return last_report_; }
   std::string state() const override;
 
-  /// Angles the servos shall hold; refreshed until replaced.
+  /// Angles the servos shall hold; refreshed until replaced. While the accelerometer gives no signal the last ones
+  /// stay.
   void aim(const LaserAim& aim);
 
   std::vector<Acceleration> take_accelerations();

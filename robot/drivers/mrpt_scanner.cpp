@@ -23,8 +23,7 @@ constexpr double kTcpDelivery = 0.002, kSerialDelivery = 0.101;
 std::vector<std::string> places() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
-  return {(program / kModule).string(), (program.parent_path() / "lib" / "rubble" / kModule).string(),
-          (fs::path(RUBBLE_MODULE_DIR) / kModule).string()};
+  return {(program / kModule).string(), (program.parent_path() / "lib" / "rubble" / kModule).string()};
 }
 
 MrptScannerFactory load_factory() {

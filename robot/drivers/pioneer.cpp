@@ -148,6 +148,7 @@ void Pioneer::digest(const std::string& payload, Stamp now) {
   }
   if (!report) return;
   follow(*report, clock_.stamp(sampled(payload.size() + 5, now)));
+  mind_hold();
   last_report_ = now;
 }
 
@@ -173,6 +174,23 @@ void Pioneer::open(Stamp now) {
   send(command(arcos::kSetTurnAcceleration, -turn_accel));
   v_due_ = w_due_ = !settings_.passive;  // whatever set points a former client left
   asked_motors_ = Stamp::never();
+  obeyed_ = false;  // a robot that was restarted has its motors off
+}
+
+/// The buttons on the robot are above whatever is asked for here.
+void Pioneer::mind_hold() {
+  if (settings_.passive) return;
+  if (emergency_button()) {
+    hold_ = Hold::EmergencyButton;
+  } else if (motors_ && obeyed_ && !motors_on() && hold_ == Hold::None) {
+    hold_ = Hold::MotorsOff;
+  }
+  if (hold_ != Hold::None) enable(false);
+  obeyed_ = motors_ && motors_on();
+}
+
+void Pioneer::rearm() {
+  if (!emergency_button()) hold_ = Hold::None;
 }
 
 /// Adds the motion between two reports to the pose. A report that jumps farther than the robot can have moved comes
@@ -229,10 +247,20 @@ void Pioneer::drive(const Drive& drive) {
 }
 
 void Pioneer::enable(bool on) {
-  if (settings_.passive) on = false;
-  if (on != motors_) asked_motors_ = Stamp::never();
+  if (settings_.passive || hold_ != Hold::None) on = false;
+  if (on != motors_) {
+    asked_motors_ = Stamp::never();
+    obeyed_ = false;
+  }
   motors_ = on;
   if (!on) drive({});
+}
+
+void Pioneer::stop() {
+  if (settings_.passive) return;
+  enable(false);
+  queue_.push_front(command(arcos::kEnable, 0));
+  queue_.push_front(command(arcos::kStop));
 }
 
 void Pioneer::emergency_stop() {

@@ -55,8 +55,17 @@ class Pioneer : public Device {
 
   /// Set points, kept within the limits; they hold until replaced.
   void drive(const Drive& drive);
-  /// Motors on or off; off also forgets the set points. Asked for again until the robot reports it.
+  /// Motors on or off; off also forgets the set points. Asked for again until the robot reports it. A held base stays
+  /// off.
   void enable(bool on);
+  /// Somebody at the robot stopped it: its emergency button is pressed, or its motors went off though nobody here asked
+  /// for it. It is not switched on again until rearm().
+  enum class Hold { None, EmergencyButton, MotorsOff };
+  Hold hold() const { return hold_; }
+  /// The operator lets the base go again. While the button is pressed it stays held.
+  void rearm();
+  /// Stops and switches the motors off.
+  void stop();
   /// Stops as hard as the robot can and switches the motors off.
   void emergency_stop();
 
@@ -81,6 +90,7 @@ class Pioneer : public Device {
   void digest(const std::string& payload, Stamp now);
   void open(Stamp now);
   void follow(const arcos::StandardInformation& report, Stamp stamp);
+  void mind_hold();
   void refresh(Stamp now);
   void send(const std::string& packet) { queue_.push_back(packet); }
   Stamp sampled(std::size_t bytes, Stamp received) const;
@@ -102,6 +112,8 @@ class Pioneer : public Device {
 
   Drive target_;
   bool motors_ = false;
+  bool obeyed_ = false;  ///< the robot has reported the motors on since they were asked for
+  Hold hold_ = Hold::None;
   Stamp asked_motors_ = Stamp::never();
   RateDither turn_;
   Stamp turn_decided_ = Stamp::never();

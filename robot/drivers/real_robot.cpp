@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <thread>
 #include <utility>
 
 #include "robot/drivers/device_thread.h"
@@ -15,6 +16,7 @@ namespace rubble::robot {
 namespace {
 
 constexpr double kAsk = 0.05;                 ///< pause of a waiting read() [s]
+constexpr double kListen = 0.02;              ///< the operator is asked so often [s]
 constexpr std::size_t kMostScansKept = 240;   ///< while the robot is held
 constexpr std::size_t kNewestScansKept = 40;  ///< of these all remain when the others are thinned
 
@@ -46,13 +48,13 @@ struct RealRobot::Impl {
   Scanner& lidar;
   Pioneer pioneer;
   LevellingUnit unit;
-  Heartbeat heartbeat;  ///< asked by the base's thread alone
+  Heartbeat heartbeat;  ///< asked by the operator's thread alone
   std::function<bool(const RobotStatus&)> ask;
 
   std::atomic<bool> emergency{false};
+  std::atomic<bool> stopped{false};
+  std::atomic<bool> ending{false};
   std::atomic<std::int64_t> operator_ns{Stamp::never().ns};
-  std::atomic<std::int64_t> scan_ns{Stamp::never().ns};  ///< arrival of the newest scan
-  std::uint64_t scans_counted = 0;                       ///< by the base's thread
   std::atomic<std::uint64_t> scans{0}, odometry{0}, accelerations{0};
 
   std::mutex mutex;  ///< of what core and base thread share
@@ -71,7 +73,11 @@ struct RealRobot::Impl {
   Stamp held_since = Stamp::never();
 
   std::unique_ptr<DeviceThread> unit_thread;
-  std::unique_ptr<DeviceThread> base_thread;  // last: it asks all the others
+  std::unique_ptr<DeviceThread> base_thread;  // it asks all the others
+  std::mutex listen_mutex;                    ///< of what is called for the operator
+  std::function<OperatorWish()> wish;
+  std::function<void()> left;
+  std::thread operator_thread;
 
   Impl(const RealRobotSettings& given, Scanner& scanner, BlackBox* box)
       : settings(given), lidar(scanner), pioneer(given.base), unit(given.levelling), heartbeat(given.heartbeat) {
@@ -79,19 +85,51 @@ struct RealRobot::Impl {
       unit_thread = std::make_unique<DeviceThread>("levelling", settings.levelling_port, unit, box);
     base_thread =
         std::make_unique<DeviceThread>("base", settings.base_port, pioneer, box, [this](Stamp now) { watch(now); });
+    operator_thread = std::thread([this] {
+      while (!ending) {
+        listen();
+        sleep_until(host_now() + kListen);
+      }
+    });
+  }
+  ~Impl() {
+    ending = true;
+    operator_thread.join();
+  }
+
+  /// In the operator's thread: it waits neither for the core nor for a device.
+  void listen() {
+    operator_ns = heartbeat.last(host_now()).ns;
+    const std::lock_guard<std::mutex> lock(listen_mutex);
+    if (!wish) return;
+    const OperatorWish wanted = wish();
+    if (wanted == OperatorWish::EmergencyStop && !emergency) emergency_stop();
+    if (wanted == OperatorWish::Stop) stop();
+    if (wanted != OperatorWish::Leave) return;
+    base_thread->end();
+    wish = {};
+    if (left) left();
+  }
+
+  void stop() {
+    if (stopped.exchange(true)) return;
+    base_thread->with([this] { pioneer.stop(); });
+    base_thread->wake();
+  }
+
+  void emergency_stop() {
+    emergency = true;
+    base_thread->with([this] { pioneer.emergency_stop(); });
+    base_thread->wake();
   }
 
   /// In the base's thread, every 20 ms at the latest: what the motors may do now.
   void watch(Stamp now) {
-    operator_ns = heartbeat.last(now).ns;
-    if (const std::uint64_t count = lidar.status().scans; count != scans_counted) {
-      scans_counted = count;
-      scan_ns = now.ns;
-    }
     const std::lock_guard<std::mutex> lock(mutex);
     const bool fresh = commanded != Stamp::never() && now - commanded <= settings.safety.core_silence;
-    const bool free = armed && !emergency && fresh && is_lidar_well(now) && is_unit_well(now) && is_operator_well(now);
-    if (armed && !emergency) pioneer.enable(true);
+    const bool allowed = armed && !emergency && !stopped;
+    const bool free = allowed && fresh && is_lidar_well(now) && is_unit_well(now) && is_operator_well(now);
+    if (allowed) pioneer.enable(true);
     pioneer.drive(free ? commands.drive : Drive{});
     if (scan_answered != Stamp::never()) {
       delays.push_back(now - scan_answered);
@@ -100,7 +138,7 @@ struct RealRobot::Impl {
   }
 
   bool is_lidar_well(Stamp now) const {
-    const Stamp last{scan_ns.load()};
+    const Stamp last = lidar.status().last_scan;
     return last != Stamp::never() && now - last <= settings.safety.lidar_silence;
   }
   bool is_unit_well(Stamp now) const {
@@ -118,9 +156,14 @@ struct RealRobot::Impl {
   std::vector<std::string> silent(Stamp now) const {
     std::vector<std::string> lines;
     const bool underway = first != Stamp::never();
-    if (!is_lidar_well(now)) lines.push_back(silent_for("urg", underway, {scan_ns.load()}, now, lidar.status().error));
-    const auto [last, ready, state] =
-        base_thread->with([this] { return std::make_tuple(pioneer.last_report(), pioneer.ready(), pioneer.state()); });
+    if (!is_lidar_well(now)) {
+      const ScannerStatus scanner = lidar.status();
+      lines.push_back(silent_for("urg", underway, scanner.last_scan, now, scanner.error));
+    }
+    const auto [last, ready, state, hold] = base_thread->with(
+        [this] { return std::make_tuple(pioneer.last_report(), pioneer.ready(), pioneer.state(), pioneer.hold()); });
+    if (hold == Pioneer::Hold::EmergencyButton) lines.push_back("base: emergency button pressed");
+    if (hold == Pioneer::Hold::MotorsOff) lines.push_back("base: motors were switched off");
     if (!ready || now - last > settings.safety.base_silence) {
       const std::string error = base_thread->error();
       lines.push_back(silent_for("base", underway, last, now, error.empty() ? state : error));
@@ -141,6 +184,7 @@ struct RealRobot::Impl {
     RobotStatus s;
     s.silent = silent(now);
     s.emergency = emergency;
+    s.held = is_held();
     s.scans = scans;
     s.odometry = odometry;
     s.accelerations = accelerations;
@@ -150,11 +194,21 @@ struct RealRobot::Impl {
       s.bad_packets = pioneer.bad_sums();
       s.jumps = pioneer.jumps();
     });
-    if (unit_thread) unit_thread->with([&] { s.bad_packets += unit.bad_lines(); });
+    if (unit_thread) {
+      unit_thread->with([&] {
+        s.bad_packets += unit.bad_lines();
+        if (unit.sensor_fault())
+          s.troubles.emplace_back("levelling: its accelerometer gives no signal; the servos hold");
+      });
+    }
     const ScannerStatus scanner = lidar.status();
     s.scans_damaged = scanner.damaged;
     s.scans_missed = scanner.missed;
     return s;
+  }
+
+  bool is_held() const {
+    return base_thread->with([this] { return pioneer.hold() != Pioneer::Hold::None; });
   }
 
   void take_scans(Stamp now) {
@@ -229,6 +283,7 @@ struct RealRobot::Impl {
         held_since = now;
         forget_drive();
       }
+      if (is_held()) held_since = now;  // somebody is at the robot: it is not lost
       const bool starting = first == Stamp::never();
       if (now - held_since > (starting ? settings.safety.start : settings.safety.give_up))
         throw DeviceLost(
@@ -295,10 +350,19 @@ void RealRobot::command(const Commands& commands) {
   }
 }
 
-void RealRobot::emergency_stop() {
-  impl_->emergency = true;
-  impl_->base_thread->with([this] { impl_->pioneer.emergency_stop(); });
+void RealRobot::emergency_stop() { impl_->emergency_stop(); }
+
+void RealRobot::stop() { impl_->stop(); }
+
+void RealRobot::rearm() {
+  impl_->base_thread->with([this] { impl_->pioneer.rearm(); });
   impl_->base_thread->wake();
+}
+
+void RealRobot::listen(std::function<OperatorWish()> ask, std::function<void()> left) {
+  const std::lock_guard<std::mutex> lock(impl_->listen_mutex);
+  impl_->wish = std::move(ask);
+  impl_->left = std::move(left);
 }
 
 void RealRobot::while_waiting(std::function<bool(const RobotStatus&)> ask) { impl_->ask = std::move(ask); }

@@ -35,9 +35,19 @@ struct RealRobotSettings {
   double time_limit = 0.0;  ///< from the first tick on; 0: none [s]
 };
 
+/// What the operator asks for at any time.
+enum class OperatorWish {
+  None,
+  Stop,           ///< the robot stands from now on, its motors are off
+  EmergencyStop,  ///< the same, as hard as it can
+  Leave,          ///< the farewell is said to the base at once; the program is about to end
+};
+
 /// How the robot is doing, for people.
 struct RobotStatus {
-  std::vector<std::string> silent;  ///< what holds the robot, one line each
+  std::vector<std::string> silent;    ///< what holds the robot, one line each
+  bool held = false;                  ///< stopped at the robot itself: only rearm() lets it go
+  std::vector<std::string> troubles;  ///< what does not work but holds nothing, one line each
   bool motors_on = false;
   bool emergency = false;
   double battery = 0.0;     ///< [V]
@@ -69,6 +79,14 @@ class RealRobot : public Robot {
 
   /// Stops hard and for good; read() ends. May be called from any thread.
   void emergency_stop();
+  /// Set points to zero and motors off, for good; read() goes on. May be called from any thread.
+  void stop();
+  /// After somebody stopped the robot at the robot itself (its emergency button, its motors' button): lets it drive
+  /// again.
+  void rearm();
+  /// `ask` is called in a thread of its own about fifty times a second, whatever the core is at; its wish is granted at
+  /// once. After Leave `left` is called in that thread. Empty: nobody is asked any more.
+  void listen(std::function<OperatorWish()> ask, std::function<void()> left = {});
   /// Called about twenty times a second while read() waits for devices; false ends the run.
   void while_waiting(std::function<bool(const RobotStatus&)> ask);
   RobotStatus status() const;

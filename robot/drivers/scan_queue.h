@@ -17,8 +17,9 @@ class ScanQueue {
  public:
   ScanQueue() : ready_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
 
-  void put(LaserScan scan) {
+  void put(LaserScan scan, Stamp arrived) {
     const std::lock_guard<std::mutex> lock(mutex_);
+    status_.last_scan = arrived;
     // A reader that sleeps for minutes shall not fill the memory: the newest scans are worth most.
     if (scans_.size() >= kMostScans) scans_.erase(scans_.begin());
     scans_.push_back(std::move(scan));

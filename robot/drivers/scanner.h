@@ -22,12 +22,13 @@ struct ScannerInfo {
 
 /// How the line to a scanner is doing.
 struct ScannerStatus {
-  bool connected = false;      ///< scans are coming, or are about to
-  std::string error;           ///< why not: one line that names the port and the remedy
-  std::uint64_t scans = 0;     ///< whole scans received
-  std::uint64_t damaged = 0;   ///< replies thrown away: wrong sum, wrong length, lost or doubled bytes
-  std::uint64_t missed = 0;    ///< revolutions of which no whole scan came, by the device's clock
-  std::uint64_t connects = 0;  ///< how often the handshake succeeded
+  bool connected = false;            ///< scans are coming, or are about to
+  std::string error;                 ///< why not: one line that names the port and the remedy
+  std::uint64_t scans = 0;           ///< whole scans received
+  Stamp last_scan = Stamp::never();  ///< when the newest one arrived
+  std::uint64_t damaged = 0;         ///< replies thrown away: wrong sum, wrong length, lost or doubled bytes
+  std::uint64_t missed = 0;          ///< revolutions of which no whole scan came, by the device's clock
+  std::uint64_t connects = 0;        ///< how often the handshake succeeded
   double latency = 0.0;        ///< from the last beam to the arrival of the scan's last byte, of the last scan [s]
   double worst_latency = 0.0;  ///< the most of it since the last connect [s]
   double clock_drift = 0.0;    ///< of the device's clock against the computer's, + : it runs slow [s/s]

@@ -18,8 +18,9 @@ constexpr double kStillSpeed = 1e-3;            // slower counts as standing [m/
 constexpr double kStillTurn = deg_to_rad(0.5);  // [rad/s]
 constexpr double kReached = 0.002;              // a commanded way is done [m]
 constexpr double kHeadingReached = deg_to_rad(0.2);
-constexpr double kStallFault = 1.0;  // [s]
-constexpr double kDeafFault = 3.0;   // [s]
+constexpr double kStallFault = 1.0;   // [s]
+constexpr double kDeafFault = 3.0;    // [s]
+constexpr double kButtonFault = 2.0;  // [s]
 
 double approach(double from, double to, double accel, double decel, double dt) {
   const bool faster = std::abs(to) > std::abs(from) && to * from >= 0.0;
@@ -113,10 +114,7 @@ void ArcosEmulator::obey(const Order& order, Stamp now) {
     case kMaintenance:
       return start_anew();
     case kEnable:
-      motors_ = order.value.value_or(0) != 0;
-      if (!motors_) target_ = {};
-      if (!motors_) mode_ = Mode::Speed;
-      return;
+      return switch_motors(order.value.value_or(0) != 0 && now >= pressed_until_);
     case kSetOrigin:
       return set_origin();
     case kConfig:
@@ -146,6 +144,13 @@ void ArcosEmulator::obey(const Order& order, Stamp now) {
     default:
       return simulate(order);
   }
+}
+
+void ArcosEmulator::switch_motors(bool on) {
+  motors_ = on;
+  if (on) return;
+  target_ = {};
+  mode_ = Mode::Speed;
 }
 
 void ArcosEmulator::set_limit(const Order& order) {
@@ -299,7 +304,7 @@ void ArcosEmulator::report() {
   s.battery = battery_;
   s.stall = odometry_.stalled ? kLeftStall | kRightStall : 0;
   s.control = units(mode_ == Mode::Head ? heading_target_ : pose.phi);
-  s.flags = motors_ ? kMotorsOn : 0;
+  s.flags = (motors_ ? kMotorsOn : 0) | (advanced_ < pressed_until_ ? kEmergencyButton : 0);
   s.turn_rate = rad_to_deg(odometry_.w);
   send(encode(s));
   if (encoders_ > 0) {
@@ -323,6 +328,11 @@ bool ArcosEmulator::fail(const std::string& fault, Stamp now) {
     start_anew();
   } else if (fault == "watchdog") {
     deaf_until_ = now + kDeafFault;
+  } else if (fault == "button") {
+    switch_motors(false);
+    pressed_until_ = now + kButtonFault;
+  } else if (fault == "motors") {
+    switch_motors(false);
   } else {
     return false;
   }

@@ -36,7 +36,8 @@ class ArcosEmulator : public EmulatedDevice {
   void advance(Stamp now) override;
   std::string take_output() override;
   /// `seto`: the odometry is set to zero, `stall`: both motors report a stall for a second, `reset`: the firmware
-  /// starts anew and waits for SYNC0, `watchdog`: commands are not heard for 3 s.
+  /// starts anew and waits for SYNC0, `watchdog`: commands are not heard for 3 s, `button`: the emergency button is
+  /// pressed for 2 s, `motors`: the motors are switched off at the robot.
   bool fail(const std::string& fault, Stamp now) override;
 
   /// The robot's dead reckoning at `now`, in any frame that stays.
@@ -67,6 +68,7 @@ class ArcosEmulator : public EmulatedDevice {
   void simulate(const arcos::Order& order);
   void set_origin();
   void report();
+  void switch_motors(bool on);
   Drive wanted() const;
   mrpt::math::TPose2D reckoned() const;
   double left_speed() const { return odometry_.v - odometry_.w * settings_.half_track; }
@@ -112,6 +114,7 @@ class ArcosEmulator : public EmulatedDevice {
   double right_travel_ = 0.0;  ///< [m]
   Stamp stalled_until_ = Stamp::never();
   Stamp deaf_until_ = Stamp::never();
+  Stamp pressed_until_ = Stamp::never();  ///< the emergency button
 };
 
 }  // namespace rubble::robot

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <utility>
@@ -34,6 +35,7 @@ std::unique_ptr<robot::Scanner> make_scanner(const RobotFile& file, robot::Black
     robot::MrptScannerConfig config;
     config.type = file.lidar.mrpt_class;
     config.port = file.lidar.port;
+    config.parameters = file.lidar.parameters;
     config.range_max = laser.range_max;
     config.no_echo_is_miss = file.lidar.no_echo_is_miss;
     config.scan_period = laser.scan_period;
@@ -77,7 +79,9 @@ class Driver {
   Driver(const RobotFile& file, const DriveOptions& options, RunFolder& folder, robot::RealRobot& real, Core& core)
       : file_(file), options_(options), folder_(folder), real_(real), core_(core) {
     real_.while_waiting([this](const robot::RobotStatus& status) { return wait(status); });
+    real_.listen([this] { return wish(); }, options_.left);
   }
+  ~Driver() { real_.listen({}); }
 
   /// Why the drive ended. Throws DeviceLost.
   std::string run(robot::Robot& robot) {
@@ -89,16 +93,12 @@ class Driver {
       if (inputs->now - saved_ >= 1.0) each_second(inputs->now);
       if (core_.finished()) return core_.reason();
       if (piloted_out_) return "the drive is complete";
-      if (options_.emergency && options_.emergency()) {
-        real_.emergency_stop();
-        return "emergency stop";
-      }
-      if (options_.interrupted && options_.interrupted()) {
-        interrupted_ = true;
-        return "interrupted";
-      }
+      if (interrupted_) return "interrupted";
     }
-    if (real_.status().emergency) return "emergency stop";
+    if (real_.status().emergency) {
+      interrupted_ = true;
+      return "emergency stop";
+    }
     return interrupted_ ? "interrupted" : "the time is over";
   }
 
@@ -106,6 +106,14 @@ class Driver {
   bool interrupted() const { return interrupted_; }
 
  private:
+  /// Asked in the robot's own thread, whatever the core is at.
+  robot::OperatorWish wish() {
+    if (options_.emergency && options_.emergency()) return robot::OperatorWish::EmergencyStop;
+    if (options_.interrupted && options_.interrupted()) interrupted_ = true;
+    if (options_.insisted && options_.insisted()) return robot::OperatorWish::Leave;
+    return interrupted_ ? robot::OperatorWish::Stop : robot::OperatorWish::None;
+  }
+
   robot::Commands answer(const robot::Inputs& inputs) {
     robot::Commands commands = core_.step(inputs);
     if (options_.mode == DriveMode::Teleoperate) commands.drive = options_.keys ? options_.keys() : robot::Drive{};
@@ -120,15 +128,18 @@ class Driver {
 
   /// While devices are silent: tells which, and saves the map at once. False ends the run.
   bool wait(const robot::RobotStatus& status) {
-    if (status.silent != told_ && names(status.silent) != names(told_)) {
+    if (status.silent != told_ && (names(status.silent) != names(told_) || status.held != held_)) {
       if (options_.tell)
         for (const std::string& line : status.silent) options_.tell(line);
       if (first_ != Stamp::never()) save_map();
     }
     told_ = status.silent;
-    if (options_.emergency && options_.emergency()) real_.emergency_stop();
-    if (options_.interrupted && options_.interrupted()) interrupted_ = true;
-    return !interrupted_ && !(options_.emergency && options_.emergency());
+    if (status.held && !held_ && options_.tell)
+      options_.tell("base: held; release the button, then press R (or send SIGUSR2) to let the robot drive again");
+    held_ = status.held;
+    if (held_ && options_.rearm && options_.rearm()) real_.rearm();
+    if (options_.forget_keys) options_.forget_keys();
+    return !interrupted_;
   }
 
   static std::vector<std::string> names(const std::vector<std::string>& lines) {
@@ -141,6 +152,7 @@ class Driver {
     if (options_.tell)
       for (const std::string& name : names(told_)) options_.tell(name + ": reports");
     told_.clear();
+    held_ = false;
   }
 
   void save_map() {
@@ -154,10 +166,13 @@ class Driver {
     saved_ = now;
     folder_.append_estimate(core_.mapper());
     if (seconds_since(map_saved_) >= kSavePeriod) save_map();
-    if (!options_.each_second) return;
     DriveStatus status;
-    status.seconds = seconds_;
     status.robot = real_.status();
+    if (status.robot.troubles != troubles_ && options_.tell)
+      for (const std::string& line : status.robot.troubles) options_.tell(line);
+    troubles_ = status.robot.troubles;
+    if (!options_.each_second) return;
+    status.seconds = seconds_;
     status.state = options_.mode == DriveMode::Teleoperate ? "by hand"
                    : options_.mode == DriveMode::MapOnly   ? "mapping"
                    : options_.mode == DriveMode::Calibrate ? "calibrate"
@@ -180,7 +195,9 @@ class Driver {
   Stamp first_ = Stamp::never();
   Stamp saved_ = Stamp::never();
   double seconds_ = 0.0;
-  bool interrupted_ = false;
+  std::atomic<bool> interrupted_{false};
+  bool held_ = false;  ///< stopped at the robot itself, and told
+  std::vector<std::string> troubles_;
   bool piloted_out_ = false;
   std::vector<std::string> told_;
   robot::RobotStatus last_;
@@ -244,8 +261,10 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
       } catch (const robot::DeviceLost& lost) {
         report.failure = report.end = lost.what();
       }
+      real.stop();  // what follows may take seconds
       core.finish();
     } catch (const slam::MapperLost& lost) {
+      real.stop();
       report.failure = report.end = lost.what();
     }
     report.interrupted = driver.interrupted();

@@ -31,8 +31,13 @@ struct DriveOptions {
   DriveMode mode = DriveMode::Explore;
   std::string out;
   bool replace = false;
-  std::function<bool()> interrupted;   ///< asked each tick; true ends the run
-  std::function<bool()> emergency;     ///< asked each tick; true stops hard and ends the run
+  /// These four are asked in a thread of their own (see RealRobot::listen) about fifty times a second.
+  std::function<bool()> interrupted;   ///< true stops the robot and ends the run
+  std::function<bool()> emergency;     ///< true stops hard and ends the run
+  std::function<bool()> insisted;      ///< true: the base is left at once, then `left` is called
+  std::function<void()> left;          ///< ends the program
+  std::function<bool()> rearm;         ///< asked while the robot is held by its own buttons; true lets it go
+  std::function<void()> forget_keys;   ///< called while devices are waited for: what was pressed then drives nothing
   std::function<robot::Drive()> keys;  ///< what the operator wants (Teleoperate)
   /// What comes next (Calibrate), told where the mapper takes the robot to be; nothing ends the drive.
   std::function<std::optional<robot::Drive>(const robot::Inputs&, const mrpt::math::TPose2D& T_map_base)> pilot;

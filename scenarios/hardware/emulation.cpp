@@ -208,7 +208,8 @@ const std::vector<std::string>& fault_names() {
     for (const char* device : {"urg", "base", "levelling"})
       for (const char* fault : {"lost", "split", "doubled", "junk", "sums", "silence", "unplug", "reset"})
         all.push_back(std::string(device) + "-" + fault);
-    for (const char* own : {"urg-wrap", "base-seto", "base-stall", "base-watchdog", "levelling-sensor"})
+    for (const char* own :
+         {"urg-wrap", "base-seto", "base-stall", "base-watchdog", "base-button", "base-motors", "levelling-sensor"})
       all.emplace_back(own);
     return all;
   }();

@@ -1,5 +1,6 @@
 #include "scenarios/hardware/robot_file.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/angle.h"
@@ -28,6 +29,10 @@ void bind_lidar(Binder& b, LidarSettings& lidar, robot::RobotModel& model) {
   b.degrees("yaw_deg", model.T_base_laser.yaw, -180.0, 180.0);
   b.number("delay_s", lidar.delay, -1.0, 1.0);
   b.boolean("no_echo_is_miss", lidar.no_echo_is_miss);
+  if (lidar.parameters.empty()) return;
+  b.section("parameters", [&](Binder& in) {
+    for (auto& [key, value] : lidar.parameters) in.text(key.c_str(), value);
+  });
 }
 
 void bind_base(Binder& b, robot::RealRobotSettings& r) {
@@ -85,6 +90,9 @@ void settle(RobotFile& file, const robot::RobotModel& devices) {
   robot.base.max_accel = model.max_accel;
   robot.base.max_turn_accel = model.max_turn_accel;
   robot.time_limit = file.settings.time_limit;
+  // A driver that gives up its connection sooner would make a silence that is permitted one that holds the robot.
+  robot.base.silence = std::max(robot.base.silence, robot.safety.base_silence);
+  robot.levelling.silence = std::max(robot.levelling.silence, robot.safety.levelling_silence);
 }
 
 }  // namespace
@@ -99,8 +107,12 @@ RobotFile load_robot_file(const std::string& path, const std::vector<Override>& 
   file.settings.name = root.text("name", std::filesystem::path(path).stem().string());
   if (file.settings.name.empty() || file.settings.name.find_first_of("/\\ ") != std::string::npos)
     root.fail("name", "is used as a folder name: no spaces or slashes");
+  const YamlMap urg = root.map("devices").map("urg");
+  for (const std::string& key : urg.map("parameters").keys()) file.lidar.parameters.emplace_back(key, "");
   YamlReader reader(root);
   bind_devices(reader, file);
+  if (!file.lidar.parameters.empty() && file.lidar.driver != "mrpt")
+    urg.fail("parameters", "are passed to MRPT's drivers; `driver: mrpt` is missing");
   read_settings(root, file.settings);
   root.finish();
   settle(file, robot::RobotModel(file.robot.model));

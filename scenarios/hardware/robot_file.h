@@ -2,6 +2,8 @@
 
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "robot/drivers/real_robot.h"
 #include "scenarios/config/scenario.h"
@@ -13,7 +15,8 @@ struct LidarSettings {
   std::string driver = "scip";            ///< our own, or `mrpt`
   std::string mrpt_class = "CHokuyoURG";  ///< which of MRPT's drivers
   std::string port;
-  double delay = 0.0;           ///< scans are so much older than their stamps say [s]
+  std::vector<std::pair<std::string, std::string>> parameters;  ///< of MRPT's configuration section, passed through
+  double delay = 0.0;                                           ///< scans are so much older than their stamps say [s]
   bool no_echo_is_miss = true;  ///< "no echo" counts as nothing in range, else as no measurement
 };
 

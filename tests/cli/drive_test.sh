@@ -34,6 +34,10 @@ robot=$source/robots/pioneer_urg.yaml
 expect_exit 2 "no device is asked for" "$rubble" emulate small.yaml
 expect_exit 2 "there is no fault 'base-fire'" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --fault base-fire@3
 expect_exit 2 "NAME@SECONDS" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --fault base-silence
+expect_exit 2 "that device is not played" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --fault urg-silence@3
+for start in inf,0,0 0,nan,0 0,0,1e300; do
+  expect_exit 2 "--odometry-start" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --time-limit 1 --odometry-start $start
+done
 expect_exit 3 "did you mean" "$rubble" drive "$robot" --set safety.lidar_silense_s=1
 expect_exit 3 "tcp:nowhere" "$rubble" drive "$robot" --urg tcp:nowhere
 expect_exit 3 "nonsense.yaml" "$rubble" drive nonsense.yaml
@@ -53,8 +57,11 @@ start_emulator --fault base-unplug@12
 code=$?
 stop_emulator
 [[ $code == 0 ]] || fail "the drive ended with $code: $(tail -3 err.txt)"
-grep -q "base: silent for" err.txt || fail "the unplugged base is not named"
-sed -n '/base: silent for/,$p' err.txt | grep -q "base: reports" || fail "the base did not come back"
+# Only what is said once the motors are on is about the fault: at the start each device is named until it reports.
+sed -n '/motors on/,$p' err.txt >underway.txt
+grep -q "rubble: base: " underway.txt || fail "the unplugged base is not named"
+sed -n '/rubble: base: /,$p' underway.txt | grep -q "base: reports" || fail "the base did not come back"
+! grep -q "rubble: urg: .*not reported" underway.txt || fail "the scanner is named in the base's place"
 for file in log.rlog devices.bytes robot.yaml scenario.yaml estimate.tum map.tif map.png score.json; do
   [[ -s driven/$file ]] || fail "driven/$file is missing"
 done

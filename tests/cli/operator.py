@@ -175,7 +175,7 @@ try:
     pressed = time.time()
     drive.press("x")
     code = drive.wait()
-    check(code is not None and "emergency stop" in drive.text, "a key ends the drive (exit code %s)" % code)
+    check(code == 130 and "emergency stop" in drive.text, "a key ends the drive with 130 (%s)" % code)
     check_stop("a key", pressed)
 
     # So is SIGUSR1.
@@ -184,8 +184,38 @@ try:
     sent = time.time()
     os.kill(drive.pid, signal.SIGUSR1)
     code = drive.wait()
-    check(code is not None and "emergency stop" in drive.text, "SIGUSR1 ends the drive (exit code %s)" % code)
+    check(code == 130 and "emergency stop" in drive.text, "SIGUSR1 ends the drive with 130 (%s)" % code)
     check_stop("SIGUSR1", sent)
+
+    # What else a terminal can send stops too, and leaves a whole folder: no drive is ended or suspended on the spot.
+    for name, strike in (
+            ("Ctrl-Z", lambda: drive.press("\x1a")), ("Ctrl-backslash", lambda: drive.press("\x1c")),
+            ("SIGQUIT", lambda: os.kill(drive.pid, signal.SIGQUIT)),
+            ("SIGTSTP", lambda: os.kill(drive.pid, signal.SIGTSTP))):
+        drive = Drive(name)
+        check(wait_for(lambda: "motors on" in drive.look()), name + ": motors on")
+        sent = time.time()
+        strike()
+        code = drive.wait()
+        check(code == 130, "%s ends the drive with 130 (%s)" % (name, code))
+        check_stop(name, sent)
+        check(os.path.exists(name + "/score.json"), name + ": its folder is complete")
+
+    # A second Ctrl-C is in a hurry: the base is told to stop, whatever else is left undone.
+    drive = Drive("hurry")
+    check(wait_for(lambda: drive.look() is not None and drives_now()), "exploring: it drives")
+    sent = time.time()
+    os.kill(drive.pid, signal.SIGINT)
+    time.sleep(0.002)
+    os.kill(drive.pid, signal.SIGINT)
+    check(drive.wait() == 130, "two Ctrl-C end the drive with 130")
+    check_stop("two Ctrl-C", sent)
+
+    # Keys are heard while devices are waited for.
+    drive = Drive("waiting", "--teleop", "--heartbeat", "nobody_touches_this")
+    check(wait_for(lambda: "heartbeat: has not reported" in drive.look()), "waiting: it waits for the heartbeat")
+    drive.press("wwwq")
+    check(drive.wait(15) == 130, "waiting: Q ends a drive that waits")
 
     # Ctrl-C at the terminal.
     drive = Drive("interrupt")

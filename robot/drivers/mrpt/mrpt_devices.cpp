@@ -204,7 +204,7 @@ class MrptScanner : public Scanner {
       status.worst_latency = std::max(status.worst_latency, latency);
       status.clock_drift = map_->drift();
     });
-    queue_.put(std::move(scan));
+    queue_.put(std::move(scan), now_());
   }
 
   void set_ranges(const CObservation2DRangeScan& from, LaserScan& to) const {

@@ -91,7 +91,9 @@ bool becomes_ready(Device& device, const std::string& word, double patience) {
 
 /// The unit that levels the scanner; its servos stay where they are.
 std::optional<FoundDevice> probe_levelling(const std::string& word) {
-  LevellingUnit unit({});
+  LevellingUnitSettings settings;
+  settings.passive = true;
+  LevellingUnit unit(settings);
   if (!becomes_ready(unit, word, kLevellingPatience)) return std::nullopt;
   const LevellingIdentity& said = unit.identity();
   FoundDevice found;

@@ -106,7 +106,7 @@ struct ScipScanner::Impl {
       status.clock_drift = maker.map().drift();
       status.clock_doubt = maker.map().doubt().value_or(0.0);
     });
-    queue.put(std::move(made->scan));
+    queue.put(std::move(made->scan), host_now());
   }
 };
 

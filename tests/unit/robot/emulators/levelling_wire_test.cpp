@@ -151,6 +151,22 @@ TEST(LevellingWire, ADeadSensorIsSilentButTold) {
   EXPECT_GT(wire.accelerations.size(), before);
 }
 
+TEST(LevellingWire, WithADeadSensorTheServosHold) {
+  Wire wire;
+  wire.run(1.0);
+  wire.driver.aim({deg_to_rad(9.0), 0.0});
+  wire.run(0.5);
+  wire.unit.fail("sensor", wire.now);
+  wire.run(0.1);
+  wire.driver.aim({deg_to_rad(-9.0), 0.0});
+  wire.run(0.3);
+  EXPECT_NEAR(wire.unit.aim().pitch, deg_to_rad(9.0), deg_to_rad(0.05)) << "an angle that nothing has measured";
+  wire.run(1.0);
+  wire.driver.aim({deg_to_rad(-9.0), 0.0});
+  wire.run(0.3);
+  EXPECT_NEAR(wire.unit.aim().pitch, deg_to_rad(-9.0), deg_to_rad(0.05));
+}
+
 TEST(LevellingWire, DamagedLinesAreNeverMeasurements) {
   for (const char* name : {"lost", "split", "doubled", "junk", "sums"}) {
     Wire wire;

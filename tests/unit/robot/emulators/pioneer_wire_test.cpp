@@ -265,6 +265,64 @@ TEST(PioneerWire, AnEmergencyStopStopsAtOnceAndStaysUntilEnabled) {
   EXPECT_FALSE(wire.base.motors_on());
 }
 
+/// What the robot's own buttons stop stays stopped until the operator says so, whatever is asked for meanwhile.
+class StoppedAtTheRobot : public testing::TestWithParam<std::pair<const char*, Pioneer::Hold>> {};
+
+TEST_P(StoppedAtTheRobot, StaysStoppedUntilItIsRearmed) {
+  const auto [fault, hold] = GetParam();
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.4, 0.0);
+  wire.run(2.0);
+  ASSERT_EQ(wire.driver.hold(), Pioneer::Hold::None);
+  ASSERT_TRUE(wire.base.fail(fault, wire.now));
+  wire.run(0.3);
+  EXPECT_EQ(wire.driver.hold(), hold);
+  const double there = wire.truth.x;
+  for (int i = 0; i < 50; ++i) {
+    wire.driver.enable(true);
+    wire.driver.drive({0.4, 0.0});
+    wire.run(0.1);
+    ASSERT_FALSE(wire.base.motors_on()) << "switched on again after " << 0.1 * i << " s";
+  }
+  EXPECT_EQ(wire.truth.x, there);
+  wire.driver.rearm();
+  wire.go(0.4, 0.0);
+  wire.run(2.0);
+  EXPECT_TRUE(wire.base.motors_on());
+  EXPECT_GT(wire.truth.x, there + 0.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Buttons, StoppedAtTheRobot,
+                         testing::Values(std::make_pair("button", Pioneer::Hold::EmergencyButton),
+                                         std::make_pair("motors", Pioneer::Hold::MotorsOff)));
+
+TEST(PioneerWire, APressedButtonCannotBeRearmed) {
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.4, 0.0);
+  wire.base.fail("button", wire.now);
+  wire.run(0.5);
+  wire.driver.rearm();
+  EXPECT_EQ(wire.driver.hold(), Pioneer::Hold::EmergencyButton);
+}
+
+TEST(PioneerWire, MotorsThatWeSwitchOffOrThatARestartLeavesOffAreNoHold) {
+  Wire wire;
+  wire.run(1.0);
+  for (int i = 0; i < 3; ++i) {
+    wire.go(0.2, 0.0);
+    wire.run(0.5);
+    wire.driver.enable(false);
+    wire.run(0.05 * i);
+  }
+  wire.go(0.2, 0.0);
+  wire.base.fail("reset", wire.now);
+  wire.run(8.0);
+  EXPECT_EQ(wire.driver.hold(), Pioneer::Hold::None);
+  EXPECT_TRUE(wire.driver.motors_on());
+}
+
 TEST(PioneerWire, TheFarewellLeavesARobotAtRest) {
   Wire wire;
   wire.run(1.0);

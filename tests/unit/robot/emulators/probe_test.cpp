@@ -89,6 +89,7 @@ TEST(Probe, LevellingUnitTellsWhoItIsAndWhatItFeels) {
   EXPECT_EQ(found->kind, "levelling unit");
   EXPECT_EQ(fact(*found, "model"), "LEV1");
   EXPECT_EQ(fact(*found, "feels"), "1.00 m/s^2 forward, -0.50 m/s^2 left");
+  server.with([&] { EXPECT_FALSE(unit.servos_on()) << "who only asks moves nothing"; });
 }
 
 TEST(Probe, SilentPortIsNoDeviceAndAClosedOneIsLost) {

@@ -1,8 +1,11 @@
 // The real robot against its emulated devices, over TCP on this machine.
 #include "robot/drivers/real_robot.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -12,6 +15,7 @@
 #include <thread>
 
 #include "robot/drivers/black_box_replay.h"
+#include "robot/drivers/descriptor.h"
 #include "robot/drivers/heartbeat.h"
 #include "robot/drivers/host_clock.h"
 #include "robot/drivers/scan_queue.h"
@@ -49,7 +53,7 @@ class ToldScanner : public Scanner {
     scan.stamp = now - 0.08;
     scan.ranges.assign(10, 1.0f);
     queue_.update([](ScannerStatus& status) { ++status.scans; });
-    queue_.put(scan);
+    queue_.put(scan, now);
   }
 
  private:
@@ -60,7 +64,7 @@ class ToldScanner : public Scanner {
 class Bench {
  public:
   explicit Bench(RealRobotSettings settings = {}) : box(folder.file("devices.bytes")) {
-    settings.base_port = base_server.port();
+    if (settings.base_port.empty()) settings.base_port = base_server.port();
     settings.levelling_port = unit_server.port();
     settings.safety.start = 10.0;
     settings.safety.give_up = 10.0;
@@ -204,6 +208,75 @@ TEST(RealRobot, AnEmergencyStopEndsTheRun) {
   EXPECT_TRUE(bench.robot->status().emergency);
 }
 
+TEST(RealRobot, TheButtonAtTheRobotHoldsItUntilTheOperatorRearmsIt) {
+  Bench bench;
+  bench.drive(0.3, 2.0);
+  ASSERT_TRUE(Bench::soon([&] { return bench.speed > 0.0; }));
+  std::vector<std::string> named;
+  std::atomic<bool> rearm{false};
+  bool motors_came_on = false;
+  bench.robot->while_waiting([&](const RobotStatus& status) {
+    named.insert(named.end(), status.silent.begin(), status.silent.end());
+    if (rearm) bench.robot->rearm();
+    bench.base_server.with([&] { motors_came_on = motors_came_on || (bench.arcos.motors_on() && !rearm); });
+    return true;
+  });
+  std::thread core([&] { bench.drive(0.3, 12.0); });
+  bench.base_server.with([&] { bench.arcos.fail("button", host_now()); });
+  EXPECT_TRUE(Bench::soon([&] { return bench.robot->status().held && bench.speed == 0.0; }));
+  sleep_until(host_now() + 3.0);  // the button is released after 2 s
+  EXPECT_TRUE(bench.robot->status().held);
+  EXPECT_EQ(bench.speed, 0.0);
+  rearm = true;
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0; }));
+  core.join();
+  EXPECT_FALSE(motors_came_on);
+  EXPECT_THAT(named, testing::Contains("base: emergency button pressed"));
+}
+
+TEST(RealRobot, AMissingBaseIsNotTakenForTheScanner) {
+  RealRobotSettings settings;
+  settings.base_port = "pty:/nonexistent/base";
+  settings.heartbeat = "/nonexistent/beat";
+  Bench bench(settings);
+  EXPECT_TRUE(Bench::soon([&] { return bench.scanner.status().scans > 3; }));
+  std::vector<std::string> named = bench.robot->status().silent;
+  EXPECT_THAT(named, testing::Contains(testing::StartsWith("base: ")));
+  EXPECT_THAT(named, testing::Not(testing::Contains(testing::StartsWith("urg: "))));
+}
+
+TEST(RealRobot, TheOperatorIsHeardWhileTheCoreIsBusy) {
+  for (const OperatorWish wish : {OperatorWish::Stop, OperatorWish::EmergencyStop}) {
+    RealRobotSettings settings;
+    settings.safety.core_silence = 60.0;  // so the core's silence is not what stops it
+    Bench bench(settings);
+    bench.drive(0.3, 2.0);
+    ASSERT_TRUE(Bench::soon([&] { return bench.speed > 0.0; }));
+    bench.robot->listen([wish] { return wish; });
+    EXPECT_TRUE(Bench::soon([&] {
+      bool on = true;
+      bench.base_server.with([&] { on = bench.arcos.motors_on(); });
+      return !on && bench.speed == 0.0;
+    }));
+    bench.robot->listen({});
+  }
+}
+
+TEST(RealRobot, WhoLeavesAtOnceSaysTheFarewellFirst) {
+  RealRobotSettings settings;
+  settings.safety.core_silence = 60.0;
+  Bench bench(settings);
+  bench.drive(0.3, 2.0);
+  std::atomic<int> left{0};
+  bench.robot->listen([] { return OperatorWish::Leave; }, [&] { ++left; });
+  EXPECT_TRUE(Bench::soon([&] { return left == 1; }));
+  EXPECT_TRUE(Bench::soon([&] {
+    bool open = true;
+    bench.base_server.with([&] { open = bench.arcos.open() || bench.arcos.motors_on(); });
+    return !open && bench.speed == 0.0;
+  }));
+}
+
 TEST(RealRobot, ItsEndLeavesTheBaseAtRest) {
   Bench bench;
   bench.drive(0.3, 2.0);
@@ -244,6 +317,21 @@ TEST(Heartbeat, AFileMustBeTouchedAgain) {
   EXPECT_EQ(heartbeat.last(start + 2.0), start + 2.0);
   EXPECT_EQ(heartbeat.last(start + 5.0), start + 2.0);
   EXPECT_EQ(Heartbeat("").last(start), start) << "nobody is asked for";
+}
+
+TEST(Heartbeat, AFullPipeIsNotEmptiedAtOnce) {
+  Folder folder;
+  ASSERT_EQ(::mkfifo(folder.file("beat").c_str(), 0600), 0);
+  Heartbeat heartbeat(folder.file("beat"));
+  const Stamp start{1'000'000'000};
+  EXPECT_EQ(heartbeat.last(start), Stamp::never());
+  const Descriptor writer(::open(folder.file("beat").c_str(), O_WRONLY | O_NONBLOCK));
+  const std::string much(32768, 'x');
+  ASSERT_EQ(::write(writer.get(), much.data(), much.size()), static_cast<ssize_t>(much.size()));
+  EXPECT_EQ(heartbeat.last(start + 1.0), start + 1.0);
+  int waiting = 0;
+  ASSERT_EQ(::ioctl(writer.get(), FIONREAD, &waiting), 0);
+  EXPECT_GT(waiting, 0) << "a writer without pause would keep the reader for ever";
 }
 
 TEST(BlackBox, ATornEndIsDroppedAndOtherFilesAreRefused) {
