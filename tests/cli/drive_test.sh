@@ -61,7 +61,7 @@ stop_emulator
 sed -n '/motors on/,$p' err.txt >underway.txt
 grep -q "rubble: base: " underway.txt || fail "the unplugged base is not named"
 sed -n '/rubble: base: /,$p' underway.txt | grep -q "base: reports" || fail "the base did not come back"
-! grep -q "rubble: urg: .*not reported" underway.txt || fail "the scanner is named in the base's place"
+! sed -n '/rubble: base: /,/base: reports/p' underway.txt | grep -q "rubble: urg: " || fail "the scanner is named in the base's place"
 for file in log.rlog devices.bytes robot.yaml scenario.yaml estimate.tum map.tif map.png score.json; do
   [[ -s driven/$file ]] || fail "driven/$file is missing"
 done

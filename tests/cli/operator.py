@@ -211,6 +211,20 @@ try:
     check(drive.wait() == 130, "two Ctrl-C end the drive with 130")
     check_stop("two Ctrl-C", sent)
 
+    # Who reads what the drive prints may go: the drive does not end of it.
+    piped = subprocess.Popen([RUBBLE, "drive", ROBOT, *PORTS, "--out", "piped"], stdin=subprocess.DEVNULL,
+                             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    for line in piped.stderr:
+        if "motors on" in line:
+            break
+    piped.stderr.close()
+    time.sleep(3.0)
+    check(piped.poll() is None, "a broken pipe does not end the drive (%s)" % piped.poll())
+    sent = time.time()
+    piped.send_signal(signal.SIGINT)
+    check(piped.wait(30) == 130, "after a broken pipe Ctrl-C ends it with 130 (%s)" % piped.returncode)
+    check_stop("Ctrl-C after a broken pipe", sent)
+
     # Keys are heard while devices are waited for.
     drive = Drive("waiting", "--teleop", "--heartbeat", "nobody_touches_this")
     check(wait_for(lambda: "heartbeat: has not reported" in drive.look()), "waiting: it waits for the heartbeat")
