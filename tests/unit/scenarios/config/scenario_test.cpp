@@ -68,7 +68,8 @@ TEST_F(ScenarioFile, ResolvedScenarioReadsBackToItself) {
 }
 
 TEST_F(ScenarioFile, OverridesWinOverTheFile) {
-  const std::string path = write("s.yaml", "arena: {generate: {}}\nseed: 1\nrobot: {levelling: true}\nmapper: {kind: paper}\n");
+  const std::string path =
+      write("s.yaml", "arena: {generate: {}}\nseed: 1\nrobot: {levelling: true}\nmapper: {kind: paper}\n");
   const Scenario s = load_scenario(path, {{"robot.levelling", "false"}, {"seed", "9"}, {"mapper.particles", "50"}});
   EXPECT_FALSE(s.levelling.on);
   EXPECT_EQ(s.seed, 9u);
