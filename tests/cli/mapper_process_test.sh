@@ -18,7 +18,7 @@ c++ -O1 -Wall -Wextra -Werror -o cpp_mapper "$source/examples/cpp_mapper/mapper.
 json_holds cpp/score.json "j['score'] is not None and j['area_known_m2'] > 8"
 
 # Our own mapper, asked through the protocol, gives the same bits.
-"$rubble" run s.yaml --out paper >/dev/null
+"$rubble" run s.yaml --set mapper.kind=paper --out paper >/dev/null
 "$rubble" run s.yaml --out served --mapper-command "$rubble mapper-process paper" >/dev/null || fail "served: $?"
 for name in map.tif map.png map.pgm estimate.tum truth.tum pois.csv; do
   cmp "paper/$name" "served/$name" || fail "$name of the served mapper differs"
