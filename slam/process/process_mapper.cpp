@@ -143,16 +143,9 @@ void ProcessMapper::take(const MapperAnswer& answer) {
   if (answer.map) take_map(*answer.map);
 }
 
-/// Cells keep their places: who remembers cells of an older map finds them in a younger one.
 void ProcessMapper::take_map(const AnsweredMap& map) {
-  if (has_map_) {
-    const GridFrame& before = map_.frame();
-    const double x = (map.frame.x0 - before.x0) / before.resolution;
-    const double y = (map.frame.y0 - before.y0) / before.resolution;
-    if (map.frame.resolution != before.resolution) throw BadMessage("the map's resolution changed within the run");
-    if (std::abs(x - std::round(x)) > 0.01 || std::abs(y - std::round(y)) > 0.01)
-      throw BadMessage("the map's corner moved by a part of a cell; it may move by whole cells only");
-  }
+  if (has_map_ && map.frame.resolution != map_.frame().resolution)
+    throw BadMessage("the map's resolution changed within the run");
   has_map_ = true;
   map_.assign(map.frame, map.seen, map.occupied);
 }

@@ -17,11 +17,13 @@ c++ -O1 -Wall -Wextra -Werror -o cpp_mapper "$source/examples/cpp_mapper/mapper.
 "$rubble" run s.yaml --out cpp --mapper-command ./cpp_mapper >/dev/null || fail "the C++ example ended with $?"
 json_holds cpp/score.json "j['score'] is not None and j['area_known_m2'] > 8"
 
-# Our own mapper, asked through the protocol, gives the same bits.
-"$rubble" run s.yaml --set mapper.kind=paper --out paper >/dev/null
-"$rubble" run s.yaml --out served --mapper-command "$rubble mapper-process paper" >/dev/null || fail "served: $?"
-for name in map.tif map.png map.pgm estimate.tum truth.tum pois.csv; do
-  cmp "paper/$name" "served/$name" || fail "$name of the served mapper differs"
+# Our own mappers, asked through the protocol, give the same bits.
+for kind in paper robust; do
+  "$rubble" run s.yaml --set mapper.kind=$kind --out $kind >/dev/null || fail "$kind: $?"
+  "$rubble" run s.yaml --out served-$kind --mapper-command "$rubble mapper-process $kind" >/dev/null || fail "served $kind: $?"
+  for name in map.tif map.png map.pgm estimate.tum truth.tum pois.csv; do
+    cmp "$kind/$name" "served-$kind/$name" || fail "$name of the served mapper $kind differs"
+  done
 done
 
 # A command runs only when the user says so.
