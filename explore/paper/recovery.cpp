@@ -14,7 +14,7 @@ constexpr double kBarTime = 60.0;       ///< for the first failure; doubles with
 constexpr double kSamePlace = 0.5;      ///< [m]
 constexpr double kTurningSpeed = 0.05;  ///< slower is a turn on the spot [m/s]
 constexpr double kLean = 0.03;          ///< getting free, the body may come so much closer to walls [m]
-constexpr int kMaxFailedEscapes = 2;    ///< in a row
+constexpr int kMaxFailedEscapes = 6;    ///< in a row
 
 TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
 
