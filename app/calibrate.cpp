@@ -13,6 +13,7 @@
 #include "app/terminal.h"
 #include "base/angle.h"
 #include "base/error.h"
+#include "base/text/text_file.h"
 
 namespace rubble::app {
 namespace {
@@ -59,13 +60,6 @@ void print_setup(const scenarios::CalibratedRobot& robot) {
               c.scans, c.driven, rad_to_deg(c.turned), 1e3 * c.position_error, rad_to_deg(c.turn_error));
 }
 
-void write(const std::string& path, const std::string& text) {
-  std::FILE* file = std::fopen(path.c_str(), "w");
-  const bool written = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  if ((file != nullptr && std::fclose(file) != 0) || !written)
-    throw RunError(path + ": cannot be written; give --out a path in a folder that exists and has room");
-}
-
 /// The robot file that a recorded run was driven with, where it is one of `rubble drive` or `calibrate`.
 std::string recorded_robot(const std::string& run) {
   const std::string file = (fs::path(run) / "robot.yaml").string();
@@ -103,7 +97,7 @@ int calibrate(const CalibrateArguments& arguments) {
   }
   const scenarios::CalibratedRobot robot = scenarios::calibrate_from_log(recorded_log(run), in_force, file);
   print_setup(robot);
-  write(arguments.out, scenarios::calibrated_yaml(robot, run));
+  write_text_file(arguments.out, scenarios::calibrated_yaml(robot, run));
   print_row("written", arguments.out);
   return kOk;
 }
