@@ -255,17 +255,19 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     robot::RealRobot real(settings, *lidar, &box);
     robot::RecordingRobot recorded(real, folder.file("log.rlog"), resolved_yaml(file.settings));
     Driver driver(file, options, folder, real, core);
+    const auto end_with = [&](const std::exception& lost) { report.failure = report.end = lost.what(); };
     try {
-      try {
-        report.end = driver.run(recorded);
-      } catch (const robot::DeviceLost& lost) {
-        report.failure = report.end = lost.what();
-      }
-      real.stop();  // what follows may take seconds
+      report.end = driver.run(recorded);
+    } catch (const robot::DeviceLost& lost) {
+      end_with(lost);
+    } catch (const slam::MapperLost& lost) {
+      end_with(lost);
+    }
+    real.stop();  // what follows may take seconds
+    try {
       core.finish();
     } catch (const slam::MapperLost& lost) {
-      real.stop();
-      report.failure = report.end = lost.what();
+      end_with(lost);
     }
     report.interrupted = driver.interrupted();
     recorded.flush();
