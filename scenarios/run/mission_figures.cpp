@@ -133,15 +133,6 @@ double clearance(const arenas::Arena& arena, const Edges& edges, const robot::Ro
   return nearest;
 }
 
-arenas::Viewer viewer_of(const robot::RobotModel& model) {
-  arenas::Viewer viewer;
-  viewer.radius = 0.5 * model.width;
-  viewer.height = model.T_base_laser.z + kAboveLaser;
-  viewer.climbable_step = model.climbable_step;
-  viewer.range = model.laser.range_max;
-  return viewer;
-}
-
 /// Whether nothing stands between two places; the last stretch, the victim's own box, is not asked about.
 bool in_sight(const OccupancyGrid& truth, const TPoint2D& from, const TPoint2D& victim) {
   constexpr double kOwnBox = 0.35;  ///< [m]
@@ -199,6 +190,15 @@ scoring::DriveFigures drive_figures(const arenas::Arena& arena, const Trajectory
   return figures;
 }
 
+arenas::Viewer viewer_of(const robot::RobotModel& model) {
+  arenas::Viewer viewer;
+  viewer.radius = 0.5 * model.width;
+  viewer.height = model.T_base_laser.z + kAboveLaser;
+  viewer.climbable_step = model.climbable_step;
+  viewer.range = model.laser.range_max;
+  return viewer;
+}
+
 int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model) {
   const OccupancyGrid truth = arenas::truth_map(arena);
   const Grid<std::uint8_t> reachable = arenas::reachable_mask(arena, truth, viewer_of(model));
@@ -229,15 +229,15 @@ double visible_share(const arenas::Arena& arena, const robot::RobotModel& model)
   return all == 0 ? 0.0 : static_cast<double>(free(visible)) / static_cast<double>(all);
 }
 
-bool off_the_floor(const arenas::Arena& arena, const TPose2D& T_arena_base) {
-  return !std::isfinite(arenas::floor_height(arena, {T_arena_base.x, T_arena_base.y}));
+bool off_the_floor(const arenas::PatchIndex& floor, const TPose2D& T_arena_base) {
+  return !std::isfinite(floor.floor_height({T_arena_base.x, T_arena_base.y}));
 }
 
 scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajectory& truth,
                                         const robot::RobotModel& model, const Core& core) {
   scoring::MissionFigures out;
   out.end_code = core.explorer() != nullptr ? code_of(core.explorer()->end()) : "time";
-  if (!truth.empty() && off_the_floor(arena, truth.back().pose)) out.end_code = "fell";
+  if (!truth.empty() && off_the_floor(arenas::PatchIndex(arena), truth.back().pose)) out.end_code = "fell";
   out.drive = drive_figures(arena, truth, model);
   out.stalls = static_cast<std::uint64_t>(core.stalls());
   out.area_per_min = core.area_per_minute();

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "arenas/model/arena.h"
+#include "arenas/model/patch_index.h"
+#include "arenas/truth/visible.h"
 #include "base/trajectory.h"
 #include "explore/explorer.h"
 #include "robot/model.h"
@@ -23,8 +25,11 @@ int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model);
 /// What of an arena's floor the laser can see from where the robot can get, 0 to 1.
 double visible_share(const arenas::Arena& arena, const robot::RobotModel& model);
 
+/// What decides where that robot gets and how far it sees.
+arenas::Viewer viewer_of(const robot::RobotModel& model);
+
 /// Whether no floor is below the robot's middle: it drove over the rim.
-bool off_the_floor(const arenas::Arena& arena, const mrpt::math::TPose2D& T_arena_base);
+bool off_the_floor(const arenas::PatchIndex& floor, const mrpt::math::TPose2D& T_arena_base);
 
 /// How the mission went: what the truth and the explorer say.
 scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajectory& truth,

@@ -149,13 +149,7 @@ namespace {
 OccupancyGrid truth_to_score_with(const arenas::Arena& arena, const Scenario& scenario) {
   const OccupancyGrid truth = arenas::truth_map(arena);
   if (!scenario.visible_truth) return truth;
-  constexpr double kAboveLaser = 0.05;  ///< the body ends so much above the laser [m]
-  arenas::Viewer viewer;
-  viewer.radius = 0.5 * scenario.robot.width;
-  viewer.height = scenario.robot.T_base_laser.z + kAboveLaser;
-  viewer.climbable_step = scenario.robot.climbable_step;
-  viewer.range = scenario.robot.laser.range_max;
-  return arenas::visible_truth(arena, truth, viewer);
+  return arenas::visible_truth(arena, truth, viewer_of(scenario.robot));
 }
 
 }  // namespace
@@ -185,8 +179,7 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   const arenas::PatchIndex floor(arena);
   hooks.over = [&]() -> std::string {
     if (simulated.truth().empty()) return "";
-    const mrpt::math::TPose2D& pose = simulated.truth().back().pose;
-    return std::isfinite(floor.floor_height({pose.x, pose.y})) ? "" : "the robot drove off the floor";
+    return off_the_floor(floor, simulated.truth().back().pose) ? "the robot drove off the floor" : "";
   };
   hooks.each_second = [&] { folder.append_truth(simulated.truth()); };
   LoopEnd end;
