@@ -24,7 +24,7 @@ struct TrackerConfig {
   double most_speed = 0.8;         ///< of a robot whose odometry is of no use [m/s] ...
   double most_turn_rate = 1.8;     ///< ... [rad/s]
   double lost_inliers = 0.35;      ///< share below which the place counts as lost
-  double search_cell = 0.0;        ///< raster of the search [m]
+  double search_cell = 0.05;       ///< raster of the search [m]
   double search_blur = 0.0;        ///< [m]
 };
 

@@ -18,9 +18,7 @@ RobustConfig suited_to(const robot::LaserModel& laser, RobustConfig config) {
   };
   choose(config.tracker.cell, 0.10, 0.15);
   choose(config.tracker.path, 4.0, 10.0);
-  choose(config.tracker.search_cell, 0.05, 0.05);
   choose(config.tracker.search_blur, 0.06, 0.10);
-  choose(config.loop.cell, 0.05, 0.05);
   choose(config.loop.blur, 0.06, 0.10);
   return config;
 }
@@ -56,7 +54,7 @@ void bind(Binder& b, RobustConfig& c) {
     m.number("large_turn_rad", c.tracker.large_turn, 0.05, 10.0);
     m.number("slip_chi2", c.tracker.slip_chi2, 1.0, 1e9);
     m.number("lost_inliers", c.tracker.lost_inliers, 0.0, 1.0);
-    m.number("search_cell_m", c.tracker.search_cell, 0.0, 0.5);
+    m.number("search_cell_m", c.tracker.search_cell, 0.01, 0.5);
     m.number("search_blur_m", c.tracker.search_blur, 0.0, 1.0);
   });
   b.section("loop_search", [&](Binder& l) {
@@ -65,7 +63,7 @@ void bind(Binder& b, RobustConfig& c) {
     l.number("window_per_m", c.loop.window_per_m, 0.0, 1.0);
     l.number("largest_window_m", c.loop.largest_window, 0.1, 20.0);
     l.integer("searches", c.loop.searches, 0, 100);
-    l.number("cell_m", c.loop.cell, 0.0, 0.5);
+    l.number("cell_m", c.loop.cell, 0.01, 0.5);
     l.number("blur_m", c.loop.blur, 0.0, 1.0);
     l.number("least_score", c.loop.least_score, 0.0, 1.0);
     l.number("runner_up", c.loop.runner_up, 0.0, 1.0);

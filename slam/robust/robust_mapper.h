@@ -16,7 +16,7 @@ namespace rubble::slam {
 
 /// Parameters of the robust mapper; docs/slam.md says what they were chosen by.
 struct RobustConfig {
-  RobustConfig() { loop.cell = loop.blur = 0.0; }  // by the reach of the scanner, see suited_to()
+  RobustConfig() { loop.blur = 0.0; }  // by the reach of the scanner, see suited_to()
 
   int map_cells = 800;                 ///< cells a side at the start; the map grows when needed
   double resolution = 0.05;            ///< cell edge [m]
