@@ -1,13 +1,13 @@
 #include "slam/paper/paper_mapper.h"
 
 #include <cmath>
-#include <deque>
 #include <optional>
 
 #include "base/planar.h"
 #include "base/rng.h"
 #include "slam/scan/level_scan.h"
 #include "slam/scan/odometry_track.h"
+#include "slam/scan/scan_queue.h"
 
 namespace rubble::slam {
 
@@ -15,25 +15,19 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using robot::LaserScan;
 
-namespace {
-
-constexpr double kLateScan = 2.0;  ///< a scan may begin so long before the newest odometry [s]
-
-}  // namespace
-
 void bind(Binder& b, PaperConfig& c) {
   b.integer("map_cells", c.map_cells, 16, 8000);
   b.number("resolution_m", c.resolution, 0.01, 0.5);
   b.integer("particles", c.particles, 1, 100000);
   b.number("top_share", c.top_share, 0.0001, 1.0);
-  b.number("rotation_error", c.rotation_error, 0.0, 1.0);
-  b.degrees("heading_error_deg_per_m", c.heading_error_per_m, 0.0, 90.0);
-  b.number("distance_error", c.distance_error, 0.0, 1.0);
+  b.number("rotation_error", c.motion_error.rotation, 0.0, 1.0);
+  b.degrees("heading_error_deg_per_m", c.motion_error.heading_per_m, 0.0, 90.0);
+  b.number("distance_error", c.motion_error.distance, 0.0, 1.0);
   b.number("gate_distance_m", c.gate_distance, 0.0, 2.0);
   b.degrees("gate_turn_deg", c.gate_turn, 0.0, 180.0);
   b.boolean("icp", c.icp);
-  b.boolean("carve_misses", c.carve_misses);
-  b.number("max_range_m", c.max_range, 0.0, 1000.0);
+  b.boolean("carve_misses", c.scan.carve_misses);
+  b.number("max_range_m", c.scan.max_range, 0.0, 1000.0);
   b.boolean("deskew", c.deskew);
   b.integer("first_scans", c.first_scans, 1, 1000);
   b.integer("max_map_cells", c.max_map_cells, 16, 20000);
@@ -52,14 +46,12 @@ void bind(Binder& b, PaperConfig& c) {
 struct PaperMapper::Impl {
   Impl(const robot::RobotModel& model, const PaperConfig& config, std::uint64_t seed)
       : config_(config),
-        motion_error_{config.rotation_error, config.heading_error_per_m, config.distance_error},
-        level_scan_(model.T_base_laser, {config.carve_misses, config.max_range, 0.1}),
+        level_scan_(model.T_base_laser, config.scan),
         matcher_(config.matcher),
         map_(config.map_cells, config.map_cells, config.resolution, config.max_map_cells),
         drift_rng_(seed, "drift") {}
 
   void receive(const robot::Inputs& inputs);
-  bool ready(const LaserScan& scan, Stamp now) const;
   void process(const LaserScan& scan);
   void start(Stamp reference, const ScanPoints& points);
   void keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points, const Surface& surface);
@@ -69,18 +61,15 @@ struct PaperMapper::Impl {
   TPose2D refined_motion(const Surface& surface, const TPose2D& T_last_prior);
   std::vector<TPoint2D> hits_to_weigh(const ScanPoints& points, const Surface& surface) const;
   bool moved(const TPose2D& motion) const;
-  std::optional<SweepMotion> sweep_motion(const LaserScan& scan) const;
 
   const PaperConfig config_;
-  const MotionError motion_error_;
   LevelScan level_scan_;
   ScanMatcher matcher_;
   OdometryTrack odometry_;
   CountMap map_;
   Rng drift_rng_;
 
-  std::deque<LaserScan> waiting_;  ///< for odometry from after their reference time
-  Stamp newest_scan_ = Stamp::never();
+  ScanQueue waiting_;
   Particles particles_;
   Trajectory trajectory_;
   std::vector<TPoint2D> last_hits_;
@@ -101,32 +90,15 @@ void PaperMapper::Impl::receive(const robot::Inputs& inputs) {
   if (started_ && !T_odom_scan_ && !odometry_.empty()) T_odom_scan_ = odometry_.pose_at(Stamp::never());
   for (const LaserScan& scan : inputs.scans) {
     ++counts_.scans;
-    if (scan.ranges.empty() || scan.middle() <= newest_scan_) {
-      ++counts_.out_of_order;
-      continue;
-    }
-    newest_scan_ = scan.middle();
-    waiting_.push_back(scan);
+    if (!waiting_.add(scan)) ++counts_.out_of_order;
   }
-  while (!waiting_.empty() && ready(waiting_.front(), inputs.now)) {
-    process(waiting_.front());
-    waiting_.pop_front();
-  }
-  if (odometry_.empty()) return;
-  // The next scan may be old when it comes: it began a sweep and a transmission ago.
-  const Stamp oldest = odometry_.newest() - kLateScan;
-  odometry_.forget_before(waiting_.empty() ? oldest : std::min(oldest, waiting_.front().stamp));
-}
-
-/// "Interpolated by the odometry data reported right before and right after": wait for the latter, but not for ever.
-bool PaperMapper::Impl::ready(const LaserScan& scan, Stamp now) const {
-  const Stamp reference = scan.middle();
-  return odometry_.newest() >= reference || now - reference > OdometryTrack::kMaxExtrapolation;
+  while (waiting_.ready(odometry_, inputs.now)) process(waiting_.take());
+  if (!odometry_.empty()) odometry_.forget_before(waiting_.oldest_needed(odometry_));
 }
 
 void PaperMapper::Impl::process(const LaserScan& scan) {
   const Stamp reference = scan.middle();
-  const std::optional<SweepMotion> sweep = sweep_motion(scan);
+  const std::optional<SweepMotion> sweep = config_.deskew ? sweep_motion(odometry_, scan) : std::nullopt;
   const ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr);
   if (!started_) return start(reference, points);
 
@@ -142,8 +114,8 @@ void PaperMapper::Impl::process(const LaserScan& scan) {
 
   const std::vector<TPoint2D> judged = hits_to_weigh(points, surface);
   const Particles resampled = gate ? resample(particles_) : particles_;
-  const Particles drifted = drift(resampled, T_last_now, motion_error_, drift_rng_);  // Fig. 5
-  const Particles measured = measure(drifted, judged, map_);                          // eq. (2)
+  const Particles drifted = drift(resampled, T_last_now, config_.motion_error, drift_rng_);  // Fig. 5
+  const Particles measured = measure(drifted, judged, map_);                                 // eq. (2)
   particles_ = normalise(measured);
   const TPose2D T_map_now = mean_of_best(particles_, config_.top_share);
   keep(reference, T_map_now, points, surface);
@@ -200,13 +172,6 @@ std::vector<TPoint2D> PaperMapper::Impl::hits_to_weigh(const ScanPoints& points,
 
 bool PaperMapper::Impl::moved(const TPose2D& motion) const {
   return length(motion.x, motion.y) >= config_.gate_distance || std::abs(wrap_angle(motion.phi)) >= config_.gate_turn;
-}
-
-std::optional<SweepMotion> PaperMapper::Impl::sweep_motion(const LaserScan& scan) const {
-  if (!config_.deskew || scan.beam_period <= 0.0 || odometry_.empty()) return std::nullopt;
-  const Stamp reference = scan.middle();
-  return SweepMotion{odometry_.between(reference, scan.stamp),
-                     odometry_.between(reference, scan.beam_stamp(scan.ranges.size() - 1))};
 }
 
 PaperMapper::PaperMapper(const robot::RobotModel& model, const PaperConfig& config, std::uint64_t seed)

@@ -9,6 +9,7 @@
 #include "robot/model.h"
 #include "slam/mapper.h"
 #include "slam/paper/particle_filter.h"
+#include "slam/scan/level_scan.h"
 #include "slam/scan/scan_matcher.h"
 
 namespace rubble::slam {
@@ -18,15 +19,12 @@ struct PaperConfig {
   int map_cells = 800;       ///< cells a side at the start; the map grows when needed
   double resolution = 0.05;  ///< cell edge [m]
   int particles = 300;
-  double top_share = 0.05;                       ///< share of heaviest particles whose mean is the pose
-  double rotation_error = 0.05;                  ///< initial rotation error, share of the turn
-  double heading_error_per_m = deg_to_rad(5.0);  ///< rotation error while driving [rad/m]
-  double distance_error = 0.15;                  ///< translation error, share of the distance
+  double top_share = 0.05;              ///< share of heaviest particles whose mean is the pose
+  MotionError motion_error;             ///< by which the particles drift apart
   double gate_distance = 0.15;          ///< mapping step after this much motion [m]; at least 0.02 in the paper
   double gate_turn = deg_to_rad(10.0);  ///< or this much turn [rad]; at least 5 deg in the paper
   bool icp = true;                      ///< refine the odometry by ICP of the last and the current scan
-  bool carve_misses = false;            ///< beams without a return free cells up to the range limit
-  double max_range = 0.0;               ///< returns beyond are dropped [m]; 0: the scanner's own limit
+  LevelScanConfig scan;                 ///< what becomes of beams without a return, and far away
   bool deskew = true;                   ///< place each beam by its own time; the paper does not, and pays for it
   int first_scans = 5;                  ///< so many scans are mapped at the start although the robot stands
   int max_map_cells = 8000;             ///< the map grows up to so many cells a side

@@ -19,7 +19,6 @@ namespace {
 
 using mrpt::math::TPose2D;
 
-constexpr double kLateScan = 2.0;       ///< odometry is kept for scans that come so late [s]
 constexpr int kCounts = 100;            ///< a cell of MRPT's grid becomes so many counts
 constexpr double kNothingKnown = 0.01;  ///< p_occ this close to one half was never observed
 
@@ -32,23 +31,10 @@ void MrptMapper::update(const robot::Inputs& inputs) {
   for (const robot::Odometry& odometry : inputs.odometry) odometry_.add(odometry);
   for (const robot::LaserScan& scan : inputs.scans) {
     ++counts_.scans;
-    if (scan.ranges.empty() || scan.middle() <= newest_scan_) {
-      ++counts_.out_of_order;
-      continue;
-    }
-    newest_scan_ = scan.middle();
-    waiting_.push_back(scan);
+    if (!waiting_.add(scan)) ++counts_.out_of_order;
   }
-  const auto ready = [&](Stamp reference) {
-    return odometry_.newest() >= reference || inputs.now - reference > OdometryTrack::kMaxExtrapolation;
-  };
-  while (!waiting_.empty() && ready(waiting_.front().middle())) {
-    take(waiting_.front());
-    waiting_.pop_front();
-  }
-  if (odometry_.empty()) return;
-  const Stamp oldest = odometry_.newest() - kLateScan;
-  odometry_.forget_before(waiting_.empty() ? oldest : std::min(oldest, waiting_.front().stamp));
+  while (waiting_.ready(odometry_, inputs.now)) take(waiting_.take());
+  if (!odometry_.empty()) odometry_.forget_before(waiting_.oldest_needed(odometry_));
 }
 
 void MrptMapper::take(const robot::LaserScan& scan) {
@@ -58,9 +44,8 @@ void MrptMapper::take(const robot::LaserScan& scan) {
   motion.computeFromOdometry(mrpt::poses::CPose2D(T_odom_scan_ ? T_odom_base - *T_odom_scan_ : TPose2D()), {});
   T_odom_scan_ = T_odom_base;
 
-  const SweepMotion sweep{odometry_.between(reference, scan.stamp),
-                          odometry_.between(reference, scan.beam_stamp(scan.ranges.size() - 1))};
-  const ScanPoints points = level_scan_.points(scan, odometry_.empty() ? nullptr : &sweep);
+  const std::optional<SweepMotion> sweep = sweep_motion(odometry_, scan);
+  const ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr);
   const auto observation = mrpt::obs::CObservation2DRangeScan::Create();
   robot::to_mrpt(as_instant(scan, points), model_.T_base_laser, *observation);
   observation->sensorLabel = "LASER";

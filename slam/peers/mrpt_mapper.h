@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -8,6 +7,7 @@
 #include "slam/mapper.h"
 #include "slam/scan/level_scan.h"
 #include "slam/scan/odometry_track.h"
+#include "slam/scan/scan_queue.h"
 
 namespace mrpt::obs {
 class CActionCollection;
@@ -57,8 +57,7 @@ class MrptMapper : public Mapper {
 
   robot::RobotModel model_;
   OdometryTrack odometry_;
-  std::deque<robot::LaserScan> waiting_;  ///< for odometry from after their reference time
-  Stamp newest_scan_ = Stamp::never();
+  ScanQueue waiting_;
   std::optional<mrpt::math::TPose2D> T_odom_scan_;  ///< at the last scan
 
   /// Where a scan lies on the builder's path.

@@ -11,7 +11,7 @@ constexpr double kFarSight = 8.0;  ///< from this reach a scanner sees surfaces 
 }  // namespace
 
 RobustConfig suited_to(const robot::LaserModel& laser, RobustConfig config) {
-  const double reach = config.max_range > 0.0 ? std::min(config.max_range, laser.range_max) : laser.range_max;
+  const double reach = config.scan.max_range > 0.0 ? std::min(config.scan.max_range, laser.range_max) : laser.range_max;
   const bool far = reach > kFarSight;
   const auto choose = [far](double& value, double near_by, double from_afar) {
     if (value == 0.0) value = far ? from_afar : near_by;
@@ -27,9 +27,9 @@ void bind(Binder& b, RobustConfig& c) {
   b.integer("map_cells", c.map_cells, 16, 8000);
   b.number("resolution_m", c.resolution, 0.01, 0.5);
   b.integer("max_map_cells", c.max_map_cells, 16, 20000);
-  b.number("max_range_m", c.max_range, 0.0, 1000.0);
-  b.boolean("carve_misses", c.carve_misses);
-  b.number("floor_margin_m", c.floor_margin, 0.0, 1.0);
+  b.number("max_range_m", c.scan.max_range, 0.0, 1000.0);
+  b.boolean("carve_misses", c.scan.carve_misses);
+  b.number("floor_margin_m", c.scan.floor_margin, 0.0, 1.0);
   b.boolean("use_tilt", c.use_tilt);
   b.number("map_distance_m", c.map_distance, 0.0, 2.0);
   b.degrees("map_turn_deg", c.map_turn, 0.0, 180.0);

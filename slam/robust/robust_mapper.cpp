@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <optional>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include "slam/robust/key_frames.h"
 #include "slam/robust/stamped_map.h"
 #include "slam/scan/odometry_track.h"
+#include "slam/scan/scan_queue.h"
 
 namespace rubble::slam {
 
@@ -21,7 +21,6 @@ using robot::LaserScan;
 namespace {
 
 constexpr double kAhead = 1.0;             ///< stamps so far in the future are wrong [s]
-constexpr double kLateScan = 2.0;          ///< a scan may begin so long before the newest odometry [s]
 constexpr double kFastest = 10.0;          ///< odometry that goes faster has jumped [m/s]
 constexpr double kFastestTurn = 20.0;      ///< or turns faster [rad/s]
 constexpr double kFastestSweep = 3.0;      ///< the same within one sweep [m/s]
@@ -62,8 +61,8 @@ bool finite(const robot::Odometry& o) {
 }
 
 bool usable(const LaserScan& scan) {
-  return !scan.ranges.empty() && std::isfinite(scan.angle_min) && scan.angle_step > 0.0 &&
-         std::isfinite(scan.angle_step) && scan.beam_period >= 0.0;
+  return std::isfinite(scan.angle_min) && scan.angle_step > 0.0 && std::isfinite(scan.angle_step) &&
+         scan.beam_period >= 0.0;
 }
 
 }  // namespace
@@ -71,19 +70,15 @@ bool usable(const LaserScan& scan) {
 struct RobustMapper::Impl {
   Impl(const robot::RobotModel& model, const RobustConfig& config)
       : config_(config),
-        level_scan_(model.T_base_laser, scan_config(config)),
+        level_scan_(model.T_base_laser, config.scan),
         tilt_(config.tilt),
         tracker_(config.tracker),
         closer_(config.loop, config.tracker.cell, frames_),
         map_(CountMap(config.map_cells, config.map_cells, config.resolution, config.max_map_cells), model.T_base_laser,
-             scan_config(config)) {}
-
-  static LevelScanConfig scan_config(const RobustConfig& config) {
-    return {config.carve_misses, config.max_range, 0.1, config.floor_margin};
-  }
+             config.scan) {}
 
   void receive(const robot::Inputs& inputs);
-  bool ready(const LaserScan& scan, Stamp now) const;
+  bool ready(Stamp now) const;
   void process(const LaserScan& scan);
   TPose2D motion_since_scan(Stamp reference) const;
   ExpectedMotion expected_motion(const LaserScan& scan);
@@ -97,7 +92,6 @@ struct RobustMapper::Impl {
   void close_loops(Work& budget);
   void remember_hits(const ScanPoints& points);
   TPose2D now() const { return frames_.pose(frames_.last()) + T_frame_base_; }
-  std::optional<SweepMotion> sweep_motion(const LaserScan& scan) const;
   std::optional<SweepMotion> sweep_at(const LaserScan& scan, const TPose2D& motion, double time) const;
   bool may_be_mapped(const Tracked& tracked, double doubt, Stamp reference);
   const Trajectory& trajectory() const;
@@ -120,8 +114,7 @@ struct RobustMapper::Impl {
   LoopCloser closer_;
   StampedMap map_;
 
-  std::deque<LaserScan> waiting_;  ///< for odometry and tilt from after their reference time
-  Stamp newest_scan_ = Stamp::never();
+  ScanQueue waiting_;
   std::optional<TPose2D> T_odom_scan_;  ///< at the last scan; nothing while no odometry has come
   TPose2D T_frame_base_;                ///< at the last scan, relative to the newest key frame
   TPose2D T_map_stamped_;               ///< where the map was stamped last
@@ -155,34 +148,25 @@ void RobustMapper::Impl::receive(const robot::Inputs& inputs) {
   if (!scans_.empty() && !T_odom_scan_ && !odometry_.empty()) T_odom_scan_ = odometry_.pose_at(Stamp::never());
   for (const LaserScan& scan : inputs.scans) {
     ++counts_.scans;
-    if (!usable(scan) || scan.middle() <= newest_scan_ || scan.middle() - inputs.now > kAhead) {
-      ++counts_.out_of_order;
-      continue;
-    }
-    newest_scan_ = scan.middle();
-    waiting_.push_back(scan);
+    if (!usable(scan) || scan.middle() - inputs.now > kAhead || !waiting_.add(scan)) ++counts_.out_of_order;
   }
-  while (!waiting_.empty() && ready(waiting_.front(), inputs.now)) {
-    process(waiting_.front());
-    waiting_.pop_front();
-  }
+  while (ready(inputs.now)) process(waiting_.take());
   if (odometry_.empty()) return;
-  const Stamp oldest = odometry_.newest() - kLateScan;
-  odometry_.forget_before(waiting_.empty() ? oldest : std::min(oldest, waiting_.front().stamp));
-  tilt_.forget_before(oldest);
+  odometry_.forget_before(waiting_.oldest_needed(odometry_));
+  tilt_.forget_before(odometry_.newest() - ScanQueue::kLateScan);
 }
 
-bool RobustMapper::Impl::ready(const LaserScan& scan, Stamp now) const {
-  const Stamp reference = scan.middle();
-  const bool moved = odometry_.newest() >= reference || now - reference > OdometryTrack::kMaxExtrapolation;
-  return moved && (!config_.use_tilt || tilt_.ready(reference, now));
+/// A scan waits for odometry, and for its tilt.
+bool RobustMapper::Impl::ready(Stamp now) const {
+  return waiting_.ready(odometry_, now) && (!config_.use_tilt || tilt_.ready(waiting_.front().middle(), now));
 }
 
 void RobustMapper::Impl::process(const LaserScan& scan) {
   const Stamp reference = scan.middle();
   const ExpectedMotion motion = frames_.empty() ? ExpectedMotion{} : expected_motion(scan);
-  std::optional<SweepMotion> sweep =
-      motion.doubt >= 1.0 && motion.carried ? sweep_at(scan, *motion.carried, motion.time) : sweep_motion(scan);
+  std::optional<SweepMotion> sweep = motion.doubt >= 1.0 && motion.carried
+                                         ? sweep_at(scan, *motion.carried, motion.time)
+                                         : sweep_motion(odometry_, scan);
   const std::optional<ScanTilt> tilt = config_.use_tilt ? tilt_.at(reference) : std::nullopt;
   ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr, tilt ? &*tilt : nullptr);
   Cloud cloud = cloud_of(points, config_.cloud);
@@ -262,7 +246,7 @@ ExpectedMotion RobustMapper::Impl::expected_motion(const LaserScan& scan) {
 
 /// A jump between two reports shows sooner within a sweep that lies between them, and its time is the scanner's own.
 bool RobustMapper::Impl::jumps_within(const LaserScan& scan) const {
-  const std::optional<SweepMotion> sweep = sweep_motion(scan);
+  const std::optional<SweepMotion> sweep = sweep_motion(odometry_, scan);
   if (!sweep) return false;
   const double time = scan.beam_stamp(scan.ranges.size() - 1) - scan.stamp;
   const TPose2D motion = sweep->T_ref_last - sweep->T_ref_first;
@@ -281,7 +265,7 @@ std::optional<TPose2D> RobustMapper::Impl::carried(double time) const {
 /// How the base moved during a sweep if it moved by `motion` in `time`.
 std::optional<SweepMotion> RobustMapper::Impl::sweep_at(const LaserScan& scan, const TPose2D& motion,
                                                         double time) const {
-  if (scan.beam_period <= 0.0 || time < kNoDuration || time > kLongestCarry) return sweep_motion(scan);
+  if (scan.beam_period <= 0.0 || time < kNoDuration || time > kLongestCarry) return sweep_motion(odometry_, scan);
   const Stamp reference = scan.middle();
   const auto part = [&](Stamp stamp) {
     const double share = (stamp - reference) / time;
@@ -377,13 +361,6 @@ void RobustMapper::Impl::remember_hits(const ScanPoints& points) {
 
 TPose2D RobustMapper::Impl::motion_since_scan(Stamp reference) const {
   return T_odom_scan_ ? odometry_.pose_at(reference) - *T_odom_scan_ : TPose2D();
-}
-
-std::optional<SweepMotion> RobustMapper::Impl::sweep_motion(const LaserScan& scan) const {
-  if (scan.beam_period <= 0.0 || odometry_.empty()) return std::nullopt;
-  const Stamp reference = scan.middle();
-  return SweepMotion{odometry_.between(reference, scan.stamp),
-                     odometry_.between(reference, scan.beam_stamp(scan.ranges.size() - 1))};
 }
 
 const Trajectory& RobustMapper::Impl::trajectory() const {

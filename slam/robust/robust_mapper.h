@@ -11,19 +11,20 @@
 #include "slam/robust/local_tracker.h"
 #include "slam/robust/loop_closer.h"
 #include "slam/robust/tilt_track.h"
+#include "slam/scan/level_scan.h"
 
 namespace rubble::slam {
 
 /// Parameters of the robust mapper; docs/slam.md says what they were chosen by.
 struct RobustConfig {
-  RobustConfig() { loop.blur = 0.0; }  // by the reach of the scanner, see suited_to()
+  RobustConfig() {
+    scan.floor_margin = 0.08;
+    loop.blur = 0.0;  // by the reach of the scanner, see suited_to()
+  }
 
   int map_cells = 800;                 ///< cells a side at the start; the map grows when needed
   double resolution = 0.05;            ///< cell edge [m]
   int max_map_cells = 8000;            ///< the map grows up to so many cells a side
-  double max_range = 0.0;              ///< returns beyond are dropped [m]; 0: the scanner's own limit
-  bool carve_misses = false;           ///< beams without a return free cells up to the range limit
-  double floor_margin = 0.08;          ///< returns lower than this above the floor are the floor [m]
   bool use_tilt = true;                ///< project scans by what the accelerometer says
   double map_distance = 0.15;          ///< a scan enters the map after this much motion [m]
   double map_turn = deg_to_rad(10.0);  ///< or this much turn [rad]
@@ -34,6 +35,7 @@ struct RobustConfig {
   bool thin_walls = true;              ///< walls that fill two cells of the final map lose the one hit less often
   bool loops = true;                   ///< close loops
   double budget_ms = 8.0;  ///< work put off to later scans beyond this; in work, not time: a unit is about 1 ns
+  LevelScanConfig scan;
   CloudConfig cloud;
   TiltConfig tilt;
   TrackerConfig tracker;

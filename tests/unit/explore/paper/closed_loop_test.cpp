@@ -22,9 +22,9 @@ slam::PaperConfig exact_mapper() {
   slam::PaperConfig config;
   config.map_cells = 400;
   config.particles = 1;
-  config.rotation_error = 0.0;
-  config.heading_error_per_m = 0.0;
-  config.distance_error = 0.0;
+  config.motion_error.rotation = 0.0;
+  config.motion_error.heading_per_m = 0.0;
+  config.motion_error.distance = 0.0;
   config.icp = false;
   return config;
 }

@@ -1,0 +1,41 @@
+#include "slam/scan/scan_queue.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace rubble::slam {
+
+using robot::LaserScan;
+
+bool ScanQueue::add(const LaserScan& scan) {
+  if (scan.ranges.empty() || scan.middle() <= newest_) return false;
+  newest_ = scan.middle();
+  waiting_.push_back(scan);
+  return true;
+}
+
+bool ScanQueue::ready(const OdometryTrack& odometry, Stamp now) const {
+  if (waiting_.empty()) return false;
+  const Stamp reference = front().middle();
+  return odometry.newest() >= reference || now - reference > OdometryTrack::kMaxExtrapolation;
+}
+
+LaserScan ScanQueue::take() {
+  LaserScan scan = std::move(waiting_.front());
+  waiting_.pop_front();
+  return scan;
+}
+
+Stamp ScanQueue::oldest_needed(const OdometryTrack& odometry) const {
+  const Stamp oldest = odometry.newest() - kLateScan;
+  return waiting_.empty() ? oldest : std::min(oldest, front().stamp);
+}
+
+std::optional<SweepMotion> sweep_motion(const OdometryTrack& odometry, const LaserScan& scan) {
+  if (scan.beam_period <= 0.0 || odometry.empty()) return std::nullopt;
+  const Stamp reference = scan.middle();
+  return SweepMotion{odometry.between(reference, scan.stamp),
+                     odometry.between(reference, scan.beam_stamp(scan.ranges.size() - 1))};
+}
+
+}  // namespace rubble::slam
