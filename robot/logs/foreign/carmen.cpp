@@ -221,6 +221,7 @@ ForeignLog read_carmen(std::string_view text, const std::string& path) {
     if (!T_start_base) T_start_base = record.robot;
     odometry.push_back({record.stamp, wrapped(record.robot - *T_start_base), v, w, false});
   }
+  take_as_misses(no_echo_from(scans), scans);
   describe_sensors(scans, odometry, log.model);
   log.ticks = assemble_ticks(std::move(scans), std::move(odometry));
   return log;

@@ -1,6 +1,10 @@
 #include "robot/logs/foreign/foreign_log.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
 
 namespace rubble::robot {
 namespace {
@@ -87,6 +91,50 @@ std::vector<Inputs> assemble_ticks(std::vector<LaserScan> scans, std::vector<Odo
   while (next_scan < scans.size()) tick.scans.push_back(std::move(scans[next_scan++]));
   if (!tick.scans.empty() || !tick.odometry.empty()) close(tick);
   return ticks;
+}
+
+double no_echo_from(const std::vector<LaserScan>& scans) {
+  constexpr double kPile = 0.985;  // of the largest reading; SICK scanners in their 8 m mode write 8.15 to 8.19
+  constexpr double kBelow = 0.85;
+  constexpr double kDensity = 4.0;
+  constexpr std::size_t kLeast = 20;
+  constexpr std::size_t kBeams = 5;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  float largest = 0.0f;
+  for (const LaserScan& scan : scans)
+    for (const float range : scan.ranges)
+      if (std::isfinite(range)) largest = std::max(largest, range);
+  const double limit = kPile * static_cast<double>(largest);
+  const double foot = kBelow * static_cast<double>(largest);
+  std::map<float, std::size_t> pile;
+  std::set<std::size_t> beams;
+  std::size_t piled = 0;
+  std::size_t below = 0;
+  for (const LaserScan& scan : scans)
+    for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) {
+      const float range = scan.ranges[beam];
+      if (!std::isfinite(range) || static_cast<double>(range) < foot) continue;
+      if (static_cast<double>(range) < limit) {
+        ++below;
+      } else {
+        ++pile[range];
+        ++piled;
+        beams.insert(beam);
+      }
+    }
+  std::size_t commonest = 0;
+  for (const auto& [range, count] : pile) commonest = std::max(commonest, count);
+  const double wide = (1.0 - kPile) / (kPile - kBelow);
+  const bool dense = static_cast<double>(piled) >= kDensity * wide * static_cast<double>(below);
+  return piled >= kLeast && beams.size() >= kBeams && 2 * commonest >= piled && dense ? limit : kNone;
+}
+
+void take_as_misses(double limit, std::vector<LaserScan>& scans) {
+  for (LaserScan& scan : scans) {
+    scan.range_max = std::min(scan.range_max, limit);
+    for (float& range : scan.ranges)
+      if (static_cast<double>(range) >= limit) range = std::numeric_limits<float>::infinity();
+  }
 }
 
 void describe_sensors(const std::vector<LaserScan>& scans, const std::vector<Odometry>& odometry, RobotModel& model) {

@@ -172,6 +172,7 @@ ForeignLog others_log(const CObservation2DRangeScan& first, std::vector<LaserSca
                       std::vector<Odometry>& odometry) {
   ForeignLog log;
   for (LaserScan& scan : scans) clean_ranges(scan);
+  take_as_misses(no_echo_from(scans), scans);
   start_at_zero(odometry);
   log.model.name = "rawlog";
   log.model.laser.name = first.sensorLabel.empty() ? "MRPT laser" : first.sensorLabel;

@@ -133,6 +133,40 @@ TEST(Carmen, RangesMeanReturnMissOrNothingKnown) {
   EXPECT_TRUE(testing::same(scans[0].ranges, {1.0f, 29.99f, testing::kMiss, testing::kMiss, testing::kUnknown}));
 }
 
+/// Scans of a room whose ranges differ from beam to beam and scan to scan; `written` where nothing comes back.
+std::string room_with_gaps(double written, double farthest) {
+  CarmenWriter log;
+  const auto path = arc(40);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    std::vector<double> ranges;
+    for (std::size_t beam = 0; beam < 91; ++beam)
+      ranges.push_back(
+          beam % 9 == 4 ? written : 0.5 + (farthest - 0.5) * static_cast<double>((37 * beam + 61 * i) % 200) / 200.0);
+    log.flaser(ranges, path[i], path[i], 0.1 * static_cast<double>(i));
+  }
+  return log.text;
+}
+
+TEST(Carmen, ThePileOfOneLargeNumberIsNoReturn) {
+  for (const double written : {4.0, 8.19, 20.0}) {
+    for (const LaserScan& scan : scans_of(read_carmen(room_with_gaps(written, 0.97 * written), "a.log"))) {
+      EXPECT_LT(scan.range_max, written);
+      for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam)
+        EXPECT_EQ(std::isinf(scan.ranges[beam]), beam % 9 == 4) << written << ' ' << beam << ' ' << scan.ranges[beam];
+    }
+  }
+}
+
+TEST(Carmen, FarthestWallsAreNoPile) {
+  // The largest readings are as common as the rest.
+  for (const LaserScan& scan : scans_of(read_carmen(room_with_gaps(1.0, 8.0), "a.log")))
+    for (const float range : scan.ranges) EXPECT_TRUE(std::isfinite(range));
+  // One beam that reads the same in every scan: a robot at rest before the farthest wall.
+  CarmenWriter log;
+  for (int i = 0; i < 60; ++i) log.flaser({1.0, 2.0, 7.0, 1.5, 3.0}, {}, {}, 0.1 * i);
+  for (const LaserScan& scan : scans_of(read_carmen(log.text, "a.log"))) EXPECT_EQ(scan.ranges[2], 7.0f);
+}
+
 TEST(Carmen, BeamCountTellsTheStep) {
   for (const auto& [beams, step_deg] : {std::pair{180, 1.0}, {181, 1.0}, {360, 0.5}, {361, 0.5}}) {
     CarmenWriter log;
