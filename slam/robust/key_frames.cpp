@@ -17,6 +17,7 @@ void KeyFrames::add(KeyFrame frame, const TPose2D& pose, const GraphEdge& edge) 
   frames_.push_back(std::move(frame));
   graph_.nodes.push_back(pose);
   links_.emplace_back();
+  before_.push_back(size() < 2 ? -1 : edge.from);
   if (size() < 2) return;
   graph_.edges.push_back(edge);
   link(edge, length(edge.T_from_to.x, edge.T_from_to.y));
@@ -53,8 +54,16 @@ void KeyFrames::switch_off(std::size_t edge) {
 
 std::vector<int> KeyFrames::ending_at(int i, int most, double path) const {
   std::vector<int> frames;
-  for (int k = i; k >= 0 && static_cast<int>(frames.size()) < most && (*this)[i].path - (*this)[k].path <= path; --k)
+  int start = i;
+  for (int k = i; k >= 0 && static_cast<int>(frames.size()) < most && (*this)[start].path - (*this)[k].path <= path;) {
     frames.push_back(k);
+    const int next = before_[static_cast<std::size_t>(k)];
+    if (next != k - 1 && next >= 0) {  // between the two the robot drove over known ground
+      path -= (*this)[start].path - (*this)[k].path + length(pose(k).x - pose(next).x, pose(k).y - pose(next).y);
+      start = next;
+    }
+    k = next;
+  }
   return frames;
 }
 

@@ -28,7 +28,7 @@ class KeyFrames {
   const mrpt::math::TPose2D& pose(int i) const { return graph_.nodes[static_cast<std::size_t>(i)]; }
   const PoseGraph& graph() const { return graph_; }
 
-  /// Adds a key frame; `edge` (from the last one to it) is taken from the second on.
+  /// Adds a key frame; `edge`, to it from the one that the robot came by, is taken from the second on.
   void add(KeyFrame frame, const mrpt::math::TPose2D& pose, const GraphEdge& edge);
   /// Adds a loop of length `path` for the paths through the graph.
   void add_loop(const GraphEdge& edge, double path);
@@ -37,7 +37,7 @@ class KeyFrames {
   /// Takes a loop out of the graph for good.
   void switch_off(std::size_t edge);
 
-  /// Up to `most` key frames that end at i, no more than `path` behind it.
+  /// Up to `most` key frames that end at i, in the order in which the robot came by, no more than `path` behind it.
   std::vector<int> ending_at(int i, int most, double path) const;
   /// Up to `most` key frames around i, the closest by path first, all below `limit`.
   std::vector<int> around(int i, int most, double path, int limit) const;
@@ -67,6 +67,7 @@ class KeyFrames {
   void link(const GraphEdge& edge, double length);
 
   std::vector<KeyFrame> frames_;
+  std::vector<int> before_;  ///< the one that the robot came by, -1: none
   PoseGraph graph_;
   std::vector<std::vector<Link>> links_;
 };

@@ -31,11 +31,13 @@ ScanFitConfig tight() {
 
 }  // namespace
 
-void LocalTracker::redraw(const KeyFrames& frames, Work* work) {
-  const std::vector<int> newest = frames.ending_at(frames.last(), config_.frames, config_.path);
-  frames.draw(newest, frames.pose(frames.last()), config_.cell, surfels_);
+void LocalTracker::redraw(const KeyFrames& frames, int here, Work* work) {
+  const std::vector<int> local = here == frames.last()
+                                     ? frames.ending_at(here, config_.frames, config_.path)
+                                     : frames.around(here, config_.frames, config_.path, frames.size());
+  frames.draw(local, frames.pose(here), config_.cell, surfels_);
   correlator_ready_ = false;
-  if (work != nullptr) *work += kWorkPerDrawnFrame * static_cast<Work>(newest.size());
+  if (work != nullptr) *work += kWorkPerDrawnFrame * static_cast<Work>(local.size());
 }
 
 LocalTracker::Reach LocalTracker::reach(const ExpectedMotion& motion) const {

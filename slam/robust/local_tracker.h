@@ -39,7 +39,7 @@ struct ExpectedMotion {
 
 /// How a scan lies on the local map.
 struct Tracked {
-  ScanFit fit;                 ///< pose relative to the newest key frame
+  ScanFit fit;                 ///< pose relative to the key frame of the local map
   bool found = false;          ///< false: too little to see, the odometry stands
   bool slipped = false;        ///< the odometry was doubted
   bool relocated = false;      ///< found again after being lost
@@ -47,14 +47,14 @@ struct Tracked {
   bool lost = false;           ///< neither odometry nor the scan tell where the robot is
 };
 
-/// Follows the robot from scan to scan on a local map of the newest key frames, in the frame of the newest.
+/// Follows the robot from scan to scan on a local map of key frames, in the frame of the one it hangs on.
 class LocalTracker {
  public:
   explicit LocalTracker(const TrackerConfig& config) : config_(config) {}
 
-  /// Takes the newest key frames as the local map.
-  void redraw(const KeyFrames& frames, Work* work);
-  /// Finds the scan; `T_frame_last`: the last one, relative to the newest key frame.
+  /// Takes the key frames that lead to `here` as the local map; those around it where `here` is an old one.
+  void redraw(const KeyFrames& frames, int here, Work* work);
+  /// Finds the scan; `T_frame_last`: the last one, relative to that key frame.
   Tracked track(const Cloud& cloud, const ExpectedMotion& motion, const mrpt::math::TPose2D& T_frame_last, Work* work);
 
  private:

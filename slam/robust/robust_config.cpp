@@ -37,6 +37,7 @@ void bind(Binder& b, RobustConfig& c) {
   b.number("frame_distance_m", c.frame_distance, 0.02, 2.0);
   b.number("frame_turn_rad", c.frame_turn, 0.02, 3.0);
   b.number("frame_overlap", c.frame_overlap, 0.0, 1.0);
+  b.integer("exact_frames", c.exact_frames, 10, 1000000);
   b.boolean("thin_walls", c.thin_walls);
   b.boolean("loops", c.loops);
   b.number("budget_ms", c.budget_ms, 0.1, 1e6);

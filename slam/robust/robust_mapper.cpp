@@ -33,11 +33,16 @@ constexpr Work kLeastBudget = 500'000;     ///< for work put off, each scan
 constexpr double kBelieved = 0.5;          ///< share of inliers with which a scan overrules the odometry
 constexpr double kForgiving = 0.6;         ///< what is left of the doubt after each scan that agrees with the odometry
 constexpr double kNoDoubt = 0.05;
-constexpr double kLongestCarry = 0.5;  ///< motion is taken to go on for so long [s]
-constexpr double kLongestLost = 3.0;   ///< then the map goes on from where the robot is thought to be [s]
-constexpr double kLostDistance = 0.5;  ///< uncertainty of a robot that was lost [m]
-constexpr double kLostAngle = 0.5;     ///< [rad]
-constexpr double kNotLost = 0.5;       ///< share of inliers of a scan that may be mapped though the odometry is doubted
+constexpr double kLongestCarry = 0.5;   ///< motion is taken to go on for so long [s]
+constexpr double kLongestLost = 3.0;    ///< then the map goes on from where the robot is thought to be [s]
+constexpr double kLostDistance = 0.5;   ///< uncertainty of a robot that was lost [m]
+constexpr double kLostAngle = 0.5;      ///< [rad]
+constexpr double kKnownDistance = 0.6;  ///< ground is known within this of an old key frame [m] ...
+constexpr double kKnownTurn = 0.5;      ///< ... looking the same way [rad] ...
+constexpr double kKnownPath = 6.0;      ///< ... to which the graph leads so directly, though the drive was longer [m]
+constexpr double kKnownInliers = 0.65;  ///< and what is seen there is what was seen
+constexpr double kKnownMoves = 0.20;    ///< [m]
+constexpr double kNotLost = 0.5;  ///< share of inliers of a scan that may be mapped though the odometry is doubted
 
 /// Derivative of a pose by the one it hangs on, in the map frame: d is the lever between the two.
 Eigen::Matrix3d lever(const TPose2D& from, const TPose2D& to) {
@@ -85,13 +90,15 @@ struct RobustMapper::Impl {
   bool jumps_within(const LaserScan& scan) const;
   std::optional<TPose2D> carried(double time) const;
   bool asks_for_frame(const Tracked& tracked) const;
+  bool hang_on_old_frame(const Cloud& cloud, Work* work);
+  std::optional<int> old_frame_here() const;
   void add_frame(Stamp reference, Cloud cloud, const TPose2D& T_map_base, const GraphEdge& edge);
   GraphEdge edge_to_now(const Tracked& tracked) const;
   void put_into_map(const LaserScan& scan, const std::optional<SweepMotion>& sweep, const std::optional<ScanTilt>& tilt,
                     Work& work);
   void close_loops(Work& budget);
   void remember_hits(const ScanPoints& points);
-  TPose2D now() const { return frames_.pose(frames_.last()) + T_frame_base_; }
+  TPose2D now() const { return frames_.pose(here_) + T_frame_base_; }
   std::optional<SweepMotion> sweep_at(const LaserScan& scan, const TPose2D& motion, double time) const;
   bool may_be_mapped(const Tracked& tracked, double doubt, Stamp reference);
   const Trajectory& trajectory() const;
@@ -116,9 +123,11 @@ struct RobustMapper::Impl {
 
   ScanQueue waiting_;
   std::optional<TPose2D> T_odom_scan_;  ///< at the last scan; nothing while no odometry has come
-  TPose2D T_frame_base_;                ///< at the last scan, relative to the newest key frame
+  int here_ = -1;                       ///< the key frame that the robot hangs on: the newest, or an old one ...
+  double path_here_ = 0.0;              ///< ... which it reached after so much path [m]
+  TPose2D T_frame_base_;                ///< at the last scan, relative to that key frame
   TPose2D T_map_stamped_;               ///< where the map was stamped last
-  Eigen::Matrix3d frame_covariance_ = Eigen::Matrix3d::Zero();  ///< of the newest key frame, in the map
+  Eigen::Matrix3d frame_covariance_ = Eigen::Matrix3d::Zero();  ///< of that key frame, in the map
   Eigen::Matrix3d scan_covariance_ = Eigen::Matrix3d::Zero();   ///< of T_frame_base_, along the frame's axes
   std::vector<Place> scans_;
   Trajectory live_;
@@ -132,6 +141,7 @@ struct RobustMapper::Impl {
   double doubt_ = 0.0;           ///< of the odometry, by what the last scans said of it
   Stamp lost_since_ = Stamp::never();
   bool lost_on_the_way_ = false;  ///< since the newest key frame
+  std::uint64_t reused_ = 0;
   std::uint64_t slips_ = 0;
   std::uint64_t silent_ = 0;
   std::uint64_t lost_ = 0;
@@ -176,7 +186,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
   if (frames_.empty()) {
     add_frame(reference, std::move(cloud), TPose2D(), {});
     map_.lay_raster(frames_);
-    tracker_.redraw(frames_, &work);
+    tracker_.redraw(frames_, here_, &work);
   } else {
     const TPose2D T_frame_last = T_frame_base_;
     Tracked tracked = tracker_.track(cloud, motion, T_frame_last, &work);
@@ -203,19 +213,19 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
     unseen_ += tracked.found ? 0 : 1;
     const GraphEdge edge = edge_to_now(tracked);
     scan_covariance_ = edge.information.inverse();
-    if (sure && asks_for_frame(tracked)) {
+    if (sure && asks_for_frame(tracked) && !hang_on_old_frame(cloud, &work)) {
       add_frame(reference, std::move(cloud), now(), edge);
       if (config_.loops) closer_.look();
-      tracker_.redraw(frames_, &work);
+      tracker_.redraw(frames_, here_, &work);
     }
   }
   if (!odometry_.empty()) T_odom_scan_ = odometry_.pose_at(reference);
-  scans_.push_back({reference, frames_.last(), T_frame_base_});
+  scans_.push_back({reference, here_, T_frame_base_});
 
   Work budget = std::max(kLeastBudget, static_cast<Work>(config_.budget_ms * 1e6) - work);
   const Work given = budget;
   if (config_.loops) close_loops(budget);
-  if (sure) put_into_map(scan, sweep, tilt, budget);
+  if (sure && here_ == frames_.last()) put_into_map(scan, sweep, tilt, budget);
   map_.work(frames_, budget);
   most_work_ = std::max(most_work_, work + given - budget);
   live_.push_back({reference, now()});
@@ -295,7 +305,51 @@ bool RobustMapper::Impl::asks_for_frame(const Tracked& tracked) const {
   return tracked.fit.inliers < config_.frame_overlap && (path > 0.1 || turn > 0.08);
 }
 
-/// The newest key frame's edge to where the robot is now: what the scan says, and what odometry says at least.
+/// Known ground adds no key frame once there are many: the robot then hangs on an old one, and the graph grows with the
+/// ground covered instead of the time driven.
+bool RobustMapper::Impl::hang_on_old_frame(const Cloud& cloud, Work* work) {
+  const std::optional<int> old = old_frame_here();
+  if (!old) return false;
+  const TPose2D expected = now() - frames_.pose(*old);
+  tracker_.redraw(frames_, *old, work);
+  ExpectedMotion at_rest;
+  at_rest.time = kNoDuration;
+  const Tracked there = tracker_.track(cloud, at_rest, expected, work);
+  const TPose2D moved = there.fit.pose - expected;
+  if (!there.found || there.fit.inliers < kKnownInliers || length(moved.x, moved.y) > kKnownMoves) {
+    tracker_.redraw(frames_, here_, work);
+    return false;
+  }
+  path_here_ += length(T_frame_base_.x, T_frame_base_.y);
+  here_ = *old;
+  T_frame_base_ = there.fit.pose;
+  scan_covariance_ = edge_to_now(there).information.inverse();
+  ++reused_;
+  return true;
+}
+
+/// The closest key frame of an earlier visit that loops tie to where the robot is.
+std::optional<int> RobustMapper::Impl::old_frame_here() const {
+  if (!config_.loops || frames_.size() < config_.exact_frames || lost_on_the_way_) return std::nullopt;
+  const TPose2D T_map_base = now();
+  const double path = path_here_ + length(T_frame_base_.x, T_frame_base_.y);
+  const std::vector<double> paths = frames_.paths_from(here_, kKnownPath);
+  std::optional<int> old;
+  double least = kKnownDistance + kKnownTurn;
+  for (int j = 0; j < frames_.size(); ++j) {
+    if (!(paths[static_cast<std::size_t>(j)] <= kKnownPath) || path - frames_[j].path < config_.loop.least_path)
+      continue;
+    const TPose2D off = T_map_base - frames_.pose(j);
+    const double distance = length(off.x, off.y);
+    const double turn = std::abs(wrap_angle(off.phi));
+    if (distance > kKnownDistance || turn > kKnownTurn || distance + turn >= least) continue;
+    least = distance + turn;
+    old = j;
+  }
+  return old;
+}
+
+/// The key frame's edge to where the robot is now: what the scan says, and what odometry says at least.
 GraphEdge RobustMapper::Impl::edge_to_now(const Tracked& tracked) const {
   const double path = length(T_frame_base_.x, T_frame_base_.y);
   const double turn = std::abs(wrap_angle(T_frame_base_.phi));
@@ -309,7 +363,7 @@ GraphEdge RobustMapper::Impl::edge_to_now(const Tracked& tracked) const {
       Eigen::Vector3d(kEdgeDistance * kEdgeDistance, kEdgeDistance * kEdgeDistance, kEdgeAngle * kEdgeAngle)
           .asDiagonal();
   GraphEdge edge;
-  edge.from = frames_.last();
+  edge.from = here_;
   edge.to = frames_.last() + 1;
   edge.T_from_to = T_frame_base_;
   edge.information = (information.inverse() + floor).inverse();
@@ -321,12 +375,14 @@ void RobustMapper::Impl::add_frame(Stamp reference, Cloud cloud, const TPose2D& 
   frame.stamp = reference;
   frame.cloud = std::move(cloud);
   if (!frames_.empty()) {
-    frame.path = frames_[frames_.last()].path + length(T_frame_base_.x, T_frame_base_.y);
-    const TPose2D& from = frames_.pose(frames_.last());
+    path_here_ += length(T_frame_base_.x, T_frame_base_.y);
+    frame.path = path_here_;
+    const TPose2D& from = frames_.pose(here_);
     const Eigen::Matrix3d J = lever(from, T_map_base);
     frame_covariance_ = J * frame_covariance_ * J.transpose() + turned(scan_covariance_, from.phi);
   }
   frames_.add(std::move(frame), T_map_base, edge);
+  here_ = frames_.last();
   T_frame_base_ = TPose2D();
   lost_on_the_way_ = false;
   scan_covariance_.setZero();
@@ -337,7 +393,7 @@ void RobustMapper::Impl::close_loops(Work& budget) {
   ++revision_;
   frame_covariance_ = closer_.covariance();
   map_.moved();
-  tracker_.redraw(frames_, nullptr);
+  tracker_.redraw(frames_, here_, nullptr);
 }
 
 void RobustMapper::Impl::put_into_map(const LaserScan& scan, const std::optional<SweepMotion>& sweep,
@@ -403,7 +459,7 @@ void RobustMapper::finish() {
   impl_->map_.work(impl_->frames_, budget);
   impl_->map_.lay_raster(impl_->frames_);
   if (impl_->config_.thin_walls) impl_->map_.thin();
-  impl_->tracker_.redraw(impl_->frames_, nullptr);
+  impl_->tracker_.redraw(impl_->frames_, impl_->here_, nullptr);
 }
 
 const CountMap& RobustMapper::map() const { return impl_->map_.map(); }
@@ -415,7 +471,7 @@ TPose2D RobustMapper::pose() const {
 
 Eigen::Matrix3d RobustMapper::covariance() const {
   if (impl_->frames_.empty()) return Eigen::Matrix3d::Zero();
-  const TPose2D& frame = impl_->frames_.pose(impl_->frames_.last());
+  const TPose2D& frame = impl_->frames_.pose(impl_->here_);
   const Eigen::Matrix3d J = lever(frame, impl_->now());
   return J * impl_->frame_covariance_ * J.transpose() + turned(impl_->scan_covariance_, frame.phi);
 }
@@ -430,6 +486,7 @@ const MapperCounts& RobustMapper::counts() const { return impl_->counts_; }
 std::vector<MapperFigure> RobustMapper::figures() const {
   const LoopCounts& loops = impl_->closer_.counts();
   return {{"key_frames", static_cast<double>(impl_->frames_.size())},
+          {"frames_reused", static_cast<double>(impl_->reused_)},
           {"slips", static_cast<double>(impl_->slips_)},
           {"relocated", static_cast<double>(impl_->relocated_)},
           {"unseen", static_cast<double>(impl_->unseen_)},

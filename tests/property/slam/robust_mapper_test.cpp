@@ -99,6 +99,71 @@ TEST(RobustMapper, AMirroredWorldGivesAMirroredResult) {
   }
 }
 
+double figure(const Mapper& mapper, const std::string& key) {
+  for (const MapperFigure& f : mapper.figures())
+    if (f.key == key) return f.value;
+  ADD_FAILURE() << "no figure " << key;
+  return 0.0;
+}
+
+std::vector<TPoint2D> rounds(int count) {
+  std::vector<TPoint2D> points;
+  for (int k = 0; k < count; ++k) points.insert(points.end(), kTour.begin(), kTour.end() - 1);
+  points.push_back(kTour.front());
+  return points;
+}
+
+TEST(RobustMapper, KnownGroundAddsNoKeyFramesAndThePlaceStays) {
+  const RobotModel model;
+  RobustConfig config;
+  config.exact_frames = 60;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const slam_test::World room = random_room(seed);
+    std::vector<double> frames;
+    for (const int count : {4, 8}) {
+      const slam_test::Drive drive = slam_test::drive_through(rounds(count), 0.0);
+      RobustMapper mapper(model, config, 1);
+      play(mapper, slam_test::record(room, drive, model, 1.0, 0.01, seed));
+      EXPECT_LT(slam_test::first_pose_rmse(mapper.trajectory(), drive.truth), 0.03);
+      EXPECT_LT(slam_test::first_pose_rmse(mapper.live_trajectory(), drive.truth), 0.04);
+      frames.push_back(figure(mapper, "key_frames"));
+      EXPECT_GT(figure(mapper, "frames_reused"), 20.0);
+    }
+    EXPECT_LE(frames[1], frames[0] + 3.0);
+    RobustMapper all(model, {}, 1);
+    play(all, slam_test::record(room, slam_test::drive_through(rounds(4), 0.0), model, 1.0, 0.01, seed));
+    EXPECT_GT(figure(all, "key_frames"), 1.3 * frames[0]);
+  }
+}
+
+TEST(RobustMapper, NewGroundBehindKnownGroundIsMappedAndTied) {
+  // Two rooms: the first is known for long when the robot goes on to the second and comes back.
+  slam_test::World rooms = {{{4.0, -1.5}, {4.0, 0.0}},   {{4.0, 0.9}, {4.0, 2.5}},  // the wall with its door
+                            {{-2.0, -1.5}, {9.0, -1.5}}, {{9.0, -1.5}, {9.0, 2.5}},
+                            {{9.0, 2.5}, {-2.0, 2.5}},   {{-2.0, 2.5}, {-2.0, -1.5}}};
+  slam_test::add_box(rooms, 2.2, 1.4, 2.8, 1.9);
+  slam_test::add_box(rooms, -1.4, 1.2, -0.9, 1.9);
+  slam_test::add_box(rooms, 6.2, 1.5, 6.8, 2.0);
+  slam_test::add_box(rooms, 7.6, -1.2, 8.1, -0.6);
+  std::vector<TPoint2D> tour = rounds(4);
+  for (const TPoint2D& p : {TPoint2D(3.2, 0.45), TPoint2D(5.0, 0.45), TPoint2D(8.2, 0.6), TPoint2D(6.0, -0.8),
+                            TPoint2D(5.0, 0.45), TPoint2D(3.2, 0.45), TPoint2D(0.0, 0.0)})
+    tour.push_back(p);
+  const RobotModel model;
+  RobustConfig config;
+  config.exact_frames = 60;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const slam_test::Drive drive = slam_test::drive_through(tour, 0.0);
+    RobustMapper mapper(model, config, 1);
+    play(mapper, slam_test::record(rooms, drive, model, 1.0, 0.01, seed));
+    EXPECT_LT(slam_test::first_pose_rmse(mapper.trajectory(), drive.truth), 0.03);
+    EXPECT_GT(figure(mapper, "frames_reused"), 20.0);
+    EXPECT_GT(figure(mapper, "key_frames"), 75.0) << "the second room's are new";
+  }
+}
+
 TEST(RobustMapper, APureRotationDoesNotMoveThePose) {
   const RobotModel model;
   slam_test::Drive drive;
