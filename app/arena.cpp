@@ -26,6 +26,7 @@ struct ArenaArguments {
   std::string file;
   bool elements = false;
   std::string cells;
+  std::string kind = "yellow";
   arenas::GenerateConfig config;
   double resolution = 0.05;
   double slice_height = 0.35;
@@ -72,10 +73,10 @@ int arena(const ArenaArguments& arguments) {
   const arenas::Arena arena = arguments.generate() ? arenas::parse_arena(yaml, source) : load(source);
   arenas::check(arena, source);
 
-  const std::string stem =
-      arguments.generate() ? arguments.config.kind + "-" + std::to_string(arguments.config.columns) + "x" +
-                                 std::to_string(arguments.config.rows) + "-seed" + std::to_string(arguments.config.seed)
-                           : fs::path(arguments.file).stem().string();
+  const std::string stem = arguments.generate() ? arguments.kind + "-" + std::to_string(arguments.config.columns) +
+                                                      "x" + std::to_string(arguments.config.rows) + "-seed" +
+                                                      std::to_string(arguments.config.seed)
+                                                : fs::path(arguments.file).stem().string();
   const std::string out = arguments.out.empty() ? "." : arguments.out;
   std::error_code error;
   fs::create_directories(out, error);
@@ -109,7 +110,8 @@ void list_elements() {
 }
 
 int arena_or_list(ArenaArguments arguments, const Options& options) {
-  if (arguments.generate() && arguments.config.kind == "yellow" && options.given("--rough"))
+  arguments.config.kind = arenas::arena_kind(arguments.kind);
+  if (arguments.generate() && arguments.config.kind == arenas::ArenaKind::Yellow && options.given("--rough"))
     throw UsageError("--rough: a yellow arena has no obstacles; add --kind orange or --kind red");
   if (arguments.elements) {
     list_elements();
@@ -125,7 +127,7 @@ int arena_or_list(ArenaArguments arguments, const Options& options) {
 
 void declare_generator(Options& o, ArenaArguments& a) {
   arenas::GenerateConfig& config = a.config;
-  o.choice("--kind", config.kind, {"yellow", "orange", "red"}, "Kind of arena");
+  o.choice("--kind", a.kind, arenas::arena_kinds(), "Kind of arena");
   o.text("--cells", a.cells, "Pallets west-east x south-north (default 8x8)");
   o.seed("--seed", config.seed, "Seed of the layout");
   o.number("--ramps", config.ramps, 0.0, 1.0, "Share of pallets that are ramps, 0..1");

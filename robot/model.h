@@ -42,6 +42,12 @@ void spread_beams(LaserModel& laser, double field_of_view_deg, double sweep);
 /// Where the accelerometer sits: on the levelled platform (closed loop) or on the robot's body (open loop).
 enum class AccelerometerMount { Platform, Body };
 
+/// "platform", "body": as files call them, in the order of AccelerometerMount.
+inline const std::vector<std::string>& mount_names() {
+  static const std::vector<std::string> names = {"platform", "body"};
+  return names;
+}
+
 /// What the core knows about the robot it drives: the same for the simulated and the real one.
 /// Defaults: Pioneer 3-AT with a servo-levelled URG-04LX.
 struct RobotModel {

@@ -147,14 +147,14 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
   out.note = alignment.note;
   out.T_truth_map = alignment.T_truth_map;
   out.runner_up = alignment.runner_up;
-  out.source = alignment.source;
+  out.by = alignment.by;
   out.contest = alignment.contest;
   out.mirrored = alignment.mirrored;
   if (!out.aligned) {
     fill_psi(out, psi_of_strangers(config.colour_absent_cap));
-    if (!alignment.source.empty()) fill_sights(out, truth_known, Walls(map_known, truth_known, config.tau));
+    if (alignment.by != AlignBy::Auto) fill_sights(out, truth_known, Walls(map_known, truth_known, config.tau));
     // Walls that do meet, only at too many poses, are of the right scale.
-    if (!alignment.source.empty() && tight_agreement(alignment.tight_evidence) < kTightEnough)
+    if (alignment.by != AlignBy::Auto && tight_agreement(alignment.tight_evidence) < kTightEnough)
       out.scale_hint = agreeing_scale(map_known, truth_known, config.alignment);
     if (out.scale_hint > 0.0) out.note = scale_note(out.scale_hint, map.resolution());
     return out;
@@ -171,7 +171,7 @@ MapScore score_at_pose(const OccupancyGrid& map, const OccupancyGrid& truth, con
   const OccupancyGrid truth_known = crop_to_known(truth, 0.0);
   MapScore out;
   out.aligned = true;
-  out.source = "given";
+  out.by = AlignBy::Hand;
   out.T_truth_map = T_truth_map;
   measure(out, map_known, truth_known, Walls(map_known, truth_known, config.tau), config);
   return out;

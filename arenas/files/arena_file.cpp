@@ -127,8 +127,9 @@ void read_balls(const YamlMap& root, Plan& plan, Arena& arena) {
 void read_objects(const YamlMap& root, Plan& plan, Arena& arena) {
   for (const YamlMap& entry : root.maps("objects")) {
     LooseObject object;
-    object.element = entry.choice("type", std::nullopt, {"bottle", "radio"});
-    const bool is_bottle = object.element == "bottle";
+    const std::string type = entry.choice("type", std::nullopt, object_kinds());
+    object.kind = type == object_kinds().front() ? ObjectKind::Bottle : ObjectKind::Radio;
+    const bool is_bottle = object.kind == ObjectKind::Bottle;
     object.radius = entry.number("radius_m", is_bottle ? 0.033 : 0.03, 0.01, 0.5);
     object.height = entry.number("height_m", is_bottle ? 0.23 : 0.26, 0.02, 2.0);
     object.mass = entry.number("mass_kg", is_bottle ? 0.52 : 0.30, 0.01, 20.0);

@@ -69,9 +69,7 @@ void bind(Binder& b, robot::RobotModel& r, robot::LevellingConfig& levelling) {
 }
 
 void bind(Binder& b, robot::LevellingConfig& c, robot::AccelerometerMount& accelerometer) {
-  std::string mount = accelerometer == robot::AccelerometerMount::Platform ? "platform" : "body";
-  b.choice("mount", mount, {"platform", "body"});
-  accelerometer = mount == "platform" ? robot::AccelerometerMount::Platform : robot::AccelerometerMount::Body;
+  b.choice("mount", accelerometer, robot::mount_names());
   b.number("kp", c.kp, 0.0, 10.0);
   b.number("ki", c.ki, 0.0, 100.0);
   b.number("kd", c.kd, 0.0, 10.0);
@@ -113,7 +111,7 @@ void bind_sections(Binder& b, Scenario& s) {
 }
 
 void bind_generate(Binder& b, arenas::GenerateConfig& g) {
-  b.choice("kind", g.kind, {"yellow", "orange", "red"});
+  b.choice("kind", g.kind, arenas::arena_kinds());
   b.integer("columns", g.columns, 2, 60);
   b.integer("rows", g.rows, 2, 60);
   b.number("ramps", g.ramps, 0.0, 1.0);

@@ -112,7 +112,7 @@ class Poses {
       support = again;
       fitted = fit(support);
     }
-    const PoseGuess guess{fitted, static_cast<double>(support.size()), "features"};
+    const PoseGuess guess{fitted, static_cast<double>(support.size()), AlignBy::Features};
     if (known != nullptr)
       *known = guess;
     else
