@@ -54,6 +54,7 @@ void each_model_field(Model& m, Field&& field) {
   field(ModelKey{"laser_accuracy_near_to", nullptr, true}, m.laser.accuracy_near_to);
   field(ModelKey{"laser_accuracy_far", nullptr, true}, m.laser.accuracy_far);
   field(ModelKey{"laser_accuracy_far_share", nullptr, true}, m.laser.accuracy_far_share);
+  field(ModelKey{"laser_has_codes", nullptr, true}, m.laser.has_codes);
 }
 
 }  // namespace rubble::robot
