@@ -17,7 +17,7 @@
 #include "base/image/png.h"
 #include "base/text/text_file.h"
 #include "base/text/words.h"
-#include "scenarios/run/league_map.h"
+#include "scoring/maps/league_map.h"
 
 namespace rubble::app {
 namespace {
@@ -50,13 +50,9 @@ void parse_cells(const std::string& cells, arenas::GenerateConfig& config) {
 constexpr const char* kGeneratorOptions[] = {"--kind",  "--cells", "--seed",  "--ramps",
                                              "--rough", "--paper", "--loops", "--victims"};
 
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 /// A league's file may have parts nobody knows: they are named, and the rest is shown.
 arenas::Arena load(const std::string& path) {
-  if (!ends_with(path, ".raf")) return arenas::load_arena(path);
+  if (!arenas::is_raf(path)) return arenas::load_arena(path);
   const arenas::RafImport import = arenas::import_raf(path);
   for (const std::string& note : import.notes())
     std::fprintf(stderr, "rubble: %s\n", one_line(path + ": " + note).c_str());
@@ -93,10 +89,10 @@ int arena(const ArenaArguments& arguments) {
   }
   write_png(base + ".png", arenas::render(arena, 60.0));
   const OccupancyGrid truth = arenas::truth_map(arena, arguments.resolution, arguments.slice_height);
-  write_geotiff(base + "-truth.tif", scenarios::draw_truth(truth));
+  write_geotiff(base + "-truth.tif", scoring::draw_truth(truth));
   arenas::Viewer viewer;
   viewer.range = arguments.range;
-  write_geotiff(base + "-visible.tif", scenarios::draw_truth(arenas::visible_truth(arena, truth, viewer)));
+  write_geotiff(base + "-visible.tif", scoring::draw_truth(arenas::visible_truth(arena, truth, viewer)));
   std::printf("%s.png\n%s-truth.tif\n%s-visible.tif\n", base.c_str(), base.c_str(), base.c_str());
   if (!arguments.walls.empty()) std::printf("%s\n", arguments.walls.c_str());
   return kOk;

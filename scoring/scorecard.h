@@ -6,7 +6,7 @@
 
 #include "base/grid.h"
 #include "scoring/alignment/alignment.h"
-#include "scoring/alignment/matching.h"
+#include "scoring/alignment/match_error.h"
 #include "scoring/walls/wall_errors.h"
 
 namespace rubble::scoring {

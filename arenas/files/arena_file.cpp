@@ -261,8 +261,7 @@ Arena build(const YamlMap& document, const std::string& source) {
 }  // namespace
 
 Arena load_arena(const std::string& path) {
-  const bool is_raf = path.size() > 4 && path.compare(path.size() - 4, 4, ".raf") == 0;
-  if (!is_raf) return build(YamlMap::load(path), path);
+  if (!is_raf(path)) return build(YamlMap::load(path), path);
   const RafImport import = import_raf(path);
   if (!import.unknown.empty()) throw InputError(path + ": " + import.summary() + ": remove these parts from the file");
   return import.arena;

@@ -70,7 +70,7 @@ class YamlWriter : public Binder {
   std::string yaml_;
 };
 
-/// A YAML double-quoted scalar.
-std::string quoted(const std::string& text);
+/// `text` as a double-quoted YAML scalar.
+std::string yaml_quoted(const std::string& text);
 
 }  // namespace rubble

@@ -7,7 +7,7 @@
 #include "base/grid.h"
 #include "scoring/alignment/pose_search.h"
 #include "scoring/proposals/correlation.h"
-#include "scoring/proposals/features.h"
+#include "scoring/proposals/feature_kind.h"
 #include "scoring/walls/wall_match.h"
 
 namespace rubble::scoring {
