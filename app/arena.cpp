@@ -17,7 +17,7 @@
 #include "base/image/png.h"
 #include "base/text/text_file.h"
 #include "base/text/words.h"
-#include "scenarios/run/league_map.h"
+#include "scoring/maps/league_map.h"
 
 namespace rubble::app {
 namespace {
@@ -26,6 +26,7 @@ struct ArenaArguments {
   std::string file;
   bool elements = false;
   std::string cells;
+  std::string kind = "yellow";
   arenas::GenerateConfig config;
   double resolution = 0.05;
   double slice_height = 0.35;
@@ -49,13 +50,9 @@ void parse_cells(const std::string& cells, arenas::GenerateConfig& config) {
 constexpr const char* kGeneratorOptions[] = {"--kind",  "--cells", "--seed",  "--ramps",
                                              "--rough", "--paper", "--loops", "--victims"};
 
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 /// A league's file may have parts nobody knows: they are named, and the rest is shown.
 arenas::Arena load(const std::string& path) {
-  if (!ends_with(path, ".raf")) return arenas::load_arena(path);
+  if (!arenas::is_raf(path)) return arenas::load_arena(path);
   const arenas::RafImport import = arenas::import_raf(path);
   for (const std::string& note : import.notes())
     std::fprintf(stderr, "rubble: %s\n", one_line(path + ": " + note).c_str());
@@ -72,10 +69,10 @@ int arena(const ArenaArguments& arguments) {
   const arenas::Arena arena = arguments.generate() ? arenas::parse_arena(yaml, source) : load(source);
   arenas::check(arena, source);
 
-  const std::string stem =
-      arguments.generate() ? arguments.config.kind + "-" + std::to_string(arguments.config.columns) + "x" +
-                                 std::to_string(arguments.config.rows) + "-seed" + std::to_string(arguments.config.seed)
-                           : fs::path(arguments.file).stem().string();
+  const std::string stem = arguments.generate() ? arguments.kind + "-" + std::to_string(arguments.config.columns) +
+                                                      "x" + std::to_string(arguments.config.rows) + "-seed" +
+                                                      std::to_string(arguments.config.seed)
+                                                : fs::path(arguments.file).stem().string();
   const std::string out = arguments.out.empty() ? "." : arguments.out;
   std::error_code error;
   fs::create_directories(out, error);
@@ -92,10 +89,10 @@ int arena(const ArenaArguments& arguments) {
   }
   write_png(base + ".png", arenas::render(arena, 60.0));
   const OccupancyGrid truth = arenas::truth_map(arena, arguments.resolution, arguments.slice_height);
-  write_geotiff(base + "-truth.tif", scenarios::draw_truth(truth));
+  write_geotiff(base + "-truth.tif", scoring::draw_truth(truth));
   arenas::Viewer viewer;
   viewer.range = arguments.range;
-  write_geotiff(base + "-visible.tif", scenarios::draw_truth(arenas::visible_truth(arena, truth, viewer)));
+  write_geotiff(base + "-visible.tif", scoring::draw_truth(arenas::visible_truth(arena, truth, viewer)));
   std::printf("%s.png\n%s-truth.tif\n%s-visible.tif\n", base.c_str(), base.c_str(), base.c_str());
   if (!arguments.walls.empty()) std::printf("%s\n", arguments.walls.c_str());
   return kOk;
@@ -109,7 +106,8 @@ void list_elements() {
 }
 
 int arena_or_list(ArenaArguments arguments, const Options& options) {
-  if (arguments.generate() && arguments.config.kind == "yellow" && options.given("--rough"))
+  arguments.config.kind = arenas::arena_kind(arguments.kind);
+  if (arguments.generate() && arguments.config.kind == arenas::ArenaKind::Yellow && options.given("--rough"))
     throw UsageError("--rough: a yellow arena has no obstacles; add --kind orange or --kind red");
   if (arguments.elements) {
     list_elements();
@@ -125,7 +123,7 @@ int arena_or_list(ArenaArguments arguments, const Options& options) {
 
 void declare_generator(Options& o, ArenaArguments& a) {
   arenas::GenerateConfig& config = a.config;
-  o.choice("--kind", config.kind, {"yellow", "orange", "red"}, "Kind of arena");
+  o.choice("--kind", a.kind, arenas::arena_kinds(), "Kind of arena");
   o.text("--cells", a.cells, "Pallets west-east x south-north (default 8x8)");
   o.seed("--seed", config.seed, "Seed of the layout");
   o.number("--ramps", config.ramps, 0.0, 1.0, "Share of pallets that are ramps, 0..1");

@@ -46,11 +46,7 @@ int drive(const DriveArguments& arguments) {
   options.replace = arguments.folder.force;
   options.keys = [&] { return keyboard.drive(kTeleopSpeed, kTeleopTurn); };
   const scenarios::RunReport report = scenarios::drive(file, options);
-  const int code = show(report);
-  std::printf("%-30s %.1f ms, 99 %% below %.1f ms\n", "answer to a scan",
-              report.score["answer_ms_median"].get<double>(), report.score["answer_ms_99"].get<double>());
-  std::printf("%-30s %.1f %% of one core\n", "computing", 100.0 * report.score["cpu_share"].get<double>());
-  return code;
+  return show(report);
 }
 
 }  // namespace

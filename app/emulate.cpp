@@ -49,9 +49,8 @@ int emulate(const EmulateArguments& arguments) {
   options.levelling = arguments.levelling;
   for (const std::string& text : arguments.faults) {
     const scenarios::FaultAt fault = scenarios::parse_fault(text);
-    const std::string device = fault.name.substr(0, fault.name.find('-'));
-    const std::string& port = device == "urg" ? options.urg : device == "base" ? options.base : options.levelling;
-    if (port.empty()) throw UsageError("--fault " + text + ": that device is not played; give --" + device + " too");
+    if (options.port(fault.device).empty())
+      throw UsageError("--fault " + text + ": that device is not played; give --" + name_of(fault.device) + " too");
     options.faults.push_back(fault);
   }
   if (!arguments.odometry_start.empty()) options.odometry_start = parse_pose(arguments.odometry_start);

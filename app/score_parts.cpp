@@ -53,7 +53,7 @@ scoring::AlignmentConfig parse_align(const std::string& text) {
 }
 
 void print_contest(const scoring::MapScore& s) {
-  if (s.source.empty() || s.source == "given") return;
+  if (s.by == scoring::AlignBy::Auto || s.by == scoring::AlignBy::Hand) return;
   const auto thousandths = [](double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3f", value);
@@ -61,15 +61,15 @@ void print_contest(const scoring::MapScore& s) {
   };
   if (s.aligned) print_row("aligned", pose_text(s.T_truth_map));
   print_row(s.aligned ? "proposed by" : "best pose, not trusted, by",
-            s.source + ", of " + scoring::names_of(s.contest.tried) + "; agreement " +
+            scoring::names_of(s.by) + ", of " + scoring::names_of(s.contest.tried) + "; agreement " +
                 thousandths(s.contest.agreement) + " of 2");
   if (!s.aligned) print_row("score there, not trusted", thousandths(s.score_at_best_pose));
-  print_row("runner-up pose", s.contest.runner_up_source.empty()
-                                  ? "none"
-                                  : thousandths(s.runner_up) + " of the best (" +
-                                        (s.contest.by_agreement ? "agreement" : "log odds") + " ahead by " +
-                                        thousandths(s.contest.margin) + "), by " + s.contest.runner_up_source + ": " +
-                                        pose_text(s.contest.T_runner_up));
+  print_row("runner-up pose",
+            s.contest.runner_up_by == scoring::AlignBy::Auto
+                ? "none"
+                : thousandths(s.runner_up) + " of the best (" + (s.contest.by_agreement ? "agreement" : "log odds") +
+                      " ahead by " + thousandths(s.contest.margin) + "), by " +
+                      scoring::names_of(s.contest.runner_up_by) + ": " + pose_text(s.contest.T_runner_up));
   if (s.mirrored > 0.0) print_row("mirror image", thousandths(s.mirrored) + " of the best");
 }
 

@@ -18,18 +18,25 @@ inline double distance(const mrpt::math::TPoint2D& a, const mrpt::math::TPoint2D
 /// A pose made ready to move many points: sine and cosine are computed once.
 class PlanarTransform {
  public:
-  explicit PlanarTransform(const mrpt::math::TPose2D& T)
-      : cosine_(std::cos(T.phi)), sine_(std::sin(T.phi)), x_(T.x), y_(T.y) {}
+  PlanarTransform() = default;
+  explicit PlanarTransform(const mrpt::math::TPose2D& T) : T_(T), cosine_(std::cos(T.phi)), sine_(std::sin(T.phi)) {}
 
+  const mrpt::math::TPose2D& pose() const { return T_; }
+  double cosine() const { return cosine_; }
+  double sine() const { return sine_; }
   mrpt::math::TPoint2D operator()(const mrpt::math::TPoint2D& p) const {
-    return {x_ + cosine_ * p.x - sine_ * p.y, y_ + sine_ * p.x + cosine_ * p.y};
+    return {T_.x + cosine_ * p.x - sine_ * p.y, T_.y + sine_ * p.x + cosine_ * p.y};
+  }
+  mrpt::math::TPoint2D inverse(const mrpt::math::TPoint2D& p) const { return turned_back(p.x - T_.x, p.y - T_.y); }
+  /// A direction of the target frame in the source frame.
+  mrpt::math::TPoint2D turned_back(double x, double y) const {
+    return {cosine_ * x + sine_ * y, cosine_ * y - sine_ * x};
   }
 
  private:
-  double cosine_;
-  double sine_;
-  double x_;
-  double y_;
+  mrpt::math::TPose2D T_;
+  double cosine_ = 1.0;
+  double sine_ = 0.0;
 };
 
 }  // namespace rubble

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/rigid.h"
+#include "base/planar.h"
 #include "scoring/measures/sight_lines.h"
 #include "scoring/scorecard.h"
 #include "tests/support/scoring_attacks.h"
@@ -145,7 +145,7 @@ void BM_Shares(benchmark::State& state) {
       const OccupancyGrid truth = truth_of(ground_of(seed));
       const SightLines sights(truth);
       const OccupancyGrid half = half_of(truth, seed % 2 == 0);
-      const double error = std::abs(sights.at(half, Rigid()).score - share_within(sights, half));
+      const double error = std::abs(sights.at(half, PlanarTransform()).score - share_within(sights, half));
       off += error / static_cast<double>(seeds());
       most = std::max(most, error);
     }

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "base/image/geotiff.h"
-#include "scenarios/run/league_map.h"
 #include "scoring/alignment/alignment.h"
+#include "scoring/maps/league_map.h"
 #include "scoring/maps/normalise.h"
 #include "scoring/measures/psi.h"
 #include "scoring/proposals/correlation.h"
@@ -138,8 +138,8 @@ void BM_ScoreFiles(benchmark::State& state) {
   const std::filesystem::path folder = kept != nullptr ? kept : std::filesystem::temp_directory_path();
   const std::string map = folder / "map.tif";
   const std::string truth = folder / "truth.tif";
-  write_geotiff(map, scenarios::draw_truth(moved(big_map(), 0.7, 3.0, 1.0)));
-  write_geotiff(truth, scenarios::draw_truth(big_truth()));
+  write_geotiff(map, draw_truth(moved(big_map(), 0.7, 3.0, 1.0)));
+  write_geotiff(truth, draw_truth(big_truth()));
   for (auto _ : state) benchmark::DoNotOptimize(score_map(load_map(map).grid, load_map(truth).grid));
   if (kept != nullptr) return;
   std::filesystem::remove(map);

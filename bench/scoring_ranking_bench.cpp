@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/planar.h"
 #include "base/rigid.h"
 #include "scoring/scorecard.h"
 #include "tests/support/scoring_damage.h"
@@ -117,9 +118,9 @@ double trajectory_error_of(const Distortion& d, double width, double height) {
       truth.emplace_back(x, y);
       drawn.push_back(d.drawn({x, y}));
     }
-  const Rigid T(fit_rigid(drawn, truth));
+  const PlanarTransform T(fit_rigid(drawn, truth));
   double sum = 0.0;
-  for (std::size_t i = 0; i < truth.size(); ++i) sum += (T.forward(drawn[i]) - truth[i]).sqrNorm();
+  for (std::size_t i = 0; i < truth.size(); ++i) sum += (T(drawn[i]) - truth[i]).sqrNorm();
   return std::sqrt(sum / static_cast<double>(truth.size()));
 }
 

@@ -19,13 +19,14 @@ LaserModel utm_30lx() {
   laser.accuracy_near_to = 10.0;
   laser.accuracy_far = 0.05;
   laser.accuracy_far_share = 0.0;
+  laser.has_codes = false;
   return laser;
 }
 
 /// Something to start from: 270 deg in half degrees, ten times a second, up to 10 m.
 LaserModel generic() {
   LaserModel laser;
-  laser.name = "generic";
+  laser.name = kGenericLaser;
   laser.beams = 541;
   laser.range_min = 0.05;
   laser.range_max = 10.0;
@@ -33,21 +34,31 @@ LaserModel generic() {
   laser.accuracy_near_to = 10.0;
   laser.accuracy_far = 0.03;
   laser.accuracy_far_share = 0.0;
+  laser.has_codes = false;
   spread_beams(laser, 270.0, 0.075);
   return laser;
+}
+
+const std::vector<LaserModel>& known_lasers() {
+  static const std::vector<LaserModel> lasers{LaserModel(), utm_30lx(), generic()};
+  return lasers;
 }
 
 }  // namespace
 
 const std::vector<std::string>& laser_names() {
-  static const std::vector<std::string> names{"URG-04LX", "UTM-30LX", "generic"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> out;
+    for (const LaserModel& laser : known_lasers()) out.push_back(laser.name);
+    return out;
+  }();
   return names;
 }
 
 LaserModel laser_model(const std::string& name) {
-  if (name == "UTM-30LX") return utm_30lx();
-  if (name == "generic") return generic();
-  return {};
+  for (const LaserModel& laser : known_lasers())
+    if (laser.name == name) return laser;
+  return known_lasers().front();
 }
 
 void spread_beams(LaserModel& laser, double field_of_view_deg, double sweep) {

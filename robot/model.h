@@ -20,20 +20,24 @@ struct LaserModel {
   double range_max = 4.0;                              ///< [m]
   double scan_period = 0.1;                            ///< one revolution [s]
   double beam_period = 0.1 / 1024.0;                   ///< 97.656 us [s]
-  // The data sheet's accuracy: a range is off by at most so much. Only the simulator asks.
+  // Only the simulator asks for what follows. The data sheet's accuracy: a range is off by at most so much.
   double accuracy_near = 0.01;       ///< below accuracy_near_to [m]
   double accuracy_near_to = 1.0;     ///< [m]
   double accuracy_far = 0.0;         ///< beyond: accuracy_far + accuracy_far_share * range [m]
   double accuracy_far_share = 0.01;  ///< share of the range
+  bool has_codes = true;             ///< it says of a beam without a range why there is none
 
   /// Angle between the first and the last beam [rad].
   double field_of_view() const { return (beams - 1) * angle_step; }
 };
 
-/// The scanners known by name, the default first: URG-04LX, UTM-30LX, and `generic`, whose numbers are the user's.
+/// Name of the scanner that has nothing usual: its numbers are the user's.
+constexpr const char* kGenericLaser = "generic";
+
+/// The scanners known by name, the default first: URG-04LX, UTM-30LX, generic.
 const std::vector<std::string>& laser_names();
 
-/// The scanner of that name; `name` must be one of laser_names().
+/// The scanner of that name, the default for one that is not among laser_names() (a log's).
 LaserModel laser_model(const std::string& name);
 
 /// Spreads the beams over `field_of_view` [deg], symmetrically about the front, and over `sweep` [s].
@@ -41,6 +45,12 @@ void spread_beams(LaserModel& laser, double field_of_view_deg, double sweep);
 
 /// Where the accelerometer sits: on the levelled platform (closed loop) or on the robot's body (open loop).
 enum class AccelerometerMount { Platform, Body };
+
+/// "platform", "body": as files call them, in the order of AccelerometerMount.
+inline const std::vector<std::string>& mount_names() {
+  static const std::vector<std::string> names = {"platform", "body"};
+  return names;
+}
 
 /// What the core knows about the robot it drives: the same for the simulated and the real one.
 /// Defaults: Pioneer 3-AT with a servo-levelled URG-04LX.

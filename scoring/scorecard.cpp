@@ -9,6 +9,7 @@
 #include "scoring/measures/detached.h"
 #include "scoring/measures/psi.h"
 #include "scoring/measures/sight_lines.h"
+#include "scoring/proposals/features.h"
 #include "scoring/walls/overlap.h"
 #include "scoring/walls/resample.h"
 #include "scoring/walls/warp_fit.h"
@@ -109,17 +110,17 @@ void fill_warp(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& tru
 
 /// A second drawing on the canvas is a second guess: each is worth its share.
 void fill_sights(MapScore& out, const OccupancyGrid& truth, const Walls& walls) {
-  const SightAgreement sights = walls.sights.at(walls.map, Rigid(out.T_truth_map));
+  const SightAgreement sights = walls.sights.at(walls.map, PlanarTransform(out.T_truth_map));
   out.sight_known = sights.known;
   out.sight_kappa = sights.kappa;
-  out.detached = detached_share(walls.map, truth, Rigid(out.T_truth_map));
-  out.score_at_best_pose = walls.score(Rigid(out.T_truth_map)) * (1.0 - out.detached);
+  out.detached = detached_share(walls.map, truth, PlanarTransform(out.T_truth_map));
+  out.score_at_best_pose = walls.score(PlanarTransform(out.T_truth_map)) * (1.0 - out.detached);
 }
 
 /// All numbers at the pose that `out` holds.
 void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls,
              const ScoreConfig& config) {
-  const Overlap overlap = walls.overlaps.at(Rigid(out.T_truth_map));
+  const Overlap overlap = walls.overlaps.at(PlanarTransform(out.T_truth_map));
   out.precision = overlap.precision;
   out.recall = overlap.recall;
   out.overlap = overlap.score;
@@ -127,7 +128,7 @@ void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth
   out.score = out.score_at_best_pose;
   if (!walls.sights.usable())
     out.note = "the truth has too few walls with free space on both sides; the score is the overlap";
-  out.errors = wall_errors(walls.overlaps, Rigid(out.T_truth_map), config.worst_places);
+  out.errors = wall_errors(walls.overlaps, PlanarTransform(out.T_truth_map), config.worst_places);
   if (config.warp) fill_warp(out, map, truth, walls);
   const GridFrame frame = common_frame(map, truth, out.T_truth_map, kCanvasMargin);
   const OccupancyGrid map_on_frame = resample(map, out.T_truth_map, frame);
@@ -147,20 +148,21 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
   out.note = alignment.note;
   out.T_truth_map = alignment.T_truth_map;
   out.runner_up = alignment.runner_up;
-  out.source = alignment.source;
+  out.by = alignment.by;
   out.contest = alignment.contest;
   out.mirrored = alignment.mirrored;
   if (!out.aligned) {
     fill_psi(out, psi_of_strangers(config.colour_absent_cap));
-    if (!alignment.source.empty()) fill_sights(out, truth_known, Walls(map_known, truth_known, config.tau));
+    if (alignment.by != AlignBy::Auto) fill_sights(out, truth_known, Walls(map_known, truth_known, config.tau));
     // Walls that do meet, only at too many poses, are of the right scale.
-    if (!alignment.source.empty() && tight_agreement(alignment.tight_evidence) < kTightEnough)
+    if (alignment.by != AlignBy::Auto && tight_agreement(alignment.tight_evidence) < kTightEnough)
       out.scale_hint = agreeing_scale(map_known, truth_known, config.alignment);
     if (out.scale_hint > 0.0) out.note = scale_note(out.scale_hint, map.resolution());
     return out;
   }
   const Walls walls(map_known, truth_known, config.tau);
-  if (walls.score(Rigid(alignment.T_walls)) > walls.score(Rigid(out.T_truth_map))) out.T_truth_map = alignment.T_walls;
+  if (walls.score(PlanarTransform(alignment.T_walls)) > walls.score(PlanarTransform(out.T_truth_map)))
+    out.T_truth_map = alignment.T_walls;
   measure(out, map_known, truth_known, walls, config);
   return out;
 }
@@ -171,7 +173,7 @@ MapScore score_at_pose(const OccupancyGrid& map, const OccupancyGrid& truth, con
   const OccupancyGrid truth_known = crop_to_known(truth, 0.0);
   MapScore out;
   out.aligned = true;
-  out.source = "given";
+  out.by = AlignBy::Hand;
   out.T_truth_map = T_truth_map;
   measure(out, map_known, truth_known, Walls(map_known, truth_known, config.tau), config);
   return out;

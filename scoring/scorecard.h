@@ -6,7 +6,7 @@
 
 #include "base/grid.h"
 #include "scoring/alignment/alignment.h"
-#include "scoring/alignment/matching.h"
+#include "scoring/alignment/match_error.h"
 #include "scoring/walls/wall_errors.h"
 
 namespace rubble::scoring {
@@ -44,7 +44,7 @@ struct MapScore {
   double psi_free_map_m = 0.0;
   double psi_free_truth_m = 0.0;
   double known = 0.0;            ///< share of the truth's free and occupied area that the map knows
-  std::string source;            ///< what proposed the pose: "walls", "features", "rooms" or several joined by +
+  AlignBy by = AlignBy::Auto;    ///< what proposed the pose; Auto: nothing did
   Contest contest;               ///< by how much the pose found is ahead, and of which
   double mirrored = 0.0;         ///< how near the mirrored map comes to the best pose, 0..1; 0 where there was no pose
   double scale_hint = 0.0;       ///< not aligned, but the maps agree when this is the map's scale; 0: no such scale

@@ -3,13 +3,13 @@
 #include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "base/pose_covariance.h"
 #include "base/trajectory.h"
 #include "robot/measurements.h"
 #include "slam/grid/count_map.h"
@@ -62,7 +62,7 @@ class Mapper {
   /// T_map_base at the newest odometry (or scan, where there is none).
   virtual mrpt::math::TPose2D pose() const = 0;
   /// Of pose(): x, y [m^2], heading [rad^2], in the map frame, relative to the map's origin. Zero: not estimated.
-  virtual Eigen::Matrix3d covariance() const = 0;
+  virtual PoseCovariance covariance() const = 0;
   /// Rises whenever poses of the past move in the map (a closed loop). What is anchored to stamps by pose_at() is asked
   /// anew then.
   virtual std::uint64_t revision() const = 0;

@@ -127,8 +127,9 @@ void read_balls(const YamlMap& root, Plan& plan, Arena& arena) {
 void read_objects(const YamlMap& root, Plan& plan, Arena& arena) {
   for (const YamlMap& entry : root.maps("objects")) {
     LooseObject object;
-    object.element = entry.choice("type", std::nullopt, {"bottle", "radio"});
-    const bool is_bottle = object.element == "bottle";
+    const std::string type = entry.choice("type", std::nullopt, object_kinds());
+    object.kind = type == object_kinds().front() ? ObjectKind::Bottle : ObjectKind::Radio;
+    const bool is_bottle = object.kind == ObjectKind::Bottle;
     object.radius = entry.number("radius_m", is_bottle ? 0.033 : 0.03, 0.01, 0.5);
     object.height = entry.number("height_m", is_bottle ? 0.23 : 0.26, 0.02, 2.0);
     object.mass = entry.number("mass_kg", is_bottle ? 0.52 : 0.30, 0.01, 20.0);
@@ -260,8 +261,7 @@ Arena build(const YamlMap& document, const std::string& source) {
 }  // namespace
 
 Arena load_arena(const std::string& path) {
-  const bool is_raf = path.size() > 4 && path.compare(path.size() - 4, 4, ".raf") == 0;
-  if (!is_raf) return build(YamlMap::load(path), path);
+  if (!is_raf(path)) return build(YamlMap::load(path), path);
   const RafImport import = import_raf(path);
   if (!import.unknown.empty()) throw InputError(path + ": " + import.summary() + ": remove these parts from the file");
   return import.arena;

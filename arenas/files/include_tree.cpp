@@ -65,7 +65,7 @@ ArenaFile read_file(const YamlMap& entry, const std::string& path, Chain& chain)
   }
   if (++chain.pieces > kMostPieces)
     entry.fail("file", "more than " + std::to_string(kMostPieces) + " pieces are included; include fewer");
-  if (fs::path(path).extension() == ".raf") return {raf_document(entry, path), path, {}};
+  if (is_raf(path)) return {raf_document(entry, path), path, {}};
   chain.names.push_back(path);
   chain.canonical.push_back(known);
   const YamlMap root = YamlMap::load(path);

@@ -1,5 +1,6 @@
 #include "arenas/generate/generate.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "arenas/generate/furnish.h"
@@ -39,8 +40,6 @@ void require(bool is_good, const std::string& message) {
 }
 
 void check_config(const GenerateConfig& config) {
-  require(config.kind == "yellow" || config.kind == "orange" || config.kind == "red",
-          "unknown kind '" + config.kind + "': use yellow, orange or red");
   require(config.columns >= 2 && config.columns <= 60, "columns must be 2 to 60");
   require(config.rows >= 2 && config.rows <= 60, "rows must be 2 to 60");
   require(config.ramps >= 0.0 && config.ramps <= 1.0, "ramps must be a share, 0 to 1");
@@ -150,6 +149,19 @@ std::string paper_text(const Furniture& furniture) {
 
 }  // namespace
 
+const std::vector<std::string>& arena_kinds() {
+  static const std::vector<std::string> names = {"yellow", "orange", "red"};
+  return names;
+}
+
+std::string name_of(ArenaKind kind) { return arena_kinds().at(static_cast<std::size_t>(kind)); }
+
+ArenaKind arena_kind(const std::string& name) {
+  const auto found = std::find(arena_kinds().begin(), arena_kinds().end(), name);
+  require(found != arena_kinds().end(), "unknown kind '" + name + "': use yellow, orange or red");
+  return static_cast<ArenaKind>(found - arena_kinds().begin());
+}
+
 std::string generate_arena(const GenerateConfig& config) {
   check_config(config);
   // One stream a concern: asking for more paper leaves the maze as it was.
@@ -165,7 +177,7 @@ std::string generate_arena(const GenerateConfig& config) {
   const int start_y = static_cast<int>(start_rng.below(static_cast<std::uint32_t>(config.rows)));
   const Cell start{start_x, start_y};
   const int ramps = static_cast<int>(std::llround(config.ramps * cells));
-  const int tallest = config.kind == "yellow" ? 1 : 2;
+  const int tallest = config.kind == ArenaKind::Yellow ? 1 : 2;
   const Relief relief = grow_relief(config.columns, config.rows, ramps, start, tallest, relief_rng);
   Maze maze = carve_maze(relief, config.loops, maze_rng);
   const std::vector<RoughPallet> rough = lay_rough(config.kind, relief, start, config.rough, maze, rough_rng);
@@ -179,11 +191,11 @@ std::string generate_arena(const GenerateConfig& config) {
 
   const std::string size = std::to_string(config.columns) + "x" + std::to_string(config.rows);
   const std::string seed = std::to_string(config.seed);
-  const std::string obstacles = config.kind == "yellow" ? "" : ", rough " + number(config.rough);
-  std::string text = "# A random " + config.kind + " arena: " + size + " pallets, seed " + seed + ", ramps " +
+  const std::string obstacles = config.kind == ArenaKind::Yellow ? "" : ", rough " + number(config.rough);
+  std::string text = "# A random " + name_of(config.kind) + " arena: " + size + " pallets, seed " + seed + ", ramps " +
                      number(config.ramps) + obstacles + ", paper " + number(config.paper) + ", loops " +
                      number(config.loops) + ", victims " + std::to_string(config.victims) + ".\n";
-  text += "name: " + config.kind + "_" + size + "_" + seed + "\n";
+  text += "name: " + name_of(config.kind) + "_" + size + "_" + seed + "\n";
   text += "ramp_deg: " + number(config.ramp_deg) + "\n\nmaze: |\n";
   for (const std::string& line : draw(drawing_of(relief, maze, start))) text += "  " + line + "\n";
   text += "\nstart: {heading_deg: " + std::to_string(heading_deg) + "}\n";

@@ -2,16 +2,26 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "arenas/model/arena.h"
 
 namespace rubble::arenas {
 
+/// Yellow: drivable throughout; orange, red: with that kind's obstacles.
+enum class ArenaKind { Yellow, Orange, Red };
+
+/// "yellow", "orange", "red": as files and options call them, in the order of ArenaKind.
+const std::vector<std::string>& arena_kinds();
+std::string name_of(ArenaKind kind);
+/// Throws InputError for another name.
+ArenaKind arena_kind(const std::string& name);
+
 /// What a generated arena shall be like.
 struct GenerateConfig {
-  std::string kind = "yellow";  ///< yellow: drivable throughout; orange, red: with that kind's obstacles
-  int columns = 8;              ///< pallets west-east, 2..60
-  int rows = 8;                 ///< pallets south-north, 2..60
+  ArenaKind kind = ArenaKind::Yellow;
+  int columns = 8;  ///< pallets west-east, 2..60
+  int rows = 8;     ///< pallets south-north, 2..60
   std::uint64_t seed = 1;
   double ramps = 0.3;   ///< share of pallets that are 10 deg ramps, 0..1 (reached as far as drivability allows)
   double paper = 0.1;   ///< share of pallets with loose or crumpled paper, 0..1

@@ -111,14 +111,14 @@ bool lay_tunnel(Cell cell, Site& site, std::vector<RoughPallet>& laid) {
 
 }  // namespace
 
-std::vector<RoughPallet> lay_rough(const std::string& kind, const Relief& relief, Cell start, double share, Maze& maze,
+std::vector<RoughPallet> lay_rough(ArenaKind kind, const Relief& relief, Cell start, double share, Maze& maze,
                                    Rng& rng) {
   std::vector<RoughPallet> laid;
-  if (kind == "yellow") return laid;
+  if (kind == ArenaKind::Yellow) return laid;
   Site site(relief, start, maze);
   const auto wanted = static_cast<std::size_t>(std::llround(share * static_cast<double>(relief.frame().size())));
   // Towers need the most room, so they come first: a third of the red obstacles.
-  for (int proposal = 0; kind == "red" && proposal < 400 && 3 * (laid.size() + 2) <= wanted + 3; ++proposal) {
+  for (int proposal = 0; kind == ArenaKind::Red && proposal < 400 && 3 * (laid.size() + 2) <= wanted + 3; ++proposal) {
     const int x = static_cast<int>(rng.below(static_cast<std::uint32_t>(relief.width())));
     const int y = static_cast<int>(rng.below(static_cast<std::uint32_t>(relief.height())));
     const int turn = static_cast<int>(rng.below(4));
@@ -133,7 +133,7 @@ std::vector<RoughPallet> lay_rough(const std::string& kind, const Relief& relief
     const int what = static_cast<int>(rng.below(6));
     const Cell cell{x, y};
     bool found = false;
-    if (kind == "orange") {
+    if (kind == ArenaKind::Orange) {
       found = lay_field(what < 3 ? "stepfield_orange_diagonal" : "crossing_ramps", cell, turn, site, laid);
     } else if (what < 3) {
       found = laid.size() + 2 <= wanted && lay_tower(what, cell, turn, site, laid);

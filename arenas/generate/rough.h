@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "arenas/generate/generate.h"
 #include "arenas/generate/maze.h"
 #include "arenas/model/relief.h"
 #include "base/rng.h"
@@ -22,7 +23,7 @@ struct RoughPallet {
 /// 0.4 m, stairs and steep ramps up to a floor, tunnels), about `share` of all. They lie on flat ground, never at the
 /// start, and so that all other pallets stay connected without them. Ways up to a floor become dead ends: what was open
 /// to their sides is closed.
-std::vector<RoughPallet> lay_rough(const std::string& kind, const Relief& relief, Cell start, double share, Maze& maze,
+std::vector<RoughPallet> lay_rough(ArenaKind kind, const Relief& relief, Cell start, double share, Maze& maze,
                                    Rng& rng);
 
 }  // namespace rubble::arenas

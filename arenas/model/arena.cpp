@@ -23,6 +23,11 @@ void include(Arena& arena, const Outline& outline) {
 
 }  // namespace
 
+const std::vector<std::string>& object_kinds() {
+  static const std::vector<std::string> names = {"bottle", "radio"};
+  return names;
+}
+
 void set_bounds(Arena& arena) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   arena.min_corner = {kInfinity, kInfinity};

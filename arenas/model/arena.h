@@ -48,6 +48,11 @@ struct PaperBall {
   double mass = 0.03;    ///< [kg]
 };
 
+enum class ObjectKind { Bottle, Radio };
+
+/// "bottle", "radio": as files call them, in the order of ObjectKind.
+const std::vector<std::string>& object_kinds();
+
 /// Something of the blue arena to grasp: an upright cylinder the robot pushes and the laser sees while its plane meets
 /// it.
 struct LooseObject {
@@ -55,7 +60,7 @@ struct LooseObject {
   double radius = 0.033;  ///< [m]
   double height = 0.23;   ///< [m]
   double mass = 0.5;      ///< [kg]
-  std::string element;    ///< "bottle", "radio"
+  ObjectKind kind = ObjectKind::Bottle;
 };
 
 /// A simulated victim; which cues it gives.

@@ -153,7 +153,8 @@ std::optional<std::string> ball_trouble(const Arena& arena, const PaperBall& bal
 }
 
 std::optional<std::string> object_trouble(const Arena& arena, const LooseObject& object) {
-  const std::string what = "object '" + object.element + "' at " + place(object.position);
+  const std::string what =
+      "object '" + object_kinds().at(static_cast<std::size_t>(object.kind)) + "' at " + place(object.position);
   if (!(object.radius > 0.0 && object.height > 0.0 && object.mass > 0.0)) {
     return what + " needs a radius, a height and a mass above 0";
   }
@@ -198,7 +199,8 @@ std::optional<std::string> start_trouble(const Arena& arena, double start_cleara
   }
   for (const LooseObject& object : arena.objects) {
     if (std::hypot(object.position.x - start.x, object.position.y - start.y) < object.radius + start_clearance) {
-      return "start " + place(start) + " is on the object '" + object.element + "': move one of them";
+      return "start " + place(start) + " is on the object '" +
+             object_kinds().at(static_cast<std::size_t>(object.kind)) + "': move one of them";
     }
   }
   return std::nullopt;

@@ -6,6 +6,7 @@
 #include "arenas/raf/raf_reader.h"
 #include "arenas/raf/raf_start.h"
 #include "base/text/text_file.h"
+#include "base/text/words.h"
 
 namespace rubble::arenas {
 namespace {
@@ -34,6 +35,8 @@ std::vector<std::string> RafImport::notes() const {
   if (!start_note.empty()) lines.push_back(start_note);
   return lines;
 }
+
+bool is_raf(const std::string& path) { return ends_with(path, ".raf"); }
 
 RafImport parse_raf(const std::string& text, const std::string& name) {
   const std::vector<Element> elements = read_raf_elements(text, name);

@@ -25,6 +25,9 @@ struct RafImport {
   std::vector<std::string> notes() const;
 };
 
+/// Whether a file's name ends in .raf.
+bool is_raf(const std::string& path);
+
 /// Reads a `.raf` file (XML, one element a part, 1 unit = one pallet of 1.2 m, rotation clockwise in degrees). The
 /// ground is laid inside the outer walls. The robot starts at a part named start..., else inside the largest stretch of
 /// floor it can drive on. Throws InputError with file, line and column.

@@ -110,10 +110,10 @@ void draw_paper(const Arena& arena, Canvas& canvas) {
 void draw_objects(const Arena& arena, Canvas& canvas) {
   for (const LooseObject& object : arena.objects) {
     const double r = std::max(0.05, object.radius);
-    const Colour& colour = object.element == "bottle" ? kBottle : kRadio;
+    const Colour& colour = object.kind == ObjectKind::Bottle ? kBottle : kRadio;
     canvas.disc(object.position + TPoint2D{0.25 * r, -0.25 * r}, r, {60, 50, 40}, 0.35);  // shadow
     canvas.disc(object.position, r, colour);
-    canvas.disc(object.position, 0.4 * r, object.element == "bottle" ? kPaper : kWall);
+    canvas.disc(object.position, 0.4 * r, object.kind == ObjectKind::Bottle ? kPaper : kWall);
   }
 }
 

@@ -166,7 +166,7 @@ void write_geotiff(const std::string& path, const GeoTiff& tiff) {
   write_text_file(path, bytes);
 }
 
-GeoTiff read_geotiff(const std::string& path) {
+GeoTiff read_geotiff(const std::string& path, const Rgb& behind) {
   TiffComplaint complaint;
   const TiffFile tiff = open_tiff(path, complaint);
   GeoTiff result;
@@ -176,7 +176,7 @@ GeoTiff read_geotiff(const std::string& path) {
   const char* description = nullptr;
   if (TIFFGetField(tiff.get(), TIFFTAG_IMAGEDESCRIPTION, &description) == 1) result.description = description;
   try {
-    result.image = read_pixels(tiff.get(), path, complaint);
+    result.image = read_pixels(tiff.get(), path, complaint, behind);
   } catch (const std::bad_alloc&) {
     throw InputError(path + ": does not fit into memory; scale it down");
   }

@@ -53,9 +53,12 @@ PixelToModel georeference(double x0, double y1, double resolution, const std::op
 /// rotated), PixelIsArea, resolution in metres. No time stamp: same input, same bytes. Throws RunError.
 void write_geotiff(const std::string& path, const GeoTiff& tiff);
 
+using Rgb = std::array<std::uint8_t, 3>;
+
 /// Reads any strip, tiled, compressed, 1..16-bit, grey, palette or RGB(A) TIFF with or without GeoTIFF tags.
-/// Throws InputError: missing, truncated, not a TIFF, over 20,000 pixels a side or 10^8 in all.
-GeoTiff read_geotiff(const std::string& path);
+/// `behind`: what transparent pixels let through. Throws InputError: missing, truncated, not a TIFF, over 20,000 pixels
+/// a side or 10^8 in all.
+GeoTiff read_geotiff(const std::string& path, const Rgb& behind = {255, 255, 255});
 
 /// The six lines of a world file: a, d, b, e and the centre of the upper-left pixel.
 void write_world_file(const std::string& path, const PixelToModel& transform);

@@ -18,7 +18,6 @@ constexpr std::uint32_t kMaxSide = 20000;
 constexpr std::uint64_t kMaxPixels = 100000000;
 constexpr std::uint32_t kMaxSamples = 16;
 constexpr std::uint64_t kMaxChunk = 2u << 30;  ///< [bytes] of one strip or tile, unpacked
-constexpr std::array<std::uint8_t, 3> kUnexplored{226, 226, 227};
 
 /// How the samples of a TIFF are stored.
 struct Layout {
@@ -35,8 +34,8 @@ using Samples = std::array<std::uint32_t, kMaxSamples>;  ///< of one pixel
 
 class Reader {
  public:
-  Reader(TIFF* tiff, const std::string& path, const TiffComplaint& complaint)
-      : tiff_(tiff), path_(path), complaint_(complaint) {}
+  Reader(TIFF* tiff, const std::string& path, const TiffComplaint& complaint, const Rgb& behind)
+      : tiff_(tiff), path_(path), complaint_(complaint), behind_(behind) {}
 
   RgbImage read() {
     read_layout();
@@ -272,7 +271,7 @@ class Reader {
       if (layout_.alpha >= 0) {
         const std::uint32_t top = opaque_;
         const std::uint32_t alpha = std::min(values[static_cast<std::size_t>(layout_.alpha)], top);
-        const std::uint32_t behind = (kUnexplored[c] * (top - alpha) + top / 2) / top;
+        const std::uint32_t behind = (behind_[c] * (top - alpha) + top / 2) / top;
         colour = (layout_.premultiplied ? colour : (colour * alpha + top / 2) / top) + behind;
       }
       rgb[c] = static_cast<std::uint8_t>(std::min(colour, 255u));
@@ -295,6 +294,7 @@ class Reader {
   TIFF* tiff_;
   const std::string& path_;
   const TiffComplaint& complaint_;
+  const Rgb& behind_;
   Layout layout_;
   std::uint32_t white_ = 255;   ///< sample value
   std::uint32_t opaque_ = 255;  ///< sample value
@@ -304,8 +304,8 @@ class Reader {
 
 }  // namespace
 
-RgbImage read_pixels(TIFF* tiff, const std::string& path, const TiffComplaint& complaint) {
-  return Reader(tiff, path, complaint).read();
+RgbImage read_pixels(TIFF* tiff, const std::string& path, const TiffComplaint& complaint, const Rgb& behind) {
+  return Reader(tiff, path, complaint, behind).read();
 }
 
 }  // namespace rubble

@@ -5,6 +5,10 @@
 
 namespace rubble {
 
+/// `text`, with an apostrophe before it when a spreadsheet would take it for a formula and run it: = @ tab or return
+/// first, or a sign that no number follows.
+std::string not_a_formula(const std::string& text);
+
 /// A CSV field in quotes, as RFC 4180 has it.
 std::string csv_quoted(const std::string& text);
 

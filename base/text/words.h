@@ -12,6 +12,9 @@ std::string one_line(std::string_view text);
 /// 'text' in quotes for a message, on one line, cut at `limit` bytes.
 std::string quoted(std::string_view text, std::size_t limit = 60);
 
+/// Whether `text` ends in `end` and has something before it: a file name and its ending.
+bool ends_with(std::string_view text, std::string_view end);
+
 /// Changes that turn a into b: insert, delete or replace a letter, swap two neighbours
 /// (optimal string alignment distance).
 std::size_t edit_distance(std::string_view a, std::string_view b);

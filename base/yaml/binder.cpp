@@ -6,18 +6,6 @@
 #include "base/text/number_text.h"
 
 namespace rubble {
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (c == '\n') {
-      out += "\\n";
-    } else {
-      out += c;
-    }
-  }
-  return out + "\"";
-}
 
 void Binder::degrees(const char* key, double& radians, double low, double high) {
   // Written degrees must read back to the same radians, so the degree value nearest to a round one is kept.
@@ -62,7 +50,7 @@ void YamlWriter::integer(const char* key, int& value, int, int) { line(key, std:
 
 void YamlWriter::boolean(const char* key, bool& value) { line(key, value ? "true" : "false"); }
 
-void YamlWriter::text(const char* key, std::string& value) { line(key, quoted(value)); }
+void YamlWriter::text(const char* key, std::string& value) { line(key, yaml_quoted(value)); }
 
 void YamlWriter::choice(const char* key, std::string& value, const std::vector<std::string>&) { line(key, value); }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -20,6 +21,13 @@ class Binder {
   virtual void boolean(const char* key, bool& value) = 0;
   virtual void text(const char* key, std::string& value) = 0;
   virtual void choice(const char* key, std::string& value, const std::vector<std::string>& choices) = 0;
+  /// The same for an enum whose values stand in the order of their names, from 0 on.
+  template <class Enum>
+  void choice(const char* key, Enum& value, const std::vector<std::string>& names) {
+    std::string name = names.at(static_cast<std::size_t>(value));
+    choice(key, name, names);
+    value = static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
+  }
   virtual void section(const char* key, const std::function<void(Binder&)>& fields) = 0;
   /// Whether the fields are written rather than read: what has its usual value may then be left out.
   virtual bool writes() const { return false; }
@@ -62,7 +70,7 @@ class YamlWriter : public Binder {
   std::string yaml_;
 };
 
-/// A YAML double-quoted scalar.
-std::string quoted(const std::string& text);
+/// `text` as a double-quoted YAML scalar.
+std::string yaml_quoted(const std::string& text);
 
 }  // namespace rubble

@@ -29,7 +29,7 @@ bool is_plain(const std::string& text) {
                      [](char c) { return is_word_letter(c) || c == '.' || c == '-' || c == '+' || c == ' '; });
 }
 
-std::string double_quoted(const std::string& text) {
+std::string yaml_quoted(const std::string& text) {
   static constexpr char kHex[] = "0123456789abcdef";
   std::string out = "\"";
   for (const char c : text) {
@@ -51,7 +51,7 @@ std::string double_quoted(const std::string& text) {
 
 std::string scalar_text(const YamlNode& node) {
   if (node.kind == Kind::Null) return "null";
-  return node.style == Style::Plain && is_plain(node.text) ? node.text : double_quoted(node.text);
+  return node.style == Style::Plain && is_plain(node.text) ? node.text : yaml_quoted(node.text);
 }
 
 /// Literal block style can hold it: printable, and starts and ends with a line that is not blank.
@@ -118,7 +118,7 @@ void write(const YamlNode& node, const std::string& indent, bool after_dash, std
     first = false;
   }
   for (const auto& entry : node.entries) {
-    out += (first ? "" : indent) + (is_plain(entry.key) ? entry.key : double_quoted(entry.key)) + ":";
+    out += (first ? "" : indent) + (is_plain(entry.key) ? entry.key : yaml_quoted(entry.key)) + ":";
     write_value(*entry.value, indent, false, out);
     first = false;
   }

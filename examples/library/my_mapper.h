@@ -31,7 +31,7 @@ class MyMapper : public rubble::slam::Mapper {
   }
   const rubble::slam::CountMap& map() const override { return map_; }
   mrpt::math::TPose2D pose() const override { return pose_; }
-  Eigen::Matrix3d covariance() const override { return Eigen::Matrix3d::Zero(); }
+  rubble::PoseCovariance covariance() const override { return {}; }
   std::uint64_t revision() const override { return 0; }
   std::optional<mrpt::math::TPose2D> pose_at(rubble::Stamp stamp) const override {
     return rubble::pose_at(trajectory_, stamp);

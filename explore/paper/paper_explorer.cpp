@@ -130,7 +130,7 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
 
 /// A cue seen while the pose is unsure would put a victim where none is.
 void PaperExplorer::hear(const slam::Mapper& mapper, const robot::VictimCue& cue) {
-  const Eigen::Matrix3d covariance = mapper.covariance();
+  const PoseCovariance covariance = mapper.covariance();
   if (covariance(0, 0) + covariance(1, 1) > kUnsure * kUnsure) return;
   const Anchor anchor{cue.stamp, mapper.pose_at(cue.stamp).value_or(pose_)};
   const auto same_side = [this](const TPoint2D& a, const TPoint2D& b) {

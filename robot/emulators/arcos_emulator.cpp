@@ -319,24 +319,32 @@ void ArcosEmulator::report() {
   if (status_ == 1) status_ = 0;
 }
 
-bool ArcosEmulator::fail(const std::string& fault, Stamp now) {
-  if (fault == "seto") {
-    set_origin();
-  } else if (fault == "stall") {
-    stalled_until_ = now + kStallFault;
-  } else if (fault == "reset") {
-    start_anew();
-  } else if (fault == "watchdog") {
-    deaf_until_ = now + kDeafFault;
-  } else if (fault == "button") {
-    switch_motors(false);
-    pressed_until_ = now + kButtonFault;
-  } else if (fault == "motors") {
-    switch_motors(false);
-  } else {
-    return false;
+bool ArcosEmulator::fail(DeviceFault fault, Stamp now) {
+  switch (fault) {
+    case DeviceFault::SetOrigin:
+      set_origin();
+      return true;
+    case DeviceFault::Stall:
+      stalled_until_ = now + kStallFault;
+      return true;
+    case DeviceFault::Reset:
+      start_anew();
+      return true;
+    case DeviceFault::Watchdog:
+      deaf_until_ = now + kDeafFault;
+      return true;
+    case DeviceFault::Button:
+      switch_motors(false);
+      pressed_until_ = now + kButtonFault;
+      return true;
+    case DeviceFault::Motors:
+      switch_motors(false);
+      return true;
+    case DeviceFault::ClockWrap:
+    case DeviceFault::Sensor:
+      break;
   }
-  return true;
+  return false;
 }
 
 std::optional<mrpt::math::TPose2D> ArcosEmulator::take_placed() { return std::exchange(placed_, std::nullopt); }

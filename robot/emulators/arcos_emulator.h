@@ -38,7 +38,7 @@ class ArcosEmulator : public EmulatedDevice {
   /// `seto`: the odometry is set to zero, `stall`: both motors report a stall for a second, `reset`: the firmware
   /// starts anew and waits for SYNC0, `watchdog`: commands are not heard for 3 s, `button`: the emergency button is
   /// pressed for 2 s, `motors`: the motors are switched off at the robot.
-  bool fail(const std::string& fault, Stamp now) override;
+  bool fail(DeviceFault fault, Stamp now) override;
 
   /// The robot's dead reckoning at `now`, in any frame that stays.
   void measure(const Odometry& odometry, Stamp now);

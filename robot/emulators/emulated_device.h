@@ -7,6 +7,9 @@
 
 namespace rubble::robot {
 
+/// What may befall a device itself, apart from its line; docs/hardware.md says what each does.
+enum class DeviceFault { Reset, ClockWrap, SetOrigin, Stall, Watchdog, Button, Motors, Sensor };
+
 /// The device's side of a protocol apart from its port and from any clock: bytes of the client, time and measurements
 /// go in, bytes and set points come out. Whoever owns the port and the robot moves them.
 class EmulatedDevice {
@@ -21,9 +24,8 @@ class EmulatedDevice {
   virtual void advance(Stamp now) = 0;
   /// Bytes for the client.
   virtual std::string take_output() = 0;
-  /// A fault of the device itself begins: one of its own names, as in docs/hardware.md. False: it has none of that
-  /// name.
-  virtual bool fail(const std::string& /*fault*/, Stamp /*now*/) { return false; }
+  /// A fault of the device itself begins. False: this device does not know it.
+  virtual bool fail(DeviceFault /*fault*/, Stamp /*now*/) { return false; }
 };
 
 }  // namespace rubble::robot

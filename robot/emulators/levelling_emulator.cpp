@@ -142,10 +142,10 @@ void LevellingEmulator::report(Stamp now) {
 
 LaserAim LevellingEmulator::aim() const { return {angle(pulse_us_[0]), angle(pulse_us_[1])}; }
 
-bool LevellingEmulator::fail(const std::string& fault, Stamp now) {
-  if (fault == "reset") {
+bool LevellingEmulator::fail(DeviceFault fault, Stamp now) {
+  if (fault == DeviceFault::Reset) {
     start_anew(now);
-  } else if (fault == "sensor") {
+  } else if (fault == DeviceFault::Sensor) {
     dead_sensor_until_ = now + kSensorFault;
   } else {
     return false;

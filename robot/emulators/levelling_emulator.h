@@ -31,7 +31,7 @@ class LevellingEmulator : public EmulatedDevice {
   void advance(Stamp now) override;
   std::string take_output() override;
   /// `reset`: it starts anew and says who it is, `sensor`: the accelerometer gives no edge for a second.
-  bool fail(const std::string& fault, Stamp now) override;
+  bool fail(DeviceFault fault, Stamp now) override;
 
   /// What the unit's sensor feels and where its servos stand; `now` is its own clock.
   void measure(const Acceleration& acceleration, const AimState& aim, Stamp now);

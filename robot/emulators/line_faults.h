@@ -1,12 +1,31 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "base/rng.h"
 #include "base/stamp.h"
-#include "robot/emulators/byte_faults.h"
 
 namespace rubble::robot {
+
+/// What goes wrong with the bytes of a line.
+enum class ByteFault { None, Lost, Split, Doubled, Junk, WrongSum };
+
+/// Does to whole replies what a bad line does; which bytes it meets is drawn from the seed.
+class BadLine {
+ public:
+  explicit BadLine(std::uint64_t seed) : rng_(seed, "bad line") {}
+
+  /// The pieces that are sent in place of `bytes`; with Split they are to be sent with pauses between them.
+  std::vector<std::string> spoil(const std::string& bytes, ByteFault fault);
+
+ private:
+  std::size_t somewhere(const std::string& bytes) { return rng_.below(static_cast<std::uint32_t>(bytes.size())); }
+  std::string junk();
+
+  Rng rng_;
+};
 
 /// A line that is bad for a while: spoilt bytes, or none at all.
 class LineFaults {

@@ -25,7 +25,7 @@ void bind(Binder& b, robot::LaserModel& laser) {
   b.choice("model", name, robot::laser_names());
   if (!b.writes() && name != laser.name) laser = robot::laser_model(name);
   const robot::LaserModel usual = robot::laser_model(name);
-  const bool is_generic = name == "generic";  // has nothing that is usual
+  const bool is_generic = name == robot::kGenericLaser;  // has nothing that is usual
   const auto bind_number = [&](const char* key, double robot::LaserModel::*field, double low, double high) {
     if (is_generic || !b.writes() || laser.*field != usual.*field) b.number(key, laser.*field, low, high);
   };
@@ -69,9 +69,7 @@ void bind(Binder& b, robot::RobotModel& r, robot::LevellingConfig& levelling) {
 }
 
 void bind(Binder& b, robot::LevellingConfig& c, robot::AccelerometerMount& accelerometer) {
-  std::string mount = accelerometer == robot::AccelerometerMount::Platform ? "platform" : "body";
-  b.choice("mount", mount, {"platform", "body"});
-  accelerometer = mount == "platform" ? robot::AccelerometerMount::Platform : robot::AccelerometerMount::Body;
+  b.choice("mount", accelerometer, robot::mount_names());
   b.number("kp", c.kp, 0.0, 10.0);
   b.number("ki", c.ki, 0.0, 100.0);
   b.number("kd", c.kd, 0.0, 10.0);
@@ -113,7 +111,7 @@ void bind_sections(Binder& b, Scenario& s) {
 }
 
 void bind_generate(Binder& b, arenas::GenerateConfig& g) {
-  b.choice("kind", g.kind, {"yellow", "orange", "red"});
+  b.choice("kind", g.kind, arenas::arena_kinds());
   b.integer("columns", g.columns, 2, 60);
   b.integer("rows", g.rows, 2, 60);
   b.number("ramps", g.ramps, 0.0, 1.0);
@@ -146,11 +144,12 @@ void read_arena(const YamlMap& root, const std::string& path, Scenario& s) {
 void read_expect(const YamlMap& root, Scenario& s) {
   const YamlMap expect = root.map("expect");
   for (const auto& key : expect.keys()) {
+    const auto is_bounded = [](const scoring::Figure& f) { return !f.is(scoring::kText) && !f.is(scoring::kSpecial); };
     const scoring::Figure* figure = scoring::find_figure(key);
-    if (figure == nullptr || figure->is(scoring::kText)) {
+    if (figure == nullptr || !is_bounded(*figure)) {
       std::vector<std::string> numbers;
       for (const auto& known : scoring::figures())
-        if (!known.is(scoring::kText)) numbers.push_back(known.key);
+        if (is_bounded(known)) numbers.push_back(known.key);
       expect.fail(key, "'" + key + "' is not a number of score.json" + did_you_mean(key, numbers) + "; known are " +
                            joined(numbers));
     }
@@ -166,7 +165,7 @@ void read_expect(const YamlMap& root, Scenario& s) {
 /// What one key alone cannot say.
 void check_laser(const YamlMap& map, const robot::LaserModel& laser) {
   for (const char* key : {"field_of_view_deg", "sweep_s"})
-    if (map.has(key) && laser.name != "generic")
+    if (map.has(key) && laser.name != robot::kGenericLaser)
       map.fail(key, std::string("is for 'model: generic'; the ") + laser.name + " has its own");
   if (map.has("field_of_view_deg") && (map.has("first_beam_deg") || map.has("step_deg")))
     map.fail("field_of_view_deg", "beside 'first_beam_deg' or 'step_deg'; keep one way to say it");
@@ -240,7 +239,7 @@ Scenario default_scenario(const std::vector<Override>& overrides) {
 
 std::string resolved_yaml(const Scenario& scenario) {
   Scenario s = scenario;  // binding needs a mutable object; nothing is changed
-  std::string out = "name: " + rubble::quoted(s.name) + "\nseed: " + std::to_string(s.seed) + "\n";
+  std::string out = "name: " + yaml_quoted(s.name) + "\nseed: " + std::to_string(s.seed) + "\n";
   if (s.has_arena && !s.arena_file.empty()) {
     out += "arena:\n  file: \"" + s.arena_file + "\"\n";
   } else if (s.has_arena) {
@@ -265,14 +264,8 @@ std::string resolved_yaml(const Scenario& scenario) {
   return out;
 }
 
-namespace {
-
-bool is_raf(const Scenario& scenario) { return std::filesystem::path(scenario.arena_file).extension() == ".raf"; }
-
-}  // namespace
-
 std::vector<std::string> arena_notes(const Scenario& scenario) {
-  if (!is_raf(scenario)) return {};
+  if (!arenas::is_raf(scenario.arena_file)) return {};
   std::vector<std::string> notes = arenas::import_raf(scenario.arena_file).notes();
   for (std::string& note : notes) note = scenario.arena_file + ": " + note;
   return notes;
@@ -284,7 +277,7 @@ std::string arena_yaml(const Scenario& scenario) {
     config.seed = scenario.arena_seed();
     return arenas::generate_arena(config);
   }
-  if (is_raf(scenario)) return arenas::to_yaml(arenas::import_raf(scenario.arena_file));
+  if (arenas::is_raf(scenario.arena_file)) return arenas::to_yaml(arenas::import_raf(scenario.arena_file));
   return arenas::self_contained_arena(scenario.arena_file);
 }
 

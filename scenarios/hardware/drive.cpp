@@ -23,15 +23,12 @@ namespace rubble::scenarios {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using nlohmann::ordered_json;
-
-constexpr double kSavePeriod = 3.0;  ///< of the map [s]
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 std::unique_ptr<robot::Scanner> make_scanner(const RobotFile& file, robot::BlackBox& box) {
   const robot::LaserModel& laser = file.settings.robot.laser;
-  if (file.lidar.driver == "mrpt") {
+  if (file.lidar.driver == LidarDriver::Mrpt) {
     robot::MrptScannerConfig config;
     config.type = file.lidar.mrpt_class;
     config.port = file.lidar.port;
@@ -73,37 +70,24 @@ const char* name_of(explore::ExplorerState state) {
   return "";
 }
 
-/// One drive from the first tick to the last: what run.cpp's loop is to the simulator.
+/// What a real robot and whoever stands beside it add to the loop.
 class Driver {
  public:
   Driver(const RobotFile& file, const DriveOptions& options, RunFolder& folder, robot::RealRobot& real, Core& core)
-      : file_(file), options_(options), folder_(folder), real_(real), core_(core) {
+      : options_(options), real_(real), core_(core), loop_(file.settings, folder, core, hooks()) {
     real_.while_waiting([this](const robot::RobotStatus& status) { return wait(status); });
     real_.listen([this] { return wish(); }, options_.left);
   }
   ~Driver() { real_.listen({}); }
 
-  /// Why the drive ended. Throws DeviceLost.
-  std::string run(robot::Robot& robot) {
-    while (auto inputs = robot.read()) {
-      if (!told_.empty()) tell_back();
-      robot.command(answer(*inputs));
-      if (first_ == Stamp::never()) first_ = saved_ = inputs->now;
-      seconds_ = inputs->now - first_;
-      if (inputs->now - saved_ >= 1.0) each_second(inputs->now);
-      if (core_.finished()) return core_.reason();
-      if (piloted_out_) return "the drive is complete";
-      if (interrupted_) return "interrupted";
-    }
-    if (real_.status().emergency) {
-      interrupted_ = true;
-      return "emergency stop";
-    }
-    return interrupted_ ? "interrupted" : "the time is over";
+  LoopEnd run(robot::Robot& robot) {
+    LoopEnd end = loop_.run(robot);
+    if (end.robot_ended && real_.status().emergency) interrupted_ = true;
+    if (end.robot_ended)
+      end.reason = real_.status().emergency ? "emergency stop" : interrupted_ ? "interrupted" : "the time is over";
+    end.interrupted = interrupted_;
+    return end;
   }
-
-  double seconds() const { return seconds_; }
-  bool interrupted() const { return interrupted_; }
 
  private:
   /// Asked in the robot's own thread, whatever the core is at.
@@ -114,8 +98,19 @@ class Driver {
     return interrupted_ ? robot::OperatorWish::Stop : robot::OperatorWish::None;
   }
 
-  robot::Commands answer(const robot::Inputs& inputs) {
-    robot::Commands commands = core_.step(inputs);
+  LoopHooks hooks() {
+    LoopHooks hooks;
+    hooks.interrupted = [this] { return interrupted_.load(); };
+    hooks.over = [this] { return std::string(piloted_out_ ? "the drive is complete" : ""); };
+    hooks.steer = [this](const robot::Inputs& inputs, const robot::Commands& wanted) { return steer(inputs, wanted); };
+    hooks.each_second = [this](double seconds) { each_second(seconds); };
+    hooks.stop = [this] { real_.stop(); };
+    return hooks;
+  }
+
+  robot::Commands steer(const robot::Inputs& inputs, robot::Commands commands) {
+    if (!told_.empty()) tell_back();
+    begun_ = true;
     if (options_.mode == DriveMode::Teleoperate) commands.drive = options_.keys ? options_.keys() : robot::Drive{};
     if (options_.mode == DriveMode::MapOnly) commands.drive = {};
     if (options_.mode == DriveMode::Calibrate) {
@@ -131,7 +126,7 @@ class Driver {
     if (status.silent != told_ && (names(status.silent) != names(told_) || status.held != held_)) {
       if (options_.tell)
         for (const std::string& line : status.silent) options_.tell(line);
-      if (first_ != Stamp::never()) save_map();
+      if (begun_) loop_.save_now();
     }
     told_ = status.silent;
     if (status.held && !held_ && options_.tell)
@@ -155,24 +150,16 @@ class Driver {
     held_ = false;
   }
 
-  void save_map() {
-    folder_.save_estimate(core_.mapper());
-    folder_.save_map(file_.settings, core_.mapper(), core_.victims());
-    map_saved_ = Clock::now();
-  }
-
-  void each_second(Stamp now) {
-    const double since = now - saved_;
-    saved_ = now;
-    folder_.append_estimate(core_.mapper());
-    if (seconds_since(map_saved_) >= kSavePeriod) save_map();
+  void each_second(double seconds) {
+    const double since = seconds - told_at_;
+    told_at_ = seconds;
     DriveStatus status;
     status.robot = real_.status();
     if (status.robot.troubles != troubles_ && options_.tell)
       for (const std::string& line : status.robot.troubles) options_.tell(line);
     troubles_ = status.robot.troubles;
-    if (!options_.each_second) return;
-    status.seconds = seconds_;
+    if (!options_.each_second || since <= 0.0) return;
+    status.seconds = seconds;
     status.state = options_.mode == DriveMode::Teleoperate ? "by hand"
                    : options_.mode == DriveMode::MapOnly   ? "mapping"
                    : options_.mode == DriveMode::Calibrate ? "calibrate"
@@ -187,21 +174,18 @@ class Driver {
     options_.each_second(status);
   }
 
-  const RobotFile& file_;
   const DriveOptions& options_;
-  RunFolder& folder_;
   robot::RealRobot& real_;
   Core& core_;
-  Stamp first_ = Stamp::never();
-  Stamp saved_ = Stamp::never();
-  double seconds_ = 0.0;
+  Loop loop_;
+  bool begun_ = false;    ///< something has come in
+  double told_at_ = 0.0;  ///< of the drive's time [s]
   std::atomic<bool> interrupted_{false};
   bool held_ = false;  ///< stopped at the robot itself, and told
   std::vector<std::string> troubles_;
   bool piloted_out_ = false;
   std::vector<std::string> told_;
   robot::RobotStatus last_;
-  Clock::time_point map_saved_ = Clock::now();
 };
 
 double share(std::vector<double>& sorted, double part) {
@@ -210,29 +194,29 @@ double share(std::vector<double>& sorted, double part) {
   return sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1))];
 }
 
-/// What the drive can say without knowing the truth; behind the table's figures those of the devices.
-ordered_json score_of(const Core& core, const robot::RealRobot& robot, double seconds, const std::string& end,
-                      Clock::time_point start) {
+/// What the drive can say without knowing the truth.
+scoring::Evidence evidence_of(const Core& core, const robot::RealRobot& robot, const LoopEnd& end,
+                              Clock::time_point start) {
   scoring::Evidence evidence;
-  evidence.run = run_figures(core, seconds, end);
+  evidence.run = run_figures(core, end.sim_s, end.reason);
   const double wall = seconds_since(start);
   evidence.machine = scoring::MachineFigures{wall, peak_megabytes()};
-  ordered_json score = score_json(evidence);
+  scoring::DeviceFigures& devices = evidence.devices.emplace();
   const robot::RobotStatus status = robot.status();
-  score["bad_packets"] = status.bad_packets;
-  score["odometry_jumps"] = status.jumps;
-  score["scans_damaged"] = status.scans_damaged;
-  score["scans_missed"] = status.scans_missed;
+  devices.bad_packets = status.bad_packets;
+  devices.odometry_jumps = status.jumps;
+  devices.scans_damaged = status.scans_damaged;
+  devices.scans_missed = status.scans_missed;
   std::vector<double> delays = robot.answer_delays();
-  score["answer_ms_median"] = 1e3 * share(delays, 0.5);
-  score["answer_ms_99"] = 1e3 * share(delays, 0.99);
+  devices.answer_ms_median = 1e3 * share(delays, 0.5);
+  devices.answer_ms_99 = 1e3 * share(delays, 0.99);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   const auto time = [](const timeval& t) {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
-  score["cpu_share"] = (time(usage.ru_utime) + time(usage.ru_stime)) / std::max(1e-3, wall);
-  return score;
+  devices.cpu_share = (time(usage.ru_utime) + time(usage.ru_stime)) / std::max(1e-3, wall);
+  return evidence;
 }
 
 }  // namespace
@@ -255,27 +239,13 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     robot::RealRobot real(settings, *lidar, &box);
     robot::RecordingRobot recorded(real, folder.file("log.rlog"), resolved_yaml(file.settings));
     Driver driver(file, options, folder, real, core);
-    const auto end_with = [&](const std::exception& lost) { report.failure = report.end = lost.what(); };
-    try {
-      report.end = driver.run(recorded);
-    } catch (const robot::DeviceLost& lost) {
-      end_with(lost);
-    } catch (const slam::MapperLost& lost) {
-      end_with(lost);
-    }
-    real.stop();  // what follows may take seconds
-    try {
-      core.finish();
-    } catch (const slam::MapperLost& lost) {
-      end_with(lost);
-    }
-    report.interrupted = driver.interrupted();
+    const LoopEnd end = driver.run(recorded);
+    report.end = end.reason;
+    report.failure = end.failure;
+    report.interrupted = end.interrupted;
     recorded.flush();
-    report.score = score_of(core, real, driver.seconds(), report.end, start);
+    report.score = score_json(evidence_of(core, real, end, start));
   }
-  folder.append_estimate(core.mapper());
-  folder.save_estimate(core.mapper());
-  folder.save_map(file.settings, core.mapper(), core.victims());
   folder.save_hashes("");
   folder.write("score.json", report.score.dump(2) + "\n");
   folder.close();

@@ -8,6 +8,7 @@
 
 #include "arenas/files/arena_file.h"
 #include "base/error.h"
+#include "base/text/words.h"
 #include "base/trajectory.h"
 #include "robot/drivers/host_clock.h"
 #include "robot/emulators/arcos_emulator.h"
@@ -45,8 +46,40 @@ robot::UrgEmulatorConfig urg_config(const Scenario& scenario, const EmulateOptio
   config.laser = scenario.robot.laser;
   config.seed = scenario.seed;
   for (const FaultAt& fault : options.faults)
-    if (fault.name == "urg-wrap") config.clock_start = static_cast<std::uint32_t>(kUrgClockWrap - 1e3 * fault.seconds);
+    if (fault.fault == Fault(robot::DeviceFault::ClockWrap))
+      config.clock_start = static_cast<std::uint32_t>(kUrgClockWrap - 1e3 * fault.seconds);
   return config;
+}
+
+/// Every fault there is, as --fault knows it.
+const std::vector<FaultAt>& known_faults() {
+  using robot::ByteFault;
+  using robot::DeviceFault;
+  static const std::vector<FaultAt> faults = [] {
+    std::vector<FaultAt> all;
+    const auto add = [&](EmulatedKind device, const char* name, Fault fault) {
+      all.push_back({std::string(name_of(device)) + "-" + name, device, fault, 0.0});
+    };
+    for (const EmulatedKind device : {EmulatedKind::Scanner, EmulatedKind::Base, EmulatedKind::Levelling}) {
+      add(device, "lost", ByteFault::Lost);
+      add(device, "split", ByteFault::Split);
+      add(device, "doubled", ByteFault::Doubled);
+      add(device, "junk", ByteFault::Junk);
+      add(device, "sums", ByteFault::WrongSum);
+      add(device, "silence", PortFault::Silence);
+      add(device, "unplug", PortFault::Unplug);
+      add(device, "reset", DeviceFault::Reset);
+    }
+    add(EmulatedKind::Scanner, "wrap", DeviceFault::ClockWrap);
+    add(EmulatedKind::Base, "seto", DeviceFault::SetOrigin);
+    add(EmulatedKind::Base, "stall", DeviceFault::Stall);
+    add(EmulatedKind::Base, "watchdog", DeviceFault::Watchdog);
+    add(EmulatedKind::Base, "button", DeviceFault::Button);
+    add(EmulatedKind::Base, "motors", DeviceFault::Motors);
+    add(EmulatedKind::Levelling, "sensor", DeviceFault::Sensor);
+    return all;
+  }();
+  return faults;
 }
 
 /// The simulated robot and its devices.
@@ -153,29 +186,35 @@ class Emulation {
     for (; begun_ < options_.faults.size() && options_.faults[begun_].seconds <= time; ++begun_) {
       const FaultAt& fault = options_.faults[begun_];
       if (options_.tell) options_.tell(fault.name);
-      const std::size_t dash = fault.name.find('-');
-      begin(fault.name.substr(0, dash), fault.name.substr(dash + 1));
+      switch (fault.device) {
+        case EmulatedKind::Scanner:
+          if (urg_) begin(fault.fault, *urg_, [&](robot::DeviceFault own) { fail_scanner(own); });
+          break;
+        case EmulatedKind::Base:
+          if (base_) begin(fault.fault, *base_, [&](robot::DeviceFault own) { fail(*base_, *arcos_, own); });
+          break;
+        case EmulatedKind::Levelling:
+          if (levelling_)
+            begin(fault.fault, *levelling_, [&](robot::DeviceFault own) { fail(*levelling_, *unit_, own); });
+          break;
+      }
     }
   }
 
-  void begin(const std::string& device, const std::string& fault) {
-    if (device == "urg") return begin_urg(fault);
-    robot::DeviceServer* server = device == "base" ? base_.get() : levelling_.get();
-    robot::EmulatedDevice* emulated =
-        device == "base" ? static_cast<robot::EmulatedDevice*>(arcos_.get()) : unit_.get();
-    if (server == nullptr) return;
-    if (const auto bytes = robot::byte_fault(fault)) return server->spoil(*bytes, kDamage);
-    if (fault == "silence") return server->fall_silent(kSilence);
-    if (fault == "unplug") return server->unplug(kUnplugged);
-    server->with([&] { emulated->fail(fault, robot::host_now()); });
+  template <class Port, class Own>
+  static void begin(const Fault& fault, Port& port, const Own& own) {
+    if (const auto* bytes = std::get_if<robot::ByteFault>(&fault)) return port.spoil(*bytes, kDamage);
+    if (const auto* device = std::get_if<robot::DeviceFault>(&fault)) return own(*device);
+    std::get<PortFault>(fault) == PortFault::Silence ? port.fall_silent(kSilence) : port.unplug(kUnplugged);
   }
 
-  void begin_urg(const std::string& fault) {
-    if (!urg_) return;
-    if (const auto bytes = robot::byte_fault(fault)) return urg_->spoil(*bytes, kDamage);
-    if (fault == "silence") return urg_->fall_silent(kSilence);
-    if (fault == "unplug") return urg_->unplug(kUnplugged);
-    if (fault == "reset") urg_->cycle_power();
+  static void fail(robot::DeviceServer& server, robot::EmulatedDevice& device, robot::DeviceFault fault) {
+    server.with([&] { device.fail(fault, robot::host_now()); });
+  }
+
+  /// That its clock wraps was arranged before the start.
+  void fail_scanner(robot::DeviceFault fault) {
+    if (fault == robot::DeviceFault::Reset) urg_->cycle_power();
   }
 
   void write_truth() {
@@ -202,18 +241,20 @@ class Emulation {
 
 }  // namespace
 
-const std::vector<std::string>& fault_names() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const char* device : {"urg", "base", "levelling"})
-      for (const char* fault : {"lost", "split", "doubled", "junk", "sums", "silence", "unplug", "reset"})
-        all.push_back(std::string(device) + "-" + fault);
-    for (const char* own :
-         {"urg-wrap", "base-seto", "base-stall", "base-watchdog", "base-button", "base-motors", "levelling-sensor"})
-      all.emplace_back(own);
-    return all;
-  }();
-  return names;
+const char* name_of(EmulatedKind device) {
+  switch (device) {
+    case EmulatedKind::Scanner:
+      return "urg";
+    case EmulatedKind::Base:
+      return "base";
+    case EmulatedKind::Levelling:
+      return "levelling";
+  }
+  return "";
+}
+
+const std::string& EmulateOptions::port(EmulatedKind device) const {
+  return device == EmulatedKind::Scanner ? urg : device == EmulatedKind::Base ? base : levelling;
 }
 
 FaultAt parse_fault(const std::string& text) {
@@ -224,13 +265,15 @@ FaultAt parse_fault(const std::string& text) {
   if (at != std::string::npos) fault.seconds = std::strtod(text.c_str() + at + 1, &end);
   if (end == nullptr || end == text.c_str() + at + 1 || *end != '\0' || !(fault.seconds >= 0.0 && fault.seconds <= 1e6))
     throw UsageError("--fault " + text + ": needs the form NAME@SECONDS, for example --fault base-unplug@20");
-  const auto& names = fault_names();
-  if (std::find(names.begin(), names.end(), fault.name) == names.end()) {
-    std::string known;
-    for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
-    throw UsageError("--fault " + text + ": there is no fault '" + fault.name + "'; known are " + known);
+  std::vector<std::string> names;
+  for (const FaultAt& known : known_faults()) {
+    names.push_back(known.name);
+    if (known.name != fault.name) continue;
+    fault.device = known.device;
+    fault.fault = known.fault;
+    return fault;
   }
-  return fault;
+  throw UsageError("--fault " + text + ": there is no fault '" + fault.name + "'; known are " + joined(names));
 }
 
 EmulationReport emulate(const Scenario& scenario, const EmulateOptions& options) {

@@ -5,26 +5,39 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "robot/emulators/emulated_device.h"
+#include "robot/emulators/line_faults.h"
 #include "scenarios/config/scenario.h"
 
 namespace rubble::scenarios {
 
+enum class EmulatedKind { Scanner, Base, Levelling };
+/// What happens to a device's port.
+enum class PortFault { Silence, Unplug };
+using Fault = std::variant<robot::ByteFault, PortFault, robot::DeviceFault>;
+
 /// Something goes wrong with an emulated device.
 struct FaultAt {
-  std::string name;      ///< DEVICE-FAULT, one of fault_names()
+  std::string name;  ///< DEVICE-FAULT, as people call it
+  EmulatedKind device = EmulatedKind::Base;
+  Fault fault = PortFault::Silence;
   double seconds = 0.0;  ///< after the start
 };
 
-/// Reads NAME@SECONDS. Throws UsageError.
+/// Reads NAME@SECONDS. Throws UsageError, which names all that are known.
 FaultAt parse_fault(const std::string& text);
-const std::vector<std::string>& fault_names();
+
+/// "urg", "base", "levelling": as faults and options call the devices.
+const char* name_of(EmulatedKind device);
 
 struct EmulateOptions {
   std::string urg;  ///< port words; empty: that device is not there
   std::string base;
   std::string levelling;
+  const std::string& port(EmulatedKind device) const;
   std::vector<FaultAt> faults;
   mrpt::math::TPose2D odometry_start;                          ///< what the base's dead reckoning begins with
   double time_limit = 0.0;                                     ///< 0: until interrupted [s]

@@ -69,7 +69,7 @@ RawReplay replay_raw(const std::string& run_folder) {
   }
 
   RawReplay result;
-  if (file.lidar.driver == "scip") {  // MRPT opens its port itself: its bytes are not there
+  if (file.lidar.driver == LidarDriver::Scip) {  // MRPT opens its port itself: its bytes are not there
     robot::ReplayedScans scans =
         robot::replay_scanner(entries, {file.settings.robot.laser.range_max, file.lidar.no_echo_is_miss});
     for (robot::LaserScan& scan : scans.scans) scan.stamp = scan.stamp - file.lidar.delay;

@@ -111,7 +111,7 @@ RobotFile load_robot_file(const std::string& path, const std::vector<Override>& 
   for (const std::string& key : urg.map("parameters").keys()) file.lidar.parameters.emplace_back(key, "");
   YamlReader reader(root);
   bind_devices(reader, file);
-  if (!file.lidar.parameters.empty() && file.lidar.driver != "mrpt")
+  if (!file.lidar.parameters.empty() && file.lidar.driver != LidarDriver::Mrpt)
     urg.fail("parameters", "are passed to MRPT's drivers; `driver: mrpt` is missing");
   read_settings(root, file.settings);
   root.finish();

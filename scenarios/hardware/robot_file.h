@@ -10,9 +10,12 @@
 
 namespace rubble::scenarios {
 
+/// Who talks to the scanner: our own driver, or one of MRPT's.
+enum class LidarDriver { Scip, Mrpt };
+
 /// The scanner of a robot file.
 struct LidarSettings {
-  std::string driver = "scip";            ///< our own, or `mrpt`
+  LidarDriver driver = LidarDriver::Scip;
   std::string mrpt_class = "CHokuyoURG";  ///< which of MRPT's drivers
   std::string port;
   std::vector<std::pair<std::string, std::string>> parameters;  ///< of MRPT's configuration section, passed through

@@ -14,44 +14,48 @@ constexpr double kReportPeriod = 0.2;       // [s]
 
 }  // namespace
 
-Loop::Loop(const Scenario& scenario, RunFolder& folder, LoopHooks hooks)
-    : scenario_(scenario), folder_(folder), hooks_(std::move(hooks)) {}
+Loop::Loop(const Scenario& scenario, RunFolder& folder, Core& core, LoopHooks hooks)
+    : scenario_(scenario), folder_(folder), core_(core), hooks_(std::move(hooks)) {}
 
-LoopEnd Loop::run(robot::Robot& robot, Core& core) {
-  LoopEnd end{"the robot's time is over", "", false, 0.0};
+LoopEnd Loop::run(robot::Robot& robot) {
+  LoopEnd end;
+  bool has_mapper = true;
   try {
-    try {
-      drive(robot, core, end);
-    } catch (const robot::DeviceLost& lost) {
-      end.failure = end.reason = lost.what();
-    }
-    core.finish();
+    drive(robot, end);
+  } catch (const robot::DeviceLost& lost) {
+    end.failure = end.reason = lost.what();
+  } catch (const slam::MapperLost& lost) {
+    end.failure = end.reason = lost.what();
+    has_mapper = false;
+  }
+  if (hooks_.stop) hooks_.stop();
+  try {
+    if (has_mapper) core_.finish();
   } catch (const slam::MapperLost& lost) {
     end.failure = end.reason = lost.what();
   }
-  if (hooks_.each_second) hooks_.each_second();
-  save_all(core);
+  if (hooks_.each_second) hooks_.each_second(end.sim_s);
+  save_now();
   return end;
 }
 
-void Loop::drive(robot::Robot& robot, Core& core, LoopEnd& end) {
+void Loop::drive(robot::Robot& robot, LoopEnd& end) {
   Stamp first = Stamp::never(), saved = Stamp::never();
   while (auto inputs = robot.read()) {
-    const robot::Commands commands = core.step(*inputs);
-    robot.command(commands);
-    if (hooks_.each_tick) hooks_.each_tick(commands);
+    const robot::Commands wanted = core_.step(*inputs);
+    robot.command(hooks_.steer ? hooks_.steer(*inputs, wanted) : wanted);
     if (first == Stamp::never()) first = saved = inputs->now;
     end.sim_s = inputs->now - first + robot.model().tick;
     if (inputs->now - saved >= 1.0) {
       saved = inputs->now;
-      save(core, end.sim_s);
+      save(end.sim_s);
     }
     if (const std::string why = hooks_.over ? hooks_.over() : std::string(); !why.empty()) {
       end.reason = why;
       return;
     }
-    if (core.finished()) {
-      end.reason = core.reason();
+    if (core_.finished()) {
+      end.reason = core_.reason();
       return;
     }
     if (hooks_.interrupted && hooks_.interrupted()) {
@@ -60,26 +64,28 @@ void Loop::drive(robot::Robot& robot, Core& core, LoopEnd& end) {
       return;
     }
   }
+  end.robot_ended = true;
+  end.reason = "the robot's time is over";
 }
 
-void Loop::save(const Core& core, double sim_s) {
-  folder_.append_estimate(core.mapper());
-  if (hooks_.each_second) hooks_.each_second();
+void Loop::save(double sim_s) {
+  folder_.append_estimate(core_.mapper());
+  if (hooks_.each_second) hooks_.each_second(sim_s);
   if (seconds_since(last_save_) >= save_period_) {
-    save_all(core);
+    save_now();
     last_save_ = Clock::now();
     save_period_ = std::min(kLongestSavePeriod, 2.0 * save_period_ + kFirstSavePeriod);
   }
   if (hooks_.progress && seconds_since(last_report_) > kReportPeriod) {
     last_report_ = Clock::now();
     hooks_.progress(
-        {sim_s, hooks_.share ? hooks_.share() : 0.0, known_area(core.mapper().map()), sim_s / seconds_since(start_)});
+        {sim_s, hooks_.share ? hooks_.share() : 0.0, known_area(core_.mapper().map()), sim_s / seconds_since(start_)});
   }
 }
 
-void Loop::save_all(const Core& core) {
-  folder_.save_estimate(core.mapper());
-  folder_.save_map(scenario_, core.mapper(), core.victims());
+void Loop::save_now() {
+  folder_.save_estimate(core_.mapper());
+  folder_.save_map(scenario_, core_.mapper(), core_.victims());
 }
 
 double Loop::seconds_since(Clock::time_point then) const {

@@ -21,18 +21,21 @@ struct Progress {
 
 /// What a loop asks and tells while it goes. Each may be empty.
 struct LoopHooks {
-  std::function<bool()> interrupted;                      ///< asked each tick; true ends the loop
-  std::function<std::string()> over;                      ///< asked each tick; says why the run is over, else nothing
-  std::function<double()> share;                          ///< how far the robot is, 0..1
-  std::function<void(const robot::Commands&)> each_tick;  ///< what the core commanded
-  std::function<void()> each_second;                      ///< of run time, and at the end
-  std::function<void(const Progress&)> progress;          ///< called a few times a second of wall time
+  std::function<bool()> interrupted;  ///< asked each tick; true ends the loop
+  std::function<std::string()> over;  ///< asked each tick; says why the run is over, else nothing
+  std::function<double()> share;      ///< how far the robot is, 0..1
+  /// Each tick: from what came in and what the core commands to what the robot is told; empty: what the core commands.
+  std::function<robot::Commands(const robot::Inputs&, const robot::Commands&)> steer;
+  std::function<void(double sim_s)> each_second;  ///< of run time, and at the end
+  std::function<void()> stop;                     ///< the last command was given; what follows may take seconds
+  std::function<void(const Progress&)> progress;  ///< called a few times a second of wall time
 };
 
 /// How a loop ended.
 struct LoopEnd {
   std::string reason;
-  std::string failure;  ///< the robot or the mapper was lost
+  std::string failure;       ///< the robot or the mapper was lost
+  bool robot_ended = false;  ///< the robot gave no more; its owner may know why
   bool interrupted = false;
   double sim_s = 0.0;  ///< time covered [s]
 };
@@ -43,20 +46,23 @@ struct LoopEnd {
 /// Afterwards the folder holds the final trajectory and map.
 class Loop {
  public:
-  Loop(const Scenario& scenario, RunFolder& folder, LoopHooks hooks);
+  Loop(const Scenario& scenario, RunFolder& folder, Core& core, LoopHooks hooks);
 
-  LoopEnd run(robot::Robot& robot, Core& core);
+  LoopEnd run(robot::Robot& robot);
+
+  /// Trajectories and map as they are, out of turn.
+  void save_now();
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  void drive(robot::Robot& robot, Core& core, LoopEnd& end);
-  void save(const Core& core, double sim_s);
-  void save_all(const Core& core);
+  void drive(robot::Robot& robot, LoopEnd& end);
+  void save(double sim_s);
   double seconds_since(Clock::time_point then) const;
 
   const Scenario& scenario_;
   RunFolder& folder_;
+  Core& core_;
   LoopHooks hooks_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_save_ = start_;

@@ -83,12 +83,13 @@ ReplayReport replay_run(const std::string& path, const Scenario& scenario, const
   hooks.interrupted = options.interrupted;
   hooks.progress = options.progress;
   hooks.share = [&] { return robot.progress(); };
-  hooks.each_tick = [&](const robot::Commands& commands) {
+  hooks.steer = [&](const robot::Inputs&, const robot::Commands& commands) {
     ++report.ticks;
     last_differs = !same_commands(commands, robot.recorded_commands());
     if (last_differs) ++report.different_commands;
+    return commands;
   };
-  const LoopEnd end = Loop(scenario, folder, hooks).run(robot, core);
+  const LoopEnd end = Loop(scenario, folder, core, hooks).run(robot);
   if (!end.failure.empty()) throw RunError(end.failure);
   // A run that was killed wrote its trajectory up to its last second, an older map, and its last tick perhaps without
   // the command that answered it.

@@ -19,7 +19,6 @@
 #include "base/text/words.h"
 #include "robot/logs/log.h"
 #include "scenarios/run/core.h"
-#include "scenarios/run/league_map.h"
 #include "scenarios/run/mission_figures.h"
 #include "scenarios/run/run_folder.h"
 #include "scenarios/run/score_json.h"
@@ -66,7 +65,7 @@ std::vector<std::string> broken_expectations(const Scenario& scenario, const ord
 /// Where a point of the map frame lies on the league picture that `draw_league_map` made, as it was read back.
 mrpt::math::TPoint2D in_picture(const scoring::LoadedMap& picture, const mrpt::math::TPoint2D& p_map,
                                 const std::optional<GeoAnchor>& geo) {
-  const PixelToModel T_model_start = picture_of_start(geo);
+  const PixelToModel T_model_start = scoring::picture_of_start(geo);
   const double easting = -p_map.y;
   const double southing = -p_map.x;
   return scoring::in_grid(picture, {T_model_start.a * easting + T_model_start.b * southing + T_model_start.c,
@@ -88,7 +87,7 @@ WrittenMaps score_files(scoring::Evidence& evidence, const RunFolder& folder, co
   const OccupancyGrid& truth = files.truth.grid;
   const scoring::MapScore score = scoring::score_map(map, truth, scenario.scoring);
   evidence.score = score;
-  if (!score.aligned && score.source.empty()) return files;
+  if (!score.aligned && score.by == scoring::AlignBy::Auto) return files;
   folder.publish({"overlay.png"}, [&](const std::string& path) {
     scoring::write_overlay(path + "overlay.png", map, truth, score.T_truth_map,
                            score.aligned ? "" : "NOT TRUSTED: " + score.note);
@@ -181,12 +180,12 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
     if (simulated.truth().empty()) return "";
     return off_the_floor(floor, simulated.truth().back().pose) ? "the robot drove off the floor" : "";
   };
-  hooks.each_second = [&] { folder.append_truth(simulated.truth()); };
+  hooks.each_second = [&](double) { folder.append_truth(simulated.truth()); };
   LoopEnd end;
   {
     std::optional<robot::RecordingRobot> recorded;
     if (options.record) recorded.emplace(simulated, folder.file("log.rlog"), resolved_yaml(resolved));
-    end = Loop(scenario, folder, hooks).run(recorded ? static_cast<robot::Robot&>(*recorded) : simulated, core);
+    end = Loop(scenario, folder, core, hooks).run(recorded ? static_cast<robot::Robot&>(*recorded) : simulated);
     if (recorded) recorded->flush();
   }
   scoring::Evidence evidence;
@@ -235,7 +234,7 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   if (!robot.reference().empty()) folder.append_truth(robot.reference());
   LoopHooks hooks = hooks_of(options);
   hooks.share = [&] { return robot.progress(); };
-  const LoopEnd end = Loop(resolved, folder, hooks).run(robot, core);
+  const LoopEnd end = Loop(resolved, folder, core, hooks).run(robot);
   if (core.mapper().counts().scans == 0 && !end.interrupted && end.failure.empty())
     throw InputError(log + ": holds no laser scan; a log to map needs scans (and odometry)");
   name_as_the_log_does(folder, robot, core.mapper());

@@ -11,8 +11,7 @@
 #include "base/error.h"
 #include "base/image/png.h"
 #include "base/text/csv.h"
-#include "base/text/formula.h"
-#include "scenarios/run/league_map.h"
+#include "scoring/maps/ros_map.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -43,6 +42,10 @@ std::string pois_csv(const Scenario& s, const std::vector<explore::VictimReport>
 }
 
 }  // namespace
+
+scoring::LeagueCells league_cells(const slam::CountMap& map) {
+  return {map.frame(), [&map](Cell c) { return map.seen(c) > 0 ? std::optional(map.p_occ(c)) : std::nullopt; }};
+}
 
 const std::vector<std::string>& deterministic_artefacts() {
   static const std::vector<std::string> names = {
@@ -144,24 +147,25 @@ void RunFolder::save_estimate(const slam::Mapper& mapper) {
 
 void RunFolder::save_map(const Scenario& scenario, const slam::Mapper& mapper,
                          const std::vector<explore::VictimReport>& victims) const {
-  LeagueDrawing drawing;
+  scoring::LeagueDrawing drawing;
   drawing.occupied_threshold = scenario.explorer.occupied_threshold();
   drawing.title = "RoboCup-" + scenario.team + "-" + scenario.mission + "-map.tif";
   drawing.path = mapper.trajectory();
-  drawing.victims = victims;
+  for (const explore::VictimReport& victim : victims) drawing.victims.push_back({victim.id, victim.p_map});
   drawing.geo = scenario.geo;
-  const GeoTiff tiff = draw_league_map(mapper.map(), drawing);
+  const GeoTiff tiff = scoring::draw_league_map(league_cells(mapper.map()), drawing);
   publish({"map.tif", "map.tfw", "map.png", "map.pgm", "map.yaml"}, [&](const std::string& partial) {
     write_geotiff(partial + "map.tif", tiff);
     write_world_file(partial + "map.tfw", *tiff.transform);
     write_png(partial + "map.png", tiff.image);
-    write_ros_map(partial + "map", mapper.map().classify(drawing.occupied_threshold), drawing.occupied_threshold);
+    scoring::write_ros_map(partial + "map", mapper.map().classify(drawing.occupied_threshold),
+                           drawing.occupied_threshold);
   });
   write("pois.csv", pois_csv(scenario, victims));
 }
 
 void RunFolder::save_truth(const arenas::Arena& arena, const OccupancyGrid& truth) const {
-  const GeoTiff tiff = draw_truth(truth);
+  const GeoTiff tiff = scoring::draw_truth(truth);
   publish({"truth.tif", "truth.png", "arena.png"}, [&](const std::string& partial) {
     write_geotiff(partial + "truth.tif", tiff);
     write_png(partial + "truth.png", tiff.image);

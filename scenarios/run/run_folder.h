@@ -8,9 +8,13 @@
 #include "base/trajectory.h"
 #include "explore/victim_report.h"
 #include "scenarios/config/scenario.h"
+#include "scoring/maps/league_map.h"
 #include "slam/mapper.h"
 
 namespace rubble::scenarios {
+
+/// A mapper's map as the league's drawing asks for it; refers to `map`.
+scoring::LeagueCells league_cells(const slam::CountMap& map);
 
 /// One run's folder, written as the run goes: after a kill it holds all but the last second of the trajectories and the
 /// last saved map. The trajectories grow line by line; all other files are replaced whole (written beside, then

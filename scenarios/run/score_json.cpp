@@ -20,6 +20,8 @@ ordered_json as_json(const scoring::Value& value) {
       value);
 }
 
+bool is_known(const scoring::Value& value) { return !std::holds_alternative<std::monostate>(value); }
+
 /// Counts are written without a point.
 ordered_json as_json(double value) {
   constexpr double kExact = 9007199254740992.0;  // 2^53: whole numbers below are exact
@@ -41,10 +43,20 @@ ordered_json places_json(const std::vector<scoring::WrongPlace>& places) {
 
 ordered_json score_json(const scoring::Evidence& evidence) {
   ordered_json json;
-  for (const scoring::Figure& figure : scoring::figures()) json[figure.key] = as_json(figure.get(evidence));
+  for (const scoring::Figure& figure : scoring::figures()) {
+    const scoring::Value value = figure.get(evidence);
+    if (is_known(value) || !figure.is(scoring::kSpecial)) json[figure.key] = as_json(value);
+  }
   json["worst_places"] = evidence.score ? places_json(evidence.score->errors.worst) : ordered_json();
   if (evidence.run)
     for (const auto& [key, value] : evidence.run->own) json[key] = as_json(value);
+  return json;
+}
+
+ordered_json known_figures(const scoring::Evidence& evidence) {
+  ordered_json json;
+  for (const scoring::Figure& figure : scoring::figures())
+    if (const scoring::Value value = figure.get(evidence); is_known(value)) json[figure.key] = as_json(value);
   return json;
 }
 

@@ -45,9 +45,9 @@ TPose2D fit_to_the_whole(const Hypothesis& best, const std::vector<Hypothesis>& 
 
 /// Who is asked by walls may also find what nobody else proposes: the search examines walls in any case.
 bool may_win(const Hypothesis& h, AlignBy by) {
-  const auto proposed = [&](const char* name) { return h.source.find(name) != std::string::npos; };
-  return includes(by, AlignBy::Walls) || (includes(by, AlignBy::Features) && proposed("features")) ||
-         (includes(by, AlignBy::Rooms) && proposed("rooms"));
+  if (includes(by, AlignBy::Walls)) return true;
+  const auto proposed = [&](AlignBy method) { return includes(by, method) && includes(h.by, method); };
+  return proposed(AlignBy::Features) || proposed(AlignBy::Rooms);
 }
 
 /// Two maps to be aligned, with what several methods share.
@@ -119,7 +119,7 @@ class Aligner {
 
   /// Fills in the contest and returns the rivals.
   Rivals describe(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses, Alignment& out) {
-    out.source = best.source;
+    out.by = best.by;
     out.wide_evidence = best.wide;
     out.tight_evidence = best.tight;
     out.log_odds = log_odds(best.wide, best.tight);
@@ -132,7 +132,7 @@ class Aligner {
       if (h.quality <= highest) continue;
       highest = h.quality;
       out.contest.T_runner_up = h.T_best;
-      out.contest.runner_up_source = h.source;
+      out.contest.runner_up_by = h.by;
     }
     out.runner_up = relative(others, best.tight, out.log_odds);
     out.contest.agreement = tight_agreement(best.tight);
@@ -175,14 +175,6 @@ class Aligner {
 };
 
 }  // namespace
-
-std::string names_of(AlignBy methods) {
-  std::string out;
-  for (const auto& [method, name] :
-       {std::pair{AlignBy::Walls, "walls"}, {AlignBy::Features, "features"}, {AlignBy::Rooms, "rooms"}})
-    if (includes(methods, method)) out += (out.empty() ? "" : "+") + std::string(name);
-  return out;
-}
 
 Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config) {
   const OccupancyGrid clean_map = without_specks(map);

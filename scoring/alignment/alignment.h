@@ -7,23 +7,13 @@
 #include "base/grid.h"
 #include "scoring/alignment/pose_search.h"
 #include "scoring/proposals/correlation.h"
-#include "scoring/proposals/features.h"
+#include "scoring/proposals/feature_kind.h"
 #include "scoring/walls/wall_match.h"
 
 namespace rubble::scoring {
 
-/// What proposes the poses; joined by | they propose together. Auto: walls, where these leave a doubt features too, and
-/// where these leave one as well rooms too.
-enum class AlignBy : unsigned { Auto = 0, Walls = 1, Features = 2, Rooms = 4 };
-constexpr AlignBy operator|(AlignBy a, AlignBy b) {
-  return static_cast<AlignBy>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
-}
-constexpr bool includes(AlignBy set, AlignBy method) {
-  return (static_cast<unsigned>(set) & static_cast<unsigned>(method)) != 0;
-}
-
 struct AlignmentConfig {
-  AlignBy by = AlignBy::Auto;
+  AlignBy by = AlignBy::Auto;  ///< Auto: walls, where these leave a doubt features too, then rooms
   FeatureKind feature_kind = FeatureKind::Surf;
   Proposer rooms;  ///< proposes by rooms; where empty, propose_by_rooms()
   CorrelationConfig correlation;
@@ -32,22 +22,19 @@ struct AlignmentConfig {
 
 /// How the best pose won.
 struct Contest {
-  AlignBy tried = AlignBy::Auto;  ///< what proposed poses before it was decided; Auto: nothing did
-  double agreement = 0.0;         ///< walls of both maps that meet within 0.3 m beyond chance, at most 2
-  bool by_agreement = false;      ///< agreement decides on trust; else the log odds do
-  double margin = 0.0;            ///< of that measure over the best clearly different pose
-  std::string runner_up_source;   ///< what proposed that pose; empty: there is none
+  AlignBy tried = AlignBy::Auto;         ///< what proposed poses before it was decided; Auto: nothing did
+  double agreement = 0.0;                ///< walls of both maps that meet within 0.3 m beyond chance, at most 2
+  bool by_agreement = false;             ///< agreement decides on trust; else the log odds do
+  double margin = 0.0;                   ///< of that measure over the best clearly different pose
+  AlignBy runner_up_by = AlignBy::Auto;  ///< what proposed that pose; Auto: there is none
   mrpt::math::TPose2D T_runner_up;
 };
-
-/// "walls+features+rooms".
-std::string names_of(AlignBy methods);
 
 /// The rigid transform between two maps, found without any initial guess.
 struct Alignment {
   bool aligned = false;             ///< the transform can be trusted
   std::string note;                 ///< why not; one line
-  std::string source;               ///< what proposed it: "walls", "features", "rooms" or several joined by +
+  AlignBy by = AlignBy::Auto;       ///< what proposed it; Auto: nothing did
   mrpt::math::TPose2D T_truth_map;  ///< the best pose found, also when it cannot be trusted
   mrpt::math::TPose2D T_walls;      ///< the same, drawn to where most walls coincide; equal for undistorted maps
   double log_odds = 0.0;            ///< of the best pose being right

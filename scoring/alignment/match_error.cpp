@@ -1,9 +1,11 @@
+#include "scoring/alignment/match_error.h"
+
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "base/assignment.h"
-#include "base/rigid.h"
-#include "scoring/alignment/matching.h"
+#include "base/planar.h"
 #include "scoring/measures/victims.h"
 
 namespace rubble::scoring {
@@ -67,11 +69,11 @@ MatchError match_error(const std::vector<TPoint2D>& map, const std::vector<TPoin
   MatchError out;
   const double total = 0.5 * static_cast<double>(map.size() + truth.size());
   out.error = cap * total;  // all unmatched
-  const Rigid T(T_truth_map);
+  const PlanarTransform T(T_truth_map);
   std::vector<Pair> pairs;
   Groups groups(map.size() + truth.size());
   for (std::size_t i = 0; i < map.size(); ++i) {
-    const TPoint2D p = T.forward(map[i]);
+    const TPoint2D p = T(map[i]);
     for (std::size_t j = 0; j < truth.size(); ++j) {
       const double square = (p - truth[j]).sqrNorm();
       if (square >= cap) continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angle.h"
+#include "base/planar.h"
 #include "base/rigid.h"
 #include "base/rng.h"
 #include "scoring/alignment/pose_search.h"
@@ -73,12 +74,12 @@ class Poses {
  private:
   /// Matches that agree with a pose; each feature of the map counts once, by its nearest candidate.
   std::vector<std::size_t> inliers(const TPose2D& pose) const {
-    const Rigid T(pose);
+    const PlanarTransform T(pose);
     std::vector<std::size_t> out;
     std::vector<std::size_t> of_feature(map_.features.size(), matches_.size());
     for (std::size_t k = 0; k < matches_.size(); ++k) {
       const Match& m = matches_[k];
-      const TPoint2D gap = T.forward(map_.features[m.map].p) - truth_.features[m.truth].p;
+      const TPoint2D gap = T(map_.features[m.map].p) - truth_.features[m.truth].p;
       if (gap.sqrNorm() > config_.inlier * config_.inlier || of_feature[m.map] < matches_.size()) continue;
       of_feature[m.map] = k;
       out.push_back(k);
@@ -112,7 +113,7 @@ class Poses {
       support = again;
       fitted = fit(support);
     }
-    const PoseGuess guess{fitted, static_cast<double>(support.size()), "features"};
+    const PoseGuess guess{fitted, static_cast<double>(support.size()), AlignBy::Features};
     if (known != nullptr)
       *known = guess;
     else

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "scoring/proposals/features.h"
@@ -44,19 +43,5 @@ std::vector<PoseGuess> poses_from(const FeatureSet& map, const FeatureSet& truth
 /// The two steps for one kind of feature.
 std::vector<PoseGuess> propose_by_features(const OccupancyGrid& map, const OccupancyGrid& truth, FeatureKind kind,
                                            const MatchConfig& config = {});
-
-/// What eq. (7) asks of a set of features at a pose, section IV.F step 3.
-struct MatchError {
-  double error = 0.0;        ///< E [m^2], 0 .. cap; the cap where nothing is matched: W = 0 is the worst, not the best
-  std::size_t matched = 0;   ///< pairs
-  double mean_offset = 0.0;  ///< mean distance of matched features [m]
-};
-
-/// The best one-to-one association W at a pose and its error: E = (sum over matched of c_ij + cap/2 for each unmatched
-/// feature of either map) / mean number of features, c_ij = squared distance + difference(i, j) [m^2], pairs with
-/// c_ij >= cap never matched. Exact: Hungarian method on each group of features that may compete.
-MatchError match_error(const std::vector<mrpt::math::TPoint2D>& map, const std::vector<mrpt::math::TPoint2D>& truth,
-                       const mrpt::math::TPose2D& T_truth_map,
-                       const std::function<double(std::size_t map, std::size_t truth)>& difference, double cap);
 
 }  // namespace rubble::scoring

@@ -59,11 +59,11 @@ std::vector<Hypothesis> examine(const std::vector<PoseGuess>& guesses, const Wal
       return same_pose(h.T_wide, T_wide, match.map_centre(), 0.1, 0.005);
     });
     if (seen != out.end()) {
-      if (seen->source.find(guess.source) == std::string::npos) seen->source += "+" + guess.source;
+      seen->by = seen->by | guess.by;
       continue;
     }
     out.push_back(rigid_hypothesis(match, T_wide, kernels));
-    out.back().source = guess.source;
+    out.back().by = guess.by;
   }
   std::stable_sort(out.begin(), out.end(), by_quality);
   const std::size_t bendable = std::min(out.size(), config.bent_hypotheses);

@@ -26,8 +26,8 @@ struct Hypothesis {
   mrpt::math::TPose2D T_best;  ///< rigid, nearest to what explains the walls best
   PoseEvidence wide;
   PoseEvidence tight;
-  double quality = 0.0;  ///< wide agreement, at most 1.2
-  std::string source;
+  double quality = 0.0;        ///< wide agreement, at most 1.2
+  AlignBy by = AlignBy::Auto;  ///< all that proposed it
 };
 
 /// Refines the guesses on the distance fields of both maps, drops those that run into the same pose, and ranks the rest

@@ -10,6 +10,7 @@
 #include "base/grid.h"
 #include "base/trajectory.h"
 #include "scoring/scorecard.h"
+#include "scoring/trajectory/relative_error.h"
 #include "scoring/trajectory/trajectory_error.h"
 
 namespace rubble::scoring {
@@ -69,6 +70,23 @@ struct MissionFigures {
   double visible_share = 0.0;         ///< of the truth's floor, what its laser can see from where it can get
 };
 
+/// What a real robot's devices did.
+struct DeviceFigures {
+  std::uint64_t bad_packets = 0;  ///< of the base
+  std::uint64_t odometry_jumps = 0;
+  std::uint64_t scans_damaged = 0;
+  std::uint64_t scans_missed = 0;
+  double answer_ms_median = 0.0;  ///< from a scan's arrival until its answer goes to the base's line [ms]
+  double answer_ms_99 = 0.0;      ///< 99 % are below [ms]
+  double cpu_share = 0.0;         ///< of one core, from start to end
+};
+
+/// How two trajectories differ piece by piece.
+struct PieceErrors {
+  RelativeError frames;  ///< between consecutive poses of the estimate
+  RelativeError metres;  ///< over a metre of path each
+};
+
 /// What depends on the machine, not on the seed.
 struct MachineFigures {
   double wall_s = 0.0;  ///< time taken from start to score [s]
@@ -91,6 +109,9 @@ struct Evidence {
   std::optional<VictimFigures> victims;
   std::optional<RunFigures> run;
   std::optional<MissionFigures> mission;
+  std::optional<DeviceFigures> devices;
+  std::optional<PieceErrors> pieces;       ///< of `estimate`
+  std::optional<RelationError> relations;  ///< of `estimate`, to relations that are known
   std::optional<MachineFigures> machine;
 };
 

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <functional>
 
+#include "base/angle.h"
+
 namespace rubble::scoring {
 namespace {
 
@@ -66,6 +68,22 @@ Getter of_mission(Read read) {
 }
 
 template <class Read>
+Getter of_devices(Read read) {
+  return [read](const Evidence& e) { return e.devices ? Value(std::invoke(read, *e.devices)) : Value(); };
+}
+
+/// `part`: which pieces; angles in degrees.
+template <class Part, class Read>
+Getter of_pieces(Part part, Read read) {
+  return [part, read](const Evidence& e) { return e.pieces ? Value(std::invoke(read, (*e.pieces).*part)) : Value(); };
+}
+
+template <class Read>
+Getter of_relations(Read read) {
+  return [read](const Evidence& e) { return e.relations ? Value(std::invoke(read, *e.relations)) : Value(); };
+}
+
+template <class Read>
 Getter of_machine(Read read) {
   return [read](const Evidence& e) { return e.machine ? Value(std::invoke(read, *e.machine)) : Value(); };
 }
@@ -97,6 +115,8 @@ std::vector<Figure> make_table() {
     return of_mission([member](const MissionFigures& m) { return m.drive.*member; });
   };
   using D = DriveFigures;
+  using P = PieceErrors;
+  using R = RelationError;
   return {
       // key, label, unit, decimals, which way is better, floor of noise, where it goes, how to get it
       {"score", "score", "", 3, kUp, 0.01, kShown | kReport | kRanking | kLeague, of_score(&S::score)},
@@ -157,7 +177,8 @@ std::vector<Figure> make_table() {
       {"align_y_m", "map moved in y", "m", 3, kNone, 0.0, kPlain, pose(&Pose::y)},
       {"align_rad", "map turned", "rad", 4, kNone, 0.0, kPlain, pose(&Pose::phi)},
       {"align_note", "note on the alignment", "", 0, kNone, 0.0, kText, of_score(&S::note)},
-      {"align_source", "pose proposed by", "", 0, kNone, 0.0, kText | kLeague, of_score(&S::source)},
+      {"align_source", "pose proposed by", "", 0, kNone, 0.0, kText | kLeague,
+       of_score([](const S& s) { return names_of(s.by); })},
       {"align_tried", "proposals tried", "", 0, kNone, 0.0, kText,
        of_score([](const S& s) { return names_of(s.contest.tried); })},
       {"align_agreement", "agreement of walls", "", 3, kNone, 0.0, kPlain, contest(&C::agreement)},
@@ -165,7 +186,8 @@ std::vector<Figure> make_table() {
        of_score([](const S& s) { return std::string(s.contest.by_agreement ? "agreement" : "log odds"); })},
       {"align_margin", "ahead by", "", 3, kNone, 0.0, kPlain, contest(&C::margin)},
       {"align_runner_up", "runner-up pose, of the best", "", 3, kNone, 0.0, kPlain, of_score(&S::runner_up)},
-      {"align_runner_up_source", "runner-up proposed by", "", 0, kNone, 0.0, kText, contest(&C::runner_up_source)},
+      {"align_runner_up_source", "runner-up proposed by", "", 0, kNone, 0.0, kText,
+       of_score([](const S& s) { return names_of(s.contest.runner_up_by); })},
       {"align_runner_up_x_m", "runner-up moved in x", "m", 3, kNone, 0.0, kPlain, rival(&Pose::x)},
       {"align_runner_up_y_m", "runner-up moved in y", "m", 3, kNone, 0.0, kPlain, rival(&Pose::y)},
       {"align_runner_up_rad", "runner-up turned", "rad", 4, kNone, 0.0, kPlain, rival(&Pose::phi)},
@@ -191,6 +213,35 @@ std::vector<Figure> make_table() {
        of_mission(&MissionFigures::victims_visible)},
       {"visible_share", "floor that can be seen", "%", 3, kNone, 0.0, kPlain,
        of_mission(&MissionFigures::visible_share)},
+      {"rpe_frame_m", "error from pose to pose", "m", 4, kNone, 0.0, kSpecial,
+       of_pieces(&P::frames, &RelativeError::rmse_m)},
+      {"rpe_frame_deg", "turned from pose to pose", "deg", 4, kNone, 0.0, kSpecial,
+       of_pieces(&P::frames, [](const RelativeError& r) { return rad_to_deg(r.rmse_rad); })},
+      {"rpe_1m_pairs", "metres of path compared", "", 0, kNone, 0.0, kSpecial,
+       of_pieces(&P::metres, &RelativeError::pairs)},
+      {"rpe_1m_m", "error over a metre", "m", 4, kNone, 0.0, kSpecial, of_pieces(&P::metres, &RelativeError::rmse_m)},
+      {"rpe_1m_deg", "turned over a metre", "deg", 4, kNone, 0.0, kSpecial,
+       of_pieces(&P::metres, [](const RelativeError& r) { return rad_to_deg(r.rmse_rad); })},
+      {"relations", "relations compared", "", 0, kNone, 0.0, kSpecial, of_relations(&R::relations)},
+      {"relations_missing", "relations outside the time", "", 0, kNone, 0.0, kSpecial, of_relations(&R::missing)},
+      {"relation_m", "error of a relation", "m", 4, kNone, 0.0, kSpecial, of_relations(&R::mean_m)},
+      {"relation_std_m", "its standard deviation", "m", 4, kNone, 0.0, kSpecial, of_relations(&R::std_m)},
+      {"relation_m2", "its mean square", "m2", 4, kNone, 0.0, kSpecial, of_relations(&R::mean_m2)},
+      {"relation_deg", "angle of a relation off by", "deg", 4, kNone, 0.0, kSpecial,
+       of_relations([](const R& r) { return rad_to_deg(r.mean_rad); })},
+      {"relation_std_deg", "standard deviation of the angle", "deg", 4, kNone, 0.0, kSpecial,
+       of_relations([](const R& r) { return rad_to_deg(r.std_rad); })},
+      {"bad_packets", "damaged packets", "", 0, kNone, 0.0, kSpecial, of_devices(&DeviceFigures::bad_packets)},
+      {"odometry_jumps", "jumps of the odometry", "", 0, kNone, 0.0, kSpecial,
+       of_devices(&DeviceFigures::odometry_jumps)},
+      {"scans_damaged", "damaged scans", "", 0, kNone, 0.0, kSpecial, of_devices(&DeviceFigures::scans_damaged)},
+      {"scans_missed", "scans missed", "", 0, kNone, 0.0, kSpecial, of_devices(&DeviceFigures::scans_missed)},
+      {"answer_ms_median", "answer to a scan [ms]", "", 1, kNone, 0.0, kSpecial | kShown | kMachine,
+       of_devices(&DeviceFigures::answer_ms_median)},
+      {"answer_ms_99", "99 % of answers below [ms]", "", 1, kNone, 0.0, kSpecial | kShown | kMachine,
+       of_devices(&DeviceFigures::answer_ms_99)},
+      {"cpu_share", "computing, of one core", "%", 3, kNone, 0.0, kSpecial | kShown | kMachine,
+       of_devices(&DeviceFigures::cpu_share)},
       {"sim_s", "time covered", "s", 1, kNone, 0.0, kShown, of_run(&RunFigures::sim_s)},
       {"wall_s", "time taken", "s", 1, kDown, 0.0, kShown | kMachine, of_machine(&MachineFigures::wall_s)},
       {"real_time_factor", "times real time", "", 0, kUp, 0.0, kShown | kMachine, real_time_factor},

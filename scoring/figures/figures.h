@@ -27,6 +27,7 @@ enum Traits : unsigned {
   kLeague = 1u << 3,   ///< a column of league.csv
   kMachine = 1u << 4,  ///< depends on the machine, not on the seed: kept out of hashes and comparisons
   kText = 1u << 5,     ///< words; cannot be bounded by `expect`
+  kSpecial = 1u << 6,  ///< only of a real drive, or where trajectories alone are compared: else left out of score.json
 };
 
 /// A row of the table.

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "base/text/words.h"
 
 namespace rubble::scoring {
 namespace {
@@ -30,10 +31,6 @@ std::string first_that_exists(const std::vector<fs::path>& candidates) {
   for (const fs::path& path : candidates)
     if (fs::is_regular_file(path)) return path.string();
   return "";
-}
-
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
 bool is_image_beside(const fs::path& folder, const std::string& stem) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/text/words.h"
 
 namespace rubble::scoring {
 namespace {
@@ -16,8 +17,7 @@ std::string victims_beside(const std::string& truth, MapOrigin origin) {
   std::string stem = fs::path(truth).stem().string();
   std::vector<fs::path> candidates = {folder / (stem + ".csv")};
   for (const std::string suffix : {"-truth", "-visible"})
-    if (origin == MapOrigin::Local && stem.size() > suffix.size() &&
-        stem.compare(stem.size() - suffix.size(), suffix.size(), suffix) == 0)
+    if (origin == MapOrigin::Local && ends_with(stem, suffix))
       candidates.push_back(folder / (stem.substr(0, stem.size() - suffix.size()) + ".yaml"));
   if (origin == MapOrigin::Local && stem == "truth") candidates.push_back(folder / "arena.yaml");
   for (const fs::path& path : candidates)

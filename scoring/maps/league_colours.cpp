@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/grid.h"
+#include "scoring/maps/league_palette.h"
 #include "scoring/maps/lossy_colours.h"
 
 namespace rubble::scoring {
@@ -19,53 +20,58 @@ constexpr Label kFree = static_cast<Label>(Occupancy::Free);
 constexpr Label kWall = static_cast<Label>(Occupancy::Occupied);
 constexpr Label kDrawing = 3;  // takes the class around it
 
-struct Rgb {
+struct Colour {
   int r = 0, g = 0, b = 0;
+  constexpr Colour(const Rgb& c) : r(c[0]), g(c[1]), b(c[2]) {}
 };
 
 struct NamedColour {
-  Rgb colour;
+  Colour colour;
   Label label;
 };
 
 constexpr std::array<NamedColour, 13> kPalette{{
-    {{0, 40, 120}, kWall},
-    {{226, 226, 227}, kUnknown},
-    {{237, 237, 238}, kUnknown},
-    {{190, 190, 191}, kFree},    // explored grid, only drawn in free space
-    {{120, 0, 140}, kDrawing},   // path
-    {{255, 200, 0}, kDrawing},   // start arrow
-    {{240, 10, 10}, kDrawing},   // victim
-    {{240, 100, 10}, kDrawing},  // victim, unconfirmed
-    {{255, 100, 30}, kDrawing},  // hazard
-    {{10, 10, 240}, kDrawing},   // QR code
-    {{0, 50, 140}, kDrawing},    // scale and axes
-    {{0, 44, 207}, kDrawing},    // file name
-    {{255, 255, 255}, kFree},
+    {league::kWall, kWall},
+    {league::kUnexplored, kUnknown},
+    {league::kUnexploredLight, kUnknown},
+    {league::kGridLine, kFree},  // explored grid, only drawn in free space
+    {league::kPath, kDrawing},
+    {league::kStart, kDrawing},
+    {league::kVictim, kDrawing},
+    {league::kUnconfirmedVictim, kDrawing},
+    {league::kHazard, kDrawing},
+    {league::kQrCode, kDrawing},
+    {league::kScale, kDrawing},
+    {league::kTitle, kDrawing},
+    {league::kFree, kFree},
 }};
 
-Rgb rgb(const std::uint8_t* p) { return {p[0], p[1], p[2]}; }
+Colour colour_of(const std::uint8_t* p) { return Rgb{p[0], p[1], p[2]}; }
 
-int spread(const Rgb& c) { return std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b}); }
+int spread(const Colour& c) { return std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b}); }
 
-bool near_colour(const Rgb& a, const Rgb& b, int tolerance) {
+bool near_colour(const Colour& a, const Colour& b, int tolerance) {
   return std::abs(a.r - b.r) <= tolerance && std::abs(a.g - b.g) <= tolerance && std::abs(a.b - b.b) <= tolerance;
 }
 
-bool is_checkerboard(const Rgb& c) { return near_colour(c, {226, 226, 227}, 0) || near_colour(c, {237, 237, 238}, 0); }
+bool is_checkerboard(const Colour& c) {
+  return near_colour(c, league::kUnexplored, 0) || near_colour(c, league::kUnexploredLight, 0);
+}
 
 /// Light grey as in the checkerboard, or a mixture of its two shades.
-bool looks_unexplored(const Rgb& c) { return spread(c) <= 6 && c.g >= 216 && c.g <= 245; }
+bool looks_unexplored(const Colour& c) { return spread(c) <= 6 && c.g >= 216 && c.g <= 245; }
 
 /// Share of wall blue in a mixture with a grey: blue over red grows by 120 from grey to wall, green over red by 40.
-double wall_share(const Rgb& c) {
+double wall_share(const Colour& c) {
   const int blue = c.b - c.r;
   const int green = c.g - c.r;
   if (blue < 24 || 100 * green < 25 * blue || 100 * green > 55 * blue) return 0.0;
   return blue / 120.0;
 }
 
-bool is_searched(const Rgb& c) { return c.g - c.r >= 20 && c.g - c.b >= 20 && std::abs(c.r - c.b) <= 20 && c.g >= 190; }
+bool is_searched(const Colour& c) {
+  return c.g - c.r >= 20 && c.g - c.b >= 20 && std::abs(c.r - c.b) <= 20 && c.g >= 190;
+}
 
 struct Census {
   std::size_t walls = 0;
@@ -82,19 +88,19 @@ Census census(const RgbImage& image) {
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       if (!image.alpha.empty() && image.alpha[image.index(x, y)] < 128) continue;
-      const Rgb c = rgb(image.pixel(x, y));
+      const Colour c = colour_of(image.pixel(x, y));
       ++out.pixels;
       if (is_checkerboard(c)) ++out.checkerboard;
       if (looks_unexplored(c) && c.b > c.r) ++out.unexplored;
-      if (!near_colour(c, {0, 40, 120}, 45) || wall_share(c) <= 0.5) continue;
+      if (!near_colour(c, league::kWall, 45) || wall_share(c) <= 0.5) continue;
       ++out.walls;
-      if (near_colour(c, {0, 40, 120}, 0)) ++out.pure_walls;
+      if (near_colour(c, league::kWall, 0)) ++out.pure_walls;
     }
   }
   return out;
 }
 
-Label label_of(const Rgb& c, bool exact) {
+Label label_of(const Colour& c, bool exact) {
   const int tolerance = exact ? 0 : 3;
   for (const NamedColour& named : kPalette)
     if (near_colour(c, named.colour, tolerance)) return named.label;
@@ -134,7 +140,7 @@ void add_thin_walls(const RgbImage& image, cv::Mat& labels) {
   constexpr double kNone = 0.12;     // share beside the line
   cv::Mat share(labels.size(), CV_64F);
   for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) share.at<double>(y, x) = wall_share(rgb(image.pixel(x, y)));
+    for (int x = 0; x < image.width; ++x) share.at<double>(y, x) = wall_share(colour_of(image.pixel(x, y)));
   const auto at = [&](int x, int y) {
     return x < 0 || y < 0 || x >= image.width || y >= image.height ? 0.0 : share.at<double>(y, x);
   };
@@ -201,7 +207,7 @@ LabelImage classify_league(const RgbImage& image) {
   for (int y = 0; y < image.height; ++y) {
     Label* row = out.classes.ptr<Label>(y);
     for (int x = 0; x < image.width; ++x) {
-      row[x] = label_of(rgb(image.pixel(x, y)), exact);
+      row[x] = label_of(colour_of(image.pixel(x, y)), exact);
       if (lossy && dark_walls.at<Label>(y, x) != 0)
         row[x] = kWall;
       else if (lossy && row[x] != kWall && row[x] != kDrawing)

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/image/geotiff.h"
+#include "scoring/maps/league_palette.h"
 #include "scoring/maps/map_colours.h"
 #include "scoring/maps/raster_image.h"
 #include "scoring/maps/ros_map.h"
@@ -97,7 +98,7 @@ LoadedMap load_image(const std::string& path, const LoadOptions& options) {
   const bool is_tiff = extension == ".tif" || extension == ".tiff";
   GeoTiff tiff;
   if (is_tiff)
-    tiff = read_geotiff(path);
+    tiff = read_geotiff(path, league::kUnexplored);
   else
     tiff.image = read_rgb(path);
   check_image_size(path, tiff.image.width, tiff.image.height);

@@ -1,7 +1,6 @@
 #include "scoring/maps/raster_image.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
@@ -12,6 +11,7 @@
 #include "base/sample_range.h"
 #include "scoring/maps/image_damage.h"
 #include "scoring/maps/image_header.h"
+#include "scoring/maps/league_palette.h"
 
 namespace rubble::scoring {
 namespace {
@@ -43,7 +43,6 @@ cv::Mat narrowed(const cv::Mat& image, std::uint32_t& white) {
 
 /// Transparent pixels fade into the league's grey of unexplored ground, as in a TIFF.
 void work_in_alpha(const cv::Mat& bgra, RgbImage& out) {
-  constexpr std::array<int, 3> kUnexplored{226, 226, 227};
   out.alpha.resize(bgra.total());
   for (int y = 0; y < bgra.rows; ++y)
     for (int x = 0; x < bgra.cols; ++x) {
@@ -51,7 +50,7 @@ void work_in_alpha(const cv::Mat& bgra, RgbImage& out) {
       out.alpha[out.index(x, y)] = static_cast<std::uint8_t>(alpha);
       std::uint8_t* const p = out.pixel(x, y);
       for (std::size_t c = 0; c < 3; ++c)
-        p[c] = static_cast<std::uint8_t>((p[c] * alpha + kUnexplored[c] * (255 - alpha) + 127) / 255);
+        p[c] = static_cast<std::uint8_t>((p[c] * alpha + league::kUnexplored[c] * (255 - alpha) + 127) / 255);
     }
 }
 

@@ -1,11 +1,17 @@
 #include "scoring/maps/ros_map.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
+#include <sstream>
 #include <vector>
 
 #include "base/error.h"
+#include "base/text/number_text.h"
+#include "base/text/text_file.h"
 #include "base/yaml/strict_yaml.h"
+#include "scoring/maps/known_box.h"
 #include "scoring/maps/league_colours.h"
 #include "scoring/maps/map_colours.h"
 #include "scoring/maps/raster_image.h"
@@ -54,6 +60,29 @@ OccupancyGrid read_ros_map(const std::string& yaml_path) {
     }
   }
   return grid;
+}
+
+void write_ros_map(const std::string& stem, const OccupancyGrid& grid, double occupied_threshold) {
+  const GridFrame& f = grid.frame();
+  const KnownBox box = known_box(f, f.resolution, [&](Cell c) { return grid[c] != Occupancy::Unknown; });
+  const auto index = [&](double v, double origin) {
+    return static_cast<int>(std::lround((v - origin) / f.resolution));
+  };
+  const int x0 = std::clamp(index(box.x0, f.x0), 0, f.width), x1 = std::clamp(index(box.x1, f.x0), 0, f.width);
+  const int y0 = std::clamp(index(box.y0, f.y0), 0, f.height), y1 = std::clamp(index(box.y1, f.y0), 0, f.height);
+  std::string pgm = "P5\n" + std::to_string(x1 - x0) + " " + std::to_string(y1 - y0) + "\n255\n";
+  for (int y = y1 - 1; y >= y0; --y)
+    for (int x = x0; x < x1; ++x) {
+      const Occupancy o = grid[{x, y}];
+      pgm.push_back(static_cast<char>(o == Occupancy::Unknown ? 205 : o == Occupancy::Free ? 254 : 0));
+    }
+  write_text_file(stem + ".pgm", pgm);
+  std::ostringstream yaml;
+  yaml << "image: " << stem.substr(stem.find_last_of('/') + 1) << ".pgm\nresolution: " << number_text(f.resolution)
+       << "\norigin: [" << number_text(f.x0 + x0 * f.resolution) << ", " << number_text(f.y0 + y0 * f.resolution)
+       << ", 0.0]\nnegate: 0\noccupied_thresh: " << number_text(std::max(occupied_threshold, 0.25))
+       << "\nfree_thresh: 0.196\n";
+  write_text_file(stem + ".yaml", yaml.str());
 }
 
 }  // namespace rubble::scoring

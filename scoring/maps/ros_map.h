@@ -11,4 +11,7 @@ namespace rubble::scoring {
 /// are unknown. The yaw of the origin does not turn the grid. Throws InputError with file and line.
 OccupancyGrid read_ros_map(const std::string& yaml_path);
 
+/// Writes `stem`.pgm and `stem`.yaml as ROS map_server reads them, cropped to the known area. Throws RunError.
+void write_ros_map(const std::string& stem, const OccupancyGrid& grid, double occupied_threshold);
+
 }  // namespace rubble::scoring

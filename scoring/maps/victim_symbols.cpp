@@ -8,11 +8,12 @@
 #include <tuple>
 
 #include "base/angle.h"
+#include "scoring/maps/league_palette.h"
 
 namespace rubble::scoring {
 namespace {
 
-constexpr double kRadius = 0.175;       // of the league's circle [m]
+constexpr double kRadius = league::kVictimRadius;
 constexpr double kLeastRadius = 0.10;   // of a single circle of another size [m]
 constexpr double kMostRadius = 0.30;    // [m]
 constexpr double kDiscLike = 0.78;      // area over that of the circle around: a disc has 1, a square 0.64
@@ -267,6 +268,9 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+constexpr double kRedness = league::kVictim[0] - league::kVictim[2];
+constexpr double kHazardRedder = league::kHazard[0] - league::kVictim[0];
+
 /// By the colour of the ink around a centre, and by how much of it lies beyond the circle: a diamond has corners. Mixed
 /// with white, the green share g - b / r - b stays: 0 for a victim, 0.39 for an unconfirmed one, 0.31 for a hazard; the
 /// red of a hazard is 255, that of the others nears it from 240.
@@ -283,9 +287,10 @@ Kind kind_of(const RgbImage& image, const cv::Point2d& centre, double radius) {
       if (!is_ink({p[0], p[1], p[2]})) continue;
       if (r > radius + 0.75) ++beyond;
       if (r > radius) continue;
-      const double purity = std::min(1.0, (p[0] - p[2]) / 230.0);
+      const double purity = std::min(1.0, (p[0] - p[2]) / kRedness);
       green_share.push_back(static_cast<double>(p[1] - p[2]) / (p[0] - p[2]));
-      redness.push_back((p[0] - 240.0 - 15.0 * (1.0 - purity)) / (15.0 * purity));  // 0: victim, 1: hazard
+      redness.push_back((p[0] - league::kVictim[0] - kHazardRedder * (1.0 - purity)) /
+                        (kHazardRedder * purity));  // 0: victim, 1: hazard
     }
   if (green_share.empty()) return Kind::Hazard;
   const double green = median(green_share);

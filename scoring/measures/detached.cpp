@@ -10,7 +10,7 @@ constexpr double kLegend = 0.1;
 
 }  // namespace
 
-double detached_share(const OccupancyGrid& map, const OccupancyGrid& truth, const Rigid& T_truth_map) {
+double detached_share(const OccupancyGrid& map, const OccupancyGrid& truth, const PlanarTransform& T_truth_map) {
   if (map.cells().empty()) return 0.0;
   cv::Mat known(map.height(), map.width(), CV_8U);
   for (std::size_t i = 0; i < map.cells().size(); ++i) known.data[i] = map.cells()[i] != Occupancy::Unknown ? 255 : 0;
@@ -23,7 +23,7 @@ double detached_share(const OccupancyGrid& map, const OccupancyGrid& truth, cons
     for (int x = 0; x < map.width(); ++x) {
       const auto piece = static_cast<std::size_t>(labels.at<int>(y, x));
       if (piece == 0 || touches[piece]) continue;
-      const Cell c = truth.cell(T_truth_map.forward(map.centre({x, y})));
+      const Cell c = truth.cell(T_truth_map(map.centre({x, y})));
       touches[piece] = truth.inside(c) && truth[c] != Occupancy::Unknown;
     }
   const auto area = [&](int piece) { return static_cast<double>(stats.at<int>(piece, cv::CC_STAT_AREA)); };

@@ -303,7 +303,7 @@ SightLines::SightLines(const OccupancyGrid& truth) {
 
 bool SightLines::usable() const { return count_[0] >= kFewest && count_[1] >= kFewest; }
 
-SightAgreement SightLines::at(const OccupancyGrid& map, const Rigid& T_truth_map) const {
+SightAgreement SightLines::at(const OccupancyGrid& map, const PlanarTransform& T_truth_map) const {
   return agreement(lines_, map, T_truth_map);
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/grid.h"
-#include "base/rigid.h"
+#include "base/planar.h"
 #include "scoring/walls/warp.h"
 
 namespace rubble::scoring {
@@ -36,7 +36,7 @@ class SightLines {
 
   /// Too few open or blocked lines to say anything: a single room, or a truth without free space.
   bool usable() const;
-  SightAgreement at(const OccupancyGrid& map, const Rigid& T_truth_map) const;
+  SightAgreement at(const OccupancyGrid& map, const PlanarTransform& T_truth_map) const;
   SightAgreement at(const OccupancyGrid& map, const Warp& warp) const;
 
   struct Line {

@@ -186,7 +186,7 @@ void collect_peaks(cv::Mat surface, double angle, bool opposite, const Canvas& c
     const TPoint2D moved(canvas.x0 + (cell(at.x, canvas.width) + 0.5) * canvas.cell,
                          canvas.y0 + (cell(at.y, canvas.height) + 0.5) * canvas.cell);
     guesses.push_back({TPose2D(moved.x - (c * centre.x - s * centre.y), moved.y - (s * centre.x + c * centre.y), angle),
-                       best, "walls"});
+                       best, AlignBy::Walls});
     for (int dy = -clear; dy <= clear; ++dy)
       for (int dx = -clear; dx <= clear; ++dx)
         surface.at<float>((at.y + dy + canvas.height) % canvas.height, (at.x + dx + canvas.width) % canvas.width) =

@@ -7,11 +7,9 @@
 #include <vector>
 
 #include "base/grid.h"
+#include "scoring/proposals/feature_kind.h"
 
 namespace rubble::scoring {
-
-enum class FeatureKind { Surf, Akaze, Orb };
-const char* name_of(FeatureKind kind);
 
 /// A distinctive place of a map, f_i of eq. (7).
 struct Feature {

@@ -10,11 +10,23 @@
 
 namespace rubble::scoring {
 
+/// What proposes poses; joined by | they propose together. Auto: none of them, or whichever it takes. Hand: a person.
+enum class AlignBy : unsigned { Auto = 0, Walls = 1, Features = 2, Rooms = 4, Hand = 8 };
+constexpr AlignBy operator|(AlignBy a, AlignBy b) {
+  return static_cast<AlignBy>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+constexpr bool includes(AlignBy set, AlignBy method) {
+  return (static_cast<unsigned>(set) & static_cast<unsigned>(method)) != 0;
+}
+
+/// "walls+features+rooms"; "given" by hand; empty for Auto.
+std::string names_of(AlignBy methods);
+
 /// A pose of the map in the truth that something speaks for.
 struct PoseGuess {
   mrpt::math::TPose2D T_truth_map;
   double score = 0.0;  ///< comparable within one list only; higher is better
-  std::string source;  ///< what proposed it: "walls", "features", "rooms"
+  AlignBy by = AlignBy::Auto;
 };
 
 /// Proposes poses without any hint, best first; none where it has nothing to say. Both grids cropped to what they know.

@@ -195,7 +195,7 @@ RoomGuesses propose_by_rooms(const OccupancyGrid& map, const OccupancyGrid& trut
     return out;
   }
   for (const RigidHypothesis& h : room_hypotheses(of_map.rooms, of_truth.rooms, config))
-    out.guesses.push_back({h.T_truth_map, h.score, "rooms"});
+    out.guesses.push_back({h.T_truth_map, h.score, AlignBy::Rooms});
   return out;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/angle.h"
-#include "base/rigid.h"
+#include "base/planar.h"
 #include "scoring/walls/wall_field.h"
 
 namespace rubble::scoring {
@@ -62,7 +62,7 @@ WallOverlap::WallOverlap(const OccupancyGrid& map, const OccupancyGrid& truth, d
 template <class Transform, class Take>
 void WallOverlap::visit_map(const Transform& T, const Take& take) const {
   for (const mrpt::math::TPoint2D& p_map : map_.walls) {
-    const mrpt::math::TPoint2D p_truth = T.forward(p_map);
+    const mrpt::math::TPoint2D p_truth = T(p_map);
     if (known(*truth_.grid, p_truth)) take(p_truth, truth_.kernel(p_truth, tau_));
   }
 }
@@ -91,10 +91,10 @@ Overlap WallOverlap::measure(const Transform& T) const {
   return out;
 }
 
-Overlap WallOverlap::at(const Rigid& T_truth_map) const { return measure(T_truth_map); }
+Overlap WallOverlap::at(const PlanarTransform& T_truth_map) const { return measure(T_truth_map); }
 Overlap WallOverlap::at(const Warp& warp) const { return measure(warp); }
 
-std::vector<WallOverlap::Hit> WallOverlap::map_hits(const Rigid& T_truth_map) const {
+std::vector<WallOverlap::Hit> WallOverlap::map_hits(const PlanarTransform& T_truth_map) const {
   std::vector<Hit> out;
   visit_map(T_truth_map, [&](const mrpt::math::TPoint2D& p, double k) { out.push_back({p, k}); });
   return out;
@@ -102,18 +102,18 @@ std::vector<WallOverlap::Hit> WallOverlap::map_hits(const Rigid& T_truth_map) co
 
 /// A truth that was seen from one side knows no more of a wall than its face: map walls that begin there and are no
 /// thicker than the map's walls are, to a cell, are the same wall.
-std::vector<WallOverlap::Hit> WallOverlap::ignored_hits(const Rigid& T_truth_map) const {
+std::vector<WallOverlap::Hit> WallOverlap::ignored_hits(const PlanarTransform& T_truth_map) const {
   std::vector<Hit> out;
   const double same_wall = map_.half_thickness + truth_.grid->resolution();
   for (const mrpt::math::TPoint2D& p_map : map_.walls) {
-    const mrpt::math::TPoint2D p_truth = T_truth_map.forward(p_map);
+    const mrpt::math::TPoint2D p_truth = T_truth_map(p_map);
     if (!known(*truth_.grid, p_truth))
       out.push_back({p_truth, truth_.field.distance(p_truth) <= same_wall ? 1.0 : truth_.kernel(p_truth, tau_)});
   }
   return out;
 }
 
-std::vector<WallOverlap::Hit> WallOverlap::truth_hits(const Rigid& T_truth_map) const {
+std::vector<WallOverlap::Hit> WallOverlap::truth_hits(const PlanarTransform& T_truth_map) const {
   std::vector<Hit> out;
   visit_truth(T_truth_map, [&](const mrpt::math::TPoint2D& p, double k) { out.push_back({p, k}); });
   return out;
@@ -121,7 +121,7 @@ std::vector<WallOverlap::Hit> WallOverlap::truth_hits(const Rigid& T_truth_map) 
 
 Overlap overlap(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map,
                 double tau) {
-  return WallOverlap(map, truth, tau).at(Rigid(T_truth_map));
+  return WallOverlap(map, truth, tau).at(PlanarTransform(T_truth_map));
 }
 
 }  // namespace rubble::scoring

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/grid.h"
-#include "base/rigid.h"
+#include "base/planar.h"
 #include "scoring/walls/wall_field.h"
 #include "scoring/walls/warp.h"
 
@@ -32,7 +32,7 @@ struct Overlap {
 class WallOverlap {
  public:
   WallOverlap(const OccupancyGrid& map, const OccupancyGrid& truth, double tau);
-  Overlap at(const Rigid& T_truth_map) const;
+  Overlap at(const PlanarTransform& T_truth_map) const;
   Overlap at(const Warp& warp) const;
 
   /// What one wall cell counts, k(d), with where it lies in the truth.
@@ -40,10 +40,11 @@ class WallOverlap {
     mrpt::math::TPoint2D p_truth;
     double k = 0.0;
   };
-  std::vector<Hit> map_hits(const Rigid& T_truth_map) const;      ///< of the map's walls that count
-  std::vector<Hit> ignored_hits(const Rigid& T_truth_map) const;  ///< of those that do not: the truth is unknown there
-  std::vector<Hit> truth_hits(const Rigid& T_truth_map) const;    ///< of the truth's walls
-  double map_length_of_cell() const { return map_.cell_length; }  ///< metres of wall that one cell stands for
+  std::vector<Hit> map_hits(const PlanarTransform& T_truth_map) const;  ///< of the map's walls that count
+  std::vector<Hit> ignored_hits(
+      const PlanarTransform& T_truth_map) const;  ///< of those that do not: the truth is unknown there
+  std::vector<Hit> truth_hits(const PlanarTransform& T_truth_map) const;  ///< of the truth's walls
+  double map_length_of_cell() const { return map_.cell_length; }          ///< metres of wall that one cell stands for
   double truth_length_of_cell() const { return truth_.cell_length; }
 
  private:

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/rigid.h"
+#include "base/planar.h"
 
 namespace rubble::scoring {
 namespace {
@@ -71,7 +71,7 @@ GridFrame common_frame(const OccupancyGrid& map, const OccupancyGrid& truth, con
                        double margin) {
   CellBox box = known_box(truth);
   if (box.empty()) box = {truth.width(), truth.height(), -1, -1};
-  const Rigid T(T_truth_map);
+  const PlanarTransform T(T_truth_map);
   // The ends of each row's known stretch hold all extreme points, at any angle.
   for (int y = 0; y < map.height(); ++y) {
     const Occupancy* row = map.row(y);
@@ -81,7 +81,7 @@ GridFrame common_frame(const OccupancyGrid& map, const OccupancyGrid& truth, con
     const Occupancy* last = row + map.width() - 1;
     while (!is_known(*last)) --last;
     for (const Occupancy* end : {first, last}) {
-      const Cell c = truth.cell(T.forward(map.centre({static_cast<int>(end - row), y})));
+      const Cell c = truth.cell(T(map.centre({static_cast<int>(end - row), y})));
       box.x_min = std::min(box.x_min, c.x);
       box.x_max = std::max(box.x_max, c.x);
       box.y_min = std::min(box.y_min, c.y);
@@ -94,9 +94,9 @@ GridFrame common_frame(const OccupancyGrid& map, const OccupancyGrid& truth, con
 
 OccupancyGrid resample(const OccupancyGrid& map, const mrpt::math::TPose2D& T_frame_map, const GridFrame& frame) {
   OccupancyGrid out(frame);
-  const Rigid T(T_frame_map);
-  const double c = T.c();
-  const double s = T.s();
+  const PlanarTransform T(T_frame_map);
+  const double c = T.cosine();
+  const double s = T.sine();
   const double step = frame.resolution / map.resolution();
   for (int y = 0; y < frame.height; ++y) {
     const mrpt::math::TPoint2D first = T.inverse(frame.centre({0, y}));
@@ -112,7 +112,7 @@ OccupancyGrid resample(const OccupancyGrid& map, const mrpt::math::TPose2D& T_fr
   for (int y = 0; y < map.height(); ++y) {
     for (int x = 0; x < map.width(); ++x) {
       if (map[{x, y}] != Occupancy::Occupied) continue;
-      const Cell cell = frame.cell(T.forward(map.centre({x, y})));
+      const Cell cell = frame.cell(T(map.centre({x, y})));
       if (frame.inside(cell)) out[cell] = Occupancy::Occupied;
     }
   }

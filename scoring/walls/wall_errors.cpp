@@ -32,7 +32,7 @@ double collect(const std::vector<WallOverlap::Hit>& hits, double cell_length, do
 
 }  // namespace
 
-WallErrors wall_errors(const WallOverlap& walls, const Rigid& T_truth_map, std::size_t places) {
+WallErrors wall_errors(const WallOverlap& walls, const PlanarTransform& T_truth_map, std::size_t places) {
   WallErrors out;
   Windows windows;
   for (const WallOverlap::Hit& hit : walls.ignored_hits(T_truth_map))

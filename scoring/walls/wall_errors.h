@@ -27,6 +27,6 @@ struct WallErrors {
 };
 
 /// `places`: how many windows of 1.2 m, one pallet, are listed at the most; none with less than 0.1 m wrong.
-WallErrors wall_errors(const WallOverlap& walls, const Rigid& T_truth_map, std::size_t places);
+WallErrors wall_errors(const WallOverlap& walls, const PlanarTransform& T_truth_map, std::size_t places);
 
 }  // namespace rubble::scoring

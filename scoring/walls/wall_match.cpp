@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/rigid.h"
+
 namespace rubble::scoring {
 namespace {
 
@@ -111,13 +113,13 @@ WallMatch::Kernel WallMatch::kernel(double tau) const {
 PoseEvidence WallMatch::evidence(const Warp& warp, const Kernel& kernel) const {
   const double tau = kernel.tau;
   PoseEvidence out;
-  out.map = tally(map_.walls, truth_.grid, truth_.field, tau, [&](const TPoint2D& p) { return warp.forward(p); });
+  out.map = tally(map_.walls, truth_.grid, truth_.field, tau, [&](const TPoint2D& p) { return warp(p); });
   out.truth = tally(truth_.walls, map_.grid, map_.field, tau, [&](const TPoint2D& p) { return warp.inverse(p); });
   out.map.chance = kernel.truth_chance;
   out.truth.chance = kernel.map_chance;
   double common = 0.0;
   for (const TPoint2D& p : map_.free)
-    if (at(truth_.grid, warp.forward(p)) == Occupancy::Free) common += 1.0;
+    if (at(truth_.grid, warp(p)) == Occupancy::Free) common += 1.0;
   out.common_area = common * ratio(map_.free_area, static_cast<double>(map_.free.size()));
   out.free_common = std::min(1.0, ratio(out.common_area, std::min(map_.free_area, truth_.free_area)));
   return out;
@@ -126,7 +128,7 @@ PoseEvidence WallMatch::evidence(const Warp& warp, const Kernel& kernel) const {
 Warp WallMatch::rigid(const TPose2D& T_truth_map, int degree) const {
   Warp warp;
   warp.terms = Warp::terms_of(degree);
-  warp.T_truth_map = Rigid(T_truth_map);
+  warp.T_truth_map = PlanarTransform(T_truth_map);
   warp.centre = map_.centre;
   warp.extent = map_.extent;
   return warp;
@@ -136,7 +138,7 @@ TPose2D WallMatch::nearest_rigid(const Warp& warp, double met) const {
   std::vector<TPoint2D> from;
   std::vector<TPoint2D> to;
   for (const TPoint2D& p : map_.walls) {
-    const TPoint2D q = warp.forward(p);
+    const TPoint2D q = warp(p);
     if (met < kEverywhere && truth_.field.distance(q) >= met) continue;
     from.push_back(p);
     to.push_back(q);
@@ -146,17 +148,17 @@ TPose2D WallMatch::nearest_rigid(const Warp& warp, double met) const {
 }
 
 TPose2D WallMatch::halfway(const TPose2D& a, const TPose2D& b) const {
-  const Rigid to_a(a);
-  const Rigid to_b(b);
+  const PlanarTransform to_a(a);
+  const PlanarTransform to_b(b);
   std::vector<TPoint2D> to;
-  for (const TPoint2D& p : map_.walls) to.push_back((to_a.forward(p) + to_b.forward(p)) * 0.5);
+  for (const TPoint2D& p : map_.walls) to.push_back((to_a(p) + to_b(p)) * 0.5);
   return fit_rigid(map_.walls, to);
 }
 
 double WallMatch::bend(const Warp& warp) const {
-  const Rigid T(nearest_rigid(warp));
+  const PlanarTransform T(nearest_rigid(warp));
   double sum = 0.0;
-  for (const TPoint2D& p : map_.walls) sum += (warp.forward(p) - T.forward(p)).sqrNorm();
+  for (const TPoint2D& p : map_.walls) sum += (warp(p) - T(p)).sqrNorm();
   return std::sqrt(ratio(sum, static_cast<double>(map_.walls.size())));
 }
 

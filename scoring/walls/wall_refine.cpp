@@ -1,6 +1,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "base/rigid.h"
 #include "scoring/walls/wall_match.h"
 
 namespace rubble::scoring {
@@ -26,9 +27,9 @@ TPose2D stepped(const TPose2D& T, const TPoint2D& centre_map, const TPoint2D& ce
 }  // namespace
 
 TPose2D WallMatch::refine(const TPose2D& start, double sigma, int iterations) const {
-  Rigid T(start);
+  PlanarTransform T(start);
   for (int i = 0; i < iterations; ++i) {
-    const TPoint2D centre = T.forward(map_.centre);
+    const TPoint2D centre = T(map_.centre);
     Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
     const auto add = [&](double gx, double gy, const TPoint2D& q, double d) {
@@ -38,20 +39,20 @@ TPose2D WallMatch::refine(const TPose2D& start, double sigma, int iterations) co
       b -= weight * d * j;
     };
     for (const TPoint2D& p : map_.walls) {
-      const TPoint2D q = T.forward(p);
+      const TPoint2D q = T(p);
       const WallField::Slope f = truth_.field.slope(q);
       if (f.distance < truth_.field.cap()) add(f.gx, f.gy, q, f.distance);
     }
     for (const TPoint2D& q : truth_.walls) {
       const WallField::Slope f = map_.field.slope(T.inverse(q));
       if (f.distance < map_.field.cap())
-        add(-(T.c() * f.gx - T.s() * f.gy), -(T.s() * f.gx + T.c() * f.gy), q, f.distance);
+        add(-(T.cosine() * f.gx - T.sine() * f.gy), -(T.sine() * f.gx + T.cosine() * f.gy), q, f.distance);
     }
     // A ridge of one wall point keeps the step finite where the walls leave a direction free.
     a.diagonal().array() += 1.0;
     const Eigen::Vector3d step = a.ldlt().solve(b);
     if (!step.allFinite()) break;
-    T = Rigid(stepped(T.pose(), map_.centre, centre, step.x(), step.y(), step.z()));
+    T = PlanarTransform(stepped(T.pose(), map_.centre, centre, step.x(), step.y(), step.z()));
     if (step.head<2>().norm() < kStill && std::abs(step.z()) < 0.1 * kStill) break;
   }
   return T.pose();
@@ -66,8 +67,8 @@ Warp WallMatch::refine(const Warp& start, double sigma, const Stiffness& stiffne
   const int terms = warp.terms == Warp::kMaxTerms ? Warp::kMaxTerms : 5;
   const int unknowns = 3 + 2 * terms;
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    const Rigid T = warp.T_truth_map;
-    const TPoint2D centre = T.forward(map_.centre);
+    const PlanarTransform T = warp.T_truth_map;
+    const TPoint2D centre = T(map_.centre);
     Matrix a = Matrix::Zero(unknowns, unknowns);
     Vector b = Vector::Zero(unknowns);
     double total = 0.0;
@@ -89,7 +90,7 @@ Warp WallMatch::refine(const Warp& start, double sigma, const Stiffness& stiffne
       total += weight;
     };
     for (const TPoint2D& p : map_.walls) {
-      const TPoint2D q = warp.forward(p);
+      const TPoint2D q = warp(p);
       const WallField::Slope f = truth_.field.slope(q);
       if (f.distance < truth_.field.cap()) add(f.gx, f.gy, p, q, f.distance);
     }
@@ -97,7 +98,7 @@ Warp WallMatch::refine(const Warp& start, double sigma, const Stiffness& stiffne
       const TPoint2D p = warp.inverse(q);
       const WallField::Slope f = map_.field.slope(p);
       if (f.distance < map_.field.cap())
-        add(-(T.c() * f.gx - T.s() * f.gy), -(T.s() * f.gx + T.c() * f.gy), p, q, f.distance);
+        add(-(T.cosine() * f.gx - T.sine() * f.gy), -(T.sine() * f.gx + T.cosine() * f.gy), p, q, f.distance);
     }
     a.diagonal().head<3>().array() += 1.0;
     for (int i = 0; i < terms; ++i) {
@@ -108,7 +109,7 @@ Warp WallMatch::refine(const Warp& start, double sigma, const Stiffness& stiffne
     }
     const Vector step = a.selfadjointView<Eigen::Lower>().ldlt().solve(b);
     if (!step.allFinite()) break;
-    warp.T_truth_map = Rigid(stepped(T.pose(), map_.centre, centre, step(0), step(1), step(2)));
+    warp.T_truth_map = PlanarTransform(stepped(T.pose(), map_.centre, centre, step(0), step(1), step(2)));
     for (int i = 0; i < terms; ++i) {
       warp.dx[static_cast<std::size_t>(i)] += step(3 + i);
       warp.dy[static_cast<std::size_t>(i)] += step(3 + terms + i);

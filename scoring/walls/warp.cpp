@@ -23,8 +23,8 @@ TPoint2D Warp::displacement(const TPoint2D& p_map) const {
   return out;
 }
 
-TPoint2D Warp::forward(const TPoint2D& p_map) const {
-  return T_truth_map.forward(p_map + displacement(p_map));  // eq. (8)
+TPoint2D Warp::operator()(const TPoint2D& p_map) const {
+  return T_truth_map(p_map + displacement(p_map));  // eq. (8)
 }
 
 TPoint2D Warp::inverse(const TPoint2D& p_truth) const {

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "base/rigid.h"
+#include "base/planar.h"
 
 namespace rubble::scoring {
 
@@ -14,7 +14,7 @@ struct Warp {
   static constexpr int kMaxTerms = 9;  ///< x, y; x^2, xy, y^2; x^3, x^2 y, x y^2, y^3 of normalised coordinates
   using Terms = std::array<double, kMaxTerms>;
 
-  Rigid T_truth_map;
+  PlanarTransform T_truth_map;
   mrpt::math::TPoint2D centre;  ///< of the map, origin of the normalised coordinates [m]
   double extent = 1.0;          ///< metres that become 1
   int terms = 5;                ///< in use: 5 for degree 2, 9 for degree 3
@@ -25,7 +25,7 @@ struct Warp {
   static int degree_of(int term) { return term < 2 ? 1 : term < 5 ? 2 : 3; }
   Terms terms_at(const mrpt::math::TPoint2D& p_map) const;
   mrpt::math::TPoint2D displacement(const mrpt::math::TPoint2D& p_map) const;
-  mrpt::math::TPoint2D forward(const mrpt::math::TPoint2D& p_map) const;
+  mrpt::math::TPoint2D operator()(const mrpt::math::TPoint2D& p_map) const;
   /// By fixed-point iteration; good to centimetres for the mild displacements allowed here.
   mrpt::math::TPoint2D inverse(const mrpt::math::TPoint2D& p_truth) const;
   /// Largest stretch or shear that the linear terms ask for: 0.02 is a map drawn 2 % too large.

@@ -30,7 +30,7 @@ WarpedScore fit_warp(const OccupancyGrid& map, const OccupancyGrid& truth, const
   const WallMatch match(map, truth, kReach, config.max_points);
   WarpedScore best;
   best.warp = match.rigid(T_truth_map, config.degree);
-  best.overlap = walls.at(Rigid(T_truth_map));
+  best.overlap = walls.at(PlanarTransform(T_truth_map));
   for (const double stiffer : {1.0, 10.0, 100.0}) {
     const Warp warp = fit(match, T_truth_map, config.degree, stiffer * config.stiffness);
     if (!keeps_order(warp, map.frame())) continue;

@@ -53,8 +53,7 @@ robot::LaserScan Laser::scan(Stamp first, const std::vector<WorldState>& states,
     swept_beams(states, model_, table_, first, scan.beam_period, beams_);
     sweep_cast_.cast(beams_, table_, reach, balls, scan.ranges, beside);
   }
-  const bool has_codes = model_.laser.name == "URG-04LX";
-  noise_.apply(scan.ranges, has_codes ? &scan.codes : nullptr);
+  noise_.apply(scan.ranges, model_.laser.has_codes ? &scan.codes : nullptr);
   return scan;
 }
 

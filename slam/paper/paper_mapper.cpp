@@ -186,7 +186,7 @@ TPose2D PaperMapper::pose() const {
   return impl_->T_map_last_ + impl_->T_last_scan_ + impl_->motion_since_scan(impl_->odometry_.newest());
 }
 
-Eigen::Matrix3d PaperMapper::covariance() const { return spread(impl_->particles_); }
+PoseCovariance PaperMapper::covariance() const { return spread(impl_->particles_); }
 
 std::optional<TPose2D> PaperMapper::pose_at(Stamp stamp) const { return rubble::pose_at(impl_->trajectory_, stamp); }
 

@@ -46,7 +46,7 @@ class PaperMapper : public Mapper {
   void update(const robot::Inputs& inputs) override;
   const CountMap& map() const override;
   mrpt::math::TPose2D pose() const override;
-  Eigen::Matrix3d covariance() const override;
+  PoseCovariance covariance() const override;
   std::uint64_t revision() const override { return 0; }
   std::optional<mrpt::math::TPose2D> pose_at(Stamp stamp) const override;
   const Trajectory& trajectory() const override;

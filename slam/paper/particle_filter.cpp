@@ -1,5 +1,6 @@
 #include "slam/paper/particle_filter.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -202,8 +203,8 @@ TPose2D mean_of_best(const Particles& particles, double share) {
   return {x / n, y / n, std::atan2(s, c)};
 }
 
-Eigen::Matrix3d spread(const Particles& particles) {
-  if (particles.empty()) return Eigen::Matrix3d::Zero();
+PoseCovariance spread(const Particles& particles) {
+  if (particles.empty()) return {};
   double c = 0.0, s = 0.0, x = 0.0, y = 0.0;
   for (const Particle& particle : particles) {
     x += particle.weight * particle.T_map_base.x;
@@ -218,7 +219,7 @@ Eigen::Matrix3d spread(const Particles& particles) {
                               wrap_angle(particle.T_map_base.phi - heading));
     covariance += particle.weight * off * off.transpose();
   }
-  return covariance;
+  return PoseCovariance(covariance);
 }
 
 }  // namespace rubble::slam

@@ -3,10 +3,10 @@
 #include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "base/angle.h"
+#include "base/pose_covariance.h"
 #include "base/rng.h"
 #include "slam/grid/count_map.h"
 
@@ -49,6 +49,6 @@ Particles normalise(Particles particles);
 mrpt::math::TPose2D mean_of_best(const Particles& particles, double share);
 
 /// Weighted covariance of the poses: x, y [m^2], heading [rad^2]. Zero without particles.
-Eigen::Matrix3d spread(const Particles& particles);
+PoseCovariance spread(const Particles& particles);
 
 }  // namespace rubble::slam

@@ -61,10 +61,10 @@ void MrptIcpMapper::process(mrpt::obs::CActionCollection& action, mrpt::obs::CSe
   path_of_scans_.emplace_back(mean.x(), mean.y(), mean.yaw());
 }
 
-Eigen::Matrix3d MrptIcpMapper::uncertainty() const {
+PoseCovariance MrptIcpMapper::uncertainty() const {
   mrpt::poses::CPosePDFGaussian pose;
   pose.copyFrom(*impl_->builder.getCurrentPoseEstimation());
-  return pose.cov.asEigen();
+  return PoseCovariance(pose.cov);
 }
 
 const mrpt::maps::COccupancyGridMap2D& MrptIcpMapper::grid() const {

@@ -30,7 +30,7 @@ class MrptIcpMapper : public MrptMapper {
  protected:
   void process(mrpt::obs::CActionCollection& action, mrpt::obs::CSensoryFrame& frame) override;
   std::vector<mrpt::math::TPose2D> path() const override { return path_of_scans_; }
-  Eigen::Matrix3d uncertainty() const override;
+  PoseCovariance uncertainty() const override;
   const mrpt::maps::COccupancyGridMap2D& grid() const override;
   std::size_t inserted() const override;
 

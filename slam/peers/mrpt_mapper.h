@@ -28,7 +28,7 @@ class MrptMapper : public Mapper {
   void update(const robot::Inputs& inputs) override;
   const CountMap& map() const override { return map_; }
   mrpt::math::TPose2D pose() const override;
-  Eigen::Matrix3d covariance() const override { return covariance_; }
+  PoseCovariance covariance() const override { return covariance_; }
   std::uint64_t revision() const override { return revision_; }
   std::optional<mrpt::math::TPose2D> pose_at(Stamp stamp) const override;
   const Trajectory& trajectory() const override { return trajectory_; }
@@ -44,7 +44,7 @@ class MrptMapper : public Mapper {
   /// T_map_base at each step of the builder so far; steps may be fewer than scans. `odometry` is carried on from the
   /// last one.
   virtual std::vector<mrpt::math::TPose2D> path() const = 0;
-  virtual Eigen::Matrix3d uncertainty() const = 0;
+  virtual PoseCovariance uncertainty() const = 0;
   virtual const mrpt::maps::COccupancyGridMap2D& grid() const = 0;
   /// Observations in the map: when it changes, so did the map.
   virtual std::size_t inserted() const = 0;
@@ -73,7 +73,7 @@ class MrptMapper : public Mapper {
 
   LevelScan level_scan_;
   CountMap map_;
-  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
+  PoseCovariance covariance_;
   std::uint64_t revision_ = 0;
   Trajectory trajectory_;
   Trajectory live_;

@@ -72,10 +72,10 @@ std::vector<mrpt::math::TPose2D> MrptRbpfMapper::path() const {
   return path;
 }
 
-Eigen::Matrix3d MrptRbpfMapper::uncertainty() const {
+PoseCovariance MrptRbpfMapper::uncertainty() const {
   mrpt::poses::CPosePDFGaussian pose;
   pose.copyFrom(*impl_->builder.getCurrentPoseEstimation());
-  return pose.cov.asEigen();
+  return PoseCovariance(pose.cov);
 }
 
 const mrpt::maps::COccupancyGridMap2D& MrptRbpfMapper::grid() const {

@@ -28,8 +28,8 @@ StampedPose take_stamped(Words& words) {
   return {stamp, take_pose(words)};
 }
 
-Eigen::Matrix3d take_covariance(Words& words) {
-  Eigen::Matrix3d c;
+PoseCovariance take_covariance(Words& words) {
+  PoseCovariance c;
   for (int row = 0; row < 3; ++row)
     for (int column = row; column < 3; ++column) c(row, column) = c(column, row) = words.number();
   for (int i = 0; i < 3; ++i)

@@ -2,7 +2,6 @@
 
 #include <mrpt/math/TPose2D.h>
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -25,7 +24,7 @@ struct AnsweredMap {
 /// What a mapper process says about one tick: only what is new.
 struct MapperAnswer {
   std::optional<mrpt::math::TPose2D> pose;  ///< T_map_base at the newest odometry (or scan)
-  std::optional<Eigen::Matrix3d> covariance;
+  std::optional<PoseCovariance> covariance;
   std::vector<StampedPose> at;          ///< T_map_base at scans digested now
   std::optional<Trajectory> corrected;  ///< the whole trajectory: poses of the past have moved
   std::optional<std::uint64_t> mapped;  ///< scans in the map

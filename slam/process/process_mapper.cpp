@@ -218,7 +218,7 @@ class ProcessParameters : public MapperParameters {
 std::unique_ptr<MapperParameters> process_parameters() { return std::make_unique<ProcessParameters>(); }
 
 std::string process_mapper_yaml(const std::string& command) {
-  return "{kind: process, command: " + rubble::quoted(command) + "}";
+  return "{kind: process, command: " + yaml_quoted(command) + "}";
 }
 
 }  // namespace rubble::slam

@@ -36,7 +36,7 @@ class ProcessMapper : public Mapper {
 
   const CountMap& map() const override { return map_; }
   mrpt::math::TPose2D pose() const override { return pose_; }
-  Eigen::Matrix3d covariance() const override { return covariance_; }
+  PoseCovariance covariance() const override { return covariance_; }
   std::uint64_t revision() const override { return revision_; }
   std::optional<mrpt::math::TPose2D> pose_at(Stamp stamp) const override;
   const Trajectory& trajectory() const override { return trajectory_; }
@@ -68,7 +68,7 @@ class ProcessMapper : public Mapper {
   CountMap map_;
   bool has_map_ = false;
   mrpt::math::TPose2D pose_;
-  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
+  PoseCovariance covariance_;
   std::uint64_t revision_ = 0;
   Trajectory trajectory_;
   Trajectory live_;

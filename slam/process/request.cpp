@@ -4,51 +4,12 @@
 #include <map>
 
 #include "base/text/words.h"
+#include "robot/model_fields.h"
 
 namespace rubble::slam {
 namespace {
 
 constexpr std::int64_t kAnyStamp = std::numeric_limits<std::int64_t>::max();
-
-/// One list of names serves both directions.
-template <class Model, class Field>
-void each_field(Model& m, Field&& field) {
-  field("robot.name", m.name);
-  field("robot.length_m", m.length);
-  field("robot.width_m", m.width);
-  field("robot.wheel_radius_m", m.wheel_radius);
-  field("robot.wheelbase_m", m.wheelbase);
-  field("robot.track_m", m.track);
-  field("robot.effective_track_m", m.effective_track);
-  field("robot.ground_clearance_m", m.ground_clearance);
-  field("robot.climbable_step_m", m.climbable_step);
-  field("robot.mass_kg", m.mass);
-  field("robot.max_v_m_s", m.max_v);
-  field("robot.max_w_rad_s", m.max_w);
-  field("robot.max_accel_m_s2", m.max_accel);
-  field("robot.max_turn_accel_rad_s2", m.max_turn_accel);
-  field("robot.command_timeout_s", m.command_timeout);
-  field("robot.odometry_period_s", m.odometry_period);
-  field("robot.acceleration_period_s", m.acceleration_period);
-  field("robot.tick_s", m.tick);
-  field("robot.has_levelling_unit", m.has_levelling_unit);
-  field("robot.max_aim_rad", m.max_aim);
-  field("robot.accelerometer_on_body", m.accelerometer_mount);
-  field("laser.name", m.laser.name);
-  field("laser.x_m", m.T_base_laser.x);
-  field("laser.y_m", m.T_base_laser.y);
-  field("laser.z_m", m.T_base_laser.z);
-  field("laser.yaw_rad", m.T_base_laser.yaw);
-  field("laser.pitch_rad", m.T_base_laser.pitch);
-  field("laser.roll_rad", m.T_base_laser.roll);
-  field("laser.beams", m.laser.beams);
-  field("laser.angle_min_rad", m.laser.angle_min);
-  field("laser.angle_step_rad", m.laser.angle_step);
-  field("laser.range_min_m", m.laser.range_min);
-  field("laser.range_max_m", m.laser.range_max);
-  field("laser.scan_period_s", m.laser.scan_period);
-  field("laser.beam_period_s", m.laser.beam_period);
-}
 
 void put(std::string& text, const std::string& value) { text += ' ' + one_line(value); }
 void put(std::string& text, double value) { append_number(text, value); }
@@ -131,8 +92,9 @@ void take_record(std::string_view kind, Words& words, robot::Inputs& inputs) {
 
 void append_header(std::string& text, const MapperHeader& header) {
   text += "rubble-mapper " + std::to_string(kProtocolVersion) + "\nseed " + std::to_string(header.seed) + '\n';
-  each_field(header.model, [&](const char* key, const auto& value) {
-    text += key;
+  robot::each_model_field(header.model, [&](const robot::ModelKey& key, const auto& value) {
+    if (key.protocol == nullptr) return;
+    text += key.protocol;
     put(text, value);
     text += '\n';
   });
@@ -200,9 +162,10 @@ MapperHeader read_header(MessageReader& in) {
   }
   Words seed(lines["seed"]);
   header.seed = static_cast<std::uint64_t>(seed.whole(0, kAnyStamp));
-  each_field(header.model, [&](const char* key, auto& value) {
-    const auto found = lines.find(key);
-    if (found == lines.end()) throw BadMessage("the header does not tell " + std::string(key));
+  robot::each_model_field(header.model, [&](const robot::ModelKey& key, auto& value) {
+    if (key.protocol == nullptr) return;
+    const auto found = lines.find(key.protocol);
+    if (found == lines.end()) throw BadMessage("the header does not tell " + std::string(key.protocol));
     Words words(found->second);
     take(words, value);
   });

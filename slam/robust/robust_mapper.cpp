@@ -469,11 +469,12 @@ TPose2D RobustMapper::pose() const {
   return impl_->now() + impl_->motion_since_scan(impl_->odometry_.newest());
 }
 
-Eigen::Matrix3d RobustMapper::covariance() const {
-  if (impl_->frames_.empty()) return Eigen::Matrix3d::Zero();
+PoseCovariance RobustMapper::covariance() const {
+  if (impl_->frames_.empty()) return {};
   const TPose2D& frame = impl_->frames_.pose(impl_->here_);
   const Eigen::Matrix3d J = lever(frame, impl_->now());
-  return J * impl_->frame_covariance_ * J.transpose() + turned(impl_->scan_covariance_, frame.phi);
+  return PoseCovariance(
+      Eigen::Matrix3d(J * impl_->frame_covariance_ * J.transpose() + turned(impl_->scan_covariance_, frame.phi)));
 }
 
 std::uint64_t RobustMapper::revision() const { return impl_->revision_; }

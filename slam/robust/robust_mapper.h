@@ -60,7 +60,7 @@ class RobustMapper : public Mapper {
   void finish() override;
   const CountMap& map() const override;
   mrpt::math::TPose2D pose() const override;
-  Eigen::Matrix3d covariance() const override;
+  PoseCovariance covariance() const override;
   std::uint64_t revision() const override;
   std::optional<mrpt::math::TPose2D> pose_at(Stamp stamp) const override;
   const Trajectory& trajectory() const override;

@@ -14,7 +14,7 @@ class PlantedMapper : public slam::Mapper {
   void update(const robot::Inputs&) override {}
   const slam::CountMap& map() const override { return map_; }
   mrpt::math::TPose2D pose() const override { return poses_.empty() ? mrpt::math::TPose2D{} : poses_.back().pose; }
-  Eigen::Matrix3d covariance() const override { return Eigen::Matrix3d::Zero(); }
+  PoseCovariance covariance() const override { return {}; }
   std::uint64_t revision() const override { return revision_; }
   std::optional<mrpt::math::TPose2D> pose_at(Stamp stamp) const override {
     for (const StampedPose& entry : poses_)

@@ -32,7 +32,7 @@ inline void PrintTo(const Ground& ground, std::ostream* out) { *out << ground.na
 inline OccupancyGrid truth_of(const Ground& ground) {
   if (ground.kind == "maze") return maze_of(ground.seed, ground.columns, ground.rows);
   arenas::GenerateConfig config;
-  config.kind = ground.kind;
+  config.kind = arenas::arena_kind(ground.kind);
   config.columns = ground.columns;
   config.rows = ground.rows;
   config.seed = ground.seed;

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "robot/emulators/byte_faults.h"
+#include "robot/emulators/line_faults.h"
 #include "robot/measurements.h"
 #include "robot/model.h"
 

@@ -27,7 +27,7 @@ double at_true_pose(const OccupancyGrid& map, const OccupancyGrid& truth) {
 class Judge {
  public:
   explicit Judge(const OccupancyGrid& truth) : sights_(truth) {}
-  double operator()(const OccupancyGrid& map) const { return sights_.at(map, Rigid()).score; }
+  double operator()(const OccupancyGrid& map) const { return sights_.at(map, PlanarTransform()).score; }
   const SightLines& sights() const { return sights_; }
 
  private:
@@ -89,7 +89,7 @@ TEST_P(HonestScore, AFatPencilCostsLittle) {
 TEST_P(HonestScore, WallsInTheWrongPlaceCost) {
   double last = 1.0;
   for (const double shift : {0.05, 0.1, 0.2, 0.4}) {
-    const double score = judge.sights().at(truth, Rigid({0.8 * shift, 0.6 * shift, 0.0})).score;
+    const double score = judge.sights().at(truth, PlanarTransform({0.8 * shift, 0.6 * shift, 0.0})).score;
     EXPECT_LT(score, last - 0.03) << "shifted by " << shift;
     last = score;
   }

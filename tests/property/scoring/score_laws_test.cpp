@@ -175,7 +175,7 @@ TEST_P(ScoreLaws, AtThePoseFoundTheGivenPoseScoresTheSame) {
   EXPECT_EQ(given.psi_m, searched.psi_m);
   EXPECT_EQ(given.errors.phantom_m, searched.errors.phantom_m);
   EXPECT_EQ(given.warped_score, searched.warped_score);
-  EXPECT_EQ(given.source, "given");
+  EXPECT_EQ(names_of(given.by), "given");
 }
 
 /// Swapping the maps swaps precision and recall; what the map does not know costs recall only; what the truth does not

@@ -111,13 +111,13 @@ TEST(Strangers, EveryMethodThatAlignsFindsTheSamePoseAndSaysWhich) {
   config.by = AlignBy::Walls;
   const Alignment walls = align(map, truth, config);
   ASSERT_TRUE(walls.aligned);
-  EXPECT_EQ(walls.source, "walls");
+  EXPECT_EQ(names_of(walls.by), "walls");
   for (const FeatureKind kind : {FeatureKind::Surf, FeatureKind::Akaze, FeatureKind::Orb}) {
     config.by = AlignBy::Features;
     config.feature_kind = kind;
     const Alignment found = align(map, truth, config);
     ASSERT_TRUE(found.aligned) << name_of(kind) << ": " << found.note;
-    EXPECT_NE(found.source.find("features"), std::string::npos);
+    EXPECT_TRUE(includes(found.by, AlignBy::Features));
     EXPECT_NEAR(
         (found.T_truth_map.composePoint(TPoint2D(3, 3)) - walls.T_truth_map.composePoint(TPoint2D(3, 3))).norm(), 0.0,
         0.05);
@@ -126,11 +126,11 @@ TEST(Strangers, EveryMethodThatAlignsFindsTheSamePoseAndSaysWhich) {
   config.rooms = [](const OccupancyGrid&, const OccupancyGrid&) { return std::vector<PoseGuess>{}; };
   EXPECT_FALSE(align(map, truth, config).aligned);
   config.rooms = [&](const OccupancyGrid&, const OccupancyGrid&) {
-    return std::vector<PoseGuess>{{walls.T_truth_map, 1.0, "rooms"}};
+    return std::vector<PoseGuess>{{walls.T_truth_map, 1.0, AlignBy::Rooms}};
   };
   const Alignment rooms = align(map, truth, config);
   EXPECT_TRUE(rooms.aligned);
-  EXPECT_NE(rooms.source.find("rooms"), std::string::npos);
+  EXPECT_TRUE(includes(rooms.by, AlignBy::Rooms));
 }
 
 TEST(Strangers, AWrongScaleIsNamed) {

@@ -104,6 +104,14 @@ TEST(Words, OnlyANearNeighbourIsSuggested) {
   EXPECT_EQ(did_you_mean("max_rang", {"max_rate", "max_range"}), ", did you mean 'max_range'?");
 }
 
+TEST(Words, AnEndingNeedsSomethingBeforeIt) {
+  EXPECT_TRUE(ends_with("map.tif", ".tif"));
+  EXPECT_FALSE(ends_with(".tif", ".tif"));
+  EXPECT_FALSE(ends_with("map.tiff", ".tif"));
+  EXPECT_FALSE(ends_with("f", ".tif"));
+  EXPECT_FALSE(ends_with("", ""));
+}
+
 TEST(Words, MessagesStayOnOneLine) {
   EXPECT_EQ(one_line("a\nb\t\x01"), "a\\nb\\t\\x01");
   EXPECT_EQ(quoted("abc", 2), "'ab...'");

@@ -124,7 +124,7 @@ TEST(SimTeam, RefusesTwoRobotsInOnePlace) {
 
 arenas::Arena with_bottle(double height) {
   arenas::Arena arena = flat_floor(-3, -3, 6, 3);
-  arena.objects = {{{1.0, 0.0}, 0.033, height, 0.5, "bottle"}};
+  arena.objects = {{{1.0, 0.0}, 0.033, height, 0.5, arenas::ObjectKind::Bottle}};
   return arena;
 }
 

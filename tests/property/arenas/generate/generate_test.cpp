@@ -123,12 +123,12 @@ bool has_wall_at(const Arena& arena, const TPoint2D& edge) {
 
 /// Whatever can be driven is connected without crossing an obstacle, and every obstacle lies beside an open edge.
 TEST(Generate, ObstaclesOfOrangeAndRedCutNothingOff) {
-  for (const std::string kind : {"orange", "red"}) {
+  for (const ArenaKind kind : {ArenaKind::Orange, ArenaKind::Red}) {
     double share = 0.0;
     constexpr std::uint64_t kSeeds = 300;
     std::set<std::string> elements;
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
-      SCOPED_TRACE(kind + " " + name_of(seed));
+      SCOPED_TRACE(arenas::name_of(kind) + " " + name_of(seed));
       GenerateConfig config = config_of(seed);
       config.kind = kind;
       config.victims = static_cast<int>(seed % 2);
@@ -284,7 +284,8 @@ TEST(Generate, ValuesOutOfRangeAreInputErrors) {
     change(config);
     EXPECT_THROW(generate_arena(config), InputError);
   };
-  refuses([](GenerateConfig& c) { c.kind = "pink"; });
+  EXPECT_THROW(arena_kind("pink"), InputError);
+  for (const std::string& name : arena_kinds()) EXPECT_EQ(arenas::name_of(arena_kind(name)), name);
   refuses([](GenerateConfig& c) { c.columns = 1; });
   refuses([](GenerateConfig& c) { c.rows = 61; });
   refuses([](GenerateConfig& c) { c.ramps = 1.1; });

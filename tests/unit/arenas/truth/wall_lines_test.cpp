@@ -158,9 +158,9 @@ TEST(WallLines, SoForRampsAndTheLeaguesParts) {
   config.seed = 2;
   config.columns = config.rows = 5;
   config.rough = 0.4;
-  config.kind = "red";
+  config.kind = ArenaKind::Red;
   const Arena red = parse_arena(generate_arena(config), "red");
-  config.kind = "orange";
+  config.kind = ArenaKind::Orange;
   const Arena orange = parse_arena(generate_arena(config), "orange");
   for (const double slice : {0.35, 0.15}) {
     SCOPED_TRACE(slice);

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/text/file_name.h"
-#include "base/text/formula.h"
+#include "base/text/csv.h"
 #include "base/text/text_file.h"
 
 namespace rubble {

@@ -131,7 +131,7 @@ TEST(LevellingWire, TheWatchdogsFlagIsRaised) {
 TEST(LevellingWire, AResetUnitIsSetUpAgain) {
   Wire wire;
   wire.run(1.0);
-  wire.unit.fail("reset", wire.now);
+  wire.unit.fail(DeviceFault::Reset, wire.now);
   EXPECT_FALSE(wire.unit.servos_on());
   wire.run(0.2);
   EXPECT_TRUE(wire.unit.servos_on());
@@ -141,7 +141,7 @@ TEST(LevellingWire, AResetUnitIsSetUpAgain) {
 TEST(LevellingWire, ADeadSensorIsSilentButTold) {
   Wire wire;
   wire.run(1.0);
-  wire.unit.fail("sensor", wire.now);
+  wire.unit.fail(DeviceFault::Sensor, wire.now);
   wire.run(0.1);
   const std::size_t before = wire.accelerations.size();
   wire.run(0.5);
@@ -156,7 +156,7 @@ TEST(LevellingWire, WithADeadSensorTheServosHold) {
   wire.run(1.0);
   wire.driver.aim({deg_to_rad(9.0), 0.0});
   wire.run(0.5);
-  wire.unit.fail("sensor", wire.now);
+  wire.unit.fail(DeviceFault::Sensor, wire.now);
   wire.run(0.1);
   wire.driver.aim({deg_to_rad(-9.0), 0.0});
   wire.run(0.3);
@@ -168,16 +168,18 @@ TEST(LevellingWire, WithADeadSensorTheServosHold) {
 }
 
 TEST(LevellingWire, DamagedLinesAreNeverMeasurements) {
-  for (const char* name : {"lost", "split", "doubled", "junk", "sums"}) {
+  for (const ByteFault fault :
+       {ByteFault::Lost, ByteFault::Split, ByteFault::Doubled, ByteFault::Junk, ByteFault::WrongSum}) {
+    SCOPED_TRACE(static_cast<int>(fault));
     Wire wire;
     wire.felt = {{}, 1.0, -1.0};
     wire.run(1.0);
-    wire.faults.spoil(*byte_fault(name), wire.now + 1.0);
+    wire.faults.spoil(fault, wire.now + 1.0);
     wire.run(2.0);
-    ASSERT_TRUE(wire.driver.ready()) << name;
-    for (const Acceleration& a : wire.accelerations) EXPECT_NEAR(a.x, 1.0, 0.01) << name;
+    ASSERT_TRUE(wire.driver.ready());
+    for (const Acceleration& a : wire.accelerations) EXPECT_NEAR(a.x, 1.0, 0.01);
     for (std::size_t i = 1; i < wire.accelerations.size(); ++i)
-      ASSERT_GT(wire.accelerations[i].stamp, wire.accelerations[i - 1].stamp) << name;
+      ASSERT_GT(wire.accelerations[i].stamp, wire.accelerations[i - 1].stamp);
   }
 }
 

@@ -129,7 +129,7 @@ TEST(PioneerWire, AnOriginSetAnewIsNoMotion) {
   wire.run(1.0);
   wire.go(0.4, 0.0);
   wire.run(5.0);
-  wire.base.fail("seto", wire.now);
+  wire.base.fail(DeviceFault::SetOrigin, wire.now);
   wire.run(5.0);
   wire.go(0.0, 0.0);
   wire.run(2.0);
@@ -185,7 +185,7 @@ TEST(PioneerWire, AfterAResetTheConnectionIsMadeAnewAndThePoseGoesOn) {
   wire.run(1.0);
   wire.go(0.4, 0.0);
   wire.run(3.0);
-  wire.base.fail("reset", wire.now);
+  wire.base.fail(DeviceFault::Reset, wire.now);
   wire.run(0.5);
   const double there = wire.truth.x;
   EXPECT_FALSE(wire.base.motors_on());
@@ -209,19 +209,21 @@ TEST(PioneerWire, ARobotThatIsStillOpenIsClosedFirst) {
 }
 
 TEST(PioneerWire, DamagedLinesNeitherMoveThePoseNorStopTheReports) {
-  for (const char* name : {"lost", "split", "doubled", "junk", "sums"}) {
+  for (const ByteFault fault :
+       {ByteFault::Lost, ByteFault::Split, ByteFault::Doubled, ByteFault::Junk, ByteFault::WrongSum}) {
+    SCOPED_TRACE(static_cast<int>(fault));
     Wire wire;
     wire.run(1.0);
     wire.go(0.3, 0.3);
     wire.run(3.0);
-    wire.faults.spoil(*byte_fault(name), wire.now + 1.0);
+    wire.faults.spoil(fault, wire.now + 1.0);
     wire.run(3.0);
     wire.go(0.0, 0.0);
     wire.run(2.0);
-    ASSERT_TRUE(wire.driver.ready()) << name;
-    EXPECT_NEAR(wire.odometry.back().pose.x, wire.truth.x, 0.01) << name;
-    EXPECT_NEAR(wire.odometry.back().pose.y, wire.truth.y, 0.01) << name;
-    EXPECT_NEAR(wrap_angle(wire.odometry.back().pose.phi - wire.truth.phi), 0.0, 0.01) << name;
+    ASSERT_TRUE(wire.driver.ready());
+    EXPECT_NEAR(wire.odometry.back().pose.x, wire.truth.x, 0.01);
+    EXPECT_NEAR(wire.odometry.back().pose.y, wire.truth.y, 0.01);
+    EXPECT_NEAR(wrap_angle(wire.odometry.back().pose.phi - wire.truth.phi), 0.0, 0.01);
   }
 }
 
@@ -244,7 +246,7 @@ TEST(PioneerWire, NoMotionIsLostInAGapOfTheReports) {
 TEST(PioneerWire, StallsAreTold) {
   Wire wire;
   wire.run(1.0);
-  wire.base.fail("stall", wire.now);
+  wire.base.fail(DeviceFault::Stall, wire.now);
   wire.run(0.3);
   EXPECT_TRUE(wire.odometry.back().stalled);
   wire.run(1.5);
@@ -301,7 +303,7 @@ TEST(PioneerWire, APressedButtonCannotBeRearmed) {
   Wire wire;
   wire.run(1.0);
   wire.go(0.4, 0.0);
-  wire.base.fail("button", wire.now);
+  wire.base.fail(DeviceFault::Button, wire.now);
   wire.run(0.5);
   wire.driver.rearm();
   EXPECT_EQ(wire.driver.hold(), Pioneer::Hold::EmergencyButton);
@@ -317,7 +319,7 @@ TEST(PioneerWire, MotorsThatWeSwitchOffOrThatARestartLeavesOffAreNoHold) {
     wire.run(0.05 * i);
   }
   wire.go(0.2, 0.0);
-  wire.base.fail("reset", wire.now);
+  wire.base.fail(DeviceFault::Reset, wire.now);
   wire.run(8.0);
   EXPECT_EQ(wire.driver.hold(), Pioneer::Hold::None);
   EXPECT_TRUE(wire.driver.motors_on());

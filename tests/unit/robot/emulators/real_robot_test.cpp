@@ -222,7 +222,7 @@ TEST(RealRobot, TheButtonAtTheRobotHoldsItUntilTheOperatorRearmsIt) {
     return true;
   });
   std::thread core([&] { bench.drive(0.3, 12.0); });
-  bench.base_server.with([&] { bench.arcos.fail("button", host_now()); });
+  bench.base_server.with([&] { bench.arcos.fail(DeviceFault::Button, host_now()); });
   EXPECT_TRUE(Bench::soon([&] { return bench.robot->status().held && bench.speed == 0.0; }));
   sleep_until(host_now() + 3.0);  // the button is released after 2 s
   EXPECT_TRUE(bench.robot->status().held);

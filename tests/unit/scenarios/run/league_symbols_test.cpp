@@ -5,8 +5,10 @@
 #include "base/image/geotiff.h"
 #include "base/image/png.h"
 #include "base/rng.h"
-#include "scenarios/run/league_map.h"
+#include "scenarios/run/run_folder.h"
+#include "scoring/maps/league_map.h"
 #include "scoring/maps/normalise.h"
+#include "scoring/maps/ros_map.h"
 #include "scoring/maps/victim_symbols.h"
 #include "tests/support/base_files.h"
 #include "tests/support/symbols_pictures.h"
@@ -38,15 +40,15 @@ slam::CountMap room() {
 }
 
 /// Victims anywhere, on walls and on the path too, at least `apart` from each other.
-std::vector<explore::VictimReport> victims(std::uint64_t seed, int count, double apart) {
+std::vector<scoring::LeagueVictim> victims(std::uint64_t seed, int count, double apart) {
   Rng rng(seed, "victims");
-  std::vector<explore::VictimReport> out;
+  std::vector<scoring::LeagueVictim> out;
   while (static_cast<int>(out.size()) < count) {
     const TPoint2D p(rng.uniform(-5.0, 5.0), rng.uniform(-4.0, 4.0));
     bool free = true;
     for (const auto& other : out) free = free && (other.p_map - p).norm() >= apart;
     if (!free) continue;
-    explore::VictimReport report;
+    scoring::LeagueVictim report;
     report.id = static_cast<int>(out.size()) + 1;
     report.p_map = p;
     out.push_back(report);
@@ -54,8 +56,8 @@ std::vector<explore::VictimReport> victims(std::uint64_t seed, int count, double
   return out;
 }
 
-LeagueDrawing drawing(const std::vector<explore::VictimReport>& victims, double resolution) {
-  LeagueDrawing out;
+scoring::LeagueDrawing drawing(const std::vector<scoring::LeagueVictim>& victims, double resolution) {
+  scoring::LeagueDrawing out;
   out.resolution = resolution;
   out.title = "RoboCup-map.tif";
   out.victims = victims;
@@ -76,7 +78,7 @@ TEST(LeagueSymbols, LieWhereTheListOfTheSameMapSays) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       SCOPED_TRACE(std::to_string(resolution) + " m, seed " + std::to_string(seed));
       const auto reports = victims(seed, 12, 0.5);
-      write_geotiff(folder / "map.tif", draw_league_map(map, drawing(reports, resolution)));
+      write_geotiff(folder / "map.tif", draw_league_map(league_cells(map), drawing(reports, resolution)));
       const scoring::LoadedMap loaded = scoring::load_map(folder / "map.tif");
       EXPECT_EQ(loaded.symbols.size(), reports.size());
       // Drawing rounds to pixels, lettering hides some: a pixel, half a map cell at 0.025 m. Where 12 in white hides
@@ -93,12 +95,12 @@ TEST(LeagueSymbols, VictimsAtTheLeastDistanceOfTheirMergingStayApart) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     auto reports = victims(seed, 5, 1.0);
     for (int i = 0; i < 5; ++i) {
-      explore::VictimReport twin = reports[static_cast<std::size_t>(i)];
+      scoring::LeagueVictim twin = reports[static_cast<std::size_t>(i)];
       twin.id += 5;
       twin.p_map += TPoint2D(0.25 * std::cos(1.3 * i), 0.25 * std::sin(1.3 * i));
       reports.push_back(twin);
     }
-    const GeoTiff tiff = draw_league_map(map, drawing(reports, 0.025));
+    const GeoTiff tiff = draw_league_map(league_cells(map), drawing(reports, 0.025));
     EXPECT_EQ(scoring::find_victim_symbols(tiff.image, 0.025).size(), reports.size()) << "seed " << seed;
   }
 }
@@ -107,7 +109,7 @@ TEST(LeagueSymbols, SurviveTurningAndJpeg) {
   const slam::CountMap map = room();
   const auto reports = victims(3, 10, 0.6);
   for (const double resolution : {0.0125, 0.025}) {
-    const GeoTiff tiff = draw_league_map(map, drawing(reports, resolution));
+    const GeoTiff tiff = draw_league_map(league_cells(map), drawing(reports, resolution));
     const auto straight = scoring::find_victim_symbols(tiff.image, resolution);
     ASSERT_EQ(straight.size(), reports.size());
     for (const double degrees : {-8.0, 37.0, 90.0})
@@ -130,7 +132,8 @@ TEST(LeagueSymbols, SurviveTurningAndJpeg) {
 TEST(LeagueSymbols, AnyFormatOfTheMapHasTheSame) {
   const test::TempFolder folder;
   const auto reports = victims(5, 6, 0.5);
-  const GeoTiff tiff = draw_league_map(room(), drawing(reports, 0.025));
+  const slam::CountMap map = room();
+  const GeoTiff tiff = draw_league_map(league_cells(map), drawing(reports, 0.025));
   write_geotiff(folder / "map.tif", tiff);
   write_png(folder / "map.png", tiff.image);
   write_world_file(folder / "map.wld", *tiff.transform);
@@ -144,10 +147,10 @@ TEST(LeagueSymbols, AnyFormatOfTheMapHasTheSame) {
 TEST(LeagueSymbols, AGreyMapAndAMapWithoutVictimsHaveNone) {
   const test::TempFolder folder;
   const slam::CountMap map = room();
-  const GeoTiff tiff = draw_league_map(map, drawing({}, 0.025));
+  const GeoTiff tiff = draw_league_map(league_cells(map), drawing({}, 0.025));
   write_geotiff(folder / "map.tif", tiff);
   EXPECT_TRUE(scoring::load_map(folder / "map.tif").symbols.empty());
-  write_ros_map(folder / "ros", map.classify(), 0.5);
+  scoring::write_ros_map(folder / "ros", map.classify(), 0.5);
   EXPECT_TRUE(scoring::load_map(folder / "ros.yaml").symbols.empty());
   EXPECT_TRUE(scoring::load_map(folder / "ros.pgm", {0.05}).symbols.empty());
   // A grey picture with red circles is no league map, and they are no victims.

@@ -11,7 +11,7 @@ class ToldMapper : public slam::Mapper {
   void update(const robot::Inputs&) override {}
   const slam::CountMap& map() const override { return map_; }
   mrpt::math::TPose2D pose() const override { return {}; }
-  Eigen::Matrix3d covariance() const override { return Eigen::Matrix3d::Zero(); }
+  PoseCovariance covariance() const override { return {}; }
   std::uint64_t revision() const override { return moved; }
   std::optional<mrpt::math::TPose2D> pose_at(Stamp) const override { return std::nullopt; }
   const Trajectory& trajectory() const override { return now; }

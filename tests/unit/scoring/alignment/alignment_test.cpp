@@ -66,16 +66,16 @@ TEST(Alignment, JoinedMethodsProposeTogether) {
   config.by = AlignBy::Rooms | AlignBy::Features;
   const Alignment features = align(map, truth, config);
   EXPECT_TRUE(features.aligned) << features.note;
-  EXPECT_NE(features.source.find("features"), std::string::npos);
+  EXPECT_TRUE(includes(features.by, AlignBy::Features));
   EXPECT_EQ(names_of(features.contest.tried), "features+rooms");
   config.by = AlignBy::Rooms | AlignBy::Walls;
   const Alignment walls = align(map, truth, config);
   EXPECT_TRUE(walls.aligned);
   EXPECT_EQ(names_of(walls.contest.tried), "walls+rooms");
-  rooms.guesses = {{walls.T_truth_map, 1.0, "rooms"}};
+  rooms.guesses = {{walls.T_truth_map, 1.0, AlignBy::Rooms}};
   const Alignment both = align(map, truth, config);
   EXPECT_TRUE(both.aligned);
-  EXPECT_NE(both.source.find("rooms"), std::string::npos) << both.source;
+  EXPECT_TRUE(includes(both.by, AlignBy::Rooms)) << names_of(both.by);
   EXPECT_EQ(rooms.asked, 4);
 }
 
@@ -89,7 +89,7 @@ TEST(Alignment, TellsByHowMuchItWonAndOverWhat) {
   EXPECT_GT(contest.agreement, contest.margin);
   EXPECT_LE(contest.agreement, 2.0);
   EXPECT_NEAR(found.runner_up, 1.0 - contest.margin / contest.agreement, 1e-9);
-  EXPECT_EQ(contest.runner_up_source, "walls");
+  EXPECT_EQ(names_of(contest.runner_up_by), "walls");
   const TPoint2D centre(4.8, 3.6);
   const TPoint2D p_map = found.T_truth_map.inverseComposePoint(centre);
   const bool turned = std::abs(wrap_angle(found.T_truth_map.phi - contest.T_runner_up.phi)) >= 0.1;

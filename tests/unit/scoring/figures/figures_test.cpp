@@ -66,6 +66,9 @@ TEST(Figures, EveryFigureHasACaseInWhichItIsKnown) {
   all.run = RunFigures();
   all.mission = MissionFigures();
   all.machine = MachineFigures{1.0, 1.0};
+  all.devices = DeviceFigures();
+  all.pieces = PieceErrors();
+  all.relations = RelationError();
   for (const Figure& figure : figures()) {
     const Value value = figure.get(all);
     EXPECT_FALSE(std::holds_alternative<std::monostate>(value)) << figure.key;

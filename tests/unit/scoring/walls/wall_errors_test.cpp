@@ -21,7 +21,7 @@ OccupancyGrid room() {
 
 TEST(WallErrors, AreNoneForThePerfectMap) {
   const OccupancyGrid truth = room();
-  const WallErrors errors = wall_errors(WallOverlap(truth, truth, 0.5), Rigid(), 10);
+  const WallErrors errors = wall_errors(WallOverlap(truth, truth, 0.5), PlanarTransform(), 10);
   EXPECT_EQ(errors.phantom_m, 0.0);
   EXPECT_EQ(errors.missing_m, 0.0);
   EXPECT_TRUE(errors.worst.empty());
@@ -31,14 +31,14 @@ TEST(WallErrors, MeasureAPhantomAndAMissingWallAndSayWhere) {
   const OccupancyGrid truth = room();
   OccupancyGrid with_wall = truth;
   draw_wall(with_wall, {3.0, 4.4}, {5.0, 4.4}, 2);
-  const WallErrors phantom = wall_errors(WallOverlap(with_wall, truth, 0.5), Rigid(), 10);
+  const WallErrors phantom = wall_errors(WallOverlap(with_wall, truth, 0.5), PlanarTransform(), 10);
   EXPECT_NEAR(phantom.phantom_m, 2.0, 0.3);
   EXPECT_EQ(phantom.missing_m, 0.0);
   ASSERT_FALSE(phantom.worst.empty());
   EXPECT_NEAR(phantom.worst.front().p_truth.x, 4.2, 0.9);
   EXPECT_NEAR(phantom.worst.front().p_truth.y, 4.4, 0.1);
 
-  const WallErrors missing = wall_errors(WallOverlap(truth, with_wall, 0.5), Rigid(), 10);
+  const WallErrors missing = wall_errors(WallOverlap(truth, with_wall, 0.5), PlanarTransform(), 10);
   EXPECT_NEAR(missing.missing_m, 2.0, 0.3);
   EXPECT_EQ(missing.phantom_m, 0.0);
   double listed = 0.0;
@@ -53,14 +53,14 @@ TEST(WallErrors, WallsWhereTheTruthIsUnknownAreIgnoredAndSaySo) {
   OccupancyGrid map = room();
   draw_wall(map, {7.0, 4.0}, {9.0, 4.0}, 2);
   const WallOverlap walls(map, truth, 0.5);
-  const WallErrors errors = wall_errors(walls, Rigid(), 10);
+  const WallErrors errors = wall_errors(walls, PlanarTransform(), 10);
   // Three sides of the room and the wall in it, but for the mean k over tau where two of the sides go on from what is
   // known; lengths are known to 5 %, as thickness is.
   EXPECT_NEAR(errors.ignored_m, 5.0 + 10.0 + 5.0 + 2.0 - 2.0 * 0.25, 1.5);
   EXPECT_NEAR(errors.phantom_m, 0.0, 0.05);
   EXPECT_NEAR(errors.missing_m, 0.0, 0.05);
-  EXPECT_NEAR(walls.at(Rigid()).score, 1.0, 0.001);
-  EXPECT_EQ(wall_errors(WallOverlap(truth, map, 0.5), Rigid(), 10).ignored_m, 0.0);
+  EXPECT_NEAR(walls.at(PlanarTransform()).score, 1.0, 0.001);
+  EXPECT_EQ(wall_errors(WallOverlap(truth, map, 0.5), PlanarTransform(), 10).ignored_m, 0.0);
 }
 
 /// The room with nothing known beyond its walls, as a truth drawn from what can be seen.
@@ -80,8 +80,8 @@ TEST(WallErrors, ThickerWallsOfTheSameMapAreNotIgnored) {
     for (int x = 1; x < 219; ++x)
       for (const Cell next : {Cell{x - 1, y}, Cell{x + 1, y}, Cell{x, y - 1}, Cell{x, y + 1}})
         if (truth[next] == Occupancy::Occupied) thicker[{x, y}] = Occupancy::Occupied;
-  EXPECT_EQ(wall_errors(WallOverlap(truth, truth, 0.5), Rigid(), 10).ignored_m, 0.0);
-  EXPECT_LT(wall_errors(WallOverlap(thicker, truth, 0.5), Rigid(), 10).ignored_m, 0.3);
+  EXPECT_EQ(wall_errors(WallOverlap(truth, truth, 0.5), PlanarTransform(), 10).ignored_m, 0.0);
+  EXPECT_LT(wall_errors(WallOverlap(thicker, truth, 0.5), PlanarTransform(), 10).ignored_m, 0.3);
 }
 
 TEST(WallErrors, AWallInTheUnknownIsIgnoredAtItsLength) {
@@ -90,13 +90,13 @@ TEST(WallErrors, AWallInTheUnknownIsIgnoredAtItsLength) {
     for (int x = 60; x < 160; ++x) truth[{x, y}] = Occupancy::Unknown;
   OccupancyGrid map = room();
   draw_wall(map, {3.5, 5.0}, {6.5, 5.0}, 2);
-  EXPECT_NEAR(wall_errors(WallOverlap(map, truth, 0.5), Rigid(), 10).ignored_m, 3.0, 0.3);
+  EXPECT_NEAR(wall_errors(WallOverlap(map, truth, 0.5), PlanarTransform(), 10).ignored_m, 3.0, 0.3);
 }
 
 TEST(WallErrors, ListTheWorstFirstAndNoMoreThanAsked) {
   const OccupancyGrid truth = room();
   const OccupancyGrid map = with_phantoms(truth, 40, 3);
-  const WallErrors errors = wall_errors(WallOverlap(map, truth, 0.5), Rigid(), 10);
+  const WallErrors errors = wall_errors(WallOverlap(map, truth, 0.5), PlanarTransform(), 10);
   ASSERT_EQ(errors.worst.size(), 10U);
   for (std::size_t i = 1; i < errors.worst.size(); ++i)
     EXPECT_GE(errors.worst[i - 1].wrong_m(), errors.worst[i].wrong_m());

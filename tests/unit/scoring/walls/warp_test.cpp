@@ -39,12 +39,12 @@ TEST(Warp, JacobianEqualsFiniteDifferences) {
 
 TEST(Warp, InverseUndoesAMildWarp) {
   Warp warp;
-  warp.T_truth_map = Rigid(TPose2D(2.0, -1.0, 0.8));
+  warp.T_truth_map = PlanarTransform(TPose2D(2.0, -1.0, 0.8));
   warp.extent = 8.0;
   warp.dy[2] = 0.4;
   warp.dx[4] = -0.3;
   for (const TPoint2D& p : {TPoint2D(0.0, 0.0), TPoint2D(5.0, -4.0), TPoint2D(-6.0, 3.0)})
-    EXPECT_NEAR((warp.inverse(warp.forward(p)) - p).norm(), 0.0, 0.01);
+    EXPECT_NEAR((warp.inverse(warp(p)) - p).norm(), 0.0, 0.01);
 }
 
 TEST(Warp, RecoversAKnownBend) {
@@ -60,7 +60,7 @@ TEST(Warp, RecoversAKnownBend) {
       double sum = 0.0;
       int count = 0;
       for (const TPoint2D& p : wall_points(truth)) {
-        sum += (found.warp.forward(sagged(p, truth, bend)) - p).sqrNorm();
+        sum += (found.warp(sagged(p, truth, bend)) - p).sqrNorm();
         ++count;
       }
       EXPECT_LT(std::sqrt(sum / count), 0.1);
@@ -81,7 +81,7 @@ TEST(Warp, NeedsNoneOnIdenticalMapsAndNeverLowersTheScore) {
     SCOPED_TRACE("bend " + std::to_string(bend));
     const OccupancyGrid map = with_phantoms(with_gaps(bent(truth, bend), 20, 4), 10, 4);
     const WallOverlap walls(map, truth, 0.5);
-    const double rigid = walls.at(Rigid()).score;
+    const double rigid = walls.at(PlanarTransform()).score;
     const WarpedScore found = fit_warp(map, truth, walls, {});
     EXPECT_GE(found.overlap.score, rigid);
     EXPECT_GT(found.kept, 0.0);

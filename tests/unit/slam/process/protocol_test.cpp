@@ -2,6 +2,7 @@
 // of the protocol is refused with a reason, never believed and never waited for.
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -165,7 +166,7 @@ TEST(MapperProtocol, AnswersReadBackToTheSameBits) {
     Eigen::Matrix3d root;
     for (int i = 0; i < 9; ++i) root(i / 3, i % 3) = value();
     const Eigen::Matrix3d square = root * root.transpose();
-    told.covariance = 0.5 * (square + square.transpose());
+    told.covariance = PoseCovariance(Eigen::Matrix3d(0.5 * (square + square.transpose())));
     for (std::int64_t i = 0; i < 5; ++i) told.at.push_back({{i * 100}, {value(), value(), value()}});
     told.corrected = told.at;
     told.mapped = seed;

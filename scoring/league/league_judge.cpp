@@ -1,0 +1,147 @@
+#include "scoring/league/league_judge.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+#include <utility>
+
+#include "base/error.h"
+#include "base/text/number_text.h"
+#include "base/text/text_file.h"
+#include "base/text/words.h"
+#include "scoring/maps/normalise.h"
+#include "scoring/pictures/evaluation_page.h"
+#include "scoring/pictures/picture.h"
+
+namespace rubble::scoring {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kOverlay = "-overlay.png";
+constexpr const char* kErrorMap = "-error.png";
+constexpr const char* kPage = ".html";
+
+/// A file name of its own for each team, whatever the team calls itself.
+std::string safe_name(const std::string& team, std::size_t index) {
+  std::string name;
+  for (const char c : team)
+    name += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.' ? c : '_';
+  char number[16];
+  std::snprintf(number, sizeof number, "%03zu-", index + 1);
+  return number + name;
+}
+
+/// Pages and pictures of teams from an earlier call: beside its league.csv, named by safe_name().
+void remove_old_pages(const std::string& folder) {
+  if (!fs::exists(folder + "/league.csv")) return;
+  std::vector<fs::path> old;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const bool numbered = name.size() > 4 && name[3] == '-' && std::all_of(name.begin(), name.begin() + 3, [](char c) {
+                            return std::isdigit(static_cast<unsigned char>(c)) != 0;
+                          });
+    if (numbered && (ends_with(name, kPage) || ends_with(name, kOverlay) || ends_with(name, kErrorMap)))
+      old.push_back(entry.path());
+  }
+  for (const fs::path& path : old) fs::remove(path);
+}
+
+LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const LeagueTruth& truth,
+                    const LeagueConfig& config, const std::string& name) {
+  LeaguePictures pictures;
+  if (entry.score.aligned || entry.score.by != AlignBy::Auto) {
+    pictures.overlay = name + kOverlay;
+    write_overlay(config.out + "/" + pictures.overlay, map, truth.grid, entry.score.T_truth_map,
+                  entry.score.aligned ? "" : "NOT TRUSTED: " + entry.score.note);
+  }
+  if (entry.score.aligned) {
+    pictures.error = name + kErrorMap;
+    write_error_map(config.out + "/" + pictures.error, map, truth.grid, entry.score.T_truth_map, config.score.tau);
+  }
+  pictures.tool = name + kPage;
+  write_text_file(config.out + "/" + pictures.tool,
+                  evaluation_page(map, truth.grid,
+                                  {entry.file, truth.path, "rubble score " + entry.file + " " + truth.path,
+                                   entry.score.T_truth_map, 1.0, config.score}));
+  return pictures;
+}
+
+void judge_map(const LeagueFiles& files, const LeagueTruth& truth, const LeagueConfig& config, const std::string& name,
+               LeagueEntry& entry, LeaguePictures& pictures) {
+  const LoadedMap loaded = load_map(files.map, {config.map_resolution, false});
+  entry.reported = reported_victims(loaded, files.pois);
+  if (!entry.reported.note.empty() && config.tell) config.tell(entry.reported.note);
+  entry.score = score_map(loaded.grid, truth.grid, config.score);
+  if (same_content(files.map, truth.path))
+    entry.score.note += std::string(entry.score.note.empty() ? "" : "; ") + "a copy of the truth, byte for byte";
+  entry.points = victim_points(loaded.grid, truth.grid, entry.score, entry.reported, truth.victims);
+  if (!config.out.empty()) pictures = draw(entry, loaded.grid, truth, config, name);
+}
+
+}  // namespace
+
+bool League::with_points() const {
+  return std::any_of(entries.begin(), entries.end(), [](const LeagueEntry& e) { return e.points || e.judge > 0.0; });
+}
+
+LeagueTruth load_league_truth(const std::string& path, const std::optional<double>& resolution,
+                              const std::string& victims) {
+  LoadedMap loaded = load_map(path, {resolution});
+  LeagueTruth truth;
+  truth.path = path;
+  truth.victims = true_victims(path, loaded.origin, victims);
+  truth.grid = std::move(loaded.grid);
+  return truth;
+}
+
+std::map<std::string, double> judges_points(const std::string& file, const std::string& folder,
+                                            const LeagueTruth& truth, const std::vector<LeagueFiles>& teams) {
+  if (file.empty()) return {};
+  const std::map<std::string, double> judge = read_judge(file);
+  const double most = kJudgesMostPerVictim * static_cast<double>(truth.victims.victims.size());
+  for (const auto& [team, points] : judge) {
+    const auto is_team = [name = &team](const LeagueFiles& files) { return files.team == *name; };
+    if (std::none_of(teams.begin(), teams.end(), is_team))
+      throw InputError(file + ": names team '" + team + "', but " + folder + " holds no map of that name");
+    if (!truth.victims.path.empty() && points > most)
+      throw InputError(file + ": gives '" + team + "' " + number_text(points) + " points, but " +
+                       std::to_string(truth.victims.victims.size()) + " victims are worth " + number_text(most) +
+                       " at the most");
+  }
+  return judge;
+}
+
+League judge_league(const LeagueFolder& folder, const LeagueTruth& truth, const std::map<std::string, double>& judge,
+                    const LeagueConfig& config) {
+  if (!config.out.empty()) remove_old_pages(config.out);
+  League league;
+  std::map<std::pair<std::string, std::string>, LeaguePictures> pictures;  // of team and file
+  for (const LeagueFiles& files : folder.teams) {
+    LeagueEntry entry;
+    entry.team = files.team;
+    entry.file = files.map;
+    if (const auto points = judge.find(files.team); points != judge.end()) entry.judge = points->second;
+    entry.error = files.error;
+    LeaguePictures& drawn = pictures[{entry.team, entry.file}];
+    if (entry.error.empty()) try {
+        judge_map(files, truth, config, safe_name(entry.team, league.entries.size()), entry, drawn);
+      } catch (const InputError& error) {
+        entry.error = error.what();
+      }
+    league.entries.push_back(std::move(entry));
+  }
+  rank_league(league.entries);
+  for (const LeagueEntry& entry : league.entries) league.pictures.push_back(pictures.at({entry.team, entry.file}));
+  for (const std::string& path : folder.skipped) league.left_out += (league.left_out.empty() ? "" : ", ") + path;
+  return league;
+}
+
+void write_league(const League& league, const LeagueTruth& truth, const std::string& out) {
+  write_text_file(out + "/league.csv", league_csv(league.entries));
+  write_text_file(out + "/league.html",
+                  league_page(truth.path, league.with_points(), league.entries, league.pictures, league.left_out));
+}
+
+}  // namespace rubble::scoring

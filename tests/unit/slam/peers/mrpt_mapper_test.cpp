@@ -1,0 +1,89 @@
+// What MRPT's builders are given and what is made of their answers, shown by the one that draws no random numbers.
+#include <gtest/gtest.h>
+
+#include "slam/peers/mrpt_icp_mapper.h"
+#include "tests/support/slam_outcome.h"
+#include "tests/support/slam_world.h"
+
+namespace rubble::slam {
+namespace {
+
+using mrpt::math::TPoint2D;
+using robot::Inputs;
+
+const std::vector<TPoint2D> kTour{{0.0, 0.0}, {3.0, 0.2}, {3.0, 1.0}, {0.5, 0.5}, {0.0, 0.0}};
+
+std::vector<Inputs> recorded(const slam_test::Drive& drive, std::uint64_t seed) {
+  return slam_test::record(slam_test::furnished_room(), drive, robot::RobotModel(), 1.0, 0.01, seed);
+}
+
+TEST(MrptMapper, KnowsNothingBeforeTheFirstScan) {
+  const MrptIcpMapper mapper(robot::RobotModel(), {}, 1);
+  EXPECT_EQ(mapper.pose().norm(), 0.0);
+  EXPECT_TRUE(mapper.trajectory().empty());
+  EXPECT_TRUE(mapper.last_hits().empty());
+  EXPECT_FALSE(mapper.pose_at(Stamp{0}));
+  for (const Occupancy cell : mapper.map().classify().cells()) EXPECT_EQ(cell, Occupancy::Unknown);
+}
+
+TEST(MrptMapper, MapsTheRoomBetterThanTheOdometry) {
+  const slam_test::Drive drive = slam_test::drive_through(kTour, 0.0);
+  const std::vector<Inputs> ticks = recorded(drive, 1);
+  MrptIcpMapper mapper(robot::RobotModel(), {}, 1);
+  const slam_test::Outcome outcome = slam_test::play(mapper, ticks, slam_test::furnished_room(), drive.truth);
+  Trajectory odometry;
+  for (const Inputs& tick : ticks)
+    if (!tick.odometry.empty()) odometry.push_back({tick.odometry.front().stamp, tick.odometry.front().pose});
+  EXPECT_LT(outcome.rmse, 0.5 * slam_test::first_pose_rmse(odometry, drive.truth));
+  EXPECT_LT(outcome.rmse, 0.1);
+  EXPECT_LT(outcome.outside, 0.05);
+  EXPECT_GT(outcome.occupied, 300);
+}
+
+TEST(MrptMapper, EveryScanHasItsPlaceOnTheTrajectory) {
+  const std::vector<Inputs> ticks = recorded(slam_test::drive_through(kTour, 0.0), 2);
+  MrptIcpMapper mapper(robot::RobotModel(), {}, 1);
+  std::vector<Stamp> stamps;
+  for (const Inputs& tick : ticks) {
+    mapper.update(tick);
+    for (const robot::LaserScan& scan : tick.scans) stamps.push_back(scan.middle());
+  }
+  ASSERT_FALSE(stamps.empty());
+  EXPECT_EQ(mapper.counts().scans, stamps.size());
+  EXPECT_EQ(mapper.counts().out_of_order, 0u);
+  ASSERT_GE(stamps.size(), mapper.trajectory().size());
+  ASSERT_LE(stamps.size(), mapper.trajectory().size() + 2);  // the last may wait for odometry
+  for (std::size_t i = 0; i < mapper.trajectory().size(); ++i) {
+    EXPECT_EQ(mapper.trajectory()[i].stamp, stamps[i]);
+    EXPECT_EQ(mapper.live_trajectory()[i].stamp, stamps[i]);
+    EXPECT_TRUE(mapper.pose_at(stamps[i]));
+  }
+}
+
+TEST(MrptMapper, DoubledAndEmptyScansAreCountedAndChangeNothing) {
+  std::vector<Inputs> ticks = recorded(slam_test::drive_through(kTour, 0.0), 3);
+  ticks.resize(ticks.size() / 2);
+  MrptIcpMapper plain(robot::RobotModel(), {}, 1), doubled(robot::RobotModel(), {}, 1);
+  std::uint64_t added = 0;
+  for (const Inputs& tick : ticks) {
+    plain.update(tick);
+    Inputs twice = tick;
+    for (const robot::LaserScan& scan : tick.scans) {
+      twice.scans.push_back(scan);
+      robot::LaserScan empty = scan;
+      empty.ranges.clear();
+      twice.scans.push_back(empty);
+      added += 2;
+    }
+    doubled.update(twice);
+  }
+  ASSERT_GT(added, 0u);
+  EXPECT_EQ(doubled.counts().out_of_order, added);
+  ASSERT_EQ(doubled.trajectory().size(), plain.trajectory().size());
+  for (std::size_t i = 0; i < plain.trajectory().size(); ++i)
+    EXPECT_EQ(doubled.trajectory()[i].pose, plain.trajectory()[i].pose) << i;
+  EXPECT_EQ(doubled.map().classify().cells(), plain.map().classify().cells());
+}
+
+}  // namespace
+}  // namespace rubble::slam
