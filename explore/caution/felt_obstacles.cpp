@@ -17,6 +17,23 @@ constexpr double kBeforeBody = 0.10;  ///< [m]
 constexpr double kHalfBar = 0.2;      ///< [m]
 constexpr double kNarrowBar = 0.0;    ///< the same of a pardoned thing [m]
 constexpr double kBarStep = 0.1;      ///< [m]
+constexpr double kBeyondEdge = 0.10;  ///< what stopped the body lies less than this ahead of it [m]
+constexpr double kInset = 0.02;       ///< a pallet counts but for so much of its rim [m]
+constexpr double kOnPallet = 0.20;    ///< so far inside its edges the robot's middle stands on a pallet [m]
+
+void add_pallet(const TPose2D& T_map_pallet, bool whole, double size, std::vector<TPoint2D>& points) {
+  const double half = 0.5 * size;
+  if (!whole) {
+    for (const TPoint2D& side : {TPoint2D{half, 0.0}, TPoint2D{-half, 0.0}, TPoint2D{0.0, half}, TPoint2D{0.0, -half}})
+      points.push_back(T_map_pallet.composePoint(side));
+    return;
+  }
+  const int steps = static_cast<int>(std::lround((size - 2.0 * kInset) / kBarStep));
+  const double from = -half + kInset, step = (size - 2.0 * kInset) / std::max(1, steps);
+  for (int i = 0; i <= steps; ++i)
+    for (int k = 0; k <= steps; ++k)
+      points.push_back(T_map_pallet.composePoint(TPoint2D{from + i * step, from + k * step}));
+}
 
 }  // namespace
 
@@ -24,23 +41,63 @@ TPoint2D FeltObstacles::Thing::at(double aside) const {
   return anchor.T_map_base.composePoint(TPoint2D{side * reach, aside});
 }
 
-void FeltObstacles::feel(const Anchor& anchor, bool behind, const robot::RobotModel& model) {
-  Thing thing{anchor, behind ? -1.0 : 1.0, 0.5 * model.length + kBeforeBody, kHalfBar, 1, Stamp::never()};
+bool FeltObstacles::holds(const Thing& thing, const TPoint2D& p_map, double margin) const {
+  const TPoint2D p = thing.pallet().inverseComposePoint(p_map);
+  const double half = 0.5 * config_.pallet - margin;
+  return std::abs(p.x) <= half && std::abs(p.y) <= half;
+}
+
+bool FeltObstacles::feel(const Anchor& anchor, bool behind, const robot::RobotModel& model,
+                         const std::optional<PalletGrid>& grid, const std::vector<TPoint2D>& trail) {
+  Thing thing;
+  thing.anchor = anchor;
+  thing.side = behind ? -1.0 : 1.0;
+  thing.reach = 0.5 * model.length + kBeforeBody;
+  thing.half_bar = kHalfBar;
+  if (grid && feel_pallet(thing, *grid, model, trail)) return true;
   for (const Thing& known : things_)
-    if (distance(known.at(0.0), thing.at(0.0)) < config_.same_thing)
+    if (!known.is_pallet && distance(known.at(0.0), thing.at(0.0)) < config_.same_thing)
       thing.times = std::max(thing.times, known.times + 1);
   const bool for_good = thing.times >= config_.certain;
   thing.until = for_good ? kForGood : anchor.stamp + config_.memory * std::ldexp(1.0, thing.times - 1);
   things_.push_back(thing);
+  return false;
+}
+
+/// The pallet whose edge the body met; false where it met something within a pallet, or one that it has stood on.
+bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
+                                const std::vector<TPoint2D>& trail) {
+  const TPose2D& T_map_base = touch.anchor.T_map_base;
+  const Cell own = grid.pallet({T_map_base.x, T_map_base.y});
+  const double reach = touch.side * (0.5 * model.length + kBeyondEdge);
+  const Cell there = grid.pallet(T_map_base.composePoint(TPoint2D{reach, 0.0}));
+  if (there == own) return false;
+  const TPoint2D middle = grid.to_map({there.x + 0.5, there.y + 0.5});
+  Thing thing = touch;
+  thing.is_pallet = thing.whole = true;
+  thing.until = kForGood;
+  thing.T_base_pallet = TPose2D{middle.x, middle.y, grid.angle} - T_map_base;
+  if (std::any_of(trail.begin(), trail.end(), [&](const TPoint2D& p) { return holds(thing, p, kOnPallet); }))
+    return false;
+  for (Thing& known : things_) {
+    if (!known.is_pallet || distance({known.pallet().x, known.pallet().y}, middle) > 0.5 * config_.pallet) continue;
+    thing.certain = known.certain || !known.whole;
+    known = thing;
+    return true;
+  }
+  things_.push_back(thing);
+  return true;
 }
 
 void FeltObstacles::passed(const TPose2D& T_map_base, const robot::RobotModel& model) {
   const double radius = 0.25 * model.width;
-  things_.erase(std::remove_if(things_.begin(), things_.end(),
-                               [&](const Thing& thing) {
-                                 return distance(thing.at(0.0), {T_map_base.x, T_map_base.y}) < radius;
-                               }),
-                things_.end());
+  const TPoint2D here{T_map_base.x, T_map_base.y};
+  for (Thing& thing : things_)
+    if (thing.is_pallet && thing.whole && holds(thing, here, kOnPallet)) thing.whole = thing.certain = false;
+  things_.erase(
+      std::remove_if(things_.begin(), things_.end(),
+                     [&](const Thing& thing) { return !thing.is_pallet && distance(thing.at(0.0), here) < radius; }),
+      things_.end());
 }
 
 void FeltObstacles::follow(const slam::Mapper& mapper) {
@@ -51,6 +108,10 @@ std::vector<TPoint2D> FeltObstacles::points(Stamp now) const {
   std::vector<TPoint2D> points;
   for (const Thing& thing : things_) {
     if (now >= thing.until) continue;
+    if (thing.is_pallet) {
+      add_pallet(thing.pallet(), thing.whole, config_.pallet, points);
+      continue;
+    }
     for (double aside = -thing.half_bar; aside < thing.half_bar + 0.5 * kBarStep; aside += kBarStep)
       points.push_back(thing.at(aside));
   }
@@ -71,13 +132,16 @@ bool FeltObstacles::forget(Stamp now) {
 bool FeltObstacles::pardon(Stamp now) {
   bool any = false;
   for (Thing& thing : things_) {
-    if (now >= thing.until || thing.half_bar <= kNarrowBar) continue;
+    if (now >= thing.until) continue;
+    if (thing.is_pallet ? !thing.whole || thing.certain : thing.half_bar <= kNarrowBar) continue;
     thing.half_bar = kNarrowBar;
+    thing.whole = false;
     any = true;
   }
   if (any) return true;
   for (Thing& thing : things_) {
-    if (thing.until <= now || thing.times >= config_.certain) continue;
+    const bool certain = thing.is_pallet ? thing.certain : thing.times >= config_.certain;
+    if (thing.until <= now || certain) continue;
     thing.until = now;
     any = true;
   }

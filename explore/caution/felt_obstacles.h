@@ -3,31 +3,39 @@
 #include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
+#include <optional>
 #include <vector>
 
 #include "base/stamp.h"
 #include "explore/anchor.h"
+#include "explore/caution/pallet_grid.h"
 #include "robot/model.h"
 #include "slam/mapper.h"
 
 namespace rubble::explore {
 
 struct FeltConfig {
-  double memory = 120.0;    ///< what was felt once is an obstacle for this long; doubles with each time more [s]
+  double memory = 120.0;    ///< a bar that was felt once is an obstacle for this long; doubles with each time more [s]
+  double pallet = 1.2;      ///< size of the elements that the arena is built of [m]; 0: of none
   double same_thing = 0.5;  ///< felt this close to an earlier one: the same thing [m]
   int certain = 3;          ///< felt so often, it stands there for good
 };
 
 /// What the scanner cannot see but the robot felt: steps, blocks and edges that stopped it, ground too steep for it.
 /// Each is a short bar across the way, kept relative to the pose at which it was felt, with a time until which it
-/// counts; what was felt again counts longer.
+/// counts; what was felt again counts longer. Where the arena's pallets are known and the edge of one was felt that the
+/// robot has not stood on, the whole pallet counts, without an end: a step field is met at most twice, not from all
+/// sides.
 class FeltObstacles {
  public:
   explicit FeltObstacles(const FeltConfig& config = {}) : config_(config) {}
 
-  /// Something right before the body stopped it, or behind it when it drove backwards.
-  void feel(const Anchor& anchor, bool behind, const robot::RobotModel& model);
-  /// The robot stands here in good order: what was felt below the middle of its body is not there, or can be passed.
+  /// Something right before the body stopped it, or behind it when it drove backwards. `grid`: the arena's pallets;
+  /// `trail`: where the robot's middle has been. Says whether it takes a whole pallet for an obstacle.
+  bool feel(const Anchor& anchor, bool behind, const robot::RobotModel& model,
+            const std::optional<PalletGrid>& grid = std::nullopt, const std::vector<mrpt::math::TPoint2D>& trail = {});
+  /// The robot stands here in good order: what was felt below the middle of its body is not there, or can be passed; a
+  /// pallet it stands on can be driven on.
   void passed(const mrpt::math::TPose2D& T_map_base, const robot::RobotModel& model);
   /// The mapper corrected its past.
   void follow(const slam::Mapper& mapper);
@@ -37,7 +45,9 @@ class FeltObstacles {
   /// How many things count now.
   int count(Stamp now) const;
   /// Counts less as an obstacle, for nothing else can be reached: first every bar shrinks to its middle, which leaves a
-  /// lane beside it in a corridor; the next time things that are not certain are forgotten until they are felt again.
+  /// lane beside it in a corridor, and every pallet to the middles of its sides, where crossing ramps have their high
+  /// corners; felt again it is taken for a step field, for good. The next time things that are not certain are
+  /// forgotten until they are felt again.
   /// Says whether anything changed.
   bool pardon(Stamp now);
   /// Forgets everything until it is felt again; says whether anything counted.
@@ -51,9 +61,18 @@ class FeltObstacles {
     double half_bar = 0.0;  ///< [m]
     int times = 1;
     Stamp until = Stamp::never();
+    bool is_pallet = false;
+    bool whole = false;                 ///< all of the pallet counts; else the middles of its sides
+    bool certain = false;               ///< it was felt again after a pardon
+    mrpt::math::TPose2D T_base_pallet;  ///< of the pallet's middle
 
     mrpt::math::TPoint2D at(double aside) const;  ///< on the bar [m, map frame]
+    mrpt::math::TPose2D pallet() const { return anchor.T_map_base + T_base_pallet; }
   };
+
+  bool feel_pallet(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
+                   const std::vector<mrpt::math::TPoint2D>& trail);
+  bool holds(const Thing& thing, const mrpt::math::TPoint2D& p_map, double margin) const;
 
   FeltConfig config_;
   std::vector<Thing> things_;

@@ -7,6 +7,10 @@ void bind(Binder& b, PaperExplorerConfig& c) {
   b.number("alpha", transform.alpha, 0.0, 1000.0);
   b.number("d_min_m", transform.d_min, 0.0, 2.0);
   b.number("d_opt_m", transform.d_opt, 0.0, 5.0);
+  std::string discomfort = transform.discomfort == Discomfort::PerCell ? "per_cell" : "per_metre";
+  b.choice("discomfort", discomfort, {"per_metre", "per_cell"});
+  transform.discomfort = discomfort == "per_cell" ? Discomfort::PerCell : Discomfort::PerMetre;
+  b.boolean("bar_targets", c.bar_targets);
   b.number("occupied_threshold", c.occupied_threshold, 0.01, 1.0);
   b.integer("min_frontier_cells", c.planner.min_frontier_cells, 1, 10000);
   b.number("replan_period_s", c.replan_period, 0.02, 60.0);
@@ -18,6 +22,7 @@ void bind(Binder& b, PaperExplorerConfig& c) {
   b.number("d_min_floor_m", c.planner.d_min_floor, 0.0, 2.0);
   b.number("switch_cost_m", c.planner.switch_cost, 0.0, 100.0);
   b.number("felt_memory_s", c.felt.memory, 0.0, 1e6);
+  b.number("pallet_m", c.felt.pallet, 0.0, 10.0);
   b.degrees("too_steep_deg", c.tilt.too_steep, 1.0, 90.0);
   b.section("victims", [&](Binder& v) {
     v.integer("min_cues", c.victims.min_cues, 1, 1000);

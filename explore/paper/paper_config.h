@@ -26,6 +26,7 @@ struct PaperExplorerConfig {
   double replan_period = 0.5;             ///< [s]
   double scan_timeout = 0.3;              ///< without a scan for this long the robot stops [s]
   double first_turn = deg_to_rad(130.0);  ///< turn at the start that shows the scanner what is behind [rad]
+  bool bar_targets = true;                ///< what could not be had is left alone; false: as in the paper, for ever
   bool return_home = true;                ///< drive back to the start in the end, in time
 };
 

@@ -27,15 +27,17 @@ constexpr double kArrivedReplan = 0.3;           ///< standing at the end of the
 constexpr double kCueAge = 1.2;                  ///< an unconfirmed cue younger than this is worth waiting for [s]
 constexpr double kDetour = 3.0;                  ///< way over distance where no way is known
 constexpr double kUnsure = 0.40;                 ///< a pose that errs by so much places no victim [m]
-constexpr double kWorthARound = 0.25;            ///< newly known floor that makes one more round worth while [m^2]
+constexpr double kWorthARound = 1.0;             ///< newly known floor that makes one more round worth while [m^2]
 constexpr int kBarrenRounds = 2;                 ///< rounds in a row that gain nothing end the mission
 constexpr double kDetourCost = 2.0;              ///< a frontier may cost so much more than the next viewpoint [m]
 constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
 constexpr double kSameTarget = 0.5;                     ///< [m]
+constexpr double kSmallShift = 0.10;                    ///< of the robot's place by a correction of the map [m]
 constexpr double kTurningRoom = 0.06;                   ///< [m]
 constexpr double kLongestTick = 0.2;                    ///< commands of longer ticks are taken to have ended [s]
 constexpr double kHeld = 0.5;                           ///< a tick so long: the robot was held, a device was away [s]
 constexpr double kPatience = 2.0;                       ///< then its motors may still be off for a while [s]
+constexpr double kCornerRoom = 0.08;                    ///< beside corners that turn [m]
 constexpr double kLittleRoom = 0.01;                    ///< [m]
 constexpr double kPaper = 0.5;                          ///< what stands alone and is not wider may be paper [m]
 constexpr int kHomeTries = 6;                           ///< times that all that was felt is forgotten on the way home
@@ -48,13 +50,16 @@ std::string text(const TPoint2D& p) {
   return line.data();
 }
 
-std::string target_text(ExplorerState state, const Plan& plan) {
+std::string target_text(ExplorerState state, const Plan& plan, double usual_d_min) {
   const char* what = state == ExplorerState::GoingHome   ? "home"
                      : state == ExplorerState::Searching ? "a place to search from"
                                                          : "the frontier";
-  std::array<char, 40> cost{};
-  std::snprintf(cost.data(), cost.size(), ", cost %.1f m", plan.cost);
-  return std::string("drives to ") + what + " at " + text(plan.target) + cost.data();
+  std::array<char, 60> more{};
+  std::snprintf(more.data(), more.size(), ", cost %.1f m", plan.cost);
+  const std::string line = std::string("drives to ") + what + " at " + text(plan.target) + more.data();
+  if (plan.d_min >= usual_d_min) return line;
+  std::snprintf(more.data(), more.size(), ", as near as %.2f m to walls", plan.d_min);
+  return line + more.data();
 }
 
 std::size_t known_cells(const Traversable& floor) {
@@ -91,6 +96,7 @@ PaperExplorer::PaperExplorer(const robot::RobotModel& model, const PaperExplorer
                     model.swing_radius() + kLittleRoom),
       path_watch_(model),
       looking_(model, config.follower.turn_speed),
+      pivot_(model.swing_radius() + kCornerRoom),
       tilt_(config.tilt),
       felt_(config.felt),
       escape_(config.follower.turn_speed),
@@ -144,19 +150,23 @@ void PaperExplorer::hear(const slam::Mapper& mapper, const robot::VictimCue& cue
   if (search_.reports().size() > before) note("victim " + std::to_string(search_.reports().back().id) + " confirmed");
 }
 
-/// The mapper moved poses of the past: all that is kept moves with them, and the way is planned anew.
+/// The mapper moved poses of the past: all that is kept moves with them, and the way is planned anew. The target stays
+/// when the robot's own place hardly moved.
 void PaperExplorer::follow_map(const slam::Mapper& mapper) {
   revision_ = mapper.revision();
   home_.follow(mapper);
+  const TPoint2D last = trail_.empty() ? TPoint2D() : trail_.back();
   for (std::size_t i = 0; i < trail_.size(); ++i) {
     trail_anchors_[i].follow(mapper);
     trail_[i] = position(trail_anchors_[i].T_map_base);
   }
   felt_.follow(mapper);
   search_.follow(mapper);
-  last_floor_ = floor_now(mapper, {});
-  floor_search_.follow(last_floor_, mapper);
-  target_.reset();
+  if (floor_search_.follow(mapper)) {
+    last_floor_ = floor_now(mapper, {});
+    floor_search_.look_again(last_floor_);
+  }
+  if (trail_.empty() || distance(trail_.back(), last) > kSmallShift) target_.reset();
   plan_forced_ = true;
 }
 
@@ -194,6 +204,7 @@ Drive PaperExplorer::start(const slam::Mapper& mapper) {
 Drive PaperExplorer::drive(const slam::Mapper& mapper) {
   mark_searched();
   if (holding_still()) return {};
+  if (looking_.active() || state_ == ExplorerState::Searching) watch_.turns_on_purpose();
   const bool patient = now_ < patient_until_;
   if (tilt_.too_steep() || watch_.stuck(pose_, patient ? Drive{} : commanded_, stalled_, dt_)) {
     got_stuck(tilt_.too_steep() ? "it leans too much here" : stalled_ ? "the motors stall" : "it does not move");
@@ -214,10 +225,10 @@ Drive PaperExplorer::drive(const slam::Mapper& mapper) {
   if (looking_.active()) {
     const std::optional<Drive> turn = looking_.turn(turned_, now_);
     plan_forced_ = plan_forced_ || !turn;
-    return turn.value_or(Drive{});
+    return pivot_.keep(turn.value_or(Drive{}), pose_, last_floor_);
   }
   if (path_watch_.waits(now_)) return {};
-  return path_watch_.limited(follower_.drive(pose_), now_);
+  return path_watch_.limited(pivot_.keep(follower_.drive(pose_), pose_, last_floor_), now_);
 }
 
 Traversable PaperExplorer::floor_now(const slam::Mapper& mapper, const std::vector<TPoint2D>& hits) const {
@@ -235,7 +246,8 @@ Plan PaperExplorer::plan_on(const Traversable& floor) {
   if (state_ == ExplorerState::GoingHome) return plan_home(floor);
   const auto to_frontier = [&](const std::optional<TPoint2D>& previous) {
     return planner_.to_frontier(
-        floor, pose_, [this](const TPoint2D& p) { return blacklist_.barred(p, now_); }, previous);
+        floor, pose_, [this](const TPoint2D& p) { return config_.bar_targets && blacklist_.barred(p, now_); },
+        previous);
   };
   if (state_ == ExplorerState::Driving) return to_frontier(target_);
   Plan frontier = to_frontier(std::nullopt);
@@ -300,7 +312,7 @@ void PaperExplorer::accept(Plan plan) {
   if (looking_.active() && !looking_.to_the_end()) looking_.end();
   if (!target_ || distance(*target_, plan.target) > kSameTarget) {
     target_cost_ = plan.cost;
-    note(target_text(state_, plan));
+    note(target_text(state_, plan, config_.planner.transform.d_min));
   }
   target_ = plan.target;
   path_d_min_ = plan.d_min;
@@ -390,7 +402,8 @@ bool PaperExplorer::another_round() {
   note("round " + std::to_string(++rounds_) + ": what could not be reached or seen is tried again");
   state_ = ExplorerState::Driving;
   frontiers_done_ = false;
-  failed_plans_ = looks_in_vain_ = pardons_ = 0;
+  failed_plans_ = looks_in_vain_ = 0;
+  pardons_ = std::min(pardons_, kMaxPardons - 1);
   looked_from_.reset();
   plan_forced_ = true;
   return true;

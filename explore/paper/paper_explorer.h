@@ -11,6 +11,7 @@
 #include "explore/caution/escape.h"
 #include "explore/caution/felt_obstacles.h"
 #include "explore/caution/motion_watch.h"
+#include "explore/caution/pivot.h"
 #include "explore/caution/tilt_watch.h"
 #include "explore/explorer.h"
 #include "explore/paper/home_way.h"
@@ -95,6 +96,7 @@ class PaperExplorer : public Explorer {
   MotionWatch watch_;
   PathWatch path_watch_;
   LookAround looking_;
+  Pivot pivot_;
   TiltWatch tilt_;
   FeltObstacles felt_;
   Escape escape_;

@@ -10,11 +10,11 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using robot::Drive;
 
-constexpr double kBarTime = 60.0;       ///< for the first failure; doubles with each one more [s]
-constexpr double kSamePlace = 0.5;      ///< [m]
-constexpr double kTurningSpeed = 0.05;  ///< slower is a turn on the spot [m/s]
-constexpr double kLean = 0.03;          ///< getting free, the body may come so much closer to walls [m]
-constexpr int kMaxFailedEscapes = 6;    ///< in a row
+constexpr double kBarTime = 60.0;      ///< for the first failure; doubles with each one more [s]
+constexpr double kSamePlace = 0.5;     ///< [m]
+constexpr double kTurningRate = 0.25;  ///< [rad/s]
+constexpr double kLean = 0.03;         ///< getting free, the body may come so much closer to walls [m]
+constexpr int kMaxFailedEscapes = 6;   ///< in a row
 
 TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
 
@@ -27,6 +27,7 @@ void PaperExplorer::check_path(const slam::Mapper& mapper) {
 
 /// Something holds the robot that the scanner cannot see: it is remembered, and the robot gets free of it.
 void PaperExplorer::got_stuck(const std::string& how) {
+  const bool rocking = watch_.rocking();
   watch_.reset();
   tilt_.reset();
   looking_.end();
@@ -37,11 +38,18 @@ void PaperExplorer::got_stuck(const std::string& how) {
   stuck_place_ = here;
   if (stuck_there_ > 1 && target_ && state_ != ExplorerState::GoingHome) bar_target(*target_);
 
-  const Escape::Met met = std::abs(commanded_.v) < kTurningSpeed ? Escape::Met::Turning
-                          : commanded_.v > 0.0                   ? Escape::Met::Forwards
-                                                                 : Escape::Met::Backwards;
-  if (met != Escape::Met::Turning) felt_.feel({now_, pose_}, met == Escape::Met::Backwards, model_);
-  note(how + ": backs off and plans around it");
+  const bool turning = !rocking && std::abs(commanded_.v) <= Pivot::kMostSpeed && std::abs(commanded_.w) > kTurningRate;
+  const Escape::Met met = rocking                          ? Escape::Met::Forwards
+                          : turning || commanded_.v == 0.0 ? Escape::Met::Turning
+                          : commanded_.v > 0.0             ? Escape::Met::Forwards
+                                                           : Escape::Met::Backwards;
+  bool pallet = false;
+  if (met != Escape::Met::Turning) {
+    const auto grid =
+        config_.felt.pallet > 0.0 ? find_pallets(last_floor_.cells, config_.felt.pallet, here) : std::nullopt;
+    pallet = felt_.feel({now_, pose_}, met == Escape::Met::Backwards, model_, grid, trail_);
+  }
+  note(how + (pallet ? ": backs off and keeps clear of the pallet ahead" : ": backs off and plans around it"));
   escape_.begin(met, pose_, now_);
   after_escape_ = state_;
   state_ = ExplorerState::BackingUp;

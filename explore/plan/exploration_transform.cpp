@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <queue>
+#include <utility>
 
 namespace rubble::explore {
 namespace {
@@ -110,6 +113,8 @@ void ExplorationTransform::expand(const std::vector<Start>& starts, std::uint32_
 void ExplorationTransform::run(const Traversable& floor, const std::vector<Source>& sources,
                                const TransformConfig& config, std::optional<Cell> until) {
   prepare(floor, config);
+  per_cell_.clear();
+  if (config.discomfort == Discomfort::PerCell) return run_per_cell(floor, sources, config);
   std::vector<Start> starts;
   starts.reserve(sources.size());
   for (const Source& s : sources) {
@@ -121,18 +126,65 @@ void ExplorationTransform::run(const Traversable& floor, const std::vector<Sourc
   expand(starts, until && frame_.inside(*until) ? static_cast<std::uint32_t>(index(*until)) : kNone);
 }
 
+/// cost(c) = alpha c_danger(c) + min over the neighbours n of (length of the step + cost(n)), eq. (3) unrolled: the sum
+/// runs over all cells of the way.
+void ExplorationTransform::run_per_cell(const Traversable& floor, const std::vector<Source>& sources,
+                                        const TransformConfig& config) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  per_cell_.assign(frame_.size(), kInfinite);
+  towards_.resize(frame_.size());
+  const auto own = [&](std::size_t i) { return config.alpha * danger(floor.clearance.data()[i], config); };
+  using Entry = std::pair<double, std::uint32_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+  const auto offer = [&](std::uint32_t cell, double cost, std::uint32_t towards) {
+    if (cost >= per_cell_[cell]) return;
+    per_cell_[cell] = cost;
+    towards_[cell] = towards;
+    queue.push({cost, cell});
+  };
+  for (const Source& s : sources) {
+    if (!passable(s.cell)) continue;
+    const auto cell = static_cast<std::uint32_t>(index(s.cell));
+    offer(cell, std::max(s.head_start, 0.0) + own(cell), cell);
+  }
+  const double straight = frame_.resolution, diagonal = std::sqrt(2.0) * frame_.resolution;
+  while (!queue.empty()) {
+    const auto [cost, cell] = queue.top();
+    queue.pop();
+    if (cost > per_cell_[cell]) continue;
+    const Cell c{static_cast<int>(cell) % frame_.width, static_cast<int>(cell) / frame_.width};
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Cell n{c.x + dx, c.y + dy};
+        if ((dx == 0 && dy == 0) || !passable(n)) continue;
+        const auto to = static_cast<std::uint32_t>(index(n));
+        offer(to, cost + (dx != 0 && dy != 0 ? diagonal : straight) + own(to), cell);
+      }
+  }
+}
+
 bool ExplorationTransform::passable(Cell c) const { return frame_.inside(c) && nodes_[index(c)].straight != 0; }
 
-bool ExplorationTransform::reached(Cell c) const { return passable(c) && nodes_[index(c)].cost != kFar; }
+bool ExplorationTransform::reached(Cell c) const {
+  if (!passable(c)) return false;
+  return per_cell_.empty() ? nodes_[index(c)].cost != kFar : std::isfinite(per_cell_[index(c)]);
+}
 
 double ExplorationTransform::cost(Cell c) const {
   if (!reached(c)) return std::numeric_limits<double>::infinity();
+  if (!per_cell_.empty()) return per_cell_[index(c)];
   return static_cast<double>(nodes_[index(c)].cost) / kStraight * frame_.resolution;
 }
 
 std::vector<Cell> ExplorationTransform::descend(Cell from) const {
   std::vector<Cell> way;
   if (!reached(from)) return way;
+  if (!per_cell_.empty()) {
+    for (auto cell = static_cast<std::uint32_t>(index(from));; cell = towards_[cell]) {
+      way.push_back({static_cast<int>(cell) % frame_.width, static_cast<int>(cell) / frame_.width});
+      if (towards_[cell] == cell) return way;
+    }
+  }
   Cell direction{0, 0};
   for (Cell c = from;;) {
     way.push_back(c);

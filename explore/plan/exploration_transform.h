@@ -10,10 +10,18 @@
 
 namespace rubble::explore {
 
+/// How the discomfort of eq. (3) is summed along a way.
+enum class Discomfort {
+  PerMetre,  ///< times the length of each step: the same way costs the same at any resolution, and no metre more than
+             ///< 60
+  PerCell    ///< as printed: of every cell of the way, first and last included
+};
+
 struct TransformConfig {
   double alpha = 20.0;  ///< weight of the discomfort against length, per metre travelled
-  double d_min = 0.35;  ///< never closer to an obstacle [m]
+  double d_min = 0.40;  ///< never closer to an obstacle [m]
   double d_opt = 0.60;  ///< distance to obstacles the robot likes best [m]
+  Discomfort discomfort = Discomfort::PerMetre;
 };
 
 /// Discomfort of a place at distance d from the nearest obstacle, eq. (4): infinite below d_min, else (d_opt - d)^2.
@@ -60,6 +68,7 @@ class ExplorationTransform {
 
   static constexpr std::uint32_t kBuckets = 128;
 
+  void run_per_cell(const Traversable& floor, const std::vector<Source>& sources, const TransformConfig& config);
   void prepare(const Traversable& floor, const TransformConfig& config);
   void expand(const std::vector<Start>& starts, std::uint32_t until);
   void push(std::uint32_t cell, std::uint32_t cost);
@@ -70,6 +79,8 @@ class ExplorationTransform {
   GridFrame frame_;
   std::vector<Node> nodes_;
   std::array<std::vector<std::uint32_t>, kBuckets> buckets_;  ///< of cells, by cost, in a ring
+  std::vector<double> per_cell_;                              ///< costs as printed [m]; empty: those of the nodes hold
+  std::vector<std::uint32_t> towards_;                        ///< then the next cell of each one's way
 };
 
 }  // namespace rubble::explore

@@ -84,6 +84,7 @@ Plan Planner::plan(const Traversable& floor, const TPose2D& T_map_base, const st
 
 Plan Planner::to_frontier(const Traversable& floor, const TPose2D& T_map_base, const BarredFn& barred,
                           const std::optional<TPoint2D>& previous) {
+  const bool head_starts = previous && config_.transform.discomfort == Discomfort::PerMetre;
   std::vector<Source> sources;
   std::size_t left = 0;
   for (const FrontierCluster& cluster : frontier_clusters(floor, config_.min_frontier_cells)) {
@@ -96,7 +97,7 @@ Plan Planner::to_frontier(const Traversable& floor, const TPose2D& T_map_base, c
       sources.push_back({c, 0.0});
     }
     if (sources.size() > before) ++left;
-    if (!previous || of_previous) continue;
+    if (!head_starts || of_previous) continue;
     for (std::size_t i = before; i < sources.size(); ++i) sources[i].head_start = config_.switch_cost;
   }
   Plan found = plan(floor, T_map_base, sources);

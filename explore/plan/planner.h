@@ -41,10 +41,13 @@ class Planner {
  public:
   explicit Planner(const PlannerConfig& config) : config_(config) {}
 
-  /// Distances to obstacles need not be told apart beyond [m].
-  double clearance_cap() const { return config_.transform.d_opt + kBeyondOptimum; }
+  /// Distances to obstacles need not be told apart beyond [m]. Eq. (4) as printed has no such end.
+  double clearance_cap() const {
+    return config_.transform.discomfort == Discomfort::PerCell ? kNoCap : config_.transform.d_opt + kBeyondOptimum;
+  }
 
-  /// The cheapest way to a frontier; `previous` is the target being driven to, which is given a head start.
+  /// The cheapest way to a frontier; `previous` is the target being driven to, which is given a head start. With
+  /// Discomfort::PerCell there is no head start, as printed.
   Plan to_frontier(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const BarredFn& barred,
                    const std::optional<mrpt::math::TPoint2D>& previous);
 
@@ -64,6 +67,7 @@ class Planner {
   Plan plan(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const std::vector<Source>& sources);
 
   static constexpr double kBeyondOptimum = 0.6;  ///< [m]
+  static constexpr double kNoCap = 1000.0;       ///< farther than any map is wide [m]
 
   PlannerConfig config_;
   ExplorationTransform transform_;

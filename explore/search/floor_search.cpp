@@ -13,6 +13,8 @@ using mrpt::math::TPose2D;
 constexpr double kLookPeriod = 0.35;            ///< [s]
 constexpr double kTurnRate = deg_to_rad(40.0);  ///< turning faster the sensors see too little [rad/s]
 constexpr double kFacing = deg_to_rad(8.0);     ///< [rad]
+constexpr double kMoved = 0.05;                 ///< a look that moved less shows the same, to a cell [m]
+constexpr double kMovedTurn = deg_to_rad(2.0);  ///< likewise
 constexpr double kSubjectRadius = 0.25;         ///< given up together with a place that cannot be seen [m]
 
 }  // namespace
@@ -20,20 +22,29 @@ constexpr double kSubjectRadius = 0.25;         ///< given up together with a pl
 bool FloorSearch::look(const Traversable& floor, const TPose2D& T_map_base, double turn_rate, Stamp now) {
   if (!config_.on || now < next_look_ || std::abs(turn_rate) > kTurnRate) return false;
   next_look_ = now + kLookPeriod;
-  searched_.look(floor, T_map_base);
-  looks_.push_back({now, T_map_base});
+  // A look that shows nothing new need not be repeated.
+  if (searched_.look(floor, T_map_base)) looks_.push_back({{now, T_map_base}, T_map_base});
   return true;
 }
 
-void FloorSearch::follow(const Traversable& floor, const slam::Mapper& mapper) {
-  for (Anchor& look : looks_) look.follow(mapper);
+bool FloorSearch::follow(const slam::Mapper& mapper) {
+  bool moved = false;
+  for (Look& look : looks_) {
+    look.anchor.follow(mapper);
+    const TPose2D& T = look.anchor.T_map_base;
+    moved = moved || distance({T.x, T.y}, {look.made_at.x, look.made_at.y}) > kMoved ||
+            std::abs(wrap_angle(T.phi - look.made_at.phi)) > kMovedTurn;
+  }
   for (GivenUp& place : given_up_) place.anchor.follow(mapper);
-  look_again(floor);
+  return moved;
 }
 
 void FloorSearch::look_again(const Traversable& floor) {
   searched_.clear();
-  for (const Anchor& look : looks_) searched_.look(floor, look.T_map_base);
+  for (Look& look : looks_) {
+    look.made_at = look.anchor.T_map_base;
+    searched_.look(floor, look.made_at);
+  }
   for (const GivenUp& place : given_up_)
     searched_.give_up(floor, place.anchor.T_map_base.composePoint(place.p_base), kSubjectRadius, place.faces);
 }

@@ -26,8 +26,10 @@ class FloorSearch {
   bool look(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, double turn_rate, Stamp now);
   /// Whether the place to face has been looked at.
   bool subject_seen(const Traversable& floor) const;
-  /// The mapper corrected its past: all looks are repeated from where they were made as is known now.
-  void follow(const Traversable& floor, const slam::Mapper& mapper);
+  /// The mapper corrected its past. True when a look moved by so much that all must be repeated: `look_again`.
+  bool follow(const slam::Mapper& mapper);
+  /// Repeats all looks from where they were made as is known now.
+  void look_again(const Traversable& floor);
   /// Counts the place to face and what is around it as searched, seen or not, until it is reconsidered.
   void give_up_subject(const Traversable& floor, const Anchor& here);
   /// Everything that was given up is to be looked at again; says whether there was anything.
@@ -60,7 +62,11 @@ class FloorSearch {
     mrpt::math::TPoint2D p_base;
     Faces faces;
   };
-  void look_again(const Traversable& floor);
+  /// A look that showed something new.
+  struct Look {
+    Anchor anchor;
+    mrpt::math::TPose2D made_at;  ///< when it was last repeated [map frame]
+  };
 
   SearchConfig config_;
   double room_;
@@ -69,7 +75,7 @@ class FloorSearch {
   std::vector<Viewpoint> views_;
   mrpt::math::TPoint2D subject_;
   Faces subject_faces_ = 0;
-  std::vector<Anchor> looks_;
+  std::vector<Look> looks_;
   std::vector<GivenUp> given_up_;
   Stamp next_look_ = Stamp::never();
   Stamp dwell_until_ = Stamp::never();

@@ -120,28 +120,39 @@ void SearchedArea::cover(const GridFrame& frame) {
   }
 }
 
-void SearchedArea::look(const Traversable& floor, const TPose2D& T_map_base) {
-  if (floor.cells.width() == 0) return;
+bool SearchedArea::look(const Traversable& floor, const TPose2D& T_map_base) {
+  if (floor.cells.width() == 0) return false;
   cover(floor.frame());
-  const Cell shift = shift_from(floor.frame());
-  const double step = 0.7 * floor.frame().resolution;
+  const GridFrame& frame = floor.frame();
+  const Cell shift = shift_from(frame);
+  const double step = 0.7 * frame.resolution;
   const double turn = step / config_.range;  // neighbouring rays end less than a cell apart
   const int rays = static_cast<int>(std::ceil(config_.field_of_view / turn));
-  std::vector<std::pair<Cell, Faces>> seen;
+  const int steps = static_cast<int>(config_.range / step);
+  const double x0 = (T_map_base.x - frame.x0) / frame.resolution;
+  const double y0 = (T_map_base.y - frame.y0) / frame.resolution;
+  bool changed = false;
+  seen_.clear();
   for (int i = 0; i <= rays; ++i) {
     const double bearing = T_map_base.phi + config_.field_of_view * (static_cast<double>(i) / rays - 0.5);
     const double dx = std::cos(bearing);
     const double dy = std::sin(bearing);
     const Faces faces = faces_along(dx, dy);
-    for (double r = 0.0; r <= config_.range; r += step) {
-      const Cell c = floor.cells.cell({T_map_base.x + r * dx, T_map_base.y + r * dy});
+    for (int k = 0; k <= steps; ++k) {
+      const Cell c{static_cast<int>(std::floor(x0 + 0.7 * k * dx)), static_cast<int>(std::floor(y0 + 0.7 * k * dy))};
       if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free) break;
-      const Cell own{c.x + shift.x, c.y + shift.y};
-      twice_[own] = static_cast<Faces>(twice_[own] | (once_[own] & faces));  // `once_` is of earlier looks
-      seen.push_back({own, faces});
+      const std::size_t own = twice_.frame().index({c.x + shift.x, c.y + shift.y});
+      const Faces again = static_cast<Faces>(once_.data()[own] & faces & ~twice_.data()[own]);
+      changed = changed || again != 0;
+      twice_.data()[own] = static_cast<Faces>(twice_.data()[own] | again);  // `once_` is of earlier looks
+      seen_.push_back({own, faces});
     }
   }
-  for (const auto& [own, faces] : seen) once_[own] = static_cast<Faces>(once_[own] | faces);
+  for (const auto& [own, faces] : seen_) {
+    changed = changed || (faces & ~once_.data()[own]) != 0;
+    once_.data()[own] = static_cast<Faces>(once_.data()[own] | faces);
+  }
+  return changed;
 }
 
 void SearchedArea::give_up(const Traversable& floor, const TPoint2D& place, double radius, Faces faces) {

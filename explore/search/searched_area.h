@@ -3,7 +3,9 @@
 #include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "base/angle.h"
@@ -42,8 +44,9 @@ class SearchedArea {
  public:
   explicit SearchedArea(const SearchConfig& config) : config_(config) {}
 
-  /// Marks the free floor in view from T_map_base: in the cone, in range, nothing occupied or unknown between.
-  void look(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
+  /// Marks the free floor in view from T_map_base: in the cone, in range, nothing occupied or unknown between. Says
+  /// whether that changed the record.
+  bool look(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
   /// Counts `faces` within `radius` of a place that turned out not to be visible as looked at.
   void give_up(const Traversable& floor, const mrpt::math::TPoint2D& place, double radius, Faces faces);
   /// What is left to be looked at in a cell of `floor`.
@@ -61,6 +64,7 @@ class SearchedArea {
   SearchConfig config_;
   Grid<Faces> once_;
   Grid<Faces> twice_;
+  std::vector<std::pair<std::size_t, Faces>> seen_;  ///< of the look under way, by index
 };
 
 constexpr double kAtViewpoint = 0.12;  ///< viewpoints this close are served from where the robot stands [m]

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "explore/caution/attempts.h"
 #include "explore/caution/blacklist.h"
 #include "explore/caution/motion_watch.h"
@@ -55,6 +57,26 @@ TEST(MotionWatch, SpinningWheelsAreFoundOutWithinTwoSeconds) {
   MotionWatch turning;
   ticks = 0;
   while (!turning.stuck({1.0, 0.0, 0.0}, {0.0, 1.0}, false, 0.02)) ASSERT_LT(++ticks, 100);
+}
+
+/// A corner hangs on something: the robot turns away, slips back, and turns again.
+TEST(MotionWatch, RockingToAndFroIsFoundOutAndATurnOnTheSpotIsNone) {
+  MotionWatch rocking;
+  double heading = 0.0;
+  int ticks = 0;
+  for (double rate = 1.0; !rocking.stuck({1.0 + 0.1 * heading, 2.0, heading}, {0.0, rate}, false, 0.02); ++ticks) {
+    heading += rate * 0.02;
+    if (std::abs(heading) > 0.3) rate = heading > 0.0 ? -1.0 : 1.0;
+    ASSERT_LT(ticks, 500) << "ten seconds";
+  }
+  EXPECT_TRUE(rocking.rocking());
+  MotionWatch turning, looking;
+  for (double turned = 0.0; turned < kPi; turned += 0.02)
+    EXPECT_FALSE(turning.stuck({1.0, 2.0, turned}, {0.0, 1.0}, false, 0.02));
+  for (double turned = 0.0; turned < 4.0 * kPi; turned += 0.02) {
+    looking.turns_on_purpose();
+    EXPECT_FALSE(looking.stuck({1.0, 2.0, turned}, {0.0, 1.0}, false, 0.02));
+  }
 }
 
 TEST(MotionWatch, AStallCountsWhenItLasts) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "explore/plan/frontier.h"
 #include "tests/support/explore_grids.h"
@@ -161,6 +162,64 @@ TEST_P(OnRandomGrids, LargerAlphaBuysLessDiscomfortWithLength) {
       EXPECT_LE(safe_discomfort, short_discomfort * (1.0 + kRounding) + 1e-9);
       EXPECT_GE(safe_length, short_length * (1.0 - kRounding) - 1e-9);
     }
+}
+
+/// Eq. (3) as printed by brute force: Bellman and Ford's sweeps until no way gets cheaper.
+Grid<double> brute_force(const Traversable& floor, const std::vector<Source>& sources, const TransformConfig& config) {
+  const double inf = std::numeric_limits<double>::infinity();
+  Grid<double> cost(floor.frame(), inf);
+  const auto own = [&](Cell c) {
+    return floor.cells[c] == Occupancy::Free ? config.alpha * danger(floor.clearance[c], config) : inf;
+  };
+  for (const Source& s : sources) cost[s.cell] = own(s.cell);
+  for (bool changed = true; changed;) {
+    changed = false;
+    for_each_cell(floor.frame(), [&](Cell c) {
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const Cell n{c.x + dx, c.y + dy};
+          if (!floor.cells.inside(n)) continue;
+          const double through = cost[n] + std::hypot(dx, dy) * floor.frame().resolution + own(c);
+          if (!(through < cost[c] - 1e-12)) continue;
+          cost[c] = through;
+          changed = true;
+        }
+    });
+  }
+  return cost;
+}
+
+TEST_P(OnRandomGrids, AsPrintedItIsTheBruteForceMinimumOverAllWaysAndHasNoLocalMinimum) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  floor = traversable(random_grid(22 + 2 * GetParam(), 40 - 2 * GetParam(), seed));
+  measure_clearance(floor, 1000.0);
+  config.discomfort = Discomfort::PerCell;
+  const std::vector<Source> sources = frontier_sources(floor);
+  Grid<std::uint8_t> is_source(floor.frame());
+  for (const Source& s : sources) is_source[s.cell] = 1;
+  ExplorationTransform transform;
+  transform.run(floor, sources, config);
+  const Grid<double> oracle = brute_force(floor, sources, config);
+  int reached = 0;
+  for_each_cell(floor.frame(), [&](Cell c) {
+    ASSERT_EQ(transform.reached(c), std::isfinite(oracle[c])) << c.x << ", " << c.y;
+    if (!transform.reached(c)) return;
+    ++reached;
+    ASSERT_NEAR(transform.cost(c), oracle[c], 1e-9);
+    const std::vector<Cell> way = transform.descend(c);
+    ASSERT_EQ(is_source[way.back()], 1);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < way.size(); ++i) {
+      sum += config.alpha * danger(floor.clearance[way[i]], config);
+      if (i > 0) sum += std::hypot(way[i].x - way[i - 1].x, way[i].y - way[i - 1].y) * 0.05;
+    }
+    ASSERT_NEAR(sum, transform.cost(c), 1e-9) << "the sum over all cells of the way";
+    bool lower = is_source[c] != 0;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) lower = lower || transform.cost({c.x + dx, c.y + dy}) < transform.cost(c);
+    ASSERT_TRUE(lower) << c.x << ", " << c.y;
+  });
+  EXPECT_GT(reached, 20);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, OnRandomGrids, testing::Range(1, 9));

@@ -9,6 +9,8 @@
 namespace rubble::explore {
 namespace {
 
+const double kUsual = PlannerConfig().transform.d_min;
+
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
@@ -50,7 +52,7 @@ TEST(Planner, PassesAVictimBoxAtTheUsualDistance) {
     Planner planner({});
     const Plan plan = planner.to_frontier(floor, {0.6, 0.05 * (2 + 0.5 * inside), 0.0}, kNothingBarred, std::nullopt);
     ASSERT_TRUE(plan.found) << inside;
-    EXPECT_DOUBLE_EQ(plan.d_min, 0.35) << inside;
+    EXPECT_DOUBLE_EQ(plan.d_min, kUsual) << inside;
   }
 }
 
@@ -58,7 +60,7 @@ TEST(Planner, LowersItsDistanceWhereNothingElseCanBeReachedButNotBelowTheFloor) 
   Planner planner({});
   const Plan narrow = planner.to_frontier(corridor(11), {0.6, 0.05 * 7.5, 0.0}, kNothingBarred, std::nullopt);
   ASSERT_TRUE(narrow.found) << "0.55 m are enough for a robot of 0.5 m";
-  EXPECT_LT(narrow.d_min, 0.35);
+  EXPECT_LT(narrow.d_min, kUsual);
   EXPECT_GE(narrow.d_min, 0.27);
   const Plan closed = planner.to_frontier(corridor(8), {0.6, 0.05 * 6.0, 0.0}, kNothingBarred, std::nullopt);
   EXPECT_FALSE(closed.found) << "0.40 m are not";
@@ -71,8 +73,8 @@ TEST(Planner, ClimbsAwayFromTheWallFirst) {
   Planner planner({});
   const Plan plan = planner.to_frontier(floor, at_the_wall, kNothingBarred, std::nullopt);
   ASSERT_TRUE(plan.found);
-  EXPECT_DOUBLE_EQ(plan.d_min, 0.35);
-  EXPECT_LT(plan.path.front().clearance, 0.35);
+  EXPECT_DOUBLE_EQ(plan.d_min, kUsual);
+  EXPECT_LT(plan.path.front().clearance, kUsual);
   bool out = false;
   for (std::size_t i = 1; i < plan.path.size(); ++i) {
     if (!out) {

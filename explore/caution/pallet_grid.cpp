@@ -1,0 +1,120 @@
+#include "explore/caution/pallet_grid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/angle.h"
+#include "base/planar.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+
+constexpr int kReach = 6;            ///< cells that make up a piece of wall lie so near each other [cells]
+constexpr int kFewest = 5;           ///< such cells, for a direction
+constexpr double kStraight = 0.9;    ///< how much of the spread of a piece lies along it
+constexpr double kAgreement = 0.5;   ///< of directions and of places, 0 to 1
+constexpr std::size_t kPieces = 60;  ///< fewer pieces say nothing
+constexpr double kAlong = 0.2;       ///< a piece this far off the grid's axes is no wall on it [rad]
+
+/// A piece of wall about one occupied cell.
+struct Piece {
+  TPoint2D p_map;
+  double direction;  ///< [rad]
+};
+
+std::optional<Piece> piece_at(const OccupancyGrid& cells, Cell c) {
+  TPoint2D sum;
+  double xx = 0.0, yy = 0.0, xy = 0.0;
+  int count = 0;
+  for (int y = std::max(0, c.y - kReach); y <= std::min(cells.height() - 1, c.y + kReach); ++y)
+    for (int x = std::max(0, c.x - kReach); x <= std::min(cells.width() - 1, c.x + kReach); ++x) {
+      if (cells[{x, y}] != Occupancy::Occupied) continue;
+      const double dx = x - c.x, dy = y - c.y;
+      sum += TPoint2D{dx, dy};
+      xx += dx * dx;
+      yy += dy * dy;
+      xy += dx * dy;
+      ++count;
+    }
+  if (count < kFewest) return std::nullopt;
+  xx -= sum.x * sum.x / count;
+  yy -= sum.y * sum.y / count;
+  xy -= sum.x * sum.y / count;
+  const double spread = length(xx - yy, 2.0 * xy);
+  if (spread < kStraight * (xx + yy)) return std::nullopt;
+  return Piece{cells.centre(c), 0.5 * std::atan2(2.0 * xy, xx - yy)};
+}
+
+/// Mean of angles that stand `turns` times in a circle; nothing where they do not agree.
+class CircularMean {
+ public:
+  void add(double angle) {
+    x_ += std::cos(angle);
+    y_ += std::sin(angle);
+    ++count_;
+  }
+  std::optional<double> mean() const {
+    if (count_ == 0 || length(x_, y_) < kAgreement * count_) return std::nullopt;
+    return std::atan2(y_, x_);
+  }
+
+ private:
+  double x_ = 0.0, y_ = 0.0;
+  int count_ = 0;
+};
+
+}  // namespace
+
+TPoint2D PalletGrid::to_grid(const TPoint2D& p) const {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {(c * p.x + s * p.y - east) / size, (c * p.y - s * p.x - north) / size};
+}
+
+TPoint2D PalletGrid::to_map(const TPoint2D& p_grid) const {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const double x = p_grid.x * size + east, y = p_grid.y * size + north;
+  return {c * x - s * y, s * x + c * y};
+}
+
+Cell PalletGrid::pallet(const TPoint2D& p_map) const {
+  const TPoint2D p = to_grid(p_map);
+  return {static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y))};
+}
+
+std::optional<PalletGrid> find_pallets(const OccupancyGrid& cells, double size, const TPoint2D& around, double radius) {
+  std::vector<Piece> pieces;
+  CircularMean direction;
+  const Cell low = cells.cell({around.x - radius, around.y - radius});
+  const Cell high = cells.cell({around.x + radius, around.y + radius});
+  for (int y = std::max(0, low.y); y <= std::min(cells.height() - 1, high.y); ++y)
+    for (int x = std::max(0, low.x); x <= std::min(cells.width() - 1, high.x); ++x) {
+      if (cells[{x, y}] != Occupancy::Occupied) continue;
+      if (const auto piece = piece_at(cells, {x, y})) {
+        pieces.push_back(*piece);
+        direction.add(4.0 * piece->direction);
+      }
+    }
+  const auto four = direction.mean();
+  if (pieces.size() < kPieces || !four) return std::nullopt;
+  PalletGrid grid;
+  grid.size = size;
+  grid.angle = *four / 4.0;
+  std::array<CircularMean, 2> place;  // of walls across x, across y
+  for (const Piece& piece : pieces) {
+    const TPoint2D p = grid.to_grid(piece.p_map);
+    const double off = wrap_angle(2.0 * (piece.direction - grid.angle)) / 2.0;
+    if (std::abs(off) < kAlong) place[1].add(2.0 * kPi * p.y);
+    if (std::abs(off) > 0.5 * kPi - kAlong) place[0].add(2.0 * kPi * p.x);
+  }
+  const auto across_x = place[0].mean(), across_y = place[1].mean();
+  if (!across_x || !across_y) return std::nullopt;
+  grid.east = *across_x / (2.0 * kPi) * size;
+  grid.north = *across_y / (2.0 * kPi) * size;
+  return grid;
+}
+
+}  // namespace rubble::explore

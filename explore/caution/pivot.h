@@ -1,0 +1,32 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+#include <mrpt/math/TPose2D.h>
+
+#include <optional>
+
+#include "explore/plan/traversable.h"
+#include "robot/commands.h"
+
+namespace rubble::explore {
+
+/// Keeps a turn on the spot on its spot, and its corners off the walls. A skid-steered robot that only turns its wheels
+/// against each other wanders, 0.1 to 0.2 m in half a turn on a ramp or on paper; and where there is no room for its
+/// corners, it may turn while it moves towards room.
+class Pivot {
+ public:
+  /// `room`: clearance of the robot's middle at which it can turn [m].
+  explicit Pivot(double room) : room_(room) {}
+
+  /// The drive for a robot at T_map_base that was to be driven so. What is no turn on the spot is left as it is.
+  robot::Drive keep(robot::Drive drive, const mrpt::math::TPose2D& T_map_base, const Traversable& floor);
+
+  /// Drives that only turn, with what `keep` adds, are slower than this [m/s].
+  static constexpr double kMostSpeed = 0.12;
+
+ private:
+  double room_;
+  std::optional<mrpt::math::TPoint2D> spot_;
+};
+
+}  // namespace rubble::explore

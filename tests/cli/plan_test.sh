@@ -1,0 +1,38 @@
+# rubble plan: the picture of the Exploration Transform over any map, as in Fig. 9 of the paper.
+. "$(dirname "$0")/lib.sh"
+
+# A room of 6 x 3 m, the east end open to what nobody has seen; a post stands in the way.
+python3 - <<'PY'
+width, height = 140, 62
+cell = lambda x, y: 205 if x >= 121 or y in (0, 61) or x == 0 else 0 if y in (1, 60) or x == 1 or (50 <= x < 54 and 20 <= y < 24) else 254
+with open('room.pgm', 'wb') as f:
+    f.write(b'P5\n%d %d\n255\n' % (width, height))
+    f.write(bytes(cell(x, y) for y in reversed(range(height)) for x in range(width)))
+open('room.yaml', 'w').write('image: room.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n')
+PY
+
+expect_exit 0 '' "$rubble" plan room.yaml --out a.png
+head -c 4 a.png | grep -q PNG || fail "a.png is no PNG"
+expect_exit 0 '' "$rubble" plan room.yaml --out b.png
+cmp -s a.png b.png || fail "the same map gave another picture"
+
+# The larger alpha, the longer the way from beside the wall and the farther from it, summed either way.
+way() { "$rubble" plan room.yaml --from 1.0,0.6 --d-min 0.3 --out way.png "$@" | awk '/^way/ {print $2, $7}'; }
+for discomfort in per_metre per_cell; do
+  read -r short near <<<"$(way --discomfort $discomfort --alpha 0)"
+  read -r long far <<<"$(way --discomfort $discomfort --alpha 500)"
+  awk "BEGIN {exit !($long > $short && $far >= $near)}" || fail "$discomfort: $short m at $near, then $long m at $far"
+done
+way >/dev/null
+cmp -s a.png way.png && fail "--from draws no way"
+
+expect_exit 3 'no free floor' "$rubble" plan room.yaml --from 90,1
+expect_exit 3 'nearer to a wall' "$rubble" plan room.yaml --from 1.0,0.15
+expect_exit 2 'X,Y' "$rubble" plan room.yaml --from here
+expect_exit 2 '--d-opt' "$rubble" plan room.yaml --d-min 0.7
+expect_exit 3 'nowhere.yaml' "$rubble" plan nowhere.yaml
+expect_exit 4 'missing/plan.png' "$rubble" plan room.yaml --out missing/plan.png
+sed -i 's/room.pgm/full.pgm/' room.yaml
+python3 -c "open('full.pgm', 'wb').write(b'P5\n40 40\n255\n' + bytes([0]) * 1600)"
+expect_exit 3 'no frontier' "$rubble" plan room.yaml
+finish

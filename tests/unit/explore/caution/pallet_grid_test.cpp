@@ -1,0 +1,142 @@
+#include "explore/caution/pallet_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/angle.h"
+#include "base/planar.h"
+#include "base/rng.h"
+#include "explore/caution/felt_obstacles.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+constexpr double kPallet = 1.2;  // [m]
+const robot::RobotModel kModel;
+
+Stamp at(double seconds) { return Stamp::from_seconds(seconds); }
+
+/// A map of 8 x 8 m; walls stand on about half of the edges of a grid that lies at T_map_grid.
+OccupancyGrid map_of_walls(const TPose2D& T_map_grid, Rng& rng) {
+  GridFrame frame;
+  frame.resolution = 0.05;
+  frame.width = frame.height = 160;
+  OccupancyGrid cells(frame, Occupancy::Free);
+  const auto draw = [&](const TPoint2D& from, const TPoint2D& to) {
+    for (double t = 0.0; t <= 1.0; t += 0.01) {
+      const Cell c = frame.cell(T_map_grid.composePoint(from + (to - from) * t));
+      if (frame.inside(c)) cells[c] = Occupancy::Occupied;
+    }
+  };
+  for (int i = -10; i <= 10; ++i)
+    for (int k = -10; k <= 10; ++k) {
+      const TPoint2D corner{i * kPallet, k * kPallet};
+      const double east = rng.uniform(), north = rng.uniform();
+      if (east < 0.5) draw(corner, corner + TPoint2D{kPallet, 0.0});
+      if (north < 0.5) draw(corner, corner + TPoint2D{0.0, kPallet});
+    }
+  return cells;
+}
+
+/// How far a place is from the nearest edge of a grid, along either axis [m].
+double off_edges(const PalletGrid& grid, const TPoint2D& p_map) {
+  const TPoint2D p = grid.to_grid(p_map);
+  return kPallet * std::max(std::abs(p.x - std::round(p.x)), std::abs(p.y - std::round(p.y)));
+}
+
+TEST(PalletGrid, IsFoundWhereverItLiesInTheMap) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Rng rng(seed, "walls");
+    const double x = rng.uniform() * kPallet, y = rng.uniform() * kPallet, turn = 2.0 * kPi * rng.uniform();
+    const TPose2D T_map_grid{x, y, turn};
+    SCOPED_TRACE(testing::Message() << "seed " << seed << ": " << x << " " << y << " " << turn);
+    const auto grid = find_pallets(map_of_walls(T_map_grid, rng), kPallet, {4.0, 4.0});
+    ASSERT_TRUE(grid);
+    for (int i = 0; i < 5; ++i)
+      for (int k = 0; k < 5; ++k) {
+        const TPoint2D corner = T_map_grid.composePoint(TPoint2D{(i - 2) * kPallet, (k - 2) * kPallet});
+        if (distance(corner, {4.0, 4.0}) < 4.0) {
+          EXPECT_LT(off_edges(*grid, corner), 0.08) << "two cells of the map are 0.1 m";
+        }
+        const TPoint2D again = grid->to_map(grid->to_grid(corner));
+        EXPECT_NEAR(distance(again, corner), 0.0, 1e-9);
+      }
+  }
+}
+
+TEST(PalletGrid, IsNotMadeUpWhereNoWallsAgree) {
+  Rng rng(3, "walls");
+  const OccupancyGrid walls = map_of_walls({}, rng);
+  EXPECT_FALSE(find_pallets(OccupancyGrid(walls.frame(), Occupancy::Free), kPallet, {4.0, 4.0}));
+  OccupancyGrid noise(walls.frame(), Occupancy::Free);
+  for (int i = 0; i < 3000; ++i) {
+    const int x = static_cast<int>(rng.uniform() * 160.0), y = static_cast<int>(rng.uniform() * 160.0);
+    noise[{x, y}] = Occupancy::Occupied;
+  }
+  EXPECT_FALSE(find_pallets(noise, kPallet, {4.0, 4.0}));
+}
+
+/// The grid's edges at multiples of 1.2 m; the robot drives east out of pallet (0, 0).
+struct FeltPallet : testing::Test {
+  PalletGrid grid;
+  FeltObstacles felt;
+  const TPose2D at_the_edge{1.2 - 0.5 * kModel.length - 0.02, 0.6, 0.0};
+  const TPoint2D beyond{1.8, 0.6};
+
+  double nearest(const TPoint2D& p, double now = 10.0) const {
+    double least = 1e9;
+    for (const TPoint2D& q : felt.points(at(now))) least = std::min(least, distance(p, q));
+    return least;
+  }
+};
+
+TEST_F(FeltPallet, TheWholePalletCountsAndLeavesRoomBesideIt) {
+  ASSERT_TRUE(felt.feel({at(1.0), at_the_edge}, false, kModel, grid));
+  for (double x = 1.3; x < 2.3; x += 0.1)
+    for (double y = 0.1; y < 1.1; y += 0.1) EXPECT_LT(nearest({x, y}), 0.12) << x << " " << y;
+  for (const TPoint2D& p : felt.points(at(10.0))) {
+    EXPECT_GT(p.x, 1.2);
+    EXPECT_LT(p.x, 2.4);
+    EXPECT_GT(p.y, 0.0);
+    EXPECT_LT(p.y, 1.2);
+  }
+  EXPECT_EQ(felt.count(at(1e6)), 1) << "time alone does not free a step field";
+}
+
+TEST_F(FeltPallet, APardonLeavesTheMiddlesOfTheSidesAndTheNextTouchIsForGood) {
+  ASSERT_TRUE(felt.feel({at(1.0), at_the_edge}, false, kModel, grid));
+  ASSERT_TRUE(felt.pardon(at(2.0)));
+  EXPECT_GT(nearest(beyond), 0.5);
+  EXPECT_NEAR(nearest({1.2, 0.6}), 0.0, 1e-9) << "where a crossing ramp has a high corner";
+  ASSERT_TRUE(felt.feel({at(3.0), TPose2D{1.8, 1.2 + 0.5 * kModel.length + 0.02, -0.5 * kPi}}, false, kModel, grid));
+  EXPECT_LT(nearest(beyond), 0.12);
+  EXPECT_EQ(felt.count(at(10.0)), 1) << "it is the same pallet";
+  EXPECT_FALSE(felt.pardon(at(4.0)));
+  EXPECT_TRUE(felt.forget(at(5.0))) << "but for the way home";
+  EXPECT_EQ(felt.count(at(6.0)), 0);
+}
+
+TEST_F(FeltPallet, APalletTheRobotStoodOnIsNoStepField) {
+  EXPECT_FALSE(felt.feel({at(1.0), at_the_edge}, false, kModel, grid, {beyond}));
+  EXPECT_GT(nearest({2.2, 0.6}), 0.5);
+  EXPECT_EQ(felt.count(at(2.0)), 1) << "a bar stands there";
+
+  FeltObstacles other;
+  ASSERT_TRUE(other.feel({at(1.0), at_the_edge}, false, kModel, grid));
+  other.passed({beyond.x, beyond.y, 0.0}, kModel);
+  for (const TPoint2D& p : other.points(at(2.0))) EXPECT_GT(distance(p, beyond), 0.5);
+}
+
+TEST_F(FeltPallet, WhatIsMetWithinAPalletOrBehindTheRobotStaysThere) {
+  EXPECT_FALSE(felt.feel({at(1.0), TPose2D{0.5, 0.6, 0.0}}, false, kModel, grid)) << "the middle of its own pallet";
+  FeltObstacles behind;
+  ASSERT_TRUE(behind.feel({at(1.0), TPose2D{at_the_edge.x, 0.6, kPi}}, true, kModel, grid));
+  for (const TPoint2D& p : behind.points(at(2.0))) EXPECT_GT(p.x, 1.2);
+}
+
+}  // namespace
+}  // namespace rubble::explore
