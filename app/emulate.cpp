@@ -56,6 +56,8 @@ int emulate(const EmulateArguments& arguments) {
     options.faults.push_back(fault);
   }
   if (!arguments.odometry_start.empty()) options.odometry_start = parse_pose(arguments.odometry_start);
+  if (arguments.as_hardware && options.base.empty())
+    throw UsageError("--as-hardware: the base is not played; give --base too");
   options.as_hardware = arguments.as_hardware;
   options.time_limit = arguments.time_limit;
   options.truth = arguments.truth;

@@ -155,6 +155,13 @@ class Driver {
     held_ = false;
   }
 
+  void tell_troubles(const std::vector<std::string>& now) {
+    for (const std::string& line : now) options_.tell(line);
+    const std::vector<std::string> still = names(now);
+    for (const std::string& name : names(troubles_))
+      if (std::find(still.begin(), still.end(), name) == still.end()) options_.tell(name + ": reports");
+  }
+
   void save_map() {
     folder_.save_estimate(core_.mapper());
     folder_.save_map(file_.settings, core_.mapper(), core_.victims());
@@ -168,8 +175,7 @@ class Driver {
     if (seconds_since(map_saved_) >= kSavePeriod) save_map();
     DriveStatus status;
     status.robot = real_.status();
-    if (status.robot.troubles != troubles_ && options_.tell)
-      for (const std::string& line : status.robot.troubles) options_.tell(line);
+    if (status.robot.troubles != troubles_ && options_.tell) tell_troubles(status.robot.troubles);
     troubles_ = status.robot.troubles;
     if (!options_.each_second) return;
     status.seconds = seconds_;
