@@ -19,6 +19,7 @@ struct EmulateArguments {
   std::string urg, base, levelling;
   std::vector<std::string> faults;  ///< NAME@SECONDS
   std::string odometry_start;       ///< X,Y,DEG
+  bool as_hardware = false;
   double time_limit = 0.0;
   std::string truth;
   std::vector<std::string> sets;
@@ -54,6 +55,9 @@ int emulate(const EmulateArguments& arguments) {
     options.faults.push_back(fault);
   }
   if (!arguments.odometry_start.empty()) options.odometry_start = parse_pose(arguments.odometry_start);
+  if (arguments.as_hardware && options.base.empty())
+    throw UsageError("--as-hardware: the base is not played; give --base too");
+  options.as_hardware = arguments.as_hardware;
   options.time_limit = arguments.time_limit;
   options.truth = arguments.truth;
   options.ready = [](const std::vector<std::string>& ports) {
@@ -89,6 +93,7 @@ Command emulate_command() {
             o.text("--levelling", a->levelling, "Offer the levelling unit there");
             o.texts("--fault", a->faults, "NAME@SECONDS: let something go wrong (repeatable); docs/hardware.md");
             o.text("--odometry-start", a->odometry_start, "X,Y,DEG: where the base's dead reckoning begins [m, deg]");
+            o.flag("--as-hardware", a->as_hardware, "The base does not say that it is a simulator, nor obey as one");
             o.number("--time-limit", a->time_limit, 0.0, 1e6, "Ends after so long (default: Ctrl-C ends it) [s]");
             o.text("--truth", a->truth, "Write the true trajectory to this .tum file");
             add_sets(o, a->sets);

@@ -18,9 +18,9 @@ void require(bool law) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Pioneer driver{PioneerSettings{}};
+  Pioneer driver{BaseSettings{}};
   Stamp now{1'000'000'000};
-  driver.opened(now, size % 2 == 1);
+  driver.opened(now, size % 2 == 1 ? LineKind::Uart : LineKind::Tcp);
   driver.enable(true);
   Stamp last = Stamp::never();
   for (std::size_t at = 0; at < size;) {

@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   LevellingUnit driver{LevellingUnitSettings{}};
   LevellingEmulator unit{LevellingEmulatorSettings{}};
   Stamp now{1'000'000'000};
-  driver.opened(now, true);
+  driver.opened(now, LineKind::Uart);
   unit.client_came(now);
   Stamp last = Stamp::never();
   for (std::size_t at = 0; at < size;) {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tests/fuzz.sh [SECONDS [TARGET...]]: builds the fuzz targets and runs each for so long, its corpus (fuzz/corpus/TARGET)
+# tests/fuzz.sh [SECONDS [TARGET...]]: builds the fuzz targets and runs each for so long, its corpus (fuzz/corpus/TARGET, tests/fuzz/TARGET)
 # first. One line a target: name, executions, findings, largest memory [MB]. Ends with 1 when there is a finding.
 set -uo pipefail
 seconds=${1:-20}
@@ -19,6 +19,7 @@ findings=0
 printf '%-14s %12s %9s %8s\n' target executions findings 'max MB'
 for target in "${targets[@]}"; do
   corpus=$top/fuzz/corpus/$target
+  [[ -d $corpus ]] || corpus=$top/tests/fuzz/$target
   grown=$build/corpus/$target
   mkdir -p "$grown" "$found/$target"
   [[ -d $corpus ]] || corpus=

@@ -29,11 +29,20 @@ std::uint64_t take(const std::string& bytes, std::size_t at, int count) {
   return value;
 }
 
+constexpr std::pair<LineKind, const char*> kKinds[] = {
+    {LineKind::Tcp, "tcp"}, {LineKind::Pty, "pty"}, {LineKind::Usb, "usb"}, {LineKind::Uart, "uart"}};
+
+const char* name_of(LineKind kind) {
+  for (const auto& [known, name] : kKinds)
+    if (known == kind) return name;
+  return "";
+}
+
 class RecordedPort : public Port {
  public:
   RecordedPort(std::unique_ptr<Port> inner, std::string device, BlackBox& box)
       : inner_(std::move(inner)), device_(std::move(device)), box_(box) {
-    box_.add(device_, Direction::Opened, inner_->name(), host_now());
+    box_.add(device_, Direction::Opened, inner_->name() + "\n" + name_of(inner_->kind()), host_now());
   }
 
   std::size_t read(std::uint8_t* to, std::size_t size, double timeout) override {
@@ -52,8 +61,11 @@ class RecordedPort : public Port {
   }
   int descriptor() const override { return inner_->descriptor(); }
   const std::string& name() const override { return inner_->name(); }
-  void set_baud(int baud) override { inner_->set_baud(baud); }
-  bool is_serial() const override { return inner_->is_serial(); }
+  void set_baud(int baud) override {
+    inner_->set_baud(baud);
+    box_.add(device_, Direction::BitRate, std::to_string(baud), host_now());
+  }
+  LineKind kind() const override { return inner_->kind(); }
 
  private:
   std::unique_ptr<Port> inner_;
@@ -114,6 +126,15 @@ std::vector<BlackBoxEntry> read_black_box(const std::string& path) {
     entries.push_back(std::move(entry));
   }
   return entries;
+}
+
+LineKind line_kind(const BlackBoxEntry& opened) {
+  const std::size_t end = opened.bytes.find('\n');
+  if (end != std::string::npos)
+    for (const auto& [kind, name] : kKinds)
+      if (opened.bytes.compare(end + 1, std::string::npos, name) == 0) return kind;
+  // Boxes of older versions hold the port's name alone.
+  return opened.bytes.rfind("tcp:", 0) == 0 ? LineKind::Tcp : LineKind::Uart;
 }
 
 std::unique_ptr<Port> open_recorded(const std::string& word, const std::string& device, BlackBox* box) {

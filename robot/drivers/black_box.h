@@ -16,14 +16,16 @@ namespace rubble::robot {
 /// First line of a black box; the number is the format's version.
 constexpr const char* kBlackBoxMagic = "RUBBLE BYTES 1\n";
 
-enum class Direction : std::uint8_t { FromDevice = 0, ToDevice = 1, Opened = 2, Lost = 3 };
+enum class Direction : std::uint8_t { FromDevice = 0, ToDevice = 1, Opened = 2, Lost = 3, BitRate = 4 };
 
 /// Some bytes on the line of a device.
 struct BlackBoxEntry {
   std::string device;
   Direction direction = Direction::FromDevice;
   Stamp stamp;
-  std::string bytes;  ///< of Opened the port's name, of Lost the reason
+  /// Of Opened the port's name, a line feed and what kind of line it is (see line_kind); of Lost the reason; of BitRate
+  /// the rate in decimal digits.
+  std::string bytes;
 };
 
 /// Keeps all raw bytes of all devices with their times, so that what happened in the field can be played to the drivers
@@ -44,6 +46,9 @@ class BlackBox {
 
 /// All whole entries of a black box in their order. Throws InputError: missing, of another kind.
 std::vector<BlackBoxEntry> read_black_box(const std::string& path);
+
+/// What kind of line an entry Opened tells of.
+LineKind line_kind(const BlackBoxEntry& opened);
 
 /// Opens a port whose bytes go to `box` (null: nowhere) under the device's name.
 std::unique_ptr<Port> open_recorded(const std::string& word, const std::string& device, BlackBox* box);

@@ -12,7 +12,7 @@ void append(std::vector<T>& to, std::vector<T>&& from) {
 
 /// What the driver would send is thrown away: the device has long answered what was sent then.
 void play(Device& device, const BlackBoxEntry& entry) {
-  if (entry.direction == Direction::Opened) return device.opened(entry.stamp, entry.bytes.rfind("tcp:", 0) != 0);
+  if (entry.direction == Direction::Opened) return device.opened(entry.stamp, line_kind(entry));
   device.advance(entry.stamp);
   if (entry.direction == Direction::FromDevice) device.receive(entry.bytes, entry.stamp);
   device.take_output(entry.stamp);
@@ -20,20 +20,20 @@ void play(Device& device, const BlackBoxEntry& entry) {
 
 }  // namespace
 
-ReplayedBox replay_black_box(const std::vector<BlackBoxEntry>& entries, const PioneerSettings& base,
-                             const LevellingUnitSettings& levelling) {
-  Pioneer pioneer(base);
+ReplayedBox replay_black_box(const std::vector<BlackBoxEntry>& entries, const std::string& driver,
+                             const BaseSettings& base, const LevellingUnitSettings& levelling) {
+  const std::unique_ptr<BaseDriver> played = make_base(driver, base);
   LevellingUnit unit(levelling);
   ReplayedBox replayed;
   for (const BlackBoxEntry& entry : entries) {
-    if (entry.device == "base") play(pioneer, entry);
+    if (entry.device == "base") play(*played, entry);
     if (entry.device == "levelling") play(unit, entry);
-    append(replayed.odometry, pioneer.take_odometry());
+    append(replayed.odometry, played->take_odometry());
     append(replayed.accelerations, unit.take_accelerations());
     append(replayed.aims, unit.take_aims());
   }
-  replayed.bad_sums = pioneer.bad_sums();
-  replayed.jumps = pioneer.jumps();
+  replayed.bad_sums = played->bad_sums();
+  replayed.jumps = played->jumps();
   replayed.bad_lines = unit.bad_lines();
   return replayed;
 }

@@ -2,9 +2,9 @@
 
 #include <vector>
 
+#include "robot/drivers/base_driver.h"
 #include "robot/drivers/black_box.h"
 #include "robot/drivers/levelling_unit.h"
-#include "robot/drivers/pioneer.h"
 
 namespace rubble::robot {
 
@@ -18,8 +18,8 @@ struct ReplayedBox {
   std::size_t bad_lines = 0;  ///< of the levelling unit
 };
 
-/// Plays the bytes of the devices `base` and `levelling` to their drivers, at the times they had.
-ReplayedBox replay_black_box(const std::vector<BlackBoxEntry>& entries, const PioneerSettings& base,
-                             const LevellingUnitSettings& levelling);
+/// Plays the bytes of the devices `base` (its driver by name) and `levelling` to their drivers, at the times they had.
+ReplayedBox replay_black_box(const std::vector<BlackBoxEntry>& entries, const std::string& driver,
+                             const BaseSettings& base, const LevellingUnitSettings& levelling);
 
 }  // namespace rubble::robot

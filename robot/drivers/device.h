@@ -2,8 +2,10 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/stamp.h"
+#include "robot/drivers/port.h"
 
 namespace rubble::robot {
 
@@ -12,16 +14,17 @@ namespace rubble::robot {
 class Device {
  public:
   virtual ~Device() = default;
-  /// A port to the device has just been opened: the conversation starts anew. `serial`: its bit rate means something.
-  virtual void opened(Stamp now, bool serial) = 0;
+  /// A port to the device has just been opened: the conversation starts anew.
+  virtual void opened(Stamp now, LineKind line) = 0;
   /// Bytes that had arrived at `now`.
   virtual void receive(std::string_view bytes, Stamp now) = 0;
   /// Does what is due at `now`: asks again, refreshes, gives up.
   virtual void advance(Stamp now) = 0;
   /// Bytes to send at `now`.
   virtual std::string take_output(Stamp now) = 0;
-  /// What to send before the port is closed: the device comes to rest.
-  virtual std::string farewell() { return ""; }
+  /// What to send before the port is closed, so that the device comes to rest: each entry on its own, kPause apart.
+  virtual std::vector<std::string> farewell() { return {}; }
+  static constexpr double kPause = 0.005;  ///< [s]
   /// When advance() or take_output() wants to be called again at the latest.
   virtual Stamp deadline() const = 0;
   /// The bit rate the serial line shall have; 0: leave it.

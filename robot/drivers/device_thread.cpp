@@ -84,7 +84,7 @@ void DeviceThread::run() {
 void DeviceThread::converse() {
   with([this] {
     error_.clear();
-    device_.opened(host_now(), port_->is_serial());
+    device_.opened(host_now(), port_->kind());
   });
   while (!is_ending()) {
     const int baud = with([this] { return device_.baud(); });
@@ -104,7 +104,10 @@ void DeviceThread::converse() {
     send(out);
     if (got < bytes.size()) wait_for(port_->descriptor(), wake_.get(), deadline - host_now());
   }
-  send(with([this] { return device_.farewell(); }));
+  for (const std::string& packet : with([this] { return device_.farewell(); })) {
+    send(packet);
+    sleep_until(host_now() + Device::kPause);  // the last one too: closing the line must not cut it short
+  }
 }
 
 }  // namespace rubble::robot

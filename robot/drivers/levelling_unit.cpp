@@ -24,8 +24,8 @@ double angle(int pulse_us, const ServoCalibration& servo) {
 
 }  // namespace
 
-void LevellingUnit::opened(Stamp now, bool serial) {
-  serial_ = serial;
+void LevellingUnit::opened(Stamp now, LineKind line) {
+  line_ = line;
   lines_.reset();
   restart_clock();
   identified_ = false;
@@ -84,7 +84,7 @@ void LevellingUnit::follow(const LevellingReport& report, Stamp now) {
 void LevellingUnit::restart_clock() {
   ClockMapConfig config;
   config.resolution = 2e-6;
-  config.usual_delay = settings_.delay + (serial_ ? kReportBytes * 10.0 / baud() : 0.0);
+  config.usual_delay = settings_.delay + time_on_line(line_, kReportBytes, baud());
   clock_ = ClockMap(config);
   counter_.clear();
 }

@@ -42,7 +42,7 @@ class LevellingUnit : public Device {
  public:
   explicit LevellingUnit(const LevellingUnitSettings& settings) : settings_(settings) {}
 
-  void opened(Stamp now, bool serial) override;
+  void opened(Stamp now, LineKind line) override;
   void receive(std::string_view bytes, Stamp now) override;
   void advance(Stamp now) override;
   std::string take_output(Stamp now) override;
@@ -82,7 +82,7 @@ class LevellingUnit : public Device {
   bool aimed_ = false;  ///< aim() was called once
   bool aim_due_ = false;
   Stamp aim_sent_ = Stamp::never();
-  bool serial_ = false;
+  LineKind line_ = LineKind::Tcp;
   WrappingClock counter_{1u << 31, 2e-6};  ///< every second microsecond of 2^32
   ClockMap clock_{ClockMapConfig{}};
   Stamp last_stamp_ = Stamp::never();

@@ -1,6 +1,7 @@
 #include "robot/drivers/pioneer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -12,12 +13,13 @@ namespace {
 
 using arcos::command;
 
-constexpr double kReply = 0.5;        ///< an answer comes within this time [s]
-constexpr int kTries = 3;             ///< questions before the next bit rate
-constexpr double kConfigReply = 1.0;  ///< [s]
-constexpr double kSpacing = 0.004;    ///< the firmware wants so much between two commands [s]
-constexpr double kRefresh = 0.2;      ///< set points are sent again [s]; the firmware forgets them after 2 s
-constexpr double kAskMotors = 0.5;    ///< [s]
+constexpr double kReply = 0.5;                                           ///< an answer comes within this time [s]
+constexpr std::array<int, 5> kBauds{9600, 38400, 19200, 115200, 57600};  ///< tried in turn on a serial line
+constexpr int kTries = 3;                                                ///< questions before the next bit rate
+constexpr double kConfigReply = 1.0;                                     ///< [s]
+constexpr double kSpacing = 0.004;  ///< the firmware wants so much between two commands [s]
+constexpr double kRefresh = 0.2;    ///< set points are sent again [s]; the firmware forgets them after 2 s
+constexpr double kAskMotors = 0.5;  ///< [s]
 constexpr double kHeadingUnit = 2.0 * kPi / 4096;  // [rad]
 constexpr double kMillimetre = 1e-3;
 /// Wheel speed difference to turn rate, per robot: half the effective track (parameter files of ARIA).
@@ -45,8 +47,8 @@ void Pioneer::go(Step step, Stamp now) {
   since_ = now;
 }
 
-void Pioneer::opened(Stamp now, bool serial) {
-  serial_ = serial;
+void Pioneer::opened(Stamp now, LineKind line) {
+  line_ = line;
   parser_.reset();
   clock_.reset();
   queue_.clear();
@@ -71,10 +73,10 @@ void Pioneer::ask(Stamp now) {
   }
 }
 
-int Pioneer::baud() const { return serial_ ? settings_.bauds[rate_ % settings_.bauds.size()] : 0; }
+int Pioneer::baud() const { return line_ != LineKind::Tcp ? kBauds[rate_ % kBauds.size()] : 0; }
 
 void Pioneer::try_next_rate(Stamp now) {
-  if (serial_) ++rate_;
+  if (line_ != LineKind::Tcp) ++rate_;
   parser_.reset();
   go(Step::Sync0, now);
   ask(now);
@@ -89,6 +91,7 @@ void Pioneer::advance(Stamp now) {
     case Step::Sync2:
       if (now - since_ < kReply) return;
       if (tries_ >= kTries) return try_next_rate(now);
+      step_ = Step::Sync0;  // the firmware takes the three in their order only: a lost echo means all over again
       return ask(now);
     case Step::Closing:
       if (now - since_ < kReply) return;
@@ -154,8 +157,7 @@ void Pioneer::digest(const std::string& payload, Stamp now) {
 
 /// When the robot took what it sent in so many bytes.
 Stamp Pioneer::sampled(std::size_t bytes, Stamp received) const {
-  const double on_the_line = serial_ ? 10.0 * static_cast<double>(bytes) / baud() : 0.0;  // 8N1: ten bits a byte
-  return received - (on_the_line + settings_.delay);
+  return received - (time_on_line(line_, static_cast<double>(bytes), baud()) + settings_.delay);
 }
 
 void Pioneer::open(Stamp now) {
@@ -307,9 +309,9 @@ std::string Pioneer::take_output(Stamp now) {
   return out;
 }
 
-std::string Pioneer::farewell() {
-  if (step_ == Step::Closed) return "";
-  return command(arcos::kStop) + command(arcos::kEnable, 0) + command(arcos::kClose);
+std::vector<std::string> Pioneer::farewell() {
+  if (step_ == Step::Closed) return {};
+  return {command(arcos::kStop), command(arcos::kEnable, 0), command(arcos::kClose)};
 }
 
 Stamp Pioneer::deadline() const {
@@ -323,7 +325,7 @@ Stamp Pioneer::deadline() const {
 }
 
 std::string Pioneer::state() const {
-  const std::string rate = serial_ ? " at " + std::to_string(baud()) + " baud" : "";
+  const std::string rate = line_ != LineKind::Tcp ? " at " + std::to_string(baud()) + " baud" : "";
   switch (step_) {
     case Step::Closed:
       return "closed";

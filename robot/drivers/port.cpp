@@ -1,12 +1,15 @@
 #include "robot/drivers/port.h"
 
 #include <fcntl.h>
+#include <linux/serial.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <termios.h>
 
 #include <algorithm>
@@ -91,7 +94,7 @@ class TcpPort : public DescriptorPort {
  public:
   using DescriptorPort::DescriptorPort;
   void set_baud(int) override {}
-  bool is_serial() const override { return false; }
+  LineKind kind() const override { return LineKind::Tcp; }
 
  private:
   std::string remedy() const override { return "see that the other side still runs"; }
@@ -107,9 +110,21 @@ speed_t speed_of(int baud, const std::string& name) {
                    " baud; give 9600, 19200, 38400, 57600, 115200, 230400, 500000 or 1000000");
 }
 
+/// By the numbers of Linux' list of devices (Documentation/admin-guide/devices.txt).
+LineKind kind_of(int line) {
+  constexpr unsigned kFirstPty = 136, kLastPty = 143, kUsbModem = 166;
+  struct stat status {};
+  if (fstat(line, &status) != 0) return LineKind::Uart;
+  const unsigned number = major(status.st_rdev);
+  if (number >= kFirstPty && number <= kLastPty) return LineKind::Pty;
+  return number == kUsbModem ? LineKind::Usb : LineKind::Uart;
+}
+
 class SerialPort : public DescriptorPort {
  public:
   SerialPort(std::string word, Descriptor descriptor) : DescriptorPort(std::move(word), std::move(descriptor)) {
+    kind_ = kind_of(file_.get());
+    if (kind_ == LineKind::Uart) ask_for_low_latency();
     set_baud(kFirstBaud);
     tcflush(file_.get(), TCIOFLUSH);
   }
@@ -130,9 +145,18 @@ class SerialPort : public DescriptorPort {
       throw DeviceLost(name_ + ": takes no settings (" + std::strerror(errno) + "); " + remedy());
   }
 
-  bool is_serial() const override { return true; }
+  LineKind kind() const override { return kind_; }
 
  private:
+  /// A USB adapter of FTDI hands over what it has once a millisecond then, not every sixteen. Others do not care.
+  void ask_for_low_latency() const {
+    serial_struct line{};
+    if (ioctl(file_.get(), TIOCGSERIAL, &line) != 0) return;
+    line.flags |= ASYNC_LOW_LATENCY;
+    ioctl(file_.get(), TIOCSSERIAL, &line);
+  }
+
+  LineKind kind_ = LineKind::Uart;
   std::string remedy() const override { return "check its plug and power, `rubble devices` lists what is there"; }
 };
 

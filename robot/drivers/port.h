@@ -9,6 +9,15 @@
 
 namespace rubble::robot {
 
+/// What lies behind a port. On all but Tcp a bit rate can be set, but only on an Uart do bytes take their time by it: a
+/// pty and USB's own class of serial lines (ttyACM) pass them on at once.
+enum class LineKind { Tcp, Pty, Usb, Uart };
+
+/// How long `bytes` take over such a line at `baud` (8N1: ten bits a byte) [s].
+inline double time_on_line(LineKind kind, double bytes, int baud) {
+  return kind == LineKind::Uart && baud > 0 ? 10.0 * bytes / baud : 0.0;
+}
+
 /// A line to a device: bytes either way. One thread may read while another writes.
 class Port {
  public:
@@ -24,8 +33,9 @@ class Port {
   virtual const std::string& name() const = 0;
   /// Bit rate of a serial line, 8N1; without effect on TCP. Throws InputError on a rate that no serial line has.
   virtual void set_baud(int baud) = 0;
-  /// Whether the bit rate means something: a serial line or a pty.
-  virtual bool is_serial() const = 0;
+  virtual LineKind kind() const = 0;
+  /// Whether a bit rate can be set: a serial line or a pty.
+  bool is_serial() const { return kind() != LineKind::Tcp; }
 };
 
 /// Opens the device side's other end: `/dev/ttyUSB0` (any path of a serial line), `pty:PATH` or `tcp:HOST:PORT`. A

@@ -46,7 +46,7 @@ void sort_by_stamp(std::vector<T>& list) {
 struct RealRobot::Impl {
   RealRobotSettings settings;
   Scanner& lidar;
-  Pioneer pioneer;
+  std::unique_ptr<BaseDriver> base;
   LevellingUnit unit;
   Heartbeat heartbeat;  ///< asked by the operator's thread alone
   std::function<bool(const RobotStatus&)> ask;
@@ -80,11 +80,15 @@ struct RealRobot::Impl {
   std::thread operator_thread;
 
   Impl(const RealRobotSettings& given, Scanner& scanner, BlackBox* box)
-      : settings(given), lidar(scanner), pioneer(given.base), unit(given.levelling), heartbeat(given.heartbeat) {
+      : settings(given),
+        lidar(scanner),
+        base(given.own_base ? given.own_base(given.base) : make_base(given.base_driver, given.base)),
+        unit(given.levelling),
+        heartbeat(given.heartbeat) {
     if (!settings.levelling_port.empty())
       unit_thread = std::make_unique<DeviceThread>("levelling", settings.levelling_port, unit, box);
     base_thread =
-        std::make_unique<DeviceThread>("base", settings.base_port, pioneer, box, [this](Stamp now) { watch(now); });
+        std::make_unique<DeviceThread>("base", settings.base_port, *base, box, [this](Stamp now) { watch(now); });
     operator_thread = std::thread([this] {
       while (!ending) {
         listen();
@@ -113,13 +117,13 @@ struct RealRobot::Impl {
 
   void stop() {
     if (stopped.exchange(true)) return;
-    base_thread->with([this] { pioneer.stop(); });
+    base_thread->with([this] { base->stop(); });
     base_thread->wake();
   }
 
   void emergency_stop() {
     emergency = true;
-    base_thread->with([this] { pioneer.emergency_stop(); });
+    base_thread->with([this] { base->emergency_stop(); });
     base_thread->wake();
   }
 
@@ -129,8 +133,8 @@ struct RealRobot::Impl {
     const bool fresh = commanded != Stamp::never() && now - commanded <= settings.safety.core_silence;
     const bool allowed = armed && !emergency && !stopped;
     const bool free = allowed && fresh && is_lidar_well(now) && is_unit_well(now) && is_operator_well(now);
-    if (allowed) pioneer.enable(true);
-    pioneer.drive(free ? commands.drive : Drive{});
+    if (allowed) base->enable(true);
+    base->drive(free ? commands.drive : Drive{});
     if (scan_answered != Stamp::never()) {
       delays.push_back(now - scan_answered);
       scan_answered = Stamp::never();
@@ -161,9 +165,9 @@ struct RealRobot::Impl {
       lines.push_back(silent_for("urg", underway, scanner.last_scan, now, scanner.error));
     }
     const auto [last, ready, state, hold] = base_thread->with(
-        [this] { return std::make_tuple(pioneer.last_report(), pioneer.ready(), pioneer.state(), pioneer.hold()); });
-    if (hold == Pioneer::Hold::EmergencyButton) lines.push_back("base: emergency button pressed");
-    if (hold == Pioneer::Hold::MotorsOff) lines.push_back("base: motors were switched off");
+        [this] { return std::make_tuple(base->last_report(), base->ready(), base->state(), base->hold()); });
+    if (hold == BaseDriver::Hold::EmergencyButton) lines.push_back("base: emergency button pressed");
+    if (hold == BaseDriver::Hold::MotorsOff) lines.push_back("base: motors were switched off");
     if (!ready || now - last > settings.safety.base_silence) {
       const std::string error = base_thread->error();
       lines.push_back(silent_for("base", underway, last, now, error.empty() ? state : error));
@@ -189,10 +193,10 @@ struct RealRobot::Impl {
     s.odometry = odometry;
     s.accelerations = accelerations;
     base_thread->with([&] {
-      s.motors_on = pioneer.motors_on();
-      s.battery = pioneer.battery();
-      s.bad_packets = pioneer.bad_sums();
-      s.jumps = pioneer.jumps();
+      s.motors_on = base->motors_on();
+      s.battery = base->battery();
+      s.bad_packets = base->bad_sums();
+      s.jumps = base->jumps();
     });
     if (unit_thread) {
       unit_thread->with([&] {
@@ -208,7 +212,7 @@ struct RealRobot::Impl {
   }
 
   bool is_held() const {
-    return base_thread->with([this] { return pioneer.hold() != Pioneer::Hold::None; });
+    return base_thread->with([this] { return base->hold() != BaseDriver::Hold::None; });
   }
 
   void take_scans(Stamp now) {
@@ -244,7 +248,7 @@ struct RealRobot::Impl {
   Inputs collect() {
     Inputs inputs;
     inputs.scans = std::exchange(waiting_scans, {});
-    inputs.odometry = base_thread->with([this] { return pioneer.take_odometry(); });
+    inputs.odometry = base_thread->with([this] { return base->take_odometry(); });
     if (unit_thread) {
       unit_thread->with([&] {
         inputs.accelerations = unit.take_accelerations();
@@ -355,7 +359,7 @@ void RealRobot::emergency_stop() { impl_->emergency_stop(); }
 void RealRobot::stop() { impl_->stop(); }
 
 void RealRobot::rearm() {
-  impl_->base_thread->with([this] { impl_->pioneer.rearm(); });
+  impl_->base_thread->with([this] { impl_->base->rearm(); });
   impl_->base_thread->wake();
 }
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "robot/drivers/base_driver.h"
 #include "robot/drivers/black_box.h"
 #include "robot/drivers/levelling_unit.h"
-#include "robot/drivers/pioneer.h"
 #include "robot/drivers/scanner.h"
 #include "robot/robot.h"
 
@@ -26,7 +26,10 @@ struct SafetySettings {
 
 struct RealRobotSettings {
   RobotModel model;
-  PioneerSettings base;
+  std::string base_driver = "arcos";  ///< one of base_kinds()
+  /// A program's own base, in place of base_driver; empty: none.
+  std::function<std::unique_ptr<BaseDriver>(const BaseSettings&)> own_base;
+  BaseSettings base;
   LevellingUnitSettings levelling;
   std::string base_port;
   std::string levelling_port;  ///< empty: there is none

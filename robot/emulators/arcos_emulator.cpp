@@ -18,9 +18,12 @@ constexpr double kStillSpeed = 1e-3;            // slower counts as standing [m/
 constexpr double kStillTurn = deg_to_rad(0.5);  // [rad/s]
 constexpr double kReached = 0.002;              // a commanded way is done [m]
 constexpr double kHeadingReached = deg_to_rad(0.2);
-constexpr double kStallFault = 1.0;   // [s]
-constexpr double kDeafFault = 3.0;    // [s]
-constexpr double kButtonFault = 2.0;  // [s]
+constexpr double kStallFault = 1.0;       // [s]
+constexpr double kDeafFault = 3.0;        // [s]
+constexpr double kButtonFault = 2.0;      // [s]
+constexpr double kFullBattery = 12.8;     // [V]
+constexpr double kFinestLaserStep = 0.1;  // [deg]
+constexpr int kNothingInRange = 32000;    // as far as the scanners of ARIA's simulators see [mm]
 
 double approach(double from, double to, double accel, double decel, double dt) {
   const bool faster = std::abs(to) > std::abs(from) && to * from >= 0.0;
@@ -37,7 +40,16 @@ int rounded(double value) { return static_cast<int>(std::lround(value)); }
 
 }  // namespace
 
-ArcosEmulator::ArcosEmulator(const ArcosEmulatorSettings& settings) : settings_(settings), limits_(flash()) {}
+void play_hardware(ArcosEmulatorSettings& settings) {
+  settings.identity.name = "rubble";
+  settings.configuration.serial = "EMULATED1";
+  settings.configuration.firmware = "2.6";
+  settings.is_simulator = false;
+}
+
+ArcosEmulator::ArcosEmulator(const ArcosEmulatorSettings& settings) : settings_(settings), limits_(flash()) {
+  settings_.configuration.name = settings_.identity.name;
+}
 
 ArcosEmulator::Limits ArcosEmulator::flash() const {
   const Configuration& c = settings_.configuration;
@@ -57,6 +69,7 @@ void ArcosEmulator::start_anew() {
   target_ = {};
   motors_ = held_ = false;
   encoders_ = status_ = 0;
+  laser_ = {};
 }
 
 void ArcosEmulator::client_came(Stamp /*now*/) {
@@ -78,30 +91,30 @@ void ArcosEmulator::receive(std::string_view bytes, Stamp now) {
 }
 
 void ArcosEmulator::synchronise(std::uint8_t number) {
-  const int expected = session_ == Session::Sync0 ? kSync0 : session_ == Session::Sync1 ? kSync1 : kSync2;
-  if (number != expected) {
+  const bool in_order = number == kSync0 || (number == kSync1 && session_ == Session::Sync1) ||
+                        (number == kSync2 && session_ == Session::Sync2);
+  if (!in_order) {
     session_ = Session::Sync0;
-    if (number != kSync0) return;
+    return;
   }
   if (number == kSync2) {
     send(encode(settings_.identity));
-    return;
+  } else {
+    send(std::string(1, static_cast<char>(number)));
   }
-  send(std::string(1, static_cast<char>(number)));
-  session_ = number == kSync0 ? Session::Sync1 : Session::Sync2;
+  session_ = number == kSync0 ? Session::Sync1 : number == kSync1 ? Session::Sync2 : Session::Synchronised;
 }
 
 void ArcosEmulator::open_session(Stamp now) {
   session_ = Session::Open;
   heard_ = now;
-  set_origin();
+  set_origin(settings_.odometry_start);
 }
 
 void ArcosEmulator::obey(const Order& order, Stamp now) {
   if (session_ != Session::Open) {
-    // Asked for out of its turn, a number means the same as in it; OPEN and the second SYNC differ by it.
-    const bool opens = session_ == Session::Sync2 && order.number == kOpen;
-    if (opens) return open_session(now);
+    // OPEN and the second SYNC have the same number; which it is depends on what came before.
+    if (session_ == Session::Synchronised && order.number == kOpen) return open_session(now);
     if (order.number <= kSync2) return synchronise(order.number);
     return;
   }
@@ -116,7 +129,7 @@ void ArcosEmulator::obey(const Order& order, Stamp now) {
     case kEnable:
       return switch_motors(order.value.value_or(0) != 0 && now >= pressed_until_);
     case kSetOrigin:
-      return set_origin();
+      return set_origin(settings_.odometry_start);
     case kConfig:
       return send(encode(settings_.configuration));
     case kEncoder:
@@ -178,6 +191,8 @@ void ArcosEmulator::move_by(const Order& order) {
   if (!order.value || !motors_) return;
   const int value = *order.value;
   braking_ = false;
+  // Orders to the two sides and orders to the whole end each other.
+  if (mode_ == Mode::Wheels && order.number != kWheelSpeeds) target_ = {};
   switch (order.number) {
     case kMove:
       mode_ = Mode::Move;
@@ -195,12 +210,12 @@ void ArcosEmulator::move_by(const Order& order) {
       const WheelSpeeds wheels = wheel_speeds(value);
       const double left = kWheelSpeedStep * wheels.left;
       const double right = kWheelSpeedStep * wheels.right;
-      mode_ = Mode::Speed;
+      mode_ = Mode::Wheels;
       target_ = {0.5 * (left + right), 0.5 * (right - left) / settings_.half_track};
       return;
     }
     case kVelocity:
-      if (mode_ == Mode::Move) mode_ = Mode::Speed;
+      if (mode_ != Mode::Head) mode_ = Mode::Speed;
       target_.v = kMillimetre * value;
       return;
     default:  // kTurnRate, kRotate
@@ -212,28 +227,92 @@ void ArcosEmulator::move_by(const Order& order) {
 
 /// What only simulators understand; unknown numbers are passed over in silence.
 void ArcosEmulator::simulate(const Order& order) {
+  if (!settings_.is_simulator) return;
   switch (order.number) {
     case kSimSetPose: {
       Fields fields(order.rest, 1);
       const double x = kMillimetre * fields.i32();
       const double y = kMillimetre * fields.i32();
-      placed_ = mrpt::math::TPose2D{x, y, deg_to_rad(fields.i32())};
+      return place({x, y, deg_to_rad(fields.i32())});
+    }
+    case kSimReset:
+      place(settings_.true_start);
+      mode_ = Mode::Speed;
+      target_ = {};
+      return set_origin({});
+    case kSimLaserEnable:
+    case kSimLaserStart:
+    case kSimLaserEnd:
+    case kSimLaserStep:
+    case kOldLaserEnable:
+    case kOldLaserStart:
+    case kOldLaserEnd:
+    case kOldLaserStep:
+      return set_laser(order);
+    case kSimControl:
+      if (order.value.value_or(0) == kSimTellInfo)
+        send(encode(SimInfo{settings_.identity.name, settings_.configuration.firmware, {{"laser", "laser"}}}));
+      return;
+    case kSimStat:
+      status_ = order.value.value_or(1);
+      return;
+    case kBatteryTest: {
+      const int tenths = order.value.value_or(0);
+      battery_ = tenths > 0 ? 0.1 * std::min(tenths, 255) : kFullBattery;
       return;
     }
-    case kSimStat:
-      status_ = order.value.value_or(0);
-      return;
-    case kBatteryTest:
-      battery_ = 0.1 * std::clamp(order.value.value_or(128), 0, 255);
-      return;
     default:
       return;
   }
 }
 
-/// The client's odometry frame, so that the present pose becomes the start's.
-void ArcosEmulator::set_origin() {
-  const mrpt::math::TPose2D& start = settings_.odometry_start;
+void ArcosEmulator::place(const mrpt::math::TPose2D& T_arena_base) { placed_ = T_arena_base; }
+
+void ArcosEmulator::set_laser(const Order& order) {
+  if (!order.value) return;
+  const double value = *order.value;
+  switch (order.number) {
+    case kSimLaserEnable:
+    case kOldLaserEnable:
+      laser_.mode = std::clamp(*order.value, 0, 2);
+      return;
+    case kSimLaserStart:
+    case kOldLaserStart:
+      laser_.start = std::clamp(value, -180.0, 180.0);
+      return;
+    case kSimLaserEnd:
+    case kOldLaserEnd:
+      laser_.end = std::clamp(value, -180.0, 180.0);
+      return;
+    default:
+      laser_.step = std::clamp(0.01 * std::abs(value), kFinestLaserStep, 180.0);
+  }
+}
+
+/// The readings that were asked for, each from the beam closest to its bearing. The first may lie on either side.
+void ArcosEmulator::send_scan() {
+  const LaserScan& scan = *scan_;
+  const mrpt::math::TPose2D pose = reckoned();
+  SimLaser laser;
+  laser.extended = laser_.mode == 2;
+  laser.x_mm = rounded(pose.x / kMillimetre);
+  laser.y_mm = rounded(pose.y / kMillimetre);
+  laser.heading_deg = rounded(rad_to_deg(pose.phi));
+  const double span = laser_.end - laser_.start;
+  const int steps = static_cast<int>(std::floor(std::abs(span) / laser_.step + 1e-6));
+  for (int i = 0; i <= steps; ++i) {
+    const double bearing = deg_to_rad(laser_.start + std::copysign(i * laser_.step, span));
+    const long beam = std::lround((bearing - scan.angle_min) / scan.angle_step);
+    const bool seen = beam >= 0 && beam < static_cast<long>(scan.ranges.size()) &&
+                      std::isfinite(scan.ranges[static_cast<std::size_t>(beam)]);
+    laser.ranges.push_back(seen
+                               ? rounded(static_cast<double>(scan.ranges[static_cast<std::size_t>(beam)]) / kMillimetre)
+                               : kNothingInRange);
+  }
+  for (const std::string& payload : encode(laser)) send(payload);
+}
+
+void ArcosEmulator::set_origin(const mrpt::math::TPose2D& start) {
   const double phi = odometry_.pose.phi - start.phi;
   const mrpt::math::TPoint2D back = PlanarTransform({0.0, 0.0, phi})({start.x, start.y});
   origin_ = {odometry_.pose.x - back.x, odometry_.pose.y - back.y, phi};
@@ -268,6 +347,10 @@ Drive ArcosEmulator::wanted() const {
 void ArcosEmulator::advance(Stamp now) {
   const double dt = advanced_ == Stamp::never() ? 0.0 : std::max(0.0, now - advanced_);
   advanced_ = now;
+  if (scan_ && now >= scan_->beam_stamp(scan_->ranges.size())) {
+    if (session_ == Session::Open && laser_.mode > 0) send_scan();
+    scan_.reset();
+  }
   const double watchdog = 1e-3 * settings_.configuration.watchdog_ms;
   if (session_ == Session::Open && watchdog > 0.0 && heard_ != Stamp::never() && now - heard_ > watchdog) held_ = true;
   const Drive drive = wanted();
@@ -306,6 +389,10 @@ void ArcosEmulator::report() {
   s.control = units(mode_ == Mode::Head ? heading_target_ : pose.phi);
   s.flags = (motors_ ? kMotorsOn : 0) | (advanced_ < pressed_until_ ? kEmergencyButton : 0);
   s.turn_rate = rad_to_deg(odometry_.w);
+  if (status_ > 0)
+    send(encode(SimStatus{settings_.configuration.cycle_ms, rounded(truth_.x / kMillimetre),
+                          rounded(truth_.y / kMillimetre), rounded(rad_to_deg(truth_.phi))}));
+  if (status_ == 1) status_ = 0;
   send(encode(s));
   if (encoders_ > 0) {
     const double ticks = settings_.configuration.ticks_mm / kMillimetre;
@@ -313,16 +400,12 @@ void ArcosEmulator::report() {
                          static_cast<std::int32_t>(std::llround(right_travel_ * ticks))));
   }
   if (encoders_ == 1) encoders_ = 0;
-  if (status_ > 0)
-    send(encode(SimStatus{settings_.configuration.cycle_ms, rounded(truth_.x / kMillimetre),
-                          rounded(truth_.y / kMillimetre), rounded(rad_to_deg(truth_.phi))}));
-  if (status_ == 1) status_ = 0;
 }
 
 bool ArcosEmulator::fail(DeviceFault fault, Stamp now) {
   switch (fault) {
     case DeviceFault::SetOrigin:
-      set_origin();
+      set_origin(settings_.odometry_start);
       return true;
     case DeviceFault::Stall:
       stalled_until_ = now + kStallFault;

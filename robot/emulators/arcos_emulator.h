@@ -20,7 +20,13 @@ struct ArcosEmulatorSettings {
   arcos::Configuration configuration;
   mrpt::math::TPose2D odometry_start;  ///< what OPEN and SETO set the odometry to
   double half_track = 1e-3 / 0.0034;   ///< wheel speeds are v -+ w * half_track [m]
+  mrpt::math::TPose2D true_start;      ///< where kSimReset puts the robot, arena frame
+  bool is_simulator = true;            ///< understands what only simulators do
 };
+
+/// The identity of a real robot: clients do not take it for a simulator, and it does not understand a simulator's
+/// commands.
+void play_hardware(ArcosEmulatorSettings& settings);
 
 /// Acts as a Pioneer's firmware. It is fed the robot's dead reckoning and says what the motors shall do.
 ///
@@ -42,6 +48,9 @@ class ArcosEmulator : public EmulatedDevice {
 
   /// The robot's dead reckoning at `now`, in any frame that stays.
   void measure(const Odometry& odometry, Stamp now);
+  /// A scan that will be over when its last beam is, for clients that ask a simulator for scans on this line; stamps by
+  /// the clock of `now`.
+  void measure(const LaserScan& scan) { scan_ = scan; }
   /// The robot's true pose, for clients that ask a simulator.
   void tell_truth(const mrpt::math::TPose2D& T_arena_base) { truth_ = T_arena_base; }
 
@@ -56,8 +65,8 @@ class ArcosEmulator : public EmulatedDevice {
   bool is_held() const { return held_; }
 
  private:
-  enum class Session { Sync0, Sync1, Sync2, Open };
-  enum class Mode { Speed, Head, Move };
+  enum class Session { Sync0, Sync1, Sync2, Synchronised, Open };
+  enum class Mode { Speed, Wheels, Head, Move };
 
   void start_anew();
   void obey(const arcos::Order& order, Stamp now);
@@ -66,7 +75,11 @@ class ArcosEmulator : public EmulatedDevice {
   void move_by(const arcos::Order& order);
   void set_limit(const arcos::Order& order);
   void simulate(const arcos::Order& order);
-  void set_origin();
+  void set_laser(const arcos::Order& order);
+  void send_scan();
+  void place(const mrpt::math::TPose2D& T_arena_base);
+  /// The client's odometry frame, so that the present pose becomes `start`.
+  void set_origin(const mrpt::math::TPose2D& start);
   void report();
   void switch_motors(bool on);
   Drive wanted() const;
@@ -107,11 +120,20 @@ class ArcosEmulator : public EmulatedDevice {
   mrpt::math::TPose2D origin_;  ///< where the client's odometry frame lies in the fed one
   mrpt::math::TPose2D truth_;
   std::optional<mrpt::math::TPose2D> placed_;
-  double battery_ = 12.8;      ///< [V]
-  int encoders_ = 0;           ///< 0: not sent, 1: once, 2: always
-  int status_ = 0;             ///< the same for the simulator's status
-  double left_travel_ = 0.0;   ///< [m]
-  double right_travel_ = 0.0;  ///< [m]
+  double battery_ = 12.8;  ///< [V]
+  int encoders_ = 0;       ///< 0: not sent, 1: once, 2: always
+  int status_ = 0;         ///< the same for the simulator's status
+  /// What kSimLaserEnable and its kin ask for.
+  struct LaserWish {
+    int mode = 0;        ///< 0: off, 1, 2: the packets' kind
+    double start = -90;  ///< [deg]
+    double end = 90;     ///< [deg]
+    double step = 1.0;   ///< [deg]
+  };
+  LaserWish laser_;
+  std::optional<LaserScan> scan_;  ///< not yet over
+  double left_travel_ = 0.0;       ///< [m]
+  double right_travel_ = 0.0;      ///< [m]
   Stamp stalled_until_ = Stamp::never();
   Stamp deaf_until_ = Stamp::never();
   Stamp pressed_until_ = Stamp::never();  ///< the emergency button

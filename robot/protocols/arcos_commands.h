@@ -33,12 +33,24 @@ enum Command : std::uint8_t {
   kStop = 29,
   kWheelSpeeds = 32,  ///< low byte right, high byte left, signed, 20 mm/s
   kEmergencyStop = 55,
+  kOldLaserEnable = 35,  ///< numbers of older simulators for kSimLaserEnable and what follows it
+  kOldLaserStart = 36,
+  kOldLaserEnd = 37,
+  kOldLaserStep = 38,
   kSimSetPose = 224,
-  kSimStat = 237,
-  kBatteryTest = 250,  ///< 0.1 V
+  kSimReset = 225,        ///< back to where it began, odometry to 0, 0, 0
+  kSimLaserEnable = 230,  ///< 0: off, 1: packets kSimLaserPacket, 2: kSimLaserExtendedPacket
+  kSimLaserStart = 231,   ///< deg, first reading
+  kSimLaserEnd = 232,     ///< deg, last reading
+  kSimLaserStep = 233,    ///< 0.01 deg between readings
+  kSimControl = 236,      ///< kSimTellInfo asks for the simulator's own packet; the others are not obeyed
+  kSimStat = 237,         ///< none or 1: once, 2: with every report, 0: never
+  kBatteryTest = 250,     ///< 0.1 V; 0: as it is
   kReset = 253,
   kMaintenance = 255,
 };
+
+constexpr int kSimTellInfo = 6;  ///< of kSimControl
 
 /// Whole packets, ready to be sent.
 std::string command(Command number);

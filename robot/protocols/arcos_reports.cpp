@@ -1,5 +1,6 @@
 #include "robot/protocols/arcos_reports.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "robot/protocols/arcos_commands.h"
@@ -204,6 +205,45 @@ std::string encode(const SimStatus& s) {
   put_i32(out, -1);
   for (int i = 0; i < 3; ++i) put_i32(out, 0);  // the odometry's error is not told
   return out;
+}
+
+std::string encode(const SimInfo& info) {
+  std::string out;
+  put_u8(out, kSimInfoPacket);
+  put_text(out, info.name);
+  put_text(out, info.version);
+  put_i32(out, 0);  // neither a window nor a crash before
+  put_i32(out, static_cast<std::int32_t>(info.devices.size()));
+  for (const auto& [name, type] : info.devices) {
+    put_text(out, name);
+    put_text(out, type);
+    put_u8(out, 0);
+    put_i32(out, 0);
+  }
+  return out;
+}
+
+std::vector<std::string> encode(const SimLaser& laser) {
+  std::vector<std::string> payloads;
+  for (std::size_t first = 0; first < laser.ranges.size(); first += kMostLaserReadings) {
+    const std::size_t count = std::min(kMostLaserReadings, laser.ranges.size() - first);
+    std::string out;
+    put_u8(out, laser.extended ? kSimLaserExtendedPacket : kSimLaserPacket);
+    if (!laser.extended)
+      for (const int value : {laser.x_mm, laser.y_mm, laser.heading_deg}) put_u16(out, value);
+    put_u16(out, static_cast<int>(laser.ranges.size()));
+    put_u16(out, static_cast<int>(first));
+    put_u8(out, static_cast<int>(count));
+    for (std::size_t i = first; i < first + count; ++i) {
+      put_u16(out, laser.ranges[i]);
+      if (!laser.extended) continue;
+      put_u8(out, 0);   // reflectance
+      put_u16(out, 0);  // flags
+    }
+    if (laser.extended) put_u16(out, 0);  // the laser's number, flags
+    payloads.push_back(std::move(out));
+  }
+  return payloads;
 }
 
 }  // namespace rubble::robot::arcos

@@ -14,7 +14,10 @@ enum PacketType : std::uint8_t {
   kConfigPacket = 0x20,
   kStoppedPacket = 0x32,  ///< standard information, wheels at rest
   kMovingPacket = 0x33,   ///< standard information, wheels turning
+  kSimLaserPacket = 0x60,
+  kSimLaserExtendedPacket = 0x61,
   kSimStatPacket = 0x62,
+  kSimInfoPacket = 0x63,
   kEncoderPacket = 0x90,
 };
 
@@ -90,5 +93,22 @@ struct SimStatus {
   int heading_deg = 0;
 };
 std::string encode(const SimStatus& status);
+
+/// Who the simulator is and which devices it plays, each a name and a type.
+struct SimInfo {
+  std::string name;
+  std::string version;
+  std::vector<std::pair<std::string, std::string>> devices;
+};
+std::string encode(const SimInfo& info);
+
+/// A simulator's scan in the stream of reports, up to kMostLaserReadings a payload. Ranges in mm.
+struct SimLaser {
+  bool extended = false;  ///< with reflectance and flags, which are 0; else with the odometry before it
+  int x_mm = 0, y_mm = 0, heading_deg = 0;  ///< odometry
+  std::vector<int> ranges;
+};
+constexpr std::size_t kMostLaserReadings = 32;
+std::vector<std::string> encode(const SimLaser& laser);
 
 }  // namespace rubble::robot::arcos

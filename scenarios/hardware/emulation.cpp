@@ -37,6 +37,7 @@ robot::ArcosEmulatorSettings base_settings(const robot::RobotModel& model, const
   c.turn_accel = whole(rad_to_deg(model.max_turn_accel));
   c.top_speed = std::max(c.top_speed, c.max_speed);
   c.watchdog_ms = whole(1e3 * model.command_timeout);
+  if (options.as_hardware) play_hardware(settings);
   return settings;
 }
 
@@ -90,7 +91,9 @@ class Emulation {
       : options_(options), simulated_(arena, model, scenario.sim, scenario.seed), tick_(model.tick) {
     if (!options.urg.empty()) urg_ = std::make_unique<robot::UrgEmulator>(urg_config(scenario, options));
     if (!options.base.empty()) {
-      arcos_ = std::make_unique<robot::ArcosEmulator>(base_settings(model, options));
+      robot::ArcosEmulatorSettings settings = base_settings(model, options);
+      settings.true_start = simulated_.truth().front().pose;
+      arcos_ = std::make_unique<robot::ArcosEmulator>(settings);
       base_ = std::make_unique<robot::DeviceServer>(options.base, *arcos_, scenario.seed);
     }
     if (!options.levelling.empty()) {
@@ -149,6 +152,7 @@ class Emulation {
     scan.stamp = on_host(scan.stamp);
     ++report.scans;
     if (urg_) urg_->publish(scan);
+    if (base_) base_->with([&] { arcos_->measure(scan); });
   }
 
   robot::Commands commands() {

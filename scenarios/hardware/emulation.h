@@ -40,6 +40,7 @@ struct EmulateOptions {
   const std::string& port(EmulatedKind device) const;
   std::vector<FaultAt> faults;
   mrpt::math::TPose2D odometry_start;                          ///< what the base's dead reckoning begins with
+  bool as_hardware = false;                                    ///< the base does not say that it is a simulator
   double time_limit = 0.0;                                     ///< 0: until interrupted [s]
   std::string truth;                                           ///< .tum file for the true trajectory; empty: none
   std::function<void(const std::vector<std::string>&)> ready;  ///< the ports are open: their words

@@ -76,7 +76,8 @@ RawReplay replay_raw(const std::string& run_folder) {
     result.kinds.push_back(compared("scans", recorded.scans, scans.scans));
     result.damaged_scans = scans.damaged;
   }
-  const robot::ReplayedBox box = robot::replay_black_box(entries, file.robot.base, file.robot.levelling);
+  const robot::ReplayedBox box =
+      robot::replay_black_box(entries, file.robot.base_driver, file.robot.base, file.robot.levelling);
   result.kinds.push_back(compared("odometry", recorded.odometry, box.odometry));
   result.kinds.push_back(compared("accelerations", recorded.accelerations, box.accelerations));
   result.kinds.push_back(compared("servo angles", recorded.aims, box.aims));

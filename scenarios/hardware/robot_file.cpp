@@ -36,8 +36,9 @@ void bind_lidar(Binder& b, LidarSettings& lidar, robot::RobotModel& model) {
 }
 
 void bind_base(Binder& b, robot::RealRobotSettings& r) {
-  std::string driver = "arcos";
-  b.choice("driver", driver, {"arcos"});
+  std::vector<std::string> names;
+  for (const robot::BaseKind& kind : robot::base_kinds()) names.push_back(kind.name);
+  b.choice("driver", r.base_driver, names);
   b.text("port", r.base_port);
   b.number("distance_scale", r.base.distance_scale, 0.5, 2.0);
   b.number("turn_scale", r.base.turn_scale, 0.3, 3.0);

@@ -35,6 +35,7 @@ expect_exit 2 "no device is asked for" "$rubble" emulate small.yaml
 expect_exit 2 "there is no fault 'base-fire'" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --fault base-fire@3
 expect_exit 2 "NAME@SECONDS" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --fault base-silence
 expect_exit 2 "that device is not played" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --fault urg-silence@3
+expect_exit 2 "give --base too" "$rubble" emulate small.yaml --urg tcp:127.0.0.1:0 --as-hardware
 for start in inf,0,0 0,nan,0 0,0,1e300; do
   expect_exit 2 "--odometry-start" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --time-limit 1 --odometry-start $start
 done

@@ -75,7 +75,7 @@ bool becomes_ready(Device& device, const std::string& word, double patience) {
     if (!bytes.empty()) port->write(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   };
   const Stamp end = host_now() + patience;
-  device.opened(host_now(), port->is_serial());
+  device.opened(host_now(), port->kind());
   int baud = 0;
   while (!device.ready() && host_now() < end) {
     if (port->is_serial() && device.baud() > 0 && device.baud() != baud) port->set_baud(baud = device.baud());
@@ -85,7 +85,10 @@ bool becomes_ready(Device& device, const std::string& word, double patience) {
     device.advance(host_now());
     send(device.take_output(host_now()));
   }
-  send(device.farewell());
+  for (const std::string& packet : device.farewell()) {
+    send(packet);
+    sleep_until(host_now() + Device::kPause);
+  }
   return device.ready();
 }
 
@@ -110,7 +113,7 @@ std::optional<FoundDevice> probe_levelling(const std::string& word) {
 
 /// A Pioneer or one of its kin; its motors stay off, its own odometry is set to zero.
 std::optional<FoundDevice> probe_base(const std::string& word) {
-  PioneerSettings settings;
+  BaseSettings settings;
   settings.passive = true;
   Pioneer base(settings);
   const bool is_tcp = parse_port_word(word).kind == PortKind::Tcp;

@@ -31,6 +31,13 @@ std::string value_of(const Entries& entries, const std::string& key) {
 
 }  // namespace
 
+std::pair<Stamp, Stamp> when_read(Stamp asked, Stamp answered, LineKind line, int baud) {
+  constexpr double kQuestion = 4.0, kAnswer = 15.0;  // bytes of "TM1\n" and of "TM1\n00P\nTTTTS\n\n"
+  const Stamp soonest = asked + time_on_line(line, kQuestion, baud);
+  const Stamp latest = answered - time_on_line(line, kAnswer, baud);
+  return {soonest, std::max(soonest, latest)};
+}
+
 Link::Link(std::unique_ptr<Port> port) : port_(std::move(port)) {}
 
 void Link::refuse(const std::string& what) const { throw Refused(port_->name() + ": " + what); }
@@ -186,7 +193,8 @@ void Link::ask_time(WrappingClock& clock, ClockMap& map) {
     if (!count) continue;
     const WrappingClock::Reading reading = clock.read(*count, reply->ended);
     if (reading.restarted) map.clear();
-    map.anchor(reading.time, asked, reply->ended);
+    const auto [soonest, latest] = when_read(asked, reply->ended, port_->kind(), baud_);
+    map.anchor(reading.time, soonest, latest);
   }
   insist("TM2");
 }

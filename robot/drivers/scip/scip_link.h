@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "robot/drivers/clock_map.h"
 #include "robot/drivers/port.h"
@@ -17,6 +18,10 @@ class Refused : public RunError {
  public:
   using RunError::RunError;
 };
+
+/// Between which moments the device read its clock for an answer to TM1: question and answer take their time on an
+/// Uart.
+std::pair<Stamp, Stamp> when_read(Stamp asked, Stamp answered, LineKind line, int baud);
 
 /// One connection to a SCIP device: question and answer, the handshake, the stream. Every call may throw DeviceLost;
 /// those that need an answer throw Refused without one.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "robot/drivers/scip/scan_maker.h"
+#include "robot/drivers/scip/scip_link.h"
 #include "robot/drivers/scip/scip_receiver.h"
 #include "robot/drivers/scip/scip_reply.h"
 #include "robot/drivers/scip/scip_text.h"
@@ -22,14 +23,17 @@ class Listener {
  public:
   Listener(const RangeRules& rules, ReplayedScans& out) : rules_(rules), out_(out) {}
 
-  void opened() {
+  void opened(LineKind line) {
     count_broken();
+    line_ = line;
     receiver_ = {};
     geometry_.reset();
     maker_.reset();
     stream_.clear();
     scip2_ = asked_ = false;
   }
+
+  void set_baud(const std::string& digits) { baud_ = number(digits).value_or(baud_); }
 
   void sent(const std::string& bytes, Stamp stamp) {
     const std::string command = bytes.substr(0, bytes.find('\n'));
@@ -69,7 +73,8 @@ class Listener {
       if (!count) return;
       const WrappingClock::Reading reading = maker_->clock().read(*count, reply.ended);
       if (reading.restarted) maker_->map().clear();
-      maker_->map().anchor(reading.time, question_, reply.ended);
+      const auto [soonest, latest] = when_read(question_, reply.ended, line_, baud_);
+      maker_->map().anchor(reading.time, soonest, latest);
     }
   }
 
@@ -103,6 +108,8 @@ class Listener {
   std::optional<ScanMaker> maker_;
   std::string stream_;
   Stamp question_;
+  LineKind line_ = LineKind::Tcp;
+  int baud_ = 0;
   bool scip2_ = false;
   bool asked_ = false;
 };
@@ -114,7 +121,8 @@ ReplayedScans replay_scanner(const std::vector<BlackBoxEntry>& entries, const Ra
   Listener listener(rules, replayed);
   for (const BlackBoxEntry& entry : entries) {
     if (entry.device != "urg") continue;
-    if (entry.direction == Direction::Opened) listener.opened();
+    if (entry.direction == Direction::Opened) listener.opened(line_kind(entry));
+    if (entry.direction == Direction::BitRate) listener.set_baud(entry.bytes);
     if (entry.direction == Direction::ToDevice) listener.sent(entry.bytes, entry.stamp);
     if (entry.direction == Direction::FromDevice) listener.received(entry.bytes, entry.stamp);
   }

@@ -24,6 +24,7 @@ namespace rubble::robot {
 namespace {
 
 constexpr double kSplitPause = 0.005;      // between the pieces of a split reply [s]
+constexpr std::size_t kSlowPiece = 16;     // bytes that leave together on a line with a bit rate
 constexpr double kLongestWait = 0.1;       // [s]
 constexpr std::size_t kMostPublished = 8;  // turns that wait for the thread
 
@@ -177,7 +178,7 @@ struct UrgEmulator::Impl {
     if (deaf) return;
     const auto replies = device.receive(bytes.data(), served.size, device_time(now));
     // When the stream was stopped, turns that wait to be sent are sent no more.
-    if (!replies.empty() && !device.laser_is_on()) drop_scans();
+    if (!replies.empty() && !device.laser_is_on() && config.baud == 0) drop_scans();
     for (const std::string& reply : replies) queue(reply, now, false);
   }
 
@@ -199,13 +200,26 @@ struct UrgEmulator::Impl {
     ByteFault spoilt;
     {
       const std::lock_guard<std::mutex> lock(mutex);
+      if (is_scan && config.baud > 0 && !outgoing.empty()) {
+        ++status.dropped;
+        return;
+      }
       spoilt = host_now() < fault_until ? fault : ByteFault::None;
     }
     // One after the other: nothing overtakes what waits.
     if (!outgoing.empty()) due = std::max(due, outgoing.back().due, [](Stamp a, Stamp b) { return a < b; });
+    if (config.baud > 0) return queue_slowly(bytes, due, is_scan);
     for (const std::string& piece : bad_line.spoil(bytes, spoilt)) {
       outgoing.push_back({due, piece, is_scan});
       if (spoilt == ByteFault::Split) due = due + kSplitPause;
+    }
+  }
+
+  void queue_slowly(const std::string& bytes, Stamp due, bool is_scan) {
+    for (std::size_t at = 0; at < bytes.size(); at += kSlowPiece) {
+      const std::string piece = bytes.substr(at, kSlowPiece);
+      due = due + 10.0 * static_cast<double>(piece.size()) / config.baud;
+      outgoing.push_back({due, piece, is_scan && at + kSlowPiece >= bytes.size()});
     }
   }
 

@@ -18,6 +18,8 @@ struct UrgEmulatorConfig {
   double clock_drift = 0.0;       ///< the device's clock runs slow by so much [s/s]
   std::uint32_t clock_start = 0;  ///< of the device's clock at power-up [ms]; it wraps at 2^24
   std::uint64_t seed = 1;         ///< of jitter and faults
+  int baud = 0;  ///< bytes leave at this rate, and turns that end while the line is busy are left out, as on RS-232; 0:
+                 ///< at once
   /// Called by the emulator's own thread when the last byte of a scan has been handed to the line.
   std::function<void(Stamp)> scan_sent;
 };

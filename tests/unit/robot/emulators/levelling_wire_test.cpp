@@ -18,7 +18,7 @@ class Wire {
   explicit Wire(LevellingEmulatorSettings emulator = {}, LevellingUnitSettings settings = {})
       : unit(emulator), driver(settings) {
     unit.client_came(now);
-    driver.opened(now, true);
+    driver.opened(now, LineKind::Uart);
   }
 
   void run(double seconds) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <vector>
 
 #include "base/planar.h"
 #include "robot/drivers/pioneer.h"
@@ -19,9 +20,9 @@ constexpr double kCycle = 0.1;   // of the reports [s]
 /// A robot whose wheels do what the emulator asks, exactly.
 class Wire {
  public:
-  explicit Wire(ArcosEmulatorSettings emulator = {}, PioneerSettings settings = {}) : base(emulator), driver(settings) {
+  explicit Wire(ArcosEmulatorSettings emulator = {}, BaseSettings settings = {}) : base(emulator), driver(settings) {
     base.client_came(now);
-    driver.opened(now, false);
+    driver.opened(now, LineKind::Tcp);
   }
 
   void run(double seconds) {
@@ -166,7 +167,7 @@ TEST(PioneerWire, TheWatchdogStopsARobotWithoutCommandsAndFreshOnesDoNotTripIt) 
 }
 
 TEST(PioneerWire, TheSpeedLimitHoldsWhateverIsAskedFor) {
-  PioneerSettings settings;
+  BaseSettings settings;
   settings.max_v = 0.25;
   settings.max_w = deg_to_rad(30.0);
   Wire wire({}, settings);
@@ -204,7 +205,7 @@ TEST(PioneerWire, ARobotThatIsStillOpenIsClosedFirst) {
   ASSERT_TRUE(wire.driver.ready());
   // The client was killed without CLOSE, on a line that tells nobody.
   wire.driver = Pioneer({});
-  wire.driver.opened(wire.now, false);
+  wire.driver.opened(wire.now, LineKind::Tcp);
   EXPECT_TRUE(wire.run_until([&] { return wire.driver.ready(); }, 3.0)) << wire.driver.state();
 }
 
@@ -330,9 +331,139 @@ TEST(PioneerWire, TheFarewellLeavesARobotAtRest) {
   wire.run(1.0);
   wire.go(0.5, 0.0);
   wire.run(2.0);
-  wire.base.receive(wire.driver.farewell(), wire.now);
+  for (const std::string& packet : wire.driver.farewell()) wire.base.receive(packet, wire.now);
   EXPECT_FALSE(wire.base.open());
   EXPECT_FALSE(wire.base.motors_on());
+}
+
+/// Reports are stamped with the moment they left, whatever the line: only an UART's bytes take their time.
+class ReportsOn : public testing::TestWithParam<LineKind> {};
+
+TEST_P(ReportsOn, HaveTheStampOfTheirMoment) {
+  Stamp now{1'700'000'000'000'000'000};
+  Pioneer driver{BaseSettings{}};
+  driver.opened(now, GetParam());
+  ArcosEmulator base{ArcosEmulatorSettings{}};
+  std::vector<std::pair<Stamp, std::string>> on_their_way;
+  std::vector<Stamp> left, stamps;
+  Stamp line_free = now;
+  for (int i = 0; i < 4000; ++i, now = now + kStep) {
+    driver.advance(now);
+    base.receive(driver.take_output(now), now);
+    if (i % 100 == 0) {
+      base.measure({now, {}, 0.0, 0.0, false}, now);
+      if (base.open()) left.push_back(now);
+    }
+    const std::string sent = base.take_output();
+    // What the line does to them, as docs/hardware.md says: 10 bits a byte, here at 9600 baud.
+    const double way = GetParam() == LineKind::Uart ? 10.0 * static_cast<double>(sent.size()) / 9600.0 : 0.0;
+    line_free = (line_free < now ? now : line_free) + way;
+    if (!sent.empty()) on_their_way.emplace_back(line_free, sent);
+    while (!on_their_way.empty() && on_their_way.front().first <= now) {
+      driver.receive(on_their_way.front().second, now);
+      on_their_way.erase(on_their_way.begin());
+    }
+    for (const Odometry& o : driver.take_odometry()) stamps.push_back(o.stamp);
+  }
+  ASSERT_GT(stamps.size(), 20u);
+  ASSERT_LE(stamps.size(), left.size());
+  left.resize(stamps.size());
+  // The first ones wait behind the configuration, which takes 0.15 s at 9600 baud.
+  for (std::size_t i = 3; i < stamps.size(); ++i) EXPECT_NEAR(stamps[i] - left[i], 0.0, 1.1 * kStep) << i;
+}
+
+std::string name_of(const testing::TestParamInfo<LineKind>& info) {
+  constexpr const char* kNames[] = {"Tcp", "Pty", "Usb", "Uart"};
+  return kNames[static_cast<int>(info.param)];
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryLine, ReportsOn,
+                         testing::Values(LineKind::Tcp, LineKind::Pty, LineKind::Usb, LineKind::Uart), name_of);
+
+/// The firmware wants some milliseconds between two commands.
+TEST(PioneerWire, TheFarewellIsThreePacketsApart) {
+  Wire wire;
+  wire.run(1.0);
+  EXPECT_THAT(wire.driver.farewell(),
+              testing::ElementsAre(arcos::command(arcos::kStop), arcos::command(arcos::kEnable, 0),
+                                   arcos::command(arcos::kClose)));
+  EXPECT_GE(Device::kPause, 0.003);
+}
+
+TEST(PioneerWire, ALostEchoOfASyncCostsOneMoreRound) {
+  for (const int lost : {1, 2, 3}) {
+    Wire wire;
+    int echoes = 0;
+    while (!wire.driver.ready() && wire.now < Stamp{1'700'000'010'000'000'000}) {
+      wire.now = wire.now + kStep;
+      wire.driver.advance(wire.now);
+      wire.base.receive(wire.driver.take_output(wire.now), wire.now);
+      if (++wire.steps % 100 == 0) wire.base.measure({wire.now, {}, 0.0, 0.0, false}, wire.now);
+      const std::string sent = wire.base.take_output();
+      if (!sent.empty() && ++echoes != lost) wire.driver.receive(sent, wire.now);
+    }
+    EXPECT_TRUE(wire.driver.ready()) << "echo " << lost << " lost: " << wire.driver.state();
+  }
+}
+
+TEST(ArcosEmulator, ASyncOutOfItsOrderStartsOver) {
+  using namespace arcos;
+  const auto answers = [](const std::vector<Command>& commands) {
+    ArcosEmulator base{ArcosEmulatorSettings{}};
+    base.client_came(Stamp{0});
+    std::vector<std::string> out;
+    for (const Command number : commands) {
+      base.receive(command(number), Stamp{0});
+      out.push_back(base.take_output());
+    }
+    out.emplace_back(base.open() ? "open" : "closed");
+    return out;
+  };
+  const std::string zero = command(kSync0), one = command(kSync1);
+  const std::string two = packet(encode(Identity{"MobileSim", "Pioneer", "p3at-sh"}));
+  using testing::ElementsAre;
+  // The second SYNC1 is no OPEN: SYNC2 has not been answered yet.
+  EXPECT_THAT(answers({kSync0, kSync1, kSync1, kSync2}), ElementsAre(zero, one, "", "", "closed"));
+  EXPECT_THAT(answers({kSync0, kSync2, kSync1}), ElementsAre(zero, "", "", "closed"));
+  EXPECT_THAT(answers({kSync0, kSync1, kSync2, kSync2, kOpen}), ElementsAre(zero, one, two, "", "", "closed"));
+  EXPECT_THAT(answers({kSync0, kSync1, kSync0, kSync1, kSync2, kOpen}),
+              ElementsAre(zero, one, zero, one, two, "", "open"));
+}
+
+TEST(ArcosEmulator, OrdersToTheSidesAndToTheWholeEndEachOther) {
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.0, 0.0);
+  wire.cut = true;
+  const auto say = [&](const std::string& packet) {
+    for (int i = 0; i < 20; ++i) {
+      wire.base.receive(i == 0 ? packet : arcos::command(arcos::kPulse), wire.now);
+      wire.run(0.1);
+    }
+    return wire.base.motion();
+  };
+  const Drive turning = say(arcos::command(arcos::kWheelSpeeds, 0x050A));  // left 5, right 10
+  EXPECT_NEAR(turning.v, 0.15, 1e-9);
+  EXPECT_GT(turning.w, 0.1);
+  const Drive straight = say(arcos::command(arcos::kVelocity, 200));
+  EXPECT_NEAR(straight.v, 0.2, 1e-9);
+  EXPECT_NEAR(straight.w, 0.0, 1e-9);
+  const Drive sides = say(arcos::command(arcos::kWheelSpeeds, 0x0505));
+  EXPECT_NEAR(sides.v, 0.1, 1e-9);
+  EXPECT_NEAR(sides.w, 0.0, 1e-9);
+}
+
+TEST(ArcosEmulator, ARealRobotIsNoSimulator) {
+  using namespace arcos;
+  ArcosEmulatorSettings settings;
+  play_hardware(settings);
+  Wire wire(settings);
+  wire.run(1.0);
+  EXPECT_NE(wire.driver.identity().name, "MobileSim");
+  EXPECT_NE(wire.driver.configuration().serial, "SIM");
+  EXPECT_EQ(wire.driver.configuration().name, wire.driver.identity().name);
+  wire.base.receive(sim_set_pose(1500, -2500, 90), wire.now);
+  EXPECT_FALSE(wire.base.take_placed());
 }
 
 TEST(ArcosEmulator, SynchronisesOnlyInOrder) {

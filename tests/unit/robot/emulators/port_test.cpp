@@ -74,6 +74,7 @@ TEST_P(Line, AllBytesPassUnchangedBothWays) {
   EXPECT_TRUE(server->write(all.data(), all.size()));
   EXPECT_EQ(received(*port, all.size()), all);
   EXPECT_EQ(port->is_serial(), GetParam() == "pty");
+  EXPECT_EQ(port->kind(), GetParam() == "pty" ? LineKind::Pty : LineKind::Tcp);
 }
 
 TEST_P(Line, NothingIsReadWhenNothingCame) {

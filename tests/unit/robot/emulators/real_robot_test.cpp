@@ -296,7 +296,7 @@ TEST(RealRobot, TheBlackBoxGivesTheDriversTheSameAgain) {
     odometry.insert(odometry.end(), inputs.odometry.begin(), inputs.odometry.end());
   bench.robot.reset();
   ASSERT_FALSE(bench.box.failed());
-  const ReplayedBox replayed = replay_black_box(read_black_box(bench.folder.file("devices.bytes")), {}, {});
+  const ReplayedBox replayed = replay_black_box(read_black_box(bench.folder.file("devices.bytes")), "arcos", {}, {});
   ASSERT_GE(replayed.odometry.size(), odometry.size());
   EXPECT_GT(replayed.accelerations.size(), 50u);
   std::size_t found = 0;

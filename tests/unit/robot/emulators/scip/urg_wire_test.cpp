@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -82,6 +83,50 @@ void expect_true(const Bench& bench, const LaserScan& scan, double stamp_toleran
     EXPECT_EQ(scan.codes[i], i == 200 ? 7 : 0) << i;
   }
   EXPECT_NEAR(scan.stamp - bench.scene->stamp(number), 0.0, stamp_tolerance) << number;
+}
+
+/// A pty behind which an UART is said to be: what is written takes its time, what is read does by the emulator.
+class Uart : public Port {
+ public:
+  Uart(std::unique_ptr<Port> inner, int baud) : inner_(std::move(inner)), baud_(baud) {}
+  std::size_t read(std::uint8_t* to, std::size_t size, double timeout) override {
+    return inner_->read(to, size, timeout);
+  }
+  void write(const std::uint8_t* from, std::size_t size) override {
+    sleep_until(host_now() + 10.0 * static_cast<double>(size) / baud_);
+    inner_->write(from, size);
+  }
+  int descriptor() const override { return inner_->descriptor(); }
+  const std::string& name() const override { return inner_->name(); }
+  void set_baud(int baud) override { inner_->set_baud(baud); }
+  LineKind kind() const override { return LineKind::Uart; }
+
+ private:
+  std::unique_ptr<Port> inner_;
+  int baud_;
+};
+
+/// A scan of 2137 bytes takes 185 ms at 115200 baud: some turns are left out, but none is stamped with its way.
+TEST(UrgOnAnUart, StampsAreRightWithinTheirDoubt) {
+  constexpr int kBaud = 115200;
+  UrgEmulatorConfig slow;
+  slow.baud = kBaud;
+  Bench bench("pty", slow);
+  ScipScannerConfig config;
+  config.open = [&](const std::string& word) { return std::make_unique<Uart>(open_port(word), kBaud); };
+  bench.connect(config);
+  ASSERT_TRUE(bench.more(12, 10.0)) << bench.scanner->status().error;
+  const ScannerStatus status = bench.scanner->status();
+  std::vector<double> errors;
+  for (const LaserScan& scan : bench.scans) errors.push_back(scan.stamp - bench.scene->stamp(number_of(scan)));
+  std::sort(errors.begin(), errors.end());
+  const double median = errors[errors.size() / 2];
+  std::cout << "UART: median stamp error " << 1e3 * median << " ms, doubt " << 1e3 * status.clock_doubt << " ms, "
+            << status.missed << " turns missed\n";
+  constexpr double kResolution = 0.001, kDrift = 300e-6 * 5.0;  // of the device's clock, and of a few points' slope
+  EXPECT_LE(std::abs(median), status.clock_doubt + kResolution + kDrift);
+  EXPECT_EQ(status.damaged, 0u);
+  EXPECT_GT(bench.emulator->status().dropped, 0u);
 }
 
 class UrgWire : public testing::TestWithParam<std::string> {};
