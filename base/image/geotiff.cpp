@@ -11,6 +11,7 @@
 #include <new>
 
 #include "base/error.h"
+#include "base/image/rich_tiff.h"
 #include "base/image/tiff_file.h"
 #include "base/image/tiff_pixels.h"
 #include "base/text/text_file.h"
@@ -137,6 +138,24 @@ void write_pixels(TIFF* tiff, const RgbImage& image, const std::string& path, co
   }
 }
 
+/// Goes to the largest page: others are thumbnails, or what the map was drawn over.
+void find_page(TIFF* tiff, TiffComplaint& complaint, RichTiff& result) {
+  constexpr int kMostPages = 64;
+  std::uint64_t largest = 0;
+  result.pages = 0;
+  do {
+    std::uint32_t width = 0, height = 0;
+    TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &width);
+    TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &height);
+    ++result.pages;
+    if (std::uint64_t{width} * height <= largest) continue;
+    largest = std::uint64_t{width} * height;
+    result.page = result.pages;
+  } while (result.pages < kMostPages && TIFFReadDirectory(tiff) == 1);
+  if (result.pages > 1) TIFFSetDirectory(tiff, static_cast<tdir_t>(result.page - 1));
+  complaint = {};
+}
+
 }  // namespace
 
 void write_geotiff(const std::string& path, const GeoTiff& tiff) {
@@ -166,21 +185,27 @@ void write_geotiff(const std::string& path, const GeoTiff& tiff) {
   write_text_file(path, bytes);
 }
 
-GeoTiff read_geotiff(const std::string& path, const Rgb& behind) {
+RichTiff read_rich_tiff(const std::string& path, const Rgb& behind) {
   TiffComplaint complaint;
   const TiffFile tiff = open_tiff(path, complaint);
-  GeoTiff result;
+  RichTiff rich;
+  GeoTiff& result = rich.tiff;
+  find_page(tiff.get(), complaint, rich);
   read_georeference(tiff.get(), path, result);
+  std::uint16_t orientation = ORIENTATION_TOPLEFT;
+  if (TIFFGetField(tiff.get(), TIFFTAG_ORIENTATION, &orientation) == 1) rich.orientation = orientation;
   if (result.transform && !is_invertible(*result.transform))
     throw InputError(path + ": its scale or position tags are zero or no numbers; remove them and give a world file");
   const char* description = nullptr;
   if (TIFFGetField(tiff.get(), TIFFTAG_IMAGEDESCRIPTION, &description) == 1) result.description = description;
   try {
-    result.image = read_pixels(tiff.get(), path, complaint, behind);
+    result.image = read_pixels(tiff.get(), path, complaint, behind, rich.notes);
   } catch (const std::bad_alloc&) {
     throw InputError(path + ": does not fit into memory; scale it down");
   }
-  return result;
+  return rich;
 }
+
+GeoTiff read_geotiff(const std::string& path, const Rgb& behind) { return read_rich_tiff(path, behind).tiff; }
 
 }  // namespace rubble

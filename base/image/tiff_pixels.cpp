@@ -4,10 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "base/error.h"
 #include "base/sample_range.h"
+#include "base/text/number_text.h"
 
 namespace rubble {
 namespace {
@@ -34,14 +39,17 @@ using Samples = std::array<std::uint32_t, kMaxSamples>;  ///< of one pixel
 
 class Reader {
  public:
-  Reader(TIFF* tiff, const std::string& path, const TiffComplaint& complaint, const Rgb& behind)
-      : tiff_(tiff), path_(path), complaint_(complaint), behind_(behind) {}
+  Reader(TIFF* tiff, const std::string& path, const TiffComplaint& complaint, const Rgb& behind, SampleNotes& notes)
+      : tiff_(tiff), path_(path), complaint_(complaint), behind_(behind), notes_(notes) {}
 
   RgbImage read() {
     read_layout();
     check_chunks();
     RgbImage image(static_cast<int>(layout_.width), static_cast<int>(layout_.height));
-    if (is_simple()) {
+    find_no_data();
+    if (is_measure()) {
+      read_measures(image);
+    } else if (is_simple()) {
       find_white();
       if (is_odd_white(white_, (1u << layout_.bits) - 1)) image.white = white_;
       read_tables();
@@ -72,9 +80,16 @@ class Reader {
     TIFFGetFieldDefaulted(tiff_, TIFFTAG_SAMPLEFORMAT, &l.format);
     if (TIFFGetField(tiff_, TIFFTAG_PHOTOMETRIC, &l.photometric) != 1)
       l.photometric = l.samples >= 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK;
-    if (l.format != SAMPLEFORMAT_UINT && l.format != SAMPLEFORMAT_VOID)
-      fail("has signed or floating samples; convert it: gdal_translate -ot Byte -scale");
-    if (l.bits < 1 || l.bits > 16 || l.samples < 1 || l.samples > kMaxSamples)
+    if (l.photometric == PHOTOMETRIC_CIELAB || l.photometric == PHOTOMETRIC_ICCLAB ||
+        l.photometric == PHOTOMETRIC_ITULAB)
+      fail("its colours are Lab; convert it to RGB with any image tool");
+    const bool whole = l.bits == 8 || l.bits == 16 || l.bits == 32;
+    const bool known = l.format == SAMPLEFORMAT_UINT || l.format == SAMPLEFORMAT_VOID ||
+                       (l.format == SAMPLEFORMAT_INT && whole) ||
+                       (l.format == SAMPLEFORMAT_IEEEFP && (l.bits == 32 || l.bits == 64));
+    if (!known || (is_measure() && l.photometric != PHOTOMETRIC_MINISBLACK))
+      fail("has signed or floating samples that are no grey map; convert it: gdal_translate -ot Byte -scale");
+    if (l.bits < 1 || (l.bits > 16 && !is_measure()) || l.samples < 1 || l.samples > kMaxSamples)
       fail("has " + std::to_string(l.samples) + " samples of " + std::to_string(l.bits) +
            " bits a pixel; convert it: gdal_translate -ot Byte");
     const std::uint16_t colours = l.photometric == PHOTOMETRIC_RGB ? 3 : 1;
@@ -88,6 +103,9 @@ class Reader {
         l.premultiplied = extra[i] == EXTRASAMPLE_ASSOCALPHA;
       }
     if (l.alpha < static_cast<int>(colours)) l.alpha = -1;
+    // Three bands or more of which nothing is said: programs for many bands store colours so.
+    const int bands = static_cast<int>(l.samples) - (l.alpha >= 0 ? 1 : 0);
+    if (l.photometric == PHOTOMETRIC_MINISBLACK && bands >= 3 && !is_measure()) l.photometric = PHOTOMETRIC_RGB;
     read_chunk_size();
   }
 
@@ -118,6 +136,106 @@ class Reader {
     }
     const auto chunk = static_cast<std::uint64_t>(layout_.tiled ? TIFFTileSize64(tiff_) : TIFFStripSize64(tiff_));
     if (chunk == 0 || chunk > kMaxChunk) fail("has strips or tiles of an absurd size; it is damaged");
+  }
+
+  /// Signed, floating or 32-bit: not colours but what was measured.
+  bool is_measure() const {
+    return layout_.format == SAMPLEFORMAT_INT || layout_.format == SAMPLEFORMAT_IEEEFP || layout_.bits == 32;
+  }
+
+  /// The value that means "no data" (GDAL's tag 42113, a text).
+  void find_no_data() {
+    constexpr std::uint32_t kTag = 42113;
+    const TIFFField* const field = TIFFFindField(tiff_, kTag, TIFF_ANY);
+    if (field == nullptr) return;
+    const char* text = nullptr;
+    std::uint32_t count = 0;
+    std::uint16_t short_count = 0;
+    if (TIFFFieldPassCount(field) == 0) {
+      if (TIFFGetField(tiff_, kTag, &text) != 1 || text == nullptr) return;
+      count = static_cast<std::uint32_t>(std::char_traits<char>::length(text));
+    } else if (TIFFFieldReadCount(field) == TIFF_VARIABLE2) {
+      if (TIFFGetField(tiff_, kTag, &count, &text) != 1 || text == nullptr) return;
+    } else {
+      if (TIFFGetField(tiff_, kTag, &short_count, &text) != 1 || text == nullptr) return;
+      count = short_count;
+    }
+    std::string word(text, count);
+    while (!word.empty() && (word.back() == '\0' || word.back() == ' ')) word.pop_back();
+    no_data_ = parse_number(word);
+  }
+
+  double measure(const std::uint8_t* row, std::size_t i) const {
+    const auto as = [&](auto value) {
+      std::memcpy(&value, row + i * sizeof value, sizeof value);
+      return static_cast<double>(value);
+    };
+    if (layout_.format == SAMPLEFORMAT_IEEEFP) return layout_.bits == 32 ? as(float{}) : as(double{});
+    if (layout_.format == SAMPLEFORMAT_INT)
+      return layout_.bits == 8 ? as(std::int8_t{}) : layout_.bits == 16 ? as(std::int16_t{}) : as(std::int32_t{});
+    return as(std::uint32_t{});
+  }
+
+  /// `take` gets the first sample of every pixel; NaN where there is none.
+  template <class Take>
+  void visit_measures(const Take& take) const {
+    const std::size_t stride = layout_.planes == PLANARCONFIG_SEPARATE ? 1 : layout_.samples;
+    visit_chunks([&](std::uint32_t x0, std::uint32_t y0, const std::vector<Bytes>& planes) {
+      const std::uint32_t rows = std::min(layout_.chunk_height, layout_.height - y0);
+      const std::uint32_t columns = std::min(layout_.chunk_width, layout_.width - x0);
+      for (std::uint32_t y = 0; y < rows; ++y)
+        for (std::uint32_t x = 0; x < columns; ++x) {
+          double value = measure(planes[0].data() + y * row_size(), x * stride);
+          if (!std::isfinite(value) || is_no_data(value)) value = std::nan("");
+          take(static_cast<int>(x0 + x), static_cast<int>(y0 + y), value);
+        }
+    });
+  }
+
+  bool is_no_data(double value) const {
+    return no_data_ && std::abs(value - *no_data_) <= 1e-6 * std::max(1.0, std::abs(*no_data_));
+  }
+
+  /// All colours have the value.
+  bool is_no_data(const Samples& values) const {
+    const std::size_t colours = layout_.photometric == PHOTOMETRIC_RGB ? 3 : 1;
+    return std::all_of(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(colours),
+                       [&](std::uint32_t v) { return is_no_data(static_cast<double>(v)); });
+  }
+
+  void read_measures(RgbImage& image) const {
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    visit_measures([&](int, int, double value) {
+      if (std::isnan(value) || value == -1.0) return;
+      least = std::min(least, value);
+      most = std::max(most, value);
+    });
+    constexpr double kSlack = 1e-6;
+    if (!(least >= -kSlack && most <= 255.0 + kSlack))
+      fail("has samples from " + number_text(least) + " to " + number_text(most) +
+           ", which are neither P(occupied) from 0 to 1 nor per cent from 0 to 100 nor grey levels; convert it");
+    const bool probable = most <= 1.0 + kSlack;
+    const bool percent = !probable && most <= 100.0 + kSlack;
+    if (probable || percent)
+      notes_.meaning = std::string(probable ? "P(occupied)" : "per cent occupied") + " from " + number_text(least) +
+                       " to " + number_text(most);
+    notes_.no_data.resize(image.rgb.size() / 3);
+    visit_measures([&](int x, int y, double value) {
+      constexpr double kFree = 0.4, kOccupied = 0.6;
+      constexpr int kBetween = 128;
+      int grey = kBetween;
+      if (std::isnan(value) || value == -1.0) {
+        notes_.no_data[image.index(x, y)] = 1;
+      } else if (probable || percent) {
+        const double p = probable ? value : 0.01 * value;
+        if (p <= kFree) grey = 255;
+        if (p >= kOccupied) grey = 0;
+      } else {
+        grey = static_cast<int>(std::lround(value));
+      }
+      std::fill_n(image.pixel(x, y), 3, static_cast<std::uint8_t>(grey));
+    });
   }
 
   bool is_simple() const {
@@ -178,13 +296,15 @@ class Reader {
 
   void read_chunks(RgbImage& image) {
     if (layout_.alpha >= 0) image.alpha.resize(image.rgb.size() / 3);
+    if (no_data_) notes_.no_data.resize(image.rgb.size() / 3);
     visit_chunks([&](std::uint32_t x0, std::uint32_t y0, const std::vector<Bytes>& planes) {
-      if (is_plain_rgb())
+      if (is_plain_rgb() && !no_data_)
         copy_chunk(x0, y0, planes[0], image);
       else
         visit_samples(x0, y0, planes, [&](int x, int y, const Samples& values) {
           draw_pixel(values, image.pixel(x, y));
           if (layout_.alpha >= 0) image.alpha[image.index(x, y)] = opacity(values);
+          if (no_data_) notes_.no_data[image.index(x, y)] = is_no_data(values) ? 1 : 0;
         });
     });
   }
@@ -295,7 +415,9 @@ class Reader {
   const std::string& path_;
   const TiffComplaint& complaint_;
   const Rgb& behind_;
+  SampleNotes& notes_;
   Layout layout_;
+  std::optional<double> no_data_;
   std::uint32_t white_ = 255;   ///< sample value
   std::uint32_t opaque_ = 255;  ///< sample value
   Bytes level_;
@@ -304,8 +426,9 @@ class Reader {
 
 }  // namespace
 
-RgbImage read_pixels(TIFF* tiff, const std::string& path, const TiffComplaint& complaint, const Rgb& behind) {
-  return Reader(tiff, path, complaint, behind).read();
+RgbImage read_pixels(TIFF* tiff, const std::string& path, const TiffComplaint& complaint, const Rgb& behind,
+                     SampleNotes& notes) {
+  return Reader(tiff, path, complaint, behind, notes).read();
 }
 
 }  // namespace rubble

@@ -1,21 +1,48 @@
 #include "scoring/maps/grey_levels.h"
 
 #include <algorithm>
-#include <array>
-#include <functional>
+#include <cstdlib>
 #include <opencv2/imgproc.hpp>
 
 #include "base/grid.h"
+#include "scoring/maps/grey_roles.h"
 
 namespace rubble::scoring {
 namespace {
 
-constexpr int kDarkest = 90;  // an unknown grey is between these
-constexpr int kLightest = 245;
-constexpr int kTolerance = 12;          // around the unknown grey
-constexpr double kUnknownShare = 0.01;  // of all pixels, to be a level and not the fringe of the walls
-constexpr int kWallBelow = 140;         // mixtures of black and white: at least 45 % wall
-constexpr double kPureShare = 0.999;    // pixels on the three main levels of a map that was never interpolated
+constexpr int kTolerance = 12;   // around the unknown grey, where the picture is not pure
+constexpr int kWallBelow = 140;  // of 0 (wall) to 255 (free): at least 45 % wall
+constexpr int kMostAreas = 4;    // that one map has
+constexpr double kPale = 0.85;   // lines that reach less of the walls' grey in their middle are blurred
+
+/// Greys as if walls were 0 and free ground 255.
+cv::Mat in_order(const cv::Mat& grey, const GreyRoles& roles) {
+  cv::Mat table(1, 256, CV_8U);
+  for (int g = 0; g < 256; ++g)
+    table.at<unsigned char>(g) =
+        cv::saturate_cast<unsigned char>(255.0 * (g - roles.wall) / static_cast<double>(roles.free - roles.wall));
+  cv::Mat out;
+  cv::LUT(grey, table, out);
+  return out;
+}
+
+/// Each pixel is of the level that it has.
+cv::Mat by_level(const cv::Mat& grey, const GreyRoles& roles) {
+  cv::Mat table(1, 256, CV_8U);
+  for (int g = 0; g < 256; ++g) {
+    const int to_wall = std::abs(g - roles.wall), to_free = std::abs(g - roles.free);
+    const int to_unknown = roles.unknown < 0 ? 256 : std::abs(g - roles.unknown);
+    const Occupancy o = to_wall <= std::min(to_free, to_unknown) ? Occupancy::Occupied
+                        : to_free < to_unknown                   ? Occupancy::Free
+                                                                 : Occupancy::Unknown;
+    table.at<unsigned char>(g) = static_cast<unsigned char>(o);
+  }
+  cv::Mat out;
+  cv::LUT(grey, table, out);
+  return out;
+}
+
+}  // namespace
 
 cv::Mat grey_of(const RgbImage& image) {
   cv::Mat grey(image.height, image.width, CV_8U);
@@ -29,29 +56,6 @@ cv::Mat grey_of(const RgbImage& image) {
   return grey;
 }
 
-using Histogram = std::array<std::size_t, 256>;
-
-Histogram histogram(const cv::Mat& grey, const cv::Mat& transparent) {
-  Histogram count{};
-  for (int y = 0; y < grey.rows; ++y)
-    for (int x = 0; x < grey.cols; ++x)
-      if (transparent.at<unsigned char>(y, x) == 0) ++count[grey.at<unsigned char>(y, x)];
-  return count;
-}
-
-/// The most frequent grey between dark and light, or -1.
-int unknown_level(const Histogram& count, double total) {
-  const auto peak = std::max_element(count.begin() + kDarkest, count.begin() + kLightest + 1);
-  return static_cast<double>(*peak) >= kUnknownShare * total ? static_cast<int>(peak - count.begin()) : -1;
-}
-
-bool is_pure(Histogram count, double total) {
-  std::sort(count.begin(), count.end(), std::greater<>());
-  return static_cast<double>(count[0] + count[1] + count[2]) >= kPureShare * total;
-}
-
-}  // namespace
-
 cv::Mat transparent_pixels(const RgbImage& image) {
   cv::Mat out = cv::Mat::zeros(image.height, image.width, CV_8U);
   if (image.alpha.empty()) return out;
@@ -61,29 +65,37 @@ cv::Mat transparent_pixels(const RgbImage& image) {
   return out;
 }
 
-LabelImage classify_grey(const RgbImage& image) {
+LabelImage classify_grey(const RgbImage& image, const cv::Mat& apart) {
   const cv::Mat grey = grey_of(image);
-  const cv::Mat transparent = transparent_pixels(image);
-  const Histogram count = histogram(grey, transparent);
-  const double total = static_cast<double>(grey.total()) - cv::countNonZero(transparent);
-  const int level = unknown_level(count, total);
+  const GreyRoles roles = grey_roles(grey, apart);
   LabelImage out;
-  out.classes = cv::Mat(grey.size(), CV_8U, cv::Scalar(static_cast<int>(Occupancy::Free)));
-  out.classes.setTo(static_cast<int>(Occupancy::Occupied), grey < kWallBelow);
-  if (level < 0) {
-    out.recognised = "grey levels without unknown";
+  out.recognised = "grey levels, " + roles.text();
+  if (roles.areas > kMostAreas)
+    out.refusal = "covers areas with " + std::to_string(roles.areas) +
+                  " different greys or colours, as an image of room labels does; give the map that it was made from";
+  if (!roles.pure && roles.between)
+    out.refusal =
+        "has thin lines of grey " + std::to_string(roles.wall) +
+        " between darker and lighter areas, and was blended: walls and borders look the same; save it without "
+        "interpolation, smoothing or loss";
+  if (roles.unknown >= 0) out.recognised += cv::format(" (%.0f %% sure)", 100.0 * roles.sure);
+  if (roles.pure) {
+    out.classes = by_level(grey, roles);
     return out;
   }
-  out.recognised = "grey levels, unknown " + std::to_string(level);
-  cv::Mat unknown = (grey >= level - kTolerance) & (grey <= level + kTolerance);
-  if (!is_pure(count, total)) {
-    // The fringe between a wall and free space passes through the same grey: only an area of it is unknown, and its
-    // rim is a mixture with wall or free.
-    cv::morphologyEx(unknown, unknown, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
-    cv::Mat rim;
-    cv::dilate(unknown, rim, cv::Mat::ones(3, 3, CV_8U));
-    unknown |= rim & (grey >= 0.55 * level) & (grey <= level + kTolerance);
-  }
+  const cv::Mat even = in_order(grey, roles);
+  out.classes = cv::Mat(grey.size(), CV_8U, cv::Scalar(static_cast<int>(Occupancy::Free)));
+  out.classes.setTo(static_cast<int>(Occupancy::Occupied), even < kWallBelow);
+  if (roles.unknown < 0) return out;
+  // The fringe between a wall and free space passes through the same grey: only an area of it is unknown, and its
+  // rim is a mixture with wall or free.
+  cv::Mat unknown = (grey >= roles.unknown - kTolerance) & (grey <= roles.unknown + kTolerance);
+  cv::morphologyEx(unknown, unknown, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
+  cv::Mat rim;
+  cv::dilate(unknown, rim, cv::Mat::ones(3, 3, CV_8U));
+  const double level = 255.0 * (roles.unknown - roles.wall) / (roles.free - roles.wall);
+  unknown |=
+      roles.in_order() ? rim & (even >= 0.55 * level) & (even <= level + kTolerance) : rim & (even >= kWallBelow);
   out.classes.setTo(static_cast<int>(Occupancy::Unknown), unknown);
   return out;
 }

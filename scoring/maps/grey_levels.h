@@ -11,13 +11,16 @@ namespace rubble::scoring {
 struct LabelImage {
   cv::Mat classes;
   std::string recognised;
+  std::string refusal{};  ///< why the image is no map; empty: it is one
 };
 
 /// 255 where the image is more transparent than not.
 cv::Mat transparent_pixels(const RgbImage& image);
 
-/// Walls dark, free light, unknown the most frequent grey between; without such a grey everything light is free.
-/// Transparent pixels have no say in what the levels are.
-LabelImage classify_grey(const RgbImage& image);
+/// Brightness, CV_8U.
+cv::Mat grey_of(const RgbImage& image);
+
+/// By what the greys stand for (grey_roles()). Pixels `apart` (CV_8U, 255) have no say in that.
+LabelImage classify_grey(const RgbImage& image, const cv::Mat& apart);
 
 }  // namespace rubble::scoring

@@ -82,4 +82,32 @@ std::optional<ImageHeader> image_header(std::string_view bytes) {
   return std::nullopt;
 }
 
+std::string other_format(std::string_view bytes) {
+  const auto begins = [&](std::string_view magic) { return bytes.substr(0, magic.size()) == magic; };
+  if (begins("GIF8")) return "a GIF";
+  if (begins("RIFF") && bytes.substr(8, 4) == "WEBP") return "a WebP picture";
+  if (bytes.substr(4, 4) == "jP  " || begins("\xFF\x4F\xFF\x51")) return "a JPEG 2000 picture";
+  if (begins("\x59\xA6\x6A\x95")) return "a Sun raster";
+  if (begins("%PDF")) return "a PDF";
+  if (begins("%!PS")) return "PostScript";
+  if (begins("8BPS")) return "a Photoshop file";
+  if (begins("gimp xcf")) return "a GIMP file";
+  if (begins("\x76\x2F\x31\x01")) return "an OpenEXR picture";
+  if (begins("#?RADIANCE")) return "a Radiance picture";
+  if (begins("P7")) return "a PAM";
+  if (begins("PF\n") || begins("Pf\n")) return "a PFM";
+  if (begins("II*") || begins("II+") || begins(std::string_view("MM\0*", 4)))
+    return "a TIFF that is not called .tif or .tiff";
+  if (begins("PK\x03\x04")) return "a ZIP archive";
+  if (bytes.substr(4, 4) == "ftyp") return "a HEIF or AVIF picture";
+  if (bytes.substr(0, 512).find("<svg") != std::string_view::npos) return "an SVG drawing";
+  // Targa has no magic: types of colour map and picture, and bits a pixel.
+  if (bytes.size() > 18) {
+    const std::int64_t map = byte_at(bytes, 1), type = byte_at(bytes, 2), bits = byte_at(bytes, 16);
+    const bool is_type = type == 1 || type == 2 || type == 3 || type == 9 || type == 10 || type == 11;
+    if (map <= 1 && is_type && (bits == 8 || bits == 16 || bits == 24 || bits == 32)) return "a Targa picture";
+  }
+  return "";
+}
+
 }  // namespace rubble::scoring

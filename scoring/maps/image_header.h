@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace rubble::scoring {
@@ -15,5 +16,8 @@ struct ImageHeader {
 /// Width and height in the header of a PNG, JPEG, BMP or PNM file (its beginning is enough, of a JPEG all up to its
 /// frame header). Nothing for other formats, or where the header is not whole.
 std::optional<ImageHeader> image_header(std::string_view bytes);
+
+/// The name of another format that files begin like this: "a GIF", "a PDF"; empty: none that is known.
+std::string other_format(std::string_view bytes);
 
 }  // namespace rubble::scoring

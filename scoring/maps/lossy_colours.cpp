@@ -9,6 +9,7 @@ namespace {
 
 constexpr float kWhite = 255.0F;
 constexpr float kWallBrightness = 37.0F;  // of 0,40,120
+constexpr float kMostBlue = 80.0F;        // Cb of walls, whose own is 47; of QR codes 115
 
 struct Tinted {
   cv::Mat ink;   ///< CV_32F, 1: as dark as a wall, 0: white
@@ -30,6 +31,21 @@ Tinted tints(const RgbImage& image) {
   return out;
 }
 
+/// The colours around each pixel (Gaussian, `sigma` pixels), summed and divided by the ink that they belong to.
+Tinted around(const Tinted& t, double sigma) {
+  constexpr float kDark = 0.35F;  // ink that counts
+  cv::Mat ink = t.ink.clone();
+  ink.setTo(0.0F, t.ink < kDark);
+  Tinted out;
+  cv::GaussianBlur(ink, out.ink, {}, sigma);
+  out.ink = cv::max(out.ink, 1e-6F);
+  cv::GaussianBlur(t.blue, out.blue, {}, sigma);
+  cv::GaussianBlur(t.red, out.red, {}, sigma);
+  out.blue /= out.ink;
+  out.red /= out.ink;
+  return out;
+}
+
 }  // namespace
 
 bool has_run_colours(const RgbImage& image) {
@@ -47,31 +63,27 @@ bool has_run_colours(const RgbImage& image) {
       else if (high - low >= kFaint && !searched)
         ++faint;
     }
-  return 5 * faint > 9 * strong;
+  return 20 * faint > 21 * strong;
 }
 
 cv::Mat walls_by_brightness(const RgbImage& image) {
-  constexpr double kSmear = 2.5;  // [pixels]
-  constexpr float kDark = 0.35F;  // ink that counts
   constexpr float kSure = 0.62F;
   constexpr float kWall = 0.48F;
   const Tinted t = tints(image);
-  cv::Mat ink = t.ink.clone();
-  ink.setTo(0.0F, t.ink < kDark);
-  cv::Mat sum, blue, red;
-  cv::GaussianBlur(ink, sum, {}, kSmear);
-  cv::GaussianBlur(t.blue, blue, {}, kSmear);
-  cv::GaussianBlur(t.red, red, {}, kSmear);
+  // Between symbols the colour near by is the wall's own, in the open the one around.
+  const Tinted near = around(t, 1.0);
+  const Tinted wide = around(t, 2.5);
   cv::Mat weak(t.ink.size(), CV_8U);
   cv::Mat sure(t.ink.size(), CV_8U);
   for (int y = 0; y < weak.rows; ++y)
     for (int x = 0; x < weak.cols; ++x) {
       const float a = t.ink.at<float>(y, x);
-      const float s = std::max(1e-6F, sum.at<float>(y, x));
-      const float cb = blue.at<float>(y, x) / s;
-      const float cr = red.at<float>(y, x) / s;
-      weak.at<unsigned char>(y, x) = a >= kWall && cb > 12.0F && cr < 12.0F ? 255 : 0;
-      sure.at<unsigned char>(y, x) = a >= kSure && cb > 20.0F && cr < 2.0F ? 255 : 0;
+      const auto is = [&](const Tinted& c, float least_blue, float most_red) {
+        const float blue = c.blue.at<float>(y, x);
+        return blue > least_blue && blue < kMostBlue && c.red.at<float>(y, x) < most_red;
+      };
+      weak.at<unsigned char>(y, x) = a >= kWall && (is(wide, 12.0F, 12.0F) || is(near, 12.0F, 6.0F)) ? 255 : 0;
+      sure.at<unsigned char>(y, x) = a >= kSure && is(wide, 20.0F, 2.0F) ? 255 : 0;
     }
   cv::Mat labels;
   const int count = cv::connectedComponents(weak, labels, 8, CV_32S);
@@ -93,9 +105,11 @@ cv::Mat unexplored_by_brightness(const RgbImage& image) {
       brightness.at<unsigned char>(y, x) =
           static_cast<unsigned char>((299 * p[0] + 587 * p[1] + 114 * p[2] + 500) / 1000);
     }
+  // The grid of explored ground, lines of a pixel or two, is no shade of it.
+  cv::morphologyEx(brightness, brightness, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8U));
   cv::Mat middle;
   cv::medianBlur(brightness, middle, 5);
-  return (middle >= 220) & (middle <= 243);
+  return (middle >= 220) & (middle <= 246);
 }
 
 }  // namespace rubble::scoring

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "base/grid.h"
-#include "base/image/geotiff.h"
+#include "base/image/rich_tiff.h"
 
 namespace rubble::scoring {
 
@@ -11,14 +11,15 @@ namespace rubble::scoring {
 struct ClassImage {
   Grid<Occupancy> classes;  ///< frame: 1 m a cell at the origin, row 0 is the image's lowest row
   std::string recognised;   ///< "league colours", "grey levels, unknown 205", ...
+  std::string refusal;      ///< why this is no map of occupancy, and how to mend it; empty: it is one
   bool is_league = false;   ///< has the league's colours, so that its drawings mean something
 };
 
 /// Reduces any map image to {occupied, free, unknown}. League maps (RoboCupRescue GeoTIFF colours, as hector_geotiff
 /// and crosbot draw them) lose their drawings: path, arrow, victims, hazards, QR codes, grid, scale, axes and file name
-/// take the class around them. Grey maps: walls dark, free light, unknown the grey between that covers most of the
-/// image. Images that were turned or resampled with interpolation are understood: mixtures of two colours count as the
-/// nearer one, and corners filled in by the turning as unknown.
-ClassImage classify(const RgbImage& image);
+/// take the class around them. Grey maps: what a grey stands for is decided by the shape and place
+/// of what has it (grey_roles()). Images that were turned or resampled with interpolation are understood: mixtures of
+/// two colours count as the nearer one, and corners filled in by the turning as unknown.
+ClassImage classify(const RgbImage& image, const SampleNotes& notes = {});
 
 }  // namespace rubble::scoring

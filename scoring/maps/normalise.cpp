@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "base/error.h"
-#include "base/image/geotiff.h"
+#include "base/image/rich_tiff.h"
 #include "scoring/maps/league_palette.h"
 #include "scoring/maps/map_colours.h"
 #include "scoring/maps/raster_image.h"
@@ -23,23 +23,66 @@ constexpr double kMinResolution = 0.001;  // [m] a pixel
 constexpr double kMaxResolution = 2.0;
 constexpr double kSquare = 0.01;  // sides of a pixel may differ by this share
 
-std::string lower_extension(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
+  return text;
 }
 
-/// A world file beside the image: map.tif -> map.tfw, map.png -> map.pgw, or map.wld.
-std::optional<PixelToModel> world_file_beside(const std::string& path) {
-  const std::string extension = lower_extension(path);
-  std::vector<std::string> names = {".wld"};
-  if (extension.size() >= 3) names.insert(names.begin(), std::string{'.', extension[1], extension.back(), 'w'});
-  for (const std::string& name : names) {
-    const fs::path candidate = fs::path(path).replace_extension(name);
-    if (fs::exists(candidate)) return read_world_file(candidate.string());
+std::string lower_extension(const std::string& path) { return lower(fs::path(path).extension().string()); }
+
+/// What programs call the world file of an image with this extension, by their habits: .tfw, .tifw, both with x, .wld.
+std::vector<std::string> world_endings(const std::string& extension) {
+  std::vector<std::string> out;
+  if (extension.size() >= 3) {
+    const std::string brief = {'.', extension[1], extension.back(), 'w'};
+    for (const std::string& name : {brief, extension + "w", brief + "x", extension + "wx"}) out.push_back(name);
+    if (extension == ".tif" || extension == ".tiff")
+      for (const char* name : {".tifw", ".tiffw", ".tifwx", ".tiffwx"}) out.push_back(name);
   }
+  out.push_back(".wld");
+  return out;
+}
+
+/// A world file or .aux.xml beside the image, its ending in upper or lower case, behind the image's name with or
+/// without its extension.
+std::optional<PixelToModel> world_file_beside(const std::string& path) {
+  const fs::path image(path);
+  const fs::path folder = image.has_parent_path() ? image.parent_path() : fs::path(".");
+  std::vector<std::string> beside;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.compare(0, image.stem().string().size(), image.stem().string()) == 0) beside.push_back(name);
+  }
+  std::sort(beside.begin(), beside.end());
+  const auto find = [&](const std::string& ending) -> std::optional<std::string> {
+    for (const std::string& stem : {image.stem().string(), image.filename().string()})
+      for (const std::string& name : beside)
+        if (name.size() == stem.size() + ending.size() && name.compare(0, stem.size(), stem) == 0 &&
+            lower(name.substr(stem.size())) == ending)
+          return (folder / name).string();
+    return std::nullopt;
+  };
+  for (const std::string& ending : world_endings(lower_extension(path)))
+    if (const auto name = find(ending)) return read_world_file(*name);
+  if (const auto name = find(".aux.xml")) return read_aux_xml(*name);
   return std::nullopt;
+}
+
+/// Metres on the ground that a metre of the map's plane stands for: web Mercator (EPSG:3857) is stretched more and more
+/// towards the poles. Exact on the ellipsoid of WGS 84, the mean of north and east.
+double ground_metres(const GeoTiff& tiff) {
+  constexpr int kWebMercator = 3857;
+  constexpr int kWebMercatorOfOld = 3785;
+  if (!tiff.transform || (tiff.epsg != kWebMercator && tiff.epsg != kWebMercatorOfOld)) return 1.0;
+  constexpr double kRadius = 6378137.0;          // [m]
+  constexpr double kEccentricity2 = 6.69438e-3;  // squared
+  const PixelToModel& t = *tiff.transform;
+  const double northing = t.f + 0.5 * (t.d * tiff.image.width + t.e * tiff.image.height);
+  const double latitude = std::atan(std::sinh(northing / kRadius));
+  const double sine = std::sin(latitude);
+  return std::cos(latitude) * std::sqrt(1.0 - kEccentricity2) / (1.0 - kEccentricity2 * sine * sine);
 }
 
 void check_resolution(const std::string& path, double resolution) {
@@ -96,31 +139,42 @@ bool counts_from_the_start(const PixelToModel& t) {
 LoadedMap load_image(const std::string& path, const LoadOptions& options) {
   const std::string extension = lower_extension(path);
   const bool is_tiff = extension == ".tif" || extension == ".tiff";
-  GeoTiff tiff;
-  if (is_tiff)
-    tiff = read_geotiff(path, league::kUnexplored);
-  else
-    tiff.image = read_rgb(path);
+  RichTiff rich;
+  GeoTiff& tiff = rich.tiff;
+  std::optional<PixelToModel> beside;
+  if (is_tiff) {
+    rich = read_rich_tiff(path, league::kUnexplored);
+    if (!tiff.transform) beside = world_file_beside(path);
+    // Coordinates count from the stored rows and columns, whichever way up a viewer shows them.
+    if (!tiff.transform && !beside) turn_upright(rich);
+  } else {
+    beside = world_file_beside(path);
+    tiff.image = read_rgb(path, beside ? Upright::AsStored : Upright::AsSeen);
+  }
   check_image_size(path, tiff.image.width, tiff.image.height);
 
   std::string source = is_tiff ? "GeoTIFF" : "image";
-  std::optional<PixelToModel> transform = tiff.transform;
-  if (!transform && (transform = world_file_beside(path)))
-    source = is_tiff ? "TIFF with world file" : "image with world file";
+  if (is_tiff && rich.pages > 1)
+    source += ", page " + std::to_string(rich.page) + " of " + std::to_string(rich.pages) + ",";
+  if (beside) source = is_tiff ? "TIFF with world file" : "image with world file";
+  const std::optional<PixelToModel> transform = tiff.transform ? tiff.transform : beside;
   if (!transform && !options.resolution)
     throw InputError(path + ": says nothing about its scale; give --resolution METRES_A_PIXEL or put a world file (" +
                      (is_tiff ? ".tfw" : ".wld") + ") beside it");
   const bool given = options.resolution && (options.overrides || !transform);
-  const double resolution = given ? *options.resolution : pixel_size(path, *transform);
+  const double ground = ground_metres(tiff);
+  const double resolution = given ? *options.resolution : ground * pixel_size(path, *transform);
   check_resolution(path, resolution);
-  if (given && transform && std::abs(pixel_size(path, *transform) - resolution) > 1e-9) transform.reset();
+  const bool tags_hold = transform && (!given || std::abs(ground * pixel_size(path, *transform) - resolution) <= 1e-9);
+  if (ground != 1.0 && !given) source += cv::format(" in web Mercator (%.4f m on the ground a metre)", ground);
 
-  const ClassImage classes = classify(tiff.image);
+  const ClassImage classes = classify(tiff.image, rich.notes);
+  if (!classes.refusal.empty()) throw InputError(path + ": " + classes.refusal);
   LoadedMap out;
-  out.transform = transform;
-  if (transform) out.origin = counts_from_the_start(*transform) ? MapOrigin::Local : MapOrigin::Earth;
-  out.grid = place(classes.classes, resolution, transform);
-  if (classes.is_league) out.symbols = place_symbols(tiff.image, out.grid.frame(), is_south_up(transform));
+  if (tags_hold) out.transform = transform;
+  if (tags_hold) out.origin = counts_from_the_start(*transform) ? MapOrigin::Local : MapOrigin::Earth;
+  out.grid = place(classes.classes, resolution, out.transform);
+  if (classes.is_league) out.symbols = place_symbols(tiff.image, out.grid.frame(), is_south_up(out.transform));
   out.recognised = source + cv::format(" %g m a pixel, %d x %d, ", resolution, out.grid.width(), out.grid.height()) +
                    classes.recognised;
   return out;

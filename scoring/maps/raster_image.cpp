@@ -80,17 +80,22 @@ void check_header(const std::string& path) {
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(file.gcount()));
   const auto header = image_header(bytes);
+  if (const std::string other = other_format(bytes); !header && !other.empty())
+    throw InputError(path + ": is " + other + ", which is not read; save the map as PNG or GeoTIFF");
   if (!header) throw InputError(path + ": not an image that can be read (PNG, PGM, BMP, JPEG), or damaged");
   check_image_size(path, header->width, header->height);
 }
 
-cv::Mat read_raster(const std::string& path, std::uint32_t& white) {
+cv::Mat read_raster(const std::string& path, Upright upright, std::uint32_t& white) {
   check_header(path);
   if (is_cut_short(path)) throw InputError(path + ": the image is cut short; copy the file again");
   cv::Mat image;
   const StderrCapture capture;
   try {
     image = cv::imread(path, cv::IMREAD_UNCHANGED);
+    // This flag is the one that leaves pictures as they are stored; a picture with opacity is stored upright.
+    if (upright == Upright::AsSeen && image.channels() != 4)
+      image = cv::imread(path, cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH);
   } catch (const cv::Exception&) {
     throw InputError(path + ": the image cannot be decoded; is it complete, and at most 10000 x 10000 pixels?");
   }
@@ -106,14 +111,14 @@ cv::Mat read_raster(const std::string& path, std::uint32_t& white) {
 
 }  // namespace
 
-cv::Mat read_raster(const std::string& path) {
+cv::Mat read_raster(const std::string& path, Upright upright) {
   std::uint32_t white = 0;
-  return read_raster(path, white);
+  return read_raster(path, upright, white);
 }
 
-RgbImage read_rgb(const std::string& path) {
+RgbImage read_rgb(const std::string& path, Upright upright) {
   std::uint32_t white = 0;
-  const cv::Mat image = read_raster(path, white);
+  const cv::Mat image = read_raster(path, upright, white);
   RgbImage out(image.cols, image.rows);
   out.white = white;
   cv::Mat view(image.rows, image.cols, CV_8UC3, out.rgb.data());

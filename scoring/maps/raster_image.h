@@ -10,12 +10,15 @@ namespace rubble::scoring {
 constexpr int kMaxImageSide = 20000;               ///< [pixels]
 constexpr std::int64_t kMaxImageArea = 100000000;  ///< [pixels]
 
-/// Any image OpenCV reads, as stored (1, 3 or 4 channels of 8 bit; deeper ones are scaled by the range they use).
-/// Throws InputError: missing, not an image, too large.
-cv::Mat read_raster(const std::string& path);
+/// What to do where a picture says how to turn it (EXIF).
+enum class Upright { AsSeen, AsStored };
+
+/// Any PNG, JPEG, BMP or PNM (1, 3 or 4 channels of 8 bit; deeper ones are scaled by the range they use).
+/// Throws InputError: missing, not such an image (others are named), too large.
+cv::Mat read_raster(const std::string& path, Upright upright = Upright::AsStored);
 
 /// The same as RGB; transparent pixels show the league's grey of unexplored ground.
-RgbImage read_rgb(const std::string& path);
+RgbImage read_rgb(const std::string& path, Upright upright = Upright::AsSeen);
 
 /// Throws InputError when the sides are out of range.
 void check_image_size(const std::string& path, std::int64_t width, std::int64_t height);

@@ -1,6 +1,5 @@
 #include "scoring/maps/ros_map.h"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
@@ -31,6 +30,10 @@ OccupancyGrid read_ros_map(const std::string& yaml_path) {
   const std::string negate_text = root.text("negate", "0");
   const bool negate = negate_text == "1" || negate_text == "true" || negate_text == "True";
 
+  const std::string mode = root.text("mode", "trinary");
+  if (mode != "trinary" && mode != "scale" && mode != "raw")
+    root.fail("mode", "is '" + mode + "'; there are trinary, scale and raw");
+
   const std::filesystem::path image_path = std::filesystem::path(yaml_path).parent_path() / image_name;
   const cv::Mat image = read_raster(image_path.string());
   OccupancyGrid grid(GridFrame{image.cols, image.rows, resolution, origin.empty() ? 0.0 : origin[0],
@@ -53,6 +56,15 @@ OccupancyGrid read_ros_map(const std::string& yaml_path) {
       for (int i = 0; i < colours; ++i) sum += p[i];
       const double light = sum / (255.0 * colours);
       const double occupancy = negate ? light : 1.0 - light;
+      // raw: the sample itself is per cent occupied, and what is above is unknown. scale differs from trinary in what
+      // lies between the thresholds only, and there nothing is known well enough.
+      if (mode == "raw") {
+        const double percent = std::round(255.0 * (negate ? 1.0 - light : light));
+        if (percent > 100.0) continue;
+        if (percent > 100.0 * occupied_thresh) grid[{x, y}] = Occupancy::Occupied;
+        if (percent < 100.0 * free_thresh) grid[{x, y}] = Occupancy::Free;
+        continue;
+      }
       if (occupancy > occupied_thresh)
         grid[{x, y}] = Occupancy::Occupied;
       else if (occupancy < free_thresh)

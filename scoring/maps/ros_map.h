@@ -6,8 +6,8 @@
 
 namespace rubble::scoring {
 
-/// Reads a ROS map: YAML with image, resolution, origin, negate, occupied_thresh, free_thresh (map_server's rules, mode
-/// trinary), and the image beside it; one in league colours is read by these, not by the thresholds. Transparent pixels
+/// Reads a ROS map: YAML with image, resolution, origin, negate, occupied_thresh, free_thresh, mode (map_server's
+/// rules), and the image beside it; one in league colours is read by these, not by the thresholds. Transparent pixels
 /// are unknown. The yaw of the origin does not turn the grid. Throws InputError with file and line.
 OccupancyGrid read_ros_map(const std::string& yaml_path);
 

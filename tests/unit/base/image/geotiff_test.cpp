@@ -14,6 +14,7 @@
 
 #include "base/angle.h"
 #include "base/error.h"
+#include "base/image/rich_tiff.h"
 #include "base/rng.h"
 #include "base/text/text_file.h"
 #include "tests/support/base_files.h"
@@ -100,6 +101,26 @@ TEST(GeoTiff, APlainImageHasNoScale) {
   EXPECT_FALSE(again.transform);
   EXPECT_EQ(again.epsg, 0);
   EXPECT_TRUE(again.description.empty());
+}
+
+TEST(Upright, IsUndoneByTheOppositeOrientation) {
+  RgbImage image = picture(7, 4);
+  image.alpha.resize(28);
+  for (std::size_t i = 0; i < image.alpha.size(); ++i) image.alpha[i] = static_cast<std::uint8_t>(i);
+  for (const auto& [there, back] :
+       {std::pair{1, 1}, {2, 2}, {3, 3}, {4, 4}, {5, 5}, {6, 8}, {7, 7}, {8, 6}, {0, 1}, {9, 1}}) {
+    const RgbImage turned = upright(image, there);
+    const RgbImage again = upright(turned, back);
+    EXPECT_EQ(turned.width, there >= 5 && there <= 8 ? image.height : image.width);
+    EXPECT_EQ(again.rgb, image.rgb) << there;
+    EXPECT_EQ(again.alpha, image.alpha) << there;
+    if (there > 1 && there < 9) {
+      EXPECT_NE(turned.alpha, image.alpha) << there;
+    }
+  }
+  // TIFF 6.0: orientation 6 has row 0 at the right and column 0 at the top.
+  EXPECT_EQ(upright(image, 6).alpha[3], image.alpha[0]);
+  EXPECT_EQ(upright(image, 8).alpha[upright(image, 8).index(0, 6)], image.alpha[0]);
 }
 
 TEST(GeoTiff, SameInputSameBytes) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <opencv2/imgproc.hpp>
+
 #include "base/grid.h"
 
 namespace rubble::scoring {
@@ -33,6 +35,36 @@ TEST(CanvasCorners, LeaveTheMapAsItIs) {
   clear_canvas_corners(classes);
   EXPECT_EQ(cv::countNonZero(classes == value(Occupancy::Free)), kSide * kSide / 2);
   EXPECT_EQ(cv::countNonZero(classes == value(Occupancy::Occupied)), kSide * kWall);
+}
+
+/// A grey map turned on a canvas of one grey: nothing of the map is lost, whatever the grey is.
+TEST(CanvasCorners, OfAGreyPictureAreFoundWhateverTheirGrey) {
+  for (const int canvas : {0, 90, 255}) {
+    cv::Mat map(kSide, kSide, CV_8U, cv::Scalar(205));
+    cv::rectangle(map, {40, 40}, {160, 160}, cv::Scalar(254), cv::FILLED);
+    cv::rectangle(map, {40, 40}, {160, 160}, cv::Scalar(0), 2);
+    cv::line(map, {100, 40}, {100, 120}, cv::Scalar(0), 2);
+    const cv::Mat turn = cv::getRotationMatrix2D(cv::Point2d(kSide / 2, kSide / 2), 20.0, 0.7);
+    cv::Mat turned, inside;
+    cv::warpAffine(map, turned, turn, map.size(), cv::INTER_NEAREST, cv::BORDER_CONSTANT, cv::Scalar(canvas));
+    cv::warpAffine(cv::Mat(map.size(), CV_8U, cv::Scalar(255)), inside, turn, map.size(), cv::INTER_NEAREST);
+    const cv::Mat found = canvas_corners(turned);
+    EXPECT_EQ(cv::countNonZero(~inside & ~found), 0) << canvas;
+    EXPECT_EQ(cv::countNonZero(found & (turned == 254)), 0) << canvas;
+    EXPECT_LT(cv::countNonZero(found & inside), 0.1 * cv::countNonZero(inside)) << canvas;
+  }
+}
+
+/// Ground in the walls' own grey reaches the corners as well, but the walls hang on to it.
+TEST(CanvasCorners, AreNotTheBlackGroundAroundABuilding) {
+  cv::Mat plan(kSide, kSide, CV_8U, cv::Scalar(0));
+  cv::rectangle(plan, {30, 30}, {170, 100}, cv::Scalar(254), cv::FILLED);
+  cv::rectangle(plan, {30, 101}, {90, 170}, cv::Scalar(254), cv::FILLED);
+  for (const int x : {60, 90, 120}) cv::line(plan, {x, 30}, {x, 90}, cv::Scalar(0), 2);
+  EXPECT_EQ(cv::countNonZero(canvas_corners(plan)), 0);
+  cv::Mat room(kSide, kSide, CV_8U, cv::Scalar(0));
+  cv::rectangle(room, {30, 30}, {170, 170}, cv::Scalar(254), cv::FILLED);
+  EXPECT_EQ(cv::countNonZero(canvas_corners(room)), 0);
 }
 
 }  // namespace
