@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# The long suite and its table: whole suite, sanitizers, faults at 100 moments, each fault of each device, 10 minutes of
-# fuzzing for each parser.
+# The long suite and its table: whole suite, sanitizers, faults at 100 moments, each fault of each device, growth, 10
+# minutes of fuzzing for each parser.
 # Prints the table and puts it into docs/reliability.md between its marks.
-#   tests/nightly.sh [--only "suite sanitize threads faults devices fuzz"] [--fuzz-seconds 600] [--moments 100] [--keep-docs]
+#   tests/nightly.sh [--only "suite sanitize threads faults devices growth fuzz"] [--fuzz-seconds 600] [--moments 100] [--keep-docs]
 set -uo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-only="suite sanitize threads faults devices fuzz"
+only="suite sanitize threads faults devices growth fuzz"
 fuzz_seconds=600
 moments=100
 keep=0
@@ -64,6 +64,13 @@ if has devices; then
   found=${words##*findings: }
   count=${words#faults: }
   row "faults of devices, in real time" "${count%%,*}" "${found%% *}" 0 $((SECONDS - start))
+fi
+if has growth; then
+  start=$SECONDS
+  python3 "$top/tests/growth.py" >"$out/growth.txt" 2>&1
+  words=$(grep '^growth: ' "$out/growth.txt" | tail -1)
+  count=${words#growth: }
+  row "time and memory against size" "${count%% *}" "${words##*findings: }" 0 $((SECONDS - start))
 fi
 if has fuzz; then
   start=$SECONDS

@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+"""Time and memory against size: arenas, logs of hours, batches, leagues, .raf files (table of docs/reliability.md).
+
+  tests/growth.py [--rubble build/release/rubble] [--only "arenas logs batches leagues raf"] [--quick]
+
+Each kind of work is done at several sizes; CPU time (user and system, children included) and the largest memory of a process
+are printed as Markdown. Ends with 1 when something fails, takes over 2 GB, or its CPU time grows by more than 1.6 times what
+the work grows by from the second size to the last.
+"""
+import argparse
+import json
+import math
+import os
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+
+TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+MOST_MB = 2000
+MOST_GROWTH = 1.6
+findings = 0
+measured = 0
+
+
+def run(words, folder, limit=7200):
+    """CPU seconds and peak MB of a command; its output when it fails."""
+    script = ("import resource,subprocess,sys;c=subprocess.run(sys.argv[1:],stdout=subprocess.PIPE,stderr=subprocess.STDOUT);"
+              "r=resource.getrusage(resource.RUSAGE_CHILDREN);"
+              "sys.stdout.buffer.write(c.stdout[-400:]);"
+              "print('\\n#',c.returncode,r.ru_utime+r.ru_stime,r.ru_maxrss/1024)")
+    done = subprocess.run([sys.executable, "-c", script, *words], cwd=folder, stdout=subprocess.PIPE, text=True,
+                          timeout=limit, env={**os.environ, "RUBBLE_HOME": TOP})
+    words = done.stdout.rsplit("\n#", 1)
+    code, cpu, mb = words[1].split()
+    return int(code), float(cpu), float(mb), words[0]
+
+
+def row(kind, size, words, folder, growing):
+    global findings, measured
+    measured += 1
+    code, cpu, mb, said = run(words, folder)
+    growing.append((size, cpu))
+    note = ""
+    if code != 0:
+        note = "exit code %d: %s" % (code, said.strip().splitlines()[-1] if said.strip() else "")
+    elif mb > MOST_MB:
+        note = "over %d MB" % MOST_MB
+    elif len(growing) > 2 and cpu > 5.0:
+        work = size / growing[1][0]
+        times = cpu / growing[1][1]
+        if times > MOST_GROWTH * work:
+            note = "%.1f times the work took %.1f times the time" % (work, times)
+    findings += 1 if note else 0
+    print("| %s | %d | %.1f s | %.0f MB | %s |" % (kind, size, cpu, mb, note or "-"), flush=True)
+
+
+def hall_log(path, hours):
+    """A CARMEN log of any length: a lap of a hall with a block in it, driven again and again, five scans a second."""
+    walls = []
+    for x0, y0, x1, y1 in ((-10, -6, 10, 6), (-4, -2, 4, 2)):
+        walls += [(x0, y0, x1, y0), (x1, y0, x1, y1), (x1, y1, x0, y1), (x0, y1, x0, y0)]
+    walls += [(-10, 3, -8.5, 3), (6, 6, 6, 5), (10, -2, 9, -2), (10, -3, 9, -3), (-5, -6, -5, -5.2), (-6, -6, -6, -5.2)]
+
+    def seen(x, y, bearing):
+        c, s = math.cos(bearing), math.sin(bearing)
+        nearest = 81.91
+        for x0, y0, x1, y1 in walls:
+            ex, ey = x1 - x0, y1 - y0
+            d = c * ey - s * ex
+            if abs(d) < 1e-12:
+                continue
+            t = ((x0 - x) * ey - (y0 - y) * ex) / d
+            u = ((x0 - x) * s - (y0 - y) * c) / d
+            if t > 0 and -1e-9 <= u <= 1 + 1e-9 and t < min(nearest, 8.0):
+                nearest = t
+        return nearest
+
+    x, y, phi, lap = -6.0, -4.0, 0.0, []
+
+    def look():
+        ranges = " ".join("%.2f" % seen(x, y, phi + math.radians(i - 90)) for i in range(180))
+        lap.append("FLASER 180 %s %.4f %.4f %.5f %.4f %.4f %.5f " % (ranges, x, y, phi, x, y, phi))
+
+    for side in (10.0, 6.0, 10.0, 6.0):
+        for _ in range(round(side / 0.1)):
+            look()
+            x, y = x + 0.1 * math.cos(phi), y + 0.1 * math.sin(phi)
+        turn = math.pi / 32
+        for _ in range(16):
+            look()
+            chord = 2.0 * math.sin(turn / 2)
+            x, y = x + chord * math.cos(phi + turn / 2), y + chord * math.sin(phi + turn / 2)
+            phi += turn
+    with open(path, "w") as log:
+        for i in range(round(hours * 18000)):
+            log.write("%s%.3f hall %.3f\n" % (lap[i % len(lap)], 0.2 * i, 0.2 * i))
+
+
+def arenas(rubble, folder, quick):
+    grown = []
+    for side in (15, 30) if quick else (15, 30, 60):
+        row("arena generate, pallets", side * side,
+            [rubble, "arena", "generate", "--cells", "%dx%d" % (side, side), "--out", "a%d" % side], folder, grown)
+
+
+def logs(rubble, folder, quick):
+    grown = []
+    for hours in (0.2, 0.5) if quick else (0.5, 1, 10):
+        hall_log(os.path.join(folder, "hall.log"), hours)
+        row("map a log, scans", round(18000 * hours), [rubble, "map", "hall.log", "--out", "hall", "--force"], folder, grown)
+    os.remove(os.path.join(folder, "hall.log"))
+
+
+def batches(rubble, folder, quick):
+    with open(os.path.join(folder, "tiny.yaml"), "w") as f:
+        f.write("arena: {generate: {columns: 2, rows: 2, ramps: 0, paper: 0, loops: 0, victims: 0}}\ntime_limit_s: 1\n")
+    grown = []
+    for runs in (50, 100) if quick else (100, 400, 1600):
+        with open(os.path.join(folder, "tiny_sweep.yaml"), "w") as f:
+            f.write("scenarios: [tiny.yaml]\nseeds: 1-%d\n" % runs)
+        shutil.rmtree(os.path.join(folder, "many"), ignore_errors=True)
+        row("batch, runs of 1 s", runs, [rubble, "batch", "tiny_sweep.yaml", "--out", "many"], folder, grown)
+    # A hundred thousand runs as far as they concern the batch: their lines, not their maps.
+    lines = open(os.path.join(folder, "many", "results.jsonl")).read().splitlines()
+    grown = []
+    for runs in (1000,) if quick else (1000, 10000, 100000):
+        path = os.path.join(folder, "lines")
+        shutil.rmtree(path, ignore_errors=True)
+        os.makedirs(path)
+        with open(os.path.join(path, "results.jsonl"), "w") as f:
+            for i in range(runs):
+                record = json.loads(lines[i % len(lines)])
+                record["seed"] = i + 1
+                record["run_id"] = "%016x" % (i + 1)
+                f.write(json.dumps(record, separators=(",", ":")) + "\n")
+        row("merge results, runs", runs, [rubble, "batch", "merge", "lines", "--out", "lines%d.sqlite" % runs], folder, grown)
+
+
+def leagues(rubble, folder, quick):
+    run([rubble, "run", "--set", "arena.generate.columns=4", "--set", "arena.generate.rows=4", "--out", "one"], folder)
+    grown = []
+    for maps in (10, 20) if quick else (25, 100, 500):
+        shutil.rmtree(os.path.join(folder, "maps"), ignore_errors=True)
+        os.makedirs(os.path.join(folder, "maps"))
+        for i in range(maps):
+            for ending in ("tif", "tfw"):
+                os.link(os.path.join(folder, "one", "map." + ending), os.path.join(folder, "maps", "team%d.%s" % (i, ending)))
+        row("league, maps", maps, [rubble, "score", "--league", "maps", "one/truth.tif", "--out", "judged%d" % maps], folder, grown)
+
+
+def raf(rubble, folder, quick):
+    grown = []
+    for elements in (200, 1000) if quick else (500, 1500, 5000):
+        side = round(math.sqrt(elements))
+        with open(os.path.join(folder, "many.raf"), "w") as f:
+            f.write('<?xml version="1.0" encoding="UTF-8"?>\n<elements>\n')
+            for i in range(elements):
+                f.write('    <element type="tall_wall" rotation="%d" x="%d" y="%d"/>\n' % (90 * (i * 7 % 4), i % side, i // side))
+            f.write("</elements>\n")
+        row("arena from .raf, elements", elements, [rubble, "arena", "many.raf", "--out", "raf"], folder, grown)
+
+
+def main():
+    words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    words.add_argument("--rubble", default=os.path.join(TOP, "build/release/rubble"))
+    words.add_argument("--only", default="arenas logs batches leagues raf")
+    words.add_argument("--quick", action="store_true")
+    given = words.parse_args()
+    rubble = os.path.abspath(given.rubble)
+    print("| work | size | CPU | largest memory | finding |\n|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory(prefix="growth") as folder:
+        for name in given.only.split():
+            {"arenas": arenas, "logs": logs, "batches": batches, "leagues": leagues, "raf": raf}[name](rubble, folder, given.quick)
+    print("growth: %d measured, findings: %d" % (measured, findings))
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
