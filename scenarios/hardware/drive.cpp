@@ -150,11 +150,6 @@ class Driver {
     held_ = false;
   }
 
-<<<<<<< HEAD
-  void each_second(double seconds) {
-    const double since = seconds - told_at_;
-    told_at_ = seconds;
-=======
   void tell_troubles(const std::vector<std::string>& now) {
     for (const std::string& line : now) options_.tell(line);
     const std::vector<std::string> still = names(now);
@@ -162,18 +157,9 @@ class Driver {
       if (std::find(still.begin(), still.end(), name) == still.end()) options_.tell(name + ": reports");
   }
 
-  void save_map() {
-    folder_.save_estimate(core_.mapper());
-    folder_.save_map(file_.settings, core_.mapper(), core_.victims());
-    map_saved_ = Clock::now();
-  }
-
-  void each_second(Stamp now) {
-    const double since = now - saved_;
-    saved_ = now;
-    folder_.append_estimate(core_.mapper());
-    if (seconds_since(map_saved_) >= kSavePeriod) save_map();
->>>>>>> robot6
+  void each_second(double seconds) {
+    const double since = seconds - told_at_;
+    told_at_ = seconds;
     DriveStatus status;
     status.robot = real_.status();
     if (status.robot.troubles != troubles_ && options_.tell) tell_troubles(status.robot.troubles);

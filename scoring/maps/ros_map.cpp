@@ -1,5 +1,6 @@
 #include "scoring/maps/ros_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
