@@ -94,7 +94,7 @@ int score(const ScoreArguments& arguments) {
         {arguments.map, arguments.truth, command_of(arguments), result.T_truth_map, pose ? pose->scale : 1.0, config});
   if (!arguments.out.empty()) {
     // A map that was refused is drawn at the best pose, so that a person can see why; score.json says that too.
-    if (result.aligned || !result.source.empty())
+    if (result.aligned || result.by != scoring::AlignBy::Auto)
       scoring::write_overlay(arguments.out + "/overlay.png", grid, truth, result.T_truth_map,
                              result.aligned ? "" : "NOT TRUSTED: " + result.note);
     if (result.aligned)
