@@ -1,9 +1,31 @@
 #include <algorithm>
 
+#include "base/yaml/binder.h"
 #include "base/yaml/strict_yaml.h"
 #include "base/yaml/yaml_node.h"
 
 namespace rubble {
+
+std::string yaml_quoted(const std::string& text) {
+  static constexpr char kHex[] = "0123456789abcdef";
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += {'\\', c};
+    } else if (c == '\n') {
+      out += "\\n";
+    } else if (c == '\t') {
+      out += "\\t";
+    } else if (byte < 0x20 || byte == 0x7f) {
+      out += {'\\', 'x', kHex[byte >> 4], kHex[byte & 15]};
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
 namespace {
 
 using Kind = YamlNode::Kind;
@@ -27,26 +49,6 @@ bool is_plain(const std::string& text) {
   if (start >= text.size() || !is_word_letter(text[start]) || text.back() == ' ') return false;
   return std::all_of(text.begin(), text.end(),
                      [](char c) { return is_word_letter(c) || c == '.' || c == '-' || c == '+' || c == ' '; });
-}
-
-std::string yaml_quoted(const std::string& text) {
-  static constexpr char kHex[] = "0123456789abcdef";
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      out += {'\\', c};
-    } else if (c == '\n') {
-      out += "\\n";
-    } else if (c == '\t') {
-      out += "\\t";
-    } else if (byte < 0x20 || byte == 0x7f) {
-      out += {'\\', 'x', kHex[byte >> 4], kHex[byte & 15]};
-    } else {
-      out += c;
-    }
-  }
-  return out + "\"";
 }
 
 std::string scalar_text(const YamlNode& node) {

@@ -269,7 +269,7 @@ TEST(PioneerWire, AnEmergencyStopStopsAtOnceAndStaysUntilEnabled) {
 }
 
 /// What the robot's own buttons stop stays stopped until the operator says so, whatever is asked for meanwhile.
-class StoppedAtTheRobot : public testing::TestWithParam<std::pair<const char*, Pioneer::Hold>> {};
+class StoppedAtTheRobot : public testing::TestWithParam<std::pair<DeviceFault, Pioneer::Hold>> {};
 
 TEST_P(StoppedAtTheRobot, StaysStoppedUntilItIsRearmed) {
   const auto [fault, hold] = GetParam();
@@ -297,8 +297,8 @@ TEST_P(StoppedAtTheRobot, StaysStoppedUntilItIsRearmed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Buttons, StoppedAtTheRobot,
-                         testing::Values(std::make_pair("button", Pioneer::Hold::EmergencyButton),
-                                         std::make_pair("motors", Pioneer::Hold::MotorsOff)));
+                         testing::Values(std::make_pair(DeviceFault::Button, Pioneer::Hold::EmergencyButton),
+                                         std::make_pair(DeviceFault::Motors, Pioneer::Hold::MotorsOff)));
 
 TEST(PioneerWire, APressedButtonCannotBeRearmed) {
   Wire wire;

@@ -23,7 +23,8 @@ TEST(MrptMapper, KnowsNothingBeforeTheFirstScan) {
   EXPECT_TRUE(mapper.trajectory().empty());
   EXPECT_TRUE(mapper.last_hits().empty());
   EXPECT_FALSE(mapper.pose_at(Stamp{0}));
-  for (const Occupancy cell : mapper.map().classify().cells()) EXPECT_EQ(cell, Occupancy::Unknown);
+  const OccupancyGrid grid = mapper.map().classify();
+  for (const Occupancy cell : grid.cells()) EXPECT_EQ(cell, Occupancy::Unknown);
 }
 
 TEST(MrptMapper, MapsTheRoomBetterThanTheOdometry) {
