@@ -16,6 +16,7 @@ using mrpt::math::TPose2D;
 namespace {
 
 constexpr int kBlock = 128;  ///< cells by which the map grows
+constexpr int kWord = 64;    ///< cells in a word of a raster
 constexpr std::uint16_t kFull = std::numeric_limits<std::uint16_t>::max();
 
 /// Eq. (1), rounded to 1/255.
@@ -122,7 +123,7 @@ bool CountMap::draw(const TPose2D& T_map_base, const ScanPoints& scan) {
   const Cell first = frame_.cell(low);
   const Cell last = frame_.cell(high);
   const int margin = 1 + static_cast<int>(0.5 * scan.beam_width * distance(low, high) / frame_.resolution);
-  const Cell from{std::max(first.x - margin, 0), std::max(first.y - margin, 0)};
+  const Cell from{std::max(first.x - margin, 0) / kWord * kWord, std::max(first.y - margin, 0)};
   const Cell to{std::min(last.x + margin, frame_.width - 1), std::min(last.y + margin, frame_.height - 1)};
   if (to.x < from.x || to.y < from.y) return false;
   passed_.reset(from, to.x - from.x + 1, to.y - from.y + 1);
@@ -150,8 +151,15 @@ void CountMap::stamp(const TPose2D& T_map_base, const ScanPoints& scan) {
       for (std::size_t cell = begin; cell < end; ++cell) make_room(cell);
     }
     for (std::size_t cell = begin; cell < end; ++cell) ++seen_[cell];
-    for (std::size_t cell = begin; cell < end; ++cell) {
+    for (std::size_t cell = begin; cell < end;) {
+      std::uint64_t eight = 1;
+      if (cell + sizeof eight <= end) std::memcpy(&eight, &p_occ_[cell], sizeof eight);
+      if (eight == 0) {  // most of what beams pass was never hit
+        cell += sizeof eight;
+        continue;
+      }
       if (p_occ_[cell] != 0) p_occ_[cell] = ratio(occupied_[cell], seen_[cell]);
+      ++cell;
     }
   });
 }
@@ -162,13 +170,71 @@ void CountMap::unstamp(const TPose2D& T_map_base, const ScanPoints& scan) {
   const auto forget = [this](std::size_t cell, bool hit) {
     if (seen_[cell] > 0) --seen_[cell];
     if (hit && occupied_[cell] > 0) --occupied_[cell];
-    occupied_[cell] = std::min(occupied_[cell], seen_[cell]);  // counts that were halved may not add up
-    p_occ_[cell] = occupied_[cell] == 0 ? std::uint8_t{0} : ratio(occupied_[cell], seen_[cell]);
+    rate(cell);
   };
   each_hit([&](std::size_t cell) { forget(cell, true); });
   each_pass([&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) forget(cell, false);
   });
+}
+
+void CountMap::rate(std::size_t cell) {
+  occupied_[cell] = std::min(occupied_[cell], seen_[cell]);  // counts that were halved may not add up
+  p_occ_[cell] = occupied_[cell] == 0 ? std::uint8_t{0} : ratio(occupied_[cell], seen_[cell]);
+}
+
+void CountMap::restamp(const TPose2D& T_map_before, const TPose2D& T_map_base, const ScanPoints& scan) {
+  ++version_;
+  const auto mark = [&](const TPose2D& T) {
+    if (draw(T, scan)) return each_hit([](std::size_t) {});
+    passed_.reset({0, 0}, 0, 0);
+    hit_.reset({0, 0}, 0, 0);
+    return static_cast<std::uint64_t>(
+        std::count_if(rays_.begin(), rays_.end(), [](const ScanRay& ray) { return ray.hit; }));
+  };
+  GridFrame drawn_in;
+  std::uint64_t dropped = 0;
+  do {  // a map that grows begins elsewhere
+    dropped = mark(T_map_base);
+    drawn_in = frame_;
+    std::swap(passed_, passed_later_);
+    std::swap(hit_, hit_later_);
+    mark(T_map_before);
+  } while (frame_ != drawn_in);
+  dropped_hits_ += dropped;
+
+  const auto low = [](const BitRaster& r) { return r.low().x / kWord; };
+  const auto high = [&](const BitRaster& r) { return low(r) + r.words_per_row(); };
+  const auto top = [](const BitRaster& r) { return r.low().y + r.height(); };
+  const auto word = [&](const BitRaster& r, int y, int w) {
+    const bool inside = y >= r.low().y && y < top(r) && w >= low(r) && w < high(r);
+    return inside ? r.row(y - r.low().y)[w - low(r)] : std::uint64_t{0};
+  };
+  const int last_row = std::max(top(passed_), top(passed_later_));
+  const int last_word = std::max(high(passed_), high(passed_later_));
+  for (int y = std::min(passed_.low().y, passed_later_.low().y); y < last_row; ++y)
+    for (int w = std::min(low(passed_), low(passed_later_)); w < last_word; ++w) {
+      const std::uint64_t hit = word(hit_, y, w);
+      const std::uint64_t hit_later = word(hit_later_, y, w);
+      const std::uint64_t seen = hit | word(passed_, y, w);
+      const std::uint64_t seen_later = hit_later | word(passed_later_, y, w);
+      for (std::uint64_t changed = (hit ^ hit_later) | (seen ^ seen_later); changed != 0; changed &= changed - 1) {
+        const std::uint64_t bit = changed & (~changed + 1);
+        const std::size_t cell = frame_.index({w * kWord + __builtin_ctzll(bit), y});
+        if ((seen & bit) != 0 && seen_[cell] > 0) --seen_[cell];
+        if ((hit & bit) != 0 && occupied_[cell] > 0) --occupied_[cell];
+        if ((seen_later & bit) != 0) {
+          make_room(cell);
+          ++seen_[cell];
+        }
+        if ((hit_later & bit) != 0) ++occupied_[cell];
+        rate(cell);
+      }
+    }
+}
+
+std::size_t CountMap::drawn_cells() const {
+  return static_cast<std::size_t>(passed_.width()) * static_cast<std::size_t>(passed_.height());
 }
 
 template <class Count>

@@ -50,6 +50,10 @@ class CountMap {
   void stamp(const mrpt::math::TPose2D& T_map_base, const ScanPoints& scan);
   /// Takes back what stamp() with the same arguments counted (but for counts that were halved since).
   void unstamp(const mrpt::math::TPose2D& T_map_base, const ScanPoints& scan);
+  /// unstamp() at one pose and stamp() at another, for the price of the cells that differ.
+  void restamp(const mrpt::math::TPose2D& T_map_before, const mrpt::math::TPose2D& T_map_base, const ScanPoints& scan);
+  /// Cells of the window that the last of these three drew in: what it cost, beside the beams.
+  std::size_t drawn_cells() const;
 
   /// Takes over a whole map that was counted elsewhere; both planes are frame.size() counts, row-major. Throws
   /// std::invalid_argument when a plane has another size, the frame is empty, or a cell was occupied more often than
@@ -78,6 +82,7 @@ class CountMap {
   template <class Count>
   void each_pass(const Count& count);
   void make_room(std::size_t cell);
+  void rate(std::size_t cell);
 
   GridFrame frame_;
   int max_cells_;
@@ -86,8 +91,10 @@ class CountMap {
   std::vector<std::uint8_t> p_occ_;
   std::uint64_t version_ = 0;
   std::uint64_t dropped_hits_ = 0;
-  BitRaster passed_;           ///< work space of stamp()
+  BitRaster passed_;           ///< work space of stamp(); windows begin at whole words, so that two can be compared
   BitRaster hit_;              ///< work space of stamp()
+  BitRaster passed_later_;     ///< work space of restamp()
+  BitRaster hit_later_;        ///< work space of restamp()
   std::vector<ScanRay> rays_;  ///< work space of stamp()
 };
 

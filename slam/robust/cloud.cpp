@@ -31,6 +31,9 @@ int bin_of(double bearing) {
 class Hits {
  public:
   Hits(const ScanPoints& scan) : step_(scan.beam_width) {
+    p_.reserve(scan.rays.size());
+    range_.reserve(scan.rays.size());
+    beam_.reserve(scan.rays.size());
     for (const ScanRay& ray : scan.rays) {
       if (!ray.hit) continue;
       p_.push_back(ray.end);
@@ -61,18 +64,24 @@ class Hits {
   }
 
   void drop_mixed_pixels() {
-    std::vector<std::size_t> kept;
-    for (std::size_t i = 0; i < p_.size(); ++i)
-      if (i == 0 || i + 1 == p_.size() || !hangs_between(i)) kept.push_back(i);
-    if (kept.size() == p_.size()) return;
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      p_[k] = p_[kept[k]];
-      range_[k] = range_[kept[k]];
-      beam_[k] = beam_[kept[k]];
+    std::vector<std::size_t> dropped;
+    for (std::size_t i = 1; i + 1 < p_.size(); ++i)
+      if (hangs_between(i)) dropped.push_back(i);
+    if (dropped.empty()) return;
+    std::size_t kept = 0;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+      if (next < dropped.size() && dropped[next] == i) {
+        ++next;
+        continue;
+      }
+      p_[kept] = p_[i];
+      range_[kept] = range_[i];
+      beam_[kept++] = beam_[i];
     }
-    p_.resize(kept.size());
-    range_.resize(kept.size());
-    beam_.resize(kept.size());
+    p_.resize(kept);
+    range_.resize(kept);
+    beam_.resize(kept);
   }
 
   double step_;
@@ -171,7 +180,6 @@ Cloud cloud_of(const ScanPoints& scan, const CloudConfig& config) {
   std::size_t kept = 0;  // hit of the last point
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const TPoint2D& p = hits.p(i);
-    cloud.sight.add(std::atan2(p.y - scan.origin.y, p.x - scan.origin.x), hits.range(i));
     const bool goes_on = i > 0 && hits.joined(i - 1, i);
     if (goes_on && distance(p, hits.p(kept)) < config.spacing) continue;
     const OrientedPoint point = oriented(hits, i, scan.origin);
@@ -181,6 +189,16 @@ Cloud cloud_of(const ScanPoints& scan, const CloudConfig& config) {
     kept = i;
   }
   return cloud;
+}
+
+SightFan sight_of(const ScanPoints& scan) {
+  SightFan sight;
+  const Hits hits(scan);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const TPoint2D d = hits.p(i) - scan.origin;
+    sight.add(std::atan2(d.y, d.x), hits.range(i));
+  }
+  return sight;
 }
 
 }  // namespace rubble::slam

@@ -50,11 +50,13 @@ struct Cloud {
   std::vector<OrientedPoint> points;  ///< thinned
   std::vector<OrientedPoint> filled;  ///< between neighbouring points of one far surface; only to be matched with
   mrpt::math::TPoint2D laser;
-  SightFan sight;
+  SightFan sight;  ///< empty until sight_of() is put here: only clouds that are kept need it
 };
 
 /// Thins the hits of a scan and finds their normals. Mixed pixels - single beams that hang between two depths because
 /// their spot lies on an edge - are left out.
 Cloud cloud_of(const ScanPoints& scan, const CloudConfig& config);
+/// How far the scan saw, by the same hits.
+SightFan sight_of(const ScanPoints& scan);
 
 }  // namespace rubble::slam

@@ -13,10 +13,14 @@
 namespace rubble::slam {
 
 /// How well a point would lie on the surfaces of a target: a raster that falls off from each surfel as a Gaussian, with
-/// levels of maxima over ever larger squares, as upper bounds for the search (Olson 2009; Hess et al. 2016).
+/// levels of maxima over ever larger squares, as upper bounds for the search (Olson 2009; Hess et al. 2016). Sums over
+/// points are taken in stretches: what a square's stretches still promise bounds those of the squares in it, which are
+/// given up as soon as that is too little.
 class Correlator {
  public:
-  static constexpr int kLevels = 5;  ///< squares of 1, 2, ... 16 cells
+  static constexpr int kLevels = 4;             ///< squares of 1, 2, 4, 8 cells
+  static constexpr int kRootCells = 16;         ///< a side of the squares that a search begins with
+  static constexpr std::size_t kStretches = 8;  ///< of the points
 
   /// `blur`: sigma of the Gaussian [m].
   void build(const std::vector<Surfel>& surfels, double resolution, double blur, Work* work = nullptr);
@@ -28,13 +32,29 @@ class Correlator {
   }
   /// Mean over `cells`, shifted by (x, y), of the largest value within 2^level cells up and right, 0..1.
   double value(const std::vector<Cell>& cells, int x, int y, int level) const;
-  /// The same where it is above `floor`; elsewhere something at most `floor` and no less than the value. Counts the
-  /// cells it had to look at.
-  double bound(const std::vector<Cell>& cells, int x, int y, int level, double floor, Work& looked_at) const;
+
+  /// Sums over the points of a square, in 255ths of a point.
+  struct Sums {
+    std::uint32_t whole = 0;
+    std::array<std::uint32_t, kStretches> parts{};
+  };
+  /// What value() sums for the four squares of `level` at (x, y) and 2^level cells to the right, up, and both, in this
+  /// order; `around` are the sums of a square that holds them. Gives up (then nothing) once none can be above `floor`.
+  /// Counts the cells it had to look at.
+  std::optional<std::array<Sums, 4>> quarters(const std::vector<Cell>& cells, int x, int y, int level,
+                                              const Sums& around, std::uint32_t floor, Work& looked_at) const;
+  /// Where each point looks; memory that roots() may use again.
+  struct RootWork {
+    std::vector<int> column, row, at;
+  };
+  /// Upper bounds for squares of kRootCells, `columns` x `rows` of them side by side from (x, y) on, row by row.
+  void roots(const std::vector<Cell>& cells, int x, int y, int columns, int rows, RootWork& work,
+             std::vector<Sums>& out) const;
 
  private:
   void draw(const std::vector<Surfel>& surfels, double blur);
   void pool(int level);
+  void pool_roots();
 
   double resolution_ = 0.05;
   float per_m_ = 20.0F;
@@ -42,6 +62,11 @@ class Correlator {
   int width_ = 0, height_ = 0;
   std::array<std::vector<std::uint8_t>, kLevels> levels_;  ///< level l: padded by 2^l - 1 cells below and left
   std::vector<std::uint8_t> half_pooled_;
+  // For the roots, four cells make one: values of squares that hold all that kRootCells from any of its cells on see.
+  // Every fourth of a row lies side by side, as neighbouring squares ask for them: plane after plane, row after row.
+  std::vector<std::uint8_t> coarse_;
+  int coarse_height_ = 0;
+  int coarse_stride_ = 0;  ///< with a margin of a whole group of squares to each side
 };
 
 /// Where to look: about a pose, so far to each side.
@@ -82,10 +107,11 @@ class CorrelativeSearch {
   struct Node {
     int angle, x, y, level;
     double bound;
+    Correlator::Sums sums;
   };
   void open_angle();
   void expand(const Node& parent);
-  Node node(int angle, int x, int y, int level, double floor);
+  double score(const Correlator::Sums& sums) const;
   mrpt::math::TPose2D pose_of(const Node& node) const;
   bool excluded(const mrpt::math::TPose2D& pose) const;
 
@@ -104,6 +130,8 @@ class CorrelativeSearch {
   std::size_t next_root_ = 0;
   bool sorted_ = false;
   std::vector<Node> stack_;
+  Correlator::RootWork root_work_;
+  std::vector<Correlator::Sums> bounds_;  ///< work space of open_angle()
   Work used_ = 0;
 };
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <queue>
 #include <utility>
 
 #include "base/planar.h"
@@ -12,6 +12,13 @@ namespace rubble::slam {
 
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
+
+namespace {
+
+constexpr Work kWorkPerNode = 50;  ///< of a search for paths
+constexpr Work kWorkPerLink = 12;
+
+}  // namespace
 
 void KeyFrames::add(KeyFrame frame, const TPose2D& pose, const GraphEdge& edge) {
   frames_.push_back(std::move(frame));
@@ -101,24 +108,39 @@ void KeyFrames::draw(const std::vector<int>& frames, const TPose2D& origin, doub
   grid.finish();
 }
 
-std::vector<double> KeyFrames::paths_from(int i, double most) const {
-  std::vector<double> paths(frames_.size(), std::numeric_limits<double>::infinity());
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  paths[static_cast<std::size_t>(i)] = 0.0;
-  open.push({0.0, i});
-  while (!open.empty()) {
-    const auto [path, k] = open.top();
-    open.pop();
-    if (path > paths[static_cast<std::size_t>(k)]) continue;
+std::vector<double> KeyFrames::paths_from(int i, const std::vector<int>& wanted, double most, Work* work) const {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  std::vector<double> lengths(wanted.size(), kUnknown);
+  paths_.assign(frames_.size(), kUnknown);
+  asked_.assign(frames_.size(), 0);
+  std::size_t left = 0;
+  for (const int k : wanted) {
+    char& asked = asked_[static_cast<std::size_t>(k)];
+    left += asked == 0 ? 1U : 0U;
+    asked = 1;
+  }
+  open_.clear();
+  paths_[static_cast<std::size_t>(i)] = 0.0;
+  open_.push_back({0.0, i});
+  Work looked_at = static_cast<Work>(frames_.size()) / 8;
+  while (!open_.empty() && left > 0) {
+    std::pop_heap(open_.begin(), open_.end(), std::greater<>());
+    const auto [path, k] = open_.back();
+    open_.pop_back();
+    if (path > paths_[static_cast<std::size_t>(k)]) continue;
+    left -= asked_[static_cast<std::size_t>(k)] != 0 ? 1U : 0U;
+    looked_at += kWorkPerNode + kWorkPerLink * static_cast<Work>(links_[static_cast<std::size_t>(k)].size());
     for (const Link& link : links_[static_cast<std::size_t>(k)]) {
-      double& known = paths[static_cast<std::size_t>(link.to)];
+      double& known = paths_[static_cast<std::size_t>(link.to)];
       if (path + link.length >= known || path + link.length > most) continue;
       known = path + link.length;
-      open.push({known, link.to});
+      open_.push_back({known, link.to});
+      std::push_heap(open_.begin(), open_.end(), std::greater<>());
     }
   }
-  return paths;
+  if (work != nullptr) *work += looked_at;
+  for (std::size_t n = 0; n < wanted.size(); ++n) lengths[n] = paths_[static_cast<std::size_t>(wanted[n])];
+  return lengths;
 }
 
 KeyFrames::Agreement KeyFrames::agreement(const std::vector<OrientedPoint>& points, const TPose2D& T_origin_points,

@@ -2,12 +2,14 @@
 
 #include <mrpt/math/TPose2D.h>
 
+#include <utility>
 #include <vector>
 
 #include "base/stamp.h"
 #include "slam/robust/cloud.h"
 #include "slam/robust/pose_graph.h"
 #include "slam/robust/surfel_grid.h"
+#include "slam/robust/work.h"
 
 namespace rubble::slam {
 
@@ -43,8 +45,9 @@ class KeyFrames {
   std::vector<int> around(int i, int most, double path, int limit) const;
   /// Surfels of key frames, seen from `origin`.
   void draw(const std::vector<int>& frames, const mrpt::math::TPose2D& origin, double cell, SurfelGrid& grid) const;
-  /// Lengths of the shortest paths through the graph from i, up to `most` [m]; infinite for others.
-  std::vector<double> paths_from(int i, double most) const;
+  /// Lengths of the shortest paths through the graph from i to `wanted` key frames, up to `most` [m]; infinite for
+  /// those farther away. Stops once all are known.
+  std::vector<double> paths_from(int i, const std::vector<int>& wanted, double most, Work* work = nullptr) const;
 
   /// How points, seen from `origin` (a pose of the graph) at `T_origin_points`, agree with what key frames saw.
   struct Agreement {
@@ -70,6 +73,9 @@ class KeyFrames {
   std::vector<int> before_;  ///< the one that the robot came by, -1: none
   PoseGraph graph_;
   std::vector<std::vector<Link>> links_;
+  mutable std::vector<double> paths_;                 ///< work space of paths_from()
+  mutable std::vector<char> asked_;                   ///< work space of paths_from()
+  mutable std::vector<std::pair<double, int>> open_;  ///< work space of paths_from()
 };
 
 }  // namespace rubble::slam

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/angle.h"
 #include "base/planar.h"
@@ -15,12 +16,17 @@ namespace {
 constexpr int kLeastPairs = 15;
 constexpr std::size_t kLeastPoints = 15;
 constexpr double kLeastScore = 0.25;
-constexpr double kWidestSearch = 1.0;  ///< [m]
-constexpr double kDoubted = 0.5;       ///< so much doubt, and the odometry is but one of several starts
-constexpr double kDoubt = 0.01;        ///< what is left of the odometry's information once it is doubted
-constexpr double kFound = 0.6;         ///< inliers (or score) that leave no doubt
-constexpr double kFoundAgain = 0.5;    ///< inliers after a search of all headings
-constexpr double kRunnerUp = 0.85;     ///< another place may score so much of the best
+constexpr double kWidestSearch = 1.0;   ///< [m]
+constexpr double kDoubted = 0.5;        ///< so much doubt, and the odometry is but one of several starts
+constexpr double kDoubt = 0.01;         ///< what is left of the odometry's information once it is doubted
+constexpr double kFound = 0.6;          ///< inliers (or score) that leave no doubt
+constexpr double kFoundAgain = 0.5;     ///< inliers after a search of all headings
+constexpr double kRunnerUp = 0.85;      ///< another place may score so much of the best
+constexpr double kNotFar = 0.2;         ///< a match so close to the expected one is a correction, not another place [m]
+constexpr double kNotFarTurned = 0.15;  ///< [rad]
+constexpr std::size_t kWitnesses = 6;   ///< key frames that are asked whether the odometry can be true
+constexpr double kContradicted = 0.15;  ///< share of points they would have seen through, from which it cannot
+constexpr Work kWorkPerJudged = 30;     ///< point and key frame
 constexpr Work kWorkPerDrawnFrame = 8000;
 
 ScanFitConfig tight() {
@@ -32,19 +38,19 @@ ScanFitConfig tight() {
 }  // namespace
 
 void LocalTracker::redraw(const KeyFrames& frames, int here, Work* work) {
-  const std::vector<int> local = here == frames.last()
-                                     ? frames.ending_at(here, config_.frames, config_.path)
-                                     : frames.around(here, config_.frames, config_.path, frames.size());
-  frames.draw(local, frames.pose(here), config_.cell, surfels_);
+  local_ = here == frames.last() ? frames.ending_at(here, config_.frames, config_.path)
+                                 : frames.around(here, config_.frames, config_.path, frames.size());
+  frames.draw(local_, frames.pose(here), config_.cell, surfels_);
   correlator_ready_ = false;
-  if (work != nullptr) *work += kWorkPerDrawnFrame * static_cast<Work>(local.size());
+  if (work != nullptr) *work += kWorkPerDrawnFrame * static_cast<Work>(local_.size());
 }
 
 LocalTracker::Reach LocalTracker::reach(const ExpectedMotion& motion) const {
   const double path = length(motion.T_last_now.x, motion.T_last_now.y);
   const double turn = std::abs(wrap_angle(motion.T_last_now.phi));
   return {std::min(kWidestSearch, 0.25 + 0.5 * path + motion.doubt * config_.most_speed * motion.time),
-          std::min(kPi, 0.15 + 0.5 * turn + motion.doubt * config_.most_turn_rate * motion.time)};
+          std::min(kPi, 0.15 + 0.5 * turn + 3.0 * config_.turn_error_per_m * path +
+                            motion.doubt * config_.most_turn_rate * motion.time)};
 }
 
 Eigen::Matrix3d LocalTracker::prior_information(const ExpectedMotion& motion) const {
@@ -57,7 +63,8 @@ Eigen::Matrix3d LocalTracker::prior_information(const ExpectedMotion& motion) co
   return Eigen::Vector3d(1.0 / (distance * distance), 1.0 / (distance * distance), 1.0 / (angle * angle)).asDiagonal();
 }
 
-Tracked LocalTracker::track(const Cloud& cloud, const ExpectedMotion& motion, const TPose2D& T_frame_last, Work* work) {
+Tracked LocalTracker::track(const KeyFrames& frames, const Cloud& cloud, const ExpectedMotion& motion,
+                            const TPose2D& T_frame_last, Work* work) {
   const double distance = length(motion.T_last_now.x, motion.T_last_now.y);
   const double turn = std::abs(wrap_angle(motion.T_last_now.phi));
   const bool doubted = motion.doubt >= kDoubted;
@@ -70,7 +77,7 @@ Tracked LocalTracker::track(const Cloud& cloud, const ExpectedMotion& motion, co
   else if (distance > config_.large_step || turn > config_.large_turn)
     tracked.fit = best_of_several(cloud, prior, distance, turn, tracked.fit, work);
   if (tracked.fit.prior_chi2 > config_.slip_chi2 || tracked.fit.inliers < config_.lost_inliers)
-    doubt_odometry(cloud, prior, carried, reach(motion), tracked, work);
+    doubt_odometry(frames, cloud, prior, carried, reach(motion), tracked, work);
   tracked.found = tracked.fit.paired >= kLeastPairs;
   tracked.lost = doubted && (!tracked.found || tracked.fit.inliers < config_.lost_inliers);
   if (!tracked.found) tracked.fit.pose = prior.pose;
@@ -95,19 +102,32 @@ ScanFit LocalTracker::without_odometry(const Cloud& cloud, const ExpectedMotion&
   if (fit.inliers >= kFound) return fit;
   const Reach far = reach(motion);
   const TPose2D& centre = carried ? *carried : prior.pose;
-  if (const auto found = look_around(cloud, {centre, far.distance, far.turn}, kLeastScore, std::nullopt, work))
+  if (const auto found = look_around(cloud, {centre, far.distance, far.turn}, kLeastScore, 1.0, work))
     better(found->pose);
   return fit;
 }
 
 std::optional<CorrelativeSearch::Found> LocalTracker::look_around(const Cloud& cloud, const SearchWindow& window,
-                                                                  double floor,
-                                                                  const std::optional<SearchExclusion>& exclusion,
-                                                                  Work* work) {
+                                                                  double floor, double later_floor, Work* work) {
   if (surfels_.empty() || cloud.points.size() < kLeastPoints) return std::nullopt;
   if (!correlator_ready_) correlator_.build(surfels_.surfels(), config_.search_cell, config_.search_blur, work);
   correlator_ready_ = true;
-  return search(correlator_, cloud.points, window, floor, exclusion, work);
+  search_.start(correlator_, cloud.points, window, floor, std::nullopt, later_floor);
+  return found(work);
+}
+
+/// For the second best place of the last search.
+std::optional<CorrelativeSearch::Found> LocalTracker::look_elsewhere(double floor, const SearchExclusion& exclusion,
+                                                                     Work* work) {
+  search_.start_again(floor, exclusion);
+  return found(work);
+}
+
+std::optional<CorrelativeSearch::Found> LocalTracker::found(Work* work) {
+  Work budget = std::numeric_limits<Work>::max();
+  search_.advance(budget);
+  if (work != nullptr) *work += std::numeric_limits<Work>::max() - budget;
+  return search_.found();
 }
 
 /// After a large step the nearest minimum need not be the right one: the two best places of a search are tried as well,
@@ -116,9 +136,9 @@ ScanFit LocalTracker::best_of_several(const Cloud& cloud, const PosePrior& prior
                                       ScanFit fit, Work* work) {
   const SearchWindow window{prior.pose, std::min(kWidestSearch, 0.15 + 0.2 * distance),
                             0.08 + 0.3 * turn + 0.1 * distance};
-  const auto first = look_around(cloud, window, kLeastScore, std::nullopt, work);
+  const auto first = look_around(cloud, window, kLeastScore, kLeastScore, work);
   if (!first) return fit;
-  const auto second = look_around(cloud, window, kLeastScore, SearchExclusion{first->pose, 0.25, 0.1}, work);
+  const auto second = look_elsewhere(kLeastScore, {first->pose, 0.25, 0.1}, work);
   for (const auto& start : {first, second}) {
     if (!start) continue;
     const ScanFit other = fit_scan(surfels_, cloud.points, start->pose, prior, {}, work);
@@ -127,15 +147,16 @@ ScanFit LocalTracker::best_of_several(const Cloud& cloud, const PosePrior& prior
   return fit;
 }
 
-void LocalTracker::doubt_odometry(const Cloud& cloud, const PosePrior& prior, const std::optional<TPose2D>& carried,
-                                  const Reach& reach, Tracked& tracked, Work* work) {
+void LocalTracker::doubt_odometry(const KeyFrames& frames, const Cloud& cloud, const PosePrior& prior,
+                                  const std::optional<TPose2D>& carried, const Reach& reach, Tracked& tracked,
+                                  Work* work) {
   tracked.slipped = true;
   const PosePrior loose{prior.pose, kDoubt * prior.information};
   ScanFit fit = fit_scan(surfels_, cloud.points, tracked.fit.pose, loose, {}, work);
   for (const auto& centre : {std::optional(prior.pose), carried}) {
     if (!centre || fit.inliers >= kFound) continue;
     const SearchWindow window{*centre, reach.distance, reach.turn};
-    const auto found = look_around(cloud, window, kLeastScore, std::nullopt, work);
+    const auto found = look_around(cloud, window, kLeastScore, 1.0, work);
     if (!found) continue;
     const PosePrior about{*centre, loose.information};
     const ScanFit other = fit_scan(surfels_, cloud.points, found->pose, about, tight(), work);
@@ -148,17 +169,33 @@ void LocalTracker::doubt_odometry(const Cloud& cloud, const PosePrior& prior, co
       tracked.relocated = true;
     }
   }
-  if (fit.inliers > tracked.fit.inliers + 0.02 || tracked.fit.inliers < config_.lost_inliers) tracked.fit = fit;
+  const bool better = fit.inliers > tracked.fit.inliers + 0.02 || tracked.fit.inliers < config_.lost_inliers;
+  if (better && overrules(frames, cloud, fit, tracked.fit, work)) tracked.fit = fit;
+}
+
+/// Whether a match far from where the robot is expected is believed. On new ground little fits the true place, and what
+/// slides back over known ground always fits better; but only where it is wrong would beams have passed through what
+/// the last key frames saw (the null test of loops).
+bool LocalTracker::overrules(const KeyFrames& frames, const Cloud& cloud, const ScanFit& found, const ScanFit& expected,
+                             Work* work) const {
+  const TPose2D off = found.pose - expected.pose;
+  if (length(off.x, off.y) < kNotFar && std::abs(wrap_angle(off.phi)) < kNotFarTurned) return true;
+  const std::vector<int> close(local_.begin(),
+                               local_.begin() + static_cast<std::ptrdiff_t>(std::min(local_.size(), kWitnesses)));
+  const TPose2D& origin = frames.pose(local_.front());
+  const auto there = frames.agreement(cloud.points, expected.pose, origin, close);
+  const auto here = frames.agreement(cloud.points, found.pose, origin, close);
+  if (work != nullptr) *work += 2 * kWorkPerJudged * static_cast<Work>(cloud.points.size() * close.size());
+  return there.contradiction() >= kContradicted && here.contradiction() < there.contradiction();
 }
 
 /// Lost: any heading will do, if there is but one.
 std::optional<ScanFit> LocalTracker::any_heading(const Cloud& cloud, const PosePrior& prior, double distance,
                                                  Work* work) {
   const SearchWindow window{prior.pose, std::min(kWidestSearch, 0.05 + distance), kPi};
-  const auto found = look_around(cloud, window, kFound, std::nullopt, work);
+  const auto found = look_around(cloud, window, kFound, kRunnerUp * kFound, work);
   if (!found) return std::nullopt;
-  const auto runner_up =
-      look_around(cloud, window, kRunnerUp * found->score, SearchExclusion{found->pose, 0.45, 0.2}, work);
+  const auto runner_up = look_elsewhere(kRunnerUp * found->score, {found->pose, 0.45, 0.2}, work);
   if (runner_up) return std::nullopt;
   const PosePrior anywhere{found->pose, Eigen::Matrix3d::Identity()};
   return fit_scan(surfels_, cloud.points, found->pose, anywhere, tight(), work);

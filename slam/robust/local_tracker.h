@@ -55,7 +55,8 @@ class LocalTracker {
   /// Takes the key frames that lead to `here` as the local map; those around it where `here` is an old one.
   void redraw(const KeyFrames& frames, int here, Work* work);
   /// Finds the scan; `T_frame_last`: the last one, relative to that key frame.
-  Tracked track(const Cloud& cloud, const ExpectedMotion& motion, const mrpt::math::TPose2D& T_frame_last, Work* work);
+  Tracked track(const KeyFrames& frames, const Cloud& cloud, const ExpectedMotion& motion,
+                const mrpt::math::TPose2D& T_frame_last, Work* work);
 
  private:
   /// How far a robot may be from where it is expected.
@@ -66,18 +67,25 @@ class LocalTracker {
   Reach reach(const ExpectedMotion& motion) const;
   Eigen::Matrix3d prior_information(const ExpectedMotion& motion) const;
   std::optional<CorrelativeSearch::Found> look_around(const Cloud& cloud, const SearchWindow& window, double floor,
-                                                      const std::optional<SearchExclusion>& exclusion, Work* work);
+                                                      double later_floor, Work* work);
+  std::optional<CorrelativeSearch::Found> look_elsewhere(double floor, const SearchExclusion& exclusion, Work* work);
+  std::optional<CorrelativeSearch::Found> found(Work* work);
   ScanFit best_of_several(const Cloud& cloud, const PosePrior& prior, double distance, double turn, ScanFit fit,
                           Work* work);
   ScanFit without_odometry(const Cloud& cloud, const ExpectedMotion& motion, const PosePrior& prior,
                            const std::optional<mrpt::math::TPose2D>& carried, ScanFit fit, Work* work);
-  void doubt_odometry(const Cloud& cloud, const PosePrior& prior, const std::optional<mrpt::math::TPose2D>& carried,
-                      const Reach& reach, Tracked& tracked, Work* work);
+  void doubt_odometry(const KeyFrames& frames, const Cloud& cloud, const PosePrior& prior,
+                      const std::optional<mrpt::math::TPose2D>& carried, const Reach& reach, Tracked& tracked,
+                      Work* work);
+  bool overrules(const KeyFrames& frames, const Cloud& cloud, const ScanFit& found, const ScanFit& expected,
+                 Work* work) const;
   std::optional<ScanFit> any_heading(const Cloud& cloud, const PosePrior& prior, double distance, Work* work);
 
   const TrackerConfig config_;
+  std::vector<int> local_;  ///< key frames of the local map, the one whose frame it is in first
   SurfelGrid surfels_;
   Correlator correlator_;
+  CorrelativeSearch search_;
   bool correlator_ready_ = false;
 };
 

@@ -42,7 +42,8 @@ constexpr double kExplained = 0.8;        ///< when they support so much of what
 constexpr double kAsGood = 0.03;          ///< ... and contradict hardly more
 constexpr double kLoopLength = 0.3;       ///< what a loop adds to paths through the graph [m]
 constexpr Work kWorkPerDrawnFrame = 8000;
-constexpr Work kWorkPerJudged = 30;  ///< point and key frame
+constexpr Work kWorkPerSuspected = 40;  ///< edge
+constexpr Work kWorkPerJudged = 30;     ///< point and key frame
 
 double size_of(const TPose2D& T) { return length(T.x, T.y); }
 double disagreement_of(const TPose2D& T) { return size_of(T) + 2.0 * std::abs(wrap_angle(T.phi)); }
@@ -81,49 +82,68 @@ LoopCloser::LoopCloser(const LoopConfig& config, double surfel_cell, KeyFrames& 
       surfel_cell_(surfel_cell),
       frames_(frames) {}
 
-void LoopCloser::look() {
+/// Key frames below `end` that lie within `distance` of where `frame` is expected, and no more than `most_path` away
+/// through the graph.
+std::vector<LoopCloser::Candidate> LoopCloser::candidates_within(int frame, int end, double distance, double most_path,
+                                                                 Work* work) const {
+  const TPose2D& here = frames_.pose(frame);
+  std::vector<int> close;
+  std::vector<Candidate> candidates;
+  for (int j = 0; j < end; ++j) {
+    const double away = length(frames_.pose(j).x - here.x, frames_.pose(j).y - here.y);
+    if (away >= distance) continue;
+    close.push_back(j);
+    candidates.push_back({j, away, 0.0});
+  }
+  if (work != nullptr) *work += 2 * static_cast<Work>(end);
+  if (close.empty()) return candidates;
+  const std::vector<double> paths = frames_.paths_from(frame, close, most_path, work);
+  for (std::size_t k = 0; k < close.size(); ++k) candidates[k].path = paths[k];
+  return candidates;
+}
+
+void LoopCloser::look(Work* work) {
   const int i = frames_.last();
-  const std::vector<double> paths = frames_.paths_from(i, std::numeric_limits<double>::infinity());
+  int end = 0;  // of those that lie far enough back along the drive
+  while (end < i && frames_[i].path - frames_[end].path >= config_.least_path) ++end;
+  const std::vector<Candidate> close =
+      candidates_within(i, end, config_.reach + config_.largest_window, std::numeric_limits<double>::infinity(), work);
   std::vector<std::pair<double, Task>> candidates;
-  for (int j = 0; j < i; ++j) {
-    const double path = paths[static_cast<std::size_t>(j)];
-    if (path < config_.least_path || frames_[i].path - frames_[j].path < config_.least_path) continue;
-    const double window = std::min(config_.largest_window, config_.window + config_.window_per_m * path);
-    const double away = size_of(frames_.pose(i) - frames_.pose(j));
-    if (away >= config_.reach + window) continue;
-    const double angle = std::min(config_.largest_angle, config_.angle + config_.angle_per_m * path);
-    candidates.push_back({away, {Kind::Wide, i, j, window, angle, path}});
+  for (const Candidate& old : close) {
+    if (old.path < config_.least_path) continue;
+    const double window = std::min(config_.largest_window, config_.window + config_.window_per_m * old.path);
+    if (old.away >= config_.reach + window) continue;
+    const double angle = std::min(config_.largest_angle, config_.angle + config_.angle_per_m * old.path);
+    candidates.push_back({old.away, {Kind::Wide, i, old.frame, window, angle, old.path}});
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<int> taken;
   for (const auto& [away, task] : candidates) {
     if (static_cast<int>(taken.size()) >= config_.searches) break;
-    const bool close = std::any_of(taken.begin(), taken.end(), [&, j = task.old](int k) {
+    const bool near_taken = std::any_of(taken.begin(), taken.end(), [&, j = task.old](int k) {
       return std::abs(frames_[k].path - frames_[j].path) < kOtherCandidate;
     });
-    if (close) continue;
+    if (near_taken) continue;
     taken.push_back(task.old);
     tasks_.push_back(task);
   }
-  queue_near(i, paths);
+  queue_near(i, close);
   tasks_.push_back({Kind::Solve, i, -1});
 }
 
 /// Where the graph is tight already, one edge to the closest old key frame.
-void LoopCloser::queue_near(int i, const std::vector<double>& paths) {
-  int closest = -1;
+void LoopCloser::queue_near(int i, const std::vector<Candidate>& candidates) {
+  const Candidate* closest = nullptr;
   double least = kNear;
-  for (int j = 0; j < i; ++j) {
-    const double path = paths[static_cast<std::size_t>(j)];
-    if (path >= config_.least_path || path <= 0.25 || frames_[i].path - frames_[j].path <= config_.least_path) continue;
-    const double away = size_of(frames_.pose(i) - frames_.pose(j));
-    if (away >= least) continue;
-    least = away;
-    closest = j;
+  for (const Candidate& old : candidates) {
+    if (old.path >= config_.least_path || old.path <= 0.25 || old.away >= least) continue;
+    if (frames_[i].path - frames_[old.frame].path <= config_.least_path) continue;
+    least = old.away;
+    closest = &old;
   }
-  if (closest < 0 || linked_.count({i, closest}) != 0) return;
-  tasks_.push_back({Kind::Near, i, closest, config_.near_window, 0.05, paths[static_cast<std::size_t>(closest)]});
+  if (closest == nullptr || linked_.count({i, closest->frame}) != 0) return;
+  tasks_.push_back({Kind::Near, i, closest->frame, config_.near_window, 0.05, closest->path});
 }
 
 bool LoopCloser::work(Work& budget) {
@@ -136,7 +156,7 @@ bool LoopCloser::work(Work& budget) {
     } else if (!tasks_.empty()) {
       const Task task = tasks_.front();
       tasks_.pop_front();
-      begin(task);
+      begin(task, budget);
       budget -= kWorkPerDrawnFrame * static_cast<Work>(new_frames_.size() + old_frames_.size());
       if (task.kind == Kind::Near && !points_.empty())
         verify(task, frames_.pose(task.frame) - frames_.pose(task.old), budget);
@@ -147,7 +167,7 @@ bool LoopCloser::work(Work& budget) {
   return moved;
 }
 
-void LoopCloser::begin(const Task& task) {
+void LoopCloser::begin(const Task& task, Work& budget) {
   points_.clear();
   new_frames_.clear();
   old_frames_.clear();
@@ -156,7 +176,9 @@ void LoopCloser::begin(const Task& task) {
   ++counts_.searched;
   if (!draw_both(task) || task.kind == Kind::Near) return;
 
-  correlator_.build(old_surfels_.surfels(), config_.cell, config_.blur);
+  Work used = 0;
+  correlator_.build(old_surfels_.surfels(), config_.cell, config_.blur, &used);
+  budget -= used;
   task_ = task;
   const TPose2D expected = frames_.pose(task.frame) - frames_.pose(task.old);
   search_.start(correlator_, points_, {expected, task.window, task.angle}, config_.least_score, std::nullopt,
@@ -254,15 +276,14 @@ bool LoopCloser::sees_through(const Task& task, const TPose2D& T_old_new, const 
 /// Whether the map as it stands, with other old key frames than the loop's, shows what the new ones see: with equal
 /// cells all around, the cell that the robot is expected in fits as well as the loop's.
 bool LoopCloser::explained_already(const Task& task, const KeyFrames::Agreement& by_loop) const {
-  const std::vector<double> paths = frames_.paths_from(task.frame, std::numeric_limits<double>::infinity());
   int closest = -1;
-  double least = kExplainedWithin;
-  for (int j = 0; j < new_frames_.back(); ++j) {
-    if (paths[static_cast<std::size_t>(j)] < kAsFar * task.path) continue;  // what moves along explains nothing
-    const double away = size_of(frames_.pose(task.frame) - frames_.pose(j));
-    if (away >= least) continue;
-    least = away;
-    closest = j;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Candidate& old : candidates_within(task.frame, new_frames_.back(), kExplainedWithin,
+                                                std::numeric_limits<double>::infinity(), nullptr)) {
+    if (old.path < kAsFar * task.path) continue;  // what moves along explains nothing
+    if (old.away >= least) continue;
+    least = old.away;
+    closest = old.frame;
   }
   if (closest < 0) return false;
   const std::vector<int> there = frames_.around(closest, config_.old_frames, config_.old_path, new_frames_.back());
@@ -323,16 +344,19 @@ bool LoopCloser::solve(Work& budget) {
   const bool more = solver_.step(used);
   budget -= used;
   if (more) return false;
-  take_solution();
+  take_solution(budget);
   return true;
 }
 
-void LoopCloser::take_solution() {
+void LoopCloser::take_solution(Work& budget) {
   ++counts_.solved;
   frames_.move(solver_.nodes());
-  covariance_ = solver_.covariance_of_last();
+  Work used = 0;
+  covariance_ = solver_.covariance_of_last(&used);
+  budget -= used;
   covariance_frame_ = static_cast<int>(solver_.nodes().size()) - 1;
-  if (remove_worst_loop(Suspects::Some)) solver_.start(frames_.graph(), GraphSolver::Plan::Gradually, config_.scaling);
+  if (remove_worst_loop(Suspects::Some, budget))
+    solver_.start(frames_.graph(), GraphSolver::Plan::Gradually, config_.scaling);
 }
 
 /// Loops that may be wrong: those that the rest has outvoted, and those that pull - of these only the one that pulls
@@ -361,11 +385,14 @@ std::vector<std::size_t> LoopCloser::suspects(Suspects which) const {
 
 /// Takes out for good the loop that disagrees most with all others; a single one may bend the whole graph until it
 /// seems to agree, and others to disagree. One at a time, each followed by a new solution, therefore.
-bool LoopCloser::remove_worst_loop(Suspects which) {
+bool LoopCloser::remove_worst_loop(Suspects which, Work& budget) {
+  budget -= kWorkPerSuspected * static_cast<Work>(frames_.graph().edges.size());
   std::optional<std::size_t> worst;
   double most = 1.0;
   for (const std::size_t k : suspects(which)) {
-    const Eigen::Vector3d off = solver_.disagreement_without(frames_.graph().edges[k]);
+    Work used = 0;
+    const Eigen::Vector3d off = solver_.disagreement_without(frames_.graph().edges[k], &used);
+    budget -= used;
     const double wrong = std::max(length(off[0], off[1]) / kWrongDistance, std::abs(off[2]) / kWrongAngle);
     if (wrong <= most) continue;
     most = wrong;
@@ -392,12 +419,11 @@ void LoopCloser::finish() {
   };
   solve_all(GraphSolver::Plan::Gradually);
   for (int i = 0; i < frames_.size(); ++i) {
-    const std::vector<double> paths = frames_.paths_from(i, kLastNearPath);
     std::vector<std::pair<double, int>> close;
-    for (int j = 0; j + 6 < i; ++j) {
-      if (frames_[i].path - frames_[j].path <= config_.least_path || linked_.count({i, j}) != 0) continue;
-      const double away = size_of(frames_.pose(i) - frames_.pose(j));
-      if (away < kLastNear && paths[static_cast<std::size_t>(j)] < kLastNearPath) close.push_back({away, j});
+    for (const Candidate& old : candidates_within(i, i - 6, kLastNear, kLastNearPath, nullptr)) {
+      if (frames_[i].path - frames_[old.frame].path <= config_.least_path || linked_.count({i, old.frame}) != 0)
+        continue;
+      if (old.path < kLastNearPath) close.push_back({old.away, old.frame});
     }
     std::sort(close.begin(), close.end());
     int last = -100;
@@ -414,7 +440,8 @@ void LoopCloser::finish() {
   }
   solve_all(GraphSolver::Plan::Gradually);
   solve_all(GraphSolver::Plan::Final);
-  for (int round = 0; round < kMostRemovals && remove_worst_loop(Suspects::All); ++round)
+  Work unlimited = std::numeric_limits<Work>::max();
+  for (int round = 0; round < kMostRemovals && remove_worst_loop(Suspects::All, unlimited); ++round)
     solve_all(GraphSolver::Plan::Final);
 }
 

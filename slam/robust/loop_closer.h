@@ -62,7 +62,7 @@ class LoopCloser {
   LoopCloser(const LoopConfig& config, double surfel_cell, KeyFrames& frames);
 
   /// Queues the searches for the newest key frame.
-  void look();
+  void look(Work* work = nullptr);
   /// Does queued work until `budget` is used up; returns whether poses moved.
   bool work(Work& budget);
   /// Does all that is queued, adds edges between all neighbours, and solves to the end.
@@ -85,7 +85,7 @@ class LoopCloser {
   };
   enum class Stage { Idle, Best, RunnerUp };
 
-  void begin(const Task& task);
+  void begin(const Task& task, Work& budget);
   bool draw_both(const Task& task);
   void go_on(Work& budget);
   void verify(const Task& task, const mrpt::math::TPose2D& start, Work& budget);
@@ -94,12 +94,19 @@ class LoopCloser {
   void confirm(const GraphEdge& loop);
   bool agree(const GraphEdge& a, const GraphEdge& b) const;
   void accept(const GraphEdge& loop, bool near);
-  void queue_near(int frame, const std::vector<double>& paths);
+  /// An old key frame that may be close.
+  struct Candidate {
+    int frame;
+    double away;  ///< [m]
+    double path;  ///< through the graph [m]
+  };
+  std::vector<Candidate> candidates_within(int frame, int end, double distance, double most_path, Work* work) const;
+  void queue_near(int frame, const std::vector<Candidate>& candidates);
   void consider_solving();
   bool solve(Work& budget);
-  void take_solution();
+  void take_solution(Work& budget);
   enum class Suspects { Some, All };
-  bool remove_worst_loop(Suspects suspects);
+  bool remove_worst_loop(Suspects suspects, Work& budget);
   std::vector<std::size_t> suspects(Suspects which) const;
   bool explained_already(const Task& task, const KeyFrames::Agreement& by_loop) const;
   void run_queue();

@@ -51,18 +51,26 @@ class GraphSolver {
   /// The nodes so far; those of the start of the solve.
   const std::vector<mrpt::math::TPose2D>& nodes() const { return graph_.nodes; }
   /// Covariance of the last node, in the frame of node 0, as of the last step.
-  Eigen::Matrix3d covariance_of_last() const;
+  Eigen::Matrix3d covariance_of_last(Work* work = nullptr) const;
   /// How far the ends of an edge that took part would lie from what it measured, had it not taken part (to first
   /// order): what all others say about it (Baarda's data snooping). x, y along the axes of `from` [m], angle [rad];
   /// infinite when nothing else ties the two ends together.
-  Eigen::Vector3d disagreement_without(const GraphEdge& edge) const;
+  Eigen::Vector3d disagreement_without(const GraphEdge& edge, Work* work = nullptr) const;
 
  private:
   struct Phase {
     double scaling;
     int steps;
   };
+  /// Part of the Jacobian: three rows of a node.
+  struct Derivative {
+    int node;
+    Eigen::Matrix3d by_node;  ///< of what is asked for
+  };
   void next_phase();
+  void lay_out();
+  void add_to_diagonal(int node, const Eigen::Matrix3d& block);
+  Eigen::Matrix3d covariance_of(const std::vector<Derivative>& derivatives, Work* work) const;
 
   PoseGraph graph_;
   std::vector<Phase> phases_;
@@ -70,6 +78,8 @@ class GraphSolver {
   int steps_left_ = 0;
   bool running_ = false;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor_;
+  Eigen::SparseMatrix<double> H_;      ///< lower triangle; its pattern stays from step to step
+  std::vector<Eigen::Index> between_;  ///< of each edge: first of its block's values off the diagonal
   bool analysed_ = false;
 };
 

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -29,7 +30,9 @@ constexpr double kNoDuration = 1e-3;       ///< stamps closer than any scanner's
 constexpr double kLeastJump = 0.5;         ///< below, a coarse clock may be to blame [m, rad]
 constexpr double kEdgeDistance = 0.008;    ///< least error between key frames [m]
 constexpr double kEdgeAngle = 0.003;       ///< [rad]
-constexpr Work kLeastBudget = 500'000;     ///< for work put off, each scan
+constexpr Work kLeastBudget = 300'000;     ///< for work put off, each scan
+constexpr Work kUsualShare = 8;            ///< the usual budget is such a part of the largest ...
+constexpr Work kHurry = 4;                 ///< ... and grows by itself with so many tasks that wait
 constexpr double kBelieved = 0.5;          ///< share of inliers with which a scan overrules the odometry
 constexpr double kForgiving = 0.6;         ///< what is left of the doubt after each scan that agrees with the odometry
 constexpr double kNoDoubt = 0.05;
@@ -91,8 +94,9 @@ struct RobustMapper::Impl {
   std::optional<TPose2D> carried(double time) const;
   bool asks_for_frame(const Tracked& tracked) const;
   bool hang_on_old_frame(const Cloud& cloud, Work* work);
-  std::optional<int> old_frame_here() const;
-  void add_frame(Stamp reference, Cloud cloud, const TPose2D& T_map_base, const GraphEdge& edge);
+  std::optional<int> old_frame_here(Work* work) const;
+  void add_frame(Stamp reference, Cloud cloud, const ScanPoints& points, const TPose2D& T_map_base,
+                 const GraphEdge& edge);
   GraphEdge edge_to_now(const Tracked& tracked) const;
   void put_into_map(const LaserScan& scan, const std::optional<SweepMotion>& sweep, const std::optional<ScanTilt>& tilt,
                     Work& work);
@@ -148,6 +152,8 @@ struct RobustMapper::Impl {
   std::uint64_t relocated_ = 0;
   std::uint64_t unseen_ = 0;
   std::uint64_t odometry_jumps_ = 0;
+  Work last_work_ = 0;
+  Work all_work_ = 0;
   Work most_work_ = 0;
 };
 
@@ -184,12 +190,12 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
   bool sure = true;
 
   if (frames_.empty()) {
-    add_frame(reference, std::move(cloud), TPose2D(), {});
+    add_frame(reference, std::move(cloud), points, TPose2D(), {});
     map_.lay_raster(frames_);
     tracker_.redraw(frames_, here_, &work);
   } else {
     const TPose2D T_frame_last = T_frame_base_;
-    Tracked tracked = tracker_.track(cloud, motion, T_frame_last, &work);
+    Tracked tracked = tracker_.track(frames_, cloud, motion, T_frame_last, &work);
     const bool contradicted = tracked.odometry_chi2 > config_.tracker.slip_chi2 && tracked.fit.inliers >= kBelieved;
     if (motion.doubt >= 1.0 || contradicted) {
       // The sweep was straightened by a motion that was wrong; now a better one is known.
@@ -200,7 +206,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
         ExpectedMotion better = motion;
         better.carried = tracked.fit.pose - T_frame_last;
         better.doubt = 1.0;
-        tracked = tracker_.track(cloud, better, T_frame_last, &work);
+        tracked = tracker_.track(frames_, cloud, better, T_frame_last, &work);
       }
     }
     doubt_ = contradicted ? 1.0 : doubt_ < kNoDoubt ? 0.0 : kForgiving * doubt_;
@@ -214,20 +220,26 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
     const GraphEdge edge = edge_to_now(tracked);
     scan_covariance_ = edge.information.inverse();
     if (sure && asks_for_frame(tracked) && !hang_on_old_frame(cloud, &work)) {
-      add_frame(reference, std::move(cloud), now(), edge);
-      if (config_.loops) closer_.look();
+      add_frame(reference, std::move(cloud), points, now(), edge);
+      if (config_.loops) closer_.look(&work);
       tracker_.redraw(frames_, here_, &work);
     }
   }
   if (!odometry_.empty()) T_odom_scan_ = odometry_.pose_at(reference);
   scans_.push_back({reference, here_, T_frame_base_});
 
-  Work budget = std::max(kLeastBudget, static_cast<Work>(config_.budget_ms * 1e6) - work);
+  // What waits is done bit by bit, the more of it the faster.
+  const auto most = static_cast<Work>(config_.budget_ms * 1e6);
+  const Work usual = most / kUsualShare;
+  const auto waiting = static_cast<Work>(closer_.queued());
+  Work budget = std::max(kLeastBudget, std::min(most, usual + usual * waiting / kHurry) - work);
   const Work given = budget;
   if (config_.loops) close_loops(budget);
   if (sure && here_ == frames_.last()) put_into_map(scan, sweep, tilt, budget);
   map_.work(frames_, budget);
-  most_work_ = std::max(most_work_, work + given - budget);
+  last_work_ = work + given - budget;
+  all_work_ += last_work_;
+  most_work_ = std::max(most_work_, last_work_);
   live_.push_back({reference, now()});
   remember_hits(points);
 }
@@ -308,13 +320,13 @@ bool RobustMapper::Impl::asks_for_frame(const Tracked& tracked) const {
 /// Known ground adds no key frame once there are many: the robot then hangs on an old one, and the graph grows with the
 /// ground covered instead of the time driven.
 bool RobustMapper::Impl::hang_on_old_frame(const Cloud& cloud, Work* work) {
-  const std::optional<int> old = old_frame_here();
+  const std::optional<int> old = old_frame_here(work);
   if (!old) return false;
   const TPose2D expected = now() - frames_.pose(*old);
   tracker_.redraw(frames_, *old, work);
   ExpectedMotion at_rest;
   at_rest.time = kNoDuration;
-  const Tracked there = tracker_.track(cloud, at_rest, expected, work);
+  const Tracked there = tracker_.track(frames_, cloud, at_rest, expected, work);
   const TPose2D moved = there.fit.pose - expected;
   if (!there.found || there.fit.inliers < kKnownInliers || length(moved.x, moved.y) > kKnownMoves) {
     tracker_.redraw(frames_, here_, work);
@@ -329,22 +341,29 @@ bool RobustMapper::Impl::hang_on_old_frame(const Cloud& cloud, Work* work) {
 }
 
 /// The closest key frame of an earlier visit that loops tie to where the robot is.
-std::optional<int> RobustMapper::Impl::old_frame_here() const {
+std::optional<int> RobustMapper::Impl::old_frame_here(Work* work) const {
   if (!config_.loops || frames_.size() < config_.exact_frames || lost_on_the_way_) return std::nullopt;
   const TPose2D T_map_base = now();
   const double path = path_here_ + length(T_frame_base_.x, T_frame_base_.y);
-  const std::vector<double> paths = frames_.paths_from(here_, kKnownPath);
-  std::optional<int> old;
-  double least = kKnownDistance + kKnownTurn;
+  std::vector<int> close;
+  std::vector<double> off;
   for (int j = 0; j < frames_.size(); ++j) {
-    if (!(paths[static_cast<std::size_t>(j)] <= kKnownPath) || path - frames_[j].path < config_.loop.least_path)
-      continue;
-    const TPose2D off = T_map_base - frames_.pose(j);
-    const double distance = length(off.x, off.y);
-    const double turn = std::abs(wrap_angle(off.phi));
-    if (distance > kKnownDistance || turn > kKnownTurn || distance + turn >= least) continue;
-    least = distance + turn;
-    old = j;
+    if (path - frames_[j].path < config_.loop.least_path) continue;
+    const TPose2D& old = frames_.pose(j);
+    const double distance = length(T_map_base.x - old.x, T_map_base.y - old.y);
+    const double turn = std::abs(wrap_angle(T_map_base.phi - old.phi));
+    if (distance > kKnownDistance || turn > kKnownTurn) continue;
+    close.push_back(j);
+    off.push_back(distance + turn);
+  }
+  if (close.empty()) return std::nullopt;
+  const std::vector<double> paths = frames_.paths_from(here_, close, kKnownPath, work);
+  std::optional<int> old;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < close.size(); ++k) {
+    if (!(paths[k] <= kKnownPath) || off[k] >= least) continue;
+    least = off[k];
+    old = close[k];
   }
   return old;
 }
@@ -370,10 +389,12 @@ GraphEdge RobustMapper::Impl::edge_to_now(const Tracked& tracked) const {
   return edge;
 }
 
-void RobustMapper::Impl::add_frame(Stamp reference, Cloud cloud, const TPose2D& T_map_base, const GraphEdge& edge) {
+void RobustMapper::Impl::add_frame(Stamp reference, Cloud cloud, const ScanPoints& points, const TPose2D& T_map_base,
+                                   const GraphEdge& edge) {
   KeyFrame frame;
   frame.stamp = reference;
   frame.cloud = std::move(cloud);
+  frame.cloud.sight = sight_of(points);
   if (!frames_.empty()) {
     path_here_ += length(T_frame_base_.x, T_frame_base_.y);
     frame.path = path_here_;
@@ -393,7 +414,9 @@ void RobustMapper::Impl::close_loops(Work& budget) {
   ++revision_;
   frame_covariance_ = closer_.covariance();
   map_.moved();
-  tracker_.redraw(frames_, here_, nullptr);
+  Work used = 0;
+  tracker_.redraw(frames_, here_, &used);
+  budget -= used;
 }
 
 void RobustMapper::Impl::put_into_map(const LaserScan& scan, const std::optional<SweepMotion>& sweep,
@@ -454,9 +477,7 @@ void RobustMapper::finish() {
     ++impl_->revision_;
     impl_->frame_covariance_ = impl_->closer_.covariance();
   }
-  impl_->map_.moved();
-  Work budget = std::numeric_limits<Work>::max();
-  impl_->map_.work(impl_->frames_, budget);
+  impl_->map_.set_right(impl_->frames_);
   impl_->map_.lay_raster(impl_->frames_);
   if (impl_->config_.thin_walls) impl_->map_.thin();
   impl_->tracker_.redraw(impl_->frames_, impl_->here_, nullptr);
@@ -502,6 +523,8 @@ std::vector<MapperFigure> RobustMapper::figures() const {
           {"loops_removed", static_cast<double>(loops.removed)},
           {"near_edges", static_cast<double>(loops.near_edges)},
           {"graph_solved", static_cast<double>(loops.solved)},
+          {"last_work_ms", static_cast<double>(impl_->last_work_) * 1e-6},
+          {"work_ms", static_cast<double>(impl_->all_work_) * 1e-6},
           {"most_work_ms", static_cast<double>(impl_->most_work_) * 1e-6}};
 }
 

@@ -1,6 +1,7 @@
 #include "slam/robust/stamped_map.h"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/angle.h"
@@ -14,9 +15,11 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-constexpr double kTolerance = 0.2;  ///< scans may lie wrong by this much of a cell ...
+constexpr double kTolerance = 0.2;  ///< scans may lie wrong by this much of a cell at the end ...
+constexpr double kTolerable = 0.5;  ///< ... by this much on the way, where others are under way to move them too ...
 constexpr double kLever = 4.0;      ///< ... so far from the robot [m]
 constexpr Work kWorkPerBeam = 60;   ///< of drawing a scan
+constexpr Work kCellsPerWork = 4;   ///< of the window that is drawn in
 constexpr Work kWorkPerLook = 20;
 constexpr double kAlong = 0.99;        ///< of a normal's part along an axis, of walls across it: within 8 deg
 constexpr double kLeastShift = 0.1;    ///< cells
@@ -48,7 +51,7 @@ class WallPhase {
 }  // namespace
 
 StampedMap::StampedMap(CountMap map, const mrpt::math::TPose3D& T_base_laser, const LevelScanConfig& config)
-    : map_(std::move(map)), level_scan_(T_base_laser, config) {}
+    : map_(std::move(map)), level_scan_(T_base_laser, config), tolerance_(kTolerable) {}
 
 void StampedMap::thin() { thin_walls(map_); }
 
@@ -88,14 +91,28 @@ ScanPoints StampedMap::points_of(const PackedScan& scan) {
 void StampedMap::add(const KeyFrames& frames, int frame, const TPose2D& T_frame_base, PackedScan scan, Work* work) {
   Entry entry{frame, T_frame_base, frames.pose(frame) + T_frame_base, std::move(scan)};
   map_.stamp(entry.T_map_base, points_of(entry.scan));
-  if (work != nullptr) *work += kWorkPerBeam * static_cast<Work>(entry.scan.ranges.size());
+  if (work != nullptr) *work += effort(entry);
   scans_.push_back(std::move(entry));
+}
+
+/// Of what the map drew last.
+Work StampedMap::effort(const Entry& entry) const {
+  return kWorkPerBeam * static_cast<Work>(entry.scan.ranges.size()) +
+         static_cast<Work>(map_.drawn_cells()) / kCellsPerWork;
 }
 
 bool StampedMap::lies_wrong(const Entry& entry, const TPose2D& T_map_base) const {
   const double shift = length(T_map_base.x - entry.T_map_base.x, T_map_base.y - entry.T_map_base.y);
   const double turn = std::abs(wrap_angle(T_map_base.phi - entry.T_map_base.phi));
-  return shift + kLever * turn > kTolerance * map_.frame().resolution;
+  return shift + kLever * turn > tolerance_ * map_.frame().resolution;
+}
+
+void StampedMap::set_right(const KeyFrames& frames) {
+  tolerance_ = kTolerance;
+  moved();
+  Work budget = std::numeric_limits<Work>::max();
+  work(frames, budget);
+  tolerance_ = kTolerable;
 }
 
 void StampedMap::work(const KeyFrames& frames, Work& budget) {
@@ -105,10 +122,9 @@ void StampedMap::work(const KeyFrames& frames, Work& budget) {
     const TPose2D T_map_base = frames.pose(entry.frame) + entry.T_frame_base;
     if (!lies_wrong(entry, T_map_base)) continue;
     const ScanPoints points = points_of(entry.scan);
-    map_.unstamp(entry.T_map_base, points);
-    map_.stamp(T_map_base, points);
+    map_.restamp(entry.T_map_base, T_map_base, points);
     entry.T_map_base = T_map_base;
-    budget -= 2 * kWorkPerBeam * static_cast<Work>(entry.scan.ranges.size());
+    budget -= effort(entry);
   }
 }
 

@@ -31,6 +31,9 @@ class StampedMap {
   void moved() { to_check_ = scans_.size(); }
   /// Stamps scans anew that lie wrong by a good part of a cell, newest first, until the budget is used up.
   void work(const KeyFrames& frames, Work& budget);
+  /// The same at once, and to a smaller part of a cell.
+  void set_right(const KeyFrames& frames);
+  bool settled() const { return to_check_ == 0; }
 
  private:
   struct Entry {
@@ -41,10 +44,12 @@ class StampedMap {
   };
   bool lies_wrong(const Entry& entry, const mrpt::math::TPose2D& T_map_base) const;
   ScanPoints points_of(const PackedScan& scan);
+  Work effort(const Entry& entry) const;
 
   CountMap map_;
   LevelScan level_scan_;
   std::vector<Entry> scans_;
+  double tolerance_;          ///< [cells]
   std::size_t to_check_ = 0;  ///< scans below are still to be looked at
 };
 

@@ -22,9 +22,8 @@ void SurfelGrid::begin(double cell, const TPoint2D& low, const TPoint2D& high) {
   y0_ = static_cast<float>(low.y - kMargin);
   width_ = static_cast<int>((high.x - low.x + 2.0 * kMargin) / cell) + 2;
   height_ = static_cast<int>((high.y - low.y + 2.0 * kMargin) / cell) + 2;
-  head_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), -1);
-  next_.clear();
-  sums_.clear();
+  filled_.assign((static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) / 64 + 1, 0);
+  added_.clear();
   surfels_.clear();
 }
 
@@ -33,39 +32,59 @@ void SurfelGrid::add(const std::vector<OrientedPoint>& points, const TPose2D& T)
   const auto s = static_cast<float>(std::sin(T.phi));
   const auto x = static_cast<float>(T.x);
   const auto y = static_cast<float>(T.y);
-  for (const OrientedPoint& p : points)
-    if (p.has_normal()) put(x + c * p.x - s * p.y, y + s * p.x + c * p.y, c * p.nx - s * p.ny, s * p.nx + c * p.ny);
-}
-
-void SurfelGrid::put(float x, float y, float nx, float ny) {
-  const int column = static_cast<int>((x - x0_) * cells_per_m_);
-  const int row = static_cast<int>((y - y0_) * cells_per_m_);
-  if (column < 0 || row < 0 || column >= width_ || row >= height_) return;
-  int& head =
-      head_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column)];
-  for (int k = head; k >= 0; k = next_[static_cast<std::size_t>(k)]) {
-    Sum& sum = sums_[static_cast<std::size_t>(k)];
-    if (sum.nx * nx + sum.ny * ny <= kOneSurface * sum.count) continue;
-    sum = {sum.x + x, sum.y + y, sum.nx + nx, sum.ny + ny, sum.count + 1.0F};
-    return;
+  for (const OrientedPoint& p : points) {
+    if (!p.has_normal()) continue;
+    const float at_x = x + c * p.x - s * p.y;
+    const float at_y = y + s * p.x + c * p.y;
+    const int column = static_cast<int>((at_x - x0_) * cells_per_m_);
+    const int row = static_cast<int>((at_y - y0_) * cells_per_m_);
+    if (column < 0 || row < 0 || column >= width_ || row >= height_) continue;
+    const auto cell =
+        static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(width_) + static_cast<std::uint32_t>(column);
+    filled_[cell >> 6U] |= std::uint64_t{1} << (cell & 63U);
+    added_.push_back({at_x, at_y, c * p.nx - s * p.ny, s * p.nx + c * p.ny, cell});
   }
-  sums_.push_back({x, y, nx, ny, 1.0F});
-  next_.push_back(head);
-  head = static_cast<int>(sums_.size()) - 1;
 }
 
 void SurfelGrid::finish() {
+  ranks_.resize(filled_.size());
+  std::uint32_t cells = 0;
+  for (std::size_t word = 0; word < filled_.size(); ++word) {
+    ranks_[word] = cells;
+    cells += static_cast<std::uint32_t>(__builtin_popcountll(filled_[word]));
+  }
+  head_.assign(cells, -1);
+  sums_.clear();
+  for (const Added& point : added_) {
+    int& head = head_[rank(point.cell)];
+    int k = head;
+    while (k >= 0) {
+      Sum& sum = sums_[static_cast<std::size_t>(k)];
+      if (sum.nx * point.nx + sum.ny * point.ny > kOneSurface * sum.count) {
+        sum.x += point.x;
+        sum.y += point.y;
+        sum.nx += point.nx;
+        sum.ny += point.ny;
+        sum.count += 1.0F;
+        break;
+      }
+      k = sum.next;
+    }
+    if (k >= 0) continue;
+    sums_.push_back({point.x, point.y, point.nx, point.ny, 1.0F, head});
+    head = static_cast<int>(sums_.size()) - 1;
+  }
   surfels_.reserve(sums_.size());
-  first_.resize(head_.size() + 1);
-  for (std::size_t cell = 0; cell < head_.size(); ++cell) {
-    first_[cell] = static_cast<int>(surfels_.size());
-    for (int k = head_[cell]; k >= 0; k = next_[static_cast<std::size_t>(k)]) {
+  first_.clear();
+  for (const int head : head_) {
+    first_.push_back(static_cast<int>(surfels_.size()));
+    for (int k = head; k >= 0; k = sums_[static_cast<std::size_t>(k)].next) {
       const Sum& sum = sums_[static_cast<std::size_t>(k)];
       const float norm = std::sqrt(sum.nx * sum.nx + sum.ny * sum.ny);
       surfels_.push_back({sum.x / sum.count, sum.y / sum.count, sum.nx / norm, sum.ny / norm});
     }
   }
-  first_.back() = static_cast<int>(surfels_.size());
+  first_.push_back(static_cast<int>(surfels_.size()));
 }
 
 const Surfel* SurfelGrid::nearest(float x, float y, float nx, float ny, float radius) const {
@@ -77,9 +96,13 @@ const Surfel* SurfelGrid::nearest(float x, float y, float nx, float ny, float ra
   float best = radius * radius;
   const Surfel* found = nullptr;
   for (int v = row - reach; v <= row + reach; ++v) {
-    const int* cells = &first_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_)];
-    const Surfel* end = surfels_.data() + cells[column + reach + 1];
-    for (const Surfel* surfel = surfels_.data() + cells[column - reach]; surfel != end; ++surfel) {
+    const auto middle =
+        static_cast<std::uint32_t>(v) * static_cast<std::uint32_t>(width_) + static_cast<std::uint32_t>(column);
+    const std::size_t from = rank(middle - static_cast<std::uint32_t>(reach));
+    const std::size_t to = rank(middle + static_cast<std::uint32_t>(reach) + 1U);
+    if (from == to) continue;
+    const Surfel* end = surfels_.data() + first_[to];
+    for (const Surfel* surfel = surfels_.data() + first_[from]; surfel != end; ++surfel) {
       const float dx = surfel->x - x;
       const float dy = surfel->y - y;
       const float d2 = dx * dx + dy * dy;

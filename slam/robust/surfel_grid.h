@@ -3,6 +3,7 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "slam/robust/cloud.h"
@@ -31,20 +32,32 @@ class SurfelGrid {
   bool empty() const { return surfels_.empty(); }
 
  private:
+  /// A point that was added, in the grid's frame.
+  struct Added {
+    float x, y, nx, ny;
+    std::uint32_t cell;
+  };
   struct Sum {
     float x, y, nx, ny;
     float count;
+    int next;  ///< in its cell, -1: none
   };
-  void put(float x, float y, float nx, float ny);
+  /// Cells below `cell` that hold something.
+  std::size_t rank(std::uint32_t cell) const {
+    const std::uint64_t below = (std::uint64_t{1} << (cell & 63U)) - 1U;
+    return ranks_[cell >> 6U] + static_cast<std::size_t>(__builtin_popcountll(filled_[cell >> 6U] & below));
+  }
 
   float cells_per_m_ = 10.0F;
   float x0_ = 0.0F, y0_ = 0.0F;
   int width_ = 0, height_ = 0;
-  std::vector<int> head_;        ///< while filling: newest sum of each cell, -1: none
-  std::vector<int> next_;        ///< of each sum: the next in its cell, -1: none
-  std::vector<Sum> sums_;        ///< while filling
-  std::vector<int> first_;       ///< first surfel of each cell; one more than there are cells
-  std::vector<Surfel> surfels_;  ///< row by row: what is near lies near in memory
+  std::vector<Added> added_;           ///< while filling
+  std::vector<int> head_;              ///< while filling: newest sum of each cell that holds something, -1: none
+  std::vector<Sum> sums_;              ///< while filling
+  std::vector<std::uint64_t> filled_;  ///< a bit for each cell that holds something: of many cells few do
+  std::vector<std::uint32_t> ranks_;   ///< of the first cell of each word
+  std::vector<int> first_;             ///< first surfel of each cell that holds something, and one more
+  std::vector<Surfel> surfels_;        ///< row by row: what is near lies near in memory
 };
 
 }  // namespace rubble::slam

@@ -13,7 +13,10 @@ namespace rubble::slam_test {
 inline slam::Cloud cloud_at(const World& world, const TPose2D& T_world_base, const robot::RobotModel& model) {
   Rng silent(1, "scan");
   slam::LevelScan level(model.T_base_laser, {});
-  return slam::cloud_of(level.points(scan_at(world, T_world_base, model, Stamp{0}, 0.0, silent)), {});
+  const slam::ScanPoints points = level.points(scan_at(world, T_world_base, model, Stamp{0}, 0.0, silent));
+  slam::Cloud cloud = slam::cloud_of(points, {});
+  cloud.sight = slam::sight_of(points);
+  return cloud;
 }
 
 /// Places about `spacing` apart on the way through the points, each looking ahead.

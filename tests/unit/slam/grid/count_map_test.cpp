@@ -288,6 +288,36 @@ TEST(CountMap, FullCountsAreHalvedAndTheRatioStays) {
   EXPECT_NEAR(map.p_occ(cell), 0.25, 0.01);
 }
 
+TEST(CountMap, RestampingIsTakingBackAndStampingAnew) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Rng rng(seed, "restamp");
+    CountMap one(100, 100, 0.05, 612);  // grows, and ends before all scans fit
+    CountMap other(100, 100, 0.05, 612);
+    for (int k = 0; k < 12; ++k) {
+      const ScanPoints scan = room_scan({}, seed * 100 + static_cast<std::uint64_t>(k));
+      const double far = k % 3 == 0 ? 12.0 : 0.05;
+      const double x = rng.uniform(-12.0, 12.0), y = rng.uniform(-12.0, 12.0), phi = rng.uniform(-3.0, 3.0);
+      const double dx = rng.uniform(-far, far), dy = rng.uniform(-far, far), turn = rng.uniform(-0.3, 0.3);
+      const TPose2D before{x, y, phi};
+      const TPose2D after{x + dx, y + dy, phi + turn};
+      one.stamp(before, scan);
+      one.unstamp(before, scan);
+      one.stamp(after, scan);
+      other.stamp(before, scan);
+      other.restamp(before, after, scan);
+    }
+    ASSERT_EQ(one.frame(), other.frame());
+    ASSERT_EQ(one.dropped_hits(), other.dropped_hits());
+    for (int y = 0; y < one.frame().height; ++y)
+      for (int x = 0; x < one.frame().width; ++x) {
+        ASSERT_EQ(one.seen({x, y}), other.seen({x, y})) << x << ' ' << y;
+        ASSERT_EQ(one.occupied({x, y}), other.occupied({x, y})) << x << ' ' << y;
+        ASSERT_EQ(one.p_occ_plane()[one.frame().index({x, y})], other.p_occ_plane()[one.frame().index({x, y})]);
+      }
+  }
+}
+
 TEST(CountMap, ImpossibleSizesAreRefused) {
   EXPECT_THROW(CountMap(0, 10, 0.05), std::invalid_argument);
   EXPECT_THROW(CountMap(10, 10, 0.0), std::invalid_argument);

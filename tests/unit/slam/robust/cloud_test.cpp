@@ -87,6 +87,7 @@ TEST(Cloud, AnEmptyScanGivesAnEmptyCloud) {
   EXPECT_TRUE(cloud.points.empty());
   EXPECT_TRUE(cloud.filled.empty());
   EXPECT_EQ(cloud.sight.judge(0.3, 1.0), SightFan::Verdict::Nothing);
+  EXPECT_EQ(sight_of({}).judge(0.3, 1.0), SightFan::Verdict::Nothing);
 }
 
 TEST(SightFan, TellsInFrontFromBehind) {

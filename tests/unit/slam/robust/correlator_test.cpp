@@ -165,28 +165,75 @@ TEST(CorrelativeSearch, LookingAgainFindsWhatANewSearchFinds) {
   }
 }
 
-TEST(Correlator, BoundsAreExactAboveTheFloorAndNeverTooLow) {
+TEST(Correlator, QuartersAreExactAboveTheFloorAndGivenUpOnlyBelow) {
   Rng rng(7, "bounds");
   const Scene scene = random_scene(rng, {});
   int exact = 0;
+  int given_up = 0;
   for (int k = 0; k < 2000; ++k) {
     const std::vector<Cell> cells =
-        cells_at(scene, rng.uniform(-0.3, 0.3), rng.uniform(-0.5, 0.5), rng.uniform(-0.5, 0.5));
+        cells_at(scene, rng.uniform(-0.3, 0.3), rng.uniform(-1.5, 1.5), rng.uniform(-1.5, 1.5));
     const int level = static_cast<int>(rng.below(Correlator::kLevels));
     const double floor = rng.uniform(0.0, 1.0);
+    const double whole = 255.0 * static_cast<double>(cells.size());
+    std::vector<Correlator::Sums> around;
+    Correlator::RootWork work;
+    scene.correlator.roots(cells, 0, 0, 1, 1, work, around);
     Work looked_at = 0;
-    const double value = scene.correlator.value(cells, 0, 0, level);
-    const double bound = scene.correlator.bound(cells, 0, 0, level, floor, looked_at);
-    EXPECT_GE(bound, value - 1e-12);
+    const auto quarters =
+        scene.correlator.quarters(cells, 0, 0, level, around[0], static_cast<std::uint32_t>(floor * whole), looked_at);
     EXPECT_LE(looked_at, static_cast<Work>(cells.size()));
-    if (value > floor) {
-      EXPECT_EQ(bound, value);
+    for (std::size_t q = 0; q < 4; ++q) {
+      const int half = 1 << level;
+      const double value = scene.correlator.value(cells, (q & 1) != 0 ? half : 0, (q & 2) != 0 ? half : 0, level);
+      if (!quarters) {
+        EXPECT_LE(value, floor);
+        ++given_up;
+        continue;
+      }
+      EXPECT_EQ((*quarters)[q].whole / whole, value);
+      std::uint32_t sum = 0;
+      for (const std::uint32_t part : (*quarters)[q].parts) sum += part;
+      EXPECT_EQ(sum, (*quarters)[q].whole);
       ++exact;
-    } else {
-      EXPECT_LE(bound, floor + 1e-12);
     }
   }
-  EXPECT_GT(exact, 100);
+  EXPECT_GT(exact, 1000);
+  EXPECT_GT(given_up, 1000);
+}
+
+TEST(Correlator, RootsBoundAllThatBeginsInThemPartByPart) {
+  Rng rng(8, "roots");
+  const Scene scene = random_scene(rng, {});
+  int tight = 0;
+  for (int k = 0; k < 40; ++k) {
+    const std::vector<Cell> cells =
+        cells_at(scene, rng.uniform(-3.0, 3.0), rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0));
+    const int columns = 1 + static_cast<int>(rng.below(20));
+    const int rows = 1 + static_cast<int>(rng.below(6));
+    const int x = static_cast<int>(rng.below(40)) - 20 - columns * Correlator::kRootCells / 2;
+    const int y = static_cast<int>(rng.below(40)) - 20 - rows * Correlator::kRootCells / 2;
+    std::vector<Correlator::Sums> roots;
+    Correlator::RootWork work;
+    scene.correlator.roots(cells, x, y, columns, rows, work, roots);
+    ASSERT_EQ(roots.size(), static_cast<std::size_t>(columns * rows));
+    for (int n = 0; n < 60; ++n) {
+      const int u = static_cast<int>(rng.below(static_cast<std::uint32_t>(columns * Correlator::kRootCells)));
+      const int v = static_cast<int>(rng.below(static_cast<std::uint32_t>(rows * Correlator::kRootCells)));
+      const Correlator::Sums& root =
+          roots[static_cast<std::size_t>(v / Correlator::kRootCells * columns + u / Correlator::kRootCells)];
+      for (std::size_t s = 0; s < Correlator::kStretches; ++s) {
+        const std::size_t begin = cells.size() * s / Correlator::kStretches;
+        const std::size_t end = cells.size() * (s + 1) / Correlator::kStretches;
+        const std::vector<Cell> part(cells.begin() + static_cast<std::ptrdiff_t>(begin),
+                                     cells.begin() + static_cast<std::ptrdiff_t>(end));
+        const double sum = scene.correlator.value(part, x + u, y + v, 0) * 255.0 * static_cast<double>(part.size());
+        EXPECT_GE(root.parts[s] + 1e-6, sum);
+        tight += sum > 0.5 * root.parts[s] ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(tight, 100);
 }
 
 TEST(CorrelativeSearch, NothingIsFoundBelowTheFloor) {

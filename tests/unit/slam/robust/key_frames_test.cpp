@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "tests/support/slam_key_frames.h"
@@ -70,8 +71,13 @@ TEST(KeyFrames, PathsAreTheShortestOfAll) {
       for (std::size_t i = 0; i < kNodes; ++i)
         for (std::size_t j = 0; j < kNodes; ++j) between[i][j] = std::min(between[i][j], between[i][k] + between[k][j]);
     const double most = seed % 2 == 0 ? 5.0 : 1e9;
+    std::vector<int> all(kNodes);
+    std::iota(all.begin(), all.end(), 0);
     for (int i = 0; i < kNodes; ++i) {
-      const std::vector<double> paths = frames.paths_from(i, most);
+      const std::vector<double> paths = frames.paths_from(i, all, most);
+      const std::vector<int> some{static_cast<int>(rng.below(kNodes)), static_cast<int>(rng.below(kNodes)), i};
+      const std::vector<double> to_some = frames.paths_from(i, some, most);
+      for (std::size_t k = 0; k < some.size(); ++k) EXPECT_EQ(to_some[k], paths[static_cast<std::size_t>(some[k])]);
       for (std::size_t j = 0; j < kNodes; ++j) {
         const double expected = between[static_cast<std::size_t>(i)][j];
         if (expected > most)
