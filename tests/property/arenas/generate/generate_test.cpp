@@ -150,11 +150,11 @@ TEST(Generate, ObstaclesOfOrangeAndRedCutNothingOff) {
         EXPECT_EQ(generate_arena(config), generate_arena(config));
       }
     }
-    std::cout << kind << ": " << 100.0 * share << " % of the pallets have obstacles (25 % asked)\n";
+    std::cout << arenas::name_of(kind) << ": " << 100.0 * share << " % of the pallets have obstacles (25 % asked)\n";
     EXPECT_GT(share, 0.1);
     EXPECT_EQ(elements.count("step_field"), 1u);
-    EXPECT_EQ(elements.count(kind == "orange" ? "crossing_ramp" : "stair"), 1u);
-    EXPECT_EQ(elements.count("tunnel"), kind == "red" ? 1u : 0u);
+    EXPECT_EQ(elements.count(kind == ArenaKind::Orange ? "crossing_ramp" : "stair"), 1u);
+    EXPECT_EQ(elements.count("tunnel"), kind == ArenaKind::Red ? 1u : 0u);
   }
 }
 
