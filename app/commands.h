@@ -8,6 +8,7 @@ namespace rubble::app {
 Command run_command();
 Command map_command();
 Command score_command();
+Command rooms_command();
 Command plan_command();
 Command replay_command();
 Command export_command();

@@ -1,0 +1,29 @@
+#include "scoring/room_report.h"
+
+#include "scoring/alignment/alignment.h"
+#include "scoring/rooms/room_picture.h"
+#include "scoring/walls/resample.h"
+
+namespace rubble::scoring {
+
+Rooms rooms_of_map(const OccupancyGrid& map, bool by_sight) {
+  RoomConfig config;
+  if (by_sight) config.method = RoomMethod::Visibility;
+  return extract_rooms(map, config);
+}
+
+void draw_rooms(const std::string& path, const OccupancyGrid& map, const Rooms& rooms) {
+  write_rooms_png(path, map, rooms);
+}
+
+RoomVerdict judge_rooms(const OccupancyGrid& map, const Rooms& of_map, const OccupancyGrid& truth,
+                        const Rooms& of_truth) {
+  RoomVerdict out;
+  const Alignment found = align(crop_to_known(map, 0.0), crop_to_known(truth, 0.0));
+  out.aligned = found.aligned;
+  out.note = found.note;
+  if (found.aligned) out.match = match_rooms(of_map, of_truth, found.T_truth_map);
+  return out;
+}
+
+}  // namespace rubble::scoring

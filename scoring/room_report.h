@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "base/grid.h"
+#include "scoring/rooms/room_match.h"
+#include "scoring/rooms/rooms.h"
+
+namespace rubble::scoring {
+
+/// The rooms of a map; `by_sight`: as clusters of wall control points (section IV.E), else by passages.
+Rooms rooms_of_map(const OccupancyGrid& map, bool by_sight);
+
+/// Draws them as a PNG. Throws RunError.
+void draw_rooms(const std::string& path, const OccupancyGrid& map, const Rooms& rooms);
+
+/// The rooms of a map held against those of the truth.
+struct RoomVerdict {
+  bool aligned = false;  ///< without a pose that can be trusted nothing is compared
+  std::string note;      ///< why not
+  RoomMatch match;
+};
+
+RoomVerdict judge_rooms(const OccupancyGrid& map, const Rooms& of_map, const OccupancyGrid& truth,
+                        const Rooms& of_truth);
+
+}  // namespace rubble::scoring

@@ -1,0 +1,34 @@
+# rubble rooms: the rooms of a map, by both methods, and what is left of them against a truth.
+. "$(dirname "$0")/lib.sh"
+
+# Four rooms around a cross of walls with doors, 0.05 m a pixel, the northern ones 3.05 m deep and the southern 2.25 m.
+python3 <<'PY'
+def plan(name, east, door=18):
+    w, h, m = 10 + 81 + 3 + east + 10, 10 + 61 + 3 + 45 + 10, 10
+    g = [[205] * w for _ in range(h)]
+    def box(x0, y0, x1, y1, v):
+        for y in range(y0, y1):
+            for x in range(x0, x1):
+                g[y][x] = v
+    box(m - 3, m - 3, w - m + 3, h - m + 3, 0)
+    x, y = m + 81, m + 61
+    box(m, m, x, y, 254); box(x + 3, m, w - m, y, 254)
+    box(m, y + 3, x, h - m, 254); box(x + 3, y + 3, w - m, h - m, 254)
+    box(x, m + 20, x + 3, m + 20 + door, 254); box(x, y + 24, x + 3, y + 24 + door, 254)
+    box(m + 30, y, m + 30 + door, y + 3, 254)
+    open(name, "wb").write(b"P5 %d %d 255\n" % (w, h) + bytes(v for row in g for v in row))
+plan("truth.pgm", 85)
+PY
+for method in passages visibility; do
+  "$rubble" rooms truth.pgm --resolution 0.05 --method $method --out $method >table.txt 2>err.txt || fail "$method ended with $?: $(cat err.txt)"
+  grep -qE '^rooms +4$' table.txt || fail "$method: not four rooms: $(cat table.txt)"
+  [[ $(wc -l <$method/rooms.csv) == 5 && -s $method/rooms.png ]] || fail "$method: no list and picture"
+done
+grep -qE '^room 1 .*box 4\.[67][05], 2\.[789][05] to 8\.95, 5\.95 m' <("$rubble" rooms truth.pgm --resolution 0.05) ||
+  fail "the largest room has another box: $("$rubble" rooms truth.pgm --resolution 0.05)"
+"$rubble" rooms truth.pgm truth.pgm --resolution 0.05 --truth-resolution 0.05 >same.txt || fail "same: $?"
+grep -qE '^room score +1\.000$' same.txt || fail "a map has its own rooms wrong: $(cat same.txt)"
+expect_exit 3 "--resolution" "$rubble" rooms truth.pgm
+expect_exit 3 "nowhere.png" "$rubble" rooms nowhere.png
+expect_exit 2 "" "$rubble" rooms truth.pgm --method magic
+finish
