@@ -197,7 +197,10 @@ Drive PaperExplorer::start(const slam::Mapper& mapper) {
   const std::vector<Cell> frontier = frontier_cells(floor);
   const auto near = std::count_if(frontier.begin(), frontier.end(),
                                   [&](Cell c) { return distance(floor.cells.centre(c), here) < kNearFrontier; });
-  if (near >= config_.planner.min_frontier_cells && config_.first_turn > 0.0) look_around(config_.first_turn, true);
+  const Cell own = floor.clearance.cell(here);
+  const bool room = floor.clearance.inside(own) && floor.clearance[own] >= model_.swing_radius();
+  if (room && near >= config_.planner.min_frontier_cells && config_.first_turn > 0.0)
+    look_around(config_.first_turn, true);
   return {};
 }
 

@@ -11,7 +11,7 @@
 #include "explore/caution/escape.h"
 #include "explore/caution/felt_obstacles.h"
 #include "explore/caution/motion_watch.h"
-#include "explore/caution/pivot.h"
+#include "explore/paper/pivot.h"
 #include "explore/caution/tilt_watch.h"
 #include "explore/explorer.h"
 #include "explore/paper/home_way.h"
