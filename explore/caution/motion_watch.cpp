@@ -20,7 +20,6 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
     reference_ = T_map_base;
     has_reference_ = true;
     way_ = 0.0;
-    time_ = 0.0;
     turn_ = 0.0;
   }
   if (length(T_map_base.x - place_.x, T_map_base.y - place_.y) > config_.place) {
@@ -34,13 +33,9 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   if (commanded.v * expected_ <= 0.0) expected_ = 0.0;
   const bool on_the_spot = std::abs(commanded.w) > config_.pivot_rate && std::abs(commanded.v) <= config_.pivot_speed;
   if (!on_the_spot) way_ += std::abs(expected_) * dt;
-  time_ += dt;
   turn_ += std::abs(commanded.w) * dt;
   stalled_for_ = stalled ? stalled_for_ + dt : 0.0;
-  const double made = length(T_map_base.x - reference_.x, T_map_base.y - reference_.y);
-  const bool slow_in_vain = time_ > config_.slow_time && way_ > config_.slow_way && made < config_.slow_share * way_;
-  return rocking() || slow_in_vain || way_ > config_.patience || turn_ > config_.turn_patience ||
-         stalled_for_ > config_.stall_time;
+  return rocking() || way_ > config_.patience || turn_ > config_.turn_patience || stalled_for_ > config_.stall_time;
 }
 
 }  // namespace rubble::explore

@@ -13,15 +13,12 @@ struct MotionWatchConfig {
   double moved = 0.05;              ///< this far from where the watch began, the robot moves [m]
   double turned = deg_to_rad(8.0);  ///< or turned this much [rad]
   double patience = 0.20;           ///< way commanded in vain that means stuck [m]
-  double pivot_rate = 0.25;         ///< turning faster than this
+  double pivot_rate = 0.15;         ///< turning faster than this
   double pivot_speed = 0.12;        ///< and driving no faster is a turn on the spot: its way does not count
-  double slow_time = 0.9;           ///< a slow robot is given so long [s],
-  double slow_way = 0.06;           ///< so much way [m],
-  double slow_share = 0.3;          ///< and must have made this share of it
   double accel = 0.3;               ///< a commanded speed is expected to be reached so [m/s^2]
   double turn_patience = 1.6;       ///< turn commanded in vain that means stuck [rad]
   double place = 0.15;              ///< rocking to and fro within so much of a place [m]
-  double rocking = 3.5;             ///< turned so much more there than came of it means stuck [rad]
+  double rocking = 6.3;             ///< turned so much more there than came of it means stuck [rad]
   double stall_time = 0.21;         ///< the motors report a stall for this long [s]
 };
 
@@ -45,7 +42,6 @@ class MotionWatch {
   bool has_reference_ = false;
   double expected_ = 0.0;  ///< speed [m/s]
   double way_ = 0.0;
-  double time_ = 0.0;  ///< since the reference [s]
   double turn_ = 0.0;
   mrpt::math::TPose2D place_;
   double rocked_ = 0.0;  ///< turns commanded there, whichever way [rad]

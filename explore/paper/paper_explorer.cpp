@@ -206,7 +206,10 @@ Drive PaperExplorer::start(const slam::Mapper& mapper) {
 
 Drive PaperExplorer::drive(const slam::Mapper& mapper) {
   mark_searched();
-  if (holding_still()) return {};
+  if (holding_still()) {
+    watch_.reset();
+    return {};
+  }
   if (looking_.active() || state_ == ExplorerState::Searching) watch_.turns_on_purpose();
   const bool patient = now_ < patient_until_;
   if (tilt_.too_steep() || watch_.stuck(pose_, patient ? Drive{} : commanded_, stalled_, dt_)) {
@@ -219,9 +222,8 @@ Drive PaperExplorer::drive(const slam::Mapper& mapper) {
     if (state_ == ExplorerState::Searching) floor_search_.give_up_subject(last_floor_, {now_, pose_});
     bar_target(*target_);
   }
-  if (state_ == ExplorerState::Searching && follower_.arrived() && !looking_.active() &&
-      now_ - last_plan_ > kArrivedReplan)
-    plan_forced_ = true;
+  // A mapper need not change its map where a robot stands on known ground.
+  if (follower_.arrived() && !looking_.active() && now_ - last_plan_ > kArrivedReplan) plan_forced_ = true;
   if (must_turn_back()) go_home("the time left is for the way home");
   if (plan_forced_ || now_ >= next_plan_) replan(mapper);
   if (state_ == ExplorerState::Finished) return {};
