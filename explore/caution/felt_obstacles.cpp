@@ -64,36 +64,43 @@ bool FeltObstacles::feel(const Anchor& anchor, bool behind, const robot::RobotMo
   return false;
 }
 
-/// The pallet whose edge the body met; false where it met something within a pallet, or one that it has stood on.
+/// Puts a touch to the account of the pallet that the body reaches into. True where all of that pallet is taken for an
+/// obstacle: the robot has not stood on it and met its edge.
 bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
                                 const std::vector<TPoint2D>& trail) {
   const TPose2D& T_map_base = touch.anchor.T_map_base;
   const Cell own = grid.pallet({T_map_base.x, T_map_base.y});
   const double reach = touch.side * (0.5 * model.length + kBeyondEdge);
   const Cell there = grid.pallet(T_map_base.composePoint(TPoint2D{reach, 0.0}));
-  if (there == own) return false;
   const TPoint2D middle = grid.to_map({there.x + 0.5, there.y + 0.5});
   Thing thing = touch;
-  thing.is_pallet = thing.whole = true;
+  thing.is_pallet = true;
   thing.until = kForGood;
   thing.T_base_pallet = TPose2D{middle.x, middle.y, grid.angle} - T_map_base;
-  if (std::any_of(trail.begin(), trail.end(), [&](const TPoint2D& p) { return holds(thing, p, kOnPallet); }))
-    return false;
+  thing.inside = there == own;
+  const bool stood_on = thing.inside || std::any_of(trail.begin(), trail.end(),
+                                                    [&](const TPoint2D& p) { return holds(thing, p, kOnPallet); });
+  thing.whole = thing.stubs = !stood_on;
   for (Thing& known : things_) {
     if (!known.is_pallet || distance({known.pallet().x, known.pallet().y}, middle) > 0.5 * config_.pallet) continue;
-    thing.certain = known.certain || !known.whole;
+    thing.certain = !stood_on && (known.certain || !known.whole);
+    thing.times = known.times + 1;
+    thing.stubs = thing.stubs || known.stubs || thing.times > 1;
     known = thing;
-    return true;
+    return !stood_on;
   }
   things_.push_back(thing);
-  return true;
+  return !stood_on;
 }
 
 void FeltObstacles::passed(const TPose2D& T_map_base, const robot::RobotModel& model) {
   const double radius = 0.25 * model.width;
   const TPoint2D here{T_map_base.x, T_map_base.y};
-  for (Thing& thing : things_)
-    if (thing.is_pallet && thing.whole && holds(thing, here, kOnPallet)) thing.whole = thing.certain = false;
+  for (Thing& thing : things_) {
+    if (!thing.is_pallet) continue;
+    thing.inside = holds(thing, here, 0.0);
+    if (holds(thing, here, kOnPallet)) thing.whole = thing.certain = false;
+  }
   things_.erase(
       std::remove_if(things_.begin(), things_.end(),
                      [&](const Thing& thing) { return !thing.is_pallet && distance(thing.at(0.0), here) < radius; }),
@@ -107,9 +114,9 @@ void FeltObstacles::follow(const slam::Mapper& mapper) {
 std::vector<TPoint2D> FeltObstacles::points(Stamp now) const {
   std::vector<TPoint2D> points;
   for (const Thing& thing : things_) {
-    if (now >= thing.until) continue;
+    if (!counts(thing, now)) continue;
     if (thing.is_pallet) {
-      add_pallet(thing.pallet(), thing.whole, config_.pallet, points);
+      add_pallet(thing.pallet(), closed(thing), config_.pallet, points);
       continue;
     }
     for (double aside = -thing.half_bar; aside < thing.half_bar + 0.5 * kBarStep; aside += kBarStep)
@@ -120,7 +127,7 @@ std::vector<TPoint2D> FeltObstacles::points(Stamp now) const {
 
 int FeltObstacles::count(Stamp now) const {
   return static_cast<int>(
-      std::count_if(things_.begin(), things_.end(), [&](const Thing& thing) { return now < thing.until; }));
+      std::count_if(things_.begin(), things_.end(), [&](const Thing& thing) { return counts(thing, now); }));
 }
 
 bool FeltObstacles::forget(Stamp now) {
@@ -132,7 +139,7 @@ bool FeltObstacles::forget(Stamp now) {
 bool FeltObstacles::pardon(Stamp now) {
   bool any = false;
   for (Thing& thing : things_) {
-    if (now >= thing.until) continue;
+    if (!counts(thing, now)) continue;
     if (thing.is_pallet ? !thing.whole || thing.certain : thing.half_bar <= kNarrowBar) continue;
     thing.half_bar = kNarrowBar;
     thing.whole = false;
@@ -140,8 +147,8 @@ bool FeltObstacles::pardon(Stamp now) {
   }
   if (any) return true;
   for (Thing& thing : things_) {
-    const bool certain = thing.is_pallet ? thing.certain : thing.times >= config_.certain;
-    if (thing.until <= now || certain) continue;
+    const bool certain = thing.is_pallet ? thing.certain || closed(thing) : thing.times >= config_.certain;
+    if (!counts(thing, now) || certain) continue;
     thing.until = now;
     any = true;
   }

@@ -19,6 +19,7 @@ struct FeltConfig {
   double pallet = 1.2;      ///< size of the elements that the arena is built of [m]; 0: of none
   double same_thing = 0.5;  ///< felt this close to an earlier one: the same thing [m]
   int certain = 3;          ///< felt so often, it stands there for good
+  int tries = 3;            ///< a pallet that can be driven on but was felt so often is left alone once left
 };
 
 /// What the scanner cannot see but the robot felt: steps, blocks and edges that stopped it, ground too steep for it.
@@ -62,14 +63,21 @@ class FeltObstacles {
     int times = 1;
     Stamp until = Stamp::never();
     bool is_pallet = false;
-    bool whole = false;                 ///< all of the pallet counts; else the middles of its sides
+    bool whole = false;                 ///< all of the pallet counts
     bool certain = false;               ///< it was felt again after a pardon
+    bool stubs = false;                 ///< else, whether the middles of its sides count
+    bool inside = false;                ///< the robot's middle is on it
     mrpt::math::TPose2D T_base_pallet;  ///< of the pallet's middle
 
     mrpt::math::TPoint2D at(double aside) const;  ///< on the bar [m, map frame]
     mrpt::math::TPose2D pallet() const { return anchor.T_map_base + T_base_pallet; }
   };
 
+  /// All of the pallet is an obstacle.
+  bool closed(const Thing& thing) const { return thing.whole || (thing.times >= config_.tries && !thing.inside); }
+  bool counts(const Thing& thing, Stamp now) const {
+    return now < thing.until && (!thing.is_pallet || thing.stubs || closed(thing));
+  }
   bool feel_pallet(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
                    const std::vector<mrpt::math::TPoint2D>& trail);
   bool holds(const Thing& thing, const mrpt::math::TPoint2D& p_map, double margin) const;

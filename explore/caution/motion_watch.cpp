@@ -31,7 +31,8 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   rocked_ += std::abs(commanded.w) * dt;
   expected_ += std::clamp(commanded.v - expected_, -config_.accel * dt, config_.accel * dt);
   if (commanded.v * expected_ <= 0.0) expected_ = 0.0;
-  way_ += std::abs(expected_) * dt;
+  const bool on_the_spot = std::abs(commanded.w) > config_.pivot_rate && std::abs(commanded.v) <= config_.pivot_speed;
+  if (!on_the_spot) way_ += std::abs(expected_) * dt;
   turn_ += std::abs(commanded.w) * dt;
   stalled_for_ = stalled ? stalled_for_ + dt : 0.0;
   return rocking() || way_ > config_.patience || turn_ > config_.turn_patience || stalled_for_ > config_.stall_time;

@@ -13,10 +13,12 @@ struct MotionWatchConfig {
   double moved = 0.05;              ///< this far from where the watch began, the robot moves [m]
   double turned = deg_to_rad(8.0);  ///< or turned this much [rad]
   double patience = 0.20;           ///< way commanded in vain that means stuck [m]
+  double pivot_rate = 0.15;         ///< turning faster than this
+  double pivot_speed = 0.12;        ///< and driving no faster is a turn on the spot: its way does not count
   double accel = 0.3;               ///< a commanded speed is expected to be reached so [m/s^2]
   double turn_patience = 1.6;       ///< turn commanded in vain that means stuck [rad]
   double place = 0.15;              ///< rocking to and fro within so much of a place [m]
-  double rocking = 3.5;             ///< turned so much more there than came of it means stuck [rad]
+  double rocking = 6.3;             ///< turned so much more there than came of it means stuck [rad]
   double stall_time = 0.21;         ///< the motors report a stall for this long [s]
 };
 

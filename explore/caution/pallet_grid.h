@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "base/grid.h"
-#include "explore/plan/traversable.h"
 
 namespace rubble::explore {
 

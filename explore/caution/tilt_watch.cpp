@@ -8,10 +8,14 @@
 namespace rubble::explore {
 
 void TiltWatch::update(const robot::Inputs& inputs, double dt) {
+  const double share = std::min(1.0, dt / config_.smoothing);
+  silent_for_ = inputs.aims.empty() ? silent_for_ + dt : 0.0;
   if (!inputs.aims.empty()) {
-    const double share = std::min(1.0, dt / config_.smoothing);
     pitch_ += share * (-inputs.aims.back().pitch - pitch_);
     roll_ += share * (-inputs.aims.back().roll - roll_);
+  } else if (silent_for_ > config_.silence) {
+    pitch_ -= share * pitch_;
+    roll_ -= share * roll_;
   }
   steep_for_ = slope() > config_.too_steep ? steep_for_ + dt : 0.0;
 }

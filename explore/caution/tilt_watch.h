@@ -8,6 +8,7 @@ namespace rubble::explore {
 struct TiltWatchConfig {
   double too_steep = deg_to_rad(18.0);  ///< more than the ramps of an arena: a step field, or a fall to come [rad]
   double patience = 0.3;                ///< for so long [s]
+  double silence = 1.0;                 ///< after so long without angles the servos are taken to be out of order [s]
   double smoothing = 0.2;               ///< time constant: levelling answers to bumps as well [s]
 };
 
@@ -32,7 +33,8 @@ class TiltWatch {
   TiltWatchConfig config_;
   double pitch_ = 0.0;
   double roll_ = 0.0;
-  double steep_for_ = 0.0;  ///< [s]
+  double steep_for_ = 0.0;   ///< [s]
+  double silent_for_ = 0.0;  ///< [s]
 };
 
 }  // namespace rubble::explore

@@ -197,13 +197,19 @@ Drive PaperExplorer::start(const slam::Mapper& mapper) {
   const std::vector<Cell> frontier = frontier_cells(floor);
   const auto near = std::count_if(frontier.begin(), frontier.end(),
                                   [&](Cell c) { return distance(floor.cells.centre(c), here) < kNearFrontier; });
-  if (near >= config_.planner.min_frontier_cells && config_.first_turn > 0.0) look_around(config_.first_turn, true);
+  const Cell own = floor.clearance.cell(here);
+  const bool room = floor.clearance.inside(own) && floor.clearance[own] >= model_.swing_radius();
+  if (room && near >= config_.planner.min_frontier_cells && config_.first_turn > 0.0)
+    look_around(config_.first_turn, true);
   return {};
 }
 
 Drive PaperExplorer::drive(const slam::Mapper& mapper) {
   mark_searched();
-  if (holding_still()) return {};
+  if (holding_still()) {
+    watch_.reset();
+    return {};
+  }
   if (looking_.active() || state_ == ExplorerState::Searching) watch_.turns_on_purpose();
   const bool patient = now_ < patient_until_;
   if (tilt_.too_steep() || watch_.stuck(pose_, patient ? Drive{} : commanded_, stalled_, dt_)) {
@@ -216,9 +222,8 @@ Drive PaperExplorer::drive(const slam::Mapper& mapper) {
     if (state_ == ExplorerState::Searching) floor_search_.give_up_subject(last_floor_, {now_, pose_});
     bar_target(*target_);
   }
-  if (state_ == ExplorerState::Searching && follower_.arrived() && !looking_.active() &&
-      now_ - last_plan_ > kArrivedReplan)
-    plan_forced_ = true;
+  // A mapper need not change its map where a robot stands on known ground.
+  if (follower_.arrived() && !looking_.active() && now_ - last_plan_ > kArrivedReplan) plan_forced_ = true;
   if (must_turn_back()) go_home("the time left is for the way home");
   if (plan_forced_ || now_ >= next_plan_) replan(mapper);
   if (state_ == ExplorerState::Finished) return {};

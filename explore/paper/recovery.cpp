@@ -12,7 +12,7 @@ using robot::Drive;
 
 constexpr double kBarTime = 60.0;      ///< for the first failure; doubles with each one more [s]
 constexpr double kSamePlace = 0.5;     ///< [m]
-constexpr double kTurningRate = 0.25;  ///< [rad/s]
+constexpr double kTurningRate = 0.15;  ///< [rad/s]
 constexpr double kLean = 0.03;         ///< getting free, the body may come so much closer to walls [m]
 constexpr int kMaxFailedEscapes = 6;   ///< in a row
 

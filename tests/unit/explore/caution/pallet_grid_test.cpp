@@ -131,6 +131,25 @@ TEST_F(FeltPallet, APalletTheRobotStoodOnIsNoStepField) {
   for (const TPoint2D& p : other.points(at(2.0))) EXPECT_GT(distance(p, beyond), 0.5);
 }
 
+TEST_F(FeltPallet, APalletThatHeldTheRobotAgainAndAgainIsLeftAloneOnceItIsLeft) {
+  const FeltConfig config;
+  const TPose2D on_it{1.7, 0.6, 0.0};
+  for (int times = 1; times <= config.tries; ++times) {
+    EXPECT_GT(nearest({1.5, 0.25}), 0.25) << times;
+    felt.passed(on_it, kModel);
+    EXPECT_FALSE(felt.feel({at(times), on_it}, false, kModel, grid));
+  }
+  felt.passed(on_it, kModel);
+  EXPECT_GT(nearest({1.5, 0.25}), 0.25) << "it must get out";
+  felt.passed({0.6, 0.6, 0.0}, kModel);
+  EXPECT_LT(nearest({1.5, 0.25}), 0.12);
+  felt.pardon(at(5.0));
+  felt.pardon(at(6.0));
+  EXPECT_LT(nearest({1.5, 0.25}), 0.12);
+  EXPECT_TRUE(felt.forget(at(7.0))) << "but for the way home";
+  EXPECT_EQ(felt.count(at(8.0)), 0);
+}
+
 TEST_F(FeltPallet, WhatIsMetWithinAPalletOrBehindTheRobotStaysThere) {
   EXPECT_FALSE(felt.feel({at(1.0), TPose2D{0.5, 0.6, 0.0}}, false, kModel, grid)) << "the middle of its own pallet";
   FeltObstacles behind;

@@ -1,4 +1,4 @@
-#include "explore/caution/pivot.h"
+#include "explore/paper/pivot.h"
 
 #include <algorithm>
 #include <cmath>

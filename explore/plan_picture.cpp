@@ -1,0 +1,127 @@
+#include "explore/plan_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/error.h"
+#include "base/planar.h"
+#include "explore/plan/exploration_transform.h"
+#include "explore/plan/frontier.h"
+#include "explore/plan/planner.h"
+#include "explore/plan/traversable.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+
+constexpr int kDarkest = 40, kLightest = 235;  ///< greys of cells at a frontier and farthest from all
+
+/// The map with a rim of unknown cells.
+OccupancyGrid rimmed(const OccupancyGrid& map) {
+  GridFrame frame = map.frame();
+  frame.width += 2;
+  frame.height += 2;
+  frame.x0 -= frame.resolution;
+  frame.y0 -= frame.resolution;
+  OccupancyGrid wider(frame, Occupancy::Unknown);
+  for (int y = 0; y < map.height(); ++y)
+    for (int x = 0; x < map.width(); ++x) wider[{x + 1, y + 1}] = map[{x, y}];
+  return wider;
+}
+
+Cell start_cell(const TPoint2D& from, const Traversable& floor, const ExplorationTransform& transform) {
+  const Cell c = floor.cells.cell(from);
+  if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free)
+    throw InputError("no free floor of the map is there; choose another place");
+  if (!transform.passable(c))
+    throw InputError("nearer to a wall than d_min allows; choose another place or a smaller d_min");
+  return c;
+}
+
+/// Fig. 9: the nearer to a frontier the darker; walls black, frontiers blue, the way red.
+RgbImage draw(const Traversable& floor, const ExplorationTransform& transform, const std::vector<Cell>& frontier,
+              const std::vector<Cell>& way) {
+  const int width = floor.cells.width(), height = floor.cells.height();
+  double most = 0.0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      if (transform.reached({x, y})) most = std::max(most, transform.cost({x, y}));
+  RgbImage image(width, height);
+  const auto paint = [&](Cell c, int r, int g, int b) {
+    std::uint8_t* pixel = image.pixel(c.x, height - 1 - c.y);
+    pixel[0] = static_cast<std::uint8_t>(r);
+    pixel[1] = static_cast<std::uint8_t>(g);
+    pixel[2] = static_cast<std::uint8_t>(b);
+  };
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const Cell c{x, y};
+      if (floor.cells[c] == Occupancy::Occupied) {
+        paint(c, 0, 0, 0);
+      } else if (floor.cells[c] == Occupancy::Unknown) {
+        paint(c, 200, 200, 215);
+      } else if (!transform.reached(c)) {
+        paint(c, 255, 255, 255);
+      } else {
+        const double share = most > 0.0 ? transform.cost(c) / most : 0.0;
+        const int grey = kDarkest + static_cast<int>(std::lround((kLightest - kDarkest) * share));
+        paint(c, grey, grey, grey);
+      }
+    }
+  for (const Cell c : frontier) paint(c, 40, 90, 220);
+  for (const Cell c : way) paint(c, 220, 30, 30);
+  return image;
+}
+
+PlannedWay measured(const std::vector<Cell>& way, const Traversable& floor, const ExplorationTransform& transform) {
+  PlannedWay out;
+  out.cost = transform.cost(way.front());
+  out.least_clearance = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    out.least_clearance = std::min<double>(out.least_clearance, floor.clearance[way[i]]);
+    if (i > 0) out.length += distance(floor.cells.centre(way[i - 1]), floor.cells.centre(way[i]));
+  }
+  return out;
+}
+
+}  // namespace
+
+PlanPictureConfig::PlanPictureConfig() {
+  const PlannerConfig usual;
+  alpha = usual.transform.alpha;
+  d_min = usual.transform.d_min;
+  d_opt = usual.transform.d_opt;
+  min_frontier_cells = usual.min_frontier_cells;
+}
+
+PlanPicture plan_picture(const OccupancyGrid& map, const PlanPictureConfig& config,
+                         const std::optional<TPoint2D>& from) {
+  PlannerConfig planner;
+  planner.transform = {config.alpha, config.d_min, config.d_opt,
+                       config.per_cell ? Discomfort::PerCell : Discomfort::PerMetre};
+  Traversable floor = traversable(rimmed(map));
+  measure_clearance(floor, Planner(planner).clearance_cap());
+  std::vector<Source> sources;
+  std::vector<Cell> frontier;
+  const auto clusters = frontier_clusters(floor, config.min_frontier_cells);
+  for (const FrontierCluster& cluster : clusters)
+    for (const Cell c : cluster.cells) {
+      sources.push_back({c, 0.0});
+      frontier.push_back(c);
+    }
+  if (sources.empty()) throw InputError("has no frontier: no free floor lies beside floor that is unknown");
+  ExplorationTransform transform;
+  transform.run(floor, sources, planner.transform);
+  std::vector<Cell> way;
+  if (from) way = transform.descend(start_cell(*from, floor, transform));
+  PlanPicture out;
+  out.frontiers = clusters.size();
+  if (!way.empty()) out.way = measured(way, floor, transform);
+  out.image = draw(floor, transform, frontier, way);
+  return out;
+}
+
+}  // namespace rubble::explore

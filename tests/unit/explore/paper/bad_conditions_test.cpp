@@ -1,0 +1,216 @@
+// What can go wrong on a mission: each has a sensible end, none moves the robot blindly.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "explore/caution/tilt_watch.h"
+#include "explore/paper/paper_explorer.h"
+#include "slam/paper/paper_mapper.h"
+#include "tests/support/explore_world.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using test::Maze;
+using test::MazeRobot;
+
+slam::PaperConfig exact_mapper() {
+  slam::PaperConfig config;
+  config.map_cells = 400;
+  config.particles = 1;
+  config.motion_error.rotation = 0.0;
+  config.motion_error.heading_per_m = 0.0;
+  config.motion_error.distance = 0.0;
+  config.icp = false;
+  return config;
+}
+
+/// A mission whose robot and measurements a test may spoil.
+struct Trial {
+  explicit Trial(const Maze& maze, double time_limit = 0.0)
+      : robot(maze, model), mapper(model, exact_mapper(), 1), explorer(model, {}, {time_limit}) {}
+
+  /// Until it finishes or `seconds` have passed. `before`: what happens to the world; `after`: to what was measured.
+  void run(double seconds, const std::function<void()>& before = {},
+           const std::function<void(robot::Inputs&)>& after = {}) {
+    while (robot.now().seconds() < seconds && !explorer.finished()) {
+      if (before) before();
+      robot::Inputs inputs = robot.step(commands);
+      if (after) after(inputs);
+      mapper.update(inputs);
+      commands = explorer.next(mapper, inputs);
+      touches += robot.touches() ? 1 : 0;
+      if (explorer.state() == ExplorerState::BackingUp) ++backing;
+    }
+  }
+
+  const robot::RobotModel model;
+  MazeRobot robot;
+  slam::PaperMapper mapper;
+  PaperExplorer explorer;
+  robot::Commands commands;
+  int touches = 0;
+  int backing = 0;
+};
+
+bool is_seen(const Trial& trial, const TPoint2D& p_arena) {
+  const slam::CountMap& map = trial.mapper.map();
+  const Cell c = map.frame().cell(trial.robot.maze().start.inverseComposePoint(p_arena));
+  return map.frame().inside(c) && map.seen(c) > 0;
+}
+
+TEST(BadConditions, AStartNearerToAWallThanItShouldBeIsLeftAndTheRestSeen) {
+  Maze maze = test::maze({"+--+--+--+",  //
+                          "| R      |",  //
+                          "+  +  +  +",  //
+                          "|        |",  //
+                          "+--+--+--+"});
+  maze.start.y += 0.23;  // 0.37 m from the north wall
+  Trial trial(maze);
+  ASSERT_LT(trial.robot.clearance(), PlannerConfig().transform.d_min);
+  trial.run(600.0);
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home);
+  EXPECT_EQ(trial.touches, 0);
+  EXPECT_TRUE(is_seen(trial, maze.centre(2, 0)));
+}
+
+TEST(BadConditions, WithoutFreeFloorAroundItTheRobotEndsWhereItStands) {
+  Maze maze = test::maze({"+--+",  //
+                          "| R|",  //
+                          "+--+"});
+  maze.box({maze.start.x, maze.start.y}, 0.70, 0.70);  // room for the body, none to turn or drive
+  Trial trial(maze);
+  trial.run(300.0);
+  EXPECT_TRUE(trial.explorer.finished());
+  EXPECT_FALSE(trial.explorer.reason().empty());
+  EXPECT_LT(std::hypot(trial.robot.pose().x - maze.start.x, trial.robot.pose().y - maze.start.y), 0.15);
+}
+
+/// Nothing but a wall behind the robot: what the scanner reaches of the plain is free, and its edge moves on.
+TEST(BadConditions, AFrontierThatMovesAwayForEverIsLeftInTimeForTheWayHome) {
+  Maze maze;
+  maze.columns = maze.rows = 1;
+  maze.walls.push_back({{-0.6, -40.0}, {-0.6, 40.0}});
+  for (double y = -40.0; y < 40.0; y += 2.4) maze.walls.push_back({{40.0, y}, {40.0, y + 2.0}});
+  for (double x = 0.0; x < 40.0; x += 2.0) {  // posts that the scanner can hold on to
+    maze.box({x + 1.0, 1.4}, 0.1, 0.1);
+    maze.box({x + 1.0, -1.4}, 0.1, 0.1);
+  }
+  Trial trial(maze, 120.0);
+  trial.run(130.0);
+  EXPECT_TRUE(trial.explorer.finished());
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
+  EXPECT_LE(trial.robot.now().seconds(), 120.0);
+}
+
+TEST(BadConditions, ADoorNarrowerThanTheRobotIsNotForced) {
+  Maze maze = test::maze({"+--+--+--+",  //
+                          "| R   |  |",  //
+                          "+  +  +  +",  //
+                          "|     |  |",  //
+                          "+--+--+--+"});
+  // The upper wall of the two is cut down to leave a gap of 0.4 m in its middle.
+  const double x = 1.5 * Maze::kPallet, y = 1.0 * Maze::kPallet;
+  maze.walls.erase(std::remove_if(maze.walls.begin(), maze.walls.end(),
+                                  [&](const test::Segment& s) {
+                                    return s.a.x == x && s.b.x == x &&
+                                           std::min(s.a.y, s.b.y) > 0.5 * Maze::kPallet - 0.01;
+                                  }),
+                   maze.walls.end());
+  maze.walls.push_back({{x, y - 0.6}, {x, y - 0.2}});
+  maze.walls.push_back({{x, y + 0.2}, {x, y + 0.6}});
+  Trial trial(maze);
+  trial.run(900.0);
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
+  EXPECT_EQ(trial.touches, 0);
+  EXPECT_TRUE(is_seen(trial, {x + 0.6, y})) << "it can be looked through";
+}
+
+TEST(BadConditions, AWallThatAppearsOnThePathIsNotTouched) {
+  const Maze maze = test::maze({"+--+--+--+--+",  //
+                                "| R         |",  //
+                                "+  +--+--+  +",  //
+                                "|           |",  //
+                                "+--+--+--+--+"});
+  Trial trial(maze);
+  bool built = false;
+  trial.run(600.0, [&] {
+    const TPose2D& pose = trial.robot.pose();
+    if (built || trial.commands.drive.v < 0.3 || pose.x < 0.6 || std::abs(pose.phi) > 0.3) return;
+    built = true;  // right across the corridor, 0.9 m ahead of the middle of a robot at full speed
+    trial.robot.maze().walls.push_back({{pose.x + 0.9, 0.6}, {pose.x + 0.9, 1.8}});
+  });
+  EXPECT_TRUE(built);
+  EXPECT_EQ(trial.touches, 0);
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
+}
+
+TEST(BadConditions, WithoutScansForTwoSecondsTheRobotStandsAndThenGoesOn) {
+  const Maze maze = test::random_maze(5, 5, 0.2, 7);
+  Trial trial(maze);
+  Stamp silent_from = Stamp::never();
+  int silences = 0;
+  double moved_blindly = 0.0;
+  TPose2D last = trial.robot.pose();
+  trial.run(900.0, [&] {
+    const Stamp now = trial.robot.now();
+    const bool silent = silent_from != Stamp::never() && now - silent_from < 2.0;
+    if (!silent && trial.commands.drive.v > 0.3 && (silences == 0 || now - silent_from > 20.0) && silences < 5) {
+      silent_from = now;
+      ++silences;
+    }
+    trial.robot.scanner_works = !(silent_from != Stamp::never() && now - silent_from < 2.0);
+    if (!trial.robot.scanner_works && now - silent_from > 1.9)  // it has come to rest by then
+      moved_blindly += std::hypot(trial.robot.pose().x - last.x, trial.robot.pose().y - last.y);
+    last = trial.robot.pose();
+  });
+  EXPECT_EQ(silences, 5);
+  EXPECT_LT(moved_blindly, 0.01);
+  EXPECT_EQ(trial.touches, 0);
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
+}
+
+/// The wheels' counters stop, so the mapper takes the robot for standing: it may not go on pushing.
+TEST(BadConditions, FrozenOdometryIsTakenForBeingStuck) {
+  const Maze maze = test::random_maze(5, 5, 0.2, 9);
+  Trial trial(maze);
+  std::vector<robot::Odometry> frozen;
+  double way_since = 0.0;
+  trial.run(400.0, {}, [&](robot::Inputs& inputs) {
+    if (inputs.now.seconds() > 30.0 && !inputs.odometry.empty()) {
+      if (frozen.empty()) frozen.push_back(inputs.odometry.back());
+      inputs.odometry.back().pose = frozen.back().pose;
+    }
+    if (!frozen.empty()) way_since += std::abs(trial.commands.drive.v) * trial.model.tick;
+  });
+  EXPECT_GT(trial.backing, 0);
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Stuck) << trial.explorer.reason();
+  EXPECT_LT(trial.robot.now().seconds(), 400.0);
+}
+
+/// The levelling unit dies while the laser is tilted: its last angles are not believed for ever.
+TEST(BadConditions, ALevellingUnitThatFailedSaysNothingAboutTheGround) {
+  TiltWatch watch;
+  robot::Inputs inputs;
+  inputs.aims.push_back({Stamp::from_seconds(1.0), deg_to_rad(30.0), 0.0});
+  for (int i = 0; i < 100; ++i) watch.update(inputs, 0.02);
+  EXPECT_TRUE(watch.too_steep());
+  inputs.aims.clear();
+  double silent = 0.0;
+  for (; watch.too_steep(); silent += 0.02) {
+    watch.update(inputs, 0.02);
+    ASSERT_LT(silent, 3.0);
+  }
+  EXPECT_GT(silent, 0.2) << "a few lost messages are no failure";
+  for (int i = 0; i < 50; ++i) watch.update(inputs, 0.02);
+  EXPECT_LT(watch.slope(), deg_to_rad(1.0));
+}
+
+}  // namespace
+}  // namespace rubble::explore
