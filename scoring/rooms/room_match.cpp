@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/assignment.h"
-#include "base/rigid.h"
+#include "base/planar.h"
 
 namespace rubble::scoring {
 namespace {
@@ -11,11 +11,12 @@ namespace {
 constexpr double kCap = 2.0;     // C [m^2]
 constexpr double kLambda = 1.0;  // [m^2]
 
-RoomPair pair_of(const Rooms& map, std::size_t i, const Rooms& truth, std::size_t j, const Rigid& T_truth_map) {
+RoomPair pair_of(const Rooms& map, std::size_t i, const Rooms& truth, std::size_t j,
+                 const PlanarTransform& T_truth_map) {
   const Room& g = map.rooms[i];
   const Room& f = truth.rooms[j];
   RoomPair out{j, i};
-  out.offset = (T_truth_map.forward(g.centre) - f.centre).norm();
+  out.offset = distance(T_truth_map(g.centre), f.centre);
   out.area_ratio = g.area / f.area;
   out.difference = room_difference(f, g);
   out.cost = out.offset * out.offset + kLambda * out.difference;  // eq. (7)
@@ -26,7 +27,7 @@ RoomPair pair_of(const Rooms& map, std::size_t i, const Rooms& truth, std::size_
 
 RoomMatch match_rooms(const Rooms& map, const Rooms& truth, const mrpt::math::TPose2D& T_truth_map) {
   RoomMatch out;
-  const Rigid T(T_truth_map);
+  const PlanarTransform T(T_truth_map);
   const std::size_t n = truth.rooms.size(), m = map.rooms.size();
   // Every room of the truth also has a partner of its own that stands for none: leaving both rooms alone costs C.
   std::vector<std::vector<double>> cost(n, std::vector<double>(m + n, kCap));

@@ -235,7 +235,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
   Work budget = std::max(kLeastBudget, std::min(most, usual + usual * waiting / kHurry) - work);
   const Work given = budget;
   if (config_.loops) close_loops(budget);
-  if (sure && here_ == frames_.last()) put_into_map(scan, sweep, tilt, budget);
+  if (sure) put_into_map(scan, sweep, tilt, budget);
   map_.work(frames_, budget);
   last_work_ = work + given - budget;
   all_work_ += last_work_;
@@ -426,7 +426,7 @@ void RobustMapper::Impl::put_into_map(const LaserScan& scan, const std::optional
       length(moved.x, moved.y) >= config_.map_distance || std::abs(wrap_angle(moved.phi)) >= config_.map_turn;
   if (!gate && counts_.mapped >= static_cast<std::uint64_t>(config_.first_scans)) return;
   Work used = 0;
-  map_.add(frames_, frames_.last(), T_frame_base_, packed(scan, sweep, tilt), &used);
+  map_.add(frames_, here_, T_frame_base_, packed(scan, sweep, tilt), &used);
   budget -= used;
   T_map_stamped_ = now();
   ++counts_.mapped;

@@ -32,7 +32,7 @@ struct RobustConfig {
   double frame_distance = 0.30;        ///< a key frame is taken after this much motion [m]
   double frame_turn = 0.20;            ///< or this much turn [rad]
   double frame_overlap = 0.60;         ///< or when fewer points lie on the local map
-  int exact_frames = 2000;             ///< from so many key frames on, known ground adds none
+  int exact_frames = 4000;             ///< from so many key frames on, known ground adds none
   bool thin_walls = true;              ///< walls that fill two cells of the final map lose the one hit less often
   bool loops = true;                   ///< close loops
   double budget_ms = 8.0;  ///< work put off to later scans beyond this; in work, not time: a unit is about 1 ns
