@@ -34,9 +34,10 @@ import json, sys
 a, b = json.load(open('a/score.json')), json.load(open('score.json'))
 same = ('score', 'precision', 'recall', 'psi_m', 'known', 'phantom_m', 'missing_m', 'ignored_m', 'worst_places', 'map')
 # Of the mapper alone: a judge does not know it.
-own = ('key_frames', 'slips', 'relocated', 'unseen', 'odometry_silent', 'lost', 'odometry_jumps',
+own = ('key_frames', 'frames_reused', 'slips', 'relocated', 'unseen', 'odometry_silent', 'lost', 'odometry_jumps',
        'loops_searched', 'loops_ambiguous', 'loops_contradicted', 'loops_needless', 'loops_closed',
-       'loops_removed', 'near_edges', 'graph_solved', 'most_work_ms')
+       'loops_removed', 'near_edges', 'graph_solved', 'last_work_ms', 'work_ms',
+       'most_work_ms')
 sys.exit(0 if all(a[k] == b[k] for k in same) and [k for k in a if k not in own] == list(b) else 1)
 PY
 [[ -s judged/overlay.png && -s judged/score.json ]] || fail "score --out leaves no pictures"
