@@ -12,6 +12,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
+#include "base/planar.h"
+#include "base/rigid.h"
 #include "scoring/maps/normalise.h"
 #include "scoring/measures/sight_lines.h"
 #include "tests/support/map_pictures.h"
@@ -552,9 +554,9 @@ class ReaderMatrix : public ::testing::Test {
 };
 
 /// Where the file's grid lies on the truth from which the drawing of `rows` rows was made.
-Rigid pose_of(const Stored& file, const OccupancyGrid& read, const OccupancyGrid& truth, int rows) {
+PlanarTransform pose_of(const Stored& file, const OccupancyGrid& read, const OccupancyGrid& truth, int rows) {
   const double f = kResolution / file.scale;
-  if (file.turn.empty()) return Rigid({truth.frame().x0 - read.frame().x0, truth.frame().y0 - read.frame().y0, 0.0});
+  if (file.turn.empty()) return PlanarTransform({truth.frame().x0 - read.frame().x0, truth.frame().y0 - read.frame().y0, 0.0});
   cv::Mat back;
   cv::invertAffineTransform(file.turn, back);
   const auto onto = [&](const TPoint2D& p) {
@@ -565,14 +567,14 @@ Rigid pose_of(const Stored& file, const OccupancyGrid& read, const OccupancyGrid
     return TPoint2D(truth.frame().x0 + c * kResolution, truth.frame().y0 + (rows - r) * kResolution);
   };
   const TPoint2D o(read.frame().x0, read.frame().y0), a = o + TPoint2D(5, 0), b = o + TPoint2D(0, 5);
-  return Rigid(fit_rigid({o, a, b}, {onto(o), onto(a), onto(b)}));
+  return PlanarTransform(fit_rigid({o, a, b}, {onto(o), onto(a), onto(b)}));
 }
 
 TEST_F(ReaderMatrix, EveryFileHasTheScoreOfThePlainPictureOrIsRefusedByName) {
   const OccupancyGrid truth = truth_of({"maze", 7, 5, 5});
   const SightLines sights(truth);
   const OccupancyGrid map = with_gaps(with_phantoms(truth, 3, 5), 5, 5);
-  const double drawn = sights.at(map, Rigid()).score;
+  const double drawn = sights.at(map, PlanarTransform()).score;
   ASSERT_GT(drawn, 0.6);
   const std::string base = (folder_ / "map").string();
   int cases = 0, refused = 0, bad = 0;
