@@ -23,6 +23,7 @@ constexpr double kTrailRadius = 0.20;            ///< [m]
 constexpr double kNearFrontier = 1.0;            ///< frontier this close at the start: turn to see it [m]
 constexpr int kMaxPardons = 3;                   ///< times that barred targets are tried again before giving up
 constexpr double kSearchReplan = 2.0;            ///< on the way to a viewpoint [s]
+constexpr double kOdometryLate = 0.25;           ///< the wheels are silent [s]
 constexpr double kArrivedReplan = 0.3;           ///< standing at the end of the way [s]
 constexpr double kCueAge = 1.2;                  ///< an unconfirmed cue younger than this is worth waiting for [s]
 constexpr double kDetour = 3.0;                  ///< way over distance where no way is known
@@ -122,7 +123,10 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   turned_ = wrap_angle(pose_.phi - before.phi);
   if (mapper.revision() != revision_) follow_map(mapper);
   if (!inputs.scans.empty()) last_scan_ = now_;
-  if (!inputs.odometry.empty()) stalled_ = inputs.odometry.back().stalled;
+  if (!inputs.odometry.empty()) {
+    stalled_ = inputs.odometry.back().stalled;
+    odometry_at_ = now_;
+  }
   tilt_.update(inputs, dt_);
   for (const robot::VictimCue& cue : inputs.cues) hear(mapper, cue);
   const bool on_its_way = state_ == ExplorerState::Driving || state_ == ExplorerState::GoingHome;
@@ -212,6 +216,8 @@ Drive PaperExplorer::drive(const slam::Mapper& mapper) {
   }
   if (looking_.active() || state_ == ExplorerState::Searching) watch_.turns_on_purpose();
   const bool patient = now_ < patient_until_;
+  // Nobody knows whether a base that is silent moves: a pulled plug is no obstacle.
+  if (odometry_at_ && now_ - *odometry_at_ > kOdometryLate) watch_.reset();
   if (tilt_.too_steep() || watch_.stuck(pose_, patient ? Drive{} : commanded_, stalled_, dt_)) {
     got_stuck(tilt_.too_steep() ? "it leans too much here" : stalled_ ? "the motors stall" : "it does not move");
     return {};

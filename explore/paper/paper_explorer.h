@@ -114,6 +114,7 @@ class PaperExplorer : public Explorer {
   TPose2D pose_;
   double turned_ = 0.0;  ///< since the last tick [rad]
   bool stalled_ = false;
+  std::optional<Stamp> odometry_at_;  ///< when the wheels were heard of last
   Stamp last_scan_ = Stamp::never();
   Drive commanded_;
   std::uint64_t revision_ = 0;

@@ -80,6 +80,23 @@ TEST(BadConditions, AStartNearerToAWallThanItShouldBeIsLeftAndTheRestSeen) {
   EXPECT_TRUE(is_seen(trial, maze.centre(2, 0)));
 }
 
+TEST(BadConditions, ABaseThatIsSilentForAMomentHasMetNoObstacle) {
+  const Maze maze = test::maze({"+--+--+--+--+--+",  //
+                                "| R            |",  //
+                                "+--+--+--+--+--+"});
+  Trial trial(maze);
+  double silent = 0.0;
+  trial.run(600.0, {}, [&](robot::Inputs& inputs) {
+    const bool drives = trial.commands.drive.v > 0.3 && trial.robot.now().seconds() > 5.0;
+    if ((silent == 0.0 && !drives) || silent > 1.2) return;
+    silent += trial.model.tick;
+    inputs.odometry.clear();
+  });
+  EXPECT_GT(silent, 1.2);
+  EXPECT_EQ(trial.backing, 0);
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home);
+}
+
 TEST(BadConditions, WithoutFreeFloorAroundItTheRobotEndsWhereItStands) {
   Maze maze = test::maze({"+--+",  //
                           "| R|",  //
