@@ -309,7 +309,7 @@ def drive(base):
     last = base.reports(4.0, [order(0)])[-1]
     law(abs(wrapped(last.angle, 45, 360)) < 5, "DHEAD 90 ends at %.1f" % last.angle)
     base.send(order(8, 300))
-    moved = base.reports(3.5, [order(0)])[-1]
+    moved = base.reports(5.0, [order(0)])[-1]
     way = math.hypot(wrapped(moved.x, last.x, 65536), wrapped(moved.y, last.y, 65536))
     law(abs(way - 300) < 40, "MOVE 300 goes %.0f mm" % way)
     # SETO, bare and in Player's form.
