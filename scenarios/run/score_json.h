@@ -7,7 +7,8 @@
 namespace rubble::scenarios {
 
 /// The content of score.json, of a run and of `rubble score` alike: every row of the table of figures, null where it is
-/// not known (special ones are left out there); then the worst places (null without a verdict), then the figures of that kind of mapper alone.
+/// not known (special ones are left out there); then the worst places (null without a verdict), then the figures of
+/// that kind of mapper alone.
 nlohmann::ordered_json score_json(const scoring::Evidence& evidence);
 
 /// Only the rows that are known.

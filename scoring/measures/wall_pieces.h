@@ -8,8 +8,8 @@ namespace rubble::scoring {
 
 /// What each place of a map counts as a wall.
 struct WallPieces {
-  /// 0..1: extent of the piece of wall here over 0.35 m, 1 at the most; 0 where there is none. A speck hides next to nothing,
-  /// and a map with salt is not a map full of walls.
+  /// 0..1: extent of the piece of wall here over 0.35 m, 1 at the most; 0 where there is none. A speck hides next to
+  /// nothing, and a map with salt is not a map full of walls.
   Grid<float> strength;
   /// The wall that a step over a corner slips through: the lesser of the two cells beside it; 0 for a step over an
   /// edge.
