@@ -16,11 +16,24 @@
 #include "robot/commands.h"
 #include "robot/measurements.h"
 #include "robot/model.h"
+#include "slam/paper/paper_mapper.h"
 
 namespace rubble::test {
 
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
+
+/// Maps without any error, so that laws are about exploration alone.
+inline slam::PaperConfig exact_mapper() {
+  slam::PaperConfig config;
+  config.map_cells = 400;
+  config.particles = 1;
+  config.motion_error.rotation = 0.0;
+  config.motion_error.heading_per_m = 0.0;
+  config.motion_error.distance = 0.0;
+  config.icp = false;
+  return config;
+}
 
 struct Segment {
   TPoint2D a;

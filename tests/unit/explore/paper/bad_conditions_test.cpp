@@ -17,19 +17,9 @@ namespace {
 
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
+using test::exact_mapper;
 using test::Maze;
 using test::MazeRobot;
-
-slam::PaperConfig exact_mapper() {
-  slam::PaperConfig config;
-  config.map_cells = 400;
-  config.particles = 1;
-  config.motion_error.rotation = 0.0;
-  config.motion_error.heading_per_m = 0.0;
-  config.motion_error.distance = 0.0;
-  config.icp = false;
-  return config;
-}
 
 /// A mission whose robot and measurements a test may spoil.
 struct Trial {
