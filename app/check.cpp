@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "app/batch_tools.h"
 #include "app/commands.h"
@@ -79,7 +80,7 @@ int check(const CheckArguments& arguments) {
   ResultSet set = results_of(jobs, options.out);
   for (RunRecord& run : set.runs) {  // expectations on times are kept apart from what depends on the seed alone
     const auto timing = set.timing.find(run.run_id);
-    if (timing == set.timing.end() || !timing->second.contains("broken")) continue;
+    if (timing == set.timing.end() || !timing->second->contains("broken")) continue;
     for (const auto& line : timing->second["broken"]) run.broken.push_back(line.get<std::string>());
   }
   const std::vector<CheckCase> cases = check_runs(baseline, set.runs);

@@ -133,7 +133,7 @@ int dispatch(int argc, char** argv) {
       "rubble: simulate, map and score rescue arenas.\n"
       "Exit codes: 0 ok, 1 an expectation failed, 2 usage, 3 bad input, 4 run failed, 130 interrupted.");
   app.name("rubble");
-  app.set_version_flag("--version", [] { return scenarios::versions().dump(); });
+  app.set_version_flag("--version", [] { return scenarios::versions().json(-1); });
   app.require_subcommand(1);
   const std::vector<Declared> declared = declare(app);
   try {

@@ -4,6 +4,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "app/command.h"
 #include "scenarios/run/score_json.h"
@@ -83,7 +84,7 @@ void print_victims(const nlohmann::ordered_json& score) {
 
 int show(const scenarios::RunReport& report) {
   end_progress();
-  const auto& score = report.score;
+  const nlohmann::ordered_json& score = *report.score;
   print_row("ended", report.end);
   print_figures(score);
   if (score["aligned"].is_boolean() && !score["aligned"].get<bool>())

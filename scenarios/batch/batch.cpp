@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <set>
 
@@ -28,7 +29,7 @@ using nlohmann::ordered_json;
 constexpr std::size_t kProbeBytes = 4u << 20;
 
 std::string pack(const RunOutcome& outcome) {
-  return ordered_json{{"score", outcome.score},
+  return ordered_json{{"score", *outcome.score},
                       {"end", outcome.end},
                       {"failure", outcome.failure},
                       {"broken", outcome.broken},
@@ -38,7 +39,8 @@ std::string pack(const RunOutcome& outcome) {
 
 RunOutcome unpack(const std::string& text) {
   const ordered_json json = ordered_json::parse(text);
-  return {json["score"], json["end"], json["failure"], json["broken"].get<std::vector<std::string>>(), json["hash"]};
+  return {KeptJson(json["score"]), json["end"], json["failure"], json["broken"].get<std::vector<std::string>>(),
+          json["hash"]};
 }
 
 bool depends_on_machine(const std::string& key) {
@@ -63,7 +65,7 @@ Entry entry_of(const Job& job, const TaskResult& result, const BatchOptions& opt
   r.seed = job.scenario.seed;
   r.folder = "runs/" + job.folder();
   r.code = options.code;
-  r.score = ordered_json::object();
+  *r.score = ordered_json::object();
   if (result.end == TaskEnd::TimedOut) {
     r.status = RunStatus::TimedOut;
     r.error = "killed after " + std::to_string(static_cast<long>(options.run_limit)) + " s";
@@ -81,8 +83,8 @@ Entry entry_of(const Job& job, const TaskResult& result, const BatchOptions& opt
   r.error = outcome.failure;
   r.end = outcome.end;
   r.hash = outcome.hash;
-  for (const auto& [key, value] : outcome.score.items())
-    if (key != "end") (depends_on_machine(key) ? entry.timing : r.score)[key] = value;
+  for (const auto& [key, value] : outcome.score->items())
+    if (key != "end") (depends_on_machine(key) ? entry.timing : *r.score)[key] = value;
   for (const auto& line : outcome.broken) {
     if (about_machine(line)) {
       entry.timing["broken"].push_back(line);

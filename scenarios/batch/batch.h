@@ -1,19 +1,19 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "scenarios/batch/merge.h"
 #include "scenarios/batch/results.h"
 #include "scenarios/batch/sweep.h"
+#include "scenarios/run/kept_json.h"
 
 namespace rubble::scenarios {
 
 /// What one run gives, before it becomes a record.
 struct RunOutcome {
-  nlohmann::ordered_json score;  ///< the content of score.json, times included
+  KeptJson score;  ///< the content of score.json, times included
   std::string end;
   std::string failure;              ///< not empty: the run failed although it has results
   std::vector<std::string> broken;  ///< expectations that were not met

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/error.h"
@@ -112,7 +113,7 @@ ResultSet read_database(const std::string& path) {
       r.seed = static_cast<std::uint64_t>(runs.integer(3));
       r.status = status_named(runs.text(4)), r.error = runs.text(5), r.end = runs.text(6);
       r.broken = ordered_json::parse(runs.text(7)).get<std::vector<std::string>>();
-      r.score = ordered_json::parse(runs.text(8));
+      *r.score = ordered_json::parse(runs.text(8));
       r.hash = runs.text(9), r.folder = runs.text(10), r.code = runs.text(11);
       set.runs.push_back(r);
     }
@@ -132,7 +133,7 @@ void write_database(const std::string& path, const ResultSet& set) {
     run.bind(0, r.run_id), run.bind(1, r.scenario), run.bind(2, r.configuration);
     run.bind(3, static_cast<std::int64_t>(r.seed));
     run.bind(4, name_of(r.status)), run.bind(5, r.error), run.bind(6, r.end);
-    run.bind(7, ordered_json(r.broken).dump()), run.bind(8, r.score.dump());
+    run.bind(7, ordered_json(r.broken).dump()), run.bind(8, r.score->dump());
     run.bind(9, r.hash), run.bind(10, r.folder), run.bind(11, r.code);
     run.step();
     run.reset();
@@ -141,7 +142,7 @@ void write_database(const std::string& path, const ResultSet& set) {
   for (const RunRecord& r : set.runs) {
     const auto times = set.timing.find(r.run_id);
     if (times == set.timing.end()) continue;
-    for (const auto& [key, value] : times->second.items()) {
+    for (const auto& [key, value] : times->second->items()) {
       if (!value.is_number()) continue;
       time.bind(0, r.run_id), time.bind(1, key), time.bind(2, value.get<double>());
       time.step();

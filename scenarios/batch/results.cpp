@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "base/error.h"
@@ -136,8 +137,8 @@ RunStatus status_named(const std::string& name) {
 
 double RunRecord::metric(const std::string& key) const {
   if (key == "completed") return ok() ? 1.0 : 0.0;
-  const auto found = score.find(key);
-  if (found == score.end()) return std::nan("");
+  const auto found = score->find(key);
+  if (found == score->end()) return std::nan("");
   if (found->is_boolean()) return found->get<bool>() ? 1.0 : 0.0;
   return found->is_number() ? found->get<double>() : std::nan("");
 }
@@ -152,7 +153,7 @@ std::string to_line(const RunRecord& r) {
   json["error"] = r.error;
   json["end"] = r.end;
   json["broken"] = r.broken;
-  json["score"] = r.score.is_null() ? ordered_json::object() : r.score;
+  json["score"] = r.score->is_null() ? ordered_json::object() : *r.score;
   json["hash"] = r.hash;
   json["folder"] = r.folder;
   json["code"] = r.code;
@@ -171,7 +172,7 @@ RunRecord from_line(const std::string& line, const std::string& place) {
     r.error = json.at("error");
     r.end = json.at("end");
     r.broken = json.at("broken").get<std::vector<std::string>>();
-    r.score = json.at("score");
+    *r.score = json.at("score");
     r.hash = json.at("hash");
     r.folder = json.at("folder");
     r.code = json.at("code");
@@ -254,7 +255,7 @@ Timing load_timing(const std::string& path) {
       if (!json.is_object() || !json.contains("run_id") || !json["run_id"].is_string()) continue;
       const std::string id = json["run_id"];
       json.erase("run_id");
-      timing[id] = json;
+      timing[id] = KeptJson(json);
     }
   });
   return timing;

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
+
+#include "scenarios/run/kept_json.h"
 
 namespace rubble::scenarios {
 
@@ -26,7 +28,7 @@ struct RunRecord {
   std::string error;                ///< why it is not ok
   std::string end;                  ///< why the run ended, for people
   std::vector<std::string> broken;  ///< expectations that were not met
-  nlohmann::ordered_json score;     ///< the numbers of score.json that do not depend on the machine
+  KeptJson score;                   ///< the numbers of score.json that do not depend on the machine
   std::string hash;                 ///< of every artefact of the run together; empty: not known
   std::string folder;               ///< of the run, relative to the folder of the results
   std::string code;                 ///< code_version() of the program that made it
@@ -37,7 +39,7 @@ struct RunRecord {
 };
 
 /// Numbers of one run that depend on the machine (wall_s, real_time_factor, peak_mb), by run_id.
-using Timing = std::map<std::string, nlohmann::ordered_json>;
+using Timing = std::map<std::string, KeptJson>;
 
 /// One line of JSON without its end.
 std::string to_line(const RunRecord& record);

@@ -228,10 +228,9 @@ std::vector<Job> in_shard(const std::vector<Job>& jobs, const Shard& shard) {
 }
 
 std::string code_version() {
-  const nlohmann::ordered_json built = versions();
-  const std::string commit = built["commit"];
-  const std::string code = built["rubble"].get<std::string>() + " " + commit;
-  const bool unnamed = commit == "unknown" || commit.find("-dirty") != std::string::npos;
+  const Versions built = versions();
+  const std::string code = built.rubble + " " + built.commit;
+  const bool unnamed = built.commit == "unknown" || built.commit.find("-dirty") != std::string::npos;
   return unnamed ? code + " " + sha256_of_file("/proc/self/exe").substr(0, 16) : code;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <set>
 
 namespace rubble::scenarios {
@@ -37,7 +38,7 @@ std::vector<Metric> all_metrics(const std::vector<RunRecord>& runs) {
   std::set<std::string> judged, others;
   for (const auto& metric : metrics) judged.insert(metric.key);
   for (const auto& run : runs)
-    for (const auto& [key, value] : run.score.items())
+    for (const auto& [key, value] : run.score->items())
       if ((value.is_number() || value.is_boolean()) && judged.count(key) == 0) others.insert(key);
   for (const auto& key : others) {
     const scoring::Figure* row = scoring::find_figure(key);

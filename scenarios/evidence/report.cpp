@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
@@ -46,8 +47,8 @@ std::vector<double> times(const std::vector<const RunRecord*>& runs, const Timin
   std::vector<double> values;
   for (const RunRecord* run : runs) {
     const auto found = timing.find(run->run_id);
-    if (found != timing.end() && found->second.contains(key) && found->second[key].is_number())
-      values.push_back(found->second[key].get<double>());
+    if (found != timing.end() && found->second->contains(key) && found->second->at(key).is_number())
+      values.push_back(found->second->at(key).get<double>());
   }
   return values;
 }

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/error.h"
@@ -234,7 +235,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
                    options.replace);
   folder.write("scenario.yaml", resolved_yaml(file.settings));
   folder.write("robot.yaml", robot_file_yaml(file));
-  folder.write("versions.json", versions().dump(2) + "\n");
+  folder.write("versions.json", versions().json(2) + "\n");
   robot::BlackBox box(folder.file("devices.bytes"));
   Core core(file.settings, file.robot.model, options.mode == DriveMode::Explore, folder.path());
   RunReport report;
@@ -250,10 +251,10 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     report.failure = end.failure;
     report.interrupted = end.interrupted;
     recorded.flush();
-    report.score = score_json(evidence_of(core, real, end, start));
+    *report.score = score_json(evidence_of(core, real, end, start));
   }
   folder.save_hashes("");
-  folder.write("score.json", report.score.dump(2) + "\n");
+  folder.write("score.json", report.score->dump(2) + "\n");
   folder.close();
   if (options.out.empty()) folder.link_latest();
   report.folder = folder.path();

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 
@@ -130,14 +131,14 @@ void finish(RunReport& report, scoring::Evidence& evidence, RunFolder& folder, c
             const RunOptions& options, Clock::time_point start) {
   report.end = evidence.run->end;
   evidence.machine = scoring::MachineFigures{seconds_since(start), peak_megabytes()};
-  report.score = score_json(evidence);
-  folder.save_hashes(without_machine(report.score).dump(2));
-  folder.write("score.json", report.score.dump(2) + "\n");
+  *report.score = score_json(evidence);
+  folder.save_hashes(without_machine(*report.score).dump(2));
+  folder.write("score.json", report.score->dump(2) + "\n");
   folder.close();
   const std::filesystem::path parent = std::filesystem::path(folder.path()).parent_path().filename();
   if (options.link_latest && (options.out.empty() || parent == "runs")) folder.link_latest();
   report.folder = folder.path();
-  report.broken = broken_expectations(scenario, report.score);
+  report.broken = broken_expectations(scenario, *report.score);
 }
 
 }  // namespace
@@ -166,7 +167,7 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   resolved.arena_file = "arena.yaml";
   folder.write("arena.yaml", yaml);
   folder.write("scenario.yaml", resolved_yaml(resolved));
-  folder.write("versions.json", versions().dump(2) + "\n");
+  folder.write("versions.json", versions().json(2) + "\n");
   folder.save_truth(arena, truth_to_score_with(arena, scenario));
 
   sim::SimRobot simulated(arena, scenario.robot, scenario.sim, scenario.seed);
@@ -229,7 +230,7 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   RunFolder folder(folder_for(options, resolved), options.replace);
   folder.write("scenario.yaml",
                "# rubble map " + one_line(log) + " (" + robot.format() + ")\n" + resolved_yaml(resolved));
-  folder.write("versions.json", versions().dump(2) + "\n");
+  folder.write("versions.json", versions().json(2) + "\n");
   Core core(resolved, robot.model(), false, folder.path());
   if (!robot.reference().empty()) folder.append_truth(robot.reference());
   LoopHooks hooks = hooks_of(options);

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "scenarios/config/scenario.h"
+#include "scenarios/run/kept_json.h"
 #include "scenarios/run/loop.h"
 
 namespace rubble::scenarios {
@@ -21,8 +21,8 @@ struct RunOptions {
 
 struct RunReport {
   std::string folder;
-  nlohmann::ordered_json score;  ///< the content of score.json
-  std::string end;               ///< why the run ended, for people
+  KeptJson score;   ///< the content of score.json
+  std::string end;  ///< why the run ended, for people
   bool interrupted = false;
   std::string failure;              ///< the robot was lost: the run failed but its folder is complete
   std::vector<std::string> broken;  ///< expectations that were not met, one line each
@@ -34,7 +34,16 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options);
 /// Maps a recorded log (SLAM only). Scores the trajectory when the log carries reference poses. Throws InputError.
 RunReport map_log(const std::string& log, const Scenario& scenario, const RunOptions& options);
 
-/// This program's version and what it was built with, for versions.json.
-nlohmann::ordered_json versions();
+/// This program's version and what it was built with.
+struct Versions {
+  std::string rubble;
+  std::string commit;  ///< "unknown" outside a checkout; ends in "-dirty" where files differ from it
+  std::string compiler;
+  std::string build;
+
+  /// As versions.json has it; `indent` < 0: on one line.
+  std::string json(int indent) const;
+};
+Versions versions();
 
 }  // namespace rubble::scenarios

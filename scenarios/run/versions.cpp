@@ -1,11 +1,16 @@
 // A file of its own: it is compiled again at every commit.
+#include <nlohmann/json.hpp>
+
 #include "scenarios/run/run.h"
 #include "scenarios/run/version.h"
 
 namespace rubble::scenarios {
 
-nlohmann::ordered_json versions() {
-  return {{"rubble", kVersion}, {"commit", kCommit}, {"compiler", __VERSION__}, {"build", kBuildType}};
+Versions versions() { return {kVersion, kCommit, __VERSION__, kBuildType}; }
+
+std::string Versions::json(int indent) const {
+  return nlohmann::ordered_json{{"rubble", rubble}, {"commit", commit}, {"compiler", compiler}, {"build", build}}.dump(
+      indent);
 }
 
 }  // namespace rubble::scenarios

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
@@ -51,7 +52,7 @@ inline RunRecord record(const std::string& scenario, const std::string& configur
   r.seed = seed;
   r.status = RunStatus::Ok;
   r.end = "explored";
-  r.score = {{"score", score}, {"score_version", scoring::kScoreVersion}};
+  *r.score = {{"score", score}, {"score_version", scoring::kScoreVersion}};
   r.folder = "runs/" + r.run_id;
   r.code = "test";
   return r;

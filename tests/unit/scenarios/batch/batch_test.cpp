@@ -45,8 +45,8 @@ class Batch : public FolderTest {
     fs::create_directories(folder);
     note(folder, "begin", job);
     RunOutcome outcome;
-    outcome.score = {{"score", 1.0 / static_cast<double>(job.scenario.seed)},
-                     {"wall_s", static_cast<double>(getpid())}};
+    *outcome.score = {{"score", 1.0 / static_cast<double>(job.scenario.seed)},
+                      {"wall_s", static_cast<double>(getpid())}};
     outcome.end = "explored";
     outcome.broken = {"score is 0.1, expected at least 0.5", "wall_s is 12, expected at most 10"};
     note(folder, "end", job);

@@ -118,7 +118,7 @@ TEST(Compare, FailedRunsCountAsNotCompleted) {
   ResultSet a = runs("c", 10, arena_score), b = a;
   for (auto& r : b.runs) {
     r.status = RunStatus::TimedOut;
-    r.score.clear();
+    r.score->clear();
   }
   const Comparison c = compare(a, b, "A", "B");
   EXPECT_EQ(metric(c, "completed").verdict, Verdict::Worse);

@@ -28,11 +28,11 @@ class Report : public FolderTest {
         r.folder = "runs/" + r.run_id;
         r.score["ate_aligned_m"] = 0.1 / static_cast<double>(seed);
         set.runs.push_back(r);
-        set.timing[r.run_id] = {{"wall_s", 2.0}};
+        *set.timing[r.run_id] = {{"wall_s", 2.0}};
       }
     set.runs[3].status = RunStatus::TimedOut;
     set.runs[3].error = "killed after 60 s";
-    set.runs[3].score.clear();
+    set.runs[3].score->clear();
     std::filesystem::create_directories(path("runs/on-1"));
     cv::imwrite(path("runs/on-1/overlay.png"), cv::Mat(400, 800, CV_8UC3, cv::Scalar(0, 0, 255)));
     return set;
@@ -79,7 +79,7 @@ TEST_F(Report, NothingFinishedIsStillAPage) {
   ResultSet set = results();
   for (auto& run : set.runs) {
     run.status = RunStatus::Failed;
-    run.score.clear();
+    run.score->clear();
   }
   EXPECT_THAT(report_html(set, note_of(set, folder_), folder_), HasSubstr("no numbers for score"));
 }
