@@ -14,7 +14,6 @@
 #include "robot/drivers/mrpt_scanner.h"
 #include "robot/drivers/scip/scip_scanner.h"
 #include "robot/logs/log.h"
-#include "scenarios/hardware/delayed_scanner.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/loop.h"
 #include "scenarios/run/run_folder.h"
@@ -46,6 +45,25 @@ std::unique_ptr<robot::Scanner> make_scanner(const RobotFile& file, robot::Black
   config.open = [&box](const std::string& word) { return robot::open_recorded(word, "urg", &box); };
   return std::make_unique<robot::ScipScanner>(config);
 }
+
+/// A scanner whose scans are older than their stamps say, by a delay that was measured (`rubble calibrate`).
+class DelayedScanner : public robot::Scanner {
+ public:
+  DelayedScanner(std::unique_ptr<robot::Scanner> inner, double delay) : inner_(std::move(inner)), delay_(delay) {}
+
+  std::vector<robot::LaserScan> take() override {
+    std::vector<robot::LaserScan> scans = inner_->take();
+    for (robot::LaserScan& scan : scans) scan.stamp = scan.stamp - delay_;
+    return scans;
+  }
+  robot::ScannerStatus status() const override { return inner_->status(); }
+  robot::ScannerInfo info() const override { return inner_->info(); }
+  int descriptor() const override { return inner_->descriptor(); }
+
+ private:
+  std::unique_ptr<robot::Scanner> inner_;
+  double delay_;
+};
 
 std::unique_ptr<robot::Scanner> open_lidar(const RobotFile& file, robot::BlackBox& box) {
   auto scanner = make_scanner(file, box);

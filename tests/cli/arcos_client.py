@@ -6,19 +6,13 @@ Ends with 1 and one line a broken clause."""
 import math
 import os
 import select
-import socket
 import struct
 import sys
 import time
 
-failures = []
+from device_port import DevicePort, end_with_verdict, law
+
 hardware = len(sys.argv) > 2
-
-
-def law(holds, what):
-    if not holds:
-        failures.append(what)
-        print("BROKEN: " + what)
 
 
 def checksum(payload):
@@ -46,23 +40,11 @@ assert order(11, -300) == bytes.fromhex("fafb060b1b2c01371c")
 assert order(29) == bytes.fromhex("fafb031d001d")
 
 
-class Base:
+class Base(DevicePort):
     def __init__(self, word):
-        kind, rest = word.split(":", 1)
-        if kind == "tcp":
-            host, port = rest.rsplit(":", 1)
-            self.socket = socket.create_connection((host, int(port)))
-            self.file = self.socket.fileno()
-        else:
-            self.file = os.open(rest, os.O_RDWR | os.O_NOCTTY)
+        super().__init__(word)
         self.waiting = b""
         self.kept = []
-
-    def close(self):
-        if hasattr(self, "socket"):
-            self.socket.close()
-        else:
-            os.close(self.file)
 
     def send(self, *packets):
         for p in packets:
@@ -439,8 +421,7 @@ def main():
     watchdog(base)
     simulator(base, config)
     leave(base, word)
-    print("%s: %d clauses broken" % (word.split(":")[0], len(failures)))
-    sys.exit(1 if failures else 0)
+    end_with_verdict(word)
 
 
 if __name__ == "__main__":

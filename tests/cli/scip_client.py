@@ -4,28 +4,15 @@ libraries demand, not from rubble's driver: it checks an emulated URG-04LX claus
   scip_client.py PORT    PORT: tcp:HOST:PORT or pty:PATH; ends with 1 and one line a broken clause."""
 import os
 import select
-import socket
 import sys
 import time
 
-failures = []
+from device_port import DevicePort, end_with_verdict, law
 
 
-def law(holds, what):
-    if not holds:
-        failures.append(what)
-        print("BROKEN: " + what)
-
-
-class Line:
+class Line(DevicePort):
     def __init__(self, word):
-        kind, rest = word.split(":", 1)
-        if kind == "tcp":
-            host, port = rest.rsplit(":", 1)
-            self.socket = socket.create_connection((host, int(port)))
-            self.file = self.socket.fileno()
-        else:
-            self.file = os.open(rest, os.O_RDWR | os.O_NOCTTY)
+        super().__init__(word)
         self.got = b""
 
     def send(self, text, end="\n"):
@@ -266,8 +253,7 @@ def main():
     line.quiet(0.2)
     old_protocol(line)
     new_protocol(line)
-    print("%s: %d clauses broken" % (sys.argv[1].split(":")[0], len(failures)))
-    sys.exit(1 if failures else 0)
+    end_with_verdict(sys.argv[1])
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <optional>
 
@@ -12,6 +13,7 @@
 #include "robot/logs/foreign/mrpt_stamp.h"
 #include "robot/logs/foreign/rawlog_facts.h"
 #include "robot/logs/foreign/rawlog_own.h"
+#include "robot/logs/foreign/text_fields.h"
 
 namespace rubble::robot {
 namespace {
@@ -225,6 +227,28 @@ std::vector<Inputs> read_rawlog(const std::string& path, RobotModel& model) {
   ForeignLog log = read_rawlog_bytes(bytes, path);
   model = log.model;
   return std::move(log.ticks);
+}
+
+Trajectory read_rawlog_reference(const std::string& path) {
+  const std::string truth = path + ".GT.txt";
+  std::error_code error;
+  if (!std::filesystem::exists(truth, error)) return {};
+  const std::string text = read_file(truth);
+  Trajectory reference;
+  TextLines lines(text);
+  while (lines.next()) {
+    TextFields fields(truth, lines);
+    if (fields.peek().empty() || fields.peek()[0] == '#' || fields.peek()[0] == '%') continue;
+    StampedPose stamped;
+    stamped.stamp = fields.stamp("time");
+    stamped.pose.x = fields.number("x");
+    stamped.pose.y = fields.number("y");
+    stamped.pose.phi = wrap_angle(fields.number("phi"));
+    if (!reference.empty() && stamped.stamp <= reference.back().stamp)
+      throw InputError(at(truth, lines.number(), 1, "the time does not increase; sort the file by time"));
+    reference.push_back(stamped);
+  }
+  return reference;
 }
 
 bool is_rawlog(std::string_view bytes) {
