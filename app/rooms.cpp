@@ -8,6 +8,8 @@
 #include "base/error.h"
 #include "base/text/text_file.h"
 #include "scoring/maps/normalise.h"
+#include "scoring/marks.h"
+#include "scoring/pictures/picture.h"
 #include "scoring/room_report.h"
 
 namespace rubble::app {
@@ -100,6 +102,9 @@ int rooms(const RoomsArguments& a) {
     return kOk;
   }
   print_match(found.match);
+  if (!a.out.empty())
+    scoring::write_side_by_side(a.out + "/matched_rooms.png", map.map.grid, truth->map.grid, found.T_truth_map,
+                                scoring::marks_of(map.rooms, truth->rooms, found.match));
   return kOk;
 }
 
@@ -117,7 +122,7 @@ Command rooms_command() {
             o.number("--truth-resolution", a->truth_resolution, 0.001, 10.0, "Metres a pixel of the truth image");
             o.choice("--method", a->method, {"passages", "visibility"},
                      "passages, or the paper's clusters of wall control points by what they see");
-            o.text("--out", a->out, "Folder for rooms.png and rooms.csv, and the truth's");
+            o.text("--out", a->out, "Folder for rooms.png and rooms.csv, the truth's, and matched_rooms.png");
             return [a] { return rooms(*a); };
           }};
 }

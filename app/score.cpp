@@ -1,7 +1,9 @@
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/score_parts.h"
@@ -12,6 +14,7 @@
 #include "scenarios/run/score_json.h"
 #include "scoring/league/league_victims.h"
 #include "scoring/maps/normalise.h"
+#include "scoring/marks.h"
 #include "scoring/pictures/picture.h"
 #include "scoring/pose_score.h"
 #include "scoring/scorecard.h"
@@ -27,6 +30,20 @@ struct Verdict {
   scoring::ReportedVictims reported;
   std::optional<scoring::LeaguePoints> points;
 };
+
+/// A page scales the map's marks with the map.
+scoring::Marks in_own_scale(scoring::Marks marks, double scale) {
+  for (auto& [map, truth] : marks.pairs) map.p *= 1.0 / scale;
+  for (scoring::Mark& map : marks.map_only) map.p *= 1.0 / scale;
+  return marks;
+}
+
+/// "matches_surf.png" and the like.
+std::string file_of(const scoring::Marks& marks) {
+  std::string name = "matches_" + marks.what + ".png";
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return name;
+}
 
 /// `grid`: the map as it was laid on the truth.
 nlohmann::ordered_json as_json(const Verdict& verdict, const OccupancyGrid& grid) {
@@ -70,6 +87,7 @@ int score(const ScoreArguments& arguments) {
   if (!arguments.out.empty()) make_folder(arguments.out);
   Verdict verdict;
   verdict.map = scoring::load_map(arguments.map, {arguments.map_resolution});
+  config.alignment.start = parse_start(arguments.start, arguments.map, verdict.map);
   verdict.truth = scoring::load_map(arguments.truth, {arguments.truth_resolution});
   verdict.reported = scoring::reported_victims(verdict.map, arguments.pois);
   if (!verdict.reported.note.empty()) std::fprintf(stderr, "rubble: %s\n", verdict.reported.note.c_str());
@@ -88,15 +106,22 @@ int score(const ScoreArguments& arguments) {
   } else {
     print_table(verdict, json);
   }
+  const scoring::Marks marks = scoring::marks_of(verdict.reported.victims, victims.victims, result.T_truth_map);
   if (!arguments.html.empty())
-    write_evaluation_page(
-        arguments.html, verdict.map.grid, truth,
-        {arguments.map, arguments.truth, command_of(arguments), result.T_truth_map, pose ? pose->scale : 1.0, config});
+    write_evaluation_page(arguments.html, verdict.map.grid, truth,
+                          {arguments.map, arguments.truth, command_of(arguments), result.T_truth_map,
+                           pose ? pose->scale : 1.0, config, result.aligned ? "" : result.note,
+                           scoring::marks_on_page(result, in_own_scale(marks, pose ? pose->scale : 1.0))});
   if (!arguments.out.empty()) {
     // A map that was refused is drawn at the best pose, so that a person can see why; score.json says that too.
     if (result.aligned || result.by != scoring::AlignBy::Auto)
       scoring::write_overlay(arguments.out + "/overlay.png", grid, truth, result.T_truth_map,
-                             result.aligned ? "" : "NOT TRUSTED: " + result.note);
+                             result.aligned ? "" : "NOT TRUSTED: " + result.note, marks);
+    else
+      scoring::write_side_by_side(arguments.out + "/overlay.png", grid, truth, std::nullopt, {}, result.note);
+    for (const scoring::Marks& features : scoring::marks_on_page(result, {}))
+      scoring::write_side_by_side(arguments.out + "/" + file_of(features), grid, truth, result.T_truth_map, features,
+                                  result.aligned ? "" : "NOT TRUSTED: " + result.note);
     if (result.aligned)
       scoring::write_error_map(arguments.out + "/error.png", grid, truth, result.T_truth_map, config.tau);
     write_text_file(arguments.out + "/score.json", json.dump(2) + "\n");
@@ -107,36 +132,39 @@ int score(const ScoreArguments& arguments) {
 }  // namespace
 
 Command score_command() {
-  return {
-      "score", "Align a map to the ground truth and score it",
-      "Examples:\n  rubble score runs/latest/map.tif runs/latest/truth.tif\n"
-      "  rubble score team.png truth.tif --resolution 0.05 --out judged\n"
-      "  rubble score team.tif truth.tif --html judge.html\n"
-      "  rubble score --league maps/ truth.tif --out judged\n"
-      "  rubble score runs/latest/estimate.tum runs/latest/truth.tum",
-      [](Options& o) -> Action {
-        auto a = std::make_shared<ScoreArguments>();
-        o.argument("map", a->map, "GeoTIFF, ROS map.yaml, image with --resolution, or trajectory .tum");
-        o.argument("truth", a->truth, "Ground truth, same formats (for a trajectory also .relations)",
-                   Options::Need::Optional);
-        o.text("--pose", a->pose, "Score at this pose, X,Y,DEG[,SCALE], instead of aligning (write --pose=-1,2,90)");
-        o.text("--html", a->html, "Write a page to move, turn, scale and blend the two maps by hand");
-        o.text("--league", a->league,
-               "Rank all maps of this folder against one truth: rubble score --league DIR TRUTH");
-        o.text("--victims", a->victims, "True victims: arena file or CSV name,x,y (default: beside the truth)");
-        o.text("--pois", a->pois, "CSV of the victims that the map reports (default: the symbols drawn on it)");
-        o.text("--judge", a->judge, "CSV team,points of the judge's points, for --league");
-        o.number("--resolution", a->map_resolution, 0.001, 10.0,
-                 "Metres a pixel of the map image; in a league of images that do not say");
-        o.number("--truth-resolution", a->truth_resolution, 0.001, 10.0, "Metres a pixel of the truth image");
-        o.number("--tau", a->tau, 0.05, 10.0, "Distance at which a wall counts nothing [m]");
-        o.text("--align", a->align,
-               "What proposes poses: auto, or walls, rooms and one of features, surf, akaze, orb, joined by commas");
-        o.flag("--warp", a->warp, "Also undo the map's distortion, and match its features");
-        o.text("--out", a->out, "Folder for overlay.png, error.png and score.json");
-        o.flag("--json", a->json, "Print JSON");
-        return [a] { return score(*a); };
-      }};
+  return {"score", "Align a map to the ground truth and score it",
+          "Examples:\n  rubble score runs/latest/map.tif runs/latest/truth.tif\n"
+          "  rubble score team.png truth.tif --resolution 0.05 --out judged\n"
+          "  rubble score team.tif truth.tif --html judge.html\n"
+          "  rubble score --league maps/ truth.tif --out judged\n"
+          "  rubble score runs/latest/estimate.tum runs/latest/truth.tum",
+          [](Options& o) -> Action {
+            auto a = std::make_shared<ScoreArguments>();
+            o.argument("map", a->map, "GeoTIFF, ROS map.yaml, image with --resolution, or trajectory .tum");
+            o.argument("truth", a->truth, "Ground truth, same formats (for a trajectory also .relations)",
+                       Options::Need::Optional);
+            o.text("--pose", a->pose,
+                   "Score at this pose, X,Y,DEG[,SCALE], instead of aligning (write --pose=-1,2,90)");
+            o.text("--start", a->start,
+                   "Where the robot started in the truth, X,Y,DEG: decides between poses that fit about as well");
+            o.text("--html", a->html, "Write a page to move, turn, scale and blend the two maps by hand");
+            o.text("--league", a->league,
+                   "Rank all maps of this folder against one truth: rubble score --league DIR TRUTH");
+            o.text("--victims", a->victims, "True victims: arena file or CSV name,x,y (default: beside the truth)");
+            o.text("--pois", a->pois, "CSV of the victims that the map reports (default: the symbols drawn on it)");
+            o.text("--judge", a->judge, "CSV team,points of the judge's points, for --league");
+            o.number("--resolution", a->map_resolution, 0.001, 10.0,
+                     "Metres a pixel of the map image; in a league of images that do not say");
+            o.number("--truth-resolution", a->truth_resolution, 0.001, 10.0, "Metres a pixel of the truth image");
+            o.number("--tau", a->tau, 0.05, 10.0, "Distance at which a wall counts nothing [m]");
+            o.text("--align", a->align,
+                   "What proposes poses: auto, or walls, rooms and one of features, surf, akaze, orb, joined by "
+                   "commas; eq7: of all that, the least error of eq. (7)");
+            o.flag("--warp", a->warp, "Also undo the map's distortion, and match its features");
+            o.text("--out", a->out, "Folder for overlay.png, error.png and score.json");
+            o.flag("--json", a->json, "Print JSON");
+            return [a] { return score(*a); };
+          }};
 }
 
 }  // namespace rubble::app

@@ -19,12 +19,20 @@ struct Method {
   scoring::FeatureKind kind;
 };
 
-constexpr std::array<Method, 6> kMethods{{{"walls", scoring::AlignBy::Walls, scoring::FeatureKind::Surf},
+constexpr std::array<Method, 7> kMethods{{{"eq7", scoring::AlignBy::Equation7, scoring::FeatureKind::Surf},
+                                          {"walls", scoring::AlignBy::Walls, scoring::FeatureKind::Surf},
                                           {"rooms", scoring::AlignBy::Rooms, scoring::FeatureKind::Surf},
                                           {"features", scoring::AlignBy::Features, scoring::FeatureKind::Surf},
                                           {"surf", scoring::AlignBy::Features, scoring::FeatureKind::Surf},
                                           {"akaze", scoring::AlignBy::Features, scoring::FeatureKind::Akaze},
                                           {"orb", scoring::AlignBy::Features, scoring::FeatureKind::Orb}}};
+
+std::string break_text(const scoring::MapBreak& b) {
+  char text[160];
+  std::snprintf(text, sizeof text, "two parts, %.2f m and %.1f deg apart, seam from %.1f, %.1f m to %.1f, %.1f m",
+                b.apart_m, rad_to_deg(b.turned_rad), b.from.x, b.from.y, b.to.x, b.to.y);
+  return text;
+}
 
 std::string pose_text(const mrpt::math::TPose2D& T) {
   char text[80];
@@ -48,7 +56,7 @@ scoring::AlignmentConfig parse_align(const std::string& text) {
   }
   if (!good)
     throw UsageError("--align " + text +
-                     ": give auto, or walls, rooms and one of features, surf, akaze, orb, joined by commas");
+                     ": give auto, eq7, or walls, rooms and one of features, surf, akaze, orb, joined by commas");
   return out;
 }
 
@@ -74,6 +82,7 @@ void print_contest(const scoring::MapScore& s) {
 }
 
 void print_worst_places(const scoring::MapScore& s) {
+  if (s.broken.found) print_row("came apart", break_text(s.broken));
   for (const scoring::WrongPlace& place : s.errors.worst) {
     char text[120];
     std::snprintf(text, sizeof text, "x %.2f m, y %.2f m: %.1f m phantom, %.1f m missing", place.p_truth.x,

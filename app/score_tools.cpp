@@ -9,6 +9,7 @@
 #include "base/angle.h"
 #include "base/error.h"
 #include "base/text/number_text.h"
+#include "base/text/shell.h"
 #include "base/text/text_file.h"
 
 namespace rubble::app {
@@ -34,8 +35,29 @@ std::optional<GivenPose> parse_pose(const std::string& text) {
   return pose;
 }
 
+std::optional<scoring::KnownStart> parse_start(const std::string& text, const std::string& path,
+                                               const scoring::LoadedMap& map) {
+  if (text.empty()) return std::nullopt;
+  double x = 0.0;
+  double y = 0.0;
+  double deg = 0.0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &x, &y, &deg, &rest) != 3)
+    throw UsageError("--start " + text + ": needs the form X,Y,DEG, for example --start=1.5,-2,90");
+  const bool ros = map.origin == scoring::MapOrigin::Ros;
+  if (!ros && map.origin != scoring::MapOrigin::Local)
+    throw InputError(
+        path +
+        ": does not say where the robot started, which --start needs; give a ROS map or a GeoTIFF or world "
+        "file that counts from there");
+  // The league's pictures have the heading at the start upwards.
+  const mrpt::math::TPoint2D p = ros ? mrpt::math::TPoint2D(0.0, 0.0) : scoring::in_grid(map, {0.0, 0.0});
+  const mrpt::math::TPose2D T_map_start(p.x, p.y, ros ? 0.0 : deg_to_rad(90.0));
+  return scoring::KnownStart{mrpt::math::TPose2D(x, y, deg_to_rad(deg)) + (mrpt::math::TPose2D() - T_map_start), p};
+}
+
 std::string command_of(const ScoreArguments& a) {
-  std::string command = "rubble score " + a.map + " " + a.truth;
+  std::string command = "rubble score " + shell_word(a.map) + " " + shell_word(a.truth);
   if (a.map_resolution) command += " --resolution " + number_text(*a.map_resolution);
   if (a.truth_resolution) command += " --truth-resolution " + number_text(*a.truth_resolution);
   if (a.tau != ScoreArguments().tau) command += " --tau " + number_text(a.tau);

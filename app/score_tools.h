@@ -7,6 +7,7 @@
 
 #include "app/command.h"
 #include "base/grid.h"
+#include "scoring/maps/normalise.h"
 #include "scoring/pictures/evaluation_page.h"
 
 namespace rubble::app {
@@ -22,6 +23,7 @@ struct ScoreArguments {
   std::string out;
   bool json = false;
   std::string pose;     ///< X,Y,DEG[,SCALE]: score there instead of aligning
+  std::string start;    ///< X,Y,DEG in the truth of where the robot started
   std::string html;     ///< the evaluation page to write
   std::string league;   ///< folder of maps to rank; `map` is the truth then
   std::string judge;    ///< CSV of the judge's points
@@ -42,6 +44,10 @@ struct GivenPose {
 
 /// X,Y,DEG[,SCALE]; nothing for an empty text. Throws UsageError for another form or a scale outside 0.1 to 10.
 std::optional<GivenPose> parse_pose(const std::string& text);
+
+/// What --start X,Y,DEG says about a map: it must count from where its robot started. Throws UsageError, InputError.
+std::optional<scoring::KnownStart> parse_start(const std::string& text, const std::string& path,
+                                               const scoring::LoadedMap& map);
 
 /// The command that scores the same two maps again.
 std::string command_of(const ScoreArguments& a);

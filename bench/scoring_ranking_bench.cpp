@@ -11,7 +11,9 @@
 #include "base/planar.h"
 #include "base/rigid.h"
 #include "scoring/scorecard.h"
+#include "scoring/walls/resample.h"
 #include "tests/support/scoring_damage.h"
+#include "tests/support/scoring_grounds.h"
 
 /// Does the score put maps of one arena in the right order? Pairs of maps of which one has more damage of the same kind
 /// than the other; and maps distorted in several ways, whose order is that of the trajectory error the distortion
@@ -149,10 +151,30 @@ double spearman(const std::vector<double>& a, const std::vector<double>& b) {
   return xy / std::sqrt(xx * yy);
 }
 
+FeatureVerdict features_at(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map) {
+  const OccupancyGrid map_known = crop_to_known(map, 0.0);
+  const OccupancyGrid truth_known = crop_to_known(truth, 0.0);
+  return judge_features(map_known, features_of(map_known), truth_known, features_of(truth_known), T_truth_map);
+}
+
+std::string text_of(const FeatureVerdict& verdict) {
+  char text[160];
+  std::string out;
+  for (const KindScore& kind : verdict.kinds) {
+    std::snprintf(text, sizeof text, "%s %.3f/%.3f%s ", name_of(kind.kind), kind.match.error, kind.stranger,
+                  kind.usable ? "" : " (few)");
+    out += text;
+  }
+  std::snprintf(text, sizeof text, "features %.3f", verdict.score);
+  return out + text;
+}
+
 void BM_RankAcrossKinds(benchmark::State& state) {
   std::vector<double> score;
   std::vector<double> minus_psi;
   std::vector<double> minus_error;
+  std::vector<double> features;
+  std::vector<double> minus_raw;
   for (auto _ : state) {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       const OccupancyGrid truth = maze_of(seed, 9, 7);
@@ -161,20 +183,58 @@ void BM_RankAcrossKinds(benchmark::State& state) {
       for (int kind = 0; kind < 5; ++kind)
         for (const double size : {0.1, 0.25, 0.45, 0.7}) {
           const Distortion d = distortion(kind, size, width, height);
-          const MapScore s = score_map(moved(distorted(truth, d), 0.4, 1.0, 2.0), truth);
+          const OccupancyGrid map = moved(distorted(truth, d), 0.4, 1.0, 2.0);
+          const MapScore s = score_map(map, truth);
+          const FeatureVerdict verdict = features_at(map, truth, s.T_truth_map);
+          features.push_back(verdict.score);
+          minus_raw.push_back(-verdict.kinds.front().match.error);
           score.push_back(s.score);
           minus_psi.push_back(-s.psi_m);
           minus_error.push_back(-trajectory_error_of(d, width, height));
-          std::printf("%-6s %.2f m  trajectory error %.3f m  score %.3f  psi %.3f m\n", d.name.c_str(), size,
-                      -minus_error.back(), s.score, s.psi_m);
+          std::printf("%-6s %.2f m  trajectory error %.3f m  score %.3f  psi %.3f m  %s\n", d.name.c_str(), size,
+                      -minus_error.back(), s.score, s.psi_m, text_of(verdict).c_str());
         }
     }
   }
   state.counters["maps"] = static_cast<double>(score.size());
   state.counters["spearman_score"] = spearman(score, minus_error);
   state.counters["spearman_psi"] = spearman(minus_psi, minus_error);
+  state.counters["spearman_features"] = spearman(features, minus_error);
+  state.counters["spearman_eq7"] = spearman(minus_raw, minus_error);
 }
 BENCHMARK(BM_RankAcrossKinds)->Unit(benchmark::kSecond)->Iterations(1);
+
+/// Eq. (7) against strangers: other arenas of the same kind and size at their best pose, and the arena's own map with
+/// gaps and phantom walls.
+void BM_FeaturesOfStrangers(benchmark::State& state) {
+  double sum = 0.0;
+  double worst = 0.0;
+  double own = 0.0;
+  double least_own = 1.0;
+  int pairs = 0;
+  for (auto _ : state)
+    for (const char* kind : {"yellow", "orange", "maze"})
+      for (std::uint64_t seed = 7301; seed < 7309; ++seed) {
+        const OccupancyGrid truth = truth_of({kind, 8, 7, seed});
+        const OccupancyGrid stranger = moved(truth_of({kind, 8, 7, seed + 500}), 0.4, 1.0, 2.0);
+        const OccupancyGrid damaged = moved(with_gaps(with_phantoms(truth, 6, seed), 12, seed), 0.4, 1.0, 2.0);
+        const FeatureVerdict of_stranger = features_at(stranger, truth, score_map(stranger, truth).T_truth_map);
+        const FeatureVerdict of_own = features_at(damaged, truth, score_map(damaged, truth).T_truth_map);
+        sum += of_stranger.score;
+        worst = std::max(worst, of_stranger.score);
+        own += of_own.score;
+        least_own = std::min(least_own, of_own.score);
+        ++pairs;
+        std::printf("%-6s %d  stranger %s  damaged %s\n", kind, static_cast<int>(seed), text_of(of_stranger).c_str(),
+                    text_of(of_own).c_str());
+      }
+  state.counters["pairs"] = pairs;
+  state.counters["stranger"] = sum / pairs;
+  state.counters["stranger_worst"] = worst;
+  state.counters["damaged"] = own / pairs;
+  state.counters["damaged_least"] = least_own;
+}
+BENCHMARK(BM_FeaturesOfStrangers)->Unit(benchmark::kSecond)->Iterations(1);
 
 }  // namespace
 }  // namespace rubble::scoring

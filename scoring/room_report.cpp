@@ -22,6 +22,7 @@ RoomVerdict judge_rooms(const OccupancyGrid& map, const Rooms& of_map, const Occ
   const Alignment found = align(crop_to_known(map, 0.0), crop_to_known(truth, 0.0));
   out.aligned = found.aligned;
   out.note = found.note;
+  out.T_truth_map = found.T_truth_map;
   if (found.aligned) out.match = match_rooms(of_map, of_truth, found.T_truth_map);
   return out;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <mrpt/math/TPose2D.h>
+
 #include <string>
 
 #include "base/grid.h"
@@ -19,6 +21,7 @@ struct RoomVerdict {
   bool aligned = false;  ///< without a pose that can be trusted nothing is compared
   std::string note;      ///< why not
   RoomMatch match;
+  mrpt::math::TPose2D T_truth_map;
 };
 
 RoomVerdict judge_rooms(const OccupancyGrid& map, const Rooms& of_map, const OccupancyGrid& truth,

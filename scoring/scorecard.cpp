@@ -9,7 +9,6 @@
 #include "scoring/measures/detached.h"
 #include "scoring/measures/psi.h"
 #include "scoring/measures/sight_lines.h"
-#include "scoring/proposals/features.h"
 #include "scoring/walls/overlap.h"
 #include "scoring/walls/resample.h"
 #include "scoring/walls/warp_fit.h"
@@ -43,24 +42,6 @@ void fill_psi(MapScore& out, const Psi& psi) {
 Psi psi_of_strangers(double cap) {
   const PsiClass absent{cap, cap};
   return {absent, absent, absent, 6.0 * cap, cap};
-}
-
-constexpr double kFeatureCap = 1.0;     // C of eq. (7) [m^2]
-constexpr double kFeatureWeight = 0.5;  // lambda of eq. (7): descriptors that differ by 1 weigh like this [m^2]
-
-/// E of eq. (7) over the SURF features of both maps.
-MatchError feature_error(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map) {
-  const FeatureSet of_map = find_features(map, FeatureKind::Surf);
-  const FeatureSet of_truth = find_features(truth, FeatureKind::Surf);
-  const auto places = [](const FeatureSet& set) {
-    std::vector<mrpt::math::TPoint2D> out;
-    for (const Feature& f : set.features) out.push_back(f.p);
-    return out;
-  };
-  const auto difference = [&](std::size_t i, std::size_t j) {
-    return kFeatureWeight * descriptor_distance(of_map, i, of_truth, j);
-  };
-  return match_error(places(of_map), places(of_truth), T_truth_map, difference, kFeatureCap);
 }
 
 /// The scale at which the maps do agree, of those that people mix up; 0 where there is none.
@@ -99,13 +80,42 @@ struct Walls {
   SightLines sights;
 };
 
+/// Eqs. (7) and (8) over features instead of walls.
+void fill_features(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls) {
+  const MapFeatures of_map = features_of(map);
+  const MapFeatures of_truth = features_of(truth);
+  out.features = feature_error(of_map, of_truth, EvidenceKind::Surf, out.T_truth_map);
+  out.by_features = judge_features(map, of_map, truth, of_truth, out.T_truth_map);
+  const FeatureWarp warp = fit_feature_warp(of_map, of_truth, out.T_truth_map, map.frame());
+  out.feature_warp_m = warp.size;
+  out.feature_warped_score = std::max(out.score, walls.score(warp.warp) * (1.0 - out.detached));
+}
+
+/// A polynomial bends; a map that came apart has a step. Whichever explains more is what happened to it.
+void fill_break(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls) {
+  constexpr double kLeastGain = 0.02;
+  constexpr double kLeastShare = 0.3;  // of what is missing to 1
+  out.mended_score = out.score;
+  MapBreak seam = find_break(map, truth, out.T_truth_map);
+  if (!seam.found) return;
+  const OccupancyGrid whole = mended(map, truth, seam);
+  const double score = walls.sights.usable() ? walls.sights.at(whole, PlanarTransform()).score
+                                             : overlap(whole, truth, {}, walls.overlaps.tau()).score;
+  const double smooth = std::max(out.score, out.warped_score);
+  seam.found = score * (1.0 - out.detached) >= smooth + std::min(kLeastGain, kLeastShare * (1.0 - smooth));
+  if (!seam.found) return;
+  out.broken = seam;
+  out.mended_score = score * (1.0 - out.detached);
+}
+
 void fill_warp(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls) {
   const WarpedScore warped = fit_warp(map, truth, walls.overlaps, out.T_truth_map);
   out.warped = true;
   out.warp_m = warped.size;
   out.warped_score = std::max(out.score, walls.score(warped.warp) * (1.0 - out.detached));
   out.penalised_score = std::max(out.score, out.warped_score * warped.kept);
-  out.features = feature_error(map, truth, out.T_truth_map);
+  fill_features(out, map, truth, walls);
+  fill_break(out, map, truth, walls);
 }
 
 /// A second drawing on the canvas is a second guess: each is worth its share.

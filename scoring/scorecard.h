@@ -6,7 +6,9 @@
 
 #include "base/grid.h"
 #include "scoring/alignment/alignment.h"
+#include "scoring/alignment/feature_score.h"
 #include "scoring/alignment/match_error.h"
+#include "scoring/walls/break_fit.h"
 #include "scoring/walls/wall_errors.h"
 
 namespace rubble::scoring {
@@ -54,6 +56,11 @@ struct MapScore {
   double warp_m = 0.0;           ///< ||b|| of eq. (8) [m]
   double penalised_score = 0.0;  ///< warped score less the penalty; between `score` and `warped_score`
   MatchError features;           ///< E of eq. (7) over all SURF features of both maps
+  FeatureVerdict by_features;    ///< the same over every kind of feature, against what strangers reach
+  double feature_warp_m = 0.0;   ///< ||b|| of eq. (8) fitted to the pairs of features [m]
+  double feature_warped_score = 0.0;  ///< `score` after that
+  MapBreak broken;                    ///< two rigid parts, if that explains more than a bend
+  double mended_score = 0.0;          ///< `score` with both parts where they belong; `score` where none is broken off
 };
 
 /// Aligns `map` to `truth` without any initial guess and scores it. Never throws on poor maps: see `aligned`, `note`.

@@ -90,6 +90,13 @@ strangers() {
   bench scoring_alignment_bench BM_AlignStrangers
   tell "strangers: mirrored maps and maps of another building" "$(value BM_AlignStrangers tried)"
   judge "strangers: said to be aligned" "$(value BM_AlignStrangers wrongly_aligned)" "==" 0
+  need_data rooms
+  bench scoring_strangers_bench BM_Strangers
+  judge "strangers: pairs of all classes (-v: a table)" "$(value BM_Strangers strangers)" ">=" 1000
+  judge "strangers: of these said to be aligned" "$(value BM_Strangers wrongly_aligned)" "==" 0
+  tell "strangers: beside them right pairs" "$(value BM_Strangers right)"
+  tell "strangers: of these said to be aligned" "$(percent "$(value BM_Strangers right_aligned)" "$(value BM_Strangers right)")" %
+  judge "strangers: of these at a wrong pose" "$(value BM_Strangers right_misplaced)" "==" 0
 }
 
 rooms() {
@@ -107,7 +114,7 @@ rooms() {
 }
 
 ranking() {
-  bench scoring_ranking_bench BM_Rank
+  bench scoring_ranking_bench .
   local pairs
   pairs=$(value BM_RankPairs pairs)
   judge "ranking: pairs of maps with more and less damage" "$pairs" ">=" 200
@@ -115,6 +122,10 @@ ranking() {
   tell "ranking: maps distorted in five ways" "$(value BM_RankAcrossKinds maps)"
   judge "ranking: Spearman, score and trajectory error" "$(value BM_RankAcrossKinds spearman_score)" ">=" 0.959
   tell "ranking: Spearman, psi and trajectory error" "$(value BM_RankAcrossKinds spearman_psi)"
+  tell "ranking: Spearman, features and trajectory error" "$(value BM_RankAcrossKinds spearman_features)"
+  tell "ranking: the same of E of eq. (7) alone" "$(value BM_RankAcrossKinds spearman_eq7)"
+  tell "features: another arena at its best pose, mean" "$(value BM_FeaturesOfStrangers stranger)"
+  tell "features: the arena itself, damaged, mean" "$(value BM_FeaturesOfStrangers damaged)"
 }
 
 attacks() {

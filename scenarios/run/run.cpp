@@ -79,14 +79,26 @@ struct WrittenMaps {
   scoring::LoadedMap truth;
 };
 
+/// The pose of the written map on the truth if it were right about where the robot started.
+scoring::KnownStart known_start(const scoring::LoadedMap& picture, const std::optional<GeoAnchor>& geo,
+                                const mrpt::math::TPose2D& T_truth_start) {
+  const mrpt::math::TPoint2D start = in_picture(picture, {0.0, 0.0}, geo);
+  const mrpt::math::TPoint2D ahead = in_picture(picture, {1.0, 0.0}, geo);
+  const mrpt::math::TPose2D T_picture_start(start.x, start.y, std::atan2(ahead.y - start.y, ahead.x - start.x));
+  return {T_truth_start + (mrpt::math::TPose2D() - T_picture_start), start};
+}
+
 /// Scores it. The scenario may anchor the map on Earth; a rigid alignment does not care.
-WrittenMaps score_files(scoring::Evidence& evidence, const RunFolder& folder, const Scenario& scenario) {
+WrittenMaps score_files(scoring::Evidence& evidence, const RunFolder& folder, const Scenario& scenario,
+                        const mrpt::math::TPose2D& T_truth_start) {
   WrittenMaps files{scoring::load_map(folder.file("map.tif")), scoring::load_map(folder.file("truth.tif"))};
   evidence.map_read_as = files.map.recognised;
   evidence.truth_read_as = files.truth.recognised;
   const OccupancyGrid& map = files.map.grid;
   const OccupancyGrid& truth = files.truth.grid;
-  const scoring::MapScore score = scoring::score_map(map, truth, scenario.scoring);
+  scoring::ScoreConfig config = scenario.scoring;
+  config.alignment.start = known_start(files.map, scenario.geo, T_truth_start);
+  const scoring::MapScore score = scoring::score_map(map, truth, config);
   evidence.score = score;
   if (!score.aligned && score.by == scoring::AlignBy::Auto) return files;
   folder.publish({"overlay.png"}, [&](const std::string& path) {
@@ -191,7 +203,7 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   }
   scoring::Evidence evidence;
   compare_trajectories(evidence, core.mapper(), simulated.truth());
-  const WrittenMaps files = score_files(evidence, folder, scenario);
+  const WrittenMaps files = score_files(evidence, folder, scenario, arena.start);
   evidence.map = &files.map.grid;
   evidence.truth = &files.truth.grid;
   evidence.victims = judge_victims(files, *evidence.score, scenario, arena, core.victims());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/angle.h"
+#include "scoring/alignment/feature_score.h"
 #include "scoring/alignment/matching.h"
 #include "scoring/alignment/trust.h"
 #include "scoring/rooms/room_hypotheses.h"
@@ -43,9 +44,16 @@ TPose2D fit_to_the_whole(const Hypothesis& best, const std::vector<Hypothesis>& 
   return match.halfway(pick, match.nearest_rigid(bent, 0.4));
 }
 
+/// The pose of a map that says where it started is off by less than this at the start [m, rad].
+constexpr double kStartShift = 0.8;
+constexpr double kStartTurn = 0.2;
+// At the start pose the maps agree about as well as at their best one, and well.
+constexpr double kTieTimes = 1.2;    // tight agreement
+constexpr double kStartKappa = 0.8;  // of either map's walls: on one lattice strangers reach 0.7
+
 /// Who is asked by walls may also find what nobody else proposes: the search examines walls in any case.
 bool may_win(const Hypothesis& h, AlignBy by) {
-  if (includes(by, AlignBy::Walls)) return true;
+  if (includes(by, AlignBy::Walls) || includes(by, AlignBy::Equation7)) return true;
   const auto proposed = [&](AlignBy method) { return includes(by, method) && includes(h.by, method); };
   return proposed(AlignBy::Features) || proposed(AlignBy::Rooms);
 }
@@ -71,27 +79,86 @@ class Aligner {
       out.note = "not aligned: no pose was proposed" + about_rooms();
       return out;
     }
-    const Trust trust = judge(best->wide, best->tight, describe(*best, hypotheses, out));
-    out.aligned = trust.trusted;
-    out.note = trust.trusted ? trust.note : why_not(trust, best->tight) + about_rooms();
+    if (includes(method, AlignBy::Equation7)) return by_equation_7(hypotheses, out);
+    conclude(*best, hypotheses, out);
     out.T_walls = match_.refine(best->T_best, 0.1, 20);
     out.T_walls.phi = wrap_angle(out.T_walls.phi);
-    out.T_truth_map = trust.tight ? out.T_walls : fit_to_the_whole(*best, hypotheses, match_);
+    const bool to_the_decimetre = tight_agreement(best->tight) >= kTightEnough;
+    out.T_truth_map = to_the_decimetre ? out.T_walls : fit_to_the_whole(*best, hypotheses, match_);
     out.T_truth_map.phi = wrap_angle(out.T_truth_map.phi);
     return out;
   }
 
+  /// The pose at the known start, if the maps agree there about as well as at their best pose; nothing else is.
+  std::optional<Alignment> by_start(const Alignment& best) {
+    std::vector<PoseGuess> guesses = by_walls_ ? *by_walls_ : std::vector<PoseGuess>();
+    guesses.insert(guesses.begin(), {config_.start->T_truth_map, 0.0, AlignBy::Start});
+    const std::vector<Hypothesis> hypotheses = examine(guesses, match_, config_.search);
+    const auto at_start = std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) {
+      return same_pose(h.T_best, config_.start->T_truth_map, config_.start->p_map, kStartShift, kStartTurn);
+    });
+    if (at_start == hypotheses.end()) return std::nullopt;
+    // Any arena lies about as well at several poses of a truth on the same lattice; only where nearly all walls meet do
+    // rivals mean that the arena is symmetric.
+    if (std::min(at_start->tight.map.kappa(), at_start->tight.truth.kappa()) < kStartKappa) return std::nullopt;
+    if (kTieTimes * tight_agreement(at_start->tight) < best.contest.agreement) return std::nullopt;
+    Alignment out;
+    out.contest.tried = best.contest.tried | AlignBy::Start;
+    const bool mirrored = (describe(*at_start, hypotheses, out), is_mirror_image(at_start->tight));
+    const Trust trust = judge(at_start->wide, at_start->tight, Rivals{});
+    if (mirrored || !trust.trusted) return std::nullopt;
+    out.aligned = true;
+    out.by = out.by | AlignBy::Start;
+    out.note = "another pose fits about as well; the start pose decided";
+    out.T_walls = match_.refine(at_start->T_best, 0.1, 20);
+    out.T_walls.phi = wrap_angle(out.T_walls.phi);
+    out.T_truth_map = out.T_walls;
+    return out;
+  }
+
  private:
+  void conclude(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses, Alignment& out) {
+    const Trust trust = judge(best.wide, best.tight, describe(best, hypotheses, out));
+    out.aligned = trust.trusted && !is_mirror_image(best.tight);
+    out.note = out.aligned ? trust.note : why_not(trust, best.tight) + about_rooms();
+  }
+
+  /// Section IV.F: every pose proposed is improved until eq. (7) falls no further, and the least error wins. Whether it
+  /// can be trusted is judged as for any other.
+  Alignment by_equation_7(const std::vector<Hypothesis>& hypotheses, Alignment& out) {
+    const MapFeatures of_map = features_of(map_);
+    const MapFeatures of_truth = features_of(truth_);
+    const Hypothesis* best = nullptr;
+    FeaturePose least;
+    for (const Hypothesis& h : hypotheses) {
+      const FeaturePose pose = minimise_feature_error(of_map, of_truth, h.T_best);
+      if (best != nullptr && pose.error >= least.error) continue;
+      best = &h;
+      least = pose;
+    }
+    Hypothesis there = *best;
+    there.T_wide = there.T_best = least.T_truth_map;
+    there.wide = match_.evidence(match_.rigid(there.T_best), match_.kernel(config_.search.tau_wide));
+    there.tight = match_.evidence(match_.rigid(there.T_best), match_.kernel(config_.search.tau_tight));
+    conclude(there, hypotheses, out);
+    out.by = out.by | AlignBy::Equation7;
+    out.T_truth_map = least.T_truth_map;
+    out.T_truth_map.phi = wrap_angle(out.T_truth_map.phi);
+    out.T_walls = out.T_truth_map;
+    return out;
+  }
+
   /// What the walls propose always takes part, as rivals of what others propose.
   std::vector<PoseGuess> proposals(AlignBy method) {
     if (!by_walls_) by_walls_ = correlate(map_, truth_, config_.correlation);
     std::vector<PoseGuess> out = *by_walls_;
     const auto add = [&](const std::vector<PoseGuess>& more) { out.insert(out.end(), more.begin(), more.end()); };
-    if (includes(method, AlignBy::Features)) {
+    const bool all = includes(method, AlignBy::Equation7);
+    if (all || includes(method, AlignBy::Features)) {
       if (!by_features_) by_features_ = propose_by_features(map_, truth_, config_.feature_kind);
       add(*by_features_);
     }
-    if (!includes(method, AlignBy::Rooms)) return out;
+    if (!all && !includes(method, AlignBy::Rooms)) return out;
     if (config_.rooms) {
       add(config_.rooms(map_, truth_));
     } else {
@@ -106,15 +173,19 @@ class Aligner {
 
   /// A mirror image that fits to the decimetre, and clearly better than the map itself, is named as what it is. A
   /// building that is nearly its own mirror image fits both ways: there what is left unexplained decides.
-  std::string why_not(const Trust& trust, const PoseEvidence& tight) const {
+  bool is_mirror_image(const PoseEvidence& tight) const {
     constexpr double kAhead = 1.2;
     constexpr double kLeft = 0.5;
     const double own = tight_agreement(tight);
     const double most = tight.map.known + tight.truth.known;
-    const bool is_mirror_image = mirrored_ && mirrored_->tight >= kTightEnough &&
-                                 (mirrored_->tight >= kAhead * own || most - mirrored_->tight <= kLeft * (most - own));
-    return is_mirror_image ? "not aligned: the map is a mirror image of the truth; flip it and score it again"
-                           : trust.note;
+    constexpr double kMore = 0.02;  // a symmetric arena is its own mirror image
+    return mirrored_ && mirrored_->tight >= std::max(kTightEnough, own + kMore) &&
+           (mirrored_->tight >= kAhead * own || most - mirrored_->tight <= kLeft * (most - own));
+  }
+
+  std::string why_not(const Trust& trust, const PoseEvidence& tight) const {
+    return is_mirror_image(tight) ? "not aligned: the map is a mirror image of the truth; flip it and score it again"
+                                  : trust.note;
   }
 
   /// Fills in the contest and returns the rivals.
@@ -194,16 +265,18 @@ Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const Alig
     out.note = text;
     return out;
   }
-  if (config.by != AlignBy::Auto) return aligner.by(config.by);
-  Alignment best = aligner.by(AlignBy::Walls);
+  if (config.by != AlignBy::Auto && !config.start) return aligner.by(config.by);
+  Alignment best = aligner.by(config.by == AlignBy::Auto ? AlignBy::Walls : config.by);
   const AlignBy with_features = AlignBy::Walls | AlignBy::Features;
   for (const AlignBy method : {with_features, with_features | AlignBy::Rooms}) {
     // Walls that agree to the decimetre at several poses leave a doubt that no other proposal resolves.
-    if (best.aligned || best.contest.by_agreement) break;
+    if (config.by != AlignBy::Auto || best.aligned || best.contest.by_agreement) break;
     const Alignment more = aligner.by(method);
     if (more.aligned || more.log_odds > best.log_odds) best = more;
     best.contest.tried = method;
   }
+  if (!best.aligned && config.start)
+    if (const std::optional<Alignment> at_start = aligner.by_start(best)) return *at_start;
   return best;
 }
 

@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPose2D.h>
 
+#include <optional>
 #include <string>
 
 #include "base/grid.h"
@@ -12,10 +13,17 @@
 
 namespace rubble::scoring {
 
+/// Where the robot started is known in both maps: it breaks ties between poses that fit about as well.
+struct KnownStart {
+  mrpt::math::TPose2D T_truth_map;  ///< that lays the start pose of the map on that of the truth
+  mrpt::math::TPoint2D p_map;       ///< where it started on the map [m]
+};
+
 struct AlignmentConfig {
   AlignBy by = AlignBy::Auto;  ///< Auto: walls, where these leave a doubt features too, then rooms
   FeatureKind feature_kind = FeatureKind::Surf;
   Proposer rooms;  ///< proposes by rooms; where empty, propose_by_rooms()
+  std::optional<KnownStart> start;
   CorrelationConfig correlation;
   SearchConfig search;
 };

@@ -58,6 +58,7 @@ void match_group(const std::vector<Pair>& pairs, double cap, MatchError& out) {
     if (partner[index_in(of_map, p.map)] != index_in(of_truth, p.truth)) continue;
     out.error += p.cost - cap;
     out.mean_offset += p.offset;
+    out.pairs.emplace_back(p.map, p.truth);
     ++out.matched;
   }
 }
@@ -91,6 +92,7 @@ MatchError match_error(const std::vector<TPoint2D>& map, const std::vector<TPoin
     match_group({begin, end}, cap, out);
     begin = end;
   }
+  std::sort(out.pairs.begin(), out.pairs.end());
   out.error = total > 0.0 ? out.error / total : cap;
   if (out.matched > 0) out.mean_offset /= static_cast<double>(out.matched);
   return out;

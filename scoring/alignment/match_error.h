@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace rubble::scoring {
@@ -14,6 +15,8 @@ struct MatchError {
   double error = 0.0;        ///< E [m^2], 0 .. cap; the cap where nothing is matched: W = 0 is the worst, not the best
   std::size_t matched = 0;   ///< pairs
   double mean_offset = 0.0;  ///< mean distance of matched features [m]
+  /// w_ij = 1: features of the map and of the truth, in the order of the map's.
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
 };
 
 /// The best one-to-one association W at a pose and its error: E = (sum over matched of c_ij + cap/2 for each unmatched

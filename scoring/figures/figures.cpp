@@ -31,6 +31,16 @@ Getter of_warped(Read read) {
       [read](const Evidence& e) { return e.score && e.score->warped ? Value(std::invoke(read, *e.score)) : Value(); };
 }
 
+/// Of one kind of feature, where the truth has enough of them.
+Getter of_kind(EvidenceKind kind) {
+  return [kind](const Evidence& e) {
+    if (e.score)
+      for (const KindScore& s : e.score->by_features.kinds)
+        if (s.kind == kind && s.usable) return Value(s.score);
+    return Value();
+  };
+}
+
 template <class Read>
 Getter of_error(Read read) {
   return [read](const Evidence& e) {
@@ -111,6 +121,11 @@ std::vector<Figure> make_table() {
   };
   const auto feature = [](auto member) { return of_warped([member](const S& s) { return s.features.*member; }); };
   using Pose = mrpt::math::TPose2D;
+  const auto part = [](auto member) {
+    return Getter([member](const Evidence& e) {
+      return e.score && e.score->broken.found ? Value(std::invoke(member, e.score->broken)) : Value();
+    });
+  };
   const auto drive = [](auto member) {
     return of_mission([member](const MissionFigures& m) { return m.drive.*member; });
   };
@@ -164,6 +179,31 @@ std::vector<Figure> make_table() {
       {"feature_error_m2", "feature error", "m2", 3, kNone, 0.0, kShown, feature(&MatchError::error)},
       {"feature_matched", "features matched", "", 0, kNone, 0.0, kShown, feature(&MatchError::matched)},
       {"feature_offset_m", "features apart", "m", 3, kNone, 0.0, kShown, feature(&MatchError::mean_offset)},
+      {"feature_score", "features right beyond strangers", "", 3, kUp, 0.01, kSpecial | kShown,
+       of_warped([](const S& s) { return s.by_features.score; })},
+      {"surf_score", "SURF features right", "", 3, kNone, 0.0, kSpecial | kShown, of_kind(EvidenceKind::Surf)},
+      {"corner_score", "wall corners right", "", 3, kNone, 0.0, kSpecial | kShown, of_kind(EvidenceKind::Corners)},
+      {"room_score", "rooms right", "", 3, kNone, 0.0, kSpecial | kShown, of_kind(EvidenceKind::Rooms)},
+      {"feature_stranger_m2", "feature error of strangers", "m2", 3, kNone, 0.0, kSpecial | kShown,
+       [](const Evidence& e) {
+         return e.score && !e.score->by_features.kinds.empty() ? Value(e.score->by_features.kinds.front().stranger)
+                                                               : Value();
+       }},
+      {"feature_warp_m", "distorted by, from features", "m", 3, kNone, 0.0, kSpecial | kShown,
+       of_warped(&S::feature_warp_m)},
+      {"feature_warped_score", "score after that warp", "", 3, kNone, 0.0, kSpecial | kShown,
+       of_warped(&S::feature_warped_score)},
+      {"broken", "came apart", "", 0, kNone, 0.0, kSpecial,
+       of_warped([](const S& s) { return s.broken.found; })},
+      {"break_m", "parts off by", "m", 2, kNone, 0.0, kSpecial | kShown, part(&MapBreak::apart_m)},
+      {"break_deg", "parts turned by", "deg", 1, kNone, 0.0, kSpecial | kShown,
+       part([](const MapBreak& b) { return rad_to_deg(b.turned_rad); })},
+      {"break_from_x_m", "seam from x", "m", 2, kNone, 0.0, kSpecial, part([](const MapBreak& b) { return b.from.x; })},
+      {"break_from_y_m", "seam from y", "m", 2, kNone, 0.0, kSpecial, part([](const MapBreak& b) { return b.from.y; })},
+      {"break_to_x_m", "seam to x", "m", 2, kNone, 0.0, kSpecial, part([](const MapBreak& b) { return b.to.x; })},
+      {"break_to_y_m", "seam to y", "m", 2, kNone, 0.0, kSpecial, part([](const MapBreak& b) { return b.to.y; })},
+      {"mended_score", "score with both parts in place", "", 3, kNone, 0.0, kSpecial | kShown,
+       [](const Evidence& e) { return e.score && e.score->broken.found ? Value(e.score->mended_score) : Value(); }},
       {"area_known_m2", "area mapped", "m2", 1, kNone, 0.0, kShown, of_run(&RunFigures::area_known_m2)},
       {"ate_matched", "poses compared", "", 0, kNone, 0.0, kPlain,
        [](const Evidence& e) { return e.error ? Value(e.error->matched) : Value(); }},

@@ -14,10 +14,10 @@
 namespace rubble::scoring {
 namespace {
 
-/// What decides, as the table prints it: judged, tenths of points, thousandths of score.
+/// What decides, as the table prints it: judged, thousandths of score, tenths of points.
 std::tuple<bool, long, long> merit(const LeagueEntry& entry) {
   if (!entry.error.empty()) return {false, 0, 0};
-  return {true, std::lround(10.0 * entry.total()), std::lround(1000.0 * entry.score.score)};
+  return {true, std::lround(1000.0 * entry.score.score), std::lround(10.0 * entry.total())};
 }
 
 std::string number(const char* format, double value) {

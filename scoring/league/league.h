@@ -27,10 +27,10 @@ struct LeagueEntry {
   double total() const { return judge + (points ? points->points() : 0.0); }
 };
 
-/// Sorts and numbers the entries. Those that could be judged come first: more points (to 0.1) win, then the higher
-/// score (to 0.001). Entries equal in both share a rank and stand in the order of their names; the next rank is as many
-/// higher (1, 2, 2, 4). Entries that could not be judged share the last rank. Neither names nor the order of `entries`
-/// decide anything else.
+/// Sorts and numbers the entries. Those that could be judged come first: the higher score (to 0.001) wins, then
+/// more points (to 0.1). Entries equal in both share a rank and stand in the order of their names; the next rank is as
+/// many higher (1, 2, 2, 4). Entries that could not be judged share the last rank. Neither names nor the order of
+/// `entries` decide anything else.
 void rank_league(std::vector<LeagueEntry>& entries);
 
 /// The ranking as CSV with a header: rank, team, points, judge, the figures that the table has for it, file, note.

@@ -8,9 +8,11 @@
 
 #include "base/error.h"
 #include "base/text/number_text.h"
+#include "base/text/shell.h"
 #include "base/text/text_file.h"
 #include "base/text/words.h"
 #include "scoring/maps/normalise.h"
+#include "scoring/marks.h"
 #include "scoring/pictures/evaluation_page.h"
 #include "scoring/pictures/picture.h"
 
@@ -51,20 +53,24 @@ void remove_old_pages(const std::string& folder) {
 LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const LeagueTruth& truth,
                     const LeagueConfig& config, const std::string& name) {
   LeaguePictures pictures;
-  if (entry.score.aligned || entry.score.by != AlignBy::Auto) {
-    pictures.overlay = name + kOverlay;
+  pictures.overlay = name + kOverlay;
+  const Marks victims = marks_of(entry.reported.victims, truth.victims.victims, entry.score.T_truth_map);
+  if (entry.score.aligned || entry.score.by != AlignBy::Auto)
     write_overlay(config.out + "/" + pictures.overlay, map, truth.grid, entry.score.T_truth_map,
-                  entry.score.aligned ? "" : "NOT TRUSTED: " + entry.score.note);
-  }
+                  entry.score.aligned ? "" : "NOT TRUSTED: " + entry.score.note, victims);
+  else
+    write_side_by_side(config.out + "/" + pictures.overlay, map, truth.grid, std::nullopt, {}, entry.score.note);
   if (entry.score.aligned) {
     pictures.error = name + kErrorMap;
     write_error_map(config.out + "/" + pictures.error, map, truth.grid, entry.score.T_truth_map, config.score.tau);
   }
   pictures.tool = name + kPage;
-  write_text_file(config.out + "/" + pictures.tool,
-                  evaluation_page(map, truth.grid,
-                                  {entry.file, truth.path, "rubble score " + entry.file + " " + truth.path,
-                                   entry.score.T_truth_map, 1.0, config.score}));
+  write_text_file(
+      config.out + "/" + pictures.tool,
+      evaluation_page(map, truth.grid,
+                      {entry.file, truth.path, "rubble score " + shell_word(entry.file) + " " + shell_word(truth.path),
+                       entry.score.T_truth_map, 1.0, config.score, entry.score.aligned ? "" : entry.score.note,
+                       marks_on_page(entry.score, victims)}));
   return pictures;
 }
 

@@ -223,14 +223,19 @@ GreyRoles grey_roles(const cv::Mat& grey, const cv::Mat& apart) {
   const Sides sides = sides_of(labels, wall, levels.size(), fringe);
   const double within_free = sides[free][free];
   const double within_unknown = sides[unknown][unknown];
-  bool turn_about = within_unknown >= kAnywhere && within_unknown > kConvincing * within_free;
-  if (out.between && within_free + within_unknown < kAnywhere)
-    turn_about = rim_share(labels, free) > rim_share(labels, unknown);
+  const double free_rim = rim_share(labels, free);
+  const double unknown_rim = rim_share(labels, unknown);
+  // Laser maps of buildings leave specks of wall in unknown ground, many more than there are walls between two free
+  // places. But a map lies in what is unknown, not in what is free: the picture's rim contradicts them.
+  bool turn_about =
+      within_unknown >= kAnywhere && within_unknown > kConvincing * within_free && free_rim >= unknown_rim;
+  if (out.between && within_free + within_unknown < kAnywhere) turn_about = free_rim > unknown_rim;
   if (turn_about) std::swap(free, unknown);
   out.free = levels[free].grey;
   out.unknown = levels[unknown].grey;
   const double all = within_free + within_unknown;
-  out.sure = all < kAnywhere ? 0.5 : std::max(within_free, within_unknown) / all;
+  const double by_walls = all < kAnywhere ? 0.5 : (turn_about ? within_unknown : within_free) / all;
+  out.sure = std::max(by_walls, turn_about ? free_rim : unknown_rim);
   return out;
 }
 

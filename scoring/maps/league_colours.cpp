@@ -161,7 +161,9 @@ void add_thin_walls(const RgbImage& image, cv::Mat& labels) {
 }
 
 /// Blurred lettering and scales look like wall, but lie in unexplored space: a wall that no free pixel touches is none.
+/// A drawing of walls alone has no free pixel.
 void drop_lettering(cv::Mat& labels) {
+  if (cv::countNonZero(labels == static_cast<int>(kFree)) == 0) return;
   cv::Mat components;
   const int count = cv::connectedComponents(labels == static_cast<int>(kWall), components, 8, CV_32S);
   cv::Mat beside_free;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <utility>
 
 #include "base/error.h"
 #include "base/image/rich_tiff.h"
@@ -13,6 +14,7 @@
 #include "scoring/maps/raster_image.h"
 #include "scoring/maps/ros_map.h"
 #include "scoring/maps/victim_symbols.h"
+#include "scoring/maps/wall_drawing.h"
 
 namespace rubble::scoring {
 namespace {
@@ -136,6 +138,13 @@ bool counts_from_the_start(const PixelToModel& t) {
   return t.b == 0.0 && t.d == 0.0 && std::abs(t.c) < kLocal && std::abs(t.f) < kLocal;
 }
 
+/// Where a drawing of walls leaves out a class, walls tell it.
+void read_as_drawing(LoadedMap& map) {
+  FloodedDrawing flooded = flood_drawing(std::move(map.grid));
+  map.grid = std::move(flooded.grid);
+  if (!flooded.note.empty()) map.recognised += "; " + flooded.note;
+}
+
 LoadedMap load_image(const std::string& path, const LoadOptions& options) {
   const std::string extension = lower_extension(path);
   const bool is_tiff = extension == ".tif" || extension == ".tiff";
@@ -177,6 +186,7 @@ LoadedMap load_image(const std::string& path, const LoadOptions& options) {
   if (classes.is_league) out.symbols = place_symbols(tiff.image, out.grid.frame(), is_south_up(out.transform));
   out.recognised = source + cv::format(" %g m a pixel, %d x %d, ", resolution, out.grid.width(), out.grid.height()) +
                    classes.recognised;
+  read_as_drawing(out);
   return out;
 }
 
@@ -211,6 +221,7 @@ LoadedMap load_map(const std::string& path, const LoadOptions& options) {
   }
   out.recognised =
       cv::format("ROS map %g m a pixel, %d x %d", out.grid.resolution(), out.grid.width(), out.grid.height());
+  read_as_drawing(out);
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include "scoring/pictures/evaluation_page.h"
 
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <string_view>
@@ -53,6 +54,28 @@ std::string grid_json(const OccupancyGrid& grid, const std::string& name) {
          ",\"half\":" + number_text(wall_half_thickness(grid)) + ",\"runs\":\"" + base64(packed_cells(grid)) + "\"}";
 }
 
+/// Centimetres are enough for a mark: [x, y] or [x, y, name].
+std::string mark_json(const Mark& mark) {
+  const auto centimetres = [](double value) { return number_text(std::round(value * 100.0) / 100.0); };
+  return "[" + centimetres(mark.p.x) + "," + centimetres(mark.p.y) +
+         (mark.name.empty() ? "" : "," + quoted(mark.name)) + "]";
+}
+
+std::string marks_json(const std::vector<Marks>& all) {
+  const auto list = [](const auto& items, const auto& text_of) {
+    std::string out = "[";
+    for (const auto& item : items) out += (out.size() > 1 ? "," : "") + text_of(item);
+    return out + "]";
+  };
+  return list(all, [&](const Marks& marks) {
+    const auto pair = [](const std::pair<Mark, Mark>& p) {
+      return "[" + mark_json(p.first) + "," + mark_json(p.second) + "]";
+    };
+    return "{\"what\":" + quoted(marks.what) + ",\"pairs\":" + list(marks.pairs, pair) +
+           ",\"map\":" + list(marks.map_only, mark_json) + ",\"truth\":" + list(marks.truth_only, mark_json) + "}";
+  });
+}
+
 std::string data_json(const OccupancyGrid& map, const OccupancyGrid& truth, const EvaluationStart& start) {
   const mrpt::math::TPose2D& T = start.T_truth_map;
   return "{\"map\":" + grid_json(crop_to_known(map, 0.0), start.map_name) +
@@ -60,7 +83,8 @@ std::string data_json(const OccupancyGrid& map, const OccupancyGrid& truth, cons
          ",\n\"pose\":{\"x\":" + number_text(T.x) + ",\"y\":" + number_text(T.y) +
          ",\"deg\":" + number_text(rad_to_deg(T.phi)) + ",\"scale\":" + number_text(start.scale) +
          "},\"tau\":" + number_text(start.config.tau) + ",\"cap\":" + number_text(start.config.colour_absent_cap) +
-         ",\"command\":" + quoted(start.command) + "}";
+         ",\"command\":" + quoted(start.command) + ",\"warning\":" + quoted(start.not_trusted) +
+         ",\"marks\":" + marks_json(start.marks) + "}";
 }
 
 /// `page` with each placeholder replaced once.

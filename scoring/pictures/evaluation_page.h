@@ -3,8 +3,10 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <string>
+#include <vector>
 
 #include "base/grid.h"
+#include "scoring/marks.h"
 #include "scoring/scorecard.h"
 
 namespace rubble::scoring {
@@ -17,6 +19,8 @@ struct EvaluationStart {
   mrpt::math::TPose2D T_truth_map;
   double scale = 1.0;  ///< of the map: p_truth = T (scale p_map)
   ScoreConfig config;
+  std::string not_trusted;   ///< why the pose is not to be trusted; empty: it is
+  std::vector<Marks> marks;  ///< that can be shown: victims, features, rooms
 };
 
 /// The Mapping Evaluation Tool of section IV.B as one HTML page that needs nothing else: two maps that a person moves,

@@ -19,10 +19,11 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using Colour = cv::Vec3b;  // blue, green, red
 
-constexpr double kAgree = 0.05;  // walls this near count as the same in the overlay [m]
-constexpr double kNear = 0.15;   // walls this near as displaced [m]
-constexpr int kStrip = 34;       // height of the legend strip [pixels]
-constexpr int kMaxSide = 3000;   // of the picture [pixels]
+constexpr double kAgree = 0.05;    // walls this near count as the same in the overlay [m]
+constexpr double kNear = 0.15;     // walls this near as displaced [m]
+constexpr int kStrip = 34;         // height of the legend strip [pixels]
+constexpr int kLeastWidth = 1000;  // of the picture, for its legend [pixels]
+constexpr int kMaxSide = 3000;     // of the picture [pixels]
 
 const Colour kInk(40, 34, 30);
 const Colour kDisplaced(40, 150, 225);
@@ -59,7 +60,7 @@ GridFrame picture_frame(GridFrame frame) {
 /// A picture of a metric frame, north up, with room for a legend below.
 struct Canvas {
   explicit Canvas(const GridFrame& map_frame) : frame(picture_frame(map_frame)), scale(pixels_per_cell(frame)) {
-    const int width = std::max(frame.width * scale, 900);
+    const int width = std::max(frame.width * scale, kLeastWidth);
     image = cv::Mat(frame.height * scale + kStrip, width, CV_8UC3, cv::Scalar(206, 206, 206));
     image.rowRange(frame.height * scale, image.rows).setTo(cv::Scalar(250, 250, 250));
   }
@@ -165,6 +166,43 @@ void draw_heat_bar(Canvas& canvas, double tau) {
   draw_scale_bar(canvas);
 }
 
+cv::Point pixel_of(const Canvas& canvas, const TPoint2D& p) {
+  const double scale = canvas.scale / canvas.frame.resolution;
+  return {static_cast<int>(std::lround((p.x - canvas.frame.x0) * scale)),
+          canvas.map_rows() - static_cast<int>(std::lround((p.y - canvas.frame.y0) * scale))};
+}
+
+void draw_cross(cv::Mat& image, const cv::Point& at, int reach, const Colour& colour, int width) {
+  cv::line(image, at - cv::Point(reach, reach), at + cv::Point(reach, reach), cv::Scalar(colour), width, cv::LINE_AA);
+  cv::line(image, at - cv::Point(reach, -reach), at + cv::Point(reach, -reach), cv::Scalar(colour), width, cv::LINE_AA);
+}
+
+void draw_victims(Canvas& canvas, const Marks& victims, const TPose2D& T_truth_map) {
+  constexpr int kRadius = 8;
+  const Colour found(40, 150, 30);
+  const auto name = [&](const std::string& words, const cv::Point& at) {
+    text(canvas, words, at.x + kRadius + 3, at.y + 4);
+  };
+  for (const auto& [map, truth] : victims.pairs) {
+    const cv::Point reported = pixel_of(canvas, T_truth_map.composePoint(map.p));
+    const cv::Point there = pixel_of(canvas, truth.p);
+    cv::line(canvas.image, reported, there, cv::Scalar(found), 1, cv::LINE_AA);
+    cv::circle(canvas.image, there, kRadius, cv::Scalar(found), 2, cv::LINE_AA);
+    cv::circle(canvas.image, reported, 3, cv::Scalar(found), cv::FILLED, cv::LINE_AA);
+    name(truth.name, there);
+  }
+  for (const Mark& missed : victims.truth_only) {
+    const cv::Point at = pixel_of(canvas, missed.p);
+    cv::circle(canvas.image, at, kRadius, cv::Scalar(kTruthOnly), 2, cv::LINE_AA);
+    name(missed.name + " missed", at);
+  }
+  for (const Mark& wrong : victims.map_only) {
+    const cv::Point at = pixel_of(canvas, T_truth_map.composePoint(wrong.p));
+    draw_cross(canvas.image, at, kRadius - 2, kMapOnly, 2);
+    name("false", at);
+  }
+}
+
 /// A band over the picture's top that nobody overlooks.
 void draw_warning(Canvas& canvas, const std::string& words) {
   if (words.empty()) return;
@@ -172,10 +210,20 @@ void draw_warning(Canvas& canvas, const std::string& words) {
   cv::putText(canvas.image, words, {10, 18}, cv::FONT_HERSHEY_SIMPLEX, 0.5, cv::Scalar(255, 255, 255), 1, cv::LINE_AA);
 }
 
+TPoint2D middle_of(const OccupancyGrid& grid) {
+  const GridFrame f = known_frame(grid, 0.0).value_or(grid.frame());
+  return {f.x0 + 0.5 * f.width * f.resolution, f.y0 + 0.5 * f.height * f.resolution};
+}
+
+TPose2D middle_on_middle(const OccupancyGrid& map, const OccupancyGrid& truth) {
+  const TPoint2D shift = middle_of(truth) - middle_of(map);
+  return {shift.x, shift.y, 0.0};
+}
+
 }  // namespace
 
 void write_overlay(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
-                   const TPose2D& T_truth_map, const std::string& warning) {
+                   const TPose2D& T_truth_map, const std::string& warning, const Marks& victims) {
   Canvas canvas(common_frame(map, truth, T_truth_map, 0.5));
   const WallField to_map(map, 0.5);
   const WallField to_truth(truth, 0.5);
@@ -192,6 +240,7 @@ void write_overlay(const std::string& path, const OccupancyGrid& map, const Occu
       canvas.image.at<Colour>(row, column) = colour;
     }
   }
+  draw_victims(canvas, victims, T_truth_map);
   draw_warning(canvas, warning);
   draw_legend(canvas, {{kInk, "walls within 5 cm"},
                        {kDisplaced, "within 15 cm"},
@@ -223,6 +272,71 @@ void write_error_map(const std::string& path, const OccupancyGrid& map, const Oc
   }
   draw_heat_bar(canvas, tau);
   write_png(path, canvas.image);
+}
+
+void write_side_by_side(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
+                        const std::optional<TPose2D>& pose, const Marks& marks, const std::string& warning) {
+  constexpr int kGap = 24;  // [pixels]
+  const TPose2D T_truth_map = pose ? *pose : middle_on_middle(map, truth);
+  // Both panes show the same piece of the plane, so that a shift of a partner is a shift in the picture.
+  Canvas pane(common_frame(map, truth, T_truth_map, 0.5));
+  const int rows = pane.map_rows();
+  const int columns = pane.map_columns();
+  Canvas both = pane;
+  both.image = cv::Mat(rows + kStrip, std::max(2 * columns + kGap, kLeastWidth), CV_8UC3, cv::Scalar(kUnknown));
+  both.image.rowRange(rows, both.image.rows).setTo(cv::Scalar(250, 250, 250));
+  const auto plain = [](Occupancy o) {
+    return o == Occupancy::Free ? kBothFree : o == Occupancy::Occupied ? kInk : kUnknown;
+  };
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      const TPoint2D p_truth = pane.point(column, row);
+      both.image.at<Colour>(row, column) = plain(at(map, T_truth_map.inverseComposePoint(p_truth)));
+      both.image.at<Colour>(row, columns + kGap + column) = plain(at(truth, p_truth));
+    }
+  both.image(cv::Rect(columns, 0, kGap, rows)).setTo(cv::Scalar(250, 250, 250));
+  const cv::Point east(columns + kGap, 0);
+  const auto on_map = [&](const TPoint2D& p) { return pixel_of(pane, T_truth_map.composePoint(p)); };
+  const auto on_truth = [&](const TPoint2D& p) { return pixel_of(pane, p) + east; };
+  const auto draw_box = [&](const Mark& mark, const cv::Scalar& colour, const auto& place) {
+    if (!mark.box) return;
+    const auto& [low, high] = *mark.box;
+    const std::vector<cv::Point> corners = {place(low), place({high.x, low.y}), place(high), place({low.x, high.y})};
+    cv::polylines(both.image, corners, true, colour, 1, cv::LINE_AA);
+  };
+  for (std::size_t i = 0; i < marks.pairs.size(); ++i) {
+    const auto& [of_map, of_truth] = marks.pairs[i];
+    // Hues a golden angle apart.
+    cv::Mat hue(1, 1, CV_8UC3, cv::Scalar(static_cast<double>(i * 68 % 180), 220, 190));
+    cv::cvtColor(hue, hue, cv::COLOR_HSV2BGR);
+    const cv::Scalar colour(hue.at<Colour>(0, 0));
+    const cv::Point a = on_map(of_map.p);
+    const cv::Point b = on_truth(of_truth.p);
+    cv::line(both.image, a, b, colour, 1, cv::LINE_AA);
+    for (const cv::Point& p : {a, b}) cv::circle(both.image, p, 4, colour, 2, cv::LINE_AA);
+    draw_box(of_map, colour, on_map);
+    draw_box(of_truth, colour, on_truth);
+    if (!of_map.name.empty()) text(both, of_map.name, a.x + 7, a.y - 5);
+    if (!of_truth.name.empty()) text(both, of_truth.name, b.x + 7, b.y - 5);
+  }
+  for (const Mark& mark : marks.map_only) {
+    draw_cross(both.image, on_map(mark.p), 4, kMapOnly, 1);
+    draw_box(mark, cv::Scalar(kMapOnly), on_map);
+    text(both, mark.name, on_map(mark.p).x + 7, on_map(mark.p).y - 5);
+  }
+  for (const Mark& mark : marks.truth_only) {
+    draw_cross(both.image, on_truth(mark.p), 4, kTruthOnly, 1);
+    draw_box(mark, cv::Scalar(kTruthOnly), on_truth);
+    text(both, mark.name, on_truth(mark.p).x + 7, on_truth(mark.p).y - 5);
+  }
+  draw_warning(both, warning);
+  if (marks.what.empty())
+    draw_legend(both, {{kInk, "left: the map, right: the truth"}});
+  else
+    draw_legend(both, {{Colour(190, 120, 40), cv::format("%s: %zu matched", marks.what.c_str(), marks.pairs.size())},
+                       {kMapOnly, cv::format("%zu of the map alone", marks.map_only.size())},
+                       {kTruthOnly, cv::format("%zu of the truth alone", marks.truth_only.size())}});
+  write_png(path, both.image);
 }
 
 }  // namespace rubble::scoring

@@ -9,7 +9,9 @@ std::string names_of(AlignBy methods) {
   for (const auto& [method, name] : {std::pair{AlignBy::Walls, "walls"},
                                      {AlignBy::Features, "features"},
                                      {AlignBy::Rooms, "rooms"},
-                                     {AlignBy::Hand, "given"}})
+                                     {AlignBy::Hand, "given"},
+                                     {AlignBy::Equation7, "eq7"},
+                                     {AlignBy::Start, "start"}})
     if (includes(methods, method)) out += (out.empty() ? "" : "+") + std::string(name);
   return out;
 }

@@ -44,7 +44,8 @@ class WallOverlap {
   std::vector<Hit> ignored_hits(
       const PlanarTransform& T_truth_map) const;  ///< of those that do not: the truth is unknown there
   std::vector<Hit> truth_hits(const PlanarTransform& T_truth_map) const;  ///< of the truth's walls
-  double map_length_of_cell() const { return map_.cell_length; }          ///< metres of wall that one cell stands for
+  double tau() const { return tau_; }
+  double map_length_of_cell() const { return map_.cell_length; }  ///< metres of wall that one cell stands for
   double truth_length_of_cell() const { return truth_.cell_length; }
 
  private:

@@ -15,6 +15,9 @@ json_holds moved.json "0 < j['overlap'] < 1 and j['score'] < 0.5 and j['psi_m'] 
 json_holds near.json "0.5 < j['score'] < 1 and j['psi_m'] > 0"
 "$rubble" score "$truth" "$truth" --html same.html >/dev/null 2>&1 || fail "no page"
 grep -qE "(src|href)=|https?://|import |fetch\(" same.html && fail "the page needs other files"
+mkdir 'two words' && cp "$truth" "two words/it's.tif"
+"$rubble" score "two words/it's.tif" "$truth" --html words.html >/dev/null 2>&1 || fail "a name of two words"
+grep -qF "rubble score 'two words/it'\\u005c''s.tif' a/" words.html || fail "the command is not quoted: $(grep -o 'command":"[^"]*' words.html)"
 expect_exit 4 '/proc/page.html' "$rubble" score "$truth" "$truth" --html /proc/page.html
 ((failures == 0)) || finish
 

@@ -50,7 +50,10 @@ assert 'broken_list.csv' in by['broken_list']['note'] and 'map' in by['empty']['
 page = open('judged/league.html').read()
 import os, re
 links = set(re.findall(r'(?:src|href)="([^"]+)"', page))
-assert links and all(os.path.exists('judged/' + l) for l in links), links
+anchors = set(re.findall(r'id="([^"]+)"', page))
+assert links and all(l[1:] in anchors if l[0] == '#' else os.path.exists('judged/' + l) for l in links), links
+assert 'next: good' in page and 'previous: twin' in page, page
+assert any(l.endswith('stranger-overlay.png') for l in links), links
 PY
 grep -qE '^ *1 +twin ' table.txt || fail "the table does not show the first: $(cat table.txt)"
 

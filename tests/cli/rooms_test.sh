@@ -26,7 +26,8 @@ for method in passages visibility; do
 done
 grep -qE '^room 1 .*box 4\.[67][05], 2\.[789][05] to 8\.95, 5\.95 m' <("$rubble" rooms truth.pgm --resolution 0.05) ||
   fail "the largest room has another box: $("$rubble" rooms truth.pgm --resolution 0.05)"
-"$rubble" rooms truth.pgm truth.pgm --resolution 0.05 --truth-resolution 0.05 >same.txt || fail "same: $?"
+"$rubble" rooms truth.pgm truth.pgm --resolution 0.05 --truth-resolution 0.05 --out same >same.txt || fail "same: $?"
+[[ -s same/matched_rooms.png ]] || fail "no picture of the rooms that belong together"
 grep -qE '^room score +1\.000$' same.txt || fail "a map has its own rooms wrong: $(cat same.txt)"
 expect_exit 3 "--resolution" "$rubble" rooms truth.pgm
 expect_exit 3 "nowhere.png" "$rubble" rooms nowhere.png

@@ -17,7 +17,9 @@ cat >build/bench/scoring_ranking_bench <<'BENCH'
 #!/bin/bash
 for argument in "$@"; do [[ $argument == --benchmark_out=* ]] && out=${argument#*=}; done
 echo '{"benchmarks": [{"run_name": "BM_RankPairs", "pairs": 200, "right": 200},
-  {"run_name": "BM_RankAcrossKinds", "maps": 1, "spearman_score": 1, "spearman_psi": 1}]}' >"$out"
+  {"run_name": "BM_RankAcrossKinds", "maps": 1, "spearman_score": 1, "spearman_psi": 1,
+   "spearman_features": 1, "spearman_eq7": 1},
+  {"run_name": "BM_FeaturesOfStrangers", "stranger": 0, "damaged": 1}]}' >"$out"
 echo "table of the benchmark"
 BENCH
 chmod +x build/bench/scoring_ranking_bench

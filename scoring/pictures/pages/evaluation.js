@@ -69,12 +69,68 @@
     context.fillText(`${length} m`, x, y - 5 * devicePixelRatio);
   }
 
+  // Pairs green and joined, what only the map has red, what only the truth has blue.
+  const shown = new Set(data.marks.length && data.marks[0].what === 'victims' ? [0] : []);
+  function drawMarks() {
+    const z = view.zoom * devicePixelRatio, d = devicePixelRatio;
+    const pixel = ([x, y]) => [canvas.width / 2 + (x - view.x) * z, canvas.height / 2 - (y - view.y) * z];
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.globalAlpha = 1;
+    context.font = `${12 * d}px system-ui, sans-serif`;
+    context.lineWidth = 2 * d;
+    const mark = (mark, [x, y], colour, cross) => {
+      const r = 5 * d;
+      context.strokeStyle = context.fillStyle = colour;
+      context.beginPath();
+      if (cross) {
+        context.moveTo(x - r, y - r); context.lineTo(x + r, y + r);
+        context.moveTo(x - r, y + r); context.lineTo(x + r, y - r);
+      } else {
+        context.arc(x, y, r, 0, 2 * Math.PI);
+      }
+      context.stroke();
+      if (mark[2]) context.fillText(mark[2], x + 8 * d, y - 6 * d);
+    };
+    data.marks.forEach((marks, index) => {
+      if (!shown.has(index)) return;
+      for (const [map, truth] of marks.pairs) {
+        const a = pixel(onTruth(map)), b = pixel(truth);
+        context.strokeStyle = '#1e8c28';
+        context.beginPath();
+        context.moveTo(...a);
+        context.lineTo(...b);
+        context.stroke();
+        mark(['', '', ''], a, '#1e8c28', false);
+        mark(truth, b, '#1e8c28', false);
+      }
+      for (const one of marks.map) mark(one, pixel(onTruth(one)), '#d62f2f', true);
+      for (const one of marks.truth) mark(one, pixel(one), '#0b3c91', false);
+    });
+  }
+  data.marks.forEach((marks, index) => {
+    const label = document.createElement('label'), box = document.createElement('input');
+    box.type = 'checkbox';
+    box.checked = shown.has(index);
+    box.addEventListener('change', () => {
+      if (box.checked) shown.add(index); else shown.delete(index);
+      redraw();
+    });
+    const words = marks.what === 'victims' ? ['found', 'false', 'missed'] : ['matched', 'of the map alone', 'of the truth alone'];
+    label.append(box, ` ${marks.what}: ${marks.pairs.length} ${words[0]}, ${marks.map.length} ${words[1]}, ${marks.truth.length} ${words[2]}`);
+    $('marks').append(label);
+  });
+  if (data.warning) {
+    $('warning').textContent = `Not trusted: ${data.warning}`;
+    $('warning').hidden = false;
+  }
+
   function draw() {
     canvas.width = canvas.clientWidth * devicePixelRatio;
     canvas.height = canvas.clientHeight * devicePixelRatio;
     context.imageSmoothingEnabled = false;
     drawGrid(truthPicture, data.truth, {x: 0, y: 0, deg: 0, scale: 1}, 1);
     drawGrid(mapPicture, data.map, pose, blend);
+    drawMarks();
     drawScaleBar();
   }
 

@@ -57,7 +57,12 @@ TEST(Figures, EveryFigureHasACaseInWhichItIsKnown) {
   all.truth = &truth;
   all.estimate = all.live_estimate = all.true_path = &path;
   all.score = MapScore();
-  all.score->aligned = all.score->warped = true;
+  all.score->aligned = all.score->warped = all.score->broken.found = true;
+  for (const EvidenceKind kind : {EvidenceKind::Surf, EvidenceKind::Corners, EvidenceKind::Rooms}) {
+    all.score->by_features.kinds.emplace_back();
+    all.score->by_features.kinds.back().kind = kind;
+    all.score->by_features.kinds.back().usable = true;
+  }
   all.map_read_as = all.truth_read_as = "GeoTIFF";
   all.error = all.live_error = TrajectoryError{2, 0.1, 0.1};
   all.victims = VictimFigures();

@@ -36,8 +36,8 @@ TEST(League, RanksDependNeitherOnOrderNorOnNames) {
       order += e.team;
       ranks += std::to_string(e.rank);
     }
-    ASSERT_EQ(order, "debcaf");  // points first; equal figures by name; what cannot be read last
-    ASSERT_EQ(ranks, "113356");
+    ASSERT_EQ(order, "bcadef");  // score first, then points; equal figures by name; what cannot be read last
+    ASSERT_EQ(ranks, "113446");
   } while (std::next_permutation(names.begin(), names.end()));
 }
 

@@ -78,6 +78,58 @@ TEST_F(Picture, TheErrorMapTellsPhantomFromMissing) {
   EXPECT_EQ(tints().red + tints().blue, 0);
 }
 
+TEST_F(Picture, FoundFalseAndMissedVictimsAreToldApart) {
+  const OccupancyGrid plain = room(0.0, false);
+  const Mark here{{1.0, 1.0}, "v", std::nullopt};
+  const auto green = [&] {
+    const cv::Mat image = cv::imread(path_);
+    int count = 0;
+    for (int y = 0; y < image.rows - 40; ++y)
+      for (int x = 0; x < image.cols; ++x) {
+        const cv::Vec3b c = image.at<cv::Vec3b>(y, x);
+        count += c[1] - c[0] > 80 && c[1] - c[2] > 80 ? 1 : 0;
+      }
+    return count;
+  };
+  write_overlay(path_, plain, plain, {}, "", {"victims", {{here, here}}, {}, {}});
+  EXPECT_GT(green(), 0);
+  EXPECT_EQ(tints().red + tints().blue, 0);
+  write_overlay(path_, plain, plain, {}, "", {"victims", {}, {here}, {}});
+  EXPECT_GT(tints().red, 0);
+  EXPECT_EQ(green() + tints().blue, 0);
+  write_overlay(path_, plain, plain, {}, "", {"victims", {}, {}, {here}});
+  EXPECT_GT(tints().blue, 0);
+  EXPECT_EQ(green() + tints().red, 0);
+}
+
+/// As Fig. 12 (h): the outliers of each map on its own side.
+TEST_F(Picture, SideBySideOutliersLieOnTheirMap) {
+  const OccupancyGrid plain = room(0.0, false);
+  const Mark here{{1.0, 1.0}, "", std::nullopt};
+  const auto east = [&](bool red) {
+    const cv::Mat image = cv::imread(path_);
+    double sum = 0.0;
+    int count = 0;
+    for (int y = 0; y < image.rows - 40; ++y)
+      for (int x = 0; x < image.cols; ++x) {
+        const cv::Vec3b c = image.at<cv::Vec3b>(y, x);
+        if ((red ? c[2] - c[0] : c[0] - c[2]) <= 100) continue;
+        sum += x;
+        ++count;
+      }
+    return count == 0 ? -1.0 : sum / count / image.cols;
+  };
+  write_side_by_side(path_, plain, plain, TPose2D(), {"SURF", {}, {here}, {}});
+  EXPECT_GT(east(true), 0.0);
+  EXPECT_LT(east(true), 0.5);
+  EXPECT_EQ(east(false), -1.0);
+  write_side_by_side(path_, plain, plain, TPose2D(), {"SURF", {}, {}, {here}});
+  EXPECT_GT(east(false), 0.3);
+  EXPECT_EQ(east(true), -1.0);
+  write_side_by_side(path_, plain, plain, std::nullopt, {}, "no pose was proposed");
+  EXPECT_GT(tints().red, 5000);
+}
+
 TEST_F(Picture, AWarningStandsOverAMapThatIsNotTrusted) {
   write_overlay(path_, room(0.0), room(0.0), {}, "NOT TRUSTED: another pose fits about as well");
   EXPECT_GT(tints().red, 5000);

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+#include <mrpt/math/TPose2D.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scoring/alignment/feature_score.h"
+#include "scoring/maps/pois.h"
+#include "scoring/rooms/room_match.h"
+#include "scoring/scorecard.h"
+
+namespace rubble::scoring {
+
+/// A place that is marked on a picture of one map.
+struct Mark {
+  mrpt::math::TPoint2D p;                                                    ///< in that map's own coordinates [m]
+  std::string name;                                                          ///< may be empty
+  std::optional<std::pair<mrpt::math::TPoint2D, mrpt::math::TPoint2D>> box;  ///< least and greatest corner
+};
+
+/// What two maps have in common and what only one of them has, as Fig. 12 shows it: victims, features or rooms.
+struct Marks {
+  std::string what;                          ///< "victims", "SURF", "corners", "rooms"
+  std::vector<std::pair<Mark, Mark>> pairs;  ///< of the map and of the truth
+  std::vector<Mark> map_only;                ///< outliers: of the map, without partner
+  std::vector<Mark> truth_only;
+};
+
+Marks marks_of(const KindScore& features);
+Marks marks_of(const Rooms& map, const Rooms& truth, const RoomMatch& match);
+/// Victims reported and true, paired as victims are found: one to one within 1.2 m at the pose.
+Marks marks_of(const std::vector<Poi>& reported, const std::vector<Poi>& victims,
+               const mrpt::math::TPose2D& T_truth_map);
+
+/// What a page shows of a map that was scored: victims first, then the features of eq. (7), where they were asked for.
+std::vector<Marks> marks_on_page(const MapScore& score, const Marks& victims);
+
+}  // namespace rubble::scoring
