@@ -7,6 +7,7 @@ namespace rubble::app {
 // Each in the file of its name.
 Command run_command();
 Command map_command();
+Command merge_command();
 Command score_command();
 Command rooms_command();
 Command plan_command();

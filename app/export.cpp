@@ -6,6 +6,7 @@
 #include "app/scenario_options.h"
 #include "base/error.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
+#include "scenarios/run/map_files.h"
 
 namespace rubble::app {
 namespace {
@@ -17,11 +18,14 @@ struct ExportArguments {
 
 int export_log(const ExportArguments& arguments) {
   namespace fs = std::filesystem;
-  if (fs::is_directory(arguments.out)) throw InputError(arguments.out + ": is a folder; name the .rawlog to write");
+  if (fs::is_directory(arguments.out)) throw InputError(arguments.out + ": is a folder; name the file to write");
   const fs::path folder = fs::path(arguments.out).parent_path();
   if (!folder.empty() && !fs::is_directory(folder))
     throw InputError(arguments.out + ": the folder " + folder.string() + " does not exist; make it first");
-  robot::export_rawlog(recorded_log(arguments.log), arguments.out);
+  if (scenarios::is_map_export(arguments.out))
+    scenarios::export_map(arguments.log, arguments.out);
+  else
+    robot::export_rawlog(recorded_log(arguments.log), arguments.out);
   std::printf("%s\n", arguments.out.c_str());
   return kOk;
 }
@@ -29,11 +33,12 @@ int export_log(const ExportArguments& arguments) {
 }  // namespace
 
 Command export_command() {
-  return {"export", "Write a recorded log as MRPT .rawlog", "Example:\n  rubble export runs/latest/log.rlog run.rawlog",
+  return {"export", "Write a recorded log as MRPT .rawlog, or a run's map as .g2o or MRPT .simplemap",
+          "Examples:\n  rubble export runs/latest/log.rlog run.rawlog\n  rubble export runs/latest graph.g2o",
           [](Options& o) -> Action {
             auto a = std::make_shared<ExportArguments>();
-            o.argument("log", a->log, "Recorded log: a run folder, or a log file of any format that `map` reads");
-            o.argument("out", a->out, "The .rawlog to write");
+            o.argument("log", a->log, "A run folder, a log file of any format that `map` reads, or a map.rmap");
+            o.argument("out", a->out, "The .rawlog, .g2o or .simplemap to write");
             return [a] { return export_log(*a); };
           }};
 }

@@ -1,22 +1,46 @@
+#include <cmath>
+#include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/scenario_options.h"
 #include "app/terminal.h"
+#include "base/angle.h"
+#include "base/error.h"
+#include "scenarios/run/map_files.h"
 
 namespace rubble::app {
 namespace {
 
 struct MapArguments {
   std::string log;
+  std::string go_on;
+  std::string localise;
+  std::string start;
   RunFolderOptions folder;
 };
+
+/// `x,y,heading_deg` in the frame of the map.
+std::optional<mrpt::math::TPose2D> start_of(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  double x = 0.0, y = 0.0, heading = 0.0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &x, &y, &heading, &rest) != 3 || !std::isfinite(x + y + heading))
+    throw UsageError("--start " + text + ": needs the form x,y,heading_deg, for example --start 1.5,-0.4,90");
+  return mrpt::math::TPose2D(x, y, wrap_angle(deg_to_rad(heading)));
+}
 
 int map(const MapArguments& arguments) {
   const auto overrides = arguments.folder.overrides();
   scenarios::Scenario scenario = scenarios::default_scenario(overrides);
   permit_command(arguments.folder.mapper, overrides, scenario);
-  const auto options = terminal_options(arguments.folder.out, arguments.folder.force);
+  auto options = terminal_options(arguments.folder.out, arguments.folder.force);
+  const std::string& map = arguments.go_on.empty() ? arguments.localise : arguments.go_on;
+  if (map.empty() && !arguments.start.empty())
+    throw UsageError("--start: needs a map; give it with --continue or --localise");
+  const auto start = start_of(arguments.start);
+  if (!map.empty()) options.base = scenarios::load_map_base(map, !arguments.go_on.empty(), start);
   return show(scenarios::map_log(recorded_log(arguments.log), scenario, options));
 }
 
@@ -24,11 +48,18 @@ int map(const MapArguments& arguments) {
 
 Command map_command() {
   return {"map", "Map a recorded log (own log, MRPT .rawlog, CARMEN, CoreSLAM .dat)",
-          "Examples:\n  rubble map intel.log.gz\n  rubble map lab.rawlog --set mapper.resolution_m=0.1",
+          "Examples:\n  rubble map intel.log.gz\n  rubble map lab.rawlog --set mapper.resolution_m=0.1\n"
+          "  rubble map tuesday.rawlog --continue runs/monday\n  rubble map tuesday.rawlog --localise runs/monday",
           [](Options& o) -> Action {
             auto a = std::make_shared<MapArguments>();
             o.argument("log", a->log, "Log file");
             o.seed("--seed", a->folder.seed, "Seed of the mapper's random numbers (the robust mapper has none)");
+            o.text("--continue", a->go_on,
+                   "Go on with the map of this run (a folder or a map.rmap): where it ended, or wherever in it the "
+                   "robot finds itself");
+            o.text("--localise", a->localise, "Find the robot in the map of this run, and leave the map as it is");
+            o.text("--start", a->start, "Where in that map the robot starts: x,y,heading_deg");
+            o.excludes("--continue", "--localise");
             a->folder.declare(o);
             return [a] { return map(*a); };
           }};

@@ -1,6 +1,6 @@
 // The payloads of our own log behind the checksums, which keep random bytes from coming so far.
+#include "base/bytes.h"
 #include "fuzz/harness.h"
-#include "robot/logs/own/bytes.h"
 #include "robot/logs/own/log_codec.h"
 
 RUBBLE_FUZZ_TARGET {

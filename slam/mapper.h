@@ -36,6 +36,13 @@ struct MapperFigure {
   double value = 0.0;
 };
 
+/// Numbers about each scan, for a file and a picture of it (docs/slam.md says what they mean).
+struct ScanRecords {
+  std::vector<std::string> columns;  ///< names, with their units
+  std::vector<Stamp> stamps;         ///< of the scans
+  std::vector<float> values;         ///< scan by scan, one for each column
+};
+
 /// Online SLAM: sees a robot's measurements tick by tick, keeps a map and knows where the robot is in it.
 ///
 /// What a mapper promises:
@@ -79,6 +86,11 @@ class Mapper {
 
   virtual const MapperCounts& counts() const = 0;
   virtual std::vector<MapperFigure> figures() const { return {}; }
+  /// Null: this kind keeps none.
+  virtual const ScanRecords* scan_records() const { return nullptr; }
+  /// The map with all that a mapper needs to go on with it in another run, as bytes (slam/robust/saved_map.h). Empty:
+  /// this kind cannot, or nothing is mapped.
+  virtual std::string saved_map() const { return {}; }
 };
 
 }  // namespace rubble::slam

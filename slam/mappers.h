@@ -7,6 +7,7 @@
 
 #include "base/yaml/kinds.h"
 #include "robot/model.h"
+#include "slam/map_base.h"
 #include "slam/mapper.h"
 
 namespace rubble::slam {
@@ -14,7 +15,8 @@ namespace rubble::slam {
 /// What a mapper is told about its run beside the robot.
 struct MapperSetting {
   std::uint64_t seed = 1;
-  std::string run_folder;  ///< for files of its own (mapper.log); empty: there is none
+  std::string run_folder;                         ///< for files of its own (mapper.log); empty: there is none
+  std::shared_ptr<const MapBase> base = nullptr;  ///< null: the mapper begins with an empty map
 };
 
 /// The parameters of one kind of mapper, and how to build it. A new kind implements this beside its mapper and adds a
@@ -26,6 +28,8 @@ class MapperParameters {
   virtual void bind(Binder& binder) = 0;
   virtual std::unique_ptr<Mapper> make(const robot::RobotModel& model, const MapperSetting& setting) const = 0;
   virtual std::unique_ptr<MapperParameters> copy() const = 0;
+  /// Whether make() takes MapperSetting::base.
+  virtual bool goes_on() const { return false; }
   /// The same mapper in this process, where make() gives it one of its own; what `rubble mapper-process` serves.
   virtual std::unique_ptr<Mapper> make_here(const robot::RobotModel& model, const MapperSetting& setting) const {
     return make(model, setting);

@@ -1,10 +1,10 @@
+#include "base/bytes.h"
 #include "base/error.h"
 #include "robot/logs/foreign/carmen.h"
 #include "robot/logs/foreign/coreslam.h"
 #include "robot/logs/foreign/file_bytes.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
 #include "robot/logs/log.h"
-#include "robot/logs/own/bytes.h"
 #include "robot/logs/own/log_codec.h"
 #include "robot/logs/own/log_frames.h"
 

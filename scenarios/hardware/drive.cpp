@@ -16,6 +16,7 @@
 #include "robot/logs/log.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/loop.h"
+#include "scenarios/run/map_files.h"
 #include "scenarios/run/run_folder.h"
 #include "scenarios/run/score_json.h"
 
@@ -269,6 +270,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     report.failure = end.failure;
     report.interrupted = end.interrupted;
     recorded.flush();
+    save_map_files(folder, core.mapper());
     *report.score = score_json(evidence_of(core, real, end, start));
   }
   folder.save_hashes("");

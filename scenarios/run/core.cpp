@@ -1,5 +1,7 @@
 #include "scenarios/run/core.h"
 
+#include <utility>
+
 namespace rubble::scenarios {
 namespace {
 
@@ -16,8 +18,9 @@ double known_area(const slam::CountMap& map) {
   return static_cast<double>(cells) * map.frame().resolution * map.frame().resolution;
 }
 
-Core::Core(const Scenario& scenario, const robot::RobotModel& model, bool explore, const std::string& run_folder)
-    : mapper_(scenario.mapper.make(model, {scenario.seed, run_folder})),
+Core::Core(const Scenario& scenario, const robot::RobotModel& model, bool explore, const std::string& run_folder,
+           std::shared_ptr<const slam::MapBase> base)
+    : mapper_(scenario.mapper.make(model, {scenario.seed, run_folder, std::move(base)})),
       levelling_(scenario.levelling, model.accelerometer_mount) {
   if (explore) explorer_ = scenario.explorer.make(model, {scenario.time_limit});
 }

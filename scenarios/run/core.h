@@ -8,6 +8,7 @@
 #include "robot/levelling.h"
 #include "robot/robot.h"
 #include "scenarios/config/scenario.h"
+#include "slam/map_base.h"
 #include "slam/mapper.h"
 
 namespace rubble::scenarios {
@@ -15,8 +16,9 @@ namespace rubble::scenarios {
 /// What drives a robot, whichever it is: mapper, levelling and (when asked to explore) explorer. It sees Inputs only.
 class Core {
  public:
-  /// `run_folder`: takes what the mapper writes itself (mapper.log).
-  Core(const Scenario& scenario, const robot::RobotModel& model, bool explore, const std::string& run_folder);
+  /// `run_folder`: takes what the mapper writes itself (mapper.log). `base`: a map to go on with; null: an empty one.
+  Core(const Scenario& scenario, const robot::RobotModel& model, bool explore, const std::string& run_folder,
+       std::shared_ptr<const slam::MapBase> base = nullptr);
 
   /// Digests one tick and decides the commands for the next.
   robot::Commands step(const robot::Inputs& inputs);

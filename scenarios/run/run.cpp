@@ -20,6 +20,7 @@
 #include "base/text/words.h"
 #include "robot/logs/log.h"
 #include "scenarios/run/core.h"
+#include "scenarios/run/map_files.h"
 #include "scenarios/run/mission_figures.h"
 #include "scenarios/run/run_folder.h"
 #include "scenarios/run/score_json.h"
@@ -210,6 +211,7 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   evidence.run = run_figures(core, end.sim_s, end.reason);
   evidence.mission = mission_figures(arena, simulated.truth(), scenario.robot, core);
   folder.write("decisions.txt", decisions_text(core));
+  if (options.record) save_map_files(folder, core.mapper());
   RunReport report;
   report.interrupted = end.interrupted;
   report.failure = end.failure;
@@ -218,6 +220,19 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
 }
 
 namespace {
+
+/// As it stood on the command line.
+std::string base_as_typed(const RunOptions& options) {
+  if (!options.base) return "";
+  return (options.base->grows ? " --continue " : " --localise ") + one_line(options.base->name);
+}
+
+/// Of a mapper on the map of an earlier run.
+bool knows_no_place(const slam::Mapper& mapper) {
+  const auto figures = mapper.figures();
+  return std::any_of(figures.begin(), figures.end(),
+                     [](const slam::MapperFigure& f) { return f.key == "place_known" && f.value == 0.0; });
+}
 
 /// Relations and other programs know the scans of a log by its own stamps.
 void name_as_the_log_does(const RunFolder& folder, const robot::ReplayRobot& robot, const slam::Mapper& mapper) {
@@ -240,10 +255,10 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   Scenario resolved = scenario;
   if (resolved.name == "map") resolved.name = as_file_name("map-" + std::filesystem::path(log).stem().stem().string());
   RunFolder folder(folder_for(options, resolved), options.replace);
-  folder.write("scenario.yaml",
-               "# rubble map " + one_line(log) + " (" + robot.format() + ")\n" + resolved_yaml(resolved));
+  folder.write("scenario.yaml", "# rubble map " + one_line(log) + " (" + robot.format() + ")" + base_as_typed(options) +
+                                    "\n" + resolved_yaml(resolved));
   folder.write("versions.json", versions().json(2) + "\n");
-  Core core(resolved, robot.model(), false, folder.path());
+  Core core(resolved, robot.model(), false, folder.path(), options.base);
   if (!robot.reference().empty()) folder.append_truth(robot.reference());
   LoopHooks hooks = hooks_of(options);
   hooks.share = [&] { return robot.progress(); };
@@ -251,12 +266,14 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   if (core.mapper().counts().scans == 0 && !end.interrupted && end.failure.empty())
     throw InputError(log + ": holds no laser scan; a log to map needs scans (and odometry)");
   name_as_the_log_does(folder, robot, core.mapper());
+  save_map_files(folder, core.mapper());
   scoring::Evidence evidence;
   if (!robot.reference().empty()) compare_trajectories(evidence, core.mapper(), robot.reference());
   evidence.run = run_figures(core, end.sim_s,
                              end.interrupted || !end.failure.empty() ? end.reason
                              : robot.was_torn()                      ? "the log is cut: its torn last frame was dropped"
-                                                                     : "the log is over");
+                             : knows_no_place(core.mapper()) ? "the log is over; its place in the map was not found"
+                                                             : "the log is over");
   RunReport report;
   report.interrupted = end.interrupted;
   report.failure = end.failure;

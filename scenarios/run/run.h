@@ -1,12 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "scenarios/config/scenario.h"
 #include "scenarios/run/kept_json.h"
 #include "scenarios/run/loop.h"
+#include "slam/map_base.h"
 
 namespace rubble::scenarios {
 
@@ -14,6 +16,7 @@ struct RunOptions {
   std::string out;                                ///< run folder; empty: runs/<name>-seed<N>-<number>
   bool replace = false;                           ///< an existing run folder may be replaced
   bool record = true;                             ///< keep log.rlog (a simulated run only)
+  std::shared_ptr<const slam::MapBase> base;      ///< map_log(): a map to go on with; null: an empty one
   bool link_latest = true;                        ///< let `latest` beside the folder point to it
   std::function<bool()> interrupted;              ///< asked each tick; true ends the run with its folder complete
   std::function<void(const Progress&)> progress;  ///< called a few times a second

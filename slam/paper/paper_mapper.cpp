@@ -25,7 +25,11 @@ void bind(Binder& b, PaperConfig& c) {
   b.number("distance_error", c.motion_error.distance, 0.0, 1.0);
   b.number("gate_distance_m", c.gate_distance, 0.0, 2.0);
   b.degrees("gate_turn_deg", c.gate_turn, 0.0, 180.0);
+  b.choice("gated", c.gated, {"step", "resampling"});
   b.boolean("icp", c.icp);
+  b.choice("icp_target", c.icp_target, {"last_mapped", "last_scan"});
+  b.boolean("icp_trimmed", c.icp_trimmed);
+  b.choice("sweep_reference", c.sweep_reference, {"middle", "stamp"});
   b.boolean("carve_misses", c.scan.carve_misses);
   b.number("max_range_m", c.scan.max_range, 0.0, 1000.0);
   b.boolean("deskew", c.deskew);
@@ -57,8 +61,10 @@ struct PaperMapper::Impl {
   void keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points, const Surface& surface);
   void remember_hits(const TPose2D& T_map_base, const ScanPoints& points);
   void pass(Stamp reference, const TPose2D& T_last_now);
+  void match_later_scans_with(const Surface& surface);
+  Stamp reference_of(const LaserScan& scan) const;
   TPose2D motion_since_scan(Stamp reference) const;
-  TPose2D refined_motion(const Surface& surface, const TPose2D& T_last_prior);
+  TPose2D refined_motion(const Surface& surface, const TPose2D& T_target_prior);
   std::vector<TPoint2D> hits_to_weigh(const ScanPoints& points, const Surface& surface) const;
   bool moved(const TPose2D& motion) const;
 
@@ -79,9 +85,12 @@ struct PaperMapper::Impl {
   bool started_ = false;
   // The last mapping step.
   TPose2D T_map_last_;
-  SurfaceCoverage last_coverage_;
   // The last scan, mapped or not.
-  TPose2D T_last_scan_;                 ///< motion since the last mapping step
+  TPose2D T_last_scan_;  ///< motion since the last mapping step
+  // The scan that others are matched with.
+  SurfaceCoverage last_coverage_;
+  TPose2D T_last_target_;               ///< its place, seen from the last mapping step
+  TPose2D T_target_scan_;               ///< the last scan's place, seen from it
   std::optional<TPose2D> T_odom_scan_;  ///< nothing while no odometry has come
 };
 
@@ -97,19 +106,21 @@ void PaperMapper::Impl::receive(const robot::Inputs& inputs) {
 }
 
 void PaperMapper::Impl::process(const LaserScan& scan) {
-  const Stamp reference = scan.middle();
-  const std::optional<SweepMotion> sweep = config_.deskew ? sweep_motion(odometry_, scan) : std::nullopt;
+  const Stamp reference = reference_of(scan);
+  const std::optional<SweepMotion> sweep = config_.deskew ? sweep_motion(odometry_, scan, reference) : std::nullopt;
   const ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr);
   if (!started_) return start(reference, points);
 
-  // Section III.B: odometry interpolated at the scan's time, refined by ICP of the last mapped and the current scan.
-  const TPose2D T_last_prior = T_last_scan_ + motion_since_scan(reference);
+  // Section III.B: odometry interpolated at the scan's time, refined by ICP of an earlier and the current scan.
   const Surface surface = surface_of(points, config_.surface);
-  const TPose2D T_last_now = refined_motion(surface, T_last_prior);
+  const TPose2D T_last_now = T_last_target_ + refined_motion(surface, T_target_scan_ + motion_since_scan(reference));
   const bool gate = moved(T_last_now);
-  if (!gate && counts_.mapped >= static_cast<std::uint64_t>(config_.first_scans)) {
+  const bool whole_step = gate || config_.gated == GatedPart::Resampling;
+  if (!whole_step && counts_.mapped >= static_cast<std::uint64_t>(config_.first_scans)) {
     remember_hits(T_map_last_ + T_last_now, points);
-    return pass(reference, T_last_now);
+    pass(reference, T_last_now);
+    if (config_.icp_target == IcpTarget::LastScan) match_later_scans_with(surface);
+    return;
   }
 
   const std::vector<TPoint2D> judged = hits_to_weigh(points, surface);
@@ -127,23 +138,31 @@ void PaperMapper::Impl::start(Stamp reference, const ScanPoints& points) {
   keep(reference, TPose2D(), points, surface_of(points, config_.surface));
 }
 
-/// Ends a scan that is not mapped: the next one counts from here, but is matched with the last mapped one.
+/// Ends a scan: the next one's odometry counts from here.
 void PaperMapper::Impl::pass(Stamp reference, const TPose2D& T_last_now) {
   T_last_scan_ = T_last_now;
+  T_target_scan_ = T_last_now - T_last_target_;
   if (!odometry_.empty()) T_odom_scan_ = odometry_.pose_at(reference);
   trajectory_.push_back({reference, T_map_last_ + T_last_now});
+}
+
+/// Makes the scan that has just ended the one that later scans are matched with.
+void PaperMapper::Impl::match_later_scans_with(const Surface& surface) {
+  matcher_.set_last(surface);
+  last_coverage_ = SurfaceCoverage(surface);
+  T_last_target_ = T_last_scan_;
+  T_target_scan_ = TPose2D();
 }
 
 /// Ends a mapping step: the scan enters the map, and later ones are matched with it.
 void PaperMapper::Impl::keep(Stamp reference, const TPose2D& T_map_base, const ScanPoints& points,
                              const Surface& surface) {
   map_.stamp(T_map_base, points);
-  matcher_.set_last(surface);
-  last_coverage_ = SurfaceCoverage(surface);
   T_map_last_ = T_map_base;
   remember_hits(T_map_base, points);
   ++counts_.mapped;
   pass(reference, TPose2D());
+  match_later_scans_with(surface);
 }
 
 void PaperMapper::Impl::remember_hits(const TPose2D& T_map_base, const ScanPoints& points) {
@@ -152,15 +171,24 @@ void PaperMapper::Impl::remember_hits(const TPose2D& T_map_base, const ScanPoint
   for (const TPoint2D& p_base : points.hits) last_hits_.push_back(to_map(p_base));
 }
 
+/// A scan's stamp is that of its first beam. The queue orders scans by their middles; where beams are left out from
+/// scan to scan their stamps may be in another order, and then the middle stands.
+Stamp PaperMapper::Impl::reference_of(const LaserScan& scan) const {
+  const bool printed = config_.sweep_reference == SweepReference::Stamp &&
+                       (trajectory_.empty() || scan.stamp > trajectory_.back().stamp);
+  return printed ? scan.stamp : scan.middle();
+}
+
 /// Nothing where there is no odometry: the scan matcher alone then finds the motion.
 TPose2D PaperMapper::Impl::motion_since_scan(Stamp reference) const {
   return T_odom_scan_ ? odometry_.pose_at(reference) - *T_odom_scan_ : TPose2D();
 }
 
-TPose2D PaperMapper::Impl::refined_motion(const Surface& surface, const TPose2D& T_last_prior) {
-  if (!config_.icp) return T_last_prior;
-  const Surface shared = covered_part(surface, last_coverage_, T_last_prior, config_.coverage_margin);
-  const ScanMatch match = matcher_.match(shared, T_last_prior);
+TPose2D PaperMapper::Impl::refined_motion(const Surface& surface, const TPose2D& T_target_prior) {
+  if (!config_.icp) return T_target_prior;
+  const ScanMatch match = matcher_.match(
+      config_.icp_trimmed ? covered_part(surface, last_coverage_, T_target_prior, config_.coverage_margin) : surface,
+      T_target_prior);
   ++(match.accepted ? icp_accepted_ : icp_rejected_);
   return match.T_last_now;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "slam/grid/count_map.h"
@@ -22,7 +24,17 @@ struct OrientedPoint {
 class SightFan {
  public:
   static constexpr int kBins = 360;
+  /// Nearest and farthest return of each [cm]; the largest number and zero where there is none.
+  using Bins = std::array<std::pair<std::uint16_t, std::uint16_t>, kBins>;
 
+  explicit SightFan(const Bins& bins) {
+    for (std::size_t k = 0; k < bins.size(); ++k) std::tie(nearest_[k], farthest_[k]) = bins[k];
+  }
+  Bins bins() const {
+    Bins bins;
+    for (std::size_t k = 0; k < bins.size(); ++k) bins[k] = {nearest_[k], farthest_[k]};
+    return bins;
+  }
   SightFan() {
     nearest_.fill(kNothing);
     farthest_.fill(0);

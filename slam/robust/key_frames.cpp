@@ -27,16 +27,29 @@ void KeyFrames::add(KeyFrame frame, const TPose2D& pose, const GraphEdge& edge) 
   before_.push_back(size() < 2 ? -1 : edge.from);
   if (size() < 2) return;
   graph_.edges.push_back(edge);
-  link(edge, length(edge.T_from_to.x, edge.T_from_to.y));
+  link(graph_.edges.size() - 1, length(edge.T_from_to.x, edge.T_from_to.y));
+}
+
+KeyFrames::KeyFrames(std::vector<KeyFrame> frames, std::vector<int> before, PoseGraph graph)
+    : frames_(std::move(frames)), before_(std::move(before)), graph_(std::move(graph)), links_(frames_.size()) {
+  for (std::size_t k = 0; k < graph_.edges.size(); ++k) {
+    const GraphEdge& edge = graph_.edges[k];
+    if (edge.on) link(k, edge.loop ? kLoopLength : length(edge.T_from_to.x, edge.T_from_to.y));
+  }
+}
+
+void KeyFrames::add_start(KeyFrame frame, const TPose2D& pose, const GraphEdge& edge) {
+  add(std::move(frame), pose, edge);
+  before_.back() = -1;
 }
 
 void KeyFrames::add_loop(const GraphEdge& edge, double path) {
   graph_.edges.push_back(edge);
-  link(edge, path);
+  link(graph_.edges.size() - 1, path);
 }
 
-void KeyFrames::link(const GraphEdge& edge, double length) {
-  const std::size_t index = graph_.edges.size() - 1;
+void KeyFrames::link(std::size_t index, double length) {
+  const GraphEdge& edge = graph_.edges[index];
   links_[static_cast<std::size_t>(edge.from)].push_back({edge.to, length, index});
   links_[static_cast<std::size_t>(edge.to)].push_back({edge.from, length, index});
 }

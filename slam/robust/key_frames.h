@@ -13,6 +13,8 @@
 
 namespace rubble::slam {
 
+constexpr double kLoopLength = 0.3;  ///< what a loop adds to paths through the graph [m]
+
 /// A scan that is kept for matching.
 struct KeyFrame {
   Stamp stamp;
@@ -23,17 +25,25 @@ struct KeyFrame {
 /// The key frames of a drive with the graph of their poses.
 class KeyFrames {
  public:
+  KeyFrames() = default;
+  /// As they were kept. before: of each the one that the robot came by, -1: none.
+  KeyFrames(std::vector<KeyFrame> frames, std::vector<int> before, PoseGraph graph);
+
   int size() const { return static_cast<int>(frames_.size()); }
   int last() const { return size() - 1; }
   bool empty() const { return frames_.empty(); }
   const KeyFrame& operator[](int i) const { return frames_[static_cast<std::size_t>(i)]; }
   const mrpt::math::TPose2D& pose(int i) const { return graph_.nodes[static_cast<std::size_t>(i)]; }
+  /// The one that the robot came by, -1: none.
+  int before(int i) const { return before_[static_cast<std::size_t>(i)]; }
   const PoseGraph& graph() const { return graph_; }
 
   /// Adds a key frame; `edge`, to it from the one that the robot came by, is taken from the second on.
   void add(KeyFrame frame, const mrpt::math::TPose2D& pose, const GraphEdge& edge);
+  /// Adds a key frame with which another drive begins; `edge`, from any other, holds it.
+  void add_start(KeyFrame frame, const mrpt::math::TPose2D& pose, const GraphEdge& edge);
   /// Adds a loop of length `path` for the paths through the graph.
-  void add_loop(const GraphEdge& edge, double path);
+  void add_loop(const GraphEdge& edge, double path = kLoopLength);
   /// Takes poses for the first nodes; those behind follow the last of them.
   void move(const std::vector<mrpt::math::TPose2D>& poses);
   /// Takes a loop out of the graph for good.
@@ -67,7 +77,7 @@ class KeyFrames {
     double length;
     std::size_t edge;
   };
-  void link(const GraphEdge& edge, double length);
+  void link(std::size_t edge, double length);
 
   std::vector<KeyFrame> frames_;
   std::vector<int> before_;  ///< the one that the robot came by, -1: none

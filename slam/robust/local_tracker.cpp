@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/angle.h"
 #include "base/planar.h"
@@ -38,9 +39,15 @@ ScanFitConfig tight() {
 }  // namespace
 
 void LocalTracker::redraw(const KeyFrames& frames, int here, Work* work) {
-  local_ = here == frames.last() ? frames.ending_at(here, config_.frames, config_.path)
-                                 : frames.around(here, config_.frames, config_.path, frames.size());
-  frames.draw(local_, frames.pose(here), config_.cell, surfels_);
+  redraw(frames,
+         here == frames.last() ? frames.ending_at(here, config_.frames, config_.path)
+                               : frames.around(here, config_.frames, config_.path, frames.size()),
+         work);
+}
+
+void LocalTracker::redraw(const KeyFrames& frames, std::vector<int> local, Work* work) {
+  local_ = std::move(local);
+  frames.draw(local_, frames.pose(local_.front()), config_.cell, surfels_);
   correlator_ready_ = false;
   if (work != nullptr) *work += kWorkPerDrawnFrame * static_cast<Work>(local_.size());
 }

@@ -54,6 +54,8 @@ class LocalTracker {
 
   /// Takes the key frames that lead to `here` as the local map; those around it where `here` is an old one.
   void redraw(const KeyFrames& frames, int here, Work* work);
+  /// Takes these as the local map, in the frame of the first.
+  void redraw(const KeyFrames& frames, std::vector<int> local, Work* work);
   /// Finds the scan; `T_frame_last`: the last one, relative to that key frame.
   Tracked track(const KeyFrames& frames, const Cloud& cloud, const ExpectedMotion& motion,
                 const mrpt::math::TPose2D& T_frame_last, Work* work);

@@ -40,7 +40,6 @@ constexpr double kExplainedWithin = 1.5;  ///< old key frames so close explain w
 constexpr double kAsFar = 0.7;            ///< and are so much of the loop's path away ...
 constexpr double kExplained = 0.8;        ///< when they support so much of what the loop's would ...
 constexpr double kAsGood = 0.03;          ///< ... and contradict hardly more
-constexpr double kLoopLength = 0.3;       ///< what a loop adds to paths through the graph [m]
 constexpr Work kWorkPerDrawnFrame = 8000;
 constexpr Work kWorkPerSuspected = 40;  ///< edge
 constexpr Work kWorkPerJudged = 30;     ///< point and key frame
@@ -100,6 +99,22 @@ std::vector<LoopCloser::Candidate> LoopCloser::candidates_within(int frame, int 
   const std::vector<double> paths = frames_.paths_from(frame, close, most_path, work);
   for (std::size_t k = 0; k < close.size(); ++k) candidates[k].path = paths[k];
   return candidates;
+}
+
+/// Other key frames have taken the place of those before: what waits is forgotten, edges that are there are known.
+void LoopCloser::begin_anew() {
+  tasks_.clear();
+  stage_ = Stage::Idle;
+  closed_for_ = frames_.last();
+  waiting_.clear();
+  linked_.clear();
+  for (const GraphEdge& edge : frames_.graph().edges)
+    if (edge.loop) linked_.insert({edge.to, edge.from});
+  fresh_.clear();
+  frames_since_solve_ = 0;
+  solver_.start(PoseGraph(), GraphSolver::Plan::Refine, config_.scaling);
+  covariance_.setZero();
+  covariance_frame_ = 0;
 }
 
 void LoopCloser::look(Work* work) {

@@ -45,6 +45,8 @@ constexpr double kKnownTurn = 0.5;      ///< ... looking the same way [rad] ...
 constexpr double kKnownPath = 6.0;      ///< ... to which the graph leads so directly, though the drive was longer [m]
 constexpr double kKnownInliers = 0.65;  ///< and what is seen there is what was seen
 constexpr double kKnownMoves = 0.20;    ///< [m]
+constexpr std::size_t kWitnesses = 8;   ///< key frames that are asked whether a scan can be true
+constexpr double kTurnWeight = 0.3;     ///< [m] that a key frame may be farther off for looking 1 rad less aside
 constexpr double kNotLost = 0.5;  ///< share of inliers of a scan that may be mapped though the odometry is doubted
 
 /// Derivative of a pose by the one it hangs on, in the map frame: d is the lever between the two.
@@ -73,11 +75,37 @@ bool usable(const LaserScan& scan) {
          scan.beam_period >= 0.0;
 }
 
+/// What record() writes.
+std::vector<std::string> record_columns() {
+  return {"inliers",
+          "contradiction",
+          "residual_m",
+          "paired",
+          "odometry_chi2",
+          "slipped",
+          "lost",
+          "beams",
+          "beams_rejected",
+          "work_ms",
+          "sigma_x_m",
+          "sigma_y_m",
+          "sigma_heading_deg",
+          "key_frames",
+          "loops_searched",
+          "loops_ambiguous",
+          "loops_contradicted",
+          "loops_needless",
+          "loops_closed",
+          "near_edges",
+          "loops_removed"};
+}
+
 }  // namespace
 
 struct RobustMapper::Impl {
   Impl(const robot::RobotModel& model, const RobustConfig& config)
       : config_(config),
+        T_base_laser_(model.T_base_laser),
         level_scan_(model.T_base_laser, config.scan),
         tilt_(config.tilt),
         tracker_(config.tracker),
@@ -95,6 +123,11 @@ struct RobustMapper::Impl {
   bool asks_for_frame(const Tracked& tracked) const;
   bool hang_on_old_frame(const Cloud& cloud, Work* work);
   std::optional<int> old_frame_here(Work* work) const;
+  int closest_frame(const TPose2D& T_map_base) const;
+  std::vector<int> frames_around(int here) const;
+  double contradiction_of(const Cloud& cloud) const;
+  void redraw(int here, Work* work);
+  void go_on_in(KeyFrames frames, StampedMap map, const TPose2D& T_map_drive, bool grows);
   void add_frame(Stamp reference, Cloud cloud, const ScanPoints& points, const TPose2D& T_map_base,
                  const GraphEdge& edge);
   GraphEdge edge_to_now(const Tracked& tracked) const;
@@ -116,7 +149,11 @@ struct RobustMapper::Impl {
     TPose2D T_frame_base;
   };
 
+  void record(Stamp reference, const LaserScan& scan, const ScanPoints& points, const Tracked* tracked,
+              double contradiction);
+
   const RobustConfig config_;
+  const mrpt::math::TPose3D T_base_laser_;
   LevelScan level_scan_;
   TiltTrack tilt_;
   OdometryTrack odometry_;
@@ -124,6 +161,8 @@ struct RobustMapper::Impl {
   LocalTracker tracker_;
   LoopCloser closer_;
   StampedMap map_;
+  bool grows_ = true;  ///< false: the map is another's, and stays as it is
+  ScanRecords records_{record_columns(), {}, {}};
 
   ScanQueue waiting_;
   std::optional<TPose2D> T_odom_scan_;  ///< at the last scan; nothing while no odometry has come
@@ -188,6 +227,8 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
   Cloud cloud = cloud_of(points, config_.cloud);
   Work work = 0;
   bool sure = true;
+  std::optional<Tracked> seen;
+  double contradiction = 0.0;
 
   if (frames_.empty()) {
     add_frame(reference, std::move(cloud), points, TPose2D(), {});
@@ -214,12 +255,14 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
     T_frame_base_ = tracked.fit.pose;
     last_step_ = T_frame_base_ - T_frame_last;
     last_step_time_ = motion.time;
+    seen = tracked;
     slips_ += tracked.slipped ? 1 : 0;
     relocated_ += tracked.relocated ? 1 : 0;
     unseen_ += tracked.found ? 0 : 1;
+    if (!grows_) contradiction = contradiction_of(cloud);
     const GraphEdge edge = edge_to_now(tracked);
     scan_covariance_ = edge.information.inverse();
-    if (sure && asks_for_frame(tracked) && !hang_on_old_frame(cloud, &work)) {
+    if (sure && asks_for_frame(tracked) && !hang_on_old_frame(cloud, &work) && grows_) {
       add_frame(reference, std::move(cloud), points, now(), edge);
       if (config_.loops) closer_.look(&work);
       tracker_.redraw(frames_, here_, &work);
@@ -234,14 +277,49 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
   const auto waiting = static_cast<Work>(closer_.queued());
   Work budget = std::max(kLeastBudget, std::min(most, usual + usual * waiting / kHurry) - work);
   const Work given = budget;
-  if (config_.loops) close_loops(budget);
-  if (sure) put_into_map(scan, sweep, tilt, budget);
+  if (config_.loops && grows_) close_loops(budget);
+  if (sure && grows_) put_into_map(scan, sweep, tilt, budget);
   map_.work(frames_, budget);
   last_work_ = work + given - budget;
   all_work_ += last_work_;
   most_work_ = std::max(most_work_, last_work_);
   live_.push_back({reference, now()});
   remember_hits(points);
+  record(reference, scan, points, seen ? &*seen : nullptr, contradiction);
+}
+
+void RobustMapper::Impl::record(Stamp reference, const LaserScan& scan, const ScanPoints& points,
+                                const Tracked* tracked, double contradiction) {
+  const auto returns = std::count_if(scan.ranges.begin(), scan.ranges.end(), [&](float range) {
+    return std::isfinite(range) && range > 0.0F && static_cast<double>(range) >= scan.range_min;
+  });
+  const LoopCounts& loops = closer_.counts();
+  const Eigen::Matrix3d J = lever(frames_.pose(here_), now());
+  const Eigen::Matrix3d covariance =
+      J * frame_covariance_ * J.transpose() + turned(scan_covariance_, frames_.pose(here_).phi);
+  records_.stamps.push_back(reference);
+  for (const double value : {tracked != nullptr ? tracked->fit.inliers : 1.0,
+                             contradiction,
+                             tracked != nullptr ? tracked->fit.residual : 0.0,
+                             tracked != nullptr ? static_cast<double>(tracked->fit.paired) : 0.0,
+                             tracked != nullptr ? tracked->odometry_chi2 : 0.0,
+                             tracked != nullptr && tracked->slipped ? 1.0 : 0.0,
+                             tracked != nullptr && tracked->lost ? 1.0 : 0.0,
+                             static_cast<double>(returns),
+                             static_cast<double>(returns) - static_cast<double>(points.hits.size()),
+                             static_cast<double>(last_work_) * 1e-6,
+                             std::sqrt(covariance(0, 0)),
+                             std::sqrt(covariance(1, 1)),
+                             rad_to_deg(std::sqrt(covariance(2, 2))),
+                             static_cast<double>(frames_.size()),
+                             static_cast<double>(loops.searched),
+                             static_cast<double>(loops.ambiguous),
+                             static_cast<double>(loops.contradicted),
+                             static_cast<double>(loops.needless),
+                             static_cast<double>(loops.closed),
+                             static_cast<double>(loops.near_edges),
+                             static_cast<double>(loops.removed)})
+    records_.values.push_back(static_cast<float>(value));
 }
 
 /// What odometry says; how the motion would go on where that cannot be true or nothing was reported.
@@ -323,13 +401,14 @@ bool RobustMapper::Impl::hang_on_old_frame(const Cloud& cloud, Work* work) {
   const std::optional<int> old = old_frame_here(work);
   if (!old) return false;
   const TPose2D expected = now() - frames_.pose(*old);
-  tracker_.redraw(frames_, *old, work);
+  if (!grows_ && *old == here_) return true;
+  redraw(*old, work);
   ExpectedMotion at_rest;
   at_rest.time = kNoDuration;
   const Tracked there = tracker_.track(frames_, cloud, at_rest, expected, work);
   const TPose2D moved = there.fit.pose - expected;
   if (!there.found || there.fit.inliers < kKnownInliers || length(moved.x, moved.y) > kKnownMoves) {
-    tracker_.redraw(frames_, here_, work);
+    redraw(here_, work);
     return false;
   }
   path_here_ += length(T_frame_base_.x, T_frame_base_.y);
@@ -340,8 +419,53 @@ bool RobustMapper::Impl::hang_on_old_frame(const Cloud& cloud, Work* work) {
   return true;
 }
 
+/// Where nothing but the pose decides: closest, and looking the same way.
+int RobustMapper::Impl::closest_frame(const TPose2D& T_map_base) const {
+  int closest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (int j = 0; j < frames_.size(); ++j) {
+    const TPose2D& old = frames_.pose(j);
+    const double off = length(T_map_base.x - old.x, T_map_base.y - old.y) +
+                       kTurnWeight * std::abs(wrap_angle(T_map_base.phi - old.phi));
+    if (off >= least) continue;
+    least = off;
+    closest = j;
+  }
+  return closest;
+}
+
+/// What the closest key frames say of a scan where the robot is thought to be.
+double RobustMapper::Impl::contradiction_of(const Cloud& cloud) const {
+  std::vector<int> close = frames_around(here_);
+  close.resize(std::min(close.size(), kWitnesses));
+  return frames_.agreement(cloud.points, T_frame_base_, frames_.pose(here_), close).contradiction();
+}
+
+/// All that lie close to a key frame, it first; the graph of a map that stays as it is can be trusted for them.
+std::vector<int> RobustMapper::Impl::frames_around(int here) const {
+  std::vector<std::pair<double, int>> close;
+  for (int j = 0; j < frames_.size(); ++j) {
+    const double away = length(frames_.pose(j).x - frames_.pose(here).x, frames_.pose(j).y - frames_.pose(here).y);
+    if (away <= 0.5 * config_.tracker.path) close.emplace_back(j == here ? -1.0 : away, j);
+  }
+  std::sort(close.begin(), close.end());
+  if (close.size() > static_cast<std::size_t>(config_.tracker.frames))
+    close.resize(static_cast<std::size_t>(config_.tracker.frames));
+  std::vector<int> frames;
+  for (const auto& [away, j] : close) frames.push_back(j);
+  return frames;
+}
+
+void RobustMapper::Impl::redraw(int here, Work* work) {
+  if (grows_)
+    tracker_.redraw(frames_, here, work);
+  else
+    tracker_.redraw(frames_, frames_around(here), work);
+}
+
 /// The closest key frame of an earlier visit that loops tie to where the robot is.
 std::optional<int> RobustMapper::Impl::old_frame_here(Work* work) const {
+  if (!grows_) return closest_frame(now());
   if (!config_.loops || frames_.size() < config_.exact_frames || lost_on_the_way_) return std::nullopt;
   const TPose2D T_map_base = now();
   const double path = path_here_ + length(T_frame_base_.x, T_frame_base_.y);
@@ -442,6 +566,38 @@ TPose2D RobustMapper::Impl::motion_since_scan(Stamp reference) const {
   return T_odom_scan_ ? odometry_.pose_at(reference) - *T_odom_scan_ : TPose2D();
 }
 
+void RobustMapper::Impl::go_on_in(KeyFrames frames, StampedMap map, const TPose2D& T_map_drive, bool grows) {
+  const int shift = frames.size() - frames_.size();
+  const TPose2D T_map_base = T_map_drive + now();
+  const std::vector<StampedMap::Entry> stamped = map_.entries();
+  const double path = grows && frames_.size() > 0 ? frames[shift].path - frames_[0].path : 0.0;
+  std::vector<TPose2D> poses;
+  for (std::size_t k = 0; k < scans_.size(); ++k) poses.push_back(T_map_drive + pose_of(k));
+  frame_covariance_ = turned(frame_covariance_, T_map_drive.phi);
+  frames_ = std::move(frames);
+  map_ = std::move(map);
+  grows_ = grows;
+  if (grows) {
+    here_ += shift;
+    path_here_ += path;
+    for (Place& place : scans_) place.frame += shift;
+    for (const StampedMap::Entry& entry : stamped)
+      map_.add(frames_, entry.frame + shift, entry.T_frame_base, entry.scan, nullptr);
+  } else {
+    here_ = closest_frame(T_map_base);
+    T_frame_base_ = T_map_base - frames_.pose(here_);
+    for (std::size_t k = 0; k < scans_.size(); ++k) {
+      scans_[k].frame = here_;
+      scans_[k].T_frame_base = poses[k] - frames_.pose(here_);
+    }
+  }
+  closer_.begin_anew();
+  redraw(here_, nullptr);
+  T_map_stamped_ = now();
+  last_hits_.clear();
+  ++revision_;
+}
+
 const Trajectory& RobustMapper::Impl::trajectory() const {
   if (trajectory_revision_ != revision_) trajectory_.clear();
   trajectory_revision_ = revision_;
@@ -472,7 +628,7 @@ void RobustMapper::update(const robot::Inputs& inputs) { impl_->receive(inputs);
 
 void RobustMapper::finish() {
   if (impl_->frames_.empty()) return;
-  if (impl_->config_.loops) {
+  if (impl_->config_.loops && impl_->grows_) {
     impl_->closer_.finish();
     ++impl_->revision_;
     impl_->frame_covariance_ = impl_->closer_.covariance();
@@ -504,6 +660,28 @@ const Trajectory& RobustMapper::trajectory() const { return impl_->trajectory();
 const Trajectory& RobustMapper::live_trajectory() const { return impl_->live_; }
 const std::vector<TPoint2D>& RobustMapper::last_hits() const { return impl_->last_hits_; }
 const MapperCounts& RobustMapper::counts() const { return impl_->counts_; }
+
+const ScanRecords* RobustMapper::scan_records() const { return &impl_->records_; }
+const KeyFrames& RobustMapper::key_frames() const { return impl_->frames_; }
+std::string RobustMapper::saved_map() const { return impl_->frames_.empty() ? std::string() : encode_map(saved()); }
+
+void RobustMapper::go_on_in(KeyFrames frames, StampedMap map, const TPose2D& T_map_drive, bool grows) {
+  impl_->go_on_in(std::move(frames), std::move(map), T_map_drive, grows);
+}
+
+SavedMap RobustMapper::saved() const {
+  SavedMap map;
+  map.T_base_laser = impl_->T_base_laser_;
+  map.frames = impl_->frames_;
+  for (const StampedMap::Entry& entry : impl_->map_.entries())
+    map.scans.push_back({entry.frame, entry.T_frame_base, entry.scan});
+  map.here = impl_->here_;
+  map.T_frame_base = impl_->T_frame_base_;
+  map.path = impl_->path_here_;
+  map.frame_covariance = impl_->frame_covariance_;
+  map.scan_covariance = impl_->scan_covariance_;
+  return map;
+}
 
 std::vector<MapperFigure> RobustMapper::figures() const {
   const LoopCounts& loops = impl_->closer_.counts();

@@ -10,6 +10,8 @@
 #include "slam/robust/cloud.h"
 #include "slam/robust/local_tracker.h"
 #include "slam/robust/loop_closer.h"
+#include "slam/robust/saved_map.h"
+#include "slam/robust/stamped_map.h"
 #include "slam/robust/tilt_track.h"
 #include "slam/scan/level_scan.h"
 
@@ -49,6 +51,9 @@ void bind(Binder& binder, RobustConfig& config);
 /// longer.
 RobustConfig suited_to(const robot::LaserModel& laser, RobustConfig config);
 
+constexpr std::size_t kInliersColumn = 0;        ///< of the mapper's ScanRecords
+constexpr std::size_t kContradictionColumn = 1;  ///< zero but for a robot that is followed on a map of an earlier run
+
 /// Online SLAM by matching with a local map, key frames and a graph of their poses with verified loops
 /// (docs/slam.md). Poses of the past move when loops close: revision() then rises.
 class RobustMapper : public Mapper {
@@ -68,6 +73,14 @@ class RobustMapper : public Mapper {
   const std::vector<mrpt::math::TPoint2D>& last_hits() const override;
   const MapperCounts& counts() const override;
   std::vector<MapperFigure> figures() const override;
+  const ScanRecords* scan_records() const override;
+  std::string saved_map() const override;
+
+  const KeyFrames& key_frames() const;
+  SavedMap saved() const;
+  /// Goes on in another map, in which the drive so far lies at T_map_drive. Where the map grows, `frames` end with the
+  /// drive's own; else the drive's key frames are dropped and no more are made.
+  void go_on_in(KeyFrames frames, StampedMap map, const mrpt::math::TPose2D& T_map_drive, bool grows);
 
  private:
   struct Impl;

@@ -22,7 +22,8 @@ constexpr Work kWorkPerPoint = 60;   ///< of pairing one point
 struct NormalEquations {
   double xx = 0, xy = 0, xt = 0, yy = 0, yt = 0, tt = 0;
   double bx = 0, by = 0, bt = 0;
-  double capped = 0;  ///< of residuals
+  double capped = 0;   ///< of residuals
+  double squares = 0;  ///< of the inliers' residuals
   int paired = 0;
   int inliers = 0;
 
@@ -67,6 +68,7 @@ NormalEquations pair_up(const SurfelGrid& target, const std::vector<OrientedPoin
              static_cast<double>(e), static_cast<double>(w));
     if (std::abs(e) < kInlier) {
       ++sums.inliers;
+      sums.squares += static_cast<double>(e * e);
       sums.capped += static_cast<double>(e * e / (kInlier * kInlier));
     } else {
       sums.capped += 1.0;
@@ -100,6 +102,7 @@ ScanFit fit_scan(const SurfelGrid& target, const std::vector<OrientedPoint>& poi
     fit.information = weight * sums.hessian();
     fit.paired = sums.paired;
     fit.inliers = points.empty() ? 0.0 : sums.inliers / count;
+    fit.residual = sums.inliers > 0 ? std::sqrt(sums.squares / sums.inliers) : 0.0;
     const Eigen::Vector3d off(fit.pose.x - prior.pose.x, fit.pose.y - prior.pose.y,
                               wrap_angle(fit.pose.phi - prior.pose.phi));
     fit.prior_chi2 = off.dot(L * off);

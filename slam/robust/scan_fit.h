@@ -28,6 +28,7 @@ struct ScanFit {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the points alone, along the axes of the target's frame
   int paired = 0;                                         ///< points
   double inliers = 0.0;                                   ///< share of points closer than 0.06 m to their surfel's line
+  double residual = 0.0;                                  ///< RMS distance of the inliers from their lines [m]
   double prior_chi2 = 0.0;                                ///< squared Mahalanobis distance from the prior
   double cost = 1e9;  ///< robust cost of all points, unpaired ones in full, and of the prior
 };

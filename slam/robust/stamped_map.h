@@ -15,10 +15,18 @@ namespace rubble::slam {
 /// A count map that can follow its scans: each hangs on a key frame, and is taken out and stamped anew when that moves.
 class StampedMap {
  public:
+  struct Entry {
+    int frame;
+    mrpt::math::TPose2D T_frame_base;
+    mrpt::math::TPose2D T_map_base;  ///< where it is stamped
+    PackedScan scan;
+  };
+
   StampedMap(CountMap map, const mrpt::math::TPose3D& T_base_laser, const LevelScanConfig& config);
 
   const CountMap& map() const { return map_; }
   std::size_t scans() const { return scans_.size(); }
+  const std::vector<Entry>& entries() const { return scans_; }
   /// Stamps a scan taken at T_frame_base from a key frame.
   void add(const KeyFrames& frames, int frame, const mrpt::math::TPose2D& T_frame_base, PackedScan scan, Work* work);
   /// Lays the raster so that walls along its axes fall into the middle of cells, as far as key frames tell where those
@@ -36,12 +44,6 @@ class StampedMap {
   bool settled() const { return to_check_ == 0; }
 
  private:
-  struct Entry {
-    int frame;
-    mrpt::math::TPose2D T_frame_base;
-    mrpt::math::TPose2D T_map_base;  ///< where it is stamped
-    PackedScan scan;
-  };
   bool lies_wrong(const Entry& entry, const mrpt::math::TPose2D& T_map_base) const;
   ScanPoints points_of(const PackedScan& scan);
   Work effort(const Entry& entry) const;

@@ -32,8 +32,11 @@ Stamp ScanQueue::oldest_needed(const OdometryTrack& odometry) const {
 }
 
 std::optional<SweepMotion> sweep_motion(const OdometryTrack& odometry, const LaserScan& scan) {
+  return sweep_motion(odometry, scan, scan.middle());
+}
+
+std::optional<SweepMotion> sweep_motion(const OdometryTrack& odometry, const LaserScan& scan, Stamp reference) {
   if (scan.beam_period <= 0.0 || odometry.empty()) return std::nullopt;
-  const Stamp reference = scan.middle();
   return SweepMotion{odometry.between(reference, scan.stamp),
                      odometry.between(reference, scan.beam_stamp(scan.ranges.size() - 1))};
 }

@@ -33,7 +33,9 @@ class ScanQueue {
   Stamp newest_ = Stamp::never();
 };
 
-/// How the base moved during a sweep, by odometry. Nothing for a scan taken at one instant or without odometry.
+/// How the base moved during a sweep, by odometry, seen from where it was at `reference` (else in the middle of the
+/// sweep). Nothing for a scan taken at one instant or without odometry.
+std::optional<SweepMotion> sweep_motion(const OdometryTrack& odometry, const robot::LaserScan& scan, Stamp reference);
 std::optional<SweepMotion> sweep_motion(const OdometryTrack& odometry, const robot::LaserScan& scan);
 
 }  // namespace rubble::slam

@@ -10,12 +10,12 @@
 #include <cstring>
 #include <optional>
 
+#include "base/bytes.h"
 #include "base/error.h"
 #include "robot/logs/foreign/guarded_child.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
 #include "robot/logs/foreign/mrpt_stamp.h"
 #include "robot/logs/foreign/rawlog_entries.h"
-#include "robot/logs/own/bytes.h"
 
 namespace rubble::robot {
 namespace {

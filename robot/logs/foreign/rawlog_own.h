@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "robot/logs/own/bytes.h"
+#include "base/bytes.h"
 #include "robot/logs/own/model_json.h"
 
 namespace rubble::robot {

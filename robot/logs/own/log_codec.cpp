@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "robot/logs/own/bytes.h"
+#include "base/bytes.h"
 #include "robot/logs/own/log_frames.h"
 #include "robot/logs/own/model_json.h"
 #include "robot/logs/own/range_codec.h"

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "base/bytes.h"
 #include "base/error.h"
-#include "robot/logs/own/bytes.h"
 
 namespace rubble::robot {
 namespace {

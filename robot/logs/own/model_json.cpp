@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "robot/logs/own/bytes.h"
+#include "base/bytes.h"
 #include "robot/model_fields.h"
 
 namespace rubble::robot {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "robot/logs/own/bytes.h"
+#include "base/bytes.h"
 
 namespace rubble::robot {
 

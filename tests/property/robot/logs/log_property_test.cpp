@@ -1,4 +1,4 @@
-#include "robot/logs/own/bytes.h"
+#include "base/bytes.h"
 #include "robot/logs/own/log_codec.h"
 #include "robot/logs/own/log_frames.h"
 #include "tests/support/robot_inputs.h"

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/text/number_text.h"
 #include "base/yaml/binder.h"
+#include "tests/support/source_dir.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -151,6 +152,29 @@ TEST_F(ScenarioFile, FaultsAreNamedWithTheirPlace) {
 TEST(Shortest, ReadsBackToTheSameBits) {
   for (const double value : {0.1, 1.0 / 3.0, 1e-300, 12345678.9, 0.05, -2.5})
     EXPECT_EQ(std::stod(number_text(value)), value);
+}
+
+/// Section III.B, value by value.
+TEST(ShippedScenario, YellowPaperIsThePaperAsPrinted) {
+  const Scenario scenario = load_scenario(RUBBLE_SOURCE_DIR "/scenarios/yellow_paper.yaml");
+  ASSERT_EQ(scenario.mapper.kind(), "paper");
+  const auto& c = scenario.mapper.as<slam::PaperConfig>();
+  EXPECT_EQ(c.map_cells, 800);
+  EXPECT_EQ(c.resolution, 0.1) << "on ramps";
+  EXPECT_EQ(c.particles, 300);
+  EXPECT_EQ(c.top_share, 0.05);
+  EXPECT_EQ(c.motion_error.rotation, 0.05);
+  EXPECT_NEAR(c.motion_error.heading_per_m, deg_to_rad(5.0), 1e-12);
+  EXPECT_EQ(c.motion_error.distance, 0.15);
+  EXPECT_EQ(c.gated, slam::GatedPart::Resampling);
+  EXPECT_EQ(c.gate_distance, 0.02);
+  EXPECT_NEAR(c.gate_turn, deg_to_rad(5.0), 1e-12);
+  EXPECT_TRUE(c.icp);
+  EXPECT_EQ(c.icp_target, slam::IcpTarget::LastScan);
+  EXPECT_FALSE(c.icp_trimmed);
+  EXPECT_EQ(c.rim_margin, 0.0) << "all beams";
+  EXPECT_FALSE(c.deskew);
+  EXPECT_EQ(c.sweep_reference, slam::SweepReference::Stamp);
 }
 
 }  // namespace

@@ -194,5 +194,61 @@ TEST(PaperMapper, LastHitsLieOnTheWalls) {
   EXPECT_EQ(on_occupied, static_cast<int>(mapper.last_hits().size()));
 }
 
+/// As printed: resampling alone waits for motion.
+TEST(PaperMapper, WithTheResamplingGatedEachScanIsMapped) {
+  const RobotModel model;
+  PaperConfig config;
+  config.gated = GatedPart::Resampling;
+  config.icp = false;  // its jitter would be motion
+  PaperMapper standing_still(model, config, 1);
+  play(standing_still, standing(model, 50, 0.0));
+  EXPECT_EQ(standing_still.counts().mapped, 50u);
+  EXPECT_EQ(standing_still.pose(), TPose2D()) << "no motion, no error";
+
+  config.icp = true;
+  const slam_test::Drive drive = slam_test::drive_through(kTour, 0.0);
+  const auto ticks = slam_test::record(slam_test::furnished_room(), drive, model, 1.0, 0.01, 1);
+  PaperMapper driving(model, config, 1);
+  play(driving, ticks);
+  EXPECT_EQ(driving.counts().mapped, ticks.size());
+}
+
+/// The scan matcher's motion from scan to scan adds up: without noise to where the robot is, whatever is mapped.
+TEST(PaperMapper, IcpMatchesWithTheLastScanOrTheLastMappedOne) {
+  const RobotModel model;
+  const slam_test::Drive drive = slam_test::drive_through(kTour, 0.0);
+  const auto ticks = slam_test::record(slam_test::furnished_room(), drive, model, 1.5, 0.0, 1);
+  const double odometry = slam_test::first_pose_rmse(odometry_of(ticks), drive.truth);
+  for (const bool trimmed : {true, false})
+    for (const IcpTarget target : {IcpTarget::LastMapped, IcpTarget::LastScan}) {
+      SCOPED_TRACE(std::string(trimmed ? "trimmed" : "whole") +
+                   (target == IcpTarget::LastScan ? ", last scan" : ", last mapped"));
+      PaperConfig config;
+      config.icp_target = target;
+      config.icp_trimmed = trimmed;
+      PaperMapper mapper(model, config, 1);
+      play(mapper, ticks);
+      EXPECT_LT(slam_test::first_pose_rmse(mapper.trajectory(), drive.truth), 0.5 * odometry);
+    }
+}
+
+/// A pose belongs to the moment that it is given out for, de-skewed or not.
+TEST(PaperMapper, PoseIsThatOfTheReferenceOfTheSweep) {
+  const RobotModel model;
+  const slam_test::Drive drive = slam_test::drive_through({{0.0, 0.0}, {3.0, 0.0}}, 0.0);
+  const auto ticks = slam_test::record_sweeping(slam_test::furnished_room(), drive, model, 0.0, 0.0, 0.0665, 1);
+  for (const SweepReference reference : {SweepReference::Middle, SweepReference::Stamp}) {
+    PaperConfig config;
+    config.sweep_reference = reference;
+    PaperMapper mapper(model, config, 1);
+    play(mapper, ticks);
+    ASSERT_GT(mapper.trajectory().size(), 20u);
+    const robot::LaserScan& scan = ticks[1].scans.front();
+    const Stamp expected = reference == SweepReference::Stamp ? scan.stamp : scan.middle();
+    EXPECT_EQ(mapper.trajectory().front().stamp, expected);
+    EXPECT_LT(slam_test::first_pose_rmse(mapper.trajectory(), drive.truth), 0.03);
+  }
+}
+
 }  // namespace
 }  // namespace rubble::slam

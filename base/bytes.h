@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace rubble::robot {
+namespace rubble {
 
 /// A payload that cannot be what its kind says; the reader of the file adds the place and the remedy.
 class BadPayload : public std::runtime_error {
@@ -120,4 +120,4 @@ class ByteReader {
   std::string_view bytes_;
 };
 
-}  // namespace rubble::robot
+}  // namespace rubble

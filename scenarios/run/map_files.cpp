@@ -1,0 +1,198 @@
+#include "scenarios/run/map_files.h"
+
+#include <mrpt/maps/CSimpleMap.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/poses/CPose3D.h>
+#include <mrpt/poses/CPose3DPDFGaussian.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/image/png.h"
+#include "base/text/text_file.h"
+#include "robot/logs/foreign/mrpt_bridge.h"
+#include "slam/map_exports.h"
+
+namespace rubble::scenarios {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kMapFile = "map.rmap";
+constexpr int kWidth = 1000;       ///< of the picture's curves [pixels]
+constexpr int kLeft = 190;         ///< for their names
+constexpr int kPanel = 60;         ///< height of one
+constexpr int kGap = 12;           ///< between two
+constexpr double kLetters = 0.42;  ///< of OpenCV's usual size
+
+std::string csv_of(const slam::ScanRecords& records) {
+  std::string text = "stamp_s";
+  for (const std::string& column : records.columns) text += "," + column;
+  text += '\n';
+  char number[40];
+  for (std::size_t i = 0; i < records.stamps.size(); ++i) {
+    std::snprintf(number, sizeof number, "%lld.%09lld", static_cast<long long>(records.stamps[i].ns / 1000000000),
+                  static_cast<long long>(records.stamps[i].ns % 1000000000));
+    text += number;
+    for (std::size_t k = 0; k < records.columns.size(); ++k) {
+      std::snprintf(number, sizeof number, ",%.6g",
+                    static_cast<double>(records.values[i * records.columns.size() + k]));
+      text += number;
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+/// Least and greatest value of each column of pixels, or nothing where no scan fell.
+struct Curve {
+  std::vector<std::pair<float, float>> spans;
+  float low = 0.0F;
+  float high = 0.0F;
+};
+
+Curve curve_of(const slam::ScanRecords& records, std::size_t column) {
+  Curve curve;
+  curve.spans.assign(kWidth, {1.0F, 0.0F});
+  const Stamp first = records.stamps.front();
+  const double time = std::max(1e-9, records.stamps.back() - first);
+  for (std::size_t i = 0; i < records.stamps.size(); ++i) {
+    const float value = records.values[i * records.columns.size() + column];
+    if (!std::isfinite(value)) continue;
+    const auto at = static_cast<std::size_t>((records.stamps[i] - first) / time * (kWidth - 1));
+    auto& [least, most] = curve.spans[std::min<std::size_t>(at, kWidth - 1)];
+    const bool fresh = least > most;
+    least = fresh ? value : std::min(least, value);
+    most = fresh ? value : std::max(most, value);
+    curve.low = std::min(curve.low, value);
+    curve.high = std::max(curve.high, value);
+  }
+  if (curve.high <= curve.low) curve.high = curve.low + 1.0F;
+  return curve;
+}
+
+void write_words(cv::Mat& picture, const std::string& words, int x, int y) {
+  cv::putText(picture, words, {x, y}, cv::FONT_HERSHEY_SIMPLEX, kLetters, cv::Scalar(60, 60, 60), 1, cv::LINE_AA);
+}
+
+/// One panel a column, time to the right, from the least to the greatest value (zero always in sight).
+cv::Mat picture_of(const slam::ScanRecords& records) {
+  const auto panels = static_cast<int>(records.columns.size());
+  cv::Mat picture(panels * (kPanel + kGap) + 40, kLeft + kWidth + 20, CV_8UC3, cv::Scalar(255, 255, 255));
+  char words[80];
+  for (int p = 0; p < panels; ++p) {
+    const Curve curve = curve_of(records, static_cast<std::size_t>(p));
+    const int top = 10 + p * (kPanel + kGap);
+    const auto row = [&](float value) {
+      return top + kPanel - 1 - static_cast<int>((value - curve.low) / (curve.high - curve.low) * (kPanel - 1));
+    };
+    cv::rectangle(picture, {kLeft, top}, {kLeft + kWidth, top + kPanel}, cv::Scalar(225, 225, 225));
+    write_words(picture, records.columns[static_cast<std::size_t>(p)], 8, top + 24);
+    std::snprintf(words, sizeof words, "%.3g .. %.3g", static_cast<double>(curve.low), static_cast<double>(curve.high));
+    write_words(picture, words, 8, top + 44);
+    int last = -1;
+    for (int x = 0; x < kWidth; ++x) {
+      const auto& [least, most] = curve.spans[static_cast<std::size_t>(x)];
+      if (least > most) continue;
+      const int above = row(most);
+      const int below = row(least);
+      cv::line(picture, {kLeft + x, last < 0 ? below : std::max(last, below)}, {kLeft + x, above},
+               cv::Scalar(178, 114, 0));
+      last = above;
+    }
+  }
+  std::snprintf(words, sizeof words, "%.1f s, %zu scans", records.stamps.back() - records.stamps.front(),
+                records.stamps.size());
+  write_words(picture, words, kLeft, picture.rows - 12);
+  return picture;
+}
+
+void write_simplemap(const slam::MapContent& map, const std::string& out) {
+  mrpt::maps::CSimpleMap simple;
+  for (const slam::MapScan& kept : map.scans) {
+    auto observation = mrpt::obs::CObservation2DRangeScan::Create();
+    robot::to_mrpt(kept.scan, map.T_base_laser, *observation);
+    auto frame = mrpt::obs::CSensoryFrame::Create();
+    frame->insert(observation);
+    auto pose = mrpt::poses::CPose3DPDFGaussian::Create();
+    pose->mean = mrpt::poses::CPose3D(mrpt::math::TPose3D(kept.T_map_base));
+    simple.insert(pose, frame);
+  }
+  if (!simple.saveToFile(out))
+    throw RunError(out + ": cannot be written; check the folder, its permissions and the free space");
+}
+
+}  // namespace
+
+void save_map_files(const RunFolder& folder, const slam::Mapper& mapper) {
+  if (const std::string bytes = mapper.saved_map(); !bytes.empty()) folder.write(kMapFile, bytes);
+  const slam::ScanRecords* records = mapper.scan_records();
+  if (records == nullptr || records->stamps.empty()) return;
+  folder.write("scans.csv", csv_of(*records));
+  folder.write("scans.png", png_bytes(picture_of(*records)));
+}
+
+std::shared_ptr<const slam::MapBase> load_map_base(const std::string& path, bool grows,
+                                                   const std::optional<mrpt::math::TPose2D>& start) {
+  std::string file = path;
+  if (fs::is_directory(path)) {
+    file = path + "/" + kMapFile;
+    if (!fs::exists(file))
+      throw InputError(path + ": holds no " + kMapFile +
+                       "; give the folder of a run of the robust mapper that has ended, or a map file");
+  }
+  auto base = std::make_shared<slam::MapBase>();
+  base->bytes = read_text_file(file);
+  base->name = file;
+  base->grows = grows;
+  base->start = start;
+  return base;
+}
+
+void merge_maps(const std::string& first, const std::string& second, const Scenario& scenario, RunFolder& folder) {
+  if (scenario.mapper.kind() != "robust")
+    throw InputError("mapper.kind '" + scenario.mapper.kind() + "': only maps of the robust mapper are merged");
+  const auto a = load_map_base(first, true, std::nullopt);
+  const auto b = load_map_base(second, true, std::nullopt);
+  const slam::MapContent content = slam::content_of(*a);
+  robot::RobotModel model = scenario.robot;
+  model.T_base_laser = content.T_base_laser;
+  if (!content.scans.empty()) model.laser.range_max = content.scans.front().scan.range_max;
+  const auto bytes = slam::merged_maps(*a, *b, model, scenario.mapper);
+  if (!bytes)
+    throw InputError(second + ": shows no place of " + first +
+                     " for sure; they need a few metres in common, seen with the laser mounted alike");
+  const auto both = std::make_shared<slam::MapBase>(slam::MapBase{*bytes, first, true, std::nullopt});
+  const auto mapper = scenario.mapper.make(model, {scenario.seed, "", both});
+  mapper->finish();
+  folder.write("scenario.yaml", resolved_yaml(scenario));
+  folder.write(kMapFile, *bytes);
+  folder.save_map(scenario, *mapper, {});
+  folder.close();
+}
+
+bool is_map_export(const std::string& out) {
+  const std::string ending = fs::path(out).extension().string();
+  return ending == ".g2o" || ending == ".simplemap";
+}
+
+void export_map(const std::string& path, const std::string& out) {
+  const auto map = load_map_base(path, true, std::nullopt);
+  const std::string ending = fs::path(out).extension().string();
+  if (ending == ".g2o")
+    write_text_file(out, slam::graph_as_g2o(*map));
+  else if (ending == ".simplemap")
+    write_simplemap(slam::content_of(*map), out);
+  else
+    throw InputError(out + ": maps are exported as .g2o or .simplemap");
+}
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "scenarios/run/run_folder.h"
+#include "slam/map_base.h"
+#include "slam/mapper.h"
+
+namespace rubble::scenarios {
+
+/// Writes what a mapper keeps beside the pictures of its map: map.rmap, the map with its graph; scans.csv, what it made
+/// of each scan; scans.png, a picture of that. A mapper that keeps none leaves none.
+void save_map_files(const RunFolder& folder, const slam::Mapper& mapper);
+
+/// Reads the map of a run folder, or a map file. Throws InputError.
+std::shared_ptr<const slam::MapBase> load_map_base(const std::string& path, bool grows,
+                                                   const std::optional<mrpt::math::TPose2D>& start);
+
+/// Writes a map's graph for g2o (`.g2o`), or its scans with their poses for MRPT (`.simplemap`): raw scans as they were
+/// measured, without the motion and tilt that our own map takes out. Throws InputError for another ending, RunError
+/// when the file cannot be written.
+void export_map(const std::string& path, const std::string& out);
+
+/// Makes one map of those of two runs, in the frame of the first, and writes it into a folder of its own: map.rmap and
+/// the pictures. Throws InputError when one of them is damaged or they show no place in common.
+void merge_maps(const std::string& first, const std::string& second, const Scenario& scenario, RunFolder& folder);
+
+/// Whether export_map() knows the ending of that name.
+bool is_map_export(const std::string& out);
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,31 @@
+#include "slam/map_exports.h"
+
+#include <utility>
+
+#include "slam/robust/continued_mapper.h"
+#include "slam/robust/g2o.h"
+#include "slam/robust/saved_map.h"
+
+namespace rubble::slam {
+
+MapContent content_of(const MapBase& map) {
+  const SavedMap saved = decode_map(map.bytes, map.name);
+  MapContent content{saved.T_base_laser, {}};
+  for (const SavedScan& kept : saved.scans) {
+    MapScan scan{saved.frames.pose(kept.frame) + kept.T_frame_base, unpacked(kept.scan)};
+    scan.scan.stamp = saved.frames[kept.frame].stamp;
+    content.scans.push_back(std::move(scan));
+  }
+  return content;
+}
+
+std::string graph_as_g2o(const MapBase& map) { return to_g2o(decode_map(map.bytes, map.name).frames.graph()); }
+
+std::optional<std::string> merged_maps(const MapBase& first, const MapBase& second, const robot::RobotModel& model,
+                                       const MapperConfig& mapper) {
+  const RobustConfig config = suited_to(model.laser, mapper.as<RobustConfig>());
+  const auto both = merged(decode_map(first.bytes, first.name), decode_map(second.bytes, second.name), config);
+  return both ? std::optional(encode_map(*both)) : std::nullopt;
+}
+
+}  // namespace rubble::slam

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <mrpt/math/TPose2D.h>
+#include <mrpt/math/TPose3D.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robot/measurements.h"
+#include "robot/model.h"
+#include "slam/map_base.h"
+#include "slam/mappers.h"
+
+namespace rubble::slam {
+
+/// A scan of a map, as it was measured.
+struct MapScan {
+  mrpt::math::TPose2D T_map_base;
+  robot::LaserScan scan;  ///< stamp: of the key frame that it hangs on
+};
+
+/// What other programs can use of a map.
+struct MapContent {
+  mrpt::math::TPose3D T_base_laser;
+  std::vector<MapScan> scans;
+};
+
+// All throw InputError for a map that is damaged.
+
+MapContent content_of(const MapBase& map);
+/// The graph as text for g2o (slam/robust/g2o.h).
+std::string graph_as_g2o(const MapBase& map);
+/// The bytes of one map of two, in the frame of the first; nothing where the second shows no place of the first for
+/// sure. `model` and `mapper`: a robot like theirs, and a mapper of kind robust.
+std::optional<std::string> merged_maps(const MapBase& first, const MapBase& second, const robot::RobotModel& model,
+                                       const MapperConfig& mapper);
+
+}  // namespace rubble::slam

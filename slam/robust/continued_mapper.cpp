@@ -1,0 +1,277 @@
+#include "slam/robust/continued_mapper.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/error.h"
+#include "base/planar.h"
+
+namespace rubble::slam {
+
+using mrpt::math::TPose2D;
+using mrpt::math::TPose3D;
+
+namespace {
+
+constexpr double kMatchedPath = 1.5;   ///< of a drive that is looked for, in paths of the local map
+constexpr double kAnywhere = 1e3;      ///< sigma of a robot that may be anywhere [m]
+constexpr double kHeldDistance = 0.5;  ///< what holds the first key frame of a drive to the map, beside its ties [m]
+constexpr double kHeldAngle = 0.5;     ///< [rad]
+constexpr double kSameMount = 1e-6;    ///< [m, rad]
+constexpr float kOffInliers = 0.40F;   ///< below, a scan does not show what the map does ...
+constexpr float kOffContradiction = 0.30F;  ///< ... nor from here on
+constexpr int kOffScans = 12;               ///< so many of them more than twice the others: carried off
+constexpr int kAgreeing = 2;                ///< what a scan that agrees takes off that number
+
+bool same_mount(const TPose3D& a, const TPose3D& b) {
+  return std::abs(a.x - b.x) < kSameMount && std::abs(a.y - b.y) < kSameMount && std::abs(a.z - b.z) < kSameMount &&
+         std::abs(wrap_angle(a.yaw - b.yaw)) < kSameMount && std::abs(wrap_angle(a.pitch - b.pitch)) < kSameMount &&
+         std::abs(wrap_angle(a.roll - b.roll)) < kSameMount;
+}
+
+SavedMap loaded(const MapBase& base, const robot::RobotModel& model) {
+  SavedMap map = decode_map(base.bytes, base.name);
+  if (!same_mount(map.T_base_laser, model.T_base_laser))
+    throw InputError(base.name + ": was made with the laser mounted at " + map.T_base_laser.asString() +
+                     ", but this robot's is at " + model.T_base_laser.asString() +
+                     " (x y z yaw pitch roll); map with the same robot");
+  return map;
+}
+
+StampedMap stamped(const SavedMap& saved, const robot::RobotModel& model, const RobustConfig& config) {
+  StampedMap map(CountMap(config.map_cells, config.map_cells, config.resolution, config.max_map_cells),
+                 model.T_base_laser, config.scan);
+  for (const SavedScan& scan : saved.scans) map.add(saved.frames, scan.frame, scan.T_frame_base, scan.scan, nullptr);
+  map.lay_raster(saved.frames);
+  return map;
+}
+
+/// Who sees far sees thinly: more of the drive makes up for it.
+PlaceConfig place_config(const RobustConfig& config) {
+  PlaceConfig places;
+  places.path = kMatchedPath * config.tracker.path;
+  return places;
+}
+
+GraphEdge shifted(GraphEdge edge, int by) {
+  edge.from += by;
+  edge.to += by;
+  return edge;
+}
+
+}  // namespace
+
+KeyFrames joined(const KeyFrames& map, const KeyFrames& drive, const FoundPlace& place, double apart) {
+  KeyFrames all = map;
+  const int shift = map.size();
+  double path = 0.0;
+  for (int i = 0; i < map.size(); ++i) path = std::max(path, map[i].path);
+  const auto moved = [&](int i) {
+    KeyFrame frame = drive[i];
+    frame.path += path + apart;
+    return frame;
+  };
+  const GraphEdge& tie = place.ties.front();
+  GraphEdge hold;
+  hold.from = tie.from;
+  hold.to = shift;
+  const TPose2D T_map_first = place.T_map_drive + drive.pose(0);
+  hold.T_from_to = T_map_first - map.pose(tie.from);
+  hold.information = Eigen::Vector3d(1.0 / (kHeldDistance * kHeldDistance), 1.0 / (kHeldDistance * kHeldDistance),
+                                     1.0 / (kHeldAngle * kHeldAngle))
+                         .asDiagonal();
+  all.add_start(moved(0), T_map_first, hold);
+  for (const GraphEdge& edge : drive.graph().edges) {
+    if (edge.loop) {
+      all.add_loop(shifted(edge, shift));
+      if (!edge.on) all.switch_off(all.graph().edges.size() - 1);
+    } else if (drive.before(edge.to) < 0) {
+      all.add_start(moved(edge.to), place.T_map_drive + drive.pose(edge.to), shifted(edge, shift));
+    } else {
+      all.add(moved(edge.to), place.T_map_drive + drive.pose(edge.to), shifted(edge, shift));
+    }
+  }
+  for (GraphEdge edge : place.ties) {
+    edge.to += shift;
+    all.add_loop(edge);
+  }
+  return all;
+}
+
+std::optional<SavedMap> merged(const SavedMap& first, const SavedMap& second, const RobustConfig& config) {
+  if (!same_mount(first.T_base_laser, second.T_base_laser)) return std::nullopt;
+  PlaceFinder finder(first.frames, place_config(config), config.tracker.cell);
+  Work unlimited = std::numeric_limits<Work>::max();
+  for (int i = 0; i < second.frames.size() && !finder.found(); ++i) {
+    finder.look(i);
+    finder.work(second.frames, unlimited);
+  }
+  if (!finder.found()) return std::nullopt;
+  SavedMap both = second;
+  both.frames = joined(first.frames, second.frames, *finder.found(), config.loop.least_path);
+  const int shift = first.frames.size();
+  both.scans = first.scans;
+  for (SavedScan scan : second.scans) {
+    scan.frame += shift;
+    both.scans.push_back(std::move(scan));
+  }
+  both.here += shift;
+  both.path += both.frames[shift].path - second.frames[0].path;
+  both.frame_covariance.setZero();
+  if (!config.loops) return both;
+  LoopCloser closer(config.loop, config.tracker.cell, both.frames);
+  closer.begin_anew();
+  closer.finish();
+  both.frame_covariance = closer.covariance();
+  return both;
+}
+
+ContinuedMapper::ContinuedMapper(const robot::RobotModel& model, const RobustConfig& config,
+                                 std::shared_ptr<const MapBase> base)
+    : model_(model),
+      config_(suited_to(model.laser, config)),
+      base_(std::move(base)),
+      saved_(loaded(*base_, model)),
+      map_(stamped(saved_, model, config_)),
+      finder_(saved_.frames, place_config(config_), config_.tracker.cell) {
+  drive_ = std::make_unique<RobustMapper>(model_, config_, 0);
+  records_.columns = drive_->scan_records()->columns;
+  records_.columns.emplace_back("place_known");
+  if (base_->start)
+    finder_.begin_near(*base_->start, true);
+  else if (base_->grows)
+    finder_.begin_near(saved_.end(), false);
+  else
+    finder_.begin();
+}
+
+void ContinuedMapper::update(const robot::Inputs& inputs) {
+  drive_->update(inputs);
+  const KeyFrames& frames = drive_->key_frames();
+  if (!joined_ && !frames.empty()) {
+    if (frames.last() > looked_at_) finder_.look(frames.last());
+    looked_at_ = frames.last();
+    Work budget = inputs.scans.empty() ? 0 : static_cast<Work>(config_.budget_ms * 1e6);
+    finder_.work(frames, budget);
+    if (finder_.found()) join(*finder_.found());
+  }
+  take_news();
+  if (joined_ && !base_->grows && off_ >= kOffScans) lose();
+}
+
+/// Takes over what the drive's last scans brought.
+void ContinuedMapper::take_news() {
+  const ScanRecords& news = *drive_->scan_records();
+  const std::size_t columns = news.columns.size();
+  for (; recorded_ < news.stamps.size(); ++recorded_) {
+    const float* row = news.values.data() + recorded_ * columns;
+    records_.stamps.push_back(news.stamps[recorded_]);
+    records_.values.insert(records_.values.end(), row, row + columns);
+    records_.values.push_back(joined_ ? 1.0F : 0.0F);
+    if (!joined_) continue;
+    live_.push_back(drive_->live_trajectory()[recorded_]);
+    const bool off = row[kInliersColumn] < kOffInliers || row[kContradictionColumn] > kOffContradiction;
+    off_ = off ? off_ + 1 : std::max(0, off_ - kAgreeing);
+    if (off_ == 0) agreed_ = news.stamps[recorded_];
+  }
+  const MapperCounts& now = drive_->counts();
+  counts_ = {ended_.scans + now.scans, ended_.mapped + now.mapped, ended_.out_of_order + now.out_of_order};
+}
+
+void ContinuedMapper::join(const FoundPlace& place) {
+  take_news();  // what was seen before the place was known
+  if (base_->grows)
+    drive_->go_on_in(joined(saved_.frames, drive_->key_frames(), place, config_.loop.least_path), std::move(map_),
+                     place.T_map_drive, true);
+  else
+    drive_->go_on_in(saved_.frames, map_, place.T_map_drive, false);
+  joined_ = true;
+  off_ = 0;
+  ++joins_;
+  ++revision_;
+}
+
+/// The robot is not where the drive thinks: what it did since its scans last agreed is forgotten, and a new drive
+/// begins.
+void ContinuedMapper::lose() {
+  for (const StampedPose& pose : drive_->trajectory())
+    if (pose.stamp <= agreed_) before_.push_back(pose);
+  last_known_ = before_.empty() ? saved_.end() : before_.back().pose;
+  const MapperCounts& now = drive_->counts();
+  ended_ = {ended_.scans + now.scans, ended_.mapped + now.mapped, ended_.out_of_order + now.out_of_order};
+  revision_ += drive_->revision() + 1;
+  drive_ = std::make_unique<RobustMapper>(model_, config_, 0);
+  joined_ = false;
+  looked_at_ = -1;
+  recorded_ = 0;
+  ++carried_off_;
+  finder_.begin();
+}
+
+void ContinuedMapper::finish() {
+  const KeyFrames& frames = drive_->key_frames();
+  if (!joined_ && !frames.empty()) {
+    Work unlimited = std::numeric_limits<Work>::max();
+    finder_.work(frames, unlimited);
+    if (finder_.found()) join(*finder_.found());
+  }
+  if (joined_) return drive_->finish();
+  if (config_.thin_walls) map_.thin();
+}
+
+const CountMap& ContinuedMapper::map() const { return joined_ ? drive_->map() : map_.map(); }
+
+TPose2D ContinuedMapper::pose() const {
+  if (joined_) return drive_->pose();
+  return last_known_.value_or(base_->start.value_or(saved_.end()));
+}
+
+PoseCovariance ContinuedMapper::covariance() const {
+  if (joined_) return drive_->covariance();
+  const Eigen::Matrix3d anywhere =
+      Eigen::Vector3d(kAnywhere * kAnywhere, kAnywhere * kAnywhere, kPi * kPi).asDiagonal();
+  return PoseCovariance(anywhere);
+}
+
+std::uint64_t ContinuedMapper::revision() const { return revision_ + (joined_ ? drive_->revision() : 0); }
+
+std::optional<TPose2D> ContinuedMapper::pose_at(Stamp stamp) const {
+  if (const auto pose = rubble::pose_at(trajectory(), stamp)) return pose;
+  return joined_ ? drive_->pose_at(stamp) : std::nullopt;
+}
+
+const Trajectory& ContinuedMapper::trajectory() const {
+  if (!joined_) return before_;
+  const Trajectory& drive = drive_->trajectory();
+  if (before_.empty()) return drive;
+  if (all_revision_ != revision()) all_ = before_;
+  all_revision_ = revision();
+  for (std::size_t k = all_.size() - before_.size(); k < drive.size(); ++k) all_.push_back(drive[k]);
+  return all_;
+}
+
+const std::vector<mrpt::math::TPoint2D>& ContinuedMapper::last_hits() const {
+  static const std::vector<mrpt::math::TPoint2D> none;
+  return joined_ ? drive_->last_hits() : none;
+}
+
+std::vector<MapperFigure> ContinuedMapper::figures() const {
+  std::vector<MapperFigure> figures = drive_->figures();
+  const PlaceCounts& places = finder_.counts();
+  figures.push_back({"place_known", joined_ ? 1.0 : 0.0});
+  figures.push_back({"places_found", static_cast<double>(joins_)});
+  figures.push_back({"carried_off", static_cast<double>(carried_off_)});
+  figures.push_back({"places_searched", static_cast<double>(places.searched)});
+  figures.push_back({"places_nowhere", static_cast<double>(places.nowhere)});
+  figures.push_back({"places_ambiguous", static_cast<double>(places.ambiguous)});
+  figures.push_back({"places_contradicted", static_cast<double>(places.contradicted)});
+  figures.push_back({"places_believed", static_cast<double>(places.believed)});
+  return figures;
+}
+
+std::string ContinuedMapper::saved_map() const { return joined_ && base_->grows ? drive_->saved_map() : base_->bytes; }
+
+}  // namespace rubble::slam

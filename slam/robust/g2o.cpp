@@ -1,0 +1,51 @@
+#include "slam/robust/g2o.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace rubble::slam {
+
+using mrpt::math::TPose2D;
+
+namespace {
+
+void append(std::string& text, double value) {
+  char number[40];
+  std::snprintf(number, sizeof number, " %.17g", value);
+  text += number;
+}
+
+void append(std::string& text, const TPose2D& T) {
+  append(text, T.x);
+  append(text, T.y);
+  append(text, T.phi);
+}
+
+}  // namespace
+
+std::string to_g2o(const PoseGraph& graph) {
+  std::string text;
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+    text += "VERTEX_SE2 " + std::to_string(i);
+    append(text, graph.nodes[i]);
+    text += '\n';
+  }
+  if (!graph.nodes.empty()) text += "FIX 0\n";
+  for (const GraphEdge& edge : graph.edges) {
+    if (!edge.on) continue;
+    const double c = std::cos(edge.T_from_to.phi);
+    const double s = std::sin(edge.T_from_to.phi);
+    Eigen::Matrix3d back;
+    back << c, s, 0, -s, c, 0, 0, 0, 1;
+    const Eigen::Matrix3d information = back * edge.information * back.transpose();
+    text += "EDGE_SE2 " + std::to_string(edge.from) + " " + std::to_string(edge.to);
+    append(text, edge.T_from_to);
+    for (int row = 0; row < 3; ++row)
+      for (int column = row; column < 3; ++column)
+        append(text, 0.5 * (information(row, column) + information(column, row)));
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace rubble::slam

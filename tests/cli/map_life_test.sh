@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# A map goes on in another run, is only looked at, is exported; what is wrong with it is told in one line.
+source "$(dirname "$0")/lib.sh"
+
+# near A.tum B.tum: poses of one stamp lie within 6 cm of each other.
+near() {
+  python3 - "$1" "$2" <<'PYTHON' || fail "$1 and $2 do not agree"
+import sys
+def read(path): return {l.split()[0]: [float(w) for w in l.split()[1:3]] for l in open(path)}
+a, b = read(sys.argv[1]), read(sys.argv[2])
+both = [s for s in a if s in b]
+off = [((a[s][0] - b[s][0]) ** 2 + (a[s][1] - b[s][1]) ** 2) ** 0.5 for s in both]
+print(len(both), "poses, at most", max(off), "m apart")
+sys.exit(0 if len(both) > 100 and max(off) < 0.06 else 1)
+PYTHON
+}
+
+small_scenario s.yaml
+"$rubble" run s.yaml --out first >/dev/null || fail "the run ended with $?"
+for name in map.rmap scans.csv scans.png; do [[ -s first/$name ]] || fail "first/$name is missing"; done
+[[ $(head -c 12 first/map.rmap) == "RUBBLE MAP 1" ]] || fail "map.rmap does not begin with its name"
+[[ $(wc -l <first/scans.csv) -gt 100 ]] || fail "scans.csv has but $(wc -l <first/scans.csv) lines"
+"$rubble" map first --out mapped >/dev/null || fail "map ended with $?"
+"$rubble" map first --continue mapped --out more --start 0,0,0 >/dev/null || fail "--continue ended with $?"
+json_holds more/score.json "j['place_known'] == 1"
+near more/estimate.tum first/estimate.tum
+"$rubble" map first --localise first --start 0,0,0 --out found >/dev/null || fail "--localise ended with $?"
+json_holds found/score.json "j['place_known'] == 1 and j['carried_off'] == 0"
+near found/estimate_live.tum first/estimate.tum
+cmp -s found/map.rmap first/map.rmap || fail "--localise changed the map"
+"$rubble" map first --localise first --start 0,0,0 --out found2 >/dev/null
+cmp -s found/estimate_live.tum found2/estimate_live.tum || fail "the same again is not the same"
+
+"$rubble" export first graph.g2o >/dev/null && grep -q '^EDGE_SE2' graph.g2o || fail "no graph.g2o"
+"$rubble" export first map.simplemap >/dev/null && [[ -s map.simplemap ]] || fail "no map.simplemap"
+
+"$rubble" merge first mapped --out both >/dev/null || fail "merge ended with $?"
+for name in map.rmap map.tif map.pgm; do [[ -s both/$name ]] || fail "both/$name is missing"; done
+"$rubble" map first --localise both --start 0,0,0 --out in_both >/dev/null || fail "the merged map is no map"
+json_holds in_both/score.json "j['place_known'] == 1"
+
+expect_exit 2 '--continue' "$rubble" map first --continue first --localise first
+expect_exit 2 'x,y,heading_deg' "$rubble" map first --continue first --start here
+expect_exit 2 'needs a map' "$rubble" map first --start 0,0,0
+expect_exit 3 'nowhere' "$rubble" map first --continue nowhere
+mkdir empty
+expect_exit 3 'holds no map.rmap' "$rubble" map first --continue empty
+head -c 5000 first/map.rmap >cut.rmap
+expect_exit 3 'cut.rmap: holds' "$rubble" map first --continue cut.rmap
+expect_exit 3 'is no map with a graph' "$rubble" map first --localise s.yaml
+expect_exit 3 "cannot go on with a map" "$rubble" map first --continue first --set mapper.kind=paper
+expect_exit 3 'holds no map.rmap' "$rubble" export empty graph2.g2o
+finish

@@ -1,0 +1,235 @@
+#include "slam/robust/continued_mapper.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "base/planar.h"
+#include "tests/support/slam_floor.h"
+
+/// A map outlives the run that made it.
+namespace rubble::slam {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using robot::Inputs;
+using robot::RobotModel;
+using Ticks = std::vector<Inputs>;
+
+const std::vector<Cell> kRound{{0, 0}, {1, 0}, {2, 0}, {2, 1}, {1, 1}, {0, 1}, {0, 0}};
+const std::vector<Cell> kElsewhere{{2, 1}, {1, 1}, {0, 1}, {0, 0}, {1, 0}};
+
+struct Recorded {
+  slam_test::Drive drive;
+  Ticks ticks;
+};
+
+Recorded recorded(const slam_test::Floor& floor, const std::vector<Cell>& rooms, double heading, std::uint64_t seed) {
+  Recorded out{slam_test::drive_through(floor.way(rooms), heading), {}};
+  out.ticks = slam_test::record(floor.world(), out.drive, RobotModel(), 1.0, 0.01, seed);
+  return out;
+}
+
+void play(Mapper& mapper, const Ticks& ticks) {
+  for (const Inputs& tick : ticks) mapper.update(tick);
+  mapper.finish();
+}
+
+std::string map_of(const Ticks& ticks) {
+  RobustMapper mapper(RobotModel(), {}, 1);
+  play(mapper, ticks);
+  return mapper.saved_map();
+}
+
+std::shared_ptr<const MapBase> base(std::string bytes, bool grows, std::optional<TPose2D> start = std::nullopt) {
+  return std::make_shared<MapBase>(MapBase{std::move(bytes), "map", grows, start});
+}
+
+/// Errors of poses in the map against the truth, where the map's frame is the first pose of the drive that made it.
+struct Errors {
+  double rmse = 0.0;
+  double worst = 0.0;          ///< [m]
+  double worst_heading = 0.0;  ///< [rad]
+};
+
+Errors errors(const Trajectory& estimate, const Trajectory& truth, const TPose2D& T_world_map) {
+  Errors e;
+  double sum = 0.0;
+  for (const StampedPose& pose : estimate) {
+    const TPose2D expected = *pose_at(truth, pose.stamp) - T_world_map;
+    const double off = length(pose.pose.x - expected.x, pose.pose.y - expected.y);
+    sum += off * off;
+    e.worst = std::max(e.worst, off);
+    e.worst_heading = std::max(e.worst_heading, std::abs(wrap_angle(pose.pose.phi - expected.phi)));
+  }
+  e.rmse = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, estimate.size())));
+  return e;
+}
+
+double figure(const Mapper& mapper, const std::string& key) {
+  for (const MapperFigure& f : mapper.figures())
+    if (f.key == key) return f.value;
+  ADD_FAILURE() << "no figure " << key;
+  return 0.0;
+}
+
+TEST(ContinuedMapper, ALogCutInTwoIsMappedAsWellAsInOnePiece) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const slam_test::Floor floor(seed, 3, 2);
+    std::vector<Cell> twice = kRound;
+    twice.insert(twice.end(), kRound.begin() + 1, kRound.end());
+    const Recorded all = recorded(floor, twice, 0.0, seed);
+    const auto cut = all.ticks.begin() + static_cast<std::ptrdiff_t>(all.ticks.size() * 2 / 5);
+    RobustMapper whole(RobotModel(), {}, 1);
+    play(whole, all.ticks);
+
+    ContinuedMapper second(RobotModel(), {}, base(map_of(Ticks(all.ticks.begin(), cut)), true));
+    play(second, Ticks(cut, all.ticks.end()));
+    EXPECT_EQ(figure(second, "place_known"), 1.0);
+    ASSERT_EQ(second.trajectory().size(), static_cast<std::size_t>(all.ticks.end() - cut));
+    const TPose2D& T_world_map = all.drive.truth.front().pose;
+    const Errors in_one = errors(whole.trajectory(), all.drive.truth, T_world_map);
+    const Errors in_two = errors(second.trajectory(), all.drive.truth, T_world_map);
+    RecordProperty("rmse_in_one_mm_" + std::to_string(seed), static_cast<int>(1e3 * in_one.rmse));
+    RecordProperty("rmse_in_two_mm_" + std::to_string(seed), static_cast<int>(1e3 * in_two.rmse));
+    EXPECT_LT(in_two.rmse, in_one.rmse + 0.01) << "in one piece " << in_one.rmse;
+    EXPECT_GT(figure(second, "near_edges") + figure(second, "loops_closed"), 5.0) << "nothing ties the two together";
+  }
+}
+
+/// The robot begins somewhere else, looking another way, with its wheels at zero.
+TEST(ContinuedMapper, GoesOnFromAnUnknownStart) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const slam_test::Floor floor(seed, 3, 2);
+    const Recorded first = recorded(floor, kRound, 0.0, seed);
+    const Recorded second = recorded(floor, kElsewhere, 2.0, seed + 50);
+    ContinuedMapper mapper(RobotModel(), {}, base(map_of(first.ticks), true));
+    play(mapper, second.ticks);
+    EXPECT_EQ(figure(mapper, "place_known"), 1.0);
+    ASSERT_EQ(mapper.trajectory().size(), second.ticks.size()) << "known afterwards from the first scan on";
+    const Errors e = errors(mapper.trajectory(), second.drive.truth, first.drive.truth.front().pose);
+    EXPECT_LT(e.worst, 0.08);
+    EXPECT_LT(e.worst_heading, deg_to_rad(3.0));
+    const Errors live = errors(mapper.live_trajectory(), second.drive.truth, first.drive.truth.front().pose);
+    EXPECT_FALSE(mapper.live_trajectory().empty());
+    EXPECT_LT(live.worst, 0.10);
+    const SavedMap both = decode_map(mapper.saved_map(), "both");
+    EXPECT_GT(both.frames.size(), decode_map(map_of(first.ticks), "first").frames.size());
+  }
+}
+
+TEST(ContinuedMapper, LocalisesFromAnUnknownStartAndLeavesTheMapAsItIs) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const slam_test::Floor floor(seed, 3, 2);
+    const Recorded first = recorded(floor, kRound, 0.0, seed);
+    const Recorded second = recorded(floor, kElsewhere, -1.0, seed + 50);
+    const std::string bytes = map_of(first.ticks);
+    ContinuedMapper mapper(RobotModel(), {}, base(bytes, false));
+    play(mapper, second.ticks);
+    EXPECT_EQ(figure(mapper, "place_known"), 1.0);
+    EXPECT_EQ(figure(mapper, "carried_off"), 0.0);
+    const Errors live = errors(mapper.live_trajectory(), second.drive.truth, first.drive.truth.front().pose);
+    EXPECT_GT(mapper.live_trajectory().size(), second.ticks.size() / 3);
+    EXPECT_LT(live.rmse, 0.04);
+    EXPECT_LT(live.worst, 0.10);
+    EXPECT_TRUE(mapper.saved_map() == bytes) << "the map has changed";
+    EXPECT_EQ(figure(mapper, "key_frames"), decode_map(bytes, "map").frames.size());
+  }
+}
+
+TEST(ContinuedMapper, AStartThatIsGivenIsTakenAtOnce) {
+  const slam_test::Floor floor(1, 3, 2);
+  const Recorded first = recorded(floor, kRound, 0.0, 1);
+  const Recorded second = recorded(floor, kElsewhere, -1.0, 51);
+  const TPose2D off{0.15, -0.1, 0.1};  // as well as people know it
+  const TPose2D start = (second.drive.truth.front().pose - first.drive.truth.front().pose) + off;
+  ContinuedMapper mapper(RobotModel(), {}, base(map_of(first.ticks), false, start));
+  mapper.update(second.ticks.front());
+  mapper.update(second.ticks[1]);
+  EXPECT_EQ(figure(mapper, "place_known"), 1.0);
+  EXPECT_LT(errors(mapper.trajectory(), second.drive.truth, first.drive.truth.front().pose).worst, 0.06);
+}
+
+/// All floors have rooms of one size in one frame: only doors and furniture tell them apart.
+TEST(ContinuedMapper, AForeignBuildingIsNotTakenForTheMap) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const std::string bytes = map_of(recorded(slam_test::Floor(seed, 3, 2), kRound, 0.0, seed).ticks);
+    const Recorded foreign = recorded(slam_test::Floor(seed + 20, 3, 2), kElsewhere, 0.5, seed);
+    for (const bool grows : {true, false}) {
+      ContinuedMapper mapper(RobotModel(), {}, base(bytes, grows));
+      play(mapper, foreign.ticks);
+      EXPECT_EQ(figure(mapper, "place_known"), 0.0);
+      EXPECT_TRUE(mapper.trajectory().empty());
+      EXPECT_GT(mapper.covariance()(0, 0), 1.0) << "it says that it does not know";
+      EXPECT_TRUE(mapper.saved_map() == bytes) << "the map has changed";
+    }
+  }
+}
+
+TEST(ContinuedMapper, ARobotThatIsCarriedOffFindsItsPlaceAgain) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const slam_test::Floor floor(seed, 3, 2);
+    const Recorded first = recorded(floor, kRound, 0.0, seed);
+    const Recorded before = recorded(floor, {{0, 0}, {1, 0}, {2, 0}}, 0.0, seed + 50);
+    const Recorded after = recorded(floor, {{0, 1}, {1, 1}, {2, 1}, {2, 0}}, 1.0, seed + 60);
+    ContinuedMapper mapper(RobotModel(), {}, base(map_of(first.ticks), false));
+    const Ticks ticks = slam_test::spliced(before.ticks, after.ticks);
+    play(mapper, ticks);
+    EXPECT_EQ(figure(mapper, "carried_off"), 1.0);
+    EXPECT_EQ(figure(mapper, "place_known"), 1.0);
+    const TPose2D expected = after.drive.truth.back().pose - first.drive.truth.front().pose;
+    const TPose2D& end = mapper.trajectory().back().pose;
+    EXPECT_LT(length(end.x - expected.x, end.y - expected.y), 0.08);
+    EXPECT_LT(std::abs(wrap_angle(end.phi - expected.phi)), deg_to_rad(3.0));
+    for (std::size_t i = 1; i < mapper.trajectory().size(); ++i)
+      ASSERT_LT(mapper.trajectory()[i - 1].stamp, mapper.trajectory()[i].stamp);
+  }
+}
+
+/// Two robots that saw different parts of a floor, and some of it both.
+TEST(MergedMaps, LieInOneFrame) {
+  const RobustConfig config = suited_to(RobotModel().laser, {});
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const slam_test::Floor floor(seed, 3, 2);
+    const Recorded first = recorded(floor, {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}, {1, 0}}, 0.0, seed);
+    const Recorded second = recorded(floor, {{1, 1}, {0, 1}, {0, 0}, {1, 0}, {2, 0}, {2, 1}}, 1.0, seed + 50);
+    const SavedMap a = decode_map(map_of(first.ticks), "first");
+    const SavedMap b = decode_map(map_of(second.ticks), "second");
+    const std::optional<SavedMap> both = merged(a, b, config);
+    ASSERT_TRUE(both);
+    ASSERT_EQ(both->frames.size(), a.frames.size() + b.frames.size());
+    EXPECT_EQ(both->scans.size(), a.scans.size() + b.scans.size());
+    for (int i = 0; i < both->frames.size(); ++i) {
+      const Recorded& drive = i < a.frames.size() ? first : second;
+      const TPose2D expected = *pose_at(drive.drive.truth, both->frames[i].stamp) - first.drive.truth.front().pose;
+      EXPECT_LT(length(both->frames.pose(i).x - expected.x, both->frames.pose(i).y - expected.y), 0.08) << i;
+    }
+    EXPECT_TRUE(encode_map(decode_map(encode_map(*both), "both")) == encode_map(*both));
+    EXPECT_FALSE(merged(
+        a, decode_map(map_of(recorded(slam_test::Floor(seed + 20, 3, 2), kRound, 0.0, 1).ticks), "other"), config));
+  }
+}
+
+TEST(ContinuedMapper, SameInputsSameBits) {
+  const slam_test::Floor floor(2, 3, 2);
+  const std::string bytes = map_of(recorded(floor, kRound, 0.0, 2).ticks);
+  const Recorded second = recorded(floor, kElsewhere, 2.0, 52);
+  ContinuedMapper a(RobotModel(), {}, base(bytes, true));
+  ContinuedMapper b(RobotModel(), {}, base(bytes, true));
+  play(a, second.ticks);
+  play(b, second.ticks);
+  EXPECT_TRUE(a.saved_map() == b.saved_map());
+  ASSERT_EQ(a.trajectory().size(), b.trajectory().size());
+  for (std::size_t i = 0; i < a.trajectory().size(); ++i) EXPECT_EQ(a.trajectory()[i].pose, b.trajectory()[i].pose);
+}
+
+}  // namespace
+}  // namespace rubble::slam

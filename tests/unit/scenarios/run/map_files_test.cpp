@@ -1,0 +1,190 @@
+#include "scenarios/run/map_files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <mrpt/maps/COccupancyGridMap2D.h>
+#include <mrpt/maps/CSimpleMap.h>
+#include <mrpt/poses/CPose3D.h>
+#include <mrpt/poses/CPose3DPDF.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "base/angle.h"
+#include "base/error.h"
+#include "base/text/text_file.h"
+#include "slam/robust/robust_mapper.h"
+#include "slam/robust/saved_map.h"
+#include "tests/support/slam_floor.h"
+
+/// What a run folder keeps of a map, and what other programs read of it.
+namespace rubble::scenarios {
+namespace {
+
+namespace fs = std::filesystem;
+using mrpt::math::TPose2D;
+using testing::HasSubstr;
+
+class MapFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    path_ = (fs::temp_directory_path() /
+             ("rubble-map-files-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name())))
+                .string();
+    fs::remove_all(path_);
+    folder_ = std::make_unique<RunFolder>(path_, false);
+    const slam_test::Floor floor(3, 2, 2);
+    const auto drive = slam_test::drive_through(floor.way({{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}, {1, 0}}), 0.0);
+    mapper_ = std::make_unique<slam::RobustMapper>(robot::RobotModel(), slam::RobustConfig(), 1);
+    for (const auto& tick : slam_test::record(floor.world(), drive, robot::RobotModel(), 1.0, 0.01, 3))
+      mapper_->update(tick);
+    mapper_->finish();
+    save_map_files(*folder_, *mapper_);
+  }
+  void TearDown() override { fs::remove_all(path_); }
+
+  std::string path_;
+  std::unique_ptr<RunFolder> folder_;
+  std::unique_ptr<slam::RobustMapper> mapper_;
+};
+
+TEST_F(MapFiles, TheMapIsReadBackFromFolderAndFile) {
+  for (const std::string& path : {path_, path_ + "/map.rmap"}) {
+    const auto base = load_map_base(path, true, std::nullopt);
+    EXPECT_EQ(base->bytes, mapper_->saved_map());
+    EXPECT_EQ(base->name, path_ + "/map.rmap");
+  }
+  fs::remove(path_ + "/map.rmap");
+  try {
+    load_map_base(path_, true, std::nullopt);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("holds no map.rmap"));
+  }
+}
+
+TEST_F(MapFiles, ScansHaveALineEach) {
+  std::istringstream csv(read_text_file(path_ + "/scans.csv"));
+  std::string head, line;
+  ASSERT_TRUE(std::getline(csv, head));
+  EXPECT_THAT(head, testing::StartsWith("stamp_s,inliers,"));
+  const auto columns = std::count(head.begin(), head.end(), ',');
+  const Trajectory& live = mapper_->live_trajectory();
+  for (const StampedPose& scan : live) {
+    ASSERT_TRUE(std::getline(csv, line));
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), columns);
+    EXPECT_NEAR(std::stod(line), scan.stamp.seconds(), 1e-6);
+    const double inliers = std::stod(line.substr(line.find(',') + 1));
+    EXPECT_GE(inliers, 0.5);
+    EXPECT_LE(inliers, 1.0);
+  }
+  EXPECT_FALSE(std::getline(csv, line));
+  EXPECT_GT(fs::file_size(path_ + "/scans.png"), 3000u);
+}
+
+/// As g2o defines it: the error of an edge is the pose by which its end misses where the edge would have it, seen from
+/// there.
+double chi2_of_g2o(const std::string& text, std::size_t& vertices, std::size_t& edges) {
+  std::istringstream in(text);
+  std::vector<TPose2D> nodes;
+  double chi2 = 0.0;
+  std::string line;
+  vertices = edges = 0;
+  while (std::getline(in, line)) {
+    std::istringstream words(line);
+    std::string tag;
+    words >> tag;
+    if (tag == "VERTEX_SE2") {
+      std::size_t id = 0;
+      TPose2D pose;
+      words >> id >> pose.x >> pose.y >> pose.phi;
+      EXPECT_EQ(id, nodes.size());
+      nodes.push_back(pose);
+      ++vertices;
+    } else if (tag == "EDGE_SE2") {
+      std::size_t from = 0, to = 0;
+      TPose2D z;
+      double i11, i12, i13, i22, i23, i33;
+      words >> from >> to >> z.x >> z.y >> z.phi >> i11 >> i12 >> i13 >> i22 >> i23 >> i33;
+      EXPECT_TRUE(words) << line;
+      const double c = std::cos(nodes[from].phi), s = std::sin(nodes[from].phi);
+      const double dx = nodes[to].x - nodes[from].x, dy = nodes[to].y - nodes[from].y;
+      const double ax = c * dx + s * dy - z.x, ay = -s * dx + c * dy - z.y;
+      const double ex = std::cos(z.phi) * ax + std::sin(z.phi) * ay;
+      const double ey = -std::sin(z.phi) * ax + std::cos(z.phi) * ay;
+      const double et = wrap_angle(nodes[to].phi - nodes[from].phi - z.phi);
+      chi2 += i11 * ex * ex + i22 * ey * ey + i33 * et * et + 2.0 * (i12 * ex * ey + i13 * ex * et + i23 * ey * et);
+      ++edges;
+    } else {
+      EXPECT_EQ(tag, "FIX");
+    }
+  }
+  return chi2;
+}
+
+TEST_F(MapFiles, AG2oReaderFindsTheSameChi2) {
+  const std::string out = path_ + "/graph.g2o";
+  export_map(path_, out);
+  std::size_t vertices = 0, edges = 0;
+  const double chi2 = chi2_of_g2o(read_text_file(out), vertices, edges);
+  const slam::PoseGraph& graph = mapper_->key_frames().graph();
+  double ours = 0.0;
+  std::size_t on = 0;
+  for (const slam::GraphEdge& edge : graph.edges) {
+    if (!edge.on) continue;
+    ours += slam::squared_sigmas(graph, edge);
+    ++on;
+  }
+  EXPECT_EQ(vertices, graph.nodes.size());
+  EXPECT_EQ(edges, on);
+  EXPECT_GT(ours, 0.1);
+  EXPECT_NEAR(chi2, ours, 1e-6 * ours);
+}
+
+/// MRPT's own map of the exported scans shows the same walls.
+TEST_F(MapFiles, MrptReadsTheSimplemap) {
+  const std::string out = path_ + "/map.simplemap";
+  export_map(path_, out);
+  mrpt::maps::CSimpleMap simple;
+  ASSERT_TRUE(simple.loadFromFile(out));
+  const slam::SavedMap saved = slam::decode_map(mapper_->saved_map(), "map");
+  ASSERT_EQ(simple.size(), saved.scans.size());
+  for (std::size_t i = 0; i < simple.size(); ++i) {
+    mrpt::poses::CPose3DPDF::ConstPtr pose;
+    mrpt::obs::CSensoryFrame::ConstPtr frame;
+    simple.get(i, pose, frame);
+    mrpt::poses::CPose3D mean;
+    pose->getMean(mean);
+    const TPose2D expected = saved.frames.pose(saved.scans[i].frame) + saved.scans[i].T_frame_base;
+    EXPECT_NEAR(mean.x(), expected.x, 1e-9);
+    EXPECT_NEAR(mean.y(), expected.y, 1e-9);
+    EXPECT_NEAR(wrap_angle(mean.yaw() - expected.phi), 0.0, 1e-9);
+  }
+  mrpt::maps::COccupancyGridMap2D grid(-5.0f, 8.0f, -5.0f, 8.0f, 0.05f);
+  grid.loadFromSimpleMap(simple);
+  const OccupancyGrid ours = mapper_->map().classify();
+  int occupied = 0, agree = 0;
+  for (int y = 0; y < ours.height(); ++y)
+    for (int x = 0; x < ours.width(); ++x) {
+      if (ours[{x, y}] != Occupancy::Occupied) continue;
+      ++occupied;
+      const auto p = ours.centre({x, y});
+      bool near = false;
+      for (const double dx : {-0.05, 0.0, 0.05})
+        for (const double dy : {-0.05, 0.0, 0.05})
+          near = near || grid.getPos(static_cast<float>(p.x + dx), static_cast<float>(p.y + dy)) < 0.4f;
+      agree += near ? 1 : 0;
+    }
+  EXPECT_GT(occupied, 300);
+  EXPECT_GT(agree, 0.95 * occupied);
+}
+
+TEST_F(MapFiles, AnotherEndingIsRefused) {
+  EXPECT_FALSE(is_map_export("a.rawlog"));
+  EXPECT_THROW(export_map(path_, path_ + "/map.xyz"), InputError);
+}
+
+}  // namespace
+}  // namespace rubble::scenarios
