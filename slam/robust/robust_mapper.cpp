@@ -213,6 +213,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
         ExpectedMotion better = motion;
         better.carried = tracked.fit.pose - T_frame_last;
         better.doubt = 1.0;
+        better.told = false;
         tracked = tracker_.track(frames_, cloud, better, T_frame_last, &work);
       }
     }
@@ -272,6 +273,7 @@ ExpectedMotion RobustMapper::Impl::expected_motion(const LaserScan& scan) {
   const bool silent = T_odom_scan_ && (silent_then || odometry_.silent_at(reference));
   odometry_jumps_ += jumped ? 1 : 0;
   silent_ += silent ? 1 : 0;
+  motion.told = T_odom_scan_ && !jumped && !silent;
   if (jumped || silent) motion.doubt = 1.0;
   if (jumped) motion.T_last_now = motion.carried.value_or(TPose2D());
   return motion;
