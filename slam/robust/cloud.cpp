@@ -1,6 +1,8 @@
 #include "slam/robust/cloud.h"
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 #include "base/angle.h"
 #include "base/planar.h"
@@ -17,10 +19,13 @@ constexpr double kSameSurface = 0.10;      ///< neighbouring hits so close lie o
 constexpr double kSameSurfaceSteps = 6.0;  ///< or closer than so many beam steps at their range
 constexpr double kNormalReach = 0.15;      ///< hits so close tell the normal [m]
 constexpr double kNormalReachSteps = 2.5;  ///< or so many beam steps
-constexpr std::size_t kNormalNeighbours = 8;  ///< on each side, at most
-constexpr double kShortGap = 0.15;            ///< gaps up to here need no filling [m]
-constexpr double kLongGap = 1.5;              ///< and from here are no surface [m]
-constexpr float kSameDirection = 0.9F;        ///< cosine between normals of one straight surface
+constexpr std::size_t kNormalNeighbours = 8;   ///< on each side, at most
+constexpr std::size_t kLeastNeighbours = 2;    ///< in all
+constexpr std::size_t kGrazingNeighbours = 2;  ///< on each side where there are fewer: then these, however far ...
+constexpr double kGrazingRoughness = 0.03;     ///< ... if they lie on a line but for the scanner's noise (RMS) [m]
+constexpr double kShortGap = 0.15;             ///< gaps up to here need no filling [m]
+constexpr double kLongGap = 1.5;               ///< and from here are no surface [m]
+constexpr float kSameDirection = 0.9F;         ///< cosine between normals of one straight surface
 
 int bin_of(double bearing) {
   const int bin = static_cast<int>(std::floor(rad_to_deg(bearing)));
@@ -90,21 +95,33 @@ class Hits {
   std::vector<int> beam_;
 };
 
+/// Hits that may lie on one line with a hit: first and last.
+using Stretch = std::pair<std::size_t, std::size_t>;
+
+/// Those joined with hit `i` that lie within `reach` [m] of it; so many on each side however far.
+Stretch beside(const Hits& hits, std::size_t i, double reach, std::size_t however_far) {
+  const auto belongs = [&](std::size_t from, std::size_t to, std::size_t apart) {
+    return apart < kNormalNeighbours && hits.joined(from, to) &&
+           (apart < however_far || distance(hits.p(to), hits.p(i)) <= reach);
+  };
+  std::size_t first = i;
+  std::size_t last = i;
+  while (first > 0 && belongs(first, first - 1, i - first)) --first;
+  while (last + 1 < hits.size() && belongs(last, last + 1, last - i)) ++last;
+  return {first, last};
+}
+
 /// The point `i` with the normal of a line through it and its neighbours, where they lie on one.
 OrientedPoint oriented(const Hits& hits, std::size_t i, const TPoint2D& laser) {
   const TPoint2D& p = hits.p(i);
   OrientedPoint out{static_cast<float>(p.x), static_cast<float>(p.y), 0.0F, 0.0F};
   const double reach = std::max(kNormalReach, kNormalReachSteps * hits.range(i) * hits.step());
-  std::size_t first = i;
-  std::size_t last = i;
-  while (first > 0 && i - first < kNormalNeighbours && hits.joined(first, first - 1) &&
-         distance(hits.p(first - 1), p) <= reach)
-    --first;
-  while (last + 1 < hits.size() && last - i < kNormalNeighbours && hits.joined(last, last + 1) &&
-         distance(hits.p(last + 1), p) <= reach)
-    ++last;
+  auto [first, last] = beside(hits, i, reach, 0);
+  // Where a wall is seen at a grazing angle its hits lie far apart; but these far walls along the way tell the heading.
+  const bool grazing = last - first < kLeastNeighbours;
+  if (grazing) std::tie(first, last) = beside(hits, i, reach, kGrazingNeighbours);
+  if (last - first < kLeastNeighbours) return out;
   const double count = static_cast<double>(last - first + 1);
-  if (count < 3.0) return out;
 
   TPoint2D mean(0, 0);
   for (std::size_t k = first; k <= last; ++k) mean += hits.p(k);
@@ -121,7 +138,7 @@ OrientedPoint oriented(const Hits& hits, std::size_t i, const TPoint2D& laser) {
   const double along = half_trace + root;
   const double across = half_trace - root;
   const bool line = across < 0.15 * along || (across / count < 1e-4 && across < 0.4 * along);
-  if (!line) return out;
+  if (!line || (grazing && across > count * kGrazingRoughness * kGrazingRoughness)) return out;
   // The eigenvector of `across`: (xy, across - xx) or (across - yy, xy), whichever is longer.
   TPoint2D n = std::abs(across - xx) > std::abs(across - yy) ? TPoint2D(xy, across - xx) : TPoint2D(across - yy, xy);
   const double norm = length(n);

@@ -20,6 +20,7 @@ constexpr double kLeastScore = 0.25;
 constexpr double kWidestSearch = 1.0;   ///< [m]
 constexpr double kDoubted = 0.5;        ///< so much doubt, and the odometry is but one of several starts
 constexpr double kDoubt = 0.01;         ///< what is left of the odometry's information once it is doubted
+constexpr double kAsWell = 0.05;        ///< inliers that decide nothing
 constexpr double kFound = 0.6;          ///< inliers (or score) that leave no doubt
 constexpr double kFoundAgain = 0.5;     ///< inliers after a search of all headings
 constexpr double kRunnerUp = 0.85;      ///< another place may score so much of the best
@@ -79,9 +80,13 @@ Tracked LocalTracker::track(const KeyFrames& frames, const Cloud& cloud, const E
   const std::optional<TPose2D> carried = motion.carried ? std::optional(T_frame_last + *motion.carried) : std::nullopt;
   Tracked tracked;
   tracked.fit = fit_scan(surfels_, cloud.points, prior.pose, prior, {}, work);
-  if (doubted)
+  ExpectedMotion undoubted = motion;
+  undoubted.doubt = 0.0;
+  if (doubted) {
     tracked.fit = without_odometry(cloud, motion, prior, carried, tracked.fit, work);
-  else if (distance > config_.large_step || turn > config_.large_turn)
+    if (motion.told) believe_again(cloud, {prior.pose, prior_information(undoubted)}, tracked.fit, work);
+  }
+  if (!doubted && (distance > config_.large_step || turn > config_.large_turn))
     tracked.fit = best_of_several(cloud, prior, distance, turn, tracked.fit, work);
   if (tracked.fit.prior_chi2 > config_.slip_chi2 || tracked.fit.inliers < config_.lost_inliers)
     doubt_odometry(frames, cloud, prior, carried, reach(motion), tracked, work);
@@ -89,8 +94,6 @@ Tracked LocalTracker::track(const KeyFrames& frames, const Cloud& cloud, const E
   tracked.lost = doubted && (!tracked.found || tracked.fit.inliers < config_.lost_inliers);
   if (!tracked.found) tracked.fit.pose = prior.pose;
   const TPose2D off = tracked.fit.pose - prior.pose;
-  ExpectedMotion undoubted = motion;
-  undoubted.doubt = 0.0;
   const Eigen::Vector3d d(off.x, off.y, wrap_angle(off.phi));
   tracked.odometry_chi2 = d.dot(prior_information(undoubted) * d);
   return tracked;
@@ -112,6 +115,13 @@ ScanFit LocalTracker::without_odometry(const Cloud& cloud, const ExpectedMotion&
   if (const auto found = look_around(cloud, {centre, far.distance, far.turn}, kLeastScore, 1.0, work))
     better(found->pose);
   return fit;
+}
+
+/// What odometry says now stands where the scan fits it as well: a scan without its hold slides along walls, and each
+/// slide would be one more reason to doubt.
+void LocalTracker::believe_again(const Cloud& cloud, const PosePrior& odometry, ScanFit& fit, Work* work) const {
+  const ScanFit by_odometry = fit_scan(surfels_, cloud.points, odometry.pose, odometry, {}, work);
+  if (by_odometry.prior_chi2 <= config_.slip_chi2 && by_odometry.inliers >= fit.inliers - kAsWell) fit = by_odometry;
 }
 
 std::optional<CorrelativeSearch::Found> LocalTracker::look_around(const Cloud& cloud, const SearchWindow& window,

@@ -35,6 +35,7 @@ struct ExpectedMotion {
   std::optional<mrpt::math::TPose2D> carried;
   double time = 0.0;   ///< since the last scan [s]
   double doubt = 0.0;  ///< of the odometry, 0: as good as wheels are, 1: it says nothing
+  bool told = false;   ///< it has spoken, and is doubted for what it said before
 };
 
 /// How a scan lies on the local map.
@@ -79,6 +80,7 @@ class LocalTracker {
   void doubt_odometry(const KeyFrames& frames, const Cloud& cloud, const PosePrior& prior,
                       const std::optional<mrpt::math::TPose2D>& carried, const Reach& reach, Tracked& tracked,
                       Work* work);
+  void believe_again(const Cloud& cloud, const PosePrior& odometry, ScanFit& fit, Work* work) const;
   bool overrules(const KeyFrames& frames, const Cloud& cloud, const ScanFit& found, const ScanFit& expected,
                  Work* work) const;
   std::optional<ScanFit> any_heading(const Cloud& cloud, const PosePrior& prior, double distance, Work* work);

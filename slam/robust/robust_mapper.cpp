@@ -106,6 +106,7 @@ struct RobustMapper::Impl {
   Impl(const robot::RobotModel& model, const RobustConfig& config)
       : config_(config),
         T_base_laser_(model.T_base_laser),
+        scan_period_(model.laser.scan_period),
         level_scan_(model.T_base_laser, config.scan),
         tilt_(config.tilt),
         tracker_(config.tracker),
@@ -154,6 +155,7 @@ struct RobustMapper::Impl {
 
   const RobustConfig config_;
   const mrpt::math::TPose3D T_base_laser_;
+  const double scan_period_;  ///< [s]
   LevelScan level_scan_;
   TiltTrack tilt_;
   OdometryTrack odometry_;
@@ -166,10 +168,12 @@ struct RobustMapper::Impl {
 
   ScanQueue waiting_;
   std::optional<TPose2D> T_odom_scan_;  ///< at the last scan; nothing while no odometry has come
-  int here_ = -1;                       ///< the key frame that the robot hangs on: the newest, or an old one ...
-  double path_here_ = 0.0;              ///< ... which it reached after so much path [m]
-  TPose2D T_frame_base_;                ///< at the last scan, relative to that key frame
-  TPose2D T_map_stamped_;               ///< where the map was stamped last
+  std::optional<bool>
+      silent_at_scan_;      ///< whether odometry was silent at the last scan, once what was said is forgotten
+  int here_ = -1;           ///< the key frame that the robot hangs on: the newest, or an old one ...
+  double path_here_ = 0.0;  ///< ... which it reached after so much path [m]
+  TPose2D T_frame_base_;    ///< at the last scan, relative to that key frame
+  TPose2D T_map_stamped_;   ///< where the map was stamped last
   Eigen::Matrix3d frame_covariance_ = Eigen::Matrix3d::Zero();  ///< of that key frame, in the map
   Eigen::Matrix3d scan_covariance_ = Eigen::Matrix3d::Zero();   ///< of T_frame_base_, along the frame's axes
   std::vector<Place> scans_;
@@ -207,7 +211,10 @@ void RobustMapper::Impl::receive(const robot::Inputs& inputs) {
   }
   while (ready(inputs.now)) process(waiting_.take());
   if (odometry_.empty()) return;
-  odometry_.forget_before(waiting_.oldest_needed(odometry_));
+  const Stamp oldest_needed = waiting_.oldest_needed(odometry_);
+  if (!scans_.empty() && !silent_at_scan_ && scans_.back().stamp < oldest_needed)
+    silent_at_scan_ = odometry_.silent_at(scans_.back().stamp);  // the last time that it can be told
+  odometry_.forget_before(oldest_needed);
   tilt_.forget_before(odometry_.newest() - ScanQueue::kLateScan);
 }
 
@@ -247,6 +254,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
         ExpectedMotion better = motion;
         better.carried = tracked.fit.pose - T_frame_last;
         better.doubt = 1.0;
+        better.told = false;
         tracked = tracker_.track(frames_, cloud, better, T_frame_last, &work);
       }
     }
@@ -270,6 +278,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
   }
   if (!odometry_.empty()) T_odom_scan_ = odometry_.pose_at(reference);
   scans_.push_back({reference, here_, T_frame_base_});
+  silent_at_scan_.reset();
 
   // What waits is done bit by bit, the more of it the faster.
   const auto most = static_cast<Work>(config_.budget_ms * 1e6);
@@ -334,11 +343,15 @@ ExpectedMotion RobustMapper::Impl::expected_motion(const LaserScan& scan) {
   if (motion.time < kNoDuration) return motion;
   const double path = length(motion.T_last_now.x, motion.T_last_now.y);
   const double turn = std::abs(wrap_angle(motion.T_last_now.phi));
-  const bool jumped = (path > kLeastJump && path > kFastest * motion.time) ||
-                      (turn > kLeastJump && turn > kFastestTurn * motion.time) || jumps_within(scan);
-  const bool silent = T_odom_scan_ && (odometry_.silent_at(last) || odometry_.silent_at(reference));
+  // Stamps that come bunched do not mean that the scanner was faster than it is.
+  const double time = std::max(motion.time, scan_period_);
+  const bool jumped = (path > kLeastJump && path > kFastest * time) ||
+                      (turn > kLeastJump && turn > kFastestTurn * time) || jumps_within(scan);
+  const bool silent_then = silent_at_scan_ ? *silent_at_scan_ : odometry_.silent_at(last);
+  const bool silent = T_odom_scan_ && (silent_then || odometry_.silent_at(reference));
   odometry_jumps_ += jumped ? 1 : 0;
   silent_ += silent ? 1 : 0;
+  motion.told = T_odom_scan_ && !jumped && !silent;
   if (jumped || silent) motion.doubt = 1.0;
   if (jumped) motion.T_last_now = motion.carried.value_or(TPose2D());
   return motion;

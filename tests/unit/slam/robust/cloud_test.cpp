@@ -57,6 +57,42 @@ TEST(Cloud, NormalsStandOnAWall) {
   }
 }
 
+RobotModel coarse_far_sight() {
+  RobotModel model;
+  model.laser.beams = 181;
+  model.laser.angle_step = deg_to_rad(1.0);
+  model.laser.angle_min = deg_to_rad(-90.0);
+  model.laser.range_max = 30.0;
+  return model;
+}
+
+TEST(Cloud, WallsSeenAtAGrazingAngleHaveNormals) {
+  const slam_test::World corridor{{{-2.0, 1.0}, {20.0, 1.0}}, {{-2.0, -1.0}, {20.0, -1.0}}};
+  int far = 0;
+  for (const OrientedPoint& p : slam_test::cloud_at(corridor, {}, coarse_far_sight()).points) {
+    if (p.x < 3.0F || p.x > 5.0F) continue;
+    ++far;
+    ASSERT_TRUE(p.has_normal()) << p.x << " " << p.y;
+    EXPECT_NEAR(p.nx, 0.0, 1e-2);
+    EXPECT_LT(p.ny * p.y, 0.0F) << "normals look at the laser";
+  }
+  EXPECT_GT(far, 10);
+}
+
+TEST(Cloud, HitsFarApartThatLieOnNoLineHaveNoNormal) {
+  ScanPoints scan;  // a hedge along the way: every second hit 0.1 m deeper, farther apart than the usual reach
+  scan.beam_width = deg_to_rad(1.0);
+  for (int beam = 0; beam < 10; ++beam) {
+    const double bearing = deg_to_rad(20.0 - beam);
+    const TPoint2D end(1.0 / std::tan(bearing), 1.0 + 0.1 * (beam % 2));
+    scan.hits.push_back(end);
+    scan.rays.push_back({end, true, true, beam});
+  }
+  const Cloud cloud = cloud_of(scan, {});
+  ASSERT_EQ(cloud.points.size(), 10u);
+  for (const OrientedPoint& p : cloud.points) EXPECT_FALSE(p.has_normal()) << p.x << " " << p.y;
+}
+
 TEST(Cloud, FilledPointsLieOnTheSurfaceToo) {
   RobotModel model;
   model.laser.beams = 121;  // two degrees apart: gaps of 0.15 m and more

@@ -151,6 +151,53 @@ TEST(OdometryGap, FrameThatBeginsAnewWithoutAGap) {
   }
 }
 
+double figure(const RobustMapper& mapper, const std::string& key) {
+  for (const MapperFigure& f : mapper.figures())
+    if (f.key == key) return f.value;
+  ADD_FAILURE() << "no figure " << key;
+  return -1.0;
+}
+
+/// Scans that come seldom find odometry that has spoken all the time, and it is believed.
+TEST(OdometryGap, SeldomScansAreNoSilenceOfTheOdometry) {
+  for (const double apart : {2.5, 4.0}) {
+    SCOPED_TRACE(apart);
+    Ticks ticks = slam_test::record(slam_test::furnished_room(), fast_drive(), RobotModel(), 1.0, 0.01, 6);
+    Stamp last = Stamp::never();
+    for (Inputs& tick : ticks) {
+      if (last != Stamp::never() && tick.now - last < apart) tick.scans.clear();
+      if (!tick.scans.empty()) last = tick.now;
+    }
+    RobustMapper mapper(RobotModel(), {}, 1);
+    const slam_test::Outcome o = slam_test::play(mapper, ticks, slam_test::furnished_room(), fast_drive().truth);
+    EXPECT_GE(mapper.counts().scans, 5u);
+    EXPECT_EQ(figure(mapper, "odometry_silent"), 0.0);
+    EXPECT_LT(o.rmse, 0.05);
+  }
+}
+
+/// A recorder that stamps what has piled up all at once makes no robot fast: two scans of a turn milliseconds apart.
+TEST(OdometryGap, BunchedStampsAreNoJumps) {
+  RobotModel model;
+  model.laser.scan_period = 0.7;
+  Rng noise(7, "scan");
+  RobustMapper mapper(model, {}, 1);
+  Trajectory truth;
+  for (int i = 0; i < 25; ++i) {
+    const TPose2D T_world_base(0.0, 0.0, wrap_angle(0.6 * i));
+    Inputs tick;
+    tick.now = Stamp::from_seconds(1.0 + 0.7 * (i - i % 2) + 0.005 * (i % 2));
+    tick.odometry.push_back({tick.now, T_world_base, 0.0, 0.0, false});
+    tick.scans.push_back(slam_test::scan_at(slam_test::furnished_room(), T_world_base, model, tick.now, 0.01, noise));
+    truth.push_back({tick.now, T_world_base});
+    mapper.update(tick);
+  }
+  mapper.finish();
+  EXPECT_EQ(figure(mapper, "odometry_jumps"), 0.0);
+  EXPECT_EQ(mapper.trajectory().size(), truth.size());
+  EXPECT_LT(slam_test::first_pose_rmse(mapper.trajectory(), truth), 0.03);
+}
+
 /// Lidar and odometry both gone while the robot turns: it is found again, and nothing wrong is drawn meanwhile.
 TEST(OdometryGap, NothingAtAllForAWhile) {
   const Ticks ticks = fast_ticks(1);
