@@ -51,10 +51,11 @@ std::string text(const TPoint2D& p) {
   return line.data();
 }
 
-std::string target_text(ExplorerState state, const Plan& plan, double usual_d_min) {
+std::string target_text(ExplorerState state, bool niches, const Plan& plan, double usual_d_min) {
   const char* what = state == ExplorerState::GoingHome   ? "home"
-                     : state == ExplorerState::Searching ? "a place to search from"
-                                                         : "the frontier";
+                     : state != ExplorerState::Searching ? "the frontier"
+                     : niches                            ? "a place to look into a niche from"
+                                                         : "a place to search from";
   std::array<char, 60> more{};
   std::snprintf(more.data(), more.size(), ", cost %.1f m", plan.cost);
   const std::string line = std::string("drives to ") + what + " at " + text(plan.target) + more.data();
@@ -260,9 +261,18 @@ Plan PaperExplorer::plan_on(const Traversable& floor) {
         floor, pose_, [this](const TPoint2D& p) { return config_.bar_targets && blacklist_.barred(p, now_); },
         previous);
   };
-  if (state_ == ExplorerState::Driving) return to_frontier(target_);
-  Plan frontier = to_frontier(std::nullopt);
-  Plan search = plan_search(floor);
+  const bool driving = state_ == ExplorerState::Driving;
+  if (driving && (frontiers_done_ || !floor_search_.on())) return to_frontier(target_);
+  Plan frontier = to_frontier(driving ? target_ : std::nullopt);
+  Plan search = plan_search(floor, frontiers_done_ ? Subjects::All : Subjects::Niches);
+  if (!frontiers_done_) {
+    // What lies in a niche beside the way is looked at now: coming back for it costs more.
+    const bool look = search.found && (!frontier.found || search.cost <= frontier.cost + (driving ? 0.0 : kDetourCost));
+    state_ = look ? ExplorerState::Searching : ExplorerState::Driving;
+    if (!look) return frontier;
+    search.frontier_left = frontier.frontier_left;
+    return search;
+  }
   search.frontier_left = frontier.frontier_left;
   if (!frontier.found || (search.found && frontier.cost > search.cost + kDetourCost)) return search;
   note("a frontier has come into reach");
@@ -323,7 +333,7 @@ void PaperExplorer::accept(Plan plan) {
   if (looking_.active() && !looking_.to_the_end()) looking_.end();
   if (!target_ || distance(*target_, plan.target) > kSameTarget) {
     target_cost_ = plan.cost;
-    note(target_text(state_, plan, config_.planner.transform.d_min));
+    note(target_text(state_, !frontiers_done_, plan, config_.planner.transform.d_min));
   }
   target_ = plan.target;
   path_d_min_ = plan.d_min;
@@ -462,12 +472,12 @@ bool PaperExplorer::holding_still() {
   return false;
 }
 
-Plan PaperExplorer::plan_search(const Traversable& floor) {
+Plan PaperExplorer::plan_search(const Traversable& floor, Subjects subjects) {
   const auto head_start = [&](const TPoint2D& p) -> std::optional<double> {
     if (blacklist_.barred(p, now_)) return std::nullopt;
     return target_ && distance(p, *target_) > 0.5 ? config_.planner.switch_cost : 0.0;
   };
-  Plan plan = planner_.to_cells(floor, pose_, floor_search_.sources(floor, head_start));
+  Plan plan = planner_.to_cells(floor, pose_, floor_search_.sources(floor, subjects, head_start));
   if (plan.found) floor_search_.choose_subject(floor.cells.cell(plan.target));
   return plan;
 }

@@ -82,7 +82,7 @@ class PaperExplorer : public Explorer {
 
   void mark_searched();
   bool holding_still();
-  Plan plan_search(const Traversable& floor);
+  Plan plan_search(const Traversable& floor, Subjects subjects);
   void face_subject();
 
   const robot::RobotModel model_;
