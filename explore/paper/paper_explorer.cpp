@@ -129,6 +129,7 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
     odometry_at_ = now_;
   }
   tilt_.update(inputs, dt_);
+  jolt_.update(inputs);
   for (const robot::VictimCue& cue : inputs.cues) hear(mapper, cue);
   const bool on_its_way = state_ == ExplorerState::Driving || state_ == ExplorerState::GoingHome;
   home_way_.moved(distance(position(before), position(pose_)), dt_, on_its_way);
@@ -219,8 +220,12 @@ Drive PaperExplorer::drive(const slam::Mapper& mapper) {
   const bool patient = now_ < patient_until_;
   // Nobody knows whether a base that is silent moves: a pulled plug is no obstacle.
   if (odometry_at_ && now_ - *odometry_at_ > kOdometryLate) watch_.reset();
-  if (tilt_.too_steep() || watch_.stuck(pose_, patient ? Drive{} : commanded_, stalled_, dt_)) {
-    got_stuck(tilt_.too_steep() ? "it leans too much here" : stalled_ ? "the motors stall" : "it does not move");
+  const bool held = watch_.stuck(pose_, patient ? Drive{} : commanded_, stalled_, dt_);
+  if (tilt_.too_steep() || jolt_.struck() || held) {
+    got_stuck(tilt_.too_steep() ? "it leans too much here"
+              : jolt_.struck()  ? "a blow stops it"
+              : stalled_        ? "the motors stall"
+                                : "it does not move");
     return {};
   }
   check_path(mapper);
