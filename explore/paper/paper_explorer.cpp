@@ -30,7 +30,8 @@ constexpr double kDetour = 3.0;                  ///< way over distance where no
 constexpr double kUnsure = 0.40;                 ///< a pose that errs by so much places no victim [m]
 constexpr double kWorthARound = 1.0;             ///< newly known floor that makes one more round worth while [m^2]
 constexpr int kBarrenRounds = 2;                 ///< rounds in a row that gain nothing end the mission
-constexpr double kDetourCost = 2.0;              ///< a frontier may cost so much more than the next viewpoint [m]
+constexpr double kBesideTheWay = 1.0;  ///< a niche that costs no more is looked into while frontiers are left [m]
+constexpr double kDetourCost = 2.0;    ///< a frontier may cost so much more than the next viewpoint [m]
 constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
 constexpr double kSameTarget = 0.5;                     ///< [m]
 constexpr double kSmallShift = 0.10;                    ///< of the robot's place by a correction of the map [m]
@@ -269,10 +270,12 @@ Plan PaperExplorer::plan_on(const Traversable& floor) {
   const bool driving = state_ == ExplorerState::Driving;
   if (driving && (frontiers_done_ || !floor_search_.on())) return to_frontier(target_);
   Plan frontier = to_frontier(driving ? target_ : std::nullopt);
-  Plan search = plan_search(floor, frontiers_done_ ? Subjects::All : Subjects::Niches);
+  Plan search = plan_search(floor, Subjects::Niches);
+  if (frontiers_done_ && !search.found) search = plan_search(floor, Subjects::All);
   if (!frontiers_done_) {
     // What lies in a niche beside the way is looked at now: coming back for it costs more.
-    const bool look = search.found && (!frontier.found || search.cost <= frontier.cost + (driving ? 0.0 : kDetourCost));
+    const double most = std::min(frontier.cost, kBesideTheWay) + (driving ? 0.0 : kDetourCost);
+    const bool look = search.found && frontier.found && search.cost <= most;
     state_ = look ? ExplorerState::Searching : ExplorerState::Driving;
     if (!look) return frontier;
     search.frontier_left = frontier.frontier_left;
