@@ -13,13 +13,19 @@ namespace {
 struct RunArguments {
   std::string scenario;
   RunFolderOptions folder;
+  bool verbose = false;
 };
 
 int run(const RunArguments& arguments) {
   const auto overrides = arguments.folder.overrides();
   scenarios::Scenario scenario = scenarios::load_scenario(find_scenario(arguments.scenario), overrides);
   permit_command(arguments.folder.mapper, overrides, scenario);
-  const auto options = terminal_options(arguments.folder.out, arguments.folder.force);
+  auto options = terminal_options(arguments.folder.out, arguments.folder.force);
+  if (arguments.verbose)
+    options.decided = [](const explore::Decision& decision) {
+      end_progress();
+      std::fprintf(stderr, "%8.2f s  %s\n", decision.stamp.seconds(), decision.why.c_str());
+    };
   for (const std::string& note : scenarios::arena_notes(scenario))
     std::fprintf(stderr, "rubble: %s\n", one_line(note).c_str());
   return show(scenarios::run_scenario(scenario, options));
@@ -37,6 +43,7 @@ Command run_command() {
                        Options::Need::Optional);
             o.seed("--seed", a->folder.seed, "Seed of every random choice");
             a->folder.declare(o);
+            o.flag("-v,--verbose", a->verbose, "Tell why the robot does what it does, a line a decision");
             return [a, &o] {
               if (o.given("scenario") && a->scenario.empty())
                 throw UsageError("run '': is no scenario; give a file or a name, or leave it out for the main job");

@@ -43,14 +43,14 @@ void Escape::start_move(const TPose2D& T_map_base, Stamp now) {
   drive_ = {};
 }
 
-Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, double dt,
-                            Stamp now, const std::vector<TPoint2D>& trail, const RoomFn& room) {
+Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, bool struck,
+                            double dt, Stamp now, const std::vector<TPoint2D>& trail, const RoomFn& room) {
   if (distance(position(begun_), position(T_map_base)) >= kFree) {
     drive_ = {};
     return Result::Free;
   }
   const Move move = moves_[at_];
-  const bool held = watch_.stuck(T_map_base, commanded, stalled, dt);
+  const bool held = watch_.stuck(T_map_base, commanded, stalled, dt) || struck;
   const bool turned =
       (move == Move::Left || move == Move::Right) && std::abs(wrap_angle(T_map_base.phi - move_begun_.phi)) >= kTurn;
   bool wall = false;

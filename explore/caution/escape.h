@@ -27,9 +27,10 @@ class Escape {
   explicit Escape(double turn_speed) : turn_speed_(turn_speed) {}
 
   void begin(Met met, const mrpt::math::TPose2D& T_map_base, Stamp now);
-  /// One tick of `dt` [s] under the command that was in force. `trail`: where the robot came along, oldest first.
-  Result step(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, double dt, Stamp now,
-              const std::vector<mrpt::math::TPoint2D>& trail, const RoomFn& room);
+  /// One tick of `dt` [s] under the command that was in force. `struck`: a blow stopped the robot. `trail`: where it
+  /// came along, oldest first.
+  Result step(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, bool struck,
+              double dt, Stamp now, const std::vector<mrpt::math::TPoint2D>& trail, const RoomFn& room);
   /// The command for the tick to come.
   const robot::Drive& drive() const { return drive_; }
 

@@ -30,7 +30,8 @@ constexpr double kDetour = 3.0;                  ///< way over distance where no
 constexpr double kUnsure = 0.40;                 ///< a pose that errs by so much places no victim [m]
 constexpr double kWorthARound = 1.0;             ///< newly known floor that makes one more round worth while [m^2]
 constexpr int kBarrenRounds = 2;                 ///< rounds in a row that gain nothing end the mission
-constexpr double kDetourCost = 2.0;              ///< a frontier may cost so much more than the next viewpoint [m]
+constexpr double kBesideTheWay = 1.0;  ///< a niche that costs no more is looked into while frontiers are left [m]
+constexpr double kDetourCost = 2.0;    ///< a frontier may cost so much more than the next viewpoint [m]
 constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
 constexpr double kSameTarget = 0.5;                     ///< [m]
 constexpr double kSmallShift = 0.10;                    ///< of the robot's place by a correction of the map [m]
@@ -51,10 +52,11 @@ std::string text(const TPoint2D& p) {
   return line.data();
 }
 
-std::string target_text(ExplorerState state, const Plan& plan, double usual_d_min) {
+std::string target_text(ExplorerState state, bool niches, const Plan& plan, double usual_d_min) {
   const char* what = state == ExplorerState::GoingHome   ? "home"
-                     : state == ExplorerState::Searching ? "a place to search from"
-                                                         : "the frontier";
+                     : state != ExplorerState::Searching ? "the frontier"
+                     : niches                            ? "a place to look into a niche from"
+                                                         : "a place to search from";
   std::array<char, 60> more{};
   std::snprintf(more.data(), more.size(), ", cost %.1f m", plan.cost);
   const std::string line = std::string("drives to ") + what + " at " + text(plan.target) + more.data();
@@ -128,6 +130,7 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
     odometry_at_ = now_;
   }
   tilt_.update(inputs, dt_);
+  jolt_.update(inputs);
   for (const robot::VictimCue& cue : inputs.cues) hear(mapper, cue);
   const bool on_its_way = state_ == ExplorerState::Driving || state_ == ExplorerState::GoingHome;
   home_way_.moved(distance(position(before), position(pose_)), dt_, on_its_way);
@@ -218,8 +221,12 @@ Drive PaperExplorer::drive(const slam::Mapper& mapper) {
   const bool patient = now_ < patient_until_;
   // Nobody knows whether a base that is silent moves: a pulled plug is no obstacle.
   if (odometry_at_ && now_ - *odometry_at_ > kOdometryLate) watch_.reset();
-  if (tilt_.too_steep() || watch_.stuck(pose_, patient ? Drive{} : commanded_, stalled_, dt_)) {
-    got_stuck(tilt_.too_steep() ? "it leans too much here" : stalled_ ? "the motors stall" : "it does not move");
+  const bool held = watch_.stuck(pose_, patient ? Drive{} : commanded_, stalled_, dt_);
+  if (tilt_.too_steep() || jolt_.struck() || held) {
+    got_stuck(tilt_.too_steep() ? "it leans too much here"
+              : jolt_.struck()  ? "a blow stops it"
+              : stalled_        ? "the motors stall"
+                                : "it does not move");
     return {};
   }
   check_path(mapper);
@@ -260,9 +267,20 @@ Plan PaperExplorer::plan_on(const Traversable& floor) {
         floor, pose_, [this](const TPoint2D& p) { return config_.bar_targets && blacklist_.barred(p, now_); },
         previous);
   };
-  if (state_ == ExplorerState::Driving) return to_frontier(target_);
-  Plan frontier = to_frontier(std::nullopt);
-  Plan search = plan_search(floor);
+  const bool driving = state_ == ExplorerState::Driving;
+  if (driving && (frontiers_done_ || !floor_search_.on())) return to_frontier(target_);
+  Plan frontier = to_frontier(driving ? target_ : std::nullopt);
+  Plan search = plan_search(floor, Subjects::Niches);
+  if (frontiers_done_ && !search.found) search = plan_search(floor, Subjects::All);
+  if (!frontiers_done_) {
+    // What lies in a niche beside the way is looked at now: coming back for it costs more.
+    const double most = std::min(frontier.cost, kBesideTheWay) + (driving ? 0.0 : kDetourCost);
+    const bool look = search.found && frontier.found && search.cost <= most;
+    state_ = look ? ExplorerState::Searching : ExplorerState::Driving;
+    if (!look) return frontier;
+    search.frontier_left = frontier.frontier_left;
+    return search;
+  }
   search.frontier_left = frontier.frontier_left;
   if (!frontier.found || (search.found && frontier.cost > search.cost + kDetourCost)) return search;
   note("a frontier has come into reach");
@@ -323,7 +341,7 @@ void PaperExplorer::accept(Plan plan) {
   if (looking_.active() && !looking_.to_the_end()) looking_.end();
   if (!target_ || distance(*target_, plan.target) > kSameTarget) {
     target_cost_ = plan.cost;
-    note(target_text(state_, plan, config_.planner.transform.d_min));
+    note(target_text(state_, !frontiers_done_, plan, config_.planner.transform.d_min));
   }
   target_ = plan.target;
   path_d_min_ = plan.d_min;
@@ -462,12 +480,12 @@ bool PaperExplorer::holding_still() {
   return false;
 }
 
-Plan PaperExplorer::plan_search(const Traversable& floor) {
+Plan PaperExplorer::plan_search(const Traversable& floor, Subjects subjects) {
   const auto head_start = [&](const TPoint2D& p) -> std::optional<double> {
     if (blacklist_.barred(p, now_)) return std::nullopt;
     return target_ && distance(p, *target_) > 0.5 ? config_.planner.switch_cost : 0.0;
   };
-  Plan plan = planner_.to_cells(floor, pose_, floor_search_.sources(floor, head_start));
+  Plan plan = planner_.to_cells(floor, pose_, floor_search_.sources(floor, subjects, head_start));
   if (plan.found) floor_search_.choose_subject(floor.cells.cell(plan.target));
   return plan;
 }

@@ -10,6 +10,7 @@
 #include "explore/caution/blacklist.h"
 #include "explore/caution/escape.h"
 #include "explore/caution/felt_obstacles.h"
+#include "explore/caution/jolt_watch.h"
 #include "explore/caution/motion_watch.h"
 #include "explore/caution/tilt_watch.h"
 #include "explore/explorer.h"
@@ -82,7 +83,7 @@ class PaperExplorer : public Explorer {
 
   void mark_searched();
   bool holding_still();
-  Plan plan_search(const Traversable& floor);
+  Plan plan_search(const Traversable& floor, Subjects subjects);
   void face_subject();
 
   const robot::RobotModel model_;
@@ -98,6 +99,7 @@ class PaperExplorer : public Explorer {
   LookAround looking_;
   Pivot pivot_;
   TiltWatch tilt_;
+  JoltWatch jolt_;
   FeltObstacles felt_;
   Escape escape_;
   HomeWay home_way_;

@@ -39,7 +39,8 @@ void PaperExplorer::got_stuck(const std::string& how) {
   if (stuck_there_ > 1 && target_ && state_ != ExplorerState::GoingHome) bar_target(*target_);
 
   const bool turning = !rocking && std::abs(commanded_.v) <= Pivot::kMostSpeed && std::abs(commanded_.w) > kTurningRate;
-  const Escape::Met met = rocking                          ? Escape::Met::Forwards
+  const Escape::Met met = jolt_.struck() ? (jolt_.from_ahead() ? Escape::Met::Forwards : Escape::Met::Backwards)
+                          : rocking      ? Escape::Met::Forwards
                           : turning || commanded_.v == 0.0 ? Escape::Met::Turning
                           : commanded_.v > 0.0             ? Escape::Met::Forwards
                                                            : Escape::Met::Backwards;
@@ -61,7 +62,7 @@ Drive PaperExplorer::escape() {
     const Cell c = last_floor_.clearance.cell({x, y});
     return !last_floor_.clearance.inside(c) || last_floor_.clearance[c] > 0.5 * model_.width - kLean;
   };
-  switch (escape_.step(pose_, commanded_, stalled_, dt_, now_, trail_, room)) {
+  switch (escape_.step(pose_, commanded_, stalled_, jolt_.struck(), dt_, now_, trail_, room)) {
     case Escape::Result::UnderWay:
       return escape_.drive();
     case Escape::Result::Free:

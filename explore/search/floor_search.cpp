@@ -67,9 +67,9 @@ void FloorSearch::give_up_subject(const Traversable& floor, const Anchor& here) 
   searched_.give_up(floor, subject_, kSubjectRadius, subject_faces_);
 }
 
-std::vector<Source> FloorSearch::sources(const Traversable& floor,
+std::vector<Source> FloorSearch::sources(const Traversable& floor, Subjects subjects,
                                          const std::function<std::optional<double>(const TPoint2D&)>& head_start) {
-  views_ = viewpoints(floor, searched_, config_, room_, tight_);
+  views_ = viewpoints(floor, searched_, config_, room_, tight_, subjects);
   std::vector<Source> sources;
   for (const Viewpoint& view : views_) {
     if (const std::optional<double> start = head_start(floor.cells.centre(view.cell)))

@@ -37,7 +37,7 @@ class FloorSearch {
 
   /// The cells from which something unsearched can be seen, each with the head start that `head_start` gives to its
   /// centre; without one it is left out.
-  std::vector<Source> sources(const Traversable& floor,
+  std::vector<Source> sources(const Traversable& floor, Subjects subjects,
                               const std::function<std::optional<double>(const mrpt::math::TPoint2D&)>& head_start);
   /// Makes what can be seen from `viewpoint` the place to face.
   void choose_subject(Cell viewpoint);

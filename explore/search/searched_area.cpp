@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "base/planar.h"
@@ -12,10 +13,37 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr int kStride = 6;                             ///< subjects on open floor are so many cells apart
-constexpr int kFaceStride = 4;                         ///< subjects along a wall likewise
-constexpr int kDirections = 16;                        ///< viewpoints tried around a subject
-constexpr double kDistances[] = {0.5, 0.8, 1.1, 1.4};  ///< [m]
+constexpr int kStride = 6;           ///< subjects on open floor are so many cells apart
+constexpr int kFaceStride = 4;       ///< subjects along a wall likewise
+constexpr int kNicheStride = 2;      ///< and at the back of a niche
+constexpr double kNarrowest = 0.20;  ///< niche [m]; what is narrower is a wall seen twice
+constexpr double kWidest = 0.55;     ///< [m]
+constexpr int kDirections = 16;      ///< viewpoints tried around a subject
+// Of viewpoints from their subjects [m]. Before a niche there is little choice: its box takes a third of a corridor.
+const std::vector<double> kDistances = {0.5, 0.8, 1.1, 1.4};
+const std::vector<double> kNicheDistances = {0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4};
+
+/// Cells from c in a direction up to the next wall; nothing when there is none within `most`.
+std::optional<int> to_wall(const Traversable& floor, Cell c, Cell step, int most) {
+  for (int i = 1; i <= most; ++i) {
+    const Cell next{c.x + i * step.x, c.y + i * step.y};
+    if (!floor.cells.inside(next)) return std::nullopt;
+    if (floor.cells[next] == Occupancy::Occupied) return i;
+  }
+  return std::nullopt;
+}
+
+/// The backs of niches that were not searched, every few cells.
+std::vector<Cell> unsearched_niches(const Traversable& floor, const SearchedArea& searched) {
+  const Grid<Faces> open = searched.unsearched(floor);
+  std::vector<Cell> found;
+  for (int y = 1; y + 1 < floor.cells.height(); ++y)
+    for (int x = 1; x + 1 < floor.cells.width(); ++x) {
+      const auto faces = static_cast<Faces>(open[{x, y}] & ~kFloor);
+      if (faces != 0 && (x + y) % kNicheStride == 0 && in_niche(floor, {x, y}, faces)) found.push_back({x, y});
+    }
+  return found;
+}
 
 /// Free cells that were not searched, as 8-connected clusters of at least `min_cells`.
 std::vector<std::vector<Cell>> unsearched_clusters(const Traversable& floor, const SearchedArea& searched,
@@ -59,6 +87,18 @@ Faces faces_of(const Traversable& floor, Cell c) {
   if (wall(-1, 0)) faces |= kWestFace;
   if (wall(0, -1)) faces |= kSouthFace;
   return faces;
+}
+
+bool in_niche(const Traversable& floor, Cell c, Faces faces) {
+  const double cell = floor.frame().resolution;
+  const int most = static_cast<int>(std::lround(kWidest / cell));
+  const auto between_walls = [&](Cell step) {
+    const auto one = to_wall(floor, c, step, most), other = to_wall(floor, c, {-step.x, -step.y}, most);
+    const double width = one && other ? (*one + *other - 1) * cell : 0.0;
+    return width >= kNarrowest - 0.5 * cell && width <= kWidest;
+  };
+  return ((faces & (kEastFace | kWestFace)) != 0 && between_walls({0, 1})) ||
+         ((faces & (kNorthFace | kSouthFace)) != 0 && between_walls({1, 0}));
 }
 
 bool in_sight(const Traversable& floor, Cell from, Cell to) {
@@ -203,15 +243,34 @@ Grid<Faces> SearchedArea::unsearched(const Traversable& floor) const {
 }
 
 std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& searched, const SearchConfig& config,
-                                  double room, double tight) {
+                                  double room, double tight, Subjects subjects) {
   std::vector<Cell> offsets;
-  for (const double distance : kDistances)
+  for (const double distance : subjects == Subjects::Niches ? kNicheDistances : kDistances)
     for (int k = 0; k < kDirections && distance <= config.range; ++k) {
       const double bearing = 2.0 * kPi * k / kDirections;
       offsets.push_back({static_cast<int>(std::lround(distance * std::cos(bearing) / floor.frame().resolution)),
                          static_cast<int>(std::lround(distance * std::sin(bearing) / floor.frame().resolution))});
     }
   std::vector<Viewpoint> found;
+  const auto add = [&](Cell subject, Faces missing) {
+    const std::size_t before = found.size();
+    for (const double d_min : {room, tight}) {
+      for (const Cell offset : offsets) {
+        const Cell c{subject.x + offset.x, subject.y + offset.y};
+        if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free || floor.clearance[c] < d_min) continue;
+        const double way = length(offset.x, offset.y);
+        const auto faces = static_cast<Faces>(missing & faces_along(-offset.x / way, -offset.y / way));
+        if (faces == 0) continue;
+        if (in_sight(floor, c, subject)) found.push_back({c, floor.cells.centre(subject), faces});
+      }
+      if (found.size() > before) break;
+    }
+  };
+  if (subjects == Subjects::Niches) {
+    for (const Cell subject : unsearched_niches(floor, searched))
+      add(subject, static_cast<Faces>(searched.missing(floor, subject) & ~kFloor));
+    return found;
+  }
   for (const auto& cluster : unsearched_clusters(floor, searched, config.min_cells))
     for (std::size_t i = 0; i < cluster.size(); ++i) {
       const Cell subject = cluster[i];
@@ -219,18 +278,7 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
       // Every few cells, and the first one of each cluster, so that none goes without.
       const bool on_face = (missing & ~kFloor) != 0 && (subject.x + subject.y) % kFaceStride == 0;
       if (i != 0 && !on_face && (subject.x % kStride != 0 || subject.y % kStride != 0)) continue;
-      const std::size_t before = found.size();
-      for (const double d_min : {room, tight}) {
-        for (const Cell offset : offsets) {
-          const Cell c{subject.x + offset.x, subject.y + offset.y};
-          if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free || floor.clearance[c] < d_min) continue;
-          const double way = length(offset.x, offset.y);
-          const auto faces = static_cast<Faces>(missing & faces_along(-offset.x / way, -offset.y / way));
-          if (faces == 0) continue;
-          if (in_sight(floor, c, subject)) found.push_back({c, floor.cells.centre(subject), faces});
-        }
-        if (found.size() > before) break;
-      }
+      add(subject, missing);
     }
   return found;
 }

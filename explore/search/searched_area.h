@@ -67,6 +67,13 @@ class SearchedArea {
   std::vector<std::pair<std::size_t, Faces>> seen_;  ///< of the look under way, by index
 };
 
+/// Whether a wall face of a cell is the back of a niche: walls stand to both sides of it, 0.2 to 0.55 m apart. A box
+/// that is open on one side, as victims lie in (paper, section II.B), looks so from its open side.
+bool in_niche(const Traversable& floor, Cell c, Faces faces);
+
+/// Which places to find viewpoints for.
+enum class Subjects { All, Niches };
+
 constexpr double kAtViewpoint = 0.12;  ///< viewpoints this close are served from where the robot stands [m]
 
 /// A place from which something unsearched can be seen.
@@ -77,9 +84,9 @@ struct Viewpoint {
 };
 
 /// Viewpoints with at least `room` clearance for every unsearched cluster of free floor, in raster order; where a place
-/// has none, as before a victim's box in a corridor, with at least `tight`.
+/// has none, as before a victim's box in a corridor, with at least `tight`. Of the backs of niches alone if asked so.
 std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& searched, const SearchConfig& config,
-                                  double room, double tight);
+                                  double room, double tight, Subjects subjects = Subjects::All);
 
 /// True when all cells between two cells of the floor are free (the last one included).
 bool in_sight(const Traversable& floor, Cell from, Cell to);

@@ -43,6 +43,7 @@ void Loop::drive(robot::Robot& robot, LoopEnd& end) {
   Stamp first = Stamp::never(), saved = Stamp::never();
   while (auto inputs = robot.read()) {
     const robot::Commands wanted = core_.step(*inputs);
+    tell_decisions();
     robot.command(hooks_.steer ? hooks_.steer(*inputs, wanted) : wanted);
     if (first == Stamp::never()) first = saved = inputs->now;
     end.sim_s = inputs->now - first + robot.model().tick;
@@ -66,6 +67,12 @@ void Loop::drive(robot::Robot& robot, LoopEnd& end) {
   }
   end.robot_ended = true;
   end.reason = "the robot's time is over";
+}
+
+void Loop::tell_decisions() {
+  if (!hooks_.decided || core_.explorer() == nullptr) return;
+  const std::vector<explore::Decision>& all = core_.explorer()->decisions();
+  for (; told_ < all.size(); ++told_) hooks_.decided(all[told_]);
 }
 
 void Loop::save(double sim_s) {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <string>
 
+#include "explore/explorer.h"
 #include "robot/robot.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/run_folder.h"
@@ -26,9 +28,10 @@ struct LoopHooks {
   std::function<double()> share;      ///< how far the robot is, 0..1
   /// Each tick: from what came in and what the core commands to what the robot is told; empty: what the core commands.
   std::function<robot::Commands(const robot::Inputs&, const robot::Commands&)> steer;
-  std::function<void(double sim_s)> each_second;  ///< of run time, and at the end
-  std::function<void()> stop;                     ///< the last command was given; what follows may take seconds
-  std::function<void(const Progress&)> progress;  ///< called a few times a second of wall time
+  std::function<void(double sim_s)> each_second;          ///< of run time, and at the end
+  std::function<void()> stop;                             ///< the last command was given; what follows may take seconds
+  std::function<void(const Progress&)> progress;          ///< called a few times a second of wall time
+  std::function<void(const explore::Decision&)> decided;  ///< called for each decision of the explorer, in order
 };
 
 /// How a loop ended.
@@ -57,6 +60,7 @@ class Loop {
   using Clock = std::chrono::steady_clock;
 
   void drive(robot::Robot& robot, LoopEnd& end);
+  void tell_decisions();
   void save(double sim_s);
   double seconds_since(Clock::time_point then) const;
 
@@ -67,6 +71,7 @@ class Loop {
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_save_ = start_;
   Clock::time_point last_report_ = start_;
+  std::size_t told_ = 0;      ///< decisions of the explorer
   double save_period_ = 0.0;  ///< grows: a run of a few seconds leaves a map too when it is killed [s]
 };
 

@@ -133,6 +133,7 @@ LoopHooks hooks_of(const RunOptions& options) {
   LoopHooks hooks;
   hooks.interrupted = options.interrupted;
   hooks.progress = options.progress;
+  hooks.decided = options.decided;
   return hooks;
 }
 

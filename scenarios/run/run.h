@@ -20,6 +20,7 @@ struct RunOptions {
   bool link_latest = true;                        ///< let `latest` beside the folder point to it
   std::function<bool()> interrupted;              ///< asked each tick; true ends the run with its folder complete
   std::function<void(const Progress&)> progress;  ///< called a few times a second
+  std::function<void(const explore::Decision&)> decided;  ///< called for each decision of the explorer, in order
 };
 
 struct RunReport {

@@ -22,6 +22,11 @@ cmp -s a/hashes.json c/hashes.json && fail "two seeds, one result"
 "$rubble" run a/scenario.yaml --out d >/dev/null || fail "the resolved scenario does not run"
 cmp a/hashes.json d/hashes.json || fail "the resolved scenario gives another result"
 
+"$rubble" run s.yaml -v --out told >told.txt 2>decisions.txt || fail "run -v ended with $?"
+cmp a/hashes.json told/hashes.json || fail "telling why changes the run"
+sed 's/^ *\([0-9.]*\) s  /\1 /' decisions.txt | cmp - <(sed 's/^ *//' told/decisions.txt) || fail "-v tells other decisions than the folder"
+[[ -s decisions.txt ]] || fail "-v tells nothing"
+
 "$rubble" replay a >replay.txt || fail "replay ended with $?"
 grep -qx 'bit-identical' replay.txt || fail "replay: $(cat replay.txt)"
 sed -i 's/map_distance_m: 0.15/map_distance_m: 0.16/' d/scenario.yaml

@@ -37,7 +37,7 @@ Outcome run(Puppet& puppet, Escape::Met met, const std::vector<TPoint2D>& trail,
   escape.begin(met, puppet.pose, now);
   Outcome outcome;
   while (outcome.result == Escape::Result::UnderWay && outcome.seconds < 300.0) {
-    outcome.result = escape.step(puppet.pose, escape.drive(), false, kTick, now, trail, room);
+    outcome.result = escape.step(puppet.pose, escape.drive(), false, false, kTick, now, trail, room);
     puppet.obey(escape.drive());
     now = now + kTick;
     outcome.seconds += kTick;

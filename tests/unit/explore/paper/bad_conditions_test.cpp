@@ -158,6 +158,35 @@ TEST(BadConditions, AWallThatAppearsOnThePathIsNotTouched) {
   EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
 }
 
+/// A ball of crumpled paper that the robot pushes lies in the only door, with too little room beside it.
+TEST(BadConditions, ABallBeforeTheOnlyDoorIsPushedAside) {
+  Maze maze = test::maze({"+--+--+--+--+",  //
+                          "| R         |",  //
+                          "+--+--+--+--+"});
+  constexpr double kRadius = 0.12;
+  const std::size_t walls = maze.walls.size();
+  TPoint2D ball{1.5 * Maze::kPallet, maze.start.y + 0.03};
+  maze.box(ball, 2.0 * kRadius, 2.0 * kRadius);
+  Trial trial(maze);
+  bool pushed = false;
+  trial.run(900.0, [&] {
+    const TPose2D& pose = trial.robot.pose();
+    const double way = std::hypot(ball.x - pose.x, ball.y - pose.y);
+    const double least = 0.5 * trial.model.length + kRadius;
+    if (way >= least) return;
+    pushed = true;
+    const double limit = 0.5 * Maze::kPallet - kRadius - 0.01;
+    ball.x = pose.x + (ball.x - pose.x) * least / way;
+    ball.y = std::clamp(pose.y + (ball.y - pose.y) * least / way, maze.start.y - limit, maze.start.y + limit);
+    Maze& now = trial.robot.maze();
+    now.walls.resize(walls);
+    now.box(ball, 2.0 * kRadius, 2.0 * kRadius);
+  });
+  EXPECT_TRUE(pushed);
+  EXPECT_TRUE(is_seen(trial, maze.centre(3, 0)));
+  EXPECT_TRUE(trial.explorer.finished());
+}
+
 TEST(BadConditions, WithoutScansForTwoSecondsTheRobotStandsAndThenGoesOn) {
   const Maze maze = test::random_maze(5, 5, 0.2, 7);
   Trial trial(maze);

@@ -109,6 +109,33 @@ TEST(SearchedArea, ABoxInACorridorHasAViewpointIfOnlyATightOne) {
   EXPECT_TRUE(sees_back(viewpoints(floor, area, config, 0.46, 0.38)));
 }
 
+TEST(SearchedArea, TheBackOfABoxIsANicheAndAWallIsNone) {
+  const Traversable floor = corridor_with_box();
+  EXPECT_TRUE(in_niche(floor, {40, 26}, kNorthFace));
+  EXPECT_FALSE(in_niche(floor, {20, 26}, kNorthFace));
+  EXPECT_FALSE(in_niche(floor, {40, 3}, kSouthFace)) << "the wall that the box looks at";
+  EXPECT_FALSE(in_niche(floor, {35, 22}, kEastFace)) << "the side of the box, from outside";
+}
+
+TEST(SearchedArea, ViewpointsOfNichesAreForTheBackOfTheBoxAlone) {
+  const Traversable floor = corridor_with_box();
+  const SearchConfig config;
+  SearchedArea area{config};
+  const std::vector<Viewpoint> views = viewpoints(floor, area, config, 0.46, 0.38, Subjects::Niches);
+  ASSERT_FALSE(views.empty());
+  for (const Viewpoint& view : views) {
+    const Cell subject = floor.cells.cell(view.subject);
+    EXPECT_GT(subject.x, 36);
+    EXPECT_LT(subject.x, 45);
+    EXPECT_GE(subject.y, 19);
+    EXPECT_NE(view.faces & kNorthFace, 0) << subject.x << " " << subject.y;
+  }
+  const TPoint2D back = floor.cells.centre({40, 26});
+  look_twice(area, floor, {back.x, back.y - 0.9, deg_to_rad(90.0)});
+  EXPECT_TRUE(viewpoints(floor, area, config, 0.46, 0.38, Subjects::Niches).empty()) << "it was looked into";
+  EXPECT_FALSE(viewpoints(floor, area, config, 0.46, 0.38).empty()) << "not so the rest";
+}
+
 TEST(SearchedArea, TheRecordGrowsWithTheMap) {
   const Traversable floor = room();
   SearchedArea area{SearchConfig{}};
