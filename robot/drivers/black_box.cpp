@@ -42,22 +42,23 @@ class RecordedPort : public Port {
  public:
   RecordedPort(std::unique_ptr<Port> inner, std::string device, BlackBox& box)
       : inner_(std::move(inner)), device_(std::move(device)), box_(box) {
-    box_.add(device_, Direction::Opened, inner_->name() + "\n" + name_of(inner_->kind()), host_now());
+    box_.add(device_, Direction::Opened, inner_->name() + "\n" + name_of(inner_->kind()), inner_->opened());
   }
 
-  std::size_t read(std::uint8_t* to, std::size_t size, double timeout) override {
+  Arrival read(std::uint8_t* to, std::size_t size, double timeout) override {
     try {
-      const std::size_t got = inner_->read(to, size, timeout);
-      if (got > 0) box_.add(device_, Direction::FromDevice, {reinterpret_cast<const char*>(to), got}, host_now());
+      const Arrival got = inner_->read(to, size, timeout);
+      if (got.size > 0)
+        box_.add(device_, Direction::FromDevice, {reinterpret_cast<const char*>(to), got.size}, got.stamp);
       return got;
     } catch (const DeviceLost& lost) {
       box_.add(device_, Direction::Lost, lost.what(), host_now());
       throw;
     }
   }
-  void write(const std::uint8_t* from, std::size_t size) override {
-    box_.add(device_, Direction::ToDevice, {reinterpret_cast<const char*>(from), size}, host_now());
-    inner_->write(from, size);
+  void write(const std::uint8_t* from, std::size_t size, Stamp now) override {
+    box_.add(device_, Direction::ToDevice, {reinterpret_cast<const char*>(from), size}, now);
+    inner_->write(from, size, now);
   }
   int descriptor() const override { return inner_->descriptor(); }
   const std::string& name() const override { return inner_->name(); }
@@ -66,6 +67,7 @@ class RecordedPort : public Port {
     box_.add(device_, Direction::BitRate, std::to_string(baud), host_now());
   }
   LineKind kind() const override { return inner_->kind(); }
+  Stamp opened() const override { return inner_->opened(); }
 
  private:
   std::unique_ptr<Port> inner_;

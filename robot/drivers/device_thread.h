@@ -43,7 +43,7 @@ class DeviceThread {
  private:
   void run();
   void converse();
-  void send(const std::string& bytes);
+  void send(const std::string& bytes, Stamp now);
   bool is_ending() const;
 
   std::string name_;

@@ -51,20 +51,20 @@ class DescriptorPort : public Port {
  public:
   DescriptorPort(std::string word, Descriptor descriptor) : name_(std::move(word)), file_(std::move(descriptor)) {}
 
-  std::size_t read(std::uint8_t* to, std::size_t size, double timeout) override {
+  Arrival read(std::uint8_t* to, std::size_t size, double timeout) override {
     const Stamp until = host_now() + timeout;
     for (;;) {
       const ssize_t got = ::read(file_.get(), to, size);
-      if (got > 0) return static_cast<std::size_t>(got);
+      if (got > 0) return {static_cast<std::size_t>(got), host_now()};
       if (got == 0) throw DeviceLost(name_ + ": the device closed the line; " + remedy());
       if (errno == EINTR) continue;
       if (errno != EAGAIN && errno != EWOULDBLOCK)
         throw DeviceLost(name_ + ": the device is gone (" + std::strerror(errno) + "); " + remedy());
-      if (!wait_for(file_.get(), POLLIN, until - host_now())) return 0;
+      if (!wait_for(file_.get(), POLLIN, until - host_now())) return {0, host_now()};
     }
   }
 
-  void write(const std::uint8_t* from, std::size_t size) override {
+  void write(const std::uint8_t* from, std::size_t size, Stamp) override {
     for (std::size_t sent = 0; sent < size;) {
       // MSG_NOSIGNAL has no counterpart for a tty, but a tty raises no SIGPIPE either.
       const ssize_t step = is_serial() ? ::write(file_.get(), from + sent, size - sent)
@@ -83,11 +83,15 @@ class DescriptorPort : public Port {
 
   int descriptor() const override { return file_.get(); }
   const std::string& name() const override { return name_; }
+  Stamp opened() const override { return opened_; }
 
  protected:
   virtual std::string remedy() const = 0;
   std::string name_;
   Descriptor file_;
+
+ private:
+  const Stamp opened_ = host_now();
 };
 
 class TcpPort : public DescriptorPort {
