@@ -28,12 +28,13 @@ void wait_for(int port, int wake, double timeout) {
 }  // namespace
 
 DeviceThread::DeviceThread(std::string name, std::string port, Device& device, BlackBox* box,
-                           std::function<void(Stamp)> each_turn)
+                           std::function<void(Stamp)> each_turn, std::function<void(Stamp)> turned)
     : name_(std::move(name)),
       word_(std::move(port)),
       device_(device),
       box_(box),
       each_turn_(std::move(each_turn)),
+      turned_(std::move(turned)),
       wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
   check_port_word(word_);
   error_ = word_ + ": not opened yet";
@@ -101,6 +102,7 @@ void DeviceThread::converse() {
       return device_.deadline();
     });
     send(out, now);
+    if (turned_) turned_(host_now());
     if (got < bytes.size()) wait_for(port_->descriptor(), wake_.get(), deadline - host_now());
   }
   for (const std::string& packet : with([this] { return device_.farewell(); })) {

@@ -6,6 +6,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -175,6 +176,8 @@ std::string why_not_opened(int error) {
 std::unique_ptr<Port> open_serial(const std::string& word, const std::string& path) {
   Descriptor line(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!line) throw DeviceLost(word + ": " + why_not_opened(errno));
+  if (isatty(line.get()) && flock(line.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw DeviceLost(word + ": " + why_not_opened(EBUSY));
   if (!isatty(line.get())) throw InputError(word + ": is no serial line; give the path of one, as /dev/ttyUSB0");
   return std::make_unique<SerialPort>(word, std::move(line));
 }
@@ -215,7 +218,7 @@ std::unique_ptr<Port> open_tcp(const std::string& word, const PortWord& parts) {
     return std::make_unique<TcpPort>(word, std::move(socket));
   }
   throw DeviceLost(word + ": nobody answers (" + std::strerror(error) +
-                   "); switch the device on or start `rubble emulate` there");
+                   "); switch the device on or start `rubble emulate` there, or end the program that talks to it");
 }
 
 }  // namespace
