@@ -1,6 +1,8 @@
 // `rubble calibrate`: finds the numbers of a robot file by driving squares and turns.
 #include "scenarios/hardware/calibrate.h"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -66,9 +68,17 @@ std::string recorded_robot(const std::string& run) {
   return fs::exists(file) ? file : "";
 }
 
+/// Throws RunError when no file can be made at `path`.
+void require_place(const std::string& path) {
+  const fs::path folder = fs::absolute(path).parent_path();
+  if (fs::is_directory(path) || !fs::is_directory(folder) || ::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw RunError(path + ": cannot be written; give --out in a folder that exists and may be written");
+}
+
 int calibrate(const CalibrateArguments& arguments) {
   if (fs::exists(arguments.out) && !arguments.force)
-    throw UsageError(arguments.out + ": exists already; give another --out, or --force to replace it");
+    throw InputError(arguments.out + ": exists already; give another --out, or --force to replace it");
+  require_place(arguments.out);  // known before two minutes are driven for it
   const auto overrides = with_mapper(arguments.mapper, arguments.robot.with_ports(parse_sets(arguments.sets)));
   std::string run = arguments.log;
   scenarios::RobotFile file;

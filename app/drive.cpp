@@ -9,6 +9,7 @@
 #include "app/robot_options.h"
 #include "app/scenario_options.h"
 #include "app/terminal.h"
+#include "base/error.h"
 
 namespace rubble::app {
 namespace {
@@ -38,6 +39,8 @@ scenarios::RobotFile robot_file(const DriveArguments& arguments) {
 int drive(const DriveArguments& arguments) {
   const scenarios::RobotFile file = robot_file(arguments);
   Keyboard keyboard;
+  if (arguments.teleop && !keyboard.active())
+    throw UsageError("--teleop: there is no terminal whose keys could be held; start it at one, or use --map-only");
   scenarios::DriveOptions options = drive_options(keyboard, !arguments.teleop);
   options.mode = arguments.teleop     ? scenarios::DriveMode::Teleoperate
                  : arguments.map_only ? scenarios::DriveMode::MapOnly

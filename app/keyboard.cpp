@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cctype>
 #include <chrono>
 #include <utility>
 
@@ -75,7 +76,7 @@ void Keyboard::look() {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (int key = next(); key != 0; key = next()) {
     if (key == kEscape && next() == '[') key = letter_of_arrow(next());
-    take(key);
+    take(std::tolower(key));
   }
 }
 

@@ -30,6 +30,8 @@ class Keyboard {
   /// To be asked each tick.
   robot::Drive drive(double v, double w);
   bool quit();
+  /// Whether there is a terminal whose keys can be taken.
+  bool active() const { return active_; }
 
  private:
   int next();

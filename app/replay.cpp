@@ -22,8 +22,8 @@ struct ReplayArguments {
 int replay_bytes(const std::string& run) {
   const scenarios::RawReplay replay = scenarios::replay_raw(run);
   for (const auto& kind : replay.kinds)
-    std::printf("%-18s %zu of %zu the same, stamps within %.2f ms (%zu in the bytes)\n", kind.name.c_str(), kind.same,
-                kind.recorded, 1e3 * kind.worst_stamp, kind.replayed);
+    std::printf("%-18s %zu of %zu the same (%zu in the bytes)\n", kind.name.c_str(), kind.same, kind.recorded,
+                kind.replayed);
   std::printf(
       "%-18s %zu scans, %zu packets of the base, %zu lines of the levelling unit; the odometry jumped %zu times\n",
       "damaged", replay.damaged_scans, replay.bad_sums, replay.bad_lines, replay.jumps);

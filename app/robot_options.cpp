@@ -44,6 +44,7 @@ std::vector<scenarios::Override> RobotOptions::with_ports(std::vector<scenarios:
   if (levelling == "none") {
     overrides.emplace_back("devices.levelling.driver", "none");
   } else if (!levelling.empty()) {
+    overrides.emplace_back("devices.levelling.driver", "lev1");  // also where the robot file has none
     overrides.emplace_back("devices.levelling.port", levelling);
   }
   return overrides;

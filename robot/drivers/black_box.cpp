@@ -38,26 +38,37 @@ const char* name_of(LineKind kind) {
   return "";
 }
 
+bool write_all(int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t step = ::write(file, bytes.data(), bytes.size());
+    if (step < 0 && errno == EINTR) continue;
+    if (step <= 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(step));
+  }
+  return true;
+}
+
 class RecordedPort : public Port {
  public:
   RecordedPort(std::unique_ptr<Port> inner, std::string device, BlackBox& box)
       : inner_(std::move(inner)), device_(std::move(device)), box_(box) {
-    box_.add(device_, Direction::Opened, inner_->name() + "\n" + name_of(inner_->kind()), host_now());
+    box_.add(device_, Direction::Opened, inner_->name() + "\n" + name_of(inner_->kind()), inner_->opened());
   }
 
-  std::size_t read(std::uint8_t* to, std::size_t size, double timeout) override {
+  Arrival read(std::uint8_t* to, std::size_t size, double timeout) override {
     try {
-      const std::size_t got = inner_->read(to, size, timeout);
-      if (got > 0) box_.add(device_, Direction::FromDevice, {reinterpret_cast<const char*>(to), got}, host_now());
+      const Arrival got = inner_->read(to, size, timeout);
+      if (got.size > 0)
+        box_.add(device_, Direction::FromDevice, {reinterpret_cast<const char*>(to), got.size}, got.stamp);
       return got;
     } catch (const DeviceLost& lost) {
       box_.add(device_, Direction::Lost, lost.what(), host_now());
       throw;
     }
   }
-  void write(const std::uint8_t* from, std::size_t size) override {
-    box_.add(device_, Direction::ToDevice, {reinterpret_cast<const char*>(from), size}, host_now());
-    inner_->write(from, size);
+  void write(const std::uint8_t* from, std::size_t size, Stamp now) override {
+    box_.add(device_, Direction::ToDevice, {reinterpret_cast<const char*>(from), size}, now);
+    inner_->write(from, size, now);
   }
   int descriptor() const override { return inner_->descriptor(); }
   const std::string& name() const override { return inner_->name(); }
@@ -66,6 +77,7 @@ class RecordedPort : public Port {
     box_.add(device_, Direction::BitRate, std::to_string(baud), host_now());
   }
   LineKind kind() const override { return inner_->kind(); }
+  Stamp opened() const override { return inner_->opened(); }
 
  private:
   std::unique_ptr<Port> inner_;
@@ -81,6 +93,16 @@ BlackBox::BlackBox(const std::string& path)
   if (!file_ || ::write(file_.get(), magic.data(), magic.size()) != static_cast<ssize_t>(magic.size()))
     throw RunError(path + ": cannot be written (" + std::strerror(errno) +
                    "); give a folder that exists and may be written");
+  writer_ = std::thread([this] { write(); });
+}
+
+BlackBox::~BlackBox() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_all();
+  writer_.join();
 }
 
 void BlackBox::add(const std::string& device, Direction direction, std::string_view bytes, Stamp stamp) {
@@ -91,13 +113,38 @@ void BlackBox::add(const std::string& device, Direction direction, std::string_v
   put(entry, static_cast<std::uint64_t>(stamp.ns), 8);
   put(entry, bytes.size(), 4);
   entry += bytes;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (failed_) return;
-  failed_ = ::write(file_.get(), entry.data(), entry.size()) != static_cast<ssize_t>(entry.size());
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (failed_) return;
+    if (waiting_.size() + entry.size() > kMostWaiting) {
+      failed_ = true;
+      return;
+    }
+    waiting_ += entry;
+  }
+  changed_.notify_all();
 }
 
-bool BlackBox::failed() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
+/// In the writer's thread: what has come meanwhile in one piece, outside of the lock.
+void BlackBox::write() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [this] { return ending_ || !waiting_.empty(); });
+    if (waiting_.empty()) return;
+    const std::string piece = std::exchange(waiting_, {});
+    writing_ = true;
+    lock.unlock();
+    const bool whole = write_all(file_.get(), piece);
+    lock.lock();
+    writing_ = false;
+    failed_ = failed_ || !whole;
+    changed_.notify_all();
+  }
+}
+
+bool BlackBox::failed() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  changed_.wait(lock, [this] { return waiting_.empty() && !writing_; });
   return failed_;
 }
 

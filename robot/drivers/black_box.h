@@ -1,10 +1,11 @@
 #pragma once
 
+#include <condition_variable>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/stamp.h"
@@ -29,19 +30,33 @@ struct BlackBoxEntry {
 };
 
 /// Keeps all raw bytes of all devices with their times, so that what happened in the field can be played to the drivers
-/// again. Appended to as it goes; a torn last entry is dropped on reading. For any number of threads.
+/// again. A thread of its own writes them as they come, so that no driver, and no stop, waits for a slow disk; a torn
+/// last entry is dropped on reading. For any number of threads.
 class BlackBox {
  public:
   /// An existing file is replaced. Throws RunError when `path` cannot be written.
   explicit BlackBox(const std::string& path);
-  /// Failures to write are kept quiet: a full disk must not stop a robot's drivers. `failed()` tells.
+  /// Waits until all is written.
+  ~BlackBox();
+  /// Failures to write are kept quiet: a full disk must not stop a robot's drivers, nor may one that takes nothing for
+  /// long fill the memory (kMostWaiting). `failed()` tells.
   void add(const std::string& device, Direction direction, std::string_view bytes, Stamp stamp);
-  bool failed() const;
+  /// Whether something was lost. Waits until all that was added is written.
+  bool failed();
+
+  static constexpr std::size_t kMostWaiting = 16u << 20;  ///< [bytes]: ten minutes of all devices
 
  private:
-  mutable std::mutex mutex_;
+  void write();
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
   Descriptor file_;
+  std::string waiting_;
+  bool writing_ = false;
+  bool ending_ = false;
   bool failed_ = false;
+  std::thread writer_;
 };
 
 /// All whole entries of a black box in their order. Throws InputError: missing, of another kind.

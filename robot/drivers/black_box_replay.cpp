@@ -10,11 +10,12 @@ void append(std::vector<T>& to, std::vector<T>&& from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
-/// What the driver would send is thrown away: the device has long answered what was sent then.
+/// One turn of the thread that led the conversation: bytes first, then what is due. What the driver would send is
+/// thrown away: the device has long answered what was sent then.
 void play(Device& device, const BlackBoxEntry& entry) {
   if (entry.direction == Direction::Opened) return device.opened(entry.stamp, line_kind(entry));
-  device.advance(entry.stamp);
   if (entry.direction == Direction::FromDevice) device.receive(entry.bytes, entry.stamp);
+  device.advance(entry.stamp);
   device.take_output(entry.stamp);
 }
 

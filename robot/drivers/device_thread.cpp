@@ -28,12 +28,13 @@ void wait_for(int port, int wake, double timeout) {
 }  // namespace
 
 DeviceThread::DeviceThread(std::string name, std::string port, Device& device, BlackBox* box,
-                           std::function<void(Stamp)> each_turn)
+                           std::function<void(Stamp)> each_turn, std::function<void(Stamp)> turned)
     : name_(std::move(name)),
       word_(std::move(port)),
       device_(device),
       box_(box),
       each_turn_(std::move(each_turn)),
+      turned_(std::move(turned)),
       wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
   check_port_word(word_);
   error_ = word_ + ": not opened yet";
@@ -62,8 +63,8 @@ bool DeviceThread::is_ending() const {
   return with([this] { return ending_; });
 }
 
-void DeviceThread::send(const std::string& bytes) {
-  if (!bytes.empty()) port_->write(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+void DeviceThread::send(const std::string& bytes, Stamp now) {
+  if (!bytes.empty()) port_->write(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), now);
 }
 
 void DeviceThread::run() {
@@ -84,16 +85,15 @@ void DeviceThread::run() {
 void DeviceThread::converse() {
   with([this] {
     error_.clear();
-    device_.opened(host_now(), port_->kind());
+    device_.opened(port_->opened(), port_->kind());
   });
   while (!is_ending()) {
     const int baud = with([this] { return device_.baud(); });
     if (baud > 0 && baud != baud_ && port_->is_serial()) port_->set_baud(baud);
     baud_ = baud;
     std::array<std::uint8_t, 4096> bytes;
-    const std::size_t got = port_->read(bytes.data(), bytes.size(), 0.0);
+    const auto [got, now] = port_->read(bytes.data(), bytes.size(), 0.0);
     std::string out;
-    const Stamp now = host_now();
     const Stamp deadline = with([&] {
       if (got > 0) device_.receive({reinterpret_cast<const char*>(bytes.data()), got}, now);
       if (each_turn_) each_turn_(now);
@@ -101,11 +101,12 @@ void DeviceThread::converse() {
       out = device_.take_output(now);
       return device_.deadline();
     });
-    send(out);
+    send(out, now);
+    if (turned_) turned_(host_now());
     if (got < bytes.size()) wait_for(port_->descriptor(), wake_.get(), deadline - host_now());
   }
   for (const std::string& packet : with([this] { return device_.farewell(); })) {
-    send(packet);
+    send(packet, host_now());
     sleep_until(host_now() + Device::kPause);  // the last one too: closing the line must not cut it short
   }
 }

@@ -16,10 +16,10 @@ namespace rubble::robot {
 /// Runs one device's conversation on its port in a thread of its own. Opens the port again and again after it was lost.
 class DeviceThread {
  public:
-  /// `each_turn` is called under the lock before time is let pass in the device: every 20 ms at the latest. Throws
-  /// InputError on a bad port word.
+  /// `each_turn` is called under the lock before time is let pass in the device: every 20 ms at the latest;
+  /// `turned` after it, when what the device had to say has been sent. Throws InputError on a bad port word.
   DeviceThread(std::string name, std::string port, Device& device, BlackBox* box,
-               std::function<void(Stamp)> each_turn = {});
+               std::function<void(Stamp)> each_turn = {}, std::function<void(Stamp)> turned = {});
   /// Sends the device's farewell and ends.
   ~DeviceThread();
   /// The same while the object goes on; a second call does nothing. May be called from any other thread.
@@ -43,7 +43,7 @@ class DeviceThread {
  private:
   void run();
   void converse();
-  void send(const std::string& bytes);
+  void send(const std::string& bytes, Stamp now);
   bool is_ending() const;
 
   std::string name_;
@@ -51,6 +51,7 @@ class DeviceThread {
   Device& device_;
   BlackBox* box_;
   std::function<void(Stamp)> each_turn_;
+  std::function<void(Stamp)> turned_;
   Descriptor wake_;
   mutable std::mutex mutex_;
   bool ending_ = false;

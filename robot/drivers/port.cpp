@@ -6,6 +6,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -51,20 +52,20 @@ class DescriptorPort : public Port {
  public:
   DescriptorPort(std::string word, Descriptor descriptor) : name_(std::move(word)), file_(std::move(descriptor)) {}
 
-  std::size_t read(std::uint8_t* to, std::size_t size, double timeout) override {
+  Arrival read(std::uint8_t* to, std::size_t size, double timeout) override {
     const Stamp until = host_now() + timeout;
     for (;;) {
       const ssize_t got = ::read(file_.get(), to, size);
-      if (got > 0) return static_cast<std::size_t>(got);
+      if (got > 0) return {static_cast<std::size_t>(got), host_now()};
       if (got == 0) throw DeviceLost(name_ + ": the device closed the line; " + remedy());
       if (errno == EINTR) continue;
       if (errno != EAGAIN && errno != EWOULDBLOCK)
         throw DeviceLost(name_ + ": the device is gone (" + std::strerror(errno) + "); " + remedy());
-      if (!wait_for(file_.get(), POLLIN, until - host_now())) return 0;
+      if (!wait_for(file_.get(), POLLIN, until - host_now())) return {0, host_now()};
     }
   }
 
-  void write(const std::uint8_t* from, std::size_t size) override {
+  void write(const std::uint8_t* from, std::size_t size, Stamp) override {
     for (std::size_t sent = 0; sent < size;) {
       // MSG_NOSIGNAL has no counterpart for a tty, but a tty raises no SIGPIPE either.
       const ssize_t step = is_serial() ? ::write(file_.get(), from + sent, size - sent)
@@ -83,11 +84,15 @@ class DescriptorPort : public Port {
 
   int descriptor() const override { return file_.get(); }
   const std::string& name() const override { return name_; }
+  Stamp opened() const override { return opened_; }
 
  protected:
   virtual std::string remedy() const = 0;
   std::string name_;
   Descriptor file_;
+
+ private:
+  const Stamp opened_ = host_now();
 };
 
 class TcpPort : public DescriptorPort {
@@ -171,6 +176,8 @@ std::string why_not_opened(int error) {
 std::unique_ptr<Port> open_serial(const std::string& word, const std::string& path) {
   Descriptor line(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!line) throw DeviceLost(word + ": " + why_not_opened(errno));
+  if (isatty(line.get()) && flock(line.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw DeviceLost(word + ": " + why_not_opened(EBUSY));
   if (!isatty(line.get())) throw InputError(word + ": is no serial line; give the path of one, as /dev/ttyUSB0");
   return std::make_unique<SerialPort>(word, std::move(line));
 }
@@ -211,7 +218,7 @@ std::unique_ptr<Port> open_tcp(const std::string& word, const PortWord& parts) {
     return std::make_unique<TcpPort>(word, std::move(socket));
   }
   throw DeviceLost(word + ": nobody answers (" + std::strerror(error) +
-                   "); switch the device on or start `rubble emulate` there");
+                   "); switch the device on or start `rubble emulate` there, or end the program that talks to it");
 }
 
 }  // namespace

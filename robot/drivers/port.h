@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "base/stamp.h"
 #include "robot/robot.h"
 
 namespace rubble::robot {
@@ -18,15 +19,23 @@ inline double time_on_line(LineKind kind, double bytes, int baud) {
   return kind == LineKind::Uart && baud > 0 ? 10.0 * bytes / baud : 0.0;
 }
 
+/// How many bytes a read() took, and when: the one time by which a driver and the black box go, however long the thread
+/// was kept waiting between the two.
+struct Arrival {
+  std::size_t size = 0;
+  Stamp stamp;
+};
+
 /// A line to a device: bytes either way. One thread may read while another writes.
 class Port {
  public:
   virtual ~Port() = default;
-  /// Waits up to `timeout` [s] for bytes and takes at most `size` of them; 0: none came. Throws DeviceLost when the
-  /// device is gone.
-  virtual std::size_t read(std::uint8_t* to, std::size_t size, double timeout) = 0;
-  /// Sends all bytes. Throws DeviceLost when the device is gone or takes nothing for half a second.
-  virtual void write(const std::uint8_t* from, std::size_t size) = 0;
+  /// Waits up to `timeout` [s] for bytes and takes at most `size` of them; size 0: none came. Throws DeviceLost
+  /// when the device is gone.
+  virtual Arrival read(std::uint8_t* to, std::size_t size, double timeout) = 0;
+  /// Sends all bytes; `now` is what the sender took for the time when it decided to. Throws DeviceLost when the device
+  /// is gone or takes nothing for half a second.
+  virtual void write(const std::uint8_t* from, std::size_t size, Stamp now) = 0;
   /// For poll(): readable when bytes wait or the device is gone.
   virtual int descriptor() const = 0;
   /// The word that opened it, `tcp:127.0.0.1:10940`.
@@ -36,6 +45,8 @@ class Port {
   virtual LineKind kind() const = 0;
   /// Whether a bit rate can be set: a serial line or a pty.
   bool is_serial() const { return kind() != LineKind::Tcp; }
+  /// When it was opened.
+  virtual Stamp opened() const = 0;
 };
 
 /// Opens the device side's other end: `/dev/ttyUSB0` (any path of a serial line), `pty:PATH` or `tcp:HOST:PORT`. A

@@ -31,6 +31,12 @@ std::string silent_for(const std::string& name, bool underway, Stamp last, Stamp
   return name + text + (why.empty() ? "" : " (" + why + ")");
 }
 
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "" : "; ") + line;
+  return text;
+}
+
 template <class T>
 void append(std::vector<T>& to, std::vector<T>&& from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
@@ -62,6 +68,7 @@ struct RealRobot::Impl {
   Stamp commanded = Stamp::never();
   bool armed = false;                    ///< all devices have reported: the motors may go on
   Stamp scan_answered = Stamp::never();  ///< arrival of the scan whose answer is on its way
+  Stamp scan_leaving = Stamp::never();   ///< the same, once the base's thread has the answer
   std::vector<double> delays;
 
   std::vector<LaserScan> waiting_scans;
@@ -76,6 +83,7 @@ struct RealRobot::Impl {
   std::unique_ptr<DeviceThread> base_thread;  // it asks all the others
   std::mutex listen_mutex;                    ///< of what is called for the operator
   std::function<OperatorWish()> wish;
+  std::function<Drive()> hand;
   std::function<void()> left;
   std::thread operator_thread;
 
@@ -87,8 +95,9 @@ struct RealRobot::Impl {
         heartbeat(given.heartbeat) {
     if (!settings.levelling_port.empty())
       unit_thread = std::make_unique<DeviceThread>("levelling", settings.levelling_port, unit, box);
-    base_thread =
-        std::make_unique<DeviceThread>("base", settings.base_port, *base, box, [this](Stamp now) { watch(now); });
+    base_thread = std::make_unique<DeviceThread>(
+        "base", settings.base_port, *base, box, [this](Stamp now) { watch(now); },
+        [this](Stamp now) { left_for_base(now); });
     operator_thread = std::thread([this] {
       while (!ending) {
         listen();
@@ -105,6 +114,7 @@ struct RealRobot::Impl {
   void listen() {
     operator_ns = heartbeat.last(host_now()).ns;
     const std::lock_guard<std::mutex> lock(listen_mutex);
+    if (hand) drive_by_hand(hand());
     if (!wish) return;
     const OperatorWish wanted = wish();
     if (wanted == OperatorWish::EmergencyStop && !emergency) emergency_stop();
@@ -113,6 +123,15 @@ struct RealRobot::Impl {
     base_thread->end();
     wish = {};
     if (left) left();
+  }
+
+  void drive_by_hand(const Drive& wanted) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (wanted.v == commands.drive.v && wanted.w == commands.drive.w) return;
+      commands.drive = wanted;
+    }
+    base_thread->wake();
   }
 
   void stop() {
@@ -135,15 +154,23 @@ struct RealRobot::Impl {
     const bool free = allowed && fresh && is_lidar_well(now) && is_unit_well(now) && is_operator_well(now);
     if (allowed) base->enable(true);
     base->drive(free ? commands.drive : Drive{});
-    if (scan_answered != Stamp::never()) {
-      delays.push_back(now - scan_answered);
-      scan_answered = Stamp::never();
-    }
+    if (scan_answered != Stamp::never()) scan_leaving = std::exchange(scan_answered, Stamp::never());
   }
 
+  /// In the base's thread, after each turn of it: what watch() let pass has been sent.
+  void left_for_base(Stamp now) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (scan_leaving != Stamp::never()) delays.push_back(now - std::exchange(scan_leaving, Stamp::never()));
+  }
+
+  bool is_lidar_silent(const ScannerStatus& scanner, Stamp now) const {
+    return scanner.last_scan == Stamp::never() || now - scanner.last_scan > settings.safety.lidar_silence;
+  }
+  /// Of the newest scan's last beam: a line or a computer that hands scans over late shows the world as it was.
+  static double age(const ScannerStatus& scanner, Stamp now) { return now - scanner.last_scan + scanner.latency; }
   bool is_lidar_well(Stamp now) const {
-    const Stamp last = lidar.status().last_scan;
-    return last != Stamp::never() && now - last <= settings.safety.lidar_silence;
+    const ScannerStatus scanner = lidar.status();
+    return !is_lidar_silent(scanner, now) && age(scanner, now) <= settings.safety.lidar_age;
   }
   bool is_unit_well(Stamp now) const {
     if (!unit_thread) return true;
@@ -162,7 +189,14 @@ struct RealRobot::Impl {
     const bool underway = first != Stamp::never();
     if (!is_lidar_well(now)) {
       const ScannerStatus scanner = lidar.status();
-      lines.push_back(silent_for("urg", underway, scanner.last_scan, now, scanner.error));
+      if (is_lidar_silent(scanner, now)) {
+        lines.push_back(silent_for("urg", underway, scanner.last_scan, now, scanner.error));
+      } else {
+        char text[80];
+        std::snprintf(text, sizeof text, "urg: its scans are %.1f s old; the line or this computer is too slow",
+                      age(scanner, now));
+        lines.emplace_back(text);
+      }
     }
     const auto [last, ready, state, hold] = base_thread->with(
         [this] { return std::make_tuple(base->last_report(), base->ready(), base->state(), base->hold()); });
@@ -216,9 +250,10 @@ struct RealRobot::Impl {
   }
 
   void take_scans(Stamp now) {
+    const Stamp arrived = lidar.status().last_scan;  // asked first: at most older than what is taken
     std::vector<LaserScan> fresh = lidar.take();
     if (fresh.empty()) return;
-    scan_arrived = now;
+    scan_arrived = arrived == Stamp::never() ? now : arrived;
     scans += fresh.size();
     append(waiting_scans, std::move(fresh));
     if (waiting_scans.size() > kMostScansKept) thin_waiting_scans();
@@ -273,6 +308,8 @@ struct RealRobot::Impl {
     return inputs;
   }
 
+  bool is_over(Stamp now) const { return settings.time_limit > 0.0 && now - first >= settings.time_limit; }
+
   /// Waits while something is silent. False: the run was ended meanwhile.
   bool wait_for_all() {
     for (;;) {
@@ -289,10 +326,11 @@ struct RealRobot::Impl {
       }
       if (is_held()) held_since = now;  // somebody is at the robot: it is not lost
       const bool starting = first == Stamp::never();
+      if (!starting && is_over(now)) return false;
       if (now - held_since > (starting ? settings.safety.start : settings.safety.give_up))
         throw DeviceLost(
-            lines.front() + "; " +
-            (starting ? "check its cable, power and port" : "it did not come back; plug it in and run again"));
+            joined(lines) + "; " +
+            (starting ? "check cables, power and ports" : "it did not come back; plug it in and run again"));
       if (ask && !ask(status(now))) return false;
       take_scans(now);
       sleep_until(now + kAsk);
@@ -312,7 +350,7 @@ struct RealRobot::Impl {
       armed = true;
       tick_end = now;
     }
-    if (settings.time_limit > 0.0 && now - first >= settings.time_limit) return std::nullopt;
+    if (is_over(now)) return std::nullopt;
     tick_end = tick_end + settings.model.tick;
     if (tick_end < now) tick_end = now;  // the core took longer than a tick, or devices were waited for
     for (;;) {
@@ -367,6 +405,11 @@ void RealRobot::listen(std::function<OperatorWish()> ask, std::function<void()> 
   const std::lock_guard<std::mutex> lock(impl_->listen_mutex);
   impl_->wish = std::move(ask);
   impl_->left = std::move(left);
+}
+
+void RealRobot::steer_by_hand(std::function<Drive()> hand) {
+  const std::lock_guard<std::mutex> lock(impl_->listen_mutex);
+  impl_->hand = std::move(hand);
 }
 
 void RealRobot::while_waiting(std::function<bool(const RobotStatus&)> ask) { impl_->ask = std::move(ask); }

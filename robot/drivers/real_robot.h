@@ -16,8 +16,9 @@ namespace rubble::robot {
 /// When the robot stands still, and when it is given up.
 struct SafetySettings {
   double lidar_silence = 0.3;      ///< no scan for so long: stop [s]
+  double lidar_age = 0.6;          ///< the newest scan is older than this: stop. A scan of 115200 baud may take 0.5 [s]
   double base_silence = 1.0;       ///< no report of the base [s]
-  double levelling_silence = 1.0;  ///< no report of the levelling unit [s]
+  double levelling_silence = 0.5;  ///< no report of the levelling unit [s]
   double core_silence = 1.0;       ///< no command of the core [s]
   double operator_silence = 1.0;   ///< no heartbeat, if one is asked for [s]
   double start = 30.0;             ///< all devices must report within [s]
@@ -90,10 +91,13 @@ class RealRobot : public Robot {
   /// `ask` is called in a thread of its own about fifty times a second, whatever the core is at; its wish is granted at
   /// once. After Leave `left` is called in that thread. Empty: nobody is asked any more.
   void listen(std::function<OperatorWish()> ask, std::function<void()> left = {});
+  /// `hand` is asked as often and in the same thread for what the operator wants to drive; it takes the place of what
+  /// the core commands, while the core answers. Empty: nobody drives by hand.
+  void steer_by_hand(std::function<Drive()> hand);
   /// Called about twenty times a second while read() waits for devices; false ends the run.
   void while_waiting(std::function<bool(const RobotStatus&)> ask);
   RobotStatus status() const;
-  /// Delays from the arrival of a scan to the moment its answer has left for the base [s].
+  /// Delays from the arrival of a scan's last byte to the moment its answer has left for the base [s].
   std::vector<double> answer_delays() const;
 
  private:

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <vector>
 
 #include "base/error.h"
@@ -23,6 +24,8 @@
 #include "robot/drivers/port_word.h"
 
 namespace rubble::robot {
+
+namespace fs = std::filesystem;
 namespace {
 
 /// One descriptor at a time behind an epoll descriptor that stays the same; what the client has not taken waits here.
@@ -233,6 +236,11 @@ class PtyServer : public LineServer {
     struct stat status {};
     if (lstat(path_.c_str(), &status) == 0 && !S_ISLNK(status.st_mode))
       throw RunError(name_ + ": a file of this name exists; give a path where a link may be made");
+    // What a program that was killed left behind points nowhere, as long as its number was not given to another pty.
+    const std::string other = link_target();
+    if (!other.empty() && fs::exists(other))
+      throw RunError(name_ + ": somebody serves there already (" + other +
+                     "); end that program, remove the link or give another path");
     int ours = -1, theirs = -1;
     char device[128] = "";
     termios raw{};

@@ -17,6 +17,7 @@
 #include "scenarios/run/core.h"
 #include "scenarios/run/loop.h"
 #include "scenarios/run/map_files.h"
+#include "scenarios/run/replay.h"
 #include "scenarios/run/run_folder.h"
 #include "scenarios/run/score_json.h"
 
@@ -97,8 +98,12 @@ class Driver {
       : options_(options), real_(real), core_(core), loop_(file.settings, folder, core, hooks()) {
     real_.while_waiting([this](const robot::RobotStatus& status) { return wait(status); });
     real_.listen([this] { return wish(); }, options_.left);
+    if (options_.mode == DriveMode::Teleoperate) real_.steer_by_hand(options_.keys);
   }
-  ~Driver() { real_.listen({}); }
+  ~Driver() {
+    real_.steer_by_hand({});
+    real_.listen({});
+  }
 
   LoopEnd run(robot::Robot& robot) {
     LoopEnd end = loop_.run(robot);
@@ -129,7 +134,8 @@ class Driver {
   }
 
   robot::Commands steer(const robot::Inputs& inputs, robot::Commands commands) {
-    if (!told_.empty()) tell_back();
+    tell_back({});
+    held_ = false;
     begun_ = true;
     if (options_.mode == DriveMode::Teleoperate) commands.drive = options_.keys ? options_.keys() : robot::Drive{};
     if (options_.mode == DriveMode::MapOnly) commands.drive = {};
@@ -148,11 +154,9 @@ class Driver {
         for (const std::string& line : status.silent) options_.tell(line);
       if (begun_) loop_.save_now();
     }
-    told_ = status.silent;
-    if (status.held && !held_ && options_.tell)
-      options_.tell("base: held; release the button, then press R (or send SIGUSR2) to let the robot drive again");
-    held_ = status.held;
-    if (held_ && options_.rearm && options_.rearm()) real_.rearm();
+    tell_back(status.silent);
+    if (status.held) mind_hold();
+    held_ = held_ && status.held;
     if (options_.forget_keys) options_.forget_keys();
     return !interrupted_;
   }
@@ -163,11 +167,26 @@ class Driver {
     return out;
   }
 
-  void tell_back() {
+  /// Somebody stopped the robot at the robot. Only what the operator says after that was told lets it go.
+  void mind_hold() {
+    if (!held_) {
+      if (options_.tell)
+        options_.tell("base: held; release the button, then press R (or send SIGUSR2) to let the robot drive again");
+      if (options_.rearm) options_.rearm();  // what was pressed or sent before it was held
+      held_ = true;
+    } else if (options_.rearm && options_.rearm()) {
+      real_.rearm();
+      held_ = false;  // should it be stopped again at once, that is another hold
+    }
+  }
+
+  /// Names the devices that were told as silent and are not among these.
+  void tell_back(const std::vector<std::string>& silent) {
+    const std::vector<std::string> still = names(silent);
     if (options_.tell)
-      for (const std::string& name : names(told_)) options_.tell(name + ": reports");
-    told_.clear();
-    held_ = false;
+      for (const std::string& name : names(told_))
+        if (std::find(still.begin(), still.end(), name) == still.end()) options_.tell(name + ": reports");
+    told_ = silent;
   }
 
   void tell_troubles(const std::vector<std::string>& now) {
@@ -254,7 +273,9 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
                    options.replace);
   folder.write("scenario.yaml", resolved_yaml(file.settings));
   folder.write("robot.yaml", robot_file_yaml(file));
-  folder.write("versions.json", versions().json(2) + "\n");
+  auto written_by = nlohmann::ordered_json::parse(versions().json(-1));
+  if (options.mode != DriveMode::Explore) written_by[kSteeredByHand] = true;
+  folder.write("versions.json", written_by.dump(2) + "\n");
   robot::BlackBox box(folder.file("devices.bytes"));
   Core core(file.settings, file.robot.model, options.mode == DriveMode::Explore, folder.path());
   RunReport report;

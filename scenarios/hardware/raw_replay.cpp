@@ -1,7 +1,6 @@
 #include "scenarios/hardware/raw_replay.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "robot/drivers/black_box_replay.h"
@@ -13,38 +12,33 @@ namespace rubble::scenarios {
 namespace {
 
 bool same(const robot::LaserScan& a, const robot::LaserScan& b) {
-  return a.ranges.size() == b.ranges.size() && a.codes == b.codes &&
+  return a.stamp == b.stamp && a.ranges.size() == b.ranges.size() && a.codes == b.codes &&
          std::memcmp(a.ranges.data(), b.ranges.data(), a.ranges.size() * sizeof(float)) == 0;
 }
 bool same(const robot::Odometry& a, const robot::Odometry& b) {
-  return a.pose.x == b.pose.x && a.pose.y == b.pose.y && a.pose.phi == b.pose.phi && a.v == b.v && a.w == b.w &&
-         a.stalled == b.stalled;
+  return a.stamp == b.stamp && a.pose.x == b.pose.x && a.pose.y == b.pose.y && a.pose.phi == b.pose.phi && a.v == b.v &&
+         a.w == b.w && a.stalled == b.stalled;
 }
-bool same(const robot::Acceleration& a, const robot::Acceleration& b) { return a.x == b.x && a.y == b.y; }
-bool same(const robot::AimState& a, const robot::AimState& b) { return a.pitch == b.pitch && a.roll == b.roll; }
+bool same(const robot::Acceleration& a, const robot::Acceleration& b) {
+  return a.stamp == b.stamp && a.x == b.x && a.y == b.y;
+}
+bool same(const robot::AimState& a, const robot::AimState& b) {
+  return a.stamp == b.stamp && a.pitch == b.pitch && a.roll == b.roll;
+}
 
-/// Finds each recorded entry among the replayed ones, in order: of equal ones that whose stamp is closest.
+/// Finds each recorded entry among the replayed ones, in order.
 template <class T>
 RawReplay::Kind compared(const std::string& name, const std::vector<T>& recorded, const std::vector<T>& replayed) {
-  constexpr double kNear = 1.0;  ///< entries farther apart are not the same [s]
   RawReplay::Kind kind;
   kind.name = name;
   kind.recorded = recorded.size();
   kind.replayed = replayed.size();
-  std::size_t next = 0;
+  auto next = replayed.begin();
   for (const T& then : recorded) {
-    while (next < replayed.size() && replayed[next].stamp < then.stamp - kNear) ++next;
-    std::size_t best = replayed.size();
-    for (std::size_t i = next; i < replayed.size() && replayed[i].stamp < then.stamp + kNear; ++i) {
-      if (!same(then, replayed[i])) continue;
-      if (best == replayed.size() ||
-          std::abs(replayed[i].stamp - then.stamp) < std::abs(replayed[best].stamp - then.stamp))
-        best = i;
-    }
-    if (best == replayed.size()) continue;
+    const auto found = std::find_if(next, replayed.end(), [&](const T& now) { return same(then, now); });
+    if (found == replayed.end()) continue;
     ++kind.same;
-    kind.worst_stamp = std::max(kind.worst_stamp, std::abs(replayed[best].stamp - then.stamp));
-    next = best + 1;
+    next = found + 1;
   }
   return kind;
 }

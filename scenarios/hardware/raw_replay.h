@@ -11,8 +11,7 @@ struct RawReplay {
     std::string name;          ///< "scans", ...
     std::size_t recorded = 0;  ///< in the log
     std::size_t replayed = 0;  ///< out of the bytes: more, for they begin before the first tick
-    std::size_t same = 0;      ///< of the recorded: with the same numbers, in their order
-    double worst_stamp = 0.0;  ///< by which a stamp of those differs [s]
+    std::size_t same = 0;      ///< of the recorded: with the same bits and stamp, in their order
   };
   std::vector<Kind> kinds;
   std::size_t bad_sums = 0;   ///< of the base
@@ -22,9 +21,8 @@ struct RawReplay {
   bool identical = true;  ///< all that was recorded came out again
 };
 
-/// Plays devices.bytes of a run folder to the drivers and compares with the folder's log. Numbers must be the same
-/// bits; stamps of arrival are taken anew at the bytes and may differ by what the machine let a thread wait. Throws
-/// InputError.
+/// Plays devices.bytes of a run folder to the drivers and compares with the folder's log. Numbers and stamps
+/// must be the same bits. Throws InputError.
 RawReplay replay_raw(const std::string& run_folder);
 
 }  // namespace rubble::scenarios

@@ -59,6 +59,7 @@ void bind_levelling(Binder& b, robot::RealRobotSettings& r) {
 
 void bind(Binder& b, robot::SafetySettings& s) {
   b.number("lidar_silence_s", s.lidar_silence, 0.1, 10.0);
+  b.number("lidar_age_s", s.lidar_age, 0.2, 10.0);
   b.number("base_silence_s", s.base_silence, 0.2, 10.0);
   b.number("levelling_silence_s", s.levelling_silence, 0.1, 10.0);
   b.number("core_silence_s", s.core_silence, 0.1, 10.0);
@@ -110,6 +111,8 @@ RobotFile load_robot_file(const std::string& path, const std::vector<Override>& 
     root.fail("name", "is used as a folder name: no spaces or slashes");
   const YamlMap urg = root.map("devices").map("urg");
   for (const std::string& key : urg.map("parameters").keys()) file.lidar.parameters.emplace_back(key, "");
+  // MRPT's drivers lose the codes: what they call invalid may be a black wall close by as well as nothing at all.
+  if (urg.text("driver", "scip") == "mrpt") file.lidar.no_echo_is_miss = false;
   YamlReader reader(root);
   bind_devices(reader, file);
   if (!file.lidar.parameters.empty() && file.lidar.driver != LidarDriver::Mrpt)

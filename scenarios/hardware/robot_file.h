@@ -20,7 +20,7 @@ struct LidarSettings {
   std::string port;
   std::vector<std::pair<std::string, std::string>> parameters;  ///< of MRPT's configuration section, passed through
   double delay = 0.0;                                           ///< scans are so much older than their stamps say [s]
-  bool no_echo_is_miss = true;  ///< "no echo" counts as nothing in range, else as no measurement
+  bool no_echo_is_miss = true;  ///< "no echo" counts as nothing in range, else as no measurement; MRPT: false
 };
 
 /// A real robot: devices, ports, mounts and limits, and how the core shall use them.

@@ -1,9 +1,12 @@
 #include "scenarios/run/replay.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+
+#include <nlohmann/json.hpp>
 
 #include "base/digest.h"
 #include "base/error.h"
@@ -37,14 +40,23 @@ class Scratch {
   bool kept_;
 };
 
-/// Whether the bytes of `beginning` are the first ones of `whole`.
-bool starts_with_file(const std::string& whole, const std::string& beginning) {
-  std::ifstream a(whole, std::ios::binary);
-  std::ifstream b(beginning, std::ios::binary);
-  const std::string first{std::istreambuf_iterator<char>(b), {}};
-  std::string same(first.size(), '\0');
-  a.read(same.data(), static_cast<std::streamsize>(same.size()));
-  return a.gcount() == static_cast<std::streamsize>(first.size()) && same == first;
+std::string bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Whether the shorter of two files is the beginning of the other: of what was ended on the spot, log and trajectory
+/// reach up to different scans.
+bool begin_alike(const std::string& a, const std::string& b) {
+  const std::string one = bytes_of(a), other = bytes_of(b);
+  const std::size_t size = std::min(one.size(), other.size());
+  return one.compare(0, size, other, 0, size) == 0;
+}
+
+/// Nothing that the explorer says is compared with what somebody else steered.
+bool steered_by_hand(const std::string& run) {
+  const auto written_by = nlohmann::json::parse(bytes_of(run + "/versions.json"), nullptr, false);
+  return written_by.is_object() && written_by.value(kSteeredByHand, false);
 }
 
 bool same_commands(const robot::Commands& a, const robot::Commands& b) {
@@ -74,7 +86,8 @@ ReplayReport replay_run(const std::string& path, const Scenario& scenario, const
   robot::ReplayRobot robot(path + "/log.rlog");
   const Scratch scratch(options.out);
   RunFolder folder(scratch.path(), options.replace);
-  Core core(scenario, robot.model(), true, folder.path());
+  const bool by_hand = steered_by_hand(path);
+  Core core(scenario, robot.model(), !by_hand, folder.path());
   ReplayReport report;
   report.ended = fs::exists(path + "/hashes.json");
   folder.write("scenario.yaml", resolved_yaml(scenario));
@@ -85,6 +98,7 @@ ReplayReport replay_run(const std::string& path, const Scenario& scenario, const
   hooks.share = [&] { return robot.progress(); };
   hooks.steer = [&](const robot::Inputs&, const robot::Commands& commands) {
     ++report.ticks;
+    if (by_hand) return robot.recorded_commands();
     last_differs = !same_commands(commands, robot.recorded_commands());
     if (last_differs) ++report.different_commands;
     return commands;
@@ -98,7 +112,7 @@ ReplayReport replay_run(const std::string& path, const Scenario& scenario, const
   for (const std::string& name : comparable(report.ended)) {
     const std::string then = path + "/" + name, now = folder.file(name);
     const bool same =
-        fs::exists(then) && (report.ended ? sha256_of_file(then) == sha256_of_file(now) : starts_with_file(now, then));
+        fs::exists(then) && (report.ended ? sha256_of_file(then) == sha256_of_file(now) : begin_alike(now, then));
     report.artefacts.push_back({name, same});
     report.identical = report.identical && same;
   }

@@ -14,6 +14,9 @@ struct ReplayedArtefact {
   bool same = false;
 };
 
+/// In versions.json: the motion was not the explorer's (an operator's, or a calibration's).
+constexpr const char* kSteeredByHand = "steered_by_hand";
+
 struct ReplayReport {
   std::vector<ReplayedArtefact> artefacts;
   bool identical = false;

@@ -4,7 +4,7 @@ source "$(dirname "$0")/lib.sh"
 robot=$source/robots/pioneer_urg.yaml
 
 touch there.yaml
-expect_exit 2 "exists already" "$rubble" calibrate "$robot" --out there.yaml
+expect_exit 3 "exists already" "$rubble" calibrate "$robot" --out there.yaml
 expect_exit 3 "nowhere" "$rubble" calibrate "$robot" --log nowhere --out new.yaml
 expect_exit 3 "did you mean" "$rubble" calibrate "$robot" --set devices.base.turn_skale=1 --out new.yaml
 

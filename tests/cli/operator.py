@@ -140,16 +140,21 @@ class Drive:
         return None
 
 
-emulator = subprocess.Popen(
-    [RUBBLE, "emulate", SCENARIO, "--urg", "tcp:127.0.0.1:0", "--base", "tcp:127.0.0.1:0", "--levelling",
-     "tcp:127.0.0.1:0", "--truth", "truth.tum"], stdout=subprocess.PIPE, text=True)
-PORTS = []
-for line in emulator.stdout:
-    if line.strip() == "ready":
-        break
-    device, port = line.split()
-    PORTS += ["--" + device, port]
+def emulate(*words):
+    """The emulator, and where its devices are as words for a drive."""
+    process = subprocess.Popen(
+        [RUBBLE, "emulate", SCENARIO, "--urg", "tcp:127.0.0.1:0", "--base", "tcp:127.0.0.1:0", "--levelling",
+         "tcp:127.0.0.1:0", "--truth", "truth.tum", *words], stdout=subprocess.PIPE, text=True)
+    ports = []
+    for line in process.stdout:
+        if line.strip() == "ready":
+            break
+        device, port = line.split()
+        ports += ["--" + device, port]
+    return process, ports
 
+
+emulator, PORTS = emulate()
 try:
     # Teleoperation: a held key drives, letting go stops, space stops, Q ends.
     drive = Drive("teleop", "--teleop")
@@ -261,6 +266,27 @@ try:
     check("heartbeat: reports" in drive.look(), "heartbeat: its return is told")
     drive.press("x")
     check(drive.wait() is not None, "heartbeat: a key ends the drive")
+
+    # Whoever stopped the robot at the robot is obeyed, whatever the operator had said before; R, also as a capital, lets it go.
+    emulator.send_signal(signal.SIGINT)
+    emulator.wait(20)
+    os.remove("truth.tum")
+    emulator, PORTS = emulate("--fault", "base-motors@15")
+    drive = Drive("held")
+    check(wait_for(lambda: "motors on" in drive.look()), "held: motors on")
+    os.kill(drive.pid, signal.SIGUSR2)  # too early: nothing is held
+    check(wait_for(lambda: "base: held" in drive.look()), "held: it is told")
+    held = time.time()
+    check_stop("held", held)
+    time.sleep(2.0)
+    rows = truth()
+    check(not moves(rows, len(rows) - 1), "held: it stays, though SIGUSR2 came before")
+    check("base: reports" not in drive.look().split("base: held")[1], "held: no word of its return")
+    drive.press("R")
+    check(wait_for(lambda: drive.look() is not None and drives_now()), "held: R lets it go")
+    check("base: reports" in drive.look().split("base: held")[1], "held: its return is told")
+    drive.press("x")
+    check(drive.wait() == 130, "held: a key ends the drive")
 finally:
     emulator.send_signal(signal.SIGINT)
     emulator.wait(20)

@@ -29,12 +29,15 @@ using mrpt::hwdrivers::CHokuyoURG;
 using mrpt::obs::CObservation2DRangeScan;
 
 constexpr const char* kSection = "SCANNER";
-constexpr double kJump = 1.0;  // MRPT's stamps leap so far when the device's clock wraps or restarts [s]
+constexpr double kOverdue = 0.25;  // without a scan for so long a device may be gone [s]
+constexpr double kJump = 1.0;      // MRPT's stamps leap so far when the device's clock wraps or restarts [s]
 
 /// MRPT keeps what the device said of its geometry to itself.
 class Hokuyo : public CHokuyoURG {
  public:
   const TSensorInfo& told() const { return m_sensor_info; }
+  /// Its destructor says goodbye to the device, which over a TCP connection that the other side closed never returns.
+  void forget_line() { m_stream.reset(); }
 };
 
 std::unique_ptr<C2DRangeFinderAbstract> make_sensor(const std::string& type) {
@@ -108,18 +111,34 @@ class MrptScanner : public Scanner {
     settings.write(kSection, "sensorLabel", "LASER");
     for (const auto& [key, value] : config_.parameters) settings.write(kSection, key, value);
     sensor->loadConfig(settings, kSection);
-    sensor->initialize();
+    last_arrival_ = now_();
+    try {
+      sensor->initialize();
+      listen(*sensor);
+    } catch (...) {
+      forget_line(*sensor);
+      throw;
+    }
+    if (now_() - last_arrival_ > kOverdue) forget_line(*sensor);
+  }
+
+  static void forget_line(C2DRangeFinderAbstract& sensor) {
+    if (auto* hokuyo = dynamic_cast<Hokuyo*>(&sensor)) hokuyo->forget_line();
+  }
+
+  /// Until the driver ends; throws when the device is gone.
+  void listen(C2DRangeFinderAbstract& sensor) {
     bool first = true;
     last_arrival_ = now_();
     while (pause(0.001)) {
-      sensor->doProcess();
-      for (const auto& [time, object] : sensor->getObservations()) {
+      sensor.doProcess();
+      for (const auto& [time, object] : sensor.getObservations()) {
         const auto scan = std::dynamic_pointer_cast<CObservation2DRangeScan>(object);
         if (!scan) continue;
-        if (std::exchange(first, false)) greet(*sensor, *scan);
-        deliver(*sensor, *scan);
+        if (std::exchange(first, false)) greet(sensor, *scan);
+        deliver(sensor, *scan);
       }
-      if (sensor->getState() == CGenericSensor::ssError || now_() - last_arrival_ > config_.silence)
+      if (sensor.getState() == CGenericSensor::ssError || now_() - last_arrival_ > config_.silence)
         throw RunError(name() + ": the scanner is silent; it is started anew, check its cable and power");
     }
   }

@@ -72,18 +72,18 @@ std::optional<FoundDevice> probe_scanner(const std::string& word) {
 bool becomes_ready(Device& device, const std::string& word, double patience) {
   const auto port = open_port(word);
   const auto send = [&](const std::string& bytes) {
-    if (!bytes.empty()) port->write(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+    if (!bytes.empty()) port->write(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), host_now());
   };
   const Stamp end = host_now() + patience;
-  device.opened(host_now(), port->kind());
+  device.opened(port->opened(), port->kind());
   int baud = 0;
   while (!device.ready() && host_now() < end) {
     if (port->is_serial() && device.baud() > 0 && device.baud() != baud) port->set_baud(baud = device.baud());
     std::array<std::uint8_t, 1024> bytes;
-    const std::size_t got = port->read(bytes.data(), bytes.size(), kTurn);
-    if (got > 0) device.receive({reinterpret_cast<const char*>(bytes.data()), got}, host_now());
-    device.advance(host_now());
-    send(device.take_output(host_now()));
+    const auto [got, now] = port->read(bytes.data(), bytes.size(), kTurn);
+    if (got > 0) device.receive({reinterpret_cast<const char*>(bytes.data()), got}, now);
+    device.advance(now);
+    send(device.take_output(now));
   }
   for (const std::string& packet : device.farewell()) {
     send(packet);

@@ -44,20 +44,21 @@ void Link::refuse(const std::string& what) const { throw Refused(port_->name() +
 
 void Link::send(const std::string& command) {
   const std::string line = command + "\n";
-  port_->write(reinterpret_cast<const std::uint8_t*>(line.data()), line.size());
+  asked_ = host_now();
+  port_->write(reinterpret_cast<const std::uint8_t*>(line.data()), line.size(), asked_);
 }
 
 void Link::pull(double timeout) {
   std::array<std::uint8_t, 4096> bytes;
-  const std::size_t size = port_->read(bytes.data(), bytes.size(), timeout);
-  if (size > 0) receiver_.push(bytes.data(), size, host_now());
+  const auto [size, stamp] = port_->read(bytes.data(), bytes.size(), timeout);
+  if (size > 0) receiver_.push(bytes.data(), size, stamp);
 }
 
 /// Throws away what comes until the line has been silent for so long, but for a second at most.
 void Link::drain(double silence) {
   std::array<std::uint8_t, 4096> bytes;
   const Stamp end = host_now() + 1.0;
-  while (host_now() < end && port_->read(bytes.data(), bytes.size(), silence) > 0) {
+  while (host_now() < end && port_->read(bytes.data(), bytes.size(), silence).size > 0) {
   }
   receiver_.clear();
 }
@@ -185,7 +186,6 @@ void Link::ask_time(WrappingClock& clock, ClockMap& map) {
   for (int i = 0; i < kTimeQuestions; ++i) {
     // The questions fall on different parts of the device's millisecond, which narrows the offset down further.
     sleep_until(host_now() + (i % 4) * 0.00027);
-    const Stamp asked = host_now();
     const auto reply = ask("TM1", kAnswerTime);
     if (!reply || *status_of(*reply) != "00" || reply->lines.size() < 3) continue;
     const auto text = checked(reply->lines[2]);
@@ -193,7 +193,7 @@ void Link::ask_time(WrappingClock& clock, ClockMap& map) {
     if (!count) continue;
     const WrappingClock::Reading reading = clock.read(*count, reply->ended);
     if (reading.restarted) map.clear();
-    const auto [soonest, latest] = when_read(asked, reply->ended, port_->kind(), baud_);
+    const auto [soonest, latest] = when_read(asked_, reply->ended, port_->kind(), baud_);
     map.anchor(reading.time, soonest, latest);
   }
   insist("TM2");

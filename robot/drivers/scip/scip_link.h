@@ -75,6 +75,7 @@ class Link {
   Geometry geometry_;
   ScannerInfo info_;
   Stamp begun_, ended_;
+  Stamp asked_;  ///< when the last question left
   std::uint64_t damaged_ = 0;
 };
 

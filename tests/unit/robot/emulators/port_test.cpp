@@ -52,7 +52,7 @@ Bytes received(Port& port, std::size_t size, PortServer* server = nullptr) {
       std::uint8_t none;
       server->read(&none, 0, 0.0);  // sends on what waits
     }
-    got += port.read(all.data() + got, all.size() - got, 0.02);
+    got += port.read(all.data() + got, all.size() - got, 0.02).size;
   }
   all.resize(got);
   return all;
@@ -69,7 +69,7 @@ TEST_P(Line, AllBytesPassUnchangedBothWays) {
   const auto port = open_port(server->name());
   Bytes all(256);
   std::iota(all.begin(), all.end(), std::uint8_t{0});  // among them CR, LF, ^C, ^Q, ^S, EOF
-  port->write(all.data(), all.size());
+  port->write(all.data(), all.size(), host_now());
   EXPECT_EQ(served(*server, all.size()), all);
   EXPECT_TRUE(server->write(all.data(), all.size()));
   EXPECT_EQ(received(*port, all.size()), all);
@@ -81,7 +81,7 @@ TEST_P(Line, NothingIsReadWhenNothingCame) {
   const auto server = serve_port(word());
   const auto port = open_port(server->name());
   std::uint8_t byte;
-  EXPECT_EQ(port->read(&byte, 1, 0.001), 0u);
+  EXPECT_EQ(port->read(&byte, 1, 0.001).size, 0u);
 }
 
 TEST_P(Line, AClientThatComesBackIsServedAgain) {
@@ -89,7 +89,7 @@ TEST_P(Line, AClientThatComesBackIsServedAgain) {
   for (int round = 0; round < 3; ++round) {
     const auto port = open_port(server->name());
     const Bytes hello = bytes("hello");
-    port->write(hello.data(), hello.size());
+    port->write(hello.data(), hello.size(), host_now());
     EXPECT_EQ(served(*server, hello.size()), hello) << round;
   }
 }
@@ -99,7 +99,7 @@ TEST_P(Line, PulledPlugIsLostDeviceAndItsReturnIsFound) {
   const std::string name = server->name();
   auto port = open_port(name);
   const Bytes hello = bytes("hello");
-  port->write(hello.data(), hello.size());
+  port->write(hello.data(), hello.size(), host_now());
   served(*server, hello.size());
   server->unplug();
   std::uint8_t byte;
@@ -108,7 +108,7 @@ TEST_P(Line, PulledPlugIsLostDeviceAndItsReturnIsFound) {
   server->plug_in();
   EXPECT_EQ(server->name(), name);
   port = open_port(name);
-  port->write(hello.data(), hello.size());
+  port->write(hello.data(), hello.size(), host_now());
   EXPECT_EQ(served(*server, hello.size()), hello);
 }
 
@@ -130,7 +130,7 @@ TEST_P(Line, DescriptorIsReadableWhenBytesWait) {
   const auto port = open_port(server->name());
   const int before = server->descriptor();
   const Bytes hello = bytes("hello");
-  port->write(hello.data(), hello.size());
+  port->write(hello.data(), hello.size(), host_now());
   EXPECT_EQ(served(*server, hello.size()), hello);
   EXPECT_EQ(server->descriptor(), before);
 }
@@ -154,7 +154,7 @@ TEST(TcpLine, SecondClientWaitsForTheFirst) {
   std::uint8_t byte;
   server->read(&byte, 1, 0.5);
   const Bytes hello = bytes("hello");
-  second->write(hello.data(), hello.size());
+  second->write(hello.data(), hello.size(), host_now());
   EXPECT_EQ(server->read(&byte, 1, 0.02).size, 0u);
   first.reset();
   EXPECT_EQ(served(*server, hello.size()), hello);

@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -52,9 +53,13 @@ class ToldScanner : public Scanner {
     LaserScan scan;
     scan.stamp = now - 0.08;
     scan.ranges.assign(10, 1.0f);
-    queue_.update([](ScannerStatus& status) { ++status.scans; });
+    queue_.update([this](ScannerStatus& status) {
+      ++status.scans;
+      status.latency = latency;
+    });
     queue_.put(scan, now);
   }
+  std::atomic<double> latency{0.005};  ///< of the line [s]
 
  private:
   ScanQueue queue_;
@@ -173,6 +178,54 @@ TEST(RealRobot, ASilentScannerStopsIt) {
   EXPECT_TRUE(Bench::soon([&] { return bench.speed == 0.0; }));
   bench.scans = true;
   core.join();
+}
+
+TEST(RealRobot, ScansThatComeLateStopItThoughTheyNeverCease) {
+  Bench bench;
+  bench.drive(0.3, 3.0);
+  ASSERT_TRUE(Bench::soon([&] { return bench.speed > 0.0; }));
+  std::vector<std::string> named;
+  bench.robot->while_waiting([&](const RobotStatus& status) {
+    named.insert(named.end(), status.silent.begin(), status.silent.end());
+    return true;
+  });
+  bench.scanner.latency = 2.0;
+  std::thread core([&] { bench.drive(0.3, 4.0); });
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed == 0.0; })) << "it drives by what it saw two seconds ago";
+  bench.scanner.latency = 0.005;
+  core.join();
+  EXPECT_THAT(named, testing::Contains(testing::StartsWith("urg: its scans are 2.")));
+  bench.drive(0.3, 1.0);
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0; })) << "it goes on when they are fresh again";
+}
+
+/// A mapper may be busy for most of a second; whoever drives by hand is heard all the same.
+TEST(RealRobot, TheHandIsHeardWhileTheCoreIsBusy) {
+  RealRobotSettings settings;
+  settings.safety.core_silence = 10.0;  // the core is as good as gone
+  Bench bench(settings);
+  std::atomic<double> wanted{0.3};
+  bench.robot->steer_by_hand([&] { return Drive{wanted, 0.0}; });
+  bench.drive(0.3, 2.0);
+  ASSERT_TRUE(Bench::soon([&] { return bench.speed > 0.0; }));
+  wanted = 0.0;
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed == 0.0; })) << "braking waits for the core";
+  wanted = -0.2;
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed < 0.0; }));
+  const auto inputs = bench.robot->read();
+  ASSERT_TRUE(inputs);
+  ASSERT_TRUE(inputs->command);
+  EXPECT_EQ(inputs->command->drive.v, -0.2) << "what the log says was in force";
+}
+
+TEST(RealRobot, TheTimeIsOverAlsoWhileADeviceIsWaitedFor) {
+  RealRobotSettings settings;
+  settings.time_limit = 1.5;
+  Bench bench(settings);
+  bench.drive(0.1, 0.5);
+  bench.scans = false;
+  EXPECT_NO_THROW(bench.drive(0.1, 8.0)) << "give_up is longer";
+  EXPECT_FALSE(bench.robot->read());
 }
 
 TEST(RealRobot, ASilentCoreStopsIt) {
@@ -302,7 +355,7 @@ TEST(RealRobot, TheBlackBoxGivesTheDriversTheSameAgain) {
   std::size_t found = 0;
   for (const Odometry& then : odometry)
     for (const Odometry& now : replayed.odometry)
-      if (std::abs(now.stamp - then.stamp) < 0.005 && now.pose.x == then.pose.x && now.v == then.v) ++found;
+      if (now.stamp == then.stamp && now.pose.x == then.pose.x && now.v == then.v) ++found;
   EXPECT_EQ(found, odometry.size());
 }
 
@@ -332,6 +385,53 @@ TEST(Heartbeat, AFullPipeIsNotEmptiedAtOnce) {
   int waiting = 0;
   ASSERT_EQ(::ioctl(writer.get(), FIONREAD, &waiting), 0);
   EXPECT_GT(waiting, 0) << "a writer without pause would keep the reader for ever";
+}
+
+/// A pipe that nobody reads is the slowest of all disks.
+TEST(BlackBox, NobodyWaitsForASlowDisk) {
+  Folder folder;
+  ASSERT_EQ(::mkfifo(folder.file("slow").c_str(), 0600), 0);
+  const Descriptor reader(::open(folder.file("slow").c_str(), O_RDONLY | O_NONBLOCK));
+  std::string read;
+  const std::string block(1000, 'x');
+  std::atomic<bool> added{false};
+  std::thread late;
+  {
+    BlackBox box(folder.file("slow"));
+    late = std::thread([&] {
+      EXPECT_TRUE(Bench::soon([&] { return added.load(); }, 30.0)) << "add() waits for the disk";
+      char bytes[4096];
+      for (const Stamp end = host_now() + 30.0; host_now() < end;) {
+        const ssize_t got = ::read(reader.get(), bytes, sizeof bytes);
+        if (got == 0) break;
+        if (got > 0) read.append(bytes, static_cast<std::size_t>(got));
+      }
+    });
+    for (int i = 0; i < 1000; ++i) box.add("base", Direction::FromDevice, block, {i});
+    added = true;
+    EXPECT_FALSE(box.failed());
+  }
+  late.join();
+  std::ofstream(folder.file("copy"), std::ios::binary) << read;
+  const auto whole = read_black_box(folder.file("copy"));
+  ASSERT_EQ(whole.size(), 1000u);
+  for (int i = 0; i < 1000; ++i) EXPECT_EQ(whole[static_cast<std::size_t>(i)].stamp.ns, i);
+}
+
+TEST(BlackBox, WhatADiskNeverTakesDoesNotFillTheMemory) {
+  Folder folder;
+  ASSERT_EQ(::mkfifo(folder.file("stuck").c_str(), 0600), 0);
+  Descriptor reader(::open(folder.file("stuck").c_str(), O_RDONLY | O_NONBLOCK));
+  const auto handler = std::signal(SIGPIPE, SIG_IGN);
+  {
+    BlackBox box(folder.file("stuck"));
+    const std::string block(1u << 20, 'x');
+    for (std::size_t i = 0; i < 2 * BlackBox::kMostWaiting / block.size(); ++i)
+      box.add("base", Direction::FromDevice, block, {});
+    reader.close();  // the disk is gone for good
+    EXPECT_TRUE(box.failed());
+  }
+  std::signal(SIGPIPE, handler);
 }
 
 TEST(BlackBox, ATornEndIsDroppedAndOtherFilesAreRefused) {

@@ -89,17 +89,16 @@ void expect_true(const Bench& bench, const LaserScan& scan, double stamp_toleran
 class Uart : public Port {
  public:
   Uart(std::unique_ptr<Port> inner, int baud) : inner_(std::move(inner)), baud_(baud) {}
-  std::size_t read(std::uint8_t* to, std::size_t size, double timeout) override {
-    return inner_->read(to, size, timeout);
-  }
-  void write(const std::uint8_t* from, std::size_t size) override {
+  Arrival read(std::uint8_t* to, std::size_t size, double timeout) override { return inner_->read(to, size, timeout); }
+  void write(const std::uint8_t* from, std::size_t size, Stamp now) override {
     sleep_until(host_now() + 10.0 * static_cast<double>(size) / baud_);
-    inner_->write(from, size);
+    inner_->write(from, size, now);
   }
   int descriptor() const override { return inner_->descriptor(); }
   const std::string& name() const override { return inner_->name(); }
   void set_baud(int baud) override { inner_->set_baud(baud); }
   LineKind kind() const override { return LineKind::Uart; }
+  Stamp opened() const override { return inner_->opened(); }
 
  private:
   std::unique_ptr<Port> inner_;
