@@ -39,7 +39,11 @@ void print_setup(const scenarios::CalibratedRobot& robot) {
   const auto row = [](const char* name, double value, double error, int digits, const char* unit) {
     std::printf("%-24s %10.*f +- %.*f %s\n", name, digits, value, digits, error, unit);
   };
-  row("effective track", robot.effective_track, robot.effective_track_sigma, 4, "m");
+  if (std::isnan(robot.effective_track)) {
+    std::printf("%-24s %10s\n", "effective track", "not known: the firmware does not tell its own");
+  } else {
+    row("effective track", robot.effective_track, robot.effective_track_sigma, 4, "m");
+  }
   row("distance scale", now.distance_scale, sigma.distance_scale, 4, "");
   row("turn scale", now.turn_scale, sigma.turn_scale, 4, "");
   row("laser x", now.T_base_laser.x, sigma.T_base_laser.x, 4, "m");

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/hardware_units.h"
+
 namespace rubble::robot {
 
 namespace {
 
-constexpr double kGravity = 9.80665;  ///< [m/s^2]
-constexpr double kSilence = 0.5;      ///< after so long without a sample the sensor counts as lost [s]
+constexpr double kSilence = 0.5;  ///< after so long without a sample the sensor counts as lost [s]
 
 double tilt_of(double specific_force, double gravity) {
   return std::asin(std::clamp(specific_force / gravity, -1.0, 1.0));

@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "base/angle.h"
+#include "robot/hardware_units.h"
 #include "sim/laser/rays.h"
 
 namespace rubble::sim {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kGravity = 9.80665;  ///< [m/s^2]
 
 }  // namespace
 
@@ -54,7 +53,7 @@ Vector3d Accelerometer::specific_force(const WorldState& state, double dt) {
   height_[0] = state.stance.z;
   velocity_ = state.velocity;
   history_ = std::min(2, history_ + 1);
-  return R.transpose() * (acceleration + Vector3d(0.0, 0.0, kGravity));
+  return R.transpose() * (acceleration + Vector3d(0.0, 0.0, robot::kGravity));
 }
 
 void Accelerometer::step(const WorldState& state, double dt) {
@@ -69,7 +68,7 @@ void Accelerometer::step(const WorldState& state, double dt) {
   const double sigma = noise_ * parameters_.noise_density * std::sqrt(1.57 * parameters_.bandwidth_hz);
   for (std::size_t i = 0; i < 2; ++i) {
     Axis& axis = axes_[i];
-    axis.filtered += blend * (force[static_cast<Eigen::Index>(i)] / kGravity - axis.filtered);
+    axis.filtered += blend * (force[static_cast<Eigen::Index>(i)] / robot::kGravity - axis.filtered);
     const double noise = rng_.gaussian(sigma);
     const double duty = std::clamp(axis.zero + axis.sensitivity * (axis.filtered + noise), 0.0, 1.0);
     axis.t1 += std::llround(duty * parameters_.period_ticks);
@@ -83,7 +82,7 @@ robot::Acceleration Accelerometer::sample(Stamp stamp) {
   for (std::size_t i = 0; i < 2; ++i) {
     Axis& axis = axes_[i];
     const double duty = t2_ > 0 ? static_cast<double>(axis.t1) / static_cast<double>(t2_) : axis.calibrated_zero;
-    *values[i] = kGravity * (duty - axis.calibrated_zero) / axis.calibrated_sensitivity;
+    *values[i] = robot::kGravity * (duty - axis.calibrated_zero) / axis.calibrated_sensitivity;
     axis.t1 = 0;
   }
   t2_ = 0;

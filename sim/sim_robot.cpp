@@ -51,6 +51,8 @@ void SimRobot::command(const robot::Commands& commands) {
   if (model().has_levelling_unit) impl_->world.servos().command(commands.aim);
 }
 
+void SimRobot::brake() { impl_->world.firmware().brake(); }
+
 void SimRobot::place(const mrpt::math::TPose2D& T_arena_base) { impl_->world.place(T_arena_base); }
 
 const Trajectory& SimRobot::truth() const { return impl_->rig.truth(); }

@@ -22,7 +22,9 @@ struct BaseSettings {
   double distance_scale = 1.0;                ///< true distance per reckoned distance
   double turn_scale = 1.0;                    ///< true turn per reckoned turn
   double delay = 0.0;                         ///< age of a report when its first byte leaves the robot [s]
-  bool passive = false;                       ///< reports are read, but somebody else drives
+  /// The firmware's turn rate is the wheel speeds' difference over this; 0: what is usual for the robot [m].
+  double track = 0.0;
+  bool passive = false;  ///< reports are read, but somebody else drives
   /// Without reports for so long the connection may be made anew [s]. Standing still meanwhile is the caller's
   /// business.
   double silence = 3.0;

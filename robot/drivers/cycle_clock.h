@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "base/stamp.h"
 
 namespace rubble::robot {
@@ -12,8 +14,9 @@ class CycleClock {
 
   /// The cycle the device says it has [s]; 0: unknown, arrivals count as they are.
   void set_cycle(double cycle) { cycle_ = cycle; }
-  /// When the report that arrived at `received` left. Always later than the one before.
-  Stamp stamp(Stamp received);
+  /// When the report that arrived at `received` left, `behind` later ones with it in the same piece: what was held up
+  /// together left a cycle apart. Always later than the one before.
+  Stamp stamp(Stamp received, std::size_t behind = 0);
   /// A new connection.
   void reset() { last_ = Stamp::never(); }
 

@@ -15,6 +15,8 @@ namespace {
 
 constexpr double kTurn = 0.02;       ///< the thread looks around so often at least [s]
 constexpr double kOpenAgain = 0.25;  ///< [s]
+/// Taken in one piece: what was held up on its way or here shall arrive together, since its times are told from that.
+constexpr std::size_t kMostBytes = 65536;
 
 void wait_for(int port, int wake, double timeout) {
   std::array<pollfd, 2> files{pollfd{wake, POLLIN, 0}, pollfd{port, POLLIN, 0}};
@@ -67,6 +69,11 @@ void DeviceThread::send(const std::string& bytes, Stamp now) {
   if (!bytes.empty()) port_->write(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), now);
 }
 
+void DeviceThread::set_baud(int baud) {
+  if (baud > 0 && baud != baud_ && port_->is_serial()) port_->set_baud(baud);
+  baud_ = baud;
+}
+
 void DeviceThread::run() {
   while (!is_ending()) {
     try {
@@ -88,19 +95,19 @@ void DeviceThread::converse() {
     device_.opened(port_->opened(), port_->kind());
   });
   while (!is_ending()) {
-    const int baud = with([this] { return device_.baud(); });
-    if (baud > 0 && baud != baud_ && port_->is_serial()) port_->set_baud(baud);
-    baud_ = baud;
-    std::array<std::uint8_t, 4096> bytes;
+    std::array<std::uint8_t, kMostBytes> bytes;
     const auto [got, now] = port_->read(bytes.data(), bytes.size(), 0.0);
     std::string out;
+    int baud = 0;
     const Stamp deadline = with([&] {
       if (got > 0) device_.receive({reinterpret_cast<const char*>(bytes.data()), got}, now);
       if (each_turn_) each_turn_(now);
       device_.advance(now);
       out = device_.take_output(now);
+      baud = device_.baud();
       return device_.deadline();
     });
+    set_baud(baud);  // what is said now is meant for the rate of now
     send(out, now);
     if (turned_) turned_(host_now());
     if (got < bytes.size()) wait_for(port_->descriptor(), wake_.get(), deadline - host_now());

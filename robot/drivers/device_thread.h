@@ -44,6 +44,7 @@ class DeviceThread {
   void run();
   void converse();
   void send(const std::string& bytes, Stamp now);
+  void set_baud(int baud);
   bool is_ending() const;
 
   std::string name_;

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "robot/hardware_units.h"
+
 namespace rubble::robot {
 namespace {
 
-constexpr double kGravity = 9.80665;  ///< [m/s^2]
 /// A port that is opened may reset the controller, which then takes up to two seconds.
 constexpr double kAsk = 0.5;           ///< [s]
 constexpr double kReportBytes = 50.0;  ///< of a report on the line

@@ -7,6 +7,7 @@
 #include "robot/commands.h"
 #include "robot/drivers/clock_map.h"
 #include "robot/drivers/device.h"
+#include "robot/hardware_units.h"
 #include "robot/measurements.h"
 #include "robot/protocols/levelling_line.h"
 
@@ -22,7 +23,7 @@ struct AxisCalibration {
 /// One servo: the pulse at which it holds the laser level, and its turn per microsecond.
 struct ServoCalibration {
   double centre_us = 1500.0;
-  double radians_per_us = deg_to_rad(0.09);
+  double radians_per_us = kServoStep;
 };
 
 struct LevellingUnitSettings {
@@ -33,7 +34,7 @@ struct LevellingUnitSettings {
   int rate = 50;          ///< reports a second asked for
   int watchdog_ms = 500;  ///< the unit holds its servos after so long a silence
   double delay = 0.0;     ///< age of a report when it arrives [s]
-  double silence = 1.0;   ///< without reports for so long it is asked anew [s]
+  double silence = 0.5;   ///< without reports for so long it is asked anew [s]
   bool passive = false;   ///< only listened to: servo power and settings stay as they are
 };
 

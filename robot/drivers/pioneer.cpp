@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/planar.h"
+#include "robot/hardware_units.h"
 #include "robot/protocols/arcos_commands.h"
 
 namespace rubble::robot {
@@ -13,6 +14,7 @@ namespace {
 
 using arcos::command;
 
+constexpr std::size_t kHead = 3;                                         ///< bytes of a packet before its payload
 constexpr double kReply = 0.5;                                           ///< an answer comes within this time [s]
 constexpr std::array<int, 5> kBauds{9600, 38400, 19200, 115200, 57600};  ///< tried in turn on a serial line
 constexpr int kTries = 3;                                                ///< questions before the next bit rate
@@ -20,11 +22,8 @@ constexpr double kConfigReply = 1.0;                                     ///< [s
 constexpr double kSpacing = 0.004;  ///< the firmware wants so much between two commands [s]
 constexpr double kRefresh = 0.2;    ///< set points are sent again [s]; the firmware forgets them after 2 s
 constexpr double kAskMotors = 0.5;  ///< [s]
-constexpr double kHeadingUnit = 2.0 * kPi / 4096;  // [rad]
+constexpr double kRefused = 5.0;    ///< a robot that cannot be read is asked again who it is [s]
 constexpr double kMillimetre = 1e-3;
-/// Wheel speed difference to turn rate, per robot: half the effective track (parameter files of ARIA).
-constexpr double kHalfTrackAt = 1e-3 / 0.0034;  // [m]
-constexpr double kHalfTrackDx = 1e-3 / 0.0056;  // [m]
 
 /// Difference of two rolled-over coordinates; older firmware rolls over at 15 bits, so only these are compared [mm].
 int rolled_difference(std::uint16_t to, std::uint16_t from) {
@@ -49,6 +48,7 @@ void Pioneer::go(Step step, Stamp now) {
 
 void Pioneer::opened(Stamp now, LineKind line) {
   line_ = line;
+  refusal_.clear();
   parser_.reset();
   clock_.reset();
   queue_.clear();
@@ -98,6 +98,10 @@ void Pioneer::advance(Stamp now) {
       parser_.reset();
       go(Step::Sync0, now);
       return ask(now);
+    case Step::Refused:
+      if (now - since_ < kRefused) return;
+      go(Step::Sync0, now);
+      return ask(now);
     case Step::Opening:
       if (configured_ || now - since_ >= kConfigReply) return go(Step::Running, now);
       return;
@@ -118,11 +122,21 @@ void Pioneer::advance(Stamp now) {
 }
 
 void Pioneer::receive(std::string_view bytes, Stamp now) {
-  parser_.feed(bytes);
-  while (const auto payload = parser_.next()) digest(*payload, now);
+  parser_.feed(bytes, now);
+  std::vector<std::string> payloads;
+  std::size_t reports = 0;
+  while (auto payload = parser_.next(now)) {
+    reports += arcos::parse_information(*payload) ? 1 : 0;
+    payloads.push_back(std::move(*payload));
+  }
+  for (const std::string& payload : payloads) {
+    if (arcos::parse_information(payload)) --reports;
+    digest(payload, now, reports);
+  }
 }
 
-void Pioneer::digest(const std::string& payload, Stamp now) {
+/// `behind`: so many reports came with this packet and after it.
+void Pioneer::digest(const std::string& payload, Stamp now, std::size_t behind) {
   const auto report = arcos::parse_information(payload);
   const bool syncing = step_ == Step::Sync0 || step_ == Step::Sync1 || step_ == Step::Sync2;
   if (syncing && report) {
@@ -138,6 +152,14 @@ void Pioneer::digest(const std::string& payload, Stamp now) {
       const auto identity = arcos::parse_identity(payload);
       if (!identity) return;
       identity_ = *identity;
+      const auto factors = arcos::factors_of(identity_.subclass);
+      if (!factors) {
+        refusal_ = "is a '" + identity_.subclass + "', whose units are not known; known are " +
+                   arcos::known_subclasses() + ", another needs a driver of its own";
+        return go(Step::Refused, now);
+      }
+      factors_ = *factors;
+      refusal_.clear();
       return open(now);
     }
     go(step_ == Step::Sync0 ? Step::Sync1 : Step::Sync2, now);
@@ -150,7 +172,7 @@ void Pioneer::digest(const std::string& payload, Stamp now) {
     clock_.set_cycle(1e-3 * configuration_.cycle_ms);
   }
   if (!report) return;
-  follow(*report, clock_.stamp(sampled(payload.size() + 5, now)));
+  follow(*report, clock_.stamp(sampled(payload.size() + 5, now), behind));
   mind_hold();
   last_report_ = now;
 }
@@ -199,24 +221,24 @@ void Pioneer::rearm() {
 /// from an origin set anew (or a firmware that was restarted): it becomes the reference, and the wheels' speeds say
 /// what happened meanwhile.
 void Pioneer::follow(const arcos::StandardInformation& report, Stamp stamp) {
-  const double half_track = identity_.subclass.rfind("p3dx", 0) == 0 ? kHalfTrackDx : kHalfTrackAt;
+  const double half_track = settings_.track > 0.0 ? 0.5 * settings_.track : factors_.half_track();
   Odometry odometry;
   odometry.stamp = stamp;
   odometry.v = 0.5 * kMillimetre * (report.left + report.right) * settings_.distance_scale;
   odometry.w = kMillimetre * (report.right - report.left) / (2.0 * half_track) * settings_.turn_scale;
   odometry.stalled = (report.stall & (arcos::kLeftStall | arcos::kRightStall)) != 0;
   if (based_) {
-    const double dx = kMillimetre * rolled_difference(report.x, information_.x);
-    const double dy = kMillimetre * rolled_difference(report.y, information_.y);
-    const double dphi = kHeadingUnit * heading_difference(report.heading, information_.heading);
+    const double dx = kMillimetre * factors_.distance * rolled_difference(report.x, information_.x);
+    const double dy = kMillimetre * factors_.distance * rolled_difference(report.y, information_.y);
+    const double dphi = kArcosHeadingUnit * heading_difference(report.heading, information_.heading);
     const double dt = std::clamp(stamp - last_stamp_, 0.1, 2.0);
-    const double before = kHeadingUnit * information_.heading;
+    const double before = kArcosHeadingUnit * information_.heading;
     double ahead = std::cos(before) * dx + std::sin(before) * dy;
     double aside = -std::sin(before) * dx + std::cos(before) * dy;
     double turn = dphi;
     const double v = 0.5 * kMillimetre *
                      std::max(std::abs(report.left + report.right), std::abs(information_.left + information_.right));
-    const double w = kMillimetre / (2.0 * half_track) *
+    const double w = kMillimetre / (2.0 * std::min(half_track, factors_.half_track())) *
                      std::max(std::abs(report.right - report.left), std::abs(information_.right - information_.left));
     const double farthest = 0.03 + 1.5 * v * dt + 0.5 * settings_.max_accel * dt * dt;
     const double widest = deg_to_rad(3.0) + 1.5 * w * dt + 0.5 * settings_.max_turn_accel * dt * dt;
@@ -258,15 +280,27 @@ void Pioneer::enable(bool on) {
   if (!on) drive({});
 }
 
+/// What would set the robot in motion again behind a stop.
+void Pioneer::forget_motion() {
+  const auto moves = [](const std::string& packet) {
+    const auto order = arcos::parse_order(std::string_view(packet).substr(kHead));
+    return order &&
+           (order->number == arcos::kEnable || order->number == arcos::kVelocity || order->number == arcos::kTurnRate);
+  };
+  queue_.erase(std::remove_if(queue_.begin(), queue_.end(), moves), queue_.end());
+}
+
 void Pioneer::stop() {
   if (settings_.passive) return;
   enable(false);
+  forget_motion();
   queue_.push_front(command(arcos::kEnable, 0));
   queue_.push_front(command(arcos::kStop));
 }
 
 void Pioneer::emergency_stop() {
   enable(false);
+  forget_motion();
   queue_.push_front(command(arcos::kEnable, 0));
   queue_.push_front(command(arcos::kEmergencyStop));
 }
@@ -310,7 +344,7 @@ std::string Pioneer::take_output(Stamp now) {
 }
 
 std::vector<std::string> Pioneer::farewell() {
-  if (step_ == Step::Closed) return {};
+  if (step_ == Step::Closed || step_ == Step::Refused) return {};
   return {command(arcos::kStop), command(arcos::kEnable, 0), command(arcos::kClose)};
 }
 
@@ -318,6 +352,7 @@ Stamp Pioneer::deadline() const {
   if (step_ == Step::Closed) return {since_.ns + 1'000'000'000};
   const bool waiting = !queue_.empty() || (step_ == Step::Running && (v_due_ || w_due_));
   if (waiting) return sent_ == Stamp::never() ? since_ : sent_ + kSpacing;
+  if (step_ == Step::Refused) return since_ + kRefused;
   if (step_ != Step::Running) return since_ + (step_ == Step::Opening && configured_ ? 0.0 : kReply);
   Stamp next = refreshed_ == Stamp::never() ? since_ : refreshed_ + kRefresh;
   if (turn_.restless()) next = std::min(next, turn_decided_ + RateDither::kPeriod);
@@ -325,9 +360,11 @@ Stamp Pioneer::deadline() const {
 }
 
 std::string Pioneer::state() const {
+  if (!refusal_.empty()) return refusal_;
   const std::string rate = line_ != LineKind::Tcp ? " at " + std::to_string(baud()) + " baud" : "";
   switch (step_) {
     case Step::Closed:
+    case Step::Refused:
       return "closed";
     case Step::Sync0:
     case Step::Sync1:

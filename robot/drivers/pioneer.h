@@ -47,7 +47,9 @@ class Pioneer : public BaseDriver {
   std::vector<Odometry> take_odometry() override;
 
   const arcos::Identity& identity() const { return identity_; }
+  /// Its defaults where the robot has not told any.
   const arcos::Configuration& configuration() const { return configuration_; }
+  bool configured() const { return configured_; }
   double battery() const override { return information_.battery; }
   bool motors_on() const override { return (information_.flags & arcos::kMotorsOn) != 0; }
   bool emergency_button() const { return (information_.flags & arcos::kEmergencyButton) != 0; }
@@ -55,15 +57,16 @@ class Pioneer : public BaseDriver {
   std::size_t jumps() const override { return jumps_; }
 
  private:
-  enum class Step { Closed, Sync0, Sync1, Sync2, Closing, Opening, Running };
+  enum class Step { Closed, Sync0, Sync1, Sync2, Closing, Refused, Opening, Running };
 
   void go(Step step, Stamp now);
   void ask(Stamp now);
   void try_next_rate(Stamp now);
-  void digest(const std::string& payload, Stamp now);
+  void digest(const std::string& payload, Stamp now, std::size_t behind);
   void open(Stamp now);
   void follow(const arcos::StandardInformation& report, Stamp stamp);
   void mind_hold();
+  void forget_motion();
   void refresh(Stamp now);
   void send(const std::string& packet) { queue_.push_back(packet); }
   Stamp sampled(std::size_t bytes, Stamp received) const;
@@ -79,6 +82,8 @@ class Pioneer : public BaseDriver {
   Stamp sent_ = Stamp::never();  ///< when a packet went out last
 
   arcos::Identity identity_;
+  arcos::Factors factors_;
+  std::string refusal_;  ///< why the robot is not opened; empty: it is, or has not told who it is
   arcos::Configuration configuration_;
   arcos::StandardInformation information_;
   bool configured_ = false;

@@ -5,13 +5,13 @@
 #include <utility>
 
 #include "base/planar.h"
+#include "robot/hardware_units.h"
 
 namespace rubble::robot {
 namespace {
 
 using namespace arcos;
 
-constexpr double kHeadingUnit = 2.0 * kPi / 4096;  // [rad]
 constexpr double kMillimetre = 1e-3;
 constexpr double kWheelSpeedStep = 0.02;        // of kWheelSpeeds [m/s]
 constexpr double kStillSpeed = 1e-3;            // slower counts as standing [m/s]
@@ -82,8 +82,12 @@ void ArcosEmulator::client_left(Stamp /*now*/) { start_anew(); }
 
 void ArcosEmulator::receive(std::string_view bytes, Stamp now) {
   if (now < deaf_until_) return;
-  parser_.feed(bytes);
-  while (const auto payload = parser_.next()) {
+  parser_.feed(bytes, now);
+  hear(now);
+}
+
+void ArcosEmulator::hear(Stamp now) {
+  while (const auto payload = parser_.next(now)) {
     heard_ = now;
     held_ = false;
     if (const auto order = parse_order(*payload)) obey(*order, now);
@@ -347,6 +351,7 @@ Drive ArcosEmulator::wanted() const {
 void ArcosEmulator::advance(Stamp now) {
   const double dt = advanced_ == Stamp::never() ? 0.0 : std::max(0.0, now - advanced_);
   advanced_ = now;
+  if (now >= deaf_until_) hear(now);  // what lay behind junk that looked like a head
   if (scan_ && now >= scan_->beam_stamp(scan_->ranges.size())) {
     if (session_ == Session::Open && laser_.mode > 0) send_scan();
     scan_.reset();
@@ -378,7 +383,7 @@ void ArcosEmulator::report() {
   s.x = static_cast<std::uint16_t>(rounded(pose.x / kMillimetre) & 0xFFFF);
   s.y = static_cast<std::uint16_t>(rounded(pose.y / kMillimetre) & 0xFFFF);
   const auto units = [](double angle) {
-    const int whole = rounded(angle / kHeadingUnit);
+    const int whole = rounded(angle / kArcosHeadingUnit);
     return static_cast<std::int16_t>(whole >= 2048 ? whole - 4096 : whole);
   };
   s.heading = units(pose.phi);

@@ -18,10 +18,10 @@ namespace rubble::robot {
 struct ArcosEmulatorSettings {
   arcos::Identity identity{"MobileSim", "Pioneer", "p3at-sh"};  ///< a simulator's name: clients skip what is hardware
   arcos::Configuration configuration;
-  mrpt::math::TPose2D odometry_start;  ///< what OPEN and SETO set the odometry to
-  double half_track = 1e-3 / 0.0034;   ///< wheel speeds are v -+ w * half_track [m]
-  mrpt::math::TPose2D true_start;      ///< where kSimReset puts the robot, arena frame
-  bool is_simulator = true;            ///< understands what only simulators do
+  mrpt::math::TPose2D odometry_start;                 ///< what OPEN and SETO set the odometry to
+  double half_track = arcos::Factors{}.half_track();  ///< wheel speeds are v -+ w * half_track [m]
+  mrpt::math::TPose2D true_start;                     ///< where kSimReset puts the robot, arena frame
+  bool is_simulator = true;                           ///< understands what only simulators do
 };
 
 /// The identity of a real robot: clients do not take it for a simulator, and it does not understand a simulator's
@@ -56,6 +56,8 @@ class ArcosEmulator : public EmulatedDevice {
 
   /// What the motors shall do now.
   const Drive& motion() const { return motion_; }
+  /// They shall do so at once, without a ramp: off, or in an emergency stop.
+  bool brakes_hard() const { return !motors_ || braking_; }
   /// The true pose that a client has set; once.
   std::optional<mrpt::math::TPose2D> take_placed();
 
@@ -69,6 +71,7 @@ class ArcosEmulator : public EmulatedDevice {
   enum class Mode { Speed, Wheels, Head, Move };
 
   void start_anew();
+  void hear(Stamp now);
   void obey(const arcos::Order& order, Stamp now);
   void synchronise(std::uint8_t number);
   void open_session(Stamp now);

@@ -4,7 +4,9 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "base/error.h"
 #include "robot/drivers/host_clock.h"
@@ -51,6 +53,7 @@ void DeviceServer::unplug(double duration) {
 void DeviceServer::replug(Stamp now) {
   if (!unplugged_ && now < unplug_until_) {
     server_->unplug();
+    outgoing_.clear();
     device_.client_left(now);
     unplugged_ = true;
   } else if (unplugged_ && now >= unplug_until_) {
@@ -73,9 +76,31 @@ void DeviceServer::turn() {
   if (served.size > 0 && !faults_.is_silent(now))
     device_.receive({reinterpret_cast<const char*>(bytes.data()), served.size}, now);
   device_.advance(now);
-  for (const std::string& piece : faults_.pass(device_.take_output(), now))
-    server_->write(reinterpret_cast<const std::uint8_t*>(piece.data()), piece.size());
+  if (served.client_left) outgoing_.clear();
+  queue(faults_.pass(device_.take_output(), now), now);
+  send(now);
   replug(now);
+}
+
+void DeviceServer::queue(const std::vector<std::string>& pieces, Stamp now) {
+  Stamp due = outgoing_.empty() ? now : std::max(now, outgoing_.back().due);
+  for (const std::string& piece : pieces) {
+    outgoing_.push_back({due, piece});
+    due = due + kSplitPause;
+  }
+}
+
+void DeviceServer::send(Stamp now) {
+  while (!outgoing_.empty() && outgoing_.front().due <= now) {
+    const std::string& bytes = outgoing_.front().bytes;
+    server_->write(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+    outgoing_.pop_front();
+  }
+}
+
+int DeviceServer::wait_ms() const {
+  if (outgoing_.empty()) return kTurnMs;
+  return std::clamp(static_cast<int>(std::ceil(1e3 * (outgoing_.front().due - host_now()))), 0, kTurnMs);
 }
 
 void DeviceServer::run() {
@@ -86,7 +111,7 @@ void DeviceServer::run() {
     }
     turn();
     std::array<pollfd, 2> files{pollfd{wake_.get(), POLLIN, 0}, pollfd{server_->descriptor(), POLLIN, 0}};
-    ::poll(files.data(), unplugged_ ? 1 : 2, kTurnMs);
+    ::poll(files.data(), unplugged_ ? 1 : 2, wait_ms());
     std::uint64_t count = 0;
     [[maybe_unused]] const ssize_t got = ::read(wake_.get(), &count, sizeof count);
   }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "robot/drivers/descriptor.h"
 #include "robot/emulators/emulated_device.h"
@@ -46,6 +48,15 @@ class DeviceServer {
   void turn();
   void replug(Stamp now);
   void wake();
+  void queue(const std::vector<std::string>& pieces, Stamp now);
+  void send(Stamp now);
+  int wait_ms() const;
+
+  /// What leaves at `due`, one after the other.
+  struct Piece {
+    Stamp due;
+    std::string bytes;
+  };
 
   EmulatedDevice& device_;
   std::unique_ptr<PortServer> server_;
@@ -56,6 +67,7 @@ class DeviceServer {
   LineFaults faults_;
   Stamp unplug_until_ = Stamp::never();
   bool unplugged_ = false;
+  std::deque<Piece> outgoing_;  ///< the thread's own
   std::thread thread_;
 };
 

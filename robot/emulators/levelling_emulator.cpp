@@ -4,10 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "robot/hardware_units.h"
+
 namespace rubble::robot {
 namespace {
 
-constexpr double kGravity = 9.80665;  ///< [m/s^2]
 constexpr double kSensorFault = 1.0;  ///< [s]
 constexpr double kSettledUs = 3.0;    ///< of the pulse: at its target
 
@@ -57,7 +58,7 @@ void LevellingEmulator::obey(const std::vector<std::string>& fields, Stamp now) 
   }
   const long value = one ? whole_number(fields[1], 0, 100000).value_or(-1) : -1;
   if (kind == "R" && value >= 0) {
-    rate_ = static_cast<int>(std::clamp<long>(value, 1, 100));
+    rate_ = static_cast<int>(std::clamp<long>(value, 1, settings_.most_rate));
     next_report_ = now + 1.0 / rate_;
     return say(rate_ == value ? "R,OK" : "N,RANGE");
   }

@@ -6,6 +6,7 @@
 #include "base/angle.h"
 #include "robot/commands.h"
 #include "robot/emulators/emulated_device.h"
+#include "robot/hardware_units.h"
 #include "robot/measurements.h"
 #include "robot/protocols/levelling_line.h"
 
@@ -13,10 +14,11 @@ namespace rubble::robot {
 
 struct LevellingEmulatorSettings {
   LevellingIdentity identity;
+  int most_rate = 100;  ///< reports a second: no more than measurements are fed
   double zero_x = 0.5;  ///< the part's duty cycle at 0 g
   double zero_y = 0.5;
   double sensitivity = 0.125;  ///< duty cycle per g
-  double radians_per_us = deg_to_rad(0.09);
+  double radians_per_us = kServoStep;
 };
 
 /// Acts as the levelling unit's microcontroller. It is fed accelerations and servo angles as the robot has them, and

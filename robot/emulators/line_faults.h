@@ -9,6 +9,8 @@
 
 namespace rubble::robot {
 
+constexpr double kSplitPause = 0.005;  ///< between the pieces of a split reply [s]
+
 /// What goes wrong with the bytes of a line.
 enum class ByteFault { None, Lost, Split, Doubled, Junk, WrongSum };
 
@@ -17,7 +19,7 @@ class BadLine {
  public:
   explicit BadLine(std::uint64_t seed) : rng_(seed, "bad line") {}
 
-  /// The pieces that are sent in place of `bytes`; with Split they are to be sent with pauses between them.
+  /// The pieces that are sent in place of `bytes`; with Split they are to be sent kSplitPause apart.
   std::vector<std::string> spoil(const std::string& bytes, ByteFault fault);
 
  private:

@@ -9,6 +9,7 @@ constexpr char kFirst = static_cast<char>(0xFA);
 constexpr char kSecond = static_cast<char>(0xFB);
 constexpr std::size_t kHead = 3;  // FA FB length
 constexpr std::size_t kSum = 2;
+constexpr double kSlowestByte = 10.0 / 9600.0;  ///< [s]
 
 std::uint8_t byte(std::string_view text, std::size_t i) { return static_cast<std::uint8_t>(text[i]); }
 
@@ -36,9 +37,20 @@ std::string packet(std::string_view payload) {
 void PacketParser::drop(std::size_t bytes) {
   waiting_.erase(0, bytes);
   junk_ += bytes;
+  if (bytes > 0) since_ = fed_;
 }
 
-std::optional<std::string> PacketParser::next() {
+void PacketParser::feed(std::string_view bytes, Stamp now) {
+  if (waiting_.empty()) since_ = now;
+  fed_ = now;
+  waiting_.append(bytes);
+}
+
+bool PacketParser::is_overdue(std::size_t bytes, Stamp now) const {
+  return now - since_ > kPatience + kSlowestByte * static_cast<double>(bytes);
+}
+
+std::optional<std::string> PacketParser::next(Stamp now) {
   for (;;) {
     // A lone FA at the end may be the first half of a head.
     std::size_t head = 0;
@@ -46,18 +58,23 @@ std::optional<std::string> PacketParser::next() {
            !(waiting_[head] == kFirst && (head + 1 == waiting_.size() || waiting_[head + 1] == kSecond)))
       ++head;
     drop(head);
-    if (waiting_.size() < kHead) return std::nullopt;
-    const std::size_t length = byte(waiting_, 2);
-    if (length <= kSum) {
-      drop(kHead);
+    const bool has_head = waiting_.size() >= kHead;
+    const std::size_t length = has_head ? byte(waiting_, 2) : 0;
+    if (has_head && (length <= kSum || length > kLongest)) {
+      drop(2);
       continue;
     }
-    if (waiting_.size() < kHead + length) return std::nullopt;
+    if (!has_head || waiting_.size() < kHead + length) {
+      if (waiting_.empty() || !is_overdue(kHead + length, now)) return std::nullopt;
+      drop(std::min<std::size_t>(2, waiting_.size()));
+      continue;
+    }
     const std::string payload = waiting_.substr(kHead, length - kSum);
     const unsigned sum = (static_cast<unsigned>(byte(waiting_, kHead + payload.size())) << 8) |
                          byte(waiting_, kHead + payload.size() + 1);
     if (sum == checksum(payload)) {
       waiting_.erase(0, kHead + length);
+      since_ = fed_;
       return payload;
     }
     // The length itself may be what was damaged, so the next packet is looked for right behind this head.

@@ -11,6 +11,12 @@ namespace {
 
 constexpr std::size_t kUpToFlags = 18;  // bytes of the payload
 
+/// The older controllers (without -sh) count in units of their own.
+constexpr std::pair<const char*, Factors> kFactors[] = {
+    {"p3at-sh", {1.0, 0.0034}}, {"p3atiw-sh", {1.0, 0.0034}}, {"p3at", {0.465, 0.0034}},
+    {"p3dx-sh", {1.0, 0.0056}}, {"p3dx", {0.485, 0.0056}},
+};
+
 /// A walk over the configuration packet's fields in their order; one list serves reading and writing.
 template <class Walk>
 void walk(Walk& w, Configuration& c) {
@@ -144,6 +150,19 @@ std::optional<StandardInformation> parse_information(std::string_view payload) {
   fields.skip(1);
   if (fields.left() >= 2) s.turn_rate = 0.1 * fields.i16();
   return s;
+}
+
+std::optional<Factors> factors_of(const std::string& subclass) {
+  const std::string plain = subclass.substr(0, subclass.find("-lms"));  // with a laser fitted: the same base
+  for (const auto& [name, factors] : kFactors)
+    if (plain == name) return factors;
+  return std::nullopt;
+}
+
+std::string known_subclasses() {
+  std::string names;
+  for (const auto& [name, factors] : kFactors) names += (names.empty() ? "" : ", ") + std::string(name);
+  return names;
 }
 
 std::string encode(const Identity& identity) {

@@ -48,6 +48,18 @@ std::string encode(const StandardInformation& information);
 /// Nothing unless it is a standard packet that reaches at least up to the flags.
 std::optional<StandardInformation> parse_information(std::string_view payload);
 
+/// What the numbers of one kind of robot mean (ARIA's parameter files, "Conversion factors").
+struct Factors {
+  double distance = 1.0;    ///< DistConvFactor: of x and y [mm]
+  double turning = 0.0034;  ///< DiffConvFactor: turn rate over half the difference of the wheel speeds [rad/mm]
+  /// Wheel speeds are v -+ w * half_track() [m].
+  double half_track() const { return 1e-3 / turning; }
+};
+/// By the subclass that SYNC2 tells; nothing for one whose factors are not known: its distances would be wrong.
+std::optional<Factors> factors_of(const std::string& subclass);
+/// All that factors_of knows, for people.
+std::string known_subclasses();
+
 /// Who answered the third SYNC.
 struct Identity {
   std::string name;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "base/angle.h"
 #include "base/error.h"
@@ -12,14 +13,56 @@ namespace {
 
 using slam::RobotSetup;
 
-slam::Calibration estimate(const std::string& path) {
+constexpr const char* kWithWheelSpeeds = "arcos";  ///< the base driver whose odometry's turn rate is the wheels'
+
+/// How the turn that the wheels' speeds give, by the track in force, compares with the turn of the reckoned heading:
+/// the firmware divides by a track of its own, which it does not tell.
+class TrackRatio {
+ public:
+  void add(const robot::Odometry& odometry) {
+    if (last_ && !last_->stalled && !odometry.stalled && odometry.stamp - last_->stamp < kLongestCycle) {
+      const double turn = wrap_angle(odometry.pose.phi - last_->pose.phi);
+      const double by_wheels = 0.5 * (last_->w + odometry.w) * (odometry.stamp - last_->stamp);
+      turns_ += turn * turn;
+      mixed_ += turn * by_wheels;
+      wheels_ += by_wheels * by_wheels;
+      count_ += 1.0;
+    }
+    last_ = odometry;
+  }
+  /// Nothing when the log has no wheel speeds.
+  bool is_known() const { return count_ > 10.0 && mixed_ > 0.0; }
+  double value() const { return mixed_ / turns_; }
+  double sigma() const {
+    return std::sqrt(std::max(0.0, wheels_ - mixed_ * mixed_ / turns_) / (count_ - 1.0) / turns_);
+  }
+
+ private:
+  static constexpr double kLongestCycle = 0.25;  ///< across a longer gap speeds say too little [s]
+  std::optional<robot::Odometry> last_;
+  double turns_ = 0.0, mixed_ = 0.0, wheels_ = 0.0, count_ = 0.0;
+};
+
+struct Estimate {
+  slam::Calibration calibration;
+  TrackRatio track;
+  double track_in_force = 0.0;  ///< [m]
+};
+
+Estimate estimate(const std::string& path) {
   robot::ReplayRobot log(path);
   const robot::RobotModel& model = log.model();
   RobotSetup taken_for;
   taken_for.T_base_laser = {model.T_base_laser.x, model.T_base_laser.y, model.T_base_laser.yaw};
   slam::Calibrator calibrator;
-  while (const auto inputs = log.read()) calibrator.add(*inputs);
-  return calibrator.calibrate(taken_for, model.accelerometer_mount);
+  Estimate estimate;
+  while (const auto inputs = log.read()) {
+    calibrator.add(*inputs);
+    for (const robot::Odometry& odometry : inputs->odometry) estimate.track.add(odometry);
+  }
+  estimate.calibration = calibrator.calibrate(taken_for, model.accelerometer_mount);
+  estimate.track_in_force = model.effective_track;
+  return estimate;
 }
 
 template <class... Values>
@@ -45,7 +88,8 @@ RunReport calibration_drive(const RobotFile& file, const CalibrationDriveConfig&
 
 CalibratedRobot calibrate_from_log(const std::string& log, const RobotFile& in_force, const RobotFile& file) {
   CalibratedRobot robot;
-  robot.calibration = estimate(log);
+  const Estimate estimated = estimate(log);
+  robot.calibration = estimated.calibration;
   if (!robot.calibration.refusal.empty())
     throw InputError(log + ": no calibration comes of it: " + robot.calibration.refusal);
   const RobotSetup& found = robot.calibration.setup;
@@ -70,10 +114,15 @@ CalibratedRobot calibrate_from_log(const std::string& log, const RobotFile& in_f
     to.robot.levelling.x.zero = before.x.zero + std::sin(level->pitch) * before.x.sensitivity;
     to.robot.levelling.y.zero = before.y.zero + std::sin(level->roll) * before.y.sensitivity;
   }
-  robot.effective_track = file.settings.robot.effective_track * now.distance_scale / now.turn_scale;
+  // Only of the firmware whose wheel speeds our driver reads it is known what its turn rate is made of.
+  if (in_force.robot.base_driver != kWithWheelSpeeds || !estimated.track.is_known()) return robot;
+  const double firmware_track = estimated.track_in_force * estimated.track.value();
+  for (robot::RobotModel* model : {&to.settings.robot, &to.robot.model}) model->effective_track = firmware_track;
+  robot.effective_track = firmware_track * now.distance_scale / now.turn_scale;
   robot.effective_track_sigma =
       robot.effective_track * std::hypot(robot.calibration.sigma.turn_scale / found.turn_scale,
-                                         robot.calibration.sigma.distance_scale / found.distance_scale);
+                                         robot.calibration.sigma.distance_scale / found.distance_scale,
+                                         estimated.track.sigma() / estimated.track.value());
   return robot;
 }
 
@@ -82,8 +131,10 @@ std::string calibrated_yaml(const CalibratedRobot& robot, const std::string& log
   const RobotSetup& sigma = c.sigma;
   std::string text = "# Calibrated by rubble calibrate from " + log + "\n";
   text += line("# %d scans over %.1f m and %.0f deg; standard deviations:\n", c.scans, c.driven, rad_to_deg(c.turned));
-  text += line("# distance_scale %.4f, turn_scale %.4f (effective track %.4f +- %.4f m)\n", sigma.distance_scale,
-               sigma.turn_scale, robot.effective_track, robot.effective_track_sigma);
+  text += line("# distance_scale %.4f, turn_scale %.4f\n", sigma.distance_scale, sigma.turn_scale);
+  text += std::isnan(robot.effective_track)
+              ? "# effective track: not known, the log has no wheel speeds\n"
+              : line("# effective track %.4f +- %.4f m\n", robot.effective_track, robot.effective_track_sigma);
   text += line("# laser: x %.1f mm, y %.1f mm, yaw %.2f deg, delay %.1f ms\n", 1e3 * sigma.T_base_laser.x,
                1e3 * sigma.T_base_laser.y, rad_to_deg(sigma.T_base_laser.phi), 1e3 * sigma.delay);
   if (c.level)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "scenarios/hardware/calibration_drive.h"
@@ -12,10 +13,11 @@ namespace rubble::scenarios {
 /// A robot file with the numbers that a drive gave, and how sure they are.
 struct CalibratedRobot {
   RobotFile file;
-  slam::Calibration calibration;       ///< relative to what was in force during the drive
-  slam::RobotSetup setup;              ///< as it stands in the file now
-  double effective_track = 0.0;        ///< wheel travel to and fro over true turn [m]
-  double effective_track_sigma = 0.0;  ///< [m]
+  slam::Calibration calibration;  ///< relative to what was in force during the drive
+  slam::RobotSetup setup;         ///< as it stands in the file now
+  /// Wheel travel to and fro over true turn [m]; NaN: not known, the log has no wheel speeds.
+  double effective_track = std::numeric_limits<double>::quiet_NaN();
+  double effective_track_sigma = std::numeric_limits<double>::quiet_NaN();  ///< [m]
 };
 
 /// Drives squares and turns as drive() would with that file, but holds the servos at zero. Why the pilot gave up stands

@@ -20,10 +20,9 @@
 namespace rubble::scenarios {
 namespace {
 
-constexpr double kDamage = 1.0;               ///< spoilt bytes last so long [s]
-constexpr double kSilence = 2.0;              ///< [s]
-constexpr double kUnplugged = 3.0;            ///< [s]
-constexpr double kUrgClockWrap = 16777216.0;  ///< the scanner's clock counts milliseconds up to here
+constexpr double kDamage = 1.0;     ///< spoilt bytes last so long [s]
+constexpr double kSilence = 2.0;    ///< [s]
+constexpr double kUnplugged = 3.0;  ///< [s]
 
 robot::ArcosEmulatorSettings base_settings(const robot::RobotModel& model, const EmulateOptions& options) {
   robot::ArcosEmulatorSettings settings;
@@ -35,7 +34,11 @@ robot::ArcosEmulatorSettings base_settings(const robot::RobotModel& model, const
   c.max_turn_rate = whole(rad_to_deg(model.max_w));
   c.accel = whole(1e3 * model.max_accel);
   c.turn_accel = whole(rad_to_deg(model.max_turn_accel));
-  c.top_speed = std::max(c.top_speed, c.max_speed);
+  // Nothing that a client may set takes the simulated robot beyond what it can do.
+  c.top_speed = c.max_speed;
+  c.top_turn_rate = c.max_turn_rate;
+  c.top_accel = c.accel;
+  c.top_turn_accel = c.turn_accel;
   c.watchdog_ms = whole(1e3 * model.command_timeout);
   if (options.as_hardware) play_hardware(settings);
   return settings;
@@ -48,7 +51,7 @@ robot::UrgEmulatorConfig urg_config(const Scenario& scenario, const EmulateOptio
   config.seed = scenario.seed;
   for (const FaultAt& fault : options.faults)
     if (fault.fault == Fault(robot::DeviceFault::ClockWrap))
-      config.clock_start = static_cast<std::uint32_t>(kUrgClockWrap - 1e3 * fault.seconds);
+      config.clock_start = robot::clock_before_wrap(fault.seconds);
   return config;
 }
 
@@ -97,7 +100,10 @@ class Emulation {
       base_ = std::make_unique<robot::DeviceServer>(options.base, *arcos_, scenario.seed);
     }
     if (!options.levelling.empty()) {
-      unit_ = std::make_unique<robot::LevellingEmulator>(robot::LevellingEmulatorSettings{});
+      robot::LevellingEmulatorSettings settings;
+      settings.most_rate = static_cast<int>(std::lround(1.0 / model.acceleration_period));
+      settings.identity.rate = std::min(settings.identity.rate, settings.most_rate);
+      unit_ = std::make_unique<robot::LevellingEmulator>(settings);
       levelling_ = std::make_unique<robot::DeviceServer>(options.levelling, *unit_, scenario.seed + 1);
     }
     if (!options.truth.empty()) {
@@ -130,7 +136,7 @@ class Emulation {
       if (options_.time_limit > 0.0 && time >= options_.time_limit) break;
       // The tick to come is computed at its start, under what the devices were told up to now: so a scan is there when
       // its last beam is due. What it measures is held back until the tick is over.
-      simulated_.command(commands());
+      obey();
       auto next = simulated_.read();
       if (!next) break;
       arrived = std::move(*next);
@@ -155,20 +161,23 @@ class Emulation {
     if (base_) base_->with([&] { arcos_->measure(scan); });
   }
 
-  robot::Commands commands() {
+  void obey() {
     robot::Commands commands;
+    bool brakes_hard = false;
     if (base_) {
       std::optional<mrpt::math::TPose2D> placed;
       base_->with([&] {
         arcos_->advance(robot::host_now());
         commands.drive = arcos_->motion();
+        brakes_hard = arcos_->brakes_hard();
         arcos_->tell_truth(simulated_.truth().back().pose);
         placed = arcos_->take_placed();
       });
       if (placed) simulated_.place(*placed);
     }
     if (levelling_) levelling_->with([&] { commands.aim = unit_->aim(); });
-    return commands;
+    simulated_.command(commands);
+    if (brakes_hard) simulated_.brake();
   }
 
   void deliver(const robot::Inputs& inputs) {

@@ -91,6 +91,7 @@ void settle(RobotFile& file, const robot::RobotModel& devices) {
   robot.base.max_w = model.max_w;
   robot.base.max_accel = model.max_accel;
   robot.base.max_turn_accel = model.max_turn_accel;
+  robot.base.track = model.effective_track;
   robot.time_limit = file.settings.time_limit;
   // A driver that gives up its connection sooner would make a silence that is permitted one that holds the robot.
   robot.base.silence = std::max(robot.base.silence, robot.safety.base_silence);

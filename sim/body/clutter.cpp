@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/hardware_units.h"
+
 namespace rubble::sim {
 namespace {
 
 constexpr double kFloorFriction = 0.3;  ///< crumpled paper on wood
-constexpr double kGravity = 9.80665;    ///< [m/s^2]
 constexpr double kLightest = 0.1;       ///< lighter bodies make the contact with a 14 kg robot ill-conditioned [kg]
 
 }  // namespace
@@ -46,7 +47,7 @@ void Clutter::add(b2World& world, const mrpt::math::TPoint2D& position, double r
 }
 
 void Clutter::brake(double dt) {
-  const float loss = static_cast<float>(kFloorFriction * kGravity * dt);
+  const float loss = static_cast<float>(kFloorFriction * robot::kGravity * dt);
   for (b2Body* body : bodies_) {
     if (!body->IsAwake()) continue;
     const b2Vec2 v = body->GetLinearVelocity();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robot/hardware_units.h"
 #include "sim/body/contacts.h"
 
 namespace rubble::sim {
@@ -11,7 +12,6 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kGravity = 9.80665;  ///< [m/s^2]
 constexpr int kMaxIterations = 40;    ///< a start against a wall takes about as many, steady driving two or three
 constexpr double kConverged = 1e-4;   ///< largest impulse change that counts as none: 7 um/s of 14 kg [N s]
 constexpr double kCreepSpeed = 0.02;  ///< below it the slip ratio is taken as if at this speed [m/s]
@@ -56,7 +56,7 @@ Drive::Drive(const robot::RobotModel& model, const DriveParameters& parameters)
 /// Vertical load of each wheel [N]: a quarter each, shifted downhill by the height of the centre of mass, and shifted
 /// to the diagonal that the uneven floor lifts, as far as the tyres give.
 std::array<double, 4> Drive::loads(const std::array<Ground, 4>& ground) const {
-  const double weight = model_.mass * kGravity;
+  const double weight = model_.mass * robot::kGravity;
   const Relief relief = relief_of(ground, model_);
   const double to_rear = 0.5 * weight * parameters_.centre_of_mass * relief.pitch / model_.wheelbase;
   const double to_right = 0.5 * weight * parameters_.centre_of_mass * relief.roll / model_.track;
@@ -78,7 +78,7 @@ Inertia Drive::inertia(const std::array<Ground, 4>& ground, const std::array<dou
   Inertia inertia;
   inertia.inverse_mass = 1.0 / model_.mass;
   inertia.inverse_moment = 1.0 / yaw_inertia_;
-  const double weight = model_.mass * kGravity;
+  const double weight = model_.mass * robot::kGravity;
   for (std::size_t i = 0; i < 4; ++i) {
     inertia.gradient.x += load[i] / weight * ground[i].gx;
     inertia.gradient.y += load[i] / weight * ground[i].gy;

@@ -4,16 +4,16 @@
 #include <cmath>
 
 #include "base/angle.h"
+#include "robot/hardware_units.h"
 
 namespace rubble::sim {
 namespace {
 
-constexpr double kTicksPerMetre = 138e3;           ///< ARCOS ticksMM of the P3-AT
-constexpr double kHeadingUnit = 2.0 * kPi / 4096;  ///< of THPOS in the SIP [rad]
-constexpr double kStallTime = 0.2;                 ///< pushing so long without turning is a stall [s]
-constexpr double kRelaxTime = 0.2;                 ///< motors rest so long after a stall [s]
-constexpr double kStallMemory = 0.5;               ///< the flag falls after so long without pushing in vain [s]
-constexpr double kStallSpeed = 0.02;               ///< slower set points do not stall [m/s]
+constexpr double kTicksPerMetre = 138e3;  ///< ARCOS ticksMM of the P3-AT
+constexpr double kStallTime = 0.2;        ///< pushing so long without turning is a stall [s]
+constexpr double kRelaxTime = 0.2;        ///< motors rest so long after a stall [s]
+constexpr double kStallMemory = 0.5;      ///< the flag falls after so long without pushing in vain [s]
+constexpr double kStallSpeed = 0.02;      ///< slower set points do not stall [m/s]
 
 double approach(double from, double to, double most) { return from + std::clamp(to - from, -most, most); }
 double round_to(double value, double unit) { return std::round(value / unit) * unit; }
@@ -30,6 +30,11 @@ void Firmware::command(const robot::Drive& drive) {
   target_.v = std::clamp(drive.v, -model_.max_v, model_.max_v);
   target_.w = std::clamp(drive.w, -model_.max_w, model_.max_w);
   silence_ = 0.0;
+}
+
+void Firmware::brake() {
+  target_ = {};
+  v_ = w_ = 0.0;
 }
 
 SideDemand Firmware::demand(double dt) {
@@ -81,7 +86,7 @@ robot::Odometry Firmware::reckon(Stamp stamp) {
   robot::Odometry odometry;
   odometry.stamp = stamp;
   odometry.pose = {round_to(reckoned_.x, 1e-3), round_to(reckoned_.y, 1e-3),
-                   wrap_angle(round_to(reckoned_.phi, kHeadingUnit))};
+                   wrap_angle(round_to(reckoned_.phi, robot::kArcosHeadingUnit))};
   const double l = round_to(left_speed_, 1e-3);
   const double r = round_to(right_speed_, 1e-3);
   odometry.v = 0.5 * (l + r);

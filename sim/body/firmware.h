@@ -20,6 +20,8 @@ class Firmware {
   explicit Firmware(const robot::RobotModel& model) : model_(model) {}
 
   void command(const robot::Drive& drive);
+  /// Without a ramp, as hard as motors and floor allow: motors switched off, or an emergency stop.
+  void brake();
   /// Advances the set points by `dt` and says what the motors shall do.
   SideDemand demand(double dt);
   /// Takes in what the wheels did in this step.

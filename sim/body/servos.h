@@ -2,21 +2,22 @@
 
 #include "base/angle.h"
 #include "robot/commands.h"
+#include "robot/hardware_units.h"
 
 namespace rubble::sim {
 
 /// RC servo of the Hitec HS-422 class. The last three are the unit's own faults, which a controller that sees the
 /// platform's tilt takes out; zero by default.
 struct ServoParameters {
-  double pulse_step = deg_to_rad(0.09);  ///< turn per microsecond of pulse [rad]
-  double frame = 0.02;                   ///< a new pulse is taken every frame [s]
-  double dead_band = deg_to_rad(0.3);    ///< smaller errors do not move it [rad]
-  double response = 0.04;                ///< speed = error / response [s]
-  double max_rate = deg_to_rad(300.0);   ///< [rad/s]
-  double max_angle = deg_to_rad(30.0);   ///< travel either way [rad]
-  double centre_offset = 0.0;            ///< where it stands at 1500 us [rad]
-  double scale = 1.0;                    ///< turn per commanded turn
-  double backlash = 0.0;                 ///< play of the gears, full width [rad]
+  double pulse_step = robot::kServoStep;  ///< turn per microsecond of pulse [rad]
+  double frame = 0.02;                    ///< a new pulse is taken every frame [s]
+  double dead_band = deg_to_rad(0.3);     ///< smaller errors do not move it [rad]
+  double response = 0.04;                 ///< speed = error / response [s]
+  double max_rate = deg_to_rad(300.0);    ///< [rad/s]
+  double max_angle = deg_to_rad(30.0);    ///< travel either way [rad]
+  double centre_offset = 0.0;             ///< where it stands at 1500 us [rad]
+  double scale = 1.0;                     ///< turn per commanded turn
+  double backlash = 0.0;                  ///< play of the gears, full width [rad]
 };
 
 /// One servo, advanced in steps of 1 ms.

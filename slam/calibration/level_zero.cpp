@@ -6,11 +6,11 @@
 
 #include "base/angle.h"
 #include "base/planar.h"
+#include "robot/hardware_units.h"
 
 namespace rubble::slam {
 namespace {
 
-constexpr double kGravity = 9.80665;         ///< [m/s^2]
 constexpr double kStill = 0.002;             ///< less way between two reports is none [m]
 constexpr double kStillTurn = 0.003;         ///< [rad]
 constexpr double kSettled = 0.5;             ///< after braking the body still rocks [s]
@@ -46,7 +46,7 @@ std::vector<Stand> stands_of(const WheelTrack& wheels) {
 }
 
 /// The angle that a share of gravity means.
-double inclination(double acceleration) { return std::asin(std::clamp(acceleration / kGravity, -1.0, 1.0)); }
+double inclination(double acceleration) { return std::asin(std::clamp(acceleration / robot::kGravity, -1.0, 1.0)); }
 
 void feel(std::vector<Stand>& stands, const std::vector<robot::Acceleration>& accelerations,
           const std::vector<robot::AimState>& aims, bool on_platform) {

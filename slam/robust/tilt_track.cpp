@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "base/angle.h"
+#include "robot/hardware_units.h"
 
 namespace rubble::slam {
 
 namespace {
 
-constexpr double kGravity = 9.80665;  ///< [m/s^2]
 constexpr double kSilence = 0.5;      ///< after so long without a sample the filter starts anew [s]
 constexpr double kFarthest = 0.25;    ///< a sample this far from a stamp says nothing about it [s]
 constexpr double kLongestWait = 0.2;  ///< for samples after a scan [s]
@@ -39,13 +39,14 @@ void TiltTrack::follow(const robot::Odometry& odometry) {
 }
 
 void TiltTrack::follow(const robot::Acceleration& acceleration) {
-  if (!(std::abs(acceleration.x) < kImplausible * kGravity && std::abs(acceleration.y) < kImplausible * kGravity))
+  if (!(std::abs(acceleration.x) < kImplausible * robot::kGravity &&
+        std::abs(acceleration.y) < kImplausible * robot::kGravity))
     return;
   if (!leans_.empty() && acceleration.stamp <= leans_.back().stamp) return;
   const bool driven = last_odometry_.stamp != Stamp::never() && acceleration.stamp - last_odometry_.stamp <= kSilence;
-  const double pitch = tilt_of(acceleration.x - (driven ? forward_acceleration_ : 0.0), kGravity);
-  const double roll =
-      tilt_of(acceleration.y - (driven ? lateral_acceleration_ : 0.0), kGravity * std::max(0.1, std::cos(pitch)));
+  const double pitch = tilt_of(acceleration.x - (driven ? forward_acceleration_ : 0.0), robot::kGravity);
+  const double roll = tilt_of(acceleration.y - (driven ? lateral_acceleration_ : 0.0),
+                              robot::kGravity * std::max(0.1, std::cos(pitch)));
   Lean lean{acceleration.stamp, pitch, roll};
   if (!leans_.empty() && acceleration.stamp - leans_.back().stamp <= kSilence) {
     const Lean& before = leans_.back();

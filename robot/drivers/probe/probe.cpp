@@ -78,12 +78,13 @@ bool becomes_ready(Device& device, const std::string& word, double patience) {
   device.opened(port->opened(), port->kind());
   int baud = 0;
   while (!device.ready() && host_now() < end) {
-    if (port->is_serial() && device.baud() > 0 && device.baud() != baud) port->set_baud(baud = device.baud());
     std::array<std::uint8_t, 1024> bytes;
     const auto [got, now] = port->read(bytes.data(), bytes.size(), kTurn);
     if (got > 0) device.receive({reinterpret_cast<const char*>(bytes.data()), got}, now);
     device.advance(now);
-    send(device.take_output(now));
+    const std::string out = device.take_output(now);
+    if (port->is_serial() && device.baud() > 0 && device.baud() != baud) port->set_baud(baud = device.baud());
+    send(out);
   }
   for (const std::string& packet : device.farewell()) {
     send(packet);
@@ -122,7 +123,8 @@ std::optional<FoundDevice> probe_base(const std::string& word) {
   found.kind = "robot base (ARCOS)";
   found.facts = {{"name", base.identity().name},
                  {"type", base.identity().type + " " + base.identity().subclass},
-                 {"serial number", base.configuration().serial},
+                 {"firmware", base.configured() ? base.configuration().firmware : "not told"},
+                 {"serial number", base.configured() ? base.configuration().serial : "not told"},
                  {"battery", text("%.1f V", base.battery())}};
   if (base.emergency_button()) found.facts.emplace_back("trouble", "the emergency button is pressed");
   return found;

@@ -128,9 +128,12 @@ void Link::shake_hands(bool only_scip1) {
   if (!scip2_ && !only_scip1) switch_to_scip2();
   if (scip2_ && only_scip1) refuse("the scanner has been switched to SCIP 2.0; switch it off and on to speak SCIP 1.1");
   // A serial line at 19200 baud carries one scan a second; over USB the rate means nothing and costs nothing.
-  if (scip2_ && baud_ != kBauds[0] && ask("SS115200", kAnswerTime)) {
-    baud_ = kBauds[0];
-    port_->set_baud(baud_);
+  if (scip2_ && baud_ != kBauds[0]) {
+    const auto reply = ask("SS115200", kAnswerTime);
+    if (reply && *status_of(*reply) == "00") {  // a device that refuses stays where it is
+      baud_ = kBauds[0];
+      port_->set_baud(baud_);
+    }
   }
   if (scip2_) {
     identify();
@@ -205,6 +208,7 @@ void Link::start() {
     stream_ = "G" + three(geometry_.first_step) + three(geometry_.last_step) + "01";
     receiver_.expect_echo(stream_, stream_.size());
     send(stream_);
+    ask_at_ = Stamp::never();
     return;
   }
   const std::string on = *status_of(insist("BM"));
@@ -250,16 +254,18 @@ std::optional<Sweep> Link::next_sweep(double timeout) {
   for (;;) {
     while (const auto reply = receiver_.next()) {
       auto sweep = check_stream(*reply);
-      if (!scip2_) {
-        // One question a turn: an emulator or a fast device would answer the same turn again and again.
-        if (sweep) sleep_until(begun_ + kAskAgain * geometry_.period());
-        send(stream_);
-      }
+      // One question a turn: an emulator or a fast device would answer the same turn again and again. The next one is
+      // asked in a later call, for nobody shall wait for that.
+      if (!scip2_) ask_at_ = sweep ? begun_ + kAskAgain * geometry_.period() : host_now();
       if (sweep) return sweep;
     }
-    const double left = end - host_now();
-    if (left <= 0.0) return std::nullopt;
-    pull(left);
+    if (ask_at_ != Stamp::never() && host_now() >= ask_at_) {
+      send(stream_);
+      ask_at_ = Stamp::never();
+    }
+    const Stamp now = host_now();
+    if (now >= end) return std::nullopt;
+    pull((ask_at_ == Stamp::never() ? end : std::min(end, ask_at_)) - now);
   }
 }
 

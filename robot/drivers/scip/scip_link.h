@@ -75,7 +75,8 @@ class Link {
   Geometry geometry_;
   ScannerInfo info_;
   Stamp begun_, ended_;
-  Stamp asked_;  ///< when the last question left
+  Stamp asked_;                    ///< when the last question left
+  Stamp ask_at_ = Stamp::never();  ///< SCIP 1.1: when the next turn is to be asked for
   std::uint64_t damaged_ = 0;
 };
 

@@ -23,7 +23,6 @@
 namespace rubble::robot {
 namespace {
 
-constexpr double kSplitPause = 0.005;      // between the pieces of a split reply [s]
 constexpr std::size_t kSlowPiece = 16;     // bytes that leave together on a line with a bit rate
 constexpr double kLongestWait = 0.1;       // [s]
 constexpr std::size_t kMostPublished = 8;  // turns that wait for the thread
@@ -52,6 +51,10 @@ std::vector<std::uint32_t> values_of(const LaserScan& scan, const scip::DeviceId
 }
 
 }  // namespace
+
+std::uint32_t clock_before_wrap(double seconds) {
+  return static_cast<std::uint32_t>(scip::kClockWrap - std::clamp(1e3 * seconds, 1.0, 1.0 * scip::kClockWrap));
+}
 
 struct UrgEmulator::Impl {
   struct Outgoing {

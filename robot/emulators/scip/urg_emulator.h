@@ -24,6 +24,9 @@ struct UrgEmulatorConfig {
   std::function<void(Stamp)> scan_sent;
 };
 
+/// The clock_start with which the clock wraps so long after power-up [s].
+std::uint32_t clock_before_wrap(double seconds);
+
 struct UrgEmulatorStatus {
   std::uint64_t clients = 0;    ///< that connected (TCP only)
   std::uint64_t sent = 0;       ///< blocks with scans sent

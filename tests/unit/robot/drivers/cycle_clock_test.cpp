@@ -47,6 +47,31 @@ TEST(CycleClock, StampsAlwaysGrow) {
   }
 }
 
+TEST(CycleClock, ReportsHeldUpTogetherLeftACycleApart) {
+  for (const std::size_t held : {2u, 5u, 60u}) {
+    CycleClock clock;
+    clock.set_cycle(0.1);
+    for (int i = 0; i < 10; ++i) clock.stamp(Stamp::from_seconds(0.1 * i));
+    const double arrived = 0.1 * static_cast<double>(9 + held);
+    for (std::size_t k = 0; k < held; ++k) {
+      const double sent = 0.1 * static_cast<double>(10 + k);
+      EXPECT_NEAR(clock.stamp(Stamp::from_seconds(arrived), held - 1 - k).seconds(), sent, 1e-6) << held << ", " << k;
+    }
+  }
+}
+
+TEST(CycleClock, MoreReportsThanThereWasTimeForShareIt) {
+  CycleClock clock;
+  clock.set_cycle(0.1);
+  Stamp last = clock.stamp(Stamp::from_seconds(1.0));
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Stamp stamp = clock.stamp(Stamp::from_seconds(1.2), 3 - k);
+    EXPECT_NEAR(stamp - last, 0.05, 1e-6);
+    last = stamp;
+  }
+  EXPECT_NEAR(last.seconds(), 1.2, 1e-6);
+}
+
 TEST(CycleClock, WithoutACycleArrivalsCount) {
   CycleClock clock;
   EXPECT_EQ(clock.stamp({5}), Stamp{5});

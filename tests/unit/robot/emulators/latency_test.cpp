@@ -1,5 +1,6 @@
 // From the last byte of a scan to the command that answers it, as the emulated devices see both. Prints the times; they
-// are the machine's, so no law asserts them.
+// are the machine's. Asserted is only the median of our own driver, ten times above what is usual: a driver that waits
+// for a timer instead of the arrival exceeds it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -149,6 +150,9 @@ TEST_P(Latency, EveryScanIsAnsweredByItsOwnCommand) {
   const auto share = [&](double part) {
     return 1e3 * delays[static_cast<std::size_t>(part * static_cast<double>(delays.size() - 1))];
   };
+  if (kind.find("own") == 0) {
+    EXPECT_LT(share(0.5), 30.0) << "load of the machine " << load();
+  }
   std::cout << kind << ": " << delays.size() << " scans, last byte to command: median " << share(0.5) << " ms, 99 % "
             << share(0.99) << " ms, worst " << share(1.0) << " ms (load of the machine " << load() << ")\n";
 }

@@ -183,6 +183,29 @@ TEST(LevellingWire, DamagedLinesAreNeverMeasurements) {
   }
 }
 
+TEST(LevellingEmulator, ARateThatItsMeasurementsDoNotAllowIsClippedAndSaidSo) {
+  LevellingEmulatorSettings settings;
+  settings.most_rate = 50;
+  LevellingEmulator unit(settings);
+  Stamp now{0};
+  unit.client_came(now);
+  for (const int asked : {100, 50, 20}) {
+    unit.take_output();
+    unit.receive(levelling_line("R," + std::to_string(asked)), now);
+    EXPECT_EQ(unit.take_output(), levelling_line(asked > 50 ? "N,RANGE" : "R,OK"));
+    LevellingLines lines;
+    for (int i = 0; i < 100; ++i) {
+      now = now + 0.02;
+      unit.measure({now, 0.0, 0.0}, {now, 0.0, 0.0}, now);
+      unit.advance(now);
+      lines.feed(unit.take_output());
+    }
+    int reports = 0;
+    while (const auto fields = lines.next()) reports += parse_report(*fields) ? 1 : 0;
+    EXPECT_NEAR(reports, 2 * std::min(asked, 50), 2) << asked;
+  }
+}
+
 TEST(LevellingEmulator, AnswersWhatItDoesNotKnow) {
   LevellingEmulator unit({});
   unit.client_came({0});

@@ -244,6 +244,28 @@ TEST(PioneerWire, NoMotionIsLostInAGapOfTheReports) {
   EXPECT_NEAR(wire.odometry.back().pose.x, wire.truth.x, 0.01);
 }
 
+TEST(PioneerWire, ReportsThatArriveTogetherKeepTheirTimes) {
+  // Held up on the line, or waiting in a computer that was busy for six seconds.
+  for (const int held : {5, 60}) {
+    SCOPED_TRACE(held);
+    Wire wire;
+    wire.run(2.0);
+    wire.odometry.clear();
+    std::string waiting;
+    std::vector<Stamp> sent;
+    for (int i = 0; i < held; ++i) {
+      wire.now = wire.now + kCycle;
+      wire.base.measure({wire.now, {}, 0.0, 0.0, false}, wire.now);
+      waiting += wire.base.take_output();
+      sent.push_back(wire.now);
+    }
+    wire.driver.receive(waiting, wire.now);
+    const auto odometry = wire.driver.take_odometry();
+    ASSERT_EQ(odometry.size(), sent.size());
+    for (std::size_t i = 0; i < sent.size(); ++i) EXPECT_NEAR(odometry[i].stamp - sent[i], 0.0, 2e-3) << i;
+  }
+}
+
 TEST(PioneerWire, StallsAreTold) {
   Wire wire;
   wire.run(1.0);
@@ -266,6 +288,54 @@ TEST(PioneerWire, AnEmergencyStopStopsAtOnceAndStaysUntilEnabled) {
   wire.run(1.0);
   EXPECT_EQ(wire.base.motion().v, 0.0);
   EXPECT_FALSE(wire.base.motors_on());
+}
+
+TEST(PioneerWire, NothingQueuedSwitchesTheMotorsOnBehindAStop) {
+  for (const bool hard : {false, true}) {
+    Wire wire;
+    wire.run(1.0);
+    // ENABLE 1 waits behind another command when the stop comes.
+    wire.driver.enable(true);
+    wire.driver.drive({0.5, 0.5});
+    wire.driver.advance(wire.now + 0.0005);
+    hard ? wire.driver.emergency_stop() : wire.driver.stop();
+    std::vector<std::string> sent;
+    for (int i = 0; i < 400; ++i) {
+      wire.now = wire.now + kStep;
+      wire.driver.advance(wire.now);
+      const std::string out = wire.driver.take_output(wire.now);
+      if (!out.empty()) sent.push_back(out);
+    }
+    ASSERT_GE(sent.size(), 2u);
+    EXPECT_EQ(sent[0], arcos::command(hard ? arcos::kEmergencyStop : arcos::kStop));
+    EXPECT_EQ(sent[1], arcos::command(arcos::kEnable, 0));
+    EXPECT_THAT(sent, testing::Not(testing::Contains(arcos::command(arcos::kEnable, 1))));
+  }
+}
+
+TEST(PioneerWire, AnOlderControllersUnitsAreTakenIntoAccount) {
+  for (const auto& [subclass, millimetres] : {std::pair("p3at", 0.465), std::pair("p3dx", 0.485)}) {
+    ArcosEmulatorSettings settings;
+    settings.identity.subclass = subclass;
+    Wire wire(settings);
+    wire.run(1.0);
+    wire.go(0.0, 0.0);
+    const double before = wire.odometry.back().pose.x;
+    // The emulator counts in millimetres; this controller's count is shorter.
+    wire.truth.x += 0.02;
+    wire.run(0.2);
+    EXPECT_NEAR(wire.odometry.back().pose.x - before, 0.02 * millimetres, 1e-6) << subclass;
+  }
+}
+
+TEST(PioneerWire, ARobotOfUnknownUnitsIsRefusedByName) {
+  ArcosEmulatorSettings settings;
+  settings.identity.subclass = "seekur";
+  Wire wire(settings);
+  wire.run(3.0);
+  EXPECT_FALSE(wire.driver.ready());
+  EXPECT_FALSE(wire.base.open());
+  EXPECT_THAT(wire.driver.state(), testing::AllOf(testing::HasSubstr("'seekur'"), testing::HasSubstr("p3at-sh")));
 }
 
 /// What the robot's own buttons stop stays stopped until the operator says so, whatever is asked for meanwhile.
@@ -451,6 +521,41 @@ TEST(ArcosEmulator, OrdersToTheSidesAndToTheWholeEndEachOther) {
   const Drive sides = say(arcos::command(arcos::kWheelSpeeds, 0x0505));
   EXPECT_NEAR(sides.v, 0.1, 1e-9);
   EXPECT_NEAR(sides.w, 0.0, 1e-9);
+}
+
+TEST(ArcosEmulator, AHeadInJunkDoesNotDeafenIt) {
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.0, 0.0);
+  wire.run(0.5);
+  wire.cut = true;
+  wire.base.receive("\xfa\xfb\x60", wire.now);
+  double moved_after = -1.0;
+  for (int i = 0; i < 6000 && moved_after < 0.0; ++i) {
+    if (i % 500 == 0) wire.base.receive(arcos::command(arcos::kVelocity, 200), wire.now);
+    wire.step();
+    if (wire.base.motion().v > 0.0) moved_after = kStep * i;
+  }
+  EXPECT_GE(moved_after, 0.0);
+  EXPECT_LE(moved_after, 0.3);
+}
+
+TEST(PioneerWire, ADamagedLengthCostsOneReportAndShiftsNone) {
+  Wire wire;
+  wire.run(2.0);
+  wire.odometry.clear();
+  std::vector<Stamp> sent;
+  for (int i = 0; i < 12; ++i) {
+    wire.now = wire.now + kCycle;
+    wire.base.measure({wire.now, {}, 0.0, 0.0, false}, wire.now);
+    std::string report = wire.base.take_output();
+    if (i == 3) report[2] = static_cast<char>(190);
+    wire.driver.receive(report, wire.now);
+    if (i != 3) sent.push_back(wire.now);
+  }
+  const auto odometry = wire.driver.take_odometry();
+  ASSERT_EQ(odometry.size(), sent.size());
+  for (std::size_t i = 0; i < sent.size(); ++i) EXPECT_NEAR(odometry[i].stamp - sent[i], 0.0, 2e-3) << i;
 }
 
 TEST(ArcosEmulator, ARealRobotIsNoSimulator) {

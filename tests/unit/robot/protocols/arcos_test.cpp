@@ -182,6 +182,51 @@ TEST(ArcosPackets, ALostByteCostsOnePacketOnly) {
   }
 }
 
+TEST(ArcosPackets, AHeadInJunkHoldsUpWhatFollowsForAMomentOnly) {
+  for (int length = 3; length < 256; ++length) {
+    PacketParser parser;
+    Stamp now{1'000'000'000};
+    parser.feed(hex("fa fb") + static_cast<char>(length), now);
+    EXPECT_FALSE(parser.next(now));
+    const std::string velocity = command(kVelocity, 300);
+    // Commands follow at once and so far apart that together they would fill the false packet after seconds only.
+    int heard = 0;
+    for (int i = 0; i <= 500; ++i, now = now + 0.001) {
+      if (i % 250 == 0) parser.feed(velocity, now);
+      while (const auto payload = parser.next(now)) heard += *payload == payload_of(velocity) ? 1 : 0;
+      if (i == 350) {
+        EXPECT_EQ(heard, 2) << "length " << length;
+      }
+    }
+    EXPECT_EQ(heard, 3) << "length " << length;
+  }
+}
+
+TEST(ArcosPackets, ASlowLineCutsNoPacket) {
+  const std::string longest = packet(std::string(kLongest - 2, 'x'));
+  PacketParser parser;
+  Stamp now{0};
+  int found = 0;
+  for (int round = 0; round < 3; ++round)
+    for (const char c : longest) {
+      parser.feed(std::string_view(&c, 1), now);
+      while (parser.next(now)) ++found;
+      now = now + 10.0 / 9600.0;
+    }
+  EXPECT_EQ(found, 3);
+  EXPECT_EQ(parser.junk(), 0u);
+}
+
+TEST(ArcosPackets, APacketThatWasHeldUpWithinIsWhole) {
+  const std::string stop = command(kStop);
+  PacketParser parser;
+  parser.feed(stop.substr(0, 4), Stamp{0});
+  EXPECT_FALSE(parser.next(Stamp{0}));
+  // The reader itself was busy for six seconds: nobody asked meanwhile.
+  parser.feed(stop.substr(4), Stamp{6'000'000'000});
+  EXPECT_EQ(parser.next(Stamp{6'000'000'000}), payload_of(stop));
+}
+
 TEST(ArcosPackets, NoDamagedByteGoesUnseen) {
   const std::string good = packet(encode(example()));
   for (std::size_t at = 3; at < good.size(); ++at)

@@ -9,6 +9,9 @@
 
 #include "base/angle.h"
 #include "base/error.h"
+#include "robot/drivers/pioneer.h"
+#include "robot/emulators/arcos_emulator.h"
+#include "robot/hardware_units.h"
 #include "robot/logs/log.h"
 #include "tests/support/sim_arena.h"
 #include "tests/support/source_dir.h"
@@ -93,6 +96,26 @@ Driven drive_simulated(const arenas::Arena& arena, const robot::RobotModel& mode
   return driven;
 }
 
+struct TrueZero {
+  double pitch = 0.0, roll = 0.0;  ///< [rad]
+};
+
+/// What the simulated part, calibrated with an error of its own (0.11 deg, one sigma), shows on a level floor: the mean
+/// over two minutes at rest, in which the noise goes down to a thousandth of a degree.
+TrueZero true_zero(const robot::RobotModel& model, std::uint64_t seed) {
+  sim::SimRobot robot(sim::test::flat_floor(-2.0, -2.0, 2.0, 2.0), model, {}, seed);
+  double x = 0.0, y = 0.0, count = 0.0;
+  for (int i = 0; i < 6000; ++i) {
+    const auto inputs = robot.read();
+    for (const robot::Acceleration& a : inputs->accelerations) {
+      x += a.x;
+      y += a.y;
+      count += 1.0;
+    }
+  }
+  return {std::asin(x / count / robot::kGravity), std::asin(y / count / robot::kGravity)};
+}
+
 RobotFile shipped() { return load_robot_file(std::string(RUBBLE_SOURCE_DIR) + "/robots/pioneer_urg.yaml"); }
 
 TEST(Calibrate, ASimulatedRobotsTrueNumbersComeBack) {
@@ -106,7 +129,7 @@ TEST(Calibrate, ASimulatedRobotsTrueNumbersComeBack) {
     const Driven driven = drive_simulated(furnished_room(), model, seed, log);
     ASSERT_EQ(driven.trouble, "");
 
-    file.settings.robot.effective_track = model.effective_track;
+    // The file does not know that track; the log was recorded by a robot that does.
     const CalibratedRobot robot = calibrate_from_log(log, file, file);
     const double track = model.effective_track * driven.reckoned / driven.turned;
     std::cout << "seed " << seed << ": effective track " << robot.effective_track << " +- "
@@ -121,10 +144,113 @@ TEST(Calibrate, ASimulatedRobotsTrueNumbersComeBack) {
     EXPECT_NEAR(robot.setup.delay, driven.lag, 0.002);
     EXPECT_NEAR(driven.lag, 0.0, 0.007);
     ASSERT_TRUE(robot.calibration.level);
-    // What the simulated part's own calibration leaves is 0.11 deg (one sigma); it is not told.
-    EXPECT_NEAR(rad_to_deg(robot.calibration.level->pitch), 0.0, 0.4);
+    const TrueZero zero = true_zero(model, seed);
+    EXPECT_NEAR(rad_to_deg(robot.calibration.level->pitch - zero.pitch), 0.0, 0.2);
+    EXPECT_NEAR(rad_to_deg(robot.calibration.level->roll - zero.roll), 0.0, 0.2);
     EXPECT_NEAR(rad_to_deg(robot.calibration.level->slope), 0.0, 0.1);
   }
+}
+
+/// The simulated robot behind its emulated firmware, as our driver sees it: all in one thread, without lines or clocks.
+class DrivenByWire : public robot::Robot {
+ public:
+  /// `model`: what the robot is; `said`: what its file takes it for.
+  DrivenByWire(const arenas::Arena& arena, const robot::RobotModel& model, const robot::RobotModel& said,
+               const robot::BaseSettings& base, std::uint64_t seed)
+      : said_(said), simulated_(arena, model, {}, seed), firmware_(settings(model)), driver_(base) {
+    firmware_.client_came({});
+    driver_.opened({}, robot::LineKind::Tcp);
+    robot::Inputs inputs;
+    for (int i = 0; i < 250 && !driver_.motors_on(); ++i) {
+      driver_.enable(true);
+      inputs = *read();
+    }
+  }
+  const robot::RobotModel& model() const override { return said_; }
+  std::optional<robot::Inputs> read() override {
+    for (int i = 0; i < 4; ++i) talk(now_ + 0.005 * i);
+    simulated_.command({firmware_.motion(), {}});
+    auto inputs = simulated_.read();
+    if (!inputs) return std::nullopt;
+    now_ = inputs->now;
+    for (const robot::Odometry& odometry : inputs->odometry) {
+      firmware_.measure(odometry, odometry.stamp);
+      talk(odometry.stamp);
+    }
+    inputs->odometry = driver_.take_odometry();
+    return inputs;
+  }
+  void command(const robot::Commands& commands) override { driver_.drive(commands.drive); }
+  const Trajectory& truth() const { return simulated_.truth(); }
+
+ private:
+  static robot::ArcosEmulatorSettings settings(const robot::RobotModel& model) {
+    robot::ArcosEmulatorSettings settings;
+    settings.half_track = 0.5 * model.effective_track;
+    return settings;
+  }
+  void talk(Stamp now) {
+    driver_.advance(now);
+    firmware_.receive(driver_.take_output(now), now);
+    firmware_.advance(now);
+    driver_.receive(firmware_.take_output(), now);
+  }
+
+  robot::RobotModel said_;
+  sim::SimRobot simulated_;
+  robot::ArcosEmulator firmware_;
+  robot::Pioneer driver_;
+  Stamp now_;
+};
+
+TEST(Calibrate, TheEffectiveTrackIsFoundThoughTheFirmwareDividesByAnother) {
+  const Scratch scratch;
+  RobotFile file = shipped();
+  for (const double firmware_track : {0.5, 0.65}) {
+    robot::RobotModel model = file.settings.robot;
+    ASSERT_GT(std::abs(model.effective_track / firmware_track - 1.0), 0.09) << "the file says another";
+    model.effective_track = firmware_track;
+    const std::string log = scratch.file("wire.rlog");
+    double wheels = 0.0, turned = 0.0;
+    {
+      DrivenByWire robot(furnished_room(), model, file.settings.robot, file.robot.base, 7);
+      robot::RecordingRobot recorded(robot, log, "");
+      CalibrationDrive pilot(file.settings.robot, {});
+      std::optional<mrpt::math::TPose2D> last, last_truth;
+      while (auto inputs = recorded.read()) {
+        const mrpt::math::TPose2D truth = robot.truth().back().pose;
+        if (last_truth) turned += std::abs(wrap_angle(truth.phi - last_truth->phi));
+        last_truth = truth;
+        for (const robot::Odometry& odometry : inputs->odometry) {
+          if (last) wheels += firmware_track * std::abs(wrap_angle(odometry.pose.phi - last->phi));
+          last = odometry.pose;
+        }
+        const auto wanted = pilot.next(*inputs, truth.phi);
+        if (!wanted) break;
+        recorded.command({*wanted, {}});
+      }
+      ASSERT_EQ(pilot.trouble(), "");
+    }
+    const CalibratedRobot robot = calibrate_from_log(log, file, file);
+    std::cout << "firmware track " << firmware_track << " m: effective track " << robot.effective_track << " +- "
+              << robot.effective_track_sigma << ", true " << wheels / turned << "\n";
+    EXPECT_NEAR(robot.effective_track / (wheels / turned), 1.0, 0.01);
+    EXPECT_NEAR(robot.file.settings.robot.effective_track / firmware_track, 1.0, 0.005)
+        << "what the firmware divides by";
+  }
+}
+
+TEST(Calibrate, WithoutWheelSpeedsTheEffectiveTrackIsNotGuessed) {
+  const Scratch scratch;
+  const std::string log = scratch.file("log.rlog");
+  RobotFile file = shipped();
+  ASSERT_EQ(drive_simulated(furnished_room(), file.settings.robot, 4, log).trouble, "");
+  RobotFile own = file;
+  own.robot.base_driver = "own";
+  const CalibratedRobot robot = calibrate_from_log(log, own, own);
+  EXPECT_TRUE(std::isnan(robot.effective_track));
+  EXPECT_NE(calibrated_yaml(robot, log).find("effective track: not known"), std::string::npos);
+  EXPECT_EQ(robot.file.settings.robot.effective_track, file.settings.robot.effective_track);
 }
 
 TEST(Calibrate, TheFileIsReadBackWithTheNumbersOfTheDriveAppliedToThoseInForce) {

@@ -69,13 +69,16 @@ class Fed {
 };
 
 TEST(Probe, BaseTellsWhoItIsAndStandsStill) {
-  ArcosEmulator base({});
+  ArcosEmulatorSettings settings;
+  settings.configuration.firmware = "7.5";
+  ArcosEmulator base(settings);
   DeviceServer server("tcp:127.0.0.1:0", base, 1);
   const Fed feed(server, [&] { base.measure({host_now(), {}, 0.0, 0.0, false}, host_now()); });
   const auto found = probe_port(server.port());
   ASSERT_TRUE(found);
   EXPECT_EQ(found->kind, "robot base (ARCOS)");
   EXPECT_EQ(fact(*found, "type"), "Pioneer p3at-sh");
+  EXPECT_EQ(fact(*found, "firmware"), "7.5") << "as CONFIG tells it, not what the emulator has unless told otherwise";
   EXPECT_THAT(fact(*found, "battery"), testing::EndsWith(" V"));
   server.with([&] { EXPECT_FALSE(base.motors_on()); });
 }
