@@ -18,6 +18,8 @@ constexpr double kStillSpeed = 1e-3;            // slower counts as standing [m/
 constexpr double kStillTurn = deg_to_rad(0.5);  // [rad/s]
 constexpr double kReached = 0.002;              // a commanded way is done [m]
 constexpr double kHeadingReached = deg_to_rad(0.2);
+constexpr double kLastPart = 0.1;         // time constant of the end of a commanded way [s]
+constexpr double kSettled = 0.3;          // standing for so long, what was measured is where the robot is [s]
 constexpr double kStallFault = 1.0;       // [s]
 constexpr double kDeafFault = 3.0;        // [s]
 constexpr double kButtonFault = 2.0;      // [s]
@@ -31,9 +33,10 @@ double approach(double from, double to, double accel, double decel, double dt) {
   return from + std::clamp(to - from, -most, most);
 }
 
-/// The speed from which `left` is just enough to stop.
+/// The speed from which `left` is just enough to stop, and close to the end one that falls with what is left.
 double stopping_speed(double left, double decel, double top) {
-  return std::copysign(std::min(top, std::sqrt(2.0 * decel * std::abs(left))), left);
+  const double most = std::min(std::sqrt(2.0 * decel * std::abs(left)), std::abs(left) / kLastPart);
+  return std::copysign(std::min(top, most), left);
 }
 
 int rounded(double value) { return static_cast<int>(std::lround(value)); }
@@ -199,16 +202,16 @@ void ArcosEmulator::move_by(const Order& order) {
   if (mode_ == Mode::Wheels && order.number != kWheelSpeeds) target_ = {};
   switch (order.number) {
     case kMove:
-      mode_ = Mode::Move;
       move_start_ = odometry_.pose;
       move_target_ = kMillimetre * value;
       target_ = {};
+      aim_for(Mode::Move);
       return;
     case kHead:
     case kTurnBy:
       if (mode_ == Mode::Move) target_ = {};
-      mode_ = Mode::Head;
       heading_target_ = wrap_angle(deg_to_rad(value) + (order.number == kTurnBy ? reckoned().phi : 0.0));
+      aim_for(Mode::Head);
       return;
     case kWheelSpeeds: {
       const WheelSpeeds wheels = wheel_speeds(value);
@@ -330,19 +333,38 @@ mrpt::math::TPose2D ArcosEmulator::reckoned() const {
   return {c * dx + s * dy, -s * dx + c * dy, wrap_angle(odometry_.pose.phi - origin_.phi)};
 }
 
+/// A commanded way is a profile of set points. What is measured comes late, and would make it hunt; so it is looked at
+/// where the way begins, and again once the robot stands.
+void ArcosEmulator::aim_for(Mode mode) {
+  mode_ = mode;
+  planned_left_ = still_to_go();
+  rest_ = 0.0;
+}
+
+/// By what was measured last [rad] or [m].
+double ArcosEmulator::still_to_go() const {
+  if (mode_ == Mode::Head) return wrap_angle(heading_target_ - reckoned().phi);
+  const double dx = odometry_.pose.x - move_start_.x;
+  const double dy = odometry_.pose.y - move_start_.y;
+  return move_target_ - (std::cos(odometry_.pose.phi) * dx + std::sin(odometry_.pose.phi) * dy);
+}
+
+void ArcosEmulator::look_again(double dt) {
+  const bool turns = mode_ == Mode::Head;
+  const double reached = turns ? kHeadingReached : kReached;
+  planned_left_ -= (turns ? motion_.w : motion_.v) * dt;
+  const bool stands = std::abs(odometry_.v) < kStillSpeed && std::abs(odometry_.w) < kStillTurn;
+  rest_ = stands && std::abs(planned_left_) < reached ? rest_ + dt : 0.0;
+  if (rest_ < kSettled) return;
+  rest_ = 0.0;
+  if (std::abs(still_to_go()) > reached) planned_left_ = still_to_go();
+}
+
 Drive ArcosEmulator::wanted() const {
   if (!motors_ || held_ || session_ != Session::Open) return {};
   Drive drive = target_;
-  if (mode_ == Mode::Head) {
-    const double left = wrap_angle(heading_target_ - reckoned().phi);
-    drive.w = std::abs(left) < kHeadingReached ? 0.0 : stopping_speed(left, limits_.turn_decel, limits_.w);
-  } else if (mode_ == Mode::Move) {
-    const double dx = odometry_.pose.x - move_start_.x;
-    const double dy = odometry_.pose.y - move_start_.y;
-    const double done = std::cos(odometry_.pose.phi) * dx + std::sin(odometry_.pose.phi) * dy;
-    const double left = move_target_ - done;
-    drive.v = std::abs(left) < kReached ? 0.0 : stopping_speed(left, limits_.decel, limits_.v);
-  }
+  if (mode_ == Mode::Head) drive.w = stopping_speed(planned_left_, limits_.turn_decel, limits_.w);
+  if (mode_ == Mode::Move) drive.v = stopping_speed(planned_left_, limits_.decel, limits_.v);
   drive.v = std::clamp(drive.v, -limits_.v, limits_.v);
   drive.w = std::clamp(drive.w, -limits_.w, limits_.w);
   return drive;
@@ -365,6 +387,7 @@ void ArcosEmulator::advance(Stamp now) {
   }
   motion_.v = approach(motion_.v, drive.v, limits_.accel, limits_.decel, dt);
   motion_.w = approach(motion_.w, drive.w, limits_.turn_accel, limits_.turn_decel, dt);
+  if (mode_ == Mode::Head || mode_ == Mode::Move) look_again(dt);
 }
 
 void ArcosEmulator::measure(const Odometry& odometry, Stamp now) {

@@ -85,6 +85,9 @@ class ArcosEmulator : public EmulatedDevice {
   void set_origin(const mrpt::math::TPose2D& start);
   void report();
   void switch_motors(bool on);
+  void aim_for(Mode mode);
+  double still_to_go() const;
+  void look_again(double dt);
   Drive wanted() const;
   mrpt::math::TPose2D reckoned() const;
   double left_speed() const { return odometry_.v - odometry_.w * settings_.half_track; }
@@ -111,7 +114,9 @@ class ArcosEmulator : public EmulatedDevice {
   Drive target_;               ///< in mode Speed, and Head's forward speed
   double heading_target_ = 0;  ///< in mode Head [rad], odometry frame
   mrpt::math::TPose2D move_start_;
-  double move_target_ = 0.0;  ///< in mode Move [m]
+  double move_target_ = 0.0;   ///< in mode Move [m]
+  double planned_left_ = 0.0;  ///< in modes Head and Move: what the set points still have to cover [rad] or [m]
+  double rest_ = 0.0;          ///< the robot has stood still for so long [s]
   Drive motion_;
   bool motors_ = false;
   bool held_ = false;

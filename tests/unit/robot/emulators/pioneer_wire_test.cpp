@@ -608,6 +608,47 @@ TEST(ArcosEmulator, HeadAndMoveEndWhereTheyWereSent) {
   EXPECT_NEAR(length(wire.truth.x - start.x, wire.truth.y - start.y), 0.5, 0.06);
 }
 
+/// A robot that is heavy: its wheels follow the set points late, and what is measured is up to 100 ms old.
+TEST(ArcosEmulator, HeadAndMoveDoNotHunt) {
+  constexpr double kLag = 0.1, kStep = 0.01;
+  for (const auto& [number, value] : {std::pair(arcos::kHead, 45),
+                                      {arcos::kHead, -90},
+                                      {arcos::kTurnBy, 30},
+                                      {arcos::kMove, 500},
+                                      {arcos::kMove, -500}}) {
+    SCOPED_TRACE(std::to_string(number) + " " + std::to_string(value));
+    ArcosEmulator base({});
+    Stamp now{0};
+    base.client_came(now);
+    for (const auto order : {arcos::kSync0, arcos::kSync1, arcos::kSync2}) base.receive(arcos::command(order), now);
+    base.receive(arcos::command(arcos::kOpen), now);
+    base.receive(arcos::command(arcos::kEnable, 1), now);
+    base.receive(arcos::command(number, value), now);
+    const bool turns = number != arcos::kMove;
+    const double goal = turns ? deg_to_rad(value) : 1e-3 * value;
+    mrpt::math::TPose2D pose;
+    Drive wheels;
+    double farthest = 0.0, last_moved = 0.0;
+    for (int i = 1; i <= 1000; ++i) {
+      now = now + kStep;
+      if (i % 10 == 0) base.receive(arcos::command(arcos::kPulse), now);
+      base.advance(now);
+      wheels.v += (base.motion().v - wheels.v) * kStep / kLag;
+      wheels.w += (base.motion().w - wheels.w) * kStep / kLag;
+      pose.x += wheels.v * kStep;
+      pose.phi += wheels.w * kStep;
+      if (i % 10 == 0) base.measure({now, pose, wheels.v, wheels.w, false}, now);
+      base.take_output();
+      const double there = (turns ? pose.phi : pose.x) / goal;
+      farthest = std::max(farthest, there);
+      if (std::abs(wheels.v) > 0.005 || std::abs(wheels.w) > deg_to_rad(0.5)) last_moved = kStep * i;
+    }
+    EXPECT_LT(farthest, 1.02) << "it shoots over";
+    EXPECT_NEAR((turns ? pose.phi : pose.x), goal, turns ? deg_to_rad(0.4) : 0.003);
+    EXPECT_LT(last_moved, 6.0) << "it never rests";
+  }
+}
+
 TEST(ArcosEmulator, ASimulatorsClientCanSetThePose) {
   Wire wire;
   wire.run(1.0);
