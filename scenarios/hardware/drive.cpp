@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -25,6 +26,8 @@ namespace rubble::scenarios {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr double kTellAgain = 5.0;  ///< a reason that changed while devices are waited for is told so often at most [s]
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -149,16 +152,32 @@ class Driver {
 
   /// While devices are silent: tells which, and saves the map at once. False ends the run.
   bool wait(const robot::RobotStatus& status) {
-    if (status.silent != told_ && (names(status.silent) != names(told_) || status.held != held_)) {
+    const bool others = names(status.silent) != names(told_) || status.held != held_;
+    if (status.silent != told_ && (others || is_news(status.silent))) {
       if (options_.tell)
         for (const std::string& line : status.silent) options_.tell(line);
-      if (begun_) loop_.save_now();
+      told_lines_ = status.silent;
+      told_lines_at_ = Clock::now();
+      if (begun_ && others) loop_.save_now();
     }
     tell_back(status.silent);
     if (status.held) mind_hold();
     held_ = held_ && status.held;
     if (options_.forget_keys) options_.forget_keys();
     return !interrupted_;
+  }
+
+  /// Another reason than the one that was told, a while ago: a port that was not open yet may have been opened since.
+  bool is_news(const std::vector<std::string>& silent) const {
+    const auto without_numbers = [](std::string text) {
+      text.erase(std::remove_if(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; }),
+                 text.end());
+      return text;
+    };
+    if (seconds_since(told_lines_at_) < kTellAgain) return false;
+    return !std::equal(
+        silent.begin(), silent.end(), told_lines_.begin(), told_lines_.end(),
+        [&](const std::string& a, const std::string& b) { return without_numbers(a) == without_numbers(b); });
   }
 
   static std::vector<std::string> names(const std::vector<std::string>& lines) {
@@ -229,7 +248,9 @@ class Driver {
   bool held_ = false;  ///< stopped at the robot itself, and told
   std::vector<std::string> troubles_;
   bool piloted_out_ = false;
-  std::vector<std::string> told_;
+  std::vector<std::string> told_;        ///< what is silent, as it was at the last look
+  std::vector<std::string> told_lines_;  ///< as it was told last
+  Clock::time_point told_lines_at_;
   robot::RobotStatus last_;
 };
 
