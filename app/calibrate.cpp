@@ -72,11 +72,11 @@ std::string recorded_robot(const std::string& run) {
   return fs::exists(file) ? file : "";
 }
 
-/// Throws RunError when no file can be made at `path`.
+/// Throws InputError when no file can be made at `path`.
 void require_place(const std::string& path) {
   const fs::path folder = fs::absolute(path).parent_path();
   if (fs::is_directory(path) || !fs::is_directory(folder) || ::access(folder.c_str(), W_OK | X_OK) != 0)
-    throw RunError(path + ": cannot be written; give --out in a folder that exists and may be written");
+    throw InputError(path + ": cannot be written; give --out in a folder that exists and may be written");
 }
 
 int calibrate(const CalibrateArguments& arguments) {

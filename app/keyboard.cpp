@@ -72,11 +72,34 @@ void Keyboard::take(int key) {
   until_ = now() + (repeated ? kHold : kFirstHold);
 }
 
+/// The key that ends with this byte: ESC [ A and ESC O A are arrows, with parameters (a shifted one) too; other
+/// sequences are a key like any other. 0: more is to come, perhaps in a later look.
+int Keyboard::decoded(int byte) {
+  switch (sequence_) {
+    case Sequence::None:
+      if (byte != kEscape) return byte;
+      any_ = true;  // whatever comes of it, a key was pressed
+      sequence_ = Sequence::Escape;
+      return 0;
+    case Sequence::Escape:
+      if (byte == '[' || byte == 'O') {
+        sequence_ = Sequence::Inside;
+        return 0;
+      }
+      if (byte != kEscape) sequence_ = Sequence::None;
+      return kEscape;
+    case Sequence::Inside:
+      if (byte < '@') return 0;  // a parameter
+      sequence_ = Sequence::None;
+      return byte <= 'D' ? letter_of_arrow(byte) : kEscape;
+  }
+  return byte;
+}
+
 void Keyboard::look() {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (int key = next(); key != 0; key = next()) {
-    if (key == kEscape && next() == '[') key = letter_of_arrow(next());
-    take(std::tolower(key));
+    if (const int whole = decoded(key)) take(std::tolower(whole));
   }
 }
 

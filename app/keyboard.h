@@ -36,6 +36,7 @@ class Keyboard {
  private:
   int next();
   void take(int key);
+  int decoded(int byte);
 
   std::mutex mutex_;
   double v_ = 0.0, w_ = 0.0;  ///< of a held key, in units of what drive() is asked with
@@ -43,6 +44,7 @@ class Keyboard {
   bool rearmed_ = false;
   double rearm_until_ = 0.0;  ///< R is waited for up to here
   bool active_ = false;
+  enum class Sequence { None, Escape, Inside } sequence_ = Sequence::None;  ///< of a key that sends several bytes
   bool quit_ = false;
   termios before_{};
   double until_ = 0.0;  ///< a key counts as held up to here, by the monotonic clock [s]

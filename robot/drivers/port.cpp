@@ -173,11 +173,16 @@ std::string why_not_opened(int error) {
   return std::string("cannot be opened (") + std::strerror(error) + "); `rubble devices` lists what is there";
 }
 
+/// For as long as it is open.
+void lock(const Descriptor& line, const std::string& word) {
+  if (isatty(line.get()) && flock(line.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw DeviceLost(word + ": " + why_not_opened(EBUSY));
+}
+
 std::unique_ptr<Port> open_serial(const std::string& word, const std::string& path) {
   Descriptor line(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!line) throw DeviceLost(word + ": " + why_not_opened(errno));
-  if (isatty(line.get()) && flock(line.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    throw DeviceLost(word + ": " + why_not_opened(EBUSY));
+  lock(line, word);
   if (!isatty(line.get())) throw InputError(word + ": is no serial line; give the path of one, as /dev/ttyUSB0");
   return std::make_unique<SerialPort>(word, std::move(line));
 }
@@ -222,6 +227,13 @@ std::unique_ptr<Port> open_tcp(const std::string& word, const PortWord& parts) {
 }
 
 }  // namespace
+
+void check_port_free(const std::string& word) {
+  const PortWord parts = parse_port_word(word);
+  if (parts.kind == PortKind::Tcp) return;
+  const Descriptor line(::open(parts.path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (line) lock(line, word);
+}
 
 std::unique_ptr<Port> open_port(const std::string& word) {
   const PortWord parts = parse_port_word(word);

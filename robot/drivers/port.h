@@ -54,6 +54,9 @@ class Port {
 /// InputError on a word of another form and DeviceLost when nothing answers there.
 std::unique_ptr<Port> open_port(const std::string& word);
 
+/// Throws DeviceLost when another program has the serial line or pty; what cannot be opened at all is no matter here.
+void check_port_free(const std::string& word);
+
 /// Throws InputError unless `word` has one of the forms that open_port and serve_port take; opens nothing.
 void check_port_word(const std::string& word);
 

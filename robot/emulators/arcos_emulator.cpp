@@ -64,7 +64,8 @@ ArcosEmulator::Limits ArcosEmulator::flash() const {
   return limits;
 }
 
-/// Back to where a client must synchronise; the settings of the flash return.
+/// Back to where a client must synchronise; the settings of the flash return. A robot that drives comes to rest by its
+/// ramp, as when the watchdog stops it: a cable that was pulled out is no blow.
 void ArcosEmulator::start_anew() {
   session_ = Session::Sync0;
   limits_ = flash();
@@ -168,6 +169,7 @@ void ArcosEmulator::obey(const Order& order, Stamp now) {
 
 void ArcosEmulator::switch_motors(bool on) {
   motors_ = on;
+  braking_ = !on;
   if (on) return;
   target_ = {};
   mode_ = Mode::Speed;
@@ -381,7 +383,7 @@ void ArcosEmulator::advance(Stamp now) {
   const double watchdog = 1e-3 * settings_.configuration.watchdog_ms;
   if (session_ == Session::Open && watchdog > 0.0 && heard_ != Stamp::never() && now - heard_ > watchdog) held_ = true;
   const Drive drive = wanted();
-  if (!motors_ || braking_) {
+  if (braking_) {
     motion_ = drive;
     return;
   }

@@ -57,7 +57,7 @@ class ArcosEmulator : public EmulatedDevice {
   /// What the motors shall do now.
   const Drive& motion() const { return motion_; }
   /// They shall do so at once, without a ramp: off, or in an emergency stop.
-  bool brakes_hard() const { return !motors_ || braking_; }
+  bool brakes_hard() const { return braking_; }
   /// The true pose that a client has set; once.
   std::optional<mrpt::math::TPose2D> take_placed();
 
@@ -120,7 +120,7 @@ class ArcosEmulator : public EmulatedDevice {
   Drive motion_;
   bool motors_ = false;
   bool held_ = false;
-  bool braking_ = false;  ///< an emergency stop: at once
+  bool braking_ = false;  ///< an emergency stop, or motors switched off: at once
   Stamp heard_ = Stamp::never();
   Stamp advanced_ = Stamp::never();
 

@@ -290,6 +290,9 @@ scoring::Evidence evidence_of(const Core& core, const robot::RealRobot& robot, c
 RunReport drive(const RobotFile& file, const DriveOptions& options) {
   const auto start = Clock::now();
   file.settings.mapper.require_permission();
+  // A robot that somebody else drives is not waited for: it would be taken over when they stop it.
+  for (const std::string& port : {file.lidar.port, file.robot.base_port, file.robot.levelling_port})
+    if (!port.empty()) robot::check_port_free(port);
   RunFolder folder(options.out.empty() ? next_run_folder("runs", file.settings.name, file.settings.seed) : options.out,
                    options.replace);
   folder.write("scenario.yaml", resolved_yaml(file.settings));

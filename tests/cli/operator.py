@@ -170,6 +170,12 @@ try:
     check_stop("teleoperation: arrow held, then space", time.time())
     turned = (truth()[-1][3] - before + math.pi) % (2 * math.pi) - math.pi
     check(turned > 0.3, "teleoperation: arrow left turned it left by %.0f deg" % math.degrees(turned))
+    before = truth()[-1][3]
+    drive.hold("\x1bOC", 1.5)  # as a terminal in application mode sends it
+    drive.press(" ")
+    check_stop("teleoperation: the other kind of arrow", time.time())
+    turned = (truth()[-1][3] - before + math.pi) % (2 * math.pi) - math.pi
+    check(turned < -0.3, "teleoperation: arrow right turned it right by %.0f deg" % -math.degrees(turned))
     drive.press("q")
     check(drive.wait() == 130, "teleoperation: Q ends the drive with 130")
     check(os.path.getsize("teleop/score.json") > 0, "teleoperation: its folder is complete")

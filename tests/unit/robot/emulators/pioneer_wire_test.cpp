@@ -608,6 +608,22 @@ TEST(ArcosEmulator, HeadAndMoveEndWhereTheyWereSent) {
   EXPECT_NEAR(length(wire.truth.x - start.x, wire.truth.y - start.y), 0.5, 0.06);
 }
 
+/// What its accelerometer would feel as a blow, an explorer would take for an obstacle.
+TEST(ArcosEmulator, ACableThatIsPulledOutBrakesByTheRamp) {
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.4, 0.0);
+  wire.run(3.0);
+  const double v = wire.base.motion().v;
+  ASSERT_NEAR(v, 0.4, 1e-3);
+  wire.base.client_left(wire.now);
+  EXPECT_FALSE(wire.base.brakes_hard());
+  wire.base.advance(wire.now + 0.1);
+  EXPECT_NEAR(wire.base.motion().v, v - 0.1 * 0.3, 2e-3);
+  wire.base.advance(wire.now + 2.0);
+  EXPECT_EQ(wire.base.motion().v, 0.0);
+}
+
 /// A robot that is heavy: its wheels follow the set points late, and what is measured is up to 100 ms old.
 TEST(ArcosEmulator, HeadAndMoveDoNotHunt) {
   constexpr double kLag = 0.1, kStep = 0.01;
