@@ -226,5 +226,18 @@ TEST(Port, UnknownBaudIsRefused) {
   EXPECT_THROW(port->set_baud(12345), InputError);
 }
 
+/// Two programs on one line would take each other's bytes, and the second would drive on when the first stops.
+TEST(Port, ALineBelongsToOneProgram) {
+  const std::string path = testing::TempDir() + "rubble_port_of_one";
+  const auto server = serve_port("pty:" + path);
+  auto first = open_port(server->name());
+  EXPECT_THROW(check_port_free(server->name()), DeviceLost);
+  EXPECT_THROW(open_port(server->name()), DeviceLost);
+  EXPECT_THROW(open_port(path), DeviceLost) << "by its bare path too";
+  first.reset();
+  EXPECT_NO_THROW(check_port_free(server->name()));
+  EXPECT_NO_THROW(open_port(server->name()));
+}
+
 }  // namespace
 }  // namespace rubble::robot
