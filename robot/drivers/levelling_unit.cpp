@@ -46,7 +46,7 @@ void LevellingUnit::advance(Stamp now) {
     asked_ = now;
     output_ = levelling_line("V");
   }
-  if (ready() && aimed_ && now - aim_sent_ >= kRefresh) aim_due_ = true;
+  if (ready() && aimed_ && (aim_sent_ == Stamp::never() || now - aim_sent_ >= kRefresh)) aim_due_ = true;
 }
 
 void LevellingUnit::receive(std::string_view bytes, Stamp now) {
