@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/text/words.h"
 #include "robot/drivers/device_thread.h"
 #include "robot/drivers/heartbeat.h"
 #include "robot/drivers/host_clock.h"
@@ -29,12 +30,6 @@ std::string silent_for(const std::string& name, bool underway, Stamp last, Stamp
     std::snprintf(text, sizeof text, ": silent for %.1f s", now - last);
   }
   return name + text + (why.empty() ? "" : " (" + why + ")");
-}
-
-std::string joined(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += (text.empty() ? "" : "; ") + line;
-  return text;
 }
 
 template <class T>

@@ -199,20 +199,22 @@ class Driver {
     }
   }
 
-  /// Names the devices that were told as silent and are not among these.
+  /// Names what was told before and is no more.
+  void tell_returned(const std::vector<std::string>& before, const std::vector<std::string>& now) const {
+    if (!options_.tell) return;
+    const std::vector<std::string> still = names(now);
+    for (const std::string& name : names(before))
+      if (std::find(still.begin(), still.end(), name) == still.end()) options_.tell(name + ": reports");
+  }
+
   void tell_back(const std::vector<std::string>& silent) {
-    const std::vector<std::string> still = names(silent);
-    if (options_.tell)
-      for (const std::string& name : names(told_))
-        if (std::find(still.begin(), still.end(), name) == still.end()) options_.tell(name + ": reports");
+    tell_returned(told_, silent);
     told_ = silent;
   }
 
-  void tell_troubles(const std::vector<std::string>& now) {
+  void tell_troubles(const std::vector<std::string>& now) const {
     for (const std::string& line : now) options_.tell(line);
-    const std::vector<std::string> still = names(now);
-    for (const std::string& name : names(troubles_))
-      if (std::find(still.begin(), still.end(), name) == still.end()) options_.tell(name + ": reports");
+    tell_returned(troubles_, now);
   }
 
   void each_second(double seconds) {
