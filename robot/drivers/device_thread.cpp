@@ -61,6 +61,10 @@ std::string DeviceThread::error() const {
   return with([this] { return error_; });
 }
 
+bool DeviceThread::busy() const {
+  return with([this] { return busy_; });
+}
+
 bool DeviceThread::is_ending() const {
   return with([this] { return ending_; });
 }
@@ -82,7 +86,10 @@ void DeviceThread::run() {
       converse();
     } catch (const std::exception& lost) {
       port_.reset();
-      with([&] { error_ = lost.what(); });
+      with([&] {
+        error_ = lost.what();
+        busy_ = dynamic_cast<const PortBusy*>(&lost) != nullptr;
+      });
       for (const Stamp again = host_now() + kOpenAgain; host_now() < again && !is_ending();)
         wait_for(-1, wake_.get(), kTurn);
     }

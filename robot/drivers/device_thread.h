@@ -39,6 +39,8 @@ class DeviceThread {
   const std::string& name() const { return name_; }
   /// Why the port is not open; empty while it is.
   std::string error() const;
+  /// It is not open because another program has it.
+  bool busy() const;
 
  private:
   void run();
@@ -57,6 +59,7 @@ class DeviceThread {
   mutable std::mutex mutex_;
   bool ending_ = false;
   std::string error_;
+  bool busy_ = false;
   std::unique_ptr<Port> port_;
   int baud_ = 0;
   std::mutex ending_mutex_;

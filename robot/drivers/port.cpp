@@ -11,11 +11,14 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
+#include <sys/un.h>
 #include <termios.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <vector>
 
@@ -29,6 +32,7 @@ namespace {
 
 constexpr double kConnectTimeout = 2.0;  // [s]
 constexpr double kWriteTimeout = 0.5;    // a device that takes nothing for so long is gone [s]
+constexpr double kTurnedAway = 1.0;      // who is hung up on so early, and heard nothing, was turned away [s]
 constexpr int kFirstBaud = 115200;
 
 /// Waits for `events`; false: the time is over. Signals do not shorten the wait.
@@ -56,11 +60,13 @@ class DescriptorPort : public Port {
     const Stamp until = host_now() + timeout;
     for (;;) {
       const ssize_t got = ::read(file_.get(), to, size);
-      if (got > 0) return {static_cast<std::size_t>(got), host_now()};
-      if (got == 0) throw DeviceLost(name_ + ": the device closed the line; " + remedy());
+      if (got > 0) {
+        heard_ = true;
+        return {static_cast<std::size_t>(got), host_now()};
+      }
+      if (got == 0) throw_lost("the device closed the line");
       if (errno == EINTR) continue;
-      if (errno != EAGAIN && errno != EWOULDBLOCK)
-        throw DeviceLost(name_ + ": the device is gone (" + std::strerror(errno) + "); " + remedy());
+      if (errno != EAGAIN && errno != EWOULDBLOCK) throw_lost(gone(errno));
       if (!wait_for(file_.get(), POLLIN, until - host_now())) return {0, host_now()};
     }
   }
@@ -75,8 +81,7 @@ class DescriptorPort : public Port {
         continue;
       }
       if (step < 0 && errno == EINTR) continue;
-      if (step < 0 && errno != EAGAIN && errno != EWOULDBLOCK)
-        throw DeviceLost(name_ + ": the device is gone (" + std::strerror(errno) + "); " + remedy());
+      if (step < 0 && errno != EAGAIN && errno != EWOULDBLOCK) throw_lost(gone(errno));
       if (!wait_for(file_.get(), POLLOUT, kWriteTimeout))
         throw DeviceLost(name_ + ": the device takes no bytes; " + remedy());
     }
@@ -92,17 +97,29 @@ class DescriptorPort : public Port {
   Descriptor file_;
 
  private:
+  static std::string gone(int error) { return std::string("the device is gone (") + std::strerror(error) + ")"; }
+
+  [[noreturn]] void throw_lost(const std::string& how) const {
+    if (!is_serial() && !heard_ && host_now() - opened_ < kTurnedAway)
+      throw PortBusy(name_ +
+                     ": the other side hangs up at once; another program uses the device, or none is connected there");
+    throw DeviceLost(name_ + ": " + how + "; " + remedy());
+  }
+
   const Stamp opened_ = host_now();
+  std::atomic<bool> heard_{false};  ///< a byte has come
 };
 
 class TcpPort : public DescriptorPort {
  public:
-  using DescriptorPort::DescriptorPort;
+  TcpPort(std::string word, Descriptor socket, Descriptor ours)
+      : DescriptorPort(std::move(word), std::move(socket)), ours_(std::move(ours)) {}
   void set_baud(int) override {}
   LineKind kind() const override { return LineKind::Tcp; }
 
  private:
   std::string remedy() const override { return "see that the other side still runs"; }
+  Descriptor ours_;  ///< of lock_address()
 };
 
 speed_t speed_of(int baud, const std::string& name) {
@@ -176,7 +193,27 @@ std::string why_not_opened(int error) {
 /// For as long as it is open.
 void lock(const Descriptor& line, const std::string& word) {
   if (isatty(line.get()) && flock(line.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    throw DeviceLost(word + ": " + why_not_opened(EBUSY));
+    throw PortBusy(word + ": " + why_not_opened(EBUSY));
+}
+
+/// The same for a TCP address, on this computer: the name of a socket that nobody connects to, which goes with the
+/// program whatever ends it. Without a descriptor, as where no such names are, nothing is locked.
+Descriptor lock_address(const addrinfo& address, const std::string& word) {
+  char host[NI_MAXHOST] = "", number[NI_MAXSERV] = "";
+  if (getnameinfo(address.ai_addr, address.ai_addrlen, host, sizeof host, number, sizeof number,
+                  NI_NUMERICHOST | NI_NUMERICSERV) != 0)
+    return {};
+  const std::string name = std::string("rubble client of ") + host + ":" + number;
+  sockaddr_un place{};
+  place.sun_family = AF_UNIX;
+  const std::size_t size = std::min(name.size(), sizeof place.sun_path - 1);
+  std::memcpy(place.sun_path + 1, name.data(), size);  // a first byte of 0: no file
+  Descriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (!socket) return {};
+  const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + size);
+  if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&place), length) == 0) return socket;
+  if (errno == EADDRINUSE) throw PortBusy(word + ": " + why_not_opened(EBUSY));
+  return {};
 }
 
 std::unique_ptr<Port> open_serial(const std::string& word, const std::string& path) {
@@ -202,17 +239,27 @@ int connect_in_time(int socket, const addrinfo& address) {
   return error;
 }
 
-std::unique_ptr<Port> open_tcp(const std::string& word, const PortWord& parts) {
+using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
+
+/// Null when the host is not known; `failure` then tells why.
+Addresses find(const PortWord& parts, int* failure = nullptr) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
-  const int failure = getaddrinfo(parts.host.c_str(), parts.port.c_str(), &hints, &found);
+  const int result = getaddrinfo(parts.host.c_str(), parts.port.c_str(), &hints, &found);
+  if (failure != nullptr) *failure = result;
+  return Addresses(result == 0 ? found : nullptr);
+}
+
+std::unique_ptr<Port> open_tcp(const std::string& word, const PortWord& parts) {
+  int failure = 0;
+  const Addresses addresses = find(parts, &failure);
   if (failure != 0)
     throw DeviceLost(word + ": the host '" + parts.host + "' is not known (" + gai_strerror(failure) +
                      "); check its name, or give its address");
-  const std::unique_ptr<addrinfo, FreeAddresses> addresses(found);
   int error = ECONNREFUSED;
-  for (const addrinfo* address = found; address != nullptr; address = address->ai_next) {
+  for (const addrinfo* address = addresses.get(); address != nullptr; address = address->ai_next) {
+    Descriptor ours = lock_address(*address, word);
     Descriptor socket(::socket(address->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     if (!socket) continue;
     error = connect_in_time(socket.get(), *address);
@@ -220,7 +267,7 @@ std::unique_ptr<Port> open_tcp(const std::string& word, const PortWord& parts) {
     const int on = 1;
     setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     setsockopt(socket.get(), SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
-    return std::make_unique<TcpPort>(word, std::move(socket));
+    return std::make_unique<TcpPort>(word, std::move(socket), std::move(ours));
   }
   throw DeviceLost(word + ": nobody answers (" + std::strerror(error) +
                    "); switch the device on or start `rubble emulate` there, or end the program that talks to it");
@@ -230,7 +277,12 @@ std::unique_ptr<Port> open_tcp(const std::string& word, const PortWord& parts) {
 
 void check_port_free(const std::string& word) {
   const PortWord parts = parse_port_word(word);
-  if (parts.kind == PortKind::Tcp) return;
+  if (parts.kind == PortKind::Tcp) {
+    const Addresses addresses = find(parts);
+    for (const addrinfo* address = addresses.get(); address != nullptr; address = address->ai_next)
+      lock_address(*address, word);
+    return;
+  }
   const Descriptor line(::open(parts.path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (line) lock(line, word);
 }

@@ -26,6 +26,13 @@ struct Arrival {
   Stamp stamp;
 };
 
+/// Another program has the line. Whoever waits for it would take the device over when that one ends, so nobody does
+/// before a run.
+class PortBusy : public DeviceLost {
+ public:
+  using DeviceLost::DeviceLost;
+};
+
 /// A line to a device: bytes either way. One thread may read while another writes.
 class Port {
  public:
@@ -50,11 +57,13 @@ class Port {
 };
 
 /// Opens the device side's other end: `/dev/ttyUSB0` (any path of a serial line), `pty:PATH` or `tcp:HOST:PORT`. A
-/// serial line is raw, 8N1, without flow control, at 115200 baud, and what waited in it is thrown away. Throws
-/// InputError on a word of another form and DeviceLost when nothing answers there.
+/// serial line is raw, 8N1, without flow control, at 115200 baud, and what waited in it is thrown away. A line belongs
+/// to one program of this computer; a device on TCP turns others away by itself, which read() and write() tell. Throws
+/// InputError on a word of another form, PortBusy when another program has it and DeviceLost when nothing answers
+/// there.
 std::unique_ptr<Port> open_port(const std::string& word);
 
-/// Throws DeviceLost when another program has the serial line or pty; what cannot be opened at all is no matter here.
+/// Throws PortBusy when another program of this computer has the line; what cannot be opened at all is no matter here.
 void check_port_free(const std::string& word);
 
 /// Throws InputError unless `word` has one of the forms that open_port and serve_port take; opens nothing.

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kAsk = 0.05;                 ///< pause of a waiting read() [s]
 constexpr double kListen = 0.02;              ///< the operator is asked so often [s]
+constexpr double kKeepsUp = 1.0;              ///< scans that were too old must be fresh for so long [s]
 constexpr std::size_t kMostScansKept = 240;   ///< while the robot is held
 constexpr std::size_t kNewestScansKept = 40;  ///< of these all remain when the others are thinned
 
@@ -42,6 +43,34 @@ void sort_by_stamp(std::vector<T>& list) {
   std::stable_sort(list.begin(), list.end(), [](const T& a, const T& b) { return a.stamp < b.stamp; });
 }
 
+/// Whether scans are fresh enough to drive by. Once they were not, they must be so for a while: at the very edge the
+/// robot would stop and go with every scan.
+class Freshness {
+ public:
+  /// `age`: of the newest scan.
+  void look(double age, double most, Stamp now) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (age > most) {
+      stale_ = true;
+      stale_at_ = std::max(stale_at_, now);
+      age_ = age;
+    } else if (stale_ && now - stale_at_ >= kKeepsUp) {
+      stale_ = false;
+    }
+  }
+  /// The age that was too much; nothing: they are fresh.
+  std::optional<double> stale() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return stale_ ? std::optional(age_) : std::nullopt;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  bool stale_ = false;
+  Stamp stale_at_ = Stamp::never();  ///< when they were so last
+  double age_ = 0.0;                 ///< [s]
+};
+
 }  // namespace
 
 struct RealRobot::Impl {
@@ -52,6 +81,7 @@ struct RealRobot::Impl {
   Heartbeat heartbeat;  ///< asked by the operator's thread alone
   std::function<bool(const RobotStatus&)> ask;
 
+  mutable Freshness freshness;
   std::atomic<bool> emergency{false};
   std::atomic<bool> stopped{false};
   std::atomic<bool> ending{false};
@@ -165,7 +195,9 @@ struct RealRobot::Impl {
   static double age(const ScannerStatus& scanner, Stamp now) { return now - scanner.last_scan + scanner.latency; }
   bool is_lidar_well(Stamp now) const {
     const ScannerStatus scanner = lidar.status();
-    return !is_lidar_silent(scanner, now) && age(scanner, now) <= settings.safety.lidar_age;
+    if (is_lidar_silent(scanner, now)) return false;  // its own trouble, and over with the next scan
+    freshness.look(age(scanner, now), settings.safety.lidar_age, now);
+    return !freshness.stale();
   }
   bool is_unit_well(Stamp now) const {
     if (!unit_thread) return true;
@@ -189,7 +221,7 @@ struct RealRobot::Impl {
       } else {
         char text[80];
         std::snprintf(text, sizeof text, "urg: its scans are %.1f s old; the line or this computer is too slow",
-                      age(scanner, now));
+                      freshness.stale().value_or(age(scanner, now)));
         lines.emplace_back(text);
       }
     }
@@ -305,6 +337,15 @@ struct RealRobot::Impl {
 
   bool is_over(Stamp now) const { return settings.time_limit > 0.0 && now - first >= settings.time_limit; }
 
+  /// Another program drives this robot. It is not waited for: it would be taken over when that one stops it.
+  void refuse_taken_devices() const {
+    std::vector<std::string> lines;
+    if (const ScannerStatus scanner = lidar.status(); scanner.busy) lines.push_back("urg: " + scanner.error);
+    for (const DeviceThread* thread : {base_thread.get(), unit_thread.get()})
+      if (thread != nullptr && thread->busy()) lines.push_back(thread->name() + ": " + thread->error());
+    if (!lines.empty()) throw DeviceLost(joined(lines));
+  }
+
   /// Waits while something is silent. False: the run was ended meanwhile.
   bool wait_for_all() {
     for (;;) {
@@ -322,6 +363,7 @@ struct RealRobot::Impl {
       if (is_held()) held_since = now;  // somebody is at the robot: it is not lost
       const bool starting = first == Stamp::never();
       if (!starting && is_over(now)) return false;
+      if (starting) refuse_taken_devices();
       if (now - held_since > (starting ? settings.safety.start : settings.safety.give_up))
         throw DeviceLost(
             joined(lines) + "; " +

@@ -362,6 +362,13 @@ void ArcosEmulator::look_again(double dt) {
   if (std::abs(still_to_go()) > reached) planned_left_ = still_to_go();
 }
 
+/// The wheels are blocked: a profile that ran on without them would have to be run back before they turn the other way.
+void ArcosEmulator::give_way() {
+  (mode_ == Mode::Head ? motion_.w : motion_.v) = mode_ == Mode::Head ? odometry_.w : odometry_.v;
+  planned_left_ = still_to_go();
+  rest_ = 0.0;
+}
+
 Drive ArcosEmulator::wanted() const {
   if (!motors_ || held_ || session_ != Session::Open) return {};
   Drive drive = target_;
@@ -395,6 +402,7 @@ void ArcosEmulator::advance(Stamp now) {
 void ArcosEmulator::measure(const Odometry& odometry, Stamp now) {
   const double dt = odometry.stamp > odometry_.stamp ? odometry.stamp - odometry_.stamp : 0.0;
   odometry_ = odometry;
+  if (odometry.stalled && (mode_ == Mode::Head || mode_ == Mode::Move)) give_way();
   if (now < stalled_until_) odometry_.stalled = true;
   left_travel_ += left_speed() * dt;
   right_travel_ += right_speed() * dt;

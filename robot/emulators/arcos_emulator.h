@@ -88,6 +88,7 @@ class ArcosEmulator : public EmulatedDevice {
   void aim_for(Mode mode);
   double still_to_go() const;
   void look_again(double dt);
+  void give_way();
   Drive wanted() const;
   mrpt::math::TPose2D reckoned() const;
   double left_speed() const { return odometry_.v - odometry_.w * settings_.half_track; }

@@ -4,6 +4,7 @@
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <pty.h>
 #include <sys/epoll.h>
 #include <sys/socket.h>
@@ -28,6 +29,8 @@ namespace rubble::robot {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr int kIdle = 2, kAskAgain = 1, kTries = 3;  // a TCP client that answers no question after so long is gone [s]
+
 /// One descriptor at a time behind an epoll descriptor that stays the same; what the client has not taken waits here.
 class Line {
  public:
@@ -42,6 +45,13 @@ class Line {
     forget();
     watched_ = file;
     update(EPOLL_CTL_ADD);
+  }
+
+  /// A second one that is never written to; closing it ends that.
+  void watch_too(int file) const {
+    epoll_event event{};
+    event.events = EPOLLIN;
+    epoll_ctl(poll_.get(), EPOLL_CTL_ADD, file, &event);
   }
 
   void forget() {
@@ -168,7 +178,7 @@ class TcpServer : public LineServer {
                      "); give another port, or 0 for any free one");
     listener_ = std::move(socket);
     tell_port();
-    line_.watch(listener_.get());
+    line_.watch_too(listener_.get());
   }
 
  private:
@@ -188,24 +198,47 @@ class TcpServer : public LineServer {
   bool take(std::uint8_t* to, std::size_t size, Served& result) override {
     if (left_) result.client_left = true;
     left_ = false;
+    if (client_ && !is_leaving()) turn_away();
     if (!client_ && listener_) accept_client(result);
     if (client_ && size > 0) {
       const ssize_t got = ::read(client_.get(), to, size);
       if (got > 0) result.size = static_cast<std::size_t>(got);
       if (got == 0 || (got < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) {
+        line_.forget();
         client_.close();
-        line_.watch(listener_.get());
         result.client_left = true;
       }
     }
     return result.size > 0 || result.client_came || result.client_left;
   }
 
+  Descriptor next_client() const {
+    return Descriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  }
+
+  /// The client has closed its end, though what it said last may not have been read: it makes room for the next one.
+  bool is_leaving() const {
+    pollfd file{client_.get(), POLLRDHUP, 0};
+    return ::poll(&file, 1, 0) > 0;
+  }
+
+  void turn_away() const {
+    while (next_client()) {
+    }
+  }
+
   void accept_client(Served& result) {
-    Descriptor client(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    Descriptor client = next_client();
     if (!client) return;
     const int on = 1;
     setsockopt(client.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    // A client whose cable was cut says no good-bye; it must not keep others out for good.
+    const int idle = kIdle, again = kAskAgain, tries = kTries, unheard = 1000 * (kIdle + kTries * kAskAgain);
+    setsockopt(client.get(), SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
+    setsockopt(client.get(), IPPROTO_TCP, TCP_KEEPIDLE, &idle, sizeof idle);
+    setsockopt(client.get(), IPPROTO_TCP, TCP_KEEPINTVL, &again, sizeof again);
+    setsockopt(client.get(), IPPROTO_TCP, TCP_KEEPCNT, &tries, sizeof tries);
+    setsockopt(client.get(), IPPROTO_TCP, TCP_USER_TIMEOUT, &unheard, sizeof unheard);
     client_ = std::move(client);
     line_.watch(client_.get());
     result.client_came = true;

@@ -15,8 +15,8 @@ struct Served {
 };
 
 /// The device's side of a line: serves one client after another and outlives them all. Of a TCP port one client is
-/// served at a time, others wait until it leaves. Never blocks and never throws because of what a client does.
-/// For one thread.
+/// served at a time and others are hung up on at once, as by a serial server: who waited in a queue would drive the
+/// robot on when the first one stops it. Never blocks and never throws because of what a client does. For one thread.
 class PortServer {
  public:
   virtual ~PortServer() = default;

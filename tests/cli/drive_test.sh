@@ -75,6 +75,47 @@ sys.exit(0 if driven >= simulated - 0.05 else 1)
 PY
 "$rubble" replay driven >replay.txt || fail "the driven run does not replay to the same bits: $(tail -3 replay.txt)"
 
+# A robot that is driven belongs to one: whoever else comes is told so and does not wait, or it would drive the robot on when the
+# first one stops it. First our own drives, then a client that only the device itself can turn away.
+start_emulator
+# shellcheck disable=SC2086
+"$rubble" drive "$robot" $ports --out first >/dev/null 2>first.txt &
+drive=$!
+for _ in $(seq 300); do
+  grep -q 'motors on' first.txt && break
+  sleep 0.1
+done
+# shellcheck disable=SC2086
+expect_exit 4 "another program uses it; end that first" timeout 100 "$rubble" drive "$robot" $ports --set safety.start_s=200 --out second
+[[ -e second ]] && fail "a drive that is refused leaves a folder"
+# shellcheck disable=SC2086
+expect_exit 4 "another program uses it" timeout 100 "$rubble" calibrate "$robot" $ports --set safety.start_s=200 --out second.yaml
+base=$(sed -n 's/^base //p' emulator.txt)
+"$rubble" devices "$base" >devices.txt 2>&1
+[[ $? == 4 ]] && grep -q "another program uses it" devices.txt || fail "devices asks a base that is driven: $(cat devices.txt)"
+kill -INT $drive
+wait $drive
+[[ $? == 130 ]] || fail "the first drive was disturbed: $(tail -3 first.txt)"
+python3 -c '
+import socket, sys, time
+line = socket.create_connection((sys.argv[1].split(":")[1], int(sys.argv[1].split(":")[2])))
+print("on", flush=True)
+time.sleep(300)' "$base" >stranger.txt &
+stranger=$!
+for _ in $(seq 100); do
+  [[ -s stranger.txt ]] && break
+  sleep 0.1
+done
+# shellcheck disable=SC2086
+timeout 100 "$rubble" drive "$robot" $ports --set safety.start_s=200 --out third >out.txt 2>err.txt
+[[ $? == 4 ]] && tail -n 1 err.txt | grep -qF "base: $base: the other side hangs up at once; another program uses the device" ||
+  fail "a drive with a base in use waits or does not say so: $(tail -3 err.txt)"
+"$rubble" devices "$base" >devices.txt 2>&1
+[[ $? == 4 ]] && grep -q "another program uses the device" devices.txt || fail "devices at a base in use: $(cat devices.txt)"
+kill $stranger
+wait $stranger 2>/dev/null
+stop_emulator
+
 # A mapper of the user's whose program dies on the way, or when all is said: exit 4, one line, the folder complete. A
 # command of the robot file runs only when the user says so, and no folder is made before.
 sed 's#^time_limit_s:.*#&\nmapper: {kind: process, command: "touch ran"}#' "$robot" >evil.yaml

@@ -14,6 +14,7 @@ constexpr double kAnswerTime = 0.3;  // Hokuyo's own library waits 0.14 s; a bus
 constexpr int kTries = 3;            // of a question whose answer got lost
 constexpr int kTimeQuestions = 12;
 constexpr double kAskAgain = 0.85;  // SCIP 1.1: share of a turn after which the next one is asked for
+constexpr double kLost = 2.5;       // SCIP 1.1: turns without a byte after which an answer counts as lost
 constexpr std::array<int, 4> kBauds{115200, 19200, 57600, 500000};
 
 std::string four(int value) {
@@ -51,7 +52,9 @@ void Link::send(const std::string& command) {
 void Link::pull(double timeout) {
   std::array<std::uint8_t, 4096> bytes;
   const auto [size, stamp] = port_->read(bytes.data(), bytes.size(), timeout);
-  if (size > 0) receiver_.push(bytes.data(), size, stamp);
+  if (size == 0) return;
+  heard_ = stamp;
+  receiver_.push(bytes.data(), size, stamp);
 }
 
 /// Throws away what comes until the line has been silent for so long, but for a second at most.
@@ -259,14 +262,20 @@ std::optional<Sweep> Link::next_sweep(double timeout) {
       if (!scip2_) ask_at_ = sweep ? begun_ + kAskAgain * geometry_.period() : host_now();
       if (sweep) return sweep;
     }
-    if (ask_at_ != Stamp::never() && host_now() >= ask_at_) {
+    if (!scip2_ && host_now() >= next_question()) {
       send(stream_);
       ask_at_ = Stamp::never();
     }
     const Stamp now = host_now();
     if (now >= end) return std::nullopt;
-    pull((ask_at_ == Stamp::never() ? end : std::min(end, ask_at_)) - now);
+    pull((scip2_ ? end : std::min(end, next_question())) - now);
   }
+}
+
+/// SCIP 1.1: as planned, or when the answer to the last one seems to have got lost; a slow line still brings bytes of
+/// it.
+Stamp Link::next_question() const {
+  return ask_at_ != Stamp::never() ? ask_at_ : std::max(asked_, heard_) + kLost * geometry_.period();
 }
 
 void Link::stop() {

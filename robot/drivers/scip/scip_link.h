@@ -64,6 +64,7 @@ class Link {
   void switch_to_scip2();
   void identify();
   void identify_scip1();
+  Stamp next_question() const;
   std::optional<Sweep> check_stream(const Reply& reply);
   [[noreturn]] void refuse(const std::string& what) const;
 
@@ -76,6 +77,7 @@ class Link {
   ScannerInfo info_;
   Stamp begun_, ended_;
   Stamp asked_;                    ///< when the last question left
+  Stamp heard_ = Stamp::never();   ///< when the last byte came
   Stamp ask_at_ = Stamp::never();  ///< SCIP 1.1: when the next turn is to be asked for
   std::uint64_t damaged_ = 0;
 };

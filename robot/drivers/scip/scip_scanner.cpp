@@ -51,8 +51,10 @@ struct ScipScanner::Impl {
         converse();
       } catch (const std::exception& error) {
         const std::string what = error.what();
+        const bool busy = dynamic_cast<const PortBusy*>(&error) != nullptr;
         queue.update([&](ScannerStatus& status) {
           status.connected = false;
+          status.busy = busy;
           status.error = what;
         });
         std::unique_lock<std::mutex> lock(mutex);
@@ -78,6 +80,7 @@ struct ScipScanner::Impl {
     queue.update([](ScannerStatus& status) {
       status.connected = true;
       status.error.clear();
+      status.busy = false;
       status.worst_latency = 0.0;
       ++status.connects;
     });

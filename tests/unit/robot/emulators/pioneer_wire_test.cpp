@@ -665,6 +665,59 @@ TEST(ArcosEmulator, HeadAndMoveDoNotHunt) {
   }
 }
 
+/// A robot between two walls, told to drive or turn farther than they let it, and back whenever the order happens to
+/// come.
+TEST(ArcosEmulator, AWayBackFromAWallIsAsLongAsItWasSent) {
+  constexpr double kLag = 0.1, kStep = 0.01, kStallTime = 0.2, kRelaxTime = 0.2;
+  for (const bool turns : {false, true}) {
+    for (int pushed = 0; pushed < 20; ++pushed) {
+      const double wall = turns ? deg_to_rad(60.0) : 1.0, back = turns ? deg_to_rad(40.0) : 0.5;
+      ArcosEmulator base({});
+      Stamp now{0};
+      base.client_came(now);
+      for (const auto order : {arcos::kSync0, arcos::kSync1, arcos::kSync2}) base.receive(arcos::command(order), now);
+      base.receive(arcos::command(arcos::kOpen), now);
+      base.receive(arcos::command(arcos::kEnable, 1), now);
+      base.receive(turns ? arcos::command(arcos::kHead, 120) : arcos::command(arcos::kMove, 3000), now);
+      double way = 0.0, speed = 0.0, since_push = 0.0, relaxed = 0.0, reported = 0.0, turned_at = 0.0, farthest = 0.0;
+      bool stalled = false, ordered = false;
+      int at_wall = 0;
+      for (int i = 1; i <= 2500; ++i) {
+        now = now + kStep;
+        if (i % 10 == 0) base.receive(arcos::command(arcos::kPulse), now);
+        base.advance(now);
+        const double asked = relaxed > 0.0 ? 0.0 : turns ? base.motion().w : base.motion().v;
+        speed += (asked - speed) * kStep / kLag;
+        way += speed * kStep;
+        const bool blocked = way >= wall && asked > 0.02;
+        if (way >= wall) way = wall, speed = std::min(speed, 0.0);
+        since_push = blocked ? since_push + kStep : 0.0;
+        relaxed = std::max(0.0, relaxed - kStep);
+        if (since_push > kStallTime) stalled = true, relaxed = kRelaxTime;
+        if (asked < 0.0) stalled = false;
+        at_wall += way >= wall ? 1 : 0;
+        if (!ordered && at_wall > 13 * pushed) {
+          ordered = true;
+          turned_at =
+              turns ? wall : reported;  // HEAD names a heading, MOVE counts from where the client sees the robot
+          base.receive(turns ? arcos::command(arcos::kHead, 20) : arcos::command(arcos::kMove, -500), now);
+        }
+        if (ordered) farthest = std::max(farthest, turned_at - way);
+        const mrpt::math::TPose2D pose = turns ? mrpt::math::TPose2D{0, 0, way} : mrpt::math::TPose2D{way, 0, 0};
+        if (i % 10 == 0) {
+          base.measure({now, pose, turns ? 0.0 : speed, turns ? speed : 0.0, stalled}, now);
+          reported = way;
+        }
+        base.take_output();
+      }
+      SCOPED_TRACE((turns ? "turn" : "move") + std::string(", pushed for ") + std::to_string(0.13 * pushed) + " s");
+      ASSERT_TRUE(ordered);
+      EXPECT_LT(farthest, 1.03 * back) << "it shoots over";
+      EXPECT_NEAR(turned_at - way, back, turns ? deg_to_rad(0.5) : 0.005);
+    }
+  }
+}
+
 TEST(ArcosEmulator, ASimulatorsClientCanSetThePose) {
   Wire wire;
   wire.run(1.0);

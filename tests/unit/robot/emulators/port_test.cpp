@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -10,6 +13,7 @@
 #include <numeric>
 #include <vector>
 
+#include "robot/drivers/descriptor.h"
 #include "robot/drivers/host_clock.h"
 #include "robot/emulators/port_server.h"
 
@@ -147,17 +151,109 @@ TEST(TcpLine, ServerTellsThatAClientCameAndLeft) {
   EXPECT_FALSE(server->write(&byte, 1));
 }
 
-TEST(TcpLine, SecondClientWaitsForTheFirst) {
+std::string refusal(const std::string& word) {
+  try {
+    open_port(word);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A client of another program: no lock of ours keeps it out.
+class Stranger {
+ public:
+  explicit Stranger(const std::string& word) : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(word.substr(word.rfind(':') + 1))));
+    connected_ = ::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  }
+  bool connected() const { return connected_; }
+  void say(const Bytes& what) const { ::send(socket_.get(), what.data(), what.size(), MSG_NOSIGNAL); }
+  /// Whether the other side hangs up within so long.
+  bool is_hung_up_on(double seconds) const {
+    pollfd file{socket_.get(), POLLRDHUP, 0};
+    return ::poll(&file, 1, static_cast<int>(1e3 * seconds)) > 0;
+  }
+  void hang_up() { socket_.close(); }
+
+ private:
+  Descriptor socket_;
+  bool connected_ = false;
+};
+
+/// Who waits in a queue drives the robot on when the first one has stopped it.
+TEST(TcpLine, ASecondClientIsHungUpOnAtOnceAndNeverHeard) {
   const auto server = serve_port("tcp:127.0.0.1:0");
-  auto first = open_port(server->name());
-  const auto second = open_port(server->name());
+  const auto first = open_port(server->name());
   std::uint8_t byte;
-  server->read(&byte, 1, 0.5);
-  const Bytes hello = bytes("hello");
-  second->write(hello.data(), hello.size(), host_now());
-  EXPECT_EQ(server->read(&byte, 1, 0.02).size, 0u);
-  first.reset();
+  ASSERT_TRUE(server->read(&byte, 1, 0.5).client_came);
+  const Stranger second(server->name()), third(server->name());
+  const Bytes hello = bytes("hello"), evil = bytes("drive");
+  second.say(evil);
+  first->write(hello.data(), hello.size(), host_now());
   EXPECT_EQ(served(*server, hello.size()), hello);
+  EXPECT_TRUE(second.is_hung_up_on(2.0));
+  EXPECT_TRUE(third.is_hung_up_on(2.0));
+  first->write(hello.data(), hello.size(), host_now());
+  EXPECT_EQ(served(*server, hello.size()), hello) << "the first one goes on";
+}
+
+TEST(TcpLine, WhoIsHungUpOnAtOnceIsToldThatTheDeviceIsInUse) {
+  const auto server = serve_port("tcp:127.0.0.1:0");
+  const Stranger first(server->name());
+  std::uint8_t byte;
+  ASSERT_TRUE(server->read(&byte, 1, 0.5).client_came);
+  const auto second = open_port(server->name());
+  server->read(&byte, 1, 0.1);
+  EXPECT_THROW(second->read(&byte, 1, 2.0), PortBusy);
+  try {
+    second->read(&byte, 1, 0.1);
+  } catch (const DeviceLost& lost) {
+    EXPECT_THAT(lost.what(), testing::HasSubstr("another program uses the device"));
+  }
+}
+
+/// However much of what the first one said is still unread.
+TEST(TcpLine, WhoComesBackAtOnceIsServed) {
+  const auto server = serve_port("tcp:127.0.0.1:0");
+  for (int round = 0; round < 20; ++round) {
+    Stranger first(server->name());
+    ASSERT_TRUE(first.connected());
+    std::uint8_t byte;
+    bool first_came = false;
+    for (const Stamp end = host_now() + 2.0; !first_came && host_now() < end;)
+      first_came = server->read(&byte, 1, 0.05).client_came;
+    ASSERT_TRUE(first_came) << round;
+    first.say(Bytes(5000, 'x'));
+    first.hang_up();
+    const Stranger again(server->name());
+    Bytes some(1000);
+    bool came = false;
+    for (const Stamp end = host_now() + 2.0; !came && host_now() < end;)
+      came = server->read(some.data(), some.size(), 0.05).client_came;
+    EXPECT_TRUE(came) << round;
+    EXPECT_FALSE(again.is_hung_up_on(0.01)) << round;
+    const Bytes hello = bytes("hello");
+    again.say(hello);
+    EXPECT_EQ(served(*server, hello.size()), hello) << round;
+  }
+}
+
+/// As of a serial line; and as soon as one has let go, the next may come.
+TEST(TcpLine, BelongsToOneProgramOfThisComputer) {
+  const auto server = serve_port("tcp:127.0.0.1:0");
+  const std::string by_name = "tcp:localhost" + server->name().substr(server->name().rfind(':'));
+  auto first = open_port(server->name());
+  EXPECT_THROW(check_port_free(server->name()), PortBusy);
+  EXPECT_THROW(open_port(server->name()), PortBusy);
+  EXPECT_THROW(open_port(by_name), PortBusy) << "by its other name too";
+  EXPECT_THAT(refusal(server->name()), testing::HasSubstr("another program uses it; end that first"));
+  first.reset();
+  EXPECT_NO_THROW(check_port_free(server->name()));
+  EXPECT_NO_THROW(open_port(server->name()));
 }
 
 TEST(PtyLine, LinkGoesWithTheServerAndReplacesAnOldOne) {
@@ -177,15 +273,6 @@ TEST(PtyLine, FileOfThatNameIsLeftAlone) {
   EXPECT_THROW(serve_port("pty:" + path), RunError);
   EXPECT_EQ(fs::file_size(path), 8u);
   EXPECT_THROW(open_port("pty:" + path), InputError) << "a file is no serial line";
-}
-
-std::string refusal(const std::string& word) {
-  try {
-    open_port(word);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(PortWord, BadWordsSayWhatAndHowToMend) {

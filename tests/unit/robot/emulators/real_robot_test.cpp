@@ -200,6 +200,61 @@ TEST(RealRobot, ScansThatComeLateStopItThoughTheyNeverCease) {
 }
 
 /// A mapper may be busy for most of a second; whoever drives by hand is heard all the same.
+/// A line at the edge of what is fresh enough must not make the robot jerk ten times a second.
+TEST(RealRobot, ScansAtTheEdgeOfTooOldStopItOnce) {
+  Bench bench;
+  bench.drive(0.3, 2.0);
+  int stops = 0;
+  bool waiting = false;
+  std::vector<std::string> named;
+  bench.robot->while_waiting([&](const RobotStatus& status) {
+    for (const std::string& line : status.silent)
+      if (line.rfind("urg:", 0) == 0 && !waiting) {
+        ++stops;
+        waiting = true;
+        named.push_back(line);
+      }
+    return true;
+  });
+  bench.scanner.latency = SafetySettings{}.lidar_age - 0.05;  // too old in the second half of the wait for the next one
+  const Stamp edge = host_now();
+  std::thread fresh([&] {
+    sleep_until(edge + 3.0);
+    bench.scanner.latency = 0.005;
+  });
+  while (host_now() < edge + 6.0) {
+    const auto inputs = bench.robot->read();
+    if (!inputs) break;
+    waiting = false;
+    bench.robot->command({{0.3, 0.0}, {}});
+  }
+  fresh.join();
+  EXPECT_EQ(stops, 1);
+  EXPECT_THAT(named, testing::Each(testing::StartsWith("urg: its scans are 0.6")));
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0; })) << "it goes on when they are fresh again";
+}
+
+/// Who waited until the other program ends would drive the robot on when that one has stopped it.
+TEST(RealRobot, ARobotThatAnotherProgramDrivesIsNotWaitedFor) {
+  Bench bench;
+  bench.drive(0.3, 1.0);
+  RealRobotSettings settings;
+  settings.base_port = bench.base_server.port();
+  settings.levelling_port = bench.unit_server.port();
+  ToldScanner scanner;
+  RealRobot second(settings, scanner, nullptr);
+  const Stamp begun = host_now();
+  try {
+    second.read();
+    FAIL() << "it drives a robot that is driven";
+  } catch (const DeviceLost& lost) {
+    EXPECT_THAT(lost.what(), testing::HasSubstr("base: " + settings.base_port + ": another program uses it"));
+  }
+  EXPECT_LT(host_now() - begun, 0.5 * settings.safety.start) << "it waited";
+  bench.drive(0.3, 1.0);
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0; })) << "the first one drives on";
+}
+
 TEST(RealRobot, TheHandIsHeardWhileTheCoreIsBusy) {
   RealRobotSettings settings;
   settings.safety.core_silence = 10.0;  // the core is as good as gone

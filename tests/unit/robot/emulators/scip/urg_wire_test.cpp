@@ -222,6 +222,57 @@ TEST_P(UrgWire, OldProtocolHandsATurnOverAtOnce) {
   EXPECT_LT(delays[delays.size() / 2], 0.03);
 }
 
+/// Swallows whole replies, as many as it is told to.
+class Lossy : public Port {
+ public:
+  Lossy(std::unique_ptr<Port> inner, std::atomic<int>& lose) : inner_(std::move(inner)), lose_(lose) {}
+  Arrival read(std::uint8_t* to, std::size_t size, double timeout) override {
+    Arrival arrival = inner_->read(to, size, timeout);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < arrival.size; ++i) {
+      const bool ends = to[i] == '\n' && last_ == '\n';
+      last_ = to[i];
+      if (lose_ == 0) {
+        to[kept++] = to[i];
+      } else if (ends) {
+        --lose_;
+      }
+    }
+    arrival.size = kept;
+    return arrival;
+  }
+  void write(const std::uint8_t* from, std::size_t size, Stamp now) override { inner_->write(from, size, now); }
+  int descriptor() const override { return inner_->descriptor(); }
+  const std::string& name() const override { return inner_->name(); }
+  void set_baud(int baud) override { inner_->set_baud(baud); }
+  LineKind kind() const override { return inner_->kind(); }
+  Stamp opened() const override { return inner_->opened(); }
+
+ private:
+  std::unique_ptr<Port> inner_;
+  std::atomic<int>& lose_;
+  std::uint8_t last_ = 0;
+};
+
+/// In SCIP 1.1 an answer that is lost was the only one on its way.
+TEST_P(UrgWire, OldProtocolAsksAgainForATurnThatGotLost) {
+  std::atomic<int> lose{0};
+  Bench bench(GetParam());
+  ScipScannerConfig config;
+  config.only_scip1 = true;
+  config.silence = 2.0;  // a busy machine shall not decide
+  config.open = [&](const std::string& word) { return std::make_unique<Lossy>(open_port(word), lose); };
+  bench.connect(config);
+  ASSERT_TRUE(bench.more(5)) << bench.scanner->status().error;
+  for (int i = 0; i < 3; ++i) {
+    lose = 1;
+    ASSERT_TRUE(bench.more(4)) << bench.scanner->status().error;
+    EXPECT_EQ(lose, 0) << "a reply was lost";
+  }
+  EXPECT_EQ(bench.scanner->status().connects, 1u) << "the device was started anew for it";
+  for (std::size_t i = 1; i < bench.scans.size(); ++i) EXPECT_GT(bench.scans[i].stamp, bench.scans[i - 1].stamp);
+}
+
 TEST_P(UrgWire, StampsAreRightThoughTheLineJittersAndTheClockDrifts) {
   UrgEmulatorConfig emulated;
   emulated.jitter = 0.005;
