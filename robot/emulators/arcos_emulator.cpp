@@ -341,6 +341,9 @@ void ArcosEmulator::aim_for(Mode mode) {
   mode_ = mode;
   planned_left_ = still_to_go();
   rest_ = 0.0;
+  // At a wall the set points may be ahead of wheels that stand, though no stall is told yet.
+  if (std::abs(odometry_.v) < kStillSpeed) motion_.v = 0.0;
+  if (std::abs(odometry_.w) < kStillTurn) motion_.w = 0.0;
 }
 
 /// By what was measured last [rad] or [m].
