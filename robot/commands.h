@@ -18,6 +18,8 @@ struct LaserAim {
 struct Commands {
   Drive drive;
   LaserAim aim;
+  /// Stop as hard as the base can, whatever ramp it keeps otherwise, its motors staying on. Goes with a drive of zero.
+  bool brake = false;
 };
 
 }  // namespace rubble::robot

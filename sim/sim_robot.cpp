@@ -48,10 +48,9 @@ std::optional<robot::Inputs> SimRobot::read() {
 void SimRobot::command(const robot::Commands& commands) {
   impl_->in_force = commands;
   impl_->world.firmware().command(commands.drive);
+  if (commands.brake) impl_->world.firmware().brake();
   if (model().has_levelling_unit) impl_->world.servos().command(commands.aim);
 }
-
-void SimRobot::brake() { impl_->world.firmware().brake(); }
 
 void SimRobot::place(const mrpt::math::TPose2D& T_arena_base) { impl_->world.place(T_arena_base); }
 

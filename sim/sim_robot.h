@@ -33,9 +33,6 @@ class SimRobot : public robot::Robot {
   std::optional<robot::Inputs> read() override;
   void command(const robot::Commands& commands) override;
 
-  /// Stops it without the ramp that commands have, as its own firmware does when the motors are switched off.
-  void brake();
-
   /// Puts the robot somewhere else in the arena, at rest; its odometry does not notice.
   void place(const mrpt::math::TPose2D& T_arena_base);
 

@@ -104,6 +104,7 @@ std::optional<robot::Inputs> SimTeam::Member::read() {
 void SimTeam::Member::command(const robot::Commands& commands) {
   team_.in_force[index_] = commands;
   team_.world.firmware(index_).command(commands.drive);
+  if (commands.brake) team_.world.firmware(index_).brake();
   if (model().has_levelling_unit) team_.world.servos(index_).command(commands.aim);
 }
 

@@ -45,6 +45,7 @@ void Escape::start_move(const TPose2D& T_map_base, Stamp now) {
 
 Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, bool struck,
                             double dt, Stamp now, const std::vector<TPoint2D>& trail, const RoomFn& room) {
+  met_ = false;
   if (distance(position(begun_), position(T_map_base)) >= kFree) {
     drive_ = {};
     return Result::Free;
@@ -53,6 +54,7 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
   const bool held = watch_.stuck(T_map_base, commanded, stalled, dt) || struck;
   const bool turned =
       (move == Move::Left || move == Move::Right) && std::abs(wrap_angle(T_map_base.phi - move_begun_.phi)) >= kTurn;
+  met_ = held;
   bool wall = false;
   if (move == Move::Back || move == Move::Ahead)
     wall = !room(T_map_base + TPose2D{move == Move::Back ? -kFeeler : kFeeler, 0.0, 0.0});

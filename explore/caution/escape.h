@@ -33,6 +33,8 @@ class Escape {
               double dt, Stamp now, const std::vector<mrpt::math::TPoint2D>& trail, const RoomFn& room);
   /// The command for the tick to come.
   const robot::Drive& drive() const { return drive_; }
+  /// Something was met in this tick: the base shall not push on.
+  bool met() const { return met_; }
 
  private:
   enum class Move { Back, Ahead, Left, Right };
@@ -48,6 +50,7 @@ class Escape {
   mrpt::math::TPose2D move_begun_;  ///< where the present move began
   Stamp move_until_ = Stamp::never();
   robot::Drive drive_;
+  bool met_ = false;
 };
 
 }  // namespace rubble::explore

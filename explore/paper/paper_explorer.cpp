@@ -107,8 +107,9 @@ PaperExplorer::PaperExplorer(const robot::RobotModel& model, const PaperExplorer
 
 robot::Commands PaperExplorer::next(const slam::Mapper& mapper, const robot::Inputs& inputs) {
   observe(mapper, inputs);
+  brakes_ = false;
   commanded_ = decide(mapper);
-  return {commanded_, {}};
+  return {commanded_, {}, brakes_};
 }
 
 /// Takes in what arrived in this tick.

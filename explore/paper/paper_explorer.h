@@ -116,6 +116,7 @@ class PaperExplorer : public Explorer {
   TPose2D pose_;
   double turned_ = 0.0;  ///< since the last tick [rad]
   bool stalled_ = false;
+  bool brakes_ = false;               ///< this tick's command is to stop as hard as the base can
   std::optional<Stamp> odometry_at_;  ///< when the wheels were heard of last
   Stamp last_scan_ = Stamp::never();
   Drive commanded_;

@@ -28,6 +28,8 @@ void PaperExplorer::check_path(const slam::Mapper& mapper) {
 /// Something holds the robot that the scanner cannot see: it is remembered, and the robot gets free of it.
 void PaperExplorer::got_stuck(const std::string& how) {
   const bool rocking = watch_.rocking();
+  // On its ramp the base would push on for a second, and every turn of the wheels in vain is a lie of the odometry.
+  brakes_ = true;
   watch_.reset();
   tilt_.reset();
   looking_.end();
@@ -62,7 +64,9 @@ Drive PaperExplorer::escape() {
     const Cell c = last_floor_.clearance.cell({x, y});
     return !last_floor_.clearance.inside(c) || last_floor_.clearance[c] > 0.5 * model_.width - kLean;
   };
-  switch (escape_.step(pose_, commanded_, stalled_, jolt_.struck(), dt_, now_, trail_, room)) {
+  const Escape::Result result = escape_.step(pose_, commanded_, stalled_, jolt_.struck(), dt_, now_, trail_, room);
+  brakes_ = escape_.met();
+  switch (result) {
     case Escape::Result::UnderWay:
       return escape_.drive();
     case Escape::Result::Free:

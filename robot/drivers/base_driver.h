@@ -37,6 +37,8 @@ class BaseDriver : public Device {
   /// Set points, which hold until replaced and are sent as often as the base needs them. The driver keeps them within
   /// the limits, and at zero while the motors are not to be on.
   virtual void drive(const Drive& drive) = 0;
+  /// The set points are zero at once, without the ramp that the base keeps otherwise; the motors stay on.
+  virtual void brake() { drive({}); }
   /// Motors on or off; asked for again until the base obeys. Called in every turn. Off also forgets the set points.
   virtual void enable(bool on) = 0;
   /// Stops with the base's own ramp and switches the motors off.

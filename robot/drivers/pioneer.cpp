@@ -270,6 +270,19 @@ void Pioneer::drive(const Drive& drive) {
   if (std::abs(rad_to_deg(target_.w) - w_sent_) >= 1.0 || (target_.w == 0.0 && w_sent_ != 0)) w_due_ = true;
 }
 
+/// ESTOP leaves the motors on, and ends with the next set point.
+void Pioneer::brake() {
+  drive({});
+  if (settings_.passive || step_ != Step::Running) return;
+  forget_motion();
+  asked_motors_ = Stamp::never();
+  turn_ = {};
+  v_sent_ = w_sent_ = 0;
+  v_due_ = w_due_ = false;
+  refreshed_ = sent_;  // a set point right behind it would bring the ramp back
+  queue_.push_front(command(arcos::kEmergencyStop));
+}
+
 void Pioneer::enable(bool on) {
   if (settings_.passive || hold_ != Hold::None) on = false;
   if (on != motors_) {

@@ -39,6 +39,7 @@ class Pioneer : public BaseDriver {
   std::string state() const override;
 
   void drive(const Drive& drive) override;
+  void brake() override;
   void enable(bool on) override;
   Hold hold() const override { return hold_; }
   void rearm() override;

@@ -90,6 +90,7 @@ struct RealRobot::Impl {
 
   std::mutex mutex;  ///< of what core and base thread share
   Commands commands;
+  bool brake_asked = false;
   Stamp commanded = Stamp::never();
   bool armed = false;                    ///< all devices have reported: the motors may go on
   Stamp scan_answered = Stamp::never();  ///< arrival of the scan whose answer is on its way
@@ -178,6 +179,7 @@ struct RealRobot::Impl {
     const bool allowed = armed && !emergency && !stopped;
     const bool free = allowed && fresh && is_lidar_well(now) && is_unit_well(now) && is_operator_well(now);
     if (allowed) base->enable(true);
+    if (std::exchange(brake_asked, false) && allowed) base->brake();
     base->drive(free ? commands.drive : Drive{});
     if (scan_answered != Stamp::never()) scan_leaving = std::exchange(scan_answered, Stamp::never());
   }
@@ -419,6 +421,7 @@ void RealRobot::command(const Commands& commands) {
   {
     const std::lock_guard<std::mutex> lock(robot.mutex);
     robot.commands = commands;
+    robot.brake_asked = robot.brake_asked || commands.brake;
     robot.commanded = now;
     robot.scan_answered = std::exchange(robot.scan_arrived, Stamp::never());
   }

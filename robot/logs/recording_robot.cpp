@@ -15,6 +15,11 @@ namespace {
 constexpr double kFlushPeriod = 1.0;                       // of log time: what a kill can cost [s]
 constexpr std::size_t kFlushBytes = std::size_t{1} << 20;  // or this much at once
 
+bool same_bits(const Commands& a, const Commands& b) {
+  return std::memcmp(&a.drive, &b.drive, sizeof a.drive) == 0 && std::memcmp(&a.aim, &b.aim, sizeof a.aim) == 0 &&
+         a.brake == b.brake;
+}
+
 }  // namespace
 
 struct RecordingRobot::Impl {
@@ -90,7 +95,7 @@ std::optional<Inputs> RecordingRobot::read() {
 }
 
 void RecordingRobot::command(const Commands& commands) {
-  if (!impl_->in_force || std::memcmp(&*impl_->in_force, &commands, sizeof commands) != 0) {
+  if (!impl_->in_force || !same_bits(*impl_->in_force, commands)) {
     append_commands_frame(impl_->buffer, commands);
     impl_->in_force = commands;
   }

@@ -140,6 +140,7 @@ class Driver {
     tell_back({});
     held_ = false;
     begun_ = true;
+    if (options_.mode != DriveMode::Explore) commands.brake = false;
     if (options_.mode == DriveMode::Teleoperate) commands.drive = options_.keys ? options_.keys() : robot::Drive{};
     if (options_.mode == DriveMode::MapOnly) commands.drive = {};
     if (options_.mode == DriveMode::Calibrate) {

@@ -163,13 +163,12 @@ class Emulation {
 
   void obey() {
     robot::Commands commands;
-    bool brakes_hard = false;
     if (base_) {
       std::optional<mrpt::math::TPose2D> placed;
       base_->with([&] {
         arcos_->advance(robot::host_now());
         commands.drive = arcos_->motion();
-        brakes_hard = arcos_->brakes_hard();
+        commands.brake = arcos_->brakes_hard();
         arcos_->tell_truth(simulated_.truth().back().pose);
         placed = arcos_->take_placed();
       });
@@ -177,7 +176,6 @@ class Emulation {
     }
     if (levelling_) levelling_->with([&] { commands.aim = unit_->aim(); });
     simulated_.command(commands);
-    if (brakes_hard) simulated_.brake();
   }
 
   void deliver(const robot::Inputs& inputs) {

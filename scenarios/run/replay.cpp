@@ -60,7 +60,8 @@ bool steered_by_hand(const std::string& run) {
 }
 
 bool same_commands(const robot::Commands& a, const robot::Commands& b) {
-  return a.drive.v == b.drive.v && a.drive.w == b.drive.w && a.aim.pitch == b.aim.pitch && a.aim.roll == b.aim.roll;
+  return a.drive.v == b.drive.v && a.drive.w == b.drive.w && a.aim.pitch == b.aim.pitch && a.aim.roll == b.aim.roll &&
+         a.brake == b.brake;
 }
 
 /// What must come out again. A run that was killed has no final map and trajectory, but what it knew at each scan.

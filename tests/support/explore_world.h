@@ -165,7 +165,7 @@ class MazeRobot {
     const double dt = model_.tick;
     v_ = approach(v_, std::clamp(commands.drive.v, -model_.max_v, model_.max_v), model_.max_accel * dt);
     w_ = approach(w_, std::clamp(commands.drive.w, -model_.max_w, model_.max_w), model_.max_turn_accel * dt);
-    if (held) v_ = w_ = 0.0;
+    if (held || commands.brake) v_ = w_ = 0.0;
     const double middle = pose_.phi + 0.5 * w_ * dt;
     pose_ = {pose_.x + v_ * dt * std::cos(middle), pose_.y + v_ * dt * std::sin(middle),
              wrap_angle(pose_.phi + w_ * dt)};

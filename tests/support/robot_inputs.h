@@ -137,7 +137,7 @@ inline bool same(const Inputs& a, const Inputs& b) {
 }
 inline bool same(const Commands& a, const Commands& b) {
   return same(a.drive.v, b.drive.v) && same(a.drive.w, b.drive.w) && same(a.aim.pitch, b.aim.pitch) &&
-         same(a.aim.roll, b.aim.roll);
+         same(a.aim.roll, b.aim.roll) && a.brake == b.brake;
 }
 
 /// Any double there is: numbers of common size, and now and then any bit pattern.

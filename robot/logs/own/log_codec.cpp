@@ -113,6 +113,7 @@ void append_commands_frame(std::string& out, const Commands& commands) {
   bytes.u8(static_cast<std::uint8_t>(FrameKind::Commands));
   for (const double value : {commands.drive.v, commands.drive.w, commands.aim.pitch, commands.aim.roll})
     bytes.f64(value);
+  if (commands.brake) bytes.u8(1);  // logs from before it could be asked for end here
   close_frame(out, start);
 }
 
@@ -121,6 +122,7 @@ Commands decode_commands(std::string_view payload) {
   Commands commands;
   for (double* value : {&commands.drive.v, &commands.drive.w, &commands.aim.pitch, &commands.aim.roll})
     *value = bytes.f64();
+  if (bytes.left() > 0) commands.brake = bytes.u8() != 0;
   expect_end(bytes);
   return commands;
 }

@@ -230,6 +230,25 @@ TEST(BadConditions, FrozenOdometryIsTakenForBeingStuck) {
   EXPECT_LT(trial.robot.now().seconds(), 400.0);
 }
 
+/// On the base's ramp the wheels would turn on for a second, against what holds the robot.
+TEST(BadConditions, WhatHoldsTheRobotIsNotPushedOnARamp) {
+  Trial trial(test::random_maze(5, 5, 0.2, 11));
+  Stamp held_from = Stamp::never();
+  int brakes = 0;
+  trial.run(60.0, [&] {
+    if (held_from == Stamp::never() && trial.commands.drive.v > 0.35) held_from = trial.robot.now();
+    trial.robot.held = held_from != Stamp::never() && trial.backing == 0;
+    if (trial.commands.brake) {
+      EXPECT_EQ(trial.commands.drive.v, 0.0);
+      EXPECT_EQ(trial.commands.drive.w, 0.0);
+      if (++brakes == 1) EXPECT_EQ(trial.backing, 1);
+    }
+  });
+  EXPECT_GE(brakes, 1);
+  EXPECT_GT(trial.backing, 1);
+  EXPECT_EQ(trial.touches, 0);
+}
+
 /// The levelling unit dies while the laser is tilted: its last angles are not believed for ever.
 TEST(BadConditions, ALevellingUnitThatFailedSaysNothingAboutTheGround) {
   TiltWatch watch;

@@ -290,6 +290,30 @@ TEST(PioneerWire, AnEmergencyStopStopsAtOnceAndStaysUntilEnabled) {
   EXPECT_FALSE(wire.base.motors_on());
 }
 
+TEST(PioneerWire, BrakingTakesNoRampAndTheNextSetPointDrivesAgain) {
+  for (const bool brake : {false, true}) {
+    Wire wire;
+    wire.run(1.0);
+    wire.go(0.4, 0.5);
+    wire.run(4.0);
+    ASSERT_NEAR(wire.base.motion().v, 0.4, 1e-9);
+    brake ? wire.driver.brake() : wire.driver.drive({});
+    wire.run(0.05);
+    if (brake) {
+      EXPECT_EQ(wire.base.motion().v, 0.0);
+      EXPECT_EQ(wire.base.motion().w, 0.0);
+    } else {
+      EXPECT_GT(wire.base.motion().v, 0.3) << "the ramp";
+    }
+    wire.run(2.0);
+    EXPECT_EQ(wire.base.motion().v, 0.0);
+    EXPECT_TRUE(wire.base.motors_on());
+    wire.driver.drive({-0.2, 0.0});
+    wire.run(2.0);
+    EXPECT_NEAR(wire.base.motion().v, -0.2, 1e-9);
+  }
+}
+
 TEST(PioneerWire, NothingQueuedSwitchesTheMotorsOnBehindAStop) {
   for (const bool hard : {false, true}) {
     Wire wire;

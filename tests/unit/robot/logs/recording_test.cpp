@@ -73,17 +73,20 @@ TEST(Recording, CommandInForceComesBackWithEachTick) {
   const std::vector<Inputs> ticks = steady_ticks(0.12, 0.02);
   const Commands go{{0.3, 0.0}, {0.01, 0.0}};
   const Commands turn{{0.0, -0.5}, {0.01, 0.02}};
+  const Commands brake{{}, {0.01, 0.02}, true};
+  const Commands rest{{}, {0.01, 0.02}};
   {
     ScriptedRobot robot(ticks);
     RecordingRobot recorder(robot, folder.file("a.log"), "");
-    for (const Commands* answer : {(const Commands*)nullptr, &go, &go, &turn, &go, (const Commands*)nullptr}) {
+    for (const Commands* answer :
+         {(const Commands*)nullptr, &go, &go, &turn, &brake, &rest, (const Commands*)nullptr}) {
       recorder.read();
       if (answer != nullptr) recorder.command(*answer);
     }
   }
   ReplayRobot replay(folder.file("a.log"));
   EXPECT_TRUE(testing::same(replay.recorded_commands(), Commands{}));
-  for (const Commands& expected : {Commands{}, go, go, turn, go, go}) {
+  for (const Commands& expected : {Commands{}, go, go, turn, brake, rest}) {
     ASSERT_TRUE(replay.read());
     EXPECT_TRUE(testing::same(replay.recorded_commands(), expected));
   }

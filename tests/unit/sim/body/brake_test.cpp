@@ -20,8 +20,7 @@ double stopping_way(bool hard, double v, double w) {
   double way = 0.0, turn = 0.0;
   mrpt::math::TPose2D last = from;
   for (int i = 0; i < 200; ++i) {
-    robot.command({{0.0, 0.0}, {}});
-    if (hard) robot.brake();
+    robot.command({{0.0, 0.0}, {}, hard});
     robot.read();
     const mrpt::math::TPose2D now = robot.truth().back().pose;
     way += std::hypot(now.x - last.x, now.y - last.y);
@@ -41,7 +40,7 @@ TEST(Brake, StopsAsHardAsTheMotorsCanWhereACommandKeepsItsRamp) {
 TEST(Brake, TheNextCommandDrivesAgain) {
   const arenas::Arena arena = test::flat_floor(-5.0, -5.0, 5.0, 5.0);
   SimRobot robot(arena, robot::RobotModel{}, test::exact(), 1);
-  robot.brake();
+  robot.command({{}, {}, true});
   for (int i = 0; i < 100; ++i) {
     robot.command({{0.3, 0.0}, {}});
     robot.read();
