@@ -1,16 +1,37 @@
 #!/usr/bin/env bash
 # The long suite and its table: whole suite, sanitizers, faults at 100 moments, each fault of each device, growth, 10
 # minutes of fuzzing for each parser.
-# Prints the table and puts it into docs/reliability.md between its marks.
-#   tests/nightly.sh [--only "suite sanitize threads faults devices growth fuzz"] [--fuzz-seconds 600] [--moments 100] [--keep-docs]
+# Prints the table and puts it into docs/reliability.md between its marks. Rows of parts that were not asked for stay as they are.
+#   tests/nightly.sh [--minutes N] [--only "suite sanitize threads faults devices growth fuzz"] [--fuzz-seconds 600]
+#                    [--moments 100] [--keep-docs]
+# --minutes N: what can be cut is cut, no part is left out: a third of the time for fuzzing, shared by the targets; a moment
+# of faults each two minutes (3 to 100); below 120 minutes the small sizes of growth and one fault of each device. The
+# suites take what they take.
 set -uo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 only="suite sanitize threads faults devices growth fuzz"
 fuzz_seconds=600
 moments=100
+growth=()
+faults=()
 keep=0
+least() { echo $(($1 < $2 ? $1 : $2)); }
+most() { echo $(($1 > $2 ? $1 : $2)); }
+# for_minutes N: the lengths of a night of so many minutes.
+for_minutes() {
+  [[ $1 =~ ^[1-9][0-9]{0,4}$ ]] || { echo "--minutes takes a whole number from 1, not '$1'" >&2; exit 2; }
+  local targets
+  targets=$(find "$top/fuzz" -maxdepth 1 -name '*.cpp' | wc -l)
+  fuzz_seconds=$(least 600 $(most 5 $(($1 * 20 / targets))))
+  moments=$(least 100 $(most 3 $(($1 / 2))))
+  if (($1 < 120)); then
+    growth=(--quick)
+    faults=(--faults "urg-unplug base-unplug levelling-unplug")
+  fi
+}
 while (($#)); do
   case $1 in
+    --minutes) for_minutes "${2:-}"; shift 2 ;;
     --only) only=$2; shift 2 ;;
     --fuzz-seconds) fuzz_seconds=$2; shift 2 ;;
     --moments) moments=$2; shift 2 ;;
@@ -22,11 +43,13 @@ out=$top/build/nightly
 mkdir -p "$out"
 table=$out/table.md
 failed=0
-printf '| tests | count | findings | skipped | time |\n|---|---|---|---|---|\n' >"$table"
+printf '| tests | count | findings | skipped | time | on |\n|---|---|---|---|---|---|\n' | tee "$table"
 
 # row NAME COUNT FINDINGS SKIPPED SECONDS
 row() {
-  printf '| %s | %s | %s | %s | %d min |\n' "$1" "$2" "$3" "$4" $(($5 / 60)) | tee -a "$table"
+  local time="$5 s"
+  (($5 < 600)) || time="$(($5 / 60)) min"
+  printf '| %s | %s | %s | %s | %s | %s |\n' "$1" "$2" "$3" "$4" "$time" "$(date +%F)" | tee -a "$table"
   [[ $3 == 0 ]] || failed=1
 }
 
@@ -54,12 +77,12 @@ if has faults; then
     RUBBLE_MOMENTS=$moments bash "$script" "$top/build/release/rubble" "$top" >"$out/faults-$name.txt" 2>&1
     words=$(grep '^faults: ' "$out/faults-$name.txt" | tail -1)
     count=${words#faults: }
-    row "faults: $name" "${count%%,*}" "${words##*findings: }" 0 $((SECONDS - start))
+    row "faults: $name, $moments moments" "${count%%,*}" "${words##*findings: }" 0 $((SECONDS - start))
   done
 fi
 if has devices; then
   start=$SECONDS
-  python3 "$top/tests/device_faults.py" >"$out/device-faults.txt" 2>&1
+  python3 "$top/tests/device_faults.py" "${faults[@]}" >"$out/device-faults.txt" 2>&1
   words=$(grep '^faults: ' "$out/device-faults.txt" | tail -1)
   found=${words##*findings: }
   count=${words#faults: }
@@ -67,7 +90,7 @@ if has devices; then
 fi
 if has growth; then
   start=$SECONDS
-  python3 "$top/tests/growth.py" >"$out/growth.txt" 2>&1
+  python3 "$top/tests/growth.py" "${growth[@]}" >"$out/growth.txt" 2>&1
   words=$(grep '^growth: ' "$out/growth.txt" | tail -1)
   count=${words#growth: }
   row "time and memory against size" "${count%% *}" "${words##*findings: }" 0 $((SECONDS - start))
@@ -77,7 +100,7 @@ if has fuzz; then
   "$top/tests/fuzz.sh" "$fuzz_seconds" >"$out/fuzz.txt" 2>&1
   while read -r target runs found memory; do
     [[ $target == target || -z $memory || ! $runs =~ ^[0-9]+$ ]] && continue
-    row "fuzz: $target (largest memory $memory MB)" "$runs" "$found" 0 "$fuzz_seconds"
+    row "fuzz: $target" "$runs" "$found" 0 "$fuzz_seconds"
   done <"$out/fuzz.txt"
   grep -q '^target' "$out/fuzz.txt" || row "fuzz" "0 (did not build)" 1 0 $((SECONDS - start))
 fi
@@ -88,8 +111,20 @@ page, table = sys.argv[1:]
 text = open(page).read()
 begin, end = "<!-- table: made by tests/nightly.sh -->\n", "<!-- end of table -->\n"
 head, rest = text.split(begin)
-tail = rest.split(end)[1]
-open(page, "w").write(head + begin + open(table).read() + end + tail)
+old, tail = rest.split(end)
+new = open(table).read().splitlines(keepends=True)
+
+
+def part(row):  # the row's first words, up to what may change from night to night
+    return row.split("|")[1].split(",")[0].strip()
+
+
+done = {part(row) for row in new}
+kept = [row for row in old.splitlines(keepends=True)[2:] if part(row) not in done]
+order = ["whole suite", "batch", "faults", "time", "fuzz"]
+rank = lambda row: next((i for i, words in enumerate(order) if part(row).startswith(words)), len(order))
+rows = sorted(kept + new[2:], key=lambda row: (rank(row), part(row)))
+open(page, "w").write(head + begin + "".join(new[:2] + rows) + end + tail)
 PY
 fi
 exit $failed
