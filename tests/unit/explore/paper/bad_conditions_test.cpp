@@ -241,7 +241,9 @@ TEST(BadConditions, WhatHoldsTheRobotIsNotPushedOnARamp) {
     if (trial.commands.brake) {
       EXPECT_EQ(trial.commands.drive.v, 0.0);
       EXPECT_EQ(trial.commands.drive.w, 0.0);
-      if (++brakes == 1) EXPECT_EQ(trial.backing, 1);
+      if (++brakes == 1) {
+        EXPECT_EQ(trial.backing, 1);
+      }
     }
   });
   EXPECT_GE(brakes, 1);
