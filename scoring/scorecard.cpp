@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "scoring/alignment/alignment.h"
+#include "scoring/alignment/second_drawing.h"
 #include "scoring/alignment/trust.h"
 #include "scoring/measures/detached.h"
 #include "scoring/measures/psi.h"
@@ -69,15 +70,16 @@ std::string scale_note(double scale, double resolution) {
 /// Both measures of the walls of one map and the truth, for many poses.
 struct Walls {
   Walls(const OccupancyGrid& the_map, const OccupancyGrid& truth, double tau)
-      : map(the_map), overlaps(the_map, truth, tau), sights(truth) {}
+      : map(the_map), overlaps(the_map, truth, tau), sights(truth), seen(the_map) {}
   /// Where the truth has no lines of sight worth asking about, the overlap stands for them.
   template <class Transform>
   double score(const Transform& T) const {
-    return sights.usable() ? sights.at(map, T).score : overlaps.at(T).score;
+    return sights.usable() ? sights.at(seen, T).score : overlaps.at(T).score;
   }
   const OccupancyGrid& map;
   WallOverlap overlaps;
   SightLines sights;
+  SightMap seen;
 };
 
 /// Eqs. (7) and (8) over features instead of walls.
@@ -120,11 +122,13 @@ void fill_warp(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& tru
 
 /// A second drawing on the canvas is a second guess: each is worth its share.
 void fill_sights(MapScore& out, const OccupancyGrid& truth, const Walls& walls) {
-  const SightAgreement sights = walls.sights.at(walls.map, PlanarTransform(out.T_truth_map));
+  const SightAgreement sights = walls.sights.at(walls.seen, PlanarTransform(out.T_truth_map));
   out.sight_known = sights.known;
   out.sight_kappa = sights.kappa;
-  out.detached = detached_share(walls.map, truth, PlanarTransform(out.T_truth_map));
-  out.score_at_best_pose = walls.score(PlanarTransform(out.T_truth_map)) * (1.0 - out.detached);
+  out.detached = std::max(detached_share(walls.map, truth, PlanarTransform(out.T_truth_map)),
+                          second_drawing_share(walls.map, truth, PlanarTransform(out.T_truth_map), walls.sights));
+  const double score = walls.sights.usable() ? sights.score : walls.overlaps.at(PlanarTransform(out.T_truth_map)).score;
+  out.score_at_best_pose = score * (1.0 - out.detached);
 }
 
 /// All numbers at the pose that `out` holds.

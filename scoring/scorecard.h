@@ -23,7 +23,7 @@ struct ScoreConfig {
 
 /// Counts up whenever the same map and truth come to another `score`: scores of different versions cannot be compared.
 /// 1: min(precision, recall). 2: agreement of lines of sight beyond chance.
-constexpr int kScoreVersion = 2;
+constexpr int kScoreVersion = 3;
 
 /// The verdict on one map. Lengths in metres, shares 0..1.
 struct MapScore {

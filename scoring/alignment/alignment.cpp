@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/angle.h"
+#include "scoring/alignment/examiner.h"
 #include "scoring/alignment/feature_score.h"
 #include "scoring/alignment/matching.h"
 #include "scoring/alignment/trust.h"
@@ -62,7 +63,11 @@ bool may_win(const Hypothesis& h, AlignBy by) {
 class Aligner {
  public:
   Aligner(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config)
-      : map_(map), truth_(truth), config_(config), match_(map, truth, config.search.reach, config.search.max_points) {}
+      : map_(map),
+        truth_(truth),
+        config_(config),
+        match_(map, truth, config.search.reach, config.search.max_points),
+        examiner_(match_, config.search) {}
 
   bool usable() const { return match_.usable(); }
   /// How many times as wide as the truth's walls the map's are.
@@ -72,7 +77,7 @@ class Aligner {
   Alignment by(AlignBy method) {
     Alignment out;
     out.contest.tried = method;
-    const std::vector<Hypothesis> hypotheses = examine(proposals(method), match_, config_.search);
+    const std::vector<Hypothesis> hypotheses = examiner_.examine(proposals(method));
     const auto best =
         std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) { return may_win(h, method); });
     if (best == hypotheses.end()) {
@@ -93,7 +98,7 @@ class Aligner {
   std::optional<Alignment> by_start(const Alignment& best) {
     std::vector<PoseGuess> guesses = by_walls_ ? *by_walls_ : std::vector<PoseGuess>();
     guesses.insert(guesses.begin(), {config_.start->T_truth_map, 0.0, AlignBy::Start});
-    const std::vector<Hypothesis> hypotheses = examine(guesses, match_, config_.search);
+    const std::vector<Hypothesis> hypotheses = examiner_.examine(guesses);
     const auto at_start = std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) {
       return same_pose(h.T_best, config_.start->T_truth_map, config_.start->p_map, kStartShift, kStartTurn);
     });
@@ -239,6 +244,7 @@ class Aligner {
   const OccupancyGrid& truth_;
   const AlignmentConfig& config_;
   WallMatch match_;
+  Examiner examiner_;
   std::optional<std::vector<PoseGuess>> by_walls_;
   std::optional<std::vector<PoseGuess>> by_features_;
   std::optional<Rivals> mirrored_;

@@ -10,10 +10,11 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr int kTolerance = 12;   // around the unknown grey, where the picture is not pure
-constexpr int kWallBelow = 140;  // of 0 (wall) to 255 (free): at least 45 % wall
-constexpr int kMostAreas = 4;    // that one map has
-constexpr double kPale = 0.85;   // lines that reach less of the walls' grey in their middle are blurred
+constexpr int kTolerance = 12;      // around the unknown grey, where the picture is not pure
+constexpr int kWallBelow = 140;     // of 0 (wall) to 255 (free): at least 45 % wall
+constexpr int kMostAreas = 4;       // that one map has
+constexpr double kPale = 0.85;      // lines that reach less of the walls' grey in their middle are blurred
+constexpr double kMostPale = 0.25;  // share of them that sharp pictures have (where a wall ends)
 
 /// Greys as if walls were 0 and free ground 255.
 cv::Mat in_order(const cv::Mat& grey, const GreyRoles& roles) {
@@ -40,6 +41,17 @@ cv::Mat by_level(const cv::Mat& grey, const GreyRoles& roles) {
   cv::Mat out;
   cv::LUT(grey, table, out);
   return out;
+}
+
+/// Share of the walls' darkest pixels, each among its eight neighbours, that do not reach the walls' grey: pictures
+/// that were blurred or made smaller leave walls pale in their middle, too.
+double pale_share(const cv::Mat& even, const cv::Mat& unknown) {
+  cv::Mat least;
+  cv::erode(even, least, cv::Mat::ones(3, 3, CV_8U));
+  const cv::Mat middles = (even == least) & (even < kWallBelow) & ~unknown;
+  const int all = cv::countNonZero(middles);
+  const int pale = cv::countNonZero(middles & (even > (1.0 - kPale) * 255.0));
+  return all > 0 ? static_cast<double>(pale) / all : 0.0;
 }
 
 }  // namespace
@@ -86,13 +98,21 @@ LabelImage classify_grey(const RgbImage& image, const cv::Mat& apart) {
   const cv::Mat even = in_order(grey, roles);
   out.classes = cv::Mat(grey.size(), CV_8U, cv::Scalar(static_cast<int>(Occupancy::Free)));
   out.classes.setTo(static_cast<int>(Occupancy::Occupied), even < kWallBelow);
-  if (roles.unknown < 0) return out;
+  const auto tell_pale = [&](const cv::Mat& not_asked) {
+    if (pale_share(even, not_asked) > kMostPale)
+      out.recognised += ", walls pale as in a picture that was blurred or made smaller: thin ones may be lost";
+  };
+  if (roles.unknown < 0) {
+    tell_pale(cv::Mat::zeros(grey.size(), CV_8U));
+    return out;
+  }
   // The fringe between a wall and free space passes through the same grey: only an area of it is unknown, and its
   // rim is a mixture with wall or free.
   cv::Mat unknown = (grey >= roles.unknown - kTolerance) & (grey <= roles.unknown + kTolerance);
   cv::morphologyEx(unknown, unknown, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
   cv::Mat rim;
   cv::dilate(unknown, rim, cv::Mat::ones(3, 3, CV_8U));
+  tell_pale(rim);
   const double level = 255.0 * (roles.unknown - roles.wall) / (roles.free - roles.wall);
   unknown |=
       roles.in_order() ? rim & (even >= 0.55 * level) & (even <= level + kTolerance) : rim & (even >= kWallBelow);

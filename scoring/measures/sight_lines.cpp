@@ -25,6 +25,9 @@ constexpr double kRaster = 0.5;         // of a cell: what drawing on a raster m
 constexpr double kMostRaster = 0.05;    // [m]
 constexpr double kThickness = 0.04;     // what a metre of wrong thickness counts as a metre of wrong place
 constexpr double kFee = 0.25;           // kappa that maps of other arenas reach at their best pose
+constexpr double kPlenty = 30.0;        // places of inner walls from which luck is no greater than this
+constexpr double kMostFee = 0.55;       // what luck reaches where the truth has two or three walls
+constexpr double kPlace = 0.4;          // along a wall [m]
 constexpr double kPrior = 2.0;          // laid-over lines that the mean of all stands for
 constexpr double kLinesPerArea = 16.0;  // of each kind, a square metre of free space
 constexpr std::size_t kFewest = 40;     // of each kind
@@ -47,9 +50,9 @@ struct Sight {
   double unknown = 0.0;  ///< [m]
 };
 
-/// A map and what its walls count.
+/// Looks across a map that is kept elsewhere.
 struct Ground {
-  explicit Ground(const OccupancyGrid& source) : grid(source), pieces(wall_pieces(source)) {}
+  explicit Ground(const SightMap& map) : grid(map.grid), pieces(map.pieces) {}
   bool is(const TPoint2D& p, Occupancy what) const {
     const Cell c = grid.cell(p);
     return grid.inside(c) && grid[c] == what;
@@ -62,7 +65,7 @@ struct Ground {
   void look(const TPoint2D& a, const TPoint2D& b, double length, Sight& out) const;
 
   const OccupancyGrid& grid;
-  WallPieces pieces;
+  const WallPieces& pieces;
 };
 
 void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& out) const {
@@ -103,7 +106,7 @@ void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& ou
 /// The truth, asked which lines across it are worth asking a map about.
 class Asker {
  public:
-  explicit Asker(const OccupancyGrid& truth) : ground_(truth) {
+  explicit Asker(const OccupancyGrid& truth) : map_(truth), ground_(map_) {
     Grid<std::uint8_t> walls(truth.frame());
     for (std::size_t i = 0; i < truth.cells().size(); ++i)
       walls.cells()[i] = truth.cells()[i] == Occupancy::Occupied ? 1 : 0;
@@ -155,6 +158,7 @@ class Asker {
     return true;
   }
 
+  SightMap map_;
   Ground ground_;
   Grid<float> distance_;  ///< to the next wall [m]
   std::vector<TPoint2D> ends_;
@@ -230,6 +234,19 @@ double blocked_share(Asker& asker) {
   return open + blocked > 0.0 ? blocked / (open + blocked) : 0.0;
 }
 
+/// At how many places, `kPlace` apart, inner walls of the truth are asked about.
+std::size_t wall_places(const std::vector<SightLines::Line>& lines) {
+  std::vector<TPoint2D> places;
+  for (const SightLines::Line& line : lines) {
+    if (!line.blocked) continue;
+    const TPoint2D at = line.from + (line.to - line.from) * (line.middle / (line.to - line.from).norm());
+    const auto near = [&](const TPoint2D& p) { return (p - at).sqrNorm() < kPlace * kPlace; };
+    if (std::none_of(places.begin(), places.end(), near)) places.push_back(at);
+    if (static_cast<double>(places.size()) >= kPlenty) break;
+  }
+  return places.size();
+}
+
 /// -1..1: how far a map's sight along a line says that it is blocked; with the wall in its place.
 double said_blocked(const SightLines::Line& line, const Sight& sight, double raster) {
   double all = 0.0;
@@ -252,9 +269,10 @@ double said_open(const Sight& sight) {
 }
 
 template <class Transform>
-SightAgreement agreement(const std::vector<SightLines::Line>& lines, const OccupancyGrid& map, const Transform& T) {
+SightAgreement agreement(const std::vector<SightLines::Line>& lines, const SightMap& map, const Transform& T,
+                         double fee) {
   const Ground ground(map);
-  const double raster = std::min(kMostRaster, kRaster * map.resolution());
+  const double raster = std::min(kMostRaster, kRaster * map.grid.resolution());
   Sight sight;
   double all = 0.0;
   double known = 0.0;
@@ -274,7 +292,7 @@ SightAgreement agreement(const std::vector<SightLines::Line>& lines, const Occup
   if (known <= 0.0) return out;
   out.known = known / all;
   out.kappa = gain / known;
-  out.score = std::clamp((gain / all - kFee * out.known) / (1.0 - kFee), 0.0, 1.0);
+  out.score = std::clamp((gain / all - fee * out.known) / (1.0 - fee), 0.0, 1.0);
   return out;
 }
 
@@ -299,14 +317,19 @@ SightLines::SightLines(const OccupancyGrid& truth) {
     }
     for (std::size_t i = first; i < lines_.size(); ++i) lines_[i].weight *= sum > 0.0 ? 0.5 / sum : 0.0;
   }
+  // The fewer walls there are to be right about, the more often luck is right about most of them.
+  const double places = std::max(1.0, static_cast<double>(wall_places(lines_)));
+  fee_ = std::clamp(kFee * kPlenty / places, kFee, kMostFee);
 }
 
 bool SightLines::usable() const { return count_[0] >= kFewest && count_[1] >= kFewest; }
 
-SightAgreement SightLines::at(const OccupancyGrid& map, const PlanarTransform& T_truth_map) const {
-  return agreement(lines_, map, T_truth_map);
+SightAgreement SightLines::at(const SightMap& map, const PlanarTransform& T_truth_map) const {
+  return agreement(lines_, map, T_truth_map, fee_);
 }
 
-SightAgreement SightLines::at(const OccupancyGrid& map, const Warp& warp) const { return agreement(lines_, map, warp); }
+SightAgreement SightLines::at(const SightMap& map, const Warp& warp) const {
+  return agreement(lines_, map, warp, fee_);
+}
 
 }  // namespace rubble::scoring

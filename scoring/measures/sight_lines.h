@@ -8,6 +8,7 @@
 
 #include "base/grid.h"
 #include "base/planar.h"
+#include "scoring/measures/wall_pieces.h"
 #include "scoring/walls/warp.h"
 
 namespace rubble::scoring {
@@ -17,6 +18,13 @@ struct SightAgreement {
   double score = 0.0;  ///< 0..1: what it knows, times how far it agrees beyond a map that knows only the lattice
   double known = 0.0;  ///< share of the lines, by weight, that the map knows
   double kappa = 0.0;  ///< of those: 1 all right, 0 no better than a guess, -1 all wrong
+};
+
+/// A map prepared to be looked across at many poses. The map must outlive it.
+struct SightMap {
+  explicit SightMap(const OccupancyGrid& source) : grid(source), pieces(wall_pieces(source)) {}
+  const OccupancyGrid& grid;
+  WallPieces pieces;
 };
 
 /// Lines between two free places of the truth, 0.5 to 1.8 m apart: open, or blocked by one wall. A map agrees where it
@@ -36,8 +44,11 @@ class SightLines {
 
   /// Too few open or blocked lines to say anything: a single room, or a truth without free space.
   bool usable() const;
-  SightAgreement at(const OccupancyGrid& map, const PlanarTransform& T_truth_map) const;
-  SightAgreement at(const OccupancyGrid& map, const Warp& warp) const;
+  SightAgreement at(const SightMap& map, const PlanarTransform& T_truth_map) const;
+  SightAgreement at(const SightMap& map, const Warp& warp) const;
+  SightAgreement at(const OccupancyGrid& map, const PlanarTransform& T_truth_map) const {
+    return at(SightMap(map), T_truth_map);
+  }
 
   struct Line {
     mrpt::math::TPoint2D from;
@@ -52,6 +63,7 @@ class SightLines {
 
  private:
   std::vector<Line> lines_;
+  double fee_ = 0.0;  ///< kappa that maps of other arenas reach by luck
   std::array<std::size_t, 2> count_{};  ///< open and blocked
 };
 

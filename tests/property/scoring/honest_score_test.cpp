@@ -7,10 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "scoring/alignment/second_drawing.h"
 #include "scoring/measures/sight_lines.h"
 #include "scoring/scorecard.h"
 #include "tests/support/scoring_attacks.h"
 #include "tests/support/scoring_grounds.h"
+#include "tests/support/scoring_schemes.h"
 
 /// The laws that keep the headline score from being gamed, over generated arenas. With RUBBLE_ARENA_SEEDS=N in the
 /// environment over N seeds a shape.
@@ -110,6 +112,75 @@ TEST_P(HonestScore, TouchingUpADamagedMapGainsNothing) {
 TEST_P(HonestScore, ASecondDrawingOnTheCanvasCosts) {
   const double alone = at_true_pose(truth, truth);
   EXPECT_LE(at_true_pose(beside_copies(truth, {1.0}), truth), 0.55 * alone);
+}
+
+/// Joined by a strip of free space the two are one piece, and are told by what they draw.
+TEST_P(HonestScore, ASecondDrawingJoinedToTheFirstCosts) {
+  for (const double size : {0.9, 1.0, 1.1}) {
+    const MapScore score = score_at_pose(joined_to(truth, stretched(truth, size)), truth, {});
+    EXPECT_GE(score.detached, 0.4) << "of size " << size;
+    EXPECT_LE(score.score, 0.6) << "of size " << size;
+  }
+}
+
+/// What surrounds an arena is no second drawing, however large: a hall around it, or the arena next door.
+TEST_P(HonestScore, SurroundingsCostNothing) {
+  const int rim = static_cast<int>(std::lround(3.0 / truth.resolution()));
+  OccupancyGrid hall = padded(truth, rim);
+  for (int y = 0; y < hall.height(); ++y)
+    for (int x = 0; x < hall.width(); ++x) {
+      const bool wall = x < 3 || y < 3 || x >= hall.width() - 3 || y >= hall.height() - 3;
+      if (hall[{x, y}] == Occupancy::Unknown) hall[{x, y}] = wall ? Occupancy::Occupied : Occupancy::Free;
+    }
+  Ground next_door = GetParam();
+  next_door.seed += 700;
+  const OccupancyGrid two = joined_to(truth, truth_of(next_door));
+  const OccupancyGrid* const maps[] = {&hall, &two};
+  for (const OccupancyGrid* const map : maps) {
+    const MapScore score = score_at_pose(*map, truth, {});
+    EXPECT_EQ(score.detached, 0.0);
+    EXPECT_GE(score.score, 0.99);
+  }
+}
+
+/// Schemes that were written when the score stood, in the mean over all grounds. Two are no guesses, but draw on what
+/// is so in any arena, and earn a little: pallets are free in their middle, and a wall or passage that leaves the known
+/// ground goes on to the end of its pallet.
+TEST(Schemes, GainNothingInTheMean) {
+  const std::vector<Ground> all = grounds();
+  std::vector<OccupancyGrid> truths;
+  std::vector<Judge> judges;
+  for (const Ground& ground : all) truths.push_back(truth_of(ground));
+  for (const OccupancyGrid& truth : truths) judges.emplace_back(truth);
+  for (const Scheme& scheme : schemes()) {
+    double gained = 0.0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto judge = [&](const OccupancyGrid& map) {
+        return judges[i](map) * (1.0 - second_drawing_share(map, truths[i], PlanarTransform(), judges[i].sights()));
+      };
+      const std::vector<OccupancyGrid> maps = scheme.honest(truths[i], i);
+      for (const OccupancyGrid& map : maps) gained -= judge(map) / static_cast<double>(maps.size());
+      gained += judge(scheme.attack(truths[i], truths[(i + 1) % all.size()], i));
+    }
+    const bool so_in_any =
+        scheme.name.find("unknown strips") != std::string::npos || scheme.name.find("carried on") != std::string::npos;
+    EXPECT_LE(gained / static_cast<double>(all.size()), so_in_any ? 0.05 : 0.01) << scheme.name;
+  }
+}
+
+/// Two or three walls are soon met by luck.
+TEST(HonestScoreOfStrangers, IsLowWhereTheTruthHasFewWalls) {
+  double sum = 0.0;
+  int pairs = 0;
+  for (const auto& [columns, rows] : std::vector<std::pair<int, int>>{{4, 4}, {5, 4}, {4, 6}, {5, 5}})
+    for (std::uint64_t seed = 21; seed < 24; ++seed) {
+      const OccupancyGrid truth = truth_of({"yellow", columns, rows, seed});
+      const MapScore score = score_map(truth_of({"yellow", columns, rows, seed + 500}), truth);
+      EXPECT_LE(score.score_at_best_pose, 0.25) << columns << " x " << rows << " seed " << seed;
+      sum += score.score_at_best_pose;
+      ++pairs;
+    }
+  EXPECT_LE(sum / pairs, 0.1);
 }
 
 /// The best pose that the alignment finds, trusted or not.

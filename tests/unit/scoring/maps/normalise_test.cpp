@@ -292,6 +292,30 @@ TEST_F(LoadMap, TransparentPixelsAreUnknown) {
       }
 }
 
+TEST_F(LoadMap, BlurredAndShrunkenPicturesAreNoticed) {
+  for (const std::uint64_t seed : {3, 4}) {
+    MazeSpec spec;
+    spec.seed = seed;
+    const cv::Mat sharp = grey_image(maze(spec), 0, 128, 255);
+    cv::Mat blurred, smaller, larger, turned;
+    cv::GaussianBlur(sharp, blurred, {9, 9}, 1.8);
+    cv::resize(sharp, smaller, {}, 0.37, 0.37, cv::INTER_AREA);
+    cv::resize(sharp, larger, {}, 2.0, 2.0, cv::INTER_LINEAR);
+    cv::warpAffine(sharp, turned, cv::getRotationMatrix2D({100, 100}, 13.0, 1.0), sharp.size(), cv::INTER_CUBIC,
+                   cv::BORDER_CONSTANT, 128);
+    const auto told = [&](const cv::Mat& image, const std::string& name) {
+      cv::imwrite(path(name), image);
+      return load_map(path(name), {0.05}).recognised.find("pale") != std::string::npos;
+    };
+    EXPECT_TRUE(told(blurred, "blurred.png")) << "seed " << seed;
+    EXPECT_TRUE(told(smaller, "smaller.png")) << "seed " << seed;
+    EXPECT_FALSE(told(sharp, "sharp.png")) << "seed " << seed;
+    EXPECT_FALSE(told(larger, "larger.png")) << "seed " << seed;
+    EXPECT_FALSE(told(turned, "turned.png")) << "seed " << seed;
+    EXPECT_FALSE(told(sharp, "sharp.jpg")) << "seed " << seed;
+  }
+}
+
 TEST_F(LoadMap, BadInputIsOneLineWithTheRemedy) {
   const auto message = [&](const std::string& file, const LoadOptions& options = {}) {
     try {

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "base/grid.h"
+#include "base/planar.h"
+#include "scoring/measures/sight_lines.h"
+
+namespace rubble::scoring {
+
+/// Share of the map's known area that lies off the truth and draws the truth again: another hypothesis on the same
+/// canvas, joined to the first so that it is no piece of its own. It is looked for where a tenth or more of what lies
+/// on the truth lies off it, at its own size and up to 15 % larger or smaller. What merely surrounds an arena (a
+/// hall seen through its entrance) does not agree with its lines of sight anywhere, and does not count.
+double second_drawing_share(const OccupancyGrid& map, const OccupancyGrid& truth, const PlanarTransform& T_truth_map,
+                            const SightLines& sights);
+
+}  // namespace rubble::scoring
