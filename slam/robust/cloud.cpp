@@ -1,6 +1,7 @@
 #include "slam/robust/cloud.h"
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -25,6 +26,14 @@ constexpr std::size_t kGrazingNeighbours = 2;  ///< on each side where there are
 constexpr double kGrazingRoughness = 0.03;     ///< ... if they lie on a line but for the scanner's noise (RMS) [m]
 constexpr double kShortGap = 0.15;             ///< gaps up to here need no filling [m]
 constexpr double kLongGap = 1.5;               ///< and from here are no surface [m]
+constexpr double kEndJump = 0.3;               ///< beside a wall's end the scanner sees so much farther [m]
+constexpr int kBesideEnd = 3;                  ///< so many hits there may be mixed pixels
+constexpr int kSilentBeams = 3;                ///< or where more beams than these return nothing ...
+constexpr double kWithinSight = 0.8;           ///< ... well within the range that other beams return from
+constexpr double kEndLength = 0.20;            ///< a wall that tells its end is straight for so long [m] ...
+constexpr double kEndRoughness = 0.03;         ///< ... within this [m]
+constexpr double kEndSpacing = 0.06;           ///< hits on it lie no farther apart, for the end is known no better [m]
+constexpr long kMostEnds = 6;                  ///< an end known best counts as so many points
 constexpr float kSameDirection = 0.9F;         ///< cosine between normals of one straight surface
 
 int bin_of(double bearing) {
@@ -46,12 +55,15 @@ class Hits {
       beam_.push_back(ray.beam);
     }
     drop_mixed_pixels();
+    for (const double range : range_) farthest_ = std::max(farthest_, range);
   }
 
   std::size_t size() const { return p_.size(); }
   const TPoint2D& p(std::size_t i) const { return p_[i]; }
   double range(std::size_t i) const { return range_[i]; }
+  double farthest() const { return farthest_; }
   double step() const { return step_; }
+  int beams_between(std::size_t i, std::size_t j) const { return std::abs(beam_[j] - beam_[i]); }
   /// Whether two hits, at most one missing beam apart, lie on one surface.
   bool joined(std::size_t i, std::size_t j) const {
     const int apart = std::abs(beam_[j] - beam_[i]);
@@ -90,6 +102,7 @@ class Hits {
   }
 
   double step_;
+  double farthest_ = 0.0;
   std::vector<TPoint2D> p_;
   std::vector<double> range_;
   std::vector<int> beam_;
@@ -166,6 +179,55 @@ void fill_between(const TPoint2D& from, const TPoint2D& to, const OrientedPoint&
   }
 }
 
+/// Where a wall ends, and how far apart its last hits lie.
+struct WallEnd {
+  OrientedPoint point;  ///< its normal points along the wall, out of it
+  double spacing;       ///< [m]
+};
+
+/// The end of a wall at hit `i`, from where it goes on by `inwards` (-1 or 1) in the list. Only where more is seen
+/// beside it, or nothing up to where the scanner sees: where less is seen, the wall is hidden by something nearer, and
+/// its end is nowhere.
+std::optional<WallEnd> wall_end(const Hits& hits, std::size_t i, int inwards) {
+  const auto at = [&](int steps) { return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + steps); };
+  const auto exists = [&](int steps) { return at(steps) < hits.size(); };  // below the first wraps to a large number
+  if (!exists(-inwards) || hits.joined(i, at(-inwards))) return std::nullopt;
+  bool open = hits.beams_between(i, at(-inwards)) > kSilentBeams && hits.range(i) < kWithinSight * hits.farthest();
+  for (int k = 1; k <= kBesideEnd && exists(-k * inwards) && !open; ++k)
+    open = hits.beams_between(i, at(-k * inwards)) <= kBesideEnd + 1 &&
+           hits.range(at(-k * inwards)) > hits.range(i) + kEndJump;
+  if (!open) return std::nullopt;
+  const TPoint2D& p = hits.p(i);
+  int last = 0;
+  while (exists(last + inwards) && hits.joined(at(last), at(last + inwards)) &&
+         distance(hits.p(at(last)), p) < kEndLength)
+    last += inwards;
+  const double along = distance(hits.p(at(last)), p);
+  const double spacing = along / std::max(1, std::abs(last));
+  if (along < kEndLength || spacing > kEndSpacing) return std::nullopt;
+  const TPoint2D out = (p - hits.p(at(last))) * (1.0 / along);
+  for (int k = inwards; k != last; k += inwards) {
+    const TPoint2D d = hits.p(at(k)) - p;
+    if (std::abs(out.x * d.y - out.y * d.x) > kEndRoughness) return std::nullopt;
+  }
+  const TPoint2D end = p + out * (0.5 * spacing);  // it lies between this beam and the next
+  return WallEnd{
+      {static_cast<float>(end.x), static_cast<float>(end.y), static_cast<float>(out.x), static_cast<float>(out.y)},
+      spacing};
+}
+
+void add_ends(const Hits& hits, Cloud& cloud) {
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    for (const int inwards : {-1, 1}) {
+      const std::optional<WallEnd> end = wall_end(hits, i, inwards);
+      if (!end) continue;
+      const long weight = std::clamp(std::lround(kEndSpacing / end->spacing), 1L, kMostEnds);
+      cloud.ends.insert(cloud.ends.end(), static_cast<std::size_t>(weight), end->point);
+      cloud.filled.push_back(end->point);
+    }
+  }
+}
+
 }  // namespace
 
 void SightFan::add(double bearing, double range) {
@@ -205,6 +267,7 @@ Cloud cloud_of(const ScanPoints& scan, const CloudConfig& config) {
     cloud.points.push_back(point);
     kept = i;
   }
+  add_ends(hits, cloud);
   return cloud;
 }
 

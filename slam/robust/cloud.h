@@ -60,7 +60,12 @@ struct CloudConfig {
 /// A scan as the matching sees it, in the base frame.
 struct Cloud {
   std::vector<OrientedPoint> points;  ///< thinned
-  std::vector<OrientedPoint> filled;  ///< between neighbouring points of one far surface; only to be matched with
+  std::vector<OrientedPoint> filled;  ///< between neighbouring points of one far surface, and ends of walls; only to be
+                                      ///< matched with
+  /// Ends of walls, as points whose normals point along the wall, out of it: in a corridor they alone tell how far
+  /// along the robot is. Each stands here as often as it is better known than a point of a wall. Empty in a cloud that
+  /// was kept.
+  std::vector<OrientedPoint> ends;
   mrpt::math::TPoint2D laser;
   SightFan sight;  ///< empty until sight_of() is put here: only clouds that are kept need it
 };

@@ -1,5 +1,6 @@
 #include "slam/robust/local_tracker.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -28,6 +29,7 @@ constexpr double kNotFar = 0.2;         ///< a match so close to the expected on
 constexpr double kNotFarTurned = 0.15;  ///< [rad]
 constexpr std::size_t kWitnesses = 6;   ///< key frames that are asked whether the odometry can be true
 constexpr double kContradicted = 0.15;  ///< share of points they would have seen through, from which it cannot
+constexpr double kOneWay = 0.2;         ///< share of the information along the walls, below which their ends are asked
 constexpr Work kWorkPerJudged = 30;     ///< point and key frame
 constexpr Work kWorkPerDrawnFrame = 8000;
 
@@ -35,6 +37,13 @@ ScanFitConfig tight() {
   ScanFitConfig config;
   config.first_radius = 0.2;
   return config;
+}
+
+/// Whether nearly all that the scan tells lies across one direction, as in a corridor: what is left may be the slope of
+/// a ramp, which comes along with a robot that pitches, or nothing.
+bool along_one_way(const ScanFit& fit) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(fit.information.topLeftCorner<2, 2>());
+  return axes.eigenvalues()[0] < kOneWay * axes.eigenvalues()[1];
 }
 
 }  // namespace
@@ -78,13 +87,18 @@ Tracked LocalTracker::track(const KeyFrames& frames, const Cloud& cloud, const E
   const bool doubted = motion.doubt >= kDoubted;
   const PosePrior prior{T_frame_last + motion.T_last_now, prior_information(motion)};
   const std::optional<TPose2D> carried = motion.carried ? std::optional(T_frame_last + *motion.carried) : std::nullopt;
+  points_ = cloud.points;
   Tracked tracked;
-  tracked.fit = fit_scan(surfels_, cloud.points, prior.pose, prior, {}, work);
+  tracked.fit = fit_scan(surfels_, points_, prior.pose, prior, {}, work);
+  if (!cloud.ends.empty() && along_one_way(tracked.fit)) {
+    points_.insert(points_.end(), cloud.ends.begin(), cloud.ends.end());
+    tracked.fit = fit_scan(surfels_, points_, prior.pose, prior, {}, work);
+  }
   ExpectedMotion undoubted = motion;
   undoubted.doubt = 0.0;
   if (doubted) {
     tracked.fit = without_odometry(cloud, motion, prior, carried, tracked.fit, work);
-    if (motion.told) believe_again(cloud, {prior.pose, prior_information(undoubted)}, tracked.fit, work);
+    if (motion.told) believe_again({prior.pose, prior_information(undoubted)}, tracked.fit, work);
   }
   if (!doubted && (distance > config_.large_step || turn > config_.large_turn))
     tracked.fit = best_of_several(cloud, prior, distance, turn, tracked.fit, work);
@@ -105,7 +119,7 @@ ScanFit LocalTracker::without_odometry(const Cloud& cloud, const ExpectedMotion&
                                        const std::optional<TPose2D>& carried, ScanFit fit, Work* work) {
   const auto better = [&](const TPose2D& start) {
     const PosePrior about{start, prior.information};
-    const ScanFit other = fit_scan(surfels_, cloud.points, start, about, {}, work);
+    const ScanFit other = fit_scan(surfels_, points_, start, about, {}, work);
     if (other.cost < fit.cost) fit = other;
   };
   if (carried) better(*carried);
@@ -119,8 +133,8 @@ ScanFit LocalTracker::without_odometry(const Cloud& cloud, const ExpectedMotion&
 
 /// What odometry says now stands where the scan fits it as well: a scan without its hold slides along walls, and each
 /// slide would be one more reason to doubt.
-void LocalTracker::believe_again(const Cloud& cloud, const PosePrior& odometry, ScanFit& fit, Work* work) const {
-  const ScanFit by_odometry = fit_scan(surfels_, cloud.points, odometry.pose, odometry, {}, work);
+void LocalTracker::believe_again(const PosePrior& odometry, ScanFit& fit, Work* work) const {
+  const ScanFit by_odometry = fit_scan(surfels_, points_, odometry.pose, odometry, {}, work);
   if (by_odometry.prior_chi2 <= config_.slip_chi2 && by_odometry.inliers >= fit.inliers - kAsWell) fit = by_odometry;
 }
 
@@ -158,7 +172,7 @@ ScanFit LocalTracker::best_of_several(const Cloud& cloud, const PosePrior& prior
   const auto second = look_elsewhere(kLeastScore, {first->pose, 0.25, 0.1}, work);
   for (const auto& start : {first, second}) {
     if (!start) continue;
-    const ScanFit other = fit_scan(surfels_, cloud.points, start->pose, prior, {}, work);
+    const ScanFit other = fit_scan(surfels_, points_, start->pose, prior, {}, work);
     if (other.cost < fit.cost) fit = other;
   }
   return fit;
@@ -169,14 +183,14 @@ void LocalTracker::doubt_odometry(const KeyFrames& frames, const Cloud& cloud, c
                                   Work* work) {
   tracked.slipped = true;
   const PosePrior loose{prior.pose, kDoubt * prior.information};
-  ScanFit fit = fit_scan(surfels_, cloud.points, tracked.fit.pose, loose, {}, work);
+  ScanFit fit = fit_scan(surfels_, points_, tracked.fit.pose, loose, {}, work);
   for (const auto& centre : {std::optional(prior.pose), carried}) {
     if (!centre || fit.inliers >= kFound) continue;
     const SearchWindow window{*centre, reach.distance, reach.turn};
     const auto found = look_around(cloud, window, kLeastScore, 1.0, work);
     if (!found) continue;
     const PosePrior about{*centre, loose.information};
-    const ScanFit other = fit_scan(surfels_, cloud.points, found->pose, about, tight(), work);
+    const ScanFit other = fit_scan(surfels_, points_, found->pose, about, tight(), work);
     if (other.inliers > fit.inliers + 0.03) fit = other;
   }
   if (fit.inliers < config_.lost_inliers) {
@@ -215,7 +229,7 @@ std::optional<ScanFit> LocalTracker::any_heading(const Cloud& cloud, const PoseP
   const auto runner_up = look_elsewhere(kRunnerUp * found->score, {found->pose, 0.45, 0.2}, work);
   if (runner_up) return std::nullopt;
   const PosePrior anywhere{found->pose, Eigen::Matrix3d::Identity()};
-  return fit_scan(surfels_, cloud.points, found->pose, anywhere, tight(), work);
+  return fit_scan(surfels_, points_, found->pose, anywhere, tight(), work);
 }
 
 }  // namespace rubble::slam

@@ -80,13 +80,14 @@ class LocalTracker {
   void doubt_odometry(const KeyFrames& frames, const Cloud& cloud, const PosePrior& prior,
                       const std::optional<mrpt::math::TPose2D>& carried, const Reach& reach, Tracked& tracked,
                       Work* work);
-  void believe_again(const Cloud& cloud, const PosePrior& odometry, ScanFit& fit, Work* work) const;
+  void believe_again(const PosePrior& odometry, ScanFit& fit, Work* work) const;
   bool overrules(const KeyFrames& frames, const Cloud& cloud, const ScanFit& found, const ScanFit& expected,
                  Work* work) const;
   std::optional<ScanFit> any_heading(const Cloud& cloud, const PosePrior& prior, double distance, Work* work);
 
   const TrackerConfig config_;
-  std::vector<int> local_;  ///< key frames of the local map, the one whose frame it is in first
+  std::vector<OrientedPoint> points_;  ///< of the scan that is looked for, ends of walls among them
+  std::vector<int> local_;             ///< key frames of the local map, the one whose frame it is in first
   SurfelGrid surfels_;
   Correlator correlator_;
   CorrelativeSearch search_;

@@ -531,6 +531,7 @@ void RobustMapper::Impl::add_frame(Stamp reference, Cloud cloud, const ScanPoint
   KeyFrame frame;
   frame.stamp = reference;
   frame.cloud = std::move(cloud);
+  frame.cloud.ends = {};
   frame.cloud.sight = sight_of(points);
   if (!frames_.empty()) {
     path_here_ += length(T_frame_base_.x, T_frame_base_.y);

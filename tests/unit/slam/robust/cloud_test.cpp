@@ -118,9 +118,36 @@ TEST(Cloud, SinglePixelsBetweenTwoDepthsAreNoSurface) {
   for (const OrientedPoint& p : cloud_of(scan, {}).points) EXPECT_GT(std::abs(length(point(p)) - 2.0), 0.5);
 }
 
+TEST(Cloud, AWallThatStandsFreeTellsItsEnds) {
+  const slam_test::World before_a_wall{{{1.5, -0.6}, {1.5, 0.5}}, {{3.0, -4.0}, {3.0, 4.0}}};
+  const slam_test::World in_the_open{{{1.5, -0.6}, {1.5, 0.5}}, {{-1.0, 3.3}, {1.0, 3.3}}};
+  for (const slam_test::World& world : {before_a_wall, in_the_open}) {
+    const Cloud cloud = slam_test::cloud_at(world, {}, RobotModel());
+    int left = 0;
+    int right = 0;
+    for (const OrientedPoint& end : cloud.ends) {
+      EXPECT_NEAR(end.x, 1.5, 0.01) << "what is hidden or as far as the scanner sees has no end";
+      EXPECT_NEAR(end.nx, 0.0, 0.02);
+      EXPECT_NEAR(end.y, end.ny > 0.0F ? 0.5 : -0.6, 0.012);
+      EXPECT_NEAR(std::abs(end.ny), 1.0, 0.01);
+      ++(end.ny > 0.0F ? left : right);
+    }
+    EXPECT_GE(left, 1);
+    EXPECT_GE(right, 1);
+  }
+}
+
+TEST(Cloud, CornersAndWallsOutOfSightHaveNoEnds) {
+  const slam_test::World room{{{-2.0, -2.0}, {2.0, -2.0}}, {{2.0, -2.0}, {2.0, 2.0}}, {{2.0, 2.0}, {-2.0, 2.0}}};
+  EXPECT_TRUE(slam_test::cloud_at(room, {}, RobotModel()).ends.empty());
+  const slam_test::World corridor{{{-20.0, 0.7}, {20.0, 0.7}}, {{-20.0, -0.7}, {20.0, -0.7}}};
+  EXPECT_TRUE(slam_test::cloud_at(corridor, {}, RobotModel()).ends.empty());
+}
+
 TEST(Cloud, AnEmptyScanGivesAnEmptyCloud) {
   const Cloud cloud = cloud_of({}, {});
   EXPECT_TRUE(cloud.points.empty());
+  EXPECT_TRUE(cloud.ends.empty());
   EXPECT_TRUE(cloud.filled.empty());
   EXPECT_EQ(cloud.sight.judge(0.3, 1.0), SightFan::Verdict::Nothing);
   EXPECT_EQ(sight_of({}).judge(0.3, 1.0), SightFan::Verdict::Nothing);

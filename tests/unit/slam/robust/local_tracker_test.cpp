@@ -38,5 +38,30 @@ TEST(LocalTracker, DoubtedOdometryHoldsTheRobotWhereTheScanMaySlide) {
   }
 }
 
+/// Wheels that spin in a corridor with a door: all walls lie along the way, and only where they end tells that the
+/// robot stands.
+TEST(LocalTracker, EndsOfWallsHoldARobotWhoseWheelsSpin) {
+  robot::RobotModel model;
+  const slam_test::World door{{{-20.0, 0.6}, {2.0, 0.6}}, {{3.0, 0.6}, {20.0, 0.6}}, {{-20.0, -0.6}, {20.0, -0.6}}};
+  slam_test::World passage = door;  // behind the door
+  passage.push_back({{-20.0, 1.8}, {20.0, 1.8}});
+  const auto places = slam_test::places_along({{0.0, 0.0}, {1.5, 0.0}}, 0.3);
+  for (const slam_test::World& world : {door, passage}) {
+    KeyFrames frames;
+    for (std::size_t i = 0; i < places.size(); ++i) slam_test::add_key_frame(frames, world, places, 0.0, model);
+    LocalTracker tracker(suited_to(model.laser, {}).tracker);
+    tracker.redraw(frames, frames.last(), nullptr);
+    const Cloud cloud = slam_test::cloud_at(world, places.back(), model);
+    ExpectedMotion spinning;
+    spinning.T_last_now = TPose2D(0.04, 0.0, 0.0);
+    spinning.time = 0.1;
+    TPose2D T_frame_now;
+    for (int scan = 0; scan < 30; ++scan)
+      T_frame_now = tracker.track(frames, cloud, spinning, T_frame_now, nullptr).fit.pose;
+    EXPECT_LT(std::abs(T_frame_now.x), 0.08) << "odometry says 1.2 m";
+    EXPECT_NEAR(T_frame_now.y, 0.0, 0.01);
+  }
+}
+
 }  // namespace
 }  // namespace rubble::slam
