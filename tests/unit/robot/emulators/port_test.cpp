@@ -11,10 +11,12 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 #include "robot/drivers/descriptor.h"
@@ -211,14 +213,21 @@ TEST(TcpLine, WhoIsHungUpOnAtOnceIsToldThatTheDeviceIsInUse) {
   const Stranger first(server->name());
   std::uint8_t byte;
   ASSERT_TRUE(server->read(&byte, 1, 0.5).client_came);
+  std::atomic<bool> ending{false};
+  std::thread serving([&] {
+    std::uint8_t none;
+    while (!ending) server->read(&none, 0, 0.005);
+  });
   const auto second = open_port(server->name());
-  server->read(&byte, 1, 0.1);
-  EXPECT_THROW(second->read(&byte, 1, 2.0), PortBusy);
   try {
-    second->read(&byte, 1, 0.1);
-  } catch (const DeviceLost& lost) {
-    EXPECT_THAT(lost.what(), testing::HasSubstr("another program uses the device"));
+    second->read(&byte, 1, 2.0);
+    ADD_FAILURE() << "it is not hung up on";
+  } catch (const TurnedAway& away) {
+    EXPECT_THAT(away.what(), testing::HasSubstr("another program uses the device"));
+    EXPECT_THAT(away.otherwise(), testing::HasSubstr("the device closed the line"));
   }
+  ending = true;
+  serving.join();
 }
 
 /// It lives and acknowledges that it has no room; it only loses what it does not take.
@@ -303,13 +312,32 @@ TEST(TcpLine, BelongsToOneProgramOfThisComputer) {
   const auto server = serve_port("tcp:127.0.0.1:0");
   const std::string by_name = "tcp:localhost" + server->name().substr(server->name().rfind(':'));
   auto first = open_port(server->name());
-  EXPECT_THROW(check_port_free(server->name()), PortBusy);
+  EXPECT_THROW(PortClaim(server->name()), PortBusy);
   EXPECT_THROW(open_port(server->name()), PortBusy);
   EXPECT_THROW(open_port(by_name), PortBusy) << "by its other name too";
   EXPECT_THAT(refusal(server->name()), testing::HasSubstr("another program uses it; end that first"));
   first.reset();
-  EXPECT_NO_THROW(check_port_free(server->name()));
+  EXPECT_NO_THROW(PortClaim(server->name()));
   EXPECT_NO_THROW(open_port(server->name()));
+}
+
+TEST_P(Line, AClaimKeepsTheLineWhileTheDeviceIsUnplugged) {
+  const auto server = serve_port(word());
+  const std::string other = GetParam() == "tcp" ? "tcp:127.0.0.1:9" : "pty:" + folder_.file("other");
+  {
+    const PortClaim claim(server->name());
+    auto port = open_port(server->name());
+    port.reset();
+    EXPECT_THROW(PortClaim(server->name()), PortBusy) << "also while it is not open";
+    server->unplug();
+    EXPECT_THROW(PortClaim(server->name()), PortBusy) << "and while there is nothing to open";
+    server->plug_in();
+    EXPECT_NO_THROW(open_port(server->name()));
+    PortClaim moved = PortClaim(other);
+    const PortClaim kept = std::move(moved);
+    EXPECT_THROW(PortClaim{other}, PortBusy) << "a claim may be handed on";
+  }
+  EXPECT_NO_THROW(PortClaim(server->name()));
 }
 
 TEST(PtyLine, LinkGoesWithTheServerAndReplacesAnOldOne) {
@@ -374,11 +402,11 @@ TEST(Port, ALineBelongsToOneProgram) {
   const std::string path = testing::TempDir() + "rubble_port_of_one";
   const auto server = serve_port("pty:" + path);
   auto first = open_port(server->name());
-  EXPECT_THROW(check_port_free(server->name()), DeviceLost);
+  EXPECT_THROW(PortClaim(server->name()), PortBusy);
   EXPECT_THROW(open_port(server->name()), DeviceLost);
   EXPECT_THROW(open_port(path), DeviceLost) << "by its bare path too";
   first.reset();
-  EXPECT_NO_THROW(check_port_free(server->name()));
+  EXPECT_NO_THROW(PortClaim(server->name()));
   EXPECT_NO_THROW(open_port(server->name()));
 }
 
