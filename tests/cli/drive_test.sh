@@ -102,7 +102,7 @@ done
 # shellcheck disable=SC2086
 expect_exit 4 "another program uses it; end that first" timeout 100 "$rubble" drive "$robot" $ports --set safety.start_s=200 --out second
 for _ in $(seq 300); do
-  sed -n '/rubble: base: /,$p' first.txt | grep -q 'base: reports' && break
+  sed -n '/motors on/,$p' first.txt | grep -q 'base: reports' && break
   sleep 0.1
 done
 sed -n '/motors on/,$p' first.txt | grep -q 'base: reports' || fail "the first drive lost its base to another: $(tail -3 first.txt)"
@@ -122,7 +122,7 @@ for _ in $(seq 100); do
 done
 # shellcheck disable=SC2086
 timeout 100 "$rubble" drive "$robot" $ports --set safety.start_s=5 --out third >out.txt 2>err.txt
-[[ $? == 4 ]] && tail -n 1 err.txt | grep -qF "base: $base: the other side hangs up at once; another program uses the device" ||
+[[ $? == 4 ]] && tail -n 1 err.txt | grep -qF "base: has not reported yet ($base: the other side hangs up at once; another program uses the device" ||
   fail "a drive with a base in use waits or does not say so: $(tail -3 err.txt)"
 "$rubble" devices "$base" >devices.txt 2>&1
 [[ $? == 4 ]] && grep -q "another program uses the device" devices.txt || fail "devices at a base in use: $(cat devices.txt)"
