@@ -85,10 +85,14 @@ void DeviceThread::run() {
       baud_ = 0;
       converse();
     } catch (const std::exception& lost) {
+      const Stamp opened = port_ ? port_->opened() : Stamp::never();
       port_.reset();
       with([&] {
-        error_ = lost.what();
+        const auto* hung_up = dynamic_cast<const TurnedAway*>(&lost);
+        const bool answered = device_.last_report() != Stamp::never() && device_.last_report() >= opened;
+        error_ = hung_up != nullptr && answered ? hung_up->otherwise() : lost.what();
         busy_ = dynamic_cast<const PortBusy*>(&lost) != nullptr;
+        if (busy_ || (hung_up != nullptr && !answered)) ++turned_away_;
       });
       for (const Stamp again = host_now() + kOpenAgain; host_now() < again && !is_ending();)
         wait_for(-1, wake_.get(), kTurn);
@@ -99,6 +103,7 @@ void DeviceThread::run() {
 void DeviceThread::converse() {
   with([this] {
     error_.clear();
+    busy_ = false;
     device_.opened(port_->opened(), port_->kind());
   });
   while (!is_ending()) {

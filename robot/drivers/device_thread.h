@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -39,8 +40,10 @@ class DeviceThread {
   const std::string& name() const { return name_; }
   /// Why the port is not open; empty while it is.
   std::string error() const;
-  /// It is not open because another program has it.
+  /// It is not open because another program of this computer has it.
   bool busy() const;
+  /// How often another program seemed to have it. Waits for nobody.
+  int turned_away() const { return turned_away_; }
 
  private:
   void run();
@@ -60,6 +63,7 @@ class DeviceThread {
   bool ending_ = false;
   std::string error_;
   bool busy_ = false;
+  std::atomic<int> turned_away_{0};
   std::unique_ptr<Port> port_;
   int baud_ = 0;
   std::mutex ending_mutex_;

@@ -15,11 +15,13 @@
 #include <termios.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
+#include <mutex>
+#include <set>
 #include <vector>
 
 #include "base/error.h"
@@ -28,11 +30,13 @@
 #include "robot/drivers/port_word.h"
 
 namespace rubble::robot {
+
+namespace fs = std::filesystem;
 namespace {
 
 constexpr double kConnectTimeout = 2.0;  // [s]
 constexpr double kWriteTimeout = 0.5;    // a device that takes nothing for so long is gone [s]
-constexpr double kTurnedAway = 1.0;      // who is hung up on so early, and heard nothing, was turned away [s]
+constexpr double kTurnedAway = 3.0;      // who is hung up on so early was turned away, or so it seems [s]
 constexpr int kFirstBaud = 115200;
 
 /// Waits for `events`; false: the time is over. Signals do not shorten the wait.
@@ -60,10 +64,7 @@ class DescriptorPort : public Port {
     const Stamp until = host_now() + timeout;
     for (;;) {
       const ssize_t got = ::read(file_.get(), to, size);
-      if (got > 0) {
-        heard_ = true;
-        return {static_cast<std::size_t>(got), host_now()};
-      }
+      if (got > 0) return {static_cast<std::size_t>(got), host_now()};
       if (got == 0) throw_lost("the device closed the line");
       if (errno == EINTR) continue;
       if (errno != EAGAIN && errno != EWOULDBLOCK) throw_lost(gone(errno));
@@ -100,26 +101,27 @@ class DescriptorPort : public Port {
   static std::string gone(int error) { return std::string("the device is gone (") + std::strerror(error) + ")"; }
 
   [[noreturn]] void throw_lost(const std::string& how) const {
-    if (!is_serial() && !heard_ && host_now() - opened_ < kTurnedAway)
-      throw PortBusy(name_ +
-                     ": the other side hangs up at once; another program uses the device, or none is connected there");
-    throw DeviceLost(name_ + ": " + how + "; " + remedy());
+    const std::string what = name_ + ": " + how + "; " + remedy();
+    if (!is_serial() && host_now() - opened_ < kTurnedAway)
+      throw TurnedAway(
+          name_ + ": the other side hangs up at once; another program uses the device, or none is connected there",
+          what);
+    throw DeviceLost(what);
   }
 
   const Stamp opened_ = host_now();
-  std::atomic<bool> heard_{false};  ///< a byte has come
 };
 
 class TcpPort : public DescriptorPort {
  public:
-  TcpPort(std::string word, Descriptor socket, Descriptor ours)
-      : DescriptorPort(std::move(word), std::move(socket)), ours_(std::move(ours)) {}
+  TcpPort(std::string word, Descriptor socket, std::vector<Descriptor> locks)
+      : DescriptorPort(std::move(word), std::move(socket)), locks_(std::move(locks)) {}
   void set_baud(int) override {}
   LineKind kind() const override { return LineKind::Tcp; }
 
  private:
   std::string remedy() const override { return "see that the other side still runs"; }
-  Descriptor ours_;  ///< of lock_address()
+  std::vector<Descriptor> locks_;
 };
 
 speed_t speed_of(int baud, const std::string& name) {
@@ -144,7 +146,8 @@ LineKind kind_of(int line) {
 
 class SerialPort : public DescriptorPort {
  public:
-  SerialPort(std::string word, Descriptor descriptor) : DescriptorPort(std::move(word), std::move(descriptor)) {
+  SerialPort(std::string word, Descriptor descriptor, std::vector<Descriptor> locks)
+      : DescriptorPort(std::move(word), std::move(descriptor)), locks_(std::move(locks)) {
     kind_ = kind_of(file_.get());
     if (kind_ == LineKind::Uart) ask_for_low_latency();
     set_baud(kFirstBaud);
@@ -179,6 +182,7 @@ class SerialPort : public DescriptorPort {
   }
 
   LineKind kind_ = LineKind::Uart;
+  std::vector<Descriptor> locks_;
   std::string remedy() const override { return "check its plug and power, `rubble devices` lists what is there"; }
 };
 
@@ -191,23 +195,45 @@ std::string why_not_opened(int error) {
 }
 
 /// For as long as it is open.
-void lock(const Descriptor& line, const std::string& word) {
+void lock_line(const Descriptor& line, const std::string& word) {
   if (isatty(line.get()) && flock(line.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     throw PortBusy(word + ": " + why_not_opened(EBUSY));
 }
 
-/// The same for a TCP address, on this computer: the name of a socket that nobody connects to, which goes with the
-/// program whatever ends it. Without a descriptor, as where no such names are, nothing is locked.
-Descriptor lock_address(const addrinfo& address, const std::string& word) {
-  char host[NI_MAXHOST] = "", number[NI_MAXSERV] = "";
-  if (getnameinfo(address.ai_addr, address.ai_addrlen, host, sizeof host, number, sizeof number,
-                  NI_NUMERICHOST | NI_NUMERICSERV) != 0)
-    return {};
-  const std::string name = std::string("rubble client of ") + host + ":" + number;
+/// What this program has claimed.
+class Claims {
+ public:
+  static Claims& ours() {
+    static Claims claims;
+    return claims;
+  }
+  bool has(const std::string& name) {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    return names_.count(name) > 0;
+  }
+  void add(const std::vector<std::string>& names) {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    names_.insert(names.begin(), names.end());
+  }
+  void remove(const std::vector<std::string>& names) {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    for (const std::string& name : names) names_.erase(name);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<std::string> names_;
+};
+
+/// On this computer: the name of a socket that nobody connects to, which goes with the program whatever ends it, and
+/// stays when the device goes. Without a descriptor, as where no such names are, nothing is locked.
+Descriptor lock_name(const std::string& thing, const std::string& word) {
+  const std::string name = "rubble client of " + thing;
   sockaddr_un place{};
   place.sun_family = AF_UNIX;
+  // A path may be longer than such a name; its end tells more than its beginning.
   const std::size_t size = std::min(name.size(), sizeof place.sun_path - 1);
-  std::memcpy(place.sun_path + 1, name.data(), size);  // a first byte of 0: no file
+  std::memcpy(place.sun_path + 1, name.data() + (name.size() - size), size);  // a first byte of 0: no file
   Descriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (!socket) return {};
   const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + size);
@@ -216,12 +242,42 @@ Descriptor lock_address(const addrinfo& address, const std::string& word) {
   return {};
 }
 
+std::vector<Descriptor> lock_names(const std::vector<std::string>& names, const std::string& word) {
+  std::vector<Descriptor> locks;
+  for (const std::string& name : names)
+    if (!Claims::ours().has(name)) locks.push_back(lock_name(name, word));
+  return locks;
+}
+
+/// A path by which the line is asked for, and what it leads to now.
+std::vector<std::string> names_of(const std::string& path) {
+  std::error_code error;
+  std::vector<std::string> names{fs::absolute(path, error).lexically_normal().string()};
+  const std::string device = fs::canonical(path, error).string();
+  if (!error && device != names[0]) names.push_back(device);
+  return names;
+}
+
+std::vector<std::string> names_of(const addrinfo* addresses) {
+  std::vector<std::string> names;
+  for (const addrinfo* address = addresses; address != nullptr; address = address->ai_next) {
+    char host[NI_MAXHOST] = "", number[NI_MAXSERV] = "";
+    if (getnameinfo(address->ai_addr, address->ai_addrlen, host, sizeof host, number, sizeof number,
+                    NI_NUMERICHOST | NI_NUMERICSERV) == 0)
+      names.push_back(std::string(host) + ":" + number);
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
 std::unique_ptr<Port> open_serial(const std::string& word, const std::string& path) {
+  std::vector<Descriptor> locks = lock_names(names_of(path), word);
   Descriptor line(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!line) throw DeviceLost(word + ": " + why_not_opened(errno));
-  lock(line, word);
+  lock_line(line, word);
   if (!isatty(line.get())) throw InputError(word + ": is no serial line; give the path of one, as /dev/ttyUSB0");
-  return std::make_unique<SerialPort>(word, std::move(line));
+  return std::make_unique<SerialPort>(word, std::move(line), std::move(locks));
 }
 
 struct FreeAddresses {
@@ -257,9 +313,9 @@ std::unique_ptr<Port> open_tcp(const std::string& word, const PortWord& parts) {
   if (failure != 0)
     throw DeviceLost(word + ": the host '" + parts.host + "' is not known (" + gai_strerror(failure) +
                      "); check its name, or give its address");
+  std::vector<Descriptor> locks = lock_names(names_of(addresses.get()), word);
   int error = ECONNREFUSED;
   for (const addrinfo* address = addresses.get(); address != nullptr; address = address->ai_next) {
-    Descriptor ours = lock_address(*address, word);
     Descriptor socket(::socket(address->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     if (!socket) continue;
     error = connect_in_time(socket.get(), *address);
@@ -267,7 +323,7 @@ std::unique_ptr<Port> open_tcp(const std::string& word, const PortWord& parts) {
     const int on = 1;
     setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     setsockopt(socket.get(), SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
-    return std::make_unique<TcpPort>(word, std::move(socket), std::move(ours));
+    return std::make_unique<TcpPort>(word, std::move(socket), std::move(locks));
   }
   throw DeviceLost(word + ": nobody answers (" + std::strerror(error) +
                    "); switch the device on or start `rubble emulate` there, or end the program that talks to it");
@@ -275,17 +331,19 @@ std::unique_ptr<Port> open_tcp(const std::string& word, const PortWord& parts) {
 
 }  // namespace
 
-void check_port_free(const std::string& word) {
+PortClaim::PortClaim(const std::string& word) {
   const PortWord parts = parse_port_word(word);
-  if (parts.kind == PortKind::Tcp) {
-    const Addresses addresses = find(parts);
-    for (const addrinfo* address = addresses.get(); address != nullptr; address = address->ai_next)
-      lock_address(*address, word);
-    return;
+  std::vector<std::string> names = parts.kind == PortKind::Tcp ? names_of(find(parts).get()) : names_of(parts.path);
+  for (const std::string& name : names) locks_.push_back(lock_name(name, word));
+  if (parts.kind != PortKind::Tcp) {
+    const Descriptor line(::open(parts.path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+    if (line) lock_line(line, word);
   }
-  const Descriptor line(::open(parts.path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
-  if (line) lock(line, word);
+  names_ = std::move(names);
+  Claims::ours().add(names_);
 }
+
+PortClaim::~PortClaim() { Claims::ours().remove(names_); }
 
 std::unique_ptr<Port> open_port(const std::string& word) {
   const PortWord parts = parse_port_word(word);

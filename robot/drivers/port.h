@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/stamp.h"
+#include "robot/drivers/descriptor.h"
 #include "robot/robot.h"
 
 namespace rubble::robot {
@@ -26,11 +28,24 @@ struct Arrival {
   Stamp stamp;
 };
 
-/// Another program has the line. Whoever waits for it would take the device over when that one ends, so nobody does
-/// before a run.
+/// Another program of this computer has the line. Whoever waits for it would take the device over when that one ends,
+/// so nobody does before a run.
 class PortBusy : public DeviceLost {
  public:
   using DeviceLost::DeviceLost;
+};
+
+/// The other side of a TCP connection hung up soon after it was made. Unless the device itself had answered by then,
+/// another program has it (a serial server turns the second client away, some with a line of text), or none is
+/// connected there.
+class TurnedAway : public DeviceLost {
+ public:
+  TurnedAway(const std::string& what, std::string otherwise) : DeviceLost(what), otherwise_(std::move(otherwise)) {}
+  /// What to say in what()'s place when the device had answered.
+  const std::string& otherwise() const { return otherwise_; }
+
+ private:
+  std::string otherwise_;
 };
 
 /// A line to a device: bytes either way. One thread may read while another writes.
@@ -58,13 +73,26 @@ class Port {
 
 /// Opens the device side's other end: `/dev/ttyUSB0` (any path of a serial line), `pty:PATH` or `tcp:HOST:PORT`. A
 /// serial line is raw, 8N1, without flow control, at 115200 baud, and what waited in it is thrown away. A line belongs
-/// to one program of this computer; a device on TCP turns others away by itself, which read() and write() tell. Throws
-/// InputError on a word of another form, PortBusy when another program has it and DeviceLost when nothing answers
-/// there.
+/// to one program of this computer; a device on TCP turns others away by itself, which read() and write() tell
+/// (TurnedAway). Throws InputError on a word of another form, PortBusy when another program has it and DeviceLost when
+/// nothing answers there.
 std::unique_ptr<Port> open_port(const std::string& word);
 
-/// Throws PortBusy when another program of this computer has the line; what cannot be opened at all is no matter here.
-void check_port_free(const std::string& word);
+/// The line belongs to this program for as long as the claim lives, also while its device is unplugged; without one,
+/// only for as long as it is open. Other programs are known by the same path, or TCP address and number. May be moved.
+class PortClaim {
+ public:
+  /// Throws PortBusy when another program of this computer has the line, or this one has claimed it; what cannot be
+  /// opened at all is no matter here.
+  explicit PortClaim(const std::string& word);
+  ~PortClaim();
+  PortClaim(PortClaim&& other) noexcept = default;
+  PortClaim& operator=(PortClaim&&) = delete;
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<Descriptor> locks_;
+};
 
 /// Throws InputError unless `word` has one of the forms that open_port and serve_port take; opens nothing.
 void check_port_word(const std::string& word);

@@ -88,6 +88,8 @@ struct RealRobot::Impl {
   std::atomic<std::int64_t> operator_ns{Stamp::never().ns};
   std::atomic<std::uint64_t> scans{0}, odometry{0}, accelerations{0};
 
+  std::atomic<int> pardoned{0};  ///< of the base's refusals, by the operator
+
   std::mutex mutex;  ///< of what core and base thread share
   Commands commands;
   bool brake_asked = false;
@@ -176,9 +178,11 @@ struct RealRobot::Impl {
   void watch(Stamp now) {
     const std::lock_guard<std::mutex> lock(mutex);
     const bool fresh = commanded != Stamp::never() && now - commanded <= settings.safety.core_silence;
-    const bool allowed = armed && !emergency && !stopped;
+    const bool ours = armed && !is_taken();
+    const bool allowed = ours && !emergency && !stopped;
     const bool free = allowed && fresh && is_lidar_well(now) && is_unit_well(now) && is_operator_well(now);
     if (allowed) base->enable(true);
+    if (armed && !ours) base->enable(false);  // somebody else may have stopped it meanwhile
     if (std::exchange(brake_asked, false) && allowed) base->brake();
     base->drive(free ? commands.drive : Drive{});
     if (scan_answered != Stamp::never()) scan_leaving = std::exchange(scan_answered, Stamp::never());
@@ -189,6 +193,9 @@ struct RealRobot::Impl {
     const std::lock_guard<std::mutex> lock(mutex);
     if (scan_leaving != Stamp::never()) delays.push_back(now - std::exchange(scan_leaving, Stamp::never()));
   }
+
+  /// Since the operator said so last, another program seemed to have the base: it may have stopped the robot.
+  bool is_taken() const { return base_thread->turned_away() > pardoned; }
 
   bool is_lidar_silent(const ScannerStatus& scanner, Stamp now) const {
     return scanner.last_scan == Stamp::never() || now - scanner.last_scan > settings.safety.lidar_silence;
@@ -229,6 +236,7 @@ struct RealRobot::Impl {
     }
     const auto [last, ready, state, hold] = base_thread->with(
         [this] { return std::make_tuple(base->last_report(), base->ready(), base->state(), base->hold()); });
+    if (underway && is_taken()) lines.push_back("base: another program may have had it; see who drives the robot");
     if (hold == BaseDriver::Hold::EmergencyButton) lines.push_back("base: emergency button pressed");
     if (hold == BaseDriver::Hold::MotorsOff) lines.push_back("base: motors were switched off");
     if (!ready || now - last > settings.safety.base_silence) {
@@ -252,6 +260,7 @@ struct RealRobot::Impl {
     s.silent = silent(now);
     s.emergency = emergency;
     s.held = is_held();
+    s.taken = first != Stamp::never() && is_taken();
     s.scans = scans;
     s.odometry = odometry;
     s.accelerations = accelerations;
@@ -275,6 +284,7 @@ struct RealRobot::Impl {
   }
 
   bool is_held() const {
+    if (first != Stamp::never() && is_taken()) return true;
     return base_thread->with([this] { return base->hold() != BaseDriver::Hold::None; });
   }
 
@@ -339,13 +349,25 @@ struct RealRobot::Impl {
 
   bool is_over(Stamp now) const { return settings.time_limit > 0.0 && now - first >= settings.time_limit; }
 
-  /// Another program drives this robot. It is not waited for: it would be taken over when that one stops it.
-  void refuse_taken_devices() const {
+  /// Another program has this robot. It is not waited for: it would be taken over when that one stops it.
+  void refuse_busy_devices() const {
     std::vector<std::string> lines;
     if (const ScannerStatus scanner = lidar.status(); scanner.busy) lines.push_back("urg: " + scanner.error);
     for (const DeviceThread* thread : {base_thread.get(), unit_thread.get()})
       if (thread != nullptr && thread->busy()) lines.push_back(thread->name() + ": " + thread->error());
     if (!lines.empty()) throw DeviceLost(joined(lines));
+  }
+
+  /// Somebody seemed to have this robot and has let it go, perhaps by an emergency stop: a person must say "go".
+  void refuse_released_devices() const {
+    std::vector<std::string> names;
+    if (lidar.status().turned_away > 0) names.emplace_back("urg");
+    for (const DeviceThread* thread : {base_thread.get(), unit_thread.get()})
+      if (thread != nullptr && thread->turned_away() > 0) names.push_back(thread->name());
+    if (names.empty()) return;
+    throw DeviceLost(joined(names) +
+                     ": hung up at first, so another program may have had the robot, and stopped it; "
+                     "see that the robot is free and start again");
   }
 
   /// Waits while something is silent. False: the run was ended meanwhile.
@@ -355,6 +377,7 @@ struct RealRobot::Impl {
       const std::vector<std::string> lines = silent(now);
       if (lines.empty()) {
         held_since = Stamp::never();
+        if (first == Stamp::never()) refuse_released_devices();
         return true;
       }
       if (emergency) return false;
@@ -365,7 +388,7 @@ struct RealRobot::Impl {
       if (is_held()) held_since = now;  // somebody is at the robot: it is not lost
       const bool starting = first == Stamp::never();
       if (!starting && is_over(now)) return false;
-      if (starting) refuse_taken_devices();
+      if (starting) refuse_busy_devices();
       if (now - held_since > (starting ? settings.safety.start : settings.safety.give_up))
         throw DeviceLost(
             joined(lines) + "; " +
@@ -437,6 +460,7 @@ void RealRobot::emergency_stop() { impl_->emergency_stop(); }
 void RealRobot::stop() { impl_->stop(); }
 
 void RealRobot::rearm() {
+  impl_->pardoned = impl_->base_thread->turned_away();
   impl_->base_thread->with([this] { impl_->base->rearm(); });
   impl_->base_thread->wake();
 }

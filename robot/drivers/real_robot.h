@@ -50,7 +50,8 @@ enum class OperatorWish {
 /// How the robot is doing, for people.
 struct RobotStatus {
   std::vector<std::string> silent;    ///< what holds the robot, one line each
-  bool held = false;                  ///< stopped at the robot itself: only rearm() lets it go
+  bool held = false;                  ///< stopped at the robot itself, or taken: only rearm() lets it go
+  bool taken = false;                 ///< another program seemed to have the base while it was away
   std::vector<std::string> troubles;  ///< what does not work but holds nothing, one line each
   bool motors_on = false;
   bool emergency = false;
@@ -77,7 +78,8 @@ class RealRobot : public Robot {
   ~RealRobot() override;
 
   const RobotModel& model() const override;
-  /// Throws DeviceLost when a device does not come (back) in time.
+  /// Throws DeviceLost when a device does not come (back) in time, or another program seemed to have one before the
+  /// first tick.
   std::optional<Inputs> read() override;
   void command(const Commands& commands) override;
 
@@ -85,8 +87,8 @@ class RealRobot : public Robot {
   void emergency_stop();
   /// Set points to zero and motors off, for good; read() goes on. May be called from any thread.
   void stop();
-  /// After somebody stopped the robot at the robot itself (its emergency button, its motors' button): lets it drive
-  /// again.
+  /// After somebody stopped the robot at the robot itself (its emergency button, its motors' button), or another
+  /// program had its base while it was away: lets it drive again.
   void rearm();
   /// `ask` is called in a thread of its own about fifty times a second, whatever the core is at; its wish is granted at
   /// once. After Leave `left` is called in that thread. Empty: nobody is asked any more.

@@ -24,7 +24,8 @@ struct ScannerInfo {
 struct ScannerStatus {
   bool connected = false;            ///< scans are coming, or are about to
   std::string error;                 ///< why not: one line that names the port and the remedy
-  bool busy = false;                 ///< not connected because another program has the port
+  bool busy = false;                 ///< not connected because another program of this computer has the port
+  std::uint64_t turned_away = 0;     ///< how often another program seemed to have the scanner
   std::uint64_t scans = 0;           ///< whole scans received
   Stamp last_scan = Stamp::never();  ///< when the newest one arrived
   std::uint64_t damaged = 0;         ///< replies thrown away: wrong sum, wrong length, lost or doubled bytes

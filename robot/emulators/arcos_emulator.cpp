@@ -20,6 +20,7 @@ constexpr double kReached = 0.002;              // a commanded way is done [m]
 constexpr double kHeadingReached = deg_to_rad(0.2);
 constexpr double kLastPart = 0.1;         // time constant of the end of a commanded way [s]
 constexpr double kSettled = 0.3;          // standing for so long, what was measured is where the robot is [s]
+constexpr double kOldestMeasure = 0.2;    // what is older says nothing of where the robot is now [s]
 constexpr double kStallFault = 1.0;       // [s]
 constexpr double kDeafFault = 3.0;        // [s]
 constexpr double kButtonFault = 2.0;      // [s]
@@ -161,7 +162,7 @@ void ArcosEmulator::obey(const Order& order, Stamp now) {
     case kTurnBy:
     case kTurnRate:
     case kWheelSpeeds:
-      return move_by(order);
+      return move_by(order, now);
     default:
       return simulate(order);
   }
@@ -196,7 +197,7 @@ void ArcosEmulator::set_limit(const Order& order) {
   }
 }
 
-void ArcosEmulator::move_by(const Order& order) {
+void ArcosEmulator::move_by(const Order& order, Stamp now) {
   if (!order.value || !motors_) return;
   const int value = *order.value;
   braking_ = false;
@@ -204,16 +205,15 @@ void ArcosEmulator::move_by(const Order& order) {
   if (mode_ == Mode::Wheels && order.number != kWheelSpeeds) target_ = {};
   switch (order.number) {
     case kMove:
-      move_start_ = odometry_.pose;
       move_target_ = kMillimetre * value;
       target_ = {};
-      aim_for(Mode::Move);
+      aim_for(Mode::Move, now);
       return;
     case kHead:
     case kTurnBy:
       if (mode_ == Mode::Move) target_ = {};
-      heading_target_ = wrap_angle(deg_to_rad(value) + (order.number == kTurnBy ? reckoned().phi : 0.0));
-      aim_for(Mode::Head);
+      heading_target_ = wrap_angle(deg_to_rad(value) + (order.number == kTurnBy ? reckoned().phi + gone(now).w : 0.0));
+      aim_for(Mode::Head, now);
       return;
     case kWheelSpeeds: {
       const WheelSpeeds wheels = wheel_speeds(value);
@@ -335,15 +335,33 @@ mrpt::math::TPose2D ArcosEmulator::reckoned() const {
   return {c * dx + s * dy, -s * dx + c * dy, wrap_angle(odometry_.pose.phi - origin_.phi)};
 }
 
+/// What the wheels have gone by since they were measured last [m], [rad].
+Drive ArcosEmulator::gone(Stamp now) const {
+  const double since = measured_at_ == Stamp::never() ? 0.0 : std::clamp(now - measured_at_, 0.0, kOldestMeasure);
+  return {odometry_.v * since, odometry_.w * since};
+}
+
 /// A commanded way is a profile of set points. What is measured comes late, and would make it hunt; so it is looked at
 /// where the way begins, and again once the robot stands.
-void ArcosEmulator::aim_for(Mode mode) {
+void ArcosEmulator::aim_for(Mode mode, Stamp now) {
   mode_ = mode;
-  planned_left_ = still_to_go();
+  const Drive since = gone(now);
+  if (mode == Mode::Move) {
+    move_start_ = odometry_.pose;
+    move_start_.x += since.v * std::cos(odometry_.pose.phi);
+    move_start_.y += since.v * std::sin(odometry_.pose.phi);
+    planned_left_ = move_target_;
+  } else {
+    planned_left_ = wrap_angle(still_to_go() - since.w);
+  }
   rest_ = 0.0;
-  // At a wall the set points may be ahead of wheels that stand, though no stall is told yet.
-  if (std::abs(odometry_.v) < kStillSpeed) motion_.v = 0.0;
-  if (std::abs(odometry_.w) < kStillTurn) motion_.w = 0.0;
+  // At a wall the set points may be ahead of wheels that stand, though no stall is told yet. Wheels that have only just
+  // been told to turn stand as well: a way that is ordered again and again must not take their speed every time.
+  const auto yield = [](double& ahead, double then, double measured, double still, double way) {
+    if (std::abs(measured) < still && std::abs(then) >= still && ahead * way <= 0.0) ahead = 0.0;
+  };
+  yield(motion_.v, motion_then_.v, odometry_.v, kStillSpeed, mode == Mode::Move ? planned_left_ : target_.v);
+  yield(motion_.w, motion_then_.w, odometry_.w, kStillTurn, mode == Mode::Head ? planned_left_ : target_.w);
 }
 
 /// By what was measured last [rad] or [m].
@@ -405,6 +423,8 @@ void ArcosEmulator::advance(Stamp now) {
 void ArcosEmulator::measure(const Odometry& odometry, Stamp now) {
   const double dt = odometry.stamp > odometry_.stamp ? odometry.stamp - odometry_.stamp : 0.0;
   odometry_ = odometry;
+  measured_at_ = now;
+  motion_then_ = motion_;
   if (odometry.stalled && (mode_ == Mode::Head || mode_ == Mode::Move)) give_way();
   if (now < stalled_until_) odometry_.stalled = true;
   left_travel_ += left_speed() * dt;

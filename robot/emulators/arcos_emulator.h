@@ -75,7 +75,7 @@ class ArcosEmulator : public EmulatedDevice {
   void obey(const arcos::Order& order, Stamp now);
   void synchronise(std::uint8_t number);
   void open_session(Stamp now);
-  void move_by(const arcos::Order& order);
+  void move_by(const arcos::Order& order, Stamp now);
   void set_limit(const arcos::Order& order);
   void simulate(const arcos::Order& order);
   void set_laser(const arcos::Order& order);
@@ -85,7 +85,8 @@ class ArcosEmulator : public EmulatedDevice {
   void set_origin(const mrpt::math::TPose2D& start);
   void report();
   void switch_motors(bool on);
-  void aim_for(Mode mode);
+  Drive gone(Stamp now) const;
+  void aim_for(Mode mode, Stamp now);
   double still_to_go() const;
   void look_again(double dt);
   void give_way();
@@ -125,7 +126,9 @@ class ArcosEmulator : public EmulatedDevice {
   Stamp heard_ = Stamp::never();
   Stamp advanced_ = Stamp::never();
 
-  Odometry odometry_;           ///< as it was fed
+  Odometry odometry_;  ///< as it was fed
+  Stamp measured_at_ = Stamp::never();
+  Drive motion_then_;           ///< what the motors were told when it was fed
   mrpt::math::TPose2D origin_;  ///< where the client's odometry frame lies in the fed one
   mrpt::math::TPose2D truth_;
   std::optional<mrpt::math::TPose2D> placed_;

@@ -29,7 +29,10 @@ namespace rubble::robot {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kIdle = 2, kAskAgain = 1, kTries = 3;  // a TCP client that answers no question after so long is gone [s]
+// A TCP client that acknowledges nothing for so long is gone [s]: questions of the system's own when nothing is under
+// way, else what is sent again.
+constexpr int kIdle = 2, kAskAgain = 1, kTries = 3;
+constexpr unsigned kUnheard = 1000u * (kIdle + kTries * kAskAgain);  // [ms]
 
 /// One descriptor at a time behind an epoll descriptor that stays the same; what the client has not taken waits here.
 class Line {
@@ -198,16 +201,13 @@ class TcpServer : public LineServer {
   bool take(std::uint8_t* to, std::size_t size, Served& result) override {
     if (left_) result.client_left = true;
     left_ = false;
+    if (client_ && is_cut_off()) drop_client(result);
     if (client_ && !is_leaving()) turn_away();
     if (!client_ && listener_) accept_client(result);
     if (client_ && size > 0) {
       const ssize_t got = ::read(client_.get(), to, size);
       if (got > 0) result.size = static_cast<std::size_t>(got);
-      if (got == 0 || (got < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) {
-        line_.forget();
-        client_.close();
-        result.client_left = true;
-      }
+      if (got == 0 || (got < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) drop_client(result);
     }
     return result.size > 0 || result.client_came || result.client_left;
   }
@@ -222,6 +222,22 @@ class TcpServer : public LineServer {
     return ::poll(&file, 1, 0) > 0;
   }
 
+  /// What was sent to the client is sent again and again, and nobody acknowledges it. (TCP_USER_TIMEOUT would also end
+  /// a client that lives but does not read: it acknowledges that it has no room.)
+  bool is_cut_off() const {
+    tcp_info info{};
+    socklen_t size = sizeof info;
+    if (getsockopt(client_.get(), IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return false;
+    const bool again = info.tcpi_retransmits > 0 || info.tcpi_probes >= kTries;
+    return again && info.tcpi_last_ack_recv > kUnheard;
+  }
+
+  void drop_client(Served& result) {
+    line_.forget();
+    client_.close();
+    result.client_left = true;
+  }
+
   void turn_away() const {
     while (next_client()) {
     }
@@ -233,12 +249,11 @@ class TcpServer : public LineServer {
     const int on = 1;
     setsockopt(client.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     // A client whose cable was cut says no good-bye; it must not keep others out for good.
-    const int idle = kIdle, again = kAskAgain, tries = kTries, unheard = 1000 * (kIdle + kTries * kAskAgain);
+    const int idle = kIdle, again = kAskAgain, tries = kTries;
     setsockopt(client.get(), SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
     setsockopt(client.get(), IPPROTO_TCP, TCP_KEEPIDLE, &idle, sizeof idle);
     setsockopt(client.get(), IPPROTO_TCP, TCP_KEEPINTVL, &again, sizeof again);
     setsockopt(client.get(), IPPROTO_TCP, TCP_KEEPCNT, &tries, sizeof tries);
-    setsockopt(client.get(), IPPROTO_TCP, TCP_USER_TIMEOUT, &unheard, sizeof unheard);
     client_ = std::move(client);
     line_.watch(client_.get());
     result.client_came = true;

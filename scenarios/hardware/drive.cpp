@@ -162,7 +162,7 @@ class Driver {
       if (begun_ && others) loop_.save_now();
     }
     tell_back(status.silent);
-    if (status.held) mind_hold();
+    if (status.held) mind_hold(status.taken);
     held_ = held_ && status.held;
     if (options_.forget_keys) options_.forget_keys();
     return !interrupted_;
@@ -187,11 +187,13 @@ class Driver {
     return out;
   }
 
-  /// Somebody stopped the robot at the robot. Only what the operator says after that was told lets it go.
-  void mind_hold() {
+  /// Somebody stopped the robot at the robot, or had its base while it was away. Only what the operator says after that
+  /// was told lets it go.
+  void mind_hold(bool taken) {
     if (!held_) {
       if (options_.tell)
-        options_.tell("base: held; release the button, then press R (or send SIGUSR2) to let the robot drive again");
+        options_.tell(std::string("base: held; ") + (taken ? "see that nobody else drives it" : "release the button") +
+                      ", then press R (or send SIGUSR2) to let the robot drive again");
       if (options_.rearm) options_.rearm();  // what was pressed or sent before it was held
       held_ = true;
     } else if (options_.rearm && options_.rearm()) {
@@ -294,8 +296,10 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
   const auto start = Clock::now();
   file.settings.mapper.require_permission();
   // A robot that somebody else drives is not waited for: it would be taken over when they stop it.
+  // Nor by others while one of its devices is unplugged; MRPT's drivers open their ports themselves.
+  std::vector<robot::PortClaim> claims;
   for (const std::string& port : {file.lidar.port, file.robot.base_port, file.robot.levelling_port})
-    if (!port.empty()) robot::check_port_free(port);
+    if (!port.empty()) claims.emplace_back(port);
   RunFolder folder(options.out.empty() ? next_run_folder("runs", file.settings.name, file.settings.seed) : options.out,
                    options.replace);
   folder.write("scenario.yaml", resolved_yaml(file.settings));

@@ -72,7 +72,10 @@ std::optional<Reply> Link::ask(const std::string& command, double timeout) {
   const Stamp end = host_now() + timeout;
   for (;;) {
     while (auto reply = receiver_.next()) {
-      if (reply->lines[0] == command && status_of(*reply)) return reply;
+      if (reply->lines[0] == command && status_of(*reply)) {
+        answered_ = true;
+        return reply;
+      }
       if (stream_.empty() || reply->lines[0].rfind(stream_, 0) != 0) ++damaged_;
     }
     const double left = end - host_now();

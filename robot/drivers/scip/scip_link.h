@@ -45,6 +45,8 @@ class Link {
   /// Laser off, nothing is sent any more. Throws nothing.
   void stop();
 
+  /// It has said something that only a scanner says.
+  bool answered() const { return answered_; }
   bool is_scip2() const { return scip2_; }
   const Geometry& geometry() const { return geometry_; }
   const ScannerInfo& info() const { return info_; }
@@ -71,6 +73,7 @@ class Link {
   std::unique_ptr<Port> port_;
   Receiver receiver_;
   bool scip2_ = false;
+  bool answered_ = false;
   int baud_ = 115200;
   std::string stream_;  ///< the command of the stream, without the number of scans that ends it
   Geometry geometry_;

@@ -25,6 +25,7 @@ struct ScipScanner::Impl {
   std::mutex mutex;
   std::condition_variable ended;
   bool ending = false;
+  bool answered = false;  ///< the scanner, in this connection
   std::thread thread;
 
   explicit Impl(const ScipScannerConfig& given) : config(given) {
@@ -50,11 +51,13 @@ struct ScipScanner::Impl {
       try {
         converse();
       } catch (const std::exception& error) {
-        const std::string what = error.what();
+        const auto* hung_up = dynamic_cast<const TurnedAway*>(&error);
+        const std::string what = hung_up != nullptr && answered ? hung_up->otherwise() : error.what();
         const bool busy = dynamic_cast<const PortBusy*>(&error) != nullptr;
         queue.update([&](ScannerStatus& status) {
           status.connected = false;
           status.busy = busy;
+          if (busy || (hung_up != nullptr && !answered)) ++status.turned_away;
           status.error = what;
         });
         std::unique_lock<std::mutex> lock(mutex);
@@ -65,6 +68,7 @@ struct ScipScanner::Impl {
 
   /// One connection, from the opened port until it breaks or the driver ends.
   void converse() {
+    answered = false;
     scip::Link link(config.open(config.port));
     std::uint64_t counted = 0;  // damaged replies of this connection that the status knows
     const auto count_damaged = [&] {
@@ -72,7 +76,13 @@ struct ScipScanner::Impl {
       queue.update([&](ScannerStatus& status) { status.damaged += all - counted; });
       counted = all;
     };
-    link.shake_hands(config.only_scip1);
+    try {
+      link.shake_hands(config.only_scip1);
+    } catch (const DeviceLost&) {
+      answered = link.answered();
+      throw;
+    }
+    answered = true;
     scip::ScanMaker maker(link.geometry(), link.is_scip2(), {config.range_max, config.no_echo_is_miss});
     link.ask_time(maker.clock(), maker.map());
     link.start();

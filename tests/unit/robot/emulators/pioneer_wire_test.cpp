@@ -703,7 +703,9 @@ TEST(ArcosEmulator, AWayBackFromAWallIsAsLongAsItWasSent) {
       base.receive(arcos::command(arcos::kOpen), now);
       base.receive(arcos::command(arcos::kEnable, 1), now);
       base.receive(turns ? arcos::command(arcos::kHead, 120) : arcos::command(arcos::kMove, 3000), now);
-      double way = 0.0, speed = 0.0, since_push = 0.0, relaxed = 0.0, reported = 0.0, turned_at = 0.0, farthest = 0.0;
+      double way = 0.0, speed = 0.0, since_push = 0.0, relaxed = 0.0, turned_at = 0.0, farthest = 0.0;
+      double reported = 0.0, reported_speed = 0.0;
+      Stamp reported_at{0};
       bool stalled = false, ordered = false;
       int at_wall = 0;
       for (int i = 1; i <= 2500; ++i) {
@@ -722,15 +724,15 @@ TEST(ArcosEmulator, AWayBackFromAWallIsAsLongAsItWasSent) {
         at_wall += way >= wall ? 1 : 0;
         if (!ordered && at_wall > 13 * pushed) {
           ordered = true;
-          turned_at =
-              turns ? wall : reported;  // HEAD names a heading, MOVE counts from where the client sees the robot
+          // HEAD names a heading; MOVE counts from where the client must take the robot to be.
+          turned_at = turns ? wall : reported + reported_speed * (now - reported_at);
           base.receive(turns ? arcos::command(arcos::kHead, 20) : arcos::command(arcos::kMove, -500), now);
         }
         if (ordered) farthest = std::max(farthest, turned_at - way);
         const mrpt::math::TPose2D pose = turns ? mrpt::math::TPose2D{0, 0, way} : mrpt::math::TPose2D{way, 0, 0};
         if (i % 10 == 0) {
           base.measure({now, pose, turns ? 0.0 : speed, turns ? speed : 0.0, stalled}, now);
-          reported = way;
+          reported = way, reported_speed = speed, reported_at = now;
         }
         base.take_output();
       }
@@ -739,6 +741,73 @@ TEST(ArcosEmulator, AWayBackFromAWallIsAsLongAsItWasSent) {
       EXPECT_LT(farthest, 1.03 * back) << "it shoots over";
       EXPECT_NEAR(turned_at - way, back, turns ? deg_to_rad(0.5) : 0.005);
     }
+  }
+}
+
+/// An emulator that is open, its motors on, and a robot whose wheels follow the set points late.
+struct Heavy {
+  Heavy() {
+    base.client_came(now);
+    for (const auto order : {arcos::kSync0, arcos::kSync1, arcos::kSync2}) base.receive(arcos::command(order), now);
+    base.receive(arcos::command(arcos::kOpen), now);
+    base.receive(arcos::command(arcos::kEnable, 1), now);
+  }
+  void step() {
+    constexpr double kLag = 0.1, kStep = 0.001;
+    now = now + kStep;
+    ++steps;
+    if (steps % 500 == 0) base.receive(arcos::command(arcos::kPulse), now);
+    base.advance(now);
+    wheels.v += (base.motion().v - wheels.v) * kStep / kLag;
+    wheels.w += (base.motion().w - wheels.w) * kStep / kLag;
+    way += wheels.v * kStep;
+    turn += wheels.w * kStep;
+    if (steps % 100 == 0) base.measure({now, {way, 0.0, turn}, wheels.v, wheels.w, false}, now);
+    base.take_output();
+  }
+  ArcosEmulator base{ArcosEmulatorSettings{}};
+  Stamp now{0};
+  Drive wheels;
+  double way = 0.0, turn = 0.0;
+  int steps = 0;
+};
+
+/// As clients do that say in every cycle where they want to go.
+TEST(ArcosEmulator, AWayThatIsOrderedAgainAndAgainIsGone) {
+  for (const int every_ms : {5, 20, 50}) {
+    for (const int turn_accel : {10, 100}) {
+      SCOPED_TRACE(std::to_string(every_ms) + " ms, " + std::to_string(turn_accel) + " deg/s2");
+      Heavy turning;
+      for (const int sign : {1, -1})
+        turning.base.receive(arcos::command(arcos::kSetTurnAcceleration, sign * turn_accel), turning.now);
+      for (int i = 0; i < 10000; ++i) {
+        if (i % every_ms == 0) turning.base.receive(arcos::command(arcos::kHead, 90), turning.now);
+        turning.step();
+      }
+      EXPECT_NEAR(rad_to_deg(turning.turn), 90.0, 3.0);
+      Heavy driving;
+      driving.base.receive(arcos::command(arcos::kSetSpeed, 300), driving.now);
+      for (int i = 0; i < 4000; ++i) {
+        if (i % every_ms == 0) driving.base.receive(arcos::command(arcos::kMove, 1000), driving.now);
+        driving.step();
+      }
+      EXPECT_GT(driving.way, 0.8) << "each MOVE is a metre from where the robot is";
+    }
+  }
+}
+
+TEST(ArcosEmulator, MoveCountsFromWhereTheRobotIsWhenItIsOrdered) {
+  for (const int late_ms : {1, 20, 50, 80, 99}) {
+    SCOPED_TRACE(late_ms);
+    Heavy robot;
+    robot.base.receive(arcos::command(arcos::kVelocity, 300), robot.now);
+    for (int i = 0; i < 3000 + late_ms; ++i) robot.step();
+    ASSERT_NEAR(robot.wheels.v, 0.3, 1e-3);
+    const double there = robot.way;
+    robot.base.receive(arcos::command(arcos::kMove, 600), robot.now);
+    for (int i = 0; i < 8000; ++i) robot.step();
+    EXPECT_NEAR(robot.way - there, 0.6, 0.005);
+    EXPECT_NEAR(robot.wheels.v, 0.0, 1e-3);
   }
 }
 

@@ -3,14 +3,20 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <net/if.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <sched.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 #include "robot/drivers/descriptor.h"
@@ -207,13 +213,71 @@ TEST(TcpLine, WhoIsHungUpOnAtOnceIsToldThatTheDeviceIsInUse) {
   const Stranger first(server->name());
   std::uint8_t byte;
   ASSERT_TRUE(server->read(&byte, 1, 0.5).client_came);
+  std::atomic<bool> ending{false};
+  std::thread serving([&] {
+    std::uint8_t none;
+    while (!ending) server->read(&none, 0, 0.005);
+  });
   const auto second = open_port(server->name());
-  server->read(&byte, 1, 0.1);
-  EXPECT_THROW(second->read(&byte, 1, 2.0), PortBusy);
   try {
-    second->read(&byte, 1, 0.1);
-  } catch (const DeviceLost& lost) {
-    EXPECT_THAT(lost.what(), testing::HasSubstr("another program uses the device"));
+    second->read(&byte, 1, 2.0);
+    ADD_FAILURE() << "it is not hung up on";
+  } catch (const TurnedAway& away) {
+    EXPECT_THAT(away.what(), testing::HasSubstr("another program uses the device"));
+    EXPECT_THAT(away.otherwise(), testing::HasSubstr("the device closed the line"));
+  }
+  ending = true;
+  serving.join();
+}
+
+/// It lives and acknowledges that it has no room; it only loses what it does not take.
+TEST(TcpLine, AClientThatDoesNotReadIsKept) {
+  const auto server = serve_port("tcp:127.0.0.1:0");
+  const Stranger lazy(server->name());
+  std::uint8_t byte;
+  ASSERT_TRUE(server->read(&byte, 1, 0.5).client_came);
+  const Bytes block(2137, 'x');
+  bool left = false, refused = false;
+  for (const Stamp end = host_now() + 8.0; !left && host_now() < end;) {
+    while (!refused && !left && host_now() < end) refused = !server->write(block.data(), block.size());
+    server->write(block.data(), block.size());
+    left = server->read(&byte, 1, 0.02).client_left;
+  }
+  EXPECT_TRUE(refused) << "the line was never full";
+  EXPECT_FALSE(left);
+  EXPECT_FALSE(lazy.is_hung_up_on(0.01));
+}
+
+/// A network of its own, whose only device can be switched off: as a cable that is cut.
+TEST(TcpLine, WhoseCableIsCutMakesRoom) {
+  if (::unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0 && ::unshare(CLONE_NEWNET) != 0)
+    GTEST_SKIP() << "no network of one's own may be made here";
+  const auto link = [](bool up) {
+    const Descriptor any(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+    ifreq request{};
+    std::strcpy(request.ifr_name, "lo");
+    if (::ioctl(any.get(), SIOCGIFFLAGS, &request) != 0) return false;
+    request.ifr_flags = static_cast<short>(up ? request.ifr_flags | IFF_UP : request.ifr_flags & ~IFF_UP);
+    return ::ioctl(any.get(), SIOCSIFFLAGS, &request) == 0;
+  };
+  ASSERT_TRUE(link(true));
+  for (const bool sends : {true, false}) {
+    SCOPED_TRACE(sends ? "while the device sends" : "while nothing is under way");
+    const auto server = serve_port("tcp:127.0.0.1:0");
+    Stranger lost(server->name());
+    ASSERT_TRUE(lost.connected());
+    std::uint8_t byte;
+    ASSERT_TRUE(server->read(&byte, 1, 0.5).client_came);
+    ASSERT_TRUE(link(false));
+    bool left = false;
+    for (const Stamp end = host_now() + 20.0; !left && host_now() < end;) {
+      if (sends) server->write(&byte, 1);
+      left = server->read(&byte, 1, 0.05).client_left;
+    }
+    EXPECT_TRUE(left) << "it keeps others out for good";
+    ASSERT_TRUE(link(true));
+    const Stranger next(server->name());
+    EXPECT_TRUE(server->read(&byte, 1, 2.0).client_came);
   }
 }
 
@@ -248,13 +312,32 @@ TEST(TcpLine, BelongsToOneProgramOfThisComputer) {
   const auto server = serve_port("tcp:127.0.0.1:0");
   const std::string by_name = "tcp:localhost" + server->name().substr(server->name().rfind(':'));
   auto first = open_port(server->name());
-  EXPECT_THROW(check_port_free(server->name()), PortBusy);
+  EXPECT_THROW(PortClaim(server->name()), PortBusy);
   EXPECT_THROW(open_port(server->name()), PortBusy);
   EXPECT_THROW(open_port(by_name), PortBusy) << "by its other name too";
   EXPECT_THAT(refusal(server->name()), testing::HasSubstr("another program uses it; end that first"));
   first.reset();
-  EXPECT_NO_THROW(check_port_free(server->name()));
+  EXPECT_NO_THROW(PortClaim(server->name()));
   EXPECT_NO_THROW(open_port(server->name()));
+}
+
+TEST_P(Line, AClaimKeepsTheLineWhileTheDeviceIsUnplugged) {
+  const auto server = serve_port(word());
+  const std::string other = GetParam() == "tcp" ? "tcp:127.0.0.1:9" : "pty:" + folder_.file("other");
+  {
+    const PortClaim claim(server->name());
+    auto port = open_port(server->name());
+    port.reset();
+    EXPECT_THROW(PortClaim(server->name()), PortBusy) << "also while it is not open";
+    server->unplug();
+    EXPECT_THROW(PortClaim(server->name()), PortBusy) << "and while there is nothing to open";
+    server->plug_in();
+    EXPECT_NO_THROW(open_port(server->name()));
+    PortClaim moved = PortClaim(other);
+    const PortClaim kept = std::move(moved);
+    EXPECT_THROW(PortClaim{other}, PortBusy) << "a claim may be handed on";
+  }
+  EXPECT_NO_THROW(PortClaim(server->name()));
 }
 
 TEST(PtyLine, LinkGoesWithTheServerAndReplacesAnOldOne) {
@@ -319,11 +402,11 @@ TEST(Port, ALineBelongsToOneProgram) {
   const std::string path = testing::TempDir() + "rubble_port_of_one";
   const auto server = serve_port("pty:" + path);
   auto first = open_port(server->name());
-  EXPECT_THROW(check_port_free(server->name()), DeviceLost);
+  EXPECT_THROW(PortClaim(server->name()), PortBusy);
   EXPECT_THROW(open_port(server->name()), DeviceLost);
   EXPECT_THROW(open_port(path), DeviceLost) << "by its bare path too";
   first.reset();
-  EXPECT_NO_THROW(check_port_free(server->name()));
+  EXPECT_NO_THROW(PortClaim(server->name()));
   EXPECT_NO_THROW(open_port(server->name()));
 }
 

@@ -4,7 +4,9 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <sys/ioctl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -199,7 +201,6 @@ TEST(RealRobot, ScansThatComeLateStopItThoughTheyNeverCease) {
   EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0; })) << "it goes on when they are fresh again";
 }
 
-/// A mapper may be busy for most of a second; whoever drives by hand is heard all the same.
 /// A line at the edge of what is fresh enough must not make the robot jerk ten times a second.
 TEST(RealRobot, ScansAtTheEdgeOfTooOldStopItOnce) {
   Bench bench;
@@ -230,7 +231,12 @@ TEST(RealRobot, ScansAtTheEdgeOfTooOldStopItOnce) {
   }
   fresh.join();
   EXPECT_EQ(stops, 1);
-  EXPECT_THAT(named, testing::Each(testing::StartsWith("urg: its scans are 0.6")));
+  ASSERT_FALSE(named.empty());
+  for (const std::string& line : named) {
+    double age = 0.0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "urg: its scans are %lf s old", &age), 1) << line;
+    EXPECT_GE(age, 0.6);
+  }
   EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0; })) << "it goes on when they are fresh again";
 }
 
@@ -257,6 +263,163 @@ TEST(RealRobot, ARobotThatAnotherProgramDrivesIsNotWaitedFor) {
   EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0; })) << "the first one drives on";
 }
 
+/// A serial server (as ser2net): one connection to the device; while it is busy with another computer's, whoever comes
+/// is told so, in its own words or in none, and hung up on.
+class SerialServer {
+ public:
+  SerialServer(std::string device, std::string words) : device_(std::move(device)), words_(std::move(words)) {
+    relay_ = std::thread([this] { relay(); });
+  }
+  ~SerialServer() {
+    ending_ = true;
+    relay_.join();
+  }
+  std::string port() const { return "tcp:127.0.0.1:" + std::to_string(number_); }
+
+  std::atomic<bool> busy{false};
+  std::atomic<int> refused{0};
+
+ private:
+  static Descriptor listening(int& number) {
+    Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), size);
+    ::listen(socket.get(), 4);
+    ::getsockname(socket.get(), reinterpret_cast<sockaddr*>(&address), &size);
+    number = ntohs(address.sin_port);
+    return socket;
+  }
+
+  void relay() {
+    Descriptor client;
+    std::unique_ptr<Port> device;
+    std::uint8_t bytes[4096];
+    for (; !ending_; sleep_until(host_now() + 0.002)) {
+      Descriptor next(::accept4(socket_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+      if (busy) client.close(), device.reset();
+      if (next && (busy || client)) {
+        if (!words_.empty()) ::send(next.get(), words_.data(), words_.size(), MSG_NOSIGNAL);
+        ++refused;
+        continue;
+      }
+      if (next) client = std::move(next), device = open_port(device_);
+      if (!client) continue;
+      const ssize_t said = ::read(client.get(), bytes, sizeof bytes);
+      if (said > 0) device->write(bytes, static_cast<std::size_t>(said), host_now());
+      if (said == 0) {
+        client.close(), device.reset();
+        continue;
+      }
+      const Arrival heard = device->read(bytes, sizeof bytes, 0.0);
+      if (heard.size > 0) ::send(client.get(), bytes, heard.size, MSG_NOSIGNAL);
+    }
+  }
+
+  std::string device_, words_;
+  int number_ = 0;
+  Descriptor socket_ = listening(number_);
+  std::atomic<bool> ending_{false};
+  std::thread relay_;
+};
+
+class InUse : public testing::TestWithParam<std::string> {
+ protected:
+  InUse() { settings_.base_port = server_.port(); }
+  bool motors_on() {
+    bool on = false;
+    bench_.base_server.with([&] { on = bench_.arcos.motors_on(); });
+    return on;
+  }
+
+  Bench bench_;
+  SerialServer server_{release(bench_), GetParam()};
+  RealRobotSettings settings_;
+
+ private:
+  static std::string release(Bench& bench) {
+    bench.robot.reset();
+    return bench.base_server.port();
+  }
+};
+
+/// It may be there a little later, but then somebody may have stopped it.
+TEST_P(InUse, ItIsWaitedForButNotDrivenOnWhenItIsLetGo) {
+  server_.busy = true;
+  settings_.levelling_port = bench_.unit_server.port();
+  bench_.robot = std::make_unique<RealRobot>(settings_, bench_.scanner, nullptr);
+  bool told = false, motors_came_on = false;
+  const Stamp begun = host_now();
+  bench_.robot->while_waiting([&](const RobotStatus& status) {
+    for (const std::string& line : status.silent)
+      told = told || line.find("another program uses the device") != std::string::npos;
+    if (told && server_.refused > 8 && host_now() - begun > 2.0) server_.busy = false;
+    motors_came_on = motors_came_on || motors_on();
+    return true;
+  });
+  try {
+    bench_.robot->read();
+    ADD_FAILURE() << "it drives the robot on";
+  } catch (const DeviceLost& lost) {
+    EXPECT_THAT(lost.what(), testing::StartsWith("base: hung up at first"));
+    EXPECT_THAT(lost.what(), testing::HasSubstr("start again"));
+  }
+  EXPECT_TRUE(told);
+  EXPECT_FALSE(motors_came_on || motors_on());
+}
+
+TEST_P(InUse, ABaseThatNeverLetsUsInEndsTheWait) {
+  server_.busy = true;
+  settings_.levelling_port = bench_.unit_server.port();
+  settings_.safety.start = 2.0;
+  bench_.robot = std::make_unique<RealRobot>(settings_, bench_.scanner, nullptr);
+  try {
+    bench_.robot->read();
+    ADD_FAILURE() << "it drives a robot that is in use";
+  } catch (const DeviceLost& lost) {
+    EXPECT_THAT(lost.what(), testing::HasSubstr("the other side hangs up at once; another program uses the device"));
+  }
+}
+
+/// The one who took it while its line was away may have stopped it.
+TEST_P(InUse, ABaseThatSomebodyTookOnTheWayIsHeldForTheOperator) {
+  settings_.levelling_port = bench_.unit_server.port();
+  bench_.robot = std::make_unique<RealRobot>(settings_, bench_.scanner, nullptr);
+  bench_.drive(0.3, 3.0);
+  ASSERT_TRUE(Bench::soon([&] { return bench_.speed > 0.0; }));
+  std::atomic<bool> rearm{false};
+  std::atomic<bool> held{false}, taken{false};
+  bench_.robot->while_waiting([&](const RobotStatus& status) {
+    held = status.held;
+    taken = taken || status.taken;
+    if (rearm.exchange(false)) bench_.robot->rearm();
+    return true;
+  });
+  const int refused = server_.refused;
+  server_.busy = true;
+  std::thread core([&] { bench_.drive(0.3, 12.0); });
+  EXPECT_TRUE(Bench::soon([&] { return server_.refused > refused + 1 && bench_.speed == 0.0; }));
+  server_.busy = false;
+  EXPECT_TRUE(Bench::soon([&] {
+    bool open = false;
+    bench_.base_server.with([&] { open = bench_.arcos.open(); });
+    return open && held && taken;
+  }));
+  bool drove = false;
+  for (const Stamp end = host_now() + 2.0; host_now() < end; sleep_until(host_now() + 0.01))
+    drove = drove || motors_on() || bench_.speed != 0.0;
+  EXPECT_FALSE(drove) << "it drives on without being asked to";
+  rearm = true;
+  EXPECT_TRUE(Bench::soon([&] { return bench_.speed > 0.0; })) << "the operator lets it go";
+  core.join();
+}
+
+INSTANTIATE_TEST_SUITE_P(RealRobot, InUse, testing::Values("", "Port already in use\r\n"),
+                         [](const auto& info) { return info.param.empty() ? "WithoutAWord" : "WithAWord"; });
+
+/// A mapper may be busy for most of a second; whoever drives by hand is heard all the same.
 TEST(RealRobot, TheHandIsHeardWhileTheCoreIsBusy) {
   RealRobotSettings settings;
   settings.safety.core_silence = 10.0;  // the core is as good as gone
