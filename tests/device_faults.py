@@ -18,6 +18,7 @@ import concurrent.futures
 import json
 import math
 import os
+import shutil
 import select
 import signal
 import socket
@@ -169,6 +170,7 @@ def rearm(process, emulator, fault):
 
 def drive(rubble, robot, fault, at, seconds):
     name = fault or "none"
+    shutil.rmtree(name, ignore_errors=True)  # of an attempt before
     emulator = Emulator(rubble, "--truth", name + ".tum", *(["--fault", "%s@%g" % (fault, at)] if fault else []))
     errors = open(name + ".err", "w+")
     process = subprocess.Popen(

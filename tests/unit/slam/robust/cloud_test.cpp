@@ -120,7 +120,7 @@ TEST(Cloud, SinglePixelsBetweenTwoDepthsAreNoSurface) {
 
 TEST(Cloud, AWallThatStandsFreeTellsItsEnds) {
   const slam_test::World before_a_wall{{{1.5, -0.6}, {1.5, 0.5}}, {{3.0, -4.0}, {3.0, 4.0}}};
-  const slam_test::World in_the_open{{{1.5, -0.6}, {1.5, 0.5}}, {{-1.0, 3.3}, {1.0, 3.3}}};
+  const slam_test::World in_the_open{{{1.5, -0.6}, {1.5, 0.5}}, {{-1.0, 3.3}, {1.0, 3.3}}, {{-1.0, -3.4}, {1.0, -3.4}}};
   for (const slam_test::World& world : {before_a_wall, in_the_open}) {
     const Cloud cloud = slam_test::cloud_at(world, {}, RobotModel());
     int left = 0;
