@@ -202,8 +202,8 @@ struct RealRobot::Impl {
   }
   /// Of the newest scan's last beam: a line or a computer that hands scans over late shows the world as it was.
   static double age(const ScannerStatus& scanner, Stamp now) { return now - scanner.last_scan + scanner.latency; }
-  bool is_lidar_well(Stamp now) const {
-    const ScannerStatus scanner = lidar.status();
+  bool is_lidar_well(Stamp now) const { return is_lidar_well(lidar.status(), now); }
+  bool is_lidar_well(const ScannerStatus& scanner, Stamp now) const {
     if (is_lidar_silent(scanner, now)) return false;  // its own trouble, and over with the next scan
     freshness.look(age(scanner, now), settings.safety.lidar_age, now);
     return !freshness.stale();
@@ -223,8 +223,8 @@ struct RealRobot::Impl {
   std::vector<std::string> silent(Stamp now) const {
     std::vector<std::string> lines;
     const bool underway = first != Stamp::never();
-    if (!is_lidar_well(now)) {
-      const ScannerStatus scanner = lidar.status();
+    const ScannerStatus scanner = lidar.status();
+    if (!is_lidar_well(scanner, now)) {
       if (is_lidar_silent(scanner, now)) {
         lines.push_back(silent_for("urg", underway, scanner.last_scan, now, scanner.error));
       } else {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/text/words.h"
 #include "robot/drivers/black_box.h"
 #include "robot/drivers/mrpt_scanner.h"
 #include "robot/drivers/scip/scip_scanner.h"
@@ -112,12 +113,18 @@ class Driver {
     LoopEnd end = loop_.run(robot);
     if (end.robot_ended && real_.status().emergency) interrupted_ = true;
     if (end.robot_ended)
-      end.reason = real_.status().emergency ? "emergency stop" : interrupted_ ? "interrupted" : "the time is over";
+      end.reason = real_.status().emergency ? "emergency stop" : interrupted_ ? "interrupted" : time_is_over();
     end.interrupted = interrupted_;
     return end;
   }
 
  private:
+  /// A robot that stood held or silent to the end has not done what it was sent for.
+  std::string time_is_over() const {
+    const std::vector<std::string> waited_for = real_.status().silent;
+    return waited_for.empty() ? "the time is over" : "the time is over; the drive was waiting: " + joined(waited_for);
+  }
+
   /// Asked in the robot's own thread, whatever the core is at.
   robot::OperatorWish wish() {
     if (options_.emergency && options_.emergency()) return robot::OperatorWish::EmergencyStop;
@@ -221,8 +228,9 @@ class Driver {
   }
 
   void each_second(double seconds) {
-    const double since = seconds - told_at_;
-    told_at_ = seconds;
+    const Stamp now = robot::host_now();
+    const double since = now - told_at_;  // the drive's own time stands still while it waits
+    told_at_ = now;
     DriveStatus status;
     status.robot = real_.status();
     if (status.robot.troubles != troubles_ && options_.tell) tell_troubles(status.robot.troubles);
@@ -247,8 +255,8 @@ class Driver {
   robot::RealRobot& real_;
   Core& core_;
   Loop loop_;
-  bool begun_ = false;    ///< something has come in
-  double told_at_ = 0.0;  ///< of the drive's time [s]
+  bool begun_ = false;  ///< something has come in
+  Stamp told_at_ = robot::host_now();
   std::atomic<bool> interrupted_{false};
   bool held_ = false;  ///< stopped at the robot itself, and told
   std::vector<std::string> troubles_;

@@ -50,6 +50,15 @@ expect_exit 3 "nonsense.yaml" "$rubble" drive nonsense.yaml
 [[ $? == 4 ]] || fail "a drive without devices must fail with 4: $(cat err.txt)"
 for device in urg base levelling; do grep -q "rubble: $device: has not reported yet" err.txt || fail "$device is not named"; done
 
+# A robot that somebody holds by its button to the end: the end says so.
+start_emulator --fault base-button@3
+# shellcheck disable=SC2086
+"$rubble" drive "$robot" $ports --time-limit 8 --out held --set explorer.return_home=false >out.txt 2>err.txt
+code=$?
+stop_emulator
+[[ $code == 0 ]] || fail "a drive that is held ends with $code: $(cat err.txt)"
+grep -q 'the drive was waiting: base: ' out.txt || fail "nothing says that the robot was held to the end: $(cat out.txt err.txt)"
+
 # The whole job in real time, with a base that is unplugged on the way: it is named and picked up again, how the robot
 # came to rest meanwhile the scans tell, and the map loses nothing by it.
 "$rubble" run small.yaml --set mapper.kind=robust --out in_process >/dev/null || fail "the same scenario in process fails"
