@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/text/words.h"
 #include "robot/drivers/black_box.h"
+#include "robot/drivers/host_clock.h"
 #include "robot/drivers/mrpt_scanner.h"
 #include "robot/drivers/scip/scip_scanner.h"
 #include "robot/logs/log.h"
