@@ -63,7 +63,7 @@ class SightLines {
 
  private:
   std::vector<Line> lines_;
-  double fee_ = 0.0;  ///< kappa that maps of other arenas reach by luck
+  double fee_ = 0.0;                    ///< kappa that maps of other arenas reach by luck
   std::array<std::size_t, 2> count_{};  ///< open and blocked
 };
 
