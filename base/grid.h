@@ -79,6 +79,15 @@ class Grid {
   std::vector<T> cells_;
 };
 
+/// The same cells elsewhere or of another size; `frame` has as many.
+template <class T>
+Grid<T> with_frame(const Grid<T>& grid, const GridFrame& frame) {
+  assert(frame.width == grid.width() && frame.height == grid.height());
+  Grid<T> out(frame);
+  out.cells() = grid.cells();
+  return out;
+}
+
 /// What a map says about a cell.
 enum class Occupancy : unsigned char { Unknown = 0, Free = 1, Occupied = 2 };
 using OccupancyGrid = Grid<Occupancy>;

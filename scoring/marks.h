@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "scoring/alignment/feature_score.h"
+#include "scoring/alignment/feature_verdict.h"
 #include "scoring/maps/pois.h"
 #include "scoring/rooms/room_match.h"
 #include "scoring/scorecard.h"

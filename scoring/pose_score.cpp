@@ -14,9 +14,7 @@ OccupancyGrid scaled_frame(const OccupancyGrid& map, double factor) {
   frame.resolution *= factor;
   frame.x0 *= factor;
   frame.y0 *= factor;
-  OccupancyGrid out(frame);
-  out.cells() = map.cells();
-  return out;
+  return with_frame(map, frame);
 }
 
 }  // namespace rubble::scoring

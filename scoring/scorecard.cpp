@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "scoring/alignment/alignment.h"
+#include "scoring/alignment/feature_score.h"
 #include "scoring/alignment/second_drawing.h"
 #include "scoring/alignment/trust.h"
 #include "scoring/measures/detached.h"
@@ -52,9 +53,7 @@ double agreeing_scale(const OccupancyGrid& map, const OccupancyGrid& truth, cons
   for (const double scale : {0.5, 2.0}) {
     GridFrame frame = map.frame();
     frame.resolution *= scale;
-    OccupancyGrid rescaled(frame);
-    rescaled.cells() = map.cells();
-    if (align(rescaled, truth, by_walls).aligned) return scale;
+    if (align(with_frame(map, frame), truth, by_walls).aligned) return scale;
   }
   return 0.0;
 }

@@ -6,7 +6,7 @@
 
 #include "base/grid.h"
 #include "scoring/alignment/alignment.h"
-#include "scoring/alignment/feature_score.h"
+#include "scoring/alignment/feature_verdict.h"
 #include "scoring/alignment/match_error.h"
 #include "scoring/walls/break_fit.h"
 #include "scoring/walls/wall_errors.h"

@@ -58,7 +58,18 @@ void Rig::follow(World& world, robot::Inputs& inputs) {
   measure(world, inputs);
 }
 
-void Rig::remember(Stamp end, const World& world) { truth_.push_back({end, world.state(index_).pose}); }
+void Rig::finish(Stamp end, const World& world, robot::Inputs& inputs) {
+  inputs.now = end;
+  inputs.command = in_force_;
+  truth_.push_back({end, world.state(index_).pose});
+}
+
+void Rig::command(const robot::Commands& commands, World& world) {
+  in_force_ = commands;
+  world.firmware(index_).command(commands.drive);
+  if (commands.brake) world.firmware(index_).brake();
+  if (model_.has_levelling_unit) world.servos(index_).command(commands.aim);
+}
 
 void Rig::measure(World& world, robot::Inputs& inputs) {
   const WorldState& state = world.state(index_);

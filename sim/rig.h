@@ -37,8 +37,10 @@ class Rig {
   void follow(World& world, robot::Inputs& inputs);
   /// What arrives at the very start.
   void measure(World& world, robot::Inputs& inputs);
-  /// The tick is over.
-  void remember(Stamp end, const World& world);
+  /// The tick is over: what was told the robot during it is in `inputs`, too.
+  void finish(Stamp end, const World& world, robot::Inputs& inputs);
+  /// What the robot is told for the ticks to come.
+  void command(const robot::Commands& commands, World& world);
 
   const robot::RobotModel& model() const { return model_; }
   const Trajectory& truth() const { return truth_; }
@@ -58,6 +60,7 @@ class Rig {
   Clock rotor_clock_;  ///< next: the zero of the sweep that is delivered next
   std::vector<WorldState> states_;
   Trajectory truth_;
+  robot::Commands in_force_;
 };
 
 /// Throws InputError unless the physics step is whole milliseconds and divides the robot's tick.

@@ -15,7 +15,6 @@ struct SimRobot::Impl {
   World world;
   Rig rig;
   Stamp now;
-  robot::Commands in_force;
 };
 
 SimRobot::SimRobot(const arenas::Arena& arena, const robot::RobotModel& model, const SimConfig& config,
@@ -39,18 +38,11 @@ std::optional<robot::Inputs> SimRobot::read() {
     sim.rig.follow(sim.world, inputs);
   }
   sim.now = end;
-  inputs.now = end;
-  inputs.command = sim.in_force;
-  sim.rig.remember(end, sim.world);
+  sim.rig.finish(end, sim.world, inputs);
   return inputs;
 }
 
-void SimRobot::command(const robot::Commands& commands) {
-  impl_->in_force = commands;
-  impl_->world.firmware().command(commands.drive);
-  if (commands.brake) impl_->world.firmware().brake();
-  if (model().has_levelling_unit) impl_->world.servos().command(commands.aim);
-}
+void SimRobot::command(const robot::Commands& commands) { impl_->rig.command(commands, impl_->world); }
 
 void SimRobot::place(const mrpt::math::TPose2D& T_arena_base) { impl_->world.place(T_arena_base); }
 

@@ -51,10 +51,7 @@ class SimTeam::Member : public robot::Robot {
 struct SimTeam::Impl {
   Impl(const arenas::Arena& arena, const std::vector<TeamMember>& members, const SimConfig& sim_config,
        std::uint64_t seed)
-      : config(sim_config),
-        world(arena, entrants_of(members), config.physics_step),
-        waiting(members.size()),
-        in_force(members.size()) {
+      : config(sim_config), world(arena, entrants_of(members), config.physics_step), waiting(members.size()) {
     for (std::size_t i = 0; i < members.size(); ++i) {
       const std::uint64_t own_seed = seed + i * 0x9E3779B97F4A7C15ull;
       rigs.push_back(std::make_unique<Rig>(arena, members[i].model, config, world, i, own_seed));
@@ -74,9 +71,7 @@ struct SimTeam::Impl {
     }
     now = end;
     for (std::size_t i = 0; i < rigs.size(); ++i) {
-      inputs[i].now = end;
-      inputs[i].command = in_force[i];
-      rigs[i]->remember(end, world);
+      rigs[i]->finish(end, world, inputs[i]);
       waiting[i].push_back(std::move(inputs[i]));
     }
     return true;
@@ -87,7 +82,6 @@ struct SimTeam::Impl {
   std::vector<std::unique_ptr<Rig>> rigs;
   std::vector<std::unique_ptr<Member>> robots;
   std::vector<std::deque<robot::Inputs>> waiting;  ///< ticks a robot has not read yet
-  std::vector<robot::Commands> in_force;
   Stamp now;
 };
 
@@ -101,12 +95,7 @@ std::optional<robot::Inputs> SimTeam::Member::read() {
   return inputs;
 }
 
-void SimTeam::Member::command(const robot::Commands& commands) {
-  team_.in_force[index_] = commands;
-  team_.world.firmware(index_).command(commands.drive);
-  if (commands.brake) team_.world.firmware(index_).brake();
-  if (model().has_levelling_unit) team_.world.servos(index_).command(commands.aim);
-}
+void SimTeam::Member::command(const robot::Commands& commands) { team_.rigs[index_]->command(commands, team_.world); }
 
 SimTeam::SimTeam(const arenas::Arena& arena, const std::vector<TeamMember>& members, const SimConfig& config,
                  std::uint64_t seed) {

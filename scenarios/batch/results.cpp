@@ -143,6 +143,13 @@ double RunRecord::metric(const std::string& key) const {
   return found->is_number() ? found->get<double>() : std::nan("");
 }
 
+std::vector<double> numbers(const std::vector<const RunRecord*>& runs, const std::string& key) {
+  std::vector<double> values;
+  for (const RunRecord* run : runs)
+    if (const double value = run->metric(key); !std::isnan(value)) values.push_back(value);
+  return values;
+}
+
 std::string to_line(const RunRecord& r) {
   ordered_json json;
   json["run_id"] = r.run_id;

@@ -38,6 +38,9 @@ struct RunRecord {
   double metric(const std::string& key) const;
 };
 
+/// metric(key) of those runs that have it.
+std::vector<double> numbers(const std::vector<const RunRecord*>& runs, const std::string& key);
+
 /// Numbers of one run that depend on the machine (wall_s, real_time_factor, peak_mb), by run_id.
 using Timing = std::map<std::string, KeptJson>;
 

@@ -25,13 +25,6 @@ std::map<GroupKey, std::vector<const RunRecord*>> grouped(const std::vector<RunR
   return groups;
 }
 
-std::vector<double> numbers(const std::vector<const RunRecord*>& runs, const std::string& key) {
-  std::vector<double> values;
-  for (const RunRecord* run : runs)
-    if (const double value = run->metric(key); !std::isnan(value)) values.push_back(value);
-  return values;
-}
-
 std::size_t failed_runs(const std::vector<const RunRecord*>& runs) {
   return static_cast<std::size_t>(std::count_if(runs.begin(), runs.end(), [](const auto* run) { return !run->ok(); }));
 }

@@ -36,13 +36,6 @@ std::vector<const RunRecord*> of(const ResultSet& set, const std::string& config
   return runs;
 }
 
-std::vector<double> numbers(const std::vector<const RunRecord*>& runs, const std::string& key) {
-  std::vector<double> values;
-  for (const RunRecord* run : runs)
-    if (const double value = run->metric(key); !std::isnan(value)) values.push_back(value);
-  return values;
-}
-
 std::vector<double> times(const std::vector<const RunRecord*>& runs, const Timing& timing, const std::string& key) {
   std::vector<double> values;
   for (const RunRecord* run : runs) {

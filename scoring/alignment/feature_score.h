@@ -3,20 +3,16 @@
 #include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
-#include <string>
 #include <vector>
 
 #include "base/grid.h"
+#include "scoring/alignment/feature_verdict.h"
 #include "scoring/alignment/match_error.h"
 #include "scoring/proposals/features.h"
 #include "scoring/rooms/rooms.h"
 #include "scoring/walls/warp.h"
 
 namespace rubble::scoring {
-
-/// What eq. (7) is taken over.
-enum class EvidenceKind { Surf, Corners, Rooms };
-const char* name_of(EvidenceKind kind);
 
 /// A place where a wall ends or turns into the floor.
 struct CornerFeature {
@@ -42,23 +38,7 @@ MatchError feature_error(const MapFeatures& map, const MapFeatures& truth, Evide
 /// C of a kind: E where nothing is matched [m^2].
 double feature_cap(EvidenceKind kind);
 
-/// Eq. (7) held against what strangers reach. Even a good map repeats only a part of the truth's features, and some
-/// meet by chance wherever the map lies: E alone says little.
-struct KindScore {
-  EvidenceKind kind = EvidenceKind::Surf;
-  std::vector<mrpt::math::TPoint2D> map;    ///< the map's features, own frame [m]
-  std::vector<mrpt::math::TPoint2D> truth;  ///< the truth's
-  MatchError match;                         ///< at the pose
-  double stranger = 0.0;  ///< mean E of the map's mirror image at its best poses, all of which are wrong [m^2]
-  bool usable = false;    ///< enough features of this kind in the truth to say anything
-  double score = 0.0;     ///< 1 - E / `stranger`, not below 0
-};
-
-struct FeatureVerdict {
-  std::vector<KindScore> kinds;
-  double score = 0.0;  ///< mean over the usable kinds: 1 for the truth, about 0 for strangers
-};
-
+/// Every kind of features at the pose, held against what strangers reach.
 FeatureVerdict judge_features(const OccupancyGrid& map, const MapFeatures& of_map, const OccupancyGrid& truth,
                               const MapFeatures& of_truth, const mrpt::math::TPose2D& T_truth_map);
 

@@ -19,9 +19,8 @@ struct MatchError {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
 };
 
-/// The best one-to-one association W at a pose and its error: E = (sum over matched of c_ij + cap/2 for each unmatched
-/// feature of either map) / mean number of features, c_ij = squared distance + difference(i, j) [m^2], pairs with
-/// c_ij >= cap never matched. Exact: Hungarian method on each group of features that may compete.
+/// The best one-to-one association W at a pose and its error (scoring/measures/association.h), with
+/// c_ij = squared distance + difference(i, j) [m^2].
 MatchError match_error(const std::vector<mrpt::math::TPoint2D>& map, const std::vector<mrpt::math::TPoint2D>& truth,
                        const mrpt::math::TPose2D& T_truth_map,
                        const std::function<double(std::size_t map, std::size_t truth)>& difference, double cap);

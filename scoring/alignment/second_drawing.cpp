@@ -72,9 +72,8 @@ double second_drawing_share(const OccupancyGrid& map, const OccupancyGrid& truth
   for (const double size : kSizes) {
     GridFrame frame = drawing.frame();
     frame.resolution = parted.off.resolution() * size;
-    OccupancyGrid sized(frame);
-    sized.cells() = drawing.cells();
-    if (alike(sized, truth, sights)) return parted.cells_off / (parted.cells_on + parted.cells_off);
+    if (alike(with_frame(drawing, frame), truth, sights))
+      return parted.cells_off / (parted.cells_on + parted.cells_off);
   }
   return 0.0;
 }

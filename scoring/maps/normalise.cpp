@@ -215,9 +215,7 @@ LoadedMap load_map(const std::string& path, const LoadOptions& options) {
     check_resolution(path, *options.resolution);
     GridFrame frame = out.grid.frame();
     frame.resolution = *options.resolution;
-    OccupancyGrid rescaled(frame);
-    rescaled.cells() = out.grid.cells();
-    out.grid = std::move(rescaled);
+    out.grid = with_frame(out.grid, frame);
   }
   out.recognised =
       cv::format("ROS map %g m a pixel, %d x %d", out.grid.resolution(), out.grid.width(), out.grid.height());

@@ -220,6 +220,23 @@ TPose2D middle_on_middle(const OccupancyGrid& map, const OccupancyGrid& truth) {
   return {shift.x, shift.y, 0.0};
 }
 
+/// Paints the ground, and walls as `wall` says, which is given a place in both maps and what either map has there.
+template <class Wall>
+void paint(Canvas& canvas, const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map,
+           const Wall& wall) {
+  for (int row = 0; row < canvas.map_rows(); ++row) {
+    for (int column = 0; column < canvas.map_columns(); ++column) {
+      const TPoint2D p_truth = canvas.point(column, row);
+      const TPoint2D p_map = T_truth_map.inverseComposePoint(p_truth);
+      const Occupancy in_map = at(map, p_map);
+      const Occupancy in_truth = at(truth, p_truth);
+      Colour& colour = canvas.image.at<Colour>(row, column);
+      colour = background(in_map, in_truth);
+      wall(p_map, in_map, p_truth, in_truth, colour);
+    }
+  }
+}
+
 }  // namespace
 
 void write_overlay(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
@@ -227,19 +244,12 @@ void write_overlay(const std::string& path, const OccupancyGrid& map, const Occu
   Canvas canvas(common_frame(map, truth, T_truth_map, 0.5));
   const WallField to_map(map, 0.5);
   const WallField to_truth(truth, 0.5);
-  for (int row = 0; row < canvas.map_rows(); ++row) {
-    for (int column = 0; column < canvas.map_columns(); ++column) {
-      const TPoint2D p_truth = canvas.point(column, row);
-      const TPoint2D p_map = T_truth_map.inverseComposePoint(p_truth);
-      const Occupancy in_map = at(map, p_map);
-      const Occupancy in_truth = at(truth, p_truth);
-      Colour colour = background(in_map, in_truth);
-      if (in_truth == Occupancy::Occupied) colour = wall_colour(to_wall(to_map, p_map, map), kTruthOnly);
-      if (in_map == Occupancy::Occupied && colour != kInk)
-        colour = wall_colour(to_wall(to_truth, p_truth, truth), kMapOnly);
-      canvas.image.at<Colour>(row, column) = colour;
-    }
-  }
+  paint(canvas, map, truth, T_truth_map,
+        [&](const TPoint2D& p_map, Occupancy in_map, const TPoint2D& p_truth, Occupancy in_truth, Colour& colour) {
+          if (in_truth == Occupancy::Occupied) colour = wall_colour(to_wall(to_map, p_map, map), kTruthOnly);
+          if (in_map == Occupancy::Occupied && colour != kInk)
+            colour = wall_colour(to_wall(to_truth, p_truth, truth), kMapOnly);
+        });
   draw_victims(canvas, victims, T_truth_map);
   draw_warning(canvas, warning);
   draw_legend(canvas, {{kInk, "walls within 5 cm"},
@@ -256,20 +266,13 @@ void write_error_map(const std::string& path, const OccupancyGrid& map, const Oc
   Canvas canvas(common_frame(map, truth, T_truth_map, 0.5));
   const WallField to_map(map, tau);
   const WallField to_truth(truth, tau);
-  for (int row = 0; row < canvas.map_rows(); ++row) {
-    for (int column = 0; column < canvas.map_columns(); ++column) {
-      const TPoint2D p_truth = canvas.point(column, row);
-      const TPoint2D p_map = T_truth_map.inverseComposePoint(p_truth);
-      const Occupancy in_map = at(map, p_map);
-      const Occupancy in_truth = at(truth, p_truth);
-      Colour colour = background(in_map, in_truth);
-      if (in_truth == Occupancy::Occupied)
-        colour = heat(to_wall(to_map, p_map, map) / tau, kTruthOnly);
-      else if (in_map == Occupancy::Occupied)
-        colour = heat(to_wall(to_truth, p_truth, truth) / tau, kMapOnly);
-      canvas.image.at<Colour>(row, column) = colour;
-    }
-  }
+  paint(canvas, map, truth, T_truth_map,
+        [&](const TPoint2D& p_map, Occupancy in_map, const TPoint2D& p_truth, Occupancy in_truth, Colour& colour) {
+          if (in_truth == Occupancy::Occupied)
+            colour = heat(to_wall(to_map, p_map, map) / tau, kTruthOnly);
+          else if (in_map == Occupancy::Occupied)
+            colour = heat(to_wall(to_truth, p_truth, truth) / tau, kMapOnly);
+        });
   draw_heat_bar(canvas, tau);
   write_png(path, canvas.image);
 }

@@ -1,19 +1,16 @@
 #include "scoring/rooms/room_hypotheses.h"
-#include "base/assignment.h"
-#include "base/rigid.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/angle.h"
-#include "scoring/measures/victims.h"
+#include "base/rigid.h"
+#include "scoring/measures/association.h"
 
 namespace rubble::scoring {
 namespace {
 
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
-using PointPairs = std::vector<std::pair<TPoint2D, TPoint2D>>;
 
 constexpr double kOpennessOfPieces = 0.6;  // also cuts corridors where they bend or widen
 
@@ -58,24 +55,14 @@ RigidHypothesis match(const std::vector<Room>& map, const std::vector<Room>& tru
   RigidHypothesis out;
   out.T_truth_map = T_truth_map;
   if (map.empty() || truth.empty()) return out;
-  // Column g is a room of the truth, column |truth| + f the dummy that leaves room f alone at half the cap. A partner
-  // saves the other half, which its own room of the truth would have cost.
-  const std::size_t columns = truth.size() + map.size();
-  std::vector<std::vector<double>> cost(map.size(), std::vector<double>(columns, 0.0));
-  for (std::size_t f = 0; f < map.size(); ++f) {
-    const TPoint2D moved = T_truth_map.composePoint(map[f].centre);
-    for (std::size_t g = 0; g < truth.size(); ++g)
-      cost[f][g] = pair_cost(moved, truth[g].centre, difference(f, g), config) - config.cap;
-  }
-  const std::vector<std::size_t> partner = assign(cost);
-  double error = 0.5 * config.cap * static_cast<double>(map.size() + truth.size());
-  for (std::size_t f = 0; f < map.size(); ++f) {
-    if (partner[f] >= truth.size() || cost[f][partner[f]] >= 0.0) continue;
-    error += cost[f][partner[f]];
-    out.matches.emplace_back(f, partner[f]);
-  }
-  error /= 0.5 * static_cast<double>(map.size() + truth.size());
-  out.score = 1.0 - error / config.cap;
+  std::vector<TPoint2D> moved;
+  for (const Room& room : map) moved.push_back(T_truth_map.composePoint(room.centre));
+  const auto cost = [&](std::size_t f, std::size_t g) {
+    return pair_cost(moved[f], truth[g].centre, difference(f, g), config);
+  };
+  Association found = associate(map.size(), truth.size(), cost, config.cap);
+  out.matches = std::move(found.pairs);
+  out.score = 1.0 - found.error / config.cap;
   return out;
 }
 
@@ -85,9 +72,12 @@ RigidHypothesis refined(const std::vector<Room>& map, const std::vector<Room>& t
   constexpr int kRounds = 3;
   RigidHypothesis best = match(map, truth, start, difference, config);
   for (int round = 0; round < kRounds && best.matches.size() >= 2; ++round) {
-    PointPairs pairs;
-    for (const auto& [f, g] : best.matches) pairs.emplace_back(map[f].centre, truth[g].centre);
-    const RigidHypothesis next = match(map, truth, fit_rigid(pairs), difference, config);
+    std::vector<TPoint2D> from, to;
+    for (const auto& [f, g] : best.matches) {
+      from.push_back(map[f].centre);
+      to.push_back(truth[g].centre);
+    }
+    const RigidHypothesis next = match(map, truth, fit_rigid(from, to), difference, config);
     if (next.score <= best.score) break;
     best = next;
   }
@@ -111,7 +101,7 @@ std::vector<Draft> drafts(const std::vector<Room>& map, const std::vector<Room>&
         for (std::size_t l = 0; l < truth.size(); ++l) {
           if (l == k || difference(j, l) > config.most_difference) continue;
           if (std::abs((truth[k].centre - truth[l].centre).norm() - apart) > config.distance_tolerance) continue;
-          const TPose2D T = fit_rigid({{map[i].centre, truth[k].centre}, {map[j].centre, truth[l].centre}});
+          const TPose2D T = fit_rigid({map[i].centre, map[j].centre}, {truth[k].centre, truth[l].centre});
           out.push_back({T, quick_error(map, truth, T, difference, config)});
         }
       }
@@ -131,16 +121,6 @@ TPoint2D centre_of(const std::vector<Room>& rooms) {
 }
 
 }  // namespace
-
-TPose2D fit_rigid(const PointPairs& pairs) {
-  if (pairs.empty()) return {};
-  std::vector<TPoint2D> from, to;
-  for (const auto& [a, b] : pairs) {
-    from.push_back(a);
-    to.push_back(b);
-  }
-  return rubble::fit_rigid(from, to);
-}
 
 RigidHypothesis match_rooms(const std::vector<Room>& map, const std::vector<Room>& truth, const TPose2D& T_truth_map,
                             const RoomMatchConfig& config) {

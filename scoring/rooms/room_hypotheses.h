@@ -31,13 +31,8 @@ struct RoomMatchConfig {
   double distinct_turn = 0.05;      ///< ... turned by less are one [m, rad]
 };
 
-/// The rigid transform with the smallest summed squared distance between partners, scale 1 and no mirror image
-/// (Arun 1987 in the plane). One pair gives a shift only.
-mrpt::math::TPose2D fit_rigid(const std::vector<std::pair<mrpt::math::TPoint2D, mrpt::math::TPoint2D>>& pairs);
-
-/// Eq. (7) with its footnote: E = [sum over partners of min(c, C) + C / 2 for each room without] / mean number of
-/// rooms, c = squared distance + lambda d(f, g), minimised over all one-to-one associations (Hungarian method with
-/// dummies). No association at all gives E = C, the worst.
+/// The rooms that belong together at a pose: eq. (7) (scoring/measures/association.h) with
+/// c = squared distance + lambda d(f, g).
 RigidHypothesis match_rooms(const std::vector<Room>& map, const std::vector<Room>& truth,
                             const mrpt::math::TPose2D& T_truth_map, const RoomMatchConfig& config = {});
 

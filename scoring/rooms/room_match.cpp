@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "base/assignment.h"
 #include "base/planar.h"
+#include "scoring/measures/association.h"
 
 namespace rubble::scoring {
 namespace {
@@ -29,26 +29,19 @@ RoomMatch match_rooms(const Rooms& map, const Rooms& truth, const mrpt::math::TP
   RoomMatch out;
   const PlanarTransform T(T_truth_map);
   const std::size_t n = truth.rooms.size(), m = map.rooms.size();
-  // Every room of the truth also has a partner of its own that stands for none: leaving both rooms alone costs C.
-  std::vector<std::vector<double>> cost(n, std::vector<double>(m + n, kCap));
-  for (std::size_t j = 0; j < n; ++j)
-    for (std::size_t i = 0; i < m; ++i) cost[j][i] = std::min(kCap, pair_of(map, i, truth, j, T).cost);
-  const std::vector<std::size_t> partner = n > 0 ? assign(cost) : std::vector<std::size_t>();
-  std::vector<bool> taken(m, false);
-  double sum = 0.0;
-  for (std::size_t j = 0; j < n; ++j) {
-    if (partner[j] >= m || cost[j][partner[j]] >= kCap) {
-      out.missing.push_back(j);
-      continue;
-    }
-    taken[partner[j]] = true;
-    out.pairs.push_back(pair_of(map, partner[j], truth, j, T));
-    sum += out.pairs.back().cost;
+  const auto cost = [&](std::size_t i, std::size_t j) { return pair_of(map, i, truth, j, T).cost; };
+  const Association found = associate(m, n, cost, kCap);
+  std::vector<bool> of_map(m, false), of_truth(n, false);
+  for (const auto& [i, j] : found.pairs) {
+    of_map[i] = of_truth[j] = true;
+    out.pairs.push_back(pair_of(map, i, truth, j, T));
   }
+  std::sort(out.pairs.begin(), out.pairs.end(), [](const RoomPair& a, const RoomPair& b) { return a.truth < b.truth; });
+  for (std::size_t j = 0; j < n; ++j)
+    if (!of_truth[j]) out.missing.push_back(j);
   for (std::size_t i = 0; i < m; ++i)
-    if (!taken[i]) out.surplus.push_back(i);
-  sum += 0.5 * kCap * static_cast<double>(out.missing.size() + out.surplus.size());
-  out.error = n + m > 0 ? sum / (0.5 * static_cast<double>(n + m)) : kCap;
+    if (!of_map[i]) out.surplus.push_back(i);
+  out.error = found.error;
   out.score = n > 0 && m > 0 ? 1.0 - out.error / kCap : 0.0;
   return out;
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/angle.h"
+#include "base/rigid.h"
 #include "tests/support/scoring_maze.h"
 #include "tests/support/scoring_plan.h"
 
@@ -58,9 +59,10 @@ TEST(RoomHypotheses, FewerThanTwoRoomsGiveNone) {
 
 TEST(RoomHypotheses, RigidFitIsExactOnExactPairs) {
   const TPose2D T(1.0, -2.0, 2.5);
-  std::vector<std::pair<TPoint2D, TPoint2D>> pairs;
-  for (const TPoint2D& p : {TPoint2D(0, 0), TPoint2D(4, 1), TPoint2D(-2, 3)}) pairs.emplace_back(p, T.composePoint(p));
-  const TPose2D found = fit_rigid(pairs);
+  const std::vector<TPoint2D> from{{0, 0}, {4, 1}, {-2, 3}};
+  std::vector<TPoint2D> to;
+  for (const TPoint2D& p : from) to.push_back(T.composePoint(p));
+  const TPose2D found = fit_rigid(from, to);
   EXPECT_NEAR(found.x, T.x, 1e-12);
   EXPECT_NEAR(found.y, T.y, 1e-12);
   EXPECT_NEAR(wrap_angle(found.phi - T.phi), 0.0, 1e-12);
