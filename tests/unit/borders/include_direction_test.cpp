@@ -252,6 +252,28 @@ TEST(IncludeDirection, CastersDoNotSeeBox2D) {
   EXPECT_EQ(of_the_world.count("box2d/box2d.h"), 1u);
 }
 
+TEST(IncludeDirection, FacesBringNoLibraryOfTheInsides) {
+  const fs::path top = RUBBLE_SOURCE_DIR;
+  static const std::regex heavy(R"re(^(opencv2/|Eigen/|box2d/|nlohmann/json\.hpp|mrpt/(obs|slam|maps)/))re");
+  std::vector<fs::path> faces = {top / "sim/sim_robot.h", top / "sim/sim_team.h"};
+  for (const char* room : {"robot", "slam", "explore", "scoring"})
+    for (const auto& entry : fs::directory_iterator(top / room)) faces.push_back(entry.path());
+  for (const auto& entry : fs::recursive_directory_iterator(top / "scenarios")) faces.push_back(entry.path());
+  std::size_t headers = 0;
+  for (const fs::path& face : faces) {
+    if (face.extension() != ".h") continue;
+    ++headers;
+    Folders seen;
+    gather(top, fs::relative(face, top).generic_string(), seen);
+    for (const std::string& included : seen)
+      EXPECT_FALSE(std::regex_search(included, heavy)) << face << " " << included;
+  }
+  EXPECT_GT(headers, 40u);
+  Folders of_an_inside;
+  gather(top, "scoring/alignment/feature_score.h", of_an_inside);
+  EXPECT_EQ(of_an_inside.count("opencv2/core.hpp"), 1u);
+}
+
 /// What takes the compiler seconds is read by those few files alone that cannot do without it.
 TEST(IncludeDirection, HeavyLibrariesStayWhereTheyAreNeeded) {
   const fs::path top = RUBBLE_SOURCE_DIR;
