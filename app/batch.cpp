@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -21,6 +22,7 @@ struct BatchArguments {
   std::string sweep;
   std::string out;
   int workers = 0;  ///< 0: as many as this process may use
+  int seeds = 0;    ///< the first so many of the sweep; 0: all
   std::string shard;
   bool retry = false;
   bool record = false;
@@ -44,8 +46,9 @@ Shard parse_shard(const std::string& text) {
 
 int submit(const BatchArguments& arguments, const Sweep& sweep, const std::vector<Job>& jobs_asked,
            const std::string& out) {
-  if (!arguments.shard.empty() || !arguments.save_baseline.empty())
-    throw UsageError("--slurm makes all shards itself and no baseline; leave out --shard and --save-baseline");
+  if (!arguments.shard.empty() || !arguments.save_baseline.empty() || arguments.seeds > 0)
+    throw UsageError(
+        "--slurm makes all shards and seeds itself and no baseline; leave out --shard, --seeds and --save-baseline");
   SlurmPlan plan;
   plan.name = sweep.name;
   plan.sweep = fs::absolute(sweep.path).lexically_normal().string();
@@ -85,7 +88,8 @@ int batch(const BatchArguments& arguments) {
   BatchOptions options;
   options.shard = parse_shard(arguments.shard);
   const std::vector<Override> overrides = with_mapper(arguments.mapper, parse_sweep_sets(arguments.sets));
-  const Sweep sweep = load_sweep(find_sweep(arguments.sweep), shipped_folder());
+  Sweep sweep = load_sweep(find_sweep(arguments.sweep), shipped_folder());
+  if (arguments.seeds > 0) sweep.seeds.resize(std::min(sweep.seeds.size(), static_cast<std::size_t>(arguments.seeds)));
   options.code = code_version();
   std::vector<Job> jobs = expand(sweep, options.code, overrides);
   for (Job& job : jobs) permit_command(arguments.mapper, overrides, job.scenario);
@@ -122,6 +126,7 @@ Command batch_command() {
             o.argument("sweep", a->sweep, "Sweep file, or the name of a shipped one", Options::Need::Optional);
             add_workers(o, a->workers);
             o.text("--out", a->out, "Folder for the results (default: runs/NAME of the sweep)");
+            o.whole("--seeds", a->seeds, 1, 1000000, "Only the first so many seeds of the sweep");
             o.text("--shard", a->shard, "Make only part i of N: --shard i/N");
             o.flag("--retry", a->retry, "Make failed and timed-out runs again");
             o.flag("--record", a->record, "Keep the log of each run");
