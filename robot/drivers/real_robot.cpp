@@ -219,6 +219,15 @@ struct RealRobot::Impl {
     return last != Stamp::never() && now - last <= settings.safety.operator_silence;
   }
 
+  /// A line that hands scans over in bundles makes the scanner look silent though it turns.
+  std::string why_silent(const ScannerStatus& scanner) const {
+    if (!scanner.error.empty() || scanner.worst_latency <= settings.safety.lidar_silence) return scanner.error;
+    char text[120];
+    std::snprintf(text, sizeof text, "the line or this computer holds scans up, by %.1f s so far",
+                  scanner.worst_latency);
+    return text;
+  }
+
   /// What keeps the robot from being driven at `now`, one line each.
   std::vector<std::string> silent(Stamp now) const {
     std::vector<std::string> lines;
@@ -226,7 +235,7 @@ struct RealRobot::Impl {
     const ScannerStatus scanner = lidar.status();
     if (!is_lidar_well(scanner, now)) {
       if (is_lidar_silent(scanner, now)) {
-        lines.push_back(silent_for("urg", underway, scanner.last_scan, now, scanner.error));
+        lines.push_back(silent_for("urg", underway, scanner.last_scan, now, why_silent(scanner)));
       } else {
         char text[80];
         std::snprintf(text, sizeof text, "urg: its scans are %.1f s old; the line or this computer is too slow",
