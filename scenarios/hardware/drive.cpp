@@ -6,12 +6,14 @@
 #include <atomic>
 #include <cctype>
 #include <chrono>
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/error.h"
 #include "base/text/words.h"
+#include "explore/time_for_home.h"
 #include "robot/drivers/black_box.h"
 #include "robot/drivers/host_clock.h"
 #include "robot/drivers/mrpt_scanner.h"
@@ -299,10 +301,24 @@ scoring::Evidence evidence_of(const Core& core, const robot::RealRobot& robot, c
   return evidence;
 }
 
+/// A robot that would turn back before it has begun is not sent.
+void require_time_to_explore(const Scenario& settings) {
+  const auto explorer = settings.explorer.make(settings.robot, {settings.time_limit});
+  const double for_home = explore::time_for_home(*explorer);
+  if (settings.time_limit <= 0.0 || settings.time_limit > for_home) return;
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "time limit: all of the %g s are kept for the way home (%g s and the way itself), so nothing would be "
+                "explored; give at least %g s, or --set explorer.return_home=false",
+                settings.time_limit, for_home, 2.0 * for_home);
+  throw InputError(text);
+}
+
 }  // namespace
 
 RunReport drive(const RobotFile& file, const DriveOptions& options) {
   const auto start = Clock::now();
+  if (options.mode == DriveMode::Explore) require_time_to_explore(file.settings);
   file.settings.mapper.require_permission();
   // A robot that somebody else drives is not waited for: it would be taken over when they stop it.
   // Nor by others while one of its devices is unplugged; MRPT's drivers open their ports themselves.
