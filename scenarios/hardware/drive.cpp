@@ -319,6 +319,8 @@ void require_time_to_explore(const Scenario& settings) {
 RunReport drive(const RobotFile& file, const DriveOptions& options) {
   const auto start = Clock::now();
   if (options.mode == DriveMode::Explore) require_time_to_explore(file.settings);
+  if (options.mode != DriveMode::MapOnly && file.robot.base_port.empty())
+    throw InputError("devices.base: without a base the robot can only be watched; give its port, or add --map-only");
   file.settings.mapper.require_permission();
   // A robot that somebody else drives is not waited for: it would be taken over when they stop it.
   // Nor by others while one of its devices is unplugged; MRPT's drivers open their ports themselves.
@@ -338,7 +340,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
   {
     const std::unique_ptr<robot::Scanner> lidar = open_lidar(file, box);
     robot::RealRobotSettings settings = file.robot;
-    settings.base.passive = options.mode == DriveMode::MapOnly;
+    settings.base.passive = settings.base.listen = options.mode == DriveMode::MapOnly;
     robot::RealRobot real(settings, *lidar, &box);
     robot::RecordingRobot recorded(real, folder.file("log.rlog"), resolved_yaml(file.settings));
     Driver driver(file, options, folder, real, core);
