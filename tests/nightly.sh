@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The long suite and its table: whole suite, sanitizers, faults at 100 moments, each fault of each device, growth, 10
-# minutes of fuzzing for each parser.
+# The long suite and its table: whole suite, sanitizers, faults at 100 moments, each fault of each device, three emulated
+# robots at once, growth, 10 minutes of fuzzing for each parser.
 # Prints the table and puts it into docs/reliability.md between its marks. Rows of parts that were not asked for stay as they are.
 #   tests/nightly.sh [--minutes N] [--only "suite sanitize threads faults devices growth fuzz"] [--fuzz-seconds 600]
 #                    [--moments 100] [--keep-docs]
@@ -87,6 +87,11 @@ if has devices; then
   found=${words##*findings: }
   count=${words#faults: }
   row "faults of devices, in real time" "${count%%,*}" "${found%% *}" 0 $((SECONDS - start))
+  start=$SECONDS
+  python3 "$top/tests/device_faults.py" --three --seconds 60 >"$out/three-robots.txt" 2>&1
+  words=$(grep '^robots: ' "$out/three-robots.txt" | tail -1)
+  found=${words##*findings: }
+  row "three emulated robots at once, rate and jitter of their scans" "${words:+3}" "${found:-1}" 0 $((SECONDS - start))
 fi
 if has growth; then
   start=$SECONDS
