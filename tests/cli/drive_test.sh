@@ -155,6 +155,36 @@ wait $drive
 drive=
 stop_emulator
 
+# Pictures while it drives; and when a device is lost the map is saved at once: while all is waited for nothing else saves it.
+start_emulator
+# shellcheck disable=SC2086
+"$rubble" drive "$robot" $ports --out watched >out.txt 2>err.txt &
+drive=$!
+saved() { stat -c %y watched/map.tif 2>/dev/null; }
+for _ in $(seq 300); do
+  [[ -s watched/map.png && -s watched/map.tif && -s watched/estimate.tum ]] && break
+  sleep 0.1
+done
+kill -0 $drive && [[ -s watched/map.png && ! -e watched/score.json ]] || fail "no picture while the robot drives: $(ls watched; tail -3 err.txt)"
+before=$(saved)
+for _ in $(seq 1000); do
+  [[ $(saved) != "$before" ]] && break
+  sleep 0.02
+done
+before=$(saved)
+kill -KILL $emulator
+wait $emulator 2>/dev/null
+emulator=
+for _ in $(seq 100); do
+  sed -n '/motors on/,$p' err.txt | grep -q 'rubble: base: ' && [[ $(saved) != "$before" ]] && break
+  sleep 0.1
+done
+kill -0 $drive && [[ $(saved) != "$before" ]] || fail "the map is not saved as the robot is lost: $(tail -3 err.txt)"
+kill -INT $drive
+wait $drive
+[[ $? == 130 ]] || fail "a drive that waits for its devices does not end by Ctrl-C"
+drive=
+
 # A mapper of the user's whose program dies on the way, or when all is said: exit 4, one line, the folder complete. A
 # command of the robot file runs only when the user says so, and no folder is made before.
 sed 's#^time_limit_s:.*#&\nmapper: {kind: process, command: "touch ran"}#' "$robot" >evil.yaml
