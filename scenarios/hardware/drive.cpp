@@ -238,7 +238,7 @@ class Driver {
     status.robot = real_.status();
     if (status.robot.troubles != troubles_ && options_.tell) tell_troubles(status.robot.troubles);
     troubles_ = status.robot.troubles;
-    if (!options_.each_second || since <= 0.0) return;
+    if (!options_.each_second || since <= 0.0 || !begun_) return;
     status.seconds = seconds;
     status.state = options_.mode == DriveMode::Teleoperate ? "by hand"
                    : options_.mode == DriveMode::MapOnly   ? "mapping"

@@ -36,6 +36,7 @@ expect_exit 2 "no device is asked for" "$rubble" emulate small.yaml
 expect_exit 2 "there is no fault 'base-fire'" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --fault base-fire@3
 expect_exit 2 "NAME@SECONDS" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --fault base-silence
 expect_exit 2 "that device is not played" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --fault urg-silence@3
+expect_exit 3 "flat_room: is an arena, and what is played is a scenario" "$rubble" emulate flat_room --base tcp:127.0.0.1:0
 expect_exit 2 "give --base too" "$rubble" emulate small.yaml --urg tcp:127.0.0.1:0 --as-hardware
 for start in inf,0,0 0,nan,0 0,0,1e300; do
   expect_exit 2 "--odometry-start" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --time-limit 1 --odometry-start $start
@@ -52,6 +53,8 @@ expect_exit 3 "all of the 12 s are kept for the way home" "$rubble" drive "$robo
   >out.txt 2>err.txt
 [[ $? == 4 ]] || fail "a drive without devices must fail with 4: $(cat err.txt)"
 for device in urg base levelling; do grep -q "rubble: $device: has not reported yet" err.txt || fail "$device is not named"; done
+[[ $(wc -l <out.txt) == 1 ]] && grep -q "^folder .*nobody (nothing is mapped" out.txt || fail "a drive that never began shows figures: $(cat out.txt)"
+! grep -q "motors off" err.txt || fail "a drive that never began tells its state: $(cat err.txt)"
 
 # A robot that somebody holds by its button to the end: the end says so.
 start_emulator --fault base-button@3
