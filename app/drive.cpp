@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "app/commands.h"
@@ -49,6 +50,13 @@ int drive(const DriveArguments& arguments) {
   options.replace = arguments.folder.force;
   options.keys = [&] { return keyboard.drive(kTeleopSpeed, kTeleopTurn); };
   const scenarios::RunReport report = scenarios::drive(file, options);
+  const auto covered = report.score->find("sim_s");
+  if (!report.failure.empty() && covered != report.score->end() && covered->is_number() && *covered == 0.0) {
+    // It never began: there is nothing to show but why.
+    print_row("folder", report.folder + " (nothing is mapped; devices.bytes holds what was said)");
+    std::fprintf(stderr, "rubble: %s\n", report.failure.c_str());
+    return kFailed;
+  }
   return show(report);
 }
 

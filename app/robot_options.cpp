@@ -6,6 +6,7 @@
 
 #include "app/terminal.h"
 #include "base/angle.h"
+#include "robot/drivers/base_driver.h"
 
 namespace rubble::app {
 namespace {
@@ -34,13 +35,17 @@ void RobotOptions::declare(Options& o) {
   o.argument("robot", robot, "Robot file, or the name of a shipped one (default: pioneer_urg)",
              Options::Need::Optional);
   o.text("--urg", urg, std::string("Port of the laser scanner; ") + kPort);
-  o.text("--base", base, std::string("Port of the base; ") + kPort);
+  o.text("--base", base, std::string("Port of the base, or 'none' (--map-only); ") + kPort);
   o.text("--levelling", levelling, std::string("Port of the levelling unit, or 'none'; ") + kPort);
 }
 
 std::vector<scenarios::Override> RobotOptions::with_ports(std::vector<scenarios::Override> overrides) const {
   if (!urg.empty()) overrides.emplace_back("devices.urg.port", urg);
-  if (!base.empty()) overrides.emplace_back("devices.base.port", base);
+  if (base == robot::kNoBase) {
+    overrides.emplace_back("devices.base.driver", base);
+  } else if (!base.empty()) {
+    overrides.emplace_back("devices.base.port", base);
+  }
   if (levelling == "none") {
     overrides.emplace_back("devices.levelling.driver", "none");
   } else if (!levelling.empty()) {

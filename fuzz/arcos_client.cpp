@@ -1,8 +1,10 @@
 // What a base may send to the Pioneer driver, with time and set points in between: odometry stays finite and in order.
+// A driver that listens says nothing as long as it does.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <string>
 
 #include "robot/drivers/pioneer.h"
 
@@ -15,10 +17,8 @@ void require(bool law) {
   if (!law) std::abort();
 }
 
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Pioneer driver{BaseSettings{}};
+void converse(const BaseSettings& settings, const std::uint8_t* data, std::size_t size) {
+  Pioneer driver{settings};
   Stamp now{1'000'000'000};
   driver.opened(now, size % 2 == 1 ? LineKind::Uart : LineKind::Tcp);
   driver.enable(true);
@@ -34,7 +34,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     at += piece;
     driver.drive({0.01 * static_cast<double>(length), 0.3});
     driver.advance(now);
-    require(driver.take_output(now).size() <= 200);
+    const std::string out = driver.take_output(now);
+    require(out.size() <= 200);
+    require(out.empty() || driver.state().rfind("listen", 0) != 0);
     driver.deadline();
     for (const Odometry& o : driver.take_odometry()) {
       require(std::isfinite(o.pose.x) && std::isfinite(o.pose.y) && std::abs(o.pose.phi) <= 3.1416);
@@ -42,5 +44,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       last = o.stamp;
     }
   }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  converse({}, data, size);
+  BaseSettings listening;
+  listening.passive = listening.listen = true;
+  converse(listening, data, size);
   return 0;
 }

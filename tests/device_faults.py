@@ -6,8 +6,10 @@
 
 Prints a table in Markdown, a row as soon as it is known. Ends with 1 and names what was broken:
 - a drive ends with another code than 0, or a device that was lost does not come back (after a stop at the robot SIGUSR2 lets it go);
-- a fault that must stop the robot does not bring it to rest, or slow it down, within the time it takes to notice plus that of braking;
-  by the emulator's own clock, so that only what a busy machine keeps the driver waiting counts against it;
+- a fault that must stop the robot: the drive's own record (devices.bytes) does not show set points of zero within the time it takes to
+  notice, kept to the end of the fault, though the robot was told to drive until then; or the robot, by the emulator's own track, does not
+  brake by at least 0.25 m/s2 for 0.2 s, or is not at rest when it should be. A robot that was not driving then is no proof: the fault is
+  tried again at another moment;
 - a fault that must be told is not, or the map is worse by 0.05 than without a fault, or that one is bad;
 - the drive without a fault takes more than 15 % of a core, or 99 % of its answers to a scan take longer than 30 ms and what the machine's
   own timer is late by;
@@ -28,6 +30,8 @@ import tempfile
 import threading
 import time
 
+import black_box
+
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 DEVICES = ("urg", "base", "levelling")
 FAULTS = [d + "-" + f for d in DEVICES for f in "lost split doubled junk sums silence unplug reset".split()]
@@ -35,17 +39,27 @@ FAULTS += ["urg-wrap", "base-seto", "base-stall", "base-watchdog", "base-button"
 HELD = ("base-button", "base-motors")  # stopped at the robot: the operator lets it go again, so long after the fault [s]
 REARM = 6.0
 # What a fault must do to a robot that drives, and how long it may take to be noticed [s] (safety: in the robot file, the base's own
-# watchdog). REST: it stands. SLOW: it brakes, but the fault is over before it stands. Others may pass unnoticed.
+# watchdog).
+# ZEROED: set points of zero go out to the base and stay until the fault is over, so long after it began [s]. All but a base that is deaf
+# meanwhile must also be seen to brake.
+ZEROED = {"urg-lost": (0.3, 1.0), "urg-doubled": (0.3, 1.0), "urg-junk": (0.3, 1.0), "urg-sums": (0.3, 1.0), "urg-reset": (0.3, 0.6),
+          "urg-silence": (0.3, 2.0), "urg-unplug": (0.3, 3.0), "levelling-silence": (0.5, 2.0), "levelling-unplug": (0.5, 3.0),
+          "base-silence": (1.0, 2.0)}
+DEAF = ("base-silence",)
+# BRAKES: by the base's own doing, which nobody can tell anything: how long after the fault it begins to [s], and how long it is at it.
+BRAKES = {"base-watchdog": (2.0, 3.0)}
+# REST: the robot stands.
 REST = {"urg-silence": 0.3, "urg-unplug": 0.3, "base-unplug": 0.1, "base-reset": 0.1, "levelling-unplug": 0.5}
 HARD = {"base-button": 0.1, "base-motors": 0.1}  # at once, without a ramp
-SLOW = {"urg-lost": 0.3, "urg-doubled": 0.3, "urg-junk": 0.3, "urg-sums": 0.3, "urg-reset": 0.3, "levelling-silence": 0.5,
-        "base-watchdog": 2.0}
-# A base that is silent for 2 s cannot be told to stop, and its watchdog needs as long: it must only be told. A deaf one reports.
-NAMED = {"levelling-sensor", "base-silence", *REST, *HARD, *SLOW} - {"base-watchdog"}
+JUDGED = {*ZEROED, *BRAKES, *REST, *HARD}
+# A base that is silent must be told; a deaf one reports.
+NAMED = {"levelling-sensor", *ZEROED, *REST, *HARD}
 RAMP = 0.3          # the firmware's deceleration [m/s^2]
+BRAKING, BRAKED = 0.25, 0.2  # so hard [m/s^2] and so long [s] is braking
 LATE = 0.35         # a scan's period, the driver's turns, the wheels' lag, the window of a speed [s]
-SLOWED = 0.08       # so much slower counts as braking [m/s]
-DRIVES = 0.15       # slower than this says nothing of a stop: the fault is tried again later [m/s]
+NOTICED = 0.15      # the driver's turn and what a busy machine adds, from when it must notice to set points of zero [s]
+DRIVES = 0.15       # slower than this says nothing of a stop: the fault is tried again at another moment [m/s]
+TRIES = 4
 WORST_MAP = 0.05    # a map may be so much worse than without a fault
 PLAIN_MAP = 0.9     # and without one it is at least so good
 MOST_CPU, MOST_ANSWER_MS = 0.15, 30.0
@@ -107,11 +121,15 @@ def motion(rows, i):
 
 class Stop:
     """What the robot did after t0: `v` its speed then, `top` the most until it was to be noticed, `rest` how long it took to stand
-    for 0.3 s, `slow` to be slower than `top` by SLOWED; None: it did not within 6 s."""
+    for 0.3 s; None: it did not within 6 s."""
 
     def __init__(self, rows, t0, notice, within=6.0):
-        self.v, self.top, self.rest, self.slow = 0.0, 0.0, None, None
-        begun = None
+        self.rows, self.t0 = rows, t0
+        self.v, self.top, self.rest = 0.0, 0.0, None
+        self.zero = None    # how long it took until set points of zero were kept
+        self.told = 0.0     # the speed that the base was told to keep as the fault struck [m/s]
+        self.orders = None
+        begun, first = None, True
         for i, row in enumerate(rows):
             after = row[0] - t0
             if after < 0 or self.rest is not None:
@@ -119,12 +137,10 @@ class Stop:
             if after > within:
                 break
             v, w = motion(rows, i)
-            if self.top == 0.0:
-                self.v = v
+            if first:
+                self.v, first = v, False
             if after <= notice + LATE:
                 self.top = max(self.top, v)
-            if self.slow is None and after > 0.05 and v < self.top - SLOWED:
-                self.slow = after
             if v > 0.01 or w > 0.03:
                 begun = None
             elif begun is None:
@@ -132,9 +148,45 @@ class Stop:
             elif after - begun > 0.3:
                 self.rest = begun
 
+    def follow(self, orders, fault):
+        """`orders`: black_box.SetPoints of the drive."""
+        self.orders = orders
+        notice, over = ZEROED.get(fault, BRAKES.get(fault, (0.1, 0.1)))
+        # As the fault strikes, and until shortly before it must be noticed: a robot that was stopping anyway proves nothing.
+        self.told = 1e-3 * min(orders.at(self.t0)[0], orders.at(self.t0 + 0.6 * notice)[0])
+        since = orders.zero_since(self.t0 + over - 0.05)
+        self.zero = max(0.0, since - self.t0) if since is not None else None
+
+    def drove(self):
+        return self.v >= DRIVES and self.told >= DRIVES
+
+    def brakes_between(self, begin, end):
+        """Whether it was slower by BRAKING for BRAKED somewhere in that time after the fault, or came to stand."""
+        i = 0
+        for j, row in enumerate(self.rows):
+            if row[0] - self.t0 < begin + BRAKED:
+                continue
+            if row[0] - self.t0 > end:
+                return False
+            while self.rows[i][0] < row[0] - BRAKED:
+                i += 1
+            v = motion(self.rows, j)[0]
+            if motion(self.rows, i)[0] - v >= BRAKING * BRAKED or v < 0.01:
+                return True
+        return False
+
 
 def broken_law(fault, stop):
     """What the stop should have been, or None."""
+    if fault in ZEROED:
+        notice, over = ZEROED[fault]
+        if stop.zero is None or stop.zero > notice + NOTICED:
+            return "set points of zero %s, not within %.2f s" % (
+                "were not kept" if stop.zero is None else "after %.2f s" % stop.zero, notice + NOTICED)
+        if fault not in DEAF and not stop.brakes_between(notice - 0.1, over + LATE):
+            return "set points of zero, but the robot does not brake"
+    if fault in BRAKES and not stop.brakes_between(BRAKES[fault][0] - 0.2, BRAKES[fault][1] + LATE):
+        return "does not brake"
     if fault in REST:
         most = REST[fault] + stop.top / RAMP + LATE
         if stop.rest is None or stop.rest > most:
@@ -143,10 +195,9 @@ def broken_law(fault, stop):
         most = HARD[fault] + LATE
         if stop.rest is None or stop.rest > most:
             return "no hard stop"
-    if fault in SLOW:
-        most = SLOW[fault] + SLOWED / RAMP + LATE
-        if stop.slow is None or stop.slow > most:
-            return "does not brake within %.1f s" % most
+        again = [t for t in stop.orders.enabled if HARD[fault] + NOTICED < t - stop.t0 < REARM - 0.1]
+        if again:
+            return "motors on again after %.1f s, though nobody let it go" % (again[0] - stop.t0)
     return None
 
 
@@ -188,21 +239,34 @@ def drive(rubble, robot, fault, at, seconds):
     score = subprocess.run([rubble, "score", name + "/map.tif", "truth/truth.tif", "--json"], capture_output=True, text=True)
     score = json.loads(score.stdout)["score"] if score.returncode == 0 else 0.0
     rows = read_truth(name + ".tum")
-    notice = {**REST, **HARD, **SLOW}.get(fault, 0.3)
+    notice = ZEROED.get(fault, BRAKES.get(fault, ({**REST, **HARD}.get(fault, 0.3), 0)))[0]
     stop = Stop(rows, rows[0][0] + at, notice) if fault else None
+    if stop and os.path.exists(name + "/devices.bytes"):
+        stop.follow(black_box.SetPoints(name + "/devices.bytes"), fault)
     own = json.load(open(name + "/score.json")) if os.path.exists(name + "/score.json") else {}
-    return dict(name=name, code=process.returncode, score=score, stop=stop, lost=lost, back=back, at=at, figures=own)
+    return dict(name=name, code=process.returncode, score=score, stop=stop, lost=lost, back=back, at=at, figures=own, rows=rows)
 
 
-def driven(rubble, robot, fault, at, seconds):
-    """Tried again a little later when the robot hardly drove as the fault struck: that says nothing of a stop."""
-    d = drive(rubble, robot, fault, at, seconds)
-    judged = fault in {**REST, **HARD, **SLOW}
-    for _ in range(2):
-        if not judged or d["stop"].v >= DRIVES:
-            break
-        at += 2.3
+def moments(rows, first):
+    """When a drive without a fault went straight on at a good speed, so that one that strikes then meets a robot that drives [s]."""
+    found, last = [], -1e9
+    for i in range(0, len(rows), 5):
+        t = rows[i][0] - rows[0][0]
+        if t < first or t - last < 0.7:
+            continue
+        ahead = [motion(rows, j) for j in range(i, min(len(rows), i + 150), 10)]
+        if len(ahead) == 15 and all(v > 0.3 and w < 0.3 for v, w in ahead):
+            found.append(round(t, 1))
+            last = t
+    return found
+
+
+def driven(rubble, robot, fault, ats, seconds):
+    """Tried again at another moment when the robot did not drive as the fault struck: that says nothing of a stop."""
+    for at in (ats * TRIES)[:TRIES]:
         d = drive(rubble, robot, fault, at, seconds)
+        if d["stop"].drove():
+            break
     return d
 
 
@@ -245,9 +309,8 @@ def findings_of(fault, d, plain, late_ms=0.0):
         found.append("not named")
     if d["score"] < plain - WORST_MAP:
         found.append("map %.3f" % d["score"])
-    judged = fault in {**REST, **HARD, **SLOW}
-    if judged and d["stop"].v < DRIVES:
-        found.append("was not driving, three times")
+    if fault in JUDGED and not d["stop"].drove():
+        found.append("was not driving, %d times" % TRIES)
     elif broken_law(fault, d["stop"]):
         found.append(broken_law(fault, d["stop"]))
     return found
@@ -259,9 +322,10 @@ def table(arguments):
     open("small.yaml", "w").write(SCENARIO)
     subprocess.run([rubble, "run", "small.yaml", "--set", "time_limit_s=240", "--out", "truth"], check=True,
                    stdout=subprocess.DEVNULL)
-    print("load average %s before; the fault strikes %g s after the emulator's start, drives of %g s at most" %
+    print("load average %s before; the fault strikes %g s after the emulator's start or later, drives of %g s at most" %
           (load(), arguments.at, arguments.seconds))
-    print("\n| fault | speed then | at rest after | exit code | named | re-connected | map score |\n|---|---|---|---|---|---|---|")
+    print("\n| fault | speed then | set points zero after | at rest after | exit code | named | re-connected | map score |\n"
+          "|---|---|---|---|---|---|---|---|")
     bad, faults = {}, arguments.faults.split()
     timer = Timer()
     d = drive(rubble, robot, None, arguments.at, arguments.seconds)
@@ -270,18 +334,23 @@ def table(arguments):
     plain, found = d["score"], findings_of(None, d, None, late_ms)
     if found:
         bad["none"] = found
-    print("| none | | | %d | | | %.3f |" % (d["code"], plain), flush=True)
+    print("| none | | | | %d | | | %.3f |" % (d["code"], plain), flush=True)
+    ats = moments(d["rows"], arguments.at)[:arguments.moments] or [arguments.at]
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        drives = [pool.submit(driven, rubble, robot, fault, arguments.at, arguments.seconds) for fault in faults]
+        drives = [pool.submit(driven, rubble, robot, fault, ats, arguments.seconds) for fault in faults]
         for fault, one in zip(faults, drives):
             d = one.result()
             stop = d["stop"]
-            rest = ("%.1f s" % stop.rest if stop.rest is not None else
-                    "slower after %.1f s" % stop.slow if fault in SLOW and stop.slow is not None else "does not rest")
+            notice = ZEROED.get(fault, (0, 0))[0]
+            zero = "%.2f s" % stop.zero if fault in ZEROED and stop.zero is not None else "NOT" if fault in ZEROED else ""
+            slowest = notice + stop.top / RAMP + LATE
+            rest = ("%.1f s" % stop.rest if stop.rest is not None and (fault in JUDGED or stop.rest < slowest) else
+                    "told, but deaf" if fault in DEAF else
+                    "brakes until it is over" if (fault in ZEROED or fault in BRAKES) and broken_law(fault, stop) is None else "drives on")
             named = "yes" if d["lost"] else "no"
             back = "yes" if d["back"] else ("NO" if d["lost"] else "was not lost")
-            print("| `%s` | %.2f m/s | %s | %d | %s | %s | %.3f |" %
-                  (fault, stop.v, rest, d["code"], named, back, d["score"]), flush=True)
+            print("| `%s` | %.2f m/s | %s | %s | %d | %s | %s | %.3f |" %
+                  (fault, stop.v, zero, rest, d["code"], named, back, d["score"]), flush=True)
             found = findings_of(fault, d, plain)
             if found:
                 bad[fault] = found
@@ -381,6 +450,7 @@ def main():
     parser.add_argument("--faults", default=" ".join(FAULTS))
     parser.add_argument("--seconds", type=float, default=110.0)
     parser.add_argument("--at", type=float, default=14.0)
+    parser.add_argument("--moments", type=int, default=TRIES, help="of so many the first that meets a robot that drives counts")
     parser.add_argument("--jobs", type=int, default=1, help="so many drives side by side")
     parser.add_argument("--three", action="store_true")
     arguments = parser.parse_args()

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The long suite and its table: whole suite, sanitizers, faults at 100 moments, each fault of each device, growth, 10
-# minutes of fuzzing for each parser.
+# The long suite and its table: whole suite, sanitizers, faults at 100 moments, each fault of each device, three emulated
+# robots at once, a calibration in real time, growth, 10 minutes of fuzzing for each parser.
 # Prints the table and puts it into docs/reliability.md between its marks. Rows of parts that were not asked for stay as they are.
 #   tests/nightly.sh [--minutes N] [--only "suite sanitize threads faults devices growth fuzz"] [--fuzz-seconds 600]
 #                    [--moments 100] [--keep-docs]
@@ -87,6 +87,17 @@ if has devices; then
   found=${words##*findings: }
   count=${words#faults: }
   row "faults of devices, in real time" "${count%%,*}" "${found%% *}" 0 $((SECONDS - start))
+  start=$SECONDS
+  python3 "$top/tests/device_faults.py" --three --seconds 60 >"$out/three-robots.txt" 2>&1
+  words=$(grep '^robots: ' "$out/three-robots.txt" | tail -1)
+  found=${words##*findings: }
+  row "three emulated robots at once, rate and jitter of their scans" "${words:+3}" "${found:-1}" 0 $((SECONDS - start))
+  start=$SECONDS
+  python3 "$top/tests/device_calibration.py" >"$out/calibration.txt" 2>&1
+  words=$(grep '^calibration: ' "$out/calibration.txt" | tail -1)
+  count=${words#calibration: }
+  found=${words##*findings: }
+  row "calibration of an emulated robot" "${count%%,*}" "${found:-1}" 0 $((SECONDS - start))
 fi
 if has growth; then
   start=$SECONDS
@@ -121,7 +132,7 @@ def part(row):  # the row's first words, up to what may change from night to nig
 
 done = {part(row) for row in new}
 kept = [row for row in old.splitlines(keepends=True)[2:] if part(row) not in done]
-order = ["whole suite", "batch", "faults", "time", "fuzz"]
+order = ["whole suite", "batch", "faults", "three", "calibration", "time", "fuzz"]
 rank = lambda row: next((i for i, words in enumerate(order) if part(row).startswith(words)), len(order))
 rows = sorted(kept + new[2:], key=lambda row: (rank(row), part(row)))
 open(page, "w").write(head + begin + "".join(new[:2] + rows) + end + tail)

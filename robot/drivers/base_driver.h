@@ -25,6 +25,8 @@ struct BaseSettings {
   /// The firmware's turn rate is the wheel speeds' difference over this; 0: what is usual for the robot [m].
   double track = 0.0;
   bool passive = false;  ///< reports are read, but somebody else drives
+  /// Reports that come unasked, since somebody else talks with the base on this line, are read and nothing is said.
+  bool listen = false;
   /// Without reports for so long the connection may be made anew [s]. Standing still meanwhile is the caller's
   /// business.
   double silence = 3.0;
@@ -62,6 +64,9 @@ class BaseDriver : public Device {
   virtual std::size_t bad_sums() const { return 0; }
   virtual std::size_t jumps() const { return 0; }
 };
+
+/// In place of a base that nobody here is connected with: it reports nothing and takes no orders.
+constexpr const char* kNoBase = "none";
 
 /// The base drivers by name, as `devices.base.driver` has them.
 struct BaseKind {

@@ -5,6 +5,24 @@
 namespace rubble::robot {
 namespace {
 
+class NoBase : public BaseDriver {
+ public:
+  explicit NoBase(const BaseSettings& /*settings*/) {}
+  void opened(Stamp /*now*/, LineKind /*line*/) override {}
+  void receive(std::string_view /*bytes*/, Stamp /*now*/) override {}
+  void advance(Stamp /*now*/) override {}
+  std::string take_output(Stamp /*now*/) override { return ""; }
+  Stamp deadline() const override { return Stamp::never(); }
+  bool ready() const override { return true; }
+  Stamp last_report() const override { return Stamp::never(); }
+  std::string state() const override { return "not connected"; }
+  void drive(const Drive& /*drive*/) override {}
+  void enable(bool /*on*/) override {}
+  void stop() override {}
+  std::vector<Odometry> take_odometry() override { return {}; }
+  bool motors_on() const override { return false; }
+};
+
 template <class Driver>
 BaseKind row(const char* name) {
   return {name, [](const BaseSettings& settings) { return std::make_unique<Driver>(settings); }};
@@ -15,6 +33,7 @@ BaseKind row(const char* name) {
 const std::vector<BaseKind>& base_kinds() {
   static const std::vector<BaseKind> kinds = {
       row<Pioneer>("arcos"),
+      row<NoBase>(kNoBase),
   };
   return kinds;
 }

@@ -19,11 +19,28 @@ void play(Device& device, const BlackBoxEntry& entry) {
   device.take_output(entry.stamp);
 }
 
+/// Whether the driver began by listening whether somebody else talks with the base: else its first question leaves as
+/// soon as the line is open.
+bool listened(const std::vector<BlackBoxEntry>& entries) {
+  constexpr double kAtOnce = 0.2;  // [s]
+  Stamp opened = Stamp::never();
+  for (const BlackBoxEntry& entry : entries) {
+    if (entry.device != "base") continue;
+    if (opened == Stamp::never() && entry.direction == Direction::Opened) opened = entry.stamp;
+    if (opened == Stamp::never() || entry.direction == Direction::Opened) continue;
+    if (entry.direction == Direction::ToDevice) return entry.stamp - opened > kAtOnce;
+    if (entry.stamp - opened > kAtOnce) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 ReplayedBox replay_black_box(const std::vector<BlackBoxEntry>& entries, const std::string& driver,
                              const BaseSettings& base, const LevellingUnitSettings& levelling) {
-  const std::unique_ptr<BaseDriver> played = make_base(driver, base);
+  BaseSettings settings = base;
+  settings.listen = listened(entries);
+  const std::unique_ptr<BaseDriver> played = make_base(driver, settings);
   LevellingUnit unit(levelling);
   ReplayedBox replayed;
   for (const BlackBoxEntry& entry : entries) {

@@ -19,10 +19,12 @@ constexpr double kReply = 0.5;                                           ///< an
 constexpr std::array<int, 5> kBauds{9600, 38400, 19200, 115200, 57600};  ///< tried in turn on a serial line
 constexpr int kTries = 3;                                                ///< questions before the next bit rate
 constexpr double kConfigReply = 1.0;                                     ///< [s]
-constexpr double kSpacing = 0.004;  ///< the firmware wants so much between two commands [s]
-constexpr double kRefresh = 0.2;    ///< set points are sent again [s]; the firmware forgets them after 2 s
-constexpr double kAskMotors = 0.5;  ///< [s]
-constexpr double kRefused = 5.0;    ///< a robot that cannot be read is asked again who it is [s]
+constexpr double kListenOnce = 0.4;  ///< for reports of a bit rate, which come ten times a second [s]
+constexpr double kListenTcp = 1.2;   ///< where there is but one [s]
+constexpr double kSpacing = 0.004;   ///< the firmware wants so much between two commands [s]
+constexpr double kRefresh = 0.2;     ///< set points are sent again [s]; the firmware forgets them after 2 s
+constexpr double kAskMotors = 0.5;   ///< [s]
+constexpr double kRefused = 5.0;     ///< a robot that cannot be read is asked again who it is [s]
 constexpr double kMillimetre = 1e-3;
 
 /// Difference of two rolled-over coordinates; older firmware rolls over at 15 bits, so only these are compared [mm].
@@ -54,8 +56,10 @@ void Pioneer::opened(Stamp now, LineKind line) {
   queue_.clear();
   based_ = false;
   last_report_ = Stamp::never();
-  go(Step::Sync0, now);
-  ask(now);
+  v_due_ = w_due_ = false;
+  listening_ = settings_.listen;
+  go(listening_ ? Step::Listening : Step::Sync0, now);
+  if (!listening_) ask(now);
 }
 
 void Pioneer::ask(Stamp now) {
@@ -82,9 +86,25 @@ void Pioneer::try_next_rate(Stamp now) {
   ask(now);
 }
 
+/// Nobody was heard at this bit rate.
+void Pioneer::listen_on(Stamp now) {
+  parser_.reset();
+  const bool all = line_ == LineKind::Tcp || tries_ + 1 >= static_cast<int>(kBauds.size());
+  if (line_ != LineKind::Tcp) ++rate_;
+  since_ = now;
+  ++tries_;
+  if (!all) return;
+  listening_ = false;  // nobody talks with it: it is spoken to
+  go(Step::Sync0, now);
+  ask(now);
+}
+
 void Pioneer::advance(Stamp now) {
   switch (step_) {
     case Step::Closed:
+      return;
+    case Step::Listening:
+      if (now - since_ >= (line_ == LineKind::Tcp ? kListenTcp : kListenOnce)) listen_on(now);
       return;
     case Step::Sync0:
     case Step::Sync1:
@@ -109,6 +129,13 @@ void Pioneer::advance(Stamp now) {
       break;
   }
   const Stamp heard = last_report_ == Stamp::never() ? since_ : last_report_;
+  if (listening_) {
+    if (now - heard <= settings_.silence) return;
+    based_ = false;  // whoever has it may open it anew, which sets its odometry to zero
+    last_report_ = Stamp::never();
+    clock_.reset();
+    return go(Step::Listening, now);
+  }
   if (now - heard > settings_.silence) {
     // The robot was switched off and on, or somebody closed it: all over again.
     queue_.clear();
@@ -138,6 +165,7 @@ void Pioneer::receive(std::string_view bytes, Stamp now) {
 /// `behind`: so many reports came with this packet and after it.
 void Pioneer::digest(const std::string& payload, Stamp now, std::size_t behind) {
   const auto report = arcos::parse_information(payload);
+  if (step_ == Step::Listening && report) go(Step::Running, now);
   const bool syncing = step_ == Step::Sync0 || step_ == Step::Sync1 || step_ == Step::Sync2;
   if (syncing && report) {
     // Open since a client that died: SYNC0 was a PULSE to it.
@@ -357,7 +385,7 @@ std::string Pioneer::take_output(Stamp now) {
 }
 
 std::vector<std::string> Pioneer::farewell() {
-  if (step_ == Step::Closed || step_ == Step::Refused) return {};
+  if (step_ == Step::Closed || step_ == Step::Refused || listening_) return {};
   return {command(arcos::kStop), command(arcos::kEnable, 0), command(arcos::kClose)};
 }
 
@@ -366,6 +394,7 @@ Stamp Pioneer::deadline() const {
   const bool waiting = !queue_.empty() || (step_ == Step::Running && (v_due_ || w_due_));
   if (waiting) return sent_ == Stamp::never() ? since_ : sent_ + kSpacing;
   if (step_ == Step::Refused) return since_ + kRefused;
+  if (step_ == Step::Listening) return since_ + kListenOnce;
   if (step_ != Step::Running) return since_ + (step_ == Step::Opening && configured_ ? 0.0 : kReply);
   Stamp next = refreshed_ == Stamp::never() ? since_ : refreshed_ + kRefresh;
   if (turn_.restless()) next = std::min(next, turn_decided_ + RateDither::kPeriod);
@@ -379,6 +408,8 @@ std::string Pioneer::state() const {
     case Step::Closed:
     case Step::Refused:
       return "closed";
+    case Step::Listening:
+      return "listens whether somebody else has it" + rate;
     case Step::Sync0:
     case Step::Sync1:
     case Step::Sync2:
@@ -390,6 +421,7 @@ std::string Pioneer::state() const {
     case Step::Running:
       break;
   }
+  if (listening_) return "listened to";
   return ready() ? identity_.subclass + " reports" : "waits for the first report of " + identity_.subclass;
 }
 

@@ -23,6 +23,9 @@ namespace rubble::robot {
 /// odometry that never jumps, and keeps the set points fresh so that the robot's watchdog does not stop it. Turn rates
 /// are whole degrees a second on the wire and dithered. Without reports it waits settings.silence before it connects
 /// anew: OPEN sets the odometry to zero, while a report after a gap still tells all the motion within it.
+///
+/// With settings.listen it first waits for reports that somebody else's connection brings. Where they come it only
+/// reads them (but for the emergency stop, which is always said); where none come it connects as ever.
 class Pioneer : public BaseDriver {
  public:
   explicit Pioneer(const BaseSettings& settings) : settings_(settings) {}
@@ -58,11 +61,12 @@ class Pioneer : public BaseDriver {
   std::size_t jumps() const override { return jumps_; }
 
  private:
-  enum class Step { Closed, Sync0, Sync1, Sync2, Closing, Refused, Opening, Running };
+  enum class Step { Closed, Listening, Sync0, Sync1, Sync2, Closing, Refused, Opening, Running };
 
   void go(Step step, Stamp now);
   void ask(Stamp now);
   void try_next_rate(Stamp now);
+  void listen_on(Stamp now);
   void digest(const std::string& payload, Stamp now, std::size_t behind);
   void open(Stamp now);
   void follow(const arcos::StandardInformation& report, Stamp stamp);
@@ -78,6 +82,7 @@ class Pioneer : public BaseDriver {
   LineKind line_ = LineKind::Tcp;
   std::size_t rate_ = 0;  ///< which of the bit rates
   int tries_ = 0;
+  bool listening_ = false;        ///< nothing is said: the reports are somebody else's
   Stamp since_ = Stamp::never();  ///< of the step, or of its last question
   std::deque<std::string> queue_;
   Stamp sent_ = Stamp::never();  ///< when a packet went out last

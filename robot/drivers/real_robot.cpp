@@ -123,9 +123,10 @@ struct RealRobot::Impl {
         heartbeat(given.heartbeat) {
     if (!settings.levelling_port.empty())
       unit_thread = std::make_unique<DeviceThread>("levelling", settings.levelling_port, unit, box);
-    base_thread = std::make_unique<DeviceThread>(
-        "base", settings.base_port, *base, box, [this](Stamp now) { watch(now); },
-        [this](Stamp now) { left_for_base(now); });
+    if (!settings.base_port.empty())
+      base_thread = std::make_unique<DeviceThread>(
+          "base", settings.base_port, *base, box, [this](Stamp now) { watch(now); },
+          [this](Stamp now) { left_for_base(now); });
     operator_thread = std::thread([this] {
       while (!ending) {
         listen();
@@ -138,6 +139,15 @@ struct RealRobot::Impl {
     operator_thread.join();
   }
 
+  /// Calls `use()` while the base's thread, if there is one, leaves the base alone.
+  template <class Use>
+  auto with_base(const Use& use) const {
+    return base_thread ? base_thread->with(use) : use();
+  }
+  void wake_base() const {
+    if (base_thread) base_thread->wake();
+  }
+
   /// In the operator's thread: it waits neither for the core nor for a device.
   void listen() {
     operator_ns = heartbeat.last(host_now()).ns;
@@ -148,7 +158,7 @@ struct RealRobot::Impl {
     if (wanted == OperatorWish::EmergencyStop && !emergency) emergency_stop();
     if (wanted == OperatorWish::Stop) stop();
     if (wanted != OperatorWish::Leave) return;
-    base_thread->end();
+    if (base_thread) base_thread->end();
     wish = {};
     if (left) left();
   }
@@ -159,19 +169,19 @@ struct RealRobot::Impl {
       if (wanted.v == commands.drive.v && wanted.w == commands.drive.w) return;
       commands.drive = wanted;
     }
-    base_thread->wake();
+    wake_base();
   }
 
   void stop() {
     if (stopped.exchange(true)) return;
-    base_thread->with([this] { base->stop(); });
-    base_thread->wake();
+    with_base([this] { base->stop(); });
+    wake_base();
   }
 
   void emergency_stop() {
     emergency = true;
-    base_thread->with([this] { base->emergency_stop(); });
-    base_thread->wake();
+    with_base([this] { base->emergency_stop(); });
+    wake_base();
   }
 
   /// In the base's thread, every 20 ms at the latest: what the motors may do now.
@@ -195,7 +205,7 @@ struct RealRobot::Impl {
   }
 
   /// Since the operator said so last, another program seemed to have the base: it may have stopped the robot.
-  bool is_taken() const { return base_thread->turned_away() > pardoned; }
+  bool is_taken() const { return base_thread && base_thread->turned_away() > pardoned; }
 
   bool is_lidar_silent(const ScannerStatus& scanner, Stamp now) const {
     return scanner.last_scan == Stamp::never() || now - scanner.last_scan > settings.safety.lidar_silence;
@@ -219,6 +229,15 @@ struct RealRobot::Impl {
     return last != Stamp::never() && now - last <= settings.safety.operator_silence;
   }
 
+  /// A line that hands scans over in bundles makes the scanner look silent though it turns.
+  std::string why_silent(const ScannerStatus& scanner) const {
+    if (!scanner.error.empty() || scanner.worst_latency <= settings.safety.lidar_silence) return scanner.error;
+    char text[120];
+    std::snprintf(text, sizeof text, "the line or this computer holds scans up, by %.1f s so far",
+                  scanner.worst_latency);
+    return text;
+  }
+
   /// What keeps the robot from being driven at `now`, one line each.
   std::vector<std::string> silent(Stamp now) const {
     std::vector<std::string> lines;
@@ -226,7 +245,7 @@ struct RealRobot::Impl {
     const ScannerStatus scanner = lidar.status();
     if (!is_lidar_well(scanner, now)) {
       if (is_lidar_silent(scanner, now)) {
-        lines.push_back(silent_for("urg", underway, scanner.last_scan, now, scanner.error));
+        lines.push_back(silent_for("urg", underway, scanner.last_scan, now, why_silent(scanner)));
       } else {
         char text[80];
         std::snprintf(text, sizeof text, "urg: its scans are %.1f s old; the line or this computer is too slow",
@@ -234,8 +253,9 @@ struct RealRobot::Impl {
         lines.emplace_back(text);
       }
     }
-    const auto [last, ready, state, hold] = base_thread->with(
-        [this] { return std::make_tuple(base->last_report(), base->ready(), base->state(), base->hold()); });
+    if (!base_thread) return add_silent_helpers(std::move(lines), underway, now);
+    const auto [last, ready, state, hold] =
+        with_base([this] { return std::make_tuple(base->last_report(), base->ready(), base->state(), base->hold()); });
     if (underway && is_taken()) lines.push_back("base: another program may have had it; see who drives the robot");
     if (hold == BaseDriver::Hold::EmergencyButton) lines.push_back("base: emergency button pressed");
     if (hold == BaseDriver::Hold::MotorsOff) lines.push_back("base: motors were switched off");
@@ -243,6 +263,11 @@ struct RealRobot::Impl {
       const std::string error = base_thread->error();
       lines.push_back(silent_for("base", underway, last, now, error.empty() ? state : error));
     }
+    return add_silent_helpers(std::move(lines), underway, now);
+  }
+
+  /// The levelling unit and the operator.
+  std::vector<std::string> add_silent_helpers(std::vector<std::string> lines, bool underway, Stamp now) const {
     if (!is_unit_well(now)) {
       const auto [reported, how] =
           unit_thread->with([this] { return std::make_pair(unit.last_report(), unit.state()); });
@@ -264,7 +289,7 @@ struct RealRobot::Impl {
     s.scans = scans;
     s.odometry = odometry;
     s.accelerations = accelerations;
-    base_thread->with([&] {
+    with_base([&] {
       s.motors_on = base->motors_on();
       s.battery = base->battery();
       s.bad_packets = base->bad_sums();
@@ -285,7 +310,7 @@ struct RealRobot::Impl {
 
   bool is_held() const {
     if (first != Stamp::never() && is_taken()) return true;
-    return base_thread->with([this] { return base->hold() != BaseDriver::Hold::None; });
+    return with_base([this] { return base->hold() != BaseDriver::Hold::None; });
   }
 
   void take_scans(Stamp now) {
@@ -322,7 +347,7 @@ struct RealRobot::Impl {
   Inputs collect() {
     Inputs inputs;
     inputs.scans = std::exchange(waiting_scans, {});
-    inputs.odometry = base_thread->with([this] { return base->take_odometry(); });
+    inputs.odometry = with_base([this] { return base->take_odometry(); });
     if (unit_thread) {
       unit_thread->with([&] {
         inputs.accelerations = unit.take_accelerations();
@@ -448,7 +473,7 @@ void RealRobot::command(const Commands& commands) {
     robot.commanded = now;
     robot.scan_answered = std::exchange(robot.scan_arrived, Stamp::never());
   }
-  robot.base_thread->wake();
+  robot.wake_base();
   if (robot.unit_thread && robot.settings.model.has_levelling_unit) {
     robot.unit_thread->with([&] { robot.unit.aim(commands.aim); });
     robot.unit_thread->wake();
@@ -460,9 +485,9 @@ void RealRobot::emergency_stop() { impl_->emergency_stop(); }
 void RealRobot::stop() { impl_->stop(); }
 
 void RealRobot::rearm() {
-  impl_->pardoned = impl_->base_thread->turned_away();
-  impl_->base_thread->with([this] { impl_->base->rearm(); });
-  impl_->base_thread->wake();
+  if (impl_->base_thread) impl_->pardoned = impl_->base_thread->turned_away();
+  impl_->with_base([this] { impl_->base->rearm(); });
+  impl_->wake_base();
 }
 
 void RealRobot::listen(std::function<OperatorWish()> ask, std::function<void()> left) {

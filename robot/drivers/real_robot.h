@@ -32,7 +32,7 @@ struct RealRobotSettings {
   std::function<std::unique_ptr<BaseDriver>(const BaseSettings&)> own_base;
   BaseSettings base;
   LevellingUnitSettings levelling;
-  std::string base_port;
+  std::string base_port;       ///< empty: there is none, somebody else drives
   std::string levelling_port;  ///< empty: there is none
   SafetySettings safety;
   std::string heartbeat;    ///< file or pipe that must be touched; empty: none

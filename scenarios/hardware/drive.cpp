@@ -6,12 +6,14 @@
 #include <atomic>
 #include <cctype>
 #include <chrono>
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/error.h"
 #include "base/text/words.h"
+#include "explore/time_for_home.h"
 #include "robot/drivers/black_box.h"
 #include "robot/drivers/host_clock.h"
 #include "robot/drivers/mrpt_scanner.h"
@@ -236,7 +238,7 @@ class Driver {
     status.robot = real_.status();
     if (status.robot.troubles != troubles_ && options_.tell) tell_troubles(status.robot.troubles);
     troubles_ = status.robot.troubles;
-    if (!options_.each_second || since <= 0.0) return;
+    if (!options_.each_second || since <= 0.0 || !begun_) return;
     status.seconds = seconds;
     status.state = options_.mode == DriveMode::Teleoperate ? "by hand"
                    : options_.mode == DriveMode::MapOnly   ? "mapping"
@@ -299,10 +301,26 @@ scoring::Evidence evidence_of(const Core& core, const robot::RealRobot& robot, c
   return evidence;
 }
 
+/// A robot that would turn back before it has begun is not sent.
+void require_time_to_explore(const Scenario& settings) {
+  const auto explorer = settings.explorer.make(settings.robot, {settings.time_limit});
+  const double for_home = explore::time_for_home(*explorer);
+  if (settings.time_limit <= 0.0 || settings.time_limit > for_home) return;
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "time limit: all of the %g s are kept for the way home (%g s and the way itself), so nothing would be "
+                "explored; give at least %g s, or --set explorer.return_home=false",
+                settings.time_limit, for_home, 2.0 * for_home);
+  throw InputError(text);
+}
+
 }  // namespace
 
 RunReport drive(const RobotFile& file, const DriveOptions& options) {
   const auto start = Clock::now();
+  if (options.mode == DriveMode::Explore) require_time_to_explore(file.settings);
+  if (options.mode != DriveMode::MapOnly && file.robot.base_port.empty())
+    throw InputError("devices.base: without a base the robot can only be watched; give its port, or add --map-only");
   file.settings.mapper.require_permission();
   // A robot that somebody else drives is not waited for: it would be taken over when they stop it.
   // Nor by others while one of its devices is unplugged; MRPT's drivers open their ports themselves.
@@ -322,7 +340,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
   {
     const std::unique_ptr<robot::Scanner> lidar = open_lidar(file, box);
     robot::RealRobotSettings settings = file.robot;
-    settings.base.passive = options.mode == DriveMode::MapOnly;
+    settings.base.passive = settings.base.listen = options.mode == DriveMode::MapOnly;
     robot::RealRobot real(settings, *lidar, &box);
     robot::RecordingRobot recorded(real, folder.file("log.rlog"), resolved_yaml(file.settings));
     Driver driver(file, options, folder, real, core);

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <memory>
 
 #include "arenas/files/arena_file.h"
+#include "arenas/model/arena.h"
 #include "base/error.h"
 #include "base/text/words.h"
 #include "base/trajectory.h"
@@ -91,7 +93,7 @@ class Emulation {
  public:
   Emulation(const Scenario& scenario, const arenas::Arena& arena, const robot::RobotModel& model,
             const EmulateOptions& options)
-      : options_(options), simulated_(arena, model, scenario.sim, scenario.seed), tick_(model.tick) {
+      : options_(options), arena_(arena), simulated_(arena, model, scenario.sim, scenario.seed), tick_(model.tick) {
     if (!options.urg.empty()) urg_ = std::make_unique<robot::UrgEmulator>(urg_config(scenario, options));
     if (!options.base.empty()) {
       robot::ArcosEmulatorSettings settings = base_settings(model, options);
@@ -172,10 +174,20 @@ class Emulation {
         arcos_->tell_truth(simulated_.truth().back().pose);
         placed = arcos_->take_placed();
       });
-      if (placed) simulated_.place(*placed);
+      if (placed) place(*placed);
     }
     if (levelling_) levelling_->with([&] { commands.aim = unit_->aim(); });
     simulated_.command(commands);
+  }
+
+  /// Beside the floor there is nothing to stand on.
+  void place(const mrpt::math::TPose2D& pose) {
+    if (std::isfinite(arenas::floor_height(arena_, {pose.x, pose.y}))) return simulated_.place(pose);
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "base: SIM_SET_POSE to x %.2f, y %.2f m, where the arena has no floor; the robot stays where it is",
+                  pose.x, pose.y);
+    if (options_.warn) options_.warn(text);
   }
 
   void deliver(const robot::Inputs& inputs) {
@@ -237,6 +249,7 @@ class Emulation {
   }
 
   const EmulateOptions& options_;
+  const arenas::Arena& arena_;
   sim::SimRobot simulated_;
   double tick_;
   Stamp start_;

@@ -45,6 +45,7 @@ struct EmulateOptions {
   std::string truth;                                           ///< .tum file for the true trajectory; empty: none
   std::function<void(const std::vector<std::string>&)> ready;  ///< the ports are open: their words
   std::function<void(const std::string&)> tell;                ///< a fault begins: one line
+  std::function<void(const std::string&)> warn;                ///< a client asks for what cannot be: one line
   std::function<bool()> interrupted;
 };
 

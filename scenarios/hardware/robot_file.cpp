@@ -87,6 +87,7 @@ void settle(RobotFile& file, const robot::RobotModel& devices) {
   robot::RealRobotSettings& robot = file.robot;
   robot.model = model;
   if (!model.has_levelling_unit) robot.levelling_port.clear();
+  if (robot.base_driver == robot::kNoBase) robot.base_port.clear();
   robot.base.max_v = model.max_v;
   robot.base.max_w = model.max_w;
   robot.base.max_accel = model.max_accel;

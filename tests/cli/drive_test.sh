@@ -36,6 +36,7 @@ expect_exit 2 "no device is asked for" "$rubble" emulate small.yaml
 expect_exit 2 "there is no fault 'base-fire'" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --fault base-fire@3
 expect_exit 2 "NAME@SECONDS" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --fault base-silence
 expect_exit 2 "that device is not played" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --fault urg-silence@3
+expect_exit 3 "flat_room: is an arena, and what is played is a scenario" "$rubble" emulate flat_room --base tcp:127.0.0.1:0
 expect_exit 2 "give --base too" "$rubble" emulate small.yaml --urg tcp:127.0.0.1:0 --as-hardware
 for start in inf,0,0 0,nan,0 0,0,1e300; do
   expect_exit 2 "--odometry-start" "$rubble" emulate small.yaml --base tcp:127.0.0.1:0 --time-limit 1 --odometry-start $start
@@ -43,12 +44,17 @@ done
 expect_exit 3 "did you mean" "$rubble" drive "$robot" --set safety.lidar_silense_s=1
 expect_exit 3 "tcp:nowhere" "$rubble" drive "$robot" --urg tcp:nowhere
 expect_exit 3 "nonsense.yaml" "$rubble" drive nonsense.yaml
+# A time that is all needed for the way home is refused before a port is opened; without that way it is not.
+expect_exit 3 "all of the 12 s are kept for the way home" "$rubble" drive "$robot" --urg pty:no1 --time-limit 12 --out hasty
+[[ -e hasty ]] && fail "a drive that is refused leaves a folder"
 
 # Nobody there: exit 4, and the device is named.
 "$rubble" drive "$robot" --urg pty:no1 --base pty:no2 --levelling pty:no3 --set safety.start_s=1 --out nobody \
   >out.txt 2>err.txt
 [[ $? == 4 ]] || fail "a drive without devices must fail with 4: $(cat err.txt)"
 for device in urg base levelling; do grep -q "rubble: $device: has not reported yet" err.txt || fail "$device is not named"; done
+[[ $(wc -l <out.txt) == 1 ]] && grep -q "^folder .*nobody (nothing is mapped" out.txt || fail "a drive that never began shows figures: $(cat out.txt)"
+! grep -q "motors off" err.txt || fail "a drive that never began tells its state: $(cat err.txt)"
 
 # A robot that somebody holds by its button to the end: the end says so.
 start_emulator --fault base-button@3
@@ -151,6 +157,36 @@ wait $drive
 ! grep -q "motors on" out.txt err.txt || fail "it switched the motors on"
 drive=
 stop_emulator
+
+# Pictures while it drives; and when a device is lost the map is saved at once: while all is waited for nothing else saves it.
+start_emulator
+# shellcheck disable=SC2086
+"$rubble" drive "$robot" $ports --out watched >out.txt 2>err.txt &
+drive=$!
+saved() { stat -c %y watched/map.tif 2>/dev/null; }
+for _ in $(seq 300); do
+  [[ -s watched/map.png && -s watched/map.tif && -s watched/estimate.tum ]] && break
+  sleep 0.1
+done
+kill -0 $drive && [[ -s watched/map.png && ! -e watched/score.json ]] || fail "no picture while the robot drives: $(ls watched; tail -3 err.txt)"
+before=$(saved)
+for _ in $(seq 1000); do
+  [[ $(saved) != "$before" ]] && break
+  sleep 0.02
+done
+before=$(saved)
+kill -KILL $emulator
+wait $emulator 2>/dev/null
+emulator=
+for _ in $(seq 100); do
+  sed -n '/motors on/,$p' err.txt | grep -q 'rubble: base: ' && [[ $(saved) != "$before" ]] && break
+  sleep 0.1
+done
+kill -0 $drive && [[ $(saved) != "$before" ]] || fail "the map is not saved as the robot is lost: $(tail -3 err.txt)"
+kill -INT $drive
+wait $drive
+[[ $? == 130 ]] || fail "a drive that waits for its devices does not end by Ctrl-C"
+drive=
 
 # A mapper of the user's whose program dies on the way, or when all is said: exit 4, one line, the folder complete. A
 # command of the robot file runs only when the user says so, and no folder is made before.

@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kAnswerTime = 0.3;  // Hokuyo's own library waits 0.14 s; a busy USB hub may need more [s]
 constexpr int kTries = 3;            // of a question whose answer got lost
+constexpr double kLinger = 1.2;      // an answer that comes even later is not told from none [s]
+constexpr std::size_t kMostGivenUp = 32;
 constexpr int kTimeQuestions = 12;
 constexpr double kAskAgain = 0.85;  // SCIP 1.1: share of a turn after which the next one is asked for
 constexpr double kLost = 2.5;       // SCIP 1.1: turns without a byte after which an answer counts as lost
@@ -41,7 +43,11 @@ std::pair<Stamp, Stamp> when_read(Stamp asked, Stamp answered, LineKind line, in
 
 Link::Link(std::unique_ptr<Port> port) : port_(std::move(port)) {}
 
-void Link::refuse(const std::string& what) const { throw Refused(port_->name() + ": " + what); }
+/// Where answers came too late for their questions, the next ones were taken for something else: that is the trouble.
+void Link::refuse(const std::string& what) const {
+  if (late_ > 0) refuse_late();
+  throw Refused(port_->name() + ": " + what);
+}
 
 void Link::send(const std::string& command) {
   const std::string line = command + "\n";
@@ -76,12 +82,40 @@ std::optional<Reply> Link::ask(const std::string& command, double timeout) {
         answered_ = true;
         return reply;
       }
+      mind_late_answer(*reply);
       if (stream_.empty() || reply->lines[0].rfind(stream_, 0) != 0) ++damaged_;
     }
     const double left = end - host_now();
-    if (left <= 0.0) return std::nullopt;
+    if (left <= 0.0) {
+      if (given_up_.size() == kMostGivenUp) given_up_.erase(given_up_.begin());
+      given_up_.emplace_back(command, asked_);
+      return std::nullopt;
+    }
     pull(left);
   }
+}
+
+/// Takes note of an answer to a question that was given up. Of several the same the last one is taken to be meant: it
+/// may be later than it seems, but one answer lost and another in time are never called a late one.
+void Link::mind_late_answer(const Reply& reply) {
+  const auto same = [&](const auto& question) { return question.first == reply.lines[0]; };
+  const auto found = std::find_if(given_up_.rbegin(), given_up_.rend(), same);
+  if (found == given_up_.rend() || !status_of(reply)) return;
+  const double took = reply.ended - found->second;
+  given_up_.erase(std::remove_if(given_up_.begin(), given_up_.end(), same), given_up_.end());
+  if (took <= kAnswerTime) return;
+  ++late_;
+  latest_ = std::max(latest_, took);
+}
+
+void Link::refuse_late() const {
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      "the scanner answers too late, %.1f s or more after it was asked (at most %.1f s); the line to it (radio, relay, "
+      "serial server) is too slow",
+      latest_, kAnswerTime);
+  throw Refused(port_->name() + ": " + text);
 }
 
 Reply Link::insist(const std::string& command) {
@@ -123,7 +157,13 @@ void Link::switch_to_scip2() {
 
 bool Link::knock() {
   drain(0.01);
-  return find_device();
+  if (find_device()) return true;
+  if (port_->is_serial()) return false;  // there the other bit rates were tried meanwhile
+  for (const Stamp end = host_now() + kLinger; late_ == 0 && host_now() < end;) {
+    pull(end - host_now());
+    while (const auto reply = receiver_.next()) mind_late_answer(*reply);
+  }
+  return late_ > 0;
 }
 
 void Link::shake_hands(bool only_scip1) {
@@ -131,6 +171,7 @@ void Link::shake_hands(bool only_scip1) {
     throw DeviceLost(
         port_->name() +
         ": no scanner answers; check its power and that no other program uses the port, or try another one");
+  if (late_ > 0 && !answered_) refuse_late();
   if (!scip2_ && !only_scip1) switch_to_scip2();
   if (scip2_ && only_scip1) refuse("the scanner has been switched to SCIP 2.0; switch it off and on to speak SCIP 1.1");
   // A serial line at 19200 baud carries one scan a second; over USB the rate means nothing and costs nothing.
@@ -146,6 +187,7 @@ void Link::shake_hands(bool only_scip1) {
   } else {
     identify_scip1();
   }
+  if (late_ > 1) refuse_late();  // one: the computer or the line was held up for a moment
 }
 
 void Link::identify() {
@@ -190,6 +232,7 @@ void Link::identify_scip1() {
 void Link::ask_time(WrappingClock& clock, ClockMap& map) {
   if (!scip2_) return;
   const auto on = ask("TM0", kAnswerTime);
+  if (!on) ask("TM2", kAnswerTime);  // it may have heard the question all the same, and would refuse all that follows
   if (!on || (*status_of(*on) != "00" && *status_of(*on) != "02"))
     return;  // an old firmware: the usual delay has to do
   for (int i = 0; i < kTimeQuestions; ++i) {
@@ -225,6 +268,7 @@ void Link::start() {
   if (status != "00" && status != "99")
     refuse("the scanner does not send scans (MD: " + status + "); switch it off and on");
   receiver_.expect_echo(stream_, command.size());
+  late_ = 0;
 }
 
 std::string Link::state() {

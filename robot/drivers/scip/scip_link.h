@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "robot/drivers/clock_map.h"
 #include "robot/drivers/port.h"
@@ -29,7 +30,7 @@ class Link {
  public:
   explicit Link(std::unique_ptr<Port> port);
 
-  /// Whether a scanner answers, at any bit rate and in either protocol.
+  /// Whether a scanner answers, at any bit rate and in either protocol; perhaps too late to talk with it.
   bool knock();
   /// Finds bit rate and protocol, switches to SCIP 2.0 where the device can, and asks who it is. `only_scip1`: does not
   /// switch.
@@ -61,6 +62,8 @@ class Link {
   void send(const std::string& command);
   void pull(double timeout);
   void drain(double silence);
+  void mind_late_answer(const Reply& reply);
+  [[noreturn]] void refuse_late() const;
   bool find_device();
   bool find_at(int baud);
   void switch_to_scip2();
@@ -79,9 +82,12 @@ class Link {
   Geometry geometry_;
   ScannerInfo info_;
   Stamp begun_, ended_;
-  Stamp asked_;                    ///< when the last question left
-  Stamp heard_ = Stamp::never();   ///< when the last byte came
-  Stamp ask_at_ = Stamp::never();  ///< SCIP 1.1: when the next turn is to be asked for
+  Stamp asked_;                                          ///< when the last question left
+  std::vector<std::pair<std::string, Stamp>> given_up_;  ///< questions that nobody answered in time, and when they left
+  int late_ = 0;                                         ///< answers that came after they had been given up
+  double latest_ = 0.0;                                  ///< the longest that one of them took [s]
+  Stamp heard_ = Stamp::never();                         ///< when the last byte came
+  Stamp ask_at_ = Stamp::never();                        ///< SCIP 1.1: when the next turn is to be asked for
   std::uint64_t damaged_ = 0;
 };
 

@@ -47,8 +47,14 @@ class Wire {
     truth.y += motion.v * std::sin(truth.phi) * kStep;
     ++steps;
     if (steps % 100 == 0) base.measure({now, truth, motion.v, motion.w, false}, now);
-    for (const std::string& piece : faults.pass(base.take_output(), now))
+    for (const std::string& piece : faults.pass(base.take_output(), now)) {
       if (!cut) driver.receive(piece, now);
+      if (listener != nullptr) listener->receive(piece, now);
+    }
+    if (listener != nullptr) {
+      listener->advance(now);
+      said_by_listener += listener->take_output(now);
+    }
     for (const Odometry& o : driver.take_odometry()) odometry.push_back(o);
   }
 
@@ -66,6 +72,8 @@ class Wire {
   std::vector<Odometry> odometry;
   bool cut = false;
   int steps = 0;
+  Pioneer* listener = nullptr;  ///< hears what the base says
+  std::string said_by_listener;
 };
 
 TEST(PioneerWire, TheHandshakeEndsInReports) {
@@ -137,6 +145,92 @@ TEST(PioneerWire, AnOriginSetAnewIsNoMotion) {
   EXPECT_EQ(wire.driver.jumps(), 1u);
   EXPECT_NEAR(wire.odometry.back().pose.x, wire.truth.x, 0.02);
   EXPECT_NEAR(wire.odometry.back().pose.y, 0.0, 0.02);
+}
+
+BaseSettings listening() {
+  BaseSettings settings;
+  settings.passive = settings.listen = true;
+  return settings;
+}
+
+TEST(PioneerWire, WhoListensTellsTheMotionThatSomebodyElseDrivesAndSaysNothing) {
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.3, 0.2);
+  Pioneer listener(listening());
+  listener.opened(wire.now, LineKind::Tcp);
+  const mrpt::math::TPose2D before = wire.truth;
+  wire.listener = &listener;
+  wire.run(0.5);
+  EXPECT_TRUE(listener.ready()) << listener.state();
+  wire.run(4.5);
+  listener.drive({0.5, 0.0});
+  listener.enable(true);
+  wire.run(0.5);
+  const mrpt::math::TPose2D then = wire.truth;
+  // The base falls silent and is opened anew, which sets its odometry to zero: that is no motion.
+  wire.cut = true;
+  wire.base.client_left(wire.now);
+  wire.base.client_came(wire.now);
+  wire.run(4.0);
+  EXPECT_FALSE(listener.ready());
+  const auto heard = listener.take_odometry();
+  ASSERT_GT(heard.size(), 40u);
+  const mrpt::math::TPose2D driven = heard.back().pose - heard.front().pose;
+  EXPECT_NEAR(length(driven.x, driven.y), length(then.x - before.x, then.y - before.y), 0.04);
+  wire.cut = false;
+  wire.driver.opened(wire.now, LineKind::Tcp);
+  wire.listener = nullptr;  // so long that it would ask who is there
+  ASSERT_TRUE(wire.run_until([&] { return wire.driver.ready(); }, 3.0));
+  wire.listener = &listener;
+  ASSERT_TRUE(wire.run_until([&] { return listener.ready(); }, 1.0));
+  const auto again = listener.take_odometry();
+  ASSERT_FALSE(again.empty());
+  EXPECT_NEAR(length(again.back().pose.x - heard.back().pose.x, again.back().pose.y - heard.back().pose.y), 0.0, 0.01);
+  EXPECT_EQ(wire.said_by_listener, "");
+  EXPECT_TRUE(listener.farewell().empty());
+  listener.emergency_stop();  // this is said all the same
+  wire.run(0.1);
+  EXPECT_NE(wire.said_by_listener, "");
+}
+
+TEST(PioneerWire, ABaseThatNobodyElseTalksWithIsSpokenTo) {
+  Wire wire;
+  wire.cut = true;  // the first one says nothing
+  wire.driver = Pioneer(listening());
+  wire.driver.opened(wire.now, LineKind::Tcp);
+  wire.cut = false;
+  ASSERT_TRUE(wire.run_until([&] { return wire.driver.ready(); }, 4.0)) << wire.driver.state();
+  EXPECT_EQ(wire.driver.identity().subclass, "p3at-sh");
+  EXPECT_FALSE(wire.driver.farewell().empty());
+}
+
+TEST(PioneerWire, OnASerialLineReportsOfEveryBitRateAreListenedFor) {
+  std::string report;
+  {
+    Wire wire;
+    Pioneer listener(listening());
+    wire.run(1.0);
+    wire.base.take_output();
+    wire.base.measure({wire.now, {}, 0.0, 0.0, false}, wire.now);
+    wire.base.advance(wire.now + 0.1);
+    report = wire.base.take_output();
+  }
+  ASSERT_FALSE(report.empty());
+  for (const int baud : {9600, 38400, 19200, 115200, 57600}) {
+    Pioneer listener(listening());
+    Stamp now{1'700'000'000'000'000'000};
+    listener.opened(now, LineKind::Uart);
+    std::string said;
+    for (int i = 0; i < 3000 && !listener.ready(); ++i) {
+      now = now + kStep;
+      if (i % 100 == 50 && listener.baud() == baud) listener.receive(report, now);
+      listener.advance(now);
+      said += listener.take_output(now);
+    }
+    EXPECT_TRUE(listener.ready()) << baud;
+    EXPECT_EQ(said, "") << baud;
+  }
 }
 
 TEST(PioneerWire, SlowTurnsAreRightInTheMean) {

@@ -41,6 +41,7 @@ class EmulatedBase {
     std::promise<std::string> word;
     options.ready = [&](const std::vector<std::string>& ports) { word.set_value(ports.front().substr(5)); };
     options.interrupted = [this] { return ending_.load(); };
+    options.warn = [this](const std::string& line) { warned.push_back(line); };
     auto opened = word.get_future();
     thread_ = std::thread([scenario, options] { emulate(scenario, options); });
     port_ = robot::open_port(opened.get());
@@ -99,7 +100,17 @@ class EmulatedBase {
     return track;
   }
 
+  /// Where the robot is at the end.
+  mrpt::math::TPoint2D place() {
+    end();
+    std::ifstream in(truth_file());
+    double t = 0.0, x = 0.0, y = 0.0;
+    for (std::string line; std::getline(in, line);) std::istringstream(line) >> t >> x >> y;
+    return {x, y};
+  }
+
   Configuration told;
+  std::vector<std::string> warned;  ///< to be read after end()
 
  private:
   std::string truth_file() const { return (folder_ / "truth.tum").string(); }
@@ -155,6 +166,17 @@ TEST(EmulatedBase, ItsConfigurationTellsTheLimitsThatHold) {
   base.say(command(kVelocity, 1000), 2.2);
   const EmulatedBase::Track track = base.track();
   EXPECT_NEAR(track.fastest, 1e-3 * base.told.top_speed, 0.03);
+}
+
+TEST(EmulatedBase, ThePoseCanBeSetOnTheFloorOnlyAndWhoAsksForAnotherIsTold) {
+  EmulatedBase base(0.4);
+  base.say(sim_set_pose(1500, 600, 0), 0.2);
+  base.say(sim_set_pose(900'000, 0, 0), 0.2);
+  const mrpt::math::TPoint2D place = base.place();
+  EXPECT_NEAR(place.x, 1.5, 0.01);
+  EXPECT_NEAR(place.y, 0.6, 0.01);
+  ASSERT_EQ(base.warned.size(), 1u);
+  EXPECT_NE(base.warned[0].find("x 900.00"), std::string::npos) << base.warned[0];
 }
 
 }  // namespace
