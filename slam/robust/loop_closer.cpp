@@ -27,7 +27,8 @@ constexpr double kTightPath = 40.0;      ///< a loop of less path that hardly mo
 constexpr double kHardlyMoves = 0.12;    ///< [m]
 constexpr double kHardlyTurns = 0.04;    ///< [rad]
 constexpr double kExpectedMoves = 0.3;   ///< from here the null test asks [m]
-constexpr int kConfirmedWithin = 12;     ///< key frames
+constexpr int kConfirmedWithin = 12;     ///< key frames ...
+constexpr int kConfirmedFromAfar = 60;   ///< ... and those that were taken elsewhere
 constexpr std::size_t kMostWaiting = 400;
 constexpr int kSolveEvery = 15;     ///< key frames with near edges only
 constexpr double kSolveNow = 0.10;  ///< disagreement that is solved at once [m + 2 rad]
@@ -40,6 +41,10 @@ constexpr double kExplainedWithin = 1.5;  ///< old key frames so close explain w
 constexpr double kAsFar = 0.7;            ///< and are so much of the loop's path away ...
 constexpr double kExplained = 0.8;        ///< when they support so much of what the loop's would ...
 constexpr double kAsGood = 0.03;          ///< ... and contradict hardly more
+constexpr double kWitnessAway = 2.5;      ///< old key frames so close are asked whether a new one can be true [m] ...
+constexpr std::size_t kWitnesses = 8;     ///< ... so many of them
+constexpr int kLeastContradicted = 12;    ///< points
+constexpr int kLeastJudged = 60;          ///< points of which they can say something
 constexpr Work kWorkPerDrawnFrame = 8000;
 constexpr Work kWorkPerSuspected = 40;  ///< edge
 constexpr Work kWorkPerJudged = 30;     ///< point and key frame
@@ -117,16 +122,22 @@ void LoopCloser::begin_anew() {
   covariance_frame_ = 0;
 }
 
+/// Half width of the search for a loop of so much path through the graph.
+double LoopCloser::usual_window(double path) const {
+  return std::min(config_.largest_window, config_.window + config_.window_per_m * path);
+}
+
 void LoopCloser::look(Work* work) {
   const int i = frames_.last();
   int end = 0;  // of those that lie far enough back along the drive
   while (end < i && frames_[i].path - frames_[end].path >= config_.least_path) ++end;
   const std::vector<Candidate> close =
       candidates_within(i, end, config_.reach + config_.largest_window, std::numeric_limits<double>::infinity(), work);
+  const bool strayed = astray(i, close, work);
   std::vector<std::pair<double, Task>> candidates;
   for (const Candidate& old : close) {
-    if (old.path < config_.least_path) continue;
-    const double window = std::min(config_.largest_window, config_.window + config_.window_per_m * old.path);
+    if (old.path < config_.least_path && !strayed) continue;
+    const double window = std::max(usual_window(old.path), strayed ? config_.astray_window : 0.0);
     if (old.away >= config_.reach + window) continue;
     const double angle = std::min(config_.largest_angle, config_.angle + config_.angle_per_m * old.path);
     candidates.push_back({old.away, {Kind::Wide, i, old.frame, window, angle, old.path}});
@@ -143,8 +154,35 @@ void LoopCloser::look(Work* work) {
     taken.push_back(task.old);
     tasks_.push_back(task);
   }
-  queue_near(i, close);
+  if (!strayed) queue_near(i, close);
   tasks_.push_back({Kind::Solve, i, -1});
+}
+
+/// Between walls that look the same all along, wheels that spin carry the robot away and nothing tells. Once it looks
+/// out of there, it and old key frames see through each other's walls, however short the way back through the graph.
+bool LoopCloser::astray(int frame, const std::vector<Candidate>& around, Work* work) const {
+  std::vector<std::pair<double, int>> close;
+  for (const Candidate& old : around)
+    if (old.away < kWitnessAway) close.emplace_back(old.away, old.frame);
+  std::sort(close.begin(), close.end());
+  if (close.size() > kWitnesses) close.resize(kWitnesses);
+  KeyFrames::Agreement there;
+  KeyFrames::Agreement back;
+  const auto sum = [](KeyFrames::Agreement& all, const KeyFrames::Agreement& more) {
+    all.contradicted += more.contradicted;
+    all.supported += more.supported;
+  };
+  for (const auto& [away, old] : close) {
+    sum(there, frames_.agreement(frames_[frame].cloud.points, {}, frames_.pose(frame), {old}));
+    sum(back, frames_.agreement(frames_[old].cloud.points, {}, frames_.pose(old), {frame}));
+    if (work != nullptr)
+      *work +=
+          kWorkPerJudged * static_cast<Work>(frames_[frame].cloud.points.size() + frames_[old].cloud.points.size());
+  }
+  const auto judged = [](const KeyFrames::Agreement& a) { return a.contradicted + a.supported; };
+  return std::max(judged(there), judged(back)) >= kLeastJudged &&
+         std::max(there.contradicted, back.contradicted) >= kLeastContradicted &&
+         std::max(there.contradiction(), back.contradiction()) >= config_.astray_contradiction;
 }
 
 /// Where the graph is tight already, one edge to the closest old key frame.
@@ -246,7 +284,8 @@ void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
   if (near && size_of(moved) > 1.5 * task.window) return;
   budget -= kWorkPerJudged * static_cast<Work>(points_.size() + old_points_.size()) *
             static_cast<Work>(new_frames_.size() + old_frames_.size());
-  if (sees_through(task, fit.pose, expected)) return;
+  double contradiction = 0.0;
+  if (sees_through(task, fit.pose, expected, &contradiction)) return;
 
   GraphEdge loop;
   loop.from = task.old;
@@ -258,7 +297,7 @@ void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
   if (near || (hardly && task.path < kTightPath))
     accept(loop, true);
   else
-    confirm(loop);
+    confirm({loop, contradiction <= config_.sure_contradiction, size_of(moved) <= usual_window(task.path)});
 }
 
 /// A sub-map that can slide along the other (a corridor) closes no loop.
@@ -269,12 +308,14 @@ bool LoopCloser::well_conditioned(const ScanFit& fit) const {
 
 /// Whether the loop would have beams pass through walls; or, null test, whether the pose expected without it does not:
 /// in a maze of equal cells a wrong loop may contradict nothing, but neither does the truth.
-bool LoopCloser::sees_through(const Task& task, const TPose2D& T_old_new, const TPose2D& T_expected) {
+bool LoopCloser::sees_through(const Task& task, const TPose2D& T_old_new, const TPose2D& T_expected,
+                              double* contradiction) {
   const TPose2D& old_pose = frames_.pose(task.old);
   const TPose2D& new_pose = frames_.pose(task.frame);
   const auto there = frames_.agreement(points_, T_old_new, old_pose, old_frames_);
   const auto back = frames_.agreement(old_points_, TPose2D() - T_old_new, new_pose, new_frames_);
-  if (std::max(there.contradiction(), back.contradiction()) > config_.most_contradiction) {
+  *contradiction = std::max(there.contradiction(), back.contradiction());
+  if (*contradiction > config_.most_contradiction) {
     ++counts_.contradicted;
     return true;
   }
@@ -282,8 +323,8 @@ bool LoopCloser::sees_through(const Task& task, const TPose2D& T_old_new, const 
   const auto expected_there = frames_.agreement(points_, T_expected, old_pose, old_frames_);
   const auto expected_back = frames_.agreement(old_points_, TPose2D() - T_expected, new_pose, new_frames_);
   const bool overlap = expected_there.supported + expected_back.supported > 0.15 * (there.supported + back.supported);
-  const double contradiction = std::max(expected_there.contradiction(), expected_back.contradiction());
-  const bool stands = overlap ? contradiction < config_.expected_contradiction : explained_already(task, there);
+  const double without = std::max(expected_there.contradiction(), expected_back.contradiction());
+  const bool stands = overlap ? without < config_.expected_contradiction : explained_already(task, there);
   counts_.needless += stands ? 1 : 0;
   return stands;
 }
@@ -307,24 +348,48 @@ bool LoopCloser::explained_already(const Task& task, const KeyFrames::Agreement&
 }
 
 /// A loop that moves the robot counts when others of the last key frames say the same.
-void LoopCloser::confirm(const GraphEdge& loop) {
+void LoopCloser::confirm(const Claim& claim) {
   std::vector<std::size_t> group;
   for (std::size_t k = 0; k < waiting_.size(); ++k)
-    if (agree(loop, waiting_[k])) group.push_back(k);
-  if (static_cast<int>(group.size()) + 1 < config_.confirmations) {
-    waiting_.push_back(loop);
+    if (agree(claim.loop, waiting_[k].loop)) group.push_back(k);
+  if (!believed(claim, group)) {
+    waiting_.push_back(claim);
     if (waiting_.size() > kMostWaiting) waiting_.pop_front();
     return;
   }
-  accept(loop, false);
-  for (const std::size_t k : group) accept(waiting_[k], false);
+  accept(claim.loop, false);
+  for (const std::size_t k : group) accept(waiting_[k].loop, false);
   for (auto k = group.rbegin(); k != group.rend(); ++k)
     waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(*k));
 }
 
+/// One of them at least must contradict next to nothing: where cells are alike, a wrong place fits half, and stays the
+/// same wrong place for metres. And what a robot says that turns on the spot is one thing said thrice: that is enough
+/// for what was to be expected after the way there, and for a slide only with a loop from elsewhere.
+bool LoopCloser::believed(const Claim& newest, const std::vector<std::size_t>& group) const {
+  const auto enough = [&](int loops) { return loops >= config_.confirmations; };
+  bool clear = newest.clear;
+  bool sure = newest.clear && newest.expected;
+  int close = 1;
+  double first = frames_[newest.loop.to].path;
+  double last = first;
+  for (const std::size_t k : group) {
+    const Claim& claim = waiting_[k];
+    const double path = frames_[claim.loop.to].path;
+    first = std::min(first, path);
+    last = std::max(last, path);
+    clear = clear || claim.clear;
+    if (newest.loop.to - claim.loop.to > kConfirmedWithin) continue;
+    sure = sure || (claim.clear && claim.expected);
+    ++close;
+  }
+  return (enough(close) && sure) ||
+         (enough(static_cast<int>(group.size()) + 1) && clear && last - first >= config_.apart_path);
+}
+
 /// Whether two loops place the newer key frame of `b` alike, as seen from the older one of `a`.
 bool LoopCloser::agree(const GraphEdge& a, const GraphEdge& b) const {
-  if (a.to - b.to > kConfirmedWithin || a.to == b.to) return false;
+  if (a.to - b.to > kConfirmedFromAfar || a.to == b.to) return false;
   const TPose2D by_a = a.T_from_to + (frames_.pose(b.to) - frames_.pose(a.to));
   const TPose2D by_b = (frames_.pose(b.from) - frames_.pose(a.from)) + b.T_from_to;
   const TPose2D off = by_b - by_a;

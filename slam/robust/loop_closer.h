@@ -35,13 +35,18 @@ struct LoopConfig {
   double least_inliers = 0.55;           ///< of the fit
   double most_contradiction = 0.15;      ///< share of points seen through, either way
   double expected_contradiction = 0.15;  ///< null test: below, the pose expected without the loop stands
-  int confirmations = 3;                 ///< loops that must agree before they count
+  int confirmations = 3;                 ///< loops that must agree before they count ...
+  double sure_contradiction = 0.075;     ///< ... one of them contradicting no more than this ...
+  double apart_path = 1.0;               ///< ... and those that move it farther than expected so far apart [m]
   double agree_distance = 0.20;          ///< within this [m]
   double agree_angle = 0.05;             ///< and this [rad]
   double sigma_distance = 0.03;          ///< least error of a loop [m]
   double sigma_angle = 0.008;            ///< [rad]
   double scaling = 8.0;                  ///< of dynamic covariance scaling
   double near_window = 0.20;             ///< of edges to old key frames where the graph is tight [m]
+  double astray_contradiction =
+      0.25;  ///< share of points that old key frames around contradict in one that strayed; above 1: never
+  double astray_window = 1.6;  ///< half width of the search for it at least [m]
 };
 
 struct LoopCounts {
@@ -92,8 +97,16 @@ class LoopCloser {
   void go_on(Work& budget);
   void verify(const Task& task, const mrpt::math::TPose2D& start, Work& budget);
   bool well_conditioned(const ScanFit& fit) const;
-  bool sees_through(const Task& task, const mrpt::math::TPose2D& T_old_new, const mrpt::math::TPose2D& T_expected);
-  void confirm(const GraphEdge& loop);
+  bool sees_through(const Task& task, const mrpt::math::TPose2D& T_old_new, const mrpt::math::TPose2D& T_expected,
+                    double* contradiction);
+  /// A loop that waits for others to agree.
+  struct Claim {
+    GraphEdge loop;
+    bool clear;     ///< next to nothing contradicts it
+    bool expected;  ///< it moves the robot no farther than the way there explains
+  };
+  void confirm(const Claim& claim);
+  bool believed(const Claim& newest, const std::vector<std::size_t>& group) const;
   bool agree(const GraphEdge& a, const GraphEdge& b) const;
   void accept(const GraphEdge& loop, bool near);
   /// An old key frame that may be close.
@@ -103,6 +116,8 @@ class LoopCloser {
     double path;  ///< through the graph [m]
   };
   std::vector<Candidate> candidates_within(int frame, int end, double distance, double most_path, Work* work) const;
+  double usual_window(double path) const;
+  bool astray(int frame, const std::vector<Candidate>& around, Work* work) const;
   void queue_near(int frame, const std::vector<Candidate>& candidates);
   void consider_solving();
   bool solve(Work& budget);
@@ -133,7 +148,7 @@ class LoopCloser {
   CorrelativeSearch search_;
   CorrelativeSearch::Found best_;
 
-  std::deque<GraphEdge> waiting_;         ///< loops that wait for others to agree
+  std::deque<Claim> waiting_;
   std::set<std::pair<int, int>> linked_;  ///< pairs with an edge already
   std::vector<GraphEdge> fresh_;          ///< edges since the last solve
   int frames_since_solve_ = 0;

@@ -120,6 +120,90 @@ TEST(LoopCloser, AFalseLoopPlantedByHandIsRemoved) {
   }
 }
 
+/// Adds the next key frame of a robot whose wheels spun by `slip` between walls that did not tell.
+void add_slipped(KeyFrames& frames, const std::vector<TPose2D>& places, double slip, const RobotModel& model) {
+  const int last = frames.last();
+  const auto next = static_cast<std::size_t>(frames.size());
+  KeyFrame frame;
+  frame.stamp = Stamp{frames.size() * 1000000000ll};
+  frame.cloud = slam_test::cloud_at(ring_corridor(), places[next], model);
+  GraphEdge edge;
+  edge.from = last;
+  edge.to = frames.size();
+  edge.T_from_to = places[next] - places[next - 1];
+  edge.T_from_to.x += slip;
+  frame.path = frames[last].path + edge.T_from_to.x;
+  edge.information = Eigen::Vector3d(1.0 / (slip * slip), 1.0 / 4e-4, 1.0 / 4e-4).asDiagonal();
+  frames.add(std::move(frame), frames.pose(last) + edge.T_from_to, edge);
+}
+
+TEST(LoopCloser, ARobotThatSlidIsFoundAgainByWhatOldKeyFramesContradict) {
+  for (const double slip : {0.7, 1.0, 1.3}) {
+    for (const bool asked : {true, false}) {
+      SCOPED_TRACE(slip);
+      SCOPED_TRACE(asked);
+      LoopConfig config;
+      if (!asked) config.astray_contradiction = 2.0;
+      KeyFrames frames;
+      LoopCloser closer(config, kSurfelCell, frames);
+      const RobotModel model;
+      const auto places = twice_round();
+      const std::size_t slips = places.size() / 2 + 18;
+      const std::size_t end = slips + 18;  // 5 m on: through the graph, too short a way for a usual loop
+      for (std::size_t i = 0; i < end; ++i) {
+        if (i == slips)
+          add_slipped(frames, places, slip, model);
+        else
+          slam_test::add_key_frame(frames, ring_corridor(), places, 0.001, model);
+        closer.look();
+        Work budget = 1000000000;
+        closer.work(budget);
+      }
+      const TPose2D off = frames.pose(frames.last()) - (places[end - 1] - places.front());
+      if (!asked) {
+        EXPECT_GT(length(off.x, off.y), 0.4);
+        continue;
+      }
+      EXPECT_LT(length(off.x, off.y), 0.10);
+      EXPECT_EQ(slam_test::false_loops(frames, places, 0.25), 0);
+    }
+  }
+}
+
+TEST(LoopCloser, WhatIsSaidThriceFromOneSpotIsBelievedOnlyOfAnExpectedMove) {
+  for (const bool expected : {true, false}) {
+    SCOPED_TRACE(expected);
+    std::vector<TPose2D> places = twice_round();
+    const std::size_t spot = places.size() / 2 + 4;
+    std::vector<TPose2D> way(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(spot));
+    for (int k = 1; k <= 6; ++k) way.push_back({way.back().x, way.back().y, places[spot - 1].phi + 0.15 * k});
+    const std::size_t turned = way.size();
+    way.insert(way.end(), places.begin() + static_cast<std::ptrdiff_t>(spot),
+               places.begin() + static_cast<std::ptrdiff_t>(spot + 8));
+    LoopConfig config;
+    if (!expected) {
+      config.window = 0.05;  // the estimate is off by more
+      config.window_per_m = 0.0;
+      config.astray_contradiction = 0.0;
+    }
+    KeyFrames frames;
+    LoopCloser closer(config, kSurfelCell, frames);
+    const RobotModel model;
+    std::uint64_t on_the_spot = 0;
+    for (std::size_t i = 0; i < way.size(); ++i) {
+      slam_test::add_key_frame(frames, ring_corridor(), way, kBend, model);
+      if (i + 1 < spot) continue;  // asked only from here on
+      closer.look();
+      Work budget = 1000000000;
+      closer.work(budget);
+      if (i + 1 == turned) on_the_spot = closer.counts().closed;
+    }
+    EXPECT_EQ(on_the_spot > 0, expected);
+    EXPECT_GT(closer.counts().closed, 2u);
+    EXPECT_EQ(slam_test::false_loops(frames, way, 0.25), 0);
+  }
+}
+
 TEST(LoopCloser, NothingToDoTakesNothing) {
   KeyFrames frames;
   LoopCloser closer({}, kSurfelCell, frames);
