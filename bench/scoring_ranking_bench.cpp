@@ -10,6 +10,7 @@
 
 #include "base/planar.h"
 #include "base/rigid.h"
+#include "scoring/alignment/feature_score.h"
 #include "scoring/scorecard.h"
 #include "scoring/walls/resample.h"
 #include "tests/support/scoring_damage.h"
