@@ -394,6 +394,12 @@ struct RealRobot::Impl {
     return inputs;
   }
 
+  /// A robot that was held all the time, such as by its emergency button, is waited for as long as it takes; but not
+  /// beyond the time that the drive was given.
+  bool is_over_before_it_began(Stamp now) const {
+    return settings.time_limit > 0.0 && now - created >= settings.safety.start + settings.time_limit;
+  }
+
   bool is_over(Stamp now) const { return settings.time_limit > 0.0 && now - first >= settings.time_limit; }
 
   /// Another program has this robot. It is not waited for: it would be taken over when that one stops it.
@@ -435,6 +441,7 @@ struct RealRobot::Impl {
       if (is_held()) held_since = now;  // somebody is at the robot: it is not lost
       const bool starting = first == Stamp::never();
       if (!starting && is_over(now)) return false;
+      if (starting && is_held() && is_over_before_it_began(now)) return false;
       if (starting) refuse_busy_devices();
       if (now - held_since > (starting ? settings.safety.start : settings.safety.give_up))
         throw DeviceLost(

@@ -173,6 +173,24 @@ TEST(RealRobot, MergesWhatArrivesAndDrives) {
   EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0 || bench.pose.x > 0.1; }));
 }
 
+TEST(RealRobot, ARobotThatIsHeldFromTheStartIsLeftWhenTheTimeIsOver) {
+  RealRobotSettings settings;
+  settings.time_limit = 1.0;
+  settings.safety.start = 1.0;
+  Bench bench(settings);
+  bench.base_server.with([&] { bench.arcos.fail(DeviceFault::Button, host_now()); });
+  bool held = false;
+  const Stamp most = host_now() + 20.0;
+  bench.robot->while_waiting([&](const RobotStatus& status) {
+    held = held || status.held;
+    return host_now() < most;
+  });
+  EXPECT_FALSE(bench.robot->read());
+  EXPECT_TRUE(held);
+  EXPECT_LT(host_now(), most) << "nothing but the operator ended it";
+  EXPECT_EQ(bench.pose.x, 0.0);
+}
+
 TEST(RealRobot, MotorsStayOffUntilAllReport) {
   Bench bench;
   bench.scans = false;
@@ -682,6 +700,44 @@ TEST(Heartbeat, AFullPipeIsNotEmptiedAtOnce) {
   int waiting = 0;
   ASSERT_EQ(::ioctl(writer.get(), FIONREAD, &waiting), 0);
   EXPECT_GT(waiting, 0) << "a writer without pause would keep the reader for ever";
+}
+
+TEST(BlackBox, ADeviceThatSendsWithoutEndIsNamedAndDoesNotFillTheDisk) {
+  Folder folder;
+  std::string word, why;
+  Stamp begun = host_now();
+  {
+    Descriptor server(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    ASSERT_EQ(::bind(server.get(), reinterpret_cast<const sockaddr*>(&address), size), 0);
+    ASSERT_EQ(::listen(server.get(), 4), 0);
+    ASSERT_EQ(::getsockname(server.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
+    word = "tcp:127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+    BlackBox box(folder.file("flood"));
+    for (int connection = 0; connection < 3; ++connection) {
+      const std::unique_ptr<Port> port = open_recorded(word, "base", &box);
+      Descriptor flood(::accept4(server.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+      const std::string much(65536, 'x');
+      std::vector<std::uint8_t> bytes(65536);
+      why.clear();
+      try {
+        for (int i = 0; i < 2000; ++i) {
+          [[maybe_unused]] const ssize_t sent = ::send(flood.get(), much.data(), much.size(), MSG_NOSIGNAL);
+          port->read(bytes.data(), bytes.size(), 0.001);
+        }
+      } catch (const DeviceLost& lost) {
+        why = lost.what();
+      }
+      EXPECT_THAT(why, testing::AllOf(testing::StartsWith(word), testing::HasSubstr("more than 1 MB/s"),
+                                      testing::HasSubstr("'base'")));
+    }
+    EXPECT_FALSE(box.failed());
+  }
+  // Over all its connections.
+  EXPECT_LT(static_cast<double>(fs::file_size(folder.file("flood"))), 2.2e6 + 1.1e6 * (host_now() - begun));
 }
 
 /// A pipe that nobody reads is the slowest of all disks.
