@@ -21,12 +21,14 @@ void on_emergency(int /*signal*/) { emergency_signalled = 1; }
 void on_rearm(int /*signal*/) { rearm_signalled = 1; }
 
 void print_status(const scenarios::DriveStatus& s) {
-  std::fprintf(
-      stderr,
-      "%6.0f s  %-10s  x %6.2f y %6.2f m %4.0f deg  %5.1f m2  %4.1f V  motors %-3s  scans %4.1f odometry %4.1f "
-      "levelling %4.1f /s\n",
-      s.seconds, s.state.c_str(), s.T_map_base.x, s.T_map_base.y, rad_to_deg(s.T_map_base.phi), s.known_m2,
-      s.robot.battery, s.robot.motors_on ? "on" : "off", s.scans_per_s, s.odometry_per_s, s.accelerations_per_s);
+  char base[40] = "   - ";  // there is none
+  if (s.has_base)
+    std::snprintf(base, sizeof base, "%4.1f V  motors %-3s", s.robot.battery, s.robot.motors_on ? "on" : "off");
+  std::fprintf(stderr,
+               "%6.0f s  %-10s  x %6.2f y %6.2f m %4.0f deg  %5.1f m2  %s  scans %4.1f odometry %4.1f "
+               "levelling %4.1f /s\n",
+               s.seconds, s.state.c_str(), s.T_map_base.x, s.T_map_base.y, rad_to_deg(s.T_map_base.phi), s.known_m2,
+               base, s.scans_per_s, s.odometry_per_s, s.accelerations_per_s);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <unistd.h>
+#include <algorithm>
 
 #include <cerrno>
 #include <cstring>
@@ -58,6 +59,8 @@ class RecordedPort : public Port {
   Arrival read(std::uint8_t* to, std::size_t size, double timeout) override {
     try {
       const Arrival got = inner_->read(to, size, timeout);
+      if (got.size > 0 && !box_.admits(device_, got.size, got.stamp))
+        throw DeviceLost(name() + ": sends more than 1 MB/s, which is no '" + device_ + "'; see what is at this port");
       if (got.size > 0)
         box_.add(device_, Direction::FromDevice, {reinterpret_cast<const char*>(to), got.size}, got.stamp);
       return got;
@@ -103,6 +106,17 @@ BlackBox::~BlackBox() {
   }
   changed_.notify_all();
   writer_.join();
+}
+
+bool BlackBox::admits(const std::string& device, std::size_t bytes, Stamp now) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  Allowance& allowance = allowances_[device];
+  if (allowance.at != Stamp::never())
+    allowance.bytes = std::min(kMostBurst, allowance.bytes + kMostRate * std::max(0.0, now - allowance.at));
+  allowance.at = now;
+  if (allowance.bytes < static_cast<double>(bytes)) return false;
+  allowance.bytes -= static_cast<double>(bytes);
+  return true;
 }
 
 void BlackBox::add(const std::string& device, Direction direction, std::string_view bytes, Stamp stamp) {

@@ -2,6 +2,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -41,9 +42,14 @@ class BlackBox {
   /// Failures to write are kept quiet: a full disk must not stop a robot's drivers, nor may one that takes nothing for
   /// long fill the memory (kMostWaiting). `failed()` tells.
   void add(const std::string& device, Direction direction, std::string_view bytes, Stamp stamp);
+  /// Whether so many bytes of a device may be kept: kMostRate for ever, kMostBurst at once. Whatever sends more is none
+  /// of the devices, and would fill the disk.
+  bool admits(const std::string& device, std::size_t bytes, Stamp now);
   /// Whether something was lost. Waits until all that was added is written.
   bool failed();
 
+  static constexpr double kMostRate = 1e6;   ///< [bytes/s]; serial lines and the devices send a tenth of it
+  static constexpr double kMostBurst = 2e6;  ///< [bytes]
   static constexpr std::size_t kMostWaiting = 16u << 20;  ///< [bytes]: ten minutes of all devices
 
  private:
@@ -52,6 +58,11 @@ class BlackBox {
   std::mutex mutex_;
   std::condition_variable changed_;
   Descriptor file_;
+  struct Allowance {
+    double bytes = kMostBurst;
+    Stamp at = Stamp::never();
+  };
+  std::map<std::string, Allowance> allowances_;  ///< by device, over all its connections
   std::string waiting_;
   bool writing_ = false;
   bool ending_ = false;

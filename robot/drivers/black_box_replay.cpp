@@ -1,5 +1,6 @@
 #include "robot/drivers/black_box_replay.h"
 
+#include <algorithm>
 #include <iterator>
 
 namespace rubble::robot {
@@ -10,14 +11,46 @@ void append(std::vector<T>& to, std::vector<T>&& from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
-/// One turn of the thread that led the conversation: bytes first, then what is due. What the driver would send is
-/// thrown away: the device has long answered what was sent then.
-void play(Device& device, const BlackBoxEntry& entry) {
-  if (entry.direction == Direction::Opened) return device.opened(entry.stamp, line_kind(entry));
-  if (entry.direction == Direction::FromDevice) device.receive(entry.bytes, entry.stamp);
-  device.advance(entry.stamp);
-  device.take_output(entry.stamp);
-}
+/// The turns of the thread that led the conversation with a device.
+class Conversation {
+ public:
+  explicit Conversation(Device& device) : device_(device) {}
+
+  void play(const BlackBoxEntry& entry) {
+    if (entry.direction == Direction::Opened) {
+      until_ = entry.stamp;
+      return device_.opened(entry.stamp, line_kind(entry));
+    }
+    pass_time(entry.stamp);
+    if (entry.direction == Direction::Lost) {
+      until_ = Stamp::never();  // nobody turns before the next port is open
+      return;
+    }
+    if (entry.direction == Direction::FromDevice) device_.receive(entry.bytes, entry.stamp);
+    turn(entry.stamp);
+  }
+
+ private:
+  /// What is due without a byte on the line, such as giving up to wait.
+  void pass_time(Stamp to) {
+    constexpr double kTurn = 0.02;  // a driver that always wants to be called is called as often as then [s]
+    if (until_ == Stamp::never()) return;
+    for (Stamp due = device_.deadline(); due < to; due = std::max(device_.deadline(), due + kTurn)) {
+      due = std::max(due, until_);
+      if (due < to) turn(due);
+    }
+    until_ = std::max(until_, to);
+  }
+  /// Bytes first, then what is due. What the driver would send is thrown away: the device has long answered what was
+  /// sent then.
+  void turn(Stamp now) {
+    device_.advance(now);
+    device_.take_output(now);
+  }
+
+  Device& device_;
+  Stamp until_ = Stamp::never();  ///< time has passed
+};
 
 /// Whether the driver began by listening whether somebody else talks with the base: else its first question leaves as
 /// soon as the line is open.
@@ -42,10 +75,11 @@ ReplayedBox replay_black_box(const std::vector<BlackBoxEntry>& entries, const st
   settings.listen = listened(entries);
   const std::unique_ptr<BaseDriver> played = make_base(driver, settings);
   LevellingUnit unit(levelling);
+  Conversation with_base(*played), with_unit(unit);
   ReplayedBox replayed;
   for (const BlackBoxEntry& entry : entries) {
-    if (entry.device == "base") play(*played, entry);
-    if (entry.device == "levelling") play(unit, entry);
+    if (entry.device == "base") with_base.play(entry);
+    if (entry.device == "levelling") with_unit.play(entry);
     append(replayed.odometry, played->take_odometry());
     append(replayed.accelerations, unit.take_accelerations());
     append(replayed.aims, unit.take_aims());

@@ -86,6 +86,9 @@ void Pioneer::try_next_rate(Stamp now) {
   ask(now);
 }
 
+/// So long reports are waited for that somebody else's connection brings [s].
+double Pioneer::patience() const { return line_ == LineKind::Tcp ? kListenTcp : kListenOnce; }
+
 /// Nobody was heard at this bit rate.
 void Pioneer::listen_on(Stamp now) {
   parser_.reset();
@@ -93,7 +96,7 @@ void Pioneer::listen_on(Stamp now) {
   if (line_ != LineKind::Tcp) ++rate_;
   since_ = now;
   ++tries_;
-  if (!all) return;
+  if (!all || overheard_) return;
   listening_ = false;  // nobody talks with it: it is spoken to
   go(Step::Sync0, now);
   ask(now);
@@ -104,7 +107,7 @@ void Pioneer::advance(Stamp now) {
     case Step::Closed:
       return;
     case Step::Listening:
-      if (now - since_ >= (line_ == LineKind::Tcp ? kListenTcp : kListenOnce)) listen_on(now);
+      if (now - since_ >= patience()) listen_on(now);
       return;
     case Step::Sync0:
     case Step::Sync1:
@@ -128,15 +131,8 @@ void Pioneer::advance(Stamp now) {
     case Step::Running:
       break;
   }
-  const Stamp heard = last_report_ == Stamp::never() ? since_ : last_report_;
-  if (listening_) {
-    if (now - heard <= settings_.silence) return;
-    based_ = false;  // whoever has it may open it anew, which sets its odometry to zero
-    last_report_ = Stamp::never();
-    clock_.reset();
-    return go(Step::Listening, now);
-  }
-  if (now - heard > settings_.silence) {
+  if (listening_) return mind_silence(now);
+  if (now - heard() > settings_.silence) {
     // The robot was switched off and on, or somebody closed it: all over again.
     queue_.clear();
     send(command(arcos::kClose));
@@ -148,7 +144,19 @@ void Pioneer::advance(Stamp now) {
   refresh(now);
 }
 
+Stamp Pioneer::heard() const { return last_report_ == Stamp::never() ? since_ : last_report_; }
+
+/// Of who only listens.
+void Pioneer::mind_silence(Stamp now) {
+  if (!listening_ || step_ != Step::Running || now - heard() <= settings_.silence) return;
+  based_ = false;  // whoever has it may open it anew, which sets its odometry to zero
+  last_report_ = Stamp::never();
+  clock_.reset();
+  go(Step::Listening, now);
+}
+
 void Pioneer::receive(std::string_view bytes, Stamp now) {
+  mind_silence(now);
   parser_.feed(bytes, now);
   std::vector<std::string> payloads;
   std::size_t reports = 0;
@@ -165,14 +173,20 @@ void Pioneer::receive(std::string_view bytes, Stamp now) {
 /// `behind`: so many reports came with this packet and after it.
 void Pioneer::digest(const std::string& payload, Stamp now, std::size_t behind) {
   const auto report = arcos::parse_information(payload);
-  if (step_ == Step::Listening && report) go(Step::Running, now);
-  const bool syncing = step_ == Step::Sync0 || step_ == Step::Sync1 || step_ == Step::Sync2;
-  if (syncing && report) {
+  const auto is_syncing = [this] { return step_ == Step::Sync0 || step_ == Step::Sync1 || step_ == Step::Sync2; };
+  // Who listens asks for the first time when nothing was heard: a report between is of somebody who opened it just now.
+  const bool overtaken = is_syncing() && settings_.listen && !opened_;
+  if ((step_ == Step::Listening || overtaken) && report) {
+    listening_ = overheard_ = true;
+    forget_questions();
+    go(Step::Running, now);
+  }
+  if (is_syncing() && report) {
     // Open since a client that died: SYNC0 was a PULSE to it.
     send(command(arcos::kClose));
     return go(Step::Closing, now);
   }
-  if (syncing) {
+  if (is_syncing()) {
     const auto echo = static_cast<std::uint8_t>(payload[0]);
     const int expected = step_ == Step::Sync0 ? 0 : step_ == Step::Sync1 ? 1 : 2;
     if (echo != expected) return go(Step::Sync0, now);
@@ -214,6 +228,7 @@ void Pioneer::open(Stamp now) {
   go(Step::Opening, now);
   configured_ = false;
   based_ = false;
+  opened_ = true;
   send(command(arcos::kOpen, 1));
   send(command(arcos::kConfig, 1));
   const int accel = whole(settings_.max_accel / kMillimetre);
@@ -331,6 +346,15 @@ void Pioneer::forget_motion() {
   queue_.erase(std::remove_if(queue_.begin(), queue_.end(), moves), queue_.end());
 }
 
+/// To one who opened the base meanwhile they would be a pulse.
+void Pioneer::forget_questions() {
+  const auto asks = [](const std::string& packet) {
+    const auto order = arcos::parse_order(std::string_view(packet).substr(kHead));
+    return order && order->number <= arcos::kSync2;
+  };
+  queue_.erase(std::remove_if(queue_.begin(), queue_.end(), asks), queue_.end());
+}
+
 void Pioneer::stop() {
   if (settings_.passive) return;
   enable(false);
@@ -348,11 +372,9 @@ void Pioneer::emergency_stop() {
 
 /// Marks what must be said at `now`.
 void Pioneer::refresh(Stamp now) {
-  if (settings_.passive) {
-    if (refreshed_ != Stamp::never() && now - refreshed_ < kRefresh) return;
-    refreshed_ = now;
-    return send(command(arcos::kPulse));
-  }
+  // Reports come without a pulse. It would keep the set points of another program, which came later, alive after its
+  // end: the base's watchdog must not hear from who does not drive.
+  if (settings_.passive) return;
   if (motors_ != motors_on() && (asked_motors_ == Stamp::never() || now - asked_motors_ >= kAskMotors)) {
     asked_motors_ = now;
     send(command(arcos::kEnable, motors_ ? 1 : 0));
@@ -394,8 +416,9 @@ Stamp Pioneer::deadline() const {
   const bool waiting = !queue_.empty() || (step_ == Step::Running && (v_due_ || w_due_));
   if (waiting) return sent_ == Stamp::never() ? since_ : sent_ + kSpacing;
   if (step_ == Step::Refused) return since_ + kRefused;
-  if (step_ == Step::Listening) return since_ + kListenOnce;
+  if (step_ == Step::Listening) return since_ + patience();
   if (step_ != Step::Running) return since_ + (step_ == Step::Opening && configured_ ? 0.0 : kReply);
+  if (listening_ || settings_.passive) return heard() + settings_.silence;
   Stamp next = refreshed_ == Stamp::never() ? since_ : refreshed_ + kRefresh;
   if (turn_.restless()) next = std::min(next, turn_decided_ + RateDither::kPeriod);
   return next;
@@ -409,7 +432,7 @@ std::string Pioneer::state() const {
     case Step::Refused:
       return "closed";
     case Step::Listening:
-      return "listens whether somebody else has it" + rate;
+      return (overheard_ ? "listens for whoever had it" : "listens whether somebody else has it") + rate;
     case Step::Sync0:
     case Step::Sync1:
     case Step::Sync2:

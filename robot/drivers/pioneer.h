@@ -25,7 +25,8 @@ namespace rubble::robot {
 /// anew: OPEN sets the odometry to zero, while a report after a gap still tells all the motion within it.
 ///
 /// With settings.listen it first waits for reports that somebody else's connection brings. Where they come it only
-/// reads them (but for the emergency stop, which is always said); where none come it connects as ever.
+/// reads them, from then on over all connections (but for the emergency stop, which is always said); where none come it
+/// connects as ever. With settings.passive a connection of its own says nothing once it is open.
 class Pioneer : public BaseDriver {
  public:
   explicit Pioneer(const BaseSettings& settings) : settings_(settings) {}
@@ -67,11 +68,15 @@ class Pioneer : public BaseDriver {
   void ask(Stamp now);
   void try_next_rate(Stamp now);
   void listen_on(Stamp now);
+  double patience() const;
+  Stamp heard() const;
+  void mind_silence(Stamp now);
   void digest(const std::string& payload, Stamp now, std::size_t behind);
   void open(Stamp now);
   void follow(const arcos::StandardInformation& report, Stamp stamp);
   void mind_hold();
   void forget_motion();
+  void forget_questions();
   void refresh(Stamp now);
   void send(const std::string& packet) { queue_.push_back(packet); }
   Stamp sampled(std::size_t bytes, Stamp received) const;
@@ -83,6 +88,8 @@ class Pioneer : public BaseDriver {
   std::size_t rate_ = 0;  ///< which of the bit rates
   int tries_ = 0;
   bool listening_ = false;        ///< nothing is said: the reports are somebody else's
+  bool overheard_ = false;        ///< they came once: whoever has the base may come back and is not spoken between
+  bool opened_ = false;           ///< a connection of our own was opened
   Stamp since_ = Stamp::never();  ///< of the step, or of its last question
   std::deque<std::string> queue_;
   Stamp sent_ = Stamp::never();  ///< when a packet went out last

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kAsk = 0.05;                 ///< pause of a waiting read() [s]
 constexpr double kListen = 0.02;              ///< the operator is asked so often [s]
+constexpr double kFarAhead = 0.1;             ///< of stamps [s]
 constexpr double kKeepsUp = 1.0;              ///< scans that were too old must be fresh for so long [s]
 constexpr std::size_t kMostScansKept = 240;   ///< while the robot is held
 constexpr std::size_t kNewestScansKept = 40;  ///< of these all remain when the others are thinned
@@ -42,6 +43,26 @@ template <class T>
 void sort_by_stamp(std::vector<T>& list) {
   std::stable_sort(list.begin(), list.end(), [](const T& a, const T& b) { return a.stamp < b.stamp; });
 }
+
+/// What the clock of a device puts behind the end of the tick.
+template <class T>
+class Early {
+ public:
+  /// Takes them out of `list` and puts in what waited and is due. Stamps that are ahead by more than a clock that is
+  /// mapped may be are cut off.
+  void hold_back(std::vector<T>& list, Stamp now) {
+    std::vector<T> all = std::exchange(waiting_, {});
+    append(all, std::move(list));
+    list.clear();
+    for (T& entry : all) {
+      if (entry.stamp > now + kFarAhead) entry.stamp = now;
+      (entry.stamp > now ? waiting_ : list).push_back(std::move(entry));
+    }
+  }
+
+ private:
+  std::vector<T> waiting_;
+};
 
 /// Whether scans are fresh enough to drive by. Once they were not, they must be so for a while: at the very edge the
 /// robot would stop and go with every scan.
@@ -105,6 +126,9 @@ struct RealRobot::Impl {
   Stamp first = Stamp::never();
   Stamp tick_end = Stamp::never();
   Stamp last_now = Stamp::never();
+  Early<Odometry> early_odometry;
+  Early<Acceleration> early_accelerations;
+  Early<AimState> early_aims;
   Stamp held_since = Stamp::never();
 
   std::unique_ptr<DeviceThread> unit_thread;
@@ -231,10 +255,10 @@ struct RealRobot::Impl {
 
   /// A line that hands scans over in bundles makes the scanner look silent though it turns.
   std::string why_silent(const ScannerStatus& scanner) const {
-    if (!scanner.error.empty() || scanner.worst_latency <= settings.safety.lidar_silence) return scanner.error;
+    if (!scanner.error.empty() || scanner.recent_latency <= settings.safety.lidar_silence) return scanner.error;
     char text[120];
-    std::snprintf(text, sizeof text, "the line or this computer holds scans up, by %.1f s so far",
-                  scanner.worst_latency);
+    std::snprintf(text, sizeof text, "the line or this computer holds scans up, by %.1f s of late",
+                  scanner.recent_latency);
     return text;
   }
 
@@ -356,20 +380,24 @@ struct RealRobot::Impl {
     }
     odometry += inputs.odometry.size();
     accelerations += inputs.accelerations.size();
-    sort_by_stamp(inputs.scans);
-    sort_by_stamp(inputs.accelerations);
-    sort_by_stamp(inputs.aims);
     inputs.command = commands_in_force();
     // A clock that is mapped may run ahead by microseconds; nothing lies behind the end of the tick.
     inputs.now = std::max(host_now(), last_now);
-    const auto keep = [&](auto& list) {
-      for (auto& entry : list) entry.stamp = std::min(entry.stamp, inputs.now);
-    };
-    keep(inputs.odometry);
-    keep(inputs.accelerations);
-    keep(inputs.aims);
+    // What does waits for the next tick, so that the log has the stamps that the drivers gave.
+    early_odometry.hold_back(inputs.odometry, inputs.now);
+    early_accelerations.hold_back(inputs.accelerations, inputs.now);
+    early_aims.hold_back(inputs.aims, inputs.now);
+    sort_by_stamp(inputs.scans);
+    sort_by_stamp(inputs.accelerations);
+    sort_by_stamp(inputs.aims);
     last_now = inputs.now;
     return inputs;
+  }
+
+  /// A robot that was held all the time, such as by its emergency button, is waited for as long as it takes; but not
+  /// beyond the time that the drive was given.
+  bool is_over_before_it_began(Stamp now) const {
+    return settings.time_limit > 0.0 && now - created >= settings.safety.start + settings.time_limit;
   }
 
   bool is_over(Stamp now) const { return settings.time_limit > 0.0 && now - first >= settings.time_limit; }
@@ -413,6 +441,7 @@ struct RealRobot::Impl {
       if (is_held()) held_since = now;  // somebody is at the robot: it is not lost
       const bool starting = first == Stamp::never();
       if (!starting && is_over(now)) return false;
+      if (starting && is_held() && is_over_before_it_began(now)) return false;
       if (starting) refuse_busy_devices();
       if (now - held_since > (starting ? settings.safety.start : settings.safety.give_up))
         throw DeviceLost(

@@ -2,7 +2,9 @@
 
 #include <sys/eventfd.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -20,6 +22,10 @@ class ScanQueue {
   void put(LaserScan scan, Stamp arrived) {
     const std::lock_guard<std::mutex> lock(mutex_);
     status_.last_scan = arrived;
+    latencies_.emplace_back(arrived, status_.latency);
+    while (arrived - latencies_.front().first > kRecent) latencies_.pop_front();
+    status_.recent_latency = 0.0;
+    for (const auto& [when, latency] : latencies_) status_.recent_latency = std::max(status_.recent_latency, latency);
     // A reader that sleeps for minutes shall not fill the memory: the newest scans are worth most.
     if (scans_.size() >= kMostScans) scans_.erase(scans_.begin());
     scans_.push_back(std::move(scan));
@@ -57,10 +63,12 @@ class ScanQueue {
 
  private:
   static constexpr std::size_t kMostScans = 600;  // a minute of them
+  static constexpr double kRecent = 3.0;          // [s]
 
   mutable std::mutex mutex_;
   Descriptor ready_;
   std::vector<LaserScan> scans_;
+  std::deque<std::pair<Stamp, double>> latencies_;  ///< of late
   ScannerStatus status_;
   ScannerInfo info_;
 };

@@ -31,10 +31,11 @@ struct ScannerStatus {
   std::uint64_t damaged = 0;         ///< replies thrown away: wrong sum, wrong length, lost or doubled bytes
   std::uint64_t missed = 0;          ///< revolutions of which no whole scan came, by the device's clock
   std::uint64_t connects = 0;        ///< how often the handshake succeeded
-  double latency = 0.0;        ///< from the last beam to the arrival of the scan's last byte, of the last scan [s]
-  double worst_latency = 0.0;  ///< the most of it since the last connect [s]
-  double clock_drift = 0.0;    ///< of the device's clock against the computer's, + : it runs slow [s/s]
-  double clock_doubt = 0.0;    ///< the constant part of the stamps is known to +- so much [s]; 0: not measured, nominal
+  double latency = 0.0;         ///< from the last beam to the arrival of the scan's last byte, of the last scan [s]
+  double worst_latency = 0.0;   ///< the most of it since the last connect [s]
+  double recent_latency = 0.0;  ///< the most of it within the three seconds before the last scan [s]
+  double clock_drift = 0.0;     ///< of the device's clock against the computer's, + : it runs slow [s/s]
+  double clock_doubt = 0.0;  ///< the constant part of the stamps is known to +- so much [s]; 0: not measured, nominal
 };
 
 /// A scanner that is read in a thread of its own. It connects by itself, also again after the device was gone.

@@ -102,7 +102,11 @@ const char* name_of(explore::ExplorerState state) {
 class Driver {
  public:
   Driver(const RobotFile& file, const DriveOptions& options, RunFolder& folder, robot::RealRobot& real, Core& core)
-      : options_(options), real_(real), core_(core), loop_(file.settings, folder, core, hooks()) {
+      : options_(options),
+        real_(real),
+        core_(core),
+        has_base_(!file.robot.base_port.empty()),
+        loop_(file.settings, folder, core, hooks()) {
     real_.while_waiting([this](const robot::RobotStatus& status) { return wait(status); });
     real_.listen([this] { return wish(); }, options_.left);
     if (options_.mode == DriveMode::Teleoperate) real_.steer_by_hand(options_.keys);
@@ -236,6 +240,7 @@ class Driver {
     told_at_ = now;
     DriveStatus status;
     status.robot = real_.status();
+    status.has_base = has_base_;
     if (status.robot.troubles != troubles_ && options_.tell) tell_troubles(status.robot.troubles);
     troubles_ = status.robot.troubles;
     if (!options_.each_second || since <= 0.0 || !begun_) return;
@@ -257,6 +262,7 @@ class Driver {
   const DriveOptions& options_;
   robot::RealRobot& real_;
   Core& core_;
+  const bool has_base_;
   Loop loop_;
   bool begun_ = false;  ///< something has come in
   Stamp told_at_ = robot::host_now();
@@ -301,27 +307,29 @@ scoring::Evidence evidence_of(const Core& core, const robot::RealRobot& robot, c
   return evidence;
 }
 
-/// A robot that would turn back before it has begun is not sent.
-void require_time_to_explore(const Scenario& settings) {
+/// A robot that may turn back before it has begun: what the operator should know.
+void warn_of_time_for_home(const Scenario& settings, const DriveOptions& options) {
   const auto explorer = settings.explorer.make(settings.robot, {settings.time_limit});
   const double for_home = explore::time_for_home(*explorer);
-  if (settings.time_limit <= 0.0 || settings.time_limit > for_home) return;
+  if (!options.tell || settings.time_limit <= 0.0 || settings.time_limit > for_home) return;
   char text[240];
   std::snprintf(text, sizeof text,
-                "time limit: all of the %g s are kept for the way home (%g s and the way itself), so nothing would be "
-                "explored; give at least %g s, or --set explorer.return_home=false",
+                "time limit: all of the %g s are kept for the way home (%g s and the way itself), so little will be "
+                "explored; better give at least %g s, or --set explorer.return_home=false",
                 settings.time_limit, for_home, 2.0 * for_home);
-  throw InputError(text);
+  options.tell(text);
 }
 
 }  // namespace
 
 RunReport drive(const RobotFile& file, const DriveOptions& options) {
   const auto start = Clock::now();
-  if (options.mode == DriveMode::Explore) require_time_to_explore(file.settings);
+  if (options.mode == DriveMode::Explore) warn_of_time_for_home(file.settings, options);
   if (options.mode != DriveMode::MapOnly && file.robot.base_port.empty())
     throw InputError("devices.base: without a base the robot can only be watched; give its port, or add --map-only");
   file.settings.mapper.require_permission();
+  if (file.robot.base_port.empty() && options.tell)
+    options.tell("there is no base that a key or a signal here could stop; they end the mapping");
   // A robot that somebody else drives is not waited for: it would be taken over when they stop it.
   // Nor by others while one of its devices is unplugged; MRPT's drivers open their ports themselves.
   std::vector<robot::PortClaim> claims;

@@ -21,6 +21,7 @@ struct DriveStatus {
   std::string state;     ///< what the robot is doing, in one word or two
   mrpt::math::TPose2D T_map_base;
   double known_m2 = 0.0;
+  bool has_base = true;  ///< that we are connected with
   robot::RobotStatus robot;
   double scans_per_s = 0.0;  ///< over the last second
   double odometry_per_s = 0.0;

@@ -28,6 +28,8 @@ for way in alone listening; do
   [[ $way == listening ]] && port=$tee
   "$rubble" drive "$robot" --map-only --urg "$urg" --base "$port" --levelling none --time-limit 20 --out "$way" >out.txt 2>err.txt
   [[ $? == 0 ]] || fail "mapping $way ends with an error: $(tail -3 err.txt)"
+  python3 -c 'import json, sys; s = json.load(open(sys.argv[1]))["cpu_share"]; print("cpu_share", s); sys.exit(s > 0.5)' "$way/score.json" ||
+    fail "mapping $way keeps a core busy"
   "$rubble" replay "$way" >replay.txt || fail "the run $way does not replay: $(tail -3 replay.txt)"
   "$rubble" replay --raw "$way" >raw.txt || fail "the raw bytes of $way do not give the same: $(cat raw.txt)"
 done

@@ -202,7 +202,10 @@ try:
     for name, strike in (
             ("Ctrl-Z", lambda: drive.press("\x1a")), ("Ctrl-backslash", lambda: drive.press("\x1c")),
             ("SIGQUIT", lambda: os.kill(drive.pid, signal.SIGQUIT)),
-            ("SIGTSTP", lambda: os.kill(drive.pid, signal.SIGTSTP))):
+            ("SIGTSTP", lambda: os.kill(drive.pid, signal.SIGTSTP)),
+            ("SIGALRM", lambda: os.kill(drive.pid, signal.SIGALRM)),
+            ("SIGXCPU", lambda: [os.kill(drive.pid, signal.SIGXCPU) for _ in range(3)]),
+            ("SIGRTMIN", lambda: os.kill(drive.pid, signal.SIGRTMIN))):
         drive = Drive(name)
         check(wait_for(lambda: "motors on" in drive.look()), name + ": motors on")
         sent = time.time()

@@ -1,7 +1,6 @@
 // From the last byte of a scan to the command that answers it, as the emulated devices see both. Of our own driver 99 %
-// are within 30 ms, less what the machine itself was late by: witnesses beside it sleep and wake all the time, and what
-// they overslept while an answer was on its way is not the driver's. A driver that waits for a timer instead of the
-// arrival exceeds it on any machine.
+// are within 30 ms on a machine that is fit to tell: witnesses beside it sleep and wake all the time, and 99 % of their
+// turns are late by less than 2 ms. On another one the test is skipped and says so, but for the median.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -210,15 +209,19 @@ TEST_P(Latency, EveryScanIsAnsweredByItsOwnCommand) {
   const auto share = [](const std::vector<double>& all, double part) {
     return 1e3 * all[static_cast<std::size_t>(part * static_cast<double>(all.size() - 1))];
   };
-  if (!by_mrpt) {
-    EXPECT_LT(share(delays.own, 0.99), 30.0) << "load of the machine " << load();
-    EXPECT_LT(share(delays.as_seen, 0.5), 30.0) << "load of the machine " << load();
+  const bool fit = delays.witness_99 < 0.002;  // else the machine is what is measured
+  if (!by_mrpt && fit) {
+    EXPECT_LT(share(delays.as_seen, 0.99), 30.0) << "load of the machine " << load();
   }
   std::cout << kind << ": " << delays.own.size() << " scans, last byte to command: median "
             << share(delays.as_seen, 0.5) << " ms, 99 % " << share(delays.as_seen, 0.99) << " ms, worst "
             << share(delays.as_seen, 1.0) << " ms; less what the machine was late by: 99 % " << share(delays.own, 0.99)
             << " ms, worst " << share(delays.own, 1.0) << " ms (load " << load() << ", a sleeper beside it late by "
             << 1e3 * delays.witness_99 << " ms, 99 %)\n";
+  if (!by_mrpt && !fit) {
+    EXPECT_LT(share(delays.as_seen, 0.5), 30.0) << "load of the machine " << load();
+    GTEST_SKIP() << "this machine wakes a sleeper 2 ms late or more: not held to 99 % within 30 ms";
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Latency, testing::Values("own_tcp", "own_pty", "mrpt_tcp", "mrpt_pty"),

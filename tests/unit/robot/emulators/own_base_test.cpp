@@ -117,10 +117,22 @@ TEST(OwnBase, DrivesWithinItsLimitsStopsWithTheScannerAndIsLeftAtRest) {
     EXPECT_TRUE(robot.status().motors_on);
     EXPECT_NEAR(robot.status().battery, 24.5, 1e-9);
     scanner.scans = false;
-    const Stamp until = host_now() + 5.0;
-    robot.while_waiting([&](const RobotStatus&) { return fastest() != 0.0 && host_now() < until; });
-    while (robot.read()) robot.command({{2.0, 0.0}, {}});
+    // The core commands on: it is the scanner's silence that stops the base.
+    Stamp asked = host_now();
+    const Stamp until = asked + 5.0;
+    double slow = 0.0;  // so long the machine took from one question to the next, beyond the pause between
+    robot.while_waiting([&](const RobotStatus&) {
+      slow = std::max(slow, host_now() - asked - 0.05);
+      asked = host_now();
+      robot.command({{2.0, 0.0}, {}});
+      return fastest() != 0.0 && host_now() < until;
+    });
+    while (robot.read()) {
+      robot.command({{2.0, 0.0}, {}});
+      asked = host_now();
+    }
     EXPECT_EQ(fastest(), 0.0);
+    EXPECT_LT(asked - scanner.status().last_scan, 0.3 + 0.15 + 2.0 * slow);
   }
   bool motors = true;
   server.with([&] { motors = device.motors; });

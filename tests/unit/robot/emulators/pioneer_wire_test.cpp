@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/planar.h"
+#include "robot/drivers/black_box_replay.h"
 #include "robot/drivers/pioneer.h"
 #include "robot/emulators/arcos_emulator.h"
 #include "robot/emulators/line_faults.h"
@@ -203,6 +204,137 @@ TEST(PioneerWire, ABaseThatNobodyElseTalksWithIsSpokenTo) {
   ASSERT_TRUE(wire.run_until([&] { return wire.driver.ready(); }, 4.0)) << wire.driver.state();
   EXPECT_EQ(wire.driver.identity().subclass, "p3at-sh");
   EXPECT_FALSE(wire.driver.farewell().empty());
+}
+
+/// Between the end of the program that drives and its next start, and over connections of the shared line.
+TEST(PioneerWire, WhoHasHeardSomebodyElseNeverSpeaksAgain) {
+  for (const LineKind line : {LineKind::Tcp, LineKind::Uart}) {
+    Wire wire;
+    wire.run(1.0);
+    Pioneer listener(listening());
+    listener.opened(wire.now, line);
+    wire.listener = &listener;
+    ASSERT_TRUE(wire.run_until([&] { return listener.ready(); }, 2.0)) << listener.state();
+    wire.cut = true;
+    wire.base.client_left(wire.now);
+    wire.base.client_came(wire.now);
+    wire.run(12.0);
+    EXPECT_FALSE(listener.ready());
+    EXPECT_EQ(wire.said_by_listener, "") << "it speaks while nobody else does";
+    listener.opened(wire.now, line);
+    wire.run(12.0);
+    EXPECT_EQ(wire.said_by_listener, "") << "it forgot by losing its line that somebody else has the base";
+    wire.cut = false;
+    wire.driver.opened(wire.now, LineKind::Tcp);
+    ASSERT_TRUE(wire.run_until([&] { return wire.driver.ready() && listener.ready(); }, 6.0)) << listener.state();
+    EXPECT_EQ(wire.said_by_listener, "");
+    EXPECT_TRUE(listener.farewell().empty());
+  }
+}
+
+/// Nothing on the line tells when a listener gives somebody up.
+TEST(PioneerWire, TheBytesThatAListenerHeardGiveTheSameOdometryAgain) {
+  for (const LineKind line : {LineKind::Tcp, LineKind::Uart}) {
+    for (const double gap : {2.1, 2.98, 3.02, 5.0, 11.0}) {
+      SCOPED_TRACE(gap);
+      Wire wire;
+      wire.run(1.0);
+      std::vector<BlackBoxEntry> box{
+          {"base", Direction::Opened, wire.now, line == LineKind::Tcp ? "a\ntcp" : "a\nuart"}};
+      ASSERT_EQ(line_kind(box.front()), line);
+      Pioneer listener(listening());
+      listener.opened(wire.now, line);
+      wire.go(0.3, 0.2);
+      for (const double seconds : {2.0, gap, 2.0}) {
+        for (const Stamp end = wire.now + seconds; wire.now < end;) {
+          wire.now = wire.now + kStep;
+          wire.driver.advance(wire.now);
+          if (const std::string out = wire.driver.take_output(wire.now); !out.empty()) wire.base.receive(out, wire.now);
+          wire.base.advance(wire.now);
+          const double t = wire.now - box.front().stamp;
+          if (++wire.steps % 100 == 0)
+            wire.base.measure({wire.now, {0.3 * t, 0.1 * t, 0.0}, 0.3, 0.0, false}, wire.now);
+          const std::string said = wire.base.take_output();
+          wire.driver.receive(said, wire.now);
+          const bool heard = !said.empty() && seconds != gap;
+          if (heard) listener.receive(said, wire.now);
+          if (heard) box.push_back({"base", Direction::FromDevice, wire.now, said});
+          listener.advance(wire.now);
+          ASSERT_EQ(listener.take_output(wire.now), "");
+        }
+      }
+      const std::vector<Odometry> then = listener.take_odometry();
+      const std::vector<Odometry> now = replay_black_box(box, "arcos", listening(), {}).odometry;
+      ASSERT_GT(then.size(), 20u);
+      ASSERT_EQ(now.size(), then.size());
+      for (std::size_t i = 0; i < then.size(); ++i) {
+        EXPECT_EQ(now[i].stamp.ns, then[i].stamp.ns) << i;
+        EXPECT_EQ(now[i].pose.x, then[i].pose.x) << i;
+      }
+    }
+  }
+}
+
+/// A driver that opens the base in the moment in which the listener has given up waiting.
+TEST(PioneerWire, AReportBetweenTheFirstQuestionsIsSomebodyElses) {
+  Wire wire;
+  wire.run(1.0);
+  wire.base.take_output();
+  wire.base.measure({wire.now, {}, 0.0, 0.0, false}, wire.now);
+  wire.base.advance(wire.now + 0.1);
+  const std::string report = wire.base.take_output();
+  Pioneer listener(listening());
+  listener.opened(wire.now, LineKind::Tcp);
+  std::string said;
+  const auto step = [&] {
+    wire.now = wire.now + kStep;
+    listener.advance(wire.now);
+    said += listener.take_output(wire.now);
+  };
+  for (int i = 0; i < 3000 && said.empty(); ++i) step();
+  ASSERT_FALSE(said.empty());
+  said.clear();
+  listener.receive(report, wire.now);
+  for (int i = 0; i < 10000; ++i) step();
+  EXPECT_EQ(said, "");
+}
+
+/// Any byte of ours would keep the set points of another program alive after its end.
+TEST(PioneerWire, WhoDoesNotDriveLeavesTheBaseToItsWatchdog) {
+  Wire wire({}, listening());
+  ASSERT_TRUE(wire.run_until([&] { return wire.driver.ready(); }, 4.0)) << wire.driver.state();
+  wire.run(0.5);
+  wire.base.receive(arcos::command(arcos::kEnable, 1), wire.now);
+  wire.base.receive(arcos::command(arcos::kVelocity, 200), wire.now);
+  wire.run(1.5);
+  ASSERT_GT(wire.base.motion().v, 0.1);
+  wire.run(2.0);
+  EXPECT_TRUE(wire.base.is_held());
+  EXPECT_EQ(wire.base.motion().v, 0.0);
+  EXPECT_TRUE(wire.driver.ready()) << "reports come on";
+}
+
+/// A deadline in the past keeps its thread from sleeping.
+TEST(PioneerWire, WhoOnlyListensHasNothingToDoUntilSomethingIsMissed) {
+  Wire wire;
+  wire.run(1.0);
+  Pioneer listener(listening());
+  listener.opened(wire.now, LineKind::Tcp);
+  wire.listener = &listener;
+  int past = 0, soon = 0;
+  for (const bool cut : {true, false, true}) {
+    wire.cut = cut;
+    if (cut) wire.base.client_left(wire.now), wire.base.client_came(wire.now);
+    if (!cut) wire.driver.opened(wire.now, LineKind::Tcp);
+    for (int i = 0; i < 1100; ++i) {
+      wire.step();
+      past += listener.deadline() < wire.now ? 1 : 0;
+      if (listener.ready()) soon += listener.deadline() < wire.now + 0.5 ? 1 : 0;
+    }
+  }
+  EXPECT_TRUE(listener.ready());
+  EXPECT_EQ(past, 0);
+  EXPECT_EQ(soon, 0);
 }
 
 TEST(PioneerWire, OnASerialLineReportsOfEveryBitRateAreListenedFor) {

@@ -58,6 +58,7 @@ class ToldScanner : public Scanner {
     queue_.update([this](ScannerStatus& status) {
       ++status.scans;
       status.latency = latency;
+      status.worst_latency = std::max(status.worst_latency, status.latency);
     });
     queue_.put(scan, now);
   }
@@ -88,6 +89,8 @@ class Bench {
     for (int i = 0; !ending; ++i) {
       const Stamp now = start + 0.01 * i;
       sleep_until(now);
+      const double woke_late = host_now() - now;
+      if (woke_late > worst_wake) worst_wake = woke_late;
       Drive motion;
       base_server.with([&] { motion = arcos.motion(); });
       pose.phi += motion.w * 0.01;
@@ -112,6 +115,18 @@ class Bench {
     return all;
   }
 
+  /// Commands without a pause, whatever read() waits for, until the robot brakes; when it began to, as the law has it
+  /// after this moment (an emulator's ramp of 0.3 m/s2 has taken a fifth of the speed off by then); never: it did not
+  /// within five seconds.
+  Stamp braked_though_commanded(double v) {
+    const double before = speed;
+    for (const Stamp end = host_now() + 5.0; host_now() < end; sleep_until(host_now() + 0.01)) {
+      robot->command({{v, 0.0}, {}});
+      if (speed < before - 0.01) return host_now() - 0.01 / 0.3;
+    }
+    return Stamp::never();
+  }
+
   /// Whether it becomes so within some seconds.
   template <class Law>
   static bool soon(const Law& law, double seconds = 5.0) {
@@ -129,6 +144,7 @@ class Bench {
   ToldScanner scanner;
   mrpt::math::TPose2D pose;
   std::atomic<double> speed{0.0};
+  std::atomic<double> worst_wake{0.0};  ///< so late this machine was at most [s]
   std::atomic<bool> scans{true};
   std::atomic<bool> ending{false};
   std::unique_ptr<RealRobot> robot;
@@ -157,6 +173,24 @@ TEST(RealRobot, MergesWhatArrivesAndDrives) {
   EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0 || bench.pose.x > 0.1; }));
 }
 
+TEST(RealRobot, ARobotThatIsHeldFromTheStartIsLeftWhenTheTimeIsOver) {
+  RealRobotSettings settings;
+  settings.time_limit = 1.0;
+  settings.safety.start = 1.0;
+  Bench bench(settings);
+  bench.base_server.with([&] { bench.arcos.fail(DeviceFault::Button, host_now()); });
+  bool held = false;
+  const Stamp most = host_now() + 20.0;
+  bench.robot->while_waiting([&](const RobotStatus& status) {
+    held = held || status.held;
+    return host_now() < most;
+  });
+  EXPECT_FALSE(bench.robot->read());
+  EXPECT_TRUE(held);
+  EXPECT_LT(host_now(), most) << "nothing but the operator ended it";
+  EXPECT_EQ(bench.pose.x, 0.0);
+}
+
 TEST(RealRobot, MotorsStayOffUntilAllReport) {
   Bench bench;
   bench.scans = false;
@@ -177,9 +211,50 @@ TEST(RealRobot, ASilentScannerStopsIt) {
   ASSERT_TRUE(Bench::soon([&] { return bench.speed > 0.0; }));
   bench.scans = false;
   std::thread core([&] { bench.drive(0.3, 2.0); });
-  EXPECT_TRUE(Bench::soon([&] { return bench.speed == 0.0; }));
+  // The core commands on: it is the scanner's silence that stops the robot.
+  bench.worst_wake = 0.0;
+  const Stamp braked = bench.braked_though_commanded(0.3);
+  ASSERT_NE(braked, Stamp::never()) << "it drives on blindly";
+  EXPECT_LT(braked - bench.scanner.status().last_scan, 0.3 + 0.15 + 2.0 * bench.worst_wake);
+  EXPECT_TRUE(Bench::soon([&] {
+    bench.robot->command({{0.3, 0.0}, {}});
+    return bench.speed == 0.0;
+  }));
   bench.scans = true;
   core.join();
+}
+
+/// What was late once, on the way in, is not why a scanner is silent now.
+TEST(RealRobot, AScannerThatFallsSilentIsNotCalledHeldUpForWhatWasLateLongAgo) {
+  Bench bench;
+  std::vector<std::string> named;
+  bench.robot->while_waiting([&](const RobotStatus& status) {
+    named.insert(named.end(), status.silent.begin(), status.silent.end());
+    return true;
+  });
+  bench.drive(0.0, 1.0);
+  bench.scanner.latency = 0.45;  // held up, not too old
+  bench.drive(0.0, 0.5);
+  for (const bool just_now : {true, false}) {
+    SCOPED_TRACE(just_now);
+    bench.scanner.latency = 0.005;
+    bench.drive(0.0, just_now ? 0.3 : 5.0);
+    named.clear();
+    bench.scans = false;
+    std::thread again([&] {
+      sleep_until(host_now() + 1.0);
+      bench.scans = true;
+    });
+    bench.drive(0.0, 1.2);
+    again.join();
+    EXPECT_THAT(named, testing::Contains(testing::StartsWith("urg: silent for")));
+    const auto held_up = testing::Contains(testing::HasSubstr("holds scans up"));
+    if (just_now) {
+      EXPECT_THAT(named, held_up);
+    } else {
+      EXPECT_THAT(named, testing::Not(held_up));
+    }
+  }
 }
 
 TEST(RealRobot, ScansThatComeLateStopItThoughTheyNeverCease) {
@@ -193,7 +268,14 @@ TEST(RealRobot, ScansThatComeLateStopItThoughTheyNeverCease) {
   });
   bench.scanner.latency = 2.0;
   std::thread core([&] { bench.drive(0.3, 4.0); });
-  EXPECT_TRUE(Bench::soon([&] { return bench.speed == 0.0; })) << "it drives by what it saw two seconds ago";
+  bench.worst_wake = 0.0;
+  const Stamp late = host_now(), braked = bench.braked_though_commanded(0.3);
+  ASSERT_NE(braked, Stamp::never()) << "it is not the core's silence that must stop it";
+  EXPECT_LT(braked - late, 0.1 + 0.15 + 2.0 * bench.worst_wake) << "from the first late scan on";
+  EXPECT_TRUE(Bench::soon([&] {
+    bench.robot->command({{0.3, 0.0}, {}});
+    return bench.speed == 0.0;
+  })) << "it drives by what it saw two seconds ago";
   bench.scanner.latency = 0.005;
   core.join();
   EXPECT_THAT(named, testing::Contains(testing::StartsWith("urg: its scans are 2.")));
@@ -562,14 +644,24 @@ TEST(RealRobot, ItsEndLeavesTheBaseAtRest) {
   EXPECT_TRUE(Bench::soon([&] { return bench.speed == 0.0; }));
 }
 
-TEST(RealRobot, TheBlackBoxGivesTheDriversTheSameAgain) {
-  Bench bench;
+class BlackBoxOf : public testing::TestWithParam<int> {};
+
+/// Also of a base whose stamps lie ahead of the computer's clock.
+TEST_P(BlackBoxOf, ARealRobotGivesTheDriversTheSameAgain) {
+  RealRobotSettings settings;
+  settings.base.delay = -1e-3 * GetParam();
+  Bench bench(settings);
   std::vector<Odometry> odometry;
-  for (const Inputs& inputs : bench.drive(0.2, 3.0))
+  for (const Inputs& inputs : bench.drive(0.2, 3.0)) {
+    for (const Odometry& o : inputs.odometry) EXPECT_LE(o.stamp, inputs.now);
     odometry.insert(odometry.end(), inputs.odometry.begin(), inputs.odometry.end());
+  }
+  ASSERT_GT(odometry.size(), 20u);
+  for (std::size_t i = 1; i < odometry.size(); ++i) EXPECT_GT(odometry[i].stamp, odometry[i - 1].stamp);
   bench.robot.reset();
   ASSERT_FALSE(bench.box.failed());
-  const ReplayedBox replayed = replay_black_box(read_black_box(bench.folder.file("devices.bytes")), "arcos", {}, {});
+  const ReplayedBox replayed =
+      replay_black_box(read_black_box(bench.folder.file("devices.bytes")), "arcos", settings.base, {});
   ASSERT_GE(replayed.odometry.size(), odometry.size());
   EXPECT_GT(replayed.accelerations.size(), 50u);
   std::size_t found = 0;
@@ -578,6 +670,9 @@ TEST(RealRobot, TheBlackBoxGivesTheDriversTheSameAgain) {
       if (now.stamp == then.stamp && now.pose.x == then.pose.x && now.v == then.v) ++found;
   EXPECT_EQ(found, odometry.size());
 }
+
+INSTANTIATE_TEST_SUITE_P(RealRobot, BlackBoxOf, testing::Values(0, 5, 30),
+                         [](const auto& info) { return std::to_string(info.param) + "_ms_ahead"; });
 
 TEST(Heartbeat, AFileMustBeTouchedAgain) {
   Folder folder;
@@ -605,6 +700,44 @@ TEST(Heartbeat, AFullPipeIsNotEmptiedAtOnce) {
   int waiting = 0;
   ASSERT_EQ(::ioctl(writer.get(), FIONREAD, &waiting), 0);
   EXPECT_GT(waiting, 0) << "a writer without pause would keep the reader for ever";
+}
+
+TEST(BlackBox, ADeviceThatSendsWithoutEndIsNamedAndDoesNotFillTheDisk) {
+  Folder folder;
+  std::string word, why;
+  Stamp begun = host_now();
+  {
+    Descriptor server(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    ASSERT_EQ(::bind(server.get(), reinterpret_cast<const sockaddr*>(&address), size), 0);
+    ASSERT_EQ(::listen(server.get(), 4), 0);
+    ASSERT_EQ(::getsockname(server.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
+    word = "tcp:127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+    BlackBox box(folder.file("flood"));
+    for (int connection = 0; connection < 3; ++connection) {
+      const std::unique_ptr<Port> port = open_recorded(word, "base", &box);
+      Descriptor flood(::accept4(server.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+      const std::string much(65536, 'x');
+      std::vector<std::uint8_t> bytes(65536);
+      why.clear();
+      try {
+        for (int i = 0; i < 2000; ++i) {
+          [[maybe_unused]] const ssize_t sent = ::send(flood.get(), much.data(), much.size(), MSG_NOSIGNAL);
+          port->read(bytes.data(), bytes.size(), 0.001);
+        }
+      } catch (const DeviceLost& lost) {
+        why = lost.what();
+      }
+      EXPECT_THAT(why, testing::AllOf(testing::StartsWith(word), testing::HasSubstr("more than 1 MB/s"),
+                                      testing::HasSubstr("'base'")));
+    }
+    EXPECT_FALSE(box.failed());
+  }
+  // Over all its connections.
+  EXPECT_LT(static_cast<double>(fs::file_size(folder.file("flood"))), 2.2e6 + 1.1e6 * (host_now() - begun));
 }
 
 /// A pipe that nobody reads is the slowest of all disks.
