@@ -1,7 +1,6 @@
 #include "explore/explorers.h"
 
 #include "explore/paper/paper_explorer.h"
-#include "explore/time_for_home.h"
 
 namespace rubble::explore {
 namespace {
@@ -32,11 +31,6 @@ const std::vector<ExplorerKind>& explorer_kinds() {
           "paper", "Pellenz 2008: Exploration Transform to a close frontier, then the search for victims"),
   };
   return kinds;
-}
-
-double time_for_home(const Explorer& explorer) {
-  const auto* paper = dynamic_cast<const PaperExplorer*>(&explorer);
-  return paper != nullptr ? paper->time_for_home() : 0.0;
 }
 
 }  // namespace rubble::explore

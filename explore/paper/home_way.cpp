@@ -10,7 +10,7 @@ constexpr double kPeriod = 4.0;       ///< the way home is measured this often [
 constexpr double kUsualSpeed = 0.22;  ///< turns and stops included, until the robot's own is known [m/s]
 constexpr double kSlowest = 0.08;     ///< [m/s]
 constexpr double kUsualTime = 60.0;   ///< the usual speed counts as if driven for so long [s]
-constexpr double kSpare = 1.4;        ///< the way may take so much longer than the mean speed says, and kSpareTime
+constexpr double kSpare = 1.4;        ///< the way may take so much longer than the mean speed says
 
 }  // namespace
 

@@ -44,7 +44,7 @@ class PaperExplorer : public Explorer {
   const std::vector<mrpt::math::TPoint2D>& path() const override { return shown_path_; }
   const std::vector<VictimReport>& victims() const override { return search_.reports(); }
   /// So much of the time limit is kept for the way home, beside the way itself [s].
-  double time_for_home() const { return config_.return_home ? HomeWay::kSpareTime : 0.0; }
+  double time_for_home() const override { return config_.return_home ? HomeWay::kSpareTime : 0.0; }
 
  private:
   using TPoint2D = mrpt::math::TPoint2D;

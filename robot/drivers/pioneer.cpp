@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/planar.h"
+#include "base/text/words.h"
 #include "robot/hardware_units.h"
 #include "robot/protocols/arcos_commands.h"
 
@@ -193,7 +194,8 @@ void Pioneer::digest(const std::string& payload, Stamp now, std::size_t behind) 
     if (step_ == Step::Sync2) {
       const auto identity = arcos::parse_identity(payload);
       if (!identity) return;
-      identity_ = *identity;
+      // What a device says of itself comes onto the terminal: no escapes in it.
+      identity_ = {one_line(identity->name), one_line(identity->type), one_line(identity->subclass)};
       const auto factors = arcos::factors_of(identity_.subclass);
       if (!factors) {
         refusal_ = "is a '" + identity_.subclass + "', whose units are not known; known are " +

@@ -13,7 +13,6 @@
 
 #include "base/error.h"
 #include "base/text/words.h"
-#include "explore/time_for_home.h"
 #include "robot/drivers/black_box.h"
 #include "robot/drivers/host_clock.h"
 #include "robot/drivers/mrpt_scanner.h"
@@ -310,7 +309,7 @@ scoring::Evidence evidence_of(const Core& core, const robot::RealRobot& robot, c
 /// A robot that may turn back before it has begun: what the operator should know.
 void warn_of_time_for_home(const Scenario& settings, const DriveOptions& options) {
   const auto explorer = settings.explorer.make(settings.robot, {settings.time_limit});
-  const double for_home = explore::time_for_home(*explorer);
+  const double for_home = explorer->time_for_home();
   if (!options.tell || settings.time_limit <= 0.0 || settings.time_limit > for_home) return;
   char text[240];
   std::snprintf(text, sizeof text,

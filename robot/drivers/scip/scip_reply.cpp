@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "base/angle.h"
+#include "base/text/words.h"
 #include "robot/drivers/scip/scip_text.h"
 
 namespace rubble::robot::scip {
@@ -70,7 +71,7 @@ std::optional<Entries> entries_of(const Reply& reply, bool sums) {
     const auto text = sums ? checked_entry(reply.lines[i]) : std::optional<std::string_view>(reply.lines[i]);
     const auto parts = text ? entry(*text) : std::nullopt;
     if (!parts) return std::nullopt;
-    entries.push_back(*parts);
+    entries.emplace_back(one_line(parts->first), one_line(parts->second));  // they come onto the terminal
   }
   return entries;
 }

@@ -588,6 +588,16 @@ TEST(PioneerWire, ARobotOfUnknownUnitsIsRefusedByName) {
   EXPECT_THAT(wire.driver.state(), testing::AllOf(testing::HasSubstr("'seekur'"), testing::HasSubstr("p3at-sh")));
 }
 
+TEST(PioneerWire, WhatABaseSaysOfItselfHasNoEscapesForTheTerminal) {
+  ArcosEmulatorSettings settings;
+  settings.identity.name = "ro\rbbie";
+  settings.identity.subclass = "\x1b[31mp3at\x07";
+  Wire wire(settings);
+  wire.run(3.0);
+  EXPECT_THAT(wire.driver.state(), testing::HasSubstr("'\\x1b[31mp3at\\x07'"));
+  EXPECT_EQ(wire.driver.identity().name, "ro\\rbbie");
+}
+
 /// What the robot's own buttons stop stays stopped until the operator says so, whatever is asked for meanwhile.
 class StoppedAtTheRobot : public testing::TestWithParam<std::pair<DeviceFault, Pioneer::Hold>> {};
 

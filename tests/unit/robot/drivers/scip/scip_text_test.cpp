@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/rng.h"
+#include "robot/drivers/scip/scip_reply.h"
 
 namespace rubble::robot::scip {
 namespace {
@@ -16,6 +17,16 @@ TEST(ScipText, SumsOfTheStatusLines) {
                                                            {"04", 'T'}, {"10", 'Q'}, {"99", 'b'}, {"98", 'a'},
                                                            {"0A", 'a'}, {"0C", 'c'}, {"0D", 'd'}, {"0E", 'e'}};
   for (const auto& [text, sum] : known) EXPECT_EQ(sum_of(text), sum) << text;
+}
+
+TEST(ScipText, WhatAScannerSaysOfItselfHasNoEscapesForTheTerminal) {
+  Reply reply;
+  reply.lines = {"VV", "00P", "FI\x07RM:3.1\x1b[31m\r"};
+  const auto entries = entries_of(reply, false);
+  ASSERT_TRUE(entries);
+  ASSERT_EQ(entries->size(), 1u);
+  EXPECT_EQ((*entries)[0].first, "FI\\x07RM");
+  EXPECT_EQ((*entries)[0].second, "3.1\\x1b[31m\\r");
 }
 
 TEST(ScipText, EntriesOfRealScannersHaveTheRightSum) {
