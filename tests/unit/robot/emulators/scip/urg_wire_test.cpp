@@ -223,8 +223,10 @@ TEST(UrgOnASlowLine, IsSaidToAnswerTooLateNotToBeBroken) {
     config.open = [&](const std::string& word) {
       return std::make_unique<SlowLine>(open_port(word), line.delay, line.bundle);
     };
+    const Stamp begun = host_now();
     bench.connect(config);
     ASSERT_TRUE(wait_for([&] { return !bench.scanner->status().error.empty(); }, 20.0));
+    const double all = host_now() - begun;
     const std::string error = bench.scanner->status().error;
     EXPECT_THAT(error, testing::HasSubstr("answers too late"));
     const auto at = error.find("too late, ");
@@ -232,9 +234,7 @@ TEST(UrgOnASlowLine, IsSaidToAnswerTooLateNotToBeBroken) {
     const double told = std::strtod(error.c_str() + at + 10, nullptr);
     EXPECT_GE(told, 0.3) << error;
     EXPECT_GE(told, line.delay - 0.36) << error << "; of a question that was repeated the last one counts";
-    if (line.bundle == 0.0) {
-      EXPECT_LE(told, line.delay + 0.5) << error;  // what a busy machine may add
-    }
+    EXPECT_LE(told, all + 0.05) << error;  // a busy machine adds what it likes; it is told to 0.1 s
     EXPECT_EQ(bench.scanner->status().connects, 0u);
   }
 }
