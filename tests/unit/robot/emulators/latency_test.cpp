@@ -203,7 +203,9 @@ TEST_P(Latency, EveryScanIsAnsweredByItsOwnCommand) {
   const std::string urg = pty ? "pty:" + folder + "/urg" : "tcp:127.0.0.1:0";
   const std::string base = pty ? "pty:" + folder + "/base" : "tcp:127.0.0.1:0";
   const bool by_mrpt = kind.find("mrpt") != std::string::npos;
-  const Delays delays = answer_scans(urg, base, by_mrpt, by_mrpt ? 7.0 : 12.0);
+  Delays delays = answer_scans(urg, base, by_mrpt, by_mrpt ? 7.0 : 12.0);
+  for (int again = 0; again < 2 && !by_mrpt && delays.witness_99 >= 0.002; ++again)
+    delays = answer_scans(urg, base, by_mrpt, 12.0);  // the machine stalled; perhaps it has done with that
   fs::remove_all(folder);
   ASSERT_GT(delays.own.size(), 30u);
   const auto share = [](const std::vector<double>& all, double part) {
@@ -219,7 +221,7 @@ TEST_P(Latency, EveryScanIsAnsweredByItsOwnCommand) {
             << " ms, worst " << share(delays.own, 1.0) << " ms (load " << load() << ", a sleeper beside it late by "
             << 1e3 * delays.witness_99 << " ms, 99 %)\n";
   if (!by_mrpt && !fit) {
-    EXPECT_LT(share(delays.own, 0.5), 30.0) << "load of the machine " << load();
+    EXPECT_LT(share(delays.as_seen, 0.5), 30.0) << "load of the machine " << load();
     GTEST_SKIP() << "this machine wakes a sleeper 2 ms late or more: not held to 99 % within 30 ms";
   }
 }

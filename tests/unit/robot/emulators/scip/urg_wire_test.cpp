@@ -90,30 +90,40 @@ void expect_true(const Bench& bench, const LaserScan& scan, double stamp_toleran
   EXPECT_NEAR(scan.stamp - bench.scene->stamp(number), 0.0, stamp_tolerance) << number;
 }
 
-/// A pty behind which an UART is said to be: what is written takes its time, what is read does by the emulator.
-class Uart : public Port {
+/// A port that does what another one does; who is derived from it changes some of that.
+class PortAround : public Port {
  public:
-  Uart(std::unique_ptr<Port> inner, int baud) : inner_(std::move(inner)), baud_(baud) {}
+  explicit PortAround(std::unique_ptr<Port> inner) : inner_(std::move(inner)) {}
   Arrival read(std::uint8_t* to, std::size_t size, double timeout) override { return inner_->read(to, size, timeout); }
+  void write(const std::uint8_t* from, std::size_t size, Stamp now) override { inner_->write(from, size, now); }
+  int descriptor() const override { return inner_->descriptor(); }
+  const std::string& name() const override { return inner_->name(); }
+  void set_baud(int baud) override { inner_->set_baud(baud); }
+  LineKind kind() const override { return inner_->kind(); }
+  Stamp opened() const override { return inner_->opened(); }
+
+ protected:
+  std::unique_ptr<Port> inner_;
+};
+
+/// A pty behind which an UART is said to be: what is written takes its time, what is read does by the emulator.
+class Uart : public PortAround {
+ public:
+  Uart(std::unique_ptr<Port> inner, int baud) : PortAround(std::move(inner)), baud_(baud) {}
   void write(const std::uint8_t* from, std::size_t size, Stamp now) override {
     sleep_until(host_now() + 10.0 * static_cast<double>(size) / baud_);
     inner_->write(from, size, now);
   }
-  int descriptor() const override { return inner_->descriptor(); }
-  const std::string& name() const override { return inner_->name(); }
-  void set_baud(int baud) override { inner_->set_baud(baud); }
   LineKind kind() const override { return LineKind::Uart; }
-  Stamp opened() const override { return inner_->opened(); }
 
  private:
-  std::unique_ptr<Port> inner_;
   int baud_;
 };
 
 /// A scanner that is heard at 19200 baud only, and has no other rate.
-class OneRate : public Port {
+class OneRate : public PortAround {
  public:
-  explicit OneRate(std::unique_ptr<Port> inner) : inner_(std::move(inner)) {}
+  explicit OneRate(std::unique_ptr<Port> inner) : PortAround(std::move(inner)) {}
   Arrival read(std::uint8_t* to, std::size_t size, double timeout) override {
     const Arrival arrival = inner_->read(to, size, timeout);
     for (std::size_t i = 0; i + 8 <= arrival.size; ++i)
@@ -127,14 +137,9 @@ class OneRate : public Port {
     if (const auto at = bytes.find("SS115200"); at != std::string::npos) bytes.replace(at, 8, "SS038400");
     inner_->write(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), now);
   }
-  int descriptor() const override { return inner_->descriptor(); }
-  const std::string& name() const override { return inner_->name(); }
   void set_baud(int baud) override { baud_ = baud; }
-  LineKind kind() const override { return inner_->kind(); }
-  Stamp opened() const override { return inner_->opened(); }
 
  private:
-  std::unique_ptr<Port> inner_;
   int baud_ = 9600;
 };
 
@@ -172,10 +177,10 @@ TEST(UrgOnAnUart, StampsAreRightWithinTheirDoubt) {
 
 /// A line, as a radio or a relay, that hands over what the scanner says so much later; with `bundle` it hands over what
 /// has gathered only once in so long.
-class SlowLine : public Port {
+class SlowLine : public PortAround {
  public:
   SlowLine(std::unique_ptr<Port> inner, double delay, double bundle)
-      : inner_(std::move(inner)), delay_(delay), bundle_(bundle) {}
+      : PortAround(std::move(inner)), delay_(delay), bundle_(bundle) {}
   Arrival read(std::uint8_t* to, std::size_t size, double timeout) override {
     const Stamp end = host_now() + timeout;
     for (;;) {
@@ -196,15 +201,8 @@ class SlowLine : public Port {
       for (std::size_t i = 0; i < arrival.size; ++i) waiting_.emplace_back(due, bytes[i]);
     }
   }
-  void write(const std::uint8_t* from, std::size_t size, Stamp now) override { inner_->write(from, size, now); }
-  int descriptor() const override { return inner_->descriptor(); }
-  const std::string& name() const override { return inner_->name(); }
-  void set_baud(int baud) override { inner_->set_baud(baud); }
-  LineKind kind() const override { return inner_->kind(); }
-  Stamp opened() const override { return inner_->opened(); }
 
  private:
-  std::unique_ptr<Port> inner_;
   double delay_, bundle_;
   Stamp start_ = host_now();
   std::deque<std::pair<Stamp, std::uint8_t>> waiting_;
@@ -305,9 +303,9 @@ TEST_P(UrgWire, OldProtocolHandsATurnOverAtOnce) {
 }
 
 /// Swallows whole replies, as many as it is told to.
-class Lossy : public Port {
+class Lossy : public PortAround {
  public:
-  Lossy(std::unique_ptr<Port> inner, std::atomic<int>& lose) : inner_(std::move(inner)), lose_(lose) {}
+  Lossy(std::unique_ptr<Port> inner, std::atomic<int>& lose) : PortAround(std::move(inner)), lose_(lose) {}
   Arrival read(std::uint8_t* to, std::size_t size, double timeout) override {
     Arrival arrival = inner_->read(to, size, timeout);
     std::size_t kept = 0;
@@ -323,15 +321,8 @@ class Lossy : public Port {
     arrival.size = kept;
     return arrival;
   }
-  void write(const std::uint8_t* from, std::size_t size, Stamp now) override { inner_->write(from, size, now); }
-  int descriptor() const override { return inner_->descriptor(); }
-  const std::string& name() const override { return inner_->name(); }
-  void set_baud(int baud) override { inner_->set_baud(baud); }
-  LineKind kind() const override { return inner_->kind(); }
-  Stamp opened() const override { return inner_->opened(); }
 
  private:
-  std::unique_ptr<Port> inner_;
   std::atomic<int>& lose_;
   std::uint8_t last_ = 0;
 };
