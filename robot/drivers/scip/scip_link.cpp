@@ -159,7 +159,7 @@ bool Link::knock() {
   drain(0.01);
   if (find_device()) return true;
   if (port_->is_serial()) return false;            // there the other bit rates were tried meanwhile
-  if (heard_ != Stamp::never()) return late_ > 0;  // what came was spoilt, or another device's; nothing is on its way
+  if (heard_ != Stamp::never()) return late_ > 1;  // else what came was spoilt: nothing is on its way
   for (const Stamp end = host_now() + kLinger; late_ == 0 && host_now() < end;) {
     pull(end - host_now());
     while (const auto reply = receiver_.next()) mind_late_answer(*reply);
