@@ -33,6 +33,7 @@ struct ArenaArguments {
   double range = 4.0;  ///< of the laser that NAME-visible.tif is for [m]
   std::string walls;   ///< .csv or .geojson to write
   std::string out;
+  bool force = false;
 
   bool generate() const { return file == "generate"; }
 };
@@ -59,6 +60,21 @@ arenas::Arena load(const std::string& path) {
   return import.arena;
 }
 
+/// The files are written together, so one without the others is somebody's own; and the arena file is there to be
+/// edited. Throws InputError.
+void refuse_foreign(const std::string& base, const std::string& yaml) {
+  const std::string remedy = "; give another folder with --out, or --force to replace it";
+  std::error_code error;
+  std::vector<std::string> there;
+  const std::vector<std::string> pictures = {base + ".png", base + "-truth.tif", base + "-visible.tif"};
+  for (const std::string& path : pictures)
+    if (std::filesystem::exists(path, error)) there.push_back(path);
+  if (!yaml.empty() && std::filesystem::exists(base + ".yaml", error) && read_text_file(base + ".yaml") != yaml)
+    throw InputError(base + ".yaml: exists and is another arena, perhaps by your edits" + remedy);
+  if (!there.empty() && there.size() < pictures.size())
+    throw InputError(there.front() + ": exists, and not from here (its companions are missing)" + remedy);
+}
+
 int arena(const ArenaArguments& arguments) {
   namespace fs = std::filesystem;
   const bool is_geojson = ends_with(arguments.walls, ".geojson") || ends_with(arguments.walls, ".json");
@@ -78,21 +94,22 @@ int arena(const ArenaArguments& arguments) {
   fs::create_directories(out, error);
   if (error) throw InputError(out + ": cannot be created (" + error.message() + "); give a writable folder with --out");
   const std::string base = out + "/" + stem;
+  if (!arguments.force) refuse_foreign(base, yaml);
 
   if (!arguments.walls.empty()) {  // first: its folder may be missing, and then nothing is written
     const std::vector<arenas::WallLine> lines = arenas::wall_lines(arena);
     write_text_file(arguments.walls, is_geojson ? arenas::walls_geojson(lines) : arenas::walls_csv(lines));
   }
   if (arguments.generate()) {
-    write_text_file(base + ".yaml", yaml);
+    if (!fs::exists(base + ".yaml") || arguments.force) write_text_file(place_in(out, stem + ".yaml"), yaml);
     std::printf("%s.yaml\n", base.c_str());
   }
-  write_png(base + ".png", arenas::render(arena, 60.0));
+  write_png(place_in(out, stem + ".png"), arenas::render(arena, 60.0));
   const OccupancyGrid truth = arenas::truth_map(arena, arguments.resolution, arguments.slice_height);
-  write_geotiff(base + "-truth.tif", scoring::draw_truth(truth));
+  write_geotiff(place_in(out, stem + "-truth.tif"), scoring::draw_truth(truth));
   arenas::Viewer viewer;
   viewer.range = arguments.range;
-  write_geotiff(base + "-visible.tif", scoring::draw_truth(arenas::visible_truth(arena, truth, viewer)));
+  write_geotiff(place_in(out, stem + "-visible.tif"), scoring::draw_truth(arenas::visible_truth(arena, truth, viewer)));
   std::printf("%s.png\n%s-truth.tif\n%s-visible.tif\n", base.c_str(), base.c_str(), base.c_str());
   if (!arguments.walls.empty()) std::printf("%s\n", arguments.walls.c_str());
   return kOk;
@@ -151,6 +168,7 @@ Command arena_command() {
             o.text("--walls", a->walls, "Also write the walls as lines: FILE.csv or FILE.geojson");
             o.flag("--elements", a->elements, "List the league's parts that arena files can place, and what they are");
             o.text("--out", a->out, "Folder for the files (default: here)");
+            o.flag("--force", a->force, "Replace an arena file that was edited, and pictures that are not from here");
             return [a, &o] { return arena_or_list(*a, o); };
           }};
 }

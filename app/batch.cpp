@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/scenario_options.h"
 #include "base/error.h"
+#include "base/text/text_file.h"
 #include "scenarios/batch/slurm.h"
 #include "scenarios/batch/sweep_note.h"
 #include "scenarios/evidence/baseline.h"
@@ -105,7 +106,7 @@ int batch(const BatchArguments& arguments) {
   print_summary(report, options);
   if (report.interrupted) return kInterrupted;
   save_note(sweep, jobs, options.out);
-  if (whole) write_report(options.out, options.out + "/report.html");
+  if (whole) write_report(options.out, place_in(options.out, "report.html"));
   if (!arguments.save_baseline.empty()) {
     save_baseline(make_baseline(sweep.name, results_of(jobs, options.out).runs), arguments.save_baseline);
     std::printf("%-12s %s\n", "baseline", arguments.save_baseline.c_str());

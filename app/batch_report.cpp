@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "base/error.h"
 #include "base/text/text_file.h"
+#include "base/text/utf8.h"
 #include "scenarios/batch/sweep_note.h"
 #include "scenarios/evidence/report.h"
 
@@ -27,7 +28,7 @@ int batch_report(const ReportArguments& arguments) {
       text += report_markdown(set, note_of(set, source));
     }
     if (arguments.out.empty()) {
-      std::printf("%s", text.c_str());
+      std::printf("%s", printable(text).c_str());
     } else {
       write_text_file(arguments.out, text);
     }
@@ -35,7 +36,7 @@ int batch_report(const ReportArguments& arguments) {
   }
   if (arguments.sources.size() != 1) throw UsageError("batch report: a page is about one sweep; give one folder");
   const std::string& source = arguments.sources.front();
-  const std::string beside = std::filesystem::is_directory(source) ? source + "/report.html" : "report.html";
+  const std::string beside = std::filesystem::is_directory(source) ? place_in(source, "report.html") : "report.html";
   write_report(source, arguments.out.empty() ? beside : arguments.out);
   return kOk;
 }

@@ -8,6 +8,8 @@
 #include "app/terminal.h"
 #include "base/error.h"
 #include "base/text/text_file.h"
+#include "base/text/utf8.h"
+#include "base/text/words.h"
 #include "scenarios/benchmark/benchmark_output.h"
 
 namespace rubble::app {
@@ -55,14 +57,14 @@ int benchmark(const BenchmarkArguments& arguments) {
   if (const char* data = std::getenv("RUBBLE_DATA")) options.folders.push_back(std::string(data) + "/logs");
   catch_interrupts();
   options.interrupted = interrupted;
-  options.progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); };
+  options.progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", one_line(what).c_str()); };
   options.permit = [&](Scenario& scenario) {
     permit_command(arguments.mapper, with_mapper(arguments.mapper, {}), scenario);
   };
   const Benchmark result = run_benchmark(list, options);
   if (!arguments.html.empty()) write_text_file(arguments.html, to_html(result));
   if (!arguments.markdown.empty()) write_text_file(arguments.markdown, to_markdown(result));
-  std::fputs((arguments.json ? to_json(result) : to_text(result)).c_str(), stdout);
+  std::fputs(printable(arguments.json ? to_json(result) : to_text(result)).c_str(), stdout);
   if (interrupted()) return kInterrupted;
   bool any = false, failed = false;
   for (const BenchmarkRow& row : result.rows)

@@ -10,6 +10,7 @@
 #include "app/scenario_options.h"
 #include "base/error.h"
 #include "base/text/text_file.h"
+#include "base/text/words.h"
 #include "scenarios/batch/sweep_note.h"
 #include "scenarios/evidence/baseline.h"
 
@@ -85,7 +86,9 @@ int check(const CheckArguments& arguments) {
   }
   const std::vector<CheckCase> cases = check_runs(baseline, set.runs);
   for (const auto& c : cases)
-    if (!c.passed) std::printf("%-12s %s: %s: %s\n", "REGRESSION", c.group.c_str(), c.name.c_str(), c.detail.c_str());
+    if (!c.passed)
+      std::printf("%-12s %s: %s: %s\n", "REGRESSION", one_line(c.group).c_str(), one_line(c.name).c_str(),
+                  one_line(c.detail).c_str());
   std::printf("%-12s %zu of %zu passed (%zu runs in %s)\n", "checks", cases.size() - failures(cases), cases.size(),
               jobs.size(), options.out.c_str());
   if (!arguments.junit.empty()) write_text_file(arguments.junit, to_junit(cases, "rubble." + sweep.name));

@@ -4,6 +4,7 @@
 #include "app/commands.h"
 #include "base/error.h"
 #include "base/text/text_file.h"
+#include "base/text/utf8.h"
 #include "scenarios/batch/sweep_note.h"
 #include "scenarios/evidence/compare_output.h"
 
@@ -25,7 +26,7 @@ int compare(const CompareArguments& arguments) {
   const std::string& b = arguments.b.empty() ? arguments.a : arguments.b;
   const Comparison comparison =
       scenarios::compare(load_sweep_results(arguments.a), load_sweep_results(b), arguments.a, b, options);
-  std::printf("%s", to_text(comparison).c_str());
+  std::printf("%s", printable(to_text(comparison)).c_str());
   if (!arguments.csv.empty()) write_text_file(arguments.csv, to_csv(comparison));
   if (!arguments.json.empty()) write_text_file(arguments.json, to_json(comparison));
   if (!arguments.html.empty()) write_text_file(arguments.html, to_html(comparison));

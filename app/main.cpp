@@ -15,6 +15,7 @@
 
 #include "app/command.h"
 #include "base/error.h"
+#include "base/text/input_file.h"
 #include "base/text/words.h"
 #include "scenarios/run/run.h"
 #include "slam/process/mapper_server.h"
@@ -46,6 +47,14 @@ CLI::Validator whole_number() {
   return CLI::Validator(check, "");
 }
 
+/// An option whose value was forgotten takes the next one's name for it.
+CLI::Validator no_option() {
+  const auto check = [](const std::string& text) {
+    return text.rfind("--", 0) == 0 ? "needs a value, and " + text + " is an option" : std::string();
+  };
+  return CLI::Validator(check, "");
+}
+
 /// One command's options, declared to CLI11.
 class ParsedOptions : public Options {
  public:
@@ -59,7 +68,7 @@ class ParsedOptions : public Options {
     command_.add_option(name, values, about)->required(need == Need::Required);
   }
   void text(const std::string& name, std::string& value, const std::string& about) override {
-    command_.add_option(name, value, about);
+    command_.add_option(name, value, about)->check(no_option());
   }
   void required_text(const std::string& name, std::string& value, const std::string& about) override {
     command_.add_option(name, value, about)->required();
@@ -186,6 +195,8 @@ int guarded(int argc, char** argv) {
     return complain(error.what(), kUsage);
   } catch (const InputError& error) {
     return complain(error.what(), kBadInput);
+  } catch (const Interrupted& error) {
+    return complain(error.what(), kInterrupted);
   } catch (const std::filesystem::filesystem_error& error) {
     return complain(error);
   } catch (const std::bad_alloc&) {

@@ -18,8 +18,7 @@ struct MergeArguments {
 
 int merge(const MergeArguments& arguments) {
   const scenarios::Scenario scenario = scenarios::default_scenario(parse_sets(arguments.sets));
-  scenarios::RunFolder folder(arguments.out, arguments.force);
-  scenarios::merge_maps(arguments.first, arguments.second, scenario, folder);
+  scenarios::merge_maps(arguments.first, arguments.second, scenario, arguments.out, arguments.force);
   std::printf("%s\n", arguments.out.c_str());
   return kOk;
 }

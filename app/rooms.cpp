@@ -80,9 +80,9 @@ std::string as_csv(const scoring::Rooms& rooms) {
   return out;
 }
 
-void write_floor(const std::string& base, const Floor& floor) {
-  scoring::draw_rooms(base + ".png", floor.map.grid, floor.rooms);
-  write_text_file(base + ".csv", as_csv(floor.rooms));
+void write_floor(const std::string& folder, const std::string& name, const Floor& floor) {
+  scoring::draw_rooms(place_in(folder, name + ".png"), floor.map.grid, floor.rooms);
+  write_text_file(place_in(folder, name + ".csv"), as_csv(floor.rooms));
 }
 
 int rooms(const RoomsArguments& a) {
@@ -91,8 +91,8 @@ int rooms(const RoomsArguments& a) {
   if (!a.truth.empty()) truth = floor_of(a.truth, a.truth_resolution, a.method);
   if (!a.out.empty()) {
     make_folder(a.out);
-    write_floor(a.out + "/rooms", map);
-    if (truth) write_floor(a.out + "/truth_rooms", *truth);
+    write_floor(a.out, "rooms", map);
+    if (truth) write_floor(a.out, "truth_rooms", *truth);
   }
   print_rooms(map);
   if (!truth) return kOk;
@@ -103,7 +103,7 @@ int rooms(const RoomsArguments& a) {
   }
   print_match(found.match);
   if (!a.out.empty())
-    scoring::write_side_by_side(a.out + "/matched_rooms.png", map.map.grid, truth->map.grid, found.T_truth_map,
+    scoring::write_side_by_side(place_in(a.out, "matched_rooms.png"), map.map.grid, truth->map.grid, found.T_truth_map,
                                 scoring::marks_of(map.rooms, truth->rooms, found.match));
   return kOk;
 }

@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/text/input_file.h"
+#include "robot/logs/foreign/file_bytes.h"
 
 namespace rubble::app {
 namespace {
@@ -56,7 +58,9 @@ std::vector<scenarios::Override> RunFolderOptions::overrides() const {
 
 std::string recorded_log(const std::string& path) {
   const std::string inside = path + "/log.rlog";
-  return std::filesystem::exists(inside) ? inside : path;
+  if (!std::filesystem::exists(inside)) return path;
+  require_input(inside, robot::log_rules());  // a pipe in a foreign folder is not waited for
+  return inside;
 }
 
 std::string shipped_folder(const std::string& kind) {

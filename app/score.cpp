@@ -115,16 +115,16 @@ int score(const ScoreArguments& arguments) {
   if (!arguments.out.empty()) {
     // A map that was refused is drawn at the best pose, so that a person can see why; score.json says that too.
     if (result.aligned || result.by != scoring::AlignBy::Auto)
-      scoring::write_overlay(arguments.out + "/overlay.png", grid, truth, result.T_truth_map,
+      scoring::write_overlay(place_in(arguments.out, "overlay.png"), grid, truth, result.T_truth_map,
                              result.aligned ? "" : "NOT TRUSTED: " + result.note, marks);
     else
-      scoring::write_side_by_side(arguments.out + "/overlay.png", grid, truth, std::nullopt, {}, result.note);
+      scoring::write_side_by_side(place_in(arguments.out, "overlay.png"), grid, truth, std::nullopt, {}, result.note);
     for (const scoring::Marks& features : scoring::marks_on_page(result, {}))
-      scoring::write_side_by_side(arguments.out + "/" + file_of(features), grid, truth, result.T_truth_map, features,
+      scoring::write_side_by_side(place_in(arguments.out, file_of(features)), grid, truth, result.T_truth_map, features,
                                   result.aligned ? "" : "NOT TRUSTED: " + result.note);
     if (result.aligned)
-      scoring::write_error_map(arguments.out + "/error.png", grid, truth, result.T_truth_map, config.tau);
-    write_text_file(arguments.out + "/score.json", json.dump(2) + "\n");
+      scoring::write_error_map(place_in(arguments.out, "error.png"), grid, truth, result.T_truth_map, config.tau);
+    write_text_file(place_in(arguments.out, "score.json"), json.dump(2) + "\n");
   }
   return kOk;
 }

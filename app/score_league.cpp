@@ -6,6 +6,7 @@
 #include "app/score_parts.h"
 #include "app/score_tools.h"
 #include "base/error.h"
+#include "base/text/words.h"
 #include "scoring/league/league_judge.h"
 
 namespace rubble::app {
@@ -23,7 +24,7 @@ void check(const ScoreArguments& arguments) {
 void print(const scoring::League& league, bool warp) {
   const bool points = league.with_points();
   std::size_t width = 4;
-  for (const LeagueEntry& e : league.entries) width = std::max(width, e.team.size());
+  for (const LeagueEntry& e : league.entries) width = std::max(width, one_line(e.team).size());
   const int w = static_cast<int>(width);
   std::printf("%4s  %-*s%s", "rank", w, "team", points ? "  points quality location  fine judge victims by" : "");
   std::vector<const scoring::Figure*> columns = scoring::figures_with(scoring::kRanking);
@@ -31,9 +32,9 @@ void print(const scoring::League& league, bool warp) {
   for (const scoring::Figure* column : columns) std::printf("  %s", column->label.c_str());
   std::printf("  note\n");
   for (const LeagueEntry& e : league.entries) {
-    std::printf("%4d  %-*s", e.rank, w, e.team.c_str());
+    std::printf("%4d  %-*s", e.rank, w, one_line(e.team).c_str());
     if (!e.error.empty()) {
-      std::printf("  %s\n", e.error.c_str());
+      std::printf("  %s\n", one_line(e.error).c_str());
       continue;
     }
     if (points)
@@ -44,9 +45,9 @@ void print(const scoring::League& league, bool warp) {
     for (const scoring::Figure* column : columns)
       std::printf("  %*s", static_cast<int>(column->label.size()),
                   scoring::text_of(*column, column->get(evidence)).c_str());
-    std::printf("  %s\n", e.score.note.c_str());
+    std::printf("  %s\n", one_line(e.score.note).c_str());
   }
-  if (!league.left_out.empty()) std::printf("no team's maps: %s\n", league.left_out.c_str());
+  if (!league.left_out.empty()) std::printf("no team's maps: %s\n", one_line(league.left_out).c_str());
 }
 
 }  // namespace
@@ -65,12 +66,12 @@ int score_league(const ScoreArguments& arguments) {
   config.score.tau = arguments.tau;
   config.map_resolution = arguments.map_resolution;
   config.out = arguments.out;
-  config.tell = [](const std::string& note) { std::fprintf(stderr, "rubble: %s\n", note.c_str()); };
+  config.tell = [](const std::string& note) { std::fprintf(stderr, "rubble: %s\n", one_line(note).c_str()); };
   const scoring::League league = scoring::judge_league(folder, truth, judge, config);
   print(league, arguments.warp);
   if (arguments.out.empty()) return kOk;
   scoring::write_league(league, truth, arguments.out);
-  std::printf("written: %s/league.html, league.csv\n", arguments.out.c_str());
+  std::printf("written: %s/league.html, league.csv\n", one_line(arguments.out).c_str());
   return kOk;
 }
 

@@ -11,6 +11,7 @@
 #include "base/text/number_text.h"
 #include "base/text/shell.h"
 #include "base/text/text_file.h"
+#include "base/text/words.h"
 
 namespace rubble::app {
 
@@ -74,7 +75,7 @@ void make_folder(const std::string& path) {
 void write_evaluation_page(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
                            const scoring::EvaluationStart& start) {
   write_text_file(path, scoring::evaluation_page(map, truth, start));
-  std::fprintf(stderr, "page: %s\n", path.c_str());
+  std::fprintf(stderr, "page: %s\n", one_line(path).c_str());
 }
 
 }  // namespace rubble::app

@@ -45,7 +45,7 @@ int score_trajectory(const ScoreArguments& arguments) {
   const std::string json = scenarios::known_figures(evidence).dump(2);
   if (!arguments.out.empty()) {
     make_folder(arguments.out);
-    write_text_file(arguments.out + "/trajectory.json", json + "\n");
+    write_text_file(place_in(arguments.out, "trajectory.json"), json + "\n");
   }
   if (arguments.json) {
     std::printf("%s\n", json.c_str());

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command.h"
+#include "base/text/words.h"
 #include "scenarios/run/score_json.h"
 
 namespace rubble::app {
@@ -70,7 +71,7 @@ void end_progress() {
 
 void print_row(const std::string& label, const std::string& value) {
   constexpr int kWidth = 34;
-  std::printf("%-*s %s\n", kWidth, label.c_str(), value.c_str());
+  std::printf("%-*s %s\n", kWidth, one_line(label).c_str(), one_line(value).c_str());
 }
 
 void print_figures(const nlohmann::ordered_json& score) {
@@ -102,9 +103,13 @@ int show(const scenarios::RunReport& report) {
     print_row("NOT MAPPED", std::to_string(lost) + " laser hits lay beyond the largest map (mapper.max_map_cells)");
   if (const auto dropped = score["scans_out_of_order"].get<std::uint64_t>(); dropped > 0)
     print_row("NOT MAPPED", std::to_string(dropped) + " scans were empty or not younger than the one before");
+  if (score.value("map_doubted", 0.0) > 0.0)
+    print_row("DOUBTFUL MAP", score["frames_doubled"].dump() + " of " + score["key_frames"].dump() +
+                                  " key frames lie on top of another place, " + score["scans_unfit"].dump() +
+                                  " scans fit nothing mapped: the robot lost its place");
   for (const auto& broken : report.broken) print_row("NOT AS EXPECTED", broken);
   print_row("folder", report.folder);
-  if (!report.failure.empty()) std::fprintf(stderr, "rubble: %s\n", report.failure.c_str());
+  if (!report.failure.empty()) std::fprintf(stderr, "rubble: %s\n", one_line(report.failure).c_str());
   if (report.interrupted) return kInterrupted;
   if (!report.failure.empty()) return kFailed;
   return report.broken.empty() ? kOk : kBroken;

@@ -3,11 +3,11 @@
 #include <openssl/evp.h>
 
 #include <array>
-#include <filesystem>
-#include <fstream>
+#include <limits>
 #include <memory>
 
 #include "base/error.h"
+#include "base/text/input_file.h"
 
 namespace rubble {
 namespace {
@@ -51,15 +51,12 @@ std::string sha256_of_text(std::string_view text) {
 }
 
 std::string sha256_of_file(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw InputError(path + ": is a folder; give the path of a file");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path + ": cannot be opened; check the path");
+  InputRules rules;
+  rules.most = std::numeric_limits<std::size_t>::max();  // nothing is kept of it
+  InputFile file(path, rules);
   Sha256 sha;
   std::array<char, 65536> buffer;
-  while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0)
-    sha.add({buffer.data(), static_cast<std::size_t>(file.gcount())});
-  if (file.bad()) throw InputError(path + ": cannot be read");
+  while (const std::size_t got = file.read(buffer.data(), buffer.size())) sha.add({buffer.data(), got});
   return sha.hex();
 }
 

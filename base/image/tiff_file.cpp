@@ -1,15 +1,14 @@
 #include "base/image/tiff_file.h"
 
 #include <geotiff/xtiffio.h>
-#include <sys/stat.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
 
 #include "base/error.h"
+#include "base/text/input_file.h"
 #include "base/text/words.h"
 
 namespace rubble {
@@ -93,11 +92,7 @@ toff_t size_of_memory(thandle_t handle) { return static_cast<Memory*>(handle)->b
 }  // namespace
 
 TiffFile open_tiff(const std::string& path, TiffComplaint& complaint) {
-  struct stat status {};
-  errno = 0;
-  if (stat(path.c_str(), &status) != 0)
-    throw InputError(path + ": cannot be opened (" + std::strerror(errno) + "); check the path");
-  if (S_ISDIR(status.st_mode)) throw InputError(path + ": is a folder; give the path of a TIFF file");
+  require_input(path, image_rules());                                      // libtiff waits at pipes
   TiffFile tiff(TIFFOpenExt(path.c_str(), "rm", quiet(complaint).get()));  // m: a file that shrinks is no crash
   if (!tiff) {
     std::string why = complaint.text;  // begins with the path

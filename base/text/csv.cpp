@@ -2,6 +2,8 @@
 
 #include <string_view>
 
+#include "base/text/utf8.h"
+
 namespace rubble {
 namespace {
 
@@ -24,11 +26,11 @@ std::string csv_quoted(const std::string& text) {
 }
 
 std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string line = text;
+  std::string line = as_utf8(text);
   for (char& c : line)
-    if (c == '\n' || c == '\r') c = ' ';
-  return csv_quoted(line);
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';  // also the escapes of a terminal that shows it
+  const bool is_plain = line == text && line.find_first_of(",\"") == std::string::npos;
+  return is_plain ? line : csv_quoted(line);
 }
 
 std::string csv_line(const std::vector<std::string>& fields) {

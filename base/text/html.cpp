@@ -1,5 +1,7 @@
 #include "base/text/html.h"
 
+#include "base/text/utf8.h"
+
 namespace rubble {
 namespace {
 
@@ -21,7 +23,7 @@ figure img { max-width: 100%; border: 1px solid #d8dee4; } figcaption { font-siz
 
 std::string escape_html(const std::string& text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : as_utf8(text)) {
     switch (c) {
       case '&':
         out += "&amp;";
@@ -38,8 +40,14 @@ std::string escape_html(const std::string& text) {
       case '\'':
         out += "&#39;";
         break;
-      default:
-        out += c;
+      default: {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool is_control = (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
+        if (is_control)
+          out += "\xef\xbf\xbd";  // no page may hold it, and a terminal that shows the page would obey it
+        else
+          out += c;
+      }
     }
   }
   return out;

@@ -7,19 +7,12 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 
 #include "base/error.h"
+#include "base/text/input_file.h"
 
 namespace rubble {
 namespace {
-
-constexpr std::size_t kLargest = 256u << 20;
-
-struct Close {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, Close>;
 
 [[noreturn]] void fail_write(const std::string& path, int error) {
   throw RunError(path + ": cannot be written (" + std::strerror(error) + "); check the folder and the free space");
@@ -50,24 +43,7 @@ int create_beside(const std::string& target, std::string& part) {
 
 }  // namespace
 
-std::string read_text_file(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw InputError(path + ": is a folder; give the path of a file");
-  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  if (std::filesystem::is_character_file(status) && path != "/dev/stdin" && path != "/dev/null")
-    throw InputError(path + ": is a device; give the path of a file");
-  errno = 0;
-  const File file(std::fopen(path.c_str(), "rb"));
-  if (!file) throw InputError(path + ": cannot be opened (" + std::strerror(errno) + "); check the path");
-  std::string text;
-  char buffer[65536];
-  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, file.get())) {
-    text.append(buffer, n);
-    if (text.size() > kLargest) throw InputError(path + ": is over 256 MB; this is not the file you mean");
-  }
-  if (std::ferror(file.get())) throw InputError(path + ": cannot be read (" + std::strerror(errno) + ")");
-  return text;
-}
+std::string read_text_file(const std::string& path) { return read_input(path); }
 
 void write_text_file(const std::string& path, std::string_view text) {
   namespace fs = std::filesystem;
@@ -75,16 +51,21 @@ void write_text_file(const std::string& path, std::string_view text) {
   const fs::file_status status = fs::status(path, error);
   if (fs::is_directory(status)) throw RunError(path + ": is a folder; give the path of a file");
   if (fs::exists(status) && !fs::is_regular_file(status)) {  // a device or pipe is written to, never replaced
-    const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    // O_NONBLOCK: a pipe that nobody reads is told, not waited for.
+    const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+    if (file < 0 && errno == ENXIO) throw RunError(path + ": is a pipe that nobody reads; start its reader first");
     if (file < 0) fail_write(path, errno);
+    ::fcntl(file, F_SETFL, 0);
     if (const int failure = write_and_close(file, text, false)) fail_write(path, failure);
     return;
   }
+  require_not_read(path);
   const fs::path linked = fs::weakly_canonical(path, error);  // a symbolic link stays one
   const std::string target = error ? path : linked.string();
   std::string part;
   const int file = create_beside(target, part);
   if (file < 0) fail_write(path, errno);
+  note_written(file);
   // Where an older file goes, the new one must be on the disk first.
   int failure = write_and_close(file, text, fs::exists(status));
   if (failure == 0) {
@@ -94,6 +75,23 @@ void write_text_file(const std::string& path, std::string_view text) {
   if (failure == 0) return;
   std::remove(part.c_str());
   fail_write(path, failure);
+}
+
+std::string place_in(const std::string& folder, const std::string& name) {
+  const std::string path = folder + "/" + name;
+  std::error_code error;
+  if (std::filesystem::is_symlink(std::filesystem::symlink_status(path, error)))
+    throw InputError(path +
+                     ": is a symbolic link, what is written could go anywhere; remove it or give another folder");
+  return path;
+}
+
+std::string new_file_beside(const std::string& path) {
+  std::string part;
+  const int file = create_beside(path, part);
+  if (file < 0) fail_write(path, errno);
+  ::close(file);
+  return part;
 }
 
 }  // namespace rubble

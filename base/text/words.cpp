@@ -2,24 +2,40 @@
 
 #include <algorithm>
 
+#include "base/text/utf8.h"
+
 namespace rubble {
 
 std::string one_line(std::string_view text) {
   static constexpr char kHex[] = "0123456789abcdef";
   std::string line;
-  for (const char c : text) {
+  const auto hex = [&line](char c) {
     const auto byte = static_cast<unsigned char>(c);
-    if (c == '\n') {
+    line += {'\\', 'x', kHex[byte >> 4], kHex[byte & 15]};
+  };
+  for (std::size_t at = 0; at < text.size();) {
+    const char c = text[at];
+    const auto byte = static_cast<unsigned char>(c);
+    const std::size_t size = utf8_length(text, at);
+    // Terminals take U+0080 to U+009F, and some the bare bytes, for escapes of their own.
+    const bool is_second_control = size == 2 && byte == 0xc2 && static_cast<unsigned char>(text[at + 1]) < 0xa0;
+    if (size == 0) {
+      hex(c);
+    } else if (is_second_control) {
+      hex(c);
+      hex(text[at + 1]);
+    } else if (c == '\n') {
       line += "\\n";
     } else if (c == '\t') {
       line += "\\t";
     } else if (c == '\r') {
       line += "\\r";
     } else if (byte < 0x20 || byte == 0x7f) {
-      line += {'\\', 'x', kHex[byte >> 4], kHex[byte & 15]};
+      hex(c);
     } else {
-      line += c;
+      line += text.substr(at, size);
     }
+    at += size == 0 ? 1 : size;
   }
   return line;
 }

@@ -78,7 +78,7 @@ class OwnLog {
   [[noreturn]] void fail(std::size_t frame, const std::string& what) const {
     const std::size_t start = frame == 0 ? kLogMagic.size() : frames_.ends[frame - 1];
     throw InputError(path_ + ": byte " + std::to_string(start) + ": the frame cannot be understood (" + what +
-                     "); replay the log with the release that recorded it");
+                     "); copy the log again, or replay it with the release that recorded it");
   }
 
   std::string path_;

@@ -3,12 +3,13 @@
 #include <sqlite3.h>
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/error.h"
+#include "base/text/input_file.h"
+#include "base/text/text_file.h"
 #include "scenarios/batch/score_version.h"
 
 namespace rubble::scenarios {
@@ -19,6 +20,7 @@ using nlohmann::ordered_json;
 
 constexpr const char* kMagic = "SQLite format 3";
 constexpr int kVersion = 1;
+constexpr std::size_t kLargestDatabase = std::size_t{8} << 30;
 
 constexpr const char* kSchema = R"sql(
 PRAGMA journal_mode = OFF;
@@ -35,7 +37,10 @@ CREATE VIEW metrics AS SELECT run_id, j.key AS key, CAST(j.value AS REAL) AS val
 
 bool is_database(const std::string& path) {
   char head[16] = {};
-  std::ifstream(path, std::ios::binary).read(head, sizeof head);
+  InputRules rules;
+  rules.most = kLargestDatabase;
+  rules.pipes = Pipes::None;
+  InputFile(path, rules).read(head, sizeof head);
   return std::string(head, sizeof head) == std::string(kMagic, sizeof head);  // the end mark included
 }
 
@@ -195,9 +200,8 @@ MergeReport merge(const std::vector<std::string>& sources, const std::string& ou
   all.runs = unique_runs(all.runs, out);
   report.runs = all.runs.size();
   report.added = report.runs - before;
-  const std::string partial = out + ".partial";
+  const std::string partial = new_file_beside(out);
   std::error_code error;
-  fs::remove(partial, error);
   try {
     write_database(partial, all);
   } catch (const RunError&) {

@@ -66,7 +66,10 @@ int open_to_append(const std::string& path) {
   const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (file < 0)
     throw InputError(path + ": cannot be written (" + std::strerror(errno) + "); give a writable folder with --out");
-  return file;
+  struct stat status {};
+  if (fstat(file, &status) == 0 && S_ISREG(status.st_mode)) return file;
+  close(file);
+  throw InputError(path + ": is no file, results would be lost; remove it or give another --out");
 }
 
 void lock(int file, const std::string& path) {

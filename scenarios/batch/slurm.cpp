@@ -90,10 +90,10 @@ SlurmScripts slurm_scripts(const SlurmPlan& plan) {
 
 SlurmScripts write_slurm(const SlurmPlan& plan) {
   std::error_code error;
-  fs::create_directories(plan.out + "/slurm", error);
+  fs::create_directories(place_in(plan.out, "slurm"), error);
   if (error) throw InputError(plan.out + ": cannot be created (" + error.message() + "); give a writable --out");
   const SlurmScripts scripts = slurm_scripts(plan);
-  const SlurmScripts paths{plan.out + "/slurm/array.sh", plan.out + "/slurm/merge.sh"};
+  const SlurmScripts paths{place_in(plan.out, "slurm/array.sh"), place_in(plan.out, "slurm/merge.sh")};
   write_text_file(paths.array, scripts.array);
   write_text_file(paths.merge, scripts.merge);
   return paths;

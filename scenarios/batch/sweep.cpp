@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/text/file_name.h"
 #include "base/yaml/strict_yaml.h"
+#include "base/yaml/yaml_node.h"
 #include "scenarios/run/run.h"
 
 namespace rubble::scenarios {
@@ -83,6 +84,15 @@ void refuse_reserved(const YamlMap& map, const std::string& key) {
   if (key == "name") map.fail(key, "cannot vary by configuration; results are paired by the scenario's name");
 }
 
+/// Each key of a configuration is one value of the scenario, by its whole path.
+void refuse_map(const YamlMap& map, const std::string& key) {
+  const YamlNode::Entry* entry = map.tree()->find(key);
+  if (entry == nullptr || entry->value->kind != YamlNode::Kind::Map) return;
+  const auto& inside = entry->value->entries;
+  const std::string example = inside.empty() ? "key" : inside.front().key;
+  map.fail(key, "is a map; give each of its values by its whole path: " + key + "." + example + ": VALUE");
+}
+
 std::vector<Configuration> named_sets(const YamlMap& root) {
   const YamlMap sets = root.map("configs");
   std::vector<Configuration> configurations;
@@ -91,6 +101,7 @@ std::vector<Configuration> named_sets(const YamlMap& root) {
     Configuration configuration{name, "", {}};
     for (const auto& key : set.keys()) {
       refuse_reserved(set, key);
+      refuse_map(set, key);
       configuration.overrides.emplace_back(key, set.text(key, std::nullopt));
     }
     configurations.push_back(configuration);
@@ -130,6 +141,7 @@ std::vector<Configuration> read_configurations(const YamlMap& root) {
   const YamlMap grid = root.map("set");
   for (const auto& key : grid.keys()) {
     refuse_reserved(grid, key);
+    refuse_map(grid, key);
     const auto values = one_or_more(grid, key);
     if (values.empty()) grid.fail(key, "has no values; give one or a list: " + key + ": [a, b]");
     configurations = crossed(configurations, key, values);

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-constexpr const char* kFile = "/sweep.json";
+constexpr const char* kFile = "sweep.json";
 
 std::string name_of_path(const std::string& path) {
   const fs::path normal = fs::path(path).lexically_normal();
@@ -26,7 +26,7 @@ std::string name_of_path(const std::string& path) {
 
 /// The ids of the runs that the sweep's last call asked for, if the folder tells.
 std::optional<std::set<std::string>> runs_asked(const std::string& folder) {
-  const std::string file = folder + kFile;
+  const std::string file = folder + "/" + kFile;
   if (!fs::is_directory(folder) || !fs::exists(file)) return std::nullopt;
   const ordered_json json = ordered_json::parse(read_text_file(file), nullptr, false);
   if (!json.is_object() || !json.contains("runs")) return std::nullopt;
@@ -44,7 +44,7 @@ void save_note(const Sweep& sweep, const std::vector<Job>& jobs, const std::stri
     json["configurations"].push_back({{"name", configuration.name}, {"reference", configuration.reference}});
   json["runs"] = ordered_json::array();
   for (const Job& job : jobs) json["runs"].push_back(job.run_id);
-  write_text_file(folder + kFile, json.dump(2) + "\n");
+  write_text_file(place_in(folder, kFile), json.dump(2) + "\n");
 }
 
 ResultSet load_sweep_results(const std::string& path) {
@@ -68,7 +68,7 @@ MissingRuns missing_runs(const std::string& folder, const std::vector<RunRecord>
 SweepNote note_of(const ResultSet& set, const std::string& path) {
   SweepNote note;
   note.name = name_of_path(path);
-  const std::string file = set.folder + kFile;
+  const std::string file = set.folder + "/" + kFile;
   if (fs::exists(file)) {
     try {
       const ordered_json json = ordered_json::parse(read_text_file(file));

@@ -231,9 +231,13 @@ Baseline load_baseline(const std::string& path) {
       baseline.groups.push_back(std::move(group));
     }
     return baseline;
-  } catch (const ordered_json::exception& error) {
-    throw InputError(path + ": is no baseline (" + error.what() +
-                     "); make one with 'rubble batch SWEEP --save-baseline FILE'");
+  } catch (const ordered_json::parse_error& error) {
+    throw InputError(path + ": is no baseline (no JSON from byte " + std::to_string(error.byte) +
+                     " on); make one with 'rubble batch SWEEP --save-baseline FILE'");
+  } catch (const ordered_json::exception&) {
+    throw InputError(path +
+                     ": is no baseline (a value is missing or of another kind); make one with 'rubble batch SWEEP "
+                     "--save-baseline FILE'");
   }
 }
 

@@ -1,10 +1,12 @@
 #include "scenarios/run/map_files.h"
 
+#include <mrpt/io/CMemoryStream.h>
 #include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPose3D.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
+#include <mrpt/serialization/CArchive.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +20,7 @@
 #include "base/error.h"
 #include "base/image/png.h"
 #include "base/text/text_file.h"
+#include "robot/logs/foreign/file_bytes.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
 #include "slam/map_exports.h"
 
@@ -126,8 +129,9 @@ void write_simplemap(const slam::MapContent& map, const std::string& out) {
     pose->mean = mrpt::poses::CPose3D(mrpt::math::TPose3D(kept.T_map_base));
     simple.insert(pose, frame);
   }
-  if (!simple.saveToFile(out))
-    throw RunError(out + ": cannot be written; check the folder, its permissions and the free space");
+  mrpt::io::CMemoryStream memory;
+  mrpt::serialization::archiveFrom(memory) << simple;  // what its saveToFile() packs with gzip
+  robot::write_gzip(out, {static_cast<const char*>(memory.getRawBufferData()), memory.getTotalBytesCount()});
 }
 
 }  // namespace
@@ -157,11 +161,13 @@ std::shared_ptr<const slam::MapBase> load_map_base(const std::string& path, bool
   return base;
 }
 
-void merge_maps(const std::string& first, const std::string& second, const Scenario& scenario, RunFolder& folder) {
+void merge_maps(const std::string& first, const std::string& second, const Scenario& scenario, const std::string& out,
+                bool replace) {
   if (scenario.mapper.kind() != "robust")
     throw InputError("mapper.kind '" + scenario.mapper.kind() + "': only maps of the robust mapper are merged");
   const auto a = load_map_base(first, true, std::nullopt);
   const auto b = load_map_base(second, true, std::nullopt);
+  if (replace && fs::is_directory(out) && !fs::is_empty(out)) files_of_run(out);  // told before the work
   const slam::MapContent content = slam::content_of(*a);
   robot::RobotModel model = scenario.robot;
   model.T_base_laser = content.T_base_laser;
@@ -173,6 +179,7 @@ void merge_maps(const std::string& first, const std::string& second, const Scena
   const auto both = std::make_shared<slam::MapBase>(slam::MapBase{*bytes, first, true, std::nullopt});
   const auto mapper = scenario.mapper.make(model, {scenario.seed, "", both});
   mapper->finish();
+  RunFolder folder(out, replace);  // not before the work is done: it may take the place of an older one
   folder.write("scenario.yaml", resolved_yaml(scenario));
   folder.write(kMapFile, *bytes);
   folder.save_map(scenario, *mapper, {});

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include <nlohmann/json.hpp>
 
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/text/input_file.h"
+#include "base/text/text_file.h"
+#include "robot/logs/foreign/file_bytes.h"
 #include "robot/logs/log.h"
 
 namespace rubble::scenarios {
@@ -40,23 +41,26 @@ class Scratch {
   bool kept_;
 };
 
-std::string bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// Whether the shorter of two files is the beginning of the other: of what was ended on the spot, log and trajectory
 /// reach up to different scans.
 bool begin_alike(const std::string& a, const std::string& b) {
-  const std::string one = bytes_of(a), other = bytes_of(b);
+  const std::string one = read_text_file(a), other = read_text_file(b);
   const std::size_t size = std::min(one.size(), other.size());
   return one.compare(0, size, other, 0, size) == 0;
 }
 
 /// Nothing that the explorer says is compared with what somebody else steered.
 bool steered_by_hand(const std::string& run) {
-  const auto written_by = nlohmann::json::parse(bytes_of(run + "/versions.json"), nullptr, false);
-  return written_by.is_object() && written_by.value(kSteeredByHand, false);
+  const std::string file = run + "/versions.json";
+  if (!fs::exists(file)) return false;
+  const auto written_by = nlohmann::json::parse(read_text_file(file), nullptr, false);
+  if (!written_by.is_object())
+    throw InputError(file + ": is not what rubble wrote (no JSON object); copy it again, or remove it");
+  const auto by_hand = written_by.find(kSteeredByHand);
+  if (by_hand == written_by.end()) return false;
+  if (!by_hand->is_boolean())
+    throw InputError(file + ": " + kSteeredByHand + " is neither true nor false; copy the file again");
+  return by_hand->get<bool>();
 }
 
 bool same_commands(const robot::Commands& a, const robot::Commands& b) {
@@ -75,6 +79,7 @@ std::vector<std::string> comparable(bool ended) {
 Scenario recorded_scenario(const std::string& path, const std::vector<Override>& overrides) {
   if (!fs::exists(path + "/log.rlog"))
     throw InputError(path + ": is not a recorded run (no log.rlog in it); give a folder that 'rubble run' wrote");
+  require_input(path + "/log.rlog", robot::log_rules());
   return load_recorded(path + "/scenario.yaml", overrides);
 }
 
@@ -86,7 +91,7 @@ ReplayReport replay_run(const std::string& path, const Scenario& scenario, const
   scenario.mapper.require_permission();
   robot::ReplayRobot robot(path + "/log.rlog");
   const Scratch scratch(options.out);
-  RunFolder folder(scratch.path(), options.replace);
+  RunFolder folder(scratch.path(), options.replace, "give another folder with --out");
   const bool by_hand = steered_by_hand(path);
   Core core(scenario, robot.model(), !by_hand, folder.path());
   ReplayReport report;

@@ -1,5 +1,6 @@
 #include "scenarios/run/run_folder.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -11,6 +12,7 @@
 #include "base/error.h"
 #include "base/image/png.h"
 #include "base/text/csv.h"
+#include "base/text/input_file.h"
 #include "scoring/maps/ros_map.h"
 
 namespace rubble::scenarios {
@@ -32,11 +34,10 @@ std::string pois_csv(const Scenario& s, const std::vector<explore::VictimReport>
                     "\ndetection,time,type,name,x,y,z,robot,mode\n";
   for (const auto& victim : victims) {
     const long seconds = static_cast<long>(victim.stamp.seconds());
-    char line[200];
-    std::snprintf(line, sizeof line, "%d,%02ld:%02ld:%02ld,victim,victim_%d,%.3f,%.3f,0.000,%s,A\n", victim.id,
-                  seconds / 3600 % 24, seconds / 60 % 60, seconds % 60, victim.id, victim.p_map.x, victim.p_map.y,
-                  s.robot.name.c_str());
-    csv += line;
+    char line[200];  // of numbers only: a name may be of any length
+    std::snprintf(line, sizeof line, "%d,%02ld:%02ld:%02ld,victim,victim_%d,%.3f,%.3f,0.000,", victim.id,
+                  seconds / 3600 % 24, seconds / 60 % 60, seconds % 60, victim.id, victim.p_map.x, victim.p_map.y);
+    csv += line + csv_field(not_a_formula(s.robot.name)) + ",A\n";
   }
   return csv;
 }
@@ -55,6 +56,55 @@ const std::vector<std::string>& deterministic_artefacts() {
   return names;
 }
 
+const std::vector<std::string>& run_folder_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = deterministic_artefacts();
+    for (const char* name : {"scenario.yaml", "robot.yaml", "versions.json", "hashes.json", "score.json",
+                             "decisions.txt", "devices.bytes", "mapper.log"})
+      all.emplace_back(name);
+    return all;
+  }();
+  return names;
+}
+
+std::vector<std::string> files_of_run(const std::string& path) {
+  const auto& names = run_folder_names();
+  const auto is_ours = [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  // Each run begins with this file; a folder with a map.yaml and a map.png may be anybody's.
+  bool begun = false, empty = true;
+  for (const auto& entry : fs::directory_iterator(path)) {
+    const std::string name = entry.path().filename().string();
+    empty = empty && name == kPartial;
+    begun = begun || name == "estimate.tum";
+  }
+  if (!begun && !empty)
+    throw InputError(path +
+                     ": is not a run folder (no estimate.tum), so --force does not replace it; give another --out");
+  std::vector<std::string> old;
+  const auto look = [&](const fs::path& folder) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      const bool is_partial = folder == path && entry.path().filename() == kPartial;
+      if (is_partial && entry.symlink_status().type() == fs::file_type::directory) continue;
+      if (!is_ours(entry.path().filename().string()) || entry.symlink_status().type() == fs::file_type::directory)
+        throw InputError(entry.path().string() + ": is not of a run, so --force does not replace its folder; move it " +
+                         "away or give another --out");
+      if (was_read(entry.path().string()))
+        throw InputError(entry.path().string() +
+                         ": is what is read, and would be lost with its folder; give another --out");
+      old.push_back(entry.path().string());
+    }
+  };
+  look(path);
+  const fs::path partial = fs::path(path) / kPartial;
+  if (fs::symlink_status(partial).type() == fs::file_type::directory) {
+    look(partial);
+    old.push_back(partial.string());
+  }
+  return old;
+}
+
 std::string next_run_folder(const std::string& parent, const std::string& name, std::uint64_t seed) {
   std::error_code error;
   fs::create_directories(parent, error);
@@ -71,16 +121,13 @@ std::string next_run_folder(const std::string& parent, const std::string& name, 
   }
 }
 
-RunFolder::RunFolder(const std::string& path, bool replace) : path_(path) {
+RunFolder::RunFolder(const std::string& path, bool replace, const std::string& remedy) : path_(path) {
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_directory(path, error))
     throw InputError(path + ": is a file; give another folder with --out");
   if (fs::is_directory(path, error) && !fs::is_empty(path, error)) {
-    if (!replace)
-      throw InputError(path + ": exists and is not empty; give another folder with --out, or --force to replace it");
-    if (!fs::exists(file("scenario.yaml")))
-      throw InputError(path + ": is not a run folder (no scenario.yaml), so --force does not replace it");
-    fs::remove_all(path, error);
+    if (!replace) throw InputError(path + ": exists and is not empty; " + remedy);
+    for (const std::string& old : files_of_run(path)) fs::remove(old);
   }
   fs::create_directories(file(kPartial), error);
   if (error)

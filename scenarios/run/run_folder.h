@@ -22,9 +22,12 @@ scoring::LeagueCells league_cells(const slam::CountMap& map);
 /// mapper has moved poses of the past.
 class RunFolder {
  public:
-  /// Creates the folder. An existing one with content is refused unless `replace` is set and it is a run folder.
-  /// Throws InputError (cannot be created, not empty).
-  RunFolder(const std::string& path, bool replace);
+  /// Creates the folder. An existing one with content is refused unless `replace` is set and it is a run folder: all of
+  /// its files have names that rubble gives (run_folder_names()), and none of them was read by this process. So what is
+  /// read for a run is read before. Throws InputError (cannot be created, not empty).
+  /// `remedy`: what the user may do about a folder that is not empty.
+  RunFolder(const std::string& path, bool replace,
+            const std::string& remedy = "give another folder with --out, or --force to replace it");
 
   const std::string& path() const { return path_; }
   std::string file(const std::string& name) const { return path_ + "/" + name; }
@@ -69,6 +72,13 @@ class RunFolder {
 
 /// `parent/name-seedN-001` with the first free number.
 std::string next_run_folder(const std::string& parent, const std::string& name, std::uint64_t seed);
+
+/// The names of all files that rubble writes into run folders, and nobody else's: these are what --force removes.
+const std::vector<std::string>& run_folder_names();
+
+/// What a run left in `path`, in an order in which it can be removed. Throws InputError where the folder holds anything
+/// else, or what this process has read: then nothing may be removed.
+std::vector<std::string> files_of_run(const std::string& path);
 
 /// The artefacts that must be the same on every run of one seed.
 const std::vector<std::string>& deterministic_artefacts();

@@ -4,11 +4,10 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 
 #include "base/error.h"
+#include "base/text/input_file.h"
 #include "base/text/words.h"
 
 namespace rubble::scoring {
@@ -100,9 +99,12 @@ LeagueFiles team_in(const fs::path& folder, const std::map<std::string, fs::path
 bool same_content(const std::string& a, const std::string& b) {
   std::error_code error;
   if (fs::file_size(a, error) != fs::file_size(b, error) || error) return false;
-  std::ifstream first(a, std::ios::binary);
-  std::ifstream second(b, std::ios::binary);
-  return std::equal(std::istreambuf_iterator<char>(first), {}, std::istreambuf_iterator<char>(second));
+  try {
+    InputFile first(a, image_rules()), second(b, image_rules());
+    return first.rest() == second.rest();
+  } catch (const InputError&) {
+    return false;  // told by the reader of the map
+  }
 }
 
 LeagueFolder find_league(const std::string& folder, const std::string& truth) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/text/input_file.h"
 #include "base/text/number_text.h"
 #include "base/text/shell.h"
 #include "base/text/text_file.h"
@@ -44,7 +45,8 @@ void remove_old_pages(const std::string& folder) {
     const bool numbered = name.size() > 4 && name[3] == '-' && std::all_of(name.begin(), name.begin() + 3, [](char c) {
                             return std::isdigit(static_cast<unsigned char>(c)) != 0;
                           });
-    if (numbered && (ends_with(name, kPage) || ends_with(name, kOverlay) || ends_with(name, kErrorMap)))
+    const bool is_ours = numbered && entry.is_regular_file() && !was_read(entry.path().string());
+    if (is_ours && (ends_with(name, kPage) || ends_with(name, kOverlay) || ends_with(name, kErrorMap)))
       old.push_back(entry.path());
   }
   for (const fs::path& path : old) fs::remove(path);
@@ -56,17 +58,17 @@ LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const Le
   pictures.overlay = name + kOverlay;
   const Marks victims = marks_of(entry.reported.victims, truth.victims.victims, entry.score.T_truth_map);
   if (entry.score.aligned || entry.score.by != AlignBy::Auto)
-    write_overlay(config.out + "/" + pictures.overlay, map, truth.grid, entry.score.T_truth_map,
+    write_overlay(place_in(config.out, pictures.overlay), map, truth.grid, entry.score.T_truth_map,
                   entry.score.aligned ? "" : "NOT TRUSTED: " + entry.score.note, victims);
   else
-    write_side_by_side(config.out + "/" + pictures.overlay, map, truth.grid, std::nullopt, {}, entry.score.note);
+    write_side_by_side(place_in(config.out, pictures.overlay), map, truth.grid, std::nullopt, {}, entry.score.note);
   if (entry.score.aligned) {
     pictures.error = name + kErrorMap;
-    write_error_map(config.out + "/" + pictures.error, map, truth.grid, entry.score.T_truth_map, config.score.tau);
+    write_error_map(place_in(config.out, pictures.error), map, truth.grid, entry.score.T_truth_map, config.score.tau);
   }
   pictures.tool = name + kPage;
   write_text_file(
-      config.out + "/" + pictures.tool,
+      place_in(config.out, pictures.tool),
       evaluation_page(map, truth.grid,
                       {entry.file, truth.path, "rubble score " + shell_word(entry.file) + " " + shell_word(truth.path),
                        entry.score.T_truth_map, 1.0, config.score, entry.score.aligned ? "" : entry.score.note,
@@ -145,8 +147,8 @@ League judge_league(const LeagueFolder& folder, const LeagueTruth& truth, const 
 }
 
 void write_league(const League& league, const LeagueTruth& truth, const std::string& out) {
-  write_text_file(out + "/league.csv", league_csv(league.entries));
-  write_text_file(out + "/league.html",
+  write_text_file(place_in(out, "league.csv"), league_csv(league.entries));
+  write_text_file(place_in(out, "league.html"),
                   league_page(truth.path, league.with_points(), league.entries, league.pictures, league.left_out));
 }
 

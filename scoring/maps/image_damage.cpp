@@ -5,9 +5,9 @@
 
 #include <cstdint>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <string_view>
+
+#include "base/text/input_file.h"
 
 namespace rubble::scoring {
 namespace {
@@ -51,14 +51,13 @@ bool has_jpeg_end(std::string_view bytes) {
 }  // namespace
 
 bool is_cut_short(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  InputFile file(path, image_rules());
   std::string bytes(8, '\0');
-  file.read(bytes.data(), 8);
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  bytes.resize(file.read(bytes.data(), 8));
   const bool is_png = bytes == "\x89PNG\r\n\x1a\n";
   const bool is_jpeg = bytes.compare(0, 3, "\xFF\xD8\xFF") == 0;
   if (!is_png && !is_jpeg) return false;
-  bytes.append(std::istreambuf_iterator<char>(file), {});
+  bytes += file.rest();
   return is_png ? !has_png_end(bytes) : !has_jpeg_end(bytes);
 }
 

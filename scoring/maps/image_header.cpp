@@ -83,10 +83,13 @@ std::optional<ImageHeader> image_header(std::string_view bytes) {
 }
 
 std::string other_format(std::string_view bytes) {
-  const auto begins = [&](std::string_view magic) { return bytes.substr(0, magic.size()) == magic; };
+  const auto has = [&](std::size_t at, std::string_view magic) {
+    return bytes.size() >= at && bytes.substr(at, magic.size()) == magic;
+  };
+  const auto begins = [&](std::string_view magic) { return has(0, magic); };
   if (begins("GIF8")) return "a GIF";
-  if (begins("RIFF") && bytes.substr(8, 4) == "WEBP") return "a WebP picture";
-  if (bytes.substr(4, 4) == "jP  " || begins("\xFF\x4F\xFF\x51")) return "a JPEG 2000 picture";
+  if (begins("RIFF") && has(8, "WEBP")) return "a WebP picture";
+  if (has(4, "jP  ") || begins("\xFF\x4F\xFF\x51")) return "a JPEG 2000 picture";
   if (begins("\x59\xA6\x6A\x95")) return "a Sun raster";
   if (begins("%PDF")) return "a PDF";
   if (begins("%!PS")) return "PostScript";
@@ -99,7 +102,7 @@ std::string other_format(std::string_view bytes) {
   if (begins("II*") || begins("II+") || begins(std::string_view("MM\0*", 4)))
     return "a TIFF that is not called .tif or .tiff";
   if (begins("PK\x03\x04")) return "a ZIP archive";
-  if (bytes.substr(4, 4) == "ftyp") return "a HEIF or AVIF picture";
+  if (has(4, "ftyp")) return "a HEIF or AVIF picture";
   if (bytes.substr(0, 512).find("<svg") != std::string_view::npos) return "an SVG drawing";
   // Targa has no magic: types of colour map and picture, and bits a pixel.
   if (bytes.size() > 18) {

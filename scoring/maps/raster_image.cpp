@@ -1,14 +1,13 @@
 #include "scoring/maps/raster_image.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "base/error.h"
 #include "base/sample_range.h"
+#include "base/text/input_file.h"
 #include "scoring/maps/image_damage.h"
 #include "scoring/maps/image_header.h"
 #include "scoring/maps/league_palette.h"
@@ -67,18 +66,9 @@ namespace {
 
 /// The header decides before anything is unpacked: a few bytes may stand for gigabytes.
 void check_header(const std::string& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw InputError(path + ": is a folder; give the path of an image");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path + ": cannot be opened; does the file exist?");
-  if (!std::filesystem::is_regular_file(path, error))
-    throw InputError(path + ": is no file; give the path of an image");
-  constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 30;
-  if (std::filesystem::file_size(path, error) > kLargestFile && !error)
-    throw InputError(path + ": is over 1 GB; scale the map down to at most 10000 x 10000 pixels");
+  InputFile file(path, image_rules());
   std::string bytes(std::size_t{1} << 20, '\0');  // colour profiles may come before the size of a JPEG
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  bytes.resize(file.read(bytes.data(), bytes.size()));
   const auto header = image_header(bytes);
   if (const std::string other = other_format(bytes); !header && !other.empty())
     throw InputError(path + ": is " + other + ", which is not read; save the map as PNG or GeoTIFF");

@@ -4,11 +4,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <vector>
 
 #include "base/error.h"
 #include "base/text/text_file.h"
@@ -115,25 +110,14 @@ void check_inflated(std::size_t inflated, std::size_t packed, const std::string&
                    " MB, which no log does; if it is one, unpack it first and give the result");
 }
 
+InputRules log_rules() {
+  return {"a log", kLargestLog, "the most that is read at once; cut the log into parts", Pipes::None};
+}
+
 std::string read_file(const std::string& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw InputError(path + ": is a folder; give the log file inside it");
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status))
-    throw InputError(path + ": is a device, not a log; give the path of a log");
-  const std::string too_large = path + ": is over 2 GB, the most that is read at once; cut the log into parts";
-  if (const auto size = std::filesystem::file_size(path, error); !error && size > kLargestLog)
-    throw InputError(too_large);
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path + ": cannot be opened (" + std::strerror(errno) + "); give the path of a log");
-  std::string bytes;
-  std::vector<char> chunk(std::size_t{1} << 20);
-  while (file.read(chunk.data(), static_cast<std::streamsize>(chunk.size())) || file.gcount() > 0) {
-    bytes.append(chunk.data(), static_cast<std::size_t>(file.gcount()));
-    if (bytes.size() > kLargestLog) throw InputError(too_large);  // a pipe does not say its size
-  }
-  if (file.bad()) throw InputError(path + ": cannot be read to its end; check the disk and copy the file again");
+  InputRules rules = log_rules();
+  rules.pipes = Pipes::Named;
+  std::string bytes = read_input(path, rules);
   if (bytes.empty()) throw InputError(path + ": is empty; give a log that holds data");
   return bytes;
 }

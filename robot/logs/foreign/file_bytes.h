@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <string>
 
+#include "base/text/input_file.h"
+
 namespace rubble::robot {
 
 /// What a log file may hold, packed or not [bytes].
@@ -14,7 +16,11 @@ std::size_t most_inflated(std::size_t packed);
 /// Throws InputError when `inflated` is more than that.
 void check_inflated(std::size_t inflated, std::size_t packed, const std::string& path);
 
-/// The whole file. Throws InputError: missing, a folder, a device, unreadable, empty, over 2 GB.
+/// What is taken as a log inside of a run folder: no pipe waits there.
+InputRules log_rules();
+
+/// The whole log, which may come through a pipe. Throws InputError: missing, a folder, a device, unreadable, empty,
+/// over 2 GB.
 std::string read_file(const std::string& path);
 
 /// What a gzip or bzip2 file holds; other bytes as they are. Throws InputError that says where the compressed data end

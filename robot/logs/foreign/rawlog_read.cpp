@@ -233,7 +233,7 @@ Trajectory read_rawlog_reference(const std::string& path) {
   const std::string truth = path + ".GT.txt";
   std::error_code error;
   if (!std::filesystem::exists(truth, error)) return {};
-  const std::string text = read_file(truth);
+  const std::string text = read_input(truth);
   Trajectory reference;
   TextLines lines(text);
   while (lines.next()) {

@@ -62,8 +62,10 @@ RobotModel model_from_json(const std::string& text) {
     each_model_field(model, [&](const ModelKey& key, auto& value) {
       if (!key.is_younger || object.contains(key.log)) take(object.at(key.log), value);
     });
-  } catch (const json::exception& e) {
-    throw BadPayload(std::string("robot model: ") + e.what());
+  } catch (const json::parse_error&) {
+    throw BadPayload("the robot model is no JSON");
+  } catch (const json::exception&) {
+    throw BadPayload("a value of the robot model is missing or of another kind");
   }
   return model;
 }

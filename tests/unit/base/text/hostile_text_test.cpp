@@ -8,9 +8,12 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "base/text/file_name.h"
 #include "base/text/csv.h"
+#include "base/text/file_name.h"
+#include "base/text/html.h"
 #include "base/text/text_file.h"
+#include "base/text/utf8.h"
+#include "base/text/words.h"
 
 namespace rubble {
 namespace {
@@ -37,6 +40,22 @@ TEST(Formula, NothingThatASpreadsheetRuns) {
   for (const char* text : {"=1+1", "@SUM(A1)", "+cmd|' /C calc'!A0", "-cmd", "\t=1", "-"})
     EXPECT_EQ(not_a_formula(text), std::string("'") + text);
   for (const char* text : {"-5", "+3.5", "team", "-.5", "", "a=b"}) EXPECT_EQ(not_a_formula(text), text);
+}
+
+TEST(OneLine, NoByteThatATerminalObeys) {
+  EXPECT_EQ(one_line("a\x1b[2J\n\xc2\x9b\x9b"
+                     "2J\xff"),
+            "a\\x1b[2J\\n\\xc2\\x9b\\x9b2J\\xff");
+  EXPECT_EQ(one_line("gr\xc3\xbcn \xe2\x82\xac \xf0\x9f\xa4\x96"), "gr\xc3\xbcn \xe2\x82\xac \xf0\x9f\xa4\x96");
+  EXPECT_EQ(printable("a\nb\x1b\n"), "a\nb\\x1b\n");
+}
+
+TEST(Utf8, NamesThatAreNoTextBecomeText) {
+  EXPECT_EQ(as_utf8("a\xff\xc3\xbc\xed\xa0\x80"), "a\xef\xbf\xbd\xc3\xbc\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd");
+  EXPECT_EQ(escape_html("<\xff\x1b>\n"), "&lt;\xef\xbf\xbd\xef\xbf\xbd&gt;\n");
+  EXPECT_EQ(csv_field("a\x1b[2J\xff"), "\"a [2J\xef\xbf\xbd\"");
+  for (int code = 1; code < 256; ++code)
+    EXPECT_EQ(utf8_length(std::string(1, static_cast<char>(code)), 0), code < 0x80 ? 1u : 0u) << code;
 }
 
 class Folder {

@@ -1,5 +1,11 @@
 #include "scenarios/run/run_folder.h"
 
+#include <filesystem>
+#include <fstream>
+
+#include "base/error.h"
+#include "base/text/csv.h"
+#include "base/text/text_file.h"
 #include "tests/support/scenarios_batch.h"
 
 namespace rubble::scenarios {
@@ -69,6 +75,48 @@ TEST_F(RunFolderFiles, ClosedLoopsMoveTheEstimateButNotTheLiveOne) {
   folder.append_estimate(mapper);
   EXPECT_EQ(estimate(), text_of(mapper.now)) << "it grows again";
   EXPECT_EQ(live(), text_of(mapper.live));
+}
+
+TEST_F(RunFolderFiles, ARobotsNameStaysOneFieldOfTheListOfVictims) {
+  RunFolder folder(path("run"), false);
+  ToldMapper mapper;
+  mapper.see(0.0, 1.0);
+  Scenario scenario = default_scenario({});
+  std::vector<explore::VictimReport> victims(1);
+  for (const std::string& name : {std::string("=1+1"), std::string(500, 'x'), std::string("a,b\n\"c\"")}) {
+    scenario.robot.name = name;
+    folder.save_map(scenario, mapper, victims);
+    const std::string list = read(folder.file("pois.csv"));
+    ASSERT_EQ(list.substr(list.size() - 3), ",A\n") << name;
+    const std::size_t begin = list.rfind('\n', list.size() - 2) + 1;
+    const auto fields = csv_fields(list.substr(begin, list.size() - 1 - begin));
+    ASSERT_EQ(fields.size(), 9u) << list;
+    EXPECT_EQ(fields[0], std::to_string(victims[0].id));
+    EXPECT_EQ(fields[7].size(), name.size() + (name[0] == '=' ? 1 : 0));
+    EXPECT_NE(fields[7].substr(0, 1), "=");
+  }
+}
+
+TEST_F(RunFolderFiles, OnlyWhatARunWritesIsReplaced) {
+  { const RunFolder made(path("run"), false); }
+  const std::string run = path("run") + "/";
+  for (const std::string name : {"thesis.txt", "map.tif.bak", "sub"}) {
+    if (name == "sub")
+      std::filesystem::create_directory(run + name);
+    else
+      std::ofstream(run + name) << "mine";
+    EXPECT_THROW(RunFolder(path("run"), true), InputError) << name;
+    EXPECT_TRUE(std::filesystem::exists(run + name)) << name;
+    EXPECT_TRUE(std::filesystem::exists(run + "estimate.tum")) << "nothing is removed before all is known";
+    std::filesystem::remove(run + name);
+  }
+  for (const std::string& name : run_folder_names()) std::ofstream(run + name) << "old";
+  read_text_file(run + "map.rmap");
+  EXPECT_THROW(RunFolder(path("run"), true), InputError) << "what is read";
+  EXPECT_EQ(read(run + "log.rlog"), "old");
+  std::filesystem::remove(run + "map.rmap");
+  const RunFolder again(path("run"), true);
+  EXPECT_FALSE(std::filesystem::exists(run + "log.rlog"));
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ TEST(FileBytes, GzipOfZerosIsRefusedBeforeItFillsTheMemory) {
 
 TEST(FileBytes, DevicesAreNoLogs) {
   const std::string message = message_of<InputError>([&] { read_file("/dev/zero"); });
-  EXPECT_EQ(message, "/dev/zero: is a device, not a log; give the path of a log");
+  EXPECT_EQ(message, "/dev/zero: is a device; give the path of a log");
 }
 
 TEST(FileBytes, HugeFileIsRefusedByItsSize) {
