@@ -82,16 +82,31 @@ std::vector<Cell> poses_among(const Mask& reachable, Cell start) {
   return chosen;
 }
 
-/// Marks what one ray sees: a walk from cell to cell (Amanatides and Woo 1987).
-void look(const OccupancyGrid& truth, Cell from, double bearing, double range, Mask& seen) {
+/// Height of the floor under the middle of each cell; the ground's where there is none.
+Grid<float> floor_heights(const Arena& arena, const GridFrame& frame) {
+  const PatchIndex floor(arena);
+  Grid<float> heights(frame);
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x) {
+      const double z = floor.floor_height(frame.centre({x, y}));
+      heights[{x, y}] = std::isfinite(z) ? static_cast<float>(z) : 0.0F;
+    }
+  return heights;
+}
+
+/// Marks what one ray sees: a walk from cell to cell (Amanatides and Woo 1987), up to floor as high as the laser.
+void look(const OccupancyGrid& truth, const Grid<float>& floor, Cell from, double bearing, const Viewer& viewer,
+          Mask& seen) {
+  const float laser = floor[from] + static_cast<float>(viewer.laser_height);
   const double dx = std::cos(bearing);
   const double dy = std::sin(bearing);
   const double step_x = 1.0 / std::max(1e-12, std::abs(dx));  // [cells of way a column]
   const double step_y = 1.0 / std::max(1e-12, std::abs(dy));
   double next_x = 0.5 * step_x;
   double next_y = 0.5 * step_y;
-  const double end = range / truth.resolution();
+  const double end = viewer.range / truth.resolution();
   for (Cell c = from; truth.inside(c);) {
+    if (floor[c] >= laser) return;
     seen[c] = 1;
     if (truth[c] == Occupancy::Occupied || std::min(next_x, next_y) > end) return;
     if (next_x < next_y) {
@@ -139,18 +154,18 @@ Mask reachable_mask(const Arena& arena, const OccupancyGrid& truth, const Viewer
   return reached;
 }
 
-Mask visible_mask(const OccupancyGrid& truth, const Mask& reachable, const TPoint2D& start, const Viewer& viewer) {
+Mask visible_mask(const Arena& arena, const OccupancyGrid& truth, const Mask& reachable, const Viewer& viewer) {
   const GridFrame& frame = truth.frame();
+  const Grid<float> floor = floor_heights(arena, frame);
   Mask seen = reachable;
   const int rays = static_cast<int>(std::ceil(2.0 * kPi * std::min(viewer.range, kFull) / frame.resolution));
-  for (const Cell pose : poses_among(reachable, frame.cell(start))) {
-    for (int i = 0; i < rays; ++i) look(truth, pose, 2.0 * kPi * (i + 0.5) / rays, viewer.range, seen);
-  }
+  for (const Cell pose : poses_among(reachable, frame.cell({arena.start.x, arena.start.y})))
+    for (int i = 0; i < rays; ++i) look(truth, floor, pose, 2.0 * kPi * (i + 0.5) / rays, viewer, seen);
   return seen;
 }
 
 OccupancyGrid visible_truth(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer) {
-  const Mask seen = visible_mask(truth, reachable_mask(arena, truth, viewer), {arena.start.x, arena.start.y}, viewer);
+  const Mask seen = visible_mask(arena, truth, reachable_mask(arena, truth, viewer), viewer);
   OccupancyGrid known = truth;
   for (int y = 0; y < truth.height(); ++y) {
     for (int x = 0; x < truth.width(); ++x) {

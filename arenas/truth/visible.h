@@ -10,6 +10,7 @@ namespace rubble::arenas {
 struct Viewer {
   double radius = 0.25;          ///< half of the body's width: what the narrowest gap must leave to either side [m]
   double height = 0.40;          ///< of the body with the laser [m]
+  double laser_height = 0.35;    ///< of the laser above the floor it stands on [m]
   double climbable_step = 0.10;  ///< [m]
   double range = 4.0;            ///< of the level laser [m]
   double max_slope = deg_to_rad(22.0);  ///< steeper floor it does not drive on (data sheet of the P3-AT: 40 %) [rad]
@@ -18,11 +19,12 @@ struct Viewer {
 /// Where the robot's middle can stand, reached from the start: non-zero. Cells as those of `truth`.
 Grid<std::uint8_t> reachable_mask(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer = {});
 
-/// What a level laser could ever see from there: non-zero. Rays end at the first occupied cell, which they see.
+/// What a level laser could ever see from there: non-zero. Rays end at the first occupied cell, which they see, and
+/// before floor that rises to the height of the laser, which is a wall to it.
 /// It looks round from the start and from poses so chosen that every reachable cell is less than 0.4 m from one, with
 /// rays that end a cell apart (at 8 m where the laser reaches farther).
-Grid<std::uint8_t> visible_mask(const OccupancyGrid& truth, const Grid<std::uint8_t>& reachable,
-                                const mrpt::math::TPoint2D& start, const Viewer& viewer = {});
+Grid<std::uint8_t> visible_mask(const Arena& arena, const OccupancyGrid& truth, const Grid<std::uint8_t>& reachable,
+                                const Viewer& viewer = {});
 
 /// The truth as far as it could ever be mapped: what no reachable pose sees becomes unknown, so that it counts against
 /// no map.

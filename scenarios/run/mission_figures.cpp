@@ -194,6 +194,7 @@ arenas::Viewer viewer_of(const robot::RobotModel& model) {
   arenas::Viewer viewer;
   viewer.radius = 0.5 * model.width;
   viewer.height = model.T_base_laser.z + kAboveLaser;
+  viewer.laser_height = model.T_base_laser.z;
   viewer.climbable_step = model.climbable_step;
   viewer.range = model.laser.range_max;
   return viewer;

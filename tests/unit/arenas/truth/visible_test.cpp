@@ -55,6 +55,24 @@ TEST(Visible, AStepTooHighIsNotClimbed) {
   EXPECT_EQ(view.at(1.8, 0.6), Occupancy::Free);
 }
 
+/// Drawn as free floor, for the truth is cut at one height above each floor: but a level laser sees a steep ramp as a
+/// wall where it is as high as the laser, and nothing of the platform behind. A ramp that can be climbed hides nothing.
+TEST(Visible, WhatLiesBehindARampThatNobodyClimbsCountsOnlyBelowTheLaser) {
+  const auto arena = [](const char* ramp, const char* top) {
+    return View(parse("  +---+---+---+\n  |S.   .   . |\n  +---+---+---+\n",
+                      std::string("elements:\n  - {type: ") + ramp +
+                          ", x_m: 1.8, y_m: 0.6, rotation_deg: 90}\n  - {type: " + top + ", x_m: 3.0, y_m: 0.6}\n"));
+  };
+  const View steep = arena("steep_ramp_45", "elevated_floor_120");
+  ASSERT_GT(floor_height(steep.arena, {2.3, 0.6}), 0.8) << "the ramp rises away from the start";
+  EXPECT_EQ(steep.at(1.4, 0.6), Occupancy::Free);     // 0.2 m up
+  EXPECT_EQ(steep.at(1.7, 0.6), Occupancy::Unknown);  // 0.5 m up
+  EXPECT_EQ(steep.at(3.0, 0.6), Occupancy::Unknown);
+  EXPECT_EQ(steep.truth[steep.truth.cell({3.0, 0.6})], Occupancy::Free);
+  const View flat(parse("  +---+---+---+\n  |S.   >   .1|\n  +---+---+---+\n"));
+  EXPECT_EQ(flat.at(3.0, 0.6), Occupancy::Free);
+}
+
 TEST(Visible, NothingFartherThanTheRangeCounts) {
   const Arena arena = parse("  +---+---+---+---+---+---+\n  |S.   .   .   .   .   . |\n  +---+---+---+---+---+---+\n",
                             "boxes:\n  - {x_m: 1.2, y_m: 0.6, length_m: 0.1, width_m: 1.2, height_m: 0.3}\n");
