@@ -368,7 +368,7 @@ void PaperExplorer::visited_in_vain(const TPoint2D& where) {
 void PaperExplorer::nothing_left() {
   if (looking_.active()) return;
   if (state_ == ExplorerState::Searching) return finish_searching();
-  if (state_ == ExplorerState::Driving && frontiers_done_) return finish_exploring();
+  if (state_ == ExplorerState::Driving && frontiers_done_) return may_push() ? start_pushing() : finish_exploring();
   if (looks_in_vain_ == 0 || (failed_plans_ < 2 && looks_in_vain_ < 2)) {
     ++looks_in_vain_;
     return look_around(kLookTurn, false);
@@ -382,12 +382,7 @@ void PaperExplorer::nothing_left() {
       return;
     }
   }
-  if (!pushing_ && (frontier_left_ > 0 || state_ == ExplorerState::GoingHome)) {
-    pushing_ = true;
-    note("nothing else can be reached: small things that stand alone are pushed aside");
-    plan_forced_ = true;
-    return;
-  }
+  if (may_push()) return start_pushing();
   if (state_ == ExplorerState::GoingHome) {
     if (home_tries_ >= kHomeTries || !felt_.forget(now_)) return finish(MissionEnd::Explored, "no way home is left");
     ++home_tries_;
@@ -396,6 +391,27 @@ void PaperExplorer::nothing_left() {
     return;
   }
   finish_exploring();
+}
+
+/// Things in the way that were not seen yet when things were pushed aside last: once for each piece of ground gained.
+bool PaperExplorer::may_push() const {
+  if (pushing_) return false;
+  if (state_ == ExplorerState::GoingHome) return true;
+  return frontier_left_ > 0 && (known_when_pushing_ == 0 || ground_gained_since(known_when_pushing_) >= kWorthARound);
+}
+
+void PaperExplorer::start_pushing() {
+  pushing_ = true;
+  known_when_pushing_ = known_cells(last_floor_);
+  note("nothing else can be reached: small things that stand alone are pushed aside");
+  plan_forced_ = true;
+}
+
+/// [m^2]
+double PaperExplorer::ground_gained_since(std::size_t known_then) const {
+  const std::size_t known = known_cells(last_floor_);
+  const double cell = last_floor_.frame().resolution;
+  return known > known_then ? static_cast<double>(known - known_then) * cell * cell : 0.0;
 }
 
 void PaperExplorer::finish_exploring() {
@@ -417,12 +433,9 @@ void PaperExplorer::finish_exploring() {
 /// What could not be reached or seen may be had from another side, or when the map has changed: as long as that gains
 /// something and time is left, all of it is tried once more.
 bool PaperExplorer::another_round() {
-  const std::size_t known = known_cells(last_floor_);
-  const double cell = last_floor_.frame().resolution;
-  const double gained = known > known_then_ ? static_cast<double>(known - known_then_) * cell * cell : 0.0;
-  const bool barren = gained < kWorthARound && search_.reports().size() <= victims_then_;
+  const bool barren = ground_gained_since(known_then_) < kWorthARound && search_.reports().size() <= victims_then_;
   barren_rounds_ = barren ? barren_rounds_ + 1 : 0;
-  known_then_ = known;
+  known_then_ = known_cells(last_floor_);
   victims_then_ = search_.reports().size();
   if (barren_rounds_ >= kBarrenRounds) return false;
   const bool barred = blacklist_.pardon_all(now_);
@@ -432,6 +445,7 @@ bool PaperExplorer::another_round() {
   note("round " + std::to_string(++rounds_) + ": what could not be reached or seen is tried again");
   state_ = ExplorerState::Driving;
   frontiers_done_ = false;
+  known_when_pushing_ = 0;
   failed_plans_ = looks_in_vain_ = 0;
   pardons_ = std::min(pardons_, kMaxPardons - 1);
   looked_from_.reset();

@@ -72,6 +72,9 @@ class PaperExplorer : public Explorer {
   void nothing_left();
   void finish_exploring();
   void finish_searching();
+  bool may_push() const;
+  void start_pushing();
+  double ground_gained_since(std::size_t known_then) const;
   bool another_round();
   void finish(MissionEnd end, const std::string& why);
   void go_home(const std::string& why);
@@ -141,7 +144,8 @@ class PaperExplorer : public Explorer {
   int failed_plans_ = 0;
   int looks_in_vain_ = 0;
   int pardons_ = 0;
-  bool pushing_ = false;  ///< small things that stand alone are pushed aside
+  bool pushing_ = false;                ///< small things that stand alone are pushed aside
+  std::size_t known_when_pushing_ = 0;  ///< cells, when that began last in this round; 0: not yet
   int home_tries_ = 0;
   bool frontiers_done_ = false;   ///< this round's; what comes into reach later is a detour of the search
   int rounds_ = 1;                ///< of exploring and searching, this one included
