@@ -1,6 +1,5 @@
 #include "slam/robust/g2o.h"
 
-#include <cmath>
 #include <cstdio>
 
 namespace rubble::slam {
@@ -33,11 +32,7 @@ std::string to_g2o(const PoseGraph& graph) {
   if (!graph.nodes.empty()) text += "FIX 0\n";
   for (const GraphEdge& edge : graph.edges) {
     if (!edge.on) continue;
-    const double c = std::cos(edge.T_from_to.phi);
-    const double s = std::sin(edge.T_from_to.phi);
-    Eigen::Matrix3d back;
-    back << c, s, 0, -s, c, 0, 0, 0, 1;
-    const Eigen::Matrix3d information = back * edge.information * back.transpose();
+    const Eigen::Matrix3d information = turned(edge.information, -edge.T_from_to.phi);
     text += "EDGE_SE2 " + std::to_string(edge.from) + " " + std::to_string(edge.to);
     append(text, edge.T_from_to);
     for (int row = 0; row < 3; ++row)

@@ -33,18 +33,20 @@ constexpr std::size_t kMostWaiting = 400;
 constexpr int kSolveEvery = 15;     ///< key frames with near edges only
 constexpr double kSolveNow = 0.10;  ///< disagreement that is solved at once [m + 2 rad]
 constexpr double kSolveGradually = 0.25;
-constexpr double kWrongDistance = 0.4;    ///< a loop that ends up so far off is wrong [m]
-constexpr double kWrongAngle = 0.15;      ///< [rad]
-constexpr int kMostRemovals = 30;         ///< at the end, each with a solution of the whole graph
-constexpr double kStrained = 1.0;         ///< loops off by less (squared sigmas) bend nothing
-constexpr double kExplainedWithin = 1.5;  ///< old key frames so close explain what is seen [m]
-constexpr double kAsFar = 0.7;            ///< and are so much of the loop's path away ...
-constexpr double kExplained = 0.8;        ///< when they support so much of what the loop's would ...
-constexpr double kAsGood = 0.03;          ///< ... and contradict hardly more
-constexpr double kWitnessAway = 2.5;      ///< old key frames so close are asked whether a new one can be true [m] ...
-constexpr std::size_t kWitnesses = 8;     ///< ... so many of them
-constexpr int kLeastContradicted = 12;    ///< points
-constexpr int kLeastJudged = 60;          ///< points of which they can say something
+constexpr double kWrongDistance = 0.4;     ///< a loop that ends up so far off is wrong [m]
+constexpr double kWrongAngle = 0.15;       ///< [rad]
+constexpr int kMostRemovals = 30;          ///< at the end, each with a solution of the whole graph
+constexpr double kStrained = 1.0;          ///< loops off by less (squared sigmas) bend nothing
+constexpr double kExplainedWithin = 1.5;   ///< old key frames so close explain what is seen [m]
+constexpr double kAsFar = 0.7;             ///< and are so much of the loop's path away ...
+constexpr double kExplained = 0.8;         ///< when they support so much of what the loop's would ...
+constexpr double kAsGood = 0.03;           ///< ... and contradict hardly more
+constexpr double kWitnessAway = 2.5;       ///< old key frames so close are asked whether a new one can be true [m] ...
+constexpr std::size_t kWitnesses = 8;      ///< ... so many of them
+constexpr double kDoubledOneWay = 0.40;    ///< shares of points contradicted where the map shows two places at once:
+constexpr double kDoubledBothWays = 0.10;  ///< by the older ones or of them, and both
+constexpr int kLeastContradicted = 12;     ///< points
+constexpr int kLeastJudged = 60;           ///< points of which they can say something
 constexpr Work kWorkPerDrawnFrame = 8000;
 constexpr Work kWorkPerSuspected = 40;  ///< edge
 constexpr Work kWorkPerJudged = 30;     ///< point and key frame
@@ -118,6 +120,7 @@ void LoopCloser::begin_anew() {
   fresh_.clear();
   frames_since_solve_ = 0;
   solver_.start(PoseGraph(), GraphSolver::Plan::Refine, config_.scaling);
+  astray_ = false;
   covariance_.setZero();
   covariance_frame_ = 0;
 }
@@ -133,7 +136,13 @@ void LoopCloser::look(Work* work) {
   while (end < i && frames_[i].path - frames_[end].path >= config_.least_path) ++end;
   const std::vector<Candidate> close =
       candidates_within(i, end, config_.reach + config_.largest_window, std::numeric_limits<double>::infinity(), work);
-  const bool strayed = astray(i, close, work);
+  std::vector<std::pair<double, int>> witnesses;
+  for (const Candidate& old : close)
+    if (old.away < kWitnessAway) witnesses.emplace_back(old.away, old.frame);
+  // Between walls that look the same all along, wheels that spin carry the robot away and nothing tells. Once it looks
+  // out of there, it or old key frames see through walls of the other, however short the way back through the graph.
+  const bool strayed = astray_ = testimony(i, std::move(witnesses), work).one_way >= config_.astray_contradiction;
+  counts_.astray += strayed ? 1 : 0;
   std::vector<std::pair<double, Task>> candidates;
   for (const Candidate& old : close) {
     if (old.path < config_.least_path && !strayed) continue;
@@ -158,12 +167,8 @@ void LoopCloser::look(Work* work) {
   tasks_.push_back({Kind::Solve, i, -1});
 }
 
-/// Between walls that look the same all along, wheels that spin carry the robot away and nothing tells. Once it looks
-/// out of there, it and old key frames see through each other's walls, however short the way back through the graph.
-bool LoopCloser::astray(int frame, const std::vector<Candidate>& around, Work* work) const {
-  std::vector<std::pair<double, int>> close;
-  for (const Candidate& old : around)
-    if (old.away < kWitnessAway) close.emplace_back(old.away, old.frame);
+/// What the old key frames closest by say of a key frame, and it of them.
+LoopCloser::Testimony LoopCloser::testimony(int frame, std::vector<std::pair<double, int>> close, Work* work) const {
   std::sort(close.begin(), close.end());
   if (close.size() > kWitnesses) close.resize(kWitnesses);
   KeyFrames::Agreement there;
@@ -180,9 +185,26 @@ bool LoopCloser::astray(int frame, const std::vector<Candidate>& around, Work* w
           kWorkPerJudged * static_cast<Work>(frames_[frame].cloud.points.size() + frames_[old].cloud.points.size());
   }
   const auto judged = [](const KeyFrames::Agreement& a) { return a.contradicted + a.supported; };
-  return std::max(judged(there), judged(back)) >= kLeastJudged &&
-         std::max(there.contradicted, back.contradicted) >= kLeastContradicted &&
-         std::max(there.contradiction(), back.contradiction()) >= config_.astray_contradiction;
+  if (std::max(judged(there), judged(back)) < kLeastJudged ||
+      std::max(there.contradicted, back.contradicted) < kLeastContradicted)
+    return {};
+  return {std::max(there.contradiction(), back.contradiction()), std::min(there.contradiction(), back.contradiction())};
+}
+
+/// One way alone is glass, or things that were moved; two places on top of each other see through each other's walls.
+std::vector<int> LoopCloser::doubled() const {
+  std::vector<int> frames;
+  for (int i = 0; i <= frames_.last(); ++i) {
+    std::vector<std::pair<double, int>> around;
+    const TPose2D& here = frames_.pose(i);
+    for (int j = 0; j < i && frames_[i].path - frames_[j].path >= config_.least_path; ++j) {
+      const double away = length(frames_.pose(j).x - here.x, frames_.pose(j).y - here.y);
+      if (away < kWitnessAway) around.emplace_back(away, j);
+    }
+    const Testimony said = testimony(i, std::move(around), nullptr);
+    if (said.one_way >= kDoubledOneWay && said.both_ways >= kDoubledBothWays) frames.push_back(i);
+  }
+  return frames;
 }
 
 /// Where the graph is tight already, one edge to the closest old key frame.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "slam/robust/correlator.h"
+#include "slam/robust/graph_solver.h"
 #include "slam/robust/key_frames.h"
 #include "slam/robust/scan_fit.h"
 
@@ -58,6 +59,7 @@ struct LoopCounts {
   std::uint64_t near_edges = 0;    ///< edges to old key frames where the graph was tight
   std::uint64_t removed = 0;       ///< loops found wrong later
   std::uint64_t solved = 0;        ///< solutions of the pose graph
+  std::uint64_t astray = 0;        ///< key frames that old ones around contradicted when they came
 };
 
 /// Finds loops among the key frames and keeps their graph solved. What a new key frame asks for is queued and done by
@@ -77,6 +79,12 @@ class LoopCloser {
 
   const LoopCounts& counts() const { return counts_; }
   std::size_t queued() const { return tasks_.size(); }
+  /// Whether old key frames around contradicted the newest one when it came: the robot is not where it seems to be.
+  bool astray() const { return astray_; }
+  /// Key frames that see through walls of older ones around, as these do through theirs, as poses are now: there the
+  /// map shows two places on top of each other. Right maps of 56 recorded drives and six buildings have at most 2,
+  /// those that are off by a quarter of a metre and more 14 to 39 of about a thousand.
+  std::vector<int> doubled() const;
   /// Covariance of the newest key frame's pose as of the last solution.
   const Eigen::Matrix3d& covariance() const { return covariance_; }
 
@@ -117,7 +125,12 @@ class LoopCloser {
   };
   std::vector<Candidate> candidates_within(int frame, int end, double distance, double most_path, Work* work) const;
   double usual_window(double path) const;
-  bool astray(int frame, const std::vector<Candidate>& around, Work* work) const;
+  /// Shares of points that are contradicted; 0: too little is seen by both.
+  struct Testimony {
+    double one_way = 0.0;    ///< the larger share, of the key frame's points by old ones or the other way round
+    double both_ways = 0.0;  ///< the smaller
+  };
+  Testimony testimony(int frame, std::vector<std::pair<double, int>> close, Work* work) const;
   void queue_near(int frame, const std::vector<Candidate>& candidates);
   void consider_solving();
   bool solve(Work& budget);
@@ -155,6 +168,7 @@ class LoopCloser {
   GraphSolver solver_;
   Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
   int covariance_frame_ = 0;  ///< whose covariance it is
+  bool astray_ = false;       ///< the newest key frame
   LoopCounts counts_;
 };
 

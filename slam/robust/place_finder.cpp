@@ -49,11 +49,7 @@ bool well_conditioned(const Eigen::Matrix3d& information) {
 
 /// Of a fit, given along the axes of the map, along those of `from`, with an error that no match is free of.
 Eigen::Matrix3d tie_information(const Eigen::Matrix3d& information, const TPose2D& from) {
-  const double c = std::cos(from.phi);
-  const double s = std::sin(from.phi);
-  Eigen::Matrix3d R;
-  R << c, s, 0, -s, c, 0, 0, 0, 1;
-  const Eigen::Matrix3d known = R * information * R.transpose() + 1e-6 * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d known = turned(information, -from.phi) + 1e-6 * Eigen::Matrix3d::Identity();
   const double d2 = kTieDistance * kTieDistance;
   const Eigen::Matrix3d floor = Eigen::Vector3d(d2, d2, kTieAngle * kTieAngle).asDiagonal();
   return (known.inverse() + floor).inverse();

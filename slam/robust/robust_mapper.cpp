@@ -47,6 +47,9 @@ constexpr double kKnownInliers = 0.65;  ///< and what is seen there is what was 
 constexpr double kKnownMoves = 0.20;    ///< [m]
 constexpr std::size_t kWitnesses = 8;   ///< key frames that are asked whether a scan can be true
 constexpr double kTurnWeight = 0.3;     ///< [m] that a key frame may be farther off for looking 1 rad less aside
+constexpr std::size_t kDoubtedFrames = 8;  ///< doubled key frames of a map that is doubted, at least ...
+constexpr double kDoubtedShare = 0.005;    ///< ... and of all of them; right maps have 0.0013 and less
+constexpr double kDoubtedUnfit = 0.05;     ///< or such a share of scans that fit nothing mapped
 constexpr double kNotLost = 0.5;  ///< share of inliers of a scan that may be mapped though the odometry is doubted
 
 /// Derivative of a pose by the one it hangs on, in the map frame: d is the lever between the two.
@@ -55,14 +58,6 @@ Eigen::Matrix3d lever(const TPose2D& from, const TPose2D& to) {
   J(0, 2) = -(to.y - from.y);
   J(1, 2) = to.x - from.x;
   return J;
-}
-
-Eigen::Matrix3d turned(const Eigen::Matrix3d& M, double phi) {
-  const double c = std::cos(phi);
-  const double s = std::sin(phi);
-  Eigen::Matrix3d R;
-  R << c, -s, 0, s, c, 0, 0, 0, 1;
-  return R * M * R.transpose();
 }
 
 bool finite(const robot::Odometry& o) {
@@ -127,6 +122,8 @@ struct RobustMapper::Impl {
   int closest_frame(const TPose2D& T_map_base) const;
   std::vector<int> frames_around(int here) const;
   double contradiction_of(const Cloud& cloud) const;
+  Eigen::Matrix3d pose_covariance() const;
+  bool is_map_doubted() const;
   void redraw(int here, Work* work);
   void go_on_in(KeyFrames frames, StampedMap map, const TPose2D& T_map_drive, bool grows);
   void add_frame(Stamp reference, Cloud cloud, const ScanPoints& points, const TPose2D& T_map_base,
@@ -192,6 +189,8 @@ struct RobustMapper::Impl {
   std::uint64_t slips_ = 0;
   std::uint64_t silent_ = 0;
   std::uint64_t lost_ = 0;
+  std::size_t doubled_ = 0;  ///< key frames, as the finished map lies
+  std::uint64_t unfit_ = 0;  ///< scans that fit nothing mapped
   std::uint64_t relocated_ = 0;
   std::uint64_t unseen_ = 0;
   std::uint64_t odometry_jumps_ = 0;
@@ -267,6 +266,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
     slips_ += tracked.slipped ? 1 : 0;
     relocated_ += tracked.relocated ? 1 : 0;
     unseen_ += tracked.found ? 0 : 1;
+    unfit_ += tracked.fit.inliers < config_.tracker.lost_inliers ? 1 : 0;
     if (!grows_) contradiction = contradiction_of(cloud);
     const GraphEdge edge = edge_to_now(tracked);
     scan_covariance_ = edge.information.inverse();
@@ -297,15 +297,32 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
   record(reference, scan, points, seen ? &*seen : nullptr, contradiction);
 }
 
+/// Of now(). A robot that strayed may be anywhere in the window in which it is looked for.
+Eigen::Matrix3d RobustMapper::Impl::pose_covariance() const {
+  const TPose2D& frame = frames_.pose(here_);
+  const Eigen::Matrix3d J = lever(frame, now());
+  Eigen::Matrix3d covariance = J * frame_covariance_ * J.transpose() + turned(scan_covariance_, frame.phi);
+  if (closer_.astray()) {
+    const double sigma = config_.loop.astray_window / std::sqrt(3.0);
+    covariance.diagonal() += Eigen::Vector3d(sigma * sigma, sigma * sigma, 0.0);
+  }
+  return covariance;
+}
+
+/// Two places on top of each other, or a drive of which the scans did not follow one another.
+bool RobustMapper::Impl::is_map_doubted() const {
+  const auto share = [](auto count, std::size_t all) { return static_cast<double>(count) / static_cast<double>(all); };
+  return (doubled_ >= kDoubtedFrames && share(doubled_, static_cast<std::size_t>(frames_.size())) >= kDoubtedShare) ||
+         (!scans_.empty() && share(unfit_, scans_.size()) >= kDoubtedUnfit);
+}
+
 void RobustMapper::Impl::record(Stamp reference, const LaserScan& scan, const ScanPoints& points,
                                 const Tracked* tracked, double contradiction) {
   const auto returns = std::count_if(scan.ranges.begin(), scan.ranges.end(), [&](float range) {
     return std::isfinite(range) && range > 0.0F && static_cast<double>(range) >= scan.range_min;
   });
   const LoopCounts& loops = closer_.counts();
-  const Eigen::Matrix3d J = lever(frames_.pose(here_), now());
-  const Eigen::Matrix3d covariance =
-      J * frame_covariance_ * J.transpose() + turned(scan_covariance_, frames_.pose(here_).phi);
+  const Eigen::Matrix3d covariance = pose_covariance();
   records_.stamps.push_back(reference);
   for (const double value : {tracked != nullptr ? tracked->fit.inliers : 1.0,
                              contradiction,
@@ -646,6 +663,7 @@ void RobustMapper::finish() {
     impl_->closer_.finish();
     ++impl_->revision_;
     impl_->frame_covariance_ = impl_->closer_.covariance();
+    impl_->doubled_ = impl_->closer_.doubled().size();
   }
   impl_->map_.set_right(impl_->frames_);
   impl_->map_.lay_raster(impl_->frames_);
@@ -662,10 +680,7 @@ TPose2D RobustMapper::pose() const {
 
 PoseCovariance RobustMapper::covariance() const {
   if (impl_->frames_.empty()) return {};
-  const TPose2D& frame = impl_->frames_.pose(impl_->here_);
-  const Eigen::Matrix3d J = lever(frame, impl_->now());
-  return PoseCovariance(
-      Eigen::Matrix3d(J * impl_->frame_covariance_ * J.transpose() + turned(impl_->scan_covariance_, frame.phi)));
+  return PoseCovariance(impl_->pose_covariance());
 }
 
 std::uint64_t RobustMapper::revision() const { return impl_->revision_; }
@@ -714,6 +729,10 @@ std::vector<MapperFigure> RobustMapper::figures() const {
           {"loops_closed", static_cast<double>(loops.closed)},
           {"loops_removed", static_cast<double>(loops.removed)},
           {"near_edges", static_cast<double>(loops.near_edges)},
+          {"frames_astray", static_cast<double>(loops.astray)},
+          {"frames_doubled", static_cast<double>(impl_->doubled_)},
+          {"scans_unfit", static_cast<double>(impl_->unfit_)},
+          {"map_doubted", impl_->is_map_doubted() ? 1.0 : 0.0},
           {"graph_solved", static_cast<double>(loops.solved)},
           {"last_work_ms", static_cast<double>(impl_->last_work_) * 1e-6},
           {"work_ms", static_cast<double>(impl_->all_work_) * 1e-6},

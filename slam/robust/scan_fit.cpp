@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/angle.h"
+#include "slam/robust/pose_graph.h"
 
 namespace rubble::slam {
 
@@ -75,15 +76,6 @@ NormalEquations pair_up(const SurfelGrid& target, const std::vector<OrientedPoin
     }
   }
   return sums;
-}
-
-/// Information given along the axes of `pose`, turned to those of the frame the pose is in.
-Eigen::Matrix3d turned(const Eigen::Matrix3d& information, double phi) {
-  const double c = std::cos(phi);
-  const double s = std::sin(phi);
-  Eigen::Matrix3d R;
-  R << c, -s, 0, s, c, 0, 0, 0, 1;
-  return R * information * R.transpose();
 }
 
 }  // namespace

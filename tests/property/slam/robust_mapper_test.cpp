@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/planar.h"
+#include "tests/support/slam_floor.h"
 #include "tests/support/slam_world.h"
 
 namespace rubble::slam {
@@ -161,6 +162,33 @@ TEST(RobustMapper, NewGroundBehindKnownGroundIsMappedAndTied) {
     EXPECT_LT(slam_test::first_pose_rmse(mapper.trajectory(), drive.truth), 0.03);
     EXPECT_GT(figure(mapper, "frames_reused"), 20.0);
     EXPECT_GT(figure(mapper, "key_frames"), 75.0) << "the second room's are new";
+  }
+}
+
+/// Scans that follow one another give a map to be believed; the same scans in any other order do not, and it says so.
+/// (Places on top of each other: LoopCloser's tests.)
+TEST(RobustMapper, AMapOfScansThatDoNotFollowOneAnotherIsDoubted) {
+  const RobotModel model;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const slam_test::Floor floor(seed, 3, 2);
+    const auto drive = slam_test::drive_through(floor.way({{0, 0}, {1, 0}, {2, 0}}), 0.0);
+    std::vector<Inputs> ticks = slam_test::record(floor.world(), drive, model, 1.0, 0.01, seed);
+    RobustMapper right(model, {}, 1);
+    play(right, ticks);
+    EXPECT_LT(slam_test::first_pose_rmse(right.trajectory(), drive.truth), 0.05);
+    EXPECT_EQ(figure(right, "map_doubted"), 0.0) << figure(right, "frames_doubled");
+
+    Rng rng(seed, "order");
+    for (std::size_t i = ticks.size(); i > 1; --i) {
+      auto& scans = ticks[i - 1].scans;
+      auto& others = ticks[rng.below(static_cast<std::uint32_t>(i))].scans;
+      for (std::size_t k = 0; k < std::min(scans.size(), others.size()); ++k)
+        std::swap(scans[k].ranges, others[k].ranges);
+    }
+    RobustMapper wrong(model, {}, 1);
+    play(wrong, ticks);
+    EXPECT_EQ(figure(wrong, "map_doubted"), 1.0) << figure(wrong, "scans_unfit");
   }
 }
 

@@ -1,4 +1,4 @@
-#include "slam/robust/pose_graph.h"
+#include "slam/robust/graph_solver.h"
 
 #include <gtest/gtest.h>
 
