@@ -6,7 +6,10 @@
 
 #include "app/terminal.h"
 #include "base/angle.h"
+#include "base/error.h"
+#include "base/yaml/binder.h"
 #include "robot/drivers/base_driver.h"
+#include "robot/drivers/port_word.h"
 
 namespace rubble::app {
 namespace {
@@ -31,28 +34,40 @@ void print_status(const scenarios::DriveStatus& s) {
                base, s.scans_per_s, s.odometry_per_s, s.accelerations_per_s);
 }
 
+/// The port that an option gives; said by the option's own name what is wrong with it.
+void set_port(std::vector<scenarios::Override>& overrides, const std::string& device, const std::string& word) {
+  if (word.empty()) throw InputError("--" + device + ": needs a port, and the word is empty; give " + kPort);
+  try {
+    robot::require_callable(robot::parse_port_word(word), word);
+  } catch (const InputError& error) {
+    throw InputError("--" + device + ": " + error.what());
+  }
+  overrides.emplace_back("devices." + device + ".port", yaml_quoted(word));
+}
+
 }  // namespace
 
 void RobotOptions::declare(Options& o) {
   o.argument("robot", robot, "Robot file, or the name of a shipped one (default: pioneer_urg)",
              Options::Need::Optional);
+  given = [&o](const std::string& option) { return o.given(option); };
   o.text("--urg", urg, std::string("Port of the laser scanner; ") + kPort);
   o.text("--base", base, std::string("Port of the base, or 'none' (--map-only); ") + kPort);
   o.text("--levelling", levelling, std::string("Port of the levelling unit, or 'none'; ") + kPort);
 }
 
 std::vector<scenarios::Override> RobotOptions::with_ports(std::vector<scenarios::Override> overrides) const {
-  if (!urg.empty()) overrides.emplace_back("devices.urg.port", urg);
+  if (given("--urg")) set_port(overrides, "urg", urg);
   if (base == robot::kNoBase) {
     overrides.emplace_back("devices.base.driver", base);
-  } else if (!base.empty()) {
-    overrides.emplace_back("devices.base.port", base);
+  } else if (given("--base")) {
+    set_port(overrides, "base", base);
   }
   if (levelling == "none") {
     overrides.emplace_back("devices.levelling.driver", "none");
-  } else if (!levelling.empty()) {
+  } else if (given("--levelling")) {
     overrides.emplace_back("devices.levelling.driver", "lev1");  // also where the robot file has none
-    overrides.emplace_back("devices.levelling.port", levelling);
+    set_port(overrides, "levelling", levelling);
   }
   return overrides;
 }

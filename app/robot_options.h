@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,8 @@ namespace rubble::app {
 /// Which robot, and where its devices are: what the commands that drive one share.
 struct RobotOptions {
   std::string robot;
-  std::string urg, base, levelling;  ///< ports that replace those of the robot file
+  std::string urg, base, levelling;  ///< ports that replace those of the robot file, where given
+  std::function<bool(const std::string& option)> given = [](const std::string&) { return false; };
 
   void declare(Options& options);
   /// `overrides` and the ports given, in the words of a robot file.

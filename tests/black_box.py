@@ -39,6 +39,28 @@ def orders(path):
             yield stamp, payload[0], value
 
 
+def rolled_over(path):
+    """How often a coordinate in the base's reports went past 65.535 m or back."""
+    waiting, last, count = b"", None, 0
+    for device, direction, _, data in entries(path):
+        if device != "base" or direction != FROM_DEVICE:
+            continue
+        waiting += data
+        while True:
+            at = waiting.find(b"\xfa\xfb")
+            if at < 0 or len(waiting) < at + 3 or len(waiting) < at + 3 + waiting[at + 2]:
+                break
+            payload = waiting[at + 3:at + 1 + waiting[at + 2]]
+            waiting = waiting[at + 3 + waiting[at + 2]:]
+            if len(payload) < 18 or payload[0] not in (0x32, 0x33):
+                continue
+            here = struct.unpack_from("<HH", payload, 1)
+            if last is not None:
+                count += sum(abs(a - b) > 32768 for a, b in zip(here, last))
+            last = here
+    return count
+
+
 class SetPoints:
     """Speed [mm/s] and turn rate [deg/s] that the base was told to keep, over time."""
 

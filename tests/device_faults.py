@@ -10,8 +10,8 @@ Prints a table in Markdown, a row as soon as it is known. Ends with 1 and names 
   notice, kept to the end of the fault, though the robot was told to drive until then; or the robot, by the emulator's own track, does not
   brake by at least 0.25 m/s2 for 0.2 s, or is not at rest when it should be. A robot that was not driving then is no proof: the fault is
   tried again at another moment;
-- a fault that must be told is not, or the map is worse by 0.05 than without a fault, or that one is bad;
-- the drive without a fault takes more than 15 % of a core, or 99 % of its answers to a scan take longer than 30 ms and what the machine's
+- a fault that must be told is not, an odometry that rolls over does not, or is taken for a jump, or the map is worse by 0.05 than without a fault, or that one is bad;
+- the drive without a fault is said to be in trouble (a base that answers late, or does not obey), takes more than 15 % of a core, or 99 % of its answers to a scan take longer than 30 ms and what the machine's
   own timer is late by;
 - --three: scans do not come 10 times a second, or 95 % of them not within 2 ms and what the machine's own timer is late by.
 """
@@ -35,25 +35,29 @@ import black_box
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 DEVICES = ("urg", "base", "levelling")
 FAULTS = [d + "-" + f for d in DEVICES for f in "lost split doubled junk sums silence unplug reset".split()]
-FAULTS += ["urg-wrap", "base-seto", "base-stall", "base-watchdog", "base-button", "base-motors", "levelling-sensor"]
-HELD = ("base-button", "base-motors")  # stopped at the robot: the operator lets it go again, so long after the fault [s]
+FAULTS += ["urg-wrap", "base-wrap", "base-seto", "base-stall", "base-stuck", "base-runaway", "base-slow", "base-watchdog", "base-button",
+           "base-motors", "levelling-sensor"]
+# Stopped at the robot, or switched off since it moved otherwise than told: the operator lets it go again, so long after the fault [s]
 REARM = 6.0
+HELD = {"base-button": REARM, "base-motors": REARM, "base-runaway": 12.0}
+STARTS = {"base-wrap": ("65,65,90",)}  # not --fault: the odometry begins just short of where it rolls over
 # What a fault must do to a robot that drives, and how long it may take to be noticed [s] (safety: in the robot file, the base's own
 # watchdog).
 # ZEROED: set points of zero go out to the base and stay until the fault is over, so long after it began [s]. All but a base that is deaf
 # meanwhile must also be seen to brake.
 ZEROED = {"urg-lost": (0.3, 1.0), "urg-doubled": (0.3, 1.0), "urg-junk": (0.3, 1.0), "urg-sums": (0.3, 1.0), "urg-reset": (0.3, 0.6),
           "urg-silence": (0.3, 2.0), "urg-unplug": (0.3, 3.0), "levelling-silence": (0.5, 2.0), "levelling-unplug": (0.5, 3.0),
-          "base-silence": (1.0, 2.0)}
+          "base-silence": (1.0, 2.0), "base-slow": (2.0, 6.0)}
 DEAF = ("base-silence",)
 # BRAKES: by the base's own doing, which nobody can tell anything: how long after the fault it begins to [s], and how long it is at it.
 BRAKES = {"base-watchdog": (2.0, 3.0)}
 # REST: the robot stands.
 REST = {"urg-silence": 0.3, "urg-unplug": 0.3, "base-unplug": 0.1, "base-reset": 0.1, "levelling-unplug": 0.5}
-HARD = {"base-button": 0.1, "base-motors": 0.1}  # at once, without a ramp
+# At once, without a ramp. A base that runs away is found out when what it is told has differed for long enough, and then has its motors off.
+HARD = {"base-button": 0.1, "base-motors": 0.1, "base-runaway": 5.0}
 JUDGED = {*ZEROED, *BRAKES, *REST, *HARD}
 # A base that is silent must be told; a deaf one reports.
-NAMED = {"levelling-sensor", *ZEROED, *REST, *HARD}
+NAMED = {"levelling-sensor", "base-stuck", "base-runaway", "base-watchdog", *ZEROED, *REST, *HARD}
 RAMP = 0.3          # the firmware's deceleration [m/s^2]
 BRAKING, BRAKED = 0.25, 0.2  # so hard [m/s^2] and so long [s] is braking
 LATE = 0.35         # a scan's period, the driver's turns, the wheels' lag, the window of a speed [s]
@@ -153,7 +157,8 @@ class Stop:
         self.orders = orders
         notice, over = ZEROED.get(fault, BRAKES.get(fault, (0.1, 0.1)))
         # As the fault strikes, and until shortly before it must be noticed: a robot that was stopping anyway proves nothing.
-        self.told = 1e-3 * min(orders.at(self.t0)[0], orders.at(self.t0 + 0.6 * notice)[0])
+        # (A base that does not hear is found out before its own watchdog is.)
+        self.told = 1e-3 * min(orders.at(self.t0)[0], orders.at(self.t0 + min(0.8, 0.6 * notice))[0])
         since = orders.zero_since(self.t0 + over - 0.05)
         self.zero = max(0.0, since - self.t0) if since is not None else None
 
@@ -195,7 +200,7 @@ def broken_law(fault, stop):
         most = HARD[fault] + LATE
         if stop.rest is None or stop.rest > most:
             return "no hard stop"
-        again = [t for t in stop.orders.enabled if HARD[fault] + NOTICED < t - stop.t0 < REARM - 0.1]
+        again = [t for t in stop.orders.enabled if HARD[fault] + NOTICED < t - stop.t0 < HELD[fault] - 0.1]
         if again:
             return "motors on again after %.1f s, though nobody let it go" % (again[0] - stop.t0)
     return None
@@ -213,7 +218,7 @@ def told_while_driving(lines):
 
 def rearm(process, emulator, fault):
     while process.poll() is None:
-        if time.time() - emulator.faults.get(fault, 1e18) > REARM:
+        if time.time() - emulator.faults.get(fault, 1e18) > HELD[fault]:
             process.send_signal(signal.SIGUSR2)
             return
         time.sleep(0.1)
@@ -222,7 +227,8 @@ def rearm(process, emulator, fault):
 def drive(rubble, robot, fault, at, seconds):
     name = fault or "none"
     shutil.rmtree(name, ignore_errors=True)  # of an attempt before
-    emulator = Emulator(rubble, "--truth", name + ".tum", *(["--fault", "%s@%g" % (fault, at)] if fault else []))
+    words = ["--odometry-start", *STARTS[fault]] if fault in STARTS else ["--fault", "%s@%g" % (fault, at)] if fault else []
+    emulator = Emulator(rubble, "--truth", name + ".tum", *words)
     errors = open(name + ".err", "w+")
     process = subprocess.Popen(
         [rubble, "drive", robot, *emulator.words(), "--time-limit", str(seconds), "--out", name, "--set",
@@ -240,11 +246,14 @@ def drive(rubble, robot, fault, at, seconds):
     score = json.loads(score.stdout)["score"] if score.returncode == 0 else 0.0
     rows = read_truth(name + ".tum")
     notice = ZEROED.get(fault, BRAKES.get(fault, ({**REST, **HARD}.get(fault, 0.3), 0)))[0]
+    if fault == "base-runaway":
+        notice = 0.3  # what it is told just after is what it goes on with
     stop = Stop(rows, rows[0][0] + at, notice) if fault else None
     if stop and os.path.exists(name + "/devices.bytes"):
         stop.follow(black_box.SetPoints(name + "/devices.bytes"), fault)
     own = json.load(open(name + "/score.json")) if os.path.exists(name + "/score.json") else {}
-    return dict(name=name, code=process.returncode, score=score, stop=stop, lost=lost, back=back, at=at, figures=own, rows=rows)
+    wraps = black_box.rolled_over(name + "/devices.bytes") if fault == "base-wrap" else None
+    return dict(name=name, wraps=wraps, code=process.returncode, score=score, stop=stop, lost=lost, back=back, told=told, at=at, figures=own, rows=rows)
 
 
 def moments(rows, first):
@@ -295,6 +304,7 @@ def findings_of(fault, d, plain, late_ms=0.0):
     if d["code"] != 0:
         found.append("exit code %d" % d["code"])
     if fault is None:
+        found += ["trouble: " + line for line in d["told"] if " does not obey" in line or "answer" in line or " do not come on" in line]
         if d["score"] < PLAIN_MAP:
             found.append("map %.3f" % d["score"])
         share, answer = d["figures"].get("cpu_share", 1.0), d["figures"].get("answer_ms_99", 1e9)
@@ -305,6 +315,8 @@ def findings_of(fault, d, plain, late_ms=0.0):
         return found
     if d["lost"] and not d["back"]:
         found.append("not re-connected")
+    if d["wraps"] is not None and (d["wraps"] == 0 or d["figures"].get("odometry_jumps", 1) != 0):
+        found.append("rolled over %d times, %s jumps" % (d["wraps"], d["figures"].get("odometry_jumps")))
     if fault in NAMED and not d["lost"]:
         found.append("not named")
     if d["score"] < plain - WORST_MAP:
@@ -326,7 +338,7 @@ def table(arguments):
           (load(), arguments.at, arguments.seconds))
     print("\n| fault | speed then | set points zero after | at rest after | exit code | named | re-connected | map score |\n"
           "|---|---|---|---|---|---|---|---|")
-    bad, faults = {}, arguments.faults.split()
+    bad, notes, faults = {}, [], arguments.faults.split()
     timer = Timer()
     d = drive(rubble, robot, None, arguments.at, arguments.seconds)
     d0 = d["figures"]
@@ -351,11 +363,15 @@ def table(arguments):
             back = "yes" if d["back"] else ("NO" if d["lost"] else "was not lost")
             print("| `%s` | %.2f m/s | %s | %s | %d | %s | %s | %.3f |" %
                   (fault, stop.v, zero, rest, d["code"], named, back, d["score"]), flush=True)
+            if d["wraps"] is not None:
+                notes.append("%s: rolled over %d times, %s jumps" % (fault, d["wraps"], d["figures"].get("odometry_jumps")))
             found = findings_of(fault, d, plain)
             if found:
                 bad[fault] = found
     print("\nload average %s after; without a fault %.1f %% of a core, answers within %.1f ms (99 %%), this machine's timer late by %.1f ms (99 %%)" %
           (load(), 100 * d0.get("cpu_share", 1.0), d0.get("answer_ms_99", 1e9), late_ms))
+    for note in notes:
+        print(note)
     for fault, found in bad.items():
         print("%s: %s" % (fault, "; ".join(found)))
     print("faults: %d, findings: %d" % (len(faults), len(bad)))

@@ -2,14 +2,14 @@
 # The long suite and its table: whole suite, sanitizers, faults at 100 moments, each fault of each device, three emulated
 # robots at once, a calibration in real time, growth, 10 minutes of fuzzing for each parser.
 # Prints the table and puts it into docs/reliability.md between its marks. Rows of parts that were not asked for stay as they are.
-#   tests/nightly.sh [--minutes N] [--only "suite sanitize threads faults devices growth fuzz"] [--fuzz-seconds 600]
+#   tests/nightly.sh [--minutes N] [--only "suite sanitize threads faults devices three calibration growth fuzz"] [--fuzz-seconds 600]
 #                    [--moments 100] [--keep-docs]
 # --minutes N: what can be cut is cut, no part is left out: a third of the time for fuzzing, shared by the targets; a moment
 # of faults each two minutes (3 to 100); below 120 minutes the small sizes of growth and one fault of each device. The
 # suites take what they take.
 set -uo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-only="suite sanitize threads faults devices growth fuzz"
+only="suite sanitize threads faults devices three calibration growth fuzz"
 fuzz_seconds=600
 moments=100
 growth=()
@@ -86,12 +86,16 @@ if has devices; then
   words=$(grep '^faults: ' "$out/device-faults.txt" | tail -1)
   found=${words##*findings: }
   count=${words#faults: }
-  row "faults of devices, in real time" "${count%%,*}" "${found%% *}" 0 $((SECONDS - start))
+  row "faults of devices, in real time" "${count%%,*}" "${found:-1}" 0 $((SECONDS - start))
+fi
+if has three; then
   start=$SECONDS
   python3 "$top/tests/device_faults.py" --three --seconds 60 >"$out/three-robots.txt" 2>&1
   words=$(grep '^robots: ' "$out/three-robots.txt" | tail -1)
   found=${words##*findings: }
   row "three emulated robots at once, rate and jitter of their scans" "${words:+3}" "${found:-1}" 0 $((SECONDS - start))
+fi
+if has calibration; then
   start=$SECONDS
   python3 "$top/tests/device_calibration.py" >"$out/calibration.txt" 2>&1
   words=$(grep '^calibration: ' "$out/calibration.txt" | tail -1)

@@ -60,6 +60,13 @@ class BaseDriver : public Device {
   /// The operator lets the base go again. While the button is pressed it stays held.
   virtual void rearm() {}
 
+  /// How its answers come; a driver that asks nothing leaves it at that.
+  struct Answers {
+    double late = 0.0;     ///< so long after the question, the way of the bytes left out [s]
+    bool missing = false;  ///< none has come for so long, though it may report
+  };
+  virtual Answers answers(Stamp /*now*/) const { return {}; }
+
   /// Damaged messages and reports that jumped, since the start.
   virtual std::size_t bad_sums() const { return 0; }
   virtual std::size_t jumps() const { return 0; }

@@ -2,15 +2,14 @@
 
 #include <fcntl.h>
 #include <unistd.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "base/error.h"
+#include "base/text/input_file.h"
 #include "robot/drivers/host_clock.h"
 
 namespace rubble::robot {
@@ -39,14 +38,19 @@ const char* name_of(LineKind kind) {
   return "";
 }
 
-bool write_all(int file, std::string_view bytes) {
+/// Why not all was written; empty: it was.
+std::string write_all(int file, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t step = ::write(file, bytes.data(), bytes.size());
     if (step < 0 && errno == EINTR) continue;
-    if (step <= 0) return false;
+    if (step <= 0) {
+      const bool full = step == 0 || errno == ENOSPC || errno == EDQUOT || errno == EFBIG;
+      return std::string("could not be written to its end (") + std::strerror(step == 0 ? ENOSPC : errno) + "); " +
+             (full ? "free some space" : "see to the disk") + " and run again";
+    }
     bytes.remove_prefix(static_cast<std::size_t>(step));
   }
-  return true;
+  return "";
 }
 
 class RecordedPort : public Port {
@@ -114,7 +118,10 @@ bool BlackBox::admits(const std::string& device, std::size_t bytes, Stamp now) {
   if (allowance.at != Stamp::never())
     allowance.bytes = std::min(kMostBurst, allowance.bytes + kMostRate * std::max(0.0, now - allowance.at));
   allowance.at = now;
-  if (allowance.bytes < static_cast<double>(bytes)) return false;
+  if (allowance.bytes < static_cast<double>(bytes)) {
+    allowance.exceeded = true;
+    return false;
+  }
   allowance.bytes -= static_cast<double>(bytes);
   return true;
 }
@@ -129,9 +136,9 @@ void BlackBox::add(const std::string& device, Direction direction, std::string_v
   entry += bytes;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (failed_) return;
+    if (!failure_.empty()) return;
     if (waiting_.size() + entry.size() > kMostWaiting) {
-      failed_ = true;
+      failure_ = "is not whole: the disk took less than the devices said, until 16 MB waited; record to a faster one";
       return;
     }
     waiting_ += entry;
@@ -148,24 +155,32 @@ void BlackBox::write() {
     const std::string piece = std::exchange(waiting_, {});
     writing_ = true;
     lock.unlock();
-    const bool whole = write_all(file_.get(), piece);
+    const std::string why = write_all(file_.get(), piece);
     lock.lock();
     writing_ = false;
-    failed_ = failed_ || !whole;
+    if (failure_.empty()) failure_ = why;
     changed_.notify_all();
   }
 }
 
-bool BlackBox::failed() {
+std::string BlackBox::failure() {
   std::unique_lock<std::mutex> lock(mutex_);
   changed_.wait(lock, [this] { return waiting_.empty() && !writing_; });
-  return failed_;
+  return failure_;
+}
+
+std::vector<std::string> BlackBox::cut_short() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::string> names;
+  for (const auto& [device, allowance] : allowances_)
+    if (allowance.exceeded) names.push_back(device);
+  return names;
 }
 
 std::vector<BlackBoxEntry> read_black_box(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError(path + ": cannot be read; give a black box that 'rubble drive' wrote");
-  const std::string all{std::istreambuf_iterator<char>(in), {}};
+  constexpr std::size_t kLargest = std::size_t{2} << 30;
+  const std::string all =
+      read_input(path, {"a black box that 'rubble drive' wrote", kLargest, "no drive is that long", Pipes::None});
   const std::string magic = kBlackBoxMagic;
   if (all.compare(0, magic.size(), magic) != 0)
     throw InputError(path +

@@ -40,13 +40,16 @@ class BlackBox {
   /// Waits until all is written.
   ~BlackBox();
   /// Failures to write are kept quiet: a full disk must not stop a robot's drivers, nor may one that takes nothing for
-  /// long fill the memory (kMostWaiting). `failed()` tells.
+  /// long fill the memory (kMostWaiting). `failure()` tells.
   void add(const std::string& device, Direction direction, std::string_view bytes, Stamp stamp);
   /// Whether so many bytes of a device may be kept: kMostRate for ever, kMostBurst at once. Whatever sends more is none
   /// of the devices, and would fill the disk.
   bool admits(const std::string& device, std::size_t bytes, Stamp now);
-  /// Whether something was lost. Waits until all that was added is written.
-  bool failed();
+  /// Why something was lost, and what to do about it; empty: nothing was. Waits until all that was added is written.
+  std::string failure();
+  bool failed() { return !failure().empty(); }
+  /// The devices of which bytes were left out since they sent too many (see admits).
+  std::vector<std::string> cut_short();
 
   static constexpr double kMostRate = 1e6;   ///< [bytes/s]; serial lines and the devices send a tenth of it
   static constexpr double kMostBurst = 2e6;  ///< [bytes]
@@ -60,13 +63,14 @@ class BlackBox {
   Descriptor file_;
   struct Allowance {
     double bytes = kMostBurst;
+    bool exceeded = false;
     Stamp at = Stamp::never();
   };
   std::map<std::string, Allowance> allowances_;  ///< by device, over all its connections
   std::string waiting_;
   bool writing_ = false;
   bool ending_ = false;
-  bool failed_ = false;
+  std::string failure_;
   std::thread writer_;
 };
 

@@ -108,7 +108,9 @@ void DeviceThread::converse() {
   });
   while (!is_ending()) {
     std::array<std::uint8_t, kMostBytes> bytes;
-    const auto [got, now] = port_->read(bytes.data(), bytes.size(), 0.0);
+    const Arrival arrival = port_->read(bytes.data(), bytes.size(), 0.0);
+    const std::size_t got = arrival.size;
+    const Stamp now = arrival.stamp;
     std::string out;
     int baud = 0;
     const Stamp deadline = with([&] {

@@ -58,6 +58,7 @@ class LevellingUnit : public Device {
   void aim(const LaserAim& aim);
 
   std::vector<Acceleration> take_accelerations();
+  std::size_t waiting_accelerations() const { return accelerations_.size(); }
   std::vector<AimState> take_aims();
 
   const LevellingIdentity& identity() const { return identity_; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "base/planar.h"
@@ -16,7 +17,8 @@ namespace {
 using arcos::command;
 
 constexpr std::size_t kHead = 3;                                         ///< bytes of a packet before its payload
-constexpr double kReply = 0.5;                                           ///< an answer comes within this time [s]
+constexpr double kReply = 0.5;                                           ///< an echo comes within this time [s]
+constexpr double kSlowestReply = 3.0;                                    ///< the same on a line that is slow [s]
 constexpr std::array<int, 5> kBauds{9600, 38400, 19200, 115200, 57600};  ///< tried in turn on a serial line
 constexpr int kTries = 3;                                                ///< questions before the next bit rate
 constexpr double kConfigReply = 1.0;                                     ///< [s]
@@ -25,6 +27,7 @@ constexpr double kListenTcp = 1.2;   ///< where there is but one [s]
 constexpr double kSpacing = 0.004;   ///< the firmware wants so much between two commands [s]
 constexpr double kRefresh = 0.2;     ///< set points are sent again [s]; the firmware forgets them after 2 s
 constexpr double kAskMotors = 0.5;   ///< [s]
+constexpr int kOnce = 1;             ///< of ENCODER
 constexpr double kRefused = 5.0;     ///< a robot that cannot be read is asked again who it is [s]
 constexpr double kMillimetre = 1e-3;
 
@@ -54,6 +57,9 @@ void Pioneer::opened(Stamp now, LineKind line) {
   refusal_.clear();
   parser_.reset();
   clock_.reset();
+  answer_timer_.reset();
+  reply_ = kReply;
+  echo_late_ = 0.0;
   queue_.clear();
   based_ = false;
   last_report_ = Stamp::never();
@@ -68,6 +74,7 @@ void Pioneer::ask(Stamp now) {
   ++tries_;
   switch (step_) {
     case Step::Sync0:
+      asked_ = now;
       return send(command(arcos::kSync0));
     case Step::Sync1:
       return send(command(arcos::kSync1));
@@ -113,7 +120,7 @@ void Pioneer::advance(Stamp now) {
     case Step::Sync0:
     case Step::Sync1:
     case Step::Sync2:
-      if (now - since_ < kReply) return;
+      if (now - since_ < reply_) return;
       if (tries_ >= kTries) return try_next_rate(now);
       step_ = Step::Sync0;  // the firmware takes the three in their order only: a lost echo means all over again
       return ask(now);
@@ -140,9 +147,28 @@ void Pioneer::advance(Stamp now) {
     last_report_ = Stamp::never();
     based_ = false;
     clock_.reset();
+    answer_timer_.reset();
     return go(Step::Closing, now);
   }
   refresh(now);
+}
+
+bool Pioneer::times_answers() const { return step_ == Step::Running && !listening_ && !settings_.passive; }
+
+/// The robot has answered how far its wheels have turned. It does so behind its next report, which it is half a cycle
+/// till in the mean.
+void Pioneer::mind_answer(std::size_t bytes, Stamp now) {
+  const double on_wire = static_cast<double>(command(arcos::kEncoder, kOnce).size() + report_bytes_ + bytes);
+  answer_timer_.answered(now, time_on_line(line_, on_wire, baud()) + 0.5e-3 * configuration_.cycle_ms);
+}
+
+/// An echo that was not expected any more: the line is slower than thought. Once the line is empty again, echoes are
+/// given as long as they take.
+void Pioneer::mind_late_echo(Stamp now) {
+  const double late = now - asked_;
+  if (late < kReply / 2.0) return;  // one that was doubled on its way
+  echo_late_ = late;
+  reply_ = std::clamp(late + 2.0 * kReply, reply_, kSlowestReply);
 }
 
 Stamp Pioneer::heard() const { return last_report_ == Stamp::never() ? since_ : last_report_; }
@@ -190,10 +216,15 @@ void Pioneer::digest(const std::string& payload, Stamp now, std::size_t behind) 
   if (is_syncing()) {
     const auto echo = static_cast<std::uint8_t>(payload[0]);
     const int expected = step_ == Step::Sync0 ? 0 : step_ == Step::Sync1 ? 1 : 2;
-    if (echo != expected) return go(Step::Sync0, now);
+    if (echo != expected) {
+      if (echo == 0) mind_late_echo(now);
+      return go(Step::Sync0, now);
+    }
     if (step_ == Step::Sync2) {
       const auto identity = arcos::parse_identity(payload);
       if (!identity) return;
+      const double bytes = static_cast<double>(command(arcos::kSync2).size() + payload.size() + 5);
+      answer_timer_.assume(now - since_ - time_on_line(line_, bytes, baud()));  // no motor is on before that is known
       // What a device says of itself comes onto the terminal: no escapes in it.
       identity_ = {one_line(identity->name), one_line(identity->type), one_line(identity->subclass)};
       const auto factors = arcos::factors_of(identity_.subclass);
@@ -215,7 +246,9 @@ void Pioneer::digest(const std::string& payload, Stamp now, std::size_t behind) 
     configured_ = true;
     clock_.set_cycle(1e-3 * configuration_.cycle_ms);
   }
+  if (static_cast<std::uint8_t>(payload[0]) == arcos::kEncoderPacket) mind_answer(payload.size() + 5, now);
   if (!report) return;
+  report_bytes_ = payload.size() + 5;
   follow(*report, clock_.stamp(sampled(payload.size() + 5, now), behind));
   mind_hold();
   last_report_ = now;
@@ -377,6 +410,7 @@ void Pioneer::refresh(Stamp now) {
   // Reports come without a pulse. It would keep the set points of another program, which came later, alive after its
   // end: the base's watchdog must not hear from who does not drive.
   if (settings_.passive) return;
+  answer_timer_.advance(now);
   if (motors_ != motors_on() && (asked_motors_ == Stamp::never() || now - asked_motors_ >= kAskMotors)) {
     asked_motors_ = now;
     send(command(arcos::kEnable, motors_ ? 1 : 0));
@@ -403,6 +437,9 @@ std::string Pioneer::take_output(Stamp now) {
     turn_decided_ = now;
     out = command(arcos::kTurnRate, w_sent_);
     w_due_ = false;
+  } else if (times_answers() && answer_timer_.due(now)) {
+    out = command(arcos::kEncoder, kOnce);
+    answer_timer_.asked(now);
   }
   if (!out.empty()) sent_ = now;
   return out;
@@ -419,11 +456,21 @@ Stamp Pioneer::deadline() const {
   if (waiting) return sent_ == Stamp::never() ? since_ : sent_ + kSpacing;
   if (step_ == Step::Refused) return since_ + kRefused;
   if (step_ == Step::Listening) return since_ + patience();
-  if (step_ != Step::Running) return since_ + (step_ == Step::Opening && configured_ ? 0.0 : kReply);
+  if (step_ == Step::Opening) return since_ + (configured_ ? 0.0 : kReply);
+  if (step_ != Step::Running) return since_ + (step_ == Step::Closing ? kReply : reply_);
   if (listening_ || settings_.passive) return heard() + settings_.silence;
   Stamp next = refreshed_ == Stamp::never() ? since_ : refreshed_ + kRefresh;
   if (turn_.restless()) next = std::min(next, turn_decided_ + RateDither::kPeriod);
+  if (times_answers())
+    next = std::min(next, std::max(answer_timer_.next(), sent_ == Stamp::never() ? since_ : sent_ + kSpacing));
   return next;
+}
+
+std::string Pioneer::late_echoes() const {
+  if (echo_late_ <= 0.0) return "";
+  char text[80];
+  std::snprintf(text, sizeof text, "; it answers %.1f s late, the line to it is too slow", echo_late_);
+  return text;
 }
 
 std::string Pioneer::state() const {
@@ -438,11 +485,11 @@ std::string Pioneer::state() const {
     case Step::Sync0:
     case Step::Sync1:
     case Step::Sync2:
-      return "asks who is there" + rate;
+      return "asks who is there" + rate + late_echoes();
     case Step::Closing:
       return "closes an old connection" + rate;
     case Step::Opening:
-      return "opens " + identity_.subclass;
+      return "opens " + identity_.subclass + late_echoes();
     case Step::Running:
       break;
   }

@@ -8,6 +8,7 @@
 
 #include "base/angle.h"
 #include "robot/commands.h"
+#include "robot/drivers/answer_timer.h"
 #include "robot/drivers/base_driver.h"
 #include "robot/drivers/cycle_clock.h"
 #include "robot/drivers/rate_dither.h"
@@ -50,6 +51,10 @@ class Pioneer : public BaseDriver {
   void stop() override;
   void emergency_stop() override;
   std::vector<Odometry> take_odometry() override;
+  /// To ENCODER, whose answer is the shortest: even at 9600 baud it holds up nothing.
+  Answers answers(Stamp now) const override {
+    return times_answers() ? Answers{answer_timer_.late(now), answer_timer_.missing(now)} : Answers{};
+  }
 
   const arcos::Identity& identity() const { return identity_; }
   /// Its defaults where the robot has not told any.
@@ -79,6 +84,10 @@ class Pioneer : public BaseDriver {
   void forget_questions();
   void refresh(Stamp now);
   void send(const std::string& packet) { queue_.push_back(packet); }
+  bool times_answers() const;
+  void mind_answer(std::size_t bytes, Stamp now);
+  void mind_late_echo(Stamp now);
+  std::string late_echoes() const;
   Stamp sampled(std::size_t bytes, Stamp received) const;
 
   BaseSettings settings_;
@@ -114,6 +123,11 @@ class Pioneer : public BaseDriver {
   bool w_due_ = false;
   Stamp refreshed_ = Stamp::never();
 
+  AnswerTimer answer_timer_;
+  std::size_t report_bytes_ = 0;  ///< of the last report on the line
+  double reply_ = 0.0;            ///< an echo comes within this time [s]
+  double echo_late_ = 0.0;        ///< so late one came at least; 0: all in time [s]
+  Stamp asked_ = Stamp::never();  ///< when SYNC0 was said last
   CycleClock clock_;
   bool based_ = false;  ///< information_ is the reference for the next report
   Stamp last_report_ = Stamp::never();

@@ -12,6 +12,7 @@
 #include "robot/drivers/device_thread.h"
 #include "robot/drivers/heartbeat.h"
 #include "robot/drivers/host_clock.h"
+#include "robot/drivers/obedience.h"
 
 namespace rubble::robot {
 namespace {
@@ -19,6 +20,7 @@ namespace {
 constexpr double kAsk = 0.05;                 ///< pause of a waiting read() [s]
 constexpr double kListen = 0.02;              ///< the operator is asked so often [s]
 constexpr double kFarAhead = 0.1;             ///< of stamps [s]
+constexpr double kMotorsOn = 3.0;             ///< so soon they are on when asked for [s]
 constexpr double kKeepsUp = 1.0;              ///< scans that were too old must be fresh for so long [s]
 constexpr std::size_t kMostScansKept = 240;   ///< while the robot is held
 constexpr std::size_t kNewestScansKept = 40;  ///< of these all remain when the others are thinned
@@ -32,6 +34,13 @@ std::string silent_for(const std::string& name, bool underway, Stamp last, Stamp
     std::snprintf(text, sizeof text, ": silent for %.1f s", now - last);
   }
   return name + text + (why.empty() ? "" : " (" + why + ")");
+}
+
+/// What is too slow says so, and what to do.
+std::string remedy(const std::vector<std::string>& lines, bool starting) {
+  const auto is_slow = [](const std::string& line) { return line.find("too slow") != std::string::npos; };
+  if (std::all_of(lines.begin(), lines.end(), is_slow)) return "; use a faster one";
+  return starting ? "; check cables, power and ports" : "; it did not come back; plug it in and run again";
 }
 
 template <class T>
@@ -68,13 +77,14 @@ class Early {
 /// robot would stop and go with every scan.
 class Freshness {
  public:
-  /// `age`: of the newest scan.
-  void look(double age, double most, Stamp now) {
+  /// `age`: of the newest scan, or by how much answers are late. `missing`: there was none at all for so long.
+  void look(double age, double most, Stamp now, bool missing = false) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (age > most) {
       stale_ = true;
       stale_at_ = std::max(stale_at_, now);
       age_ = age;
+      missing_ = missing;
     } else if (stale_ && now - stale_at_ >= kKeepsUp) {
       stale_ = false;
     }
@@ -84,10 +94,16 @@ class Freshness {
     const std::lock_guard<std::mutex> lock(mutex_);
     return stale_ ? std::optional(age_) : std::nullopt;
   }
+  /// The same, of what was missing.
+  bool missing() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return stale_ && missing_;
+  }
 
  private:
   mutable std::mutex mutex_;
   bool stale_ = false;
+  bool missing_ = false;
   Stamp stale_at_ = Stamp::never();  ///< when they were so last
   double age_ = 0.0;                 ///< [s]
 };
@@ -103,6 +119,7 @@ struct RealRobot::Impl {
   std::function<bool(const RobotStatus&)> ask;
 
   mutable Freshness freshness;
+  mutable Freshness answers;  ///< of the base
   std::atomic<bool> emergency{false};
   std::atomic<bool> stopped{false};
   std::atomic<bool> ending{false};
@@ -111,11 +128,16 @@ struct RealRobot::Impl {
 
   std::atomic<int> pardoned{0};  ///< of the base's refusals, by the operator
 
-  std::mutex mutex;  ///< of what core and base thread share
+  mutable std::mutex mutex;  ///< of what core and base thread share; taken after the base
   Commands commands;
   bool brake_asked = false;
   Stamp commanded = Stamp::never();
   bool armed = false;                    ///< all devices have reported: the motors may go on
+  Obedience obedience;                   ///< of the base
+  std::string runaway;                   ///< how it moved though told otherwise; until rearm()
+  std::string no_motors;                 ///< they do not come on
+  Stamp motors_missed = Stamp::never();  ///< since then they are asked for and off
+  std::vector<Odometry> waiting_odometry;
   Stamp scan_answered = Stamp::never();  ///< arrival of the scan whose answer is on its way
   Stamp scan_leaving = Stamp::never();   ///< the same, once the base's thread has the answer
   std::vector<double> delays;
@@ -144,7 +166,8 @@ struct RealRobot::Impl {
         lidar(scanner),
         base(given.own_base ? given.own_base(given.base) : make_base(given.base_driver, given.base)),
         unit(given.levelling),
-        heartbeat(given.heartbeat) {
+        heartbeat(given.heartbeat),
+        obedience(given.base.max_accel, given.base.max_turn_accel) {
     if (!settings.levelling_port.empty())
       unit_thread = std::make_unique<DeviceThread>("levelling", settings.levelling_port, unit, box);
     if (!settings.base_port.empty())
@@ -212,14 +235,40 @@ struct RealRobot::Impl {
   void watch(Stamp now) {
     const std::lock_guard<std::mutex> lock(mutex);
     const bool fresh = commanded != Stamp::never() && now - commanded <= settings.safety.core_silence;
-    const bool ours = armed && !is_taken();
+    const bool ours = armed && !is_taken() && runaway.empty();
     const bool allowed = ours && !emergency && !stopped;
-    const bool free = allowed && fresh && is_lidar_well(now) && is_unit_well(now) && is_operator_well(now);
+    const bool heard = is_base_answering(base->answers(now), now);
+    const bool free = allowed && heard && fresh && is_lidar_well(now) && is_unit_well(now) && is_operator_well(now);
     if (allowed) base->enable(true);
     if (armed && !ours) base->enable(false);  // somebody else may have stopped it meanwhile
     if (std::exchange(brake_asked, false) && allowed) base->brake();
-    base->drive(free ? commands.drive : Drive{});
+    const Drive wanted = free ? commands.drive : Drive{};
+    base->drive(wanted);
+    mind_obedience(wanted, allowed && heard, now);
     if (scan_answered != Stamp::never()) scan_leaving = std::exchange(scan_answered, Stamp::never());
+  }
+
+  /// In the base's thread. `asked`: the motors are asked for, and what the base is told reaches it in time.
+  void mind_obedience(const Drive& wanted, bool asked, Stamp now) {
+    std::vector<Odometry> reports = base->take_odometry();
+    asked = asked && !settings.base.passive;
+    const bool off = asked && !base->motors_on() && base->hold() == BaseDriver::Hold::None && base->ready();
+    if (!off) motors_missed = Stamp::never();
+    if (off && motors_missed == Stamp::never()) motors_missed = now;
+    no_motors = off && now - motors_missed > kMotorsOn ? "its motors do not come on, though asked for" : "";
+    if (!asked || !base->motors_on()) {
+      obedience.pause();
+    } else {
+      const BaseSettings& limits = settings.base;  // beyond these it is not told
+      obedience.tell({std::clamp(wanted.v, -limits.max_v, limits.max_v) * limits.distance_scale,
+                      std::clamp(wanted.w, -limits.max_w, limits.max_w) * limits.turn_scale},
+                     now);
+      for (const Odometry& report : reports) obedience.look(report, now);
+    }
+    append(waiting_odometry, std::move(reports));
+    if (!obedience.runs_away() || !runaway.empty()) return;
+    runaway = obedience.trouble();
+    base->emergency_stop();
   }
 
   /// In the base's thread, after each turn of it: what watch() let pass has been sent.
@@ -241,6 +290,10 @@ struct RealRobot::Impl {
     if (is_lidar_silent(scanner, now)) return false;  // its own trouble, and over with the next scan
     freshness.look(age(scanner, now), settings.safety.lidar_age, now);
     return !freshness.stale();
+  }
+  bool is_base_answering(const BaseDriver::Answers& given, Stamp now) const {
+    answers.look(given.late, settings.safety.base_answer, now, given.missing);
+    return !answers.stale();
   }
   bool is_unit_well(Stamp now) const {
     if (!unit_thread) return true;
@@ -278,16 +331,39 @@ struct RealRobot::Impl {
       }
     }
     if (!base_thread) return add_silent_helpers(std::move(lines), underway, now);
-    const auto [last, ready, state, hold] =
-        with_base([this] { return std::make_tuple(base->last_report(), base->ready(), base->state(), base->hold()); });
+    const auto [last, ready, state, hold, answered] = with_base([this, now] {
+      return std::make_tuple(base->last_report(), base->ready(), base->state(), base->hold(), base->answers(now));
+    });
+    if (const std::string how = how_it_ran(); !how.empty()) lines.push_back("base: " + how);
     if (underway && is_taken()) lines.push_back("base: another program may have had it; see who drives the robot");
     if (hold == BaseDriver::Hold::EmergencyButton) lines.push_back("base: emergency button pressed");
     if (hold == BaseDriver::Hold::MotorsOff) lines.push_back("base: motors were switched off");
     if (!ready || now - last > settings.safety.base_silence) {
       const std::string error = base_thread->error();
       lines.push_back(silent_for("base", underway, last, now, error.empty() ? state : error));
+    } else if (!is_base_answering(answered, now)) {
+      lines.push_back("base: " + late_answers(answered));
     }
     return add_silent_helpers(std::move(lines), underway, now);
+  }
+
+  std::string how_it_ran() const {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return runaway;
+  }
+
+  std::string late_answers(const BaseDriver::Answers& given) const {
+    char text[160];
+    if (given.missing || answers.missing()) {
+      std::snprintf(text, sizeof text, "%s for %.1f s; it does not hear, or the line to it is too slow",
+                    given.missing ? "reports, but has not answered" : "had not answered",
+                    answers.stale().value_or(given.late));
+    } else {
+      std::snprintf(text, sizeof text,
+                    "answers %.1f s late (at most %.1f s); the line to it or this computer is too slow",
+                    answers.stale().value_or(given.late), settings.safety.base_answer);
+    }
+    return text;
   }
 
   /// The levelling unit and the operator.
@@ -309,7 +385,7 @@ struct RealRobot::Impl {
     s.silent = silent(now);
     s.emergency = emergency;
     s.held = is_held();
-    s.taken = first != Stamp::never() && is_taken();
+    s.taken = first != Stamp::never() && (is_taken() || !how_it_ran().empty());
     s.scans = scans;
     s.odometry = odometry;
     s.accelerations = accelerations;
@@ -318,10 +394,15 @@ struct RealRobot::Impl {
       s.battery = base->battery();
       s.bad_packets = base->bad_sums();
       s.jumps = base->jumps();
+      const std::lock_guard<std::mutex> lock(mutex);
+      s.odometry += waiting_odometry.size();
+      for (const std::string& trouble : {obedience.trouble(), no_motors})
+        if (!trouble.empty() && runaway.empty()) s.troubles.push_back("base: " + trouble);
     });
     if (unit_thread) {
       unit_thread->with([&] {
         s.bad_packets += unit.bad_lines();
+        s.accelerations += unit.waiting_accelerations();
         if (unit.sensor_fault())
           s.troubles.emplace_back("levelling: its accelerometer gives no signal; the servos hold");
       });
@@ -334,6 +415,7 @@ struct RealRobot::Impl {
 
   bool is_held() const {
     if (first != Stamp::never() && is_taken()) return true;
+    if (!how_it_ran().empty()) return true;
     return with_base([this] { return base->hold() != BaseDriver::Hold::None; });
   }
 
@@ -368,10 +450,15 @@ struct RealRobot::Impl {
     commands.drive = {};
   }
 
+  std::vector<Odometry> take_odometry() {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return std::exchange(waiting_odometry, {});
+  }
+
   Inputs collect() {
     Inputs inputs;
     inputs.scans = std::exchange(waiting_scans, {});
-    inputs.odometry = with_base([this] { return base->take_odometry(); });
+    inputs.odometry = take_odometry();
     if (unit_thread) {
       unit_thread->with([&] {
         inputs.accelerations = unit.take_accelerations();
@@ -444,9 +531,7 @@ struct RealRobot::Impl {
       if (starting && is_held() && is_over_before_it_began(now)) return false;
       if (starting) refuse_busy_devices();
       if (now - held_since > (starting ? settings.safety.start : settings.safety.give_up))
-        throw DeviceLost(
-            joined(lines) + "; " +
-            (starting ? "check cables, power and ports" : "it did not come back; plug it in and run again"));
+        throw DeviceLost(joined(lines) + remedy(lines, starting));
       if (ask && !ask(status(now))) return false;
       take_scans(now);
       sleep_until(now + kAsk);
@@ -515,7 +600,12 @@ void RealRobot::stop() { impl_->stop(); }
 
 void RealRobot::rearm() {
   if (impl_->base_thread) impl_->pardoned = impl_->base_thread->turned_away();
-  impl_->with_base([this] { impl_->base->rearm(); });
+  impl_->with_base([this] {
+    impl_->base->rearm();
+    const std::lock_guard<std::mutex> lock(impl_->mutex);
+    impl_->runaway.clear();
+    impl_->obedience.pause();
+  });
   impl_->wake_base();
 }
 

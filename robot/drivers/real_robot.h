@@ -18,6 +18,7 @@ struct SafetySettings {
   double lidar_silence = 0.3;      ///< no scan for so long: stop [s]
   double lidar_age = 0.6;          ///< the newest scan is older than this: stop. A scan of 115200 baud may take 0.5 [s]
   double base_silence = 1.0;       ///< no report of the base [s]
+  double base_answer = 0.3;        ///< the base answers later than this: an order to stop would be as late [s]
   double levelling_silence = 0.5;  ///< no report of the levelling unit [s]
   double core_silence = 1.0;       ///< no command of the core [s]
   double operator_silence = 1.0;   ///< no heartbeat, if one is asked for [s]
@@ -51,7 +52,7 @@ enum class OperatorWish {
 struct RobotStatus {
   std::vector<std::string> silent;    ///< what holds the robot, one line each
   bool held = false;                  ///< stopped at the robot itself, or taken: only rearm() lets it go
-  bool taken = false;                 ///< another program seemed to have the base while it was away
+  bool taken = false;                 ///< another program seemed to have the base while it was away, or to drive it
   std::vector<std::string> troubles;  ///< what does not work but holds nothing, one line each
   bool motors_on = false;
   bool emergency = false;
@@ -88,7 +89,7 @@ class RealRobot : public Robot {
   /// Set points to zero and motors off, for good; read() goes on. May be called from any thread.
   void stop();
   /// After somebody stopped the robot at the robot itself (its emergency button, its motors' button), or another
-  /// program had its base while it was away: lets it drive again.
+  /// program had its base while it was away, or it moved though told otherwise: lets it drive again.
   void rearm();
   /// `ask` is called in a thread of its own about fifty times a second, whatever the core is at; its wish is granted at
   /// once. After Leave `left` is called in that thread. Empty: nobody is asked any more.

@@ -24,6 +24,8 @@ constexpr double kOldestMeasure = 0.2;    // what is older says nothing of where
 constexpr double kStallFault = 1.0;       // [s]
 constexpr double kDeafFault = 3.0;        // [s]
 constexpr double kButtonFault = 2.0;      // [s]
+constexpr double kStuckFault = 6.0;       // [s]
+constexpr double kRunawaySpeed = 0.2;     // [m/s]
 constexpr double kFullBattery = 12.8;     // [V]
 constexpr double kFinestLaserStep = 0.1;  // [deg]
 constexpr int kNothingInRange = 32000;    // as far as the scanners of ARIA's simulators see [mm]
@@ -73,6 +75,7 @@ void ArcosEmulator::start_anew() {
   mode_ = Mode::Speed;
   target_ = {};
   motors_ = held_ = false;
+  runaway_.reset();
   encoders_ = status_ = 0;
   laser_ = {};
 }
@@ -172,6 +175,7 @@ void ArcosEmulator::switch_motors(bool on) {
   motors_ = on;
   braking_ = !on;
   if (on) return;
+  runaway_.reset();
   target_ = {};
   mode_ = Mode::Speed;
 }
@@ -391,7 +395,8 @@ void ArcosEmulator::give_way() {
 }
 
 Drive ArcosEmulator::wanted() const {
-  if (!motors_ || held_ || session_ != Session::Open) return {};
+  if (!motors_ || held_ || session_ != Session::Open || advanced_ < stuck_until_) return {};
+  if (runaway_) return *runaway_;
   Drive drive = target_;
   if (mode_ == Mode::Head) drive.w = stopping_speed(planned_left_, limits_.turn_decel, limits_.w);
   if (mode_ == Mode::Move) drive.v = stopping_speed(planned_left_, limits_.decel, limits_.v);
@@ -483,6 +488,12 @@ bool ArcosEmulator::fail(DeviceFault fault, Stamp now) {
       return true;
     case DeviceFault::Motors:
       switch_motors(false);
+      return true;
+    case DeviceFault::Stuck:
+      stuck_until_ = now + kStuckFault;
+      return true;
+    case DeviceFault::Runaway:
+      runaway_ = std::abs(motion_.v) > kStillSpeed ? motion_ : Drive{kRunawaySpeed, 0.0};
       return true;
     case DeviceFault::ClockWrap:
     case DeviceFault::Sensor:

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "robot/drivers/host_clock.h"
@@ -45,6 +46,10 @@ void DeviceServer::fall_silent(double duration) {
   with([&] { faults_.fall_silent(host_now() + duration); });
 }
 
+void DeviceServer::slow_down(double duration) {
+  with([&] { slow_until_ = host_now() + duration; });
+}
+
 void DeviceServer::unplug(double duration) {
   with([&] { unplug_until_ = host_now() + duration; });
 }
@@ -54,6 +59,7 @@ void DeviceServer::replug(Stamp now) {
   if (!unplugged_ && now < unplug_until_) {
     server_->unplug();
     outgoing_.clear();
+    incoming_.clear();
     device_.client_left(now);
     unplugged_ = true;
   } else if (unplugged_ && now >= unplug_until_) {
@@ -73,17 +79,27 @@ void DeviceServer::turn() {
   const Stamp now = host_now();
   if (served.client_left) device_.client_left(now);
   if (served.client_came) device_.client_came(now);
-  if (served.size > 0 && !faults_.is_silent(now))
-    device_.receive({reinterpret_cast<const char*>(bytes.data()), served.size}, now);
+  if (served.client_left) {
+    outgoing_.clear();
+    incoming_.clear();
+  }
+  if (served.size > 0 && !faults_.is_silent(now)) hear({reinterpret_cast<const char*>(bytes.data()), served.size}, now);
+  for (; !incoming_.empty() && incoming_.front().due <= now; incoming_.pop_front())
+    device_.receive(incoming_.front().bytes, now);
   device_.advance(now);
-  if (served.client_left) outgoing_.clear();
   queue(faults_.pass(device_.take_output(), now), now);
   send(now);
   replug(now);
 }
 
+void DeviceServer::hear(std::string bytes, Stamp now) {
+  const Stamp due = now < slow_until_ ? now + kSlowWay : now;
+  incoming_.push_back({incoming_.empty() ? due : std::max(due, incoming_.back().due), std::move(bytes)});
+}
+
 void DeviceServer::queue(const std::vector<std::string>& pieces, Stamp now) {
-  Stamp due = outgoing_.empty() ? now : std::max(now, outgoing_.back().due);
+  Stamp due = now < slow_until_ ? now + kSlowWay : now;
+  if (!outgoing_.empty()) due = std::max(due, outgoing_.back().due);
   for (const std::string& piece : pieces) {
     outgoing_.push_back({due, piece});
     due = due + kSplitPause;

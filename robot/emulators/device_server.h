@@ -40,6 +40,9 @@ class DeviceServer {
   void spoil(ByteFault fault, double duration);
   /// For `duration` [s] the device neither hears nor speaks.
   void fall_silent(double duration);
+  /// For `duration` [s] every byte, either way, takes kSlowWay; the order of the bytes stays.
+  void slow_down(double duration);
+  static constexpr double kSlowWay = 0.5;  ///< [s]
   /// The plug is pulled and comes back after `duration` [s].
   void unplug(double duration);
 
@@ -48,6 +51,7 @@ class DeviceServer {
   void turn();
   void replug(Stamp now);
   void wake();
+  void hear(std::string bytes, Stamp now);
   void queue(const std::vector<std::string>& pieces, Stamp now);
   void send(Stamp now);
   int wait_ms() const;
@@ -67,7 +71,9 @@ class DeviceServer {
   LineFaults faults_;
   Stamp unplug_until_ = Stamp::never();
   bool unplugged_ = false;
+  Stamp slow_until_ = Stamp::never();
   std::deque<Piece> outgoing_;  ///< the thread's own
+  std::deque<Piece> incoming_;  ///< the same, of the client's bytes
   std::thread thread_;
 };
 

@@ -6,15 +6,17 @@
 #include <atomic>
 #include <cctype>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
+#include "base/angle.h"
 #include "base/error.h"
 #include "base/text/words.h"
 #include "robot/drivers/black_box.h"
-#include "robot/drivers/host_clock.h"
 #include "robot/drivers/mrpt_scanner.h"
 #include "robot/drivers/scip/scip_scanner.h"
 #include "robot/logs/log.h"
@@ -31,6 +33,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kTellAgain = 5.0;  ///< a reason that changed while devices are waited for is told so often at most [s]
+
+constexpr robot::Drive kMoved{0.02, deg_to_rad(2.0)};  ///< so far is more than a touch [m], [rad]
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -118,7 +122,8 @@ class Driver {
   LoopEnd run(robot::Robot& robot) {
     LoopEnd end = loop_.run(robot);
     if (end.robot_ended && real_.status().emergency) interrupted_ = true;
-    if (end.robot_ended)
+    if (end.robot_ended && !interrupted_) mind_nothing_done(end);
+    if (end.robot_ended && end.failure.empty())
       end.reason = real_.status().emergency ? "emergency stop" : interrupted_ ? "interrupted" : time_is_over();
     end.interrupted = interrupted_;
     return end;
@@ -129,6 +134,25 @@ class Driver {
   std::string time_is_over() const {
     const std::vector<std::string> waited_for = real_.status().silent;
     return waited_for.empty() ? "the time is over" : "the time is over; the drive was waiting: " + joined(waited_for);
+  }
+
+  /// Who waits to the end and has neither moved nor mapped has failed, though nothing was lost.
+  void mind_nothing_done(LoopEnd& end) const {
+    if (!end.failure.empty() || real_.status().silent.empty()) return;
+    const bool moves = options_.mode == DriveMode::Explore || options_.mode == DriveMode::Calibrate;
+    const bool mapped = known_area(core_.mapper().map()) > 0.0;
+    if (mapped && (moved_ || !moves)) return;
+    end.failure = end.reason = time_is_over() + (mapped ? "; the robot never moved" : "; nothing is mapped");
+  }
+
+  /// By its wheels.
+  void watch_motion(const robot::Inputs& inputs) {
+    for (const robot::Odometry& odometry : inputs.odometry) {
+      const mrpt::math::TPose2D& pose = odometry.pose;
+      if (!start_) start_ = pose;
+      moved_ = moved_ || std::hypot(pose.x - start_->x, pose.y - start_->y) > kMoved.v ||
+               std::abs(wrap_angle(pose.phi - start_->phi)) > kMoved.w;
+    }
   }
 
   /// Asked in the robot's own thread, whatever the core is at.
@@ -153,6 +177,7 @@ class Driver {
     tell_back({});
     held_ = false;
     begun_ = true;
+    watch_motion(inputs);
     if (options_.mode != DriveMode::Explore) commands.brake = false;
     if (options_.mode == DriveMode::Teleoperate) commands.drive = options_.keys ? options_.keys() : robot::Drive{};
     if (options_.mode == DriveMode::MapOnly) commands.drive = {};
@@ -166,6 +191,7 @@ class Driver {
 
   /// While devices are silent: tells which, and saves the map at once. False ends the run.
   bool wait(const robot::RobotStatus& status) {
+    if ((status.held || begun_) && seconds_since(shown_at_) >= 1.0) show(status, status.held ? "held" : "waiting");
     const bool others = names(status.silent) != names(told_) || status.held != held_;
     if (status.silent != told_ && (others || is_news(status.silent))) {
       if (options_.tell)
@@ -234,27 +260,34 @@ class Driver {
   }
 
   void each_second(double seconds) {
-    const Stamp now = robot::host_now();
-    const double since = now - told_at_;  // the drive's own time stands still while it waits
-    told_at_ = now;
+    seconds_ = seconds;
+    const robot::RobotStatus status = real_.status();
+    if (status.troubles != troubles_ && options_.tell) tell_troubles(status.troubles);
+    troubles_ = status.troubles;
+    if (!begun_) return;
+    show(status, options_.mode == DriveMode::Teleoperate ? "by hand"
+                 : options_.mode == DriveMode::MapOnly   ? "mapping"
+                 : options_.mode == DriveMode::Calibrate ? "calibrate"
+                 : core_.explorer()                      ? name_of(core_.explorer()->state())
+                                                         : "mapping");
+  }
+
+  /// The line of this second.
+  void show(const robot::RobotStatus& robot, const std::string& state) {
+    const double since = seconds_since(shown_at_);  // the drive's own time stands still while it waits
+    shown_at_ = Clock::now();
+    if (!options_.each_second || since <= 0.0) return;
     DriveStatus status;
-    status.robot = real_.status();
+    status.robot = robot;
     status.has_base = has_base_;
-    if (status.robot.troubles != troubles_ && options_.tell) tell_troubles(status.robot.troubles);
-    troubles_ = status.robot.troubles;
-    if (!options_.each_second || since <= 0.0 || !begun_) return;
-    status.seconds = seconds;
-    status.state = options_.mode == DriveMode::Teleoperate ? "by hand"
-                   : options_.mode == DriveMode::MapOnly   ? "mapping"
-                   : options_.mode == DriveMode::Calibrate ? "calibrate"
-                   : core_.explorer()                      ? name_of(core_.explorer()->state())
-                                                           : "mapping";
+    status.seconds = seconds_;
+    status.state = state;
     status.T_map_base = core_.mapper().pose();
     status.known_m2 = known_area(core_.mapper().map());
-    status.scans_per_s = static_cast<double>(status.robot.scans - last_.scans) / since;
-    status.odometry_per_s = static_cast<double>(status.robot.odometry - last_.odometry) / since;
-    status.accelerations_per_s = static_cast<double>(status.robot.accelerations - last_.accelerations) / since;
-    last_ = status.robot;
+    status.scans_per_s = static_cast<double>(robot.scans - last_.scans) / since;
+    status.odometry_per_s = static_cast<double>(robot.odometry - last_.odometry) / since;
+    status.accelerations_per_s = static_cast<double>(robot.accelerations - last_.accelerations) / since;
+    last_ = robot;
     options_.each_second(status);
   }
 
@@ -264,7 +297,10 @@ class Driver {
   const bool has_base_;
   Loop loop_;
   bool begun_ = false;  ///< something has come in
-  Stamp told_at_ = robot::host_now();
+  bool moved_ = false;
+  std::optional<mrpt::math::TPose2D> start_;  ///< of the wheels
+  double seconds_ = 0.0;                      ///< since the first tick
+  Clock::time_point shown_at_ = Clock::now();
   std::atomic<bool> interrupted_{false};
   bool held_ = false;  ///< stopped at the robot itself, and told
   std::vector<std::string> troubles_;
@@ -364,8 +400,10 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
   folder.close();
   if (options.out.empty()) folder.link_latest();
   report.folder = folder.path();
-  if (box.failed())
-    throw RunError(folder.file("devices.bytes") + ": could not be written to its end; free some space and run again");
+  for (const std::string& device : box.cut_short())
+    if (options.tell)
+      options.tell("devices.bytes: not all that '" + device + "' sent is in it: it was more than 1 MB/s");
+  if (const std::string why = box.failure(); !why.empty()) throw RunError(folder.file("devices.bytes") + ": " + why);
   return report;
 }
 

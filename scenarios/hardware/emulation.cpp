@@ -6,10 +6,12 @@
 #include <cstdlib>
 #include <fstream>
 #include <memory>
+#include <type_traits>
 
 #include "arenas/files/arena_file.h"
 #include "arenas/model/arena.h"
 #include "base/error.h"
+#include "base/text/input_file.h"
 #include "base/text/words.h"
 #include "base/trajectory.h"
 #include "robot/drivers/host_clock.h"
@@ -25,6 +27,7 @@ namespace {
 constexpr double kDamage = 1.0;     ///< spoilt bytes last so long [s]
 constexpr double kSilence = 2.0;    ///< [s]
 constexpr double kUnplugged = 3.0;  ///< [s]
+constexpr double kSlow = 6.0;       ///< [s]
 
 robot::ArcosEmulatorSettings base_settings(const robot::RobotModel& model, const EmulateOptions& options) {
   robot::ArcosEmulatorSettings settings;
@@ -82,6 +85,9 @@ const std::vector<FaultAt>& known_faults() {
     add(EmulatedKind::Base, "watchdog", DeviceFault::Watchdog);
     add(EmulatedKind::Base, "button", DeviceFault::Button);
     add(EmulatedKind::Base, "motors", DeviceFault::Motors);
+    add(EmulatedKind::Base, "stuck", DeviceFault::Stuck);
+    add(EmulatedKind::Base, "runaway", DeviceFault::Runaway);
+    add(EmulatedKind::Base, "slow", PortFault::Slow);
     add(EmulatedKind::Levelling, "sensor", DeviceFault::Sensor);
     return all;
   }();
@@ -109,6 +115,7 @@ class Emulation {
       levelling_ = std::make_unique<robot::DeviceServer>(options.levelling, *unit_, scenario.seed + 1);
     }
     if (!options.truth.empty()) {
+      require_not_read(options.truth);
       truth_.open(options.truth);
       if (!truth_) throw InputError(options.truth + ": cannot be written; give a path in a folder that exists");
     }
@@ -228,7 +235,14 @@ class Emulation {
   static void begin(const Fault& fault, Port& port, const Own& own) {
     if (const auto* bytes = std::get_if<robot::ByteFault>(&fault)) return port.spoil(*bytes, kDamage);
     if (const auto* device = std::get_if<robot::DeviceFault>(&fault)) return own(*device);
-    std::get<PortFault>(fault) == PortFault::Silence ? port.fall_silent(kSilence) : port.unplug(kUnplugged);
+    switch (std::get<PortFault>(fault)) {
+      case PortFault::Silence:
+        return port.fall_silent(kSilence);
+      case PortFault::Unplug:
+        return port.unplug(kUnplugged);
+      case PortFault::Slow:
+        if constexpr (std::is_same_v<Port, robot::DeviceServer>) port.slow_down(kSlow);
+    }
   }
 
   static void fail(robot::DeviceServer& server, robot::EmulatedDevice& device, robot::DeviceFault fault) {

@@ -16,7 +16,7 @@ namespace rubble::scenarios {
 
 enum class EmulatedKind { Scanner, Base, Levelling };
 /// What happens to a device's port.
-enum class PortFault { Silence, Unplug };
+enum class PortFault { Silence, Unplug, Slow };
 using Fault = std::variant<robot::ByteFault, PortFault, robot::DeviceFault>;
 
 /// Something goes wrong with an emulated device.

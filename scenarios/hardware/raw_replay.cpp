@@ -5,6 +5,7 @@
 
 #include "robot/drivers/black_box_replay.h"
 #include "robot/drivers/scip/scip_replay.h"
+#include "robot/logs/foreign/file_bytes.h"
 #include "robot/logs/log.h"
 #include "scenarios/hardware/robot_file.h"
 
@@ -54,6 +55,7 @@ RawReplay replay_raw(const std::string& run_folder) {
   const RobotFile file = load_robot_file(run_folder + "/robot.yaml");
   const std::vector<robot::BlackBoxEntry> entries = robot::read_black_box(run_folder + "/devices.bytes");
   robot::Inputs recorded;
+  require_input(run_folder + "/log.rlog", robot::log_rules());
   robot::ReplayRobot log(run_folder + "/log.rlog");
   while (const auto inputs = log.read()) {
     append(recorded.scans, inputs->scans);

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 #include "base/angle.h"
+#include "base/error.h"
 #include "base/yaml/binder.h"
 #include "base/yaml/strict_yaml.h"
+#include "robot/drivers/port_word.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -61,6 +65,7 @@ void bind(Binder& b, robot::SafetySettings& s) {
   b.number("lidar_silence_s", s.lidar_silence, 0.1, 10.0);
   b.number("lidar_age_s", s.lidar_age, 0.2, 10.0);
   b.number("base_silence_s", s.base_silence, 0.2, 10.0);
+  b.number("base_answer_s", s.base_answer, 0.05, 10.0);
   b.number("levelling_silence_s", s.levelling_silence, 0.1, 10.0);
   b.number("core_silence_s", s.core_silence, 0.1, 10.0);
   b.number("operator_silence_s", s.operator_silence, 0.1, 60.0);
@@ -75,6 +80,41 @@ void bind_devices(Binder& b, RobotFile& file) {
     devices.section("levelling", [&](Binder& in) { bind_levelling(in, file.robot); });
   });
   b.section("safety", [&](Binder& in) { bind(in, file.robot.safety); });
+}
+
+/// A word that YAML takes for something else (`tcp:127.0.0.1:` is a map to it) is text to `--set`.
+std::string as_text(const std::string& key, const std::string& value) {
+  const bool port = key == "devices.urg.port" || key == "devices.base.port" || key == "devices.levelling.port";
+  if (!port || value.empty() || value.back() != ':') return value;
+  return yaml_quoted(value);
+}
+
+/// Whether two words lead to one device: by the file where there is one, for it may have several names.
+bool is_same_port(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  std::error_code error_a, error_b;
+  const auto path_a = std::filesystem::canonical(a, error_a), path_b = std::filesystem::canonical(b, error_b);
+  return !error_a && !error_b && path_a == path_b;
+}
+
+/// The ports that are opened, before anything is.
+void check_ports(const YamlMap& devices, const RobotFile& file) {
+  std::vector<std::pair<const char*, std::string>> seen;
+  const auto check = [&](const char* device, const std::string& word) {
+    try {
+      robot::require_callable(robot::parse_port_word(word), word);
+    } catch (const InputError& error) {
+      devices.map(device).fail("port", error.what());
+    }
+    for (const auto& [other, taken] : seen)
+      if (is_same_port(word, taken))
+        devices.map(device).fail("port", std::string("devices.") + other + " and devices." + device +
+                                             " have the same port '" + word + "'; each device needs its own");
+    seen.emplace_back(device, word);
+  };
+  check("urg", file.lidar.port);
+  if (file.robot.base_driver != robot::kNoBase) check("base", file.robot.base_port);
+  if (file.robot.model.has_levelling_unit) check("levelling", file.robot.levelling_port);
 }
 
 /// The limits of the model are those that the driver enforces.
@@ -103,7 +143,7 @@ void settle(RobotFile& file, const robot::RobotModel& devices) {
 
 RobotFile load_robot_file(const std::string& path, const std::vector<Override>& overrides) {
   YamlMap root = YamlMap::load(path);
-  for (const auto& [key, value] : overrides) root.set(key, value);
+  for (const auto& [key, value] : overrides) root.set(key, as_text(key, value));
   RobotFile file;
   file.lidar.port = "/dev/ttyACM0";
   file.robot.base_port = "/dev/ttyUSB0";
@@ -117,6 +157,7 @@ RobotFile load_robot_file(const std::string& path, const std::vector<Override>& 
   if (urg.text("driver", "scip") == "mrpt") file.lidar.no_echo_is_miss = false;
   YamlReader reader(root);
   bind_devices(reader, file);
+  check_ports(root.map("devices"), file);
   if (!file.lidar.parameters.empty() && file.lidar.driver != LidarDriver::Mrpt)
     urg.fail("parameters", "are passed to MRPT's drivers; `driver: mrpt` is missing");
   read_settings(root, file.settings);

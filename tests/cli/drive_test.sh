@@ -8,14 +8,19 @@ trap 'for it in $emulator $drive $stranger; do kill $it 2>/dev/null; done; rm -r
 
 # start_emulator [options]: ports in $ports. Waits until they are open.
 start_emulator() {
+  rm -f emulator.txt  # the one before was ready too
   "$rubble" emulate small.yaml --urg tcp:127.0.0.1:0 --base tcp:127.0.0.1:0 --levelling tcp:127.0.0.1:0 "$@" \
     >emulator.txt 2>emulator_err.txt &
   emulator=$!
   for _ in $(seq 200); do
-    grep -q '^ready$' emulator.txt && break
+    grep -qs '^ready$' emulator.txt && break
     sleep 0.1
   done
-  grep -q '^ready$' emulator.txt || fail "the emulator is not ready: $(cat emulator.txt emulator_err.txt)"
+  grep -q '^ready$' emulator.txt || {
+    fail "the emulator is not ready: $(cat emulator.txt emulator_err.txt)"
+    ports=
+    return
+  }
   ports=
   while read -r device port; do
     case $device in urg | base | levelling) ports+=" --$device $port" ;; esac
@@ -43,6 +48,13 @@ for start in inf,0,0 0,nan,0 0,0,1e300; do
 done
 expect_exit 3 "did you mean" "$rubble" drive "$robot" --set safety.lidar_silense_s=1
 expect_exit 3 "tcp:nowhere" "$rubble" drive "$robot" --urg tcp:nowhere
+for device in urg base levelling; do
+  expect_exit 3 "--$device: port 'tcp:127.0.0.1:': '' is no port number" "$rubble" drive "$robot" --$device tcp:127.0.0.1:
+  expect_exit 3 "--$device: needs a port" "$rubble" drive "$robot" --$device ""
+  expect_exit 3 "--$device: port 'tcp:127.0.0.1:0': nobody can be reached at port number 0" "$rubble" drive "$robot" --$device tcp:127.0.0.1:0
+  expect_exit 2 "--$device: needs a value, and --set is an option" "$rubble" drive "$robot" --$device --set safety.start_s=1
+done
+expect_exit 3 "devices.urg and devices.base have the same port '/dev/ttyUSB0'" "$rubble" drive "$robot" --urg /dev/ttyUSB0
 expect_exit 3 "nonsense.yaml" "$rubble" drive nonsense.yaml
 # A time that is all needed for the way home is legal, and said.
 "$rubble" drive "$robot" --urg pty:no1 --base pty:no2 --levelling pty:no3 --set safety.start_s=1 --time-limit 12 --out hasty >out.txt 2>err.txt
@@ -65,6 +77,19 @@ stop_emulator
 [[ $code == 0 ]] || fail "a drive that is held ends with $code: $(cat err.txt)"
 grep -q 'the drive was waiting: base: ' out.txt || fail "nothing says that the robot was held to the end: $(cat out.txt err.txt)"
 
+# The same from the start on: the state is shown each second all the same.
+# shellcheck disable=SC2046
+start_emulator $(printf -- "--fault base-button@%s " 0 1.5 3 4.5 6 7.5 9 10.5)  # pressed for 2 s each time: all along, however slow this machine is
+# shellcheck disable=SC2086
+"$rubble" drive "$robot" $ports --time-limit 4 --set safety.start_s=2 --out pressed >out.txt 2>err.txt
+code=$?
+stop_emulator
+[[ $code == 4 ]] || fail "a drive that never began ends with $code: $(cat out.txt err.txt)"
+grep -q 'the drive was waiting: base: emergency button pressed.*; nothing is mapped' err.txt || fail "nothing says why nothing is mapped: $(cat out.txt err.txt)"
+grep -q "rubble: base: emergency button pressed" err.txt || fail "the pressed button is not named: $(cat err.txt)"
+shown=$(grep -c '^ *0 s  held .* V  motors off ' err.txt)
+((shown >= 4)) || fail "a robot that is held from the start shows its state $shown times in 6 s: $(cat err.txt)"
+
 # The whole job in real time, with a base that is unplugged on the way: it is named and picked up again, how the robot
 # came to rest meanwhile the scans tell, and the map loses nothing by it.
 "$rubble" run small.yaml --set mapper.kind=robust --out in_process >/dev/null || fail "the same scenario in process fails"
@@ -79,6 +104,7 @@ sed -n '/motors on/,$p' err.txt >underway.txt
 grep -q "rubble: base: " underway.txt || fail "the unplugged base is not named"
 sed -n '/rubble: base: /,$p' underway.txt | grep -q "base: reports" || fail "the base did not come back"
 ! sed -n '/rubble: base: /,/base: reports/p' underway.txt | grep -q "rubble: urg: " || fail "the scanner is named in the base's place"
+! grep -E "does not obey|answers? .* late|not answered|do not come on" underway.txt || fail "a base that is well is said to be in trouble"
 for file in log.rlog devices.bytes robot.yaml scenario.yaml estimate.tum map.tif map.png score.json; do
   [[ -s driven/$file ]] || fail "driven/$file is missing"
 done

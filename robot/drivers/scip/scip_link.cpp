@@ -232,17 +232,23 @@ void Link::identify_scip1() {
 
 void Link::ask_time(WrappingClock& clock, ClockMap& map) {
   if (!scip2_) return;
-  const auto on = ask("TM0", kAnswerTime);
+  // What is lost on a spoilt line is asked again: without the device's clock stamps are off by milliseconds.
+  std::optional<Reply> on;
+  for (int i = 0; i < kTries && !on; ++i) on = ask("TM0", kAnswerTime);
   if (!on) ask("TM2", kAnswerTime);  // it may have heard the question all the same, and would refuse all that follows
   if (!on || (*status_of(*on) != "00" && *status_of(*on) != "02"))
     return;  // an old firmware: the usual delay has to do
-  for (int i = 0; i < kTimeQuestions; ++i) {
+  const bool is_spoilt_line = damaged() > 0;
+  int told = 0, spoilt = 0, damaged_times = 0;
+  for (int i = 0; i < kTimeQuestions && spoilt - told < kTries; ++i) {
     // The questions fall on different parts of the device's millisecond, which narrows the offset down further.
     sleep_until(host_now() + (i % 4) * 0.00027);
     const auto reply = ask("TM1", kAnswerTime);
-    if (!reply || *status_of(*reply) != "00" || reply->lines.size() < 3) continue;
-    const auto text = checked(reply->lines[2]);
+    if (reply && *status_of(*reply) != "00") continue;
+    const auto text = reply && reply->lines.size() > 2 ? checked(reply->lines[2]) : std::nullopt;
     const auto count = text && text->size() == 4 ? decode(*text) : std::nullopt;
+    ++(count ? told : spoilt);
+    damaged_times += reply && !count ? 1 : 0;
     if (!count) continue;
     const WrappingClock::Reading reading = clock.read(*count, reply->ended);
     if (reading.restarted) map.clear();
@@ -250,6 +256,9 @@ void Link::ask_time(WrappingClock& clock, ClockMap& map) {
     map.anchor(reading.time, soonest, latest);
   }
   insist("TM2");
+  // Where nothing else is spoilt these are what its firmware sends; a spoilt line may do better the next time.
+  if (is_spoilt_line && damaged_times > 0 && told == 0)
+    refuse("the scanner's answers about its clock (TM1) come spoilt; check the cable");
 }
 
 void Link::start() {

@@ -214,8 +214,10 @@ TEST(RealRobot, ASilentScannerStopsIt) {
   // The core commands on: it is the scanner's silence that stops the robot.
   bench.worst_wake = 0.0;
   const Stamp braked = bench.braked_though_commanded(0.3);
-  ASSERT_NE(braked, Stamp::never()) << "it drives on blindly";
-  EXPECT_LT(braked - bench.scanner.status().last_scan, 0.3 + 0.15 + 2.0 * bench.worst_wake);
+  EXPECT_NE(braked, Stamp::never()) << "it drives on blindly";
+  if (braked != Stamp::never()) {
+    EXPECT_LT(braked - bench.scanner.status().last_scan, 0.3 + 0.15 + 2.0 * bench.worst_wake);
+  }
   EXPECT_TRUE(Bench::soon([&] {
     bench.robot->command({{0.3, 0.0}, {}});
     return bench.speed == 0.0;
@@ -270,8 +272,10 @@ TEST(RealRobot, ScansThatComeLateStopItThoughTheyNeverCease) {
   std::thread core([&] { bench.drive(0.3, 4.0); });
   bench.worst_wake = 0.0;
   const Stamp late = host_now(), braked = bench.braked_though_commanded(0.3);
-  ASSERT_NE(braked, Stamp::never()) << "it is not the core's silence that must stop it";
-  EXPECT_LT(braked - late, 0.1 + 0.15 + 2.0 * bench.worst_wake) << "from the first late scan on";
+  EXPECT_NE(braked, Stamp::never()) << "it is not the core's silence that must stop it";
+  if (braked != Stamp::never()) {
+    EXPECT_LT(braked - late, 0.1 + 0.15 + 2.0 * bench.worst_wake) << "from the first late scan on";
+  }
   EXPECT_TRUE(Bench::soon([&] {
     bench.robot->command({{0.3, 0.0}, {}});
     return bench.speed == 0.0;
@@ -589,6 +593,102 @@ TEST(RealRobot, TheButtonAtTheRobotHoldsItUntilTheOperatorRearmsIt) {
   EXPECT_THAT(named, testing::Contains("base: emergency button pressed"));
 }
 
+/// Drives on by `v` for so long; what it was waiting for.
+std::vector<std::string> named_while_driving(Bench& bench, double v, double seconds) {
+  std::vector<std::string> named;
+  bench.robot->while_waiting([&](const RobotStatus& status) {
+    named.insert(named.end(), status.silent.begin(), status.silent.end());
+    return true;
+  });
+  bench.drive(v, seconds);
+  bench.robot->while_waiting({});
+  return named;
+}
+
+/// Its reports come as ever, only late.
+TEST(RealRobot, ASlowLineToTheBaseIsNamedAndNotDrivenOn) {
+  Bench bench;
+  EXPECT_THAT(named_while_driving(bench, 0.3, 3.0),
+              testing::Not(testing::Contains(testing::HasSubstr("late (at most"))));
+  ASSERT_TRUE(Bench::soon([&] { return bench.speed > 0.0; }));
+  bench.base_server.slow_down(6.0);
+  const Stamp slow = host_now();
+  std::vector<std::string> named;
+  std::thread core([&] { named = named_while_driving(bench, 0.3, 5.0); });
+  bench.worst_wake = 0.0;
+  const Stamp braked = bench.braked_though_commanded(0.3);
+  EXPECT_NE(braked, Stamp::never()) << "it drives on, though a stop would come a second late";
+  if (braked != Stamp::never()) {
+    EXPECT_LT(braked - slow, 2.5 + DeviceServer::kSlowWay + 2.0 * bench.worst_wake);
+  }
+  core.join();
+  EXPECT_THAT(named,
+              testing::Contains(testing::AllOf(testing::StartsWith("base: "), testing::HasSubstr("late (at most"))));
+  EXPECT_EQ(bench.speed, 0.0);
+  bench.drive(0.3, 5.0);
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0; })) << "it goes on when the line is quick again";
+}
+
+TEST(RealRobot, ABaseThatDoesNotHearIsNamed) {
+  Bench bench;
+  bench.drive(0.3, 3.0);
+  bench.base_server.with([&] { bench.arcos.fail(DeviceFault::Watchdog, host_now()); });
+  EXPECT_THAT(named_while_driving(bench, 0.3, 3.0),
+              testing::Contains(testing::StartsWith("base: reports, but has not")));
+  EXPECT_THAT(named_while_driving(bench, 0.3, 5.0),
+              testing::Not(testing::Contains(testing::HasSubstr("late (at most"))))
+      << "the line is quick";
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0; })) << "it goes on when it hears again";
+}
+
+TEST(RealRobot, WheelsThatStandThoughToldToDriveAreATrouble) {
+  Bench bench;
+  bench.drive(0.3, 3.0);
+  EXPECT_TRUE(bench.robot->status().troubles.empty());
+  bench.base_server.with([&] { bench.arcos.fail(DeviceFault::Stuck, host_now()); });
+  std::thread core([&] { bench.drive(0.3, 8.0); });
+  EXPECT_TRUE(Bench::soon([&] {
+    const auto troubles = bench.robot->status().troubles;
+    return troubles.size() == 1 && troubles[0].rfind("base: reports, but does not obey", 0) == 0;
+  }));
+  EXPECT_TRUE(Bench::soon([&] { return bench.robot->status().troubles.empty(); })) << "it obeys again";
+  core.join();
+}
+
+/// It answers, reports, and does not stop.
+TEST(RealRobot, ABaseThatMovesThoughToldOtherwiseIsSwitchedOffAndHeld) {
+  Bench bench;
+  bench.drive(0.3, 3.0);
+  ASSERT_TRUE(Bench::soon([&] { return bench.speed > 0.0; }));
+  std::vector<std::string> named;
+  std::atomic<bool> rearm{false};
+  bench.robot->while_waiting([&](const RobotStatus& status) {
+    named.insert(named.end(), status.silent.begin(), status.silent.end());
+    if (rearm) bench.robot->rearm();
+    return true;
+  });
+  bench.base_server.with([&] { bench.arcos.fail(DeviceFault::Runaway, host_now()); });
+  std::atomic<double> v{0.0};
+  std::thread core([&] {
+    for (const Stamp end = host_now() + 12.0; host_now() < end;) {
+      if (!bench.robot->read()) break;
+      bench.robot->command({{v, 0.0}, {}});
+    }
+  });
+  const Stamp told = host_now();
+  EXPECT_TRUE(Bench::soon([&] { return bench.robot->status().held && bench.speed == 0.0; }));
+  EXPECT_LT(host_now() - told, 4.0);
+  bench.base_server.with([&] { EXPECT_FALSE(bench.arcos.motors_on()); });
+  v = 0.3;
+  sleep_until(host_now() + 2.0);
+  EXPECT_TRUE(bench.robot->status().held) << "somebody must see to it";
+  EXPECT_EQ(bench.speed, 0.0);
+  rearm = true;
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0; }));
+  core.join();
+  EXPECT_THAT(named, testing::Contains(testing::HasSubstr("motors switched off")));
+}
+
 TEST(RealRobot, AMissingBaseIsNotTakenForTheScanner) {
   RealRobotSettings settings;
   settings.base_port = "pty:/nonexistent/base";
@@ -771,6 +871,24 @@ TEST(BlackBox, NobodyWaitsForASlowDisk) {
   for (int i = 0; i < 1000; ++i) EXPECT_EQ(whole[static_cast<std::size_t>(i)].stamp.ns, i);
 }
 
+TEST(BlackBox, SaysWhyItIsNotWhole) {
+  Folder folder;
+  if (fs::exists("/dev/full")) {
+    const int full = ::open("/dev/full", O_WRONLY);
+    fs::create_symlink("/dev/full", folder.file("full"));
+    ::close(full);
+    EXPECT_THROW(BlackBox box(folder.file("full")), std::exception) << "it is said at once";
+  }
+  BlackBox box(folder.file("flooded"));
+  box.add("base", Direction::FromDevice, "x", {1});
+  EXPECT_EQ(box.failure(), "");
+  EXPECT_TRUE(box.cut_short().empty());
+  EXPECT_FALSE(box.admits("base", 3'000'000, Stamp{1}));
+  EXPECT_TRUE(box.admits("urg", 3000, Stamp{1}));
+  EXPECT_EQ(box.failure(), "") << "what is left out on purpose is no fault of the disk";
+  EXPECT_THAT(box.cut_short(), testing::ElementsAre("base"));
+}
+
 TEST(BlackBox, WhatADiskNeverTakesDoesNotFillTheMemory) {
   Folder folder;
   ASSERT_EQ(::mkfifo(folder.file("stuck").c_str(), 0600), 0);
@@ -783,6 +901,7 @@ TEST(BlackBox, WhatADiskNeverTakesDoesNotFillTheMemory) {
       box.add("base", Direction::FromDevice, block, {});
     reader.close();  // the disk is gone for good
     EXPECT_TRUE(box.failed());
+    EXPECT_THAT(box.failure(), testing::Not(testing::HasSubstr("free some space")));
   }
   std::signal(SIGPIPE, handler);
 }

@@ -25,10 +25,10 @@ class RobotFileTest : public testing::Test {
   }
   ~RobotFileTest() override { fs::remove_all(folder_); }
 
-  RobotFile load(const std::string& yaml) {
+  RobotFile load(const std::string& yaml, const std::vector<Override>& overrides = {}) {
     const std::string path = (folder_ / "robot.yaml").string();
     std::ofstream(path) << yaml;
-    return load_robot_file(path);
+    return load_robot_file(path, overrides);
   }
 
  private:
@@ -57,6 +57,52 @@ TEST_F(RobotFileTest, APermittedSilenceIsPermittedByTheDriversToo) {
   const RobotFile file = load("safety: {base_silence_s: 7, levelling_silence_s: 4}\n");
   EXPECT_GE(file.robot.base.silence, 7.0);
   EXPECT_GE(file.robot.levelling.silence, 4.0);
+}
+
+/// A word that ends in a colon is a map to YAML, which is not what is wrong with it.
+TEST_F(RobotFileTest, APortThatIsNoneIsNamedAsOne) {
+  for (const std::string device : {"urg", "base", "levelling"}) {
+    const std::string key = "devices." + device + ".port";
+    for (const auto& [word, why] : {std::pair<std::string, std::string>{"tcp:127.0.0.1:", "is no port number"},
+                                    {"tcp:127.0.0.1", "host or port number is missing"},
+                                    {"tcp:127.0.0.1:70000", "is no port number"},
+                                    {"tcp:127.0.0.1:0", "nobody can be reached at port number 0"},
+                                    {"pty:", "the path is missing"},
+                                    {"ttyUSB0", "is no port"}}) {
+      try {
+        load("name: here\n", {{key, word}});
+        ADD_FAILURE() << word << " passed";
+      } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("--set " + key), testing::HasSubstr(why)));
+      }
+      try {
+        load("devices:\n  " + device + ":\n    port: \"" + word + "\"\n", {});
+        ADD_FAILURE() << word << " passed";
+      } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("robot.yaml:3"), testing::HasSubstr(why)));
+      }
+    }
+  }
+  EXPECT_EQ(load("name: here\n", {{"devices.base.driver", "none"}, {"devices.base.port", "nowhere"}}).robot.base_port,
+            "");
+}
+
+TEST_F(RobotFileTest, OnePortForTwoDevicesIsRefusedByBothNames) {
+  const auto refuses = [&](const std::vector<Override>& overrides, const std::string& why) {
+    try {
+      load("name: here\n", overrides);
+      ADD_FAILURE() << why << ": passed";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr(why));
+    }
+  };
+  refuses({{"devices.urg.port", "/dev/ttyUSB0"}}, "devices.urg and devices.base have the same port '/dev/ttyUSB0'");
+  refuses({{"devices.base.port", "tcp:127.0.0.1:9"}, {"devices.levelling.port", "tcp:127.0.0.1:9"}},
+          "devices.base and devices.levelling have the same port");
+  refuses({{"devices.urg.port", "/dev/null"}, {"devices.levelling.port", "/dev/../dev/null"}},
+          "devices.urg and devices.levelling have the same port");
+  EXPECT_NO_THROW(load("name: here\n", {{"devices.urg.port", "/dev/ttyUSB0"}, {"devices.base.driver", "none"}}));
+  EXPECT_NO_THROW(load("name: here\n", {{"devices.urg.port", "/dev/ttyUSB1"}, {"devices.levelling.driver", "none"}}));
 }
 
 }  // namespace

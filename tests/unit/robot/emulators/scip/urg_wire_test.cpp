@@ -327,6 +327,108 @@ class Lossy : public PortAround {
   std::uint8_t last_ = 0;
 };
 
+/// Hands over whole replies, each as `edit` has it.
+class Edited : public PortAround {
+ public:
+  Edited(std::unique_ptr<Port> inner, std::function<std::string(const std::string&)> edit)
+      : PortAround(std::move(inner)), edit_(std::move(edit)) {}
+  Arrival read(std::uint8_t* to, std::size_t size, double timeout) override {
+    const Stamp end = host_now() + timeout;
+    for (;;) {
+      Arrival arrival = inner_->read(to, size, ready_.empty() ? std::max(0.0, end - host_now()) : 0.0);
+      waiting_.append(reinterpret_cast<const char*>(to), arrival.size);
+      for (std::size_t at; (at = waiting_.find("\n\n")) != std::string::npos; waiting_.erase(0, at + 2))
+        ready_ += edit_(waiting_.substr(0, at + 2));
+      if (ready_.empty() && arrival.size > 0 && host_now() < end) continue;
+      arrival.size = ready_.copy(reinterpret_cast<char*>(to), size);
+      ready_.erase(0, arrival.size);
+      return arrival;
+    }
+  }
+
+ private:
+  std::function<std::string(const std::string&)> edit_;
+  std::string waiting_, ready_;
+};
+
+/// Without the scanner's clock its stamps are guessed from arrivals: what a spoilt line loses is asked for again.
+class AskedForItsClock : public testing::Test {
+ protected:
+  /// Of replies that begin with `echo` the first `many` come as `as`; at least `least` of them.
+  void connect(const std::string& echo, int many, int least, const std::function<std::string(std::string)>& as) {
+    ScipScannerConfig config;
+    config.open = [=](const std::string& word) {
+      return std::make_unique<Edited>(open_port(word), [=](const std::string& reply) {
+        const bool met = reply.rfind(echo, 0) == 0 && met_.fetch_add(1) < many;
+        return met ? as(reply) : reply;
+      });
+    };
+    bench_.connect(config);
+    ASSERT_TRUE(bench_.more(8, 15.0)) << bench_.scanner->status().error;
+    EXPECT_GE(met_, least) << "the line was not spoilt";
+  }
+  static std::string lost(const std::string&) { return ""; }
+  static std::string spoilt(std::string reply) {
+    reply[reply.size() - 3] ^= 1;  // the sum of its last line
+    return reply;
+  }
+  void expect_known_clock() {
+    EXPECT_GT(bench_.scanner->status().clock_doubt, 0.0);
+    for (const LaserScan& scan : bench_.scans) expect_true(bench_, scan, 0.002);
+  }
+
+  std::atomic<int> met_{0}, versions_{0};  // its threads use them: they must outlive it
+  Bench bench_{"tcp"};
+};
+
+TEST_F(AskedForItsClock, AFirstAnswerThatIsLostIsAskedForAgain) {
+  connect("TM0", 1, 2, lost);
+  expect_known_clock();
+}
+
+TEST_F(AskedForItsClock, SpoiltTimesAreAskedForAgain) {
+  connect("TM1", 2, 10, spoilt);
+  expect_known_clock();
+}
+
+TEST_F(AskedForItsClock, LostTimesAreAskedForAgain) {
+  connect("TM1", 1, 10, lost);
+  expect_known_clock();
+}
+
+/// An old firmware does not know the question.
+TEST_F(AskedForItsClock, AScannerThatNeverAnswersThatIsUsedAllTheSame) { connect("TM0", 1000, 2, lost); }
+
+/// It goes on with the usual delay, at the first attempt.
+TEST_F(AskedForItsClock, AScannerWhoseTimesNeverComeIsUsedAllTheSame) {
+  connect("TM1", 1000, 3, lost);
+  EXPECT_EQ(bench_.scanner->status().connects, 1u);
+  EXPECT_EQ(bench_.scanner->status().clock_doubt, 0.0);
+}
+
+TEST_F(AskedForItsClock, AScannerThatSumsItsTimesOtherwiseIsUsedAllTheSame) {
+  connect("TM1", 1000, 3, spoilt);
+  EXPECT_EQ(bench_.scanner->status().connects, 1u);
+  EXPECT_EQ(bench_.scanner->status().clock_doubt, 0.0);
+}
+
+/// Here it is the line: a version whose sum is wrong, then three times. Connected anew the clock is known.
+TEST_F(AskedForItsClock, ASpoiltLineIsTriedAnew) {
+  ScipScannerConfig config;
+  config.open = [this](const std::string& word) {
+    return std::make_unique<Edited>(open_port(word), [this](const std::string& reply) {
+      const bool first = reply.rfind("VV", 0) == 0 && versions_.fetch_add(1) < 1;
+      const bool time = reply.rfind("TM1", 0) == 0 && met_.fetch_add(1) < 3;
+      return first || time ? spoilt(reply) : reply;
+    });
+  };
+  bench_.connect(config);
+  ASSERT_TRUE(bench_.more(8, 15.0)) << bench_.scanner->status().error;
+  EXPECT_GT(met_, 3);
+  EXPECT_GE(versions_, 3) << "it was not connected anew";
+  expect_known_clock();
+}
+
 /// In SCIP 1.1 an answer that is lost was the only one on its way.
 TEST_P(UrgWire, OldProtocolAsksAgainForATurnThatGotLost) {
   std::atomic<int> lose{0};
