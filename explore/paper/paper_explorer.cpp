@@ -42,7 +42,8 @@ constexpr double kPatience = 2.0;                       ///< then its motors may
 constexpr double kCornerRoom = 0.08;                    ///< beside corners that turn [m]
 constexpr double kLittleRoom = 0.01;                    ///< [m]
 constexpr double kPaper = 0.5;                          ///< what stands alone and is not wider may be paper [m]
-constexpr int kHomeTries = 6;                           ///< times that all that was felt is forgotten on the way home
+constexpr double kHeap = 1.1;  ///< several balls side by side; a panel of wall is 1.2 m wide [m]
+constexpr int kHomeTries = 6;  ///< times that all that was felt is forgotten on the way home
 
 TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
 
@@ -252,7 +253,7 @@ Drive PaperExplorer::drive(const slam::Mapper& mapper) {
 
 Traversable PaperExplorer::floor_now(const slam::Mapper& mapper, const std::vector<TPoint2D>& hits) const {
   Traversable floor = traversable(mapper.map(), config_.occupied_threshold);
-  if (pushing_) free_small_things(floor, kPaper);
+  if (pushed_aside_ > 0.0) free_small_things(floor, pushed_aside_);
   free_body(floor, pose_, model_.length, model_.width, 0.0);
   free_trail(floor, trail_, kTrailRadius);
   add_obstacles(floor, hits, kSameThing);
@@ -272,7 +273,16 @@ Plan PaperExplorer::plan_on(const Traversable& floor) {
   if (driving && (frontiers_done_ || !floor_search_.on())) return to_frontier(target_);
   Plan frontier = to_frontier(driving ? target_ : std::nullopt);
   Plan search = plan_search(floor, Subjects::Niches);
-  if (frontiers_done_ && !search.found) search = plan_search(floor, Subjects::All);
+  if (frontiers_done_ && !search.found) {
+    // New ground is worth more than the rest of the walls, in whose open no box stands.
+    if (frontier.frontier_left > 0 && !tried_before_search_ && try_again()) {
+      tried_before_search_ = true;
+      explore_again();
+      note("no niche is left: what could not be reached is tried again before the rest is searched");
+      return to_frontier(std::nullopt);
+    }
+    search = plan_search(floor, Subjects::All);
+  }
   if (!frontiers_done_) {
     // What lies in a niche beside the way is looked at now: coming back for it costs more.
     const double most = std::min(frontier.cost, kBesideTheWay) + (driving ? 0.0 : kDetourCost);
@@ -367,7 +377,7 @@ void PaperExplorer::visited_in_vain(const TPoint2D& where) {
 /// No frontier can be reached: look around once more, try again what failed before, then finish.
 void PaperExplorer::nothing_left() {
   if (looking_.active()) return;
-  if (state_ == ExplorerState::Searching) return finish_searching();
+  if (state_ == ExplorerState::Searching) return may_push() ? start_pushing() : finish_searching();
   if (state_ == ExplorerState::Driving && frontiers_done_) return may_push() ? start_pushing() : finish_exploring();
   if (looks_in_vain_ == 0 || (failed_plans_ < 2 && looks_in_vain_ < 2)) {
     ++looks_in_vain_;
@@ -395,15 +405,20 @@ void PaperExplorer::nothing_left() {
 
 /// Things in the way that were not seen yet when things were pushed aside last: once for each piece of ground gained.
 bool PaperExplorer::may_push() const {
-  if (pushing_) return false;
+  if (pushed_aside_ >= kHeap) return false;
   if (state_ == ExplorerState::GoingHome) return true;
+  // It came here by pushing, or something rolled into its way: the rest of the arena is to be searched as well.
+  if (state_ == ExplorerState::Searching) return floor_search_.place_left();
+  if (pushed_aside_ > 0.0) return frontier_left_ > 0;
   return frontier_left_ > 0 && (known_when_pushing_ == 0 || ground_gained_since(known_when_pushing_) >= kWorthARound);
 }
 
 void PaperExplorer::start_pushing() {
-  pushing_ = true;
-  known_when_pushing_ = known_cells(last_floor_);
-  note("nothing else can be reached: small things that stand alone are pushed aside");
+  const bool single = pushed_aside_ == 0.0;
+  pushed_aside_ = single ? kPaper : kHeap;
+  if (single) known_when_pushing_ = known_cells(last_floor_);
+  note(std::string("nothing else can be reached: ") + (single ? "small things" : "heaps") +
+       " that stand alone are pushed aside");
   plan_forced_ = true;
 }
 
@@ -421,7 +436,7 @@ void PaperExplorer::finish_exploring() {
   reason_ = why;
   if (!frontiers_done_) note(why);
   frontiers_done_ = true;
-  pushing_ = false;
+  pushed_aside_ = 0.0;
   plan_forced_ = true;
   if (floor_search_.on()) {
     state_ = ExplorerState::Searching;
@@ -438,11 +453,22 @@ bool PaperExplorer::another_round() {
   known_then_ = known_cells(last_floor_);
   victims_then_ = search_.reports().size();
   if (barren_rounds_ >= kBarrenRounds) return false;
+  const bool given_up = floor_search_.reconsider(last_floor_);
+  if (!try_again() && !given_up) return false;
+  note("round " + std::to_string(++rounds_) + ": what could not be reached or seen is tried again");
+  tried_before_search_ = false;
+  explore_again();
+  return true;
+}
+
+/// Forgives what was barred or felt; says whether there was any.
+bool PaperExplorer::try_again() {
   const bool barred = blacklist_.pardon_all(now_);
   const bool felt = felt_.pardon(now_);
-  const bool given_up = floor_search_.reconsider(last_floor_);
-  if (!barred && !felt && !given_up) return false;
-  note("round " + std::to_string(++rounds_) + ": what could not be reached or seen is tried again");
+  return barred || felt;
+}
+
+void PaperExplorer::explore_again() {
   state_ = ExplorerState::Driving;
   frontiers_done_ = false;
   known_when_pushing_ = 0;
@@ -450,7 +476,6 @@ bool PaperExplorer::another_round() {
   pardons_ = std::min(pardons_, kMaxPardons - 1);
   looked_from_.reset();
   plan_forced_ = true;
-  return true;
 }
 
 void PaperExplorer::finish_searching() {
@@ -508,6 +533,7 @@ Plan PaperExplorer::plan_search(const Traversable& floor, Subjects subjects) {
 /// At a viewpoint.
 void PaperExplorer::face_subject() {
   follower_.clear();
+  pushed_aside_ = 0.0;
   if (looking_.active()) return;
   if (const std::optional<double> turn = floor_search_.turn_to_subject(last_floor_, pose_))
     return look_around(*turn, true);

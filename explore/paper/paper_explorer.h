@@ -76,6 +76,8 @@ class PaperExplorer : public Explorer {
   void start_pushing();
   double ground_gained_since(std::size_t known_then) const;
   bool another_round();
+  bool try_again();
+  void explore_again();
   void finish(MissionEnd end, const std::string& why);
   void go_home(const std::string& why);
   bool must_turn_back();
@@ -144,14 +146,15 @@ class PaperExplorer : public Explorer {
   int failed_plans_ = 0;
   int looks_in_vain_ = 0;
   int pardons_ = 0;
-  bool pushing_ = false;                ///< small things that stand alone are pushed aside
+  double pushed_aside_ = 0.0;           ///< things that stand alone and are not wider are driven at; 0: none [m]
   std::size_t known_when_pushing_ = 0;  ///< cells, when that began last in this round; 0: not yet
   int home_tries_ = 0;
-  bool frontiers_done_ = false;   ///< this round's; what comes into reach later is a detour of the search
-  int rounds_ = 1;                ///< of exploring and searching, this one included
-  int barren_rounds_ = 0;         ///< that gained nothing, in a row
-  std::size_t known_then_ = 0;    ///< cells, at the end of the last round
-  std::size_t victims_then_ = 0;  ///< likewise
+  bool tried_before_search_ = false;  ///< what could not be reached was tried again in this round
+  bool frontiers_done_ = false;       ///< this round's; what comes into reach later is a detour of the search
+  int rounds_ = 1;                    ///< of exploring and searching, this one included
+  int barren_rounds_ = 0;             ///< that gained nothing, in a row
+  std::size_t known_then_ = 0;        ///< cells, at the end of the last round
+  std::size_t victims_then_ = 0;      ///< likewise
 
   ExplorerState after_escape_ = ExplorerState::Driving;
   std::optional<TPoint2D> stuck_place_;

@@ -39,6 +39,8 @@ class FloorSearch {
   /// centre; without one it is left out.
   std::vector<Source> sources(const Traversable& floor, Subjects subjects,
                               const std::function<std::optional<double>(const mrpt::math::TPoint2D&)>& head_start);
+  /// Whether any such cell was found at the last time, in reach or not.
+  bool place_left() const { return !views_.empty(); }
   /// Makes what can be seen from `viewpoint` the place to face.
   void choose_subject(Cell viewpoint);
   /// Of all that can be seen from here makes that the place to face which needs the smallest turn; returns the turn

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "explore/caution/tilt_watch.h"
@@ -158,33 +160,119 @@ TEST(BadConditions, AWallThatAppearsOnThePathIsNotTouched) {
   EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
 }
 
-/// A ball of crumpled paper that the robot pushes lies in the only door, with too little room beside it.
+/// Balls of crumpled paper, which the robot pushes along a corridor of one row: too large to pass beside.
+struct Balls {
+  static constexpr double kRadius = 0.12;
+  std::vector<TPoint2D> centres;
+  double y = 0.0;         ///< middle of the corridor
+  std::size_t walls = 0;  ///< of the maze without them
+  bool pushed = false;
+
+  Balls(Maze& maze, std::vector<TPoint2D> at) : centres(std::move(at)), y(maze.start.y), walls(maze.walls.size()) {
+    place(maze);
+  }
+  void place(Maze& maze) const {
+    maze.walls.resize(walls);
+    for (const TPoint2D& ball : centres) maze.box(ball, 2.0 * kRadius, 2.0 * kRadius);
+  }
+  /// Moves those that the robot's body has reached.
+  void meet(Trial& trial) {
+    const TPose2D& pose = trial.robot.pose();
+    const double least = 0.5 * trial.model.length + kRadius;
+    const double limit = 0.5 * Maze::kPallet - kRadius - 0.01;
+    for (TPoint2D& ball : centres) {
+      const double way = std::hypot(ball.x - pose.x, ball.y - pose.y);
+      if (way >= least) continue;
+      pushed = true;
+      ball.x = pose.x + (ball.x - pose.x) * least / way;
+      ball.y = std::clamp(pose.y + (ball.y - pose.y) * least / way, y - limit, y + limit);
+      place(trial.robot.maze());
+    }
+  }
+};
+
 TEST(BadConditions, ABallBeforeTheOnlyDoorIsPushedAside) {
   Maze maze = test::maze({"+--+--+--+--+",  //
                           "| R         |",  //
                           "+--+--+--+--+"});
-  constexpr double kRadius = 0.12;
-  const std::size_t walls = maze.walls.size();
-  TPoint2D ball{1.5 * Maze::kPallet, maze.start.y + 0.03};
-  maze.box(ball, 2.0 * kRadius, 2.0 * kRadius);
+  Balls balls(maze, {{1.5 * Maze::kPallet, maze.start.y + 0.03}});
   Trial trial(maze);
-  bool pushed = false;
-  trial.run(900.0, [&] {
-    const TPose2D& pose = trial.robot.pose();
-    const double way = std::hypot(ball.x - pose.x, ball.y - pose.y);
-    const double least = 0.5 * trial.model.length + kRadius;
-    if (way >= least) return;
-    pushed = true;
-    const double limit = 0.5 * Maze::kPallet - kRadius - 0.01;
-    ball.x = pose.x + (ball.x - pose.x) * least / way;
-    ball.y = std::clamp(pose.y + (ball.y - pose.y) * least / way, maze.start.y - limit, maze.start.y + limit);
-    Maze& now = trial.robot.maze();
-    now.walls.resize(walls);
-    now.box(ball, 2.0 * kRadius, 2.0 * kRadius);
-  });
-  EXPECT_TRUE(pushed);
+  trial.run(900.0, [&] { balls.meet(trial); });
+  EXPECT_TRUE(balls.pushed);
   EXPECT_TRUE(is_seen(trial, maze.centre(3, 0)));
   EXPECT_TRUE(trial.explorer.finished());
+}
+
+/// Three balls abreast, so close that they look like one thing of 0.7 m, which a single ball is not.
+TEST(BadConditions, AHeapInACorridorIsPushedAside) {
+  Maze maze = test::maze({"+--+--+--+--+--+",  //
+                          "| R            |",  //
+                          "+--+--+--+--+--+"});
+  const double x = 1.5 * Maze::kPallet, y = maze.start.y;
+  Balls balls(maze, {{x, y - 0.24}, {x + 0.05, y}, {x, y + 0.24}});
+  Trial trial(maze);
+  trial.run(900.0, [&] { balls.meet(trial); });
+  EXPECT_TRUE(balls.pushed);
+  EXPECT_TRUE(is_seen(trial, maze.centre(4, 0)));
+  EXPECT_TRUE(trial.explorer.finished());
+}
+
+/// Something rolled into the way by which the robot came: what lies behind it is searched all the same.
+TEST(BadConditions, WhatABallCutsOffIsSearchedToo) {
+  Maze maze = test::maze({"+--+--+--+--+--+--+",  //
+                          "|       R         |",  //
+                          "+--+--+--+--+--+--+"});
+  const TPoint2D way_back{1.5 * Maze::kPallet, maze.start.y + 0.03};
+  Balls balls(maze, {});
+  Trial trial(maze);
+  bool rolled = false;
+  double farthest_back = maze.start.x;  // after that
+  trial.run(900.0, [&] {
+    const TPose2D& pose = trial.robot.pose();
+    if (!rolled && pose.x > maze.start.x + 0.3) {
+      rolled = true;
+      balls.centres = {way_back};
+      balls.place(trial.robot.maze());
+    }
+    balls.meet(trial);
+    if (rolled) farthest_back = std::min(farthest_back, pose.x);
+  });
+  EXPECT_TRUE(rolled);
+  EXPECT_TRUE(balls.pushed);
+  EXPECT_LT(farthest_back, 1.4 - 0.5 * Maze::kPallet + 0.2) << "its end was not looked at from 1.4 m";
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
+}
+
+/// What could not be seen may show itself later: it is tried again once the niches are searched, and before all other
+/// faces are.
+TEST(BadConditions, WhatWasLeftAloneIsTriedAgainBeforeTheRestIsSearched) {
+  const Maze maze = test::maze({"+--+--+--+--+--+--+",  //
+                                "|                 |",  //
+                                "+  +--+--+--+  +--+",  //
+                                "|       R         |",  //
+                                "+--+--+--+--+--+--+"});
+  const double dark_from = 4.5 * Maze::kPallet;
+  Trial trial(maze);
+  trial.run(1800.0, {}, [&](robot::Inputs& inputs) {
+    const TPose2D T_arena_laser = trial.robot.pose() + TPose2D(trial.model.T_base_laser.x, 0.0, 0.0);
+    for (robot::LaserScan& scan : inputs.scans)
+      for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+        const double x = T_arena_laser.x + scan.ranges[i] * std::cos(T_arena_laser.phi + scan.bearing(i));
+        if (x > dark_from) scan.ranges[i] = std::numeric_limits<float>::infinity();
+      }
+  });
+  const std::vector<Decision>& decisions = trial.explorer.decisions();
+  const auto next = [&](std::vector<Decision>::const_iterator from, const std::string& what) {
+    return std::find_if(from, decisions.end(),
+                        [&](const Decision& d) { return d.why.find(what) != std::string::npos; });
+  };
+  const auto left = next(decisions.begin(), "left alone");
+  ASSERT_NE(left, decisions.end());
+  const auto again = next(left, "tried again before the rest is searched");
+  ASSERT_NE(again, decisions.end());
+  EXPECT_NE(next(again, "drives to the frontier"), decisions.end());
+  EXPECT_LT(next(again, "a place to search from"), next(again, "round 2"));
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
 }
 
 TEST(BadConditions, WithoutScansForTwoSecondsTheRobotStandsAndThenGoesOn) {
