@@ -44,8 +44,6 @@ constexpr double kLittleRoom = 0.01;                    ///< [m]
 constexpr double kPaper = 0.5;                          ///< what stands alone and is not wider may be paper [m]
 constexpr int kHomeTries = 6;                           ///< times that all that was felt is forgotten on the way home
 
-TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
-
 std::string text(const TPoint2D& p) {
   std::array<char, 40> line{};
   std::snprintf(line.data(), line.size(), "(%.1f, %.1f)", p.x, p.y);
