@@ -8,12 +8,12 @@
 namespace rubble::app {
 namespace {
 
-struct MergeArguments {
+struct BatchMergeArguments {
   std::vector<std::string> sources;
   std::string out;
 };
 
-int batch_merge(const MergeArguments& arguments) {
+int batch_merge(const BatchMergeArguments& arguments) {
   const scenarios::MergeReport report = scenarios::merge(arguments.sources, arguments.out);
   std::printf("%zu runs in %s, %zu of them new\n", report.runs, arguments.out.c_str(), report.added);
   bool whole = true;
@@ -27,7 +27,7 @@ int batch_merge(const MergeArguments& arguments) {
 Command batch_merge_command() {
   return {"batch merge", "Merge the results of batches into one SQLite file",
           "Example:\n  rubble batch merge part1 part2 --out results.sqlite", [](Options& o) -> Action {
-            auto a = std::make_shared<MergeArguments>();
+            auto a = std::make_shared<BatchMergeArguments>();
             o.arguments("results", a->sources, "Folders of batches");
             o.required_text("--out", a->out, "The SQLite file; what it holds already stays");
             return [a] { return batch_merge(*a); };

@@ -14,14 +14,14 @@ namespace {
 
 using scoring::LeagueEntry;
 
-void check(const ScoreArguments& arguments) {
+void check_options(const ScoreArguments& arguments) {
   if (!arguments.truth.empty())
     throw UsageError("--league needs the truth only: rubble score --league DIR TRUTH; see rubble score --help");
   if (!arguments.pose.empty() || !arguments.pois.empty() || !arguments.html.empty() || arguments.json)
     throw UsageError("--league goes without --pose, --pois, --html and --json; pages and CSV are written with --out");
 }
 
-void print(const scoring::League& league, bool warp) {
+void print_ranking(const scoring::League& league, bool warp) {
   const bool points = league.with_points();
   std::size_t width = 4;
   for (const LeagueEntry& e : league.entries) width = std::max(width, one_line(e.team).size());
@@ -53,7 +53,7 @@ void print(const scoring::League& league, bool warp) {
 }  // namespace
 
 int score_league(const ScoreArguments& arguments) {
-  check(arguments);
+  check_options(arguments);
   const scoring::LeagueTruth truth =
       scoring::load_league_truth(arguments.map, arguments.truth_resolution, arguments.victims);
   const scoring::LeagueFolder folder = scoring::find_league(arguments.league, truth.path);
@@ -68,7 +68,7 @@ int score_league(const ScoreArguments& arguments) {
   config.out = arguments.out;
   config.tell = [](const std::string& note) { std::fprintf(stderr, "rubble: %s\n", one_line(note).c_str()); };
   const scoring::League league = scoring::judge_league(folder, truth, judge, config);
-  print(league, arguments.warp);
+  print_ranking(league, arguments.warp);
   if (arguments.out.empty()) return kOk;
   scoring::write_league(league, truth, arguments.out);
   std::printf("written: %s/league.html, league.csv\n", one_line(arguments.out).c_str());

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kPiece = 1.0;  // of path that RPE compares [m]
 
-scoring::Evidence compare(const Trajectory& estimate, const Trajectory& truth, const ScoreArguments& arguments) {
+scoring::Evidence compared(const Trajectory& estimate, const Trajectory& truth, const ScoreArguments& arguments) {
   scoring::Evidence evidence;
   evidence.error = scoring::trajectory_error(estimate, truth);
   if (evidence.error->matched < 2)
@@ -39,7 +39,7 @@ int score_trajectory(const ScoreArguments& arguments) {
   if (ends_with(arguments.truth, ".relations"))
     evidence.relations = scoring::relation_error(estimate, scoring::read_relations(arguments.truth));
   else if (is_trajectory(arguments.truth))
-    evidence = compare(estimate, read_tum(arguments.truth), arguments);
+    evidence = compared(estimate, read_tum(arguments.truth), arguments);
   else
     throw UsageError(arguments.truth + ": a trajectory is compared with a .tum or a .relations file");
   const std::string json = scenarios::known_figures(evidence).dump(2);

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "base/angle.h"
+
 namespace rubble {
 
 /// Length of the vector (x, y). Unlike std::hypot a few instructions, and the same bits from every C library; the
@@ -14,6 +16,12 @@ inline double length(const mrpt::math::TPoint2D& v) { return length(v.x, v.y); }
 inline double distance(const mrpt::math::TPoint2D& a, const mrpt::math::TPoint2D& b) {
   return length(b.x - a.x, b.y - a.y);
 }
+
+/// Where a pose is.
+inline mrpt::math::TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
+
+/// The pose with its angle in (-pi, pi].
+inline mrpt::math::TPose2D wrapped(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y, wrap_angle(pose.phi)}; }
 
 /// A pose made ready to move many points: sine and cosine are computed once.
 class PlanarTransform {

@@ -3,6 +3,7 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -79,5 +80,11 @@ struct Inputs {
   /// In force during the tick: what the motors and servos were last told before it. Nothing: not known (foreign logs).
   std::optional<Commands> command;
 };
+
+/// Puts `more` behind what is there.
+template <class T>
+void append(std::vector<T>& list, std::vector<T>&& more) {
+  list.insert(list.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
 
 }  // namespace rubble::robot

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# The long suite and its table: whole suite, sanitizers, faults at 100 moments, each fault of each device, three emulated
-# robots at once, a calibration in real time, growth, 10 minutes of fuzzing for each parser.
+# The long suite and its table: whole suite, each file compiled alone, sanitizers, faults at 100 moments, each fault of
+# each device, three emulated robots at once, a calibration in real time, growth, 10 minutes of fuzzing for each parser.
 # Prints the table and puts it into docs/reliability.md between its marks. Rows of parts that were not asked for stay as they are.
-#   tests/nightly.sh [--minutes N] [--only "suite sanitize threads faults devices three calibration growth fuzz"] [--fuzz-seconds 600]
+#   tests/nightly.sh [--minutes N] [--only "suite alone sanitize threads faults devices three calibration growth fuzz"] [--fuzz-seconds 600]
 #                    [--moments 100] [--keep-docs]
 # --minutes N: what can be cut is cut, no part is left out: a third of the time for fuzzing, shared by the targets; a moment
 # of faults each two minutes (3 to 100); below 120 minutes the small sizes of growth and one fault of each device. The
 # suites take what they take.
 set -uo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-only="suite sanitize threads faults devices three calibration growth fuzz"
+only="suite alone sanitize threads faults devices three calibration growth fuzz"
 fuzz_seconds=600
 moments=100
 growth=()
@@ -68,6 +68,17 @@ counted() {
 has() { [[ " $only " == *" $1 "* ]]; }
 
 has suite && counted "whole suite (Release)" suite "$top/rubble" test
+if has alone; then  # the other presets compile the files of a folder as one
+  start=$SECONDS
+  dev=$top/build/dev
+  files=0 left=1
+  if cmake --preset dev -S "$top" >"$out/alone.txt" 2>&1; then
+    ninja -C "$dev" -k 0 all >>"$out/alone.txt" 2>&1
+    files=$(grep -c '"file"' "$dev/compile_commands.json")
+    left=$(ninja -C "$dev" -n all | grep -c 'Building CXX')
+  fi
+  row "files compiled alone (Debug)" "$files" "$left" 0 $((SECONDS - start))
+fi
 has sanitize && counted "whole suite under ASan and UBSan" sanitize "$top/rubble" test --sanitize
 has threads && counted "batch, drivers and emulators under TSan" threads "$top/rubble" test --sanitize=thread
 if has faults; then
@@ -136,7 +147,7 @@ def part(row):  # the row's first words, up to what may change from night to nig
 
 done = {part(row) for row in new}
 kept = [row for row in old.splitlines(keepends=True)[2:] if part(row) not in done]
-order = ["whole suite", "batch", "faults", "three", "calibration", "time", "fuzz"]
+order = ["whole suite", "files", "batch", "faults", "three", "calibration", "time", "fuzz"]
 rank = lambda row: next((i for i, words in enumerate(order) if part(row).startswith(words)), len(order))
 rows = sorted(kept + new[2:], key=lambda row: (rank(row), part(row)))
 open(page, "w").write(head + begin + "".join(new[:2] + rows) + end + tail)

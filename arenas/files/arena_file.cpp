@@ -6,6 +6,7 @@
 #include "arenas/elements/element_shapes.h"
 #include "arenas/elements/elements.h"
 #include "arenas/files/include.h"
+#include "arenas/files/piece.h"
 #include "arenas/files/plan.h"
 #include "arenas/model/geometry.h"
 #include "arenas/raf/raf.h"
@@ -17,8 +18,6 @@ namespace rubble::arenas {
 namespace {
 
 using mrpt::math::TPoint2D;
-
-constexpr double kFar = 500.0;  ///< [m]
 
 /// Between wheel and floor, where an entry gives it.
 std::optional<double> friction(const YamlMap& entry) {

@@ -17,8 +17,6 @@ using Kind = YamlNode::Kind;
 
 constexpr int kMostCells = 400;  ///< a side of the arena
 
-std::string short_name(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
-
 /// Adds walls and pallets of a piece to the arena's drawing; letters stay behind.
 void merge_drawing(const Inclusion& from, const Drawing& piece, const std::string& path, Drawing& arena) {
   const int x0 = from.place.column;

@@ -16,8 +16,6 @@ constexpr int kMostPieces = 1000;  ///< files that include each other twice woul
 constexpr int kMostColumns = 400;  ///< pallets a side of the arena
 constexpr const char* kSettings[] = {"cell_m", "ramp_deg", "floor_friction", "wall_height_m", "wall_thickness_m"};
 
-std::string short_name(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
-
 std::string canonical(const std::string& path) {
   std::error_code error;
   const fs::path found = fs::weakly_canonical(path, error);
@@ -123,6 +121,8 @@ void share_settings(const YamlMap& out, const ArenaFile& file) {
 }
 
 }  // namespace
+
+std::string short_name(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
 
 ArenaFile read_arena_tree(const YamlMap& root, const std::string& path) {
   Chain chain{{path}, {canonical(path)}, 0};

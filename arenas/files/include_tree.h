@@ -24,6 +24,9 @@ struct Inclusion {
   ArenaFile file;
 };
 
+/// A file without its folders, for messages.
+std::string short_name(const std::string& path);
+
 /// Reads all files below `root`, which was read from `path`. Throws InputError: missing file, a file that includes
 /// itself, a wrong entry.
 ArenaFile read_arena_tree(const YamlMap& root, const std::string& path);

@@ -13,8 +13,6 @@ using mrpt::math::TPoint2D;
 using NodePtr = std::shared_ptr<YamlNode>;
 using Kind = YamlNode::Kind;
 
-constexpr double kFar = 500.0;  ///< [m]
-
 char turned_shape(char shape, int quarters) {
   static const std::string kRound = ">^<v";
   const std::size_t at = kRound.find(shape);

@@ -13,6 +13,8 @@
 
 namespace rubble::arenas {
 
+inline constexpr double kFar = 500.0;  ///< no place or length in an arena file is more [m]
+
 /// The lists of an arena file: what stands or lies somewhere.
 const std::vector<std::string>& list_keys();
 

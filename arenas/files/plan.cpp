@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "arenas/files/piece.h"
 #include "arenas/model/geometry.h"
 #include "base/angle.h"
 
@@ -88,7 +89,6 @@ void Plan::add_walls(Arena& arena, const Drawing& drawing) const {
 }
 
 std::vector<TPoint2D> Plan::places(const YamlMap& entry) {
-  constexpr double kFar = 500.0;
   if (!entry.has("cell")) {
     if (!entry.has("x_m")) entry.fail("", "where is it? give 'cell: A' (a letter of the drawing) or 'x_m' and 'y_m'");
     const double x = entry.number("x_m", std::nullopt, -kFar, kFar);

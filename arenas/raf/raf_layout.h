@@ -13,7 +13,7 @@
 
 namespace rubble::arenas {
 
-inline constexpr double kPallet = 1.2;  ///< [m]
+inline constexpr double kPallet = 1.2;  ///< one unit of the file [m]
 
 /// The pallets of the file as a grid with a rim of one pallet all round.
 struct Layout {

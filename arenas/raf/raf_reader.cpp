@@ -1,4 +1,5 @@
 #include "arenas/raf/raf_reader.h"
+#include "arenas/raf/raf_layout.h"
 
 #include <algorithm>
 #include <cctype>
@@ -13,7 +14,6 @@ namespace rubble::arenas {
 namespace {
 
 constexpr std::size_t kMostElements = 5000;
-constexpr double kPallet = 1.2;  ///< one unit of the file [m]
 
 bool is_name_character(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == ':';

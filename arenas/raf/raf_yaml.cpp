@@ -3,6 +3,7 @@
 
 #include "arenas/model/drawing.h"
 #include "arenas/raf/raf.h"
+#include "arenas/raf/raf_layout.h"
 #include "base/angle.h"
 #include "base/text/number_text.h"
 
@@ -11,10 +12,8 @@ namespace {
 
 using mrpt::math::TPoint2D;
 
-constexpr double kPallet = 1.2;  ///< [m]
-
 /// Numbers of a file have no more than 0.1 mm.
-std::string number(double value) { return number_text(static_cast<double>(std::llround(value * 1e4)) / 1e4); }
+std::string rounded_number(double value) { return number_text(static_cast<double>(std::llround(value * 1e4)) / 1e4); }
 
 /// A name without what would end a quoted text.
 std::string plain(std::string name) {
@@ -56,9 +55,9 @@ Drawing drawing_of(const RafImport& import, const GridFrame& frame) {
 
 std::string element_line(const Element& e, const TPoint2D& origin) {
   const TPoint2D p = e.position + e.offset - origin;
-  std::string line = "  - {type: " + e.type + ", x_m: " + number(p.x) + ", y_m: " + number(p.y);
+  std::string line = "  - {type: " + e.type + ", x_m: " + rounded_number(p.x) + ", y_m: " + rounded_number(p.y);
   const double turn = rad_to_deg(e.rotation);
-  if (turn != 0.0) line += ", rotation_deg: " + number(turn);
+  if (turn != 0.0) line += ", rotation_deg: " + rounded_number(turn);
   if (e.mount_point) line += ", mount_point: " + std::to_string(*e.mount_point);
   return line + "}\n";
 }
@@ -72,8 +71,8 @@ std::string to_yaml(const RafImport& import) {
   text += "name: \"" + plain(import.arena.name) + "\"\n\nmaze: |\n";
   for (const std::string& line : draw(drawing_of(import, frame))) text += "  " + line + "\n";
   const mrpt::math::TPose2D& start = import.arena.start;
-  text += "\nstart: {x_m: " + number(start.x - origin.x) + ", y_m: " + number(start.y - origin.y) +
-          ", heading_deg: " + number(rad_to_deg(start.phi)) + "}\n\nelements:\n";
+  text += "\nstart: {x_m: " + rounded_number(start.x - origin.x) + ", y_m: " + rounded_number(start.y - origin.y) +
+          ", heading_deg: " + rounded_number(rad_to_deg(start.phi)) + "}\n\nelements:\n";
   for (const Element& e : import.elements) text += element_line(e, origin);
   return text;
 }

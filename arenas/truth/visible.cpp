@@ -17,9 +17,9 @@ namespace {
 using mrpt::math::TPoint2D;
 using Mask = Grid<std::uint8_t>;
 
-constexpr double kThin = 1e-4;  ///< thickness given to an edge [m]
-constexpr double kPoses = 0.4;  ///< distance between the poses looked from [m]
-constexpr double kFull = 8.0;   ///< up to here neighbouring rays end in neighbouring cells [m]
+constexpr double kEdgeThickness = 1e-4;  ///< thickness given to an edge [m]
+constexpr double kPoses = 0.4;           ///< distance between the poses looked from [m]
+constexpr double kFull = 8.0;            ///< up to here neighbouring rays end in neighbouring cells [m]
 
 /// Cells with something the body cannot pass: solids at its height, steps too high to climb, floor too steep.
 Mask barriers(const Arena& arena, const GridFrame& frame, const Viewer& viewer) {
@@ -37,13 +37,13 @@ Mask barriers(const Arena& arena, const GridFrame& frame, const Viewer& viewer) 
     if (std::hypot(patch.gx, patch.gy) <= std::tan(viewer.max_slope)) continue;
     for_cells_crossed(frame, patch.outline, [&](Cell c) {
       const TPoint2D p = frame.centre(c);
-      if (contains(patch.outline, p) && patch.height(p) >= floor.floor_height(p) - kThin) mask[c] = 1;
+      if (contains(patch.outline, p) && patch.height(p) >= floor.floor_height(p) - kEdgeThickness) mask[c] = 1;
     });
   }
   for (const Riser& riser : risers(arena, viewer.climbable_step)) {
     const TPoint2D along = riser.b - riser.a;
-    if (std::hypot(along.x, along.y) < kThin) continue;
-    for_cells_crossed(frame, strip(riser.a, riser.b, kThin), [&](Cell c) { mask[c] = 1; });
+    if (std::hypot(along.x, along.y) < kEdgeThickness) continue;
+    for_cells_crossed(frame, strip(riser.a, riser.b, kEdgeThickness), [&](Cell c) { mask[c] = 1; });
   }
   return mask;
 }

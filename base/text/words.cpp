@@ -80,7 +80,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
     nearest = &candidate;
     least = distance;
   }
-  return nearest == nullptr ? std::string{} : ", did you mean " + quoted(*nearest) + "?";
+  return nearest == nullptr ? std::string{} : ", did you mean " + rubble::quoted(*nearest) + "?";
 }
 
 std::string joined(const std::vector<std::string>& words) {

@@ -21,8 +21,6 @@ constexpr double kMostBend = deg_to_rad(60.0);  ///< a trail that bends more is 
 constexpr double kBendGain = 1.2;               ///< turn rate per error [1/s]
 constexpr int kRounds = 2;                      ///< times that all moves are tried
 
-TPoint2D position(const TPose2D& pose) { return {pose.x, pose.y}; }
-
 }  // namespace
 
 void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now) {

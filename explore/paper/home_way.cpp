@@ -6,7 +6,7 @@
 namespace rubble::explore {
 namespace {
 
-constexpr double kPeriod = 4.0;       ///< the way home is measured this often [s]
+constexpr double kMeasured = 4.0;     ///< the way home is measured this often [s]
 constexpr double kUsualSpeed = 0.22;  ///< turns and stops included, until the robot's own is known [m/s]
 constexpr double kSlowest = 0.08;     ///< [m/s]
 constexpr double kUsualTime = 60.0;   ///< the usual speed counts as if driven for so long [s]
@@ -23,7 +23,7 @@ void HomeWay::moved(double way, double dt, bool driving) {
 bool HomeWay::due(Stamp now) {
   if (start_ == Stamp::never()) start_ = now;
   if (time_limit_ <= 0.0 || now < next_) return false;
-  next_ = now + kPeriod;
+  next_ = now + kMeasured;
   return true;
 }
 

@@ -45,8 +45,6 @@ constexpr double kPaper = 0.5;                          ///< what stands alone a
 constexpr double kHeap = 1.1;  ///< several balls side by side; a panel of wall is 1.2 m wide [m]
 constexpr int kHomeTries = 6;  ///< times that all that was felt is forgotten on the way home
 
-TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
-
 std::string text(const TPoint2D& p) {
   std::array<char, 40> line{};
   std::snprintf(line.data(), line.size(), "(%.1f, %.1f)", p.x, p.y);

@@ -12,7 +12,7 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kPeriod = 0.2;       ///< [s]
+constexpr double kCheckPeriod = 0.2;  ///< [s]
 constexpr int kBlockingHits = 3;      ///< fewer may be noise
 constexpr double kMemory = 10.0;      ///< [s]
 constexpr double kReach = 1.5;        ///< hits farther away are not remembered [m]
@@ -24,7 +24,7 @@ constexpr double kCreepSpeed = 0.15;  ///< [m/s]
 
 bool PathWatch::due(Stamp now) {
   if (now < next_check_) return false;
-  next_check_ = now + kPeriod;
+  next_check_ = now + kCheckPeriod;
   return true;
 }
 

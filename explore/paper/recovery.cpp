@@ -16,8 +16,6 @@ constexpr double kTurningRate = 0.15;  ///< [rad/s]
 constexpr double kLean = 0.03;         ///< getting free, the body may come so much closer to walls [m]
 constexpr int kMaxFailedEscapes = 6;   ///< in a row
 
-TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
-
 }  // namespace
 
 void PaperExplorer::check_path(const slam::Mapper& mapper) {

@@ -17,7 +17,6 @@ constexpr int kDiagonal = 6 * 17;
 constexpr std::uint32_t kFar = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr float kMaxWeight = 60.0f;  ///< of a metre; dearer ones would not fit into the ring of buckets
-constexpr double kRounding = 1e-4;   // [m] 7 cells of 0.05 m are 0.35 m, also in float
 
 // No step is cheaper than a bucket is wide: cells of one bucket cannot improve each other, so their order is free.
 constexpr std::uint32_t kBucketWidth = 64;
@@ -28,7 +27,7 @@ unsigned lowest_bit(unsigned word) { return static_cast<unsigned>(__builtin_ctz(
 /// Eq. (4) in the precision asked for; nothing where it is infinite.
 template <typename Real>
 std::optional<Real> discomfort(Real d, const TransformConfig& config) {
-  if (!(d >= static_cast<Real>(config.d_min - kRounding))) return std::nullopt;
+  if (!(d >= static_cast<Real>(config.d_min - kClearanceRounding))) return std::nullopt;
   const Real from_best = static_cast<Real>(config.d_opt) - d;
   return from_best * from_best;
 }

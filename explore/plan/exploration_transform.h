@@ -17,6 +17,9 @@ enum class Discomfort {
   PerCell    ///< as printed: of every cell of the way, first and last included
 };
 
+/// Distances are compared with this slack [m]: 7 cells of 0.05 m are 0.35 m, also in float.
+inline constexpr double kClearanceRounding = 1e-4;
+
 struct TransformConfig {
   double alpha = 20.0;  ///< weight of the discomfort against length, per metre travelled
   double d_min = 0.40;  ///< never closer to an obstacle [m]

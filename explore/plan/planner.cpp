@@ -11,14 +11,13 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kRounding = 1e-4;    // [m] see eq. (4)
 constexpr double kSmoothSpan = 0.20;  ///< half the window of the moving average [m]
 
 }  // namespace
 
 std::vector<Cell> climb_clearance(const Traversable& floor, Cell start, double d_min) {
   std::vector<Cell> way{start};
-  while (floor.clearance[way.back()] < d_min - kRounding) {
+  while (floor.clearance[way.back()] < d_min - kClearanceRounding) {
     const Cell c = way.back();
     Cell best = c;
     double best_slope = 0.0;
@@ -50,8 +49,8 @@ std::vector<PathPoint> smooth_path(const Traversable& floor, const std::vector<C
     const Cell own = cells[static_cast<std::size_t>(i)];
     const Cell there = floor.cells.cell(mean);
     const double own_clearance = floor.clearance[own];
-    const bool safe =
-        floor.cells[there] == Occupancy::Free && floor.clearance[there] >= std::min(own_clearance, d_min) - kRounding;
+    const bool safe = floor.cells[there] == Occupancy::Free &&
+                      floor.clearance[there] >= std::min(own_clearance, d_min) - kClearanceRounding;
     path.push_back(safe ? PathPoint{mean, floor.clearance[there]} : PathPoint{floor.cells.centre(own), own_clearance});
   }
   return path;
@@ -77,7 +76,7 @@ Plan Planner::plan(const Traversable& floor, const TPose2D& T_map_base, const st
       plan.d_min = transform.d_min;
       return plan;
     }
-    if (transform.d_min <= floor_of_d_min + kRounding) return plan;
+    if (transform.d_min <= floor_of_d_min + kClearanceRounding) return plan;
     transform.d_min = std::max(transform.d_min - config_.d_min_step, floor_of_d_min);
   }
 }

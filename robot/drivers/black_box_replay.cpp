@@ -1,15 +1,9 @@
 #include "robot/drivers/black_box_replay.h"
 
 #include <algorithm>
-#include <iterator>
 
 namespace rubble::robot {
 namespace {
-
-template <class T>
-void append(std::vector<T>& to, std::vector<T>&& from) {
-  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
-}
 
 /// The turns of the thread that led the conversation with a device.
 class Conversation {

@@ -6,10 +6,10 @@
 namespace rubble::robot {
 namespace {
 
-constexpr double kGap = 1.0;        ///< after so long a silence the cycle starts anew [s]
-constexpr double kLateShare = 0.1;  ///< of the cycle: much later than foretold
-constexpr int kPatience = 20;       ///< so many in a row: the device's cycle has shifted
-constexpr double kClosest = 1e-3;   ///< no device reports faster [s]
+constexpr double kLongSilence = 1.0;  ///< after so long a silence the cycle starts anew [s]
+constexpr double kLateShare = 0.1;    ///< of the cycle: much later than foretold
+constexpr int kPatience = 20;         ///< so many in a row: the device's cycle has shifted
+constexpr double kClosest = 1e-3;     ///< no device reports faster [s]
 
 }  // namespace
 
@@ -19,7 +19,7 @@ Stamp CycleClock::stamp(Stamp arrived, std::size_t behind) {
   // Where not all fit since the last one at a cycle's distance, they share what there is.
   if (last_ != Stamp::never()) received = std::max(received, last_ + (arrived - last_) / (later + 1.0));
   Stamp stamp = received;
-  if (last_ != Stamp::never() && cycle_ > 0.0 && received - last_ < kGap) {
+  if (last_ != Stamp::never() && cycle_ > 0.0 && received - last_ < kLongSilence) {
     // Reports may be missing in between. One is not held up by more than most of a cycle.
     const double cycles = std::max(1.0, std::floor((received - last_) / cycle_ + 0.3));
     const Stamp foretold = last_ + cycles * cycle_;

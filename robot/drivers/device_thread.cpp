@@ -18,7 +18,7 @@ constexpr double kOpenAgain = 0.25;  ///< [s]
 /// Taken in one piece: what was held up on its way or here shall arrive together, since its times are told from that.
 constexpr std::size_t kMostBytes = 65536;
 
-void wait_for(int port, int wake, double timeout) {
+void wait_for_either(int port, int wake, double timeout) {
   std::array<pollfd, 2> files{pollfd{wake, POLLIN, 0}, pollfd{port, POLLIN, 0}};
   const double bounded = std::clamp(timeout, 0.0, kTurn);
   const timespec limit{0, static_cast<long>(bounded * 1e9)};
@@ -95,7 +95,7 @@ void DeviceThread::run() {
         if (busy_ || (hung_up != nullptr && !answered)) ++turned_away_;
       });
       for (const Stamp again = host_now() + kOpenAgain; host_now() < again && !is_ending();)
-        wait_for(-1, wake_.get(), kTurn);
+        wait_for_either(-1, wake_.get(), kTurn);
     }
   }
 }
@@ -124,7 +124,7 @@ void DeviceThread::converse() {
     set_baud(baud);  // what is said now is meant for the rate of now
     send(out, now);
     if (turned_) turned_(host_now());
-    if (got < bytes.size()) wait_for(port_->descriptor(), wake_.get(), deadline - host_now());
+    if (got < bytes.size()) wait_for_either(port_->descriptor(), wake_.get(), deadline - host_now());
   }
   for (const std::string& packet : with([this] { return device_.farewell(); })) {
     send(packet, host_now());

@@ -10,9 +10,9 @@ namespace rubble::robot {
 namespace {
 
 /// A port that is opened may reset the controller, which then takes up to two seconds.
-constexpr double kAsk = 0.5;           ///< [s]
+constexpr double kAskAgain = 0.5;      ///< [s]
 constexpr double kReportBytes = 50.0;  ///< of a report on the line
-constexpr double kRefresh = 0.1;       ///< of the servo pulses: well within the unit's watchdog [s]
+constexpr double kPulseRefresh = 0.1;  ///< of the servo pulses: well within the unit's watchdog [s]
 
 double specific_force(long t1, long t2, const AxisCalibration& axis) {
   const double duty = static_cast<double>(t1) / static_cast<double>(t2);
@@ -42,11 +42,11 @@ void LevellingUnit::advance(Stamp now) {
     identified_ = false;
     last_report_ = Stamp::never();
   }
-  if (!ready() && now - asked_ >= kAsk) {
+  if (!ready() && now - asked_ >= kAskAgain) {
     asked_ = now;
     output_ = levelling_line("V");
   }
-  if (ready() && aimed_ && (aim_sent_ == Stamp::never() || now - aim_sent_ >= kRefresh)) aim_due_ = true;
+  if (ready() && aimed_ && (aim_sent_ == Stamp::never() || now - aim_sent_ >= kPulseRefresh)) aim_due_ = true;
 }
 
 void LevellingUnit::receive(std::string_view bytes, Stamp now) {
@@ -129,8 +129,8 @@ std::string LevellingUnit::take_output(Stamp now) {
 
 Stamp LevellingUnit::deadline() const {
   if (asked_ == Stamp::never()) return {};
-  if (!ready()) return asked_ + kAsk;
-  return aimed_ && aim_sent_ != Stamp::never() ? aim_sent_ + kRefresh : last_report_ + settings_.silence;
+  if (!ready()) return asked_ + kAskAgain;
+  return aimed_ && aim_sent_ != Stamp::never() ? aim_sent_ + kPulseRefresh : last_report_ + settings_.silence;
 }
 
 std::string LevellingUnit::state() const {

@@ -44,11 +44,6 @@ std::string remedy(const std::vector<std::string>& lines, bool starting) {
 }
 
 template <class T>
-void append(std::vector<T>& to, std::vector<T>&& from) {
-  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
-}
-
-template <class T>
 void sort_by_stamp(std::vector<T>& list) {
   std::stable_sort(list.begin(), list.end(), [](const T& a, const T& b) { return a.stamp < b.stamp; });
 }

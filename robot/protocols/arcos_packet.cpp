@@ -7,7 +7,7 @@ namespace {
 
 constexpr char kFirst = static_cast<char>(0xFA);
 constexpr char kSecond = static_cast<char>(0xFB);
-constexpr std::size_t kHead = 3;  // FA FB length
+constexpr std::size_t kPacketHead = 3;  // FA FB length
 constexpr std::size_t kSum = 2;
 constexpr double kSlowestByte = 10.0 / 9600.0;  ///< [s]
 
@@ -58,22 +58,22 @@ std::optional<std::string> PacketParser::next(Stamp now) {
            !(waiting_[head] == kFirst && (head + 1 == waiting_.size() || waiting_[head + 1] == kSecond)))
       ++head;
     drop(head);
-    const bool has_head = waiting_.size() >= kHead;
+    const bool has_head = waiting_.size() >= kPacketHead;
     const std::size_t length = has_head ? byte(waiting_, 2) : 0;
     if (has_head && (length <= kSum || length > kLongest)) {
       drop(2);
       continue;
     }
-    if (!has_head || waiting_.size() < kHead + length) {
-      if (waiting_.empty() || !is_overdue(kHead + length, now)) return std::nullopt;
+    if (!has_head || waiting_.size() < kPacketHead + length) {
+      if (waiting_.empty() || !is_overdue(kPacketHead + length, now)) return std::nullopt;
       drop(std::min<std::size_t>(2, waiting_.size()));
       continue;
     }
-    const std::string payload = waiting_.substr(kHead, length - kSum);
-    const unsigned sum = (static_cast<unsigned>(byte(waiting_, kHead + payload.size())) << 8) |
-                         byte(waiting_, kHead + payload.size() + 1);
+    const std::string payload = waiting_.substr(kPacketHead, length - kSum);
+    const unsigned sum = (static_cast<unsigned>(byte(waiting_, kPacketHead + payload.size())) << 8) |
+                         byte(waiting_, kPacketHead + payload.size() + 1);
     if (sum == checksum(payload)) {
-      waiting_.erase(0, kHead + length);
+      waiting_.erase(0, kPacketHead + length);
       since_ = fed_;
       return payload;
     }

@@ -72,7 +72,7 @@ int open_to_append(const std::string& path) {
   throw InputError(path + ": is no file, results would be lost; remove it or give another --out");
 }
 
-void lock(int file, const std::string& path) {
+void lock_file(int file, const std::string& path) {
   struct flock whole {};
   whole.l_type = F_WRLCK;
   whole.l_whence = SEEK_SET;
@@ -196,7 +196,7 @@ ResultsFile::ResultsFile(const std::string& folder, const std::string& suffix)
     : path_(folder + "/results" + suffix + ".jsonl"), timing_path_(folder + "/timing" + suffix + ".jsonl") {
   file_ = open_to_append(path_);
   try {
-    lock(file_, path_);
+    lock_file(file_, path_);
     timing_file_ = open_to_append(timing_path_);
     std::string text;
     char buffer[65536];

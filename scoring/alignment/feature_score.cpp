@@ -110,16 +110,15 @@ bool says_something(const MapFeatures& truth, EvidenceKind kind) {
 }
 
 /// Features of both kinds that are points: their partners at a pose behind a displacement, and E.
-struct Association {
+struct Pairing {
   std::vector<TPoint2D> from;  ///< of the map, before the displacement
   std::vector<TPoint2D> to;
   double error = 0.0;  ///< mean over both kinds of E / C
 };
 
 template <class Displace>
-Association associated(const MapFeatures& map, const MapFeatures& truth, const Displace& displaced,
-                       const TPose2D& pose) {
-  Association out;
+Pairing associated(const MapFeatures& map, const MapFeatures& truth, const Displace& displaced, const TPose2D& pose) {
+  Pairing out;
   for (const EvidenceKind kind : {EvidenceKind::Surf, EvidenceKind::Corners}) {
     const std::vector<TPoint2D> of_map = map.places(kind);
     const std::vector<TPoint2D> of_truth = truth.places(kind);
@@ -138,7 +137,7 @@ Association associated(const MapFeatures& map, const MapFeatures& truth, const D
 
 /// Section IV.F: given W, the coefficients b solve a linear set of equations; the pose is that of the remaining rigid
 /// part. Ridge as in fit_warp(): it grows with the degree.
-void solve_for_b(Warp& warp, const Association& found, double stiffer) {
+void solve_for_b(Warp& warp, const Pairing& found, double stiffer) {
   constexpr double kStiffness = 0.0005;
   using Matrix = Eigen::Matrix<double, Warp::kMaxTerms, Warp::kMaxTerms>;
   using Vector = Eigen::Matrix<double, Warp::kMaxTerms, 1>;
@@ -257,7 +256,7 @@ FeaturePose minimise_feature_error(const MapFeatures& map, const MapFeatures& tr
   FeaturePose best{start, 2.0};
   TPose2D pose = start;
   for (int round = 0; round < kRounds; ++round) {
-    const Association found = associated(
+    const Pairing found = associated(
         map, truth, [](const TPoint2D& p) { return p; }, pose);
     if (found.error >= best.error - 1e-6) break;
     best = {pose, found.error};
@@ -278,7 +277,7 @@ FeatureWarp fit_feature_warp(const MapFeatures& map, const MapFeatures& truth, c
     warp.centre = {frame.x0 + 0.5 * frame.width * frame.resolution, frame.y0 + 0.5 * frame.height * frame.resolution};
     warp.extent = std::max(1.0, 0.5 * std::max(frame.width, frame.height) * frame.resolution);
     const auto bent = [&](const TPoint2D& p) { return p + warp.displacement(p); };
-    Association found;
+    Pairing found;
     for (int round = 0; round <= kRounds; ++round) {
       found = associated(map, truth, bent, warp.T_truth_map.pose());
       if (found.from.size() < 12 || round == kRounds) break;

@@ -11,10 +11,10 @@ namespace rubble::scoring {
 namespace {
 
 constexpr double kBorderUnknown = 0.95;  // share of the region's rim that must be unknown
-constexpr double kBroad = 4.0;           // half width of the region [pixels]: thinner ones are walls at the border
+constexpr double kBroadRegion = 4.0;     // half width of the region [pixels]: thinner ones are walls at the border
 
-constexpr int kTolerance = 12;  // of one grey
-constexpr int kBlend = 3;       // pixels that smooth interpolation blends at an edge
+constexpr int kOneGrey = 12;  // of one grey
+constexpr int kBlend = 3;     // pixels that smooth interpolation blends at an edge
 
 /// The ring around a region, `off` pixels off it: the next ones hold an interpolated edge. Empty for regions that are
 /// not broad.
@@ -25,7 +25,7 @@ cv::Mat ring_around(const cv::Mat& region, int off) {
   cv::distanceTransform(padded, inner, cv::DIST_L2, 3);
   double broadest = 0.0;
   cv::minMaxLoc(inner, nullptr, &broadest);
-  if (broadest < kBroad) return {};
+  if (broadest < kBroadRegion) return {};
   cv::Mat ring;
   cv::dilate(region, ring, cv::Mat::ones(2 * off + 3, 2 * off + 3, CV_8U));
   cv::Mat first;
@@ -126,11 +126,11 @@ cv::Mat canvas_corners(const cv::Mat& grey) {
   cv::Mat copy = grey;
   for (const cv::Point& corner : corners_of(grey)) {
     if (out.at<unsigned char>(corner) != 0) continue;
-    const cv::Mat region = region_at(copy, corner, kTolerance);
+    const cv::Mat region = region_at(copy, corner, kOneGrey);
     const cv::Mat ring = ring_around(region, kBlend);
     if (ring.empty()) continue;
     const int level = main_grey(grey, ring);
-    const cv::Mat beside = (grey >= level - kTolerance) & (grey <= level + kTolerance) & ~region;
+    const cv::Mat beside = (grey >= level - kOneGrey) & (grey <= level + kOneGrey) & ~region;
     if (share_in(ring, beside) < kBorderUnknown || !covers_areas(beside) ||
         !is_open(grey, region, grey.at<unsigned char>(corner), level) || has_thin_parts(region))
       continue;

@@ -10,11 +10,11 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr int kTolerance = 12;      // around the unknown grey, where the picture is not pure
-constexpr int kWallBelow = 140;     // of 0 (wall) to 255 (free): at least 45 % wall
-constexpr int kMostAreas = 4;       // that one map has
-constexpr double kPale = 0.85;      // lines that reach less of the walls' grey in their middle are blurred
-constexpr double kMostPale = 0.25;  // share of them that sharp pictures have (where a wall ends)
+constexpr int kUnknownTolerance = 12;  // around the unknown grey, where the picture is not pure
+constexpr int kWallBelow = 140;        // of 0 (wall) to 255 (free): at least 45 % wall
+constexpr int kMostAreas = 4;          // that one map has
+constexpr double kPale = 0.85;         // lines that reach less of the walls' grey in their middle are blurred
+constexpr double kMostPale = 0.25;     // share of them that sharp pictures have (where a wall ends)
 
 /// Greys as if walls were 0 and free ground 255.
 cv::Mat in_order(const cv::Mat& grey, const GreyRoles& roles) {
@@ -108,14 +108,14 @@ LabelImage classify_grey(const RgbImage& image, const cv::Mat& apart) {
   }
   // The fringe between a wall and free space passes through the same grey: only an area of it is unknown, and its
   // rim is a mixture with wall or free.
-  cv::Mat unknown = (grey >= roles.unknown - kTolerance) & (grey <= roles.unknown + kTolerance);
+  cv::Mat unknown = (grey >= roles.unknown - kUnknownTolerance) & (grey <= roles.unknown + kUnknownTolerance);
   cv::morphologyEx(unknown, unknown, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
   cv::Mat rim;
   cv::dilate(unknown, rim, cv::Mat::ones(3, 3, CV_8U));
   tell_pale(rim);
   const double level = 255.0 * (roles.unknown - roles.wall) / (roles.free - roles.wall);
-  unknown |=
-      roles.in_order() ? rim & (even >= 0.55 * level) & (even <= level + kTolerance) : rim & (even >= kWallBelow);
+  unknown |= roles.in_order() ? rim & (even >= 0.55 * level) & (even <= level + kUnknownTolerance)
+                              : rim & (even >= kWallBelow);
   out.classes.setTo(static_cast<int>(Occupancy::Unknown), unknown);
   return out;
 }

@@ -28,19 +28,19 @@ constexpr double kNear = 0.06;          // pieces of one circle that its letteri
 constexpr unsigned char kInk = 1;
 constexpr unsigned char kLettering = 2;
 
-struct Colour {
+struct PixelColour {
   int r, g, b;
 };
 
 /// Red or orange, or such a colour mixed with up to half of another: yellow (arrow) and violet (path) are not.
-bool is_ink(const Colour& c) {
+bool is_ink(const PixelColour& c) {
   const int rb = c.r - c.b;
   const int gb = c.g - c.b;
   return rb >= 95 && c.r - c.g >= 43 && 100 * gb <= 55 * rb;
 }
 
 /// White, or white mixed with ink.
-bool is_lettering(const Colour& c) { return c.r >= 190 && std::abs(c.g - c.b) <= 60 && std::min(c.g, c.b) >= 60; }
+bool is_lettering(const PixelColour& c) { return c.r >= 190 && std::abs(c.g - c.b) <= 60 && std::min(c.g, c.b) >= 60; }
 
 /// kInk and kLettering of the part of the image that has ink, and where that part lies.
 struct Drawing {
@@ -51,7 +51,7 @@ struct Drawing {
 Drawing drawing_of(const RgbImage& image, int margin) {
   const auto colour = [&](int x, int y) {
     const std::uint8_t* p = image.pixel(x, y);
-    return Colour{p[0], p[1], p[2]};
+    return PixelColour{p[0], p[1], p[2]};
   };
   cv::Point low(image.width, image.height);
   cv::Point high(-1, -1);
@@ -69,7 +69,7 @@ Drawing drawing_of(const RgbImage& image, int margin) {
     for (int x = 0; x < out.marks.cols; ++x) {
       const cv::Point p = out.corner + cv::Point(x, y);
       if (p.x < 0 || p.y < 0 || p.x >= image.width || p.y >= image.height) continue;
-      const Colour c = colour(p.x, p.y);
+      const PixelColour c = colour(p.x, p.y);
       if (is_ink(c))
         out.marks.at<unsigned char>(y, x) = kInk;
       else if (is_lettering(c))

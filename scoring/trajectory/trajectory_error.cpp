@@ -11,7 +11,7 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-double rmse(const std::vector<PosePair>& pairs, const TPose2D& T_truth_estimate) {
+double position_rmse(const std::vector<PosePair>& pairs, const TPose2D& T_truth_estimate) {
   double sum = 0.0;
   for (const PosePair& pair : pairs) {
     const TPoint2D p = T_truth_estimate.composePoint(TPoint2D(pair.estimate.x, pair.estimate.y));
@@ -41,8 +41,8 @@ TrajectoryError trajectory_error(const Trajectory& estimate, const Trajectory& t
   out.matched = pairs.size();
   if (pairs.empty()) return out;
   const TPose2D T_truth_estimate = pairs.front().truth + (TPose2D(0.0, 0.0, 0.0) - pairs.front().estimate);
-  out.ate_first_m = rmse(pairs, T_truth_estimate);
-  out.ate_aligned_m = rmse(pairs, best_rigid(pairs));
+  out.ate_first_m = position_rmse(pairs, T_truth_estimate);
+  out.ate_aligned_m = position_rmse(pairs, best_rigid(pairs));
   return out;
 }
 

@@ -19,7 +19,7 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
 constexpr std::size_t kMaxPoints = 900;  // walls of the map that pull
-constexpr double kReach = 1.5;           // [m]
+constexpr double kSameWall = 1.5;        // [m]
 constexpr double kTau = 0.2;             // k(d) that tells a seam from the next [m]
 constexpr double kLeastPart = 0.15;      // of the walls
 constexpr double kLeastGain = 0.02;      // of the walls that meet, over one pose for all
@@ -37,7 +37,7 @@ TPoint2D middle_of(const std::vector<TPoint2D>& points) {
 /// Walls of the map, and the truth's, prepared for trying many seams.
 class Parts {
  public:
-  Parts(const OccupancyGrid& map, const OccupancyGrid& truth) : field_(truth, kReach) {
+  Parts(const OccupancyGrid& map, const OccupancyGrid& truth) : field_(truth, kSameWall) {
     const std::vector<TPoint2D> all = wall_points(map);
     const std::size_t step = std::max<std::size_t>(1, all.size() / kMaxPoints);
     for (std::size_t i = step / 2; i < all.size(); i += step) walls_.push_back(all[i]);

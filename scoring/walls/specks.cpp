@@ -7,7 +7,7 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr double kReach = 0.2;  // [m]
+constexpr double kAlone = 0.2;  // [m]
 constexpr int kMostCells = 2;   // of a speck
 constexpr int kMostNear = 2;    // occupied cells beside it: 1 % of salt has seldom more there
 
@@ -52,7 +52,7 @@ Occupancy surroundings(const OccupancyGrid& map, const Cell& c) {
 }  // namespace
 
 OccupancyGrid without_specks(const OccupancyGrid& map) {
-  const int reach = std::max(1, static_cast<int>(std::lround(kReach / map.resolution())));
+  const int reach = std::max(1, static_cast<int>(std::lround(kAlone / map.resolution())));
   OccupancyGrid out = map;
   std::size_t walls = 0;
   std::size_t specks = 0;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/angle.h"
 #include "sim/laser/simd.h"
@@ -14,7 +13,6 @@ using Eigen::Vector3d;
 
 constexpr float kSeam = 2e-5f;        ///< segments reach so far beyond their ends: no light through seams [m]
 constexpr float kBeamsSlack = 1e-3f;  ///< rounding of a bearing counted in beams
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 /// The two edges of a quadrilateral that cross the plane, by which of its corners lie above it (bit i: corner i). Edge
 /// i leads from corner i to the next.

@@ -17,7 +17,6 @@ constexpr double kErrorShare = 0.5;                ///< mixed echoes that the de
 constexpr double kGrazingFrom = deg_to_rad(80.0);  ///< angle of incidence from which echoes get lost
 constexpr double kGrazingTo = deg_to_rad(88.0);    ///< at which all are
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 /// Inverse of the normal distribution by Newton's method on erfc, from a guess nearby.
 double normal_quantile(double p, double guess) {

@@ -10,9 +10,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kCell = 0.6;   ///< half a pallet [m]
-constexpr double kSeam = 1e-6;  ///< polygons reach so far beyond their edges: no light through seams [m]
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kHalfPallet = 0.6;    ///< half a pallet [m]
+constexpr double kPolygonSeam = 1e-6;  ///< polygons reach so far beyond their edges: no light through seams [m]
+constexpr double kNoRange = std::numeric_limits<double>::infinity();
 
 Vector3d vertex(const arenas::Face& face, std::size_t i) {
   const auto& v = face.vertices[i % face.vertices.size()];
@@ -33,8 +33,8 @@ Vector3d face_normal(const arenas::Face& face) {
 }  // namespace
 
 RayWalk::RayWalk(const std::vector<arenas::Face>& faces) {
-  Vector3d low = Vector3d::Constant(kInf);
-  Vector3d high = Vector3d::Constant(-kInf);
+  Vector3d low = Vector3d::Constant(kNoRange);
+  Vector3d high = Vector3d::Constant(-kNoRange);
   std::vector<std::pair<Vector3d, Vector3d>> boxes;
   for (const arenas::Face& face : faces) {
     const Vector3d normal = face_normal(face);
@@ -43,8 +43,8 @@ RayWalk::RayWalk(const std::vector<arenas::Face>& faces) {
     polygon.normal = normal.normalized();
     polygon.offset = polygon.normal.dot(vertex(face, 0));
     polygon.first = static_cast<std::uint32_t>(edges_.size());
-    Vector3d box_low = Vector3d::Constant(kInf);
-    Vector3d box_high = Vector3d::Constant(-kInf);
+    Vector3d box_low = Vector3d::Constant(kNoRange);
+    Vector3d box_high = Vector3d::Constant(-kNoRange);
     for (std::size_t i = 0; i < face.vertices.size(); ++i) {
       const Vector3d a = vertex(face, i);
       box_low = box_low.cwiseMin(a);
@@ -52,11 +52,11 @@ RayWalk::RayWalk(const std::vector<arenas::Face>& faces) {
       const Vector3d along = vertex(face, i + 1) - a;
       if (along.norm() < 1e-9) continue;
       const Vector3d inward = polygon.normal.cross(along).normalized();
-      edges_.push_back({inward, inward.dot(a) - kSeam});
+      edges_.push_back({inward, inward.dot(a) - kPolygonSeam});
     }
     polygon.count = static_cast<std::uint32_t>(edges_.size()) - polygon.first;
-    polygon.z_min = box_low.z() - kSeam;
-    polygon.z_max = box_high.z() + kSeam;
+    polygon.z_min = box_low.z() - kPolygonSeam;
+    polygon.z_max = box_high.z() + kPolygonSeam;
     polygons_.push_back(polygon);
     boxes.emplace_back(box_low, box_high);
     low = low.cwiseMin(box_low);
@@ -64,16 +64,16 @@ RayWalk::RayWalk(const std::vector<arenas::Face>& faces) {
   }
   if (polygons_.empty()) low = high = Vector3d::Zero();
 
-  frame_.resolution = kCell;
-  frame_.x0 = low.x() - kCell;
-  frame_.y0 = low.y() - kCell;
-  frame_.width = static_cast<int>(std::ceil((high.x() - frame_.x0) / kCell)) + 1;
-  frame_.height = static_cast<int>(std::ceil((high.y() - frame_.y0) / kCell)) + 1;
+  frame_.resolution = kHalfPallet;
+  frame_.x0 = low.x() - kHalfPallet;
+  frame_.y0 = low.y() - kHalfPallet;
+  frame_.width = static_cast<int>(std::ceil((high.x() - frame_.x0) / kHalfPallet)) + 1;
+  frame_.height = static_cast<int>(std::ceil((high.y() - frame_.y0) / kHalfPallet)) + 1;
   std::vector<std::vector<std::uint32_t>> cells(frame_.size());
   for (std::size_t i = 0; i < polygons_.size(); ++i) {
     // A polygon on the border of two cells is listed in both, or a rounding error would let the light through.
-    const Cell from = frame_.cell({boxes[i].first.x() - kSeam, boxes[i].first.y() - kSeam});
-    const Cell to = frame_.cell({boxes[i].second.x() + kSeam, boxes[i].second.y() + kSeam});
+    const Cell from = frame_.cell({boxes[i].first.x() - kPolygonSeam, boxes[i].first.y() - kPolygonSeam});
+    const Cell to = frame_.cell({boxes[i].second.x() + kPolygonSeam, boxes[i].second.y() + kPolygonSeam});
     for (int y = from.y; y <= to.y; ++y) {
       for (int x = from.x; x <= to.x; ++x) cells[frame_.index({x, y})].push_back(static_cast<std::uint32_t>(i));
     }
@@ -121,16 +121,16 @@ double RayWalk::cast(const Ray& ray, double max_range) const {
   };
   clip(gx, ix, frame_.width);
   clip(gy, iy, frame_.height);
-  if (t > leave) return kInf;
+  if (t > leave) return kNoRange;
 
   Cell cell{std::clamp(static_cast<int>(std::floor(gx + t * ix)), 0, frame_.width - 1),
             std::clamp(static_cast<int>(std::floor(gy + t * iy)), 0, frame_.height - 1)};
   const int step_x = ix > 0.0 ? 1 : -1;
   const int step_y = iy > 0.0 ? 1 : -1;
-  const double each_x = ix != 0.0 ? std::abs(1.0 / ix) : kInf;
-  const double each_y = iy != 0.0 ? std::abs(1.0 / iy) : kInf;
-  double next_x = ix != 0.0 ? (static_cast<double>(cell.x + (ix > 0.0 ? 1 : 0)) - gx) / ix : kInf;
-  double next_y = iy != 0.0 ? (static_cast<double>(cell.y + (iy > 0.0 ? 1 : 0)) - gy) / iy : kInf;
+  const double each_x = ix != 0.0 ? std::abs(1.0 / ix) : kNoRange;
+  const double each_y = iy != 0.0 ? std::abs(1.0 / iy) : kNoRange;
+  double next_x = ix != 0.0 ? (static_cast<double>(cell.x + (ix > 0.0 ? 1 : 0)) - gx) / ix : kNoRange;
+  double next_y = iy != 0.0 ? (static_cast<double>(cell.y + (iy > 0.0 ? 1 : 0)) - gy) / iy : kNoRange;
 
   while (t <= best && frame_.inside(cell)) {
     const double exit = std::min(std::min(next_x, next_y), best);
@@ -157,7 +157,7 @@ double RayWalk::cast(const Ray& ray, double max_range) const {
       next_y += each_y;
     }
   }
-  return hit ? best : kInf;
+  return hit ? best : kNoRange;
 }
 
 double RayWalk::cast(const Ray& ray, double max_range, const std::vector<Sphere>& spheres) const {
@@ -173,9 +173,9 @@ double cast_sphere(const Ray& ray, const Sphere& sphere) {
   const Vector3d to = Vector3d(sphere.x, sphere.y, sphere.z) - ray.origin;
   const double middle = to.dot(ray.direction);
   const double half2 = sphere.radius * sphere.radius - (to.squaredNorm() - middle * middle);
-  if (half2 < 0.0) return kInf;
+  if (half2 < 0.0) return kNoRange;
   const double t = middle - std::sqrt(half2);
-  return t > 0.0 ? t : kInf;
+  return t > 0.0 ? t : kNoRange;
 }
 
 }  // namespace rubble::sim

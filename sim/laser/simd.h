@@ -3,11 +3,14 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif
 
 namespace rubble::sim {
+
+inline constexpr float kInf = std::numeric_limits<float>::infinity();  ///< nothing in range
 
 /// Four floats worked on together (compiler vector extension, SSE2 on x86-64). Lane by lane IEEE arithmetic, so the
 /// bits are those of scalar code.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "base/angle.h"
@@ -15,11 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr float kSeam = 2e-5f;     ///< faces reach so far beyond their edges: no light through seams [m]
-constexpr double kStopped = 1e-3;  ///< beams that end so much before a face never reach it, rounding included [m]
-constexpr double kBeside = 0.05;   ///< what is nearer may be at any bearing [m]
-constexpr std::size_t kFew = 12;   ///< groups of beams that cost less than to see which of them a face really needs
-constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr float kFaceSeam = 2e-5f;  ///< faces reach so far beyond their edges: no light through seams [m]
+constexpr double kStopped = 1e-3;   ///< beams that end so much before a face never reach it, rounding included [m]
+constexpr double kBeside = 0.05;    ///< what is nearer may be at any bearing [m]
+constexpr std::size_t kFew = 12;    ///< groups of beams that cost less than to see which of them a face really needs
 constexpr std::size_t kCorners = ScanFaces::kCorners;
 constexpr std::size_t kMostPoints = 2 * kCorners;  ///< of a polygon cut by a slab
 
@@ -209,7 +207,7 @@ void SweepCast::meet(const NearFace& face, const ScanFaces::Polygon& polygon, co
     const int ends = 1 << i | 1 << (i + 1) % kCorners;
     if ((above & ends) == ends || (below & ends) == ends) continue;
     const ScanFaces::Edge& edge = polygon.edges[i];
-    edges[edge_count++] = Plane4(edge.inward, edge.offset - edge.inward.dot(beams.middle.p) - double{kSeam});
+    edges[edge_count++] = Plane4(edge.inward, edge.offset - edge.inward.dot(beams.middle.p) - double{kFaceSeam});
   }
   const Float4 zero = splat(0.0f);
   for (std::size_t k = 0; k < spans.count; ++k) {

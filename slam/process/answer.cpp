@@ -1,7 +1,6 @@
 #include "slam/process/answer.h"
 
 #include <cmath>
-#include <limits>
 
 #include "base/text/words.h"
 
@@ -10,7 +9,6 @@ namespace {
 
 using mrpt::math::TPose2D;
 
-constexpr std::int64_t kAnyStamp = std::numeric_limits<std::int64_t>::max();
 constexpr std::size_t kMostFigures = 100;
 constexpr char kUnknown = '?', kFree = '.', kOccupied = '#';
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -62,6 +63,9 @@ class MessageReader {
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
 };
+
+/// Stamps and counts of 64 bits: whatever their sign bit leaves.
+inline constexpr std::int64_t kAnyStamp = std::numeric_limits<std::int64_t>::max();
 
 /// The words of one line, one after the other. Throws BadMessage on a missing, a wrong, or (by finish) a spare one.
 class Words {

@@ -9,8 +9,6 @@
 namespace rubble::slam {
 namespace {
 
-constexpr std::int64_t kAnyStamp = std::numeric_limits<std::int64_t>::max();
-
 void put(std::string& text, const std::string& value) { text += ' ' + one_line(value); }
 void put(std::string& text, double value) { append_number(text, value); }
 void put(std::string& text, int value) { append_number(text, static_cast<std::int64_t>(value)); }

@@ -15,7 +15,7 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-constexpr Work kWorkPerNode = 50;  ///< of a search for paths
+constexpr Work kWorkPerVisit = 50;  ///< of a search for paths
 constexpr Work kWorkPerLink = 12;
 
 }  // namespace
@@ -142,7 +142,7 @@ std::vector<double> KeyFrames::paths_from(int i, const std::vector<int>& wanted,
     open_.pop_back();
     if (path > paths_[static_cast<std::size_t>(k)]) continue;
     left -= asked_[static_cast<std::size_t>(k)] != 0 ? 1U : 0U;
-    looked_at += kWorkPerNode + kWorkPerLink * static_cast<Work>(links_[static_cast<std::size_t>(k)].size());
+    looked_at += kWorkPerVisit + kWorkPerLink * static_cast<Work>(links_[static_cast<std::size_t>(k)].size());
     for (const Link& link : links_[static_cast<std::size_t>(k)]) {
       double& known = paths_[static_cast<std::size_t>(link.to)];
       if (path + link.length >= known || path + link.length > most) continue;

@@ -15,8 +15,8 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-constexpr int kLeastPairs = 15;
-constexpr std::size_t kLeastPoints = 15;
+constexpr int kLeastTrackedPairs = 15;
+constexpr std::size_t kLeastScanPoints = 15;
 constexpr double kLeastScore = 0.25;
 constexpr double kWidestSearch = 1.0;   ///< [m]
 constexpr double kDoubted = 0.5;        ///< so much doubt, and the odometry is but one of several starts
@@ -27,11 +27,9 @@ constexpr double kFoundAgain = 0.5;     ///< inliers after a search of all headi
 constexpr double kRunnerUp = 0.85;      ///< another place may score so much of the best
 constexpr double kNotFar = 0.2;         ///< a match so close to the expected one is a correction, not another place [m]
 constexpr double kNotFarTurned = 0.15;  ///< [rad]
-constexpr std::size_t kWitnesses = 6;   ///< key frames that are asked whether the odometry can be true
-constexpr double kContradicted = 0.15;  ///< share of points they would have seen through, from which it cannot
-constexpr double kOneWay = 0.2;         ///< share of the information along the walls, below which their ends are asked
-constexpr Work kWorkPerJudged = 30;     ///< point and key frame
-constexpr Work kWorkPerDrawnFrame = 8000;
+constexpr std::size_t kOdometryWitnesses = 6;  ///< key frames that are asked whether the odometry can be true
+constexpr double kContradicted = 0.15;         ///< share of points they would have seen through, from which it cannot
+constexpr double kOneWay = 0.2;  ///< share of the information along the walls, below which their ends are asked
 
 ScanFitConfig tight() {
   ScanFitConfig config;
@@ -104,7 +102,7 @@ Tracked LocalTracker::track(const KeyFrames& frames, const Cloud& cloud, const E
     tracked.fit = best_of_several(cloud, prior, distance, turn, tracked.fit, work);
   if (tracked.fit.prior_chi2 > config_.slip_chi2 || tracked.fit.inliers < config_.lost_inliers)
     doubt_odometry(frames, cloud, prior, carried, reach(motion), tracked, work);
-  tracked.found = tracked.fit.paired >= kLeastPairs;
+  tracked.found = tracked.fit.paired >= kLeastTrackedPairs;
   tracked.lost = doubted && (!tracked.found || tracked.fit.inliers < config_.lost_inliers);
   if (!tracked.found) tracked.fit.pose = prior.pose;
   const TPose2D off = tracked.fit.pose - prior.pose;
@@ -140,7 +138,7 @@ void LocalTracker::believe_again(const PosePrior& odometry, ScanFit& fit, Work* 
 
 std::optional<CorrelativeSearch::Found> LocalTracker::look_around(const Cloud& cloud, const SearchWindow& window,
                                                                   double floor, double later_floor, Work* work) {
-  if (surfels_.empty() || cloud.points.size() < kLeastPoints) return std::nullopt;
+  if (surfels_.empty() || cloud.points.size() < kLeastScanPoints) return std::nullopt;
   if (!correlator_ready_) correlator_.build(surfels_.surfels(), config_.search_cell, config_.search_blur, work);
   correlator_ready_ = true;
   search_.start(correlator_, cloud.points, window, floor, std::nullopt, later_floor);
@@ -211,8 +209,8 @@ bool LocalTracker::overrules(const KeyFrames& frames, const Cloud& cloud, const 
                              Work* work) const {
   const TPose2D off = found.pose - expected.pose;
   if (length(off.x, off.y) < kNotFar && std::abs(wrap_angle(off.phi)) < kNotFarTurned) return true;
-  const std::vector<int> close(local_.begin(),
-                               local_.begin() + static_cast<std::ptrdiff_t>(std::min(local_.size(), kWitnesses)));
+  const std::vector<int> close(
+      local_.begin(), local_.begin() + static_cast<std::ptrdiff_t>(std::min(local_.size(), kOdometryWitnesses)));
   const TPose2D& origin = frames.pose(local_.front());
   const auto there = frames.agreement(cloud.points, expected.pose, origin, close);
   const auto here = frames.agreement(cloud.points, found.pose, origin, close);

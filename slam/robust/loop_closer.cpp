@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kLeastSurfels = 40;
 constexpr std::size_t kMostPoints = 350;  ///< of the new key frames, in a search
-constexpr int kLeastPairs = 30;
+constexpr int kLeastLoopPairs = 30;
 constexpr double kRunnerUpAway = 0.45;   ///< another place lies at least so far away [m]
 constexpr double kRunnerUpTurned = 0.2;  ///< or is turned so much [rad]
 constexpr double kOtherCandidate = 3.0;  ///< candidates lie so far apart along the drive [m]
@@ -42,14 +42,12 @@ constexpr double kAsFar = 0.7;             ///< and are so much of the loop's pa
 constexpr double kExplained = 0.8;         ///< when they support so much of what the loop's would ...
 constexpr double kAsGood = 0.03;           ///< ... and contradict hardly more
 constexpr double kWitnessAway = 2.5;       ///< old key frames so close are asked whether a new one can be true [m] ...
-constexpr std::size_t kWitnesses = 8;      ///< ... so many of them
+constexpr std::size_t kLoopWitnesses = 8;  ///< ... so many of them
 constexpr double kDoubledOneWay = 0.40;    ///< shares of points contradicted where the map shows two places at once:
 constexpr double kDoubledBothWays = 0.10;  ///< by the older ones or of them, and both
 constexpr int kLeastContradicted = 12;     ///< points
 constexpr int kLeastJudged = 60;           ///< points of which they can say something
-constexpr Work kWorkPerDrawnFrame = 8000;
-constexpr Work kWorkPerSuspected = 40;  ///< edge
-constexpr Work kWorkPerJudged = 30;     ///< point and key frame
+constexpr Work kWorkPerSuspected = 40;     ///< edge
 
 double size_of(const TPose2D& T) { return length(T.x, T.y); }
 double disagreement_of(const TPose2D& T) { return size_of(T) + 2.0 * std::abs(wrap_angle(T.phi)); }
@@ -63,7 +61,7 @@ Eigen::Matrix3d limited(const Eigen::Matrix3d& information, double sigma_distanc
 }
 
 /// Every n-th surfel as a point, at most about `most`.
-std::vector<OrientedPoint> sample(const SurfelGrid& grid, std::size_t stride) {
+std::vector<OrientedPoint> every_nth(const SurfelGrid& grid, std::size_t stride) {
   std::vector<OrientedPoint> points;
   const std::vector<Surfel>& surfels = grid.surfels();
   points.reserve(surfels.size() / stride + 1);
@@ -136,12 +134,9 @@ void LoopCloser::look(Work* work) {
   while (end < i && frames_[i].path - frames_[end].path >= config_.least_path) ++end;
   const std::vector<Candidate> close =
       candidates_within(i, end, config_.reach + config_.largest_window, std::numeric_limits<double>::infinity(), work);
-  std::vector<std::pair<double, int>> witnesses;
-  for (const Candidate& old : close)
-    if (old.away < kWitnessAway) witnesses.emplace_back(old.away, old.frame);
   // Between walls that look the same all along, wheels that spin carry the robot away and nothing tells. Once it looks
   // out of there, it or old key frames see through walls of the other, however short the way back through the graph.
-  const bool strayed = astray_ = testimony(i, std::move(witnesses), work).one_way >= config_.astray_contradiction;
+  const bool strayed = astray_ = testimony(i, work).one_way >= config_.astray_contradiction;
   counts_.astray += strayed ? 1 : 0;
   std::vector<std::pair<double, Task>> candidates;
   for (const Candidate& old : close) {
@@ -168,9 +163,15 @@ void LoopCloser::look(Work* work) {
 }
 
 /// What the old key frames closest by say of a key frame, and it of them.
-LoopCloser::Testimony LoopCloser::testimony(int frame, std::vector<std::pair<double, int>> close, Work* work) const {
+LoopCloser::Testimony LoopCloser::testimony(int frame, Work* work) const {
+  const TPose2D& here = frames_.pose(frame);
+  std::vector<std::pair<double, int>> close;
+  for (int old = 0; old < frame && frames_[frame].path - frames_[old].path >= config_.least_path; ++old) {
+    const double away = length(frames_.pose(old).x - here.x, frames_.pose(old).y - here.y);
+    if (away < kWitnessAway) close.emplace_back(away, old);
+  }
   std::sort(close.begin(), close.end());
-  if (close.size() > kWitnesses) close.resize(kWitnesses);
+  if (close.size() > kLoopWitnesses) close.resize(kLoopWitnesses);
   KeyFrames::Agreement there;
   KeyFrames::Agreement back;
   const auto sum = [](KeyFrames::Agreement& all, const KeyFrames::Agreement& more) {
@@ -195,13 +196,7 @@ LoopCloser::Testimony LoopCloser::testimony(int frame, std::vector<std::pair<dou
 std::vector<int> LoopCloser::doubled() const {
   std::vector<int> frames;
   for (int i = 0; i <= frames_.last(); ++i) {
-    std::vector<std::pair<double, int>> around;
-    const TPose2D& here = frames_.pose(i);
-    for (int j = 0; j < i && frames_[i].path - frames_[j].path >= config_.least_path; ++j) {
-      const double away = length(frames_.pose(j).x - here.x, frames_.pose(j).y - here.y);
-      if (away < kWitnessAway) around.emplace_back(away, j);
-    }
-    const Testimony said = testimony(i, std::move(around), nullptr);
+    const Testimony said = testimony(i, nullptr);
     if (said.one_way >= kDoubledOneWay && said.both_ways >= kDoubledBothWays) frames.push_back(i);
   }
   return frames;
@@ -268,12 +263,12 @@ bool LoopCloser::draw_both(const Task& task) {
   frames_.draw(old_frames_, frames_.pose(task.old), surfel_cell_, old_surfels_);
   if (old_surfels_.surfels().size() < kLeastSurfels) return false;
   frames_.draw(new_frames_, frames_.pose(task.frame), surfel_cell_, new_surfels_);
-  points_ = sample(new_surfels_, std::max<std::size_t>(1, new_surfels_.surfels().size() / kMostPoints));
+  points_ = every_nth(new_surfels_, std::max<std::size_t>(1, new_surfels_.surfels().size() / kMostPoints));
   if (points_.size() < kLeastSurfels) {
     points_.clear();
     return false;
   }
-  old_points_ = sample(old_surfels_, 2);
+  old_points_ = every_nth(old_surfels_, 2);
   return true;
 }
 
@@ -300,7 +295,7 @@ void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
   const ScanFit fit = fit_scan(old_surfels_, points_, start, {start, 1e-3 * Eigen::Matrix3d::Identity()},
                                near ? near_fit_ : wide_fit_, &used);
   budget -= used;
-  if (fit.inliers < config_.least_inliers || fit.paired < kLeastPairs || !well_conditioned(fit)) return;
+  if (fit.inliers < config_.least_inliers || fit.paired < kLeastLoopPairs || !well_conditioned(fit)) return;
   const TPose2D expected = frames_.pose(task.frame) - frames_.pose(task.old);
   const TPose2D moved = fit.pose - expected;
   if (near && size_of(moved) > 1.5 * task.window) return;

@@ -130,7 +130,7 @@ class LoopCloser {
     double one_way = 0.0;    ///< the larger share, of the key frame's points by old ones or the other way round
     double both_ways = 0.0;  ///< the smaller
   };
-  Testimony testimony(int frame, std::vector<std::pair<double, int>> close, Work* work) const;
+  Testimony testimony(int frame, Work* work) const;
   void queue_near(int frame, const std::vector<Candidate>& candidates);
   void consider_solving();
   bool solve(Work& budget);

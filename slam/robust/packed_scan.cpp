@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint16_t kUnknown = 0;
 constexpr std::uint16_t kMiss = std::numeric_limits<std::uint16_t>::max();
-constexpr float kFinest = 0.002F;  ///< [m]: scanners measure to millimetres, and cells are centimetres
+constexpr float kFinestQuantum = 0.002F;  ///< [m]: scanners measure to millimetres, and cells are centimetres
 
 }  // namespace
 
@@ -26,7 +26,7 @@ PackedScan packed(const robot::LaserScan& scan, const std::optional<SweepMotion>
   float farthest = 0.0F;
   for (const float range : scan.ranges)
     if (std::isfinite(range)) farthest = std::max(farthest, range);
-  out.quantum = std::max(kFinest, farthest / (kMiss - 1.0F));
+  out.quantum = std::max(kFinestQuantum, farthest / (kMiss - 1.0F));
   out.ranges.reserve(scan.ranges.size());
   for (const float range : scan.ranges) {
     const bool known = range > 0.0F && range >= out.range_min;

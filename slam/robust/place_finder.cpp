@@ -16,25 +16,23 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-constexpr double kCells = 400.0;    ///< of the raster of the whole map, from the middle to its edges
-constexpr double kFinest = 0.10;    ///< cell of that raster [m]
-constexpr double kCoarsest = 0.40;  ///< [m]
-constexpr double kBlurCells = 1.0;  ///< sigma of a surface in it
-constexpr std::size_t kLeastPoints = 60;
-constexpr std::size_t kMostPoints = 350;  ///< in a search
-constexpr int kLeastPairs = 40;
-constexpr double kRunnerUpAway = 0.6;     ///< another place lies at least so far away [m]
-constexpr double kRunnerUpTurned = 0.25;  ///< or is turned so much [rad]
-constexpr std::size_t kWitnesses = 16;    ///< key frames of the map that are asked what they saw
-constexpr double kWitnessAway = 5.0;      ///< at most [m]
-constexpr double kTieDistance = 0.03;     ///< least error of a tie [m]
-constexpr double kTieAngle = 0.008;       ///< [rad]
-constexpr Work kWorkPerDrawnFrame = 8000;
-constexpr Work kWorkPerJudged = 30;  ///< point and key frame
+constexpr double kCells = 400.0;        ///< of the raster of the whole map, from the middle to its edges
+constexpr double kFinestCell = 0.10;    ///< cell of that raster [m]
+constexpr double kCoarsestCell = 0.40;  ///< [m]
+constexpr double kBlurCells = 1.0;      ///< sigma of a surface in it
+constexpr std::size_t kLeastPlacePoints = 60;
+constexpr std::size_t kMostPlacePoints = 350;  ///< in a search
+constexpr int kLeastPlacePairs = 40;
+constexpr double kOtherPlaceAway = 0.6;      ///< another place lies at least so far away [m]
+constexpr double kOtherPlaceTurned = 0.25;   ///< or is turned so much [rad]
+constexpr std::size_t kPlaceWitnesses = 16;  ///< key frames of the map that are asked what they saw
+constexpr double kPlaceWitnessAway = 5.0;    ///< at most [m]
+constexpr double kTieDistance = 0.03;        ///< least error of a tie [m]
+constexpr double kTieAngle = 0.008;          ///< [rad]
 
 TPose2D inverse(const TPose2D& T) { return TPose2D() - T; }
 
-std::vector<OrientedPoint> sample(const std::vector<Surfel>& surfels, std::size_t most) {
+std::vector<OrientedPoint> at_most(const std::vector<Surfel>& surfels, std::size_t most) {
   const std::size_t stride = std::max<std::size_t>(1, surfels.size() / most);
   std::vector<OrientedPoint> points;
   for (std::size_t k = 0; k < surfels.size(); k += stride)
@@ -72,9 +70,9 @@ PlaceFinder::PlaceFinder(const KeyFrames& map, const PlaceConfig& config, double
   middle_ = {0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.0};
   // The newest key frame lies where the robot has been, or not far from it.
   extent_ = 0.5 * std::max(high.x - low.x, high.y - low.y) + 1.0;
-  const double cell = std::clamp(extent_ / kCells, kFinest, kCoarsest);
+  const double cell = std::clamp(extent_ / kCells, kFinestCell, kCoarsestCell);
   correlator_.build(surfels_.surfels(), cell, kBlurCells * cell);
-  map_points_ = sample(surfels_.surfels(), surfels_.surfels().size());
+  map_points_ = at_most(surfels_.surfels(), surfels_.surfels().size());
 }
 
 void PlaceFinder::begin() {
@@ -113,7 +111,7 @@ void PlaceFinder::work(const KeyFrames& drive, Work& budget) {
         continue;
       }
       best_ = *search_.found();
-      search_.start_again(config_.runner_up * best_.score, {best_.pose, kRunnerUpAway, kRunnerUpTurned});
+      search_.start_again(config_.runner_up * best_.score, {best_.pose, kOtherPlaceAway, kOtherPlaceTurned});
       stage_ = Stage::RunnerUp;
       continue;
     }
@@ -139,9 +137,9 @@ void PlaceFinder::start_search(const KeyFrames& drive, Work& budget) {
   SurfelGrid seen;
   drive.draw(frames_, drive.pose(frame_), surfel_cell_, seen);
   budget -= kWorkPerDrawnFrame * static_cast<Work>(frames_.size());
-  points_ = sample(seen.surfels(), kMostPoints);
+  points_ = at_most(seen.surfels(), kMostPlacePoints);
   const bool short_drive = drive[frame_].path < config_.least_path && !(told_ && expected(drive));
-  if (points_.size() < kLeastPoints || short_drive) return;
+  if (points_.size() < kLeastPlacePoints || short_drive) return;
   ++counts_.searched;
   SearchWindow window{middle_, extent_, kPi};
   if (expected(drive))
@@ -156,7 +154,7 @@ std::vector<int> PlaceFinder::closest(const TPose2D& T_map_frame, std::size_t mo
   std::vector<std::pair<double, int>> close;
   for (int i = 0; i < map_.size(); ++i) {
     const double away = length(map_.pose(i).x - T_map_frame.x, map_.pose(i).y - T_map_frame.y);
-    if (away <= kWitnessAway) close.emplace_back(away, i);
+    if (away <= kPlaceWitnessAway) close.emplace_back(away, i);
   }
   std::sort(close.begin(), close.end());
   if (close.size() > most) close.resize(most);
@@ -170,7 +168,7 @@ bool PlaceFinder::contradicted(const KeyFrames& drive, const TPose2D& T_map_fram
   const auto there = map_.agreement(points_, T_map_frame, TPose2D(), close);
   std::vector<OrientedPoint> around;
   for (const OrientedPoint& p : map_points_)
-    if (length(static_cast<double>(p.x) - T_map_frame.x, static_cast<double>(p.y) - T_map_frame.y) < kWitnessAway)
+    if (length(static_cast<double>(p.x) - T_map_frame.x, static_cast<double>(p.y) - T_map_frame.y) < kPlaceWitnessAway)
       around.push_back(p);
   const auto back = drive.agreement(around, drive.pose(frame_) + inverse(T_map_frame), TPose2D(), frames_);
   const auto judged = static_cast<double>(points_.size() * std::max<std::size_t>(1, close.size()));
@@ -185,9 +183,9 @@ std::optional<GraphEdge> PlaceFinder::judge(const KeyFrames& drive, const TPose2
   fitting.iterations = 20;
   Work used = 0;
   const ScanFit fit = fit_scan(surfels_, points_, start, {start, 1e-3 * Eigen::Matrix3d::Identity()}, fitting, &used);
-  const std::vector<int> close = closest(fit.pose, kWitnesses);
+  const std::vector<int> close = closest(fit.pose, kPlaceWitnesses);
   budget -= used + kWorkPerJudged * static_cast<Work>(points_.size() * (close.size() + frames_.size()));
-  if (close.empty() || fit.inliers < config_.least_inliers || fit.paired < kLeastPairs ||
+  if (close.empty() || fit.inliers < config_.least_inliers || fit.paired < kLeastPlacePairs ||
       !well_conditioned(fit.information) || contradicted(drive, fit.pose, close))
     return std::nullopt;
   GraphEdge tie;

@@ -45,8 +45,8 @@ constexpr double kKnownTurn = 0.5;      ///< ... looking the same way [rad] ...
 constexpr double kKnownPath = 6.0;      ///< ... to which the graph leads so directly, though the drive was longer [m]
 constexpr double kKnownInliers = 0.65;  ///< and what is seen there is what was seen
 constexpr double kKnownMoves = 0.20;    ///< [m]
-constexpr std::size_t kWitnesses = 8;   ///< key frames that are asked whether a scan can be true
-constexpr double kTurnWeight = 0.3;     ///< [m] that a key frame may be farther off for looking 1 rad less aside
+constexpr std::size_t kScanWitnesses = 8;  ///< key frames that are asked whether a scan can be true
+constexpr double kTurnWeight = 0.3;        ///< [m] that a key frame may be farther off for looking 1 rad less aside
 constexpr std::size_t kDoubtedFrames = 8;  ///< doubled key frames of a map that is doubted, at least ...
 constexpr double kDoubtedShare = 0.005;    ///< ... and of all of them; right maps have 0.0013 and less
 constexpr double kDoubtedUnfit = 0.05;     ///< or such a share of scans that fit nothing mapped
@@ -467,7 +467,7 @@ int RobustMapper::Impl::closest_frame(const TPose2D& T_map_base) const {
 /// What the closest key frames say of a scan where the robot is thought to be.
 double RobustMapper::Impl::contradiction_of(const Cloud& cloud) const {
   std::vector<int> close = frames_around(here_);
-  close.resize(std::min(close.size(), kWitnesses));
+  close.resize(std::min(close.size(), kScanWitnesses));
   return frames_.agreement(cloud.points, T_frame_base_, frames_.pose(here_), close).contradiction();
 }
 

@@ -21,7 +21,7 @@ constexpr std::string_view kMagic = "RUBBLE MAP 1\n";
 constexpr std::size_t kHead = 24;  ///< behind the magic: lengths of the payload, plain and packed, and two sums
 constexpr std::uint64_t kMostPacking = 1040;  ///< deflate packs no tighter than 1032 to 1
 constexpr int kPacking = 6;                   ///< zlib's usual level
-constexpr double kFarthest = 1e7;             ///< poses beyond are damage [m]
+constexpr double kFarthestPose = 1e7;         ///< poses beyond are damage [m]
 
 std::uint32_t sum_of(std::string_view bytes) {
   return static_cast<std::uint32_t>(
@@ -66,7 +66,7 @@ TPose2D take_pose(ByteReader& in) {
   const double x = take_finite(in);
   const double y = take_finite(in);
   const double phi = take_finite(in);
-  if (std::abs(x) > kFarthest || std::abs(y) > kFarthest) throw BadPayload("a pose far off");
+  if (std::abs(x) > kFarthestPose || std::abs(y) > kFarthestPose) throw BadPayload("a pose far off");
   return {x, y, phi};
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kInlier = 0.06F;       ///< [m]
 constexpr double kLeastKernel = 0.05;  ///< of the Cauchy weight [m]
-constexpr int kLeastPairs = 8;
+constexpr int kLeastFitPairs = 8;
 constexpr double kTightening = 0.6;  ///< of the radius, from step to step
 constexpr Work kWorkPerPoint = 60;   ///< of pairing one point
 
@@ -99,7 +99,7 @@ ScanFit fit_scan(const SurfelGrid& target, const std::vector<OrientedPoint>& poi
                               wrap_angle(fit.pose.phi - prior.pose.phi));
     fit.prior_chi2 = off.dot(L * off);
     fit.cost = 0.5 * (sums.capped + count - sums.paired) + fit.prior_chi2;
-    if (sums.paired < kLeastPairs) break;
+    if (sums.paired < kLeastFitPairs) break;
 
     const Eigen::Vector3d d = (fit.information + L).ldlt().solve(-(weight * sums.gradient() + L * off));
     if (!d.allFinite()) break;

@@ -19,12 +19,12 @@ constexpr double kTolerance = 0.2;  ///< scans may lie wrong by this much of a c
 constexpr double kTolerable = 0.5;  ///< ... by this much on the way, where others are under way to move them too ...
 constexpr double kLever = 4.0;      ///< ... so far from the robot [m]
 constexpr Work kWorkPerBeam = 60;   ///< of drawing a scan
-constexpr Work kCellsPerWork = 4;   ///< of the window that is drawn in
+constexpr Work kDrawnCellsPerWork = 4;  ///< of the window that is drawn in
 constexpr Work kWorkPerLook = 20;
-constexpr double kAlong = 0.99;        ///< of a normal's part along an axis, of walls across it: within 8 deg
-constexpr double kLeastShift = 0.1;    ///< cells
-constexpr double kLeastPoints = 20.0;  ///< tell where walls lie
-constexpr double kSure = 6.0;          ///< n R^2 of Rayleigh's test: by chance in one of 400
+constexpr double kAcross = 0.99;           ///< of a normal's part along an axis, of walls across it: within 8 deg
+constexpr double kLeastShift = 0.1;        ///< cells
+constexpr double kLeastWallPoints = 20.0;  ///< tell where walls lie
+constexpr double kSure = 6.0;              ///< n R^2 of Rayleigh's test: by chance in one of 400
 
 /// Where in a cell walls lie, in cells: the circular mean of their places.
 class WallPhase {
@@ -37,7 +37,7 @@ class WallPhase {
   /// How far a raster that begins at `origin` must move for walls to lie in the middle of cells, -0.5..0.5; zero where
   /// they may lie anywhere (Rayleigh's test).
   double shift(double origin) const {
-    if (count_ < kLeastPoints || cosine_ * cosine_ + sine_ * sine_ < kSure * count_) return 0.0;
+    if (count_ < kLeastWallPoints || cosine_ * cosine_ + sine_ * sine_ < kSure * count_) return 0.0;
     const double off = std::atan2(sine_, cosine_) / (2.0 * kPi) - 0.5 - origin;
     return off - std::round(off);
   }
@@ -66,8 +66,8 @@ void StampedMap::lay_raster(const KeyFrames& frames) {
       const double nx = c * static_cast<double>(point.nx) - s * static_cast<double>(point.ny);
       const double ny = s * static_cast<double>(point.nx) + c * static_cast<double>(point.ny);
       const mrpt::math::TPoint2D p = to_map({static_cast<double>(point.x), static_cast<double>(point.y)});
-      if (std::abs(nx) > kAlong) across_x.add(p.x / map_.frame().resolution);
-      if (std::abs(ny) > kAlong) across_y.add(p.y / map_.frame().resolution);
+      if (std::abs(nx) > kAcross) across_x.add(p.x / map_.frame().resolution);
+      if (std::abs(ny) > kAcross) across_y.add(p.y / map_.frame().resolution);
     }
   }
   const double cell = map_.frame().resolution;
@@ -98,7 +98,7 @@ void StampedMap::add(const KeyFrames& frames, int frame, const TPose2D& T_frame_
 /// Of what the map drew last.
 Work StampedMap::effort(const Entry& entry) const {
   return kWorkPerBeam * static_cast<Work>(entry.scan.ranges.size()) +
-         static_cast<Work>(map_.drawn_cells()) / kCellsPerWork;
+         static_cast<Work>(map_.drawn_cells()) / kDrawnCellsPerWork;
 }
 
 bool StampedMap::lies_wrong(const Entry& entry, const TPose2D& T_map_base) const {

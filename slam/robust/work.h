@@ -8,4 +8,7 @@ namespace rubble::slam {
 /// unit takes about a nanosecond of a small server's core.
 using Work = std::int64_t;
 
+inline constexpr Work kWorkPerDrawnFrame = 8000;  ///< a key frame's surfels drawn into a raster
+inline constexpr Work kWorkPerJudged = 30;        ///< point and key frame that is asked whether it can be true
+
 }  // namespace rubble::slam

@@ -16,6 +16,7 @@
 
 #include "base/angle.h"
 #include "base/rng.h"
+#include "robot/logs/foreign/foreign_log.h"
 #include "robot/logs/log.h"
 #include "robot/robot.h"
 
@@ -42,6 +43,12 @@ class TempFolder {
  private:
   std::string path_;
 };
+
+inline std::vector<LaserScan> scans_of(const ForeignLog& log) {
+  std::vector<LaserScan> scans;
+  for (const Inputs& tick : log.ticks) scans.insert(scans.end(), tick.scans.begin(), tick.scans.end());
+  return scans;
+}
 
 inline void write_bytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

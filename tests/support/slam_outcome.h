@@ -1,7 +1,10 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "slam/mapper.h"
@@ -27,11 +30,24 @@ inline double distance_to(const World& world, const TPoint2D& p) {
   return nearest;
 }
 
+/// Plays `ticks` to their end.
+inline void play(slam::Mapper& mapper, const std::vector<robot::Inputs>& ticks) {
+  for (const robot::Inputs& tick : ticks) mapper.update(tick);
+  mapper.finish();
+}
+
+/// What the mapper says of itself under `key`.
+inline double figure(const slam::Mapper& mapper, const std::string& key) {
+  for (const slam::MapperFigure& f : mapper.figures())
+    if (f.key == key) return f.value;
+  ADD_FAILURE() << "no figure " << key;
+  return -1.0;
+}
+
 /// Plays `ticks` of a drive that begins at the world's origin with heading 0.
 inline Outcome play(slam::Mapper& mapper, const std::vector<robot::Inputs>& ticks, const World& world,
                     const Trajectory& truth) {
-  for (const robot::Inputs& tick : ticks) mapper.update(tick);
-  mapper.finish();
+  play(mapper, ticks);
   Outcome out;
   out.rmse = first_pose_rmse(mapper.trajectory(), truth);
   for (const StampedPose& e : mapper.trajectory()) {

@@ -6,6 +6,7 @@
 
 #include "base/angle.h"
 #include "base/error.h"
+#include "base/planar.h"
 
 namespace rubble::robot {
 namespace {
@@ -17,11 +18,6 @@ constexpr double kSameLength = 0.3;  ///< scan and odometry poses of one frame a
 constexpr double kSameAngle = 0.2;   ///< and this [rad]
 
 bool same_pose(const TPose2D& a, const TPose2D& b) { return a.x == b.x && a.y == b.y && a.phi == b.phi; }
-
-TPose2D wrapped(TPose2D pose) {
-  pose.phi = wrap_angle(pose.phi);
-  return pose;
-}
 
 bool repeats_scan_before(const Records& records, std::size_t i) {
   return i > 0 && !records[i].is_scan && records[i - 1].is_scan && same_pose(records[i].robot, records[i - 1].robot);

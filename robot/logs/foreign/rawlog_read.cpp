@@ -8,6 +8,7 @@
 
 #include "base/angle.h"
 #include "base/error.h"
+#include "base/planar.h"
 #include "robot/logs/foreign/file_bytes.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
 #include "robot/logs/foreign/mrpt_stamp.h"
@@ -22,11 +23,6 @@ using mrpt::math::TPose2D;
 using namespace mrpt::obs;
 
 constexpr double kFrameSpacing = 0.1;  // between scans that carry no time [s]
-
-TPose2D wrapped(TPose2D pose) {
-  pose.phi = wrap_angle(pose.phi);
-  return pose;
-}
 
 /// What the entries of a rawlog say, one scanner only: the one of the first scan.
 struct Contents {

@@ -7,6 +7,7 @@
 
 #include "base/planar.h"
 #include "tests/support/slam_floor.h"
+#include "tests/support/slam_outcome.h"
 
 /// A map outlives the run that made it.
 namespace rubble::slam {
@@ -16,6 +17,8 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using robot::Inputs;
 using robot::RobotModel;
+using slam_test::figure;
+using slam_test::play;
 using Ticks = std::vector<Inputs>;
 
 const std::vector<Cell> kRound{{0, 0}, {1, 0}, {2, 0}, {2, 1}, {1, 1}, {0, 1}, {0, 0}};
@@ -30,11 +33,6 @@ Recorded recorded(const slam_test::Floor& floor, const std::vector<Cell>& rooms,
   Recorded out{slam_test::drive_through(floor.way(rooms), heading), {}};
   out.ticks = slam_test::record(floor.world(), out.drive, RobotModel(), 1.0, 0.01, seed);
   return out;
-}
-
-void play(Mapper& mapper, const Ticks& ticks) {
-  for (const Inputs& tick : ticks) mapper.update(tick);
-  mapper.finish();
 }
 
 std::string map_of(const Ticks& ticks) {
@@ -66,13 +64,6 @@ Errors errors(const Trajectory& estimate, const Trajectory& truth, const TPose2D
   }
   e.rmse = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, estimate.size())));
   return e;
-}
-
-double figure(const Mapper& mapper, const std::string& key) {
-  for (const MapperFigure& f : mapper.figures())
-    if (f.key == key) return f.value;
-  ADD_FAILURE() << "no figure " << key;
-  return 0.0;
 }
 
 TEST(ContinuedMapper, ALogCutInTwoIsMappedAsWellAsInOnePiece) {

@@ -8,6 +8,7 @@
 
 #include "base/planar.h"
 #include "tests/support/slam_floor.h"
+#include "tests/support/slam_outcome.h"
 #include "tests/support/slam_world.h"
 
 namespace rubble::slam {
@@ -17,6 +18,8 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using robot::Inputs;
 using robot::RobotModel;
+using slam_test::figure;
+using slam_test::play;
 
 const std::vector<TPoint2D> kTour{{0.0, 0.0},   {3.2, 0.2},  {3.2, 1.0}, {0.0, 0.5},
                                   {-1.4, -0.8}, {1.0, -0.6}, {0.0, 0.0}};
@@ -32,11 +35,6 @@ slam_test::World random_room(std::uint64_t seed) {
     slam_test::add_box(world, x, y, x + rng.uniform(0.1, 0.6), y + rng.uniform(0.1, 0.5));
   }
   return world;
-}
-
-void play(Mapper& mapper, const std::vector<Inputs>& ticks) {
-  for (const Inputs& tick : ticks) mapper.update(tick);
-  mapper.finish();
 }
 
 /// What a mirror sees: left is right. The scanner's fan must be symmetric.
@@ -98,13 +96,6 @@ TEST(RobustMapper, AMirroredWorldGivesAMirroredResult) {
     }
     EXPECT_LT(most, 0.03);
   }
-}
-
-double figure(const Mapper& mapper, const std::string& key) {
-  for (const MapperFigure& f : mapper.figures())
-    if (f.key == key) return f.value;
-  ADD_FAILURE() << "no figure " << key;
-  return 0.0;
 }
 
 std::vector<TPoint2D> rounds(int count) {

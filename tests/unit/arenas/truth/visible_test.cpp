@@ -24,14 +24,14 @@ struct View {
   Occupancy at(double x, double y) const { return known[known.cell({x, y})]; }
 };
 
-std::size_t count(const OccupancyGrid& map, Occupancy what) {
+std::size_t cells_of(const OccupancyGrid& map, Occupancy what) {
   return static_cast<std::size_t>(std::count(map.cells().begin(), map.cells().end(), what));
 }
 
 TEST(Visible, AnOpenRoomIsSeenThroughout) {
   const View view(parse("  +---+---+\n  |S.   . |\n  +   +   +\n  | .   . |\n  +---+---+\n"));
-  EXPECT_EQ(count(view.known, Occupancy::Free), count(view.truth, Occupancy::Free));
-  EXPECT_EQ(count(view.known, Occupancy::Occupied), count(view.truth, Occupancy::Occupied));
+  EXPECT_EQ(cells_of(view.known, Occupancy::Free), cells_of(view.truth, Occupancy::Free));
+  EXPECT_EQ(cells_of(view.known, Occupancy::Occupied), cells_of(view.truth, Occupancy::Occupied));
 }
 
 /// A gap of 0.3 m is too narrow to drive through, but the laser looks in as far as it can see round the edges.
@@ -98,7 +98,7 @@ TEST(Visible, ANarrowCorridorIsSeenWhole) {
                         wall(1.2, 0.3, 4.65, 0.3) + wall(1.2, 0.95, 4.0, 0.95) + wall(4.65, 0.3, 4.65, 5.0) +
                         wall(4.0, 0.95, 4.0, 5.0) + wall(4.0, 5.0, 4.65, 5.0),
                     "corridor"));
-    EXPECT_EQ(count(view.known, Occupancy::Free), count(view.truth, Occupancy::Free)) << "at " << at;
+    EXPECT_EQ(cells_of(view.known, Occupancy::Free), cells_of(view.truth, Occupancy::Free)) << "at " << at;
     EXPECT_EQ(view.at(at + 4.3, at + 4.9), Occupancy::Free) << "at " << at;
   }
 }
@@ -109,8 +109,8 @@ TEST(Visible, AYellowArenaIsSeenAlmostWhole) {
     GenerateConfig config;
     config.seed = seed;
     const View view(parse_arena(generate_arena(config), "generated"));
-    const double share = static_cast<double>(count(view.known, Occupancy::Free)) /
-                         static_cast<double>(count(view.truth, Occupancy::Free));
+    const double share = static_cast<double>(cells_of(view.known, Occupancy::Free)) /
+                         static_cast<double>(cells_of(view.truth, Occupancy::Free));
     EXPECT_GT(share, 0.985) << "seed " << seed;
     for (std::size_t i = 0; i < view.known.cells().size(); ++i) {
       const Occupancy cell = view.known.cells()[i];

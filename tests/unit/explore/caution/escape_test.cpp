@@ -14,14 +14,14 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kTick = 0.02;
+constexpr double kEscapeTick = 0.02;
 
 /// A point robot that does what it is told where `may` lets it.
 struct Puppet {
   TPose2D pose;
   std::function<bool(const TPose2D&)> may = [](const TPose2D&) { return true; };
   void obey(const robot::Drive& drive) {
-    const TPose2D next = pose + TPose2D{drive.v * kTick, 0.0, drive.w * kTick};
+    const TPose2D next = pose + TPose2D{drive.v * kEscapeTick, 0.0, drive.w * kEscapeTick};
     if (may(next)) pose = next;
   }
 };
@@ -37,10 +37,10 @@ Outcome run(Puppet& puppet, Escape::Met met, const std::vector<TPoint2D>& trail,
   escape.begin(met, puppet.pose, now);
   Outcome outcome;
   while (outcome.result == Escape::Result::UnderWay && outcome.seconds < 300.0) {
-    outcome.result = escape.step(puppet.pose, escape.drive(), false, false, kTick, now, trail, room);
+    outcome.result = escape.step(puppet.pose, escape.drive(), false, false, kEscapeTick, now, trail, room);
     puppet.obey(escape.drive());
-    now = now + kTick;
-    outcome.seconds += kTick;
+    now = now + kEscapeTick;
+    outcome.seconds += kEscapeTick;
   }
   return outcome;
 }
@@ -95,13 +95,13 @@ TEST(TiltWatch, TakesTheServosAnglesForTheBodysTiltAndAsksForPatience) {
   TiltWatch tilt(config);
   robot::Inputs inputs;
   inputs.aims.push_back({Stamp{}, deg_to_rad(-25.0), 0.0});  // the laser looks down to stay level: nose up
-  tilt.update(inputs, kTick);
+  tilt.update(inputs, kEscapeTick);
   EXPECT_FALSE(tilt.too_steep());
-  for (int i = 0; i < 100; ++i) tilt.update(inputs, kTick);
+  for (int i = 0; i < 100; ++i) tilt.update(inputs, kEscapeTick);
   EXPECT_NEAR(tilt.pitch(), deg_to_rad(25.0), 0.01);
   EXPECT_TRUE(tilt.too_steep());
   inputs.aims.back().pitch = deg_to_rad(-10.0);  // a ramp of the arena
-  for (int i = 0; i < 100; ++i) tilt.update(inputs, kTick);
+  for (int i = 0; i < 100; ++i) tilt.update(inputs, kEscapeTick);
   EXPECT_FALSE(tilt.too_steep());
 }
 

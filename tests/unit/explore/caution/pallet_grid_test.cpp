@@ -16,9 +16,9 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
 constexpr double kPallet = 1.2;  // [m]
-const robot::RobotModel kModel;
+const robot::RobotModel kRobot;
 
-Stamp at(double seconds) { return Stamp::from_seconds(seconds); }
+Stamp after(double seconds) { return Stamp::from_seconds(seconds); }
 
 /// A map of 8 x 8 m; walls stand on about half of the edges of a grid that lies at T_map_grid.
 OccupancyGrid map_of_walls(const TPose2D& T_map_grid, Rng& rng) {
@@ -84,51 +84,51 @@ TEST(PalletGrid, IsNotMadeUpWhereNoWallsAgree) {
 struct FeltPallet : testing::Test {
   PalletGrid grid;
   FeltObstacles felt;
-  const TPose2D at_the_edge{1.2 - 0.5 * kModel.length - 0.02, 0.6, 0.0};
+  const TPose2D at_the_edge{1.2 - 0.5 * kRobot.length - 0.02, 0.6, 0.0};
   const TPoint2D beyond{1.8, 0.6};
 
   double nearest(const TPoint2D& p, double now = 10.0) const {
     double least = 1e9;
-    for (const TPoint2D& q : felt.points(at(now))) least = std::min(least, distance(p, q));
+    for (const TPoint2D& q : felt.points(after(now))) least = std::min(least, distance(p, q));
     return least;
   }
 };
 
 TEST_F(FeltPallet, TheWholePalletCountsAndLeavesRoomBesideIt) {
-  ASSERT_TRUE(felt.feel({at(1.0), at_the_edge}, false, kModel, grid));
+  ASSERT_TRUE(felt.feel({after(1.0), at_the_edge}, false, kRobot, grid));
   for (double x = 1.3; x < 2.3; x += 0.1)
     for (double y = 0.1; y < 1.1; y += 0.1) EXPECT_LT(nearest({x, y}), 0.12) << x << " " << y;
-  for (const TPoint2D& p : felt.points(at(10.0))) {
+  for (const TPoint2D& p : felt.points(after(10.0))) {
     EXPECT_GT(p.x, 1.2);
     EXPECT_LT(p.x, 2.4);
     EXPECT_GT(p.y, 0.0);
     EXPECT_LT(p.y, 1.2);
   }
-  EXPECT_EQ(felt.count(at(1e6)), 1) << "time alone does not free a step field";
+  EXPECT_EQ(felt.count(after(1e6)), 1) << "time alone does not free a step field";
 }
 
 TEST_F(FeltPallet, APardonLeavesTheMiddlesOfTheSidesAndTheNextTouchIsForGood) {
-  ASSERT_TRUE(felt.feel({at(1.0), at_the_edge}, false, kModel, grid));
-  ASSERT_TRUE(felt.pardon(at(2.0)));
+  ASSERT_TRUE(felt.feel({after(1.0), at_the_edge}, false, kRobot, grid));
+  ASSERT_TRUE(felt.pardon(after(2.0)));
   EXPECT_GT(nearest(beyond), 0.5);
   EXPECT_NEAR(nearest({1.2, 0.6}), 0.0, 1e-9) << "where a crossing ramp has a high corner";
-  ASSERT_TRUE(felt.feel({at(3.0), TPose2D{1.8, 1.2 + 0.5 * kModel.length + 0.02, -0.5 * kPi}}, false, kModel, grid));
+  ASSERT_TRUE(felt.feel({after(3.0), TPose2D{1.8, 1.2 + 0.5 * kRobot.length + 0.02, -0.5 * kPi}}, false, kRobot, grid));
   EXPECT_LT(nearest(beyond), 0.12);
-  EXPECT_EQ(felt.count(at(10.0)), 1) << "it is the same pallet";
-  EXPECT_FALSE(felt.pardon(at(4.0)));
-  EXPECT_TRUE(felt.forget(at(5.0))) << "but for the way home";
-  EXPECT_EQ(felt.count(at(6.0)), 0);
+  EXPECT_EQ(felt.count(after(10.0)), 1) << "it is the same pallet";
+  EXPECT_FALSE(felt.pardon(after(4.0)));
+  EXPECT_TRUE(felt.forget(after(5.0))) << "but for the way home";
+  EXPECT_EQ(felt.count(after(6.0)), 0);
 }
 
 TEST_F(FeltPallet, APalletTheRobotStoodOnIsNoStepField) {
-  EXPECT_FALSE(felt.feel({at(1.0), at_the_edge}, false, kModel, grid, {beyond}));
+  EXPECT_FALSE(felt.feel({after(1.0), at_the_edge}, false, kRobot, grid, {beyond}));
   EXPECT_GT(nearest({2.2, 0.6}), 0.5);
-  EXPECT_EQ(felt.count(at(2.0)), 1) << "a bar stands there";
+  EXPECT_EQ(felt.count(after(2.0)), 1) << "a bar stands there";
 
   FeltObstacles other;
-  ASSERT_TRUE(other.feel({at(1.0), at_the_edge}, false, kModel, grid));
-  other.passed({beyond.x, beyond.y, 0.0}, kModel);
-  for (const TPoint2D& p : other.points(at(2.0))) EXPECT_GT(distance(p, beyond), 0.5);
+  ASSERT_TRUE(other.feel({after(1.0), at_the_edge}, false, kRobot, grid));
+  other.passed({beyond.x, beyond.y, 0.0}, kRobot);
+  for (const TPoint2D& p : other.points(after(2.0))) EXPECT_GT(distance(p, beyond), 0.5);
 }
 
 TEST_F(FeltPallet, APalletThatHeldTheRobotAgainAndAgainIsLeftAloneOnceItIsLeft) {
@@ -136,25 +136,25 @@ TEST_F(FeltPallet, APalletThatHeldTheRobotAgainAndAgainIsLeftAloneOnceItIsLeft) 
   const TPose2D on_it{1.7, 0.6, 0.0};
   for (int times = 1; times <= config.tries; ++times) {
     EXPECT_GT(nearest({1.5, 0.25}), 0.25) << times;
-    felt.passed(on_it, kModel);
-    EXPECT_FALSE(felt.feel({at(times), on_it}, false, kModel, grid));
+    felt.passed(on_it, kRobot);
+    EXPECT_FALSE(felt.feel({after(times), on_it}, false, kRobot, grid));
   }
-  felt.passed(on_it, kModel);
+  felt.passed(on_it, kRobot);
   EXPECT_GT(nearest({1.5, 0.25}), 0.25) << "it must get out";
-  felt.passed({0.6, 0.6, 0.0}, kModel);
+  felt.passed({0.6, 0.6, 0.0}, kRobot);
   EXPECT_LT(nearest({1.5, 0.25}), 0.12);
-  felt.pardon(at(5.0));
-  felt.pardon(at(6.0));
+  felt.pardon(after(5.0));
+  felt.pardon(after(6.0));
   EXPECT_LT(nearest({1.5, 0.25}), 0.12);
-  EXPECT_TRUE(felt.forget(at(7.0))) << "but for the way home";
-  EXPECT_EQ(felt.count(at(8.0)), 0);
+  EXPECT_TRUE(felt.forget(after(7.0))) << "but for the way home";
+  EXPECT_EQ(felt.count(after(8.0)), 0);
 }
 
 TEST_F(FeltPallet, WhatIsMetWithinAPalletOrBehindTheRobotStaysThere) {
-  EXPECT_FALSE(felt.feel({at(1.0), TPose2D{0.5, 0.6, 0.0}}, false, kModel, grid)) << "the middle of its own pallet";
+  EXPECT_FALSE(felt.feel({after(1.0), TPose2D{0.5, 0.6, 0.0}}, false, kRobot, grid)) << "the middle of its own pallet";
   FeltObstacles behind;
-  ASSERT_TRUE(behind.feel({at(1.0), TPose2D{at_the_edge.x, 0.6, kPi}}, true, kModel, grid));
-  for (const TPoint2D& p : behind.points(at(2.0))) EXPECT_GT(p.x, 1.2);
+  ASSERT_TRUE(behind.feel({after(1.0), TPose2D{at_the_edge.x, 0.6, kPi}}, true, kRobot, grid));
+  for (const TPoint2D& p : behind.points(after(2.0))) EXPECT_GT(p.x, 1.2);
 }
 
 }  // namespace

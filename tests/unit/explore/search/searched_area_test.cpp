@@ -160,7 +160,7 @@ TEST(SearchedArea, WhatIsGivenUpIsGivenUpForTheseFacesOnly) {
   EXPECT_EQ(area.missing(floor, c), kNorthFace);
 }
 
-robot::VictimCue cue_of(const TPoint2D& victim, const TPose2D& pose, double seconds) {
+robot::VictimCue sure_cue_of(const TPoint2D& victim, const TPose2D& pose, double seconds) {
   const TPoint2D seen = pose.inverseComposePoint(victim);
   return {Stamp::from_seconds(seconds), robot::CueKind::Appearance, std::atan2(seen.y, seen.x),
           std::hypot(seen.x, seen.y), 0.9};
@@ -174,7 +174,7 @@ TEST(VictimSearch, TwoBackToBackBehindOneWallStayTwo) {
   for (int i = 0; i < 6; ++i) {
     const bool north = i % 2 == 0;
     const TPose2D from{0.1 * i, north ? 1.0 : -1.0, 0.0};
-    search.add(cue_of({0.0, north ? 0.15 : -0.15}, from, i), Anchor{Stamp::from_seconds(i), from}, same_side);
+    search.add(sure_cue_of({0.0, north ? 0.15 : -0.15}, from, i), Anchor{Stamp::from_seconds(i), from}, same_side);
   }
   ASSERT_EQ(search.reports().size(), 2u);
   EXPECT_NEAR(std::abs(search.reports()[0].p_map.y - search.reports()[1].p_map.y), 0.3, 1e-6);
@@ -184,14 +184,14 @@ TEST(VictimSearch, OneSeenFromLeftAndRightIsOne) {
   VictimSearch search;
   for (int i = 0; i < 6; ++i) {
     const TPose2D from{i % 2 == 0 ? -1.0 : 1.0, 0.4, 0.0};
-    search.add(cue_of({0.0, 0.1}, from, i), Anchor{Stamp::from_seconds(i), from}, same_side);
+    search.add(sure_cue_of({0.0, 0.1}, from, i), Anchor{Stamp::from_seconds(i), from}, same_side);
   }
   EXPECT_EQ(search.reports().size(), 1u);
 }
 
 TEST(VictimSearch, FalseAlarmsMinutesApartMakeNoVictim) {
   VictimSearch search;
-  for (int i = 0; i < 6; ++i) search.add(cue_of({1.0, 0.0}, TPose2D{}, 100.0 * i), TPose2D{});
+  for (int i = 0; i < 6; ++i) search.add(sure_cue_of({1.0, 0.0}, TPose2D{}, 100.0 * i), TPose2D{});
   EXPECT_TRUE(search.reports().empty());
 }
 

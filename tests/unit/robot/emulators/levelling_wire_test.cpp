@@ -11,11 +11,11 @@ namespace rubble::robot {
 namespace {
 
 constexpr double kGravity = 9.80665;
-constexpr double kStep = 0.001;  // [s]
+constexpr double kUnitStep = 0.001;  // [s]
 
-class Wire {
+class UnitWire {
  public:
-  explicit Wire(LevellingEmulatorSettings emulator = {}, LevellingUnitSettings settings = {})
+  explicit UnitWire(LevellingEmulatorSettings emulator = {}, LevellingUnitSettings settings = {})
       : unit(emulator), driver(settings) {
     unit.client_came(now);
     driver.opened(now, LineKind::Uart);
@@ -26,7 +26,7 @@ class Wire {
   }
 
   void step() {
-    now = now + kStep;
+    now = now + kUnitStep;
     driver.advance(now);
     const std::string to_unit = driver.take_output(now);
     if (!cut) unit.receive(to_unit, now);
@@ -50,7 +50,7 @@ class Wire {
 };
 
 TEST(LevellingWire, TiltsArriveWithinATick) {
-  Wire wire;
+  UnitWire wire;
   const double pitch = deg_to_rad(10.0), roll = deg_to_rad(-5.0);
   wire.felt = {{}, kGravity * std::sin(pitch), kGravity * std::sin(roll) * std::cos(pitch)};
   wire.run(2.0);
@@ -69,7 +69,7 @@ TEST(LevellingWire, APartsOwnZeroAndSensitivityAreTakenOut) {
   LevellingUnitSettings calibrated;
   calibrated.x = {0.57, 0.131};
   calibrated.y = {0.44, 0.131};
-  Wire wire(part, calibrated);
+  UnitWire wire(part, calibrated);
   wire.felt = {{}, 1.0, -2.0};
   wire.run(1.0);
   EXPECT_NEAR(wire.accelerations.back().x, 1.0, 0.005);
@@ -77,7 +77,7 @@ TEST(LevellingWire, APartsOwnZeroAndSensitivityAreTakenOut) {
 }
 
 TEST(LevellingWire, ServosTakeTheAnglesAndTellThem) {
-  Wire wire;
+  UnitWire wire;
   wire.run(1.0);
   wire.driver.aim({deg_to_rad(9.0), deg_to_rad(-4.5)});
   wire.run(0.2);
@@ -90,7 +90,7 @@ TEST(LevellingWire, ServosTakeTheAnglesAndTellThem) {
 }
 
 TEST(LevellingWire, WithoutACommandTheServosHold) {
-  Wire wire;
+  UnitWire wire;
   wire.run(1.0);
   wire.driver.aim({deg_to_rad(9.0), 0.0});
   wire.run(1.0);
@@ -129,7 +129,7 @@ TEST(LevellingWire, TheWatchdogsFlagIsRaised) {
 }
 
 TEST(LevellingWire, AResetUnitIsSetUpAgain) {
-  Wire wire;
+  UnitWire wire;
   wire.run(1.0);
   wire.unit.fail(DeviceFault::Reset, wire.now);
   EXPECT_FALSE(wire.unit.servos_on());
@@ -139,7 +139,7 @@ TEST(LevellingWire, AResetUnitIsSetUpAgain) {
 }
 
 TEST(LevellingWire, ADeadSensorIsSilentButTold) {
-  Wire wire;
+  UnitWire wire;
   wire.run(1.0);
   wire.unit.fail(DeviceFault::Sensor, wire.now);
   wire.run(0.1);
@@ -152,7 +152,7 @@ TEST(LevellingWire, ADeadSensorIsSilentButTold) {
 }
 
 TEST(LevellingWire, WithADeadSensorTheServosHold) {
-  Wire wire;
+  UnitWire wire;
   wire.run(1.0);
   wire.driver.aim({deg_to_rad(9.0), 0.0});
   wire.run(0.5);
@@ -171,7 +171,7 @@ TEST(LevellingWire, DamagedLinesAreNeverMeasurements) {
   for (const ByteFault fault :
        {ByteFault::Lost, ByteFault::Split, ByteFault::Doubled, ByteFault::Junk, ByteFault::WrongSum}) {
     SCOPED_TRACE(static_cast<int>(fault));
-    Wire wire;
+    UnitWire wire;
     wire.felt = {{}, 1.0, -1.0};
     wire.run(1.0);
     wire.faults.spoil(fault, wire.now + 1.0);

@@ -22,6 +22,7 @@
 #include "robot/drivers/descriptor.h"
 #include "robot/drivers/host_clock.h"
 #include "robot/emulators/port_server.h"
+#include "tests/support/base_files.h"
 
 namespace rubble::robot {
 namespace {
@@ -30,19 +31,6 @@ namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
 
 Bytes bytes(const std::string& text) { return {text.begin(), text.end()}; }
-
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "portXXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path_); }
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  fs::path path_;
-};
 
 /// Takes what the server gets until `size` bytes are there or a second has passed.
 Bytes served(PortServer& server, std::size_t size) {
@@ -70,8 +58,8 @@ Bytes received(Port& port, std::size_t size, PortServer* server = nullptr) {
 
 class Line : public testing::TestWithParam<std::string> {
  protected:
-  std::string word() const { return GetParam() == "tcp" ? "tcp:127.0.0.1:0" : "pty:" + folder_.file("line"); }
-  Folder folder_;
+  std::string word() const { return GetParam() == "tcp" ? "tcp:127.0.0.1:0" : "pty:" + folder_ / "line"; }
+  test::TempFolder folder_;
 };
 
 TEST_P(Line, AllBytesPassUnchangedBothWays) {
@@ -323,7 +311,7 @@ TEST(TcpLine, BelongsToOneProgramOfThisComputer) {
 
 TEST_P(Line, AClaimKeepsTheLineWhileTheDeviceIsUnplugged) {
   const auto server = serve_port(word());
-  const std::string other = GetParam() == "tcp" ? "tcp:127.0.0.1:9" : "pty:" + folder_.file("other");
+  const std::string other = GetParam() == "tcp" ? "tcp:127.0.0.1:9" : "pty:" + folder_ / "other";
   {
     const PortClaim claim(server->name());
     auto port = open_port(server->name());
@@ -341,8 +329,8 @@ TEST_P(Line, AClaimKeepsTheLineWhileTheDeviceIsUnplugged) {
 }
 
 TEST(PtyLine, LinkGoesWithTheServerAndReplacesAnOldOne) {
-  const Folder folder;
-  const std::string path = folder.file("line");
+  const test::TempFolder folder;
+  const std::string path = folder / "line";
   fs::create_symlink("/nowhere", path);
   auto server = serve_port("pty:" + path);
   EXPECT_TRUE(fs::is_character_file(path));
@@ -351,8 +339,8 @@ TEST(PtyLine, LinkGoesWithTheServerAndReplacesAnOldOne) {
 }
 
 TEST(PtyLine, FileOfThatNameIsLeftAlone) {
-  const Folder folder;
-  const std::string path = folder.file("line");
+  const test::TempFolder folder;
+  const std::string path = folder / "line";
   std::ofstream(path) << "precious";
   EXPECT_THROW(serve_port("pty:" + path), RunError);
   EXPECT_EQ(fs::file_size(path), 8u);
@@ -390,8 +378,8 @@ TEST(PortWord, MissingDevicesAreLostNotBadInput) {
 TEST(PortWord, ServersTakeNoSerialLines) { EXPECT_THROW(serve_port("/dev/ttyUSB0"), InputError); }
 
 TEST(Port, UnknownBaudIsRefused) {
-  const Folder folder;
-  const auto server = serve_port("pty:" + folder.file("line"));
+  const test::TempFolder folder;
+  const auto server = serve_port("pty:" + folder / "line");
   const auto port = open_port(server->name());
   port->set_baud(19200);
   EXPECT_THROW(port->set_baud(12345), InputError);

@@ -25,24 +25,12 @@
 #include "robot/emulators/arcos_emulator.h"
 #include "robot/emulators/device_server.h"
 #include "robot/emulators/levelling_emulator.h"
+#include "tests/support/base_files.h"
 
 namespace rubble::robot {
 namespace {
 
 namespace fs = std::filesystem;
-
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "robotXXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path_); }
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  fs::path path_;
-};
 
 /// A scanner that gives a scan whenever it is told to.
 class ToldScanner : public Scanner {
@@ -71,7 +59,7 @@ class ToldScanner : public Scanner {
 /// A robot on a bench: its wheels do at once what the base's emulator asks.
 class Bench {
  public:
-  explicit Bench(RealRobotSettings settings = {}) : box(folder.file("devices.bytes")) {
+  explicit Bench(RealRobotSettings settings = {}) : box(folder / "devices.bytes") {
     if (settings.base_port.empty()) settings.base_port = base_server.port();
     settings.levelling_port = unit_server.port();
     settings.safety.start = 10.0;
@@ -135,7 +123,7 @@ class Bench {
     return law();
   }
 
-  Folder folder;
+  test::TempFolder folder;
   BlackBox box;
   ArcosEmulator arcos{ArcosEmulatorSettings{}};
   LevellingEmulator unit{LevellingEmulatorSettings{}};
@@ -761,7 +749,7 @@ TEST_P(BlackBoxOf, ARealRobotGivesTheDriversTheSameAgain) {
   bench.robot.reset();
   ASSERT_FALSE(bench.box.failed());
   const ReplayedBox replayed =
-      replay_black_box(read_black_box(bench.folder.file("devices.bytes")), "arcos", settings.base, {});
+      replay_black_box(read_black_box(bench.folder / "devices.bytes"), "arcos", settings.base, {});
   ASSERT_GE(replayed.odometry.size(), odometry.size());
   EXPECT_GT(replayed.accelerations.size(), 50u);
   std::size_t found = 0;
@@ -775,25 +763,25 @@ INSTANTIATE_TEST_SUITE_P(RealRobot, BlackBoxOf, testing::Values(0, 5, 30),
                          [](const auto& info) { return std::to_string(info.param) + "_ms_ahead"; });
 
 TEST(Heartbeat, AFileMustBeTouchedAgain) {
-  Folder folder;
-  Heartbeat heartbeat(folder.file("alive"));
+  test::TempFolder folder;
+  Heartbeat heartbeat(folder / "alive");
   const Stamp start{1'000'000'000};
   EXPECT_EQ(heartbeat.last(start), Stamp::never()) << "no file yet";
-  std::ofstream(folder.file("alive")) << "a";
+  std::ofstream(folder / "alive") << "a";
   EXPECT_EQ(heartbeat.last(start + 1.0), Stamp::never()) << "it may be an old file";
-  fs::last_write_time(folder.file("alive"), fs::file_time_type::clock::now() + std::chrono::seconds(3));
+  fs::last_write_time(folder / "alive", fs::file_time_type::clock::now() + std::chrono::seconds(3));
   EXPECT_EQ(heartbeat.last(start + 2.0), start + 2.0);
   EXPECT_EQ(heartbeat.last(start + 5.0), start + 2.0);
   EXPECT_EQ(Heartbeat("").last(start), start) << "nobody is asked for";
 }
 
 TEST(Heartbeat, AFullPipeIsNotEmptiedAtOnce) {
-  Folder folder;
-  ASSERT_EQ(::mkfifo(folder.file("beat").c_str(), 0600), 0);
-  Heartbeat heartbeat(folder.file("beat"));
+  test::TempFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "beat").c_str(), 0600), 0);
+  Heartbeat heartbeat(folder / "beat");
   const Stamp start{1'000'000'000};
   EXPECT_EQ(heartbeat.last(start), Stamp::never());
-  const Descriptor writer(::open(folder.file("beat").c_str(), O_WRONLY | O_NONBLOCK));
+  const Descriptor writer(::open((folder / "beat").c_str(), O_WRONLY | O_NONBLOCK));
   const std::string much(32768, 'x');
   ASSERT_EQ(::write(writer.get(), much.data(), much.size()), static_cast<ssize_t>(much.size()));
   EXPECT_EQ(heartbeat.last(start + 1.0), start + 1.0);
@@ -803,7 +791,7 @@ TEST(Heartbeat, AFullPipeIsNotEmptiedAtOnce) {
 }
 
 TEST(BlackBox, ADeviceThatSendsWithoutEndIsNamedAndDoesNotFillTheDisk) {
-  Folder folder;
+  test::TempFolder folder;
   std::string word, why;
   Stamp begun = host_now();
   {
@@ -816,7 +804,7 @@ TEST(BlackBox, ADeviceThatSendsWithoutEndIsNamedAndDoesNotFillTheDisk) {
     ASSERT_EQ(::listen(server.get(), 4), 0);
     ASSERT_EQ(::getsockname(server.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
     word = "tcp:127.0.0.1:" + std::to_string(ntohs(address.sin_port));
-    BlackBox box(folder.file("flood"));
+    BlackBox box(folder / "flood");
     for (int connection = 0; connection < 3; ++connection) {
       const std::unique_ptr<Port> port = open_recorded(word, "base", &box);
       Descriptor flood(::accept4(server.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
@@ -837,20 +825,20 @@ TEST(BlackBox, ADeviceThatSendsWithoutEndIsNamedAndDoesNotFillTheDisk) {
     EXPECT_FALSE(box.failed());
   }
   // Over all its connections.
-  EXPECT_LT(static_cast<double>(fs::file_size(folder.file("flood"))), 2.2e6 + 1.1e6 * (host_now() - begun));
+  EXPECT_LT(static_cast<double>(fs::file_size(folder / "flood")), 2.2e6 + 1.1e6 * (host_now() - begun));
 }
 
 /// A pipe that nobody reads is the slowest of all disks.
 TEST(BlackBox, NobodyWaitsForASlowDisk) {
-  Folder folder;
-  ASSERT_EQ(::mkfifo(folder.file("slow").c_str(), 0600), 0);
-  const Descriptor reader(::open(folder.file("slow").c_str(), O_RDONLY | O_NONBLOCK));
+  test::TempFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "slow").c_str(), 0600), 0);
+  const Descriptor reader(::open((folder / "slow").c_str(), O_RDONLY | O_NONBLOCK));
   std::string read;
   const std::string block(1000, 'x');
   std::atomic<bool> added{false};
   std::thread late;
   {
-    BlackBox box(folder.file("slow"));
+    BlackBox box(folder / "slow");
     late = std::thread([&] {
       EXPECT_TRUE(Bench::soon([&] { return added.load(); }, 30.0)) << "add() waits for the disk";
       char bytes[4096];
@@ -865,21 +853,21 @@ TEST(BlackBox, NobodyWaitsForASlowDisk) {
     EXPECT_FALSE(box.failed());
   }
   late.join();
-  std::ofstream(folder.file("copy"), std::ios::binary) << read;
-  const auto whole = read_black_box(folder.file("copy"));
+  std::ofstream(folder / "copy", std::ios::binary) << read;
+  const auto whole = read_black_box(folder / "copy");
   ASSERT_EQ(whole.size(), 1000u);
   for (int i = 0; i < 1000; ++i) EXPECT_EQ(whole[static_cast<std::size_t>(i)].stamp.ns, i);
 }
 
 TEST(BlackBox, SaysWhyItIsNotWhole) {
-  Folder folder;
+  test::TempFolder folder;
   if (fs::exists("/dev/full")) {
     const int full = ::open("/dev/full", O_WRONLY);
-    fs::create_symlink("/dev/full", folder.file("full"));
+    fs::create_symlink("/dev/full", folder / "full");
     ::close(full);
-    EXPECT_THROW(BlackBox box(folder.file("full")), std::exception) << "it is said at once";
+    EXPECT_THROW(BlackBox box(folder / "full"), std::exception) << "it is said at once";
   }
-  BlackBox box(folder.file("flooded"));
+  BlackBox box(folder / "flooded");
   box.add("base", Direction::FromDevice, "x", {1});
   EXPECT_EQ(box.failure(), "");
   EXPECT_TRUE(box.cut_short().empty());
@@ -890,12 +878,12 @@ TEST(BlackBox, SaysWhyItIsNotWhole) {
 }
 
 TEST(BlackBox, WhatADiskNeverTakesDoesNotFillTheMemory) {
-  Folder folder;
-  ASSERT_EQ(::mkfifo(folder.file("stuck").c_str(), 0600), 0);
-  Descriptor reader(::open(folder.file("stuck").c_str(), O_RDONLY | O_NONBLOCK));
+  test::TempFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "stuck").c_str(), 0600), 0);
+  Descriptor reader(::open((folder / "stuck").c_str(), O_RDONLY | O_NONBLOCK));
   const auto handler = std::signal(SIGPIPE, SIG_IGN);
   {
-    BlackBox box(folder.file("stuck"));
+    BlackBox box(folder / "stuck");
     const std::string block(1u << 20, 'x');
     for (std::size_t i = 0; i < 2 * BlackBox::kMostWaiting / block.size(); ++i)
       box.add("base", Direction::FromDevice, block, {});
@@ -907,23 +895,23 @@ TEST(BlackBox, WhatADiskNeverTakesDoesNotFillTheMemory) {
 }
 
 TEST(BlackBox, ATornEndIsDroppedAndOtherFilesAreRefused) {
-  Folder folder;
+  test::TempFolder folder;
   {
-    BlackBox box(folder.file("a"));
+    BlackBox box(folder / "a");
     box.add("base", Direction::FromDevice, "hello", {5});
     box.add("urg", Direction::ToDevice, std::string("\0x", 2), {6});
   }
-  const auto whole = read_black_box(folder.file("a"));
+  const auto whole = read_black_box(folder / "a");
   ASSERT_EQ(whole.size(), 2u);
   EXPECT_EQ(whole[0].bytes, "hello");
   EXPECT_EQ(whole[1].device, "urg");
   EXPECT_EQ(whole[1].bytes, std::string("\0x", 2));
-  for (auto size = fs::file_size(folder.file("a")) - 1; size > 40; --size) {
-    fs::resize_file(folder.file("a"), size);
-    EXPECT_EQ(read_black_box(folder.file("a")).size(), 1u) << size;
+  for (auto size = fs::file_size(folder / "a") - 1; size > 40; --size) {
+    fs::resize_file(folder / "a", size);
+    EXPECT_EQ(read_black_box(folder / "a").size(), 1u) << size;
   }
-  std::ofstream(folder.file("b")) << "something else";
-  EXPECT_THROW(read_black_box(folder.file("b")), InputError);
+  std::ofstream(folder / "b") << "something else";
+  EXPECT_THROW(read_black_box(folder / "b"), InputError);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kSide = 200;
 constexpr int kCorner = 60;
-constexpr int kWall = 4;  ///< thickness [pixels]
+constexpr int kWallWidth = 4;  ///< thickness [pixels]
 
 unsigned char value(Occupancy what) { return static_cast<unsigned char>(what); }
 
@@ -19,7 +19,7 @@ unsigned char value(Occupancy what) { return static_cast<unsigned char>(what); }
 cv::Mat turned_map() {
   cv::Mat classes(kSide, kSide, CV_8U, cv::Scalar(value(Occupancy::Unknown)));
   classes.rowRange(kSide / 2, kSide).setTo(value(Occupancy::Free));
-  classes.rowRange(kSide / 2 - kWall, kSide / 2).setTo(value(Occupancy::Occupied));
+  classes.rowRange(kSide / 2 - kWallWidth, kSide / 2).setTo(value(Occupancy::Occupied));
   for (int y = 0; y < kCorner; ++y) classes.row(y).colRange(0, kCorner - y).setTo(value(Occupancy::Occupied));
   return classes;
 }
@@ -27,14 +27,14 @@ cv::Mat turned_map() {
 TEST(CanvasCorners, AreClearedAlsoWhereTheMapReachesTheEdges) {
   cv::Mat classes = turned_map();
   clear_canvas_corners(classes);
-  EXPECT_EQ(cv::countNonZero(classes.rowRange(0, kSide / 2 - kWall) == value(Occupancy::Occupied)), 0);
+  EXPECT_EQ(cv::countNonZero(classes.rowRange(0, kSide / 2 - kWallWidth) == value(Occupancy::Occupied)), 0);
 }
 
 TEST(CanvasCorners, LeaveTheMapAsItIs) {
   cv::Mat classes = turned_map();
   clear_canvas_corners(classes);
   EXPECT_EQ(cv::countNonZero(classes == value(Occupancy::Free)), kSide * kSide / 2);
-  EXPECT_EQ(cv::countNonZero(classes == value(Occupancy::Occupied)), kSide * kWall);
+  EXPECT_EQ(cv::countNonZero(classes == value(Occupancy::Occupied)), kSide * kWallWidth);
 }
 
 /// A grey map turned on a canvas of one grey: nothing of the map is lost, whatever the grey is.

@@ -89,7 +89,7 @@ TEST(VictimSymbols, TurningAndCompressionKeepThem) {
           if (resolution > 0.04 && quality < 85) continue;  // seven pixels in colours of four: all is orange
           SCOPED_TRACE(std::to_string(resolution) + " m, turned " + std::to_string(degrees) + ", interpolation " +
                        std::to_string(interpolation) + ", quality " + std::to_string(quality));
-          const Turned turn = turned(map.image, degrees, interpolation);
+          const Turned turn = symbols_test::turned(map.image, degrees, interpolation);
           std::vector<cv::Point2d> victims;
           for (const cv::Point2d& p : map.victims) victims.push_back(turn(p));
           expect_found(find_victim_symbols(quality == 100 ? turn.image : jpeg(turn.image, quality), resolution),
@@ -158,7 +158,7 @@ TEST(VictimSymbols, OtherDrawingsAreNone) {
         cv::line(m, at(1.5, 4.5), at(6.5, 3.2), kRed, std::max(1, static_cast<int>(0.05 / resolution)));
         if (resolution < 0.04) cv::rectangle(m, at(4.3, 1.3), at(4.8, 1.4), kRed, cv::FILLED);
         cv::rectangle(m, at(1.5, 2.2), at(3.1, 3.4), kRed, cv::FILLED);
-        const RgbImage away = turned(image, degrees, cv::INTER_LINEAR).image;
+        const RgbImage away = symbols_test::turned(image, degrees, cv::INTER_LINEAR).image;
         const auto found = find_victim_symbols(quality == 100 ? away : jpeg(away, quality), resolution);
         EXPECT_TRUE(found.empty()) << found.size() << ", first at " << found.front().column << ", "
                                    << found.front().row;

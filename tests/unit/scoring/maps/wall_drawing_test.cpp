@@ -18,7 +18,7 @@ OccupancyGrid drawn(const OccupancyGrid& map, Occupancy ground) {
   return out;
 }
 
-double agreement(const OccupancyGrid& a, const OccupancyGrid& b) {
+double equal_cells(const OccupancyGrid& a, const OccupancyGrid& b) {
   double same = 0.0;
   for (std::size_t i = 0; i < a.cells().size(); ++i) same += a.cells()[i] == b.cells()[i] ? 1.0 : 0.0;
   return same / static_cast<double>(a.cells().size());
@@ -29,7 +29,7 @@ TEST(WallDrawing, WhatWallsEncloseIsFreeAndWhatLiesOutsideUnknown) {
   for (const Occupancy ground : {Occupancy::Free, Occupancy::Unknown}) {
     const FloodedDrawing found = flood_drawing(drawn(truth, ground));
     EXPECT_FALSE(found.note.empty());
-    EXPECT_EQ(agreement(found.grid, truth), 1.0);
+    EXPECT_EQ(equal_cells(found.grid, truth), 1.0);
     EXPECT_NEAR(score_map(found.grid, truth).score, 1.0, 1e-9);
     EXPECT_NEAR(score_map(truth, found.grid).score, 1.0, 1e-9);
   }
@@ -42,7 +42,7 @@ TEST(WallDrawing, ASlitInTheOuterWallHoldsTheFlood) {
       if (truth.centre({x, y}).x < 0.2 && std::abs(truth.centre({x, y}).y - 3.0) < 0.09 &&
           truth[{x, y}] == Occupancy::Occupied)
         truth[{x, y}] = Occupancy::Free;
-  EXPECT_GT(agreement(flood_drawing(drawn(truth, Occupancy::Unknown)).grid, truth), 0.99);
+  EXPECT_GT(equal_cells(flood_drawing(drawn(truth, Occupancy::Unknown)).grid, truth), 0.99);
 }
 
 TEST(WallDrawing, MapsThatKnowBothAreLeftAlone) {

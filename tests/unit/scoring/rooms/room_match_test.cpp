@@ -59,7 +59,7 @@ TEST(RoomMatch, WithoutRoomsThereIsNoScore) {
   const Rooms rooms = rooms_of(1);
   EXPECT_EQ(match_rooms({}, rooms, {}).score, 0.0);
   EXPECT_EQ(match_rooms(rooms, {}, {}).score, 0.0);
-  EXPECT_EQ(match_rooms({}, {}, {}).score, 0.0);
+  EXPECT_EQ(match_rooms(Rooms{}, Rooms{}, TPose2D()).score, 0.0);
 }
 
 }  // namespace

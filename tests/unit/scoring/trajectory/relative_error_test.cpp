@@ -36,14 +36,14 @@ Trajectory random_run(std::uint64_t seed, int n) {
   return out;
 }
 
-Trajectory moved(Trajectory trajectory, const TPose2D& T) {
+Trajectory moved_run(Trajectory trajectory, const TPose2D& T) {
   for (StampedPose& stamped : trajectory) stamped.pose = T + stamped.pose;
   return trajectory;
 }
 
 TEST(RelativeError, RigidMotionOfTheRunIsNoError) {
   const Trajectory truth = random_run(1, 200);
-  const Trajectory estimate = moved(truth, {3.0, -8.0, 2.0});
+  const Trajectory estimate = moved_run(truth, {3.0, -8.0, 2.0});
   for (const RelativeError& error : {rpe_frames(estimate, truth), rpe_path(estimate, truth, 1.0)}) {
     EXPECT_GT(error.pairs, 10u);
     EXPECT_NEAR(error.rmse_m, 0.0, 1e-9);

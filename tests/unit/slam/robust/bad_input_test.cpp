@@ -25,15 +25,15 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 const std::vector<TPoint2D> kTour{{0.0, 0.0}, {0.6, 0.0},   {3.2, 0.2},  {3.2, 1.0},
                                   {0.0, 0.5}, {-1.4, -0.8}, {1.0, -0.6}, {0.0, 0.0}};
 
-slam_test::Drive drive() { return slam_test::drive_through(kTour, 0.0); }
+slam_test::Drive toured() { return slam_test::drive_through(kTour, 0.0); }
 
 Ticks tour(std::uint64_t seed, const RobotModel& model = {}) {
-  return slam_test::record(slam_test::furnished_room(), drive(), model, 1.0, 0.01, seed);
+  return slam_test::record(slam_test::furnished_room(), toured(), model, 1.0, 0.01, seed);
 }
 
 slam_test::Outcome outcome(const Ticks& ticks, const RobotModel& model = {}) {
   RobustMapper mapper(model, {}, 1);
-  return slam_test::play(mapper, ticks, slam_test::furnished_room(), drive().truth);
+  return slam_test::play(mapper, ticks, slam_test::furnished_room(), toured().truth);
 }
 
 void expect_good(const slam_test::Outcome& o) {
@@ -120,7 +120,7 @@ TEST(RobustBadInput, TimeThatRunsBackwards) {
     ticks[i].odometry.front().stamp = ticks[i].odometry.front().stamp - 1.5;
   }
   RobustMapper mapper(RobotModel(), {}, 1);
-  expect_good(slam_test::play(mapper, ticks, slam_test::furnished_room(), drive().truth));
+  expect_good(slam_test::play(mapper, ticks, slam_test::furnished_room(), toured().truth));
   EXPECT_GT(mapper.counts().out_of_order, 0u);
   for (std::size_t i = 1; i < mapper.trajectory().size(); ++i)
     EXPECT_LT(mapper.trajectory()[i - 1].stamp, mapper.trajectory()[i].stamp);
@@ -132,7 +132,7 @@ TEST(RobustBadInput, AStampFarAhead) {
   ticks[50].scans.front().stamp = ticks[50].scans.front().stamp + 3600.0;
   ticks[90].odometry.front().stamp = ticks[90].odometry.front().stamp + 3600.0;
   RobustMapper mapper(RobotModel(), {}, 1);
-  expect_good(slam_test::play(mapper, ticks, slam_test::furnished_room(), drive().truth));
+  expect_good(slam_test::play(mapper, ticks, slam_test::furnished_room(), toured().truth));
   EXPECT_EQ(mapper.counts().out_of_order, 1u);
 }
 
@@ -150,10 +150,10 @@ TEST(RobustBadInput, GapsOfSeconds) {
 TEST(RobustBadInput, DoubledScansCountOnce) {
   Ticks ticks = tour(1);
   RobustMapper once(RobotModel(), {}, 1);
-  slam_test::play(once, ticks, slam_test::furnished_room(), drive().truth);
+  slam_test::play(once, ticks, slam_test::furnished_room(), toured().truth);
   for (Inputs& tick : ticks) tick.scans.push_back(tick.scans.front());
   RobustMapper twice(RobotModel(), {}, 1);
-  slam_test::play(twice, ticks, slam_test::furnished_room(), drive().truth);
+  slam_test::play(twice, ticks, slam_test::furnished_room(), toured().truth);
   EXPECT_EQ(twice.counts().out_of_order, once.counts().scans);
   ASSERT_EQ(once.trajectory().size(), twice.trajectory().size());
   for (std::size_t i = 0; i < once.trajectory().size(); ++i)

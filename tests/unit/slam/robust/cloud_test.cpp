@@ -14,7 +14,7 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using robot::RobotModel;
 
-double distance_to(const slam_test::World& world, const TPoint2D& p) {
+double distance_to_walls(const slam_test::World& world, const TPoint2D& p) {
   double nearest = 1e9;
   for (const slam_test::Segment& s : world) {
     const TPoint2D along = s.b - s.a;
@@ -34,7 +34,7 @@ TEST(Cloud, PointsLieOnWallsApartAndLookAtTheLaser) {
   int oriented = 0;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     const TPoint2D p = point(cloud.points[i]);
-    EXPECT_LT(distance_to(world, p), 1e-3);
+    EXPECT_LT(distance_to_walls(world, p), 1e-3);
     if (i > 0) {
       EXPECT_GT(distance(p, point(cloud.points[i - 1])), 0.079);
     }
@@ -102,7 +102,7 @@ TEST(Cloud, FilledPointsLieOnTheSurfaceToo) {
   const slam_test::World wall{{{8.0, -6.0}, {8.0, 6.0}}};
   const Cloud cloud = slam_test::cloud_at(wall, {}, model);
   ASSERT_GT(cloud.filled.size(), 20u);
-  for (const OrientedPoint& p : cloud.filled) EXPECT_LT(distance_to(wall, point(p)), 1e-3);
+  for (const OrientedPoint& p : cloud.filled) EXPECT_LT(distance_to_walls(wall, point(p)), 1e-3);
 }
 
 TEST(Cloud, SinglePixelsBetweenTwoDepthsAreNoSurface) {

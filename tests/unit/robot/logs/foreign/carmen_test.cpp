@@ -17,14 +17,9 @@ using mrpt::math::TPose2D;
 using testing::arc;
 using testing::CarmenWriter;
 using testing::message_of;
+using testing::scans_of;
 
 const std::vector<double> kRanges{1.0, 2.5, 81.83, 0.0, 3.0};
-
-std::vector<LaserScan> scans_of(const ForeignLog& log) {
-  std::vector<LaserScan> scans;
-  for (const Inputs& tick : log.ticks) scans.insert(scans.end(), tick.scans.begin(), tick.scans.end());
-  return scans;
-}
 
 Trajectory odometry_of(const ForeignLog& log) {
   Trajectory path;

@@ -7,6 +7,7 @@ namespace rubble::robot {
 namespace {
 
 using testing::message_of;
+using testing::scans_of;
 
 std::string line_of(long time_us, long left, long right, const std::vector<int>& ranges) {
   std::string line = std::to_string(time_us) + " 14710 " + std::to_string(left) + " " + std::to_string(right);
@@ -16,12 +17,6 @@ std::string line_of(long time_us, long left, long right, const std::vector<int>&
 }
 
 std::vector<int> all(int mm) { return std::vector<int>(683, mm); }
-
-std::vector<LaserScan> scans_of(const ForeignLog& log) {
-  std::vector<LaserScan> scans;
-  for (const Inputs& tick : log.ticks) scans.insert(scans.end(), tick.scans.begin(), tick.scans.end());
-  return scans;
-}
 
 TEST(CoreSlam, CodesAreMissesOrUnknownAndTheRobotsBodyIsLeftOut) {
   std::vector<int> ranges = all(1234);
