@@ -21,7 +21,7 @@ using mrpt::math::TPoint2D;
 using namespace symbols_test;
 
 /// A room of 10 x 8 m with a wall across, seen once from the middle.
-slam::CountMap room() {
+slam::CountMap room_walls() {
   slam::CountMap map(260, 260, 0.05);
   slam::ScanPoints scan;
   scan.beam_width = deg_to_rad(0.25);
@@ -73,7 +73,7 @@ double nearest(const std::vector<scoring::Poi>& symbols, const TPoint2D& p) {
 
 TEST(LeagueSymbols, LieWhereTheListOfTheSameMapSays) {
   const test::TempFolder folder;
-  const slam::CountMap map = room();
+  const slam::CountMap map = room_walls();
   for (const double resolution : {0.0125, 0.025, 0.05})
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       SCOPED_TRACE(std::to_string(resolution) + " m, seed " + std::to_string(seed));
@@ -91,7 +91,7 @@ TEST(LeagueSymbols, LieWhereTheListOfTheSameMapSays) {
 
 TEST(LeagueSymbols, VictimsAtTheLeastDistanceOfTheirMergingStayApart) {
   // Reports nearer than 0.8 m to each other are merged; circles overlap from 0.35 m on.
-  const slam::CountMap map = room();
+  const slam::CountMap map = room_walls();
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     auto reports = victims(seed, 5, 1.0);
     for (int i = 0; i < 5; ++i) {
@@ -106,7 +106,7 @@ TEST(LeagueSymbols, VictimsAtTheLeastDistanceOfTheirMergingStayApart) {
 }
 
 TEST(LeagueSymbols, SurviveTurningAndJpeg) {
-  const slam::CountMap map = room();
+  const slam::CountMap map = room_walls();
   const auto reports = victims(3, 10, 0.6);
   for (const double resolution : {0.0125, 0.025}) {
     const GeoTiff tiff = draw_league_map(league_cells(map), drawing(reports, resolution));
@@ -132,7 +132,7 @@ TEST(LeagueSymbols, SurviveTurningAndJpeg) {
 TEST(LeagueSymbols, AnyFormatOfTheMapHasTheSame) {
   const test::TempFolder folder;
   const auto reports = victims(5, 6, 0.5);
-  const slam::CountMap map = room();
+  const slam::CountMap map = room_walls();
   const GeoTiff tiff = draw_league_map(league_cells(map), drawing(reports, 0.025));
   write_geotiff(folder / "map.tif", tiff);
   write_png(folder / "map.png", tiff.image);
@@ -146,7 +146,7 @@ TEST(LeagueSymbols, AnyFormatOfTheMapHasTheSame) {
 
 TEST(LeagueSymbols, AGreyMapAndAMapWithoutVictimsHaveNone) {
   const test::TempFolder folder;
-  const slam::CountMap map = room();
+  const slam::CountMap map = room_walls();
   const GeoTiff tiff = draw_league_map(league_cells(map), drawing({}, 0.025));
   write_geotiff(folder / "map.tif", tiff);
   EXPECT_TRUE(scoring::load_map(folder / "map.tif").symbols.empty());
