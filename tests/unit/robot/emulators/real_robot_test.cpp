@@ -297,7 +297,8 @@ TEST(RealRobot, ScansAtTheEdgeOfTooOldStopItOnce) {
   std::vector<std::string> named;
   bench.robot->while_waiting([&](const RobotStatus& status) {
     for (const std::string& line : lines_of(status.silent))
-      if (line.rfind("urg:", 0) == 0 && !waiting) {
+      // A machine that stalls makes the scanner silent, which is another matter.
+      if (line.rfind("urg: its scans", 0) == 0 && !waiting) {
         ++stops;
         waiting = true;
         named.push_back(line);
@@ -631,10 +632,10 @@ TEST(RealRobot, ASlowLineToTheBaseIsNamedAndNotDrivenOn) {
   EXPECT_THAT(named_while_driving(bench, 0.3, 3.0),
               testing::Not(testing::Contains(testing::HasSubstr("late (at most"))));
   ASSERT_TRUE(Bench::soon([&] { return bench.speed > 0.0; }));
-  bench.base_server.slow_down(12.0);
+  bench.base_server.slow_down(7.5);
   const Stamp slow = host_now();
   std::vector<std::string> named;
-  std::thread core([&] { named = named_while_driving(bench, 0.3, 8.0); });
+  std::thread core([&] { named = named_while_driving(bench, 0.3, 6.0); });
   bench.worst_wake = 0.0;
   const Stamp braked = bench.braked_though_commanded(0.3);
   EXPECT_NE(braked, Stamp::never()) << "it drives on, though a stop would come a second late";
@@ -645,7 +646,7 @@ TEST(RealRobot, ASlowLineToTheBaseIsNamedAndNotDrivenOn) {
   EXPECT_THAT(named,
               testing::Contains(testing::AllOf(testing::StartsWith("base: "), testing::HasSubstr("late (at most"))));
   EXPECT_EQ(bench.speed, 0.0);
-  bench.drive(0.3, 9.0);
+  bench.drive(0.3, 6.0);
   EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0; })) << "it goes on when the line is quick again";
 }
 
