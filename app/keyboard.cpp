@@ -38,6 +38,7 @@ Keyboard::Keyboard() {
   if (!isatty(STDIN_FILENO) || tcgetpgrp(STDIN_FILENO) != getpgrp() || tcgetattr(STDIN_FILENO, &before_) != 0) return;
   termios raw = before_;
   raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+  raw.c_iflag &= ~static_cast<tcflag_t>(IXON | IXOFF);  // Ctrl-S would hold up what we print, and us with it
   raw.c_cc[VMIN] = 0;
   raw.c_cc[VTIME] = 0;
   // A program that is ended or suspended on the spot leaves the robot to its watchdog: these become keys like others.
@@ -51,10 +52,10 @@ void Keyboard::restore() {
   if (active_) tcsetattr(STDIN_FILENO, TCSANOW, &before_);
 }
 
-/// The next key waiting; 0: none.
-int Keyboard::next() {
-  unsigned char key = 0;
-  return active_ && ::read(STDIN_FILENO, &key, 1) == 1 ? key : 0;
+/// The next byte waiting, if there is one. Ctrl-Space is a 0.
+std::optional<int> Keyboard::next() {
+  unsigned char byte = 0;
+  return active_ && ::read(STDIN_FILENO, &byte, 1) == 1 ? std::optional<int>(byte) : std::nullopt;
 }
 
 void Keyboard::take(int key) {
@@ -73,23 +74,23 @@ void Keyboard::take(int key) {
 }
 
 /// The key that ends with this byte: ESC [ A and ESC O A are arrows, with parameters (a shifted one) too; other
-/// sequences are a key like any other. 0: more is to come, perhaps in a later look.
-int Keyboard::decoded(int byte) {
+/// sequences are a key like any other. Nothing: more is to come, perhaps in a later look.
+std::optional<int> Keyboard::decoded(int byte) {
   switch (sequence_) {
     case Sequence::None:
       if (byte != kEscape) return byte;
       any_ = true;  // whatever comes of it, a key was pressed
       sequence_ = Sequence::Escape;
-      return 0;
+      return std::nullopt;
     case Sequence::Escape:
       if (byte == '[' || byte == 'O') {
         sequence_ = Sequence::Inside;
-        return 0;
+        return std::nullopt;
       }
       if (byte != kEscape) sequence_ = Sequence::None;
       return kEscape;
     case Sequence::Inside:
-      if (byte < '@') return 0;  // a parameter
+      if (byte < '@') return std::nullopt;  // a parameter
       sequence_ = Sequence::None;
       return byte <= 'D' ? letter_of_arrow(byte) : kEscape;
   }
@@ -98,9 +99,8 @@ int Keyboard::decoded(int byte) {
 
 void Keyboard::look() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (int key = next(); key != 0; key = next()) {
-    if (const int whole = decoded(key)) take(std::tolower(whole));
-  }
+  while (const auto byte = next())
+    if (const auto key = decoded(*byte)) take(std::tolower(*key));
 }
 
 bool Keyboard::pressed() {

@@ -3,6 +3,7 @@
 #include <termios.h>
 
 #include <mutex>
+#include <optional>
 
 #include "robot/commands.h"
 
@@ -34,9 +35,9 @@ class Keyboard {
   bool active() const { return active_; }
 
  private:
-  int next();
+  std::optional<int> next();
   void take(int key);
-  int decoded(int byte);
+  std::optional<int> decoded(int byte);
 
   std::mutex mutex_;
   double v_ = 0.0, w_ = 0.0;  ///< of a held key, in units of what drive() is asked with

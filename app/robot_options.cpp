@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/yaml/binder.h"
 #include "robot/drivers/base_driver.h"
-#include "robot/drivers/port_word.h"
+#include "robot/drivers/port.h"
 
 namespace rubble::app {
 namespace {
@@ -38,7 +38,7 @@ void print_status(const scenarios::DriveStatus& s) {
 void set_port(std::vector<scenarios::Override>& overrides, const std::string& device, const std::string& word) {
   if (word.empty()) throw InputError("--" + device + ": needs a port, and the word is empty; give " + kPort);
   try {
-    robot::require_callable(robot::parse_port_word(word), word);
+    robot::check_port_word(word);
   } catch (const InputError& error) {
     throw InputError("--" + device + ": " + error.what());
   }

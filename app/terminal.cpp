@@ -25,7 +25,8 @@ void on_stop(int /*signal*/) {
   signalled = signalled + 1;
 }
 
-/// One that may come again by itself, from a timer or a limit: however often, nobody is in a hurry.
+/// One that may come again by itself, from a timer or a limit, or twice from a terminal that is closed (by its shell
+/// and by the system): however often, nobody is in a hurry.
 void on_end(int /*signal*/) {
   if (signalled == 0) signalled = 1;
 }
@@ -33,10 +34,11 @@ void on_end(int /*signal*/) {
 }  // namespace
 
 void catch_stops() {
-  for (const int signal : {SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGPWR, SIGSTKFLT, SIGIO}) std::signal(signal, on_end);
+  for (const int signal : {SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGPWR, SIGSTKFLT, SIGIO, SIGHUP})
+    std::signal(signal, on_end);
   for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) std::signal(signal, on_end);
   std::signal(SIGXFSZ, SIG_IGN);  // writing fails instead, as on a full disk
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP}) std::signal(signal, on_stop);
+  for (const int signal : {SIGINT, SIGTERM, SIGQUIT, SIGTSTP}) std::signal(signal, on_stop);
   for (const int signal : {SIGPIPE, SIGTTIN, SIGTTOU}) std::signal(signal, SIG_IGN);
 }
 

@@ -240,8 +240,9 @@ def drive(rubble, robot, fault, at, seconds):
     errors.seek(0)
     told = told_while_driving(errors)
     device = name.split("-")[0]
-    lost = [i for i, line in enumerate(told) if line.startswith(device + ": ") and not line.endswith(": reports")]
-    back = lost and device + ": reports" in told[lost[-1]:]
+    over = [device + ": " + word for word in ("reports", "is in time again", "is let go", "obeys again", "works again")]
+    lost = [i for i, line in enumerate(told) if line.startswith(device + ": ") and line not in over]
+    back = lost and any(line in over for line in told[lost[-1]:])
     score = subprocess.run([rubble, "score", name + "/map.tif", "truth/truth.tif", "--json"], capture_output=True, text=True)
     score = json.loads(score.stdout)["score"] if score.returncode == 0 else 0.0
     rows = read_truth(name + ".tum")
@@ -315,8 +316,8 @@ def findings_of(fault, d, plain, late_ms=0.0):
         return found
     if d["lost"] and not d["back"]:
         found.append("not re-connected")
-    if d["wraps"] is not None and (d["wraps"] == 0 or d["figures"].get("odometry_jumps", 1) != 0):
-        found.append("rolled over %d times, %s jumps" % (d["wraps"], d["figures"].get("odometry_jumps")))
+    if d["wraps"] is not None and (d["wraps"] == 0 or d["figures"].get("base_jumps", 1) != 0):
+        found.append("rolled over %d times, %s jumps" % (d["wraps"], d["figures"].get("base_jumps")))
     if fault in NAMED and not d["lost"]:
         found.append("not named")
     if d["score"] < plain - WORST_MAP:
@@ -364,7 +365,7 @@ def table(arguments):
             print("| `%s` | %.2f m/s | %s | %s | %d | %s | %s | %.3f |" %
                   (fault, stop.v, zero, rest, d["code"], named, back, d["score"]), flush=True)
             if d["wraps"] is not None:
-                notes.append("%s: rolled over %d times, %s jumps" % (fault, d["wraps"], d["figures"].get("odometry_jumps")))
+                notes.append("%s: rolled over %d times, %s jumps" % (fault, d["wraps"], d["figures"].get("base_jumps")))
             found = findings_of(fault, d, plain)
             if found:
                 bad[fault] = found

@@ -43,9 +43,9 @@ void AnswerTimer::answered(Stamp now, double on_line) {
   unable_ = false;
   on_line_ = on_line;
   if (asked_.empty()) {
-    // One before it was to another question than it was taken for.
+    // One before it was to another question than it was taken for: this one may be to any up to the last.
     if (last_asked_ == Stamp::never()) return;
-    take(now - last_asked_ - on_line_, true);
+    take_at_least(now - last_asked_ - on_line_, true);
     settled_ = now;
     restless_ = true;
     return;
@@ -63,11 +63,21 @@ void AnswerTimer::settle(Stamp now) {
   double took = last;
   for (std::size_t i = 0; all && i < asked_.size(); ++i) took = std::min(took, answers_[i] - asked_[i] - on_line_);
   restless_ = asked_.size() > 1;
-  take(std::max(took, least_), all && asked_.size() > 1);
+  // Where some got lost it may have been to an earlier question than the last, and later than it seems.
+  if (all) {
+    take(std::max(took, least_), asked_.size() > 1);
+  } else {
+    take_at_least(std::max(took, least_), false);
+  }
   least_ = missed_ = 0.0;
   asked_.clear();
   answers_.clear();
   settled_ = now;
+}
+
+/// What was later still remains so until it is known otherwise.
+void AnswerTimer::take_at_least(double late, bool sure) {
+  if (late > late_) take(late, sure);
 }
 
 /// `sure`: more than one answer says so.
@@ -80,9 +90,12 @@ void AnswerTimer::take(double late, bool sure) {
 }
 
 void AnswerTimer::advance(Stamp now) {
-  if (!answers_.empty() && now - answers_.back() > kCeased) settle(now);
+  // On a line that is slow and loses much the last ones may come after a gap.
+  if (!answers_.empty() && now - std::max(answers_.back(), asked_.back() + late_) > kCeased) settle(now);
   if (!able_ && !asked_.empty() && now - asked_.front() > kUnable) {
     asked_.clear();
+    round_trips_.clear();  // what another question took: how late it is now nobody can tell
+    late_ = 0.0;
     unable_ = true;
   }
 }

@@ -8,15 +8,22 @@
 
 namespace rubble::robot {
 
+/// How a device's answers come.
+struct Answers {
+  double late = 0.0;     ///< so long after the question, the way of the bytes left out [s]
+  bool missing = false;  ///< none has come for so long, though it may report
+};
+
 /// Measures how late a device answers, by questions that cost nothing: reports that come unasked have no age of their
 /// own, so what they and an order wait for on a slow line shows only in an answer.
 ///
 /// Answers carry no number. While one is waited for the question is repeated, and when answers have ceased the last one
 /// belongs to the last question: so one that got lost, or a silence, is not taken for a slow line. Nor is a single late
 /// one but the first, for which this computer may have been busy, nor a single quick one for a line that is quick
-/// again. An answer that comes when none is waited for is to an older question than it seemed: no other is asked until
-/// the line is quiet. Answers are missing when so many questions in a row went unanswered that a line which loses one
-/// in five of them has that once in days.
+/// again. Where some of several questions were not answered the answer may be to any of them: that makes a line slower
+/// than was thought, never quicker. An answer that comes when none is waited for is to an older question than it
+/// seemed: no other is asked until the line is quiet. Answers are missing when so many questions in a row went
+/// unanswered that a line which loses one in five of them has that once in days.
 class AnswerTimer {
  public:
   static constexpr double kPause = 0.3;      ///< between questions that are answered [s]
@@ -48,6 +55,7 @@ class AnswerTimer {
  private:
   void settle(Stamp now);
   void take(double late, bool sure);
+  void take_at_least(double late, bool sure);
 
   std::vector<Stamp> asked_;        ///< since the first one without an answer
   std::vector<Stamp> answers_;      ///< to these

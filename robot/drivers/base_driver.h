@@ -8,6 +8,7 @@
 
 #include "base/angle.h"
 #include "robot/commands.h"
+#include "robot/drivers/answer_timer.h"
 #include "robot/drivers/device.h"
 #include "robot/measurements.h"
 
@@ -61,11 +62,12 @@ class BaseDriver : public Device {
   virtual void rearm() {}
 
   /// How its answers come; a driver that asks nothing leaves it at that.
-  struct Answers {
-    double late = 0.0;     ///< so long after the question, the way of the bytes left out [s]
-    bool missing = false;  ///< none has come for so long, though it may report
-  };
+  using Answers = robot::Answers;
   virtual Answers answers(Stamp /*now*/) const { return {}; }
+  /// How hard it can gain or lose speed by its own account [m/s^2], [rad/s^2]; 0: it has not told.
+  virtual Drive own_ramp() const { return {}; }
+  /// It does not report yet, and what it answers comes late.
+  virtual bool slow() const { return false; }
 
   /// Damaged messages and reports that jumped, since the start.
   virtual std::size_t bad_sums() const { return 0; }

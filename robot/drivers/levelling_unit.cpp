@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/text/words.h"
 #include "robot/hardware_units.h"
 
 namespace rubble::robot {
@@ -12,6 +13,7 @@ namespace {
 /// A port that is opened may reset the controller, which then takes up to two seconds.
 constexpr double kAskAgain = 0.5;      ///< [s]
 constexpr double kReportBytes = 50.0;  ///< of a report on the line
+constexpr double kQuestionBytes = 9.0, kAnswerBytes = 10.0;
 constexpr double kPulseRefresh = 0.1;  ///< of the servo pulses: well within the unit's watchdog [s]
 
 double specific_force(long t1, long t2, const AxisCalibration& axis) {
@@ -31,6 +33,7 @@ void LevellingUnit::opened(Stamp now, LineKind line) {
   restart_clock();
   identified_ = false;
   last_report_ = Stamp::never();
+  answer_timer_.reset();
   sequence_ = -1;
   output_ = levelling_line("V");
   asked_ = now;
@@ -46,6 +49,7 @@ void LevellingUnit::advance(Stamp now) {
     asked_ = now;
     output_ = levelling_line("V");
   }
+  answer_timer_.advance(now);
   if (ready() && aimed_ && (aim_sent_ == Stamp::never() || now - aim_sent_ >= kPulseRefresh)) aim_due_ = true;
 }
 
@@ -58,14 +62,20 @@ void LevellingUnit::digest(const std::vector<std::string>& fields, Stamp now) {
   if (const auto identity = parse_identity(fields)) {
     // Also when it was reset on its own: all settings are gone then.
     identity_ = *identity;
+    identity_.model = one_line(identity_.model);  // they come onto the terminal
+    identity_.sensor = one_line(identity_.sensor);
     identified_ = true;
     restart_clock();
     if (settings_.passive) return;
     output_ += levelling_line("R," + std::to_string(settings_.rate));
     output_ += levelling_line("W," + std::to_string(settings_.watchdog_ms));
     output_ += levelling_line("E,1");
+    answer_timer_.reset();
+    answer_timer_.asked(now);
     return;
   }
+  if (fields == std::vector<std::string>{"E", "OK"})
+    answer_timer_.answered(now, time_on_line(line_, kQuestionBytes + kAnswerBytes, baud()));
   if (const auto report = parse_report(fields); report && identified_) follow(*report, now);
 }
 
@@ -123,6 +133,10 @@ std::string LevellingUnit::take_output(Stamp now) {
                           std::to_string(pulse(aim_.roll, settings_.roll)));
     aim_due_ = false;
     aim_sent_ = now;
+  }
+  if (ready() && !settings_.passive && answer_timer_.due(now)) {
+    out += levelling_line("E,1");
+    answer_timer_.asked(now);
   }
   return out;
 }

@@ -5,6 +5,7 @@
 
 #include "base/angle.h"
 #include "robot/commands.h"
+#include "robot/drivers/answer_timer.h"
 #include "robot/drivers/clock_map.h"
 #include "robot/drivers/device.h"
 #include "robot/hardware_units.h"
@@ -62,6 +63,8 @@ class LevellingUnit : public Device {
   std::vector<AimState> take_aims();
 
   const LevellingIdentity& identity() const { return identity_; }
+  /// To `E,1`, which changes nothing: reports come unasked, and what they and the servos are late by shows in answers.
+  Answers answers(Stamp now) const { return {answer_timer_.late(now), answer_timer_.missing(now)}; }
   bool sensor_fault() const { return (flags_ & LevellingReport::kSensorFault) != 0; }
   std::size_t bad_lines() const { return lines_.bad_lines(); }
   /// Reports that never arrived, by their numbers.
@@ -87,6 +90,7 @@ class LevellingUnit : public Device {
   LineKind line_ = LineKind::Tcp;
   WrappingClock counter_{1u << 31, 2e-6};  ///< every second microsecond of 2^32
   ClockMap clock_{ClockMapConfig{}};
+  AnswerTimer answer_timer_;
   Stamp last_stamp_ = Stamp::never();
   Stamp last_report_ = Stamp::never();
   int sequence_ = -1;

@@ -19,9 +19,10 @@ constexpr double kReaction = 0.5;               ///< line and firmware, and the 
 constexpr double kWindow = 0.5;                 ///< motion is taken over so long [s]
 constexpr double kLongestTurn = 0.1;            ///< from one call to the next [s]
 constexpr double kGap = 0.5;                    ///< so long without a report and all begins anew [s]
-constexpr Drive kCreep{0.03, deg_to_rad(3.0)};  ///< told to stand they may go so far [m], [rad]
+constexpr Drive kCreep{0.03, deg_to_rad(3.0)};  ///< told not to they may go so far [m], [rad]
+constexpr Drive kClearly{0.05, 0.1};            ///< told to go so fast it may not go back [m/s], [rad/s]
 constexpr double kSteady = 1.0 / 3.0;           ///< of its mean speed a base that goes on has in each second
-constexpr double kRestsKept = 60.0;             ///< [s]
+constexpr double kBansKept = 60.0;              ///< [s]
 constexpr double kHalf = 0.5;                   ///< of the way that is told must be gone
 constexpr double kLag = 1.5;                    ///< it is told to go for so long before it is judged [s]
 
@@ -51,8 +52,7 @@ void Obedience::forget_ways() {
 void Obedience::pause() {
   forget();
   told_.clear();
-  rests_.clear();
-  rest_since_ = Stamp::never();
+  for (Ban& one : bans_) one.clear();
   expected_ = most_ = least_ = sure_ = {};
   standing_.clear();
   lagging_.clear();
@@ -84,9 +84,7 @@ void Obedience::tell(const Drive& told, Stamp now) {
   }
   most_ = {std::max(high.v, most_.v - ramp_.v * dt), std::max(high.w, most_.w - ramp_.w * dt)};
   least_ = {std::min(low.v, least_.v + ramp_.v * dt), std::min(low.w, least_.w + ramp_.w * dt)};
-  const bool rest = judged_ && most_.v - least_.v == 0.0 && most_.w - least_.w == 0.0;
-  if (!rest) rest_since_ = Stamp::never();
-  if (rest && rest_since_ == Stamp::never()) rest_since_ = now;
+  ban(all_high, all_low, now);
   // Ways without their sign: a late line shifts them in time and takes nothing away, but an order that was taken back
   // within its lateness may never have been heard.
   // Nor does it go while it brakes from the other way.
@@ -139,15 +137,40 @@ void Obedience::mind_way(const Odometry& odometry, Stamp now) {
       std::cos(heading) * (odometry.pose.x - last.pose.x) + std::sin(heading) * (odometry.pose.y - last.pose.y), turn};
   stood_way_ = {stood_way_.v + std::abs(gone.v), stood_way_.w + std::abs(gone.w)};
   mind_arrears(gone, odometry.stalled);
-  if (rest_since_ == Stamp::never() || before < rest_since_) return;
-  Rest rest = rests_.empty() ? Rest{} : rests_.back();
-  if (rests_.empty()) rests_.push_back({before, 0.0, {}});
-  rest.when = now;
-  rest.seconds += now - before;
-  rest.way = {rest.way.v + gone.v, rest.way.w + gone.w};
-  rests_.push_back(rest);
-  while (now - rests_.front().when > kRestsKept) rests_.pop_front();
+  const double ways[kWays] = {gone.v, -gone.v, gone.w, -gone.w};
+  for (int i = 0; i < kWays; ++i) bans_[static_cast<std::size_t>(i)].add(ways[i], before, now);
   mind_creeping();
+}
+
+/// `high`, `low`: of all that it was told lately. By now it has had the time to brake from what it was told before.
+void Obedience::ban(const Drive& high, const Drive& low, Stamp now) {
+  const bool rest = judged_ && most_.v == 0.0 && least_.v == 0.0 && most_.w == 0.0 && least_.w == 0.0;
+  // Wheels that are not quite alike go a little ahead or aside while they turn: only who is clearly told the other way
+  // may not do it.
+  const auto holds = [&](double may, double other, double clearly) {
+    return rest || (judged_ && may == 0.0 && other > clearly);
+  };
+  const bool held[kWays] = {holds(most_.v, -high.v, kClearly.v), holds(least_.v, low.v, kClearly.v),
+                            holds(most_.w, -high.w, kClearly.w), holds(least_.w, low.w, kClearly.w)};
+  for (int i = 0; i < kWays; ++i) bans_[static_cast<std::size_t>(i)].hold(held[i], rest, now);
+}
+
+void Obedience::Ban::hold(bool held, bool rest, Stamp now) {
+  if (!held) since_ = Stamp::never();
+  if (held && since_ == Stamp::never()) since_ = now;
+  rest_ = rest;
+}
+
+void Obedience::Ban::add(double gone, Stamp before, Stamp now) {
+  if (since_ == Stamp::never() || before < since_) return;
+  if (sums_.empty()) sums_.push_back({before, 0.0, 0.0, 0.0});
+  Sum sum = sums_.back();
+  sum.when = now;
+  sum.seconds += now - before;
+  sum.gone += gone;
+  if (rest_) sum.at_rest += now - before;
+  sums_.push_back(sum);
+  while (now - sums_.front().when > kBansKept) sums_.pop_front();
 }
 
 /// A base that is told to go and lags behind half of it owes more and more; one that obeys soon owes nothing.
@@ -181,45 +204,52 @@ void Obedience::mind_arrears(const Drive& gone, bool stalled) {
   lagging_ = text;
 }
 
-/// By the sum over rests, between two reports on a straight line. `seconds`: within what is kept.
-Drive Obedience::way_at(double seconds) const {
-  const auto after = std::lower_bound(rests_.begin(), rests_.end(), seconds,
-                                      [](const Rest& rest, double value) { return rest.seconds < value; });
-  if (after == rests_.begin()) return after->way;
-  if (after == rests_.end()) return rests_.back().way;
+/// Between two reports on a straight line. `seconds`: within what is kept.
+Obedience::Ban::Sum Obedience::Ban::at(double seconds) const {
+  const auto after = std::lower_bound(sums_.begin(), sums_.end(), seconds,
+                                      [](const Sum& sum, double value) { return sum.seconds < value; });
+  if (after == sums_.begin()) return *after;
+  if (after == sums_.end()) return sums_.back();
   const auto before = std::prev(after);
   const double share = (seconds - before->seconds) / (after->seconds - before->seconds);
-  return {before->way.v + share * (after->way.v - before->way.v),
-          before->way.w + share * (after->way.w - before->way.w)};
+  return {after->when, seconds, before->gone + share * (after->gone - before->gone),
+          before->at_rest + share * (after->at_rest - before->at_rest)};
 }
 
-/// In each second of the last `seconds` of rest they went on, the same way: a push ends sooner, and pushes leave gaps.
-bool Obedience::creeps(int seconds) const {
-  const double end = rests_.back().seconds;
-  if (end - rests_.front().seconds < seconds) return false;
-  const Drive first = way_at(end - seconds);
-  const Drive all{rests_.back().way.v - first.v, rests_.back().way.w - first.w};
-  bool v = std::abs(all.v) > kCreep.v, w = std::abs(all.w) > kCreep.w;
-  for (int i = 1; (v || w) && i <= seconds; ++i) {
-    const Drive from = way_at(end - i), to = way_at(end - i + 1);
-    v = v && (to.v - from.v) * seconds / all.v > kSteady;
-    w = w && (to.w - from.w) * seconds / all.w > kSteady;
-  }
-  return v || w;
+Obedience::Ban::Sum Obedience::Ban::lately(double seconds) const {
+  const Sum from = at(sums_.back().seconds - seconds), to = sums_.back();
+  return {to.when, seconds, to.gone - from.gone, to.at_rest - from.at_rest};
+}
+
+bool Obedience::Ban::broken(int seconds, double most) const {
+  if (sums_.empty() || sums_.back().seconds - sums_.front().seconds < seconds) return false;
+  const double all = lately(seconds).gone;
+  if (all <= most) return false;
+  const double end = sums_.back().seconds;
+  for (int i = 1; i <= seconds; ++i)
+    if ((at(end - i + 1).gone - at(end - i).gone) * seconds <= kSteady * all) return false;
+  return true;
 }
 
 void Obedience::mind_creeping() {
   if (runs_away_) return;
-  for (const int seconds : {kCreeps, 2 * kCreeps, 4 * kCreeps}) {
-    if (!creeps(seconds)) continue;
-    runs_away_ = true;
-    const Drive to = rests_.back().way, from = way_at(rests_.back().seconds - seconds);
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "does not obey: moves on though told to stop, by %.2f m and %.0f deg in %d s; motors switched off",
-                  to.v - from.v, rad_to_deg(to.w - from.w), seconds);
-    running_ = text;
-    return;
+  const double most[kWays] = {kCreep.v, kCreep.v, kCreep.w, kCreep.w};
+  constexpr const char* kWords[kWays] = {"forwards", "backwards", "to the left", "to the right"};
+  for (int i = 0; i < kWays; ++i) {
+    const Ban& one = bans_[static_cast<std::size_t>(i)];
+    for (const int seconds : {kCreeps, 2 * kCreeps, 4 * kCreeps}) {
+      if (!one.broken(seconds, most[i])) continue;
+      runs_away_ = true;
+      const Ban::Sum sum = one.lately(seconds);
+      const bool turns = i == Left || i == Right;
+      char text[160];
+      std::snprintf(text, sizeof text,
+                    "does not obey: moves %s though told to %s, by %.*f %s in %d s; its motors are being switched off",
+                    kWords[i], sum.at_rest > 0.5 * seconds ? "stop" : "go the other way", turns ? 0 : 2,
+                    turns ? rad_to_deg(sum.gone) : sum.gone, turns ? "deg" : "m", seconds);
+      running_ = text;
+      return;
+    }
   }
 }
 
@@ -294,7 +324,8 @@ void Obedience::mind_running(Stamp now) {
   runs_away_ = true;
   char text[160];
   std::snprintf(text, sizeof text,
-                "does not obey: moves at %.2f m/s and %.0f deg/s, told %.2f m/s and %.0f deg/s; motors switched off",
+                "does not obey: moves at %.2f m/s and %.0f deg/s, told %.2f m/s and %.0f deg/s; its motors are being "
+                "switched off",
                 seen.v, rad_to_deg(seen.w), told_.back().second.v, rad_to_deg(told_.back().second.w));
   running_ = text;
 }

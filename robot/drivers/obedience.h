@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <deque>
 #include <string>
 #include <utility>
@@ -13,17 +14,19 @@ namespace rubble::robot {
 ///
 /// Wheels that stand for kStands though told to go some way meanwhile, without a stall, do not obey, nor do wheels that
 /// go less than half of the way that they are told. Wheels that for kMoves go faster than they were told lately, or
-/// elsewhere, run away, and so do wheels that go on, however slowly, in the times when they are told to stand. What a
-/// ramp takes and what a line and a firmware are late by is granted; a robot that is given a push, or that was not
-/// heard for a while, is none of these.
+/// elsewhere, run away, and so do wheels that go on, however slowly, in the times when they are told to stand or to go
+/// the other way. What a ramp takes and what a line and a firmware are late by is granted; a robot that is given a
+/// push, or that was not heard for a while, is none of these.
 class Obedience {
  public:
   static constexpr double kStands = 2.0;  ///< [s]
   static constexpr double kMoves = 1.0;   ///< [s]
-  static constexpr int kCreeps = 3;       ///< of standing that was told; of slower ones up to four times that [s]
+  static constexpr int kCreeps = 3;       ///< of times when it may not; of slower ones up to four times that [s]
 
   /// Limits of the base's own ramps [m/s^2], [rad/s^2].
-  Obedience(double max_accel, double max_turn_accel) : ramp_{kRamp * max_accel, kRamp * max_turn_accel} {}
+  Obedience(double max_accel, double max_turn_accel) { keep_ramp({max_accel, max_turn_accel}); }
+  /// The same, once the base has told its own.
+  void keep_ramp(const Drive& ramp) { ramp_ = {kRamp * ramp.v, kRamp * ramp.w}; }
 
   /// Nothing is told to the base that it must obey at once: it is held, its motors are off, its line is slow.
   void pause();
@@ -40,11 +43,33 @@ class Obedience {
  private:
   static constexpr double kRamp = 0.7;  ///< of the ramp's acceleration is believed
 
-  /// In the times when the wheels were to stand, put end to end.
-  struct Rest {
-    Stamp when;
-    double seconds = 0.0;
-    Drive way;  ///< signed [m], [rad]
+  /// The ways in which wheels may go though told not to.
+  enum Way { Forwards, Backwards, Left, Right, kWays };
+  /// The times when they were told not to go some way, put end to end.
+  class Ban {
+   public:
+    struct Sum {
+      Stamp when;
+      double seconds = 0.0;
+      double gone = 0.0;     ///< that way [m] or [rad]
+      double at_rest = 0.0;  ///< of the seconds it was told to stand
+    };
+    /// Whether it holds from `now` on. `rest`: because it is told to stand.
+    void hold(bool held, bool rest, Stamp now);
+    /// So far was gone that way from one report to the next.
+    void add(double gone, Stamp before, Stamp now);
+    void clear() { *this = Ban(); }
+    /// In each second of the last `seconds` it went on that way, and by more than `most` in all: a push ends sooner,
+    /// and pushes leave gaps.
+    bool broken(int seconds, double most) const;
+    /// Within the last `seconds`.
+    Sum lately(double seconds) const;
+
+   private:
+    Sum at(double seconds) const;
+    Stamp since_ = Stamp::never();
+    bool rest_ = false;
+    std::deque<Sum> sums_;  ///< of the last minute
   };
   /// How far the wheels are behind half of the way that they were told [m] or [rad].
   struct Arrears {
@@ -58,8 +83,7 @@ class Obedience {
   void forget_ways();
   void mind_way(const Odometry& odometry, Stamp now);
   void mind_arrears(const Drive& gone, bool stalled);
-  Drive way_at(double seconds) const;
-  bool creeps(int seconds) const;
+  void ban(const Drive& high, const Drive& low, Stamp now);
   void mind_creeping();
   void mind_standing(const Odometry& odometry, Stamp now);
   void mind_running(Stamp now);
@@ -76,13 +100,12 @@ class Obedience {
   Stamp excess_ = Stamp::never();                ///< since then it is faster
   Stamp stands_ = Stamp::never();                ///< since then its wheels stand
   Drive missed_;                                 ///< the way that they should have gone since [m], [rad]
-  Stamp rest_since_ = Stamp::never();            ///< since then they must stand
-  std::deque<Rest> rests_;                       ///< of the last minute
-  Stamp misses_since_ = Stamp::never();          ///< since then that is too much
-  Drive stood_way_;                              ///< and did go, however slowly
-  Drive moves_;                                  ///< as it was seen last
-  Drive sure_;                                   ///< how fast they go at least, whichever way
-  Drive sure_way_;                               ///< by it, since the last report [m], [rad]
+  std::array<Ban, kWays> bans_;
+  Stamp misses_since_ = Stamp::never();  ///< since then that is too much
+  Drive stood_way_;                      ///< and did go, however slowly
+  Drive moves_;                          ///< as it was seen last
+  Drive sure_;                           ///< how fast they go at least, whichever way
+  Drive sure_way_;                       ///< by it, since the last report [m], [rad]
   double sure_seconds_v_ = 0.0, sure_seconds_w_ = 0.0;
   Arrears arrears_v_, arrears_w_;
   std::string standing_, lagging_, running_;  ///< what is wrong

@@ -27,6 +27,8 @@ constexpr double kListenTcp = 1.2;   ///< where there is but one [s]
 constexpr double kSpacing = 0.004;   ///< the firmware wants so much between two commands [s]
 constexpr double kRefresh = 0.2;     ///< set points are sent again [s]; the firmware forgets them after 2 s
 constexpr double kAskMotors = 0.5;   ///< [s]
+constexpr double kStubborn = 2.0;    ///< motors that stay on for so long though switched off do not hear that order [s]
+constexpr double kLeftAlone = 3.0;   ///< longer than the firmware's watchdog waits for a client [s]
 constexpr int kOnce = 1;             ///< of ENCODER
 constexpr double kRefused = 5.0;     ///< a robot that cannot be read is asked again who it is [s]
 constexpr double kMillimetre = 1e-3;
@@ -58,8 +60,9 @@ void Pioneer::opened(Stamp now, LineKind line) {
   parser_.reset();
   clock_.reset();
   answer_timer_.reset();
-  reply_ = kReply;
+  reply_ = closed_for_ = kReply;
   echo_late_ = 0.0;
+  on_since_ = Stamp::never();
   queue_.clear();
   based_ = false;
   last_report_ = Stamp::never();
@@ -125,7 +128,7 @@ void Pioneer::advance(Stamp now) {
       step_ = Step::Sync0;  // the firmware takes the three in their order only: a lost echo means all over again
       return ask(now);
     case Step::Closing:
-      if (now - since_ < kReply) return;
+      if (now - since_ < closed_for_) return;
       parser_.reset();
       go(Step::Sync0, now);
       return ask(now);
@@ -142,15 +145,38 @@ void Pioneer::advance(Stamp now) {
   if (listening_) return mind_silence(now);
   if (now - heard() > settings_.silence) {
     // The robot was switched off and on, or somebody closed it: all over again.
-    queue_.clear();
-    send(command(arcos::kClose));
-    last_report_ = Stamp::never();
-    based_ = false;
-    clock_.reset();
-    answer_timer_.reset();
+    disconnect();
+    closed_for_ = kReply;
     return go(Step::Closing, now);
   }
+  if (stays_on(now)) return leave_to_its_watchdog(now);
   refresh(now);
+}
+
+/// Its motors were switched off, again and again, and it reports them on.
+bool Pioneer::stays_on(Stamp now) {
+  const bool stays = step_ == Step::Running && !listening_ && switched_off_ && motors_on();
+  if (!stays) on_since_ = Stamp::never();
+  if (stays && on_since_ == Stamp::never()) on_since_ = now;
+  return stays && now - on_since_ > kStubborn;
+}
+
+/// CLOSE stops it, if it hears that, and else that nobody speaks to it.
+void Pioneer::leave_to_its_watchdog(Stamp now) {
+  on_since_ = Stamp::never();
+  disconnect();
+  closed_for_ = kLeftAlone;
+  go(Step::Closing, now);
+}
+
+/// The next connection begins with an odometry of zero.
+void Pioneer::disconnect() {
+  queue_.clear();
+  send(command(arcos::kClose));
+  last_report_ = Stamp::never();
+  based_ = false;
+  clock_.reset();
+  answer_timer_.reset();
 }
 
 bool Pioneer::times_answers() const { return step_ == Step::Running && !listening_ && !settings_.passive; }
@@ -240,9 +266,14 @@ void Pioneer::digest(const std::string& payload, Stamp now, std::size_t behind) 
     go(step_ == Step::Sync0 ? Step::Sync1 : Step::Sync2, now);
     return ask(now);
   }
+  if (step_ == Step::Closing && closed_for_ > kReply && report && (report->flags & arcos::kMotorsOn) != 0)
+    since_ = now;  // its watchdog stops it only as long as nobody speaks
   if (step_ != Step::Opening && step_ != Step::Running) return;
   if (const auto configuration = arcos::parse_configuration(payload)) {
     configuration_ = *configuration;
+    for (std::string* text : {&configuration_.type, &configuration_.subtype, &configuration_.serial,
+                              &configuration_.name, &configuration_.firmware})
+      *text = one_line(*text);
     configured_ = true;
     clock_.set_cycle(1e-3 * configuration_.cycle_ms);
   }
@@ -366,6 +397,7 @@ void Pioneer::enable(bool on) {
   if (on != motors_) {
     asked_motors_ = Stamp::never();
     obeyed_ = false;
+    switched_off_ = !on;
   }
   motors_ = on;
   if (!on) drive({});
@@ -457,7 +489,7 @@ Stamp Pioneer::deadline() const {
   if (step_ == Step::Refused) return since_ + kRefused;
   if (step_ == Step::Listening) return since_ + patience();
   if (step_ == Step::Opening) return since_ + (configured_ ? 0.0 : kReply);
-  if (step_ != Step::Running) return since_ + (step_ == Step::Closing ? kReply : reply_);
+  if (step_ != Step::Running) return since_ + (step_ == Step::Closing ? closed_for_ : reply_);
   if (listening_ || settings_.passive) return heard() + settings_.silence;
   Stamp next = refreshed_ == Stamp::never() ? since_ : refreshed_ + kRefresh;
   if (turn_.restless()) next = std::min(next, turn_decided_ + RateDither::kPeriod);
@@ -487,6 +519,7 @@ std::string Pioneer::state() const {
     case Step::Sync2:
       return "asks who is there" + rate + late_echoes();
     case Step::Closing:
+      if (closed_for_ > kReply) return "is left to its watchdog: its motors stay on though switched off" + rate;
       return "closes an old connection" + rate;
     case Step::Opening:
       return "opens " + identity_.subclass + late_echoes();
@@ -495,6 +528,11 @@ std::string Pioneer::state() const {
   }
   if (listening_) return "listened to";
   return ready() ? identity_.subclass + " reports" : "waits for the first report of " + identity_.subclass;
+}
+
+Drive Pioneer::own_ramp() const {
+  if (!configured_) return {};
+  return {kMillimetre * configuration_.top_accel, deg_to_rad(configuration_.top_turn_accel)};
 }
 
 std::vector<Odometry> Pioneer::take_odometry() { return std::exchange(odometry_, {}); }

@@ -23,7 +23,9 @@ namespace rubble::robot {
 /// Searches the bit rate, synchronises, opens, asks for the configuration, sets limits; then unwraps the reports into
 /// odometry that never jumps, and keeps the set points fresh so that the robot's watchdog does not stop it. Turn rates
 /// are whole degrees a second on the wire and dithered. Without reports it waits settings.silence before it connects
-/// anew: OPEN sets the odometry to zero, while a report after a gap still tells all the motion within it.
+/// anew: OPEN sets the odometry to zero, while a report after a gap still tells all the motion within it. A base whose
+/// motors stay on though they were switched off again and again is closed and not spoken to until its watchdog must
+/// have stopped it.
 ///
 /// With settings.listen it first waits for reports that somebody else's connection brings. Where they come it only
 /// reads them, from then on over all connections (but for the emergency stop, which is always said); where none come it
@@ -56,6 +58,9 @@ class Pioneer : public BaseDriver {
     return times_answers() ? Answers{answer_timer_.late(now), answer_timer_.missing(now)} : Answers{};
   }
 
+  Drive own_ramp() const override;
+  bool slow() const override { return !ready() && echo_late_ > 0.0; }
+
   const arcos::Identity& identity() const { return identity_; }
   /// Its defaults where the robot has not told any.
   const arcos::Configuration& configuration() const { return configuration_; }
@@ -80,6 +85,9 @@ class Pioneer : public BaseDriver {
   void open(Stamp now);
   void follow(const arcos::StandardInformation& report, Stamp stamp);
   void mind_hold();
+  bool stays_on(Stamp now);
+  void leave_to_its_watchdog(Stamp now);
+  void disconnect();
   void forget_motion();
   void forget_questions();
   void refresh(Stamp now);
@@ -112,7 +120,8 @@ class Pioneer : public BaseDriver {
 
   Drive target_;
   bool motors_ = false;
-  bool obeyed_ = false;  ///< the robot has reported the motors on since they were asked for
+  bool switched_off_ = false;  ///< having been switched on
+  bool obeyed_ = false;        ///< the robot has reported the motors on since they were asked for
   Hold hold_ = Hold::None;
   Stamp asked_motors_ = Stamp::never();
   RateDither turn_;
@@ -124,10 +133,12 @@ class Pioneer : public BaseDriver {
   Stamp refreshed_ = Stamp::never();
 
   AnswerTimer answer_timer_;
-  std::size_t report_bytes_ = 0;  ///< of the last report on the line
-  double reply_ = 0.0;            ///< an echo comes within this time [s]
-  double echo_late_ = 0.0;        ///< so late one came at least; 0: all in time [s]
-  Stamp asked_ = Stamp::never();  ///< when SYNC0 was said last
+  std::size_t report_bytes_ = 0;     ///< of the last report on the line
+  double reply_ = 0.0;               ///< an echo comes within this time [s]
+  double echo_late_ = 0.0;           ///< so late one came at least; 0: all in time [s]
+  Stamp asked_ = Stamp::never();     ///< when SYNC0 was said last
+  double closed_for_ = 0.0;          ///< so long nothing is said behind CLOSE [s]
+  Stamp on_since_ = Stamp::never();  ///< its motors are on though switched off
   CycleClock clock_;
   bool based_ = false;  ///< information_ is the reference for the next report
   Stamp last_report_ = Stamp::never();

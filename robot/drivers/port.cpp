@@ -334,7 +334,13 @@ std::unique_ptr<Port> open_tcp(const std::string& word, const PortWord& parts) {
 PortClaim::PortClaim(const std::string& word) {
   const PortWord parts = parse_port_word(word);
   std::vector<std::string> names = parts.kind == PortKind::Tcp ? names_of(find(parts).get()) : names_of(parts.path);
-  for (const std::string& name : names) locks_.push_back(lock_name(name, word));
+  for (const std::string& name : names) {
+    if (Claims::ours().has(name))
+      throw PortBusy(word +
+                     ": leads to a device that another port of this robot names as well; each device needs its "
+                     "own");
+    locks_.push_back(lock_name(name, word));
+  }
   if (parts.kind != PortKind::Tcp) {
     const Descriptor line(::open(parts.path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
     if (line) lock_line(line, word);

@@ -94,7 +94,8 @@ class PortClaim {
   std::vector<Descriptor> locks_;
 };
 
-/// Throws InputError unless `word` has one of the forms that open_port and serve_port take; opens nothing.
+/// Throws InputError unless `word` names a port that open_port can be asked for; opens nothing. Number 0 is for ports
+/// that are served.
 void check_port_word(const std::string& word);
 
 }  // namespace rubble::robot

@@ -50,11 +50,10 @@ PortWord parse_port_word(const std::string& word) {
   return result;
 }
 
-void require_callable(const PortWord& port, const std::string& word) {
+void check_port_word(const std::string& word) {
+  const PortWord port = parse_port_word(word);
   if (port.kind == PortKind::Tcp && port.port.find_first_not_of('0') == std::string::npos)
     throw InputError("port '" + word + "': nobody can be reached at port number 0; give the one that the device has");
 }
-
-void check_port_word(const std::string& word) { parse_port_word(word); }
 
 }  // namespace rubble::robot

@@ -17,7 +17,4 @@ struct PortWord {
 /// Splits `/dev/ttyUSB0`, `pty:PATH` or `tcp:HOST:PORT`; an IPv6 address stands in brackets. Throws InputError.
 PortWord parse_port_word(const std::string& word);
 
-/// Throws InputError when nobody can be called there: number 0 is for ports that are offered.
-void require_callable(const PortWord& port, const std::string& word);
-
 }  // namespace rubble::robot

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <deque>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -17,29 +18,41 @@
 namespace rubble::robot {
 namespace {
 
-constexpr double kAsk = 0.05;                 ///< pause of a waiting read() [s]
-constexpr double kListen = 0.02;              ///< the operator is asked so often [s]
-constexpr double kFarAhead = 0.1;             ///< of stamps [s]
-constexpr double kMotorsOn = 3.0;             ///< so soon they are on when asked for [s]
+constexpr double kAsk = 0.05;          ///< pause of a waiting read() [s]
+constexpr double kListen = 0.02;       ///< the operator is asked so often [s]
+constexpr double kFarAhead = 0.1;      ///< of stamps [s]
+constexpr double kMotorsOn = 3.0;      ///< so soon they are on when asked for [s]
+constexpr double kStoodStill = 1.0;    ///< so long without a turn of the operator's thread is no busy moment [s]
+constexpr Drive kStands{0.03, 0.05};   ///< slower wheels stand [m/s], [rad/s]
+constexpr double kJumpsLast = 5.0;     ///< of an odometry are remembered for so long [s]
+constexpr std::size_t kManyJumps = 3;  ///< within that time: an origin is set anew once
+constexpr double kMotorsOff = 1.0;     ///< so soon they are off when switched off [s]
+constexpr const char* kMotorsStay =
+    "its motors stay on though switched off, so it may still move; press its emergency button or cut its power";
+constexpr double kObeys = 3.0;                ///< who ran away does so again, if ever, within this time [s]
 constexpr double kKeepsUp = 1.0;              ///< scans that were too old must be fresh for so long [s]
 constexpr std::size_t kMostScansKept = 240;   ///< while the robot is held
 constexpr std::size_t kNewestScansKept = 40;  ///< of these all remain when the others are thinned
 
-/// `underway`: all have reported before; a connection that is made anew knows nothing of the last report.
-std::string silent_for(const std::string& name, bool underway, Stamp last, Stamp now, const std::string& why) {
+using Cause = Hindrance::Cause;
+
+/// `underway`: all have reported before; a connection that is made anew knows nothing of the last report. `cause`: why
+/// nothing comes.
+Hindrance silent_for(const std::string& name, bool underway, Stamp last, Stamp now, const std::string& why,
+                     Cause cause = Cause::Silent) {
   char text[80];
   if (last == Stamp::never()) {
-    std::snprintf(text, sizeof text, underway ? ": does not report" : ": has not reported yet");
+    std::snprintf(text, sizeof text, underway ? "does not report" : "has not reported yet");
   } else {
-    std::snprintf(text, sizeof text, ": silent for %.1f s", now - last);
+    std::snprintf(text, sizeof text, "silent for %.1f s", now - last);
   }
-  return name + text + (why.empty() ? "" : " (" + why + ")");
+  return {name, cause, text + (why.empty() ? "" : " (" + why + ")")};
 }
 
-/// What is too slow says so, and what to do.
-std::string remedy(const std::vector<std::string>& lines, bool starting) {
-  const auto is_slow = [](const std::string& line) { return line.find("too slow") != std::string::npos; };
-  if (std::all_of(lines.begin(), lines.end(), is_slow)) return "; use a faster one";
+/// A line that is too slow is not helped by plugging it in again.
+std::string remedy(const std::vector<Hindrance>& all, bool starting) {
+  const auto is_late = [](const Hindrance& one) { return one.cause == Cause::Late; };
+  if (std::all_of(all.begin(), all.end(), is_late)) return "; use a faster one";
   return starting ? "; check cables, power and ports" : "; it did not come back; plug it in and run again";
 }
 
@@ -115,10 +128,14 @@ struct RealRobot::Impl {
 
   mutable Freshness freshness;
   mutable Freshness answers;  ///< of the base
+  mutable Freshness unit_answers;
   std::atomic<bool> emergency{false};
   std::atomic<bool> stopped{false};
   std::atomic<bool> ending{false};
   std::atomic<std::int64_t> operator_ns{Stamp::never().ns};
+  std::atomic<std::int64_t> looked_ns{host_now().ns};           ///< by the operator's thread
+  std::atomic<std::int64_t> still_until_ns{Stamp::never().ns};  ///< nothing is driven up to here
+  std::atomic<double> stood_still{0.0};                         ///< so long before that [s]
   std::atomic<std::uint64_t> scans{0}, odometry{0}, accelerations{0};
 
   std::atomic<int> pardoned{0};  ///< of the base's refusals, by the operator
@@ -130,7 +147,14 @@ struct RealRobot::Impl {
   bool armed = false;                    ///< all devices have reported: the motors may go on
   Obedience obedience;                   ///< of the base
   std::string runaway;                   ///< how it moved though told otherwise; until rearm()
+  bool doubted = false;                  ///< it ran away, and has not been seen to obey since
+  Stamp obeys_since = Stamp::never();    ///< its motors are on and nothing is wrong with what it does
   std::string no_motors;                 ///< they do not come on
+  Stamp off_since = Stamp::never();      ///< since then they are switched off and on
+  std::atomic<bool> motors_stay{false};  ///< for long
+  std::atomic<bool> moves{false};        ///< by the last report
+  std::size_t jumps = 0;                 ///< of its odometry, up to now
+  std::deque<Stamp> jumped;              ///< when it did, lately
   Stamp motors_missed = Stamp::never();  ///< since then they are asked for and off
   std::vector<Odometry> waiting_odometry;
   Stamp scan_answered = Stamp::never();  ///< arrival of the scan whose answer is on its way
@@ -171,6 +195,7 @@ struct RealRobot::Impl {
           [this](Stamp now) { left_for_base(now); });
     operator_thread = std::thread([this] {
       while (!ending) {
+        mind_standstill(host_now());
         listen();
         sleep_until(host_now() + kListen);
       }
@@ -188,6 +213,21 @@ struct RealRobot::Impl {
   }
   void wake_base() const {
     if (base_thread) base_thread->wake();
+  }
+
+  /// This computer slept or was busy with something else: what waited meanwhile tells of a world that is past.
+  void mind_standstill(Stamp now) {
+    const Stamp before{looked_ns.load()};
+    if (before != Stamp::never() && now - before > kStoodStill) {
+      stood_still = now - before;
+      still_until_ns = (now + kKeepsUp).ns;
+      forget_drive();
+    }
+    looked_ns = now.ns;
+  }
+  /// Whoever wakes first sees it.
+  bool is_awake(Stamp now) const {
+    return now - Stamp{looked_ns.load()} <= kStoodStill && now >= Stamp{still_until_ns.load()};
   }
 
   /// In the operator's thread: it waits neither for the core nor for a device.
@@ -233,19 +273,25 @@ struct RealRobot::Impl {
     const bool ours = armed && !is_taken() && runaway.empty();
     const bool allowed = ours && !emergency && !stopped;
     const bool heard = is_base_answering(base->answers(now), now);
-    const bool free = allowed && heard && fresh && is_lidar_well(now) && is_unit_well(now) && is_operator_well(now);
+    const bool free = allowed && heard && fresh && is_awake(now) &&
+                      is_base_reporting(base->ready(), base->last_report(), now) && is_lidar_well(now) &&
+                      is_unit_well(now) && is_operator_well(now);
     if (allowed) base->enable(true);
     if (armed && !ours) base->enable(false);  // somebody else may have stopped it meanwhile
     if (std::exchange(brake_asked, false) && allowed) base->brake();
     const Drive wanted = free ? commands.drive : Drive{};
     base->drive(wanted);
     mind_obedience(wanted, allowed && heard, now);
+    mind_motors(armed && !allowed, now);
     if (scan_answered != Stamp::never()) scan_leaving = std::exchange(scan_answered, Stamp::never());
   }
 
   /// In the base's thread. `asked`: the motors are asked for, and what the base is told reaches it in time.
   void mind_obedience(const Drive& wanted, bool asked, Stamp now) {
     std::vector<Odometry> reports = base->take_odometry();
+    if (!reports.empty()) moves = std::abs(reports.back().v) > kStands.v || std::abs(reports.back().w) > kStands.w;
+    for (; jumps < base->jumps(); ++jumps) jumped.push_back(now);
+    while (!jumped.empty() && now - jumped.front() > kJumpsLast) jumped.pop_front();
     asked = asked && !settings.base.passive;
     const bool off = asked && !base->motors_on() && base->hold() == BaseDriver::Hold::None && base->ready();
     if (!off) motors_missed = Stamp::never();
@@ -255,15 +301,31 @@ struct RealRobot::Impl {
       obedience.pause();
     } else {
       const BaseSettings& limits = settings.base;  // beyond these it is not told
+      const auto least = [](double asked, double own) { return own > 0.0 ? std::min(asked, own) : asked; };
+      const Drive own = base->own_ramp();
+      obedience.keep_ramp({least(limits.max_accel, own.v), least(limits.max_turn_accel, own.w)});
       obedience.tell({std::clamp(wanted.v, -limits.max_v, limits.max_v) * limits.distance_scale,
                       std::clamp(wanted.w, -limits.max_w, limits.max_w) * limits.turn_scale},
                      now);
       for (const Odometry& report : reports) obedience.look(report, now);
     }
     append(waiting_odometry, std::move(reports));
+    const bool obeys = asked && base->motors_on() && obedience.trouble().empty();
+    if (!obeys) obeys_since = Stamp::never();
+    if (obeys && obeys_since == Stamp::never()) obeys_since = now;
+    if (obeys && now - obeys_since >= kObeys) doubted = false;
     if (!obedience.runs_away() || !runaway.empty()) return;
     runaway = obedience.trouble();
+    doubted = true;
     base->emergency_stop();
+  }
+
+  /// `off`: they were switched off by us.
+  void mind_motors(bool off, Stamp now) {
+    const bool stay = off && !settings.base.passive && base->motors_on();
+    if (stay && off_since == Stamp::never()) off_since = now;
+    if (!stay && base->ready()) off_since = Stamp::never();  // what a base that is silent does nobody knows
+    motors_stay = off_since != Stamp::never() && now - off_since > kMotorsOff;
   }
 
   /// In the base's thread, after each turn of it: what watch() let pass has been sent.
@@ -286,14 +348,22 @@ struct RealRobot::Impl {
     freshness.look(age(scanner, now), settings.safety.lidar_age, now);
     return !freshness.stale();
   }
+  bool is_base_reporting(bool ready, Stamp last, Stamp now) const {
+    return ready && last != Stamp::never() && now - last <= settings.safety.base_silence;
+  }
   bool is_base_answering(const BaseDriver::Answers& given, Stamp now) const {
     answers.look(given.late, settings.safety.base_answer, now, given.missing);
     return !answers.stale();
   }
+  bool is_unit_silent(Stamp last, Stamp now) const {
+    return last == Stamp::never() || now - last > settings.safety.levelling_silence;
+  }
   bool is_unit_well(Stamp now) const {
     if (!unit_thread) return true;
-    const Stamp last = unit_thread->with([this] { return unit.last_report(); });
-    return last != Stamp::never() && now - last <= settings.safety.levelling_silence;
+    const auto [last, given] = unit_thread->with([&] { return std::make_pair(unit.last_report(), unit.answers(now)); });
+    if (is_unit_silent(last, now)) return false;
+    unit_answers.look(given.late, settings.safety.levelling_answer, now, given.missing);
+    return !unit_answers.stale();
   }
   bool is_operator_well(Stamp now) const {
     if (settings.heartbeat.empty()) return true;
@@ -302,44 +372,62 @@ struct RealRobot::Impl {
   }
 
   /// A line that hands scans over in bundles makes the scanner look silent though it turns.
-  std::string why_silent(const ScannerStatus& scanner) const {
-    if (!scanner.error.empty() || scanner.recent_latency <= settings.safety.lidar_silence) return scanner.error;
+  Hindrance silent_lidar(const ScannerStatus& scanner, bool underway, Stamp now) const {
+    const bool held_up = scanner.error.empty() && scanner.recent_latency > settings.safety.lidar_silence;
+    if (!held_up)
+      return silent_for("urg", underway, scanner.last_scan, now, scanner.error,
+                        scanner.slow ? Cause::Late : Cause::Silent);
     char text[120];
     std::snprintf(text, sizeof text, "the line or this computer holds scans up, by %.1f s of late",
                   scanner.recent_latency);
-    return text;
+    return silent_for("urg", underway, scanner.last_scan, now, text, Cause::Late);
   }
 
-  /// What keeps the robot from being driven at `now`, one line each.
-  std::vector<std::string> silent(Stamp now) const {
-    std::vector<std::string> lines;
+  /// What keeps the robot from being driven at `now`.
+  std::vector<Hindrance> silent(Stamp now) const {
+    std::vector<Hindrance> all;
     const bool underway = first != Stamp::never();
     const ScannerStatus scanner = lidar.status();
     if (!is_lidar_well(scanner, now)) {
       if (is_lidar_silent(scanner, now)) {
-        lines.push_back(silent_for("urg", underway, scanner.last_scan, now, why_silent(scanner)));
+        all.push_back(silent_lidar(scanner, underway, now));
       } else {
         char text[80];
-        std::snprintf(text, sizeof text, "urg: its scans are %.1f s old; the line or this computer is too slow",
+        std::snprintf(text, sizeof text, "its scans are %.1f s old; the line or this computer is too slow",
                       freshness.stale().value_or(age(scanner, now)));
-        lines.emplace_back(text);
+        all.push_back({"urg", Cause::Late, text});
       }
     }
-    if (!base_thread) return add_silent_helpers(std::move(lines), underway, now);
-    const auto [last, ready, state, hold, answered] = with_base([this, now] {
-      return std::make_tuple(base->last_report(), base->ready(), base->state(), base->hold(), base->answers(now));
-    });
-    if (const std::string how = how_it_ran(); !how.empty()) lines.push_back("base: " + how);
-    if (underway && is_taken()) lines.push_back("base: another program may have had it; see who drives the robot");
-    if (hold == BaseDriver::Hold::EmergencyButton) lines.push_back("base: emergency button pressed");
-    if (hold == BaseDriver::Hold::MotorsOff) lines.push_back("base: motors were switched off");
-    if (!ready || now - last > settings.safety.base_silence) {
-      const std::string error = base_thread->error();
-      lines.push_back(silent_for("base", underway, last, now, error.empty() ? state : error));
-    } else if (!is_base_answering(answered, now)) {
-      lines.push_back("base: " + late_answers(answered));
+    if (underway && !is_awake(now)) {
+      char text[80];
+      std::snprintf(text, sizeof text, "stood still for %.1f s", stood_still.load());
+      all.push_back({"this computer", Cause::Late, text});
     }
-    return add_silent_helpers(std::move(lines), underway, now);
+    if (base_thread) add_silent_base(all, underway, now);
+    add_silent_helpers(all, underway, now);
+    return all;
+  }
+
+  void add_silent_base(std::vector<Hindrance>& all, bool underway, Stamp now) const {
+    const auto [last, ready, state, hold, answered, slow] = with_base([this, now] {
+      return std::make_tuple(base->last_report(), base->ready(), base->state(), base->hold(), base->answers(now),
+                             base->slow());
+    });
+    const auto hold_it = [&](const std::string& why) { all.push_back({"base", Cause::Held, why}); };
+    if (const std::string how = how_it_ran(); !how.empty()) hold_it(how);
+    if (motors_stay) hold_it(kMotorsStay);
+    if (!underway && moves && !settings.base.passive)
+      all.push_back({"base", Cause::Disobeys, "moves though nobody here drives it; it is taken when it stands"});
+    if (underway && is_taken()) hold_it("another program may have had it; see who drives the robot");
+    if (hold == BaseDriver::Hold::EmergencyButton) hold_it("emergency button pressed");
+    if (hold == BaseDriver::Hold::MotorsOff) hold_it("motors were switched off");
+    if (!is_base_reporting(ready, last, now)) {
+      const std::string error = base_thread->error();
+      all.push_back(silent_for("base", underway, last, now, error.empty() ? state : error,
+                               error.empty() && slow ? Cause::Late : Cause::Silent));
+    } else if (!is_base_answering(answered, now)) {
+      all.push_back({"base", Cause::Late, late_answers(answered, answers, settings.safety.base_answer)});
+    }
   }
 
   std::string how_it_ran() const {
@@ -347,7 +435,7 @@ struct RealRobot::Impl {
     return runaway;
   }
 
-  std::string late_answers(const BaseDriver::Answers& given) const {
+  static std::string late_answers(const Answers& given, const Freshness& answers, double most) {
     char text[160];
     if (given.missing || answers.missing()) {
       std::snprintf(text, sizeof text, "%s for %.1f s; it does not hear, or the line to it is too slow",
@@ -356,23 +444,26 @@ struct RealRobot::Impl {
     } else {
       std::snprintf(text, sizeof text,
                     "answers %.1f s late (at most %.1f s); the line to it or this computer is too slow",
-                    answers.stale().value_or(given.late), settings.safety.base_answer);
+                    answers.stale().value_or(given.late), most);
     }
     return text;
   }
 
   /// The levelling unit and the operator.
-  std::vector<std::string> add_silent_helpers(std::vector<std::string> lines, bool underway, Stamp now) const {
+  void add_silent_helpers(std::vector<Hindrance>& all, bool underway, Stamp now) const {
     if (!is_unit_well(now)) {
-      const auto [reported, how] =
-          unit_thread->with([this] { return std::make_pair(unit.last_report(), unit.state()); });
+      const auto [reported, how, given] =
+          unit_thread->with([&] { return std::make_tuple(unit.last_report(), unit.state(), unit.answers(now)); });
       const std::string error = unit_thread->error();
-      lines.push_back(silent_for("levelling", underway, reported, now, error.empty() ? how : error));
+      if (is_unit_silent(reported, now)) {
+        all.push_back(silent_for("levelling", underway, reported, now, error.empty() ? how : error));
+      } else {
+        all.push_back({"levelling", Cause::Late, late_answers(given, unit_answers, settings.safety.levelling_answer)});
+      }
     }
     if (!is_operator_well(now))
-      lines.push_back(
+      all.push_back(
           silent_for("heartbeat", underway, {operator_ns.load()}, now, settings.heartbeat + " must be touched"));
-    return lines;
   }
 
   RobotStatus status(Stamp now) const {
@@ -391,15 +482,23 @@ struct RealRobot::Impl {
       s.jumps = base->jumps();
       const std::lock_guard<std::mutex> lock(mutex);
       s.odometry += waiting_odometry.size();
-      for (const std::string& trouble : {obedience.trouble(), no_motors})
-        if (!trouble.empty() && runaway.empty()) s.troubles.push_back("base: " + trouble);
+      if (jumped.size() >= kManyJumps)
+        s.troubles.push_back(
+            {"base", Cause::Faulty, "its positions jump again and again; only its wheels' speeds are used"});
+      if (motors_stay) s.troubles.push_back({"base", Cause::Disobeys, kMotorsStay});
+      if (!runaway.empty()) return;
+      const std::string& disobeys = obedience.trouble();
+      if (!disobeys.empty()) s.troubles.push_back({"base", Cause::Disobeys, disobeys});
+      if (doubted && disobeys.empty())
+        s.troubles.push_back({"base", Cause::Disobeys, "let go again; whether it obeys now is watched"});
+      if (!no_motors.empty()) s.troubles.push_back({"base", Cause::Faulty, no_motors});
     });
     if (unit_thread) {
       unit_thread->with([&] {
         s.bad_packets += unit.bad_lines();
         s.accelerations += unit.waiting_accelerations();
         if (unit.sensor_fault())
-          s.troubles.emplace_back("levelling: its accelerometer gives no signal; the servos hold");
+          s.troubles.push_back({"levelling", Cause::Faulty, "its accelerometer gives no signal; the servos hold"});
       });
     }
     const ScannerStatus scanner = lidar.status();
@@ -509,13 +608,15 @@ struct RealRobot::Impl {
   bool wait_for_all() {
     for (;;) {
       const Stamp now = host_now();
-      const std::vector<std::string> lines = silent(now);
-      if (lines.empty()) {
+      const std::vector<Hindrance> hindrances = silent(now);
+      if (hindrances.empty()) {
         held_since = Stamp::never();
         if (first == Stamp::never()) refuse_released_devices();
         return true;
       }
       if (emergency) return false;
+      if (first != Stamp::never() && !is_awake(now) && stood_still > settings.safety.give_up)
+        throw DeviceLost(joined(lines_of(hindrances)) + "; see that the robot stands, and start again");
       if (held_since == Stamp::never()) {
         held_since = now;
         forget_drive();
@@ -526,7 +627,7 @@ struct RealRobot::Impl {
       if (starting && is_held() && is_over_before_it_began(now)) return false;
       if (starting) refuse_busy_devices();
       if (now - held_since > (starting ? settings.safety.start : settings.safety.give_up))
-        throw DeviceLost(joined(lines) + remedy(lines, starting));
+        throw DeviceLost(joined(lines_of(hindrances)) + remedy(hindrances, starting));
       if (ask && !ask(status(now))) return false;
       take_scans(now);
       sleep_until(now + kAsk);
@@ -593,7 +694,8 @@ void RealRobot::emergency_stop() { impl_->emergency_stop(); }
 
 void RealRobot::stop() { impl_->stop(); }
 
-void RealRobot::rearm() {
+bool RealRobot::rearm() {
+  if (impl_->motors_stay || impl_->moves) return false;
   if (impl_->base_thread) impl_->pardoned = impl_->base_thread->turned_away();
   impl_->with_base([this] {
     impl_->base->rearm();
@@ -602,6 +704,7 @@ void RealRobot::rearm() {
     impl_->obedience.pause();
   });
   impl_->wake_base();
+  return true;
 }
 
 void RealRobot::listen(std::function<OperatorWish()> ask, std::function<void()> left) {

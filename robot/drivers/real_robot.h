@@ -7,6 +7,7 @@
 
 #include "robot/drivers/base_driver.h"
 #include "robot/drivers/black_box.h"
+#include "robot/drivers/hindrance.h"
 #include "robot/drivers/levelling_unit.h"
 #include "robot/drivers/scanner.h"
 #include "robot/robot.h"
@@ -20,6 +21,7 @@ struct SafetySettings {
   double base_silence = 1.0;       ///< no report of the base [s]
   double base_answer = 0.3;        ///< the base answers later than this: an order to stop would be as late [s]
   double levelling_silence = 0.5;  ///< no report of the levelling unit [s]
+  double levelling_answer = 0.3;   ///< the unit answers later than this: the platform swings instead of levelling [s]
   double core_silence = 1.0;       ///< no command of the core [s]
   double operator_silence = 1.0;   ///< no heartbeat, if one is asked for [s]
   double start = 30.0;             ///< all devices must report within [s]
@@ -50,10 +52,10 @@ enum class OperatorWish {
 
 /// How the robot is doing, for people.
 struct RobotStatus {
-  std::vector<std::string> silent;    ///< what holds the robot, one line each
-  bool held = false;                  ///< stopped at the robot itself, or taken: only rearm() lets it go
-  bool taken = false;                 ///< another program seemed to have the base while it was away, or to drive it
-  std::vector<std::string> troubles;  ///< what does not work but holds nothing, one line each
+  std::vector<Hindrance> silent;    ///< what holds the robot
+  bool held = false;                ///< stopped at the robot itself, or taken: only rearm() lets it go
+  bool taken = false;               ///< another program seemed to have the base while it was away, or to drive it
+  std::vector<Hindrance> troubles;  ///< what does not work but holds nothing
   bool motors_on = false;
   bool emergency = false;
   double battery = 0.0;     ///< [V]
@@ -89,8 +91,9 @@ class RealRobot : public Robot {
   /// Set points to zero and motors off, for good; read() goes on. May be called from any thread.
   void stop();
   /// After somebody stopped the robot at the robot itself (its emergency button, its motors' button), or another
-  /// program had its base while it was away, or it moved though told otherwise: lets it drive again.
-  void rearm();
+  /// program had its base while it was away, or it moved though told otherwise: lets it drive again. False: it still
+  /// moves, or its motors are on though switched off, and stays held.
+  bool rearm();
   /// `ask` is called in a thread of its own about fifty times a second, whatever the core is at; its wish is granted at
   /// once. After Leave `left` is called in that thread. Empty: nobody is asked any more.
   void listen(std::function<OperatorWish()> ask, std::function<void()> left = {});

@@ -25,6 +25,7 @@ struct ScannerStatus {
   bool connected = false;            ///< scans are coming, or are about to
   std::string error;                 ///< why not: one line that names the port and the remedy
   bool busy = false;                 ///< not connected because another program of this computer has the port
+  bool slow = false;                 ///< not connected because it answers too late
   std::uint64_t turned_away = 0;     ///< how often another program seemed to have the scanner
   std::uint64_t scans = 0;           ///< whole scans received
   Stamp last_scan = Stamp::never();  ///< when the newest one arrived

@@ -151,7 +151,7 @@ void ArcosEmulator::obey(const Order& order, Stamp now) {
     case kEmergencyStop:
       mode_ = Mode::Speed;
       target_ = {};
-      braking_ = order.number == kEmergencyStop;
+      braking_ = order.number == kEmergencyStop || !motors_;
       return;
     case kSetAcceleration:
     case kSetSpeed:

@@ -114,7 +114,7 @@ std::optional<LevellingIdentity> parse_identity(const std::vector<std::string>& 
   v.us_min = numbers.next_int(100, 10000);
   v.us_max = numbers.next_int(100, 10000);
   v.watchdog_ms = numbers.next_int(0, 1000000);
-  if (!numbers.good()) return std::nullopt;
+  if (!numbers.good() || v.us_min > v.us_max) return std::nullopt;
   return v;
 }
 

@@ -11,6 +11,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "base/angle.h"
@@ -68,7 +69,11 @@ class DelayedScanner : public robot::Scanner {
     for (robot::LaserScan& scan : scans) scan.stamp = scan.stamp - delay_;
     return scans;
   }
-  robot::ScannerStatus status() const override { return inner_->status(); }
+  robot::ScannerStatus status() const override {
+    robot::ScannerStatus status = inner_->status();
+    for (double* latency : {&status.latency, &status.worst_latency, &status.recent_latency}) *latency += delay_;
+    return status;
+  }
   robot::ScannerInfo info() const override { return inner_->info(); }
   int descriptor() const override { return inner_->descriptor(); }
 
@@ -132,8 +137,9 @@ class Driver {
  private:
   /// A robot that stood held or silent to the end has not done what it was sent for.
   std::string time_is_over() const {
-    const std::vector<std::string> waited_for = real_.status().silent;
-    return waited_for.empty() ? "the time is over" : "the time is over; the drive was waiting: " + joined(waited_for);
+    const std::vector<robot::Hindrance> waited_for = real_.status().silent;
+    return waited_for.empty() ? "the time is over"
+                              : "the time is over; the drive was waiting: " + joined(lines_of(waited_for));
   }
 
   /// Who waits to the end and has neither moved nor mapped has failed, though nothing was lost.
@@ -192,11 +198,12 @@ class Driver {
   /// While devices are silent: tells which, and saves the map at once. False ends the run.
   bool wait(const robot::RobotStatus& status) {
     if ((status.held || begun_) && seconds_since(shown_at_) >= 1.0) show(status, status.held ? "held" : "waiting");
+    const std::vector<std::string> lines = lines_of(status.silent);
     const bool others = names(status.silent) != names(told_) || status.held != held_;
-    if (status.silent != told_ && (others || is_news(status.silent))) {
+    if (others ? lines != lines_of(told_) : lines != told_lines_ && is_news(lines)) {
       if (options_.tell)
-        for (const std::string& line : status.silent) options_.tell(line);
-      told_lines_ = status.silent;
+        for (const std::string& line : lines) options_.tell(line);
+      told_lines_ = lines;
       told_lines_at_ = Clock::now();
       if (begun_ && others) loop_.save_now();
     }
@@ -208,7 +215,7 @@ class Driver {
   }
 
   /// Another reason than the one that was told, a while ago: a port that was not open yet may have been opened since.
-  bool is_news(const std::vector<std::string>& silent) const {
+  bool is_news(const std::vector<std::string>& lines) const {
     const auto without_numbers = [](std::string text) {
       text.erase(std::remove_if(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; }),
                  text.end());
@@ -216,13 +223,13 @@ class Driver {
     };
     if (seconds_since(told_lines_at_) < kTellAgain) return false;
     return !std::equal(
-        silent.begin(), silent.end(), told_lines_.begin(), told_lines_.end(),
+        lines.begin(), lines.end(), told_lines_.begin(), told_lines_.end(),
         [&](const std::string& a, const std::string& b) { return without_numbers(a) == without_numbers(b); });
   }
 
-  static std::vector<std::string> names(const std::vector<std::string>& lines) {
+  static std::vector<std::string> names(const std::vector<robot::Hindrance>& all) {
     std::vector<std::string> out;
-    for (const std::string& line : lines) out.push_back(line.substr(0, line.find(':')));
+    for (const robot::Hindrance& one : all) out.push_back(one.name);
     return out;
   }
 
@@ -236,33 +243,41 @@ class Driver {
       if (options_.rearm) options_.rearm();  // what was pressed or sent before it was held
       held_ = true;
     } else if (options_.rearm && options_.rearm()) {
-      real_.rearm();
-      held_ = false;  // should it be stopped again at once, that is another hold
+      if (real_.rearm()) {
+        held_ = false;  // should it be stopped again at once, that is another hold
+      } else if (options_.tell) {
+        options_.tell("base: still moves, or its motors are on though switched off; it stays held");
+      }
     }
   }
 
   /// Names what was told before and is no more.
-  void tell_returned(const std::vector<std::string>& before, const std::vector<std::string>& now) const {
+  void tell_returned(const std::vector<robot::Hindrance>& before, const std::vector<robot::Hindrance>& now) const {
     if (!options_.tell) return;
     const std::vector<std::string> still = names(now);
-    for (const std::string& name : names(before))
-      if (std::find(still.begin(), still.end(), name) == still.end()) options_.tell(name + ": reports");
+    std::vector<std::string> lines;
+    for (const robot::Hindrance& one : before) {
+      const std::string line = one.name + ": " + over(one.cause);
+      const bool back = std::find(still.begin(), still.end(), one.name) == still.end();
+      if (back && std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+    }
+    for (const std::string& line : lines) options_.tell(line);
   }
 
-  void tell_back(const std::vector<std::string>& silent) {
+  void tell_back(const std::vector<robot::Hindrance>& silent) {
     tell_returned(told_, silent);
     told_ = silent;
   }
 
-  void tell_troubles(const std::vector<std::string>& now) const {
-    for (const std::string& line : now) options_.tell(line);
+  void tell_troubles(const std::vector<robot::Hindrance>& now) const {
+    for (const robot::Hindrance& one : now) options_.tell(one.line());
     tell_returned(troubles_, now);
   }
 
   void each_second(double seconds) {
     seconds_ = seconds;
     const robot::RobotStatus status = real_.status();
-    if (status.troubles != troubles_ && options_.tell) tell_troubles(status.troubles);
+    if (lines_of(status.troubles) != lines_of(troubles_) && options_.tell) tell_troubles(status.troubles);
     troubles_ = status.troubles;
     if (!begun_) return;
     show(status, options_.mode == DriveMode::Teleoperate ? "by hand"
@@ -303,9 +318,9 @@ class Driver {
   Clock::time_point shown_at_ = Clock::now();
   std::atomic<bool> interrupted_{false};
   bool held_ = false;  ///< stopped at the robot itself, and told
-  std::vector<std::string> troubles_;
+  std::vector<robot::Hindrance> troubles_;
   bool piloted_out_ = false;
-  std::vector<std::string> told_;        ///< what is silent, as it was at the last look
+  std::vector<robot::Hindrance> told_;   ///< what is silent, as it was at the last look
   std::vector<std::string> told_lines_;  ///< as it was told last
   Clock::time_point told_lines_at_;
   robot::RobotStatus last_;
@@ -340,6 +355,24 @@ scoring::Evidence evidence_of(const Core& core, const robot::RealRobot& robot, c
   };
   devices.cpu_share = (time(usage.ru_utime) + time(usage.ru_stime)) / std::max(1e-3, wall);
   return evidence;
+}
+
+/// A base that is stopped for good and does not obey: whoever stands beside it must know before the program ends.
+void tell_what_goes_on(const robot::RealRobot& robot, const DriveOptions& options) {
+  const auto given_up = Clock::now() + std::chrono::seconds(2);
+  const auto silent = [](const robot::RobotStatus& status) {
+    return std::any_of(status.silent.begin(), status.silent.end(), [](const robot::Hindrance& one) {
+      using Cause = robot::Hindrance::Cause;
+      return one.name == "base" && (one.cause == Cause::Silent || one.cause == Cause::Late);
+    });
+  };
+  robot::RobotStatus status = robot.status();
+  for (; Clock::now() < given_up && (status.motors_on || silent(status)) && status.troubles.empty();
+       status = robot.status())
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  if (!options.tell) return;
+  for (const robot::Hindrance& trouble : status.troubles) options.tell(trouble.line());
+  if (silent(status)) options.tell("base: has not told that it stopped; see that it stands");
 }
 
 /// A robot that may turn back before it has begun: what the operator should know.
@@ -394,6 +427,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     recorded.flush();
     save_map_files(folder, core.mapper());
     *report.score = score_json(evidence_of(core, real, end, start));
+    if (options.mode != DriveMode::MapOnly) tell_what_goes_on(real, options);
   }
   folder.save_hashes("");
   folder.write("score.json", report.score->dump(2) + "\n");

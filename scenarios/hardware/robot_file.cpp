@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/yaml/binder.h"
 #include "base/yaml/strict_yaml.h"
-#include "robot/drivers/port_word.h"
+#include "robot/drivers/port.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -66,6 +66,7 @@ void bind(Binder& b, robot::SafetySettings& s) {
   b.number("lidar_age_s", s.lidar_age, 0.2, 10.0);
   b.number("base_silence_s", s.base_silence, 0.2, 10.0);
   b.number("base_answer_s", s.base_answer, 0.05, 10.0);
+  b.number("levelling_answer_s", s.levelling_answer, 0.05, 10.0);
   b.number("levelling_silence_s", s.levelling_silence, 0.1, 10.0);
   b.number("core_silence_s", s.core_silence, 0.1, 10.0);
   b.number("operator_silence_s", s.operator_silence, 0.1, 60.0);
@@ -102,7 +103,7 @@ void check_ports(const YamlMap& devices, const RobotFile& file) {
   std::vector<std::pair<const char*, std::string>> seen;
   const auto check = [&](const char* device, const std::string& word) {
     try {
-      robot::require_callable(robot::parse_port_word(word), word);
+      robot::check_port_word(word);
     } catch (const InputError& error) {
       devices.map(device).fail("port", error.what());
     }

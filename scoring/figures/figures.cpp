@@ -271,7 +271,7 @@ std::vector<Figure> make_table() {
       {"relation_std_deg", "standard deviation of the angle", "deg", 4, kNone, 0.0, kSpecial,
        of_relations([](const R& r) { return rad_to_deg(r.std_rad); })},
       {"bad_packets", "damaged packets", "", 0, kNone, 0.0, kSpecial, of_devices(&DeviceFigures::bad_packets)},
-      {"odometry_jumps", "jumps of the odometry", "", 0, kNone, 0.0, kSpecial,
+      {"base_jumps", "jumps of the base's odometry", "", 0, kNone, 0.0, kSpecial,
        of_devices(&DeviceFigures::odometry_jumps)},
       {"scans_damaged", "damaged scans", "", 0, kNone, 0.0, kSpecial, of_devices(&DeviceFigures::scans_damaged)},
       {"scans_missed", "scans missed", "", 0, kNone, 0.0, kSpecial, of_devices(&DeviceFigures::scans_missed)},

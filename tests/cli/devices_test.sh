@@ -4,6 +4,7 @@ source "$(dirname "$0")/lib.sh" "$@"
 
 expect_exit 3 "port 'ttyUSB0': is no port; give /dev/ttyUSB0" "$rubble" devices ttyUSB0
 expect_exit 3 "'70000x' is no port number" "$rubble" devices /dev/null tcp:localhost:70000x
+expect_exit 3 "nobody can be reached at port number 0" "$rubble" devices tcp:localhost:0
 expect_exit 3 "is no serial line" "$rubble" devices /dev/null
 expect_exit 4 "" "$rubble" devices "$work/no-such-line"
 grep -q "there is no such device; plug it in" out.txt || fail "a missing line is not named: $(cat out.txt)"

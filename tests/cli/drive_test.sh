@@ -55,6 +55,12 @@ for device in urg base levelling; do
   expect_exit 2 "--$device: needs a value, and --set is an option" "$rubble" drive "$robot" --$device --set safety.start_s=1
 done
 expect_exit 3 "devices.urg and devices.base have the same port '/dev/ttyUSB0'" "$rubble" drive "$robot" --urg /dev/ttyUSB0
+expect_exit 4 "tcp:127.0.0.1:18940: leads to a device that another port of this robot names as well" \
+  "$rubble" drive "$robot" --urg tcp:localhost:18940 --base tcp:127.0.0.1:18940 --levelling none --out same
+# A reason that takes the place of the first one at once is told too.
+"$rubble" drive "$robot" --urg pty:no1 --base tcp:127.0.0.1:9 --levelling none --set safety.start_s=8 --out reason >/dev/null 2>err.txt
+grep -q "^rubble: base: .*nobody answers (Connection refused)" err.txt ||
+  fail "why a device is missing is not told before the end: $(cat err.txt)"
 expect_exit 3 "nonsense.yaml" "$rubble" drive nonsense.yaml
 # A time that is all needed for the way home is legal, and said.
 "$rubble" drive "$robot" --urg pty:no1 --base pty:no2 --levelling pty:no3 --set safety.start_s=1 --time-limit 12 --out hasty >out.txt 2>err.txt

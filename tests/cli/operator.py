@@ -201,6 +201,11 @@ try:
     # What else a terminal can send stops too, and leaves a whole folder: no drive is ended or suspended on the spot.
     for name, strike in (
             ("Ctrl-Z", lambda: drive.press("\x1a")), ("Ctrl-backslash", lambda: drive.press("\x1c")),
+            # What a terminal keeps for itself unless it is told not to, and a byte of zero.
+            ("Ctrl-S", lambda: drive.press("\x13")), ("Ctrl-Q", lambda: drive.press("\x11")),
+            ("Ctrl-Space", lambda: drive.press("\0")),
+            # A terminal that is closed sends it twice: its shell and the system do.
+            ("SIGHUP", lambda: [os.kill(drive.pid, signal.SIGHUP) or time.sleep(0.1) for _ in range(2)]),
             ("SIGQUIT", lambda: os.kill(drive.pid, signal.SIGQUIT)),
             ("SIGTSTP", lambda: os.kill(drive.pid, signal.SIGTSTP)),
             ("SIGALRM", lambda: os.kill(drive.pid, signal.SIGALRM)),
@@ -290,10 +295,10 @@ try:
     time.sleep(2.0)
     rows = truth()
     check(not moves(rows, len(rows) - 1), "held: it stays, though SIGUSR2 came before")
-    check("base: reports" not in drive.look().split("base: held")[1], "held: no word of its return")
+    check("base: is let go" not in drive.look().split("base: held")[1], "held: no word of its return")
     drive.press("R")
     check(wait_for(lambda: drive.look() is not None and drives_now()), "held: R lets it go")
-    check("base: reports" in drive.look().split("base: held")[1], "held: its return is told")
+    check("base: is let go" in drive.look().split("base: held")[1], "held: its return is told")
     drive.press("x")
     check(drive.wait() == 130, "held: a key ends the drive")
 finally:

@@ -80,6 +80,9 @@ std::optional<Reply> Link::ask(const std::string& command, double timeout) {
     while (auto reply = receiver_.next()) {
       if (reply->lines[0] == command && status_of(*reply)) {
         answered_ = true;
+        // It may be to the same question asked before: then the answer to this one is still to come.
+        for (auto& [question, asked] : given_up_)
+          if (question == command) asked = asked_;
         return reply;
       }
       mind_late_answer(*reply);
@@ -115,7 +118,7 @@ void Link::refuse_late() const {
       "the scanner answers too late, %.1f s or more after it was asked (at most %.1f s); the line to it (radio, relay, "
       "serial server) is too slow",
       latest_, kAnswerTime);
-  throw Refused(port_->name() + ": " + text);
+  throw TooLate(port_->name() + ": " + text);
 }
 
 Reply Link::insist(const std::string& command) {

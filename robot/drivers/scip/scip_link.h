@@ -20,6 +20,12 @@ class Refused : public RunError {
   using RunError::RunError;
 };
 
+/// It answers too late to talk with.
+class TooLate : public Refused {
+ public:
+  using Refused::Refused;
+};
+
 /// Between which moments the device read its clock for an answer to TM1: question and answer take their time on an
 /// Uart.
 std::pair<Stamp, Stamp> when_read(Stamp asked, Stamp answered, LineKind line, int baud);

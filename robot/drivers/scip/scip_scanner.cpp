@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "robot/drivers/host_clock.h"
-#include "robot/drivers/port_word.h"
 #include "robot/drivers/scan_queue.h"
 #include "robot/drivers/scip/scan_maker.h"
 #include "robot/drivers/scip/scip_link.h"
@@ -15,7 +14,8 @@
 namespace rubble::robot {
 namespace {
 
-constexpr double kPause = 0.05;  // the thread asks so often whether it shall end [s]
+constexpr double kLateEnd = 10.0;  // by then a connection that was closed is closed at the other end of a slow line [s]
+constexpr double kPause = 0.05;    // the thread asks so often whether it shall end [s]
 
 }  // namespace
 
@@ -25,7 +25,8 @@ struct ScipScanner::Impl {
   std::mutex mutex;
   std::condition_variable ended;
   bool ending = false;
-  bool answered = false;  ///< the scanner, in this connection
+  bool answered = false;           ///< the scanner, in this connection
+  Stamp late_at = Stamp::never();  ///< when it answered too late last, and since nothing else happened
   std::thread thread;
 
   explicit Impl(const ScipScannerConfig& given) : config(given) {
@@ -55,8 +56,12 @@ struct ScipScanner::Impl {
         const std::string what = hung_up != nullptr && answered ? hung_up->otherwise() : error.what();
         const bool busy = dynamic_cast<const PortBusy*>(&error) != nullptr;
         queue.update([&](ScannerStatus& status) {
+          // Behind a line that is so slow it is our own connection of before that is still open.
+          if (hung_up != nullptr && late_at != Stamp::never() && host_now() - late_at < kLateEnd) return;
           status.connected = false;
           status.busy = busy;
+          status.slow = dynamic_cast<const scip::TooLate*>(&error) != nullptr;
+          late_at = status.slow ? host_now() : Stamp::never();
           if (busy || (hung_up != nullptr && !answered)) ++status.turned_away;
           status.error = what;
         });
@@ -90,7 +95,7 @@ struct ScipScanner::Impl {
     queue.update([](ScannerStatus& status) {
       status.connected = true;
       status.error.clear();
-      status.busy = false;
+      status.busy = status.slow = false;
       status.worst_latency = 0.0;
       ++status.connects;
     });

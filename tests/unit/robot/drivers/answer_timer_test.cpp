@@ -116,6 +116,40 @@ TEST(AnswerTimer, ALineThatIsSlowOrDeafIsNamedWithinTwoSecondsAndStaysSo) {
   }
 }
 
+/// The line loses answers and is slow: what got lost must not make it seem quick, for it would be driven on.
+TEST(AnswerTimer, ALineThatIsSlowAndLosesMuchIsNeverTakenForQuick) {
+  for (const double slow : {0.4, 0.5, 0.7, 1.0, 1.6, 2.5}) {
+    for (const double loss : {0.05, 0.1, 0.2, 0.3}) {
+      SCOPED_TRACE(testing::Message() << slow << " s, loss " << loss);
+      std::mt19937 random(3);
+      std::uniform_real_distribution<double> uniform;
+      Line line([&, slow, loss](double) { return uniform(random) < loss ? -1.0 : slow + 0.1 * uniform(random); });
+      line.run(20.0);
+      double quick = 0.0;
+      for (int k = 0; k < 360000; ++k) {
+        line.run(0.01);
+        quick += line.late() > 0.3 ? 0.0 : 0.01;
+      }
+      EXPECT_EQ(quick, 0.0) << "s of an hour";
+    }
+  }
+}
+
+/// Once it is quick again it is used again, though it loses as much as before.
+TEST(AnswerTimer, ALineThatRecoversIsQuickThoughItLosesMuch) {
+  for (const double slow : {0.5, 1.0, 2.0}) {
+    for (const unsigned seed : {1u, 2u, 3u, 4u, 5u}) {
+      std::mt19937 random(seed);
+      std::uniform_real_distribution<double> uniform;
+      Line line([&, slow](double t) { return uniform(random) < 0.1 ? -1.0 : t < 20.0 ? slow : 0.02; });
+      line.run(20.0);
+      ASSERT_GT(line.late(), 0.3);
+      line.run(slow + 8.0);
+      EXPECT_LT(line.late(), 0.3) << slow << " seed " << seed;
+    }
+  }
+}
+
 /// An answer to a question of before, such as one that had been counted as lost, is taken for the next one's: the error
 /// must not go on from each to the next.
 TEST(AnswerTimer, AnAnswerTooManyDoesNotMakeASlowLineQuick) {
@@ -178,6 +212,17 @@ TEST(AnswerTimer, ADeviceThatNeverAnswersIsNotWaitedForForEver) {
   EXPECT_EQ(line.questions, asked);
   line.timer.reset();
   EXPECT_TRUE(line.timer.due(line.now)) << "a new connection may be to another one";
+}
+
+/// Its one answer to another question was late, which says nothing of now.
+TEST(AnswerTimer, ADeviceThatDoesNotKnowTheQuestionIsNotHeldForWhatAnotherOneTook) {
+  Line line([](double) { return -1.0; });
+  line.timer.assume(0.4);
+  line.timer.assume(0.4);
+  line.run(1.0);
+  EXPECT_GT(line.late(), 0.3);
+  line.run(AnswerTimer::kUnable + 1.0);
+  EXPECT_EQ(line.late(), 0.0);
 }
 
 TEST(AnswerTimer, TheWayOfTheBytesIsNotCounted) {

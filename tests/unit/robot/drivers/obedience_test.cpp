@@ -96,7 +96,7 @@ TEST(Obedience, WheelsThatTurnThoughToldToStandRunAway) {
     base.run({}, 2.5);
     EXPECT_TRUE(base.obedience.runs_away());
     EXPECT_LT(base.first - since, 2.3);
-    EXPECT_THAT(base.obedience.trouble(), testing::HasSubstr("motors switched off"));
+    EXPECT_THAT(base.obedience.trouble(), testing::HasSubstr("motors are being switched off"));
     base.obedience.pause();
     EXPECT_FALSE(base.obedience.runs_away());
   }
@@ -167,6 +167,9 @@ TEST(Obedience, APushIsForgivenAndAHandThatMovesItForLongIsNot) {
   base.wheels = {};
   base.run({}, 5.0);
   EXPECT_FALSE(base.obedience.runs_away());
+  base.wheels = [](Drive) { return Drive{0.2, 0.0}; };
+  base.run({}, 3.0);
+  EXPECT_TRUE(base.obedience.runs_away());
 }
 
 /// A base behind a line: orders and reports are late by times that change, reports get lost, turn rates are whole
@@ -305,9 +308,58 @@ TEST(Obedience, WheelsThatGoOnThoughToldToStopRunAwayHoweverSlowly) {
       }
     }
     EXPECT_TRUE(base.obedience.runs_away()) << "seed " << seed << " " << creep.v << ", " << rad_to_deg(creep.w);
-    EXPECT_THAT(base.obedience.trouble(), testing::HasSubstr("motors switched off"));
+    EXPECT_THAT(base.obedience.trouble(), testing::HasSubstr("motors are being switched off"));
     const bool quick = std::abs(creep.v) > 0.012 || std::abs(creep.w) > deg_to_rad(1.2);
     EXPECT_LT(base.first - since, (quick ? 4.5 : 14.0) * (seed % 2 == 0 ? 1.0 : 3.0)) << "seed " << seed;
+  }
+}
+
+/// Told to go one way it goes the other, too slowly to be seen as a runaway at once.
+TEST(Obedience, WheelsThatCreepAgainstWhatTheyAreToldRunAway) {
+  const std::vector<std::pair<Drive, Drive>> cases{
+      {{-0.2, 0.0}, {0.03, 0.0}},  // told, done
+      {{0.3, 0.0}, {-0.012, 0.0}},
+      {{0.1, deg_to_rad(20.0)}, {-0.02, deg_to_rad(20.0)}},  // the other axis obeys
+      {{0.0, deg_to_rad(30.0)}, {0.0, deg_to_rad(-3.0)}},
+      {{0.2, deg_to_rad(-10.0)}, {0.2, deg_to_rad(2.0)}}};
+  for (const auto& [told, creep] : cases) {
+    for (unsigned seed = 1; seed <= 10; ++seed) {
+      LateBase base(seed);
+      base.run({-creep.v, -creep.w}, 3.0);
+      base.run(told, 5.0);
+      ASSERT_EQ(base.obedience.trouble(), "") << "seed " << seed;
+      base.wheels = [creep = creep](Drive) { return creep; };
+      const Stamp since = base.now;
+      if (seed % 2 == 0) {
+        base.run(told, 16.0);
+      } else {  // what it is told changes, but not the way
+        for (int i = 0; i < 16; ++i) {
+          base.run(told, 0.9);
+          base.run({1.5 * told.v, 1.5 * told.w}, 0.4);
+          base.run({}, 0.2);
+        }
+      }
+      EXPECT_TRUE(base.obedience.runs_away()) << told.v << ", " << told.w << " seed " << seed;
+      EXPECT_THAT(base.obedience.trouble(), testing::HasSubstr("motors are being switched off"));
+      EXPECT_LT(base.now - since, 30.0);
+    }
+  }
+}
+
+/// Wheels that are not quite alike go ahead or aside a little when they are told to turn on the spot or to go straight.
+TEST(Obedience, UnequalWheelsAreNoDisobedience) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    LateBase base(seed);
+    const double more = base.uniform(-0.04, 0.04);
+    constexpr double kHalfTrack = 0.294;
+    base.wheels = [more](Drive told) {
+      const double left = told.v - kHalfTrack * told.w, right = (1.0 + more) * (told.v + kHalfTrack * told.w);
+      return Drive{0.5 * (left + right), 0.5 * (right - left) / kHalfTrack};
+    };
+    for (int i = 0; i < 60; ++i) {
+      base.run(some_order(base), base.uniform(0.2, 20.0));
+      ASSERT_EQ(base.obedience.trouble(), "") << "seed " << seed << " step " << i;
+    }
   }
 }
 

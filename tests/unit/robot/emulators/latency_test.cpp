@@ -25,6 +25,7 @@
 #include "robot/emulators/scip/urg_emulator.h"
 #include "robot/protocols/arcos_commands.h"
 #include "robot/protocols/arcos_packet.h"
+#include "tests/support/machine_witness.h"
 #include "tests/support/robot_turning_scene.h"
 
 namespace rubble::robot {
@@ -57,43 +58,6 @@ class Times {
  private:
   mutable std::mutex mutex_;
   std::map<int, Stamp> sent_, answered_;
-};
-
-/// Sleeps for two milliseconds again and again and knows when it was woken late.
-class Witness {
- public:
-  Witness() : thread_([this] { run(); }) {}
-  ~Witness() { end(); }
-  void end() {
-    ending_ = true;
-    if (thread_.joinable()) thread_.join();
-  }
-  /// So much of that time it had overslept [s]. After end().
-  double overslept(Stamp from, Stamp to) const {
-    double sum = 0.0;
-    for (const auto& [due, woke] : late_) sum += std::max(0.0, std::min(to, woke) - std::max(from, due));
-    return sum;
-  }
-  /// Of all its turns [s]. After end().
-  double lateness(double part) const {
-    std::vector<double> all;
-    for (const auto& [due, woke] : late_) all.push_back(woke - due);
-    std::sort(all.begin(), all.end());
-    return all.empty() ? 0.0 : all[static_cast<std::size_t>(part * static_cast<double>(all.size() - 1))];
-  }
-
- private:
-  void run() {
-    while (!ending_) {
-      const Stamp due = host_now() + 0.002;
-      sleep_until(due);
-      late_.emplace_back(due, host_now());
-    }
-  }
-
-  std::atomic<bool> ending_{false};
-  std::vector<std::pair<Stamp, Stamp>> late_;
-  std::thread thread_;  // the last: it uses the others
 };
 
 /// Sorted [s].

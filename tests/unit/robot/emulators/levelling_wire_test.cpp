@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <deque>
+#include <string>
+#include <utility>
 
 #include "robot/drivers/levelling_unit.h"
 #include "robot/emulators/levelling_emulator.h"
@@ -33,7 +36,9 @@ class UnitWire {
     unit.advance(now);
     if (++steps % 20 == 0) unit.measure(felt, {now, unit.aim().pitch, unit.aim().roll}, now);
     for (const std::string& piece : faults.pass(unit.take_output(), now))
-      if (!cut) driver.receive(piece, now);
+      if (!cut) on_its_way.emplace_back(now + slow, piece);
+    for (; !on_its_way.empty() && on_its_way.front().first <= now; on_its_way.pop_front())
+      driver.receive(on_its_way.front().second, now);
     for (const Acceleration& a : driver.take_accelerations()) accelerations.push_back(a);
     for (const AimState& a : driver.take_aims()) aims.push_back(a);
   }
@@ -46,8 +51,39 @@ class UnitWire {
   std::vector<Acceleration> accelerations;
   std::vector<AimState> aims;
   bool cut = false;
+  double slow = 0.0;  ///< the unit's bytes take so long [s]
+  std::deque<std::pair<Stamp, std::string>> on_its_way;
   int steps = 0;
 };
+
+/// By late reports the platform would swing instead of levelling, and they carry no age of their own.
+TEST(LevellingWire, HowLateTheUnitAnswersIsMeasured) {
+  for (const double slow : {0.0, 0.2, 0.4, 1.0}) {
+    for (const bool from_the_start : {true, false}) {
+      Wire wire;
+      if (from_the_start) wire.slow = slow;
+      wire.run(2.0 + 3.0 * slow);
+      wire.slow = slow;
+      wire.run(3.0 + 3.0 * slow);
+      EXPECT_TRUE(wire.driver.ready());
+      EXPECT_NEAR(wire.driver.answers(wire.now).late, slow, 0.02);
+      wire.slow = 0.0;
+      wire.run(slow + 3.0);
+      EXPECT_LT(wire.driver.answers(wire.now).late, 0.02);
+    }
+  }
+  for (const ByteFault fault :
+       {ByteFault::Lost, ByteFault::Split, ByteFault::Doubled, ByteFault::Junk, ByteFault::WrongSum}) {
+    SCOPED_TRACE(static_cast<int>(fault));
+    Wire wire;
+    wire.run(2.0);
+    wire.faults.spoil(fault, wire.now + 1.0);
+    for (int i = 0; i < 40; ++i) {
+      wire.run(0.1);
+      ASSERT_LT(wire.driver.answers(wire.now).late, 0.3) << "a spoilt second is no slow line";
+    }
+  }
+}
 
 TEST(LevellingWire, TiltsArriveWithinATick) {
   UnitWire wire;

@@ -43,7 +43,9 @@ class Wire {
     now = now + kStep;
     driver.advance(now);
     const std::string to_base = driver.take_output(now);
-    if (!cut && !to_base.empty() && !gets_lost()) base.receive(to_base, now);
+    if (!to_base.empty()) said.push_back(to_base);
+    const bool heard = !cut && (!deaf_to || !deaf_to(to_base));
+    if (heard && !to_base.empty() && !gets_lost()) base.receive(to_base, now);
     base.advance(now);
     const Drive& motion = base.motion();
     truth.phi += motion.w * kStep;
@@ -83,7 +85,9 @@ class Wire {
   mrpt::math::TPose2D truth;
   std::vector<Odometry> odometry;
   bool cut = false;
-  double slow = 0.0;  ///< the base's bytes take so long [s]
+  std::function<bool(const std::string&)> deaf_to;  ///< packets that the base passes over
+  std::vector<std::string> said;                    ///< by the driver
+  double slow = 0.0;                                ///< the base's bytes take so long [s]
   std::deque<std::pair<Stamp, std::string>> on_its_way;
   double loss = 0.0;  ///< so many of the packets never arrive, either way
   std::mt19937 random{1};
@@ -674,6 +678,53 @@ TEST(PioneerWire, AnEmergencyStopStopsAtOnceAndStaysUntilEnabled) {
   EXPECT_FALSE(wire.base.motors_on());
 }
 
+/// A firmware that hears no order to stop may still hear CLOSE, and else nobody.
+TEST(PioneerWire, ABaseWhoseMotorsStayOnIsClosedAndLeftToItsWatchdog) {
+  for (const bool hears_close : {true, false}) {
+    SCOPED_TRACE(hears_close);
+    Wire wire;
+    wire.run(1.0);
+    wire.go(0.4, 0.0);
+    wire.run(4.0);
+    ASSERT_NEAR(wire.base.motion().v, 0.4, 1e-9);
+    wire.deaf_to = [hears_close](const std::string& packet) {
+      const auto number = static_cast<std::uint8_t>(packet.size() > 3 ? packet[3] : 0);
+      return number == arcos::kEnable || number == arcos::kVelocity || number == arcos::kTurnRate ||
+             number == arcos::kStop || number == arcos::kEmergencyStop || (number == arcos::kClose && !hears_close);
+    };
+    wire.driver.emergency_stop();
+    wire.run(1.5);
+    EXPECT_TRUE(wire.driver.ready()) << "it may be late";
+    wire.run(5.0);
+    for (int i = 0; i < 10000; ++i) {
+      wire.step();
+      ASSERT_EQ(wire.base.motion().v, 0.0) << "it drives after " << 6.5 + 1e-3 * i << " s";
+    }
+    if (hears_close) {
+      EXPECT_FALSE(wire.base.motors_on());
+      EXPECT_TRUE(wire.run_until([&] { return wire.driver.ready(); }, 5.0)) << wire.driver.state();
+    } else {
+      EXPECT_THAT(wire.driver.state(), testing::HasSubstr("left to its watchdog"));
+      wire.deaf_to = {};
+      wire.base.client_came(wire.now);  // somebody has switched it off and on
+      EXPECT_TRUE(wire.run_until([&] { return wire.driver.ready(); }, 10.0)) << wire.driver.state();
+    }
+  }
+}
+
+TEST(ArcosEmulator, MotorsThatAreSwitchedOffStopAtOnceWhateverIsSaidBehindThat) {
+  for (const int behind : {arcos::kStop, arcos::kPulse, arcos::kEmergencyStop}) {
+    Wire wire;
+    wire.run(1.0);
+    wire.go(0.4, 0.0);
+    wire.run(4.0);
+    wire.base.receive(arcos::command(arcos::kEnable, 0) + arcos::command(static_cast<arcos::Command>(behind)),
+                      wire.now);
+    wire.base.advance(wire.now + kStep);
+    EXPECT_EQ(wire.base.motion().v, 0.0);
+  }
+}
+
 TEST(PioneerWire, BrakingTakesNoRampAndTheNextSetPointDrivesAgain) {
   for (const bool brake : {false, true}) {
     Wire wire;
@@ -750,6 +801,7 @@ TEST(PioneerWire, WhatABaseSaysOfItselfHasNoEscapesForTheTerminal) {
   ArcosEmulatorSettings settings;
   settings.identity.name = "ro\rbbie";
   settings.identity.subclass = "\x1b[31mp3at\x07";
+  settings.configuration.serial = settings.configuration.firmware = "\x1b[2J";
   Wire wire(settings);
   wire.run(3.0);
   EXPECT_THAT(wire.driver.state(), testing::HasSubstr("'\\x1b[31mp3at\\x07'"));

@@ -45,6 +45,9 @@ TEST(LevellingLine, WrongSumsAndFieldsAreRefused) {
   EXPECT_FALSE(parse_report({"L", "2", "17", "340512", "5218", "4973", "10000", "1500", "1500", "3"}));
   EXPECT_FALSE(parse_report({"L", "1", "17"}));
   EXPECT_FALSE(parse_identity({"V", "LEV1"}));
+  EXPECT_TRUE(parse_identity({"V", "LEV1", "ADXL202", "1000000", "10000", "50", "900", "2100", "500"}));
+  EXPECT_FALSE(parse_identity({"V", "LEV1", "ADXL202", "1000000", "10000", "50", "2100", "900", "500"}))
+      << "no pulse lies between these";
 }
 
 TEST(LevellingLine, HalfALineAtTheStartIsPassedOver) {

@@ -16,36 +16,13 @@
 #include "robot/drivers/host_clock.h"
 #include "robot/drivers/mrpt_scanner.h"
 #include "robot/emulators/scip/urg_emulator.h"
+#include "tests/support/machine_witness.h"
 #include "tests/support/robot_turning_scene.h"
 
 namespace rubble::robot {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// By how much the machine itself is late: no stamp can be better than that.
-class StallWatch {
- public:
-  StallWatch()
-      : thread_([this] {
-          while (!ending_) {
-            const Stamp due = host_now() + kStep;
-            sleep_until(due);
-            worst_ = std::max(worst_.load(), host_now() - due);
-          }
-        }) {}
-  ~StallWatch() {
-    ending_ = true;
-    thread_.join();
-  }
-  double worst() const { return worst_; }  ///< [s]
-
- private:
-  static constexpr double kStep = 0.002;  ///< [s]
-  std::atomic<bool> ending_{false};
-  std::atomic<double> worst_{0.0};
-  std::thread thread_;
-};
 
 class MrptWire : public testing::TestWithParam<std::string> {
  protected:
@@ -66,7 +43,7 @@ TEST_P(MrptWire, BearingsAreTheTruthAtBothEndsAndStampsAreNear) {
   MrptScannerConfig config;
   config.port = emulator.port();
   const auto scanner = mrpt_scanner(config);
-  const StallWatch stalls;
+  const Witness machine;  // no stamp can be better than it is late
   std::vector<LaserScan> scans;
   for (const Stamp end = host_now() + 6.0; host_now() < end && scans.size() < 6; sleep_until(host_now() + 0.02))
     for (LaserScan& scan : scanner->take()) scans.push_back(std::move(scan));
@@ -87,7 +64,7 @@ TEST_P(MrptWire, BearingsAreTheTruthAtBothEndsAndStampsAreNear) {
     }
     EXPECT_TRUE(std::isnan(scan.ranges[100]));
     EXPECT_TRUE(std::isnan(scan.ranges[200]));
-    EXPECT_NEAR(scan.stamp - scene.stamp(number), 0.0, 0.05 + stalls.worst()) << number;
+    EXPECT_NEAR(scan.stamp - scene.stamp(number), 0.0, 0.05 + machine.worst()) << number;
   }
   std::cout << GetParam() << ": stamp error " << (scans.back().stamp - scene.stamp(number_of(scans.back()))) * 1e3
             << " ms, delivery after the last beam " << scanner->status().latency * 1e3 << " ms\n";

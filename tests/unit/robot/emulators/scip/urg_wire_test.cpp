@@ -20,6 +20,7 @@
 #include "robot/drivers/scip/scip_text.h"
 #include "robot/emulators/port_server.h"
 #include "robot/emulators/scip/urg_emulator.h"
+#include "tests/support/machine_witness.h"
 #include "tests/support/robot_turning_scene.h"
 
 namespace rubble::robot {
@@ -27,9 +28,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Waits until `done` or the time is over.
+constexpr double kThreads = 4.0;  ///< so many talk in turn, and each may be held up by the machine
+constexpr double kStalled = 0.1;  ///< held up so long a driver may have to begin anew [s]
+
+/// Waits until `done` or the time is over; the machine's own stalls, as a sleeper beside has them, are not counted.
 bool wait_for(const std::function<bool()>& done, double timeout) {
-  for (const Stamp end = host_now() + timeout; host_now() < end; sleep_until(host_now() + 0.005))
+  const Witness machine;
+  for (const Stamp begun = host_now(); host_now() - begun - kThreads * machine.total() < timeout;
+       sleep_until(host_now() + 0.005))
     if (done()) return true;
   return done();
 }
@@ -222,6 +228,7 @@ TEST(UrgOnASlowLine, IsSaidToAnswerTooLateNotToBeBroken) {
       return std::make_unique<SlowLine>(open_port(word), line.delay, line.bundle);
     };
     const Stamp begun = host_now();
+    const Witness machine;
     bench.connect(config);
     ASSERT_TRUE(wait_for([&] { return !bench.scanner->status().error.empty(); }, 20.0));
     const double all = host_now() - begun;
@@ -232,7 +239,9 @@ TEST(UrgOnASlowLine, IsSaidToAnswerTooLateNotToBeBroken) {
     const double told = std::strtod(error.c_str() + at + 10, nullptr);
     EXPECT_GE(told, 0.3) << error;
     EXPECT_GE(told, line.delay - 0.36) << error << "; of a question that was repeated the last one counts";
-    EXPECT_LE(told, all + 0.05) << error;  // a busy machine adds what it likes; it is told to 0.1 s
+    EXPECT_LE(told, all + 0.05) << error;
+    // It is told to 0.1 s, and a busy machine adds what it likes.
+    EXPECT_LE(told, line.delay + line.bundle + 0.1 + 2.0 * machine.worst()) << error;
     EXPECT_EQ(bench.scanner->status().connects, 0u);
   }
 }
@@ -488,13 +497,17 @@ TEST_P(UrgWire, UnpluggedScannerIsNamedAndFoundAgain) {
   Bench bench(GetParam());
   bench.connect();
   ASSERT_TRUE(bench.more(2));
+  const Witness machine;
   bench.emulator->unplug(0.4);
   ASSERT_TRUE(wait_for([&] { return !bench.scanner->status().connected; }, 1.0));
   EXPECT_THAT(bench.scanner->status().error, testing::HasSubstr(bench.emulator->port()));
   bench.scanner->take();
   ASSERT_TRUE(bench.more(4, 2.0)) << bench.scanner->status().error;
   expect_true(bench, bench.scans.back(), 0.002);
-  EXPECT_EQ(bench.scanner->status().connects, 2u);
+  EXPECT_GE(bench.scanner->status().connects, 2u);
+  if (machine.worst() < kStalled) {
+    EXPECT_EQ(bench.scanner->status().connects, 2u);
+  }
 }
 
 TEST_P(UrgWire, RestartedScannerIsSwitchedToTheNewProtocolAgain) {
