@@ -448,7 +448,7 @@ struct RealRobot::Impl {
                     answers.stale().value_or(given.late));
     } else {
       std::snprintf(text, sizeof text,
-                    "answers %.1f s late (at most %.1f s); the line to it or this computer is too slow",
+                    "answers %.1f s late (at most %g s); the line to it or this computer is too slow",
                     answers.stale().value_or(given.late), most);
     }
     return text;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -471,6 +472,8 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     const std::unique_ptr<robot::Scanner> lidar = open_lidar(file, box);
     robot::RealRobotSettings settings = file.robot;
     settings.base.passive = settings.base.listen = options.mode == DriveMode::MapOnly;
+    // A laser that is not levelled does not swing, however late its unit is.
+    if (!file.settings.levelling.on) settings.safety.levelling_answer = std::numeric_limits<double>::infinity();
     robot::RealRobot real(settings, *lidar, &box);
     robot::RecordingRobot recorded(real, folder.file("log.rlog"), resolved_yaml(file.settings));
     Driver driver(file, options, folder, real, core, *lidar);
