@@ -43,6 +43,10 @@ grep -qF "rubble: urg: at its port $base a robot base (ARCOS) answers; are the p
 [[ $? == 4 && $(grep -c "are the ports mixed up?" err.txt) == 3 ]] || fail "ports in a ring: $(cat err.txt)"
 grep -qF "rubble: base: at its port $levelling a levelling unit answers" err.txt || fail "ports in a ring: $(cat err.txt)"
 
+# A heartbeat that never comes is no matter of cables.
+"$rubble" drive "$robot" --urg "$urg" --base "$base" --levelling "$levelling" --heartbeat "$work/hb" --set safety.start_s=4 --out untouched >out.txt 2>err.txt
+[[ $? == 4 ]] && tail -n 1 err.txt | grep -qF "$work/hb must be touched); nobody has touched it" || fail "a heartbeat that never comes: $(tail -3 err.txt)"
+
 # A disk that is full (here: a file that may not grow): the folder is named, and that it is not complete.
 (ulimit -f 300 && exec "$rubble" drive "$robot" --urg "$urg" --base "$base" --levelling "$levelling" --time-limit 60 --out full) >out.txt 2>err.txt
 [[ $? == 4 ]] || fail "a drive on a full disk ends otherwise: $(tail -3 err.txt)"
@@ -52,6 +56,59 @@ grep -q '^folder  *full (not complete)$' out.txt || fail "the folder that a full
 # The scanner that the file says: not a word of it.
 "$rubble" drive "$robot" --map-only --urg "$urg" --base "$base" --levelling "$levelling" --time-limit 2 --out right >out.txt 2>err.txt || fail "map-only: $(tail -3 err.txt)"
 ! grep -q "the robot file is of a" err.txt || fail "the right scanner is said to be another: $(cat err.txt)"
+
+# This computer stands still (suspended, swapping; here the program is): it is said, and what queued up meanwhile drives nothing for
+# another second. Put to sleep, its clock stands still, too: told by another one.
+for how in stopped asleep; do
+  slept=
+  if [[ $how == asleep ]]; then
+    cat >sleeper.c <<'C'
+#include <stdio.h>
+#include <sys/syscall.h>
+#include <time.h>
+#include <unistd.h>
+int clock_gettime(clockid_t clock, struct timespec* now) {
+  const long result = syscall(SYS_clock_gettime, clock, now);
+  if (clock == CLOCK_BOOTTIME && access("asleep_now", F_OK) == 0) now->tv_sec += 5;
+  return (int)result;
+}
+C
+    cc -shared -fPIC -o sleeper.so sleeper.c || break
+    slept=$work/sleeper.so
+  fi
+  LD_PRELOAD=$slept "$rubble" drive "$robot" --urg "$urg" --base "$base" --levelling "$levelling" --time-limit 60 --out "$how" >out.txt 2>err.txt &
+  drive=$!
+  for _ in $(seq 300); do
+    grep -Eq 'driving .* motors on' err.txt && break
+    sleep 0.1
+  done
+  sleep 1
+  if [[ $how == stopped ]]; then
+    kill -STOP $drive
+    sleep 5
+    kill -CONT $drive
+  else
+    touch asleep_now
+  fi
+  woken=$(date +%s.%N)
+  sleep 8
+  kill -INT $drive
+  wait $drive
+  [[ $? == 130 ]] || fail "a drive that was $how ends otherwise: $(tail -3 err.txt)"
+  grep -Eq '^rubble: this computer: stood still for [56]\.[0-9] s' err.txt || fail "nothing says that this computer was $how: $(cat err.txt)"
+  grep -q '^rubble: this computer: is in time again' err.txt || fail "the drive does not go on when this computer was $how: $(cat err.txt)"
+  PYTHONPATH=$source/tests python3 - "$how/devices.bytes" "$woken" <<'PY' || fail "what queued up while this computer was $how drives the robot"
+import sys
+import black_box
+woken = float(sys.argv[2])
+orders = [(t - woken, number, value) for t, number, value in black_box.orders(sys.argv[1])]
+moving = [t for t, number, value in orders if number in (black_box.VEL, black_box.RVEL) and value]
+early = [t for t in moving if 0.1 < t < 0.9]  # by a tenth of a second the clocks of shell and drive may differ
+late = [t for t in moving if t >= 0.9]
+print("orders to move after it woke:", ["%.2f" % t for t in moving if t > 0][:3])
+sys.exit(0 if not early and late and any(t < 0 for t in moving) else 1)
+PY
+done
 stop_emulator
 
 # Another scanner: one line, with what to do; done so, none.
