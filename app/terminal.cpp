@@ -25,8 +25,8 @@ void on_stop(int /*signal*/) {
   signalled = signalled + 1;
 }
 
-/// One that may come again by itself, from a timer or a limit, or twice from a terminal that is closed (by its shell and
-/// by the system): however often, nobody is in a hurry.
+/// One that may come again by itself, from a timer or a limit, or twice from a terminal that is closed (by its shell
+/// and by the system): however often, nobody is in a hurry.
 void on_end(int /*signal*/) {
   if (signalled == 0) signalled = 1;
 }

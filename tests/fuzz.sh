@@ -24,7 +24,8 @@ findings=0
 fuzz() {
   local target=$1 left=$2
   shift 2
-  "$build/fuzz/fuzz_$target" -max_total_time="$left" -timeout=1 -rss_limit_mb=512 -max_len=65536 -print_final_stats=1 \
+  # Its own alarm may strike within malloc and then waits for itself for ever.
+  timeout -k 5 $((left + 60)) "$build/fuzz/fuzz_$target" -max_total_time="$left" -timeout=1 -rss_limit_mb=512 -max_len=65536 -print_final_stats=1 \
     -artifact_prefix="$found/$target/" "$@" >"$build/$target.log" 2>&1
 }
 
