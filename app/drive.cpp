@@ -1,6 +1,7 @@
 #include "scenarios/hardware/drive.h"
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -27,8 +28,18 @@ struct DriveArguments {
 constexpr double kTeleopSpeed = 0.3;  ///< [m/s]
 constexpr double kTeleopTurn = 0.6;   ///< [rad/s]
 
+/// Whoever touches it may make it later, but not its folder.
+void require_place_for_heartbeat(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code error;
+  if (path.empty() || folder.empty() || std::filesystem::is_directory(folder, error)) return;
+  throw InputError("--heartbeat " + path + ": there is no folder " + folder.string() +
+                   " in which it could be touched; give a file or pipe in one that exists");
+}
+
 /// The robot file with what the command line says instead.
 scenarios::RobotFile robot_file(const DriveArguments& arguments) {
+  require_place_for_heartbeat(arguments.heartbeat);
   auto overrides = arguments.robot.with_ports(arguments.folder.overrides());
   if (arguments.time_limit) overrides.emplace_back("time_limit_s", std::to_string(*arguments.time_limit));
   scenarios::RobotFile file = scenarios::load_robot_file(find_robot(arguments.robot.robot), overrides);

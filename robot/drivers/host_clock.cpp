@@ -28,6 +28,8 @@ Stamp host_now() {
   return {since_1970 + read_clock(CLOCK_MONOTONIC)};
 }
 
+double time_asleep() { return 1e-9 * static_cast<double>(read_clock(CLOCK_BOOTTIME) - read_clock(CLOCK_MONOTONIC)); }
+
 void sleep_until(Stamp when) {
   const std::int64_t target = when.ns - offset();
   const timespec until{target / kSecond, target % kSecond};

@@ -8,6 +8,9 @@ namespace rubble::robot {
 /// setting the computer's clock during a drive moves no stamp. Only drivers and emulators may ask it.
 Stamp host_now();
 
+/// How long this computer was suspended, since it was switched on; host_now() stands still meanwhile [s].
+double time_asleep();
+
 /// Sleeps until host_now() has reached `when`, to the precision of the system's timer.
 void sleep_until(Stamp when);
 

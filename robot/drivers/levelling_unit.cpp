@@ -34,6 +34,7 @@ void LevellingUnit::opened(Stamp now, LineKind line) {
   identified_ = false;
   last_report_ = Stamp::never();
   answer_timer_.reset();
+  unanswered_ = Stamp::never();
   sequence_ = -1;
   output_ = levelling_line("V");
   asked_ = now;
@@ -44,6 +45,8 @@ void LevellingUnit::advance(Stamp now) {
   if (identified_ && last_report_ != Stamp::never() && now - last_report_ > settings_.silence) {
     identified_ = false;
     last_report_ = Stamp::never();
+    answer_timer_.reset();
+    unanswered_ = Stamp::never();
   }
   if (!ready() && now - asked_ >= kAskAgain) {
     asked_ = now;
@@ -70,12 +73,15 @@ void LevellingUnit::digest(const std::vector<std::string>& fields, Stamp now) {
     output_ += levelling_line("R," + std::to_string(settings_.rate));
     output_ += levelling_line("W," + std::to_string(settings_.watchdog_ms));
     output_ += levelling_line("E,1");
-    answer_timer_.reset();
+    // It may identify itself several times over a slow line: all of these questions will be answered.
+    if (unanswered_ == Stamp::never()) unanswered_ = now;
     answer_timer_.asked(now);
     return;
   }
-  if (fields == std::vector<std::string>{"E", "OK"})
+  if (fields == std::vector<std::string>{"E", "OK"}) {
+    unanswered_ = Stamp::never();
     answer_timer_.answered(now, time_on_line(line_, kQuestionBytes + kAnswerBytes, baud()));
+  }
   if (const auto report = parse_report(fields); report && identified_) follow(*report, now);
 }
 
@@ -139,6 +145,13 @@ std::string LevellingUnit::take_output(Stamp now) {
     answer_timer_.asked(now);
   }
   return out;
+}
+
+Answers LevellingUnit::answers(Stamp now) const {
+  // A unit that has not answered yet does not know the question, or is as late as that.
+  const double waited = unanswered_ == Stamp::never() ? 0.0 : now - unanswered_;
+  if (waited <= AnswerTimer::kUnable && waited > answer_timer_.late(now)) return {waited, true};
+  return {answer_timer_.late(now), answer_timer_.missing(now)};
 }
 
 Stamp LevellingUnit::deadline() const {

@@ -64,7 +64,8 @@ class LevellingUnit : public Device {
 
   const LevellingIdentity& identity() const { return identity_; }
   /// To `E,1`, which changes nothing: reports come unasked, and what they and the servos are late by shows in answers.
-  Answers answers(Stamp now) const { return {answer_timer_.late(now), answer_timer_.missing(now)}; }
+  /// Until the first answer of a connection they are missing.
+  Answers answers(Stamp now) const;
   bool sensor_fault() const { return (flags_ & LevellingReport::kSensorFault) != 0; }
   std::size_t bad_lines() const { return lines_.bad_lines(); }
   /// Reports that never arrived, by their numbers.
@@ -91,6 +92,7 @@ class LevellingUnit : public Device {
   WrappingClock counter_{1u << 31, 2e-6};  ///< every second microsecond of 2^32
   ClockMap clock_{ClockMapConfig{}};
   AnswerTimer answer_timer_;
+  Stamp unanswered_ = Stamp::never();  ///< asked first then in this connection, and no answer yet
   Stamp last_stamp_ = Stamp::never();
   Stamp last_report_ = Stamp::never();
   int sequence_ = -1;

@@ -53,6 +53,8 @@ Hindrance silent_for(const std::string& name, bool underway, Stamp last, Stamp n
 std::string remedy(const std::vector<Hindrance>& all, bool starting) {
   const auto is_late = [](const Hindrance& one) { return one.cause == Cause::Late; };
   if (std::all_of(all.begin(), all.end(), is_late)) return "; use a faster one";
+  const auto is_operator = [](const Hindrance& one) { return one.name == "heartbeat"; };
+  if (std::all_of(all.begin(), all.end(), is_operator)) return "; nobody has touched it";
   return starting ? "; check cables, power and ports" : "; it did not come back; plug it in and run again";
 }
 
@@ -134,6 +136,7 @@ struct RealRobot::Impl {
   std::atomic<bool> ending{false};
   std::atomic<std::int64_t> operator_ns{Stamp::never().ns};
   std::atomic<std::int64_t> looked_ns{host_now().ns};           ///< by the operator's thread
+  std::atomic<double> asleep{time_asleep()};                    ///< when it looked [s]
   std::atomic<std::int64_t> still_until_ns{Stamp::never().ns};  ///< nothing is driven up to here
   std::atomic<double> stood_still{0.0};                         ///< so long before that [s]
   std::atomic<std::uint64_t> scans{0}, odometry{0}, accelerations{0};
@@ -218,16 +221,18 @@ struct RealRobot::Impl {
   /// This computer slept or was busy with something else: what waited meanwhile tells of a world that is past.
   void mind_standstill(Stamp now) {
     const Stamp before{looked_ns.load()};
-    if (before != Stamp::never() && now - before > kStoodStill) {
-      stood_still = now - before;
+    const double slept = time_asleep(), gone = now - before + slept - asleep;
+    if (before != Stamp::never() && gone > kStoodStill) {
+      stood_still = gone;
       still_until_ns = (now + kKeepsUp).ns;
       forget_drive();
     }
+    asleep = slept;
     looked_ns = now.ns;
   }
   /// Whoever wakes first sees it.
   bool is_awake(Stamp now) const {
-    return now - Stamp{looked_ns.load()} <= kStoodStill && now >= Stamp{still_until_ns.load()};
+    return now - Stamp{looked_ns.load()} + time_asleep() - asleep <= kStoodStill && now >= Stamp{still_until_ns.load()};
   }
 
   /// In the operator's thread: it waits neither for the core nor for a device.
@@ -443,7 +448,7 @@ struct RealRobot::Impl {
                     answers.stale().value_or(given.late));
     } else {
       std::snprintf(text, sizeof text,
-                    "answers %.1f s late (at most %.1f s); the line to it or this computer is too slow",
+                    "answers %.1f s late (at most %g s); the line to it or this computer is too slow",
                     answers.stale().value_or(given.late), most);
     }
     return text;

@@ -21,7 +21,7 @@ struct SafetySettings {
   double base_silence = 1.0;       ///< no report of the base [s]
   double base_answer = 0.3;        ///< the base answers later than this: an order to stop would be as late [s]
   double levelling_silence = 0.5;  ///< no report of the levelling unit [s]
-  double levelling_answer = 0.3;   ///< the unit answers later than this: the platform swings instead of levelling [s]
+  double levelling_answer = 0.25;  ///< the unit answers later than this: the platform swings instead of levelling [s]
   double core_silence = 1.0;       ///< no command of the core [s]
   double operator_silence = 1.0;   ///< no heartbeat, if one is asked for [s]
   double start = 30.0;             ///< all devices must report within [s]

@@ -81,6 +81,7 @@ RunReport calibration_drive(const RobotFile& file, const CalibrationDriveConfig&
   piloted.pilot = [&pilot](const robot::Inputs& inputs, const mrpt::math::TPose2D& T_map_base) {
     return pilot.next(inputs, T_map_base.phi);
   };
+  piloted.pilot_trouble = [&pilot] { return pilot.trouble(); };
   RunReport report = drive(file, piloted);
   if (report.failure.empty()) report.failure = pilot.trouble();
   return report;

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <exception>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -21,6 +23,8 @@
 #include "robot/drivers/mrpt_scanner.h"
 #include "robot/drivers/scip/scip_scanner.h"
 #include "robot/logs/log.h"
+#include "scenarios/hardware/port_mix_up.h"
+#include "scenarios/hardware/scanner_check.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/loop.h"
 #include "scenarios/run/map_files.h"
@@ -109,10 +113,13 @@ const char* name_of(explore::ExplorerState state) {
 /// What a real robot and whoever stands beside it add to the loop.
 class Driver {
  public:
-  Driver(const RobotFile& file, const DriveOptions& options, RunFolder& folder, robot::RealRobot& real, Core& core)
+  Driver(const RobotFile& file, const DriveOptions& options, RunFolder& folder, robot::RealRobot& real, Core& core,
+         const robot::Scanner& lidar)
       : options_(options),
         real_(real),
         core_(core),
+        lidar_(lidar),
+        laser_(file.settings.robot.laser),
         has_base_(!file.robot.base_port.empty()),
         loop_(file.settings, folder, core, hooks()) {
     real_.while_waiting([this](const robot::RobotStatus& status) { return wait(status); });
@@ -133,6 +140,8 @@ class Driver {
     end.interrupted = interrupted_;
     return end;
   }
+
+  std::vector<std::string> silent_devices() const { return names(real_.status().silent); }
 
  private:
   /// A robot that stood held or silent to the end has not done what it was sent for.
@@ -172,14 +181,28 @@ class Driver {
   LoopHooks hooks() {
     LoopHooks hooks;
     hooks.interrupted = [this] { return interrupted_.load(); };
-    hooks.over = [this] { return std::string(piloted_out_ ? "the drive is complete" : ""); };
+    hooks.over = [this] { return piloted_out_ ? why_piloted_out() : std::string(); };
     hooks.steer = [this](const robot::Inputs& inputs, const robot::Commands& wanted) { return steer(inputs, wanted); };
     hooks.each_second = [this](double seconds) { each_second(seconds); };
     hooks.stop = [this] { real_.stop(); };
     return hooks;
   }
 
+  std::string why_piloted_out() const {
+    const std::string trouble = options_.pilot_trouble ? options_.pilot_trouble() : "";
+    return trouble.empty() ? "the drive is complete" : trouble;
+  }
+
+  /// Once, when the scanner has said what it is.
+  void tell_of_scanner() {
+    if (scanner_told_ || lidar_.info().model.empty()) return;
+    scanner_told_ = true;
+    const std::string line = scanner_mismatch(lidar_.info(), laser_);
+    if (options_.tell && !line.empty()) options_.tell("urg: " + line);
+  }
+
   robot::Commands steer(const robot::Inputs& inputs, robot::Commands commands) {
+    tell_of_scanner();
     tell_back({});
     held_ = false;
     begun_ = true;
@@ -197,6 +220,7 @@ class Driver {
 
   /// While devices are silent: tells which, and saves the map at once. False ends the run.
   bool wait(const robot::RobotStatus& status) {
+    tell_of_scanner();
     if ((status.held || begun_) && seconds_since(shown_at_) >= 1.0) show(status, status.held ? "held" : "waiting");
     const std::vector<std::string> lines = lines_of(status.silent);
     const bool others = names(status.silent) != names(told_) || status.held != held_;
@@ -309,6 +333,9 @@ class Driver {
   const DriveOptions& options_;
   robot::RealRobot& real_;
   Core& core_;
+  const robot::Scanner& lidar_;
+  const robot::LaserModel laser_;  ///< of the robot file
+  bool scanner_told_ = false;
   const bool has_base_;
   Loop loop_;
   bool begun_ = false;  ///< something has come in
@@ -356,6 +383,32 @@ scoring::Evidence evidence_of(const Core& core, const robot::RealRobot& robot, c
   devices.cpu_share = (time(usage.ru_utime) + time(usage.ru_stime)) / std::max(1e-3, wall);
   return evidence;
 }
+
+/// Devices that do not report may be plugged in where others are looked for: asks at their ports who is there.
+void tell_who_answers(const RobotFile& file, const std::vector<std::string>& silent, const DriveOptions& options) {
+  if (!options.tell) return;
+  std::vector<DevicePort> asked;
+  for (const DevicePort& device : {DevicePort{"urg", file.lidar.port}, DevicePort{"base", file.robot.base_port},
+                                   DevicePort{"levelling", file.robot.levelling_port}})
+    if (std::find(silent.begin(), silent.end(), device.name) != silent.end()) asked.push_back(device);
+  for (const std::string& line : port_mix_up(asked, options.interrupted)) options.tell(line);
+}
+
+/// Says which folder is not complete when an error leaves the drive.
+class Completeness {
+ public:
+  Completeness(const DriveOptions& options, const RunFolder& folder) : options_(options), folder_(folder) {}
+  ~Completeness() {
+    if (std::uncaught_exceptions() > before_ && options_.incomplete) options_.incomplete(folder_.path());
+  }
+  Completeness(const Completeness&) = delete;
+  Completeness& operator=(const Completeness&) = delete;
+
+ private:
+  const DriveOptions& options_;
+  const RunFolder& folder_;
+  const int before_ = std::uncaught_exceptions();
+};
 
 /// A base that is stopped for good and does not obey: whoever stands beside it must know before the program ends.
 void tell_what_goes_on(const robot::RealRobot& robot, const DriveOptions& options) {
@@ -405,6 +458,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     if (!port.empty()) claims.emplace_back(port);
   RunFolder folder(options.out.empty() ? next_run_folder("runs", file.settings.name, file.settings.seed) : options.out,
                    options.replace);
+  const Completeness completeness(options, folder);
   folder.write("scenario.yaml", resolved_yaml(file.settings));
   folder.write("robot.yaml", robot_file_yaml(file));
   auto written_by = nlohmann::ordered_json::parse(versions().json(-1));
@@ -413,17 +467,21 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
   robot::BlackBox box(folder.file("devices.bytes"));
   Core core(file.settings, file.robot.model, options.mode == DriveMode::Explore, folder.path());
   RunReport report;
+  std::vector<std::string> silent;  ///< in a drive that never began
   {
     const std::unique_ptr<robot::Scanner> lidar = open_lidar(file, box);
     robot::RealRobotSettings settings = file.robot;
     settings.base.passive = settings.base.listen = options.mode == DriveMode::MapOnly;
+    // A laser that is not levelled does not swing, however late its unit is.
+    if (!file.settings.levelling.on) settings.safety.levelling_answer = std::numeric_limits<double>::infinity();
     robot::RealRobot real(settings, *lidar, &box);
     robot::RecordingRobot recorded(real, folder.file("log.rlog"), resolved_yaml(file.settings));
-    Driver driver(file, options, folder, real, core);
+    Driver driver(file, options, folder, real, core, *lidar);
     const LoopEnd end = driver.run(recorded);
     report.end = end.reason;
     report.failure = end.failure;
     report.interrupted = end.interrupted;
+    if (!end.failure.empty() && end.sim_s == 0.0) silent = driver.silent_devices();
     recorded.flush();
     save_map_files(folder, core.mapper());
     *report.score = score_json(evidence_of(core, real, end, start));
@@ -434,6 +492,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
   folder.close();
   if (options.out.empty()) folder.link_latest();
   report.folder = folder.path();
+  tell_who_answers(file, silent, options);
   for (const std::string& device : box.cut_short())
     if (options.tell)
       options.tell("devices.bytes: not all that '" + device + "' sent is in it: it was more than 1 MB/s");

@@ -42,8 +42,10 @@ struct DriveOptions {
   std::function<robot::Drive()> keys;  ///< what the operator wants (Teleoperate)
   /// What comes next (Calibrate), told where the mapper takes the robot to be; nothing ends the drive.
   std::function<std::optional<robot::Drive>(const robot::Inputs&, const mrpt::math::TPose2D& T_map_base)> pilot;
+  std::function<std::string()> pilot_trouble;  ///< why the pilot ended the drive early; empty: it did not
   std::function<void(const DriveStatus&)> each_second;
-  std::function<void(const std::string&)> tell;  ///< a device was lost or came back: one line
+  std::function<void(const std::string&)> tell;               ///< a device was lost or came back: one line
+  std::function<void(const std::string& folder)> incomplete;  ///< before an exception that leaves the folder so
 };
 
 /// Drives a real robot: explores (or lets somebody drive) and maps. The run folder is that of run_scenario(), with all

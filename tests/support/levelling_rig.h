@@ -44,11 +44,11 @@ class Servo {
 };
 
 /// The whole loop in steps of a millisecond: body, servo, accelerometer that averages 20 ms and arrives 7 ms later,
-/// odometry every 100 ms, controller every 20 ms, command 5 ms on its way.
+/// odometry every 100 ms, controller every 20 ms, command 5 ms on its way, `late_ms` longer over a slow line.
 inline std::vector<Sample> run(const robot::LevellingConfig& config, double seconds,
                                const std::function<Body(double)>& body_at,
                                robot::AccelerometerMount mount = robot::AccelerometerMount::Platform,
-                               double noise_deg = 0.1) {
+                               double noise_deg = 0.1, int late_ms = 0) {
   robot::Levelling levelling(config, mount);
   Servo servo;
   Rng noise(1, "accelerometer");
@@ -84,7 +84,7 @@ inline std::vector<Sample> run(const robot::LevellingConfig& config, double seco
     if (ms % 20 == 0) {
       inputs.now = stamp;
       aim = levelling.update(inputs).pitch;
-      commands.push_back({ms + 5, aim});
+      commands.push_back({ms + 5 + late_ms, aim});
       inputs = {};
     }
     samples.push_back({t, plane, aim});

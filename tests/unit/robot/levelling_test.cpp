@@ -126,6 +126,17 @@ TEST(Levelling, FiguresOfTheGains) {
   }
 }
 
+/// Why a unit that answers late holds the robot (SafetySettings::levelling_answer): as late as is permitted the plane
+/// still comes to rest; some more, and it swings without end.
+TEST(Levelling, ALateLineSwingsTheLaser) {
+  const auto late_by = [](int ms) {
+    return levelling_test::run({}, 12.0, step_of_ten_degrees, AccelerometerMount::Platform, 0.1, ms);
+  };
+  const auto permitted = late_by(250);
+  EXPECT_LT(levelling_test::settled_after(permitted, deg_to_rad(1.0)) - kStart, 4.0);
+  EXPECT_GT(rad_to_deg(levelling_test::largest(late_by(400), 8.0, 12.0)), 5.0);
+}
+
 TEST(Levelling, RampIsFollowedWithinAFewDegrees) {
   const auto samples = levelling_test::run({}, 4.0, onto_a_ramp);
   EXPECT_NEAR(rad_to_deg(levelling_test::largest(samples, kStart, 4.0)), 3.5, 1.05);

@@ -32,7 +32,7 @@ class UnitWire {
     now = now + kUnitStep;
     driver.advance(now);
     const std::string to_unit = driver.take_output(now);
-    if (!cut) unit.receive(to_unit, now);
+    if (!cut && !deaf) unit.receive(to_unit, now);
     unit.advance(now);
     if (++steps % 20 == 0) unit.measure(felt, {now, unit.aim().pitch, unit.aim().roll}, now);
     for (const std::string& piece : faults.pass(unit.take_output(), now))
@@ -51,6 +51,7 @@ class UnitWire {
   std::vector<Acceleration> accelerations;
   std::vector<AimState> aims;
   bool cut = false;
+  bool deaf = false;  ///< the unit, to the driver
   double slow = 0.0;  ///< the unit's bytes take so long [s]
   std::deque<std::pair<Stamp, std::string>> on_its_way;
   int steps = 0;
@@ -60,7 +61,7 @@ class UnitWire {
 TEST(LevellingWire, HowLateTheUnitAnswersIsMeasured) {
   for (const double slow : {0.0, 0.2, 0.4, 1.0}) {
     for (const bool from_the_start : {true, false}) {
-      Wire wire;
+      UnitWire wire;
       if (from_the_start) wire.slow = slow;
       wire.run(2.0 + 3.0 * slow);
       wire.slow = slow;
@@ -75,7 +76,7 @@ TEST(LevellingWire, HowLateTheUnitAnswersIsMeasured) {
   for (const ByteFault fault :
        {ByteFault::Lost, ByteFault::Split, ByteFault::Doubled, ByteFault::Junk, ByteFault::WrongSum}) {
     SCOPED_TRACE(static_cast<int>(fault));
-    Wire wire;
+    UnitWire wire;
     wire.run(2.0);
     wire.faults.spoil(fault, wire.now + 1.0);
     for (int i = 0; i < 40; ++i) {
@@ -83,6 +84,52 @@ TEST(LevellingWire, HowLateTheUnitAnswersIsMeasured) {
       ASSERT_LT(wire.driver.answers(wire.now).late, 0.3) << "a spoilt second is no slow line";
     }
   }
+}
+
+/// Nobody drives off before it is known how slow the line is.
+TEST(LevellingWire, AUnitThatIsLateFromTheStartIsNeverTakenForQuick) {
+  const double permitted = 0.25;
+  for (const double slow : {0.3, 0.4, 0.6, 0.9, 1.3, 2.0}) {
+    SCOPED_TRACE(slow);
+    UnitWire wire;
+    wire.slow = slow;
+    Stamp could_drive = Stamp::never();  // since then it reports and nothing is said of it
+    for (int i = 0; i < 9000; ++i) {
+      wire.step();
+      const bool well = wire.driver.ready() && wire.driver.answers(wire.now).late <= permitted;
+      if (!well) could_drive = Stamp::never();
+      if (well && could_drive == Stamp::never()) could_drive = wire.now;
+      if (well) {
+        // Each question is asked anew when the unit is ready, and is late when it has waited for so long.
+        ASSERT_LT(wire.now - could_drive, permitted + 0.01) << "after " << 1e-3 * i << " s";
+        ASSERT_LT(i, 5000);
+      }
+    }
+    EXPECT_NEAR(wire.driver.answers(wire.now).late, slow, 0.02);
+  }
+}
+
+TEST(LevellingWire, AUnitThatReportsButDoesNotHearIsToldFromOneThatDoes) {
+  UnitWire wire;
+  wire.run(1.0);
+  wire.deaf = true;
+  wire.run(2.0);
+  EXPECT_TRUE(wire.driver.ready());
+  EXPECT_TRUE(wire.driver.answers(wire.now).missing);
+  wire.deaf = false;
+  wire.run(2.0);
+  EXPECT_FALSE(wire.driver.answers(wire.now).missing);
+  EXPECT_LT(wire.driver.answers(wire.now).late, 0.02);
+}
+
+TEST(LevellingWire, WhoOnlyListensToAUnitTellsItNothing) {
+  LevellingUnitSettings passive;
+  passive.passive = true;
+  Wire wire({}, passive);
+  wire.run(3.0);
+  EXPECT_TRUE(wire.driver.ready());
+  EXPECT_FALSE(wire.unit.servos_on());
+  EXPECT_EQ(wire.driver.answers(wire.now).late, 0.0);
 }
 
 TEST(LevellingWire, TiltsArriveWithinATick) {

@@ -638,6 +638,20 @@ TEST(RealRobot, ASlowLineToTheBaseIsNamedAndNotDrivenOn) {
   EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0; })) << "it goes on when the line is quick again";
 }
 
+/// Its reports come as ever, only late: the laser would swing.
+TEST(RealRobot, ASlowLineToTheLevellingUnitIsNamedAndNotDrivenOn) {
+  Bench bench;
+  bench.drive(0.3, 3.0);
+  ASSERT_TRUE(Bench::soon([&] { return bench.speed > 0.0; }));
+  bench.unit_server.slow_down(6.0);
+  EXPECT_THAT(named_while_driving(bench, 0.3, 5.0),
+              testing::Contains(
+                  testing::AllOf(testing::StartsWith("levelling: "), testing::HasSubstr("late (at most 0.25 s)"))));
+  EXPECT_EQ(bench.speed, 0.0) << "it drives on";
+  bench.drive(0.3, 5.0);
+  EXPECT_TRUE(Bench::soon([&] { return bench.speed > 0.0; })) << "it goes on when the line is quick again";
+}
+
 TEST(RealRobot, ABaseThatDoesNotHearIsNamed) {
   Bench bench;
   bench.drive(0.3, 3.0);
