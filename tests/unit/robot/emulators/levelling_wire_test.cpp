@@ -125,7 +125,7 @@ TEST(LevellingWire, AUnitThatReportsButDoesNotHearIsToldFromOneThatDoes) {
 TEST(LevellingWire, WhoOnlyListensToAUnitTellsItNothing) {
   LevellingUnitSettings passive;
   passive.passive = true;
-  Wire wire({}, passive);
+  UnitWire wire({}, passive);
   wire.run(3.0);
   EXPECT_TRUE(wire.driver.ready());
   EXPECT_FALSE(wire.unit.servos_on());
