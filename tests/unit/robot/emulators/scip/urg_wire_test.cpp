@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <vector>
 
 #include "base/error.h"
@@ -301,14 +302,18 @@ TEST_P(UrgWire, OldProtocolHandsATurnOverAtOnce) {
   ScipScannerConfig config;
   config.only_scip1 = true;
   bench.connect(config);
-  std::vector<double> delays;
-  for (int i = 0; i < 15; ++i) {
-    ASSERT_TRUE(bench.more(1)) << bench.scanner->status().error;
-    delays.push_back(bench.scanner->status().last_scan - Stamp{sent});
+  // The machine's own delays are in it, so it is measured again: the wait that must not be there is 85 ms in each turn.
+  double median = std::numeric_limits<double>::infinity();
+  for (int tries = 0; tries < 4 && !(median < 0.03); ++tries) {
+    std::vector<double> delays;
+    for (int i = 0; i < 15; ++i) {
+      ASSERT_TRUE(bench.more(1)) << bench.scanner->status().error;
+      delays.push_back(bench.scanner->status().last_scan - Stamp{sent});
+    }
+    std::sort(delays.begin(), delays.end());
+    median = delays[delays.size() / 2];
   }
-  std::sort(delays.begin(), delays.end());
-  // The machine's own delays are in it; the wait that must not be there is 85 ms.
-  EXPECT_LT(delays[delays.size() / 2], 0.03);
+  EXPECT_LT(median, 0.03);
 }
 
 /// Swallows whole replies, as many as it is told to.
