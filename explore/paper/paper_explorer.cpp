@@ -272,8 +272,8 @@ Plan PaperExplorer::plan_on(const Traversable& floor) {
   Plan frontier = to_frontier(driving ? target_ : std::nullopt);
   Plan search = plan_search(floor, Subjects::Niches);
   if (frontiers_done_ && !search.found) {
-    // New ground is worth more than the rest of the walls, in whose open no box stands.
-    if (frontier.frontier_left > 0 && !tried_before_search_ && try_again()) {
+    // New ground is worth more than the faces that are left, none of which is the back of a niche.
+    if (frontier.frontier_left > 0 && !tried_before_search_ && pardon()) {
       tried_before_search_ = true;
       explore_again();
       note("no niche is left: what could not be reached is tried again before the rest is searched");
@@ -452,7 +452,7 @@ bool PaperExplorer::another_round() {
   victims_then_ = search_.reports().size();
   if (barren_rounds_ >= kBarrenRounds) return false;
   const bool given_up = floor_search_.reconsider(last_floor_);
-  if (!try_again() && !given_up) return false;
+  if (!pardon() && !given_up) return false;
   note("round " + std::to_string(++rounds_) + ": what could not be reached or seen is tried again");
   tried_before_search_ = false;
   explore_again();
@@ -460,7 +460,7 @@ bool PaperExplorer::another_round() {
 }
 
 /// Forgives what was barred or felt; says whether there was any.
-bool PaperExplorer::try_again() {
+bool PaperExplorer::pardon() {
   const bool barred = blacklist_.pardon_all(now_);
   const bool felt = felt_.pardon(now_);
   return barred || felt;

@@ -76,7 +76,7 @@ class PaperExplorer : public Explorer {
   void start_pushing();
   double ground_gained_since(std::size_t known_then) const;
   bool another_round();
-  bool try_again();
+  bool pardon();
   void explore_again();
   void finish(MissionEnd end, const std::string& why);
   void go_home(const std::string& why);

@@ -27,12 +27,6 @@ start_emulator() {
   done <emulator.txt
 }
 
-stop_emulator() {
-  kill -INT $emulator
-  wait $emulator
-  emulator=
-}
-
 small_scenario small.yaml
 robot=$source/robots/pioneer_urg.yaml
 

@@ -19,12 +19,6 @@ start_emulator() {
   for device in urg base levelling; do declare -g $device="$(sed -n "s/^$device //p" emulator.txt)"; done
 }
 
-stop_emulator() {
-  kill -INT $emulator
-  wait $emulator
-  emulator=
-}
-
 small_scenario small.yaml
 robot=$source/robots/pioneer_urg.yaml
 

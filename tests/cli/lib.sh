@@ -42,6 +42,13 @@ json_holds() {
   python3 -c "import json,sys; j=json.load(open('$1')); sys.exit(0 if ($2) else 1)" || fail "$1: not true: $2"
 }
 
+# Ends the emulator that a test runs in the background as $emulator.
+stop_emulator() {
+  kill -INT $emulator
+  wait $emulator
+  emulator=
+}
+
 finish() {
   ((failures == 0)) && echo "all checks passed"
   exit $((failures > 0))
