@@ -11,7 +11,7 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
 constexpr double kLookPeriod = 0.35;            ///< [s]
-constexpr double kTurnRate = deg_to_rad(40.0);  ///< turning faster the sensors see too little [rad/s]
+constexpr double kTurnRate = deg_to_rad(65.0);  ///< turning faster the sensors see too little [rad/s]
 constexpr double kFacing = deg_to_rad(8.0);     ///< [rad]
 constexpr double kMoved = 0.05;                 ///< a look that moved less shows the same, to a cell [m]
 constexpr double kMovedTurn = deg_to_rad(2.0);  ///< likewise

@@ -51,7 +51,8 @@ std::size_t VictimSearch::cluster_near(const Sighting& sighting, const SightFn& 
   double best_distance = config_.merge_distance;
   for (std::size_t i = 0; i < clusters_.size(); ++i) {
     const double d = distance(clusters_[i].p_map, sighting.p_map);
-    if (d >= best_distance || apart(clusters_[i].sightings.front(), sighting, in_sight)) continue;
+    if (d >= best_distance) continue;
+    if (d >= config_.back_to_back && apart(clusters_[i].sightings.front(), sighting, in_sight)) continue;
     best = i;
     best_distance = d;
   }
@@ -85,8 +86,11 @@ void VictimSearch::confirm(Cluster& cluster, Stamp stamp) {
 /// Joins the cluster with another one that its position has come too close to; returns where it is then.
 std::size_t VictimSearch::merge_into_neighbour(std::size_t index, const SightFn& in_sight) {
   for (std::size_t i = 0; i < clusters_.size(); ++i) {
-    if (i == index || distance(clusters_[i].p_map, clusters_[index].p_map) >= config_.merge_distance) continue;
-    if (apart(clusters_[i].sightings.front(), clusters_[index].sightings.front(), in_sight)) continue;
+    const double d = distance(clusters_[i].p_map, clusters_[index].p_map);
+    if (i == index || d >= config_.merge_distance) continue;
+    if (d >= config_.back_to_back &&
+        apart(clusters_[i].sightings.front(), clusters_[index].sightings.front(), in_sight))
+      continue;
     const std::size_t keep = std::min(i, index);
     const std::size_t drop = std::max(i, index);
     Cluster& kept = clusters_[keep];

@@ -22,6 +22,7 @@ struct VictimSearchConfig {
   int max_cues = 200;                    ///< per cluster; older ones are forgotten
   double memory = 40.0;                  ///< only cues younger than this confirm a victim together [s]
   double other_side = deg_to_rad(90.0);  ///< looked at from so different bearings, it may be another victim [rad]
+  double back_to_back = 0.25;            ///< which lies at least so far from the first: box, wall, box [m]
 };
 
 /// Whether nothing stands between two places of the map.

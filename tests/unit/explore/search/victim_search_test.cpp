@@ -91,6 +91,25 @@ TEST(VictimSearch, ClustersThatGrowTogetherAreOneVictim) {
   EXPECT_EQ(search.reports()[0].id, 1) << "the older report stays";
 }
 
+/// Two boxes back to back stand at least so far apart as their depths; nearer it is one victim, whatever stands between
+/// the places it was seen from.
+TEST(VictimSearch, SeenFromBothSidesOfAPostItIsOneVictimAndBackToBackAreTwo) {
+  const SightFn never = [](const TPoint2D&, const TPoint2D&) { return false; };
+  const auto reports = [&](double between) {
+    VictimSearch search;
+    for (int i = 0; i < 8; ++i) {
+      const bool west = i % 2 == 0;
+      const TPose2D from{west ? 1.0 : 3.0, 1.0, west ? 0.0 : kPi};
+      const TPoint2D victim{2.0 + (west ? -0.5 : 0.5) * between, 1.0};
+      search.add(cue_of(victim, from, 1.0 + i), {Stamp::from_seconds(1.0 + i), from}, never);
+    }
+    return search.reports().size();
+  };
+  EXPECT_EQ(reports(0.0), 1u);
+  EXPECT_EQ(reports(0.1), 1u);
+  EXPECT_EQ(reports(0.42), 2u) << "boxes of 0.2 m on the two sides of a wall";
+}
+
 TEST(VictimSearch, MoreKindsOfCuesRaiseTheConfidence) {
   VictimSearch one;
   VictimSearch two;
