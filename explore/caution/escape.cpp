@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/planar.h"
 
@@ -11,10 +12,10 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kFree = 0.5;                   ///< away from where it was held, the robot is free [m]
-constexpr double kSpeed = 0.2;                  ///< [m/s]
-constexpr double kTurn = deg_to_rad(60.0);      ///< [rad]
-constexpr double kMoveTime = 5.0;               ///< [s]
+constexpr double kFree = 0.5;   ///< away from where it was held, the robot is free [m]
+constexpr double kSpeed = 0.2;  ///< [m/s]
+constexpr double kTurns[] = {deg_to_rad(60.0), deg_to_rad(100.0), deg_to_rad(35.0), deg_to_rad(140.0)};  ///< [rad]
+constexpr double kMoveTime = 5.0;                                                                        ///< [s]
 constexpr double kFeeler = 0.25;                ///< room is asked for about a point so far ahead of the motion [m]
 constexpr double kBehind = 0.35;                ///< the point of the trail that is steered to [m]
 constexpr double kMostBend = deg_to_rad(60.0);  ///< a trail that bends more is not followed [rad]
@@ -23,7 +24,8 @@ constexpr int kRounds = 2;                      ///< times that all moves are tr
 
 }  // namespace
 
-void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now) {
+void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures) {
+  turn_ = kTurns[static_cast<std::size_t>(failures) % std::size(kTurns)];
   const Move first = met == Met::Backwards ? Move::Ahead : Move::Back;
   const Move last = met == Met::Backwards ? Move::Back : Move::Ahead;
   moves_.clear();
@@ -51,7 +53,7 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
   const Move move = moves_[at_];
   const bool held = watch_.stuck(T_map_base, commanded, stalled, dt) || struck;
   const bool turned =
-      (move == Move::Left || move == Move::Right) && std::abs(wrap_angle(T_map_base.phi - move_begun_.phi)) >= kTurn;
+      (move == Move::Left || move == Move::Right) && std::abs(wrap_angle(T_map_base.phi - move_begun_.phi)) >= turn_;
   met_ = held;
   bool wall = false;
   if (move == Move::Back || move == Move::Ahead)

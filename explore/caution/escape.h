@@ -26,7 +26,8 @@ class Escape {
 
   explicit Escape(double turn_speed) : turn_speed_(turn_speed) {}
 
-  void begin(Met met, const mrpt::math::TPose2D& T_map_base, Stamp now);
+  /// `failures`: escapes in a row that failed just before; each turns by another angle.
+  void begin(Met met, const mrpt::math::TPose2D& T_map_base, Stamp now, int failures = 0);
   /// One tick of `dt` [s] under the command that was in force. `struck`: a blow stopped the robot. `trail`: where it
   /// came along, oldest first.
   Result step(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, bool struck,
@@ -45,6 +46,7 @@ class Escape {
   double turn_speed_;  ///< [rad/s]
   std::vector<Move> moves_;
   std::size_t at_ = 0;
+  double turn_ = 0.0;  ///< of Left and Right [rad]
   MotionWatch watch_;
   mrpt::math::TPose2D begun_;       ///< where the escape began
   mrpt::math::TPose2D move_begun_;  ///< where the present move began

@@ -24,7 +24,7 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   }
   if (length(T_map_base.x - place_.x, T_map_base.y - place_.y) > config_.place) {
     place_ = T_map_base;
-    rocked_ = net_ = 0.0;
+    rocked_ = net_ = pushed_ = 0.0;
   }
   net_ += wrap_angle(T_map_base.phi - last_phi_);
   last_phi_ = T_map_base.phi;
@@ -32,10 +32,15 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   expected_ += std::clamp(commanded.v - expected_, -config_.accel * dt, config_.accel * dt);
   if (commanded.v * expected_ <= 0.0) expected_ = 0.0;
   const bool on_the_spot = std::abs(commanded.w) > config_.pivot_rate && std::abs(commanded.v) <= config_.pivot_speed;
-  if (!on_the_spot) way_ += std::abs(expected_) * dt;
+  if (!on_the_spot) {
+    way_ += std::abs(expected_) * dt;
+    // Wheels that spin carry the pose on between two scans, and each scan puts it back: it trembles in its place.
+    pushed_ += std::abs(expected_) * dt;
+  }
   turn_ += std::abs(commanded.w) * dt;
   stalled_for_ = stalled ? stalled_for_ + dt : 0.0;
-  return rocking() || way_ > config_.patience || turn_ > config_.turn_patience || stalled_for_ > config_.stall_time;
+  return rocking() || way_ > config_.patience || pushed_ > config_.place_patience || turn_ > config_.turn_patience ||
+         stalled_for_ > config_.stall_time;
 }
 
 }  // namespace rubble::explore

@@ -18,6 +18,7 @@ struct MotionWatchConfig {
   double accel = 0.3;               ///< a commanded speed is expected to be reached so [m/s^2]
   double turn_patience = 1.6;       ///< turn commanded in vain that means stuck [rad]
   double place = 0.15;              ///< rocking to and fro within so much of a place [m]
+  double place_patience = 0.45;     ///< way commanded there that means stuck, though the pose trembles [m]
   double rocking = 6.3;             ///< turned so much more there than came of it means stuck [rad]
   double stall_time = 0.21;         ///< the motors report a stall for this long [s]
 };
@@ -44,6 +45,7 @@ class MotionWatch {
   double way_ = 0.0;
   double turn_ = 0.0;
   mrpt::math::TPose2D place_;
+  double pushed_ = 0.0;  ///< way commanded there [m]
   double rocked_ = 0.0;  ///< turns commanded there, whichever way [rad]
   double net_ = 0.0;     ///< what came of them [rad]
   double last_phi_ = 0.0;

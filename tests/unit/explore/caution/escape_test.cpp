@@ -31,10 +31,11 @@ struct Outcome {
   double seconds = 0.0;
 };
 
-Outcome run(Puppet& puppet, Escape::Met met, const std::vector<TPoint2D>& trail, const Escape::RoomFn& room) {
+Outcome run(Puppet& puppet, Escape::Met met, const std::vector<TPoint2D>& trail, const Escape::RoomFn& room,
+            int failures = 0) {
   Escape escape(deg_to_rad(60.0));
   Stamp now = Stamp::from_seconds(1.0);
-  escape.begin(met, puppet.pose, now);
+  escape.begin(met, puppet.pose, now, failures);
   Outcome outcome;
   while (outcome.result == Escape::Result::UnderWay && outcome.seconds < 300.0) {
     outcome.result = escape.step(puppet.pose, escape.drive(), false, false, kEscapeTick, now, trail, room);
@@ -80,6 +81,25 @@ TEST(Escape, DoesNotBackIntoAWallItKnows) {
   };
   run(puppet, Escape::Met::Forwards, {}, room);
   EXPECT_GT(least, -0.3);
+}
+
+/// Between steps only one direction leads out, and turns of 60 degrees miss it: the next try turns by another angle.
+TEST(Escape, TriesOtherAnglesAfterItFailed) {
+  const double way_out = deg_to_rad(100.0);
+  const auto try_all = [&](int tries) {
+    Puppet puppet;
+    puppet.may = [&](const TPose2D& next) {
+      const bool turns = next.x == puppet.pose.x && next.y == puppet.pose.y;
+      return turns || std::abs(wrap_angle(puppet.pose.phi - way_out)) < deg_to_rad(12.0);
+    };
+    for (int failures = 0; failures < tries; ++failures) {
+      puppet.pose = {};
+      if (run(puppet, Escape::Met::Turning, {}, kRoom, failures).result == Escape::Result::Free) return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(try_all(1));
+  EXPECT_TRUE(try_all(4));
 }
 
 TEST(Escape, SaysSoWhenNothingHelps) {
