@@ -16,6 +16,7 @@ constexpr double kFree = 0.5;   ///< away from where it was held, the robot is f
 constexpr double kSpeed = 0.2;  ///< [m/s]
 constexpr double kTurns[] = {deg_to_rad(60.0), deg_to_rad(100.0), deg_to_rad(35.0), deg_to_rad(140.0)};  ///< [rad]
 constexpr double kMoveTime = 5.0;                                                                        ///< [s]
+constexpr double kRetraceTime = 15.0;                                                                    ///< [s]
 constexpr double kFeeler = 0.25;                ///< room is asked for about a point so far ahead of the motion [m]
 constexpr double kBehind = 0.35;                ///< the point of the trail that is steered to [m]
 constexpr double kMostBend = deg_to_rad(60.0);  ///< a trail that bends more is not followed [rad]
@@ -29,8 +30,11 @@ void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures) 
   const Move first = met == Met::Backwards ? Move::Ahead : Move::Back;
   const Move last = met == Met::Backwards ? Move::Back : Move::Ahead;
   moves_.clear();
-  for (int round = 0; round < kRounds; ++round)
+  for (int round = 0; round < kRounds; ++round) {
+    // Retracing asks for poses to a few centimetres: first what is quick and robust.
+    if (round > 0 || failures > 0) moves_.push_back(Move::Retrace);
     for (const Move move : {first, Move::Left, first, Move::Right, Move::Right, first, last}) moves_.push_back(move);
+  }
   at_ = 0;
   begun_ = T_map_base;
   start_move(T_map_base, now);
@@ -38,13 +42,14 @@ void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures) 
 
 void Escape::start_move(const TPose2D& T_map_base, Stamp now) {
   move_begun_ = T_map_base;
-  move_until_ = now + kMoveTime;
+  move_until_ = now + (moves_[at_] == Move::Retrace ? kRetraceTime : kMoveTime);
   watch_.reset();
   drive_ = {};
 }
 
 Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, bool struck,
-                            double dt, Stamp now, const std::vector<TPoint2D>& trail, const RoomFn& room) {
+                            double dt, Stamp now, const std::vector<TPoint2D>& trail, const WayBack& way_back,
+                            const RoomFn& room) {
   met_ = false;
   if (distance(position(begun_), position(T_map_base)) >= kFree) {
     drive_ = {};
@@ -58,7 +63,8 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
   bool wall = false;
   if (move == Move::Back || move == Move::Ahead)
     wall = !room(T_map_base + TPose2D{move == Move::Back ? -kFeeler : kFeeler, 0.0, 0.0});
-  if (held || turned || wall || now >= move_until_) {
+  const bool all_retraced = move == Move::Retrace && !way_back.drive(T_map_base);
+  if (held || turned || wall || all_retraced || now >= move_until_) {
     if (++at_ == moves_.size()) {
       drive_ = {};
       return Result::Failed;
@@ -66,11 +72,12 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
     start_move(T_map_base, now);
     return Result::UnderWay;
   }
-  drive_ = command(T_map_base, trail);
+  drive_ = command(T_map_base, trail, way_back);
   return Result::UnderWay;
 }
 
-robot::Drive Escape::command(const TPose2D& T_map_base, const std::vector<TPoint2D>& trail) const {
+robot::Drive Escape::command(const TPose2D& T_map_base, const std::vector<TPoint2D>& trail,
+                             const WayBack& way_back) const {
   switch (moves_[at_]) {
     case Move::Left:
       return {0.0, turn_speed_};
@@ -78,6 +85,8 @@ robot::Drive Escape::command(const TPose2D& T_map_base, const std::vector<TPoint
       return {0.0, -turn_speed_};
     case Move::Ahead:
       return {kSpeed, 0.0};
+    case Move::Retrace:
+      return way_back.drive(T_map_base).value_or(robot::Drive{});
     case Move::Back:
       break;
   }

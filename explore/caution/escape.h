@@ -10,12 +10,13 @@
 
 #include "base/stamp.h"
 #include "explore/caution/motion_watch.h"
+#include "explore/caution/way_back.h"
 #include "robot/commands.h"
 
 namespace rubble::explore {
 
-/// How the robot gets free of what holds it: back the way it came for half a metre; where that fails turns, other
-/// directions and the same again, until it has moved away or everything was tried.
+/// How the robot gets free of what holds it: back the way it came for half a metre; where that fails turns and other
+/// directions, then pose by pose the way it came, and all of it again, until it has moved away or everything was tried.
 class Escape {
  public:
   enum class Result { UnderWay, Free, Failed };
@@ -29,19 +30,21 @@ class Escape {
   /// `failures`: escapes in a row that failed just before; each turns by another angle.
   void begin(Met met, const mrpt::math::TPose2D& T_map_base, Stamp now, int failures = 0);
   /// One tick of `dt` [s] under the command that was in force. `struck`: a blow stopped the robot. `trail`: where it
-  /// came along, oldest first.
+  /// came along, oldest first; `way_back`: the poses.
   Result step(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, bool struck,
-              double dt, Stamp now, const std::vector<mrpt::math::TPoint2D>& trail, const RoomFn& room);
+              double dt, Stamp now, const std::vector<mrpt::math::TPoint2D>& trail, const WayBack& way_back,
+              const RoomFn& room);
   /// The command for the tick to come.
   const robot::Drive& drive() const { return drive_; }
   /// Something was met in this tick: the base shall not push on.
   bool met() const { return met_; }
 
  private:
-  enum class Move { Back, Ahead, Left, Right };
+  enum class Move { Back, Ahead, Left, Right, Retrace };
 
   void start_move(const mrpt::math::TPose2D& T_map_base, Stamp now);
-  robot::Drive command(const mrpt::math::TPose2D& T_map_base, const std::vector<mrpt::math::TPoint2D>& trail) const;
+  robot::Drive command(const mrpt::math::TPose2D& T_map_base, const std::vector<mrpt::math::TPoint2D>& trail,
+                       const WayBack& way_back) const;
 
   double turn_speed_;  ///< [rad/s]
   std::vector<Move> moves_;

@@ -27,7 +27,6 @@ constexpr double kOdometryLate = 0.25;           ///< the wheels are silent [s]
 constexpr double kArrivedReplan = 0.3;           ///< standing at the end of the way [s]
 constexpr double kCueAge = 1.2;                  ///< an unconfirmed cue younger than this is worth waiting for [s]
 constexpr double kDetour = 3.0;                  ///< way over distance where no way is known
-constexpr double kUnsure = 0.40;                 ///< a pose that errs by so much places no victim [m]
 constexpr double kWorthARound = 1.0;             ///< newly known floor that makes one more round worth while [m^2]
 constexpr int kBarrenRounds = 2;                 ///< rounds in a row that gain nothing end the mission
 constexpr double kBesideTheWay = 1.0;  ///< a niche that costs no more is looked into while frontiers are left [m]
@@ -43,6 +42,7 @@ constexpr double kCornerRoom = 0.08;                    ///< beside corners that
 constexpr double kLittleRoom = 0.01;                    ///< [m]
 constexpr double kPaper = 0.5;                          ///< what stands alone and is not wider may be paper [m]
 constexpr double kHeap = 1.1;  ///< several balls side by side; a panel of wall is 1.2 m wide [m]
+constexpr int kForgets = 4;    ///< times that all that was felt is forgotten for the sake of new ground
 constexpr int kHomeTries = 6;  ///< times that all that was felt is forgotten on the way home
 
 std::string text(const TPoint2D& p) {
@@ -123,6 +123,7 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   const TPose2D before = pose_;
   pose_ = mapper.pose();
   turned_ = wrap_angle(pose_.phi - before.phi);
+  doubt_.update(pose_, mapper.covariance(), passed);
   if (mapper.revision() != revision_) follow_map(mapper);
   if (!inputs.scans.empty()) last_scan_ = now_;
   if (!inputs.odometry.empty()) {
@@ -134,17 +135,18 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   for (const robot::VictimCue& cue : inputs.cues) hear(mapper, cue);
   const bool on_its_way = state_ == ExplorerState::Driving || state_ == ExplorerState::GoingHome;
   home_way_.moved(distance(position(before), position(pose_)), dt_, on_its_way);
+  way_back_.add(now_, pose_);
   if (state_ == ExplorerState::Starting || state_ == ExplorerState::BackingUp) return;
   felt_.passed(pose_, model_);
   if (!trail_.empty() && distance(trail_.back(), position(pose_)) <= kTrailStep) return;
   trail_anchors_.push_back({now_, pose_});
   trail_.push_back(position(pose_));
+  passed_.add(trail_.back());
 }
 
 /// A cue seen while the pose is unsure would put a victim where none is.
 void PaperExplorer::hear(const slam::Mapper& mapper, const robot::VictimCue& cue) {
-  const PoseCovariance covariance = mapper.covariance();
-  if (covariance(0, 0) + covariance(1, 1) > kUnsure * kUnsure) return;
+  if (doubt_.unsure()) return;
   const Anchor anchor{cue.stamp, mapper.pose_at(cue.stamp).value_or(pose_)};
   const auto same_side = [this](const TPoint2D& a, const TPoint2D& b) {
     const Cell from = last_floor_.cells.cell(a);
@@ -163,9 +165,12 @@ void PaperExplorer::follow_map(const slam::Mapper& mapper) {
   revision_ = mapper.revision();
   home_.follow(mapper);
   const TPoint2D last = trail_.empty() ? TPoint2D() : trail_.back();
+  way_back_.follow(mapper);
+  passed_.clear();
   for (std::size_t i = 0; i < trail_.size(); ++i) {
     trail_anchors_[i].follow(mapper);
     trail_[i] = position(trail_anchors_[i].T_map_base);
+    passed_.add(trail_[i]);
   }
   felt_.follow(mapper);
   search_.follow(mapper);
@@ -325,6 +330,13 @@ void PaperExplorer::replan(const slam::Mapper& mapper) {
     if (plan.found) path_watch_.creep(now_);
   }
   frontier_left_ = plan.frontier_left;
+  // It would turn round again once the new thing is forgotten, and again when it is seen anew.
+  const bool turned_away =
+      plan.found && target_ && !new_things.empty() && distance(*target_, plan.target) > kSameTarget;
+  if (turned_away && state_ != ExplorerState::GoingHome) {
+    note("something new stands in the way");
+    bar_target(*target_);
+  }
   if (plan.found) {
     accept(std::move(plan));
   } else {
@@ -355,6 +367,7 @@ void PaperExplorer::accept(Plan plan) {
   target_ = plan.target;
   path_d_min_ = plan.d_min;
   path_watch_.unblock();
+  for (PathPoint& point : plan.path) point.passed = passed_.holds(point.p_map);
   follower_.set_path(std::move(plan.path));
 }
 
@@ -450,10 +463,24 @@ bool PaperExplorer::another_round() {
   barren_rounds_ = barren ? barren_rounds_ + 1 : 0;
   known_then_ = known_cells(last_floor_);
   victims_then_ = search_.reports().size();
-  if (barren_rounds_ >= kBarrenRounds) return false;
+  if (barren_rounds_ >= kBarrenRounds) return forget_what_was_felt();
   const bool given_up = floor_search_.reconsider(last_floor_);
-  if (!pardon() && !given_up) return false;
+  if (!pardon() && !given_up) return forget_what_was_felt();
   note("round " + std::to_string(++rounds_) + ": what could not be reached or seen is tried again");
+  tried_before_search_ = false;
+  explore_again();
+  return true;
+}
+
+/// What was felt may bar the only way to half of the arena, and be wrong: as long as there is ground to be seen behind
+/// it and time, even what was felt for certain is tried anew.
+bool PaperExplorer::forget_what_was_felt() {
+  if (frontier_left_ == 0 || forgets_ >= kForgets || !felt_.forget(now_)) return false;
+  ++forgets_;
+  barren_rounds_ = 0;
+  floor_search_.reconsider(last_floor_);
+  pardon();
+  note("round " + std::to_string(++rounds_) + ": all that was felt is forgotten");
   tried_before_search_ = false;
   explore_again();
   return true;
@@ -506,6 +533,7 @@ bool PaperExplorer::must_turn_back() {
 
 /// Records what the victim sensors see; a place seen on the way need not be driven to.
 void PaperExplorer::mark_searched() {
+  if (doubt_.unsure()) return;
   const bool looked = floor_search_.look(last_floor_, pose_, turned_ / std::max(dt_, 1e-9), now_);
   if (looked && state_ == ExplorerState::Searching && target_ && floor_search_.subject_seen(last_floor_))
     plan_forced_ = true;

@@ -12,7 +12,10 @@
 #include "explore/caution/felt_obstacles.h"
 #include "explore/caution/jolt_watch.h"
 #include "explore/caution/motion_watch.h"
+#include "explore/caution/passed_floor.h"
+#include "explore/caution/pose_doubt.h"
 #include "explore/caution/tilt_watch.h"
+#include "explore/caution/way_back.h"
 #include "explore/explorer.h"
 #include "explore/paper/home_way.h"
 #include "explore/paper/look_around.h"
@@ -76,6 +79,7 @@ class PaperExplorer : public Explorer {
   void start_pushing();
   double ground_gained_since(std::size_t known_then) const;
   bool another_round();
+  bool forget_what_was_felt();
   bool pardon();
   void explore_again();
   void finish(MissionEnd end, const std::string& why);
@@ -83,6 +87,7 @@ class PaperExplorer : public Explorer {
   bool must_turn_back();
 
   void check_path(const slam::Mapper& mapper);
+  std::vector<TPoint2D> without_loose_things(const std::vector<TPoint2D>& hits);
   void got_stuck(const std::string& how);
   void bar_target(const TPoint2D& target);
   void look_around(double angle, bool to_the_end);
@@ -107,6 +112,7 @@ class PaperExplorer : public Explorer {
   Pivot pivot_;
   TiltWatch tilt_;
   JoltWatch jolt_;
+  PoseDoubt doubt_;
   FeltObstacles felt_;
   Escape escape_;
   HomeWay home_way_;
@@ -130,6 +136,8 @@ class PaperExplorer : public Explorer {
   std::uint64_t revision_ = 0;
   std::vector<Anchor> trail_anchors_;
   std::vector<TPoint2D> trail_;  ///< the anchors' places
+  PassedFloor passed_;           ///< these again
+  WayBack way_back_;
   Anchor home_;
 
   Traversable last_floor_;
@@ -147,12 +155,14 @@ class PaperExplorer : public Explorer {
   int looks_in_vain_ = 0;
   int pardons_ = 0;
   double pushed_aside_ = 0.0;           ///< things that stand alone and are not wider are driven at; 0: none [m]
+  std::vector<TPoint2D> rolling_;       ///< hits on what is being pushed, of the last check [m, map frame]
   std::size_t known_when_pushing_ = 0;  ///< cells, when that began last in this round; 0: not yet
   int home_tries_ = 0;
   bool tried_before_search_ = false;  ///< what could not be reached was tried again in this round
   bool frontiers_done_ = false;       ///< this round's; what comes into reach later is a detour of the search
   int rounds_ = 1;                    ///< of exploring and searching, this one included
   int barren_rounds_ = 0;             ///< that gained nothing, in a row
+  int forgets_ = 0;                   ///< times that all that was felt was forgotten for that
   std::size_t known_then_ = 0;        ///< cells, at the end of the last round
   std::size_t victims_then_ = 0;      ///< likewise
 

@@ -19,6 +19,7 @@ constexpr double kReach = 1.5;        ///< hits farther away are not remembered 
 constexpr double kAhead = 0.5;        ///< looked ahead beside the braking way [m]
 constexpr double kCreepTime = 3.0;    ///< [s]
 constexpr double kCreepSpeed = 0.15;  ///< [m/s]
+constexpr double kSlowTime = 1.0;     ///< [s]
 
 }  // namespace
 
@@ -55,8 +56,10 @@ void PathWatch::remember(const std::vector<TPoint2D>& points, Stamp now) {
 
 void PathWatch::creep(Stamp now) { creep_until_ = now + kCreepTime; }
 
+void PathWatch::slow_down(Stamp now) { slow_until_ = now + kSlowTime; }
+
 robot::Drive PathWatch::limited(robot::Drive drive, Stamp now) const {
-  if (now < creep_until_ && std::abs(drive.v) > kCreepSpeed) {
+  if ((now < creep_until_ || now < slow_until_) && std::abs(drive.v) > kCreepSpeed) {
     drive.w *= kCreepSpeed / drive.v;
     drive.v = kCreepSpeed;
   }

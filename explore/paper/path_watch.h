@@ -33,7 +33,9 @@ class PathWatch {
 
   /// The map shows a way, the newest scans do not: go and see, slowly.
   void creep(Stamp now);
-  /// Slows a command down while creeping.
+  /// Something is being pushed: slowly, for a moment.
+  void slow_down(Stamp now);
+  /// Slows a command down while creeping or pushing.
   robot::Drive limited(robot::Drive drive, Stamp now) const;
 
  private:
@@ -43,6 +45,7 @@ class PathWatch {
   Stamp forget_ = Stamp::never();
   bool blocked_ = false;
   Stamp creep_until_ = Stamp::never();
+  Stamp slow_until_ = Stamp::never();
 };
 
 }  // namespace rubble::explore

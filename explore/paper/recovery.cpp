@@ -14,13 +14,35 @@ constexpr double kBarTime = 60.0;      ///< for the first failure; doubles with 
 constexpr double kSamePlace = 0.5;     ///< [m]
 constexpr double kTurningRate = 0.15;  ///< [rad/s]
 constexpr double kLean = 0.03;         ///< getting free, the body may come so much closer to walls [m]
-constexpr int kMaxFailedEscapes = 6;   ///< in a row
+constexpr int kMaxFailedEscapes = 10;  ///< in a row
+constexpr double kPushReach = 1.0;     ///< things to be pushed aside are watched from here on [m]
+constexpr double kRoll = 0.15;         ///< farther they do not roll between two looks [m]
 
 }  // namespace
 
 void PaperExplorer::check_path(const slam::Mapper& mapper) {
   if (!path_watch_.due(now_) || follower_.arrived() || looking_.active()) return;
-  if (path_watch_.check(follower_, mapper.last_hits(), pose_, commanded_.v, path_d_min_, now_)) plan_forced_ = true;
+  const std::vector<TPoint2D> hits = without_loose_things(mapper.last_hits());
+  if (path_watch_.check(follower_, hits, pose_, commanded_.v, path_d_min_, now_)) plan_forced_ = true;
+}
+
+/// The hits but for those on things that are to be pushed aside. The map shows these where they lay; as they roll, what
+/// is seen near where they were just now is they.
+std::vector<TPoint2D> PaperExplorer::without_loose_things(const std::vector<TPoint2D>& hits) {
+  const TPoint2D here = position(pose_);
+  std::vector<TPoint2D> loose = std::move(rolling_);
+  rolling_.clear();
+  if (pushed_aside_ == 0.0) return hits;
+  for (const Cell c : last_floor_.loose)
+    if (const TPoint2D p = last_floor_.cells.centre(c); distance(p, here) < kPushReach) loose.push_back(p);
+  std::vector<TPoint2D> rest;
+  for (const TPoint2D& hit : hits) {
+    const bool rolls = distance(hit, here) < kPushReach &&
+                       std::any_of(loose.begin(), loose.end(), [&](const auto& p) { return distance(p, hit) < kRoll; });
+    (rolls ? rolling_ : rest).push_back(hit);
+  }
+  if (!rolling_.empty()) path_watch_.slow_down(now_);
+  return rest;
 }
 
 /// Something holds the robot that the scanner cannot see: it is remembered, and the robot gets free of it.
@@ -51,7 +73,7 @@ void PaperExplorer::got_stuck(const std::string& how) {
     pallet = felt_.feel({now_, pose_}, met == Escape::Met::Backwards, model_, grid, trail_);
   }
   note(how + (pallet ? ": backs off and keeps clear of the pallet ahead" : ": backs off and plans around it"));
-  escape_.begin(met, pose_, now_);
+  escape_.begin(met, pose_, now_, failed_escapes_);
   after_escape_ = state_;
   state_ = ExplorerState::BackingUp;
 }
@@ -62,7 +84,8 @@ Drive PaperExplorer::escape() {
     const Cell c = last_floor_.clearance.cell({x, y});
     return !last_floor_.clearance.inside(c) || last_floor_.clearance[c] > 0.5 * model_.width - kLean;
   };
-  const Escape::Result result = escape_.step(pose_, commanded_, stalled_, jolt_.struck(), dt_, now_, trail_, room);
+  const Escape::Result result =
+      escape_.step(pose_, commanded_, stalled_, jolt_.struck(), dt_, now_, trail_, way_back_, room);
   brakes_ = escape_.met();
   switch (result) {
     case Escape::Result::UnderWay:

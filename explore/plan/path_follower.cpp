@@ -30,6 +30,8 @@ PathFollower::PathFollower(const robot::RobotModel& model, const FollowerConfig&
     : config_(config), brake_(0.8 * model.max_accel), turn_brake_(0.6 * model.max_turn_accel) {
   config_.cruise_speed = std::min(config_.cruise_speed, model.max_v);
   config_.turn_speed = std::min(config_.turn_speed, model.max_w);
+  config_.passed_speed =
+      std::clamp(config_.passed_speed, config_.cruise_speed, std::max(model.max_v, config_.cruise_speed));
   config_.slow_speed = std::min(config_.slow_speed, config_.cruise_speed);
 }
 
@@ -50,7 +52,7 @@ void PathFollower::plan_speeds() {
     while (way_[i] - way_[before] > kCurvatureSpan) ++before;
     while (after + 1 < path_.size() && way_[after] - way_[i] < kCurvatureSpan) ++after;
     speed_[i] = ramp(path_[i].clearance, config_.slow_clearance, config_.full_clearance, config_.slow_speed,
-                     config_.cruise_speed);
+                     path_[i].passed ? config_.passed_speed : config_.cruise_speed);
     if (before == i || after == i) continue;
     const double turn = std::abs(
         wrap_angle(direction(path_[i].p_map, path_[after].p_map) - direction(path_[before].p_map, path_[i].p_map)));

@@ -16,16 +16,18 @@ namespace rubble::explore {
 struct PathPoint {
   mrpt::math::TPoint2D p_map;  ///< [m]
   double clearance = 0.0;      ///< [m]
+  bool passed = false;         ///< the robot was there: nothing lies on the floor that it would have felt
 };
 
 struct FollowerConfig {
   double cruise_speed = 0.4;                ///< [m/s]
+  double passed_speed = 0.6;                ///< likewise, where the robot was before [m/s]
   double turn_speed = deg_to_rad(60.0);     ///< [rad/s]
   double turn_in_place = deg_to_rad(35.0);  ///< heading error above which the robot turns on the spot [rad]
   double look_ahead = 0.35;                 ///< distance of the point steered to [m]
   double turn_done = deg_to_rad(8.0);       ///< heading error at which a turn on the spot ends [rad]
   double slow_clearance = 0.27;             ///< at this clearance and below: slow_speed [m]
-  double full_clearance = 0.42;             ///< at this clearance and above: cruise speed [m]
+  double full_clearance = 0.42;             ///< at this clearance and above: cruise or passed speed [m]
   double slow_speed = 0.15;                 ///< [m/s]
 };
 

@@ -202,6 +202,7 @@ bool free_small_things(Traversable& floor, double extent) {
         floor.cells[c] = Occupancy::Free;
         floor.obstacle[c] = 0;
       }
+      floor.loose.insert(floor.loose.end(), thing.begin(), thing.end());
       any = true;
     }
   return any;

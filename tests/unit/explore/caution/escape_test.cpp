@@ -32,13 +32,15 @@ struct Outcome {
 };
 
 Outcome run(Puppet& puppet, Escape::Met met, const std::vector<TPoint2D>& trail, const Escape::RoomFn& room,
-            int failures = 0) {
+            int failures = 0, const WayBack& came = {}) {
   Escape escape(deg_to_rad(60.0));
+  WayBack way_back = came;
   Stamp now = Stamp::from_seconds(1.0);
   escape.begin(met, puppet.pose, now, failures);
   Outcome outcome;
   while (outcome.result == Escape::Result::UnderWay && outcome.seconds < 300.0) {
-    outcome.result = escape.step(puppet.pose, escape.drive(), false, false, kEscapeTick, now, trail, room);
+    way_back.add(now, puppet.pose);
+    outcome.result = escape.step(puppet.pose, escape.drive(), false, false, kEscapeTick, now, trail, way_back, room);
     puppet.obey(escape.drive());
     now = now + kEscapeTick;
     outcome.seconds += kEscapeTick;
@@ -100,6 +102,41 @@ TEST(Escape, TriesOtherAnglesAfterItFailed) {
   };
   EXPECT_FALSE(try_all(1));
   EXPECT_TRUE(try_all(4));
+}
+
+/// In by an arc between steps that let nothing turn: out by the same arc, though neither straight back nor turns help.
+TEST(Escape, RetracesPoseByPoseWhatLetsItThroughInNoOtherWay) {
+  const auto on_arc = [](const TPose2D& p) {  // 0.8 m about (0, 0.8), heading along it
+    return std::abs(std::hypot(p.x, p.y - 0.8) - 0.8) < 0.03 &&
+           std::abs(wrap_angle(std::atan2(p.x, 0.8 - p.y) - p.phi)) < deg_to_rad(7.0);
+  };
+  WayBack came;
+  Puppet puppet;
+  for (double a = -60.0; a <= 0.0; a += 0.5) {
+    const double phi = deg_to_rad(a);
+    puppet.pose = {0.8 * std::sin(phi), 0.8 - 0.8 * std::cos(phi), phi};
+    ASSERT_TRUE(on_arc(puppet.pose));
+    came.add(Stamp::from_seconds(1.0), puppet.pose);
+  }
+  puppet.may = on_arc;
+  EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, kRoom).result, Escape::Result::Failed) << "the case is too easy";
+  EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, kRoom, 1, came).result, Escape::Result::Free);
+  EXPECT_TRUE(on_arc(puppet.pose));
+}
+
+TEST(WayBack, ForgetsLoopsAndKeepsTheWay) {
+  WayBack way;
+  const Stamp now = Stamp::from_seconds(1.0);
+  for (double x = 0.0; x < 1.0; x += 0.01) way.add(now, {x, 0.0, 0.0});
+  const std::size_t straight = way.size();
+  EXPECT_GE(straight, 15u);
+  EXPECT_LE(straight, 25u) << "a pose every few centimetres";
+  for (double a = 0.0; a < 2.0 * kPi; a += 0.02) way.add(now, {0.99, 0.0, a});
+  EXPECT_LE(way.size(), straight + 1) << "a turn on the spot ends as it began";
+  const auto drive = way.drive({0.99, 0.0, 0.0});
+  ASSERT_TRUE(drive.has_value());
+  EXPECT_LT(drive->v, 0.0);
+  EXPECT_EQ(drive->w, 0.0);
 }
 
 TEST(Escape, SaysSoWhenNothingHelps) {

@@ -275,6 +275,34 @@ TEST(BadConditions, WhatWasLeftAloneIsTriedAgainBeforeTheRestIsSearched) {
   EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
 }
 
+/// Something holds the robot in a corridor again and again, and is no longer there when all else was tried: what was
+/// felt for certain is forgotten for the sake of the ground behind it.
+TEST(BadConditions, WhatWasFeltForCertainIsTriedOnceMoreBeforeTheEnd) {
+  Maze maze = test::maze({"+--+--+--+--+--+--+",  //
+                          "|    R            |",  //
+                          "+--+--+--+--+--+  +",  //
+                          "|                 |",  //
+                          "+--+--+--+--+--+--+"});
+  Trial trial(maze);
+  const auto told = [&](const std::string& what) {
+    const std::vector<Decision>& decisions = trial.explorer.decisions();
+    return std::any_of(decisions.begin(), decisions.end(),
+                       [&](const Decision& d) { return d.why.find(what) != std::string::npos; });
+  };
+  double farthest = 0.0;
+  trial.run(1800.0, [&] {
+    const TPose2D& pose = trial.robot.pose();
+    farthest = std::max(farthest, pose.x);
+    const bool into_it = std::cos(pose.phi) * trial.commands.drive.v > 0.0;
+    trial.robot.held = pose.x > maze.start.x + 1.5 && into_it && !told("all that was felt is forgotten");
+  });
+  EXPECT_GT(trial.backing, 0);
+  EXPECT_TRUE(told("all that was felt is forgotten"));
+  EXPECT_GT(farthest, maze.start.x + 2.0);
+  EXPECT_TRUE(is_seen(trial, maze.centre(3, 1)));
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
+}
+
 TEST(BadConditions, WithoutScansForTwoSecondsTheRobotStandsAndThenGoesOn) {
   const Maze maze = test::random_maze(5, 5, 0.2, 7);
   Trial trial(maze);

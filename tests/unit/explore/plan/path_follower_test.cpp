@@ -71,6 +71,24 @@ TEST(PathFollower, DrivesStraightAheadAtCruiseSpeedAndStopsAtTheEnd) {
   EXPECT_EQ(robot.drive.v, 0.0);
 }
 
+TEST(PathFollower, IsFasterOnlyWhereTheRobotWasBefore) {
+  const RobotModel model;
+  PathFollower follower(model, {});
+  std::vector<PathPoint> path = straight(6.0);
+  for (PathPoint& point : path) point.passed = point.p_map.x > 1.0 && point.p_map.x < 4.0;
+  follower.set_path(path);
+  Unicycle robot;
+  double fastest = 0.0;
+  for (int i = 0; i < 2500 && !follower.arrived(); ++i) {
+    robot.step(follower.drive(robot.pose), model);
+    fastest = std::max(fastest, robot.drive.v);
+    const bool new_ground = robot.pose.x < 0.95 || robot.pose.x > 4.05;
+    ASSERT_LE(robot.drive.v, (new_ground ? FollowerConfig().cruise_speed : FollowerConfig().passed_speed) + 0.01)
+        << robot.pose.x;
+  }
+  EXPECT_NEAR(fastest, FollowerConfig().passed_speed, 0.01);
+}
+
 TEST(PathFollower, TurnsOnTheSpotWhileTheHeadingIsFarOff) {
   PathFollower follower({}, {});
   follower.set_path(straight(3.0));

@@ -158,6 +158,8 @@ TEST(Traversable, OnlySmallThingsThatStandAloneAreMadeFree) {
       EXPECT_EQ((floor.cells[{x, y}]), Occupancy::Free);
     }
   EXPECT_EQ(freed, 4) << "the thing beside the wall and the long one stay";
+  ASSERT_EQ(floor.loose.size(), 4u);
+  for (const Cell c : floor.loose) EXPECT_NE(floor.cells[c], before[c]);
   EXPECT_FALSE(free_small_things(floor, 0.3));
 }
 
