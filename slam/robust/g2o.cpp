@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "slam/robust/scan_fit.h"
+
 namespace rubble::slam {
 
 using mrpt::math::TPose2D;

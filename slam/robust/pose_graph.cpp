@@ -34,12 +34,4 @@ double squared_sigmas(const PoseGraph& graph, const GraphEdge& edge) {
   return lin.r.dot(edge.information * lin.r);
 }
 
-Eigen::Matrix3d turned(const Eigen::Matrix3d& matrix, double phi) {
-  const double c = std::cos(phi);
-  const double s = std::sin(phi);
-  Eigen::Matrix3d R;
-  R << c, -s, 0, s, c, 0, 0, 0, 1;
-  return R * matrix * R.transpose();
-}
-
 }  // namespace rubble::slam

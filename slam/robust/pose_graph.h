@@ -36,7 +36,5 @@ Linearised linearise(const GraphEdge& edge, const mrpt::math::TPose2D& from, con
 mrpt::math::TPose2D disagreement(const PoseGraph& graph, const GraphEdge& edge);
 /// The same in squared sigmas of the edge.
 double squared_sigmas(const PoseGraph& graph, const GraphEdge& edge);
-/// Covariance or information of a pose along axes from which the ones it is given along are turned by `phi` [rad].
-Eigen::Matrix3d turned(const Eigen::Matrix3d& matrix, double phi);
 
 }  // namespace rubble::slam

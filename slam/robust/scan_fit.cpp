@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/angle.h"
-#include "slam/robust/pose_graph.h"
 
 namespace rubble::slam {
 
@@ -79,6 +78,14 @@ NormalEquations pair_up(const SurfelGrid& target, const std::vector<OrientedPoin
 }
 
 }  // namespace
+
+Eigen::Matrix3d turned(const Eigen::Matrix3d& matrix, double phi) {
+  const double c = std::cos(phi);
+  const double s = std::sin(phi);
+  Eigen::Matrix3d R;
+  R << c, -s, 0, s, c, 0, 0, 0, 1;
+  return R * matrix * R.transpose();
+}
 
 ScanFit fit_scan(const SurfelGrid& target, const std::vector<OrientedPoint>& points, const TPose2D& start,
                  const PosePrior& prior, const ScanFitConfig& config, Work* work) {

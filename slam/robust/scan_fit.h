@@ -16,6 +16,9 @@ struct PosePrior {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< along the axes of `pose`
 };
 
+/// Covariance or information of a pose along axes from which the ones it is given along are turned by `phi` [rad].
+Eigen::Matrix3d turned(const Eigen::Matrix3d& matrix, double phi);
+
 struct ScanFitConfig {
   double sigma = 0.02;         ///< of a point's distance from its surfel's line [m]
   double first_radius = 0.30;  ///< points are paired with surfels at most so far away [m], at first
