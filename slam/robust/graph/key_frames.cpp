@@ -98,6 +98,19 @@ std::vector<int> KeyFrames::around(int i, int most, double path, int limit) cons
   return frames;
 }
 
+std::vector<int> KeyFrames::closest(const TPose2D& pose, double distance, std::size_t most, int end) const {
+  std::vector<std::pair<double, int>> close;
+  for (int i = 0; i < end; ++i) {
+    const double away = length(this->pose(i).x - pose.x, this->pose(i).y - pose.y);
+    if (away <= distance) close.emplace_back(away, i);
+  }
+  std::sort(close.begin(), close.end());
+  if (close.size() > most) close.resize(most);
+  std::vector<int> frames;
+  for (const auto& [away, i] : close) frames.push_back(i);
+  return frames;
+}
+
 void KeyFrames::draw(const std::vector<int>& frames, const TPose2D& origin, double cell, SurfelGrid& grid) const {
   constexpr double kFar = std::numeric_limits<double>::max();
   TPoint2D low(kFar, kFar);

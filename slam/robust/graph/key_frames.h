@@ -53,6 +53,8 @@ class KeyFrames {
   std::vector<int> ending_at(int i, int most, double path) const;
   /// Up to `most` key frames around i, the closest by path first, all below `limit`.
   std::vector<int> around(int i, int most, double path, int limit) const;
+  /// Up to `most` key frames below `end` that lie within `distance` [m] of a pose, the closest first.
+  std::vector<int> closest(const mrpt::math::TPose2D& pose, double distance, std::size_t most, int end) const;
   /// Surfels of key frames, seen from `origin`.
   void draw(const std::vector<int>& frames, const mrpt::math::TPose2D& origin, double cell, SurfelGrid& grid) const;
   /// Lengths of the shortest paths through the graph from i to `wanted` key frames, up to `most` [m]; infinite for

@@ -15,10 +15,7 @@ using mrpt::math::TPose2D;
 namespace {
 
 constexpr std::size_t kLeastSurfels = 40;
-constexpr std::size_t kMostPoints = 350;  ///< of the new key frames, in a search
 constexpr int kLeastLoopPairs = 30;
-constexpr double kRunnerUpAway = 0.45;   ///< another place lies at least so far away [m]
-constexpr double kRunnerUpTurned = 0.2;  ///< or is turned so much [rad]
 constexpr double kOtherCandidate = 3.0;  ///< candidates lie so far apart along the drive [m]
 constexpr double kNear = 0.8;            ///< near edges reach so far [m]
 constexpr double kLastNear = 1.0;        ///< at the end [m]
@@ -52,24 +49,6 @@ constexpr Work kWorkPerSuspected = 40;     ///< edge
 double size_of(const TPose2D& T) { return length(T.x, T.y); }
 double disagreement_of(const TPose2D& T) { return size_of(T) + 2.0 * std::abs(wrap_angle(T.phi)); }
 
-/// Information with errors added that no match is free of.
-Eigen::Matrix3d limited(const Eigen::Matrix3d& information, double sigma_distance, double sigma_angle) {
-  const double d2 = sigma_distance * sigma_distance;
-  const Eigen::Matrix3d floor = Eigen::Vector3d(d2, d2, sigma_angle * sigma_angle).asDiagonal();
-  const Eigen::Matrix3d known = information + 1e-6 * Eigen::Matrix3d::Identity();
-  return (known.inverse() + floor).inverse();
-}
-
-/// Every n-th surfel as a point, at most about `most`.
-std::vector<OrientedPoint> every_nth(const SurfelGrid& grid, std::size_t stride) {
-  std::vector<OrientedPoint> points;
-  const std::vector<Surfel>& surfels = grid.surfels();
-  points.reserve(surfels.size() / stride + 1);
-  for (std::size_t k = 0; k < surfels.size(); k += stride)
-    points.push_back({surfels[k].x, surfels[k].y, surfels[k].nx, surfels[k].ny});
-  return points;
-}
-
 ScanFitConfig fit_config(double first_radius) {
   ScanFitConfig config;
   config.first_radius = first_radius;
@@ -84,7 +63,8 @@ LoopCloser::LoopCloser(const LoopConfig& config, double surfel_cell, KeyFrames& 
       wide_fit_(fit_config(0.15)),
       near_fit_(fit_config(0.25)),
       surfel_cell_(surfel_cell),
-      frames_(frames) {}
+      frames_(frames),
+      search_({config.least_score, config.runner_up}) {}
 
 /// Key frames below `end` that lie within `distance` of where `frame` is expected, and no more than `most_path` away
 /// through the graph.
@@ -109,7 +89,7 @@ std::vector<LoopCloser::Candidate> LoopCloser::candidates_within(int frame, int 
 /// Other key frames have taken the place of those before: what waits is forgotten, edges that are there are known.
 void LoopCloser::begin_anew() {
   tasks_.clear();
-  stage_ = Stage::Idle;
+  search_.stop();
   closed_for_ = frames_.last();
   waiting_.clear();
   linked_.clear();
@@ -128,12 +108,17 @@ double LoopCloser::usual_window(double path) const {
   return std::min(config_.largest_window, config_.window + config_.window_per_m * path);
 }
 
+/// The first key frame that does not lie far enough back along the drive to close a loop with `frame`.
+int LoopCloser::end_of_old(int frame) const {
+  int end = 0;
+  while (end < frame && frames_[frame].path - frames_[end].path >= config_.least_path) ++end;
+  return end;
+}
+
 void LoopCloser::look(Work* work) {
   const int i = frames_.last();
-  int end = 0;  // of those that lie far enough back along the drive
-  while (end < i && frames_[i].path - frames_[end].path >= config_.least_path) ++end;
-  const std::vector<Candidate> close =
-      candidates_within(i, end, config_.reach + config_.largest_window, std::numeric_limits<double>::infinity(), work);
+  const std::vector<Candidate> close = candidates_within(i, end_of_old(i), config_.reach + config_.largest_window,
+                                                         std::numeric_limits<double>::infinity(), work);
   // Between walls that look the same all along, wheels that spin carry the robot away and nothing tells. Once it looks
   // out of there, it or old key frames see through walls of the other, however short the way back through the graph.
   const bool strayed = astray_ = testimony(i, work).one_way >= config_.astray_contradiction;
@@ -164,21 +149,13 @@ void LoopCloser::look(Work* work) {
 
 /// What the old key frames closest by say of a key frame, and it of them.
 LoopCloser::Testimony LoopCloser::testimony(int frame, Work* work) const {
-  const TPose2D& here = frames_.pose(frame);
-  std::vector<std::pair<double, int>> close;
-  for (int old = 0; old < frame && frames_[frame].path - frames_[old].path >= config_.least_path; ++old) {
-    const double away = length(frames_.pose(old).x - here.x, frames_.pose(old).y - here.y);
-    if (away < kWitnessAway) close.emplace_back(away, old);
-  }
-  std::sort(close.begin(), close.end());
-  if (close.size() > kLoopWitnesses) close.resize(kLoopWitnesses);
   KeyFrames::Agreement there;
   KeyFrames::Agreement back;
   const auto sum = [](KeyFrames::Agreement& all, const KeyFrames::Agreement& more) {
     all.contradicted += more.contradicted;
     all.supported += more.supported;
   };
-  for (const auto& [away, old] : close) {
+  for (const int old : frames_.closest(frames_.pose(frame), kWitnessAway, kLoopWitnesses, end_of_old(frame))) {
     sum(there, frames_.agreement(frames_[frame].cloud.points, {}, frames_.pose(frame), {old}));
     sum(back, frames_.agreement(frames_[old].cloud.points, {}, frames_.pose(old), {frame}));
     if (work != nullptr)
@@ -221,7 +198,7 @@ bool LoopCloser::work(Work& budget) {
   while (budget > 0) {
     if (solver_.running()) {
       moved = solve(budget) || moved;
-    } else if (stage_ != Stage::Idle) {
+    } else if (search_.running()) {
       go_on(budget);
     } else if (!tasks_.empty()) {
       const Task task = tasks_.front();
@@ -251,9 +228,7 @@ void LoopCloser::begin(const Task& task, Work& budget) {
   budget -= used;
   task_ = task;
   const TPose2D expected = frames_.pose(task.frame) - frames_.pose(task.old);
-  search_.start(correlator_, points_, {expected, task.window, task.angle}, config_.least_score, std::nullopt,
-                config_.runner_up * config_.least_score);
-  stage_ = Stage::Best;
+  search_.start(correlator_, points_, {expected, task.window, task.angle});
 }
 
 /// The two sub-maps of a task; false when one of them shows too little.
@@ -263,30 +238,21 @@ bool LoopCloser::draw_both(const Task& task) {
   frames_.draw(old_frames_, frames_.pose(task.old), surfel_cell_, old_surfels_);
   if (old_surfels_.surfels().size() < kLeastSurfels) return false;
   frames_.draw(new_frames_, frames_.pose(task.frame), surfel_cell_, new_surfels_);
-  points_ = every_nth(new_surfels_, std::max<std::size_t>(1, new_surfels_.surfels().size() / kMostPoints));
+  points_ = new_surfels_.thinned_to(kSearchedPoints);
   if (points_.size() < kLeastSurfels) {
     points_.clear();
     return false;
   }
-  old_points_ = every_nth(old_surfels_, 2);
+  old_points_ = old_surfels_.every_nth(2);
   return true;
 }
 
 void LoopCloser::go_on(Work& budget) {
-  if (!search_.advance(budget)) return;
-  if (stage_ == Stage::Best) {
-    stage_ = Stage::Idle;
-    if (!search_.found()) return;
-    best_ = *search_.found();
-    search_.start_again(config_.runner_up * best_.score, {best_.pose, kRunnerUpAway, kRunnerUpTurned});
-    stage_ = Stage::RunnerUp;
-    return;
-  }
-  stage_ = Stage::Idle;
-  if (search_.found())
+  if (!search_.advance(budget) || !search_.best()) return;
+  if (search_.rival())
     ++counts_.ambiguous;
   else
-    verify(task_, best_.pose, budget);
+    verify(task_, search_.best()->pose, budget);
 }
 
 void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
@@ -315,12 +281,6 @@ void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
     accept(loop, true);
   else
     confirm({loop, contradiction <= config_.sure_contradiction, size_of(moved) <= usual_window(task.path)});
-}
-
-/// A sub-map that can slide along the other (a corridor) closes no loop.
-bool LoopCloser::well_conditioned(const ScanFit& fit) const {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(fit.information.topLeftCorner<2, 2>());
-  return axes.eigenvalues()[0] >= 0.02 * axes.eigenvalues()[1] && axes.eigenvalues()[0] >= 150.0;
 }
 
 /// Whether the loop would have beams pass through walls; or, null test, whether the pose expected without it does not:

@@ -98,13 +98,11 @@ class LoopCloser {
     double angle = 0.0;
     double path = 0.0;  ///< through the graph
   };
-  enum class Stage { Idle, Best, RunnerUp };
 
   void begin(const Task& task, Work& budget);
   bool draw_both(const Task& task);
   void go_on(Work& budget);
   void verify(const Task& task, const mrpt::math::TPose2D& start, Work& budget);
-  bool well_conditioned(const ScanFit& fit) const;
   bool sees_through(const Task& task, const mrpt::math::TPose2D& T_old_new, const mrpt::math::TPose2D& T_expected,
                     double* contradiction);
   /// A loop that waits for others to agree.
@@ -123,6 +121,7 @@ class LoopCloser {
     double away;  ///< [m]
     double path;  ///< through the graph [m]
   };
+  int end_of_old(int frame) const;
   std::vector<Candidate> candidates_within(int frame, int end, double distance, double most_path, Work* work) const;
   double usual_window(double path) const;
   /// Shares of points that are contradicted; 0: too little is seen by both.
@@ -148,7 +147,6 @@ class LoopCloser {
   KeyFrames& frames_;
 
   std::deque<Task> tasks_;
-  Stage stage_ = Stage::Idle;
   Task task_{};                  ///< the one under way
   int closed_for_ = -1;          ///< newest key frame with an edge of its own
   std::vector<int> new_frames_;  ///< of the task under way
@@ -158,8 +156,7 @@ class LoopCloser {
   std::vector<OrientedPoint> points_;      ///< of the new key frames
   std::vector<OrientedPoint> old_points_;  ///< of the old ones
   Correlator correlator_;
-  CorrelativeSearch search_;
-  CorrelativeSearch::Found best_;
+  RivalSearch search_;
 
   std::deque<Claim> waiting_;
   std::set<std::pair<int, int>> linked_;  ///< pairs with an edge already

@@ -21,7 +21,6 @@ constexpr double kFinestCell = 0.10;    ///< cell of that raster [m]
 constexpr double kCoarsestCell = 0.40;  ///< [m]
 constexpr double kBlurCells = 1.0;      ///< sigma of a surface in it
 constexpr std::size_t kLeastPlacePoints = 60;
-constexpr std::size_t kMostPlacePoints = 350;  ///< in a search
 constexpr int kLeastPlacePairs = 40;
 constexpr double kOtherPlaceAway = 0.6;      ///< another place lies at least so far away [m]
 constexpr double kOtherPlaceTurned = 0.25;   ///< or is turned so much [rad]
@@ -32,31 +31,18 @@ constexpr double kTieAngle = 0.008;          ///< [rad]
 
 TPose2D inverse(const TPose2D& T) { return TPose2D() - T; }
 
-std::vector<OrientedPoint> at_most(const std::vector<Surfel>& surfels, std::size_t most) {
-  const std::size_t stride = std::max<std::size_t>(1, surfels.size() / most);
-  std::vector<OrientedPoint> points;
-  for (std::size_t k = 0; k < surfels.size(); k += stride)
-    points.push_back({surfels[k].x, surfels[k].y, surfels[k].nx, surfels[k].ny});
-  return points;
-}
-
-bool well_conditioned(const Eigen::Matrix3d& information) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(information.topLeftCorner<2, 2>());
-  return axes.eigenvalues()[0] >= 0.02 * axes.eigenvalues()[1] && axes.eigenvalues()[0] >= 150.0;
-}
-
 /// Of a fit, given along the axes of the map, along those of `from`, with an error that no match is free of.
 Eigen::Matrix3d tie_information(const Eigen::Matrix3d& information, const TPose2D& from) {
-  const Eigen::Matrix3d known = turned(information, -from.phi) + 1e-6 * Eigen::Matrix3d::Identity();
-  const double d2 = kTieDistance * kTieDistance;
-  const Eigen::Matrix3d floor = Eigen::Vector3d(d2, d2, kTieAngle * kTieAngle).asDiagonal();
-  return (known.inverse() + floor).inverse();
+  return limited(turned(information, -from.phi), kTieDistance, kTieAngle);
 }
 
 }  // namespace
 
 PlaceFinder::PlaceFinder(const KeyFrames& map, const PlaceConfig& config, double surfel_cell)
-    : map_(map), config_(config), surfel_cell_(surfel_cell) {
+    : map_(map),
+      config_(config),
+      surfel_cell_(surfel_cell),
+      search_({config.least_score, config.runner_up, kOtherPlaceAway, kOtherPlaceTurned}) {
   std::vector<int> all(static_cast<std::size_t>(map.size()));
   std::iota(all.begin(), all.end(), 0);
   map.draw(all, TPose2D(), surfel_cell, surfels_);
@@ -72,11 +58,11 @@ PlaceFinder::PlaceFinder(const KeyFrames& map, const PlaceConfig& config, double
   extent_ = 0.5 * std::max(high.x - low.x, high.y - low.y) + 1.0;
   const double cell = std::clamp(extent_ / kCells, kFinestCell, kCoarsestCell);
   correlator_.build(surfels_.surfels(), cell, kBlurCells * cell);
-  map_points_ = at_most(surfels_.surfels(), surfels_.surfels().size());
+  map_points_ = surfels_.every_nth(1);
 }
 
 void PlaceFinder::begin() {
-  stage_ = Stage::Idle;
+  search_.stop();
   newest_ = frame_ = -1;
   T_map_expected_.reset();
   believed_.clear();
@@ -96,35 +82,26 @@ bool PlaceFinder::expected(const KeyFrames& drive) const {
 
 void PlaceFinder::work(const KeyFrames& drive, Work& budget) {
   while (budget > 0 && !found_ && !surfels_.empty()) {
-    if (stage_ == Stage::Idle) {
+    if (!search_.running()) {
       if (newest_ < 0) return;
       frame_ = newest_;
       newest_ = -1;
       start_search(drive, budget);
-      continue;
+    } else if (search_.advance(budget)) {
+      weigh(drive, budget);
     }
-    if (!search_.advance(budget)) return;
-    if (stage_ == Stage::Best) {
-      stage_ = Stage::Idle;
-      if (!search_.found()) {
-        ++counts_.nowhere;
-        continue;
-      }
-      best_ = *search_.found();
-      search_.start_again(config_.runner_up * best_.score, {best_.pose, kOtherPlaceAway, kOtherPlaceTurned});
-      stage_ = Stage::RunnerUp;
-      continue;
-    }
-    stage_ = Stage::Idle;
-    weigh(drive, budget);
   }
 }
 
 void PlaceFinder::weigh(const KeyFrames& drive, Work& budget) {
-  const std::optional<GraphEdge> tie = judge(drive, best_.pose, budget);
+  if (!search_.best()) {
+    ++counts_.nowhere;
+    return;
+  }
+  const std::optional<GraphEdge> tie = judge(drive, search_.best()->pose, budget);
   if (!tie) {
     ++counts_.contradicted;
-  } else if (search_.found() && judge(drive, search_.found()->pose, budget)) {
+  } else if (search_.rival() && judge(drive, search_.rival()->pose, budget)) {
     ++counts_.ambiguous;
   } else {
     ++counts_.believed;
@@ -137,30 +114,14 @@ void PlaceFinder::start_search(const KeyFrames& drive, Work& budget) {
   SurfelGrid seen;
   drive.draw(frames_, drive.pose(frame_), surfel_cell_, seen);
   budget -= kWorkPerDrawnFrame * static_cast<Work>(frames_.size());
-  points_ = at_most(seen.surfels(), kMostPlacePoints);
+  points_ = seen.thinned_to(kSearchedPoints);
   const bool short_drive = drive[frame_].path < config_.least_path && !(told_ && expected(drive));
   if (points_.size() < kLeastPlacePoints || short_drive) return;
   ++counts_.searched;
   SearchWindow window{middle_, extent_, kPi};
   if (expected(drive))
     window = {*T_map_expected_ + drive.pose(frame_), config_.expected_distance, config_.expected_angle};
-  search_.start(correlator_, points_, window, config_.least_score, std::nullopt,
-                config_.runner_up * config_.least_score);
-  stage_ = Stage::Best;
-}
-
-/// The key frames of the map around a pose, closest first.
-std::vector<int> PlaceFinder::closest(const TPose2D& T_map_frame, std::size_t most) const {
-  std::vector<std::pair<double, int>> close;
-  for (int i = 0; i < map_.size(); ++i) {
-    const double away = length(map_.pose(i).x - T_map_frame.x, map_.pose(i).y - T_map_frame.y);
-    if (away <= kPlaceWitnessAway) close.emplace_back(away, i);
-  }
-  std::sort(close.begin(), close.end());
-  if (close.size() > most) close.resize(most);
-  std::vector<int> frames;
-  for (const auto& [away, i] : close) frames.push_back(i);
-  return frames;
+  search_.start(correlator_, points_, window);
 }
 
 bool PlaceFinder::contradicted(const KeyFrames& drive, const TPose2D& T_map_frame,
@@ -183,10 +144,10 @@ std::optional<GraphEdge> PlaceFinder::judge(const KeyFrames& drive, const TPose2
   fitting.iterations = 20;
   Work used = 0;
   const ScanFit fit = fit_scan(surfels_, points_, start, {start, 1e-3 * Eigen::Matrix3d::Identity()}, fitting, &used);
-  const std::vector<int> close = closest(fit.pose, kPlaceWitnesses);
+  const std::vector<int> close = map_.closest(fit.pose, kPlaceWitnessAway, kPlaceWitnesses, map_.size());
   budget -= used + kWorkPerJudged * static_cast<Work>(points_.size() * (close.size() + frames_.size()));
-  if (close.empty() || fit.inliers < config_.least_inliers || fit.paired < kLeastPlacePairs ||
-      !well_conditioned(fit.information) || contradicted(drive, fit.pose, close))
+  if (close.empty() || fit.inliers < config_.least_inliers || fit.paired < kLeastPlacePairs || !well_conditioned(fit) ||
+      contradicted(drive, fit.pose, close))
     return std::nullopt;
   GraphEdge tie;
   tie.from = close.front();

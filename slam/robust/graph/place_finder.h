@@ -70,14 +70,11 @@ class PlaceFinder {
   const PlaceCounts& counts() const { return counts_; }
 
  private:
-  enum class Stage { Idle, Best, RunnerUp };
-
   void start_search(const KeyFrames& drive, Work& budget);
   void weigh(const KeyFrames& drive, Work& budget);
   std::optional<GraphEdge> judge(const KeyFrames& drive, const mrpt::math::TPose2D& start, Work& budget) const;
   bool contradicted(const KeyFrames& drive, const mrpt::math::TPose2D& T_map_frame,
                     const std::vector<int>& close) const;
-  std::vector<int> closest(const mrpt::math::TPose2D& T_map_frame, std::size_t most) const;
   void believe(const KeyFrames& drive, const GraphEdge& tie);
   bool expected(const KeyFrames& drive) const;
 
@@ -90,9 +87,7 @@ class PlaceFinder {
   mrpt::math::TPose2D middle_;  ///< of the map
   double extent_ = 0.0;         ///< from there to its edges [m]
 
-  Stage stage_ = Stage::Idle;
-  CorrelativeSearch search_;
-  CorrelativeSearch::Found best_;
+  RivalSearch search_;
   int newest_ = -1;                    ///< key frame of the drive that waits
   int frame_ = -1;                     ///< that is being looked for
   std::vector<int> frames_;            ///< of the drive, that are matched

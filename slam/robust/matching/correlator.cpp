@@ -398,6 +398,26 @@ bool CorrelativeSearch::excluded(const TPose2D& pose) const {
          std::abs(wrap_angle(pose.phi - exclusion_->pose.phi)) < exclusion_->angle;
 }
 
+void RivalSearch::start(const Correlator& target, const std::vector<OrientedPoint>& points,
+                        const SearchWindow& window) {
+  best_.reset();
+  search_.start(target, points, window, config_.least_score, std::nullopt, config_.share * config_.least_score);
+  stage_ = Stage::Best;
+}
+
+bool RivalSearch::advance(Work& budget) {
+  while (running() && budget > 0) {
+    if (!search_.advance(budget)) return false;
+    const bool first = stage_ == Stage::Best;
+    stage_ = Stage::Idle;
+    if (!first || !search_.found()) continue;
+    best_ = search_.found();
+    search_.start_again(config_.share * best_->score, {best_->pose, config_.distance, config_.angle});
+    stage_ = Stage::Rival;
+  }
+  return !running();
+}
+
 std::optional<CorrelativeSearch::Found> search(const Correlator& target, const std::vector<OrientedPoint>& points,
                                                const SearchWindow& window, double floor,
                                                const std::optional<SearchExclusion>& exclusion, Work* work) {

@@ -135,6 +135,41 @@ class CorrelativeSearch {
   Work used_ = 0;
 };
 
+/// Points of a sub-map that are searched with: more tell little more.
+inline constexpr std::size_t kSearchedPoints = 350;
+
+/// What makes another place a rival of the best one.
+struct RivalConfig {
+  double least_score = 0.5;                      ///< of the best one
+  double share = 0.9;                            ///< of its score
+  double distance = SearchExclusion{}.distance;  ///< so far away from it [m] ...
+  double angle = SearchExclusion{}.angle;        ///< ... or turned so much [rad]
+};
+
+/// Looks for the best pose in a window and then for its rival. Can be stopped and taken up again as the search itself.
+class RivalSearch {
+ public:
+  explicit RivalSearch(const RivalConfig& config) : config_(config) {}
+
+  /// `target` must stay as it is until the search is over.
+  void start(const Correlator& target, const std::vector<OrientedPoint>& points, const SearchWindow& window);
+  void stop() { stage_ = Stage::Idle; }
+  bool running() const { return stage_ != Stage::Idle; }
+  /// Goes on until the search is over (then true) or `budget` is used up; takes what it used from `budget`.
+  bool advance(Work& budget);
+  /// The best pose; nothing when none scores enough.
+  const std::optional<CorrelativeSearch::Found>& best() const { return best_; }
+  const std::optional<CorrelativeSearch::Found>& rival() const { return search_.found(); }
+
+ private:
+  enum class Stage { Idle, Best, Rival };
+
+  const RivalConfig config_;
+  CorrelativeSearch search_;
+  Stage stage_ = Stage::Idle;
+  std::optional<CorrelativeSearch::Found> best_;
+};
+
 /// The whole search at once.
 std::optional<CorrelativeSearch::Found> search(const Correlator& target, const std::vector<OrientedPoint>& points,
                                                const SearchWindow& window, double floor,

@@ -1,6 +1,8 @@
 #include "slam/robust/matching/scan_fit.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -15,8 +17,10 @@ namespace {
 constexpr float kInlier = 0.06F;       ///< [m]
 constexpr double kLeastKernel = 0.05;  ///< of the Cauchy weight [m]
 constexpr int kLeastFitPairs = 8;
-constexpr double kTightening = 0.6;  ///< of the radius, from step to step
-constexpr Work kWorkPerPoint = 60;   ///< of pairing one point
+constexpr double kTightening = 0.6;    ///< of the radius, from step to step
+constexpr double kLeastAcross = 0.02;  ///< information in the worse direction, of that in the better one
+constexpr double kLeastKnown = 150.0;  ///< and at least so much [1/m^2]
+constexpr Work kWorkPerPoint = 60;     ///< of pairing one point
 
 /// Sums of one Gauss-Newton step.
 struct NormalEquations {
@@ -78,6 +82,18 @@ NormalEquations pair_up(const SurfelGrid& target, const std::vector<OrientedPoin
 }
 
 }  // namespace
+
+bool well_conditioned(const ScanFit& fit) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(fit.information.topLeftCorner<2, 2>());
+  return axes.eigenvalues()[0] >= kLeastAcross * axes.eigenvalues()[1] && axes.eigenvalues()[0] >= kLeastKnown;
+}
+
+Eigen::Matrix3d limited(const Eigen::Matrix3d& information, double sigma_distance, double sigma_angle) {
+  const double d2 = sigma_distance * sigma_distance;
+  const Eigen::Matrix3d floor = Eigen::Vector3d(d2, d2, sigma_angle * sigma_angle).asDiagonal();
+  const Eigen::Matrix3d known = information + 1e-6 * Eigen::Matrix3d::Identity();
+  return (known.inverse() + floor).inverse();
+}
 
 Eigen::Matrix3d turned(const Eigen::Matrix3d& matrix, double phi) {
   const double c = std::cos(phi);

@@ -16,9 +16,6 @@ struct PosePrior {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< along the axes of `pose`
 };
 
-/// Covariance or information of a pose along axes from which the ones it is given along are turned by `phi` [rad].
-Eigen::Matrix3d turned(const Eigen::Matrix3d& matrix, double phi);
-
 struct ScanFitConfig {
   double sigma = 0.02;         ///< of a point's distance from its surfel's line [m]
   double first_radius = 0.30;  ///< points are paired with surfels at most so far away [m], at first
@@ -41,5 +38,12 @@ struct ScanFit {
 /// to step. Where the surfaces leave a direction open (a corridor), the prior alone decides there.
 ScanFit fit_scan(const SurfelGrid& target, const std::vector<OrientedPoint>& points, const mrpt::math::TPose2D& start,
                  const PosePrior& prior, const ScanFitConfig& config, Work* work = nullptr);
+
+/// Whether the points alone hold the pose in both directions: what can slide along a wall (a corridor) does not.
+bool well_conditioned(const ScanFit& fit);
+/// Information with errors added that no match is free of: `sigma_distance` [m], `sigma_angle` [rad].
+Eigen::Matrix3d limited(const Eigen::Matrix3d& information, double sigma_distance, double sigma_angle);
+/// Covariance or information of a pose along axes from which the ones it is given along are turned by `phi` [rad].
+Eigen::Matrix3d turned(const Eigen::Matrix3d& matrix, double phi);
 
 }  // namespace rubble::slam

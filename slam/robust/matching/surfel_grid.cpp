@@ -115,4 +115,16 @@ const Surfel* SurfelGrid::nearest(float x, float y, float nx, float ny, float ra
   return found;
 }
 
+std::vector<OrientedPoint> SurfelGrid::every_nth(std::size_t n) const {
+  std::vector<OrientedPoint> points;
+  points.reserve(surfels_.size() / n + 1);
+  for (std::size_t k = 0; k < surfels_.size(); k += n)
+    points.push_back({surfels_[k].x, surfels_[k].y, surfels_[k].nx, surfels_[k].ny});
+  return points;
+}
+
+std::vector<OrientedPoint> SurfelGrid::thinned_to(std::size_t most) const {
+  return every_nth(std::max<std::size_t>(1, surfels_.size() / most));
+}
+
 }  // namespace rubble::slam

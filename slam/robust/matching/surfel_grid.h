@@ -30,6 +30,10 @@ class SurfelGrid {
   const Surfel* nearest(float x, float y, float nx, float ny, float radius) const;
   const std::vector<Surfel>& surfels() const { return surfels_; }
   bool empty() const { return surfels_.empty(); }
+  /// Every n-th surfel as a point.
+  std::vector<OrientedPoint> every_nth(std::size_t n) const;
+  /// As many of them, evenly taken, as are not twice `most`.
+  std::vector<OrientedPoint> thinned_to(std::size_t most) const;
 
  private:
   /// A point that was added, in the grid's frame.
