@@ -240,7 +240,7 @@ YamlMap composed_arena(const YamlMap& root, const std::string& path) {
   if (!root.has("include")) return root;
   const ArenaFile file = read_arena_tree(root, path);
   const YamlMap settings = shared_settings(file);
-  const YamlMap whole = composed(file, settings.number("cell_m", 1.2, 0.5, 5.0));
+  const YamlMap whole = composed(file, settings.number("cell_m", kPallet, 0.5, 5.0));
   for (const YamlNode::Entry& setting : settings.tree()->entries) {
     if (whole.tree()->find(setting.key) == nullptr) whole.tree()->entries.push_back(setting);
   }

@@ -44,7 +44,7 @@ YamlMap raf_document(const YamlMap& entry, const std::string& path) {
       entries.end());
   YamlPlace top = root.tree()->place;
   top.line = top.column = 0;
-  entries.push_back({"cell_m", top, number_node(1.2, top)});
+  entries.push_back({"cell_m", top, number_node(kPallet, top)});
   return root;
 }
 
