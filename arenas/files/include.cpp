@@ -163,7 +163,7 @@ class Composition {
         const std::string name = YamlMap::of(entry).text("name", std::nullopt);
         own.insert(name);
         if (names.count(name) == 0) continue;
-        file->entry.fail("file", "two victims are named " + rubble::quoted(name) +
+        file->entry.fail("file", "two victims are named " + in_quotes(name) +
                                      "; give this piece a name, for example 'name: west', to put before its victims'");
       }
       names.insert(own.begin(), own.end());

@@ -112,7 +112,7 @@ void share_settings(const YamlMap& out, const ArenaFile& file) {
     if (!out.has(key)) {
       out.tree()->entries.push_back(*piece.tree()->find(key));
     } else if (out.number(key, std::nullopt, -1e9, 1e9) != value) {
-      piece.fail(key, rubble::quoted(key) + " is " + piece.text(key, std::nullopt) + " here but " +
+      piece.fail(key, in_quotes(key) + " is " + piece.text(key, std::nullopt) + " here but " +
                           out.text(key, std::nullopt) + " at " + out.place(key) +
                           "; an arena has one: give it in one file, or the same in both");
     }
