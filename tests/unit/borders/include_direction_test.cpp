@@ -77,7 +77,8 @@ const std::map<std::string, Folders>& wings() {
       {"explore/*", {"explore", "explore/plan", "explore/caution", "explore/search"}},
       {"slam/process", {"slam", "slam/grid", "slam/scan"}},
       {"slam/peers", {"slam", "slam/grid", "slam/scan", "slam/process"}},
-      {"scoring/maps", {}},
+      {"scoring/maps", {"scoring/maps/colours"}},
+      {"scoring/maps/colours", {}},
       {"scoring/walls", {}},
       {"scoring/measures", {"scoring/walls"}},
       {"scoring/proposals", {"scoring/walls"}},
@@ -101,10 +102,15 @@ const std::map<std::string, Folders>& wings() {
 
 /// Wings that nobody outside their room may include (tests and benchmarks apart).
 const Folders& insides() {
-  static const Folders table = {"explore/caution",   "explore/plan",      "explore/search",       "robot/logs/own",
-                                "scoring/alignment", "scoring/proposals", "scoring/rooms",        "scoring/walls",
-                                "sim/body",          "sim/laser",         "slam/peers",           "slam/robust",
-                                "slam/robust/graph", "slam/robust/map",   "slam/robust/matching", "slam/scan"};
+  static const Folders table = {"explore/caution",   "explore/plan",
+                                "explore/search",    "robot/logs/own",
+                                "scoring/alignment", "scoring/maps/colours",
+                                "scoring/proposals", "scoring/rooms",
+                                "scoring/walls",     "sim/body",
+                                "sim/laser",         "slam/peers",
+                                "slam/robust",       "slam/robust/graph",
+                                "slam/robust/map",   "slam/robust/matching",
+                                "slam/scan"};
   return table;
 }
 

@@ -1,4 +1,4 @@
-#include "scoring/maps/grey_roles.h"
+#include "scoring/maps/colours/grey_roles.h"
 
 #include <gtest/gtest.h>
 

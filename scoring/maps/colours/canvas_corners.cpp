@@ -1,4 +1,4 @@
-#include "scoring/maps/canvas_corners.h"
+#include "scoring/maps/colours/canvas_corners.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "scoring/maps/league_colours.h"
+#include "scoring/maps/colours/league_colours.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/grid.h"
-#include "scoring/maps/league_palette.h"
-#include "scoring/maps/lossy_colours.h"
+#include "scoring/maps/colours/league_palette.h"
+#include "scoring/maps/colours/lossy_colours.h"
 
 namespace rubble::scoring {
 namespace {

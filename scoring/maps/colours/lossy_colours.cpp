@@ -1,4 +1,4 @@
-#include "scoring/maps/lossy_colours.h"
+#include "scoring/maps/colours/lossy_colours.h"
 
 #include <algorithm>
 #include <cstdlib>

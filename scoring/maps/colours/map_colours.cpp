@@ -1,10 +1,10 @@
-#include "scoring/maps/map_colours.h"
+#include "scoring/maps/colours/map_colours.h"
 
 #include <opencv2/imgproc.hpp>
 
-#include "scoring/maps/canvas_corners.h"
-#include "scoring/maps/grey_levels.h"
-#include "scoring/maps/league_colours.h"
+#include "scoring/maps/colours/canvas_corners.h"
+#include "scoring/maps/colours/grey_levels.h"
+#include "scoring/maps/colours/league_colours.h"
 
 namespace rubble::scoring {
 

@@ -1,11 +1,11 @@
-#include "scoring/maps/grey_levels.h"
+#include "scoring/maps/colours/grey_levels.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <opencv2/imgproc.hpp>
 
 #include "base/grid.h"
-#include "scoring/maps/grey_roles.h"
+#include "scoring/maps/colours/grey_roles.h"
 
 namespace rubble::scoring {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/image/geotiff.h"
-#include "scoring/maps/grey_levels.h"
+#include "scoring/maps/colours/grey_levels.h"
 
 namespace rubble::scoring {
 
