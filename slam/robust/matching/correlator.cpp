@@ -418,15 +418,4 @@ bool RivalSearch::advance(Work& budget) {
   return !running();
 }
 
-std::optional<CorrelativeSearch::Found> search(const Correlator& target, const std::vector<OrientedPoint>& points,
-                                               const SearchWindow& window, double floor,
-                                               const std::optional<SearchExclusion>& exclusion, Work* work) {
-  CorrelativeSearch search;
-  search.start(target, points, window, floor, exclusion);
-  Work budget = std::numeric_limits<Work>::max();
-  search.advance(budget);
-  if (work != nullptr) *work += std::numeric_limits<Work>::max() - budget;
-  return search.found();
-}
-
 }  // namespace rubble::slam

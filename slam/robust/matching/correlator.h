@@ -170,9 +170,4 @@ class RivalSearch {
   std::optional<CorrelativeSearch::Found> best_;
 };
 
-/// The whole search at once.
-std::optional<CorrelativeSearch::Found> search(const Correlator& target, const std::vector<OrientedPoint>& points,
-                                               const SearchWindow& window, double floor,
-                                               const std::optional<SearchExclusion>& exclusion, Work* work = nullptr);
-
 }  // namespace rubble::slam

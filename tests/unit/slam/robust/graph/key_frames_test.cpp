@@ -42,6 +42,14 @@ GraphEdge loop_between(int from, int to) {
   return edge;
 }
 
+TEST(KeyFrames, TheClosestComeFirst) {
+  const KeyFrames frames = line_of(10);
+  EXPECT_EQ(frames.closest({4.2, 0.0, 1.0}, 1.5, 8, 10), (std::vector<int>{4, 5, 3}));
+  EXPECT_EQ(frames.closest({4.2, 0.0, 1.0}, 1.5, 2, 10), (std::vector<int>{4, 5}));
+  EXPECT_EQ(frames.closest({4.2, 0.0, 1.0}, 1.5, 8, 5), (std::vector<int>{4, 3})) << "only those below the end";
+  EXPECT_TRUE(frames.closest({4.2, 2.0, 1.0}, 1.5, 8, 10).empty());
+}
+
 TEST(KeyFrames, PathsAreTheShortestOfAll) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

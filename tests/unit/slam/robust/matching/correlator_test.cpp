@@ -59,6 +59,18 @@ std::vector<Cell> cells_at(const Scene& scene, double phi, double x, double y) {
   return cells;
 }
 
+/// The whole search at once.
+std::optional<CorrelativeSearch::Found> search(const Correlator& target, const std::vector<OrientedPoint>& points,
+                                               const SearchWindow& window, double floor,
+                                               const std::optional<SearchExclusion>& exclusion, Work* work = nullptr) {
+  CorrelativeSearch search;
+  search.start(target, points, window, floor, exclusion);
+  Work budget = std::numeric_limits<Work>::max();
+  search.advance(budget);
+  if (work != nullptr) *work += std::numeric_limits<Work>::max() - budget;
+  return search.found();
+}
+
 /// The best score of all poses on the search's raster, one by one.
 double best_by_trying(const Scene& scene, const SearchWindow& window, double angle_step,
                       const std::optional<SearchExclusion>& exclusion) {
@@ -141,6 +153,57 @@ TEST(CorrelativeSearch, FindsTheBestOfAllPoses) {
     EXPECT_TRUE(length(other->pose.x - found->pose.x, other->pose.y - found->pose.y) >= 0.2 ||
                 std::abs(wrap_angle(other->pose.phi - found->pose.phi)) >= 0.1);
   }
+}
+
+TEST(RivalSearch, IsTheBestAndThenTheBestElsewhereWhereverItIsStopped) {
+  int rivals = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Rng rng(seed, "search");
+    const Scene scene = random_scene(rng, {0.1, -0.1, 0.05});
+    const SearchWindow window{{0.05, 0.0, 0.0}, 0.5, 0.2};
+    const RivalConfig config{0.3, 0.12 * static_cast<double>(seed), 0.2, 0.1};
+    const auto best = search(scene.correlator, scene.points, window, config.least_score, std::nullopt);
+    ASSERT_TRUE(best);
+    const auto rival = search(scene.correlator, scene.points, window, config.share * best->score,
+                              SearchExclusion{best->pose, config.distance, config.angle});
+    rivals += rival ? 1 : 0;
+    for (const Work slice : {Work{1}, Work{20000}, std::numeric_limits<Work>::max()}) {
+      RivalSearch both(config);
+      EXPECT_FALSE(both.running());
+      both.start(scene.correlator, scene.points, window);
+      EXPECT_TRUE(both.running());
+      Work budget = slice;
+      while (!both.advance(budget)) {
+        ASSERT_LE(budget, 0) << "gave up with work left";
+        budget = slice;
+      }
+      EXPECT_FALSE(both.running());
+      ASSERT_TRUE(both.best());
+      EXPECT_EQ(both.best()->score, best->score);
+      EXPECT_EQ(both.best()->pose, best->pose);
+      ASSERT_EQ(both.rival().has_value(), rival.has_value());
+      if (rival) {
+        EXPECT_EQ(both.rival()->score, rival->score);
+      }
+    }
+  }
+  EXPECT_GT(rivals, 0);
+  EXPECT_LT(rivals, 8);
+}
+
+TEST(RivalSearch, WithoutABestPlaceThereIsNoRival) {
+  Rng rng(1, "search");
+  const Scene scene = random_scene(rng, {0.1, -0.1, 0.05});
+  RivalSearch both({0.2, 0.9});
+  Work budget = std::numeric_limits<Work>::max();
+  both.start(scene.correlator, scene.points, {{}, 0.3, 0.1});
+  ASSERT_TRUE(both.advance(budget));
+  ASSERT_TRUE(both.best());
+  both.start(scene.correlator, scene.points, {{30.0, 30.0, 0.0}, 0.3, 0.1});
+  ASSERT_TRUE(both.advance(budget));
+  EXPECT_FALSE(both.best()) << "of the search before";
+  EXPECT_FALSE(both.rival());
 }
 
 TEST(CorrelativeSearch, LookingAgainFindsWhatANewSearchFinds) {

@@ -86,6 +86,7 @@ TEST(ScanFit, FindsThePoseOfPointsWithoutNoise) {
     EXPECT_NEAR(fit.pose.y, truth.y, 2e-3);
     EXPECT_NEAR(wrap_angle(fit.pose.phi - truth.phi), 0.0, 1e-3);
     EXPECT_GT(fit.inliers, 0.98);
+    EXPECT_TRUE(well_conditioned(fit));
   }
 }
 
@@ -151,6 +152,7 @@ TEST(ScanFit, AlongACorridorThePriorAloneDecides) {
   EXPECT_NEAR(fit.pose.phi, 0.05, 2e-3);
   const double along = fit.information(0, 0);
   EXPECT_LT(along, 0.02 * fit.information(1, 1));
+  EXPECT_FALSE(well_conditioned(fit));
 }
 
 TEST(ScanFit, AStrongPriorHoldsThePose) {
