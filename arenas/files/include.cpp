@@ -6,6 +6,7 @@
 
 #include "arenas/files/include_tree.h"
 #include "arenas/files/piece.h"
+#include "arenas/model/arena.h"
 #include "base/text/text_file.h"
 #include "base/text/words.h"
 

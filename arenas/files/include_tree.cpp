@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "arenas/model/arena.h"
 #include "arenas/raf/raf.h"
 #include "base/text/words.h"
 
