@@ -16,7 +16,7 @@ namespace {
 
 struct PlanArguments {
   std::string map;
-  explore::PlanPictureConfig config;
+  explore::PlannerConfig config;
   std::string discomfort = "per_metre";
   std::optional<double> resolution;
   std::string from;  ///< "X,Y"
@@ -33,8 +33,9 @@ std::optional<mrpt::math::TPoint2D> place(const std::string& from) {
 }
 
 int plan(PlanArguments a) {
-  a.config.per_cell = a.discomfort == "per_cell";
-  if (a.config.d_opt < a.config.d_min) throw UsageError("--d-opt must not be smaller than --d-min");
+  explore::TransformConfig& transform = a.config.transform;
+  if (a.discomfort == "per_cell") transform.discomfort = explore::Discomfort::PerCell;
+  if (transform.d_opt < transform.d_min) throw UsageError("--d-opt must not be smaller than --d-min");
   const auto from = place(a.from);
   scoring::LoadOptions options;
   options.resolution = a.resolution;
@@ -69,14 +70,14 @@ Command plan_command() {
           "  rubble plan map.yaml --discomfort per_cell --alpha 5 --d-min 0.3 --from 1.5,-2",
           [](Options& o) -> Action {
             auto a = std::make_shared<PlanArguments>();
-            explore::PlanPictureConfig& config = a->config;
+            explore::TransformConfig& transform = a->config.transform;
             o.argument("map", a->map, "Map: GeoTIFF, ROS yaml, or an image with --resolution");
-            o.number("--alpha", config.alpha, 0.0, 1000.0, "Weight of the discomfort against length, default 20");
-            o.number("--d-min", config.d_min, 0.0, 2.0, "Never nearer to walls, default 0.4 [m]");
-            o.number("--d-opt", config.d_opt, 0.0, 5.0, "The distance to walls that is liked best, default 0.6 [m]");
+            o.number("--alpha", transform.alpha, 0.0, 1000.0, "Weight of the discomfort against length, default 20");
+            o.number("--d-min", transform.d_min, 0.0, 2.0, "Never nearer to walls, default 0.4 [m]");
+            o.number("--d-opt", transform.d_opt, 0.0, 5.0, "The distance to walls that is liked best, default 0.6 [m]");
             o.choice("--discomfort", a->discomfort, {"per_metre", "per_cell"},
                      "How it is summed: a metre of way, or a cell as eq. (3) is printed, with no cap");
-            o.whole("--min-frontier-cells", config.min_frontier_cells, 1, 10000, "Smaller frontiers are no targets");
+            o.whole("--min-frontier-cells", a->config.min_frontier_cells, 1, 10000, "Smaller frontiers are no targets");
             o.number("--resolution", a->resolution, 0.001, 1.0, "Metres a pixel, where the map does not say");
             o.text("--from", a->from, "X,Y in the map [m]: draw the way from there");
             o.text("--out", a->out, "Picture to write (default: plan.png)");

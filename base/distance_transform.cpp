@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -170,22 +169,6 @@ void to_metres(const std::vector<std::int32_t>& squares, double resolution, doub
   Eigen::Map<Eigen::ArrayXf>(out, count) = (square.cast<double>().sqrt() * resolution).min(cap).cast<float>();
 }
 
-constexpr int kRows = 4;  ///< each sweep waits for itself from cell to cell; four of them fill the waiting
-
-/// steps(x) = min over u of steps(u) + |x - u|. Rows may be the same.
-void sweep_rows(const std::array<Steps*, kRows>& rows, int width) {
-  std::array<int, kRows> s;
-  const auto visit = [&](int x) {
-    for (std::size_t k = 0; k < kRows; ++k) {
-      s[k] = std::min<int>(rows[k][x], s[k] + 1);
-      rows[k][x] = static_cast<Steps>(s[k]);
-    }
-  };
-  s.fill(std::numeric_limits<Steps>::max());
-  for (int x = 0; x < width; ++x) visit(x);
-  for (int x = width - 1; x >= 0; --x) visit(x);
-}
-
 }  // namespace
 
 Grid<float> distance_transform(const Grid<std::uint8_t>& mask, double cap) {
@@ -220,16 +203,6 @@ Grid<float> distance_transform(const Grid<std::uint8_t>& mask, double cap) {
       to_metres(squares, mask.resolution(), cap, out);
   }
   return distance;
-}
-
-Grid<std::uint16_t> manhattan_transform(const Grid<std::uint8_t>& mask) {
-  Grid<Steps> steps = column_distance(mask, std::numeric_limits<Steps>::max());
-  for (int y = 0; y < steps.height(); y += kRows) {
-    std::array<Steps*, kRows> rows;
-    for (int k = 0; k < kRows; ++k) rows[static_cast<std::size_t>(k)] = steps.row(std::min(y + k, steps.height() - 1));
-    sweep_rows(rows, steps.width());
-  }
-  return steps;
 }
 
 }  // namespace rubble

@@ -11,7 +11,4 @@ namespace rubble {
 /// `cap`. Where no cell is set: cap everywhere. Felzenszwalb and Huttenlocher 2012, O(cells).
 Grid<float> distance_transform(const Grid<std::uint8_t>& mask, double cap);
 
-/// Exact Manhattan distance in cells, capped at 65535. Two sweeps a row and a column, O(cells).
-Grid<std::uint16_t> manhattan_transform(const Grid<std::uint8_t>& mask);
-
 }  // namespace rubble

@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPoint2D.h>
 
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -16,6 +17,11 @@ struct Cell {
   friend constexpr bool operator==(Cell a, Cell b) { return a.x == b.x && a.y == b.y; }
   friend constexpr bool operator!=(Cell a, Cell b) { return !(a == b); }
 };
+
+/// The neighbours of a cell across its edges, by quarter turns counter-clockwise from east.
+inline constexpr std::array<Cell, 4> kCellSides{Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}};
+/// The same by quarter turns clockwise from north, 0 to 3.
+constexpr Cell clockwise_side(std::size_t turns) { return kCellSides[(5 - turns) % 4]; }
 
 /// Where a raster lies in the metric plane. Row 0 is the southernmost; images flip rows when they are written.
 struct GridFrame {

@@ -54,12 +54,11 @@ StampedPose parse_tum_line(const std::vector<Word>& words, const std::string& pa
     const auto number = parse_number(words[i].text);
     if (!number)
       throw InputError(
-          at(path, line, words[i].column, rubble::quoted(words[i].text) + " is no number; give 8 numbers " + kFields));
+          at(path, line, words[i].column, in_quotes(words[i].text) + " is no number; give 8 numbers " + kFields));
     v[i] = *number;
   }
   const auto stamp = parse_stamp(words[0].text);
-  if (!stamp)
-    throw InputError(at(path, line, words[0].column, rubble::quoted(words[0].text) + " is no time in seconds"));
+  if (!stamp) throw InputError(at(path, line, words[0].column, in_quotes(words[0].text) + " is no time in seconds"));
   const double qx = v[4], qy = v[5], qz = v[6], qw = v[7];
   const double norm = qx * qx + qy * qy + qz * qz + qw * qw;
   if (!(std::abs(norm - 1.0) < 0.01))

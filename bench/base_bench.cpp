@@ -40,10 +40,6 @@ void euclidean(benchmark::State& state, const Grid<std::uint8_t>& mask, double c
   for (auto _ : state) benchmark::DoNotOptimize(distance_transform(mask, cap));
 }
 
-void manhattan(benchmark::State& state, const Grid<std::uint8_t>& mask) {
-  for (auto _ : state) benchmark::DoNotOptimize(manhattan_transform(mask));
-}
-
 void opencv(benchmark::State& state, const Grid<std::uint8_t>& mask, int kind, int size) {
   cv::setNumThreads(1);
   cv::Mat image(kSide, kSide, CV_8U);
@@ -97,8 +93,6 @@ BENCHMARK_CAPTURE(euclidean, sparse_no_cap, sparse(), kNoCap)->Unit(benchmark::k
 BENCHMARK_CAPTURE(opencv, maze_exact, maze(), cv::DIST_L2, cv::DIST_MASK_PRECISE)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(opencv, maze_5x5, maze(), cv::DIST_L2, 5)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(opencv, sparse_exact, sparse(), cv::DIST_L2, cv::DIST_MASK_PRECISE)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(manhattan, maze, maze())->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(opencv, maze_manhattan, maze(), cv::DIST_L1, 3)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace rubble

@@ -17,11 +17,7 @@ LaserScan noisy_scan(Stamp stamp) {
   Rng noise(1, "scan");
   LaserScan scan;
   scan.stamp = stamp;
-  scan.angle_min = laser.angle_min;
-  scan.angle_step = laser.angle_step;
-  scan.beam_period = laser.beam_period;
-  scan.range_min = laser.range_min;
-  scan.range_max = laser.range_max;
+  set_geometry(scan, laser);
   for (int i = 0; i < laser.beams; ++i) {
     const double bearing = scan.bearing(static_cast<std::size_t>(i));
     const double wall =

@@ -89,21 +89,9 @@ PlannedWay measured(const std::vector<Cell>& way, const Traversable& floor, cons
 
 }  // namespace
 
-PlanPictureConfig::PlanPictureConfig() {
-  const PlannerConfig usual;
-  alpha = usual.transform.alpha;
-  d_min = usual.transform.d_min;
-  d_opt = usual.transform.d_opt;
-  min_frontier_cells = usual.min_frontier_cells;
-}
-
-PlanPicture plan_picture(const OccupancyGrid& map, const PlanPictureConfig& config,
-                         const std::optional<TPoint2D>& from) {
-  PlannerConfig planner;
-  planner.transform = {config.alpha, config.d_min, config.d_opt,
-                       config.per_cell ? Discomfort::PerCell : Discomfort::PerMetre};
+PlanPicture plan_picture(const OccupancyGrid& map, const PlannerConfig& config, const std::optional<TPoint2D>& from) {
   Traversable floor = traversable(rimmed(map));
-  measure_clearance(floor, Planner(planner).clearance_cap());
+  measure_clearance(floor, Planner(config).clearance_cap());
   std::vector<Source> sources;
   std::vector<Cell> frontier;
   const auto clusters = frontier_clusters(floor, config.min_frontier_cells);
@@ -114,7 +102,7 @@ PlanPicture plan_picture(const OccupancyGrid& map, const PlanPictureConfig& conf
     }
   if (sources.empty()) throw InputError("has no frontier: no free floor lies beside floor that is unknown");
   ExplorationTransform transform;
-  transform.run(floor, sources, planner.transform);
+  transform.run(floor, sources, config.transform);
   std::vector<Cell> way;
   if (from) way = transform.descend(start_cell(*from, floor, transform));
   PlanPicture out;

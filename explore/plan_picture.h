@@ -8,18 +8,9 @@
 
 #include "base/grid.h"
 #include "base/image/geotiff.h"
+#include "explore/plan/planner.h"
 
 namespace rubble::explore {
-
-/// Of the Exploration Transform over a map; the defaults are those of the explorer.
-struct PlanPictureConfig {
-  double alpha = 0.0;          ///< weight of the discomfort against length
-  double d_min = 0.0;          ///< never nearer to obstacles [m]
-  double d_opt = 0.0;          ///< the distance that is liked best [m]
-  bool per_cell = false;       ///< the discomfort summed per cell, as eq. (3) is printed; else per metre
-  int min_frontier_cells = 0;  ///< smaller frontiers are no targets
-  PlanPictureConfig();
-};
 
 /// A way to a frontier.
 struct PlannedWay {
@@ -36,9 +27,10 @@ struct PlanPicture {
   std::optional<PlannedWay> way;  ///< from the place asked for; nothing: no frontier can be reached from there
 };
 
-/// Runs the Exploration Transform over `map`, with the way from `from` [m] if that is given.
-/// Throws InputError: no frontier; `from` is not on free floor, or nearer to obstacles than d_min.
-PlanPicture plan_picture(const OccupancyGrid& map, const PlanPictureConfig& config,
+/// Runs the Exploration Transform over `map`, with the way from `from` [m] if that is given. Of `config`, whose
+/// defaults are those of the explorer: the transform, and how large a frontier is. Throws InputError: no frontier;
+/// `from` is not on free floor, or nearer to obstacles than d_min.
+PlanPicture plan_picture(const OccupancyGrid& map, const PlannerConfig& config,
                          const std::optional<mrpt::math::TPoint2D>& from);
 
 }  // namespace rubble::explore

@@ -61,6 +61,14 @@ LaserModel laser_model(const std::string& name) {
   return known_lasers().front();
 }
 
+void set_geometry(LaserScan& scan, const LaserModel& laser) {
+  scan.angle_min = laser.angle_min;
+  scan.angle_step = laser.angle_step;
+  scan.beam_period = laser.beam_period;
+  scan.range_min = laser.range_min;
+  scan.range_max = laser.range_max;
+}
+
 void spread_beams(LaserModel& laser, double field_of_view_deg, double sweep) {
   laser.angle_step = deg_to_rad(field_of_view_deg / (laser.beams - 1));
   laser.angle_min = deg_to_rad(-0.5 * field_of_view_deg);

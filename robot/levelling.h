@@ -24,7 +24,7 @@ struct LevellingConfig {
 /// tilt; clamping u is the anti-windup. Body: u is the negative low-passed tilt.
 class Levelling {
  public:
-  explicit Levelling(const LevellingConfig& config, AccelerometerMount mount = AccelerometerMount::Platform);
+  Levelling(const LevellingConfig& config, AccelerometerMount mount);
   ~Levelling() = default;
 
   /// Digests the tick's accelerations, odometry and servo angles; returns the angles the servos shall take.

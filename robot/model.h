@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/angle.h"
+#include "robot/measurements.h"
 
 namespace rubble::robot {
 
@@ -39,6 +40,9 @@ const std::vector<std::string>& laser_names();
 
 /// The scanner of that name, the default for one that is not among laser_names() (a log's).
 LaserModel laser_model(const std::string& name);
+
+/// Where and when the beams of a scan of this scanner leave, and how far they reach.
+void set_geometry(LaserScan& scan, const LaserModel& laser);
 
 /// Spreads the beams over `field_of_view` [deg], symmetrically about the front, and over `sweep` [s].
 void spread_beams(LaserModel& laser, double field_of_view_deg, double sweep);

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "slam/robust/continued_mapper.h"
-#include "slam/robust/g2o.h"
-#include "slam/robust/saved_map.h"
+#include "slam/robust/graph/g2o.h"
+#include "slam/robust/map/saved_map.h"
 
 namespace rubble::slam {
 

@@ -29,7 +29,7 @@ struct MapContent {
 // All throw InputError for a map that is damaged.
 
 MapContent content_of(const MapBase& map);
-/// The graph as text for g2o (slam/robust/g2o.h).
+/// The graph as text for g2o (slam/robust/graph/g2o.h).
 std::string graph_as_g2o(const MapBase& map);
 /// The bytes of one map of two, in the frame of the first; nothing where the second shows no place of the first for
 /// sure. `model` and `mapper`: a robot like theirs, and a mapper of kind robust.

@@ -88,8 +88,8 @@ class Mapper {
   virtual std::vector<MapperFigure> figures() const { return {}; }
   /// Null: this kind keeps none.
   virtual const ScanRecords* scan_records() const { return nullptr; }
-  /// The map with all that a mapper needs to go on with it in another run, as bytes (slam/robust/saved_map.h). Empty:
-  /// this kind cannot, or nothing is mapped.
+  /// The map with all that a mapper needs to go on with it in another run, as bytes (slam/robust/map/saved_map.h).
+  /// Empty: this kind cannot, or nothing is mapped.
   virtual std::string saved_map() const { return {}; }
 };
 

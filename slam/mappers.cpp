@@ -44,7 +44,7 @@ const std::vector<MapperKind>& mapper_kinds() {
 
 void MapperConfig::require_permission() const {
   if (permitted_ || command().empty()) return;
-  throw InputError("mapper.command: " + quoted(command(), 200) +
+  throw InputError("mapper.command: " + in_quotes(command(), 200) +
                    " stands in a file, and a command of a file runs only with --allow-commands");
 }
 

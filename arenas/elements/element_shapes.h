@@ -9,7 +9,6 @@
 
 namespace rubble::arenas {
 
-constexpr double kHalfPallet = 0.6;       ///< [m]
 constexpr double kBoardThickness = 0.01;  ///< of walls [m]
 
 /// An element's own frame: origin in the middle of its pallet, walls on the edge y = +0.6 m.

@@ -6,6 +6,7 @@
 
 #include "arenas/files/include_tree.h"
 #include "arenas/files/piece.h"
+#include "arenas/model/arena.h"
 #include "base/text/text_file.h"
 #include "base/text/words.h"
 
@@ -163,7 +164,7 @@ class Composition {
         const std::string name = YamlMap::of(entry).text("name", std::nullopt);
         own.insert(name);
         if (names.count(name) == 0) continue;
-        file->entry.fail("file", "two victims are named " + rubble::quoted(name) +
+        file->entry.fail("file", "two victims are named " + in_quotes(name) +
                                      "; give this piece a name, for example 'name: west', to put before its victims'");
       }
       names.insert(own.begin(), own.end());
@@ -240,7 +241,7 @@ YamlMap composed_arena(const YamlMap& root, const std::string& path) {
   if (!root.has("include")) return root;
   const ArenaFile file = read_arena_tree(root, path);
   const YamlMap settings = shared_settings(file);
-  const YamlMap whole = composed(file, settings.number("cell_m", 1.2, 0.5, 5.0));
+  const YamlMap whole = composed(file, settings.number("cell_m", kPallet, 0.5, 5.0));
   for (const YamlNode::Entry& setting : settings.tree()->entries) {
     if (whole.tree()->find(setting.key) == nullptr) whole.tree()->entries.push_back(setting);
   }

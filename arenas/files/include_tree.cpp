@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "arenas/model/arena.h"
 #include "arenas/raf/raf.h"
 #include "base/text/words.h"
 
@@ -44,7 +45,7 @@ YamlMap raf_document(const YamlMap& entry, const std::string& path) {
       entries.end());
   YamlPlace top = root.tree()->place;
   top.line = top.column = 0;
-  entries.push_back({"cell_m", top, number_node(1.2, top)});
+  entries.push_back({"cell_m", top, number_node(kPallet, top)});
   return root;
 }
 
@@ -112,7 +113,7 @@ void share_settings(const YamlMap& out, const ArenaFile& file) {
     if (!out.has(key)) {
       out.tree()->entries.push_back(*piece.tree()->find(key));
     } else if (out.number(key, std::nullopt, -1e9, 1e9) != value) {
-      piece.fail(key, rubble::quoted(key) + " is " + piece.text(key, std::nullopt) + " here but " +
+      piece.fail(key, in_quotes(key) + " is " + piece.text(key, std::nullopt) + " here but " +
                           out.text(key, std::nullopt) + " at " + out.place(key) +
                           "; an arena has one: give it in one file, or the same in both");
     }

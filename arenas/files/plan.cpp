@@ -27,7 +27,7 @@ FloorPatch pallet(char shape, const TPoint2D& centre, double edge, double foot, 
 }  // namespace
 
 Plan::Plan(const YamlMap& root, Arena& arena)
-    : cell_size_(root.number("cell_m", 1.2, 0.5, 5.0)),
+    : cell_size_(root.number("cell_m", kPallet, 0.5, 5.0)),
       wall_height_(root.number("wall_height_m", 1.2, 0.05, 5.0)),
       wall_thickness_(root.number("wall_thickness_m", 0.02, 0.005, 0.3)) {
   const double slope = std::tan(deg_to_rad(root.number("ramp_deg", 10.0, 0.0, 45.0)));

@@ -11,11 +11,7 @@ namespace {
 
 using mrpt::math::TPoint2D;
 
-constexpr double kPallet = 1.2;                        ///< [m]
-constexpr double kBoxBack = 0.5 * (1.2 - 0.02 - 0.4);  ///< middle of a pallet to middle of a box at its wall [m]
-constexpr std::array<Cell, 4> kSteps{Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}};
-
-TPoint2D centre_of(Cell cell) { return {kPallet * (cell.x + 0.5), kPallet * (cell.y + 0.5)}; }
+constexpr double kBoxBack = 0.5 * (kPallet - 0.02 - 0.4);  ///< middle of a pallet to middle of a box at its wall [m]
 
 double to_millimetres(double value) { return static_cast<double>(std::llround(value * 1000.0)) / 1000.0; }
 
@@ -30,7 +26,8 @@ void shuffle(std::vector<T>& items, Rng& rng) {
 /// Sides of a pallet that have a wall, as quarter turns from east.
 std::array<bool, 4> walls_of(const Maze& maze, Cell cell) {
   std::array<bool, 4> walls{};
-  for (std::size_t i = 0; i < 4; ++i) walls[i] = !is_open(maze, cell, {cell.x + kSteps[i].x, cell.y + kSteps[i].y});
+  for (std::size_t i = 0; i < 4; ++i)
+    walls[i] = !is_open(maze, cell, {cell.x + kCellSides[i].x, cell.y + kCellSides[i].y});
   return walls;
 }
 
@@ -63,13 +60,13 @@ PlacedVictim place_victim(const Maze& maze, Cell cell, Rng& rng) {
   PlacedVictim victim;
   victim.cell = cell;
   victim.facing = static_cast<int>((back + 2) % 4);
-  victim.position = centre_of(cell) + TPoint2D{kBoxBack * kSteps[back].x, kBoxBack * kSteps[back].y};
+  victim.position = centre_of(cell) + TPoint2D{kBoxBack * kCellSides[back].x, kBoxBack * kCellSides[back].y};
   // Where the way leads past the box, it moves into the corner, so that 0.8 m stay free in both directions.
   const auto count = std::count(walls.begin(), walls.end(), true);
   const std::size_t left = (back + 1) % 4;
   const std::size_t right = (back + 3) % 4;
   if (count == 0 || walls[left] != walls[right]) {
-    const Cell aside = kSteps[walls[right] ? right : left];
+    const Cell aside = kCellSides[walls[right] ? right : left];
     victim.position = victim.position + TPoint2D{kBoxBack * aside.x, kBoxBack * aside.y};
   }
   const double heat = rng.uniform();

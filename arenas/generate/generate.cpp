@@ -83,12 +83,10 @@ int start_heading(const Maze& maze, Cell start, Rng& rng) {
   return next.y > start.y ? 90 : -90;
 }
 
-TPoint2D middle_of(Cell cell) { return {1.2 * (cell.x + 0.5), 1.2 * (cell.y + 0.5)}; }
-
 std::string elements_text(const std::vector<RoughPallet>& rough) {
   std::string text;
   for (const RoughPallet& pallet : rough) {
-    const TPoint2D p = middle_of(pallet.cell);
+    const TPoint2D p = centre_of(pallet.cell);
     text += text.empty() ? "\nelements:\n" : "";
     text += "  - {type: " + pallet.type + ", x_m: " + number(p.x) + ", y_m: " + number(p.y) +
             ", rotation_deg: " + std::to_string(90 * pallet.turn) + "}\n";
@@ -102,13 +100,14 @@ std::string parapets_text(const std::vector<RoughPallet>& rough, const Maze& maz
   for (const RoughPallet& pallet : rough) {
     if (pallet.top == 0.0) continue;
     const Cell c = pallet.cell;
-    const TPoint2D p = middle_of(c);
-    for (const Cell step : {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}}) {
+    const TPoint2D p = centre_of(c);
+    for (const Cell step : kCellSides) {
       if (is_open(maze, c, {c.x + step.x, c.y + step.y})) continue;
-      const TPoint2D m{p.x + 0.6 * step.x, p.y + 0.6 * step.y};
+      const TPoint2D m{p.x + kHalfPallet * step.x, p.y + kHalfPallet * step.y};
       text += text.empty() ? "\nwalls:\n" : "";
-      text += "  - {from_m: [" + number(m.x - 0.6 * std::abs(step.y)) + ", " + number(m.y - 0.6 * std::abs(step.x)) +
-              "], to_m: [" + number(m.x + 0.6 * std::abs(step.y)) + ", " + number(m.y + 0.6 * std::abs(step.x)) +
+      text += "  - {from_m: [" + number(m.x - kHalfPallet * std::abs(step.y)) + ", " +
+              number(m.y - kHalfPallet * std::abs(step.x)) + "], to_m: [" +
+              number(m.x + kHalfPallet * std::abs(step.y)) + ", " + number(m.y + kHalfPallet * std::abs(step.x)) +
               "], bottom_m: 1.2, height_m: 1.2}\n";
     }
   }

@@ -38,8 +38,8 @@ void set_open(Maze& maze, Cell a, Cell b, bool open) { side(maze, a, b) = open; 
 
 std::vector<Cell> open_neighbours(const Maze& maze, Cell cell) {
   std::vector<Cell> found;
-  for (const Cell next :
-       {Cell{cell.x + 1, cell.y}, Cell{cell.x, cell.y + 1}, Cell{cell.x - 1, cell.y}, Cell{cell.x, cell.y - 1}}) {
+  for (const Cell side : kCellSides) {
+    const Cell next{cell.x + side.x, cell.y + side.y};
     if (is_open(maze, cell, next)) found.push_back(next);
   }
   return found;

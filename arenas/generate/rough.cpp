@@ -72,8 +72,7 @@ bool lay_field(const std::string& type, Cell cell, int turn, Site& site, std::ve
 
 /// A foot and a top in line behind `before`, walled in on all other sides.
 bool lay_tower(int which, Cell top, int direction, Site& site, std::vector<RoughPallet>& laid) {
-  static constexpr std::array<Cell, 4> kSteps{Cell{0, 1}, Cell{1, 0}, Cell{0, -1}, Cell{-1, 0}};
-  const Cell up = kSteps[static_cast<std::size_t>(direction)];
+  const Cell up = clockwise_side(static_cast<std::size_t>(direction));
   const Cell foot{top.x - up.x, top.y - up.y};
   const Cell before{foot.x - up.x, foot.y - up.y};
   if (!site.is_plain(top) || !site.is_plain(foot) || !site.is_level(before) || site.is_barred(before)) return false;

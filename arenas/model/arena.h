@@ -10,6 +10,9 @@
 
 namespace rubble::arenas {
 
+inline constexpr double kPallet = 1.2;                ///< edge of the league's pallets [m]
+inline constexpr double kHalfPallet = 0.5 * kPallet;  ///< [m]
+
 using Outline = std::vector<mrpt::math::TPoint2D>;  ///< convex polygon, counter-clockwise [m]
 
 /// A plane piece of floor a wheel can stand on: flat pallet, ramp, top of a step. Overlaps: the higher one carries.
@@ -77,7 +80,7 @@ struct Victim {
 /// The truth: everything the simulator and the scoring know about one arena. East-north-up, metres.
 struct Arena {
   std::string name;
-  double cell_size = 1.2;           ///< pallet edge [m]
+  double cell_size = kPallet;       ///< pallet edge [m]
   double floor_friction = 0.8;      ///< wheel on wood
   mrpt::math::TPoint2D min_corner;  ///< bounding box of all parts
   mrpt::math::TPoint2D max_corner;

@@ -2,11 +2,12 @@
 
 #include <array>
 
+#include "arenas/model/arena.h"
+
 namespace rubble::arenas {
 namespace {
 
-constexpr std::array<Cell, 4> kSteps{Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}};
-constexpr std::array<char, 4> kRising{'>', '^', '<', 'v'};  ///< the ramp that rises along kSteps[i]
+constexpr std::array<char, 4> kRising{'>', '^', '<', 'v'};  ///< the ramp that rises to kCellSides[i]
 
 Cell operator+(Cell a, Cell b) { return {a.x + b.x, a.y + b.y}; }
 Cell operator*(int k, Cell c) { return {k * c.x, k * c.y}; }
@@ -30,7 +31,7 @@ int corner(const Tile& tile, int x, int y) {
 /// A rectangle of pallets that is proposed as a whole.
 struct Stamp {
   Cell corner;       ///< where it begins
-  int direction;     ///< of the first row's slope, index into kSteps
+  int direction;     ///< of the first row's slope, index into kCellSides
   int along;         ///< pallets along the slope
   int across;        ///< pallets side by side
   bool has_plateau;  ///< ramp up, flat on top, ramp down; otherwise up and down in turn
@@ -69,7 +70,7 @@ Stamp draw_tower(int columns, int rows, Rng& rng) {
 
 /// Lays the stamp; false: it does not fit, or would cover the start.
 bool lay(const Stamp& stamp, Cell start, Relief& relief) {
-  const Cell along = kSteps[static_cast<std::size_t>(stamp.direction)];
+  const Cell along = kCellSides[static_cast<std::size_t>(stamp.direction)];
   const Cell across{along.y, along.x};
   for (int i = 0; i < stamp.along; ++i) {
     for (int k = 0; k < stamp.across; ++k) {
@@ -89,6 +90,8 @@ int count_ramps(const Relief& relief) {
 
 }  // namespace
 
+mrpt::math::TPoint2D centre_of(Cell cell) { return {kPallet * (cell.x + 0.5), kPallet * (cell.y + 0.5)}; }
+
 bool is_smooth(const Relief& relief, Cell a, Cell b) {
   const Tile& p = relief[a];
   const Tile& q = relief[b];
@@ -102,7 +105,7 @@ bool is_smooth(const Relief& relief, Cell a, Cell b) {
 
 std::vector<Cell> smooth_neighbours(const Relief& relief, Cell cell) {
   std::vector<Cell> found;
-  for (const Cell step : kSteps) {
+  for (const Cell step : kCellSides) {
     const Cell next = cell + step;
     if (relief.inside(next) && is_smooth(relief, cell, next)) found.push_back(next);
   }
@@ -118,7 +121,7 @@ bool is_connected(const Relief& relief) {
     const Cell cell = open.back();
     open.pop_back();
     ++reached;
-    for (const Cell step : kSteps) {
+    for (const Cell step : kCellSides) {
       const Cell next = cell + step;
       if (!relief.inside(next) || seen[next] != 0 || !is_smooth(relief, cell, next)) continue;
       seen[next] = 1;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <mrpt/math/TPoint2D.h>
+
 #include <vector>
 
 #include "base/grid.h"
@@ -15,6 +17,9 @@ struct Tile {
 };
 
 using Relief = Grid<Tile>;
+
+/// Middle of a pallet [m].
+mrpt::math::TPoint2D centre_of(Cell cell);
 
 /// Whether a wheel can cross between two neighbouring pallets: the floors agree along the whole common edge.
 bool is_smooth(const Relief& relief, Cell a, Cell b);

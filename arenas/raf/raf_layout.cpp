@@ -12,8 +12,6 @@ namespace {
 
 using mrpt::math::TPoint2D;
 
-constexpr std::array<Cell, 4> kSteps{Cell{0, 1}, Cell{1, 0}, Cell{0, -1}, Cell{-1, 0}};
-
 std::size_t direction_of(const Element& element) {
   return static_cast<std::size_t>((std::lround(rad_to_deg(element.rotation) / 90.0) % 4 + 4) % 4);
 }
@@ -51,7 +49,10 @@ bool is_open(const Layout& layout, const Grid<std::uint8_t>& outside) {
 
 }  // namespace
 
-Cell step(Cell c, std::size_t direction) { return {c.x + kSteps[direction].x, c.y + kSteps[direction].y}; }
+Cell step(Cell c, std::size_t direction) {
+  const Cell side = clockwise_side(direction);
+  return {c.x + side.x, c.y + side.y};
+}
 
 bool is_quarter_turn(const Element& element) {
   const double quarters = rad_to_deg(element.rotation) / 90.0;

@@ -13,8 +13,6 @@
 
 namespace rubble::arenas {
 
-inline constexpr double kPallet = 1.2;  ///< one unit of the file [m]
-
 /// The pallets of the file as a grid with a rim of one pallet all round.
 struct Layout {
   Grid<std::uint8_t> occupied;       ///< something other than a wall stands or lies here

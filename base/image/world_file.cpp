@@ -42,8 +42,7 @@ PixelToModel read_world_file(const std::string& path) {
     if (count == v.size()) throw InputError(at(path, number, 1, "a seventh line; a world file has six numbers"));
     const auto value = parse_number(word);
     if (!value)
-      throw InputError(
-          at(path, number, 1, rubble::quoted(word) + " is no number; give the " + kMeaning[count] + " [m]"));
+      throw InputError(at(path, number, 1, in_quotes(word) + " is no number; give the " + kMeaning[count] + " [m]"));
     v[count++] = *value;
   }
   if (count < v.size())

@@ -40,7 +40,7 @@ std::string one_line(std::string_view text) {
   return line;
 }
 
-std::string quoted(std::string_view text, std::size_t limit) {
+std::string in_quotes(std::string_view text, std::size_t limit) {
   if (text.size() <= limit) return "'" + one_line(text) + "'";
   std::size_t end = limit;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // not inside a UTF-8 letter
@@ -80,7 +80,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
     nearest = &candidate;
     least = distance;
   }
-  return nearest == nullptr ? std::string{} : ", did you mean " + rubble::quoted(*nearest) + "?";
+  return nearest == nullptr ? std::string{} : ", did you mean " + in_quotes(*nearest) + "?";
 }
 
 std::string joined(const std::vector<std::string>& words) {

@@ -10,8 +10,7 @@ namespace rubble {
 std::string one_line(std::string_view text);
 
 /// 'text' in quotes for a message, on one line, cut at `limit` bytes.
-std::string quoted(std::string_view text,
-                   std::size_t limit = 60);  // call it as rubble::quoted: std::quoted is nearer to a std::string
+std::string in_quotes(std::string_view text, std::size_t limit = 60);
 
 /// Whether `text` ends in `end` and has something before it: a file name and its ending.
 bool ends_with(std::string_view text, std::string_view end);

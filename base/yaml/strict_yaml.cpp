@@ -30,11 +30,11 @@ std::string described(const YamlNode& node) {
       break;
   }
   if (node.style == Style::Block) return "is a block of text";
-  return "is " + (node.style == Style::Quoted ? "the text " : std::string{}) + rubble::quoted(node.text);
+  return "is " + (node.style == Style::Quoted ? "the text " : std::string{}) + in_quotes(node.text);
 }
 
 [[noreturn]] void fail_value(const std::string& name, const YamlNode& node, const std::string& wanted) {
-  node.place.fail(rubble::quoted(name) + " " + described(node) + "; give " + wanted);
+  node.place.fail(in_quotes(name) + " " + described(node) + "; give " + wanted);
 }
 
 /// ", from 0 to 45" and the like; empty without bounds.
@@ -69,7 +69,7 @@ void finish_node(const YamlNode& node) {
     if (!entry.asked) {
       const std::string near = did_you_mean(entry.key, known_keys(node));
       const std::string known = joined(known_keys(node));
-      entry.place.fail("unknown key " + rubble::quoted(entry.key) +
+      entry.place.fail("unknown key " + in_quotes(entry.key) +
                        (!near.empty()   ? near
                         : known.empty() ? "; remove it"
                                         : "; known here: " + known));
@@ -92,8 +92,7 @@ NodePtr ask(YamlNode& map, const std::string& key) {
 /// A value that must be there unless there is a fallback (then: null).
 NodePtr ask_value(YamlNode& map, const std::string& key, bool has_fallback, const std::string& wanted) {
   const NodePtr node = ask(map, key);
-  if (!node && !has_fallback)
-    map.place.fail("missing key " + rubble::quoted(key) + "; add '" + key + ": <" + wanted + ">'");
+  if (!node && !has_fallback) map.place.fail("missing key " + in_quotes(key) + "; add '" + key + ": <" + wanted + ">'");
   if (node && node->kind == Kind::Null) fail_value(key, *node, wanted);
   return node;
 }
@@ -185,8 +184,8 @@ std::vector<double> YamlMap::numbers(const std::string& key, std::size_t count) 
   for (std::size_t i = 0; i < items.size(); ++i)
     values.push_back(to_number(item_name(key, i), *items[i], -kInfinity, kInfinity));
   if (count != 0 && has(key) && values.size() != count)
-    node_->find(key)->value->place.fail(rubble::quoted(key) + " has " + std::to_string(values.size()) +
-                                        " numbers; give " + wanted);
+    node_->find(key)->value->place.fail(in_quotes(key) + " has " + std::to_string(values.size()) + " numbers; give " +
+                                        wanted);
   return values;
 }
 

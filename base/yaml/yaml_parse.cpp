@@ -128,7 +128,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   void check_tag(const YAML::Mark& mark, const std::string& tag, const char* allowed) const {
     if (tag.empty() || tag == "?" || tag == "!" || tag == allowed) return;
-    place(mark).fail("the tag " + rubble::quoted(tag) + " means nothing here; remove it");
+    place(mark).fail("the tag " + in_quotes(tag) + " means nothing here; remove it");
   }
 
   NodePtr make(const YAML::Mark& mark, Kind kind) {
@@ -184,7 +184,7 @@ class TreeBuilder : public YAML::EventHandler {
     if (is_new) return;
     const std::string where =
         key.place.source->is_option ? "" : " (first on line " + std::to_string(first->second) + ")";
-    key.place.fail("key " + rubble::quoted(key.text) + " is given twice" + where + "; remove one");
+    key.place.fail("key " + in_quotes(key.text) + " is given twice" + where + "; remove one");
   }
 
   std::shared_ptr<const YamlSource> source_;

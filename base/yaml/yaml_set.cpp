@@ -35,11 +35,11 @@ NodePtr& slot(YamlNode& parent, const std::string& word, const std::string& pare
     parent.entries.back().value->place = option;
     return parent.entries.back().value;
   }
-  if (parent.kind != Kind::List) option.fail(rubble::quoted(parent_name) + " is no map; nothing can be set inside it");
+  if (parent.kind != Kind::List) option.fail(in_quotes(parent_name) + " is no map; nothing can be set inside it");
   const auto index = parse_integer(word);
   if (!index || *index < 0 || *index >= static_cast<std::int64_t>(parent.items.size()))
-    option.fail(rubble::quoted(parent_name) + " is a list of " + std::to_string(parent.items.size()) +
-                "; name an item by its number from 0, not " + rubble::quoted(word));
+    option.fail(in_quotes(parent_name) + " is a list of " + std::to_string(parent.items.size()) +
+                "; name an item by its number from 0, not " + in_quotes(word));
   return parent.items[static_cast<std::size_t>(*index)];
 }
 

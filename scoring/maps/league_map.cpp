@@ -6,8 +6,8 @@
 
 #include "base/angle.h"
 #include "base/text/number_text.h"
+#include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/known_box.h"
-#include "scoring/maps/league_palette.h"
 
 namespace rubble::scoring {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "base/image/rich_tiff.h"
-#include "scoring/maps/league_palette.h"
-#include "scoring/maps/map_colours.h"
+#include "scoring/maps/colours/league_palette.h"
+#include "scoring/maps/colours/map_colours.h"
 #include "scoring/maps/raster_image.h"
 #include "scoring/maps/ros_map.h"
 #include "scoring/maps/victim_symbols.h"

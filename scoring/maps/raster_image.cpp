@@ -8,9 +8,9 @@
 #include "base/error.h"
 #include "base/sample_range.h"
 #include "base/text/input_file.h"
+#include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/image_damage.h"
 #include "scoring/maps/image_header.h"
-#include "scoring/maps/league_palette.h"
 
 namespace rubble::scoring {
 namespace {

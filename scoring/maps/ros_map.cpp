@@ -11,9 +11,9 @@
 #include "base/text/number_text.h"
 #include "base/text/text_file.h"
 #include "base/yaml/strict_yaml.h"
+#include "scoring/maps/colours/league_colours.h"
+#include "scoring/maps/colours/map_colours.h"
 #include "scoring/maps/known_box.h"
-#include "scoring/maps/league_colours.h"
-#include "scoring/maps/map_colours.h"
 #include "scoring/maps/raster_image.h"
 
 namespace rubble::scoring {

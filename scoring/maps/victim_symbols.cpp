@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "base/angle.h"
-#include "scoring/maps/league_palette.h"
+#include "scoring/maps/colours/league_palette.h"
 
 namespace rubble::scoring {
 namespace {

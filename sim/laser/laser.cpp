@@ -38,11 +38,8 @@ robot::LaserScan Laser::scan(Stamp first, const std::vector<WorldState>& states,
                              const std::vector<arenas::Face>& moving) {
   robot::LaserScan scan;
   scan.stamp = first;
-  scan.angle_min = model_.laser.angle_min;
-  scan.angle_step = model_.laser.angle_step;
-  scan.beam_period = sweep_ ? model_.laser.beam_period : 0.0;
-  scan.range_min = model_.laser.range_min;
-  scan.range_max = model_.laser.range_max;
+  robot::set_geometry(scan, model_.laser);
+  if (!sweep_) scan.beam_period = 0.0;
   std::optional<ScanFaces> others;
   if (!moving.empty()) others.emplace(moving);
   const ScanFaces* beside = others ? &*others : nullptr;

@@ -126,7 +126,7 @@ void RangeNoise::blur(std::vector<float>& ranges) {
     const std::uint32_t low = bits_[i / 2], high = bits_[i / 2 + 1];
     const Float4 gauss{quantiles_[low & (kQuantiles - 1)], quantiles_[low >> 16 & (kQuantiles - 1)],
                        quantiles_[high & (kQuantiles - 1)], quantiles_[high >> 16 & (kQuantiles - 1)]};
-    const Float4 band = exact < near_to ? near : far + far_share * exact;  // accuracy_band
+    const Float4 band = exact < near_to ? near : far + far_share * exact;
     const Float4 noisy = exact + band * (bias + sigma * gauss);
     store4(&ranges[i], exact < miss ? noisy : exact);
   }

@@ -42,9 +42,4 @@ class RangeNoise {
   std::vector<std::uint32_t> edges_, grazing_;  ///< scratch: beams to look at closely
 };
 
-/// Half width of the data sheet's accuracy band at range r [m].
-inline double accuracy_band(const robot::LaserModel& laser, double r) {
-  return r < laser.accuracy_near_to ? laser.accuracy_near : laser.accuracy_far + laser.accuracy_far_share * r;
-}
-
 }  // namespace rubble::sim

@@ -10,7 +10,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kHalfPallet = 0.6;    ///< half a pallet [m]
 constexpr double kPolygonSeam = 1e-6;  ///< polygons reach so far beyond their edges: no light through seams [m]
 constexpr double kNoRange = std::numeric_limits<double>::infinity();
 
@@ -64,11 +63,11 @@ RayWalk::RayWalk(const std::vector<arenas::Face>& faces) {
   }
   if (polygons_.empty()) low = high = Vector3d::Zero();
 
-  frame_.resolution = kHalfPallet;
-  frame_.x0 = low.x() - kHalfPallet;
-  frame_.y0 = low.y() - kHalfPallet;
-  frame_.width = static_cast<int>(std::ceil((high.x() - frame_.x0) / kHalfPallet)) + 1;
-  frame_.height = static_cast<int>(std::ceil((high.y() - frame_.y0) / kHalfPallet)) + 1;
+  frame_.resolution = arenas::kHalfPallet;
+  frame_.x0 = low.x() - arenas::kHalfPallet;
+  frame_.y0 = low.y() - arenas::kHalfPallet;
+  frame_.width = static_cast<int>(std::ceil((high.x() - frame_.x0) / arenas::kHalfPallet)) + 1;
+  frame_.height = static_cast<int>(std::ceil((high.y() - frame_.y0) / arenas::kHalfPallet)) + 1;
   std::vector<std::vector<std::uint32_t>> cells(frame_.size());
   for (std::size_t i = 0; i < polygons_.size(); ++i) {
     // A polygon on the border of two cells is listed in both, or a rounding error would let the light through.

@@ -9,7 +9,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPallet = 1.2;   ///< one pallet [m]
 constexpr double kLarge = 2.0;    ///< larger polygons are asked every time [m]
 constexpr double kCoarse = 1e-3;  ///< what float coordinates may be off by, generously [m]
 
@@ -86,11 +85,11 @@ ScanFaces::ScanFaces(const std::vector<arenas::Face>& faces) {
     high = high.cwiseMax(entry.middle);
   }
   origin_ = 0.5 * (low + high);
-  frame_.resolution = kPallet;
+  frame_.resolution = arenas::kPallet;
   frame_.x0 = low.x();
   frame_.y0 = low.y();
-  frame_.width = static_cast<int>(std::floor((high.x() - low.x()) / kPallet)) + 1;
-  frame_.height = static_cast<int>(std::floor((high.y() - low.y()) / kPallet)) + 1;
+  frame_.width = static_cast<int>(std::floor((high.x() - low.x()) / arenas::kPallet)) + 1;
+  frame_.height = static_cast<int>(std::floor((high.y() - low.y()) / arenas::kPallet)) + 1;
 
   std::vector<std::vector<const Entry*>> cells(frame_.size());
   std::vector<const Entry*> large;

@@ -6,9 +6,9 @@
 
 #include "base/angle.h"
 #include "base/planar.h"
-#include "slam/robust/cloud.h"
-#include "slam/robust/scan_fit.h"
-#include "slam/robust/surfel_grid.h"
+#include "slam/robust/matching/cloud.h"
+#include "slam/robust/matching/scan_fit.h"
+#include "slam/robust/matching/surfel_grid.h"
 #include "slam/scan/level_scan.h"
 
 namespace rubble::slam {

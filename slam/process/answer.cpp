@@ -80,7 +80,7 @@ AnsweredMap take_drawn_map(Words& words, MessageReader& in) {
     for (std::size_t x = 0; x < width; ++x) {
       if (row[x] == kUnknown) continue;
       if (row[x] != kFree && row[x] != kOccupied)
-        throw BadMessage("a cell of the map is " + quoted(row.substr(x, 1)) + ", not one of ? . #");
+        throw BadMessage("a cell of the map is " + in_quotes(row.substr(x, 1)) + ", not one of ? . #");
       map.seen[first + x] = 1;
       map.occupied[first + x] = row[x] == kOccupied ? 1 : 0;
     }
@@ -126,7 +126,7 @@ MapperFigure take_figure(Words& words) {
   const std::string key(words.word());
   for (const char c : key)
     if (!(c >= 'a' && c <= 'z') && !(c >= '0' && c <= '9') && c != '_')
-      throw BadMessage("a figure is named " + quoted(key) + "; names are a-z, 0-9 and _");
+      throw BadMessage("a figure is named " + in_quotes(key) + "; names are a-z, 0-9 and _");
   return {key, words.number(1e15)};
 }
 
@@ -159,7 +159,7 @@ bool take_record(std::string_view line, MessageReader& in, MapperAnswer& answer)
     answer.map = take_counted_map(words, in);
     return true;
   } else {
-    throw BadMessage(quoted(line) + " where a line of the answer (pose, map, end, ...) was expected");
+    throw BadMessage(in_quotes(line) + " where a line of the answer (pose, map, end, ...) was expected");
   }
   words.finish();
   return true;
@@ -216,7 +216,7 @@ void read_ready(MessageReader& in) {
   std::string_view line;
   if (!in.line(line)) throw BadMessage("nothing was said");
   Words words(line);
-  if (words.word() != "ready") throw BadMessage(quoted(line) + " where 'ready 1' was expected");
+  if (words.word() != "ready") throw BadMessage(in_quotes(line) + " where 'ready 1' was expected");
   const auto version = words.whole(1, 1'000'000);
   if (version != kProtocolVersion)
     throw BadMessage("the mapper speaks version " + std::to_string(version) + " of the protocol, this rubble " +

@@ -62,7 +62,7 @@ bool MessageReader::line(std::string_view& text, std::size_t limit) {
     const std::size_t length = found ? static_cast<std::size_t>(static_cast<const char*>(found) - start) : held;
     if (length > limit)
       throw BadMessage("a line is longer than " + std::to_string(limit) +
-                       " bytes: " + quoted({start, std::min<std::size_t>(length, 40)}));
+                       " bytes: " + in_quotes({start, std::min<std::size_t>(length, 40)}));
     if (found) {
       text = {start, length};
       if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
@@ -71,7 +71,7 @@ bool MessageReader::line(std::string_view& text, std::size_t limit) {
     }
     searched = held;
     if (fill()) continue;
-    if (held > 0) throw BadMessage("the last line has no end: " + quoted({buffer_.data() + begin_, held}));
+    if (held > 0) throw BadMessage("the last line has no end: " + in_quotes({buffer_.data() + begin_, held}));
     return false;
   }
 }
@@ -87,7 +87,7 @@ void MessageReader::block(char* to, std::size_t size) {
   }
 }
 
-void Words::fail(const std::string& what) const { throw BadMessage(what + " in the line " + quoted(line_, 80)); }
+void Words::fail(const std::string& what) const { throw BadMessage(what + " in the line " + in_quotes(line_, 80)); }
 
 std::string_view Words::word() {
   while (!rest_.empty() && is_space(rest_.front())) rest_.remove_prefix(1);
@@ -103,7 +103,7 @@ double Words::real() {
   std::string_view text = word();
   double value = 0.0;
   const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end.ec != std::errc() || end.ptr != text.data() + text.size()) fail(quoted(text, 30) + " is no number");
+  if (end.ec != std::errc() || end.ptr != text.data() + text.size()) fail(in_quotes(text, 30) + " is no number");
   return value;
 }
 
@@ -117,7 +117,7 @@ std::int64_t Words::whole(std::int64_t low, std::int64_t high) {
   const std::string_view text = word();
   std::int64_t value = 0;
   const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end.ec != std::errc() || end.ptr != text.data() + text.size()) fail(quoted(text, 30) + " is no whole number");
+  if (end.ec != std::errc() || end.ptr != text.data() + text.size()) fail(in_quotes(text, 30) + " is no whole number");
   if (value < low || value > high)
     fail(std::to_string(value) + " is not within " + std::to_string(low) + " to " + std::to_string(high));
   return value;
@@ -132,7 +132,7 @@ std::string_view Words::rest() {
 
 void Words::finish() {
   const std::string_view spare = rest();
-  if (!spare.empty()) fail(quoted(spare, 30) + " is too much");
+  if (!spare.empty()) fail(in_quotes(spare, 30) + " is too much");
 }
 
 void append_number(std::string& text, double value) { append_real(text, value); }

@@ -29,7 +29,7 @@ std::string last_words(const std::string& log) {
   std::string line, last;
   while (std::getline(in, line))
     if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
-  return last.empty() ? "" : ", its last words: " + quoted(last, 160);
+  return last.empty() ? "" : ", its last words: " + in_quotes(last, 160);
 }
 
 }  // namespace
@@ -70,7 +70,7 @@ void ProcessMapper::lose(const std::string& why) {
   over_ = true;
   child_.reset();
   std::string where = now_ == Stamp::never() ? "" : " at " + number_text(now_.seconds()) + " s";
-  throw MapperLost("mapper " + quoted(process_.name, 120) + " " + why + where + last_words(process_.log) +
+  throw MapperLost("mapper " + in_quotes(process_.name, 120) + " " + why + where + last_words(process_.log) +
                    (process_.log.empty() ? "" : "; see " + process_.log));
 }
 

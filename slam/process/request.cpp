@@ -141,9 +141,9 @@ MapperHeader read_header(MessageReader& in) {
   std::string_view line;
   if (!in.line(line)) throw BadMessage("there is no header");
   Words first(line);
-  if (first.word() != "rubble-mapper") throw BadMessage("the header begins with " + quoted(line));
+  if (first.word() != "rubble-mapper") throw BadMessage("the header begins with " + in_quotes(line));
   if (first.whole(1, 1'000'000) != kProtocolVersion)
-    throw BadMessage("version " + quoted(line) + "; known is " + std::to_string(kProtocolVersion));
+    throw BadMessage("version " + in_quotes(line) + "; known is " + std::to_string(kProtocolVersion));
   std::map<std::string, std::string, std::less<>> lines;
   for (;;) {
     if (!in.line(line)) throw BadMessage("the header has no end");
@@ -181,7 +181,7 @@ std::optional<MapperRequest> read_request(MessageReader& in) {
   } else if (kind == "tick") {
     request.inputs.now = take_stamp(first);
   } else {
-    throw BadMessage(quoted(line) + " where a tick begins");
+    throw BadMessage(in_quotes(line) + " where a tick begins");
   }
   for (std::size_t records = 0; records < kMostRecords; ++records) {
     if (!in.line(line, std::numeric_limits<std::size_t>::max())) throw BadMessage("a tick has no end");

@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "slam/map_base.h"
-#include "slam/robust/place_finder.h"
+#include "slam/robust/graph/place_finder.h"
+#include "slam/robust/map/saved_map.h"
 #include "slam/robust/robust_mapper.h"
-#include "slam/robust/saved_map.h"
 
 namespace rubble::slam {
 

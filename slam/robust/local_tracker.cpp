@@ -224,7 +224,7 @@ std::optional<ScanFit> LocalTracker::any_heading(const Cloud& cloud, const PoseP
   const SearchWindow window{prior.pose, std::min(kWidestSearch, 0.05 + distance), kPi};
   const auto found = look_around(cloud, window, kFound, kRunnerUp * kFound, work);
   if (!found) return std::nullopt;
-  const auto runner_up = look_elsewhere(kRunnerUp * found->score, {found->pose, 0.45, 0.2}, work);
+  const auto runner_up = look_elsewhere(kRunnerUp * found->score, SearchExclusion{found->pose}, work);
   if (runner_up) return std::nullopt;
   const PosePrior anywhere{found->pose, Eigen::Matrix3d::Identity()};
   return fit_scan(surfels_, points_, found->pose, anywhere, tight(), work);

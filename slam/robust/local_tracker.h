@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-#include "slam/robust/correlator.h"
-#include "slam/robust/key_frames.h"
-#include "slam/robust/scan_fit.h"
+#include "slam/robust/graph/key_frames.h"
+#include "slam/robust/matching/correlator.h"
+#include "slam/robust/matching/scan_fit.h"
 
 namespace rubble::slam {
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/planar.h"
-#include "slam/robust/key_frames.h"
-#include "slam/robust/stamped_map.h"
+#include "slam/robust/graph/key_frames.h"
+#include "slam/robust/map/stamped_map.h"
 #include "slam/scan/odometry_track.h"
 #include "slam/scan/scan_queue.h"
 

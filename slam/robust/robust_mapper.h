@@ -7,13 +7,13 @@
 #include "base/yaml/binder.h"
 #include "robot/model.h"
 #include "slam/mapper.h"
-#include "slam/robust/cloud.h"
+#include "slam/robust/graph/loop_closer.h"
 #include "slam/robust/local_tracker.h"
-#include "slam/robust/loop_closer.h"
-#include "slam/robust/saved_map.h"
-#include "slam/robust/stamped_map.h"
-#include "slam/robust/tilt_track.h"
+#include "slam/robust/map/saved_map.h"
+#include "slam/robust/map/stamped_map.h"
+#include "slam/robust/matching/cloud.h"
 #include "slam/scan/level_scan.h"
+#include "slam/scan/tilt_track.h"
 
 namespace rubble::slam {
 

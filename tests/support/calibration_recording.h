@@ -90,11 +90,7 @@ inline std::vector<robot::Inputs> calibration_recording(const World& world, cons
 
     robot::LaserScan scan;
     scan.stamp = Stamp::from_seconds(t) + plan.truth.delay;
-    scan.angle_min = laser.angle_min;
-    scan.angle_step = laser.angle_step;
-    scan.beam_period = laser.beam_period;
-    scan.range_min = laser.range_min;
-    scan.range_max = laser.range_max;
+    robot::set_geometry(scan, laser);
     for (int beam = 0; !world.empty() && beam < laser.beams; ++beam) {
       const auto i = static_cast<std::size_t>(beam);
       const TPose2D T_world_laser = at(t + beam * laser.beam_period) + plan.truth.T_base_laser;

@@ -225,10 +225,8 @@ class MazeRobot {
     const robot::LaserModel& laser = model_.laser;
     robot::LaserScan scan;
     scan.stamp = now_;
-    scan.angle_min = laser.angle_min;
-    scan.angle_step = laser.angle_step;
-    scan.range_min = laser.range_min;
-    scan.range_max = laser.range_max;
+    robot::set_geometry(scan, laser);
+    scan.beam_period = 0.0;  // an instant
     std::vector<double> ranges(static_cast<std::size_t>(laser.beams), std::numeric_limits<double>::infinity());
     const TPoint2D eye = pose_.composePoint({model_.T_base_laser.x, model_.T_base_laser.y});
     for (const Segment& s : maze_.walls) {

@@ -239,11 +239,7 @@ inline Commands random_commands(Rng& rng) {
 inline LaserScan room_scan(Stamp stamp, double x, double y, double phi, double half, const LaserModel& laser) {
   LaserScan scan;
   scan.stamp = stamp;
-  scan.angle_min = laser.angle_min;
-  scan.angle_step = laser.angle_step;
-  scan.beam_period = laser.beam_period;
-  scan.range_min = laser.range_min;
-  scan.range_max = laser.range_max;
+  set_geometry(scan, laser);
   for (int i = 0; i < laser.beams; ++i) {
     const double bearing = phi + scan.bearing(static_cast<std::size_t>(i));
     const double c = std::cos(bearing);

@@ -20,11 +20,7 @@ namespace rubble::robot {
 /// some beams have no echo (miss) or could not be measured.
 inline LaserScan numbered_scan(const LaserModel& laser, int number, Stamp step0) {
   LaserScan scan;
-  scan.angle_min = laser.angle_min;
-  scan.angle_step = laser.angle_step;
-  scan.beam_period = laser.beam_period;
-  scan.range_min = laser.range_min;
-  scan.range_max = laser.range_max;
+  set_geometry(scan, laser);
   scan.stamp = step0 + 44 * laser.beam_period;
   for (int i = 0; i < laser.beams; ++i) scan.ranges.push_back(static_cast<float>((500 + 3 * i + number % 7) * 0.001));
   scan.ranges[0] = static_cast<float>((1000 + number) * 0.001);

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "base/planar.h"
-#include "slam/robust/key_frames.h"
+#include "slam/robust/graph/key_frames.h"
 #include "slam/scan/level_scan.h"
 #include "tests/support/slam_world.h"
 

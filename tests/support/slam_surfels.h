@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/planar.h"
-#include "slam/robust/surfel_grid.h"
+#include "slam/robust/matching/surfel_grid.h"
 #include "tests/support/slam_world.h"
 
 namespace rubble::slam_test {

@@ -66,10 +66,8 @@ inline robot::LaserScan scan_at(const World& world, const TPose2D& T_world_base,
   const robot::LaserModel& laser = model.laser;
   robot::LaserScan scan;
   scan.stamp = stamp;
-  scan.angle_min = laser.angle_min;
-  scan.angle_step = laser.angle_step;
-  scan.range_min = laser.range_min;
-  scan.range_max = laser.range_max;
+  robot::set_geometry(scan, laser);
+  scan.beam_period = 0.0;
   const TPose2D T_base_laser{model.T_base_laser.x, model.T_base_laser.y, model.T_base_laser.yaw};
   const TPose2D T_world_laser = T_world_base + T_base_laser;
   for (int beam = 0; beam < laser.beams; ++beam) {

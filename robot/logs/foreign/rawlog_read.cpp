@@ -131,11 +131,7 @@ void restore_geometry(const LaserModel& laser, LaserScan& scan) {
                     std::abs(scan.angle_step - laser.angle_step) < tolerance &&
                     std::abs(scan.range_max - laser.range_max) < tolerance * laser.range_max;
   if (!same) return;
-  scan.angle_min = laser.angle_min;
-  scan.angle_step = laser.angle_step;
-  scan.beam_period = laser.beam_period;
-  scan.range_min = laser.range_min;
-  scan.range_max = laser.range_max;
+  set_geometry(scan, laser);
 }
 
 ForeignLog own_log(const RobotModel& model, std::vector<LaserScan>& scans, std::vector<Odometry>& odometry) {

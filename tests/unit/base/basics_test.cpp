@@ -114,8 +114,8 @@ TEST(Words, AnEndingNeedsSomethingBeforeIt) {
 
 TEST(Words, MessagesStayOnOneLine) {
   EXPECT_EQ(one_line("a\nb\t\x01"), "a\\nb\\t\\x01");
-  EXPECT_EQ(quoted("abc", 2), "'ab...'");
-  EXPECT_EQ(quoted("a\xc3\xa4", 2), "'a...'");  // a letter of two bytes is not cut in half
+  EXPECT_EQ(in_quotes("abc", 2), "'ab...'");
+  EXPECT_EQ(in_quotes("a\xc3\xa4", 2), "'a...'");  // a letter of two bytes is not cut in half
 }
 
 }  // namespace

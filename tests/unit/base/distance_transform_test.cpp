@@ -97,26 +97,6 @@ TEST(DistanceTransform, NothingSetGivesTheCapEverywhere) {
 
 TEST(DistanceTransform, AnEmptyGridIsFine) {
   EXPECT_TRUE(distance_transform(Grid<std::uint8_t>(GridFrame{0, 0, 0.05, 0.0, 0.0}), 1.0).cells().empty());
-  EXPECT_TRUE(manhattan_transform(Grid<std::uint8_t>(GridFrame{0, 7, 0.05, 0.0, 0.0})).cells().empty());
-}
-
-TEST(ManhattanTransform, EqualsBruteForceOnRandomMasks) {
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Rng rng(seed, "mask");
-    const int width = 1 + static_cast<int>(rng.below(50));
-    const int height = 1 + static_cast<int>(rng.below(50));
-    const auto mask = random_mask(rng, width, height, std::pow(rng.uniform(), 4.0), 0.05);
-    const auto distance = manhattan_transform(mask);
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x) {
-        int least = 65535;
-        for (int v = 0; v < height; ++v)
-          for (int u = 0; u < width; ++u)
-            if (mask[{u, v}] != 0) least = std::min(least, std::abs(u - x) + std::abs(v - y));
-        ASSERT_EQ((distance[{x, y}]), least);
-      }
-  }
 }
 
 }  // namespace

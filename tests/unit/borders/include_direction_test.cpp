@@ -65,14 +65,20 @@ const std::map<std::string, Folders>& wings() {
       {"slam/grid", {}},
       {"slam/scan", {"slam/grid"}},
       {"slam/*", {"slam", "slam/grid", "slam/scan"}},
-      {"slam/calibration", {"slam/grid", "slam/scan", "slam/robust"}},
+      {"slam/robust",
+       {"slam", "slam/grid", "slam/scan", "slam/robust/matching", "slam/robust/graph", "slam/robust/map"}},
+      {"slam/robust/matching", {"slam/grid"}},
+      {"slam/robust/graph", {"slam/robust/matching"}},
+      {"slam/robust/map", {"slam/grid", "slam/scan", "slam/robust/matching", "slam/robust/graph"}},
+      {"slam/calibration", {"slam/grid", "slam/scan", "slam/robust/matching"}},
       {"explore/plan", {}},
       {"explore/caution", {"explore"}},
       {"explore/search", {"explore", "explore/plan"}},
       {"explore/*", {"explore", "explore/plan", "explore/caution", "explore/search"}},
       {"slam/process", {"slam", "slam/grid", "slam/scan"}},
       {"slam/peers", {"slam", "slam/grid", "slam/scan", "slam/process"}},
-      {"scoring/maps", {}},
+      {"scoring/maps", {"scoring/maps/colours"}},
+      {"scoring/maps/colours", {}},
       {"scoring/walls", {}},
       {"scoring/measures", {"scoring/walls"}},
       {"scoring/proposals", {"scoring/walls"}},
@@ -96,9 +102,15 @@ const std::map<std::string, Folders>& wings() {
 
 /// Wings that nobody outside their room may include (tests and benchmarks apart).
 const Folders& insides() {
-  static const Folders table = {"explore/caution",   "explore/plan",      "explore/search", "robot/logs/own",
-                                "scoring/alignment", "scoring/proposals", "scoring/rooms",  "scoring/walls",
-                                "sim/body",          "sim/laser",         "slam/peers",     "slam/scan"};
+  static const Folders table = {"explore/caution",   "explore/plan",
+                                "explore/search",    "robot/logs/own",
+                                "scoring/alignment", "scoring/maps/colours",
+                                "scoring/proposals", "scoring/rooms",
+                                "scoring/walls",     "sim/body",
+                                "sim/laser",         "slam/peers",
+                                "slam/robust",       "slam/robust/graph",
+                                "slam/robust/map",   "slam/robust/matching",
+                                "slam/scan"};
   return table;
 }
 
@@ -309,6 +321,11 @@ TEST(IncludeDirection, APlantedWrongIncludeIsSeen) {
   EXPECT_EQ(folders, (Folders{"arenas/truth", "slam", "slam/paper", "sim/laser", "scoring"}));
   EXPECT_EQ(offence("slam/paper", "arenas/truth"), "slam must not know arenas");
   EXPECT_EQ(offence("slam/grid", "slam/paper"), "slam/grid must not know slam/paper");
+  EXPECT_EQ(offence("slam/robust/matching", "slam/robust/graph"),
+            "slam/robust/matching must not know slam/robust/graph");
+  EXPECT_EQ(offence("slam/robust/graph", "slam/robust/map"), "slam/robust/graph must not know slam/robust/map");
+  EXPECT_EQ(offence("slam/robust/map", "slam/robust"), "slam/robust/map must not know slam/robust");
+  EXPECT_EQ(offence("scenarios/run", "slam/robust/map"), "slam/robust/map is an inside of slam");
   EXPECT_EQ(offence("scenarios/run", "scoring/alignment"), "scoring/alignment is an inside of scoring");
   EXPECT_EQ(offence("explore", "slam"), "");
   EXPECT_EQ(offence("slam", "slam/paper"), "");

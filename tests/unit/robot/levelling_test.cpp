@@ -42,7 +42,7 @@ Inputs standing(double t, double pitch, double roll) {
 }
 
 TEST(Levelling, LevelRobotKeepsTheLaserStill) {
-  Levelling levelling({});
+  Levelling levelling({}, AccelerometerMount::Platform);
   for (int i = 0; i < 100; ++i) {
     const LaserAim aim = levelling.update(standing(0.02 * i, 0.0, 0.0));
     EXPECT_EQ(aim.pitch, 0.0);
@@ -164,7 +164,7 @@ TEST(Levelling, FeedForwardTakesMostOfTheFalseTiltAway) {
 }
 
 TEST(Levelling, CurvesDoNotRollTheLaser) {
-  Levelling levelling({});
+  Levelling levelling({}, AccelerometerMount::Platform);
   LaserAim aim;
   for (int i = 0; i < 200; ++i) {
     Inputs inputs;
@@ -197,7 +197,7 @@ TEST(Levelling, BodyMountFollowsTheMeasuredTiltFaster) {
 }
 
 TEST(Levelling, CommandNeverLeavesTheServosTravel) {
-  Levelling levelling({});
+  Levelling levelling({}, AccelerometerMount::Platform);
   for (int i = 0; i < 500; ++i) {  // sensor on a platform that the servo cannot bring level
     const LaserAim aim = levelling.update(standing(0.02 * i, deg_to_rad(40.0), deg_to_rad(-40.0)));
     EXPECT_LE(std::abs(aim.pitch), deg_to_rad(30.0));
@@ -222,7 +222,7 @@ TEST(Levelling, CommandRespectsTheSlewLimit) {
 }
 
 TEST(Levelling, StartsFromTheServosAndKeepsStillWithoutASensor) {
-  Levelling levelling({});
+  Levelling levelling({}, AccelerometerMount::Platform);
   Inputs inputs;
   inputs.aims.push_back({Stamp{0}, 0.1, -0.05});
   EXPECT_EQ(levelling.update(inputs).pitch, 0.1);
@@ -232,7 +232,7 @@ TEST(Levelling, StartsFromTheServosAndKeepsStillWithoutASensor) {
 TEST(Levelling, SwitchedOffHoldsZero) {
   LevellingConfig config;
   config.on = false;
-  Levelling levelling(config);
+  Levelling levelling(config, AccelerometerMount::Platform);
   for (int i = 0; i < 20; ++i) EXPECT_EQ(levelling.update(standing(0.02 * i, 0.3, 0.3)).pitch, 0.0);
 }
 

@@ -15,8 +15,8 @@
 #include "base/angle.h"
 #include "base/error.h"
 #include "base/text/text_file.h"
+#include "slam/robust/map/saved_map.h"
 #include "slam/robust/robust_mapper.h"
-#include "slam/robust/saved_map.h"
 #include "tests/support/slam_floor.h"
 
 /// What a run folder keeps of a map, and what other programs read of it.

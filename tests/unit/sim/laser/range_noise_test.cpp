@@ -11,6 +11,11 @@
 namespace rubble::sim::test {
 namespace {
 
+/// Half width of the data sheet's accuracy band at range r [m].
+double accuracy_band(const robot::LaserModel& laser, double r) {
+  return r < laser.accuracy_near_to ? laser.accuracy_near : laser.accuracy_far + laser.accuracy_far_share * r;
+}
+
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
 void expect_the_data_sheets_band(const robot::LaserModel& laser, std::initializer_list<float> distances) {

@@ -1,0 +1,144 @@
+#include "scoring/maps/colours/canvas_corners.h"
+
+#include <algorithm>
+#include <array>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "base/grid.h"
+
+namespace rubble::scoring {
+namespace {
+
+constexpr double kBorderUnknown = 0.95;  // share of the region's rim that must be unknown
+constexpr double kBroadRegion = 4.0;     // half width of the region [pixels]: thinner ones are walls at the border
+
+constexpr int kOneGrey = 12;  // of one grey
+constexpr int kBlend = 3;     // pixels that smooth interpolation blends at an edge
+
+/// The ring around a region, `off` pixels off it: the next ones hold an interpolated edge. Empty for regions that are
+/// not broad.
+cv::Mat ring_around(const cv::Mat& region, int off) {
+  cv::Mat padded;
+  cv::copyMakeBorder(region, padded, 1, 1, 1, 1, cv::BORDER_REPLICATE);
+  cv::Mat inner;
+  cv::distanceTransform(padded, inner, cv::DIST_L2, 3);
+  double broadest = 0.0;
+  cv::minMaxLoc(inner, nullptr, &broadest);
+  if (broadest < kBroadRegion) return {};
+  cv::Mat ring;
+  cv::dilate(region, ring, cv::Mat::ones(2 * off + 3, 2 * off + 3, CV_8U));
+  cv::Mat first;
+  cv::dilate(region, first, cv::Mat::ones(2 * off + 1, 2 * off + 1, CV_8U));
+  ring &= ~first;
+  return ring;
+}
+
+/// Share of the ring that lies in `ground`; 0 without a ring.
+double share_in(const cv::Mat& ring, const cv::Mat& ground) {
+  const int total = ring.empty() ? 0 : cv::countNonZero(ring);
+  return total == 0 ? 0.0 : cv::countNonZero(ring & ground) / static_cast<double>(total);
+}
+
+std::array<cv::Point, 4> corners_of(const cv::Mat& image) {
+  return {{{0, 0}, {image.cols - 1, 0}, {0, image.rows - 1}, {image.cols - 1, image.rows - 1}}};
+}
+
+/// The connected region of the pixel's value, give or take. A copy: filters look beyond a part of an image, and flood
+/// fill writes a border into its mask.
+cv::Mat region_at(cv::Mat& image, const cv::Point& seed, int tolerance) {
+  cv::Mat mask = cv::Mat::zeros(image.rows + 2, image.cols + 2, CV_8U);
+  cv::floodFill(image, mask, seed, cv::Scalar(), nullptr, cv::Scalar(tolerance), cv::Scalar(tolerance),
+                4 | cv::FLOODFILL_MASK_ONLY | cv::FLOODFILL_FIXED_RANGE | (255 << 8));
+  return mask(cv::Rect(1, 1, image.cols, image.rows)).clone();
+}
+
+/// The most frequent grey of some pixels.
+int main_grey(const cv::Mat& grey, const cv::Mat& of) {
+  std::array<int, 256> count{};
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x)
+      if (of.at<unsigned char>(y, x) != 0) ++count[grey.at<unsigned char>(y, x)];
+  return static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
+}
+
+/// Nothing but blends of two greys lies on the way out of the region: no wall stands between it and what is beside.
+bool is_open(const cv::Mat& grey, const cv::Mat& region, int inside, int beside) {
+  constexpr int kOvershoot = 30;  // of smooth interpolation
+  cv::Mat way;
+  cv::dilate(region, way, cv::Mat::ones(2 * kBlend + 1, 2 * kBlend + 1, CV_8U));
+  way &= ~region;
+  return share_in(way, (grey >= std::min(inside, beside) - kOvershoot) &
+                           (grey <= std::max(inside, beside) + kOvershoot)) >= kBorderUnknown;
+}
+
+/// Filled-in corners have no thin parts: one that has is ground of the walls' own grey, and those hang on to it.
+bool has_thin_parts(const cv::Mat& region) {
+  constexpr double kTips = 0.02;
+  cv::Mat padded, areas, near;
+  cv::copyMakeBorder(region, padded, 8, 8, 8, 8, cv::BORDER_REPLICATE);
+  cv::morphologyEx(padded, areas, cv::MORPH_OPEN, cv::Mat::ones(9, 9, CV_8U));
+  cv::dilate(areas, near, cv::Mat::ones(15, 15, CV_8U));
+  const cv::Mat rest = padded & ~near;
+  return cv::countNonZero(rest) > kTips * cv::countNonZero(region);
+}
+
+/// What a turned picture leaves of its canvas is a rectangle with more than one grey in it.
+bool leaves_a_picture(const cv::Mat& grey, const cv::Mat& canvas) {
+  constexpr double kConvex = 0.96;
+  constexpr double kLevel = 0.005;
+  const cv::Mat picture = ~canvas;
+  std::vector<cv::Point> points, hull;
+  cv::findNonZero(picture, points);
+  if (points.empty()) return false;
+  cv::convexHull(points, hull);
+  if (static_cast<double>(points.size()) < kConvex * cv::contourArea(hull)) return false;
+  std::array<int, 256> count{};
+  for (const cv::Point& p : points) ++count[grey.at<unsigned char>(p)];
+  return std::count_if(count.begin(), count.end(),
+                       [&](int n) { return n >= kLevel * static_cast<double>(points.size()); }) >= 2;
+}
+
+bool covers_areas(const cv::Mat& mask) {
+  cv::Mat areas;
+  cv::morphologyEx(mask, areas, cv::MORPH_OPEN, cv::Mat::ones(5, 5, CV_8U));
+  return 2 * cv::countNonZero(areas) >= cv::countNonZero(mask);
+}
+
+}  // namespace
+
+void clear_canvas_corners(cv::Mat& classes) {
+  const auto unknown = static_cast<unsigned char>(Occupancy::Unknown);
+  if (classes.empty()) return;
+  for (const cv::Point& corner : corners_of(classes)) {
+    if (classes.at<unsigned char>(corner) == unknown) continue;
+    const cv::Mat region = region_at(classes, corner, 0);
+    if (share_in(ring_around(region, 1), classes == static_cast<int>(Occupancy::Unknown)) < kBorderUnknown) continue;
+    cv::Mat grown;
+    cv::dilate(region, grown, cv::Mat::ones(3, 3, CV_8U));
+    classes.setTo(unknown, grown);
+  }
+}
+
+cv::Mat canvas_corners(const cv::Mat& grey) {
+  cv::Mat out = cv::Mat::zeros(grey.size(), CV_8U);
+  if (grey.empty()) return out;
+  cv::Mat copy = grey;
+  for (const cv::Point& corner : corners_of(grey)) {
+    if (out.at<unsigned char>(corner) != 0) continue;
+    const cv::Mat region = region_at(copy, corner, kOneGrey);
+    const cv::Mat ring = ring_around(region, kBlend);
+    if (ring.empty()) continue;
+    const int level = main_grey(grey, ring);
+    const cv::Mat beside = (grey >= level - kOneGrey) & (grey <= level + kOneGrey) & ~region;
+    if (share_in(ring, beside) < kBorderUnknown || !covers_areas(beside) ||
+        !is_open(grey, region, grey.at<unsigned char>(corner), level) || has_thin_parts(region))
+      continue;
+    cv::Mat grown;
+    cv::dilate(region, grown, cv::Mat::ones(5, 5, CV_8U));
+    out |= grown;
+  }
+  return leaves_a_picture(grey, out) ? out : cv::Mat::zeros(grey.size(), CV_8U);
+}
+
+}  // namespace rubble::scoring

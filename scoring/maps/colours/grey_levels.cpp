@@ -1,0 +1,123 @@
+#include "scoring/maps/colours/grey_levels.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <opencv2/imgproc.hpp>
+
+#include "base/grid.h"
+#include "scoring/maps/colours/grey_roles.h"
+
+namespace rubble::scoring {
+namespace {
+
+constexpr int kUnknownTolerance = 12;  // around the unknown grey, where the picture is not pure
+constexpr int kWallBelow = 140;        // of 0 (wall) to 255 (free): at least 45 % wall
+constexpr int kMostAreas = 4;          // that one map has
+constexpr double kPale = 0.85;         // lines that reach less of the walls' grey in their middle are blurred
+constexpr double kMostPale = 0.25;     // share of them that sharp pictures have (where a wall ends)
+
+/// Greys as if walls were 0 and free ground 255.
+cv::Mat in_order(const cv::Mat& grey, const GreyRoles& roles) {
+  cv::Mat table(1, 256, CV_8U);
+  for (int g = 0; g < 256; ++g)
+    table.at<unsigned char>(g) =
+        cv::saturate_cast<unsigned char>(255.0 * (g - roles.wall) / static_cast<double>(roles.free - roles.wall));
+  cv::Mat out;
+  cv::LUT(grey, table, out);
+  return out;
+}
+
+/// Each pixel is of the level that it has.
+cv::Mat by_level(const cv::Mat& grey, const GreyRoles& roles) {
+  cv::Mat table(1, 256, CV_8U);
+  for (int g = 0; g < 256; ++g) {
+    const int to_wall = std::abs(g - roles.wall), to_free = std::abs(g - roles.free);
+    const int to_unknown = roles.unknown < 0 ? 256 : std::abs(g - roles.unknown);
+    const Occupancy o = to_wall <= std::min(to_free, to_unknown) ? Occupancy::Occupied
+                        : to_free < to_unknown                   ? Occupancy::Free
+                                                                 : Occupancy::Unknown;
+    table.at<unsigned char>(g) = static_cast<unsigned char>(o);
+  }
+  cv::Mat out;
+  cv::LUT(grey, table, out);
+  return out;
+}
+
+/// Share of the walls' darkest pixels, each among its eight neighbours, that do not reach the walls' grey: pictures
+/// that were blurred or made smaller leave walls pale in their middle, too.
+double pale_share(const cv::Mat& even, const cv::Mat& unknown) {
+  cv::Mat least;
+  cv::erode(even, least, cv::Mat::ones(3, 3, CV_8U));
+  const cv::Mat middles = (even == least) & (even < kWallBelow) & ~unknown;
+  const int all = cv::countNonZero(middles);
+  const int pale = cv::countNonZero(middles & (even > (1.0 - kPale) * 255.0));
+  return all > 0 ? static_cast<double>(pale) / all : 0.0;
+}
+
+}  // namespace
+
+cv::Mat grey_of(const RgbImage& image) {
+  cv::Mat grey(image.height, image.width, CV_8U);
+  for (int y = 0; y < image.height; ++y) {
+    unsigned char* row = grey.ptr<unsigned char>(y);
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint8_t* p = image.pixel(x, y);
+      row[x] = static_cast<unsigned char>((299 * p[0] + 587 * p[1] + 114 * p[2] + 500) / 1000);
+    }
+  }
+  return grey;
+}
+
+cv::Mat transparent_pixels(const RgbImage& image) {
+  cv::Mat out = cv::Mat::zeros(image.height, image.width, CV_8U);
+  if (image.alpha.empty()) return out;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      if (image.alpha[image.index(x, y)] < 128) out.at<unsigned char>(y, x) = 255;
+  return out;
+}
+
+LabelImage classify_grey(const RgbImage& image, const cv::Mat& apart) {
+  const cv::Mat grey = grey_of(image);
+  const GreyRoles roles = grey_roles(grey, apart);
+  LabelImage out;
+  out.recognised = "grey levels, " + roles.text();
+  if (roles.areas > kMostAreas)
+    out.refusal = "covers areas with " + std::to_string(roles.areas) +
+                  " different greys or colours, as an image of room labels does; give the map that it was made from";
+  if (!roles.pure && roles.between)
+    out.refusal =
+        "has thin lines of grey " + std::to_string(roles.wall) +
+        " between darker and lighter areas, and was blended: walls and borders look the same; save it without "
+        "interpolation, smoothing or loss";
+  if (roles.unknown >= 0) out.recognised += cv::format(" (%.0f %% sure)", 100.0 * roles.sure);
+  if (roles.pure) {
+    out.classes = by_level(grey, roles);
+    return out;
+  }
+  const cv::Mat even = in_order(grey, roles);
+  out.classes = cv::Mat(grey.size(), CV_8U, cv::Scalar(static_cast<int>(Occupancy::Free)));
+  out.classes.setTo(static_cast<int>(Occupancy::Occupied), even < kWallBelow);
+  const auto tell_pale = [&](const cv::Mat& not_asked) {
+    if (pale_share(even, not_asked) > kMostPale)
+      out.recognised += ", walls pale as in a picture that was blurred or made smaller: thin ones may be lost";
+  };
+  if (roles.unknown < 0) {
+    tell_pale(cv::Mat::zeros(grey.size(), CV_8U));
+    return out;
+  }
+  // The fringe between a wall and free space passes through the same grey: only an area of it is unknown, and its
+  // rim is a mixture with wall or free.
+  cv::Mat unknown = (grey >= roles.unknown - kUnknownTolerance) & (grey <= roles.unknown + kUnknownTolerance);
+  cv::morphologyEx(unknown, unknown, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
+  cv::Mat rim;
+  cv::dilate(unknown, rim, cv::Mat::ones(3, 3, CV_8U));
+  tell_pale(rim);
+  const double level = 255.0 * (roles.unknown - roles.wall) / (roles.free - roles.wall);
+  unknown |= roles.in_order() ? rim & (even >= 0.55 * level) & (even <= level + kUnknownTolerance)
+                              : rim & (even >= kWallBelow);
+  out.classes.setTo(static_cast<int>(Occupancy::Unknown), unknown);
+  return out;
+}
+
+}  // namespace rubble::scoring

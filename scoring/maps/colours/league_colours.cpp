@@ -1,0 +1,234 @@
+#include "scoring/maps/colours/league_colours.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+#include <vector>
+
+#include "base/grid.h"
+#include "scoring/maps/colours/league_palette.h"
+#include "scoring/maps/colours/lossy_colours.h"
+
+namespace rubble::scoring {
+namespace {
+
+using Label = unsigned char;
+constexpr Label kUnknown = static_cast<Label>(Occupancy::Unknown);
+constexpr Label kFree = static_cast<Label>(Occupancy::Free);
+constexpr Label kWall = static_cast<Label>(Occupancy::Occupied);
+constexpr Label kDrawing = 3;  // takes the class around it
+
+struct Colour {
+  int r = 0, g = 0, b = 0;
+  constexpr Colour(const Rgb& c) : r(c[0]), g(c[1]), b(c[2]) {}
+};
+
+struct NamedColour {
+  Colour colour;
+  Label label;
+};
+
+constexpr std::array<NamedColour, 13> kPalette{{
+    {league::kWall, kWall},
+    {league::kUnexplored, kUnknown},
+    {league::kUnexploredLight, kUnknown},
+    {league::kGridLine, kFree},  // explored grid, only drawn in free space
+    {league::kPath, kDrawing},
+    {league::kStart, kDrawing},
+    {league::kVictim, kDrawing},
+    {league::kUnconfirmedVictim, kDrawing},
+    {league::kHazard, kDrawing},
+    {league::kQrCode, kDrawing},
+    {league::kScale, kDrawing},
+    {league::kTitle, kDrawing},
+    {league::kFree, kFree},
+}};
+
+Colour colour_of(const std::uint8_t* p) { return Rgb{p[0], p[1], p[2]}; }
+
+int spread(const Colour& c) { return std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b}); }
+
+bool near_colour(const Colour& a, const Colour& b, int tolerance) {
+  return std::abs(a.r - b.r) <= tolerance && std::abs(a.g - b.g) <= tolerance && std::abs(a.b - b.b) <= tolerance;
+}
+
+bool is_checkerboard(const Colour& c) {
+  return near_colour(c, league::kUnexplored, 0) || near_colour(c, league::kUnexploredLight, 0);
+}
+
+/// Light grey as in the checkerboard, or a mixture of its two shades.
+bool looks_unexplored(const Colour& c) { return spread(c) <= 6 && c.g >= 216 && c.g <= 245; }
+
+/// Share of wall blue in a mixture with a grey: blue over red grows by 120 from grey to wall, green over red by 40.
+double wall_share(const Colour& c) {
+  const int blue = c.b - c.r;
+  const int green = c.g - c.r;
+  if (blue < 24 || 100 * green < 25 * blue || 100 * green > 55 * blue) return 0.0;
+  return blue / 120.0;
+}
+
+bool is_searched(const Colour& c) {
+  return c.g - c.r >= 20 && c.g - c.b >= 20 && std::abs(c.r - c.b) <= 20 && c.g >= 190;
+}
+
+struct Census {
+  std::size_t walls = 0;
+  std::size_t pure_walls = 0;
+  std::size_t checkerboard = 0;
+  std::size_t unexplored = 0;  ///< checkerboard or as light
+  std::size_t pixels = 0;
+  /// Never turned, scaled or compressed with loss: the colours of the table hold to the digit.
+  bool exact() const { return checkerboard > 0 && 10 * checkerboard >= 9 * unexplored && 10 * pure_walls >= 9 * walls; }
+};
+
+Census census(const RgbImage& image) {
+  Census out;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      if (!image.alpha.empty() && image.alpha[image.index(x, y)] < 128) continue;
+      const Colour c = colour_of(image.pixel(x, y));
+      ++out.pixels;
+      if (is_checkerboard(c)) ++out.checkerboard;
+      if (looks_unexplored(c) && c.b > c.r) ++out.unexplored;
+      if (!near_colour(c, league::kWall, 45) || wall_share(c) <= 0.5) continue;
+      ++out.walls;
+      if (near_colour(c, league::kWall, 0)) ++out.pure_walls;
+    }
+  }
+  return out;
+}
+
+Label label_of(const Colour& c, bool exact) {
+  const int tolerance = exact ? 0 : 3;
+  for (const NamedColour& named : kPalette)
+    if (near_colour(c, named.colour, tolerance)) return named.label;
+  const double wall = wall_share(c);
+  if (wall >= 0.45) return wall <= 1.3 ? kWall : kDrawing;
+  if (is_searched(c)) return kFree;
+  if (spread(c) > 12 || c.g < 100) return kDrawing;
+  return !exact && looks_unexplored(c) ? kUnknown : kFree;
+}
+
+/// Drawings lie on free or unknown ground: each of their pixels takes the class of the nearest such pixel.
+void fill_drawings(cv::Mat& labels) {
+  const cv::Mat no_ground = (labels != static_cast<int>(kFree)) & (labels != static_cast<int>(kUnknown));
+  if (cv::countNonZero(no_ground) == static_cast<int>(labels.total())) {
+    labels.setTo(kUnknown, labels == static_cast<int>(kDrawing));
+    return;
+  }
+  cv::Mat distance;
+  cv::Mat nearest;
+  cv::distanceTransform(no_ground, distance, nearest, cv::DIST_L2, 5, cv::DIST_LABEL_PIXEL);
+  std::vector<Label> ground(labels.total() + 1, kUnknown);
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (no_ground.at<Label>(y, x) == 0)
+        ground[static_cast<std::size_t>(nearest.at<int>(y, x))] = labels.at<Label>(y, x);
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (labels.at<Label>(y, x) == kDrawing)
+        labels.at<Label>(y, x) = ground[static_cast<std::size_t>(nearest.at<int>(y, x))];
+}
+
+/// Pictures made coarser blend a wall thinner than a pixel with the floor, over one pixel or two, and none of them may
+/// be wall enough. Where a line of such pixels runs between pixels without any blue, the bluer one of the two is wall.
+void add_thin_walls(const RgbImage& image, cv::Mat& labels) {
+  constexpr double kSome = 0.2;      // share of wall that a pixel of the line has
+  constexpr double kTogether = 0.4;  // and both that share the wall
+  constexpr double kNone = 0.12;     // share beside the line
+  cv::Mat share(labels.size(), CV_64F);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) share.at<double>(y, x) = wall_share(colour_of(image.pixel(x, y)));
+  const auto at = [&](int x, int y) {
+    return x < 0 || y < 0 || x >= image.width || y >= image.height ? 0.0 : share.at<double>(y, x);
+  };
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const double own = at(x, y);
+      if (own < kSome || own >= 0.45) continue;
+      for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}}) {
+        const double before = at(x - dx, y - dy), after = at(x + dx, y + dy);
+        const bool alone = before < kNone && after < kNone;
+        const bool first = before < kNone && own >= after && at(x + 2 * dx, y + 2 * dy) < kNone;
+        const bool second = after < kNone && own > before && at(x - 2 * dx, y - 2 * dy) < kNone;
+        const double together = own + (first ? after : second ? before : 0.0);
+        if ((alone || first || second) && together >= kTogether) labels.at<Label>(y, x) = kWall;
+      }
+    }
+  }
+}
+
+/// Blurred lettering and scales look like wall, but lie in unexplored space: a wall that no free pixel touches is none.
+/// A drawing of walls alone has no free pixel.
+void drop_lettering(cv::Mat& labels) {
+  if (cv::countNonZero(labels == static_cast<int>(kFree)) == 0) return;
+  cv::Mat components;
+  const int count = cv::connectedComponents(labels == static_cast<int>(kWall), components, 8, CV_32S);
+  cv::Mat beside_free;
+  cv::dilate(labels == static_cast<int>(kFree), beside_free, cv::Mat::ones(5, 5, CV_8U));
+  std::vector<bool> is_wall(static_cast<std::size_t>(count), false);
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (beside_free.at<Label>(y, x) != 0) is_wall[static_cast<std::size_t>(components.at<int>(y, x))] = true;
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x)
+      if (labels.at<Label>(y, x) == kWall && !is_wall[static_cast<std::size_t>(components.at<int>(y, x))])
+        labels.at<Label>(y, x) = kUnknown;
+}
+
+/// Turned pictures have ragged walls; a ragged rim is a long one, which makes walls seem thinner than they are
+/// (wall_half_thickness()). Notches of a pixel are filled. Their grid lines, blended with white, look unexplored:
+/// unknown lines of up to four pixels inside free space are free.
+void smooth(cv::Mat& labels) {
+  cv::Mat closed;
+  cv::morphologyEx(labels == static_cast<int>(kWall), closed, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8U));
+  labels.setTo(static_cast<int>(kWall), closed);
+  cv::morphologyEx(labels == static_cast<int>(kFree), closed, cv::MORPH_CLOSE, cv::Mat::ones(5, 5, CV_8U));
+  labels.setTo(static_cast<int>(kFree), closed & (labels == static_cast<int>(kUnknown)));
+}
+
+}  // namespace
+
+bool is_league_map(const RgbImage& image) {
+  const Census c = census(image);
+  const auto are_walls = [&](std::size_t count) { return count >= 20 && 5000 * count >= c.pixels; };
+  if (20 * c.checkerboard >= c.pixels || are_walls(c.walls)) return true;
+  return has_run_colours(image) && are_walls(static_cast<std::size_t>(cv::countNonZero(walls_by_brightness(image))));
+}
+
+LabelImage classify_league(const RgbImage& image) {
+  const bool exact = census(image).exact();
+  LabelImage out;
+  out.classes = cv::Mat(image.height, image.width, CV_8U);
+  const bool lossy = !exact && has_run_colours(image);
+  const cv::Mat dark_walls = lossy ? walls_by_brightness(image) : cv::Mat();
+  const cv::Mat unexplored = lossy ? unexplored_by_brightness(image) : cv::Mat();
+  std::size_t drawn = 0;
+  for (int y = 0; y < image.height; ++y) {
+    Label* row = out.classes.ptr<Label>(y);
+    for (int x = 0; x < image.width; ++x) {
+      row[x] = label_of(colour_of(image.pixel(x, y)), exact);
+      if (lossy && dark_walls.at<Label>(y, x) != 0)
+        row[x] = kWall;
+      else if (lossy && row[x] != kWall && row[x] != kDrawing)
+        row[x] = unexplored.at<Label>(y, x) != 0 ? kUnknown : kFree;
+      if (row[x] == kDrawing) ++drawn;
+    }
+  }
+  if (!exact && !lossy) add_thin_walls(image, out.classes);
+  fill_drawings(out.classes);
+  drop_lettering(out.classes);
+  if (!exact) smooth(out.classes);
+  const double share =
+      100.0 * static_cast<double>(drawn) / static_cast<double>(std::max<std::size_t>(1, out.classes.total()));
+  out.recognised = cv::format("league colours%s, drawings removed from %.1f %% of the pixels",
+                              exact   ? ""
+                              : lossy ? " (compressed with loss)"
+                                      : " (resampled)",
+                              share);
+  return out;
+}
+
+}  // namespace rubble::scoring

@@ -1,0 +1,115 @@
+#include "scoring/maps/colours/lossy_colours.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <opencv2/imgproc.hpp>
+
+namespace rubble::scoring {
+namespace {
+
+constexpr float kWhite = 255.0F;
+constexpr float kWallBrightness = 37.0F;  // of 0,40,120
+constexpr float kMostBlue = 80.0F;        // Cb of walls, whose own is 47; of QR codes 115
+
+struct Tinted {
+  cv::Mat ink;   ///< CV_32F, 1: as dark as a wall, 0: white
+  cv::Mat blue;  ///< CV_32F, Cb: 47 in a wall, 50 in the path, -39 in a victim
+  cv::Mat red;   ///< CV_32F, Cr: -26 in a wall, 48 in the path, 115 in a victim
+};
+
+Tinted tints(const RgbImage& image) {
+  Tinted out;
+  for (cv::Mat* m : {&out.ink, &out.blue, &out.red}) *m = cv::Mat(image.height, image.width, CV_32F);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint8_t* p = image.pixel(x, y);
+      const float brightness = 0.299F * p[0] + 0.587F * p[1] + 0.114F * p[2];
+      out.ink.at<float>(y, x) = (kWhite - brightness) / (kWhite - kWallBrightness);
+      out.blue.at<float>(y, x) = 0.564F * (p[2] - brightness);
+      out.red.at<float>(y, x) = 0.713F * (p[0] - brightness);
+    }
+  return out;
+}
+
+/// The colours around each pixel (Gaussian, `sigma` pixels), summed and divided by the ink that they belong to.
+Tinted around(const Tinted& t, double sigma) {
+  constexpr float kDark = 0.35F;  // ink that counts
+  cv::Mat ink = t.ink.clone();
+  ink.setTo(0.0F, t.ink < kDark);
+  Tinted out;
+  cv::GaussianBlur(ink, out.ink, {}, sigma);
+  out.ink = cv::max(out.ink, 1e-6F);
+  cv::GaussianBlur(t.blue, out.blue, {}, sigma);
+  cv::GaussianBlur(t.red, out.red, {}, sigma);
+  out.blue /= out.ink;
+  out.red /= out.ink;
+  return out;
+}
+
+}  // namespace
+
+bool has_run_colours(const RgbImage& image) {
+  constexpr int kFaint = 3;  // spread of the channels
+  constexpr int kStrong = 24;
+  std::size_t faint = 0;
+  std::size_t strong = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint8_t* p = image.pixel(x, y);
+      const auto [low, high] = std::minmax({int{p[0]}, int{p[1]}, int{p[2]}});
+      const bool searched = p[1] == high && std::abs(p[0] - p[2]) <= 4;
+      if (high - low >= kStrong)
+        ++strong;
+      else if (high - low >= kFaint && !searched)
+        ++faint;
+    }
+  return 20 * faint > 21 * strong;
+}
+
+cv::Mat walls_by_brightness(const RgbImage& image) {
+  constexpr float kSure = 0.62F;
+  constexpr float kWall = 0.48F;
+  const Tinted t = tints(image);
+  // Between symbols the colour near by is the wall's own, in the open the one around.
+  const Tinted near = around(t, 1.0);
+  const Tinted wide = around(t, 2.5);
+  cv::Mat weak(t.ink.size(), CV_8U);
+  cv::Mat sure(t.ink.size(), CV_8U);
+  for (int y = 0; y < weak.rows; ++y)
+    for (int x = 0; x < weak.cols; ++x) {
+      const float a = t.ink.at<float>(y, x);
+      const auto is = [&](const Tinted& c, float least_blue, float most_red) {
+        const float blue = c.blue.at<float>(y, x);
+        return blue > least_blue && blue < kMostBlue && c.red.at<float>(y, x) < most_red;
+      };
+      weak.at<unsigned char>(y, x) = a >= kWall && (is(wide, 12.0F, 12.0F) || is(near, 12.0F, 6.0F)) ? 255 : 0;
+      sure.at<unsigned char>(y, x) = a >= kSure && is(wide, 20.0F, 2.0F) ? 255 : 0;
+    }
+  cv::Mat labels;
+  const int count = cv::connectedComponents(weak, labels, 8, CV_32S);
+  std::vector<int> sures(static_cast<std::size_t>(count), 0);
+  for (int y = 0; y < weak.rows; ++y)
+    for (int x = 0; x < weak.cols; ++x)
+      if (sure.at<unsigned char>(y, x) != 0) ++sures[static_cast<std::size_t>(labels.at<int>(y, x))];
+  for (int y = 0; y < weak.rows; ++y)
+    for (int x = 0; x < weak.cols; ++x)
+      if (sures[static_cast<std::size_t>(labels.at<int>(y, x))] == 0) weak.at<unsigned char>(y, x) = 0;
+  return weak;
+}
+
+cv::Mat unexplored_by_brightness(const RgbImage& image) {
+  cv::Mat brightness(image.height, image.width, CV_8U);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint8_t* p = image.pixel(x, y);
+      brightness.at<unsigned char>(y, x) =
+          static_cast<unsigned char>((299 * p[0] + 587 * p[1] + 114 * p[2] + 500) / 1000);
+    }
+  // The grid of explored ground, lines of a pixel or two, is no shade of it.
+  cv::morphologyEx(brightness, brightness, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8U));
+  cv::Mat middle;
+  cv::medianBlur(brightness, middle, 5);
+  return (middle >= 220) & (middle <= 246);
+}
+
+}  // namespace rubble::scoring

@@ -1,0 +1,76 @@
+#include "scoring/maps/colours/map_colours.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include "scoring/maps/colours/canvas_corners.h"
+#include "scoring/maps/colours/grey_levels.h"
+#include "scoring/maps/colours/league_colours.h"
+
+namespace rubble::scoring {
+
+namespace {
+
+/// Walls black, free ground white, all else unknown: what deep samples were translated to.
+LabelImage classify_direct(const RgbImage& image, const std::string& meaning) {
+  LabelImage out{cv::Mat(image.height, image.width, CV_8U, cv::Scalar(static_cast<int>(Occupancy::Unknown))), meaning};
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const int grey = image.pixel(x, y)[0];
+      if (grey == 0) out.classes.at<unsigned char>(y, x) = static_cast<unsigned char>(Occupancy::Occupied);
+      if (grey == 255) out.classes.at<unsigned char>(y, x) = static_cast<unsigned char>(Occupancy::Free);
+    }
+  return out;
+}
+
+/// Pixels that the file says are no data. Tags that programs set unasked also cover the walls: thin lines stay.
+cv::Mat no_data_areas(const RgbImage& image, const SampleNotes& notes) {
+  cv::Mat out = cv::Mat::zeros(image.height, image.width, CV_8U);
+  if (notes.no_data.empty()) return out;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      if (notes.no_data[image.index(x, y)] != 0) out.at<unsigned char>(y, x) = 255;
+  cv::Mat areas;
+  cv::Mat near;
+  cv::copyMakeBorder(out, areas, 8, 8, 8, 8, cv::BORDER_CONSTANT, cv::Scalar(255));
+  cv::morphologyEx(areas, areas, cv::MORPH_OPEN, cv::Mat::ones(9, 9, CV_8U));
+  areas = areas(cv::Rect(8, 8, image.width, image.height)).clone();
+  if (10 * cv::countNonZero(areas) >= 9 * cv::countNonZero(out)) return out;
+  cv::dilate(areas, near, cv::Mat::ones(3, 3, CV_8U));
+  return near & out;
+}
+
+LabelImage classify_by_grey(const RgbImage& image, cv::Mat apart) {
+  const cv::Mat canvas = canvas_corners(grey_of(image));
+  apart |= canvas;
+  LabelImage out = classify_grey(image, apart);
+  out.classes.setTo(static_cast<int>(Occupancy::Unknown), canvas);
+  if (cv::countNonZero(canvas) > 0) out.recognised += ", corners of the canvas are unknown";
+  return out;
+}
+
+}  // namespace
+
+ClassImage classify(const RgbImage& image, const SampleNotes& notes) {
+  ClassImage out;
+  const bool direct = !notes.meaning.empty();
+  out.is_league = !direct && is_league_map(image);
+  const cv::Mat nothing = transparent_pixels(image) | no_data_areas(image, notes);
+  const LabelImage labels = direct          ? classify_direct(image, notes.meaning)
+                            : out.is_league ? classify_league(image)
+                                            : classify_by_grey(image, nothing.clone());
+  out.recognised = labels.recognised;
+  out.refusal = labels.refusal;
+  if (image.white > 0)
+    out.recognised += ", scaled so that the brightest sample, " + std::to_string(image.white) + ", is white";
+  cv::Mat classes = labels.classes;
+  classes.setTo(static_cast<int>(Occupancy::Unknown), nothing);
+  clear_canvas_corners(classes);
+  out.classes = Grid<Occupancy>(GridFrame{image.width, image.height, 1.0, 0.0, 0.0});
+  for (int y = 0; y < image.height; ++y) {
+    const unsigned char* row = classes.ptr<unsigned char>(image.height - 1 - y);
+    for (int x = 0; x < image.width; ++x) out.classes[{x, y}] = static_cast<Occupancy>(row[x]);
+  }
+  return out;
+}
+
+}  // namespace rubble::scoring

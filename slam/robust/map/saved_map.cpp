@@ -1,0 +1,316 @@
+#include "slam/robust/map/saved_map.h"
+
+#include <zlib.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/bytes.h"
+#include "base/error.h"
+
+namespace rubble::slam {
+
+using mrpt::math::TPose2D;
+
+namespace {
+
+constexpr std::string_view kStem = "RUBBLE MAP ";
+constexpr std::string_view kMagic = "RUBBLE MAP 1\n";
+constexpr std::size_t kHead = 24;  ///< behind the magic: lengths of the payload, plain and packed, and two sums
+constexpr std::uint64_t kMostPacking = 1040;  ///< deflate packs no tighter than 1032 to 1
+constexpr int kPacking = 6;                   ///< zlib's usual level
+constexpr double kFarthestPose = 1e7;         ///< poses beyond are damage [m]
+
+std::uint32_t sum_of(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<z_size_t>(bytes.size())));
+}
+
+void put_u64(ByteWriter& out, std::uint64_t value) {
+  out.u32(static_cast<std::uint32_t>(value));
+  out.u32(static_cast<std::uint32_t>(value >> 32U));
+}
+
+std::uint64_t take_u64(ByteReader& in) {
+  const std::uint64_t low = in.u32();
+  return low | static_cast<std::uint64_t>(in.u32()) << 32U;
+}
+
+double take_finite(ByteReader& in) {
+  const double value = in.f64();
+  if (!std::isfinite(value)) throw BadPayload("a number that is none");
+  return value;
+}
+
+float take_finite_f32(ByteReader& in) {
+  const float value = in.f32();
+  if (!std::isfinite(value)) throw BadPayload("a number that is none");
+  return value;
+}
+
+int take_index(ByteReader& in, int end) {
+  const std::uint64_t value = in.varint();
+  if (value >= static_cast<std::uint64_t>(end)) throw BadPayload("a key frame that is not there");
+  return static_cast<int>(value);
+}
+
+void put(ByteWriter& out, const TPose2D& T) {
+  out.f64(T.x);
+  out.f64(T.y);
+  out.f64(T.phi);
+}
+
+TPose2D take_pose(ByteReader& in) {
+  const double x = take_finite(in);
+  const double y = take_finite(in);
+  const double phi = take_finite(in);
+  if (std::abs(x) > kFarthestPose || std::abs(y) > kFarthestPose) throw BadPayload("a pose far off");
+  return {x, y, phi};
+}
+
+void put(ByteWriter& out, const Eigen::Matrix3d& m) {
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) out.f64(m(row, column));
+}
+
+Eigen::Matrix3d take_matrix(ByteReader& in) {
+  Eigen::Matrix3d m;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) m(row, column) = take_finite(in);
+  return m;
+}
+
+void put(ByteWriter& out, const std::vector<OrientedPoint>& points) {
+  out.varint(points.size());
+  for (const OrientedPoint& p : points)
+    for (const float value : {p.x, p.y, p.nx, p.ny}) out.f32(value);
+}
+
+std::vector<OrientedPoint> take_points(ByteReader& in) {
+  std::vector<OrientedPoint> points(in.count(16));
+  for (OrientedPoint& p : points)
+    for (float* value : {&p.x, &p.y, &p.nx, &p.ny}) *value = take_finite_f32(in);
+  return points;
+}
+
+void put(ByteWriter& out, const KeyFrame& frame) {
+  out.svarint(frame.stamp.ns);
+  out.f64(frame.path);
+  out.f64(frame.cloud.laser.x);
+  out.f64(frame.cloud.laser.y);
+  put(out, frame.cloud.points);
+  put(out, frame.cloud.filled);
+  for (const auto& [nearest, farthest] : frame.cloud.sight.bins()) {
+    out.varint(nearest);
+    out.varint(farthest);
+  }
+}
+
+KeyFrame take_frame(ByteReader& in) {
+  KeyFrame frame;
+  frame.stamp.ns = in.svarint();
+  frame.path = take_finite(in);
+  frame.cloud.laser.x = take_finite(in);
+  frame.cloud.laser.y = take_finite(in);
+  frame.cloud.points = take_points(in);
+  frame.cloud.filled = take_points(in);
+  SightFan::Bins bins;
+  for (auto& [nearest, farthest] : bins)
+    for (std::uint16_t* value : {&nearest, &farthest}) *value = static_cast<std::uint16_t>(in.varint());
+  frame.cloud.sight = SightFan(bins);
+  return frame;
+}
+
+void put(ByteWriter& out, const GraphEdge& edge) {
+  out.varint(static_cast<std::uint64_t>(edge.from));
+  out.varint(static_cast<std::uint64_t>(edge.to));
+  put(out, edge.T_from_to);
+  put(out, edge.information);
+  out.u8(static_cast<std::uint8_t>((edge.loop ? 1 : 0) | (edge.on ? 2 : 0)));
+}
+
+GraphEdge take_edge(ByteReader& in, int frames) {
+  GraphEdge edge;
+  edge.from = take_index(in, frames);
+  edge.to = take_index(in, frames);
+  if (edge.from == edge.to) throw BadPayload("an edge from a key frame to itself");
+  edge.T_from_to = take_pose(in);
+  edge.information = take_matrix(in);
+  const std::uint8_t flags = in.u8();
+  edge.loop = (flags & 1U) != 0;
+  edge.on = (flags & 2U) != 0;
+  return edge;
+}
+
+void put(ByteWriter& out, const PackedScan& scan) {
+  out.f64(scan.angle_min);
+  out.f64(scan.angle_step);
+  out.f32(scan.range_min);
+  out.f32(scan.range_max);
+  out.f32(scan.quantum);
+  out.u8(static_cast<std::uint8_t>((scan.motion ? 1 : 0) | (scan.tilt ? 2 : 0)));
+  if (scan.motion) {
+    put(out, scan.motion->T_ref_first);
+    put(out, scan.motion->T_ref_last);
+  }
+  if (scan.tilt)
+    for (const double value : {scan.tilt->pitch, scan.tilt->roll, scan.tilt->body_pitch, scan.tilt->body_roll})
+      out.f64(value);
+  out.varint(scan.ranges.size());
+  std::int64_t last = 0;
+  for (const std::uint16_t range : scan.ranges) {
+    out.svarint(range - last);
+    last = range;
+  }
+}
+
+PackedScan take_scan(ByteReader& in) {
+  PackedScan scan;
+  scan.angle_min = take_finite(in);
+  scan.angle_step = take_finite(in);
+  if (!(scan.angle_step > 1e-6)) throw BadPayload("a scan without an angle between its beams");
+  scan.range_min = in.f32();
+  scan.range_max = in.f32();
+  scan.quantum = take_finite_f32(in);
+  const std::uint8_t flags = in.u8();
+  if ((flags & 1U) != 0) {
+    const TPose2D first = take_pose(in);
+    scan.motion = SweepMotion{first, take_pose(in)};
+  }
+  if ((flags & 2U) != 0) {
+    scan.tilt.emplace();
+    for (double* value : {&scan.tilt->pitch, &scan.tilt->roll, &scan.tilt->body_pitch, &scan.tilt->body_roll})
+      *value = take_finite(in);
+  }
+  scan.ranges.resize(in.count(1));
+  std::int64_t last = 0;
+  for (std::uint16_t& range : scan.ranges) {
+    last = wrapped_sum(last, in.svarint());
+    if (last < 0 || last > std::numeric_limits<std::uint16_t>::max()) throw BadPayload("a range out of bounds");
+    range = static_cast<std::uint16_t>(last);
+  }
+  return scan;
+}
+
+std::string payload_of(const SavedMap& map) {
+  std::string bytes;
+  ByteWriter out(bytes);
+  for (const double value : {map.T_base_laser.x, map.T_base_laser.y, map.T_base_laser.z, map.T_base_laser.yaw,
+                             map.T_base_laser.pitch, map.T_base_laser.roll})
+    out.f64(value);
+  out.varint(static_cast<std::uint64_t>(map.frames.size()));
+  for (int i = 0; i < map.frames.size(); ++i) {
+    put(out, map.frames.pose(i));
+    out.varint(static_cast<std::uint64_t>(map.frames.before(i) + 1));
+    put(out, map.frames[i]);
+  }
+  out.varint(map.frames.graph().edges.size());
+  for (const GraphEdge& edge : map.frames.graph().edges) put(out, edge);
+  out.varint(map.scans.size());
+  for (const SavedScan& scan : map.scans) {
+    out.varint(static_cast<std::uint64_t>(scan.frame));
+    put(out, scan.T_frame_base);
+    put(out, scan.scan);
+  }
+  out.varint(static_cast<std::uint64_t>(map.here));
+  put(out, map.T_frame_base);
+  out.f64(map.path);
+  put(out, map.frame_covariance);
+  put(out, map.scan_covariance);
+  return bytes;
+}
+
+SavedMap map_of(std::string_view payload) {
+  ByteReader in(payload);
+  SavedMap map;
+  for (double* value : {&map.T_base_laser.x, &map.T_base_laser.y, &map.T_base_laser.z, &map.T_base_laser.yaw,
+                        &map.T_base_laser.pitch, &map.T_base_laser.roll})
+    *value = take_finite(in);
+  const auto frames = static_cast<int>(in.count(50));
+  if (frames == 0) throw BadPayload("no key frame");
+  std::vector<KeyFrame> kept;
+  std::vector<int> before;
+  PoseGraph graph;
+  for (int i = 0; i < frames; ++i) {
+    graph.nodes.push_back(take_pose(in));
+    before.push_back(take_index(in, i + 1) - 1);
+    kept.push_back(take_frame(in));
+  }
+  const std::size_t edges = in.count(99);
+  for (std::size_t k = 0; k < edges; ++k) graph.edges.push_back(take_edge(in, frames));
+  map.frames = KeyFrames(std::move(kept), std::move(before), std::move(graph));
+  const std::size_t scans = in.count(62);
+  for (std::size_t k = 0; k < scans; ++k) {
+    SavedScan scan;
+    scan.frame = take_index(in, frames);
+    scan.T_frame_base = take_pose(in);
+    scan.scan = take_scan(in);
+    map.scans.push_back(std::move(scan));
+  }
+  map.here = take_index(in, frames);
+  map.T_frame_base = take_pose(in);
+  map.path = take_finite(in);
+  map.frame_covariance = take_matrix(in);
+  map.scan_covariance = take_matrix(in);
+  if (in.left() != 0) throw BadPayload("more bytes than a map has");
+  return map;
+}
+
+[[noreturn]] void fail(const std::string& name, const std::string& what) {
+  throw InputError(name + ": " + what + "; copy the file again, or map the log again");
+}
+
+}  // namespace
+
+std::string encode_map(const SavedMap& map) {
+  const std::string payload = payload_of(map);
+  uLongf packed_size = compressBound(static_cast<uLong>(payload.size()));
+  std::string packed(packed_size, '\0');
+  compress2(reinterpret_cast<Bytef*>(packed.data()), &packed_size, reinterpret_cast<const Bytef*>(payload.data()),
+            static_cast<uLong>(payload.size()), kPacking);
+  packed.resize(packed_size);
+  std::string head;
+  ByteWriter out(head);
+  put_u64(out, payload.size());
+  put_u64(out, packed.size());
+  out.u32(sum_of(packed));
+  out.u32(sum_of(head));
+  return std::string(kMagic) + head + packed;
+}
+
+SavedMap decode_map(std::string_view bytes, const std::string& name) {
+  if (bytes.substr(0, kMagic.size()) != kMagic) {
+    const std::size_t line = bytes.substr(0, 40).find('\n');
+    if (line != std::string_view::npos && bytes.substr(0, kStem.size()) == kStem)
+      throw InputError(name + ": a map of version '" + std::string(bytes.substr(kStem.size(), line - kStem.size())) +
+                       "', but this program reads version 1; map the log again");
+    throw InputError(name + ": is no map with a graph; give a map.rmap that 'rubble map' or 'rubble run' wrote");
+  }
+  bytes.remove_prefix(kMagic.size());
+  if (bytes.size() < kHead) fail(name, "is cut");
+  const std::string_view head = bytes.substr(0, kHead);
+  ByteReader in(head);
+  const std::uint64_t size = take_u64(in);
+  const std::uint64_t packed_size = take_u64(in);
+  const std::uint32_t sum = in.u32();
+  if (in.u32() != sum_of(head.substr(0, kHead - 4))) fail(name, "is damaged in its head");
+  const std::string_view packed = bytes.substr(kHead);
+  if (packed.size() != packed_size)
+    fail(name, "holds " + std::to_string(packed.size()) + " bytes instead of " + std::to_string(packed_size));
+  if (sum_of(packed) != sum || size / kMostPacking > packed_size) fail(name, "is damaged");
+  std::string payload(static_cast<std::size_t>(size), '\0');
+  auto got = static_cast<uLongf>(size);
+  if (uncompress(reinterpret_cast<Bytef*>(payload.data()), &got, reinterpret_cast<const Bytef*>(packed.data()),
+                 static_cast<uLong>(packed.size())) != Z_OK ||
+      got != size)
+    fail(name, "is damaged");
+  try {
+    return map_of(payload);
+  } catch (const BadPayload& bad) {
+    fail(name, std::string("is damaged (") + bad.what() + ")");
+  }
+}
+
+}  // namespace rubble::slam

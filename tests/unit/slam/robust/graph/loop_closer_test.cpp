@@ -1,0 +1,289 @@
+#include "slam/robust/graph/loop_closer.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "tests/support/slam_key_frames.h"
+
+namespace rubble::slam {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using robot::RobotModel;
+
+constexpr double kSurfelCell = 0.10;
+constexpr double kBend = 0.008;  ///< of the estimate [rad/m]
+
+/// A corridor round a block, each side with niches of its own.
+slam_test::World ring_corridor() {
+  slam_test::World world;
+  slam_test::add_box(world, 0.0, 0.0, 9.0, 7.0);
+  slam_test::add_box(world, 1.5, 1.5, 7.5, 5.5);
+  slam_test::add_box(world, 2.3, 0.0, 2.7, 0.35);
+  slam_test::add_box(world, 5.1, 1.2, 6.2, 1.5);
+  slam_test::add_box(world, 8.6, 2.0, 9.0, 3.1);
+  slam_test::add_box(world, 7.5, 4.0, 7.8, 4.3);
+  slam_test::add_box(world, 5.0, 6.7, 6.8, 7.0);
+  slam_test::add_box(world, 2.2, 5.5, 2.9, 5.8);
+  slam_test::add_box(world, 0.0, 4.4, 0.3, 5.0);
+  slam_test::add_box(world, 1.25, 2.4, 1.5, 2.9);
+  return world;
+}
+
+std::vector<TPose2D> twice_round() {
+  std::vector<TPoint2D> way;
+  for (int round = 0; round < 2; ++round)
+    for (const TPoint2D& corner : {TPoint2D(0.8, 0.75), TPoint2D(8.2, 0.75), TPoint2D(8.2, 6.2), TPoint2D(0.8, 6.2)})
+      way.push_back(corner);
+  way.push_back({0.8, 0.75});
+  return slam_test::places_along(way, 0.3);
+}
+
+/// Drives round, asking for loops at each key frame; each gets `budget`.
+void drive(KeyFrames& frames, LoopCloser& closer, Work budget) {
+  const RobotModel model;
+  const auto places = twice_round();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    slam_test::add_key_frame(frames, ring_corridor(), places, kBend, model);
+    closer.look();
+    Work left = budget;
+    closer.work(left);
+  }
+}
+
+TEST(LoopCloser, ClosesTheRing) {
+  KeyFrames open;
+  KeyFrames frames;
+  LoopCloser closer({}, kSurfelCell, frames);
+  const RobotModel model;
+  const auto places = twice_round();
+  for (std::size_t i = 0; i < places.size(); ++i) slam_test::add_key_frame(open, ring_corridor(), places, kBend, model);
+  drive(frames, closer, 1000000000);
+  EXPECT_LT(slam_test::key_frame_rmse(frames, places), 0.3 * slam_test::key_frame_rmse(open, places));
+  closer.finish();
+  EXPECT_GT(slam_test::key_frame_rmse(open, places), 0.4);
+  EXPECT_LT(slam_test::key_frame_rmse(frames, places), 0.05);
+  EXPECT_GT(closer.counts().closed + closer.counts().near_edges, 20u);
+  EXPECT_EQ(slam_test::false_loops(frames, places, 0.25), 0);
+}
+
+TEST(LoopCloser, SlicesThatKeepUpGiveTheSameGraph) {
+  KeyFrames whole;
+  KeyFrames sliced;
+  LoopCloser at_once({}, kSurfelCell, whole);
+  LoopCloser by_slices({}, kSurfelCell, sliced);
+  const RobotModel model;
+  const auto places = twice_round();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    slam_test::add_key_frame(whole, ring_corridor(), places, kBend, model);
+    slam_test::add_key_frame(sliced, ring_corridor(), places, kBend, model);
+    at_once.look();
+    by_slices.look();
+    Work all = std::numeric_limits<Work>::max();
+    at_once.work(all);
+    int slices = 0;
+    for (Work slice = 0; slice <= 0; ++slices) {
+      slice = 200000;
+      by_slices.work(slice);
+      ASSERT_LT(slices, 100000);
+    }
+    ASSERT_EQ(whole.graph().edges.size(), sliced.graph().edges.size());
+    for (int k = 0; k < whole.size(); ++k) ASSERT_EQ(whole.pose(k), sliced.pose(k));
+  }
+  EXPECT_GT(at_once.counts().solved, 3u);
+}
+
+TEST(LoopCloser, AFalseLoopPlantedByHandIsRemoved) {
+  for (const double by : {0.8, 1.2, 2.5}) {
+    SCOPED_TRACE(by);
+    KeyFrames frames;
+    LoopCloser closer({}, kSurfelCell, frames);
+    drive(frames, closer, 1000000000);
+    const auto places = twice_round();
+    GraphEdge planted;
+    planted.from = 20;
+    planted.to = frames.last() - 20;
+    planted.T_from_to = places[static_cast<std::size_t>(planted.to)] - places[20];
+    planted.T_from_to.x += by;
+    planted.information = Eigen::Vector3d(1000.0, 1000.0, 10000.0).asDiagonal();
+    planted.loop = true;
+    frames.add_loop(planted, 0.3);
+    const std::size_t index = frames.graph().edges.size() - 1;
+    closer.finish();
+    EXPECT_FALSE(frames.graph().edges[index].on);
+    EXPECT_GE(closer.counts().removed, 1u);
+    EXPECT_LT(slam_test::key_frame_rmse(frames, places), 0.05);
+    EXPECT_EQ(slam_test::false_loops(frames, places, 0.25), 0);
+  }
+}
+
+/// Adds the next key frame of a robot whose wheels spun by `slip` between walls that did not tell.
+void add_slipped(KeyFrames& frames, const std::vector<TPose2D>& places, double slip, const RobotModel& model) {
+  const int last = frames.last();
+  const auto next = static_cast<std::size_t>(frames.size());
+  KeyFrame frame;
+  frame.stamp = Stamp{frames.size() * 1000000000ll};
+  frame.cloud = slam_test::cloud_at(ring_corridor(), places[next], model);
+  GraphEdge edge;
+  edge.from = last;
+  edge.to = frames.size();
+  edge.T_from_to = places[next] - places[next - 1];
+  edge.T_from_to.x += slip;
+  frame.path = frames[last].path + edge.T_from_to.x;
+  edge.information = Eigen::Vector3d(1.0 / (slip * slip), 1.0 / 4e-4, 1.0 / 4e-4).asDiagonal();
+  frames.add(std::move(frame), frames.pose(last) + edge.T_from_to, edge);
+}
+
+TEST(LoopCloser, ARobotThatSlidIsFoundAgainByWhatOldKeyFramesContradict) {
+  for (const double slip : {0.7, 1.0, 1.3}) {
+    for (const bool asked : {true, false}) {
+      SCOPED_TRACE(slip);
+      SCOPED_TRACE(asked);
+      LoopConfig config;
+      if (!asked) config.astray_contradiction = 2.0;
+      KeyFrames frames;
+      LoopCloser closer(config, kSurfelCell, frames);
+      const RobotModel model;
+      const auto places = twice_round();
+      const std::size_t slips = places.size() / 2 + 18;
+      const std::size_t end = slips + 18;  // 5 m on: through the graph, too short a way for a usual loop
+      for (std::size_t i = 0; i < end; ++i) {
+        if (i == slips)
+          add_slipped(frames, places, slip, model);
+        else
+          slam_test::add_key_frame(frames, ring_corridor(), places, 0.001, model);
+        closer.look();
+        Work budget = 1000000000;
+        closer.work(budget);
+      }
+      const TPose2D off = frames.pose(frames.last()) - (places[end - 1] - places.front());
+      const LoopCloser judge({}, kSurfelCell, frames);
+      EXPECT_EQ(judge.doubled().empty(), asked);
+      if (!asked) {
+        EXPECT_GT(length(off.x, off.y), 0.4);
+        continue;
+      }
+      EXPECT_LT(length(off.x, off.y), 0.10);
+      EXPECT_EQ(slam_test::false_loops(frames, places, 0.25), 0);
+    }
+  }
+}
+
+TEST(LoopCloser, WhatIsSaidThriceFromOneSpotIsBelievedOnlyOfAnExpectedMove) {
+  for (const bool expected : {true, false}) {
+    SCOPED_TRACE(expected);
+    std::vector<TPose2D> places = twice_round();
+    const std::size_t spot = places.size() / 2 + 4;
+    std::vector<TPose2D> way(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(spot));
+    for (int k = 1; k <= 6; ++k) way.push_back({way.back().x, way.back().y, places[spot - 1].phi + 0.15 * k});
+    const std::size_t turned = way.size();
+    way.insert(way.end(), places.begin() + static_cast<std::ptrdiff_t>(spot),
+               places.begin() + static_cast<std::ptrdiff_t>(spot + 8));
+    LoopConfig config;
+    if (!expected) {
+      config.window = 0.05;  // the estimate is off by more
+      config.window_per_m = 0.0;
+      config.astray_contradiction = 0.0;
+    }
+    KeyFrames frames;
+    LoopCloser closer(config, kSurfelCell, frames);
+    const RobotModel model;
+    std::uint64_t on_the_spot = 0;
+    for (std::size_t i = 0; i < way.size(); ++i) {
+      slam_test::add_key_frame(frames, ring_corridor(), way, kBend, model);
+      if (i + 1 < spot) continue;  // asked only from here on
+      closer.look();
+      Work budget = 1000000000;
+      closer.work(budget);
+      if (i + 1 == turned) on_the_spot = closer.counts().closed;
+    }
+    EXPECT_EQ(on_the_spot > 0, expected);
+    EXPECT_GT(closer.counts().closed, 2u);
+    EXPECT_EQ(slam_test::false_loops(frames, way, 0.25), 0);
+  }
+}
+
+TEST(LoopCloser, NothingToDoTakesNothing) {
+  KeyFrames frames;
+  LoopCloser closer({}, kSurfelCell, frames);
+  Work budget = 1000;
+  EXPECT_FALSE(closer.work(budget));
+  EXPECT_EQ(budget, 1000);
+  closer.finish();
+  EXPECT_EQ(closer.counts().searched, 0u);
+}
+
+/// Equal cells of 1.2 m on both sides of a corridor, their walls 0.8 m deep. Nothing but its ends tells one from the
+/// next.
+slam_test::World comb(int cells) {
+  slam_test::World world;
+  const double end = 1.2 * cells;
+  slam_test::add_box(world, 0.0, 0.0, end, 3.6);
+  for (int k = 1; k < cells; ++k)
+    for (const double y : {0.0, 2.4}) slam_test::add_box(world, 1.2 * k - 0.02, y, 1.2 * k + 0.02, y + 1.2);
+  return world;
+}
+
+/// Equal rooms of 2.4 m in two rows, each open to a corridor between them.
+slam_test::World rooms(int count) {
+  slam_test::World world;
+  const double end = 2.4 * count;
+  slam_test::add_box(world, 0.0, 0.0, end, 6.0);
+  for (int k = 0; k < count; ++k) {
+    for (const double y : {2.36, 3.6}) {
+      slam_test::add_box(world, 2.4 * k, y, 2.4 * k + 0.7, y + 0.04);
+      slam_test::add_box(world, 2.4 * k + 1.7, y, 2.4 * (k + 1), y + 0.04);
+    }
+    if (k == 0) continue;
+    slam_test::add_box(world, 2.4 * k - 0.02, 0.0, 2.4 * k + 0.02, 2.4);
+    slam_test::add_box(world, 2.4 * k - 0.02, 3.6, 2.4 * k + 0.02, 6.0);
+  }
+  return world;
+}
+
+TEST(LoopCloser, KeepsNoFalseLoopInMazesOfEqualCells) {
+  struct Maze {
+    const char* name;
+    slam_test::World world;
+    std::vector<TPoint2D> way;
+  };
+  const std::vector<Maze> mazes{
+      {"comb", comb(10), {{0.6, 1.8}, {11.4, 1.8}, {0.6, 1.8}, {11.4, 1.8}}},
+      {"rooms",
+       rooms(5),
+       {{0.6, 3.0},
+        {11.4, 3.0},
+        {1.2, 3.0},
+        {1.2, 1.0},
+        {1.2, 3.0},
+        {10.8, 3.0},
+        {10.8, 5.0},
+        {10.8, 3.0},
+        {0.6, 3.0}}},
+  };
+  LoopConfig config;
+  config.window = config.largest_window = 2.5;
+  const RobotModel model;
+  for (const Maze& maze : mazes) {
+    SCOPED_TRACE(maze.name);
+    const auto places = slam_test::places_along(maze.way, 0.3);
+    KeyFrames frames;
+    LoopCloser closer(config, kSurfelCell, frames);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      slam_test::add_key_frame(frames, maze.world, places, 0.001, model);
+      closer.look();
+      Work budget = 1000000000;
+      closer.work(budget);
+    }
+    closer.finish();
+    EXPECT_GT(closer.counts().searched, 20u);
+    EXPECT_EQ(slam_test::false_loops(frames, places, 0.4), 0);
+    EXPECT_LT(slam_test::key_frame_rmse(frames, places), 0.05);
+  }
+}
+
+}  // namespace
+}  // namespace rubble::slam

@@ -1,0 +1,168 @@
+#include "slam/robust/matching/cloud.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/planar.h"
+#include "tests/support/slam_key_frames.h"
+
+namespace rubble::slam {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using robot::RobotModel;
+
+double distance_to_walls(const slam_test::World& world, const TPoint2D& p) {
+  double nearest = 1e9;
+  for (const slam_test::Segment& s : world) {
+    const TPoint2D along = s.b - s.a;
+    const double t = ((p.x - s.a.x) * along.x + (p.y - s.a.y) * along.y) / (along.x * along.x + along.y * along.y);
+    nearest = std::min(nearest, distance(p, s.a + along * std::min(1.0, std::max(0.0, t))));
+  }
+  return nearest;
+}
+
+TPoint2D point(const OrientedPoint& p) { return {static_cast<double>(p.x), static_cast<double>(p.y)}; }
+
+TEST(Cloud, PointsLieOnWallsApartAndLookAtTheLaser) {
+  const RobotModel model;
+  const slam_test::World world = slam_test::furnished_room();
+  const Cloud cloud = slam_test::cloud_at(world, {}, model);
+  ASSERT_GT(cloud.points.size(), 80u);
+  int oriented = 0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const TPoint2D p = point(cloud.points[i]);
+    EXPECT_LT(distance_to_walls(world, p), 1e-3);
+    if (i > 0) {
+      EXPECT_GT(distance(p, point(cloud.points[i - 1])), 0.079);
+    }
+    if (!cloud.points[i].has_normal()) continue;
+    ++oriented;
+    const TPoint2D n(static_cast<double>(cloud.points[i].nx), static_cast<double>(cloud.points[i].ny));
+    EXPECT_NEAR(length(n), 1.0, 1e-5);
+    EXPECT_LE(n.x * (p.x - cloud.laser.x) + n.y * (p.y - cloud.laser.y), 1e-6);
+  }
+  EXPECT_GT(oriented, static_cast<int>(cloud.points.size()) * 3 / 4);
+}
+
+TEST(Cloud, NormalsStandOnAWall) {
+  const RobotModel model;
+  const slam_test::World wall{{{2.0, -3.0}, {2.0, 3.0}}};
+  for (const OrientedPoint& p : slam_test::cloud_at(wall, {}, model).points) {
+    if (!p.has_normal()) continue;
+    EXPECT_NEAR(p.nx, -1.0, 1e-4);
+    EXPECT_NEAR(p.ny, 0.0, 1e-2);
+  }
+}
+
+RobotModel coarse_far_sight() {
+  RobotModel model;
+  model.laser.beams = 181;
+  model.laser.angle_step = deg_to_rad(1.0);
+  model.laser.angle_min = deg_to_rad(-90.0);
+  model.laser.range_max = 30.0;
+  return model;
+}
+
+TEST(Cloud, WallsSeenAtAGrazingAngleHaveNormals) {
+  const slam_test::World corridor{{{-2.0, 1.0}, {20.0, 1.0}}, {{-2.0, -1.0}, {20.0, -1.0}}};
+  int far = 0;
+  for (const OrientedPoint& p : slam_test::cloud_at(corridor, {}, coarse_far_sight()).points) {
+    if (p.x < 3.0F || p.x > 5.0F) continue;
+    ++far;
+    ASSERT_TRUE(p.has_normal()) << p.x << " " << p.y;
+    EXPECT_NEAR(p.nx, 0.0, 1e-2);
+    EXPECT_LT(p.ny * p.y, 0.0F) << "normals look at the laser";
+  }
+  EXPECT_GT(far, 10);
+}
+
+TEST(Cloud, HitsFarApartThatLieOnNoLineHaveNoNormal) {
+  ScanPoints scan;  // a hedge along the way: every second hit 0.1 m deeper, farther apart than the usual reach
+  scan.beam_width = deg_to_rad(1.0);
+  for (int beam = 0; beam < 10; ++beam) {
+    const double bearing = deg_to_rad(20.0 - beam);
+    const TPoint2D end(1.0 / std::tan(bearing), 1.0 + 0.1 * (beam % 2));
+    scan.hits.push_back(end);
+    scan.rays.push_back({end, true, true, beam});
+  }
+  const Cloud cloud = cloud_of(scan, {});
+  ASSERT_EQ(cloud.points.size(), 10u);
+  for (const OrientedPoint& p : cloud.points) EXPECT_FALSE(p.has_normal()) << p.x << " " << p.y;
+}
+
+TEST(Cloud, FilledPointsLieOnTheSurfaceToo) {
+  RobotModel model;
+  model.laser.beams = 121;  // two degrees apart: gaps of 0.15 m and more
+  model.laser.angle_step = deg_to_rad(2.0);
+  model.laser.angle_min = deg_to_rad(-120.0);
+  model.laser.range_max = 12.0;
+  const slam_test::World wall{{{8.0, -6.0}, {8.0, 6.0}}};
+  const Cloud cloud = slam_test::cloud_at(wall, {}, model);
+  ASSERT_GT(cloud.filled.size(), 20u);
+  for (const OrientedPoint& p : cloud.filled) EXPECT_LT(distance_to_walls(wall, point(p)), 1e-3);
+}
+
+TEST(Cloud, SinglePixelsBetweenTwoDepthsAreNoSurface) {
+  ScanPoints scan;
+  scan.beam_width = deg_to_rad(0.5);
+  for (int beam = 0; beam < 60; ++beam) {
+    const double bearing = deg_to_rad(0.5 * beam);
+    const double range = beam < 30 ? 1.0 : beam == 30 ? 2.0 : 3.0;
+    const TPoint2D end(range * std::cos(bearing), range * std::sin(bearing));
+    scan.hits.push_back(end);
+    scan.rays.push_back({end, true, true, beam});
+  }
+  for (const OrientedPoint& p : cloud_of(scan, {}).points) EXPECT_GT(std::abs(length(point(p)) - 2.0), 0.5);
+}
+
+TEST(Cloud, AWallThatStandsFreeTellsItsEnds) {
+  const slam_test::World before_a_wall{{{1.5, -0.6}, {1.5, 0.5}}, {{3.0, -4.0}, {3.0, 4.0}}};
+  const slam_test::World in_the_open{{{1.5, -0.6}, {1.5, 0.5}}, {{-1.0, 3.3}, {1.0, 3.3}}, {{-1.0, -3.4}, {1.0, -3.4}}};
+  for (const slam_test::World& world : {before_a_wall, in_the_open}) {
+    const Cloud cloud = slam_test::cloud_at(world, {}, RobotModel());
+    int left = 0;
+    int right = 0;
+    for (const OrientedPoint& end : cloud.ends) {
+      EXPECT_NEAR(end.x, 1.5, 0.01) << "what is hidden or as far as the scanner sees has no end";
+      EXPECT_NEAR(end.nx, 0.0, 0.02);
+      EXPECT_NEAR(end.y, end.ny > 0.0F ? 0.5 : -0.6, 0.012);
+      EXPECT_NEAR(std::abs(end.ny), 1.0, 0.01);
+      ++(end.ny > 0.0F ? left : right);
+    }
+    EXPECT_GE(left, 1);
+    EXPECT_GE(right, 1);
+  }
+}
+
+TEST(Cloud, CornersAndWallsOutOfSightHaveNoEnds) {
+  const slam_test::World room{{{-2.0, -2.0}, {2.0, -2.0}}, {{2.0, -2.0}, {2.0, 2.0}}, {{2.0, 2.0}, {-2.0, 2.0}}};
+  EXPECT_TRUE(slam_test::cloud_at(room, {}, RobotModel()).ends.empty());
+  const slam_test::World corridor{{{-20.0, 0.7}, {20.0, 0.7}}, {{-20.0, -0.7}, {20.0, -0.7}}};
+  EXPECT_TRUE(slam_test::cloud_at(corridor, {}, RobotModel()).ends.empty());
+}
+
+TEST(Cloud, AnEmptyScanGivesAnEmptyCloud) {
+  const Cloud cloud = cloud_of({}, {});
+  EXPECT_TRUE(cloud.points.empty());
+  EXPECT_TRUE(cloud.ends.empty());
+  EXPECT_TRUE(cloud.filled.empty());
+  EXPECT_EQ(cloud.sight.judge(0.3, 1.0), SightFan::Verdict::Nothing);
+  EXPECT_EQ(sight_of({}).judge(0.3, 1.0), SightFan::Verdict::Nothing);
+}
+
+TEST(SightFan, TellsInFrontFromBehind) {
+  SightFan fan;
+  for (int deg = -10; deg <= 10; ++deg) fan.add(deg_to_rad(deg + 0.5), 3.0);
+  EXPECT_EQ(fan.judge(0.0, 2.0), SightFan::Verdict::InFront);
+  EXPECT_EQ(fan.judge(0.0, 3.0), SightFan::Verdict::Agrees);
+  EXPECT_EQ(fan.judge(0.0, 3.1), SightFan::Verdict::Agrees);
+  EXPECT_EQ(fan.judge(0.0, 5.0), SightFan::Verdict::Behind);
+  EXPECT_EQ(fan.judge(deg_to_rad(40.0), 2.0), SightFan::Verdict::Nothing);
+  EXPECT_EQ(fan.judge(deg_to_rad(10.9), 2.0), SightFan::Verdict::Nothing) << "a neighbour saw nothing";
+}
+
+}  // namespace
+}  // namespace rubble::slam
