@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "robot/drivers/obedience.h"
+#include "robot/drivers/watch/obedience.h"
 #include "robot/drivers/pioneer.h"
 
 namespace {

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "base/stamp.h"
+#include "robot/drivers/base_driver.h"
+#include "robot/drivers/hindrance.h"
+#include "robot/drivers/watch/obedience.h"
+#include "robot/measurements.h"
+
+namespace rubble::robot {
+
+constexpr const char* kMotorsStay =
+    "its motors stay on though switched off, so it may still move; press its emergency button or cut its power";
+
+/// What is known of a base in one turn of its thread, and what is asked of it.
+struct BaseTurn {
+  Drive wanted;        ///< its set point before any limit
+  bool asked = false;  ///< its motors are asked for, and what it is told reaches it in time
+  bool off = false;    ///< they were switched off by us
+  bool ready = false;
+  bool motors_on = false;
+  bool held = false;      ///< by somebody at the robot
+  Drive own_ramp = {};    ///< BaseDriver::own_ramp()
+  std::size_t jumps = 0;  ///< of its odometry, since the start
+};
+
+/// Holds what a base reports against what was asked of it: its motors, its wheels, its odometry.
+///
+/// A base that runs away is held from then on, until the operator lets it go; whether it obeys then is in doubt until
+/// nothing was seen against it for a while.
+class BaseWatch {
+ public:
+  static constexpr double kMotorsOn = 3.0;   ///< so soon they are on when asked for [s]
+  static constexpr double kMotorsOff = 1.0;  ///< so soon they are off when switched off [s]
+  static constexpr double kObeys = 3.0;      ///< who ran away does so again, if ever, within this time [s]
+
+  explicit BaseWatch(const BaseSettings& settings);
+
+  /// One turn with the reports that came in it. True: it must be stopped hard, now.
+  bool look(const BaseTurn& turn, const std::vector<Odometry>& reports, Stamp now);
+  /// The operator lets it go.
+  void rearm();
+
+  /// Why nothing but the operator lets it go, in words; empty: it is not held.
+  const std::string& held() const { return held_; }
+  /// Its motors are on, long after they were switched off.
+  bool motors_stay() const { return motors_stay_; }
+  /// Its wheels turn, by the last report.
+  bool moves() const { return moves_; }
+  /// What does not work but holds nothing.
+  std::vector<Hindrance> troubles() const;
+
+ private:
+  void mind_jumps(std::size_t jumps, Stamp now);
+  void mind_motors(const BaseTurn& turn, Stamp now);
+  void mind_obedience(const BaseTurn& turn, const std::vector<Odometry>& reports, Stamp now);
+  void mind_doubt(bool obeys, Stamp now);
+
+  BaseSettings settings_;
+  Obedience obedience_;
+  std::string held_;
+  bool doubted_ = false;                  ///< it was held, and has not been seen to obey since
+  Stamp obeys_since_ = Stamp::never();    ///< its motors are on and nothing is wrong with what it does
+  Stamp motors_missed_ = Stamp::never();  ///< since then they are asked for and off
+  bool no_motors_ = false;                ///< for long
+  Stamp off_since_ = Stamp::never();      ///< since then they are switched off and on
+  bool motors_stay_ = false;              ///< for long
+  bool moves_ = false;
+  std::size_t jumps_ = 0;     ///< up to now
+  std::deque<Stamp> jumped_;  ///< when it did, lately
+};
+
+}  // namespace rubble::robot
