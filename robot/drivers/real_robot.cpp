@@ -47,6 +47,8 @@ std::string remedy(const std::vector<Hindrance>& all, bool starting) {
   if (std::all_of(all.begin(), all.end(), is_late)) return "; use a faster one";
   const auto is_operator = [](const Hindrance& one) { return one.name == "heartbeat"; };
   if (std::all_of(all.begin(), all.end(), is_operator)) return "; nobody has touched it";
+  const auto is_held = [](const Hindrance& one) { return one.cause == Cause::Held; };
+  if (std::all_of(all.begin(), all.end(), is_held)) return "; nobody has let it go";
   return starting ? "; check cables, power and ports" : "; it did not come back; plug it in and run again";
 }
 
@@ -135,7 +137,7 @@ struct RealRobot::Impl {
         heartbeat(given.heartbeat),
         base_answers(given.safety.base_answer),
         unit_answers(given.safety.levelling_answer),
-        base_watch(given.base) {
+        base_watch(given.base, {given.model.T_base_laser.x, given.model.T_base_laser.y, given.model.T_base_laser.yaw}) {
     if (!settings.levelling_port.empty())
       unit_thread = std::make_unique<DeviceThread>("levelling", settings.levelling_port, unit, box);
     if (!settings.base_port.empty())
@@ -165,6 +167,9 @@ struct RealRobot::Impl {
   auto watched(const Ask& ask) const {
     const std::lock_guard<std::mutex> lock(mutex);
     return ask(base_watch);
+  }
+  bool is_blind() const {
+    return watched([](const BaseWatch& watch) { return watch.blind(); });
   }
   bool is_held_by_us() const {
     return watched([](const BaseWatch& watch) { return !watch.held().empty(); });
@@ -362,6 +367,7 @@ struct RealRobot::Impl {
     s.silent = silent(now);
     s.emergency = emergency;
     s.held = is_held();
+    s.blind = is_blind();
     s.taken = first != Stamp::never() && (is_taken() || is_held_by_us());
     s.scans = scans;
     s.odometry = odometry;
@@ -401,8 +407,14 @@ struct RealRobot::Impl {
     if (fresh.empty()) return;
     scan_arrived = arrived == Stamp::never() ? now : arrived;
     scans += fresh.size();
+    show_to_watch(fresh, now);
     append(waiting_scans, std::move(fresh));
     if (waiting_scans.size() > kMostScansKept) thin_waiting_scans();
+  }
+
+  void show_to_watch(const std::vector<LaserScan>& fresh, Stamp now) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    for (const LaserScan& scan : fresh) base_watch.see(scan, now);
   }
 
   /// The robot is held for long: every second of the older scans goes. How it was moved while it came to rest, when
@@ -504,8 +516,10 @@ struct RealRobot::Impl {
         held_since = now;
         forget_drive();
       }
-      if (is_held()) held_since = now;  // somebody is at the robot: it is not lost
+      const bool blind = is_blind();
+      if (is_held() && !blind) held_since = now;  // somebody is at the robot: it is not lost
       const bool starting = first == Stamp::never();
+      if (blind && is_over(now)) throw DeviceLost(joined(lines_of(hindrances)) + "; the time is over");
       if (!starting && is_over(now)) return false;
       if (starting && is_held() && is_over_before_it_began(now)) return false;
       if (starting) refuse_busy_devices();

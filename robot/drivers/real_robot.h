@@ -54,6 +54,7 @@ enum class OperatorWish {
 struct RobotStatus {
   std::vector<Hindrance> silent;    ///< what holds the robot
   bool held = false;                ///< stopped at the robot itself, or taken: only rearm() lets it go
+  bool blind = false;               ///< held since its wheels deny motion that scans show
   bool taken = false;               ///< another program seemed to have the base while it was away, or to drive it
   std::vector<Hindrance> troubles;  ///< what does not work but holds nothing
   bool motors_on = false;

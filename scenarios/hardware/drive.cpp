@@ -232,7 +232,7 @@ class Driver {
       if (begun_ && others) loop_.save_now();
     }
     tell_back(status.silent);
-    if (status.held) mind_hold(status.taken);
+    if (status.held) mind_hold(status);
     held_ = held_ && status.held;
     if (options_.forget_keys) options_.forget_keys();
     return !interrupted_;
@@ -259,10 +259,13 @@ class Driver {
 
   /// Somebody stopped the robot at the robot, or had its base while it was away. Only what the operator says after that
   /// was told lets it go.
-  void mind_hold(bool taken) {
+  void mind_hold(const robot::RobotStatus& status) {
     if (!held_) {
+      const char* first = status.blind   ? "see to its encoders and their cables"
+                          : status.taken ? "see that nobody else drives it"
+                                         : "release the button";
       if (options_.tell)
-        options_.tell(std::string("base: held; ") + (taken ? "see that nobody else drives it" : "release the button") +
+        options_.tell(std::string("base: held; ") + first +
                       ", then press R (or send SIGUSR2) to let the robot drive again");
       if (options_.rearm) options_.rearm();  // what was pressed or sent before it was held
       held_ = true;

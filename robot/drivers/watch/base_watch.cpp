@@ -21,16 +21,18 @@ bool lasts(bool state, double seconds, Stamp& since, Stamp now) {
 
 }  // namespace
 
-BaseWatch::BaseWatch(const BaseSettings& settings)
-    : settings_(settings), obedience_(settings.max_accel, settings.max_turn_accel) {}
+BaseWatch::BaseWatch(const BaseSettings& settings, const mrpt::math::TPose2D& T_base_laser)
+    : settings_(settings), obedience_(settings.max_accel, settings.max_turn_accel), witness_(T_base_laser) {}
 
 bool BaseWatch::look(const BaseTurn& turn, const std::vector<Odometry>& reports, Stamp now) {
   if (!reports.empty()) moves_ = std::abs(reports.back().v) > kStands.v || std::abs(reports.back().w) > kStands.w;
   mind_jumps(turn.jumps, now);
   mind_motors(turn, now);
   mind_obedience(turn, reports, now);
-  if (!obedience_.runs_away() || !held_.empty()) return false;
-  held_ = obedience_.trouble();
+  const bool denies = !witness_.denial().empty();
+  if (!held_.empty() || (!obedience_.runs_away() && !denies)) return false;
+  blind_ = !obedience_.runs_away();
+  held_ = blind_ ? witness_.denial() : obedience_.trouble();
   doubted_ = true;
   return true;
 }
@@ -53,15 +55,20 @@ void BaseWatch::mind_obedience(const BaseTurn& turn, const std::vector<Odometry>
   const bool asked = turn.asked && !settings_.passive && turn.motors_on;
   if (!asked) {
     obedience_.pause();
+    witness_.pause();
   } else {
     const auto least = [](double asked, double own) { return own > 0.0 ? std::min(asked, own) : asked; };
-    obedience_.keep_ramp(
-        {least(settings_.max_accel, turn.own_ramp.v), least(settings_.max_turn_accel, turn.own_ramp.w)});
+    const Drive ramp{least(settings_.max_accel, turn.own_ramp.v), least(settings_.max_turn_accel, turn.own_ramp.w)};
     // Beyond its limits it is not told.
-    obedience_.tell({std::clamp(turn.wanted.v, -settings_.max_v, settings_.max_v) * settings_.distance_scale,
-                     std::clamp(turn.wanted.w, -settings_.max_w, settings_.max_w) * settings_.turn_scale},
-                    now);
-    for (const Odometry& report : reports) obedience_.look(report, now);
+    const Drive told{std::clamp(turn.wanted.v, -settings_.max_v, settings_.max_v) * settings_.distance_scale,
+                     std::clamp(turn.wanted.w, -settings_.max_w, settings_.max_w) * settings_.turn_scale};
+    obedience_.keep_ramp(ramp);
+    obedience_.tell(told, now);
+    witness_.tell(told, ramp, now);
+    for (const Odometry& report : reports) {
+      obedience_.look(report, now);
+      witness_.look(report, now);
+    }
   }
   mind_doubt(asked && obedience_.trouble().empty(), now);
 }
@@ -74,7 +81,9 @@ void BaseWatch::mind_doubt(bool obeys, Stamp now) {
 
 void BaseWatch::rearm() {
   held_.clear();
+  blind_ = false;
   obedience_.pause();
+  witness_.pause();
 }
 
 std::vector<Hindrance> BaseWatch::troubles() const {

@@ -9,6 +9,7 @@
 #include "robot/drivers/base_driver.h"
 #include "robot/drivers/hindrance.h"
 #include "robot/drivers/watch/obedience.h"
+#include "robot/drivers/watch/wheel_witness.h"
 #include "robot/measurements.h"
 
 namespace rubble::robot {
@@ -28,25 +29,31 @@ struct BaseTurn {
   std::size_t jumps = 0;  ///< of its odometry, since the start
 };
 
-/// Holds what a base reports against what was asked of it: its motors, its wheels, its odometry.
+/// Holds what a base reports against what was asked of it, and against what scans show: its motors, its wheels, its
+/// odometry.
 ///
-/// A base that runs away is held from then on, until the operator lets it go; whether it obeys then is in doubt until
-/// nothing was seen against it for a while.
+/// A base that runs away, or whose wheels deny motion that scans show, is held from then on, until the operator lets it
+/// go; whether it obeys then is in doubt until nothing was seen against it for a while.
 class BaseWatch {
  public:
   static constexpr double kMotorsOn = 3.0;   ///< so soon they are on when asked for [s]
   static constexpr double kMotorsOff = 1.0;  ///< so soon they are off when switched off [s]
   static constexpr double kObeys = 3.0;      ///< who ran away does so again, if ever, within this time [s]
 
-  explicit BaseWatch(const BaseSettings& settings);
+  /// `T_base_laser`: where the scanner sits on the robot.
+  BaseWatch(const BaseSettings& settings, const mrpt::math::TPose2D& T_base_laser);
 
   /// One turn with the reports that came in it. True: it must be stopped hard, now.
   bool look(const BaseTurn& turn, const std::vector<Odometry>& reports, Stamp now);
+  /// A scan that came at `now`; some take milliseconds.
+  void see(const LaserScan& scan, Stamp now) { witness_.see(scan, now); }
   /// The operator lets it go.
   void rearm();
 
   /// Why nothing but the operator lets it go, in words; empty: it is not held.
   const std::string& held() const { return held_; }
+  /// It is held since its wheels deny what scans show.
+  bool blind() const { return blind_; }
   /// Its motors are on, long after they were switched off.
   bool motors_stay() const { return motors_stay_; }
   /// Its wheels turn, by the last report.
@@ -62,7 +69,9 @@ class BaseWatch {
 
   BaseSettings settings_;
   Obedience obedience_;
+  WheelWitness witness_;
   std::string held_;
+  bool blind_ = false;
   bool doubted_ = false;                  ///< it was held, and has not been seen to obey since
   Stamp obeys_since_ = Stamp::never();    ///< its motors are on and nothing is wrong with what it does
   Stamp motors_missed_ = Stamp::never();  ///< since then they are asked for and off

@@ -19,7 +19,9 @@ constexpr double kTurn = 0.02;  ///< of the base's thread [s]
 /// A base that obeys within its ramp and reports ten times a second, unless it is told otherwise.
 class WatchedBase {
  public:
-  explicit WatchedBase(BaseSettings given = {}) : settings(given), watch(given) { turn.ready = turn.motors_on = true; }
+  explicit WatchedBase(BaseSettings given = {}) : settings(given), watch(given, {}) {
+    turn.ready = turn.motors_on = true;
+  }
 
   /// Whether it was to be stopped hard meanwhile.
   bool run(const Drive& told, double seconds) {
