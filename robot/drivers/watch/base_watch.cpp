@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+
+#include "base/angle.h"
 
 namespace rubble::robot {
 namespace {
 
-constexpr Drive kStands{0.03, 0.05};   ///< slower wheels stand [m/s], [rad/s]
-constexpr double kJumpsLast = 5.0;     ///< of an odometry are remembered for so long [s]
-constexpr std::size_t kManyJumps = 3;  ///< within that time: an origin is set anew once
+constexpr Drive kStands{0.03, 0.05};           ///< slower wheels stand [m/s], [rad/s]
+constexpr double kOverShare = 0.1;             ///< a limit is kept within so much of it ...
+constexpr Drive kOver{0.03, deg_to_rad(5.0)};  ///< ... and so much more [m/s], [rad/s]
+constexpr double kJumpsLast = 5.0;             ///< of an odometry are remembered for so long [s]
+constexpr std::size_t kManyJumps = 3;          ///< within that time: an origin is set anew once
 
 using Cause = Hindrance::Cause;
 
@@ -29,10 +34,10 @@ bool BaseWatch::look(const BaseTurn& turn, const std::vector<Odometry>& reports,
   mind_jumps(turn.jumps, now);
   mind_motors(turn, now);
   mind_obedience(turn, reports, now);
-  const bool denies = !witness_.denial().empty();
-  if (!held_.empty() || (!obedience_.runs_away() && !denies)) return false;
-  blind_ = !obedience_.runs_away();
-  held_ = blind_ ? witness_.denial() : obedience_.trouble();
+  if (!held_.empty()) return false;
+  held_ = obedience_.runs_away() ? obedience_.trouble() : !too_fast_.empty() ? too_fast_ : witness_.denial();
+  if (held_.empty()) return false;
+  blind_ = held_ == witness_.denial();
   doubted_ = true;
   return true;
 }
@@ -51,11 +56,18 @@ void BaseWatch::mind_motors(const BaseTurn& turn, Stamp now) {
   motors_stay_ = off_since_ != Stamp::never() && now - off_since_ > kMotorsOff;
 }
 
+/// Its motors are off, or what it is told does not reach it in time.
+void BaseWatch::pause() {
+  obedience_.pause();
+  witness_.pause();
+  too_fast_since_ = Stamp::never();
+  too_fast_.clear();
+}
+
 void BaseWatch::mind_obedience(const BaseTurn& turn, const std::vector<Odometry>& reports, Stamp now) {
   const bool asked = turn.asked && !settings_.passive && turn.motors_on;
   if (!asked) {
-    obedience_.pause();
-    witness_.pause();
+    pause();
   } else {
     const auto least = [](double asked, double own) { return own > 0.0 ? std::min(asked, own) : asked; };
     const Drive ramp{least(settings_.max_accel, turn.own_ramp.v), least(settings_.max_turn_accel, turn.own_ramp.w)};
@@ -68,9 +80,26 @@ void BaseWatch::mind_obedience(const BaseTurn& turn, const std::vector<Odometry>
     for (const Odometry& report : reports) {
       obedience_.look(report, now);
       witness_.look(report, now);
+      mind_limit(now);
     }
   }
   mind_doubt(asked && obedience_.trouble().empty(), now);
+}
+
+/// Whatever it is told: its limit is that of whoever stands beside it.
+void BaseWatch::mind_limit(Stamp now) {
+  const Drive moves = obedience_.motion();
+  const double most_v = settings_.max_v * std::max(1.0, settings_.distance_scale);
+  const double most_w = settings_.max_w * std::max(1.0, settings_.turn_scale);
+  const bool over = std::abs(moves.v) > (1.0 + kOverShare) * most_v + kOver.v ||
+                    std::abs(moves.w) > (1.0 + kOverShare) * most_w + kOver.w;
+  if (!lasts(over, kTooFast, too_fast_since_, now)) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "is faster than its limit: moves at %.2f m/s and %.0f deg/s of at most %.2f m/s and %.0f deg/s; its "
+                "motors are being switched off",
+                moves.v, rad_to_deg(moves.w), most_v, rad_to_deg(most_w));
+  too_fast_ = text;
 }
 
 void BaseWatch::mind_doubt(bool obeys, Stamp now) {
@@ -82,8 +111,7 @@ void BaseWatch::mind_doubt(bool obeys, Stamp now) {
 void BaseWatch::rearm() {
   held_.clear();
   blind_ = false;
-  obedience_.pause();
-  witness_.pause();
+  pause();
 }
 
 std::vector<Hindrance> BaseWatch::troubles() const {

@@ -32,12 +32,14 @@ struct BaseTurn {
 /// Holds what a base reports against what was asked of it, and against what scans show: its motors, its wheels, its
 /// odometry.
 ///
-/// A base that runs away, or whose wheels deny motion that scans show, is held from then on, until the operator lets it
-/// go; whether it obeys then is in doubt until nothing was seen against it for a while.
+/// A base that runs away, that is faster than robot.max_v and max_w allow it, or whose wheels deny motion that scans
+/// show, is held from then on, until the operator lets it go; whether it obeys then is in doubt until nothing was seen
+/// against it for a while.
 class BaseWatch {
  public:
   static constexpr double kMotorsOn = 3.0;   ///< so soon they are on when asked for [s]
   static constexpr double kMotorsOff = 1.0;  ///< so soon they are off when switched off [s]
+  static constexpr double kTooFast = 1.0;    ///< so long it may be faster than its limit [s]
   static constexpr double kObeys = 3.0;      ///< who ran away does so again, if ever, within this time [s]
 
   /// `T_base_laser`: where the scanner sits on the robot.
@@ -62,9 +64,11 @@ class BaseWatch {
   std::vector<Hindrance> troubles() const;
 
  private:
+  void pause();
   void mind_jumps(std::size_t jumps, Stamp now);
   void mind_motors(const BaseTurn& turn, Stamp now);
   void mind_obedience(const BaseTurn& turn, const std::vector<Odometry>& reports, Stamp now);
+  void mind_limit(Stamp now);
   void mind_doubt(bool obeys, Stamp now);
 
   BaseSettings settings_;
@@ -72,6 +76,8 @@ class BaseWatch {
   WheelWitness witness_;
   std::string held_;
   bool blind_ = false;
+  Stamp too_fast_since_ = Stamp::never();
+  std::string too_fast_;                  ///< in words; empty: it keeps its limit
   bool doubted_ = false;                  ///< it was held, and has not been seen to obey since
   Stamp obeys_since_ = Stamp::never();    ///< its motors are on and nothing is wrong with what it does
   Stamp motors_missed_ = Stamp::never();  ///< since then they are asked for and off

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "base/angle.h"
+
 namespace rubble::robot {
 namespace {
 
@@ -123,6 +125,47 @@ TEST(BaseWatch, WhoRunsAwayIsHeldUntilLetGoAndDoubtedUntilItObeys) {
   EXPECT_THAT(base.troubles(), HasSubstr("is watched"));
   base.run({}, 0.4);
   EXPECT_EQ(base.troubles(), "");
+}
+
+/// Between the limit and what is told to it else nobody looks: a base that is 25 % too fast obeys but for that.
+TEST(BaseWatch, WhoIsFasterThanItsLimitIsHeldSoonAndWhoKeepsItNever) {
+  for (const double sign : {1.0, -1.0}) {
+    for (const bool turns : {false, true}) {
+      for (const double too_fast : {1.05, 1.25}) {
+        SCOPED_TRACE(testing::Message() << sign * too_fast << (turns ? " turning" : " driving"));
+        BaseSettings settings;
+        settings.max_v = 0.4;
+        settings.max_w = deg_to_rad(60.0);
+        WatchedBase base(settings);
+        base.wheels = [=](const Drive& told) { return Drive{too_fast * told.v, too_fast * told.w}; };
+        const Drive most = turns ? Drive{0.0, sign * settings.max_w} : Drive{sign * settings.max_v, 0.0};
+        const bool stopped = base.run(most, turns ? 2.6 : 3.6);  // with its ramp
+        EXPECT_EQ(stopped, too_fast > 1.2);
+        if (stopped) {
+          EXPECT_THAT(base.watch.held(), HasSubstr("faster than its limit"));
+          base.watch.rearm();
+          EXPECT_EQ(base.watch.held(), "");
+        } else {
+          EXPECT_FALSE(base.run(most, 20.0));
+          EXPECT_EQ(base.troubles(), "");
+        }
+      }
+    }
+  }
+}
+
+TEST(BaseWatch, AMomentAboveTheLimitIsNone) {
+  BaseSettings settings;
+  settings.max_v = 0.4;
+  settings.max_accel = 2.0;
+  WatchedBase base(settings);
+  base.run({0.4, 0.0}, 2.0);
+  for (int i = 0; i < 20; ++i) {
+    base.wheels = [](const Drive&) { return Drive{0.5, 0.0}; };
+    EXPECT_FALSE(base.run({0.4, 0.0}, 0.4)) << "a slope";
+    base.wheels = nullptr;
+    EXPECT_FALSE(base.run({0.4, 0.0}, 1.0));
+  }
 }
 
 TEST(BaseWatch, JumpsOfItsPositionsAreNamedWhenTheyCome) {
