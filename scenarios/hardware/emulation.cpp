@@ -90,6 +90,7 @@ const std::vector<FaultAt>& known_faults() {
     add(EmulatedKind::Base, "encoders", DeviceFault::Encoders);
     add(EmulatedKind::Base, "slow", PortFault::Slow);
     add(EmulatedKind::Levelling, "sensor", DeviceFault::Sensor);
+    add(EmulatedKind::Levelling, "slow", PortFault::Slow);
     return all;
   }();
   return faults;
