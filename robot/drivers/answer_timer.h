@@ -49,6 +49,8 @@ class AnswerTimer {
   /// The round trip as most of the last three answers have it, or the time that they have been missing for, when that
   /// is more; 0 at first, and of a device that does not know the question [s].
   double late(Stamp now) const;
+  /// How late it is is known, or that it does not know the question.
+  bool known() const { return unable_ || !round_trips_.empty(); }
   /// No answer for more than kMissing, or what is usual on a slow line, though there were some before.
   bool missing(Stamp now) const;
 
