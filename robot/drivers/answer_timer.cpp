@@ -67,7 +67,7 @@ void AnswerTimer::settle(Stamp now) {
   if (all) {
     take(std::max(took, least_), asked_.size() > 1);
   } else {
-    take_at_least(std::max(took, least_), false);
+    take_at_least(std::max(took, least_), answers_.size() > 1);
   }
   least_ = missed_ = 0.0;
   asked_.clear();
