@@ -16,7 +16,7 @@ constexpr double kNearShare = 0.02;                               ///< ... and b
 constexpr double kFarthest = 0.7;                                 ///< [m]
 constexpr double kWidest = deg_to_rad(66.0);                      ///< [rad]
 constexpr double kStepAhead = 0.08, kStepTurn = deg_to_rad(4.0);  ///< of the first search
-constexpr double kSeen = 0.06, kSeenTurn = deg_to_rad(6.0);       ///< less is not told from rest
+constexpr double kSeen = 0.1, kSeenTurn = deg_to_rad(8.0);        ///< less is not told from rest
 constexpr double kExplains = 0.55;                                ///< share of the points
 constexpr double kBetter = 0.15;  ///< than the other explanation, by so much of the points
 

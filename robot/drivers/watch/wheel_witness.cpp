@@ -58,9 +58,7 @@ void WheelWitness::look(const Odometry& odometry, Stamp now) {
 }
 
 void WheelWitness::start(const LaserScan& scan, Stamp now) {
-  since_.emplace();
-  since_->scan = scan;
-  since_->when = now;
+  since_.emplace(scan, now);
 }
 
 void WheelWitness::see(const LaserScan& scan, Stamp now) {

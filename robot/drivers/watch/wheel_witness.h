@@ -37,6 +37,7 @@ class WheelWitness {
  private:
   /// What happened since the scan that the next one is compared with.
   struct Since {
+    Since(const LaserScan& first, Stamp now) : scan(first), when(now) {}
     LaserScan scan;
     Stamp when;
     Drive told;             ///< so far it was told to go, there and back cancelling out [m], [rad]
