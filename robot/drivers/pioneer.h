@@ -87,6 +87,7 @@ class Pioneer : public BaseDriver {
   void mind_hold();
   bool stays_on(Stamp now);
   void leave_to_its_watchdog(Stamp now);
+  double left_alone() const;
   void disconnect();
   void forget_motion();
   void forget_questions();
@@ -133,12 +134,13 @@ class Pioneer : public BaseDriver {
   Stamp refreshed_ = Stamp::never();
 
   AnswerTimer answer_timer_;
-  std::size_t report_bytes_ = 0;     ///< of the last report on the line
-  double reply_ = 0.0;               ///< an echo comes within this time [s]
-  double echo_late_ = 0.0;           ///< so late one came at least; 0: all in time [s]
-  Stamp asked_ = Stamp::never();     ///< when SYNC0 was said last
-  double closed_for_ = 0.0;          ///< so long nothing is said behind CLOSE [s]
-  Stamp on_since_ = Stamp::never();  ///< its motors are on though switched off
+  std::size_t report_bytes_ = 0;      ///< of the last report on the line
+  double reply_ = 0.0;                ///< an echo comes within this time [s]
+  double echo_late_ = 0.0;            ///< so late one came at least; 0: all in time [s]
+  Stamp asked_ = Stamp::never();      ///< when SYNC0 was said last
+  double closed_for_ = 0.0;           ///< so long nothing is said behind CLOSE [s]
+  Stamp closed_at_ = Stamp::never();  ///< left to its watchdog then
+  Stamp on_since_ = Stamp::never();   ///< its motors are on though switched off
   CycleClock clock_;
   bool based_ = false;  ///< information_ is the reference for the next report
   Stamp last_report_ = Stamp::never();
