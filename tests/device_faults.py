@@ -49,6 +49,7 @@ ZEROED = {"urg-lost": (0.3, 1.0), "urg-doubled": (0.3, 1.0), "urg-junk": (0.3, 1
           "urg-silence": (0.3, 2.0), "urg-unplug": (0.3, 3.0), "levelling-silence": (0.5, 2.0), "levelling-unplug": (0.5, 3.0),
           "base-silence": (1.0, 2.0), "base-slow": (2.0, 6.0), "levelling-slow": (2.0, 6.0)}
 DEAF = ("base-silence",)
+SWINGS = ("levelling-slow",)
 # BRAKES: by the base's own doing, which nobody can tell anything: how long after the fault it begins to [s], and how long it is at it.
 BRAKES = {"base-watchdog": (2.0, 3.0)}
 # REST: the robot stands.
@@ -159,7 +160,9 @@ class Stop:
         notice, over = ZEROED.get(fault, BRAKES.get(fault, (0.1, 0.1)))
         # As the fault strikes, and until shortly before it must be noticed: a robot that was stopping anyway proves nothing.
         # (A base that does not hear is found out before its own watchdog is.)
-        self.told = 1e-3 * min(orders.at(self.t0)[0], orders.at(self.t0 + min(0.8, 0.6 * notice))[0])
+        # (A laser that swings shows an explorer walls that are none, and it stops for them sooner.)
+        later = 0.2 if fault in SWINGS else min(0.8, 0.6 * notice)
+        self.told = 1e-3 * min(orders.at(self.t0)[0], orders.at(self.t0 + later)[0])
         since = orders.zero_since(self.t0 + over - 0.05)
         self.zero = max(0.0, since - self.t0) if since is not None else None
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -47,6 +48,8 @@ std::string remedy(const std::vector<Hindrance>& all, bool starting) {
   if (std::all_of(all.begin(), all.end(), is_late)) return "; use a faster one";
   const auto is_operator = [](const Hindrance& one) { return one.name == "heartbeat"; };
   if (std::all_of(all.begin(), all.end(), is_operator)) return "; nobody has touched it";
+  const auto moves = [](const Hindrance& one) { return one.cause == Cause::Disobeys; };
+  if (std::any_of(all.begin(), all.end(), moves)) return "; see who moves it";
   const auto is_held = [](const Hindrance& one) { return one.cause == Cause::Held; };
   if (std::all_of(all.begin(), all.end(), is_held)) return "; nobody has let it go";
   return starting ? "; check cables, power and ports" : "; it did not come back; plug it in and run again";
@@ -92,6 +95,7 @@ struct RealRobot::Impl {
   mutable AnswerWatch unit_answers;
   std::atomic<bool> emergency{false};
   std::atomic<bool> stopped{false};
+  std::atomic<std::int64_t> stopped_ns{std::numeric_limits<std::int64_t>::max()};  ///< for good
   std::atomic<bool> ending{false};
   std::atomic<std::int64_t> operator_ns{Stamp::never().ns};
   Standstill standstill{host_now(), time_asleep()};  ///< minded by the operator's thread
@@ -204,12 +208,13 @@ struct RealRobot::Impl {
 
   void stop() {
     if (stopped.exchange(true)) return;
+    stopped_ns = host_now().ns;
     with_base([this] { base->stop(); });
     wake_base();
   }
 
   void emergency_stop() {
-    emergency = true;
+    if (!emergency.exchange(true)) stopped_ns = host_now().ns;
     with_base([this] { base->emergency_stop(); });
     wake_base();
   }
@@ -229,7 +234,7 @@ struct RealRobot::Impl {
     if (std::exchange(brake_asked, false) && allowed) base->brake();
     const Drive wanted = free ? commands.drive : Drive{};
     base->drive(wanted);
-    mind_base({wanted, allowed && heard, armed && !allowed}, now);
+    mind_base({wanted, allowed && heard, armed && !allowed, allowed && !heard}, now);
     if (scan_answered != Stamp::never()) scan_leaving = std::exchange(scan_answered, Stamp::never());
   }
 
@@ -274,8 +279,9 @@ struct RealRobot::Impl {
   }
   bool is_unit_well(Stamp now) const {
     if (!unit_thread) return true;
-    const auto [last, given] = unit_thread->with([&] { return std::make_pair(unit.last_report(), unit.answers(now)); });
-    if (is_unit_silent(last, now)) return false;
+    const auto [ready, last, given] =
+        unit_thread->with([&] { return std::make_tuple(unit.ready(), unit.last_report(), unit.answers(now)); });
+    if (!ready || is_unit_silent(last, now)) return false;
     return unit_answers.look(given, now);
   }
   bool is_operator_well(Stamp now) const {
@@ -348,8 +354,10 @@ struct RealRobot::Impl {
   /// The levelling unit and the operator.
   void add_silent_helpers(std::vector<Hindrance>& all, bool underway, Stamp now) const {
     if (!is_unit_well(now)) {
-      const auto [reported, how, given] =
-          unit_thread->with([&] { return std::make_tuple(unit.last_report(), unit.state(), unit.answers(now)); });
+      const auto [reported, how, given] = unit_thread->with([&] {
+        const Stamp last = unit.ready() ? unit.last_report() : Stamp::never();
+        return std::make_tuple(last, unit.state(), unit.answers(now));
+      });
       const std::string error = unit_thread->error();
       if (is_unit_silent(reported, now)) {
         all.push_back(silent_for("levelling", underway, reported, now, error.empty() ? how : error));
@@ -369,16 +377,19 @@ struct RealRobot::Impl {
     s.held = is_held();
     s.blind = is_blind();
     s.taken = first != Stamp::never() && (is_taken() || is_held_by_us());
+    s.begun = first != Stamp::never();
     s.scans = scans;
     s.odometry = odometry;
     s.accelerations = accelerations;
     with_base([&] {
       s.motors_on = base->motors_on();
+      s.reported = base->last_report() != Stamp::never() && base->last_report() > Stamp{stopped_ns.load()};
       s.battery = base->battery();
       s.bad_packets = base->bad_sums();
       s.jumps = base->jumps();
       const std::lock_guard<std::mutex> lock(mutex);
       s.odometry += waiting_odometry.size();
+      s.moves = base_watch.moves();
       append(s.troubles, base_watch.troubles());
     });
     if (unit_thread) {

@@ -58,6 +58,9 @@ struct RobotStatus {
   bool taken = false;               ///< another program seemed to have the base while it was away, or to drive it
   std::vector<Hindrance> troubles;  ///< what does not work but holds nothing
   bool motors_on = false;
+  bool begun = false;     ///< all devices have reported: the base may have been driven
+  bool reported = false;  ///< the base has, since it was stopped for good
+  bool moves = false;     ///< its wheels turn, by its last report
   bool emergency = false;
   double battery = 0.0;     ///< [V]
   std::uint64_t scans = 0;  ///< since the start

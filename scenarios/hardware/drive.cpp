@@ -22,6 +22,7 @@
 #include "robot/drivers/black_box.h"
 #include "robot/drivers/mrpt_scanner.h"
 #include "robot/drivers/scip/scip_scanner.h"
+#include "robot/drivers/watch/base_watch.h"
 #include "robot/logs/log.h"
 #include "scenarios/hardware/port_mix_up.h"
 #include "scenarios/hardware/scanner_check.h"
@@ -38,6 +39,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kTellAgain = 5.0;  ///< a reason that changed while devices are waited for is told so often at most [s]
+
+/// So soon a base that is stopped has told so, on a line that is as slow as may be driven with, and one that does not
+/// obey has been found out (BaseWatch::kMotorsOff) [s].
+constexpr double kConfirmed = 2.0;
 
 constexpr robot::Drive kMoved{0.02, deg_to_rad(2.0)};  ///< so far is more than a touch [m], [rad]
 
@@ -141,7 +146,13 @@ class Driver {
     return end;
   }
 
-  std::vector<std::string> silent_devices() const { return names(real_.status().silent); }
+  /// That nothing came of: who is held, moves or is late has reported.
+  std::vector<std::string> silent_devices() const {
+    std::vector<std::string> names;
+    for (const robot::Hindrance& one : real_.status().silent)
+      if (one.cause == robot::Hindrance::Cause::Silent) names.push_back(one.name);
+    return names;
+  }
 
  private:
   /// A robot that stood held or silent to the end has not done what it was sent for.
@@ -223,7 +234,7 @@ class Driver {
     tell_of_scanner();
     if ((status.held || begun_) && seconds_since(shown_at_) >= 1.0) show(status, status.held ? "held" : "waiting");
     const std::vector<std::string> lines = lines_of(status.silent);
-    const bool others = names(status.silent) != names(told_) || status.held != held_;
+    const bool others = names(status.silent) != names(told_) || status.held != held_ || disobeys_anew(status.silent);
     if (others ? lines != lines_of(told_) : lines != told_lines_ && is_news(lines)) {
       if (options_.tell)
         for (const std::string& line : lines) options_.tell(line);
@@ -236,6 +247,12 @@ class Driver {
     held_ = held_ && status.held;
     if (options_.forget_keys) options_.forget_keys();
     return !interrupted_;
+  }
+
+  /// It moves, though silent or late was all that was told of it.
+  bool disobeys_anew(const std::vector<robot::Hindrance>& silent) const {
+    const auto disobeys = [](const robot::Hindrance& one) { return one.cause == robot::Hindrance::Cause::Disobeys; };
+    return std::any_of(silent.begin(), silent.end(), disobeys) && std::none_of(told_.begin(), told_.end(), disobeys);
   }
 
   /// Another reason than the one that was told, a while ago: a port that was not open yet may have been opened since.
@@ -389,7 +406,8 @@ scoring::Evidence evidence_of(const Core& core, const robot::RealRobot& robot, c
 
 /// Devices that do not report may be plugged in where others are looked for: asks at their ports who is there.
 void tell_who_answers(const RobotFile& file, const std::vector<std::string>& silent, const DriveOptions& options) {
-  if (!options.tell) return;
+  // Whoever only maps says nothing to a base that others drive; ports mixed up, it may be at any of them.
+  if (!options.tell || options.mode == DriveMode::MapOnly) return;
   std::vector<DevicePort> asked;
   for (const DevicePort& device : {DevicePort{"urg", file.lidar.port}, DevicePort{"base", file.robot.base_port},
                                    DevicePort{"levelling", file.robot.levelling_port}})
@@ -415,21 +433,38 @@ class Completeness {
 
 /// A base that is stopped for good and does not obey: whoever stands beside it must know before the program ends.
 void tell_what_goes_on(const robot::RealRobot& robot, const DriveOptions& options) {
-  const auto given_up = Clock::now() + std::chrono::seconds(2);
-  const auto silent = [](const robot::RobotStatus& status) {
-    return std::any_of(status.silent.begin(), status.silent.end(), [](const robot::Hindrance& one) {
-      using Cause = robot::Hindrance::Cause;
-      return one.name == "base" && (one.cause == Cause::Silent || one.cause == Cause::Late);
-    });
-  };
+  const auto given_up = Clock::now() + std::chrono::duration<double>(kConfirmed);
   robot::RobotStatus status = robot.status();
-  for (; Clock::now() < given_up && (status.motors_on || silent(status)) && status.troubles.empty();
-       status = robot.status())
+  if (!status.begun) return;  // nobody here has driven it
+  const auto stands = [](const robot::RobotStatus& s) { return s.reported && !s.motors_on && !s.moves; };
+  for (; Clock::now() < given_up && !stands(status); status = robot.status())
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  if (!options.tell) return;
-  for (const robot::Hindrance& trouble : status.troubles) options.tell(trouble.line());
-  if (silent(status)) options.tell("base: has not told that it stopped; see that it stands");
+  if (!options.tell || stands(status)) return;
+  if (!status.reported) {
+    options.tell("base: has not told that it stopped; see that it stands");
+  } else if (status.motors_on) {
+    options.tell(std::string("base: ") + robot::kMotorsStay);
+  } else {
+    options.tell("base: its motors are off, but its wheels turn; see that it comes to stand");
+  }
 }
+
+/// Stops the robot also where an error leaves the drive, and says so when it does not stop.
+class StoppedAtLast {
+ public:
+  StoppedAtLast(robot::RealRobot& robot, const DriveOptions& options) : robot_(robot), options_(options) {}
+  ~StoppedAtLast() {
+    if (options_.mode == DriveMode::MapOnly) return;
+    robot_.stop();
+    tell_what_goes_on(robot_, options_);
+  }
+  StoppedAtLast(const StoppedAtLast&) = delete;
+  StoppedAtLast& operator=(const StoppedAtLast&) = delete;
+
+ private:
+  robot::RealRobot& robot_;
+  const DriveOptions& options_;
+};
 
 /// A robot that may turn back before it has begun: what the operator should know.
 void warn_of_time_for_home(const Scenario& settings, const DriveOptions& options) {
@@ -479,6 +514,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     if (!file.settings.levelling.on) settings.safety.levelling_answer = std::numeric_limits<double>::infinity();
     robot::RealRobot real(settings, *lidar, &box);
     robot::RecordingRobot recorded(real, folder.file("log.rlog"), resolved_yaml(file.settings));
+    const StoppedAtLast stopped(real, options);
     Driver driver(file, options, folder, real, core, *lidar);
     const LoopEnd end = driver.run(recorded);
     report.end = end.reason;
@@ -488,7 +524,6 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     recorded.flush();
     save_map_files(folder, core.mapper());
     *report.score = score_json(evidence_of(core, real, end, start));
-    if (options.mode != DriveMode::MapOnly) tell_what_goes_on(real, options);
   }
   folder.save_hashes("");
   folder.write("score.json", report.score->dump(2) + "\n");

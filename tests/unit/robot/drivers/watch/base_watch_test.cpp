@@ -38,10 +38,25 @@ class WatchedBase {
       pose.x += std::cos(pose.phi) * motion.v * kTurn;
       pose.y += std::sin(pose.phi) * motion.v * kTurn;
       std::vector<Odometry> reports;
-      if (++turns % 5 == 0) reports.push_back({now, pose, motion.v, motion.w, false});
+      if (++turns % 5 == 0)
+        reports.push_back(counts ? Odometry{now, pose, motion.v, motion.w, false} : Odometry{now, {}, 0.0, 0.0, false});
+      if (turns % 5 == 2) watch.see(seen_from(pose.phi), now);
       stopped = watch.look(turn, reports, now) || stopped;
     }
     return stopped;
+  }
+
+  /// By a scanner above the turn centre, in a room without symmetry.
+  static LaserScan seen_from(double phi) {
+    LaserScan scan;
+    scan.angle_min = -2.0;
+    scan.angle_step = 0.02;
+    scan.range_max = 4.0;
+    for (int i = 0; i <= 200; ++i) {
+      const double b = phi + scan.angle_min + i * scan.angle_step;
+      scan.ranges.push_back(static_cast<float>(2.0 + 0.8 * std::sin(b) + 0.5 * std::sin(3.0 * b + 1.0)));
+    }
+    return scan;
   }
 
   std::string troubles() const {
@@ -52,12 +67,13 @@ class WatchedBase {
 
   BaseSettings settings;
   BaseWatch watch;
-  BaseTurn turn{{}, true, false};
+  BaseTurn turn{{}, true};
   std::function<Drive(const Drive&)> wheels;
   Stamp now = Stamp::from_seconds(50.0);
   Drive motion;
   mrpt::math::TPose2D pose;
   int turns = 0;
+  bool counts = true;  ///< its encoders do
 };
 
 TEST(BaseWatch, ABaseThatObeysIsInNoTrouble) {
@@ -154,6 +170,28 @@ TEST(BaseWatch, WhoIsFasterThanItsLimitIsHeldSoonAndWhoKeepsItNever) {
   }
 }
 
+/// Orders do not arrive, and somebody else drives it; one that only hears late comes to rest by its ramp.
+TEST(BaseWatch, WhoGoesOnThoughDeafIsHeldAndWhoStopsLateIsNot) {
+  for (const double stops_after : {2.0, 3.0, 1e9}) {
+    SCOPED_TRACE(stops_after);
+    WatchedBase base;
+    base.run({0.3, 0.0}, 3.0);
+    base.turn.asked = false;
+    base.turn.deaf = true;
+    const Stamp since = base.now;
+    base.wheels = [&](const Drive&) { return Drive{base.now - since < stops_after ? 0.3 : 0.0, 0.0}; };
+    EXPECT_EQ(base.run({}, 7.0), stops_after > 100.0);
+    EXPECT_EQ(base.watch.held() != "", stops_after > 100.0) << base.watch.held();
+  }
+  WatchedBase pushed;  // at rest, a moment
+  pushed.turn.asked = false;
+  pushed.turn.deaf = true;
+  for (int i = 0; i < 10; ++i) {
+    pushed.wheels = [i](const Drive&) { return Drive{i % 2 == 0 ? 0.3 : 0.0, 0.0}; };
+    EXPECT_FALSE(pushed.run({}, 2.0));
+  }
+}
+
 TEST(BaseWatch, AMomentAboveTheLimitIsNone) {
   BaseSettings settings;
   settings.max_v = 0.4;
@@ -166,6 +204,19 @@ TEST(BaseWatch, AMomentAboveTheLimitIsNone) {
     base.wheels = nullptr;
     EXPECT_FALSE(base.run({0.4, 0.0}, 1.0));
   }
+}
+
+TEST(BaseWatch, WhoseEncodersAreDeadIsHeldAsBlind) {
+  WatchedBase base;
+  EXPECT_FALSE(base.run({0.0, 0.5}, 3.0));
+  EXPECT_FALSE(base.watch.blind());
+  base.counts = false;
+  EXPECT_TRUE(base.run({0.0, 0.5}, 3.0));
+  EXPECT_TRUE(base.watch.blind());
+  EXPECT_THAT(base.watch.held(), HasSubstr("encoders and scans disagree"));
+  base.watch.rearm();
+  EXPECT_FALSE(base.watch.blind());
+  EXPECT_EQ(base.watch.held(), "");
 }
 
 TEST(BaseWatch, JumpsOfItsPositionsAreNamedWhenTheyCome) {
