@@ -41,8 +41,8 @@ using Clock = std::chrono::steady_clock;
 constexpr double kTellAgain = 5.0;  ///< a reason that changed while devices are waited for is told so often at most [s]
 
 /// So soon a base that is stopped has told so, on a line that is as slow as may be driven with, and one that does not
-/// obey has been found out (BaseWatch::kMotorsOff) [s].
-constexpr double kConfirmed = 2.0;
+/// obey has been found out (BaseWatch::kMotorsOff), but not yet been left to its watchdog [s].
+constexpr double kConfirmed = 1.6;
 
 constexpr robot::Drive kMoved{0.02, deg_to_rad(2.0)};  ///< so far is more than a touch [m], [rad]
 
