@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -86,6 +87,32 @@ TEST(PioneerWire, ABaseWhoseMotorsStayOnIsClosedAndLeftToItsWatchdog) {
       EXPECT_TRUE(wire.run_until([&] { return wire.driver.ready(); }, 10.0)) << wire.driver.state();
     }
   }
+}
+
+/// Somebody else's orders arrive, ours do not, until the line is well again.
+TEST(PioneerWire, ABaseLeftToItsWatchdogIsToldToStopNowAndThenForItMayHearAgain) {
+  Wire wire;
+  wire.run(1.0);
+  wire.go(0.4, 0.0);
+  wire.run(2.0);
+  wire.deaf_to = [](const std::string&) { return true; };
+  wire.driver.emergency_stop();
+  const auto driven_on = [&](double seconds) {
+    for (const Stamp end = wire.now + seconds; wire.now < end; wire.run(0.2))
+      wire.base.receive(arcos::command(arcos::kVelocity, 250), wire.now);
+  };
+  driven_on(5.0);
+  EXPECT_THAT(wire.driver.state(), testing::HasSubstr("left to its watchdog"));
+  wire.said.clear();
+  driven_on(20.0);
+  EXPECT_NEAR(wire.base.motion().v, 0.25, 1e-9);
+  const auto told = std::count(wire.said.begin(), wire.said.end(), arcos::command(arcos::kEmergencyStop));
+  EXPECT_GE(told, 3);
+  EXPECT_LE(told, 5) << "its watchdog works only while nobody speaks to it";
+  wire.deaf_to = {};
+  driven_on(6.0);
+  EXPECT_FALSE(wire.base.motors_on());
+  EXPECT_EQ(wire.base.motion().v, 0.0);
 }
 
 TEST(PioneerWire, BrakingTakesNoRampAndTheNextSetPointDrivesAgain) {
