@@ -47,7 +47,7 @@ void LevellingUnit::advance(Stamp now) {
     last_report_ = Stamp::never();
     answer_timer_.reset();
     unanswered_ = Stamp::never();
-    }
+  }
   if (!reports() && now - asked_ >= kAskAgain) {
     asked_ = now;
     output_ = levelling_line("V");

@@ -57,9 +57,7 @@ void WheelWitness::look(const Odometry& odometry, Stamp now) {
   last_ = odometry;
 }
 
-void WheelWitness::start(const LaserScan& scan, Stamp now) {
-  since_.emplace(scan, now);
-}
+void WheelWitness::start(const LaserScan& scan, Stamp now) { since_.emplace(scan, now); }
 
 void WheelWitness::see(const LaserScan& scan, Stamp now) {
   if (told_ == Stamp::never() || looked_ == Stamp::never() || now - looked_ > kReportsGap) {
