@@ -68,6 +68,8 @@ class BaseDriver : public Device {
   virtual Answers answers(Stamp /*now*/) const { return {}; }
   /// How hard it can gain or lose speed by its own account [m/s^2], [rad/s^2]; 0: it has not told.
   virtual Drive own_ramp() const { return {}; }
+  /// It begins to stop by itself when it has heard nothing for so long [s].
+  virtual double watchdog() const { return 2.0; }
   /// It does not report yet, and what it answers comes late.
   virtual bool slow() const { return false; }
 

@@ -163,7 +163,7 @@ Stamp LevellingUnit::deadline() const {
 std::string LevellingUnit::state() const {
   if (!identified_) return "asks who is there";
   if (!reports()) return "waits for the first report of " + identity_.model;
-  return identity_.model + (ready() ? " reports" : " reports, but has not answered yet");
+  return identity_.model + (ready() ? " reports" : " reports, but how late it answers is not known yet");
 }
 
 std::vector<Acceleration> LevellingUnit::take_accelerations() { return std::exchange(accelerations_, {}); }

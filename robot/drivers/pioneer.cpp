@@ -28,7 +28,6 @@ constexpr double kSpacing = 0.004;   ///< the firmware wants so much between two
 constexpr double kRefresh = 0.2;     ///< set points are sent again [s]; the firmware forgets them after 2 s
 constexpr double kAskMotors = 0.5;   ///< [s]
 constexpr double kStubborn = 2.0;    ///< motors that stay on for so long though switched off do not hear that order [s]
-constexpr double kLeftAlone = 1.0;   ///< so much longer than the firmware's watchdog waits for a client [s]
 constexpr double kBrakes = 2.0;      ///< and so much more it may take to come to rest [s]
 constexpr int kOnce = 1;             ///< of ENCODER
 constexpr double kRefused = 5.0;     ///< a robot that cannot be read is asked again who it is [s]
@@ -173,8 +172,6 @@ void Pioneer::leave_to_its_watchdog(Stamp now) {
   go(Step::Closing, now);
 }
 
-double Pioneer::left_alone() const { return 1e-3 * configuration_.watchdog_ms + kLeftAlone; }
-
 /// The next connection begins with an odometry of zero.
 void Pioneer::disconnect() {
   queue_.clear();
@@ -274,8 +271,12 @@ void Pioneer::digest(const std::string& payload, Stamp now, std::size_t behind) 
   }
   if (step_ == Step::Closing && closed_for_ > kReply && report && (report->flags & arcos::kMotorsOn) != 0) {
     since_ = now;  // its watchdog stops it only as long as nobody speaks
-    // Where that did not help either, somebody else speaks to it, or it hears again.
-    if (now - closed_at_ >= left_alone() + kBrakes) leave_to_its_watchdog(now);
+    const bool moves = report->moving || report->left != 0 || report->right != 0;
+    if (moves && stands_ && now - closed_at_ < kBrakes) roused_ = true;
+    stands_ = !moves;
+    // Where that did not help either somebody else speaks to it; or it stands, and may hear again. One that obeys
+    // nothing, but goes on when it is spoken to, is left standing.
+    if (now - closed_at_ >= left_alone() + kBrakes && (moves || !roused_)) leave_to_its_watchdog(now);
   }
   if (step_ != Step::Opening && step_ != Step::Running) return;
   if (const auto configuration = arcos::parse_configuration(payload)) {
@@ -304,6 +305,7 @@ void Pioneer::open(Stamp now) {
   configured_ = false;
   based_ = false;
   opened_ = true;
+  stands_ = roused_ = false;
   send(command(arcos::kOpen, 1));
   send(command(arcos::kConfig, 1));
   const int accel = whole(settings_.max_accel / kMillimetre);

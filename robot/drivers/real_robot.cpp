@@ -42,17 +42,17 @@ Hindrance silent_for(const std::string& name, bool underway, Stamp last, Stamp n
   return {name, cause, text + (why.empty() ? "" : " (" + why + ")")};
 }
 
-/// A line that is too slow is not helped by plugging it in again.
+/// By the worst cause of all: a line that is too slow is not helped by plugging it in again.
 std::string remedy(const std::vector<Hindrance>& all, bool starting) {
-  const auto is_late = [](const Hindrance& one) { return one.cause == Cause::Late; };
-  if (std::all_of(all.begin(), all.end(), is_late)) return "; use a faster one";
-  const auto is_operator = [](const Hindrance& one) { return one.name == "heartbeat"; };
-  if (std::all_of(all.begin(), all.end(), is_operator)) return "; nobody has touched it";
-  const auto moves = [](const Hindrance& one) { return one.cause == Cause::Disobeys; };
-  if (std::any_of(all.begin(), all.end(), moves)) return "; see who moves it";
-  const auto is_held = [](const Hindrance& one) { return one.cause == Cause::Held; };
-  if (std::all_of(all.begin(), all.end(), is_held)) return "; nobody has let it go";
-  return starting ? "; check cables, power and ports" : "; it did not come back; plug it in and run again";
+  const auto any = [&](Cause cause) {
+    return std::any_of(all.begin(), all.end(), [cause](const Hindrance& one) { return one.cause == cause; });
+  };
+  const auto is_device = [](const Hindrance& one) { return one.cause == Cause::Silent && one.name != "heartbeat"; };
+  if (any(Cause::Disobeys)) return "; see who moves it";
+  if (std::any_of(all.begin(), all.end(), is_device))
+    return starting ? "; check cables, power and ports" : "; it did not come back; plug it in and run again";
+  if (any(Cause::Held)) return "; nobody has let it go";
+  return any(Cause::Silent) ? "; nobody has touched it" : "; use a faster one";
 }
 
 template <class T>
@@ -225,7 +225,8 @@ struct RealRobot::Impl {
     const bool fresh = commanded != Stamp::never() && now - commanded <= settings.safety.core_silence;
     const bool ours = armed && !is_taken() && base_watch.held().empty();
     const bool allowed = ours && !emergency && !stopped;
-    const bool heard = is_base_answering(base->answers(now), now);
+    const BaseDriver::Answers answers = base->answers(now);
+    const bool heard = is_base_answering(answers, now);
     const bool free = allowed && heard && fresh && standstill.is_over(now, time_asleep()) &&
                       is_base_reporting(base->ready(), base->last_report(), now) && is_lidar_well(now) &&
                       is_unit_well(now) && is_operator_well(now);
@@ -234,7 +235,9 @@ struct RealRobot::Impl {
     if (std::exchange(brake_asked, false) && allowed) base->brake();
     const Drive wanted = free ? commands.drive : Drive{};
     base->drive(wanted);
-    mind_base({wanted, allowed && heard, armed && !allowed, allowed && !heard}, now);
+    // Reports that come without a pause are hardly later than the base may be silent.
+    const double late = answers.missing ? settings.safety.base_silence : answers.late;
+    mind_base({wanted, allowed && heard, armed && !allowed, allowed && !heard, late, base->watchdog()}, now);
     if (scan_answered != Stamp::never()) scan_leaving = std::exchange(scan_answered, Stamp::never());
   }
 
@@ -390,6 +393,7 @@ struct RealRobot::Impl {
       const std::lock_guard<std::mutex> lock(mutex);
       s.odometry += waiting_odometry.size();
       s.moves = base_watch.moves();
+      s.motors_stay = base_watch.motors_stay();
       append(s.troubles, base_watch.troubles());
     });
     if (unit_thread) {

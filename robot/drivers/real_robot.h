@@ -61,6 +61,8 @@ struct RobotStatus {
   bool begun = false;     ///< all devices have reported: the base may have been driven
   bool reported = false;  ///< the base has, since it was stopped for good
   bool moves = false;     ///< its wheels turn, by its last report
+  bool motors_stay =
+      false;  ///< its motors are on, long after they were switched off; what it does in silence nobody knows
   bool emergency = false;
   double battery = 0.0;     ///< [V]
   std::uint64_t scans = 0;  ///< since the start

@@ -12,10 +12,8 @@ namespace {
 constexpr Drive kStands{0.03, 0.05};           ///< slower wheels stand [m/s], [rad/s]
 constexpr double kOverShare = 0.1;             ///< a limit is kept within so much of it ...
 constexpr Drive kOver{0.03, deg_to_rad(5.0)};  ///< ... and so much more [m/s], [rad/s]
-constexpr double kWatchdog = 2.0;              ///< a base that hears nothing begins to stop within this time [s]
-constexpr double kSlowest = 1.5;       ///< orders and reports that are late by so much together may be on their way [s]
-constexpr double kJumpsLast = 5.0;     ///< of an odometry are remembered for so long [s]
-constexpr std::size_t kManyJumps = 3;  ///< within that time: an origin is set anew once
+constexpr double kJumpsLast = 5.0;             ///< of an odometry are remembered for so long [s]
+constexpr std::size_t kManyJumps = 3;          ///< within that time: an origin is set anew once
 
 using Cause = Hindrance::Cause;
 
@@ -36,12 +34,8 @@ bool BaseWatch::look(const BaseTurn& turn, const std::vector<Odometry>& reports,
   mind_jumps(turn.jumps, now);
   mind_motors(turn, now);
   mind_obedience(turn, reports, now);
-  mind_deafness(turn, now);
   if (!held_.empty()) return false;
-  held_ = obedience_.runs_away() ? obedience_.trouble()
-          : !too_fast_.empty()   ? too_fast_
-          : !goes_on_.empty()    ? goes_on_
-                                 : witness_.denial();
+  held_ = obedience_.runs_away() ? obedience_.trouble() : !too_fast_.empty() ? too_fast_ : witness_.denial();
   if (held_.empty()) return false;
   blind_ = held_ == witness_.denial();
   doubted_ = true;
@@ -62,7 +56,13 @@ void BaseWatch::mind_motors(const BaseTurn& turn, Stamp now) {
   motors_stay_ = off_since_ != Stamp::never() && now - off_since_ > kMotorsOff;
 }
 
-/// Its motors are off, or what it is told does not reach it in time.
+/// A base that does not hear stops by its watchdog, one on a slow line when it hears at last. Who goes on beyond that,
+/// or sets off anew, is driven by somebody else or runs away.
+bool BaseWatch::had_time_to_stop(const BaseTurn& turn, Stamp now) {
+  return lasts(turn.deaf && !settings_.passive && turn.motors_on, turn.watchdog + turn.late, deaf_since_, now);
+}
+
+/// Its motors are off, or what it was told may be on its way still.
 void BaseWatch::pause() {
   obedience_.pause();
   witness_.pause();
@@ -72,7 +72,8 @@ void BaseWatch::pause() {
 
 void BaseWatch::mind_obedience(const BaseTurn& turn, const std::vector<Odometry>& reports, Stamp now) {
   const bool asked = turn.asked && !settings_.passive && turn.motors_on;
-  if (!asked) {
+  const bool told_to_stand = had_time_to_stop(turn, now);
+  if (!asked && !told_to_stand) {
     pause();
   } else {
     const auto least = [](double asked, double own) { return own > 0.0 ? std::min(asked, own) : asked; };
@@ -106,19 +107,6 @@ void BaseWatch::mind_limit(Stamp now) {
                 "motors are being switched off",
                 moves.v, rad_to_deg(moves.w), most_v, rad_to_deg(most_w));
   too_fast_ = text;
-}
-
-/// A base that hears nothing stops by its watchdog; on a slow line it hears late. One that goes on beyond that is
-/// driven by somebody else, or runs away.
-void BaseWatch::mind_deafness(const BaseTurn& turn, Stamp now) {
-  const double brakes = settings_.max_accel > 0.0 ? settings_.max_v / settings_.max_accel : 0.0;
-  const bool goes_on = turn.deaf && !settings_.passive && turn.motors_on && moves_;
-  if (!lasts(goes_on, kWatchdog + kSlowest + brakes, goes_on_since_, now)) return goes_on_.clear();
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "moves on though told to stop for %.1f s, and hears late or nothing; its motors are being switched off",
-                now - goes_on_since_);
-  goes_on_ = text;
 }
 
 void BaseWatch::mind_doubt(bool obeys, Stamp now) {

@@ -19,10 +19,12 @@ constexpr const char* kMotorsStay =
 
 /// What is known of a base in one turn of its thread, and what is asked of it.
 struct BaseTurn {
-  Drive wanted;        ///< its set point before any limit
-  bool asked = false;  ///< its motors are asked for, and what it is told reaches it in time
-  bool off = false;    ///< they were switched off by us
-  bool deaf = false;   ///< they are asked for, but what it is told comes late or not at all; it is told to stand
+  Drive wanted;           ///< its set point before any limit
+  bool asked = false;     ///< its motors are asked for, and what it is told reaches it in time
+  bool off = false;       ///< they were switched off by us
+  bool deaf = false;      ///< they are asked for, but what it is told comes late or not at all; it is told to stand
+  double late = 0.0;      ///< so late an order that is on its way, or a report, may come then [s]
+  double watchdog = 2.0;  ///< BaseDriver::watchdog() [s]
   bool ready = false;
   bool motors_on = false;
   bool held = false;      ///< by somebody at the robot
@@ -70,7 +72,7 @@ class BaseWatch {
   void mind_motors(const BaseTurn& turn, Stamp now);
   void mind_obedience(const BaseTurn& turn, const std::vector<Odometry>& reports, Stamp now);
   void mind_limit(Stamp now);
-  void mind_deafness(const BaseTurn& turn, Stamp now);
+  bool had_time_to_stop(const BaseTurn& turn, Stamp now);
   void mind_doubt(bool obeys, Stamp now);
 
   BaseSettings settings_;
@@ -79,9 +81,8 @@ class BaseWatch {
   std::string held_;
   bool blind_ = false;
   Stamp too_fast_since_ = Stamp::never();
-  std::string too_fast_;                  ///< in words; empty: it keeps its limit
-  Stamp goes_on_since_ = Stamp::never();  ///< though deaf
-  std::string goes_on_;                   ///< for longer than it may, in words
+  std::string too_fast_;  ///< in words; empty: it keeps its limit
+  Stamp deaf_since_ = Stamp::never();
   bool doubted_ = false;                  ///< it was held, and has not been seen to obey since
   Stamp obeys_since_ = Stamp::never();    ///< its motors are on and nothing is wrong with what it does
   Stamp motors_missed_ = Stamp::never();  ///< since then they are asked for and off

@@ -170,28 +170,6 @@ TEST(BaseWatch, WhoIsFasterThanItsLimitIsHeldSoonAndWhoKeepsItNever) {
   }
 }
 
-/// Orders do not arrive, and somebody else drives it; one that only hears late comes to rest by its ramp.
-TEST(BaseWatch, WhoGoesOnThoughDeafIsHeldAndWhoStopsLateIsNot) {
-  for (const double stops_after : {2.0, 3.0, 1e9}) {
-    SCOPED_TRACE(stops_after);
-    WatchedBase base;
-    base.run({0.3, 0.0}, 3.0);
-    base.turn.asked = false;
-    base.turn.deaf = true;
-    const Stamp since = base.now;
-    base.wheels = [&](const Drive&) { return Drive{base.now - since < stops_after ? 0.3 : 0.0, 0.0}; };
-    EXPECT_EQ(base.run({}, 7.0), stops_after > 100.0);
-    EXPECT_EQ(base.watch.held() != "", stops_after > 100.0) << base.watch.held();
-  }
-  WatchedBase pushed;  // at rest, a moment
-  pushed.turn.asked = false;
-  pushed.turn.deaf = true;
-  for (int i = 0; i < 10; ++i) {
-    pushed.wheels = [i](const Drive&) { return Drive{i % 2 == 0 ? 0.3 : 0.0, 0.0}; };
-    EXPECT_FALSE(pushed.run({}, 2.0));
-  }
-}
-
 TEST(BaseWatch, AMomentAboveTheLimitIsNone) {
   BaseSettings settings;
   settings.max_v = 0.4;
