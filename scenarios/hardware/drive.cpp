@@ -41,8 +41,8 @@ using Clock = std::chrono::steady_clock;
 constexpr double kTellAgain = 5.0;  ///< a reason that changed while devices are waited for is told so often at most [s]
 
 /// So soon a base that is stopped has told so, on a line that is as slow as may be driven with, and one that does not
-/// obey has been found out (BaseWatch::kMotorsOff), but not yet been left to its watchdog [s].
-constexpr double kConfirmed = 1.6;
+/// obey has been found out (BaseWatch::kMotorsOff) [s].
+constexpr double kConfirmed = 2.0;
 
 constexpr robot::Drive kMoved{0.02, deg_to_rad(2.0)};  ///< so far is more than a touch [m], [rad]
 
@@ -146,11 +146,15 @@ class Driver {
     return end;
   }
 
-  /// That nothing came of: who is held, moves or is late has reported.
+  /// That nothing came of at all: who is held, moves, is late or fell silent has reported, and is where it belongs.
   std::vector<std::string> silent_devices() const {
+    const robot::RobotStatus status = real_.status();
+    const auto has_reported = [&](const std::string& name) {
+      return name == "urg" ? status.scans > 0 : name == "base" ? status.odometry > 0 : status.accelerations > 0;
+    };
     std::vector<std::string> names;
-    for (const robot::Hindrance& one : real_.status().silent)
-      if (one.cause == robot::Hindrance::Cause::Silent) names.push_back(one.name);
+    for (const robot::Hindrance& one : status.silent)
+      if (one.cause == robot::Hindrance::Cause::Silent && !has_reported(one.name)) names.push_back(one.name);
     return names;
   }
 
@@ -229,19 +233,21 @@ class Driver {
     return commands;
   }
 
+  /// Why a device is waited for, as it was told.
+  struct Reason {
+    std::string name;
+    robot::Hindrance::Cause cause = robot::Hindrance::Cause::Silent;
+    std::string words;  ///< without its numbers
+    Clock::time_point at;
+  };
+
   /// While devices are silent: tells which, and saves the map at once. False ends the run.
   bool wait(const robot::RobotStatus& status) {
     tell_of_scanner();
     if ((status.held || begun_) && seconds_since(shown_at_) >= 1.0) show(status, status.held ? "held" : "waiting");
-    const std::vector<std::string> lines = lines_of(status.silent);
-    const bool others = names(status.silent) != names(told_) || status.held != held_ || disobeys_anew(status.silent);
-    if (others ? lines != lines_of(told_) : lines != told_lines_ && is_news(lines)) {
-      if (options_.tell)
-        for (const std::string& line : lines) options_.tell(line);
-      told_lines_ = lines;
-      told_lines_at_ = Clock::now();
-      if (begun_ && others) loop_.save_now();
-    }
+    for (const robot::Hindrance& one : status.silent)
+      if (is_news(one, status.silent) && options_.tell) options_.tell(one.line());
+    if (begun_ && names(status.silent) != names(told_)) loop_.save_now();
     tell_back(status.silent);
     if (status.held) mind_hold(status);
     held_ = held_ && status.held;
@@ -249,23 +255,26 @@ class Driver {
     return !interrupted_;
   }
 
-  /// It moves, though silent or late was all that was told of it.
-  bool disobeys_anew(const std::vector<robot::Hindrance>& silent) const {
-    const auto disobeys = [](const robot::Hindrance& one) { return one.cause == robot::Hindrance::Cause::Disobeys; };
-    return std::any_of(silent.begin(), silent.end(), disobeys) && std::none_of(told_.begin(), told_.end(), disobeys);
+  static std::string without_numbers(std::string text) {
+    text.erase(std::remove_if(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; }),
+               text.end());
+    return text;
   }
 
-  /// Another reason than the one that was told, a while ago: a port that was not open yet may have been opened since.
-  bool is_news(const std::vector<std::string>& lines) const {
-    const auto without_numbers = [](std::string text) {
-      text.erase(std::remove_if(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; }),
-                 text.end());
-      return text;
+  /// Not told of this device while it was waited for; where it takes another reason's place it must have stood for a
+  /// while: a port that was not open yet may have been opened since. Takes it for told.
+  bool is_news(const robot::Hindrance& one, const std::vector<robot::Hindrance>& all) {
+    const std::string words = without_numbers(one.what);
+    const auto gives_way = [&](const Reason& reason) {
+      return seconds_since(reason.at) < kTellAgain && std::none_of(all.begin(), all.end(), [&](const auto& other) {
+               return reason.name == other.name && reason.words == without_numbers(other.what);
+             });
     };
-    if (seconds_since(told_lines_at_) < kTellAgain) return false;
-    return !std::equal(
-        lines.begin(), lines.end(), told_lines_.begin(), told_lines_.end(),
-        [&](const std::string& a, const std::string& b) { return without_numbers(a) == without_numbers(b); });
+    const bool told = std::any_of(reasons_.begin(), reasons_.end(), [&](const Reason& reason) {
+      return reason.name == one.name && reason.cause == one.cause && (reason.words == words || gives_way(reason));
+    });
+    if (!told) reasons_.push_back({one.name, one.cause, words, Clock::now()});
+    return !told;
   }
 
   static std::vector<std::string> names(const std::vector<robot::Hindrance>& all) {
@@ -311,6 +320,11 @@ class Driver {
   void tell_back(const std::vector<robot::Hindrance>& silent) {
     tell_returned(told_, silent);
     told_ = silent;
+    const std::vector<std::string> still = names(silent);
+    const auto is_over = [&](const Reason& one) {
+      return std::find(still.begin(), still.end(), one.name) == still.end();
+    };
+    reasons_.erase(std::remove_if(reasons_.begin(), reasons_.end(), is_over), reasons_.end());
   }
 
   void tell_troubles(const std::vector<robot::Hindrance>& now) const {
@@ -324,11 +338,12 @@ class Driver {
     if (lines_of(status.troubles) != lines_of(troubles_) && options_.tell) tell_troubles(status.troubles);
     troubles_ = status.troubles;
     if (!begun_) return;
-    show(status, options_.mode == DriveMode::Teleoperate ? "by hand"
-                 : options_.mode == DriveMode::MapOnly   ? "mapping"
-                 : options_.mode == DriveMode::Calibrate ? "calibrate"
-                 : core_.explorer()                      ? name_of(core_.explorer()->state())
-                                                         : "mapping");
+    show(status, status.held                               ? "held"
+                 : options_.mode == DriveMode::Teleoperate ? "by hand"
+                 : options_.mode == DriveMode::MapOnly     ? "mapping"
+                 : options_.mode == DriveMode::Calibrate   ? "calibrate"
+                 : core_.explorer()                        ? name_of(core_.explorer()->state())
+                                                           : "mapping");
   }
 
   /// The line of this second.
@@ -367,9 +382,8 @@ class Driver {
   bool held_ = false;  ///< stopped at the robot itself, and told
   std::vector<robot::Hindrance> troubles_;
   bool piloted_out_ = false;
-  std::vector<robot::Hindrance> told_;   ///< what is silent, as it was at the last look
-  std::vector<std::string> told_lines_;  ///< as it was told last
-  Clock::time_point told_lines_at_;
+  std::vector<robot::Hindrance> told_;  ///< what is silent, as it was at the last look
+  std::vector<Reason> reasons_;         ///< that were told of devices which are waited for still
   robot::RobotStatus last_;
 };
 
@@ -440,10 +454,10 @@ void tell_what_goes_on(const robot::RealRobot& robot, const DriveOptions& option
   for (; Clock::now() < given_up && !stands(status); status = robot.status())
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   if (!options.tell || stands(status)) return;
-  if (!status.reported) {
-    options.tell("base: has not told that it stopped; see that it stands");
-  } else if (status.motors_on) {
+  if (status.motors_stay || (status.reported && status.motors_on)) {
     options.tell(std::string("base: ") + robot::kMotorsStay);
+  } else if (!status.reported) {
+    options.tell("base: has not told that it stopped; see that it stands");
   } else {
     options.tell("base: its motors are off, but its wheels turn; see that it comes to stand");
   }
