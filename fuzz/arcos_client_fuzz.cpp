@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "robot/drivers/obedience.h"
 #include "robot/drivers/pioneer.h"
+#include "robot/drivers/watch/obedience.h"
 
 namespace {
 

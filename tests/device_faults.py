@@ -36,10 +36,10 @@ TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 DEVICES = ("urg", "base", "levelling")
 FAULTS = [d + "-" + f for d in DEVICES for f in "lost split doubled junk sums silence unplug reset".split()]
 FAULTS += ["urg-wrap", "base-wrap", "base-seto", "base-stall", "base-stuck", "base-runaway", "base-slow", "base-watchdog", "base-button",
-           "base-motors", "levelling-sensor"]
+           "base-motors", "base-encoders", "levelling-sensor", "levelling-slow"]
 # Stopped at the robot, or switched off since it moved otherwise than told: the operator lets it go again, so long after the fault [s]
 REARM = 6.0
-HELD = {"base-button": REARM, "base-motors": REARM, "base-runaway": 12.0}
+HELD = {"base-button": REARM, "base-motors": REARM, "base-encoders": 8.0, "base-runaway": 12.0}
 STARTS = {"base-wrap": ("65,65,90",)}  # not --fault: the odometry begins just short of where it rolls over
 # What a fault must do to a robot that drives, and how long it may take to be noticed [s] (safety: in the robot file, the base's own
 # watchdog).
@@ -47,14 +47,16 @@ STARTS = {"base-wrap": ("65,65,90",)}  # not --fault: the odometry begins just s
 # meanwhile must also be seen to brake.
 ZEROED = {"urg-lost": (0.3, 1.0), "urg-doubled": (0.3, 1.0), "urg-junk": (0.3, 1.0), "urg-sums": (0.3, 1.0), "urg-reset": (0.3, 0.6),
           "urg-silence": (0.3, 2.0), "urg-unplug": (0.3, 3.0), "levelling-silence": (0.5, 2.0), "levelling-unplug": (0.5, 3.0),
-          "base-silence": (1.0, 2.0), "base-slow": (2.0, 6.0)}
+          "base-silence": (1.0, 2.0), "base-slow": (2.0, 6.0), "levelling-slow": (2.0, 6.0)}
 DEAF = ("base-silence",)
+SWINGS = ("levelling-slow",)
 # BRAKES: by the base's own doing, which nobody can tell anything: how long after the fault it begins to [s], and how long it is at it.
 BRAKES = {"base-watchdog": (2.0, 3.0)}
 # REST: the robot stands.
 REST = {"urg-silence": 0.3, "urg-unplug": 0.3, "base-unplug": 0.1, "base-reset": 0.1, "levelling-unplug": 0.5}
-# At once, without a ramp. A base that runs away is found out when what it is told has differed for long enough, and then has its motors off.
-HARD = {"base-button": 0.1, "base-motors": 0.1, "base-runaway": 5.0}
+# At once, without a ramp. A base that runs away is found out when what it is told has differed for long enough, and then has its motors off;
+# so has one whose encoders are dead, when scans have shown twice that it moves.
+HARD = {"base-button": 0.1, "base-motors": 0.1, "base-runaway": 5.0, "base-encoders": 3.5}
 JUDGED = {*ZEROED, *BRAKES, *REST, *HARD}
 # A base that is silent must be told; a deaf one reports.
 NAMED = {"levelling-sensor", "base-stuck", "base-runaway", "base-watchdog", *ZEROED, *REST, *HARD}
@@ -158,7 +160,9 @@ class Stop:
         notice, over = ZEROED.get(fault, BRAKES.get(fault, (0.1, 0.1)))
         # As the fault strikes, and until shortly before it must be noticed: a robot that was stopping anyway proves nothing.
         # (A base that does not hear is found out before its own watchdog is.)
-        self.told = 1e-3 * min(orders.at(self.t0)[0], orders.at(self.t0 + min(0.8, 0.6 * notice))[0])
+        # (A laser that swings shows an explorer walls that are none, and it stops for them sooner.)
+        later = 0.2 if fault in SWINGS else min(0.8, 0.6 * notice)
+        self.told = 1e-3 * min(orders.at(self.t0)[0], orders.at(self.t0 + later)[0])
         since = orders.zero_since(self.t0 + over - 0.05)
         self.zero = max(0.0, since - self.t0) if since is not None else None
 
@@ -247,7 +251,7 @@ def drive(rubble, robot, fault, at, seconds):
     score = json.loads(score.stdout)["score"] if score.returncode == 0 else 0.0
     rows = read_truth(name + ".tum")
     notice = ZEROED.get(fault, BRAKES.get(fault, ({**REST, **HARD}.get(fault, 0.3), 0)))[0]
-    if fault == "base-runaway":
+    if fault in ("base-runaway", "base-encoders"):
         notice = 0.3  # what it is told just after is what it goes on with
     stop = Stop(rows, rows[0][0] + at, notice) if fault else None
     if stop and os.path.exists(name + "/devices.bytes"):

@@ -22,7 +22,7 @@ void AnswerTimer::reset() {
   settled_ = last_asked_ = Stamp::never();
   round_trips_.clear();
   least_ = missed_ = late_ = 0.0;
-  restless_ = unable_ = false;
+  restless_ = unable_ = known_ = false;
 }
 
 Stamp AnswerTimer::next() const {
@@ -65,9 +65,11 @@ void AnswerTimer::settle(Stamp now) {
   restless_ = asked_.size() > 1;
   // Where some got lost it may have been to an earlier question than the last, and later than it seems.
   if (all) {
+    if (!known_) round_trips_.clear();  // what was guessed so far it took at least
+    known_ = true;
     take(std::max(took, least_), asked_.size() > 1);
   } else {
-    take_at_least(std::max(took, least_), false);
+    take_at_least(std::max(took, least_), answers_.size() > 1);
   }
   least_ = missed_ = 0.0;
   asked_.clear();

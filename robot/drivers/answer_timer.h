@@ -36,7 +36,10 @@ class AnswerTimer {
   /// The connection is a new one.
   void reset();
   /// What another question, the last one before, took [s].
-  void assume(double late) { take(late, false); }
+  void assume(double late) {
+    take(late, false);
+    known_ = true;
+  }
   /// Whether the question shall be asked at `now`.
   bool due(Stamp now) const { return now >= next(); }
   /// When it shall be asked next.
@@ -49,6 +52,9 @@ class AnswerTimer {
   /// The round trip as most of the last three answers have it, or the time that they have been missing for, when that
   /// is more; 0 at first, and of a device that does not know the question [s].
   double late(Stamp now) const;
+  /// How late it is is known, or that it does not know the question. Where some of several questions were not answered
+  /// it is a guess still.
+  bool known() const { return unable_ || known_; }
   /// No answer for more than kMissing, or what is usual on a slow line, though there were some before.
   bool missing(Stamp now) const;
 
@@ -67,7 +73,8 @@ class AnswerTimer {
   double late_ = 0.0;                ///< median of the last three [s]
   double missed_ = 0.0;              ///< so long answers were missing before those that are coming now [s]
   bool restless_ = false;            ///< answers to questions that were repeated may still be on their way
-  bool able_ = false;                ///< it has answered, over any connection
+  bool known_ = false;
+  bool able_ = false;  ///< it has answered, over any connection
   bool unable_ = false;
 };
 

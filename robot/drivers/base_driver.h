@@ -51,6 +51,8 @@ class BaseDriver : public Device {
 
   /// Odometry since the last call: poses in one frame over all connections, stamps that rise.
   virtual std::vector<Odometry> take_odometry() = 0;
+  /// Whether its motors have power, by its last report. A base without such a switch says whether enable(true) was
+  /// asked for last: one whose motors stay on though switched off is held to disobey.
   virtual bool motors_on() const = 0;
   virtual double battery() const { return 0.0; }  ///< [V]; 0: it does not tell
 
@@ -66,6 +68,8 @@ class BaseDriver : public Device {
   virtual Answers answers(Stamp /*now*/) const { return {}; }
   /// How hard it can gain or lose speed by its own account [m/s^2], [rad/s^2]; 0: it has not told.
   virtual Drive own_ramp() const { return {}; }
+  /// It begins to stop by itself when it has heard nothing for so long [s].
+  virtual double watchdog() const { return 2.0; }
   /// It does not report yet, and what it answers comes late.
   virtual bool slow() const { return false; }
 

@@ -48,7 +48,7 @@ void LevellingUnit::advance(Stamp now) {
     answer_timer_.reset();
     unanswered_ = Stamp::never();
   }
-  if (!ready() && now - asked_ >= kAskAgain) {
+  if (!reports() && now - asked_ >= kAskAgain) {
     asked_ = now;
     output_ = levelling_line("V");
   }
@@ -140,7 +140,7 @@ std::string LevellingUnit::take_output(Stamp now) {
     aim_due_ = false;
     aim_sent_ = now;
   }
-  if (ready() && !settings_.passive && answer_timer_.due(now)) {
+  if (reports() && !settings_.passive && answer_timer_.due(now)) {
     out += levelling_line("E,1");
     answer_timer_.asked(now);
   }
@@ -156,13 +156,14 @@ Answers LevellingUnit::answers(Stamp now) const {
 
 Stamp LevellingUnit::deadline() const {
   if (asked_ == Stamp::never()) return {};
-  if (!ready()) return asked_ + kAskAgain;
+  if (!reports()) return asked_ + kAskAgain;
   return aimed_ && aim_sent_ != Stamp::never() ? aim_sent_ + kPulseRefresh : last_report_ + settings_.silence;
 }
 
 std::string LevellingUnit::state() const {
   if (!identified_) return "asks who is there";
-  return ready() ? identity_.model + " reports" : "waits for the first report of " + identity_.model;
+  if (!reports()) return "waits for the first report of " + identity_.model;
+  return identity_.model + (ready() ? " reports" : " reports, but how late it answers is not known yet");
 }
 
 std::vector<Acceleration> LevellingUnit::take_accelerations() { return std::exchange(accelerations_, {}); }

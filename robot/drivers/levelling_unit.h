@@ -50,7 +50,9 @@ class LevellingUnit : public Device {
   std::string take_output(Stamp now) override;
   Stamp deadline() const override;
   int baud() const override { return 115200; }
-  bool ready() const override { return identified_ && last_report_ != Stamp::never(); }
+  /// It reports, and how late it is is known: by an answer of this connection, or by none for so long that it seems not
+  /// to know the question.
+  bool ready() const override { return reports() && (answer_timer_.known() || settings_.passive); }
   Stamp last_report() const override { return last_report_; }
   std::string state() const override;
 
@@ -64,7 +66,6 @@ class LevellingUnit : public Device {
 
   const LevellingIdentity& identity() const { return identity_; }
   /// To `E,1`, which changes nothing: reports come unasked, and what they and the servos are late by shows in answers.
-  /// Until the first answer of a connection they are missing.
   Answers answers(Stamp now) const;
   bool sensor_fault() const { return (flags_ & LevellingReport::kSensorFault) != 0; }
   std::size_t bad_lines() const { return lines_.bad_lines(); }
@@ -72,6 +73,7 @@ class LevellingUnit : public Device {
   std::size_t missing() const { return missing_; }
 
  private:
+  bool reports() const { return identified_ && last_report_ != Stamp::never(); }
   void digest(const std::vector<std::string>& fields, Stamp now);
   void follow(const LevellingReport& report, Stamp now);
   Stamp stamp_of(const LevellingReport& report, Stamp now);

@@ -28,7 +28,7 @@ constexpr double kSpacing = 0.004;   ///< the firmware wants so much between two
 constexpr double kRefresh = 0.2;     ///< set points are sent again [s]; the firmware forgets them after 2 s
 constexpr double kAskMotors = 0.5;   ///< [s]
 constexpr double kStubborn = 2.0;    ///< motors that stay on for so long though switched off do not hear that order [s]
-constexpr double kLeftAlone = 3.0;   ///< longer than the firmware's watchdog waits for a client [s]
+constexpr double kBrakes = 2.0;      ///< and so much more it may take to come to rest [s]
 constexpr int kOnce = 1;             ///< of ENCODER
 constexpr double kRefused = 5.0;     ///< a robot that cannot be read is asked again who it is [s]
 constexpr double kMillimetre = 1e-3;
@@ -165,7 +165,10 @@ bool Pioneer::stays_on(Stamp now) {
 void Pioneer::leave_to_its_watchdog(Stamp now) {
   on_since_ = Stamp::never();
   disconnect();
-  closed_for_ = kLeftAlone;
+  queue_.push_front(command(arcos::kEnable, 0));
+  queue_.push_front(command(arcos::kEmergencyStop));
+  closed_for_ = left_alone();
+  closed_at_ = now;
   go(Step::Closing, now);
 }
 
@@ -266,8 +269,15 @@ void Pioneer::digest(const std::string& payload, Stamp now, std::size_t behind) 
     go(step_ == Step::Sync0 ? Step::Sync1 : Step::Sync2, now);
     return ask(now);
   }
-  if (step_ == Step::Closing && closed_for_ > kReply && report && (report->flags & arcos::kMotorsOn) != 0)
+  if (step_ == Step::Closing && closed_for_ > kReply && report && (report->flags & arcos::kMotorsOn) != 0) {
     since_ = now;  // its watchdog stops it only as long as nobody speaks
+    const bool moves = report->moving || report->left != 0 || report->right != 0;
+    if (moves && stands_ && now - closed_at_ < kBrakes) roused_ = true;
+    stands_ = !moves;
+    // Where that did not help either somebody else speaks to it; or it stands, and may hear again. One that obeys
+    // nothing, but goes on when it is spoken to, is left standing.
+    if (now - closed_at_ >= left_alone() + kBrakes && (moves || !roused_)) leave_to_its_watchdog(now);
+  }
   if (step_ != Step::Opening && step_ != Step::Running) return;
   if (const auto configuration = arcos::parse_configuration(payload)) {
     configuration_ = *configuration;
@@ -295,6 +305,7 @@ void Pioneer::open(Stamp now) {
   configured_ = false;
   based_ = false;
   opened_ = true;
+  stands_ = roused_ = false;
   send(command(arcos::kOpen, 1));
   send(command(arcos::kConfig, 1));
   const int accel = whole(settings_.max_accel / kMillimetre);

@@ -24,8 +24,8 @@ namespace rubble::robot {
 /// odometry that never jumps, and keeps the set points fresh so that the robot's watchdog does not stop it. Turn rates
 /// are whole degrees a second on the wire and dithered. Without reports it waits settings.silence before it connects
 /// anew: OPEN sets the odometry to zero, while a report after a gap still tells all the motion within it. A base whose
-/// motors stay on though they were switched off again and again is closed and not spoken to until its watchdog must
-/// have stopped it.
+/// motors stay on though they were switched off again and again is stopped hard, closed and not spoken to until its
+/// watchdog must have stopped it; as long as it reports them on the same is said again from time to time.
 ///
 /// With settings.listen it first waits for reports that somebody else's connection brings. Where they come it only
 /// reads them, from then on over all connections (but for the emergency stop, which is always said); where none come it
@@ -59,6 +59,10 @@ class Pioneer : public BaseDriver {
   }
 
   Drive own_ramp() const override;
+  /// By CONFIG; one without a watchdog is waited for as long as the usual one.
+  double watchdog() const override {
+    return configuration_.watchdog_ms > 0 ? 1e-3 * configuration_.watchdog_ms : BaseDriver::watchdog();
+  }
   bool slow() const override { return !ready() && echo_late_ > 0.0; }
 
   const arcos::Identity& identity() const { return identity_; }
@@ -72,6 +76,7 @@ class Pioneer : public BaseDriver {
   std::size_t jumps() const override { return jumps_; }
 
  private:
+  static constexpr double kLeftAlone = 1.0;  ///< so much longer than its watchdog waits it is not spoken to [s]
   enum class Step { Closed, Listening, Sync0, Sync1, Sync2, Closing, Refused, Opening, Running };
 
   void go(Step step, Stamp now);
@@ -87,6 +92,7 @@ class Pioneer : public BaseDriver {
   void mind_hold();
   bool stays_on(Stamp now);
   void leave_to_its_watchdog(Stamp now);
+  double left_alone() const { return watchdog() + kLeftAlone; }
   void disconnect();
   void forget_motion();
   void forget_questions();
@@ -133,12 +139,15 @@ class Pioneer : public BaseDriver {
   Stamp refreshed_ = Stamp::never();
 
   AnswerTimer answer_timer_;
-  std::size_t report_bytes_ = 0;     ///< of the last report on the line
-  double reply_ = 0.0;               ///< an echo comes within this time [s]
-  double echo_late_ = 0.0;           ///< so late one came at least; 0: all in time [s]
-  Stamp asked_ = Stamp::never();     ///< when SYNC0 was said last
-  double closed_for_ = 0.0;          ///< so long nothing is said behind CLOSE [s]
-  Stamp on_since_ = Stamp::never();  ///< its motors are on though switched off
+  std::size_t report_bytes_ = 0;      ///< of the last report on the line
+  double reply_ = 0.0;                ///< an echo comes within this time [s]
+  double echo_late_ = 0.0;            ///< so late one came at least; 0: all in time [s]
+  Stamp asked_ = Stamp::never();      ///< when SYNC0 was said last
+  double closed_for_ = 0.0;           ///< so long nothing is said behind CLOSE [s]
+  Stamp closed_at_ = Stamp::never();  ///< left to its watchdog then
+  bool stands_ = false;               ///< since
+  bool roused_ = false;               ///< from its rest, by being spoken to
+  Stamp on_since_ = Stamp::never();   ///< its motors are on though switched off
   CycleClock clock_;
   bool based_ = false;  ///< information_ is the reference for the next report
   Stamp last_report_ = Stamp::never();

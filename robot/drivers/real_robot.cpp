@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <deque>
+#include <limits>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -13,24 +13,17 @@
 #include "robot/drivers/device_thread.h"
 #include "robot/drivers/heartbeat.h"
 #include "robot/drivers/host_clock.h"
-#include "robot/drivers/obedience.h"
+#include "robot/drivers/watch/answer_watch.h"
+#include "robot/drivers/watch/base_watch.h"
+#include "robot/drivers/watch/freshness.h"
+#include "robot/drivers/watch/standstill.h"
 
 namespace rubble::robot {
 namespace {
 
-constexpr double kAsk = 0.05;          ///< pause of a waiting read() [s]
-constexpr double kListen = 0.02;       ///< the operator is asked so often [s]
-constexpr double kFarAhead = 0.1;      ///< of stamps [s]
-constexpr double kMotorsOn = 3.0;      ///< so soon they are on when asked for [s]
-constexpr double kStoodStill = 1.0;    ///< so long without a turn of the operator's thread is no busy moment [s]
-constexpr Drive kStands{0.03, 0.05};   ///< slower wheels stand [m/s], [rad/s]
-constexpr double kJumpsLast = 5.0;     ///< of an odometry are remembered for so long [s]
-constexpr std::size_t kManyJumps = 3;  ///< within that time: an origin is set anew once
-constexpr double kMotorsOff = 1.0;     ///< so soon they are off when switched off [s]
-constexpr const char* kMotorsStay =
-    "its motors stay on though switched off, so it may still move; press its emergency button or cut its power";
-constexpr double kObeys = 3.0;                ///< who ran away does so again, if ever, within this time [s]
-constexpr double kKeepsUp = 1.0;              ///< scans that were too old must be fresh for so long [s]
+constexpr double kAsk = 0.05;                 ///< pause of a waiting read() [s]
+constexpr double kListen = 0.02;              ///< the operator is asked so often [s]
+constexpr double kFarAhead = 0.1;             ///< of stamps [s]
 constexpr std::size_t kMostScansKept = 240;   ///< while the robot is held
 constexpr std::size_t kNewestScansKept = 40;  ///< of these all remain when the others are thinned
 
@@ -49,13 +42,17 @@ Hindrance silent_for(const std::string& name, bool underway, Stamp last, Stamp n
   return {name, cause, text + (why.empty() ? "" : " (" + why + ")")};
 }
 
-/// A line that is too slow is not helped by plugging it in again.
+/// By the worst cause of all: a line that is too slow is not helped by plugging it in again.
 std::string remedy(const std::vector<Hindrance>& all, bool starting) {
-  const auto is_late = [](const Hindrance& one) { return one.cause == Cause::Late; };
-  if (std::all_of(all.begin(), all.end(), is_late)) return "; use a faster one";
-  const auto is_operator = [](const Hindrance& one) { return one.name == "heartbeat"; };
-  if (std::all_of(all.begin(), all.end(), is_operator)) return "; nobody has touched it";
-  return starting ? "; check cables, power and ports" : "; it did not come back; plug it in and run again";
+  const auto any = [&](Cause cause) {
+    return std::any_of(all.begin(), all.end(), [cause](const Hindrance& one) { return one.cause == cause; });
+  };
+  const auto is_device = [](const Hindrance& one) { return one.cause == Cause::Silent && one.name != "heartbeat"; };
+  if (any(Cause::Disobeys)) return "; see who moves it";
+  if (std::any_of(all.begin(), all.end(), is_device))
+    return starting ? "; check cables, power and ports" : "; it did not come back; plug it in and run again";
+  if (any(Cause::Held)) return "; nobody has let it go";
+  return any(Cause::Silent) ? "; nobody has touched it" : "; use a faster one";
 }
 
 template <class T>
@@ -83,41 +80,6 @@ class Early {
   std::vector<T> waiting_;
 };
 
-/// Whether scans are fresh enough to drive by. Once they were not, they must be so for a while: at the very edge the
-/// robot would stop and go with every scan.
-class Freshness {
- public:
-  /// `age`: of the newest scan, or by how much answers are late. `missing`: there was none at all for so long.
-  void look(double age, double most, Stamp now, bool missing = false) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (age > most) {
-      stale_ = true;
-      stale_at_ = std::max(stale_at_, now);
-      age_ = age;
-      missing_ = missing;
-    } else if (stale_ && now - stale_at_ >= kKeepsUp) {
-      stale_ = false;
-    }
-  }
-  /// The age that was too much; nothing: they are fresh.
-  std::optional<double> stale() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return stale_ ? std::optional(age_) : std::nullopt;
-  }
-  /// The same, of what was missing.
-  bool missing() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return stale_ && missing_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  bool stale_ = false;
-  bool missing_ = false;
-  Stamp stale_at_ = Stamp::never();  ///< when they were so last
-  double age_ = 0.0;                 ///< [s]
-};
-
 }  // namespace
 
 struct RealRobot::Impl {
@@ -128,17 +90,15 @@ struct RealRobot::Impl {
   Heartbeat heartbeat;  ///< asked by the operator's thread alone
   std::function<bool(const RobotStatus&)> ask;
 
-  mutable Freshness freshness;
-  mutable Freshness answers;  ///< of the base
-  mutable Freshness unit_answers;
+  mutable Freshness freshness;  ///< of scans
+  mutable AnswerWatch base_answers;
+  mutable AnswerWatch unit_answers;
   std::atomic<bool> emergency{false};
   std::atomic<bool> stopped{false};
+  std::atomic<std::int64_t> stopped_ns{std::numeric_limits<std::int64_t>::max()};  ///< for good
   std::atomic<bool> ending{false};
   std::atomic<std::int64_t> operator_ns{Stamp::never().ns};
-  std::atomic<std::int64_t> looked_ns{host_now().ns};           ///< by the operator's thread
-  std::atomic<double> asleep{time_asleep()};                    ///< when it looked [s]
-  std::atomic<std::int64_t> still_until_ns{Stamp::never().ns};  ///< nothing is driven up to here
-  std::atomic<double> stood_still{0.0};                         ///< so long before that [s]
+  Standstill standstill{host_now(), time_asleep()};  ///< minded by the operator's thread
   std::atomic<std::uint64_t> scans{0}, odometry{0}, accelerations{0};
 
   std::atomic<int> pardoned{0};  ///< of the base's refusals, by the operator
@@ -147,18 +107,8 @@ struct RealRobot::Impl {
   Commands commands;
   bool brake_asked = false;
   Stamp commanded = Stamp::never();
-  bool armed = false;                    ///< all devices have reported: the motors may go on
-  Obedience obedience;                   ///< of the base
-  std::string runaway;                   ///< how it moved though told otherwise; until rearm()
-  bool doubted = false;                  ///< it ran away, and has not been seen to obey since
-  Stamp obeys_since = Stamp::never();    ///< its motors are on and nothing is wrong with what it does
-  std::string no_motors;                 ///< they do not come on
-  Stamp off_since = Stamp::never();      ///< since then they are switched off and on
-  std::atomic<bool> motors_stay{false};  ///< for long
-  std::atomic<bool> moves{false};        ///< by the last report
-  std::size_t jumps = 0;                 ///< of its odometry, up to now
-  std::deque<Stamp> jumped;              ///< when it did, lately
-  Stamp motors_missed = Stamp::never();  ///< since then they are asked for and off
+  bool armed = false;  ///< all devices have reported: the motors may go on
+  BaseWatch base_watch;
   std::vector<Odometry> waiting_odometry;
   Stamp scan_answered = Stamp::never();  ///< arrival of the scan whose answer is on its way
   Stamp scan_leaving = Stamp::never();   ///< the same, once the base's thread has the answer
@@ -189,7 +139,9 @@ struct RealRobot::Impl {
         base(given.own_base ? given.own_base(given.base) : make_base(given.base_driver, given.base)),
         unit(given.levelling),
         heartbeat(given.heartbeat),
-        obedience(given.base.max_accel, given.base.max_turn_accel) {
+        base_answers(given.safety.base_answer),
+        unit_answers(given.safety.levelling_answer),
+        base_watch(given.base, {given.model.T_base_laser.x, given.model.T_base_laser.y, given.model.T_base_laser.yaw}) {
     if (!settings.levelling_port.empty())
       unit_thread = std::make_unique<DeviceThread>("levelling", settings.levelling_port, unit, box);
     if (!settings.base_port.empty())
@@ -198,7 +150,7 @@ struct RealRobot::Impl {
           [this](Stamp now) { left_for_base(now); });
     operator_thread = std::thread([this] {
       while (!ending) {
-        mind_standstill(host_now());
+        if (standstill.look(host_now(), time_asleep())) forget_drive();
         listen();
         sleep_until(host_now() + kListen);
       }
@@ -214,25 +166,20 @@ struct RealRobot::Impl {
   auto with_base(const Use& use) const {
     return base_thread ? base_thread->with(use) : use();
   }
+  /// `ask(base_watch)` while the base's thread leaves it alone.
+  template <class Ask>
+  auto watched(const Ask& ask) const {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return ask(base_watch);
+  }
+  bool is_blind() const {
+    return watched([](const BaseWatch& watch) { return watch.blind(); });
+  }
+  bool is_held_by_us() const {
+    return watched([](const BaseWatch& watch) { return !watch.held().empty(); });
+  }
   void wake_base() const {
     if (base_thread) base_thread->wake();
-  }
-
-  /// This computer slept or was busy with something else: what waited meanwhile tells of a world that is past.
-  void mind_standstill(Stamp now) {
-    const Stamp before{looked_ns.load()};
-    const double slept = time_asleep(), gone = now - before + slept - asleep;
-    if (before != Stamp::never() && gone > kStoodStill) {
-      stood_still = gone;
-      still_until_ns = (now + kKeepsUp).ns;
-      forget_drive();
-    }
-    asleep = slept;
-    looked_ns = now.ns;
-  }
-  /// Whoever wakes first sees it.
-  bool is_awake(Stamp now) const {
-    return now - Stamp{looked_ns.load()} + time_asleep() - asleep <= kStoodStill && now >= Stamp{still_until_ns.load()};
   }
 
   /// In the operator's thread: it waits neither for the core nor for a device.
@@ -261,12 +208,13 @@ struct RealRobot::Impl {
 
   void stop() {
     if (stopped.exchange(true)) return;
+    stopped_ns = host_now().ns;
     with_base([this] { base->stop(); });
     wake_base();
   }
 
   void emergency_stop() {
-    emergency = true;
+    if (!emergency.exchange(true)) stopped_ns = host_now().ns;
     with_base([this] { base->emergency_stop(); });
     wake_base();
   }
@@ -275,10 +223,11 @@ struct RealRobot::Impl {
   void watch(Stamp now) {
     const std::lock_guard<std::mutex> lock(mutex);
     const bool fresh = commanded != Stamp::never() && now - commanded <= settings.safety.core_silence;
-    const bool ours = armed && !is_taken() && runaway.empty();
+    const bool ours = armed && !is_taken() && base_watch.held().empty();
     const bool allowed = ours && !emergency && !stopped;
-    const bool heard = is_base_answering(base->answers(now), now);
-    const bool free = allowed && heard && fresh && is_awake(now) &&
+    const BaseDriver::Answers answers = base->answers(now);
+    const bool heard = is_base_answering(answers, now);
+    const bool free = allowed && heard && fresh && standstill.is_over(now, time_asleep()) &&
                       is_base_reporting(base->ready(), base->last_report(), now) && is_lidar_well(now) &&
                       is_unit_well(now) && is_operator_well(now);
     if (allowed) base->enable(true);
@@ -286,51 +235,22 @@ struct RealRobot::Impl {
     if (std::exchange(brake_asked, false) && allowed) base->brake();
     const Drive wanted = free ? commands.drive : Drive{};
     base->drive(wanted);
-    mind_obedience(wanted, allowed && heard, now);
-    mind_motors(armed && !allowed, now);
+    // Reports that come without a pause are hardly later than the base may be silent.
+    const double late = answers.missing ? settings.safety.base_silence : answers.late;
+    mind_base({wanted, allowed && heard, armed && !allowed, allowed && !heard, late, base->watchdog()}, now);
     if (scan_answered != Stamp::never()) scan_leaving = std::exchange(scan_answered, Stamp::never());
   }
 
-  /// In the base's thread. `asked`: the motors are asked for, and what the base is told reaches it in time.
-  void mind_obedience(const Drive& wanted, bool asked, Stamp now) {
+  /// In the base's thread.
+  void mind_base(BaseTurn turn, Stamp now) {
+    turn.ready = base->ready();
+    turn.motors_on = base->motors_on();
+    turn.held = base->hold() != BaseDriver::Hold::None;
+    turn.own_ramp = base->own_ramp();
     std::vector<Odometry> reports = base->take_odometry();
-    if (!reports.empty()) moves = std::abs(reports.back().v) > kStands.v || std::abs(reports.back().w) > kStands.w;
-    for (; jumps < base->jumps(); ++jumps) jumped.push_back(now);
-    while (!jumped.empty() && now - jumped.front() > kJumpsLast) jumped.pop_front();
-    asked = asked && !settings.base.passive;
-    const bool off = asked && !base->motors_on() && base->hold() == BaseDriver::Hold::None && base->ready();
-    if (!off) motors_missed = Stamp::never();
-    if (off && motors_missed == Stamp::never()) motors_missed = now;
-    no_motors = off && now - motors_missed > kMotorsOn ? "its motors do not come on, though asked for" : "";
-    if (!asked || !base->motors_on()) {
-      obedience.pause();
-    } else {
-      const BaseSettings& limits = settings.base;  // beyond these it is not told
-      const auto least = [](double asked, double own) { return own > 0.0 ? std::min(asked, own) : asked; };
-      const Drive own = base->own_ramp();
-      obedience.keep_ramp({least(limits.max_accel, own.v), least(limits.max_turn_accel, own.w)});
-      obedience.tell({std::clamp(wanted.v, -limits.max_v, limits.max_v) * limits.distance_scale,
-                      std::clamp(wanted.w, -limits.max_w, limits.max_w) * limits.turn_scale},
-                     now);
-      for (const Odometry& report : reports) obedience.look(report, now);
-    }
+    turn.jumps = base->jumps();
+    if (base_watch.look(turn, reports, now)) base->emergency_stop();
     append(waiting_odometry, std::move(reports));
-    const bool obeys = asked && base->motors_on() && obedience.trouble().empty();
-    if (!obeys) obeys_since = Stamp::never();
-    if (obeys && obeys_since == Stamp::never()) obeys_since = now;
-    if (obeys && now - obeys_since >= kObeys) doubted = false;
-    if (!obedience.runs_away() || !runaway.empty()) return;
-    runaway = obedience.trouble();
-    doubted = true;
-    base->emergency_stop();
-  }
-
-  /// `off`: they were switched off by us.
-  void mind_motors(bool off, Stamp now) {
-    const bool stay = off && !settings.base.passive && base->motors_on();
-    if (stay && off_since == Stamp::never()) off_since = now;
-    if (!stay && base->ready()) off_since = Stamp::never();  // what a base that is silent does nobody knows
-    motors_stay = off_since != Stamp::never() && now - off_since > kMotorsOff;
   }
 
   /// In the base's thread, after each turn of it: what watch() let pass has been sent.
@@ -356,19 +276,16 @@ struct RealRobot::Impl {
   bool is_base_reporting(bool ready, Stamp last, Stamp now) const {
     return ready && last != Stamp::never() && now - last <= settings.safety.base_silence;
   }
-  bool is_base_answering(const BaseDriver::Answers& given, Stamp now) const {
-    answers.look(given.late, settings.safety.base_answer, now, given.missing);
-    return !answers.stale();
-  }
+  bool is_base_answering(const BaseDriver::Answers& given, Stamp now) const { return base_answers.look(given, now); }
   bool is_unit_silent(Stamp last, Stamp now) const {
     return last == Stamp::never() || now - last > settings.safety.levelling_silence;
   }
   bool is_unit_well(Stamp now) const {
     if (!unit_thread) return true;
-    const auto [last, given] = unit_thread->with([&] { return std::make_pair(unit.last_report(), unit.answers(now)); });
-    if (is_unit_silent(last, now)) return false;
-    unit_answers.look(given.late, settings.safety.levelling_answer, now, given.missing);
-    return !unit_answers.stale();
+    const auto [ready, last, given] =
+        unit_thread->with([&] { return std::make_tuple(unit.ready(), unit.last_report(), unit.answers(now)); });
+    if (!ready || is_unit_silent(last, now)) return false;
+    return unit_answers.look(given, now);
   }
   bool is_operator_well(Stamp now) const {
     if (settings.heartbeat.empty()) return true;
@@ -403,9 +320,9 @@ struct RealRobot::Impl {
         all.push_back({"urg", Cause::Late, text});
       }
     }
-    if (underway && !is_awake(now)) {
+    if (underway && !standstill.is_over(now, time_asleep())) {
       char text[80];
-      std::snprintf(text, sizeof text, "stood still for %.1f s", stood_still.load());
+      std::snprintf(text, sizeof text, "stood still for %.1f s", standstill.seconds());
       all.push_back({"this computer", Cause::Late, text});
     }
     if (base_thread) add_silent_base(all, underway, now);
@@ -419,7 +336,9 @@ struct RealRobot::Impl {
                              base->slow());
     });
     const auto hold_it = [&](const std::string& why) { all.push_back({"base", Cause::Held, why}); };
-    if (const std::string how = how_it_ran(); !how.empty()) hold_it(how);
+    const auto [why_held, motors_stay, moves] = watched(
+        [](const BaseWatch& watch) { return std::make_tuple(watch.held(), watch.motors_stay(), watch.moves()); });
+    if (!why_held.empty()) hold_it(why_held);
     if (motors_stay) hold_it(kMotorsStay);
     if (!underway && moves && !settings.base.passive)
       all.push_back({"base", Cause::Disobeys, "moves though nobody here drives it; it is taken when it stands"});
@@ -431,39 +350,22 @@ struct RealRobot::Impl {
       all.push_back(silent_for("base", underway, last, now, error.empty() ? state : error,
                                error.empty() && slow ? Cause::Late : Cause::Silent));
     } else if (!is_base_answering(answered, now)) {
-      all.push_back({"base", Cause::Late, late_answers(answered, answers, settings.safety.base_answer)});
+      all.push_back({"base", Cause::Late, base_answers.trouble(answered)});
     }
-  }
-
-  std::string how_it_ran() const {
-    const std::lock_guard<std::mutex> lock(mutex);
-    return runaway;
-  }
-
-  static std::string late_answers(const Answers& given, const Freshness& answers, double most) {
-    char text[160];
-    if (given.missing || answers.missing()) {
-      std::snprintf(text, sizeof text, "%s for %.1f s; it does not hear, or the line to it is too slow",
-                    given.missing ? "reports, but has not answered" : "had not answered",
-                    answers.stale().value_or(given.late));
-    } else {
-      std::snprintf(text, sizeof text,
-                    "answers %.1f s late (at most %g s); the line to it or this computer is too slow",
-                    answers.stale().value_or(given.late), most);
-    }
-    return text;
   }
 
   /// The levelling unit and the operator.
   void add_silent_helpers(std::vector<Hindrance>& all, bool underway, Stamp now) const {
     if (!is_unit_well(now)) {
-      const auto [reported, how, given] =
-          unit_thread->with([&] { return std::make_tuple(unit.last_report(), unit.state(), unit.answers(now)); });
+      const auto [reported, how, given] = unit_thread->with([&] {
+        const Stamp last = unit.ready() ? unit.last_report() : Stamp::never();
+        return std::make_tuple(last, unit.state(), unit.answers(now));
+      });
       const std::string error = unit_thread->error();
       if (is_unit_silent(reported, now)) {
         all.push_back(silent_for("levelling", underway, reported, now, error.empty() ? how : error));
       } else {
-        all.push_back({"levelling", Cause::Late, late_answers(given, unit_answers, settings.safety.levelling_answer)});
+        all.push_back({"levelling", Cause::Late, unit_answers.trouble(given)});
       }
     }
     if (!is_operator_well(now))
@@ -476,27 +378,23 @@ struct RealRobot::Impl {
     s.silent = silent(now);
     s.emergency = emergency;
     s.held = is_held();
-    s.taken = first != Stamp::never() && (is_taken() || !how_it_ran().empty());
+    s.blind = is_blind();
+    s.taken = first != Stamp::never() && (is_taken() || is_held_by_us());
+    s.begun = first != Stamp::never();
     s.scans = scans;
     s.odometry = odometry;
     s.accelerations = accelerations;
     with_base([&] {
       s.motors_on = base->motors_on();
+      s.reported = base->last_report() != Stamp::never() && base->last_report() > Stamp{stopped_ns.load()};
       s.battery = base->battery();
       s.bad_packets = base->bad_sums();
       s.jumps = base->jumps();
       const std::lock_guard<std::mutex> lock(mutex);
       s.odometry += waiting_odometry.size();
-      if (jumped.size() >= kManyJumps)
-        s.troubles.push_back(
-            {"base", Cause::Faulty, "its positions jump again and again; only its wheels' speeds are used"});
-      if (motors_stay) s.troubles.push_back({"base", Cause::Disobeys, kMotorsStay});
-      if (!runaway.empty()) return;
-      const std::string& disobeys = obedience.trouble();
-      if (!disobeys.empty()) s.troubles.push_back({"base", Cause::Disobeys, disobeys});
-      if (doubted && disobeys.empty())
-        s.troubles.push_back({"base", Cause::Disobeys, "let go again; whether it obeys now is watched"});
-      if (!no_motors.empty()) s.troubles.push_back({"base", Cause::Faulty, no_motors});
+      s.moves = base_watch.moves();
+      s.motors_stay = base_watch.motors_stay();
+      append(s.troubles, base_watch.troubles());
     });
     if (unit_thread) {
       unit_thread->with([&] {
@@ -514,7 +412,7 @@ struct RealRobot::Impl {
 
   bool is_held() const {
     if (first != Stamp::never() && is_taken()) return true;
-    if (!how_it_ran().empty()) return true;
+    if (is_held_by_us()) return true;
     return with_base([this] { return base->hold() != BaseDriver::Hold::None; });
   }
 
@@ -524,8 +422,14 @@ struct RealRobot::Impl {
     if (fresh.empty()) return;
     scan_arrived = arrived == Stamp::never() ? now : arrived;
     scans += fresh.size();
+    show_to_watch(fresh, now);
     append(waiting_scans, std::move(fresh));
     if (waiting_scans.size() > kMostScansKept) thin_waiting_scans();
+  }
+
+  void show_to_watch(const std::vector<LaserScan>& fresh, Stamp now) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    for (const LaserScan& scan : fresh) base_watch.see(scan, now);
   }
 
   /// The robot is held for long: every second of the older scans goes. How it was moved while it came to rest, when
@@ -620,14 +524,17 @@ struct RealRobot::Impl {
         return true;
       }
       if (emergency) return false;
-      if (first != Stamp::never() && !is_awake(now) && stood_still > settings.safety.give_up)
+      if (first != Stamp::never() && !standstill.is_over(now, time_asleep()) &&
+          standstill.seconds() > settings.safety.give_up)
         throw DeviceLost(joined(lines_of(hindrances)) + "; see that the robot stands, and start again");
       if (held_since == Stamp::never()) {
         held_since = now;
         forget_drive();
       }
-      if (is_held()) held_since = now;  // somebody is at the robot: it is not lost
+      const bool blind = is_blind();
+      if (is_held() && !blind) held_since = now;  // somebody is at the robot: it is not lost
       const bool starting = first == Stamp::never();
+      if (blind && is_over(now)) throw DeviceLost(joined(lines_of(hindrances)) + "; the time is over");
       if (!starting && is_over(now)) return false;
       if (starting && is_held() && is_over_before_it_began(now)) return false;
       if (starting) refuse_busy_devices();
@@ -700,13 +607,13 @@ void RealRobot::emergency_stop() { impl_->emergency_stop(); }
 void RealRobot::stop() { impl_->stop(); }
 
 bool RealRobot::rearm() {
-  if (impl_->motors_stay || impl_->moves) return false;
+  const auto goes_on = [](const BaseWatch& watch) { return watch.motors_stay() || watch.moves(); };
+  if (impl_->watched(goes_on)) return false;
   if (impl_->base_thread) impl_->pardoned = impl_->base_thread->turned_away();
   impl_->with_base([this] {
     impl_->base->rearm();
     const std::lock_guard<std::mutex> lock(impl_->mutex);
-    impl_->runaway.clear();
-    impl_->obedience.pause();
+    impl_->base_watch.rearm();
   });
   impl_->wake_base();
   return true;

@@ -54,9 +54,15 @@ enum class OperatorWish {
 struct RobotStatus {
   std::vector<Hindrance> silent;    ///< what holds the robot
   bool held = false;                ///< stopped at the robot itself, or taken: only rearm() lets it go
+  bool blind = false;               ///< held since its wheels deny motion that scans show
   bool taken = false;               ///< another program seemed to have the base while it was away, or to drive it
   std::vector<Hindrance> troubles;  ///< what does not work but holds nothing
   bool motors_on = false;
+  bool begun = false;     ///< all devices have reported: the base may have been driven
+  bool reported = false;  ///< the base has, since it was stopped for good
+  bool moves = false;     ///< its wheels turn, by its last report
+  bool motors_stay =
+      false;  ///< its motors are on, long after they were switched off; what it does in silence nobody knows
   bool emergency = false;
   double battery = 0.0;     ///< [V]
   std::uint64_t scans = 0;  ///< since the start

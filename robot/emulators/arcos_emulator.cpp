@@ -25,6 +25,7 @@ constexpr double kStallFault = 1.0;       // [s]
 constexpr double kDeafFault = 3.0;        // [s]
 constexpr double kButtonFault = 2.0;      // [s]
 constexpr double kStuckFault = 6.0;       // [s]
+constexpr double kEncodersFault = 4.0;    // [s]
 constexpr double kRunawaySpeed = 0.2;     // [m/s]
 constexpr double kFullBattery = 12.8;     // [V]
 constexpr double kFinestLaserStep = 0.1;  // [deg]
@@ -427,7 +428,12 @@ void ArcosEmulator::advance(Stamp now) {
 
 void ArcosEmulator::measure(const Odometry& odometry, Stamp now) {
   const double dt = odometry.stamp > odometry_.stamp ? odometry.stamp - odometry_.stamp : 0.0;
+  const bool counts = now >= uncounted_until_;
+  // What was not counted stays so when the encoders work again.
+  if (!counts) uncounted_ = odometry_.pose + (mrpt::math::TPose2D() - odometry.pose);
   odometry_ = odometry;
+  if (!counts) odometry_.v = odometry_.w = 0.0;
+  if (uncounted_) odometry_.pose = *uncounted_ + odometry.pose;
   measured_at_ = now;
   motion_then_ = motion_;
   if (odometry.stalled && (mode_ == Mode::Head || mode_ == Mode::Move)) give_way();
@@ -494,6 +500,9 @@ bool ArcosEmulator::fail(DeviceFault fault, Stamp now) {
       return true;
     case DeviceFault::Runaway:
       runaway_ = std::abs(motion_.v) > kStillSpeed ? motion_ : Drive{kRunawaySpeed, 0.0};
+      return true;
+    case DeviceFault::Encoders:
+      uncounted_until_ = now + kEncodersFault;
       return true;
     case DeviceFault::ClockWrap:
     case DeviceFault::Sensor:

@@ -44,7 +44,8 @@ class ArcosEmulator : public EmulatedDevice {
   /// `seto`: the odometry is set to zero, `stall`: both motors report a stall for a second, `reset`: the firmware
   /// starts anew and waits for SYNC0, `watchdog`: commands are not heard for 3 s, `button`: the emergency button is
   /// pressed for 2 s, `motors`: the motors are switched off at the robot, `stuck`: for 6 s the wheels stand whatever
-  /// they are told, `runaway`: they go on as they did (0.2 m/s ahead from rest) until the motors are off.
+  /// they are told, `runaway`: they go on as they did (0.2 m/s ahead from rest) until the motors are off, `encoders`:
+  /// for 4 s they count nothing, whatever the wheels do.
   bool fail(DeviceFault fault, Stamp now) override;
 
   /// The robot's dead reckoning at `now`, in any frame that stays.
@@ -151,7 +152,9 @@ class ArcosEmulator : public EmulatedDevice {
   Stamp deaf_until_ = Stamp::never();
   Stamp pressed_until_ = Stamp::never();  ///< the emergency button
   Stamp stuck_until_ = Stamp::never();
-  std::optional<Drive> runaway_;  ///< what the wheels do whatever they are told
+  Stamp uncounted_until_ = Stamp::never();
+  std::optional<mrpt::math::TPose2D> uncounted_;  ///< from what the wheels did to what is counted
+  std::optional<Drive> runaway_;                  ///< what the wheels do whatever they are told
 };
 
 }  // namespace rubble::robot

@@ -8,7 +8,19 @@
 namespace rubble::robot {
 
 /// What may befall a device itself, apart from its line; docs/hardware.md says what each does.
-enum class DeviceFault { Reset, ClockWrap, SetOrigin, Stall, Watchdog, Button, Motors, Stuck, Runaway, Sensor };
+enum class DeviceFault {
+  Reset,
+  ClockWrap,
+  SetOrigin,
+  Stall,
+  Watchdog,
+  Button,
+  Motors,
+  Stuck,
+  Runaway,
+  Encoders,
+  Sensor
+};
 
 /// The device's side of a protocol apart from its port and from any clock: bytes of the client, time and measurements
 /// go in, bytes and set points come out. Whoever owns the port and the robot moves them.

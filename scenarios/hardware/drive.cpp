@@ -22,6 +22,7 @@
 #include "robot/drivers/black_box.h"
 #include "robot/drivers/mrpt_scanner.h"
 #include "robot/drivers/scip/scip_scanner.h"
+#include "robot/drivers/watch/base_watch.h"
 #include "robot/logs/log.h"
 #include "scenarios/hardware/port_mix_up.h"
 #include "scenarios/hardware/scanner_check.h"
@@ -38,6 +39,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kTellAgain = 5.0;  ///< a reason that changed while devices are waited for is told so often at most [s]
+
+/// So soon a base that is stopped has told so, on a line that is as slow as may be driven with, and one that does not
+/// obey has been found out (BaseWatch::kMotorsOff) [s].
+constexpr double kConfirmed = 2.0;
 
 constexpr robot::Drive kMoved{0.02, deg_to_rad(2.0)};  ///< so far is more than a touch [m], [rad]
 
@@ -141,7 +146,17 @@ class Driver {
     return end;
   }
 
-  std::vector<std::string> silent_devices() const { return names(real_.status().silent); }
+  /// That nothing came of at all: who is held, moves, is late or fell silent has reported, and is where it belongs.
+  std::vector<std::string> silent_devices() const {
+    const robot::RobotStatus status = real_.status();
+    const auto has_reported = [&](const std::string& name) {
+      return name == "urg" ? status.scans > 0 : name == "base" ? status.odometry > 0 : status.accelerations > 0;
+    };
+    std::vector<std::string> names;
+    for (const robot::Hindrance& one : status.silent)
+      if (one.cause == robot::Hindrance::Cause::Silent && !has_reported(one.name)) names.push_back(one.name);
+    return names;
+  }
 
  private:
   /// A robot that stood held or silent to the end has not done what it was sent for.
@@ -218,37 +233,48 @@ class Driver {
     return commands;
   }
 
+  /// Why a device is waited for, as it was told.
+  struct Reason {
+    std::string name;
+    robot::Hindrance::Cause cause = robot::Hindrance::Cause::Silent;
+    std::string words;  ///< without its numbers
+    Clock::time_point at;
+  };
+
   /// While devices are silent: tells which, and saves the map at once. False ends the run.
   bool wait(const robot::RobotStatus& status) {
     tell_of_scanner();
     if ((status.held || begun_) && seconds_since(shown_at_) >= 1.0) show(status, status.held ? "held" : "waiting");
-    const std::vector<std::string> lines = lines_of(status.silent);
-    const bool others = names(status.silent) != names(told_) || status.held != held_;
-    if (others ? lines != lines_of(told_) : lines != told_lines_ && is_news(lines)) {
-      if (options_.tell)
-        for (const std::string& line : lines) options_.tell(line);
-      told_lines_ = lines;
-      told_lines_at_ = Clock::now();
-      if (begun_ && others) loop_.save_now();
-    }
+    for (const robot::Hindrance& one : status.silent)
+      if (is_news(one, status.silent) && options_.tell) options_.tell(one.line());
+    if (begun_ && names(status.silent) != names(told_)) loop_.save_now();
     tell_back(status.silent);
-    if (status.held) mind_hold(status.taken);
+    if (status.held) mind_hold(status);
     held_ = held_ && status.held;
     if (options_.forget_keys) options_.forget_keys();
     return !interrupted_;
   }
 
-  /// Another reason than the one that was told, a while ago: a port that was not open yet may have been opened since.
-  bool is_news(const std::vector<std::string>& lines) const {
-    const auto without_numbers = [](std::string text) {
-      text.erase(std::remove_if(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; }),
-                 text.end());
-      return text;
+  static std::string without_numbers(std::string text) {
+    text.erase(std::remove_if(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; }),
+               text.end());
+    return text;
+  }
+
+  /// Not told of this device while it was waited for; where it takes another reason's place it must have stood for a
+  /// while: a port that was not open yet may have been opened since. Takes it for told.
+  bool is_news(const robot::Hindrance& one, const std::vector<robot::Hindrance>& all) {
+    const std::string words = without_numbers(one.what);
+    const auto gives_way = [&](const Reason& reason) {
+      return seconds_since(reason.at) < kTellAgain && std::none_of(all.begin(), all.end(), [&](const auto& other) {
+               return reason.name == other.name && reason.words == without_numbers(other.what);
+             });
     };
-    if (seconds_since(told_lines_at_) < kTellAgain) return false;
-    return !std::equal(
-        lines.begin(), lines.end(), told_lines_.begin(), told_lines_.end(),
-        [&](const std::string& a, const std::string& b) { return without_numbers(a) == without_numbers(b); });
+    const bool told = std::any_of(reasons_.begin(), reasons_.end(), [&](const Reason& reason) {
+      return reason.name == one.name && reason.cause == one.cause && (reason.words == words || gives_way(reason));
+    });
+    if (!told) reasons_.push_back({one.name, one.cause, words, Clock::now()});
+    return !told;
   }
 
   static std::vector<std::string> names(const std::vector<robot::Hindrance>& all) {
@@ -259,10 +285,13 @@ class Driver {
 
   /// Somebody stopped the robot at the robot, or had its base while it was away. Only what the operator says after that
   /// was told lets it go.
-  void mind_hold(bool taken) {
+  void mind_hold(const robot::RobotStatus& status) {
     if (!held_) {
+      const char* first = status.blind   ? "see to its encoders and their cables"
+                          : status.taken ? "see that nobody else drives it"
+                                         : "release the button";
       if (options_.tell)
-        options_.tell(std::string("base: held; ") + (taken ? "see that nobody else drives it" : "release the button") +
+        options_.tell(std::string("base: held; ") + first +
                       ", then press R (or send SIGUSR2) to let the robot drive again");
       if (options_.rearm) options_.rearm();  // what was pressed or sent before it was held
       held_ = true;
@@ -291,6 +320,11 @@ class Driver {
   void tell_back(const std::vector<robot::Hindrance>& silent) {
     tell_returned(told_, silent);
     told_ = silent;
+    const std::vector<std::string> still = names(silent);
+    const auto is_over = [&](const Reason& one) {
+      return std::find(still.begin(), still.end(), one.name) == still.end();
+    };
+    reasons_.erase(std::remove_if(reasons_.begin(), reasons_.end(), is_over), reasons_.end());
   }
 
   void tell_troubles(const std::vector<robot::Hindrance>& now) const {
@@ -304,11 +338,12 @@ class Driver {
     if (lines_of(status.troubles) != lines_of(troubles_) && options_.tell) tell_troubles(status.troubles);
     troubles_ = status.troubles;
     if (!begun_) return;
-    show(status, options_.mode == DriveMode::Teleoperate ? "by hand"
-                 : options_.mode == DriveMode::MapOnly   ? "mapping"
-                 : options_.mode == DriveMode::Calibrate ? "calibrate"
-                 : core_.explorer()                      ? name_of(core_.explorer()->state())
-                                                         : "mapping");
+    show(status, status.held                               ? "held"
+                 : options_.mode == DriveMode::Teleoperate ? "by hand"
+                 : options_.mode == DriveMode::MapOnly     ? "mapping"
+                 : options_.mode == DriveMode::Calibrate   ? "calibrate"
+                 : core_.explorer()                        ? name_of(core_.explorer()->state())
+                                                           : "mapping");
   }
 
   /// The line of this second.
@@ -347,9 +382,8 @@ class Driver {
   bool held_ = false;  ///< stopped at the robot itself, and told
   std::vector<robot::Hindrance> troubles_;
   bool piloted_out_ = false;
-  std::vector<robot::Hindrance> told_;   ///< what is silent, as it was at the last look
-  std::vector<std::string> told_lines_;  ///< as it was told last
-  Clock::time_point told_lines_at_;
+  std::vector<robot::Hindrance> told_;  ///< what is silent, as it was at the last look
+  std::vector<Reason> reasons_;         ///< that were told of devices which are waited for still
   robot::RobotStatus last_;
 };
 
@@ -386,7 +420,8 @@ scoring::Evidence evidence_of(const Core& core, const robot::RealRobot& robot, c
 
 /// Devices that do not report may be plugged in where others are looked for: asks at their ports who is there.
 void tell_who_answers(const RobotFile& file, const std::vector<std::string>& silent, const DriveOptions& options) {
-  if (!options.tell) return;
+  // Whoever only maps says nothing to a base that others drive; ports mixed up, it may be at any of them.
+  if (!options.tell || options.mode == DriveMode::MapOnly) return;
   std::vector<DevicePort> asked;
   for (const DevicePort& device : {DevicePort{"urg", file.lidar.port}, DevicePort{"base", file.robot.base_port},
                                    DevicePort{"levelling", file.robot.levelling_port}})
@@ -412,21 +447,38 @@ class Completeness {
 
 /// A base that is stopped for good and does not obey: whoever stands beside it must know before the program ends.
 void tell_what_goes_on(const robot::RealRobot& robot, const DriveOptions& options) {
-  const auto given_up = Clock::now() + std::chrono::seconds(2);
-  const auto silent = [](const robot::RobotStatus& status) {
-    return std::any_of(status.silent.begin(), status.silent.end(), [](const robot::Hindrance& one) {
-      using Cause = robot::Hindrance::Cause;
-      return one.name == "base" && (one.cause == Cause::Silent || one.cause == Cause::Late);
-    });
-  };
+  const auto given_up = Clock::now() + std::chrono::duration<double>(kConfirmed);
   robot::RobotStatus status = robot.status();
-  for (; Clock::now() < given_up && (status.motors_on || silent(status)) && status.troubles.empty();
-       status = robot.status())
+  if (!status.begun) return;  // nobody here has driven it
+  const auto stands = [](const robot::RobotStatus& s) { return s.reported && !s.motors_on && !s.moves; };
+  for (; Clock::now() < given_up && !stands(status); status = robot.status())
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  if (!options.tell) return;
-  for (const robot::Hindrance& trouble : status.troubles) options.tell(trouble.line());
-  if (silent(status)) options.tell("base: has not told that it stopped; see that it stands");
+  if (!options.tell || stands(status)) return;
+  if (status.motors_stay || (status.reported && status.motors_on)) {
+    options.tell(std::string("base: ") + robot::kMotorsStay);
+  } else if (!status.reported) {
+    options.tell("base: has not told that it stopped; see that it stands");
+  } else {
+    options.tell("base: its motors are off, but its wheels turn; see that it comes to stand");
+  }
 }
+
+/// Stops the robot also where an error leaves the drive, and says so when it does not stop.
+class StoppedAtLast {
+ public:
+  StoppedAtLast(robot::RealRobot& robot, const DriveOptions& options) : robot_(robot), options_(options) {}
+  ~StoppedAtLast() {
+    if (options_.mode == DriveMode::MapOnly) return;
+    robot_.stop();
+    tell_what_goes_on(robot_, options_);
+  }
+  StoppedAtLast(const StoppedAtLast&) = delete;
+  StoppedAtLast& operator=(const StoppedAtLast&) = delete;
+
+ private:
+  robot::RealRobot& robot_;
+  const DriveOptions& options_;
+};
 
 /// A robot that may turn back before it has begun: what the operator should know.
 void warn_of_time_for_home(const Scenario& settings, const DriveOptions& options) {
@@ -476,6 +528,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     if (!file.settings.levelling.on) settings.safety.levelling_answer = std::numeric_limits<double>::infinity();
     robot::RealRobot real(settings, *lidar, &box);
     robot::RecordingRobot recorded(real, folder.file("log.rlog"), resolved_yaml(file.settings));
+    const StoppedAtLast stopped(real, options);
     Driver driver(file, options, folder, real, core, *lidar);
     const LoopEnd end = driver.run(recorded);
     report.end = end.reason;
@@ -485,7 +538,6 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     recorded.flush();
     save_map_files(folder, core.mapper());
     *report.score = score_json(evidence_of(core, real, end, start));
-    if (options.mode != DriveMode::MapOnly) tell_what_goes_on(real, options);
   }
   folder.save_hashes("");
   folder.write("score.json", report.score->dump(2) + "\n");

@@ -87,8 +87,10 @@ const std::vector<FaultAt>& known_faults() {
     add(EmulatedKind::Base, "motors", DeviceFault::Motors);
     add(EmulatedKind::Base, "stuck", DeviceFault::Stuck);
     add(EmulatedKind::Base, "runaway", DeviceFault::Runaway);
+    add(EmulatedKind::Base, "encoders", DeviceFault::Encoders);
     add(EmulatedKind::Base, "slow", PortFault::Slow);
     add(EmulatedKind::Levelling, "sensor", DeviceFault::Sensor);
+    add(EmulatedKind::Levelling, "slow", PortFault::Slow);
     return all;
   }();
   return faults;

@@ -117,6 +117,48 @@ sys.exit(0 if driven >= simulated - 0.05 else 1)
 PY
 "$rubble" replay driven >replay.txt || fail "the driven run does not replay to the same bits: $(tail -3 replay.txt)"
 
+# Encoders that die on the way and stay dead: scans show that the robot moves; it is stopped, and nobody lets it go.
+# shellcheck disable=SC2046
+start_emulator $(printf -- "--fault base-encoders@%s " $(seq 9 3 60))
+# shellcheck disable=SC2086
+"$rubble" drive "$robot" $ports --time-limit 50 --out blind --set safety.give_up_s=5 >out.txt 2>err.txt
+code=$?
+stop_emulator
+[[ $code == 4 ]] || fail "a drive whose encoders are dead ends with $code: $(tail -3 err.txt)"
+grep -q "^rubble: base: encoders and scans disagree: its wheels report that they stand, scans show " err.txt && grep -q "see to its encoders" err.txt ||
+  fail "dead encoders are not named: $(cat err.txt)"
+tail -n 1 err.txt | grep -q "encoders and scans disagree.*; nobody has let it go" || fail "the end does not say why: $(tail -3 err.txt)"
+[[ -s blind/score.json && ! -e blind/.partial ]] || fail "the folder of a drive whose encoders died is not complete"
+
+# A base that no order to stop reaches and that somebody else drives on, whatever else is in trouble: the end says so.
+# shellcheck disable=SC2046
+start_emulator $(printf -- "--fault levelling-sensor@%s " $(seq 6 0.9 40))
+python3 "$source/tests/cli/disobedient_line.py" "$(sed -n 's/^base tcp://p' emulator.txt)" >line.txt &
+stranger=$!
+for _ in $(seq 100); do
+  grep -q '^port' line.txt && break
+  sleep 0.1
+done
+ports=$(sed "s#--base [^ ]*#--base tcp:127.0.0.1:$(sed -n 's/^port //p' line.txt)#" <<<"$ports")
+# shellcheck disable=SC2086
+"$rubble" drive "$robot" $ports --out driven_on >out.txt 2>err.txt &
+drive=$!
+for _ in $(seq 300); do
+  grep -q 'gives no signal' err.txt && break
+  sleep 0.1
+done
+kill -USR1 $stranger
+sleep 0.3
+kill -INT $drive
+wait $drive
+[[ $? == 130 ]] || fail "a drive whose base does not hear ends otherwise: $(tail -3 err.txt)"
+drive=
+kill $stranger
+wait $stranger 2>/dev/null
+stranger=
+stop_emulator
+grep -q "^rubble: base: its motors stay on though switched off" err.txt || fail "the end is silent about a base that does not stop: $(tail -5 err.txt)"
+
 # A robot that is driven belongs to one: whoever else comes is told so and does not wait, or it would drive the robot on when the
 # first one stops it. First our own drives, then a client that only the device itself can turn away.
 # One of its devices is unplugged meanwhile: it still belongs to the first.

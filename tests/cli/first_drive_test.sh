@@ -6,10 +6,13 @@ source "$(dirname "$0")/lib.sh"
 emulator=
 trap '[[ -z $emulator ]] || kill $emulator 2>/dev/null; rm -rf "$work"' EXIT
 
-# start_emulator SCENARIO [options]: ports in $urg, $base and $levelling. Waits until they are open.
+# start_emulator SCENARIO [options]: ports in $urg, $base and $levelling, of the $kind tcp or pty. Waits until they are open.
+kind=tcp
 start_emulator() {
   rm -f emulator.txt
-  "$rubble" emulate "$@" --urg tcp:127.0.0.1:0 --base tcp:127.0.0.1:0 --levelling tcp:127.0.0.1:0 >emulator.txt 2>emulator_err.txt &
+  local ports=(--urg tcp:127.0.0.1:0 --base tcp:127.0.0.1:0 --levelling tcp:127.0.0.1:0)
+  [[ $kind == tcp ]] || ports=(--urg "pty:$work/p_urg" --base "pty:$work/p_base" --levelling "pty:$work/p_levelling")
+  "$rubble" emulate "$@" "${ports[@]}" >emulator.txt 2>emulator_err.txt &
   emulator=$!
   for _ in $(seq 200); do
     grep -qs '^ready$' emulator.txt && break
@@ -25,17 +28,20 @@ robot=$source/robots/pioneer_urg.yaml
 # A file that nobody can touch is refused before anything is opened; one that can be made later is not.
 expect_exit 3 "--heartbeat $work/none/hb: there is no folder $work/none" "$rubble" drive "$robot" --heartbeat "$work/none/hb"
 
-start_emulator small.yaml
-# Two ports exchanged, and all three in a ring: who answers there is told, and the drive fails as ever.
-"$rubble" drive "$robot" --urg "$base" --base "$urg" --levelling "$levelling" --set safety.start_s=4 --out swapped >out.txt 2>err.txt
-[[ $? == 4 ]] || fail "a drive with swapped ports ends otherwise: $(tail -3 err.txt)"
-grep -qF "rubble: urg: at its port $base a robot base (ARCOS) answers; are the ports mixed up?" err.txt &&
-  grep -qF "rubble: base: at its port $urg a laser scanner answers; are the ports mixed up?" err.txt ||
-  fail "who answers at swapped ports is not said: $(cat err.txt)"
-[[ $(grep -c "mixed up" err.txt) == 2 ]] || fail "more is said of swapped ports than is so: $(cat err.txt)"
-"$rubble" drive "$robot" --urg "$base" --base "$levelling" --levelling "$urg" --set safety.start_s=4 --out ring >out.txt 2>err.txt
-[[ $? == 4 && $(grep -c "are the ports mixed up?" err.txt) == 3 ]] || fail "ports in a ring: $(cat err.txt)"
-grep -qF "rubble: base: at its port $levelling a levelling unit answers" err.txt || fail "ports in a ring: $(cat err.txt)"
+# Two ports exchanged, and all three in a ring: who answers there is told, and the drive fails as ever. On serial lines, too.
+for kind in pty tcp; do
+  start_emulator small.yaml
+  "$rubble" drive "$robot" --urg "$base" --base "$urg" --levelling "$levelling" --set safety.start_s=4 --out swapped_$kind >out.txt 2>err.txt
+  [[ $? == 4 ]] || fail "$kind: a drive with swapped ports ends otherwise: $(tail -3 err.txt)"
+  grep -qF "rubble: urg: at its port $base a robot base (ARCOS) answers; are the ports mixed up?" err.txt &&
+    grep -qF "rubble: base: at its port $urg a laser scanner answers; are the ports mixed up?" err.txt ||
+    fail "$kind: who answers at swapped ports is not said: $(cat err.txt)"
+  [[ $(grep -c "mixed up" err.txt) == 2 ]] || fail "$kind: more is said of swapped ports than is so: $(cat err.txt)"
+  "$rubble" drive "$robot" --urg "$base" --base "$levelling" --levelling "$urg" --set safety.start_s=4 --out ring_$kind >out.txt 2>err.txt
+  [[ $? == 4 && $(grep -c "are the ports mixed up?" err.txt) == 3 ]] || fail "$kind: ports in a ring: $(cat err.txt)"
+  grep -qF "rubble: base: at its port $levelling a levelling unit answers" err.txt || fail "$kind: ports in a ring: $(cat err.txt)"
+  [[ $kind == tcp ]] || stop_emulator
+done
 
 # A heartbeat that never comes is no matter of cables.
 "$rubble" drive "$robot" --urg "$urg" --base "$base" --levelling "$levelling" --heartbeat "$work/hb" --set safety.start_s=4 --out untouched >out.txt 2>err.txt

@@ -9,6 +9,45 @@ printf 'name: flat\narena: {file: %s/arenas/shipped/flat_room.yaml}\nseed: 2\nex
 expect_exit 3 "add --map-only" "$rubble" drive "$robot" --urg pty:no1 --base none --levelling none --out nobody
 expect_exit 3 "add --map-only" "$rubble" calibrate "$robot" --urg pty:no1 --base none --levelling none --out nobody.yaml
 
+# A base on a shared line that somebody drives, and who is away for a while: not one byte is said to it, also when the mapping never
+# begins and other devices are asked who is there.
+cat >shared_base.py <<'PY'
+import select, socket, struct, sys, time
+payload = bytes([0x32] + [0] * 10 + [128] + [0] * 6 + [0, 0])
+total = sum(struct.unpack(">%dH" % (len(payload) // 2), payload[: len(payload) // 2 * 2])) & 0xFFFF
+total ^= payload[-1] if len(payload) % 2 else 0
+report = b"\xfa\xfb" + bytes([len(payload) + 2]) + payload + struct.pack(">H", total)
+line = socket.socket()
+line.bind(("127.0.0.1", 0))
+line.listen()
+print("port %d" % line.getsockname()[1], flush=True)
+clients, heard, reports, begin = [], 0, 0, None
+while begin is None or time.time() - begin < 9:
+    for one in select.select([line, *clients], [], [], 0.1)[0]:
+        if one is line:
+            clients.append(line.accept()[0])
+            begin = begin or time.time()
+            continue
+        data = one.recv(4096)
+        heard += len(data)
+        if not data:
+            clients.remove(one)
+    if begin and time.time() - begin < 1.5:
+        for one in clients:
+            one.sendall(report)
+            reports += 1
+print("heard %d bytes, %d reports" % (heard, reports))
+PY
+python3 shared_base.py >shared.txt &
+shared=$!
+for _ in $(seq 100); do grep -q '^port' shared.txt && break; sleep 0.1; done
+"$rubble" drive "$robot" --map-only --urg tcp:127.0.0.1:9 --base "tcp:127.0.0.1:$(sed -n 's/^port //p' shared.txt)" --levelling none \
+  --set safety.start_s=4 --out never >out.txt 2>err.txt
+[[ $? == 4 ]] || fail "mapping without a scanner ends otherwise: $(tail -3 err.txt)"
+wait $shared
+cat shared.txt
+grep -q "^heard 0 bytes, [1-9]" shared.txt || fail "who only maps speaks to a base that others drive, or did not listen to it: $(cat shared.txt err.txt)"
+
 "$rubble" emulate flat.yaml --urg tcp:127.0.0.1:0 --base tcp:127.0.0.1:0 --truth true.tum >emulator.txt 2>&1 &
 emulator=$!
 for _ in $(seq 200); do grep -q '^ready$' emulator.txt && break; sleep 0.1; done

@@ -9,6 +9,8 @@
 #include <random>
 #include <string>
 
+#include "robot/drivers/watch/answer_watch.h"
+
 namespace rubble::robot {
 namespace {
 
@@ -133,6 +135,38 @@ TEST(AnswerTimer, ALineThatIsSlowAndLosesMuchIsNeverTakenForQuick) {
       EXPECT_EQ(quick, 0.0) << "s of an hour";
     }
   }
+}
+
+/// From one moment on: it is found out some seconds later, for a single late answer may be this computer's, and not let
+/// go again from then on.
+TEST(AnswerTimer, ALineThatBecomesSlowAndLosesMuchIsNotTakenForQuickAgain) {
+  double latest = 0.0;
+  for (const double slow : {0.4, 0.5, 0.7, 1.0, 1.6, 2.5}) {
+    for (const double loss : {0.1, 0.2, 0.3}) {
+      for (unsigned seed = 1; seed <= 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << slow << " s, loss " << loss << ", seed " << seed);
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> uniform;
+        Line line([&, slow, loss](double t) {
+          return uniform(random) < loss ? -1.0 : t < 20.0 ? 0.02 : slow + 0.1 * uniform(random);
+        });
+        line.run(20.0);
+        double found = 0.0, quick = 0.0;
+        AnswerWatch watch(0.3);  // for a second more, as who drives by it
+        for (int k = 1; k <= 4000; ++k) {
+          line.run(0.01);
+          const bool well = watch.look({line.late(), line.timer.missing(line.now)}, line.now);
+          if (!well && found == 0.0) found = 0.01 * k;
+          if (well && found > 0.0) quick += 0.01;
+        }
+        EXPECT_GT(found, 0.0);
+        EXPECT_EQ(quick, 0.0) << "s of forty";
+        latest = std::max(latest, found);
+      }
+    }
+  }
+  std::printf("found out after %.1f s at the latest\n", latest);
+  EXPECT_LT(latest, 8.0);
 }
 
 /// Once it is quick again it is used again, though it loses as much as before.

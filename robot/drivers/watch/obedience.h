@@ -34,6 +34,8 @@ class Obedience {
   void tell(const Drive& told, Stamp now);
   /// A report that came at `now`.
   void look(const Odometry& odometry, Stamp now);
+  /// How fast it goes, by the poses of the last half second.
+  Drive motion() const;
 
   /// What is wrong, in words; empty: it obeys. Stays as long as the wheels stand or lag behind, or until pause().
   const std::string& trouble() const { return trouble_; }
@@ -88,7 +90,6 @@ class Obedience {
   void mind_standing(const Odometry& odometry, Stamp now);
   void mind_running(Stamp now);
   void say();
-  Drive motion() const;
   void expect_braking();
 
   Drive ramp_;                                   ///< [m/s^2], [rad/s^2]

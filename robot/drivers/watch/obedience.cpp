@@ -1,4 +1,4 @@
-#include "robot/drivers/obedience.h"
+#include "robot/drivers/watch/obedience.h"
 
 #include <algorithm>
 #include <cmath>
