@@ -12,7 +12,8 @@ class HomeWay {
   /// `time_limit` [s] from the first tick; 0: none.
   explicit HomeWay(double time_limit) : time_limit_(time_limit) {}
 
-  /// One tick of `dt` [s] in which the robot moved by `way` [m]; `driving`: on its way, not searching or turning.
+  /// One tick of `dt` [s] in which the robot moved by `way` [m]; `driving`: on its way or getting free on it, not
+  /// searching or turning.
   void moved(double way, double dt, bool driving);
   /// Whether the way home should be measured now.
   bool due(Stamp now);

@@ -133,7 +133,9 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   tilt_.update(inputs, dt_);
   jolt_.update(inputs);
   for (const robot::VictimCue& cue : inputs.cues) hear(mapper, cue);
-  const bool on_its_way = state_ == ExplorerState::Driving || state_ == ExplorerState::GoingHome;
+  // What holds it up on the way will hold it up on the way home as well.
+  const bool on_its_way =
+      state_ == ExplorerState::Driving || state_ == ExplorerState::GoingHome || state_ == ExplorerState::BackingUp;
   home_way_.moved(distance(position(before), position(pose_)), dt_, on_its_way);
   way_back_.add(now_, pose_);
   if (state_ == ExplorerState::Starting || state_ == ExplorerState::BackingUp) return;
