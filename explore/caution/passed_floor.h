@@ -7,13 +7,12 @@
 
 namespace rubble::explore {
 
-/// Where the robot's middle was: the scanner does not see steps and crossing ramps, the wheels have felt that there are
-/// none.
+/// Where the robot's middle was: the scanner does not see steps and crossing ramps, and there the wheels met none.
 class PassedFloor {
  public:
   void add(const mrpt::math::TPoint2D& p_map);
   void clear() { cells_.clear(); }
-  /// The robot was within about 0.2 m of p_map.
+  /// The robot was within 0.15 to 0.4 m of p_map.
   bool holds(const mrpt::math::TPoint2D& p_map) const;
 
  private:

@@ -6,7 +6,7 @@ namespace rubble::explore {
 namespace {
 
 constexpr double kUnsure = 0.40;   ///< a pose that has lost so much places nothing [m]
-constexpr double kUsual = 0.0025;  ///< variance that driving costs between one closed loop and the next [m^2/s]
+constexpr double kUsual = 0.0025;  ///< variance forgiven: driving costs less between two closed loops [m^2/s]
 
 double variance(const PoseCovariance& covariance) { return covariance(0, 0) + covariance(1, 1); }
 

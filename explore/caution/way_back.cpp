@@ -24,6 +24,11 @@ double apart(const TPose2D& a, const TPose2D& b) { return distance(position(a), 
 double turned(const TPose2D& a, const TPose2D& b) { return std::abs(wrap_angle(a.phi - b.phi)); }
 bool alike(const TPose2D& a, const TPose2D& b) { return apart(a, b) < kSamePose && turned(a, b) < kSameTurn; }
 
+/// A pose beside the robot, which slipped sideways meanwhile, cannot be driven to: one before it then.
+bool leads_on(const TPose2D& from, const TPose2D& to) {
+  return !alike(from, to) && (std::abs((to - from).x) > 0.5 * kSamePose || turned(from, to) > kLittleTurn);
+}
+
 }  // namespace
 
 void WayBack::add(Stamp now, const TPose2D& T_map_base) {
@@ -43,7 +48,7 @@ void WayBack::follow(const slam::Mapper& mapper) {
 
 std::optional<robot::Drive> WayBack::drive(const TPose2D& T_map_base) const {
   const auto next = std::find_if(way_.rbegin(), way_.rend(),
-                                 [&](const Anchor& anchor) { return !alike(anchor.T_map_base, T_map_base); });
+                                 [&](const Anchor& anchor) { return leads_on(T_map_base, anchor.T_map_base); });
   if (next == way_.rend()) return std::nullopt;
   const TPose2D left = next->T_map_base - T_map_base;
   const double turn = wrap_angle(left.phi);

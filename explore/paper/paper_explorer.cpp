@@ -33,6 +33,7 @@ constexpr double kBesideTheWay = 1.0;  ///< a niche that costs no more is looked
 constexpr double kDetourCost = 2.0;    ///< a frontier may cost so much more than the next viewpoint [m]
 constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
 constexpr double kSameTarget = 0.5;                     ///< [m]
+constexpr double kLongerWay = 2.0;                      ///< [m]
 constexpr double kSmallShift = 0.10;                    ///< of the robot's place by a correction of the map [m]
 constexpr double kTurningRoom = 0.06;                   ///< [m]
 constexpr double kLongestTick = 0.2;                    ///< commands of longer ticks are taken to have ended [s]
@@ -41,9 +42,11 @@ constexpr double kPatience = 2.0;                       ///< then its motors may
 constexpr double kCornerRoom = 0.08;                    ///< beside corners that turn [m]
 constexpr double kLittleRoom = 0.01;                    ///< [m]
 constexpr double kPaper = 0.5;                          ///< what stands alone and is not wider may be paper [m]
-constexpr double kHeap = 1.1;  ///< several balls side by side; a panel of wall is 1.2 m wide [m]
-constexpr int kForgets = 4;    ///< times that all that was felt is forgotten for the sake of new ground
-constexpr int kHomeTries = 6;  ///< times that all that was felt is forgotten on the way home
+constexpr double kHeap = 1.1;                ///< several balls side by side; a panel of wall is 1.2 m wide [m]
+constexpr int kSmoothFloor = 3;              ///< things felt so far where the robot may be fast
+constexpr std::size_t kWorthForgetting = 3;  ///< frontiers
+constexpr int kForgets = 4;                  ///< times that all that was felt is forgotten for the sake of new ground
+constexpr int kHomeTries = 6;                ///< times that all that was felt is forgotten on the way home
 
 std::string text(const TPoint2D& p) {
   std::array<char, 40> line{};
@@ -133,10 +136,10 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   tilt_.update(inputs, dt_);
   jolt_.update(inputs);
   for (const robot::VictimCue& cue : inputs.cues) hear(mapper, cue);
-  // What holds it up on the way will hold it up on the way home as well.
-  const bool on_its_way =
-      state_ == ExplorerState::Driving || state_ == ExplorerState::GoingHome || state_ == ExplorerState::BackingUp;
-  home_way_.moved(distance(position(before), position(pose_)), dt_, on_its_way);
+  // What holds it up on the way will hold it up on the way home as well; what it moves to get free is no way.
+  const bool free = state_ == ExplorerState::Driving || state_ == ExplorerState::GoingHome;
+  home_way_.moved(free ? distance(position(before), position(pose_)) : 0.0, dt_,
+                  free || state_ == ExplorerState::BackingUp);
   way_back_.add(now_, pose_);
   if (state_ == ExplorerState::Starting || state_ == ExplorerState::BackingUp) return;
   felt_.passed(pose_, model_);
@@ -250,6 +253,8 @@ Drive PaperExplorer::drive(const slam::Mapper& mapper) {
   if (looking_.active()) {
     const std::optional<Drive> turn = looking_.turn(turned_, now_);
     plan_forced_ = plan_forced_ || !turn;
+    // A turn in a tight place wanders off its viewpoint; driving back to it and turning again would never end.
+    if (!turn && facing_) floor_search_.start_dwell_as_turned(now_);
     return pivot_.keep(turn.value_or(Drive{}), pose_, last_floor_);
   }
   if (path_watch_.waits(now_)) return {};
@@ -286,6 +291,9 @@ Plan PaperExplorer::plan_on(const Traversable& floor) {
       note("no niche is left: what could not be reached is tried again before the rest is searched");
       return to_frontier(std::nullopt);
     }
+    // Half of the tries come before the search, which in a large arena takes all the time that is left.
+    if (frontier.frontier_left >= kWorthForgetting && 2 * forgets_ < kForgets && forget_what_was_felt())
+      return to_frontier(std::nullopt);
     search = plan_search(floor, Subjects::All);
   }
   if (!frontiers_done_) {
@@ -335,7 +343,7 @@ void PaperExplorer::replan(const slam::Mapper& mapper) {
   // It would turn round again once the new thing is forgotten, and again when it is seen anew.
   const bool turned_away =
       plan.found && target_ && !new_things.empty() && distance(*target_, plan.target) > kSameTarget;
-  if (turned_away && state_ != ExplorerState::GoingHome) {
+  if (turned_away && state_ != ExplorerState::GoingHome && keeps_away(*target_)) {
     note("something new stands in the way");
     bar_target(*target_);
   }
@@ -348,6 +356,12 @@ void PaperExplorer::replan(const slam::Mapper& mapper) {
     nothing_left();
   }
   show_path();
+}
+
+/// Whether the floor as seen now makes the way to where the robot was driving longer than a detour, or impossible.
+bool PaperExplorer::keeps_away(const TPoint2D& target) {
+  const Plan way = planner_.to_point(last_floor_, pose_, target, kSameTarget);
+  return !way.found || way_of(way) > follower_.left() + kLongerWay;
 }
 
 void PaperExplorer::accept(Plan plan) {
@@ -369,7 +383,9 @@ void PaperExplorer::accept(Plan plan) {
   target_ = plan.target;
   path_d_min_ = plan.d_min;
   path_watch_.unblock();
-  for (PathPoint& point : plan.path) point.passed = passed_.holds(point.p_map);
+  // Where several things were felt the floor has more of them than the trail's width tells.
+  if (times_stuck_ <= kSmoothFloor)
+    for (PathPoint& point : plan.path) point.passed = passed_.holds(point.p_map);
   follower_.set_path(std::move(plan.path));
 }
 
@@ -563,8 +579,11 @@ void PaperExplorer::face_subject() {
   follower_.clear();
   pushed_aside_ = 0.0;
   if (looking_.active()) return;
-  if (const std::optional<double> turn = floor_search_.turn_to_subject(last_floor_, pose_))
-    return look_around(*turn, true);
+  if (const std::optional<double> turn = floor_search_.turn_to_subject(last_floor_, pose_)) {
+    look_around(*turn, true);
+    facing_ = true;
+    return;
+  }
   floor_search_.start_dwell(now_);
 }
 

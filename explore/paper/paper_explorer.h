@@ -70,6 +70,7 @@ class PaperExplorer : public Explorer {
   void replan(const slam::Mapper& mapper);
   Plan plan_on(const Traversable& floor);
   Plan plan_home(const Traversable& floor);
+  bool keeps_away(const TPoint2D& target);
   void accept(Plan plan);
   void visited_in_vain(const TPoint2D& target);
   void nothing_left();
@@ -151,6 +152,7 @@ class PaperExplorer : public Explorer {
   std::size_t frontier_left_ = 0;
 
   std::optional<TPoint2D> looked_from_;
+  bool facing_ = false;  ///< the turn under way is towards a place to search
   int failed_plans_ = 0;
   int looks_in_vain_ = 0;
   int pardons_ = 0;
@@ -169,6 +171,7 @@ class PaperExplorer : public Explorer {
   ExplorerState after_escape_ = ExplorerState::Driving;
   std::optional<TPoint2D> stuck_place_;
   int stuck_there_ = 0;
+  int times_stuck_ = 0;
   int failed_escapes_ = 0;
 };
 

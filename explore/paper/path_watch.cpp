@@ -49,11 +49,6 @@ const std::vector<TPoint2D>& PathWatch::obstacles(Stamp now) {
   return obstacles_;
 }
 
-void PathWatch::remember(const std::vector<TPoint2D>& points, Stamp now) {
-  obstacles_.insert(obstacles_.end(), points.begin(), points.end());
-  forget_ = now + kMemory;
-}
-
 void PathWatch::creep(Stamp now) { creep_until_ = now + kCreepTime; }
 
 void PathWatch::slow_down(Stamp now) { slow_until_ = now + kSlowTime; }

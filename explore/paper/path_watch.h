@@ -29,7 +29,6 @@ class PathWatch {
 
   /// What is remembered [m, map frame]; forgets what is too old.
   const std::vector<mrpt::math::TPoint2D>& obstacles(Stamp now);
-  void remember(const std::vector<mrpt::math::TPoint2D>& points, Stamp now);
 
   /// The map shows a way, the newest scans do not: go and see, slowly.
   void creep(Stamp now);

@@ -16,6 +16,7 @@ constexpr double kTurningRate = 0.15;  ///< [rad/s]
 constexpr double kLean = 0.03;         ///< getting free, the body may come so much closer to walls [m]
 constexpr int kMaxFailedEscapes = 10;  ///< in a row
 constexpr double kPushReach = 1.0;     ///< things to be pushed aside are watched from here on [m]
+constexpr double kWall = 0.08;         ///< a hit so near to something of the map that is not loose is on that [m]
 constexpr double kRoll = 0.15;         ///< farther they do not roll between two looks [m]
 
 }  // namespace
@@ -37,7 +38,9 @@ std::vector<TPoint2D> PaperExplorer::without_loose_things(const std::vector<TPoi
     if (const TPoint2D p = last_floor_.cells.centre(c); distance(p, here) < kPushReach) loose.push_back(p);
   std::vector<TPoint2D> rest;
   for (const TPoint2D& hit : hits) {
-    const bool rolls = distance(hit, here) < kPushReach &&
+    const Cell c = last_floor_.clearance.cell(hit);
+    const bool wall = last_floor_.clearance.inside(c) && last_floor_.clearance[c] < kWall;
+    const bool rolls = !wall && distance(hit, here) < kPushReach &&
                        std::any_of(loose.begin(), loose.end(), [&](const auto& p) { return distance(p, hit) < kRoll; });
     (rolls ? rolling_ : rest).push_back(hit);
   }
@@ -54,6 +57,7 @@ void PaperExplorer::got_stuck(const std::string& how) {
   tilt_.reset();
   looking_.end();
   follower_.clear();
+  ++times_stuck_;
   const TPoint2D here = position(pose_);
   const bool again = stuck_place_ && distance(*stuck_place_, here) < kSamePlace;
   stuck_there_ = again ? stuck_there_ + 1 : 1;
@@ -116,6 +120,7 @@ void PaperExplorer::bar_target(const TPoint2D& where) {
 
 void PaperExplorer::look_around(double angle, bool to_the_end) {
   looking_.begin(angle, to_the_end, now_);
+  facing_ = false;
   follower_.clear();
 }
 

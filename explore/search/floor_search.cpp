@@ -11,7 +11,7 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
 constexpr double kLookPeriod = 0.35;            ///< [s]
-constexpr double kTurnRate = deg_to_rad(65.0);  ///< turning faster the sensors see too little [rad/s]
+constexpr double kTurnRate = deg_to_rad(40.0);  ///< turning faster the sensors see too little [rad/s]
 constexpr double kFacing = deg_to_rad(8.0);     ///< [rad]
 constexpr double kMoved = 0.05;                 ///< a look that moved less shows the same, to a cell [m]
 constexpr double kMovedTurn = deg_to_rad(2.0);  ///< likewise
@@ -97,7 +97,15 @@ std::optional<double> FloorSearch::turn_to_subject(const Traversable& floor, con
     subject_ = view.subject;
     subject_faces_ = view.faces;
   }
+  turned_to_ = subject_;
+  turned_to_faces_ = subject_faces_;
   return std::abs(turn) > kFacing ? std::optional<double>(turn) : std::nullopt;
+}
+
+void FloorSearch::start_dwell_as_turned(Stamp now) {
+  subject_ = turned_to_;
+  subject_faces_ = turned_to_faces_;
+  start_dwell(now);
 }
 
 bool FloorSearch::dwelling(const Traversable& floor, const TPose2D& T_map_base, Stamp now) {

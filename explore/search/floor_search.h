@@ -48,6 +48,8 @@ class FloorSearch {
   std::optional<double> turn_to_subject(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
 
   void start_dwell(Stamp now) { dwell_until_ = now + config_.dwell; }
+  /// The same for what the last turn was made to, whatever was planned meanwhile.
+  void start_dwell_as_turned(Stamp now);
   /// True while the robot holds still before the place to face. At the end that place counts as searched.
   bool dwelling(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, Stamp now);
   /// True in the tick in which a dwell ended.
@@ -77,6 +79,8 @@ class FloorSearch {
   std::vector<Viewpoint> views_;
   mrpt::math::TPoint2D subject_;
   Faces subject_faces_ = 0;
+  mrpt::math::TPoint2D turned_to_;  ///< the subject of the last turn
+  Faces turned_to_faces_ = 0;
   std::vector<Look> looks_;
   std::vector<GivenUp> given_up_;
   Stamp next_look_ = Stamp::never();

@@ -158,6 +158,8 @@ class MazeRobot {
   Maze& maze() { return maze_; }
   /// Nothing moves while held: a robot stuck on something the scanner cannot see.
   bool held = false;
+  /// A turn on the spot carries the robot so much to its left, as skid steering on a ramp does [m/rad].
+  double wander = 0.0;
   bool scanner_works = true;
 
   /// One tick: moves, then measures.
@@ -167,8 +169,9 @@ class MazeRobot {
     w_ = approach(w_, std::clamp(commands.drive.w, -model_.max_w, model_.max_w), model_.max_turn_accel * dt);
     if (held || commands.brake) v_ = w_ = 0.0;
     const double middle = pose_.phi + 0.5 * w_ * dt;
-    pose_ = {pose_.x + v_ * dt * std::cos(middle), pose_.y + v_ * dt * std::sin(middle),
-             wrap_angle(pose_.phi + w_ * dt)};
+    const double left = std::abs(v_) < 0.15 ? wander * std::abs(w_) * dt : 0.0;
+    pose_ = {pose_.x + v_ * dt * std::cos(middle) - left * std::sin(middle),
+             pose_.y + v_ * dt * std::sin(middle) + left * std::cos(middle), wrap_angle(pose_.phi + w_ * dt)};
     now_ = now_ + dt;
     robot::Inputs inputs;
     inputs.now = now_;

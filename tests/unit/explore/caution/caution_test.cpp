@@ -132,7 +132,7 @@ TEST(PoseDoubt, AMapThatStandsAskewAsAWholeIsNoDoubt) {
   }
 }
 
-TEST(PoseDoubt, WhatEveryWayCostsIsNoDoubtAndAJumpIsOneUntilItIsMended) {
+TEST(PoseDoubt, WhatEveryWayCostsIsNoDoubtAndAJumpIsOne) {
   PoseDoubt doubt;
   double variance = 0.0;
   for (int i = 0; i < 20000; ++i) {  // 400 s: to 0.6 m

@@ -63,6 +63,36 @@ TEST(Niche, IsLookedIntoBeforeTheRobotGoesOn) {
   EXPECT_LT(*farthest, 6 * Maze::kPallet) << "the corridor ends at " << 9.5 * Maze::kPallet;
 }
 
+/// The turn towards a place to search carries the robot off its viewpoint: it looks from where it came to stand,
+/// instead of driving back and turning again.
+TEST(Niche, ATurnThatWandersDoesNotGoOnForEver) {
+  for (const double wander : {0.05, 0.1, 0.2, -0.1, -0.15, -0.2}) {
+    const Maze maze = corridor_with_niche();
+    const robot::RobotModel model;
+    test::MazeRobot robot(maze, model);
+    robot.wander = wander;
+    slam::PaperMapper mapper(model, test::exact_mapper(), 1);
+    PaperExplorer explorer(model, {});
+    robot::Commands commands;
+    TPose2D place = robot.pose();
+    double turned = 0.0, most = 0.0;  // there, whichever way [rad]
+    while (robot.now().seconds() < 900.0 && !explorer.finished()) {
+      const TPose2D before = robot.pose();
+      const robot::Inputs inputs = robot.step(commands);
+      mapper.update(inputs);
+      commands = explorer.next(mapper, inputs);
+      if (distance({place.x, place.y}, {robot.pose().x, robot.pose().y}) > 0.5) {
+        place = robot.pose();
+        turned = 0.0;
+      }
+      turned += std::abs(wrap_angle(robot.pose().phi - before.phi));
+      most = std::max(most, turned);
+    }
+    EXPECT_TRUE(explorer.finished()) << wander;
+    EXPECT_LT(most, 4.0 * 2.0 * kPi) << "within half a metre, at " << wander << " m/rad";
+  }
+}
+
 TEST(Niche, IsLeftAloneWhereNobodyAsksForVictims) {
   PaperExplorerConfig config;
   config.search.on = false;
