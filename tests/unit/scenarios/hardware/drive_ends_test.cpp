@@ -238,6 +238,16 @@ TEST(EmulatedDriveThatNeverBegins, ABaseThatMovesIsNamedAtOnceAndTheEndDoesNotSe
   EXPECT_THAT(report.failure, Not(HasSubstr("cables")));
 }
 
+TEST(EmulatedDriveThatNeverBegins, ABaseThatMovesWhenTheOperatorEndsItIsToldToGoOn) {
+  EmulatedDrive robot(false);
+  robot.driven_by_others = 0.25;
+  auto driven = robot.start();
+  ASSERT_TRUE(robot.comes_true([&] { return count(robot.told(), "moves though nobody here drives it") > 0; }));
+  robot.ending = true;
+  driven.get();
+  EXPECT_THAT(robot.told().back(), HasSubstr("base: moves though nobody here has driven it, and may go on"));
+}
+
 TEST(EmulatedDriveThatIsHeld, EachReasonIsToldOnceAndTheStateIsHeldToTheEnd) {
   EmulatedDrive robot;
   auto driven = robot.start();
