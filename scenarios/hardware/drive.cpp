@@ -474,7 +474,12 @@ class StoppedAtLast {
   ~StoppedAtLast() {
     if (options_.mode == DriveMode::MapOnly) return;
     robot_.stop();
+    const auto wish = [this] {
+      return options_.insisted && options_.insisted() ? robot::OperatorWish::Leave : robot::OperatorWish::Stop;
+    };
+    robot_.listen(wish, options_.left);  // who is in a hurry need not wait for the base
     tell_what_goes_on(robot_, options_);
+    robot_.listen({});
   }
   StoppedAtLast(const StoppedAtLast&) = delete;
   StoppedAtLast& operator=(const StoppedAtLast&) = delete;

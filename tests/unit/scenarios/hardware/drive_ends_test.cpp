@@ -201,6 +201,21 @@ TEST(EmulatedDriveEnds, WheelsThatTurnThoughTheMotorsAreOffAreTold) {
   EXPECT_THAT(robot.told(), Contains(HasSubstr("its motors are off, but its wheels turn")));
 }
 
+/// The second Ctrl-C, while the end waits for a base that does not obey.
+TEST(EmulatedDriveEnds, WhoInsistsLeavesAtOnceAlsoWhileTheBaseIsWaitedFor) {
+  EmulatedDrive robot;
+  std::atomic<bool> left{false};
+  std::atomic<int> asked{0};  // since the first one: fifty times a second, so the drive itself is over by then
+  robot.options.insisted = [&] { return robot.ending && ++asked > 20; };
+  robot.options.left = [&] { left = true; };
+  auto driven = robot.start();
+  ASSERT_TRUE(robot.drives());
+  robot.server.with([&] { robot.device.deaf = true; });
+  robot.ending = true;
+  driven.get();
+  EXPECT_TRUE(left);
+}
+
 TEST(EmulatedDriveEnds, ABaseThatWasNeverReachedIsNotAskedWhetherItStands) {
   EmulatedDrive robot;
   robot.device.mute = true;
