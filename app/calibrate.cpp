@@ -100,6 +100,7 @@ int calibrate(const CalibrateArguments& arguments) {
     in_force = file;
     Keyboard keyboard;
     scenarios::DriveOptions options = drive_options(keyboard, true);
+    options.notice = missing_keys(keyboard, "");
     options.out = arguments.folder;
     options.replace = arguments.force;
     const scenarios::RunReport report = scenarios::calibration_drive(file, arguments.drive, options);

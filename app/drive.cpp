@@ -57,6 +57,10 @@ int drive(const DriveArguments& arguments) {
   options.mode = arguments.teleop     ? scenarios::DriveMode::Teleoperate
                  : arguments.map_only ? scenarios::DriveMode::MapOnly
                                       : scenarios::DriveMode::Explore;
+  if (!arguments.map_only)
+    options.notice = missing_keys(keyboard, arguments.heartbeat.empty()
+                                                ? ", and --heartbeat FILE would when nobody touches FILE any more"
+                                                : ", and so does a heartbeat that ends");
   options.out = arguments.folder.out;
   options.replace = arguments.folder.force;
   options.keys = [&] { return keyboard.drive(kTeleopSpeed, kTeleopTurn); };

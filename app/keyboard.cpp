@@ -12,6 +12,7 @@ namespace {
 constexpr double kFirstHold = 0.6;  ///< a terminal repeats a held key after so long at the latest [s]
 constexpr double kHold = 0.2;       ///< and then more often than this [s]
 constexpr double kRearm = 0.5;      ///< R means something else for so long after it was last waited for [s]
+constexpr double kAlone = 0.1;      ///< the bytes of one key come closer together [s]
 constexpr int kEscape = 27;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -74,12 +75,18 @@ void Keyboard::take(int key) {
 }
 
 /// The key that ends with this byte: ESC [ A and ESC O A are arrows, with parameters (a shifted one) too; other
-/// sequences are a key like any other. Nothing: more is to come, perhaps in a later look.
+/// sequences are a key like any other. Nothing: more is to come, perhaps in a later look. What follows an ESC and is
+/// none of it is a key of its own: nobody who pressed ESC may find the next key dead.
 std::optional<int> Keyboard::decoded(int byte) {
+  const bool late = now() - byte_at_ > kAlone;
+  byte_at_ = now();
+  const bool arrow = byte >= 'A' && byte <= 'D';  // it may have been cut apart on its way
+  if (sequence_ == Sequence::Inside && late && !arrow) sequence_ = Sequence::None;
   switch (sequence_) {
     case Sequence::None:
       if (byte != kEscape) return byte;
       any_ = true;  // whatever comes of it, a key was pressed
+      alone_ = false;
       sequence_ = Sequence::Escape;
       return std::nullopt;
     case Sequence::Escape:
@@ -88,7 +95,8 @@ std::optional<int> Keyboard::decoded(int byte) {
         return std::nullopt;
       }
       if (byte != kEscape) sequence_ = Sequence::None;
-      return kEscape;
+      alone_ = false;
+      return byte;
     case Sequence::Inside:
       if (byte < '@') return std::nullopt;  // a parameter
       sequence_ = Sequence::None;
@@ -101,6 +109,9 @@ void Keyboard::look() {
   const std::lock_guard<std::mutex> lock(mutex_);
   while (const auto byte = next())
     if (const auto key = decoded(*byte)) take(std::tolower(*key));
+  if (sequence_ != Sequence::Escape || alone_ || now() - byte_at_ <= kAlone) return;
+  alone_ = true;
+  take(kEscape);
 }
 
 bool Keyboard::pressed() {

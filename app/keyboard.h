@@ -46,6 +46,8 @@ class Keyboard {
   double rearm_until_ = 0.0;  ///< R is waited for up to here
   bool active_ = false;
   enum class Sequence { None, Escape, Inside } sequence_ = Sequence::None;  ///< of a key that sends several bytes
+  bool alone_ = false;    ///< the ESC that came last was a key of its own
+  double byte_at_ = 0.0;  ///< when the last byte came [s]
   bool quit_ = false;
   termios before_{};
   double until_ = 0.0;  ///< a key counts as held up to here, by the monotonic clock [s]

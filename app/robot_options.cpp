@@ -1,5 +1,7 @@
 #include "app/robot_options.h"
 
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -95,6 +97,11 @@ scenarios::DriveOptions drive_options(Keyboard& keyboard, bool keys_stop) {
   options.incomplete = [](const std::string& folder) { print_row("folder", folder + " (not complete)"); };
   options.tell = [](const std::string& line) { std::fprintf(stderr, "rubble: %s\n", line.c_str()); };
   return options;
+}
+
+std::string missing_keys(const Keyboard& keyboard, const std::string& more) {
+  if (keyboard.active()) return "";
+  return "no terminal, so no key stops the robot; 'kill -USR1 " + std::to_string(::getpid()) + "' does" + more;
 }
 
 }  // namespace rubble::app

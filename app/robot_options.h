@@ -26,4 +26,8 @@ struct RobotOptions {
 /// terminal shows how it goes. `keyboard` must outlive the drive.
 scenarios::DriveOptions drive_options(Keyboard& keyboard, bool keys_stop);
 
+/// Where there is no terminal: one line that no key stops the robot, and what does; else empty. `more`: what does
+/// besides.
+std::string missing_keys(const Keyboard& keyboard, const std::string& more);
+
 }  // namespace rubble::app

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <string_view>
@@ -24,6 +25,7 @@ class LineBase : public BaseDriver {
     line_ = line;
     waiting_.clear();
     last_report_ = Stamp::never();
+    obeyed_ = false;  // who was switched off and on has its motors off
     said_ = now;
   }
   void receive(std::string_view bytes, Stamp now) override {
@@ -64,14 +66,20 @@ class LineBase : public BaseDriver {
     if (target_.v != old.v || target_.w != old.w) due_ = true;  // an answer to what was just seen leaves at once
   }
   void enable(bool on) override {
+    on = on && !settings_.passive && hold_ == Hold::None;
     if (on != motors_) due_ = true;
     motors_ = on;
-    if (!on) drive({});
+    if (on) return;
+    obeyed_ = false;
+    drive({});
   }
   void stop() override {
     enable(false);
     due_ = true;
   }
+  // Somebody at the robot switched its motors off: they stay off until the operator lets it go.
+  Hold hold() const override { return hold_; }
+  void rearm() override { hold_ = Hold::None; }
 
  private:
   static constexpr double kRefresh = 0.1;  ///< its own watchdog stops it after half a second of silence [s]
@@ -81,7 +89,8 @@ class LineBase : public BaseDriver {
     int motors = 0;
     const int read = std::sscanf(line.c_str(), "O %lf %lf %lf %lf %lf %d %lf", &o.pose.x, &o.pose.y, &o.pose.phi, &o.v,
                                  &o.w, &motors, &battery_);
-    if (read != 7) {
+    const double all = std::abs(o.pose.x) + std::abs(o.pose.y) + std::abs(o.pose.phi) + std::abs(o.v) + std::abs(o.w);
+    if (read != 7 || !(all < 1e6)) {  // nor is a line with "nan" in it a report
       ++bad_lines_;
       return;
     }
@@ -93,6 +102,11 @@ class LineBase : public BaseDriver {
     last_stamp_ = o.stamp;
     last_report_ = now;
     motors_on_ = motors != 0;
+    if (motors_ && obeyed_ && !motors_on_) {
+      hold_ = Hold::MotorsOff;
+      enable(false);
+    }
+    obeyed_ = motors_ && motors_on_;
     odometry_.push_back(o);
   }
 
@@ -101,6 +115,8 @@ class LineBase : public BaseDriver {
   std::string waiting_;
   Drive target_;
   bool motors_ = false, motors_on_ = false, due_ = false;
+  bool obeyed_ = false;  ///< its motors were on as they were asked for
+  Hold hold_ = Hold::None;
   double battery_ = 0.0;
   std::size_t bad_lines_ = 0;
   Stamp said_ = Stamp::never(), last_report_ = Stamp::never(), last_stamp_ = Stamp::never();

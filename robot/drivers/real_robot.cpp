@@ -16,6 +16,7 @@
 #include "robot/drivers/watch/answer_watch.h"
 #include "robot/drivers/watch/base_watch.h"
 #include "robot/drivers/watch/freshness.h"
+#include "robot/drivers/watch/scan_watch.h"
 #include "robot/drivers/watch/standstill.h"
 
 namespace rubble::robot {
@@ -52,6 +53,7 @@ std::string remedy(const std::vector<Hindrance>& all, bool starting) {
   if (std::any_of(all.begin(), all.end(), is_device))
     return starting ? "; check cables, power and ports" : "; it did not come back; plug it in and run again";
   if (any(Cause::Held)) return "; nobody has let it go";
+  if (any(Cause::Faulty)) return "; see to it and run again";
   return any(Cause::Silent) ? "; nobody has touched it" : "; use a faster one";
 }
 
@@ -91,6 +93,7 @@ struct RealRobot::Impl {
   std::function<bool(const RobotStatus&)> ask;
 
   mutable Freshness freshness;  ///< of scans
+  ScanWatch scan_watch;         ///< of what they show
   mutable AnswerWatch base_answers;
   mutable AnswerWatch unit_answers;
   std::atomic<bool> emergency{false};
@@ -250,6 +253,7 @@ struct RealRobot::Impl {
     std::vector<Odometry> reports = base->take_odometry();
     turn.jumps = base->jumps();
     if (base_watch.look(turn, reports, now)) base->emergency_stop();
+    scan_watch.look(reports);
     append(waiting_odometry, std::move(reports));
   }
 
@@ -271,8 +275,10 @@ struct RealRobot::Impl {
   bool is_lidar_well(const ScannerStatus& scanner, Stamp now) const {
     if (is_lidar_silent(scanner, now)) return false;  // its own trouble, and over with the next scan
     freshness.look(age(scanner, now), settings.safety.lidar_age, now);
-    return !freshness.stale();
+    return !freshness.stale() && (is_only_mapping() || scan_watch.is_well());
   }
+  /// Somebody else drives, by other means: what the scanner does not see holds nobody.
+  bool is_only_mapping() const { return settings.base.passive; }
   bool is_base_reporting(bool ready, Stamp last, Stamp now) const {
     return ready && last != Stamp::never() && now - last <= settings.safety.base_silence;
   }
@@ -313,6 +319,8 @@ struct RealRobot::Impl {
     if (!is_lidar_well(scanner, now)) {
       if (is_lidar_silent(scanner, now)) {
         all.push_back(silent_lidar(scanner, underway, now));
+      } else if (!freshness.stale()) {
+        all.push_back({"urg", Cause::Faulty, scan_watch.trouble()});
       } else {
         char text[80];
         std::snprintf(text, sizeof text, "its scans are %.1f s old; the line or this computer is too slow",
@@ -376,6 +384,7 @@ struct RealRobot::Impl {
   RobotStatus status(Stamp now) const {
     RobotStatus s;
     s.silent = silent(now);
+    if (is_only_mapping() && !scan_watch.is_well()) s.troubles.push_back({"urg", Cause::Faulty, scan_watch.trouble()});
     s.emergency = emergency;
     s.held = is_held();
     s.blind = is_blind();
@@ -423,13 +432,17 @@ struct RealRobot::Impl {
     scan_arrived = arrived == Stamp::never() ? now : arrived;
     scans += fresh.size();
     show_to_watch(fresh, now);
+    if (!scan_watch.is_well()) return;  // a map of what a covered scanner takes for free is none
     append(waiting_scans, std::move(fresh));
     if (waiting_scans.size() > kMostScansKept) thin_waiting_scans();
   }
 
   void show_to_watch(const std::vector<LaserScan>& fresh, Stamp now) {
     const std::lock_guard<std::mutex> lock(mutex);
-    for (const LaserScan& scan : fresh) base_watch.see(scan, now);
+    for (const LaserScan& scan : fresh) {
+      scan_watch.see(scan, now);
+      base_watch.see(scan, now);
+    }
   }
 
   /// The robot is held for long: every second of the older scans goes. How it was moved while it came to rest, when

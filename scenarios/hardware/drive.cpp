@@ -449,7 +449,11 @@ class Completeness {
 void tell_what_goes_on(const robot::RealRobot& robot, const DriveOptions& options) {
   const auto given_up = Clock::now() + std::chrono::duration<double>(kConfirmed);
   robot::RobotStatus status = robot.status();
-  if (!status.begun) return;  // nobody here has driven it
+  if (!status.begun) {  // nobody here has driven it
+    if (options.tell && status.moves)
+      options.tell("base: moves though nobody here has driven it, and may go on; see who drives it");
+    return;
+  }
   const auto stands = [](const robot::RobotStatus& s) { return s.reported && !s.motors_on && !s.moves; };
   for (; Clock::now() < given_up && !stands(status); status = robot.status())
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -470,7 +474,12 @@ class StoppedAtLast {
   ~StoppedAtLast() {
     if (options_.mode == DriveMode::MapOnly) return;
     robot_.stop();
+    const auto wish = [this] {
+      return options_.insisted && options_.insisted() ? robot::OperatorWish::Leave : robot::OperatorWish::Stop;
+    };
+    robot_.listen(wish, options_.left);  // who is in a hurry need not wait for the base
     tell_what_goes_on(robot_, options_);
+    robot_.listen({});
   }
   StoppedAtLast(const StoppedAtLast&) = delete;
   StoppedAtLast& operator=(const StoppedAtLast&) = delete;
@@ -510,6 +519,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     if (!port.empty()) claims.emplace_back(port);
   RunFolder folder(options.out.empty() ? next_run_folder("runs", file.settings.name, file.settings.seed) : options.out,
                    options.replace);
+  if (options.tell && !options.notice.empty()) options.tell(options.notice);
   const Completeness completeness(options, folder);
   folder.write("scenario.yaml", resolved_yaml(file.settings));
   folder.write("robot.yaml", robot_file_yaml(file));

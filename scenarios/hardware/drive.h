@@ -32,6 +32,7 @@ struct DriveOptions {
   DriveMode mode = DriveMode::Explore;
   std::string out;
   bool replace = false;
+  std::string notice;  ///< told once, as soon as the ports are ours; empty: nothing
   /// These four are asked in a thread of their own (see RealRobot::listen) about fifty times a second.
   std::function<bool()> interrupted;   ///< true stops the robot and ends the run
   std::function<bool()> emergency;     ///< true stops hard and ends the run

@@ -57,8 +57,10 @@ grep -q "^rubble: base: .*nobody answers (Connection refused)" err.txt ||
   fail "why a device is missing is not told before the end: $(cat err.txt)"
 expect_exit 3 "nonsense.yaml" "$rubble" drive nonsense.yaml
 # A time that is all needed for the way home is legal, and said.
-"$rubble" drive "$robot" --urg pty:no1 --base pty:no2 --levelling pty:no3 --set safety.start_s=1 --time-limit 12 --out hasty >out.txt 2>err.txt
+"$rubble" drive "$robot" --urg pty:no1 --base pty:no2 --levelling pty:no3 --set safety.start_s=1 --time-limit 12 --out hasty >out.txt 2>err.txt </dev/null
 [[ $? == 4 ]] && grep -qF "all of the 12 s are kept for the way home" err.txt || fail "too short a time is not said: $(cat err.txt)"
+[[ $(grep -c "no terminal, so no key stops the robot; 'kill -USR1 [0-9]*' does, and --heartbeat" err.txt) == 1 ]] ||
+  fail "that no key stops it is not said: $(cat err.txt)"
 
 # Nobody there: exit 4, and the device is named.
 "$rubble" drive "$robot" --urg pty:no1 --base pty:no2 --levelling pty:no3 --set safety.start_s=1 --out nobody \

@@ -176,8 +176,13 @@ try:
     check_stop("teleoperation: the other kind of arrow", time.time())
     turned = (truth()[-1][3] - before + math.pi) % (2 * math.pi) - math.pi
     check(turned < -0.3, "teleoperation: arrow right turned it right by %.0f deg" % -math.degrees(turned))
+    drive.hold("w", 1.5)
+    drive.press("\x1b")
+    check_stop("teleoperation: W held, then ESC", time.time())
+    # However long after an ESC, the next key is one of its own.
     drive.press("q")
-    check(drive.wait() == 130, "teleoperation: Q ends the drive with 130")
+    check(drive.wait() == 130, "teleoperation: Q ends the drive with 130, also after ESC")
+    check("no terminal" not in drive.text, "teleoperation: there is a terminal")
     check(os.path.getsize("teleop/score.json") > 0, "teleoperation: its folder is complete")
 
     # Any key is the emergency stop.

@@ -30,7 +30,7 @@ class LineDevice : public EmulatedDevice {
         continue;
       }
       int on = 0;
-      if (std::sscanf(line_.c_str(), "M %d", &on) == 1) motors = on != 0;
+      if (std::sscanf(line_.c_str(), "M %d", &on) == 1) motors = on != 0 && !button;
       std::sscanf(line_.c_str(), "V %lf %lf", &v, &w);
       line_.clear();
     }
@@ -38,6 +38,7 @@ class LineDevice : public EmulatedDevice {
   void advance(Stamp now) override {
     if (next_ == Stamp::never()) next_ = now;
     for (; now >= next_; next_ = next_ + 0.05) {
+      if (button) motors = false;
       if (!motors) v = w = 0.0;
       phi_ += 0.05 * w;
       x_ += 0.05 * v * std::cos(phi_);
@@ -51,6 +52,7 @@ class LineDevice : public EmulatedDevice {
 
   double v = 0.0, w = 0.0;
   bool motors = false;
+  bool button = false;  ///< pressed: its motors are off whatever it is told
 
  private:
   std::string line_, output_;
@@ -137,6 +139,53 @@ TEST(OwnBase, DrivesWithinItsLimitsStopsWithTheScannerAndIsLeftAtRest) {
   bool motors = true;
   server.with([&] { motors = device.motors; });
   EXPECT_FALSE(motors);
+}
+
+TEST(OwnBase, OneThatWasStoppedAtTheRobotWaitsForTheOperator) {
+  LineDevice device;
+  DeviceServer server("tcp:127.0.0.1:0", device, 1);
+  TickingScanner scanner;
+  RealRobotSettings settings;
+  settings.own_base = [](const BaseSettings& base) { return std::make_unique<LineBase>(base); };
+  settings.base_port = server.port();
+  settings.model.has_levelling_unit = false;
+  RealRobot robot(settings, scanner, nullptr);
+  const auto motors = [&] {
+    bool on = false;
+    server.with([&] { on = device.motors; });
+    return on;
+  };
+  const auto drives_until = [&](const auto& law, double most) {
+    const Stamp end = host_now() + most;
+    const auto wanted = [&] {
+      robot.command({{0.2, 0.0}, {}});
+      return !law() && host_now() < end;
+    };
+    robot.while_waiting([&](const RobotStatus&) { return wanted(); });
+    while (wanted()) robot.read();
+    return law();
+  };
+  ASSERT_TRUE(drives_until(motors, 20.0));
+  ASSERT_TRUE(drives_until([&] { return robot.status().motors_on; }, 20.0));
+  server.with([&] { device.button = true; });
+  ASSERT_TRUE(drives_until([&] { return robot.status().held; }, 20.0));
+  server.with([&] { device.button = false; });
+  EXPECT_FALSE(drives_until(motors, 3.0)) << "it drives off when the button is let go";
+  EXPECT_TRUE(robot.rearm());
+  EXPECT_TRUE(drives_until(motors, 20.0));
+}
+
+TEST(OwnBase, WhatIsNoNumberIsNoReport) {
+  for (const char* line :
+       {"O nan 0 0 0 0 1 12\n", "O 0 inf 0 0 0 1 12\n", "O 1e308 0 0 0 0 1 12\n", "O 0 0 0 0 -inf 1 12\n"}) {
+    SCOPED_TRACE(line);
+    LineBase base{BaseSettings{}};
+    base.opened(Stamp::from_seconds(1.0), LineKind::Tcp);
+    base.receive(line, Stamp::from_seconds(2.0));
+    EXPECT_FALSE(base.ready());
+    EXPECT_EQ(base.bad_sums(), 1u);
+    EXPECT_TRUE(base.take_odometry().empty());
+  }
 }
 
 TEST(OwnBase, ANameThatNobodyHasIsRefusedInOneLine) {

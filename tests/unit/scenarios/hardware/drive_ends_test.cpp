@@ -201,6 +201,21 @@ TEST(EmulatedDriveEnds, WheelsThatTurnThoughTheMotorsAreOffAreTold) {
   EXPECT_THAT(robot.told(), Contains(HasSubstr("its motors are off, but its wheels turn")));
 }
 
+/// The second Ctrl-C, while the end waits for a base that does not obey.
+TEST(EmulatedDriveEnds, WhoInsistsLeavesAtOnceAlsoWhileTheBaseIsWaitedFor) {
+  EmulatedDrive robot;
+  std::atomic<bool> left{false};
+  std::atomic<int> asked{0};  // since the first one: fifty times a second, so the drive itself is over by then
+  robot.options.insisted = [&] { return robot.ending && ++asked > 20; };
+  robot.options.left = [&] { left = true; };
+  auto driven = robot.start();
+  ASSERT_TRUE(robot.drives());
+  robot.server.with([&] { robot.device.deaf = true; });
+  robot.ending = true;
+  driven.get();
+  EXPECT_TRUE(left);
+}
+
 TEST(EmulatedDriveEnds, ABaseThatWasNeverReachedIsNotAskedWhetherItStands) {
   EmulatedDrive robot;
   robot.device.mute = true;
@@ -236,6 +251,16 @@ TEST(EmulatedDriveThatNeverBegins, ABaseThatMovesIsNamedAtOnceAndTheEndDoesNotSe
   EXPECT_NE(robot.told_at("moves though nobody here drives it"), Stamp::never());
   EXPECT_THAT(report.failure, HasSubstr("see who moves it"));
   EXPECT_THAT(report.failure, Not(HasSubstr("cables")));
+}
+
+TEST(EmulatedDriveThatNeverBegins, ABaseThatMovesWhenTheOperatorEndsItIsToldToGoOn) {
+  EmulatedDrive robot(false);
+  robot.driven_by_others = 0.25;
+  auto driven = robot.start();
+  ASSERT_TRUE(robot.comes_true([&] { return count(robot.told(), "moves though nobody here drives it") > 0; }));
+  robot.ending = true;
+  driven.get();
+  EXPECT_THAT(robot.told().back(), HasSubstr("base: moves though nobody here has driven it, and may go on"));
 }
 
 TEST(EmulatedDriveThatIsHeld, EachReasonIsToldOnceAndTheStateIsHeldToTheEnd) {
