@@ -42,10 +42,11 @@ constexpr double kPatience = 2.0;                       ///< then its motors may
 constexpr double kCornerRoom = 0.08;                    ///< beside corners that turn [m]
 constexpr double kLittleRoom = 0.01;                    ///< [m]
 constexpr double kPaper = 0.5;                          ///< what stands alone and is not wider may be paper [m]
-constexpr double kHeap = 1.1;    ///< several balls side by side; a panel of wall is 1.2 m wide [m]
-constexpr int kSmoothFloor = 3;  ///< things felt so far where the robot may be fast
-constexpr int kForgets = 4;      ///< times that all that was felt is forgotten for the sake of new ground
-constexpr int kHomeTries = 6;    ///< times that all that was felt is forgotten on the way home
+constexpr double kHeap = 1.1;                ///< several balls side by side; a panel of wall is 1.2 m wide [m]
+constexpr int kSmoothFloor = 3;              ///< things felt so far where the robot may be fast
+constexpr std::size_t kWorthForgetting = 3;  ///< frontiers
+constexpr int kForgets = 4;                  ///< times that all that was felt is forgotten for the sake of new ground
+constexpr int kHomeTries = 6;                ///< times that all that was felt is forgotten on the way home
 
 std::string text(const TPoint2D& p) {
   std::array<char, 40> line{};
@@ -290,6 +291,9 @@ Plan PaperExplorer::plan_on(const Traversable& floor) {
       note("no niche is left: what could not be reached is tried again before the rest is searched");
       return to_frontier(std::nullopt);
     }
+    // The search takes all the time that is left in a large arena: one try comes before it.
+    if (frontier.frontier_left >= kWorthForgetting && forgets_ == 0 && forget_what_was_felt())
+      return to_frontier(std::nullopt);
     search = plan_search(floor, Subjects::All);
   }
   if (!frontiers_done_) {
