@@ -330,7 +330,7 @@ struct RealRobot::Impl {
     }
     if (underway && !standstill.is_over(now, time_asleep())) {
       char text[80];
-      std::snprintf(text, sizeof text, "stood still for %.1f s", standstill.seconds());
+      std::snprintf(text, sizeof text, "stood still for %.1f s", standstill.seconds(now, time_asleep()));
       all.push_back({"this computer", Cause::Late, text});
     }
     if (base_thread) add_silent_base(all, underway, now);
@@ -538,7 +538,7 @@ struct RealRobot::Impl {
       }
       if (emergency) return false;
       if (first != Stamp::never() && !standstill.is_over(now, time_asleep()) &&
-          standstill.seconds() > settings.safety.give_up)
+          standstill.seconds(now, time_asleep()) > settings.safety.give_up)
         throw DeviceLost(joined(lines_of(hindrances)) + "; see that the robot stands, and start again");
       if (held_since == Stamp::never()) {
         held_since = now;

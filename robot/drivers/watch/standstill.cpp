@@ -20,4 +20,9 @@ bool Standstill::is_over(Stamp now, double asleep) const {
   return now - Stamp{looked_ns_.load()} + asleep - asleep_ <= kBusy && now >= Stamp{until_ns_.load()};
 }
 
+double Standstill::seconds(Stamp now, double asleep) const {
+  const double gone = now - Stamp{looked_ns_.load()} + asleep - asleep_;
+  return gone > kBusy ? gone : seconds_.load();
+}
+
 }  // namespace rubble::robot

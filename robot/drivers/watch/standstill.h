@@ -22,6 +22,8 @@ class Standstill {
   bool is_over(Stamp now, double asleep) const;
   /// How long it stood still last [s].
   double seconds() const { return seconds_; }
+  /// The same at `now`, also where look() is still to come.
+  double seconds(Stamp now, double asleep) const;
 
  private:
   std::atomic<std::int64_t> looked_ns_;

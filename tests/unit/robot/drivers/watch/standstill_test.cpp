@@ -51,5 +51,15 @@ TEST(Standstill, ASuspendedComputerStoodStillThoughItsClockDidNotGoOn) {
   EXPECT_NEAR(standstill.seconds(), 30.02, 1e-6);
 }
 
+/// Other threads may ask before look() does.
+TEST(Standstill, HowLongIsKnownBeforeItIsLookedAt) {
+  const Stamp start = Stamp::from_seconds(100.0);
+  Standstill standstill(start, 0.0);
+  EXPECT_FALSE(standstill.is_over(start + 0.02, 5.0));
+  EXPECT_NEAR(standstill.seconds(start + 0.02, 5.0), 5.02, 1e-6);
+  EXPECT_TRUE(standstill.look(start + 0.02, 5.0));
+  EXPECT_NEAR(standstill.seconds(start + 0.04, 5.0), 5.02, 1e-6);
+}
+
 }  // namespace
 }  // namespace rubble::robot
