@@ -48,6 +48,12 @@ class ListenedTo : public robot::EmulatedDevice {
   bool deaf = false, mute = false;
 };
 
+/// A port that nobody listens at, and no other test drives with: two programs may not use one device.
+std::string left_port() {
+  ListenedTo nobody;
+  return robot::DeviceServer("tcp:127.0.0.1:0", nobody, 1).port();
+}
+
 /// Scanner and base of a robot in a flat room, which is driven by hand; it has no levelling unit. The scanner stands
 /// still whatever the wheels do.
 class EmulatedDrive {
@@ -149,7 +155,7 @@ class EmulatedDrive {
   }
 
   test::TempFolder folder_;
-  std::string urg_ = "tcp:127.0.0.1:9";  // nobody is there
+  std::string urg_ = left_port();  // nobody is there
   const Stamp latest_ = robot::host_now() + 90.0;
   std::atomic<bool> closing_{false};
   mutable std::mutex mutex_;
@@ -257,7 +263,8 @@ TEST(EmulatedDriveThatNeverBegins, ABaseThatMovesWhenTheOperatorEndsItIsToldToGo
   EmulatedDrive robot(false);
   robot.driven_by_others = 0.25;
   auto driven = robot.start();
-  ASSERT_TRUE(robot.comes_true([&] { return count(robot.told(), "moves though nobody here drives it") > 0; }));
+  ASSERT_TRUE(robot.comes_true([&] { return count(robot.told(), "moves though nobody here drives it") > 0; }))
+      << testing::PrintToString(robot.told());
   robot.ending = true;
   driven.get();
   EXPECT_THAT(robot.told().back(), HasSubstr("base: moves though nobody here has driven it, and may go on"));
