@@ -9,7 +9,7 @@ namespace rubble::explore {
 /// Whether the pose has become doubtful where the robot is. A covariance counts from the map's origin, and far from it
 /// a map that is right to centimetres may stand half a metre off as a whole: what is anchored to the robot's poses does
 /// not mind. So the pose is held against an earlier one, moved to the place of today as if the way between had no
-/// error; what it has lost against that is doubt, but for the little that every way costs.
+/// error; what it has lost against that is doubt, but for a little that is forgiven each second.
 class PoseDoubt {
  public:
   /// The pose after a tick of `dt` [s], and its covariance in the map frame; zero (not estimated) is never doubtful.

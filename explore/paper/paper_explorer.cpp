@@ -490,8 +490,8 @@ bool PaperExplorer::another_round() {
   return true;
 }
 
-/// What was felt may bar the only way to half of the arena, and be wrong: as long as there is ground to be seen behind
-/// it and time, even what was felt for certain is tried anew.
+/// What was felt may bar the only way to half of the arena, and be wrong: where there is ground to be seen behind it,
+/// even what was felt for certain is tried anew, a few times in a mission.
 bool PaperExplorer::forget_what_was_felt() {
   if (frontier_left_ == 0 || forgets_ >= kForgets || !felt_.forget(now_)) return false;
   ++forgets_;
