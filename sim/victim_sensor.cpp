@@ -25,7 +25,20 @@ bool gives(const arenas::Victim& victim, robot::CueKind kind) {
   return false;
 }
 
+bool is_free(const Eigen::Vector3d& eye, const Eigen::Vector3d& to, const RayWalk& walk) {
+  const double distance = to.norm();
+  return walk.cast({eye, to / distance}, distance) >= distance - kReached;
+}
+
 }  // namespace
+
+bool in_view(const arenas::Victim& victim, const CueSense& sense, const Eigen::Vector3d& eye, const RayWalk& walk) {
+  const Eigen::Vector3d to = Eigen::Vector3d(victim.position.x, victim.position.y, victim.position.z) - eye;
+  const double distance = std::hypot(to.x(), to.y());
+  if (distance > sense.range || distance < 1e-6) return false;
+  if (std::abs(wrap_angle(std::atan2(-to.y(), -to.x()) - victim.facing)) > sense.open_side) return false;
+  return distance <= sense.muffled_range || is_free(eye, to, walk);
+}
 
 VictimSensor::VictimSensor(const std::vector<arenas::Victim>& victims, const VictimSensorParameters& parameters,
                            std::uint64_t seed)
@@ -35,25 +48,13 @@ VictimSensor::VictimSensor(const std::vector<arenas::Victim>& victims, const Vic
       sound_(seed, "victim_sound"),
       co2_(seed, "victim_co2") {}
 
-bool VictimSensor::is_free(const arenas::Victim& victim, const WorldState& state) const {
-  const Placement base = base_placement(state);
-  Ray ray;
-  ray.origin = base.p + base.R * Eigen::Vector3d(0.0, 0.0, parameters_.height);
-  const Eigen::Vector3d to = Eigen::Vector3d(victim.position.x, victim.position.y, victim.position.z) - ray.origin;
-  ray.direction = to.normalized();
-  const double reached = to.norm() - kReached;
-  return walk_->cast(ray, to.norm()) >= reached && (others_ == nullptr || others_->cast(ray, to.norm()) >= reached);
-}
-
 bool VictimSensor::senses(const CueSense& sense, const arenas::Victim& victim, const WorldState& state) const {
-  const double dx = victim.position.x - state.pose.x;
-  const double dy = victim.position.y - state.pose.y;
-  const double distance = std::hypot(dx, dy);
-  if (distance > sense.range || distance < 1e-6) return false;
-  const double bearing = wrap_angle(std::atan2(dy, dx) - state.pose.phi);
+  const double bearing =
+      wrap_angle(std::atan2(victim.position.y - state.pose.y, victim.position.x - state.pose.x) - state.pose.phi);
   if (std::abs(bearing) > 0.5 * sense.field_of_view) return false;
-  if (std::abs(wrap_angle(std::atan2(-dy, -dx) - victim.facing)) > sense.open_side) return false;
-  return distance <= sense.muffled_range || is_free(victim, state);
+  const Placement base = base_placement(state);
+  const Eigen::Vector3d eye = base.p + base.R * Eigen::Vector3d(0.0, 0.0, parameters_.height);
+  return in_view(victim, sense, eye, *walk_) && (others_ == nullptr || in_view(victim, sense, eye, *others_));
 }
 
 void VictimSensor::look(const CueSense& sense, const WorldState& state, Rng& rng,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
@@ -38,6 +39,10 @@ struct VictimSensorParameters {
   CueSense co2{robot::CueKind::Co2, false, kPi, 0.9, 0.0, deg_to_rad(75.0), deg_to_rad(30.0), 0.3, 0.2, 0.002, 0.5};
 };
 
+/// Whether the sense can find the victim from `eye`: in its range, on the open side of the box and on a line that no
+/// face of `walk` cuts, or so near that walls do not matter. Where the sensor is turned to is left out.
+bool in_view(const arenas::Victim& victim, const CueSense& sense, const Eigen::Vector3d& eye, const RayWalk& walk);
+
 /// Reports what the senses take for victims. Lines of sight are checked against the arena's faces.
 class VictimSensor {
  public:
@@ -51,7 +56,6 @@ class VictimSensor {
 
  private:
   bool senses(const CueSense& sense, const arenas::Victim& victim, const WorldState& state) const;
-  bool is_free(const arenas::Victim& victim, const WorldState& state) const;
   void look(const CueSense& sense, const WorldState& state, Rng& rng, std::vector<robot::VictimCue>& cues) const;
 
   std::vector<arenas::Victim> victims_;

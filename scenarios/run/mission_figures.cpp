@@ -11,6 +11,8 @@
 #include "arenas/truth/visible.h"
 #include "base/angle.h"
 #include "base/planar.h"
+#include "sim/laser/ray_walk.h"
+#include "sim/victim_sensor.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -18,13 +20,11 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kContact = 0.012;              ///< nearer, the body touches [m]
-constexpr double kFar = 0.5;                    ///< clearances are not told apart beyond [m]
-constexpr double kCameraRange = 2.0;            ///< of the cameras with a free line of sight [m]
-constexpr double kOpenSide = deg_to_rad(75.0);  ///< from within so much of a box's facing it can be looked into [rad]
-constexpr double kAboveLaser = 0.05;            ///< the body ends so much above the laser [m]
-constexpr double kBucket = 1.2;                 ///< [m]
-constexpr double kPeriod = 0.1;                 ///< the truth is looked at this often [s]
+constexpr double kContact = 0.012;    ///< nearer, the body touches [m]
+constexpr double kFar = 0.5;          ///< clearances are not told apart beyond [m]
+constexpr double kAboveLaser = 0.05;  ///< the body ends so much above the laser [m]
+constexpr double kBucket = 1.2;       ///< [m]
+constexpr double kPeriod = 0.1;       ///< the truth is looked at this often [s]
 
 /// An upright piece of something the body cannot pass.
 struct Edge {
@@ -133,18 +133,6 @@ double clearance(const arenas::Arena& arena, const Edges& edges, const robot::Ro
   return nearest;
 }
 
-/// Whether nothing stands between two places; the last stretch, the victim's own box, is not asked about.
-bool in_sight(const OccupancyGrid& truth, const TPoint2D& from, const TPoint2D& victim) {
-  constexpr double kOwnBox = 0.35;  ///< [m]
-  const double way = distance(from, victim);
-  const double step = 0.5 * truth.frame().resolution;
-  for (double at = 0.0; at < way - kOwnBox; at += step) {
-    const Cell c = truth.cell(from + (victim - from) * (at / way));
-    if (truth.inside(c) && truth[c] == Occupancy::Occupied) return false;
-  }
-  return true;
-}
-
 const char* code_of(explore::MissionEnd end) {
   switch (end) {
     case explore::MissionEnd::UnderWay:
@@ -203,17 +191,19 @@ arenas::Viewer viewer_of(const robot::RobotModel& model) {
 int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model) {
   const OccupancyGrid truth = arenas::truth_map(arena);
   const Grid<std::uint8_t> reachable = arenas::reachable_mask(arena, truth, viewer_of(model));
+  const arenas::PatchIndex floor(arena);
+  const sim::RayWalk walk(arenas::faces(arena));
+  const sim::VictimSensorParameters sensors;
+  const double reach = sensors.appearance.range;
   const auto seen_from = [&](const arenas::Victim& victim) {
-    const TPoint2D at{victim.position.x, victim.position.y};
-    const Cell low = truth.cell({at.x - kCameraRange, at.y - kCameraRange});
-    const Cell high = truth.cell({at.x + kCameraRange, at.y + kCameraRange});
+    const Cell low = truth.cell({victim.position.x - reach, victim.position.y - reach});
+    const Cell high = truth.cell({victim.position.x + reach, victim.position.y + reach});
     for (int y = low.y; y <= high.y; ++y)
       for (int x = low.x; x <= high.x; ++x) {
         if (!reachable.inside({x, y}) || reachable[{x, y}] == 0) continue;
         const TPoint2D p = truth.centre({x, y});
-        if (distance(p, at) > kCameraRange) continue;
-        if (std::abs(wrap_angle(std::atan2(p.y - at.y, p.x - at.x) - victim.facing)) > kOpenSide) continue;
-        if (in_sight(truth, p, at)) return true;
+        const Eigen::Vector3d eye(p.x, p.y, floor.floor_height(p) + sensors.height);
+        if (sim::in_view(victim, sensors.appearance, eye, walk)) return true;
       }
     return false;
   };

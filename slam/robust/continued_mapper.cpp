@@ -43,7 +43,7 @@ SavedMap loaded(const MapBase& base, const robot::RobotModel& model) {
 
 StampedMap stamped(const SavedMap& saved, const robot::RobotModel& model, const RobustConfig& config) {
   StampedMap map(CountMap(config.map_cells, config.map_cells, config.resolution, config.max_map_cells),
-                 model.T_base_laser, config.scan);
+                 model.T_base_laser, stamping(config));
   for (const SavedScan& scan : saved.scans) map.add(saved.frames, scan.frame, scan.T_frame_base, scan.scan, nullptr);
   map.lay_raster(saved.frames);
   return map;

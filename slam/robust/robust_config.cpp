@@ -23,12 +23,18 @@ RobustConfig suited_to(const robot::LaserModel& laser, RobustConfig config) {
   return config;
 }
 
+LevelScanConfig stamping(const RobustConfig& config) {
+  LevelScanConfig scan = config.scan;
+  scan.carve_misses = config.misses != MissTrust::None;
+  return scan;
+}
+
 void bind(Binder& b, RobustConfig& c) {
   b.integer("map_cells", c.map_cells, 16, 8000);
   b.number("resolution_m", c.resolution, 0.01, 0.5);
   b.integer("max_map_cells", c.max_map_cells, 16, 20000);
   b.number("max_range_m", c.scan.max_range, 0.0, 1000.0);
-  b.boolean("carve_misses", c.scan.carve_misses);
+  bind_misses(b, c.misses);
   b.number("floor_margin_m", c.scan.floor_margin, 0.0, 1.0);
   b.boolean("use_tilt", c.use_tilt);
   b.number("map_distance_m", c.map_distance, 0.0, 2.0);

@@ -107,7 +107,7 @@ struct RobustMapper::Impl {
         tracker_(config.tracker),
         closer_(config.loop, config.tracker.cell, frames_),
         map_(CountMap(config.map_cells, config.map_cells, config.resolution, config.max_map_cells), model.T_base_laser,
-             config.scan) {}
+             stamping(config)) {}
 
   void receive(const robot::Inputs& inputs);
   bool ready(Stamp now) const;
@@ -581,7 +581,7 @@ void RobustMapper::Impl::put_into_map(const LaserScan& scan, const std::optional
       length(moved.x, moved.y) >= config_.map_distance || std::abs(wrap_angle(moved.phi)) >= config_.map_turn;
   if (!gate && counts_.mapped >= static_cast<std::uint64_t>(config_.first_scans)) return;
   Work used = 0;
-  map_.add(frames_, here_, T_frame_base_, packed(scan, sweep, tilt), &used);
+  map_.add(frames_, here_, T_frame_base_, packed(with_trusted_misses(scan, config_.misses), sweep, tilt), &used);
   budget -= used;
   T_map_stamped_ = now();
   ++counts_.mapped;

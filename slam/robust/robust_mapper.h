@@ -13,6 +13,7 @@
 #include "slam/robust/map/stamped_map.h"
 #include "slam/robust/matching/cloud.h"
 #include "slam/scan/level_scan.h"
+#include "slam/scan/sure_misses.h"
 #include "slam/scan/tilt_track.h"
 
 namespace rubble::slam {
@@ -38,6 +39,7 @@ struct RobustConfig {
   bool thin_walls = true;              ///< walls that fill two cells of the final map lose the one hit less often
   bool loops = true;                   ///< close loops
   double budget_ms = 8.0;  ///< work put off to later scans beyond this; in work, not time: a unit is about 1 ns
+  MissTrust misses = MissTrust::Sure;  ///< beams without an echo that free cells of the map; matching knows none
   LevelScanConfig scan;
   CloudConfig cloud;
   TiltConfig tilt;
@@ -50,6 +52,9 @@ void bind(Binder& binder, RobustConfig& config);
 /// The parameters left at 0, by how far the scanner sees: what is seen from afar is seen thinly, and stays in sight
 /// longer.
 RobustConfig suited_to(const robot::LaserModel& laser, RobustConfig config);
+
+/// How scans enter the map: as they are matched, and with misses.
+LevelScanConfig stamping(const RobustConfig& config);
 
 constexpr std::size_t kInliersColumn = 0;        ///< of the mapper's ScanRecords
 constexpr std::size_t kContradictionColumn = 1;  ///< zero but for a robot that is followed on a map of an earlier run

@@ -122,9 +122,10 @@ ScanPoints LevelScan::points(const robot::LaserScan& scan, const SweepMotion* mo
     if (std::isnan(range) || range < scan.range_min || range <= 0.0) continue;
     const bool hit = range <= cap;
     if (!hit && !carve) continue;
-    const double length = hit ? range : std::max(0.0, cap - config_.miss_margin);
+    double length = hit ? range : std::max(0.0, cap - config_.miss_margin);
     Direction d = directions_[beam];
     if (tilt != nullptr) {
+      if (!hit) length = std::min(length, config_.miss_climb / std::abs(plane.climb(d.x, d.y)));
       if (laser_height_ + length * plane.climb(d.x, d.y) < config_.floor_margin) continue;  // the floor
       d = {plane.x(d.x, d.y), plane.y(d.y)};
     }

@@ -14,6 +14,7 @@ struct LevelScanConfig {
   bool carve_misses = false;  ///< beams without a return free cells up to `miss_margin` before the range limit
   double max_range = 0.0;     ///< returns beyond are no hits [m]; 0: the scanner's own limit
   double miss_margin = 0.1;   ///< [m]
+  double miss_climb = 0.15;   ///< a miss says nothing of where its beam is higher or lower than the laser by more [m]
   double floor_margin = 0.0;  ///< of a tilted scan, returns lower than this above the floor are no hits [m]
 };
 

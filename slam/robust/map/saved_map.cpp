@@ -17,7 +17,7 @@ using mrpt::math::TPose2D;
 namespace {
 
 constexpr std::string_view kStem = "RUBBLE MAP ";
-constexpr std::string_view kMagic = "RUBBLE MAP 1\n";
+constexpr std::string_view kMagic = "RUBBLE MAP 2\n";
 constexpr std::size_t kHead = 24;  ///< behind the magic: lengths of the payload, plain and packed, and two sums
 constexpr std::uint64_t kMostPacking = 1040;  ///< deflate packs no tighter than 1032 to 1
 constexpr int kPacking = 6;                   ///< zlib's usual level
@@ -285,7 +285,7 @@ SavedMap decode_map(std::string_view bytes, const std::string& name) {
     const std::size_t line = bytes.substr(0, 40).find('\n');
     if (line != std::string_view::npos && bytes.substr(0, kStem.size()) == kStem)
       throw InputError(name + ": a map of version '" + std::string(bytes.substr(kStem.size(), line - kStem.size())) +
-                       "', but this program reads version 1; map the log again");
+                       "', but this program reads version 2; map the log again");
     throw InputError(name + ": is no map with a graph; give a map.rmap that 'rubble map' or 'rubble run' wrote");
   }
   bytes.remove_prefix(kMagic.size());

@@ -89,6 +89,19 @@ TEST(VisibleVictims, BehindAWallAreNone) {
   EXPECT_EQ(visible_victims(arena, {}), 0);
 }
 
+/// A box whose lid is open at the top alone: the plan shows a way in that no camera at 0.5 m has.
+TEST(VisibleVictims, BehindAWallThatIsOpenAboveTheCamerasAreNone) {
+  arenas::Arena arena = room();
+  arena.victims = {victim(4.9, 0.0, kPi)};
+  arena.victims.front().position.z = 0.3;
+  sim::test::add_wall(arena, 4.5, -2.0, 4.52, 2.0, 0.2);
+  EXPECT_EQ(visible_victims(arena, {}), 1) << "over a sill of 0.2 m";
+  sim::test::add_wall(arena, 4.5, -2.0, 4.52, 2.0, 0.8);
+  EXPECT_EQ(visible_victims(arena, {}), 0) << "over a sill of 0.8 m";
+  arena.victims.front().position.z = 0.9;
+  EXPECT_EQ(visible_victims(arena, {}), 1) << "raised above the sill";
+}
+
 /// Cameras reach 2 m: a victim that stands farther behind a trench than that is out of their reach.
 TEST(VisibleVictims, AcrossATrenchCountAsFarAsTheCamerasReach) {
   arenas::Arena arena = sim::test::flat_floor(-1.0, -1.0, 2.0, 1.0);

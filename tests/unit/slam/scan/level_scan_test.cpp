@@ -65,6 +65,21 @@ TEST(LevelScan, MissesFreeNothingUnlessAsked) {
   EXPECT_FALSE(points.rays[0].hit);
 }
 
+/// Nose up by 10 deg the beam ahead has risen by 0.15 m after 0.85 m; the one to the side stays level.
+TEST(LevelScan, AMissIsFollowedWhileItsBeamStaysLow) {
+  LevelScanConfig config;
+  config.carve_misses = true;
+  LevelScan level_scan(TPose3D(0.0, 0.0, 0.35, 0.0, 0.0, 0.0), config);
+  ScanTilt tilt;
+  tilt.pitch = deg_to_rad(10.0);
+  const ScanPoints points = level_scan.points(four_beams({kMiss, kMiss}), nullptr, &tilt);
+  ASSERT_EQ(points.passes.size(), 2u);
+  expect_near(points.passes[0], 0.0, -3.9);
+  const double along = config.miss_climb / std::tan(tilt.pitch);
+  expect_near(points.passes[1], along, 0.0);
+  EXPECT_NEAR(along, 0.85, 0.01);
+}
+
 TEST(LevelScan, RangeCapTurnsFarReturnsIntoNothing) {
   LevelScanConfig config;
   config.max_range = 2.0;
