@@ -4,9 +4,9 @@
 
 #include "explore/caution/attempts.h"
 #include "explore/caution/blacklist.h"
-#include "explore/caution/motion_watch.h"
 #include "explore/caution/passed_floor.h"
-#include "explore/caution/pose_doubt.h"
+#include "explore/search/pose_doubt.h"
+#include "explore/stuck/motion_watch.h"
 
 namespace rubble::explore {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "explore/caution/tilt_watch.h"
 #include "explore/paper/paper_explorer.h"
+#include "explore/stuck/tilt_watch.h"
 #include "slam/paper/paper_mapper.h"
 #include "tests/support/explore_world.h"
 

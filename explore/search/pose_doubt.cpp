@@ -1,4 +1,4 @@
-#include "explore/caution/pose_doubt.h"
+#include "explore/search/pose_doubt.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "explore/paper/path_watch.h"
+#include "explore/motion/path_watch.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "explore/caution/escape.h"
+#include "explore/stuck/escape.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "base/angle.h"
 #include "base/planar.h"
-#include "explore/caution/tilt_watch.h"
+#include "explore/stuck/tilt_watch.h"
 
 namespace rubble::explore {
 namespace {

@@ -1,4 +1,4 @@
-#include "explore/caution/tilt_watch.h"
+#include "explore/stuck/tilt_watch.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "explore/caution/way_back.h"
+#include "explore/stuck/way_back.h"
 
 #include <algorithm>
 #include <cmath>

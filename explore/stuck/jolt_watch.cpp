@@ -1,4 +1,4 @@
-#include "explore/caution/jolt_watch.h"
+#include "explore/stuck/jolt_watch.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "explore/caution/escape.h"
+#include "explore/stuck/escape.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "explore/paper/pivot.h"
+#include "explore/motion/pivot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "explore/paper/look_around.h"
+#include "explore/motion/look_around.h"
 
 #include <cmath>
 

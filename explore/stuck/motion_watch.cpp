@@ -1,4 +1,4 @@
-#include "explore/caution/motion_watch.h"
+#include "explore/stuck/motion_watch.h"
 
 #include <algorithm>
 #include <cmath>

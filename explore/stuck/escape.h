@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/stamp.h"
-#include "explore/caution/motion_watch.h"
-#include "explore/caution/way_back.h"
+#include "explore/stuck/motion_watch.h"
+#include "explore/stuck/way_back.h"
 #include "robot/commands.h"
 
 namespace rubble::explore {
