@@ -17,9 +17,8 @@ constexpr double kShareOfTurnAccel = 0.6;  ///< counted on for braking
 LookAround::LookAround(const robot::RobotModel& model, double turn_speed)
     : turn_speed_(turn_speed), turn_brake_(kShareOfTurnAccel * model.max_turn_accel) {}
 
-void LookAround::begin(double angle, bool to_the_end, Stamp now) {
+void LookAround::begin(double angle, Stamp now) {
   left_ = angle;
-  to_the_end_ = to_the_end;
   until_ = now + kTimeout;
 }
 

@@ -13,11 +13,10 @@ class LookAround {
  public:
   LookAround(const robot::RobotModel& model, double turn_speed);
 
-  /// Begins a turn by `angle` [rad]. `to_the_end`: a new target does not end it early.
-  void begin(double angle, bool to_the_end, Stamp now);
+  /// Begins a turn by `angle` [rad].
+  void begin(double angle, Stamp now);
   void end() { left_ = 0.0; }
   bool active() const { return left_ != 0.0; }
-  bool to_the_end() const { return to_the_end_; }
 
   /// The command for a robot that turned by `turned` [rad] since the last tick; nothing when the turn is done or takes
   /// too long.
@@ -27,7 +26,6 @@ class LookAround {
   double turn_speed_;  ///< [rad/s]
   double turn_brake_;  ///< [rad/s^2]
   double left_ = 0.0;  ///< [rad], signed; 0: none under way
-  bool to_the_end_ = false;
   Stamp until_ = Stamp::never();
 };
 

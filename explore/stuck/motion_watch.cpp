@@ -31,8 +31,7 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   rocked_ += std::abs(commanded.w) * dt;
   expected_ += std::clamp(commanded.v - expected_, -config_.accel * dt, config_.accel * dt);
   if (commanded.v * expected_ <= 0.0) expected_ = 0.0;
-  const bool on_the_spot = std::abs(commanded.w) > config_.pivot_rate && std::abs(commanded.v) <= config_.pivot_speed;
-  if (!on_the_spot) {
+  if (!on_the_spot(commanded)) {
     way_ += std::abs(expected_) * dt;
     // Wheels that spin carry the pose on between two scans, and each scan puts it back: it trembles in its place.
     pushed_ += std::abs(expected_) * dt;

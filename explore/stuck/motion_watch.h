@@ -36,6 +36,10 @@ class MotionWatch {
   void turns_on_purpose() { rocked_ = net_ = 0.0; }
   /// It turns to and fro and gets nowhere: something holds one of its corners.
   bool rocking() const { return rocked_ - std::abs(net_) > config_.rocking; }
+  /// Whether a command is a turn on the spot.
+  bool on_the_spot(const robot::Drive& commanded) const {
+    return std::abs(commanded.w) > config_.pivot_rate && std::abs(commanded.v) <= config_.pivot_speed;
+  }
 
  private:
   MotionWatchConfig config_;
