@@ -30,11 +30,11 @@ class PathWatch {
   /// What is remembered [m, map frame]; forgets what is too old.
   const std::vector<mrpt::math::TPoint2D>& obstacles(Stamp now);
 
-  /// The map shows a way, the newest scans do not: go and see, slowly.
+  /// The map shows a way, the newest scans do not: go and see, slowly, and do not wait for a better one meanwhile.
   void creep(Stamp now);
-  /// Something is being pushed: slowly, for a moment.
+  /// Something is being pushed: slowly, for a moment. What else stands in the way is waited for.
   void slow_down(Stamp now);
-  /// Slows a command down while creeping or pushing.
+  /// Slows a command down while creeping or pushing. Paths are driven forwards.
   robot::Drive limited(robot::Drive drive, Stamp now) const;
 
  private:

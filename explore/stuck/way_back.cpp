@@ -5,6 +5,7 @@
 
 #include "base/angle.h"
 #include "base/planar.h"
+#include "explore/plan/path_follower.h"
 
 namespace rubble::explore {
 namespace {
@@ -17,7 +18,6 @@ constexpr double kSameTurn = deg_to_rad(6.0);    ///< and turned alike [rad]
 constexpr std::size_t kMost = 400;               ///< poses kept: some ten metres
 constexpr double kBackSpeed = 0.2;               ///< [m/s]
 constexpr double kTurnSpeed = deg_to_rad(45.0);  ///< [rad/s]
-constexpr double kLeastTurn = 0.2;               ///< skid steering does not turn more slowly [rad/s]
 constexpr double kBackGain = 2.5;                ///< speed per way left [1/s]
 
 double apart(const TPose2D& a, const TPose2D& b) { return distance(position(a), position(b)); }

@@ -22,7 +22,6 @@ class WayBack {
 
   /// The drive towards the pose before this one; nothing when none is left.
   std::optional<robot::Drive> drive(const mrpt::math::TPose2D& T_map_base) const;
-  std::size_t size() const { return way_.size(); }
 
  private:
   std::vector<Anchor> way_;

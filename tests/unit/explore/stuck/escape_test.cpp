@@ -6,7 +6,6 @@
 
 #include "base/angle.h"
 #include "base/planar.h"
-#include "explore/stuck/tilt_watch.h"
 
 namespace rubble::explore {
 namespace {
@@ -124,42 +123,12 @@ TEST(Escape, RetracesPoseByPoseWhatLetsItThroughInNoOtherWay) {
   EXPECT_TRUE(on_arc(puppet.pose));
 }
 
-TEST(WayBack, ForgetsLoopsAndKeepsTheWay) {
-  WayBack way;
-  const Stamp now = Stamp::from_seconds(1.0);
-  for (double x = 0.0; x < 1.0; x += 0.01) way.add(now, {x, 0.0, 0.0});
-  const std::size_t straight = way.size();
-  EXPECT_GE(straight, 15u);
-  EXPECT_LE(straight, 25u) << "a pose every few centimetres";
-  for (double a = 0.0; a < 2.0 * kPi; a += 0.02) way.add(now, {0.99, 0.0, a});
-  EXPECT_LE(way.size(), straight + 1) << "a turn on the spot ends as it began";
-  const auto drive = way.drive({0.99, 0.0, 0.0});
-  ASSERT_TRUE(drive.has_value());
-  EXPECT_LT(drive->v, 0.0);
-  EXPECT_EQ(drive->w, 0.0);
-}
-
 TEST(Escape, SaysSoWhenNothingHelps) {
   Puppet puppet;
   puppet.may = [](const TPose2D&) { return false; };
   const Outcome outcome = run(puppet, Escape::Met::Forwards, {}, kRoom);
   EXPECT_EQ(outcome.result, Escape::Result::Failed);
   EXPECT_LT(outcome.seconds, 90.0);
-}
-
-TEST(TiltWatch, TakesTheServosAnglesForTheBodysTiltAndAsksForPatience) {
-  TiltWatchConfig config;
-  TiltWatch tilt(config);
-  robot::Inputs inputs;
-  inputs.aims.push_back({Stamp{}, deg_to_rad(-25.0), 0.0});  // the laser looks down to stay level: nose up
-  tilt.update(inputs, kEscapeTick);
-  EXPECT_FALSE(tilt.too_steep());
-  for (int i = 0; i < 100; ++i) tilt.update(inputs, kEscapeTick);
-  EXPECT_NEAR(tilt.pitch(), deg_to_rad(25.0), 0.01);
-  EXPECT_TRUE(tilt.too_steep());
-  inputs.aims.back().pitch = deg_to_rad(-10.0);  // a ramp of the arena
-  for (int i = 0; i < 100; ++i) tilt.update(inputs, kEscapeTick);
-  EXPECT_FALSE(tilt.too_steep());
 }
 
 }  // namespace
