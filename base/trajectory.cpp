@@ -105,12 +105,6 @@ std::string tum_line(const StampedPose& stamped) {
   return line;
 }
 
-void write_tum(const std::string& path, const Trajectory& trajectory) {
-  std::string text;
-  for (const auto& stamped : trajectory) text += tum_line(stamped) + '\n';
-  write_text_file(path, text);
-}
-
 Trajectory read_tum(const std::string& path) {
   std::istringstream file(read_text_file(path));
   Trajectory trajectory;

@@ -36,9 +36,6 @@ std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& tr
 /// One line of TUM text, `time x y z qx qy qz qw`, one space, no trailing space (as evo reads it). z = 0.
 std::string tum_line(const StampedPose& stamped);
 
-/// Throws RunError when the file cannot be written.
-void write_tum(const std::string& path, const Trajectory& trajectory);
-
 /// Reads TUM text; '#' starts a comment. z, roll and pitch are dropped. Throws InputError with file, line and column.
 Trajectory read_tum(const std::string& path);
 

@@ -7,7 +7,6 @@
 namespace rubble::explore {
 namespace {
 
-constexpr double kSameTarget = 0.5;      ///< [m]
 constexpr double kBaseBudget = 20.0;     ///< [s]
 constexpr double kSecondsPerMetre = 10;  ///< a quarter of the usual cruise speed
 
@@ -16,7 +15,7 @@ constexpr double kSecondsPerMetre = 10;  ///< a quarter of the usual cruise spee
 bool Attempts::overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt) {
   for (std::size_t i = 0; i < accounts_.size(); ++i) {
     Account& account = accounts_[i];
-    if (distance(account.target, target) > kSameTarget) continue;
+    if (distance(account.target, target) > same_target_) continue;
     account.budget -= dt;
     if (account.budget >= 0.0) return false;
     accounts_.erase(accounts_.begin() + static_cast<std::ptrdiff_t>(i));

@@ -10,6 +10,9 @@ namespace rubble::explore {
 /// of reach ends some day.
 class Attempts {
  public:
+  /// `same_target`: targets closer together are one [m].
+  explicit Attempts(double same_target) : same_target_(same_target) {}
+
   /// Spends `dt` seconds on a target that cost `cost` metres when it was first chosen; true when that is more time than
   /// it deserves. The account is then closed: choosing the target again opens a new one.
   bool overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt);
@@ -19,6 +22,7 @@ class Attempts {
     mrpt::math::TPoint2D target;
     double budget;  ///< [s]
   };
+  double same_target_;
   std::vector<Account> accounts_;
 };
 

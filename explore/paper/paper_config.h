@@ -5,11 +5,11 @@
 #include "base/angle.h"
 #include "base/yaml/binder.h"
 #include "explore/caution/felt_obstacles.h"
-#include "explore/caution/tilt_watch.h"
 #include "explore/plan/path_follower.h"
 #include "explore/plan/planner.h"
 #include "explore/search/searched_area.h"
 #include "explore/search/victim_search.h"
+#include "explore/stuck/tilt_watch.h"
 
 namespace rubble::explore {
 

@@ -15,7 +15,6 @@ using robot::Drive;
 
 constexpr double kCurvatureSpan = 0.20;  ///< the path's direction is taken over this length on either side [m]
 constexpr double kEndSpeed = 0.10;       ///< [m/s]
-constexpr double kMinTurn = 0.20;        ///< skid steering does not turn more slowly than this [rad/s]
 
 double direction(const TPoint2D& from, const TPoint2D& to) { return std::atan2(to.y - from.y, to.x - from.x); }
 
@@ -98,7 +97,7 @@ Drive PathFollower::drive(const TPose2D& T_map_base) {
 }
 
 Drive turn_on_the_spot(double angle, double turn_speed, double turn_brake) {
-  const double w = std::min(turn_speed, std::max(kMinTurn, std::sqrt(2.0 * turn_brake * std::abs(angle))));
+  const double w = std::min(turn_speed, std::max(kLeastTurn, std::sqrt(2.0 * turn_brake * std::abs(angle))));
   return {0.0, std::copysign(w, angle)};
 }
 

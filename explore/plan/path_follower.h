@@ -19,6 +19,8 @@ struct PathPoint {
   bool passed = false;         ///< the robot was there: nothing lies on the floor that it would have felt
 };
 
+constexpr double kLeastTurn = 0.20;  ///< skid steering does not turn more slowly than this [rad/s]
+
 struct FollowerConfig {
   double cruise_speed = 0.4;                ///< [m/s]
   double passed_speed = 0.6;                ///< likewise, where the robot was before [m/s]

@@ -15,6 +15,12 @@ constexpr double kSmoothSpan = 0.20;  ///< half the window of the moving average
 
 }  // namespace
 
+double length_of(const Plan& plan) {
+  double way = 0.0;
+  for (std::size_t i = 1; i < plan.path.size(); ++i) way += distance(plan.path[i - 1].p_map, plan.path[i].p_map);
+  return way;
+}
+
 std::vector<Cell> climb_clearance(const Traversable& floor, Cell start, double d_min) {
   std::vector<Cell> way{start};
   while (floor.clearance[way.back()] < d_min - kClearanceRounding) {

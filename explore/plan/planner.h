@@ -20,7 +20,7 @@ struct PlannerConfig {
   double d_min_step = 0.04;    ///< [m]
   int min_frontier_cells = 5;  ///< smaller clusters are no targets
   double switch_cost = 0.6;    ///< a new target must be this much cheaper than the one being driven to [m]
-  double same_target = 0.5;    ///< a frontier cell this close to the old target belongs to it [m]
+  double same_target = 0.5;    ///< targets this close together are one [m]
 };
 
 /// A way to a target, or the news that there is none.
@@ -32,6 +32,9 @@ struct Plan {
   double d_min = 0.0;             ///< the one the way keeps [m]
   std::size_t frontier_left = 0;  ///< frontier clusters that are big enough and hold a cell that is not barred
 };
+
+/// Of a plan's path [m].
+double length_of(const Plan& plan);
 
 /// What the planner asks about a place: whether it is barred as a target.
 using BarredFn = std::function<bool(const mrpt::math::TPoint2D&)>;

@@ -38,8 +38,9 @@ TPoint2D geometric_median(const std::vector<TPoint2D>& points, const std::vector
   return median;
 }
 
-/// Whether two sightings are of the two sides of a wall.
-bool VictimSearch::apart(const Sighting& a, const Sighting& b, const SightFn& in_sight) const {
+/// Whether two places `d` [m] apart, with a sighting of each, are two victims: on the two sides of a wall.
+bool VictimSearch::back_to_back(double d, const Sighting& a, const Sighting& b, const SightFn& in_sight) const {
+  if (d < config_.back_to_back) return false;
   const double bearing_a = a.anchor.T_map_base.phi + std::atan2(a.p_base.y, a.p_base.x);
   const double bearing_b = b.anchor.T_map_base.phi + std::atan2(b.p_base.y, b.p_base.x);
   if (std::abs(wrap_angle(bearing_a - bearing_b)) < config_.other_side) return false;
@@ -52,7 +53,7 @@ std::size_t VictimSearch::cluster_near(const Sighting& sighting, const SightFn& 
   for (std::size_t i = 0; i < clusters_.size(); ++i) {
     const double d = distance(clusters_[i].p_map, sighting.p_map);
     if (d >= best_distance) continue;
-    if (d >= config_.back_to_back && apart(clusters_[i].sightings.front(), sighting, in_sight)) continue;
+    if (back_to_back(d, clusters_[i].sightings.front(), sighting, in_sight)) continue;
     best = i;
     best_distance = d;
   }
@@ -88,9 +89,7 @@ std::size_t VictimSearch::merge_into_neighbour(std::size_t index, const SightFn&
   for (std::size_t i = 0; i < clusters_.size(); ++i) {
     const double d = distance(clusters_[i].p_map, clusters_[index].p_map);
     if (i == index || d >= config_.merge_distance) continue;
-    if (d >= config_.back_to_back &&
-        apart(clusters_[i].sightings.front(), clusters_[index].sightings.front(), in_sight))
-      continue;
+    if (back_to_back(d, clusters_[i].sightings.front(), clusters_[index].sightings.front(), in_sight)) continue;
     const std::size_t keep = std::min(i, index);
     const std::size_t drop = std::max(i, index);
     Cluster& kept = clusters_[keep];

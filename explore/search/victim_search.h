@@ -65,7 +65,7 @@ class VictimSearch {
 
   std::size_t cluster_near(const Sighting& sighting, const SightFn& in_sight) const;
   std::size_t merge_into_neighbour(std::size_t index, const SightFn& in_sight);
-  bool apart(const Sighting& a, const Sighting& b, const SightFn& in_sight) const;
+  bool back_to_back(double d, const Sighting& a, const Sighting& b, const SightFn& in_sight) const;
   void locate(Cluster& cluster) const;
   void confirm(Cluster& cluster, Stamp stamp);
   void rebuild_reports();

@@ -164,20 +164,6 @@ void CountMap::stamp(const TPose2D& T_map_base, const ScanPoints& scan) {
   });
 }
 
-void CountMap::unstamp(const TPose2D& T_map_base, const ScanPoints& scan) {
-  ++version_;
-  if (!draw(T_map_base, scan)) return;
-  const auto forget = [this](std::size_t cell, bool hit) {
-    if (seen_[cell] > 0) --seen_[cell];
-    if (hit && occupied_[cell] > 0) --occupied_[cell];
-    rate(cell);
-  };
-  each_hit([&](std::size_t cell) { forget(cell, true); });
-  each_pass([&](std::size_t begin, std::size_t end) {
-    for (std::size_t cell = begin; cell < end; ++cell) forget(cell, false);
-  });
-}
-
 void CountMap::rate(std::size_t cell) {
   occupied_[cell] = std::min(occupied_[cell], seen_[cell]);  // counts that were halved may not add up
   p_occ_[cell] = occupied_[cell] == 0 ? std::uint8_t{0} : ratio(occupied_[cell], seen_[cell]);

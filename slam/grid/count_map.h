@@ -48,11 +48,10 @@ class CountMap {
   /// runs through it between two neighbouring hits (scan_polygon.h). Counts that would overflow are halved, both planes
   /// alike.
   void stamp(const mrpt::math::TPose2D& T_map_base, const ScanPoints& scan);
-  /// Takes back what stamp() with the same arguments counted (but for counts that were halved since).
-  void unstamp(const mrpt::math::TPose2D& T_map_base, const ScanPoints& scan);
-  /// unstamp() at one pose and stamp() at another, for the price of the cells that differ.
+  /// Takes back what stamp() at one pose counted (but for counts that were halved since) and stamps at another, for the
+  /// price of the cells that differ.
   void restamp(const mrpt::math::TPose2D& T_map_before, const mrpt::math::TPose2D& T_map_base, const ScanPoints& scan);
-  /// Cells of the window that the last of these three drew in: what it cost, beside the beams.
+  /// Cells of the window that the last of these two drew in: what it cost, beside the beams.
   std::size_t drawn_cells() const;
 
   /// Takes over a whole map that was counted elsewhere; both planes are frame.size() counts, row-major. Throws

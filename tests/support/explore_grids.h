@@ -48,6 +48,31 @@ inline OccupancyGrid random_grid(int width, int height, std::uint64_t seed) {
   return grid;
 }
 
+/// A walled room of free floor, width x height [m] with its walls, its south-west corner at the origin.
+inline OccupancyGrid room(double width, double height, double resolution = 0.05) {
+  GridFrame frame;
+  frame.resolution = resolution;
+  frame.x0 = frame.y0 = -resolution;  // the rim is unknown
+  frame.width = static_cast<int>(width / resolution + 0.5) + 2;
+  frame.height = static_cast<int>(height / resolution + 0.5) + 2;
+  OccupancyGrid grid(frame, Occupancy::Unknown);
+  for (int y = 1; y + 1 < frame.height; ++y)
+    for (int x = 1; x + 1 < frame.width; ++x) {
+      const bool wall = x == 1 || y == 1 || x + 2 == frame.width || y + 2 == frame.height;
+      grid[{x, y}] = wall ? Occupancy::Occupied : Occupancy::Free;
+    }
+  return grid;
+}
+
+/// Fills a rectangle [m] of a grid.
+inline void fill(OccupancyGrid& grid, double x0, double y0, double x1, double y1, Occupancy what) {
+  for (int y = 0; y < grid.height(); ++y)
+    for (int x = 0; x < grid.width(); ++x) {
+      const auto p = grid.centre({x, y});
+      if (p.x > x0 && p.x < x1 && p.y > y0 && p.y < y1) grid[{x, y}] = what;
+    }
+}
+
 inline explore::Traversable measured(OccupancyGrid grid, double cap = 1.2) {
   explore::Traversable floor = explore::traversable(std::move(grid));
   explore::measure_clearance(floor, cap);

@@ -70,7 +70,9 @@ TEST(Tum, ReadsBackWhatItWrote) {
     const double phi = rng.uniform(-kPi, kPi);
     written.push_back({stamp, {x, y, phi}});
   }
-  write_tum(folder / "a.tum", written);
+  std::string text;
+  for (const StampedPose& stamped : written) text += tum_line(stamped) + '\n';
+  write_text_file(folder / "a.tum", text);
   const Trajectory read = read_tum(folder / "a.tum");
   ASSERT_EQ(read.size(), written.size());
   for (std::size_t i = 0; i < read.size(); ++i) {
@@ -102,8 +104,6 @@ TEST(Tum, AMistakeIsNamedByLineAndColumn) {
   EXPECT_EQ(read_error("1e30 0 0 0 0 0 0 1\n"), ":1:1: '1e30' is no time in seconds");
   EXPECT_THROW(read_tum("/nowhere/a.tum"), InputError);
 }
-
-TEST(Tum, AnUnwritablePathIsARunError) { EXPECT_THROW(write_tum("/nowhere/at/all.tum", {}), RunError); }
 
 }  // namespace
 }  // namespace rubble

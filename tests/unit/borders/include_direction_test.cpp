@@ -75,7 +75,10 @@ const std::map<std::string, Folders>& wings() {
       {"explore/plan", {}},
       {"explore/caution", {"explore"}},
       {"explore/search", {"explore", "explore/plan"}},
-      {"explore/*", {"explore", "explore/plan", "explore/caution", "explore/search"}},
+      {"explore/motion", {"explore", "explore/plan"}},
+      {"explore/stuck", {"explore", "explore/plan", "explore/caution"}},
+      {"explore/*",
+       {"explore", "explore/plan", "explore/caution", "explore/search", "explore/motion", "explore/stuck"}},
       {"slam/process", {"slam", "slam/grid", "slam/scan"}},
       {"slam/peers", {"slam", "slam/grid", "slam/scan", "slam/process"}},
       {"scoring/maps", {"scoring/maps/colours"}},
@@ -111,7 +114,8 @@ const Folders& insides() {
                                 "sim/laser",         "slam/peers",
                                 "slam/robust",       "slam/robust/graph",
                                 "slam/robust/map",   "slam/robust/matching",
-                                "slam/scan"};
+                                "slam/scan",         "explore/motion",
+                                "explore/stuck"};
   return table;
 }
 

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "explore/caution/tilt_watch.h"
 #include "explore/paper/paper_explorer.h"
 #include "slam/paper/paper_mapper.h"
 #include "tests/support/explore_world.h"
@@ -364,24 +363,6 @@ TEST(BadConditions, WhatHoldsTheRobotIsNotPushedOnARamp) {
   });
   EXPECT_GE(brakes, 1);
   EXPECT_GT(trial.backing, 1);
-}
-
-/// The levelling unit dies while the laser is tilted: its last angles are not believed for ever.
-TEST(BadConditions, ALevellingUnitThatFailedSaysNothingAboutTheGround) {
-  TiltWatch watch;
-  robot::Inputs inputs;
-  inputs.aims.push_back({Stamp::from_seconds(1.0), deg_to_rad(30.0), 0.0});
-  for (int i = 0; i < 100; ++i) watch.update(inputs, 0.02);
-  EXPECT_TRUE(watch.too_steep());
-  inputs.aims.clear();
-  double silent = 0.0;
-  for (; watch.too_steep(); silent += 0.02) {
-    watch.update(inputs, 0.02);
-    ASSERT_LT(silent, 3.0);
-  }
-  EXPECT_GT(silent, 0.2) << "a few lost messages are no failure";
-  for (int i = 0; i < 50; ++i) watch.update(inputs, 0.02);
-  EXPECT_LT(watch.slope(), deg_to_rad(1.0));
 }
 
 }  // namespace

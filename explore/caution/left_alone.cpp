@@ -1,0 +1,44 @@
+#include "explore/caution/left_alone.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/planar.h"
+
+namespace rubble::explore {
+namespace {
+
+constexpr double kBarRadius = 0.60;  ///< [m]
+constexpr double kBarTime = 60.0;    ///< for the first failure [s]
+constexpr int kMostDoublings = 6;
+
+}  // namespace
+
+void LeftAlone::bar(const mrpt::math::TPoint2D& target, Stamp now) {
+  const int times = std::min(blacklist_.times_barred(target), kMostDoublings);
+  blacklist_.bar(target, kBarRadius, now + kBarTime * std::ldexp(1.0, times));
+}
+
+void LeftAlone::bar_for_good(const mrpt::math::TPoint2D& target) { blacklist_.bar_for_good(target, kBarRadius); }
+
+bool LeftAlone::feel(const Anchor& anchor, bool behind, const robot::RobotModel& model, const OccupancyGrid& known,
+                     const Trail& trail) {
+  std::optional<PalletGrid> grid;
+  if (config_.pallet > 0.0) grid = find_pallets(known, config_.pallet, position(anchor.T_map_base));
+  return felt_.feel(anchor, behind, model, grid, trail.points());
+}
+
+bool LeftAlone::pardon(Stamp now) {
+  const bool targets = blacklist_.pardon(now);
+  const bool things = felt_.pardon(now);
+  return targets || things;
+}
+
+bool LeftAlone::pardon_all(Stamp now) {
+  const bool targets = blacklist_.pardon_all(now);
+  const bool things = felt_.pardon(now);
+  return targets || things;
+}
+
+}  // namespace rubble::explore

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+#include <mrpt/math/TPose2D.h>
+
+#include <vector>
+
+#include "base/grid.h"
+#include "base/stamp.h"
+#include "explore/anchor.h"
+#include "explore/caution/attempts.h"
+#include "explore/caution/blacklist.h"
+#include "explore/caution/felt_obstacles.h"
+#include "explore/caution/trail.h"
+#include "robot/model.h"
+#include "slam/mapper.h"
+
+namespace rubble::explore {
+
+/// What the robot failed at and leaves alone for that: targets it could not have, and things it felt. All of it may be
+/// wrong, or be gone by now, so all of it can be forgiven, in three degrees: `pardon`, `pardon_all`, `forget`.
+class LeftAlone {
+ public:
+  /// `same_target`: targets closer together are one [m].
+  LeftAlone(const FeltConfig& felt, double same_target) : config_(felt), attempts_(same_target), felt_(felt) {}
+
+  /// Bars what lies around a target for a minute, twice as long each time.
+  void bar(const mrpt::math::TPoint2D& target, Stamp now);
+  /// Until all is pardoned.
+  void bar_for_good(const mrpt::math::TPoint2D& target);
+  bool barred(const mrpt::math::TPoint2D& p_map, Stamp now) const { return blacklist_.barred(p_map, now); }
+
+  /// Spends `dt` [s] on a target that cost `cost` [m] when it was first chosen; true when that is more than it
+  /// deserves.
+  bool overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt) {
+    return attempts_.overdrawn(target, cost, dt);
+  }
+
+  /// Something stopped the body at `anchor`, right before it or, when it drove backwards, `behind` it. `known`: the
+  /// map, in which pallets may show. Says whether a whole pallet is left alone for it.
+  bool feel(const Anchor& anchor, bool behind, const robot::RobotModel& model, const OccupancyGrid& known,
+            const Trail& trail);
+  /// The robot stands here in good order.
+  void passed(const mrpt::math::TPose2D& T_map_base, const robot::RobotModel& model) {
+    felt_.passed(T_map_base, model);
+  }
+  /// The mapper corrected its past.
+  void follow(const slam::Mapper& mapper) { felt_.follow(mapper); }
+  /// What counts as an obstacle now [m, map frame].
+  std::vector<mrpt::math::TPoint2D> obstacles(Stamp now) const { return felt_.points(now); }
+
+  /// Tries again what would be tried again some day, and counts less what was felt. This and the two below say whether
+  /// there was anything to forgive.
+  bool pardon(Stamp now);
+  /// The same, and targets barred for good as well.
+  bool pardon_all(Stamp now);
+  /// Forgets all that was felt, what is certain as well, until it is felt again. Targets stay barred.
+  bool forget(Stamp now) { return felt_.forget(now); }
+
+ private:
+  FeltConfig config_;
+  Blacklist blacklist_;
+  Attempts attempts_;
+  FeltObstacles felt_;
+};
+
+}  // namespace rubble::explore

@@ -1,0 +1,263 @@
+#include "explore/paper/agenda.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <utility>
+
+#include "base/planar.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+
+constexpr double kVisited = 0.30;                ///< closer to its target the robot has been there [m]
+constexpr double kLookTurn = deg_to_rad(270.0);  ///< with a 240 deg scanner more than once around [rad]
+constexpr double kSearchReplan = 2.0;            ///< on the way to a viewpoint [s]
+constexpr double kArrivedReplan = 0.3;           ///< standing at the end of the way [s]
+constexpr double kDetour = 3.0;                  ///< way over distance where no way is known
+constexpr double kSmallShift = 0.10;             ///< of the robot's place by a correction of the map [m]
+
+std::string text(const TPoint2D& p) {
+  std::array<char, 40> line{};
+  std::snprintf(line.data(), line.size(), "(%.1f, %.1f)", p.x, p.y);
+  return line.data();
+}
+
+std::string target_text(Goal goal, bool niches, const Plan& plan, double usual_d_min) {
+  const char* what = goal == Goal::Home       ? "home"
+                     : goal == Goal::Frontier ? "the frontier"
+                     : niches                 ? "a place to look into a niche from"
+                                              : "a place to search from";
+  std::array<char, 60> more{};
+  std::snprintf(more.data(), more.size(), ", cost %.1f m", plan.cost);
+  const std::string line = std::string("drives to ") + what + " at " + text(plan.target) + more.data();
+  if (plan.d_min >= usual_d_min) return line;
+  std::snprintf(more.data(), more.size(), ", as near as %.2f m to walls", plan.d_min);
+  return line + more.data();
+}
+
+Order turn(double angle, TurnFor purpose) {
+  Order order;
+  order.kind = Order::Kind::Turn;
+  order.angle = angle;
+  order.purpose = purpose;
+  return order;
+}
+
+}  // namespace
+
+Agenda::Agenda(const PaperExplorerConfig& config) : config_(config), choice_(config.planner, config.bar_targets) {}
+
+void Agenda::note(Stamp now, const std::string& why) {
+  if (decisions_.empty() || decisions_.back().why != why) decisions_.push_back({now, why});
+}
+
+void Agenda::follow(const slam::Mapper& mapper, double shift) {
+  choice_.follow(mapper);
+  if (shift > kSmallShift) choice_.drop_target();
+  plan_soon();
+}
+
+double Agenda::way_home(const Situation& situation, double way_come) {
+  const Plan way = choice_.way_home(situation.floor, situation.T_map_base);
+  // Blocked at the moment: a detour, but hardly longer than all the way it came.
+  return way.found ? length_of(way) : std::min(way_come, kDetour * choice_.distance_home(situation.T_map_base));
+}
+
+void Agenda::arrived(Stamp now) {
+  if (clock_.age(now) > kArrivedReplan) plan_soon();
+}
+
+bool Agenda::begin_plan(const slam::CountMap& map, Stamp now) {
+  return clock_.plan(map.version(), goal() == Goal::Place ? kSearchReplan : config_.replan_period, now);
+}
+
+Plan Agenda::choose(const Situation& situation) {
+  const TargetChoice::View view{situation.floor, situation.T_map_base, situation.now, situation.left_alone};
+  TargetChoice::Choice choice = choice_.choose(view, situation.search);
+  if (choice.no_niche) {
+    const auto news = rounds_.before_all_faces(standing(situation), choice.plan.frontier_left, situation.search,
+                                               situation.left_alone);
+    if (news) {
+      begin_round(*news, situation.now);
+      return choice_.choose_frontier(view);
+    }
+    choice = choice_.choose_of_all_places(view, situation.search, std::move(choice.plan));
+  }
+  if (choice.into_reach) note(situation.now, "a frontier has come into reach");
+  return std::move(choice.plan);
+}
+
+void Agenda::turn_away(const Plan& plan, double left, const Situation& situation) {
+  if (!choice_.turns_away(plan) || goal() == Goal::Home) return;
+  if (!choice_.kept_away({situation.floor, situation.T_map_base, situation.now, situation.left_alone}, left)) return;
+  note(situation.now, "something new stands in the way");
+  leave_target(situation.left_alone, situation.now);
+}
+
+Order Agenda::decide(Plan plan, bool new_map, const Situation& situation) {
+  frontier_left_ = plan.frontier_left;
+  if (!plan.found) {
+    choice_.drop_target();
+    rounds_.no_way(new_map);
+    return nothing_left(situation);
+  }
+  rounds_.way_found();
+  const double away = distance(plan.target, position(situation.T_map_base));
+  if (goal() == Goal::Home && away < kVisited) return finish(MissionEnd::Home, "home again", situation.now);
+  if (goal() == Goal::Place && away < kAtViewpoint) return face_subject(situation);
+  if (goal() == Goal::Frontier && away < kVisited) return visited_in_vain(plan.target, situation);
+  if (choice_.take(plan))
+    note(situation.now, target_text(goal(), !choice_.frontiers_done(), plan, config_.planner.transform.d_min));
+  Order order;
+  order.kind = Order::Kind::Follow;
+  order.plan = std::move(plan);
+  return order;
+}
+
+/// At a viewpoint.
+Order Agenda::face_subject(const Situation& situation) {
+  pushing_.end();
+  if (situation.turning) return {};
+  if (const auto angle = situation.search.turn_to_subject(situation.floor, situation.T_map_base))
+    return turn(*angle, TurnFor::Place);
+  situation.search.start_dwell(situation.now);
+  return {};
+}
+
+/// The robot stands at a frontier that does not go away: look around, then bar it.
+Order Agenda::visited_in_vain(const TPoint2D& where, const Situation& situation) {
+  if (situation.turning) return {};
+  const TPoint2D here = position(situation.T_map_base);
+  if (!looked_from_ || distance(*looked_from_, here) > kVisited) {
+    looked_from_ = here;
+    return turn(kLookTurn, TurnFor::View);
+  }
+  note(situation.now, "the frontier at " + text(where) + " stays although it was visited: left alone");
+  situation.left_alone.bar_for_good(where);
+  choice_.drop_target();
+  return stay_and_plan();
+}
+
+/// The goal cannot be reached: look around once more, try again what failed before, then go on to the next.
+Order Agenda::nothing_left(const Situation& situation) {
+  if (situation.turning) return {};
+  const bool homeward = goal() == Goal::Home;
+  const bool push = may_push(situation);
+  const bool patient = homeward || (goal() == Goal::Frontier && !choice_.frontiers_done());
+  const Resort resort = patient ? rounds_.next_resort(homeward, push, situation.left_alone, situation.now)
+                        : push  ? Resort::Push
+                                : Resort::GiveUp;
+  switch (resort) {
+    case Resort::LookAround:
+      return turn(kLookTurn, TurnFor::View);
+    case Resort::TryAgain:
+      note(situation.now, "nothing else can be reached: what failed before is tried again");
+      return stay_and_plan();
+    case Resort::Push:
+      return start_pushing(situation);
+    case Resort::ForgetAll:
+      note(situation.now, "no way home: all that was felt is forgotten");
+      return stay_and_plan();
+    case Resort::GiveUp:
+      break;
+  }
+  if (homeward) return finish(MissionEnd::Explored, "no way home is left", situation.now);
+  return goal() == Goal::Place ? finish_searching(situation) : finish_exploring(situation);
+}
+
+/// Things in the way that were not seen yet when things were pushed aside last: once for each piece of ground gained.
+bool Agenda::may_push(const Situation& situation) const {
+  if (!pushing_.more()) return false;
+  if (goal() == Goal::Home) return true;
+  // It came here by pushing, or something rolled into its way: the rest of the arena is to be searched as well.
+  if (goal() == Goal::Place) return situation.search.place_left();
+  return frontier_left_ > 0 && pushing_.worth(situation.floor);
+}
+
+Order Agenda::start_pushing(const Situation& situation) {
+  const bool single = pushing_.start(situation.floor);
+  note(situation.now, std::string("nothing else can be reached: ") + (single ? "small things" : "heaps") +
+                          " that stand alone are pushed aside");
+  return stay_and_plan();
+}
+
+Order Agenda::finish_exploring(const Situation& situation) {
+  reason_ = "nothing reachable left to explore";
+  if (frontier_left_ == 1) reason_ += " (1 frontier cannot be reached)";
+  if (frontier_left_ > 1) reason_ += " (" + std::to_string(frontier_left_) + " frontiers cannot be reached)";
+  if (!choice_.frontiers_done()) note(situation.now, reason_);
+  choice_.set_frontiers_done();
+  pushing_.end();
+  if (!situation.search.on()) return finish_searching(situation);
+  choice_.search();
+  return stay_and_plan();
+}
+
+/// As long as that gains something and time is left, all of it is tried once more.
+Order Agenda::finish_searching(const Situation& situation) {
+  if (const auto news = rounds_.another(standing(situation), situation.search, situation.left_alone)) {
+    begin_round(*news, situation.now);
+    return {};
+  }
+  const std::string why = goal() == Goal::Place ? "all visible floor searched" : "";
+  if (!config_.return_home) return finish(MissionEnd::Explored, why, situation.now);
+  go_home(why, situation.now);
+  return {};
+}
+
+void Agenda::begin_round(const std::string& news, Stamp now) {
+  note(now, news);
+  choice_.explore();
+  pushing_.new_round();
+  looked_from_.reset();
+  plan_soon();
+}
+
+void Agenda::go_home(const std::string& why, Stamp now) {
+  reason_ += (reason_.empty() || why.empty() ? "" : ", ") + why;
+  note(now, "drives home: " + (why.empty() ? reason_ : why));
+  choice_.go_home();
+  rounds_.go_home();
+  plan_soon();
+}
+
+Order Agenda::finish(MissionEnd end, const std::string& why, Stamp now) {
+  end_ = end;
+  reason_ += (reason_.empty() || why.empty() ? "" : ", ") + why;
+  note(now, "ends: " + reason_);
+  Order order;
+  order.kind = Order::Kind::Stop;
+  return order;
+}
+
+void Agenda::spend(double dt, const Situation& situation) {
+  if (!target() || goal() == Goal::Home) return;
+  if (!situation.left_alone.overdrawn(*target(), choice_.cost(), dt)) return;
+  if (goal() == Goal::Place) situation.search.give_up_subject(situation.floor, {situation.now, situation.T_map_base});
+  leave_target(situation.left_alone, situation.now);
+}
+
+void Agenda::leave_target(LeftAlone& left_alone, Stamp now) {
+  left_alone.bar(*target(), now);
+  choice_.drop_target();
+  plan_soon();
+}
+
+/// A place that was seen on the way need not be driven to.
+void Agenda::look_made(const Situation& situation) {
+  if (goal() == Goal::Place && target() && situation.search.subject_seen(situation.floor)) plan_soon();
+}
+
+Order Agenda::stay_and_plan() {
+  plan_soon();
+  return {};
+}
+
+Rounds::Standing Agenda::standing(const Situation& situation) const {
+  return {situation.now, situation.floor, situation.victims, frontier_left_};
+}
+
+}  // namespace rubble::explore

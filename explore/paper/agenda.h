@@ -1,0 +1,124 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+#include <mrpt/math/TPose2D.h>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/stamp.h"
+#include "explore/caution/left_alone.h"
+#include "explore/explorer.h"
+#include "explore/motion/pilot.h"
+#include "explore/paper/paper_config.h"
+#include "explore/paper/plan_clock.h"
+#include "explore/paper/pushing.h"
+#include "explore/paper/rounds.h"
+#include "explore/paper/target_choice.h"
+#include "explore/plan/planner.h"
+#include "explore/plan/traversable.h"
+#include "explore/search/floor_search.h"
+#include "slam/mapper.h"
+
+namespace rubble::explore {
+
+/// What the robot is to do next.
+struct Order {
+  enum class Kind { Follow, Stay, Turn, Stop };
+  Kind kind = Kind::Stay;  ///< Stay: without a path; Stop: without a turn either
+  Plan plan;               ///< to follow
+  double angle = 0.0;      ///< to turn by [rad]
+  TurnFor purpose = TurnFor::View;
+};
+
+/// What there is to do, in order: frontiers, with the niches beside the way; what failed before; all places that were
+/// not looked at; another round; home. Of each plan it makes the next order, and tells in words why.
+///
+/// It drives nothing and watches nothing: it is asked when a plan is due (`due`), first for the plan (`choose`), then
+/// for what follows from it (`decide`).
+class Agenda {
+ public:
+  /// What a decision is made on, and what it may change.
+  struct Situation {
+    Stamp now;
+    mrpt::math::TPose2D T_map_base;
+    const Traversable& floor;
+    bool turning;         ///< a turn is under way
+    std::size_t victims;  ///< sure ones so far
+    LeftAlone& left_alone;
+    FloorSearch& search;
+  };
+
+  explicit Agenda(const PaperExplorerConfig& config);
+
+  Goal goal() const { return choice_.goal(); }
+  bool finished() const { return end_ != MissionEnd::UnderWay; }
+  MissionEnd end() const { return end_; }
+  const std::string& reason() const { return reason_; }
+  const std::vector<Decision>& decisions() const { return decisions_; }
+  void note(Stamp now, const std::string& why);
+  /// Ends the mission.
+  Order finish(MissionEnd end, const std::string& why, Stamp now);
+  /// From now on the robot drives home.
+  void go_home(const std::string& why, Stamp now);
+
+  /// Where the robot started.
+  void set_home(const Anchor& home) { choice_.set_home(home); }
+  /// The way home from here; where none is known the crow's way and a detour, but no more than the way it came [m].
+  double way_home(const Situation& situation, double way_come);
+  /// The mapper corrected its past, and the robot's place by `shift` [m].
+  void follow(const slam::Mapper& mapper, double shift);
+
+  void plan_soon() { clock_.force(); }
+  /// Nothing is left of the path: another plan is due, soon.
+  void arrived(Stamp now);
+  bool due(const slam::CountMap& map, Stamp now) const { return clock_.due(map.version(), now); }
+  /// A plan is made now. Says whether it is the first one on this map.
+  bool begin_plan(const slam::CountMap& map, Stamp now);
+  /// The way to the next target; the goal may change with it.
+  Plan choose(const Situation& situation);
+  /// Something new stands in the way, of which `left` [m] were left: bars a target that it keeps the robot from. The
+  /// robot would turn round again once the new thing is forgotten, and again when it is seen anew.
+  void turn_away(const Plan& plan, double left, const Situation& situation);
+  /// What follows from a plan.
+  Order decide(Plan plan, bool new_map, const Situation& situation);
+
+  const std::optional<mrpt::math::TPoint2D>& target() const { return choice_.target(); }
+  /// Spends `dt` [s] on the way to the target; one that costs more time than it deserves is left alone.
+  void spend(double dt, const Situation& situation);
+  /// The target cannot be had: it is left alone for a while.
+  void leave_target(LeftAlone& left_alone, Stamp now);
+  /// The place to search was seen from the way.
+  void look_made(const Situation& situation);
+
+  Pushing& pushing() { return pushing_; }
+  const Pushing& pushing() const { return pushing_; }
+  double clearance_cap() const { return choice_.clearance_cap(); }
+
+ private:
+  Order face_subject(const Situation& situation);
+  Order visited_in_vain(const mrpt::math::TPoint2D& where, const Situation& situation);
+  Order nothing_left(const Situation& situation);
+  bool may_push(const Situation& situation) const;
+  Order start_pushing(const Situation& situation);
+  Order finish_exploring(const Situation& situation);
+  Order finish_searching(const Situation& situation);
+  void begin_round(const std::string& news, Stamp now);
+  Order stay_and_plan();
+  Rounds::Standing standing(const Situation& situation) const;
+
+  PaperExplorerConfig config_;
+  TargetChoice choice_;
+  Rounds rounds_;
+  Pushing pushing_;
+  PlanClock clock_;
+  std::size_t frontier_left_ = 0;  ///< of the last plan
+  std::optional<mrpt::math::TPoint2D> looked_from_;
+  MissionEnd end_ = MissionEnd::UnderWay;
+  std::string reason_;
+  std::vector<Decision> decisions_;
+};
+
+}  // namespace rubble::explore

@@ -1,0 +1,55 @@
+#include "explore/paper/pushing.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/planar.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+constexpr double kPaper = 0.5;      ///< what stands alone and is not wider may be paper [m]
+constexpr double kHeap = 1.1;       ///< several balls side by side; a panel of wall is 1.2 m wide [m]
+constexpr double kPushReach = 1.0;  ///< things to be pushed aside are watched from here on [m]
+constexpr double kWall = 0.08;      ///< a hit so near to something of the map that is not loose is on that [m]
+constexpr double kRoll = 0.15;      ///< farther they do not roll between two looks [m]
+
+}  // namespace
+
+bool Pushing::more() const { return extent_ < kHeap; }
+
+bool Pushing::worth(const Traversable& floor) const {
+  return on() || !known_then_.marked() || known_then_.grown(floor);
+}
+
+bool Pushing::start(const Traversable& floor) {
+  const bool single = !on();
+  extent_ = single ? kPaper : kHeap;
+  if (single) known_then_.mark(floor);
+  return single;
+}
+
+/// The map shows loose things where they lay; as they roll, what is seen near where they were just now is they.
+std::vector<TPoint2D> Pushing::without_loose_things(const std::vector<TPoint2D>& hits, const TPose2D& T_map_base,
+                                                    const Traversable& floor) {
+  const TPoint2D here = position(T_map_base);
+  std::vector<TPoint2D> loose = std::move(rolling_);
+  rolling_.clear();
+  if (!on()) return hits;
+  for (const Cell c : floor.loose)
+    if (const TPoint2D p = floor.cells.centre(c); distance(p, here) < kPushReach) loose.push_back(p);
+  std::vector<TPoint2D> rest;
+  for (const TPoint2D& hit : hits) {
+    const Cell c = floor.clearance.cell(hit);
+    const bool wall = floor.clearance.inside(c) && floor.clearance[c] < kWall;
+    const bool rolls = !wall && distance(hit, here) < kPushReach &&
+                       std::any_of(loose.begin(), loose.end(), [&](const auto& p) { return distance(p, hit) < kRoll; });
+    (rolls ? rolling_ : rest).push_back(hit);
+  }
+  return rest;
+}
+
+}  // namespace rubble::explore

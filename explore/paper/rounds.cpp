@@ -1,0 +1,80 @@
+#include "explore/paper/rounds.h"
+
+#include <algorithm>
+
+namespace rubble::explore {
+namespace {
+
+constexpr int kMaxPardons = 3;               ///< times that what failed is tried again before giving up
+constexpr int kBarrenRounds = 2;             ///< rounds in a row that gain nothing are the last
+constexpr int kForgets = 4;                  ///< times that all that was felt is forgotten for the sake of new ground
+constexpr int kHomeTries = 6;                ///< times that it is on the way home
+constexpr std::size_t kWorthForgetting = 3;  ///< frontiers
+
+}  // namespace
+
+Resort Rounds::next_resort(bool homeward, bool may_push, LeftAlone& left_alone, Stamp now) {
+  if (looks_in_vain_ == 0 || (failed_plans_ < 2 && looks_in_vain_ < 2)) {
+    ++looks_in_vain_;
+    return Resort::LookAround;
+  }
+  if (pardons_ < kMaxPardons && left_alone.pardon(now)) {
+    ++pardons_;
+    return Resort::TryAgain;
+  }
+  if (may_push) return Resort::Push;
+  if (!homeward || home_tries_ >= kHomeTries || !left_alone.forget(now)) return Resort::GiveUp;
+  ++home_tries_;
+  return Resort::ForgetAll;
+}
+
+std::optional<std::string> Rounds::before_all_faces(const Standing& standing, std::size_t frontier_left,
+                                                    FloorSearch& search, LeftAlone& left_alone) {
+  if (frontier_left > 0 && !tried_before_search_ && left_alone.pardon_all(standing.now)) {
+    tried_before_search_ = true;
+    begin();
+    return "no niche is left: what could not be reached is tried again before the rest is searched";
+  }
+  if (frontier_left >= kWorthForgetting && forgets_ == 0) return forget_what_was_felt(standing, search, left_alone);
+  return std::nullopt;
+}
+
+std::optional<std::string> Rounds::another(const Standing& standing, FloorSearch& search, LeftAlone& left_alone) {
+  const bool barren = !known_then_.grown(standing.floor) && standing.victims <= victims_then_;
+  barren_rounds_ = barren ? barren_rounds_ + 1 : 0;
+  known_then_.mark(standing.floor);
+  victims_then_ = standing.victims;
+  if (barren_rounds_ >= kBarrenRounds) return forget_what_was_felt(standing, search, left_alone);
+  const bool given_up = search.reconsider(standing.floor);
+  const bool failed = left_alone.pardon_all(standing.now);
+  if (!given_up && !failed) return forget_what_was_felt(standing, search, left_alone);
+  tried_before_search_ = false;
+  begin();
+  return "round " + std::to_string(++rounds_) + ": what could not be reached or seen is tried again";
+}
+
+/// What was felt may bar the only way to half of the arena, and be wrong: where there is ground to be seen behind it,
+/// even what was felt for certain is tried anew.
+std::optional<std::string> Rounds::forget_what_was_felt(const Standing& standing, FloorSearch& search,
+                                                        LeftAlone& left_alone) {
+  if (standing.frontier_left == 0 || forgets_ >= kForgets || !left_alone.forget(standing.now)) return std::nullopt;
+  ++forgets_;
+  barren_rounds_ = 0;
+  search.reconsider(standing.floor);
+  left_alone.pardon_all(standing.now);
+  tried_before_search_ = false;
+  begin();
+  return "round " + std::to_string(++rounds_) + ": all that was felt is forgotten";
+}
+
+void Rounds::go_home() {
+  pardons_ = std::min(pardons_, kMaxPardons - 1);
+  looks_in_vain_ = 1;  // no looking round first
+}
+
+void Rounds::begin() {
+  failed_plans_ = looks_in_vain_ = 0;
+  pardons_ = std::min(pardons_, kMaxPardons - 1);
+}
+
+}  // namespace rubble::explore

@@ -1,0 +1,105 @@
+#include "explore/paper/target_choice.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/planar.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+constexpr double kBesideTheWay = 1.0;  ///< a niche that costs no more is looked into while frontiers are left [m]
+constexpr double kDetourCost = 2.0;    ///< a frontier may cost so much more than the next viewpoint [m]
+constexpr double kLongerWay = 2.0;     ///< [m]
+constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
+
+}  // namespace
+
+void TargetChoice::explore() {
+  goal_ = Goal::Frontier;
+  frontiers_done_ = false;
+}
+
+void TargetChoice::go_home() {
+  goal_ = Goal::Home;
+  target_.reset();
+}
+
+TargetChoice::Choice TargetChoice::choose(const View& view, FloorSearch& search) {
+  if (goal_ == Goal::Home) return {way_home(view.floor, view.T_map_base)};
+  const bool driving = goal_ == Goal::Frontier;
+  if (driving && (frontiers_done_ || !search.on())) return {to_frontier(view, target_)};
+  Plan frontier = to_frontier(view, driving ? target_ : std::nullopt);
+  Plan niche = to_place(view, search, Subjects::Niches);
+  if (frontiers_done_ && !niche.found) return {std::move(frontier), true};
+  return weigh(std::move(frontier), std::move(niche));
+}
+
+TargetChoice::Choice TargetChoice::choose_of_all_places(const View& view, FloorSearch& search, Plan frontier) {
+  return weigh(std::move(frontier), to_place(view, search, Subjects::All));
+}
+
+/// A way to a frontier against one to a place to search from.
+TargetChoice::Choice TargetChoice::weigh(Plan frontier, Plan place) {
+  place.frontier_left = frontier.frontier_left;
+  if (!frontiers_done_) {
+    // What lies in a niche beside the way is looked at now: coming back for it costs more.
+    const double most = std::min(frontier.cost, kBesideTheWay) + (goal_ == Goal::Frontier ? 0.0 : kDetourCost);
+    const bool look = place.found && frontier.found && place.cost <= most;
+    goal_ = look ? Goal::Place : Goal::Frontier;
+    return {look ? std::move(place) : std::move(frontier)};
+  }
+  // New ground is worth more than the faces that are left, none of which is the back of a niche.
+  if (!frontier.found || (place.found && frontier.cost > place.cost + kDetourCost)) return {std::move(place)};
+  goal_ = Goal::Frontier;
+  return {std::move(frontier), false, true};
+}
+
+Plan TargetChoice::to_frontier(const View& view, const std::optional<TPoint2D>& previous) {
+  const auto barred = [&](const TPoint2D& p) { return bar_targets_ && view.left_alone.barred(p, view.now); };
+  return planner_.to_frontier(view.floor, view.T_map_base, barred, previous);
+}
+
+Plan TargetChoice::to_place(const View& view, FloorSearch& search, Subjects subjects) {
+  const auto head_start = [&](const TPoint2D& p) -> std::optional<double> {
+    if (view.left_alone.barred(p, view.now)) return std::nullopt;
+    return target_ && distance(p, *target_) > config_.same_target ? config_.switch_cost : 0.0;
+  };
+  Plan plan = planner_.to_cells(view.floor, view.T_map_base, search.sources(view.floor, subjects, head_start));
+  if (plan.found) search.choose_subject(view.floor.cells.cell(plan.target));
+  return plan;
+}
+
+Plan TargetChoice::way_home(const Traversable& floor, const TPose2D& T_map_base) {
+  Plan plan;
+  for (const double tolerance : kHomeTolerances) {
+    plan = planner_.to_point(floor, T_map_base, position(home_.T_map_base), tolerance);
+    if (plan.found) break;
+  }
+  return plan;
+}
+
+double TargetChoice::distance_home(const TPose2D& T_map_base) const {
+  return distance(position(home_.T_map_base), position(T_map_base));
+}
+
+bool TargetChoice::turns_away(const Plan& plan) const {
+  return plan.found && target_ && distance(*target_, plan.target) > config_.same_target;
+}
+
+bool TargetChoice::take(const Plan& plan) {
+  const bool another = !target_ || turns_away(plan);
+  if (another) cost_ = plan.cost;
+  target_ = plan.target;
+  return another;
+}
+
+bool TargetChoice::kept_away(const View& view, double left) {
+  const Plan way = planner_.to_point(view.floor, view.T_map_base, *target_, config_.same_target);
+  return !way.found || length_of(way) > left + kLongerWay;
+}
+
+}  // namespace rubble::explore

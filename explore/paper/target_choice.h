@@ -1,0 +1,95 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+#include <mrpt/math/TPose2D.h>
+
+#include <optional>
+
+#include "base/stamp.h"
+#include "explore/anchor.h"
+#include "explore/caution/left_alone.h"
+#include "explore/plan/planner.h"
+#include "explore/plan/traversable.h"
+#include "explore/search/floor_search.h"
+#include "slam/mapper.h"
+
+namespace rubble::explore {
+
+/// What the robot drives to.
+enum class Goal { Frontier, Place, Home };
+
+/// The choice of the next target: a close frontier by the Exploration Transform; the back of a niche where that lies
+/// beside the way; places to search from once no frontier is left; the start in the end. The target being driven to has
+/// a head start, so that the robot does not turn round for a trifle.
+class TargetChoice {
+ public:
+  /// What a choice is made on.
+  struct View {
+    const Traversable& floor;
+    mrpt::math::TPose2D T_map_base;
+    Stamp now;
+    const LeftAlone& left_alone;
+  };
+  struct Choice {
+    Plan plan;
+    bool no_niche = false;    ///< frontiers are done and so are the niches: `plan` is to a frontier, if one is in reach
+    bool into_reach = false;  ///< a frontier is driven to although all that were in reach had been seen
+  };
+
+  /// `bar_targets`: frontiers that could not be had are left alone.
+  TargetChoice(const PlannerConfig& config, bool bar_targets)
+      : config_(config), bar_targets_(bar_targets), planner_(config) {}
+
+  Goal goal() const { return goal_; }
+  /// No frontier could be reached in this round: what comes into reach later is a detour of the search.
+  bool frontiers_done() const { return frontiers_done_; }
+  /// A round begins.
+  void explore();
+  void set_frontiers_done() { frontiers_done_ = true; }
+  void search() { goal_ = Goal::Place; }
+  void go_home();
+
+  /// Where the robot started, which is home.
+  void set_home(const Anchor& home) { home_ = home; }
+  /// The mapper corrected its past.
+  void follow(const slam::Mapper& mapper) { home_.follow(mapper); }
+
+  /// The next way, and with it the goal. Where the choice says `no_niche` it is not made: `choose_of_all_places` or,
+  /// after another round has begun, `choose_frontier` makes it.
+  Choice choose(const View& view, FloorSearch& search);
+  Choice choose_of_all_places(const View& view, FloorSearch& search, Plan frontier);
+  Plan choose_frontier(const View& view) { return to_frontier(view, std::nullopt); }
+  /// A way to the start, or as near to it as can be reached.
+  Plan way_home(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
+  /// Distance to the start as the crow flies [m].
+  double distance_home(const mrpt::math::TPose2D& T_map_base) const;
+
+  const std::optional<mrpt::math::TPoint2D>& target() const { return target_; }
+  /// Of the way to it when it was first chosen, eq. (3) [m].
+  double cost() const { return cost_; }
+  /// Makes the end of a plan the target; says whether it is another one.
+  bool take(const Plan& plan);
+  void drop_target() { target_.reset(); }
+  /// Whether the way of a plan ends elsewhere than at the target.
+  bool turns_away(const Plan& plan) const;
+  /// Whether the floor makes the way to the target longer than a detour, of which `left` [m] were left, or impossible.
+  bool kept_away(const View& view, double left);
+
+  double clearance_cap() const { return planner_.clearance_cap(); }
+
+ private:
+  Plan to_frontier(const View& view, const std::optional<mrpt::math::TPoint2D>& previous);
+  Plan to_place(const View& view, FloorSearch& search, Subjects subjects);
+  Choice weigh(Plan frontier, Plan place);
+
+  PlannerConfig config_;
+  bool bar_targets_;
+  Planner planner_;
+  Anchor home_;
+  Goal goal_ = Goal::Frontier;
+  bool frontiers_done_ = false;
+  std::optional<mrpt::math::TPoint2D> target_;
+  double cost_ = 0.0;
+};
+
+}  // namespace rubble::explore

@@ -1,0 +1,101 @@
+#include "explore/stuck/escape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "base/planar.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+constexpr double kFree = 0.5;   ///< away from where it was held, the robot is free [m]
+constexpr double kSpeed = 0.2;  ///< [m/s]
+constexpr double kTurns[] = {deg_to_rad(60.0), deg_to_rad(100.0), deg_to_rad(35.0), deg_to_rad(140.0)};  ///< [rad]
+constexpr double kMoveTime = 5.0;                                                                        ///< [s]
+constexpr double kRetraceTime = 15.0;                                                                    ///< [s]
+constexpr double kFeeler = 0.25;                ///< room is asked for about a point so far ahead of the motion [m]
+constexpr double kBehind = 0.35;                ///< the point of the trail that is steered to [m]
+constexpr double kMostBend = deg_to_rad(60.0);  ///< a trail that bends more is not followed [rad]
+constexpr double kBendGain = 1.2;               ///< turn rate per error [1/s]
+constexpr int kRounds = 2;                      ///< times that all moves are tried
+
+}  // namespace
+
+void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures) {
+  turn_ = kTurns[static_cast<std::size_t>(failures) % std::size(kTurns)];
+  const Move first = met == Met::Backwards ? Move::Ahead : Move::Back;
+  const Move last = met == Met::Backwards ? Move::Back : Move::Ahead;
+  moves_.clear();
+  for (int round = 0; round < kRounds; ++round) {
+    // Retracing asks for poses to a few centimetres: first what is quick and robust.
+    if (round > 0 || failures > 0) moves_.push_back(Move::Retrace);
+    for (const Move move : {first, Move::Left, first, Move::Right, Move::Right, first, last}) moves_.push_back(move);
+  }
+  at_ = 0;
+  begun_ = T_map_base;
+  start_move(T_map_base, now);
+}
+
+void Escape::start_move(const TPose2D& T_map_base, Stamp now) {
+  move_begun_ = T_map_base;
+  move_until_ = now + (moves_[at_] == Move::Retrace ? kRetraceTime : kMoveTime);
+  watch_.reset();
+  drive_ = {};
+}
+
+Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, bool struck,
+                            double dt, Stamp now, const std::vector<TPoint2D>& trail, const WayBack& way_back,
+                            const RoomFn& room) {
+  met_ = false;
+  if (distance(position(begun_), position(T_map_base)) >= kFree) {
+    drive_ = {};
+    return Result::Free;
+  }
+  const Move move = moves_[at_];
+  const bool held = watch_.stuck(T_map_base, commanded, stalled, dt) || struck;
+  const bool turned =
+      (move == Move::Left || move == Move::Right) && std::abs(wrap_angle(T_map_base.phi - move_begun_.phi)) >= turn_;
+  met_ = held;
+  bool wall = false;
+  if (move == Move::Back || move == Move::Ahead)
+    wall = !room(T_map_base + TPose2D{move == Move::Back ? -kFeeler : kFeeler, 0.0, 0.0});
+  const bool all_retraced = move == Move::Retrace && !way_back.drive(T_map_base);
+  if (held || turned || wall || all_retraced || now >= move_until_) {
+    if (++at_ == moves_.size()) {
+      drive_ = {};
+      return Result::Failed;
+    }
+    start_move(T_map_base, now);
+    return Result::UnderWay;
+  }
+  drive_ = command(T_map_base, trail, way_back);
+  return Result::UnderWay;
+}
+
+robot::Drive Escape::command(const TPose2D& T_map_base, const std::vector<TPoint2D>& trail,
+                             const WayBack& way_back) const {
+  switch (moves_[at_]) {
+    case Move::Left:
+      return {0.0, turn_speed_};
+    case Move::Right:
+      return {0.0, -turn_speed_};
+    case Move::Ahead:
+      return {kSpeed, 0.0};
+    case Move::Retrace:
+      return way_back.drive(T_map_base).value_or(robot::Drive{});
+    case Move::Back:
+      break;
+  }
+  const auto behind = std::find_if(trail.rbegin(), trail.rend(),
+                                   [&](const TPoint2D& p) { return distance(p, position(T_map_base)) >= kBehind; });
+  if (behind == trail.rend()) return {-kSpeed, 0.0};
+  const double bearing = std::atan2(behind->y - T_map_base.y, behind->x - T_map_base.x);
+  const double error = wrap_angle(bearing - T_map_base.phi - kPi);
+  return {-kSpeed, std::abs(error) < kMostBend ? kBendGain * error : 0.0};
+}
+
+}  // namespace rubble::explore

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <mrpt/math/TPoint2D.h>
+#include <mrpt/math/TPose2D.h>
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "base/stamp.h"
+#include "explore/stuck/motion_watch.h"
+#include "explore/stuck/way_back.h"
+#include "robot/commands.h"
+
+namespace rubble::explore {
+
+/// How the robot gets free of what holds it: back the way it came for half a metre; where that fails turns and other
+/// directions, then pose by pose the way it came, and all of it again, until it has moved away or everything was tried.
+class Escape {
+ public:
+  enum class Result { UnderWay, Free, Failed };
+  /// What stopped the robot was met driving forwards, backwards, or turning.
+  enum class Met { Forwards, Backwards, Turning };
+  /// Whether half a body has room about a pose, as far as is known.
+  using RoomFn = std::function<bool(const mrpt::math::TPose2D&)>;
+
+  explicit Escape(double turn_speed) : turn_speed_(turn_speed) {}
+
+  /// `failures`: escapes in a row that failed just before; each turns by another angle.
+  void begin(Met met, const mrpt::math::TPose2D& T_map_base, Stamp now, int failures = 0);
+  /// One tick of `dt` [s] under the command that was in force. `struck`: a blow stopped the robot. `trail`: where it
+  /// came along, oldest first; `way_back`: the poses.
+  Result step(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, bool struck,
+              double dt, Stamp now, const std::vector<mrpt::math::TPoint2D>& trail, const WayBack& way_back,
+              const RoomFn& room);
+  /// The command for the tick to come.
+  const robot::Drive& drive() const { return drive_; }
+  /// Something was met in this tick: the base shall not push on.
+  bool met() const { return met_; }
+
+ private:
+  enum class Move { Back, Ahead, Left, Right, Retrace };
+
+  void start_move(const mrpt::math::TPose2D& T_map_base, Stamp now);
+  robot::Drive command(const mrpt::math::TPose2D& T_map_base, const std::vector<mrpt::math::TPoint2D>& trail,
+                       const WayBack& way_back) const;
+
+  double turn_speed_;  ///< [rad/s]
+  std::vector<Move> moves_;
+  std::size_t at_ = 0;
+  double turn_ = 0.0;  ///< of Left and Right [rad]
+  MotionWatch watch_;
+  mrpt::math::TPose2D begun_;       ///< where the escape began
+  mrpt::math::TPose2D move_begun_;  ///< where the present move began
+  Stamp move_until_ = Stamp::never();
+  robot::Drive drive_;
+  bool met_ = false;
+};
+
+}  // namespace rubble::explore

@@ -1,0 +1,49 @@
+#include "explore/stuck/stuck_watch.h"
+
+namespace rubble::explore {
+namespace {
+
+constexpr double kHeld = 0.5;           ///< a tick so long: the robot was held, a device was away [s]
+constexpr double kPatience = 2.0;       ///< then its motors may still be off for a while [s]
+constexpr double kOdometryLate = 0.25;  ///< the wheels are silent [s]
+
+}  // namespace
+
+void StuckWatch::update(const robot::Inputs& inputs, double passed, double dt) {
+  if (passed > kHeld) {
+    motion_.reset();
+    patient_until_ = inputs.now + kPatience;
+  }
+  if (!inputs.odometry.empty()) {
+    stalled_ = inputs.odometry.back().stalled;
+    odometry_at_ = inputs.now;
+  }
+  tilt_.update(inputs, dt);
+  jolt_.update(inputs);
+}
+
+std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded,
+                                                 bool on_purpose, double dt, Stamp now) {
+  if (on_purpose) motion_.turns_on_purpose();
+  // Nobody knows whether a base that is silent moves: a pulled plug is no obstacle.
+  if (odometry_at_ && now - *odometry_at_ > kOdometryLate) motion_.reset();
+  const bool stuck = motion_.stuck(T_map_base, now < patient_until_ ? robot::Drive{} : commanded, stalled_, dt);
+  if (!tilt_.too_steep() && !jolt_.struck() && !stuck) return std::nullopt;
+  const Hold hold{tilt_.too_steep() ? "it leans too much here"
+                  : jolt_.struck()  ? "a blow stops it"
+                  : stalled_        ? "the motors stall"
+                                    : "it does not move",
+                  met(commanded)};
+  motion_.reset();
+  tilt_.reset();
+  return hold;
+}
+
+Escape::Met StuckWatch::met(const robot::Drive& commanded) const {
+  if (jolt_.struck()) return jolt_.from_ahead() ? Escape::Met::Forwards : Escape::Met::Backwards;
+  if (motion_.rocking()) return Escape::Met::Forwards;
+  if (motion_.on_the_spot(commanded) || commanded.v == 0.0) return Escape::Met::Turning;
+  return commanded.v > 0.0 ? Escape::Met::Forwards : Escape::Met::Backwards;
+}
+
+}  // namespace rubble::explore

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <mrpt/math/TPose2D.h>
+
+#include <optional>
+#include <string>
+
+#include "base/stamp.h"
+#include "explore/stuck/escape.h"
+#include "explore/stuck/jolt_watch.h"
+#include "explore/stuck/motion_watch.h"
+#include "explore/stuck/tilt_watch.h"
+#include "robot/commands.h"
+#include "robot/measurements.h"
+
+namespace rubble::explore {
+
+/// Finds out that something holds the robot which the scanner cannot see: it leans, a blow stops it, its motors stall,
+/// or it does not move as told. Not so while nobody knows whether it moves: the base is silent, or the robot was held
+/// for a while (a device was away) and its motors may still be off.
+class StuckWatch {
+ public:
+  struct Hold {
+    std::string how;  ///< for people
+    Escape::Met met;
+  };
+
+  explicit StuckWatch(const TiltWatchConfig& tilt) : tilt_(tilt) {}
+
+  /// Takes in what arrived in a tick, `passed` [s] after the tick before; `dt` [s] of it the robot followed its
+  /// command.
+  void update(const robot::Inputs& inputs, double passed, double dt);
+  /// Judges the tick under the command that was in force. `on_purpose`: it may turn in its place. Once told, a hold is
+  /// forgotten.
+  std::optional<Hold> held(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool on_purpose,
+                           double dt, Stamp now);
+  /// The robot stands by its own will, or has got free: its motion is watched anew.
+  void begin_anew() { motion_.reset(); }
+
+  /// The motors report a stall.
+  bool stalled() const { return stalled_; }
+  /// A blow stopped the body in this tick.
+  bool struck() const { return jolt_.struck(); }
+
+ private:
+  Escape::Met met(const robot::Drive& commanded) const;
+
+  MotionWatch motion_;
+  TiltWatch tilt_;
+  JoltWatch jolt_;
+  bool stalled_ = false;
+  std::optional<Stamp> odometry_at_;      ///< when the wheels were heard of last
+  Stamp patient_until_ = Stamp::never();  ///< the base may not obey yet
+};
+
+}  // namespace rubble::explore

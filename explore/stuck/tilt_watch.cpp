@@ -1,0 +1,25 @@
+#include "explore/stuck/tilt_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/planar.h"
+
+namespace rubble::explore {
+
+void TiltWatch::update(const robot::Inputs& inputs, double dt) {
+  const double share = std::min(1.0, dt / config_.smoothing);
+  silent_for_ = inputs.aims.empty() ? silent_for_ + dt : 0.0;
+  if (!inputs.aims.empty()) {
+    pitch_ += share * (-inputs.aims.back().pitch - pitch_);
+    roll_ += share * (-inputs.aims.back().roll - roll_);
+  } else if (silent_for_ > config_.silence) {
+    pitch_ -= share * pitch_;
+    roll_ -= share * roll_;
+  }
+  steep_for_ = slope() > config_.too_steep ? steep_for_ + dt : 0.0;
+}
+
+double TiltWatch::slope() const { return length(pitch_, roll_); }
+
+}  // namespace rubble::explore

@@ -1,0 +1,41 @@
+#include "explore/caution/blacklist.h"
+
+#include <gtest/gtest.h>
+
+namespace rubble::explore {
+namespace {
+
+TEST(Blacklist, BarsADiscUntilItExpires) {
+  Blacklist list;
+  list.bar({1.0, 1.0}, 0.5, Stamp::from_seconds(10.0));
+  EXPECT_TRUE(list.barred({1.3, 1.3}, Stamp::from_seconds(5.0)));
+  EXPECT_FALSE(list.barred({1.5, 1.5}, Stamp::from_seconds(5.0)));
+  EXPECT_FALSE(list.barred({1.3, 1.3}, Stamp::from_seconds(10.0)));
+  EXPECT_EQ(list.times_barred({1.0, 1.2}), 1) << "it remembers what has expired";
+}
+
+TEST(Blacklist, PardonsWhatWouldExpireAndNothingElse) {
+  Blacklist list;
+  const Stamp now = Stamp::from_seconds(5.0);
+  EXPECT_FALSE(list.pardon(now));
+  list.bar({1.0, 1.0}, 0.5, Stamp::from_seconds(10.0));
+  list.bar_for_good({5.0, 5.0}, 0.5);
+  EXPECT_TRUE(list.pardon(now));
+  EXPECT_FALSE(list.barred({1.0, 1.0}, now));
+  EXPECT_TRUE(list.barred({5.0, 5.0}, now));
+  EXPECT_FALSE(list.pardon(now)) << "nothing is left to pardon";
+}
+
+TEST(Blacklist, PardonOfAllEndsBarsForGoodAsWell) {
+  const Stamp now = Stamp::from_seconds(10.0);
+  Blacklist list;
+  list.bar_for_good({1.0, 0.0}, 0.5);
+  EXPECT_FALSE(list.pardon(now));
+  EXPECT_TRUE(list.barred({1.0, 0.0}, now));
+  EXPECT_TRUE(list.pardon_all(now));
+  EXPECT_FALSE(list.barred({1.0, 0.0}, now));
+  EXPECT_FALSE(list.pardon_all(now)) << "nothing is left to pardon";
+}
+
+}  // namespace
+}  // namespace rubble::explore

@@ -1,0 +1,79 @@
+#include "explore/motion/pivot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/angle.h"
+#include "base/planar.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+constexpr double kRoom = 0.40;  // [m]
+constexpr double kTick = 0.02;  // [s]
+
+/// Free floor of 6 x 6 m, a wall along y = wall [m].
+Traversable floor_with_wall(double wall) {
+  GridFrame frame;
+  frame.resolution = 0.05;
+  frame.width = frame.height = 120;
+  OccupancyGrid cells(frame, Occupancy::Free);
+  for (int i = 0; i < 120; ++i) {
+    cells[{i, 0}] = cells[{i, 119}] = cells[{0, i}] = cells[{119, i}] = Occupancy::Unknown;
+    cells[frame.cell({(i + 0.5) * 0.05, wall})] = Occupancy::Occupied;
+  }
+  Traversable floor = traversable(std::move(cells));
+  measure_clearance(floor, 1.2);
+  return floor;
+}
+
+/// Where a robot comes to stand that turns by `angle` while the ground moves it by `creep` [m/s].
+TPose2D turned(Pivot* pivot, TPose2D pose, double angle, const TPoint2D& creep, const Traversable& floor) {
+  for (double left = angle; left > 0.0; left -= 1.0 * kTick) {
+    const robot::Drive drive = pivot != nullptr ? pivot->keep({0.0, 1.0}, pose, floor) : robot::Drive{0.0, 1.0};
+    EXPECT_DOUBLE_EQ(drive.w, 1.0);
+    EXPECT_LE(std::abs(drive.v), Pivot::kMostSpeed);
+    pose.x += (drive.v * std::cos(pose.phi) + creep.x) * kTick;
+    pose.y += (drive.v * std::sin(pose.phi) + creep.y) * kTick;
+    pose.phi += drive.w * kTick;
+  }
+  return pose;
+}
+
+TEST(Pivot, ATurnThatWandersComesToStandNearerToItsSpot) {
+  const Traversable floor = floor_with_wall(5.0);
+  for (const TPoint2D& creep : {TPoint2D{0.05, 0.0}, TPoint2D{0.0, -0.05}, TPoint2D{-0.03, 0.03}}) {
+    Pivot pivot(kRoom);
+    const TPose2D kept = turned(&pivot, {2.0, 2.0, 0.3}, 1.5 * kPi, creep, floor);
+    const TPose2D left = turned(nullptr, {2.0, 2.0, 0.3}, 1.5 * kPi, creep, floor);
+    EXPECT_LT(distance({kept.x, kept.y}, {2.0, 2.0}), 0.6 * distance({left.x, left.y}, {2.0, 2.0}));
+  }
+}
+
+TEST(Pivot, WhereCornersHaveNoRoomTheTurnLeadsAwayFromTheWall) {
+  const Traversable floor = floor_with_wall(3.0);
+  for (const double heading : {0.2, 1.0, 2.0, -1.0, -2.0}) {
+    Pivot pivot(kRoom);
+    const double before = 0.30;
+    const TPose2D end = turned(&pivot, {3.0, 3.0 - before, heading}, kPi, {}, floor);
+    EXPECT_GT(3.0 - end.y, before + 0.03) << heading;
+  }
+}
+
+TEST(Pivot, LeavesEveryOtherDriveAsItIs) {
+  const Traversable floor = floor_with_wall(3.0);
+  Pivot pivot(kRoom);
+  for (const robot::Drive& drive : {robot::Drive{0.4, 0.0}, robot::Drive{0.2, -1.0}, robot::Drive{0.0, 0.0}}) {
+    const robot::Drive kept = pivot.keep(drive, {3.0, 2.7, 0.0}, floor);
+    EXPECT_EQ(kept.v, drive.v);
+    EXPECT_EQ(kept.w, drive.w);
+  }
+  EXPECT_EQ(pivot.keep({0.0, 1.0}, {3.0, 2.0, 0.0}, Traversable()).v, 0.0) << "before there is a map";
+}
+
+}  // namespace
+}  // namespace rubble::explore

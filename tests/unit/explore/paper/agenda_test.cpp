@@ -1,0 +1,189 @@
+#include "explore/paper/agenda.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/planar.h"
+#include "tests/support/explore_grids.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+PaperExplorerConfig without_search() {
+  PaperExplorerConfig config;
+  config.search.on = false;
+  return config;
+}
+
+/// A robot without a body: it is where its orders lead it, at once, and sees nothing but what a test draws.
+struct Ordered {
+  explicit Ordered(const PaperExplorerConfig& config = without_search())
+      : agenda(config), left_alone(config.felt, config.planner.same_target), search(config.search, 0.46, 0.4) {
+    agenda.set_home({now, pose});
+  }
+  /// The room becomes a corridor along y = 0.65, with the robot in it.
+  void narrow() {
+    cells = test::room(8.0, 1.3);
+    pose.y = 0.65;
+  }
+  Agenda::Situation situation() {
+    floor = test::measured(cells);
+    return {now, pose, floor, turning, 0, left_alone, search};
+  }
+  Order ask() {
+    now = now + 5.0;
+    map.stamp({}, {});
+    const bool new_map = agenda.begin_plan(map, now);
+    Plan plan = agenda.choose(situation());
+    return agenda.decide(std::move(plan), new_map, situation());
+  }
+  bool told(const std::string& what) const {
+    const auto& decisions = agenda.decisions();
+    return std::any_of(decisions.begin(), decisions.end(),
+                       [&](const Decision& d) { return d.why.find(what) != std::string::npos; });
+  }
+
+  Agenda agenda;
+  LeftAlone left_alone;
+  FloorSearch search;
+  OccupancyGrid cells = test::room(8.0, 4.0);
+  Traversable floor;
+  slam::CountMap map{10, 10, 0.05};
+  TPose2D pose{2.0, 2.0, 0.0};
+  Stamp now = Stamp::from_seconds(1.0);
+  bool turning = false;
+};
+
+TEST(Agenda, ExploresThenLooksAroundThenGoesHomeAndEnds) {
+  Ordered robot;
+  test::fill(robot.cells, 6.0, 1.5, 7.0, 2.5, Occupancy::Unknown);
+  Order order = robot.ask();
+  ASSERT_EQ(order.kind, Order::Kind::Follow);
+  EXPECT_TRUE(robot.told("drives to the frontier"));
+  robot.pose = {order.plan.target.x, order.plan.target.y, 0.0};
+  robot.cells = test::room(8.0, 4.0);  // it has seen it now
+  EXPECT_EQ(robot.ask().kind, Order::Kind::Turn);
+  order = robot.ask();
+  for (int i = 0; i < 5 && order.kind != Order::Kind::Follow; ++i) order = robot.ask();
+  ASSERT_EQ(order.kind, Order::Kind::Follow);
+  EXPECT_EQ(robot.agenda.goal(), Goal::Home);
+  EXPECT_FALSE(robot.agenda.finished());
+  robot.pose = {order.plan.target.x, order.plan.target.y, 0.0};
+  EXPECT_EQ(robot.ask().kind, Order::Kind::Stop);
+  EXPECT_EQ(robot.agenda.end(), MissionEnd::Home);
+  EXPECT_EQ(robot.agenda.reason(), "nothing reachable left to explore, home again");
+}
+
+TEST(Agenda, WithoutAReturnItEndsWhereNothingIsLeft) {
+  PaperExplorerConfig config = without_search();
+  config.return_home = false;
+  Ordered robot(config);
+  for (int i = 0; i < 10 && !robot.agenda.finished(); ++i) robot.ask();
+  EXPECT_EQ(robot.agenda.end(), MissionEnd::Explored);
+  EXPECT_EQ(robot.agenda.goal(), Goal::Frontier);
+}
+
+/// What stays although the robot stands there: one look around, then it is left alone for good.
+TEST(Agenda, AFrontierThatStaysIsLeftAlone) {
+  Ordered robot;
+  test::fill(robot.cells, 2.0, 2.15, 2.4, 2.55, Occupancy::Unknown);
+  EXPECT_EQ(robot.ask().kind, Order::Kind::Turn);
+  robot.turning = true;
+  EXPECT_EQ(robot.ask().kind, Order::Kind::Stay) << "it is looking around";
+  robot.turning = false;
+  EXPECT_EQ(robot.ask().kind, Order::Kind::Stay);
+  EXPECT_TRUE(robot.told("stays although it was visited"));
+  EXPECT_TRUE(robot.left_alone.barred({2.2, 2.1}, robot.now + 1e6));
+}
+
+/// A ball lies in the door to what is not known yet.
+TEST(Agenda, PushesSmallThingsWhenNothingElseHelps) {
+  Ordered robot;
+  test::fill(robot.cells, 4.0, 0.0, 4.1, 4.0, Occupancy::Occupied);
+  test::fill(robot.cells, 6.0, 1.0, 7.0, 3.0, Occupancy::Unknown);
+  for (int i = 0; i < 12 && !robot.agenda.pushing().on(); ++i) robot.ask();
+  EXPECT_TRUE(robot.agenda.pushing().on());
+  EXPECT_TRUE(robot.told("small things that stand alone are pushed aside"));
+  for (int i = 0; i < 40 && robot.agenda.goal() != Goal::Home; ++i) robot.ask();
+  EXPECT_TRUE(robot.told("heaps that stand alone are pushed aside"));
+  EXPECT_TRUE(robot.told("1 frontier cannot be reached"));
+}
+
+/// What lies ahead of a viewpoint is dwelt on; what does not is faced first. `sees`: the sensors look on the way.
+TEST(Agenda, FacesAPlaceToSearchOrDwellsBeforeIt) {
+  for (const bool sees : {false, true}) {
+    Ordered robot((PaperExplorerConfig()));
+    bool faced = false, dwelt = false;
+    for (int i = 0; i < 60 && !(sees ? faced : dwelt); ++i) {
+      const Order order = robot.ask();
+      if (order.kind == Order::Kind::Follow) robot.pose = {order.plan.target.x, order.plan.target.y, robot.pose.phi};
+      if (order.kind == Order::Kind::Turn) robot.pose.phi = wrap_angle(robot.pose.phi + order.angle);
+      faced = faced || (order.kind == Order::Kind::Turn && order.purpose == TurnFor::Place);
+      dwelt = dwelt || robot.search.dwelling(robot.floor, robot.pose, robot.now);
+      for (int looks = 0; sees && looks < 3; ++looks)
+        robot.search.look(robot.floor, robot.pose, 0.0, robot.now = robot.now + 1.0);
+    }
+    EXPECT_EQ(robot.agenda.goal(), Goal::Place);
+    EXPECT_TRUE(sees ? faced : dwelt) << "sees: " << sees;
+  }
+}
+
+TEST(Agenda, ATargetThatCostsMoreTimeThanItDeservesIsLeftAlone) {
+  Ordered robot;
+  test::fill(robot.cells, 6.0, 1.5, 7.0, 2.5, Occupancy::Unknown);
+  const Order order = robot.ask();
+  ASSERT_EQ(order.kind, Order::Kind::Follow);
+  double spent = 0.0;
+  for (; robot.agenda.target() && spent < 1000.0; spent += 1.0) robot.agenda.spend(1.0, robot.situation());
+  EXPECT_GT(spent, order.plan.cost / 0.4) << "more than the drive takes";
+  EXPECT_LT(spent, 1000.0);
+  EXPECT_TRUE(robot.left_alone.barred(order.plan.target, robot.now));
+  EXPECT_TRUE(robot.agenda.due(robot.map, robot.now));
+}
+
+TEST(Agenda, ATargetThatSomethingNewKeepsItFromIsBarredAndNoOther) {
+  for (const bool across : {true, false}) {
+    Ordered robot;
+    robot.narrow();
+    test::fill(robot.cells, 6.5, 0.4, 7.0, 0.9, Occupancy::Unknown);
+    test::fill(robot.cells, 0.3, 0.4, 0.7, 0.9, Occupancy::Unknown);
+    robot.pose.x = 4.0;
+    const Order order = robot.ask();
+    ASSERT_EQ(order.kind, Order::Kind::Follow);
+    ASSERT_GT(order.plan.target.x, 5.0);
+    if (across) test::fill(robot.cells, 5.0, 0.0, 5.1, 1.3, Occupancy::Occupied);
+    Plan other;
+    other.found = true;
+    other.target = {1.0, 0.65};
+    robot.agenda.turn_away(other, 2.0, robot.situation());
+    EXPECT_EQ(robot.left_alone.barred(order.plan.target, robot.now), across);
+    EXPECT_EQ(robot.told("something new stands in the way"), across);
+  }
+}
+
+TEST(Agenda, WithoutAKnownWayHomeItTakesADetourButNotMoreThanItCame) {
+  Ordered robot;
+  robot.narrow();
+  robot.agenda.set_home({robot.now, robot.pose});
+  robot.pose.x = 6.0;
+  EXPECT_NEAR(robot.agenda.way_home(robot.situation(), 100.0), 4.0, 0.2);
+  test::fill(robot.cells, 4.0, 0.0, 4.1, 1.3, Occupancy::Occupied);
+  EXPECT_NEAR(robot.agenda.way_home(robot.situation(), 100.0), 12.0, 1e-9);
+  EXPECT_EQ(robot.agenda.way_home(robot.situation(), 7.0), 7.0);
+}
+
+TEST(Agenda, TheSameDecisionIsToldOnce) {
+  Ordered robot;
+  robot.agenda.note(robot.now, "a");
+  robot.agenda.note(robot.now, "a");
+  robot.agenda.note(robot.now, "b");
+  robot.agenda.note(robot.now, "a");
+  EXPECT_EQ(robot.agenda.decisions().size(), 3u);
+}
+
+}  // namespace
+}  // namespace rubble::explore

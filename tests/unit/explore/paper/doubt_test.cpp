@@ -1,0 +1,97 @@
+// While a mapper doubts its pose, what the victim sensors tell cannot be placed: through the whole explorer.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/planar.h"
+#include "explore/paper/paper_explorer.h"
+#include "slam/paper/paper_mapper.h"
+#include "tests/support/explore_world.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+/// Another mapper, with a covariance that a test plants.
+class Doubtful : public slam::Mapper {
+ public:
+  explicit Doubtful(slam::Mapper& mapper) : mapper_(mapper) {}
+  double sigma = 0.0;  ///< of x and y [m]
+
+  void update(const robot::Inputs& inputs) override { mapper_.update(inputs); }
+  const slam::CountMap& map() const override { return mapper_.map(); }
+  TPose2D pose() const override { return mapper_.pose(); }
+  PoseCovariance covariance() const override {
+    PoseCovariance covariance;
+    covariance(0, 0) = covariance(1, 1) = sigma * sigma;
+    return covariance;
+  }
+  std::uint64_t revision() const override { return mapper_.revision(); }
+  std::optional<TPose2D> pose_at(Stamp stamp) const override { return mapper_.pose_at(stamp); }
+  const Trajectory& trajectory() const override { return mapper_.trajectory(); }
+  const Trajectory& live_trajectory() const override { return mapper_.live_trajectory(); }
+  const std::vector<TPoint2D>& last_hits() const override { return mapper_.last_hits(); }
+  const slam::MapperCounts& counts() const override { return mapper_.counts(); }
+
+ private:
+  slam::Mapper& mapper_;
+};
+
+struct Seen {
+  std::size_t victims = 0;
+  bool searched = false;  ///< all there is
+  int places = 0;         ///< driven to for a look
+};
+
+/// A mission in a corridor with a victim at its wall, 400 s at most. `lost_from` [s] on the pose is off by more than a
+/// metre.
+Seen mission(double lost_from) {
+  const test::Maze maze = test::maze({"+--+--+--+",  //
+                                      "| R      |",  //
+                                      "+--+--+--+"});
+  const TPoint2D victim{maze.centre(1, 0).x + 0.3, maze.centre(1, 0).y + 0.55};
+  const robot::RobotModel model;
+  test::MazeRobot robot(maze, model);
+  slam::PaperMapper paper(model, test::exact_mapper(), 1);
+  Doubtful mapper(paper);
+  PaperExplorer explorer(model, {}, {400.0});
+  robot::Commands commands;
+  while (robot.now().seconds() < 400.0 && !explorer.finished()) {
+    robot::Inputs inputs = robot.step(commands);
+    const TPoint2D seen = robot.pose().inverseComposePoint(victim);
+    const double bearing = std::atan2(seen.y, seen.x), range = std::hypot(seen.x, seen.y);
+    if (!inputs.scans.empty() && range < 1.8 && std::abs(bearing) < 0.5)
+      inputs.cues.push_back({inputs.now, robot::CueKind::Heat, bearing, range, 0.9});
+    mapper.sigma = inputs.now.seconds() < lost_from ? 0.0 : 1.5;
+    mapper.update(inputs);
+    commands = explorer.next(mapper, inputs);
+  }
+  Seen run;
+  run.victims = explorer.victims().size();
+  run.searched = explorer.reason().find("all visible floor searched") != std::string::npos;
+  for (const Decision& decision : explorer.decisions())
+    if (decision.why.find("drives to a place") != std::string::npos) ++run.places;
+  return run;
+}
+
+TEST(Doubt, WithAPoseThatIsSureTheVictimIsFoundAndTheFloorSearched) {
+  const Seen run = mission(1e9);
+  EXPECT_EQ(run.victims, 1u);
+  EXPECT_TRUE(run.searched);
+}
+
+/// Doubt fades by 0.0025 m2 a second: 4.5 m2 outlast the mission.
+TEST(Doubt, ALostPoseMakesNoVictim) { EXPECT_EQ(mission(0.0).victims, 0u); }
+
+/// What is passed on the way does not count as looked at, so that more places must be driven to.
+TEST(Doubt, WhatALostRobotPassesIsNotSearchedByThat) {
+  const Seen sure = mission(1e9), lost = mission(0.0);
+  EXPECT_GT(lost.places, sure.places);
+}
+
+}  // namespace
+}  // namespace rubble::explore

@@ -1,0 +1,106 @@
+#include "explore/paper/pushing.h"
+
+#include <gtest/gtest.h>
+
+#include "explore/paper/known_ground.h"
+#include "tests/support/explore_grids.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+const TPose2D kRobot{2.0, 2.0, 0.0};
+const TPoint2D kBallAt{2.6, 2.0};
+
+/// A room of 4 x 4 m with a ball before the robot and a wall behind the ball.
+Traversable floor_with_ball(double extent) {
+  OccupancyGrid cells = test::room(4.0, 4.0);
+  test::fill(cells, kBallAt.x - 0.1, kBallAt.y - 0.1, kBallAt.x + 0.1, kBallAt.y + 0.1, Occupancy::Occupied);
+  test::fill(cells, 3.2, 0.0, 3.3, 4.0, Occupancy::Occupied);
+  Traversable floor = traversable(std::move(cells));
+  if (extent > 0.0) free_small_things(floor, extent);
+  measure_clearance(floor, 1.2);
+  return floor;
+}
+
+TEST(Pushing, BeginsWithSmallThingsAndGoesOnToHeaps) {
+  Pushing pushing;
+  const Traversable floor = floor_with_ball(0.0);
+  EXPECT_FALSE(pushing.on());
+  EXPECT_TRUE(pushing.more());
+  EXPECT_TRUE(pushing.start(floor));
+  const double single = pushing.extent();
+  EXPECT_TRUE(pushing.more());
+  EXPECT_FALSE(pushing.start(floor));
+  EXPECT_GT(pushing.extent(), single);
+  EXPECT_LT(pushing.extent(), 1.2) << "a panel of wall";
+  EXPECT_FALSE(pushing.more());
+  pushing.end();
+  EXPECT_FALSE(pushing.on());
+  EXPECT_TRUE(pushing.more());
+}
+
+TEST(Pushing, IsWorthWhileOnceForEachPieceOfGroundGained) {
+  Pushing pushing;
+  const Traversable small = test::measured(test::room(4.0, 4.0)), same = test::measured(test::room(4.0, 4.1)),
+                    large = test::measured(test::room(4.0, 5.0));
+  EXPECT_TRUE(pushing.worth(small)) << "it was not tried yet";
+  pushing.start(small);
+  EXPECT_TRUE(pushing.worth(small)) << "it has begun";
+  pushing.end();
+  EXPECT_FALSE(pushing.worth(small));
+  EXPECT_FALSE(pushing.worth(same));
+  EXPECT_TRUE(pushing.worth(large));
+  pushing.new_round();
+  EXPECT_TRUE(pushing.worth(small));
+}
+
+TEST(Pushing, WhatIsPushedIsNoNewObstacleAndAllElseIs) {
+  Pushing pushing;
+  const TPoint2D on_ball{2.5, 2.0}, on_wall{3.2, 2.0}, on_other{2.3, 2.8};
+  const std::vector<TPoint2D> hits = {on_ball, on_wall, on_other};
+  EXPECT_EQ(pushing.without_loose_things(hits, kRobot, floor_with_ball(0.0)).size(), 3u) << "nothing is pushed";
+  pushing.start(floor_with_ball(0.0));
+  const Traversable floor = floor_with_ball(pushing.extent());
+  ASSERT_FALSE(floor.loose.empty());
+  const std::vector<TPoint2D> rest = pushing.without_loose_things(hits, kRobot, floor);
+  EXPECT_TRUE(pushing.near_loose_things());
+  ASSERT_EQ(rest.size(), 2u);
+  EXPECT_EQ(rest[0].x, on_wall.x);
+  EXPECT_EQ(rest[1].x, on_other.x);
+  pushing.without_loose_things({on_wall}, kRobot, floor);
+  EXPECT_FALSE(pushing.near_loose_things());
+  EXPECT_EQ(pushing.without_loose_things(hits, {0.5, 2.0, 0.0}, floor).size(), 3u) << "it is not near the robot yet";
+}
+
+/// The map shows the ball where it lay; the scans see it roll on.
+TEST(Pushing, FollowsWhatRolls) {
+  Pushing pushing;
+  pushing.start(floor_with_ball(0.0));
+  const Traversable floor = floor_with_ball(pushing.extent());
+  TPoint2D ball = kBallAt;
+  for (; ball.y < 2.8; ball.y += 0.1)
+    EXPECT_TRUE(pushing.without_loose_things({ball}, kRobot, floor).empty()) << ball.y;
+  EXPECT_EQ(pushing.without_loose_things({{ball.x, ball.y - 0.4}}, kRobot, floor).size(), 1u)
+      << "what is found elsewhere is another thing";
+}
+
+TEST(KnownGround, HasGrownByASquareMetre) {
+  KnownGround ground;
+  EXPECT_FALSE(ground.marked());
+  const Traversable small = test::measured(test::room(4.0, 4.0));
+  EXPECT_TRUE(ground.grown(small)) << "from nothing";
+  ground.mark(small);
+  EXPECT_TRUE(ground.marked());
+  EXPECT_FALSE(ground.grown(small));
+  EXPECT_FALSE(ground.grown(test::measured(test::room(4.0, 4.2))));
+  EXPECT_TRUE(ground.grown(test::measured(test::room(4.0, 4.3))));
+  EXPECT_FALSE(ground.grown(test::measured(test::room(3.0, 3.0)))) << "it has shrunk";
+  ground.forget();
+  EXPECT_FALSE(ground.marked());
+}
+
+}  // namespace
+}  // namespace rubble::explore

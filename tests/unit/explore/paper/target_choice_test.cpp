@@ -1,0 +1,202 @@
+#include "explore/paper/target_choice.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+#include "base/planar.h"
+#include "explore/paper/plan_clock.h"
+#include "tests/support/explore_grids.h"
+#include "tests/support/planted_mapper.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+/// A robot in a room of 8 x 4 m, with unknown ground where a test puts it.
+struct Choosing {
+  explicit Choosing(bool searches = false, bool bar_targets = true) : choice(PlannerConfig{}, bar_targets) {
+    config.on = searches;
+    search.emplace(config, 0.46, 0.4);
+  }
+  /// The room becomes a corridor along y = 0.65, with the robot in it.
+  void narrow() {
+    cells = test::room(8.0, 1.3);
+    pose.y = 0.65;
+  }
+  void unknown(double x, double y) { test::fill(cells, x, y, x + 0.4, y + 0.4, Occupancy::Unknown); }
+  TargetChoice::View view() {
+    floor = test::measured(cells);
+    return {floor, pose, now, left_alone};
+  }
+  TargetChoice::Choice choose() { return choice.choose(view(), *search); }
+
+  OccupancyGrid cells = test::room(8.0, 4.0);
+  Traversable floor;
+  TPose2D pose{4.0, 2.0, 0.0};
+  Stamp now = Stamp::from_seconds(1.0);
+  LeftAlone left_alone{FeltConfig{}, PlannerConfig{}.same_target};
+  SearchConfig config;
+  std::optional<FloorSearch> search;
+  TargetChoice choice;
+};
+
+TEST(TargetChoice, DrivesToTheNearestFrontier) {
+  Choosing robot;
+  robot.narrow();
+  EXPECT_FALSE(robot.choose().plan.found) << "all is known";
+  robot.unknown(6.5, 0.45);
+  robot.unknown(0.6, 0.45);
+  const Plan plan = robot.choose().plan;
+  ASSERT_TRUE(plan.found);
+  EXPECT_GT(plan.target.x, 5.0);
+  EXPECT_EQ(plan.frontier_left, 2u);
+  EXPECT_EQ(robot.choice.goal(), Goal::Frontier);
+}
+
+TEST(TargetChoice, TheTargetBeingDrivenToHasAHeadStart) {
+  Choosing robot;
+  robot.unknown(6.5, 1.8);
+  robot.unknown(1.1, 1.8);
+  robot.pose.x = 3.9;
+  const Plan first = robot.choose().plan;
+  ASSERT_TRUE(first.found);
+  ASSERT_LT(first.target.x, 4.0);
+  EXPECT_TRUE(robot.choice.take(first));
+  robot.pose.x = 4.1;
+  EXPECT_LT(robot.choose().plan.target.x, 4.0);
+  robot.choice.drop_target();
+  EXPECT_GT(robot.choose().plan.target.x, 4.0);
+}
+
+TEST(TargetChoice, WhatIsBarredIsNoTargetUnlessNothingIsEverBarred) {
+  for (const bool bar_targets : {true, false}) {
+    Choosing robot(false, bar_targets);
+    robot.unknown(6.5, 1.8);
+    robot.left_alone.bar_for_good({6.5, 2.0});
+    EXPECT_EQ(robot.choose().plan.found, !bar_targets);
+  }
+}
+
+TEST(TargetChoice, ATargetStaysTheSameWhileItMovesALittle) {
+  Choosing robot;
+  Plan plan;
+  plan.found = true;
+  plan.target = {6.0, 2.0};
+  plan.cost = 3.0;
+  EXPECT_FALSE(robot.choice.turns_away(plan)) << "from none";
+  EXPECT_TRUE(robot.choice.take(plan));
+  plan.target.x += 0.4;
+  plan.cost = 2.0;
+  EXPECT_FALSE(robot.choice.turns_away(plan));
+  EXPECT_FALSE(robot.choice.take(plan));
+  EXPECT_EQ(robot.choice.cost(), 3.0) << "as when it was first chosen";
+  plan.target.x += 0.6;
+  EXPECT_TRUE(robot.choice.turns_away(plan));
+  EXPECT_TRUE(robot.choice.take(plan));
+  EXPECT_EQ(robot.choice.cost(), 2.0);
+}
+
+TEST(TargetChoice, AWallAcrossTheWayKeepsTheRobotAway) {
+  Choosing robot;
+  robot.narrow();
+  Plan plan;
+  plan.found = true;
+  plan.target = {7.0, 0.65};
+  robot.choice.take(plan);
+  EXPECT_FALSE(robot.choice.kept_away(robot.view(), 3.0));
+  test::fill(robot.cells, 5.0, 1.1, 5.1, 1.3, Occupancy::Occupied);
+  EXPECT_FALSE(robot.choice.kept_away(robot.view(), 3.0)) << "beside the way";
+  test::fill(robot.cells, 5.0, 0.0, 5.1, 1.3, Occupancy::Occupied);
+  EXPECT_TRUE(robot.choice.kept_away(robot.view(), 3.0));
+}
+
+TEST(TargetChoice, OnceFrontiersAreDonePlacesAreSearchedNichesFirst) {
+  Choosing robot(true);
+  robot.choice.set_frontiers_done();
+  robot.choice.search();
+  TargetChoice::Choice choice = robot.choose();
+  ASSERT_TRUE(choice.no_niche);
+  choice = robot.choice.choose_of_all_places(robot.view(), *robot.search, std::move(choice.plan));
+  EXPECT_TRUE(choice.plan.found);
+  EXPECT_EQ(robot.choice.goal(), Goal::Place);
+  for (const double x : {6.0, 6.4}) test::fill(robot.cells, x, 3.4, x + 0.1, 4.0, Occupancy::Occupied);
+  choice = robot.choose();
+  EXPECT_FALSE(choice.no_niche);
+  ASSERT_TRUE(choice.plan.found);
+  EXPECT_NEAR(choice.plan.target.x, 6.2, 0.5);
+}
+
+TEST(TargetChoice, AFrontierThatComesIntoReachGoesBeforeTheSearch) {
+  Choosing robot(true);
+  robot.narrow();
+  robot.choice.set_frontiers_done();
+  robot.choice.search();
+  robot.unknown(5.2, 0.45);
+  TargetChoice::Choice choice = robot.choose();
+  ASSERT_TRUE(choice.no_niche);
+  choice = robot.choice.choose_of_all_places(robot.view(), *robot.search, std::move(choice.plan));
+  EXPECT_TRUE(choice.into_reach);
+  EXPECT_EQ(robot.choice.goal(), Goal::Frontier);
+  EXPECT_TRUE(robot.choice.frontiers_done()) << "it is a detour of the search";
+  robot.choice.explore();
+  EXPECT_FALSE(robot.choice.frontiers_done());
+}
+
+TEST(TargetChoice, ANicheIsLookedIntoWhereItLiesBesideTheWay) {
+  for (const double x : {4.0, 1.0}) {
+    Choosing robot(true);
+    robot.unknown(7.0, 1.8);
+    for (const double side : {-0.25, 0.15})
+      test::fill(robot.cells, x + side, 3.4, x + side + 0.1, 4.0, Occupancy::Occupied);
+    robot.pose.y = 2.8;
+    const Plan plan = robot.choose().plan;
+    ASSERT_TRUE(plan.found);
+    EXPECT_EQ(robot.choice.goal(), x == 4.0 ? Goal::Place : Goal::Frontier) << "the niche is at " << x;
+  }
+}
+
+TEST(TargetChoice, GoesHomeToWhereItStartedAlsoAfterTheMapWasCorrected) {
+  Choosing robot;
+  test::PlantedMapper mapper;
+  mapper.plant(Stamp::from_seconds(0.5), {1.0, 1.0, 0.0});
+  robot.choice.set_home({Stamp::from_seconds(0.5), {1.0, 1.0, 0.0}});
+  EXPECT_NEAR(robot.choice.distance_home(robot.pose), std::hypot(3.0, 1.0), 1e-9);
+  robot.unknown(6.5, 1.8);
+  robot.choice.take(robot.choose().plan);
+  robot.choice.go_home();
+  EXPECT_FALSE(robot.choice.target());
+  Plan plan = robot.choose().plan;
+  ASSERT_TRUE(plan.found);
+  EXPECT_LT(distance(plan.target, {1.0, 1.0}), 0.2);
+  mapper.correct(Stamp::from_seconds(9.0), {0.0, 2.0, 0.0});
+  robot.choice.follow(mapper);
+  plan = robot.choose().plan;
+  ASSERT_TRUE(plan.found);
+  EXPECT_LT(distance(plan.target, {1.0, 3.0}), 0.2);
+  test::fill(robot.cells, 0.7, 2.7, 1.3, 3.3, Occupancy::Occupied);
+  plan = robot.choose().plan;
+  ASSERT_TRUE(plan.found) << "as near as can be";
+  EXPECT_LT(distance(plan.target, {1.0, 3.0}), 0.85);
+}
+
+TEST(PlanClock, AsksForAPlanOnANewMapAfterAWhileOrAtOnce) {
+  const auto at = [](double s) { return Stamp::from_seconds(s); };
+  PlanClock clock;
+  EXPECT_TRUE(clock.due(0, at(0.0))) << "the first one";
+  EXPECT_TRUE(clock.plan(1, 0.5, at(1.0)));
+  EXPECT_FALSE(clock.due(2, at(1.4)));
+  EXPECT_TRUE(clock.due(2, at(1.5)));
+  EXPECT_FALSE(clock.due(1, at(9.0))) << "the same map";
+  EXPECT_NEAR(clock.age(at(1.3)), 0.3, 1e-9);
+  clock.force();
+  EXPECT_TRUE(clock.due(1, at(1.1)));
+  EXPECT_FALSE(clock.plan(1, 0.5, at(1.1))) << "no new map";
+  EXPECT_FALSE(clock.due(1, at(1.2)));
+}
+
+}  // namespace
+}  // namespace rubble::explore

@@ -1,0 +1,105 @@
+#include "explore/search/victim_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/angle.h"
+#include "tests/support/explore_grids.h"
+#include "tests/support/planted_mapper.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+PoseCovariance off_by(double sigma) {
+  PoseCovariance covariance;
+  covariance(0, 0) = covariance(1, 1) = sigma * sigma;
+  return covariance;
+}
+
+/// A robot in a room of 6 x 4 m, its victim sensors on one thing.
+struct Watching {
+  VictimWatch watch{VictimSearchConfig{}, SearchConfig{}, 0.46, 0.4};
+  test::PlantedMapper mapper;
+  Traversable floor = test::measured(test::room(6.0, 4.0));
+  TPose2D pose{2.0, 2.0, 0.0};
+  double seconds = 0.0;
+
+  Stamp now() const { return Stamp::from_seconds(seconds); }
+  void moved(double sigma) { watch.moved(pose, off_by(sigma), 0.02); }
+  bool hear(const TPoint2D& victim) {
+    seconds += 0.1;
+    mapper.plant(now(), pose);
+    const TPoint2D seen = pose.inverseComposePoint(victim);
+    return watch.hear({now(), robot::CueKind::Heat, std::atan2(seen.y, seen.x), std::hypot(seen.x, seen.y), 0.9},
+                      mapper, pose, floor);
+  }
+};
+
+TEST(VictimWatch, ConfirmsAVictimOnceAndSaysSo) {
+  Watching robot;
+  robot.moved(0.05);
+  int confirmed = 0;
+  for (int i = 0; i < 10; ++i) confirmed += robot.hear({3.0, 2.5}) ? 1 : 0;
+  EXPECT_EQ(confirmed, 1);
+  ASSERT_EQ(robot.watch.reports().size(), 1u);
+}
+
+TEST(VictimWatch, WhileThePoseIsInDoubtNeitherCuesNorLooksCount) {
+  Watching robot;
+  robot.moved(0.05);
+  robot.moved(0.8);
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(robot.hear({3.0, 2.5}));
+  EXPECT_FALSE(robot.watch.holds_still(robot.floor, robot.pose, robot.now())) << "nor do they hold the robot";
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(robot.watch.look(robot.floor, robot.pose, 0.0, robot.now() + i));
+  robot.moved(0.05);
+  EXPECT_TRUE(robot.watch.look(robot.floor, robot.pose, 0.0, robot.now() + 5.0));
+  bool confirmed = false;
+  for (int i = 0; i < 10; ++i) confirmed = robot.hear({3.0, 2.5}) || confirmed;
+  EXPECT_TRUE(confirmed);
+}
+
+TEST(VictimWatch, AFirstCueHoldsTheRobotForAMoment) {
+  Watching robot;
+  robot.moved(0.05);
+  EXPECT_FALSE(robot.watch.holds_still(robot.floor, robot.pose, robot.now()));
+  robot.hear({3.0, 2.5});
+  EXPECT_TRUE(robot.watch.holds_still(robot.floor, robot.pose, robot.now()));
+  EXPECT_FALSE(robot.watch.holds_still(robot.floor, robot.pose, robot.now() + 2.0));
+}
+
+/// Two boxes back to back on the two sides of a wall.
+TEST(VictimWatch, TheFloorTellsTheSidesOfAWall) {
+  for (const bool wall : {true, false}) {
+    Watching robot;
+    if (wall) {
+      OccupancyGrid cells = test::room(6.0, 4.0);
+      test::fill(cells, 2.95, 0.0, 3.05, 4.0, Occupancy::Occupied);
+      robot.floor = test::measured(std::move(cells));
+    }
+    robot.moved(0.05);
+    for (int i = 0; i < 4; ++i) robot.hear({2.75, 2.0});
+    robot.pose = {4.0, 2.0, kPi};
+    robot.moved(0.05);
+    for (int i = 0; i < 4; ++i) robot.hear({3.25, 2.0});
+    EXPECT_EQ(robot.watch.reports().size(), wall ? 2u : 1u);
+  }
+}
+
+TEST(VictimWatch, VictimsAndLooksFollowTheMap) {
+  Watching robot;
+  robot.moved(0.05);
+  for (int i = 0; i < 4; ++i) robot.hear({3.0, 2.5});
+  ASSERT_EQ(robot.watch.reports().size(), 1u);
+  EXPECT_TRUE(robot.watch.look(robot.floor, robot.pose, 0.0, robot.now()));
+  EXPECT_FALSE(robot.watch.follow(robot.mapper)) << "nothing moved";
+  robot.mapper.correct(Stamp::from_seconds(100.0), {0.5, 0.0, 0.0});
+  EXPECT_TRUE(robot.watch.follow(robot.mapper));
+  EXPECT_NEAR(robot.watch.reports()[0].p_map.x, 3.5, 1e-6);
+}
+
+}  // namespace
+}  // namespace rubble::explore

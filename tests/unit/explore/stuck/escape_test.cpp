@@ -1,0 +1,135 @@
+#include "explore/stuck/escape.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/angle.h"
+#include "base/planar.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
+constexpr double kEscapeTick = 0.02;
+
+/// A point robot that does what it is told where `may` lets it.
+struct Puppet {
+  TPose2D pose;
+  std::function<bool(const TPose2D&)> may = [](const TPose2D&) { return true; };
+  void obey(const robot::Drive& drive) {
+    const TPose2D next = pose + TPose2D{drive.v * kEscapeTick, 0.0, drive.w * kEscapeTick};
+    if (may(next)) pose = next;
+  }
+};
+
+struct Outcome {
+  Escape::Result result = Escape::Result::UnderWay;
+  double seconds = 0.0;
+};
+
+Outcome run(Puppet& puppet, Escape::Met met, const std::vector<TPoint2D>& trail, const Escape::RoomFn& room,
+            int failures = 0, const WayBack& came = {}) {
+  Escape escape(deg_to_rad(60.0));
+  WayBack way_back = came;
+  Stamp now = Stamp::from_seconds(1.0);
+  escape.begin(met, puppet.pose, now, failures);
+  Outcome outcome;
+  while (outcome.result == Escape::Result::UnderWay && outcome.seconds < 300.0) {
+    way_back.add(now, puppet.pose);
+    outcome.result = escape.step(puppet.pose, escape.drive(), false, false, kEscapeTick, now, trail, way_back, room);
+    puppet.obey(escape.drive());
+    now = now + kEscapeTick;
+    outcome.seconds += kEscapeTick;
+  }
+  return outcome;
+}
+
+const Escape::RoomFn kRoom = [](const TPose2D&) { return true; };
+
+TEST(Escape, GoesBackHalfAMetreTheWayItCame) {
+  Puppet puppet;
+  const Outcome outcome = run(puppet, Escape::Met::Forwards, {}, kRoom);
+  EXPECT_EQ(outcome.result, Escape::Result::Free);
+  EXPECT_NEAR(puppet.pose.x, -0.5, 0.02);
+  EXPECT_NEAR(puppet.pose.y, 0.0, 0.02);
+}
+
+TEST(Escape, FollowsATrailThatBends) {
+  std::vector<TPoint2D> trail;
+  for (double a = 60.0; a > 0.0; a -= 5.0) trail.push_back({-std::sin(deg_to_rad(a)), 1.0 - std::cos(deg_to_rad(a))});
+  Puppet puppet;
+  run(puppet, Escape::Met::Forwards, trail, kRoom);
+  EXPECT_GT(puppet.pose.y, 0.04);
+}
+
+TEST(Escape, TriesOtherWaysWhereTheWayBackIsHeldToo) {
+  Puppet puppet;
+  puppet.may = [](const TPose2D& pose) { return pose.x > -0.1; };  // a half plane behind it
+  EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, kRoom).result, Escape::Result::Free);
+  EXPECT_GT(puppet.pose.x, -0.11);
+}
+
+TEST(Escape, DoesNotBackIntoAWallItKnows) {
+  Puppet puppet;
+  const Escape::RoomFn room = [](const TPose2D& pose) { return pose.x > -0.3; };
+  double least = 0.0;
+  puppet.may = [&](const TPose2D& pose) {
+    least = std::min(least, pose.x);
+    return true;
+  };
+  run(puppet, Escape::Met::Forwards, {}, room);
+  EXPECT_GT(least, -0.3);
+}
+
+/// Between steps only one direction leads out, and turns of 60 degrees miss it: the next try turns by another angle.
+TEST(Escape, TriesOtherAnglesAfterItFailed) {
+  const double way_out = deg_to_rad(100.0);
+  const auto try_all = [&](int tries) {
+    Puppet puppet;
+    puppet.may = [&](const TPose2D& next) {
+      const bool turns = next.x == puppet.pose.x && next.y == puppet.pose.y;
+      return turns || std::abs(wrap_angle(puppet.pose.phi - way_out)) < deg_to_rad(12.0);
+    };
+    for (int failures = 0; failures < tries; ++failures) {
+      puppet.pose = {};
+      if (run(puppet, Escape::Met::Turning, {}, kRoom, failures).result == Escape::Result::Free) return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(try_all(1));
+  EXPECT_TRUE(try_all(4));
+}
+
+/// In by an arc between steps that let nothing turn: out by the same arc, though neither straight back nor turns help.
+TEST(Escape, RetracesPoseByPoseWhatLetsItThroughInNoOtherWay) {
+  const auto on_arc = [](const TPose2D& p) {  // 0.8 m about (0, 0.8), heading along it
+    return std::abs(std::hypot(p.x, p.y - 0.8) - 0.8) < 0.03 &&
+           std::abs(wrap_angle(std::atan2(p.x, 0.8 - p.y) - p.phi)) < deg_to_rad(7.0);
+  };
+  WayBack came;
+  Puppet puppet;
+  for (double a = -60.0; a <= 0.0; a += 0.5) {
+    const double phi = deg_to_rad(a);
+    puppet.pose = {0.8 * std::sin(phi), 0.8 - 0.8 * std::cos(phi), phi};
+    ASSERT_TRUE(on_arc(puppet.pose));
+    came.add(Stamp::from_seconds(1.0), puppet.pose);
+  }
+  puppet.may = on_arc;
+  EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, kRoom).result, Escape::Result::Failed) << "the case is too easy";
+  EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, kRoom, 1, came).result, Escape::Result::Free);
+  EXPECT_TRUE(on_arc(puppet.pose));
+}
+
+TEST(Escape, SaysSoWhenNothingHelps) {
+  Puppet puppet;
+  puppet.may = [](const TPose2D&) { return false; };
+  const Outcome outcome = run(puppet, Escape::Met::Forwards, {}, kRoom);
+  EXPECT_EQ(outcome.result, Escape::Result::Failed);
+  EXPECT_LT(outcome.seconds, 90.0);
+}
+
+}  // namespace
+}  // namespace rubble::explore

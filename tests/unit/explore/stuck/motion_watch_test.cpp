@@ -1,0 +1,73 @@
+#include "explore/stuck/motion_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/angle.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPose2D;
+
+TEST(MotionWatch, ARobotThatMovesAsToldIsNotStuck) {
+  MotionWatch watch;
+  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(watch.stuck({0.4 * 0.02 * i, 0.0, 0.0}, {0.4, 0.0}, false, 0.02));
+  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(watch.stuck({8.0, 0.0, 1.0 * 0.02 * i}, {0.0, 1.0}, false, 0.02));
+  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(watch.stuck({8.0, 0.0, 20.0}, {0.0, 0.0}, false, 0.02)) << "it may stand";
+}
+
+TEST(MotionWatch, SpinningWheelsAreFoundOutWithinTwoSeconds) {
+  MotionWatch watch;
+  int ticks = 0;
+  while (!watch.stuck({1.0 + 0.0002 * (ticks % 3), 0.0, 0.0}, {0.4, 0.0}, false, 0.02)) ASSERT_LT(++ticks, 100);
+  MotionWatch turning;
+  ticks = 0;
+  while (!turning.stuck({1.0, 0.0, 0.0}, {0.0, 1.0}, false, 0.02)) ASSERT_LT(++ticks, 100);
+}
+
+/// Fast wheels spin before a step: each tick of odometry carries the pose on, each scan puts it back.
+TEST(MotionWatch, APoseThatTremblesInItsPlaceIsFoundOut) {
+  for (const double speed : {0.4, 0.55, 0.7}) {
+    MotionWatch watch;
+    int ticks = 0;
+    while (!watch.stuck({1.0 + speed * 0.02 * (ticks % 6), 0.0, 0.0}, {speed, 0.0}, false, 0.02))
+      ASSERT_LT(++ticks, 150) << "three seconds, at " << speed << " m/s";
+  }
+}
+
+/// A corner hangs on something: the robot turns away, slips back, and turns again.
+TEST(MotionWatch, RockingToAndFroIsFoundOutAndATurnOnTheSpotIsNone) {
+  MotionWatch rocking;
+  double heading = 0.0;
+  int ticks = 0;
+  for (double rate = 1.0; !rocking.stuck({1.0 + 0.1 * heading, 2.0, heading}, {0.0, rate}, false, 0.02); ++ticks) {
+    heading += rate * 0.02;
+    if (std::abs(heading) > 0.3) rate = heading > 0.0 ? -1.0 : 1.0;
+    ASSERT_LT(ticks, 500) << "ten seconds";
+  }
+  EXPECT_TRUE(rocking.rocking());
+  MotionWatch turning, looking;
+  for (double turned = 0.0; turned < kPi; turned += 0.02)
+    EXPECT_FALSE(turning.stuck({1.0, 2.0, turned}, {0.0, 1.0}, false, 0.02));
+  for (double turned = 0.0; turned < 4.0 * kPi; turned += 0.02) {
+    looking.turns_on_purpose();
+    EXPECT_FALSE(looking.stuck({1.0, 2.0, turned}, {0.0, 1.0}, false, 0.02));
+  }
+}
+
+TEST(MotionWatch, AStallCountsWhenItLasts) {
+  MotionWatch watch;
+  const TPose2D pose;
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(watch.stuck(pose, {}, true, 0.02));
+  EXPECT_FALSE(watch.stuck(pose, {}, false, 0.02)) << "a short stall is forgotten";
+  bool stuck = false;
+  for (int i = 0; i < 20; ++i) stuck = watch.stuck(pose, {}, true, 0.02);
+  EXPECT_TRUE(stuck);
+  watch.reset();
+  EXPECT_FALSE(watch.stuck(pose, {}, true, 0.02));
+}
+
+}  // namespace
+}  // namespace rubble::explore

@@ -1,0 +1,140 @@
+#include "explore/stuck/stuck_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "base/angle.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPose2D;
+
+/// A robot on which a test can let come what may, tick by tick.
+struct Watched {
+  static constexpr double kTickTime = 0.02;  // [s]
+
+  StuckWatch watch{TiltWatchConfig{}};
+  Stamp now = Stamp::from_seconds(1.0);
+  robot::Drive drive;    ///< what it is told
+  bool obeys = true;     ///< moves as told
+  bool stalls = false;   ///< the motors say so
+  bool silent = false;   ///< no odometry arrives
+  bool purpose = false;  ///< it may turn in its place
+  double lean = 0.0;     ///< nose up [rad]
+  double blow = 0.0;     ///< felt in every tick [m/s^2]
+  TPose2D pose;
+
+  std::optional<StuckWatch::Hold> tick(double passed = kTickTime) {
+    now = now + passed;
+    if (obeys) pose = pose + TPose2D{drive.v * kTickTime, 0.0, drive.w * kTickTime};
+    robot::Inputs inputs;
+    inputs.now = now;
+    if (!silent) inputs.odometry.push_back({now, pose, drive.v, drive.w, stalls});
+    inputs.aims.push_back({now, -lean, 0.0});
+    inputs.accelerations.push_back({now, blow, 0.0});
+    watch.update(inputs, passed, kTickTime);
+    return watch.held(pose, drive, purpose, kTickTime, now);
+  }
+  /// What is found within `seconds`, if anything is.
+  std::optional<StuckWatch::Hold> within(double seconds) {
+    for (double t = 0.0; t < seconds; t += kTickTime)
+      if (const auto hold = tick()) return hold;
+    return std::nullopt;
+  }
+};
+
+TEST(StuckWatch, ARobotThatMovesAsToldIsNotHeld) {
+  Watched robot;
+  for (const robot::Drive& drive : {robot::Drive{0.4, 0.0}, robot::Drive{0.0, 1.0}, robot::Drive{-0.2, 0.3}}) {
+    robot.drive = drive;
+    EXPECT_FALSE(robot.within(10.0));
+  }
+}
+
+TEST(StuckWatch, SaysHowItWasMet) {
+  const auto met = [](const robot::Drive& drive) {
+    Watched robot;
+    robot.drive = drive;
+    robot.obeys = false;
+    const auto hold = robot.within(5.0);
+    EXPECT_TRUE(hold) << drive.v << ' ' << drive.w;
+    EXPECT_EQ(hold ? hold->how : "", "it does not move");
+    return hold ? hold->met : Escape::Met::Forwards;
+  };
+  EXPECT_EQ(met({0.4, 0.0}), Escape::Met::Forwards);
+  EXPECT_EQ(met({0.4, 0.5}), Escape::Met::Forwards);
+  EXPECT_EQ(met({-0.2, 0.0}), Escape::Met::Backwards);
+  EXPECT_EQ(met({0.0, 1.0}), Escape::Met::Turning);
+  EXPECT_EQ(met({0.1, -1.0}), Escape::Met::Turning) << "as slow as turns on the spot are kept on it";
+}
+
+TEST(StuckWatch, TellsLeaningBlowsAndStallsApart) {
+  Watched leaning, struck, stalling;
+  leaning.lean = deg_to_rad(25.0);
+  const auto leans = leaning.within(2.0);
+  ASSERT_TRUE(leans);
+  EXPECT_EQ(leans->how, "it leans too much here");
+
+  struck.drive = {-0.3, 0.0};
+  ASSERT_FALSE(struck.within(1.0));
+  struck.blow = 8.0;  // it drives backwards
+  const auto blow = struck.within(0.2);
+  ASSERT_TRUE(blow);
+  EXPECT_EQ(blow->how, "a blow stops it");
+  EXPECT_EQ(blow->met, Escape::Met::Backwards);
+
+  stalling.drive = {0.3, 0.0};
+  stalling.stalls = true;
+  const auto stall = stalling.within(1.0);
+  ASSERT_TRUE(stall);
+  EXPECT_EQ(stall->how, "the motors stall");
+}
+
+TEST(StuckWatch, AHoldIsToldOnce) {
+  Watched robot;
+  robot.drive = {0.4, 0.0};
+  robot.obeys = false;
+  ASSERT_TRUE(robot.within(5.0));
+  EXPECT_FALSE(robot.tick());
+  EXPECT_TRUE(robot.within(5.0)) << "but found anew while it lasts";
+}
+
+TEST(StuckWatch, NobodyKnowsWhetherASilentBaseMoves) {
+  Watched robot;
+  robot.drive = {0.4, 0.0};
+  robot.tick();
+  robot.silent = true;
+  robot.obeys = false;
+  EXPECT_FALSE(robot.within(5.0));
+  robot.silent = false;
+  EXPECT_TRUE(robot.within(5.0));
+}
+
+/// A device was away: the robot was held meanwhile, and its motors come back later than the device.
+TEST(StuckWatch, AfterALongTickItIsPatient) {
+  Watched robot;
+  robot.drive = {0.4, 0.0};
+  robot.tick();
+  robot.obeys = false;
+  robot.tick(3.0);
+  EXPECT_FALSE(robot.within(1.9));
+  EXPECT_TRUE(robot.within(3.0));
+}
+
+TEST(StuckWatch, TurningToAndFroOnPurposeIsNoRocking) {
+  for (const bool purpose : {true, false}) {
+    Watched robot;
+    robot.purpose = purpose;
+    bool held = false;
+    for (int turn = 0; turn < 20 && !held; ++turn) {
+      robot.drive = {0.0, turn % 2 == 0 ? 1.0 : -1.0};
+      held = robot.within(1.0).has_value();
+    }
+    EXPECT_EQ(held, !purpose);
+  }
+}
+
+}  // namespace
+}  // namespace rubble::explore
