@@ -241,7 +241,11 @@ void Agenda::spend(double dt, const Situation& situation) {
 }
 
 void Agenda::leave_target(LeftAlone& left_alone, Stamp now) {
-  left_alone.bar(*target(), now);
+  // A place to search that comes back after a minute calls the robot back from the other end of the arena.
+  if (goal() == Goal::Place && choice_.frontiers_done())
+    left_alone.bar_for_good(*target());
+  else
+    left_alone.bar(*target(), now);
   choice_.drop_target();
   plan_soon();
 }

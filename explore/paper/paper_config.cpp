@@ -34,6 +34,7 @@ void bind(Binder& b, PaperExplorerConfig& c) {
     v.degrees("field_of_view_deg", c.search.field_of_view, 5.0, 360.0);
     v.number("range_m", c.search.range, 0.3, 20.0);
     v.integer("min_cells", c.search.min_cells, 1, 100000);
+    v.choice("squarely", c.search.squarely, {"never", "holes", "always"});
     v.number("stare_s", c.search.stare, 0.0, 60.0);
     v.number("dwell_s", c.search.dwell, 0.0, 60.0);
   });

@@ -39,7 +39,9 @@ TargetChoice::Choice TargetChoice::choose(const View& view, FloorSearch& search)
 }
 
 TargetChoice::Choice TargetChoice::choose_of_all_places(const View& view, FloorSearch& search, Plan frontier) {
-  return weigh(std::move(frontier), to_place(view, search, Subjects::All));
+  Plan place = to_place(view, search, Subjects::All);
+  if (!place.found && search.squarely()) place = to_place(view, search, Subjects::Squarely);
+  return weigh(std::move(frontier), std::move(place));
 }
 
 /// A way to a frontier against one to a place to search from.

@@ -23,8 +23,14 @@ bool FloorSearch::look(const Traversable& floor, const TPose2D& T_map_base, doub
   if (!config_.on || now < next_look_ || std::abs(turn_rate) > kTurnRate) return false;
   next_look_ = now + kLookPeriod;
   // A look that shows nothing new need not be repeated.
-  if (searched_.look(floor, T_map_base)) looks_.push_back({{now, T_map_base}, T_map_base});
+  if (look_around(floor, T_map_base)) looks_.push_back({{now, T_map_base}, T_map_base});
   return true;
+}
+
+/// Says whether it showed anything new.
+bool FloorSearch::look_around(const Traversable& floor, const TPose2D& T_map_base) {
+  const bool anyhow = searched_.look(floor, T_map_base);
+  return squarely_.look(floor, T_map_base) || anyhow;
 }
 
 bool FloorSearch::follow(const slam::Mapper& mapper) {
@@ -41,12 +47,14 @@ bool FloorSearch::follow(const slam::Mapper& mapper) {
 
 void FloorSearch::look_again(const Traversable& floor) {
   searched_.clear();
+  squarely_.clear();
   for (Look& look : looks_) {
     look.made_at = look.anchor.T_map_base;
-    searched_.look(floor, look.made_at);
+    look_around(floor, look.made_at);
   }
   for (const GivenUp& place : given_up_)
-    searched_.give_up(floor, place.anchor.T_map_base.composePoint(place.p_base), kSubjectRadius, place.faces);
+    record(place.squarely)
+        .give_up(floor, place.anchor.T_map_base.composePoint(place.p_base), kSubjectRadius, place.faces);
 }
 
 bool FloorSearch::reconsider(const Traversable& floor) {
@@ -59,17 +67,18 @@ bool FloorSearch::reconsider(const Traversable& floor) {
 bool FloorSearch::subject_seen(const Traversable& floor) const {
   const Cell c = floor.cells.cell(subject_);
   if (c.x < 1 || c.y < 1 || c.x + 1 >= floor.cells.width() || c.y + 1 >= floor.cells.height()) return false;
-  return (searched_.missing(floor, c) & subject_faces_) == 0;
+  return (record(subject_squarely_).missing(floor, c) & subject_faces_) == 0;
 }
 
 void FloorSearch::give_up_subject(const Traversable& floor, const Anchor& here) {
-  given_up_.push_back({here, here.T_map_base.inverseComposePoint(subject_), subject_faces_});
-  searched_.give_up(floor, subject_, kSubjectRadius, subject_faces_);
+  given_up_.push_back({here, here.T_map_base.inverseComposePoint(subject_), subject_faces_, subject_squarely_});
+  record(subject_squarely_).give_up(floor, subject_, kSubjectRadius, subject_faces_);
 }
 
 std::vector<Source> FloorSearch::sources(const Traversable& floor, Subjects subjects,
                                          const std::function<std::optional<double>(const TPoint2D&)>& head_start) {
-  views_ = viewpoints(floor, searched_, config_, room_, tight_, subjects);
+  views_squarely_ = subjects == Subjects::Squarely;
+  views_ = viewpoints(floor, record(views_squarely_), config_, room_, tight_, subjects);
   std::vector<Source> sources;
   for (const Viewpoint& view : views_) {
     if (const std::optional<double> start = head_start(floor.cells.centre(view.cell)))
@@ -83,6 +92,7 @@ void FloorSearch::choose_subject(Cell viewpoint) {
     if (view.cell == viewpoint) {
       subject_ = view.subject;
       subject_faces_ = view.faces;
+      subject_squarely_ = views_squarely_;
     }
 }
 
@@ -96,15 +106,18 @@ std::optional<double> FloorSearch::turn_to_subject(const Traversable& floor, con
     turn = to;
     subject_ = view.subject;
     subject_faces_ = view.faces;
+    subject_squarely_ = views_squarely_;
   }
   turned_to_ = subject_;
   turned_to_faces_ = subject_faces_;
+  turned_to_squarely_ = subject_squarely_;
   return std::abs(turn) > kFacing ? std::optional<double>(turn) : std::nullopt;
 }
 
 void FloorSearch::start_dwell_as_turned(Stamp now) {
   subject_ = turned_to_;
   subject_faces_ = turned_to_faces_;
+  subject_squarely_ = turned_to_squarely_;
   start_dwell(now);
 }
 
@@ -114,7 +127,7 @@ bool FloorSearch::dwelling(const Traversable& floor, const TPose2D& T_map_base, 
   if (now < dwell_until_) return true;
   dwell_until_ = Stamp::never();
   dwell_over_ = true;
-  searched_.look(floor, T_map_base);
+  look_around(floor, T_map_base);
   if (!subject_seen(floor)) give_up_subject(floor, {now, T_map_base});
   return false;
 }

@@ -17,9 +17,15 @@ class FloorSearch {
   /// `room`: clearance a viewpoint should have, for the robot turns on the spot there [m]; `tight`: where none has,
   /// this.
   FloorSearch(const SearchConfig& config, double room, double tight)
-      : config_(config), room_(room), tight_(tight), searched_(config) {}
+      : config_(config), room_(room), tight_(tight), searched_(config), squarely_(config, kSquarely) {}
 
   bool on() const { return config_.on; }
+  /// Whether faces are looked at squarely as well, when all else was searched.
+  bool squarely() const {
+    return config_.squarely == SquareLook::Always || (config_.squarely == SquareLook::Holes && holes_);
+  }
+  /// There are victims behind holes in walls.
+  void expect_holes() { holes_ = true; }
 
   /// Records what the victim sensors see from here, a few times a second, and not while turning (at `turn_rate`
   /// [rad/s]) too fast to see. True when it did.
@@ -60,11 +66,16 @@ class FloorSearch {
   bool staring(bool undecided, Stamp now);
 
  private:
+  bool look_around(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
+  SearchedArea& record(bool squarely) { return squarely ? squarely_ : searched_; }
+  const SearchedArea& record(bool squarely) const { return squarely ? squarely_ : searched_; }
+
   /// A place that could not be looked at, kept relative to where the robot gave it up.
   struct GivenUp {
     Anchor anchor;
     mrpt::math::TPoint2D p_base;
     Faces faces;
+    bool squarely;
   };
   /// A look that showed something new.
   struct Look {
@@ -76,11 +87,15 @@ class FloorSearch {
   double room_;
   double tight_;
   SearchedArea searched_;
+  SearchedArea squarely_;  ///< what was looked at squarely
   std::vector<Viewpoint> views_;
+  bool views_squarely_ = false;  ///< they are to look squarely from
   mrpt::math::TPoint2D subject_;
   Faces subject_faces_ = 0;
+  bool subject_squarely_ = false;
   mrpt::math::TPoint2D turned_to_;  ///< the subject of the last turn
   Faces turned_to_faces_ = 0;
+  bool turned_to_squarely_ = false;
   std::vector<Look> looks_;
   std::vector<GivenUp> given_up_;
   Stamp next_look_ = Stamp::never();
@@ -88,6 +103,7 @@ class FloorSearch {
   Stamp stare_until_ = Stamp::never();
   Stamp next_stare_ = Stamp::never();
   bool dwell_over_ = false;
+  bool holes_ = false;
 };
 
 }  // namespace rubble::explore

@@ -22,6 +22,7 @@ constexpr int kDirections = 16;      ///< viewpoints tried around a subject
 // Of viewpoints from their subjects [m]. Before a niche there is little choice: its box takes a third of a corridor.
 const std::vector<double> kDistances = {0.5, 0.8, 1.1, 1.4};
 const std::vector<double> kNicheDistances = {0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4};
+const std::vector<double> kSquareDistances = {0.7, 0.8, 0.95, 1.1, 1.3};
 
 /// Cells from c in a direction up to the next wall; nothing when there is none within `most`.
 std::optional<int> to_wall(const Traversable& floor, Cell c, Cell step, int most) {
@@ -45,10 +46,11 @@ std::vector<Cell> unsearched_niches(const Traversable& floor, const SearchedArea
   return found;
 }
 
-/// Free cells that were not searched, as 8-connected clusters of at least `min_cells`.
-std::vector<std::vector<Cell>> unsearched_clusters(const Traversable& floor, const SearchedArea& searched,
+/// Free cells of which something in `asked` was not searched, as 8-connected clusters of at least `min_cells`.
+std::vector<std::vector<Cell>> unsearched_clusters(const Traversable& floor, const SearchedArea& searched, Faces asked,
                                                    int min_cells) {
   Grid<Faces> open = searched.unsearched(floor);
+  for (Faces& faces : open.cells()) faces = static_cast<Faces>(faces & asked);
   std::vector<std::vector<Cell>> clusters;
   for (int y = 1; y + 1 < floor.cells.height(); ++y)
     for (int x = 1; x + 1 < floor.cells.width(); ++x) {
@@ -69,13 +71,13 @@ std::vector<std::vector<Cell>> unsearched_clusters(const Traversable& floor, con
 
 }  // namespace
 
-Faces faces_along(double x, double y) {
-  constexpr double kCosine = 0.5;  ///< of 60 deg
+Faces faces_along(double x, double y, double incidence) {
+  const double cosine = std::cos(incidence);
   Faces faces = kFloor;
-  if (x >= kCosine) faces |= kEastFace;
-  if (y >= kCosine) faces |= kNorthFace;
-  if (x <= -kCosine) faces |= kWestFace;
-  if (y <= -kCosine) faces |= kSouthFace;
+  if (x >= cosine) faces |= kEastFace;
+  if (y >= cosine) faces |= kNorthFace;
+  if (x <= -cosine) faces |= kWestFace;
+  if (y <= -cosine) faces |= kSouthFace;
   return faces;
 }
 
@@ -169,6 +171,8 @@ bool SearchedArea::look(const Traversable& floor, const TPose2D& T_map_base) {
   const double turn = step / config_.range;  // neighbouring rays end less than a cell apart
   const int rays = static_cast<int>(std::ceil(config_.field_of_view / turn));
   const int steps = static_cast<int>(config_.range / step);
+  const int nearest = static_cast<int>(std::ceil(inspection_.nearest / step));
+  const int farthest = static_cast<int>(inspection_.farthest / step);
   const double x0 = (T_map_base.x - frame.x0) / frame.resolution;
   const double y0 = (T_map_base.y - frame.y0) / frame.resolution;
   bool changed = false;
@@ -177,8 +181,9 @@ bool SearchedArea::look(const Traversable& floor, const TPose2D& T_map_base) {
     const double bearing = T_map_base.phi + config_.field_of_view * (static_cast<double>(i) / rays - 0.5);
     const double dx = std::cos(bearing);
     const double dy = std::sin(bearing);
-    const Faces faces = faces_along(dx, dy);
+    const Faces along = faces_along(dx, dy, inspection_.incidence);
     for (int k = 0; k <= steps; ++k) {
+      const Faces faces = k >= nearest && k <= farthest ? along : kFloor;
       const Cell c{static_cast<int>(std::floor(x0 + 0.7 * k * dx)), static_cast<int>(std::floor(y0 + 0.7 * k * dy))};
       if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free) break;
       const std::size_t own = twice_.frame().index({c.x + shift.x, c.y + shift.y});
@@ -242,28 +247,47 @@ Grid<Faces> SearchedArea::unsearched(const Traversable& floor) const {
   return open;
 }
 
+namespace {
+
+/// Steps from a subject to places around it.
+std::vector<Cell> steps_around(const std::vector<double>& distances, double range, double cell) {
+  std::vector<Cell> steps;
+  for (const double distance : distances)
+    for (int k = 0; k < kDirections && distance <= range; ++k) {
+      const double bearing = 2.0 * kPi * k / kDirections;
+      steps.push_back({static_cast<int>(std::lround(distance * std::cos(bearing) / cell)),
+                       static_cast<int>(std::lround(distance * std::sin(bearing) / cell))});
+    }
+  return steps;
+}
+
+}  // namespace
+
 std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& searched, const SearchConfig& config,
                                   double room, double tight, Subjects subjects) {
-  std::vector<Cell> offsets;
-  for (const double distance : subjects == Subjects::Niches ? kNicheDistances : kDistances)
-    for (int k = 0; k < kDirections && distance <= config.range; ++k) {
-      const double bearing = 2.0 * kPi * k / kDirections;
-      offsets.push_back({static_cast<int>(std::lround(distance * std::cos(bearing) / floor.frame().resolution)),
-                         static_cast<int>(std::lround(distance * std::sin(bearing) / floor.frame().resolution))});
-    }
+  const double cell = floor.frame().resolution;
+  const std::vector<Cell> squarely = steps_around(kSquareDistances, config.range, cell);
+  const std::vector<Cell> anyhow =
+      steps_around(subjects == Subjects::Niches ? kNicheDistances : kDistances, config.range, cell);
   std::vector<Viewpoint> found;
-  const auto add = [&](Cell subject, Faces missing) {
+  const auto add_of = [&](Cell subject, Faces missing, const std::vector<Cell>& steps, double incidence, double d_min) {
     const std::size_t before = found.size();
+    for (const Cell step : steps) {
+      const Cell c{subject.x + step.x, subject.y + step.y};
+      if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free || floor.clearance[c] < d_min) continue;
+      const double way = length(step.x, step.y);
+      const auto faces = static_cast<Faces>(missing & faces_along(-step.x / way, -step.y / way, incidence));
+      if (faces == 0) continue;
+      if (in_sight(floor, c, subject)) found.push_back({c, floor.cells.centre(subject), faces});
+    }
+    return found.size() > before;
+  };
+  const auto add = [&](Cell subject, Faces missing) {
+    const auto walls = static_cast<Faces>(missing & ~kFloor);
     for (const double d_min : {room, tight}) {
-      for (const Cell offset : offsets) {
-        const Cell c{subject.x + offset.x, subject.y + offset.y};
-        if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free || floor.clearance[c] < d_min) continue;
-        const double way = length(offset.x, offset.y);
-        const auto faces = static_cast<Faces>(missing & faces_along(-offset.x / way, -offset.y / way));
-        if (faces == 0) continue;
-        if (in_sight(floor, c, subject)) found.push_back({c, floor.cells.centre(subject), faces});
-      }
-      if (found.size() > before) break;
+      if (subjects != Subjects::Niches && walls != 0 && add_of(subject, walls, squarely, kSquarely.incidence, d_min))
+        return;
+      if (subjects != Subjects::Squarely && add_of(subject, missing, anyhow, Inspection{}.incidence, d_min)) return;
     }
   };
   if (subjects == Subjects::Niches) {
@@ -271,10 +295,11 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
       add(subject, static_cast<Faces>(searched.missing(floor, subject) & ~kFloor));
     return found;
   }
-  for (const auto& cluster : unsearched_clusters(floor, searched, config.min_cells))
+  const auto asked = static_cast<Faces>(subjects == Subjects::Squarely ? ~kFloor : ~0);
+  for (const auto& cluster : unsearched_clusters(floor, searched, asked, config.min_cells))
     for (std::size_t i = 0; i < cluster.size(); ++i) {
       const Cell subject = cluster[i];
-      const Faces missing = searched.missing(floor, subject);
+      const auto missing = static_cast<Faces>(searched.missing(floor, subject) & asked);
       // Every few cells, and the first one of each cluster, so that none goes without.
       const bool on_face = (missing & ~kFloor) != 0 && (subject.x + subject.y) % kFaceStride == 0;
       if (i != 0 && !on_face && (subject.x % kStride != 0 || subject.y % kStride != 0)) continue;

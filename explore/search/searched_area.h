@@ -13,6 +13,10 @@
 
 namespace rubble::explore {
 
+/// When faces are looked at squarely, once all else was searched. `Holes`: where a victim was found behind a hole in a
+/// wall, for there will be more of them.
+enum class SquareLook { Never, Holes, Always };
+
 /// What the explorer counts on from the robot's victim sensors.
 struct SearchConfig {
   bool on = true;                           ///< look for victims everywhere before finishing
@@ -20,6 +24,7 @@ struct SearchConfig {
   double range = 1.8;                       ///< [m]; likewise
   int min_cells = 8;                        ///< smaller unsearched places are left alone
   double stare = 3.0;                       ///< a cue not yet confirmed holds the robot at most this long [s]
+  SquareLook squarely = SquareLook::Holes;  ///< in the end, look squarely at each face as well
   double dwell = 1.2;                       ///< time at a viewpoint, facing the place to search [s]
 };
 
@@ -32,8 +37,18 @@ constexpr Faces kNorthFace = 4;
 constexpr Faces kWestFace = 8;
 constexpr Faces kSouthFace = 16;
 
-/// The faces that can be inspected along a direction (unit vector): those whose normal is within 60 deg of it.
-Faces faces_along(double x, double y);
+/// From where a look at a face counts.
+struct Inspection {
+  double incidence = deg_to_rad(60.0);  ///< from within so much of its normal [rad]
+  double nearest = 0.0;                 ///< [m]
+  double farthest = 20.0;               ///< [m]
+};
+/// Squarely, and from not too near: what lies in a box behind a hole in the wall, 0.3 to 0.9 m up, shows to a camera at
+/// 0.5 m within 20 to 30 deg of the hole's axis and 0.75 to 1.5 m away (boxed victims of the competition's arenas).
+constexpr Inspection kSquarely{deg_to_rad(27.0), 0.6, 1.5};
+
+/// The faces that can be inspected along a direction (unit vector): those whose normal is within `incidence` of it.
+Faces faces_along(double x, double y, double incidence = Inspection{}.incidence);
 /// What there is to be looked at in a cell.
 Faces faces_of(const Traversable& floor, Cell c);
 
@@ -42,7 +57,8 @@ Faces faces_of(const Traversable& floor, Cell c);
 /// holes was not to be seen. A single look may overlook something, so a place counts after two.
 class SearchedArea {
  public:
-  explicit SearchedArea(const SearchConfig& config) : config_(config) {}
+  explicit SearchedArea(const SearchConfig& config, const Inspection& inspection = {})
+      : config_(config), inspection_(inspection) {}
 
   /// Marks the free floor in view from T_map_base: in the cone, in range, nothing occupied or unknown between. Says
   /// whether that changed the record.
@@ -62,6 +78,7 @@ class SearchedArea {
   void cover(const GridFrame& frame);
 
   SearchConfig config_;
+  Inspection inspection_;
   Grid<Faces> once_;
   Grid<Faces> twice_;
   std::vector<std::pair<std::size_t, Faces>> seen_;  ///< of the look under way, by index
@@ -71,8 +88,8 @@ class SearchedArea {
 /// that is open on one side, as victims lie in (paper, section II.B), looks so from its open side.
 bool in_niche(const Traversable& floor, Cell c, Faces faces);
 
-/// Which places to find viewpoints for.
-enum class Subjects { All, Niches };
+/// Which places to find viewpoints for. `Squarely`: faces that were not looked at so.
+enum class Subjects { All, Niches, Squarely };
 
 constexpr double kAtViewpoint = 0.12;  ///< viewpoints this close are served from where the robot stands [m]
 
@@ -84,7 +101,8 @@ struct Viewpoint {
 };
 
 /// Viewpoints with at least `room` clearance for every unsearched cluster of free floor, in raster order; where a place
-/// has none, as before a victim's box in a corridor, with at least `tight`. Of the backs of niches alone if asked so.
+/// has none, as before a victim's box in a corridor, with at least `tight`. Those squarely before a face go first: what
+/// is looked at so once need not be looked at again. `searched`: the record that belongs to `subjects`.
 std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& searched, const SearchConfig& config,
                                   double room, double tight, Subjects subjects = Subjects::All);
 

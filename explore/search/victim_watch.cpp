@@ -1,12 +1,31 @@
 #include "explore/search/victim_watch.h"
 
+#include <cmath>
+
+#include "base/planar.h"
+
 namespace rubble::explore {
 namespace {
 
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kCueAge = 1.2;  ///< an unconfirmed cue younger than this is worth waiting for [s]
+constexpr double kCueAge = 1.2;    ///< an unconfirmed cue younger than this is worth waiting for [s]
+constexpr double kOfVictim = 0.5;  ///< a cue so near to a confirmed victim is of it [m]
+constexpr double kBehind = 0.08;   ///< a victim lies so far behind the wall, not before it or in its cells [m]
+constexpr int kSureOfHoles = 3;    ///< cues
+
+/// Whether a wall stands between, at least kBehind before `to`.
+bool is_behind_wall(const Traversable& floor, const TPoint2D& from, const TPoint2D& to) {
+  const TPoint2D way = to - from;
+  const double length = way.norm();
+  const double step = 0.5 * floor.frame().resolution;
+  for (double at = 0.0; at < length - kBehind; at += step) {
+    const Cell c = floor.cells.cell(from + way * (at / length));
+    if (floor.cells.inside(c) && floor.cells[c] == Occupancy::Occupied) return true;
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -22,7 +41,18 @@ bool VictimWatch::hear(const robot::VictimCue& cue, const slam::Mapper& mapper, 
   };
   const std::size_t before = victims_.reports().size();
   victims_.add(cue, anchor, same_side);
+  ask_for_holes(anchor,
+                anchor.T_map_base.composePoint({cue.range * std::cos(cue.bearing), cue.range * std::sin(cue.bearing)}),
+                floor);
   return victims_.reports().size() > before;
+}
+
+/// A victim in a niche lies before its back; one that is seen from here behind a wall is seen through a hole.
+void VictimWatch::ask_for_holes(const Anchor& anchor, const TPoint2D& cue, const Traversable& floor) {
+  for (const VictimReport& victim : reports())
+    if (distance(victim.p_map, cue) < kOfVictim && is_behind_wall(floor, position(anchor.T_map_base), victim.p_map) &&
+        ++through_walls_ >= kSureOfHoles)
+      search_.expect_holes();
 }
 
 bool VictimWatch::look(const Traversable& floor, const TPose2D& T_map_base, double turn_rate, Stamp now) {

@@ -47,9 +47,12 @@ class VictimWatch {
   FloorSearch& search() { return search_; }
 
  private:
+  void ask_for_holes(const Anchor& anchor, const mrpt::math::TPoint2D& cue, const Traversable& floor);
+
   PoseDoubt doubt_;
   VictimSearch victims_;
   FloorSearch search_;
+  int through_walls_ = 0;  ///< cues of confirmed victims that lie behind a wall of the map
 };
 
 }  // namespace rubble::explore

@@ -145,6 +145,27 @@ TEST(Agenda, ATargetThatCostsMoreTimeThanItDeservesIsLeftAlone) {
   EXPECT_TRUE(robot.agenda.due(robot.map, robot.now));
 }
 
+/// A place to search that fails waits for the next round; after a minute it would call the robot back from the other
+/// end.
+TEST(Agenda, APlaceThatCostsMoreTimeThanItDeservesIsLeftAloneUntilAllIsPardoned) {
+  Ordered robot((PaperExplorerConfig()));
+  robot.situation();
+  for (int i = 0; i < 100; ++i)  // what is around it was looked at
+    robot.search.look(robot.floor, {2.0, 2.0, 0.13 * i}, 0.0, robot.now = robot.now + 1.0);
+  for (int i = 0; i < 60 && !(robot.agenda.goal() == Goal::Place && robot.agenda.target()); ++i) {
+    const Order order = robot.ask();
+    if (order.kind == Order::Kind::Turn) robot.pose.phi = wrap_angle(robot.pose.phi + order.angle);
+  }
+  ASSERT_EQ(robot.agenda.goal(), Goal::Place);
+  ASSERT_TRUE(robot.agenda.target());
+  const TPoint2D place = *robot.agenda.target();
+  for (double spent = 0.0; robot.agenda.target() && spent < 1000.0; spent += 1.0)
+    robot.agenda.spend(1.0, robot.situation());
+  EXPECT_TRUE(robot.left_alone.barred(place, robot.now + 1e6));
+  EXPECT_TRUE(robot.left_alone.pardon_all(robot.now));
+  EXPECT_FALSE(robot.left_alone.barred(place, robot.now));
+}
+
 TEST(Agenda, ATargetThatSomethingNewKeepsItFromIsBarredAndNoOther) {
   for (const bool across : {true, false}) {
     Ordered robot;

@@ -130,6 +130,24 @@ TEST(TargetChoice, OnceFrontiersAreDonePlacesAreSearchedNichesFirst) {
   EXPECT_NEAR(choice.plan.target.x, 6.2, 0.5);
 }
 
+/// All was looked at, but a face only from the side: that is a target where holes are expected.
+TEST(TargetChoice, FacesAreLookedAtSquarelyInTheEndWhereHolesAreExpected) {
+  Choosing robot(true);
+  robot.narrow();
+  robot.choice.set_frontiers_done();
+  robot.choice.search();
+  robot.view();
+  // Each wall from 0.5 m away: too near to look through a hole.
+  for (double x = 0.1; x < 7.95; x += 0.1)
+    for (double heading = 0.0; heading < 2.0 * kPi; heading += 0.2)
+      for (int looks = 0; looks < 2; ++looks)
+        robot.search->look(robot.floor, {x, heading < kPi ? 0.8 : 0.5, heading}, 0.0, robot.now = robot.now + 1.0);
+  const auto choose_place = [&] { return robot.choice.choose_of_all_places(robot.view(), *robot.search, Plan{}).plan; };
+  EXPECT_FALSE(choose_place().found);
+  robot.search->expect_holes();
+  EXPECT_TRUE(choose_place().found);
+}
+
 TEST(TargetChoice, AFrontierThatComesIntoReachGoesBeforeTheSearch) {
   Choosing robot(true);
   robot.narrow();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/angle.h"
 #include "explore/search/victim_search.h"
@@ -52,6 +53,37 @@ TEST(SearchedArea, AWallSeenAtAGrazingAngleIsNotInspected) {
   SearchedArea area{SearchConfig{}};
   look_twice(area, floor, {-1.2, 1.2, deg_to_rad(10.0)});
   EXPECT_EQ(area.missing(floor, at_wall(floor, 0.0)), kNorthFace);
+}
+
+/// Through a hole in a wall a camera sees only squarely, and not from right before it.
+TEST(SearchedArea, SquarelyCountsWithin27DegAndNotFromTooNear) {
+  const Traversable floor = room();
+  const Cell c = at_wall(floor, 0.0);
+  const TPoint2D face = floor.cells.centre(c);
+  for (const double off : {0.0, 20.0, -20.0, 35.0, -35.0, 55.0})
+    for (const double away : {0.4, 0.8, 1.2, 1.7}) {
+      SearchedArea squarely{SearchConfig{}, kSquarely};
+      const double bearing = deg_to_rad(90.0 + off);
+      look_twice(squarely, floor, {face.x - away * std::cos(bearing), face.y - away * std::sin(bearing), bearing});
+      const bool counts = std::abs(off) < 27.0 && away > 0.6 && away < 1.5;
+      EXPECT_EQ(squarely.missing(floor, c), counts ? 0 : kNorthFace) << off << " deg, " << away << " m";
+    }
+}
+
+TEST(SearchedArea, ViewpointsToLookSquarelyFromAreSquarelyBeforeAFace) {
+  const Traversable floor = room();
+  const SearchConfig config;
+  SearchedArea squarely{config, kSquarely};
+  const std::vector<Viewpoint> views = viewpoints(floor, squarely, config, 0.4, 0.4, Subjects::Squarely);
+  ASSERT_FALSE(views.empty());
+  for (const Viewpoint& view : views) {
+    SearchedArea fresh{config, kSquarely};
+    const TPoint2D from = floor.cells.centre(view.cell);
+    look_twice(fresh, floor, {from.x, from.y, std::atan2(view.subject.y - from.y, view.subject.x - from.x)});
+    EXPECT_EQ(view.faces & kFloor, 0);
+    EXPECT_EQ(fresh.missing(floor, floor.cells.cell(view.subject)) & view.faces, 0)
+        << "from " << from.x << " " << from.y << " to " << view.subject.x << " " << view.subject.y;
+  }
 }
 
 TEST(SearchedArea, OneLookIsNotEnough) {

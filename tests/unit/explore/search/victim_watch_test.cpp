@@ -89,6 +89,32 @@ TEST(VictimWatch, TheFloorTellsTheSidesOfAWall) {
   }
 }
 
+/// A victim in a niche lies before its back. One that shows behind a wall lies in a box behind a hole: there will be
+/// more, so faces are looked at squarely too.
+TEST(VictimWatch, AVictimBehindAWallTellsThatThereAreHoles) {
+  for (const double depth : {-0.25, -0.03, 0.12, 0.3}) {
+    Watching robot;
+    OccupancyGrid cells = test::room(6.0, 4.0);
+    test::fill(cells, 3.5, 0.0, 3.55, 4.0, Occupancy::Occupied);
+    robot.floor = test::measured(std::move(cells));
+    robot.moved(0.05);
+    EXPECT_FALSE(robot.watch.search().squarely());
+    for (int i = 0; i < 10; ++i) robot.hear({3.55 + depth, 2.2});
+    ASSERT_EQ(robot.watch.reports().size(), 1u);
+    EXPECT_EQ(robot.watch.search().squarely(), depth > 0.0) << depth;
+  }
+}
+
+TEST(VictimWatch, LookingSquarelyCanBeAskedForOrRefused) {
+  SearchConfig config;
+  config.squarely = SquareLook::Always;
+  EXPECT_TRUE(VictimWatch({}, config, 0.46, 0.4).search().squarely());
+  config.squarely = SquareLook::Never;
+  VictimWatch never({}, config, 0.46, 0.4);
+  never.search().expect_holes();
+  EXPECT_FALSE(never.search().squarely());
+}
+
 TEST(VictimWatch, VictimsAndLooksFollowTheMap) {
   Watching robot;
   robot.moved(0.05);
