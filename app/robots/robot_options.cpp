@@ -1,4 +1,4 @@
-#include "app/robot_options.h"
+#include "app/robots/robot_options.h"
 
 #include <unistd.h>
 
