@@ -90,9 +90,9 @@ std::vector<std::string> record_columns() {
           "loops_ambiguous",
           "loops_contradicted",
           "loops_needless",
-          "loops_closed",
+          MapperFigure::kLoopsClosed,
           "near_edges",
-          "loops_removed"};
+          MapperFigure::kLoopsRemoved};
 }
 
 }  // namespace
@@ -726,8 +726,8 @@ std::vector<MapperFigure> RobustMapper::figures() const {
           {"loops_ambiguous", static_cast<double>(loops.ambiguous)},
           {"loops_contradicted", static_cast<double>(loops.contradicted)},
           {"loops_needless", static_cast<double>(loops.needless)},
-          {"loops_closed", static_cast<double>(loops.closed)},
-          {"loops_removed", static_cast<double>(loops.removed)},
+          {MapperFigure::kLoopsClosed, static_cast<double>(loops.closed)},
+          {MapperFigure::kLoopsRemoved, static_cast<double>(loops.removed)},
           {"near_edges", static_cast<double>(loops.near_edges)},
           {"frames_astray", static_cast<double>(loops.astray)},
           {"frames_doubled", static_cast<double>(impl_->doubled_)},
