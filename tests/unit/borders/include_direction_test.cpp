@@ -303,7 +303,7 @@ Folders included_files(std::istream& in, const std::string& folder) {
   std::string line;
   std::smatch match;
   while (std::getline(in, line)) {
-    if (!std::regex_search(line, match, include)) continue;
+    if (line.find("include") == std::string::npos || !std::regex_search(line, match, include)) continue;
     const std::string name = match[2];
     const bool relative = name[0] == '.' || name.find('/') == std::string::npos;
     const fs::path path = relative ? (fs::path(folder) / name).lexically_normal() : fs::path(name).lexically_normal();
@@ -398,14 +398,26 @@ TEST(IncludeDirection, EveryWingIsInTheTable) {
     EXPECT_FALSE(is_known(wing)) << wing;
 }
 
+/// What a file includes, of our own files and of libraries; read once.
+const std::vector<std::string>& includes_of(const fs::path& path) {
+  static std::map<fs::path, std::vector<std::string>> known;
+  const auto [entry, is_new] = known.try_emplace(path);
+  if (is_new) {
+    static const std::regex include(R"re(^\s*#\s*include\s*[<"]([^">]+)[">])re");
+    std::ifstream in(path);
+    std::string line;
+    std::smatch match;
+    while (std::getline(in, line))
+      if (line.find("include") != std::string::npos && std::regex_search(line, match, include))
+        entry->second.push_back(match[1]);
+  }
+  return entry->second;
+}
+
 /// Everything that a header brings in, of our own files and of libraries.
 void gather(const fs::path& top, const std::string& name, Folders& seen) {
-  static const std::regex include(R"re(^\s*#\s*include\s*[<"]([^>"]+)[>"])re");
-  std::ifstream in(top / name);
-  std::string line;
-  std::smatch match;
-  while (std::getline(in, line))
-    if (std::regex_search(line, match, include) && seen.insert(match[1]).second) gather(top, match[1], seen);
+  for (const std::string& included : includes_of(top / name))
+    if (seen.insert(included).second) gather(top, included, seen);
 }
 
 /// Whether a header brings in, through others, a file of the folder or of one below it.
