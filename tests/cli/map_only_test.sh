@@ -13,6 +13,7 @@ expect_exit 3 "add --map-only" "$rubble" calibrate "$robot" --urg pty:no1 --base
 # begins and other devices are asked who is there.
 cat >shared_base.py <<'PY'
 import select, socket, sys, time
+sys.path.append(sys.argv[1])  # behind: one of the scripts there is called as a module of Python
 from arcos_wire import packet
 payload = bytes([0x32] + [0] * 10 + [128] + [0] * 6 + [0, 0])
 report = packet(payload)
@@ -37,7 +38,7 @@ while begin is None or time.time() - begin < 9:
             reports += 1
 print("heard %d bytes, %d reports" % (heard, reports))
 PY
-PYTHONPATH=$source/tests/cli python3 shared_base.py >shared.txt &
+python3 shared_base.py "$source/tests/cli" >shared.txt &
 shared=$!
 for _ in $(seq 100); do grep -q '^port' shared.txt && break; sleep 0.1; done
 "$rubble" drive "$robot" --map-only --urg tcp:127.0.0.1:9 --base "tcp:127.0.0.1:$(sed -n 's/^port //p' shared.txt)" --levelling none \
