@@ -1,5 +1,5 @@
 // What the program's commands have in common: a command is a row {name, about, footer, declare} of the table in
-// commands.cpp and a file of its own. Only main.cpp knows how a command line is taken apart.
+// commands.cpp and a file of its own in the wing of its subject. Only main.cpp knows how a command line is taken apart.
 #pragma once
 
 #include <cstdint>

@@ -4,7 +4,7 @@
 
 namespace rubble::app {
 
-// Each in the file of its name.
+// Each in the file of its name, in the wing of its subject.
 Command run_command();
 Command map_command();
 Command merge_command();

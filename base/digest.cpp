@@ -1,6 +1,7 @@
 #include "base/digest.h"
 
 #include <openssl/evp.h>
+#include <zlib.h>
 
 #include <array>
 #include <limits>
@@ -8,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/text/input_file.h"
+#include "base/text/words.h"
 
 namespace rubble {
 namespace {
@@ -30,9 +32,8 @@ class Sha256 {
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
     unsigned size = 0;
     if (EVP_DigestFinal_ex(context_.get(), digest.data(), &size) != 1) fail();
-    static constexpr char kDigits[] = "0123456789abcdef";
     std::string text;
-    for (unsigned i = 0; i < size; ++i) text += {kDigits[digest[i] >> 4], kDigits[digest[i] & 15]};
+    for (unsigned i = 0; i < size; ++i) text += hex_digits(digest[i]);
     return text;
   }
 
@@ -58,6 +59,11 @@ std::string sha256_of_file(const std::string& path) {
   std::array<char, 65536> buffer;
   while (const std::size_t got = file.read(buffer.data(), buffer.size())) sha.add({buffer.data(), got});
   return sha.hex();
+}
+
+std::uint32_t crc32_of(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<z_size_t>(bytes.size())));
 }
 
 }  // namespace rubble

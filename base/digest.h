@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -10,5 +11,8 @@ std::string sha256_of_text(std::string_view text);
 
 /// The same of a file's bytes. Throws InputError when it cannot be read.
 std::string sha256_of_file(const std::string& path);
+
+/// CRC-32 as zlib and PNG have it: finds damage, keeps no secret.
+std::uint32_t crc32_of(std::string_view bytes);
 
 }  // namespace rubble

@@ -98,4 +98,10 @@ Grid<T> with_frame(const Grid<T>& grid, const GridFrame& frame) {
 enum class Occupancy : unsigned char { Unknown = 0, Free = 1, Occupied = 2 };
 using OccupancyGrid = Grid<Occupancy>;
 
+/// Of the cell at p; unknown beyond the map.
+inline Occupancy occupancy_at(const OccupancyGrid& grid, const mrpt::math::TPoint2D& p) {
+  const Cell c = grid.cell(p);
+  return grid.inside(c) ? grid[c] : Occupancy::Unknown;
+}
+
 }  // namespace rubble

@@ -4,6 +4,7 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <cmath>
+#include <vector>
 
 #include "base/angle.h"
 
@@ -17,8 +18,20 @@ inline double distance(const mrpt::math::TPoint2D& a, const mrpt::math::TPoint2D
   return length(b.x - a.x, b.y - a.y);
 }
 
+/// The middle of some points, one at least.
+inline mrpt::math::TPoint2D middle_of(const std::vector<mrpt::math::TPoint2D>& points) {
+  mrpt::math::TPoint2D sum(0.0, 0.0);
+  for (const mrpt::math::TPoint2D& p : points) sum += p;
+  return sum * (1.0 / static_cast<double>(points.size()));
+}
+
 /// Where a pose is.
 inline mrpt::math::TPoint2D position(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y}; }
+
+/// Whether two poses are equal to the last bit (same_pose of base/rigid.h: as good as).
+inline bool identical(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b) {
+  return a.x == b.x && a.y == b.y && a.phi == b.phi;
+}
 
 /// The pose with its angle in (-pi, pi].
 inline mrpt::math::TPose2D wrapped(const mrpt::math::TPose2D& pose) { return {pose.x, pose.y, wrap_angle(pose.phi)}; }

@@ -4,21 +4,12 @@
 #include <cmath>
 
 #include "base/angle.h"
+#include "base/planar.h"
 
 namespace rubble {
 
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
-
-namespace {
-
-TPoint2D mean(const std::vector<TPoint2D>& points) {
-  TPoint2D sum(0.0, 0.0);
-  for (const TPoint2D& p : points) sum += p;
-  return sum * (1.0 / static_cast<double>(points.size()));
-}
-
-}  // namespace
 
 TPose2D turned_onto(const TPoint2D& from, const TPoint2D& to, double phi) {
   const double c = std::cos(phi);
@@ -28,8 +19,8 @@ TPose2D turned_onto(const TPoint2D& from, const TPoint2D& to, double phi) {
 
 TPose2D fit_rigid(const std::vector<TPoint2D>& from, const std::vector<TPoint2D>& to) {
   assert(!from.empty() && from.size() == to.size());
-  const TPoint2D mean_from = mean(from);
-  const TPoint2D mean_to = mean(to);
+  const TPoint2D mean_from = middle_of(from);
+  const TPoint2D mean_to = middle_of(to);
   double dot = 0.0;
   double cross = 0.0;
   for (std::size_t i = 0; i < from.size(); ++i) {

@@ -10,6 +10,7 @@
 #include "arenas/generate/generate.h"
 #include "arenas/truth/truth_map.h"
 #include "base/rng.h"
+#include "sim/body/clutter.h"
 #include "sim/body/world.h"
 #include "sim/laser/laser.h"
 #include "sim/laser/ray_walk.h"

@@ -1,6 +1,11 @@
 #pragma once
 
+#include <algorithm>
+
 namespace rubble::robot {
+
+/// A speed on its way to another one, changed by at most `most`.
+inline double approach(double from, double to, double most) { return from + std::clamp(to - from, -most, most); }
 
 /// Speed set point of the body.
 struct Drive {

@@ -3,19 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robot/hardware_units.h"
+#include "base/angle.h"
 
 namespace rubble::robot {
-
-namespace {
-
-constexpr double kSilence = 0.5;  ///< after so long without a sample the sensor counts as lost [s]
-
-double tilt_of(double specific_force, double gravity) {
-  return std::asin(std::clamp(specific_force / gravity, -1.0, 1.0));
-}
-
-}  // namespace
 
 Levelling::Levelling(const LevellingConfig& config, AccelerometerMount mount) : config_(config), mount_(mount) {}
 
@@ -26,34 +16,19 @@ LaserAim Levelling::update(const Inputs& inputs) {
     roll_.command = std::clamp(inputs.aims.back().roll, -config_.max_angle, config_.max_angle);
     servos_known_ = true;
   }
-  for (const Odometry& odometry : inputs.odometry) follow(odometry);
+  for (const Odometry& odometry : inputs.odometry) felt_.follow(odometry);
   for (const Acceleration& acceleration : inputs.accelerations) follow(acceleration);
   return {pitch_.command, roll_.command};
 }
 
-/// The sensor feels the robot's own motion as tilt: 0.3 m/s^2 forward looks like 1.75 deg nose up. What the wheels say
-/// about it comes late by an odometry period, yet takes most of it away.
-void Levelling::follow(const Odometry& odometry) {
-  const double dt = last_odometry_.stamp == Stamp::never() ? 0.0 : odometry.stamp - last_odometry_.stamp;
-  forward_acceleration_ = dt > 0.0 && dt <= kSilence ? (odometry.v - last_odometry_.v) / dt : 0.0;
-  lateral_acceleration_ = odometry.v * odometry.w;
-  last_odometry_ = odometry;
-}
-
 void Levelling::follow(const Acceleration& acceleration) {
-  const bool known = config_.feed_forward && last_odometry_.stamp != Stamp::never() &&
-                     acceleration.stamp - last_odometry_.stamp <= kSilence;
-  const double x = acceleration.x - (known ? forward_acceleration_ : 0.0);
-  const double y = acceleration.y - (known ? lateral_acceleration_ : 0.0);
-  const double pitch = tilt_of(x, kGravity);
-  const double roll = tilt_of(y, kGravity * std::max(0.1, std::cos(pitch)));
-
+  const Tilt tilt = felt_.of(acceleration, config_.feed_forward);
   const double dt = last_ == Stamp::never() ? 0.0 : acceleration.stamp - last_;
   if (last_ != Stamp::never() && dt <= 0.0) return;  // not younger than the one before
-  if (dt > kSilence) pitch_.started = roll_.started = false;
+  if (dt > kTiltSilence) pitch_.started = roll_.started = false;
   last_ = acceleration.stamp;
-  pitch_.command = step(pitch_, pitch, dt);
-  roll_.command = step(roll_, roll, dt);
+  pitch_.command = step(pitch_, tilt.pitch, dt);
+  roll_.command = step(roll_, tilt.roll, dt);
 }
 
 /// One control step of an axis; returns the new command.

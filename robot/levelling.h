@@ -2,6 +2,7 @@
 
 #include "base/angle.h"
 #include "robot/commands.h"
+#include "robot/felt_tilt.h"
 #include "robot/measurements.h"
 #include "robot/model.h"
 
@@ -39,7 +40,6 @@ class Levelling {
     bool started = false;  ///< the filter holds a value
   };
 
-  void follow(const Odometry& odometry);
   void follow(const Acceleration& acceleration);
   double step(Axis& axis, double tilt, double dt) const;
 
@@ -48,9 +48,7 @@ class Levelling {
   Axis pitch_;
   Axis roll_;
   Stamp last_ = Stamp::never();
-  Odometry last_odometry_{Stamp::never(), {}, 0.0, 0.0, false};
-  double forward_acceleration_ = 0.0;
-  double lateral_acceleration_ = 0.0;
+  FeltTilt felt_;
   bool servos_known_ = false;
 };
 

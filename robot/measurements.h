@@ -3,7 +3,7 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <cstdint>
-#include <iterator>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -15,13 +15,16 @@ namespace rubble::robot {
 /// One revolution of a 2D laser scanner, counter-clockwise. Beam i leaves at stamp + i * beam_period
 /// with bearing angle_min + i * angle_step in the laser frame.
 struct LaserScan {
+  static constexpr float kMiss = std::numeric_limits<float>::infinity();
+  static constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
   Stamp stamp;                ///< of beam 0
   double angle_min = 0.0;     ///< bearing of beam 0 [rad]
   double angle_step = 0.0;    ///< [rad], > 0
   double beam_period = 0.0;   ///< time between two beams [s]; 0: unknown or all at once
   double range_min = 0.0;     ///< [m]
   double range_max = 0.0;     ///< [m]
-  std::vector<float> ranges;  ///< [m]; +inf: nothing in range (a miss), NaN: no measurement (unknown)
+  std::vector<float> ranges;  ///< [m]; kMiss: nothing in range, kUnknown: no measurement
   /// The scanner's own code of each beam, 0 where it gave a range or saw nothing up to its greatest distance (URG-04LX:
   /// 1..19, see docs/hardware.md); empty: the scanner has none. A miss whose code is 0 came without any echo, which a
   /// dark or grazing surface close by can be too.
@@ -80,11 +83,5 @@ struct Inputs {
   /// In force during the tick: what the motors and servos were last told before it. Nothing: not known (foreign logs).
   std::optional<Commands> command;
 };
-
-/// Puts `more` behind what is there.
-template <class T>
-void append(std::vector<T>& list, std::vector<T>&& more) {
-  list.insert(list.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
-}
 
 }  // namespace rubble::robot

@@ -90,8 +90,7 @@ void Rig::measure(World& world, robot::Inputs& inputs) {
   }
   while (rotor_clock_.due(state.stamp - laser_.times().sent)) {
     constexpr double kAround = 1.0;  // what others and the laser's mount stick out, and more [m]
-    inputs.scans.push_back(laser_.scan(rotor_clock_.next + laser_.times().first_beam, states_,
-                                       world.clutter().spheres(),
+    inputs.scans.push_back(laser_.scan(rotor_clock_.next + laser_.times().first_beam, states_, world.spheres(),
                                        world.moving_faces(index_, model_.laser.range_max + kAround)));
     rotor_clock_.advance();
     forget_old_states();

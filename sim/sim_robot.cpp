@@ -48,8 +48,8 @@ void SimRobot::place(const mrpt::math::TPose2D& T_arena_base) { impl_->world.pla
 
 const Trajectory& SimRobot::truth() const { return impl_->rig.truth(); }
 
-std::vector<arenas::PaperBall> SimRobot::balls() const { return impl_->world.clutter().balls(); }
+std::vector<arenas::PaperBall> SimRobot::balls() const { return impl_->world.balls(); }
 
-std::vector<arenas::LooseObject> SimRobot::objects() const { return impl_->world.clutter().objects(); }
+std::vector<arenas::LooseObject> SimRobot::objects() const { return impl_->world.objects(); }
 
 }  // namespace rubble::sim

@@ -30,14 +30,19 @@ bool is_free(const Eigen::Vector3d& eye, const Eigen::Vector3d& to, const RayWal
   return walk.cast({eye, to / distance}, distance) >= distance - kReached;
 }
 
-}  // namespace
-
+/// Whether the sense can find the victim from `eye`, wherever it is turned to.
 bool in_view(const arenas::Victim& victim, const CueSense& sense, const Eigen::Vector3d& eye, const RayWalk& walk) {
   const Eigen::Vector3d to = Eigen::Vector3d(victim.position.x, victim.position.y, victim.position.z) - eye;
   const double distance = std::hypot(to.x(), to.y());
   if (distance > sense.range || distance < 1e-6) return false;
   if (std::abs(wrap_angle(std::atan2(-to.y(), -to.x()) - victim.facing)) > sense.open_side) return false;
   return distance <= sense.muffled_range || is_free(eye, to, walk);
+}
+
+}  // namespace
+
+bool CameraView::find(const arenas::Victim& victim, const mrpt::math::TPoint3D& floor) const {
+  return in_view(victim, sensors_.appearance, {floor.x, floor.y, floor.z + sensors_.height}, walk_);
 }
 
 VictimSensor::VictimSensor(const std::vector<arenas::Victim>& victims, const VictimSensorParameters& parameters,

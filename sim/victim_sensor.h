@@ -1,6 +1,7 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <mrpt/math/TPoint3D.h>
+
 #include <cstdint>
 #include <vector>
 
@@ -39,9 +40,18 @@ struct VictimSensorParameters {
   CueSense co2{robot::CueKind::Co2, false, kPi, 0.9, 0.0, deg_to_rad(75.0), deg_to_rad(30.0), 0.3, 0.2, 0.002, 0.5};
 };
 
-/// Whether the sense can find the victim from `eye`: in its range, on the open side of the box and on a line that no
-/// face of `walk` cuts, or so near that walls do not matter. Where the sensor is turned to is left out.
-bool in_view(const arenas::Victim& victim, const CueSense& sense, const Eigen::Vector3d& eye, const RayWalk& walk);
+/// What the cameras of a level robot can find in an arena, wherever they are turned to.
+class CameraView {
+ public:
+  explicit CameraView(const arenas::Arena& arena) : walk_(arenas::faces(arena)) {}
+  double reach() const { return sensors_.appearance.range; }  ///< [m]
+  /// Of a robot that stands at `floor` [m]: in reach, on the open side of the box and on a line that no face cuts.
+  bool find(const arenas::Victim& victim, const mrpt::math::TPoint3D& floor) const;
+
+ private:
+  VictimSensorParameters sensors_;
+  RayWalk walk_;
+};
 
 /// Reports what the senses take for victims. Lines of sight are checked against the arena's faces.
 class VictimSensor {

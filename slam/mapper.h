@@ -32,6 +32,11 @@ struct MapperCounts {
 
 /// A number of one mapper's own, for score.json ("icp_accepted", "loops_closed").
 struct MapperFigure {
+  // Those that others than people read.
+  static constexpr const char* kPlaceKnown = "place_known";  ///< 1: it knows where it is on an earlier run's map
+  static constexpr const char* kLoopsClosed = "loops_closed";
+  static constexpr const char* kLoopsRemoved = "loops_removed";
+
   std::string key;
   double value = 0.0;
 };

@@ -25,8 +25,8 @@ void add_boards(const ElementFrame& frame, double x0, double x1, double height, 
   std::sort(here.begin(), here.end(), [](const Opening* a, const Opening* b) { return a->height < b->height; });
   double bottom = 0.0;
   const auto add = [&](double z0, double z1) {
-    add_block(frame, x0, kHalfPallet - 0.5 * kBoardThickness, x1, kHalfPallet + 0.5 * kBoardThickness, z0, z1, "wall",
-              arena);
+    add_block(frame, x0, kHalfPallet - 0.5 * kBoardThickness, x1, kHalfPallet + 0.5 * kBoardThickness, z0, z1,
+              kWallElement, arena);
   };
   for (const Opening* o : here) {
     add(bottom, o->height - 0.5 * o->tall);
@@ -109,19 +109,21 @@ void add_wall(const ElementFrame& frame, double height, const std::vector<Openin
 
 void add_half_wall(const ElementFrame& frame, Arena& arena) {
   add_block(frame, 0.0, kHalfPallet - 0.5 * kBoardThickness, kHalfPallet, kHalfPallet + 0.5 * kBoardThickness, 0.0, 1.2,
-            "wall", arena);
+            kWallElement, arena);
 }
 
 void add_diagonal_wall(const ElementFrame& frame, Arena& arena) {
   arena.solids.push_back(
       {strip(frame.point(-kHalfPallet, -kHalfPallet), frame.point(kHalfPallet, kHalfPallet), kBoardThickness), 0.0, 1.2,
-       "wall"});
+       kWallElement});
 }
 
 void add_corner_wall(const ElementFrame& frame, Arena& arena) {
   const TPoint2D middle = frame.point(0.0, 0.0);
-  arena.solids.push_back({strip(frame.point(-kHalfPallet, kHalfPallet), middle, kBoardThickness), 0.0, 1.2, "wall"});
-  arena.solids.push_back({strip(middle, frame.point(kHalfPallet, kHalfPallet), kBoardThickness), 0.0, 1.2, "wall"});
+  arena.solids.push_back(
+      {strip(frame.point(-kHalfPallet, kHalfPallet), middle, kBoardThickness), 0.0, 1.2, kWallElement});
+  arena.solids.push_back(
+      {strip(middle, frame.point(kHalfPallet, kHalfPallet), kBoardThickness), 0.0, 1.2, kWallElement});
 }
 
 void add_veil(const ElementFrame& frame, Arena& arena) {
@@ -220,15 +222,15 @@ void add_hung_victim(const ElementFrame& frame, const Mount& mount, bool heat, b
   constexpr double kTall = 0.20;   // half of 0.40 m
   constexpr double kBack = 0.35;
   constexpr double kFront = 0.59;
-  constexpr double kSheet = 0.015;
   const double x0 = mount.along - kWidth;
   const double x1 = mount.along + kWidth;
   const double z0 = mount.height - kTall;
   const double z1 = mount.height + kTall;
-  add_block(frame, x0, kBack, x1, kBack + kSheet, z0, z1, "victim_box", arena);
-  add_block(frame, x0, kBack + kSheet, x0 + kSheet, kFront, z0, z1, "victim_box", arena);
-  add_block(frame, x1 - kSheet, kBack + kSheet, x1, kFront, z0, z1, "victim_box", arena);
-  add_block(frame, x0 + kSheet, kBack + kSheet, x1 - kSheet, kFront, z0, z0 + kSheet, "victim_box", arena);
+  add_block(frame, x0, kBack, x1, kBack + kSheetThickness, z0, z1, kVictimBoxElement, arena);
+  add_block(frame, x0, kBack + kSheetThickness, x0 + kSheetThickness, kFront, z0, z1, kVictimBoxElement, arena);
+  add_block(frame, x1 - kSheetThickness, kBack + kSheetThickness, x1, kFront, z0, z1, kVictimBoxElement, arena);
+  add_block(frame, x0 + kSheetThickness, kBack + kSheetThickness, x1 - kSheetThickness, kFront, z0,
+            z0 + kSheetThickness, kVictimBoxElement, arena);
   const TPoint2D p = frame.point(mount.along, 0.5 * (kBack + kFront));
   Victim victim;
   victim.name = "victim" + std::to_string(arena.victims.size() + 1);
@@ -297,7 +299,6 @@ void add_tunnel(const ElementFrame& frame, Arena& arena) {
 }
 
 void add_victim(Arena& arena, Victim victim, double size) {
-  constexpr double kSheet = 0.015;
   const TPoint2D centre{victim.position.x, victim.position.y};
   victim.position.z += floor_or_ground(arena, centre);
   arena.victims.push_back(victim);
@@ -312,13 +313,14 @@ void add_victim(Arena& arena, Victim victim, double size) {
   }
   const TPoint2D forward{std::cos(victim.facing), std::sin(victim.facing)};
   const TPoint2D left{-forward.y, forward.x};
-  const double aside = 0.5 * (size - kSheet);
+  const double aside = 0.5 * (size - kSheetThickness);
   const auto add_board = [&](const TPoint2D& middle, double length, double width) {
-    arena.solids.push_back({rectangle(middle, length, width, victim.facing), lowest, highest + size, "victim_box"});
+    arena.solids.push_back(
+        {rectangle(middle, length, width, victim.facing), lowest, highest + size, kVictimBoxElement});
   };
-  add_board(centre - forward * aside, kSheet, size);
-  add_board(centre + left * aside, size, kSheet);
-  add_board(centre - left * aside, size, kSheet);
+  add_board(centre - forward * aside, kSheetThickness, size);
+  add_board(centre + left * aside, size, kSheetThickness);
+  add_board(centre - left * aside, size, kSheetThickness);
 }
 
 }  // namespace rubble::arenas

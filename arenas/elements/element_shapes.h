@@ -9,7 +9,8 @@
 
 namespace rubble::arenas {
 
-constexpr double kBoardThickness = 0.01;  ///< of walls [m]
+constexpr double kBoardThickness = 0.01;   ///< of walls [m]
+constexpr double kSheetThickness = 0.015;  ///< of victims' boxes [m]
 
 /// An element's own frame: origin in the middle of its pallet, walls on the edge y = +0.6 m.
 class ElementFrame {

@@ -71,7 +71,6 @@ auto boxed_victim(bool heat, bool sound, bool co2) {
 
 const std::map<std::string, Entry>& table() {
   constexpr double kTan10 = 0.17632698;
-  constexpr double kTan35 = 0.70020754;
   constexpr double kHole = 0.133;  // square of the same area as the round hole of 0.15 m
   static const std::vector<Opening> kHoles{
       {-0.28, 0.31, kHole, kHole}, {-0.29, 0.90, kHole, kHole}, {0.29, 0.59, kHole, kHole}};
@@ -94,10 +93,10 @@ const std::map<std::string, Entry>& table() {
       {"half_ramp", ramp("rises 0.17 m over the southern half, towards +y", false, -kHalfPallet, 0.0, 0.17)},
       {"half_ramp_shifted", ramp("rises 0.17 m over the southern half, towards -y", false, 0.0, -kHalfPallet, 0.17)},
       {"simple_elev_ramp", ramp("45 deg up to the floor at 1.2 m", true, -kHalfPallet, kHalfPallet, kPallet)},
-      {"steep_ramp_35", ramp("35 deg up to the floor at 0.84 m", true, -kHalfPallet, kHalfPallet, kPallet * kTan35)},
+      {"steep_ramp_35", ramp("35 deg up to the floor at 0.84 m", true, -kHalfPallet, kHalfPallet, kRise35)},
       {"steep_ramp_45", ramp("45 deg up to the floor at 1.2 m", true, -kHalfPallet, kHalfPallet, kPallet)},
-      {"elevated_floor_120", {K::Floor, "a floor at 1.2 m, closed below", elevated_floor(1.2), true}},
-      {"elevated_floor_084", {K::Floor, "a floor at 0.84 m, closed below", elevated_floor(1.2 * kTan35), true}},
+      {"elevated_floor_120", {K::Floor, "a floor at 1.2 m, closed below", elevated_floor(kPallet), true}},
+      {"elevated_floor_084", {K::Floor, "a floor at 0.84 m, closed below", elevated_floor(kRise35), true}},
       {"crossing_ramps",
        {K::Floor, "four ramps of 10 deg that agree nowhere: pitches and rolls the robot at once",
         standing([](const ElementFrame& f, Arena& a) { add_crossing_ramps(f, kTan10, a); }), true, add_crossing_ramps}},

@@ -63,7 +63,7 @@ void read_walls(const YamlMap& root, const Plan& plan, Arena& arena) {
     const double bottom = entry.number("bottom_m", 0.0, -10.0, 10.0);
     const double height = entry.number("height_m", plan.wall_height(), 0.01, 10.0);
     const double thickness = entry.number("thickness_m", plan.wall_thickness(), 0.005, 1.0);
-    arena.solids.push_back({strip(from, to, thickness), bottom, bottom + height, entry.text("element", "wall")});
+    arena.solids.push_back({strip(from, to, thickness), bottom, bottom + height, entry.text("element", kWallElement)});
   }
 }
 

@@ -15,7 +15,7 @@ using mrpt::math::TPoint2D;
 FloorPatch pallet(char shape, const TPoint2D& centre, double edge, double foot, double slope) {
   FloorPatch patch;
   patch.outline = rectangle(centre, edge, edge);
-  patch.element = shape == '.' ? "flat" : "ramp";
+  patch.element = shape == '.' ? kFlatElement : "ramp";
   if (shape == '>') patch.gx = slope;
   if (shape == '<') patch.gx = -slope;
   if (shape == '^') patch.gy = slope;
@@ -70,7 +70,7 @@ void Plan::add_walls(Arena& arena, const Drawing& drawing) const {
   const auto add = [&](double x0, double y0, double x1, double y1) {
     const Outline outline =
         strip({x0 * cell_size_, y0 * cell_size_}, {x1 * cell_size_, y1 * cell_size_}, wall_thickness_);
-    arena.solids.push_back({outline, 0.0, wall_height_, "wall"});
+    arena.solids.push_back({outline, 0.0, wall_height_, kWallElement});
   };
   for (int y = 0; y <= rows; ++y) {
     for (int x = 0; x < columns; ++x) {

@@ -7,8 +7,6 @@
 namespace rubble::arenas {
 namespace {
 
-constexpr double kSteep35 = 0.84025;  ///< 1.2 m tan 35 deg
-
 /// What lies where while obstacles are being laid.
 class Site {
  public:
@@ -91,7 +89,7 @@ bool lay_tower(int which, Cell top, int direction, Site& site, std::vector<Rough
   site.take(foot, true);
   static const std::array<const char*, 3> kWaysUp{"stairs_120", "steep_ramp_45", "steep_ramp_35"};
   const bool is_low = which == 2;
-  const double height = is_low ? kSteep35 : 1.2;
+  const double height = is_low ? kRise35 : kPallet;
   const int turn = turn_of(foot, top);
   laid.push_back({foot, kWaysUp[static_cast<std::size_t>(which)], turn, 0.0, true});
   laid.push_back({top, is_low ? "elevated_floor_084" : "elevated_floor_120", turn, height, true});

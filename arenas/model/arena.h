@@ -12,6 +12,13 @@ namespace rubble::arenas {
 
 inline constexpr double kPallet = 1.2;                ///< edge of the league's pallets [m]
 inline constexpr double kHalfPallet = 0.5 * kPallet;  ///< [m]
+/// What a ramp of 35 deg climbs over a pallet; one of 45 deg climbs kPallet [m].
+inline constexpr double kRise35 = kPallet * 0.70020754;
+
+// Parts that are told from others: how they are drawn and written. What else an `element` says is for people.
+inline constexpr const char* kFlatElement = "flat";
+inline constexpr const char* kWallElement = "wall";
+inline constexpr const char* kVictimBoxElement = "victim_box";
 
 using Outline = std::vector<mrpt::math::TPoint2D>;  ///< convex polygon, counter-clockwise [m]
 
@@ -34,7 +41,7 @@ struct Solid {
   Outline outline;
   double z_bottom = 0.0;   ///< [m]
   double z_top = 1.2;      ///< [m]
-  std::string element;     ///< e.g. "wall", "victim_box"
+  std::string element;     ///< as runs name what they touched
   bool gives_way = false;  ///< seen by the laser but no obstacle: the strips of a veil
 };
 

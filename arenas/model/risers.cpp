@@ -99,4 +99,13 @@ std::vector<Riser> risers(const Arena& arena, double min_gap) {
   return result;
 }
 
+Stretch too_high(const Riser& riser, double limit) {
+  const double a = riser.high_a - riser.low_a - limit;
+  const double b = riser.high_b - riser.low_b - limit;
+  if (a <= 0.0 && b <= 0.0) return {0.0, 0.0};
+  if (a > 0.0 && b > 0.0) return {0.0, 1.0};
+  const double crossing = a / (a - b);
+  return a > 0.0 ? Stretch{0.0, crossing} : Stretch{crossing, 1.0};
+}
+
 }  // namespace rubble::arenas

@@ -22,4 +22,13 @@ struct Riser {
 /// Flush neighbours leave none. O(edges x neighbours).
 std::vector<Riser> risers(const Arena& arena, double min_gap = 0.001);
 
+/// A part of a riser, as parameters along it from a (0) to b (1).
+struct Stretch {
+  double from = 0.0;
+  double to = 1.0;
+};
+
+/// Where the step is higher than `limit` [m]; from >= to: nowhere. There it stops a wheel.
+Stretch too_high(const Riser& riser, double limit);
+
 }  // namespace rubble::arenas

@@ -89,7 +89,7 @@ void lay_ground(const Layout& layout, Arena& arena) {
   for (int y = 1; y + 1 < outside.height(); ++y) {
     for (int x = 1; x + 1 < outside.width(); ++x) {
       if ((!everywhere && outside[{x, y}] != 0) || layout.covered[{x, y}] != 0) continue;
-      arena.floor.push_back({rectangle(outside.centre({x, y}), kPallet, kPallet), 0.0, 0.0, 0.0, "flat"});
+      arena.floor.push_back({rectangle(outside.centre({x, y}), kPallet, kPallet), 0.0, 0.0, 0.0, kFlatElement});
     }
   }
 }

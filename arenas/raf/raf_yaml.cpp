@@ -12,9 +12,6 @@ namespace {
 
 using mrpt::math::TPoint2D;
 
-/// Numbers of a file have no more than 0.1 mm.
-std::string rounded_number(double value) { return number_text(static_cast<double>(std::llround(value * 1e4)) / 1e4); }
-
 /// A name without what would end a quoted text.
 std::string plain(std::string name) {
   for (char& c : name) {
@@ -23,7 +20,7 @@ std::string plain(std::string name) {
   return name;
 }
 
-bool is_ground(const FloorPatch& patch) { return patch.element == "flat"; }
+bool is_ground(const FloorPatch& patch) { return patch.element == kFlatElement; }
 
 /// The pallets from the first to the last that carries ground or a part.
 GridFrame frame_of(const RafImport& import) {
@@ -55,9 +52,9 @@ Drawing drawing_of(const RafImport& import, const GridFrame& frame) {
 
 std::string element_line(const Element& e, const TPoint2D& origin) {
   const TPoint2D p = e.position + e.offset - origin;
-  std::string line = "  - {type: " + e.type + ", x_m: " + rounded_number(p.x) + ", y_m: " + rounded_number(p.y);
+  std::string line = "  - {type: " + e.type + ", x_m: " + metres_text(p.x) + ", y_m: " + metres_text(p.y);
   const double turn = rad_to_deg(e.rotation);
-  if (turn != 0.0) line += ", rotation_deg: " + rounded_number(turn);
+  if (turn != 0.0) line += ", rotation_deg: " + metres_text(turn);
   if (e.mount_point) line += ", mount_point: " + std::to_string(*e.mount_point);
   return line + "}\n";
 }
@@ -71,8 +68,8 @@ std::string to_yaml(const RafImport& import) {
   text += "name: \"" + plain(import.arena.name) + "\"\n\nmaze: |\n";
   for (const std::string& line : draw(drawing_of(import, frame))) text += "  " + line + "\n";
   const mrpt::math::TPose2D& start = import.arena.start;
-  text += "\nstart: {x_m: " + rounded_number(start.x - origin.x) + ", y_m: " + rounded_number(start.y - origin.y) +
-          ", heading_deg: " + rounded_number(rad_to_deg(start.phi)) + "}\n\nelements:\n";
+  text += "\nstart: {x_m: " + metres_text(start.x - origin.x) + ", y_m: " + metres_text(start.y - origin.y) +
+          ", heading_deg: " + metres_text(rad_to_deg(start.phi)) + "}\n\nelements:\n";
   for (const Element& e : import.elements) text += element_line(e, origin);
   return text;
 }

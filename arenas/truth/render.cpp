@@ -120,13 +120,13 @@ void draw_objects(const Arena& arena, Canvas& canvas) {
 /// Thin walls are drawn at least 40 mm wide, so that a small picture still shows them.
 void draw_solids(const Arena& arena, Canvas& canvas) {
   for (const Solid& solid : arena.solids) {
-    const bool is_box = solid.element == "victim_box";
+    const bool is_box = solid.element == kVictimBoxElement;
     const double floor = floor_height(arena, middle(solid.outline));
     const bool is_hanging = solid.z_bottom > (std::isfinite(floor) ? floor : 0.0) + 0.3;
-    const Colour& colour = is_box                                               ? kBox
-                           : is_hanging                                         ? kHanging
-                           : solid.element == "wall" && solid.z_top > kTallFrom ? kTall
-                                                                                : kWall;
+    const Colour& colour = is_box                                                     ? kBox
+                           : is_hanging                                               ? kHanging
+                           : solid.element == kWallElement && solid.z_top > kTallFrom ? kTall
+                                                                                      : kWall;
     const bool is_ceiling = is_hanging && signed_area(solid.outline) > 1.0;  // the floor below it shows through
     canvas.fill(solid.outline, colour, is_ceiling ? 0.45 : 1.0);
     draw_outline(solid.outline, is_box ? 0.012 : 0.03, colour, 1.0, canvas);

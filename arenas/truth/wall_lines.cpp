@@ -13,7 +13,6 @@ using mrpt::math::TPoint2D;
 constexpr double kBoard = 0.05;  ///< a rectangle no thicker than this is a board [m]
 
 /// A tenth of a millimetre: arena files have no more, and sums do not show their rounding.
-std::string metres(double value) { return number_text(static_cast<double>(std::llround(value * 1e4)) / 1e4); }
 
 double length(const TPoint2D& v) { return std::hypot(v.x, v.y); }
 
@@ -52,9 +51,9 @@ void add_solid(const Solid& solid, int part, std::vector<WallLine>& lines) {
 
 /// The fields of a line in the order of the columns, as name and text.
 std::vector<std::pair<const char*, std::string>> numbers_of(const WallLine& line) {
-  return {{"bottom", metres(line.bottom_a)},     {"top", metres(line.top_a)},
-          {"thickness", metres(line.thickness)}, {"part", std::to_string(line.part)},
-          {"bottom_end", metres(line.bottom_b)}, {"top_end", metres(line.top_b)}};
+  return {{"bottom", metres_text(line.bottom_a)},     {"top", metres_text(line.top_a)},
+          {"thickness", metres_text(line.thickness)}, {"part", std::to_string(line.part)},
+          {"bottom_end", metres_text(line.bottom_b)}, {"top_end", metres_text(line.top_b)}};
 }
 
 std::string plain(const std::string& kind) {
@@ -80,7 +79,8 @@ std::string walls_csv(const std::vector<WallLine>& lines) {
   std::string text = "x0,y0,x1,y1,bottom,top,kind,thickness,part,bottom_end,top_end\n";
   for (const WallLine& line : lines) {
     const auto fields = numbers_of(line);
-    text += metres(line.a.x) + "," + metres(line.a.y) + "," + metres(line.b.x) + "," + metres(line.b.y);
+    text +=
+        metres_text(line.a.x) + "," + metres_text(line.a.y) + "," + metres_text(line.b.x) + "," + metres_text(line.b.y);
     for (std::size_t i = 0; i < fields.size(); ++i)
       text += (i == 2 ? "," + plain(line.kind) : "") + "," + fields[i].second;
     text += "\n";
@@ -94,8 +94,8 @@ std::string walls_geojson(const std::vector<WallLine>& lines) {
     const WallLine& line = lines[i];
     text += "{\"type\": \"Feature\", \"properties\": {\"kind\": \"" + plain(line.kind) + "\"";
     for (const auto& [name, value] : numbers_of(line)) text += std::string(", \"") + name + "\": " + value;
-    text += "}, \"geometry\": {\"type\": \"LineString\", \"coordinates\": [[" + metres(line.a.x) + ", " +
-            metres(line.a.y) + "], [" + metres(line.b.x) + ", " + metres(line.b.y) + "]]}}" +
+    text += "}, \"geometry\": {\"type\": \"LineString\", \"coordinates\": [[" + metres_text(line.a.x) + ", " +
+            metres_text(line.a.y) + "], [" + metres_text(line.b.x) + ", " + metres_text(line.b.y) + "]]}}" +
             (i + 1 < lines.size() ? ",\n" : "\n");
   }
   return text + "]}\n";

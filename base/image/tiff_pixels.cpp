@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/sample_range.h"
+#include "base/image/sample_range.h"
 #include "base/text/number_text.h"
 
 namespace rubble {

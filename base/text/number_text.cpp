@@ -37,4 +37,6 @@ std::string number_text(double value) {
   return {text, result.ptr};
 }
 
+std::string metres_text(double value) { return number_text(static_cast<double>(std::llround(value * 1e4)) / 1e4); }
+
 }  // namespace rubble

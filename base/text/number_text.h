@@ -17,4 +17,7 @@ std::optional<std::int64_t> parse_integer(std::string_view text);
 /// The shortest decimal text that reads back as the same double, whatever the locale.
 std::string number_text(double value);
 
+/// The same to 0.1 mm: more does not belong into a file of places.
+std::string metres_text(double value);
+
 }  // namespace rubble

@@ -6,13 +6,14 @@
 
 namespace rubble {
 
+std::string hex_digits(unsigned char byte) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  return {kDigits[byte >> 4], kDigits[byte & 15]};
+}
+
 std::string one_line(std::string_view text) {
-  static constexpr char kHex[] = "0123456789abcdef";
   std::string line;
-  const auto hex = [&line](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    line += {'\\', 'x', kHex[byte >> 4], kHex[byte & 15]};
-  };
+  const auto hex = [&line](char c) { line += "\\x" + hex_digits(static_cast<unsigned char>(c)); };
   for (std::size_t at = 0; at < text.size();) {
     const char c = text[at];
     const auto byte = static_cast<unsigned char>(c);

@@ -9,6 +9,9 @@ namespace rubble {
 /// `text` on one line: line breaks and other control characters become escapes such as \n, \t, \x1b.
 std::string one_line(std::string_view text);
 
+/// A byte as two digits, "0a".
+std::string hex_digits(unsigned char byte);
+
 /// 'text' in quotes for a message, on one line, cut at `limit` bytes.
 std::string in_quotes(std::string_view text, std::size_t limit = 60);
 

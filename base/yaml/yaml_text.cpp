@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "base/text/words.h"
 #include "base/yaml/binder.h"
 #include "base/yaml/strict_yaml.h"
 #include "base/yaml/yaml_node.h"
@@ -7,7 +8,6 @@
 namespace rubble {
 
 std::string yaml_quoted(const std::string& text) {
-  static constexpr char kHex[] = "0123456789abcdef";
   std::string out = "\"";
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -18,7 +18,7 @@ std::string yaml_quoted(const std::string& text) {
     } else if (c == '\t') {
       out += "\\t";
     } else if (byte < 0x20 || byte == 0x7f) {
-      out += {'\\', 'x', kHex[byte >> 4], kHex[byte & 15]};
+      out += "\\x" + hex_digits(byte);
     } else {
       out += c;
     }

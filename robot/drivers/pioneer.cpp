@@ -31,7 +31,6 @@ constexpr double kStubborn = 2.0;    ///< motors that stay on for so long though
 constexpr double kBrakes = 2.0;      ///< and so much more it may take to come to rest [s]
 constexpr int kOnce = 1;             ///< of ENCODER
 constexpr double kRefused = 5.0;     ///< a robot that cannot be read is asked again who it is [s]
-constexpr double kMillimetre = 1e-3;
 
 /// Difference of two rolled-over coordinates; older firmware rolls over at 15 bits, so only these are compared [mm].
 int rolled_difference(std::uint16_t to, std::uint16_t from) {
@@ -43,8 +42,6 @@ int heading_difference(std::int16_t to, std::int16_t from) {
   const int low = (to - from) & 0x0FFF;
   return low >= 0x0800 ? low - 0x1000 : low;
 }
-
-int whole(double value) { return static_cast<int>(std::lround(value)); }
 
 }  // namespace
 
@@ -308,12 +305,12 @@ void Pioneer::open(Stamp now) {
   stands_ = roused_ = false;
   send(command(arcos::kOpen, 1));
   send(command(arcos::kConfig, 1));
-  const int accel = whole(settings_.max_accel / kMillimetre);
-  const int turn_accel = whole(rad_to_deg(settings_.max_turn_accel));
-  send(command(arcos::kSetSpeed, whole(settings_.max_v / kMillimetre)));
+  const int accel = rounded(settings_.max_accel / kMillimetre);
+  const int turn_accel = rounded(rad_to_deg(settings_.max_turn_accel));
+  send(command(arcos::kSetSpeed, rounded(settings_.max_v / kMillimetre)));
   send(command(arcos::kSetAcceleration, accel));
   send(command(arcos::kSetAcceleration, -accel));
-  send(command(arcos::kSetTurnRate, whole(rad_to_deg(settings_.max_w))));
+  send(command(arcos::kSetTurnRate, rounded(rad_to_deg(settings_.max_w))));
   send(command(arcos::kSetTurnAcceleration, turn_accel));
   send(command(arcos::kSetTurnAcceleration, -turn_accel));
   v_due_ = w_due_ = !settings_.passive;  // whatever set points a former client left
@@ -386,7 +383,7 @@ void Pioneer::drive(const Drive& drive) {
   target_.v = motors_ ? std::clamp(drive.v, -settings_.max_v, settings_.max_v) : 0.0;
   target_.w = motors_ ? std::clamp(drive.w, -settings_.max_w, settings_.max_w) : 0.0;
   // An answer to what was just seen leaves at once; the dithering goes on at its own pace.
-  if (whole(target_.v / kMillimetre) != v_sent_) v_due_ = true;
+  if (rounded(target_.v / kMillimetre) != v_sent_) v_due_ = true;
   if (std::abs(rad_to_deg(target_.w) - w_sent_) >= 1.0 || (target_.w == 0.0 && w_sent_ != 0)) w_due_ = true;
 }
 
@@ -472,7 +469,7 @@ std::string Pioneer::take_output(Stamp now) {
     out = std::move(queue_.front());
     queue_.pop_front();
   } else if (v_due_ && step_ == Step::Running) {
-    v_sent_ = whole(target_.v / kMillimetre);
+    v_sent_ = rounded(target_.v / kMillimetre);
     out = command(arcos::kVelocity, v_sent_);
     v_due_ = false;
   } else if (w_due_ && step_ == Step::Running) {

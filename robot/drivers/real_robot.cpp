@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/lists.h"
 #include "base/text/words.h"
 #include "robot/drivers/device_thread.h"
 #include "robot/drivers/heartbeat.h"
@@ -55,11 +56,6 @@ std::string remedy(const std::vector<Hindrance>& all, bool starting) {
   if (any(Cause::Held)) return "; nobody has let it go";
   if (any(Cause::Faulty)) return "; see to it and run again";
   return any(Cause::Silent) ? "; nobody has touched it" : "; use a faster one";
-}
-
-template <class T>
-void sort_by_stamp(std::vector<T>& list) {
-  std::stable_sort(list.begin(), list.end(), [](const T& a, const T& b) { return a.stamp < b.stamp; });
 }
 
 /// What the clock of a device puts behind the end of the tick.

@@ -12,7 +12,6 @@ namespace {
 
 using namespace arcos;
 
-constexpr double kMillimetre = 1e-3;
 constexpr double kWheelSpeedStep = 0.02;        // of kWheelSpeeds [m/s]
 constexpr double kStillSpeed = 1e-3;            // slower counts as standing [m/s]
 constexpr double kStillTurn = deg_to_rad(0.5);  // [rad/s]
@@ -31,10 +30,9 @@ constexpr double kFullBattery = 12.8;     // [V]
 constexpr double kFinestLaserStep = 0.1;  // [deg]
 constexpr int kNothingInRange = 32000;    // as far as the scanners of ARIA's simulators see [mm]
 
-double approach(double from, double to, double accel, double decel, double dt) {
+double ramped(double from, double to, double accel, double decel, double dt) {
   const bool faster = std::abs(to) > std::abs(from) && to * from >= 0.0;
-  const double most = (faster ? accel : decel) * dt;
-  return from + std::clamp(to - from, -most, most);
+  return approach(from, to, (faster ? accel : decel) * dt);
 }
 
 /// The speed from which `left` is just enough to stop, and close to the end one that falls with what is left.
@@ -42,8 +40,6 @@ double stopping_speed(double left, double decel, double top) {
   const double most = std::min(std::sqrt(2.0 * decel * std::abs(left)), std::abs(left) / kLastPart);
   return std::copysign(std::min(top, most), left);
 }
-
-int rounded(double value) { return static_cast<int>(std::lround(value)); }
 
 }  // namespace
 
@@ -421,8 +417,8 @@ void ArcosEmulator::advance(Stamp now) {
     motion_ = drive;
     return;
   }
-  motion_.v = approach(motion_.v, drive.v, limits_.accel, limits_.decel, dt);
-  motion_.w = approach(motion_.w, drive.w, limits_.turn_accel, limits_.turn_decel, dt);
+  motion_.v = ramped(motion_.v, drive.v, limits_.accel, limits_.decel, dt);
+  motion_.w = ramped(motion_.w, drive.w, limits_.turn_accel, limits_.turn_decel, dt);
   if (mode_ == Mode::Head || mode_ == Mode::Move) look_again(dt);
 }
 

@@ -64,7 +64,8 @@ class TimedMapper {
                 {"worst_ms", ms_.empty() ? 0.0 : ms_.back()},
                 {"finish_ms", 1e3 * finish_}};
     for (const slam::MapperFigure& figure : mapper_.figures())
-      if (figure.key == "loops_closed" || figure.key == "loops_removed") out[figure.key] = figure.value;
+      if (figure.key == slam::MapperFigure::kLoopsClosed || figure.key == slam::MapperFigure::kLoopsRemoved)
+        out[figure.key] = figure.value;
     return out;
   }
 
@@ -187,8 +188,8 @@ void take(BenchmarkResult& result, const ChildAnswer& answer) {
   result.error_m = number("error_m");
   result.live_error_m = number("live_error_m");
   result.error_deg = number("error_deg");
-  result.loops_closed = number("loops_closed");
-  result.loops_removed = number("loops_removed");
+  result.loops_closed = number(slam::MapperFigure::kLoopsClosed);
+  result.loops_removed = number(slam::MapperFigure::kLoopsRemoved);
   result.scans = said["scans"].get<std::uint64_t>();
   result.scans_per_second = said["scans_per_second"].get<double>();
   result.usual_ms = said["usual_ms"].get<double>();

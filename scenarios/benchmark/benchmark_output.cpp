@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/text/html.h"
+
 namespace rubble::scenarios {
 namespace {
 
@@ -106,32 +108,15 @@ std::string as_markdown(const Table& table) {
   return text;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '&')
-      out += "&amp;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 std::string as_html(const Table& table) {
   std::string text = "<table><thead><tr>";
-  for (const std::string& cell : table.head) text += "<th>" + escaped(cell) + "</th>";
+  for (const std::string& cell : table.head) text += "<th>" + escape_html(cell) + "</th>";
   text += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
     text += "<tr>";
     for (const std::string& cell : row) {
       const char* kind = cell == "yes" ? " class=\"met\"" : cell == "no" ? " class=\"missed\"" : "";
-      text += "<td" + std::string(kind) + ">" + escaped(cell) + "</td>";
+      text += "<td" + std::string(kind) + ">" + escape_html(cell) + "</td>";
     }
     text += "</tr>\n";
   }
@@ -190,14 +175,14 @@ std::string to_json(const Benchmark& benchmark) {
 }
 
 std::string to_html(const Benchmark& benchmark) {
-  std::string text = "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>" +
-                     escaped(benchmark.name) +
-                     "</title><style>body{font:15px/1.5 "
-                     "sans-serif;margin:2em;color:#222;background:#fff}table{border-collapse:collapse;"
-                     "margin:1em 0}td,th{padding:.25em .6em;border-bottom:1px solid "
-                     "#ccc;text-align:left}.met{color:#06662f;font-weight:"
-                     "bold}.missed{color:#a11212;font-weight:bold}</style></head><body>\n<h1>" +
-                     escaped(benchmark.name) + "</h1>\n<p>" + escaped(benchmark.about) + "</p>\n<p>" + kNote + "</p>\n";
+  std::string text =
+      "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + escape_html(benchmark.name) +
+      "</title><style>body{font:15px/1.5 "
+      "sans-serif;margin:2em;color:#222;background:#fff}table{border-collapse:collapse;"
+      "margin:1em 0}td,th{padding:.25em .6em;border-bottom:1px solid "
+      "#ccc;text-align:left}.met{color:#06662f;font-weight:"
+      "bold}.missed{color:#a11212;font-weight:bold}</style></head><body>\n<h1>" +
+      escape_html(benchmark.name) + "</h1>\n<p>" + escape_html(benchmark.about) + "</p>\n<p>" + kNote + "</p>\n";
   text += as_html(results_table(benchmark));
   const Table published = published_table(benchmark);
   if (!published.rows.empty()) text += "<h2>Published</h2>\n" + as_html(published);

@@ -46,8 +46,6 @@ constexpr double kConfirmed = 2.0;
 
 constexpr robot::Drive kMoved{0.02, deg_to_rad(2.0)};  ///< so far is more than a touch [m], [rad]
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 std::unique_ptr<robot::Scanner> make_scanner(const RobotFile& file, robot::BlackBox& box) {
   const robot::LaserModel& laser = file.settings.robot.laser;
   if (file.lidar.driver == LidarDriver::Mrpt) {
@@ -423,8 +421,10 @@ void tell_who_answers(const RobotFile& file, const std::vector<std::string>& sil
   // Whoever only maps says nothing to a base that others drive; ports mixed up, it may be at any of them.
   if (!options.tell || options.mode == DriveMode::MapOnly) return;
   std::vector<DevicePort> asked;
-  for (const DevicePort& device : {DevicePort{"urg", file.lidar.port}, DevicePort{"base", file.robot.base_port},
-                                   DevicePort{"levelling", file.robot.levelling_port}})
+  using Kind = robot::DeviceKind;
+  for (const DevicePort& device :
+       {DevicePort{Kind::Scanner, "urg", file.lidar.port}, DevicePort{Kind::Base, "base", file.robot.base_port},
+        DevicePort{Kind::Levelling, "levelling", file.robot.levelling_port}})
     if (std::find(silent.begin(), silent.end(), device.name) != silent.end()) asked.push_back(device);
   for (const std::string& line : port_mix_up(asked, options.interrupted)) options.tell(line);
 }

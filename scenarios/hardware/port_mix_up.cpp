@@ -2,19 +2,8 @@
 
 #include "base/error.h"
 #include "robot/drivers/port.h"
-#include "robot/drivers/probe/probe.h"
 
 namespace rubble::scenarios {
-namespace {
-
-/// What `rubble devices` calls the device.
-std::string kind_of(const std::string& name) {
-  if (name == "urg") return "laser scanner";
-  return name == "base" ? "robot base" : "levelling unit";
-}
-
-}  // namespace
-
 std::vector<std::string> port_mix_up(const std::vector<DevicePort>& silent, const std::function<bool()>& interrupted) {
   std::vector<std::string> lines;
   if (silent.size() < 2) return lines;
@@ -23,8 +12,8 @@ std::vector<std::string> port_mix_up(const std::vector<DevicePort>& silent, cons
     if (interrupted && interrupted()) break;
     try {
       const auto found = robot::probe_port(device.port);
-      if (!found || found->kind.find(kind_of(device.name)) == 0) continue;
-      lines.push_back(device.name + ": at its port " + device.port + " a " + found->kind +
+      if (!found || found->kind == device.kind) continue;
+      lines.push_back(device.name + ": at its port " + device.port + " a " + found->called +
                       " answers; are the ports mixed up?");
     } catch (const RunError&) {
       continue;  // nobody can be asked there

@@ -4,10 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "robot/drivers/probe/probe.h"
+
 namespace rubble::scenarios {
 
 /// Where a device of the robot is looked for.
 struct DevicePort {
+  robot::DeviceKind kind = robot::DeviceKind::Scanner;
   std::string name;  ///< "urg", "base" or "levelling"
   std::string port;
 };

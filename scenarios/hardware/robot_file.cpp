@@ -14,8 +14,6 @@
 namespace rubble::scenarios {
 namespace {
 
-constexpr const char* kNone = "none";
-
 void bind(Binder& b, robot::AxisCalibration& axis) {
   b.number("zero_duty", axis.zero, 0.05, 0.95);
   b.number("duty_per_g", axis.sensitivity, 0.01, 0.5);
@@ -50,9 +48,9 @@ void bind_base(Binder& b, robot::RealRobotSettings& r) {
 }
 
 void bind_levelling(Binder& b, robot::RealRobotSettings& r) {
-  std::string driver = r.model.has_levelling_unit ? "lev1" : kNone;
-  b.choice("driver", driver, {"lev1", kNone});
-  r.model.has_levelling_unit = driver != kNone;
+  std::string driver = r.model.has_levelling_unit ? kLevellingUnit : kNoLevelling;
+  b.choice("driver", driver, {kLevellingUnit, kNoLevelling});
+  r.model.has_levelling_unit = driver != kNoLevelling;
   b.text("port", r.levelling_port);
   b.section("x", [&](Binder& in) { bind(in, r.levelling.x); });
   b.section("y", [&](Binder& in) { bind(in, r.levelling.y); });

@@ -13,6 +13,10 @@ namespace rubble::scenarios {
 /// Who talks to the scanner: our own driver, or one of MRPT's.
 enum class LidarDriver { Scip, Mrpt };
 
+/// What a robot file calls the driver of the levelling unit, and none.
+inline constexpr const char* kLevellingUnit = "lev1";
+inline constexpr const char* kNoLevelling = "none";
+
 /// The scanner of a robot file.
 struct LidarSettings {
   LidarDriver driver = LidarDriver::Scip;

@@ -78,6 +78,9 @@ class Loop {
 /// What mapper and explorer did in `sim_s` seconds of run time. `reason`: why it ended, for people.
 scoring::RunFigures run_figures(const Core& core, double sim_s, const std::string& reason);
 
+/// Time of the wall clock since `start` [s]: for what a run costs, never for what it does.
+double seconds_since(std::chrono::steady_clock::time_point start);
+
 /// The most memory this process has held so far.
 double peak_megabytes();
 

@@ -11,7 +11,7 @@
 #include "arenas/truth/visible.h"
 #include "base/angle.h"
 #include "base/planar.h"
-#include "sim/laser/ray_walk.h"
+#include "robot/body.h"
 #include "sim/victim_sensor.h"
 
 namespace rubble::scenarios {
@@ -20,11 +20,10 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kContact = 0.012;    ///< nearer, the body touches [m]
-constexpr double kFar = 0.5;          ///< clearances are not told apart beyond [m]
-constexpr double kAboveLaser = 0.05;  ///< the body ends so much above the laser [m]
-constexpr double kBucket = 1.2;       ///< [m]
-constexpr double kPeriod = 0.1;       ///< the truth is looked at this often [s]
+constexpr double kContact = 0.012;  ///< nearer, the body touches [m]
+constexpr double kFar = 0.5;        ///< clearances are not told apart beyond [m]
+constexpr double kBucket = 1.2;     ///< [m]
+constexpr double kPeriod = 0.1;     ///< the truth is looked at this often [s]
 
 /// An upright piece of something the body cannot pass.
 struct Edge {
@@ -43,14 +42,11 @@ class Edges {
             {solid.outline[i], solid.outline[(i + 1) % solid.outline.size()], solid.z_bottom, solid.z_top});
     }
     for (const arenas::Riser& riser : arenas::risers(arena, climbable_step)) {
-      // Only the stretch where the step is too high stops a wheel.
-      const double a = riser.high_a - riser.low_a - climbable_step;
-      const double b = riser.high_b - riser.low_b - climbable_step;
-      if (a <= 0.0 && b <= 0.0) continue;
-      const double crossing = a * b < 0.0 ? a / (a - b) : 0.0;
+      const arenas::Stretch stretch = arenas::too_high(riser, climbable_step);
+      if (stretch.from >= stretch.to) continue;
       const TPoint2D way = riser.b - riser.a;
-      const TPoint2D from = a > 0.0 ? riser.a : riser.a + way * crossing;
-      const TPoint2D to = b > 0.0 ? riser.b : riser.a + way * crossing;
+      const TPoint2D from = riser.a + way * stretch.from;
+      const TPoint2D to = stretch.to < 1.0 ? riser.a + way * stretch.to : riser.b;
       edges_.push_back({from, to, std::min(riser.low_a, riser.low_b), std::max(riser.high_a, riser.high_b)});
     }
     frame_.resolution = kBucket;
@@ -105,28 +101,22 @@ double between(const TPoint2D& a, const TPoint2D& b, const TPoint2D& c, const TP
   return std::min({to_segment(a, c, d), to_segment(b, c, d), to_segment(c, a, b), to_segment(d, a, b)});
 }
 
-/// The body from above: a rectangle whose corners are cut by a tenth of the length.
 std::array<TPoint2D, 8> outline(const robot::RobotModel& model, const TPose2D& pose) {
-  const double x = 0.5 * model.length, y = 0.5 * model.width, cut = 0.1 * model.length;
-  const std::array<TPoint2D, 8> own{TPoint2D{x, y - cut},  TPoint2D{x - cut, y},  TPoint2D{cut - x, y},
-                                    TPoint2D{-x, y - cut}, TPoint2D{-x, cut - y}, TPoint2D{cut - x, -y},
-                                    TPoint2D{x - cut, -y}, TPoint2D{x, cut - y}};
-  std::array<TPoint2D, 8> placed;
+  std::array<TPoint2D, 8> body = robot::body_outline<TPoint2D, double>(model);
   const PlanarTransform T(pose);
-  std::transform(own.begin(), own.end(), placed.begin(), T);
-  return placed;
+  std::transform(body.begin(), body.end(), body.begin(), T);
+  return body;
 }
 
 double clearance(const arenas::Arena& arena, const Edges& edges, const robot::RobotModel& model, const TPose2D& pose) {
   const std::array<TPoint2D, 8> body = outline(model, pose);
   const double floor = arenas::floor_height(arena, {pose.x, pose.y});
   const double bottom = std::isfinite(floor) ? floor : 0.0;
-  const double top = bottom + model.T_base_laser.z + kAboveLaser;
+  const double top = bottom + model.T_base_laser.z + robot::kAboveLaser;
   double nearest = kFar;
   for (const std::size_t i : edges.near({pose.x, pose.y})) {
     const Edge& e = edges[i];
-    constexpr double kGraze = 0.01;
-    if (std::min(e.top, top) - std::max(e.bottom, bottom) < kGraze) continue;
+    if (std::min(e.top, top) - std::max(e.bottom, bottom) < robot::kGraze) continue;
     for (std::size_t k = 0; k < body.size(); ++k)
       nearest = std::min(nearest, between(body[k], body[(k + 1) % body.size()], e.a, e.b));
   }
@@ -181,7 +171,7 @@ scoring::DriveFigures drive_figures(const arenas::Arena& arena, const Trajectory
 arenas::Viewer viewer_of(const robot::RobotModel& model) {
   arenas::Viewer viewer;
   viewer.radius = 0.5 * model.width;
-  viewer.height = model.T_base_laser.z + kAboveLaser;
+  viewer.height = robot::body_height(model);
   viewer.laser_height = model.T_base_laser.z;
   viewer.climbable_step = model.climbable_step;
   viewer.range = model.laser.range_max;
@@ -192,9 +182,8 @@ int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model) 
   const OccupancyGrid truth = arenas::truth_map(arena);
   const Grid<std::uint8_t> reachable = arenas::reachable_mask(arena, truth, viewer_of(model));
   const arenas::PatchIndex floor(arena);
-  const sim::RayWalk walk(arenas::faces(arena));
-  const sim::VictimSensorParameters sensors;
-  const double reach = sensors.appearance.range;
+  const sim::CameraView cameras(arena);
+  const double reach = cameras.reach();
   const auto seen_from = [&](const arenas::Victim& victim) {
     const Cell low = truth.cell({victim.position.x - reach, victim.position.y - reach});
     const Cell high = truth.cell({victim.position.x + reach, victim.position.y + reach});
@@ -202,8 +191,7 @@ int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model) 
       for (int x = low.x; x <= high.x; ++x) {
         if (!reachable.inside({x, y}) || reachable[{x, y}] == 0) continue;
         const TPoint2D p = truth.centre({x, y});
-        const Eigen::Vector3d eye(p.x, p.y, floor.floor_height(p) + sensors.height);
-        if (sim::in_view(victim, sensors.appearance, eye, walk)) return true;
+        if (cameras.find(victim, {p.x, p.y, floor.floor_height(p)})) return true;
       }
     return false;
   };

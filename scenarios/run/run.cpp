@@ -20,6 +20,7 @@
 #include "base/text/words.h"
 #include "robot/logs/log.h"
 #include "scenarios/run/core.h"
+#include "scenarios/run/loop.h"
 #include "scenarios/run/map_files.h"
 #include "scenarios/run/mission_figures.h"
 #include "scenarios/run/run_folder.h"
@@ -35,8 +36,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using nlohmann::ordered_json;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Trajectories of the mapper against the true one.
 void compare_trajectories(scoring::Evidence& evidence, const slam::Mapper& mapper, const Trajectory& truth) {
@@ -231,8 +230,9 @@ std::string base_as_typed(const RunOptions& options) {
 /// Of a mapper on the map of an earlier run.
 bool knows_no_place(const slam::Mapper& mapper) {
   const auto figures = mapper.figures();
-  return std::any_of(figures.begin(), figures.end(),
-                     [](const slam::MapperFigure& f) { return f.key == "place_known" && f.value == 0.0; });
+  return std::any_of(figures.begin(), figures.end(), [](const slam::MapperFigure& f) {
+    return f.key == slam::MapperFigure::kPlaceKnown && f.value == 0.0;
+  });
 }
 
 /// Relations and other programs know the scans of a log by its own stamps.

@@ -1,4 +1,5 @@
 #include "scoring/alignment/pose_search.h"
+#include "base/planar.h"
 #include "base/rigid.h"
 
 #include <algorithm>
@@ -45,8 +46,6 @@ void bend(Hypothesis& h, const WallMatch& match, const Kernels& kernels, double 
   h.tight = match.evidence(bent, kernels.tight);
   h.T_best = match.nearest_rigid(bent);
 }
-
-bool identical(const TPose2D& a, const TPose2D& b) { return a.x == b.x && a.y == b.y && a.phi == b.phi; }
 
 }  // namespace
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/sample_range.h"
+#include "base/image/sample_range.h"
 #include "base/text/input_file.h"
 #include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/image_damage.h"

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/grid.h"
 #include "base/image/png.h"
 #include "scoring/walls/resample.h"
 #include "scoring/walls/wall_field.h"
@@ -34,11 +35,6 @@ const Colour kMapFree(222, 226, 248);
 const Colour kTruthFree(248, 234, 218);
 const Colour kUnknown(206, 206, 206);
 const Colour kWall(120, 40, 0);
-
-Occupancy at(const OccupancyGrid& grid, const TPoint2D& p) {
-  const Cell c = grid.cell(p);
-  return grid.inside(c) ? grid[c] : Occupancy::Unknown;
-}
 
 /// Pixels a cell such that a map of usual size can be read and a huge one still fits a screenful or two.
 int pixels_per_cell(const GridFrame& frame) {
@@ -228,8 +224,8 @@ void paint(Canvas& canvas, const OccupancyGrid& map, const OccupancyGrid& truth,
     for (int column = 0; column < canvas.map_columns(); ++column) {
       const TPoint2D p_truth = canvas.point(column, row);
       const TPoint2D p_map = T_truth_map.inverseComposePoint(p_truth);
-      const Occupancy in_map = at(map, p_map);
-      const Occupancy in_truth = at(truth, p_truth);
+      const Occupancy in_map = occupancy_at(map, p_map);
+      const Occupancy in_truth = occupancy_at(truth, p_truth);
       Colour& colour = canvas.image.at<Colour>(row, column);
       colour = background(in_map, in_truth);
       wall(p_map, in_map, p_truth, in_truth, colour);
@@ -294,8 +290,8 @@ void write_side_by_side(const std::string& path, const OccupancyGrid& map, const
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
       const TPoint2D p_truth = pane.point(column, row);
-      both.image.at<Colour>(row, column) = plain(at(map, T_truth_map.inverseComposePoint(p_truth)));
-      both.image.at<Colour>(row, columns + kGap + column) = plain(at(truth, p_truth));
+      both.image.at<Colour>(row, column) = plain(occupancy_at(map, T_truth_map.inverseComposePoint(p_truth)));
+      both.image.at<Colour>(row, columns + kGap + column) = plain(occupancy_at(truth, p_truth));
     }
   both.image(cv::Rect(columns, 0, kGap, rows)).setTo(cv::Scalar(250, 250, 250));
   const cv::Point east(columns + kGap, 0);

@@ -28,12 +28,6 @@ constexpr double kLeastTurn = 0.014;     // [rad]
 constexpr int kDirections = 12;
 constexpr double kStep = 0.6;  // between seams of one direction [m]
 
-TPoint2D middle_of(const std::vector<TPoint2D>& points) {
-  TPoint2D sum(0.0, 0.0);
-  for (const TPoint2D& p : points) sum += p;
-  return sum * (1.0 / static_cast<double>(points.size()));
-}
-
 /// Walls of the map, and the truth's, prepared for trying many seams.
 class Parts {
  public:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/grid.h"
 #include "base/rigid.h"
 
 namespace rubble::scoring {
@@ -12,11 +13,6 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
 constexpr double kSample = 0.25;  // spacing of area samples [m]
-
-Occupancy at(const OccupancyGrid& grid, const TPoint2D& p) {
-  const Cell c = grid.cell(p);
-  return grid.inside(c) ? grid[c] : Occupancy::Unknown;
-}
 
 /// Every n-th point of each row-major run, so that all parts of the map keep their share.
 std::vector<TPoint2D> thin_out(const std::vector<TPoint2D>& points, std::size_t max_points) {
@@ -54,7 +50,7 @@ WallEvidence tally(const std::vector<TPoint2D>& walls, const OccupancyGrid& othe
   for (const TPoint2D& p : walls) {
     const TPoint2D q = transform(p);
     const double d = field.distance(q);
-    const Occupancy there = at(other, q);
+    const Occupancy there = occupancy_at(other, q);
     if (there == Occupancy::Unknown && d >= tau) continue;
     known += 1.0;
     met += std::max(0.0, 1.0 - d / tau);
@@ -119,7 +115,7 @@ PoseEvidence WallMatch::evidence(const Warp& warp, const Kernel& kernel) const {
   out.truth.chance = kernel.map_chance;
   double common = 0.0;
   for (const TPoint2D& p : map_.free)
-    if (at(truth_.grid, warp(p)) == Occupancy::Free) common += 1.0;
+    if (occupancy_at(truth_.grid, warp(p)) == Occupancy::Free) common += 1.0;
   out.common_area = common * ratio(map_.free_area, static_cast<double>(map_.free.size()));
   out.free_common = std::min(1.0, ratio(out.common_area, std::min(map_.free_area, truth_.free_area)));
   return out;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/angle.h"
+#include "robot/body.h"
 
 namespace rubble::sim {
 namespace {
@@ -13,23 +14,13 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kLookAround = 0.3;   ///< farther things are not looked for [m]
-constexpr float kSurelyFar = 0.1f;    ///< a way that lasts for twenty steps and more need not be known exactly [m]
-constexpr double kAboveLaser = 0.05;  ///< the laser's housing ends so far above its beams [m]
+constexpr double kLookAround = 0.3;  ///< farther things are not looked for [m]
+constexpr float kSurelyFar = 0.1f;   ///< a way that lasts for twenty steps and more need not be known exactly [m]
 /// Two Box2D polygons keep a gap of both skins less the slop; the body is drawn smaller by it.
 constexpr double kSkin = 2.0 * static_cast<double>(b2_polygonRadius) - static_cast<double>(b2_linearSlop);
 
-/// The body from above: a rectangle whose corners are cut by a tenth of the length.
-std::array<b2Vec2, 8> body_outline(const robot::RobotModel& model, double skin) {
-  const float x = static_cast<float>(0.5 * model.length - skin);
-  const float y = static_cast<float>(0.5 * model.width - skin);
-  const float cut = static_cast<float>(0.1 * model.length);
-  return {b2Vec2{x, y - cut},  b2Vec2{x - cut, y},  b2Vec2{cut - x, y},  b2Vec2{-x, y - cut},
-          b2Vec2{-x, cut - y}, b2Vec2{cut - x, -y}, b2Vec2{x - cut, -y}, b2Vec2{x, cut - y}};
-}
-
 b2PolygonShape body_shape(const robot::RobotModel& model) {
-  const std::array<b2Vec2, 8> corners = body_outline(model, kSkin);
+  const std::array<b2Vec2, 8> corners = robot::body_outline<b2Vec2, float>(model, kSkin);
   b2PolygonShape shape;
   shape.Set(corners.data(), static_cast<int32>(corners.size()));
   return shape;
@@ -68,7 +59,9 @@ Chassis::Chassis(b2World& box2d, const PlanOrigin& origin, const Terrain& terrai
   body_->SetMassData(&mass);
 }
 
-HeightBand Chassis::band() const { return {state_.stance.z, state_.stance.z + model_.T_base_laser.z + kAboveLaser}; }
+HeightBand Chassis::band() const {
+  return {state_.stance.z, state_.stance.z + model_.T_base_laser.z + robot::kAboveLaser};
+}
 
 /// Walls and edges the body leans on, from Box2D's contacts of the last step: the wheels have to know them, or they
 /// would turn against a wall as if it were not there.
@@ -212,7 +205,7 @@ void Chassis::add_shell(std::vector<arenas::Face>& faces) const {
   const double c = std::cos(state_.pose.phi);
   const double s = std::sin(state_.pose.phi);
   arenas::Outline outline;
-  for (const b2Vec2& corner : body_outline(model_, 0.0)) {
+  for (const b2Vec2& corner : robot::body_outline<b2Vec2, float>(model_)) {
     const double x = static_cast<double>(corner.x);
     const double y = static_cast<double>(corner.y);
     outline.push_back({state_.pose.x + c * x - s * y, state_.pose.y + s * x + c * y});

@@ -15,7 +15,6 @@ constexpr double kRelaxTime = 0.2;        ///< motors rest so long after a stall
 constexpr double kStallMemory = 0.5;      ///< the flag falls after so long without pushing in vain [s]
 constexpr double kStallSpeed = 0.02;      ///< slower set points do not stall [m/s]
 
-double approach(double from, double to, double most) { return from + std::clamp(to - from, -most, most); }
 double round_to(double value, double unit) { return std::round(value / unit) * unit; }
 
 std::int64_t ticks(double travel) { return static_cast<std::int64_t>(std::floor(travel * kTicksPerMetre + 0.5)); }
@@ -47,8 +46,8 @@ SideDemand Firmware::demand(double dt) {
     demand_ = {0.0, 0.0, true};
     return demand_;
   }
-  v_ = approach(v_, target_.v, model_.max_accel * dt);
-  w_ = approach(w_, target_.w, model_.max_turn_accel * dt);
+  v_ = robot::approach(v_, target_.v, model_.max_accel * dt);
+  w_ = robot::approach(w_, target_.w, model_.max_turn_accel * dt);
   const double half = 0.5 * model_.effective_track * w_;
   demand_ = {v_ - half, v_ + half, false};
   return demand_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "arenas/model/risers.h"
+#include "robot/body.h"
 
 namespace rubble::sim {
 namespace {
@@ -11,22 +12,6 @@ namespace {
 using mrpt::math::TPoint2D;
 
 constexpr float kWallFriction = 0.3f;  ///< body against wall
-constexpr double kGraze = 0.01;        ///< bands that overlap by less pass each other [m]
-
-/// The stretch of a riser where the step is higher than `limit`, as parameters along it; from >= to: none.
-struct Stretch {
-  double from = 0.0;
-  double to = 1.0;
-};
-
-Stretch too_high(const arenas::Riser& riser, double limit) {
-  const double a = riser.high_a - riser.low_a - limit;
-  const double b = riser.high_b - riser.low_b - limit;
-  if (a <= 0.0 && b <= 0.0) return {0.0, 0.0};
-  if (a > 0.0 && b > 0.0) return {0.0, 1.0};
-  const double crossing = a / (a - b);
-  return a > 0.0 ? Stretch{0.0, crossing} : Stretch{crossing, 1.0};
-}
 
 }  // namespace
 
@@ -47,13 +32,14 @@ Obstacles::Obstacles(b2World& world, const PlanOrigin& origin, const arenas::Are
     }
   }
   for (const arenas::Riser& riser : arenas::risers(arena, climbable_step)) {
-    const Stretch stretch = too_high(riser, climbable_step);
+    const arenas::Stretch stretch = arenas::too_high(riser, climbable_step);
     if (stretch.to - stretch.from < 1e-6) continue;
     const TPoint2D along = riser.b - riser.a;
     b2EdgeShape shape;
     shape.SetTwoSided(origin.to_box2d(riser.a + along * stretch.from), origin.to_box2d(riser.a + along * stretch.to));
     // From above the edge stops the robot too: driving off a cliff is not simulated.
-    add_fixture(shape, {std::min(riser.low_a, riser.low_b), std::max(riser.high_a, riser.high_b) + 2.0 * kGraze});
+    add_fixture(shape,
+                {std::min(riser.low_a, riser.low_b), std::max(riser.high_a, riser.high_b) + 2.0 * robot::kGraze});
   }
   world.SetContactListener(this);
 }
@@ -74,7 +60,7 @@ std::uintptr_t Obstacles::add_moving(const HeightBand& band) {
 bool Obstacles::meet(b2Contact& contact) const {
   const HeightBand& a = bands_[contact.GetFixtureA()->GetUserData().pointer - 1];
   const HeightBand& b = bands_[contact.GetFixtureB()->GetUserData().pointer - 1];
-  return std::min(a.top, b.top) - std::max(a.bottom, b.bottom) > kGraze;
+  return std::min(a.top, b.top) - std::max(a.bottom, b.bottom) > robot::kGraze;
 }
 
 void Obstacles::PreSolve(b2Contact* contact, const b2Manifold* /*old_manifold*/) {

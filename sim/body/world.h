@@ -1,18 +1,16 @@
 #pragma once
 
-#include <box2d/box2d.h>
 #include <mrpt/math/TPose2D.h>
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
 #include "arenas/model/arena.h"
 #include "robot/model.h"
-#include "sim/body/chassis.h"
-#include "sim/body/clutter.h"
-#include "sim/body/obstacles.h"
+#include "sim/body/firmware.h"
 #include "sim/body/servos.h"
-#include "sim/body/terrain.h"
+#include "sim/body/world_state.h"
 
 namespace rubble::sim {
 
@@ -38,30 +36,25 @@ class World {
   void step();
 
   /// Puts a robot somewhere else, at rest.
-  void place(const mrpt::math::TPose2D& pose, std::size_t robot = 0) { chassis_[robot]->place(pose); }
+  void place(const mrpt::math::TPose2D& pose, std::size_t robot = 0);
 
-  std::size_t robots() const { return chassis_.size(); }
-  const WorldState& state(std::size_t robot = 0) const { return chassis_[robot]->state(); }
-  const Drive& drive(std::size_t robot = 0) const { return chassis_[robot]->wheels(); }
-  Firmware& firmware(std::size_t robot = 0) { return chassis_[robot]->firmware(); }
-  Servos& servos(std::size_t robot = 0) { return chassis_[robot]->servos(); }
-  const Terrain& terrain() const { return terrain_; }
-  const Clutter& clutter() const { return *clutter_; }
+  std::size_t robots() const;
+  const WorldState& state(std::size_t robot = 0) const;
+  const Drive& drive(std::size_t robot = 0) const;
+  Firmware& firmware(std::size_t robot = 0);
+  Servos& servos(std::size_t robot = 0);
+
+  /// The balls as rays meet them, and as an arena holds them.
+  const std::vector<Sphere>& spheres() const;
+  std::vector<arenas::PaperBall> balls() const;
+  std::vector<arenas::LooseObject> objects() const;
 
   /// What of the other robots and of loose objects can stand in the way of rays that leave robot `seen_by`.
   std::vector<arenas::Face> moving_faces(std::size_t seen_by, double range) const;
 
  private:
-  void move_freely();
-  void move_among_others();
-
-  double dt_;
-  PlanOrigin origin_;
-  Terrain terrain_;
-  b2World box2d_;
-  Obstacles obstacles_;
-  std::vector<std::unique_ptr<Chassis>> chassis_;
-  std::unique_ptr<Clutter> clutter_;
+  struct Inside;  ///< chassis, obstacles and clutter, in Box2D's world
+  std::unique_ptr<Inside> inside_;
 };
 
 }  // namespace rubble::sim

@@ -7,7 +7,7 @@
 #include "base/rng.h"
 #include "slam/scan/level_scan.h"
 #include "slam/scan/odometry_track.h"
-#include "slam/scan/scan_queue.h"
+#include "slam/scan/waiting_scans.h"
 
 namespace rubble::slam {
 
@@ -75,7 +75,7 @@ struct PaperMapper::Impl {
   CountMap map_;
   Rng drift_rng_;
 
-  ScanQueue waiting_;
+  WaitingScans waiting_;
   Particles particles_;
   Trajectory trajectory_;
   std::vector<TPoint2D> last_hits_;

@@ -7,7 +7,7 @@
 #include "slam/mapper.h"
 #include "slam/scan/level_scan.h"
 #include "slam/scan/odometry_track.h"
-#include "slam/scan/scan_queue.h"
+#include "slam/scan/waiting_scans.h"
 
 namespace mrpt::obs {
 class CActionCollection;
@@ -57,7 +57,7 @@ class MrptMapper : public Mapper {
 
   robot::RobotModel model_;
   OdometryTrack odometry_;
-  ScanQueue waiting_;
+  WaitingScans waiting_;
   std::optional<mrpt::math::TPose2D> T_odom_scan_;  ///< at the last scan
 
   /// Where a scan lies on the builder's path.

@@ -139,7 +139,7 @@ ContinuedMapper::ContinuedMapper(const robot::RobotModel& model, const RobustCon
       finder_(saved_.frames, place_config(config_), config_.tracker.cell) {
   drive_ = std::make_unique<RobustMapper>(model_, config_, 0);
   records_.columns = drive_->scan_records()->columns;
-  records_.columns.emplace_back("place_known");
+  records_.columns.emplace_back(MapperFigure::kPlaceKnown);
   if (base_->start)
     finder_.begin_near(*base_->start, true);
   else if (base_->grows)
@@ -261,7 +261,7 @@ const std::vector<mrpt::math::TPoint2D>& ContinuedMapper::last_hits() const {
 std::vector<MapperFigure> ContinuedMapper::figures() const {
   std::vector<MapperFigure> figures = drive_->figures();
   const PlaceCounts& places = finder_.counts();
-  figures.push_back({"place_known", joined_ ? 1.0 : 0.0});
+  figures.push_back({MapperFigure::kPlaceKnown, joined_ ? 1.0 : 0.0});
   figures.push_back({"places_found", static_cast<double>(joins_)});
   figures.push_back({"carried_off", static_cast<double>(carried_off_)});
   figures.push_back({"places_searched", static_cast<double>(places.searched)});

@@ -11,7 +11,7 @@
 #include "slam/robust/graph/key_frames.h"
 #include "slam/robust/map/stamped_map.h"
 #include "slam/scan/odometry_track.h"
-#include "slam/scan/scan_queue.h"
+#include "slam/scan/waiting_scans.h"
 
 namespace rubble::slam {
 
@@ -90,9 +90,9 @@ std::vector<std::string> record_columns() {
           "loops_ambiguous",
           "loops_contradicted",
           "loops_needless",
-          "loops_closed",
+          MapperFigure::kLoopsClosed,
           "near_edges",
-          "loops_removed"};
+          MapperFigure::kLoopsRemoved};
 }
 
 }  // namespace
@@ -163,7 +163,7 @@ struct RobustMapper::Impl {
   bool grows_ = true;  ///< false: the map is another's, and stays as it is
   ScanRecords records_{record_columns(), {}, {}};
 
-  ScanQueue waiting_;
+  WaitingScans waiting_;
   std::optional<TPose2D> T_odom_scan_;  ///< at the last scan; nothing while no odometry has come
   std::optional<bool>
       silent_at_scan_;      ///< whether odometry was silent at the last scan, once what was said is forgotten
@@ -214,7 +214,7 @@ void RobustMapper::Impl::receive(const robot::Inputs& inputs) {
   if (!scans_.empty() && !silent_at_scan_ && scans_.back().stamp < oldest_needed)
     silent_at_scan_ = odometry_.silent_at(scans_.back().stamp);  // the last time that it can be told
   odometry_.forget_before(oldest_needed);
-  tilt_.forget_before(odometry_.newest() - ScanQueue::kLateScan);
+  tilt_.forget_before(odometry_.newest() - WaitingScans::kLateScan);
 }
 
 /// A scan waits for odometry, and for its tilt.
@@ -726,8 +726,8 @@ std::vector<MapperFigure> RobustMapper::figures() const {
           {"loops_ambiguous", static_cast<double>(loops.ambiguous)},
           {"loops_contradicted", static_cast<double>(loops.contradicted)},
           {"loops_needless", static_cast<double>(loops.needless)},
-          {"loops_closed", static_cast<double>(loops.closed)},
-          {"loops_removed", static_cast<double>(loops.removed)},
+          {MapperFigure::kLoopsClosed, static_cast<double>(loops.closed)},
+          {MapperFigure::kLoopsRemoved, static_cast<double>(loops.removed)},
           {"near_edges", static_cast<double>(loops.near_edges)},
           {"frames_astray", static_cast<double>(loops.astray)},
           {"frames_doubled", static_cast<double>(impl_->doubled_)},

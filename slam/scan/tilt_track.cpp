@@ -10,15 +10,10 @@ namespace rubble::slam {
 
 namespace {
 
-constexpr double kSilence = 0.5;      ///< after so long without a sample the filter starts anew [s]
 constexpr double kFarthest = 0.25;    ///< a sample this far from a stamp says nothing about it [s]
 constexpr double kLongestWait = 0.2;  ///< for samples after a scan [s]
 constexpr double kSteepest = 0.6;     ///< a robot that leans more lies on its side, or its sensor is broken [rad]
 constexpr double kImplausible = 2.0;  ///< more than so many g is no tilt but a fault
-
-double tilt_of(double specific_force, double gravity) {
-  return std::asin(std::clamp(specific_force / gravity, -1.0, 1.0));
-}
 
 }  // namespace
 
@@ -32,10 +27,7 @@ void TiltTrack::add(const robot::Inputs& inputs) {
 
 void TiltTrack::follow(const robot::Odometry& odometry) {
   if (!std::isfinite(odometry.v) || !std::isfinite(odometry.w)) return;
-  const double dt = last_odometry_.stamp == Stamp::never() ? 0.0 : odometry.stamp - last_odometry_.stamp;
-  forward_acceleration_ = dt > 0.0 && dt <= kSilence ? (odometry.v - last_odometry_.v) / dt : 0.0;
-  lateral_acceleration_ = odometry.v * odometry.w;
-  last_odometry_ = odometry;
+  felt_.follow(odometry);
 }
 
 void TiltTrack::follow(const robot::Acceleration& acceleration) {
@@ -43,16 +35,13 @@ void TiltTrack::follow(const robot::Acceleration& acceleration) {
         std::abs(acceleration.y) < kImplausible * robot::kGravity))
     return;
   if (!leans_.empty() && acceleration.stamp <= leans_.back().stamp) return;
-  const bool driven = last_odometry_.stamp != Stamp::never() && acceleration.stamp - last_odometry_.stamp <= kSilence;
-  const double pitch = tilt_of(acceleration.x - (driven ? forward_acceleration_ : 0.0), robot::kGravity);
-  const double roll = tilt_of(acceleration.y - (driven ? lateral_acceleration_ : 0.0),
-                              robot::kGravity * std::max(0.1, std::cos(pitch)));
-  Lean lean{acceleration.stamp, pitch, roll};
-  if (!leans_.empty() && acceleration.stamp - leans_.back().stamp <= kSilence) {
+  const robot::Tilt tilt = felt_.of(acceleration);
+  Lean lean{acceleration.stamp, tilt.pitch, tilt.roll};
+  if (!leans_.empty() && acceleration.stamp - leans_.back().stamp <= robot::kTiltSilence) {
     const Lean& before = leans_.back();
     const double share = 1.0 - std::exp(-2.0 * kPi * config_.filter_hz * (acceleration.stamp - before.stamp));
-    lean.pitch = before.pitch + share * (pitch - before.pitch);
-    lean.roll = before.roll + share * (roll - before.roll);
+    lean.pitch = before.pitch + share * (tilt.pitch - before.pitch);
+    lean.roll = before.roll + share * (tilt.roll - before.roll);
   }
   leans_.push_back(lean);
 }

@@ -3,6 +3,7 @@
 #include <deque>
 #include <optional>
 
+#include "robot/felt_tilt.h"
 #include "robot/measurements.h"
 #include "slam/scan/level_scan.h"
 
@@ -38,9 +39,7 @@ class TiltTrack {
   robot::AimState aim_at(Stamp stamp) const;
 
   const TiltConfig config_;
-  robot::Odometry last_odometry_{Stamp::never(), {}, 0.0, 0.0, false};
-  double forward_acceleration_ = 0.0;
-  double lateral_acceleration_ = 0.0;
+  robot::FeltTilt felt_;
   std::deque<Lean> leans_;
   std::deque<robot::AimState> aims_;
 };

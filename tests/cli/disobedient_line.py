@@ -4,8 +4,9 @@
 import select
 import signal
 import socket
-import struct
 import sys
+
+from arcos_wire import order
 
 STOPS = {2, 4, 29, 55}  # CLOSE, ENABLE, STOP, ESTOP
 VEL, RVEL, AHEAD = 11, 21, 250
@@ -26,21 +27,11 @@ def packets(data):
     return out, data
 
 
-def packet(*payload):
-    c = 0
-    for i in range(0, len(payload) - 1, 2):
-        c = (c + (payload[i] << 8 | payload[i + 1])) & 0xFFFF
-    if len(payload) % 2:
-        c ^= payload[-1]
-    return b"\xfa\xfb" + bytes([len(payload) + 2, *payload]) + struct.pack(">H", c)
-
-
 def spoilt(one):
     if one[3] in STOPS:
         return b""
     if one[3] in (VEL, RVEL):
-        speed = AHEAD if one[3] == VEL else 0
-        return packet(one[3], 0x3B, speed & 0xFF, speed >> 8)
+        return order(one[3], AHEAD if one[3] == VEL else 0)
     return one
 
 
@@ -70,4 +61,4 @@ while True:
             whole, waiting = packets(waiting + data)
             base.sendall(b"".join(spoilt(p) if changed else p for p in whole))
     if changed:
-        base.sendall(packet(VEL, 0x3B, AHEAD & 0xFF, AHEAD >> 8))
+        base.sendall(order(VEL, AHEAD))

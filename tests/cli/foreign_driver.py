@@ -9,21 +9,10 @@ import struct
 import sys
 import time
 
+from arcos_wire import order
+
 host, port = sys.argv[1].rsplit(":", 1)
 seconds = float(sys.argv[2])
-
-
-def packet(*payload):
-    c = 0
-    for i in range(0, len(payload) - 1, 2):
-        c = (c + (payload[i] << 8 | payload[i + 1])) & 0xFFFF
-    if len(payload) % 2:
-        c ^= payload[-1]
-    return b"\xfa\xfb" + bytes([len(payload) + 2, *payload]) + struct.pack(">H", c)
-
-
-def order(number, value):
-    return packet(number, 0x3B, value & 0xFF, value >> 8)
 
 
 base = socket.create_connection((host, int(port)))
@@ -34,7 +23,7 @@ listeners = []
 heard = reports = on = 0
 turned, last = 0.0, None
 waiting = b""
-for hello in (packet(0), packet(1), packet(2), order(1, 1), order(4, 1)):
+for hello in (order(0), order(1), order(2), order(1, 1), order(4, 1)):
     base.sendall(hello)
     time.sleep(0.2)
 print("tee 127.0.0.1:%d" % tee.getsockname()[1], flush=True)

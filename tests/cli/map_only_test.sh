@@ -12,11 +12,11 @@ expect_exit 3 "add --map-only" "$rubble" calibrate "$robot" --urg pty:no1 --base
 # A base on a shared line that somebody drives, and who is away for a while: not one byte is said to it, also when the mapping never
 # begins and other devices are asked who is there.
 cat >shared_base.py <<'PY'
-import select, socket, struct, sys, time
+import select, socket, sys, time
+sys.path.append(sys.argv[1])  # behind: one of the scripts there is called as a module of Python
+from arcos_wire import packet
 payload = bytes([0x32] + [0] * 10 + [128] + [0] * 6 + [0, 0])
-total = sum(struct.unpack(">%dH" % (len(payload) // 2), payload[: len(payload) // 2 * 2])) & 0xFFFF
-total ^= payload[-1] if len(payload) % 2 else 0
-report = b"\xfa\xfb" + bytes([len(payload) + 2]) + payload + struct.pack(">H", total)
+report = packet(payload)
 line = socket.socket()
 line.bind(("127.0.0.1", 0))
 line.listen()
@@ -38,7 +38,7 @@ while begin is None or time.time() - begin < 9:
             reports += 1
 print("heard %d bytes, %d reports" % (heard, reports))
 PY
-python3 shared_base.py >shared.txt &
+python3 shared_base.py "$source/tests/cli" >shared.txt &
 shared=$!
 for _ in $(seq 100); do grep -q '^port' shared.txt && break; sleep 0.1; done
 "$rubble" drive "$robot" --map-only --urg tcp:127.0.0.1:9 --base "tcp:127.0.0.1:$(sed -n 's/^port //p' shared.txt)" --levelling none \

@@ -9,7 +9,6 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
-#include <limits>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -227,7 +226,6 @@ class MrptScanner : public Scanner {
   }
 
   void set_ranges(const CObservation2DRangeScan& from, LaserScan& to) const {
-    constexpr float kMiss = std::numeric_limits<float>::infinity(), kUnknown = std::numeric_limits<float>::quiet_NaN();
     const std::size_t beams = from.getScanSize();
     to.ranges.resize(beams);
     for (std::size_t i = 0; i < beams; ++i) {
@@ -235,9 +233,9 @@ class MrptScanner : public Scanner {
       const float range = from.getScanRange(source);
       float& out = to.ranges[i];
       if (!from.getScanRangeValidity(source)) {
-        out = config_.no_echo_is_miss ? kMiss : kUnknown;
+        out = config_.no_echo_is_miss ? LaserScan::kMiss : LaserScan::kUnknown;
       } else {
-        out = static_cast<double>(range) > to.range_max ? kMiss : range;
+        out = static_cast<double>(range) > to.range_max ? LaserScan::kMiss : range;
       }
     }
   }

@@ -38,7 +38,8 @@ std::optional<FoundDevice> probe_scanner(const std::string& word) {
   scip::Link link(open_port(word));
   if (!link.knock()) return std::nullopt;
   FoundDevice found;
-  found.kind = "laser scanner";
+  found.kind = DeviceKind::Scanner;
+  found.called = "laser scanner";
   try {
     link.shake_hands(false);
     const ScannerInfo& info = link.info();
@@ -101,7 +102,8 @@ std::optional<FoundDevice> probe_levelling(const std::string& word) {
   if (!becomes_ready(unit, word, kLevellingPatience)) return std::nullopt;
   const LevellingIdentity& said = unit.identity();
   FoundDevice found;
-  found.kind = "levelling unit";
+  found.kind = DeviceKind::Levelling;
+  found.called = "levelling unit";
   found.facts = {{"model", said.model},
                  {"sensor", said.sensor},
                  {"reports", std::to_string(said.rate) + " a second"},
@@ -120,7 +122,8 @@ std::optional<FoundDevice> probe_base(const std::string& word) {
   const bool is_tcp = parse_port_word(word).kind == PortKind::Tcp;
   if (!becomes_ready(base, word, is_tcp ? kBasePatience : kSerialBasePatience)) return std::nullopt;
   FoundDevice found;
-  found.kind = "robot base (ARCOS)";
+  found.kind = DeviceKind::Base;
+  found.called = "robot base (ARCOS)";
   found.facts = {{"name", base.identity().name},
                  {"type", base.identity().type + " " + base.identity().subclass},
                  {"firmware", base.configured() ? base.configuration().firmware : "not told"},

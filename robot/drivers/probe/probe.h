@@ -9,9 +9,12 @@
 
 namespace rubble::robot {
 
+enum class DeviceKind { Scanner, Base, Levelling };
+
 /// A device that answered on a port.
 struct FoundDevice {
-  std::string kind;                                        ///< "laser scanner"
+  DeviceKind kind = DeviceKind::Scanner;
+  std::string called;                                      ///< for people: "laser scanner"
   std::vector<std::pair<std::string, std::string>> facts;  ///< what it says of itself, for people
   std::optional<LaserScan> scan;                           ///< of a scanner: what it sees now
 };

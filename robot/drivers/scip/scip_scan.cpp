@@ -1,14 +1,12 @@
 #include "robot/drivers/scip/scip_scan.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "robot/drivers/scip/scip_text.h"
 
 namespace rubble::robot::scip {
 
 LaserScan scan_of(const Sweep& sweep, const Geometry& geometry, const RangeRules& rules, Stamp turn) {
-  constexpr float kMiss = std::numeric_limits<float>::infinity(), kUnknown = std::numeric_limits<float>::quiet_NaN();
   LaserScan scan;
   scan.stamp = turn + geometry.first_step * geometry.step_time();
   scan.angle_min = (geometry.first_step - geometry.front_step) * geometry.step_angle();
@@ -24,11 +22,11 @@ LaserScan scan_of(const Sweep& sweep, const Geometry& geometry, const RangeRules
     const double range = 0.001 * value;
     scan.codes.push_back(is_code ? static_cast<std::uint8_t>(value) : std::uint8_t{0});
     if (is_code) {
-      scan.ranges.push_back(value == kNoEcho && rules.no_echo_is_miss ? kMiss : kUnknown);
+      scan.ranges.push_back(value == kNoEcho && rules.no_echo_is_miss ? LaserScan::kMiss : LaserScan::kUnknown);
     } else if (range > scan.range_max) {
-      scan.ranges.push_back(kMiss);
+      scan.ranges.push_back(LaserScan::kMiss);
     } else {
-      scan.ranges.push_back(range < scan.range_min ? kUnknown : static_cast<float>(value * 0.001));
+      scan.ranges.push_back(range < scan.range_min ? LaserScan::kUnknown : static_cast<float>(value * 0.001));
     }
   }
   return scan;

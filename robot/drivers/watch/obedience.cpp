@@ -26,8 +26,6 @@ constexpr double kBansKept = 60.0;              ///< [s]
 constexpr double kHalf = 0.5;                   ///< of the way that is told must be gone
 constexpr double kLag = 1.5;                    ///< it is told to go for so long before it is judged [s]
 
-double approach(double from, double to, double most) { return from + std::clamp(to - from, -most, most); }
-
 bool is_within(double value, double least, double most, double slack) {
   const double share = 1.0 + kSlackShare;
   return value <= share * most + slack && value >= share * least - slack;

@@ -18,8 +18,6 @@ constexpr double kReportsGap = 0.35;  ///< so long without a report nobody knows
 constexpr double kLongestStep = 0.1;  ///< from one call to the next [s]
 constexpr int kDenials = 2;           ///< in a row: what one window misses is in the next one
 
-double towards(double from, double to, double most) { return from + std::clamp(to - from, -most, most); }
-
 }  // namespace
 
 void WheelWitness::pause() {
@@ -34,7 +32,7 @@ void WheelWitness::pause() {
 void WheelWitness::tell(const Drive& told, const Drive& ramp, Stamp now) {
   const double dt = told_ == Stamp::never() ? 0.0 : std::clamp(now - told_, 0.0, kLongestStep);
   told_ = now;
-  expected_ = {towards(expected_.v, told.v, ramp.v * dt), towards(expected_.w, told.w, ramp.w * dt)};
+  expected_ = {approach(expected_.v, told.v, ramp.v * dt), approach(expected_.w, told.w, ramp.w * dt)};
   if (!since_) return;
   since_->told = {since_->told.v + expected_.v * dt, since_->told.w + expected_.w * dt};
 }

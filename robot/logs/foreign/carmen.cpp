@@ -17,10 +17,8 @@ using Records = std::vector<CarmenRecord>;
 constexpr double kSameLength = 0.3;  ///< scan and odometry poses of one frame agree within this [m]
 constexpr double kSameAngle = 0.2;   ///< and this [rad]
 
-bool same_pose(const TPose2D& a, const TPose2D& b) { return a.x == b.x && a.y == b.y && a.phi == b.phi; }
-
 bool repeats_scan_before(const Records& records, std::size_t i) {
-  return i > 0 && !records[i].is_scan && records[i - 1].is_scan && same_pose(records[i].robot, records[i - 1].robot);
+  return i > 0 && !records[i].is_scan && records[i - 1].is_scan && identical(records[i].robot, records[i - 1].robot);
 }
 
 /// A scan matcher's log: each scan carries the corrected pose, and right behind it an ODOM line with a meaningless
@@ -116,7 +114,7 @@ void order_stamps(Records& records, Stamp CarmenRecord::*clock) {
     for (const Stamp stamp : between) {
       // The odometry that the scan behind it carries too, told once more.
       const bool is_of_scan = end < records.size() && records[i].*clock == records[end].*clock &&
-                              same_pose(records[i].robot, records[end].robot);
+                              identical(records[i].robot, records[end].robot);
       const Stamp after = newest == Stamp::never() ? stamp : std::max(stamp, Stamp{newest.ns + 1000});
       const bool held = next < scans.size() && (is_of_scan || scans[next] < after);
       records[i++].stamp = newest = held ? scans[next] : after;

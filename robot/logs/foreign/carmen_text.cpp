@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <limits>
 
 #include "base/angle.h"
 #include "base/error.h"
@@ -16,9 +15,6 @@ using mrpt::math::TPose2D;
 constexpr double kNoReturn = 30.0;  // FLASER says no limit; SICK scanners in these logs write 30 m and more for it [m]
 constexpr double kFarthestRange = 1000.0;  ///< of any scanner; more is a log in another unit [m]
 constexpr std::int64_t kMaxBeams = 100000;
-
-constexpr float kMiss = std::numeric_limits<float>::infinity();
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 bool is_keyword(std::string_view word) {
   return !word.empty() && std::isupper(static_cast<unsigned char>(word[0])) != 0 &&
@@ -40,7 +36,8 @@ void take_ranges(TextFields& fields, std::int64_t count, LaserScan& scan) {
     const double range = fields.number("range");
     if (range < 0.0) fields.fail("a range is negative; correct or delete the line");
     const bool missed = range >= scan.range_max;
-    scan.ranges.push_back(missed ? kMiss : (range > scan.range_min ? static_cast<float>(range) : kUnknown));
+    scan.ranges.push_back(missed ? LaserScan::kMiss
+                                 : (range > scan.range_min ? static_cast<float>(range) : LaserScan::kUnknown));
   }
 }
 

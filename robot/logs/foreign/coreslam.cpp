@@ -51,9 +51,9 @@ RobotModel mines_robot() {
 
 float range_of(std::int64_t mm, int beam) {
   const bool useful = beam >= kFirstUseful && beam <= kLastUseful;
-  if (!useful) return std::numeric_limits<float>::quiet_NaN();
-  if (mm == kNothingCode) return std::numeric_limits<float>::infinity();
-  if (mm < kFirstRealRange) return std::numeric_limits<float>::quiet_NaN();
+  if (!useful) return LaserScan::kUnknown;
+  if (mm == kNothingCode) return LaserScan::kMiss;
+  if (mm < kFirstRealRange) return LaserScan::kUnknown;
   return static_cast<float>(static_cast<double>(mm) * 0.001);
 }
 

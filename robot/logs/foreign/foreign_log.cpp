@@ -6,13 +6,10 @@
 #include <map>
 #include <set>
 
+#include "base/lists.h"
+
 namespace rubble::robot {
 namespace {
-
-template <class T>
-void sort_by_stamp(std::vector<T>& list) {
-  std::stable_sort(list.begin(), list.end(), [](const T& a, const T& b) { return a.stamp < b.stamp; });
-}
 
 void keep_last_of_equal_stamps(std::vector<Odometry>& odometry) {
   std::size_t kept = 0;
@@ -133,7 +130,7 @@ void take_as_misses(double limit, std::vector<LaserScan>& scans) {
   for (LaserScan& scan : scans) {
     scan.range_max = std::min(scan.range_max, limit);
     for (float& range : scan.ranges)
-      if (static_cast<double>(range) >= limit) range = std::numeric_limits<float>::infinity();
+      if (static_cast<double>(range) >= limit) range = LaserScan::kMiss;
   }
 }
 

@@ -4,7 +4,6 @@
 #include <mrpt/obs/CObservationOdometry.h>
 
 #include <cmath>
-#include <limits>
 
 #include "base/angle.h"
 #include "robot/logs/foreign/mrpt_stamp.h"
@@ -34,7 +33,7 @@ void to_mrpt(const LaserScan& scan, const mrpt::math::TPose3D& T_base_laser, COb
   out.resizeScan(scan.ranges.size());
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const float range = scan.ranges[i];
-    const bool missed = range == std::numeric_limits<float>::infinity();
+    const bool missed = range == LaserScan::kMiss;
     out.setScanRange(i, missed ? out.maxRange : (std::isfinite(range) ? range : 0.0f));
     out.setScanRangeValidity(i, std::isfinite(range));
   }
@@ -55,8 +54,7 @@ LaserScan from_mrpt(const CObservation2DRangeScan& scan, const mrpt::math::TPose
     const float range = scan.getScanRange(from);
     const bool missed = range >= scan.maxRange;
     out.ranges[i] = range;
-    if (!scan.getScanRangeValidity(from))
-      out.ranges[i] = missed ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
+    if (!scan.getScanRangeValidity(from)) out.ranges[i] = missed ? LaserScan::kMiss : LaserScan::kUnknown;
   }
   return out;
 }

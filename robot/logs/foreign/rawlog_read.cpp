@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <optional>
 
 #include "base/angle.h"
@@ -118,8 +117,8 @@ void check_finite(const std::vector<Odometry>& odometry, const std::string& path
 /// Foreign scans: what lies at the limit or beyond is no return, what is not finite is no measurement.
 void clean_ranges(LaserScan& scan) {
   for (float& range : scan.ranges) {
-    if (std::isnan(range) || range < 0.0f) range = std::numeric_limits<float>::quiet_NaN();
-    if (static_cast<double>(range) >= scan.range_max) range = std::numeric_limits<float>::infinity();
+    if (std::isnan(range) || range < 0.0f) range = LaserScan::kUnknown;
+    if (static_cast<double>(range) >= scan.range_max) range = LaserScan::kMiss;
   }
 }
 

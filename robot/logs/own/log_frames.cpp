@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/bytes.h"
+#include "base/digest.h"
 #include "base/error.h"
 
 namespace rubble::robot {
@@ -12,11 +13,6 @@ namespace {
 
 // Length and CRC of the payload, then the CRC of these eight bytes: a damaged length is told from a torn frame.
 constexpr std::size_t kHeadSize = 12;
-
-std::uint32_t crc_of(std::string_view bytes) {
-  return static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<z_size_t>(bytes.size())));
-}
 
 bool all_zero(std::string_view bytes) {
   return std::all_of(bytes.begin(), bytes.end(), [](char c) { return c == 0; });
@@ -52,8 +48,8 @@ void close_frame(std::string& out, std::size_t start) {
   std::string head;
   ByteWriter writer(head);
   writer.u32(static_cast<std::uint32_t>(payload.size()));
-  writer.u32(crc_of(payload));
-  writer.u32(crc_of(head));
+  writer.u32(crc32_of(payload));
+  writer.u32(crc32_of(head));
   out.replace(start, kHeadSize, head);
 }
 
@@ -69,7 +65,7 @@ Frames split_frames(std::string_view bytes, const std::string& path) {
     ByteReader head(rest.substr(0, kHeadSize));
     const std::size_t length = head.u32();
     const std::uint32_t payload_crc = head.u32();
-    if (head.u32() != crc_of(rest.substr(0, kHeadSize - 4))) {
+    if (head.u32() != crc32_of(rest.substr(0, kHeadSize - 4))) {
       frames.torn = all_zero(rest.substr(kHeadSize));
       if (frames.torn) break;
       fail_damaged(path, offset, "the frame's head is damaged");
@@ -77,7 +73,7 @@ Frames split_frames(std::string_view bytes, const std::string& path) {
     frames.torn = length > rest.size() - kHeadSize;
     if (frames.torn) break;
     const std::string_view payload = rest.substr(kHeadSize, length);
-    if (crc_of(payload) != payload_crc) {
+    if (crc32_of(payload) != payload_crc) {
       frames.torn = all_zero(rest.substr(kHeadSize + length));  // nothing follows: it was being written
       if (frames.torn) break;
       fail_damaged(path, offset, "the frame fails its check");

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/bytes.h"
+#include "base/digest.h"
 #include "base/error.h"
 
 namespace rubble::slam {
@@ -22,11 +23,6 @@ constexpr std::size_t kHead = 24;  ///< behind the magic: lengths of the payload
 constexpr std::uint64_t kMostPacking = 1040;  ///< deflate packs no tighter than 1032 to 1
 constexpr int kPacking = 6;                   ///< zlib's usual level
 constexpr double kFarthestPose = 1e7;         ///< poses beyond are damage [m]
-
-std::uint32_t sum_of(std::string_view bytes) {
-  return static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<z_size_t>(bytes.size())));
-}
 
 void put_u64(ByteWriter& out, std::uint64_t value) {
   out.u32(static_cast<std::uint32_t>(value));
@@ -275,8 +271,8 @@ std::string encode_map(const SavedMap& map) {
   ByteWriter out(head);
   put_u64(out, payload.size());
   put_u64(out, packed.size());
-  out.u32(sum_of(packed));
-  out.u32(sum_of(head));
+  out.u32(crc32_of(packed));
+  out.u32(crc32_of(head));
   return std::string(kMagic) + head + packed;
 }
 
@@ -295,11 +291,11 @@ SavedMap decode_map(std::string_view bytes, const std::string& name) {
   const std::uint64_t size = take_u64(in);
   const std::uint64_t packed_size = take_u64(in);
   const std::uint32_t sum = in.u32();
-  if (in.u32() != sum_of(head.substr(0, kHead - 4))) fail(name, "is damaged in its head");
+  if (in.u32() != crc32_of(head.substr(0, kHead - 4))) fail(name, "is damaged in its head");
   const std::string_view packed = bytes.substr(kHead);
   if (packed.size() != packed_size)
     fail(name, "holds " + std::to_string(packed.size()) + " bytes instead of " + std::to_string(packed_size));
-  if (sum_of(packed) != sum || size / kMostPacking > packed_size) fail(name, "is damaged");
+  if (crc32_of(packed) != sum || size / kMostPacking > packed_size) fail(name, "is damaged");
   std::string payload(static_cast<std::size_t>(size), '\0');
   auto got = static_cast<uLongf>(size);
   if (uncompress(reinterpret_cast<Bytef*>(payload.data()), &got, reinterpret_cast<const Bytef*>(packed.data()),

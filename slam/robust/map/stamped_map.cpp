@@ -6,8 +6,7 @@
 
 #include "base/angle.h"
 #include "base/planar.h"
-#include "slam/robust/map/lone_hits.h"
-#include "slam/robust/map/thin_walls.h"
+#include "slam/robust/map/crisp_walls.h"
 
 namespace rubble::slam {
 

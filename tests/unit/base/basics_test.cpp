@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "base/angle.h"
 #include "base/grid.h"
+#include "base/lists.h"
 #include "base/rng.h"
 #include "base/stamp.h"
 #include "base/text/number_text.h"
@@ -61,6 +63,34 @@ TEST(Grid, RowsAndCellsSeeTheSameValues) {
   EXPECT_EQ(grid.cells().back(), 9);
   EXPECT_EQ(grid.cells().size(), 35u);
   EXPECT_EQ((grid[{0, 0}]), 3);
+}
+
+TEST(Grid, NothingIsKnownBeyondTheMap) {
+  OccupancyGrid map({2, 1, 0.5, 0.0, 0.0}, Occupancy::Free);
+  map[{1, 0}] = Occupancy::Occupied;
+  EXPECT_EQ(occupancy_at(map, {0.2, 0.2}), Occupancy::Free);
+  EXPECT_EQ(occupancy_at(map, {0.7, 0.2}), Occupancy::Occupied);
+  for (const mrpt::math::TPoint2D& p : {mrpt::math::TPoint2D{-0.1, 0.2}, {1.1, 0.2}, {0.2, -0.1}, {0.2, 0.6}})
+    EXPECT_EQ(occupancy_at(map, p), Occupancy::Unknown);
+}
+
+TEST(Lists, WhatHasTheSameStampStaysInItsOrder) {
+  struct Said {
+    Stamp stamp;
+    int number;
+  };
+  std::vector<Said> said{{{20}, 0}, {{10}, 1}, {{20}, 2}};
+  append(said, std::vector<Said>{{{10}, 3}, {{5}, 4}});
+  sort_by_stamp(said);
+  std::vector<int> numbers;
+  for (const Said& one : said) numbers.push_back(one.number);
+  EXPECT_EQ(numbers, (std::vector<int>{4, 1, 3, 0, 2}));
+}
+
+TEST(NumberText, PlacesHaveATenthOfAMillimetre) {
+  EXPECT_EQ(metres_text(1.0 / 3.0), "0.3333");
+  EXPECT_EQ(metres_text(1.2), "1.2");
+  EXPECT_EQ(metres_text(0.84024905), "0.8402");
 }
 
 TEST(NumberText, ReadsWholeFiniteDecimalsOnly) {

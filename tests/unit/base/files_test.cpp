@@ -68,6 +68,11 @@ TEST(TextFile, ErrorsNameThePath) {
 }
 
 // FIPS 180-2, appendix B, and the digest of nothing.
+TEST(Digest, TheSumIsThatOfZlibAndPng) {
+  EXPECT_EQ(crc32_of(""), 0u);
+  EXPECT_EQ(crc32_of("123456789"), 0xcbf43926u);  // the check value of this CRC-32
+}
+
 TEST(Digest, Sha256GivesThePublishedVectors) {
   EXPECT_EQ(sha256_of_text(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(sha256_of_text("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");

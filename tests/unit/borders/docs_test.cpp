@@ -62,6 +62,28 @@ TEST(Docs, NameFilesThatAreThere) {
   EXPECT_FALSE(is_example("slam/grid/CountMap") || is_there("slam/grid/CountMap"));
 }
 
+TEST(Docs, ThePageOfTheBaseListsAllItsHeaders) {
+  const std::string page = text_of(kTop / "docs/base.md");
+  std::size_t headers = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(kTop / "base")) {
+    if (entry.path().extension() != ".h") continue;
+    ++headers;
+    const std::string name = fs::relative(entry.path(), kTop / "base").generic_string();
+    EXPECT_NE(page.find("`" + name + "`"), std::string::npos) << name;
+  }
+  EXPECT_GT(headers, 25u);
+}
+
+TEST(Docs, TheFrontPageHasARowForEachFolder) {
+  const std::string page = text_of(kTop / "README.md");
+  const std::string rows = page.substr(page.find("\n## Folders"));
+  for (const char* name : {"base", "robot", "arenas", "sim", "slam", "explore", "scoring", "scenarios", "app", "robots",
+                           "examples", "tests", "bench", "fuzz", "cmake"}) {
+    EXPECT_TRUE(fs::is_directory(kTop / name)) << name;
+    EXPECT_TRUE(std::regex_search(rows, std::regex("\n\\|[^|]*`" + std::string(name) + "`[^|]*\\|"))) << name;
+  }
+}
+
 /// Files of the program that hold a word, also as a part of another one.
 std::set<std::string> files_with(const std::string& word) {
   std::set<std::string> files;

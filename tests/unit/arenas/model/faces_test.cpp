@@ -147,5 +147,21 @@ TEST(PatchIndex, AgreesWithAskingEveryPatch) {
   }
 }
 
+TEST(Risers, AStepIsTooHighWhereItIsHigherThanTheLimit) {
+  // 0 m at a, rising to 0.2 m at b.
+  const Riser rising{{0.0, 0.0}, {1.0, 0.0}, 0.0, 0.0, 0.0, 0.2, false};
+  EXPECT_NEAR(too_high(rising, 0.1).from, 0.5, 1e-12);
+  EXPECT_EQ(too_high(rising, 0.1).to, 1.0);
+  const Riser falling{{0.0, 0.0}, {1.0, 0.0}, 0.0, 0.2, 0.0, 0.0, false};
+  EXPECT_EQ(too_high(falling, 0.1).from, 0.0);
+  EXPECT_NEAR(too_high(falling, 0.1).to, 0.5, 1e-12);
+  // Down to the limit itself: all of it but the end.
+  const Riser to_the_limit{{0.0, 0.0}, {1.0, 0.0}, 0.0, 0.2, 0.0, 0.1, false};
+  EXPECT_EQ(too_high(to_the_limit, 0.1).from, 0.0);
+  EXPECT_EQ(too_high(to_the_limit, 0.1).to, 1.0);
+  const auto low = too_high(rising, 0.3);
+  EXPECT_GE(low.from, low.to);
+}
+
 }  // namespace
 }  // namespace rubble::arenas

@@ -40,7 +40,8 @@ TEST(Probe, ScannerTellsWhoItIsAndWhatItSees) {
   const TurningScene scene(config.laser, [&](const LaserScan& scan) { emulator.publish(scan); });
   const auto found = probe_port(emulator.port());
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->kind, "laser scanner");
+  EXPECT_EQ(found->kind, DeviceKind::Scanner);
+  EXPECT_EQ(found->called, "laser scanner");
   EXPECT_EQ(fact(*found, "model"), "URG-04LX(Hokuyo Automatic Co.,Ltd.)");
   EXPECT_THAT(fact(*found, "firmware"), testing::StartsWith("3.3.00"));
   EXPECT_EQ(fact(*found, "ranges"), "0.02 to 5.60 m");
@@ -76,7 +77,8 @@ TEST(Probe, BaseTellsWhoItIsAndStandsStill) {
   const Fed feed(server, [&] { base.measure({host_now(), {}, 0.0, 0.0, false}, host_now()); });
   const auto found = probe_port(server.port());
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->kind, "robot base (ARCOS)");
+  EXPECT_EQ(found->kind, DeviceKind::Base);
+  EXPECT_EQ(found->called, "robot base (ARCOS)");
   EXPECT_EQ(fact(*found, "type"), "Pioneer p3at-sh");
   EXPECT_EQ(fact(*found, "firmware"), "7.5") << "as CONFIG tells it, not what the emulator has unless told otherwise";
   EXPECT_THAT(fact(*found, "battery"), testing::EndsWith(" V"));
@@ -89,7 +91,8 @@ TEST(Probe, LevellingUnitTellsWhoItIsAndWhatItFeels) {
   const Fed feed(server, [&] { unit.measure({host_now(), 1.0, -0.5}, {host_now(), 0.0, 0.0}, host_now()); });
   const auto found = probe_port(server.port());
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->kind, "levelling unit");
+  EXPECT_EQ(found->kind, DeviceKind::Levelling);
+  EXPECT_EQ(found->called, "levelling unit");
   EXPECT_EQ(fact(*found, "model"), "LEV1");
   EXPECT_EQ(fact(*found, "feels"), "1.00 m/s^2 forward, -0.50 m/s^2 left");
   server.with([&] { EXPECT_FALSE(unit.servos_on()) << "who only asks moves nothing"; });

@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "slam/robust/map/lone_hits.h"
-#include "slam/robust/map/thin_walls.h"
+#include "slam/robust/map/crisp_walls.h"
 #include "slam/robust/robust_mapper.h"
 #include "tests/support/slam_outcome.h"
 #include "tests/support/slam_world.h"

@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/batch_tools.h"
+#include "app/batch/batch_tools.h"
 #include "app/commands.h"
 #include "scenarios/batch/merge.h"
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "app/batch_tools.h"
+#include "app/batch/batch_tools.h"
 #include "app/commands.h"
 #include "app/scenario_options.h"
 #include "base/error.h"

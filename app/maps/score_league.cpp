@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "app/score_parts.h"
-#include "app/score_tools.h"
+#include "app/maps/score_parts.h"
+#include "app/maps/score_tools.h"
 #include "base/error.h"
 #include "base/text/words.h"
 #include "scoring/league/league_judge.h"

@@ -10,7 +10,7 @@
 
 #include "app/commands.h"
 #include "app/mapper_choice.h"
-#include "app/robot_options.h"
+#include "app/robots/robot_options.h"
 #include "app/scenario_options.h"
 #include "app/terminal.h"
 #include "base/angle.h"

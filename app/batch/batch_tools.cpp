@@ -1,4 +1,4 @@
-#include "app/batch_tools.h"
+#include "app/batch/batch_tools.h"
 
 #include <sched.h>
 #include <unistd.h>

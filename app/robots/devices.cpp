@@ -14,7 +14,7 @@ namespace {
 constexpr int kPictureRows = 25;
 
 void print(const std::string& port, const robot::FoundDevice& found, double radius) {
-  std::printf("%s: %s\n", port.c_str(), found.kind.c_str());
+  std::printf("%s: %s\n", port.c_str(), found.called.c_str());
   for (const auto& [name, value] : found.facts) std::printf("  %-14s %s\n", name.c_str(), value.c_str());
   if (!found.scan) return;
   std::printf("  %-14s %s\n", "scan", robot::scan_summary(*found.scan).c_str());

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "app/commands.h"
-#include "app/keyboard.h"
-#include "app/robot_options.h"
+#include "app/robots/keyboard.h"
+#include "app/robots/robot_options.h"
 #include "app/scenario_options.h"
 #include "app/terminal.h"
 #include "base/error.h"

@@ -1,5 +1,5 @@
 // Scans that wait for the odometry that follows them.
-#include "slam/scan/scan_queue.h"
+#include "slam/scan/waiting_scans.h"
 
 #include <gtest/gtest.h>
 
@@ -22,13 +22,13 @@ robot::Odometry odometry_at(double seconds, double x) {
   return odometry;
 }
 
-TEST(ScanQueue, GivesNothingWhenEmpty) {
-  const ScanQueue queue;
+TEST(WaitingScans, GivesNothingWhenEmpty) {
+  const WaitingScans queue;
   EXPECT_FALSE(queue.ready(OdometryTrack(), Stamp::from_seconds(100.0)));
 }
 
-TEST(ScanQueue, LeavesOutWhatIsEmptyOrNotYounger) {
-  ScanQueue queue;
+TEST(WaitingScans, LeavesOutWhatIsEmptyOrNotYounger) {
+  WaitingScans queue;
   robot::LaserScan empty = scan_at(0.5);
   empty.ranges.clear();
   EXPECT_FALSE(queue.add(empty));
@@ -41,8 +41,8 @@ TEST(ScanQueue, LeavesOutWhatIsEmptyOrNotYounger) {
   EXPECT_FALSE(queue.add(scan_at(1.1)));  // also when it has left the queue
 }
 
-TEST(ScanQueue, AScanWaitsForOdometryFromAfterTheMiddleOfItsSweep) {
-  ScanQueue queue;
+TEST(WaitingScans, AScanWaitsForOdometryFromAfterTheMiddleOfItsSweep) {
+  WaitingScans queue;
   OdometryTrack odometry;
   ASSERT_TRUE(queue.add(scan_at(1.0)));
   const Stamp now = Stamp::from_seconds(1.1);
@@ -52,26 +52,26 @@ TEST(ScanQueue, AScanWaitsForOdometryFromAfterTheMiddleOfItsSweep) {
   EXPECT_TRUE(queue.ready(odometry, now));
 }
 
-TEST(ScanQueue, AScanDoesNotWaitForEver) {
-  ScanQueue queue;
+TEST(WaitingScans, AScanDoesNotWaitForEver) {
+  WaitingScans queue;
   ASSERT_TRUE(queue.add(scan_at(1.0)));
   const double middle = queue.front().middle().seconds();
   EXPECT_FALSE(queue.ready(OdometryTrack(), Stamp::from_seconds(middle + 0.99 * OdometryTrack::kMaxExtrapolation)));
   EXPECT_TRUE(queue.ready(OdometryTrack(), Stamp::from_seconds(middle + 1.01 * OdometryTrack::kMaxExtrapolation)));
 }
 
-TEST(ScanQueue, GivesScansInTheirOrder) {
-  ScanQueue queue;
+TEST(WaitingScans, GivesScansInTheirOrder) {
+  WaitingScans queue;
   for (const double t : {1.0, 1.1, 1.3}) ASSERT_TRUE(queue.add(scan_at(t)));
   for (const double t : {1.0, 1.1, 1.3}) EXPECT_EQ(queue.take().stamp, Stamp::from_seconds(t));
   EXPECT_FALSE(queue.ready(OdometryTrack(), Stamp::from_seconds(100.0)));
 }
 
-TEST(ScanQueue, NoOdometryIsForgottenThatAWaitingScanNeeds) {
-  ScanQueue queue;
+TEST(WaitingScans, NoOdometryIsForgottenThatAWaitingScanNeeds) {
+  WaitingScans queue;
   OdometryTrack odometry;
   odometry.add(odometry_at(10.0, 0.0));
-  EXPECT_EQ(queue.oldest_needed(odometry), Stamp::from_seconds(10.0) - ScanQueue::kLateScan);
+  EXPECT_EQ(queue.oldest_needed(odometry), Stamp::from_seconds(10.0) - WaitingScans::kLateScan);
   ASSERT_TRUE(queue.add(scan_at(5.0)));
   EXPECT_EQ(queue.oldest_needed(odometry), Stamp::from_seconds(5.0));
 }

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "app/batch_tools.h"
+#include "app/batch/batch_tools.h"
 #include "app/commands.h"
 #include "base/error.h"
 #include "base/text/text_file.h"

@@ -1,4 +1,4 @@
-#include "app/score_tools.h"
+#include "app/maps/score_tools.h"
 
 #include <cmath>
 #include <cstdio>

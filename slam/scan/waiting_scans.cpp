@@ -1,4 +1,4 @@
-#include "slam/scan/scan_queue.h"
+#include "slam/scan/waiting_scans.h"
 
 #include <algorithm>
 #include <utility>
@@ -7,26 +7,26 @@ namespace rubble::slam {
 
 using robot::LaserScan;
 
-bool ScanQueue::add(const LaserScan& scan) {
+bool WaitingScans::add(const LaserScan& scan) {
   if (scan.ranges.empty() || scan.middle() <= newest_) return false;
   newest_ = scan.middle();
   waiting_.push_back(scan);
   return true;
 }
 
-bool ScanQueue::ready(const OdometryTrack& odometry, Stamp now) const {
+bool WaitingScans::ready(const OdometryTrack& odometry, Stamp now) const {
   if (waiting_.empty()) return false;
   const Stamp reference = front().middle();
   return odometry.newest() >= reference || now - reference > OdometryTrack::kMaxExtrapolation;
 }
 
-LaserScan ScanQueue::take() {
+LaserScan WaitingScans::take() {
   LaserScan scan = std::move(waiting_.front());
   waiting_.pop_front();
   return scan;
 }
 
-Stamp ScanQueue::oldest_needed(const OdometryTrack& odometry) const {
+Stamp WaitingScans::oldest_needed(const OdometryTrack& odometry) const {
   const Stamp oldest = odometry.newest() - kLateScan;
   return waiting_.empty() ? oldest : std::min(oldest, front().stamp);
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/command.h"
-#include "app/keyboard.h"
+#include "app/robots/keyboard.h"
 #include "scenarios/hardware/drive.h"
 #include "scenarios/hardware/robot_file.h"
 

@@ -1,4 +1,4 @@
-#include "app/keyboard.h"
+#include "app/robots/keyboard.h"
 
 #include <unistd.h>
 

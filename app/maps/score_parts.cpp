@@ -1,4 +1,4 @@
-#include "app/score_parts.h"
+#include "app/maps/score_parts.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "app/robot_options.h"
+#include "app/robots/robot_options.h"
 
 #include <unistd.h>
 
@@ -65,10 +65,11 @@ std::vector<scenarios::Override> RobotOptions::with_ports(std::vector<scenarios:
   } else if (given("--base")) {
     set_port(overrides, "base", base);
   }
-  if (levelling == "none") {
-    overrides.emplace_back("devices.levelling.driver", "none");
+  if (levelling == scenarios::kNoLevelling) {
+    overrides.emplace_back("devices.levelling.driver", levelling);
   } else if (given("--levelling")) {
-    overrides.emplace_back("devices.levelling.driver", "lev1");  // also where the robot file has none
+    overrides.emplace_back("devices.levelling.driver",
+                           scenarios::kLevellingUnit);  // also where the robot file has none
     set_port(overrides, "levelling", levelling);
   }
   return overrides;

@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "app/score_tools.h"
+#include "app/maps/score_tools.h"
 #include "app/terminal.h"
 #include "base/error.h"
 #include "base/text/text_file.h"

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "app/commands.h"
-#include "app/score_tools.h"
+#include "app/maps/score_tools.h"
 #include "app/terminal.h"
 #include "base/error.h"
 #include "base/text/text_file.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "app/batch_tools.h"
+#include "app/batch/batch_tools.h"
 #include "app/commands.h"
 #include "app/scenario_options.h"
 #include "base/error.h"

@@ -11,7 +11,7 @@ namespace rubble::slam {
 
 /// Scans that wait for odometry from after their reference time: their poses are "interpolated by the odometry data
 /// reported right before and right after" (section III.B). Where none comes they are given out all the same.
-class ScanQueue {
+class WaitingScans {
  public:
   /// False for a scan that is left out: it has no beams, or is not younger than the one before.
   bool add(const robot::LaserScan& scan);
