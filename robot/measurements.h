@@ -15,10 +15,10 @@ namespace rubble::robot {
 /// One revolution of a 2D laser scanner, counter-clockwise. Beam i leaves at stamp + i * beam_period
 /// with bearing angle_min + i * angle_step in the laser frame.
 struct LaserScan {
-  Stamp stamp;                ///< of beam 0
+  Stamp stamp;                ///< of beam 0; sweeps that run clockwise end with it
   double angle_min = 0.0;     ///< bearing of beam 0 [rad]
   double angle_step = 0.0;    ///< [rad], > 0
-  double beam_period = 0.0;   ///< time between two beams [s]; 0: unknown or all at once
+  double beam_period = 0.0;   ///< time between two beams [s]; 0: unknown or all at once; < 0: beam 0 was the last
   double range_min = 0.0;     ///< [m]
   double range_max = 0.0;     ///< [m]
   std::vector<float> ranges;  ///< [m]; +inf: nothing in range (a miss), NaN: no measurement (unknown)
