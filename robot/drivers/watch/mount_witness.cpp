@@ -12,9 +12,11 @@ namespace {
 
 using mrpt::math::TPose2D;
 
-constexpr double kWayLasts = 1.5;               ///< [s]
-constexpr double kWayGap = 0.35;                ///< between two reports nobody knows the way [s]
-constexpr double kScanWaits = 0.6;              ///< for the report behind it [s]
+constexpr double kWayLasts = 1.5;   ///< [s]
+constexpr double kWayGap = 0.35;    ///< between two reports nobody knows the way [s]
+constexpr double kScanWaits = 0.6;  ///< for the report behind it [s]
+constexpr double kLeastWay = 0.15;  ///< of a stretch that ends with its turn, to tell which way it went [m]
+constexpr double kRound = deg_to_rad(30.0);
 constexpr double kStraight = deg_to_rad(12.0);  ///< who turns by less goes straight
 constexpr double kOnTheSpot = 0.12;             ///< who goes less turns on the spot [m]
 constexpr double kFarTwice = 2.4;               ///< so many times a stretch is looked at again, if nothing moved
@@ -84,7 +86,7 @@ void MountWitness::step(const LaserScan& scan, const TPose2D& pose, Stamp now) {
 /// Whether the stretch is done with: one in which nothing seems to have moved is given more.
 bool MountWitness::judge(const Begin& begin, const LaserScan& scan, const TPose2D& motion, Stamp now) {
   const double turn = wrap_angle(motion.phi);
-  if (std::abs(turn) <= kStraight && std::abs(motion.x) >= kWay) return judge_way(begin, scan, motion, now);
+  if (std::abs(turn) <= kRound && std::abs(motion.x) >= kLeastWay) return judge_way(begin, scan, motion, now);
   if (std::abs(turn) >= kTurn && std::hypot(motion.x, motion.y) <= kOnTheSpot)
     return judge_turn(begin, scan, motion, now);
   return true;
@@ -108,7 +110,8 @@ bool MountWitness::judge_way(const Begin& begin, const LaserScan& scan, const TP
   if (seen.moved() && seen.ahead * motion.x > 0.0 && std::abs(seen.turn - turn) < kStraight) {
     ways_.clear();
     stands_.clear();
-    judge_scale(way_ratios_, seen.ahead / motion.x, false, now);
+    if (std::abs(motion.x) >= kWay && std::abs(turn) <= kStraight)
+      judge_scale(way_ratios_, seen.ahead / motion.x, false, now);
     return true;
   }
   const ScanWay way = way_between(begin.scan, scan, T_base_laser_, turn, motion.x < 0.0);
@@ -167,8 +170,8 @@ void MountWitness::judge_scale(std::deque<Vote>& ratios, double ratio, bool turn
 }
 
 void MountWitness::vote(std::deque<Vote>& votes, double value, Stamp now) const {
-  const bool ratio = &votes == &way_ratios_ || &votes == &turn_ratios_;
-  while (!votes.empty() && now - votes.front().when > (ratio ? kForgetRatio : kForget)) votes.pop_front();
+  const double lasts = &votes == &turns_ || &votes == &stands_ ? kForget : kForgetWay;
+  while (!votes.empty() && now - votes.front().when > lasts) votes.pop_front();
   votes.push_back({now, value});
 }
 

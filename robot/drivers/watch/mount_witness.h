@@ -24,7 +24,7 @@ class MountWitness {
   static constexpr std::size_t kScaleVotes = 6;  ///< of a scale; twice as many where it may be slip
   static constexpr double kScale = 1.6;          ///< is more than floors and tyres explain, either way
   static constexpr double kForget = 30.0;        ///< a vote counts no longer, nor does a break of the line [s]
-  static constexpr double kForgetRatio = 60.0;   ///< of what is seen to what is reported [s]
+  static constexpr double kForgetWay = 60.0;     ///< the same of ways and scales: who turns to and fro goes little [s]
   static constexpr double kWay = 0.25;           ///< of a stretch, by the wheels [m] ...
   static constexpr double kTurn = 0.35;          ///< ... or [rad]
   static constexpr double kLongestTime = 8.0;    ///< of a stretch [s]

@@ -179,7 +179,7 @@ double went_ahead(const Trajectory& reference, Stamp now) {
     return std::lower_bound(reference.begin(), reference.end(), when,
                             [](const auto& one, Stamp stamp) { return one.stamp < stamp; });
   };
-  const auto from = at(now - 1.0), to = at(now);
+  const auto from = at(now - 3.0), to = at(now);  // about as long as the three stretches of a finding
   if (from == reference.end() || to == reference.end()) return 0.0;
   return std::cos(from->pose.phi) * (to->pose.x - from->pose.x) +
          std::sin(from->pose.phi) * (to->pose.y - from->pose.y);
@@ -215,7 +215,7 @@ TEST(MountWitness, RecordedDrivesRaiseNoFalseAlarm) {
     }
     EXPECT_GT(scans, 400);
     EXPECT_EQ(false_alarms, 0);
-    EXPECT_LE(alarms, 2);
+    EXPECT_LE(alarms, 3);
     std::printf("%s: %d scans, %d alarms, %d of them false\n", name, scans, alarms, false_alarms);
   }
 }
