@@ -18,10 +18,10 @@ struct LaserScan {
   static constexpr float kMiss = std::numeric_limits<float>::infinity();
   static constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-  Stamp stamp;                ///< of beam 0
+  Stamp stamp;                ///< of beam 0; sweeps that run clockwise end with it
   double angle_min = 0.0;     ///< bearing of beam 0 [rad]
   double angle_step = 0.0;    ///< [rad], > 0
-  double beam_period = 0.0;   ///< time between two beams [s]; 0: unknown or all at once
+  double beam_period = 0.0;   ///< time between two beams [s]; 0: unknown or all at once; < 0: beam 0 was the last
   double range_min = 0.0;     ///< [m]
   double range_max = 0.0;     ///< [m]
   std::vector<float> ranges;  ///< [m]; kMiss: nothing in range, kUnknown: no measurement

@@ -55,6 +55,8 @@ class BaseDriver : public Device {
   /// asked for last: one whose motors stay on though switched off is held to disobey.
   virtual bool motors_on() const = 0;
   virtual double battery() const { return 0.0; }  ///< [V]; 0: it does not tell
+  /// Name, serial number and firmware in words, as it tells them on each connection; empty: it has not told.
+  virtual std::string who() const { return ""; }
 
   /// Somebody at the robot stopped it: its emergency button is pressed, or its motors went off though nobody here asked
   /// for it. It is not switched on again until rearm().

@@ -538,6 +538,12 @@ std::string Pioneer::state() const {
   return ready() ? identity_.subclass + " reports" : "waits for the first report of " + identity_.subclass;
 }
 
+std::string Pioneer::who() const {
+  if (step_ != Step::Running || listening_ || !configured_) return "";
+  return "'" + identity_.name + "', " + identity_.subclass + ", serial number '" + configuration_.serial +
+         "', firmware '" + configuration_.firmware + "'";
+}
+
 Drive Pioneer::own_ramp() const {
   if (!configured_) return {};
   return {kMillimetre * configuration_.top_accel, deg_to_rad(configuration_.top_turn_accel)};

@@ -70,6 +70,7 @@ class Pioneer : public BaseDriver {
   const arcos::Configuration& configuration() const { return configuration_; }
   bool configured() const { return configured_; }
   double battery() const override { return information_.battery; }
+  std::string who() const override;
   bool motors_on() const override { return (information_.flags & arcos::kMotorsOn) != 0; }
   bool emergency_button() const { return (information_.flags & arcos::kEmergencyButton) != 0; }
   std::size_t bad_sums() const override { return parser_.bad_sums(); }

@@ -16,7 +16,9 @@
 #include "robot/drivers/host_clock.h"
 #include "robot/drivers/watch/answer_watch.h"
 #include "robot/drivers/watch/base_watch.h"
+#include "robot/drivers/watch/battery_watch.h"
 #include "robot/drivers/watch/freshness.h"
+#include "robot/drivers/watch/levelling_witness.h"
 #include "robot/drivers/watch/scan_watch.h"
 #include "robot/drivers/watch/standstill.h"
 
@@ -108,9 +110,13 @@ struct RealRobot::Impl {
   Stamp commanded = Stamp::never();
   bool armed = false;  ///< all devices have reported: the motors may go on
   BaseWatch base_watch;
+  BatteryWatch battery_watch;
+  LevellingWitness levelling_witness;
+  bool unlevelled = false;  ///< the operator drives on without what levels the scanner the wrong way
   std::vector<Odometry> waiting_odometry;
-  Stamp scan_answered = Stamp::never();  ///< arrival of the scan whose answer is on its way
-  Stamp scan_leaving = Stamp::never();   ///< the same, once the base's thread has the answer
+  std::optional<mrpt::math::TPose2D> read_pose;  ///< of the wheels, by the last report that read() returned
+  Stamp scan_answered = Stamp::never();          ///< arrival of the scan whose answer is on its way
+  Stamp scan_leaving = Stamp::never();           ///< the same, once the base's thread has the answer
   std::vector<double> delays;
 
   std::vector<LaserScan> waiting_scans;
@@ -138,9 +144,12 @@ struct RealRobot::Impl {
         base(given.own_base ? given.own_base(given.base) : make_base(given.base_driver, given.base)),
         unit(given.levelling),
         heartbeat(given.heartbeat),
+        scan_watch(given.safety.scans),
         base_answers(given.safety.base_answer),
         unit_answers(given.safety.levelling_answer),
-        base_watch(given.base, {given.model.T_base_laser.x, given.model.T_base_laser.y, given.model.T_base_laser.yaw}) {
+        base_watch(given.base, {given.model.T_base_laser.x, given.model.T_base_laser.y, given.model.T_base_laser.yaw},
+                   given.safety.mount_check),
+        battery_watch(given.safety.battery_low, given.safety.battery_empty) {
     if (!settings.levelling_port.empty())
       unit_thread = std::make_unique<DeviceThread>("levelling", settings.levelling_port, unit, box);
     if (!settings.base_port.empty())
@@ -172,11 +181,15 @@ struct RealRobot::Impl {
     return ask(base_watch);
   }
   bool is_blind() const {
-    return watched([](const BaseWatch& watch) { return watch.blind(); });
+    return watched([this](const BaseWatch& watch) { return watch.blind() || is_levelled_wrong(); });
   }
   bool is_held_by_us() const {
-    return watched([](const BaseWatch& watch) { return !watch.held().empty(); });
+    return watched([this](const BaseWatch&) { return holds_itself(); });
   }
+  /// With the mutex taken, as the next one: what was seen here holds it until the operator lets it go.
+  bool holds_itself() const { return !base_watch.held().empty() || is_levelled_wrong() || is_empty(); }
+  bool is_levelled_wrong() const { return !levelling_witness.finding().empty() && !unlevelled && !is_only_mapping(); }
+  bool is_empty() const { return battery_watch.empty() && !is_only_mapping(); }
   void wake_base() const {
     if (base_thread) base_thread->wake();
   }
@@ -222,7 +235,7 @@ struct RealRobot::Impl {
   void watch(Stamp now) {
     const std::lock_guard<std::mutex> lock(mutex);
     const bool fresh = commanded != Stamp::never() && now - commanded <= settings.safety.core_silence;
-    const bool ours = armed && !is_taken() && base_watch.held().empty();
+    const bool ours = armed && !is_taken() && !holds_itself();
     const bool allowed = ours && !emergency && !stopped;
     const BaseDriver::Answers answers = base->answers(now);
     const bool heard = is_base_answering(answers, now);
@@ -248,6 +261,8 @@ struct RealRobot::Impl {
     turn.own_ramp = base->own_ramp();
     std::vector<Odometry> reports = base->take_odometry();
     turn.jumps = base->jumps();
+    turn.identity = base->who();
+    if (turn.ready) battery_watch.look(base->battery(), now);
     if (base_watch.look(turn, reports, now)) base->emergency_stop();
     scan_watch.look(reports);
     append(waiting_odometry, std::move(reports));
@@ -271,7 +286,7 @@ struct RealRobot::Impl {
   bool is_lidar_well(const ScannerStatus& scanner, Stamp now) const {
     if (is_lidar_silent(scanner, now)) return false;  // its own trouble, and over with the next scan
     freshness.look(age(scanner, now), settings.safety.lidar_age, now);
-    return !freshness.stale() && (is_only_mapping() || scan_watch.is_well());
+    return !freshness.stale() && (is_only_mapping() || !scan_watch.holds());
   }
   /// Somebody else drives, by other means: what the scanner does not see holds nobody.
   bool is_only_mapping() const { return settings.base.passive; }
@@ -340,18 +355,29 @@ struct RealRobot::Impl {
                              base->slow());
     });
     const auto hold_it = [&](const std::string& why) { all.push_back({"base", Cause::Held, why}); };
-    const auto [why_held, motors_stay, moves] = watched(
-        [](const BaseWatch& watch) { return std::make_tuple(watch.held(), watch.motors_stay(), watch.moves()); });
-    if (!why_held.empty()) hold_it(why_held);
-    if (motors_stay) hold_it(kMotorsStay);
+    const auto [name_held, why_held, motors_stay, moves, goes_on] = watched([](const BaseWatch& watch) {
+      return std::make_tuple(watch.held_name(), watch.held(), watch.motors_stay(), watch.moves(),
+                             watch.moves_though_held());
+    });
+    if (!why_held.empty()) all.push_back({name_held, Cause::Held, why_held});
+    if (goes_on && underway && !motors_stay)
+      all.push_back({"base", Cause::Disobeys, "moves though it is held; see who drives or pushes it"});
+    if (const double volts = watched([this](const BaseWatch&) { return is_empty() ? battery_watch.volts() : 0.0; })) {
+      char text[120];
+      std::snprintf(text, sizeof text, "its battery is empty: %.1f V of at least %g V (safety.battery_empty_v)", volts,
+                    settings.safety.battery_empty);
+      hold_it(text);
+    }
+    const std::string error = base_thread->error();
+    if (motors_stay && error.empty()) hold_it(kMotorsStay);  // not connected, nobody knows
     if (!underway && moves && !settings.base.passive)
       all.push_back({"base", Cause::Disobeys, "moves though nobody here drives it; it is taken when it stands"});
     if (underway && is_taken()) hold_it("another program may have had it; see who drives the robot");
     if (hold == BaseDriver::Hold::EmergencyButton) hold_it("emergency button pressed");
     if (hold == BaseDriver::Hold::MotorsOff) hold_it("motors were switched off");
     if (!is_base_reporting(ready, last, now)) {
-      const std::string error = base_thread->error();
-      all.push_back(silent_for("base", underway, last, now, error.empty() ? state : error,
+      const std::string how = ready ? "" : state;  // the state of one that fell silent just now is that it reports
+      all.push_back(silent_for("base", underway, last, now, error.empty() ? how : error,
                                error.empty() && slow ? Cause::Late : Cause::Silent));
     } else if (!is_base_answering(answered, now)) {
       all.push_back({"base", Cause::Late, base_answers.trouble(answered)});
@@ -360,10 +386,13 @@ struct RealRobot::Impl {
 
   /// The levelling unit and the operator.
   void add_silent_helpers(std::vector<Hindrance>& all, bool underway, Stamp now) const {
+    const std::string wrong =
+        watched([this](const BaseWatch&) { return is_levelled_wrong() ? levelling_witness.finding() : std::string(); });
+    if (!wrong.empty()) all.push_back({"levelling", Cause::Held, wrong});
     if (!is_unit_well(now)) {
       const auto [reported, how, given] = unit_thread->with([&] {
         const Stamp last = unit.ready() ? unit.last_report() : Stamp::never();
-        return std::make_tuple(last, unit.state(), unit.answers(now));
+        return std::make_tuple(last, unit.ready() ? std::string() : unit.state(), unit.answers(now));
       });
       const std::string error = unit_thread->error();
       if (is_unit_silent(reported, now)) {
@@ -380,7 +409,8 @@ struct RealRobot::Impl {
   RobotStatus status(Stamp now) const {
     RobotStatus s;
     s.silent = silent(now);
-    if (is_only_mapping() && !scan_watch.is_well()) s.troubles.push_back({"urg", Cause::Faulty, scan_watch.trouble()});
+    const bool named_only = is_only_mapping() || !scan_watch.holds();
+    if (named_only && !scan_watch.is_well()) s.troubles.push_back({"urg", Cause::Faulty, scan_watch.trouble()});
     s.emergency = emergency;
     s.held = is_held();
     s.blind = is_blind();
@@ -398,6 +428,13 @@ struct RealRobot::Impl {
       const std::lock_guard<std::mutex> lock(mutex);
       s.odometry += waiting_odometry.size();
       s.moves = base_watch.moves();
+      if (read_pose && !waiting_odometry.empty()) s.unread = waiting_odometry.back().pose - *read_pose;
+      s.mend = is_levelled_wrong() ? "see to its servos and the robot file; after R it is not levelled any more"
+                                   : base_watch.mend();
+      add_battery(s.troubles);
+      if (unlevelled) s.troubles.push_back({"levelling", Cause::Faulty, "off since it made the tilt larger"});
+      if (is_only_mapping() && !levelling_witness.finding().empty())
+        s.troubles.push_back({"levelling", Cause::Faulty, levelling_witness.finding()});
       s.motors_stay = base_watch.motors_stay();
       append(s.troubles, base_watch.troubles());
     });
@@ -415,6 +452,16 @@ struct RealRobot::Impl {
     return s;
   }
 
+  /// With the mutex taken.
+  void add_battery(std::vector<Hindrance>& troubles) const {
+    if (!battery_watch.low() || is_empty()) return;
+    char text[120];
+    std::snprintf(text, sizeof text,
+                  "its battery is low: %.1f V of at least %g V (safety.battery_low_v); charge it soon",
+                  battery_watch.volts(), settings.safety.battery_low);
+    troubles.push_back({"base", Cause::Faulty, text});
+  }
+
   bool is_held() const {
     if (first != Stamp::never() && is_taken()) return true;
     if (is_held_by_us()) return true;
@@ -428,7 +475,7 @@ struct RealRobot::Impl {
     scan_arrived = arrived == Stamp::never() ? now : arrived;
     scans += fresh.size();
     show_to_watch(fresh, now);
-    if (!scan_watch.is_well()) return;  // a map of what a covered scanner takes for free is none
+    if (scan_watch.holds()) return;  // a map of what a covered scanner takes for free is none
     append(waiting_scans, std::move(fresh));
     if (waiting_scans.size() > kMostScansKept) thin_waiting_scans();
   }
@@ -464,7 +511,21 @@ struct RealRobot::Impl {
 
   std::vector<Odometry> take_odometry() {
     const std::lock_guard<std::mutex> lock(mutex);
+    if (!waiting_odometry.empty()) read_pose = waiting_odometry.back().pose;
     return std::exchange(waiting_odometry, {});
+  }
+
+  /// What levels the scanner the wrong way stands level from then on.
+  void mind_levelling(const Inputs& inputs) {
+    if (settings.model.accelerometer_mount != AccelerometerMount::Platform) return;
+    bool wrong = false;
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      const std::size_t n = std::min(inputs.accelerations.size(), inputs.aims.size());
+      for (std::size_t i = 0; i < n; ++i) levelling_witness.look(inputs.accelerations[i], inputs.aims[i]);
+      wrong = is_levelled_wrong();
+    }
+    if (wrong && unit_thread) unit_thread->with([&] { unit.aim({}); });
   }
 
   Inputs collect() {
@@ -477,6 +538,7 @@ struct RealRobot::Impl {
         inputs.aims = unit.take_aims();
       });
     }
+    mind_levelling(inputs);
     odometry += inputs.odometry.size();
     accelerations += inputs.accelerations.size();
     inputs.command = commands_in_force();
@@ -606,7 +668,8 @@ void RealRobot::command(const Commands& commands) {
   }
   robot.wake_base();
   if (robot.unit_thread && robot.settings.model.has_levelling_unit) {
-    robot.unit_thread->with([&] { robot.unit.aim(commands.aim); });
+    const bool level = robot.watched([&](const BaseWatch&) { return !robot.unlevelled && !robot.is_levelled_wrong(); });
+    robot.unit_thread->with([&] { robot.unit.aim(level ? commands.aim : LaserAim{}); });
     robot.unit_thread->wake();
   }
 }
@@ -623,6 +686,8 @@ bool RealRobot::rearm() {
     impl_->base->rearm();
     const std::lock_guard<std::mutex> lock(impl_->mutex);
     impl_->base_watch.rearm();
+    impl_->battery_watch.pardon();
+    impl_->unlevelled = impl_->unlevelled || impl_->is_levelled_wrong();
   });
   impl_->wake_base();
   return true;

@@ -10,6 +10,7 @@
 #include "robot/drivers/hindrance.h"
 #include "robot/drivers/levelling_unit.h"
 #include "robot/drivers/scanner.h"
+#include "robot/drivers/watch/scan_watch.h"
 #include "robot/robot.h"
 
 namespace rubble::robot {
@@ -26,6 +27,10 @@ struct SafetySettings {
   double operator_silence = 1.0;   ///< no heartbeat, if one is asked for [s]
   double start = 30.0;             ///< all devices must report within [s]
   double give_up = 60.0;           ///< a lost device must be back within [s]
+  bool mount_check = true;         ///< scans that show another mount or scale than the robot file says hold it
+  ScanWatch::Settings scans;       ///< when a scanner that sees nothing holds it
+  double battery_low = 11.5;       ///< below it a battery is called low; 0: never [V]
+  double battery_empty = 11.0;     ///< below it the robot is held; 0: never [V]
 };
 
 struct RealRobotSettings {
@@ -54,13 +59,15 @@ enum class OperatorWish {
 struct RobotStatus {
   std::vector<Hindrance> silent;    ///< what holds the robot
   bool held = false;                ///< stopped at the robot itself, or taken: only rearm() lets it go
-  bool blind = false;               ///< held since its wheels deny motion that scans show
+  bool blind = false;               ///< held since scans, or what levels the scanner, show that it must not drive so
+  std::string mend;                 ///< what to do before it is let go, in words; empty: what the hold itself says
   bool taken = false;               ///< another program seemed to have the base while it was away, or to drive it
   std::vector<Hindrance> troubles;  ///< what does not work but holds nothing
   bool motors_on = false;
-  bool begun = false;     ///< all devices have reported: the base may have been driven
-  bool reported = false;  ///< the base has, since it was stopped for good
-  bool moves = false;     ///< its wheels turn, by its last report
+  bool begun = false;          ///< all devices have reported: the base may have been driven
+  bool reported = false;       ///< the base has, since it was stopped for good
+  bool moves = false;          ///< its wheels turn, by its last report
+  mrpt::math::TPose2D unread;  ///< how far its wheels went since the report that read() returned last
   bool motors_stay =
       false;  ///< its motors are on, long after they were switched off; what it does in silence nobody knows
   bool emergency = false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -51,5 +52,16 @@ class Scanner {
   /// For poll(): readable while scans wait to be taken.
   virtual int descriptor() const = 0;
 };
+
+/// The scan of a scanner that hangs upside down: its beams run clockwise, so the last one is the first.
+inline void turn_over(LaserScan& scan) {
+  if (scan.ranges.empty()) return;
+  const std::size_t last = scan.ranges.size() - 1;
+  scan.stamp = scan.beam_stamp(last);
+  scan.beam_period = -scan.beam_period;
+  scan.angle_min = -scan.bearing(last);
+  std::reverse(scan.ranges.begin(), scan.ranges.end());
+  std::reverse(scan.codes.begin(), scan.codes.end());
+}
 
 }  // namespace rubble::robot

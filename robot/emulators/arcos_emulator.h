@@ -65,6 +65,8 @@ class ArcosEmulator : public EmulatedDevice {
 
   bool open() const { return session_ == Session::Open; }
   bool motors_on() const { return motors_; }
+  /// What it reports from then on [V].
+  void set_battery(double volts) { battery_ = volts; }
   /// The watchdog holds the robot.
   bool is_held() const { return held_; }
 

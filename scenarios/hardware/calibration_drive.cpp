@@ -117,10 +117,11 @@ std::optional<robot::Drive> CalibrationDrive::next(const robot::Inputs& inputs, 
   for (const robot::LaserScan& scan : inputs.scans) {
     if (!is_blocked(scan, leg)) continue;
     char text[200];
+    const double room = 0.1 * std::ceil(10.0 * (config_.side + 2.0 * model_.swing_radius() + 0.2));
     std::snprintf(text, sizeof text,
                   "something stands in the way; a calibration needs %.1f x %.1f m of flat, free floor ahead of the "
                   "robot and to its left",
-                  config_.side + 2.0 * model_.swing_radius() + 0.2, config_.side + 2.0 * model_.swing_radius() + 0.2);
+                  room, room);
     trouble_ = text;
     return std::nullopt;
   }

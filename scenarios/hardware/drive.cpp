@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <exception>
 #include <limits>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -38,7 +39,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kTellAgain = 5.0;  ///< a reason that changed while devices are waited for is told so often at most [s]
+constexpr double kTellAgain = 5.0;  ///< a reason that changed, or a trouble that comes and goes, is told so often [s]
 
 /// So soon a base that is stopped has told so, on a line that is as slow as may be driven with, and one that does not
 /// obey has been found out (BaseWatch::kMotorsOff) [s].
@@ -66,19 +67,20 @@ std::unique_ptr<robot::Scanner> make_scanner(const RobotFile& file, robot::Black
   return std::make_unique<robot::ScipScanner>(config);
 }
 
-/// A scanner whose scans are older than their stamps say, by a delay that was measured (`rubble calibrate`).
-class DelayedScanner : public robot::Scanner {
+/// A scanner that hangs upside down, or whose scans are older than their stamps say (`rubble calibrate`).
+class MountedScanner : public robot::Scanner {
  public:
-  DelayedScanner(std::unique_ptr<robot::Scanner> inner, double delay) : inner_(std::move(inner)), delay_(delay) {}
+  MountedScanner(std::unique_ptr<robot::Scanner> inner, const LidarSettings& mount)
+      : inner_(std::move(inner)), mount_(mount) {}
 
   std::vector<robot::LaserScan> take() override {
     std::vector<robot::LaserScan> scans = inner_->take();
-    for (robot::LaserScan& scan : scans) scan.stamp = scan.stamp - delay_;
+    for (robot::LaserScan& scan : scans) as_mounted(mount_, scan);
     return scans;
   }
   robot::ScannerStatus status() const override {
     robot::ScannerStatus status = inner_->status();
-    for (double* latency : {&status.latency, &status.worst_latency, &status.recent_latency}) *latency += delay_;
+    for (double* latency : {&status.latency, &status.worst_latency, &status.recent_latency}) *latency += mount_.delay;
     return status;
   }
   robot::ScannerInfo info() const override { return inner_->info(); }
@@ -86,13 +88,13 @@ class DelayedScanner : public robot::Scanner {
 
  private:
   std::unique_ptr<robot::Scanner> inner_;
-  double delay_;
+  const LidarSettings mount_;
 };
 
 std::unique_ptr<robot::Scanner> open_lidar(const RobotFile& file, robot::BlackBox& box) {
   auto scanner = make_scanner(file, box);
-  if (file.lidar.delay == 0.0) return scanner;
-  return std::make_unique<DelayedScanner>(std::move(scanner), file.lidar.delay);
+  if (file.lidar.delay == 0.0 && !file.lidar.upside_down) return scanner;
+  return std::make_unique<MountedScanner>(std::move(scanner), file.lidar);
 }
 
 const char* name_of(explore::ExplorerState state) {
@@ -285,12 +287,11 @@ class Driver {
   /// was told lets it go.
   void mind_hold(const robot::RobotStatus& status) {
     if (!held_) {
-      const char* first = status.blind   ? "see to its encoders and their cables"
-                          : status.taken ? "see that nobody else drives it"
-                                         : "release the button";
+      const std::string first = !status.mend.empty() ? status.mend
+                                : status.taken       ? "see that nobody else drives it"
+                                                     : "release the button";
       if (options_.tell)
-        options_.tell(std::string("base: held; ") + first +
-                      ", then press R (or send SIGUSR2) to let the robot drive again");
+        options_.tell("base: held; " + first + ", then press R (or send SIGUSR2) to let the robot drive again");
       if (options_.rearm) options_.rearm();  // what was pressed or sent before it was held
       held_ = true;
     } else if (options_.rearm && options_.rearm()) {
@@ -325,15 +326,20 @@ class Driver {
     reasons_.erase(std::remove_if(reasons_.begin(), reasons_.end(), is_over), reasons_.end());
   }
 
-  void tell_troubles(const std::vector<robot::Hindrance>& now) const {
-    for (const robot::Hindrance& one : now) options_.tell(one.line());
+  /// What was told a while ago and comes again for a moment is no news, nor is another number in it.
+  void tell_troubles(const std::vector<robot::Hindrance>& now) {
+    for (const robot::Hindrance& one : now) {
+      const auto [told, is_new] = troubles_told_.try_emplace(without_numbers(one.line()), Clock::now());
+      if (is_new || seconds_since(told->second) >= kTellAgain) options_.tell(one.line());
+      told->second = Clock::now();  // as long as it goes on it is not told again
+    }
     tell_returned(troubles_, now);
   }
 
   void each_second(double seconds) {
     seconds_ = seconds;
     const robot::RobotStatus status = real_.status();
-    if (lines_of(status.troubles) != lines_of(troubles_) && options_.tell) tell_troubles(status.troubles);
+    if (options_.tell) tell_troubles(status.troubles);
     troubles_ = status.troubles;
     if (!begun_) return;
     show(status, status.held                               ? "held"
@@ -354,7 +360,8 @@ class Driver {
     status.has_base = has_base_;
     status.seconds = seconds_;
     status.state = state;
-    status.T_map_base = core_.mapper().pose();
+    // While the core waits its mapper does not know that somebody moves the robot; its wheels do.
+    status.T_map_base = core_.mapper().pose() + robot.unread;
     status.known_m2 = known_area(core_.mapper().map());
     status.scans_per_s = static_cast<double>(robot.scans - last_.scans) / since;
     status.odometry_per_s = static_cast<double>(robot.odometry - last_.odometry) / since;
@@ -379,6 +386,7 @@ class Driver {
   std::atomic<bool> interrupted_{false};
   bool held_ = false;  ///< stopped at the robot itself, and told
   std::vector<robot::Hindrance> troubles_;
+  std::map<std::string, Clock::time_point> troubles_told_;  ///< without their numbers, and when last
   bool piloted_out_ = false;
   std::vector<robot::Hindrance> told_;  ///< what is silent, as it was at the last look
   std::vector<Reason> reasons_;         ///< that were told of devices which are waited for still

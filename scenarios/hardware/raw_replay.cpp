@@ -68,7 +68,7 @@ RawReplay replay_raw(const std::string& run_folder) {
   if (file.lidar.driver == LidarDriver::Scip) {  // MRPT opens its port itself: its bytes are not there
     robot::ReplayedScans scans =
         robot::replay_scanner(entries, {file.settings.robot.laser.range_max, file.lidar.no_echo_is_miss});
-    for (robot::LaserScan& scan : scans.scans) scan.stamp = scan.stamp - file.lidar.delay;
+    for (robot::LaserScan& scan : scans.scans) as_mounted(file.lidar, scan);
     result.kinds.push_back(compared("scans", recorded.scans, scans.scans));
     result.damaged_scans = scans.damaged;
   }

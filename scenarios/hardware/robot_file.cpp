@@ -29,6 +29,7 @@ void bind_lidar(Binder& b, LidarSettings& lidar, robot::RobotModel& model) {
   b.text("class", lidar.mrpt_class);
   b.text("port", lidar.port);
   b.degrees("yaw_deg", model.T_base_laser.yaw, -180.0, 180.0);
+  b.boolean("upside_down", lidar.upside_down);
   b.number("delay_s", lidar.delay, -1.0, 1.0);
   b.boolean("no_echo_is_miss", lidar.no_echo_is_miss);
   if (lidar.parameters.empty()) return;
@@ -70,6 +71,11 @@ void bind(Binder& b, robot::SafetySettings& s) {
   b.number("operator_silence_s", s.operator_silence, 0.1, 60.0);
   b.number("start_s", s.start, 1.0, 3600.0);
   b.number("give_up_s", s.give_up, 1.0, 3600.0);
+  b.boolean("mount_check", s.mount_check);
+  b.boolean("sees_nothing_holds", s.scans.nothing_holds);
+  b.number("sees_nothing_m", s.scans.nothing_way, 0.0, 1000.0);
+  b.number("battery_low_v", s.battery_low, 0.0, 100.0);
+  b.number("battery_empty_v", s.battery_empty, 0.0, 100.0);
 }
 
 void bind_devices(Binder& b, RobotFile& file) {
@@ -139,6 +145,11 @@ void settle(RobotFile& file, const robot::RobotModel& devices) {
 }
 
 }  // namespace
+
+void as_mounted(const LidarSettings& lidar, robot::LaserScan& scan) {
+  scan.stamp = scan.stamp - lidar.delay;
+  if (lidar.upside_down) robot::turn_over(scan);
+}
 
 RobotFile load_robot_file(const std::string& path, const std::vector<Override>& overrides) {
   YamlMap root = YamlMap::load(path);

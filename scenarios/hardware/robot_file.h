@@ -24,6 +24,7 @@ struct LidarSettings {
   std::string port;
   std::vector<std::pair<std::string, std::string>> parameters;  ///< of MRPT's configuration section, passed through
   double delay = 0.0;                                           ///< scans are so much older than their stamps say [s]
+  bool upside_down = false;     ///< it hangs from its mount: its beams run clockwise seen from above
   bool no_echo_is_miss = true;  ///< "no echo" counts as nothing in range, else as no measurement; MRPT: false
 };
 
@@ -33,6 +34,9 @@ struct RobotFile {
   robot::RealRobotSettings robot;  ///< its model is settings.robot
   Scenario settings;               ///< mapper, explorer, levelling, robot model; no arena
 };
+
+/// What the driver gave, as the robot file says that the scanner hangs and how old its scans are.
+void as_mounted(const LidarSettings& lidar, robot::LaserScan& scan);
 
 /// Reads a robot file strictly. Throws InputError.
 RobotFile load_robot_file(const std::string& path, const std::vector<Override>& overrides = {});

@@ -31,7 +31,7 @@ class LaserTrack {
 
   bool knows(const robot::LaserScan& scan) const {
     const Stamp first = scan.stamp - setup_.delay;
-    const Stamp last = scan.beam_stamp(scan.ranges.size()) - setup_.delay;
+    const Stamp last = std::max(scan.stamp, scan.beam_stamp(scan.ranges.size())) - setup_.delay;
     return wheels_.covers(first) && wheels_.covers(last) && wheels_.gap_at(first) <= kLongestGap;
   }
   TPose2D pose(Stamp stamp) const { return wheels_.pose_at(stamp - setup_.delay) + setup_.T_base_laser; }

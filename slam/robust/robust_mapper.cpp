@@ -67,7 +67,7 @@ bool finite(const robot::Odometry& o) {
 
 bool usable(const LaserScan& scan) {
   return std::isfinite(scan.angle_min) && scan.angle_step > 0.0 && std::isfinite(scan.angle_step) &&
-         scan.beam_period >= 0.0;
+         std::isfinite(scan.beam_period);
 }
 
 /// What record() writes.
@@ -378,7 +378,7 @@ ExpectedMotion RobustMapper::Impl::expected_motion(const LaserScan& scan) {
 bool RobustMapper::Impl::jumps_within(const LaserScan& scan) const {
   const std::optional<SweepMotion> sweep = sweep_motion(odometry_, scan);
   if (!sweep) return false;
-  const double time = scan.beam_stamp(scan.ranges.size() - 1) - scan.stamp;
+  const double time = std::abs(scan.beam_stamp(scan.ranges.size() - 1) - scan.stamp);
   const TPose2D motion = sweep->T_ref_last - sweep->T_ref_first;
   return length(motion.x, motion.y) > 0.05 + kFastestSweep * time ||
          std::abs(wrap_angle(motion.phi)) > 0.05 + kFastestSweepTurn * time;
@@ -395,7 +395,7 @@ std::optional<TPose2D> RobustMapper::Impl::carried(double time) const {
 /// How the base moved during a sweep if it moved by `motion` in `time`.
 std::optional<SweepMotion> RobustMapper::Impl::sweep_at(const LaserScan& scan, const TPose2D& motion,
                                                         double time) const {
-  if (scan.beam_period <= 0.0 || time < kNoDuration || time > kLongestCarry) return sweep_motion(odometry_, scan);
+  if (scan.beam_period == 0.0 || time < kNoDuration || time > kLongestCarry) return sweep_motion(odometry_, scan);
   const Stamp reference = scan.middle();
   const auto part = [&](Stamp stamp) {
     const double share = (stamp - reference) / time;

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 
 #include "base/angle.h"
@@ -17,7 +16,6 @@ using robot::LaserScan;
 
 namespace {
 
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr int kFewest = 5;    ///< beams beside each other that met nothing
 constexpr int kRim = 2;       ///< beams next to a surface: half of their spot, a cell wide at 4 m, lies on it
 constexpr int kBeside = 3;    ///< the surface ends at most so many lost beams before them
@@ -25,7 +23,7 @@ constexpr int kAlong = 5;     ///< beams on the surface that tell where it leads
 constexpr double kGap = 0.3;  ///< neighbouring hits farther apart do not lie on one surface [m]
 const double kGrazing = std::sin(deg_to_rad(12.0));
 
-bool is_miss(float range) { return std::isinf(range) && range > 0.0F; }
+bool is_miss(float range) { return range == LaserScan::kMiss; }
 
 /// Makes the misses of one scan unknown that a surface beside them may have swallowed.
 class Grazing {
@@ -45,7 +43,7 @@ class Grazing {
     const double span = distance(p, back);
     if (span <= 0.0) return;
     const TPoint2D u{(p.x - back.x) / span, (p.y - back.y) / span};
-    for (int beam = edge; beam != end && goes_on_into(p, u, beam); beam += step) range(beam) = kUnknown;
+    for (int beam = edge; beam != end && goes_on_into(p, u, beam); beam += step) range(beam) = LaserScan::kUnknown;
   }
 
  private:
@@ -102,14 +100,14 @@ void bind_misses(Binder& binder, MissTrust& misses) { binder.choice("misses", mi
 LaserScan with_sure_misses(LaserScan scan) {
   const bool tells = scan.codes.size() == scan.ranges.size();
   for (std::size_t i = 0; i < scan.ranges.size(); ++i)
-    if (is_miss(scan.ranges[i]) && (!tells || scan.codes[i] != 0)) scan.ranges[i] = kUnknown;
+    if (is_miss(scan.ranges[i]) && (!tells || scan.codes[i] != 0)) scan.ranges[i] = LaserScan::kUnknown;
   if (!tells) return scan;
 
   Grazing grazing(scan);
   const auto beams = static_cast<int>(scan.ranges.size());
   const auto miss = [&](int beam) { return is_miss(scan.ranges[static_cast<std::size_t>(beam)]); };
   const auto forget = [&](int from, int to) {
-    for (int beam = from; beam <= to; ++beam) scan.ranges[static_cast<std::size_t>(beam)] = kUnknown;
+    for (int beam = from; beam <= to; ++beam) scan.ranges[static_cast<std::size_t>(beam)] = LaserScan::kUnknown;
   };
   for (int first = 0; first < beams;) {
     if (!miss(first)) {

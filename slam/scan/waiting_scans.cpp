@@ -28,7 +28,8 @@ LaserScan WaitingScans::take() {
 
 Stamp WaitingScans::oldest_needed(const OdometryTrack& odometry) const {
   const Stamp oldest = odometry.newest() - kLateScan;
-  return waiting_.empty() ? oldest : std::min(oldest, front().stamp);
+  if (waiting_.empty()) return oldest;
+  return std::min({oldest, front().stamp, front().beam_stamp(front().ranges.size() - 1)});
 }
 
 std::optional<SweepMotion> sweep_motion(const OdometryTrack& odometry, const LaserScan& scan) {
@@ -36,7 +37,7 @@ std::optional<SweepMotion> sweep_motion(const OdometryTrack& odometry, const Las
 }
 
 std::optional<SweepMotion> sweep_motion(const OdometryTrack& odometry, const LaserScan& scan, Stamp reference) {
-  if (scan.beam_period <= 0.0 || odometry.empty()) return std::nullopt;
+  if (scan.beam_period == 0.0 || odometry.empty()) return std::nullopt;
   return SweepMotion{odometry.between(reference, scan.stamp),
                      odometry.between(reference, scan.beam_stamp(scan.ranges.size() - 1))};
 }

@@ -26,20 +26,60 @@ bool lasts(bool state, double seconds, Stamp& since, Stamp now) {
 
 }  // namespace
 
-BaseWatch::BaseWatch(const BaseSettings& settings, const mrpt::math::TPose2D& T_base_laser)
-    : settings_(settings), obedience_(settings.max_accel, settings.max_turn_accel), witness_(T_base_laser) {}
+BaseWatch::BaseWatch(const BaseSettings& settings, const mrpt::math::TPose2D& T_base_laser, bool mount)
+    : settings_(settings),
+      obedience_(settings.max_accel, settings.max_turn_accel),
+      witness_(T_base_laser),
+      mount_(mount),
+      mount_witness_(T_base_laser) {}
+
+void BaseWatch::see(const LaserScan& scan, Stamp now) {
+  witness_.see(scan, now);
+  if (mount_) mount_witness_.see(scan, now);
+}
 
 bool BaseWatch::look(const BaseTurn& turn, const std::vector<Odometry>& reports, Stamp now) {
   if (!reports.empty()) moves_ = std::abs(reports.back().v) > kStands.v || std::abs(reports.back().w) > kStands.w;
   mind_jumps(turn.jumps, now);
   mind_motors(turn, now);
   mind_obedience(turn, reports, now);
-  if (!held_.empty()) return false;
-  held_ = obedience_.runs_away() ? obedience_.trouble() : !too_fast_.empty() ? too_fast_ : witness_.denial();
-  if (held_.empty()) return false;
-  blind_ = held_ == witness_.denial();
+  mind_identity(turn, now);
+  mind_mount(reports, now);
+  moves_though_held_ = lasts((turn.held || turn.off) && moves_, kHeldStill, held_moves_since_, now);
+  if (!held_.empty() || settings_.passive) return false;
+  if (obedience_.runs_away()) return hold("base", obedience_.trouble(), false, "");
+  if (!too_fast_.empty()) return hold("base", too_fast_, false, "");
+  if (!witness_.denial().empty()) return hold("base", witness_.denial(), true, "see to its encoders and their cables");
+  if (identity_now_ != identity_)
+    return hold("base", "another robot's base answers: " + identity_now_ + "; it was " + identity_, true,
+                "see which base is at its port");
+  if (const auto& found = mount_witness_.finding())
+    return hold(found->name, found->what, true, "mend the robot file and start again, or see that it is right");
+  return false;
+}
+
+bool BaseWatch::hold(const std::string& name, const std::string& why, bool blind, const std::string& mend) {
+  held_name_ = name;
+  held_ = why;
+  blind_ = blind;
+  mend_ = mend;
   doubted_ = true;
   return true;
+}
+
+/// Whoever answers after a break must be who answered before; and be moved by the same wheels, where he does not say.
+void BaseWatch::mind_identity(const BaseTurn& turn, Stamp now) {
+  if (turn.ready && !was_ready_ && !identity_.empty()) mount_witness_.broke(now);
+  was_ready_ = turn.ready;
+  if (!turn.ready || turn.identity.empty()) return;
+  identity_now_ = turn.identity;
+  if (identity_.empty()) identity_ = turn.identity;
+}
+
+/// Whoever drives it: by hand, too, wheels and scans must tell of the same motion.
+void BaseWatch::mind_mount(const std::vector<Odometry>& reports, Stamp now) {
+  if (!mount_) return;
+  for (const Odometry& report : reports) mount_witness_.look(report, now);
 }
 
 void BaseWatch::mind_jumps(std::size_t jumps, Stamp now) {
@@ -117,7 +157,11 @@ void BaseWatch::mind_doubt(bool obeys, Stamp now) {
 
 void BaseWatch::rearm() {
   held_.clear();
+  held_name_.clear();
+  mend_.clear();
   blind_ = false;
+  identity_ = identity_now_;
+  mount_witness_.clear();
   pause();
 }
 
@@ -127,6 +171,8 @@ std::vector<Hindrance> BaseWatch::troubles() const {
     all.push_back({"base", Cause::Faulty, "its positions jump again and again; only its wheels' speeds are used"});
   if (motors_stay_) all.push_back({"base", Cause::Disobeys, kMotorsStay});
   if (!held_.empty()) return all;
+  if (const auto& found = mount_witness_.finding())  // who only maps is told so
+    all.push_back({found->name, Cause::Faulty, found->what});
   const std::string& disobeys = obedience_.trouble();
   if (!disobeys.empty()) all.push_back({"base", Cause::Disobeys, disobeys});
   if (doubted_ && disobeys.empty())

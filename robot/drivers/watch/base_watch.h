@@ -8,6 +8,7 @@
 #include "base/stamp.h"
 #include "robot/drivers/base_driver.h"
 #include "robot/drivers/hindrance.h"
+#include "robot/drivers/watch/mount_witness.h"
 #include "robot/drivers/watch/obedience.h"
 #include "robot/drivers/watch/wheel_witness.h"
 #include "robot/measurements.h"
@@ -27,9 +28,10 @@ struct BaseTurn {
   double watchdog = 2.0;  ///< BaseDriver::watchdog() [s]
   bool ready = false;
   bool motors_on = false;
-  bool held = false;      ///< by somebody at the robot
-  Drive own_ramp = {};    ///< BaseDriver::own_ramp()
-  std::size_t jumps = 0;  ///< of its odometry, since the start
+  bool held = false;          ///< by somebody at the robot
+  Drive own_ramp = {};        ///< BaseDriver::own_ramp()
+  std::size_t jumps = 0;      ///< of its odometry, since the start
+  std::string identity = {};  ///< BaseDriver::who()
 };
 
 /// Holds what a base reports against what was asked of it, and against what scans show: its motors, its wheels, its
@@ -37,7 +39,8 @@ struct BaseTurn {
 ///
 /// A base that runs away, that is faster than robot.max_v and max_w allow it, or whose wheels deny motion that scans
 /// show, is held from then on, until the operator lets it go; whether it obeys then is in doubt until nothing was seen
-/// against it for a while.
+/// against it for a while. So is a robot that scans show to be mounted otherwise than its file says (MountWitness), and
+/// one whose base is another one after its line broke.
 class BaseWatch {
  public:
   static constexpr double kMotorsOn = 3.0;   ///< so soon they are on when asked for [s]
@@ -45,20 +48,28 @@ class BaseWatch {
   static constexpr double kTooFast = 1.0;    ///< so long it may be faster than its limit [s]
   static constexpr double kObeys = 3.0;      ///< who ran away does so again, if ever, within this time [s]
 
-  /// `T_base_laser`: where the scanner sits on the robot.
-  BaseWatch(const BaseSettings& settings, const mrpt::math::TPose2D& T_base_laser);
+  static constexpr double kHeldStill = 1.5;  ///< so soon a robot that is held stands [s]
+
+  /// `T_base_laser`: where the scanner sits on the robot. `mount`: scans are held against the wheels' way and scale.
+  BaseWatch(const BaseSettings& settings, const mrpt::math::TPose2D& T_base_laser, bool mount = true);
 
   /// One turn with the reports that came in it. True: it must be stopped hard, now.
   bool look(const BaseTurn& turn, const std::vector<Odometry>& reports, Stamp now);
   /// A scan that came at `now`; some take milliseconds.
-  void see(const LaserScan& scan, Stamp now) { witness_.see(scan, now); }
+  void see(const LaserScan& scan, Stamp now);
   /// The operator lets it go.
   void rearm();
 
   /// Why nothing but the operator lets it go, in words; empty: it is not held.
   const std::string& held() const { return held_; }
-  /// It is held since its wheels deny what scans show.
+  /// Of which device that is told.
+  const std::string& held_name() const { return held_name_; }
+  /// It is held since scans show another motion than its wheels, or since it is another base: the drive makes no sense.
   bool blind() const { return blind_; }
+  /// What is to be done before it is let go, in words; empty: nothing but to see who drives it.
+  const std::string& mend() const { return mend_; }
+  /// It is held, by whomever, and its wheels turn all the same.
+  bool moves_though_held() const { return moves_though_held_; }
   /// Its motors are on, long after they were switched off.
   bool motors_stay() const { return motors_stay_; }
   /// Its wheels turn, by the last report.
@@ -72,14 +83,24 @@ class BaseWatch {
   void mind_motors(const BaseTurn& turn, Stamp now);
   void mind_obedience(const BaseTurn& turn, const std::vector<Odometry>& reports, Stamp now);
   void mind_limit(Stamp now);
+  void mind_mount(const std::vector<Odometry>& reports, Stamp now);
+  void mind_identity(const BaseTurn& turn, Stamp now);
+  bool hold(const std::string& name, const std::string& why, bool blind, const std::string& mend);
   bool had_time_to_stop(const BaseTurn& turn, Stamp now);
   void mind_doubt(bool obeys, Stamp now);
 
   BaseSettings settings_;
   Obedience obedience_;
   WheelWitness witness_;
-  std::string held_;
+  const bool mount_;
+  MountWitness mount_witness_;
+  std::string held_, held_name_, mend_;
   bool blind_ = false;
+  bool was_ready_ = false;
+  std::string identity_;      ///< of the base that is driven
+  std::string identity_now_;  ///< of the one that answers
+  Stamp held_moves_since_ = Stamp::never();
+  bool moves_though_held_ = false;
   Stamp too_fast_since_ = Stamp::never();
   std::string too_fast_;  ///< in words; empty: it keeps its limit
   Stamp deaf_since_ = Stamp::never();

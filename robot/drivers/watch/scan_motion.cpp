@@ -25,6 +25,7 @@ using mrpt::math::TPose2D;
 
 std::vector<TPoint2D> points_of(const LaserScan& scan, const TPose2D& T_base_laser) {
   std::vector<TPoint2D> points;
+  if (!(scan.angle_step > 0.0)) return points;
   const std::size_t step = std::max<std::size_t>(1, scan.ranges.size() / kPoints);
   for (std::size_t i = 0; i < scan.ranges.size(); i += step) {
     const double range = scan.ranges[i];
@@ -35,11 +36,9 @@ std::vector<TPoint2D> points_of(const LaserScan& scan, const TPose2D& T_base_las
   return points;
 }
 
-/// Share of the points (of the base where it was) that `after` has, had the base gone `ahead` and `turn`; of those that
-/// it could have.
-double fit_of(const std::vector<TPoint2D>& points, const LaserScan& after, const TPose2D& T_base_laser, double ahead,
-              double turn) {
-  const TPose2D T_before_after{ahead * std::cos(0.5 * turn), ahead * std::sin(0.5 * turn), turn};
+/// Share of the points (of the base where it was) that `after` has, had the base moved so; of those that it could have.
+double fit_of(const std::vector<TPoint2D>& points, const LaserScan& after, const TPose2D& T_base_laser,
+              const TPose2D& T_before_after) {
   const TPose2D laser = T_before_after + T_base_laser;
   const double c = std::cos(laser.phi), s = std::sin(laser.phi);
   const double last = static_cast<double>(after.ranges.size()) - 1.0;
@@ -64,6 +63,13 @@ double fit_of(const std::vector<TPoint2D>& points, const LaserScan& after, const
     found += near ? 1 : 0;
   }
   return asked < kFewest ? 0.0 : static_cast<double>(found) / static_cast<double>(asked);
+}
+
+/// The same of an arc that begins `aside` from ahead [rad].
+double fit_of(const std::vector<TPoint2D>& points, const LaserScan& after, const TPose2D& T_base_laser, double way,
+              double turn, double aside = 0.0) {
+  const double direction = aside + 0.5 * turn;
+  return fit_of(points, after, T_base_laser, {way * std::cos(direction), way * std::sin(direction), turn});
 }
 
 }  // namespace
@@ -95,6 +101,28 @@ ScanMotion motion_between(const LaserScan& before, const LaserScan& after, const
          static_cast<int>(kWidest / kStepTurn));
   for (double part = 0.5; part > 0.2; part *= 0.5)
     search(best.ahead, best.turn, part * kStepAhead, part * kStepTurn, 1, 1);
+  return best;
+}
+
+ScanWay way_between(const LaserScan& before, const LaserScan& after, const TPose2D& T_base_laser, double turn,
+                    bool backwards) {
+  constexpr int kWays = 24;   // 15 deg apart
+  constexpr int kAsTold = 2;  // so many to either side are the way that wheels say still: 30 deg
+  constexpr double kStepWay = 0.06, kStepHeading = deg_to_rad(3.0);
+  const std::vector<TPoint2D> points = points_of(before, T_base_laser);
+  ScanWay best;
+  for (int i = 0; i < kWays; ++i) {
+    const double aside = wrap_angle(2.0 * kPi * i / kWays);
+    const double direction = wrap_angle(aside + (backwards ? kPi : 0.0));
+    const bool as_told = std::min(i, kWays - i) <= kAsTold;
+    for (double way = as_told ? 0.0 : kSeen; way <= kFarthest; way += kStepWay) {
+      for (int j = -2; j <= 2; ++j) {
+        const double fit = fit_of(points, after, T_base_laser, way, turn + j * kStepHeading, direction);
+        if (as_told) best.as_told = std::max(best.as_told, fit);
+        if (fit > best.fit) best = {way, aside, fit, best.as_told};
+      }
+    }
+  }
   return best;
 }
 

@@ -23,4 +23,16 @@ struct ScanMotion {
 /// robot. Where walls are out of reach, or look alike wherever one stands, neither moved() nor stood() may hold.
 ScanMotion motion_between(const LaserScan& before, const LaserScan& after, const mrpt::math::TPose2D& T_base_laser);
 
+/// Which way a robot went, whichever way its scanner looks. All angles are from the way that its wheels say.
+struct ScanWay {
+  double way = 0.0;      ///< [m]
+  double aside = 0.0;    ///< counter-clockwise [rad]
+  double fit = 0.0;      ///< as of ScanMotion
+  double as_told = 0.0;  ///< the best fit of a robot that went (nearly) the way that its wheels say, or stood
+};
+
+/// The best of the ways up to 0.7 m of a robot that turned by about `turn` [rad] meanwhile.
+ScanWay way_between(const LaserScan& before, const LaserScan& after, const mrpt::math::TPose2D& T_base_laser,
+                    double turn, bool backwards);
+
 }  // namespace rubble::robot

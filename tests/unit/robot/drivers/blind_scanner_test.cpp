@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -18,7 +19,7 @@
 namespace rubble::robot {
 namespace {
 
-enum class Lens { Clear, Covered, Hangs };
+enum class Lens { Clear, Covered, Hangs, Hall };
 
 /// A base that drives in a room, and the scans of it.
 class Room : public Scanner {
@@ -60,6 +61,17 @@ class Room : public Scanner {
     for (int i = 0; i < 100; ++i)
       scan.ranges.push_back(lens == Lens::Covered ? kMiss : 2.0f + 0.001f * static_cast<float>(random_() % 20));
     if (lens == Lens::Hangs) scan.ranges = last_;
+    if (lens == Lens::Hall) {  // 15 m wide: a wall behind, one ahead, none to the sides
+      scan.range_max = 4.0;
+      scan.angle_step = 0.042;
+      const auto seen = [&](double beam) {
+        const double c = std::cos(0.042 * (beam - 49.5));
+        const double range = c < -0.2 ? (hall_x_ + 1.0) / -c : c > 0.2 ? (14.0 - hall_x_) / c : 1e3;
+        return range < 4.0 ? static_cast<float>(range) + 0.001f * static_cast<float>(random_() % 20) : kMiss;
+      };
+      for (int i = 0; i < 100; ++i) scan.ranges[static_cast<std::size_t>(i)] = seen(i);
+      hall_x_ = std::min(hall_x_ + 0.7, 7.0);  // soon in its middle, where it sees nothing
+    }
     last_ = scan.ranges;
     queue_.put(scan, now);
   }
@@ -69,6 +81,7 @@ class Room : public Scanner {
   ScanQueue queue_;
   std::mt19937 random_{1};
   std::vector<float> last_;
+  double hall_x_ = 0.0;
   mrpt::math::TPose2D pose_;
   std::atomic<bool> ending_{false};
   std::thread world_;
@@ -119,6 +132,28 @@ TEST_F(BlindScanner, HoldsTheRobotUntilItSeesAgain) {
     ASSERT_TRUE(drives_until(robot, [&] { return room.speed > 0.1; })) << "it is not let go";
   }
   EXPECT_LE(blind_mapped, 15) << "of some forty that came";
+}
+
+TEST_F(BlindScanner, AWideHallHoldsNobodyWhoCameThereSeeing) {
+  RealRobot robot(settings, room, nullptr);
+  ASSERT_TRUE(drives_until(robot, [&] { return room.speed > 0.1; }));
+  room.lens = Lens::Hall;
+  said.clear();
+  const Stamp end = host_now() + 4.0;
+  EXPECT_TRUE(drives_until(robot, [&] { return host_now() > end; }));
+  EXPECT_THAT(said, testing::Not(testing::HasSubstr("sees nothing")));
+  EXPECT_GT(room.speed, 0.1);
+  EXPECT_GT(blind_mapped, 5) << "the hall's emptiness is mapped";
+}
+
+TEST_F(BlindScanner, WhoIsToldThatNothingIsNoCoverDrivesOn) {
+  settings.safety.scans.nothing_holds = false;
+  RealRobot robot(settings, room, nullptr);
+  ASSERT_TRUE(drives_until(robot, [&] { return room.speed > 0.1; }));
+  room.lens = Lens::Covered;
+  ASSERT_TRUE(drives_until(robot, [&] { return !robot.status().troubles.empty(); }));
+  EXPECT_THAT(robot.status().troubles.front().line(), testing::HasSubstr("urg: sees nothing"));
+  EXPECT_GT(room.speed, 0.1);
 }
 
 TEST_F(BlindScanner, WhoOnlyMapsIsToldAndGoesOn) {

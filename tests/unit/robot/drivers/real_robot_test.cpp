@@ -22,9 +22,11 @@
 #include "robot/drivers/heartbeat.h"
 #include "robot/drivers/host_clock.h"
 #include "robot/drivers/scan_queue.h"
+#include "robot/drivers/watch/battery_watch.h"
 #include "robot/emulators/arcos_emulator.h"
 #include "robot/emulators/device_server.h"
 #include "robot/emulators/levelling_emulator.h"
+#include "robot/hardware_units.h"
 #include "tests/support/base_files.h"
 
 namespace rubble::robot {
@@ -82,11 +84,15 @@ class Bench {
       Drive motion;
       base_server.with([&] { motion = arcos.motion(); });
       pose.phi += motion.w * 0.01;
+      if (pushed != 0.0) motion = {pushed, 0.0};
       pose.x += motion.v * std::cos(pose.phi) * 0.01;
       pose.y += motion.v * std::sin(pose.phi) * 0.01;
       speed = motion.v;
       if (i % 10 == 0 && reports) base_server.with([&] { arcos.measure({now, pose, motion.v, motion.w, false}, now); });
-      if (i % 2 == 0) unit_server.with([&] { unit.measure({now, 0.0, 0.0}, {now, 0.0, 0.0}, now); });
+      if (i % 2 == 0)
+        unit_server.with([&] {
+          unit.measure({now, kGravity * std::sin(tilt), 0.0}, {now, unit.aim().pitch, 0.0}, now);
+        });
       if (i % 10 == 5 && scans) scanner.scan(now);
     }
   }
@@ -97,7 +103,7 @@ class Bench {
     for (const Stamp end = host_now() + seconds; host_now() < end;) {
       auto inputs = robot->read();
       if (!inputs) break;
-      robot->command({{v, 0.0}, {}});
+      robot->command({{v, 0.0}, aim});
       all.push_back(std::move(*inputs));
     }
     return all;
@@ -133,6 +139,9 @@ class Bench {
   ToldScanner scanner;
   mrpt::math::TPose2D pose;
   std::atomic<double> speed{0.0};
+  std::atomic<double> pushed{0.0};      ///< so fast whatever its motors do [m/s]
+  std::atomic<double> tilt{0.0};        ///< that its platform feels [rad]
+  LaserAim aim;                         ///< of the core
   std::atomic<double> worst_wake{0.0};  ///< so late this machine was at most [s]
   std::atomic<bool> scans{true}, reports{true};
   std::atomic<bool> ending{false};
@@ -600,6 +609,79 @@ TEST(RealRobot, TheButtonAtTheRobotHoldsItUntilTheOperatorRearmsIt) {
   core.join();
   EXPECT_FALSE(motors_came_on);
   EXPECT_THAT(named, testing::Contains("base: emergency button pressed"));
+}
+
+/// While the core waits only the wheels know where the robot is pushed to.
+TEST(RealRobot, WhereAHeldRobotIsPushedToIsTold) {
+  Bench bench;
+  bench.drive(0.3, 2.0);
+  ASSERT_TRUE(Bench::soon([&] { return bench.speed > 0.0; }));
+  std::vector<std::string> named;
+  double farthest = 0.0;
+  const Stamp end = host_now() + 6.0;
+  bench.robot->while_waiting([&](const RobotStatus& status) {
+    for (const Hindrance& one : status.silent) named.push_back(one.line());
+    farthest = std::max(farthest, status.unread.x);
+    return host_now() < end;
+  });
+  bench.base_server.with([&] { bench.arcos.fail(DeviceFault::Button, host_now()); });
+  while (!bench.robot->status().held) sleep_until(host_now() + 0.01);
+  bench.pushed = 0.2;
+  bench.drive(0.3, 6.0);
+  EXPECT_GT(farthest, 0.5);
+  EXPECT_THAT(named, testing::Contains(testing::HasSubstr("base: moves though it is held")));
+}
+
+TEST(RealRobot, ABatteryThatIsEmptyHoldsItUntilTheOperatorTakesItOnHimself) {
+  Bench bench;
+  bench.drive(0.3, 1.0);
+  bench.base_server.with([&] { bench.arcos.set_battery(11.2); });
+  const auto troubles = [&] {
+    std::string all;
+    for (const Hindrance& one : bench.robot->status().troubles) all += one.line();
+    return all;
+  };
+  bench.drive(0.1, BatteryWatch::kLasts + 2.0);
+  EXPECT_THAT(troubles(), testing::HasSubstr("its battery is low: 11.2 V"));
+  EXPECT_FALSE(bench.robot->status().held);
+  bench.base_server.with([&] { bench.arcos.set_battery(10.8); });
+  std::vector<std::string> named;
+  Stamp rearm = Stamp::never();
+  bench.robot->while_waiting([&](const RobotStatus& status) {
+    for (const Hindrance& one : status.silent) named.push_back(one.line());
+    if (status.held && rearm == Stamp::never()) rearm = host_now() + 2.0;
+    if (host_now() > rearm) {
+      EXPECT_EQ(bench.speed, 0.0);
+      EXPECT_TRUE(bench.robot->rearm());
+    }
+    return true;
+  });
+  bench.drive(0.1, BatteryWatch::kLasts + 6.0);
+  EXPECT_THAT(named, testing::Contains(testing::HasSubstr("base: its battery is empty: 10.8 V")));
+  EXPECT_GT(bench.speed, 0.0) << "the operator let it go";
+}
+
+/// Its servo turns the other way than the robot file says.
+TEST(RealRobot, AnAimThatMakesTheTiltLargerHoldsItAndIsLeftOffAfterwards) {
+  Bench bench;
+  bench.drive(0.1, 1.0);
+  bench.tilt = 0.3;
+  std::vector<std::string> named;
+  Stamp rearm = Stamp::never();
+  bench.robot->while_waiting([&](const RobotStatus& status) {
+    for (const Hindrance& one : status.silent) named.push_back(one.line());
+    if (status.held && rearm == Stamp::never()) rearm = host_now() + 1.0;
+    if (host_now() > rearm) bench.robot->rearm();
+    return true;
+  });
+  bench.aim = {-0.4, 0.0};
+  bench.drive(0.1, 6.0);
+  EXPECT_THAT(named, testing::Contains(testing::HasSubstr("levelling: ")));
+  EXPECT_GT(bench.speed, 0.0);
+  LaserAim aim;
+  bench.unit_server.with([&] { aim = bench.unit.aim(); });
+  EXPECT_NEAR(aim.pitch, 0.0, 0.01) << "it is not levelled any more";
+  EXPECT_THAT(bench.robot->status().troubles.front().line(), testing::HasSubstr("levelling: off"));
 }
 
 /// Drives on by `v` for so long; what it was waiting for.

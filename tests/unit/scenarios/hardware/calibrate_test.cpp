@@ -291,6 +291,7 @@ TEST(CalibrationDrive, AWallInTheWayEndsItBeforeItIsTouched) {
   const RobotFile file = shipped();
   const Driven driven = drive_simulated(arena, file.settings.robot, 1, scratch.file("log.rlog"));
   EXPECT_NE(driven.trouble.find("something stands in the way"), std::string::npos) << driven.trouble;
+  EXPECT_NE(driven.trouble.find("1.8 x 1.8 m"), std::string::npos) << "as help and docs have it: " << driven.trouble;
   robot::ReplayRobot log(scratch.file("log.rlog"));
   double farthest = 0.0;
   while (const auto inputs = log.read())

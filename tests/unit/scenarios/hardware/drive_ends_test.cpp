@@ -270,6 +270,46 @@ TEST(EmulatedDriveThatNeverBegins, ABaseThatMovesWhenTheOperatorEndsItIsToldToGo
   EXPECT_THAT(robot.told().back(), HasSubstr("base: moves though nobody here has driven it, and may go on"));
 }
 
+TEST(EmulatedDriveThatIsHeld, WhereItIsPushedToShows) {
+  EmulatedDrive robot;
+  std::vector<double> places;  // while it is held
+  robot.each_second = [&](const DriveStatus& status) {
+    if (status.state == "held") places.push_back(status.T_map_base.x);
+  };
+  auto driven = robot.start();
+  ASSERT_TRUE(robot.drives());
+  robot.server.with([&] { robot.device.base.fail(robot::DeviceFault::Button, robot::host_now()); });
+  robot.driven_by_others = 0.2;
+  EXPECT_TRUE(robot.comes_true([&] { return count(robot.told(), "base: moves though it is held") > 0; }));
+  robot::sleep_until(robot::host_now() + 3.0);
+  robot.ending = true;
+  driven.get();
+  ASSERT_GE(places.size(), 3u);
+  EXPECT_GT(places.back() - places.front(), 0.2);
+}
+
+/// Something else is said of it meanwhile, and is over again.
+TEST(EmulatedDriveThatIsHeld, ThatItIsWatchedIsToldOnce) {
+  EmulatedDrive robot;
+  std::atomic<bool> rearm{false};
+  robot.options.rearm = [&] { return rearm.exchange(false); };
+  auto driven = robot.start();
+  ASSERT_TRUE(robot.drives());
+  robot.driven_by_others = -0.25;
+  ASSERT_TRUE(robot.comes_true([&] { return count(robot.told(), "base: held") > 0; }));
+  robot.driven_by_others = 0.001;  // it stands
+  robot::sleep_until(robot::host_now() + 1.5);
+  rearm = true;
+  ASSERT_TRUE(robot.comes_true([&] { return count(robot.told(), "let go again") > 0; }))
+      << testing::PrintToString(robot.told());
+  ASSERT_TRUE(robot.comes_true([&] { return count(robot.told(), "reports, but does not obey") > 0; }));
+  robot.driven_by_others = 0.0;
+  robot.comes_true([&] { return count(robot.told(), "obeys again") > 0; }, 8.0);
+  robot.ending = true;
+  driven.get();
+  EXPECT_EQ(count(robot.told(), "let go again"), 1u) << testing::PrintToString(robot.told());
+}
+
 TEST(EmulatedDriveThatIsHeld, EachReasonIsToldOnceAndTheStateIsHeldToTheEnd) {
   EmulatedDrive robot;
   auto driven = robot.start();

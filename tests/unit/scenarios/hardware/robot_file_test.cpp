@@ -59,6 +59,22 @@ TEST_F(RobotFileTest, APermittedSilenceIsPermittedByTheDriversToo) {
   EXPECT_GE(file.robot.levelling.silence, 4.0);
 }
 
+TEST_F(RobotFileTest, WhatMountHallAndBatteryAreIsKept) {
+  const RobotFile usual = load("name: here\n");
+  EXPECT_FALSE(usual.lidar.upside_down);
+  EXPECT_TRUE(usual.robot.safety.mount_check && usual.robot.safety.scans.nothing_holds);
+  const RobotFile file = load(
+      "devices: {urg: {upside_down: true}}\nsafety: {mount_check: false, sees_nothing_holds: false, sees_nothing_m: "
+      "20, "
+      "battery_low_v: 23, battery_empty_v: 22}\n");
+  const RobotFile kept = load(robot_file_yaml(file));
+  EXPECT_TRUE(kept.lidar.upside_down);
+  EXPECT_FALSE(kept.robot.safety.mount_check || kept.robot.safety.scans.nothing_holds);
+  EXPECT_EQ(kept.robot.safety.scans.nothing_way, 20.0);
+  EXPECT_EQ(kept.robot.safety.battery_low, 23.0);
+  EXPECT_EQ(kept.robot.safety.battery_empty, 22.0);
+}
+
 /// A word that ends in a colon is a map to YAML, which is not what is wrong with it.
 TEST_F(RobotFileTest, APortThatIsNoneIsNamedAsOne) {
   for (const std::string device : {"urg", "base", "levelling"}) {

@@ -176,7 +176,7 @@ TEST_P(RawlogGrabber, RecordsTenScansASecond) {
   for (std::size_t i = 1; i < scans.size(); ++i) EXPECT_GT(number_of(scans[i]), number_of(scans[i - 1]));
   const double turns = number_of(scans.back()) - number_of(scans.front());
   const double period = (scans.back().stamp - scans.front().stamp) / turns;
-  EXPECT_NEAR(period, 0.1, 0.003 + kept.worst / turns) << "the first ten are stamped on arrival";
+  EXPECT_NEAR(period, 0.1, 0.0005 + kept.worst / turns) << "the first ten are stamped on arrival";
   std::cout << GetParam() << ": " << 1.0 / period << " turns a second\n";
 }
 

@@ -21,7 +21,7 @@ constexpr double kTurn = 0.02;  ///< of the base's thread [s]
 /// A base that obeys within its ramp and reports ten times a second, unless it is told otherwise.
 class WatchedBase {
  public:
-  explicit WatchedBase(BaseSettings given = {}) : settings(given), watch(given, {}) {
+  explicit WatchedBase(BaseSettings given = {}, bool mount = true) : settings(given), watch(given, {}, mount) {
     turn.ready = turn.motors_on = true;
   }
 
@@ -40,15 +40,16 @@ class WatchedBase {
       std::vector<Odometry> reports;
       if (++turns % 5 == 0)
         reports.push_back(counts ? Odometry{now, pose, motion.v, motion.w, false} : Odometry{now, {}, 0.0, 0.0, false});
-      if (turns % 5 == 2) watch.see(seen_from(pose.phi), now);
+      if (turns % 5 == 2) watch.see(seen_from(upside_down ? -pose.phi : pose.phi, now), now);
       stopped = watch.look(turn, reports, now) || stopped;
     }
     return stopped;
   }
 
   /// By a scanner above the turn centre, in a room without symmetry.
-  static LaserScan seen_from(double phi) {
+  static LaserScan seen_from(double phi, Stamp now) {
     LaserScan scan;
+    scan.stamp = now;
     scan.angle_min = -2.0;
     scan.angle_step = 0.02;
     scan.range_max = 4.0;
@@ -73,7 +74,8 @@ class WatchedBase {
   Drive motion;
   mrpt::math::TPose2D pose;
   int turns = 0;
-  bool counts = true;  ///< its encoders do
+  bool counts = true;        ///< its encoders do
+  bool upside_down = false;  ///< its scanner hangs so
 };
 
 TEST(BaseWatch, ABaseThatObeysIsInNoTrouble) {
@@ -84,6 +86,60 @@ TEST(BaseWatch, ABaseThatObeysIsInNoTrouble) {
     EXPECT_EQ(base.watch.moves(), told.v != 0.0 || told.w != 0.0);
   }
   EXPECT_EQ(base.watch.held(), "");
+}
+
+TEST(BaseWatch, AnotherRobotsBaseBehindTheSamePortIsHeld) {
+  WatchedBase base;
+  base.turn.identity = "'Ada', p3at-sh, serial number '17', firmware '2.6'";
+  EXPECT_FALSE(base.run({0.2, 0.0}, 3.0));
+  base.turn.ready = false;
+  base.turn.identity.clear();
+  EXPECT_FALSE(base.run({}, 2.0));
+  base.turn.ready = true;
+  EXPECT_FALSE(base.run({0.2, 0.0}, 0.5)) << "it has not said who it is";
+  base.turn.identity = "'Ada', p3at-sh, serial number '17', firmware '2.6'";
+  EXPECT_FALSE(base.run({0.2, 0.0}, 2.0)) << "it was away, and is back";
+  base.turn.identity = "'Bob', p3at-sh, serial number '18', firmware '2.6'";
+  EXPECT_TRUE(base.run({0.2, 0.0}, 0.5));
+  EXPECT_THAT(base.watch.held(), testing::AllOf(HasSubstr("another robot's base answers"), HasSubstr("'18'")));
+  EXPECT_TRUE(base.watch.blind());
+  EXPECT_NE(base.watch.mend(), "");
+  base.watch.rearm();
+  EXPECT_FALSE(base.run({0.2, 0.0}, 2.0)) << "the operator has said that it is right";
+}
+
+TEST(BaseWatch, WhoIsHeldAndMovesAllTheSameIsNamed) {
+  WatchedBase base;
+  base.run({0.2, 0.0}, 2.0);
+  base.turn.held = true;  // its button
+  base.turn.asked = false;
+  base.wheels = [](const Drive&) { return Drive{}; };
+  base.run({}, 3.0);
+  EXPECT_FALSE(base.watch.moves_though_held());
+  base.wheels = [](const Drive&) { return Drive{0.1, 0.0}; };
+  base.run({}, 1.0);
+  EXPECT_FALSE(base.watch.moves_though_held()) << "a push";
+  base.run({}, 2.0);
+  EXPECT_TRUE(base.watch.moves_though_held());
+  base.wheels = [](const Drive&) { return Drive{}; };
+  base.run({}, 2.0);
+  EXPECT_FALSE(base.watch.moves_though_held());
+}
+
+/// It turns on the spot, and its scanner is turned over.
+TEST(BaseWatch, AScannerThatHangsUpsideDownHoldsTheRobotUnlessItsFileAsksForNoCheck) {
+  for (const bool check : {true, false}) {
+    for (const bool passive : {false, true}) {
+      BaseSettings settings;
+      settings.passive = passive;
+      WatchedBase base(settings, check);
+      base.upside_down = true;
+      EXPECT_EQ(base.run({0.0, 0.5}, 8.0), check && !passive);
+      EXPECT_EQ(base.watch.held_name(), check && !passive ? "urg" : "");
+      EXPECT_EQ(base.watch.blind(), check && !passive);
+      EXPECT_EQ(base.troubles().find("upside down") != std::string::npos, check && passive) << "who only maps is told";
+    }
+  }
 }
 
 TEST(BaseWatch, MotorsThatDoNotComeOnAreNamedAfterAWhile) {

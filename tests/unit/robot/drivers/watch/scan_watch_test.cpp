@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <functional>
 #include <limits>
@@ -23,6 +25,7 @@ constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 /// Ten scans a second and ten reports; how long until it is in trouble, if it ever is within a while [s].
 class Turning {
  public:
+  explicit Turning(const ScanWatch::Settings& settings = ScanWatch::Settings()) : watch(settings) {}
   using Beams = std::function<float(int beam)>;
 
   double seconds_well(const Beams& beams, double speed = 0.0, double most = 10.0) {
@@ -38,7 +41,10 @@ class Turning {
   }
   bool turn(const Beams& beams, double speed) {
     LaserScan scan;
+    scan.range_max = 4.0;
+    scan.angle_step = 0.00614;
     for (int i = 0; i < 682; ++i) scan.ranges.push_back(beams(i));
+    scan.codes.assign(682, code);
     now_ = now_ + 0.1;
     Odometry report;
     report.pose.x = x_ += 0.1 * speed;
@@ -51,7 +57,18 @@ class Turning {
   Beams noisy() {
     return [this](int) { return 2.0f + 0.001f * static_cast<float>(random_() % 20); };
   }
+  /// Seen in a hall whose walls end `clear` metres ahead, to the left and right of `ahead` metres gone.
+  Beams hall(double clear) {
+    return [this, clear](int i) {
+      const double bearing = 0.00614 * (i - 340.5);
+      const double range = std::cos(bearing) < -0.2  ? (x_ + 0.5) / -std::cos(bearing)
+                           : std::cos(bearing) > 0.2 ? (clear - x_) / std::cos(bearing)
+                                                     : 1e3;
+      return range > 0.0 && range <= 4.0 ? static_cast<float>(range) : kMiss;
+    };
+  }
   ScanWatch watch;
+  std::uint8_t code = 0;  ///< of all beams
 
  private:
   std::mt19937 random_{1};
@@ -78,6 +95,48 @@ TEST(ScanWatch, WideRoomsAreNoCover) {
   int scan = 0;
   EXPECT_EQ(robot.seconds_well([&](int i) { return (scan += i == 0 ? 1 : 0) % 9 == 0 ? 3.9f : kMiss; }, 0.3, 60.0),
             60.0);
+}
+
+TEST(ScanWatch, WallsThatGoOutOfReachAtItsEdgeAreAnEmptyHall) {
+  Turning robot;
+  // From one wall, behind it, to the other one 12 m on: 7.5 m without a range.
+  EXPECT_EQ(robot.seconds_well(robot.hall(12.0), 0.4, 28.0), 28.0);
+}
+
+TEST(ScanWatch, AnEmptyHallIsLeftWithinTheWayThatIsGranted) {
+  Turning robot(ScanWatch::Settings{true, 5.0});
+  const double seen_no_more = 4.0 / 0.4;  // at the latest
+  const double held = robot.seconds_well(robot.hall(100.0), 0.4, 60.0);
+  EXPECT_LT(held, seen_no_more + 5.0 / 0.4 + 1.0);
+  EXPECT_GT(held, 5.0 / 0.4);
+  EXPECT_TRUE(robot.watch.holds());
+}
+
+TEST(ScanWatch, ACoverIsNoHall) {
+  const auto wall = [](int i) { return 1.0f + 0.003f * static_cast<float>(i); };
+  Turning near, strays, coded;
+  near.seconds_well(wall, 0.3, 2.0);
+  EXPECT_LT(near.seconds_well([](int) { return kMiss; }, 0.3), 1.2) << "walls do not go from one scan to the next";
+  strays.seconds_well(strays.noisy(), 0.3, 2.0);
+  int scan = 0;
+  strays.seconds_well([&](int i) { return (scan += i == 0 ? 1 : 0) % 5 == 0 && i == 300 ? 3.9f : kMiss; }, 0.3, 3.0);
+  EXPECT_LT(strays.seconds_well([](int) { return kMiss; }, 0.3), 1.2) << "a stray range far away is no hall's edge";
+  coded.seconds_well(coded.hall(100.0), 0.4, 11.0);
+  coded.code = 6;
+  EXPECT_LT(coded.seconds_well([](int) { return kUnknown; }, 0.4), 1.2) << "an error is no empty hall";
+  Turning unechoed;  // no_echo_is_miss: false
+  unechoed.seconds_well(unechoed.hall(100.0), 0.4, 11.0);
+  EXPECT_EQ(unechoed.seconds_well([](int) { return kUnknown; }, 0.4, 5.0), 5.0);
+}
+
+TEST(ScanWatch, WhereNothingHoldsItIsNamedAllTheSame) {
+  Turning robot(ScanWatch::Settings{false, 8.0});
+  EXPECT_LT(robot.seconds_well([](int) { return kMiss; }), 1.2);
+  EXPECT_THAT(robot.watch.trouble(), HasSubstr("sees nothing"));
+  EXPECT_FALSE(robot.watch.holds());
+  robot.seconds_ill(robot.noisy());
+  robot.seconds_well([](int i) { return 1.0f + 0.003f * static_cast<float>(i); });
+  EXPECT_TRUE(robot.watch.holds()) << "one that hangs";
 }
 
 TEST(ScanWatch, TheSameScanAgainAndAgainIsNamedSoonerWhereTheWheelsTurn) {
