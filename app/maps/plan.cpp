@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "base/image/png.h"
 #include "explore/plan_picture.h"
 #include "scoring/maps/normalise.h"
+#include "scoring/maps/raster_image.h"
 
 namespace rubble::app {
 namespace {
@@ -29,6 +31,8 @@ std::optional<mrpt::math::TPoint2D> place(const std::string& from) {
   char rest = 0;
   if (std::sscanf(from.c_str(), "%lf,%lf%c", &p.x, &p.y, &rest) != 2)
     throw UsageError("--from " + from + ": needs the form X,Y in metres, for example --from 1.5,-2");
+  if (!(std::abs(p.x) <= scoring::kFarthestPlace && std::abs(p.y) <= scoring::kFarthestPlace))
+    throw UsageError("--from " + from + ": lies farther off than any place on Earth; give X,Y in metres");
   return p;
 }
 

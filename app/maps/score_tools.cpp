@@ -15,6 +15,16 @@
 
 namespace rubble::app {
 
+namespace {
+
+void require_near(const std::string& option, double x, double y, double deg) {
+  constexpr double kFarthest = 10e3;  // [m]
+  if (!(std::abs(x) <= kFarthest && std::abs(y) <= kFarthest && std::abs(deg) <= 3600.0))
+    throw UsageError(option + ": X and Y must be within 10000 m, DEG within 3600");
+}
+
+}  // namespace
+
 std::optional<GivenPose> parse_pose(const std::string& text) {
   if (text.empty()) return std::nullopt;
   std::vector<double> numbers;
@@ -28,9 +38,7 @@ std::optional<GivenPose> parse_pose(const std::string& text) {
   if (!whole || numbers.size() < 3 || numbers.size() > 4)
     throw UsageError("--pose " + text + ": needs the form X,Y,DEG or X,Y,DEG,SCALE, for example --pose=1.5,-2,90");
   GivenPose pose{{numbers[0], numbers[1], deg_to_rad(numbers[2])}, numbers.size() == 4 ? numbers[3] : 1.0};
-  constexpr double kFarthest = 10e3;  // [m]
-  if (!(std::abs(numbers[0]) <= kFarthest && std::abs(numbers[1]) <= kFarthest && std::abs(numbers[2]) <= 3600.0))
-    throw UsageError("--pose " + text + ": X and Y must be within 10000 m, DEG within 3600");
+  require_near("--pose " + text, numbers[0], numbers[1], numbers[2]);
   if (!(pose.scale >= 0.1 && pose.scale <= 10.0))
     throw UsageError("--pose " + text + ": the scale must be from 0.1 to 10");
   return pose;
@@ -45,6 +53,7 @@ std::optional<scoring::KnownStart> parse_start(const std::string& text, const st
   char rest = 0;
   if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &x, &y, &deg, &rest) != 3)
     throw UsageError("--start " + text + ": needs the form X,Y,DEG, for example --start=1.5,-2,90");
+  require_near("--start " + text, x, y, deg);
   const bool ros = map.origin == scoring::MapOrigin::Ros;
   if (!ros && map.origin != scoring::MapOrigin::Local)
     throw InputError(

@@ -28,6 +28,8 @@ std::optional<mrpt::math::TPose2D> start_of(const std::string& text) {
   char rest = 0;
   if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &x, &y, &heading, &rest) != 3 || !std::isfinite(x + y + heading))
     throw UsageError("--start " + text + ": needs the form x,y,heading_deg, for example --start 1.5,-0.4,90");
+  if (!(std::abs(x) <= 10e3 && std::abs(y) <= 10e3))
+    throw UsageError("--start " + text + ": x and y must be within 10000 m");
   return mrpt::math::TPose2D(x, y, wrap_angle(deg_to_rad(heading)));
 }
 

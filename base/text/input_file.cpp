@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/text/words.h"
 
 namespace rubble {
 namespace {
@@ -70,7 +71,8 @@ InputRules image_rules() {
 
 InputFile::InputFile(const std::string& path, const InputRules& rules) : path_(path), rules_(rules) {
   const std::string give = "; give the path of " + rules.thing;
-  if (path.find('\0') != std::string::npos) throw InputError(path + ": holds a zero byte" + give);
+  if (path.empty()) throw InputError("an empty name is no file" + give);
+  if (path.find('\0') != std::string::npos) throw InputError(one_line(path) + ": holds a zero byte" + give);
   // Without O_NONBLOCK a pipe that nobody writes to holds us here.
   file_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   if (file_ < 0) {

@@ -1,6 +1,9 @@
 #include "base/text/words.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <utility>
 
 #include "base/text/utf8.h"
 
@@ -10,6 +13,25 @@ std::string hex_digits(unsigned char byte) {
   static constexpr char kDigits[] = "0123456789abcdef";
   return {kDigits[byte >> 4], kDigits[byte & 15]};
 }
+
+namespace {
+
+/// Unicode's format characters (category Cf), and its separators of lines and paragraphs, but for the joiners in words
+/// (U+200C, U+200D). `character`: well-formed UTF-8.
+bool is_invisible(std::string_view character) {
+  const auto bits = [&](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(character[i])); };
+  std::uint32_t code = bits(0);
+  if (character.size() > 1) code &= 0x7fU >> character.size();
+  for (std::size_t i = 1; i < character.size(); ++i) code = code << 6U | (bits(i) & 0x3fU);
+  static constexpr std::pair<std::uint32_t, std::uint32_t> kRanges[] = {
+      {0xad, 0xad},     {0x600, 0x605},     {0x61c, 0x61c},     {0x6dd, 0x6dd},     {0x70f, 0x70f},    {0x8e2, 0x8e2},
+      {0x180e, 0x180e}, {0x200b, 0x200b},   {0x200e, 0x200f},   {0x2028, 0x202e},   {0x2060, 0x206f},  {0xfeff, 0xfeff},
+      {0xfff9, 0xfffb}, {0x110bd, 0x110bd}, {0x1bca0, 0x1bca3}, {0x1d173, 0x1d17a}, {0xe0000, 0xe007f}};
+  return std::any_of(std::begin(kRanges), std::end(kRanges),
+                     [code](const auto& range) { return code >= range.first && code <= range.second; });
+}
+
+}  // namespace
 
 std::string one_line(std::string_view text) {
   std::string line;
@@ -22,9 +44,8 @@ std::string one_line(std::string_view text) {
     const bool is_second_control = size == 2 && byte == 0xc2 && static_cast<unsigned char>(text[at + 1]) < 0xa0;
     if (size == 0) {
       hex(c);
-    } else if (is_second_control) {
-      hex(c);
-      hex(text[at + 1]);
+    } else if (is_second_control || is_invisible(text.substr(at, size))) {
+      for (const char part : text.substr(at, size)) hex(part);
     } else if (c == '\n') {
       line += "\\n";
     } else if (c == '\t') {

@@ -6,7 +6,8 @@
 
 namespace rubble {
 
-/// `text` on one line: line breaks and other control characters become escapes such as \n, \t, \x1b.
+/// `text` on one line: line breaks and other control characters become escapes such as \n, \t, \x1b. So do characters
+/// that cannot be seen but change what is (they turn the direction of writing, or hide): a name cannot pose as another.
 std::string one_line(std::string_view text);
 
 /// A byte as two digits, "0a".

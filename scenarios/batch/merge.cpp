@@ -2,6 +2,8 @@
 
 #include <sqlite3.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -22,15 +24,20 @@ constexpr const char* kMagic = "SQLite format 3";
 constexpr int kVersion = 1;
 constexpr std::size_t kLargestDatabase = std::size_t{8} << 30;
 
-constexpr const char* kSchema = R"sql(
-PRAGMA journal_mode = OFF;
-PRAGMA user_version = 1;
-BEGIN;
-CREATE TABLE runs(run_id TEXT PRIMARY KEY, scenario TEXT NOT NULL, config TEXT NOT NULL, seed INTEGER NOT NULL,
+constexpr std::size_t kLargestValue = std::size_t{16} << 20;  // of a row
+// Of reading a database, in instructions of SQLite: a row takes some thirty and holds at least as many bytes.
+constexpr int kLookEvery = 1000;
+constexpr std::size_t kFreeSteps = 100000;
+constexpr std::size_t kStepsPerByte = 4;
+
+constexpr const char* kRunsTable =
+    R"sql(CREATE TABLE runs(run_id TEXT PRIMARY KEY, scenario TEXT NOT NULL, config TEXT NOT NULL, seed INTEGER NOT NULL,
   status TEXT NOT NULL, error TEXT NOT NULL, "end" TEXT NOT NULL, broken TEXT NOT NULL, score TEXT NOT NULL,
-  hash TEXT NOT NULL, folder TEXT NOT NULL, code TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE timing(run_id TEXT NOT NULL, key TEXT NOT NULL, value REAL NOT NULL, PRIMARY KEY(run_id, key))
-  WITHOUT ROWID;
+  hash TEXT NOT NULL, folder TEXT NOT NULL, code TEXT NOT NULL) WITHOUT ROWID)sql";
+constexpr const char* kTimingTable =
+    R"sql(CREATE TABLE timing(run_id TEXT NOT NULL, key TEXT NOT NULL, value REAL NOT NULL, PRIMARY KEY(run_id, key))
+  WITHOUT ROWID)sql";
+constexpr const char* kMetricsView = R"sql(
 CREATE VIEW metrics AS SELECT run_id, j.key AS key, CAST(j.value AS REAL) AS value FROM runs, json_each(runs.score) AS j
   WHERE j.type IN ('integer', 'real', 'true', 'false');
 )sql";
@@ -52,8 +59,19 @@ class Database {
     db_.reset(opened);
     if (code != SQLITE_OK) fail();
   }
-  void execute(const char* sql) const {
-    if (sqlite3_exec(db_.get(), sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+  void execute(const std::string& sql) const {
+    if (sqlite3_exec(db_.get(), sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+  }
+  /// Of a file by somebody else: nothing in it computes, no value is longer than the file, and work ends in
+  /// proportion to `size` [bytes].
+  void distrust(std::size_t size) {
+    for (const int off : {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_VIEW, SQLITE_DBCONFIG_ENABLE_TRIGGER})
+      sqlite3_db_config(db_.get(), off, 0, nullptr);
+    sqlite3_db_config(db_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+    sqlite3_limit(db_.get(), SQLITE_LIMIT_LENGTH, static_cast<int>(std::min(size, kLargestValue)));
+    looks_left_ = std::make_unique<std::size_t>((kFreeSteps + kStepsPerByte * size) / kLookEvery);
+    const auto look = [](void* left) { return (*static_cast<std::size_t*>(left))-- == 0 ? 1 : 0; };
+    sqlite3_progress_handler(db_.get(), kLookEvery, look, looks_left_.get());
   }
   [[noreturn]] void fail() const {
     throw RunError(path_ + ": " + (db_ ? sqlite3_errmsg(db_.get()) : "cannot be opened") +
@@ -66,6 +84,7 @@ class Database {
     void operator()(sqlite3* db) const { sqlite3_close(db); }
   };
   std::string path_;
+  std::unique_ptr<std::size_t> looks_left_;  ///< of the progress handler
   std::unique_ptr<sqlite3, Close> db_;
 };
 
@@ -95,6 +114,8 @@ class Statement {
     const auto* bytes = sqlite3_column_text(statement_, i);
     return bytes ? reinterpret_cast<const char*>(bytes) : "";
   }
+  /// Of what text() read, which ends at a zero byte.
+  std::size_t bytes(int i) const { return static_cast<std::size_t>(sqlite3_column_bytes(statement_, i)); }
   std::int64_t integer(int i) const { return sqlite3_column_int64(statement_, i); }
   double number(int i) const { return sqlite3_column_double(statement_, i); }
 
@@ -103,36 +124,84 @@ class Statement {
   sqlite3_stmt* statement_ = nullptr;
 };
 
+/// What the file's head says that it holds: SQLite itself passes over the end of the last page.
+bool is_whole(const std::string& path, std::size_t size) {
+  std::array<unsigned char, 32> head{};
+  InputRules rules;
+  rules.most = kLargestDatabase;
+  InputFile(path, rules).read(reinterpret_cast<char*>(head.data()), head.size());
+  const auto number = [&](std::size_t from, std::size_t to) {
+    std::size_t value = 0;
+    for (std::size_t i = from; i < to; ++i) value = value << 8U | head[i];
+    return value;
+  };
+  const std::size_t page = number(16, 18) == 1 ? 65536 : number(16, 18);
+  return page > 0 && size % page == 0 && size / page >= number(28, 32);
+}
+
+/// Tables just as write_database() makes them: a view or a column that computes has no bound of its own.
+bool is_table(const Database& db, const std::string& name, const char* sql) {
+  Statement schema(db, "SELECT type, sql FROM sqlite_master WHERE name = ?");
+  schema.bind(0, name);
+  return schema.step() && schema.text(0) == "table" && schema.text(1) == sql;
+}
+
+/// Takes the texts of rows until they are more than the file can hold: pages that are linked to more than once.
+class Texts {
+ public:
+  explicit Texts(std::size_t most) : left_(most) {}
+  std::string operator()(const Statement& row, int i) {
+    std::string text = row.text(i);
+    const std::size_t bytes = row.bytes(i);
+    if (bytes > left_) throw InputError("more text than bytes");
+    left_ -= bytes;
+    return text;
+  }
+
+ private:
+  std::size_t left_;
+};
+
 ResultSet read_database(const std::string& path) {
   try {
-    const Database db(path, SQLITE_OPEN_READONLY);
+    const auto size = static_cast<std::size_t>(fs::file_size(path));
+    if (!is_whole(path, size)) throw InputError("cut");
+    Database db(path, SQLITE_OPEN_READONLY);
+    db.distrust(size);
     Statement version(db, "PRAGMA user_version");
     if (!version.step() || version.integer(0) != kVersion) throw InputError("not ours");
+    if (!is_table(db, "runs", kRunsTable) || !is_table(db, "timing", kTimingTable)) throw InputError("not ours");
     ResultSet set;
+    Texts text(size);
     Statement runs(db,
                    "SELECT run_id, scenario, config, seed, status, error, \"end\", broken, score, hash, folder, code "
-                   "FROM runs ORDER BY scenario, config, seed, run_id");
+                   "FROM runs");
     while (runs.step()) {
       RunRecord r;
-      r.run_id = runs.text(0), r.scenario = runs.text(1), r.configuration = runs.text(2);
+      r.run_id = text(runs, 0), r.scenario = text(runs, 1), r.configuration = text(runs, 2);
       r.seed = static_cast<std::uint64_t>(runs.integer(3));
-      r.status = status_named(runs.text(4)), r.error = runs.text(5), r.end = runs.text(6);
-      r.broken = ordered_json::parse(runs.text(7)).get<std::vector<std::string>>();
-      *r.score = ordered_json::parse(runs.text(8));
-      r.hash = runs.text(9), r.folder = runs.text(10), r.code = runs.text(11);
-      set.runs.push_back(r);
+      r.status = status_named(text(runs, 4)), r.error = text(runs, 5), r.end = text(runs, 6);
+      r.broken = ordered_json::parse(text(runs, 7)).get<std::vector<std::string>>();
+      *r.score = ordered_json::parse(text(runs, 8));
+      r.hash = text(runs, 9), r.folder = text(runs, 10), r.code = text(runs, 11);
+      set.runs.push_back(std::move(r));
     }
-    Statement times(db, "SELECT run_id, key, value FROM timing ORDER BY run_id, key");
-    while (times.step()) set.timing[times.text(0)][times.text(1)] = times.number(2);
+    set.runs = unique_runs(set.runs, path);  // sorted here, not by SQLite, whose sorting would come before any check
+    Statement times(db, "SELECT run_id, key, value FROM timing");  // in the order of their primary key
+    while (times.step()) {
+      const std::string run = text(times, 0);
+      set.timing[run][text(times, 1)] = times.number(2);
+    }
     return set;
   } catch (const std::exception&) {
-    throw InputError(path + ": is no file that 'rubble batch merge' wrote; give another one");
+    throw InputError(path + ": is no whole file that 'rubble batch merge' wrote; give another one");
   }
 }
 
 void write_database(const std::string& path, const ResultSet& set) {
   const Database db(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
-  db.execute(kSchema);
+  db.execute("PRAGMA journal_mode = OFF; PRAGMA user_version = " + std::to_string(kVersion) + "; BEGIN;");
+  for (const char* part : {kRunsTable, kTimingTable, kMetricsView}) db.execute(part);
   Statement run(db, "INSERT INTO runs VALUES(?,?,?,?,?,?,?,?,?,?,?,?)");
   for (const RunRecord& r : set.runs) {
     run.bind(0, r.run_id), run.bind(1, r.scenario), run.bind(2, r.configuration);

@@ -22,7 +22,8 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kTooWide = 10.0;  // walls so many times as wide as the truth's belong to something else
+constexpr std::ptrdiff_t kMostWalls = 8000000;  // cells: a wall of 10 cm in cells of 1 cm is 8 km long
+constexpr double kTooWide = 10.0;               // walls so many times as wide as the truth's belong to something else
 constexpr WallMatch::Stiffness kSoft = {0.0, 0.0005, 0.0005, 0.001};
 
 /// Of the fits that belong to the best pose, the one with most walls within a metre and least contradicted: a bent map
@@ -254,6 +255,14 @@ class Aligner {
 }  // namespace
 
 Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config) {
+  for (const OccupancyGrid* grid : {&map, &truth}) {
+    const auto walls = std::count(grid->cells().begin(), grid->cells().end(), Occupancy::Occupied);
+    if (walls <= kMostWalls) continue;
+    Alignment out;
+    out.note = "not aligned: " + std::to_string(walls) + " cells of the " + (grid == &map ? "map" : "truth") +
+               " are walls, more than any building has; give a picture with thin walls, or scale it down";
+    return out;
+  }
   const OccupancyGrid clean_map = without_specks(map);
   const OccupancyGrid clean_truth = without_specks(truth);
   Aligner aligner(clean_map, clean_truth, config);

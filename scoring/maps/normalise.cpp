@@ -174,6 +174,10 @@ LoadedMap load_image(const std::string& path, const LoadOptions& options) {
   const double ground = ground_metres(tiff);
   const double resolution = given ? *options.resolution : ground * pixel_size(path, *transform);
   check_resolution(path, resolution);
+  if (transform && !(std::abs(transform->c) <= kFarthestPlace && std::abs(transform->f) <= kFarthestPlace))
+    throw InputError(path + cv::format(": its corner at %g, %g m lies farther off than any place on Earth; give it a "
+                                       "georeference or world file in metres",
+                                       transform->c, transform->f));
   const bool tags_hold = transform && (!given || std::abs(ground * pixel_size(path, *transform) - resolution) <= 1e-9);
   if (ground != 1.0 && !given) source += cv::format(" in web Mercator (%.4f m on the ground a metre)", ground);
 

@@ -9,6 +9,7 @@ namespace rubble::scoring {
 
 constexpr int kMaxImageSide = 20000;               ///< [pixels]
 constexpr std::int64_t kMaxImageArea = 100000000;  ///< [pixels]
+constexpr double kFarthestPlace = 1e8;  ///< of a map from the origin of its coordinates, [m]: Earth is 4e7 m around
 
 /// What to do where a picture says how to turn it (EXIF).
 enum class Upright { AsSeen, AsStored };

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/text/number_text.h"
 #include "base/text/text_file.h"
+#include "base/text/words.h"
 #include "base/yaml/strict_yaml.h"
 #include "scoring/maps/colours/league_colours.h"
 #include "scoring/maps/colours/map_colours.h"
@@ -26,10 +27,16 @@ OccupancyGrid read_ros_map(const std::string& yaml_path) {
   const double free_thresh = root.number("free_thresh", 0.196, 0.0, 1.0);
   const std::vector<double> origin = root.numbers("origin");
   if (!origin.empty() && origin.size() < 2) root.fail("origin", "must be [x, y, yaw]");
+  for (std::size_t i = 0; i < std::min<std::size_t>(origin.size(), 2); ++i)
+    if (!(std::abs(origin[i]) <= kFarthestPlace))
+      root.fail("origin", "lies farther off than any place on Earth; give x and y of the lower left corner [m]");
   if (free_thresh > occupied_thresh) root.fail("free_thresh", "must not be above occupied_thresh");
   // map_server accepts 0/1 as well as true/false.
   const std::string negate_text = root.text("negate", "0");
   const bool negate = negate_text == "1" || negate_text == "true" || negate_text == "True";
+  if (!negate && negate_text != "0" && negate_text != "false" && negate_text != "False")
+    root.fail("negate", "is " + in_quotes(negate_text) + "; there are 0 and 1");
+  if (image_name.empty()) root.fail("image", "is empty; give the name of the picture");
 
   const std::string mode = root.text("mode", "trinary");
   if (mode != "trinary" && mode != "scale" && mode != "raw")

@@ -41,7 +41,25 @@ SavedMap loaded(const MapBase& base, const robot::RobotModel& model) {
   return map;
 }
 
-StampedMap stamped(const SavedMap& saved, const robot::RobotModel& model, const RobustConfig& config) {
+/// A map that the mapper would cut is refused before memory is taken for it: of a damaged one little would be left.
+void require_room(const SavedMap& saved, const RobustConfig& config, const std::string& name) {
+  TPose2D low, high;  // the map begins around the origin
+  for (const SavedScan& scan : saved.scans) {
+    const TPose2D T_map_base = saved.frames.pose(scan.frame) + scan.T_frame_base;
+    low.x = std::min(low.x, T_map_base.x), high.x = std::max(high.x, T_map_base.x);
+    low.y = std::min(low.y, T_map_base.y), high.y = std::max(high.y, T_map_base.y);
+  }
+  const double wide = std::max(high.x - low.x, high.y - low.y);
+  const double room = config.max_map_cells * config.resolution;
+  if (wide > room)
+    throw InputError(name + ": its scans lie " + std::to_string(std::llround(wide)) + " m apart, but the map may be " +
+                     std::to_string(std::llround(room)) +
+                     " m wide; raise mapper.resolution_m or mapper.max_map_cells, or map the log again");
+}
+
+StampedMap stamped(const SavedMap& saved, const robot::RobotModel& model, const RobustConfig& config,
+                   const std::string& name) {
+  require_room(saved, config, name);
   StampedMap map(CountMap(config.map_cells, config.map_cells, config.resolution, config.max_map_cells),
                  model.T_base_laser, stamping(config));
   for (const SavedScan& scan : saved.scans) map.add(saved.frames, scan.frame, scan.T_frame_base, scan.scan, nullptr);
@@ -135,7 +153,7 @@ ContinuedMapper::ContinuedMapper(const robot::RobotModel& model, const RobustCon
       config_(suited_to(model.laser, config)),
       base_(std::move(base)),
       saved_(loaded(*base_, model)),
-      map_(stamped(saved_, model, config_)),
+      map_(stamped(saved_, model, config_, base_->name)),
       finder_(saved_.frames, place_config(config_), config_.tracker.cell) {
   drive_ = std::make_unique<RobustMapper>(model_, config_, 0);
   records_.columns = drive_->scan_records()->columns;

@@ -106,9 +106,10 @@ ScanPoints LevelScan::points(const robot::LaserScan& scan, const SweepMotion* mo
   ScanPoints points;
   points.origin = laser;
   points.beam_width = scan.angle_step;
-  const double limit = scan.range_max > 0.0 ? scan.range_max : std::numeric_limits<double>::infinity();
+  const bool known = scan.range_max > 0.0 && scan.range_max <= kFarthestReturn;
+  const double limit = known ? scan.range_max : kFarthestReturn;
   const double cap = config_.max_range > 0.0 ? std::min(config_.max_range, limit) : limit;
-  const bool carve = config_.carve_misses && std::isfinite(cap);
+  const bool carve = config_.carve_misses && (known || config_.max_range > 0.0);
   // Beams beyond one full turn would see the same directions twice.
   const std::size_t turn = static_cast<std::size_t>(2.0 * kPi / scan.angle_step + 1e-6);
   const std::size_t beams = std::min(scan.ranges.size(), turn);

@@ -10,6 +10,10 @@
 
 namespace rubble::slam {
 
+/// No scanner sees farther: a limit above it, none at all or one that is no number tells nothing, and what seems to
+/// come back from beyond is no hit [m].
+constexpr double kFarthestReturn = 1000.0;
+
 struct LevelScanConfig {
   bool carve_misses = false;  ///< beams without a return free cells up to `miss_margin` before the range limit
   double max_range = 0.0;     ///< returns beyond are no hits [m]; 0: the scanner's own limit

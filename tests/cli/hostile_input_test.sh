@@ -52,6 +52,26 @@ fi
 "$rubble" run short.yaml --out replayed >/dev/null 2>&1
 TMPDIR=/nowhere expect_exit 3 "check the path" "$rubble" replay replayed
 
+# --- numbers on the command line that are none, or lie nowhere
+for place in nan,0,0 1e308,0,0 0,0,1e300 0,inf,0; do
+  expect_exit 2 "X and Y must be within" "$rubble" score replayed/truth.tif replayed/truth.tif --start=$place
+done
+for place in nan,nan 1e308,0 0,inf; do
+  expect_exit 2 "lies farther off" "$rubble" plan replayed/truth.tif --from=$place
+done
+
+# --- a large picture that is one wall
+python3 - <<'PY'
+import struct, zlib
+part = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+packed = zlib.compress(bytes((1 + 5000 // 8) * 5000), 9)
+open("black.png", "wb").write(b"\x89PNG\r\n\x1a\n" + part(b"IHDR", struct.pack(">IIBBBBB", 5000, 5000, 1, 0, 0, 0, 0)) +
+                              part(b"IDAT", packed) + part(b"IEND", b""))
+PY
+expect_exit 3 "has no frontier" "$rubble" plan black.png --resolution 0.05
+"$rubble" score black.png replayed/truth.tif --resolution 0.05 >out.txt 2>err.txt
+[[ $? == 0 ]] && grep -q "25000000 cells of the map are walls" out.txt || fail "a black picture is scored: $(cat out.txt err.txt)"
+
 # --- lost output
 if [[ -e /dev/full ]]; then
   "$rubble" arena --elements >/dev/full 2>err.txt

@@ -19,6 +19,7 @@ constexpr int kBlend = 3;     // pixels that smooth interpolation blends at an e
 /// The ring around a region, `off` pixels off it: the next ones hold an interpolated edge. Empty for regions that are
 /// not broad.
 cv::Mat ring_around(const cv::Mat& region, int off) {
+  if (static_cast<std::size_t>(cv::countNonZero(region)) == region.total()) return {};  // nothing is around it
   cv::Mat padded;
   cv::copyMakeBorder(region, padded, 1, 1, 1, 1, cv::BORDER_REPLICATE);
   cv::Mat inner;
@@ -51,6 +52,18 @@ cv::Mat region_at(cv::Mat& image, const cv::Point& seed, int tolerance) {
   cv::floodFill(image, mask, seed, cv::Scalar(), nullptr, cv::Scalar(tolerance), cv::Scalar(tolerance),
                 4 | cv::FLOODFILL_MASK_ONLY | cv::FLOODFILL_FIXED_RANGE | (255 << 8));
   return mask(cv::Rect(1, 1, image.cols, image.rows)).clone();
+}
+
+/// Corners of one value in one region have it in common, and what was found of it: of pictures of 10^8 pixels it takes
+/// seconds to look at one.
+void pass_over(const cv::Mat& image, const cv::Mat& region, const cv::Point& corner, cv::Mat& seen) {
+  for (const cv::Point& other : corners_of(image))
+    if (region.at<unsigned char>(other) != 0 && image.at<unsigned char>(other) == image.at<unsigned char>(corner))
+      seen.at<unsigned char>(other.y > 0 ? 1 : 0, other.x > 0 ? 1 : 0) = 1;
+}
+
+bool is_passed_over(const cv::Mat& seen, const cv::Point& corner) {
+  return seen.at<unsigned char>(corner.y > 0 ? 1 : 0, corner.x > 0 ? 1 : 0) != 0;
 }
 
 /// The most frequent grey of some pixels.
@@ -88,15 +101,24 @@ bool leaves_a_picture(const cv::Mat& grey, const cv::Mat& canvas) {
   constexpr double kConvex = 0.96;
   constexpr double kLevel = 0.005;
   const cv::Mat picture = ~canvas;
-  std::vector<cv::Point> points, hull;
-  cv::findNonZero(picture, points);
-  if (points.empty()) return false;
-  cv::convexHull(points, hull);
-  if (static_cast<double>(points.size()) < kConvex * cv::contourArea(hull)) return false;
+  // The hull of the first and the last pixel of each row is that of all.
+  std::vector<cv::Point> ends, hull;
   std::array<int, 256> count{};
-  for (const cv::Point& p : points) ++count[grey.at<unsigned char>(p)];
-  return std::count_if(count.begin(), count.end(),
-                       [&](int n) { return n >= kLevel * static_cast<double>(points.size()); }) >= 2;
+  for (int y = 0; y < picture.rows; ++y) {
+    int first = -1, last = -1;
+    for (int x = 0; x < picture.cols; ++x) {
+      if (picture.at<unsigned char>(y, x) == 0) continue;
+      if (first < 0) first = x;
+      last = x;
+      ++count[grey.at<unsigned char>(y, x)];
+    }
+    if (first >= 0) ends.insert(ends.end(), {{first, y}, {last, y}});
+  }
+  if (ends.empty()) return false;
+  const double pixels = cv::countNonZero(picture);
+  cv::convexHull(ends, hull);
+  if (pixels < kConvex * cv::contourArea(hull)) return false;
+  return std::count_if(count.begin(), count.end(), [&](int n) { return n >= kLevel * pixels; }) >= 2;
 }
 
 bool covers_areas(const cv::Mat& mask) {
@@ -110,13 +132,16 @@ bool covers_areas(const cv::Mat& mask) {
 void clear_canvas_corners(cv::Mat& classes) {
   const auto unknown = static_cast<unsigned char>(Occupancy::Unknown);
   if (classes.empty()) return;
+  cv::Mat seen = cv::Mat::zeros(2, 2, CV_8U);
   for (const cv::Point& corner : corners_of(classes)) {
-    if (classes.at<unsigned char>(corner) == unknown) continue;
+    if (classes.at<unsigned char>(corner) == unknown || is_passed_over(seen, corner)) continue;
     const cv::Mat region = region_at(classes, corner, 0);
+    pass_over(classes, region, corner, seen);
     if (share_in(ring_around(region, 1), classes == static_cast<int>(Occupancy::Unknown)) < kBorderUnknown) continue;
     cv::Mat grown;
     cv::dilate(region, grown, cv::Mat::ones(3, 3, CV_8U));
     classes.setTo(unknown, grown);
+    seen.setTo(0);  // what lies around the other regions has changed
   }
 }
 
@@ -124,9 +149,11 @@ cv::Mat canvas_corners(const cv::Mat& grey) {
   cv::Mat out = cv::Mat::zeros(grey.size(), CV_8U);
   if (grey.empty()) return out;
   cv::Mat copy = grey;
+  cv::Mat seen = cv::Mat::zeros(2, 2, CV_8U);
   for (const cv::Point& corner : corners_of(grey)) {
-    if (out.at<unsigned char>(corner) != 0) continue;
+    if (out.at<unsigned char>(corner) != 0 || is_passed_over(seen, corner)) continue;
     const cv::Mat region = region_at(copy, corner, kOneGrey);
+    pass_over(grey, region, corner, seen);
     const cv::Mat ring = ring_around(region, kBlend);
     if (ring.empty()) continue;
     const int level = main_grey(grey, ring);
@@ -138,6 +165,7 @@ cv::Mat canvas_corners(const cv::Mat& grey) {
     cv::dilate(region, grown, cv::Mat::ones(5, 5, CV_8U));
     out |= grown;
   }
+  if (cv::countNonZero(out) == 0) return out;
   return leaves_a_picture(grey, out) ? out : cv::Mat::zeros(grey.size(), CV_8U);
 }
 

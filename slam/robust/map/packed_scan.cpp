@@ -19,18 +19,20 @@ PackedScan packed(const robot::LaserScan& scan, const std::optional<SweepMotion>
   PackedScan out;
   out.angle_min = scan.angle_min;
   out.angle_step = scan.angle_step;
-  out.range_min = static_cast<float>(scan.range_min);
-  out.range_max = static_cast<float>(scan.range_max);
+  const auto possible = [](double range) { return range >= 0.0 && range <= kFarthestReturn; };
+  out.range_min = possible(scan.range_min) ? static_cast<float>(scan.range_min) : 0.0F;
+  out.range_max = possible(scan.range_max) ? static_cast<float>(scan.range_max) : 0.0F;
   out.motion = motion;
   out.tilt = tilt;
+  const auto least = static_cast<float>(scan.range_min);
   float farthest = 0.0F;
   for (const float range : scan.ranges)
-    if (std::isfinite(range)) farthest = std::max(farthest, range);
+    if (possible(static_cast<double>(range))) farthest = std::max(farthest, range);
   out.quantum = std::max(kFinestQuantum, farthest / (kMiss - 1.0F));
   out.ranges.reserve(scan.ranges.size());
   for (const float range : scan.ranges) {
-    const bool known = range > 0.0F && range >= out.range_min;
-    const float steps = std::isfinite(range) ? std::max(1.0F, std::round(range / out.quantum)) : kMiss;
+    const bool known = range > 0.0F && range >= least;
+    const float steps = possible(static_cast<double>(range)) ? std::max(1.0F, std::round(range / out.quantum)) : kMiss;
     out.ranges.push_back(known ? static_cast<std::uint16_t>(std::min<float>(steps, kMiss)) : kUnknown);
   }
   return out;

@@ -2,6 +2,8 @@
 
 #include <zlib.h>
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -20,9 +22,20 @@ namespace {
 constexpr std::string_view kStem = "RUBBLE MAP ";
 constexpr std::string_view kMagic = "RUBBLE MAP 2\n";
 constexpr std::size_t kHead = 24;  ///< behind the magic: lengths of the payload, plain and packed, and two sums
-constexpr std::uint64_t kMostPacking = 1040;  ///< deflate packs no tighter than 1032 to 1
-constexpr int kPacking = 6;                   ///< zlib's usual level
-constexpr double kFarthestPose = 1e7;         ///< poses beyond are damage [m]
+constexpr int kPacking = 6;        ///< zlib's usual level
+// A file may unpack to no more than this: maps pack three to ten times, a bomb a thousand times.
+constexpr std::uint64_t kMostUnpacked = std::uint64_t{2} << 30;
+constexpr std::uint64_t kFreeUnpacked = std::uint64_t{64} << 20;  ///< however small the file ...
+constexpr std::uint64_t kMostPacking = 40;                        ///< ... and so many times its size
+// Numbers beyond these are damage; what the mapper writes stays far within them.
+constexpr double kFarthestPose = 1e7;                     ///< [m]
+constexpr double kLongestPath = 1e9;                      ///< [m]
+constexpr double kFarthestMount = 1e3;                    ///< of the laser on its robot [m]
+constexpr double kFarthestPoint = 2.0 * kFarthestReturn;  ///< of a scan, seen from the robot [m]
+constexpr double kMostNormal = 1.01;                      ///< parts of a unit vector
+constexpr double kMostAngle = 1e6;                        ///< angles may have been summed up over turns [rad]
+constexpr double kMostCertain = 1e18;                     ///< entries of covariances and informations
+constexpr double kRounding = 1e-6;                        ///< of the largest entry
 
 void put_u64(ByteWriter& out, std::uint64_t value) {
   out.u32(static_cast<std::uint32_t>(value));
@@ -40,10 +53,18 @@ double take_finite(ByteReader& in) {
   return value;
 }
 
-float take_finite_f32(ByteReader& in) {
-  const float value = in.f32();
+double within(double value, double least, double most, const char* otherwise) {
   if (!std::isfinite(value)) throw BadPayload("a number that is none");
+  if (!(value >= least && value <= most)) throw BadPayload(otherwise);
   return value;
+}
+
+double take_angle(ByteReader& in) { return within(in.f64(), -kMostAngle, kMostAngle, "an angle far off"); }
+
+double take_path(ByteReader& in) { return within(in.f64(), 0.0, kLongestPath, "a path of no possible length"); }
+
+float take_range(ByteReader& in) {
+  return static_cast<float>(within(static_cast<double>(in.f32()), 0.0, kFarthestReturn, "a range that no scanner has"));
 }
 
 int take_index(ByteReader& in, int end) {
@@ -61,7 +82,7 @@ void put(ByteWriter& out, const TPose2D& T) {
 TPose2D take_pose(ByteReader& in) {
   const double x = take_finite(in);
   const double y = take_finite(in);
-  const double phi = take_finite(in);
+  const double phi = take_angle(in);
   if (std::abs(x) > kFarthestPose || std::abs(y) > kFarthestPose) throw BadPayload("a pose far off");
   return {x, y, phi};
 }
@@ -74,7 +95,13 @@ void put(ByteWriter& out, const Eigen::Matrix3d& m) {
 Eigen::Matrix3d take_matrix(ByteReader& in) {
   Eigen::Matrix3d m;
   for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) m(row, column) = take_finite(in);
+    for (int column = 0; column < 3; ++column)
+      m(row, column) = within(in.f64(), -kMostCertain, kMostCertain, "a matrix far off");
+  const double scale = m.cwiseAbs().maxCoeff();
+  if ((m - m.transpose()).cwiseAbs().maxCoeff() > kRounding * scale) throw BadPayload("a matrix that is not symmetric");
+  if (Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(m, Eigen::EigenvaluesOnly).eigenvalues().minCoeff() <
+      -kRounding * scale)
+    throw BadPayload("a matrix below zero");
   return m;
 }
 
@@ -87,7 +114,9 @@ void put(ByteWriter& out, const std::vector<OrientedPoint>& points) {
 std::vector<OrientedPoint> take_points(ByteReader& in) {
   std::vector<OrientedPoint> points(in.count(16));
   for (OrientedPoint& p : points)
-    for (float* value : {&p.x, &p.y, &p.nx, &p.ny}) *value = take_finite_f32(in);
+    for (const auto& [value, most] : {std::pair(&p.x, kFarthestPoint), std::pair(&p.y, kFarthestPoint),
+                                      std::pair(&p.nx, kMostNormal), std::pair(&p.ny, kMostNormal)})
+      *value = static_cast<float>(within(static_cast<double>(in.f32()), -most, most, "a point far off"));
   return points;
 }
 
@@ -107,9 +136,9 @@ void put(ByteWriter& out, const KeyFrame& frame) {
 KeyFrame take_frame(ByteReader& in) {
   KeyFrame frame;
   frame.stamp.ns = in.svarint();
-  frame.path = take_finite(in);
-  frame.cloud.laser.x = take_finite(in);
-  frame.cloud.laser.y = take_finite(in);
+  frame.path = take_path(in);
+  for (double* value : {&frame.cloud.laser.x, &frame.cloud.laser.y})
+    *value = within(in.f64(), -kFarthestPoint, kFarthestPoint, "a laser far off");
   frame.cloud.points = take_points(in);
   frame.cloud.filled = take_points(in);
   SightFan::Bins bins;
@@ -164,12 +193,13 @@ void put(ByteWriter& out, const PackedScan& scan) {
 
 PackedScan take_scan(ByteReader& in) {
   PackedScan scan;
-  scan.angle_min = take_finite(in);
-  scan.angle_step = take_finite(in);
+  scan.angle_min = take_angle(in);
+  scan.angle_step = take_angle(in);
   if (!(scan.angle_step > 1e-6)) throw BadPayload("a scan without an angle between its beams");
-  scan.range_min = in.f32();
-  scan.range_max = in.f32();
-  scan.quantum = take_finite_f32(in);
+  scan.range_min = take_range(in);
+  scan.range_max = take_range(in);
+  scan.quantum = take_range(in);
+  if (!(scan.quantum > 0.0F && scan.quantum <= 1.0F)) throw BadPayload("ranges without a step");
   const std::uint8_t flags = in.u8();
   if ((flags & 1U) != 0) {
     const TPose2D first = take_pose(in);
@@ -178,7 +208,7 @@ PackedScan take_scan(ByteReader& in) {
   if ((flags & 2U) != 0) {
     scan.tilt.emplace();
     for (double* value : {&scan.tilt->pitch, &scan.tilt->roll, &scan.tilt->body_pitch, &scan.tilt->body_roll})
-      *value = take_finite(in);
+      *value = take_angle(in);
   }
   scan.ranges.resize(in.count(1));
   std::int64_t last = 0;
@@ -221,9 +251,10 @@ std::string payload_of(const SavedMap& map) {
 SavedMap map_of(std::string_view payload) {
   ByteReader in(payload);
   SavedMap map;
-  for (double* value : {&map.T_base_laser.x, &map.T_base_laser.y, &map.T_base_laser.z, &map.T_base_laser.yaw,
-                        &map.T_base_laser.pitch, &map.T_base_laser.roll})
-    *value = take_finite(in);
+  for (double* value : {&map.T_base_laser.x, &map.T_base_laser.y, &map.T_base_laser.z})
+    *value = within(in.f64(), -kFarthestMount, kFarthestMount, "a laser far off its robot");
+  for (double* value : {&map.T_base_laser.yaw, &map.T_base_laser.pitch, &map.T_base_laser.roll})
+    *value = take_angle(in);
   const auto frames = static_cast<int>(in.count(50));
   if (frames == 0) throw BadPayload("no key frame");
   std::vector<KeyFrame> kept;
@@ -247,7 +278,7 @@ SavedMap map_of(std::string_view payload) {
   }
   map.here = take_index(in, frames);
   map.T_frame_base = take_pose(in);
-  map.path = take_finite(in);
+  map.path = take_path(in);
   map.frame_covariance = take_matrix(in);
   map.scan_covariance = take_matrix(in);
   if (in.left() != 0) throw BadPayload("more bytes than a map has");
@@ -295,7 +326,9 @@ SavedMap decode_map(std::string_view bytes, const std::string& name) {
   const std::string_view packed = bytes.substr(kHead);
   if (packed.size() != packed_size)
     fail(name, "holds " + std::to_string(packed.size()) + " bytes instead of " + std::to_string(packed_size));
-  if (crc32_of(packed) != sum || size / kMostPacking > packed_size) fail(name, "is damaged");
+  if (crc32_of(packed) != sum) fail(name, "is damaged");
+  if (size > std::min(kMostUnpacked, kFreeUnpacked + kMostPacking * packed_size))
+    fail(name, "would unpack to " + std::to_string(size >> 20U) + " MB, more than a map of its size");
   std::string payload(static_cast<std::size_t>(size), '\0');
   auto got = static_cast<uLongf>(size);
   if (uncompress(reinterpret_cast<Bytef*>(payload.data()), &got, reinterpret_cast<const Bytef*>(packed.data()),

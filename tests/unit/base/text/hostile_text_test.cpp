@@ -50,6 +50,16 @@ TEST(OneLine, NoByteThatATerminalObeys) {
   EXPECT_EQ(printable("a\nb\x1b\n"), "a\nb\\x1b\n");
 }
 
+TEST(OneLine, NoCharacterThatHidesOrTurnsTheOthers) {
+  EXPECT_EQ(one_line("a\xe2\x80\xaegnp.exe"), "a\\xe2\\x80\\xaegnp.exe") << "right-to-left override";
+  for (const char* character : {"\xc2\xad", "\xd8\x9c", "\xe2\x80\x8b", "\xe2\x80\x8e", "\xe2\x80\xa8", "\xe2\x81\xa6",
+                                "\xe2\x81\xa9", "\xef\xbb\xbf", "\xf3\xa0\x81\x81"})
+    EXPECT_EQ(one_line(character).front(), '\\') << character;
+  for (const char* character :
+       {"\xc2\xac", "\xd8\xa7", "\xe2\x80\x93", "\xe2\x80\x8d", "\xe2\x82\xac", "\xf0\x9f\xa4\x96"})
+    EXPECT_EQ(one_line(character), character);
+}
+
 TEST(Utf8, NamesThatAreNoTextBecomeText) {
   EXPECT_EQ(as_utf8("a\xff\xc3\xbc\xed\xa0\x80"), "a\xef\xbf\xbd\xc3\xbc\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd");
   EXPECT_EQ(escape_html("<\xff\x1b>\n"), "&lt;\xef\xbf\xbd\xef\xbf\xbd&gt;\n");

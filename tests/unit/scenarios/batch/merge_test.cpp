@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include "base/error.h"
+#include "base/rng.h"
 #include "tests/support/scenarios_batch.h"
 
 namespace rubble::scenarios {
@@ -128,6 +129,66 @@ TEST_F(Merge, ForeignFilesAreRefusedAndKept) {
   EXPECT_THROW(load_results(path("notes.txt")), InputError);
   EXPECT_THROW(load_results(write("fake.sqlite", std::string("SQLite format 3\0garbage", 23))), InputError);
   EXPECT_THROW(merge({path("one")}, path("nowhere/all.sqlite")), RunError);
+}
+
+/// Whose file it is decides nothing: what computes, ends nowhere or holds more than its bytes is refused, and a file
+/// that grew an index or a view of somebody's own is still read.
+TEST_F(Merge, ADatabaseRunsNothingAndIsReadOnlyWhole) {
+  batch("one", "", {record("a", "c", 1, 0.5), record("a", "c", 2, 0.25)});
+  merge({path("one")}, path("good.sqlite"));
+  const std::string good = read(path("good.sqlite"));
+  const auto changed = [&](const char* sql) {
+    const std::string file = write("changed.sqlite", good);
+    query("changed.sqlite", sql);
+    EXPECT_NE(read(file), good) << sql;
+    return file;
+  };
+  for (const std::string table : {"runs", "timing"})
+    for (const std::string view : {
+             "WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c) SELECT z.* FROM z, c",
+             "SELECT CAST(zeroblob(900000000) AS TEXT) AS code, * FROM z",
+             "SELECT * FROM z",
+         }) {
+      const std::string sql = "ALTER TABLE " + table + " RENAME TO z; CREATE VIEW " + table + " AS " + view;
+      EXPECT_THROW(load_results(changed(sql.c_str())), InputError) << sql;
+    }
+  EXPECT_THROW(load_results(changed("ALTER TABLE runs ADD COLUMN more TEXT AS (hex(zeroblob(1000000)))")), InputError);
+  EXPECT_THROW(load_results(changed("DROP TABLE timing")), InputError);
+  EXPECT_THROW(load_results(changed("UPDATE runs SET code = CAST(zeroblob(17000000) AS TEXT)")), InputError);
+  EXPECT_THROW(load_results(changed("UPDATE runs SET score = '[[[['")), InputError);
+  EXPECT_EQ(load_results(changed("CREATE INDEX mine ON runs(status); CREATE VIEW also_mine AS SELECT 1")).runs.size(),
+            2u);
+  for (const std::size_t left :
+       {std::size_t{1}, std::size_t{100}, std::size_t{4096}, good.size() / 2, good.size() - 20})
+    EXPECT_THROW(load_results(write("cut.sqlite", good.substr(0, good.size() - left))), InputError) << left;
+  EXPECT_EQ(load_results(path("good.sqlite")).runs.size(), 2u);
+}
+
+/// Pages that lead to themselves, and whatever else bytes can be changed to, end.
+TEST_F(Merge, ADamagedDatabaseEnds) {
+  std::vector<RunRecord> all;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) all.push_back(record("a", "c", seed, 0.5));
+  batch("one", "", all);
+  merge({path("one")}, path("good.sqlite"));
+  const std::string good = read(path("good.sqlite"));
+  Rng rng(3, "damage");
+  int refused = 0;
+  for (int k = 0; k < 300; ++k) {
+    std::string bytes = good;
+    for (int n = 0; n < 3; ++n) {
+      // Heads of pages and their lists of cells are where the links are.
+      const auto page = static_cast<std::size_t>(rng.uniform(0.0, static_cast<double>(good.size() / 4096)));
+      const auto at = static_cast<std::size_t>(rng.uniform(page == 0 ? 100.0 : 0.0, page == 0 ? 160.0 : 60.0));
+      bytes[page * 4096 + at] = static_cast<char>(static_cast<int>(rng.uniform(0.0, 256.0)));
+    }
+    try {
+      EXPECT_LE(load_results(write("damaged.sqlite", bytes)).runs.size(), 60u * 60u);
+    } catch (const InputError& error) {
+      ++refused;
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    }
+  }
+  EXPECT_GT(refused, 50);
 }
 
 }  // namespace

@@ -96,6 +96,16 @@ TEST(Alignment, TellsByHowMuchItWonAndOverWhat) {
   EXPECT_TRUE(turned || (contest.T_runner_up.composePoint(p_map) - centre).norm() >= 1.0);
 }
 
+/// Each wall cell takes memory and time: a picture that is one wall is refused before it is looked at.
+TEST(Alignment, WhatIsAllWallIsRefusedAtOnce) {
+  const OccupancyGrid truth(GridFrame{20, 20, 0.05, 0.0, 0.0}, Occupancy::Free);
+  const OccupancyGrid wall(GridFrame{4000, 3000, 0.05, 0.0, 0.0}, Occupancy::Occupied);
+  const Alignment alignment = align(wall, truth, {});
+  EXPECT_FALSE(alignment.aligned);
+  EXPECT_NE(alignment.note.find("12000000 cells of the map are walls"), std::string::npos) << alignment.note;
+  EXPECT_NE(align(truth, wall, {}).note.find("cells of the truth"), std::string::npos);
+}
+
 TEST(Alignment, MethodsHaveNames) {
   EXPECT_EQ(names_of(AlignBy::Rooms | AlignBy::Walls), "walls+rooms");
   EXPECT_EQ(names_of(AlignBy::Auto), "");

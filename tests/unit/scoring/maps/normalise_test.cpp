@@ -65,6 +65,34 @@ TEST_F(LoadMap, RosMapHonoursNegate) {
   EXPECT_EQ(agreement(load_map(path("map.yaml")).grid, grid), 1.0);
 }
 
+TEST_F(LoadMap, PlacesAndWordsThatNoMapHasAreRefused) {
+  cv::imwrite(path("map.png"), grey_image(maze({3, 3, 1}), 0, 205, 254));
+  const auto error = [&](const std::string& lines) -> std::string {
+    text("map.yaml", lines + "\nresolution: 0.05\n");
+    try {
+      load_map(path("map.yaml"));
+      return "";
+    } catch (const InputError& refusal) {
+      return refusal.what();
+    }
+  };
+  for (const char* origin : {"[0, 0, 0]", "[-1e6, 5e6, 0]", "[-10, 20]"})
+    EXPECT_EQ(error("image: map.png\norigin: " + std::string(origin)), "") << origin;
+  for (const char* origin : {"[1e15, 1e15, 0]", "[1e308, 0, 0]", "[0, -1e9, 0]"})
+    EXPECT_THAT(error("image: map.png\norigin: " + std::string(origin)),
+                ::testing::HasSubstr("farther off than any place on Earth"));
+  for (const char* word : {"0", "1", "true", "false", "True", "False"})
+    EXPECT_EQ(error("image: map.png\nnegate: " + std::string(word)), "") << word;
+  for (const char* word : {"2", "-1", "x", "1e308", ".nan"})
+    EXPECT_THAT(error("image: map.png\nnegate: " + std::string(word)), ::testing::HasSubstr("there are 0 and 1"));
+  EXPECT_THAT(error("image: \"\""), ::testing::HasSubstr("give the name of the picture"));
+  EXPECT_THAT(error("image: \"a\\0b\""), ::testing::HasSubstr("a\\x00b: holds a zero byte"));
+  for (const char* corner : {"1e15", "-1e308"}) {
+    text("map.pgw", "0.05\n0\n0\n-0.05\n" + std::string(corner) + "\n0\n");
+    EXPECT_THROW(load_map(path("map.png")), InputError) << corner;
+  }
+}
+
 TEST_F(LoadMap, GreyImagesAreUnderstoodWhateverGreyMeansUnknown) {
   const OccupancyGrid grid = maze({5, 4, 2});
   for (const int unknown : {127, 178, 205}) {

@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
+#include "base/bytes.h"
 #include "base/error.h"
 #include "slam/robust/continued_mapper.h"
 #include "slam/robust/robust_mapper.h"
@@ -12,6 +14,7 @@
 namespace rubble::slam {
 namespace {
 
+using mrpt::math::TPose3D;
 using robot::RobotModel;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -134,6 +137,97 @@ TEST(SavedMap, NumbersOutOfPlaceAreRefused) {
   EXPECT_THAT(refused([](SavedMap& m) { m.T_frame_base.x = 1e9; }), HasSubstr("pose far off"));
   EXPECT_THAT(refused([](SavedMap& m) { m.scans.front().scan.angle_step = 0.0; }),
               HasSubstr("angle between its beams"));
+  const float inf = std::numeric_limits<float>::infinity();
+  for (const float range : {std::nanf(""), inf, -inf, -1.0F, 1e4F, 3e38F}) {
+    SCOPED_TRACE(range);
+    EXPECT_THAT(refused([&](SavedMap& m) { m.scans.front().scan.range_min = range; }), HasSubstr("is damaged"));
+    EXPECT_THAT(refused([&](SavedMap& m) { m.scans.front().scan.range_max = range; }), HasSubstr("is damaged"));
+    EXPECT_THAT(refused([&](SavedMap& m) { m.scans.front().scan.quantum = range; }), HasSubstr("is damaged"));
+  }
+  EXPECT_THAT(refused([](SavedMap& m) { m.scans.front().scan.quantum = 0.0F; }), HasSubstr("without a step"));
+  const auto refused_frame = [&](const std::function<void(KeyFrame&)>& spoil) {
+    return refused([&](SavedMap& m) {
+      std::vector<KeyFrame> kept;
+      std::vector<int> before;
+      for (int i = 0; i < m.frames.size(); ++i) kept.push_back(m.frames[i]), before.push_back(m.frames.before(i));
+      spoil(kept[1]);
+      m.frames = KeyFrames(kept, before, m.frames.graph());
+    });
+  };
+  EXPECT_EQ(refused_frame([](KeyFrame&) {}), "");
+  EXPECT_THAT(refused_frame([](KeyFrame& f) { f.cloud.points.at(0).x = 3e38F; }), HasSubstr("point far off"));
+  EXPECT_THAT(refused_frame([](KeyFrame& f) { f.cloud.points.at(0).ny = 3e38F; }), HasSubstr("point far off"));
+  EXPECT_THAT(refused_frame([](KeyFrame& f) { f.cloud.laser.y = 1e308; }), HasSubstr("laser far off"));
+  EXPECT_THAT(refused_frame([](KeyFrame& f) { f.path = -1.0; }), HasSubstr("path"));
+  for (double TPose3D::*angle : {&TPose3D::yaw, &TPose3D::pitch, &TPose3D::roll})
+    EXPECT_THAT(refused([&](SavedMap& m) { m.T_base_laser.*angle = 1e308; }), HasSubstr("angle far off"));
+  EXPECT_THAT(refused([](SavedMap& m) { m.T_base_laser.x = 1e308; }), HasSubstr("laser far off"));
+  EXPECT_THAT(refused([](SavedMap& m) { m.T_frame_base.phi = 1e308; }), HasSubstr("angle far off"));
+  for (Eigen::Matrix3d SavedMap::*matrix : {&SavedMap::frame_covariance, &SavedMap::scan_covariance}) {
+    EXPECT_THAT(refused([&](SavedMap& m) { (m.*matrix)(0, 0) = 1e308; }), HasSubstr("matrix far off"));
+    EXPECT_THAT(refused([&](SavedMap& m) { (m.*matrix)(0, 1) += 1.0; }), HasSubstr("not symmetric"));
+    EXPECT_THAT(refused([&](SavedMap& m) { (m.*matrix)(2, 2) = -1.0; }), HasSubstr("below zero"));
+  }
+  EXPECT_THAT(refused([](SavedMap& m) {
+                PoseGraph graph = m.frames.graph();
+                graph.edges.front().information *= -1.0;
+                std::vector<KeyFrame> kept;
+                std::vector<int> before;
+                for (int i = 0; i < m.frames.size(); ++i)
+                  kept.push_back(m.frames[i]), before.push_back(m.frames.before(i));
+                m.frames = KeyFrames(kept, before, graph);
+              }),
+              HasSubstr("below zero"));
+}
+
+/// What a scanner says of itself may be nonsense; the map that is made with it is read back.
+TEST(SavedMap, AScannerWithoutALimitGivesAMapThatIsReadBack) {
+  const float inf = std::numeric_limits<float>::infinity();
+  for (const double limit : {0.0, -1.0, 1e308, std::nan(""), static_cast<double>(inf)}) {
+    robot::LaserScan scan;
+    scan.angle_step = 0.01;
+    scan.range_min = scan.range_max = limit;
+    scan.ranges = {1.0F, 2.0F, inf, 1e30F, -1.0F, std::nanf("")};
+    SavedMap map = decode_map(mapper().saved_map(), "map");
+    map.scans.front().scan = packed(scan, std::nullopt, std::nullopt);
+    const SavedMap again = decode_map(encode_map(map), "map");
+    EXPECT_EQ(again.scans.front().scan.ranges, map.scans.front().scan.ranges);
+    EXPECT_LT(LevelScan({}, {}).points(unpacked(again.scans.front().scan)).hits.size(), 3u) << "a miss is no hit";
+  }
+}
+
+/// Nothing of what a few bytes claim to unpack to is believed beyond 64 MB and 40 times the file.
+TEST(SavedMap, AFileThatUnpacksToGigabytesIsRefusedByItsHead) {
+  std::string zeros(std::size_t{100} << 20, '\0');
+  uLongf size = compressBound(static_cast<uLong>(zeros.size()));
+  std::string packed(size, '\0');
+  compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(zeros.data()),
+            static_cast<uLong>(zeros.size()), 1);
+  packed.resize(size);
+  const auto sum = [](const std::string& bytes) {
+    return static_cast<std::uint32_t>(
+        crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<z_size_t>(bytes.size())));
+  };
+  std::string head;
+  ByteWriter out(head);
+  for (const std::size_t number : {zeros.size(), packed.size()})
+    out.u32(static_cast<std::uint32_t>(number)), out.u32(static_cast<std::uint32_t>(number >> 32U));
+  out.u32(sum(packed));
+  out.u32(sum(head));
+  EXPECT_THAT(error_of("RUBBLE MAP 2\n" + head + packed), HasSubstr("would unpack to 100 MB"));
+}
+
+/// A key frame that lies kilometres off would have the mapper draw the widest map there may be.
+TEST(SavedMap, AMapWiderThanTheMapperDrawsIsRefused) {
+  SavedMap map = decode_map(mapper().saved_map(), "map");
+  map.scans.back().T_frame_base.x = 9.9e6;
+  try {
+    ContinuedMapper({}, {}, std::make_shared<MapBase>(MapBase{encode_map(map), "lab/map.rmap", true, {}}));
+    FAIL() << "was taken";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), StartsWith("lab/map.rmap: its scans lie 98"));
+    EXPECT_THAT(error.what(), HasSubstr("but the map may be 400 m wide; raise mapper.resolution_m"));
+  }
 }
 
 TEST(SavedMap, AnotherMountOfTheLaserIsRefused) {
