@@ -64,6 +64,7 @@ const std::map<std::string, Folders>& doors() {
         "scoring/league/league_victims.h",
         "scoring/maps/league_map.h",
         "scoring/maps/normalise.h",
+        "scoring/maps/raster_image.h",
         "scoring/marks.h",
         "scoring/pictures/evaluation_page.h",
         "scoring/pictures/picture.h",
