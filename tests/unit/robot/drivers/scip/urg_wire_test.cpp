@@ -462,7 +462,8 @@ TEST_P(UrgWire, OldProtocolAsksAgainForATurnThatGotLost) {
   for (std::size_t i = 1; i < bench.scans.size(); ++i) EXPECT_GT(bench.scans[i].stamp, bench.scans[i - 1].stamp);
 }
 
-/// Already after four seconds, in real time; what holds after a minute (0.5 ms in the mean, 1.5 ms of 99 %) is ClockWire's.
+/// Already after four seconds, in real time; what holds after a minute (0.5 ms in the mean, 1.5 ms of 99 %) is
+/// ClockWire's.
 TEST_P(UrgWire, StampsAreRightThoughTheLineJittersAndTheClockDrifts) {
   UrgEmulatorConfig emulated;
   emulated.jitter = 0.005;
