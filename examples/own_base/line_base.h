@@ -87,15 +87,16 @@ class LineBase : public BaseDriver {
   void digest(const std::string& line, Stamp now) {
     Odometry o;
     int motors = 0;
+    double battery = 0.0;
     const int read = std::sscanf(line.c_str(), "O %lf %lf %lf %lf %lf %d %lf", &o.pose.x, &o.pose.y, &o.pose.phi, &o.v,
-                                 &o.w, &motors, &battery_);
+                                 &o.w, &motors, &battery);
     const double all = std::abs(o.pose.x) + std::abs(o.pose.y) + std::abs(o.pose.phi) + std::abs(o.v) + std::abs(o.w);
-    if (read != 7 || !(all < 1e6)) {  // nor is a line with "nan" in it a report
+    if (read != 7 || !(all + std::abs(battery) < 1e6)) {  // nor is a line with "nan" in it a report
       ++bad_lines_;
       return;
     }
-    o.pose.x *= settings_.distance_scale;
-    o.pose.y *= settings_.distance_scale;
+    battery_ = battery;
+    go_on(o);
     const auto bytes = static_cast<double>(line.size());
     o.stamp = now - (settings_.delay + time_on_line(line_, bytes, baud()));
     if (last_stamp_ != Stamp::never() && o.stamp <= last_stamp_) o.stamp = {last_stamp_.ns + 1};
@@ -110,7 +111,23 @@ class LineBase : public BaseDriver {
     odometry_.push_back(o);
   }
 
+  /// Poses go on by scaled steps, and where they were when the microcontroller starts anew at zero.
+  void go_on(Odometry& o) {
+    const auto reported = o.pose;
+    auto step = reported - reported_;
+    if (std::hypot(step.x, step.y) > 0.5 || std::abs(step.phi) > 0.5) step = {};  // in a twentieth of a second
+    step.x *= settings_.distance_scale;
+    step.y *= settings_.distance_scale;
+    step.phi *= settings_.turn_scale;
+    pose_ = pose_ + step;
+    reported_ = reported;
+    o.pose = pose_;
+    o.v *= settings_.distance_scale;
+    o.w *= settings_.turn_scale;
+  }
+
   BaseSettings settings_;
+  mrpt::math::TPose2D pose_, reported_;
   LineKind line_ = LineKind::Tcp;
   std::string waiting_;
   Drive target_;

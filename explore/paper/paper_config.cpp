@@ -7,9 +7,7 @@ void bind(Binder& b, PaperExplorerConfig& c) {
   b.number("alpha", transform.alpha, 0.0, 1000.0);
   b.number("d_min_m", transform.d_min, 0.0, 2.0);
   b.number("d_opt_m", transform.d_opt, 0.0, 5.0);
-  std::string discomfort = transform.discomfort == Discomfort::PerCell ? "per_cell" : "per_metre";
-  b.choice("discomfort", discomfort, {"per_metre", "per_cell"});
-  transform.discomfort = discomfort == "per_cell" ? Discomfort::PerCell : Discomfort::PerMetre;
+  b.choice("discomfort", transform.discomfort, {"per_metre", "per_cell"});
   b.boolean("bar_targets", c.bar_targets);
   b.number("occupied_threshold", c.occupied_threshold, 0.01, 1.0);
   b.integer("min_frontier_cells", c.planner.min_frontier_cells, 1, 10000);

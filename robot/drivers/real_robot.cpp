@@ -430,9 +430,10 @@ struct RealRobot::Impl {
       s.moves = base_watch.moves();
       if (read_pose && !waiting_odometry.empty()) s.unread = waiting_odometry.back().pose - *read_pose;
       s.mend = is_levelled_wrong() ? "see to its servos and the robot file; after R it is not levelled any more"
+               : is_empty()        ? "charge or change its battery"
                                    : base_watch.mend();
       add_battery(s.troubles);
-      if (unlevelled) s.troubles.push_back({"levelling", Cause::Faulty, "off since it made the tilt larger"});
+      if (unlevelled) s.troubles.push_back({"levelling", Cause::Faulty, "off since it did not take the tilt away"});
       if (is_only_mapping() && !levelling_witness.finding().empty())
         s.troubles.push_back({"levelling", Cause::Faulty, levelling_witness.finding()});
       s.motors_stay = base_watch.motors_stay();

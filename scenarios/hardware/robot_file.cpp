@@ -75,7 +75,7 @@ void bind(Binder& b, robot::SafetySettings& s) {
   b.boolean("sees_nothing_holds", s.scans.nothing_holds);
   b.number("sees_nothing_m", s.scans.nothing_way, 0.0, 1000.0);
   b.number("battery_low_v", s.battery_low, 0.0, 100.0);
-  b.number("battery_empty_v", s.battery_empty, 0.0, 100.0);
+  b.number("battery_empty_v", s.battery_empty, 0.0, s.battery_low);
 }
 
 void bind_devices(Binder& b, RobotFile& file) {

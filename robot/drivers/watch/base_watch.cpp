@@ -69,8 +69,9 @@ bool BaseWatch::hold(const std::string& name, const std::string& why, bool blind
 
 /// Whoever answers after a break must be who answered before; and be moved by the same wheels, where he does not say.
 void BaseWatch::mind_identity(const BaseTurn& turn, Stamp now) {
-  if (turn.ready && !was_ready_ && !identity_.empty()) mount_witness_.broke(now);
+  if (turn.ready && !was_ready_ && ever_ready_) mount_witness_.broke(now);
   was_ready_ = turn.ready;
+  ever_ready_ = ever_ready_ || turn.ready;
   if (!turn.ready || turn.identity.empty()) return;
   identity_now_ = turn.identity;
   if (identity_.empty()) identity_ = turn.identity;

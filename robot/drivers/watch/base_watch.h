@@ -97,6 +97,7 @@ class BaseWatch {
   std::string held_, held_name_, mend_;
   bool blind_ = false;
   bool was_ready_ = false;
+  bool ever_ready_ = false;   ///< so that its line broke when it is not
   std::string identity_;      ///< of the base that is driven
   std::string identity_now_;  ///< of the one that answers
   Stamp held_moves_since_ = Stamp::never();

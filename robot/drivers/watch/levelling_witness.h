@@ -12,9 +12,8 @@ class LevellingWitness {
  public:
   /// What the unit felt and where its servos stood, as they come.
   void look(const Acceleration& felt, const AimState& aim);
-  void clear() { *this = LevellingWitness(); }
 
-  /// What is wrong, in words; empty: nothing. Stays until clear().
+  /// What is wrong, in words; empty: nothing. Stays.
   const std::string& finding() const { return finding_; }
 
  private:

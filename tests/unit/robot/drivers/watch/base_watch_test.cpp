@@ -40,7 +40,7 @@ class WatchedBase {
       std::vector<Odometry> reports;
       if (++turns % 5 == 0)
         reports.push_back(counts ? Odometry{now, pose, motion.v, motion.w, false} : Odometry{now, {}, 0.0, 0.0, false});
-      if (turns % 5 == 2) watch.see(seen_from(upside_down ? -pose.phi : pose.phi, now), now);
+      if (turns % 5 == 2) watch.see(seen_from(scans_stand ? 0.0 : upside_down ? -pose.phi : pose.phi, now), now);
       stopped = watch.look(turn, reports, now) || stopped;
     }
     return stopped;
@@ -76,6 +76,7 @@ class WatchedBase {
   int turns = 0;
   bool counts = true;        ///< its encoders do
   bool upside_down = false;  ///< its scanner hangs so
+  bool scans_stand = false;  ///< its scanner is another robot's, which stands
 };
 
 TEST(BaseWatch, ABaseThatObeysIsInNoTrouble) {
@@ -106,6 +107,20 @@ TEST(BaseWatch, AnotherRobotsBaseBehindTheSamePortIsHeld) {
   EXPECT_NE(base.watch.mend(), "");
   base.watch.rearm();
   EXPECT_FALSE(base.run({0.2, 0.0}, 2.0)) << "the operator has said that it is right";
+}
+
+/// A driver without who() tells nothing of whom it talks to: then wheels that go while scans stand do, behind a break.
+TEST(BaseWatch, AnotherBaseThatDoesNotSayWhoItIsIsHeldByItsWheelsBehindABreak) {
+  for (const bool breaks : {false, true}) {
+    WatchedBase base;
+    EXPECT_FALSE(base.run({0.0, 0.8}, 6.0));
+    base.turn.ready = !breaks;
+    EXPECT_FALSE(base.run({}, 3.0));
+    base.turn.ready = true;
+    base.scans_stand = true;
+    EXPECT_EQ(base.run({0.0, 0.8}, 10.0), breaks);
+    EXPECT_EQ(base.watch.held() != "", breaks) << base.watch.held();
+  }
 }
 
 TEST(BaseWatch, WhoIsHeldAndMovesAllTheSameIsNamed) {

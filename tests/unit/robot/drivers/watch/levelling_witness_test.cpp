@@ -55,7 +55,7 @@ TEST(LevellingWitness, OneThatTurnsTheWrongWayIsFoundWithinSeconds) {
     EXPECT_THAT(pitch.witness.finding(), HasSubstr("devices.levelling.pitch.deg_per_us"));
     EXPECT_LT(roll.run(0.0, tilt, -1.0), 5.0) << tilt;
     EXPECT_THAT(roll.witness.finding(), HasSubstr("devices.levelling.roll.deg_per_us"));
-    roll.witness.clear();
+    roll.witness = LevellingWitness();
     EXPECT_EQ(roll.witness.finding(), "");
   }
 }
