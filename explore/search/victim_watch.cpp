@@ -47,12 +47,15 @@ bool VictimWatch::hear(const robot::VictimCue& cue, const slam::Mapper& mapper, 
   return victims_.reports().size() > before;
 }
 
-/// A victim in a niche lies before its back; one that is seen from here behind a wall is seen through a hole.
+/// A victim in a niche lies before its back, though a cue past the niche's edge may seem to come through it; one that
+/// is seen behind a wall again and again, and hardly ever before it, is seen through a hole.
 void VictimWatch::ask_for_holes(const Anchor& anchor, const TPoint2D& cue, const Traversable& floor) {
-  for (const VictimReport& victim : reports())
-    if (distance(victim.p_map, cue) < kOfVictim && is_behind_wall(floor, position(anchor.T_map_base), victim.p_map) &&
-        ++through_walls_ >= kSureOfHoles)
-      search_.expect_holes();
+  for (const VictimReport& victim : reports()) {
+    if (distance(victim.p_map, cue) > kOfVictim) continue;
+    Cues& cues = cues_[victim.id];
+    ++(is_behind_wall(floor, position(anchor.T_map_base), victim.p_map) ? cues.through_wall : cues.in_sight);
+    if (cues.through_wall >= kSureOfHoles && cues.through_wall > 2 * cues.in_sight) search_.expect_holes();
+  }
 }
 
 bool VictimWatch::look(const Traversable& floor, const TPose2D& T_map_base, double turn_rate, Stamp now) {

@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPose2D.h>
 
+#include <map>
 #include <vector>
 
 #include "base/pose_covariance.h"
@@ -49,10 +50,15 @@ class VictimWatch {
  private:
   void ask_for_holes(const Anchor& anchor, const mrpt::math::TPoint2D& cue, const Traversable& floor);
 
+  /// Of a confirmed victim, counted by whether a wall of the map stands before it.
+  struct Cues {
+    int through_wall = 0;
+    int in_sight = 0;
+  };
   PoseDoubt doubt_;
   VictimSearch victims_;
   FloorSearch search_;
-  int through_walls_ = 0;  ///< cues of confirmed victims that lie behind a wall of the map
+  std::map<int, Cues> cues_;  ///< of confirmed victims, by id
 };
 
 }  // namespace rubble::explore

@@ -105,6 +105,22 @@ TEST(VictimWatch, AVictimBehindAWallTellsThatThereAreHoles) {
   }
 }
 
+/// Past the edge of a niche a line of sight may cut a cell of its side; most do not.
+TEST(VictimWatch, AFewCuesPastTheEdgeOfANicheTellOfNoHole) {
+  Watching robot;
+  OccupancyGrid cells = test::room(6.0, 4.0);
+  test::fill(cells, 3.0, 2.3, 3.05, 2.6, Occupancy::Occupied);
+  robot.floor = test::measured(std::move(cells));
+  robot.moved(0.05);
+  for (int i = 0; i < 12; ++i) {
+    robot.pose = i % 3 == 0 ? TPose2D{2.0, 2.5, 0.0} : TPose2D{3.2, 1.2, 1.5};  // through the side; from the front
+    robot.moved(0.05);
+    robot.hear({3.3, 2.4});
+  }
+  ASSERT_EQ(robot.watch.reports().size(), 1u);
+  EXPECT_FALSE(robot.watch.search().squarely());
+}
+
 TEST(VictimWatch, LookingSquarelyCanBeAskedForOrRefused) {
   SearchConfig config;
   config.squarely = SquareLook::Always;
