@@ -65,14 +65,14 @@ bool FloorSearch::reconsider(const Traversable& floor) {
 }
 
 bool FloorSearch::subject_seen(const Traversable& floor) const {
-  const Cell c = floor.cells.cell(subject_);
+  const Cell c = floor.cells.cell(subject_.at);
   if (c.x < 1 || c.y < 1 || c.x + 1 >= floor.cells.width() || c.y + 1 >= floor.cells.height()) return false;
-  return (record(subject_squarely_).missing(floor, c) & subject_faces_) == 0;
+  return (record(subject_.squarely).missing(floor, c) & subject_.faces) == 0;
 }
 
 void FloorSearch::give_up_subject(const Traversable& floor, const Anchor& here) {
-  given_up_.push_back({here, here.T_map_base.inverseComposePoint(subject_), subject_faces_, subject_squarely_});
-  record(subject_squarely_).give_up(floor, subject_, kSubjectRadius, subject_faces_);
+  given_up_.push_back({here, here.T_map_base.inverseComposePoint(subject_.at), subject_.faces, subject_.squarely});
+  record(subject_.squarely).give_up(floor, subject_.at, kSubjectRadius, subject_.faces);
 }
 
 std::vector<Source> FloorSearch::sources(const Traversable& floor, Subjects subjects,
@@ -89,11 +89,7 @@ std::vector<Source> FloorSearch::sources(const Traversable& floor, Subjects subj
 
 void FloorSearch::choose_subject(Cell viewpoint) {
   for (const Viewpoint& view : views_)
-    if (view.cell == viewpoint) {
-      subject_ = view.subject;
-      subject_faces_ = view.faces;
-      subject_squarely_ = views_squarely_;
-    }
+    if (view.cell == viewpoint) subject_ = {view.subject, view.faces, views_squarely_};
 }
 
 std::optional<double> FloorSearch::turn_to_subject(const Traversable& floor, const TPose2D& T_map_base) {
@@ -104,20 +100,14 @@ std::optional<double> FloorSearch::turn_to_subject(const Traversable& floor, con
     const double to = wrap_angle(bearing - T_map_base.phi);
     if (std::abs(to) >= std::abs(turn)) continue;
     turn = to;
-    subject_ = view.subject;
-    subject_faces_ = view.faces;
-    subject_squarely_ = views_squarely_;
+    subject_ = {view.subject, view.faces, views_squarely_};
   }
   turned_to_ = subject_;
-  turned_to_faces_ = subject_faces_;
-  turned_to_squarely_ = subject_squarely_;
   return std::abs(turn) > kFacing ? std::optional<double>(turn) : std::nullopt;
 }
 
 void FloorSearch::start_dwell_as_turned(Stamp now) {
   subject_ = turned_to_;
-  subject_faces_ = turned_to_faces_;
-  subject_squarely_ = turned_to_squarely_;
   start_dwell(now);
 }
 

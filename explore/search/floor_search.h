@@ -77,6 +77,12 @@ class FloorSearch {
     Faces faces;
     bool squarely;
   };
+  /// The place to face.
+  struct Subject {
+    mrpt::math::TPoint2D at;  ///< [m, map frame]
+    Faces faces = 0;
+    bool squarely = false;
+  };
   /// A look that showed something new.
   struct Look {
     Anchor anchor;
@@ -90,12 +96,8 @@ class FloorSearch {
   SearchedArea squarely_;  ///< what was looked at squarely
   std::vector<Viewpoint> views_;
   bool views_squarely_ = false;  ///< they are to look squarely from
-  mrpt::math::TPoint2D subject_;
-  Faces subject_faces_ = 0;
-  bool subject_squarely_ = false;
-  mrpt::math::TPoint2D turned_to_;  ///< the subject of the last turn
-  Faces turned_to_faces_ = 0;
-  bool turned_to_squarely_ = false;
+  Subject subject_;
+  Subject turned_to_;  ///< of the last turn
   std::vector<Look> looks_;
   std::vector<GivenUp> given_up_;
   Stamp next_look_ = Stamp::never();
