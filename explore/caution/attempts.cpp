@@ -12,17 +12,21 @@ constexpr double kSecondsPerMetre = 10;  ///< a quarter of the usual cruise spee
 
 }  // namespace
 
-bool Attempts::overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt) {
+bool Attempts::overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt, const Anchor& anchor) {
   for (std::size_t i = 0; i < accounts_.size(); ++i) {
     Account& account = accounts_[i];
-    if (distance(account.target, target) > same_target_) continue;
+    if (distance(account.target.p_map(), target) > same_target_) continue;
     account.budget -= dt;
     if (account.budget >= 0.0) return false;
     accounts_.erase(accounts_.begin() + static_cast<std::ptrdiff_t>(i));
     return true;
   }
-  accounts_.push_back({target, kBaseBudget + kSecondsPerMetre * cost - dt});
+  accounts_.push_back({{anchor, target}, kBaseBudget + kSecondsPerMetre * cost - dt});
   return false;
+}
+
+void Attempts::follow(const slam::Mapper& mapper) {
+  for (Account& account : accounts_) account.target.follow(mapper);
 }
 
 }  // namespace rubble::explore

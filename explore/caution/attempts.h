@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "explore/anchor.h"
+
 namespace rubble::explore {
 
 /// Keeps account of the time spent on the way to each target, so that driving to and fro between targets that move out
@@ -14,12 +16,14 @@ class Attempts {
   explicit Attempts(double same_target) : same_target_(same_target) {}
 
   /// Spends `dt` seconds on a target that cost `cost` metres when it was first chosen; true when that is more time than
-  /// it deserves. The account is then closed: choosing the target again opens a new one.
-  bool overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt);
+  /// it deserves. The account is then closed: choosing the target again opens a new one. The robot is at `anchor`.
+  bool overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt, const Anchor& anchor);
+  /// The mapper corrected its past.
+  void follow(const slam::Mapper& mapper);
 
  private:
   struct Account {
-    mrpt::math::TPoint2D target;
+    AnchoredPoint target;
     double budget;  ///< [s]
   };
   double same_target_;

@@ -17,18 +17,22 @@ bool holds(const TPoint2D& centre, double radius, const TPoint2D& p) { return di
 
 }  // namespace
 
-void Blacklist::bar(const TPoint2D& p_map, double radius, Stamp until) { entries_.push_back({p_map, radius, until}); }
+void Blacklist::bar(const AnchoredPoint& p, double radius, Stamp until) { entries_.push_back({p, radius, until}); }
 
-void Blacklist::bar_for_good(const TPoint2D& p_map, double radius) { bar(p_map, radius, kForever); }
+void Blacklist::bar_for_good(const AnchoredPoint& p, double radius) { bar(p, radius, kForever); }
+
+void Blacklist::follow(const slam::Mapper& mapper) {
+  for (Entry& e : entries_) e.p.follow(mapper);
+}
 
 bool Blacklist::barred(const TPoint2D& p_map, Stamp now) const {
   return std::any_of(entries_.begin(), entries_.end(),
-                     [&](const Entry& e) { return now < e.until && holds(e.p_map, e.radius, p_map); });
+                     [&](const Entry& e) { return now < e.until && holds(e.p.p_map(), e.radius, p_map); });
 }
 
 int Blacklist::times_barred(const TPoint2D& p_map) const {
-  return static_cast<int>(
-      std::count_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return holds(e.p_map, e.radius, p_map); }));
+  return static_cast<int>(std::count_if(entries_.begin(), entries_.end(),
+                                        [&](const Entry& e) { return holds(e.p.p_map(), e.radius, p_map); }));
 }
 
 bool Blacklist::pardon_all(Stamp now) {

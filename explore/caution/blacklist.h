@@ -5,16 +5,19 @@
 #include <vector>
 
 #include "base/stamp.h"
+#include "explore/anchor.h"
 
 namespace rubble::explore {
 
 /// Places not to drive to for a while: frontiers that could not be reached, or that stay although they were visited.
 class Blacklist {
  public:
-  /// Bars the disc around p until `until`.
-  void bar(const mrpt::math::TPoint2D& p_map, double radius, Stamp until);
+  /// Bars the disc of `radius` [m] around p, a place of the map of this moment, until `until`.
+  void bar(const AnchoredPoint& p, double radius, Stamp until);
   /// Bars the disc for as long as the blacklist lives.
-  void bar_for_good(const mrpt::math::TPoint2D& p_map, double radius);
+  void bar_for_good(const AnchoredPoint& p, double radius);
+  /// The mapper corrected its past.
+  void follow(const slam::Mapper& mapper);
 
   bool barred(const mrpt::math::TPoint2D& p_map, Stamp now) const;
   /// How often discs around p were barred so far, expired ones included.
@@ -26,7 +29,7 @@ class Blacklist {
 
  private:
   struct Entry {
-    mrpt::math::TPoint2D p_map;
+    AnchoredPoint p;
     double radius;
     Stamp until;
   };

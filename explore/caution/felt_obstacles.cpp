@@ -56,8 +56,10 @@ bool FeltObstacles::feel(const Anchor& anchor, bool behind, const robot::RobotMo
   thing.half_bar = kHalfBar;
   if (grid && feel_pallet(thing, *grid, model, trail)) return true;
   for (const Thing& known : things_)
-    if (!known.is_pallet && distance(known.at(0.0), thing.at(0.0)) < config_.same_thing)
+    if (!known.is_pallet && distance(known.at(0.0), thing.at(0.0)) < config_.same_thing) {
       thing.times = std::max(thing.times, known.times + 1);
+      thing.had_its_chance = thing.had_its_chance || known.had_its_chance;
+    }
   const bool for_good = thing.times >= config_.certain;
   thing.until = for_good ? kForGood : anchor.stamp + config_.memory * std::ldexp(1.0, thing.times - 1);
   things_.push_back(thing);
@@ -85,6 +87,7 @@ bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, cons
     if (!known.is_pallet || distance({known.pallet().x, known.pallet().y}, middle) > 0.5 * config_.pallet) continue;
     thing.certain = !stood_on && (known.certain || !known.whole);
     thing.times = known.times + 1;
+    thing.had_its_chance = known.had_its_chance;
     thing.stubs = thing.stubs || known.stubs || thing.times > 1;
     known = thing;
     return !stood_on;
@@ -133,6 +136,17 @@ int FeltObstacles::count(Stamp now) const {
 bool FeltObstacles::forget(Stamp now) {
   const bool any = count(now) > 0;
   for (Thing& thing : things_) thing.until = std::min(thing.until, now);
+  return any;
+}
+
+bool FeltObstacles::forget_once(Stamp now) {
+  bool any = false;
+  for (Thing& thing : things_) {
+    if (thing.had_its_chance) continue;
+    any = any || counts(thing, now);
+    thing.had_its_chance = true;
+    thing.until = std::min(thing.until, now);
+  }
   return any;
 }
 

@@ -53,6 +53,8 @@ class FeltObstacles {
   bool pardon(Stamp now);
   /// Forgets everything until it is felt again; says whether anything counted.
   bool forget(Stamp now);
+  /// Forgets what was never forgotten so before: what was felt again since stays. Says whether there was any.
+  bool forget_once(Stamp now);
 
  private:
   struct Thing {
@@ -67,6 +69,7 @@ class FeltObstacles {
     bool certain = false;               ///< it was felt again after a pardon
     bool stubs = false;                 ///< else, whether the middles of its sides count
     bool inside = false;                ///< the robot's middle is on it
+    bool had_its_chance = false;        ///< it was forgotten once, to be tried again
     mrpt::math::TPose2D T_base_pallet;  ///< of the pallet's middle
 
     mrpt::math::TPoint2D at(double aside) const;  ///< on the bar [m, map frame]

@@ -15,12 +15,14 @@ constexpr int kMostDoublings = 6;
 
 }  // namespace
 
-void LeftAlone::bar(const mrpt::math::TPoint2D& target, Stamp now) {
+void LeftAlone::bar(const mrpt::math::TPoint2D& target, const Anchor& anchor) {
   const int times = std::min(blacklist_.times_barred(target), kMostDoublings);
-  blacklist_.bar(target, kBarRadius, now + kBarTime * std::ldexp(1.0, times));
+  blacklist_.bar({anchor, target}, kBarRadius, anchor.stamp + kBarTime * std::ldexp(1.0, times));
 }
 
-void LeftAlone::bar_for_good(const mrpt::math::TPoint2D& target) { blacklist_.bar_for_good(target, kBarRadius); }
+void LeftAlone::bar_for_good(const mrpt::math::TPoint2D& target, const Anchor& anchor) {
+  blacklist_.bar_for_good({anchor, target}, kBarRadius);
+}
 
 bool LeftAlone::feel(const Anchor& anchor, bool behind, const robot::RobotModel& model, const OccupancyGrid& known,
                      const Trail& trail) {

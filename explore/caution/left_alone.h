@@ -24,16 +24,16 @@ class LeftAlone {
   /// `same_target`: targets closer together are one [m].
   LeftAlone(const FeltConfig& felt, double same_target) : config_(felt), attempts_(same_target), felt_(felt) {}
 
-  /// Bars what lies around a target for a minute, twice as long each time.
-  void bar(const mrpt::math::TPoint2D& target, Stamp now);
+  /// Bars what lies around a target for a minute, twice as long each time; the robot is at `anchor`.
+  void bar(const mrpt::math::TPoint2D& target, const Anchor& anchor);
   /// Until all is pardoned.
-  void bar_for_good(const mrpt::math::TPoint2D& target);
+  void bar_for_good(const mrpt::math::TPoint2D& target, const Anchor& anchor);
   bool barred(const mrpt::math::TPoint2D& p_map, Stamp now) const { return blacklist_.barred(p_map, now); }
 
   /// Spends `dt` [s] on a target that cost `cost` [m] when it was first chosen; true when that is more than it
-  /// deserves.
-  bool overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt) {
-    return attempts_.overdrawn(target, cost, dt);
+  /// deserves. The robot is at `anchor`.
+  bool overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt, const Anchor& anchor) {
+    return attempts_.overdrawn(target, cost, dt, anchor);
   }
 
   /// Something stopped the body at `anchor`, right before it or, when it drove backwards, `behind` it. `known`: the
@@ -45,7 +45,11 @@ class LeftAlone {
     felt_.passed(T_map_base, model);
   }
   /// The mapper corrected its past.
-  void follow(const slam::Mapper& mapper) { felt_.follow(mapper); }
+  void follow(const slam::Mapper& mapper) {
+    blacklist_.follow(mapper);
+    attempts_.follow(mapper);
+    felt_.follow(mapper);
+  }
   /// What counts as an obstacle now [m, map frame].
   std::vector<mrpt::math::TPoint2D> obstacles(Stamp now) const { return felt_.points(now); }
 
@@ -56,6 +60,8 @@ class LeftAlone {
   bool pardon_all(Stamp now);
   /// Forgets all that was felt, what is certain as well, until it is felt again. Targets stay barred.
   bool forget(Stamp now) { return felt_.forget(now); }
+  /// Forgets what was felt but never forgotten before: each thing gets one chance more, not many.
+  bool forget_once(Stamp now) { return felt_.forget_once(now); }
 
  private:
   FeltConfig config_;

@@ -78,8 +78,8 @@ Plan Agenda::choose(const Situation& situation) {
   const TargetChoice::View view{situation.floor, situation.T_map_base, situation.now, situation.left_alone};
   TargetChoice::Choice choice = choice_.choose(view, situation.search);
   if (choice.no_niche) {
-    const auto news = rounds_.before_all_faces(standing(situation), choice.plan.frontier_left, situation.search,
-                                               situation.left_alone);
+    frontier_left_ = choice.plan.frontier_left;
+    const auto news = rounds_.before_all_faces(standing(situation), situation.search, situation.left_alone);
     if (news) {
       begin_round(*news, situation.now);
       return choice_.choose_frontier(view);
@@ -94,7 +94,7 @@ void Agenda::turn_away(const Plan& plan, double left, const Situation& situation
   if (!choice_.turns_away(plan) || goal() == Goal::Home) return;
   if (!choice_.kept_away({situation.floor, situation.T_map_base, situation.now, situation.left_alone}, left)) return;
   note(situation.now, "something new stands in the way");
-  leave_target(situation.left_alone, situation.now);
+  leave_target(situation.left_alone, situation.robot());
 }
 
 Order Agenda::decide(Plan plan, bool new_map, const Situation& situation) {
@@ -136,7 +136,7 @@ Order Agenda::visited_in_vain(const TPoint2D& where, const Situation& situation)
     return turn(kLookTurn, TurnFor::View);
   }
   note(situation.now, "the frontier at " + text(where) + " stays although it was visited: left alone");
-  situation.left_alone.bar_for_good(where);
+  situation.left_alone.bar_for_good(where, situation.robot());
   choice_.drop_target();
   return stay_and_plan();
 }
@@ -235,17 +235,17 @@ Order Agenda::finish(MissionEnd end, const std::string& why, Stamp now) {
 
 void Agenda::spend(double dt, const Situation& situation) {
   if (!target() || goal() == Goal::Home) return;
-  if (!situation.left_alone.overdrawn(*target(), choice_.cost(), dt)) return;
-  if (goal() == Goal::Place) situation.search.give_up_subject(situation.floor, {situation.now, situation.T_map_base});
-  leave_target(situation.left_alone, situation.now);
+  if (!situation.left_alone.overdrawn(*target(), choice_.cost(), dt, situation.robot())) return;
+  if (goal() == Goal::Place) situation.search.give_up_subject(situation.floor, situation.robot());
+  leave_target(situation.left_alone, situation.robot());
 }
 
-void Agenda::leave_target(LeftAlone& left_alone, Stamp now) {
+void Agenda::leave_target(LeftAlone& left_alone, const Anchor& robot) {
   // A place to search that comes back after a minute calls the robot back from the other end of the arena.
   if (goal() == Goal::Place && choice_.frontiers_done())
-    left_alone.bar_for_good(*target());
+    left_alone.bar_for_good(*target(), robot);
   else
-    left_alone.bar(*target(), now);
+    left_alone.bar(*target(), robot);
   choice_.drop_target();
   plan_soon();
 }

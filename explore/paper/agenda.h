@@ -49,6 +49,8 @@ class Agenda {
     std::size_t victims;  ///< sure ones so far
     LeftAlone& left_alone;
     FloorSearch& search;
+
+    Anchor robot() const { return {now, T_map_base}; }
   };
 
   explicit Agenda(const PaperExplorerConfig& config);
@@ -89,7 +91,7 @@ class Agenda {
   /// Spends `dt` [s] on the way to the target; one that costs more time than it deserves is left alone.
   void spend(double dt, const Situation& situation);
   /// The target cannot be had: it is left alone for a while.
-  void leave_target(LeftAlone& left_alone, Stamp now);
+  void leave_target(LeftAlone& left_alone, const Anchor& robot);
   /// The place to search was seen from the way.
   void look_made(const Situation& situation);
 

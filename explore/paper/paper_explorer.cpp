@@ -178,7 +178,7 @@ void PaperExplorer::get_free_of(const StuckWatch::Hold& hold) {
   brakes_ = true;
   pilot_.stop();
   const bool again = recovery_.begin(hold.met, pose_, now_);
-  if (again && agenda_.target() && agenda_.goal() != Goal::Home) agenda_.leave_target(left_alone_, now_);
+  if (again && agenda_.target() && agenda_.goal() != Goal::Home) agenda_.leave_target(left_alone_, {now_, pose_});
   const bool pallet = hold.met != Escape::Met::Turning &&
                       left_alone_.feel({now_, pose_}, hold.met == Escape::Met::Backwards, model_, floor_.cells, trail_);
   agenda_.note(now_, hold.how + (pallet ? ": backs off and keeps clear of the pallet ahead"

@@ -28,14 +28,15 @@ Resort Rounds::next_resort(bool homeward, bool may_push, LeftAlone& left_alone, 
   return Resort::ForgetAll;
 }
 
-std::optional<std::string> Rounds::before_all_faces(const Standing& standing, std::size_t frontier_left,
-                                                    FloorSearch& search, LeftAlone& left_alone) {
-  if (frontier_left > 0 && !tried_before_search_ && left_alone.pardon_all(standing.now)) {
+std::optional<std::string> Rounds::before_all_faces(const Standing& standing, FloorSearch& search,
+                                                    LeftAlone& left_alone) {
+  if (standing.frontier_left > 0 && !tried_before_search_ && left_alone.pardon_all(standing.now)) {
     tried_before_search_ = true;
     begin();
     return "no niche is left: what could not be reached is tried again before the rest is searched";
   }
-  if (frontier_left >= kWorthForgetting && forgets_ == 0) return forget_what_was_felt(standing, search, left_alone);
+  if (standing.frontier_left >= kWorthForgetting && forgets_ == 0)
+    return forget_what_was_felt(standing, search, left_alone);
   return std::nullopt;
 }
 
@@ -57,7 +58,7 @@ std::optional<std::string> Rounds::another(const Standing& standing, FloorSearch
 /// even what was felt for certain is tried anew.
 std::optional<std::string> Rounds::forget_what_was_felt(const Standing& standing, FloorSearch& search,
                                                         LeftAlone& left_alone) {
-  if (standing.frontier_left == 0 || forgets_ >= kForgets || !left_alone.forget(standing.now)) return std::nullopt;
+  if (standing.frontier_left == 0 || forgets_ >= kForgets || !left_alone.forget_once(standing.now)) return std::nullopt;
   ++forgets_;
   barren_rounds_ = 0;
   search.reconsider(standing.floor);

@@ -38,10 +38,9 @@ class Rounds {
   /// forgive something, that is done. `may_push`: so may things be.
   Resort next_resort(bool homeward, bool may_push, LeftAlone& left_alone, Stamp now);
 
-  /// No niche is left to be searched, but `frontier_left` frontiers: before the search of all other faces, which takes
+  /// No niche is left to be searched, but frontiers may be: before the search of all other faces, which takes
   /// most of the time, what failed is tried again, once a round. Returns the news; nothing: there is nothing to try.
-  std::optional<std::string> before_all_faces(const Standing& standing, std::size_t frontier_left, FloorSearch& search,
-                                              LeftAlone& left_alone);
+  std::optional<std::string> before_all_faces(const Standing& standing, FloorSearch& search, LeftAlone& left_alone);
   /// Everything is done: begins another round if one is worth while. Returns the news; nothing: that was the last.
   std::optional<std::string> another(const Standing& standing, FloorSearch& search, LeftAlone& left_alone);
   /// The robot is to go home: what failed is forgiven once more on the way.

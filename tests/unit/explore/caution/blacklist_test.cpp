@@ -5,9 +5,12 @@
 namespace rubble::explore {
 namespace {
 
+/// Seen from the origin.
+AnchoredPoint place(double x, double y) { return {Anchor{Stamp::from_seconds(1.0), {}}, {x, y}}; }
+
 TEST(Blacklist, BarsADiscUntilItExpires) {
   Blacklist list;
-  list.bar({1.0, 1.0}, 0.5, Stamp::from_seconds(10.0));
+  list.bar(place(1.0, 1.0), 0.5, Stamp::from_seconds(10.0));
   EXPECT_TRUE(list.barred({1.3, 1.3}, Stamp::from_seconds(5.0)));
   EXPECT_FALSE(list.barred({1.5, 1.5}, Stamp::from_seconds(5.0)));
   EXPECT_FALSE(list.barred({1.3, 1.3}, Stamp::from_seconds(10.0)));
@@ -18,8 +21,8 @@ TEST(Blacklist, PardonsWhatWouldExpireAndNothingElse) {
   Blacklist list;
   const Stamp now = Stamp::from_seconds(5.0);
   EXPECT_FALSE(list.pardon(now));
-  list.bar({1.0, 1.0}, 0.5, Stamp::from_seconds(10.0));
-  list.bar_for_good({5.0, 5.0}, 0.5);
+  list.bar(place(1.0, 1.0), 0.5, Stamp::from_seconds(10.0));
+  list.bar_for_good(place(5.0, 5.0), 0.5);
   EXPECT_TRUE(list.pardon(now));
   EXPECT_FALSE(list.barred({1.0, 1.0}, now));
   EXPECT_TRUE(list.barred({5.0, 5.0}, now));
@@ -29,7 +32,7 @@ TEST(Blacklist, PardonsWhatWouldExpireAndNothingElse) {
 TEST(Blacklist, PardonOfAllEndsBarsForGoodAsWell) {
   const Stamp now = Stamp::from_seconds(10.0);
   Blacklist list;
-  list.bar_for_good({1.0, 0.0}, 0.5);
+  list.bar_for_good(place(1.0, 0.0), 0.5);
   EXPECT_FALSE(list.pardon(now));
   EXPECT_TRUE(list.barred({1.0, 0.0}, now));
   EXPECT_TRUE(list.pardon_all(now));

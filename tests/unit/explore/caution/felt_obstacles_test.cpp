@@ -87,6 +87,21 @@ TEST(FeltObstacles, ForgettingTakesTheCertainOnesToo) {
   EXPECT_EQ(felt.count(at(3.0)), 1);
 }
 
+TEST(FeltObstacles, EachThingIsForgottenOnceForTheSakeOfNewGround) {
+  FeltObstacles felt;
+  felt.feel({at(0.0), TPose2D{}}, false, kModel);
+  EXPECT_TRUE(felt.forget_once(at(1.0)));
+  EXPECT_EQ(felt.count(at(1.0)), 0);
+  EXPECT_FALSE(felt.forget_once(at(1.0)));
+  felt.feel({at(2.0), TPose2D{0.1, 0.0, 0.0}}, false, kModel);  // it was no mistake
+  felt.feel({at(2.0), TPose2D{5.0, 0.0, 0.0}}, false, kModel);  // another
+  EXPECT_TRUE(felt.forget_once(at(3.0)));
+  EXPECT_EQ(felt.count(at(3.0)), 1) << "what was felt again stays";
+  EXPECT_FALSE(felt.forget_once(at(4.0)));
+  EXPECT_TRUE(felt.forget(at(5.0))) << "but for the way home";
+  EXPECT_EQ(felt.count(at(5.0)), 0);
+}
+
 TEST(FeltObstacles, PardonSparesWhatIsCertain) {
   FeltConfig config;
   FeltObstacles felt(config);

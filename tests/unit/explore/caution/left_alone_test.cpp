@@ -30,7 +30,7 @@ TEST(LeftAlone, EachFailureBarsATargetTwiceAsLongUpToAnHour) {
   Stamp now = seconds(1.0);
   double last = 0.0;
   for (int i = 0; i < 10; ++i) {
-    left_alone.bar(kTarget, now);
+    left_alone.bar(kTarget, {now, {}});
     const double t = barred_for(left_alone, now);
     if (i == 0) {
       EXPECT_NEAR(t, 60.0, 1.0);
@@ -53,19 +53,19 @@ TEST(LeftAlone, ForgivesByDegrees) {
   EXPECT_FALSE(left_alone.pardon_all(now));
   EXPECT_FALSE(left_alone.forget(now)) << "there is nothing to forgive";
 
-  left_alone.bar(kTarget, now);
-  left_alone.bar_for_good({9.0, 9.0});
+  left_alone.bar(kTarget, {now, {}});
+  left_alone.bar_for_good({9.0, 9.0}, {now, {}});
   EXPECT_TRUE(left_alone.pardon(now));
   EXPECT_FALSE(left_alone.barred(kTarget, now));
   EXPECT_TRUE(left_alone.barred({9.0, 9.0}, now)) << "for good";
   EXPECT_TRUE(left_alone.pardon_all(now));
   EXPECT_FALSE(left_alone.barred({9.0, 9.0}, now));
 
-  left_alone.bar(kTarget, now);
+  left_alone.bar(kTarget, {now, {}});
   for (int i = 0; i < 3; ++i) feel(left_alone, 3.0, now);  // certain by then
   EXPECT_TRUE(left_alone.pardon_all(now)) << "a bar shrinks";
   EXPECT_FALSE(left_alone.obstacles(now).empty()) << "but what is certain stays";
-  left_alone.bar(kTarget, now);
+  left_alone.bar(kTarget, {now, {}});
   EXPECT_TRUE(left_alone.forget(now));
   EXPECT_TRUE(left_alone.obstacles(now).empty());
   EXPECT_TRUE(left_alone.barred(kTarget, now)) << "a target is nothing that was felt";
@@ -74,7 +74,7 @@ TEST(LeftAlone, ForgivesByDegrees) {
 TEST(LeftAlone, APardonLeavesNeitherTargetsNorThingsOut) {
   const Stamp now = seconds(10.0);
   LeftAlone left_alone({}, 0.5);
-  left_alone.bar(kTarget, now);
+  left_alone.bar(kTarget, {now, {}});
   feel(left_alone, 3.0, now);
   const std::size_t points = left_alone.obstacles(now).size();
   EXPECT_TRUE(left_alone.pardon(now));

@@ -120,6 +120,16 @@ TEST_F(FeltPallet, APardonLeavesTheMiddlesOfTheSidesAndTheNextTouchIsForGood) {
   EXPECT_EQ(felt.count(after(6.0)), 0);
 }
 
+TEST_F(FeltPallet, APalletFeltAgainAfterItWasForgottenIsNotForgottenOnceMore) {
+  ASSERT_TRUE(felt.feel({after(1.0), at_the_edge}, false, kRobot, grid));
+  EXPECT_TRUE(felt.forget_once(after(2.0)));
+  EXPECT_EQ(felt.count(after(2.0)), 0);
+  ASSERT_TRUE(felt.feel({after(3.0), at_the_edge}, false, kRobot, grid));
+  EXPECT_FALSE(felt.forget_once(after(4.0)));
+  EXPECT_EQ(felt.count(after(4.0)), 1);
+  EXPECT_TRUE(felt.forget(after(5.0))) << "but for the way home";
+}
+
 TEST_F(FeltPallet, APalletTheRobotStoodOnIsNoStepField) {
   EXPECT_FALSE(felt.feel({after(1.0), at_the_edge}, false, kRobot, grid, {beyond}));
   EXPECT_GT(nearest({2.2, 0.6}), 0.5);

@@ -76,7 +76,7 @@ TEST(TargetChoice, WhatIsBarredIsNoTargetUnlessNothingIsEverBarred) {
   for (const bool bar_targets : {true, false}) {
     Choosing robot(false, bar_targets);
     robot.unknown(6.5, 1.8);
-    robot.left_alone.bar_for_good({6.5, 2.0});
+    robot.left_alone.bar_for_good({6.5, 2.0}, {robot.now, robot.pose});
     EXPECT_EQ(robot.choose().plan.found, !bar_targets);
   }
 }

@@ -4,6 +4,7 @@
 #include "base/angle.h"
 #include "base/planar.h"
 #include "explore/caution/felt_obstacles.h"
+#include "explore/caution/left_alone.h"
 #include "explore/search/victim_search.h"
 #include "tests/support/planted_mapper.h"
 
@@ -38,6 +39,16 @@ TEST_F(Anchoring, FeltObstaclesFollowThePosesAtWhichTheyWereFelt) {
     const TPoint2D expected = i < before.size() / 2 ? kShift.composePoint(before[i]) : before[i];
     EXPECT_NEAR(distance(after[i], expected), 0.0, 1e-9);
   }
+}
+
+TEST_F(Anchoring, BarredTargetsFollowThePosesFromWhichTheyWereBarred) {
+  LeftAlone left_alone({}, 0.5);
+  const TPoint2D target{9.0, 4.0};
+  left_alone.bar_for_good(target, {at(2.0), *mapper.pose_at(at(2.0))});
+  mapper.correct(at(5.0), kShift);
+  left_alone.follow(mapper);
+  EXPECT_TRUE(left_alone.barred(kShift.composePoint(target), at(9.0)));
+  EXPECT_FALSE(left_alone.barred(target, at(9.0))) << "there is another place now";
 }
 
 TEST_F(Anchoring, VictimsFollowThePosesFromWhichTheyWereSeen) {
