@@ -17,11 +17,14 @@ constexpr double kSpeed = 0.2;  ///< [m/s]
 constexpr double kTurns[] = {deg_to_rad(60.0), deg_to_rad(100.0), deg_to_rad(35.0), deg_to_rad(140.0)};  ///< [rad]
 constexpr double kMoveTime = 5.0;                                                                        ///< [s]
 constexpr double kRetraceTime = 15.0;                                                                    ///< [s]
-constexpr double kFeeler = 0.25;                ///< room is asked for about a point so far ahead of the motion [m]
-constexpr double kBehind = 0.35;                ///< the point of the trail that is steered to [m]
-constexpr double kMostBend = deg_to_rad(60.0);  ///< a trail that bends more is not followed [rad]
-constexpr double kBendGain = 1.2;               ///< turn rate per error [1/s]
-constexpr int kRounds = 2;                      ///< times that all moves are tried
+constexpr double kPlace = 0.06;                  ///< within so much of a place [m]
+constexpr double kPlaceTurn = deg_to_rad(10.0);  ///< and so much turn [rad]
+constexpr double kPlaceTime = 2.5;               ///< for so long, a move gets nowhere [s]
+constexpr double kFeeler = 0.25;                 ///< room is asked for about a point so far ahead of the motion [m]
+constexpr double kBehind = 0.35;                 ///< the point of the trail that is steered to [m]
+constexpr double kMostBend = deg_to_rad(60.0);   ///< a trail that bends more is not followed [rad]
+constexpr double kBendGain = 1.2;                ///< turn rate per error [1/s]
+constexpr int kRounds = 2;                       ///< times that all moves are tried
 
 }  // namespace
 
@@ -43,20 +46,32 @@ void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures) 
 void Escape::start_move(const TPose2D& T_map_base, Stamp now) {
   move_begun_ = T_map_base;
   move_until_ = now + (moves_[at_] == Move::Retrace ? kRetraceTime : kMoveTime);
+  place_ = T_map_base;
+  there_since_ = now;
   watch_.reset();
   drive_ = {};
 }
 
-Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, bool struck,
-                            double dt, Stamp now, const std::vector<TPoint2D>& trail, const WayBack& way_back,
-                            const RoomFn& room) {
+/// Retracing poses, the robot may rock to and fro between two that it cannot get to.
+bool Escape::gets_nowhere(const TPose2D& T_map_base, Stamp now) {
+  if (distance(position(place_), position(T_map_base)) > kPlace ||
+      std::abs(wrap_angle(T_map_base.phi - place_.phi)) > kPlaceTurn) {
+    place_ = T_map_base;
+    there_since_ = now;
+  }
+  return now - there_since_ > kPlaceTime;
+}
+
+Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& commanded, bool stalled,
+                            const std::optional<robot::Drive>& wheels, bool struck, double dt, Stamp now,
+                            const std::vector<TPoint2D>& trail, const WayBack& way_back, const RoomFn& room) {
   met_ = false;
   if (distance(position(begun_), position(T_map_base)) >= kFree) {
     drive_ = {};
     return Result::Free;
   }
   const Move move = moves_[at_];
-  const bool held = watch_.stuck(T_map_base, commanded, stalled, dt) || struck;
+  const bool held = watch_.stuck(T_map_base, commanded, stalled, dt, wheels) || struck;
   const bool turned =
       (move == Move::Left || move == Move::Right) && std::abs(wrap_angle(T_map_base.phi - move_begun_.phi)) >= turn_;
   met_ = held;
@@ -64,7 +79,7 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
   if (move == Move::Back || move == Move::Ahead)
     wall = !room(T_map_base + TPose2D{move == Move::Back ? -kFeeler : kFeeler, 0.0, 0.0});
   const bool all_retraced = move == Move::Retrace && !way_back.drive(T_map_base);
-  if (held || turned || wall || all_retraced || now >= move_until_) {
+  if (held || turned || wall || all_retraced || gets_nowhere(T_map_base, now) || now >= move_until_) {
     if (++at_ == moves_.size()) {
       drive_ = {};
       return Result::Failed;

@@ -29,11 +29,11 @@ class Escape {
 
   /// `failures`: escapes in a row that failed just before; each turns by another angle.
   void begin(Met met, const mrpt::math::TPose2D& T_map_base, Stamp now, int failures = 0);
-  /// One tick of `dt` [s] under the command that was in force. `struck`: a blow stopped the robot. `trail`: where it
-  /// came along, oldest first; `way_back`: the poses.
-  Result step(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, bool struck,
-              double dt, Stamp now, const std::vector<mrpt::math::TPoint2D>& trail, const WayBack& way_back,
-              const RoomFn& room);
+  /// One tick of `dt` [s] under the command that was in force. `wheels`: what they do, where that is known. `struck`: a
+  /// blow stopped the robot. `trail`: where it came along, oldest first; `way_back`: the poses.
+  Result step(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled,
+              const std::optional<robot::Drive>& wheels, bool struck, double dt, Stamp now,
+              const std::vector<mrpt::math::TPoint2D>& trail, const WayBack& way_back, const RoomFn& room);
   /// The command for the tick to come.
   const robot::Drive& drive() const { return drive_; }
   /// Something was met in this tick: the base shall not push on.
@@ -43,6 +43,7 @@ class Escape {
   enum class Move { Back, Ahead, Left, Right, Retrace };
 
   void start_move(const mrpt::math::TPose2D& T_map_base, Stamp now);
+  bool gets_nowhere(const mrpt::math::TPose2D& T_map_base, Stamp now);
   robot::Drive command(const mrpt::math::TPose2D& T_map_base, const std::vector<mrpt::math::TPoint2D>& trail,
                        const WayBack& way_back) const;
 
@@ -54,6 +55,8 @@ class Escape {
   mrpt::math::TPose2D begun_;       ///< where the escape began
   mrpt::math::TPose2D move_begun_;  ///< where the present move began
   Stamp move_until_ = Stamp::never();
+  mrpt::math::TPose2D place_;  ///< it has been about here
+  Stamp there_since_ = Stamp::never();
   robot::Drive drive_;
   bool met_ = false;
 };

@@ -9,36 +9,66 @@ namespace rubble::explore {
 
 void MotionWatch::reset() { *this = MotionWatch(config_); }
 
-bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, double dt) {
-  const bool moved = length(T_map_base.x - reference_.x, T_map_base.y - reference_.y) > config_.moved ||
-                     std::abs(wrap_angle(T_map_base.phi - reference_.phi)) > config_.turned;
+/// The robot has hardly moved over the last piece of way that was commanded, or is turned aside on it.
+bool MotionWatch::drives_in_vain(const mrpt::math::TPose2D& T_map_base) {
+  lately_.push_back({T_map_base, way_, wheel_turn_});
+  while (lately_.size() > 1 && way_ - lately_[1].way >= config_.patience) lately_.pop_front();
+  const auto since = [&](double way) {
+    return std::find_if(lately_.rbegin(), lately_.rend(), [&](const Moment& then) { return way_ - then.way >= way; });
+  };
+  const auto soon = since(config_.soon), patient = since(config_.patience);
+  return (soon != lately_.rend() && in_vain_since(*soon, T_map_base, config_.hardly)) ||
+         (patient != lately_.rend() && in_vain_since(*patient, T_map_base, config_.moved));
+}
+
+bool MotionWatch::in_vain_since(const Moment& then, const mrpt::math::TPose2D& T_map_base, double share) const {
+  const double way = way_ - then.way;
+  const double moved = distance(position(then.T_map_base), position(T_map_base));
+  // On a ramp the wheels slip and the body turns less than they do: that is no sign.
+  const double wheels = wheel_turn_ - then.turn;
+  const double body = wrap_angle(T_map_base.phi - then.T_map_base.phi);
+  const double aside = std::abs(body) - (body * wheels > 0.0 ? std::abs(wheels) : 0.0);
+  return moved < share * way || (moved < config_.led * way && aside > config_.aside);
+}
+
+bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, double dt,
+                        const std::optional<robot::Drive>& wheels) {
   if (!has_reference_) {
+    expected_ = wheels ? wheels->v : 0.0;
     place_ = T_map_base;
     last_phi_ = T_map_base.phi;
   }
-  if (!has_reference_ || moved) {
+  if (!has_reference_ || std::abs(wrap_angle(T_map_base.phi - reference_.phi)) > config_.turned) {
     reference_ = T_map_base;
     has_reference_ = true;
-    way_ = 0.0;
     turn_ = 0.0;
   }
   if (length(T_map_base.x - place_.x, T_map_base.y - place_.y) > config_.place) {
     place_ = T_map_base;
     rocked_ = net_ = pushed_ = 0.0;
   }
-  net_ += wrap_angle(T_map_base.phi - last_phi_);
+  const double turned_in_tick = wrap_angle(T_map_base.phi - last_phi_);
+  net_ += turned_in_tick;
   last_phi_ = T_map_base.phi;
   rocked_ += std::abs(commanded.w) * dt;
   expected_ += std::clamp(commanded.v - expected_, -config_.accel * dt, config_.accel * dt);
-  if (commanded.v * expected_ <= 0.0) expected_ = 0.0;
-  if (!on_the_spot(commanded)) {
+  // A base that brakes is ahead of that.
+  if (wheels && std::abs(commanded.v - wheels->v) < std::abs(commanded.v - expected_)) expected_ = wheels->v;
+  bool in_vain = false;
+  if (on_the_spot(commanded) || commanded.v * expected_ <= 0.0) {
+    lately_.clear();
+  } else {
     way_ += std::abs(expected_) * dt;
+    // Where nobody knows what the wheels do, all of the turn counts as theirs.
+    wheel_turn_ += wheels ? wheels->w * dt : turned_in_tick;
+    in_vain = drives_in_vain(T_map_base);
     // Wheels that spin carry the pose on between two scans, and each scan puts it back: it trembles in its place.
     pushed_ += std::abs(expected_) * dt;
   }
-  turn_ += std::abs(commanded.w) * dt;
+  // A slow curve turns the robot less than it is told where the floor holds it back: its way is judged, not its turn.
+  turn_ += on_the_spot(commanded) ? std::abs(commanded.w) * dt : 0.0;
   stalled_for_ = stalled ? stalled_for_ + dt : 0.0;
-  return rocking() || way_ > config_.patience || pushed_ > config_.place_patience || turn_ > config_.turn_patience ||
+  return rocking() || in_vain || pushed_ > config_.place_patience || turn_ > config_.turn_patience ||
          stalled_for_ > config_.stall_time;
 }
 

@@ -3,6 +3,8 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <cmath>
+#include <deque>
+#include <optional>
 
 #include "base/angle.h"
 #include "robot/commands.h"
@@ -10,13 +12,17 @@
 namespace rubble::explore {
 
 struct MotionWatchConfig {
-  double moved = 0.05;              ///< this far from where the watch began, the robot moves [m]
-  double turned = deg_to_rad(8.0);  ///< or turned this much [rad]
-  double patience = 0.20;           ///< way commanded in vain that means stuck [m]
+  double patience = 0.20;           ///< over so much way commanded the robot should have moved [m]
+  double moved = 0.25;              ///< by more than this share of it, or it is stuck
+  double soon = 0.13;               ///< over so much [m]
+  double hardly = 0.15;             ///< by more than this; over the crest of a ramp it may slip more than that for long
+  double led = 0.6;                 ///< by more than this where it is turned aside: a corner of it hangs on something
+  double aside = deg_to_rad(10.0);  ///< turned so much against its wheels, or beyond them [rad]
+  double turned = deg_to_rad(8.0);  ///< turned this much on the spot, the robot moves [rad]
   double pivot_rate = 0.15;         ///< turning faster than this
   double pivot_speed = 0.12;        ///< and driving no faster is a turn on the spot: its way does not count
   double accel = 0.3;               ///< a commanded speed is expected to be reached so [m/s^2]
-  double turn_patience = 1.6;       ///< turn commanded in vain that means stuck [rad]
+  double turn_patience = 1.2;       ///< turn commanded in vain that means stuck [rad]
   double place = 0.15;              ///< rocking to and fro within so much of a place [m]
   double place_patience = 0.45;     ///< way commanded there that means stuck, though the pose trembles [m]
   double rocking = 6.3;             ///< turned so much more there than came of it means stuck [rad]
@@ -28,8 +34,10 @@ class MotionWatch {
  public:
   explicit MotionWatch(const MotionWatchConfig& config = {}) : config_(config) {}
 
-  /// One tick of `dt` seconds under the command that was in force; true when the robot is stuck.
-  bool stuck(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, double dt);
+  /// One tick of `dt` seconds under the command that was in force; true when the robot is stuck. `wheels`: what they
+  /// do, where that is known.
+  bool stuck(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled, double dt,
+             const std::optional<robot::Drive>& wheels = std::nullopt);
   /// Begins anew, e.g. after the robot freed itself.
   void reset();
   /// A turn that is meant to stay in its place, to look round, is under way.
@@ -42,11 +50,23 @@ class MotionWatch {
   }
 
  private:
+  /// A moment of a drive that is no turn on the spot.
+  struct Moment {
+    mrpt::math::TPose2D T_map_base;
+    double way;   ///< commanded up to then [m]
+    double turn;  ///< that the wheels made [rad]
+  };
+
+  bool drives_in_vain(const mrpt::math::TPose2D& T_map_base);
+  bool in_vain_since(const Moment& then, const mrpt::math::TPose2D& T_map_base, double share) const;
+
   MotionWatchConfig config_;
-  mrpt::math::TPose2D reference_;
+  mrpt::math::TPose2D reference_;  ///< of turns on the spot
   bool has_reference_ = false;
   double expected_ = 0.0;  ///< speed [m/s]
   double way_ = 0.0;
+  double wheel_turn_ = 0.0;
+  std::deque<Moment> lately_;  ///< over the last `patience` of way
   double turn_ = 0.0;
   mrpt::math::TPose2D place_;
   double pushed_ = 0.0;  ///< way commanded there [m]

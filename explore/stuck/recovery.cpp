@@ -29,8 +29,8 @@ Recovery::Result Recovery::step(const TPose2D& T_map_base, const robot::Drive& c
     const Cell c = floor.clearance.cell(position(pose));
     return !floor.clearance.inside(c) || floor.clearance[c] > 0.5 * model_.width - kLean;
   };
-  switch (
-      escape_.step(T_map_base, commanded, watch.stalled(), watch.struck(), dt, now, trail.points(), way_back_, room)) {
+  switch (escape_.step(T_map_base, commanded, watch.stalled(), watch.wheels(), watch.struck(), dt, now, trail.points(),
+                       way_back_, room)) {
     case Escape::Result::UnderWay:
       return Result::UnderWay;
     case Escape::Result::Free:

@@ -16,6 +16,7 @@ void StuckWatch::update(const robot::Inputs& inputs, double passed, double dt) {
   }
   if (!inputs.odometry.empty()) {
     stalled_ = inputs.odometry.back().stalled;
+    wheels_ = robot::Drive{inputs.odometry.back().v, inputs.odometry.back().w};
     odometry_at_ = inputs.now;
   }
   tilt_.update(inputs, dt);
@@ -27,7 +28,8 @@ std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_ma
   if (on_purpose) motion_.turns_on_purpose();
   // Nobody knows whether a base that is silent moves: a pulled plug is no obstacle.
   if (odometry_at_ && now - *odometry_at_ > kOdometryLate) motion_.reset();
-  const bool stuck = motion_.stuck(T_map_base, now < patient_until_ ? robot::Drive{} : commanded, stalled_, dt);
+  const bool stuck =
+      motion_.stuck(T_map_base, now < patient_until_ ? robot::Drive{} : commanded, stalled_, dt, wheels_);
   if (!tilt_.too_steep() && !jolt_.struck() && !stuck) return std::nullopt;
   const Hold hold{tilt_.too_steep() ? "it leans too much here"
                   : jolt_.struck()  ? "a blow stops it"

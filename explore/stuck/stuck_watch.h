@@ -39,6 +39,8 @@ class StuckWatch {
 
   /// The motors report a stall.
   bool stalled() const { return stalled_; }
+  /// What the wheels do, where that is known.
+  const std::optional<robot::Drive>& wheels() const { return wheels_; }
   /// A blow stopped the body in this tick.
   bool struck() const { return jolt_.struck(); }
 
@@ -49,6 +51,7 @@ class StuckWatch {
   TiltWatch tilt_;
   JoltWatch jolt_;
   bool stalled_ = false;
+  std::optional<robot::Drive> wheels_;    ///< what they did when they were heard of last
   std::optional<Stamp> odometry_at_;      ///< when the wheels were heard of last
   Stamp patient_until_ = Stamp::never();  ///< the base may not obey yet
 };

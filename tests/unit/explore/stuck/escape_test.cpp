@@ -39,7 +39,8 @@ Outcome run(Puppet& puppet, Escape::Met met, const std::vector<TPoint2D>& trail,
   Outcome outcome;
   while (outcome.result == Escape::Result::UnderWay && outcome.seconds < 300.0) {
     way_back.add(now, puppet.pose);
-    outcome.result = escape.step(puppet.pose, escape.drive(), false, false, kEscapeTick, now, trail, way_back, room);
+    outcome.result =
+        escape.step(puppet.pose, escape.drive(), false, {}, false, kEscapeTick, now, trail, way_back, room);
     puppet.obey(escape.drive());
     now = now + kEscapeTick;
     outcome.seconds += kEscapeTick;
@@ -121,6 +122,23 @@ TEST(Escape, RetracesPoseByPoseWhatLetsItThroughInNoOtherWay) {
   EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, kRoom).result, Escape::Result::Failed) << "the case is too easy";
   EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, kRoom, 1, came).result, Escape::Result::Free);
   EXPECT_TRUE(on_arc(puppet.pose));
+}
+
+/// Between two poses of its way that it cannot get to it would rock for as long as a move may last.
+TEST(Escape, AMoveThatRocksInItsPlaceIsGivenUp) {
+  WayBack came;
+  for (const double x : {-0.15, -0.10, -0.05, 0.0}) came.add(Stamp::from_seconds(1.0), {x, 0.0, 0.0});
+  Escape escape(deg_to_rad(60.0));
+  Stamp now = Stamp::from_seconds(1.0);
+  escape.begin(Escape::Met::Forwards, {}, now, 1);
+  const auto straight_back = [&] { return escape.drive().v == -0.2 && escape.drive().w == 0.0; };
+  double t = 0.0;
+  for (; !straight_back() && t < 20.0; t += kEscapeTick, now = now + kEscapeTick) {
+    const TPose2D pose{0.0, 0.0, deg_to_rad(3.0) * std::sin(8.0 * t)};
+    const robot::Drive none;  // it is turned against what it does, now to one side, now to the other
+    ASSERT_EQ(escape.step(pose, none, false, {}, false, kEscapeTick, now, {}, came, kRoom), Escape::Result::UnderWay);
+  }
+  EXPECT_LT(t, 4.0);
 }
 
 TEST(Escape, SaysSoWhenNothingHelps) {

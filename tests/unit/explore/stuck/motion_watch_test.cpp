@@ -18,13 +18,35 @@ TEST(MotionWatch, ARobotThatMovesAsToldIsNotStuck) {
   for (int i = 0; i < 1000; ++i) EXPECT_FALSE(watch.stuck({8.0, 0.0, 20.0}, {0.0, 0.0}, false, 0.02)) << "it may stand";
 }
 
-TEST(MotionWatch, SpinningWheelsAreFoundOutWithinTwoSeconds) {
+TEST(MotionWatch, SpinningWheelsAreFoundOutWithinASecondAndAHalf) {
   MotionWatch watch;
   int ticks = 0;
-  while (!watch.stuck({1.0 + 0.0002 * (ticks % 3), 0.0, 0.0}, {0.4, 0.0}, false, 0.02)) ASSERT_LT(++ticks, 100);
+  while (!watch.stuck({1.0 + 0.0002 * (ticks % 3), 0.0, 0.0}, {0.4, 0.0}, false, 0.02)) ASSERT_LT(++ticks, 75);
   MotionWatch turning;
   ticks = 0;
-  while (!turning.stuck({1.0, 0.0, 0.0}, {0.0, 1.0}, false, 0.02)) ASSERT_LT(++ticks, 100);
+  while (!turning.stuck({1.0, 0.0, 0.0}, {0.0, 1.0}, false, 0.02)) ASSERT_LT(++ticks, 75);
+}
+
+TEST(MotionWatch, TheWayCommandedCountsOnlyOnceTheWheelsGoThatWay) {
+  MotionWatch watch;
+  double v = -0.2, x = 0.0;  // it backed off and is told to drive on
+  for (int i = 0; i < 200; ++i) {
+    v = std::min(0.4, v + 0.3 * 0.02);
+    x += v * 0.02;
+    ASSERT_FALSE(watch.stuck({x, 0.0, 0.0}, {0.4, 0.0}, false, 0.02, robot::Drive{v, 0.0})) << i;
+  }
+}
+
+/// A corner hangs on a step: the robot creeps on and is turned about it, whatever its wheels do.
+TEST(MotionWatch, ARobotThatIsTurnedAsideIsHeldAndOneThatSlipsOnARampIsNot) {
+  MotionWatch aside, ramp;
+  int ticks = 0;
+  const auto drive = [&](MotionWatch& watch, double rate) {
+    const double t = 0.02 * ticks;
+    return watch.stuck({0.08 * t, 0.0, rate * t}, {0.2, 0.3}, false, 0.02, robot::Drive{0.2, 0.3});
+  };
+  while (!drive(aside, -0.3)) ASSERT_LT(++ticks, 75) << "one and a half seconds";
+  for (ticks = 0; ticks < 500; ++ticks) ASSERT_FALSE(drive(ramp, 0.1)) << "less than the wheels turn it";
 }
 
 /// Fast wheels spin before a step: each tick of odometry carries the pose on, each scan puts it back.
