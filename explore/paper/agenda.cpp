@@ -220,6 +220,7 @@ void Agenda::go_home(const std::string& why, Stamp now) {
   reason_ += (reason_.empty() || why.empty() ? "" : ", ") + why;
   note(now, "drives home: " + (why.empty() ? reason_ : why));
   choice_.go_home();
+  pushing_.end();
   rounds_.go_home();
   plan_soon();
 }

@@ -27,8 +27,11 @@ class Pushing {
   /// Drives at small things from now on, or at wider ones if it does already. Returns whether at single ones.
   bool start(const Traversable& floor);
   void end() { extent_ = 0.0; }
-  /// A new round begins: it may be tried again in it.
-  void new_round() { known_then_.forget(); }
+  /// A new round begins: things are driven round again, and it may be tried again in it.
+  void new_round() {
+    end();
+    known_then_.forget();
+  }
 
   /// The hits of the newest scan but for those on what is pushed, of a robot at T_map_base on `floor`, whose loose
   /// things they are [m, map frame].

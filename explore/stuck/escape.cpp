@@ -17,6 +17,7 @@ constexpr double kSpeed = 0.2;  ///< [m/s]
 constexpr double kTurns[] = {deg_to_rad(60.0), deg_to_rad(100.0), deg_to_rad(35.0), deg_to_rad(140.0)};  ///< [rad]
 constexpr double kMoveTime = 5.0;                                                                        ///< [s]
 constexpr double kRetraceTime = 15.0;                                                                    ///< [s]
+constexpr double kOldStall = 0.7;                ///< the report of a stall outlives it by less [s]
 constexpr double kPlace = 0.06;                  ///< within so much of a place [m]
 constexpr double kPlaceTurn = deg_to_rad(10.0);  ///< and so much turn [rad]
 constexpr double kPlaceTime = 2.5;               ///< for so long, a move gets nowhere [s]
@@ -46,6 +47,7 @@ void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures) 
 void Escape::start_move(const TPose2D& T_map_base, Stamp now) {
   move_begun_ = T_map_base;
   move_until_ = now + (moves_[at_] == Move::Retrace ? kRetraceTime : kMoveTime);
+  old_stall_until_ = now + kOldStall;
   place_ = T_map_base;
   there_since_ = now;
   watch_.reset();
@@ -71,7 +73,8 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
     return Result::Free;
   }
   const Move move = moves_[at_];
-  const bool held = watch_.stuck(T_map_base, commanded, stalled, dt, wheels) || struck;
+  if (!stalled) old_stall_until_ = now;
+  const bool held = watch_.stuck(T_map_base, commanded, stalled && now > old_stall_until_, dt, wheels) || struck;
   const bool turned =
       (move == Move::Left || move == Move::Right) && std::abs(wrap_angle(T_map_base.phi - move_begun_.phi)) >= turn_;
   met_ = held;

@@ -55,7 +55,8 @@ class Escape {
   mrpt::math::TPose2D begun_;       ///< where the escape began
   mrpt::math::TPose2D move_begun_;  ///< where the present move began
   Stamp move_until_ = Stamp::never();
-  mrpt::math::TPose2D place_;  ///< it has been about here
+  Stamp old_stall_until_ = Stamp::never();  ///< the motors may still report what held them before the move
+  mrpt::math::TPose2D place_;               ///< it has been about here
   Stamp there_since_ = Stamp::never();
   robot::Drive drive_;
   bool met_ = false;

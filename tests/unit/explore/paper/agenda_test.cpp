@@ -113,6 +113,16 @@ TEST(Agenda, PushesSmallThingsWhenNothingElseHelps) {
   EXPECT_TRUE(robot.told("1 frontier cannot be reached"));
 }
 
+TEST(Agenda, OnTheWayHomeThingsAreDrivenRoundAgain) {
+  Ordered robot;
+  test::fill(robot.cells, 4.0, 0.0, 4.1, 4.0, Occupancy::Occupied);
+  test::fill(robot.cells, 6.0, 1.0, 7.0, 3.0, Occupancy::Unknown);
+  for (int i = 0; i < 12 && !robot.agenda.pushing().on(); ++i) robot.ask();
+  ASSERT_TRUE(robot.agenda.pushing().on());
+  robot.agenda.go_home("", robot.now);
+  EXPECT_FALSE(robot.agenda.pushing().on());
+}
+
 /// What lies ahead of a viewpoint is dwelt on; what does not is faced first. `sees`: the sensors look on the way.
 TEST(Agenda, FacesAPlaceToSearchOrDwellsBeforeIt) {
   for (const bool sees : {false, true}) {

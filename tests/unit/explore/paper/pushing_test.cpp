@@ -54,6 +54,7 @@ TEST(Pushing, IsWorthWhileOnceForEachPieceOfGroundGained) {
   EXPECT_FALSE(pushing.worth(same));
   EXPECT_TRUE(pushing.worth(large));
   pushing.new_round();
+  EXPECT_FALSE(pushing.on());
   EXPECT_TRUE(pushing.worth(small));
 }
 

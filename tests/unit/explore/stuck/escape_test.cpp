@@ -124,6 +124,24 @@ TEST(Escape, RetracesPoseByPoseWhatLetsItThroughInNoOtherWay) {
   EXPECT_TRUE(on_arc(puppet.pose));
 }
 
+/// The motors report a stall for some 0.3 s more; the way back is none the worse for that.
+TEST(Escape, TheStallThatBeganItDoesNotEndItsFirstMove) {
+  for (const double lasts : {0.4, 5.0}) {
+    Puppet puppet;
+    puppet.may = [&](const TPose2D&) { return lasts < 1.0; };
+    Escape escape(deg_to_rad(60.0));
+    Stamp now = Stamp::from_seconds(1.0);
+    escape.begin(Escape::Met::Forwards, {}, now);
+    bool turned = false;
+    for (double t = 0.0; t < 2.0; t += kEscapeTick, now = now + kEscapeTick) {
+      escape.step(puppet.pose, escape.drive(), t < lasts, {}, false, kEscapeTick, now, {}, {}, kRoom);
+      puppet.obey(escape.drive());
+      turned = turned || escape.drive().w != 0.0;
+    }
+    EXPECT_EQ(turned, lasts > 1.0) << lasts;
+  }
+}
+
 /// Between two poses of its way that it cannot get to it would rock for as long as a move may last.
 TEST(Escape, AMoveThatRocksInItsPlaceIsGivenUp) {
   WayBack came;
