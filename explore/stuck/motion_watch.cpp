@@ -50,7 +50,9 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   const double turned_in_tick = wrap_angle(T_map_base.phi - last_phi_);
   net_ += turned_in_tick;
   last_phi_ = T_map_base.phi;
-  rocked_ += std::abs(commanded.w) * dt;
+  // Wheels that stand and report no stall do not push: the base does not obey, and nothing is in the way.
+  const double turning = wheels ? std::min(std::abs(commanded.w), std::abs(wheels->w)) : std::abs(commanded.w);
+  rocked_ += turning * dt;
   expected_ += std::clamp(commanded.v - expected_, -config_.accel * dt, config_.accel * dt);
   // A base that brakes is ahead of that.
   if (wheels && std::abs(commanded.v - wheels->v) < std::abs(commanded.v - expected_)) expected_ = wheels->v;
@@ -58,15 +60,16 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   if (on_the_spot(commanded) || commanded.v * expected_ <= 0.0) {
     lately_.clear();
   } else {
-    way_ += std::abs(expected_) * dt;
+    const double driven = wheels ? std::min(std::abs(expected_), std::abs(wheels->v)) : std::abs(expected_);
+    way_ += driven * dt;
     // Where nobody knows what the wheels do, all of the turn counts as theirs.
     wheel_turn_ += wheels ? wheels->w * dt : turned_in_tick;
     in_vain = drives_in_vain(T_map_base);
     // Wheels that spin carry the pose on between two scans, and each scan puts it back: it trembles in its place.
-    pushed_ += std::abs(expected_) * dt;
+    pushed_ += driven * dt;
   }
   // A slow curve turns the robot less than it is told where the floor holds it back: its way is judged, not its turn.
-  turn_ += on_the_spot(commanded) ? std::abs(commanded.w) * dt : 0.0;
+  turn_ += on_the_spot(commanded) ? turning * dt : 0.0;
   stalled_for_ = stalled ? stalled_for_ + dt : 0.0;
   return rocking() || in_vain || pushed_ > config_.place_patience || turn_ > config_.turn_patience ||
          stalled_for_ > config_.stall_time;

@@ -29,7 +29,7 @@ struct MotionWatchConfig {
   double stall_time = 0.21;         ///< the motors report a stall for this long [s]
 };
 
-/// Finds out that the robot is stuck: it is told to move, but its pose stays or its motors stall.
+/// Finds out that the robot is stuck: it is told to move and its wheels turn, but its pose stays, or its motors stall.
 class MotionWatch {
  public:
   explicit MotionWatch(const MotionWatchConfig& config = {}) : config_(config) {}

@@ -37,6 +37,19 @@ TEST(MotionWatch, TheWayCommandedCountsOnlyOnceTheWheelsGoThatWay) {
   }
 }
 
+/// A base that does not obey for a while: wheels that stand without a stall push against nothing.
+TEST(MotionWatch, WheelsThatStandWithoutAStallAreNoObstacle) {
+  for (const robot::Drive& told : {robot::Drive{0.4, 0.0}, robot::Drive{0.0, 1.0}}) {
+    MotionWatch watch, stalled;
+    bool stuck = false;
+    for (int i = 0; i < 500; ++i) {
+      ASSERT_FALSE(watch.stuck({1.0, 0.0, 0.0}, told, false, 0.02, robot::Drive{}));
+      stuck = stuck || stalled.stuck({1.0, 0.0, 0.0}, told, true, 0.02, robot::Drive{});
+    }
+    EXPECT_TRUE(stuck);
+  }
+}
+
 /// A corner hangs on a step: the robot creeps on and is turned about it, whatever its wheels do.
 TEST(MotionWatch, ARobotThatIsTurnedAsideIsHeldAndOneThatSlipsOnARampIsNot) {
   MotionWatch aside, ramp;
