@@ -50,8 +50,12 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   const double turned_in_tick = wrap_angle(T_map_base.phi - last_phi_);
   net_ += turned_in_tick;
   last_phi_ = T_map_base.phi;
-  // Wheels that stand and report no stall do not push: the base does not obey, and nothing is in the way.
-  const double turning = wheels ? std::min(std::abs(commanded.w), std::abs(wheels->w)) : std::abs(commanded.w);
+  // Wheels that stand and report no stall do not push: the base does not obey, and nothing is in the way. Not for ever,
+  // for there may be bases that do not know of stalls.
+  const bool stand = wheels && std::abs(wheels->v) < config_.standing && std::abs(wheels->w) < config_.standing;
+  stood_for_ = stand ? stood_for_ + dt : 0.0;
+  const bool by_wheels = wheels && stood_for_ < config_.disobedience;
+  const double turning = by_wheels ? std::min(std::abs(commanded.w), std::abs(wheels->w)) : std::abs(commanded.w);
   rocked_ += turning * dt;
   expected_ += std::clamp(commanded.v - expected_, -config_.accel * dt, config_.accel * dt);
   // A base that brakes is ahead of that.
@@ -60,7 +64,7 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   if (on_the_spot(commanded) || commanded.v * expected_ <= 0.0) {
     lately_.clear();
   } else {
-    const double driven = wheels ? std::min(std::abs(expected_), std::abs(wheels->v)) : std::abs(expected_);
+    const double driven = by_wheels ? std::min(std::abs(expected_), std::abs(wheels->v)) : std::abs(expected_);
     way_ += driven * dt;
     // Where nobody knows what the wheels do, all of the turn counts as theirs.
     wheel_turn_ += wheels ? wheels->w * dt : turned_in_tick;

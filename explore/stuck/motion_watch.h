@@ -26,6 +26,8 @@ struct MotionWatchConfig {
   double place = 0.15;              ///< rocking to and fro within so much of a place [m]
   double place_patience = 0.45;     ///< way commanded there that means stuck, though the pose trembles [m]
   double rocking = 6.3;             ///< turned so much more there than came of it means stuck [rad]
+  double standing = 0.02;           ///< slower wheels stand [m/s], [rad/s]
+  double disobedience = 8.0;        ///< wheels that stand so long though told to go are held [s]
   double stall_time = 0.21;         ///< the motors report a stall for this long [s]
 };
 
@@ -74,6 +76,7 @@ class MotionWatch {
   double net_ = 0.0;     ///< what came of them [rad]
   double last_phi_ = 0.0;
   double stalled_for_ = 0.0;
+  double stood_for_ = 0.0;  ///< the wheels [s]
 };
 
 }  // namespace rubble::explore
