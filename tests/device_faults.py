@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The table fault x (standstill, exit code, map score, re-connected) of docs/hardware.md, one drive a fault in real time.
 
-  tests/device_faults.py [--rubble build/release/rubble] [--faults "urg-silence base-unplug ..."] [--seconds 110] [--at 14] [--jobs 1]
+  tests/device_faults.py [--rubble build/release/rubble] [--faults "urg-silence base-unplug ..."] [--seconds 110] [--at 14] [--jobs 1] [--keep DIR]
   tests/device_faults.py --three    three emulated robots at once: jitter of their scans, and of this machine's timer
 
 Prints a table in Markdown, a row as soon as it is known. Ends with 1 and names what was broken:
@@ -36,10 +36,16 @@ TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 DEVICES = ("urg", "base", "levelling")
 FAULTS = [d + "-" + f for d in DEVICES for f in "lost split doubled junk sums silence unplug reset".split()]
 FAULTS += ["urg-wrap", "base-wrap", "base-seto", "base-stall", "base-stuck", "base-runaway", "base-slow", "base-watchdog", "base-button",
-           "base-motors", "base-encoders", "levelling-sensor", "levelling-slow"]
+           "base-motors", "base-encoders", "base-battery", "levelling-sensor", "levelling-slow"]
+# Not a fault that strikes, but a scanner that is mounted otherwise than the robot file says: words to the emulator. Nobody lets the robot
+# go, so the drive fails, by the word that it is told with. With the robot file put right (-said) the drive is as without a fault.
+MOUNTS = {"urg-upside-down": (["--urg-upside-down"], "devices.urg.upside_down=true", "is upside down"),
+          "urg-backwards": (["--urg-yaw", "180"], "devices.urg.yaw_deg=180", "lower devices.urg.yaw_deg by about 180 deg")}
+FAULTS += [name + said for name in MOUNTS for said in ("", "-said")]
 # Stopped at the robot, or switched off since it moved otherwise than told: the operator lets it go again, so long after the fault [s]
 REARM = 6.0
-HELD = {"base-button": REARM, "base-motors": REARM, "base-encoders": 8.0, "base-runaway": 12.0}
+HELD = {"base-button": REARM, "base-motors": REARM, "base-encoders": 8.0, "base-runaway": 12.0, "base-battery": 16.0}
+LATER = {"base-battery": 10.0}  # so long a battery must be empty before anything is to happen [s]
 STARTS = {"base-wrap": ("65,65,90",)}  # not --fault: the odometry begins just short of where it rolls over
 # What a fault must do to a robot that drives, and how long it may take to be noticed [s] (safety: in the robot file, the base's own
 # watchdog).
@@ -56,7 +62,7 @@ BRAKES = {"base-watchdog": (2.0, 3.0)}
 REST = {"urg-silence": 0.3, "urg-unplug": 0.3, "base-unplug": 0.1, "base-reset": 0.1, "levelling-unplug": 0.5}
 # At once, without a ramp. A base that runs away is found out when what it is told has differed for long enough, and then has its motors off;
 # so has one whose encoders are dead, when scans have shown twice that it moves.
-HARD = {"base-button": 0.1, "base-motors": 0.1, "base-runaway": 5.0, "base-encoders": 3.5}
+HARD = {"base-button": 0.1, "base-motors": 0.1, "base-runaway": 5.0, "base-encoders": 3.5, "base-battery": 0.3}
 JUDGED = {*ZEROED, *BRAKES, *REST, *HARD}
 # A base that is silent must be told; a deaf one reports.
 NAMED = {"levelling-sensor", "base-stuck", "base-runaway", "base-watchdog", *ZEROED, *REST, *HARD}
@@ -64,6 +70,7 @@ RAMP = 0.3          # the firmware's deceleration [m/s^2]
 BRAKING, BRAKED = 0.25, 0.2  # so hard [m/s^2] and so long [s] is braking
 LATE = 0.35         # a scan's period, the driver's turns, the wheels' lag, the window of a speed [s]
 NOTICED = 0.15      # the driver's turn and what a busy machine adds, from when it must notice to set points of zero [s]
+MOUNT_WAY, MOUNT_TURN = 1.5, 12.0  # so far an explorer gets before a wrong mount is found out, at most [m], [rad]
 DRIVES = 0.15       # slower than this says nothing of a stop: the fault is tried again at another moment [m/s]
 TRIES = 4
 WORST_MAP = 0.05    # a map may be so much worse than without a fault
@@ -204,7 +211,7 @@ def broken_law(fault, stop):
         most = HARD[fault] + LATE
         if stop.rest is None or stop.rest > most:
             return "no hard stop"
-        again = [t for t in stop.orders.enabled if HARD[fault] + NOTICED < t - stop.t0 < HELD[fault] - 0.1]
+        again = [t for t in stop.orders.enabled if HARD[fault] + NOTICED < t - stop.t0 < HELD[fault] - LATER.get(fault, 0) - 0.1]
         if again:
             return "motors on again after %.1f s, though nobody let it go" % (again[0] - stop.t0)
     return None
@@ -231,12 +238,15 @@ def rearm(process, emulator, fault):
 def drive(rubble, robot, fault, at, seconds):
     name = fault or "none"
     shutil.rmtree(name, ignore_errors=True)  # of an attempt before
-    words = ["--odometry-start", *STARTS[fault]] if fault in STARTS else ["--fault", "%s@%g" % (fault, at)] if fault else []
+    mount = MOUNTS.get(name.removesuffix("-said"))
+    words = (["--odometry-start", *STARTS[fault]] if fault in STARTS else mount[0] if mount else
+             ["--fault", "%s@%g" % (fault, at)] if fault else [])
+    said = ["--set", mount[1] if name.endswith("-said") else "safety.give_up_s=5"] if mount else []
     emulator = Emulator(rubble, "--truth", name + ".tum", *words)
     errors = open(name + ".err", "w+")
     process = subprocess.Popen(
         [rubble, "drive", robot, *emulator.words(), "--time-limit", str(seconds), "--out", name, "--set",
-         "explorer.victims.search=true"], stdout=subprocess.DEVNULL, stderr=errors)
+         "explorer.victims.search=true", *said], stdout=subprocess.DEVNULL, stderr=errors)
     if fault in HELD:
         threading.Thread(target=rearm, args=(process, emulator, fault), daemon=True).start()
     process.wait()
@@ -245,7 +255,7 @@ def drive(rubble, robot, fault, at, seconds):
     told = told_while_driving(errors)
     device = name.split("-")[0]
     over = [device + ": " + word for word in ("reports", "is in time again", "is let go", "obeys again", "works again")]
-    lost = [i for i, line in enumerate(told) if line.startswith(device + ": ") and line not in over]
+    lost = [i for i, line in enumerate(told) if line.startswith(device + ": ") and line not in over and "battery is low" not in line]
     back = lost and any(line in over for line in told[lost[-1]:])
     score = subprocess.run([rubble, "score", name + "/map.tif", "truth/truth.tif", "--json"], capture_output=True, text=True)
     score = json.loads(score.stdout)["score"] if score.returncode == 0 else 0.0
@@ -253,12 +263,36 @@ def drive(rubble, robot, fault, at, seconds):
     notice = ZEROED.get(fault, BRAKES.get(fault, ({**REST, **HARD}.get(fault, 0.3), 0)))[0]
     if fault in ("base-runaway", "base-encoders"):
         notice = 0.3  # what it is told just after is what it goes on with
-    stop = Stop(rows, rows[0][0] + at, notice) if fault else None
+    stop = Stop(rows, rows[0][0] + at + LATER.get(fault, 0), notice) if fault and not mount else None
+    refused = refusal(rows, name + "/devices.bytes") if mount and not said[-1].startswith("devices") else None
     if stop and os.path.exists(name + "/devices.bytes"):
         stop.follow(black_box.SetPoints(name + "/devices.bytes"), fault)
     own = json.load(open(name + "/score.json")) if os.path.exists(name + "/score.json") else {}
     wraps = black_box.rolled_over(name + "/devices.bytes") if fault == "base-wrap" else None
-    return dict(name=name, wraps=wraps, code=process.returncode, score=score, stop=stop, lost=lost, back=back, told=told, at=at, figures=own, rows=rows)
+    return dict(name=name, wraps=wraps, refused=refused, word=mount[2] if mount else "", code=process.returncode, score=score, stop=stop, lost=lost, back=back, told=told, at=at, figures=own, rows=rows)
+
+
+def refusal(rows, path):
+    """How far the robot went and turned until its motors were switched off, and whether it stood from then on: (m, rad, s, bool)."""
+    orders = [(t, value) for t, number, value in black_box.orders(path) if number == black_box.ENABLE]
+    begun = next((t for t, value in orders if value), 0.0)
+    stopped = [t for t, value in orders if not value and t > begun > 0.0]
+    if not stopped:
+        return None
+    way = turn = 0.0
+    begun = None
+    stood = True
+    for i in range(10, len(rows), 10):
+        a, b = rows[i - 10], rows[i]
+        if b[0] < stopped[0]:
+            way += math.hypot(b[1] - a[1], b[2] - a[2])
+            turn += abs((b[3] - a[3] + math.pi) % (2 * math.pi) - math.pi)
+            if begun is None and (way > 0.01 or turn > 0.02):
+                begun = b[0]
+        elif a[0] > stopped[0] + LATE:
+            v, w = motion(rows, i)
+            stood = stood and v < 0.01 and w < 0.03
+    return way, turn, stopped[0] - (begun or stopped[0]), stood
 
 
 def moments(rows, first):
@@ -278,8 +312,8 @@ def moments(rows, first):
 def driven(rubble, robot, fault, ats, seconds):
     """Tried again at another moment when the robot did not drive as the fault struck: that says nothing of a stop."""
     for at in (ats * TRIES)[:TRIES]:
-        d = drive(rubble, robot, fault, at, seconds)
-        if d["stop"].drove():
+        d = drive(rubble, robot, fault, max(1.0, at - LATER.get(fault, 0)), seconds)
+        if d["stop"] is None or d["stop"].drove():
             break
     return d
 
@@ -306,6 +340,14 @@ class Timer(threading.Thread):
 
 def findings_of(fault, d, plain, late_ms=0.0):
     found = []
+    if fault and fault in MOUNTS:
+        if d["code"] != 4 or not any(d["word"] in line for line in d["told"]):
+            found.append("exit code %d, told: %s" % (d["code"], "; ".join(d["told"])))
+        if d["refused"] is None or not d["refused"][3]:
+            found.append("was not stopped for good")
+        elif d["refused"][0] > MOUNT_WAY or d["refused"][1] > MOUNT_TURN:
+            found.append("stopped after %.2f m and %.1f rad" % d["refused"][:2])
+        return found
     if d["code"] != 0:
         found.append("exit code %d" % d["code"])
     if fault is None:
@@ -359,6 +401,13 @@ def table(arguments):
             d = one.result()
             stop = d["stop"]
             notice = ZEROED.get(fault, (0, 0))[0]
+            if stop is None:  # a mount
+                rest = "after %.2f m, %.0f deg, %.1f s" % (d["refused"][0], math.degrees(d["refused"][1]), d["refused"][2]) if d["refused"] else "drives on"
+                print("| `%s` | | | %s | %d | %s | | %s |" % (fault, rest, d["code"], "yes" if d["lost"] else "no", "" if d["refused"] else "%.3f" % d["score"]), flush=True)
+                found = findings_of(fault, d, plain)
+                if found:
+                    bad[fault] = found
+                continue
             zero = "%.2f s" % stop.zero if fault in ZEROED and stop.zero is not None else "NOT" if fault in ZEROED else ""
             slowest = notice + stop.top / RAMP + LATE
             rest = ("%.1f s" % stop.rest if stop.rest is not None and (fault in JUDGED or stop.rest < slowest) else
@@ -473,12 +522,15 @@ def main():
     parser.add_argument("--at", type=float, default=14.0)
     parser.add_argument("--moments", type=int, default=TRIES, help="of so many the first that meets a robot that drives counts")
     parser.add_argument("--jobs", type=int, default=1, help="so many drives side by side")
+    parser.add_argument("--keep", metavar="DIR", help="run folders, true tracks and what was told are left there")
     parser.add_argument("--three", action="store_true")
     arguments = parser.parse_args()
     arguments.rubble = os.path.abspath(arguments.rubble)
     os.environ.setdefault("RUBBLE_HOME", TOP)
     with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
+        if arguments.keep:
+            os.makedirs(arguments.keep, exist_ok=True)
+        os.chdir(arguments.keep or folder)
         code = three(arguments) if arguments.three else table(arguments)
         os.chdir(TOP)
     sys.exit(code)

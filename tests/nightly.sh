@@ -93,7 +93,7 @@ if has faults; then
 fi
 if has devices; then
   start=$SECONDS
-  python3 "$top/tests/device_faults.py" "${faults[@]}" >"$out/device-faults.txt" 2>&1
+  python3 "$top/tests/device_faults.py" --jobs 4 "${faults[@]}" >"$out/device-faults.txt" 2>&1
   words=$(grep '^faults: ' "$out/device-faults.txt" | tail -1)
   found=${words##*findings: }
   count=${words#faults: }

@@ -20,6 +20,8 @@ struct EmulateArguments {
   std::string urg, base, levelling;
   std::vector<std::string> faults;  ///< NAME@SECONDS
   std::string odometry_start;       ///< X,Y,DEG
+  double urg_yaw_deg = 0.0;
+  bool urg_upside_down = false;
   bool as_hardware = false;
   double time_limit = 0.0;
   std::string truth;
@@ -67,6 +69,10 @@ int emulate(const EmulateArguments& arguments) {
     options.faults.push_back(fault);
   }
   if (!arguments.odometry_start.empty()) options.odometry_start = parse_pose(arguments.odometry_start);
+  if ((arguments.urg_yaw_deg != 0.0 || arguments.urg_upside_down) && options.urg.empty())
+    throw UsageError("--urg-yaw, --urg-upside-down: the scanner is not played; give --urg too");
+  options.urg_yaw = deg_to_rad(arguments.urg_yaw_deg);
+  options.urg_upside_down = arguments.urg_upside_down;
   if (arguments.as_hardware && options.base.empty())
     throw UsageError("--as-hardware: the base is not played; give --base too");
   options.as_hardware = arguments.as_hardware;
@@ -106,6 +112,9 @@ Command emulate_command() {
             o.text("--levelling", a->levelling, "Offer the levelling unit there");
             o.texts("--fault", a->faults, "NAME@SECONDS: let something go wrong (repeatable); docs/hardware.md");
             o.text("--odometry-start", a->odometry_start, "X,Y,DEG: where the base's dead reckoning begins [m, deg]");
+            o.number("--urg-yaw", a->urg_yaw_deg, -180.0, 180.0,
+                     "The scanner is mounted so, counter-clockwise seen from above [deg]");
+            o.flag("--urg-upside-down", a->urg_upside_down, "The scanner hangs upside down from its mount");
             o.flag("--as-hardware", a->as_hardware, "The base does not say that it is a simulator, nor obey as one");
             o.number("--time-limit", a->time_limit, 0.0, 1e6, "Ends after so long (default: Ctrl-C ends it) [s]");
             o.text("--truth", a->truth, "Write the true trajectory to this .tum file");

@@ -85,7 +85,8 @@ scenarios::DriveOptions drive_options(Keyboard& keyboard, bool keys_stop) {
   options.insisted = insisted;
   options.left = [&keyboard] {
     keyboard.restore();
-    std::fprintf(stderr, "rubble: the base was told to stop and left; the folder is not complete\n");
+    std::fprintf(stderr,
+                 "rubble: the base was told to stop and left, see that it stands; the folder is not complete\n");
     std::_Exit(kInterrupted);
   };
   options.rearm = [&keyboard] {

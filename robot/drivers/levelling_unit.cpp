@@ -16,6 +16,9 @@ constexpr double kReportBytes = 50.0;  ///< of a report on the line
 constexpr double kQuestionBytes = 9.0, kAnswerBytes = 10.0;
 constexpr double kPulseRefresh = 0.1;  ///< of the servo pulses: well within the unit's watchdog [s]
 
+constexpr double kMostFelt = 2.5 * kGravity;  ///< the sensor ends at 2 g [m/s^2]
+constexpr double kMostBehind = 3.0;           ///< no line that is driven with takes so long [s]
+
 double specific_force(long t1, long t2, const AxisCalibration& axis) {
   const double duty = static_cast<double>(t1) / static_cast<double>(t2);
   return kGravity * (duty - axis.zero) / axis.sensitivity;
@@ -82,7 +85,28 @@ void LevellingUnit::digest(const std::vector<std::string>& fields, Stamp now) {
     unanswered_ = Stamp::never();
     answer_timer_.answered(now, time_on_line(line_, kQuestionBytes + kAnswerBytes, baud()));
   }
-  if (const auto report = parse_report(fields); report && identified_) follow(*report, now);
+  const auto report = parse_report(fields);
+  if (!report || !identified_) return;
+  if (is_sound(*report)) {
+    follow(*report, now);
+  } else {
+    ++unsound_;
+  }
+}
+
+/// Whether the numbers can be true. The line's sum is an exclusive or: two figures that are doubled, or lost, pass it
+/// when they are the same, and a period of 200 s instead of 20 ms would set the clock forward for minutes.
+bool LevellingUnit::is_sound(const LevellingReport& report) const {
+  const int rate = settings_.passive ? 1 : std::max(1, std::min(settings_.rate, identity_.rate));
+  const double longest = 2.0 * std::max<double>(identity_.period_ticks, identity_.tick_hz / rate);
+  if (2.0 * static_cast<double>(report.t2) < identity_.period_ticks || static_cast<double>(report.t2) > longest)
+    return false;
+  for (const int us : {report.pitch_us, report.roll_us})
+    if (us != 0 && (us < identity_.us_min || us > identity_.us_max)) return false;
+  if ((report.flags & LevellingReport::kSensorFault) != 0) return true;
+  if (report.t1x > report.t2 || report.t1y > report.t2) return false;
+  return std::abs(specific_force(report.t1x, report.t2, settings_.x)) <= kMostFelt &&
+         std::abs(specific_force(report.t1y, report.t2, settings_.y)) <= kMostFelt;
 }
 
 void LevellingUnit::follow(const LevellingReport& report, Stamp now) {
@@ -112,6 +136,11 @@ Stamp LevellingUnit::stamp_of(const LevellingReport& report, Stamp now) {
   if (reading.restarted) restart_clock();
   const double end = reading.time + 0.5 * static_cast<double>(report.t2) / identity_.tick_hz;
   clock_.add(end, now);
+  if (now - clock_.host(end) > kMostBehind) {
+    restart_clock();
+    counter_.read(report.time_us >> 1, now);
+    clock_.add(end, now);
+  }
   Stamp stamp = std::min(clock_.host(end), now);
   if (last_stamp_ != Stamp::never() && stamp <= last_stamp_) stamp = {last_stamp_.ns + 1};
   last_stamp_ = stamp;

@@ -68,13 +68,15 @@ class LevellingUnit : public Device {
   /// To `E,1`, which changes nothing: reports come unasked, and what they and the servos are late by shows in answers.
   Answers answers(Stamp now) const;
   bool sensor_fault() const { return (flags_ & LevellingReport::kSensorFault) != 0; }
-  std::size_t bad_lines() const { return lines_.bad_lines(); }
+  /// Damaged ones, by their sums or their numbers.
+  std::size_t bad_lines() const { return lines_.bad_lines() + unsound_; }
   /// Reports that never arrived, by their numbers.
   std::size_t missing() const { return missing_; }
 
  private:
   bool reports() const { return identified_ && last_report_ != Stamp::never(); }
   void digest(const std::vector<std::string>& fields, Stamp now);
+  bool is_sound(const LevellingReport& report) const;
   void follow(const LevellingReport& report, Stamp now);
   Stamp stamp_of(const LevellingReport& report, Stamp now);
   void restart_clock();
@@ -100,6 +102,7 @@ class LevellingUnit : public Device {
   int sequence_ = -1;
   int flags_ = 0;
   std::size_t missing_ = 0;
+  std::size_t unsound_ = 0;
   std::vector<Acceleration> accelerations_;
   std::vector<AimState> aims_;
 };

@@ -188,6 +188,11 @@ struct RealRobot::Impl {
   }
   /// With the mutex taken, as the next one: what was seen here holds it until the operator lets it go.
   bool holds_itself() const { return !base_watch.held().empty() || is_levelled_wrong() || is_empty(); }
+  std::string refusal() const {
+    if (base_watch.motors_stay() || base_watch.moves())
+      return "still moves, or its motors are on though switched off; it stays held";
+    return base_watch.refusal();
+  }
   bool is_levelled_wrong() const { return !levelling_witness.finding().empty() && !unlevelled && !is_only_mapping(); }
   bool is_empty() const { return battery_watch.empty() && !is_only_mapping(); }
   void wake_base() const {
@@ -362,7 +367,8 @@ struct RealRobot::Impl {
     if (!why_held.empty()) all.push_back({name_held, Cause::Held, why_held});
     if (goes_on && underway && !motors_stay)
       all.push_back({"base", Cause::Disobeys, "moves though it is held; see who drives or pushes it"});
-    if (const double volts = watched([this](const BaseWatch&) { return is_empty() ? battery_watch.volts() : 0.0; })) {
+    const double volts = watched([this](const BaseWatch&) { return is_empty() ? battery_watch.volts() : 0.0; });
+    if (volts > 0.0) {
       char text[120];
       std::snprintf(text, sizeof text, "its battery is empty: %.1f V of at least %g V (safety.battery_empty_v)", volts,
                     settings.safety.battery_empty);
@@ -437,6 +443,8 @@ struct RealRobot::Impl {
       if (is_only_mapping() && !levelling_witness.finding().empty())
         s.troubles.push_back({"levelling", Cause::Faulty, levelling_witness.finding()});
       s.motors_stay = base_watch.motors_stay();
+      s.doubted = base_watch.doubted();
+      s.refusal = refusal();
       append(s.troubles, base_watch.troubles());
     });
     if (unit_thread) {
@@ -680,8 +688,7 @@ void RealRobot::emergency_stop() { impl_->emergency_stop(); }
 void RealRobot::stop() { impl_->stop(); }
 
 bool RealRobot::rearm() {
-  const auto goes_on = [](const BaseWatch& watch) { return watch.motors_stay() || watch.moves(); };
-  if (impl_->watched(goes_on)) return false;
+  if (!impl_->watched([this](const BaseWatch&) { return impl_->refusal(); }).empty()) return false;
   if (impl_->base_thread) impl_->pardoned = impl_->base_thread->turned_away();
   impl_->with_base([this] {
     impl_->base->rearm();

@@ -61,6 +61,8 @@ struct RobotStatus {
   bool held = false;                ///< stopped at the robot itself, or taken: only rearm() lets it go
   bool blind = false;               ///< held since scans, or what levels the scanner, show that it must not drive so
   std::string mend;                 ///< what to do before it is let go, in words; empty: what the hold itself says
+  std::string refusal;              ///< why rearm() does not let it go, of the base, in words; empty: it may
+  bool doubted = false;             ///< let go after it had moved otherwise than told, and not seen to obey since
   bool taken = false;               ///< another program seemed to have the base while it was away, or to drive it
   std::vector<Hindrance> troubles;  ///< what does not work but holds nothing
   bool motors_on = false;
@@ -104,8 +106,8 @@ class RealRobot : public Robot {
   /// Set points to zero and motors off, for good; read() goes on. May be called from any thread.
   void stop();
   /// After somebody stopped the robot at the robot itself (its emergency button, its motors' button), or another
-  /// program had its base while it was away, or it moved though told otherwise: lets it drive again. False: it still
-  /// moves, or its motors are on though switched off, and stays held.
+  /// program had its base while it was away, or it moved though told otherwise: lets it drive again. False: it stays
+  /// held, see RobotStatus::refusal.
   bool rearm();
   /// `ask` is called in a thread of its own about fifty times a second, whatever the core is at; its wish is granted at
   /// once. After Leave `left` is called in that thread. Empty: nobody is asked any more.

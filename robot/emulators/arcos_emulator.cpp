@@ -27,6 +27,7 @@ constexpr double kStuckFault = 6.0;       // [s]
 constexpr double kEncodersFault = 4.0;    // [s]
 constexpr double kRunawaySpeed = 0.2;     // [m/s]
 constexpr double kFullBattery = 12.8;     // [V]
+constexpr double kEmptyBattery = 10.5;    // [V]
 constexpr double kFinestLaserStep = 0.1;  // [deg]
 constexpr int kNothingInRange = 32000;    // as far as the scanners of ARIA's simulators see [mm]
 
@@ -499,6 +500,9 @@ bool ArcosEmulator::fail(DeviceFault fault, Stamp now) {
       return true;
     case DeviceFault::Encoders:
       uncounted_until_ = now + kEncodersFault;
+      return true;
+    case DeviceFault::Battery:
+      battery_ = kEmptyBattery;
       return true;
     case DeviceFault::ClockWrap:
     case DeviceFault::Sensor:

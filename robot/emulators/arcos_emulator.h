@@ -45,7 +45,7 @@ class ArcosEmulator : public EmulatedDevice {
   /// starts anew and waits for SYNC0, `watchdog`: commands are not heard for 3 s, `button`: the emergency button is
   /// pressed for 2 s, `motors`: the motors are switched off at the robot, `stuck`: for 6 s the wheels stand whatever
   /// they are told, `runaway`: they go on as they did (0.2 m/s ahead from rest) until the motors are off, `encoders`:
-  /// for 4 s they count nothing, whatever the wheels do.
+  /// for 4 s they count nothing, whatever the wheels do, `battery`: it is nearly empty from then on.
   bool fail(DeviceFault fault, Stamp now) override;
 
   /// The robot's dead reckoning at `now`, in any frame that stays.

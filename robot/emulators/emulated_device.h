@@ -19,6 +19,7 @@ enum class DeviceFault {
   Stuck,
   Runaway,
   Encoders,
+  Battery,
   Sensor
 };
 

@@ -39,11 +39,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr double kLeastRateTime = 0.7;  ///< over less a rate of ten a second says little [s]
 constexpr double kTellAgain = 5.0;  ///< a reason that changed, or a trouble that comes and goes, is told so often [s]
 
 /// So soon a base that is stopped has told so, on a line that is as slow as may be driven with, and one that does not
 /// obey has been found out (BaseWatch::kMotorsOff) [s].
 constexpr double kConfirmed = 2.0;
+
+constexpr const char* kNotHeard = "base: has not told that it stopped; see that it stands";
 
 constexpr robot::Drive kMoved{0.02, deg_to_rad(2.0)};  ///< so far is more than a touch [m], [rad]
 
@@ -199,7 +202,10 @@ class Driver {
     hooks.over = [this] { return piloted_out_ ? why_piloted_out() : std::string(); };
     hooks.steer = [this](const robot::Inputs& inputs, const robot::Commands& wanted) { return steer(inputs, wanted); };
     hooks.each_second = [this](double seconds) { each_second(seconds); };
-    hooks.stop = [this] { real_.stop(); };
+    hooks.stop = [this] {
+      ended_ = true;
+      real_.stop();
+    };
     return hooks;
   }
 
@@ -297,8 +303,8 @@ class Driver {
     } else if (options_.rearm && options_.rearm()) {
       if (real_.rearm()) {
         held_ = false;  // should it be stopped again at once, that is another hold
-      } else if (options_.tell) {
-        options_.tell("base: still moves, or its motors are on though switched off; it stays held");
+      } else if (const std::string why = real_.status().refusal; options_.tell && !why.empty()) {
+        options_.tell("base: " + why);
       }
     }
   }
@@ -309,9 +315,15 @@ class Driver {
     const std::vector<std::string> still = names(now);
     std::vector<std::string> lines;
     for (const robot::Hindrance& one : before) {
-      const std::string line = one.name + ": " + over(one.cause);
-      const bool back = std::find(still.begin(), still.end(), one.name) == still.end();
-      if (back && std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+      if (std::find(still.begin(), still.end(), one.name) != still.end()) continue;
+      // That it is let go says all; that it is watched from then on comes with its troubles, and says that it is let
+      // go.
+      const bool held = std::any_of(before.begin(), before.end(), [&](const robot::Hindrance& other) {
+        return other.name == one.name && other.cause == robot::Hindrance::Cause::Held;
+      });
+      if (held && one.name == "base" && real_.status().doubted) continue;
+      const std::string line = one.name + ": " + over(held ? robot::Hindrance::Cause::Held : one.cause);
+      if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
     }
     for (const std::string& line : lines) options_.tell(line);
   }
@@ -352,7 +364,7 @@ class Driver {
 
   /// The line of this second.
   void show(const robot::RobotStatus& robot, const std::string& state) {
-    const double since = seconds_since(shown_at_);  // the drive's own time stands still while it waits
+    const double since = seconds_since(counted_at_);  // the drive's own time stands still while it waits
     shown_at_ = Clock::now();
     if (!options_.each_second || since <= 0.0) return;
     DriveStatus status;
@@ -363,10 +375,16 @@ class Driver {
     // While the core waits its mapper does not know that somebody moves the robot; its wheels do.
     status.T_map_base = core_.mapper().pose() + robot.unread;
     status.known_m2 = known_area(core_.mapper().map());
-    status.scans_per_s = static_cast<double>(robot.scans - last_.scans) / since;
-    status.odometry_per_s = static_cast<double>(robot.odometry - last_.odometry) / since;
-    status.accelerations_per_s = static_cast<double>(robot.accelerations - last_.accelerations) / since;
-    last_ = robot;
+    if (rates_.empty() || (since >= kLeastRateTime && !ended_)) {
+      rates_ = {static_cast<double>(robot.scans - last_.scans) / since,
+                static_cast<double>(robot.odometry - last_.odometry) / since,
+                static_cast<double>(robot.accelerations - last_.accelerations) / since};
+      last_ = robot;
+      counted_at_ = shown_at_;
+    }
+    status.scans_per_s = rates_[0];
+    status.odometry_per_s = rates_[1];
+    status.accelerations_per_s = rates_[2];
     options_.each_second(status);
   }
 
@@ -383,6 +401,9 @@ class Driver {
   std::optional<mrpt::math::TPose2D> start_;  ///< of the wheels
   double seconds_ = 0.0;                      ///< since the first tick
   Clock::time_point shown_at_ = Clock::now();
+  Clock::time_point counted_at_ = Clock::now();  ///< what came up to then, last_
+  std::vector<double> rates_;                    ///< a second, of scans, odometry and accelerations, as shown last
+  bool ended_ = false;                           ///< nothing is read any more, so nothing more is counted
   std::atomic<bool> interrupted_{false};
   bool held_ = false;  ///< stopped at the robot itself, and told
   std::vector<robot::Hindrance> troubles_;
@@ -454,31 +475,34 @@ class Completeness {
 };
 
 /// A base that is stopped for good and does not obey: whoever stands beside it must know before the program ends.
-void tell_what_goes_on(const robot::RealRobot& robot, const DriveOptions& options) {
+/// False: it said nothing any more.
+bool tell_what_goes_on(const robot::RealRobot& robot, const DriveOptions& options) {
   const auto given_up = Clock::now() + std::chrono::duration<double>(kConfirmed);
   robot::RobotStatus status = robot.status();
   if (!status.begun) {  // nobody here has driven it
     if (options.tell && status.moves)
       options.tell("base: moves though nobody here has driven it, and may go on; see who drives it");
-    return;
+    return true;
   }
   const auto stands = [](const robot::RobotStatus& s) { return s.reported && !s.motors_on && !s.moves; };
   for (; Clock::now() < given_up && !stands(status); status = robot.status())
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  if (!options.tell || stands(status)) return;
+  if (!options.tell || stands(status)) return status.reported;
   if (status.motors_stay || (status.reported && status.motors_on)) {
     options.tell(std::string("base: ") + robot::kMotorsStay);
-  } else if (!status.reported) {
-    options.tell("base: has not told that it stopped; see that it stands");
-  } else {
+  } else if (status.reported) {
     options.tell("base: its motors are off, but its wheels turn; see that it comes to stand");
   }
+  return status.reported;
 }
 
 /// Stops the robot also where an error leaves the drive, and says so when it does not stop.
 class StoppedAtLast {
  public:
-  StoppedAtLast(robot::RealRobot& robot, const DriveOptions& options) : robot_(robot), options_(options) {}
+  /// `unheard` becomes true when the base was silent as the drive ended: that is to be told where it is told how it
+  /// did.
+  StoppedAtLast(robot::RealRobot& robot, const DriveOptions& options, bool& unheard)
+      : robot_(robot), options_(options), unheard_(unheard) {}
   ~StoppedAtLast() {
     if (options_.mode == DriveMode::MapOnly) return;
     robot_.stop();
@@ -486,7 +510,8 @@ class StoppedAtLast {
       return options_.insisted && options_.insisted() ? robot::OperatorWish::Leave : robot::OperatorWish::Stop;
     };
     robot_.listen(wish, options_.left);  // who is in a hurry need not wait for the base
-    tell_what_goes_on(robot_, options_);
+    unheard_ = !tell_what_goes_on(robot_, options_);
+    if (unheard_ && options_.tell && std::uncaught_exceptions() > before_) options_.tell(kNotHeard);
     robot_.listen({});
   }
   StoppedAtLast(const StoppedAtLast&) = delete;
@@ -495,6 +520,8 @@ class StoppedAtLast {
  private:
   robot::RealRobot& robot_;
   const DriveOptions& options_;
+  bool& unheard_;
+  const int before_ = std::uncaught_exceptions();
 };
 
 /// A robot that may turn back before it has begun: what the operator should know.
@@ -538,6 +565,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
   Core core(file.settings, file.robot.model, options.mode == DriveMode::Explore, folder.path());
   RunReport report;
   std::vector<std::string> silent;  ///< in a drive that never began
+  bool unheard = false;             ///< the base, at the very end
   {
     const std::unique_ptr<robot::Scanner> lidar = open_lidar(file, box);
     robot::RealRobotSettings settings = file.robot;
@@ -546,7 +574,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     if (!file.settings.levelling.on) settings.safety.levelling_answer = std::numeric_limits<double>::infinity();
     robot::RealRobot real(settings, *lidar, &box);
     robot::RecordingRobot recorded(real, folder.file("log.rlog"), resolved_yaml(file.settings));
-    const StoppedAtLast stopped(real, options);
+    const StoppedAtLast stopped(real, options, unheard);
     Driver driver(file, options, folder, real, core, *lidar);
     const LoopEnd end = driver.run(recorded);
     report.end = end.reason;
@@ -556,6 +584,11 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     recorded.flush();
     save_map_files(folder, core.mapper());
     *report.score = score_json(evidence_of(core, real, end, start));
+  }
+  if (unheard && report.failure.empty()) {
+    report.failure = kNotHeard;
+  } else if (unheard && options.tell) {
+    options.tell(kNotHeard);
   }
   folder.save_hashes("");
   folder.write("score.json", report.score->dump(2) + "\n");

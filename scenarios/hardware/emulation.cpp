@@ -88,6 +88,7 @@ const std::vector<FaultAt>& known_faults() {
     add(EmulatedKind::Base, "stuck", DeviceFault::Stuck);
     add(EmulatedKind::Base, "runaway", DeviceFault::Runaway);
     add(EmulatedKind::Base, "encoders", DeviceFault::Encoders);
+    add(EmulatedKind::Base, "battery", DeviceFault::Battery);
     add(EmulatedKind::Base, "slow", PortFault::Slow);
     add(EmulatedKind::Levelling, "sensor", DeviceFault::Sensor);
     add(EmulatedKind::Levelling, "slow", PortFault::Slow);
@@ -322,6 +323,8 @@ EmulationReport emulate(const Scenario& scenario, const EmulateOptions& options)
   arenas::check(arena, name);
   robot::RobotModel model = scenario.robot;
   model.tick = scenario.sim.physics_step;  // what a command waits for
+  model.T_base_laser.yaw = options.urg_yaw;
+  if (options.urg_upside_down) model.T_base_laser.roll = kPi;
   Scenario endless = scenario;
   endless.sim.time_limit = 1e9;
   EmulateOptions sorted = options;

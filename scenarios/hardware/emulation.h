@@ -40,6 +40,8 @@ struct EmulateOptions {
   const std::string& port(EmulatedKind device) const;
   std::vector<FaultAt> faults;
   mrpt::math::TPose2D odometry_start;                          ///< what the base's dead reckoning begins with
+  double urg_yaw = 0.0;                                        ///< of the scanner's mount, counter-clockwise [rad]
+  bool urg_upside_down = false;                                ///< it hangs from its mount
   bool as_hardware = false;                                    ///< the base does not say that it is a simulator
   double time_limit = 0.0;                                     ///< 0: until interrupted [s]
   std::string truth;                                           ///< .tum file for the true trajectory; empty: none

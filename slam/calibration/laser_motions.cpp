@@ -113,12 +113,14 @@ std::vector<LaserStretch> laser_motions(const std::vector<robot::LaserScan>& sca
       continue;
     }
     const TPose2D foretold = T_first_last + track.between(last, scan.middle());
+    const TPose2D driven = wheels.between(stretches.back().first - setup.delay, scan.middle() - setup.delay);
+    const bool arc = length(driven.x, driven.y) > config.arc_way && std::abs(driven.phi) > config.arc_turn;
     const ScanFit fit = target->fit(points, foretold);
     if (fit.inliers < config.least_inliers) {
       begin(scan, points);
       continue;
     }
-    stretches.back().scans.push_back({scan.middle(), fit.pose, fit.information});
+    if (!arc) stretches.back().scans.push_back({scan.middle(), fit.pose, fit.information});
     last = scan.middle();
     T_first_last = fit.pose;
     // The last scan of a stretch begins the next one, so that no motion is lost in between.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "base/angle.h"
 
@@ -14,6 +15,9 @@ constexpr double kOverShare = 0.1;             ///< a limit is kept within so mu
 constexpr Drive kOver{0.03, deg_to_rad(5.0)};  ///< ... and so much more [m/s], [rad/s]
 constexpr double kJumpsLast = 5.0;             ///< of an odometry are remembered for so long [s]
 constexpr std::size_t kManyJumps = 3;          ///< within that time: an origin is set anew once
+
+constexpr const char* kLeadBack =
+    "lead its line back to this robot's base, or end this drive and start anew with that one";
 
 using Cause = Hindrance::Cause;
 
@@ -47,29 +51,48 @@ bool BaseWatch::look(const BaseTurn& turn, const std::vector<Odometry>& reports,
   mind_mount(reports, now);
   moves_though_held_ = lasts((turn.held || turn.off) && moves_, kHeldStill, held_moves_since_, now);
   if (!held_.empty() || settings_.passive) return false;
-  if (obedience_.runs_away()) return hold("base", obedience_.trouble(), false, "");
-  if (!too_fast_.empty()) return hold("base", too_fast_, false, "");
-  if (!witness_.denial().empty()) return hold("base", witness_.denial(), true, "see to its encoders and their cables");
+  if (obedience_.runs_away()) return hold(Sort::Disobeys, "base", obedience_.trouble(), "");
+  if (!too_fast_.empty()) return hold(Sort::Disobeys, "base", too_fast_, "");
+  if (!witness_.denial().empty())
+    return hold(Sort::Blind, "base", witness_.denial(), "see to its encoders and their cables");
   if (identity_now_ != identity_)
-    return hold("base", "another robot's base answers: " + identity_now_ + "; it was " + identity_, true,
-                "see which base is at its port");
+    return hold(Sort::Other, "base", "another robot's base answers: " + identity_now_ + "; it was " + identity_,
+                kLeadBack);
   if (const auto& found = mount_witness_.finding())
-    return hold(found->name, found->what, true, "mend the robot file and start again, or see that it is right");
+    return mount_witness_.is_other() ? hold(Sort::Other, found->name, found->what, kLeadBack)
+                                     : hold(Sort::Mount, found->name, found->what,
+                                            "mend the robot file and start again, or see that it is right");
   return false;
 }
 
-bool BaseWatch::hold(const std::string& name, const std::string& why, bool blind, const std::string& mend) {
+bool BaseWatch::hold(Sort sort, const std::string& name, const std::string& why, const std::string& mend) {
   held_name_ = name;
   held_ = why;
-  blind_ = blind;
   mend_ = mend;
-  doubted_ = true;
+  blind_ = sort != Sort::Disobeys;
+  other_ = sort == Sort::Other;
+  doubted_ = sort == Sort::Disobeys || sort == Sort::Blind;
   return true;
+}
+
+std::string BaseWatch::refusal() const {
+  if (identity_now_ != identity_)
+    return "is another robot's (" + identity_now_ + "), so it stays held; lead its line back to " + identity_ +
+           ", or end this drive and start anew";
+  if (other_)
+    return "may be another robot's, so it stays held; unplug it, see that its line leads to this robot, plug it in, "
+           "then "
+           "press R; or end this drive and start anew";
+  return "";
 }
 
 /// Whoever answers after a break must be who answered before; and be moved by the same wheels, where he does not say.
 void BaseWatch::mind_identity(const BaseTurn& turn, Stamp now) {
-  if (turn.ready && !was_ready_ && ever_ready_) mount_witness_.broke(now);
+  if (turn.ready && !was_ready_ && ever_ready_) {
+    mount_witness_.broke(now);
+    other_ = false;
+  }
+  if (std::exchange(doubt_who_, false)) mount_witness_.broke(now);
   was_ready_ = turn.ready;
   ever_ready_ = ever_ready_ || turn.ready;
   if (!turn.ready || turn.identity.empty()) return;
@@ -156,14 +179,16 @@ void BaseWatch::mind_doubt(bool obeys, Stamp now) {
   if (obeys && now - obeys_since_ >= kObeys) doubted_ = false;
 }
 
-void BaseWatch::rearm() {
+bool BaseWatch::rearm() {
+  if (!refusal().empty()) return false;
+  doubt_who_ = mount_witness_.is_other();
   held_.clear();
   held_name_.clear();
   mend_.clear();
   blind_ = false;
-  identity_ = identity_now_;
   mount_witness_.clear();
   pause();
+  return true;
 }
 
 std::vector<Hindrance> BaseWatch::troubles() const {

@@ -39,8 +39,8 @@ struct BaseTurn {
 ///
 /// A base that runs away, that is faster than robot.max_v and max_w allow it, or whose wheels deny motion that scans
 /// show, is held from then on, until the operator lets it go; whether it obeys then is in doubt until nothing was seen
-/// against it for a while. So is a robot that scans show to be mounted otherwise than its file says (MountWitness), and
-/// one whose base is another one after its line broke.
+/// against it for a while. A robot that scans show to be mounted otherwise than its file says (MountWitness) is held as
+/// well, and so is one whose base is another one after its line broke: that one is let go only behind another break.
 class BaseWatch {
  public:
   static constexpr double kMotorsOn = 3.0;   ///< so soon they are on when asked for [s]
@@ -57,8 +57,8 @@ class BaseWatch {
   bool look(const BaseTurn& turn, const std::vector<Odometry>& reports, Stamp now);
   /// A scan that came at `now`; some take milliseconds.
   void see(const LaserScan& scan, Stamp now);
-  /// The operator lets it go.
-  void rearm();
+  /// The operator lets it go. False: not here and now, see refusal().
+  bool rearm();
 
   /// Why nothing but the operator lets it go, in words; empty: it is not held.
   const std::string& held() const { return held_; }
@@ -68,6 +68,11 @@ class BaseWatch {
   bool blind() const { return blind_; }
   /// What is to be done before it is let go, in words; empty: nothing but to see who drives it.
   const std::string& mend() const { return mend_; }
+  /// Why the operator cannot let it go, in words; empty: he can. Another robot's base, which nobody here sees, is
+  /// driven by no drive that began with this one.
+  std::string refusal() const;
+  /// It was let go after it had moved otherwise than told, and has not been seen to obey since.
+  bool doubted() const { return doubted_; }
   /// It is held, by whomever, and its wheels turn all the same.
   bool moves_though_held() const { return moves_though_held_; }
   /// Its motors are on, long after they were switched off.
@@ -85,7 +90,8 @@ class BaseWatch {
   void mind_limit(Stamp now);
   void mind_mount(const std::vector<Odometry>& reports, Stamp now);
   void mind_identity(const BaseTurn& turn, Stamp now);
-  bool hold(const std::string& name, const std::string& why, bool blind, const std::string& mend);
+  enum class Sort { Disobeys, Blind, Mount, Other };
+  bool hold(Sort sort, const std::string& name, const std::string& why, const std::string& mend);
   bool had_time_to_stop(const BaseTurn& turn, Stamp now);
   void mind_doubt(bool obeys, Stamp now);
 
@@ -96,6 +102,8 @@ class BaseWatch {
   MountWitness mount_witness_;
   std::string held_, held_name_, mend_;
   bool blind_ = false;
+  bool other_ = false;      ///< it is held since it seems to be another robot's base; its line has not broken since
+  bool doubt_who_ = false;  ///< it was, and was let go: its wheels are looked at again
   bool was_ready_ = false;
   bool ever_ready_ = false;   ///< so that its line broke when it is not
   std::string identity_;      ///< of the base that is driven

@@ -22,10 +22,14 @@ constexpr double kOnTheSpot = 0.12;             ///< who goes less turns on the 
 constexpr double kFarTwice = 2.4;               ///< so many times a stretch is looked at again, if nothing moved
 constexpr double kAside = deg_to_rad(45.0);     ///< and more from ahead is another mount
 constexpr double kOtherExplains = 0.55, kOtherBetter = 0.15;  ///< shares of the points
-constexpr double kSeenShare = 0.5;              ///< of what wheels say is seen at least, where a way is told by it
-constexpr double kOfOne = 1.45, kSpread = 1.4;  ///< ratios of one scale lie beyond that, and so near each other
-constexpr double kSlipLasts = 10.0;             ///< at one obstacle, at most [s]
-constexpr int kStillVotes = 3;                  ///< so many stretches of a scanner that stands tell of another robot
+constexpr double kClear = 0.65, kClearBetter = 0.3;  ///< the same of a way that is told soon: back instead of ahead ...
+constexpr double kBack = deg_to_rad(150.0);          ///< ... by so much and more
+constexpr double kMostTurn = 2.0;                    ///< times what wheels say is a mirrored turn, at most
+constexpr double kFits = deg_to_rad(20.0);           ///< a mount along an axis of the robot is told as that, if so near
+constexpr double kSeenShare = 0.5;                   ///< of what wheels say is seen at least, where a way is told by it
+constexpr double kOfOne = 1.45, kSpread = 1.4;       ///< ratios of one scale lie beyond that, and so near each other
+constexpr double kSlipLasts = 10.0;                  ///< at one obstacle, at most [s]
+constexpr int kStillVotes = 3;  ///< so many stretches of a scanner that stands tell of another robot
 
 TPose2D between(const Odometry& a, const Odometry& b, Stamp when) {
   const double share = (when - a.stamp) / (b.stamp - a.stamp);
@@ -39,8 +43,8 @@ void MountWitness::clear() {
   waiting_.reset();
   begin_.reset();
   for (auto* votes : {&ways_, &turns_, &stands_, &way_ratios_, &turn_ratios_}) votes->clear();
-  broke_ = Stamp::never();
   finding_.reset();
+  is_other_ = false;
 }
 
 void MountWitness::see(const LaserScan& scan, Stamp now) {
@@ -74,6 +78,11 @@ void MountWitness::step(const LaserScan& scan, const TPose2D& pose, Stamp now) {
     return;
   }
   const TPose2D motion = pose - begin_->pose;
+  if (!begin_->looked_soon && std::abs(motion.x) >= kSoon && std::abs(motion.phi) <= kStraight) {
+    begin_->looked_soon = true;
+    if (judge_soon(*begin_, scan, motion, now)) begin_ = Begin{scan, pose, now};
+    return;
+  }
   const double far = begin_->looked ? kFarTwice : 1.0;
   if (std::hypot(motion.x, motion.y) < far * kWay && std::abs(motion.phi) < far * kTurn) return;
   if (judge(*begin_, scan, motion, now)) {
@@ -95,11 +104,13 @@ bool MountWitness::judge(const Begin& begin, const LaserScan& scan, const TPose2
 /// The scanner stands though the wheels turn: they slip, or are another robot's.
 bool MountWitness::judge_standing(const Begin& begin, const TPose2D& motion, Stamp now) {
   if (begin.looked || doubted(now)) vote(stands_, 1.0, now);
-  if (static_cast<int>(stands_.size()) >= kStillVotes && doubted(now))
+  if (static_cast<int>(stands_.size()) >= kStillVotes && doubted(now)) {
     find("base",
          "its wheels go (%.2f m, %.0f deg), and scans show that the robot stands, since the line to it was lost; is it "
          "another robot's base?",
          motion.x, rad_to_deg(wrap_angle(motion.phi)));
+    is_other_ = true;
+  }
   return begin.looked;
 }
 
@@ -117,16 +128,38 @@ bool MountWitness::judge_way(const Begin& begin, const LaserScan& scan, const TP
   const ScanWay way = way_between(begin.scan, scan, T_base_laser_, turn, motion.x < 0.0);
   if (way.fit < kOtherExplains || way.fit < way.as_told + kOtherBetter || way.way < kSeenShare * std::abs(motion.x))
     return true;
-  if (std::abs(way.aside) < kAside) return true;
-  const bool same = ways_.empty() || std::abs(wrap_angle(ways_.back().value - way.aside)) < kAside;
+  vote_elsewhere(way.aside, motion.x, now);
+  return true;
+}
+
+/// Whether the stretch is done with: scans tell clearly that the robot went elsewhere than its wheels say.
+bool MountWitness::judge_soon(const Begin& begin, const LaserScan& scan, const TPose2D& motion, Stamp now) {
+  const ScanMotion seen = motion_between(begin.scan, scan, T_base_laser_);
+  if (seen.stood() || (seen.moved() && seen.ahead * motion.x > 0.0)) return false;
+  const ScanWay way = way_between(begin.scan, scan, T_base_laser_, wrap_angle(motion.phi), motion.x < 0.0);
+  const bool clear = way.fit >= kClear && way.fit >= way.as_told + kClearBetter && std::abs(way.aside) >= kBack;
+  if (!clear || way.way < kSeenShare * std::abs(motion.x)) return false;
+  vote_elsewhere(way.aside, motion.x, now);
+  return true;
+}
+
+void MountWitness::vote_elsewhere(double aside, double ahead, Stamp now) {
+  if (std::abs(aside) < kAside) return;
+  const bool same = ways_.empty() || std::abs(wrap_angle(ways_.back().value - aside)) < kAside;
   if (!same) ways_.clear();
-  vote(ways_, way.aside, now);
-  if (static_cast<int>(ways_.size()) < kVotes) return true;
+  vote(ways_, aside, now);
+  if (static_cast<int>(ways_.size()) < kVotes) return;
+  double x = 0.0, y = 0.0;
+  for (const Vote& one : ways_) {
+    x += std::cos(one.value);
+    y += std::sin(one.value);
+  }
+  const double mean = std::atan2(y, x), axis = 0.5 * kPi * std::round(mean / (0.5 * kPi));
+  const double told = axis != 0.0 && std::abs(mean - axis) < kFits ? axis : mean;
   find("urg",
        "looks elsewhere than the robot file says: wheels go %.2f m, scans show that way turned; lower "
        "devices.urg.yaw_deg by about %.0f deg",
-       motion.x, rad_to_deg(way.aside));
-  return true;
+       ahead, std::abs(rad_to_deg(told)) > 179.0 ? 180.0 : rad_to_deg(told));
 }
 
 bool MountWitness::judge_turn(const Begin& begin, const LaserScan& scan, const TPose2D& motion, Stamp now) {
@@ -140,7 +173,8 @@ bool MountWitness::judge_turn(const Begin& begin, const LaserScan& scan, const T
     judge_scale(turn_ratios_, seen.turn / turn, true, now);
     return true;
   }
-  if (std::abs(seen.turn) < kSeenShare * std::abs(turn)) return true;
+  if (std::abs(seen.turn) < kSeenShare * std::abs(turn) || std::abs(seen.turn) > kMostTurn * std::abs(turn))
+    return true;
   vote(turns_, seen.turn, now);
   if (static_cast<int>(turns_.size()) < kVotes) return true;
   find("urg",

@@ -25,9 +25,10 @@ class MountWitness {
   static constexpr double kScale = 1.6;          ///< is more than floors and tyres explain, either way
   static constexpr double kForget = 30.0;        ///< a vote counts no longer, nor does a break of the line [s]
   static constexpr double kForgetWay = 60.0;     ///< the same of ways and scales: who turns to and fro goes little [s]
-  static constexpr double kWay = 0.25;           ///< of a stretch, by the wheels [m] ...
-  static constexpr double kTurn = 0.35;          ///< ... or [rad]
-  static constexpr double kLongestTime = 8.0;    ///< of a stretch [s]
+  static constexpr double kSoon = 0.15;        ///< a scanner that clearly looks back is told by such a way already [m]
+  static constexpr double kWay = 0.25;         ///< of a stretch, by the wheels [m] ...
+  static constexpr double kTurn = 0.35;        ///< ... or [rad]
+  static constexpr double kLongestTime = 8.0;  ///< of a stretch [s]
 
   /// `T_base_laser`: where the scanner sits by the robot file.
   explicit MountWitness(const mrpt::math::TPose2D& T_base_laser) : T_base_laser_(T_base_laser) {}
@@ -38,11 +39,13 @@ class MountWitness {
   void see(const LaserScan& scan, Stamp now);
   /// The line to the base broke and is there again: it may lead to another one.
   void broke(Stamp now) { broke_ = now; }
-  /// All that was seen counts no longer.
+  /// All that was seen counts no longer; that the line broke does.
   void clear();
 
   /// What is wrong, and of which device; nothing: the robot is as its file says. Stays until clear().
   const std::optional<Hindrance>& finding() const { return finding_; }
+  /// That is that the wheels seem to be another robot's.
+  bool is_other() const { return is_other_; }
 
  private:
   /// Where a stretch begins.
@@ -50,7 +53,8 @@ class MountWitness {
     LaserScan scan;
     mrpt::math::TPose2D pose;  ///< of the wheels
     Stamp when;
-    bool looked = false;  ///< once at the scans: they showed a robot that stood
+    bool looked = false;       ///< once at the scans: they showed a robot that stood
+    bool looked_soon = false;  ///< after kSoon
   };
   struct Vote {
     Stamp when;
@@ -60,6 +64,8 @@ class MountWitness {
   void step(const LaserScan& scan, const mrpt::math::TPose2D& pose, Stamp now);
   bool judge(const Begin& begin, const LaserScan& scan, const mrpt::math::TPose2D& motion, Stamp now);
   bool judge_way(const Begin& begin, const LaserScan& scan, const mrpt::math::TPose2D& motion, Stamp now);
+  bool judge_soon(const Begin& begin, const LaserScan& scan, const mrpt::math::TPose2D& motion, Stamp now);
+  void vote_elsewhere(double aside, double ahead, Stamp now);
   bool judge_turn(const Begin& begin, const LaserScan& scan, const mrpt::math::TPose2D& motion, Stamp now);
   bool judge_standing(const Begin& begin, const mrpt::math::TPose2D& motion, Stamp now);
   void judge_scale(std::deque<Vote>& ratios, double ratio, bool turns, Stamp now);
@@ -78,6 +84,7 @@ class MountWitness {
   std::deque<Vote> turn_ratios_;  ///< the same
   Stamp broke_ = Stamp::never();
   std::optional<Hindrance> finding_;
+  bool is_other_ = false;
 };
 
 }  // namespace rubble::robot

@@ -108,6 +108,7 @@ ScanWay way_between(const LaserScan& before, const LaserScan& after, const TPose
                     bool backwards) {
   constexpr int kWays = 24;   // 15 deg apart
   constexpr int kAsTold = 2;  // so many to either side are the way that wheels say still: 30 deg
+  constexpr int kTurnsAsTold = 6;
   constexpr double kStepWay = 0.06, kStepHeading = deg_to_rad(3.0);
   const std::vector<TPoint2D> points = points_of(before, T_base_laser);
   ScanWay best;
@@ -116,7 +117,8 @@ ScanWay way_between(const LaserScan& before, const LaserScan& after, const TPose
     const double direction = wrap_angle(aside + (backwards ? kPi : 0.0));
     const bool as_told = std::min(i, kWays - i) <= kAsTold;
     for (double way = as_told ? 0.0 : kSeen; way <= kFarthest; way += kStepWay) {
-      for (int j = -2; j <= 2; ++j) {
+      const int turns = as_told ? kTurnsAsTold : 2;  // wheels that slip tell another turn
+      for (int j = -turns; j <= turns; ++j) {
         const double fit = fit_of(points, after, T_base_laser, way, turn + j * kStepHeading, direction);
         if (as_told) best.as_told = std::max(best.as_told, fit);
         if (fit > best.fit) best = {way, aside, fit, best.as_told};

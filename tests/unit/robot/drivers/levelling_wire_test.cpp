@@ -2,9 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <deque>
+#include <functional>
+#include <iostream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "robot/drivers/levelling_unit.h"
 #include "robot/emulators/levelling_emulator.h"
@@ -147,6 +151,51 @@ TEST(LevellingWire, TiltsArriveWithinATick) {
   EXPECT_NEAR(wire.accelerations.back().x, wire.felt.x, kGravity * 0.0004);
   EXPECT_NEAR(wire.accelerations.back().y, wire.felt.y, kGravity * 0.0004);
   EXPECT_NEAR(static_cast<double>(wire.accelerations.size()), 100.0, 6.0);
+}
+
+/// What passes the line's sum all the same: two figures doubled that are alike.
+TEST(LevellingWire, AReportThatCannotBeTrueIsDroppedAndSpoilsNoStamp) {
+  UnitWire wire;
+  wire.run(2.0);
+  LevellingReport report;
+  report.t1x = report.t1y = 10000;
+  report.t2 = 20000;
+  report.sequence = 110;
+  report.time_us = 2'100'000;
+  const std::vector<std::function<void(LevellingReport&)>> damages{
+      [](LevellingReport& r) { r.t2 = 200'000'000; }, [](LevellingReport& r) { r.t2 = 2000; },
+      [](LevellingReport& r) { r.t1x = 100'000; },    [](LevellingReport& r) { r.t1y = 1000; },
+      [](LevellingReport& r) { r.pitch_us = 5500; },  [](LevellingReport& r) { r.time_us = 211'000'000; }};
+  for (std::size_t i = 0; i < damages.size(); ++i) {
+    SCOPED_TRACE(i);
+    LevellingReport damaged = report;
+    damages[i](damaged);
+    wire.driver.receive(levelling_line(body(damaged)), wire.now);
+    wire.accelerations.clear();
+    wire.run(0.5);
+    ASSERT_GT(wire.accelerations.size(), 20u);
+    for (const Acceleration& felt : wire.accelerations) EXPECT_LT(std::abs(felt.x) + std::abs(felt.y), 0.1);
+    EXPECT_LT(wire.now - wire.accelerations.back().stamp, 0.05);
+  }
+  EXPECT_EQ(wire.driver.bad_lines(), damages.size() - 1) << "another time is one of a unit that was reset";
+}
+
+/// Whatever of it passes the sums.
+TEST(LevellingWire, StampsAreRightAgainAfterAnyDamage) {
+  double worst = 0.0;
+  for (const ByteFault fault : {ByteFault::Lost, ByteFault::Doubled, ByteFault::Junk}) {
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+      UnitWire wire;
+      wire.faults = LineFaults(seed);
+      wire.run(1.0);
+      wire.faults.spoil(fault, wire.now + 1.0);
+      wire.run(2.0);
+      const double late = wire.now - wire.accelerations.back().stamp;
+      worst = std::max(worst, late);
+      ASSERT_LT(late, 0.05) << "fault " << static_cast<int>(fault) << ", seed " << seed;
+    }
+  }
+  std::cout << "newest stamp a second after the damage: " << 1e3 * worst << " ms old at most\n";
 }
 
 TEST(LevellingWire, APartsOwnZeroAndSensitivityAreTakenOut) {

@@ -13,6 +13,7 @@
 #include "robot/emulators/arcos_emulator.h"
 #include "robot/hardware_units.h"
 #include "robot/logs/log.h"
+#include "scenarios/run/run.h"
 #include "tests/support/sim_arena.h"
 #include "tests/support/source_dir.h"
 
@@ -149,6 +150,37 @@ TEST(Calibrate, ASimulatedRobotsTrueNumbersComeBack) {
     EXPECT_NEAR(rad_to_deg(robot.calibration.level->roll - zero.roll), 0.0, 0.2);
     EXPECT_NEAR(rad_to_deg(robot.calibration.level->slope), 0.0, 0.1);
   }
+}
+
+/// Drives that were not made for it: arcs, in which wheels slip sideways, must not shift the laser unsaid.
+TEST(Calibrate, TheLasersPlaceFromAnExploringDriveIsAsUncertainAsItSays) {
+  constexpr int kDrives = 20;
+  const Scratch scratch;
+  const RobotFile file = shipped();
+  int within = 0, numbers = 0;
+  for (int seed = 1; seed <= kDrives; ++seed) {
+    Scenario scenario =
+        load_scenario(std::string(RUBBLE_SOURCE_DIR) + "/scenarios/yellow.yaml", {{"arena.generate.columns", "3"},
+                                                                                  {"arena.generate.rows", "3"},
+                                                                                  {"explorer.return_home", "false"},
+                                                                                  {"seed", std::to_string(seed)},
+                                                                                  {"time_limit_s", "120"}});
+    RunOptions options;
+    options.out = scratch.file("run" + std::to_string(seed));
+    run_scenario(scenario, options);
+    const CalibratedRobot robot = calibrate_from_log(options.out + "/log.rlog", file, file);
+    const mrpt::math::TPose2D& found = robot.setup.T_base_laser;
+    const mrpt::math::TPose2D& sigma = robot.calibration.sigma.T_base_laser;
+    const double x = found.x - scenario.robot.T_base_laser.x, y = found.y - scenario.robot.T_base_laser.y;
+    std::cout << "seed " << seed << ": x " << 1e3 * x << " +- " << 1e3 * sigma.x << " mm, y " << 1e3 * y << " +- "
+              << 1e3 * sigma.y << " mm\n";
+    EXPECT_LE(std::abs(x), 3.0 * sigma.x) << seed;
+    EXPECT_LE(std::abs(y), 3.0 * sigma.y) << seed;
+    within += (std::abs(x) <= sigma.x ? 1 : 0) + (std::abs(y) <= sigma.y ? 1 : 0);
+    numbers += 2;
+  }
+  EXPECT_GE(2 * within, numbers);
+  std::cout << within << " of " << numbers << " within one sigma\n";
 }
 
 /// The simulated robot behind its emulated firmware, as our driver sees it: all in one thread, without lines or clocks.

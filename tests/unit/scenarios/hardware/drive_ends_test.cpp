@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <future>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -197,6 +199,47 @@ TEST(EmulatedDriveEnds, AnErrorThatLeavesTheDriveStopsTheBaseAndSaysWhatItDoes) 
   }
 }
 
+/// Nothing was wrong up to then; that nobody knows whether it stands is a device that was lost.
+TEST(EmulatedDriveEnds, ABaseThatIsSilentAtTheVeryEndIsAFailureAndTheMapIsSaved) {
+  for (const bool silent : {true, false}) {
+    EmulatedDrive robot;
+    std::atomic<bool> over{false};
+    robot.options.mode = DriveMode::Calibrate;
+    robot.options.pilot = [&](const robot::Inputs&, const mrpt::math::TPose2D&) -> std::optional<robot::Drive> {
+      if (!over) return robot::Drive{0.0, 0.0};
+      if (silent) robot.server.with([&] { robot.device.mute = robot.device.deaf = true; });
+      return std::nullopt;
+    };
+    auto driven = robot.start();
+    robot.comes_true([&] { return count(robot.told(), "base: reports") > 0; });
+    robot::sleep_until(robot::host_now() + 3.0);
+    over = true;
+    const RunReport report = driven.get();
+    EXPECT_EQ(report.failure, silent ? "base: has not told that it stopped; see that it stands" : "");
+    EXPECT_EQ(count(robot.told(), "has not told"), 0u) << "the end of the program says it";
+    EXPECT_FALSE(report.interrupted);
+    EXPECT_TRUE(std::filesystem::exists(report.folder + "/map.tif"));
+    EXPECT_FALSE(std::filesystem::exists(report.folder + "/.partial"));
+  }
+}
+
+/// Its last line comes right behind another, and when nothing is read any more.
+TEST(EmulatedDriveEnds, TheLastLineOfStateTellsTheRatesOfTheDrive) {
+  EmulatedDrive robot;
+  double scans = 0.0, odometry = 0.0;
+  robot.each_second = [&](const DriveStatus& status) {
+    scans = status.scans_per_s;
+    odometry = status.odometry_per_s;
+  };
+  auto driven = robot.start();
+  ASSERT_TRUE(robot.drives());
+  robot::sleep_until(robot::host_now() + 3.1);
+  robot.ending = true;
+  driven.get();
+  EXPECT_NEAR(scans, 10.0, 2.0);
+  EXPECT_NEAR(odometry, 10.0, 2.0);
+}
+
 TEST(EmulatedDriveEnds, WheelsThatTurnThoughTheMotorsAreOffAreTold) {
   EmulatedDrive robot;
   auto driven = robot.start();
@@ -308,6 +351,7 @@ TEST(EmulatedDriveThatIsHeld, ThatItIsWatchedIsToldOnce) {
   robot.ending = true;
   driven.get();
   EXPECT_EQ(count(robot.told(), "let go again"), 1u) << testing::PrintToString(robot.told());
+  EXPECT_EQ(count(robot.told(), "is let go"), 0u) << "the same said twice: " << testing::PrintToString(robot.told());
 }
 
 TEST(EmulatedDriveThatIsHeld, EachReasonIsToldOnceAndTheStateIsHeldToTheEnd) {

@@ -462,20 +462,39 @@ TEST_P(UrgWire, OldProtocolAsksAgainForATurnThatGotLost) {
   for (std::size_t i = 1; i < bench.scans.size(); ++i) EXPECT_GT(bench.scans[i].stamp, bench.scans[i - 1].stamp);
 }
 
-/// Already after four seconds, in real time; what holds after a minute (0.5 ms in the mean, 1.5 ms of 99 %) is
-/// ClockWire's.
+/// What is promised for a minute, 0.5 ms in the mean and 1.5 ms of 99 %, already after four seconds and in real time
+/// (ClockWire holds the minute itself to it, without lines). A machine that is busy elsewhere is measured beside it and
+/// gets three attempts.
 TEST_P(UrgWire, StampsAreRightThoughTheLineJittersAndTheClockDrifts) {
-  UrgEmulatorConfig emulated;
-  emulated.jitter = 0.005;
-  emulated.clock_drift = 50e-6;
-  Bench bench(GetParam(), emulated);
-  bench.connect();
-  ASSERT_TRUE(bench.more(40, 15.0)) << bench.scanner->status().error;
-  double mean = 0.0;
-  for (const LaserScan& scan : bench.scans) mean += scan.stamp - bench.scene->stamp(number_of(scan));
-  mean /= static_cast<double>(bench.scans.size());
-  EXPECT_NEAR(mean, 0.0, 0.002);
-  for (const LaserScan& scan : bench.scans) expect_true(bench, scan, 0.004);
+  constexpr double kMean = 0.5e-3, kMost = 1.5e-3, kBusy = 1e-3;  // [s]
+  double mean = 0.0, most = 0.0, late = 0.0;
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    UrgEmulatorConfig emulated;
+    emulated.jitter = 0.005;
+    emulated.clock_drift = 50e-6;
+    Bench bench(GetParam(), emulated);
+    Witness witness;
+    bench.connect();
+    ASSERT_TRUE(bench.more(40, 15.0)) << bench.scanner->status().error;
+    witness.end();
+    late = witness.lateness(0.99);
+    std::vector<double> errors;
+    mean = 0.0;
+    for (const LaserScan& scan : bench.scans) {
+      const double error = scan.stamp - bench.scene->stamp(number_of(scan));
+      mean += error / static_cast<double>(bench.scans.size());
+      errors.push_back(std::abs(error));
+    }
+    std::sort(errors.begin(), errors.end());
+    most = errors[static_cast<std::size_t>(0.99 * static_cast<double>(errors.size() - 1))];
+    std::cout << "stamps off by " << 1e3 * mean << " ms in the mean, " << 1e3 * most << " ms (99 %); sleepers late by "
+              << 1e3 * late << " ms (99 %)\n";
+    for (const LaserScan& scan : bench.scans) expect_true(bench, scan, 0.004);
+    if (std::abs(mean) <= kMean && most <= kMost) return;
+  }
+  if (late > kBusy) GTEST_SKIP() << "the machine itself is late by " << 1e3 * late << " ms";
+  EXPECT_LE(std::abs(mean), kMean);
+  EXPECT_LE(most, kMost);
 }
 
 TEST_P(UrgWire, RangesBeyondTheLimitAreMissesAndNoEchoIsWhatTheUserSays) {

@@ -105,8 +105,17 @@ TEST(BaseWatch, AnotherRobotsBaseBehindTheSamePortIsHeld) {
   EXPECT_THAT(base.watch.held(), testing::AllOf(HasSubstr("another robot's base answers"), HasSubstr("'18'")));
   EXPECT_TRUE(base.watch.blind());
   EXPECT_NE(base.watch.mend(), "");
-  base.watch.rearm();
-  EXPECT_FALSE(base.run({0.2, 0.0}, 2.0)) << "the operator has said that it is right";
+  EXPECT_FALSE(base.watch.rearm()) << "nobody here sees where it drives";
+  EXPECT_THAT(base.watch.refusal(), HasSubstr("'Bob'"));
+  EXPECT_THAT(base.watch.held(), HasSubstr("'18'"));
+  base.turn.ready = false;
+  base.run({}, 1.0);
+  base.turn.ready = true;
+  base.turn.identity = "'Ada', p3at-sh, serial number '17', firmware '2.6'";
+  base.run({}, 1.0);
+  EXPECT_TRUE(base.watch.rearm()) << base.watch.refusal();
+  EXPECT_FALSE(base.run({0.2, 0.0}, 3.0));
+  EXPECT_EQ(base.troubles(), "") << "it has never disobeyed";
 }
 
 /// A driver without who() tells nothing of whom it talks to: then wheels that go while scans stand do, behind a break.
@@ -120,6 +129,26 @@ TEST(BaseWatch, AnotherBaseThatDoesNotSayWhoItIsIsHeldByItsWheelsBehindABreak) {
     base.scans_stand = true;
     EXPECT_EQ(base.run({0.0, 0.8}, 10.0), breaks);
     EXPECT_EQ(base.watch.held() != "", breaks) << base.watch.held();
+    if (!breaks) continue;
+    base.run({}, 2.0);
+    EXPECT_FALSE(base.watch.rearm()) << "it is driven again, and nobody here sees where";
+    EXPECT_NE(base.watch.held(), "");
+    base.turn.ready = false;  // its plug is pulled and put back
+    base.run({}, 40.0);
+    base.turn.ready = true;
+    base.run({}, 40.0);
+    EXPECT_TRUE(base.watch.rearm());
+    EXPECT_TRUE(base.run({0.0, 0.8}, 10.0)) << "the wrong one again, however long it was held";
+    base.run({}, 2.0);
+    EXPECT_EQ(base.troubles(), "") << "no word of obeying";
+    base.turn.ready = false;
+    base.run({}, 1.0);
+    base.turn.ready = true;
+    base.scans_stand = false;
+    base.run({}, 1.0);
+    EXPECT_TRUE(base.watch.rearm());
+    EXPECT_FALSE(base.run({0.0, 0.8}, 10.0)) << "the right one";
+    EXPECT_EQ(base.watch.held(), "");
   }
 }
 

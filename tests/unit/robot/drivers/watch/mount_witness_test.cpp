@@ -108,6 +108,10 @@ TEST(MountWitness, AScannerThatLooksElsewhereIsFoundWithinTwoMetres) {
     robot.look_around(10);
     EXPECT_THAT(robot.finding(), HasSubstr("devices.urg.yaw_deg")) << yaw;
     EXPECT_LT(robot.gone, 2.0) << yaw;
+    if (yaw == 180.0) {
+      EXPECT_LT(robot.gone, 1.0);
+      EXPECT_THAT(robot.finding(), HasSubstr("by about 180 deg"));
+    }
     const double said = std::stod(robot.finding().substr(robot.finding().find("by about ") + 9));
     EXPECT_NEAR(wrap_angle(deg_to_rad(yaw + said)), 0.0, deg_to_rad(31.0)) << "lowered by it the file is right";
   }
@@ -185,8 +189,8 @@ double went_ahead(const Trajectory& reference, Stamp now) {
          std::sin(from->pose.phi) * (to->pose.y - from->pose.y);
 }
 
-/// Where one is raised the log's corrected poses, too, go the other way than its wheels (freiburg-079, for four
-/// seconds).
+/// Where one is raised the log's corrected poses, too, go the other way than its wheels (freiburg-079). Those within
+/// ten seconds are one: the first would have held the robot.
 TEST(MountWitness, RecordedDrivesRaiseNoFalseAlarm) {
   const char* data = std::getenv("RUBBLE_DATA");
   if (data == nullptr) GTEST_SKIP() << "set RUBBLE_DATA to the folder of public data";
@@ -197,13 +201,15 @@ TEST(MountWitness, RecordedDrivesRaiseNoFalseAlarm) {
     const auto& mount = replay.model().T_base_laser;
     MountWitness witness({mount.x, mount.y, mount.yaw});
     int scans = 0, alarms = 0, false_alarms = 0;
+    Stamp raised = Stamp::never();
     TPose2D wheels, before;
     while (const auto inputs = replay.read()) {
       for (const Odometry& report : inputs->odometry) {
         before = std::exchange(wheels, report.pose);
         witness.look(report, inputs->now);
         if (!witness.finding()) continue;
-        ++alarms;
+        alarms += raised == Stamp::never() || inputs->now - raised > 10.0 ? 1 : 0;
+        raised = inputs->now;
         const double step = (wheels - before).x;
         false_alarms += went_ahead(replay.reference(), inputs->now) * step >= 0.0 ? 1 : 0;
         witness.clear();
