@@ -14,7 +14,7 @@
 #include "tests/support/source_dir.h"
 
 #define FUZZ_TARGET(name) extern "C" int fuzz_##name(const std::uint8_t*, std::size_t);
-#include "fuzz/targets.h"
+#include "tests/fuzz/targets.h"
 #undef FUZZ_TARGET
 
 namespace rubble {
@@ -30,7 +30,7 @@ struct Target {
 const std::vector<Target>& targets() {
   static const std::vector<Target> all = {
 #define FUZZ_TARGET(name) {#name, fuzz_##name},
-#include "fuzz/targets.h"
+#include "tests/fuzz/targets.h"
 #undef FUZZ_TARGET
   };
   return all;
