@@ -23,7 +23,7 @@ RUBBLE_FUZZ_TARGET {
         decode_codes(payload);
         break;
     }
-  } catch (const BadPayload&) {
+  } catch (const rubble::BadPayload&) {
   }
   return 0;
 }

@@ -22,7 +22,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::uint32_t kMaxSide = 20000;
 constexpr std::uint64_t kMaxPixels = 100000000;
 constexpr std::uint32_t kMaxSamples = 16;
-constexpr std::uint64_t kMaxChunk = 2u << 30;  ///< [bytes] of one strip or tile, unpacked
+constexpr std::uint64_t kMaxChunk = 64u << 20;  ///< [bytes] of one strip or tile, unpacked, or twice the picture
 
 /// How the samples of a TIFF are stored.
 struct Layout {
@@ -135,7 +135,11 @@ class Reader {
       if (size > end || offset > end - size) fail("is truncated: its pixels end after the file; copy it again");
     }
     const auto chunk = static_cast<std::uint64_t>(layout_.tiled ? TIFFTileSize64(tiff_) : TIFFStripSize64(tiff_));
-    if (chunk == 0 || chunk > kMaxChunk) fail("has strips or tiles of an absurd size; it is damaged");
+    const auto row = static_cast<std::uint64_t>(TIFFScanlineSize64(tiff_));
+    const std::uint64_t picture =
+        row * layout_.height * (layout_.planes == PLANARCONFIG_SEPARATE ? layout_.samples : 1);
+    if (chunk == 0 || chunk > std::max(kMaxChunk, 2 * picture))
+      fail("has strips or tiles of an absurd size; it is damaged");
   }
 
   /// Signed, floating or 32-bit: not colours but what was measured.

@@ -17,6 +17,10 @@ namespace {
 
 // An entry: name length, name, direction (one byte each), stamp (8 bytes), byte count (4 bytes), bytes; little-endian.
 constexpr std::size_t kNumbers = 8 + 4;
+// A replay walks through the time between the entries step by step: a time that no drive has would keep it for ever.
+constexpr Stamp kLatest{9'000'000'000'000'000'000};  ///< the year 2255
+constexpr double kLongestDrive = 30.0 * 86400.0;     ///< [s]
+constexpr double kMostDisorder = 10.0;               ///< of what several threads wrote [s]
 
 void put(std::string& out, std::uint64_t value, int bytes) {
   for (int i = 0; i < bytes; ++i) out.push_back(static_cast<char>((value >> (8 * i)) & 0xFF));
@@ -51,6 +55,19 @@ std::string write_all(int file, std::string_view bytes) {
     bytes.remove_prefix(static_cast<std::size_t>(step));
   }
   return "";
+}
+
+/// Throws InputError where the times are not those of one drive.
+void require_times_of_a_drive(const std::vector<BlackBoxEntry>& entries, const std::string& path) {
+  Stamp newest = entries.empty() ? Stamp{} : entries.front().stamp;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Stamp stamp = entries[i].stamp;
+    const bool possible = stamp >= Stamp{} && stamp <= kLatest;
+    if (!possible || stamp - entries.front().stamp > kLongestDrive || newest - stamp > kMostDisorder)
+      throw InputError(path + ": is damaged (entry " + std::to_string(i + 1) +
+                       " has a time that does not follow those before); copy it again");
+    newest = std::max(newest, stamp);
+  }
 }
 
 class RecordedPort : public Port {
@@ -201,6 +218,7 @@ std::vector<BlackBoxEntry> read_black_box(const std::string& path) {
     at += size;
     entries.push_back(std::move(entry));
   }
+  require_times_of_a_drive(entries, path);
   return entries;
 }
 

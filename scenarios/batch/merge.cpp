@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/text/input_file.h"
+#include "base/text/json_size.h"
 #include "base/text/text_file.h"
 #include "scenarios/batch/score_version.h"
 
@@ -162,6 +163,11 @@ class Texts {
   std::size_t left_;
 };
 
+ordered_json parsed(const std::string& text) {
+  if (!is_modest_json(text)) throw InputError("too much JSON");
+  return ordered_json::parse(text);
+}
+
 ResultSet read_database(const std::string& path) {
   try {
     const auto size = static_cast<std::size_t>(fs::file_size(path));
@@ -181,12 +187,13 @@ ResultSet read_database(const std::string& path) {
       r.run_id = text(runs, 0), r.scenario = text(runs, 1), r.configuration = text(runs, 2);
       r.seed = static_cast<std::uint64_t>(runs.integer(3));
       r.status = status_named(text(runs, 4)), r.error = text(runs, 5), r.end = text(runs, 6);
-      r.broken = ordered_json::parse(text(runs, 7)).get<std::vector<std::string>>();
-      *r.score = ordered_json::parse(text(runs, 8));
+      r.broken = parsed(text(runs, 7)).get<std::vector<std::string>>();
+      *r.score = parsed(text(runs, 8));
       r.hash = text(runs, 9), r.folder = text(runs, 10), r.code = text(runs, 11);
       set.runs.push_back(std::move(r));
     }
-    set.runs = unique_runs(set.runs, path);  // sorted here, not by SQLite, whose sorting would come before any check
+    set.runs = unique_runs(std::move(set.runs),
+                           path);  // sorted here, not by SQLite, whose sorting would come before any check
     Statement times(db, "SELECT run_id, key, value FROM timing");  // in the order of their primary key
     while (times.step()) {
       const std::string run = text(times, 0);
@@ -266,7 +273,7 @@ MergeReport merge(const std::vector<std::string>& sources, const std::string& ou
     all.runs.insert(all.runs.end(), set.runs.begin(), set.runs.end());
     for (auto& entry : set.timing) all.timing[entry.first] = std::move(entry.second);
   }
-  all.runs = unique_runs(all.runs, out);
+  all.runs = unique_runs(std::move(all.runs), out);
   report.runs = all.runs.size();
   report.added = report.runs - before;
   const std::string partial = new_file_beside(out);

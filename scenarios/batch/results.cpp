@@ -9,11 +9,15 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <tuple>
+#include <utility>
 
 #include "base/error.h"
-#include "base/text/text_file.h"
+#include "base/text/input_file.h"
+#include "base/text/json_size.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -21,22 +25,28 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
+/// The text of a file with a line for each run: a hundred thousand runs take 300 MB.
+std::string read_lines(const std::string& path) {
+  InputRules rules;
+  rules.most = std::size_t{8} << 30;
+  return read_input(path, rules);
+}
+
 struct Line {
   int number = 0;
   std::string text;
   bool whole = false;  ///< ended by a newline
+  bool last = false;
 };
 
-std::vector<Line> split_lines(const std::string& text) {
-  std::vector<Line> lines;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = text.find('\n', begin);
-    const bool whole = end != std::string::npos;
-    lines.push_back(
-        {static_cast<int>(lines.size()) + 1, text.substr(begin, whole ? end - begin : std::string::npos), whole});
-    begin = whole ? end + 1 : text.size();
-  }
-  return lines;
+/// The line that begins at `begin`, which becomes the beginning of the next one.
+Line next_line(const std::string& text, std::size_t& begin, int number) {
+  const std::size_t end = text.find('\n', begin);
+  const bool whole = end != std::string::npos;
+  Line line{number, text.substr(begin, whole ? end - begin : std::string::npos), whole, false};
+  begin = whole ? end + 1 : text.size();
+  line.last = begin == text.size();
+  return line;
 }
 
 /// The records of a file's text, and how many bytes of it they take: less than all when the last line is torn.
@@ -47,14 +57,14 @@ struct Parsed {
 
 Parsed parse_lines(const std::string& text, const std::string& path) {
   Parsed parsed;
-  const std::vector<Line> lines = split_lines(text);
-  for (const Line& line : lines) {
-    const bool last = &line == &lines.back();
+  int number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const Line line = next_line(text, at, ++number);
     if (!line.whole) break;
     try {
       parsed.records.push_back(from_line(line.text, path + ":" + std::to_string(line.number)));
     } catch (const InputError&) {
-      if (last) break;  // blocks that never reached the disk read as zeros
+      if (line.last) break;  // blocks that never reached the disk read as zeros
       throw;
     }
     parsed.bytes += line.text.size() + 1;
@@ -172,11 +182,13 @@ std::string to_line(const RunRecord& r) {
 
 RunRecord from_line(const std::string& line, const std::string& place) {
   try {
+    if (!is_modest_json(line)) throw InputError("too much");
     const ordered_json json = ordered_json::parse(line);
     RunRecord r;
     r.run_id = json.at("run_id");
     r.scenario = json.at("scenario");
     r.configuration = json.at("config");
+    if (!json.at("seed").is_number_unsigned()) throw InputError("no seed");
     r.seed = json.at("seed");
     r.status = status_named(json.at("status"));
     r.error = json.at("error");
@@ -226,10 +238,10 @@ void ResultsFile::append(const RunRecord& record, const ordered_json& timing) {
   append_synced(file_, path_, to_line(record) + "\n");
 }
 
-std::vector<RunRecord> unique_runs(const std::vector<RunRecord>& records, const std::string& source) {
-  std::map<std::string, const RunRecord*> by_id;
-  for (const RunRecord& record : records) {
-    const RunRecord*& kept = by_id[record.run_id];
+std::vector<RunRecord> unique_runs(std::vector<RunRecord> records, const std::string& source) {
+  std::map<std::string, RunRecord*> by_id;
+  for (RunRecord& record : records) {
+    RunRecord*& kept = by_id[record.run_id];
     if (kept != nullptr && kept->ok() && record.ok() && to_line(*kept) != to_line(record))
       throw InputError(source + ": run " + record.run_id + " (" + record.scenario + ", " + record.configuration +
                        ", seed " + std::to_string(record.seed) +
@@ -237,7 +249,7 @@ std::vector<RunRecord> unique_runs(const std::vector<RunRecord>& records, const 
     if (kept == nullptr || record.ok() || !kept->ok()) kept = &record;
   }
   std::vector<RunRecord> unique;
-  for (const auto& entry : by_id) unique.push_back(*entry.second);
+  for (const auto& entry : by_id) unique.push_back(std::move(*entry.second));
   std::sort(unique.begin(), unique.end(),
             [](const RunRecord& a, const RunRecord& b) { return order_of(a) < order_of(b); });
   return unique;
@@ -248,11 +260,11 @@ std::vector<RunRecord> load_lines(const std::string& path) {
   std::size_t files = 0;
   each_file(path, "results", [&](const std::string& file) {
     ++files;
-    Parsed parsed = parse_lines(read_text_file(file), file);
-    records.insert(records.end(), parsed.records.begin(), parsed.records.end());
+    Parsed parsed = parse_lines(read_lines(file), file);
+    std::move(parsed.records.begin(), parsed.records.end(), std::back_inserter(records));
   });
   if (files == 0) throw InputError(path + ": holds no results*.jsonl; give the --out folder of a 'rubble batch'");
-  return unique_runs(records, path);
+  return unique_runs(std::move(records), path);
 }
 
 Timing load_timing(const std::string& path) {
@@ -260,7 +272,10 @@ Timing load_timing(const std::string& path) {
   const std::string folder = fs::is_directory(path) ? path : fs::path(path).parent_path().string();
   if (!fs::is_directory(folder.empty() ? "." : folder)) return timing;
   each_file(folder.empty() ? "." : folder, "timing", [&](const std::string& file) {
-    for (const Line& line : split_lines(read_text_file(file))) {
+    const std::string text = read_lines(file);
+    for (std::size_t at = 0; at < text.size();) {
+      const Line line = next_line(text, at, 0);
+      if (!is_modest_json(line.text)) continue;
       ordered_json json = ordered_json::parse(line.text, nullptr, false);
       if (!json.is_object() || !json.contains("run_id") || !json["run_id"].is_string()) continue;
       const std::string id = json["run_id"];

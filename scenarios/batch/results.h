@@ -72,7 +72,7 @@ class ResultsFile {
 
 /// One record a run: of several with one id the ok one stands, else the last. Sorted by scenario, configuration, seed.
 /// Throws InputError when two ok records of one id differ: then the program is not deterministic.
-std::vector<RunRecord> unique_runs(const std::vector<RunRecord>& records, const std::string& source);
+std::vector<RunRecord> unique_runs(std::vector<RunRecord> records, const std::string& source);
 
 /// Reads every results*.jsonl of a folder, or one such file; a torn last line is left out. Throws InputError.
 std::vector<RunRecord> load_lines(const std::string& path);

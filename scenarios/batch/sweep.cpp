@@ -49,7 +49,8 @@ std::vector<std::uint64_t> read_seeds(const YamlMap& root) {
     const auto first = whole_number(text.substr(0, dash));
     const auto last = dash == std::string::npos ? first : whole_number(text.substr(dash + 1));
     if (!first || !last || *last < *first) root.fail("seeds", "'" + text + "' is neither a seed nor a range" + remedy);
-    if (*last - *first >= kMostRuns) root.fail("seeds", "'" + text + "' are more than a million seeds" + remedy);
+    if (*last - *first >= kMostRuns - seeds.size())
+      root.fail("seeds", "are more than a million seeds; split the sweep");
     for (std::uint64_t seed = *first;; ++seed) {
       if (!seen.insert(seed).second) root.fail("seeds", "seed " + std::to_string(seed) + " is there twice" + remedy);
       seeds.push_back(seed);
@@ -144,8 +145,9 @@ std::vector<Configuration> read_configurations(const YamlMap& root) {
     refuse_map(grid, key);
     const auto values = one_or_more(grid, key);
     if (values.empty()) grid.fail(key, "has no values; give one or a list: " + key + ": [a, b]");
+    if (values.size() > kMostRuns / configurations.size())
+      root.fail("set", "is a grid of more than a million configurations; split the sweep");
     configurations = crossed(configurations, key, values);
-    if (configurations.size() > kMostRuns) root.fail("set", "is a grid of more than a million configurations");
   }
   std::set<std::string> names;
   for (auto& configuration : configurations) {

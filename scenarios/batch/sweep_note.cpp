@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/text/json_size.h"
 #include "base/text/text_file.h"
 
 namespace rubble::scenarios {
@@ -28,7 +29,9 @@ std::string name_of_path(const std::string& path) {
 std::optional<std::set<std::string>> runs_asked(const std::string& folder) {
   const std::string file = folder + "/" + kFile;
   if (!fs::is_directory(folder) || !fs::exists(file)) return std::nullopt;
-  const ordered_json json = ordered_json::parse(read_text_file(file), nullptr, false);
+  const std::string text = read_text_file(file);
+  if (!is_modest_json(text)) return std::nullopt;
+  const ordered_json json = ordered_json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("runs")) return std::nullopt;
   std::set<std::string> asked;
   for (const auto& id : json["runs"])
@@ -70,8 +73,11 @@ SweepNote note_of(const ResultSet& set, const std::string& path) {
   note.name = name_of_path(path);
   const std::string file = set.folder + "/" + kFile;
   if (fs::exists(file)) {
+    const std::string text = read_text_file(file);
+    const std::string strange = file + ": is not what 'rubble batch' wrote; remove it";
+    if (!is_modest_json(text)) throw InputError(strange);
     try {
-      const ordered_json json = ordered_json::parse(read_text_file(file));
+      const ordered_json json = ordered_json::parse(text);
       note.name = json.at("name");
       note.about = json.at("about");
       for (const auto& configuration : json.at("configurations")) {
@@ -79,7 +85,7 @@ SweepNote note_of(const ResultSet& set, const std::string& path) {
         note.references[note.configurations.back()] = configuration.at("reference");
       }
     } catch (const ordered_json::exception&) {
-      throw InputError(file + ": is not what 'rubble batch' wrote; remove it");
+      throw InputError(strange);
     }
   }
   std::set<std::string> present;

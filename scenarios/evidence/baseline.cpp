@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/text/json_size.h"
 #include "base/text/text_file.h"
 #include "scenarios/batch/score_version.h"
 #include "scenarios/evidence/statistics.h"
@@ -105,10 +106,17 @@ bool judges_scores(const Baseline& baseline) {
   return false;
 }
 
-std::size_t count_of(const ordered_json& json, const std::string& path) {
-  const auto value = json.get<std::int64_t>();
-  if (value < 0) throw InputError(path + ": 'failed' and 'missing' must be 0 or more");
-  return static_cast<std::size_t>(value);
+/// Of whole numbers from 0; the JSON library would take others for one of those.
+std::uint64_t count_of(const ordered_json& json, const std::string& path) {
+  if (!json.is_number_unsigned())
+    throw InputError(path + ": seeds, 'failed' and 'missing' must be whole numbers from 0; correct them");
+  return json.get<std::uint64_t>();
+}
+
+std::vector<std::uint64_t> seeds_in(const ordered_json& json, const std::string& path) {
+  std::vector<std::uint64_t> seeds;
+  for (const auto& seed : json) seeds.push_back(count_of(seed, path));
+  return seeds;
 }
 
 /// A misspelt key must not quietly judge by something else.
@@ -206,6 +214,10 @@ void save_baseline(const Baseline& baseline, const std::string& path) {
 
 Baseline load_baseline(const std::string& path) {
   const std::string text = read_text_file(path);
+  if (!is_modest_json(text))
+    throw InputError(path +
+                     ": is no baseline (64 levels, 1000 keys an object and 10 million values at most); make one with "
+                     "'rubble batch SWEEP --save-baseline FILE'");
   try {
     const ordered_json json = ordered_json::parse(text);
     allow_only(json, {"sweep", "code", "score_version", "groups"}, path);
@@ -215,11 +227,8 @@ Baseline load_baseline(const std::string& path) {
     baseline.score_version = json.value("score_version", 1);
     for (const auto& g : json.at("groups")) {
       allow_only(g, {"scenario", "config", "seeds", "failed", "metrics"}, path);
-      BaselineGroup group{g.at("scenario"),
-                          g.at("config"),
-                          g.at("seeds").get<std::vector<std::uint64_t>>(),
-                          count_of(g.at("failed"), path),
-                          {}};
+      BaselineGroup group{
+          g.at("scenario"), g.at("config"), seeds_in(g.at("seeds"), path), count_of(g.at("failed"), path), {}};
       for (const auto& [key, m] : g.at("metrics").items()) {
         allow_only(m, {"median", "tolerance", "mean", "mean_tolerance", "missing"}, path);
         const BaselineMetric metric{key,          m.at("median"),         m.at("tolerance"),

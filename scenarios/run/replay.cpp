@@ -9,6 +9,7 @@
 #include "base/digest.h"
 #include "base/error.h"
 #include "base/text/input_file.h"
+#include "base/text/json_size.h"
 #include "base/text/text_file.h"
 #include "robot/logs/foreign/file_bytes.h"
 #include "robot/logs/log.h"
@@ -53,7 +54,8 @@ bool begin_alike(const std::string& a, const std::string& b) {
 bool steered_by_hand(const std::string& run) {
   const std::string file = run + "/versions.json";
   if (!fs::exists(file)) return false;
-  const auto written_by = nlohmann::json::parse(read_text_file(file), nullptr, false);
+  const std::string text = read_text_file(file);
+  const auto written_by = nlohmann::json::parse(is_modest_json(text) ? text : "", nullptr, false);
   if (!written_by.is_object())
     throw InputError(file + ": is not what rubble wrote (no JSON object); copy it again, or remove it");
   const auto by_hand = written_by.find(kSteeredByHand);

@@ -26,21 +26,31 @@ std::size_t format_of(const fs::path& path) {
   return static_cast<std::size_t>(std::find(kFormats.begin(), kFormats.end(), extension) - kFormats.begin());
 }
 
+// One team's name that is too long, or its link to itself, is no reason to judge nobody: what cannot be asked for is
+// not there.
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
 std::string first_that_exists(const std::vector<fs::path>& candidates) {
   for (const fs::path& path : candidates)
-    if (fs::is_regular_file(path)) return path.string();
+    if (is_file(path)) return path.string();
   return "";
 }
 
 bool is_image_beside(const fs::path& folder, const std::string& stem) {
   return std::any_of(kFormats.begin(), kFormats.end(),
-                     [&](const char* format) { return fs::is_regular_file(folder / (stem + format)); });
+                     [&](const char* format) { return is_file(folder / (stem + format)); });
 }
 
 /// A run, a scoring or a league has written into the folder.
-bool has_results(const fs::path& folder) {
-  return fs::exists(folder / "score.json") || fs::exists(folder / "league.csv");
-}
+bool has_results(const fs::path& folder) { return is_there(folder / "score.json") || is_there(folder / "league.csv"); }
 
 /// The truth, or a picture that a run, a scoring or an arena file leaves.
 bool is_no_map(const fs::path& path, const fs::path& truth) {
@@ -55,7 +65,7 @@ bool is_no_map(const fs::path& path, const fs::path& truth) {
   std::error_code error;
   if (stem == truth.stem() && fs::equivalent(folder, truth.parent_path() / ".", error)) return true;
   if (path.filename() == truth.filename() && same_content(path.string(), truth.string())) return true;
-  return fs::exists(folder / (stem + "-truth.tif"), error);
+  return is_there(folder / (stem + "-truth.tif"));
 }
 
 struct MapsInFolder {
@@ -67,7 +77,7 @@ MapsInFolder maps_in(const fs::path& folder, const fs::path& truth) {
   MapsInFolder out;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const fs::path& path = entry.path();
-    if (!entry.is_regular_file() || format_of(path) == kFormats.size()) continue;
+    if (!is_file(path) || format_of(path) == kFormats.size()) continue;
     if (is_no_map(path, truth)) {
       out.skipped.push_back(path);
       continue;
@@ -122,7 +132,8 @@ LeagueFolder find_league(const std::string& folder, const std::string& truth) {
         {stem, path.string(), first_that_exists({beside.string() + ".csv", beside.string() + "_pois.csv"}), ""});
   }
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (!entry.is_directory() || entry.is_symlink()) continue;
+    std::error_code error;
+    if (!entry.is_directory(error) || entry.is_symlink(error)) continue;
     const MapsInFolder inside = maps_in(entry.path(), truth);
     skip(inside.skipped);
     if (inside.maps.empty() && !inside.skipped.empty()) continue;  // results of a league, or an arena's pictures

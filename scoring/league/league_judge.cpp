@@ -26,10 +26,12 @@ constexpr const char* kOverlay = "-overlay.png";
 constexpr const char* kErrorMap = "-error.png";
 constexpr const char* kPage = ".html";
 
+constexpr std::size_t kMostOfName = 80;  ///< [bytes] of a team's name in names of files, which end at 255
+
 /// A file name of its own for each team, whatever the team calls itself.
 std::string safe_name(const std::string& team, std::size_t index) {
   std::string name;
-  for (const char c : team)
+  for (const char c : team.substr(0, kMostOfName))
     name += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.' ? c : '_';
   char number[16];
   std::snprintf(number, sizeof number, "%03zu-", index + 1);

@@ -99,6 +99,11 @@ cp $truth named/copied.tif; cp "$(ls judged/*-overlay.png | head -1)" named/x-er
 grep -q "^no team's maps: x-error.png$" table.txt || fail "x-error.png is no map of a team: $(cat table.txt)"
 [[ $(grep -c 'a copy of the truth' named_out/league.csv) == 1 ]] && grep -q '^1,copied,.*a copy of the truth' named_out/league.csv ||
   fail "the copy of the truth is not said to be one: $(cat named_out/league.csv)"
+# One team's link to itself, or its name that is too long for a list beside it, keeps nobody from being judged.
+mkdir odd && cp $truth odd/fine.tif && ln -s self.tif odd/self.tif && cp $truth "odd/$(printf 'x%.0s' $(seq 250)).tif"
+expect_exit 0 "" "$rubble" score --league odd $truth --out odd_out
+grep -q '^1,fine,' odd_out/league.csv || fail "odd names in a league: $(cut -c1-200 odd_out/league.csv)"
+
 mkdir none && cp $truth none/truth.tif
 expect_exit 3 'truth.tif' "$rubble" score --league none $truth
 

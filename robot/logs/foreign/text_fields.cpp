@@ -5,11 +5,12 @@
 #include <cstdlib>
 
 #include "base/error.h"
+#include "base/text/words.h"
 
 namespace rubble::robot {
 namespace {
 
-constexpr double kLatestSecond = 9.0e9;  // the year 2255; 64 bits of nanoseconds end in 2262
+constexpr double kLatestSecond = 4.6e9;  // 1824 to 2115: also the time from one end to the other has 64 bits
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
@@ -105,7 +106,7 @@ void TextFields::skip(int fields, const char* what) {
 }
 
 void TextFields::fail(const std::string& message) const {
-  throw InputError(at(path_, number_, static_cast<int>(start_) + 1, message));
+  throw InputError(at(path_, number_, static_cast<int>(start_) + 1, one_line(message)));  // a zero byte would end it
 }
 
 }  // namespace rubble::robot

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/bytes.h"
+#include "base/text/json_size.h"
 #include "robot/model_fields.h"
 
 namespace rubble::robot {
@@ -56,6 +57,7 @@ std::string model_to_json(const RobotModel& model) {
 }
 
 RobotModel model_from_json(const std::string& text) {
+  if (!is_modest_json(text)) throw BadPayload("the robot model holds more than a model has");
   RobotModel model;
   try {
     const json object = json::parse(text);

@@ -519,6 +519,29 @@ TEST(GeoTiff, DamagedFilesNeverCrash) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
+// A gigabyte was once made for one tile of a picture of 100 pixels.
+TEST(GeoTiff, ATileIsNotMuchLargerThanThePicture) {
+  const test::TempFolder folder;
+  const auto with_tiles_of = [&](std::uint32_t side) {
+    const std::string path = folder / "tile.tif";
+    TIFF* const tiff = TIFFOpen(path.c_str(), "w");
+    for (const auto& [tag, value] : {std::pair(TIFFTAG_IMAGEWIDTH, 10u), std::pair(TIFFTAG_IMAGELENGTH, 10u),
+                                     std::pair(TIFFTAG_TILEWIDTH, side), std::pair(TIFFTAG_TILELENGTH, side)})
+      TIFFSetField(tiff, static_cast<std::uint32_t>(tag), value);
+    for (const auto& [tag, value] :
+         {std::pair(TIFFTAG_BITSPERSAMPLE, 8), std::pair(TIFFTAG_SAMPLESPERPIXEL, 1),
+          std::pair(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK), std::pair(TIFFTAG_COMPRESSION, COMPRESSION_PACKBITS)})
+      TIFFSetField(tiff, static_cast<std::uint32_t>(tag), value);
+    std::string packed;  // runs of 128 zeros
+    for (std::uint32_t i = 0; i < side * (side / 128); ++i) packed += std::string("\x81\0", 2);
+    TIFFWriteRawTile(tiff, 0, packed.data(), static_cast<tmsize_t>(packed.size()));
+    TIFFClose(tiff);
+    return read_geotiff(path).image.width;
+  };
+  EXPECT_EQ(with_tiles_of(4096), 10);
+  EXPECT_THROW(with_tiles_of(16384), InputError);
+}
+
 TEST(GeoTiff, AnUnwritablePathIsARunError) {
   const GeoTiff tiff = geotiff(picture(4, 4), std::nullopt);
   EXPECT_THROW(write_geotiff("/nowhere/at/all.tif", tiff), RunError);

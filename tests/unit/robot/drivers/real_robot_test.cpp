@@ -15,6 +15,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <thread>
 
 #include "robot/drivers/black_box_replay.h"
@@ -1035,6 +1036,25 @@ TEST(BlackBox, ATornEndIsDroppedAndOtherFilesAreRefused) {
   }
   std::ofstream(folder / "b") << "something else";
   EXPECT_THROW(read_black_box(folder / "b"), InputError);
+}
+
+TEST(BlackBox, TimesThatNoDriveHasAreDamage) {
+  test::TempFolder folder;
+  const auto with_times = [&](const std::vector<std::int64_t>& times) {
+    {
+      BlackBox box(folder / "a");
+      for (const std::int64_t ns : times) box.add("base", Direction::FromDevice, "x", {ns});
+    }
+    return read_black_box(folder / "a").size();
+  };
+  const std::int64_t day = 86'400'000'000'000, start = 20'000 * day, second = 1'000'000'000;
+  EXPECT_EQ(with_times({}), 0u);
+  EXPECT_EQ(with_times({start, start + day, start + day - 9 * second, start + 29 * day}), 4u);
+  EXPECT_THROW(with_times({start, start + 31 * day}), InputError) << "once walked through in steps of 20 ms";
+  EXPECT_THROW(with_times({start, start + day, start}), InputError) << "the walk begins anew each time";
+  EXPECT_THROW(with_times({start, -1}), InputError);
+  EXPECT_THROW(with_times({std::numeric_limits<std::int64_t>::min(), 0}), InputError);
+  EXPECT_THROW(with_times({0, std::numeric_limits<std::int64_t>::max()}), InputError);
 }
 
 }  // namespace

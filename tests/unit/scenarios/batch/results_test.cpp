@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 
 #include "base/error.h"
 #include "tests/support/scenarios_batch.h"
@@ -67,6 +68,35 @@ TEST_F(Results, AForeignLineBeforeTheLastIsNamed) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("results.jsonl:1: "));
   }
+}
+
+/// A line of somebody else: `score` in place of the run's.
+std::string with_score(const std::string& score) {
+  const std::string line = to_line(record("a", "c", 1, 0.5));
+  const std::size_t from = line.find("\"score\":{"), to = line.find("},", from);
+  return line.substr(0, from) + "\"score\":" + score + line.substr(to + 1);
+}
+
+TEST_F(Results, AScoreThatIsNoneIsNoLine) {
+  EXPECT_EQ(from_line(with_score("{\"score\": 0.25}"), "here").metric("score"), 0.25);
+  // Whatever walks over this value later would use up the stack.
+  EXPECT_THROW(from_line(with_score("{\"a\":" + std::string(100000, '[') + std::string(100000, ']') + "}"), "here"),
+               InputError);
+  std::string keys;
+  for (int i = 0; i < 100000; ++i) keys += "\"k" + std::to_string(i) + "\":0,";
+  EXPECT_THROW(from_line(with_score("{" + keys + "\"score\":1}"), "here"), InputError) << "takes their square in time";
+  for (const char* seed : {"1.5", "1e300", "-1", "\"1\""}) {
+    std::string line = to_line(record("a", "c", 7, 0.5));
+    line.replace(line.find("\"seed\":7"), 8, std::string("\"seed\":") + seed);
+    EXPECT_THROW(from_line(line, "here"), InputError) << seed;
+  }
+}
+
+TEST_F(Results, AHundredThousandRunsAreNoTooLargeFile) {
+  append({record("a", "c", 1, 0.5)});
+  std::filesystem::resize_file(path("results.jsonl"),
+                               std::size_t{300} << 20);  // they take so much; here a last line that is torn
+  EXPECT_EQ(load_lines(folder_).size(), 1u);
 }
 
 TEST_F(Results, TimesAreKeptApart) {

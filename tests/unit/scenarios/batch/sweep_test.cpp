@@ -154,5 +154,19 @@ TEST_F(SweepFile, FaultsAreNamedWithPlaceAndRemedy) {
   EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 0-99999999\n"), HasSubstr("million"));
 }
 
+// Each of these once took gigabytes before it was counted.
+TEST_F(SweepFile, WhatIsTooMuchIsSaidBeforeItIsMade) {
+  std::string ranges;
+  for (int i = 0; i < 100; ++i)
+    ranges += (i > 0 ? ", " : "") + std::to_string(i * 1000000) + "-" + std::to_string(i * 1000000 + 999999);
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: [" + ranges + "]\n"), HasSubstr("more than a million seeds"));
+  std::string values = "1";
+  for (int i = 2; i <= 1000; ++i) values += ", " + std::to_string(i);
+  std::string grid;
+  for (const char* key : {"time_limit_s", "mapper.particles", "mapper.icp"})
+    grid += "  " + std::string(key) + ": [" + values + "]\n";
+  EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 1\nset:\n" + grid), HasSubstr("more than a million config"));
+}
+
 }  // namespace
 }  // namespace rubble::scenarios

@@ -115,6 +115,38 @@ TEST_F(BaselineFile, ForeignFilesAreNamed) {
   EXPECT_THROW(load_baseline(write("y.json", "not json")), InputError);
 }
 
+TEST_F(BaselineFile, ABombIsRefusedAtOnce) {
+  const auto refused = [&](const std::string& text) {
+    try {
+      load_baseline(write("bomb.json", text));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  EXPECT_THAT(refused(std::string(20000000, '[')), HasSubstr("64 levels"));  // once 1.6 GB
+  std::string keys = "{";
+  for (int i = 0; i < 300000; ++i) keys += "\"k" + std::to_string(i) + "\":0,";
+  EXPECT_THAT(refused(keys + "\"sweep\":1}"), HasSubstr("1000 keys"));  // once many minutes
+}
+
+TEST_F(BaselineFile, SeedsAndCountsAreWholeNumbers) {
+  save_baseline(make_baseline("regression", runs(0.0)), path("b.json"));
+  const std::string text = read_text_file(path("b.json"));
+  for (const char* value : {"-1", "0.5", "1e300", "\"1\"", "null"}) {
+    for (const char* key : {"\"failed\": ", "\"missing\": "}) {
+      std::string wrong = text;
+      const std::size_t from = wrong.find(key) + std::string(key).size();
+      wrong.replace(from, 1, value);
+      EXPECT_THROW(load_baseline(write("wrong.json", wrong)), InputError) << key << value;
+    }
+    std::string wrong = text;
+    const std::size_t list = wrong.find("\"seeds\": [") + 10;
+    wrong.insert(list, std::string(value) + ",");
+    EXPECT_THROW(load_baseline(write("wrong.json", wrong)), InputError) << "seed " << value;
+  }
+}
+
 TEST_F(BaselineFile, MisspeltKeysAreNamed) {
   save_baseline(make_baseline("regression", runs(0.0)), path("b.json"));
   for (const char* key : {"code", "failed", "mean_tolerance"}) {

@@ -315,6 +315,23 @@ TEST(Carmen, WrongLinesAreNamedByLineAndColumn) {
   }
 }
 
+TEST(Carmen, AZeroByteDoesNotEndTheMessage) {
+  const std::string text = std::string("FLASER \0 180", 12) + "\n";
+  const std::string message = message_of<InputError>([&] { read_carmen(text, "a.log"); });
+  EXPECT_EQ(message, std::string(message.c_str()));
+  EXPECT_NE(message.find("'num_readings' must be one"), std::string::npos) << message;
+}
+
+TEST(Carmen, TheTimeFromTheFirstToTheLastHas64Bits) {
+  const auto log = [](const std::string& first, const std::string& last) {
+    return "FLASER 2 1 1 0 0 0 0 0 0 " + first + " h " + first + "\nFLASER 2 1 1 0 0 0 0 0 0 " + last + " h " + last +
+           "\n";
+  };
+  EXPECT_EQ(read_carmen(log("-4.5e9", "4.5e9"), "a.log").ticks.size(), 2u);
+  const std::string message = message_of<InputError>([&] { read_carmen(log("-9e9", "9e9"), "a.log"); });
+  EXPECT_NE(message.find("is not a time in seconds"), std::string::npos) << "once: it jumps back; " << message;
+}
+
 TEST(Carmen, LogWithoutScansSaysSo) {
   const std::string message = message_of<InputError>([] { read_carmen("ODOM 1 2 3 0 0 0 1 h 1\n", "a.log"); });
   EXPECT_NE(message.find("no FLASER"), std::string::npos) << message;
