@@ -1,4 +1,6 @@
 // The command line: parses, dispatches, and turns every failure into one line and an exit code.
+#include <malloc.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
@@ -210,7 +212,17 @@ int guarded(int argc, char** argv) {
 }  // namespace
 }  // namespace rubble::app
 
+/// Images and grids come and go by the megabyte. Given back each time, the kernel clears every page of them anew: a
+/// fifth of the time of `rubble score`.
+static void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+#endif
+}
+
 int main(int argc, char** argv) {
+  keep_freed_memory();
   if (const auto code = rubble::slam::serve_mapper_if_asked(argc, argv)) return *code;
   return rubble::app::delivered(rubble::app::guarded(argc, argv));
 }

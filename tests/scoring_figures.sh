@@ -80,8 +80,8 @@ alignment() {
   pairs=$(value BM_AlignSensorMaps pairs)
   aligned=$(value BM_AlignSensorMaps aligned)
   tell "alignment: labelled pairs of sensor maps, no guess" "$pairs"
-  judge "alignment: right pose" "$(percent "$(value BM_AlignSensorMaps right)" "$pairs")" ">=" 95 %
-  judge "alignment: right pose, and said to be" "$(percent "$(value BM_AlignSensorMaps right_and_aligned)" "$pairs")" ">=" 95 %
+  judge "alignment: right pose" "$(percent "$(value BM_AlignSensorMaps right)" "$pairs")" ">=" 98.8 %
+  judge "alignment: right pose, and said to be" "$(percent "$(value BM_AlignSensorMaps right_and_aligned)" "$pairs")" ">=" 97 %
   judge "alignment: wrong ones among the $aligned said to be right" "$(value BM_AlignSensorMaps wrong_but_aligned)" "==" 0
 }
 

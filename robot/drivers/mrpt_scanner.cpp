@@ -1,11 +1,9 @@
 #include "robot/drivers/mrpt_scanner.h"
 
-#include <dlfcn.h>
-
 #include <filesystem>
-#include <system_error>
 
 #include "base/error.h"
+#include "base/module.h"
 #include "robot/drivers/host_clock.h"
 #include "robot/drivers/mrpt_module.h"
 #include "robot/drivers/port_word.h"
@@ -15,32 +13,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kModule = "rubble_mrpt_devices.so";
 // Least time from the last beam to the delivery, measured with MRPT 2.5.8: over a serial line it waits for a time-out
 // of 100 ms at the end of every scan.
 constexpr double kTcpDelivery = 0.002, kSerialDelivery = 0.101;
 
-std::vector<std::string> places() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
-  return {(program / kModule).string(), (program.parent_path() / "lib" / "rubble" / kModule).string()};
-}
-
 MrptScannerFactory load_factory() {
-  std::string trouble = "it was not built";
-  for (const std::string& place : places()) {
-    if (!fs::exists(place)) continue;
-    // Never closed: MRPT's libraries leave threads and exit handlers behind.
-    void* module = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (module == nullptr) {
-      trouble = dlerror();
-      continue;
-    }
-    if (void* symbol = dlsym(module, kMrptScannerSymbol)) return reinterpret_cast<MrptScannerFactory>(symbol);
-    trouble = dlerror();
-  }
-  throw RunError(std::string("MRPT's drivers: ") + kModule + " cannot be loaded (" + trouble +
-                 "); install libmrpt-hwdrivers-dev and build again, or use the scanner by `driver: scip`");
+  return reinterpret_cast<MrptScannerFactory>(
+      module_function("MRPT's drivers", "rubble_mrpt_devices.so", kMrptScannerSymbol,
+                      "install libmrpt-hwdrivers-dev and build again, or use the scanner by `driver: scip`"));
 }
 
 /// MRPT's names for the port; classes take those that they know.

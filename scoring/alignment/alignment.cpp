@@ -12,6 +12,7 @@
 #include "scoring/alignment/feature_score.h"
 #include "scoring/alignment/matching.h"
 #include "scoring/alignment/trust.h"
+#include "scoring/measures/sight_lines.h"
 #include "scoring/rooms/room_hypotheses.h"
 #include "scoring/walls/resample.h"
 #include "scoring/walls/specks.h"
@@ -53,6 +54,33 @@ constexpr double kStartTurn = 0.2;
 constexpr double kTieTimes = 1.2;    // tight agreement
 constexpr double kStartKappa = 0.8;  // of either map's walls: on one lattice strangers reach 0.7
 
+// Lines of sight are another witness than walls that meet: what is open and what is blocked, not where ink lies. Alone
+// they are none to be trusted: maps of other buildings were right about 0.85 of a seventh of the lines.
+constexpr double kSightKnown = 0.08;  // of each map's lines that the other knows, at least
+constexpr double kSightKappa = 0.75;  // of those, how right it is
+
+/// What one map says of the other's lines of sight; none where these are too few.
+std::optional<SightAgreement> sights_of(const OccupancyGrid& asked, const OccupancyGrid& other,
+                                        const TPose2D& T_other_asked) {
+  const SightLines lines(other);
+  if (!lines.usable()) return std::nullopt;
+  return lines.at(asked, PlanarTransform(T_other_asked));
+}
+
+/// Each map is right about the other's lines of sight.
+bool see_the_same(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map) {
+  const auto is_right = [](const std::optional<SightAgreement>& sights) {
+    return sights && sights->known >= kSightKnown && sights->kappa >= kSightKappa;
+  };
+  return is_right(sights_of(map, truth, T_truth_map)) && is_right(sights_of(truth, map, TPose2D() - T_truth_map));
+}
+
+/// The map is right about the truth's lines of sight no more often than a guess.
+bool sees_otherwise(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map) {
+  const std::optional<SightAgreement> sights = sights_of(map, truth, T_truth_map);
+  return sights && sights->known >= kSightKnown && sights->kappa <= 0.0;
+}
+
 /// Who is asked by walls may also find what nobody else proposes: the search examines walls in any case.
 bool may_win(const Hypothesis& h, AlignBy by) {
   if (includes(by, AlignBy::Walls) || includes(by, AlignBy::Equation7)) return true;
@@ -86,12 +114,21 @@ class Aligner {
       return out;
     }
     if (includes(method, AlignBy::Equation7)) return by_equation_7(hypotheses, out);
-    conclude(*best, hypotheses, out);
+    const Trust trust = conclude(*best, hypotheses, out);
     out.T_walls = match_.refine(best->T_best, 0.1, 20);
     out.T_walls.phi = wrap_angle(out.T_walls.phi);
     const bool to_the_decimetre = tight_agreement(best->tight) >= kTightEnough;
     out.T_truth_map = to_the_decimetre ? out.T_walls : fit_to_the_whole(*best, hypotheses, match_);
     out.T_truth_map.phi = wrap_angle(out.T_truth_map.phi);
+    if (trust.open && !is_mirror_image(best->tight) && see_the_same(map_, truth_, out.T_truth_map)) {
+      out.aligned = true;
+      out.note.clear();
+    }
+    // Where the walls alone are rather against the pose, the other witness must not be against it too.
+    if (out.aligned && !trust.tight && out.log_odds < 0.0 && sees_otherwise(map_, truth_, out.T_truth_map)) {
+      out.aligned = false;
+      out.note = "not aligned: what is open in one map is blocked in the other" + about_rooms();
+    }
     return out;
   }
 
@@ -123,10 +160,11 @@ class Aligner {
   }
 
  private:
-  void conclude(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses, Alignment& out) {
+  Trust conclude(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses, Alignment& out) {
     const Trust trust = judge(best.wide, best.tight, describe(best, hypotheses, out));
     out.aligned = trust.trusted && !is_mirror_image(best.tight);
     out.note = out.aligned ? trust.note : why_not(trust, best.tight) + about_rooms();
+    return trust;
   }
 
   /// Section IV.F: every pose proposed is improved until eq. (7) falls no further, and the least error wins. Whether it

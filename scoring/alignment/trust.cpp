@@ -113,9 +113,10 @@ Trust judge(const PoseEvidence& wide, const PoseEvidence& tight, const Rivals& r
     out.note = "not aligned: at no pose do the walls of both maps meet more often than by chance";
   else if (odds < kLeastLogOdds)
     out.note = "not aligned: the walls of one map run through the free space of the other";
-  else if (margin < kLeastMargin || odds + 2.0 * std::min(margin, kMostMargin) < kLeastSum)
+  else if (margin < kLeastMargin || odds + 2.0 * std::min(margin, kMostMargin) < kLeastSum) {
     out.note = "not aligned: another pose, or a mirror image, fits about as well";
-  else
+    out.open = margin > 0.0 && odds > 0.0;
+  } else
     out.trusted = true;
   return out;
 }

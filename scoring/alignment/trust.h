@@ -32,6 +32,7 @@ struct Rivals {
 struct Trust {
   bool trusted = false;
   bool tight = false;  ///< the maps agree to the decimetre, not only to the metre
+  bool open = false;   ///< not trusted, but rather right than wrong, and no rival is better: another witness may decide
   std::string note;    ///< why not trusted
 };
 

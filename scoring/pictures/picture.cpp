@@ -30,6 +30,7 @@ const Colour kInk(40, 34, 30);
 const Colour kDisplaced(40, 150, 225);
 const Colour kMapOnly(48, 48, 214);
 const Colour kTruthOnly(205, 110, 20);
+const Colour kNotJudged(150, 150, 150);
 const Colour kBothFree(255, 255, 255);
 const Colour kMapFree(222, 226, 248);
 const Colour kTruthFree(248, 234, 218);
@@ -139,6 +140,10 @@ double to_wall(const WallField& field, const TPoint2D& p, const OccupancyGrid& g
 /// How a wall `off` metres from the nearest of the other map is drawn.
 Colour wall_colour(double off, const Colour& only) { return off <= kAgree ? kInk : off <= kNear ? kDisplaced : only; }
 
+/// Walls of the map that lie where the truth knows nothing: no score counts them, for nobody can say whether they are
+/// phantoms. So legends, axes, names and arrows beside a drawing are not shown as wrong walls.
+bool is_judged(Occupancy truth, double off) { return truth != Occupancy::Unknown || off <= kNear; }
+
 Colour background(Occupancy map, Occupancy truth) {
   const bool map_known = map != Occupancy::Unknown;
   const bool truth_known = truth != Occupancy::Unknown;
@@ -243,8 +248,9 @@ void write_overlay(const std::string& path, const OccupancyGrid& map, const Occu
   paint(canvas, map, truth, T_truth_map,
         [&](const TPoint2D& p_map, Occupancy in_map, const TPoint2D& p_truth, Occupancy in_truth, Colour& colour) {
           if (in_truth == Occupancy::Occupied) colour = wall_colour(to_wall(to_map, p_map, map), kTruthOnly);
-          if (in_map == Occupancy::Occupied && colour != kInk)
-            colour = wall_colour(to_wall(to_truth, p_truth, truth), kMapOnly);
+          if (in_map != Occupancy::Occupied || colour == kInk) return;
+          const double off = to_wall(to_truth, p_truth, truth);
+          colour = is_judged(in_truth, off) ? wall_colour(off, kMapOnly) : kNotJudged;
         });
   draw_victims(canvas, victims, T_truth_map);
   draw_warning(canvas, warning);
@@ -252,6 +258,7 @@ void write_overlay(const std::string& path, const OccupancyGrid& map, const Occu
                        {kDisplaced, "within 15 cm"},
                        {kMapOnly, "only in map"},
                        {kTruthOnly, "only in truth"},
+                       {kNotJudged, "not judged"},
                        {kMapFree, "seen by map only"},
                        {kTruthFree, "not seen by map"}});
   write_png(path, canvas.image);
@@ -266,8 +273,10 @@ void write_error_map(const std::string& path, const OccupancyGrid& map, const Oc
         [&](const TPoint2D& p_map, Occupancy in_map, const TPoint2D& p_truth, Occupancy in_truth, Colour& colour) {
           if (in_truth == Occupancy::Occupied)
             colour = heat(to_wall(to_map, p_map, map) / tau, kTruthOnly);
-          else if (in_map == Occupancy::Occupied)
-            colour = heat(to_wall(to_truth, p_truth, truth) / tau, kMapOnly);
+          else if (in_map == Occupancy::Occupied) {
+            const double off = to_wall(to_truth, p_truth, truth);
+            colour = is_judged(in_truth, off) ? heat(off / tau, kMapOnly) : kNotJudged;
+          }
         });
   draw_heat_bar(canvas, tau);
   write_png(path, canvas.image);

@@ -15,65 +15,60 @@ constexpr int kHalfWindow = 5;      // [cells of the lattice]
 constexpr double kSmooth = 0.035;   // half width of the triangle that smooths the histogram [rad]
 constexpr double kStandsOut = 0.2;  // rise over the mean, as a share of the mean, below which no rotation stands out
 
-/// Sums of 1, x, y, x^2, xy, y^2 over the wall cells of the rectangle from the origin.
-using Moments = std::array<double, 6>;
-
-std::vector<Cell> coarse_walls(const OccupancyGrid& grid, int& width, int& height) {
-  const int factor = std::max(1, static_cast<int>(std::lround(kLattice / grid.resolution())));
-  width = (grid.width() + factor - 1) / factor;
-  height = (grid.height() + factor - 1) / factor;
-  std::vector<char> seen(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
-  std::vector<Cell> walls;
-  for (int y = 0; y < grid.height(); ++y) {
-    const Occupancy* row = grid.row(y);
-    for (int x = 0; x < grid.width(); ++x) {
-      if (row[x] != Occupancy::Occupied) continue;
-      char& mark = seen[static_cast<std::size_t>(y / factor) * static_cast<std::size_t>(width) +
-                        static_cast<std::size_t>(x / factor)];
-      if (mark == 0) walls.push_back({x / factor, y / factor});
-      mark = 1;
+/// The cells of a coarse lattice that hold walls, and a raster of them.
+struct CoarseWalls {
+  explicit CoarseWalls(const OccupancyGrid& grid) {
+    const int factor = std::max(1, static_cast<int>(std::lround(kLattice / grid.resolution())));
+    width = (grid.width() + factor - 1) / factor;
+    height = (grid.height() + factor - 1) / factor;
+    marks.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
+    for (int y = 0; y < grid.height(); ++y) {
+      const Occupancy* row = grid.row(y);
+      for (int x = 0; x < grid.width(); ++x) {
+        if (row[x] != Occupancy::Occupied) continue;
+        char& mark = marks[index(x / factor, y / factor)];
+        if (mark == 0) cells.push_back({x / factor, y / factor});
+        mark = 1;
+      }
     }
   }
-  return walls;
-}
-
-class WindowMoments {
- public:
-  WindowMoments(const std::vector<Cell>& walls, int width, int height)
-      : width_(width + 1),
-        height_(height + 1),
-        sums_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), Moments{}) {
-    for (const Cell& c : walls) {
-      const double x = c.x;
-      const double y = c.y;
-      at(c.x + 1, c.y + 1) = {1.0, x, y, x * x, x * y, y * y};
-    }
-    for (int y = 1; y < height_; ++y)
-      for (int x = 1; x < width_; ++x)
-        for (std::size_t k = 0; k < 6; ++k) at(x, y)[k] += at(x - 1, y)[k] + at(x, y - 1)[k] - at(x - 1, y - 1)[k];
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
   }
 
-  Moments around(const Cell& c) const {
-    const int x0 = std::max(0, c.x - kHalfWindow);
-    const int y0 = std::max(0, c.y - kHalfWindow);
-    const int x1 = std::min(width_ - 1, c.x + kHalfWindow + 1);
-    const int y1 = std::min(height_ - 1, c.y + kHalfWindow + 1);
-    Moments out{};
-    for (std::size_t k = 0; k < 6; ++k) out[k] = at(x1, y1)[k] - at(x0, y1)[k] - at(x1, y0)[k] + at(x0, y0)[k];
-    return out;
-  }
-
- private:
-  const Moments& at(int x, int y) const {
-    return sums_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
-  }
-  Moments& at(int x, int y) {
-    return sums_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
-  }
-  int width_;
-  int height_;
-  std::vector<Moments> sums_;
+  int width = 0;
+  int height = 0;
+  std::vector<char> marks;  ///< 1: a wall
+  std::vector<Cell> cells;
 };
+
+/// Sums of 1, x, y, x^2, xy, y^2 over the walls of the window around a cell. Whole numbers, and so exact. Walls are
+/// few: sums over the rectangles from the origin, which would do for all cells, take longer.
+std::array<double, 6> moments_around(const CoarseWalls& walls, const Cell& c) {
+  std::array<double, 6> out{};
+  const int x0 = std::max(0, c.x - kHalfWindow);
+  const int x1 = std::min(walls.width - 1, c.x + kHalfWindow);
+  const int y1 = std::min(walls.height - 1, c.y + kHalfWindow);
+  for (int y = std::max(0, c.y - kHalfWindow); y <= y1; ++y) {
+    double n = 0.0;
+    double sx = 0.0;
+    double sxx = 0.0;
+    const char* const row = walls.marks.data() + walls.index(0, y);
+    for (int x = x0; x <= x1; ++x) {
+      const double here = row[x];
+      n += here;
+      sx += here * x;
+      sxx += here * x * x;
+    }
+    out[0] += n;
+    out[1] += sx;
+    out[2] += n * y;
+    out[3] += sxx;
+    out[4] += sx * y;
+    out[5] += n * y * y;
+  }
+  return out;
+}
 
 std::vector<double> smoothed(const std::vector<double>& histogram, int half) {
   const int n = static_cast<int>(histogram.size());
@@ -89,13 +84,9 @@ std::vector<double> smoothed(const std::vector<double>& histogram, int half) {
 
 std::vector<double> wall_directions(const OccupancyGrid& grid, int bins) {
   std::vector<double> histogram(static_cast<std::size_t>(bins), 0.0);
-  int width = 0;
-  int height = 0;
-  const std::vector<Cell> walls = coarse_walls(grid, width, height);
-  if (walls.empty()) return histogram;
-  const WindowMoments moments(walls, width, height);
-  for (const Cell& c : walls) {
-    const Moments m = moments.around(c);
+  const CoarseWalls walls(grid);
+  for (const Cell& c : walls.cells) {
+    const std::array<double, 6> m = moments_around(walls, c);
     const double xx = m[3] / m[0] - m[1] * m[1] / (m[0] * m[0]);
     const double xy = m[4] / m[0] - m[1] * m[2] / (m[0] * m[0]);
     const double yy = m[5] / m[0] - m[2] * m[2] / (m[0] * m[0]);

@@ -1,16 +1,43 @@
 #include "slam/peers/mrpt_kinds.h"
 
 #include "base/error.h"
-#include "slam/peers/mrpt_icp_mapper.h"
-#include "slam/peers/mrpt_rbpf_mapper.h"
+#include "slam/mrpt/mrpt_slam.h"
+#include "slam/peers/mrpt_mapper.h"
 #include "slam/process/mapper_server.h"
 #include "slam/process/process_mapper.h"
 
 namespace rubble::slam {
+
+void bind(Binder& binder, MrptIcpConfig& c) {
+  binder.number("resolution_m", c.resolution, 0.01, 1.0);
+  binder.number("localize_distance_m", c.localize_distance, 0.0, 10.0);
+  binder.degrees("localize_turn_deg", c.localize_turn, 0.0, 180.0);
+  binder.number("insert_distance_m", c.insert_distance, 0.0, 10.0);
+  binder.degrees("insert_turn_deg", c.insert_turn, 0.0, 180.0);
+  binder.number("min_goodness", c.min_goodness, 0.0, 1.0);
+}
+
+void bind(Binder& binder, MrptRbpfConfig& c) {
+  binder.number("resolution_m", c.resolution, 0.01, 1.0);
+  binder.integer("particles", c.particles, 1, 10000);
+  binder.number("localize_distance_m", c.localize_distance, 0.0, 10.0);
+  binder.degrees("localize_turn_deg", c.localize_turn, 0.0, 180.0);
+  binder.number("insert_distance_m", c.insert_distance, 0.0, 10.0);
+  binder.degrees("insert_turn_deg", c.insert_turn, 0.0, 180.0);
+}
+
 namespace {
 
+std::unique_ptr<MapBuilder> builder_of(const robot::RobotModel& model, const MrptIcpConfig& config, std::uint64_t) {
+  return mrpt_slam().icp_builder(model, config);
+}
+std::unique_ptr<MapBuilder> builder_of(const robot::RobotModel& model, const MrptRbpfConfig& config,
+                                       std::uint64_t seed) {
+  return mrpt_slam().rbpf_builder(model, config, seed);
+}
+
 /// Parameters of a mapper that runs in a process of its own: this program, asked to serve it.
-template <class Config, class Kind>
+template <class Config>
 class OwnProcess : public MapperParameters {
  public:
   explicit OwnProcess(std::string kind) : kind_(std::move(kind)) {}
@@ -36,7 +63,7 @@ class OwnProcess : public MapperParameters {
     return std::make_unique<ProcessMapper>(model, process, setting.seed);
   }
   std::unique_ptr<Mapper> make_here(const robot::RobotModel& model, const MapperSetting& setting) const override {
-    return std::make_unique<Kind>(model, config_, setting.seed);
+    return std::make_unique<MrptMapper>(model, config_.resolution, builder_of(model, config_, setting.seed));
   }
   std::unique_ptr<MapperParameters> copy() const override { return std::make_unique<OwnProcess>(*this); }
 
@@ -49,11 +76,11 @@ class OwnProcess : public MapperParameters {
 }  // namespace
 
 std::unique_ptr<MapperParameters> mrpt_icp_parameters() {
-  return std::make_unique<OwnProcess<MrptIcpConfig, MrptIcpMapper>>("mrpt-icp");
+  return std::make_unique<OwnProcess<MrptIcpConfig>>("mrpt-icp");
 }
 
 std::unique_ptr<MapperParameters> mrpt_rbpf_parameters() {
-  return std::make_unique<OwnProcess<MrptRbpfConfig, MrptRbpfMapper>>("mrpt-rbpf");
+  return std::make_unique<OwnProcess<MrptRbpfConfig>>("mrpt-rbpf");
 }
 
 }  // namespace rubble::slam

@@ -24,8 +24,8 @@ constexpr double kNothingKnown = 0.01;  ///< p_occ this close to one half was ne
 
 }  // namespace
 
-MrptMapper::MrptMapper(const robot::RobotModel& model, double resolution)
-    : model_(model), level_scan_(model.T_base_laser, {}), map_(2, 2, resolution) {}
+MrptMapper::MrptMapper(const robot::RobotModel& model, double resolution, std::unique_ptr<MapBuilder> builder)
+    : model_(model), builder_(std::move(builder)), level_scan_(model.T_base_laser, {}), map_(2, 2, resolution) {}
 
 void MrptMapper::update(const robot::Inputs& inputs) {
   for (const robot::Odometry& odometry : inputs.odometry) odometry_.add(odometry);
@@ -54,13 +54,13 @@ void MrptMapper::take(const robot::LaserScan& scan) {
   action.insert(motion);
   mrpt::obs::CSensoryFrame frame;
   frame.insert(observation);
-  process(action, frame);
+  builder_->process(action, frame);
 
   follow_path(reference, T_odom_base);
-  if (inserted() != mapped_) take_grid();
-  mapped_ = inserted();
+  if (builder_->inserted() != mapped_) take_grid();
+  mapped_ = builder_->inserted();
   counts_.mapped = mapped_;
-  covariance_ = uncertainty();
+  covariance_ = builder_->uncertainty();
   const PlanarTransform to_map(trajectory_.back().pose);
   last_hits_.clear();
   for (const auto& p_base : points.hits) last_hits_.push_back(to_map(p_base));
@@ -87,7 +87,7 @@ robot::LaserScan MrptMapper::as_instant(const robot::LaserScan& scan, const Scan
 
 /// Between the builder's steps the odometry leads on. Where steps of the past have moved, everything on them moves.
 void MrptMapper::follow_path(Stamp stamp, const TPose2D& T_odom_base) {
-  const std::vector<TPose2D> now = path();
+  const std::vector<TPose2D> now = builder_->path();
   if (now.size() != path_.size() || path_.empty()) T_odom_step_ = T_odom_base;
   bool moved = false;
   for (std::size_t i = 0; i < std::min(now.size(), path_.size()); ++i)
@@ -106,7 +106,7 @@ void MrptMapper::follow_path(Stamp stamp, const TPose2D& T_odom_base) {
 }
 
 void MrptMapper::take_grid() {
-  const mrpt::maps::COccupancyGridMap2D& from = grid();
+  const mrpt::maps::COccupancyGridMap2D& from = builder_->grid();
   GridFrame frame;
   frame.width = static_cast<int>(from.getSizeX());
   frame.height = static_cast<int>(from.getSizeY());

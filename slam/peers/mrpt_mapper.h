@@ -1,30 +1,27 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "robot/model.h"
 #include "slam/mapper.h"
+#include "slam/mrpt/mrpt_slam.h"
 #include "slam/scan/level_scan.h"
 #include "slam/scan/odometry_track.h"
 #include "slam/scan/waiting_scans.h"
 
-namespace mrpt::obs {
-class CActionCollection;
-class CSensoryFrame;
-}  // namespace mrpt::obs
-namespace mrpt::maps {
-class COccupancyGridMap2D;
-}
-
 namespace rubble::slam {
 
-/// What MRPT's map builders share: scans and odometry become pairs of action and observation, one a scan, as MRPT's own
-/// programs make them of a log; their grid becomes our map. A scan waits for the odometry that follows it. MRPT's
-/// builders take a scan as one instant, so it is given to them as it would have looked at the middle of its sweep: a
-/// robot that turns would else bend their maps, which says nothing about their methods.
+/// One of MRPT's map builders as a mapper: scans and odometry become pairs of action and observation, one a scan, as
+/// MRPT's own programs make them of a log; their grid becomes our map. A scan waits for the odometry that follows it.
+/// MRPT's builders take a scan as one instant, so it is given to them as it would have looked at the middle of its
+/// sweep: a robot that turns would else bend their maps, which says nothing about their methods.
 class MrptMapper : public Mapper {
  public:
+  /// `resolution`: of the builder's grid [m].
+  MrptMapper(const robot::RobotModel& model, double resolution, std::unique_ptr<MapBuilder> builder);
+
   void update(const robot::Inputs& inputs) override;
   const CountMap& map() const override { return map_; }
   mrpt::math::TPose2D pose() const override;
@@ -36,19 +33,6 @@ class MrptMapper : public Mapper {
   const std::vector<mrpt::math::TPoint2D>& last_hits() const override { return last_hits_; }
   const MapperCounts& counts() const override { return counts_; }
 
- protected:
-  MrptMapper(const robot::RobotModel& model, double resolution);
-
-  /// One pair of action and observation.
-  virtual void process(mrpt::obs::CActionCollection& action, mrpt::obs::CSensoryFrame& frame) = 0;
-  /// T_map_base at each step of the builder so far; steps may be fewer than scans. `odometry` is carried on from the
-  /// last one.
-  virtual std::vector<mrpt::math::TPose2D> path() const = 0;
-  virtual PoseCovariance uncertainty() const = 0;
-  virtual const mrpt::maps::COccupancyGridMap2D& grid() const = 0;
-  /// Observations in the map: when it changes, so did the map.
-  virtual std::size_t inserted() const = 0;
-
  private:
   void take(const robot::LaserScan& scan);
   robot::LaserScan as_instant(const robot::LaserScan& scan, const ScanPoints& points) const;
@@ -56,6 +40,7 @@ class MrptMapper : public Mapper {
   void take_grid();
 
   robot::RobotModel model_;
+  std::unique_ptr<MapBuilder> builder_;
   OdometryTrack odometry_;
   WaitingScans waiting_;
   std::optional<mrpt::math::TPose2D> T_odom_scan_;  ///< at the last scan

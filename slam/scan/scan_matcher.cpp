@@ -1,11 +1,9 @@
 #include "slam/scan/scan_matcher.h"
 
-#include <mrpt/poses/CPosePDFGaussian.h>
-#include <mrpt/slam/CICP.h>
-
 #include <cmath>
 
 #include "base/planar.h"
+#include "slam/mrpt/mrpt_slam.h"
 #include "slam/scan/match_target.h"
 
 namespace rubble::slam {
@@ -49,26 +47,14 @@ void set_dense_points(CSimplePointsMap& map, const Surface& surface, double spac
 
 struct ScanMatcher::Impl {
   ScanMatcherConfig config;
-  mrpt::slam::CICP icp;
+  std::unique_ptr<Icp> icp;
   MatchTarget last;
   CSimplePointsMap now;
 };
 
 ScanMatcher::ScanMatcher(const ScanMatcherConfig& config) : impl_(std::make_unique<Impl>()) {
   impl_->config = config;
-  auto& options = impl_->icp.options;
-  options.ICP_algorithm = mrpt::slam::icpClassic;
-  options.thresholdDist = config.first_distance;
-  options.thresholdAng = 0.0;
-  options.ALFA = 0.5;
-  options.smallestThresholdDist = config.last_distance;
-  options.maxIterations = static_cast<unsigned>(config.max_iterations);
-  options.minAbsStep_trans = 2e-4;
-  options.minAbsStep_rot = 2e-4;
-  options.corresponding_points_decimation = 1;  // the points are thinned already
-  options.doRANSAC = false;                     // it draws random numbers
-  options.skip_cov_calculation = true;
-  options.skip_quality_calculation = true;
+  impl_->icp = mrpt_slam().icp({config.first_distance, config.last_distance, config.max_iterations});
 }
 
 ScanMatcher::~ScanMatcher() = default;
@@ -84,16 +70,13 @@ ScanMatch ScanMatcher::match(const Surface& now, const TPose2D& T_last_now_prior
   if (impl_->last.empty() || now.points.size() < static_cast<std::size_t>(config.min_points)) return match;
 
   set_points(impl_->now, now);
-  mrpt::slam::CICP::TReturnInfo info;
-  const mrpt::poses::CPosePDFGaussian prior{mrpt::poses::CPose2D(T_last_now_prior)};
-  const auto pdf = impl_->icp.AlignPDF(&impl_->last, &impl_->now, prior, info);
-  const TPose2D refined = pdf->getMeanVal().asTPose();
-  const TPose2D correction = refined - T_last_now_prior;
-  match.goodness = info.goodness;
-  match.accepted = info.goodness >= config.min_goodness &&
+  const Icp::Match found = impl_->icp->align(impl_->last, impl_->now, T_last_now_prior);
+  const TPose2D correction = found.T_last_now - T_last_now_prior;
+  match.goodness = found.goodness;
+  match.accepted = found.goodness >= config.min_goodness &&
                    length(correction.x, correction.y) <= config.max_correction &&
                    std::abs(wrap_angle(correction.phi)) <= config.max_turn;
-  if (match.accepted) match.T_last_now = refined;
+  if (match.accepted) match.T_last_now = found.T_last_now;
   return match;
 }
 

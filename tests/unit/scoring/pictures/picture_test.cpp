@@ -78,6 +78,24 @@ TEST_F(Picture, TheErrorMapTellsPhantomFromMissing) {
   EXPECT_EQ(tints().red + tints().blue, 0);
 }
 
+/// The room with a title, an axis and a box of symbols beside it, as plotting programs draw them.
+OccupancyGrid plotted(const OccupancyGrid& map) {
+  OccupancyGrid out = padded(map, 30);
+  draw_wall(out, {-1.0, -1.0}, {6.0, -1.0}, 1);
+  draw_wall(out, {-1.0, -1.0}, {-1.0, 4.0}, 1);
+  for (const double x : {0.5, 1.0, 1.5, 2.0}) draw_wall(out, {x, 3.6}, {x + 0.2, 4.0}, 2);
+  return out;
+}
+
+TEST_F(Picture, LegendsAndAxesBesideTheMapAreNoWrongWalls) {
+  write_overlay(path_, plotted(room(0.0)), room(0.0), {});
+  EXPECT_EQ(tints().red + tints().orange, 0);
+  write_error_map(path_, plotted(room(0.0)), room(0.0), {}, 0.5);
+  EXPECT_EQ(tints().red + tints().orange, 0);
+  write_overlay(path_, plotted(room(0.6)), room(0.0), {});
+  EXPECT_GT(tints().red, 0);  // where the truth knows the place it is one
+}
+
 TEST_F(Picture, FoundFalseAndMissedVictimsAreToldApart) {
   const OccupancyGrid plain = room(0.0, false);
   const Mark here{{1.0, 1.0}, "v", std::nullopt};

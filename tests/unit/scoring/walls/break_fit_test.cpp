@@ -7,36 +7,13 @@
 
 #include "base/angle.h"
 #include "scoring/scorecard.h"
+#include "tests/support/scoring_break.h"
 #include "tests/support/scoring_grounds.h"
 
 namespace rubble::scoring {
 namespace {
 
 using namespace testing;
-
-/// What lies east of `seam` [m] drawn as `T` moves it, as after a loop that was not closed. Where the parts overlap the
-/// later one was drawn over the earlier.
-OccupancyGrid come_apart(const OccupancyGrid& truth, double seam, const TPose2D& T) {
-  OccupancyGrid out = padded(truth, 20);
-  for (int y = 0; y < out.height(); ++y)
-    for (int x = 0; x < out.width(); ++x) {
-      const TPoint2D p = out.centre({x, y});
-      const TPoint2D moved = T.inverseComposePoint(p);
-      const Cell east = truth.cell(moved);
-      const Cell west = truth.cell(p);
-      out[{x, y}] = Occupancy::Unknown;
-      if (p.x < seam && truth.inside(west)) out[{x, y}] = truth[west];
-      if (moved.x >= seam && truth.inside(east) && truth[east] != Occupancy::Unknown) out[{x, y}] = truth[east];
-    }
-  return out;
-}
-
-/// A turn about a point of the seam, and a shift.
-TPose2D about(const TPoint2D& p, double deg, double dx, double dy) {
-  const TPose2D turn(0.0, 0.0, deg_to_rad(deg));
-  const TPoint2D moved = turn.composePoint(p);
-  return {p.x - moved.x + dx, p.y - moved.y + dy, turn.phi};
-}
 
 ScoreConfig with_warp() {
   ScoreConfig config;

@@ -1,7 +1,7 @@
 // What MRPT's builders are given and what is made of their answers, shown by the one that draws no random numbers.
 #include <gtest/gtest.h>
 
-#include "slam/peers/mrpt_icp_mapper.h"
+#include "slam/peers/mrpt_mapper.h"
 #include "tests/support/slam_outcome.h"
 #include "tests/support/slam_world.h"
 
@@ -11,6 +11,10 @@ namespace {
 using mrpt::math::TPoint2D;
 using robot::Inputs;
 
+struct MrptIcpMapper : MrptMapper {
+  MrptIcpMapper() : MrptMapper({}, MrptIcpConfig().resolution, mrpt_slam().icp_builder({}, {})) {}
+};
+
 const std::vector<TPoint2D> kTour{{0.0, 0.0}, {3.0, 0.2}, {3.0, 1.0}, {0.5, 0.5}, {0.0, 0.0}};
 
 std::vector<Inputs> recorded(const slam_test::Drive& drive, std::uint64_t seed) {
@@ -18,7 +22,7 @@ std::vector<Inputs> recorded(const slam_test::Drive& drive, std::uint64_t seed) 
 }
 
 TEST(MrptMapper, KnowsNothingBeforeTheFirstScan) {
-  const MrptIcpMapper mapper(robot::RobotModel(), {}, 1);
+  const MrptIcpMapper mapper;
   EXPECT_EQ(mapper.pose().norm(), 0.0);
   EXPECT_TRUE(mapper.trajectory().empty());
   EXPECT_TRUE(mapper.last_hits().empty());
@@ -30,7 +34,7 @@ TEST(MrptMapper, KnowsNothingBeforeTheFirstScan) {
 TEST(MrptMapper, MapsTheRoomBetterThanTheOdometry) {
   const slam_test::Drive drive = slam_test::drive_through(kTour, 0.0);
   const std::vector<Inputs> ticks = recorded(drive, 1);
-  MrptIcpMapper mapper(robot::RobotModel(), {}, 1);
+  MrptIcpMapper mapper;
   const slam_test::Outcome outcome = slam_test::play(mapper, ticks, slam_test::furnished_room(), drive.truth);
   Trajectory odometry;
   for (const Inputs& tick : ticks)
@@ -43,7 +47,7 @@ TEST(MrptMapper, MapsTheRoomBetterThanTheOdometry) {
 
 TEST(MrptMapper, EveryScanHasItsPlaceOnTheTrajectory) {
   const std::vector<Inputs> ticks = recorded(slam_test::drive_through(kTour, 0.0), 2);
-  MrptIcpMapper mapper(robot::RobotModel(), {}, 1);
+  MrptIcpMapper mapper;
   std::vector<Stamp> stamps;
   for (const Inputs& tick : ticks) {
     mapper.update(tick);
@@ -64,7 +68,7 @@ TEST(MrptMapper, EveryScanHasItsPlaceOnTheTrajectory) {
 TEST(MrptMapper, DoubledAndEmptyScansAreCountedAndChangeNothing) {
   std::vector<Inputs> ticks = recorded(slam_test::drive_through(kTour, 0.0), 3);
   ticks.resize(ticks.size() / 2);
-  MrptIcpMapper plain(robot::RobotModel(), {}, 1), doubled(robot::RobotModel(), {}, 1);
+  MrptIcpMapper plain, doubled;
   std::uint64_t added = 0;
   for (const Inputs& tick : ticks) {
     plain.update(tick);

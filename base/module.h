@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+namespace rubble {
+
+/// The function `symbol` of a shared module that is loaded the first time it is asked for, and never closed: MRPT's
+/// libraries leave threads and exit handlers behind. `file` is looked for beside the program, in the folder above, in
+/// ../lib/rubble, and where the program's run path leads. Throws RunError "`what`: `file` cannot be loaded (why);
+/// `remedy`".
+void* module_function(const std::string& what, const std::string& file, const char* symbol, const std::string& remedy);
+
+}  // namespace rubble

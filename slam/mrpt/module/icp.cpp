@@ -1,0 +1,44 @@
+#include <mrpt/maps/CSimplePointsMap.h>
+#include <mrpt/poses/CPosePDFGaussian.h>
+#include <mrpt/slam/CICP.h>
+
+#include "slam/mrpt/module/builders.h"
+
+namespace rubble::slam {
+namespace {
+
+class PointToPoint : public Icp {
+ public:
+  explicit PointToPoint(const IcpOptions& from) {
+    auto& options = icp_.options;
+    options.ICP_algorithm = mrpt::slam::icpClassic;
+    options.thresholdDist = from.first_distance;
+    options.thresholdAng = 0.0;
+    options.ALFA = 0.5;
+    options.smallestThresholdDist = from.last_distance;
+    options.maxIterations = static_cast<unsigned>(from.max_iterations);
+    options.minAbsStep_trans = 2e-4;
+    options.minAbsStep_rot = 2e-4;
+    options.corresponding_points_decimation = 1;  // the points are thinned already
+    options.doRANSAC = false;                     // it draws random numbers
+    options.skip_cov_calculation = true;
+    options.skip_quality_calculation = true;
+  }
+
+  Match align(const mrpt::maps::CPointsMap& last, const mrpt::maps::CPointsMap& now,
+              const mrpt::math::TPose2D& T_last_now_prior) override {
+    mrpt::slam::CICP::TReturnInfo info;
+    const mrpt::poses::CPosePDFGaussian prior{mrpt::poses::CPose2D(T_last_now_prior)};
+    const auto pdf = icp_.AlignPDF(&last, &now, prior, info);
+    return {pdf->getMeanVal().asTPose(), info.goodness};
+  }
+
+ private:
+  mrpt::slam::CICP icp_;
+};
+
+}  // namespace
+
+std::unique_ptr<Icp> make_icp(const IcpOptions& options) { return std::make_unique<PointToPoint>(options); }
+
+}  // namespace rubble::slam
