@@ -36,7 +36,7 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   if (!has_reference_) {
     expected_ = wheels ? wheels->v : 0.0;
     place_ = T_map_base;
-    last_phi_ = T_map_base.phi;
+    last_ = T_map_base;
   }
   if (!has_reference_ || std::abs(wrap_angle(T_map_base.phi - reference_.phi)) > config_.turned) {
     reference_ = T_map_base;
@@ -45,21 +45,25 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   }
   if (length(T_map_base.x - place_.x, T_map_base.y - place_.y) > config_.place) {
     place_ = T_map_base;
-    rocked_ = net_ = pushed_ = 0.0;
+    rocked_ = net_ = pushed_ = turn_ = 0.0;
   }
-  const double turned_in_tick = wrap_angle(T_map_base.phi - last_phi_);
+  const double turned_in_tick = wrap_angle(T_map_base.phi - last_.phi);
+  const double moved_in_tick = distance(position(last_), position(T_map_base));
   net_ += turned_in_tick;
-  last_phi_ = T_map_base.phi;
+  last_ = T_map_base;
   // Wheels that stand and report no stall do not push: the base does not obey, and nothing is in the way. Not for ever,
   // for there may be bases that do not know of stalls.
   const bool stand = wheels && std::abs(wheels->v) < config_.standing && std::abs(wheels->w) < config_.standing;
-  stood_for_ = stand ? stood_for_ + dt : 0.0;
+  const bool told = commanded.v != 0.0 || commanded.w != 0.0;
+  stood_for_ = stand && told ? stood_for_ + dt : 0.0;
   const bool by_wheels = wheels && stood_for_ < config_.disobedience;
   const double turning = by_wheels ? std::min(std::abs(commanded.w), std::abs(wheels->w)) : std::abs(commanded.w);
   rocked_ += turning * dt;
   expected_ += std::clamp(commanded.v - expected_, -config_.accel * dt, config_.accel * dt);
   // A base that brakes is ahead of that.
   if (wheels && std::abs(commanded.v - wheels->v) < std::abs(commanded.v - expected_)) expected_ = wheels->v;
+  // A mapper that slid along bare walls puts the robot back where it was a second ago.
+  if (moved_in_tick > config_.jump + config_.scan_time * std::abs(expected_)) lately_.clear();
   bool in_vain = false;
   if (on_the_spot(commanded) || commanded.v * expected_ <= 0.0) {
     lately_.clear();

@@ -14,6 +14,8 @@ namespace rubble::explore {
 struct MotionWatchConfig {
   double patience = 0.20;           ///< over so much way commanded the robot should have moved [m]
   double moved = 0.25;              ///< by more than this share of it, or it is stuck
+  double jump = 0.04;               ///< a pose that moves more from tick to tick is corrected: it begins anew [m]
+  double scan_time = 0.1;           ///< spinning wheels carry the pose on for so long before a scan puts it back [s]
   double soon = 0.13;               ///< over so much [m]
   double hardly = 0.15;             ///< by more than this; over the crest of a ramp it may slip more than that for long
   double led = 0.6;                 ///< by more than this where it is turned aside: a corner of it hangs on something
@@ -74,7 +76,7 @@ class MotionWatch {
   double pushed_ = 0.0;  ///< way commanded there [m]
   double rocked_ = 0.0;  ///< turns commanded there, whichever way [rad]
   double net_ = 0.0;     ///< what came of them [rad]
-  double last_phi_ = 0.0;
+  mrpt::math::TPose2D last_;
   double stalled_for_ = 0.0;
   double stood_for_ = 0.0;  ///< the wheels [s]
 };

@@ -16,7 +16,9 @@ void StuckWatch::update(const robot::Inputs& inputs, double passed, double dt) {
   }
   if (!inputs.odometry.empty()) {
     stalled_ = inputs.odometry.back().stalled;
-    wheels_ = robot::Drive{inputs.odometry.back().v, inputs.odometry.back().w};
+    // A base that never gives its speeds tells nothing of its wheels.
+    const robot::Drive wheels{inputs.odometry.back().v, inputs.odometry.back().w};
+    if (wheels_ || wheels.v != 0.0 || wheels.w != 0.0) wheels_ = wheels;
     odometry_at_ = inputs.now;
   }
   tilt_.update(inputs, dt);

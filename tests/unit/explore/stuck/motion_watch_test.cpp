@@ -37,6 +37,24 @@ TEST(MotionWatch, TheWayCommandedCountsOnlyOnceTheWheelsGoThatWay) {
   }
 }
 
+/// Slow bends to and fro add up to many turns commanded; a robot that gets on meanwhile is not held.
+TEST(MotionWatch, ARobotThatCreepsAndWigglesIsNotStuck) {
+  MotionWatch watch;
+  for (int i = 0; i < 2000; ++i) {
+    const double w = i % 40 < 20 ? 0.2 : -0.2;
+    ASSERT_FALSE(watch.stuck({0.1 * 0.02 * i, 0.0, 0.0}, {0.1, w}, false, 0.02)) << i;
+  }
+}
+
+/// Along bare walls a mapper slides and finds its place again, by as much as the robot went meanwhile.
+TEST(MotionWatch, ACorrectedPoseIsNoRobotThatStands) {
+  MotionWatch watch;
+  for (int i = 0; i < 2000; ++i) {
+    const double slid = 0.15 * (i % 20) / 19.0;
+    ASSERT_FALSE(watch.stuck({0.4 * 0.02 * i + slid, 0.0, 0.0}, {0.4, 0.0}, false, 0.02)) << i;
+  }
+}
+
 /// A base that does not obey for a while: wheels that stand without a stall push against nothing.
 TEST(MotionWatch, WheelsThatStandWithoutAStallAreNoObstacleForAWhile) {
   for (const robot::Drive& told : {robot::Drive{0.4, 0.0}, robot::Drive{0.0, 1.0}}) {
