@@ -68,7 +68,8 @@ void print_setup(const scenarios::CalibratedRobot& robot) {
 
 /// The robot file that a recorded run was driven with, where it is one of `rubble drive` or `calibrate`.
 std::string recorded_robot(const std::string& run) {
-  const std::string file = (fs::path(run) / "robot.yaml").string();
+  const fs::path folder = fs::is_directory(run) ? fs::path(run) : fs::path(run).parent_path();
+  const std::string file = (folder / "robot.yaml").string();
   return fs::exists(file) ? file : "";
 }
 

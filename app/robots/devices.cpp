@@ -21,8 +21,9 @@ void print(const std::string& port, const robot::FoundDevice& found, double radi
   std::printf("%s", robot::scan_picture(*found.scan, radius, kPictureRows).c_str());
 }
 
-/// Whether a device that is known answered there.
-bool ask(const std::string& port, double radius) {
+/// Whether a device that is known answered there. A port that is none is told of like one where nobody answers: the
+/// next is asked all the same.
+bool ask(const std::string& port, double radius, bool only) {
   try {
     const auto found = robot::probe_port(port);
     if (!found) {
@@ -33,6 +34,10 @@ bool ask(const std::string& port, double radius) {
     return true;
   } catch (const robot::DeviceLost& lost) {
     std::printf("%s\n", lost.what());
+    return false;
+  } catch (const InputError& none) {
+    if (only) throw;
+    std::printf("%s\n", none.what());
     return false;
   }
 }
@@ -50,7 +55,7 @@ int devices(const DevicesArguments& arguments) {
         "no USB serial line is plugged in; plug the devices in, or name their ports: rubble devices tcp:HOST:PORT");
   std::size_t known = 0;
   for (const std::string& port : ports) {
-    known += ask(port, arguments.radius) ? 1 : 0;
+    known += ask(port, arguments.radius, ports.size() == 1) ? 1 : 0;
     std::fflush(stdout);
   }
   return known > 0 ? kOk : kFailed;
