@@ -21,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostRuns = 1000000;
+constexpr std::size_t kMostBytes = 1000000000;  ///< of all configurations
 
 /// The values of a key that may be one value or a list.
 std::vector<std::string> one_or_more(const YamlMap& map, const std::string& key) {
@@ -137,8 +138,19 @@ std::vector<Configuration> crossed(const std::vector<Configuration>& configurati
   return product;
 }
 
+/// What one more pair of key and value costs each configuration [bytes].
+std::size_t cost_of(const std::string& key, const std::string& value) {
+  return sizeof(Override) + 3 * (key.size() + value.size());  // the pair, and its words in the two names
+}
+
 std::vector<Configuration> read_configurations(const YamlMap& root) {
   std::vector<Configuration> configurations = named_sets(root);
+  std::size_t bytes = 0;  // of the largest configuration
+  for (const auto& configuration : configurations) {
+    std::size_t own = 0;
+    for (const auto& [key, value] : configuration.overrides) own += cost_of(key, value);
+    bytes = std::max(bytes, own);
+  }
   const YamlMap grid = root.map("set");
   for (const auto& key : grid.keys()) {
     refuse_reserved(grid, key);
@@ -147,6 +159,11 @@ std::vector<Configuration> read_configurations(const YamlMap& root) {
     if (values.empty()) grid.fail(key, "has no values; give one or a list: " + key + ": [a, b]");
     if (values.size() > kMostRuns / configurations.size())
       root.fail("set", "is a grid of more than a million configurations; split the sweep");
+    std::size_t longest = 0;
+    for (const auto& value : values) longest = std::max(longest, cost_of(key, value));
+    bytes += longest;
+    if (bytes > kMostBytes / (configurations.size() * values.size()))
+      root.fail("set", "is a grid whose configurations take more than 1 GB; split the sweep, or shorten its values");
     configurations = crossed(configurations, key, values);
   }
   std::set<std::string> names;

@@ -114,6 +114,7 @@ std::uint64_t count_of(const ordered_json& json, const std::string& path) {
 }
 
 std::vector<std::uint64_t> seeds_in(const ordered_json& json, const std::string& path) {
+  if (!json.is_array()) throw InputError(path + ": 'seeds' must be a list; correct it");
   std::vector<std::uint64_t> seeds;
   for (const auto& seed : json) seeds.push_back(count_of(seed, path));
   return seeds;

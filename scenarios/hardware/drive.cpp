@@ -490,7 +490,9 @@ bool tell_what_goes_on(const robot::RealRobot& robot, const DriveOptions& option
   if (!options.tell || stands(status)) return status.reported;
   if (status.motors_stay || (status.reported && status.motors_on)) {
     options.tell(std::string("base: ") + robot::kMotorsStay);
-  } else if (status.reported) {
+    return status.reported;
+  }
+  if (status.reported) {
     options.tell("base: its motors are off, but its wheels turn; see that it comes to stand");
   }
   return status.reported;
@@ -511,7 +513,9 @@ class StoppedAtLast {
     };
     robot_.listen(wish, options_.left);  // who is in a hurry need not wait for the base
     unheard_ = !tell_what_goes_on(robot_, options_);
-    if (unheard_ && options_.tell && std::uncaught_exceptions() > before_) options_.tell(kNotHeard);
+    // That its motors stay on, where that is the last that was heard, says more.
+    if (unheard_ && options_.tell && std::uncaught_exceptions() > before_ && !robot_.status().motors_stay)
+      options_.tell(kNotHeard);
     robot_.listen({});
   }
   StoppedAtLast(const StoppedAtLast&) = delete;

@@ -133,8 +133,19 @@ LeagueFolder find_league(const std::string& folder, const std::string& truth) {
   }
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     std::error_code error;
+    if (entry.is_symlink(error) && !fs::exists(entry.path(), error) && format_of(entry.path()) != kFormats.size())
+      out.teams.push_back({entry.path().stem().string(), "", "",
+                           entry.path().string() + ": a link that leads to no file; mend or remove it"});
     if (!entry.is_directory(error) || entry.is_symlink(error)) continue;
-    const MapsInFolder inside = maps_in(entry.path(), truth);
+    MapsInFolder inside;
+    try {
+      inside = maps_in(entry.path(), truth);
+    } catch (const fs::filesystem_error& unreadable) {
+      out.teams.push_back(
+          {entry.path().filename().string(), "", "",
+           entry.path().string() + ": cannot be read (" + unreadable.code().message() + "); see its rights"});
+      continue;
+    }
     skip(inside.skipped);
     if (inside.maps.empty() && !inside.skipped.empty()) continue;  // results of a league, or an arena's pictures
     out.teams.push_back(team_in(entry.path(), inside.maps));

@@ -140,8 +140,8 @@ double to_wall(const WallField& field, const TPoint2D& p, const OccupancyGrid& g
 /// How a wall `off` metres from the nearest of the other map is drawn.
 Colour wall_colour(double off, const Colour& only) { return off <= kAgree ? kInk : off <= kNear ? kDisplaced : only; }
 
-/// Walls of the map that lie where the truth knows nothing: no score counts them, for nobody can say whether they are
-/// phantoms. So legends, axes, names and arrows beside a drawing are not shown as wrong walls.
+/// Walls of the map that lie where the truth knows nothing: lines of sight and overlap do not count them, for nobody
+/// can say whether they are phantoms. So legends, axes, names and arrows beside a drawing are not shown as wrong walls.
 bool is_judged(Occupancy truth, double off) { return truth != Occupancy::Unknown || off <= kNear; }
 
 Colour background(Occupancy map, Occupancy truth) {

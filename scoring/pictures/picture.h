@@ -12,9 +12,9 @@ namespace rubble::scoring {
 
 /// Writes a PNG of the map laid over the truth: walls within 5 cm of each other dark, within 15 cm orange, walls only
 /// in the map red, only in the truth blue, free space known by both white; walls of the map where the truth knows
-/// nothing (legends, axes, names beside the drawing) grey, as no score counts them. `warning` stands in a red band over
-/// it. Victims: found ones green with a line to where they are, false ones crossed red, missed ones ringed blue. Throws
-/// RunError when it cannot be written.
+/// nothing (legends, axes, names beside the drawing) grey, as lines of sight and overlap do not count them. `warning`
+/// stands in a red band over it. Victims: found ones green with a line to where they are, false ones crossed red,
+/// missed ones ringed blue. Throws RunError when it cannot be written.
 void write_overlay(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
                    const mrpt::math::TPose2D& T_truth_map, const std::string& warning = "", const Marks& victims = {});
 

@@ -103,6 +103,7 @@ grep -q "^no team's maps: x-error.png$" table.txt || fail "x-error.png is no map
 mkdir odd && cp $truth odd/fine.tif && ln -s self.tif odd/self.tif && cp $truth "odd/$(printf 'x%.0s' $(seq 250)).tif"
 expect_exit 0 "" "$rubble" score --league odd $truth --out odd_out
 grep -q '^1,fine,' odd_out/league.csv || fail "odd names in a league: $(cut -c1-200 odd_out/league.csv)"
+grep -q '^[^,]*,self,.*leads to no file' odd_out/league.csv || fail "a link to itself has no row: $(cut -c1-200 odd_out/league.csv)"
 
 mkdir none && cp $truth none/truth.tif
 expect_exit 3 'truth.tif' "$rubble" score --league none $truth

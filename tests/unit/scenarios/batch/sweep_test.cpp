@@ -166,6 +166,10 @@ TEST_F(SweepFile, WhatIsTooMuchIsSaidBeforeItIsMade) {
   for (const char* key : {"time_limit_s", "mapper.particles", "mapper.icp"})
     grid += "  " + std::string(key) + ": [" + values + "]\n";
   EXPECT_THAT(error_of("scenarios: [small.yaml]\nseeds: 1\nset:\n" + grid), HasSubstr("more than a million config"));
+  const std::string million = "  time_limit_s: [" + values + "]\n  mapper.particles: [" + values + "]\n";
+  EXPECT_THAT(
+      error_of("scenarios: [small.yaml]\nseeds: 1\nset:\n" + million + "  team: " + std::string(10000, 'x') + "\n"),
+      HasSubstr("more than 1 GB"));
 }
 
 }  // namespace
