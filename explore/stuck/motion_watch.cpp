@@ -11,6 +11,8 @@ void MotionWatch::reset() { *this = MotionWatch(config_); }
 
 /// The robot has hardly moved over the last piece of way that was commanded, or is turned aside on it.
 bool MotionWatch::drives_in_vain(const mrpt::math::TPose2D& T_map_base) {
+  // Of moments at the same way the last is asked: wheels that stand add none.
+  if (!lately_.empty() && lately_.back().way == way_) lately_.pop_back();
   lately_.push_back({T_map_base, way_, wheel_turn_});
   while (lately_.size() > 1 && way_ - lately_[1].way >= config_.patience) lately_.pop_front();
   const auto since = [&](double way) {

@@ -490,9 +490,7 @@ bool tell_what_goes_on(const robot::RealRobot& robot, const DriveOptions& option
   if (!options.tell || stands(status)) return status.reported;
   if (status.motors_stay || (status.reported && status.motors_on)) {
     options.tell(std::string("base: ") + robot::kMotorsStay);
-    return status.reported;
-  }
-  if (status.reported) {
+  } else if (status.reported) {
     options.tell("base: its motors are off, but its wheels turn; see that it comes to stand");
   }
   return status.reported;

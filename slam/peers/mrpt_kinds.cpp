@@ -7,23 +7,29 @@
 #include "slam/process/process_mapper.h"
 
 namespace rubble::slam {
+namespace {
 
-void bind(Binder& binder, MrptIcpConfig& c) {
-  binder.number("resolution_m", c.resolution, 0.01, 1.0);
+/// After how much motion MRPT's builders match a scan and put one into the map.
+template <class Config>
+void bind_steps(Binder& binder, Config& c) {
   binder.number("localize_distance_m", c.localize_distance, 0.0, 10.0);
   binder.degrees("localize_turn_deg", c.localize_turn, 0.0, 180.0);
   binder.number("insert_distance_m", c.insert_distance, 0.0, 10.0);
   binder.degrees("insert_turn_deg", c.insert_turn, 0.0, 180.0);
+}
+
+}  // namespace
+
+void bind(Binder& binder, MrptIcpConfig& c) {
+  binder.number("resolution_m", c.resolution, 0.01, 1.0);
+  bind_steps(binder, c);
   binder.number("min_goodness", c.min_goodness, 0.0, 1.0);
 }
 
 void bind(Binder& binder, MrptRbpfConfig& c) {
   binder.number("resolution_m", c.resolution, 0.01, 1.0);
   binder.integer("particles", c.particles, 1, 10000);
-  binder.number("localize_distance_m", c.localize_distance, 0.0, 10.0);
-  binder.degrees("localize_turn_deg", c.localize_turn, 0.0, 180.0);
-  binder.number("insert_distance_m", c.insert_distance, 0.0, 10.0);
-  binder.degrees("insert_turn_deg", c.insert_turn, 0.0, 180.0);
+  bind_steps(binder, c);
 }
 
 namespace {

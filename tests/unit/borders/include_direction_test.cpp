@@ -170,32 +170,15 @@ const std::map<std::string, Folders>& wings() {
 
 /// Wings that nobody outside their room may include, doors apart.
 const Folders& insides() {
-  static const Folders table = {"explore/caution",
-                                "explore/motion",
-                                "explore/plan",
-                                "explore/search",
-                                "explore/stuck",
-                                "robot/logs/own",
-                                "robot/protocols",
-                                "scoring/alignment",
-                                "scoring/maps/colours",
-                                "scoring/measures",
-                                "scoring/proposals",
-                                "scoring/rooms",
-                                "scoring/walls",
-                                "sim/body",
-                                "sim/laser",
-                                "slam/calibration",
-                                "slam/grid",
-                                "slam/mrpt",
-                                "slam/mrpt/module",
-                                "slam/peers",
-                                "slam/process",
-                                "slam/robust",
-                                "slam/robust/graph",
-                                "slam/robust/map",
-                                "slam/robust/matching",
-                                "slam/scan"};
+  static const Folders table = {"explore/caution",      "explore/motion",    "explore/plan",
+                                "explore/search",       "explore/stuck",     "robot/logs/own",
+                                "robot/protocols",      "scoring/alignment", "scoring/maps/colours",
+                                "scoring/measures",     "scoring/proposals", "scoring/rooms",
+                                "scoring/walls",        "sim/body",          "sim/laser",
+                                "slam/calibration",     "slam/grid",         "slam/mrpt",
+                                "slam/mrpt/module",     "slam/peers",        "slam/process",
+                                "slam/robust",          "slam/robust/graph", "slam/robust/map",
+                                "slam/robust/matching", "slam/scan"};
   return table;
 }
 
