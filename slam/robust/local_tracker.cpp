@@ -30,6 +30,18 @@ constexpr double kNotFarTurned = 0.15;  ///< [rad]
 constexpr std::size_t kOdometryWitnesses = 6;  ///< key frames that are asked whether the odometry can be true
 constexpr double kContradicted = 0.15;         ///< share of points they would have seen through, from which it cannot
 constexpr double kOneWay = 0.2;  ///< share of the information along the walls, below which their ends are asked
+// What a robot on wheels can have moved aside from what they say, and what it takes to believe a match beyond.
+constexpr double kSlide = 0.005;        ///< [m]
+constexpr double kSlideSpeed = 0.2;     ///< [m/s]
+constexpr double kSlideShare = 0.2;     ///< of the way that the wheels rolled
+constexpr double kSlidePerTurn = 0.1;   ///< [m/rad]
+constexpr double kBeyondSpeed = 0.05;   ///< where wheels say nothing: beyond the most that the robot drives [m]
+constexpr double kSameLeap = 0.02;      ///< two scans ask for the same correction [m]
+constexpr double kSameLeapTurn = 0.05;  ///< [rad]
+constexpr int kAskedLongEnough = 5;     ///< scans on end
+constexpr int kHeldLongEnough = 10;     ///< scans on end, whatever they ask for
+constexpr double kWorthALeap = 0.25;    ///< a level scan that loses so many inliers by staying is believed at once
+constexpr double kFirm = 100.0;         ///< times the odometry's information, where a looser prior leaps as well
 
 ScanFitConfig tight() {
   ScanFitConfig config;
@@ -96,12 +108,14 @@ Tracked LocalTracker::track(const KeyFrames& frames, const Cloud& cloud, const E
   undoubted.doubt = 0.0;
   if (doubted) {
     tracked.fit = without_odometry(cloud, motion, prior, carried, tracked.fit, work);
-    if (motion.told) believe_again({prior.pose, prior_information(undoubted)}, tracked.fit, work);
+    if (motion.told && !motion.again) believe_again({prior.pose, prior_information(undoubted)}, tracked.fit, work);
   }
   if (!doubted && (distance > config_.large_step || turn > config_.large_turn))
     tracked.fit = best_of_several(cloud, prior, distance, turn, tracked.fit, work);
   if (tracked.fit.prior_chi2 > config_.slip_chi2 || tracked.fit.inliers < config_.lost_inliers)
     doubt_odometry(frames, cloud, prior, carried, reach(motion), tracked, work);
+  if (config_.hold_leaps && !tracked.relocated && tracked.fit.inliers >= config_.lost_inliers)
+    hold_leap(motion, {prior.pose, prior_information(undoubted)}, carried, T_frame_last, tracked, work);
   tracked.found = tracked.fit.paired >= kLeastTrackedPairs;
   tracked.lost = doubted && (!tracked.found || tracked.fit.inliers < config_.lost_inliers);
   if (!tracked.found) tracked.fit.pose = prior.pose;
@@ -109,6 +123,56 @@ Tracked LocalTracker::track(const KeyFrames& frames, const Cloud& cloud, const E
   const Eigen::Vector3d d(off.x, off.y, wrap_angle(off.phi));
   tracked.odometry_chi2 = d.dot(prior_information(undoubted) * d);
   return tracked;
+}
+
+/// Whether a robot cannot have moved so between two scans. Wheels that turn move it between not at all (they spin) and
+/// as they say, and it slides a little.
+bool LocalTracker::leaps(const TPose2D& step, const ExpectedMotion& motion) const {
+  if (!motion.told) return length(step.x, step.y) > config_.most_speed * motion.time + kBeyondSpeed;
+  const TPose2D& wheels = motion.T_last_now;
+  const double path = length(wheels.x, wheels.y);
+  const double slide =
+      kSlide + kSlideSpeed * motion.time + kSlideShare * path + kSlidePerTurn * std::abs(wrap_angle(wheels.phi));
+  const double rolled =
+      path > 0.0 ? std::clamp((step.x * wheels.x + step.y * wheels.y) / (path * path), 0.0, 1.0) : 0.0;
+  return length(step.x - rolled * wheels.x, step.y - rolled * wheels.y) > slide;
+}
+
+/// A match farther from the last one than a robot can move is no motion. Either the last ones were off: then the next
+/// ones ask for the same correction, or without it a level scan fits much worse. Or what is seen has moved, as the line
+/// does in which the laser's plane cuts a ramp when the robot pitches before it: then it is not believed.
+void LocalTracker::hold_leap(const ExpectedMotion& motion, const PosePrior& odometry,
+                             const std::optional<TPose2D>& carried, const TPose2D& T_frame_last, Tracked& tracked,
+                             Work* work) {
+  if (!leaps(tracked.fit.pose - T_frame_last, motion)) {
+    if (!motion.again) leap_ = {};
+    return;
+  }
+  ScanFit stay = fit_scan(surfels_, points_, odometry.pose, odometry, {}, work);
+  if (carried && motion.doubt >= kDoubted) {
+    const PosePrior on{*carried, odometry.information};
+    const ScanFit other = fit_scan(surfels_, points_, on.pose, on, {}, work);
+    if (other.cost < stay.cost) stay = other;
+  }
+  if (leaps(stay.pose - T_frame_last, motion)) {
+    const PosePrior firm{odometry.pose, kFirm * odometry.information};
+    stay = fit_scan(surfels_, points_, firm.pose, firm, {}, work);
+    if (leaps(stay.pose - T_frame_last, motion)) return;
+  }
+  const TPose2D correction(tracked.fit.pose.x - stay.pose.x, tracked.fit.pose.y - stay.pose.y,
+                           wrap_angle(tracked.fit.pose.phi - stay.pose.phi));
+  if (!motion.again) {
+    const TPose2D& last = leap_.correction;
+    const bool same = length(correction.x - last.x, correction.y - last.y) < kSameLeap &&
+                      std::abs(wrap_angle(correction.phi - last.phi)) < kSameLeapTurn;
+    leap_.asked = same && leap_.asked > 0 ? leap_.asked + 1 : 1;
+    leap_.correction = correction;
+  }
+  if (leap_.asked >= kAskedLongEnough || leap_.held >= kHeldLongEnough) return;
+  if (motion.level && stay.inliers < tracked.fit.inliers - kWorthALeap) return;
+  if (!motion.again) ++leap_.held;
+  tracked.fit = stay;
+  tracked.held = true;
 }
 
 /// Odometry says nothing: it is one guess, that the motion goes on another, and where there is no good match a search

@@ -23,6 +23,7 @@ struct TrackerConfig {
   double slip_chi2 = 16.0;         ///< odometry off by more (squared sigmas) is doubted
   double most_speed = 0.8;         ///< of a robot whose odometry is of no use [m/s] ...
   double most_turn_rate = 1.8;     ///< ... [rad/s]
+  bool hold_leaps = true;          ///< a match farther off than a robot can move waits for the next ones to agree
   double lost_inliers = 0.35;      ///< share below which the place counts as lost
   double search_cell = 0.05;       ///< raster of the search [m]
   double search_blur = 0.0;        ///< [m]
@@ -35,7 +36,9 @@ struct ExpectedMotion {
   std::optional<mrpt::math::TPose2D> carried;
   double time = 0.0;   ///< since the last scan [s]
   double doubt = 0.0;  ///< of the odometry, 0: as good as wheels are, 1: it says nothing
-  bool told = false;   ///< it has spoken, and is doubted for what it said before
+  bool told = false;   ///< it has spoken; what may be doubted is what it says
+  bool level = true;   ///< the scan was taken level, or nothing tells how it was taken
+  bool again = false;  ///< the same scan once more, straightened by a better motion
 };
 
 /// How a scan lies on the local map.
@@ -46,6 +49,7 @@ struct Tracked {
   bool relocated = false;      ///< found again after being lost
   double odometry_chi2 = 0.0;  ///< squared sigmas between the pose found and what undoubted odometry expects
   bool lost = false;           ///< neither odometry nor the scan tell where the robot is
+  bool held = false;           ///< the match was farther off than a robot can move: it is not believed yet
 };
 
 /// Follows the robot from scan to scan on a local map of key frames, in the frame of the one it hangs on.
@@ -80,12 +84,24 @@ class LocalTracker {
   void doubt_odometry(const KeyFrames& frames, const Cloud& cloud, const PosePrior& prior,
                       const std::optional<mrpt::math::TPose2D>& carried, const Reach& reach, Tracked& tracked,
                       Work* work);
+  bool leaps(const mrpt::math::TPose2D& step, const ExpectedMotion& motion) const;
+  void hold_leap(const ExpectedMotion& motion, const PosePrior& odometry,
+                 const std::optional<mrpt::math::TPose2D>& carried, const mrpt::math::TPose2D& T_frame_last,
+                 Tracked& tracked, Work* work);
   void believe_again(const PosePrior& odometry, ScanFit& fit, Work* work) const;
   bool overrules(const KeyFrames& frames, const Cloud& cloud, const ScanFit& found, const ScanFit& expected,
                  Work* work) const;
   std::optional<ScanFit> any_heading(const Cloud& cloud, const PosePrior& prior, double distance, Work* work);
 
+  /// A correction that matches ask for, in the frame of the local map.
+  struct Leap {
+    mrpt::math::TPose2D correction;
+    int asked = 0;  ///< by so many scans on end
+    int held = 0;   ///< scans on end in which some leap was held
+  };
+
   const TrackerConfig config_;
+  Leap leap_;
   std::vector<OrientedPoint> points_;  ///< of the scan that is looked for, ends of walls among them
   std::vector<int> local_;             ///< key frames of the local map, the one whose frame it is in first
   SurfelGrid surfels_;

@@ -60,6 +60,7 @@ void bind(Binder& b, RobustConfig& c) {
     m.number("large_step_m", c.tracker.large_step, 0.05, 100.0);
     m.number("large_turn_rad", c.tracker.large_turn, 0.05, 10.0);
     m.number("slip_chi2", c.tracker.slip_chi2, 1.0, 1e9);
+    m.boolean("hold_leaps", c.tracker.hold_leaps);
     m.number("lost_inliers", c.tracker.lost_inliers, 0.0, 1.0);
     m.number("search_cell_m", c.tracker.search_cell, 0.01, 0.5);
     m.number("search_blur_m", c.tracker.search_blur, 0.0, 1.0);

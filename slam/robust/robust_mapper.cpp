@@ -33,8 +33,9 @@ constexpr double kEdgeAngle = 0.003;       ///< [rad]
 constexpr Work kLeastBudget = 300'000;     ///< for work put off, each scan
 constexpr Work kUsualShare = 8;            ///< the usual budget is such a part of the largest ...
 constexpr Work kHurry = 4;                 ///< ... and grows by itself with so many tasks that wait
-constexpr double kBelieved = 0.5;          ///< share of inliers with which a scan overrules the odometry
-constexpr double kForgiving = 0.6;         ///< what is left of the doubt after each scan that agrees with the odometry
+constexpr double kLevel = deg_to_rad(5.0);  ///< of the scan plane
+constexpr double kBelieved = 0.5;           ///< share of inliers with which a scan overrules the odometry
+constexpr double kForgiving = 0.6;          ///< what is left of the doubt after each scan that agrees with the odometry
 constexpr double kNoDoubt = 0.05;
 constexpr double kLongestCarry = 0.5;   ///< motion is taken to go on for so long [s]
 constexpr double kLongestLost = 3.0;    ///< then the map goes on from where the robot is thought to be [s]
@@ -79,6 +80,7 @@ std::vector<std::string> record_columns() {
           "odometry_chi2",
           "slipped",
           "lost",
+          "held",
           "beams",
           "beams_rejected",
           "work_ms",
@@ -224,11 +226,12 @@ bool RobustMapper::Impl::ready(Stamp now) const {
 
 void RobustMapper::Impl::process(const LaserScan& scan) {
   const Stamp reference = scan.middle();
-  const ExpectedMotion motion = frames_.empty() ? ExpectedMotion{} : expected_motion(scan);
+  ExpectedMotion motion = frames_.empty() ? ExpectedMotion{} : expected_motion(scan);
   std::optional<SweepMotion> sweep = motion.doubt >= 1.0 && motion.carried
                                          ? sweep_at(scan, *motion.carried, motion.time)
                                          : sweep_motion(odometry_, scan);
   const std::optional<ScanTilt> tilt = config_.use_tilt ? tilt_.at(reference) : std::nullopt;
+  motion.level = !tilt || std::max(std::abs(tilt->pitch), std::abs(tilt->roll)) < kLevel;
   ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr, tilt ? &*tilt : nullptr);
   Cloud cloud = cloud_of(points, config_.cloud);
   Work work = 0;
@@ -243,7 +246,8 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
   } else {
     const TPose2D T_frame_last = T_frame_base_;
     Tracked tracked = tracker_.track(frames_, cloud, motion, T_frame_last, &work);
-    const bool contradicted = tracked.odometry_chi2 > config_.tracker.slip_chi2 && tracked.fit.inliers >= kBelieved;
+    const bool contradicted =
+        !tracked.held && tracked.odometry_chi2 > config_.tracker.slip_chi2 && tracked.fit.inliers >= kBelieved;
     if (motion.doubt >= 1.0 || contradicted) {
       // The sweep was straightened by a motion that was wrong; now a better one is known.
       if (const auto found = sweep_at(scan, tracked.fit.pose - T_frame_last, motion.time)) {
@@ -253,7 +257,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
         ExpectedMotion better = motion;
         better.carried = tracked.fit.pose - T_frame_last;
         better.doubt = 1.0;
-        better.told = false;
+        better.again = true;
         tracked = tracker_.track(frames_, cloud, better, T_frame_last, &work);
       }
     }
@@ -331,6 +335,7 @@ void RobustMapper::Impl::record(Stamp reference, const LaserScan& scan, const Sc
                              tracked != nullptr ? tracked->odometry_chi2 : 0.0,
                              tracked != nullptr && tracked->slipped ? 1.0 : 0.0,
                              tracked != nullptr && tracked->lost ? 1.0 : 0.0,
+                             tracked != nullptr && tracked->held ? 1.0 : 0.0,
                              static_cast<double>(returns),
                              static_cast<double>(returns) - static_cast<double>(points.hits.size()),
                              static_cast<double>(last_work_) * 1e-6,
@@ -415,7 +420,7 @@ bool RobustMapper::Impl::may_be_mapped(const Tracked& tracked, double doubt, Sta
   }
   if (lost_since_ != Stamp::never() && reference - lost_since_ > kLongestLost && doubt < 1.0)
     lost_since_ = Stamp::never();
-  return lost_since_ == Stamp::never() && (doubt < 1.0 || tracked.fit.inliers >= kNotLost);
+  return lost_since_ == Stamp::never() && !tracked.held && (doubt < 1.0 || tracked.fit.inliers >= kNotLost);
 }
 
 bool RobustMapper::Impl::asks_for_frame(const Tracked& tracked) const {

@@ -63,5 +63,89 @@ TEST(LocalTracker, EndsOfWallsHoldARobotWhoseWheelsSpin) {
   }
 }
 
+/// A corridor with a line across it: a wall, or where the laser's plane cuts a ramp.
+slam_test::World corridor_with_line(double x) {
+  return {{{-20.0, 0.7}, {20.0, 0.7}}, {{-20.0, -0.7}, {20.0, -0.7}}, {{x, -0.7}, {x, 0.7}}};
+}
+
+ExpectedMotion rolled(double distance) {
+  ExpectedMotion motion;
+  motion.T_last_now = TPose2D(distance, 0.0, 0.0);
+  motion.time = 0.1;
+  motion.told = true;
+  return motion;
+}
+
+/// Follows scans in a corridor whose line stood at 2 m when the key frames were taken.
+class LeapingLine : public ::testing::Test {
+ protected:
+  LeapingLine() {
+    const auto places = slam_test::places_along({{-1.5, 0.0}, {0.0, 0.0}}, 0.3);
+    for (std::size_t i = 0; i < places.size(); ++i)
+      slam_test::add_key_frame(frames_, corridor_with_line(2.0), places, 0.0, model_);
+  }
+  /// Where the robot is thought to be after each scan [m]; the wheels say `step` each, the line is seen at `ahead[i]`.
+  std::vector<double> follow(double step, const std::vector<double>& ahead, bool hold) const {
+    TrackerConfig config = suited_to(model_.laser, {}).tracker;
+    config.hold_leaps = hold;
+    LocalTracker tracker(config);
+    tracker.redraw(frames_, frames_.last(), nullptr);
+    std::vector<double> at;
+    TPose2D T_frame_now;
+    for (const double line : ahead) {
+      const Cloud cloud = slam_test::cloud_at(corridor_with_line(line), TPose2D(), model_);
+      T_frame_now = tracker.track(frames_, cloud, rolled(step), T_frame_now, nullptr).fit.pose;
+      at.push_back(T_frame_now.x);
+    }
+    return at;
+  }
+  robot::RobotModel model_;
+  KeyFrames frames_;
+};
+
+/// The robot pitches before a ramp: the line comes nearer and goes off again, faster than the robot can.
+TEST_F(LeapingLine, DoesNotTakeTheRobotAlong) {
+  const std::vector<double> pitching{1.85, 1.7, 1.55, 1.75, 1.9};
+  const std::vector<double> held = follow(0.0, pitching, true);
+  const std::vector<double> taken = follow(0.0, pitching, false);
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < pitching.size(); ++i) {
+    EXPECT_NEAR(held[i], 0.0, 0.03) << "scan " << i;
+    farthest = std::max(farthest, std::abs(taken[i]));
+  }
+  EXPECT_GT(farthest, 0.1) << "without the hold nothing was at stake";
+}
+
+/// Whoever was wrong before is put right: five scans on end ask for the same.
+TEST_F(LeapingLine, ThatStaysIsAWall) {
+  const std::vector<double> at = follow(0.0, std::vector<double>(6, 1.85), true);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(at[i], 0.0, 0.03) << "scan " << i;
+  EXPECT_NEAR(at[4], 0.15, 0.03);
+  EXPECT_NEAR(at[5], 0.15, 0.03);
+}
+
+/// Wheels that spin before a wall: between not at all and as they say the robot may have moved, so nothing is held.
+TEST_F(LeapingLine, StandsBeforeSpinningWheels) {
+  const std::vector<double> at = follow(0.04, std::vector<double>(10, 2.0), true);
+  for (const double x : at) EXPECT_NEAR(x, 0.0, 0.03);
+}
+
+/// A robot that somebody lifts in a room: most of what it sees says so, which a level scan is believed at once.
+TEST(LocalTracker, BelievesALeapThatMostOfTheScanAsksFor) {
+  robot::RobotModel model;
+  const slam_test::World room{
+      {{-1.5, -1.5}, {1.5, -1.5}}, {{1.5, -1.5}, {1.5, 1.5}}, {{1.5, 1.5}, {-1.5, 1.5}}, {{-1.5, 1.5}, {-1.5, -1.5}}};
+  const auto places = slam_test::places_along({{-0.3, 0.0}, {0.0, 0.0}}, 0.3);
+  KeyFrames frames;
+  for (std::size_t i = 0; i < places.size(); ++i) slam_test::add_key_frame(frames, room, places, 0.0, model);
+  LocalTracker tracker(suited_to(model.laser, {}).tracker);
+  tracker.redraw(frames, frames.last(), nullptr);
+  const Cloud cloud = slam_test::cloud_at(room, TPose2D(0.12, 0.0, 0.0), model);
+  ExpectedMotion motion = rolled(0.0);
+  EXPECT_NEAR(tracker.track(frames, cloud, motion, TPose2D(), nullptr).fit.pose.x, 0.12, 0.02);
+  motion.level = false;
+  EXPECT_NEAR(tracker.track(frames, cloud, motion, TPose2D(), nullptr).fit.pose.x, 0.0, 0.03);
+}
+
 }  // namespace
 }  // namespace rubble::slam
