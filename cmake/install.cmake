@@ -2,6 +2,7 @@
 # `find_package(rubble)` finds (docs/extending.md, "Use rubble as a library").
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
+include(cmake/module_version.cmake)  # of what is installed apart
 
 set(rubble_package ${CMAKE_INSTALL_LIBDIR}/cmake/rubble)
 set(rubble_rooms base robot arenas sim slam explore scoring scenarios)
