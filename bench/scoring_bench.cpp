@@ -121,7 +121,7 @@ void BM_ScoreMap(benchmark::State& state) {
   const OccupancyGrid map = moved(big_map(), 0.7, 3.0, 1.0);
   for (auto _ : state) benchmark::DoNotOptimize(score_map(map, truth));
 }
-BENCHMARK(BM_ScoreMap)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_ScoreMap)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 
 void BM_ScoreMapWithWarp(benchmark::State& state) {
   const OccupancyGrid truth = big_truth();
@@ -130,7 +130,7 @@ void BM_ScoreMapWithWarp(benchmark::State& state) {
   config.warp = true;
   for (auto _ : state) benchmark::DoNotOptimize(score_map(map, truth, config));
 }
-BENCHMARK(BM_ScoreMapWithWarp)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_ScoreMapWithWarp)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 
 /// Both maps from files. With RUBBLE_MAPS=FOLDER `map.tif` and `truth.tif` stay there, to be scored by the program.
 void BM_ScoreFiles(benchmark::State& state) {
@@ -145,7 +145,7 @@ void BM_ScoreFiles(benchmark::State& state) {
   std::filesystem::remove(map);
   std::filesystem::remove(truth);
 }
-BENCHMARK(BM_ScoreFiles)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_ScoreFiles)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 
 void BM_Features(benchmark::State& state) {
   const OccupancyGrid map = big_map();

@@ -2,10 +2,10 @@
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/poses/CPose2D.h>
 
+#include "slam/mrpt/module/match_target.h"
 #include "slam/paper/paper_mapper.h"
 #include "slam/paper/particle_filter.h"
 #include "slam/scan/level_scan.h"
-#include "slam/scan/match_target.h"
 #include "slam/scan/scan_matcher.h"
 #include "slam/scan/surface.h"
 #include "tests/support/slam_world.h"

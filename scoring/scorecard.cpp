@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <future>
+#include <memory>
 
 #include "scoring/alignment/alignment.h"
 #include "scoring/alignment/feature_score.h"
@@ -140,7 +142,8 @@ void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth
   fill_sights(out, truth, walls);
   out.score = out.score_at_best_pose;
   if (!walls.sights.usable())
-    out.note = "the truth has too few walls with free space on both sides; the score is the overlap";
+    out.note += std::string(out.note.empty() ? "" : "; ") +
+                "the truth has too few walls with free space on both sides; the score is the overlap";
   out.errors = wall_errors(walls.overlaps, PlanarTransform(out.T_truth_map), config.worst_places);
   if (config.warp) fill_warp(out, map, truth, walls);
   const GridFrame frame = common_frame(map, truth, out.T_truth_map, kCanvasMargin);
@@ -156,7 +159,11 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
   MapScore out;
   const OccupancyGrid map_known = crop_to_known(map, 0.0);
   const OccupancyGrid truth_known = crop_to_known(truth, 0.0);
+  // What is asked at a pose takes no knowledge of it: prepared on another processor, where there is one.
+  std::future<std::unique_ptr<const Walls>> prepared =
+      std::async([&] { return std::make_unique<const Walls>(map_known, truth_known, config.tau); });
   const Alignment alignment = align(map_known, truth_known, config.alignment);
+  const std::unique_ptr<const Walls> walls = prepared.get();
   out.aligned = alignment.aligned;
   out.note = alignment.note;
   out.T_truth_map = alignment.T_truth_map;
@@ -166,17 +173,16 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
   out.mirrored = alignment.mirrored;
   if (!out.aligned) {
     fill_psi(out, psi_of_strangers(config.colour_absent_cap));
-    if (alignment.by != AlignBy::Auto) fill_sights(out, truth_known, Walls(map_known, truth_known, config.tau));
+    if (alignment.by != AlignBy::Auto) fill_sights(out, truth_known, *walls);
     // Walls that do meet, only at too many poses, are of the right scale.
     if (alignment.by != AlignBy::Auto && tight_agreement(alignment.tight_evidence) < kTightEnough)
       out.scale_hint = agreeing_scale(map_known, truth_known, config.alignment);
     if (out.scale_hint > 0.0) out.note = scale_note(out.scale_hint, map.resolution());
     return out;
   }
-  const Walls walls(map_known, truth_known, config.tau);
-  if (walls.score(PlanarTransform(alignment.T_walls)) > walls.score(PlanarTransform(out.T_truth_map)))
+  if (walls->score(PlanarTransform(alignment.T_walls)) > walls->score(PlanarTransform(out.T_truth_map)))
     out.T_truth_map = alignment.T_walls;
-  measure(out, map_known, truth_known, walls, config);
+  measure(out, map_known, truth_known, *walls, config);
   return out;
 }
 

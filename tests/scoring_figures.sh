@@ -56,7 +56,7 @@ value() {
 import json, sys
 path, name, key = sys.argv[1:]
 runs = [run for run in json.load(open(path))["benchmarks"] if run.get("run_type") != "aggregate"]
-print(min(run[key] for run in runs if run["run_name"] == name or run["run_name"].startswith(name + "/iterations:")))
+print(min(run[key] for run in runs if run["run_name"] == name or run["run_name"].startswith((name + "/iterations:", name + "/process_time"))))
 PYTHON
 }
 

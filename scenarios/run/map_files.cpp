@@ -1,13 +1,5 @@
 #include "scenarios/run/map_files.h"
 
-#include <mrpt/io/CMemoryStream.h>
-#include <mrpt/maps/CSimpleMap.h>
-#include <mrpt/obs/CObservation2DRangeScan.h>
-#include <mrpt/obs/CSensoryFrame.h>
-#include <mrpt/poses/CPose3D.h>
-#include <mrpt/poses/CPose3DPDFGaussian.h>
-#include <mrpt/serialization/CArchive.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,7 +12,6 @@
 #include "base/error.h"
 #include "base/image/png.h"
 #include "base/text/text_file.h"
-#include "robot/logs/foreign/file_bytes.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
 #include "slam/map_exports.h"
 
@@ -119,19 +110,9 @@ cv::Mat picture_of(const slam::ScanRecords& records) {
 }
 
 void write_simplemap(const slam::MapContent& map, const std::string& out) {
-  mrpt::maps::CSimpleMap simple;
-  for (const slam::MapScan& kept : map.scans) {
-    auto observation = mrpt::obs::CObservation2DRangeScan::Create();
-    robot::to_mrpt(kept.scan, map.T_base_laser, *observation);
-    auto frame = mrpt::obs::CSensoryFrame::Create();
-    frame->insert(observation);
-    auto pose = mrpt::poses::CPose3DPDFGaussian::Create();
-    pose->mean = mrpt::poses::CPose3D(mrpt::math::TPose3D(kept.T_map_base));
-    simple.insert(pose, frame);
-  }
-  mrpt::io::CMemoryStream memory;
-  mrpt::serialization::archiveFrom(memory) << simple;  // what its saveToFile() packs with gzip
-  robot::write_gzip(out, {static_cast<const char*>(memory.getRawBufferData()), memory.getTotalBytesCount()});
+  std::vector<robot::PosedScan> scans;
+  for (const slam::MapScan& kept : map.scans) scans.push_back({kept.scan, kept.T_map_base});
+  robot::write_simplemap(out, scans, map.T_base_laser);
 }
 
 }  // namespace

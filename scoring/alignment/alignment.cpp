@@ -1,13 +1,14 @@
 #include "scoring/alignment/alignment.h"
-#include "base/rigid.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <future>
 #include <optional>
 #include <vector>
 
 #include "base/angle.h"
+#include "base/rigid.h"
 #include "scoring/alignment/examiner.h"
 #include "scoring/alignment/feature_score.h"
 #include "scoring/alignment/matching.h"
@@ -75,10 +76,10 @@ bool see_the_same(const OccupancyGrid& map, const OccupancyGrid& truth, const TP
   return is_right(sights_of(map, truth, T_truth_map)) && is_right(sights_of(truth, map, TPose2D() - T_truth_map));
 }
 
-/// The map is right about the truth's lines of sight no more often than a guess.
-bool sees_otherwise(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map) {
+/// The map is right about the truth's lines of sight more often than a guess. A truth without such lines has no say.
+bool is_borne_out(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map) {
   const std::optional<SightAgreement> sights = sights_of(map, truth, T_truth_map);
-  return sights && sights->known >= kSightKnown && sights->kappa <= 0.0;
+  return !sights || (sights->known >= kSightKnown && sights->kappa > 0.0);
 }
 
 /// Who is asked by walls may also find what nobody else proposes: the search examines walls in any case.
@@ -106,6 +107,8 @@ class Aligner {
   Alignment by(AlignBy method) {
     Alignment out;
     out.contest.tried = method;
+    // It takes as long as the map itself: on another processor, where there is one.
+    if (!mirrored_ && !mirrored_beside_.valid()) mirrored_beside_ = std::async([this] { return examine_mirrored(); });
     const std::vector<Hypothesis> hypotheses = examiner_.examine(proposals(method));
     const auto best =
         std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) { return may_win(h, method); });
@@ -120,15 +123,7 @@ class Aligner {
     const bool to_the_decimetre = tight_agreement(best->tight) >= kTightEnough;
     out.T_truth_map = to_the_decimetre ? out.T_walls : fit_to_the_whole(*best, hypotheses, match_);
     out.T_truth_map.phi = wrap_angle(out.T_truth_map.phi);
-    if (trust.open && !is_mirror_image(best->tight) && see_the_same(map_, truth_, out.T_truth_map)) {
-      out.aligned = true;
-      out.note.clear();
-    }
-    // Where the walls alone are rather against the pose, the other witness must not be against it too.
-    if (out.aligned && !trust.tight && out.log_odds < 0.0 && sees_otherwise(map_, truth_, out.T_truth_map)) {
-      out.aligned = false;
-      out.note = "not aligned: what is open in one map is blocked in the other" + about_rooms();
-    }
+    ask_sights(trust, best->tight, out);
     return out;
   }
 
@@ -167,6 +162,19 @@ class Aligner {
     return trust;
   }
 
+  /// The second witness, at the pose of `out`: where the walls leave open whether it is right, lines of sight decide;
+  /// where they alone are rather against it, these must not be against it too.
+  void ask_sights(const Trust& trust, const PoseEvidence& tight, Alignment& out) const {
+    if (trust.open && !is_mirror_image(tight) && see_the_same(map_, truth_, out.T_truth_map)) {
+      out.aligned = true;
+      out.note = "the walls meet loosely, and at another pose about as well; what is open and what is blocked decided";
+    }
+    if (out.aligned && !trust.tight && out.log_odds < 0.0 && !is_borne_out(map_, truth_, out.T_truth_map)) {
+      out.aligned = false;
+      out.note = "not aligned: what is open in one map is blocked in the other" + about_rooms();
+    }
+  }
+
   /// Section IV.F: every pose proposed is improved until eq. (7) falls no further, and the least error wins. Whether it
   /// can be trusted is judged as for any other.
   Alignment by_equation_7(const std::vector<Hypothesis>& hypotheses, Alignment& out) {
@@ -184,10 +192,11 @@ class Aligner {
     there.T_wide = there.T_best = least.T_truth_map;
     there.wide = match_.evidence(match_.rigid(there.T_best), match_.kernel(config_.search.tau_wide));
     there.tight = match_.evidence(match_.rigid(there.T_best), match_.kernel(config_.search.tau_tight));
-    conclude(there, hypotheses, out);
+    const Trust trust = conclude(there, hypotheses, out);
     out.by = out.by | AlignBy::Equation7;
     out.T_truth_map = least.T_truth_map;
     out.T_truth_map.phi = wrap_angle(out.T_truth_map.phi);
+    ask_sights(trust, there.tight, out);
     out.T_walls = out.T_truth_map;
     return out;
   }
@@ -270,13 +279,17 @@ class Aligner {
   /// A mirror image is as like the truth as the map itself in all but what counts: its best pose, which is wrong, shows
   /// how far chance gets with these two maps.
   const Rivals& of_mirrored() {
-    if (mirrored_) return *mirrored_;
-    mirrored_.emplace();
+    if (!mirrored_) mirrored_ = mirrored_beside_.get();
+    return *mirrored_;
+  }
+
+  Rivals examine_mirrored() const {
+    Rivals out;
     const OccupancyGrid mirrored = mirror_image(map_);
     const WallMatch match(mirrored, truth_, config_.search.reach, config_.search.max_points);
     for (const Hypothesis& h : examine(correlate(mirrored, truth_, config_.correlation), match, config_.search))
-      mirrored_->meet(h.wide, h.tight);
-    return *mirrored_;
+      out.meet(h.wide, h.tight);
+    return out;
   }
 
   const OccupancyGrid& map_;
@@ -288,6 +301,7 @@ class Aligner {
   std::optional<std::vector<PoseGuess>> by_features_;
   std::optional<Rivals> mirrored_;
   std::string rooms_note_;
+  std::future<Rivals> mirrored_beside_;  ///< last: it ends before what it reads does
 };
 
 }  // namespace

@@ -41,7 +41,7 @@ struct Contest {
 /// The rigid transform between two maps, found without any initial guess.
 struct Alignment {
   bool aligned = false;             ///< the transform can be trusted
-  std::string note;                 ///< why not; one line
+  std::string note;                 ///< why not, or what decided where walls alone leave a doubt; one line
   AlignBy by = AlignBy::Auto;       ///< what proposed it; Auto: nothing did
   mrpt::math::TPose2D T_truth_map;  ///< the best pose found, also when it cannot be trusted
   mrpt::math::TPose2D T_walls;      ///< the same, drawn to where most walls coincide; equal for undistorted maps

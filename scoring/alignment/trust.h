@@ -33,7 +33,7 @@ struct Trust {
   bool trusted = false;
   bool tight = false;  ///< the maps agree to the decimetre, not only to the metre
   bool open = false;   ///< not trusted, but rather right than wrong, and no rival is better: another witness may decide
-  std::string note;    ///< why not trusted
+  std::string note;    ///< why not trusted; or what speaks for a pose of which walls alone leave a doubt
 };
 
 /// Decides whether the best pose is the right one. Rules and how they were calibrated: docs/scoring.md.

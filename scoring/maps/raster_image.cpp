@@ -9,6 +9,7 @@
 #include "base/image/sample_range.h"
 #include "base/text/input_file.h"
 #include "scoring/maps/colours/league_palette.h"
+#include "scoring/maps/image_codecs.h"
 #include "scoring/maps/image_damage.h"
 #include "scoring/maps/image_header.h"
 
@@ -79,13 +80,14 @@ void check_header(const std::string& path) {
 cv::Mat read_raster(const std::string& path, Upright upright, std::uint32_t& white) {
   check_header(path);
   if (is_cut_short(path)) throw InputError(path + ": the image is cut short; copy the file again");
+  const ImageCodecs& codecs = image_codecs();
   cv::Mat image;
   const StderrCapture capture;
   try {
-    image = cv::imread(path, cv::IMREAD_UNCHANGED);
+    image = codecs.read(path, cv::IMREAD_UNCHANGED);
     // This flag is the one that leaves pictures as they are stored; a picture with opacity is stored upright.
     if (upright == Upright::AsSeen && image.channels() != 4)
-      image = cv::imread(path, cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH);
+      image = codecs.read(path, cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH);
   } catch (const cv::Exception&) {
     throw InputError(path + ": the image cannot be decoded; is it complete, and at most 10000 x 10000 pixels?");
   }

@@ -23,7 +23,7 @@ using Colour = cv::Vec3b;  // blue, green, red
 constexpr double kAgree = 0.05;    // walls this near count as the same in the overlay [m]
 constexpr double kNear = 0.15;     // walls this near as displaced [m]
 constexpr int kStrip = 34;         // height of the legend strip [pixels]
-constexpr int kLeastWidth = 1000;  // of the picture, for its legend [pixels]
+constexpr int kLeastWidth = 1100;  // of the picture, for its legend [pixels]
 constexpr int kMaxSide = 3000;     // of the picture [pixels]
 
 const Colour kInk(40, 34, 30);
@@ -83,9 +83,12 @@ int text_width(const std::string& words) {
   return cv::getTextSize(words, cv::FONT_HERSHEY_SIMPLEX, 0.42, 1, &base).width;
 }
 
-/// A bar of a round number of metres, at most a quarter of the picture wide, at the right of the strip.
-void draw_scale_bar(Canvas& canvas) {
-  const double room = 0.2 * canvas.image.cols * canvas.frame.resolution / canvas.scale;
+/// A bar of a round number of metres, at most a fifth of the picture wide, at the right of the strip; what lies left of
+/// `begin` [pixels] is taken.
+void draw_scale_bar(Canvas& canvas, int begin) {
+  const int behind = 12 + text_width("100 m") + 6;
+  const double room = std::min(0.2 * canvas.image.cols, static_cast<double>(canvas.image.cols - behind - begin)) *
+                      canvas.frame.resolution / canvas.scale;
   double length = 0.1;
   for (const double candidate : {0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0})
     if (candidate <= room) length = candidate;
@@ -114,7 +117,7 @@ void draw_legend(Canvas& canvas, const std::vector<LegendEntry>& entries) {
     text(canvas, entry.words, x + 17, y + 5);
     x += 17 + text_width(entry.words) + 14;
   }
-  draw_scale_bar(canvas);
+  draw_scale_bar(canvas, x);
 }
 
 Colour mixed(const Colour& a, const Colour& b, double share) {
@@ -164,7 +167,7 @@ void draw_heat_bar(Canvas& canvas, double tau) {
     text(canvas, most, x + 66, y + 5);
     x += 66 + text_width(most) + 16;
   }
-  draw_scale_bar(canvas);
+  draw_scale_bar(canvas, x);
 }
 
 cv::Point pixel_of(const Canvas& canvas, const TPoint2D& p) {

@@ -85,7 +85,12 @@ Warp WallMatch::refine(const Warp& start, double sigma, const Stiffness& stiffne
         j(3 + i) = g_map.x * phi[static_cast<std::size_t>(i)];
         j(3 + terms + i) = g_map.y * phi[static_cast<std::size_t>(i)];
       }
-      a.selfadjointView<Eigen::Lower>().rankUpdate(j, weight);
+      // The lower half of weight j j^T, in the order of Eigen's rankUpdate(), which asks for the size at each column.
+      for (int column = 0; column < unknowns; ++column) {
+        const double scaled = weight * j(column);
+        double* const to = a.data() + column * unknowns;
+        for (int row = column; row < unknowns; ++row) to[row] += scaled * j(row);
+      }
       b -= weight * d * j;
       total += weight;
     };

@@ -9,19 +9,11 @@
 
 #include "base/angle.h"
 #include "base/pose_covariance.h"
+#include "robot/measurements.h"
 #include "robot/model.h"
 
-namespace mrpt::maps {
-class COccupancyGridMap2D;
-class CPointsMap;
-}  // namespace mrpt::maps
-namespace mrpt::obs {
-class CActionCollection;
-class CSensoryFrame;
-}  // namespace mrpt::obs
-
-/// What of MRPT needs libmrpt-slam, which loads a hundred other libraries: it lies in the module rubble_mrpt_slam.so,
-/// and only mappers that use it wait for them.
+/// What of MRPT needs libmrpt-slam, libmrpt-maps and libmrpt-obs, which load two hundred other libraries: it lies in
+/// the module rubble_mrpt_slam.so, and only mappers that use it wait for them.
 namespace rubble::slam {
 
 struct IcpOptions {
@@ -30,28 +22,44 @@ struct IcpOptions {
   int max_iterations = 40;
 };
 
+/// Points in the plane, as MRPT keeps them [m].
+struct FloatPoint {
+  float x;
+  float y;
+};
+
 /// Point-to-point mrpt::slam::CICP, without its random draws.
 class Icp {
  public:
   virtual ~Icp() = default;
+  /// Makes these the points that later ones are matched with.
+  virtual void set_last(const std::vector<FloatPoint>& points) = 0;
   struct Match {
     mrpt::math::TPose2D T_last_now;
     double goodness = 0.0;  ///< share of the points of `now` that found a partner
   };
-  virtual Match align(const mrpt::maps::CPointsMap& last, const mrpt::maps::CPointsMap& now,
-                      const mrpt::math::TPose2D& T_last_now_prior) = 0;
+  virtual Match align(const std::vector<FloatPoint>& now, const mrpt::math::TPose2D& T_last_now_prior) = 0;
+};
+
+/// What a map builder's grid holds, row by row from the south-western corner.
+struct BuilderGrid {
+  float x0 = 0.0f;  ///< western edge [m]
+  float y0 = 0.0f;  ///< southern edge [m]
+  int width = 0;
+  int height = 0;
+  std::vector<float> p_free;
 };
 
 /// One of MRPT's map builders.
 class MapBuilder {
  public:
   virtual ~MapBuilder() = default;
-  /// One pair of action and observation.
-  virtual void process(mrpt::obs::CActionCollection& action, mrpt::obs::CSensoryFrame& frame) = 0;
+  /// One pair of action and observation: the way since the last one by odometry, and a scan taken in one instant.
+  virtual void process(const mrpt::math::TPose2D& step, const robot::LaserScan& scan) = 0;
   /// T_map_base at each of its steps so far; steps may be fewer than scans.
   virtual std::vector<mrpt::math::TPose2D> path() const = 0;
   virtual PoseCovariance uncertainty() const = 0;
-  virtual const mrpt::maps::COccupancyGridMap2D& grid() const = 0;
+  virtual BuilderGrid grid() const = 0;
   /// Observations in the map: when it changes, so did the map.
   virtual std::size_t inserted() const = 0;
 };

@@ -1,18 +1,11 @@
 #include "slam/peers/mrpt_mapper.h"
 
-#include <mrpt/maps/COccupancyGridMap2D.h>
-#include <mrpt/obs/CActionCollection.h>
-#include <mrpt/obs/CActionRobotMovement2D.h>
-#include <mrpt/obs/CObservation2DRangeScan.h>
-#include <mrpt/obs/CSensoryFrame.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/angle.h"
 #include "base/planar.h"
-#include "robot/logs/foreign/mrpt_bridge.h"
 
 namespace rubble::slam {
 namespace {
@@ -40,21 +33,12 @@ void MrptMapper::update(const robot::Inputs& inputs) {
 void MrptMapper::take(const robot::LaserScan& scan) {
   const Stamp reference = scan.middle();
   const TPose2D T_odom_base = odometry_.pose_at(reference);
-  mrpt::obs::CActionRobotMovement2D motion;
-  motion.computeFromOdometry(mrpt::poses::CPose2D(T_odom_scan_ ? T_odom_base - *T_odom_scan_ : TPose2D()), {});
+  const TPose2D step = T_odom_scan_ ? T_odom_base - *T_odom_scan_ : TPose2D();
   T_odom_scan_ = T_odom_base;
 
   const std::optional<SweepMotion> sweep = sweep_motion(odometry_, scan);
   const ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr);
-  const auto observation = mrpt::obs::CObservation2DRangeScan::Create();
-  robot::to_mrpt(as_instant(scan, points), model_.T_base_laser, *observation);
-  observation->sensorLabel = "LASER";
-  motion.timestamp = observation->timestamp;
-  mrpt::obs::CActionCollection action;
-  action.insert(motion);
-  mrpt::obs::CSensoryFrame frame;
-  frame.insert(observation);
-  builder_->process(action, frame);
+  builder_->process(step, as_instant(scan, points));
 
   follow_path(reference, T_odom_base);
   if (builder_->inserted() != mapped_) take_grid();
@@ -106,20 +90,20 @@ void MrptMapper::follow_path(Stamp stamp, const TPose2D& T_odom_base) {
 }
 
 void MrptMapper::take_grid() {
-  const mrpt::maps::COccupancyGridMap2D& from = builder_->grid();
+  const BuilderGrid from = builder_->grid();
   GridFrame frame;
-  frame.width = static_cast<int>(from.getSizeX());
-  frame.height = static_cast<int>(from.getSizeY());
+  frame.width = from.width;
+  frame.height = from.height;
   frame.resolution = map_.frame().resolution;
   const auto on_grid = [&](float edge) {
     return std::round(static_cast<double>(edge) / frame.resolution) * frame.resolution;
   };
-  frame.x0 = on_grid(from.getXMin());
-  frame.y0 = on_grid(from.getYMin());
+  frame.x0 = on_grid(from.x0);
+  frame.y0 = on_grid(from.y0);
   std::vector<std::uint16_t> seen(frame.size(), 0), occupied(frame.size(), 0);
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x) {
-      const double p_occ = 1.0 - static_cast<double>(from.getCell(x, y));
+      const double p_occ = 1.0 - static_cast<double>(from.p_free[frame.index({x, y})]);
       if (std::abs(p_occ - 0.5) < kNothingKnown) continue;
       seen[frame.index({x, y})] = kCounts;
       occupied[frame.index({x, y})] = static_cast<std::uint16_t>(std::lround(p_occ * kCounts));

@@ -19,6 +19,7 @@ constexpr int kFirstCells = 2;               ///< of the map before the first on
 constexpr double kResolution = 0.05;         ///< of that map [m]
 constexpr double kRemembered = 10.0;         ///< so long poses of ticks are kept [s]
 constexpr std::streamoff kLastWords = 4096;  ///< the end of the log that is looked at [bytes]
+constexpr std::size_t kQuoted = 400;         ///< of its last line: a path, a cause and a remedy [bytes]
 
 /// The last line of a log that says anything: of a Python program, what was wrong.
 std::string last_words(const std::string& log) {
@@ -29,7 +30,7 @@ std::string last_words(const std::string& log) {
   std::string line, last;
   while (std::getline(in, line))
     if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
-  return last.empty() ? "" : ", its last words: " + in_quotes(last, 160);
+  return last.empty() ? "" : ", its last words: " + in_quotes(last, kQuoted);
 }
 
 }  // namespace

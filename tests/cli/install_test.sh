@@ -15,6 +15,15 @@ grep -rl "$source" prefix/lib/cmake && fail "the installed package points into t
 [[ -s run/score.json ]] || fail "it left no score"
 grep -q '^name: "yellow"' run/scenario.yaml || fail "it did not find the scenario that it ships"
 
+# What it loads on demand comes from the installed tree: MRPT's ICP, MRPT's files, image formats.
+"$work/prefix/bin/rubble" run --out paper --set mapper.kind=paper --set time_limit_s=2 >/dev/null 2>err.txt ||
+  fail "the installed program does not find MRPT's mapping: $(tail -n 1 err.txt)"
+json_holds paper/score.json "j['scans_mapped'] > 0"
+"$work/prefix/bin/rubble" export run run.rawlog >/dev/null 2>err.txt && [[ -s run.rawlog ]] ||
+  fail "the installed program does not find MRPT's files: $(tail -n 1 err.txt)"
+"$work/prefix/bin/rubble" score run/overlay.png run/truth.tif --resolution 0.05 >/dev/null 2>err.txt ||
+  fail "the installed program does not find its image formats: $(tail -n 1 err.txt)"
+
 "$work/prefix/bin/rubble" drive --urg pty:no1 --base pty:no2 --levelling pty:no3 --set safety.start_s=1 --out driven \
   >/dev/null 2>err.txt
 [[ $? == 4 ]] || fail "the installed program does not take the robot that it ships: $(tail -n 1 err.txt)"

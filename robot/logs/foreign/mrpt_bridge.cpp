@@ -1,80 +1,37 @@
 #include "robot/logs/foreign/mrpt_bridge.h"
 
-#include <mrpt/obs/CObservation2DRangeScan.h>
-#include <mrpt/obs/CObservationOdometry.h>
-
-#include <cmath>
-
 #include "base/angle.h"
 #include "robot/logs/foreign/mrpt_stamp.h"
 
 namespace rubble::robot {
-namespace {
 
-using mrpt::obs::CObservation2DRangeScan;
-using mrpt::obs::CObservationOdometry;
-using mrpt::poses::CPose3D;
-
-/// From the middle of the first to the middle of the last beam [rad].
-double aperture_of(const LaserScan& scan) {
-  return scan.ranges.size() < 2 ? 0.0 : static_cast<double>(scan.ranges.size() - 1) * scan.angle_step;
-}
-
-}  // namespace
-
-void to_mrpt(const LaserScan& scan, const mrpt::math::TPose3D& T_base_laser, CObservation2DRangeScan& out) {
-  const double aperture = aperture_of(scan);
-  const double centre = scan.angle_min + 0.5 * aperture;
-  out.timestamp = to_mrpt_time(scan.stamp);
-  out.sensorPose = CPose3D(T_base_laser) + CPose3D(0, 0, 0, centre, 0, 0);
-  out.aperture = static_cast<float>(aperture);
-  out.rightToLeft = true;
-  out.maxRange = static_cast<float>(scan.range_max);
-  out.resizeScan(scan.ranges.size());
-  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
-    const float range = scan.ranges[i];
-    const bool missed = range == LaserScan::kMiss;
-    out.setScanRange(i, missed ? out.maxRange : (std::isfinite(range) ? range : 0.0f));
-    out.setScanRangeValidity(i, std::isfinite(range));
-  }
-}
-
-LaserScan from_mrpt(const CObservation2DRangeScan& scan, const mrpt::math::TPose3D& T_base_laser) {
+LaserScan from_mrpt(const MrptScan& scan, const mrpt::math::TPose3D& T_base_laser) {
   LaserScan out;
-  const std::size_t beams = scan.getScanSize();
+  const std::size_t beams = scan.ranges.size();
   const double aperture = static_cast<double>(scan.aperture);
-  const CPose3D T_laser_sensor = scan.sensorPose - CPose3D(T_base_laser);
-  out.stamp = from_mrpt_time(scan.timestamp);
+  const mrpt::poses::CPose3D T_laser_sensor = scan.T_base_sensor - mrpt::poses::CPose3D(T_base_laser);
+  out.stamp = from_mrpt_time(scan.time);
   out.angle_min = T_laser_sensor.yaw() - 0.5 * aperture;
   out.angle_step = beams < 2 ? 0.0 : aperture / static_cast<double>(beams - 1);
-  out.range_max = static_cast<double>(scan.maxRange);
+  out.range_max = static_cast<double>(scan.range_max);
   out.ranges.resize(beams);
   for (std::size_t i = 0; i < beams; ++i) {
-    const std::size_t from = scan.rightToLeft ? i : beams - 1 - i;
-    const float range = scan.getScanRange(from);
-    const bool missed = range >= scan.maxRange;
+    const std::size_t from = scan.right_to_left ? i : beams - 1 - i;
+    const float range = scan.ranges[from];
+    const bool missed = range >= scan.range_max;
     out.ranges[i] = range;
-    if (!scan.getScanRangeValidity(from)) out.ranges[i] = missed ? LaserScan::kMiss : LaserScan::kUnknown;
+    if (!scan.valid[from]) out.ranges[i] = missed ? LaserScan::kMiss : LaserScan::kUnknown;
   }
   return out;
 }
 
-void to_mrpt(const Odometry& odometry, CObservationOdometry& out) {
-  out.timestamp = to_mrpt_time(odometry.stamp);
-  out.odometry = mrpt::poses::CPose2D(odometry.pose);
-  out.hasVelocities = true;
-  out.velocityLocal = {odometry.v, 0.0, odometry.w};
-}
-
-Odometry from_mrpt(const CObservationOdometry& odometry) {
+Odometry from_mrpt(const MrptOdometry& odometry) {
   Odometry out;
-  out.stamp = from_mrpt_time(odometry.timestamp);
-  out.pose = odometry.odometry.asTPose();
+  out.stamp = from_mrpt_time(odometry.time);
+  out.pose = odometry.pose.asTPose();
   out.pose.phi = wrap_angle(out.pose.phi);
-  if (odometry.hasVelocities) {
-    out.v = odometry.velocityLocal.vx;
-    out.w = odometry.velocityLocal.omega;
-  }
+  out.v = odometry.v;
+  out.w = odometry.w;
   return out;
 }
 

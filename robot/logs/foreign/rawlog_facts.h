@@ -1,12 +1,11 @@
 #pragma once
 
-#include <mrpt/obs/CObservation2DRangeScan.h>
-
 #include <cstddef>
 #include <functional>
 #include <string>
 #include <string_view>
 
+#include "robot/logs/foreign/mrpt_bridge.h"
 #include "robot/measurements.h"
 
 namespace rubble::robot {
@@ -23,7 +22,7 @@ class RawlogVisitor {
  public:
   virtual ~RawlogVisitor() = default;
   virtual void comment(std::size_t entry, const std::string& text) = 0;
-  virtual void scan(std::size_t entry, const mrpt::obs::CObservation2DRangeScan::Ptr& scan) = 0;
+  virtual void scan(std::size_t entry, MrptScan scan) = 0;
   virtual void odometry(std::size_t entry, const Odometry& odometry) = 0;
   virtual void movement(std::size_t entry, const Movement& movement) = 0;
 };

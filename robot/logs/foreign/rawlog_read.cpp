@@ -1,5 +1,3 @@
-#include <mrpt/obs/CObservation2DRangeScan.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -19,14 +17,13 @@ namespace rubble::robot {
 namespace {
 
 using mrpt::math::TPose2D;
-using namespace mrpt::obs;
 
 constexpr double kFrameSpacing = 0.1;  // between scans that carry no time [s]
 
 /// What the entries of a rawlog say, one scanner only: the one of the first scan.
 struct Contents {
   std::optional<RobotModel> own_model;  ///< we wrote the file
-  std::vector<CObservation2DRangeScan::Ptr> scans;
+  std::vector<MrptScan> scans;
   std::vector<Odometry> driven;  ///< actions added up, one entry a scan
   bool has_actions = false;
   std::vector<Odometry> observed;           ///< odometry entries
@@ -34,11 +31,11 @@ struct Contents {
 };
 
 /// Label and place; the yaw may differ, as it takes up the bearings of scans that are not symmetric.
-bool same_scanner(const CObservation2DRangeScan& a, const CObservation2DRangeScan& b) {
+bool same_scanner(const MrptScan& a, const MrptScan& b) {
   const double tolerance = 1e-9;
-  const mrpt::math::TPose3D p = a.sensorPose.asTPose();
-  const mrpt::math::TPose3D q = b.sensorPose.asTPose();
-  return a.sensorLabel == b.sensorLabel && std::abs(p.x - q.x) < tolerance && std::abs(p.y - q.y) < tolerance &&
+  const mrpt::math::TPose3D p = a.T_base_sensor.asTPose();
+  const mrpt::math::TPose3D q = b.T_base_sensor.asTPose();
+  return a.label == b.label && std::abs(p.x - q.x) < tolerance && std::abs(p.y - q.y) < tolerance &&
          std::abs(p.z - q.z) < tolerance && std::abs(wrap_angle(p.pitch - q.pitch)) < tolerance &&
          std::abs(wrap_angle(p.roll - q.roll)) < tolerance;
 }
@@ -68,11 +65,11 @@ class Collector : public RawlogVisitor {
     contents.observed_frame.push_back(contents.scans.size());
   }
 
-  void scan(std::size_t, const CObservation2DRangeScan::Ptr& scan) override {
-    if (scan->getScanSize() < 2) return;
-    if (!contents.scans.empty() && !same_scanner(*scan, *contents.scans.front())) return;
-    contents.scans.push_back(scan);
-    now_.stamp = from_mrpt_time(scan->timestamp);
+  void scan(std::size_t, MrptScan scan) override {
+    if (scan.ranges.size() < 2) return;
+    if (!contents.scans.empty() && !same_scanner(scan, contents.scans.front())) return;
+    now_.stamp = from_mrpt_time(scan.time);
+    contents.scans.push_back(std::move(scan));
     contents.driven.push_back(now_);
   }
 
@@ -161,15 +158,14 @@ void refuse_impossible(const std::vector<LaserScan>& scans, const std::string& p
   }
 }
 
-ForeignLog others_log(const CObservation2DRangeScan& first, std::vector<LaserScan>& scans,
-                      std::vector<Odometry>& odometry) {
+ForeignLog others_log(const MrptScan& first, std::vector<LaserScan>& scans, std::vector<Odometry>& odometry) {
   ForeignLog log;
   for (LaserScan& scan : scans) clean_ranges(scan);
   take_as_misses(no_echo_from(scans), scans);
   start_at_zero(odometry);
   log.model.name = "rawlog";
-  log.model.laser.name = first.sensorLabel.empty() ? "MRPT laser" : first.sensorLabel;
-  log.model.T_base_laser = first.sensorPose.asTPose();
+  log.model.laser.name = first.label.empty() ? "MRPT laser" : first.label;
+  log.model.T_base_laser = first.T_base_sensor.asTPose();
   describe_sensors(scans, odometry, log.model);
   return log;
 }
@@ -183,10 +179,10 @@ ForeignLog read_rawlog_bytes(std::string_view bytes, const std::string& path) {
   if (contents.scans.empty())
     throw InputError(path + ": the rawlog holds no 2D laser scan; give one with CObservation2DRangeScan entries");
 
-  const CObservation2DRangeScan& first = *contents.scans.front();
-  const auto T_base_laser = contents.own_model ? contents.own_model->T_base_laser : first.sensorPose.asTPose();
+  const MrptScan& first = contents.scans.front();
+  const auto T_base_laser = contents.own_model ? contents.own_model->T_base_laser : first.T_base_sensor.asTPose();
   std::vector<LaserScan> scans;
-  for (const auto& scan : contents.scans) scans.push_back(from_mrpt(*scan, T_base_laser));
+  for (const auto& scan : contents.scans) scans.push_back(from_mrpt(scan, T_base_laser));
   const bool untimed =
       std::any_of(scans.begin(), scans.end(), [](const LaserScan& s) { return s.stamp == Stamp::never(); });
   if (untimed) space_evenly(scans, contents);
@@ -199,7 +195,7 @@ ForeignLog read_rawlog_bytes(std::string_view bytes, const std::string& path) {
   check_times(odometry, path, "odometry");
   check_finite(odometry, path);
   refuse_impossible(scans, path);
-  const mrpt::math::TPose3D mount = first.sensorPose.asTPose();
+  const mrpt::math::TPose3D mount = first.T_base_sensor.asTPose();
   if (!std::isfinite(mount.x + mount.y + mount.z + mount.yaw + mount.pitch + mount.roll))
     throw InputError(path + ": the first scan's mount on the robot is not finite; the file is damaged, copy it again");
 

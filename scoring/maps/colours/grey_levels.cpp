@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "base/grid.h"
 #include "scoring/maps/colours/grey_roles.h"
@@ -25,6 +26,24 @@ cv::Mat in_order(const cv::Mat& grey, const GreyRoles& roles) {
   cv::Mat out;
   cv::LUT(grey, table, out);
   return out;
+}
+
+/// Lines drawn over the ground, such as a grid: the class of the nearest pixel of ground.
+void fill_drawn(const cv::Mat& grey, const std::vector<int>& drawn, cv::Mat& classes) {
+  cv::Mat lines = cv::Mat::zeros(grey.size(), CV_8U);
+  for (const int level : drawn) lines |= grey == level;
+  const cv::Mat no_ground = lines | (classes == static_cast<int>(Occupancy::Occupied));
+  cv::Mat distance, nearest;
+  cv::distanceTransform(no_ground, distance, nearest, cv::DIST_L2, 5, cv::DIST_LABEL_PIXEL);
+  std::vector<unsigned char> ground(grey.total() + 1, static_cast<unsigned char>(Occupancy::Unknown));
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x)
+      if (no_ground.at<unsigned char>(y, x) == 0)
+        ground[static_cast<std::size_t>(nearest.at<int>(y, x))] = classes.at<unsigned char>(y, x);
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x)
+      if (lines.at<unsigned char>(y, x) != 0)
+        classes.at<unsigned char>(y, x) = ground[static_cast<std::size_t>(nearest.at<int>(y, x))];
 }
 
 /// Each pixel is of the level that it has.
@@ -93,6 +112,10 @@ LabelImage classify_grey(const RgbImage& image, const cv::Mat& apart) {
   if (roles.unknown >= 0) out.recognised += cv::format(" (%.0f %% sure)", 100.0 * roles.sure);
   if (roles.pure) {
     out.classes = by_level(grey, roles);
+    if (!roles.drawn.empty()) {
+      fill_drawn(grey, roles.drawn, out.classes);
+      out.recognised += ", lines drawn over the ground removed";
+    }
     return out;
   }
   const cv::Mat even = in_order(grey, roles);

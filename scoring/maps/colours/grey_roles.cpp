@@ -15,6 +15,7 @@ constexpr double kShare = 0.01;         // of all pixels, to be a level and not 
 constexpr double kWallShare = 0.001;    // of all pixels
 constexpr double kPureShare = 0.999;    // of the pixels on the main levels
 constexpr std::size_t kPureLevels = 4;  // three and a canvas
+constexpr int kAlike = 2;               // greys apart
 constexpr double kThin = 2.5;           // mean distance of a wall's pixels to its rim, at the most [pixels]
 constexpr double kThinner = 0.4;        // of the darkest level's, for another level to be the walls
 constexpr double kGround = 1.8;         // mean distance to the rim; fringes of walls have less [pixels]
@@ -67,6 +68,16 @@ std::vector<Level> find_levels(std::array<double, 256> count, double total, int 
   }
   std::sort(out.begin(), out.end(), [](const Level& a, const Level& b) { return a.grey < b.grey; });
   return out;
+}
+
+/// Of two levels that nobody can tell apart the more frequent one.
+void drop_alike(std::vector<Level>& levels) {
+  for (std::size_t i = 0; i + 1 < levels.size();) {
+    const bool alike = levels[i + 1].grey - levels[i].grey <= kAlike;
+    if (alike)
+      levels.erase(levels.begin() + static_cast<std::ptrdiff_t>(levels[i].count < levels[i + 1].count ? i : i + 1));
+    if (!alike) ++i;
+  }
 }
 
 cv::Mat label(const cv::Mat& grey, const cv::Mat& apart, const std::vector<Level>& levels, int tolerance) {
@@ -191,6 +202,8 @@ GreyRoles grey_roles(const cv::Mat& grey, const cv::Mat& apart) {
   const int tolerance = out.pure ? 0 : kTolerance;
   const int fringe = out.pure ? 0 : kFringe;
   std::vector<Level> levels = find_levels(count, total, tolerance);
+  // White beside nearly white (paper around a map): no picture has two classes that nobody can tell apart.
+  if (out.pure && levels.size() == kPureLevels) drop_alike(levels);
   cv::Mat labels = label(grey, apart, levels, tolerance);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     levels[i].depth = mean_depth(labels, i);
@@ -233,6 +246,12 @@ GreyRoles grey_roles(const cv::Mat& grey, const cv::Mat& apart) {
   if (turn_about) std::swap(free, unknown);
   out.free = levels[free].grey;
   out.unknown = levels[unknown].grey;
+  for (std::size_t i = 0; out.pure && i < levels.size(); ++i) {
+    const int grey = levels[i].grey;
+    if (i != wall && i != free && i != unknown && levels[i].depth <= kThin &&
+        std::abs(grey - out.wall) > std::min(std::abs(grey - out.free), std::abs(grey - out.unknown)))
+      out.drawn.push_back(grey);
+  }
   const double all = within_free + within_unknown;
   const double by_walls = all < kAnywhere ? 0.5 : (turn_about ? within_unknown : within_free) / all;
   out.sure = std::max(by_walls, turn_about ? free_rim : unknown_rim);

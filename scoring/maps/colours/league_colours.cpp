@@ -83,20 +83,38 @@ struct Census {
   bool exact() const { return checkerboard > 0 && 10 * checkerboard >= 9 * unexplored && 10 * pure_walls >= 9 * walls; }
 };
 
-Census census(const RgbImage& image) {
-  Census out;
+/// Calls visit(colour, x, y, length) for each run of pixels of one colour in a row: maps are areas, and to ask what
+/// each pixel means by itself takes most of the time of reading one.
+template <class Visit>
+void each_run(const RgbImage& image, const Visit& visit) {
   for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      if (!image.alpha.empty() && image.alpha[image.index(x, y)] < 128) continue;
-      const Colour c = colour_of(image.pixel(x, y));
-      ++out.pixels;
-      if (is_checkerboard(c)) ++out.checkerboard;
-      if (looks_unexplored(c) && c.b > c.r) ++out.unexplored;
-      if (!near_colour(c, league::kWall, 45) || wall_share(c) <= 0.5) continue;
-      ++out.walls;
-      if (near_colour(c, league::kWall, 0)) ++out.pure_walls;
+    int first = 0;
+    const auto same = [&](int x) {
+      const std::uint8_t* const p = image.pixel(first, y);
+      const std::uint8_t* const q = image.pixel(x, y);
+      return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+    };
+    for (int x = 1; x <= image.width; ++x) {
+      if (x < image.width && same(x)) continue;
+      visit(colour_of(image.pixel(first, y)), first, y, x - first);
+      first = x;
     }
   }
+}
+
+Census census(const RgbImage& image) {
+  Census out;
+  each_run(image, [&](const Colour& c, int first, int y, int length) {
+    auto count = static_cast<std::size_t>(length);
+    if (!image.alpha.empty())
+      for (int x = first; x < first + length; ++x) count -= image.alpha[image.index(x, y)] < 128 ? 1 : 0;
+    out.pixels += count;
+    if (is_checkerboard(c)) out.checkerboard += count;
+    if (looks_unexplored(c) && c.b > c.r) out.unexplored += count;
+    if (!near_colour(c, league::kWall, 45) || wall_share(c) <= 0.5) return;
+    out.walls += count;
+    if (near_colour(c, league::kWall, 0)) out.pure_walls += count;
+  });
   return out;
 }
 
@@ -206,17 +224,17 @@ LabelImage classify_league(const RgbImage& image) {
   const cv::Mat dark_walls = lossy ? walls_by_brightness(image) : cv::Mat();
   const cv::Mat unexplored = lossy ? unexplored_by_brightness(image) : cv::Mat();
   std::size_t drawn = 0;
-  for (int y = 0; y < image.height; ++y) {
-    Label* row = out.classes.ptr<Label>(y);
-    for (int x = 0; x < image.width; ++x) {
-      row[x] = label_of(colour_of(image.pixel(x, y)), exact);
+  each_run(image, [&](const Colour& c, int first, int y, int length) {
+    Label* const row = out.classes.ptr<Label>(y);
+    std::fill_n(row + first, length, label_of(c, exact));
+    for (int x = first; x < first + length; ++x) {
       if (lossy && dark_walls.at<Label>(y, x) != 0)
         row[x] = kWall;
       else if (lossy && row[x] != kWall && row[x] != kDrawing)
         row[x] = unexplored.at<Label>(y, x) != 0 ? kUnknown : kFree;
       if (row[x] == kDrawing) ++drawn;
     }
-  }
+  });
   if (!exact && !lossy) add_thin_walls(image, out.classes);
   fill_drawings(out.classes);
   drop_lettering(out.classes);

@@ -2,6 +2,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "scoring/maps/colours/added_drawings.h"
 #include "scoring/maps/colours/canvas_corners.h"
 #include "scoring/maps/colours/grey_levels.h"
 #include "scoring/maps/colours/league_colours.h"
@@ -39,12 +40,15 @@ cv::Mat no_data_areas(const RgbImage& image, const SampleNotes& notes) {
   return near & out;
 }
 
-LabelImage classify_by_grey(const RgbImage& image, cv::Mat apart) {
+LabelImage classify_by_grey(RgbImage image, cv::Mat apart) {
+  const bool painted = paint_over_colours(image, apart);
   const cv::Mat canvas = canvas_corners(grey_of(image));
   apart |= canvas;
   LabelImage out = classify_grey(image, apart);
   out.classes.setTo(static_cast<int>(Occupancy::Unknown), canvas);
   if (cv::countNonZero(canvas) > 0) out.recognised += ", corners of the canvas are unknown";
+  if (painted) out.recognised += ", coloured drawings removed";
+  if (clear_around_panel(out.classes)) out.recognised += ", what stands around the map is unknown";
   return out;
 }
 

@@ -3,9 +3,16 @@
 #include <mrpt/slam/CICP.h>
 
 #include "slam/mrpt/module/builders.h"
+#include "slam/mrpt/module/match_target.h"
 
 namespace rubble::slam {
 namespace {
+
+void take(const std::vector<FloatPoint>& points, mrpt::maps::CSimplePointsMap& map) {
+  map.clear();
+  for (const FloatPoint& p : points) map.insertPointFast(p.x, p.y, 0.0f);
+  map.mark_as_modified();
+}
 
 class PointToPoint : public Icp {
  public:
@@ -25,16 +32,23 @@ class PointToPoint : public Icp {
     options.skip_quality_calculation = true;
   }
 
-  Match align(const mrpt::maps::CPointsMap& last, const mrpt::maps::CPointsMap& now,
-              const mrpt::math::TPose2D& T_last_now_prior) override {
+  void set_last(const std::vector<FloatPoint>& points) override {
+    take(points, last_);
+    last_.index();
+  }
+
+  Match align(const std::vector<FloatPoint>& now, const mrpt::math::TPose2D& T_last_now_prior) override {
+    take(now, now_);
     mrpt::slam::CICP::TReturnInfo info;
     const mrpt::poses::CPosePDFGaussian prior{mrpt::poses::CPose2D(T_last_now_prior)};
-    const auto pdf = icp_.AlignPDF(&last, &now, prior, info);
+    const auto pdf = icp_.AlignPDF(&last_, &now_, prior, info);
     return {pdf->getMeanVal().asTPose(), info.goodness};
   }
 
  private:
   mrpt::slam::CICP icp_;
+  MatchTarget last_;
+  mrpt::maps::CSimplePointsMap now_;
 };
 
 }  // namespace

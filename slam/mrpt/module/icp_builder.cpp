@@ -1,9 +1,8 @@
 #include <mrpt/maps/CSimplePointsMap.h>
-#include <mrpt/obs/CActionCollection.h>
-#include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <mrpt/slam/CMetricMapBuilderICP.h>
 
+#include "slam/mrpt/module/action_observation.h"
 #include "slam/mrpt/module/builders.h"
 #include "slam/mrpt/module/mrpt_grid.h"
 
@@ -12,7 +11,7 @@ namespace {
 
 class IcpBuilder : public MapBuilder {
  public:
-  IcpBuilder(const robot::RobotModel& model, const MrptIcpConfig& config) {
+  IcpBuilder(const robot::RobotModel& model, const MrptIcpConfig& config) : T_base_laser_(model.T_base_laser) {
     builder_.setVerbosityLevel(mrpt::system::LVL_ERROR);
     auto& icp = builder_.ICP_params;
     icp.maxIterations = 80;
@@ -38,8 +37,9 @@ class IcpBuilder : public MapBuilder {
     builder_.initialize();
   }
 
-  void process(mrpt::obs::CActionCollection& action, mrpt::obs::CSensoryFrame& frame) override {
-    builder_.processActionObservation(action, frame);
+  void process(const mrpt::math::TPose2D& step, const robot::LaserScan& scan) override {
+    ActionObservation pair(step, scan, T_base_laser_);
+    builder_.processActionObservation(pair.action, pair.frame);
     const auto mean = builder_.getCurrentPoseEstimation()->getMeanVal();
     path_of_scans_.emplace_back(mean.x(), mean.y(), mean.yaw());
   }
@@ -52,14 +52,15 @@ class IcpBuilder : public MapBuilder {
     return PoseCovariance(pose.cov);
   }
 
-  const mrpt::maps::COccupancyGridMap2D& grid() const override {
-    return *builder_.getCurrentlyBuiltMetricMap()->mapByClass<mrpt::maps::COccupancyGridMap2D>();
+  BuilderGrid grid() const override {
+    return grid_of(*builder_.getCurrentlyBuiltMetricMap()->mapByClass<mrpt::maps::COccupancyGridMap2D>());
   }
 
   std::size_t inserted() const override { return builder_.getCurrentlyBuiltMapSize(); }
 
  private:
   mutable mrpt::slam::CMetricMapBuilderICP builder_;  ///< asking is not const in MRPT
+  mrpt::math::TPose3D T_base_laser_;
   std::vector<mrpt::math::TPose2D> path_of_scans_;
 };
 

@@ -3,6 +3,7 @@
 #include <mrpt/maps/COccupancyGridMap2D.h>
 
 #include "robot/model.h"
+#include "slam/mrpt/mrpt_slam.h"
 
 namespace rubble::slam {
 
@@ -29,6 +30,18 @@ inline mrpt::maps::COccupancyGridMap2D::TMapDefinition mrpt_grid(const robot::Ro
   grid.likelihoodOpts.LF_maxRange = static_cast<float>(model.laser.range_max);
   grid.likelihoodOpts.LF_alternateAverageMethod = false;
   grid.likelihoodOpts.enableLikelihoodCache = true;
+  return grid;
+}
+
+inline BuilderGrid grid_of(const mrpt::maps::COccupancyGridMap2D& from) {
+  BuilderGrid grid;
+  grid.x0 = from.getXMin();
+  grid.y0 = from.getYMin();
+  grid.width = static_cast<int>(from.getSizeX());
+  grid.height = static_cast<int>(from.getSizeY());
+  grid.p_free.reserve(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height));
+  for (int y = 0; y < grid.height; ++y)
+    for (int x = 0; x < grid.width; ++x) grid.p_free.push_back(from.getCell(x, y));
   return grid;
 }
 

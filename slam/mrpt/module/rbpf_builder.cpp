@@ -1,11 +1,10 @@
-#include <mrpt/obs/CActionCollection.h>
-#include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <mrpt/random/RandomGenerators.h>
 #include <mrpt/slam/CMetricMapBuilderRBPF.h>
 
 #include <deque>
 
+#include "slam/mrpt/module/action_observation.h"
 #include "slam/mrpt/module/builders.h"
 #include "slam/mrpt/module/mrpt_grid.h"
 
@@ -36,10 +35,12 @@ mrpt::slam::CMetricMapBuilderRBPF::TConstructionOptions options_of(const robot::
 
 class RbpfBuilder : public MapBuilder {
  public:
-  RbpfBuilder(const robot::RobotModel& model, const MrptRbpfConfig& config) : builder_(options_of(model, config)) {}
+  RbpfBuilder(const robot::RobotModel& model, const MrptRbpfConfig& config)
+      : builder_(options_of(model, config)), T_base_laser_(model.T_base_laser) {}
 
-  void process(mrpt::obs::CActionCollection& action, mrpt::obs::CSensoryFrame& frame) override {
-    builder_.processActionObservation(action, frame);
+  void process(const mrpt::math::TPose2D& step, const robot::LaserScan& scan) override {
+    ActionObservation pair(step, scan, T_base_laser_);
+    builder_.processActionObservation(pair.action, pair.frame);
   }
 
   std::vector<mrpt::math::TPose2D> path() const override {
@@ -56,14 +57,15 @@ class RbpfBuilder : public MapBuilder {
     return PoseCovariance(pose.cov);
   }
 
-  const mrpt::maps::COccupancyGridMap2D& grid() const override {
-    return *builder_.mapPDF.getCurrentMostLikelyMetricMap()->mapByClass<mrpt::maps::COccupancyGridMap2D>();
+  BuilderGrid grid() const override {
+    return grid_of(*builder_.mapPDF.getCurrentMostLikelyMetricMap()->mapByClass<mrpt::maps::COccupancyGridMap2D>());
   }
 
   std::size_t inserted() const override { return builder_.getCurrentlyBuiltMapSize(); }
 
  private:
   mutable mrpt::slam::CMetricMapBuilderRBPF builder_;  ///< asking is not const in MRPT
+  mrpt::math::TPose3D T_base_laser_;
 };
 
 }  // namespace

@@ -80,8 +80,8 @@ const std::map<std::string, Folders>& doors() {
       // Readers and writers of logs give the plain Log that the face of robot/logs hands out.
       {"robot/logs/own", {"robot/logs/log.h"}},
       {"robot/logs/foreign", {"robot/logs/log.h"}},
-      {"slam/peers", {"robot/logs/foreign/mrpt_bridge.h"}},  // MRPT's observations, as its logs hold them
-      {"explore", {"slam/grid/count_map.h"}},                // the map that a mapper gives is one
+      {"slam/mrpt/module", {"robot/logs/foreign/module/to_mrpt.h"}},  // MRPT's observations, as its logs hold them
+      {"explore", {"slam/grid/count_map.h"}},                         // the map that a mapper gives is one
       {"scenarios/hardware", {"slam/calibration/calibration.h"}},
       {"examples/own_base", {"robot/drivers/base_driver.h"}},
       {"tests/unit/robot", {"examples/own_base/line_base.h"}},
@@ -105,6 +105,7 @@ const std::map<std::string, Folders>& wings() {
       {"robot/logs", {"robot", "robot/logs/own", "robot/logs/foreign"}},
       {"robot/logs/own", {"robot"}},
       {"robot/logs/foreign", {"robot", "robot/logs/own"}},
+      {"robot/logs/foreign/module", {"robot", "robot/logs/foreign"}},
       {"robot/protocols", {}},
       {"robot/drivers", {"robot", "robot/protocols", "robot/drivers/watch"}},
       {"robot/drivers/watch", {"robot"}},
@@ -143,6 +144,7 @@ const std::map<std::string, Folders>& wings() {
       {"slam/peers", {"slam", "slam/grid", "slam/scan", "slam/process", "slam/mrpt"}},
       {"scoring/maps", {"scoring/maps/colours"}},
       {"scoring/maps/colours", {}},
+      {"scoring/maps/codecs", {"scoring/maps"}},
       {"scoring/walls", {}},
       {"scoring/measures", {"scoring/walls"}},
       {"scoring/proposals", {"scoring/walls"}},
@@ -576,7 +578,7 @@ TEST(IncludeDirection, OnlyWhoRunsRobotsSeesTheirDevices) {
   EXPECT_EQ(offence("scenarios/hardware", "robot/protocols"), "robot/protocols is an inside of robot");
   EXPECT_EQ(offence("scenarios/run", "robot/drivers"), "robot/drivers is an inside of robot");
   EXPECT_EQ(offence("scenarios/run", "robot/logs/foreign"), "");
-  EXPECT_EQ(offence("slam/peers", "robot/logs/foreign/mrpt_bridge.h"), "");
+  EXPECT_EQ(offence("slam/mrpt/module", "robot/logs/foreign/module/to_mrpt.h"), "");
   EXPECT_EQ(offence("slam/peers", "robot/logs/foreign/carmen.h"), "robot/logs/foreign is an inside of robot");
   for (const char* face : {"robot", "robot/logs"}) EXPECT_EQ(offence("slam/robust", face), "");
 }

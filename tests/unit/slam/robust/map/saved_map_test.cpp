@@ -29,7 +29,9 @@ const RobustMapper& mapper() {
     auto ticks = slam_test::record_sweeping(floor.world(), drive, model, 1.0, 0.01, 0.0665, 1);
     for (std::size_t i = 0; i < ticks.size(); ++i) {
       for (int k = 4; k >= 0; --k) ticks[i].accelerations.push_back({ticks[i].now - 0.02 * k, 0.1, -0.05});
-      if (i % 50 == 20) ticks[i].scans.front().ranges[i] = std::numeric_limits<float>::infinity();
+      if (i % 50 != 20) continue;
+      std::vector<float>& ranges = ticks[i].scans.front().ranges;
+      ranges[i % ranges.size()] = std::numeric_limits<float>::infinity();  // there are more ticks than beams
     }
     RobustConfig config;
     config.thin_walls = false;

@@ -1,4 +1,4 @@
-#include "robot/logs/foreign/rawlog_entries.h"
+#include "robot/logs/foreign/module/rawlog_entries.h"
 
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>

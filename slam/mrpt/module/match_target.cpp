@@ -1,4 +1,4 @@
-#include "slam/scan/match_target.h"
+#include "slam/mrpt/module/match_target.h"
 
 #include <mrpt/poses/CPose2D.h>
 

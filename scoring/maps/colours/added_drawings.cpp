@@ -1,0 +1,168 @@
+#include "scoring/maps/colours/added_drawings.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <vector>
+
+#include "base/grid.h"
+#include "scoring/maps/colours/grey_levels.h"
+#include "scoring/maps/colours/grey_roles.h"
+
+namespace rubble::scoring {
+namespace {
+
+constexpr int kColour = 60;           // difference of the channels of ink
+constexpr int kTint = 16;             // of what still counts as grey
+constexpr double kLeastInk = 0.0005;  // of all pixels
+constexpr double kMostInk = 0.1;
+constexpr double kGreyRest = 0.995;  // of the pixels that are not ink or beside it
+constexpr int kWallTolerance = 12;
+constexpr double kLeastWalls = 0.001;  // of all pixels
+constexpr double kThinWalls = 2.5;     // mean distance of a wall's pixels to its rim, at the most [pixels]
+
+constexpr double kWholeSide = 0.95;     // of a side of the picture that is margin
+constexpr double kLeastPanel = 0.2;     // of the picture's area
+constexpr double kFullPanel = 0.97;     // of its bounding box
+constexpr double kLeastKnown = 0.02;    // of the panel, to be a map
+constexpr double kLeastUnknown = 0.02;  // of the panel
+constexpr double kUnknownRim = 0.5;     // of the panel's rim
+constexpr double kFramedRim = 0.95;
+constexpr int kThickestFrame = 8;  // that has another margin within [pixels]
+constexpr int kUnknownClass = static_cast<int>(Occupancy::Unknown);
+constexpr int kFreeClass = static_cast<int>(Occupancy::Free);
+constexpr int kWallClass = static_cast<int>(Occupancy::Occupied);
+
+double share_of(const cv::Mat& mask) {
+  return mask.total() == 0 ? 0.0 : cv::countNonZero(mask) / static_cast<double>(mask.total());
+}
+
+/// Largest difference between the channels of each pixel.
+cv::Mat colourfulness(const RgbImage& image) {
+  cv::Mat out(image.height, image.width, CV_8U);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint8_t* p = image.pixel(x, y);
+      const auto [least, most] = std::minmax({p[0], p[1], p[2]});
+      out.at<unsigned char>(y, x) = static_cast<unsigned char>(most - least);
+    }
+  return out;
+}
+
+/// The walls of the greys beside `ink`; empty where these are not thin.
+cv::Mat thin_walls(const cv::Mat& grey, const cv::Mat& not_asked) {
+  const GreyRoles roles = grey_roles(grey, not_asked);
+  cv::Mat walls = (grey >= roles.wall - kWallTolerance) & (grey <= roles.wall + kWallTolerance) & ~not_asked;
+  if (share_of(walls) < kLeastWalls) return {};
+  cv::Mat depth;
+  cv::distanceTransform(walls, depth, cv::DIST_L2, 3);
+  return cv::mean(depth, walls)[0] <= kThinWalls ? walls : cv::Mat();
+}
+
+/// Of the pixels of the rectangle's rim those of this class.
+double share_of_rim(const cv::Mat& classes, const cv::Rect& panel, int of) {
+  const cv::Mat part = classes(panel);
+  double here = 0.0;
+  for (const cv::Mat& side : {part.row(0), part.row(part.rows - 1), part.col(0), part.col(part.cols - 1)})
+    here += cv::countNonZero(side == of);
+  return here / (2.0 * (part.rows + part.cols));
+}
+
+/// Free ground of `part` that is connected with its rim.
+cv::Mat margin_of(const cv::Mat& part) {
+  cv::Mat padded;
+  cv::copyMakeBorder(part == kFreeClass, padded, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(255));
+  cv::floodFill(padded, {0, 0}, cv::Scalar(128), nullptr, cv::Scalar(), cv::Scalar(), 4);
+  return cv::Mat(padded == 128)(cv::Rect(1, 1, part.cols, part.rows)).clone();
+}
+
+bool covers_a_side(const cv::Mat& margin) {
+  for (const cv::Mat& side : {margin.row(0), margin.row(margin.rows - 1), margin.col(0), margin.col(margin.cols - 1)})
+    if (share_of(side) >= kWholeSide) return true;
+  return false;
+}
+
+/// The rectangle that the margin around it leaves of `part`, without lettering.
+std::optional<cv::Rect> panel_within(const cv::Mat& part) {
+  constexpr int kLetter = 9;  // strokes and ticks are thinner [pixels]
+  if (part.rows < 4 * kLetter || part.cols < 4 * kLetter) return std::nullopt;
+  const cv::Mat margin = margin_of(part);
+  if (!covers_a_side(margin)) return std::nullopt;
+  cv::Mat rest = ~margin, labels, stats, centres;
+  cv::morphologyEx(rest, rest, cv::MORPH_OPEN, cv::Mat::ones(kLetter, kLetter, CV_8U));
+  const int count = cv::connectedComponentsWithStats(rest, labels, stats, centres, 4, CV_32S);
+  int largest = 0;
+  for (int i = 1; i < count; ++i)
+    if (largest == 0 || stats.at<int>(i, cv::CC_STAT_AREA) > stats.at<int>(largest, cv::CC_STAT_AREA)) largest = i;
+  if (largest == 0) return std::nullopt;
+  const auto at = [&](int what) { return stats.at<int>(largest, what); };
+  const cv::Rect box(at(cv::CC_STAT_LEFT), at(cv::CC_STAT_TOP), at(cv::CC_STAT_WIDTH), at(cv::CC_STAT_HEIGHT));
+  if (box.area() < kLeastPanel * static_cast<double>(part.total()) || box.size() == part.size() ||
+      at(cv::CC_STAT_AREA) < kFullPanel * box.area())
+    return std::nullopt;
+  return box;
+}
+
+/// A map begins with unknown ground, or with the frame around it.
+bool is_map(const cv::Mat& classes, const cv::Rect& panel) {
+  const cv::Mat part = classes(panel);
+  return share_of(part == kFreeClass) >= kLeastKnown && share_of(part == kUnknownClass) >= kLeastUnknown &&
+         (share_of_rim(classes, panel, kUnknownClass) >= kUnknownRim ||
+          share_of_rim(classes, panel, kWallClass) >= kFramedRim);
+}
+
+/// A margin within the frame: what it leaves begins with unknown ground.
+std::optional<cv::Rect> panel_within_frame(const cv::Mat& classes, cv::Rect panel) {
+  for (int i = 0; i < kThickestFrame && share_of_rim(classes, panel, kWallClass) >= kUnknownRim; ++i)
+    panel = {panel.x + 1, panel.y + 1, panel.width - 2, panel.height - 2};
+  const std::optional<cv::Rect> inner = panel_within(classes(panel));
+  if (!inner) return std::nullopt;
+  const cv::Rect box = *inner + panel.tl();
+  return is_map(classes, box) && share_of_rim(classes, box, kUnknownClass) >= kUnknownRim ? std::optional(box)
+                                                                                          : std::nullopt;
+}
+
+}  // namespace
+
+bool paint_over_colours(RgbImage& image, const cv::Mat& apart) {
+  const cv::Mat tint = colourfulness(image);
+  const cv::Mat strong = tint > kColour;
+  if (share_of(strong) < kLeastInk || share_of(strong) > kMostInk) return false;
+  cv::Mat beside;
+  cv::dilate(strong, beside, cv::Mat::ones(3, 3, CV_8U));
+  const cv::Mat rest = ~beside;
+  if (cv::countNonZero(rest & (tint <= kTint)) < kGreyRest * cv::countNonZero(rest)) return false;
+  const cv::Mat ink = strong | (beside & (tint > kTint));
+  const cv::Mat walls = thin_walls(grey_of(image), ink | apart);
+  if (walls.empty()) return false;
+
+  const cv::Mat no_ground = ink | walls;
+  cv::Mat distance, nearest;
+  cv::distanceTransform(no_ground, distance, nearest, cv::DIST_L2, 5, cv::DIST_LABEL_PIXEL);
+  std::vector<const std::uint8_t*> ground(no_ground.total() + 1, nullptr);
+  const RgbImage before = image;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      if (no_ground.at<unsigned char>(y, x) == 0)
+        ground[static_cast<std::size_t>(nearest.at<int>(y, x))] = before.pixel(x, y);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint8_t* const from = ground[static_cast<std::size_t>(nearest.at<int>(y, x))];
+      if (ink.at<unsigned char>(y, x) != 0 && from != nullptr) std::copy_n(from, 3, image.pixel(x, y));
+    }
+  return true;
+}
+
+bool clear_around_panel(cv::Mat& classes) {
+  const std::optional<cv::Rect> outer = panel_within(classes);
+  if (!outer) return false;
+  const std::optional<cv::Rect> inner = panel_within_frame(classes, *outer);
+  if (!inner && !is_map(classes, *outer)) return false;
+  const cv::Rect panel = inner.value_or(*outer);
+  cv::Mat cleared(classes.size(), CV_8U, cv::Scalar(kUnknownClass));
+  classes(panel).copyTo(cleared(panel));
+  classes = cleared;
+  return true;
+}
+
+}  // namespace rubble::scoring

@@ -1,0 +1,81 @@
+#include "scoring/alignment/trust.h"
+
+#include <gtest/gtest.h>
+
+namespace rubble::scoring {
+namespace {
+
+/// Walls that meet loosely: `met` within 0.6 m, little of it within 0.3 m, on maps that know half of each other.
+PoseEvidence loose(double met, double contradicted) {
+  PoseEvidence e;
+  for (WallEvidence* side : {&e.map, &e.truth}) {
+    side->known = 0.6;
+    side->met = met;
+    side->chance = 0.05;
+    side->contradicted = contradicted;
+  }
+  e.free_common = 0.5;
+  e.common_area = 100.0;
+  return e;
+}
+
+const PoseEvidence kWide = loose(0.5, 0.1);
+const PoseEvidence kTight = loose(0.4, 0.2);
+
+Rivals behind_by(double margin) {
+  Rivals rivals;
+  rivals.log_odds = log_odds(kWide, kTight) - margin;
+  return rivals;
+}
+
+TEST(Trust, LooseWallsFarAheadOfAllRivalsAreTrustedAndTheNoteSaysWhy) {
+  ASSERT_LT(tight_agreement(kTight), kTightEnough);
+  ASSERT_GT(log_odds(kWide, kTight), 0.0);
+  const Trust trust = judge(kWide, kTight, behind_by(2.0));
+  EXPECT_TRUE(trust.trusted);
+  EXPECT_FALSE(trust.tight);
+  EXPECT_FALSE(trust.open) << "what is trusted needs no other witness";
+  EXPECT_NE(trust.note.find("loosely"), std::string::npos) << trust.note;
+}
+
+TEST(Trust, OfLooseWallsNarrowlyAheadAnotherWitnessMayDecide) {
+  const Trust trust = judge(kWide, kTight, behind_by(0.2));
+  EXPECT_FALSE(trust.trusted);
+  EXPECT_TRUE(trust.open);
+  EXPECT_EQ(trust.note.find("not aligned: "), 0u) << trust.note;
+}
+
+TEST(Trust, NoWitnessIsAskedWhereARivalIsAhead) {
+  for (const double behind : {0.0, 0.5}) {
+    const Trust trust = judge(kWide, kTight, behind_by(-behind));
+    EXPECT_FALSE(trust.trusted);
+    EXPECT_FALSE(trust.open) << behind;
+  }
+}
+
+TEST(Trust, NoWitnessIsAskedWhereTheWallsAreRatherAgainstThePose) {
+  // Of these the log odds fall below 0 by contradiction alone; the margin stays narrow.
+  for (double contradicted = 0.1; contradicted < 0.4; contradicted += 0.02) {
+    const PoseEvidence wide = loose(0.5, contradicted);
+    Rivals rivals;
+    rivals.log_odds = log_odds(wide, kTight) - 0.2;
+    const Trust trust = judge(wide, kTight, rivals);
+    EXPECT_FALSE(trust.trusted);
+    EXPECT_EQ(trust.open, log_odds(wide, kTight) > 0.0) << contradicted;
+  }
+}
+
+TEST(Trust, WallsThatMeetToTheDecimetreLeaveNothingOpen) {
+  const PoseEvidence tight = loose(0.9, 0.0);
+  ASSERT_GE(tight_agreement(tight), kTightEnough);
+  Rivals near;
+  near.tight = 0.99 * tight_agreement(tight);
+  const Trust trust = judge(tight, tight, near);
+  EXPECT_TRUE(trust.tight);
+  EXPECT_FALSE(trust.trusted);
+  EXPECT_FALSE(trust.open);
+  EXPECT_TRUE(judge(tight, tight, Rivals{}).trusted);
+}
+
+}  // namespace
+}  // namespace rubble::scoring

@@ -1,0 +1,113 @@
+#include "scoring/maps/colours/added_drawings.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "scoring/maps/colours/map_colours.h"
+#include "tests/support/map_pictures.h"
+#include "tests/support/scoring_maze.h"
+
+namespace rubble::scoring {
+namespace {
+
+using namespace testing;
+
+RgbImage rgb_of(const cv::Mat& picture) {
+  cv::Mat bgr = picture;
+  if (bgr.channels() == 1) cv::cvtColor(picture, bgr, cv::COLOR_GRAY2BGR);
+  RgbImage out(bgr.cols, bgr.rows);
+  cv::cvtColor(bgr, cv::Mat(bgr.rows, bgr.cols, CV_8UC3, out.rgb.data()), cv::COLOR_BGR2RGB);
+  return out;
+}
+
+/// A maze of which a quarter is unknown, in greys, with unknown ground around.
+cv::Mat map_picture(int unknown) {
+  OccupancyGrid grid = maze({5, 4, 1});
+  for (int y = 0; y < grid.height() / 2; ++y)
+    for (int x = 0; x < grid.width() / 2; ++x) grid[{x, y}] = Occupancy::Unknown;
+  cv::Mat out;
+  cv::copyMakeBorder(grey_image(grid, 0, unknown, 255), out, 12, 12, 12, 12, cv::BORDER_CONSTANT, cv::Scalar(unknown));
+  return out;
+}
+
+/// Cells of `picture` that are read otherwise than those of `map`, which lies in it at `corner` (from the upper left).
+int read_otherwise(const cv::Mat& picture, const cv::Mat& map, cv::Point corner) {
+  const ClassImage whole = classify(rgb_of(picture));
+  const ClassImage alone = classify(rgb_of(map));
+  int differ = 0;
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x) {
+      const cv::Point at = cv::Point(x, y) - corner;
+      const bool within = at.x >= 0 && at.y >= 0 && at.x < map.cols && at.y < map.rows;
+      const Occupancy expected = within ? alone.classes[{at.x, map.rows - 1 - at.y}] : Occupancy::Unknown;
+      differ += whole.classes[{x, picture.rows - 1 - y}] != expected ? 1 : 0;
+    }
+  return differ;
+}
+
+TEST(AddedDrawings, MarginsAxesAndTitlesOfAPlotAreNoGround) {
+  for (const int unknown : {128, 205}) {
+    SCOPED_TRACE(unknown);
+    const cv::Mat map = map_picture(unknown);
+    cv::Mat plot, title, framed;
+    cv::copyMakeBorder(map, plot, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+    cv::copyMakeBorder(plot, plot, 20, 24, 24, 20, cv::BORDER_CONSTANT, cv::Scalar(255));
+    cv::putText(plot, "0 2 4 6 m", {30, plot.rows - 8}, cv::FONT_HERSHEY_PLAIN, 0.8, cv::Scalar(0));
+    EXPECT_LE(read_otherwise(plot, map, {25, 21}), 2 * (map.cols + map.rows) + 4) << "the axes may stay";
+    cv::copyMakeBorder(map, title, 30, 0, 0, 0, cv::BORDER_CONSTANT, cv::Scalar(255));
+    cv::putText(title, "run 3", {15, 22}, cv::FONT_HERSHEY_PLAIN, 1.2, cv::Scalar(0));
+    EXPECT_EQ(read_otherwise(title, map, {0, 30}), 0);
+    cv::copyMakeBorder(map, framed, 20, 10, 10, 10, cv::BORDER_CONSTANT, cv::Scalar(255));
+    cv::rectangle(framed, {4, 4}, {framed.cols - 5, framed.rows - 5}, cv::Scalar(0));
+    EXPECT_EQ(read_otherwise(framed, map, {10, 20}), 0);
+  }
+}
+
+TEST(AddedDrawings, FreeGroundThatReachesTheRimOfAMapStays) {
+  cv::Mat map = map_picture(205);
+  map.rowRange(0, 40).setTo(255);  // a hall above the maze, wider than the map and not parted from it by a rectangle
+  map.colRange(map.cols - 20, map.cols).setTo(255);
+  cv::Mat classes(map.size(), CV_8U, cv::Scalar(static_cast<int>(Occupancy::Free)));
+  classes.setTo(static_cast<int>(Occupancy::Unknown), map == 205);
+  classes.setTo(static_cast<int>(Occupancy::Occupied), map == 0);
+  const cv::Mat before = classes.clone();
+  EXPECT_FALSE(clear_around_panel(classes));
+  EXPECT_EQ(cv::countNonZero(classes != before), 0);
+}
+
+TEST(AddedDrawings, TheWayOfTheRobotInColourIsNoWall) {
+  const cv::Mat map = map_picture(205);
+  cv::Mat drawn;
+  cv::cvtColor(map, drawn, cv::COLOR_GRAY2BGR);
+  cv::line(drawn, {20, 20}, {map.cols - 30, 24}, cv::Scalar(0, 0, 255));
+  cv::circle(drawn, {map.cols - 40, 40}, 4, cv::Scalar(0, 160, 0), -1);
+  int walls_under = 0;
+  for (int y = 0; y < map.rows; ++y)
+    for (int x = 0; x < map.cols; ++x)
+      if (map.at<unsigned char>(y, x) == 0 && drawn.at<cv::Vec3b>(y, x) != cv::Vec3b(0, 0, 0)) ++walls_under;
+  // Ground that lies nearer to other ground over there than to its own is a matter of a few pixels.
+  EXPECT_LE(read_otherwise(drawn, map, {0, 0}), walls_under + 12);
+}
+
+TEST(AddedDrawings, WallsInColourAreWalls) {
+  const cv::Mat map = map_picture(205);
+  cv::Mat red;
+  cv::cvtColor(map, red, cv::COLOR_GRAY2BGR);
+  red.setTo(cv::Scalar(0, 0, 200), map == 0);
+  RgbImage image = rgb_of(red);
+  EXPECT_FALSE(paint_over_colours(image, cv::Mat::zeros(map.size(), CV_8U)));
+  EXPECT_EQ(read_otherwise(red, map, {0, 0}), 0);
+}
+
+TEST(AddedDrawings, AGridOverTheGroundIsNoUnknownGround) {
+  const cv::Mat map = map_picture(128);
+  cv::Mat grid = map.clone();
+  for (int x = 5; x < grid.cols; x += 20) grid.col(x).setTo(190, map.col(x) != 0);
+  for (int y = 5; y < grid.rows; y += 20) grid.row(y).setTo(190, map.row(y) != 0);
+  EXPECT_LE(read_otherwise(grid, map, {0, 0}), 20) << "where known ground ends at a line";
+}
+
+}  // namespace
+}  // namespace rubble::scoring
