@@ -26,6 +26,9 @@ expect_exit() {
   fi
 }
 
+# instrumented: whether the program was built with a sanitizer, whose tables are larger than any limit of memory.
+instrumented() { grep -qaE '__(asan|tsan)_init' "$rubble"; }
+
 # small_scenario FILE [extra yaml]: a 3 x 3 arena that takes a second.
 small_scenario() {
   cat >"$1" <<YAML
