@@ -1,6 +1,6 @@
 #pragma once
 
-namespace rubble::testing {
+namespace rubble::test {
 
 /// Whether AddressSanitizer is compiled in: it holds freed memory back, so that what a process takes says nothing.
 #if defined(__SANITIZE_ADDRESS__)
@@ -11,4 +11,4 @@ constexpr bool kAddressSanitizer = __has_feature(address_sanitizer);
 constexpr bool kAddressSanitizer = false;
 #endif
 
-}  // namespace rubble::testing
+}  // namespace rubble::test
