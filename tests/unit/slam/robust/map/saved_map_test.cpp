@@ -29,7 +29,8 @@ const RobustMapper& mapper() {
     auto ticks = slam_test::record_sweeping(floor.world(), drive, model, 1.0, 0.01, 0.0665, 1);
     for (std::size_t i = 0; i < ticks.size(); ++i) {
       for (int k = 4; k >= 0; --k) ticks[i].accelerations.push_back({ticks[i].now - 0.02 * k, 0.1, -0.05});
-      if (i % 50 == 20) ticks[i].scans.front().ranges[i] = std::numeric_limits<float>::infinity();
+      std::vector<float>& ranges = ticks[i].scans.front().ranges;
+      if (i % 50 == 20) ranges[i % ranges.size()] = std::numeric_limits<float>::infinity();
     }
     RobustConfig config;
     config.thin_walls = false;
