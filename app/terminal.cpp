@@ -67,6 +67,15 @@ scenarios::RunOptions terminal_options(const std::string& out, bool force) {
   return options;
 }
 
+void show_share(const std::string& what, double share) {
+  static std::string shown;  // a terminal is slower than what reports
+  const std::string line = one_line(what) + "  " + std::to_string(static_cast<int>(100.0 * share)) + " %";
+  if (line == shown || !isatty(STDERR_FILENO)) return;
+  shown = line;
+  std::fprintf(stderr, "\r\033[K%s", line.c_str());
+  std::fflush(stderr);
+}
+
 void end_progress() {
   if (isatty(STDERR_FILENO)) std::fprintf(stderr, "\r\033[K");
 }

@@ -19,6 +19,8 @@ bool insisted();
 
 /// Run options whose progress is one line on a terminal and nothing elsewhere.
 scenarios::RunOptions terminal_options(const std::string& out, bool force);
+/// "`what`  43 %" as a line on a terminal that the next one replaces, and nothing elsewhere.
+void show_share(const std::string& what, double share);
 /// Wipes the progress line.
 void end_progress();
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/terminal.h"
 #include "arenas/elements/elements.h"
 #include "arenas/files/arena_file.h"
 #include "arenas/generate/generate.h"
@@ -104,12 +105,17 @@ int arena(const ArenaArguments& arguments) {
     if (!fs::exists(base + ".yaml") || arguments.force) write_text_file(place_in(out, stem + ".yaml"), yaml);
     std::printf("%s.yaml\n", base.c_str());
   }
+  show_share("draws the arena", 0.0);
   write_png(place_in(out, stem + ".png"), arenas::render(arena, 60.0));
+  show_share("draws its truth", 0.01);
   const OccupancyGrid truth = arenas::truth_map(arena, arguments.resolution, arguments.slice_height);
   write_geotiff(place_in(out, stem + "-truth.tif"), scoring::draw_truth(truth));
   arenas::Viewer viewer;
   viewer.range = arguments.range;
-  write_geotiff(place_in(out, stem + "-visible.tif"), scoring::draw_truth(arenas::visible_truth(arena, truth, viewer)));
+  const OccupancyGrid visible = arenas::visible_truth(
+      arena, truth, viewer, [](double share) { show_share("looks at it from everywhere", share); });
+  write_geotiff(place_in(out, stem + "-visible.tif"), scoring::draw_truth(visible));
+  end_progress();
   std::printf("%s.png\n%s-truth.tif\n%s-visible.tif\n", base.c_str(), base.c_str(), base.c_str());
   if (!arguments.walls.empty()) std::printf("%s\n", arguments.walls.c_str());
   return kOk;

@@ -154,18 +154,23 @@ Mask reachable_mask(const Arena& arena, const OccupancyGrid& truth, const Viewer
   return reached;
 }
 
-Mask visible_mask(const Arena& arena, const OccupancyGrid& truth, const Mask& reachable, const Viewer& viewer) {
+Mask visible_mask(const Arena& arena, const OccupancyGrid& truth, const Mask& reachable, const Viewer& viewer,
+                  const std::function<void(double)>& progress) {
   const GridFrame& frame = truth.frame();
   const Grid<float> floor = floor_heights(arena, frame);
   Mask seen = reachable;
   const int rays = static_cast<int>(std::ceil(2.0 * kPi * std::min(viewer.range, kFull) / frame.resolution));
-  for (const Cell pose : poses_among(reachable, frame.cell({arena.start.x, arena.start.y})))
-    for (int i = 0; i < rays; ++i) look(truth, floor, pose, 2.0 * kPi * (i + 0.5) / rays, viewer, seen);
+  const std::vector<Cell> poses = poses_among(reachable, frame.cell({arena.start.x, arena.start.y}));
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    for (int i = 0; i < rays; ++i) look(truth, floor, poses[k], 2.0 * kPi * (i + 0.5) / rays, viewer, seen);
+    if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(poses.size()));
+  }
   return seen;
 }
 
-OccupancyGrid visible_truth(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer) {
-  const Mask seen = visible_mask(arena, truth, reachable_mask(arena, truth, viewer), viewer);
+OccupancyGrid visible_truth(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer,
+                            const std::function<void(double)>& progress) {
+  const Mask seen = visible_mask(arena, truth, reachable_mask(arena, truth, viewer), viewer, progress);
   OccupancyGrid known = truth;
   for (int y = 0; y < truth.height(); ++y) {
     for (int x = 0; x < truth.width(); ++x) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "arenas/model/arena.h"
 #include "base/angle.h"
 #include "base/grid.h"
@@ -22,12 +24,14 @@ Grid<std::uint8_t> reachable_mask(const Arena& arena, const OccupancyGrid& truth
 /// What a level laser could ever see from there: non-zero. Rays end at the first occupied cell, which they see, and
 /// before floor that rises to the height of the laser, which is a wall to it.
 /// It looks round from the start and from poses so chosen that every reachable cell is less than 0.4 m from one, with
-/// rays that end a cell apart (at 8 m where the laser reaches farther).
+/// rays that end a cell apart (at 8 m where the laser reaches farther). `progress` is told the share of the poses that
+/// were looked from: fine grids take minutes.
 Grid<std::uint8_t> visible_mask(const Arena& arena, const OccupancyGrid& truth, const Grid<std::uint8_t>& reachable,
-                                const Viewer& viewer = {});
+                                const Viewer& viewer = {}, const std::function<void(double)>& progress = {});
 
 /// The truth as far as it could ever be mapped: what no reachable pose sees becomes unknown, so that it counts against
 /// no map.
-OccupancyGrid visible_truth(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer = {});
+OccupancyGrid visible_truth(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer = {},
+                            const std::function<void(double)>& progress = {});
 
 }  // namespace rubble::arenas

@@ -27,13 +27,17 @@ class Conversation {
   }
 
  private:
-  /// What is due without a byte on the line, such as giving up to wait.
+  /// What is due without a byte on the line, such as giving up to wait. A driver that asks again and again leaves bytes
+  /// in the box; one that has only listened for a minute waits for nothing more, so no file takes longer than its
+  /// bytes.
   void pass_time(Stamp to) {
-    constexpr double kTurn = 0.02;  // a driver that always wants to be called is called as often as then [s]
+    constexpr double kTurn = 0.02;       // a driver that always wants to be called is called as often as then [s]
+    constexpr double kListening = 60.0;  // [s]
     if (until_ == Stamp::never()) return;
-    for (Stamp due = device_.deadline(); due < to; due = std::max(device_.deadline(), due + kTurn)) {
+    const Stamp end = std::min(to, until_ + kListening);
+    for (Stamp due = device_.deadline(); due < end; due = std::max(device_.deadline(), due + kTurn)) {
       due = std::max(due, until_);
-      if (due < to) turn(due);
+      if (due < end) turn(due);
     }
     until_ = std::max(until_, to);
   }

@@ -12,9 +12,9 @@ struct WallPieces {
   /// nothing, and a map with salt is not a map full of walls.
   Grid<float> strength;
   /// The wall that a step over a corner slips through: the lesser of the two cells beside it; 0 for a step over an
-  /// edge.
+  /// edge, and for one that leaves or enters the grid.
   double between(const Cell& from, const Cell& to) const {
-    if (from.x == to.x || from.y == to.y || !strength.inside(from)) return 0.0;
+    if (from.x == to.x || from.y == to.y || !strength.inside(from) || !strength.inside(to)) return 0.0;
     return static_cast<double>(std::min(strength[{from.x, to.y}], strength[{to.x, from.y}]));
   }
 };

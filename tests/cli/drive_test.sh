@@ -2,30 +2,8 @@
 # A robot in real time: 'rubble emulate' plays its devices, 'rubble drive' maps with it as with a real one.
 source "$(dirname "$0")/lib.sh"
 
-emulator=
 drive= stranger=
 trap 'for it in $emulator $drive $stranger; do kill $it 2>/dev/null; done; rm -rf "$work"' EXIT
-
-# start_emulator [options]: ports in $ports. Waits until they are open.
-start_emulator() {
-  rm -f emulator.txt  # the one before was ready too
-  "$rubble" emulate small.yaml --urg tcp:127.0.0.1:0 --base tcp:127.0.0.1:0 --levelling tcp:127.0.0.1:0 "$@" \
-    >emulator.txt 2>emulator_err.txt &
-  emulator=$!
-  for _ in $(seq 200); do
-    grep -qs '^ready$' emulator.txt && break
-    sleep 0.1
-  done
-  grep -q '^ready$' emulator.txt || {
-    fail "the emulator is not ready: $(cat emulator.txt emulator_err.txt)"
-    ports=
-    return
-  }
-  ports=
-  while read -r device port; do
-    case $device in urg | base | levelling) ports+=" --$device $port" ;; esac
-  done <emulator.txt
-}
 
 small_scenario small.yaml
 robot=$source/robots/pioneer_urg.yaml
@@ -71,7 +49,7 @@ for device in urg base levelling; do grep -q "rubble: $device: has not reported 
 ! grep -q "motors off" err.txt || fail "a drive that never began tells its state: $(cat err.txt)"
 
 # A robot that somebody holds by its button to the end: the end says so.
-start_emulator --fault base-button@3
+start_emulator small.yaml --fault base-button@3
 # shellcheck disable=SC2086
 "$rubble" drive "$robot" $ports --time-limit 8 --out held --set explorer.return_home=false >out.txt 2>err.txt
 code=$?
@@ -81,7 +59,7 @@ grep -q 'the drive was waiting: base: ' out.txt || fail "nothing says that the r
 
 # The same from the start on: the state is shown each second all the same.
 # shellcheck disable=SC2046
-start_emulator $(printf -- "--fault base-button@%s " 0 1.5 3 4.5 6 7.5 9 10.5)  # pressed for 2 s each time: all along, however slow this machine is
+start_emulator small.yaml $(printf -- "--fault base-button@%s " 0 1.5 3 4.5 6 7.5 9 10.5)  # pressed for 2 s each time: all along, however slow this machine is
 # shellcheck disable=SC2086
 "$rubble" drive "$robot" $ports --time-limit 4 --set safety.start_s=2 --out pressed >out.txt 2>err.txt
 code=$?
@@ -95,7 +73,7 @@ shown=$(grep -c '^ *0 s  held .* V  motors off ' err.txt)
 # The whole job in real time, with a base that is unplugged on the way: it is named and picked up again, how the robot
 # came to rest meanwhile the scans tell, and the map loses nothing by it.
 "$rubble" run small.yaml --set mapper.kind=robust --out in_process >/dev/null || fail "the same scenario in process fails"
-start_emulator --fault base-unplug@12
+start_emulator small.yaml --fault base-unplug@12
 # shellcheck disable=SC2086
 "$rubble" drive "$robot" $ports --time-limit 80 --out driven --set mapper.kind=robust --set explorer.victims.search=true >out.txt 2>err.txt
 code=$?
@@ -121,7 +99,7 @@ PY
 
 # Encoders that die on the way and stay dead: scans show that the robot moves; it is stopped, and nobody lets it go.
 # shellcheck disable=SC2046
-start_emulator $(printf -- "--fault base-encoders@%s " $(seq 9 3 60))
+start_emulator small.yaml $(printf -- "--fault base-encoders@%s " $(seq 9 3 60))
 # shellcheck disable=SC2086
 "$rubble" drive "$robot" $ports --time-limit 50 --out blind --set safety.give_up_s=5 >out.txt 2>err.txt
 code=$?
@@ -134,7 +112,7 @@ tail -n 1 err.txt | grep -q "encoders and scans disagree.*; nobody has let it go
 
 # A base that no order to stop reaches and that somebody else drives on, whatever else is in trouble: the end says so.
 # shellcheck disable=SC2046
-start_emulator $(printf -- "--fault levelling-sensor@%s " $(seq 6 0.9 40))
+start_emulator small.yaml $(printf -- "--fault levelling-sensor@%s " $(seq 6 0.9 40))
 python3 "$source/tests/cli/disobedient_line.py" "$(sed -n 's/^base tcp://p' emulator.txt)" >line.txt &
 stranger=$!
 for _ in $(seq 100); do
@@ -164,7 +142,7 @@ grep -q "^rubble: base: its motors stay on though switched off" err.txt || fail 
 # A robot that is driven belongs to one: whoever else comes is told so and does not wait, or it would drive the robot on when the
 # first one stops it. First our own drives, then a client that only the device itself can turn away.
 # One of its devices is unplugged meanwhile: it still belongs to the first.
-start_emulator --fault base-unplug@8
+start_emulator small.yaml --fault base-unplug@8
 # shellcheck disable=SC2086
 "$rubble" drive "$robot" $ports --out first >/dev/null 2>first.txt &
 drive=$!
@@ -230,7 +208,7 @@ drive=
 stop_emulator
 
 # Pictures while it drives; and when a device is lost the map is saved at once: while all is waited for nothing else saves it.
-start_emulator
+start_emulator small.yaml
 # shellcheck disable=SC2086
 "$rubble" drive "$robot" $ports --out watched >out.txt 2>err.txt &
 drive=$!
@@ -268,7 +246,7 @@ answer='while read -r word rest; do case $word in end)'
 dies_early="echo ready 1; n=0; $answer n=\$((n+1)); [ \$n = 200 ] && exit 7; echo pose 0.25 0 0; echo end;; esac; done"
 dies_late="echo ready 1; $answer echo pose 0.25 0 0; echo end;; finish) exit 8;; esac; done"
 for death in early late; do
-  start_emulator
+  start_emulator small.yaml
   command=dies_$death
   # shellcheck disable=SC2086
   "$rubble" drive "$robot" $ports --map-only --time-limit 6 --out "lost_$death" --mapper-command "${!command}" \
@@ -286,7 +264,7 @@ for death in early late; do
 done
 
 # Ctrl-C: the robot is left at rest, its folder complete.
-start_emulator
+start_emulator small.yaml
 # shellcheck disable=SC2086
 "$rubble" drive "$robot" $ports --out stopped >out.txt 2>err.txt &
 drive=$!

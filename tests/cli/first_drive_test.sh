@@ -3,24 +3,7 @@
 # room to calibrate, a heartbeat that nobody can touch, a full disk.
 source "$(dirname "$0")/lib.sh"
 
-emulator=
 trap '[[ -z $emulator ]] || kill $emulator 2>/dev/null; rm -rf "$work"' EXIT
-
-# start_emulator SCENARIO [options]: ports in $urg, $base and $levelling, of the $kind tcp or pty. Waits until they are open.
-kind=tcp
-start_emulator() {
-  rm -f emulator.txt
-  local ports=(--urg tcp:127.0.0.1:0 --base tcp:127.0.0.1:0 --levelling tcp:127.0.0.1:0)
-  [[ $kind == tcp ]] || ports=(--urg "pty:$work/p_urg" --base "pty:$work/p_base" --levelling "pty:$work/p_levelling")
-  "$rubble" emulate "$@" "${ports[@]}" >emulator.txt 2>emulator_err.txt &
-  emulator=$!
-  for _ in $(seq 200); do
-    grep -qs '^ready$' emulator.txt && break
-    sleep 0.1
-  done
-  grep -q '^ready$' emulator.txt || fail "the emulator is not ready: $(cat emulator.txt emulator_err.txt)"
-  for device in urg base levelling; do declare -g $device="$(sed -n "s/^$device //p" emulator.txt)"; done
-}
 
 small_scenario small.yaml
 robot=$source/robots/pioneer_urg.yaml

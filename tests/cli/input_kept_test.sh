@@ -139,8 +139,7 @@ for name in versions.json scenario.yaml log.rlog map.tif estimate.tum; do
   for with in fifo zero; do
     rm -rf f && cp -r run f && rm f/$name
     if [[ $with == fifo ]]; then mkfifo f/$name; else ln -s /dev/zero f/$name; fi
-    (ulimit -v 4000000; [[ $rubble == */asan/* || $rubble == */tsan/* ]] && ulimit -v unlimited
-     prompt "$name: is a" "$rubble" replay f; exit $((failures > 0))) || failures=1
+    (instrumented || ulimit -v 4000000; prompt "$name: is a" "$rubble" replay f; exit $((failures > 0))) || failures=1
   done
 done
 rm -rf f && cp -r run f && rm f/map.rmap && mkfifo f/map.rmap && prompt "is a pipe" "$rubble" map run/log.rlog --localise f

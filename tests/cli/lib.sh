@@ -26,6 +26,9 @@ expect_exit() {
   fi
 }
 
+# instrumented: whether the program was built with a sanitizer, whose tables are larger than any limit of memory.
+instrumented() { grep -qaE '__(asan|tsan)_init' "$rubble"; }
+
 # small_scenario FILE [extra yaml]: a 3 x 3 arena that takes a second.
 small_scenario() {
   cat >"$1" <<YAML
@@ -40,6 +43,24 @@ YAML
 # json FILE PYTHON-EXPRESSION over j: true or the test fails.
 json_holds() {
   python3 -c "import json,sys; j=json.load(open('$1')); sys.exit(0 if ($2) else 1)" || fail "$1: not true: $2"
+}
+
+# start_emulator SCENARIO [options]: the devices of a robot in the background, as $emulator; waits until their ports are open.
+# They are in $urg, $base and $levelling, and as words for a drive in $ports; they are pseudo-terminals where $kind is pty.
+emulator=
+start_emulator() {
+  local offered=(--urg tcp:127.0.0.1:0 --base tcp:127.0.0.1:0 --levelling tcp:127.0.0.1:0) device
+  [[ ${kind:-tcp} == tcp ]] || offered=(--urg "pty:$work/p_urg" --base "pty:$work/p_base" --levelling "pty:$work/p_levelling")
+  rm -f emulator.txt  # the one before was ready too
+  "$rubble" emulate "$@" "${offered[@]}" >emulator.txt 2>emulator_err.txt &
+  emulator=$!
+  for _ in $(seq 200); do
+    grep -qs '^ready$' emulator.txt && break
+    sleep 0.1
+  done
+  grep -q '^ready$' emulator.txt || fail "the emulator is not ready: $(cat emulator.txt emulator_err.txt)"
+  for device in urg base levelling; do declare -g $device="$(sed -n "s/^$device //p" emulator.txt)"; done
+  ports="--urg $urg --base $base --levelling $levelling"
 }
 
 # Ends the emulator that a test runs in the background as $emulator.

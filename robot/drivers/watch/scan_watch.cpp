@@ -38,7 +38,7 @@ void ScanWatch::see(const LaserScan& scan, Stamp now) {
     wrong_at_ = now;
   } else if (blind_scans_ > 0 || same_scans_ > 0) {
     wrong_at_ = now;  // may be the beginning of it
-  } else if (now - wrong_at_ >= kKeepsUp) {
+  } else if (wrong_at_ == Stamp::never() || now - wrong_at_ >= kKeepsUp) {
     trouble_ = Kind::Well;
   }
 }

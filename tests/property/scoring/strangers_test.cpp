@@ -17,7 +17,7 @@ namespace {
 using namespace testing;
 
 TEST(Strangers, AreRefusedAndScoreNothing) {
-  for (const std::uint64_t seed : {1011, 1012}) {
+  for (const std::uint64_t seed : {1011u, 1012u}) {
     for (const auto& [columns, rows] : {std::pair{6, 6}, {9, 7}}) {
       const OccupancyGrid truth = maze_of(seed, columns, rows);
       const std::vector<std::pair<std::string, OccupancyGrid>> strangers = {
@@ -40,7 +40,7 @@ TEST(Strangers, AreRefusedAndScoreNothing) {
 }
 
 TEST(Strangers, DamagedMapsOfTheSameArenaAreNone) {
-  for (const std::uint64_t seed : {2011, 2012}) {
+  for (const std::uint64_t seed : {2011u, 2012u}) {
     for (const bool generated : {false, true}) {
       const OccupancyGrid truth = truth_of({generated ? "yellow" : "maze", 9, 7, seed});
       const std::vector<std::pair<std::string, OccupancyGrid>> maps = {
@@ -90,7 +90,7 @@ TEST(Strangers, AMapThatIsPerfectOneWayIsToldFromItsMirrorImage) {
 
 /// An office of two equal wings: all but one wall of the mirror image lies right.
 TEST(Strangers, TheMirrorImageOfABuildingThatIsNearlySymmetricIsNamed) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     OccupancyGrid truth = maze_of(seed, 10, 6);
     for (int y = 0; y < truth.height(); ++y)

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "arenas/files/arena_file.h"
 #include "arenas/generate/generate.h"
@@ -32,6 +34,15 @@ TEST(Visible, AnOpenRoomIsSeenThroughout) {
   const View view(parse("  +---+---+\n  |S.   . |\n  +   +   +\n  | .   . |\n  +---+---+\n"));
   EXPECT_EQ(cells_of(view.known, Occupancy::Free), cells_of(view.truth, Occupancy::Free));
   EXPECT_EQ(cells_of(view.known, Occupancy::Occupied), cells_of(view.truth, Occupancy::Occupied));
+}
+
+TEST(Visible, ToldIsHowFarTheLookingIs) {
+  const Arena arena = parse("  +---+---+\n  |S.   . |\n  +   +   +\n  | .   . |\n  +---+---+\n");
+  std::vector<double> shares;
+  visible_truth(arena, truth_map(arena), {}, [&](double share) { shares.push_back(share); });
+  ASSERT_GT(shares.size(), 4u);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_EQ(shares.back(), 1.0);
 }
 
 /// A gap of 0.3 m is too narrow to drive through, but the laser looks in as far as it can see round the edges.

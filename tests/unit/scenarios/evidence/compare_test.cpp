@@ -74,7 +74,8 @@ TEST(Compare, ScoresOfOtherVersionsAreRefusedByName) {
 
 TEST(Compare, TheSameResultsAreIdentical) {
   const ResultSet a = runs("c", 10, arena_score);
-  for (const auto& c : compare(a, a, "A", "A").groups[0].metrics) EXPECT_EQ(c.verdict, Verdict::Identical);
+  const auto comparison = compare(a, a, "A", "A");
+  for (const auto& c : comparison.groups[0].metrics) EXPECT_EQ(c.verdict, Verdict::Identical);
 }
 
 TEST(Compare, WithoutAnEffectItRarelySpeaks) {

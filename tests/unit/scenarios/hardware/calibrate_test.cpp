@@ -121,7 +121,7 @@ RobotFile shipped() { return load_robot_file(std::string(RUBBLE_SOURCE_DIR) + "/
 
 TEST(Calibrate, ASimulatedRobotsTrueNumbersComeBack) {
   const Scratch scratch;
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     RobotFile file = shipped();
     robot::RobotModel model = file.settings.robot;

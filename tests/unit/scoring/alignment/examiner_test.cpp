@@ -15,7 +15,7 @@ bool same_bits(const TPose2D& a, const TPose2D& b) { return a.x == b.x && a.y ==
 
 /// A list that was asked before, or that shares guesses with one, gets the answer that it gets alone.
 TEST(Examiner, RemembersWithoutChangingABit) {
-  for (const std::uint64_t seed : {31, 32}) {
+  for (const std::uint64_t seed : {31u, 32u}) {
     const OccupancyGrid truth = crop_to_known(maze_of(seed, 7, 5), 0.0);
     const OccupancyGrid map = crop_to_known(moved(bent(maze_of(seed, 7, 5), 0.3), 0.6, 2.0, 1.0), 0.0);
     const SearchConfig config;

@@ -51,7 +51,7 @@ TEST(FeatureScore, OutliersAndPairsAreAllFeatures) {
 
 /// Eq. (7) pulls a pose that is a little off to where it belongs.
 TEST(FeatureScore, MinimisingTheErrorFindsThePose) {
-  for (const std::uint64_t seed : {7505, 7506}) {
+  for (const std::uint64_t seed : {7505u, 7506u}) {
     const OccupancyGrid truth = crop_to_known(truth_of({"yellow", 8, 7, seed}), 0.0);
     const MapFeatures features = features_of(truth);
     const TPose2D start(0.25, -0.2, 0.03);

@@ -23,7 +23,7 @@ KnownStart start_at(const TPose2D& T_map_truth, const TPoint2D& p_truth) {
 }
 
 TEST(KnownStart, DecidesBetweenTheTwoPosesOfASymmetricArena) {
-  for (const std::uint64_t seed : {7601, 7602, 7603}) {
+  for (const std::uint64_t seed : {7601u, 7602u, 7603u}) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const OccupancyGrid truth = crop_to_known(symmetric(seed, 8, 6), 0.0);
     const TPose2D T_map_truth(1.0, 2.0, 0.7);
@@ -41,7 +41,7 @@ TEST(KnownStart, DecidesBetweenTheTwoPosesOfASymmetricArena) {
 }
 
 TEST(KnownStart, DoesNotMakeAStrangerOrAMirrorImageRight) {
-  for (const std::uint64_t seed : {7604, 7605, 7606}) {
+  for (const std::uint64_t seed : {7604u, 7605u, 7606u}) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const OccupancyGrid truth = crop_to_known(maze_of(seed, 8, 6), 0.0);
     AlignmentConfig config;

@@ -14,7 +14,7 @@ using namespace testing;
 class EachFeature : public ::testing::TestWithParam<FeatureKind> {};
 
 TEST_P(EachFeature, FindsTheMotionOfATurnedMapFromDescriptorsAlone) {
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {1u, 2u}) {
     SCOPED_TRACE("maze seed " + std::to_string(seed));
     const OccupancyGrid truth = maze_of(seed, 10, 8);
     const TPose2D T_map_truth(4.0, -2.0, 0.7);

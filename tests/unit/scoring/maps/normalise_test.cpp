@@ -228,7 +228,7 @@ TEST_F(LoadMap, TurnedWithInterpolationItScoresTheSame) {
 
 // JPEG halves the colours' resolution and smears them over blocks of 16 pixels; brightness still shows the walls.
 TEST_F(LoadMap, JpegKeepsTheScoreOfALeagueMap) {
-  for (const std::uint64_t seed : {5, 6}) {
+  for (const std::uint64_t seed : {5u, 6u}) {
     const OccupancyGrid grid = maze({7, 7, seed});
     const cv::Mat straight = league_image(padded(grid, 20), true);
     for (const double degrees : {0.0, 13.0, 37.0}) {
@@ -321,7 +321,7 @@ TEST_F(LoadMap, TransparentPixelsAreUnknown) {
 }
 
 TEST_F(LoadMap, BlurredAndShrunkenPicturesAreNoticed) {
-  for (const std::uint64_t seed : {3, 4}) {
+  for (const std::uint64_t seed : {3u, 4u}) {
     MazeSpec spec;
     spec.seed = seed;
     const cv::Mat sharp = grey_image(maze(spec), 0, 128, 255);

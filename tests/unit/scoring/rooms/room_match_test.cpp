@@ -18,7 +18,7 @@ Rooms rooms_of(std::uint64_t seed) {
 }
 
 TEST(RoomMatch, AMapHasAllItsOwnRooms) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
     const Rooms rooms = rooms_of(seed);
     const RoomMatch match = match_rooms(rooms, rooms, {});
     EXPECT_EQ(match.pairs.size(), rooms.rooms.size());

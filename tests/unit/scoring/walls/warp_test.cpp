@@ -48,7 +48,7 @@ TEST(Warp, InverseUndoesAMildWarp) {
 }
 
 TEST(Warp, RecoversAKnownBend) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
     for (const double bend : {0.3, 0.8}) {
       SCOPED_TRACE("maze seed " + std::to_string(seed) + ", bend " + std::to_string(bend));
       const OccupancyGrid truth = maze_of(seed, 10, 8);

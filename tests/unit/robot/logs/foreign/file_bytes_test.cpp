@@ -11,7 +11,7 @@ using testing::TempFolder;
 
 std::string long_text() {
   std::string text;
-  for (int i = 0; i < 400000; ++i) text += std::to_string(i * i) + " ";
+  for (unsigned i = 0; i < 400000; ++i) text += std::to_string(i * i) + " ";
   return text;
 }
 

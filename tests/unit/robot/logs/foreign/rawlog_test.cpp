@@ -13,6 +13,7 @@
 #include "robot/logs/foreign/mrpt_bridge.h"
 #include "robot/logs/foreign/mrpt_stamp.h"
 #include "tests/support/robot_inputs.h"
+#include "tests/support/sanitized.h"
 
 namespace rubble::robot {
 namespace {
@@ -317,9 +318,7 @@ TEST(Rawlog, AnyDamageIsALogOrOneLineAndBoundedMemory) {
   EXPECT_GT(refused, 100);
   rusage use{};
   getrusage(RUSAGE_CHILDREN, &use);
-#if !defined(__SANITIZE_ADDRESS__)
-  EXPECT_LT(use.ru_maxrss, 512 * 1024) << "kB in the largest child";
-#endif
+  if (!test::kAddressSanitizer) EXPECT_LT(use.ru_maxrss, 512 * 1024) << "kB in the largest child";
 }
 
 TEST(Rawlog, TimeBeyondOurRangeIsRefused) {

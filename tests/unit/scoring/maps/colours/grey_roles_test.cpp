@@ -28,7 +28,7 @@ cv::Mat laser_map(std::uint64_t seed, int unknown, int free) {
 }
 
 TEST(GreyRoles, SpecksInUnknownGroundDoNotMakeItFree) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
     const cv::Mat apart = cv::Mat::zeros(400, 400, CV_8U);
     const GreyRoles roles = grey_roles(laser_map(seed, kUnknown, kFree), apart);
     EXPECT_EQ(roles.wall, kWall) << "seed " << seed;
