@@ -116,12 +116,12 @@ TEST_F(LeapingLine, DoesNotTakeTheRobotAlong) {
   EXPECT_GT(farthest, 0.1) << "without the hold nothing was at stake";
 }
 
-/// Whoever was wrong before is put right: five scans on end ask for the same.
+/// Whoever was wrong before is put right, as often as five scans on end ask for the same; the odometry holds back a part.
 TEST_F(LeapingLine, ThatStaysIsAWall) {
-  const std::vector<double> at = follow(0.0, std::vector<double>(6, 1.85), true);
+  const std::vector<double> at = follow(0.0, std::vector<double>(12, 1.85), true);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(at[i], 0.0, 0.03) << "scan " << i;
-  EXPECT_NEAR(at[4], 0.15, 0.03);
-  EXPECT_NEAR(at[5], 0.15, 0.03);
+  EXPECT_GT(at[4], 0.08);
+  EXPECT_NEAR(at.back(), 0.15, 0.03);
 }
 
 /// Wheels that spin before a wall: between not at all and as they say the robot may have moved, so nothing is held.
