@@ -318,7 +318,9 @@ TEST(Rawlog, AnyDamageIsALogOrOneLineAndBoundedMemory) {
   EXPECT_GT(refused, 100);
   rusage use{};
   getrusage(RUSAGE_CHILDREN, &use);
-  if (!test::kAddressSanitizer) EXPECT_LT(use.ru_maxrss, 512 * 1024) << "kB in the largest child";
+  if (!test::kAddressSanitizer) {
+    EXPECT_LT(use.ru_maxrss, 512 * 1024) << "kB in the largest child";
+  }
 }
 
 TEST(Rawlog, TimeBeyondOurRangeIsRefused) {
