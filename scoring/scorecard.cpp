@@ -160,10 +160,11 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
   const OccupancyGrid map_known = crop_to_known(map, 0.0);
   const OccupancyGrid truth_known = crop_to_known(truth, 0.0);
   // What is asked at a pose takes no knowledge of it: prepared on another processor, where there is one.
+  const auto when = too_many_walls(map_known, truth_known).empty() ? std::launch::async | std::launch::deferred
+                                                                   : std::launch::deferred;
   std::future<std::unique_ptr<const Walls>> prepared =
-      std::async([&] { return std::make_unique<const Walls>(map_known, truth_known, config.tau); });
+      std::async(when, [&] { return std::make_unique<const Walls>(map_known, truth_known, config.tau); });
   const Alignment alignment = align(map_known, truth_known, config.alignment);
-  const std::unique_ptr<const Walls> walls = prepared.get();
   out.aligned = alignment.aligned;
   out.note = alignment.note;
   out.T_truth_map = alignment.T_truth_map;
@@ -173,13 +174,14 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
   out.mirrored = alignment.mirrored;
   if (!out.aligned) {
     fill_psi(out, psi_of_strangers(config.colour_absent_cap));
-    if (alignment.by != AlignBy::Auto) fill_sights(out, truth_known, *walls);
+    if (alignment.by != AlignBy::Auto) fill_sights(out, truth_known, *prepared.get());
     // Walls that do meet, only at too many poses, are of the right scale.
     if (alignment.by != AlignBy::Auto && tight_agreement(alignment.tight_evidence) < kTightEnough)
       out.scale_hint = agreeing_scale(map_known, truth_known, config.alignment);
     if (out.scale_hint > 0.0) out.note = scale_note(out.scale_hint, map.resolution());
     return out;
   }
+  const std::unique_ptr<const Walls> walls = prepared.get();
   if (walls->score(PlanarTransform(alignment.T_walls)) > walls->score(PlanarTransform(out.T_truth_map)))
     out.T_truth_map = alignment.T_walls;
   measure(out, map_known, truth_known, *walls, config);

@@ -22,11 +22,13 @@ cv::Mat bgr_of(const RgbImage& image) {
 }
 
 void append(png_structp png, png_bytep data, std::size_t count) {
+  bool kept = true;
   try {
     static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(data), count);
   } catch (const std::exception&) {  // libpng is C: nothing may be thrown through it
-    png_error(png, "out of memory");
+    kept = false;
   }
+  if (!kept) png_error(png, "out of memory");  // jumps, hence not within the catch
 }
 
 void keep_quiet(png_structp, png_const_charp) {}

@@ -306,13 +306,20 @@ class Aligner {
 
 }  // namespace
 
-Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config) {
+std::string too_many_walls(const OccupancyGrid& map, const OccupancyGrid& truth) {
   for (const OccupancyGrid* grid : {&map, &truth}) {
     const auto walls = std::count(grid->cells().begin(), grid->cells().end(), Occupancy::Occupied);
     if (walls <= kMostWalls) continue;
+    return "not aligned: " + std::to_string(walls) + " cells of the " + (grid == &map ? "map" : "truth") +
+           " are walls, more than any building has; give a picture with thin walls, or scale it down";
+  }
+  return {};
+}
+
+Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config) {
+  if (std::string refusal = too_many_walls(map, truth); !refusal.empty()) {
     Alignment out;
-    out.note = "not aligned: " + std::to_string(walls) + " cells of the " + (grid == &map ? "map" : "truth") +
-               " are walls, more than any building has; give a picture with thin walls, or scale it down";
+    out.note = std::move(refusal);
     return out;
   }
   const OccupancyGrid clean_map = without_specks(map);

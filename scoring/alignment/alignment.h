@@ -53,6 +53,9 @@ struct Alignment {
   PoseEvidence tight_evidence;
 };
 
+/// Why align() does not look at these maps at all: more cells are walls than any building has; empty: it does.
+std::string too_many_walls(const OccupancyGrid& map, const OccupancyGrid& truth);
+
 /// Poses proposed by walls, features or rooms; refined on the distance fields and ranked by what the walls of both maps
 /// say about each other, after a mild bend of the map where that explains more. The best is trusted if it stands out
 /// from all others and from the best of the mirrored map. Scale is fixed at 1. docs/scoring.md gives the rules of

@@ -69,6 +69,7 @@ void LocalTracker::redraw(const KeyFrames& frames, std::vector<int> local, Work*
   local_ = std::move(local);
   frames.draw(local_, frames.pose(local_.front()), config_.cell, surfels_);
   correlator_ready_ = false;
+  leap_ = {};
   if (work != nullptr) *work += kWorkPerDrawnFrame * static_cast<Work>(local_.size());
 }
 
@@ -114,7 +115,9 @@ Tracked LocalTracker::track(const KeyFrames& frames, const Cloud& cloud, const E
     tracked.fit = best_of_several(cloud, prior, distance, turn, tracked.fit, work);
   if (tracked.fit.prior_chi2 > config_.slip_chi2 || tracked.fit.inliers < config_.lost_inliers)
     doubt_odometry(frames, cloud, prior, carried, reach(motion), tracked, work);
-  if (config_.hold_leaps && !tracked.relocated && tracked.fit.inliers >= config_.lost_inliers)
+  if (tracked.relocated || tracked.fit.inliers < config_.lost_inliers)
+    leap_ = {};
+  else if (config_.hold_leaps && motion.ramps)
     hold_leap(motion, {prior.pose, prior_information(undoubted)}, carried, T_frame_last, tracked, work);
   tracked.found = tracked.fit.paired >= kLeastTrackedPairs;
   tracked.lost = doubted && (!tracked.found || tracked.fit.inliers < config_.lost_inliers);
@@ -144,7 +147,10 @@ bool LocalTracker::leaps(const TPose2D& step, const ExpectedMotion& motion) cons
 void LocalTracker::hold_leap(const ExpectedMotion& motion, const PosePrior& odometry,
                              const std::optional<TPose2D>& carried, const TPose2D& T_frame_last, Tracked& tracked,
                              Work* work) {
-  if (!leaps(tracked.fit.pose - T_frame_last, motion)) {
+  // Wheels that were caught lying may lie on: a robot that goes on as it went does not leap.
+  const bool goes_on = carried && motion.doubt >= kDoubted &&
+                       length(tracked.fit.pose.x - carried->x, tracked.fit.pose.y - carried->y) < kSameLeap;
+  if (goes_on || !leaps(tracked.fit.pose - T_frame_last, motion)) {
     if (!motion.again) leap_ = {};
     return;
   }
@@ -168,8 +174,11 @@ void LocalTracker::hold_leap(const ExpectedMotion& motion, const PosePrior& odom
     leap_.asked = same && leap_.asked > 0 ? leap_.asked + 1 : 1;
     leap_.correction = correction;
   }
-  if (leap_.asked >= kAskedLongEnough || leap_.held >= kHeldLongEnough) return;
-  if (motion.level && stay.inliers < tracked.fit.inliers - kWorthALeap) return;
+  const bool worth = motion.level && stay.inliers < tracked.fit.inliers - kWorthALeap;
+  if (worth || leap_.asked >= kAskedLongEnough || leap_.held >= kHeldLongEnough) {
+    leap_ = {};
+    return;
+  }
   if (!motion.again) ++leap_.held;
   tracked.fit = stay;
   tracked.held = true;

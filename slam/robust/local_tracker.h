@@ -37,7 +37,8 @@ struct ExpectedMotion {
   double time = 0.0;   ///< since the last scan [s]
   double doubt = 0.0;  ///< of the odometry, 0: as good as wheels are, 1: it says nothing
   bool told = false;   ///< it has spoken; what may be doubted is what it says
-  bool level = true;   ///< the scan was taken level, or nothing tells how it was taken
+  bool ramps = false;  ///< the tilt is known, so there may be ramps: leaps are held
+  bool level = true;   ///< the scan was taken level
   bool again = false;  ///< the same scan once more, straightened by a better motion
 };
 

@@ -231,6 +231,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
                                          ? sweep_at(scan, *motion.carried, motion.time)
                                          : sweep_motion(odometry_, scan);
   const std::optional<ScanTilt> tilt = config_.use_tilt ? tilt_.at(reference) : std::nullopt;
+  motion.ramps = tilt.has_value();
   motion.level = !tilt || std::max(std::abs(tilt->pitch), std::abs(tilt->roll)) < kLevel;
   ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr, tilt ? &*tilt : nullptr);
   Cloud cloud = cloud_of(points, config_.cloud);

@@ -28,6 +28,8 @@ constexpr double kLeastKnown = 0.02;    // of the panel, to be a map
 constexpr double kLeastUnknown = 0.02;  // of the panel
 constexpr double kUnknownRim = 0.5;     // of the panel's rim
 constexpr double kFramedRim = 0.95;
+constexpr int kLetter = 9;  // strokes and ticks are thinner [pixels]
+constexpr int kLeastPanelSide = 4 * kLetter;
 constexpr int kThickestFrame = 8;  // that has another margin within [pixels]
 constexpr int kUnknownClass = static_cast<int>(Occupancy::Unknown);
 constexpr int kFreeClass = static_cast<int>(Occupancy::Free);
@@ -84,8 +86,7 @@ bool covers_a_side(const cv::Mat& margin) {
 
 /// The rectangle that the margin around it leaves of `part`, without lettering.
 std::optional<cv::Rect> panel_within(const cv::Mat& part) {
-  constexpr int kLetter = 9;  // strokes and ticks are thinner [pixels]
-  if (part.rows < 4 * kLetter || part.cols < 4 * kLetter) return std::nullopt;
+  if (part.rows < kLeastPanelSide || part.cols < kLeastPanelSide) return std::nullopt;
   const cv::Mat margin = margin_of(part);
   if (!covers_a_side(margin)) return std::nullopt;
   cv::Mat rest = ~margin, labels, stats, centres;
@@ -113,8 +114,10 @@ bool is_map(const cv::Mat& classes, const cv::Rect& panel) {
 
 /// A margin within the frame: what it leaves begins with unknown ground.
 std::optional<cv::Rect> panel_within_frame(const cv::Mat& classes, cv::Rect panel) {
-  for (int i = 0; i < kThickestFrame && share_of_rim(classes, panel, kWallClass) >= kUnknownRim; ++i)
+  const auto small = [&] { return panel.width < kLeastPanelSide || panel.height < kLeastPanelSide; };
+  for (int i = 0; i < kThickestFrame && !small() && share_of_rim(classes, panel, kWallClass) >= kUnknownRim; ++i)
     panel = {panel.x + 1, panel.y + 1, panel.width - 2, panel.height - 2};
+  if (small()) return std::nullopt;
   const std::optional<cv::Rect> inner = panel_within(classes(panel));
   if (!inner) return std::nullopt;
   const cv::Rect box = *inner + panel.tl();
@@ -139,16 +142,18 @@ bool paint_over_colours(RgbImage& image, const cv::Mat& apart) {
   const cv::Mat no_ground = ink | walls;
   cv::Mat distance, nearest;
   cv::distanceTransform(no_ground, distance, nearest, cv::DIST_L2, 5, cv::DIST_LABEL_PIXEL);
-  std::vector<const std::uint8_t*> ground(no_ground.total() + 1, nullptr);
-  const RgbImage before = image;
+  distance.release();
+  std::vector<std::int32_t> ground(no_ground.total() + 1,
+                                   -1);  // where each label's ground lies; pictures have less than 2^31 pixels
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
       if (no_ground.at<unsigned char>(y, x) == 0)
-        ground[static_cast<std::size_t>(nearest.at<int>(y, x))] = before.pixel(x, y);
+        ground[static_cast<std::size_t>(nearest.at<int>(y, x))] = y * image.width + x;
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
-      const std::uint8_t* const from = ground[static_cast<std::size_t>(nearest.at<int>(y, x))];
-      if (ink.at<unsigned char>(y, x) != 0 && from != nullptr) std::copy_n(from, 3, image.pixel(x, y));
+      const std::int32_t from = ground[static_cast<std::size_t>(nearest.at<int>(y, x))];
+      if (ink.at<unsigned char>(y, x) == 0 || from < 0) continue;
+      std::copy_n(image.pixel(from % image.width, from / image.width), 3, image.pixel(x, y));
     }
   return true;
 }

@@ -77,6 +77,14 @@ TEST(AddedDrawings, FreeGroundThatReachesTheRimOfAMapStays) {
   EXPECT_EQ(cv::countNonZero(classes != before), 0);
 }
 
+TEST(AddedDrawings, APanelTooSmallForAMapIsNone) {
+  for (int height = 1; height < 40; ++height) {
+    cv::Mat picture(44, 60, CV_8UC1, cv::Scalar(255));
+    picture(cv::Rect(0, 2, 60, height)) = 0;
+    EXPECT_NO_THROW(classify(rgb_of(picture))) << height << " rows";
+  }
+}
+
 TEST(AddedDrawings, TheWayOfTheRobotInColourIsNoWall) {
   const cv::Mat map = map_picture(205);
   cv::Mat drawn;

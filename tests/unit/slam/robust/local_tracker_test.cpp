@@ -73,6 +73,7 @@ ExpectedMotion rolled(double distance) {
   motion.T_last_now = TPose2D(distance, 0.0, 0.0);
   motion.time = 0.1;
   motion.told = true;
+  motion.ramps = true;
   return motion;
 }
 
