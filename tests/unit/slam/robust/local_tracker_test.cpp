@@ -117,7 +117,8 @@ TEST_F(LeapingLine, DoesNotTakeTheRobotAlong) {
   EXPECT_GT(farthest, 0.1) << "without the hold nothing was at stake";
 }
 
-/// Whoever was wrong before is put right, as often as five scans on end ask for the same; the odometry holds back a part.
+/// Whoever was wrong before is put right, as often as five scans on end ask for the same; the odometry holds back a
+/// part.
 TEST_F(LeapingLine, ThatStaysIsAWall) {
   const std::vector<double> at = follow(0.0, std::vector<double>(12, 1.85), true);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(at[i], 0.0, 0.03) << "scan " << i;
