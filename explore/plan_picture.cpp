@@ -32,12 +32,13 @@ OccupancyGrid rimmed(const OccupancyGrid& map) {
   return wider;
 }
 
-Cell start_cell(const TPoint2D& from, const Traversable& floor, const ExplorationTransform& transform) {
-  const Cell c = floor.cells.cell(from);
+/// option: it was named by.
+Cell free_cell(const char* option, const TPoint2D& place, const Traversable& floor, double d_min) {
+  const Cell c = floor.cells.cell(place);
   if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free)
-    throw InputError("no free floor of the map is there; choose another place");
-  if (!transform.passable(c))
-    throw InputError("nearer to a wall than d_min allows; choose another place or a smaller d_min");
+    throw InputError(std::string(option) + ": no free floor of the map is there; choose another place");
+  if (static_cast<double>(floor.clearance[c]) < d_min)
+    throw InputError(std::string(option) + ": nearer to a wall than d_min allows; choose another place or a smaller d_min");
   return c;
 }
 
@@ -89,22 +90,24 @@ PlannedWay measured(const std::vector<Cell>& way, const Traversable& floor, cons
 
 }  // namespace
 
-PlanPicture plan_picture(const OccupancyGrid& map, const PlannerConfig& config, const std::optional<TPoint2D>& from) {
+PlanPicture plan_picture(const OccupancyGrid& map, const PlannerConfig& config, const PlanEnds& ends) {
   Traversable floor = traversable(rimmed(map));
   measure_clearance(floor, Planner(config).clearance_cap());
   std::vector<Source> sources;
   std::vector<Cell> frontier;
-  const auto clusters = frontier_clusters(floor, config.min_frontier_cells);
+  if (ends.to) sources.push_back({free_cell("--to", *ends.to, floor, config.transform.d_min), 0.0});
+  const auto clusters = ends.to ? std::vector<FrontierCluster>() : frontier_clusters(floor, config.min_frontier_cells);
   for (const FrontierCluster& cluster : clusters)
     for (const Cell c : cluster.cells) {
       sources.push_back({c, 0.0});
       frontier.push_back(c);
     }
-  if (sources.empty()) throw InputError("has no frontier: no free floor lies beside floor that is unknown");
+  if (sources.empty()) 
+    throw InputError("has no frontier: no free floor lies beside floor that is unknown; give a target with --to X,Y");
   ExplorationTransform transform;
   transform.run(floor, sources, config.transform);
   std::vector<Cell> way;
-  if (from) way = transform.descend(start_cell(*from, floor, transform));
+  if (ends.from) way = transform.descend(free_cell("--from", *ends.from, floor, config.transform.d_min));
   PlanPicture out;
   out.frontiers = clusters.size();
   if (!way.empty()) out.way = measured(way, floor, transform);
