@@ -73,7 +73,7 @@ Command plan_command() {
           "Dark: near to a frontier, or to the target. White: none can be reached. Blue: frontiers. Red: the way.\n"
           "Examples:\n  rubble plan runs/latest/map.tif --alpha 20 --out safe.png\n"
           "  rubble plan map.yaml --discomfort per_cell --alpha 5 --d-min 0.3 --from 1.5,-2\n"
-          "  rubble plan runs/latest/map.tif --from 0,0 --to 0.3,8.4",
+          "  rubble plan runs/latest/map.yaml --from 0,0 --to 0.5,8.4",
           [](Options& o) -> Action {
             auto a = std::make_shared<PlanArguments>();
             explore::TransformConfig& transform = a->config.transform;
