@@ -42,7 +42,7 @@ Cell start_cell(const TPoint2D& from, const Traversable& floor, const Exploratio
 }
 
 /// Fig. 9: the nearer to a frontier the darker; walls black, frontiers blue, the way red.
-RgbImage draw(const Traversable& floor, const ExplorationTransform& transform, const std::vector<Cell>& frontier,
+RgbImage draw(const Traversable& floor, const ExplorationTransform& transform, const std::vector<Source>& frontier,
               const std::vector<Cell>& way) {
   const int width = floor.cells.width(), height = floor.cells.height();
   double most = 0.0;
@@ -71,7 +71,7 @@ RgbImage draw(const Traversable& floor, const ExplorationTransform& transform, c
         paint(c, grey, grey, grey);
       }
     }
-  for (const Cell c : frontier) paint(c, 40, 90, 220);
+  for (const Source& s : frontier) paint(s.cell, 40, 90, 220);
   for (const Cell c : way) paint(c, 220, 30, 30);
   return image;
 }
@@ -92,22 +92,19 @@ PlannedWay measured(const std::vector<Cell>& way, const Traversable& floor, cons
 PlanPicture plan_picture(const OccupancyGrid& map, const PlannerConfig& config, const std::optional<TPoint2D>& from) {
   Traversable floor = traversable(rimmed(map));
   measure_clearance(floor, Planner(config).clearance_cap());
-  std::vector<Source> sources;
-  std::vector<Cell> frontier;
-  const auto clusters = frontier_clusters(floor, config.min_frontier_cells);
-  for (const FrontierCluster& cluster : clusters)
-    for (const Cell c : cluster.cells) {
-      sources.push_back({c, 0.0});
-      frontier.push_back(c);
-    }
-  if (sources.empty()) throw InputError("has no frontier: no free floor lies beside floor that is unknown");
+  PlanPicture out;
+  std::vector<Source> frontier;
+  for (const FrontierCluster& cluster : frontier_clusters(floor, config.min_frontier_cells)) {
+    for (const Cell c : cluster.cells) frontier.push_back({c, 0.0});
+    ++out.frontiers;
+  }
+  if (frontier.empty()) throw InputError("has no frontier: no free floor lies beside floor that is unknown");
   ExplorationTransform transform;
-  transform.run(floor, sources, config.transform);
+  transform.run(floor, frontier, config.transform);
   std::vector<Cell> way;
   if (from) way = transform.descend(start_cell(*from, floor, transform));
-  PlanPicture out;
-  out.frontiers = clusters.size();
   if (!way.empty()) out.way = measured(way, floor, transform);
+  floor.clearance = {};  // the largest pictures take the memory for what is drawn
   out.image = draw(floor, transform, frontier, way);
   return out;
 }
