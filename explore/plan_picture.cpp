@@ -38,12 +38,13 @@ Cell free_cell(const char* option, const TPoint2D& place, const Traversable& flo
   if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free)
     throw InputError(std::string(option) + ": no free floor of the map is there; choose another place");
   if (static_cast<double>(floor.clearance[c]) < d_min)
-    throw InputError(std::string(option) + ": nearer to a wall than d_min allows; choose another place or a smaller d_min");
+    throw InputError(std::string(option) +
+                     ": nearer to a wall than d_min allows; choose another place or a smaller d_min");
   return c;
 }
 
-/// Fig. 9: the nearer to a frontier the darker; walls black, frontiers blue, the way red.
-RgbImage draw(const Traversable& floor, const ExplorationTransform& transform, const std::vector<Cell>& frontier,
+/// Fig. 9: the nearer to a goal the darker; walls black, goals blue, the way red.
+RgbImage draw(const Traversable& floor, const ExplorationTransform& transform, const std::vector<Source>& goals,
               const std::vector<Cell>& way) {
   const int width = floor.cells.width(), height = floor.cells.height();
   double most = 0.0;
@@ -72,7 +73,7 @@ RgbImage draw(const Traversable& floor, const ExplorationTransform& transform, c
         paint(c, grey, grey, grey);
       }
     }
-  for (const Cell c : frontier) paint(c, 40, 90, 220);
+  for (const Source& s : frontier) paint(s.cell, 40, 90, 220);
   for (const Cell c : way) paint(c, 220, 30, 30);
   return image;
 }
@@ -93,25 +94,25 @@ PlannedWay measured(const std::vector<Cell>& way, const Traversable& floor, cons
 PlanPicture plan_picture(const OccupancyGrid& map, const PlannerConfig& config, const PlanEnds& ends) {
   Traversable floor = traversable(rimmed(map));
   measure_clearance(floor, Planner(config).clearance_cap());
-  std::vector<Source> sources;
-  std::vector<Cell> frontier;
-  if (ends.to) sources.push_back({free_cell("--to", *ends.to, floor, config.transform.d_min), 0.0});
-  const auto clusters = ends.to ? std::vector<FrontierCluster>() : frontier_clusters(floor, config.min_frontier_cells);
-  for (const FrontierCluster& cluster : clusters)
-    for (const Cell c : cluster.cells) {
-      sources.push_back({c, 0.0});
-      frontier.push_back(c);
+  PlanPicture out;
+  std::vector<Source> goals;
+  if (ends.to) {
+    goals.push_back({free_cell("--to", *ends.to, floor, config.transform.d_min), 0.0});
+  } else {
+    for (const FrontierCluster& cluster : frontier_clusters(floor, config.min_frontier_cells)) {
+      for (const Cell c : cluster.cells) goals.push_back({c, 0.0});
+      ++out.frontiers;
     }
-  if (sources.empty()) 
-    throw InputError("has no frontier: no free floor lies beside floor that is unknown; give a target with --to X,Y");
+    if (goals.empty())
+      throw InputError("has no frontier: no free floor lies beside floor that is unknown; give a target with --to X,Y");
+  }
   ExplorationTransform transform;
-  transform.run(floor, sources, config.transform);
+  transform.run(floor, goals, config.transform);
   std::vector<Cell> way;
   if (ends.from) way = transform.descend(free_cell("--from", *ends.from, floor, config.transform.d_min));
-  PlanPicture out;
-  out.frontiers = clusters.size();
   if (!way.empty()) out.way = measured(way, floor, transform);
-  out.image = draw(floor, transform, frontier, way);
+  floor.clearance = {};  // the largest pictures take the memory for what is drawn
+  out.image = draw(floor, transform, goals, way);
   return out;
 }
 
