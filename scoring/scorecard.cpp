@@ -132,6 +132,23 @@ void fill_sights(MapScore& out, const OccupancyGrid& truth, const Walls& walls) 
   out.score_at_best_pose = score * (1.0 - out.detached);
 }
 
+/// Pixels wider than the truth's walls may have dropped whole ones: said, since nothing in the picture tells.
+std::string note_of_coarse_pixels(const OccupancyGrid& map, const OccupancyGrid& truth) {
+  constexpr double kWider = 1.15;
+  const double thickness = 2.0 * wall_half_thickness(truth);
+  if (map.resolution() <= kWider * thickness) return {};
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the map's pixels (%.3g m) are wider than the truth's walls (%.3g m): made smaller by nearest "
+                "neighbour, a map loses whole walls",
+                map.resolution(), thickness);
+  return text;
+}
+
+void add_note(std::string& note, const std::string& more) {
+  if (!more.empty()) note += (note.empty() ? "" : "; ") + more;
+}
+
 /// All numbers at the pose that `out` holds.
 void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls,
              const ScoreConfig& config) {
@@ -142,8 +159,9 @@ void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth
   fill_sights(out, truth, walls);
   out.score = out.score_at_best_pose;
   if (!walls.sights.usable())
-    out.note += std::string(out.note.empty() ? "" : "; ") +
-                "the truth has too few walls with free space on both sides; the score is the overlap";
+    add_note(out.note, "the truth has too few walls with free space on both sides; the score is the overlap");
+  constexpr double kWhole = 0.98;  // recall of a map that lacks nothing to speak of
+  if (out.recall < kWhole) add_note(out.note, note_of_coarse_pixels(map, truth));
   out.errors = wall_errors(walls.overlaps, PlanarTransform(out.T_truth_map), config.worst_places);
   if (config.warp) fill_warp(out, map, truth, walls);
   const GridFrame frame = common_frame(map, truth, out.T_truth_map, kCanvasMargin);
@@ -178,7 +196,10 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
     // Walls that do meet, only at too many poses, are of the right scale.
     if (alignment.by != AlignBy::Auto && tight_agreement(alignment.tight_evidence) < kTightEnough)
       out.scale_hint = agreeing_scale(map_known, truth_known, config.alignment);
-    if (out.scale_hint > 0.0) out.note = scale_note(out.scale_hint, map.resolution());
+    if (out.scale_hint > 0.0)
+      out.note = scale_note(out.scale_hint, map.resolution());
+    else if (alignment.by != AlignBy::Auto)
+      add_note(out.note, note_of_coarse_pixels(map_known, truth_known));
     return out;
   }
   const std::unique_ptr<const Walls> walls = prepared.get();

@@ -168,8 +168,9 @@ class Aligner {
     if (trust.open && !is_mirror_image(tight) && see_the_same(map_, truth_, out.T_truth_map) &&
         (!trust.tight || sees_best(out.T_truth_map))) {
       out.aligned = true;
-      out.note = std::string(trust.tight ? "the walls meet at another pose" : "the walls meet loosely, and at another pose") +
-                 " about as well; what is open and what is blocked decided";
+      out.note =
+          std::string(trust.tight ? "the walls meet at another pose" : "the walls meet loosely, and at another pose") +
+          " about as well; what is open and what is blocked decided";
     }
     if (out.aligned && !trust.tight && out.log_odds < 0.0 && !is_borne_out(map_, truth_, out.T_truth_map)) {
       out.aligned = false;
