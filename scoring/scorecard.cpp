@@ -84,9 +84,8 @@ struct Walls {
 };
 
 /// Eqs. (7) and (8) over features instead of walls.
-void fill_features(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls) {
-  const MapFeatures of_map = features_of(map);
-  const MapFeatures of_truth = features_of(truth);
+void fill_features(MapScore& out, const OccupancyGrid& map, const MapFeatures& of_map, const OccupancyGrid& truth,
+                   const MapFeatures& of_truth, const Walls& walls) {
   out.features = feature_error(of_map, of_truth, EvidenceKind::Surf, out.T_truth_map);
   out.by_features = judge_features(map, of_map, truth, of_truth, out.T_truth_map);
   const FeatureWarp warp = fit_feature_warp(of_map, of_truth, out.T_truth_map, map.frame());
@@ -95,11 +94,11 @@ void fill_features(MapScore& out, const OccupancyGrid& map, const OccupancyGrid&
 }
 
 /// A polynomial bends; a map that came apart has a step. Whichever explains more is what happened to it.
-void fill_break(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls) {
+void fill_break(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, MapBreak seam,
+                const Walls& walls) {
   constexpr double kLeastGain = 0.02;
   constexpr double kLeastShare = 0.3;  // of what is missing to 1
   out.mended_score = out.score;
-  MapBreak seam = find_break(map, truth, out.T_truth_map);
   if (!seam.found) return;
   const OccupancyGrid whole = mended(map, truth, seam);
   const double score = walls.sights.usable() ? walls.sights.at(whole, PlanarTransform()).score
@@ -112,13 +111,17 @@ void fill_break(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& tr
 }
 
 void fill_warp(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls) {
+  // None of these waits for another: on other processors, where there are any.
+  auto of_truth = std::async([&] { return features_of(truth); });
+  auto seam = std::async([&map, &truth, T = out.T_truth_map] { return find_break(map, truth, T); });
+  auto of_map = std::async([&] { return features_of(map); });
   const WarpedScore warped = fit_warp(map, truth, walls.overlaps, out.T_truth_map);
   out.warped = true;
   out.warp_m = warped.size;
   out.warped_score = std::max(out.score, walls.score(warped.warp) * (1.0 - out.detached));
   out.penalised_score = std::max(out.score, out.warped_score * warped.kept);
-  fill_features(out, map, truth, walls);
-  fill_break(out, map, truth, walls);
+  fill_features(out, map, of_map.get(), truth, of_truth.get(), walls);
+  fill_break(out, map, truth, seam.get(), walls);
 }
 
 /// A second drawing on the canvas is a second guess: each is worth its share.
@@ -160,8 +163,8 @@ void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth
   out.score = out.score_at_best_pose;
   if (!walls.sights.usable())
     add_note(out.note, "the truth has too few walls with free space on both sides; the score is the overlap");
-  constexpr double kWhole = 0.98;  // recall of a map that lacks nothing to speak of
-  if (out.recall < kWhole) add_note(out.note, note_of_coarse_pixels(map, truth));
+  constexpr double kWhole = 0.98;  // of a map that lacks nothing to speak of
+  if (out.recall < kWhole && out.score < kWhole) add_note(out.note, note_of_coarse_pixels(map, truth));
   out.errors = wall_errors(walls.overlaps, PlanarTransform(out.T_truth_map), config.worst_places);
   if (config.warp) fill_warp(out, map, truth, walls);
   const GridFrame frame = common_frame(map, truth, out.T_truth_map, kCanvasMargin);

@@ -176,6 +176,9 @@ double to_wall(const WallField& field, const TPoint2D& p, const OccupancyGrid& g
   return std::max(0.0, field.distance(p) - 0.5 * grid.resolution());
 }
 
+/// The centre of the cell of `grid` that p lies in: a wall's cell has one colour, as the score asks it at one place.
+TPoint2D centre_of_cell(const OccupancyGrid& grid, const TPoint2D& p) { return grid.centre(grid.cell(p)); }
+
 /// How a wall `off` metres from the nearest of the other map is drawn.
 Colour wall_colour(double off, const Colour& only) { return off <= kAgree ? kInk : off <= kNear ? kDisplaced : only; }
 
@@ -302,9 +305,11 @@ void write_overlay(const std::string& path, const OccupancyGrid& map, const Occu
   const WallField to_truth(truth, 0.5);
   paint(canvas, map, truth, T_truth_map,
         [&](const TPoint2D& p_map, Occupancy in_map, const TPoint2D& p_truth, Occupancy in_truth, Colour& colour) {
-          if (in_truth == Occupancy::Occupied) colour = wall_colour(to_wall(to_map, p_map, map), kTruthOnly);
+          if (in_truth == Occupancy::Occupied)
+            colour = wall_colour(to_wall(to_map, T_truth_map.inverseComposePoint(centre_of_cell(truth, p_truth)), map),
+                                 kTruthOnly);
           if (in_map != Occupancy::Occupied || colour == kInk) return;
-          const double off = to_wall(to_truth, p_truth, truth);
+          const double off = to_wall(to_truth, T_truth_map.composePoint(centre_of_cell(map, p_map)), truth);
           colour = is_judged(in_truth, off) ? wall_colour(off, kMapOnly) : kNotJudged;
         });
   draw_victims(canvas, victims, T_truth_map);
@@ -327,9 +332,10 @@ void write_error_map(const std::string& path, const OccupancyGrid& map, const Oc
   paint(canvas, map, truth, T_truth_map,
         [&](const TPoint2D& p_map, Occupancy in_map, const TPoint2D& p_truth, Occupancy in_truth, Colour& colour) {
           if (in_truth == Occupancy::Occupied)
-            colour = heat(to_wall(to_map, p_map, map) / tau, kTruthOnly);
+            colour = heat(to_wall(to_map, T_truth_map.inverseComposePoint(centre_of_cell(truth, p_truth)), map) / tau,
+                          kTruthOnly);
           else if (in_map == Occupancy::Occupied) {
-            const double off = to_wall(to_truth, p_truth, truth);
+            const double off = to_wall(to_truth, T_truth_map.composePoint(centre_of_cell(map, p_map)), truth);
             colour = is_judged(in_truth, off) ? heat(off / tau, kMapOnly) : kNotJudged;
           }
         });
