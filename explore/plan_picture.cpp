@@ -73,7 +73,7 @@ RgbImage draw(const Traversable& floor, const ExplorationTransform& transform, c
         paint(c, grey, grey, grey);
       }
     }
-  for (const Source& s : frontier) paint(s.cell, 40, 90, 220);
+  for (const Source& s : goals) paint(s.cell, 40, 90, 220);
   for (const Cell c : way) paint(c, 220, 30, 30);
   return image;
 }

@@ -84,9 +84,8 @@ struct Walls {
 };
 
 /// Eqs. (7) and (8) over features instead of walls.
-void fill_features(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls) {
-  const MapFeatures of_map = features_of(map);
-  const MapFeatures of_truth = features_of(truth);
+void fill_features(MapScore& out, const OccupancyGrid& map, const MapFeatures& of_map, const OccupancyGrid& truth,
+                   const MapFeatures& of_truth, const Walls& walls) {
   out.features = feature_error(of_map, of_truth, EvidenceKind::Surf, out.T_truth_map);
   out.by_features = judge_features(map, of_map, truth, of_truth, out.T_truth_map);
   const FeatureWarp warp = fit_feature_warp(of_map, of_truth, out.T_truth_map, map.frame());
@@ -95,11 +94,11 @@ void fill_features(MapScore& out, const OccupancyGrid& map, const OccupancyGrid&
 }
 
 /// A polynomial bends; a map that came apart has a step. Whichever explains more is what happened to it.
-void fill_break(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls) {
+void fill_break(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, MapBreak seam,
+                const Walls& walls) {
   constexpr double kLeastGain = 0.02;
   constexpr double kLeastShare = 0.3;  // of what is missing to 1
   out.mended_score = out.score;
-  MapBreak seam = find_break(map, truth, out.T_truth_map);
   if (!seam.found) return;
   const OccupancyGrid whole = mended(map, truth, seam);
   const double score = walls.sights.usable() ? walls.sights.at(whole, PlanarTransform()).score
@@ -112,13 +111,17 @@ void fill_break(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& tr
 }
 
 void fill_warp(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls) {
+  // None of these waits for another: on other processors, where there are any.
+  auto of_truth = std::async([&] { return features_of(truth); });
+  auto seam = std::async([&map, &truth, T = out.T_truth_map] { return find_break(map, truth, T); });
+  auto of_map = std::async([&] { return features_of(map); });
   const WarpedScore warped = fit_warp(map, truth, walls.overlaps, out.T_truth_map);
   out.warped = true;
   out.warp_m = warped.size;
   out.warped_score = std::max(out.score, walls.score(warped.warp) * (1.0 - out.detached));
   out.penalised_score = std::max(out.score, out.warped_score * warped.kept);
-  fill_features(out, map, truth, walls);
-  fill_break(out, map, truth, walls);
+  fill_features(out, map, of_map.get(), truth, of_truth.get(), walls);
+  fill_break(out, map, truth, seam.get(), walls);
 }
 
 /// A second drawing on the canvas is a second guess: each is worth its share.
@@ -132,6 +135,23 @@ void fill_sights(MapScore& out, const OccupancyGrid& truth, const Walls& walls) 
   out.score_at_best_pose = score * (1.0 - out.detached);
 }
 
+/// Pixels wider than the truth's walls may have dropped whole ones: said, since nothing in the picture tells.
+std::string note_of_coarse_pixels(const OccupancyGrid& map, const OccupancyGrid& truth) {
+  constexpr double kWider = 1.15;
+  const double thickness = 2.0 * wall_half_thickness(truth);
+  if (map.resolution() <= kWider * thickness) return {};
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the map's pixels (%.3g m) are wider than the truth's walls (%.3g m): made smaller by nearest "
+                "neighbour, a map loses whole walls",
+                map.resolution(), thickness);
+  return text;
+}
+
+void add_note(std::string& note, const std::string& more) {
+  if (!more.empty()) note += (note.empty() ? "" : "; ") + more;
+}
+
 /// All numbers at the pose that `out` holds.
 void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls,
              const ScoreConfig& config) {
@@ -142,8 +162,9 @@ void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth
   fill_sights(out, truth, walls);
   out.score = out.score_at_best_pose;
   if (!walls.sights.usable())
-    out.note += std::string(out.note.empty() ? "" : "; ") +
-                "the truth has too few walls with free space on both sides; the score is the overlap";
+    add_note(out.note, "the truth has too few walls with free space on both sides; the score is the overlap");
+  constexpr double kWhole = 0.98;  // of a map that lacks nothing to speak of
+  if (out.recall < kWhole && out.score < kWhole) add_note(out.note, note_of_coarse_pixels(map, truth));
   out.errors = wall_errors(walls.overlaps, PlanarTransform(out.T_truth_map), config.worst_places);
   if (config.warp) fill_warp(out, map, truth, walls);
   const GridFrame frame = common_frame(map, truth, out.T_truth_map, kCanvasMargin);
@@ -178,7 +199,10 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
     // Walls that do meet, only at too many poses, are of the right scale.
     if (alignment.by != AlignBy::Auto && tight_agreement(alignment.tight_evidence) < kTightEnough)
       out.scale_hint = agreeing_scale(map_known, truth_known, config.alignment);
-    if (out.scale_hint > 0.0) out.note = scale_note(out.scale_hint, map.resolution());
+    if (out.scale_hint > 0.0)
+      out.note = scale_note(out.scale_hint, map.resolution());
+    else if (alignment.by != AlignBy::Auto)
+      add_note(out.note, note_of_coarse_pixels(map_known, truth_known));
     return out;
   }
   const std::unique_ptr<const Walls> walls = prepared.get();

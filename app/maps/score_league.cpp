@@ -32,7 +32,7 @@ void print_ranking(const scoring::League& league, bool warp) {
   for (const scoring::Figure* column : columns) std::printf("  %s", column->label.c_str());
   std::printf("  note\n");
   for (const LeagueEntry& e : league.entries) {
-    std::printf("%4d  %-*s", e.rank, w, one_line(e.team).c_str());
+    std::printf("%4s  %-*s", e.rank_text().c_str(), w, one_line(e.team).c_str());
     if (!e.error.empty()) {
       std::printf("  %s\n", one_line(e.error).c_str());
       continue;

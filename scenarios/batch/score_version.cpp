@@ -19,6 +19,9 @@ std::optional<int> score_version_of(const std::vector<RunRecord>& runs, const st
   std::string first;
   for (const RunRecord& run : runs) {
     if (std::isnan(run.metric("score"))) continue;
+    if (const auto told = run.score->find("score_version"); told != run.score->end() && !told->is_number_integer())
+      throw InputError(source + ": run " + run.run_id + " has a score_version that is no whole number (" +
+                       told->dump().substr(0, 40) + "); make it again with this program");
     const double said = run.metric("score_version");
     const int of_run = std::isnan(said) ? kFirst : static_cast<int>(said);
     if (!version) {

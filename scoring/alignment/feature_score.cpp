@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <future>
 #include <utility>
 
 #include "base/angle.h"
@@ -227,8 +228,9 @@ FeatureVerdict judge_features(const OccupancyGrid& map, const MapFeatures& of_ma
                               const MapFeatures& of_truth, const TPose2D& T_truth_map) {
   FeatureVerdict out;
   const OccupancyGrid image = mirror_image(map);
+  auto wrong_poses = std::async([&] { return poses_of_stranger(image, truth); });  // beside the features
   const MapFeatures of_image = features_of_image(image, of_map);
-  const std::vector<TPose2D> wrong = poses_of_stranger(image, truth);
+  const std::vector<TPose2D> wrong = wrong_poses.get();
   double sum = 0.0;
   int usable = 0;
   for (const EvidenceKind kind : kKinds) {

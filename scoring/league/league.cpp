@@ -34,9 +34,12 @@ void rank_league(std::vector<LeagueEntry>& entries) {
     return std::tie(a.team, a.file) < std::tie(b.team, b.file);
   });
   for (std::size_t i = 0; i < entries.size(); ++i)
-    entries[i].rank =
-        i > 0 && merit(entries[i]) == merit(entries[i - 1]) ? entries[i - 1].rank : static_cast<int>(i) + 1;
+    entries[i].rank = !entries[i].error.empty()                             ? 0
+                      : i > 0 && merit(entries[i]) == merit(entries[i - 1]) ? entries[i - 1].rank
+                                                                            : static_cast<int>(i) + 1;
 }
+
+std::string LeagueEntry::rank_text() const { return rank == 0 ? "-" : std::to_string(rank); }
 
 Evidence LeagueEntry::evidence() const {
   Evidence out;
@@ -53,8 +56,8 @@ std::string league_csv(const std::vector<LeagueEntry>& entries) {
   std::string out = csv_line(header) + "\n";
   for (const LeagueEntry& e : entries) {
     const bool judged = e.error.empty();
-    std::vector<std::string> fields = {std::to_string(e.rank), e.team, judged ? number("%.1f", e.total()) : "",
-                                       judged ? number("%.1f", e.judge) : ""};
+    std::vector<std::string> fields = {judged ? std::to_string(e.rank) : "", e.team,
+                                       judged ? number("%.1f", e.total()) : "", judged ? number("%.1f", e.judge) : ""};
     const Evidence evidence = e.evidence();
     for (const Figure* figure : figures_with(kLeague)) fields.push_back(plain_text_of(*figure, figure->get(evidence)));
     fields.insert(fields.end(), {e.file, e.note()});

@@ -20,7 +20,8 @@ struct LeagueEntry {
   ReportedVictims reported;
   std::optional<LeaguePoints> points;  ///< of victims the team reported
   double judge = 0.0;                  ///< the judge's points
-  int rank = 0;                        ///< from 1; equal figures share the better one
+  int rank = 0;                        ///< from 1; equal figures share the better one; 0: could not be judged
+  std::string rank_text() const;       ///< "-" without one
   std::string note() const { return error.empty() ? score.note : error; }
   /// What the table of figures reads.
   Evidence evidence() const;
@@ -29,12 +30,12 @@ struct LeagueEntry {
 
 /// Sorts and numbers the entries. Those that could be judged come first: the higher score (to 0.001) wins, then
 /// more points (to 0.1). Entries equal in both share a rank and stand in the order of their names; the next rank is as
-/// many higher (1, 2, 2, 4). Entries that could not be judged share the last rank. Neither names nor the order of
+/// many higher (1, 2, 2, 4). Entries that could not be judged come last, without a rank. Neither names nor the order of
 /// `entries` decide anything else.
 void rank_league(std::vector<LeagueEntry>& entries);
 
 /// The ranking as CSV with a header: rank, team, points, judge, the figures that the table has for it, file, note.
-/// Figures of unjudged entries are empty.
+/// Rank and figures of unjudged entries are empty.
 std::string league_csv(const std::vector<LeagueEntry>& entries);
 
 inline constexpr double kJudgesMostPerVictim = 30.0;  ///< points

@@ -78,14 +78,28 @@ LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const Le
   return pictures;
 }
 
+/// A spoilt list of victims is no reason not to judge the map: what the map shows counts, and the note names the list.
+ReportedVictims victims_of(const LoadedMap& map, const std::string& list) {
+  try {
+    return reported_victims(map, list);
+  } catch (const InputError& error) {
+    ReportedVictims out = reported_victims(map, "");
+    out.note = error.what() +
+               std::string(map.symbols.empty() ? "; no victims are counted" : "; the symbols on the map are taken");
+    return out;
+  }
+}
+
 void judge_map(const LeagueFiles& files, const LeagueTruth& truth, const LeagueConfig& config, const std::string& name,
                LeagueEntry& entry, LeaguePictures& pictures) {
   const LoadedMap loaded = load_map(files.map, {config.map_resolution, false});
-  entry.reported = reported_victims(loaded, files.pois);
+  entry.reported = victims_of(loaded, files.pois);
   if (!entry.reported.note.empty() && config.tell) config.tell(entry.reported.note);
   entry.score = score_map(loaded.grid, truth.grid, config.score);
   if (same_content(files.map, truth.path))
     entry.score.note += std::string(entry.score.note.empty() ? "" : "; ") + "a copy of the truth, byte for byte";
+  if (!entry.reported.note.empty())
+    entry.score.note += std::string(entry.score.note.empty() ? "" : "; ") + entry.reported.note;
   entry.points = victim_points(loaded.grid, truth.grid, entry.score, entry.reported, truth.victims);
   if (!config.out.empty()) pictures = draw(entry, loaded.grid, truth, config, name);
 }

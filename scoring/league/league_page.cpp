@@ -30,7 +30,7 @@ std::string row(const LeagueEntry& e, std::size_t index, const LeaguePictures& p
   const std::string name = pictures.overlay.empty()
                                ? escape_html(e.team)
                                : "<a href=\"#" + anchor(index) + "\">" + escape_html(e.team) + "</a>";
-  std::string html = "<tr><td class=\"n\">" + std::to_string(e.rank) + "</td><td>" + name + "</td>";
+  std::string html = "<tr><td class=\"n\">" + e.rank_text() + "</td><td>" + name + "</td>";
   if (!e.error.empty())
     return html + "<td class=\"failed\" colspan=\"" +
            std::to_string((with_points ? 6 : 0) + figures_with(kRanking).size() + 2) + "\">" + escape_html(e.error) +
@@ -129,8 +129,8 @@ std::string league_page(const std::string& truth, bool with_points, const std::v
   if (!left_out.empty()) body += "<p class=\"note\">No team's maps: " + escape_html(left_out) + "</p>\n";
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (pictures[i].overlay.empty()) continue;
-    body += "<h2 id=\"" + anchor(i) + "\">" + std::to_string(entries[i].rank) + ". " + escape_html(entries[i].team) +
-            "</h2>\n" + neighbours(entries, pictures, i);
+    body += "<h2 id=\"" + anchor(i) + "\">" + (entries[i].rank > 0 ? entries[i].rank_text() + ". " : "") +
+            escape_html(entries[i].team) + "</h2>\n" + neighbours(entries, pictures, i);
     body += figure(entries[i], pictures[i].overlay,
                    entries[i].score.aligned               ? "laid over the truth"
                    : entries[i].score.by != AlignBy::Auto ? "best pose, not trusted"

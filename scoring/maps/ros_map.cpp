@@ -1,6 +1,7 @@
 #include "scoring/maps/ros_map.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
@@ -8,16 +9,49 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/image/rich_tiff.h"
 #include "base/text/number_text.h"
 #include "base/text/text_file.h"
 #include "base/text/words.h"
 #include "base/yaml/strict_yaml.h"
 #include "scoring/maps/colours/league_colours.h"
+#include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/colours/map_colours.h"
 #include "scoring/maps/known_box.h"
 #include "scoring/maps/raster_image.h"
 
 namespace rubble::scoring {
+namespace {
+
+bool has_tiff_ending(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".tif" || ending == ".tiff";
+}
+
+/// The picture alone: where it lies says the yaml.
+RichTiff upright_tiff(const std::string& path) {
+  RichTiff out = read_rich_tiff(path, league::kUnexplored);
+  check_image_size(path, out.tiff.image.width, out.tiff.image.height);
+  turn_upright(out);
+  return out;
+}
+
+/// With a fourth channel where there is opacity.
+cv::Mat raster_of(const RgbImage& image) {
+  cv::Mat out(image.height, image.width, image.alpha.empty() ? CV_8UC3 : CV_8UC4);
+  unsigned char* to = out.ptr<unsigned char>();
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint8_t* const p = image.pixel(x, y);
+      to = std::copy(p, p + 3, to);
+      if (!image.alpha.empty()) *to++ = image.alpha[image.index(x, y)];
+    }
+  return out;
+}
+
+}  // namespace
 
 OccupancyGrid read_ros_map(const std::string& yaml_path) {
   const YamlMap root = YamlMap::load(yaml_path);
@@ -43,13 +77,16 @@ OccupancyGrid read_ros_map(const std::string& yaml_path) {
     root.fail("mode", "is '" + mode + "'; there are trinary, scale and raw");
 
   const std::filesystem::path image_path = std::filesystem::path(yaml_path).parent_path() / image_name;
-  const cv::Mat image = read_raster(image_path.string());
+  const bool is_tiff = has_tiff_ending(image_path);
+  RichTiff tiff;
+  if (is_tiff) tiff = upright_tiff(image_path.string());
+  const cv::Mat image = is_tiff ? raster_of(tiff.tiff.image) : read_raster(image_path.string());
   OccupancyGrid grid(GridFrame{image.cols, image.rows, resolution, origin.empty() ? 0.0 : origin[0],
                                origin.empty() ? 0.0 : origin[1]});
   if (image.channels() >= 3) {
-    const RgbImage coloured = read_rgb(image_path.string());
-    if (is_league_map(coloured)) {
-      grid.cells() = classify(coloured).classes.cells();
+    const RgbImage coloured = is_tiff ? tiff.tiff.image : read_rgb(image_path.string());
+    if (!tiff.notes.meaning.empty() || is_league_map(coloured)) {
+      grid.cells() = classify(coloured, tiff.notes).classes.cells();
       return grid;
     }
   }

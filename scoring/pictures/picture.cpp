@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <opencv2/imgproc.hpp>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,11 +22,11 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using Colour = cv::Vec3b;  // blue, green, red
 
-constexpr double kAgree = 0.05;    // walls this near count as the same in the overlay [m]
-constexpr double kNear = 0.15;     // walls this near as displaced [m]
-constexpr int kStrip = 34;         // height of the legend strip [pixels]
-constexpr int kLeastWidth = 1100;  // of the picture, for its legend [pixels]
-constexpr int kMaxSide = 3000;     // of the picture [pixels]
+constexpr double kAgree = 0.05;   // walls this near count as the same in the overlay [m]
+constexpr double kNear = 0.15;    // walls this near as displaced [m]
+constexpr int kRow = 26;          // height of a row of the legend [pixels]
+constexpr int kLeastWidth = 360;  // of the picture, for its legend [pixels]
+constexpr int kMaxSide = 3000;    // of the picture [pixels]
 
 const Colour kInk(40, 34, 30);
 const Colour kDisplaced(40, 150, 225);
@@ -40,7 +42,8 @@ const Colour kWall(120, 40, 0);
 /// Pixels a cell such that a map of usual size can be read and a huge one still fits a screenful or two.
 int pixels_per_cell(const GridFrame& frame) {
   const int side = std::max(frame.width, frame.height);
-  return std::clamp(1800 / std::max(side, 1), 1, 3);
+  // Small arenas fill the picture, too.
+  return std::max(std::clamp(1800 / std::max(side, 1), 1, 3), std::clamp(1200 / std::max(side, 1), 1, 12));
 }
 
 /// The frame of the picture: large maps are drawn with coarser cells.
@@ -54,12 +57,11 @@ GridFrame picture_frame(GridFrame frame) {
   return frame;
 }
 
-/// A picture of a metric frame, north up, with room for a legend below.
+/// A picture of a metric frame, north up. A legend is put below when all else is drawn.
 struct Canvas {
   explicit Canvas(const GridFrame& map_frame) : frame(picture_frame(map_frame)), scale(pixels_per_cell(frame)) {
     const int width = std::max(frame.width * scale, kLeastWidth);
-    image = cv::Mat(frame.height * scale + kStrip, width, CV_8UC3, cv::Scalar(206, 206, 206));
-    image.rowRange(frame.height * scale, image.rows).setTo(cv::Scalar(250, 250, 250));
+    image = cv::Mat(frame.height * scale, width, CV_8UC3, cv::Scalar(206, 206, 206));
   }
   int map_rows() const { return frame.height * scale; }
   int map_columns() const { return frame.width * scale; }
@@ -83,23 +85,58 @@ int text_width(const std::string& words) {
   return cv::getTextSize(words, cv::FONT_HERSHEY_SIMPLEX, 0.42, 1, &base).width;
 }
 
-/// A bar of a round number of metres, at most a fifth of the picture wide, at the right of the strip; what lies left of
-/// `begin` [pixels] is taken.
-void draw_scale_bar(Canvas& canvas, int begin) {
-  const int behind = 12 + text_width("100 m") + 6;
-  const double room = std::min(0.2 * canvas.image.cols, static_cast<double>(canvas.image.cols - behind - begin)) *
-                      canvas.frame.resolution / canvas.scale;
+/// The longest bar of a round number of metres that fits into so many pixels.
+struct ScaleBar {
+  int pixels = 0;
+  std::string words;
+};
+
+ScaleBar scale_bar(const Canvas& canvas, int room) {
   double length = 0.1;
   for (const double candidate : {0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0})
-    if (candidate <= room) length = candidate;
-  const int pixels = static_cast<int>(std::lround(length * canvas.scale / canvas.frame.resolution));
-  const std::string words = length < 1.0 ? cv::format("%.1f m", length) : cv::format("%.0f m", length);
-  const int right = canvas.image.cols - 12 - text_width(words) - 6;
-  const int y = canvas.map_rows() + kStrip / 2;
-  cv::rectangle(canvas.image, {right - pixels, y - 2}, {right, y + 2}, cv::Scalar(kInk), cv::FILLED);
-  cv::line(canvas.image, {right - pixels, y - 6}, {right - pixels, y + 6}, cv::Scalar(kInk));
-  cv::line(canvas.image, {right, y - 6}, {right, y + 6}, cv::Scalar(kInk));
-  text(canvas, words, right + 6, y + 5);
+    if (candidate * canvas.scale <= room * canvas.frame.resolution) length = candidate;
+  return {static_cast<int>(std::lround(length * canvas.scale / canvas.frame.resolution)),
+          length < 1.0 ? cv::format("%.1f m", length) : cv::format("%.0f m", length)};
+}
+
+/// A piece of the legend, drawn from `x` on around the row `y`.
+struct StripItem {
+  int width = 0;
+  std::function<void(int x, int y)> draw;
+};
+
+/// Puts the legend below the picture, in as many rows as it takes, and a scale bar at the right of the last one. Only
+/// then is the picture as high as it will be: nothing else is drawn later.
+void put_strip(Canvas& canvas, const std::vector<StripItem>& items) {
+  constexpr int kEdge = 10;
+  constexpr int kBetween = 14;
+  const int bar_room = std::min(240, canvas.image.cols / 5);
+  const ScaleBar bar = scale_bar(canvas, bar_room);
+  std::vector<cv::Point> places;
+  int x = kEdge;
+  int row = 0;
+  const auto place = [&](int width) {
+    if (x > kEdge && x + width + kEdge > canvas.image.cols) {
+      x = kEdge;
+      ++row;
+    }
+    places.emplace_back(x, row);
+    x += width + kBetween;
+  };
+  for (const StripItem& item : items) place(item.width);
+  const int bar_width = bar.pixels + 6 + text_width(bar.words);
+  place(bar_width);
+  const int top = canvas.image.rows;
+  cv::copyMakeBorder(canvas.image, canvas.image, 0, (row + 1) * kRow + 8, 0, 0, cv::BORDER_CONSTANT,
+                     cv::Scalar(250, 250, 250));
+  const auto middle = [&](const cv::Point& at) { return top + 4 + at.y * kRow + kRow / 2; };
+  for (std::size_t i = 0; i < items.size(); ++i) items[i].draw(places[i].x, middle(places[i]));
+  const int y = middle(places.back());
+  const int left = std::max(places.back().x, canvas.image.cols - kEdge - bar_width);
+  const int right = left + bar.pixels;
+  cv::rectangle(canvas.image, {left, y - 2}, {right, y + 2}, cv::Scalar(kInk), cv::FILLED);
+  for (const int end : {left, right}) cv::line(canvas.image, {end, y - 6}, {end, y + 6}, cv::Scalar(kInk));
+  text(canvas, bar.words, right + 6, y + 5);
 }
 
 struct LegendEntry {
@@ -108,16 +145,15 @@ struct LegendEntry {
 };
 
 void draw_legend(Canvas& canvas, const std::vector<LegendEntry>& entries) {
-  int x = 10;
-  const int y = canvas.map_rows() + kStrip / 2;
-  for (const LegendEntry& entry : entries) {
-    const cv::Rect box(x, y - 6, 12, 12);
-    cv::rectangle(canvas.image, box, cv::Scalar(entry.colour), cv::FILLED);
-    cv::rectangle(canvas.image, box, cv::Scalar(120, 120, 120));
-    text(canvas, entry.words, x + 17, y + 5);
-    x += 17 + text_width(entry.words) + 14;
-  }
-  draw_scale_bar(canvas, x);
+  std::vector<StripItem> items;
+  for (const LegendEntry& entry : entries)
+    items.push_back({17 + text_width(entry.words), [&canvas, &entry](int x, int y) {
+                       const cv::Rect box(x, y - 6, 12, 12);
+                       cv::rectangle(canvas.image, box, cv::Scalar(entry.colour), cv::FILLED);
+                       cv::rectangle(canvas.image, box, cv::Scalar(120, 120, 120));
+                       text(canvas, entry.words, x + 17, y + 5);
+                     }});
+  put_strip(canvas, items);
 }
 
 Colour mixed(const Colour& a, const Colour& b, double share) {
@@ -140,6 +176,9 @@ double to_wall(const WallField& field, const TPoint2D& p, const OccupancyGrid& g
   return std::max(0.0, field.distance(p) - 0.5 * grid.resolution());
 }
 
+/// The centre of the cell of `grid` that p lies in: a wall's cell has one colour, as the score asks it at one place.
+TPoint2D centre_of_cell(const OccupancyGrid& grid, const TPoint2D& p) { return grid.centre(grid.cell(p)); }
+
 /// How a wall `off` metres from the nearest of the other map is drawn.
 Colour wall_colour(double off, const Colour& only) { return off <= kAgree ? kInk : off <= kNear ? kDisplaced : only; }
 
@@ -155,19 +194,20 @@ Colour background(Occupancy map, Occupancy truth) {
 }
 
 void draw_heat_bar(Canvas& canvas, double tau) {
-  const int y = canvas.map_rows() + kStrip / 2;
-  int x = 10;
-  for (const auto& [words, only] :
-       {std::pair{"map's wall off: 0", kMapOnly}, std::pair{"truth's wall off: 0", kTruthOnly}}) {
-    text(canvas, words, x, y + 5);
-    x += text_width(words) + 8;
-    for (int i = 0; i < 60; ++i)
-      cv::line(canvas.image, {x + i, y - 6}, {x + i, y + 6}, cv::Scalar(heat(i / 59.0, only)));
-    const std::string most = cv::format("%.2g m: ", tau) + std::string(only == kMapOnly ? "phantom" : "missing");
-    text(canvas, most, x + 66, y + 5);
-    x += 66 + text_width(most) + 16;
+  std::vector<StripItem> items;
+  for (const bool of_map : {true, false}) {
+    const std::string words = of_map ? "map's wall off: 0" : "truth's wall off: 0";
+    const std::string most = cv::format("%.2g m: ", tau) + (of_map ? "phantom" : "missing");
+    const int begin = text_width(words) + 8;
+    items.push_back({begin + 66 + text_width(most), [&canvas, of_map, words, most, begin](int x, int y) {
+                       text(canvas, words, x, y + 5);
+                       for (int i = 0; i < 60; ++i)
+                         cv::line(canvas.image, {x + begin + i, y - 6}, {x + begin + i, y + 6},
+                                  cv::Scalar(heat(i / 59.0, of_map ? kMapOnly : kTruthOnly)));
+                       text(canvas, most, x + begin + 66, y + 5);
+                     }});
   }
-  draw_scale_bar(canvas, x);
+  put_strip(canvas, items);
 }
 
 cv::Point pixel_of(const Canvas& canvas, const TPoint2D& p) {
@@ -207,11 +247,26 @@ void draw_victims(Canvas& canvas, const Marks& victims, const TPose2D& T_truth_m
   }
 }
 
-/// A band over the picture's top that nobody overlooks.
+/// A band over the picture's top that nobody overlooks, as many lines as the words take.
 void draw_warning(Canvas& canvas, const std::string& words) {
+  constexpr int kLine = 22;
+  constexpr double kSize = 0.5;
   if (words.empty()) return;
-  cv::rectangle(canvas.image, {0, 0}, {canvas.image.cols - 1, 26}, cv::Scalar(kMapOnly), cv::FILLED);
-  cv::putText(canvas.image, words, {10, 18}, cv::FONT_HERSHEY_SIMPLEX, 0.5, cv::Scalar(255, 255, 255), 1, cv::LINE_AA);
+  const auto width = [](const std::string& line) {
+    int base = 0;
+    return cv::getTextSize(line, cv::FONT_HERSHEY_SIMPLEX, kSize, 1, &base).width;
+  };
+  std::vector<std::string> lines(1);
+  std::stringstream all(words);
+  for (std::string word; all >> word;) {
+    if (!lines.back().empty() && width(lines.back() + " " + word) > canvas.image.cols - 20) lines.emplace_back();
+    lines.back() += (lines.back().empty() ? "" : " ") + word;
+  }
+  const int bottom = static_cast<int>(lines.size()) * kLine + 4;
+  cv::rectangle(canvas.image, {0, 0}, {canvas.image.cols - 1, bottom}, cv::Scalar(kMapOnly), cv::FILLED);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    cv::putText(canvas.image, lines[i], {10, 18 + static_cast<int>(i) * kLine}, cv::FONT_HERSHEY_SIMPLEX, kSize,
+                cv::Scalar(255, 255, 255), 1, cv::LINE_AA);
 }
 
 TPoint2D middle_of(const OccupancyGrid& grid) {
@@ -250,9 +305,11 @@ void write_overlay(const std::string& path, const OccupancyGrid& map, const Occu
   const WallField to_truth(truth, 0.5);
   paint(canvas, map, truth, T_truth_map,
         [&](const TPoint2D& p_map, Occupancy in_map, const TPoint2D& p_truth, Occupancy in_truth, Colour& colour) {
-          if (in_truth == Occupancy::Occupied) colour = wall_colour(to_wall(to_map, p_map, map), kTruthOnly);
+          if (in_truth == Occupancy::Occupied)
+            colour = wall_colour(to_wall(to_map, T_truth_map.inverseComposePoint(centre_of_cell(truth, p_truth)), map),
+                                 kTruthOnly);
           if (in_map != Occupancy::Occupied || colour == kInk) return;
-          const double off = to_wall(to_truth, p_truth, truth);
+          const double off = to_wall(to_truth, T_truth_map.composePoint(centre_of_cell(map, p_map)), truth);
           colour = is_judged(in_truth, off) ? wall_colour(off, kMapOnly) : kNotJudged;
         });
   draw_victims(canvas, victims, T_truth_map);
@@ -275,9 +332,10 @@ void write_error_map(const std::string& path, const OccupancyGrid& map, const Oc
   paint(canvas, map, truth, T_truth_map,
         [&](const TPoint2D& p_map, Occupancy in_map, const TPoint2D& p_truth, Occupancy in_truth, Colour& colour) {
           if (in_truth == Occupancy::Occupied)
-            colour = heat(to_wall(to_map, p_map, map) / tau, kTruthOnly);
+            colour = heat(to_wall(to_map, T_truth_map.inverseComposePoint(centre_of_cell(truth, p_truth)), map) / tau,
+                          kTruthOnly);
           else if (in_map == Occupancy::Occupied) {
-            const double off = to_wall(to_truth, p_truth, truth);
+            const double off = to_wall(to_truth, T_truth_map.composePoint(centre_of_cell(map, p_map)), truth);
             colour = is_judged(in_truth, off) ? heat(off / tau, kMapOnly) : kNotJudged;
           }
         });
@@ -294,8 +352,7 @@ void write_side_by_side(const std::string& path, const OccupancyGrid& map, const
   const int rows = pane.map_rows();
   const int columns = pane.map_columns();
   Canvas both = pane;
-  both.image = cv::Mat(rows + kStrip, std::max(2 * columns + kGap, kLeastWidth), CV_8UC3, cv::Scalar(kUnknown));
-  both.image.rowRange(rows, both.image.rows).setTo(cv::Scalar(250, 250, 250));
+  both.image = cv::Mat(rows, std::max(2 * columns + kGap, kLeastWidth), CV_8UC3, cv::Scalar(kUnknown));
   const auto plain = [](Occupancy o) {
     return o == Occupancy::Free ? kBothFree : o == Occupancy::Occupied ? kInk : kUnknown;
   };

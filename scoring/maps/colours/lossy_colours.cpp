@@ -3,9 +3,25 @@
 #include <algorithm>
 #include <cstdlib>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 namespace rubble::scoring {
 namespace {
+
+/// The pieces of `weak` that have a pixel of `sure` in them.
+cv::Mat grown_from(const cv::Mat& sure, const cv::Mat& weak) {
+  cv::Mat labels;
+  const int count = cv::connectedComponents(weak, labels, 8, CV_32S);
+  std::vector<bool> holds(static_cast<std::size_t>(count), false);
+  for (int y = 0; y < weak.rows; ++y)
+    for (int x = 0; x < weak.cols; ++x)
+      if (sure.at<unsigned char>(y, x) != 0) holds[static_cast<std::size_t>(labels.at<int>(y, x))] = true;
+  cv::Mat out = weak.clone();
+  for (int y = 0; y < weak.rows; ++y)
+    for (int x = 0; x < weak.cols; ++x)
+      if (!holds[static_cast<std::size_t>(labels.at<int>(y, x))]) out.at<unsigned char>(y, x) = 0;
+  return out;
+}
 
 constexpr float kWhite = 255.0F;
 constexpr float kWallBrightness = 37.0F;  // of 0,40,120
@@ -101,19 +117,11 @@ cv::Mat walls_by_brightness(const RgbImage& image) {
     cv::Mat weak_here = weak.rowRange(band), sure_here = sure.rowRange(band);
     dark_in(image, band, weak_here, sure_here);
   }
-  cv::Mat labels;
-  const int count = cv::connectedComponents(weak, labels, 8, CV_32S);
-  std::vector<int> sures(static_cast<std::size_t>(count), 0);
-  for (int y = 0; y < weak.rows; ++y)
-    for (int x = 0; x < weak.cols; ++x)
-      if (sure.at<unsigned char>(y, x) != 0) ++sures[static_cast<std::size_t>(labels.at<int>(y, x))];
-  for (int y = 0; y < weak.rows; ++y)
-    for (int x = 0; x < weak.cols; ++x)
-      if (sures[static_cast<std::size_t>(labels.at<int>(y, x))] == 0) weak.at<unsigned char>(y, x) = 0;
-  return weak;
+  return grown_from(sure & weak, weak);
 }
 
 cv::Mat unexplored_by_brightness(const RgbImage& image) {
+  constexpr int kEven = 7;  // [pixels]
   cv::Mat brightness(image.height, image.width, CV_8U);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
@@ -121,11 +129,16 @@ cv::Mat unexplored_by_brightness(const RgbImage& image) {
       brightness.at<unsigned char>(y, x) =
           static_cast<unsigned char>((299 * p[0] + 587 * p[1] + 114 * p[2] + 500) / 1000);
     }
+  // Where the way of the robot meets the grid, both blur to the same shade; ground has it evenly somewhere.
+  cv::Mat darkest, lightest;
+  cv::erode(brightness, darkest, cv::Mat::ones(kEven, kEven, CV_8U));
+  cv::dilate(brightness, lightest, cv::Mat::ones(kEven, kEven, CV_8U));
   // The grid of explored ground, lines of a pixel or two, is no shade of it.
   cv::morphologyEx(brightness, brightness, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8U));
   cv::Mat middle;
   cv::medianBlur(brightness, middle, 5);
-  return (middle >= 220) & (middle <= 246);
+  const cv::Mat weak = (middle >= 220) & (middle <= 246);
+  return grown_from(weak & (darkest >= 212) & (lightest <= 248), weak);
 }
 
 }  // namespace rubble::scoring

@@ -22,6 +22,23 @@ TEST(PoseScore, AtThePoseFoundItIsTheScoreOfTheSearch) {
   EXPECT_EQ(there.known, found.known);
 }
 
+/// Nearest neighbour to pixels wider than the walls drops whole walls; averages and fine pixels need no such word.
+TEST(PoseScore, PixelsWiderThanTheTruthsWallsAreSaidWhereWallsAreMissing) {
+  const OccupancyGrid truth = maze({});
+  const auto note_at = [&](int every) {
+    GridFrame f = truth.frame();
+    f.width /= every;
+    f.height /= every;
+    f.resolution *= every;
+    OccupancyGrid small(f);
+    for (int y = 0; y < f.height; ++y)
+      for (int x = 0; x < f.width; ++x) small[{x, y}] = truth[{every * x, every * y}];
+    return score_at(small, truth, {}).note;
+  };
+  EXPECT_EQ(note_at(1).find("wider than the truth's walls"), std::string::npos) << note_at(1);
+  EXPECT_NE(note_at(3).find("wider than the truth's walls"), std::string::npos) << note_at(3);
+}
+
 TEST(PoseScore, TrueScaleGivesBackAPerfectScore) {
   const OccupancyGrid truth = maze({});
   const OccupancyGrid half = scaled_frame(truth, 0.5);

@@ -72,6 +72,18 @@ TEST(Compare, ScoresOfOtherVersionsAreRefusedByName) {
   EXPECT_NO_THROW(compare(before, now, "A", "B")) << "logs without truth have no score";
 }
 
+TEST(Compare, AScoreVersionThatIsNoNumberIsNamedAsWhatItIs) {
+  const ResultSet now = runs("c", 4, arena_score);
+  ResultSet before = now;
+  before.runs.front().score["score_version"] = "3";
+  try {
+    compare(before, now, "A", "B");
+    ADD_FAILURE() << "compared";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("has a score_version that is no whole number (\"3\")"));
+  }
+}
+
 TEST(Compare, TheSameResultsAreIdentical) {
   const ResultSet a = runs("c", 10, arena_score);
   const auto comparison = compare(a, a, "A", "A");

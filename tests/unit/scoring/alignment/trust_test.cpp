@@ -55,17 +55,23 @@ TEST(Trust, NoWitnessIsAskedWhereARivalIsAhead) {
 
 TEST(Trust, NoWitnessIsAskedWhereTheWallsAreRatherAgainstThePose) {
   // Of these the log odds fall below 0 by contradiction alone; the margin stays narrow.
-  for (double contradicted = 0.1; contradicted < 0.4; contradicted += 0.02) {
+  int for_it = 0, against_it = 0;
+  for (double contradicted = 0.0; contradicted < 0.4; contradicted += 0.02) {
     const PoseEvidence wide = loose(0.5, contradicted);
+    const double odds = log_odds(wide, kTight);
     Rivals rivals;
-    rivals.log_odds = log_odds(wide, kTight) - 0.2;
+    rivals.log_odds = odds - 0.2;
     const Trust trust = judge(wide, kTight, rivals);
-    EXPECT_FALSE(trust.trusted);
-    EXPECT_EQ(trust.open, log_odds(wide, kTight) > 0.0) << contradicted;
+    EXPECT_EQ(trust.open, !trust.trusted && odds > 0.0) << contradicted;
+    EXPECT_FALSE(trust.trusted && odds < 1.2) << contradicted << ": 2 x 0.2 are too little beside such odds";
+    if (trust.trusted) continue;
+    ++(odds > 0.0 ? for_it : against_it);
   }
+  EXPECT_GT(for_it, 0) << "the law was never tried with walls for the pose";
+  EXPECT_GT(against_it, 0) << "nor with walls against it";
 }
 
-TEST(Trust, WallsThatMeetToTheDecimetreLeaveNothingOpen) {
+TEST(Trust, WallsThatMeetToTheDecimetreAtTwoPlacesLeaveItToLinesOfSight) {
   const PoseEvidence tight = loose(0.9, 0.0);
   ASSERT_GE(tight_agreement(tight), kTightEnough);
   Rivals near;
@@ -73,8 +79,29 @@ TEST(Trust, WallsThatMeetToTheDecimetreLeaveNothingOpen) {
   const Trust trust = judge(tight, tight, near);
   EXPECT_TRUE(trust.tight);
   EXPECT_FALSE(trust.trusted);
-  EXPECT_FALSE(trust.open);
+  EXPECT_TRUE(trust.open);
   EXPECT_TRUE(judge(tight, tight, Rivals{}).trusted);
+  near.tight = tight_agreement(tight);
+  EXPECT_FALSE(judge(tight, tight, near).open) << "a rival is as good";
+}
+
+TEST(Trust, OfAFragmentThatFitsTwiceNothingIsAsked) {
+  PoseEvidence tight = loose(0.95, 0.0);
+  tight.map.known = 0.95;
+  tight.truth.known = 0.2;
+  tight.common_area = 15.0;
+  ASSERT_GE(tight_agreement(tight), kTightEnough);
+  Rivals near;
+  near.tight = 0.99 * tight_agreement(tight);
+  EXPECT_FALSE(judge(tight, tight, near).open);
+}
+
+TEST(Trust, RivalsKeepThePoseThatMeetsBest) {
+  Rivals rivals;
+  rivals.meet(kWide, loose(0.3, 0.0), {1.0, 0.0, 0.0});
+  rivals.meet(kWide, loose(0.5, 0.0), {2.0, 0.0, 0.0});
+  rivals.meet(kWide, loose(0.4, 0.0), {3.0, 0.0, 0.0});
+  EXPECT_EQ(rivals.T_tight.x, 2.0);
 }
 
 }  // namespace

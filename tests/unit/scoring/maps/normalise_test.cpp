@@ -57,6 +57,59 @@ TEST_F(LoadMap, RosMapKeepsClassesScaleAndOrigin) {
   EXPECT_THAT(map.recognised, ::testing::HasSubstr("ROS map"));
 }
 
+TEST_F(LoadMap, RosMapMayNameATiff) {
+  const OccupancyGrid grid = maze({4, 3, 1});
+  text("map.yaml", "image: map.tif\nresolution: 0.05\norigin: [-0.5, -0.5, 0.0]\n");
+  for (const bool coloured : {false, true}) {
+    cv::imwrite(path("map.tif"), coloured ? league_image(grid, false) : grey_image(grid, 0, 205, 254));
+    const LoadedMap map = load_map(path("map.yaml"));
+    EXPECT_EQ(map.grid.frame(), grid.frame());
+    EXPECT_EQ(agreement(map.grid, grid), 1.0) << coloured;
+  }
+}
+
+/// A run's map: explored ground with a grid, and the robot's way over it, along the grid and across.
+TEST(LossyColours, GroundUnderTheWayAndTheGridIsExploredAtAnyAngleAndQuality) {
+  OccupancyGrid grid(GridFrame{240, 240, 0.025, 0.0, 0.0});
+  for (int y = 20; y < 220; ++y)
+    for (int x = 20; x < 220; ++x)
+      grid[{x, y}] = x < 22 || y < 22 || x >= 218 || y >= 218 ? Occupancy::Occupied : Occupancy::Free;
+  cv::Mat picture = league_image(grid, false);
+  std::vector<cv::Point> way;
+  for (int i = 0; i < 46; ++i) way.emplace_back(30 + 4 * i, 60 + (i % 7) + (i % 3) * 2);
+  for (int i = 0; i < 46; ++i) way.emplace_back(120 + (i % 5), 30 + 4 * i);
+  for (int i = 0; i < 46; ++i) way.emplace_back(30 + 4 * i, 200 - 4 * i + (i % 4));
+  cv::polylines(picture, way, false, {140, 0, 120}, 1);
+  int cases = 0;
+  for (const double degrees : {0.0, 5.0, 13.0, 23.0, 31.0, 45.0})
+    for (const int canvas : {-1, 0, 255})
+      for (const int quality : {50, 60, 70, 85, 95}) {
+        const cv::Scalar colour = canvas < 0 ? cv::Scalar(227, 226, 226) : cv::Scalar::all(canvas);
+        const TurnedImage t = turned(picture, degrees, cv::INTER_LINEAR, colour);
+        std::vector<unsigned char> jpeg;
+        cv::imencode(".jpg", t.image, jpeg, {cv::IMWRITE_JPEG_QUALITY, quality});
+        const ClassImage read = classify(to_rgb(cv::imdecode(jpeg, cv::IMREAD_COLOR)));
+        // Ground three cells off any wall: where it lies in the picture, and what is said of it there.
+        int asked = 0, explored = 0, unexplored = 0;
+        for (int y = 0; y < 240; ++y)
+          for (int x = 0; x < 240; ++x) {
+            const bool inside = x >= 25 && y >= 25 && x < 215 && y < 215;
+            const bool outside = x < 15 || y < 15 || x >= 225 || y >= 225;
+            if (!inside && !outside) continue;
+            const cv::Mat at = t.turn * (cv::Mat_<double>(3, 1) << x, 239 - y, 1.0);
+            const int column = static_cast<int>(std::lround(at.at<double>(0)));
+            const int row = static_cast<int>(std::lround(at.at<double>(1)));
+            const Occupancy said = read.classes[{column, t.image.rows - 1 - row}];
+            if (inside) ++asked, explored += said == Occupancy::Free ? 1 : 0;
+            if (outside) unexplored += said != Occupancy::Unknown ? 1 : 0;
+          }
+        ++cases;
+        EXPECT_GE(explored, 0.995 * asked) << degrees << " deg, canvas " << canvas << ", quality " << quality;
+        EXPECT_LE(unexplored, 0.02 * 240 * 240) << degrees << " deg, canvas " << canvas << ", quality " << quality;
+      }
+  EXPECT_GE(cases, 60);
+}
+
 TEST_F(LoadMap, RosMapHonoursNegate) {
   const OccupancyGrid grid = maze({3, 3, 1});
   cv::imwrite(path("map.png"), grey_image(grid, 255, 128, 0));

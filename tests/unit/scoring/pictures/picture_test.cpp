@@ -27,6 +27,13 @@ OccupancyGrid room(double shift, bool wall = true) {
   return grid;
 }
 
+/// Above the legend, which is on lighter ground and as high as its rows.
+int rows_of_map(const cv::Mat& image) {
+  int rows = image.rows;
+  while (rows > 0 && image.at<cv::Vec3b>(rows - 1, 0) == cv::Vec3b(250, 250, 250)) --rows;
+  return rows;
+}
+
 class Picture : public ::testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove(path_); }
@@ -34,7 +41,7 @@ class Picture : public ::testing::Test {
   Tints tints(double from = 0.0) const {
     const cv::Mat image = cv::imread(path_);
     Tints out;
-    const int height = image.rows - 40;
+    const int height = rows_of_map(image);
     for (int y = static_cast<int>(from * height); y < height; ++y)
       for (int x = 0; x < image.cols; ++x) {
         const cv::Vec3b c = image.at<cv::Vec3b>(y, x);
@@ -65,6 +72,22 @@ TEST_F(Picture, WallsAgreeWithinFiveCentimetresAndAreNearWithinFifteen) {
   EXPECT_EQ(tints().orange + tints().dark, 0);
   EXPECT_GT(tints().red, 0);
   EXPECT_GT(tints().blue, 0);
+}
+
+/// Small arenas too: the picture is as wide as the map, and the legend takes the rows it needs below.
+TEST_F(Picture, TheMapFillsThePictureAndTheLegendIsBelow) {
+  for (const int cells : {20, 60, 200, 700}) {
+    OccupancyGrid grid(GridFrame{cells, cells, 0.05, 0.0, 0.0}, Occupancy::Free);
+    draw_wall(grid, {0.3, 0.2}, {0.3, 0.8}, 1);
+    for (const bool error : {false, true}) {
+      error ? write_error_map(path_, grid, grid, {}, 0.5) : write_overlay(path_, grid, grid, {});
+      const cv::Mat image = cv::imread(path_);
+      const int rows = rows_of_map(image);
+      EXPECT_EQ(image.cols, rows) << cells << ": a square map in a square picture";
+      EXPECT_GT(image.rows - rows, 20) << cells;
+      EXPECT_LT(image.rows - rows, image.rows / 3) << cells;
+    }
+  }
 }
 
 TEST_F(Picture, TheErrorMapTellsPhantomFromMissing) {
@@ -102,7 +125,7 @@ TEST_F(Picture, FoundFalseAndMissedVictimsAreToldApart) {
   const auto green = [&] {
     const cv::Mat image = cv::imread(path_);
     int count = 0;
-    for (int y = 0; y < image.rows - 40; ++y)
+    for (int y = 0; y < rows_of_map(image); ++y)
       for (int x = 0; x < image.cols; ++x) {
         const cv::Vec3b c = image.at<cv::Vec3b>(y, x);
         count += c[1] - c[0] > 80 && c[1] - c[2] > 80 ? 1 : 0;
@@ -128,7 +151,7 @@ TEST_F(Picture, SideBySideOutliersLieOnTheirMap) {
     const cv::Mat image = cv::imread(path_);
     double sum = 0.0;
     int count = 0;
-    for (int y = 0; y < image.rows - 40; ++y)
+    for (int y = 0; y < rows_of_map(image); ++y)
       for (int x = 0; x < image.cols; ++x) {
         const cv::Vec3b c = image.at<cv::Vec3b>(y, x);
         if ((red ? c[2] - c[0] : c[0] - c[2]) <= 100) continue;
