@@ -80,7 +80,7 @@ if has alone; then  # the other presets compile the files of a folder as one
   row "files compiled alone (Debug)" "$files" "$left" 0 $((SECONDS - start))
 fi
 has sanitize && counted "whole suite under ASan and UBSan" sanitize "$top/rubble" test --sanitize
-has threads && counted "batch, drivers and emulators under TSan" threads "$top/rubble" test --sanitize=thread
+has threads && counted "batch, drivers, emulators and scoring under TSan" threads "$top/rubble" test --sanitize=thread
 if has faults; then
   for script in "$top"/tests/faults/*_test.sh; do
     name=$(basename "$script" _test.sh)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "arenas/model/geometry.h"
+#include "arenas/model/patch_index.h"
 #include "arenas/truth/canvas.h"
 #include "base/error.h"
 
@@ -119,9 +120,10 @@ void draw_objects(const Arena& arena, Canvas& canvas) {
 
 /// Thin walls are drawn at least 40 mm wide, so that a small picture still shows them.
 void draw_solids(const Arena& arena, Canvas& canvas) {
+  const PatchIndex floors(arena);
   for (const Solid& solid : arena.solids) {
     const bool is_box = solid.element == kVictimBoxElement;
-    const double floor = floor_height(arena, middle(solid.outline));
+    const double floor = floors.floor_height(middle(solid.outline));
     const bool is_hanging = solid.z_bottom > (std::isfinite(floor) ? floor : 0.0) + 0.3;
     const Colour& colour = is_box                                                     ? kBox
                            : is_hanging                                               ? kHanging

@@ -127,14 +127,22 @@ void keep_surfaces(OccupancyGrid& map) {
 
 }  // namespace
 
-OccupancyGrid truth_map(const Arena& arena, double resolution, double slice_height, double margin) {
+OccupancyGrid drawn_map(const Arena& arena, double resolution, double slice_height, double margin) {
   OccupancyGrid map(frame_around(arena, resolution, margin));
   draw_floor(arena, map);
   draw_solids(arena, slice_height, map);
   draw_risers(arena, slice_height, map);
-  keep_reachable(arena, map);
-  keep_surfaces(map);
   return map;
+}
+
+OccupancyGrid around_start(const Arena& arena, OccupancyGrid drawn) {
+  keep_reachable(arena, drawn);
+  keep_surfaces(drawn);
+  return drawn;
+}
+
+OccupancyGrid truth_map(const Arena& arena, double resolution, double slice_height, double margin) {
+  return around_start(arena, drawn_map(arena, resolution, slice_height, margin));
 }
 
 }  // namespace rubble::arenas
