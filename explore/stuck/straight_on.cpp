@@ -11,15 +11,15 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using robot::Drive;
 
-constexpr double kTurning = 0.5;     ///< wheels slower than this share of their command are held [-]
-constexpr double kCurve = 0.4;       ///< the inner wheels are this much slower than the middle: share of its speed [-]
-constexpr double kStraightSpeed = 0.3;       ///< with way on, it slides over what would stop it [m/s]
-constexpr double kWay = 0.30;        ///< then all wheels stand elsewhere [m]
-constexpr double kTime = 1.5;        ///< [s]
-constexpr double kSameSpot = 0.5;   ///< [m]
-constexpr double kNotAgain = 60.0;   ///< [s]
-constexpr double kAhead = 0.10;      ///< looked at before the front [m]
-constexpr double kClearance = 0.02;  ///< beside the body [m]
+constexpr double kTurning = 0.5;  ///< wheels slower than this share of their command are held [-]
+constexpr double kCurve = 0.4;    ///< the inner wheels are this much slower than the middle: share of its speed [-]
+constexpr double kStraightSpeed = 0.3;  ///< with way on, it slides over what would stop it [m/s]
+constexpr double kWay = 0.30;           ///< then all wheels stand elsewhere [m]
+constexpr double kTime = 1.5;           ///< [s]
+constexpr double kSameSpot = 0.5;       ///< [m]
+constexpr double kNotAgain = 60.0;      ///< [s]
+constexpr double kAhead = 0.10;         ///< looked at before the front [m]
+constexpr double kClearance = 0.02;     ///< beside the body [m]
 
 }  // namespace
 

@@ -63,14 +63,16 @@ void check_model(const RobotModel& model) {
       const std::string name = key.log;
       const bool is_signed = name.rfind("base_laser_", 0) == 0 || name.rfind("laser_angle_", 0) == 0;
       const bool may_be_endless = name == "command_timeout";
-      if (std::isnan(value) || std::abs(value) > (may_be_endless ? HUGE_VAL : kLargest)) refuse(key, "no sensible number");
+      if (std::isnan(value) || std::abs(value) > (may_be_endless ? HUGE_VAL : kLargest))
+        refuse(key, "no sensible number");
       if (value < 0.0 && !is_signed) refuse(key, "negative");
     }
   });
   const LaserModel& laser = model.laser;
   if (laser.beams < 1 || laser.beams > kMostLaserBeams)
     throw BadPayload("the robot model's laser has " + std::to_string(laser.beams) + " beams");
-  if (laser.beams > 1 && laser.angle_step == 0.0) throw BadPayload("the beams of the robot model's laser have no angle");
+  if (laser.beams > 1 && laser.angle_step == 0.0)
+    throw BadPayload("the beams of the robot model's laser have no angle");
   if (laser.range_max <= laser.range_min) throw BadPayload("the robot model's laser reaches no further than it begins");
 }
 

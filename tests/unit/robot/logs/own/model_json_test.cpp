@@ -29,12 +29,21 @@ TEST(ModelJson, TheUsualRobotIsTaken) {
 }
 
 TEST(ModelJson, RobotsThatNobodyCanHaveBuiltAreRefusedByTheirValue) {
-  const std::vector<std::pair<std::string, nlohmann::json>> wrong = {
-      {"laser_beams", 0},       {"laser_beams", -3},    {"laser_beams", 2'000'000}, {"laser_angle_step", 0.0},
-      {"laser_range_max", -1},  {"laser_range_max", 0}, {"laser_range_max", "nan"}, {"laser_range_max", "inf"},
-      {"max_v", 1e12},          {"width", -0.5},        {"tick", "nan"},            {"base_laser_z", 1e9},
-      {"base_laser_yaw", "nan"}};
-  for (const auto& [key, value] : wrong) EXPECT_THROW(model_from_json(with(key, value)), BadPayload) << key << ' ' << value;
+  const std::vector<std::pair<std::string, nlohmann::json>> wrong = {{"laser_beams", 0},
+                                                                     {"laser_beams", -3},
+                                                                     {"laser_beams", 2'000'000},
+                                                                     {"laser_angle_step", 0.0},
+                                                                     {"laser_range_max", -1},
+                                                                     {"laser_range_max", 0},
+                                                                     {"laser_range_max", "nan"},
+                                                                     {"laser_range_max", "inf"},
+                                                                     {"max_v", 1e12},
+                                                                     {"width", -0.5},
+                                                                     {"tick", "nan"},
+                                                                     {"base_laser_z", 1e9},
+                                                                     {"base_laser_yaw", "nan"}};
+  for (const auto& [key, value] : wrong)
+    EXPECT_THROW(model_from_json(with(key, value)), BadPayload) << key << ' ' << value;
 }
 
 }  // namespace
