@@ -78,10 +78,11 @@ std::vector<Region> regions_of(const Layout& layout, const Grid<std::uint8_t>& e
   constexpr double kCoarse = 0.1;  ///< [m]
   Grid<std::uint8_t> known(layout.occupied.frame());
   std::vector<Region> regions;
-  const OccupancyGrid drawn = drawn_map(arena, kCoarse);
+  std::optional<OccupancyGrid> drawn;  // for the first pallet: without any there is nothing to draw
   for (const Cell c : pallets) {
     if (known[c] != 0 || !can_start(layout, c, arena)) continue;
-    const OccupancyGrid truth = around_start(arena, drawn);
+    if (!drawn) drawn = drawn_map(arena, kCoarse);
+    const OccupancyGrid truth = around_start(arena, *drawn);
     const Grid<std::uint8_t> reached = reachable_mask(arena, truth);
     Region region;
     for (int y = 0; y < reached.height(); ++y) {
