@@ -82,7 +82,7 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   home_way_.moved(free ? distance(position(before), position(pose_)) : 0.0, dt_,
                   free || state == ExplorerState::BackingUp);
   recovery_.moved(now_, pose_);
-  if (stage_ != Stage::OnTheWay) return;
+  if (stage_ != Stage::OnTheWay && stage_ != Stage::StraightOn) return;
   left_alone_.passed(pose_, model_);
   trail_.add(now_, pose_);
 }
@@ -93,6 +93,7 @@ void PaperExplorer::follow_map(const slam::Mapper& mapper) {
   agenda_.follow(mapper, trail_.follow(mapper));
   recovery_.follow(mapper);
   left_alone_.follow(mapper);
+  if (stage_ == Stage::StraightOn) stage_ = Stage::OnTheWay;  // how far it came is told by poses of two maps
   if (!victims_.follow(mapper)) return;
   floor_ = floor_now(mapper, {});
   victims_.search().look_again(floor_);
@@ -107,7 +108,7 @@ Drive PaperExplorer::decide(const slam::Mapper& mapper) {
     case Stage::OnTheWay:
       return go_on(mapper);
     case Stage::StraightOn:
-      return drive_straight_on();
+      return drive_straight_on(mapper);
     case Stage::BackingUp:
       break;
   }
@@ -136,13 +137,13 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
   if (holds_still()) return {};
   const bool on_purpose = pilot_.turning() || agenda_.goal() == Goal::Place;
   if (const auto hold = stuck_watch_.held(pose_, commanded_, on_purpose, dt_, now_)) {
-    if (hold->stands && straight_on_.explains(commanded_, stuck_watch_.wheels()) &&
-        straight_on_.worth(pose_, floor_, now_)) {
+    if (hold->stands && straight_on_.explains(commanded_, stuck_watch_.wheels()) && !agenda_.pushing().on() &&
+        straight_on_.worth(pose_, floor_, mapper.last_hits(), now_)) {
       agenda_.note(now_, "its wheels slip in a curve: drives straight on");
       pilot_.stop();
       straight_on_.begin(pose_, now_);
       stage_ = Stage::StraightOn;
-      return drive_straight_on();
+      return drive_straight_on(mapper);
     }
     get_free_of(*hold);
     return {};
@@ -197,12 +198,13 @@ void PaperExplorer::get_free_of(const StuckWatch::Hold& hold) {
   stage_ = Stage::BackingUp;
 }
 
-Drive PaperExplorer::drive_straight_on() {
+Drive PaperExplorer::drive_straight_on(const slam::Mapper& mapper) {
   if (const auto hold = stuck_watch_.held(pose_, commanded_, false, dt_, now_)) {
     get_free_of(*hold);
     return {};
   }
-  if (const auto drive = straight_on_.drive(pose_, floor_, now_)) return *drive;
+  brakes_ = !straight_on_.room(pose_, floor_, mapper.last_hits());
+  if (const auto drive = straight_on_.drive(pose_, now_); drive && !brakes_) return *drive;
   stage_ = Stage::OnTheWay;
   agenda_.plan_soon();
   return {};

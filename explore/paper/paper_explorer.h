@@ -57,7 +57,7 @@ class PaperExplorer : public Explorer {
   robot::Drive decide(const slam::Mapper& mapper);
   robot::Drive start(const slam::Mapper& mapper);
   robot::Drive go_on(const slam::Mapper& mapper);
-  robot::Drive drive_straight_on();
+  robot::Drive drive_straight_on(const slam::Mapper& mapper);
   robot::Drive back_up();
 
   bool holds_still();

@@ -17,10 +17,11 @@ using mrpt::math::TPose2D;
 using slam::CountMap;
 
 constexpr int kWeakHits = 2;
-constexpr double kLoneRadius = 0.15;      ///< [m]
-constexpr double kStripWidth = 0.15;      ///< a strip of a veil, with what noise adds to it [m]
-constexpr double kStripPitch = 0.3;       ///< from one to the next, one between them perhaps unseen [m]
-constexpr double kRowBend = 1.5;          ///< off the line of their row [cells]
+constexpr double kLoneRadius = 0.15;  ///< [m]
+constexpr double kStripWidth = 0.15;  ///< a strip of a veil, with what noise adds to it [m]
+constexpr double kStripPitch = 0.3;   ///< from one to the next, one between them perhaps unseen [m]
+constexpr double kRowBend = 1.5;      ///< off the line of their row [cells]
+constexpr std::size_t kMostStrips = 2000;
 constexpr std::size_t kStripsOfARow = 4;  ///< fewer are posts
 
 /// A rectangle of cells, both corners inside it.
@@ -129,9 +130,28 @@ std::vector<Thing> things_of(const Traversable& floor, int gap) {
   return things;
 }
 
-/// The strips on the line through `a` and `b`, each no farther than `pitch` [cells] from the next; none when they are
-/// too few for a row.
-std::vector<std::size_t> row_through(const std::vector<Thing>& strips, std::size_t a, std::size_t b, double pitch) {
+/// Whether the laser has seen through between two strips: what lies on the line from one to the other is free.
+bool seen_between(const OccupancyGrid& cells, const Thing& a, const Thing& b) {
+  const TPoint2D from = a.middle(), way = b.middle() - from;
+  const int steps = 2 * static_cast<int>(std::ceil(std::hypot(way.x, way.y)));
+  const auto in = [](const Thing& t, Cell c) {
+    return c.x >= t.box.low.x && c.x <= t.box.high.x && c.y >= t.box.low.y && c.y <= t.box.high.y;
+  };
+  bool gap = false;
+  for (int i = 0; i <= steps; ++i) {
+    const TPoint2D p = from + way * (static_cast<double>(i) / std::max(1, steps));
+    const Cell c{static_cast<int>(std::lround(p.x)), static_cast<int>(std::lround(p.y))};
+    if (in(a, c) || in(b, c)) continue;
+    if (cells[c] != Occupancy::Free) return false;
+    gap = true;
+  }
+  return gap;
+}
+
+/// The strips on the line through `a` and `b`, each no farther than `pitch` [cells] from the next and seen through
+/// between; none when they are too few for a row.
+std::vector<std::size_t> row_through(const OccupancyGrid& cells, const std::vector<Thing>& strips, std::size_t a,
+                                     std::size_t b, double pitch) {
   const TPoint2D from = strips[a].middle(), way = strips[b].middle() - from;
   const double length = std::hypot(way.x, way.y);
   std::vector<std::pair<double, std::size_t>> along;  // cells behind `from`
@@ -143,8 +163,11 @@ std::vector<std::size_t> row_through(const std::vector<Thing>& strips, std::size
   std::sort(along.begin(), along.end());
   const auto mine = std::find_if(along.begin(), along.end(), [&](const auto& one) { return one.second == a; });
   auto first = mine, last = mine;
-  while (first != along.begin() && first->first - std::prev(first)->first <= pitch) --first;
-  while (std::next(last) != along.end() && std::next(last)->first - last->first <= pitch) ++last;
+  const auto belong = [&](const auto& one, const auto& next) {
+    return next->first - one->first <= pitch && seen_between(cells, strips[one->second], strips[next->second]);
+  };
+  while (first != along.begin() && belong(std::prev(first), first)) --first;
+  while (std::next(last) != along.end() && belong(last, std::next(last))) ++last;
   std::vector<std::size_t> row;
   for (auto one = first; one <= last; ++one) row.push_back(one->second);
   if (row.size() < kStripsOfARow) row.clear();
@@ -268,11 +291,12 @@ bool free_strips(Traversable& floor) {
   const double pitch = kStripPitch / std::max(floor.frame().resolution, 1e-9);
   strips.erase(std::remove_if(strips.begin(), strips.end(), [&](const Thing& t) { return t.longer_side() >= most; }),
                strips.end());
+  if (strips.size() > kMostStrips) return false;  // noise; each is laid beside each
   std::vector<char> hangs(strips.size(), 0);
   for (std::size_t a = 0; a < strips.size(); ++a)
     for (std::size_t b = a + 1; b < strips.size(); ++b)
       if (distance(strips[a].middle(), strips[b].middle()) <= pitch)
-        for (const std::size_t strip : row_through(strips, a, b, pitch)) hangs[strip] = 1;
+        for (const std::size_t strip : row_through(floor.cells, strips, a, b, pitch)) hangs[strip] = 1;
   bool any = false;
   for (std::size_t i = 0; i < strips.size(); ++i) {
     if (hangs[i] == 0) continue;

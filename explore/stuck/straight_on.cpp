@@ -1,5 +1,6 @@
 #include "explore/stuck/straight_on.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/planar.h"
@@ -18,8 +19,8 @@ constexpr double kWay = 0.30;           ///< then all wheels stand elsewhere [m]
 constexpr double kTime = 1.5;           ///< [s]
 constexpr double kSameSpot = 0.5;       ///< [m]
 constexpr double kNotAgain = 60.0;      ///< [s]
-constexpr double kAhead = 0.10;         ///< looked at before the front [m]
-constexpr double kClearance = 0.02;     ///< beside the body [m]
+constexpr double kClearance = 0.02;     ///< beside the body and before it, where it stops [m]
+constexpr double kLag = 0.1;            ///< from a scan to the brake [s]
 
 }  // namespace
 
@@ -30,32 +31,45 @@ bool StraightOn::explains(const Drive& commanded, const std::optional<Drive>& wh
          std::abs(wheels->w) > kTurning * std::abs(commanded.w);
 }
 
-bool StraightOn::room(const TPose2D& T_map_base, const Traversable& floor) const {
-  for (double ahead = 0.0; ahead <= 0.5 * model_.length + kAhead; ahead += floor.frame().resolution) {
-    const TPoint2D p{T_map_base.x + ahead * std::cos(T_map_base.phi), T_map_base.y + ahead * std::sin(T_map_base.phi)};
-    const Cell c = floor.clearance.cell(p);
-    if (!floor.clearance.inside(c) || floor.cells[c] != Occupancy::Free) return false;
-    const bool below = ahead < 0.5 * model_.length;
-    if (static_cast<double>(floor.clearance[c]) < (below ? 0.5 * model_.width + kClearance : kClearance)) return false;
+double StraightOn::speed() const { return std::min(kStraightSpeed, model_.max_v); }
+
+bool StraightOn::room(const TPose2D& T_map_base, const Traversable& floor, const std::vector<TPoint2D>& hits) const {
+  const double v = speed();
+  const double reach = 0.5 * model_.length + 0.5 * v * v / model_.max_accel + v * kLag + kClearance;
+  const double aside = 0.5 * model_.width + kClearance;
+  const double c = std::cos(T_map_base.phi), s = std::sin(T_map_base.phi);
+  for (const TPoint2D& hit : hits) {
+    const double x = hit.x - T_map_base.x, y = hit.y - T_map_base.y;
+    if (c * x + s * y > 0.0 && c * x + s * y < reach && std::abs(c * y - s * x) < aside) return false;
   }
+  const double step = 0.5 * floor.frame().resolution;
+  for (double ahead = 0.0; ahead <= reach; ahead += step)
+    for (double left = -aside; left <= aside; left += step) {
+      const Cell cell =
+          floor.cells.cell(TPoint2D{T_map_base.x + ahead * c - left * s, T_map_base.y + ahead * s + left * c});
+      if (!floor.cells.inside(cell) || floor.cells[cell] != Occupancy::Free || floor.obstacle[cell] != 0) return false;
+    }
   return true;
 }
 
-bool StraightOn::worth(const TPose2D& T_map_base, const Traversable& floor, Stamp now) const {
-  const bool again = began_ != Stamp::never() && now - began_ < kNotAgain &&
-                     distance(position(from_), position(T_map_base)) < kSameSpot;
-  return !again && room(T_map_base, floor);
+bool StraightOn::worth(const TPose2D& T_map_base, const Traversable& floor, const std::vector<TPoint2D>& hits,
+                       Stamp now) const {
+  const bool again = std::any_of(tries_.begin(), tries_.end(), [&](const Try& one) {
+    return now - one.at < kNotAgain && distance(one.place, position(T_map_base)) < kSameSpot;
+  });
+  return !again && room(T_map_base, floor, hits);
 }
 
 void StraightOn::begin(const TPose2D& T_map_base, Stamp now) {
-  from_ = T_map_base;
-  began_ = now;
+  tries_.erase(std::remove_if(tries_.begin(), tries_.end(), [&](const Try& one) { return now - one.at >= kNotAgain; }),
+               tries_.end());
+  tries_.push_back({now, position(T_map_base)});
 }
 
-std::optional<Drive> StraightOn::drive(const TPose2D& T_map_base, const Traversable& floor, Stamp now) const {
-  const bool through = distance(position(from_), position(T_map_base)) > kWay;
-  if (through || now - began_ > kTime || !room(T_map_base, floor)) return std::nullopt;
-  return Drive{kStraightSpeed, 0.0};
+std::optional<Drive> StraightOn::drive(const TPose2D& T_map_base, Stamp now) const {
+  const Try& this_one = tries_.back();
+  if (distance(this_one.place, position(T_map_base)) > kWay || now - this_one.at > kTime) return std::nullopt;
+  return Drive{speed(), 0.0};
 }
 
 }  // namespace rubble::explore

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
 #include <optional>
+#include <vector>
 
 #include "base/stamp.h"
 #include "explore/plan/traversable.h"
@@ -20,18 +22,28 @@ class StraightOn {
 
   /// Whether a robot that does not move as `commanded` is held so, by what its wheels do.
   bool explains(const robot::Drive& commanded, const std::optional<robot::Drive>& wheels) const;
-  /// Whether to try it from here: not within a minute of the last time in the same place, and there is room.
-  bool worth(const mrpt::math::TPose2D& T_map_base, const Traversable& floor, Stamp now) const;
+  /// Whether to try it from here: not within a minute of another time in the same place, and there is room(). `hits`:
+  /// of the newest scan [m, map frame].
+  bool worth(const mrpt::math::TPose2D& T_map_base, const Traversable& floor,
+             const std::vector<mrpt::math::TPoint2D>& hits, Stamp now) const;
   void begin(const mrpt::math::TPose2D& T_map_base, Stamp now);
-  /// The command for the tick to come; nothing: it is over.
-  std::optional<robot::Drive> drive(const mrpt::math::TPose2D& T_map_base, const Traversable& floor, Stamp now) const;
+  /// The command for the tick to come; nothing: it came on, or its time is over.
+  std::optional<robot::Drive> drive(const mrpt::math::TPose2D& T_map_base, Stamp now) const;
+  /// Nothing is in the way before the robot, as far as it takes to stop: the floor is known and free, and no hit lies
+  /// there.
+  bool room(const mrpt::math::TPose2D& T_map_base, const Traversable& floor,
+            const std::vector<mrpt::math::TPoint2D>& hits) const;
 
  private:
-  bool room(const mrpt::math::TPose2D& T_map_base, const Traversable& floor) const;
+  struct Try {
+    Stamp at;
+    mrpt::math::TPoint2D place;
+  };
+
+  double speed() const;
 
   robot::RobotModel model_;
-  mrpt::math::TPose2D from_;
-  Stamp began_ = Stamp::never();
+  std::vector<Try> tries_;  ///< of the last minute
 };
 
 }  // namespace rubble::explore

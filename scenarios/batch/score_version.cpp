@@ -1,5 +1,6 @@
 #include "scenarios/batch/score_version.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -23,7 +24,7 @@ std::optional<int> score_version_of(const std::vector<RunRecord>& runs, const st
       throw InputError(source + ": run " + run.run_id + " has a score_version that is no whole number (" +
                        told->dump().substr(0, 40) + "); make it again with this program");
     const double said = run.metric("score_version");
-    const int of_run = std::isnan(said) ? kFirst : static_cast<int>(said);
+    const int of_run = std::isnan(said) ? kFirst : static_cast<int>(std::clamp(said, -1e9, 1e9));
     if (!version) {
       version = of_run;
       first = run.run_id;

@@ -80,12 +80,14 @@ OccupancyGrid read_ros_map(const std::string& yaml_path) {
   const bool is_tiff = has_tiff_ending(image_path);
   RichTiff tiff;
   if (is_tiff) tiff = upright_tiff(image_path.string());
-  const cv::Mat image = is_tiff ? raster_of(tiff.tiff.image) : read_raster(image_path.string());
+  cv::Mat image = is_tiff ? raster_of(tiff.tiff.image) : read_raster(image_path.string());
   OccupancyGrid grid(GridFrame{image.cols, image.rows, resolution, origin.empty() ? 0.0 : origin[0],
                                origin.empty() ? 0.0 : origin[1]});
   if (image.channels() >= 3) {
-    const RgbImage coloured = is_tiff ? tiff.tiff.image : read_rgb(image_path.string());
+    const RgbImage read = is_tiff ? RgbImage() : read_rgb(image_path.string());
+    const RgbImage& coloured = is_tiff ? tiff.tiff.image : read;
     if (!tiff.notes.meaning.empty() || is_league_map(coloured)) {
+      image.release();  // of the largest pictures one copy is enough
       grid.cells() = classify(coloured, tiff.notes).classes.cells();
       return grid;
     }

@@ -80,11 +80,21 @@ for signal in INT TERM HUP; do
   wait $pid
   code=$?
   [[ $code == 130 && $(cat err.txt) == "rubble: interrupted" ]] || fail "SIG$signal ends a generation with $code: $(head -c 300 err.txt)"
+  for file in cut/*; do
+    case $file in
+      cut/*.yaml) "$rubble" arena "$file" --out whole >/dev/null 2>err.txt || fail "SIG$signal left a torn $file: $(cat err.txt)" ;;
+      cut/*.png | cut/*.tif) head -c 4 "$file" | grep -qaE 'PNG|II' || fail "SIG$signal left a torn $file" ;;
+      *) fail "SIG$signal left $file" ;;
+    esac
+  done
   rm -rf cut
 done
 (trap '' HUP; exec "$rubble" arena generate --cells 12x12 --out kept) >out.txt 2>err.txt &
 pid=$!
-sleep 0.1
+for _ in $(seq 200); do
+  [[ -s kept/yellow-12x12-seed1.yaml ]] && break
+  sleep 0.02
+done
 kill -HUP $pid
 wait $pid || fail "a closed terminal ends what nohup started: $(head -c 300 err.txt)"
 finish

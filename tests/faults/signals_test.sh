@@ -11,7 +11,7 @@ for signal in INT TERM HUP; do
       0) [[ -s run/score.json && ! -e run/.partial ]] || fail "SIG$signal at moment $i: ended with $code, but no whole folder" ;;
       129 | 143 | 130) # before the program has taken the signal over, on the spot, or with a whole folder
         if [[ $code != 130 || $(<struck.err) == "rubble: interrupted" || ! -e run ]]; then
-          [[ ! -s run/score.json ]] || fail "SIG$signal at moment $i: ended with $code behind its end"
+          [[ ! -e run ]] || fail "SIG$signal at moment $i: ended with $code on the spot and left a folder"
         else
           [[ -s run/score.json && ! -e run/.partial ]] || fail "SIG$signal at moment $i: ended with $code, but no whole folder"
         fi ;;

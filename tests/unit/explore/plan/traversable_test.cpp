@@ -178,6 +178,24 @@ TEST(Traversable, StripsThatHangInARowAreMadeFree) {
       EXPECT_EQ((floor.cells[{x, y}] != before[{x, y}]), strip) << x << " " << y;
     }
   EXPECT_FALSE(free_strips(floor)) << "there are no more";
+
+  // Specks of a wall at a grazing angle look alike, but for what lies between them.
+  OccupancyGrid specks = before;
+  for (int y = 2; y < 14; ++y)
+    for (int x = 9; x < 13; ++x)
+      if (specks[{x, y}] == Occupancy::Free) specks[{x, y}] = Occupancy::Unknown;
+  Traversable unseen = traversable(std::move(specks));
+  EXPECT_FALSE(free_strips(unseen));
+
+  // A veil that hangs askew, on cells so fine that a strip covers several.
+  OccupancyGrid fine = test::room(3.0, 3.0, 0.02);
+  for (int i = 0; i < 7; ++i) {
+    const double x = 0.9 + 0.11 * i, y = 0.9 + 0.08 * i;
+    test::fill(fine, x, y, x + 0.05, y + 0.05, Occupancy::Occupied);
+  }
+  Traversable askew = traversable(std::move(fine));
+  ASSERT_TRUE(free_strips(askew));
+  EXPECT_GE(askew.loose.size(), 7u * 4u);
 }
 
 }  // namespace

@@ -31,28 +31,45 @@ TEST(StraightOn, ExplainsWheelsThatTurnInACurve) {
 TEST(StraightOn, DrivesOnForAWayOrATime) {
   StraightOn straight_on(kModel);
   const Traversable floor = test::measured(test::room(4.0, 4.0));
-  ASSERT_TRUE(straight_on.worth(kHere, floor, at(10.0)));
+  ASSERT_TRUE(straight_on.worth(kHere, floor, {}, at(10.0)));
   straight_on.begin(kHere, at(10.0));
-  const auto drive = straight_on.drive(kHere, floor, at(10.1));
+  const auto drive = straight_on.drive(kHere, at(10.1));
   ASSERT_TRUE(drive);
   EXPECT_GT(drive->v, 0.2);
   EXPECT_EQ(drive->w, 0.0);
-  EXPECT_FALSE(straight_on.drive({2.4, 2.0, 0.0}, floor, at(11.0))) << "it came on";
-  EXPECT_FALSE(straight_on.drive(kHere, floor, at(12.0))) << "it stands";
+  EXPECT_FALSE(straight_on.drive({2.4, 2.0, 0.0}, at(11.0))) << "it came on";
+  EXPECT_FALSE(straight_on.drive(kHere, at(12.0))) << "it stands";
 }
 
 TEST(StraightOn, IsTriedOnceInAPlaceAndNotTowardsAWall) {
   StraightOn straight_on(kModel);
   const Traversable floor = test::measured(test::room(4.0, 4.0));
   straight_on.begin(kHere, at(10.0));
-  EXPECT_FALSE(straight_on.worth({2.1, 2.0, 1.0}, floor, at(20.0)));
-  EXPECT_TRUE(straight_on.worth({3.0, 2.0, 3.1}, floor, at(20.0)));
-  EXPECT_TRUE(straight_on.worth(kHere, floor, at(80.0)));
+  EXPECT_FALSE(straight_on.worth({2.1, 2.0, 1.0}, floor, {}, at(20.0)));
+  EXPECT_TRUE(straight_on.worth({3.0, 2.0, 3.1}, floor, {}, at(20.0)));
+  EXPECT_TRUE(straight_on.worth(kHere, floor, {}, at(80.0)));
   OccupancyGrid with_wall = test::room(4.0, 4.0);
   test::fill(with_wall, 2.3, 0.0, 2.35, 4.0, Occupancy::Occupied);
   const Traversable tight = test::measured(std::move(with_wall));
-  EXPECT_FALSE(straight_on.worth(kHere, tight, at(80.0)));
-  EXPECT_TRUE(straight_on.worth({2.0, 2.0, 3.14159}, tight, at(80.0))) << "away from it";
+  EXPECT_FALSE(straight_on.worth(kHere, tight, {}, at(80.0)));
+  EXPECT_TRUE(straight_on.worth({2.0, 2.0, 3.14159}, tight, {}, at(80.0))) << "away from it";
+  straight_on.begin({3.0, 2.0, 3.1}, at(81.0));
+  straight_on.begin({1.0, 1.0, 0.0}, at(82.0));
+  EXPECT_FALSE(straight_on.worth({3.1, 2.0, 3.1}, floor, {}, at(90.0))) << "two places do not take turns";
+}
+
+/// Whatever lies in the body's way as far as it takes to stop ends it: walls, hits of the newest scan, the unknown.
+TEST(StraightOn, NeedsRoomForTheWholeBodyAndItsStop) {
+  const StraightOn straight_on(kModel);
+  const Traversable floor = test::measured(test::room(4.0, 4.0));
+  EXPECT_TRUE(straight_on.room(kHere, floor, {}));
+  EXPECT_FALSE(straight_on.room(kHere, floor, {{2.35, 2.0}})) << "somebody steps before it";
+  EXPECT_FALSE(straight_on.room(kHere, floor, {{2.40, 2.24}})) << "a post before its corner";
+  EXPECT_TRUE(straight_on.room(kHere, floor, {{2.40, 2.40}, {1.6, 2.0}, {3.0, 2.0}})) << "beside, behind and far ahead";
+  OccupancyGrid unknown = test::room(4.0, 4.0);
+  test::fill(unknown, 2.40, 2.15, 2.45, 2.25, Occupancy::Unknown);
+  EXPECT_FALSE(straight_on.room(kHere, test::measured(std::move(unknown)), {}));
+  EXPECT_FALSE(straight_on.room({0.3, 2.0, 3.14159}, floor, {})) << "the edge of the map";
 }
 
 }  // namespace
