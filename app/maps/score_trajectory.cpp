@@ -36,12 +36,16 @@ int score_trajectory(const ScoreArguments& arguments) {
     throw UsageError("trajectories are scored without --pose and --html; see rubble score --help");
   const Trajectory estimate = read_tum(arguments.map);
   scoring::Evidence evidence;
-  if (ends_with(arguments.truth, ".relations"))
+  if (ends_with(arguments.truth, ".relations")) {
     evidence.relations = scoring::relation_error(estimate, scoring::read_relations(arguments.truth));
-  else if (is_trajectory(arguments.truth))
+    if (evidence.relations->relations == 0)
+      throw InputError(arguments.truth + ": none of its relations lies in the time of " + arguments.map +
+                       "; give those of the same log");
+  } else if (is_trajectory(arguments.truth)) {
     evidence = compared(estimate, read_tum(arguments.truth), arguments);
-  else
+  } else {
     throw UsageError(arguments.truth + ": a trajectory is compared with a .tum or a .relations file");
+  }
   const std::string json = scenarios::known_figures(evidence).dump(2);
   if (!arguments.out.empty()) {
     make_folder(arguments.out);

@@ -67,10 +67,20 @@ const std::vector<std::string>& run_folder_names() {
   return names;
 }
 
+/// Without what write_text_file() appends to a file it has not finished: ".4711.part", ".4711-2.part".
+std::string without_part(const std::string& name) {
+  constexpr std::string_view kPart = ".part";
+  if (!ends_with(name, kPart)) return name;
+  const std::size_t dot = name.rfind('.', name.size() - kPart.size() - 1);
+  const bool numbered =
+      dot != std::string::npos && name.find_first_not_of("0123456789-", dot + 1) == name.size() - kPart.size();
+  return numbered ? name.substr(0, dot) : name;
+}
+
 std::vector<std::string> files_of_run(const std::string& path) {
   const auto& names = run_folder_names();
   const auto is_ours = [&](const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
+    return std::find(names.begin(), names.end(), without_part(name)) != names.end();
   };
   // Each run begins with this file; a folder with a map.yaml and a map.png may be anybody's.
   bool begun = false, empty = true;

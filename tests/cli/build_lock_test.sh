@@ -54,4 +54,10 @@ clone/rubble 0 >first.txt 2>first_err.txt
 code=$?
 [[ $code == 4 ]] || fail "a build that failed ends with $code"
 grep -q "No space left" first_err.txt && grep -q "the build failed" first_err.txt || fail "a failed build says: $(cat first_err.txt)"
+
+# Interrupted: 130, and no word of a failure.
+sed -i 's/^exit 1$/exit 2/' tools/ninja
+clone/rubble 0 >first.txt 2>first_err.txt
+code=$?
+[[ $code == 130 ]] && grep -q "interrupted" first_err.txt && ! grep -q "failed" first_err.txt || fail "an interrupted build ends with $code: $(cat first_err.txt)"
 finish

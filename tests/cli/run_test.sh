@@ -50,4 +50,12 @@ PY
 if command -v gdalinfo >/dev/null; then
   gdalinfo a/map.tif | grep -q 'Pixel Size = (0.025' || fail "gdalinfo sees no metric pixel size"
 fi
+
+# A file that was being written when the run was ended on the spot is the run's own.
+small_scenario part.yaml
+expect_exit 0 '' "$rubble" run part.yaml --out part
+mkdir part/.partial && touch part/.partial/map.tif.4711.part part/.partial/map.png.4711-2.part
+expect_exit 0 '' "$rubble" run part.yaml --out part --force
+mkdir part/.partial && touch part/.partial/letter.part
+expect_exit 3 'letter.part' "$rubble" run part.yaml --out part --force
 finish

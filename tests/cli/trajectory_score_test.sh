@@ -21,4 +21,9 @@ printf '100.0 0 0 0 0 0 0 1\n' >later.tum
 expect_exit 3 'same clock' "$rubble" score later.tum truth.tum
 printf '0 1 2 3\n' >short.relations
 expect_exit 3 'short.relations:1:1' "$rubble" score far.tum short.relations
+
+# Relations of another log compare nothing: that is no error of 0.
+printf '900001.0 900002.0 1 0 0 0 0 0\n' >other.relations
+printf '1.0 0 0 0 0 0 0 1\n2.0 1 0 0 0 0 0 1\n3.0 2 0 0 0 0 0 1\n' >way.tum
+expect_exit 3 'none of its relations' "$rubble" score way.tum other.relations
 finish
