@@ -16,6 +16,7 @@
 #include <sstream>
 
 #include "app/command.h"
+#include "app/terminal.h"
 #include "base/error.h"
 #include "base/text/input_file.h"
 #include "base/text/words.h"
@@ -224,5 +225,6 @@ static void keep_freed_memory() {
 int main(int argc, char** argv) {
   keep_freed_memory();
   if (const auto code = rubble::slam::serve_mapper_if_asked(argc, argv)) return *code;
+  rubble::app::end_by_interrupts();
   return rubble::app::delivered(rubble::app::guarded(argc, argv));
 }

@@ -15,9 +15,23 @@ namespace {
 
 volatile std::sig_atomic_t signalled = 0;
 
+constexpr char kEnded[] = "rubble: interrupted\n";
+
+void on_signal_without_rest(int /*signal*/) {
+  if (write(STDERR_FILENO, kEnded, sizeof kEnded - 1) < 0) _exit(kInterrupted);
+  _exit(kInterrupted);
+}
+
 void on_signal(int signal) {
   signalled = 1;
-  std::signal(signal, SIG_DFL);  // the second one is not asked twice
+  std::signal(signal, on_signal_without_rest);  // the second one is not asked twice
+}
+
+/// SIGHUP stays ignored where it is: who starts a long batch by nohup means to close the terminal.
+void catch_polite(void (*handler)(int)) {
+  std::signal(SIGINT, handler);
+  std::signal(SIGTERM, handler);
+  if (std::signal(SIGHUP, handler) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 
 void on_stop(int /*signal*/) {
@@ -44,11 +58,9 @@ void catch_stops() {
 
 bool insisted() { return signalled >= 2; }
 
-void catch_interrupts() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  std::signal(SIGHUP, on_signal);  // the terminal was closed
-}
+void end_by_interrupts() { catch_polite(on_signal_without_rest); }
+
+void catch_interrupts() { catch_polite(on_signal); }
 
 bool interrupted() { return signalled != 0; }
 

@@ -2,6 +2,7 @@
 # `find_package(rubble)` finds (docs/extending.md, "Use rubble as a library").
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
+get_property(rubble_modules GLOBAL PROPERTY rubble_modules)
 include(cmake/module_version.cmake)  # of what is installed apart
 
 set(rubble_package ${CMAKE_INSTALL_LIBDIR}/cmake/rubble)
@@ -28,7 +29,7 @@ install(FILES ${CMAKE_BINARY_DIR}/rubble-config.cmake ${CMAKE_BINARY_DIR}/rubble
         DESTINATION ${rubble_package})
 
 install(TARGETS rubble RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(TARGETS rubble_mrpt_devices rubble_mrpt_logs rubble_mrpt_slam rubble_image_codecs LIBRARY DESTINATION lib/rubble)
+install(TARGETS ${rubble_modules} LIBRARY DESTINATION lib/rubble)
 # Programs of others find the modules by their run path (base/module.h).
 target_link_options(rubble_base INTERFACE "$<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/lib/rubble>")
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/scenarios ${CMAKE_SOURCE_DIR}/arenas ${CMAKE_SOURCE_DIR}/robots DESTINATION ${CMAKE_INSTALL_DATADIR}/rubble

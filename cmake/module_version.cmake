@@ -28,7 +28,7 @@ add_custom_target(rubble_module_version DEPENDS ${version_header}.made)
 set_source_files_properties(base/module_version.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON
                             INCLUDE_DIRECTORIES ${CMAKE_BINARY_DIR}/generated)
 add_dependencies(rubble_base rubble_module_version)
-foreach(module rubble_mrpt_devices rubble_mrpt_logs rubble_mrpt_slam rubble_image_codecs)
+foreach(module ${rubble_modules})
   target_sources(${module} PRIVATE ${CMAKE_SOURCE_DIR}/base/module_version.cpp)
   add_dependencies(${module} rubble_module_version)
 endforeach()

@@ -32,17 +32,19 @@ OccupancyGrid rimmed(const OccupancyGrid& map) {
   return wider;
 }
 
-Cell start_cell(const TPoint2D& from, const Traversable& floor, const ExplorationTransform& transform) {
-  const Cell c = floor.cells.cell(from);
+/// option: it was named by.
+Cell free_cell(const char* option, const TPoint2D& place, const Traversable& floor, double d_min) {
+  const Cell c = floor.cells.cell(place);
   if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free)
-    throw InputError("no free floor of the map is there; choose another place");
-  if (!transform.passable(c))
-    throw InputError("nearer to a wall than d_min allows; choose another place or a smaller d_min");
+    throw InputError(std::string(option) + ": no free floor of the map is there; choose another place");
+  if (static_cast<double>(floor.clearance[c]) < d_min)
+    throw InputError(std::string(option) +
+                     ": nearer to a wall than d_min allows; choose another place or a smaller d_min");
   return c;
 }
 
-/// Fig. 9: the nearer to a frontier the darker; walls black, frontiers blue, the way red.
-RgbImage draw(const Traversable& floor, const ExplorationTransform& transform, const std::vector<Cell>& frontier,
+/// Fig. 9: the nearer to a goal the darker; walls black, goals blue, the way red.
+RgbImage draw(const Traversable& floor, const ExplorationTransform& transform, const std::vector<Source>& goals,
               const std::vector<Cell>& way) {
   const int width = floor.cells.width(), height = floor.cells.height();
   double most = 0.0;
@@ -71,7 +73,7 @@ RgbImage draw(const Traversable& floor, const ExplorationTransform& transform, c
         paint(c, grey, grey, grey);
       }
     }
-  for (const Cell c : frontier) paint(c, 40, 90, 220);
+  for (const Source& s : goals) paint(s.cell, 40, 90, 220);
   for (const Cell c : way) paint(c, 220, 30, 30);
   return image;
 }
@@ -89,26 +91,28 @@ PlannedWay measured(const std::vector<Cell>& way, const Traversable& floor, cons
 
 }  // namespace
 
-PlanPicture plan_picture(const OccupancyGrid& map, const PlannerConfig& config, const std::optional<TPoint2D>& from) {
+PlanPicture plan_picture(const OccupancyGrid& map, const PlannerConfig& config, const PlanEnds& ends) {
   Traversable floor = traversable(rimmed(map));
   measure_clearance(floor, Planner(config).clearance_cap());
-  std::vector<Source> sources;
-  std::vector<Cell> frontier;
-  const auto clusters = frontier_clusters(floor, config.min_frontier_cells);
-  for (const FrontierCluster& cluster : clusters)
-    for (const Cell c : cluster.cells) {
-      sources.push_back({c, 0.0});
-      frontier.push_back(c);
-    }
-  if (sources.empty()) throw InputError("has no frontier: no free floor lies beside floor that is unknown");
-  ExplorationTransform transform;
-  transform.run(floor, sources, config.transform);
-  std::vector<Cell> way;
-  if (from) way = transform.descend(start_cell(*from, floor, transform));
   PlanPicture out;
-  out.frontiers = clusters.size();
+  std::vector<Source> goals;
+  if (ends.to) {
+    goals.push_back({free_cell("--to", *ends.to, floor, config.transform.d_min), 0.0});
+  } else {
+    for (const FrontierCluster& cluster : frontier_clusters(floor, config.min_frontier_cells)) {
+      for (const Cell c : cluster.cells) goals.push_back({c, 0.0});
+      ++out.frontiers;
+    }
+    if (goals.empty())
+      throw InputError("has no frontier: no free floor lies beside floor that is unknown; give a target with --to X,Y");
+  }
+  ExplorationTransform transform;
+  transform.run(floor, goals, config.transform);
+  std::vector<Cell> way;
+  if (ends.from) way = transform.descend(free_cell("--from", *ends.from, floor, config.transform.d_min));
   if (!way.empty()) out.way = measured(way, floor, transform);
-  out.image = draw(floor, transform, frontier, way);
+  floor.clearance = {};  // the largest pictures take the memory for what is drawn
+  out.image = draw(floor, transform, goals, way);
   return out;
 }
 

@@ -12,7 +12,7 @@
 
 namespace rubble::explore {
 
-/// A way to a frontier.
+/// A way to a frontier, or to the place asked for.
 struct PlannedWay {
   double length = 0.0;           ///< [m]
   double cost = 0.0;             ///< of eq. (3) [m]
@@ -24,13 +24,18 @@ struct PlanPicture {
   /// grey-blue, frontiers blue, the way red. A pixel a cell, one cell of unknown around the map.
   RgbImage image;
   std::size_t frontiers = 0;
-  std::optional<PlannedWay> way;  ///< from the place asked for; nothing: no frontier can be reached from there
+  std::optional<PlannedWay> way;  ///< from the place asked for; nothing: none can be reached from there
 };
 
-/// Runs the Exploration Transform over `map`, with the way from `from` [m] if that is given. Of `config`, whose
-/// defaults are those of the explorer: the transform, and how large a frontier is. Throws InputError: no frontier;
-/// `from` is not on free floor, or nearer to obstacles than d_min.
-PlanPicture plan_picture(const OccupancyGrid& map, const PlannerConfig& config,
-                         const std::optional<mrpt::math::TPoint2D>& from);
+/// The ends of the way [m]; either may be missing.
+struct PlanEnds {
+  std::optional<mrpt::math::TPoint2D> from;  ///< missing: no way is drawn
+  std::optional<mrpt::math::TPoint2D> to;    ///< missing: the frontiers. With it, the transform is the Path Transform
+};
+
+/// Runs the Exploration Transform over `map`, towards the frontiers or `ends.to`. Of `config`, whose defaults are those
+/// of the explorer: the transform, and how large a frontier is. Throws InputError: no frontier and no `to`; an end is
+/// not on free floor, or nearer to obstacles than d_min.
+PlanPicture plan_picture(const OccupancyGrid& map, const PlannerConfig& config, const PlanEnds& ends);
 
 }  // namespace rubble::explore

@@ -42,9 +42,14 @@ const std::vector<MapperKind>& mapper_kinds() {
   return kinds;
 }
 
+void MapperConfig::bind(Binder& binder) {
+  KindChoice::bind(binder);
+  if (const std::string place = command().empty() ? "" : binder.place("command"); !place.empty()) place_ = place;
+}
+
 void MapperConfig::require_permission() const {
   if (permitted_ || command().empty()) return;
-  throw InputError("mapper.command: " + in_quotes(command(), 200) +
+  throw InputError((place_.empty() ? "" : place_ + ": ") + "mapper.command: " + in_quotes(command(), 200) +
                    " stands in a file, and a command of a file runs only with --allow-commands");
 }
 

@@ -59,6 +59,8 @@ class MapperConfig : public KindChoice<MapperParameters> {
  public:
   MapperConfig() : KindChoice("mapper", mapper_kinds()) {}
 
+  void bind(Binder& binder);
+
   /// Throws InputError for a command that was not permitted.
   std::unique_ptr<Mapper> make(const robot::RobotModel& model, const MapperSetting& setting) const;
 
@@ -80,6 +82,7 @@ class MapperConfig : public KindChoice<MapperParameters> {
   friend std::unique_ptr<Mapper> make_here(const MapperConfig&, const robot::RobotModel&, const MapperSetting&);
 
   bool permitted_ = false;
+  std::string place_;  ///< of the command, file:line:column
 };
 
 /// The mapper in this process, for those who serve one.

@@ -4,8 +4,9 @@
   tests/growth.py [--rubble build/release/rubble] [--only "arenas logs batches leagues raf"] [--quick]
 
 Each kind of work is done at several sizes; CPU time (user and system, children included) and the largest memory of a process
-are printed as Markdown. Ends with 1 when something fails, takes over 2 GB, or its CPU time grows by more than 1.6 times what
-the work grows by from the second size to the last.
+are printed as Markdown, and the exponents of both against size, from the size before: 1 is in proportion, and a share that
+does not grow (start, libraries) makes them smaller. Ends with 1 when something fails, takes over 2 GB, or when from one size to
+the next CPU time grows by more than 1.6 times what the work grows by, or memory by more than 1.1 times.
 """
 import argparse
 import json
@@ -19,7 +20,8 @@ import tempfile
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 MOST_MB = 2000
-MOST_GROWTH = 1.6
+MOST_TIME = 1.6    # times what the work grows by
+MOST_MEMORY = 1.1  # times what the work grows by
 findings = 0
 measured = 0
 
@@ -37,23 +39,26 @@ def run(words, folder, limit=7200):
     return int(code), float(cpu), float(mb), words[0]
 
 
-def row(kind, size, words, folder, growing):
+def row(kind, size, words, folder, growing, expected=0):
+    """Measures one size and judges it against the one before, the last in `growing`."""
     global findings, measured
     measured += 1
     code, cpu, mb, said = run(words, folder)
-    growing.append((size, cpu))
-    note = ""
-    if code != 0:
-        note = "exit code %d: %s" % (code, said.strip().splitlines()[-1] if said.strip() else "")
-    elif mb > MOST_MB:
-        note = "over %d MB" % MOST_MB
-    elif len(growing) > 2 and cpu > 5.0:
-        work = size / growing[1][0]
-        times = cpu / growing[1][1]
-        if times > MOST_GROWTH * work:
-            note = "%.1f times the work took %.1f times the time" % (work, times)
-    findings += 1 if note else 0
-    print("| %s | %d | %.1f s | %.0f MB | %s |" % (kind, size, cpu, mb, note or "-"), flush=True)
+    notes, grown = [], "-"
+    if code != expected:
+        notes.append("exit code %d: %s" % (code, said.strip().splitlines()[-1] if said.strip() else ""))
+    if mb > MOST_MB:
+        notes.append("over %d MB" % MOST_MB)
+    if growing:
+        work, time, memory = (now / before for now, before in zip((size, cpu, mb), growing[-1]))
+        grown = "%.2f, %.2f" % (math.log(time) / math.log(work), math.log(memory) / math.log(work))
+        if time > MOST_TIME * work:
+            notes.append("%.1f times the work took %.1f times the time" % (work, time))
+        if memory > MOST_MEMORY * work:
+            notes.append("%.1f times the work took %.1f times the memory" % (work, memory))
+    growing.append((size, cpu, mb))
+    findings += 1 if notes else 0
+    print("| %s | %d | %.1f s | %.0f MB | %s | %s |" % (kind, size, cpu, mb, grown, "; ".join(notes) or "-"), flush=True)
 
 
 def hall_log(path, hours):
@@ -153,13 +158,20 @@ def leagues(rubble, folder, quick):
 def raf(rubble, folder, quick):
     grown = []
     for elements in (200, 1000) if quick else (500, 1500, 5000):
-        side = round(math.sqrt(elements))
-        with open(os.path.join(folder, "many.raf"), "w") as f:
-            f.write('<?xml version="1.0" encoding="UTF-8"?>\n<elements>\n')
-            for i in range(elements):
-                f.write('    <element type="tall_wall" rotation="%d" x="%d" y="%d"/>\n' % (90 * (i * 7 % 4), i % side, i // side))
-            f.write("</elements>\n")
+        many_elements(os.path.join(folder, "many.raf"), elements)
         row("arena from .raf, elements", elements, [rubble, "arena", "many.raf", "--out", "raf"], folder, grown)
+    # More are refused, and before anything is made of them: in proportion to the file at the most.
+    many_elements(os.path.join(folder, "many.raf"), 60000)
+    row("refusal of a .raf, elements", 60000, [rubble, "arena", "many.raf", "--out", "raf"], folder, grown, expected=3)
+
+
+def many_elements(path, elements):
+    side = round(math.sqrt(elements))
+    with open(path, "w") as f:
+        f.write('<?xml version="1.0" encoding="UTF-8"?>\n<elements>\n')
+        for i in range(elements):
+            f.write('    <element type="tall_wall" rotation="%d" x="%d" y="%d"/>\n' % (90 * (i * 7 % 4), i % side, i // side))
+        f.write("</elements>\n")
 
 
 def main():
@@ -169,7 +181,7 @@ def main():
     words.add_argument("--quick", action="store_true")
     given = words.parse_args()
     rubble = os.path.abspath(given.rubble)
-    print("| work | size | CPU | largest memory | finding |\n|---|---|---|---|---|")
+    print("| work | size | CPU | largest memory | exponents of both | finding |\n|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory(prefix="growth") as folder:
         for name in given.only.split():
             {"arenas": arenas, "logs": logs, "batches": batches, "leagues": leagues, "raf": raf}[name](rubble, folder, given.quick)

@@ -21,18 +21,18 @@ struct PlanArguments {
   explore::PlannerConfig config;
   std::string discomfort = "per_metre";
   std::optional<double> resolution;
-  std::string from;  ///< "X,Y"
+  std::string from, to;  ///< "X,Y"
   std::string out = "plan.png";
 };
 
-std::optional<mrpt::math::TPoint2D> place(const std::string& from) {
-  if (from.empty()) return std::nullopt;
+std::optional<mrpt::math::TPoint2D> place(const std::string& option, const std::string& text) {
+  if (text.empty()) return std::nullopt;
   mrpt::math::TPoint2D p;
   char rest = 0;
-  if (std::sscanf(from.c_str(), "%lf,%lf%c", &p.x, &p.y, &rest) != 2)
-    throw UsageError("--from " + from + ": needs the form X,Y in metres, for example --from 1.5,-2");
+  if (std::sscanf(text.c_str(), "%lf,%lf%c", &p.x, &p.y, &rest) != 2)
+    throw UsageError(option + " " + text + ": needs the form X,Y in metres, for example " + option + " 1.5,-2");
   if (!(std::abs(p.x) <= scoring::kFarthestPlace && std::abs(p.y) <= scoring::kFarthestPlace))
-    throw UsageError("--from " + from + ": lies farther off than any place on Earth; give X,Y in metres");
+    throw UsageError(option + " " + text + ": lies farther off than any place on Earth; give X,Y in metres");
   return p;
 }
 
@@ -40,26 +40,27 @@ int plan(PlanArguments a) {
   explore::TransformConfig& transform = a.config.transform;
   if (a.discomfort == "per_cell") transform.discomfort = explore::Discomfort::PerCell;
   if (transform.d_opt < transform.d_min) throw UsageError("--d-opt must not be smaller than --d-min");
-  const auto from = place(a.from);
+  const explore::PlanEnds ends{place("--from", a.from), place("--to", a.to)};
   scoring::LoadOptions options;
   options.resolution = a.resolution;
   const scoring::LoadedMap map = scoring::load_map(a.map, options);
   explore::PlanPicture picture;
   try {
-    picture = explore::plan_picture(map.grid, a.config, from);
+    picture = explore::plan_picture(map.grid, a.config, ends);
   } catch (const InputError& error) {
-    throw InputError(a.map + (from ? ", --from " + a.from : "") + ": " + error.what());
+    throw InputError(a.map + ": " + error.what());
   }
   write_png(a.out, picture.image);
 
-  print_row("frontiers", std::to_string(picture.frontiers));
+  if (!ends.to) print_row("frontiers", std::to_string(picture.frontiers));
   if (picture.way) {
     std::array<char, 80> line{};
     std::snprintf(line.data(), line.size(), "%.2f m, cost %.2f m, %.2f m from walls and more", picture.way->length,
                   picture.way->cost, picture.way->least_clearance);
     print_row("way", line.data());
-  } else if (from) {
-    print_row("way", "none: no frontier can be reached from there");
+  } else if (ends.from) {
+    print_row("way", ends.to ? "none: the target cannot be reached from there"
+                             : "none: no frontier can be reached from there; give a target with --to X,Y");
   }
   print_row("picture", a.out);
   return kOk;
@@ -68,10 +69,11 @@ int plan(PlanArguments a) {
 }  // namespace
 
 Command plan_command() {
-  return {"plan", "Picture of the Exploration Transform over a map, and the way to the nearest frontier",
-          "Dark: near to a frontier. White: no frontier can be reached. Blue: frontiers. Red: the way.\n"
+  return {"plan", "Picture of the Exploration Transform over a map, and the way to the nearest frontier or a target",
+          "Dark: near to a frontier, or to the target. White: none can be reached. Blue: frontiers. Red: the way.\n"
           "Examples:\n  rubble plan runs/latest/map.tif --alpha 20 --out safe.png\n"
-          "  rubble plan map.yaml --discomfort per_cell --alpha 5 --d-min 0.3 --from 1.5,-2",
+          "  rubble plan map.yaml --discomfort per_cell --alpha 5 --d-min 0.3 --from 1.5,-2\n"
+          "  rubble plan runs/latest/map.yaml --from 0,0 --to 0.5,8.4",
           [](Options& o) -> Action {
             auto a = std::make_shared<PlanArguments>();
             explore::TransformConfig& transform = a->config.transform;
@@ -84,6 +86,7 @@ Command plan_command() {
             o.whole("--min-frontier-cells", a->config.min_frontier_cells, 1, 10000, "Smaller frontiers are no targets");
             o.number("--resolution", a->resolution, 0.001, 1.0, "Metres a pixel, where the map does not say");
             o.text("--from", a->from, "X,Y in the map [m]: draw the way from there");
+            o.text("--to", a->to, "X,Y in the map [m]: the target, instead of the frontiers");
             o.text("--out", a->out, "Picture to write (default: plan.png)");
             return [a] { return plan(*a); };
           }};

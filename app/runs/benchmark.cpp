@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -57,7 +59,8 @@ int benchmark(const BenchmarkArguments& arguments) {
   if (const char* data = std::getenv("RUBBLE_DATA")) options.folders.push_back(std::string(data) + "/logs");
   catch_interrupts();
   options.interrupted = interrupted;
-  options.progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", one_line(what).c_str()); };
+  if (isatty(STDERR_FILENO))
+    options.progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", one_line(what).c_str()); };
   options.permit = [&](Scenario& scenario) {
     permit_command(arguments.mapper, with_mapper(arguments.mapper, {}), scenario);
   };

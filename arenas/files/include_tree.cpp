@@ -52,6 +52,7 @@ YamlMap raf_document(const YamlMap& entry, const std::string& path) {
 ArenaFile read_file(const YamlMap& entry, const std::string& path, Chain& chain) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) {
+    if (fs::exists(path, error)) entry.fail("file", "'" + path + "' is no regular file; name an arena file");
     entry.fail("file", "there is no arena file '" + path + "'; the path is relative to the file that includes it");
   }
   const std::string known = canonical(path);

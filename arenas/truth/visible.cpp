@@ -18,6 +18,7 @@ using mrpt::math::TPoint2D;
 using Mask = Grid<std::uint8_t>;
 
 constexpr double kEdgeThickness = 1e-4;  ///< thickness given to an edge [m]
+constexpr double kVeil = 0.08;           ///< half the pitch of its strips, and a little [m]
 constexpr double kPoses = 0.4;           ///< distance between the poses looked from [m]
 constexpr double kFull = 8.0;            ///< up to here neighbouring rays end in neighbouring cells [m]
 
@@ -129,6 +130,19 @@ bool touches_seen(const OccupancyGrid& truth, const Mask& seen, Cell c) {
   return false;
 }
 
+/// Strips of a veil and the gaps between them: which of their cells a map shows as wall is a matter of half a cell.
+void leave_open(const Arena& arena, OccupancyGrid& known) {
+  for (const Solid& solid : arena.solids) {
+    if (!solid.gives_way) continue;
+    for_cells_crossed(known.frame(), solid.outline, [&](Cell c) { known[c] = Occupancy::Unknown; });
+    TPoint2D middle{0.0, 0.0};
+    for (const TPoint2D& p : solid.outline) middle = middle + p * (1.0 / static_cast<double>(solid.outline.size()));
+    for_cells_crossed(known.frame(), rectangle(middle, 2.0 * kVeil, 2.0 * kVeil), [&](Cell c) {
+      if (known[c] == Occupancy::Free) known[c] = Occupancy::Unknown;
+    });
+  }
+}
+
 }  // namespace
 
 Mask reachable_mask(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer) {
@@ -179,6 +193,7 @@ OccupancyGrid visible_truth(const Arena& arena, const OccupancyGrid& truth, cons
       if (seen[c] == 0 && !(is_wall && touches_seen(truth, seen, c))) known[c] = Occupancy::Unknown;
     }
   }
+  leave_open(arena, known);
   return known;
 }
 

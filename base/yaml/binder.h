@@ -31,6 +31,8 @@ class Binder {
   virtual void section(const char* key, const std::function<void(Binder&)>& fields) = 0;
   /// Whether the fields are written rather than read: what has its usual value may then be left out.
   virtual bool writes() const { return false; }
+  /// Where the value of `key` stands, as file:line:column; empty when fields are written.
+  virtual std::string place(const char* /*key*/) const { return ""; }
   /// Radians inside, degrees in the file; the bounds are degrees.
   void degrees(const char* key, double& radians, double low, double high);
 };
@@ -45,6 +47,7 @@ class YamlReader : public Binder {
   void text(const char* key, std::string& value) override;
   void choice(const char* key, std::string& value, const std::vector<std::string>& choices) override;
   void section(const char* key, const std::function<void(Binder&)>& fields) override;
+  std::string place(const char* key) const override { return map_.place(key); }
 
  private:
   YamlMap map_;

@@ -178,9 +178,10 @@ bool Agenda::may_push(const Situation& situation) const {
 }
 
 Order Agenda::start_pushing(const Situation& situation) {
-  const bool single = pushing_.start(situation.floor);
-  note(situation.now, std::string("nothing else can be reached: ") + (single ? "small things" : "heaps") +
-                          " that stand alone are pushed aside");
+  static constexpr std::array<const char*, 4> kWhat = {"nothing", "small things that stand alone are",
+                                                       "heaps that stand alone are", "strips that hang in a row are"};
+  const auto what = static_cast<std::size_t>(pushing_.start(situation.floor));
+  note(situation.now, std::string("nothing else can be reached: ") + kWhat.at(what) + " pushed aside");
   return stay_and_plan();
 }
 

@@ -32,6 +32,7 @@ PaperExplorer::PaperExplorer(const robot::RobotModel& model, const PaperExplorer
       pilot_(model, config.follower),
       stuck_watch_(config.tilt),
       recovery_(model, config.follower.turn_speed),
+      straight_on_(model),
       victims_(config.victims, config.search,
                std::max(config.planner.transform.d_min, model.swing_radius()) + kTurningRoom,
                model.swing_radius() + kLittleRoom),
@@ -105,6 +106,8 @@ Drive PaperExplorer::decide(const slam::Mapper& mapper) {
       return start(mapper);
     case Stage::OnTheWay:
       return go_on(mapper);
+    case Stage::StraightOn:
+      return drive_straight_on();
     case Stage::BackingUp:
       break;
   }
@@ -133,6 +136,14 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
   if (holds_still()) return {};
   const bool on_purpose = pilot_.turning() || agenda_.goal() == Goal::Place;
   if (const auto hold = stuck_watch_.held(pose_, commanded_, on_purpose, dt_, now_)) {
+    if (hold->stands && straight_on_.explains(commanded_, stuck_watch_.wheels()) &&
+        straight_on_.worth(pose_, floor_, now_)) {
+      agenda_.note(now_, "its wheels slip in a curve: drives straight on");
+      pilot_.stop();
+      straight_on_.begin(pose_, now_);
+      stage_ = Stage::StraightOn;
+      return drive_straight_on();
+    }
     get_free_of(*hold);
     return {};
   }
@@ -184,6 +195,17 @@ void PaperExplorer::get_free_of(const StuckWatch::Hold& hold) {
   agenda_.note(now_, hold.how + (pallet ? ": backs off and keeps clear of the pallet ahead"
                                         : ": backs off and plans around it"));
   stage_ = Stage::BackingUp;
+}
+
+Drive PaperExplorer::drive_straight_on() {
+  if (const auto hold = stuck_watch_.held(pose_, commanded_, false, dt_, now_)) {
+    get_free_of(*hold);
+    return {};
+  }
+  if (const auto drive = straight_on_.drive(pose_, floor_, now_)) return *drive;
+  stage_ = Stage::OnTheWay;
+  agenda_.plan_soon();
+  return {};
 }
 
 Drive PaperExplorer::back_up() {
@@ -240,7 +262,7 @@ void PaperExplorer::obey(Order order) {
 
 Traversable PaperExplorer::floor_now(const slam::Mapper& mapper, const std::vector<TPoint2D>& hits) const {
   Traversable floor = traversable(mapper.map(), config_.occupied_threshold);
-  if (agenda_.pushing().on()) free_small_things(floor, agenda_.pushing().extent());
+  agenda_.pushing().free_things(floor);
   free_body(floor, pose_, model_.length, model_.width, 0.0);
   free_trail(floor, trail_.points(), kTrailRadius);
   add_obstacles(floor, hits, kSameThing);

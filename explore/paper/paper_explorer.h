@@ -14,6 +14,7 @@
 #include "explore/plan/traversable.h"
 #include "explore/search/victim_watch.h"
 #include "explore/stuck/recovery.h"
+#include "explore/stuck/straight_on.h"
 #include "explore/stuck/stuck_watch.h"
 #include "robot/model.h"
 
@@ -48,7 +49,7 @@ class PaperExplorer : public Explorer {
   double time_for_home() const override { return config_.return_home ? HomeWay::kSpareTime : 0.0; }
 
  private:
-  enum class Stage { Starting, OnTheWay, BackingUp };
+  enum class Stage { Starting, OnTheWay, StraightOn, BackingUp };
 
   void observe(const slam::Mapper& mapper, const robot::Inputs& inputs);
   void follow_map(const slam::Mapper& mapper);
@@ -56,6 +57,7 @@ class PaperExplorer : public Explorer {
   robot::Drive decide(const slam::Mapper& mapper);
   robot::Drive start(const slam::Mapper& mapper);
   robot::Drive go_on(const slam::Mapper& mapper);
+  robot::Drive drive_straight_on();
   robot::Drive back_up();
 
   bool holds_still();
@@ -75,6 +77,7 @@ class PaperExplorer : public Explorer {
   Pilot pilot_;
   StuckWatch stuck_watch_;
   Recovery recovery_;
+  StraightOn straight_on_;
   VictimWatch victims_;
   LeftAlone left_alone_;
   Trail trail_;

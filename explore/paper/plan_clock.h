@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "base/stamp.h"
 
@@ -20,8 +21,10 @@ class PlanClock {
     next_ = now + wait;
     return new_map;
   }
-  /// Since the last plan [s].
-  double age(Stamp now) const { return now - last_; }
+  /// Since the last plan [s]; infinite before the first.
+  double age(Stamp now) const {
+    return last_ == Stamp::never() ? std::numeric_limits<double>::infinity() : now - last_;
+  }
 
  private:
   bool forced_ = true;

@@ -19,17 +19,19 @@ constexpr double kRoll = 0.15;      ///< farther they do not roll between two lo
 
 }  // namespace
 
-bool Pushing::more() const { return extent_ < kHeap; }
+void Pushing::free_things(Traversable& floor) const {
+  if (on()) free_small_things(floor, what_ == What::Single ? kPaper : kHeap);
+  if (what_ == What::Strips) free_strips(floor);
+}
 
 bool Pushing::worth(const Traversable& floor) const {
   return on() || !known_then_.marked() || known_then_.grown(floor);
 }
 
-bool Pushing::start(const Traversable& floor) {
-  const bool single = !on();
-  extent_ = single ? kPaper : kHeap;
-  if (single) known_then_.mark(floor);
-  return single;
+Pushing::What Pushing::start(const Traversable& floor) {
+  if (!on()) known_then_.mark(floor);
+  if (more()) what_ = static_cast<What>(static_cast<int>(what_) + 1);
+  return what_;
 }
 
 /// The map shows loose things where they lay; as they roll, what is seen near where they were just now is they.

@@ -11,22 +11,24 @@
 namespace rubble::explore {
 
 /// Things that stand alone and may be crumpled paper are driven at when nothing else can be reached: first single ones,
-/// then heaps of them. What is being pushed rolls, so the newest scans show it where the map does not: such hits are no
-/// new obstacle.
+/// then heaps of them, then strips that hang in a row. What is being pushed rolls, so the newest scans show it where
+/// the map does not: such hits are no new obstacle.
 class Pushing {
  public:
-  /// Things that stand alone and are no wider are driven at; 0: none [m].
-  double extent() const { return extent_; }
-  bool on() const { return extent_ > 0.0; }
-  /// Wider things may be driven at than are now.
-  bool more() const;
+  enum class What { Nothing, Single, Heaps, Strips };  ///< each with those before it
+  What what() const { return what_; }
+  bool on() const { return what_ != What::Nothing; }
+  /// More may be driven at than is now.
+  bool more() const { return what_ != What::Strips; }
+  /// Makes free on `floor` what is driven at.
+  void free_things(Traversable& floor) const;
   /// Whether pushing is worth while for the sake of new ground: in this round it was not tried yet, or ground was
   /// gained since then, or it has begun.
   bool worth(const Traversable& floor) const;
 
-  /// Drives at small things from now on, or at wider ones if it does already. Returns whether at single ones.
-  bool start(const Traversable& floor);
-  void end() { extent_ = 0.0; }
+  /// Drives at single things from now on, or at the next kind if it does already. Returns at what.
+  What start(const Traversable& floor);
+  void end() { what_ = What::Nothing; }
   /// A new round begins: things are driven round again, and it may be tried again in it.
   void new_round() {
     end();
@@ -42,7 +44,7 @@ class Pushing {
   bool near_loose_things() const { return !rolling_.empty(); }
 
  private:
-  double extent_ = 0.0;                        ///< [m]
+  What what_ = What::Nothing;
   std::vector<mrpt::math::TPoint2D> rolling_;  ///< hits on what is being pushed, of the last check [m, map frame]
   KnownGround known_then_;                     ///< when it began last in this round
 };

@@ -37,7 +37,7 @@ std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_ma
                   : jolt_.struck()  ? "a blow stops it"
                   : stalled_        ? "the motors stall"
                                     : "it does not move",
-                  met(commanded)};
+                  met(commanded), !tilt_.too_steep() && !jolt_.struck() && !stalled_ && !motion_.rocking()};
   motion_.reset();
   tilt_.reset();
   return hold;

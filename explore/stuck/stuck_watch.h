@@ -23,6 +23,7 @@ class StuckWatch {
   struct Hold {
     std::string how;  ///< for people
     Escape::Met met;
+    bool stands = false;  ///< no more is known than that it does not move as told
   };
 
   explicit StuckWatch(const TiltWatchConfig& tilt) : tilt_(tilt) {}

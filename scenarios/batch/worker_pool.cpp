@@ -69,7 +69,8 @@ void redirect_output(const std::string& log) {
                         const std::string& log) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // the parent died before the line above
-  std::signal(SIGINT, SIG_IGN);       // Ctrl-C reaches the whole group; the parent decides
+  std::signal(SIGINT, SIG_IGN);       // Ctrl-C and a closed terminal reach the whole group; the parent decides
+  std::signal(SIGHUP, SIG_IGN);
   std::signal(SIGTERM, SIG_DFL);
   redirect_output(log);
   std::uint64_t task = 0;

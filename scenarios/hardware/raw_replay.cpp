@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 
 #include "robot/drivers/black_box_replay.h"
 #include "robot/drivers/scip/scip_replay.h"
@@ -52,6 +53,10 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
 }  // namespace
 
 RawReplay replay_raw(const std::string& run_folder) {
+  for (const char* name : {"robot.yaml", "devices.bytes"})
+    if (!std::filesystem::exists(run_folder + "/" + name))
+      throw InputError(run_folder + ": has no bytes of devices (no " + name +
+                       " in it); give a folder that 'rubble drive' wrote");
   const RobotFile file = load_robot_file(run_folder + "/robot.yaml");
   const std::vector<robot::BlackBoxEntry> entries = robot::read_black_box(run_folder + "/devices.bytes");
   robot::Inputs recorded;

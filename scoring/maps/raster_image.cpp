@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <vector>
 
 #include "base/error.h"
 #include "base/image/sample_range.h"
@@ -19,25 +18,29 @@ namespace {
 /// 16-bit channels as 8 bit, each by the range it uses: colours by theirs, the opacity by its own.
 /// `white`: set to the sample that stands for it where that is no usual one.
 cv::Mat narrowed(const cv::Mat& image, std::uint32_t& white) {
-  std::vector<cv::Mat> channels;
-  cv::split(image, channels);
-  const std::size_t colours = channels.size() == 4 ? 3 : channels.size();
-  const auto most_of = [&](std::size_t from, std::size_t to) {
+  const int channels = image.channels();
+  const int colours = channels == 4 ? 3 : channels;
+  cv::Mat one;  // channel by channel: all of them at once would take as much as the picture again
+  const auto most_of = [&](int from, int to) {
     double most = 0.0;
-    for (std::size_t i = from; i < to; ++i) {
+    for (int i = from; i < to; ++i) {
       double here = 0.0;
-      cv::minMaxLoc(channels[i], nullptr, &here);
+      cv::extractChannel(image, one, i);
+      cv::minMaxLoc(one, nullptr, &here);
       most = std::max(most, here);
     }
     return static_cast<std::uint32_t>(most);
   };
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    const std::uint32_t here = white_of(i < colours ? most_of(0, colours) : most_of(i, i + 1), 65535, i >= colours);
+  const std::uint32_t brightest = most_of(0, colours);
+  cv::Mat out(image.size(), CV_8UC(channels));
+  for (int i = 0; i < channels; ++i) {
+    const std::uint32_t here = white_of(i < colours ? brightest : most_of(i, i + 1), 65535, i >= colours);
     if (i == 0 && is_odd_white(here, 65535)) white = here;
-    channels[i].convertTo(channels[i], CV_8U, 255.0 / here);
+    cv::extractChannel(image, one, i);
+    cv::Mat narrow;
+    one.convertTo(narrow, CV_8U, 255.0 / here);
+    cv::insertChannel(narrow, out, i);
   }
-  cv::Mat out;
-  cv::merge(channels, out);
   return out;
 }
 
@@ -86,8 +89,10 @@ cv::Mat read_raster(const std::string& path, Upright upright, std::uint32_t& whi
   try {
     image = codecs.read(path, cv::IMREAD_UNCHANGED);
     // This flag is the one that leaves pictures as they are stored; a picture with opacity is stored upright.
-    if (upright == Upright::AsSeen && image.channels() != 4)
+    if (upright == Upright::AsSeen && image.channels() != 4) {
+      image.release();
       image = codecs.read(path, cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH);
+    }
   } catch (const cv::Exception&) {
     throw InputError(path + ": the image cannot be decoded; is it complete, and at most 10000 x 10000 pixels?");
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <tuple>
@@ -136,13 +137,25 @@ double inner_radius(const Piece& piece) {
   return most;
 }
 
-std::vector<Piece> pieces_of(const cv::Mat& ink) {
+/// `most`: pixels of a piece that is of use; larger ones are left out.
+std::vector<Piece> pieces_of(const cv::Mat& ink, double most = std::numeric_limits<double>::infinity()) {
   cv::Mat labels;
-  const int count = cv::connectedComponents(ink, labels, 8, CV_32S);
-  std::vector<Piece> out(static_cast<std::size_t>(std::max(0, count - 1)));
+  const auto count = static_cast<std::size_t>(cv::connectedComponents(ink, labels, 8, CV_32S));
+  std::vector<int> sizes(count, 0);
+  for (int y = 0; y < labels.rows; ++y)
+    for (int x = 0; x < labels.cols; ++x) ++sizes[static_cast<std::size_t>(labels.at<int>(y, x))];
+  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> place(count, kNone);
+  std::vector<Piece> out;
+  for (std::size_t i = 1; i < count; ++i) {
+    if (sizes[i] > most) continue;
+    place[i] = out.size();
+    out.emplace_back().pixels.reserve(static_cast<std::size_t>(sizes[i]));
+  }
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x)
-      if (labels.at<int>(y, x) > 0) out[static_cast<std::size_t>(labels.at<int>(y, x) - 1)].pixels.push_back({x, y});
+      if (const std::size_t i = place[static_cast<std::size_t>(labels.at<int>(y, x))]; i != kNone)
+        out[i].pixels.push_back({x, y});
   return out;
 }
 
@@ -313,12 +326,11 @@ std::vector<VictimSymbol> find_victim_symbols(const RgbImage& image, double reso
 
   std::vector<cv::Point2d> centres;
   cv::Mat rest = cv::Mat::zeros(drawing.marks.size(), CV_8U);
-  for (const Piece& piece : pieces_of(drawing.marks == static_cast<int>(kInk))) {
+  for (const Piece& piece : pieces_of(drawing.marks == static_cast<int>(kInk), kMostDiscs * area)) {
     const double r = piece.radius() * resolution;
     if (r > kLeastRadius && r < kMostRadius && piece.disc_likeness() >= kDiscLike) {
       centres.push_back(piece.centre());
-    } else if (!piece.is_square() && piece.area() <= kMostDiscs * area &&
-               inner_radius(piece) <= kSolid * radius + 1.0) {
+    } else if (!piece.is_square() && inner_radius(piece) <= kSolid * radius + 1.0) {
       for (const cv::Point& p : piece.pixels) rest.at<unsigned char>(p) = 1;
     }
   }

@@ -67,4 +67,24 @@ assert abs(seen["score"] - again["score"]) < 1e-12 and abs(seen["known"] - again
 PY
 cmp -s seen/map.tif all/map.tif || fail "the truth to score with changed the map"
 expect_exit 0 '' "$rubble" replay seen
+# Interrupted in the middle: one line, 130, no file cut in two; and under nohup a closed terminal is not heard.
+for signal in INT TERM HUP; do
+  mkdir cut
+  setsid "$rubble" arena generate --cells 40x40 --out cut >out.txt 2>err.txt &
+  pid=$!
+  for _ in $(seq 200); do
+    [[ -s out.txt || -s cut/yellow-40x40-seed1.yaml ]] && break
+    sleep 0.02
+  done
+  kill -$signal $pid
+  wait $pid
+  code=$?
+  [[ $code == 130 && $(cat err.txt) == "rubble: interrupted" ]] || fail "SIG$signal ends a generation with $code: $(head -c 300 err.txt)"
+  rm -rf cut
+done
+(trap '' HUP; exec "$rubble" arena generate --cells 12x12 --out kept) >out.txt 2>err.txt &
+pid=$!
+sleep 0.1
+kill -HUP $pid
+wait $pid || fail "a closed terminal ends what nohup started: $(head -c 300 err.txt)"
 finish

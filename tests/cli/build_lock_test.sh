@@ -42,4 +42,16 @@ done
 timeout 20 clone/rubble 0 >second.txt 2>second_err.txt
 [[ $? == 0 ]] && ! grep -q waits second_err.txt || fail "a program that runs holds up the next: $(cat second_err.txt)"
 kill $first
+
+# A build that fails without the word "error", as on a full disk: the end of its log, and the exit code of a failure.
+rm -f clone/build/release/rubble
+cat >tools/ninja <<'SH'
+#!/bin/bash
+echo "ninja: writing to the disk: No space left on device"
+exit 1
+SH
+clone/rubble 0 >first.txt 2>first_err.txt
+code=$?
+[[ $code == 4 ]] || fail "a build that failed ends with $code"
+grep -q "No space left" first_err.txt && grep -q "the build failed" first_err.txt || fail "a failed build says: $(cat first_err.txt)"
 finish

@@ -26,6 +26,13 @@ done
 way >/dev/null
 cmp -s a.png way.png && fail "--from draws no way"
 
+# A target takes the place of the frontiers; from where it stands the way is nothing.
+expect_exit 0 '' "$rubble" plan room.yaml --from 1.0,0.6 --to 5.0,1.0 --d-min 0.3 --out to.png
+grep -q '^frontiers' out.txt && fail "frontiers are told though there is a target"
+awk '/^way/ {exit !($2 >= 4.0 && $2 < 5.0)}' out.txt || fail "the way to the target: $(cat out.txt)"
+cmp -s way.png to.png && fail "--to changes nothing"
+expect_exit 3 '--to: no free floor' "$rubble" plan room.yaml --to 90,1
+expect_exit 2 '--to x' "$rubble" plan room.yaml --to x
 expect_exit 3 'no free floor' "$rubble" plan room.yaml --from 90,1
 expect_exit 3 'nearer to a wall' "$rubble" plan room.yaml --from 1.0,0.15
 expect_exit 2 'X,Y' "$rubble" plan room.yaml --from here

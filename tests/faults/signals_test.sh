@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Ctrl-C, a polite kill and a closed terminal at many moments, and a second Ctrl-C: 130 with a whole folder, or the end.
+# Ctrl-C, a polite kill and a closed terminal at many moments, and a second Ctrl-C: 130 with a whole folder, or,
+# before the work has begun, 130 with one line and none.
 . "$(dirname "$0")/lib.sh"
 fault_scenario s.yaml 4000
 for signal in INT TERM HUP; do
@@ -7,8 +8,13 @@ for signal in INT TERM HUP; do
     rm -rf run
     strike "$i" "$signal" "$rubble" run s.yaml --out run
     case $code in
-      0 | 130) [[ -s run/score.json && ! -e run/.partial ]] || fail "SIG$signal at moment $i: ended with $code, but no whole folder" ;;
-      129 | 143) [[ ! -s run/score.json ]] || fail "SIG$signal at moment $i: ended with $code behind its end" ;;
+      0) [[ -s run/score.json && ! -e run/.partial ]] || fail "SIG$signal at moment $i: ended with $code, but no whole folder" ;;
+      129 | 143 | 130) # before the program has taken the signal over, on the spot, or with a whole folder
+        if [[ $code != 130 || $(<struck.err) == "rubble: interrupted" || ! -e run ]]; then
+          [[ ! -s run/score.json ]] || fail "SIG$signal at moment $i: ended with $code behind its end"
+        else
+          [[ -s run/score.json && ! -e run/.partial ]] || fail "SIG$signal at moment $i: ended with $code, but no whole folder"
+        fi ;;
       *) fail "SIG$signal at moment $i: ended with $code: $(head -c 300 struck.err)" ;;
     esac
     [[ $(wc -l <struck.err) -le 1 ]] || fail "SIG$signal at moment $i: more than one line: $(head -c 300 struck.err)"

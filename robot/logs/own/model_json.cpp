@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <type_traits>
 
 #include "base/bytes.h"
 #include "base/text/json_size.h"
@@ -13,6 +15,8 @@ namespace rubble::robot {
 namespace {
 
 using nlohmann::json;
+
+constexpr int kMostLaserBeams = 1'000'000;
 
 // JSON has no infinities: they travel as text.
 void put(json& to, double value) {
@@ -48,6 +52,28 @@ void take(const json& from, T& value) {
   value = from.get<T>();
 }
 
+/// Throws BadPayload for a robot that nobody can have built: what is computed with it would be nonsense told as a map.
+void check_model(const RobotModel& model) {
+  constexpr double kLargest = 1e4;  // m, kg, s, m/s: beyond any vehicle and any laser
+  const auto refuse = [](const ModelKey& key, const std::string& why) {
+    throw BadPayload(std::string("the robot model's ") + key.log + " is " + why);
+  };
+  each_model_field(model, [&](const ModelKey& key, const auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {
+      const std::string name = key.log;
+      const bool is_signed = name.rfind("base_laser_", 0) == 0 || name.rfind("laser_angle_", 0) == 0;
+      const bool may_be_endless = name == "command_timeout";
+      if (std::isnan(value) || std::abs(value) > (may_be_endless ? HUGE_VAL : kLargest)) refuse(key, "no sensible number");
+      if (value < 0.0 && !is_signed) refuse(key, "negative");
+    }
+  });
+  const LaserModel& laser = model.laser;
+  if (laser.beams < 1 || laser.beams > kMostLaserBeams)
+    throw BadPayload("the robot model's laser has " + std::to_string(laser.beams) + " beams");
+  if (laser.beams > 1 && laser.angle_step == 0.0) throw BadPayload("the beams of the robot model's laser have no angle");
+  if (laser.range_max <= laser.range_min) throw BadPayload("the robot model's laser reaches no further than it begins");
+}
+
 }  // namespace
 
 std::string model_to_json(const RobotModel& model) {
@@ -69,6 +95,7 @@ RobotModel model_from_json(const std::string& text) {
   } catch (const json::exception&) {
     throw BadPayload("a value of the robot model is missing or of another kind");
   }
+  check_model(model);
   return model;
 }
 

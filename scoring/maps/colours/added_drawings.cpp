@@ -8,6 +8,7 @@
 #include "base/grid.h"
 #include "scoring/maps/colours/grey_levels.h"
 #include "scoring/maps/colours/grey_roles.h"
+#include "scoring/maps/colours/nearest_ground.h"
 
 namespace rubble::scoring {
 namespace {
@@ -49,6 +50,18 @@ cv::Mat colourfulness(const RgbImage& image) {
       out.at<unsigned char>(y, x) = static_cast<unsigned char>(most - least);
     }
   return out;
+}
+
+/// Coloured pixels that are few, on greys; empty where the picture is otherwise.
+cv::Mat ink_of(const RgbImage& image) {
+  const cv::Mat tint = colourfulness(image);
+  const cv::Mat strong = tint > kColour;
+  if (share_of(strong) < kLeastInk || share_of(strong) > kMostInk) return {};
+  cv::Mat beside;
+  cv::dilate(strong, beside, cv::Mat::ones(3, 3, CV_8U));
+  const cv::Mat rest = ~beside;
+  if (cv::countNonZero(rest & (tint <= kTint)) < kGreyRest * cv::countNonZero(rest)) return {};
+  return strong | (beside & (tint > kTint));
 }
 
 /// The walls of the greys beside `ink`; empty where these are not thin.
@@ -127,34 +140,14 @@ std::optional<cv::Rect> panel_within_frame(const cv::Mat& classes, cv::Rect pane
 
 }  // namespace
 
-bool paint_over_colours(RgbImage& image, const cv::Mat& apart) {
-  const cv::Mat tint = colourfulness(image);
-  const cv::Mat strong = tint > kColour;
-  if (share_of(strong) < kLeastInk || share_of(strong) > kMostInk) return false;
-  cv::Mat beside;
-  cv::dilate(strong, beside, cv::Mat::ones(3, 3, CV_8U));
-  const cv::Mat rest = ~beside;
-  if (cv::countNonZero(rest & (tint <= kTint)) < kGreyRest * cv::countNonZero(rest)) return false;
-  const cv::Mat ink = strong | (beside & (tint > kTint));
-  const cv::Mat walls = thin_walls(grey_of(image), ink | apart);
+bool paint_over_colours(const RgbImage& image, const cv::Mat& apart, cv::Mat& grey) {
+  const cv::Mat ink = ink_of(image);
+  if (ink.empty()) return false;
+  const cv::Mat walls = thin_walls(grey, ink | apart);
   if (walls.empty()) return false;
-
-  const cv::Mat no_ground = ink | walls;
-  cv::Mat distance, nearest;
-  cv::distanceTransform(no_ground, distance, nearest, cv::DIST_L2, 5, cv::DIST_LABEL_PIXEL);
-  distance.release();
-  std::vector<std::int32_t> ground(no_ground.total() + 1,
-                                   -1);  // where each label's ground lies; pictures have less than 2^31 pixels
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x)
-      if (no_ground.at<unsigned char>(y, x) == 0)
-        ground[static_cast<std::size_t>(nearest.at<int>(y, x))] = y * image.width + x;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const std::int32_t from = ground[static_cast<std::size_t>(nearest.at<int>(y, x))];
-      if (ink.at<unsigned char>(y, x) == 0 || from < 0) continue;
-      std::copy_n(image.pixel(from % image.width, from / image.width), 3, image.pixel(x, y));
-    }
+  cv::Mat ground = grey.clone();
+  carry_ground(ink | walls, ground);
+  ground.copyTo(grey, ink);
   return true;
 }
 

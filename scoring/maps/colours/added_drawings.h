@@ -6,10 +6,10 @@
 
 namespace rubble::scoring {
 
-/// Coloured lines and symbols on a map of greys (the way of the robot, poses, marks) take the colour of the nearest
-/// ground. Colours are drawings only where they are few and the greys alone have thin walls. `apart`: 255 where a pixel
-/// has no say. False: there are none.
-bool paint_over_colours(RgbImage& image, const cv::Mat& apart);
+/// Coloured lines and symbols on a map of greys (the way of the robot, poses, marks) take in `grey`, its
+/// brightness, that of the nearest ground. Colours are drawings only where they are few and the greys alone have thin
+/// walls. `apart`: 255 where a pixel has no say. False: there are none.
+bool paint_over_colours(const RgbImage& image, const cv::Mat& apart, cv::Mat& grey);
 
 /// What plotting programs put around a map (margins with axes, titles, frames) is unknown: ground that reaches a whole
 /// side of the picture and leaves of it one upright rectangle, which itself begins with unknown ground or is framed.

@@ -7,6 +7,7 @@
 
 #include "base/grid.h"
 #include "scoring/maps/colours/grey_roles.h"
+#include "scoring/maps/colours/nearest_ground.h"
 
 namespace rubble::scoring {
 namespace {
@@ -33,17 +34,10 @@ void fill_drawn(const cv::Mat& grey, const std::vector<int>& drawn, cv::Mat& cla
   cv::Mat lines = cv::Mat::zeros(grey.size(), CV_8U);
   for (const int level : drawn) lines |= grey == level;
   const cv::Mat no_ground = lines | (classes == static_cast<int>(Occupancy::Occupied));
-  cv::Mat distance, nearest;
-  cv::distanceTransform(no_ground, distance, nearest, cv::DIST_L2, 5, cv::DIST_LABEL_PIXEL);
-  std::vector<unsigned char> ground(grey.total() + 1, static_cast<unsigned char>(Occupancy::Unknown));
-  for (int y = 0; y < grey.rows; ++y)
-    for (int x = 0; x < grey.cols; ++x)
-      if (no_ground.at<unsigned char>(y, x) == 0)
-        ground[static_cast<std::size_t>(nearest.at<int>(y, x))] = classes.at<unsigned char>(y, x);
-  for (int y = 0; y < grey.rows; ++y)
-    for (int x = 0; x < grey.cols; ++x)
-      if (lines.at<unsigned char>(y, x) != 0)
-        classes.at<unsigned char>(y, x) = ground[static_cast<std::size_t>(nearest.at<int>(y, x))];
+  cv::Mat ground = classes.clone();
+  ground.setTo(static_cast<int>(Occupancy::Unknown), no_ground);  // where there is no ground at all
+  carry_ground(no_ground, ground);
+  ground.copyTo(classes, lines);
 }
 
 /// Each pixel is of the level that it has.
@@ -96,8 +90,7 @@ cv::Mat transparent_pixels(const RgbImage& image) {
   return out;
 }
 
-LabelImage classify_grey(const RgbImage& image, const cv::Mat& apart) {
-  const cv::Mat grey = grey_of(image);
+LabelImage classify_grey(const cv::Mat& grey, const cv::Mat& apart) {
   const GreyRoles roles = grey_roles(grey, apart);
   LabelImage out;
   out.recognised = "grey levels, " + roles.text();

@@ -12,6 +12,7 @@
 #include "base/grid.h"
 #include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/colours/lossy_colours.h"
+#include "scoring/maps/colours/nearest_ground.h"
 
 namespace rubble::scoring {
 namespace {
@@ -159,22 +160,10 @@ Label label_of(const Colour& c, bool exact) {
 /// Drawings lie on free or unknown ground: each of their pixels takes the class of the nearest such pixel.
 void fill_drawings(cv::Mat& labels) {
   const cv::Mat no_ground = (labels != static_cast<int>(kFree)) & (labels != static_cast<int>(kUnknown));
-  if (cv::countNonZero(no_ground) == static_cast<int>(labels.total())) {
-    labels.setTo(kUnknown, labels == static_cast<int>(kDrawing));
-    return;
-  }
-  cv::Mat distance;
-  cv::Mat nearest;
-  cv::distanceTransform(no_ground, distance, nearest, cv::DIST_L2, 5, cv::DIST_LABEL_PIXEL);
-  std::vector<Label> ground(labels.total() + 1, kUnknown);
-  for (int y = 0; y < labels.rows; ++y)
-    for (int x = 0; x < labels.cols; ++x)
-      if (no_ground.at<Label>(y, x) == 0)
-        ground[static_cast<std::size_t>(nearest.at<int>(y, x))] = labels.at<Label>(y, x);
-  for (int y = 0; y < labels.rows; ++y)
-    for (int x = 0; x < labels.cols; ++x)
-      if (labels.at<Label>(y, x) == kDrawing)
-        labels.at<Label>(y, x) = ground[static_cast<std::size_t>(nearest.at<int>(y, x))];
+  cv::Mat ground = labels.clone();
+  ground.setTo(static_cast<int>(kUnknown), no_ground);  // where there is no ground at all
+  carry_ground(no_ground, ground);
+  ground.copyTo(labels, labels == static_cast<int>(kDrawing));
 }
 
 /// Pictures made coarser blend a wall thinner than a pixel with the floor, over one pixel or two, and none of them may

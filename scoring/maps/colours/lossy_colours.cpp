@@ -26,6 +26,9 @@ cv::Mat grown_from(const cv::Mat& sure, const cv::Mat& weak) {
 constexpr float kWhite = 255.0F;
 constexpr float kWallBrightness = 37.0F;  // of 0,40,120
 constexpr float kMostBlue = 80.0F;        // Cb of walls, whose own is 47; of QR codes 115
+constexpr double kWide = 2.5;             // sigma of the wider smear [pixels]
+constexpr int kReach = 12;                // beyond it a smear is cut off [pixels]: 4 sigma and one
+constexpr int kBand = 512;                // rows that are worked on at a time: ten floats a pixel
 
 struct Tinted {
   cv::Mat ink;   ///< CV_32F, 1: as dark as a wall, 0: white
@@ -33,12 +36,13 @@ struct Tinted {
   cv::Mat red;   ///< CV_32F, Cr: -26 in a wall, 48 in the path, 115 in a victim
 };
 
-Tinted tints(const RgbImage& image) {
+/// Of these rows.
+Tinted tints(const RgbImage& image, const cv::Range& rows) {
   Tinted out;
-  for (cv::Mat* m : {&out.ink, &out.blue, &out.red}) *m = cv::Mat(image.height, image.width, CV_32F);
-  for (int y = 0; y < image.height; ++y)
+  for (cv::Mat* m : {&out.ink, &out.blue, &out.red}) *m = cv::Mat(rows.size(), image.width, CV_32F);
+  for (int y = 0; y < rows.size(); ++y)
     for (int x = 0; x < image.width; ++x) {
-      const std::uint8_t* p = image.pixel(x, y);
+      const std::uint8_t* p = image.pixel(x, rows.start + y);
       const float brightness = 0.299F * p[0] + 0.587F * p[1] + 0.114F * p[2];
       out.ink.at<float>(y, x) = (kWhite - brightness) / (kWhite - kWallBrightness);
       out.blue.at<float>(y, x) = 0.564F * (p[2] - brightness);
@@ -62,6 +66,29 @@ Tinted around(const Tinted& t, double sigma) {
   return out;
 }
 
+/// What is as dark and blue as a wall in these rows: perhaps (`weak`) and without doubt.
+void dark_in(const RgbImage& image, const cv::Range& band, cv::Mat& weak, cv::Mat& sure) {
+  constexpr float kSure = 0.62F;
+  constexpr float kWall = 0.48F;
+  const cv::Range rows(std::max(0, band.start - kReach), std::min(image.height, band.end + kReach));
+  const Tinted t = tints(image, rows);
+  // Between symbols the colour near by is the wall's own, in the open the one around.
+  const Tinted near = around(t, 1.0);
+  const Tinted wide = around(t, kWide);
+  for (int y = 0; y < weak.rows; ++y) {
+    const int at = band.start - rows.start + y;
+    for (int x = 0; x < weak.cols; ++x) {
+      const float a = t.ink.at<float>(at, x);
+      const auto is = [&](const Tinted& c, float least_blue, float most_red) {
+        const float blue = c.blue.at<float>(at, x);
+        return blue > least_blue && blue < kMostBlue && c.red.at<float>(at, x) < most_red;
+      };
+      weak.at<unsigned char>(y, x) = a >= kWall && (is(wide, 12.0F, 12.0F) || is(near, 12.0F, 6.0F)) ? 255 : 0;
+      sure.at<unsigned char>(y, x) = a >= kSure && is(wide, 20.0F, 2.0F) ? 255 : 0;
+    }
+  }
+}
+
 }  // namespace
 
 bool has_run_colours(const RgbImage& image) {
@@ -83,24 +110,13 @@ bool has_run_colours(const RgbImage& image) {
 }
 
 cv::Mat walls_by_brightness(const RgbImage& image) {
-  constexpr float kSure = 0.62F;
-  constexpr float kWall = 0.48F;
-  const Tinted t = tints(image);
-  // Between symbols the colour near by is the wall's own, in the open the one around.
-  const Tinted near = around(t, 1.0);
-  const Tinted wide = around(t, 2.5);
-  cv::Mat weak(t.ink.size(), CV_8U);
-  cv::Mat sure(t.ink.size(), CV_8U);
-  for (int y = 0; y < weak.rows; ++y)
-    for (int x = 0; x < weak.cols; ++x) {
-      const float a = t.ink.at<float>(y, x);
-      const auto is = [&](const Tinted& c, float least_blue, float most_red) {
-        const float blue = c.blue.at<float>(y, x);
-        return blue > least_blue && blue < kMostBlue && c.red.at<float>(y, x) < most_red;
-      };
-      weak.at<unsigned char>(y, x) = a >= kWall && (is(wide, 12.0F, 12.0F) || is(near, 12.0F, 6.0F)) ? 255 : 0;
-      sure.at<unsigned char>(y, x) = a >= kSure && is(wide, 20.0F, 2.0F) ? 255 : 0;
-    }
+  cv::Mat weak(image.height, image.width, CV_8U);
+  cv::Mat sure(image.height, image.width, CV_8U);
+  for (int from = 0; from < image.height; from += kBand) {
+    const cv::Range band(from, std::min(image.height, from + kBand));
+    cv::Mat weak_here = weak.rowRange(band), sure_here = sure.rowRange(band);
+    dark_in(image, band, weak_here, sure_here);
+  }
   return grown_from(sure & weak, weak);
 }
 

@@ -40,11 +40,11 @@ cv::Mat no_data_areas(const RgbImage& image, const SampleNotes& notes) {
   return near & out;
 }
 
-LabelImage classify_by_grey(RgbImage image, cv::Mat apart) {
-  const bool painted = paint_over_colours(image, apart);
-  const cv::Mat canvas = canvas_corners(grey_of(image));
-  apart |= canvas;
-  LabelImage out = classify_grey(image, apart);
+LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
+  cv::Mat grey = grey_of(image);
+  const bool painted = paint_over_colours(image, nothing, grey);
+  const cv::Mat canvas = canvas_corners(grey);
+  LabelImage out = classify_grey(grey, nothing | canvas);
   out.classes.setTo(static_cast<int>(Occupancy::Unknown), canvas);
   if (cv::countNonZero(canvas) > 0) out.recognised += ", corners of the canvas are unknown";
   if (painted) out.recognised += ", coloured drawings removed";
@@ -63,7 +63,7 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
   const cv::Mat nothing = transparent_pixels(image) | no_data_areas(image, notes);
   const LabelImage labels = direct          ? classify_direct(image, notes.meaning)
                             : out.is_league ? classify_league(image)
-                                            : classify_by_grey(image, nothing.clone());
+                                            : classify_by_grey(image, nothing);
   out.recognised = labels.recognised;
   out.refusal = labels.refusal;
   if (restored) out.recognised += ", " + restored->how;

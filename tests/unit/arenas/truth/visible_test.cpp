@@ -45,6 +45,22 @@ TEST(Visible, ToldIsHowFarTheLookingIs) {
   EXPECT_EQ(shares.back(), 1.0);
 }
 
+/// The laser sees the strips and past them, the robot drives through; judged is what lies beyond.
+TEST(Visible, AVeilIsNotJudgedAndWhatLiesBeyondIs) {
+  const View view(parse("  +---+---+\n  |S.   . |\n  +---+---+\n",
+                        "elements:\n  - {type: veil_wall, x_m: 0.6, y_m: 0.6, rotation_deg: 90}\n"));
+  EXPECT_EQ(view.at(0.6, 0.6), Occupancy::Free);
+  EXPECT_EQ(view.at(1.8, 0.6), Occupancy::Free);
+  int strips = 0;
+  for (double y = 0.15; y < 1.1; y += 0.05) {
+    strips += view.truth[view.truth.cell({1.2, y})] == Occupancy::Occupied ? 1 : 0;
+    EXPECT_EQ(view.at(1.2, y), Occupancy::Unknown) << y;
+  }
+  EXPECT_GT(strips, 4);
+  EXPECT_EQ(view.at(1.2, 0.0), Occupancy::Occupied) << "the wall beside it";
+  EXPECT_EQ(view.at(1.35, 0.6), Occupancy::Free) << "beyond it";
+}
+
 /// A gap of 0.3 m is too narrow to drive through, but the laser looks in as far as it can see round the edges.
 TEST(Visible, BehindANarrowGapOnlyWhatTheGapShowsCounts) {
   const View view(parse("  +---+---+---+\n  |S.   .   . |\n  +---+---+---+\n",

@@ -15,27 +15,24 @@ const TPose2D kRobot{2.0, 2.0, 0.0};
 const TPoint2D kBallAt{2.6, 2.0};
 
 /// A room of 4 x 4 m with a ball before the robot and a wall behind the ball.
-Traversable floor_with_ball(double extent) {
+Traversable floor_with_ball(const Pushing& pushing) {
   OccupancyGrid cells = test::room(4.0, 4.0);
   test::fill(cells, kBallAt.x - 0.1, kBallAt.y - 0.1, kBallAt.x + 0.1, kBallAt.y + 0.1, Occupancy::Occupied);
   test::fill(cells, 3.2, 0.0, 3.3, 4.0, Occupancy::Occupied);
   Traversable floor = traversable(std::move(cells));
-  if (extent > 0.0) free_small_things(floor, extent);
+  pushing.free_things(floor);
   measure_clearance(floor, 1.2);
   return floor;
 }
 
-TEST(Pushing, BeginsWithSmallThingsAndGoesOnToHeaps) {
+TEST(Pushing, BeginsWithSmallThingsAndGoesOnToHeapsAndStrips) {
   Pushing pushing;
-  const Traversable floor = floor_with_ball(0.0);
+  const Traversable floor = floor_with_ball(pushing);
   EXPECT_FALSE(pushing.on());
-  EXPECT_TRUE(pushing.more());
-  EXPECT_TRUE(pushing.start(floor));
-  const double single = pushing.extent();
-  EXPECT_TRUE(pushing.more());
-  EXPECT_FALSE(pushing.start(floor));
-  EXPECT_GT(pushing.extent(), single);
-  EXPECT_LT(pushing.extent(), 1.2) << "a panel of wall";
+  for (const auto what : {Pushing::What::Single, Pushing::What::Heaps, Pushing::What::Strips}) {
+    EXPECT_TRUE(pushing.more());
+    EXPECT_EQ(pushing.start(floor), what);
+  }
   EXPECT_FALSE(pushing.more());
   pushing.end();
   EXPECT_FALSE(pushing.on());
@@ -62,9 +59,9 @@ TEST(Pushing, WhatIsPushedIsNoNewObstacleAndAllElseIs) {
   Pushing pushing;
   const TPoint2D on_ball{2.5, 2.0}, on_wall{3.2, 2.0}, on_other{2.3, 2.8};
   const std::vector<TPoint2D> hits = {on_ball, on_wall, on_other};
-  EXPECT_EQ(pushing.without_loose_things(hits, kRobot, floor_with_ball(0.0)).size(), 3u) << "nothing is pushed";
-  pushing.start(floor_with_ball(0.0));
-  const Traversable floor = floor_with_ball(pushing.extent());
+  EXPECT_EQ(pushing.without_loose_things(hits, kRobot, floor_with_ball(Pushing())).size(), 3u) << "nothing is pushed";
+  pushing.start(floor_with_ball(Pushing()));
+  const Traversable floor = floor_with_ball(pushing);
   ASSERT_FALSE(floor.loose.empty());
   const std::vector<TPoint2D> rest = pushing.without_loose_things(hits, kRobot, floor);
   EXPECT_TRUE(pushing.near_loose_things());
@@ -79,8 +76,8 @@ TEST(Pushing, WhatIsPushedIsNoNewObstacleAndAllElseIs) {
 /// The map shows the ball where it lay; the scans see it roll on.
 TEST(Pushing, FollowsWhatRolls) {
   Pushing pushing;
-  pushing.start(floor_with_ball(0.0));
-  const Traversable floor = floor_with_ball(pushing.extent());
+  pushing.start(floor_with_ball(Pushing()));
+  const Traversable floor = floor_with_ball(pushing);
   TPoint2D ball = kBallAt;
   for (; ball.y < 2.8; ball.y += 0.1)
     EXPECT_TRUE(pushing.without_loose_things({ball}, kRobot, floor).empty()) << ball.y;

@@ -163,5 +163,22 @@ TEST(Traversable, OnlySmallThingsThatStandAloneAreMadeFree) {
   EXPECT_FALSE(free_small_things(floor, 0.3));
 }
 
+/// Strips across a corridor, from wall to wall; three posts and a piece of wall beside them are none.
+TEST(Traversable, StripsThatHangInARowAreMadeFree) {
+  Traversable floor = traversable(test::drawn(
+      {"                      ", " #################### ", " #..................# ", " #........#.........# ",
+       " #...............#..# ", " #........#.........# ", " #..................# ", " #........#.......#.# ",
+       " #.........#........# ", " #..................# ", " #........#....####.# ", " #..................# ",
+       " #........#......#..# ", " #..................# ", " #################### ", "                      "}));
+  const OccupancyGrid before = floor.cells;
+  EXPECT_TRUE(free_strips(floor));
+  for (int y = 0; y < before.height(); ++y)
+    for (int x = 0; x < before.width(); ++x) {
+      const bool strip = (x == 10 || x == 11) && y > 1 && y < 14 && before[{x, y}] == Occupancy::Occupied;
+      EXPECT_EQ((floor.cells[{x, y}] != before[{x, y}]), strip) << x << " " << y;
+    }
+  EXPECT_FALSE(free_strips(floor)) << "there are no more";
+}
+
 }  // namespace
 }  // namespace rubble::explore

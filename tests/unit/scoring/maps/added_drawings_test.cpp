@@ -104,8 +104,8 @@ TEST(AddedDrawings, WallsInColourAreWalls) {
   cv::Mat red;
   cv::cvtColor(map, red, cv::COLOR_GRAY2BGR);
   red.setTo(cv::Scalar(0, 0, 200), map == 0);
-  RgbImage image = rgb_of(red);
-  EXPECT_FALSE(paint_over_colours(image, cv::Mat::zeros(map.size(), CV_8U)));
+  cv::Mat grey = map.clone();
+  EXPECT_FALSE(paint_over_colours(rgb_of(red), cv::Mat::zeros(map.size(), CV_8U), grey));
   EXPECT_EQ(read_otherwise(red, map, {0, 0}), 0);
 }
 
