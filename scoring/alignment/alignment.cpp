@@ -164,30 +164,15 @@ class Aligner {
 
   /// The second witness, at the pose of `out`: where the walls leave open whether it is right, lines of sight decide;
   /// where they alone are rather against it, these must not be against it too.
-  void ask_sights(const Trust& trust, const PoseEvidence& tight, Alignment& out) {
-    if (trust.open && !is_mirror_image(tight) && see_the_same(map_, truth_, out.T_truth_map) &&
-        (!trust.tight || sees_best(out.T_truth_map))) {
+  void ask_sights(const Trust& trust, const PoseEvidence& tight, Alignment& out) const {
+    if (trust.open && !is_mirror_image(tight) && see_the_same(map_, truth_, out.T_truth_map)) {
       out.aligned = true;
-      out.note =
-          std::string(trust.tight ? "the walls meet at another pose" : "the walls meet loosely, and at another pose") +
-          " about as well; what is open and what is blocked decided";
+      out.note = "the walls meet loosely, and at another pose about as well; what is open and what is blocked decided";
     }
     if (out.aligned && !trust.tight && out.log_odds < 0.0 && !is_borne_out(map_, truth_, out.T_truth_map)) {
       out.aligned = false;
       out.note = "not aligned: what is open in one map is blocked in the other" + about_rooms();
     }
-  }
-
-  /// At this pose the map is right about the truth's lines of sight at clearly more places than at the best other pose,
-  /// and than its mirror image at its best one: 3 standard deviations, one in 740 by luck.
-  bool sees_best(const TPose2D& T_truth_map) {
-    constexpr double kSigmas = 3.0;
-    const SightLines lines(truth_);
-    const SightMap map(map_);
-    const OccupancyGrid flipped = mirror_image(map_);
-    const PlanarTransform here(T_truth_map);
-    return lines.duel(map, here, map, PlanarTransform(T_rival_)).sigmas() >= kSigmas &&
-           lines.duel(map, here, SightMap(flipped), PlanarTransform(of_mirrored().T_tight)).sigmas() >= kSigmas;
   }
 
   /// Section IV.F: every pose proposed is improved until eq. (7) falls no further, and the least error wins. Whether it
@@ -267,7 +252,7 @@ class Aligner {
     double highest = -1.0;
     for (const Hypothesis& h : hypotheses) {
       if (same_pose(h.T_best, best.T_best, match_.map_centre(), shift, config_.search.distinct_turn)) continue;
-      others.meet(h.wide, h.tight, h.T_best);
+      others.meet(h.wide, h.tight);
       if (h.quality <= highest) continue;
       highest = h.quality;
       out.contest.T_runner_up = h.T_best;
@@ -280,7 +265,6 @@ class Aligner {
         out.contest.by_agreement ? out.contest.agreement - others.tight : out.log_odds - others.log_odds;
     const Rivals& mirrored = of_mirrored();
     out.mirrored = relative(mirrored, best.tight, out.log_odds);
-    T_rival_ = others.T_tight;
     others.join(mirrored);
     return others;
   }
@@ -304,7 +288,7 @@ class Aligner {
     const OccupancyGrid mirrored = mirror_image(map_);
     const WallMatch match(mirrored, truth_, config_.search.reach, config_.search.max_points);
     for (const Hypothesis& h : examine(correlate(mirrored, truth_, config_.correlation), match, config_.search))
-      out.meet(h.wide, h.tight, h.T_best);
+      out.meet(h.wide, h.tight);
     return out;
   }
 
@@ -316,7 +300,6 @@ class Aligner {
   std::optional<std::vector<PoseGuess>> by_walls_;
   std::optional<std::vector<PoseGuess>> by_features_;
   std::optional<Rivals> mirrored_;
-  TPose2D T_rival_;  ///< the best clearly different pose, by tight agreement
   std::string rooms_note_;
   std::future<Rivals> mirrored_beside_;  ///< last: it ends before what it reads does
 };

@@ -64,7 +64,6 @@ Trust judge_tight(const PoseEvidence& tight, const Rivals& rivals) {
   const bool ahead = ahead_of(tight, rivals);
   const bool mutual = least_kappa(tight) >= kLeastEach;
   out.trusted = ahead && mutual;
-  out.open = !ahead && mutual && !is_fragment(tight) && tight_agreement(tight) > rivals.tight;
   if (!mutual)
     out.note = "not aligned: walls of one map are missing in the other";
   else if (!ahead && is_fragment(tight))
@@ -91,10 +90,8 @@ double log_odds(const PoseEvidence& wide, const PoseEvidence& tight) {
          14.75 * wide.free_common + 15.7 * std::min(wide.map.known, wide.truth.known);
 }
 
-void Rivals::meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence,
-                  const mrpt::math::TPose2D& T_truth_map) {
+void Rivals::meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence) {
   log_odds = std::max(log_odds, scoring::log_odds(wide, tight_evidence));
-  if (tight_agreement(tight_evidence) > tight) T_tight = T_truth_map;
   tight = std::max(tight, tight_agreement(tight_evidence));
   map_tight = std::max(map_tight, agreement(tight_evidence.map));
   truth_tight = std::max(truth_tight, agreement(tight_evidence.truth));

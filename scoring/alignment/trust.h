@@ -1,7 +1,5 @@
 #pragma once
 
-#include <mrpt/math/TPose2D.h>
-
 #include <string>
 
 #include "scoring/walls/wall_match.h"
@@ -25,17 +23,16 @@ double log_odds(const PoseEvidence& wide, const PoseEvidence& tight);
 struct Rivals {
   double log_odds = kNoOdds;
   double tight = 0.0;
-  double map_tight = 0.0;       ///< of `tight`, what the map's walls contribute
-  double truth_tight = 0.0;     ///< the same for the truth's walls
-  mrpt::math::TPose2D T_tight;  ///< the pose that reaches `tight`; of join() the caller's own, not the others'
-  void meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence, const mrpt::math::TPose2D& T_truth_map = {});
+  double map_tight = 0.0;    ///< of `tight`, what the map's walls contribute
+  double truth_tight = 0.0;  ///< the same for the truth's walls
+  void meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence);
   void join(const Rivals& others);
 };
 
 struct Trust {
   bool trusted = false;
   bool tight = false;  ///< the maps agree to the decimetre, not only to the metre
-  bool open = false;   ///< not trusted, but rather right than wrong, no rival is better: another witness may decide
+  bool open = false;   ///< not trusted, but rather right than wrong, and no rival is better: another witness may decide
   std::string note;    ///< why not trusted; or what speaks for a pose of which walls alone leave a doubt
 };
 

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
-#include <utility>
 
 #include "base/angle.h"
 #include "base/distance_transform.h"
@@ -270,49 +268,25 @@ double said_open(const Sight& sight) {
   return 1.0 - 2.0 * std::min(1.0, all);
 }
 
-/// What a map says along one line.
-struct Statement {
-  double share = 0.0;  ///< of the line that the map knows: 0, or a half for each end
-  double right = 0.0;  ///< -1..1
-};
-
-/// A map at a pose that is asked line by line.
-template <class Transform>
-class Witness {
- public:
-  Witness(const SightMap& map, const Transform& T)
-      : ground_(map), T_(T), raster_(std::min(kMostRaster, kRaster * map.grid.resolution())) {}
-
-  Statement about(const SightLines::Line& line) {
-    const TPoint2D a = T_.inverse(line.from);
-    const TPoint2D b = T_.inverse(line.to);
-    ground_.look(a, b, (line.to - line.from).norm(), sight_);
-    if (sight_.walls.empty() && sight_.unknown > kUnseen) return {};
-    // A wall seen from one side only, or at the edge of what the map knows, is half a line.
-    return {0.5 * ground_.known(a) + 0.5 * ground_.known(b),
-            line.blocked ? said_blocked(line, sight_, raster_) : said_open(sight_)};
-  }
-
- private:
-  const Ground ground_;
-  const Transform& T_;
-  const double raster_;
-  Sight sight_;
-};
-
 template <class Transform>
 SightAgreement agreement(const std::vector<SightLines::Line>& lines, const SightMap& map, const Transform& T,
                          double fee) {
-  Witness<Transform> witness(map, T);
+  const Ground ground(map);
+  const double raster = std::min(kMostRaster, kRaster * map.grid.resolution());
+  Sight sight;
   double all = 0.0;
   double known = 0.0;
   double gain = 0.0;
   for (const SightLines::Line& line : lines) {
     all += line.weight;
-    const Statement said = witness.about(line);
-    const double weight = line.weight * said.share;
+    const TPoint2D a = T.inverse(line.from);
+    const TPoint2D b = T.inverse(line.to);
+    ground.look(a, b, (line.to - line.from).norm(), sight);
+    if (sight.walls.empty() && sight.unknown > kUnseen) continue;
+    // A wall seen from one side only, or at the edge of what the map knows, is half a line.
+    const double weight = line.weight * (0.5 * ground.known(a) + 0.5 * ground.known(b));
     known += weight;
-    gain += weight * said.right;
+    gain += weight * (line.blocked ? said_blocked(line, sight, raster) : said_open(sight));
   }
   SightAgreement out;
   if (known <= 0.0) return out;
@@ -356,40 +330,6 @@ SightAgreement SightLines::at(const SightMap& map, const PlanarTransform& T_trut
 
 SightAgreement SightLines::at(const SightMap& map, const Warp& warp) const {
   return agreement(lines_, map, warp, fee_);
-}
-
-double SightDuel::sigmas() const {
-  const int both = first + second;
-  return both == 0 ? 0.0 : (first - second) / std::sqrt(static_cast<double>(both));
-}
-
-SightDuel SightLines::duel(const SightMap& first, const PlanarTransform& T_truth_first, const SightMap& second,
-                           const PlanarTransform& T_truth_second) const {
-  constexpr double kApart = 1.2;  // of places [m]: the lines of one hang on the same piece of wall
-  constexpr double kLeast = 0.5;  // mean lead over the lines of a place that counts: 1 is right against knows nothing
-  Witness<PlanarTransform> one(first, T_truth_first);
-  Witness<PlanarTransform> two(second, T_truth_second);
-  struct Place {
-    double ahead = 0.0;
-    int lines = 0;
-  };
-  std::map<std::pair<long, long>, Place> places;
-  for (const Line& line : lines_) {
-    const double length = (line.to - line.from).norm();
-    const TPoint2D at = line.from + (line.to - line.from) * (line.blocked ? line.middle / length : 0.5);
-    const Statement a = one.about(line);
-    const Statement b = two.about(line);
-    if (a.share == 0.0 || b.share == 0.0) continue;
-    Place& place = places[{std::lround(at.x / kApart), std::lround(at.y / kApart)}];
-    place.ahead += a.share * a.right - b.share * b.right;
-    ++place.lines;
-  }
-  SightDuel out;
-  for (const auto& [at, place] : places) {
-    if (place.ahead >= kLeast * place.lines) ++out.first;
-    if (place.ahead <= -kLeast * place.lines) ++out.second;
-  }
-  return out;
 }
 
 }  // namespace rubble::scoring

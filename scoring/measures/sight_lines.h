@@ -27,15 +27,6 @@ struct SightMap {
   WallPieces pieces;
 };
 
-/// Two claims about one truth, held against each other: at how many places, 1.2 m apart, the first is right about the
-/// lines of sight and the second is not, and the other way round. What both say alike counts for neither.
-struct SightDuel {
-  int first = 0;
-  int second = 0;
-  /// How sure the first is the better one, in standard deviations of a fair coin (sign test): 0 where they are as good.
-  double sigmas() const;
-};
-
 /// Lines between two free places of the truth, 0.5 to 1.8 m apart: open, or blocked by one wall. A map agrees where it
 /// says the same and has the wall in the same place.
 ///
@@ -58,10 +49,6 @@ class SightLines {
   SightAgreement at(const OccupancyGrid& map, const PlanarTransform& T_truth_map) const {
     return at(SightMap(map), T_truth_map);
   }
-
-  /// Which of two maps (or of two poses of one) knows the lines better.
-  SightDuel duel(const SightMap& first, const PlanarTransform& T_truth_first, const SightMap& second,
-                 const PlanarTransform& T_truth_second) const;
 
   struct Line {
     mrpt::math::TPoint2D from;

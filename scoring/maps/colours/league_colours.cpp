@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdlib>
 #include <opencv2/imgproc.hpp>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -103,6 +105,31 @@ void each_run(const RgbImage& image, const Visit& visit) {
   }
 }
 
+/// The white of a picture whose contrast was taken down: 255 where the league's two greys do not lie below it as they
+/// do below white.
+int dimmed_white(const RgbImage& image) {
+  std::array<std::size_t, 256> levels{};
+  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
+    const auto [low, high] = std::minmax({image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]});
+    if (high - low <= 3) ++levels[image.rgb[i + 1]];
+  }
+  const std::size_t pixels = std::max<std::size_t>(1, image.rgb.size() / 3);
+  int white = 255;
+  while (white > 200 && 50 * levels[static_cast<std::size_t>(white)] < pixels) --white;
+  // Contrast is scaled about a middle grey or about black.
+  const auto is_there = [&](int grey, int pivot) {
+    const double at = pivot + (grey - pivot) * static_cast<double>(white - pivot) / (255 - pivot);
+    std::size_t near = 0;
+    for (int level = static_cast<int>(at) - 1; level <= static_cast<int>(at) + 2; ++level)
+      near += levels[static_cast<std::size_t>(std::clamp(level, 0, 255))];
+    return 25 * near >= pixels;
+  };
+  if (white >= 250 || white <= 200) return 255;
+  for (const int pivot : {0, 128})
+    if (is_there(league::kUnexplored[0], pivot) && is_there(league::kUnexploredLight[0], pivot)) return white;
+  return 255;
+}
+
 Census census(const RgbImage& image) {
   Census out;
   each_run(image, [&](const Colour& c, int first, int y, int length) {
@@ -198,8 +225,40 @@ void smooth(cv::Mat& labels) {
 
 }  // namespace
 
+std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
+  const auto has_all = [](const RgbImage& changed) {
+    const Census c = census(changed);
+    return 20 * c.checkerboard >= c.pixels && 5000 * c.pure_walls >= c.pixels && c.exact();
+  };
+  const Census as_is = census(image);
+  if (as_is.exact()) return std::nullopt;
+  RgbImage changed = image;
+  for (std::size_t i = 0; i + 2 < changed.rgb.size(); i += 3) std::swap(changed.rgb[i], changed.rgb[i + 2]);
+  if (has_all(changed)) return RestoredColours{std::move(changed), "red and blue were exchanged"};
+  changed = image;
+  for (std::uint8_t& value : changed.rgb) value = static_cast<std::uint8_t>(255 - value);
+  if (has_all(changed)) return RestoredColours{std::move(changed), "colours were inverted"};
+  const int white = dimmed_white(image);
+  if (white == 255) return std::nullopt;
+  changed = image;
+  for (std::uint8_t& value : changed.rgb)
+    value = static_cast<std::uint8_t>(std::min(255, (255 * value + white / 2) / white));
+  return RestoredColours{std::move(changed), "white was " + std::to_string(white)};
+}
+
+bool has_lost_its_colours(const RgbImage& image) {
+  std::array<std::size_t, 256> levels{};
+  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
+    if (image.rgb[i] != image.rgb[i + 1] || image.rgb[i] != image.rgb[i + 2]) return false;
+    ++levels[image.rgb[i]];
+  }
+  const std::size_t pixels = image.rgb.size() / 3;
+  return 20 * levels[226] >= pixels && 20 * levels[237] >= pixels && 100 * levels[255] >= pixels;
+}
+
 bool is_league_map(const RgbImage& image) {
   const Census c = census(image);
+  if (3 * c.walls > c.pixels) return false;  // a ground of that blue
   const auto are_walls = [&](std::size_t count) { return count >= 20 && 5000 * count >= c.pixels; };
   if (20 * c.checkerboard >= c.pixels || are_walls(c.walls)) return true;
   return has_run_colours(image) && are_walls(static_cast<std::size_t>(cv::countNonZero(walls_by_brightness(image))));

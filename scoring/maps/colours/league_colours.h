@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "base/image/geotiff.h"
 #include "scoring/maps/colours/grey_levels.h"
 
@@ -7,6 +10,20 @@ namespace rubble::scoring {
 
 /// Whether the image carries the RoboCupRescue GeoTIFF colours: blue walls or the checkerboard of unexplored space.
 bool is_league_map(const RgbImage& image);
+
+/// A league map whose colours were changed as a whole, with the league's own.
+struct RestoredColours {
+  RgbImage image;
+  std::string how;  ///< what had been done to it
+};
+
+/// Of pictures whose red and blue were exchanged, that were inverted, or whose contrast was taken down; nothing of
+/// others. Exchanged and inverted ones must come out exact, checkerboard and walls.
+std::optional<RestoredColours> restored_league_colours(const RgbImage& image);
+
+/// A picture of greys alone with both greys of the league's checkerboard: which of its dark lines are walls, and which
+/// the robot's way, only the colours said.
+bool has_lost_its_colours(const RgbImage& image);
 
 /// The classes of a league map without its drawings. Colours: the league's GeoTIFF map rules as hector_geotiff and
 /// crosbot draw them (docs/scoring.md has the table).

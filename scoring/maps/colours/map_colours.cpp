@@ -54,9 +54,11 @@ LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
 
 }  // namespace
 
-ClassImage classify(const RgbImage& image, const SampleNotes& notes) {
+ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
   ClassImage out;
   const bool direct = !notes.meaning.empty();
+  const std::optional<RestoredColours> restored = direct ? std::nullopt : restored_league_colours(original);
+  const RgbImage& image = restored ? restored->image : original;
   out.is_league = !direct && is_league_map(image);
   const cv::Mat nothing = transparent_pixels(image) | no_data_areas(image, notes);
   const LabelImage labels = direct          ? classify_direct(image, notes.meaning)
@@ -64,6 +66,10 @@ ClassImage classify(const RgbImage& image, const SampleNotes& notes) {
                                             : classify_by_grey(image, nothing);
   out.recognised = labels.recognised;
   out.refusal = labels.refusal;
+  if (restored) out.recognised += ", " + restored->how;
+  if (!direct && has_lost_its_colours(image))
+    out.refusal =
+        "is a league map without its colours: the robot's way and victims are as dark as walls; save it in colour";
   if (image.white > 0)
     out.recognised += ", scaled so that the brightest sample, " + std::to_string(image.white) + ", is white";
   cv::Mat classes = labels.classes;
