@@ -121,15 +121,22 @@ cv::Mat walls_by_brightness(const RgbImage& image) {
 }
 
 cv::Mat unexplored_by_brightness(const RgbImage& image) {
-  constexpr int kEven = 7;  // [pixels]
+  constexpr int kEven = 7;       // [pixels]
+  constexpr float kWay = 12.0F;  // Cb and Cr of what may be the way, whose own are 50 and 48
   cv::Mat brightness(image.height, image.width, CV_8U);
+  cv::Mat by_the_way(image.height, image.width, CV_8U);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       const std::uint8_t* p = image.pixel(x, y);
+      const float light = 0.299F * p[0] + 0.587F * p[1] + 0.114F * p[2];
+      const bool may_be_way = 0.564F * (p[2] - light) > kWay && 0.713F * (p[0] - light) > kWay;
+      by_the_way.at<unsigned char>(y, x) = may_be_way ? 255 : 0;
       brightness.at<unsigned char>(y, x) =
           static_cast<unsigned char>((299 * p[0] + 587 * p[1] + 114 * p[2] + 500) / 1000);
     }
-  // Where the way of the robot meets the grid, both blur to the same shade; ground has it evenly somewhere.
+  // Where the way of the robot meets the grid, both blur to the same shade; ground has it evenly somewhere, or away
+  // from the way.
+  cv::dilate(by_the_way, by_the_way, cv::Mat::ones(kEven, kEven, CV_8U));
   cv::Mat darkest, lightest;
   cv::erode(brightness, darkest, cv::Mat::ones(kEven, kEven, CV_8U));
   cv::dilate(brightness, lightest, cv::Mat::ones(kEven, kEven, CV_8U));
@@ -138,7 +145,8 @@ cv::Mat unexplored_by_brightness(const RgbImage& image) {
   cv::Mat middle;
   cv::medianBlur(brightness, middle, 5);
   const cv::Mat weak = (middle >= 220) & (middle <= 246);
-  return grown_from(weak & (darkest >= 212) & (lightest <= 248), weak);
+  const cv::Mat even = (darkest >= 212) & (lightest <= 248);
+  return grown_from(weak & (even | ~by_the_way), weak);
 }
 
 }  // namespace rubble::scoring
