@@ -481,7 +481,10 @@ struct RealRobot::Impl {
     const Stamp arrived = lidar.status().last_scan;  // asked first: at most older than what is taken
     std::vector<LaserScan> fresh = lidar.take();
     if (fresh.empty()) return;
-    scan_arrived = arrived == Stamp::never() ? now : arrived;
+    {
+      const std::lock_guard<std::mutex> lock(mutex);  // commands may come from another thread
+      scan_arrived = arrived == Stamp::never() ? now : arrived;
+    }
     scans += fresh.size();
     show_to_watch(fresh, now);
     if (scan_watch.holds()) return;  // a map of what a covered scanner takes for free is none

@@ -267,7 +267,7 @@ TEST(EmulatedDriveEnds, WhoInsistsLeavesAtOnceAlsoWhileTheBaseIsWaitedFor) {
 
 TEST(EmulatedDriveEnds, ABaseThatWasNeverReachedIsNotAskedWhetherItStands) {
   EmulatedDrive robot;
-  robot.device.mute = true;
+  robot.server.with([&] { robot.device.mute = true; });
   const RunReport report = robot.run();
   EXPECT_THAT(report.failure, HasSubstr("base: has not reported yet"));
   EXPECT_THAT(robot.told(), Not(Contains(HasSubstr("stopped; see that it stands"))));
@@ -292,7 +292,7 @@ TEST(EmulatedDriveThatNeverBegins, ABaseThatFellSilentIsNotAskedWhoItIs) {
 TEST(EmulatedDriveThatNeverBegins, ABaseThatMovesIsNamedAtOnceAndTheEndDoesNotSendToTheCables) {
   EmulatedDrive robot;
   robot.driven_by_others = 0.25;
-  robot.device.mute = true;
+  robot.server.with([&] { robot.device.mute = true; });
   auto driven = robot.start();
   ASSERT_TRUE(robot.comes_true([&] { return count(robot.told(), "base: has not reported yet") > 0; }));
   robot.server.with([&] { robot.device.mute = false; });
