@@ -39,21 +39,29 @@ CLI::Validator between(double low, double high) {
   return CLI::Validator(check, "");
 }
 
-/// 0 to 2^63 - 1 without a sign.
+/// 0 to 2^63 - 1 without a sign: what every reader of results can hold.
 CLI::Validator whole_number() {
   const auto check = [](const std::string& text) {
     std::int64_t value = 0;
     const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool good = end.ec == std::errc() && end.ptr == text.data() + text.size() && value >= 0;
-    return good ? std::string() : "'" + text + "' is not a whole number from 0 on";
+    return good ? std::string() : "'" + text + "' is not a whole number from 0 to 9223372036854775807";
   };
   return CLI::Validator(check, "");
 }
 
+/// A shell's empty variable gives an option nothing.
+std::string nothing_given(const std::string& text) {
+  return text.empty() ? "needs a value, and '' is none" : std::string();
+}
+
+/// For values that may look like options themselves: --slurm-option=--time=10.
+CLI::Validator some_text() { return CLI::Validator(nothing_given, ""); }
+
 /// An option whose value was forgotten takes the next one's name for it.
-CLI::Validator no_option() {
+CLI::Validator some_value() {
   const auto check = [](const std::string& text) {
-    return text.rfind("--", 0) == 0 ? "needs a value, and " + text + " is an option" : std::string();
+    return text.rfind("--", 0) == 0 ? "needs a value, and " + text + " is an option" : nothing_given(text);
   };
   return CLI::Validator(check, "");
 }
@@ -71,13 +79,13 @@ class ParsedOptions : public Options {
     command_.add_option(name, values, about)->required(need == Need::Required);
   }
   void text(const std::string& name, std::string& value, const std::string& about) override {
-    command_.add_option(name, value, about)->check(no_option());
+    command_.add_option(name, value, about)->check(some_value());
   }
   void required_text(const std::string& name, std::string& value, const std::string& about) override {
-    command_.add_option(name, value, about)->required();
+    command_.add_option(name, value, about)->required()->check(some_value());
   }
   void texts(const std::string& name, std::vector<std::string>& values, const std::string& about) override {
-    command_.add_option(name, values, about)->allow_extra_args(false)->take_all();
+    command_.add_option(name, values, about)->allow_extra_args(false)->take_all()->check(some_text());
   }
   void choice(const std::string& name, std::string& value, const std::vector<std::string>& choices,
               const std::string& about) override {
@@ -153,6 +161,8 @@ int dispatch(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     std::string message = error.what();
+    if (const auto most = message.find(": At Most 1 required but received"); most != std::string::npos)
+      message.replace(most, std::string::npos, " is given more than once, and takes one value");
     std::replace(message.begin(), message.end(), '\n', ' ');
     const auto chosen = app.get_subcommands();
     if (chosen.empty() && argc > 1 && argv[1][0] != '-')

@@ -1,5 +1,6 @@
 #include "app/terminal.h"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -18,7 +19,10 @@ volatile std::sig_atomic_t signalled = 0;
 constexpr char kEnded[] = "rubble: interrupted\n";
 
 void on_signal_without_rest(int /*signal*/) {
-  if (write(STDERR_FILENO, kEnded, sizeof kEnded - 1) < 0) _exit(kInterrupted);
+  // A terminal that is held by Ctrl-S, or a full pipe, takes no line: who wants the end does not wait for it.
+  pollfd errors{STDERR_FILENO, POLLOUT, 0};
+  const bool taken = poll(&errors, 1, 0) == 1 && (errors.revents & POLLOUT) != 0;
+  if (taken && write(STDERR_FILENO, kEnded, sizeof kEnded - 1) < 0) _exit(kInterrupted);
   _exit(kInterrupted);
 }
 
@@ -97,6 +101,11 @@ void print_row(const std::string& label, const std::string& value) {
   std::printf("%-*s %s\n", kWidth, one_line(label).c_str(), one_line(value).c_str());
 }
 
+void print_not_aligned(const std::string& note) {
+  const std::string label = "not aligned", head = label + ": ";
+  print_row(label, note.rfind(head, 0) == 0 ? note.substr(head.size()) : note);
+}
+
 void print_figures(const nlohmann::ordered_json& score) {
   for (const scoring::Figure* figure : scoring::figures_with(scoring::kShown)) {
     const auto found = score.find(figure->key);  // special figures may not be there
@@ -120,7 +129,7 @@ int show(const scenarios::RunReport& report) {
   print_row("ended", report.end);
   print_figures(score);
   if (score["aligned"].is_boolean() && !score["aligned"].get<bool>())
-    print_row("not aligned", score["align_note"].get<std::string>());
+    print_not_aligned(score["align_note"].get<std::string>());
   print_victims(score);
   if (const auto lost = score["hits_outside"].get<std::uint64_t>(); lost > 0)
     print_row("NOT MAPPED", std::to_string(lost) + " laser hits lay beyond the largest map (mapper.max_map_cells)");

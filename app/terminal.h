@@ -31,6 +31,9 @@ void end_progress();
 /// One row of a table on stdout.
 void print_row(const std::string& label, const std::string& value);
 
+/// The row of a map that was not laid on the truth; its label says the note's first words.
+void print_not_aligned(const std::string& note);
+
 /// Every row of the table of figures that is meant for people and known. `score`: the content of score.json.
 void print_figures(const nlohmann::ordered_json& score);
 

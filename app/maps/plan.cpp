@@ -29,7 +29,7 @@ std::optional<mrpt::math::TPoint2D> place(const std::string& option, const std::
   if (text.empty()) return std::nullopt;
   mrpt::math::TPoint2D p;
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf%c", &p.x, &p.y, &rest) != 2)
+  if (std::sscanf(text.c_str(), "%lf,%lf%c", &p.x, &p.y, &rest) != 2 || std::isnan(p.x) || std::isnan(p.y))
     throw UsageError(option + " " + text + ": needs the form X,Y in metres, for example " + option + " 1.5,-2");
   if (!(std::abs(p.x) <= scoring::kFarthestPlace && std::abs(p.y) <= scoring::kFarthestPlace))
     throw UsageError(option + " " + text + ": lies farther off than any place on Earth; give X,Y in metres");

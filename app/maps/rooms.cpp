@@ -98,7 +98,7 @@ int rooms(const RoomsArguments& a) {
   if (!truth) return kOk;
   const scoring::RoomVerdict found = scoring::judge_rooms(map.map.grid, map.rooms, truth->map.grid, truth->rooms);
   if (!found.aligned) {
-    print_row("not aligned", found.note);
+    print_not_aligned(found.note);
     return kOk;
   }
   print_match(found.match);

@@ -60,7 +60,9 @@ nlohmann::ordered_json as_json(const Verdict& verdict, const OccupancyGrid& grid
 void print_table(const Verdict& verdict, const nlohmann::ordered_json& json) {
   print_row("map", verdict.map.recognised);
   print_row("truth", verdict.truth.recognised);
-  if (!verdict.score.note.empty()) print_row(verdict.score.aligned ? "aligned" : "not aligned", verdict.score.note);
+  const scoring::MapScore& score = verdict.score;
+  if (!score.aligned) print_not_aligned(score.note);
+  if (score.aligned && !score.note.empty()) print_row("aligned", score.note);
   print_contest(verdict.score);
   print_figures(json);
   const scoring::ReportedVictims& reported = verdict.reported;

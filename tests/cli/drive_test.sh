@@ -22,7 +22,7 @@ expect_exit 3 "did you mean" "$rubble" drive "$robot" --set safety.lidar_silense
 expect_exit 3 "tcp:nowhere" "$rubble" drive "$robot" --urg tcp:nowhere
 for device in urg base levelling; do
   expect_exit 3 "--$device: port 'tcp:127.0.0.1:': '' is no port number" "$rubble" drive "$robot" --$device tcp:127.0.0.1:
-  expect_exit 3 "--$device: needs a port" "$rubble" drive "$robot" --$device ""
+  expect_exit 2 "--$device: needs a value, and '' is none" "$rubble" drive "$robot" --$device ""
   expect_exit 3 "--$device: port 'tcp:127.0.0.1:0': nobody can be reached at port number 0" "$rubble" drive "$robot" --$device tcp:127.0.0.1:0
   expect_exit 2 "--$device: needs a value, and --set is an option" "$rubble" drive "$robot" --$device --set safety.start_s=1
 done

@@ -56,7 +56,8 @@ TMPDIR=/nowhere expect_exit 3 "check the path" "$rubble" replay replayed
 for place in nan,0,0 1e308,0,0 0,0,1e300 0,inf,0; do
   expect_exit 2 "X and Y must be within" "$rubble" score replayed/truth.tif replayed/truth.tif --start=$place
 done
-for place in nan,nan 1e308,0 0,inf; do
+expect_exit 2 "needs the form X,Y" "$rubble" plan replayed/truth.tif --from=nan,nan
+for place in 1e308,0 0,inf; do
   expect_exit 2 "lies farther off" "$rubble" plan replayed/truth.tif --from=$place
 done
 

@@ -33,6 +33,9 @@ awk '/^way/ {exit !($2 >= 4.0 && $2 < 5.0)}' out.txt || fail "the way to the tar
 cmp -s way.png to.png && fail "--to changes nothing"
 expect_exit 3 '--to: no free floor' "$rubble" plan room.yaml --to 90,1
 expect_exit 2 '--to x' "$rubble" plan room.yaml --to x
+expect_exit 2 '--to nan,1: needs the form' "$rubble" plan room.yaml --to nan,1
+expect_exit 2 "needs a value, and '' is none" "$rubble" plan room.yaml --to ''
+expect_exit 2 '--out is given more than once' "$rubble" plan room.yaml --out a.png --out b.png
 expect_exit 3 'no free floor' "$rubble" plan room.yaml --from 90,1
 expect_exit 3 'nearer to a wall' "$rubble" plan room.yaml --from 1.0,0.15
 expect_exit 2 'X,Y' "$rubble" plan room.yaml --from here
