@@ -33,4 +33,33 @@ for i in $(seq "$moments"); do
   struck=$((struck + 1))
   [[ $code == 130 || $code == 0 ]] || fail "a second SIGINT ended with $code: $(head -c 300 struck.err)"
 done
+# A pipe for errors that nobody reads, which is full, as a terminal that is held by Ctrl-S: who ends work that is not asked
+# twice does not wait for it.
+mkfifo held
+exec 7<>held
+python3 - <<'PY'
+import os
+os.set_blocking(7, False)
+try:
+    while True:
+        os.write(7, b"." * 4096)
+except BlockingIOError:
+    os.set_blocking(7, True)
+PY
+for i in $(seq "$moments"); do
+  "$rubble" arena generate --cells 50x50 --force --out generated >struck.out 2>&7 7>&- &
+  pid=$!
+  sleep "$(awk -v n="$i" 'BEGIN { printf "%.3f", 0.3 + 0.02 * (n % 20) }')"
+  kill -INT $pid 2>/dev/null
+  for tenth in $(seq 200); do
+    kill -0 $pid 2>/dev/null && [[ $(ps -o stat= -p $pid) != Z* ]] || break
+    sleep 0.1
+  done
+  ((tenth < 200)) || { fail "SIGINT beside a full pipe for errors: still there after 20 s"; kill -9 $pid; }
+  wait $pid 2>/dev/null
+  code=$?
+  struck=$((struck + 1))
+  [[ $code == 130 || $code == 0 || $code == 137 ]] || fail "SIGINT beside a full pipe for errors ended with $code"
+done
+exec 7>&-
 finish_faults
