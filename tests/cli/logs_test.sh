@@ -23,5 +23,11 @@ if command -v rawlog-edit >/dev/null; then
   rawlog-edit --info -i run.rawlog >info.txt 2>&1 || fail "rawlog-edit cannot read the export: $(tail -3 info.txt)"
   grep -q LASER info.txt || fail "rawlog-edit sees no LASER"
 fi
+sed 's/$/\r/' run/log.rlog >text.rlog
+expect_exit 3 'a transfer as text' "$rubble" map text.rlog
+# Of a log whose first frame is damaged nothing is worth keeping.
+{ head -c 40 run/log.rlog; printf 'damage'; tail -c +47 run/log.rlog; } >torn.rlog
+expect_exit 3 'byte 13: ' "$rubble" map torn.rlog
+grep -q 'head -c' err.txt && fail "advises to keep nothing: $(cat err.txt)"
 "$rubble" map run.rawlog --out from-rawlog >/dev/null || fail "our own export cannot be mapped"
 finish

@@ -21,6 +21,9 @@ bool all_zero(std::string_view bytes) {
 void check_magic(std::string_view bytes, const std::string& path) {
   if (bytes.substr(0, kLogMagic.size()) == kLogMagic) return;
   const std::size_t line = bytes.find('\n');
+  if (line == kLogMagic.size() && bytes[line - 1] == '\r')
+    throw InputError(
+        path + ": byte 12: a transfer as text changed the ends of its lines; copy the log again as a binary file");
   if (line != std::string_view::npos && bytes.substr(0, kLogMagicStem.size()) == kLogMagicStem) {
     const std::string version(bytes.substr(kLogMagicStem.size(), line - kLogMagicStem.size()));
     throw InputError(path + ": byte 0: a log of version '" + version.substr(0, 20) +
@@ -30,9 +33,11 @@ void check_magic(std::string_view bytes, const std::string& path) {
 }
 
 [[noreturn]] void fail_damaged(const std::string& path, std::size_t offset, const std::string& what) {
-  throw InputError(path + ": byte " + std::to_string(offset) + ": " + what +
-                   "; copy the log again, or keep what precedes the damage: head -c " + std::to_string(offset) + " '" +
-                   path + "' > part.log");
+  // The first frame describes the robot: without it nothing that precedes can be read.
+  const std::string keep = offset <= kLogMagic.size() ? ""
+                                                      : ", or keep what precedes the damage: head -c " +
+                                                            std::to_string(offset) + " '" + path + "' > part.log";
+  throw InputError(path + ": byte " + std::to_string(offset) + ": " + what + "; copy the log again" + keep);
 }
 
 }  // namespace
