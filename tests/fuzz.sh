@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# tests/fuzz.sh [SECONDS [TARGET...]]: builds the fuzz targets (these only) and runs each for so long, its corpus
-# (fuzz/corpus/TARGET, tests/fuzz/TARGET) first. One line a target: name, executions, findings, largest memory [MB]. Ends with 1
-# when there is a finding.
+# tests/fuzz.sh [SECONDS [TARGET...]]: builds the fuzz targets (these only) and runs each for so many seconds of processor
+# time (what the machine does beside it does not count), its corpus (fuzz/corpus/TARGET, tests/fuzz/TARGET) first. One line a
+# target: name, executions, processor seconds, findings, largest memory [MB]. Ends with 1 when there is a finding.
 set -uo pipefail
 seconds=${1:-20}
 shift || true
@@ -20,13 +20,38 @@ mkdir -p "$found"
 export ASAN_OPTIONS=detect_leaks=0:quarantine_size_mb=32
 findings=0
 
-# fuzz TARGET SECONDS FOLDER...: one run; what it says goes to the target's log.
+# cpu_of PID: processor time of a process and of its children that ended [hundredths of a second].
+ticks=$(getconf CLK_TCK)
+cpu_of() {
+  local fields
+  read -r -a fields 2>/dev/null <"/proc/$1/stat" || return 1
+  echo $(((fields[13] + fields[14] + fields[15] + fields[16]) * 100 / ticks))
+}
+
+# fuzz TARGET HUNDREDTHS FOLDER...: one run of so much processor time, which is left in $used; what it says goes to the
+# target's log.
+used=0
 fuzz() {
-  local target=$1 left=$2
+  local target=$1 left=$2 code=0 now asked=0
   shift 2
-  # Its own alarm may strike within malloc and then waits for itself for ever.
-  timeout -k 5 $((left + 60)) "$build/fuzz/fuzz_$target" -max_total_time="$left" -timeout=1 -rss_limit_mb=512 -max_len=65536 -print_final_stats=1 \
-    -artifact_prefix="$found/$target/" "$@" >"$build/$target.log" 2>&1
+  "$build/fuzz/fuzz_$target" -timeout=1 -rss_limit_mb=512 -max_len=65536 -print_final_stats=1 -handle_usr1=1 \
+    -artifact_prefix="$found/$target/" "$@" >"$build/$target.log" 2>&1 &
+  local pid=$! patience=$((SECONDS + left + 60))  # a hundred times as long
+  used=0
+  while now=$(cpu_of $pid); do
+    used=$now
+    if ((used >= left && !asked)); then
+      kill -USR1 $pid 2>/dev/null  # ends after this input and says its figures
+      asked=1
+      patience=$((SECONDS + 60))
+    fi
+    # Its own alarm may strike within malloc and then waits for itself for ever.
+    ((SECONDS < patience)) || kill -9 $pid 2>/dev/null
+    sleep 0.2
+    [[ $(ps -o stat= -p $pid) == Z* ]] && break
+  done
+  wait $pid 2>/dev/null || code=$?
+  return $code
 }
 
 # machine_was_slow TARGET: the run ended by an input that took more than a second by the clock, and again the same input
@@ -40,17 +65,18 @@ machine_was_slow() {
   awk '{exit !($1 + $2 < 1)}' <<<"$cpu" && rm "$input"
 }
 
-printf '%-14s %12s %9s %8s\n' target executions findings 'max MB'
+printf '%-16s %12s %9s %9s %8s\n' target executions 'CPU s' findings 'max MB'
 for target in "${targets[@]}"; do
   corpus=$top/fuzz/corpus/$target
   [[ -d $corpus ]] || corpus=$top/tests/fuzz/$target
   grown=$build/corpus/$target
   mkdir -p "$grown" "$found/$target"
   [[ -d $corpus ]] || corpus=
-  end=$((SECONDS + seconds)) runs=0 memory=0 here=0
-  while ((!here && end > SECONDS)); do
-    fuzz "$target" $((end - SECONDS)) "$grown" $corpus
+  left=$((seconds * 100)) spent=0 runs=0 memory=0 here=0
+  while ((!here && left > spent)); do
+    fuzz "$target" $((left - spent)) "$grown" $corpus
     code=$?
+    spent=$((spent + used))
     more=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$target.log")
     peak=$(sed -n 's/^stat::peak_rss_mb: *//p' "$build/$target.log")
     runs=$((runs + ${more:-0}))
@@ -59,7 +85,7 @@ for target in "${targets[@]}"; do
     machine_was_slow "$target" || here=1
   done
   findings=$((findings + here))
-  printf '%-14s %12s %9s %8s\n' "$target" "$runs" "$here" "$memory"
+  printf '%-16s %12s %9s %9s %8s\n' "$target" "$runs" $((spent / 100)) "$here" "$memory"
   ((here)) && grep -E 'ERROR|SUMMARY|Test unit' "$build/$target.log" | head -4 | sed 's/^/    /'
 done
 exit $((findings > 0))

@@ -124,9 +124,9 @@ fi
 if has fuzz; then
   start=$SECONDS
   "$top/tests/fuzz.sh" "$fuzz_seconds" >"$out/fuzz.txt" 2>&1
-  while read -r target runs found memory; do
+  while read -r target runs cpu found memory; do
     [[ $target == target || -z $memory || ! $runs =~ ^[0-9]+$ ]] && continue
-    row "fuzz: $target" "$runs" "$found" 0 "$fuzz_seconds"
+    row "fuzz: $target" "$runs" "$found" 0 "$cpu"
   done <"$out/fuzz.txt"
   grep -q '^target' "$out/fuzz.txt" || row "fuzz" "0 (did not build)" 1 0 $((SECONDS - start))
 fi
