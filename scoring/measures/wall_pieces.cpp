@@ -5,6 +5,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "scoring/measures/dashes.h"
+
 namespace rubble::scoring {
 namespace {
 
@@ -63,9 +65,15 @@ WallPieces wall_pieces(const OccupancyGrid& grid) {
     walls.data[i] = grid.cells()[i] == Occupancy::Occupied ? 255 : 0;
   const Pieces raw(walls);
   const double least_cells = std::max(2.0, std::floor(kSpeck / grid.resolution()));
+  const auto dashes = dashes_in_line(grid);
+  std::vector<bool> is_dash(static_cast<std::size_t>(raw.stats.rows), false);
+  for (const auto& [from, to] : dashes)
+    for (const Cell& end : {from, to}) is_dash[static_cast<std::size_t>(raw.labels.at<int>(end.y, end.x))] = true;
   cv::Mat joined = walls.clone();
   for (std::size_t i = 0; i < grid.cells().size(); ++i)
-    if (walls.data[i] != 0 && raw.cells(raw.at(i)) < least_cells) joined.data[i] = 0;
+    if (walls.data[i] != 0 && raw.cells(raw.at(i)) < least_cells && !is_dash[static_cast<std::size_t>(raw.at(i))])
+      joined.data[i] = 0;
+  for (const auto& [from, to] : dashes) cv::line(joined, {from.x, from.y}, {to.x, to.y}, 255);
   const int reach = std::max(1, static_cast<int>(std::lround(kJoin / grid.resolution())));
   if (grid.resolution() > kCoarse) bridge(joined, static_cast<int>(kBridge / grid.resolution()));
   cv::morphologyEx(joined, joined, cv::MORPH_CLOSE,
