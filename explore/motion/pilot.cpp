@@ -6,7 +6,7 @@
 namespace rubble::explore {
 namespace {
 
-constexpr double kCornerRoom = 0.08;  ///< beside corners that turn [m]
+constexpr double kCornerRoom = 0.13;  ///< beside corners that turn [m]
 
 }  // namespace
 

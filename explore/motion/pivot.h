@@ -12,7 +12,8 @@ namespace rubble::explore {
 
 /// Keeps a turn on the spot on its spot, and its corners off the walls. A skid-steered robot that only turns its wheels
 /// against each other wanders, 0.1 to 0.2 m in half a turn on a ramp or on paper; and where there is no room for its
-/// corners, it may turn while it moves towards room.
+/// corners, it drives towards room first and turns slowly meanwhile: a corner that turns on scrapes along the wall.
+/// Beside a wall it has to turn until a way leads off it; between two walls there is no room to be had.
 class Pivot {
  public:
   /// `room`: clearance of the robot's middle at which it can turn [m].

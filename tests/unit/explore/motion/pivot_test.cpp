@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/angle.h"
@@ -31,12 +32,24 @@ Traversable floor_with_wall(double wall) {
   return floor;
 }
 
-/// Where a robot comes to stand that turns by `angle` while the ground moves it by `creep` [m/s].
-TPose2D turned(Pivot* pivot, TPose2D pose, double angle, const TPoint2D& creep, const Traversable& floor) {
-  for (double left = angle; left > 0.0; left -= 1.0 * kTick) {
+/// Where a robot comes to stand that turns by `angle` while the ground moves it by `creep` [m/s]. What comes within
+/// `*nearest` of y = 3 m of a rectangle of 0.52 x 0.49 m about its middle is noted there.
+TPose2D turned(Pivot* pivot, TPose2D pose, double angle, const TPoint2D& creep, const Traversable& floor,
+               double* nearest = nullptr) {
+  int ticks = 0;
+  for (double left = angle; left > 0.0;) {
     const robot::Drive drive = pivot != nullptr ? pivot->keep({0.0, 1.0}, pose, floor) : robot::Drive{0.0, 1.0};
-    EXPECT_DOUBLE_EQ(drive.w, 1.0);
+    EXPECT_GT(drive.w, 0.0);
+    EXPECT_LE(drive.w, 1.0);
     EXPECT_LE(std::abs(drive.v), Pivot::kMostSpeed);
+    if (++ticks > 12.0 / kTick) {
+      ADD_FAILURE() << "the turn takes longer than 12 s";
+      break;
+    }
+    left -= drive.w * kTick;
+    if (nearest != nullptr)
+      *nearest =
+          std::min(*nearest, 3.0 - pose.y - 0.26 * std::abs(std::sin(pose.phi)) - 0.245 * std::abs(std::cos(pose.phi)));
     pose.x += (drive.v * std::cos(pose.phi) + creep.x) * kTick;
     pose.y += (drive.v * std::sin(pose.phi) + creep.y) * kTick;
     pose.phi += drive.w * kTick;
@@ -61,6 +74,26 @@ TEST(Pivot, WhereCornersHaveNoRoomTheTurnLeadsAwayFromTheWall) {
     const double before = 0.30;
     const TPose2D end = turned(&pivot, {3.0, 3.0 - before, heading}, kPi, {}, floor);
     EXPECT_GT(3.0 - end.y, before + 0.03) << heading;
+  }
+}
+
+TEST(Pivot, CornersLeaveAWallBeforeTheyTurnIntoIt) {
+  const Traversable floor = floor_with_wall(3.0);
+  for (const double heading : {0.0, 0.1, 0.4, 1.2, kPi - 0.2, kPi, kPi + 0.3, -0.2, -0.5}) {
+    const double before = 0.34, angle = 1.9 * kPi;
+    double kept = 1.0, left = 1.0;
+    Pivot pivot(std::hypot(0.26, 0.245) + 0.13);
+    turned(&pivot, {3.0, 3.0 - before, heading}, angle, {}, floor, &kept);
+    turned(nullptr, {3.0, 3.0 - before, heading}, angle, {}, floor, &left);
+    EXPECT_LT(left, 0.0) << "else there is nothing to keep off";
+    EXPECT_GT(kept, 0.0) << heading;
+  }
+}
+
+TEST(Pivot, WithRoomOrBetweenTwoWallsItTurnsAsFastAsItWasTold) {
+  const Traversable wide = floor_with_wall(3.0);
+  for (double heading = -3.0; heading < 3.1; heading += 0.25) {
+    EXPECT_EQ(Pivot(kRoom).keep({0.0, -0.7}, {3.0, 2.5, heading}, wide).w, -0.7) << heading;
   }
 }
 
