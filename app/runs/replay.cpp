@@ -15,6 +15,7 @@ struct ReplayArguments {
   std::string run;
   std::string out;
   bool raw = false;
+  int film = 0;
   MapperChoice mapper;
 };
 
@@ -37,7 +38,7 @@ int replay(const ReplayArguments& arguments) {
   const auto overrides = with_mapper(arguments.mapper, {});
   scenarios::Scenario scenario = scenarios::recorded_scenario(arguments.run, overrides);
   permit_command(arguments.mapper, overrides, scenario);
-  const scenarios::ReplayReport report = scenarios::replay_run(arguments.run, scenario, options);
+  const scenarios::ReplayReport report = scenarios::replay_run(arguments.run, scenario, options, arguments.film);
   end_progress();
   if (interrupted()) return kInterrupted;
   for (const auto& artefact : report.artefacts)
@@ -52,12 +53,15 @@ int replay(const ReplayArguments& arguments) {
 
 Command replay_command() {
   return {"replay", "Run the mapper again on a recorded run and compare bit by bit",
-          "Example:\n  rubble replay runs/latest", [](Options& o) -> Action {
+          "Examples:\n  rubble replay runs/latest\n  rubble replay runs/latest --out again --film 9",
+          [](Options& o) -> Action {
             auto a = std::make_shared<ReplayArguments>();
             o.argument("run", a->run, "Run folder");
             o.text("--out", a->out, "Keep the re-made artefacts in this folder");
             o.flag("--raw", a->raw, "Run the drivers again on the raw bytes of a real drive instead");
             o.excludes("--raw", "--out");
+            o.whole("--film", a->film, 1, 100, "Draw so many moments of the run side by side into film.png of --out");
+            o.needs("--film", "--out");
             add_mapper(o, a->mapper);
             return [a] { return replay(*a); };
           }};

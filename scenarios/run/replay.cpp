@@ -9,11 +9,13 @@
 
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/image/png.h"
 #include "base/text/input_file.h"
 #include "base/text/json_size.h"
 #include "base/text/text_file.h"
 #include "robot/logs/foreign/file_bytes.h"
 #include "robot/logs/log.h"
+#include "scenarios/run/film.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -102,7 +104,7 @@ ReplayReport replay_run(const std::string& path, const RunOptions& options) {
   return replay_run(path, recorded_scenario(path), options);
 }
 
-ReplayReport replay_run(const std::string& path, const Scenario& scenario, const RunOptions& options) {
+ReplayReport replay_run(const std::string& path, const Scenario& scenario, const RunOptions& options, int film) {
   scenario.mapper.require_permission();
   robot::ReplayRobot robot(path + "/log.rlog");
   const Scratch scratch(options.out);
@@ -117,8 +119,11 @@ ReplayReport replay_run(const std::string& path, const Scenario& scenario, const
   hooks.interrupted = options.interrupted;
   hooks.progress = options.progress;
   hooks.share = [&] { return robot.progress(); };
-  hooks.steer = [&](const robot::Inputs&, const robot::Commands& commands) {
+  const double threshold = scenario.explorer.occupied_threshold();
+  Film moments(film);
+  hooks.steer = [&](const robot::Inputs& inputs, const robot::Commands& commands) {
     ++report.ticks;
+    moments.see(core, inputs, robot.progress(), threshold);
     if (by_hand) return robot.recorded_commands();
     last_differs = !same_commands(commands, robot.recorded_commands());
     if (last_differs) ++report.different_commands;
@@ -127,6 +132,10 @@ ReplayReport replay_run(const std::string& path, const Scenario& scenario, const
   const std::map<std::string, std::string> written = written_hashes(path);
   const LoopEnd end = Loop(scenario, folder, core, hooks).run(robot);
   if (!end.failure.empty()) throw RunError(end.failure);
+  if (film > 0) {
+    moments.end(core, threshold);
+    folder.write("film.png", png_bytes(film_strip(moments.frames())));
+  }
   // A run that was killed wrote its trajectory up to its last second, an older map, and its last tick perhaps without
   // the command that answered it.
   if (!report.ended && last_differs) --report.different_commands;

@@ -27,8 +27,9 @@ struct ReplayReport {
 
 /// Runs mapper, levelling and explorer again on a recorded run and compares trajectory, map and commands bit by bit.
 ReplayReport replay_run(const std::string& folder, const RunOptions& options);
-/// The same with a scenario other than the recorded one.
-ReplayReport replay_run(const std::string& folder, const Scenario& scenario, const RunOptions& options);
+/// The same with a scenario other than the recorded one. `film`: so many moments of the run, drawn into film.png beside
+/// the other artefacts; 0: none.
+ReplayReport replay_run(const std::string& folder, const Scenario& scenario, const RunOptions& options, int film = 0);
 /// The scenario of a recorded run. Throws InputError for a folder that is none.
 Scenario recorded_scenario(const std::string& folder, const std::vector<Override>& overrides = {});
 

@@ -60,7 +60,7 @@ const std::vector<std::string>& run_folder_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all = deterministic_artefacts();
     for (const char* name : {"scenario.yaml", "robot.yaml", "versions.json", "hashes.json", "score.json",
-                             "decisions.txt", "devices.bytes", "mapper.log"})
+                             "decisions.txt", "devices.bytes", "mapper.log", "film.png"})
       all.emplace_back(name);
     return all;
   }();

@@ -29,6 +29,12 @@ sed 's/^ *\([0-9.]*\) s  /\1 /' decisions.txt | cmp - <(sed 's/^ *//' told/decis
 
 "$rubble" replay a >replay.txt || fail "replay ended with $?"
 grep -qx 'bit-identical' replay.txt || fail "replay: $(cat replay.txt)"
+"$rubble" replay a --out filmed --film 5 >replay.txt || fail "a replay that draws a film ended with $?"
+grep -qx 'bit-identical' replay.txt || fail "drawing a film changes the replay: $(cat replay.txt)"
+[[ $(head -c 4 filmed/film.png | tail -c 3) == PNG ]] || fail "there is no film"
+expect_exit 2 "film" "$rubble" replay a --film 5
+expect_exit 2 "film" "$rubble" replay a --out other --film 0
+[[ -e other ]] && fail "a film of no moments leaves a folder"
 sed -i 's/map_distance_m: 0.15/map_distance_m: 0.16/' d/scenario.yaml
 "$rubble" replay d >replay.txt && fail "replay must notice another mapper"
 grep -qx 'NOT bit-identical' replay.txt || fail "replay of a changed run: $(cat replay.txt)"

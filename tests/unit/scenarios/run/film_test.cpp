@@ -1,0 +1,87 @@
+#include "scenarios/run/film.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "base/image/png.h"
+
+namespace rubble::scenarios {
+namespace {
+
+/// Free ground of 6 x 3 m with its lower left corner at (-2, -1) m, a wall along its upper side.
+FilmFrame frame_of_room(double wall_from) {
+  FilmFrame frame;
+  frame.map = OccupancyGrid(GridFrame{120, 60, 0.05, -2.0, -1.0}, Occupancy::Free);
+  for (int x = 0; x < 120; ++x)
+    if (frame.map.centre({x, 59}).x > wall_from) frame.map[{x, 59}] = Occupancy::Occupied;
+  frame.pose = {0.0, 0.0, 0.0};
+  return frame;
+}
+
+bool is_near(const cv::Vec3b& pixel, int blue, int green, int red) {
+  return std::abs(pixel[0] - blue) < 40 && std::abs(pixel[1] - green) < 40 && std::abs(pixel[2] - red) < 40;
+}
+
+int count_of(const cv::Mat& picture, int blue, int green, int red) {
+  int n = 0;
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x) n += is_near(picture.at<cv::Vec3b>(y, x), blue, green, red) ? 1 : 0;
+  return n;
+}
+
+/// Mean place of the pixels of a colour.
+cv::Point2d middle_of_colour(const cv::Mat& picture, int blue, int green, int red) {
+  cv::Point2d sum(0.0, 0.0);
+  double n = 0.0;
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x)
+      if (is_near(picture.at<cv::Vec3b>(y, x), blue, green, red)) {
+        sum += cv::Point2d(x, y);
+        n += 1.0;
+      }
+  return {sum.x / n, sum.y / n};
+}
+
+TEST(Film, APanelShowsThePlacesWhereTheyAre) {
+  FilmFrame frame = frame_of_room(-9.0);
+  frame.victims = {{3.0, 1.0}};
+  const cv::Mat strip = film_strip({frame});
+  const cv::Point2d robot = middle_of_colour(strip, 0, 130, 255), victim = middle_of_colour(strip, 10, 10, 240),
+                    wall = middle_of_colour(strip, 120, 40, 0);
+  const double pixels_per_metre = (victim.x - robot.x) / 3.0;
+  EXPECT_GT(pixels_per_metre, 30.0);
+  EXPECT_NEAR((robot.y - victim.y) / pixels_per_metre, 1.0, 0.1) << "up is where the map's y grows";
+  EXPECT_NEAR((robot.y - wall.y) / pixels_per_metre, 1.975, 0.1);
+  EXPECT_NEAR((wall.x - robot.x) / pixels_per_metre, 1.0, 0.1);
+}
+
+TEST(Film, AllPanelsShowTheSameGroundAndStandInRows) {
+  FilmFrame early = frame_of_room(2.0);
+  for (int y = 0; y < 60; ++y)  // the left half is all that is known
+    for (int x = 60; x < 120; ++x) early.map[{x, y}] = Occupancy::Unknown;
+  const FilmFrame late = frame_of_room(2.0);
+  const cv::Mat one = film_strip({late}), two = film_strip({early, late}),
+                five = film_strip({early, early, early, late, late});
+  EXPECT_GT(two.cols, 1.9 * one.cols - 30);
+  EXPECT_EQ(two.rows, one.rows);
+  EXPECT_GT(five.rows, 1.9 * one.rows - 30);
+  EXPECT_GT(five.cols, two.cols);
+  const cv::Mat left = two.colRange(0, two.cols / 2), right = two.colRange(two.cols / 2, two.cols);
+  EXPECT_EQ(count_of(left, 120, 40, 0), 0) << "that wall is not known yet";
+  EXPECT_GT(count_of(right, 120, 40, 0), 50);
+  const double between = middle_of_colour(right, 0, 130, 255).x - middle_of_colour(left, 0, 130, 255).x;
+  EXPECT_NEAR(between, 0.0, 12.0) << "the robot stands at the same place of both panels";
+}
+
+TEST(Film, AMomentWithoutAMapAndNoMomentAtAll) {
+  FilmFrame nothing;
+  nothing.map = OccupancyGrid(GridFrame{0, 0, 0.05, 0.0, 0.0}, Occupancy::Unknown);
+  EXPECT_TRUE(film_strip({}).empty());
+  EXPECT_GT(film_strip({nothing}).cols, 100);
+  EXPECT_EQ(png_bytes(film_strip({nothing, frame_of_room(0.0)})), png_bytes(film_strip({nothing, frame_of_room(0.0)})));
+}
+
+}  // namespace
+}  // namespace rubble::scenarios
