@@ -3,13 +3,16 @@
 #include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
-#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
 #include "base/grid.h"
 #include "robot/robot.h"
 #include "scenarios/run/core.h"
+
+namespace cv {
+class Mat;
+}
 
 namespace rubble::scenarios {
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <opencv2/core.hpp>
 
 #include "base/image/png.h"
 
