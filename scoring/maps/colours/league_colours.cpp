@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <map>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <string>
@@ -10,14 +11,18 @@
 #include <vector>
 
 #include "base/grid.h"
+#include "scoring/maps/colours/checkerboard.h"
 #include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/colours/lossy_colours.h"
 #include "scoring/maps/colours/nearest_ground.h"
+#include "scoring/maps/colours/tone_curve.h"
 
 namespace rubble::scoring {
 namespace {
 
 using Label = unsigned char;
+constexpr double kMostDrawn = 40.0;  // of the pixels of a map [%]
+constexpr int kBlack = 30;
 constexpr Label kUnknown = static_cast<Label>(Occupancy::Unknown);
 constexpr Label kFree = static_cast<Label>(Occupancy::Free);
 constexpr Label kWall = static_cast<Label>(Occupancy::Occupied);
@@ -80,6 +85,7 @@ struct Census {
   std::size_t walls = 0;
   std::size_t pure_walls = 0;
   std::size_t checkerboard = 0;
+  std::size_t darker = 0;      ///< of the checkerboard's squares
   std::size_t unexplored = 0;  ///< checkerboard or as light
   std::size_t pixels = 0;
   /// Never turned, scaled or compressed with loss: the colours of the table hold to the digit.
@@ -130,20 +136,92 @@ int dimmed_white(const RgbImage& image) {
   return 255;
 }
 
+void count_colour(const Colour& c, std::size_t count, Census& out) {
+  out.pixels += count;
+  if (is_checkerboard(c)) out.checkerboard += count;
+  if (near_colour(c, league::kUnexplored, 0)) out.darker += count;
+  if (looks_unexplored(c) && c.b > c.r) out.unexplored += count;
+  if (!near_colour(c, league::kWall, 45) || wall_share(c) <= 0.5) return;
+  out.walls += count;
+  if (near_colour(c, league::kWall, 0)) out.pure_walls += count;
+}
+
 Census census(const RgbImage& image) {
   Census out;
   each_run(image, [&](const Colour& c, int first, int y, int length) {
     auto count = static_cast<std::size_t>(length);
     if (!image.alpha.empty())
       for (int x = first; x < first + length; ++x) count -= image.alpha[image.index(x, y)] < 128 ? 1 : 0;
-    out.pixels += count;
-    if (is_checkerboard(c)) out.checkerboard += count;
-    if (looks_unexplored(c) && c.b > c.r) out.unexplored += count;
-    if (!near_colour(c, league::kWall, 45) || wall_share(c) <= 0.5) return;
-    out.walls += count;
-    if (near_colour(c, league::kWall, 0)) out.pure_walls += count;
+    count_colour(c, count, out);
   });
   return out;
+}
+
+bool is_unchanged(const Census& c) {
+  return 20 * c.checkerboard >= c.pixels && 5000 * c.pure_walls >= c.pixels && c.exact();
+}
+
+/// Dark colours, and those of them that the table has, blended or not.
+struct Ink {
+  std::size_t all = 0;
+  std::size_t known = 0;
+  void count(const Colour& c, std::size_t pixels) {
+    constexpr int kDark = 100;
+    if (c.g >= kDark || c.r >= kDark + 50) return;
+    all += pixels;
+    const auto near = [&](const NamedColour& named) { return near_colour(c, named.colour, 25); };
+    if (wall_share(c) > 0.45 || std::any_of(kPalette.begin(), kPalette.end(), near)) known += pixels;
+  }
+  /// Most of it is of the table.
+  bool is_known() const { return 10 * known >= 9 * all; }
+  bool is_strange() const { return 2 * known < all; }
+};
+
+/// Each colour and how often it is there, the most frequent first; nothing of pictures with more than a few thousand.
+std::vector<std::pair<Rgb, std::size_t>> colours_of(const RgbImage& image) {
+  constexpr std::size_t kMost = 4096;
+  std::map<Rgb, std::size_t> count;
+  each_run(image, [&](const Colour&, int first, int y, int length) {
+    const std::uint8_t* const p = image.pixel(first, y);
+    if (count.size() <= kMost) count[{p[0], p[1], p[2]}] += static_cast<std::size_t>(length);
+  });
+  if (count.size() > kMost) return {};
+  std::vector<std::pair<Rgb, std::size_t>> out(count.begin(), count.end());
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  return out;
+}
+
+/// The picture as it was before its brightness, contrast or gamma was changed: where one such change makes of the
+/// league's colours those that cover most of it.
+std::optional<RestoredColours> with_tones_of_old(const RgbImage& image) {
+  constexpr std::size_t kAmong = 6;  // of the most frequent colours are checkerboard and white
+  const auto colours = colours_of(image);
+  const std::size_t among = std::min(kAmong, colours.size());
+  const auto green = [&](std::size_t i) { return colours[i].first[1]; };
+  for (std::size_t dark = 0; dark < among; ++dark)
+    for (std::size_t light = 0; light < among; ++light)
+      for (std::size_t white = 0; white < among; ++white) {
+        if (green(dark) >= green(light) || green(light) > green(white)) continue;
+        for (const ToneCurve& curve : tone_curves(colours[dark].first, colours[light].first, colours[white].first)) {
+          Census c;
+          Ink ink;
+          for (const auto& [colour, count] : colours) {
+            const Rgb was = without(curve, colour);
+            count_colour(was, count, c);
+            ink.count(was, count);
+          }
+          if (!is_unchanged(c) || !ink.is_known()) continue;
+          std::map<Rgb, Rgb> before;
+          for (const auto& [colour, count] : colours) before[colour] = without(curve, colour);
+          RgbImage out = image;
+          for (std::size_t i = 0; i + 2 < out.rgb.size(); i += 3) {
+            const Rgb& was = before[{out.rgb[i], out.rgb[i + 1], out.rgb[i + 2]}];
+            std::copy(was.begin(), was.end(), out.rgb.begin() + static_cast<std::ptrdiff_t>(i));
+          }
+          return RestoredColours{std::move(out), "tones had been changed (" + curve.name + ")"};
+        }
+      }
+  return std::nullopt;
 }
 
 Label label_of(const Colour& c, bool exact) {
@@ -223,13 +301,47 @@ void smooth(cv::Mat& labels) {
   labels.setTo(static_cast<int>(kFree), closed & (labels == static_cast<int>(kUnknown)));
 }
 
+/// More than lines of it are coloured: maps of greys may have walls that look like squares.
+bool has_colour(const RgbImage& image) {
+  constexpr int kColoured = 20;
+  std::size_t coloured = 0;
+  each_run(image, [&](const Colour& c, int, int, int length) {
+    if (spread(c) > kColoured) coloured += static_cast<std::size_t>(length);
+  });
+  return 500 * coloured >= image.rgb.size() / 3;
+}
+
+/// Most light greys are those of the ground in league maps, also where JPEG or blending moved them a little.
+bool has_even_ground(const RgbImage& image) {
+  std::size_t all = 0, even = 0;
+  each_run(image, [&](const Colour& c, int, int, int length) {
+    constexpr int kLight = 150, kGrey = 12, kNear = 5;
+    if (c.g < kLight || spread(c) > kGrey) return;
+    all += static_cast<std::size_t>(length);
+    for (const Rgb& own : {league::kUnexplored, league::kUnexploredLight, league::kFree, league::kGridLine})
+      if (std::abs(c.g - own[1]) <= kNear) {
+        even += static_cast<std::size_t>(length);
+        break;
+      }
+  });
+  return 2 * even >= all;
+}
+
+/// Greys alone, with both of the checkerboard.
+bool is_grey_league_map(const RgbImage& image) {
+  std::array<std::size_t, 256> levels{};
+  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
+    if (image.rgb[i] != image.rgb[i + 1] || image.rgb[i] != image.rgb[i + 2]) return false;
+    ++levels[image.rgb[i]];
+  }
+  const std::size_t pixels = image.rgb.size() / 3;
+  return 20 * levels[226] >= pixels && 20 * levels[237] >= pixels && 100 * levels[255] >= pixels;
+}
+
 }  // namespace
 
 std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
-  const auto has_all = [](const RgbImage& changed) {
-    const Census c = census(changed);
-    return 20 * c.checkerboard >= c.pixels && 5000 * c.pure_walls >= c.pixels && c.exact();
-  };
+  const auto has_all = [](const RgbImage& changed) { return is_unchanged(census(changed)); };
   const Census as_is = census(image);
   if (as_is.exact()) return std::nullopt;
   RgbImage changed = image;
@@ -238,6 +350,8 @@ std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
   changed = image;
   for (std::uint8_t& value : changed.rgb) value = static_cast<std::uint8_t>(255 - value);
   if (has_all(changed)) return RestoredColours{std::move(changed), "colours were inverted"};
+  if (40 * std::min(as_is.darker, as_is.checkerboard - as_is.darker) < as_is.pixels)
+    if (auto restored = with_tones_of_old(image)) return restored;
   const int white = dimmed_white(image);
   if (white == 255) return std::nullopt;
   changed = image;
@@ -246,14 +360,33 @@ std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
   return RestoredColours{std::move(changed), "white was " + std::to_string(white)};
 }
 
-bool has_lost_its_colours(const RgbImage& image) {
-  std::array<std::size_t, 256> levels{};
-  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
-    if (image.rgb[i] != image.rgb[i + 1] || image.rgb[i] != image.rgb[i + 2]) return false;
-    ++levels[image.rgb[i]];
-  }
-  const std::size_t pixels = image.rgb.size() / 3;
-  return 20 * levels[226] >= pixels && 20 * levels[237] >= pixels && 100 * levels[255] >= pixels;
+std::string why_colours_are_lost(const RgbImage& image, bool is_league) {
+  constexpr int kUneven = 12;  // of the checkerboard's squares, beyond JPEG's
+  if (is_grey_league_map(image))
+    return "is a league map without its colours: the robot's way and victims are as dark as walls; save it in colour";
+  if (is_league && census(image).exact()) return "";
+  if (is_league && !has_even_ground(image))
+    return "is a league map that is not evenly bright (most of its ground has none of the league's greys, as in a "
+           "photograph); give "
+           "it as the robot saved it";
+  const Checkerboard board = find_checkerboard(image);
+  if (!board.is_there()) return "";
+  if (!is_league && has_colour(image))
+    return "is a league map whose colours were changed (tinted, equalised, filtered): which of its dark lines are "
+           "walls, only the "
+           "league's colours say; give it as the robot saved it";
+  if (!is_league) return "";
+  if (board.unevenness > kUneven)
+    return "is a league map that is not evenly bright (its unexplored ground differs by " +
+           std::to_string(board.unevenness) +
+           " of 255 over the picture, as in a photograph); give it as the robot saved it";
+  Ink ink;
+  each_run(image, [&](const Colour& c, int, int, int length) { ink.count(c, static_cast<std::size_t>(length)); });
+  if (ink.is_strange() && !has_run_colours(image))
+    return "is a league map whose lines have other colours than the league's (as sharpened pictures have); give it as "
+           "the robot "
+           "saved it";
+  return "";
 }
 
 bool is_league_map(const RgbImage& image) {
@@ -272,6 +405,7 @@ LabelImage classify_league(const RgbImage& image) {
   const cv::Mat dark_walls = lossy ? walls_by_brightness(image) : cv::Mat();
   const cv::Mat unexplored = lossy ? unexplored_by_brightness(image) : cv::Mat();
   std::size_t drawn = 0;
+  std::size_t strange = 0;  // without the black canvas of a turned picture
   each_run(image, [&](const Colour& c, int first, int y, int length) {
     Label* const row = out.classes.ptr<Label>(y);
     std::fill_n(row + first, length, label_of(c, exact));
@@ -281,6 +415,7 @@ LabelImage classify_league(const RgbImage& image) {
       else if (lossy && row[x] != kWall && row[x] != kDrawing)
         row[x] = unexplored.at<Label>(y, x) != 0 ? kUnknown : kFree;
       if (row[x] == kDrawing) ++drawn;
+      if (row[x] == kDrawing && std::max({c.r, c.g, c.b}) > kBlack) ++strange;
     }
   });
   if (!exact && !lossy) add_thin_walls(image, out.classes);
@@ -289,6 +424,13 @@ LabelImage classify_league(const RgbImage& image) {
   if (!exact) smooth(out.classes);
   const double share =
       100.0 * static_cast<double>(drawn) / static_cast<double>(std::max<std::size_t>(1, out.classes.total()));
+  const double astray =
+      100.0 * static_cast<double>(strange) / static_cast<double>(std::max<std::size_t>(1, out.classes.total()));
+  if (astray > kMostDrawn)
+    out.refusal = cv::format(
+        "has colours that are none of the league's on %.0f %% of its pixels (noise, a photograph); give it as the "
+        "robot saved it",
+        astray);
   out.recognised = cv::format("league colours%s, drawings removed from %.1f %% of the pixels",
                               exact   ? ""
                               : lossy ? " (compressed with loss)"

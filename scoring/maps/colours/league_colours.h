@@ -21,9 +21,10 @@ struct RestoredColours {
 /// others. Exchanged and inverted ones must come out exact, checkerboard and walls.
 std::optional<RestoredColours> restored_league_colours(const RgbImage& image);
 
-/// A picture of greys alone with both greys of the league's checkerboard: which of its dark lines are walls, and which
-/// the robot's way, only the colours said.
-bool has_lost_its_colours(const RgbImage& image);
+/// Why a picture with the league's checkerboard cannot be read: a change of its colours left nobody who could tell its
+/// walls (from grey alone: the robot's way) from other lines. Empty: it can, or it is no such picture. `is_league`: of
+/// is_league_map().
+std::string why_colours_are_lost(const RgbImage& image, bool is_league);
 
 /// The classes of a league map without its drawings. Colours: the league's GeoTIFF map rules as hector_geotiff and
 /// crosbot draw them (docs/scoring.md has the table).

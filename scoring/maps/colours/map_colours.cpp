@@ -40,14 +40,30 @@ cv::Mat no_data_areas(const RgbImage& image, const SampleNotes& notes) {
   return near & out;
 }
 
+/// Coloured lines were taken for drawings, but what is left for walls is much paler and less than they.
+bool are_walls_among_the_drawings(const cv::Mat& before, const cv::Mat& after, const cv::Mat& walls) {
+  constexpr int kPaler = 60;
+  const cv::Mat drawn = before != after;
+  const int count = cv::countNonZero(walls);
+  if (count == 0) return false;
+  const double wall = cv::mean(after, walls)[0];
+  return 2 * cv::countNonZero(drawn & (before < wall - kPaler)) >= count;
+}
+
 LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
   cv::Mat grey = grey_of(image);
+  const cv::Mat as_it_was = grey.clone();
   const bool painted = paint_over_colours(image, nothing, grey);
   const cv::Mat canvas = canvas_corners(grey);
   LabelImage out = classify_grey(grey, nothing | canvas);
   out.classes.setTo(static_cast<int>(Occupancy::Unknown), canvas);
   if (cv::countNonZero(canvas) > 0) out.recognised += ", corners of the canvas are unknown";
   if (painted) out.recognised += ", coloured drawings removed";
+  if (painted && are_walls_among_the_drawings(as_it_was, grey, out.classes == static_cast<int>(Occupancy::Occupied)))
+    out.refusal =
+        "has dark lines in colour and pale grey ones, and nothing says which are walls; give it in the league's "
+        "colours, or draw walls "
+        "in black";
   if (clear_around_panel(out.classes)) out.recognised += ", what stands around the map is unknown";
   return out;
 }
@@ -67,9 +83,8 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
   out.recognised = labels.recognised;
   out.refusal = labels.refusal;
   if (restored) out.recognised += ", " + restored->how;
-  if (!direct && has_lost_its_colours(image))
-    out.refusal =
-        "is a league map without its colours: the robot's way and victims are as dark as walls; save it in colour";
+  if (!direct)
+    if (const std::string why = why_colours_are_lost(image, out.is_league); !why.empty()) out.refusal = why;
   if (image.white > 0)
     out.recognised += ", scaled so that the brightest sample, " + std::to_string(image.white) + ", is white";
   cv::Mat classes = labels.classes;

@@ -1,0 +1,84 @@
+#include "scoring/maps/colours/tone_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "scoring/maps/colours/league_palette.h"
+
+namespace rubble::scoring {
+namespace {
+
+constexpr int kRounding = 1;  // of what editors make of a value
+
+template <class Function>
+ToneCurve curve_of(const Function& f, const char* format, double a, double b) {
+  ToneCurve out;
+  for (std::size_t v = 0; v < out.of.size(); ++v)
+    out.of[v] = static_cast<std::uint8_t>(std::clamp(std::lround(f(static_cast<double>(v))), 0L, 255L));
+  char name[80];
+  std::snprintf(name, sizeof name, format, a, b);
+  out.name = name;
+  return out;
+}
+
+Rgb changed(const ToneCurve& curve, const Rgb& colour) {
+  return {curve.of[colour[0]], curve.of[colour[1]], curve.of[colour[2]]};
+}
+
+/// Greatest difference of a channel.
+int difference(const Rgb& a, const Rgb& b) {
+  int most = 0;
+  for (std::size_t i = 0; i < 3; ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
+}
+
+}  // namespace
+
+std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const Rgb& white) {
+  std::vector<ToneCurve> out;
+  const auto offer = [&](ToneCurve curve) {
+    const bool fits = difference(changed(curve, league::kUnexplored), darker) <= kRounding &&
+                      difference(changed(curve, league::kUnexploredLight), lighter) <= kRounding &&
+                      difference(changed(curve, league::kFree), white) <= kRounding;
+    const auto same = [&](const ToneCurve& other) { return other.of == curve.of; };
+    if (fits && std::none_of(out.begin(), out.end(), same)) out.push_back(std::move(curve));
+  };
+  const double dark = darker[0], light = lighter[0], bright = white[0];
+  if (dark > 0.0 && bright == 255.0) {
+    const double power = std::log(dark / 255.0) / std::log(league::kUnexplored[0] / 255.0);
+    for (int i = 0; i <= 24; ++i) {  // from the middle outwards
+      const double p = power + 0.005 * (i % 2 == 0 ? i / 2 : -(i + 1) / 2);
+      offer(curve_of([p](double v) { return 255.0 * std::pow(v / 255.0, p); }, "gamma %.2f", p, 0.0));
+    }
+  }
+  // A line through the squares and white, or through the two squares where white is clipped.
+  const auto lines = [&](double from, double to, double at_from, double at_to) {
+    constexpr std::array<double, 7> kRounded{0.0, -0.15, 0.15, -0.3, 0.3, -0.45, 0.45};
+    for (const double low : kRounded)
+      for (const double high : kRounded) {
+        const double gain = (at_to + high - at_from - low) / (to - from);
+        const double offset = at_from + low - gain * from;
+        if (gain > 0.1)
+          offer(curve_of([=](double v) { return gain * v + offset; }, "%.2f times the value %+.0f", gain, offset));
+      }
+  };
+  lines(league::kUnexplored[0], 255.0, dark, bright);
+  lines(league::kUnexplored[0], league::kUnexploredLight[0], dark, light);
+  return out;
+}
+
+Rgb without(const ToneCurve& curve, const Rgb& colour) {
+  for (const Rgb& own : {league::kUnexplored, league::kUnexploredLight, league::kFree, league::kWall, league::kGridLine,
+                         league::kPath, league::kStart, league::kVictim, league::kUnconfirmedVictim, league::kHazard,
+                         league::kQrCode, league::kScale, league::kTitle})
+    if (difference(changed(curve, own), colour) <= kRounding) return own;
+  const auto before = [&](int value) {
+    const auto nearer = [value](std::uint8_t a, std::uint8_t b) { return std::abs(a - value) < std::abs(b - value); };
+    return static_cast<std::uint8_t>(std::min_element(curve.of.begin(), curve.of.end(), nearer) - curve.of.begin());
+  };
+  return {before(colour[0]), before(colour[1]), before(colour[2])};
+}
+
+}  // namespace rubble::scoring
