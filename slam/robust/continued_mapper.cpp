@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/planar.h"
+#include "slam/robust/graph/wall_compass.h"
 
 namespace rubble::slam {
 
@@ -140,6 +141,11 @@ std::optional<SavedMap> merged(const SavedMap& first, const SavedMap& second, co
   both.path += both.frames[shift].path - second.frames[0].path;
   both.frame_covariance.setZero();
   if (!config.loops) return both;
+  if (config.wall_compass) {
+    WallCompass compass;
+    compass.set_right(both.frames.graph());
+    if (compass.direction()) both.frames.set_walls(*compass.direction(), compass.variance());
+  }
   LoopCloser closer(config.loop, config.tracker.cell, both.frames);
   closer.begin_anew();
   closer.finish();

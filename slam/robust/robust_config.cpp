@@ -46,6 +46,7 @@ void bind(Binder& b, RobustConfig& c) {
   b.integer("exact_frames", c.exact_frames, 10, 1000000);
   b.boolean("thin_walls", c.thin_walls);
   b.boolean("loops", c.loops);
+  b.boolean("wall_compass", c.wall_compass);
   b.number("budget_ms", c.budget_ms, 0.1, 1e6);
   b.section("matching", [&](Binder& m) {
     m.number("spacing_m", c.cloud.spacing, 0.01, 1.0);

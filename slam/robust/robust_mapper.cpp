@@ -9,6 +9,7 @@
 
 #include "base/planar.h"
 #include "slam/robust/graph/key_frames.h"
+#include "slam/robust/graph/wall_compass.h"
 #include "slam/robust/map/stamped_map.h"
 #include "slam/scan/odometry_track.h"
 #include "slam/scan/waiting_scans.h"
@@ -134,6 +135,8 @@ struct RobustMapper::Impl {
   void put_into_map(const LaserScan& scan, const std::optional<SweepMotion>& sweep, const std::optional<ScanTilt>& tilt,
                     Work& work);
   void close_loops(Work& budget);
+  void lay_walls();
+  void set_compass_right();
   void remember_hits(const ScanPoints& points);
   TPose2D now() const { return frames_.pose(here_) + T_frame_base_; }
   std::optional<SweepMotion> sweep_at(const LaserScan& scan, const TPose2D& motion, double time) const;
@@ -160,6 +163,7 @@ struct RobustMapper::Impl {
   OdometryTrack odometry_;
   KeyFrames frames_;
   LocalTracker tracker_;
+  WallCompass compass_;
   LoopCloser closer_;
   StampedMap map_;
   bool grows_ = true;  ///< false: the map is another's, and stays as it is
@@ -172,7 +176,10 @@ struct RobustMapper::Impl {
   int here_ = -1;           ///< the key frame that the robot hangs on: the newest, or an old one ...
   double path_here_ = 0.0;  ///< ... which it reached after so much path [m]
   TPose2D T_frame_base_;    ///< at the last scan, relative to that key frame
-  TPose2D T_map_stamped_;   ///< where the map was stamped last
+  /// What the compass moved that key frame by. The local map did not move with it, so scans are matched as if it had
+  /// not.
+  TPose2D T_matched_frame_;
+  TPose2D T_map_stamped_;                                       ///< where the map was stamped last
   Eigen::Matrix3d frame_covariance_ = Eigen::Matrix3d::Zero();  ///< of that key frame, in the map
   Eigen::Matrix3d scan_covariance_ = Eigen::Matrix3d::Zero();   ///< of T_frame_base_, along the frame's axes
   std::vector<Place> scans_;
@@ -450,6 +457,7 @@ bool RobustMapper::Impl::hang_on_old_frame(const Cloud& cloud, Work* work) {
   path_here_ += length(T_frame_base_.x, T_frame_base_.y);
   here_ = *old;
   T_frame_base_ = there.fit.pose;
+  T_matched_frame_ = TPose2D();
   scan_covariance_ = edge_to_now(there).information.inverse();
   ++reused_;
   return true;
@@ -544,7 +552,7 @@ GraphEdge RobustMapper::Impl::edge_to_now(const Tracked& tracked) const {
   GraphEdge edge;
   edge.from = here_;
   edge.to = frames_.last() + 1;
-  edge.T_from_to = T_frame_base_;
+  edge.T_from_to = T_matched_frame_ + T_frame_base_;
   edge.information = (information.inverse() + floor).inverse();
   return edge;
 }
@@ -556,14 +564,21 @@ void RobustMapper::Impl::add_frame(Stamp reference, Cloud cloud, const ScanPoint
   frame.cloud = std::move(cloud);
   frame.cloud.ends = {};
   frame.cloud.sight = sight_of(points);
+  if (config_.wall_compass) frame.walls = wall_direction(frame.cloud);
   if (!frames_.empty()) {
     path_here_ += length(T_frame_base_.x, T_frame_base_.y);
     frame.path = path_here_;
     const TPose2D& from = frames_.pose(here_);
     const Eigen::Matrix3d J = lever(from, T_map_base);
     frame_covariance_ = J * frame_covariance_ * J.transpose() + turned(scan_covariance_, from.phi);
+    compass_.go_on(J);
   }
-  frames_.add(std::move(frame), T_map_base, edge);
+  const Eigen::Vector3d off = compass_.look(T_map_base.phi, frame.walls, frame_covariance_);
+  const TPose2D T_map_frame(T_map_base.x + off[0], T_map_base.y + off[1], wrap_angle(T_map_base.phi + off[2]));
+  T_matched_frame_ = T_map_frame - T_map_base;
+  frames_.add(std::move(frame), T_map_frame, edge);
+  if (compass_.doubted()) compass_.set_right(frames_.graph());
+  lay_walls();
   here_ = frames_.last();
   T_frame_base_ = TPose2D();
   lost_on_the_way_ = false;
@@ -574,10 +589,24 @@ void RobustMapper::Impl::close_loops(Work& budget) {
   if (!closer_.work(budget)) return;
   ++revision_;
   frame_covariance_ = closer_.covariance();
+  T_matched_frame_ = TPose2D();
+  set_compass_right();
   map_.moved();
   Work used = 0;
   tracker_.redraw(frames_, here_, &used);
   budget -= used;
+}
+
+/// The graph takes what the compass knows.
+void RobustMapper::Impl::lay_walls() {
+  if (compass_.direction()) frames_.set_walls(*compass_.direction(), compass_.variance());
+}
+
+/// After poses were corrected.
+void RobustMapper::Impl::set_compass_right() {
+  if (!config_.wall_compass) return;
+  compass_.set_right(frames_.graph());
+  lay_walls();
 }
 
 void RobustMapper::Impl::put_into_map(const LaserScan& scan, const std::optional<SweepMotion>& sweep,
@@ -629,6 +658,8 @@ void RobustMapper::Impl::go_on_in(KeyFrames frames, StampedMap map, const TPose2
     }
   }
   closer_.begin_anew();
+  T_matched_frame_ = TPose2D();
+  set_compass_right();
   redraw(here_, nullptr);
   T_map_stamped_ = now();
   last_hits_.clear();

@@ -38,6 +38,7 @@ struct RobustConfig {
   int exact_frames = 4000;             ///< from so many key frames on, known ground adds none
   bool thin_walls = true;              ///< walls that fill two cells of the final map lose the one hit less often
   bool loops = true;                   ///< close loops
+  bool wall_compass = true;            ///< keep the heading by walls that run one way or across it
   double budget_ms = 8.0;  ///< work put off to later scans beyond this; in work, not time: a unit is about 1 ns
   MissTrust misses = MissTrust::Sure;  ///< beams without an echo that free cells of the map; matching knows none
   LevelScanConfig scan;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/angle.h"
+#include "slam/robust/matching/wall_direction.h"
 
 namespace rubble::slam {
 
@@ -13,10 +14,11 @@ using mrpt::math::TPose2D;
 
 namespace {
 
-constexpr double kInFull = 1e12;     ///< a scaling that no loop feels
-constexpr double kHeld = 1e9;        ///< information that holds node 0
-constexpr double kLeast = 1e-6;      ///< information each node has of itself, against singular systems
-constexpr double kConverged = 1e-3;  ///< largest change of a step [m; a third of it in rad]
+constexpr double kInFull = 1e12;      ///< a scaling that no loop feels
+constexpr double kWallScaling = 4.0;  ///< of the directions of walls: those of another building are left alone
+constexpr double kHeld = 1e9;         ///< information that holds node 0
+constexpr double kLeast = 1e-6;       ///< information each node has of itself, against singular systems
+constexpr double kConverged = 1e-3;   ///< largest change of a step [m; a third of it in rad]
 constexpr Work kWorkPerEdge = 300;
 constexpr Work kWorkPerNode = 600;
 constexpr Work kWorkOfOrdering = 400;  ///< per edge
@@ -107,6 +109,16 @@ bool GraphSolver::step(Work& work) {
     }
     b.segment<3>(3 * edge.from) -= from * lin.r;
     b.segment<3>(3 * edge.to) -= to * lin.r;
+  }
+  for (const GraphWalls& walls : graph_.walls) {
+    const double off =
+        wrap_quarter(graph_.nodes[static_cast<std::size_t>(walls.node)].phi + walls.angle - graph_.walls_direction);
+    const double information = 1.0 / (graph_.walls_variance + walls.variance);
+    const double s = std::min(1.0, 2.0 * kWallScaling / (kWallScaling + information * off * off));
+    Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
+    block(2, 2) = s * s * information;
+    add_to_diagonal(walls.node, block);
+    b[3 * walls.node + 2] -= block(2, 2) * off;
   }
   for (int node = 0; node < static_cast<int>(graph_.nodes.size()); ++node)
     add_to_diagonal(node, (node == 0 ? kHeld : kLeast) * Eigen::Matrix3d::Identity());

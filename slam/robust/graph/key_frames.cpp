@@ -22,6 +22,7 @@ constexpr Work kWorkPerLink = 12;
 
 void KeyFrames::add(KeyFrame frame, const TPose2D& pose, const GraphEdge& edge) {
   frames_.push_back(std::move(frame));
+  take_walls(last());
   graph_.nodes.push_back(pose);
   links_.emplace_back();
   before_.push_back(size() < 2 ? -1 : edge.from);
@@ -36,6 +37,12 @@ KeyFrames::KeyFrames(std::vector<KeyFrame> frames, std::vector<int> before, Pose
     const GraphEdge& edge = graph_.edges[k];
     if (edge.on) link(k, edge.loop ? kLoopLength : length(edge.T_from_to.x, edge.T_from_to.y));
   }
+  for (int i = 0; i < size(); ++i) take_walls(i);
+}
+
+void KeyFrames::take_walls(int i) {
+  if (const std::optional<WallDirection>& walls = (*this)[i].walls)
+    graph_.walls.push_back({i, walls->angle, walls->sigma * walls->sigma});
 }
 
 void KeyFrames::add_start(KeyFrame frame, const TPose2D& pose, const GraphEdge& edge) {
@@ -61,6 +68,11 @@ void KeyFrames::move(const std::vector<TPose2D>& poses) {
   const TPose2D after = poses[moved - 1];
   for (std::size_t i = moved; i < graph_.nodes.size(); ++i) graph_.nodes[i] = after + (graph_.nodes[i] - before);
   std::copy(poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(moved), graph_.nodes.begin());
+}
+
+void KeyFrames::set_walls(double direction, double variance) {
+  graph_.walls_direction = direction;
+  graph_.walls_variance = variance;
 }
 
 void KeyFrames::switch_off(std::size_t edge) {

@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPose2D.h>
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "slam/robust/graph/pose_graph.h"
 #include "slam/robust/matching/cloud.h"
 #include "slam/robust/matching/surfel_grid.h"
+#include "slam/robust/matching/wall_direction.h"
 #include "slam/robust/matching/work.h"
 
 namespace rubble::slam {
@@ -20,6 +22,7 @@ struct KeyFrame {
   Stamp stamp;
   Cloud cloud;
   double path = 0.0;  ///< length of the robot's path up to here [m]
+  std::optional<WallDirection> walls;
 };
 
 /// The key frames of a drive with the graph of their poses.
@@ -46,6 +49,8 @@ class KeyFrames {
   void add_loop(const GraphEdge& edge, double path = kLoopLength);
   /// Takes poses for the first nodes; those behind follow the last of them.
   void move(const std::vector<mrpt::math::TPose2D>& poses);
+  /// Takes the direction of the walls in the map for the graph, and how far those that one key frame sees run from it.
+  void set_walls(double direction, double variance);
   /// Takes a loop out of the graph for good.
   void switch_off(std::size_t edge);
 
@@ -80,6 +85,7 @@ class KeyFrames {
     std::size_t edge;
   };
   void link(std::size_t edge, double length);
+  void take_walls(int i);
 
   std::vector<KeyFrame> frames_;
   std::vector<int> before_;  ///< the one that the robot came by, -1: none

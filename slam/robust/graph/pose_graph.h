@@ -17,10 +17,20 @@ struct GraphEdge {
   bool on = true;     ///< off: found wrong
 };
 
+/// Walls that a node saw.
+struct GraphWalls {
+  int node = 0;
+  double angle = 0.0;     ///< of the walls in the frame of the node, within a quarter turn [rad]
+  double variance = 0.0;  ///< of that [rad^2]
+};
+
 /// Poses and what was measured between them. Node 0 is the origin.
 struct PoseGraph {
   std::vector<mrpt::math::TPose2D> nodes;
   std::vector<GraphEdge> edges;
+  std::vector<GraphWalls> walls;
+  double walls_direction = 0.0;  ///< of all walls in the map, within a quarter turn [rad]
+  double walls_variance = 1.0;   ///< of those that one node sees, about it [rad^2]
 };
 
 /// Residual of an edge and its derivatives by the two poses.

@@ -145,6 +145,7 @@ KeyFrame take_frame(ByteReader& in) {
   for (auto& [nearest, farthest] : bins)
     for (std::uint16_t* value : {&nearest, &farthest}) *value = static_cast<std::uint16_t>(in.varint());
   frame.cloud.sight = SightFan(bins);
+  frame.walls = wall_direction(frame.cloud);
   return frame;
 }
 

@@ -63,8 +63,38 @@ TEST(RobustBadInput, ScansThatSayNothing) {
         tour(1), [](std::size_t i) { return i % 5 == 2; }, blind)));
     expect_good(outcome(with_scans(
         tour(1), [](std::size_t i) { return i < 8; }, blind)));  // the first
-    expect_good(outcome(with_scans(
-        tour(1), [](std::size_t i) { return i >= 60 && i < 80; }, blind)));  // 2 s
+  }
+}
+
+/// For 2 s the heading is that of the wheels, and no worse; the place and the map are as good as ever, and so is the
+/// heading from one second later on.
+TEST(RobustBadInput, WhileBlindTheHeadingIsThatOfTheWheels) {
+  constexpr std::size_t kFrom = 60;
+  constexpr std::size_t kTo = 80;
+  const Trajectory truth = toured().truth;
+  const auto turned = [](const TPose2D& from, const TPose2D& to) { return wrap_angle(to.phi - from.phi); };
+  for (const std::uint64_t seed : {1U, 3U, 4U, 6U}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Ticks ticks = tour(seed);
+    const auto wheels = [&](std::size_t i) { return ticks[i].odometry.front().pose; };
+    double lost = 0.0;
+    for (std::size_t i = kFrom; i < kTo; ++i)
+      lost = std::max(lost, std::abs(wrap_angle(turned(wheels(kFrom - 1), wheels(i)) -
+                                                turned(truth[kFrom - 1].pose, truth[i].pose))));
+    for (const float value : {kNaN, kInf, 0.0F, -1.0F}) {
+      const Ticks blind = with_scans(
+          ticks, [](std::size_t i) { return i >= kFrom && i < kTo; },
+          [&](LaserScan& scan) { scan.ranges.assign(scan.ranges.size(), value); });
+      RobustMapper mapper(RobotModel(), {}, 1);
+      const slam_test::Outcome o = slam_test::play(mapper, blind, slam_test::furnished_room(), truth);
+      EXPECT_LT(o.rmse, 0.05);
+      EXPECT_LT(o.outside, 0.02);
+      EXPECT_GT(o.occupied, 300);
+      EXPECT_LT(o.heading, lost + deg_to_rad(0.75));
+      ASSERT_EQ(mapper.trajectory().size(), truth.size());
+      for (std::size_t i = kTo + 10; i < truth.size(); ++i)
+        EXPECT_LT(std::abs(turned(truth[i].pose - truth[0].pose, mapper.trajectory()[i].pose)), deg_to_rad(1.5));
+    }
   }
 }
 
