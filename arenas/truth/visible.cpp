@@ -20,7 +20,9 @@ using Mask = Grid<std::uint8_t>;
 constexpr double kEdgeThickness = 1e-4;  ///< thickness given to an edge [m]
 constexpr double kVeil = 0.08;           ///< half the pitch of its strips, and a little [m]
 constexpr double kPoses = 0.4;           ///< distance between the poses looked from [m]
-constexpr double kFull = 8.0;            ///< up to here neighbouring rays end in neighbouring cells [m]
+constexpr double kSteepBand = 0.12;      ///< before floor that ends a ray, where a map may show a wall or not [m]
+constexpr double kBeside = 0.40;  ///< floor so far from all ground that the robot reaches is none to drive on [m]
+constexpr double kFull = 8.0;     ///< up to here neighbouring rays end in neighbouring cells [m]
 
 /// Cells with something the body cannot pass: solids at its height, steps too high to climb, floor too steep.
 Mask barriers(const Arena& arena, const GridFrame& frame, const Viewer& viewer) {
@@ -95,9 +97,15 @@ Grid<float> floor_heights(const Arena& arena, const GridFrame& frame) {
   return heights;
 }
 
+/// What was seen, and where rays ended at floor as high as the laser.
+struct Seen {
+  Mask cells;
+  Mask floor_ahead;
+};
+
 /// Marks what one ray sees: a walk from cell to cell (Amanatides and Woo 1987), up to floor as high as the laser.
 void look(const OccupancyGrid& truth, const Grid<float>& floor, Cell from, double bearing, const Viewer& viewer,
-          Mask& seen) {
+          Seen& seen) {
   const float laser = floor[from] + static_cast<float>(viewer.laser_height);
   const double dx = std::cos(bearing);
   const double dy = std::sin(bearing);
@@ -107,8 +115,11 @@ void look(const OccupancyGrid& truth, const Grid<float>& floor, Cell from, doubl
   double next_y = 0.5 * step_y;
   const double end = viewer.range / truth.resolution();
   for (Cell c = from; truth.inside(c);) {
-    if (floor[c] >= laser) return;
-    seen[c] = 1;
+    if (floor[c] >= laser) {
+      seen.floor_ahead[c] = 1;
+      return;
+    }
+    seen.cells[c] = 1;
     if (truth[c] == Occupancy::Occupied || std::min(next_x, next_y) > end) return;
     if (next_x < next_y) {
       c.x += dx > 0.0 ? 1 : -1;
@@ -168,11 +179,13 @@ Mask reachable_mask(const Arena& arena, const OccupancyGrid& truth, const Viewer
   return reached;
 }
 
-Mask visible_mask(const Arena& arena, const OccupancyGrid& truth, const Mask& reachable, const Viewer& viewer,
-                  const std::function<void(double)>& progress) {
+namespace {
+
+Seen look_around(const Arena& arena, const OccupancyGrid& truth, const Mask& reachable, const Viewer& viewer,
+                 const std::function<void(double)>& progress) {
   const GridFrame& frame = truth.frame();
   const Grid<float> floor = floor_heights(arena, frame);
-  Mask seen = reachable;
+  Seen seen{reachable, Mask(frame)};
   const int rays = static_cast<int>(std::ceil(2.0 * kPi * std::min(viewer.range, kFull) / frame.resolution));
   const std::vector<Cell> poses = poses_among(reachable, frame.cell({arena.start.x, arena.start.y}));
   for (std::size_t k = 0; k < poses.size(); ++k) {
@@ -182,9 +195,47 @@ Mask visible_mask(const Arena& arena, const OccupancyGrid& truth, const Mask& re
   return seen;
 }
 
+/// Where floor that the robot never drives on rises past the laser (steep ramps, stairs), a level laser sees a wall
+/// that the truth does not have, from each height at another place: a map that shows it is right, and so is one that
+/// does not. On ramps that the robot can climb such a wall is a phantom, and stays one; where the truth has a
+/// wall itself, as the diagonal of a step field, it counts.
+void leave_open_before_floor(const Mask& floor_ahead, const Mask& reachable, OccupancyGrid& known) {
+  const Grid<float> to_reachable = distance_transform(reachable, 2.0 * kBeside);
+  Mask walls(known.frame());
+  for (std::size_t i = 0; i < known.frame().size(); ++i) walls.data()[i] = known.data()[i] == Occupancy::Occupied;
+  const Grid<float> to_wall = distance_transform(walls, 2.0 * kSteepBand);
+  Mask ends(known.frame());
+  bool any = false;
+  for (int y = 0; y < known.height(); ++y)
+    for (int x = 0; x < known.width(); ++x) {
+      const Cell c{x, y};
+      if (floor_ahead[c] == 0 || static_cast<double>(to_reachable[c]) <= kBeside ||
+          static_cast<double>(to_wall[c]) <= kSteepBand)
+        continue;
+      ends[c] = 1;
+      any = true;
+    }
+  if (!any) return;
+  const Grid<float> to_end = distance_transform(ends, 2.0 * kSteepBand);
+  for (int y = 0; y < known.height(); ++y)
+    for (int x = 0; x < known.width(); ++x) {
+      const Cell c{x, y};
+      if (known[c] == Occupancy::Free && static_cast<double>(to_end[c]) <= kSteepBand) known[c] = Occupancy::Unknown;
+    }
+}
+
+}  // namespace
+
+Mask visible_mask(const Arena& arena, const OccupancyGrid& truth, const Mask& reachable, const Viewer& viewer,
+                  const std::function<void(double)>& progress) {
+  return look_around(arena, truth, reachable, viewer, progress).cells;
+}
+
 OccupancyGrid visible_truth(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer,
                             const std::function<void(double)>& progress) {
-  const Mask seen = visible_mask(arena, truth, reachable_mask(arena, truth, viewer), viewer, progress);
+  const Mask reachable = reachable_mask(arena, truth, viewer);
+  const Seen looked = look_around(arena, truth, reachable, viewer, progress);
+  const Mask& seen = looked.cells;
   OccupancyGrid known = truth;
   for (int y = 0; y < truth.height(); ++y) {
     for (int x = 0; x < truth.width(); ++x) {
@@ -194,6 +245,7 @@ OccupancyGrid visible_truth(const Arena& arena, const OccupancyGrid& truth, cons
     }
   }
   leave_open(arena, known);
+  leave_open_before_floor(looked.floor_ahead, reachable, known);
   return known;
 }
 
