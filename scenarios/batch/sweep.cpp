@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -13,6 +12,7 @@
 #include "base/text/file_name.h"
 #include "base/yaml/strict_yaml.h"
 #include "base/yaml/yaml_node.h"
+#include "scenarios/config/seeds.h"
 #include "scenarios/run/run.h"
 
 namespace rubble::scenarios {
@@ -22,45 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostRuns = 1000000;
 constexpr std::size_t kMostBytes = 1000000000;  ///< of all configurations
-
-/// The values of a key that may be one value or a list.
-std::vector<std::string> one_or_more(const YamlMap& map, const std::string& key) {
-  try {
-    return {map.text(key, std::nullopt)};
-  } catch (const InputError&) {
-    return map.texts(key);
-  }
-}
-
-std::optional<std::uint64_t> whole_number(const std::string& text) {
-  std::uint64_t value = 0;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, value);
-  if (parsed.ec != std::errc() || parsed.ptr != end || value > INT64_MAX) return std::nullopt;
-  return value;
-}
-
-std::vector<std::uint64_t> read_seeds(const YamlMap& root) {
-  const std::string remedy = "; write a range (seeds: 1-24) or a list (seeds: [1, 5, 9])";
-  if (!root.has("seeds")) root.fail("seeds", "a sweep needs 'seeds'" + remedy);
-  std::vector<std::uint64_t> seeds;
-  std::set<std::uint64_t> seen;
-  for (const auto& text : one_or_more(root, "seeds")) {
-    const auto dash = text.find('-');
-    const auto first = whole_number(text.substr(0, dash));
-    const auto last = dash == std::string::npos ? first : whole_number(text.substr(dash + 1));
-    if (!first || !last || *last < *first) root.fail("seeds", "'" + text + "' is neither a seed nor a range" + remedy);
-    if (*last - *first >= kMostRuns - seeds.size())
-      root.fail("seeds", "are more than a million seeds; split the sweep");
-    for (std::uint64_t seed = *first;; ++seed) {
-      if (!seen.insert(seed).second) root.fail("seeds", "seed " + std::to_string(seed) + " is there twice" + remedy);
-      seeds.push_back(seed);
-      if (seed == *last) break;
-    }
-  }
-  if (seeds.empty()) root.fail("seeds", "the list is empty" + remedy);
-  return seeds;
-}
 
 std::vector<std::string> read_scenarios(const YamlMap& root, const fs::path& folder, const std::string& shipped) {
   std::vector<std::string> paths;

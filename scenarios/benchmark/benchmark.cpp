@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "arenas/files/arena_file.h"
 #include "base/angle.h"
@@ -175,6 +176,7 @@ ChildAnswer in_child(const std::function<json()>& work) {
 }
 
 void take(BenchmarkResult& result, const ChildAnswer& answer) {
+  result.runs = 1;
   const json said = json::parse(answer.text, nullptr, false);
   if (!said.is_object()) {
     result.failure = "its process ended without an answer";
@@ -199,6 +201,59 @@ void take(BenchmarkResult& result, const ChildAnswer& answer) {
   result.peak_mb = answer.peak_mb;
 }
 
+/// What several runs gave: medians of errors, the largest of times. A run that failed is told, and spoils the rest.
+BenchmarkResult summary(const std::vector<BenchmarkResult>& runs) {
+  for (const BenchmarkResult& run : runs)
+    if (!run.failure.empty()) return run;
+  BenchmarkResult all = runs.front();
+  all.runs = runs.size();
+  const auto values = [&](std::optional<double> BenchmarkResult::*value) {
+    std::vector<double> known;
+    for (const BenchmarkResult& run : runs)
+      if (run.*value) known.push_back(*(run.*value));
+    std::sort(known.begin(), known.end());
+    return known;
+  };
+  const auto median = [](const std::vector<double>& sorted) {
+    if (sorted.empty()) return std::optional<double>();
+    const std::size_t half = sorted.size() / 2;
+    return std::optional<double>(sorted.size() % 2 == 1 ? sorted[half] : 0.5 * (sorted[half - 1] + sorted[half]));
+  };
+  const std::vector<double> errors = values(&BenchmarkResult::error_m);
+  all.error_m = median(errors);
+  all.live_error_m = median(values(&BenchmarkResult::live_error_m));
+  all.error_deg = median(values(&BenchmarkResult::error_deg));
+  if (runs.size() > 1 && !errors.empty()) all.worst_m = errors.back();
+  double seconds = 0.0;
+  all.scans = 0;
+  for (const BenchmarkResult& run : runs) {
+    all.scans += run.scans;
+    if (run.scans_per_second > 0.0) seconds += static_cast<double>(run.scans) / run.scans_per_second;
+    all.usual_ms = std::max(all.usual_ms, run.usual_ms);
+    all.slow_ms = std::max(all.slow_ms, run.slow_ms);
+    all.worst_ms = std::max(all.worst_ms, run.worst_ms);
+    all.finish_ms = std::max(all.finish_ms, run.finish_ms);
+    all.peak_mb = std::max(all.peak_mb, run.peak_mb);
+  }
+  all.scans_per_second = seconds > 0.0 ? static_cast<double>(all.scans) / seconds : 0.0;
+  const auto sum = [&](std::optional<double> BenchmarkResult::*value) {
+    const std::vector<double> known = values(value);
+    return known.empty() ? std::optional<double>() : std::accumulate(known.begin(), known.end(), 0.0);
+  };
+  all.loops_closed = sum(&BenchmarkResult::loops_closed);
+  all.loops_removed = sum(&BenchmarkResult::loops_removed);
+  return all;
+}
+
+void judge(const BenchmarkCase& what, BenchmarkResult& result) {
+  const auto ask = [&](const std::optional<double>& goal, const std::optional<double>& value) {
+    if (goal && value) result.goal_met = result.goal_met.value_or(true) && *value <= *goal;
+  };
+  ask(what.goal, result.error_m);
+  ask(what.live_goal, result.live_error_m);
+  ask(what.worst_goal, result.worst_m);
+}
+
 BenchmarkResult run_one(const BenchmarkCase& what, const BenchmarkMapper& mapper,
                         const std::vector<std::string>& folders, const BenchmarkOptions& options) {
   BenchmarkResult result;
@@ -213,13 +268,23 @@ BenchmarkResult run_one(const BenchmarkCase& what, const BenchmarkMapper& mapper
   find(what.relations, relations);
   find(what.scenario, scenario_file);
   if (!result.missing.empty()) return result;
-  Scenario scenario =
-      scenario_file.empty() ? default_scenario(mapper.overrides) : load_scenario(scenario_file, mapper.overrides);
-  scenario.seed = what.seed;
+  std::vector<Override> overrides = mapper.overrides;
+  overrides.insert(overrides.end(), what.overrides.begin(), what.overrides.end());
+  Scenario scenario = scenario_file.empty() ? default_scenario(overrides) : load_scenario(scenario_file, overrides);
   if (options.permit) options.permit(scenario);
   scenario.mapper.require_permission();
-  take(result, in_child([&] { return log.empty() ? run_arena(scenario) : run_log(log, relations, scenario); }));
-  if (what.goal && result.error_m) result.goal_met = *result.error_m <= *what.goal;
+  std::vector<BenchmarkResult> runs;
+  for (const std::uint64_t seed : what.seeds) {
+    if (!runs.empty() && options.interrupted && options.interrupted()) break;
+    scenario.seed = seed;
+    BenchmarkResult run;
+    take(run, in_child([&] { return log.empty() ? run_arena(scenario) : run_log(log, relations, scenario); }));
+    if (!run.failure.empty() && what.seeds.size() > 1) run.failure += " (seed " + std::to_string(seed) + ")";
+    runs.push_back(std::move(run));
+  }
+  result = summary(runs);
+  result.mapper = mapper.name;
+  judge(what, result);
   return result;
 }
 

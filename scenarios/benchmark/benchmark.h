@@ -14,19 +14,21 @@ struct BenchmarkResult {
   std::string mapper;
   std::string missing;                 ///< a file that is not there: nothing was run; says which
   std::string failure;                 ///< the mapper was lost or the input refused; says why
+  std::size_t runs = 0;                ///< one for each seed; where there are several, errors are medians
   std::optional<double> error_m;       ///< the case's measure, of the final trajectory [m]
+  std::optional<double> worst_m;       ///< the same of the worst of several runs [m]
   std::optional<double> live_error_m;  ///< the same of the poses as known at each scan [m]
   std::optional<double> error_deg;     ///< of relations [deg]
   std::uint64_t scans = 0;
   double scans_per_second = 0.0;  ///< CPU time of update(), all in all
   double usual_ms = 0.0;          ///< of a scan: the median,
   double slow_ms = 0.0;           ///< what 99 of 100 stay below,
-  double worst_ms = 0.0;          ///< and the worst [ms]
+  double worst_ms = 0.0;          ///< and the worst [ms]; of several runs the largest of each
   double finish_ms = 0.0;         ///< after the last scan [ms]
   double peak_mb = 0.0;
   std::optional<double> loops_closed;
   std::optional<double> loops_removed;
-  std::optional<bool> goal_met;  ///< nothing: the case has no goal, or nothing was measured
+  std::optional<bool> goal_met;  ///< all of the case's; nothing: it has none, or nothing was measured
 };
 
 struct BenchmarkRow {

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <set>
 
+#include "scenarios/config/seeds.h"
+
 namespace rubble::scenarios {
 namespace {
 
@@ -27,11 +29,26 @@ BenchmarkCase read_case(const YamlMap& map) {
   c.log = map.text("log", "");
   c.relations = map.text("relations", "");
   c.scenario = map.text("scenario", "");
-  c.seed = static_cast<std::uint64_t>(map.integer("seed", 1, 0, INT64_MAX));
+  if (map.has("seeds"))
+    c.seeds = read_seeds(map);
+  else
+    c.seeds = {static_cast<std::uint64_t>(map.integer("seed", 1, 0, INT64_MAX))};
+  if (c.seeds.size() > 1 && c.scenario.empty()) map.fail("seeds", "are of arenas; a log is the same with every seed");
+  const YamlMap set = map.map("set");
+  for (const std::string& key : set.keys()) {
+    if (key == "seed") set.fail(key, "stands beside the case's name");
+    c.overrides.emplace_back(key, set.text(key, std::nullopt));
+  }
   if (c.log.empty() == c.scenario.empty()) map.fail("name", "a case needs either 'log' or 'scenario'");
   if (!c.relations.empty() && c.log.empty()) map.fail("relations", "belong to a log; give 'log' beside them");
   c.measure = c.relations.empty() ? BenchmarkMeasure::Aligned : BenchmarkMeasure::Relations;
-  if (map.has("goal_m")) c.goal = map.number("goal_m", std::nullopt, 0.0, kLargestError);
+  const auto goal = [&](const char* key) {
+    return map.has(key) ? std::optional<double>(map.number(key, std::nullopt, 0.0, kLargestError)) : std::nullopt;
+  };
+  c.goal = goal("goal_m");
+  c.live_goal = goal("live_goal_m");
+  c.worst_goal = goal("worst_goal_m");
+  if (c.worst_goal && c.seeds.size() < 2) map.fail("worst_goal_m", "is of several seeds; give 'seeds' beside it");
   for (const YamlMap& row : map.maps("published"))
     c.published.push_back({row.text("by", std::nullopt), row.text("source", std::nullopt),
                            row.number("error_m", std::nullopt, 0.0, kLargestError)});

@@ -32,12 +32,15 @@ enum class BenchmarkMeasure {
 struct BenchmarkCase {
   std::string name;
   std::string about;
-  std::string log;        ///< path as written in the list; empty: an arena
-  std::string relations;  ///< path as written; empty: none
-  std::string scenario;   ///< path as written; empty: a log
-  std::uint64_t seed = 1;
+  std::string log;                      ///< path as written in the list; empty: an arena
+  std::string relations;                ///< path as written; empty: none
+  std::string scenario;                 ///< path as written; empty: a log
+  std::vector<std::uint64_t> seeds{1};  ///< of the arena and the run; a log has one
+  std::vector<Override> overrides;      ///< of the scenario, for this case
   BenchmarkMeasure measure = BenchmarkMeasure::Aligned;
-  std::optional<double> goal;  ///< of the measure, at most [m]
+  std::optional<double> goal;        ///< of the measure, at most; of several seeds for the median [m]
+  std::optional<double> live_goal;   ///< the same of the poses as known at each scan [m]
+  std::optional<double> worst_goal;  ///< of the worst of several seeds [m]
   std::vector<PublishedFigure> published;
 };
 

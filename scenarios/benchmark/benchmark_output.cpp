@@ -37,19 +37,30 @@ std::string error_of(const BenchmarkResult& result) {
   return optional_number(result.error_m, "%.4f");
 }
 
+/// Of the error, then what the others are of.
+std::string goals_of(const BenchmarkCase& what) {
+  std::string text = optional_number(what.goal, "%g");
+  const auto add = [&](const std::optional<double>& goal, const char* of) {
+    if (goal) text += (text.empty() ? "" : ", ") + std::string(of) + " " + number(*goal, "%g");
+  };
+  add(what.worst_goal, "worst");
+  add(what.live_goal, "known at the scan");
+  return text;
+}
+
 Table results_table(const Benchmark& benchmark) {
   Table table;
-  table.head = {"case",    "measure",  "mapper",    "error m",   "as known at the scan m",
-                "deg",     "goal m",   "goal met",  "scans/s",   "usual ms",
-                "99 % ms", "worst ms", "finish ms", "memory MB", "loops closed",
-                "removed"};
+  table.head = {"case",      "measure",   "mapper",       "runs",    "error m",  "worst m", "as known at the scan m",
+                "deg",       "goal m",    "goal met",     "scans/s", "usual ms", "99 % ms", "worst ms",
+                "finish ms", "memory MB", "loops closed", "removed"};
   for (const BenchmarkRow& row : benchmark.rows)
     for (const BenchmarkResult& r : row.results) {
       const bool ran = r.missing.empty() && r.failure.empty();
       const auto timed = [&](double value, const char* format) { return ran ? number(value, format) : std::string(); };
-      table.rows.push_back({row.what.name, measure_name(row.what.measure), r.mapper, error_of(r),
-                            optional_number(r.live_error_m, "%.4f"), optional_number(r.error_deg, "%.3f"),
-                            optional_number(row.what.goal, "%g"),
+      table.rows.push_back({row.what.name, measure_name(row.what.measure), r.mapper,
+                            ran ? std::to_string(r.runs) : std::string(), error_of(r),
+                            optional_number(r.worst_m, "%.4f"), optional_number(r.live_error_m, "%.4f"),
+                            optional_number(r.error_deg, "%.3f"), goals_of(row.what),
                             !r.goal_met   ? ""
                             : *r.goal_met ? "yes"
                                           : "no",
@@ -126,8 +137,8 @@ std::string as_html(const Table& table) {
 constexpr const char* kNote =
     "Error: relations are mean errors between pairs of moments (Kuemmerle et al. 2009), aligned is the RMS error of "
     "the "
-    "positions after the best rigid alignment with the reference that came with the log or the arena. Times are CPU "
-    "time of the mapper alone, of this machine.";
+    "positions after the best rigid alignment with the reference that came with the log or the arena. Of several runs "
+    "errors are medians, times the largest. Times are CPU time of the mapper alone, of this machine.";
 
 }  // namespace
 
@@ -146,12 +157,16 @@ std::string to_json(const Benchmark& benchmark) {
   for (const BenchmarkRow& row : benchmark.rows) {
     ordered_json c = {{"name", row.what.name}, {"measure", measure_name(row.what.measure)}};
     set(c, "goal_m", row.what.goal);
+    set(c, "live_goal_m", row.what.live_goal);
+    set(c, "worst_goal_m", row.what.worst_goal);
     c["results"] = ordered_json::array();
     for (const BenchmarkResult& r : row.results) {
       ordered_json j = {{"mapper", r.mapper}};
       if (!r.missing.empty()) j["missing"] = r.missing;
       if (!r.failure.empty()) j["failure"] = r.failure;
+      j["runs"] = r.runs;
       set(j, "error_m", r.error_m);
+      set(j, "worst_m", r.worst_m);
       set(j, "live_error_m", r.live_error_m);
       set(j, "error_deg", r.error_deg);
       j["goal_met"] = r.goal_met ? ordered_json(*r.goal_met) : ordered_json();

@@ -33,6 +33,33 @@ grep -q 'A paper / with a bar' b.md || fail "the document's table is broken by a
 grep -q 'not there: nowhere.log' b.txt || fail "the table does not tell the missing log"
 grep -q 'paper  ' b.txt && fail "--mapper robust ran others"
 
+# Several seeds: medians and the worst, goals of each, and a case with settings of its own.
+cat >seeds.yaml <<'YAML'
+mappers: [{kind: robust}]
+cases:
+  - {name: three, scenario: s.yaml, seeds: 3-5, goal_m: 5, worst_goal_m: 5, live_goal_m: 5}
+  - {name: strict, scenario: s.yaml, seeds: 3-5, goal_m: 5, worst_goal_m: 0.00001}
+  - {name: first, scenario: s.yaml, seed: 3}
+  - {name: second, scenario: s.yaml, seed: 4}
+  - {name: third, scenario: s.yaml, seed: 5}
+  - {name: cut, scenario: s.yaml, seed: 3, set: {mapper.max_range_m: 2, time_limit_s: 20}}
+YAML
+"$rubble" benchmark seeds.yaml --json >seeds.json 2>err.txt || fail "benchmark of seeds ended with $?: $(cat err.txt)"
+json_holds seeds.json "[c['results'][0]['runs'] for c in j['cases']] == [3, 3, 1, 1, 1, 1]"
+json_holds seeds.json "(lambda e, r: (r['error_m'], r['worst_m']) == (e[1], e[2]))(sorted(c['results'][0]['error_m'] for c in j['cases'][2:5]), j['cases'][0]['results'][0])"
+json_holds seeds.json "j['cases'][0]['results'][0]['scans'] == sum(c['results'][0]['scans'] for c in j['cases'][2:5])"
+json_holds seeds.json "[c['results'][0]['goal_met'] for c in j['cases'][:3]] == [True, False, None]"
+json_holds seeds.json "j['cases'][2]['results'][0]['worst_m'] is None"
+json_holds seeds.json "j['cases'][5]['results'][0]['scans'] < j['cases'][2]['results'][0]['scans']"
+printf 'mappers: [{kind: robust}]\ncases: [{name: a, log: x, seeds: 1-3}]\n' >logs.yaml
+expect_exit 3 'logs.yaml:2' "$rubble" benchmark logs.yaml
+printf 'mappers: [{kind: robust}]\ncases: [{name: a, scenario: s.yaml, seed: 1, worst_goal_m: 1}]\n' >worst.yaml
+expect_exit 3 "give 'seeds'" "$rubble" benchmark worst.yaml
+printf 'mappers: [{kind: robust}]\ncases: [{name: a, scenario: s.yaml, seeds: 5-3}]\n' >range.yaml
+expect_exit 3 'neither a seed nor a range' "$rubble" benchmark range.yaml
+printf 'mappers: [{kind: robust}]\ncases: [{name: a, scenario: s.yaml, set: {mapper.nothing: 1}}]\n' >key.yaml
+expect_exit 3 'nothing' "$rubble" benchmark key.yaml
+
 expect_exit 2 '--mapper nobody' "$rubble" benchmark list.yaml --mapper nobody
 expect_exit 3 'nowhere.yaml' "$rubble" benchmark nowhere.yaml
 printf 'mappers: [{kind: robust}]\n' >none.yaml
