@@ -175,8 +175,19 @@ bool SearchedArea::look(const Traversable& floor, const TPose2D& T_map_base) {
   const int farthest = static_cast<int>(inspection_.farthest / step);
   const double x0 = (T_map_base.x - frame.x0) / frame.resolution;
   const double y0 = (T_map_base.y - frame.y0) / frame.resolution;
-  bool changed = false;
-  seen_.clear();
+  // Bytes may alias whatever the members point to: by local pointers nothing is read anew for each cell.
+  const Occupancy* const cells = floor.cells.data();
+  const Faces* const once = once_.data();
+  Faces* const twice = twice_.data();
+  const auto width = static_cast<std::size_t>(frame.width);
+  const auto own_width = static_cast<std::size_t>(twice_.width());
+  const std::size_t own_first = twice_.frame().index(shift);
+  way_.resize(static_cast<std::size_t>(steps) + 1);
+  for (std::size_t k = 0; k < way_.size(); ++k) way_[k] = 0.7 * static_cast<double>(k);
+  seen_.resize((static_cast<std::size_t>(rays) + 1) * way_.size());
+  Seen* const seen = seen_.data();
+  std::size_t count = 0;
+  Faces news = 0;
   for (int i = 0; i <= rays; ++i) {
     const double bearing = T_map_base.phi + config_.field_of_view * (static_cast<double>(i) / rays - 0.5);
     const double dx = std::cos(bearing);
@@ -184,20 +195,27 @@ bool SearchedArea::look(const Traversable& floor, const TPose2D& T_map_base) {
     const Faces along = faces_along(dx, dy, inspection_.incidence);
     for (int k = 0; k <= steps; ++k) {
       const Faces faces = k >= nearest && k <= farthest ? along : kFloor;
-      const Cell c{static_cast<int>(std::floor(x0 + 0.7 * k * dx)), static_cast<int>(std::floor(y0 + 0.7 * k * dy))};
-      if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free) break;
-      const std::size_t own = twice_.frame().index({c.x + shift.x, c.y + shift.y});
-      const Faces again = static_cast<Faces>(once_.data()[own] & faces & ~twice_.data()[own]);
-      changed = changed || again != 0;
-      twice_.data()[own] = static_cast<Faces>(twice_.data()[own] | again);  // `once_` is of earlier looks
-      seen_.push_back({own, faces});
+      const double way = way_[static_cast<std::size_t>(k)];
+      const Cell c{static_cast<int>(std::floor(x0 + way * dx)), static_cast<int>(std::floor(y0 + way * dy))};
+      if (!frame.inside(c)) break;
+      const auto x = static_cast<std::size_t>(c.x);
+      const auto y = static_cast<std::size_t>(c.y);
+      if (cells[y * width + x] != Occupancy::Free) break;
+      const std::size_t own = own_first + y * own_width + x;
+      const auto again = static_cast<Faces>(once[own] & faces & ~twice[own]);
+      if (again != 0) twice[own] = static_cast<Faces>(twice[own] | again);  // `once` is of earlier looks
+      news = static_cast<Faces>(news | again);
+      seen[count++] = {static_cast<std::uint32_t>(own), faces};
     }
   }
-  for (const auto& [own, faces] : seen_) {
-    changed = changed || (faces & ~once_.data()[own]) != 0;
-    once_.data()[own] = static_cast<Faces>(once_.data()[own] | faces);
+  Faces* const record = once_.data();
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto [own, faces] = seen[k];
+    const auto first = static_cast<Faces>(faces & ~record[own]);
+    if (first != 0) record[own] = static_cast<Faces>(record[own] | first);
+    news = static_cast<Faces>(news | first);
   }
-  return changed;
+  return news != 0;
 }
 
 void SearchedArea::give_up(const Traversable& floor, const TPoint2D& place, double radius, Faces faces) {

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "base/angle.h"
@@ -81,7 +80,12 @@ class SearchedArea {
   Inspection inspection_;
   Grid<Faces> once_;
   Grid<Faces> twice_;
-  std::vector<std::pair<std::size_t, Faces>> seen_;  ///< of the look under way, by index
+  struct Seen {
+    std::uint32_t own;  ///< cell of the records
+    Faces faces;
+  };
+  std::vector<Seen> seen_;   ///< of the look under way
+  std::vector<double> way_;  ///< of each step along a ray [cells]
 };
 
 /// Whether a wall face of a cell is the back of a niche: walls stand to both sides of it, 0.2 to 0.55 m apart. A box
