@@ -29,6 +29,7 @@ void bind(Binder& b, PaperExplorerConfig& c) {
     v.number("merge_distance_m", c.victims.merge_distance, 0.0, 10.0);
     v.number("memory_s", c.victims.memory, 0.0, 1e6);
     v.boolean("search", c.search.on);
+    v.boolean("faces", c.search.faces);
     v.degrees("field_of_view_deg", c.search.field_of_view, 5.0, 360.0);
     v.number("range_m", c.search.range, 0.3, 20.0);
     v.integer("min_cells", c.search.min_cells, 1, 100000);

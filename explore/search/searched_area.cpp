@@ -233,7 +233,7 @@ void SearchedArea::give_up(const Traversable& floor, const TPoint2D& place, doub
 }
 
 Faces SearchedArea::missing(const Traversable& floor, Cell c) const {
-  const Faces all = faces_of(floor, c);
+  const auto all = static_cast<Faces>(config_.faces ? faces_of(floor, c) : kFloor);
   if (twice_.width() == 0) return all;
   const Cell shift = shift_from(floor.frame());
   const Cell own{c.x + shift.x, c.y + shift.y};
@@ -249,7 +249,7 @@ Grid<Faces> SearchedArea::unsearched(const Traversable& floor) const {
     const Occupancy* below = floor.cells.row(y - 1);
     const Occupancy* above = floor.cells.row(y + 1);
     Faces* row = open.row(y);
-    const auto face = [](Occupancy o, Faces f) { return o == Occupancy::Occupied ? f : Faces{0}; };
+    const auto face = [&](Occupancy o, Faces f) { return config_.faces && o == Occupancy::Occupied ? f : Faces{0}; };
     for (int x = 1; x + 1 < width; ++x)
       row[x] = static_cast<Faces>(cells[x] == Occupancy::Free
                                       ? kFloor | face(cells[x + 1], kEastFace) | face(above[x], kNorthFace) |

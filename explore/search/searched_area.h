@@ -19,6 +19,7 @@ enum class SquareLook { Never, Holes, Always };
 /// What the explorer counts on from the robot's victim sensors.
 struct SearchConfig {
   bool on = true;                           ///< look for victims everywhere before finishing
+  bool faces = true;                        ///< of walls as well; false: floor alone, as the paper looks at it
   double field_of_view = deg_to_rad(50.0);  ///< full angle, ahead of the robot; less than the sensor's: poses err
   double range = 1.8;                       ///< [m]; likewise
   int min_cells = 8;                        ///< smaller unsearched places are left alone

@@ -55,6 +55,19 @@ TEST(SearchedArea, AWallSeenAtAGrazingAngleIsNotInspected) {
   EXPECT_EQ(area.missing(floor, at_wall(floor, 0.0)), kNorthFace);
 }
 
+TEST(SearchedArea, WithoutFacesFloorInViewIsAllThatIsAskedFor) {
+  const Traversable floor = room();
+  SearchConfig config;
+  config.faces = false;
+  SearchedArea area{config};
+  const Cell c = at_wall(floor, 0.0);
+  EXPECT_EQ(area.missing(floor, c), kFloor);
+  EXPECT_EQ(area.unsearched(floor)[c], kFloor);
+  look_twice(area, floor, {-1.2, 1.2, deg_to_rad(10.0)});
+  EXPECT_EQ(area.missing(floor, c), 0) << "the wall was seen at a grazing angle alone";
+  EXPECT_EQ(area.unsearched(floor)[c], 0);
+}
+
 /// Through a hole in a wall a camera sees only squarely, and not from right before it.
 TEST(SearchedArea, SquarelyCountsWithin27DegAndNotFromTooNear) {
   const Traversable floor = room();
