@@ -136,8 +136,7 @@ double half_width(const cv::Mat& floor, const cv::Mat& clearance, const Side& si
     const double seen = sight(floor, side.middle, ray.x, ray.y, reach);
     for (double t = 0.0; t < seen; t += 2.0) {
       const cv::Point2d p = side.middle + t * ray;
-      best = std::max(best, static_cast<double>(clearance.at<float>(static_cast<int>(std::lround(p.y)),
-                                                                    static_cast<int>(std::lround(p.x)))));
+      best = std::max(best, static_cast<double>(clearance.at<float>(nearest_whole(p.y), nearest_whole(p.x))));
     }
   }
   return best;

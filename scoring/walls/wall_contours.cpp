@@ -55,9 +55,7 @@ std::vector<WallCorner> wall_corners(const std::vector<WallContour>& contours, i
 
 double sight(const cv::Mat& floor, const cv::Point2d& origin, double dx, double dy, double reach) {
   for (double t = 0.0; t < reach; t += 1.0)
-    if (!is_floor(floor, static_cast<int>(std::lround(origin.x + t * dx)),
-                  static_cast<int>(std::lround(origin.y + t * dy))))
-      return t;
+    if (!is_floor(floor, nearest_whole(origin.x + t * dx), nearest_whole(origin.y + t * dy))) return t;
   return reach;
 }
 
@@ -69,9 +67,7 @@ bool sees(const cv::Mat& floor, const cv::Point& a, const cv::Point& b, double s
   for (int i = 0; i <= steps; ++i) {
     const double u = static_cast<double>(i) / steps;
     if (u * length < skip || (1.0 - u) * length < skip) continue;
-    if (!is_floor(floor, static_cast<int>(std::lround(a.x + along.x * u)),
-                  static_cast<int>(std::lround(a.y + along.y * u))))
-      return false;
+    if (!is_floor(floor, nearest_whole(a.x + along.x * u), nearest_whole(a.y + along.y * u))) return false;
   }
   return true;
 }

@@ -21,6 +21,13 @@ struct WallCorner {
 /// neighbourhood.
 std::vector<WallCorner> wall_corners(const std::vector<WallContour>& contours, int scale, double least_turn);
 
+/// std::lround for what fits an int, without a call: rays ask for the nearest cell at each of their steps.
+inline int nearest_whole(double value) {
+  const int towards_zero = static_cast<int>(value);
+  const double rest = value - towards_zero;
+  return towards_zero + (rest >= 0.5 ? 1 : 0) - (rest <= -0.5 ? 1 : 0);
+}
+
 /// How far one sees from `origin` in the direction (dx, dy) over non-zero cells, at most `reach` [cells].
 double sight(const cv::Mat& floor, const cv::Point2d& origin, double dx, double dy, double reach);
 

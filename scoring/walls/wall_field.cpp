@@ -33,6 +33,7 @@ Patch patch(const GridFrame& frame, const mrpt::math::TPoint2D& p) {
 
 std::vector<mrpt::math::TPoint2D> wall_points(const OccupancyGrid& grid) {
   std::vector<mrpt::math::TPoint2D> points;
+  points.reserve(static_cast<std::size_t>(std::count(grid.cells().begin(), grid.cells().end(), Occupancy::Occupied)));
   for (int y = 0; y < grid.height(); ++y) {
     const Occupancy* row = grid.row(y);
     for (int x = 0; x < grid.width(); ++x)
