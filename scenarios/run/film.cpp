@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "base/grid.h"
 #include "base/planar.h"
 
 namespace rubble::scenarios {
@@ -25,13 +26,14 @@ const cv::Scalar kUnknownGround(226, 226, 226), kFreeGround(255, 255, 255), kWal
 
 /// The ground that all frames show, and how large.
 struct Stage {
-  explicit Stage(const std::vector<FilmFrame>& frames) : cell(frames.back().map.resolution()) {
+  explicit Stage(const std::vector<FilmFrame>& frames) : cell(frames.back().map.frame().resolution) {
     for (const FilmFrame& frame : frames) {
       const GridFrame& f = frame.map.frame();
       if (f.resolution != cell) continue;
+      const OccupancyGrid map = frame.map.unpacked();
       for (int y = 0; y < f.height; ++y)
         for (int x = 0; x < f.width; ++x)
-          if (frame.map[{x, y}] != Occupancy::Unknown) hold(frame.map.centre({x, y}));
+          if (map[{x, y}] != Occupancy::Unknown) hold(map.centre({x, y}));
       for (const TPoint2D& p : frame.way) hold(p);
       hold(position(frame.pose));
     }
@@ -88,10 +90,9 @@ double known_ground(const OccupancyGrid& map) {
   return static_cast<double>(cells) * map.resolution() * map.resolution();
 }
 
-void write_below(const FilmFrame& frame, int top, cv::Mat& panel) {
+void write_below(const FilmFrame& frame, double known, int top, cv::Mat& panel) {
   char words[80];
-  std::snprintf(words, sizeof words, "%.0f s, %.0f m2, %zu victims", frame.time, known_ground(frame.map),
-                frame.victims.size());
+  std::snprintf(words, sizeof words, "%.0f s, %.0f m2, %zu victims", frame.time, known, frame.victims.size());
   const auto fits = static_cast<std::size_t>(std::max(10, panel.cols / kLetterWidth));
   const std::string why = frame.why.size() > fits ? frame.why.substr(0, fits - 2) + ".." : frame.why;
   for (const auto& [text, y] : {std::pair<std::string, int>{words, top + 15}, {why, top + 32}})
@@ -102,14 +103,15 @@ cv::Mat panel_of(const FilmFrame& frame, const Stage& stage) {
   cv::Mat panel(stage.height() + kCaption, stage.width(), CV_8UC3, cv::Scalar(255, 255, 255));
   cv::Mat ground = panel.rowRange(0, stage.height());
   ground.setTo(kUnknownGround);
-  if (frame.map.resolution() == stage.cell) draw_map(frame.map, stage, ground);
+  const OccupancyGrid map = frame.map.unpacked();
+  if (map.resolution() == stage.cell) draw_map(map, stage, ground);
   draw_line(frame.way, stage, kWayInk, ground);
   draw_line(frame.plan, stage, kPlanInk, ground);
   for (const TPoint2D& victim : frame.victims)
     cv::circle(ground, stage.at(victim), std::max(3, static_cast<int>(0.15 * stage.scale)), kVictimInk, cv::FILLED,
                cv::LINE_AA);
   draw_robot(frame.pose, stage, ground);
-  write_below(frame, stage.height(), panel);
+  write_below(frame, known_ground(map), stage.height(), panel);
   return panel;
 }
 

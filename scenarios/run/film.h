@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "base/grid.h"
 #include "robot/robot.h"
 #include "scenarios/run/core.h"
+#include "scenarios/run/packed_map.h"
 
 namespace cv {
 class Mat;
@@ -18,8 +18,8 @@ namespace rubble::scenarios {
 
 /// What a run knew at one moment. All in the map frame [m].
 struct FilmFrame {
-  double time = 0.0;  ///< since the first scan [s]
-  OccupancyGrid map;
+  double time = 0.0;                      ///< since the first scan [s]
+  PackedMap map;                          ///< a hundred frames of a large one would not fit into memory
   std::vector<mrpt::math::TPoint2D> way;  ///< driven so far, as the mapper knows it now
   std::vector<mrpt::math::TPoint2D> plan;
   std::vector<mrpt::math::TPoint2D> victims;

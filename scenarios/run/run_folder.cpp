@@ -13,6 +13,7 @@
 #include "base/image/png.h"
 #include "base/text/csv.h"
 #include "base/text/input_file.h"
+#include "base/text/words.h"
 #include "scoring/maps/ros_map.h"
 
 namespace rubble::scenarios {

@@ -97,12 +97,12 @@ class Dashes {
       }
   }
 
-  std::vector<std::pair<Cell, Cell>> in_line() const {
+  std::vector<std::pair<Cell, Cell>> in_line(double most_work) {
     std::vector<std::pair<Cell, Cell>> out;
     for (const Cells& piece : pieces_) {
       if (piece.empty() || static_cast<double>(piece.size()) * grid_.resolution() > 2.0 * kLine) continue;
+      if (work_ > most_work) return {};
       const std::vector<Neighbour> neighbours = around(piece);
-      if (neighbours.size() > kNeighbours) continue;
       for (std::size_t a = 0; a < neighbours.size(); ++a)
         for (std::size_t b = a + 1; b < neighbours.size(); ++b)
           if (make_line(neighbours[a], piece, neighbours[b])) {
@@ -114,11 +114,16 @@ class Dashes {
   }
 
  private:
-  std::vector<Neighbour> around(const Cells& piece) const {
+  /// Cells of a window that reaches so far.
+  static double square_of(int reach) { return (2.0 * reach + 1.0) * (2.0 * reach + 1.0); }
+
+  /// None where there are more than kNeighbours.
+  std::vector<Neighbour> around(const Cells& piece) {
     const int gap = std::max(1, static_cast<int>(kLongestGap / grid_.resolution())) + 1;
     const int self = labels_[piece[0]];
     std::map<int, Neighbour> found;
-    for (const Cell& c : piece)
+    for (const Cell& c : piece) {
+      work_ += square_of(gap);
       for (int dy = -gap; dy <= gap; ++dy)
         for (int dx = -gap; dx <= gap; ++dx) {
           const Cell to{c.x + dx, c.y + dy};
@@ -126,10 +131,13 @@ class Dashes {
           Neighbour& one = found[labels_[to]];
           const int away = dx * dx + dy * dy;
           if (one.away == 0 || away < one.away) one = {{}, c, to, away};
+          if (found.size() > kNeighbours) return {};
         }
+    }
     std::vector<Neighbour> out;
     const int near = static_cast<int>(kNear / grid_.resolution());
     for (auto& [label, one] : found) {
+      work_ += square_of(near);
       for (int dy = -near; dy <= near; ++dy)
         for (int dx = -near; dx <= near; ++dx) {
           const Cell c{one.to.x + dx, one.to.y + dy};
@@ -140,7 +148,7 @@ class Dashes {
     return out;
   }
 
-  bool make_line(const Neighbour& a, const Cells& piece, const Neighbour& b) const {
+  bool make_line(const Neighbour& a, const Cells& piece, const Neighbour& b) {
     const std::vector<const Cells*> all{&a.cells, &piece, &b.cells};
     const Line line(all);
     if (!std::all_of(all.begin(), all.end(), [&](const Cells* one) { return line.holds(*one, width_); })) return false;
@@ -154,6 +162,7 @@ class Dashes {
     const double from = std::min(line.at(a.to), line.at(b.to)), to = std::max(line.at(a.to), line.at(b.to));
     const int around = static_cast<int>(to - from) + static_cast<int>(beside_) + 1;
     const Cell middle = piece[piece.size() / 2];
+    work_ += square_of(around);
     for (int dy = -around; dy <= around; ++dy)
       for (int dx = -around; dx <= around; ++dx) {
         const Cell c{middle.x + dx, middle.y + dy};
@@ -164,17 +173,18 @@ class Dashes {
   }
 
   const OccupancyGrid& grid_;
-  double width_;   ///< off a line at the most [cells]
-  double beside_;  ///< [cells]
+  double width_;       ///< off a line at the most [cells]
+  double beside_;      ///< [cells]
+  double work_ = 0.0;  ///< cells looked at
   Grid<int> labels_;
   std::vector<Cells> pieces_;
 };
 
 }  // namespace
 
-std::vector<std::pair<Cell, Cell>> dashes_in_line(const OccupancyGrid& grid) {
+std::vector<std::pair<Cell, Cell>> dashes_in_line(const OccupancyGrid& grid, double most_work) {
   if (grid.cells().empty()) return {};
-  return Dashes(grid).in_line();
+  return Dashes(grid).in_line(most_work);
 }
 
 }  // namespace rubble::scoring

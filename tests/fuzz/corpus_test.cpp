@@ -94,7 +94,8 @@ TEST_P(Fuzz, TakesItsCorpusAndChangesOfIt) {
   for (const std::string& input : corpus) feed(input);
   const char* const said = std::getenv("RUBBLE_FUZZ_INPUTS");
   Rng rng{said != nullptr ? 2u : 1u, target.name};
-  const long usual = target.name == "rawlog" ? 100 : 2000;  // each rawlog is read by a process of its own
+  // Each rawlog is read by a process of its own, and the colours are those of a whole picture.
+  const long usual = target.name == "rawlog" ? 100 : target.name == "colours" ? 300 : 2000;
   for (long left = said != nullptr ? std::atol(said) : usual; left > 0; --left) {
     const std::string& from = corpus[rng.below(static_cast<std::uint32_t>(corpus.size()))];
     feed(changed(from, corpus, rng));

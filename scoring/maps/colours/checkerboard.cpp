@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <iterator>
 #include <map>
 #include <utility>
 #include <vector>
@@ -38,16 +39,26 @@ struct Corner {
   bool dark_first = false;  ///< the upper left square is the darker one
 };
 
-/// Whether a corner was found beside this one. They come row by row: what is near was found last.
-bool is_known(const std::vector<Corner>& found, int x, int y) {
-  for (auto one = found.rbegin(); one != found.rend() && y - one->y < kDistance; ++one)
-    if (std::abs(one->x - x) < kDistance) return true;
-  return false;
-}
+/// Where corners were found last, column by column: a large picture may have a million of them.
+class Found {
+ public:
+  explicit Found(int width) : last_(static_cast<std::size_t>(width), -kDistance) {}
+  void add(int x, int y) { last_[static_cast<std::size_t>(x)] = y; }
+  /// Whether one was found beside this place. They come row by row.
+  bool near(int x, int y) const {
+    const auto first = last_.begin() + std::max(0, x - kDistance + 1);
+    const auto end = last_.begin() + std::min(static_cast<int>(last_.size()), x + kDistance);
+    return std::any_of(first, end, [y](int row) { return y - row < kDistance; });
+  }
+
+ private:
+  std::vector<int> last_;  ///< row
+};
 
 /// Corners between pixels (x, y) and (x + 1, y + 1).
 std::vector<Corner> corners_of(const RgbImage& image, int channel) {
   std::vector<Corner> out;
+  Found found(image.width);
   const int reach = kFirst + kSide;
   for (int y = reach; y + reach + 1 < image.height; ++y)
     for (int x = reach; x + reach + 1 < image.width; ++x) {
@@ -61,24 +72,45 @@ std::vector<Corner> corners_of(const RgbImage& image, int channel) {
                                   square(image, channel, x, y, false, true), square(image, channel, x, y, true, true)};
       if (*std::min_element(at.begin(), at.end()) < 0) continue;
       if (std::abs(at[0] - at[3]) > kEven || std::abs(at[1] - at[2]) > kEven) continue;
-      if (!is_known(out, x, y)) out.push_back({x, y, a < b});
+      if (found.near(x, y)) continue;
+      found.add(x, y);
+      out.push_back({x, y, a < b});
     }
   return out;
+}
+
+/// Lessens `next` to each corner's distance to the nearest one in its line (or in those beside it) whose squares are
+/// the other way round, where a square reaches as far; 0: none yet. `along`, `across`: x and y for rows, y and x for
+/// columns.
+void look_along(const std::vector<Corner>& corners, int Corner::*along, int Corner::*across, std::vector<int>& next) {
+  std::vector<Corner> lines = corners;
+  const auto place_of = [&](const Corner& c) { return std::pair(c.*across, c.*along); };
+  std::sort(lines.begin(), lines.end(), [&](const Corner& a, const Corner& b) { return place_of(a) < place_of(b); });
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Corner& own = corners[i];
+    // Squares change from corner to corner, so the first one that is the other way round is near.
+    const auto try_it = [&](const Corner& other, int line) {
+      const int distance = std::abs(other.*along - own.*along);
+      if (other.*across != line || distance > kLargest) return true;
+      if (other.dark_first == own.dark_first) return false;
+      if (next[i] == 0 || distance < next[i]) next[i] = distance;
+      return true;
+    };
+    for (int line = own.*across - 1; line <= own.*across + 1; ++line) {
+      const auto from = std::lower_bound(lines.begin(), lines.end(), std::pair(line, own.*along),
+                                         [&](const Corner& c, const auto& place) { return place_of(c) < place; });
+      for (auto ahead = from; ahead != lines.end() && !try_it(*ahead, line);) ++ahead;
+      for (auto behind = from; behind != lines.begin() && !try_it(*std::prev(behind), line);) --behind;
+    }
+  }
 }
 
 /// The corners that have a next one in their row or column at the distance that most have: those of a board.
 std::vector<Corner> on_a_lattice(const std::vector<Corner>& corners) {
   std::map<int, int> often;
   std::vector<int> next(corners.size(), 0);
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    for (std::size_t k = i + 1; k < corners.size() && corners[k].y - corners[i].y <= kLargest; ++k) {
-      const int dx = std::abs(corners[k].x - corners[i].x), dy = corners[k].y - corners[i].y;
-      if ((dx > 1 && dy > 1) || dx > kLargest) continue;
-      if (corners[k].dark_first == corners[i].dark_first) continue;  // squares change from corner to corner
-      const int distance = std::max(dx, dy);
-      if (next[i] == 0 || distance < next[i]) next[i] = distance;
-      if (next[k] == 0 || distance < next[k]) next[k] = distance;
-    }
+  look_along(corners, &Corner::x, &Corner::y, next);
+  look_along(corners, &Corner::y, &Corner::x, next);
   for (const int distance : next)
     if (distance > 0) ++often[distance];
   int side = 0;

@@ -54,7 +54,9 @@ constexpr std::array<NamedColour, 13> kPalette{{
     {league::kFree, kFree},
 }};
 
-Colour colour_of(const std::uint8_t* p) { return Rgb{p[0], p[1], p[2]}; }
+Rgb rgb_of(const std::uint8_t* p) { return {p[0], p[1], p[2]}; }
+
+Colour colour_of(const std::uint8_t* p) { return rgb_of(p); }
 
 int spread(const Colour& c) { return std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b}); }
 
@@ -146,13 +148,30 @@ void count_colour(const Colour& c, std::size_t count, Census& out) {
   if (near_colour(c, league::kWall, 0)) out.pure_walls += count;
 }
 
-Census census(const RgbImage& image) {
+/// Of the picture as `change` makes its colours: large ones are not copied for a question.
+template <class Change>
+Census census_of(const RgbImage& image, const Change& change) {
   Census out;
-  each_run(image, [&](const Colour& c, int first, int y, int length) {
+  each_run(image, [&](const Colour&, int first, int y, int length) {
     auto count = static_cast<std::size_t>(length);
     if (!image.alpha.empty())
       for (int x = first; x < first + length; ++x) count -= image.alpha[image.index(x, y)] < 128 ? 1 : 0;
-    count_colour(c, count, out);
+    count_colour(change(rgb_of(image.pixel(first, y))), count, out);
+  });
+  return out;
+}
+
+Census census(const RgbImage& image) {
+  return census_of(image, [](const Rgb& colour) { return colour; });
+}
+
+/// `change` is asked once a run.
+template <class Change>
+RgbImage recoloured(const RgbImage& image, const Change& change) {
+  RgbImage out = image;
+  each_run(image, [&](const Colour&, int first, int y, int length) {
+    const Rgb now = change(rgb_of(image.pixel(first, y)));
+    for (int x = first; x < first + length; ++x) std::copy(now.begin(), now.end(), out.pixel(x, y));
   });
   return out;
 }
@@ -182,8 +201,7 @@ std::vector<std::pair<Rgb, std::size_t>> colours_of(const RgbImage& image) {
   constexpr std::size_t kMost = 4096;
   std::map<Rgb, std::size_t> count;
   each_run(image, [&](const Colour&, int first, int y, int length) {
-    const std::uint8_t* const p = image.pixel(first, y);
-    if (count.size() <= kMost) count[{p[0], p[1], p[2]}] += static_cast<std::size_t>(length);
+    if (count.size() <= kMost) count[rgb_of(image.pixel(first, y))] += static_cast<std::size_t>(length);
   });
   if (count.size() > kMost) return {};
   std::vector<std::pair<Rgb, std::size_t>> out(count.begin(), count.end());
@@ -213,11 +231,7 @@ std::optional<RestoredColours> with_tones_of_old(const RgbImage& image) {
           if (!is_unchanged(c) || !ink.is_known()) continue;
           std::map<Rgb, Rgb> before;
           for (const auto& [colour, count] : colours) before[colour] = without(curve, colour);
-          RgbImage out = image;
-          for (std::size_t i = 0; i + 2 < out.rgb.size(); i += 3) {
-            const Rgb& was = before[{out.rgb[i], out.rgb[i + 1], out.rgb[i + 2]}];
-            std::copy(was.begin(), was.end(), out.rgb.begin() + static_cast<std::ptrdiff_t>(i));
-          }
+          RgbImage out = recoloured(image, [&](const Rgb& colour) { return before.at(colour); });
           return RestoredColours{std::move(out), "tones had been changed (" + curve.name + ")"};
         }
       }
@@ -341,23 +355,28 @@ bool is_grey_league_map(const RgbImage& image) {
 }  // namespace
 
 std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
-  const auto has_all = [](const RgbImage& changed) { return is_unchanged(census(changed)); };
   const Census as_is = census(image);
   if (as_is.exact()) return std::nullopt;
-  RgbImage changed = image;
-  for (std::size_t i = 0; i + 2 < changed.rgb.size(); i += 3) std::swap(changed.rgb[i], changed.rgb[i + 2]);
-  if (has_all(changed)) return RestoredColours{std::move(changed), "red and blue were exchanged"};
-  changed = image;
-  for (std::uint8_t& value : changed.rgb) value = static_cast<std::uint8_t>(255 - value);
-  if (has_all(changed)) return RestoredColours{std::move(changed), "colours were inverted"};
+  const auto exchanged = [](const Rgb& c) { return Rgb{c[2], c[1], c[0]}; };
+  if (is_unchanged(census_of(image, exchanged)))
+    return RestoredColours{recoloured(image, exchanged), "red and blue were exchanged"};
+  const auto inverted = [](const Rgb& c) {
+    const auto other = [](std::uint8_t value) { return static_cast<std::uint8_t>(255 - value); };
+    return Rgb{other(c[0]), other(c[1]), other(c[2])};
+  };
+  if (is_unchanged(census_of(image, inverted)))
+    return RestoredColours{recoloured(image, inverted), "colours were inverted"};
   if (40 * std::min(as_is.darker, as_is.checkerboard - as_is.darker) < as_is.pixels)
     if (auto restored = with_tones_of_old(image)) return restored;
   const int white = dimmed_white(image);
   if (white == 255) return std::nullopt;
-  changed = image;
-  for (std::uint8_t& value : changed.rgb)
-    value = static_cast<std::uint8_t>(std::min(255, (255 * value + white / 2) / white));
-  return RestoredColours{std::move(changed), "white was " + std::to_string(white)};
+  const auto brightened = [white](const Rgb& c) {
+    const auto of_old = [white](std::uint8_t value) {
+      return static_cast<std::uint8_t>(std::min(255, (255 * value + white / 2) / white));
+    };
+    return Rgb{of_old(c[0]), of_old(c[1]), of_old(c[2])};
+  };
+  return RestoredColours{recoloured(image, brightened), "white was " + std::to_string(white)};
 }
 
 std::string why_colours_are_lost(const RgbImage& image, bool is_league) {

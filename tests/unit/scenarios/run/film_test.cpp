@@ -14,9 +14,10 @@ namespace {
 /// Free ground of 6 x 3 m with its lower left corner at (-2, -1) m, a wall along its upper side.
 FilmFrame frame_of_room(double wall_from) {
   FilmFrame frame;
-  frame.map = OccupancyGrid(GridFrame{120, 60, 0.05, -2.0, -1.0}, Occupancy::Free);
+  OccupancyGrid map(GridFrame{120, 60, 0.05, -2.0, -1.0}, Occupancy::Free);
   for (int x = 0; x < 120; ++x)
-    if (frame.map.centre({x, 59}).x > wall_from) frame.map[{x, 59}] = Occupancy::Occupied;
+    if (map.centre({x, 59}).x > wall_from) map[{x, 59}] = Occupancy::Occupied;
+  frame.map = map;
   frame.pose = {0.0, 0.0, 0.0};
   return frame;
 }
@@ -60,8 +61,10 @@ TEST(Film, APanelShowsThePlacesWhereTheyAre) {
 
 TEST(Film, AllPanelsShowTheSameGroundAndStandInRows) {
   FilmFrame early = frame_of_room(2.0);
+  OccupancyGrid known = early.map.unpacked();
   for (int y = 0; y < 60; ++y)  // the left half is all that is known
-    for (int x = 60; x < 120; ++x) early.map[{x, y}] = Occupancy::Unknown;
+    for (int x = 60; x < 120; ++x) known[{x, y}] = Occupancy::Unknown;
+  early.map = known;
   const FilmFrame late = frame_of_room(2.0);
   const cv::Mat one = film_strip({late}), two = film_strip({early, late}),
                 five = film_strip({early, early, early, late, late});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <random>
 #include <vector>
 
@@ -99,6 +100,27 @@ TEST(WallPieces, SaltIsNoDash) {
     const auto salt = static_cast<double>(std::count(grid.cells().begin(), grid.cells().end(), Occupancy::Occupied));
     EXPECT_LT(static_cast<double>(dashes_in_line(grid).size()), 0.01 * salt) << share;
   }
+}
+
+double seconds_for_pieces(const OccupancyGrid& grid) {
+  const std::clock_t start = std::clock();
+  EXPECT_EQ(wall_pieces(grid).strength.frame(), grid.frame());
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+}
+
+// A picture of millimetres: within the longest gap of each speck lie a hundred others, thousands of cells away.
+TEST(WallPieces, SaltOfAFineMapIsNotWorkedOnSpeckBySpeck) {
+  std::mt19937 random(3);
+  OccupancyGrid salt(GridFrame{400, 400, 0.002, 0.0, 0.0}, Occupancy::Free);
+  for (Occupancy& cell : salt.cells())
+    if (random() % 100 == 0) cell = Occupancy::Occupied;
+  EXPECT_LT(seconds_for_pieces(salt), 2.0);
+}
+
+TEST(WallPieces, WhatWouldTakeTooLongFindsNoDashes) {
+  const Dashed wall(0.6, 0.10, 0.08);
+  EXPECT_FALSE(dashes_in_line(wall.grid, 1e6).empty());
+  EXPECT_TRUE(dashes_in_line(wall.grid, 1e3).empty());
 }
 
 }  // namespace
