@@ -254,37 +254,58 @@ void judge(const BenchmarkCase& what, BenchmarkResult& result) {
   ask(what.worst_goal, result.worst_m);
 }
 
+/// Where the files of a case lie.
+struct CaseFiles {
+  std::string log, relations, scenario;
+  std::string missing;  ///< the first that is not there
+};
+
+CaseFiles files_of(const BenchmarkCase& what, const std::vector<std::string>& folders) {
+  CaseFiles files;
+  const auto find = [&](const std::string& wanted, std::string& found) {
+    if (wanted.empty()) return;
+    found = find_in(folders, wanted);
+    if (found.empty() && files.missing.empty()) files.missing = wanted;
+  };
+  find(what.log, files.log);
+  find(what.relations, files.relations);
+  find(what.scenario, files.scenario);
+  return files;
+}
+
+Scenario scenario_of(const BenchmarkCase& what, const BenchmarkMapper& mapper, const CaseFiles& files,
+                     const BenchmarkOptions& options) {
+  std::vector<Override> overrides = mapper.overrides;
+  overrides.insert(overrides.end(), what.overrides.begin(), what.overrides.end());
+  Scenario scenario = files.scenario.empty() ? default_scenario(overrides) : load_scenario(files.scenario, overrides);
+  if (options.permit) options.permit(scenario);
+  scenario.mapper.require_permission();
+  return scenario;
+}
+
 BenchmarkResult run_one(const BenchmarkCase& what, const BenchmarkMapper& mapper,
                         const std::vector<std::string>& folders, const BenchmarkOptions& options) {
   BenchmarkResult result;
   result.mapper = mapper.name;
-  std::string log, relations, scenario_file;
-  const auto find = [&](const std::string& wanted, std::string& found) {
-    if (wanted.empty()) return;
-    found = find_in(folders, wanted);
-    if (found.empty() && result.missing.empty()) result.missing = wanted;
-  };
-  find(what.log, log);
-  find(what.relations, relations);
-  find(what.scenario, scenario_file);
+  const CaseFiles files = files_of(what, folders);
+  result.missing = files.missing;
   if (!result.missing.empty()) return result;
-  std::vector<Override> overrides = mapper.overrides;
-  overrides.insert(overrides.end(), what.overrides.begin(), what.overrides.end());
-  Scenario scenario = scenario_file.empty() ? default_scenario(overrides) : load_scenario(scenario_file, overrides);
-  if (options.permit) options.permit(scenario);
-  scenario.mapper.require_permission();
+  Scenario scenario = scenario_of(what, mapper, files, options);
   std::vector<BenchmarkResult> runs;
   for (const std::uint64_t seed : what.seeds) {
     if (!runs.empty() && options.interrupted && options.interrupted()) break;
     scenario.seed = seed;
     BenchmarkResult run;
-    take(run, in_child([&] { return log.empty() ? run_arena(scenario) : run_log(log, relations, scenario); }));
+    take(run, in_child([&] {
+           return files.log.empty() ? run_arena(scenario) : run_log(files.log, files.relations, scenario);
+         }));
+    if (run.failure.empty() && what.goal && !run.error_m) run.failure = "its trajectory cannot be judged";
     if (!run.failure.empty() && what.seeds.size() > 1) run.failure += " (seed " + std::to_string(seed) + ")";
     runs.push_back(std::move(run));
   }
   result = summary(runs);
   result.mapper = mapper.name;
-  judge(what, result);
+  if (result.runs == what.seeds.size()) judge(what, result);
   return result;
 }
 
@@ -294,14 +315,20 @@ Benchmark run_benchmark(const BenchmarkList& list, const BenchmarkOptions& optio
   std::vector<std::string> folders{list.folder};
   folders.insert(folders.end(), options.folders.begin(), options.folders.end());
   Benchmark benchmark{list.name, list.about, {}};
+  // A key that a mapper does not have shall cost no run.
+  for (const BenchmarkCase& what : list.cases) {
+    const CaseFiles files = files_of(what, folders);
+    for (const BenchmarkMapper& mapper : list.mappers)
+      if (files.missing.empty()) scenario_of(what, mapper, files, options);
+  }
   for (const BenchmarkCase& what : list.cases) {
     BenchmarkRow row{what, {}};
     for (const BenchmarkMapper& mapper : list.mappers) {
-      if (options.interrupted && options.interrupted()) return benchmark;
+      if (options.interrupted && options.interrupted()) break;
       if (options.progress) options.progress(what.name + ", " + mapper.name);
       row.results.push_back(run_one(what, mapper, folders, options));
     }
-    benchmark.rows.push_back(std::move(row));
+    if (!row.results.empty()) benchmark.rows.push_back(std::move(row));
   }
   return benchmark;
 }

@@ -178,7 +178,8 @@ struct RobustMapper::Impl {
   TPose2D T_frame_base_;    ///< at the last scan, relative to that key frame
   /// What the compass moved that key frame by. The local map did not move with it, so scans are matched as if it had
   /// not.
-  TPose2D T_matched_frame_;
+  std::optional<TPose2D> T_matched_frame_;
+  bool matched_since_frame_ = false;
   TPose2D T_map_stamped_;                                       ///< where the map was stamped last
   Eigen::Matrix3d frame_covariance_ = Eigen::Matrix3d::Zero();  ///< of that key frame, in the map
   Eigen::Matrix3d scan_covariance_ = Eigen::Matrix3d::Zero();   ///< of T_frame_base_, along the frame's axes
@@ -272,6 +273,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
     doubt_ = contradicted ? 1.0 : doubt_ < kNoDoubt ? 0.0 : kForgiving * doubt_;
     sure = may_be_mapped(tracked, motion.doubt, reference);
     T_frame_base_ = tracked.fit.pose;
+    matched_since_frame_ = matched_since_frame_ || tracked.found;
     last_step_ = T_frame_base_ - T_frame_last;
     last_step_time_ = motion.time;
     seen = tracked;
@@ -457,7 +459,7 @@ bool RobustMapper::Impl::hang_on_old_frame(const Cloud& cloud, Work* work) {
   path_here_ += length(T_frame_base_.x, T_frame_base_.y);
   here_ = *old;
   T_frame_base_ = there.fit.pose;
-  T_matched_frame_ = TPose2D();
+  T_matched_frame_.reset();
   scan_covariance_ = edge_to_now(there).information.inverse();
   ++reused_;
   return true;
@@ -552,7 +554,7 @@ GraphEdge RobustMapper::Impl::edge_to_now(const Tracked& tracked) const {
   GraphEdge edge;
   edge.from = here_;
   edge.to = frames_.last() + 1;
-  edge.T_from_to = T_matched_frame_ + T_frame_base_;
+  edge.T_from_to = T_matched_frame_ && matched_since_frame_ ? *T_matched_frame_ + T_frame_base_ : T_frame_base_;
   edge.information = (information.inverse() + floor).inverse();
   return edge;
 }
@@ -575,7 +577,9 @@ void RobustMapper::Impl::add_frame(Stamp reference, Cloud cloud, const ScanPoint
   }
   const Eigen::Vector3d off = compass_.look(T_map_base.phi, frame.walls, frame_covariance_);
   const TPose2D T_map_frame(T_map_base.x + off[0], T_map_base.y + off[1], wrap_angle(T_map_base.phi + off[2]));
-  T_matched_frame_ = T_map_frame - T_map_base;
+  T_matched_frame_.reset();
+  if (!off.isZero(0.0)) T_matched_frame_ = T_map_frame - T_map_base;
+  matched_since_frame_ = false;
   frames_.add(std::move(frame), T_map_frame, edge);
   if (compass_.doubted()) compass_.set_right(frames_.graph());
   lay_walls();
@@ -589,7 +593,7 @@ void RobustMapper::Impl::close_loops(Work& budget) {
   if (!closer_.work(budget)) return;
   ++revision_;
   frame_covariance_ = closer_.covariance();
-  T_matched_frame_ = TPose2D();
+  if (here_ <= closer_.solved()) T_matched_frame_.reset();
   set_compass_right();
   map_.moved();
   Work used = 0;
@@ -658,7 +662,8 @@ void RobustMapper::Impl::go_on_in(KeyFrames frames, StampedMap map, const TPose2
     }
   }
   closer_.begin_anew();
-  T_matched_frame_ = TPose2D();
+  if (!grows) T_matched_frame_.reset();
+  compass_ = WallCompass();  // what it knew was of the drive's frame
   set_compass_right();
   redraw(here_, nullptr);
   T_map_stamped_ = now();

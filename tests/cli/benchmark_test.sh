@@ -59,6 +59,22 @@ printf 'mappers: [{kind: robust}]\ncases: [{name: a, scenario: s.yaml, seeds: 5-
 expect_exit 3 'neither a seed nor a range' "$rubble" benchmark range.yaml
 printf 'mappers: [{kind: robust}]\ncases: [{name: a, scenario: s.yaml, set: {mapper.nothing: 1}}]\n' >key.yaml
 expect_exit 3 'nothing' "$rubble" benchmark key.yaml
+# A key that one of the mappers lacks costs no run of the others.
+printf 'mappers: [{kind: robust}, {kind: paper}]\ncases: [{name: a, scenario: s.yaml}, {name: b, scenario: s.yaml, set: {mapper.loop_search.window_m: 2}}]\n' >late.yaml
+expect_exit 3 'loop_search' timeout 2 "$rubble" benchmark late.yaml
+# The list of arenas that ships can be run: here for a second of two seeds each.
+python3 - "$source/scenarios" >short.yaml <<'PY'
+import re, sys
+folder = sys.argv[1]
+text = open(folder + "/benchmark_arenas.yaml").read()
+text = re.sub(r"scenario: (\S+)", rf"scenario: {folder}/\1", text)
+text = re.sub(r"seeds: \S+", "seeds: 1-2", text)
+text = re.sub(r"    set: \{", "    set: {time_limit_s: 1, ", text)
+text = re.sub(r"(    seeds: 1-2\n)(?!    set)", r"\1    set: {time_limit_s: 1}\n", text)
+print(re.sub(r"    (worst_)?goal_m: \S+\n", "", text))
+PY
+"$rubble" benchmark short.yaml --json >short.json 2>err.txt || fail "the shipped list ended with $?: $(cat err.txt)"
+json_holds short.json "len(j['cases']) >= 7 and all(r['runs'] == 2 for c in j['cases'] for r in c['results'])"
 
 expect_exit 2 '--mapper nobody' "$rubble" benchmark list.yaml --mapper nobody
 expect_exit 3 'nowhere.yaml' "$rubble" benchmark nowhere.yaml

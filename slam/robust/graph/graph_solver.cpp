@@ -37,6 +37,12 @@ void GraphSolver::start(const PoseGraph& graph, Plan plan, double scaling) {
   graph_ = graph;
   graph_.edges.erase(std::remove_if(graph_.edges.begin(), graph_.edges.end(), [](const GraphEdge& e) { return !e.on; }),
                      graph_.edges.end());
+  // Decided once: of a wing that stands askew each key frame is doubted, but together they would be bent straight.
+  graph_.walls.erase(std::remove_if(graph_.walls.begin(), graph_.walls.end(),
+                                    [this](const GraphWalls& walls) {
+                                      return !graph_.walls_direction || std::abs(off_walls(walls)) > kOtherWalls;
+                                    }),
+                     graph_.walls.end());
   if (plan == Plan::Refine)
     phases_ = {{scaling, 4}};
   else
@@ -46,6 +52,11 @@ void GraphSolver::start(const PoseGraph& graph, Plan plan, double scaling) {
   steps_left_ = phases_.front().steps;
   analysed_ = false;
   running_ = graph_.nodes.size() > 1;
+}
+
+/// How far the walls that a node sees run from the direction of all.
+double GraphSolver::off_walls(const GraphWalls& walls) const {
+  return wrap_quarter(graph_.nodes[static_cast<std::size_t>(walls.node)].phi + walls.angle - *graph_.walls_direction);
 }
 
 /// The pattern of the information matrix: of each column the rest of its node's own block, then a block for each later
@@ -111,8 +122,7 @@ bool GraphSolver::step(Work& work) {
     b.segment<3>(3 * edge.to) -= to * lin.r;
   }
   for (const GraphWalls& walls : graph_.walls) {
-    const double off =
-        wrap_quarter(graph_.nodes[static_cast<std::size_t>(walls.node)].phi + walls.angle - graph_.walls_direction);
+    const double off = off_walls(walls);
     const double information = 1.0 / (graph_.walls_variance + walls.variance);
     const double s = std::min(1.0, 2.0 * kWallScaling / (kWallScaling + information * off * off));
     Eigen::Matrix3d block = Eigen::Matrix3d::Zero();

@@ -49,6 +49,7 @@ class GraphSolver {
   };
   void next_phase();
   void lay_out();
+  double off_walls(const GraphWalls& walls) const;
   void add_to_diagonal(int node, const Eigen::Matrix3d& block);
   Eigen::Matrix3d covariance_of(const std::vector<Derivative>& derivatives, Work* work) const;
 

@@ -37,6 +37,7 @@ KeyFrames::KeyFrames(std::vector<KeyFrame> frames, std::vector<int> before, Pose
     const GraphEdge& edge = graph_.edges[k];
     if (edge.on) link(k, edge.loop ? kLoopLength : length(edge.T_from_to.x, edge.T_from_to.y));
   }
+  graph_.walls.clear();
   for (int i = 0; i < size(); ++i) take_walls(i);
 }
 

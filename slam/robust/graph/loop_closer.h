@@ -87,6 +87,8 @@ class LoopCloser {
   std::vector<int> doubled() const;
   /// Covariance of the newest key frame's pose as of the last solution.
   const Eigen::Matrix3d& covariance() const { return covariance_; }
+  /// The newest key frame that took part in it.
+  int solved() const { return covariance_frame_; }
 
  private:
   enum class Kind { Wide, Near, Solve };

@@ -3,6 +3,7 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 namespace rubble::slam {
@@ -29,8 +30,9 @@ struct PoseGraph {
   std::vector<mrpt::math::TPose2D> nodes;
   std::vector<GraphEdge> edges;
   std::vector<GraphWalls> walls;
-  double walls_direction = 0.0;  ///< of all walls in the map, within a quarter turn [rad]
-  double walls_variance = 1.0;   ///< of those that one node sees, about it [rad^2]
+  std::optional<double>
+      walls_direction;          ///< of all walls in the map, within a quarter turn [rad]; none: walls say nothing
+  double walls_variance = 1.0;  ///< of those that one node sees, about it [rad^2]
 };
 
 /// Residual of an edge and its derivatives by the two poses.

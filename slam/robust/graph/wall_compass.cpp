@@ -6,15 +6,12 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/angle.h"
-
 namespace rubble::slam {
 
 namespace {
 
 constexpr double square(double a) { return a * a; }
 
-constexpr double kOtherWalls = deg_to_rad(5.0);                ///< walls that run so differently are others
 constexpr double kLeastDirection = square(deg_to_rad(0.1));    ///< no building is known better [rad^2]
 constexpr double kLeastVariance = square(deg_to_rad(0.6));     ///< of the walls that one key frame sees [rad^2]
 constexpr double kExpectedVariance = square(deg_to_rad(0.7));  ///< of how far walls are off, before any were seen ...
@@ -27,10 +24,12 @@ constexpr double kSameWalls = square(2.0);  ///< key frames on end see the same 
 double direction_of_walls(const PoseGraph& graph) {
   std::vector<double> angles;
   std::array<int, kDirections> votes{};
+  const auto place = [](double angle) {
+    return std::clamp(static_cast<int>((angle / (0.5 * kPi) + 0.5) * kDirections), 0, kDirections - 1);
+  };
   for (const GraphWalls& walls : graph.walls) {
     angles.push_back(wrap_quarter(graph.nodes[static_cast<std::size_t>(walls.node)].phi + walls.angle));
-    const double place = (angles.back() / (0.5 * kPi) + 0.5) * kDirections;
-    ++votes[static_cast<std::size_t>(std::clamp(static_cast<int>(place), 0, kDirections - 1))];
+    ++votes[static_cast<std::size_t>(place(angles.back()))];
   }
   const auto votes_around = [&](int k) {
     int sum = 0;

@@ -10,10 +10,11 @@ namespace rubble::slam {
 
 namespace {
 
-constexpr double kLineGap = 0.5;       ///< neighbouring points of one wall lie no farther apart [m] ...
-constexpr double kLineGapShare = 0.1;  ///< ... or by this share of their range
-constexpr double kOffLine = 0.04;      ///< [m]
-constexpr double kStraight = 0.015;    ///< RMS of a line's points [m]
+constexpr double kLineGap = 0.5;         ///< neighbouring points of one wall lie no farther apart [m] ...
+constexpr double kLineGapShare = 0.1;    ///< ... or by this share of their range
+constexpr double kOffLine = 0.04;        ///< [m]
+constexpr double kStraight = 0.015;      ///< RMS of a line's points [m]
+constexpr std::size_t kMostLines = 400;  ///< more no scan of a building has
 constexpr std::size_t kLeastLinePoints = 5;
 constexpr double kLeastLine = 0.5;          ///< [m]
 constexpr double kPointSigma = 0.012;       ///< of a point across its wall [m]
@@ -85,7 +86,7 @@ std::vector<Vote> votes_of(const Cloud& cloud) {
   std::vector<Vote> votes;
   const std::vector<OrientedPoint>& points = cloud.points;
   std::size_t i = 0;
-  while (i + kLeastLinePoints <= points.size()) {
+  while (i + kLeastLinePoints <= points.size() && votes.size() < kMostLines) {
     GrowingLine line(points[i]);
     std::size_t next = i + 1;
     for (; next < points.size(); ++next) {

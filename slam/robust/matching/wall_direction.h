@@ -2,9 +2,12 @@
 
 #include <optional>
 
+#include "base/angle.h"
 #include "slam/robust/matching/cloud.h"
 
 namespace rubble::slam {
+
+constexpr double kOtherWalls = deg_to_rad(5.0);  ///< walls that run so differently are another building's
 
 /// Which way the walls of a scan run: they stand along one direction or across it.
 struct WallDirection {

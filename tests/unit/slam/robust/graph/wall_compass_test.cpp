@@ -10,6 +10,7 @@
 #include "base/angle.h"
 #include "base/rng.h"
 #include "slam/robust/graph/graph_solver.h"
+#include "slam/robust/graph/key_frames.h"
 
 namespace rubble::slam {
 namespace {
@@ -162,6 +163,7 @@ TEST(GraphSolver, WallsStraightenAChainThatBends) {
   constexpr int kNodes = 60;
   PoseGraph graph;
   graph.walls_variance = std::pow(deg_to_rad(1.0), 2.0);
+  graph.walls_direction = 0.0;
   for (int k = 0; k < kNodes; ++k) {
     if (k > 0) {
       GraphEdge edge;
@@ -204,6 +206,75 @@ TEST(GraphSolver, WallsStraightenAChainThatBends) {
       moved[static_cast<std::size_t>(k)].phi += turn;
       EXPECT_GT(cost(moved), least) << "node " << k;
     }
+}
+
+/// A chain of steps that are measured right, of `nodes` in one building and as many in a wing askew to it.
+PoseGraph two_buildings(int nodes, double skew) {
+  PoseGraph graph;
+  graph.walls_variance = std::pow(deg_to_rad(1.0), 2.0);
+  graph.walls_direction = 0.0;
+  for (int k = 0; k < 2 * nodes; ++k) {
+    if (k > 0) {
+      GraphEdge edge;
+      edge.from = k - 1;
+      edge.to = k;
+      edge.T_from_to = {kStep, 0.0, 0.0};
+      edge.information = Eigen::Vector3d(1e4, 1e4, 1e5).asDiagonal();
+      graph.edges.push_back(edge);
+    }
+    graph.nodes.push_back({kStep * k, 0.0, 0.0});
+    graph.walls.push_back({k, k < nodes ? 0.0 : skew, 1e-5});
+  }
+  return graph;
+}
+
+double last_heading(const PoseGraph& graph) {
+  GraphSolver solver;
+  solver.start(graph, GraphSolver::Plan::Final, 8.0);
+  Work work = 0;
+  while (solver.step(work)) {
+  }
+  return solver.nodes().back().phi;
+}
+
+TEST(GraphSolver, AWingThatStandsAskewIsNotBentStraight) {
+  for (const double skew : {8.0, -8.0, 12.0, 30.0, 44.0})
+    EXPECT_LT(std::abs(rad_to_deg(last_heading(two_buildings(100, deg_to_rad(skew))))), 0.01) << skew;
+  EXPECT_GT(std::abs(rad_to_deg(last_heading(two_buildings(100, deg_to_rad(3.0))))), 1.0) << "walls do bend a chain";
+}
+
+TEST(GraphSolver, WallsWithoutADirectionSayNothing) {
+  PoseGraph graph = two_buildings(100, deg_to_rad(3.0));
+  graph.walls_direction.reset();
+  EXPECT_EQ(last_heading(graph), 0.0);
+}
+
+TEST(WallCompass, GoesWithMostWallsOfTwoBuildings) {
+  const auto direction_after = [](int of_wing) {
+    std::vector<double> seen(100, 0.0);
+    seen.insert(seen.end(), static_cast<std::size_t>(of_wing), deg_to_rad(12.0));
+    WallCompass compass;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    compass.look(0.0, WallDirection{0.0, 0.005}, covariance);
+    compass.set_right(corridor_graph(100 + of_wing, seen));
+    return rad_to_deg(*compass.direction());
+  };
+  EXPECT_NEAR(direction_after(0), 0.0, 0.01);
+  EXPECT_NEAR(direction_after(90), 0.0, 0.01);
+  EXPECT_NEAR(direction_after(110), 12.0, 0.01);
+}
+
+TEST(KeyFrames, TakeTheWallsOfTheirFramesOnce) {
+  std::vector<KeyFrame> frames(2);
+  frames[1].walls = WallDirection{0.1, 0.01};
+  PoseGraph graph;
+  graph.nodes.resize(2);
+  graph.walls.push_back({0, 0.5, 1.0});
+  const KeyFrames kept(frames, {-1, 0}, graph);
+  ASSERT_EQ(kept.graph().walls.size(), 1U);
+  EXPECT_EQ(kept.graph().walls[0].node, 1);
+  EXPECT_EQ(kept.graph().walls[0].angle, 0.1);
+  EXPECT_FALSE(kept.graph().walls_direction);
 }
 
 }  // namespace
