@@ -23,9 +23,8 @@ struct ScoreConfig {
 
 /// Counts up whenever the same map and truth come to another `score`: scores of different versions cannot be compared.
 /// 1: min(precision, recall). 2: agreement of lines of sight beyond chance. 3: the fee grows where the truth has few
-/// walls. 4: dashes on one line are one wall. 5: strips of unknown between known ground are open ground; of lines with
-/// one end unknown a blocked one weighs 0.6, an open one 0.4.
-constexpr int kScoreVersion = 5;
+/// walls. 4: dashes on one line are one wall.
+constexpr int kScoreVersion = 4;
 
 /// The verdict on one map. Lengths in metres, shares 0..1.
 struct MapScore {

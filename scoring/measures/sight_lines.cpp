@@ -19,9 +19,7 @@ constexpr double kLongest = 1.8;        // [m]
 constexpr double kClearEnds = 0.25;     // of walls at both ends [m]
 constexpr double kClearBeside = 0.12;   // open lines have no wall so near, blocked ones are blocked so far aside [m]
 constexpr double kGap = 0.15;           // free space between two pieces of one wall [m]
-constexpr double kUnseen = 0.45;        // unknown stretch that leaves a line known [m]
-constexpr double kOneSide = 0.6;        // of a line on which a wall is seen from one side only
-constexpr double kOneEnd = 0.4;         // of an open line that ends a little beyond what the map knows
+constexpr double kUnseen = 0.1;         // unknown stretch that leaves a line known [m]
 constexpr double kTau = 0.5;            // distance from which a wall is another one [m]
 constexpr double kRaster = 0.5;         // of a cell: what drawing on a raster moves a wall by
 constexpr double kMostRaster = 0.05;    // [m]
@@ -50,20 +48,6 @@ struct Crossing {
 struct Sight {
   std::vector<Crossing> walls;
   double unknown = 0.0;  ///< [m]
-};
-
-/// What a map's sight along a line counts for.
-struct Seen {
-  const Sight& sight;
-  bool from_known = false;
-  bool to_known = false;
-  /// Ground a little beyond the map is taken for half open, and a wall seen from one side for more than half known:
-  /// drawing either on is then worth little, and a part of the arena still earns its share.
-  double weight() const {
-    const bool open = sight.walls.empty();
-    if ((!from_known && !to_known) || (open && sight.unknown > kUnseen)) return 0.0;
-    return from_known && to_known ? 1.0 : open ? kOneEnd : kOneSide;
-  }
 };
 
 /// Looks across a map that is kept elsewhere.
@@ -298,9 +282,9 @@ SightAgreement agreement(const std::vector<SightLines::Line>& lines, const Sight
     const TPoint2D a = T.inverse(line.from);
     const TPoint2D b = T.inverse(line.to);
     ground.look(a, b, (line.to - line.from).norm(), sight);
-    const Seen seen{sight, ground.known(a), ground.known(b)};
-    const double weight = line.weight * seen.weight();
-    if (weight <= 0.0) continue;
+    if (sight.walls.empty() && sight.unknown > kUnseen) continue;
+    // A wall seen from one side only, or at the edge of what the map knows, is half a line.
+    const double weight = line.weight * (0.5 * ground.known(a) + 0.5 * ground.known(b));
     known += weight;
     gain += weight * (line.blocked ? said_blocked(line, sight, raster) : said_open(sight));
   }
