@@ -30,8 +30,8 @@ Grid<std::uint8_t> visible_mask(const Arena& arena, const OccupancyGrid& truth, 
                                 const Viewer& viewer = {}, const std::function<void(double)>& progress = {});
 
 /// The truth as far as it could ever be mapped: what no reachable pose sees becomes unknown, so that it counts against
-/// no map. So do veils, strips and gaps, and 0.12 m around where rays end at floor that rises past the laser and is nowhere near what the
-/// robot reaches: a map that shows a wall there and one that does not are both right.
+/// no map. So do veils, strips and gaps, and 0.12 m around where rays end at floor that rises past the laser and is
+/// nowhere near what the robot reaches: a map that shows a wall there and one that does not are both right.
 OccupancyGrid visible_truth(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer = {},
                             const std::function<void(double)>& progress = {});
 
