@@ -15,7 +15,7 @@ using mrpt::math::TPose2D;
 namespace {
 
 constexpr double kInFull = 1e12;      ///< a scaling that no loop feels
-constexpr double kWallScaling = 4.0;  ///< of the directions of walls: those of another building are left alone
+constexpr double kWallScaling = 4.0;  ///< of the directions of walls: what is off by some sigmas counts less
 constexpr double kHeld = 1e9;         ///< information that holds node 0
 constexpr double kLeast = 1e-6;       ///< information each node has of itself, against singular systems
 constexpr double kConverged = 1e-3;   ///< largest change of a step [m; a third of it in rad]
