@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/planar.h"
 #include "slam/robust/graph/wall_compass.h"
+#include "slam/robust/tracking/scan_diary.h"
 
 namespace rubble::slam {
 

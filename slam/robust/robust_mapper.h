@@ -8,7 +8,7 @@
 #include "robot/model.h"
 #include "slam/mapper.h"
 #include "slam/robust/graph/loop_closer.h"
-#include "slam/robust/local_tracker.h"
+#include "slam/robust/tracking/local_tracker.h"
 #include "slam/robust/map/saved_map.h"
 #include "slam/robust/map/stamped_map.h"
 #include "slam/robust/matching/cloud.h"
@@ -56,9 +56,6 @@ RobustConfig suited_to(const robot::LaserModel& laser, RobustConfig config);
 
 /// How scans enter the map: as they are matched, and with misses.
 LevelScanConfig stamping(const RobustConfig& config);
-
-constexpr std::size_t kInliersColumn = 0;        ///< of the mapper's ScanRecords
-constexpr std::size_t kContradictionColumn = 1;  ///< zero but for a robot that is followed on a map of an earlier run
 
 /// Online SLAM by matching with a local map, key frames and a graph of their poses with verified loops
 /// (docs/slam.md). Poses of the past move when loops close: revision() then rises.

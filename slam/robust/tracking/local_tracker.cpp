@@ -1,4 +1,4 @@
-#include "slam/robust/local_tracker.h"
+#include "slam/robust/tracking/local_tracker.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,0 +1,123 @@
+#include "slam/robust/tracking/motion_expectation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.h"
+#include "base/planar.h"
+#include "slam/scan/waiting_scans.h"
+
+namespace rubble::slam {
+
+using mrpt::math::TPose2D;
+using robot::LaserScan;
+
+namespace {
+
+constexpr double kReportsAhead = 1.0;      ///< reports so far in the future are wrong [s]
+constexpr double kFastest = 10.0;          ///< odometry that goes faster has jumped [m/s]
+constexpr double kFastestTurn = 20.0;      ///< or turns faster [rad/s]
+constexpr double kFastestSweep = 3.0;      ///< the same within one sweep [m/s]
+constexpr double kFastestSweepTurn = 6.0;  ///< [rad/s]
+constexpr double kLeastJump = 0.5;         ///< below, a coarse clock may be to blame [m, rad]
+constexpr double kForgiving = 0.6;         ///< what is left of the doubt after each scan that agrees with the odometry
+constexpr double kNoDoubt = 0.05;
+constexpr double kLongestCarry = 0.5;  ///< motion is taken to go on for so long [s]
+
+bool finite(const robot::Odometry& o) {
+  return std::isfinite(o.pose.x) && std::isfinite(o.pose.y) && std::isfinite(o.pose.phi) && std::isfinite(o.v) &&
+         std::isfinite(o.w);
+}
+
+}  // namespace
+
+void MotionExpectation::hear(const robot::Odometry& report, Stamp now) {
+  if (finite(report) && report.stamp - now <= kReportsAhead) odometry_.add(report);
+}
+
+void MotionExpectation::begin_late() {
+  if (last_scan_ && !T_odom_scan_ && !odometry_.empty()) T_odom_scan_ = odometry_.pose_at(Stamp::never());
+}
+
+ExpectedMotion MotionExpectation::expect(const LaserScan& scan) {
+  ExpectedMotion motion;
+  if (!last_scan_) return motion;
+  const Stamp reference = scan.middle();
+  motion.T_last_now = since_scan(reference);
+  motion.time = reference - *last_scan_;
+  motion.carried = carried(motion.time);
+  motion.doubt = doubt_;
+  if (motion.time < kNoDuration) return motion;
+  const double path = length(motion.T_last_now.x, motion.T_last_now.y);
+  const double turn = std::abs(wrap_angle(motion.T_last_now.phi));
+  // Stamps that come bunched do not mean that the scanner was faster than it is.
+  const double time = std::max(motion.time, scan_period_);
+  const bool jumped = (path > kLeastJump && path > kFastest * time) ||
+                      (turn > kLeastJump && turn > kFastestTurn * time) || jumps_within(scan);
+  const bool silent_then = silent_at_scan_ ? *silent_at_scan_ : odometry_.silent_at(*last_scan_);
+  const bool silent = T_odom_scan_ && (silent_then || odometry_.silent_at(reference));
+  jumps_ += jumped ? 1 : 0;
+  silent_ += silent ? 1 : 0;
+  motion.told = T_odom_scan_ && !jumped && !silent;
+  if (jumped || silent) motion.doubt = 1.0;
+  if (jumped) motion.T_last_now = motion.carried.value_or(TPose2D());
+  return motion;
+}
+
+/// A jump between two reports shows sooner within a sweep that lies between them, and its time is the scanner's own.
+bool MotionExpectation::jumps_within(const LaserScan& scan) const {
+  const std::optional<SweepMotion> sweep = sweep_motion(odometry_, scan);
+  if (!sweep) return false;
+  const double time = std::abs(scan.beam_stamp(scan.ranges.size() - 1) - scan.stamp);
+  const TPose2D motion = sweep->T_ref_last - sweep->T_ref_first;
+  return length(motion.x, motion.y) > 0.05 + kFastestSweep * time ||
+         std::abs(wrap_angle(motion.phi)) > 0.05 + kFastestSweepTurn * time;
+}
+
+/// As the last two scans were apart, for `time`.
+std::optional<TPose2D> MotionExpectation::carried(double time) const {
+  if (last_step_time_ < kNoDuration || time < kNoDuration || std::max(time, last_step_time_) > kLongestCarry)
+    return std::nullopt;
+  const double share = time / last_step_time_;
+  return TPose2D{share * last_step_.x, share * last_step_.y, share * wrap_angle(last_step_.phi)};
+}
+
+std::optional<SweepMotion> MotionExpectation::sweep(const LaserScan& scan, const ExpectedMotion& motion) const {
+  return motion.doubt >= 1.0 && motion.carried ? sweep_at(scan, *motion.carried, motion.time)
+                                               : sweep_motion(odometry_, scan);
+}
+
+std::optional<SweepMotion> MotionExpectation::sweep_at(const LaserScan& scan, const TPose2D& motion,
+                                                       double time) const {
+  if (scan.beam_period == 0.0 || time < kNoDuration || time > kLongestCarry) return sweep_motion(odometry_, scan);
+  const Stamp reference = scan.middle();
+  const auto part = [&](Stamp stamp) {
+    const double share = (stamp - reference) / time;
+    return TPose2D{share * motion.x, share * motion.y, share * wrap_angle(motion.phi)};
+  };
+  return SweepMotion{part(scan.stamp), part(scan.beam_stamp(scan.ranges.size() - 1))};
+}
+
+void MotionExpectation::found(const TPose2D& step, double time, bool contradicted) {
+  last_step_ = step;
+  last_step_time_ = time;
+  doubt_ = contradicted ? 1.0 : doubt_ < kNoDoubt ? 0.0 : kForgiving * doubt_;
+}
+
+void MotionExpectation::scan_taken(Stamp reference) {
+  if (!odometry_.empty()) T_odom_scan_ = odometry_.pose_at(reference);
+  last_scan_ = reference;
+  silent_at_scan_.reset();
+}
+
+TPose2D MotionExpectation::since_scan(Stamp stamp) const {
+  return T_odom_scan_ ? odometry_.pose_at(stamp) - *T_odom_scan_ : TPose2D();
+}
+
+void MotionExpectation::forget_before(Stamp oldest_needed) {
+  if (last_scan_ && !silent_at_scan_ && *last_scan_ < oldest_needed)
+    silent_at_scan_ = odometry_.silent_at(*last_scan_);  // the last time that it can be told
+  odometry_.forget_before(oldest_needed);
+}
+
+}  // namespace rubble::slam
