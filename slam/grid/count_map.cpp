@@ -66,6 +66,14 @@ CountMap::CountMap(int width, int height, double resolution, int max_cells) : ma
   p_occ_.assign(frame_.size(), 0);
 }
 
+void CountMap::clear_hits(const std::vector<Cell>& cells) {
+  for (const Cell c : cells) {
+    occupied_[frame_.index(c)] = 0;
+    rate(frame_.index(c));
+  }
+  ++version_;
+}
+
 void CountMap::assign(const GridFrame& frame, std::vector<std::uint16_t> seen, std::vector<std::uint16_t> occupied) {
   if (frame.width <= 0 || frame.height <= 0 || !(frame.resolution > 0.0) || seen.size() != frame.size() ||
       occupied.size() != frame.size())

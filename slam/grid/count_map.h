@@ -59,6 +59,9 @@ class CountMap {
   /// seen.
   void assign(const GridFrame& frame, std::vector<std::uint16_t> seen, std::vector<std::uint16_t> occupied);
 
+  /// Makes cells free that were hit: their hits no longer count.
+  void clear_hits(const std::vector<Cell>& cells);
+
   /// Unknown where never seen; occupied where p_occ >= threshold, free elsewhere.
   OccupancyGrid classify(double threshold = 0.5) const;
 

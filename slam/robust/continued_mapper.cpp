@@ -244,6 +244,7 @@ void ContinuedMapper::finish() {
     if (finder_.found()) join(*finder_.found());
   }
   if (joined_) return drive_->finish();
+  if (config_.drop_gone) map_.drop_gone();
   if (config_.thin_walls) map_.thin();
 }
 

@@ -44,6 +44,7 @@ void bind(Binder& b, RobustConfig& c) {
   b.number("frame_turn_rad", c.frame_turn, 0.02, 3.0);
   b.number("frame_overlap", c.frame_overlap, 0.0, 1.0);
   b.integer("exact_frames", c.exact_frames, 10, 1000000);
+  b.boolean("drop_gone", c.drop_gone);
   b.boolean("thin_walls", c.thin_walls);
   b.boolean("loops", c.loops);
   b.boolean("wall_compass", c.wall_compass);

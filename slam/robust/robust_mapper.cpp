@@ -503,6 +503,7 @@ void RobustMapper::finish() {
   }
   impl_->map_.set_right(impl_->frames_);
   impl_->map_.lay_raster(impl_->frames_);
+  if (impl_->config_.drop_gone) impl_->map_.drop_gone();
   if (impl_->config_.thin_walls) impl_->map_.thin();
   impl_->tracker_.redraw(impl_->frames_, impl_->here_, nullptr);
 }

@@ -8,10 +8,10 @@
 #include "robot/model.h"
 #include "slam/mapper.h"
 #include "slam/robust/graph/loop_closer.h"
-#include "slam/robust/tracking/local_tracker.h"
 #include "slam/robust/map/saved_map.h"
 #include "slam/robust/map/stamped_map.h"
 #include "slam/robust/matching/cloud.h"
+#include "slam/robust/tracking/local_tracker.h"
 #include "slam/scan/level_scan.h"
 #include "slam/scan/sure_misses.h"
 #include "slam/scan/tilt_track.h"
@@ -36,6 +36,7 @@ struct RobustConfig {
   double frame_turn = 0.20;            ///< or this much turn [rad]
   double frame_overlap = 0.60;         ///< or when fewer points lie on the local map
   int exact_frames = 4000;             ///< from so many key frames on, known ground adds none
+  bool drop_gone = true;               ///< small things that were later seen through leave the final map
   bool thin_walls = true;              ///< walls that fill two cells of the final map lose the one hit less often
   bool loops = true;                   ///< close loops
   bool wall_compass = true;            ///< keep the heading by walls that run one way or across it

@@ -77,7 +77,7 @@ class WallView {
 };
 
 /// The weaker cells of walls that run along one axis.
-void find_weaker(const WallView& view, const GridFrame& frame, std::vector<char>& weaker) {
+void find_weaker(const WallView& view, std::vector<Cell>& weaker) {
   for (int along = 0; along < view.along(); ++along)
     for (int across = 0; across + 1 < view.across(); ++across) {
       if (!view.two_wide(across, along)) continue;
@@ -92,21 +92,16 @@ void find_weaker(const WallView& view, const GridFrame& frame, std::vector<char>
           longest += k > 0 ? 1 : 0;
         }
       }
-      if (longest >= kLeastRun) weaker[frame.index(view.cell(first < second ? across : across + 1, along))] = 1;
+      if (longest >= kLeastRun) weaker.push_back(view.cell(first < second ? across : across + 1, along));
     }
 }
 
 }  // namespace
 
 void thin_walls(CountMap& map) {
-  const GridFrame frame = map.frame();
-  std::vector<char> weaker(frame.size(), 0);
-  for (const bool along_y : {true, false}) find_weaker(WallView(map, along_y), frame, weaker);
-  std::vector<std::uint16_t> seen(map.seen_row(0), map.seen_row(0) + frame.size());
-  std::vector<std::uint16_t> occupied(map.occupied_row(0), map.occupied_row(0) + frame.size());
-  for (std::size_t i = 0; i < frame.size(); ++i)
-    if (weaker[i] != 0) occupied[i] = 0;
-  map.assign(frame, std::move(seen), std::move(occupied));
+  std::vector<Cell> weaker;
+  for (const bool along_y : {true, false}) find_weaker(WallView(map, along_y), weaker);
+  map.clear_hits(weaker);
 }
 
 }  // namespace rubble::slam

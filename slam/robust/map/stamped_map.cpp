@@ -1,5 +1,6 @@
 #include "slam/robust/map/stamped_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -7,6 +8,7 @@
 #include "base/angle.h"
 #include "base/planar.h"
 #include "slam/robust/map/crisp_walls.h"
+#include "slam/robust/map/gone_things.h"
 
 namespace rubble::slam {
 
@@ -20,6 +22,7 @@ constexpr double kLever = 4.0;      ///< ... so far from the robot [m]
 constexpr Work kWorkPerBeam = 60;   ///< of drawing a scan
 constexpr Work kDrawnCellsPerWork = 4;  ///< of the window that is drawn in
 constexpr Work kWorkPerLook = 20;
+constexpr double kLevelGround = deg_to_rad(2.0);
 constexpr double kAcross = 0.99;           ///< of a normal's part along an axis, of walls across it: within 8 deg
 constexpr double kLeastShift = 0.1;        ///< cells
 constexpr double kLeastWallPoints = 20.0;  ///< tell where walls lie
@@ -47,12 +50,26 @@ class WallPhase {
   double count_ = 0.0;
 };
 
+/// A laser that leans, or stands higher than usual, looks over what is low.
+bool is_level(const ScanTilt& tilt) {
+  return std::max({std::abs(tilt.pitch), std::abs(tilt.roll), std::abs(tilt.body_pitch), std::abs(tilt.body_roll)}) <
+         kLevelGround;
+}
+
 }  // namespace
 
 StampedMap::StampedMap(CountMap map, const mrpt::math::TPose3D& T_base_laser, const LevelScanConfig& config)
     : map_(std::move(map)), level_scan_(T_base_laser, config), tolerance_(kTolerable) {}
 
 void StampedMap::thin() { thin_walls(map_); }
+
+void StampedMap::drop_gone() {
+  GoneThings things(map_);
+  if (!things.any()) return;
+  for (const Entry& entry : scans_)
+    things.look(entry.T_map_base, raw_points(entry.scan), !entry.scan.tilt || is_level(*entry.scan.tilt));
+  map_.clear_hits(things.cells());
+}
 
 void StampedMap::lay_raster(const KeyFrames& frames) {
   WallPhase across_x, across_y;
@@ -80,9 +97,13 @@ void StampedMap::lay_raster(const KeyFrames& frames) {
   }
 }
 
+/// Lone hits among them.
+ScanPoints StampedMap::raw_points(const PackedScan& scan) {
+  return level_scan_.points(unpacked(scan), scan.motion ? &*scan.motion : nullptr, scan.tilt ? &*scan.tilt : nullptr);
+}
+
 ScanPoints StampedMap::points_of(const PackedScan& scan) {
-  ScanPoints points =
-      level_scan_.points(unpacked(scan), scan.motion ? &*scan.motion : nullptr, scan.tilt ? &*scan.tilt : nullptr);
+  ScanPoints points = raw_points(scan);
   drop_lone_hits(points);
   return points;
 }

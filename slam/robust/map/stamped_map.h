@@ -35,6 +35,8 @@ class StampedMap {
   void lay_raster(const KeyFrames& frames);
   /// Thins the walls of the map, once no more scans come.
   void thin();
+  /// Takes what is no longer there off the map (gone_things.h), once no more scans come.
+  void drop_gone();
   /// Says that key frames have moved.
   void moved() { to_check_ = scans_.size(); }
   /// Stamps scans anew that lie wrong by a good part of a cell, newest first, until the budget is used up.
@@ -45,6 +47,7 @@ class StampedMap {
 
  private:
   bool lies_wrong(const Entry& entry, const mrpt::math::TPose2D& T_map_base) const;
+  ScanPoints raw_points(const PackedScan& scan);
   ScanPoints points_of(const PackedScan& scan);
   Work effort(const Entry& entry) const;
 
