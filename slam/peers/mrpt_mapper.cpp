@@ -13,6 +13,7 @@ namespace {
 using mrpt::math::TPose2D;
 
 constexpr int kCounts = 100;            ///< a cell of MRPT's grid becomes so many counts
+constexpr int kMostCells = 8000;        ///< of the map a side, as the other mappers
 constexpr double kNothingKnown = 0.01;  ///< p_occ this close to one half was never observed
 
 }  // namespace
@@ -89,24 +90,38 @@ void MrptMapper::follow_path(Stamp stamp, const TPose2D& T_odom_base) {
   for (std::size_t i = 0; i < anchors_.size(); ++i) trajectory_[i].pose = step_pose(anchors_[i]);
 }
 
+/// What MRPT's map knows: it grows by far more than it needs, and without bound where poses go astray.
 void MrptMapper::take_grid() {
   const BuilderGrid from = builder_->grid();
+  GridFrame whole;
+  whole.width = from.width;
+  whole.height = from.height;
+  const auto p_occ = [&](Cell c) { return 1.0 - static_cast<double>(from.p_free[whole.index(c)]); };
+  const auto known = [&](Cell c) { return std::abs(p_occ(c) - 0.5) >= kNothingKnown; };
   GridFrame frame;
-  frame.width = from.width;
-  frame.height = from.height;
   frame.resolution = map_.frame().resolution;
-  const auto on_grid = [&](float edge) {
-    return std::round(static_cast<double>(edge) / frame.resolution) * frame.resolution;
+  const auto cells = [&](float edge) {
+    return static_cast<int>(std::lround(static_cast<double>(edge) / frame.resolution));
   };
-  frame.x0 = on_grid(from.x0);
-  frame.y0 = on_grid(from.y0);
+  const Cell start{std::clamp(-cells(from.x0), 0, whole.width - 1), std::clamp(-cells(from.y0), 0, whole.height - 1)};
+  Cell low = start, high = start;
+  for (int y = std::max(0, start.y - kMostCells / 2); y < std::min(whole.height, start.y + kMostCells / 2); ++y)
+    for (int x = std::max(0, start.x - kMostCells / 2); x < std::min(whole.width, start.x + kMostCells / 2); ++x) {
+      if (!known({x, y})) continue;
+      low = {std::min(low.x, x), std::min(low.y, y)};
+      high = {std::max(high.x, x), std::max(high.y, y)};
+    }
+  frame.width = high.x - low.x + 1;
+  frame.height = high.y - low.y + 1;
+  frame.x0 = (cells(from.x0) + low.x) * frame.resolution;
+  frame.y0 = (cells(from.y0) + low.y) * frame.resolution;
   std::vector<std::uint16_t> seen(frame.size(), 0), occupied(frame.size(), 0);
-  for (int y = 0; y < frame.height; ++y)
-    for (int x = 0; x < frame.width; ++x) {
-      const double p_occ = 1.0 - static_cast<double>(from.p_free[frame.index({x, y})]);
-      if (std::abs(p_occ - 0.5) < kNothingKnown) continue;
-      seen[frame.index({x, y})] = kCounts;
-      occupied[frame.index({x, y})] = static_cast<std::uint16_t>(std::lround(p_occ * kCounts));
+  for (int y = low.y; y <= high.y; ++y)
+    for (int x = low.x; x <= high.x; ++x) {
+      if (!known({x, y})) continue;
+      const std::size_t cell = frame.index({x - low.x, y - low.y});
+      seen[cell] = kCounts;
+      occupied[cell] = static_cast<std::uint16_t>(std::lround(p_occ({x, y}) * kCounts));
     }
   map_.assign(frame, std::move(seen), std::move(occupied));
 }

@@ -203,6 +203,10 @@ TEST(MergedMaps, LieInOneFrame) {
       const TPose2D expected = *pose_at(drive.drive.truth, both->frames[i].stamp) - first.drive.truth.front().pose;
       EXPECT_LT(length(both->frames.pose(i).x - expected.x, both->frames.pose(i).y - expected.y), 0.08) << i;
     }
+    EXPECT_TRUE(both->frames.graph().walls_direction);
+    RobustConfig no_compass = config;
+    no_compass.wall_compass = false;
+    EXPECT_FALSE(merged(a, b, no_compass)->frames.graph().walls_direction);
     EXPECT_TRUE(encode_map(decode_map(encode_map(*both), "both")) == encode_map(*both));
     EXPECT_FALSE(merged(
         a, decode_map(map_of(recorded(slam_test::Floor(seed + 20, 3, 2), kRound, 0.0, 1).ticks), "other"), config));

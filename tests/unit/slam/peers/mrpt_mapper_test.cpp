@@ -1,6 +1,9 @@
 // What MRPT's builders are given and what is made of their answers, shown by the one that draws no random numbers.
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <vector>
+
 #include "slam/peers/mrpt_mapper.h"
 #include "tests/support/slam_outcome.h"
 #include "tests/support/slam_world.h"
@@ -19,6 +22,42 @@ const std::vector<TPoint2D> kTour{{0.0, 0.0}, {3.0, 0.2}, {3.0, 1.0}, {0.5, 0.5}
 
 std::vector<Inputs> recorded(const slam_test::Drive& drive, std::uint64_t seed) {
   return slam_test::record(slam_test::furnished_room(), drive, robot::RobotModel(), 1.0, 0.01, seed);
+}
+
+/// A builder whose grid is wide, as MRPT's becomes where poses go astray, and knows little of it.
+class WideBuilder : public MapBuilder {
+ public:
+  static constexpr int kWidth = 9000;
+
+  void process(const mrpt::math::TPose2D&, const robot::LaserScan&) override { ++steps_; }
+  std::vector<mrpt::math::TPose2D> path() const override { return std::vector<mrpt::math::TPose2D>(steps_); }
+  PoseCovariance uncertainty() const override { return {}; }
+  BuilderGrid grid() const override {
+    BuilderGrid grid{-445.0f, -1.0f, kWidth, 40, std::vector<float>(kWidth * 40, 0.5f)};
+    const auto set = [&](int x, int y, float p_free) {
+      grid.p_free[static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)] = p_free;
+    };
+    set(8910, 22, 0.1f);  // 0.5 m ahead of the start and 0.1 m to the left
+    set(8890, 15, 0.9f);  // 0.5 m behind it, 0.25 m to the right
+    set(100, 5, 0.1f);    // 440 m away
+    return grid;
+  }
+  std::size_t inserted() const override { return steps_; }
+
+ private:
+  std::size_t steps_ = 0;
+};
+
+TEST(MrptMapper, ShowsOfAWideMapWhatIsKnownAndNoMoreThanOtherMappers) {
+  const std::vector<Inputs> ticks = recorded(slam_test::drive_through({{0.0, 0.0}, {0.3, 0.0}}, 0.0), 3);
+  MrptMapper mapper({}, 0.05, std::make_unique<WideBuilder>());
+  for (const Inputs& tick : ticks) mapper.update(tick);
+  const CountMap& map = mapper.map();
+  EXPECT_EQ(map.frame().width, 21);
+  EXPECT_EQ(map.frame().height, 8);
+  EXPECT_NEAR(map.p_occ(map.frame().cell({0.51, 0.11})), 0.9, 1e-6);
+  EXPECT_NEAR(map.p_occ(map.frame().cell({-0.49, -0.24})), 0.1, 1e-6);
+  EXPECT_EQ(map.seen(map.frame().cell({0.01, 0.01})), 0);
 }
 
 TEST(MrptMapper, KnowsNothingBeforeTheFirstScan) {
