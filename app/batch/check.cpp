@@ -82,7 +82,8 @@ int check(const CheckArguments& arguments) {
   for (RunRecord& run : set.runs) {  // expectations on times are kept apart from what depends on the seed alone
     const auto timing = set.timing.find(run.run_id);
     if (timing == set.timing.end() || !timing->second->contains("broken")) continue;
-    for (const auto& line : timing->second["broken"]) run.broken.push_back(line.get<std::string>());
+    for (const auto& line : timing->second["broken"])
+      if (line.is_string()) run.broken.push_back(line.get<std::string>());
   }
   const std::vector<CheckCase> cases = check_runs(baseline, set.runs);
   for (const auto& c : cases)

@@ -9,10 +9,19 @@ namespace {
 
 bool is_one_of(char c, std::string_view letters) { return letters.find(c) != std::string_view::npos; }
 
+/// Digits with a decimal point at most, behind one sign.
+bool is_signed_number(std::string_view text) {
+  const std::string_view digits = text.substr(1);
+  const std::size_t point = digits.find('.');
+  return digits.find_first_not_of("0123456789.") == std::string_view::npos &&
+         digits.find_first_not_of('.') != std::string_view::npos &&
+         (point == std::string_view::npos || digits.find('.', point + 1) == std::string_view::npos);
+}
+
 bool is_formula(std::string_view text) {
   if (text.empty()) return false;
   if (is_one_of(text.front(), "=@\t\r")) return true;
-  return is_one_of(text.front(), "+-") && (text.size() < 2 || !is_one_of(text[1], "0123456789."));
+  return is_one_of(text.front(), "+-") && !is_signed_number(text);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "base/angle.h"
 #include "base/error.h"
+#include "base/text/words.h"
 #include "robot/logs/log.h"
 
 namespace rubble::scenarios {
@@ -130,7 +131,7 @@ CalibratedRobot calibrate_from_log(const std::string& log, const RobotFile& in_f
 std::string calibrated_yaml(const CalibratedRobot& robot, const std::string& log) {
   const slam::Calibration& c = robot.calibration;
   const RobotSetup& sigma = c.sigma;
-  std::string text = "# Calibrated by rubble calibrate from " + log + "\n";
+  std::string text = "# Calibrated by rubble calibrate from " + one_line(log) + "\n";
   text += line("# %d scans over %.1f m and %.0f deg; standard deviations:\n", c.scans, c.driven, rad_to_deg(c.turned));
   text += line("# distance_scale %.4f, turn_scale %.4f\n", sigma.distance_scale, sigma.turn_scale);
   text += std::isnan(robot.effective_track)

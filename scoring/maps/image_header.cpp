@@ -82,6 +82,24 @@ std::optional<ImageHeader> image_header(std::string_view bytes) {
   return std::nullopt;
 }
 
+std::size_t jpeg_scans(std::string_view bytes) {
+  constexpr std::int64_t kStartOfScan = 0xDA;
+  std::size_t scans = 0;
+  std::size_t at = 2;
+  while (at + 4 <= bytes.size()) {
+    const std::int64_t marker = byte_at(bytes, at + 1);
+    if (byte_at(bytes, at) != 0xFF || marker == 0xFF) {
+      ++at;  // what a scan holds, or filling
+    } else if (marker <= 0x01 || (marker >= 0xD0 && marker <= 0xD9)) {
+      at += 2;
+    } else {
+      scans += marker == kStartOfScan ? 1 : 0;
+      at += 2 + static_cast<std::size_t>(big_endian(bytes, at + 2, 2));
+    }
+  }
+  return scans;
+}
+
 std::string other_format(std::string_view bytes) {
   const auto has = [&](std::size_t at, std::string_view magic) {
     return bytes.size() >= at && bytes.substr(at, magic.size()) == magic;

@@ -68,7 +68,9 @@ void check_image_size(const std::string& path, std::int64_t width, std::int64_t 
 
 namespace {
 
-/// The header decides before anything is unpacked: a few bytes may stand for gigabytes.
+constexpr std::size_t kMostScans = 100;  ///< of a JPEG; usual progressive ones have about ten
+
+/// The header decides before anything is unpacked: a few bytes may stand for gigabytes, or for minutes of work.
 void check_header(const std::string& path) {
   InputFile file(path, image_rules());
   std::string bytes(std::size_t{1} << 20, '\0');  // colour profiles may come before the size of a JPEG
@@ -78,6 +80,13 @@ void check_header(const std::string& path) {
     throw InputError(path + ": is " + other + ", which is not read; save the map as PNG or GeoTIFF");
   if (!header) throw InputError(path + ": not an image that can be read (PNG, PGM, BMP, JPEG), or damaged");
   check_image_size(path, header->width, header->height);
+  if (bytes.rfind("\xFF\xD8\xFF", 0) != 0) return;
+  std::string rest(std::size_t{1} << 20, '\0');
+  for (std::size_t got = file.read(rest.data(), rest.size()); got > 0; got = file.read(rest.data(), rest.size()))
+    bytes.append(rest, 0, got);
+  if (const std::size_t scans = jpeg_scans(bytes); scans > kMostScans)
+    throw InputError(path + ": a JPEG of " + std::to_string(scans) + " scans; pictures have at most " +
+                     std::to_string(kMostScans) + ", save it again as PNG");
 }
 
 cv::Mat read_raster(const std::string& path, Upright upright, std::uint32_t& white) {

@@ -7,6 +7,7 @@
 #include "base/bytes.h"
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/text/shell.h"
 
 namespace rubble::robot {
 namespace {
@@ -36,7 +37,7 @@ void check_magic(std::string_view bytes, const std::string& path) {
   // The first frame describes the robot: without it nothing that precedes can be read.
   const std::string keep = offset <= kLogMagic.size() ? ""
                                                       : ", or keep what precedes the damage: head -c " +
-                                                            std::to_string(offset) + " '" + path + "' > part.log";
+                                                            std::to_string(offset) + " " + shell_word(path) + " > part.log";
   throw InputError(path + ": byte " + std::to_string(offset) + ": " + what + "; copy the log again" + keep);
 }
 

@@ -20,6 +20,36 @@ std::string encoded(const std::string& extension, const cv::Mat& image) {
   return std::string(bytes.begin(), bytes.end());
 }
 
+/// A progressive JPEG whose last scan is written `times` times more, empty.
+std::string with_empty_scans(std::string jpeg, int times) {
+  const std::string_view scan("\xFF\xDA\x00\x08\x01\x01\x00\x3F\x3F\x00", 10);
+  jpeg.resize(jpeg.size() - 2);
+  for (int i = 0; i < times; ++i) jpeg += scan;
+  return jpeg + "\xFF\xD9";
+}
+
+TEST(ImageHeader, ScansOfAJpegAreCountedAndManyRefused) {
+  std::vector<unsigned char> bytes;
+  const cv::Mat image(200, 200, CV_8UC3, cv::Scalar(90, 120, 200));
+  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
+  const std::string progressive(bytes.begin(), bytes.end());
+  const std::size_t scans = jpeg_scans(progressive);
+  EXPECT_GE(scans, 5u);
+  EXPECT_LE(scans, 12u);
+  EXPECT_EQ(jpeg_scans(encoded(".jpg", image)), 1u);
+  EXPECT_EQ(jpeg_scans(with_empty_scans(progressive, 5000)), scans + 5000);
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("scans" + std::to_string(getpid()) + ".jpg")).string();
+  std::ofstream(path, std::ios::binary) << with_empty_scans(progressive, 5000);
+  try {
+    read_raster(path);
+    ADD_FAILURE() << "read";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("scans"), std::string::npos) << e.what();
+  }
+  std::filesystem::remove(path);
+}
+
 TEST(ImageHeader, SaysTheSizeThatTheDecoderFinds) {
   for (const char* extension : {".png", ".jpg", ".bmp", ".pgm", ".ppm", ".pbm"}) {
     const bool is_grey = extension[2] == 'g' || extension[2] == 'b';
