@@ -78,23 +78,6 @@ Way leave(const std::vector<TPoint2D>& things, const std::vector<TPoint2D>& know
   return way;
 }
 
-/// In a corridor the lanes beside the high corners are 0.6 m wide, and the body 0.5 m.
-TEST(WayOut, LeadsThroughTheLanesOfCrossingRampsInACorridorAndTouchesNothing) {
-  const std::vector<TPoint2D> things =
-      high_corners() + wall({-2.0, kHalf}, {2.0, kHalf}) + wall({-2.0, -kHalf}, {2.0, -kHalf});
-  for (const double x : {-0.15, 0.0, 0.1})
-    for (const double y : {-0.1, 0.0, 0.15})
-      for (double phi = -180.0; phi < 180.0; phi += 45.0) {
-        const TPose2D start{x, y, deg_to_rad(phi)};
-        if (touches(start, things)) continue;
-        SCOPED_TRACE(testing::Message() << x << ' ' << y << ' ' << phi);
-        const Way way = leave(things, {}, start, 0.02);
-        EXPECT_TRUE(way.out);
-        EXPECT_FALSE(way.touched);
-        EXPECT_GT(std::abs(way.end.x), kHalf + 0.25);
-      }
-}
-
 TEST(WayOut, EndsWhereTheRobotWasBefore) {
   const auto known = wall({2.0, 0.3}, {0.7, 0.3});
   EXPECT_GT(leave(high_corners(), known, {-0.1, 0.0, kPi}).end.x, kHalf);
