@@ -128,7 +128,6 @@ TEST(Escape, RetracesPoseByPoseWhatLetsItThroughInNoOtherWay) {
 /// On a pallet of steps it would be held again half a metre back.
 TEST(Escape, LeavesATrapAllTheWay) {
   Trap trap;
-  trap.T_base_pallet = {0.1, 0.0, 0.0};
   trap.size = 1.2;
   Puppet puppet;
   const WayOut way_out(robot::RobotModel{}, trap, {}, {});

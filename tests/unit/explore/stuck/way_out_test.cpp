@@ -81,7 +81,7 @@ Way leave(const std::vector<TPoint2D>& things, const std::vector<TPoint2D>& know
 TEST(WayOut, EndsWhereTheRobotWasBefore) {
   const auto known = wall({2.0, 0.3}, {0.7, 0.3});
   EXPECT_GT(leave(high_corners(), known, {-0.1, 0.0, kPi}).end.x, kHalf);
-  EXPECT_LT(leave(high_corners(), {}, {-0.1, 0.0, kPi}).end.x, -kHalf) << "the case is too easy";
+  EXPECT_LT(leave(high_corners(), wall({-2.0, 0.3}, {-0.7, 0.3}), {-0.1, 0.0, kPi}).end.x, -kHalf);
   const auto shut = wall({kHalf + 0.1, -2.0}, {kHalf + 0.1, 2.0});
   EXPECT_LT(leave(high_corners() + shut, known, {-0.1, 0.0, kPi}).end.x, kHalf) << "elsewhere where that cannot be";
 }
