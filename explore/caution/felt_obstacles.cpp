@@ -18,6 +18,7 @@ constexpr double kHalfBar = 0.2;      ///< [m]
 constexpr double kNarrowBar = 0.0;    ///< the same of a pardoned thing [m]
 constexpr double kBarStep = 0.1;      ///< [m]
 constexpr double kBeyondEdge = 0.10;  ///< what stopped the body lies less than this ahead of it [m]
+constexpr double kCorner = 0.4;       ///< corners of the body lie so much of its width beside its middle
 constexpr double kInset = 0.02;       ///< a pallet counts but for so much of its rim [m]
 constexpr double kOnPallet = 0.20;    ///< so far inside its edges the robot's middle stands on a pallet [m]
 
@@ -35,6 +36,15 @@ void add_pallet(const TPose2D& T_map_pallet, bool whole, double size, std::vecto
       points.push_back(T_map_pallet.composePoint(TPoint2D{from + i * step, from + k * step}));
 }
 
+bool wall_between(const OccupancyGrid& known, const TPoint2D& from, const TPoint2D& to) {
+  const int steps = 1 + static_cast<int>(2.0 * distance(from, to) / known.resolution());
+  for (int i = 0; i <= steps; ++i) {
+    const Cell c = known.cell(from + (to - from) * (static_cast<double>(i) / steps));
+    if (known.inside(c) && known[c] == Occupancy::Occupied) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 TPoint2D FeltObstacles::Thing::at(double aside) const {
@@ -48,17 +58,18 @@ bool FeltObstacles::holds(const Thing& thing, const TPoint2D& p_map, double marg
 }
 
 bool FeltObstacles::feel(const Anchor& anchor, bool behind, const robot::RobotModel& model,
-                         const std::optional<PalletGrid>& grid, const std::vector<TPoint2D>& trail) {
+                         const std::optional<PalletGrid>& grid, const std::vector<TPoint2D>& trail,
+                         const OccupancyGrid* known) {
   Thing thing;
   thing.anchor = anchor;
   thing.side = behind ? -1.0 : 1.0;
   thing.reach = 0.5 * model.length + kBeforeBody;
   thing.half_bar = kHalfBar;
-  if (grid && feel_pallet(thing, *grid, model, trail)) return true;
-  for (const Thing& known : things_)
-    if (!known.is_pallet && distance(known.at(0.0), thing.at(0.0)) < config_.same_thing) {
-      thing.times = std::max(thing.times, known.times + 1);
-      thing.had_its_chance = thing.had_its_chance || known.had_its_chance;
+  if (grid && feel_pallet(thing, *grid, model, trail, known)) return true;
+  for (const Thing& other : things_)
+    if (!other.is_pallet && distance(other.at(0.0), thing.at(0.0)) < config_.same_thing) {
+      thing.times = std::max(thing.times, other.times + 1);
+      thing.had_its_chance = thing.had_its_chance || other.had_its_chance;
     }
   const bool for_good = thing.times >= config_.certain;
   thing.until = for_good ? kForGood : anchor.stamp + config_.memory * std::ldexp(1.0, thing.times - 1);
@@ -66,15 +77,48 @@ bool FeltObstacles::feel(const Anchor& anchor, bool behind, const robot::RobotMo
   return false;
 }
 
+bool FeltObstacles::is_pallet_at(const Thing& thing, const TPoint2D& middle) const {
+  return thing.is_pallet && distance(position(thing.pallet()), middle) <= 0.5 * config_.pallet;
+}
+
+/// The pallet that the body reaches into: what lies before its middle. Where that is the pallet it stands on, a corner
+/// may have met the edge of the next: the one pallet before a corner that the robot has not stood on, if no wall of the
+/// map is between.
+Cell FeltObstacles::reached(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
+                            const std::vector<TPoint2D>& trail, const OccupancyGrid* known) const {
+  const TPose2D& T_map_base = touch.anchor.T_map_base;
+  const TPoint2D here = position(T_map_base);
+  const double reach = touch.side * (0.5 * model.length + kBeyondEdge);
+  const Cell own = grid.pallet(here);
+  const Cell ahead = grid.pallet(T_map_base.composePoint(TPoint2D{reach, 0.0}));
+  if (!(ahead == own)) return ahead;
+  const auto is_at = [&](Cell pallet) {
+    return [&, middle = grid.middle(pallet)](const Thing& thing) { return is_pallet_at(thing, middle); };
+  };
+  // Steps were felt on its own one before: it is that again.
+  if (std::any_of(things_.begin(), things_.end(), is_at(own))) return own;
+  std::optional<Cell> other;
+  for (const double aside : {-kCorner * model.width, kCorner * model.width}) {
+    const TPoint2D corner = T_map_base.composePoint(TPoint2D{reach, aside});
+    const Cell pallet = grid.pallet(corner);
+    const auto stood = [&](const TPoint2D& p) { return grid.pallet(p) == pallet && grid.depth(p) > kOnPallet; };
+    if (pallet == own || (known != nullptr && wall_between(*known, here, corner)) ||
+        std::any_of(trail.begin(), trail.end(), stood))
+      continue;
+    if (other && !(*other == pallet)) return own;
+    other = pallet;
+  }
+  return other.value_or(own);
+}
+
 /// Puts a touch to the account of the pallet that the body reaches into. True where all of that pallet is taken for an
 /// obstacle: the robot has not stood on it and met its edge.
 bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
-                                const std::vector<TPoint2D>& trail) {
+                                const std::vector<TPoint2D>& trail, const OccupancyGrid* known) {
   const TPose2D& T_map_base = touch.anchor.T_map_base;
-  const Cell own = grid.pallet({T_map_base.x, T_map_base.y});
-  const double reach = touch.side * (0.5 * model.length + kBeyondEdge);
-  const Cell there = grid.pallet(T_map_base.composePoint(TPoint2D{reach, 0.0}));
-  const TPoint2D middle = grid.to_map({there.x + 0.5, there.y + 0.5});
+  const Cell own = grid.pallet(position(T_map_base));
+  const Cell there = reached(touch, grid, model, trail, known);
+  const TPoint2D middle = grid.middle(there);
   Thing thing = touch;
   thing.is_pallet = true;
   thing.until = kForGood;
@@ -83,17 +127,29 @@ bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, cons
   const bool stood_on = thing.inside || std::any_of(trail.begin(), trail.end(),
                                                     [&](const TPoint2D& p) { return holds(thing, p, kOnPallet); });
   thing.whole = thing.stubs = !stood_on;
-  for (Thing& known : things_) {
-    if (!known.is_pallet || distance({known.pallet().x, known.pallet().y}, middle) > 0.5 * config_.pallet) continue;
-    thing.certain = !stood_on && (known.certain || !known.whole);
-    thing.times = known.times + 1;
-    thing.had_its_chance = known.had_its_chance;
-    thing.stubs = thing.stubs || known.stubs || thing.times > 1;
-    known = thing;
+  for (Thing& before : things_) {
+    if (!is_pallet_at(before, middle)) continue;
+    thing.certain = !stood_on && (before.certain || !before.whole);
+    thing.times = before.times + 1;
+    thing.had_its_chance = before.had_its_chance;
+    thing.let_go = before.let_go;
+    thing.shut = before.shut;
+    thing.stubs = thing.stubs || before.stubs || thing.times > 1;
+    before = thing;
     return !stood_on;
   }
   things_.push_back(thing);
   return !stood_on;
+}
+
+std::optional<Trap> FeltObstacles::trap(const TPose2D& T_map_base) {
+  for (Thing& thing : things_) {
+    if (!thing.is_pallet || !thing.let_go || !holds(thing, position(T_map_base), 0.0)) continue;
+    thing.inside = thing.shut = thing.stubs = true;
+    thing.until = kForGood;
+    return Trap{thing.anchor, thing.T_base_pallet, config_.pallet};
+  }
+  return std::nullopt;
 }
 
 void FeltObstacles::passed(const TPose2D& T_map_base, const robot::RobotModel& model) {
@@ -133,9 +189,14 @@ int FeltObstacles::count(Stamp now) const {
       std::count_if(things_.begin(), things_.end(), [&](const Thing& thing) { return counts(thing, now); }));
 }
 
+void FeltObstacles::let_go(Thing& thing, Stamp now) const {
+  thing.let_go = thing.let_go || (thing.is_pallet && counts(thing, now) && closed(thing));
+  thing.until = std::min(thing.until, now);
+}
+
 bool FeltObstacles::forget(Stamp now) {
   const bool any = count(now) > 0;
-  for (Thing& thing : things_) thing.until = std::min(thing.until, now);
+  for (Thing& thing : things_) let_go(thing, now);
   return any;
 }
 
@@ -145,7 +206,7 @@ bool FeltObstacles::forget_once(Stamp now) {
     if (thing.had_its_chance) continue;
     any = any || counts(thing, now);
     thing.had_its_chance = true;
-    thing.until = std::min(thing.until, now);
+    let_go(thing, now);
   }
   return any;
 }
@@ -156,6 +217,7 @@ bool FeltObstacles::pardon(Stamp now) {
     if (!counts(thing, now)) continue;
     if (thing.is_pallet ? !thing.whole || thing.certain : thing.half_bar <= kNarrowBar) continue;
     thing.half_bar = kNarrowBar;
+    thing.let_go = thing.is_pallet;
     thing.whole = false;
     any = true;
   }

@@ -6,9 +6,11 @@
 #include <optional>
 #include <vector>
 
+#include "base/grid.h"
 #include "base/stamp.h"
 #include "explore/anchor.h"
 #include "explore/caution/pallet_grid.h"
+#include "explore/caution/trap.h"
 #include "robot/model.h"
 #include "slam/mapper.h"
 
@@ -32,9 +34,14 @@ class FeltObstacles {
   explicit FeltObstacles(const FeltConfig& config = {}) : config_(config) {}
 
   /// Something right before the body stopped it, or behind it when it drove backwards. `grid`: the arena's pallets;
-  /// `trail`: where the robot's middle has been. Says whether it takes a whole pallet for an obstacle.
+  /// `trail`: where the robot's middle has been; `known`: the map, through whose walls no corner of the body reaches.
+  /// Says whether it takes a whole pallet for an obstacle.
   bool feel(const Anchor& anchor, bool behind, const robot::RobotModel& model,
-            const std::optional<PalletGrid>& grid = std::nullopt, const std::vector<mrpt::math::TPoint2D>& trail = {});
+            const std::optional<PalletGrid>& grid = std::nullopt, const std::vector<mrpt::math::TPoint2D>& trail = {},
+            const OccupancyGrid* known = nullptr);
+  /// Something holds the robot here. Where that is on a pallet that was taken for an obstacle and then let go of, it is
+  /// one: it is left alone once the robot has left it. Returns that pallet.
+  std::optional<Trap> trap(const mrpt::math::TPose2D& T_map_base);
   /// The robot stands here in good order: what was felt below the middle of its body is not there, or can be passed; a
   /// pallet it stands on can be driven on.
   void passed(const mrpt::math::TPose2D& T_map_base, const robot::RobotModel& model);
@@ -69,6 +76,8 @@ class FeltObstacles {
     bool certain = false;               ///< it was felt again after a pardon
     bool stubs = false;                 ///< else, whether the middles of its sides count
     bool inside = false;                ///< the robot's middle is on it
+    bool let_go = false;                ///< it was an obstacle, and pardoned or forgotten
+    bool shut = false;                  ///< it held the robot after that: it is left alone once left
     bool had_its_chance = false;        ///< it was forgotten once, to be tried again
     mrpt::math::TPose2D T_base_pallet;  ///< of the pallet's middle
 
@@ -77,12 +86,18 @@ class FeltObstacles {
   };
 
   /// All of the pallet is an obstacle.
-  bool closed(const Thing& thing) const { return thing.whole || (thing.times >= config_.tries && !thing.inside); }
+  bool closed(const Thing& thing) const {
+    return thing.whole || ((thing.shut || thing.times >= config_.tries) && !thing.inside);
+  }
   bool counts(const Thing& thing, Stamp now) const {
     return now < thing.until && (!thing.is_pallet || thing.stubs || closed(thing));
   }
+  void let_go(Thing& thing, Stamp now) const;
   bool feel_pallet(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
-                   const std::vector<mrpt::math::TPoint2D>& trail);
+                   const std::vector<mrpt::math::TPoint2D>& trail, const OccupancyGrid* known);
+  Cell reached(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
+               const std::vector<mrpt::math::TPoint2D>& trail, const OccupancyGrid* known) const;
+  bool is_pallet_at(const Thing& thing, const mrpt::math::TPoint2D& middle) const;
   bool holds(const Thing& thing, const mrpt::math::TPoint2D& p_map, double margin) const;
 
   FeltConfig config_;

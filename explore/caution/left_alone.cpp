@@ -28,7 +28,7 @@ bool LeftAlone::feel(const Anchor& anchor, bool behind, const robot::RobotModel&
                      const Trail& trail) {
   std::optional<PalletGrid> grid;
   if (config_.pallet > 0.0) grid = find_pallets(known, config_.pallet, position(anchor.T_map_base));
-  return felt_.feel(anchor, behind, model, grid, trail.points());
+  return felt_.feel(anchor, behind, model, grid, trail.points(), &known);
 }
 
 bool LeftAlone::pardon(Stamp now) {

@@ -85,6 +85,12 @@ Cell PalletGrid::pallet(const TPoint2D& p_map) const {
   return {static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y))};
 }
 
+double PalletGrid::depth(const TPoint2D& p_map) const {
+  const TPoint2D p = to_grid(p_map);
+  const auto to_edge = [](double x) { return std::min(x - std::floor(x), std::ceil(x) - x); };
+  return size * std::min(to_edge(p.x), to_edge(p.y));
+}
+
 std::optional<PalletGrid> find_pallets(const OccupancyGrid& cells, double size, const TPoint2D& around, double radius) {
   std::vector<Piece> pieces;
   CircularMean direction;

@@ -21,6 +21,9 @@ struct PalletGrid {
   mrpt::math::TPoint2D to_map(const mrpt::math::TPoint2D& p_grid) const;
   /// The pallet that holds a place.
   Cell pallet(const mrpt::math::TPoint2D& p_map) const;
+  mrpt::math::TPoint2D middle(Cell pallet) const { return to_map({pallet.x + 0.5, pallet.y + 0.5}); }
+  /// How far a place is inside the edges of its pallet [m].
+  double depth(const mrpt::math::TPoint2D& p_map) const;
 };
 
 /// Finds the grid from the walls of the map within `radius` of a place [m]: their common direction, and where across it

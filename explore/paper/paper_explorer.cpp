@@ -16,6 +16,7 @@ using mrpt::math::TPose2D;
 using robot::Drive;
 
 constexpr double kSameThing = 0.15;    ///< a hit this close to a wall of the map is that wall [m]
+constexpr double kOnEdge = 0.01;       ///< what was felt so near to a pallet is felt on it [m]
 constexpr double kTrailRadius = 0.20;  ///< [m]
 constexpr double kNearFrontier = 1.0;  ///< frontier this close at the start: turn to see it [m]
 constexpr double kTurningRoom = 0.06;  ///< beside the robot's swing circle, for stopping a little off [m]
@@ -145,7 +146,7 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
       stage_ = Stage::StraightOn;
       return drive_straight_on(mapper);
     }
-    get_free_of(*hold);
+    get_free_of(*hold, mapper);
     return {};
   }
   check_path(mapper);
@@ -185,22 +186,40 @@ void PaperExplorer::check_path(const slam::Mapper& mapper) {
 }
 
 /// Something holds the robot that the scanner cannot see: it is remembered, and the robot gets free of it.
-void PaperExplorer::get_free_of(const StuckWatch::Hold& hold) {
+void PaperExplorer::get_free_of(const StuckWatch::Hold& hold, const slam::Mapper& mapper) {
   // On its ramp the base would push on for a second, and every turn of the wheels in vain is a lie of the odometry.
   brakes_ = true;
   pilot_.stop();
-  const bool again = recovery_.begin(hold.met, pose_, now_);
+  std::optional<WayOut> way_out = this->way_out(mapper);
+  const bool trapped = way_out.has_value();
+  const bool again = recovery_.begin(hold.met, pose_, now_, std::move(way_out));
   if (again && agenda_.target() && agenda_.goal() != Goal::Home) agenda_.leave_target(left_alone_, {now_, pose_});
   const bool pallet = hold.met != Escape::Met::Turning &&
                       left_alone_.feel({now_, pose_}, hold.met == Escape::Met::Backwards, model_, floor_.cells, trail_);
-  agenda_.note(now_, hold.how + (pallet ? ": backs off and keeps clear of the pallet ahead"
-                                        : ": backs off and plans around it"));
+  agenda_.note(now_, hold.how + (pallet    ? ": backs off and keeps clear of the pallet ahead"
+                                 : trapped ? ": leaves the pallet"
+                                           : ": backs off and plans around it"));
   stage_ = Stage::BackingUp;
+}
+
+/// Nothing where the robot is in no trap.
+std::optional<WayOut> PaperExplorer::way_out(const slam::Mapper& mapper) {
+  const std::optional<Trap> trap = left_alone_.trap(pose_);
+  if (!trap) return std::nullopt;
+  // What was felt on the pallet are its own high corners, as far as anybody knows.
+  std::vector<TPoint2D> obstacles;
+  for (const TPoint2D& p : left_alone_.obstacles(now_))
+    if (!trap->holds(p, kOnEdge)) obstacles.push_back(p);
+  const Traversable walls = traversable(mapper.map(), config_.occupied_threshold);
+  for (int y = 0; y < walls.cells.height(); ++y)
+    for (int x = 0; x < walls.cells.width(); ++x)
+      if (walls.cells[{x, y}] == Occupancy::Occupied) obstacles.push_back(walls.cells.centre({x, y}));
+  return WayOut(model_, *trap, obstacles, trail_.points());
 }
 
 Drive PaperExplorer::drive_straight_on(const slam::Mapper& mapper) {
   if (const auto hold = stuck_watch_.held(pose_, commanded_, false, dt_, now_)) {
-    get_free_of(*hold);
+    get_free_of(*hold, mapper);
     return {};
   }
   brakes_ = !straight_on_.room(pose_, floor_, mapper.last_hits());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,7 +63,8 @@ class PaperExplorer : public Explorer {
 
   bool holds_still();
   void check_path(const slam::Mapper& mapper);
-  void get_free_of(const StuckWatch::Hold& hold);
+  void get_free_of(const StuckWatch::Hold& hold, const slam::Mapper& mapper);
+  std::optional<WayOut> way_out(const slam::Mapper& mapper);
   void replan(const slam::Mapper& mapper);
   void obey(Order order);
 

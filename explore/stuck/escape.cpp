@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "base/planar.h"
 
@@ -29,15 +30,21 @@ constexpr int kRounds = 2;                       ///< times that all moves are t
 
 }  // namespace
 
-void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures) {
+void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures, std::optional<WayOut> way_out) {
+  way_out_ = std::move(way_out);
   turn_ = kTurns[static_cast<std::size_t>(failures) % std::size(kTurns)];
   const Move first = met == Met::Backwards ? Move::Ahead : Move::Back;
   const Move last = met == Met::Backwards ? Move::Back : Move::Ahead;
   moves_.clear();
   for (int round = 0; round < kRounds; ++round) {
+    if (way_out_) moves_.push_back(Move::Out);
     // Retracing asks for poses to a few centimetres: first what is quick and robust.
-    if (round > 0 || failures > 0) moves_.push_back(Move::Retrace);
-    for (const Move move : {first, Move::Left, first, Move::Right, Move::Right, first, last}) moves_.push_back(move);
+    if (round > 0 || failures > 0 || way_out_) moves_.push_back(Move::Retrace);
+    for (const Move move : {first, Move::Left, first, Move::Right, Move::Right, first, last}) {
+      moves_.push_back(move);
+      // From elsewhere the plan may be another.
+      if (way_out_ && (move == first || move == last)) moves_.push_back(Move::Out);
+    }
   }
   at_ = 0;
   begun_ = T_map_base;
@@ -46,12 +53,17 @@ void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures) 
 
 void Escape::start_move(const TPose2D& T_map_base, Stamp now) {
   move_begun_ = T_map_base;
-  move_until_ = now + (moves_[at_] == Move::Retrace ? kRetraceTime : kMoveTime);
+  move_until_ = now + (moves_[at_] == Move::Retrace || moves_[at_] == Move::Out ? kRetraceTime : kMoveTime);
   old_stall_until_ = now + kOldStall;
   place_ = T_map_base;
   there_since_ = now;
   watch_.reset();
+  if (way_out_) way_out_->begin_anew();
   drive_ = {};
+}
+
+bool Escape::free(const TPoint2D& p_map) const {
+  return distance(position(begun_), p_map) >= kFree && (!way_out_ || way_out_->out(p_map));
 }
 
 /// Retracing poses, the robot may rock to and fro between two that it cannot get to.
@@ -68,7 +80,7 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
                             const std::optional<robot::Drive>& wheels, bool struck, double dt, Stamp now,
                             const std::vector<TPoint2D>& trail, const WayBack& way_back, const RoomFn& room) {
   met_ = false;
-  if (distance(position(begun_), position(T_map_base)) >= kFree) {
+  if (free(position(T_map_base))) {
     drive_ = {};
     return Result::Free;
   }
@@ -81,8 +93,9 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
   bool wall = false;
   if (move == Move::Back || move == Move::Ahead)
     wall = !room(T_map_base + TPose2D{move == Move::Back ? -kFeeler : kFeeler, 0.0, 0.0});
-  const bool all_retraced = move == Move::Retrace && !way_back.drive(T_map_base);
-  if (held || turned || wall || all_retraced || gets_nowhere(T_map_base, now) || now >= move_until_) {
+  const std::optional<robot::Drive> out = move == Move::Out ? way_out_->drive(T_map_base) : std::nullopt;
+  const bool no_way = (move == Move::Retrace && !way_back.drive(T_map_base)) || (move == Move::Out && !out);
+  if (held || turned || wall || no_way || gets_nowhere(T_map_base, now) || now >= move_until_) {
     if (++at_ == moves_.size()) {
       drive_ = {};
       return Result::Failed;
@@ -90,7 +103,7 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
     start_move(T_map_base, now);
     return Result::UnderWay;
   }
-  drive_ = command(T_map_base, trail, way_back);
+  drive_ = out ? *out : command(T_map_base, trail, way_back);
   return Result::UnderWay;
 }
 
@@ -105,6 +118,8 @@ robot::Drive Escape::command(const TPose2D& T_map_base, const std::vector<TPoint
       return {kSpeed, 0.0};
     case Move::Retrace:
       return way_back.drive(T_map_base).value_or(robot::Drive{});
+    case Move::Out:
+      return {};
     case Move::Back:
       break;
   }

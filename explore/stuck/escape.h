@@ -11,12 +11,14 @@
 #include "base/stamp.h"
 #include "explore/stuck/motion_watch.h"
 #include "explore/stuck/way_back.h"
+#include "explore/stuck/way_out.h"
 #include "robot/commands.h"
 
 namespace rubble::explore {
 
 /// How the robot gets free of what holds it: back the way it came for half a metre; where that fails turns and other
 /// directions, then pose by pose the way it came, and all of it again, until it has moved away or everything was tried.
+/// Out of a trap it goes by a plan first, and all the way: half a metre on it would be held again.
 class Escape {
  public:
   enum class Result { UnderWay, Free, Failed };
@@ -27,8 +29,13 @@ class Escape {
 
   explicit Escape(double turn_speed) : turn_speed_(turn_speed) {}
 
-  /// `failures`: escapes in a row that failed just before; each turns by another angle.
-  void begin(Met met, const mrpt::math::TPose2D& T_map_base, Stamp now, int failures = 0);
+  /// `failures`: escapes in a row that failed just before; each turns by another angle. `way_out`: of a trap it is in.
+  void begin(Met met, const mrpt::math::TPose2D& T_map_base, Stamp now, int failures = 0,
+             std::optional<WayOut> way_out = std::nullopt);
+  /// The mapper corrected its past.
+  void follow(const slam::Mapper& mapper) {
+    if (way_out_) way_out_->follow(mapper);
+  }
   /// One tick of `dt` [s] under the command that was in force. `wheels`: what they do, where that is known. `struck`: a
   /// blow stopped the robot. `trail`: where it came along, oldest first; `way_back`: the poses.
   Result step(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled,
@@ -40,9 +47,10 @@ class Escape {
   bool met() const { return met_; }
 
  private:
-  enum class Move { Back, Ahead, Left, Right, Retrace };
+  enum class Move { Back, Ahead, Left, Right, Retrace, Out };
 
   void start_move(const mrpt::math::TPose2D& T_map_base, Stamp now);
+  bool free(const mrpt::math::TPoint2D& p_map) const;
   bool gets_nowhere(const mrpt::math::TPose2D& T_map_base, Stamp now);
   robot::Drive command(const mrpt::math::TPose2D& T_map_base, const std::vector<mrpt::math::TPoint2D>& trail,
                        const WayBack& way_back) const;
@@ -51,6 +59,7 @@ class Escape {
   std::vector<Move> moves_;
   std::size_t at_ = 0;
   double turn_ = 0.0;  ///< of Left and Right [rad]
+  std::optional<WayOut> way_out_;
   MotionWatch watch_;
   mrpt::math::TPose2D begun_;       ///< where the escape began
   mrpt::math::TPose2D move_begun_;  ///< where the present move began

@@ -1,5 +1,7 @@
 #include "explore/stuck/recovery.h"
 
+#include <utility>
+
 #include "base/planar.h"
 
 namespace rubble::explore {
@@ -14,12 +16,12 @@ constexpr int kMostFailures = 10;   ///< in a row
 
 }  // namespace
 
-bool Recovery::begin(Escape::Met met, const TPose2D& T_map_base, Stamp now) {
+bool Recovery::begin(Escape::Met met, const TPose2D& T_map_base, Stamp now, std::optional<WayOut> way_out) {
   ++times_;
   const TPoint2D here = position(T_map_base);
   const bool again = place_ && distance(*place_, here) < kSamePlace;
   place_ = here;
-  escape_.begin(met, T_map_base, now, failed_);
+  escape_.begin(met, T_map_base, now, failed_, std::move(way_out));
   return again;
 }
 

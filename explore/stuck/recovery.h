@@ -29,10 +29,15 @@ class Recovery {
   /// Takes in where the robot is, in every tick.
   void moved(Stamp now, const mrpt::math::TPose2D& T_map_base) { way_back_.add(now, T_map_base); }
   /// The mapper corrected its past.
-  void follow(const slam::Mapper& mapper) { way_back_.follow(mapper); }
+  void follow(const slam::Mapper& mapper) {
+    way_back_.follow(mapper);
+    escape_.follow(mapper);
+  }
 
-  /// Something was met and holds the robot. Says whether the same place held it the last time as well.
-  bool begin(Escape::Met met, const mrpt::math::TPose2D& T_map_base, Stamp now);
+  /// Something was met and holds the robot, which is to go the `way_out` where that is in a trap. Says whether the
+  /// same place held it the last time as well.
+  bool begin(Escape::Met met, const mrpt::math::TPose2D& T_map_base, Stamp now,
+             std::optional<WayOut> way_out = std::nullopt);
   /// One tick of `dt` [s] under the command that was in force. Stuck: everything was tried again and again.
   Result step(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, const StuckWatch& watch, double dt,
               Stamp now, const Trail& trail, const Traversable& floor);

@@ -160,6 +160,69 @@ TEST_F(FeltPallet, APalletThatHeldTheRobotAgainAndAgainIsLeftAloneOnceItIsLeft) 
   EXPECT_EQ(felt.count(after(8.0)), 0);
 }
 
+/// Before its middle lies its own pallet, but a corner has met the edge of the next.
+TEST_F(FeltPallet, WhatACornerMetIsThePalletBeforeThatCorner) {
+  const TPose2D askew{0.75, 0.35, deg_to_rad(-40.0)};
+  const TPoint2D below{0.6, -0.6};
+  ASSERT_TRUE(felt.feel({after(1.0), askew}, false, kRobot, grid));
+  EXPECT_LT(nearest(below), 0.12);
+  EXPECT_GT(nearest({1.8, 0.6}), 0.5) << "the other corner is farther from the edge";
+
+  const std::vector<TPoint2D> stood_there = {below};
+  FeltObstacles flat;
+  EXPECT_FALSE(flat.feel({after(1.0), askew}, false, kRobot, grid, stood_there));
+
+  GridFrame frame;
+  frame.resolution = 0.05;
+  frame.width = frame.height = 100;
+  frame.x0 = frame.y0 = -2.0;
+  OccupancyGrid wall(frame, Occupancy::Free);
+  for (int x = 0; x < frame.width; ++x) wall[{x, frame.cell({0.0, 0.0}).y}] = Occupancy::Occupied;
+  FeltObstacles walled;
+  EXPECT_FALSE(walled.feel({after(1.0), askew}, false, kRobot, grid, {}, &wall)) << "nothing reaches through a wall";
+}
+
+TEST_F(FeltPallet, WhereCornersReachIntoTwoPalletsNeitherIsMeant) {
+  const TPose2D in_the_corner{0.87, 0.87, deg_to_rad(45.0)};
+  const double reach = 0.5 * kRobot.length + 0.1;
+  ASSERT_LT(in_the_corner.composePoint(TPoint2D{reach, 0.0}).x, 1.2) << "the middle of its front is on its own";
+  ASSERT_GT(in_the_corner.composePoint(TPoint2D{reach, -0.2}).x, 1.2);
+  EXPECT_FALSE(felt.feel({after(1.0), in_the_corner}, false, kRobot, grid));
+}
+
+TEST_F(FeltPallet, OnAPalletWithStepsACornerMeetsThatPalletsOwn) {
+  const TPose2D askew{0.75, 0.35, deg_to_rad(-40.0)};
+  EXPECT_FALSE(felt.feel({after(1.0), TPose2D{0.6, 0.6, 0.0}}, false, kRobot, grid)) << "a step on its own pallet";
+  EXPECT_FALSE(felt.feel({after(2.0), askew}, false, kRobot, grid));
+  EXPECT_GT(nearest({0.6, -0.6}), 0.5);
+}
+
+/// It was let go of, and holds the robot: there are steps on it after all.
+TEST_F(FeltPallet, APardonedPalletThatHoldsTheRobotIsATrapAndIsLeftAloneOnceItIsLeft) {
+  const TPose2D on_it{1.8, 0.6, 0.0}, before_it{0.6, 0.6, 0.0};
+  EXPECT_FALSE(felt.trap(on_it)) << "nothing was felt there";
+  ASSERT_TRUE(felt.feel({after(1.0), at_the_edge}, false, kRobot, grid));
+  EXPECT_FALSE(felt.trap(on_it)) << "it was not let go of";
+  ASSERT_TRUE(felt.pardon(after(2.0)));
+  EXPECT_FALSE(felt.trap(before_it));
+  felt.passed(on_it, kRobot);
+  EXPECT_GT(nearest(beyond), 0.5) << "it may be driven on";
+  const auto trap = felt.trap(on_it);
+  ASSERT_TRUE(trap);
+  EXPECT_TRUE(trap->holds({1.25, 1.15}));
+  EXPECT_FALSE(trap->holds({1.15, 0.6}));
+  EXPECT_TRUE(trap->holds({1.15, 0.6}, 0.1));
+  EXPECT_GT(nearest(beyond), 0.5) << "it must get out";
+  felt.passed(before_it, kRobot);
+  EXPECT_LT(nearest(beyond), 0.12);
+  felt.pardon(after(5.0));
+  felt.pardon(after(6.0));
+  EXPECT_LT(nearest(beyond), 0.12) << "it had its pardon";
+  EXPECT_TRUE(felt.forget_once(after(7.0)));
+  EXPECT_EQ(felt.count(after(8.0)), 0);
+  EXPECT_TRUE(felt.trap(on_it)) << "and traps it the next time again";
+}
+
 TEST_F(FeltPallet, WhatIsMetWithinAPalletOrBehindTheRobotStaysThere) {
   EXPECT_FALSE(felt.feel({after(1.0), TPose2D{0.5, 0.6, 0.0}}, false, kRobot, grid)) << "the middle of its own pallet";
   FeltObstacles behind;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "base/angle.h"
 #include "base/planar.h"
@@ -31,11 +32,11 @@ struct Outcome {
 };
 
 Outcome run(Puppet& puppet, Escape::Met met, const std::vector<TPoint2D>& trail, const Escape::RoomFn& room,
-            int failures = 0, const WayBack& came = {}) {
+            int failures = 0, const WayBack& came = {}, std::optional<WayOut> way_out = std::nullopt) {
   Escape escape(deg_to_rad(60.0));
   WayBack way_back = came;
   Stamp now = Stamp::from_seconds(1.0);
-  escape.begin(met, puppet.pose, now, failures);
+  escape.begin(met, puppet.pose, now, failures, std::move(way_out));
   Outcome outcome;
   while (outcome.result == Escape::Result::UnderWay && outcome.seconds < 300.0) {
     way_back.add(now, puppet.pose);
@@ -122,6 +123,40 @@ TEST(Escape, RetracesPoseByPoseWhatLetsItThroughInNoOtherWay) {
   EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, kRoom).result, Escape::Result::Failed) << "the case is too easy";
   EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, kRoom, 1, came).result, Escape::Result::Free);
   EXPECT_TRUE(on_arc(puppet.pose));
+}
+
+/// On a pallet of steps it would be held again half a metre back.
+TEST(Escape, LeavesATrapAllTheWay) {
+  Trap trap;
+  trap.size = 1.2;
+  Puppet puppet;
+  const WayOut way_out(robot::RobotModel{}, trap, {}, {});
+  EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, kRoom, 0, {}, way_out).result, Escape::Result::Free);
+  EXPECT_FALSE(trap.holds({puppet.pose.x, puppet.pose.y}, 0.25)) << "its body is off it as well";
+  puppet.pose = {};
+  EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, kRoom).result, Escape::Result::Free);
+  EXPECT_TRUE(trap.holds({puppet.pose.x, puppet.pose.y})) << "the case is too easy";
+}
+
+/// Where no plan leads out, pose by pose the way it came may.
+TEST(Escape, RetracesItsWayOutOfATrapWithoutAPlan) {
+  Trap trap;
+  trap.size = 1.2;
+  std::vector<TPoint2D> ring;
+  for (double a = 0.0; a < 2.0 * kPi; a += 0.1) ring.push_back({0.5 * std::cos(a), 0.5 * std::sin(a)});
+  WayBack came;
+  for (double x = -1.5; x <= 0.0; x += 0.02) came.add(Stamp::from_seconds(1.0), {x, 0.0, 0.0});
+  Puppet puppet;
+  double aside = 0.0;
+  puppet.may = [&](const TPose2D& p) {
+    aside = std::max(aside, std::abs(p.y));
+    return true;
+  };
+  const Outcome outcome =
+      run(puppet, Escape::Met::Forwards, {}, kRoom, 0, came, WayOut(robot::RobotModel{}, trap, ring, {}));
+  EXPECT_EQ(outcome.result, Escape::Result::Free);
+  EXPECT_LT(puppet.pose.x, -0.85);
+  EXPECT_LT(aside, 0.01);
 }
 
 /// The motors report a stall for some 0.3 s more; the way back is none the worse for that.
