@@ -4,6 +4,7 @@
 #include "explore/plan/frontier.h"
 #include "explore/plan/planner.h"
 #include "explore/plan/traversable.h"
+#include "explore/stuck/way_out.h"
 #include "slam/grid/count_map.h"
 #include "slam/scan/level_scan.h"
 #include "tests/support/explore_oracle.h"
@@ -103,5 +104,21 @@ void WholePlan(benchmark::State& state) {
   }
 }
 BENCHMARK(WholePlan)->Arg(8)->Arg(12)->Unit(benchmark::kMicrosecond);
+
+/// A plan that fails at every margin, on a pallet between walls with room to turn: the dearest that was found.
+void NoWayOut(benchmark::State& state) {
+  Trap trap;
+  trap.size = 1.2;
+  std::vector<mrpt::math::TPoint2D> walls;
+  for (double t = -0.8; t <= 0.8; t += 0.05)
+    for (const double at : {0.72, 0.77})
+      for (const mrpt::math::TPoint2D& p : {mrpt::math::TPoint2D{at, t}, {-at, t}, {t, at}, {t, -at}})
+        walls.push_back(p);
+  for (auto _ : state) {
+    WayOut way_out({}, trap, walls, {});
+    if (way_out.drive({0.0, 0.0, 0.3})) state.SkipWithError("there is a way out");
+  }
+}
+BENCHMARK(NoWayOut)->Unit(benchmark::kMillisecond);
 
 }  // namespace

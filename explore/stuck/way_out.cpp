@@ -30,6 +30,7 @@ constexpr double kStopCost = 0.08;     ///< of a change between drive and turn o
 constexpr double kNearFloor = 0.2;     ///< known floor is where the robot's middle was so near [m]
 constexpr std::array<double, 4> kMargins{0.05, 0.03, 0.015,
                                          0.0};  ///< beside the body, the widest that leaves a way [m]
+constexpr long kMostWork = 60'000'000;          ///< of one plan: obstacles held against poses
 
 constexpr double kOutSpeed = 0.15;                  ///< [m/s]
 constexpr double kGain = 1.2;                       ///< speed per way left [1/s]: the base brakes by 0.3 m/s2 only
@@ -40,14 +41,6 @@ constexpr double kTurnGain = 2.0;                   ///< turn rate per angle lef
 constexpr double kOutTurnSpeed = deg_to_rad(45.0);  ///< [rad/s]
 constexpr double kBackToLine = 0.4;                 ///< beside its line it heads for the point so far on [m]
 constexpr double kMostHeadIn = deg_to_rad(10.0);    ///< but by no more than this [rad]
-
-/// A pose of the search, with how it was come to.
-struct Node {
-  TPose2D pose;
-  int heading = 0;
-  int before = -1;
-  int move = 0;  ///< -1, 1: back, ahead; -2, 2: right, left; 0: the start
-};
 
 }  // namespace
 
@@ -80,15 +73,30 @@ bool WayOut::fits(const TPose2D& T_pallet_base, const std::vector<Keep>& keeps) 
   });
 }
 
-bool WayOut::leaves(const TPose2D& T_pallet_base, bool to_known) const {
-  const TPoint2D p = position(T_pallet_base);
-  if (std::max(std::abs(p.x), std::abs(p.y)) <= 0.5 * trap_.size + kBeside) return false;
-  return !to_known ||
-         std::any_of(known_.begin(), known_.end(), [&](const TPoint2D& q) { return distance(p, q) < kNearFloor; });
+bool WayOut::leaves(const TPose2D& T_pallet_base) const {
+  return std::max(std::abs(T_pallet_base.x), std::abs(T_pallet_base.y)) > 0.5 * trap_.size + kBeside;
 }
 
-/// The first piece of the cheapest way out that keeps `margin` from everything.
-std::optional<WayOut::Piece> WayOut::search(const TPose2D& T_pallet_base, double margin, bool to_known) const {
+bool WayOut::is_known(const TPoint2D& p_pallet) const {
+  return std::any_of(known_.begin(), known_.end(),
+                     [&](const TPoint2D& q) { return distance(p_pallet, q) < kNearFloor; });
+}
+
+/// Of the way that ends in a node of the search.
+WayOut::Piece WayOut::first_piece(const std::vector<Node>& nodes, int last) {
+  const auto node = [&](int i) -> const Node& { return nodes[static_cast<std::size_t>(i)]; };
+  std::vector<int> way;
+  for (int at = last; node(at).before >= 0; at = node(at).before) way.push_back(at);
+  std::reverse(way.begin(), way.end());
+  const int move = node(way.front()).move;
+  const auto end = std::find_if(way.begin(), way.end(), [&](int i) { return node(i).move != move; });
+  const double length = std::abs(move) == 1 ? move * kStride * static_cast<double>(end - way.begin()) : 0.0;
+  return {node(*(end - 1)).pose, std::abs(move) == 2, length};
+}
+
+/// The first pieces of the cheapest ways out that keep `margin` from everything. `work`: obstacles that it may yet hold
+/// against poses.
+WayOut::Ways WayOut::search(const TPose2D& T_pallet_base, double margin, long& work) const {
   // What the body touches as it stands, or nearly, it may not come nearer to.
   std::vector<Keep> keeps;
   for (const TPoint2D& p : obstacles_)
@@ -110,24 +118,21 @@ std::optional<WayOut::Piece> WayOut::search(const TPose2D& T_pallet_base, double
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   open.push({0.0, 0});
   if (const auto start = index(nodes.front())) least[*start] = 0.0;
+  Ways ways;
   while (!open.empty()) {
     const auto [cost, at] = open.top();
     open.pop();
     const Node node = nodes[static_cast<std::size_t>(at)];
     const auto own = index(node);
     if (own && cost > least[*own]) continue;
-    if (leaves(node.pose, to_known)) {
-      int last = at;
-      std::vector<int> way;
-      for (; nodes[static_cast<std::size_t>(last)].before >= 0; last = nodes[static_cast<std::size_t>(last)].before)
-        way.push_back(last);
-      std::reverse(way.begin(), way.end());
-      const auto move = [&](int i) { return nodes[static_cast<std::size_t>(i)].move; };
-      const auto end = std::find_if(way.begin(), way.end(), [&](int i) { return move(i) != move(way.front()); });
-      if (way.empty()) return std::nullopt;
-      const int first = move(way.front());
-      const double length = std::abs(first) == 1 ? first * kStride * static_cast<double>(end - way.begin()) : 0.0;
-      return Piece{nodes[static_cast<std::size_t>(*(end - 1))].pose, std::abs(first) == 2, length};
+    if (leaves(node.pose)) {
+      const bool is_start = node.before < 0;
+      if (!is_start && !ways.anywhere) ways.anywhere = first_piece(nodes, at);
+      if (known_.empty()) break;
+      if (is_known(position(node.pose))) {
+        if (!is_start) ways.to_known = first_piece(nodes, at);
+        break;
+      }
     }
     for (const int move : {1, -1, 2, -2}) {
       Node next = node;
@@ -144,20 +149,28 @@ std::optional<WayOut::Piece> WayOut::search(const TPose2D& T_pallet_base, double
       }
       const auto there = index(next);
       const double to = cost + (std::abs(move) == 1 ? kStride : kOutTurnCost) + (move == node.move ? 0.0 : kStopCost);
-      if (!there || to >= least[*there] || !fits(next.pose, keeps)) continue;
+      if (!there || to >= least[*there]) continue;
+      work -= static_cast<long>(keeps.size());
+      if (work < 0) return ways;
+      if (!fits(next.pose, keeps)) continue;
       least[*there] = to;
       open.push({to, static_cast<int>(nodes.size())});
       nodes.push_back(next);
     }
   }
-  return std::nullopt;
+  return ways;
 }
 
 std::optional<WayOut::Piece> WayOut::plan(const TPose2D& T_pallet_base) const {
-  for (const bool to_known : {true, false})
-    for (const double margin : kMargins)
-      if (const auto piece = search(T_pallet_base, margin, to_known)) return piece;
-  return std::nullopt;
+  long work = kMostWork;
+  std::optional<Piece> anywhere;
+  for (const double margin : kMargins) {
+    const Ways ways = search(T_pallet_base, margin, work);
+    if (ways.to_known) return ways.to_known;
+    if (!anywhere) anywhere = ways.anywhere;
+    if (anywhere && known_.empty()) break;
+  }
+  return anywhere;
 }
 
 /// Nothing at the end of the piece.

@@ -43,6 +43,17 @@ class WayOut {
     bool turns = false;
     double way = 0.0;  ///< of a drive: ahead, or back where negative [m]
   };
+  /// How ways out begin, where there are any: to floor where the robot was before, and wherever else.
+  struct Ways {
+    std::optional<Piece> to_known, anywhere;
+  };
+  /// A pose of the search, with how it was come to.
+  struct Node {
+    mrpt::math::TPose2D pose;
+    int heading = 0;
+    int before = -1;
+    int move = 0;  ///< -1, 1: back, ahead; -2, 2: right, left; 0: the start
+  };
   /// What the body keeps away from, and how far.
   struct Keep {
     mrpt::math::TPoint2D at;  ///< pallet frame [m]
@@ -51,10 +62,12 @@ class WayOut {
 
   std::optional<robot::Drive> along(const mrpt::math::TPose2D& T_pallet_base) const;
   std::optional<Piece> plan(const mrpt::math::TPose2D& T_pallet_base) const;
-  std::optional<Piece> search(const mrpt::math::TPose2D& T_pallet_base, double margin, bool to_known) const;
+  Ways search(const mrpt::math::TPose2D& T_pallet_base, double margin, long& work) const;
+  static Piece first_piece(const std::vector<Node>& nodes, int last);
   bool fits(const mrpt::math::TPose2D& T_pallet_base, const std::vector<Keep>& keeps) const;
   double room(const mrpt::math::TPoint2D& p_base) const;
-  bool leaves(const mrpt::math::TPose2D& T_pallet_base, bool to_known) const;
+  bool leaves(const mrpt::math::TPose2D& T_pallet_base) const;
+  bool is_known(const mrpt::math::TPoint2D& p_pallet) const;
 
   double length_, width_, cut_;  ///< of the body, and of its corners [m]
   Trap trap_;
