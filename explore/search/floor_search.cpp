@@ -29,8 +29,9 @@ bool FloorSearch::look(const Traversable& floor, const TPose2D& T_map_base, doub
 
 /// Says whether it showed anything new.
 bool FloorSearch::look_around(const Traversable& floor, const TPose2D& T_map_base) {
-  const bool anyhow = searched_.look(floor, T_map_base);
-  return squarely_.look(floor, T_map_base) || anyhow;
+  see_floor(floor, config_, T_map_base, view_);
+  const bool anyhow = searched_.look(floor, view_);
+  return squarely_.look(floor, view_) || anyhow;
 }
 
 bool FloorSearch::follow(const slam::Mapper& mapper) {

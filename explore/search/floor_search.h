@@ -94,6 +94,7 @@ class FloorSearch {
   double tight_;
   SearchedArea searched_;
   SearchedArea squarely_;  ///< what was looked at squarely
+  FloorInView view_;       ///< of the look under way
   std::vector<Viewpoint> views_;
   bool views_squarely_ = false;  ///< they are to look squarely from
   Subject subject_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -162,58 +163,78 @@ void SearchedArea::cover(const GridFrame& frame) {
   }
 }
 
-bool SearchedArea::look(const Traversable& floor, const TPose2D& T_map_base) {
-  if (floor.cells.width() == 0) return false;
-  cover(floor.frame());
+void see_floor(const Traversable& floor, const SearchConfig& config, const TPose2D& T_map_base, FloorInView& view) {
+  view.rays.clear();
+  if (floor.cells.width() == 0) return;
   const GridFrame& frame = floor.frame();
-  const Cell shift = shift_from(frame);
-  const double step = 0.7 * frame.resolution;
-  const double turn = step / config_.range;  // neighbouring rays end less than a cell apart
-  const int rays = static_cast<int>(std::ceil(config_.field_of_view / turn));
-  const int steps = static_cast<int>(config_.range / step);
-  const int nearest = static_cast<int>(std::ceil(inspection_.nearest / step));
-  const int farthest = static_cast<int>(inspection_.farthest / step);
+  view.step = 0.7 * frame.resolution;
+  const double turn = view.step / config.range;  // neighbouring rays end less than a cell apart
+  const int rays = static_cast<int>(std::ceil(config.field_of_view / turn));
+  const int steps = static_cast<int>(config.range / view.step);
   const double x0 = (T_map_base.x - frame.x0) / frame.resolution;
   const double y0 = (T_map_base.y - frame.y0) / frame.resolution;
-  // Bytes may alias whatever the members point to: by local pointers nothing is read anew for each cell.
   const Occupancy* const cells = floor.cells.data();
-  const Faces* const once = once_.data();
-  Faces* const twice = twice_.data();
-  const auto width = static_cast<std::size_t>(frame.width);
-  const auto own_width = static_cast<std::size_t>(twice_.width());
-  const std::size_t own_first = twice_.frame().index(shift);
-  way_.resize(static_cast<std::size_t>(steps) + 1);
-  for (std::size_t k = 0; k < way_.size(); ++k) way_[k] = 0.7 * static_cast<double>(k);
-  seen_.resize((static_cast<std::size_t>(rays) + 1) * way_.size());
-  Seen* const seen = seen_.data();
+  view.cells.resize(static_cast<std::size_t>(rays + 1) * static_cast<std::size_t>(steps + 1));
+  Cell* const seen = view.cells.data();
   std::size_t count = 0;
-  Faces news = 0;
+  Cell low{frame.width, frame.height};
+  Cell high{-1, -1};
   for (int i = 0; i <= rays; ++i) {
-    const double bearing = T_map_base.phi + config_.field_of_view * (static_cast<double>(i) / rays - 0.5);
+    const double bearing = T_map_base.phi + config.field_of_view * (static_cast<double>(i) / rays - 0.5);
     const double dx = std::cos(bearing);
     const double dy = std::sin(bearing);
-    const Faces along = faces_along(dx, dy, inspection_.incidence);
+    const std::size_t first = count;
     for (int k = 0; k <= steps; ++k) {
-      const Faces faces = k >= nearest && k <= farthest ? along : kFloor;
-      const double way = way_[static_cast<std::size_t>(k)];
+      const double way = 0.7 * static_cast<double>(k);
       const Cell c{static_cast<int>(std::floor(x0 + way * dx)), static_cast<int>(std::floor(y0 + way * dy))};
-      if (!frame.inside(c)) break;
-      const auto x = static_cast<std::size_t>(c.x);
-      const auto y = static_cast<std::size_t>(c.y);
-      if (cells[y * width + x] != Occupancy::Free) break;
-      const std::size_t own = own_first + y * own_width + x;
-      const auto again = static_cast<Faces>(once[own] & faces & ~twice[own]);
-      if (again != 0) twice[own] = static_cast<Faces>(twice[own] | again);  // `once` is of earlier looks
-      news = static_cast<Faces>(news | again);
-      seen[count++] = {static_cast<std::uint32_t>(own), faces};
+      if (!frame.inside(c) || cells[frame.index(c)] != Occupancy::Free) break;
+      seen[count++] = c;
+      low = {std::min(low.x, c.x), std::min(low.y, c.y)};
+      high = {std::max(high.x, c.x), std::max(high.y, c.y)};
     }
+    view.rays.push_back({dx, dy, first, count});
   }
-  Faces* const record = once_.data();
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto [own, faces] = seen[k];
-    const auto first = static_cast<Faces>(faces & ~record[own]);
-    if (first != 0) record[own] = static_cast<Faces>(record[own] | first);
-    news = static_cast<Faces>(news | first);
+  view.low = low;
+  view.high = high;
+}
+
+bool SearchedArea::look(const Traversable& floor, const FloorInView& view) {
+  if (floor.cells.width() == 0) return false;
+  cover(floor.frame());
+  if (view.rays.back().end == 0) return false;
+  const auto nearest = static_cast<std::size_t>(std::ceil(inspection_.nearest / view.step));
+  const auto beyond = static_cast<std::size_t>(inspection_.farthest / view.step) + 1;
+  // Rays overlap near the robot: what they see is put together in a small window first.
+  const int width = view.high.x - view.low.x + 1;
+  const int height = view.high.y - view.low.y + 1;
+  window_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
+  Faces* const window = window_.data();
+  const auto mark = [&](std::size_t first, std::size_t end, Faces faces) {
+    for (std::size_t k = first; k < end; ++k) {
+      const Cell c = view.cells[k];
+      Faces& seen = window[(c.y - view.low.y) * width + c.x - view.low.x];
+      seen = static_cast<Faces>(seen | faces);
+    }
+  };
+  for (const FloorInView::Ray& ray : view.rays) {
+    const std::size_t near = std::min(ray.first + nearest, ray.end);
+    const std::size_t far = std::max(near, std::min(ray.first + beyond, ray.end));
+    mark(ray.first, near, kFloor);
+    mark(near, far, faces_along(ray.dx, ray.dy, inspection_.incidence));
+    mark(far, ray.end, kFloor);
+  }
+  const Cell shift = shift_from(floor.frame());
+  Faces news = 0;
+  for (int y = 0; y < height; ++y) {
+    const Faces* const seen = window + y * width;
+    Faces* const once = once_.row(view.low.y + y + shift.y) + view.low.x + shift.x;
+    Faces* const twice = twice_.row(view.low.y + y + shift.y) + view.low.x + shift.x;
+    for (int x = 0; x < width; ++x) {
+      const auto again = static_cast<Faces>(once[x] & seen[x] & ~twice[x]);
+      news = static_cast<Faces>(news | again | (seen[x] & ~once[x]));
+      twice[x] = static_cast<Faces>(twice[x] | again);
+      once[x] = static_cast<Faces>(once[x] | seen[x]);
+    }
   }
   return news != 0;
 }

@@ -52,6 +52,19 @@ Faces faces_along(double x, double y, double incidence = Inspection{}.incidence)
 /// What there is to be looked at in a cell.
 Faces faces_of(const Traversable& floor, Cell c);
 
+/// The free floor in view from a pose: in the cone of the victim sensors, in range, nothing occupied or unknown
+/// between.
+struct FloorInView {
+  struct Ray {
+    double dx, dy;           ///< its direction
+    std::size_t first, end;  ///< of its cells
+  };
+  double step = 0.0;  ///< between cells of a ray [m]; neighbours may be the same
+  std::vector<Ray> rays;
+  std::vector<Cell> cells;  ///< those of the rays; what is behind the last one's end is of no use
+  Cell low, high;           ///< the corners of the rectangle that holds them
+};
+
 /// The floor and the wall faces the victim sensors have looked at. Places mapped from afar are known but not searched
 /// ("inner exploration"); a wall passed by at a grazing angle is not either, for what hangs on it or stands behind its
 /// holes was not to be seen. A single look may overlook something, so a place counts after two.
@@ -60,9 +73,8 @@ class SearchedArea {
   explicit SearchedArea(const SearchConfig& config, const Inspection& inspection = {})
       : config_(config), inspection_(inspection) {}
 
-  /// Marks the free floor in view from T_map_base: in the cone, in range, nothing occupied or unknown between. Says
-  /// whether that changed the record.
-  bool look(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
+  /// Marks what is in view of `floor`. Says whether that changed the record.
+  bool look(const Traversable& floor, const FloorInView& view);
   /// Counts `faces` within `radius` of a place that turned out not to be visible as looked at.
   void give_up(const Traversable& floor, const mrpt::math::TPoint2D& place, double radius, Faces faces);
   /// What is left to be looked at in a cell of `floor`.
@@ -81,13 +93,12 @@ class SearchedArea {
   Inspection inspection_;
   Grid<Faces> once_;
   Grid<Faces> twice_;
-  struct Seen {
-    std::uint32_t own;  ///< cell of the records
-    Faces faces;
-  };
-  std::vector<Seen> seen_;   ///< of the look under way
-  std::vector<double> way_;  ///< of each step along a ray [cells]
+  std::vector<Faces> window_;  ///< what the look under way sees of the rectangle around it
 };
+
+/// What the sensors see from T_map_base; `view` is written anew, and keeps its memory.
+void see_floor(const Traversable& floor, const SearchConfig& config, const mrpt::math::TPose2D& T_map_base,
+               FloorInView& view);
 
 /// Whether a wall face of a cell is the back of a niche: walls stand to both sides of it, 0.2 to 0.55 m apart. A box
 /// that is open on one side, as victims lie in (paper, section II.B), looks so from its open side.

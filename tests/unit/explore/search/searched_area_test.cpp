@@ -34,9 +34,15 @@ Cell at_wall(const Traversable& floor, double x) {
   return c;
 }
 
+void look_once(SearchedArea& area, const Traversable& floor, const TPose2D& T_map_base) {
+  FloorInView view;
+  see_floor(floor, SearchConfig{}, T_map_base, view);
+  area.look(floor, view);
+}
+
 void look_twice(SearchedArea& area, const Traversable& floor, const TPose2D& T_map_base) {
-  area.look(floor, T_map_base);
-  area.look(floor, T_map_base);
+  look_once(area, floor, T_map_base);
+  look_once(area, floor, T_map_base);
 }
 
 TEST(SearchedArea, AWallIsInspectedFromTheFront) {
@@ -102,7 +108,7 @@ TEST(SearchedArea, ViewpointsToLookSquarelyFromAreSquarelyBeforeAFace) {
 TEST(SearchedArea, OneLookIsNotEnough) {
   const Traversable floor = room();
   SearchedArea area{SearchConfig{}};
-  area.look(floor, {0.0, 0.5, deg_to_rad(90.0)});
+  look_once(area, floor, {0.0, 0.5, deg_to_rad(90.0)});
   EXPECT_NE(area.missing(floor, at_wall(floor, 0.0)), 0);
 }
 
@@ -192,7 +198,7 @@ TEST(SearchedArea, TheRecordGrowsWithTheMap) {
   for (int y = 0; y < floor.cells.height(); ++y)
     for (int x = 0; x < floor.cells.width(); ++x) grid[{x + 200, y}] = floor.cells[{x, y}];
   const Traversable wider = traversable(std::move(grid));
-  area.look(wider, {0.0, -1.0, deg_to_rad(-90.0)});
+  look_once(area, wider, {0.0, -1.0, deg_to_rad(-90.0)});
   const Cell c = at_wall(floor, 0.0);
   EXPECT_EQ(area.missing(wider, {c.x + 200, c.y}), 0);
 }
