@@ -15,7 +15,6 @@
 #include "base/angle.h"
 #include "base/error.h"
 #include "base/text/input_file.h"
-#include "robot/logs/foreign/file_bytes.h"
 #include "robot/logs/log.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/run.h"
@@ -271,7 +270,7 @@ CaseFiles files_of(const BenchmarkCase& what, const std::vector<std::string>& fo
     if (found.empty() || std::filesystem::is_directory(found)) return;
     // A log on the command line may come through a pipe; what a list names would be waited for unasked.
     InputRules rules;
-    rules.most = robot::kLargestLog;
+    rules.most = std::size_t{1} << 31;  // the readers have smaller ones of their own
     rules.pipes = Pipes::None;
     require_input(found, rules);
   };
