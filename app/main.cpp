@@ -213,7 +213,10 @@ int guarded(int argc, char** argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     return complain(error);
   } catch (const std::bad_alloc&) {
-    std::fputs("rubble: out of memory; use a coarser mapper.resolution_m or a smaller map\n", stderr);
+    std::fputs(
+        "rubble: out of memory; give a smaller file, arena, map or sweep, fewer --workers, or a computer with more of "
+        "it\n",
+        stderr);
     return kFailed;
   } catch (const std::exception& error) {
     return complain(error.what(), kFailed);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -52,11 +54,26 @@ bool is_database(const std::string& path) {
   return std::string(head, sizeof head) == std::string(kMagic, sizeof head);  // the end mark included
 }
 
+/// Its path as SQLite's own words for a file that nobody changes: neither a journal nor a log beside it is opened,
+/// which may be anything in a foreign folder. What `batch merge` wrote has none.
+std::string unchanging(const std::string& path) {
+  std::string uri = "file:";
+  for (const char c : path) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '/' || c == '.' || c == '-' || c == '_';
+    char text[4];
+    std::snprintf(text, sizeof text, "%%%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    uri += plain ? std::string(1, c) : std::string(text);
+  }
+  return uri + "?immutable=1";
+}
+
 class Database {
  public:
   Database(const std::string& path, int flags) : path_(path) {
     sqlite3* opened = nullptr;
-    const int code = sqlite3_open_v2(path.c_str(), &opened, flags, nullptr);
+    const bool reads = (flags & SQLITE_OPEN_READONLY) != 0;
+    const std::string name = reads ? unchanging(fs::absolute(path).string()) : path;
+    const int code = sqlite3_open_v2(name.c_str(), &opened, reads ? flags | SQLITE_OPEN_URI : flags, nullptr);
     db_.reset(opened);
     if (code != SQLITE_OK) fail();
   }

@@ -25,10 +25,12 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
+constexpr std::size_t kLargestResults = std::size_t{8} << 30;
+
 /// The text of a file with a line for each run: a hundred thousand runs take 300 MB.
 std::string read_lines(const std::string& path) {
   InputRules rules;
-  rules.most = std::size_t{8} << 30;
+  rules.most = kLargestResults;
   return read_input(path, rules);
 }
 
@@ -210,6 +212,9 @@ ResultsFile::ResultsFile(const std::string& folder, const std::string& suffix)
   try {
     lock_file(file_, path_);
     timing_file_ = open_to_append(timing_path_);
+    struct stat status {};
+    if (fstat(file_, &status) != 0 || static_cast<std::uintmax_t>(status.st_size) > kLargestResults)
+      throw InputError(path_ + ": is over 8 GB, no batch wrote that; remove it or give another --out");
     std::string text;
     char buffer[65536];
     for (ssize_t got = 0; (got = read(file_, buffer, sizeof buffer)) > 0;)

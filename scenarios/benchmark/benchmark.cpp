@@ -14,6 +14,7 @@
 #include "arenas/files/arena_file.h"
 #include "base/angle.h"
 #include "base/error.h"
+#include "base/text/input_file.h"
 #include "robot/logs/log.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/run.h"
@@ -266,6 +267,12 @@ CaseFiles files_of(const BenchmarkCase& what, const std::vector<std::string>& fo
     if (wanted.empty()) return;
     found = find_in(folders, wanted);
     if (found.empty() && files.missing.empty()) files.missing = wanted;
+    if (found.empty() || std::filesystem::is_directory(found)) return;
+    // A log on the command line may come through a pipe; what a list names would be waited for unasked.
+    InputRules rules;
+    rules.most = std::size_t{1} << 31;  // the readers have smaller ones of their own
+    rules.pipes = Pipes::None;
+    require_input(found, rules);
   };
   find(what.log, files.log);
   find(what.relations, files.relations);

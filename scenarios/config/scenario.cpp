@@ -9,6 +9,7 @@
 #include "base/angle.h"
 #include "base/error.h"
 #include "base/text/file_name.h"
+#include "base/text/input_file.h"
 #include "base/text/number_text.h"
 #include "base/text/words.h"
 #include "base/yaml/binder.h"
@@ -131,6 +132,11 @@ void read_arena(const YamlMap& root, const std::string& path, Scenario& s) {
     s.arena_file = (file.is_absolute() ? file : std::filesystem::path(path).parent_path() / file).string();
     if (!std::filesystem::exists(s.arena_file))
       arena.fail("file", "there is no arena file '" + s.arena_file + "'; the path is relative to the scenario file");
+    // A file that names a stream of this terminal would wait at it.
+    InputRules rules;
+    rules.thing = "an arena file";
+    rules.pipes = Pipes::None;
+    require_input(s.arena_file, rules);
     return;
   }
   const YamlMap generate = arena.map("generate");

@@ -575,6 +575,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
     // A laser that is not levelled does not swing, however late its unit is.
     if (!file.settings.levelling.on) settings.safety.levelling_answer = std::numeric_limits<double>::infinity();
     robot::RealRobot real(settings, *lidar, &box);
+    folder.keep_unfinished();
     robot::RecordingRobot recorded(real, folder.file("log.rlog"), resolved_yaml(file.settings));
     const StoppedAtLast stopped(real, options, unheard);
     Driver driver(file, options, folder, real, core, *lidar);

@@ -1,9 +1,11 @@
 #include "scenarios/hardware/emulation.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <memory>
 #include <type_traits>
@@ -263,6 +265,9 @@ class Emulation {
     for (; truth_written_ < truth.size(); ++truth_written_)
       truth_ << tum_line({on_host(truth[truth_written_].stamp), truth[truth_written_].pose}) << '\n';
     truth_.flush();
+    if (!truth_)
+      throw RunError(options_.truth + ": cannot be written (" + std::strerror(errno) +
+                     "); check the folder and the free space");
   }
 
   const EmulateOptions& options_;

@@ -147,7 +147,7 @@ void finish(RunReport& report, scoring::Evidence& evidence, RunFolder& folder, c
   *report.score = score_json(evidence);
   folder.save_hashes(without_machine(*report.score).dump(2));
   folder.write("score.json", report.score->dump(2) + "\n");
-  folder.close();
+  folder.close(!report.interrupted && report.failure.empty());
   const std::filesystem::path parent = std::filesystem::path(folder.path()).parent_path().filename();
   if (options.link_latest && (options.out.empty() || parent == "runs")) folder.link_latest();
   report.folder = folder.path();

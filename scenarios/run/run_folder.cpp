@@ -22,6 +22,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPartial = ".partial";
+constexpr const char* kReplaced = ".replaced";     // the older run, whole
+constexpr const char* kMoving = ".replaced.part";  // parts of it, the others not moved yet
+
+bool is_own_folder(const fs::path& folder) {
+  const fs::path name = folder.filename();
+  return (name == kPartial || name == kReplaced || name == kMoving) &&
+         fs::symlink_status(folder).type() == fs::file_type::directory;
+}
 
 [[noreturn]] void cannot_write(const std::string& path, const std::string& why) {
   throw RunError(path + ": cannot be written (" + why + "); check the folder, its permissions and the free space");
@@ -87,17 +95,17 @@ std::vector<std::string> files_of_run(const std::string& path) {
   bool begun = false, empty = true;
   for (const auto& entry : fs::directory_iterator(path)) {
     const std::string name = entry.path().filename().string();
-    empty = empty && name == kPartial;
+    empty = empty && is_own_folder(entry.path());
     begun = begun || name == "estimate.tum";
   }
+  begun = begun || fs::exists(fs::path(path) / kMoving / "estimate.tum");
   if (!begun && !empty)
     throw InputError(path +
                      ": is not a run folder (no estimate.tum), so --force does not replace it; give another --out");
   std::vector<std::string> old;
   const auto look = [&](const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder)) {
-      const bool is_partial = folder == path && entry.path().filename() == kPartial;
-      if (is_partial && entry.symlink_status().type() == fs::file_type::directory) continue;
+      if (folder == path && is_own_folder(entry.path())) continue;
       if (!is_ours(entry.path().filename().string()) || entry.symlink_status().type() == fs::file_type::directory)
         throw InputError(entry.path().string() + ": is not of a run, so --force does not replace its folder; move it " +
                          "away or give another --out");
@@ -113,7 +121,11 @@ std::vector<std::string> files_of_run(const std::string& path) {
     look(partial);
     old.push_back(partial.string());
   }
-  return old;
+  // Nothing else may be in what close() removes.
+  const std::vector<std::string> now = old;
+  for (const char* name : {kReplaced, kMoving})
+    if (const fs::path aside = fs::path(path) / name; is_own_folder(aside)) look(aside);
+  return now;
 }
 
 std::string next_run_folder(const std::string& parent, const std::string& name, std::uint64_t seed) {
@@ -138,15 +150,60 @@ RunFolder::RunFolder(const std::string& path, bool replace, const std::string& r
     throw InputError(path + ": is a file; give another folder with --out");
   if (fs::is_directory(path, error) && !fs::is_empty(path, error)) {
     if (!replace) throw InputError(path + ": exists and is not empty; " + remedy);
-    for (const std::string& old : files_of_run(path)) fs::remove(old);
+    set_aside(files_of_run(path));
+    replaces_ = true;
   }
   fs::create_directories(file(kPartial), error);
-  if (error)
+  if (error) {
+    put_back();
     throw InputError(path + ": cannot be created (" + error.message() + "); give a writable folder with --out");
+  }
   estimate_.file.open(file("estimate.tum"));
   live_.file.open(file("estimate_live.tum"));
-  if (!estimate_.file || !live_.file)
+  if (!estimate_.file || !live_.file) {
+    put_back();
     throw InputError(path + ": cannot be written to; give a writable folder with --out");
+  }
+}
+
+RunFolder::~RunFolder() {
+  if (!keeps_unfinished_) put_back();
+}
+
+/// Renames only, so a kill loses nothing: while the older run is moved its parts are in two places, and the next
+/// command brings them together. Where an older run waits already, what lies above it was killed and is not worth it.
+void RunFolder::set_aside(const std::vector<std::string>& old) const {
+  const fs::path moving = file(kMoving), aside = file(kReplaced);
+  if (is_own_folder(aside)) {
+    for (const std::string& name : old) fs::remove(name);
+    return;
+  }
+  fs::create_directory(moving);
+  for (const std::string& name : old) {
+    const bool is_partial =
+        fs::path(name).filename() == kPartial || fs::path(name).parent_path().filename() == kPartial;
+    if (is_partial)
+      fs::remove(name);
+    else
+      fs::rename(name, moving / fs::path(name).filename());
+  }
+  fs::rename(moving, aside);
+}
+
+void RunFolder::put_back() noexcept {
+  if (!replaces_) return;
+  replaces_ = false;
+  std::error_code error;
+  try {
+    const auto& names = run_folder_names();
+    for (const std::string& name : names) fs::remove(file(name), error);
+    fs::remove_all(file(kPartial), error);
+    for (const auto& entry : fs::directory_iterator(file(kReplaced)))
+      fs::rename(entry.path(), fs::path(path_) / entry.path().filename(), error);
+    fs::remove(file(kReplaced), error);
+  } catch (const std::exception&) {
+    return;  // it stays where it waits
+  }
 }
 
 void RunFolder::write(const std::string& name, const std::string& content) const {
@@ -240,9 +297,11 @@ void RunFolder::save_hashes(const std::string& score_text) const {
   write("hashes.json", hashes.dump(2) + "\n");
 }
 
-void RunFolder::close() const {
+void RunFolder::close(bool whole) {
   std::error_code error;
   fs::remove_all(file(kPartial), error);
+  if (replaces_ && whole) fs::remove_all(file(kReplaced), error);
+  replaces_ = false;
 }
 
 void RunFolder::link_latest() const {

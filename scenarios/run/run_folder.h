@@ -25,9 +25,14 @@ class RunFolder {
   /// Creates the folder. An existing one with content is refused unless `replace` is set and it is a run folder: all of
   /// its files have names that rubble gives (run_folder_names()), and none of them was read by this process. So what is
   /// read for a run is read before. Throws InputError (cannot be created, not empty).
-  /// `remedy`: what the user may do about a folder that is not empty.
+  /// What it takes the place of waits in its `.replaced` until close() and is put back when this ends before that;
+  /// after a kill it is still there. `remedy`: what the user may do about a folder that is not empty.
   RunFolder(const std::string& path, bool replace,
             const std::string& remedy = "give another folder with --out, or --force to replace it");
+
+  ~RunFolder();
+  RunFolder(const RunFolder&) = delete;
+  RunFolder& operator=(const RunFolder&) = delete;
 
   const std::string& path() const { return path_; }
   std::string file(const std::string& name) const { return path_ + "/" + name; }
@@ -50,8 +55,10 @@ class RunFolder {
   void save_truth(const arenas::Arena& arena, const OccupancyGrid& truth) const;
   /// hashes.json: SHA-256 of each deterministic artefact that exists, plus `score` over the given text.
   void save_hashes(const std::string& score_text) const;
-  /// Nothing is written any more.
-  void close() const;
+  /// Nothing is written any more. What this took the place of goes, but for `whole` false: the run ended early.
+  void close(bool whole = true);
+  /// What is written cannot be made again: it stays too when this ends before close().
+  void keep_unfinished() { keeps_unfinished_ = true; }
   /// Lets `latest` beside the folder point to it, where links can be made.
   void link_latest() const;
 
@@ -62,12 +69,16 @@ class RunFolder {
     std::size_t written = 0;  ///< poses
   };
   void append(Growing& growing, const Trajectory& trajectory);
+  void set_aside(const std::vector<std::string>& old) const;
+  void put_back() noexcept;
 
   std::string path_;
   Growing truth_;
   Growing estimate_;
   Growing live_;
   std::uint64_t revision_ = 0;  ///< of the mapper, that estimate.tum shows
+  bool replaces_ = false;       ///< and did not end yet
+  bool keeps_unfinished_ = false;
 };
 
 /// `parent/name-seedN-001` with the first free number.

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/text/number_text.h"
 #include "base/text/text_file.h"
+#include "base/text/words.h"
 
 namespace rubble::scoring {
 namespace {
@@ -135,7 +136,7 @@ std::vector<Relation> read_relations(const std::string& path) {
     std::vector<double> values;
     for (std::string field; fields >> field;) {
       const auto value = parse_number(field);
-      if (!value) throw InputError(at(path, number, 1, "'" + field + "' is no number"));
+      if (!value) throw InputError(at(path, number, 1, in_quotes(field) + " is no number"));
       values.push_back(*value);
     }
     if (values.empty()) continue;

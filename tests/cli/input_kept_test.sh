@@ -131,6 +131,24 @@ prompt "is a pipe" "$rubble" check sweep.yaml --baseline fifo.json
 prompt "is a pipe" "$rubble" map run/log.rlog --continue fifo.rmap
 prompt "is a pipe" "$rubble" export fifo.rmap out.g2o
 prompt "is a pipe" "$rubble" calibrate fifo.yaml --log run --out c.yaml
+# What a file names is no stream of the terminal, and what lies beside one is not opened.
+for stream in /dev/stdin /dev/fd/0; do
+  printf 'name: p\narena: {file: %s}\n' $stream >names.yaml
+  prompt "is a pipe" "$rubble" run names.yaml < <(sleep 60)
+  printf 'include: [{file: %s, at: [0, 0]}]\n' $stream >includes.yaml
+  prompt "is no regular file" "$rubble" arena includes.yaml < <(sleep 60)
+done
+printf 'name: l\nmappers: [{kind: paper}]\ncases: [{name: a, log: fifo.log}]\n' >names.yaml
+mkfifo fifo.log && prompt "is a pipe" "$rubble" benchmark names.yaml && rm fifo.log
+mkfifo all.sqlite-journal all.sqlite-wal
+timeout -s KILL 20 "$rubble" batch report all.sqlite >/dev/null 2>err.txt || fail "a pipe beside a database: $?, $(cat err.txt)"
+truncate -s 9G long.jsonl && mkdir long && mv long.jsonl long/results.jsonl
+(instrumented || ulimit -v 4000000; prompt "is over 8 GB" "$rubble" batch sweep.yaml --out long; exit $((failures > 0))) || failures=1
+expect_exit 4 "/dev/full: cannot be written" "$rubble" emulate s.yaml --urg tcp:127.0.0.1:0 --truth /dev/full --time-limit 3
+(yes 1 | head -c 3000000 | tr '\n' 1; echo x) >relations.txt
+printf 'name: l\nmappers: [{kind: paper}]\ncases: [{name: a, log: run/log.rlog, relations: relations.txt}]\n' >names.yaml
+"$rubble" benchmark names.yaml >out.txt 2>err.txt
+[[ $(cat out.txt err.txt | wc -c) -lt 5000 ]] || fail "a line of megabytes is quoted whole"
 mkfifo w.png && printf '1\n' | timeout -s KILL 20 "$rubble" plan run/map.tif --out w.png 2>err.txt >out.txt
 [[ $? == 4 ]] && grep -q "nobody reads" err.txt || fail "a pipe that nobody reads as output: $(cat err.txt)"
 

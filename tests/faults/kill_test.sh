@@ -32,6 +32,22 @@ for i in $(seq "$moments"); do
 done
 rm -rf mapped
 "$rubble" map whole/log.rlog --out mapped >/dev/null || fail "map after the kills ended with $?"
+"$rubble" map whole/log.rlog --out mapped-whole >/dev/null || fail "the undisturbed map ended with $?"
+cmp -s mapped/hashes.json mapped-whole/hashes.json || fail "map after the kills has another result"
+
+# A run that --force replaces is lost only to one that is whole.
+find whole -type f -printf '%P\n' | sort >names.txt
+for i in $(seq "$moments"); do
+  rm -rf older && cp -r whole older
+  strike "$i" KILL "$rubble" run s.yaml --seed 9 --out older --force
+  place=older
+  [[ ! -d older/.replaced.part && ! -d older/.replaced ]] || place="older/.replaced.part older/.replaced older"
+  while read -r name; do
+    kept=
+    for folder in $place; do cmp -s "whole/$name" "$folder/$name" && kept=1; done
+    [[ $kept ]] || [[ ! -d older/.replaced && -s older/hashes.json ]] || fail "--force, moment $i: the older $name is lost"
+  done <names.txt
+done
 
 printf 'name: k\nscenarios: [s.yaml]\nseeds: 1-4\n' >sweep.yaml
 "$rubble" batch sweep.yaml --out batch-whole --workers 2 >/dev/null || fail "the undisturbed batch ended with $?"

@@ -115,8 +115,75 @@ TEST_F(RunFolderFiles, OnlyWhatARunWritesIsReplaced) {
   EXPECT_THROW(RunFolder(path("run"), true), InputError) << "what is read";
   EXPECT_EQ(read(run + "log.rlog"), "old");
   std::filesystem::remove(run + "map.rmap");
-  const RunFolder again(path("run"), true);
+  RunFolder again(path("run"), true);
   EXPECT_FALSE(std::filesystem::exists(run + "log.rlog"));
+  again.close();
+  EXPECT_FALSE(std::filesystem::exists(run + ".replaced"));
+}
+
+/// What a run left, with words of its own in each file.
+void write_older_run(const std::string& run) {
+  std::filesystem::create_directories(run);
+  for (const std::string& name : run_folder_names()) std::ofstream(run + name) << "older " << name;
+}
+
+void expect_older_run(const std::string& run) {
+  for (const std::string& name : run_folder_names()) {
+    std::ifstream file(run + name);
+    std::string content;
+    std::getline(file, content);
+    EXPECT_EQ(content, "older " + name);
+  }
+}
+
+TEST_F(RunFolderFiles, ARunThatFailsLeavesTheOneItWouldReplace) {
+  const std::string run = path("run") + "/";
+  write_older_run(run);
+  {
+    RunFolder fails(path("run"), true);
+    fails.write("map.yaml", "newer");
+  }
+  expect_older_run(run);
+  EXPECT_FALSE(std::filesystem::exists(run + ".replaced"));
+}
+
+TEST_F(RunFolderFiles, ARunThatWasEndedOrKilledKeepsTheOlderOneBeside) {
+  const std::string run = path("run") + "/";
+  write_older_run(run);
+  {
+    RunFolder ended(path("run"), true);
+    ended.write("map.yaml", "newer");
+    ended.close(false);
+  }
+  expect_older_run(run + ".replaced/");
+  EXPECT_EQ(read(run + "map.yaml"), "newer");
+  {
+    // What lies above the older run is not whole: it goes, and the older one still waits for one that is.
+    RunFolder fails(path("run"), true);
+    EXPECT_FALSE(std::filesystem::exists(run + "map.yaml"));
+    expect_older_run(run + ".replaced/");
+  }
+  expect_older_run(run);
+}
+
+TEST_F(RunFolderFiles, AnOlderRunThatWasHalfSetAsideIsWholeAgain) {
+  const std::string run = path("run") + "/";
+  write_older_run(run);
+  std::filesystem::create_directory(run + ".replaced.part");
+  for (const std::string name : {"estimate.tum", "map.tif"})
+    std::filesystem::rename(run + name, run + ".replaced.part/" + name);
+  { RunFolder fails(path("run"), true); }
+  expect_older_run(run);
+}
+
+TEST_F(RunFolderFiles, SomebodysFileBesideAnOlderRunIsKept) {
+  const std::string run = path("run") + "/";
+  write_older_run(run);
+  std::filesystem::create_directory(run + ".replaced");
+  std::ofstream(run + ".replaced/thesis.txt") << "mine";
+  EXPECT_THROW(RunFolder(path("run"), true), InputError);
+  expect_older_run(run);
+  EXPECT_EQ(read(run + ".replaced/thesis.txt"), "mine");
 }
 
 }  // namespace
