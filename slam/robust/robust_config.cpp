@@ -85,6 +85,7 @@ void bind(Binder& b, RobustConfig& c) {
     l.number("apart_path_m", c.loop.apart_path, 0.0, 100.0);
     l.number("astray_contradiction", c.loop.astray_contradiction, 0.0, 2.0);
     l.number("astray_window_m", c.loop.astray_window, 0.05, 10.0);
+    l.number("astray_angle_rad", c.loop.astray_angle, 0.0, kPi);
     l.number("scaling", c.loop.scaling, 0.1, 1e6);
   });
 }

@@ -128,7 +128,8 @@ void LoopCloser::look(Work* work) {
     if (old.path < config_.least_path && !strayed) continue;
     const double window = std::max(usual_window(old.path), strayed ? config_.astray_window : 0.0);
     if (old.away >= config_.reach + window) continue;
-    const double angle = std::min(config_.largest_angle, config_.angle + config_.angle_per_m * old.path);
+    const double angle = std::max(std::min(config_.largest_angle, config_.angle + config_.angle_per_m * old.path),
+                                  strayed ? config_.astray_angle : 0.0);
     candidates.push_back({old.away, {Kind::Wide, i, old.frame, window, angle, old.path}});
   }
   std::stable_sort(candidates.begin(), candidates.end(),

@@ -47,7 +47,8 @@ struct LoopConfig {
   double near_window = 0.20;             ///< of edges to old key frames where the graph is tight [m]
   double astray_contradiction =
       0.25;  ///< share of points that old key frames around contradict in one that strayed; above 1: never
-  double astray_window = 1.6;  ///< half width of the search for it at least [m]
+  double astray_window = 1.6;  ///< half width of the search for it at least [m] ...
+  double astray_angle = 0.75;  ///< ... and of its heading: less than half a quarter turn, which walls leave open [rad]
 };
 
 struct LoopCounts {

@@ -154,14 +154,18 @@ void LocalTracker::hold_leap(const ExpectedMotion& motion, const PosePrior& odom
     if (!motion.again) leap_ = {};
     return;
   }
-  ScanFit stay = fit_scan(surfels_, points_, odometry.pose, odometry, {}, work);
+  // A robot that does not turn as its wheels say has not leapt for that: the scan tells its heading.
+  PosePrior held = odometry;
+  held.information(2, 2) *= kDoubt;
+  ScanFit stay = fit_scan(surfels_, points_, held.pose, held, {}, work);
   if (carried && motion.doubt >= kDoubted) {
-    const PosePrior on{*carried, odometry.information};
+    const PosePrior on{*carried, held.information};
     const ScanFit other = fit_scan(surfels_, points_, on.pose, on, {}, work);
     if (other.cost < stay.cost) stay = other;
   }
   if (leaps(stay.pose - T_frame_last, motion)) {
-    const PosePrior firm{odometry.pose, kFirm * odometry.information};
+    PosePrior firm{odometry.pose, kFirm * odometry.information};
+    firm.information(2, 2) = held.information(2, 2);
     stay = fit_scan(surfels_, points_, firm.pose, firm, {}, work);
     if (leaps(stay.pose - T_frame_last, motion)) return;
   }
