@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "robot/model.h"
 
@@ -25,6 +27,12 @@ std::array<Point, 8> body_outline(const RobotModel& model, double skin = 0.0) {
   const auto cut = static_cast<Number>(0.1 * model.length);
   return {Point{x, y - cut},  Point{x - cut, y},  Point{cut - x, y},  Point{-x, y - cut},
           Point{-x, cut - y}, Point{cut - x, -y}, Point{x - cut, -y}, Point{x, cut - y}};
+}
+
+/// How far a point (x, y), seen from the base, is from the body, below 0: inside it. Beside its corners a little less.
+inline double to_body(const RobotModel& model, double x, double y) {
+  const double ahead = std::abs(x) - 0.5 * model.length, aside = std::abs(y) - 0.5 * model.width;
+  return std::max({ahead, aside, (ahead + aside + 0.1 * model.length) * std::sqrt(0.5)});
 }
 
 }  // namespace rubble::robot

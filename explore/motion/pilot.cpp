@@ -14,7 +14,8 @@ Pilot::Pilot(const robot::RobotModel& model, const FollowerConfig& config)
     : follower_(model, config),
       watch_(model),
       turn_(model, config.turn_speed),
-      pivot_(model.swing_radius() + kCornerRoom) {}
+      pivot_(model.swing_radius() + kCornerRoom),
+      corners_(model) {}
 
 void Pilot::turn(double angle, TurnFor purpose, Stamp now) {
   turn_.begin(angle, now);
@@ -34,14 +35,26 @@ void Pilot::stop() {
   turn_.end();
 }
 
-Pilot::Step Pilot::step(const mrpt::math::TPose2D& T_map_base, double turned, const Traversable& floor, Stamp now) {
+/// A turn on the spot stays on it, and its corners off the walls.
+CornerRoom::Kept Pilot::kept(const robot::Drive& told, const mrpt::math::TPose2D& T_map_base,
+                             const robot::Drive& moving, const Traversable& floor,
+                             const std::vector<mrpt::math::TPoint2D>& hits) {
+  const robot::Drive drive = pivot_.keep(told, T_map_base, floor);
+  if (told.v == 0.0 && told.w != 0.0) return corners_.keep(drive, moving, T_map_base, floor, hits);
+  corners_.end();
+  return {drive};
+}
+
+Pilot::Step Pilot::step(const mrpt::math::TPose2D& T_map_base, double turned, const robot::Drive& moving,
+                        const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits, Stamp now) {
   if (turning()) {
     const std::optional<robot::Drive> drive = turn_.turn(turned, now);
-    return {pivot_.keep(drive.value_or(robot::Drive{}), T_map_base, floor), !drive,
-            !drive && purpose_ == TurnFor::Place};
+    const CornerRoom::Kept turn = kept(drive.value_or(robot::Drive{}), T_map_base, moving, floor, hits);
+    return {turn.drive, turn.brakes, !drive, !drive && purpose_ == TurnFor::Place};
   }
   if (watch_.waits(now)) return {};
-  return {watch_.limited(pivot_.keep(follower_.drive(T_map_base), T_map_base, floor), now)};
+  const CornerRoom::Kept way = kept(follower_.drive(T_map_base), T_map_base, moving, floor, hits);
+  return {watch_.limited(way.drive, now), way.brakes};
 }
 
 }  // namespace rubble::explore

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/stamp.h"
+#include "explore/motion/corner_room.h"
 #include "explore/motion/look_around.h"
 #include "explore/motion/path_watch.h"
 #include "explore/motion/pivot.h"
@@ -44,11 +45,14 @@ class Pilot {
 
   struct Step {
     robot::Drive drive;       ///< for the tick to come
+    bool brakes = false;      ///< stops as hard as the base can instead
     bool turn_ended = false;  ///< in this tick: done, or it took too long
     bool faced = false;       ///< likewise, of a turn to face a place
   };
-  /// One tick in which the robot turned by `turned` [rad].
-  Step step(const mrpt::math::TPose2D& T_map_base, double turned, const Traversable& floor, Stamp now);
+  /// One tick in which the robot turned by `turned` [rad]. `moving`: what its wheels do; `hits`: of the
+  /// newest scan [m, map frame].
+  Step step(const mrpt::math::TPose2D& T_map_base, double turned, const robot::Drive& moving, const Traversable& floor,
+            const std::vector<mrpt::math::TPoint2D>& hits, Stamp now);
 
   /// Whether the path should be checked now; that then counts as done.
   bool check_due(Stamp now) { return watch_.due(now) && !arrived() && !turning(); }
@@ -65,11 +69,15 @@ class Pilot {
   void slow_down(Stamp now) { watch_.slow_down(now); }
 
  private:
+  CornerRoom::Kept kept(const robot::Drive& told, const mrpt::math::TPose2D& T_map_base, const robot::Drive& moving,
+                        const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits);
+
   PathFollower follower_;
   PathWatch watch_;
   LookAround turn_;
   TurnFor purpose_ = TurnFor::View;
   Pivot pivot_;
+  CornerRoom corners_;
   double d_min_ = 0.0;  ///< that the path keeps [m]
 };
 

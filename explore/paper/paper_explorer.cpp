@@ -160,7 +160,10 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
   }
   if (agenda_.due(mapper.map(), now_)) replan(mapper);
   if (finished()) return {};
-  const Pilot::Step step = pilot_.step(pose_, turned_, floor_, now_);
+  const Pilot::Step step =
+      pilot_.step(pose_, turned_, stuck_watch_.wheels().value_or(commanded_), floor_, mapper.last_hits(), now_);
+  brakes_ = step.brakes;
+  if (brakes_) stuck_watch_.braked(now_);
   if (step.turn_ended) agenda_.plan_soon();
   // A turn in a tight place wanders off its viewpoint; driving back to it and turning again would never end.
   if (step.faced) victims_.search().start_dwell_as_turned(now_);
@@ -223,6 +226,7 @@ Drive PaperExplorer::drive_straight_on(const slam::Mapper& mapper) {
     return {};
   }
   brakes_ = !straight_on_.room(pose_, floor_, mapper.last_hits());
+  if (brakes_) stuck_watch_.braked(now_);
   if (const auto drive = straight_on_.drive(pose_, now_); drive && !brakes_) return *drive;
   stage_ = Stage::OnTheWay;
   agenda_.plan_soon();

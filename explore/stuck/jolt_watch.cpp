@@ -38,4 +38,6 @@ void JoltWatch::update(const robot::Inputs& inputs) {
   }
 }
 
+void JoltWatch::braked(Stamp now) { deaf_until_ = now + kDeaf; }
+
 }  // namespace rubble::explore

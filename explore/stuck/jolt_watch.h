@@ -23,6 +23,8 @@ class JoltWatch {
 
   /// Takes in what was felt in one tick.
   void update(const robot::Inputs& inputs);
+  /// Its own brake stops the body about now.
+  void braked(Stamp now);
   /// A blow against the way the wheels turn ended in this tick; it is told once.
   bool struck() const { return struck_; }
   /// It came from ahead, else from behind.

@@ -1,11 +1,15 @@
 #include "explore/stuck/stuck_watch.h"
 
+#include <cmath>
+
 namespace rubble::explore {
 namespace {
 
 constexpr double kHeld = 0.5;           ///< a tick so long: the robot was held, a device was away [s]
 constexpr double kPatience = 2.0;       ///< then its motors may still be off for a while [s]
 constexpr double kOdometryLate = 0.25;  ///< the wheels are silent [s]
+
+constexpr double kDrives = 0.15;  ///< a robot that turns and is slower only turns [m/s]
 
 }  // namespace
 
@@ -32,12 +36,16 @@ std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_ma
   if (odometry_at_ && now - *odometry_at_ > kOdometryLate) motion_.reset();
   const bool stuck =
       motion_.stuck(T_map_base, now < patient_until_ ? robot::Drive{} : commanded, stalled_, dt, wheels_);
-  if (!tilt_.too_steep() && !jolt_.struck() && !stuck) return std::nullopt;
+  // Wheels that are dragged aside as the body turns jolt it too.
+  const bool turns_slowly =
+      commanded.w != 0.0 && std::abs(commanded.v) < kDrives && wheels_ && std::abs(wheels_->v) < kDrives;
+  const bool blow = jolt_.struck() && !turns_slowly;
+  if (!tilt_.too_steep() && !blow && !stuck) return std::nullopt;
   const Hold hold{tilt_.too_steep() ? "it leans too much here"
                   : jolt_.struck()  ? "a blow stops it"
                   : stalled_        ? "the motors stall"
                                     : "it does not move",
-                  met(commanded), !tilt_.too_steep() && !jolt_.struck() && !stalled_ && !motion_.rocking()};
+                  met(commanded), !tilt_.too_steep() && !blow && !stalled_ && !motion_.rocking()};
   motion_.reset();
   tilt_.reset();
   return hold;

@@ -38,6 +38,9 @@ class StuckWatch {
   /// The robot stands by its own will, or has got free: its motion is watched anew.
   void begin_anew() { motion_.reset(); }
 
+  /// The robot brakes as hard as it can: what stops it is no blow.
+  void braked(Stamp now) { jolt_.braked(now); }
+
   /// The motors report a stall.
   bool stalled() const { return stalled_; }
   /// What the wheels do, where that is known.

@@ -12,6 +12,7 @@
 #include "base/angle.h"
 #include "base/planar.h"
 #include "explore/plan/path_follower.h"
+#include "robot/body.h"
 
 namespace rubble::explore {
 namespace {
@@ -46,11 +47,11 @@ constexpr double kMostHeadIn = deg_to_rad(10.0);    ///< but by no more than thi
 
 WayOut::WayOut(const robot::RobotModel& model, const Trap& trap, const std::vector<TPoint2D>& obstacles,
                const std::vector<TPoint2D>& known)
-    : length_(model.length), width_(model.width), cut_(0.1 * model.length), trap_(trap) {
+    : model_(model), trap_(trap) {
   const TPose2D T_map_pallet = trap_.T_map_pallet();
   const double half = 0.5 * trap.size;
   for (const TPoint2D& p : obstacles)
-    if (trap_.holds(p, kWindow + 0.5 * length_)) obstacles_.push_back(T_map_pallet.inverseComposePoint(p));
+    if (trap_.holds(p, kWindow + 0.5 * model_.length)) obstacles_.push_back(T_map_pallet.inverseComposePoint(p));
   for (const TPoint2D& p : known)
     if (trap_.holds(p, kWindow + kNearFloor)) known_.push_back(T_map_pallet.inverseComposePoint(p));
   for (const double reach : {half, half - kStub})
@@ -58,15 +59,11 @@ WayOut::WayOut(const robot::RobotModel& model, const Trap& trap, const std::vect
       obstacles_.push_back(p);
 }
 
-/// How far a point is from the body; below 0: inside it. Beside its corners a little less.
-double WayOut::room(const TPoint2D& p_base) const {
-  const double x = std::abs(p_base.x) - 0.5 * length_, y = std::abs(p_base.y) - 0.5 * width_;
-  return std::max({x, y, (x + y + cut_) * std::sqrt(0.5)});
-}
+double WayOut::room(const TPoint2D& p_base) const { return robot::to_body(model_, p_base.x, p_base.y); }
 
 bool WayOut::fits(const TPose2D& T_pallet_base, const std::vector<Keep>& keeps) const {
   const PlanarTransform T(T_pallet_base);
-  const double far = 0.5 * length(length_, width_) + kMargins.front();
+  const double far = 0.5 * length(model_.length, model_.width) + kMargins.front();
   return std::all_of(keeps.begin(), keeps.end(), [&](const Keep& keep) {
     const double dx = keep.at.x - T_pallet_base.x, dy = keep.at.y - T_pallet_base.y;
     return dx * dx + dy * dy > far * far || room(T.turned_back(dx, dy)) >= keep.away;

@@ -69,7 +69,7 @@ class WayOut {
   bool leaves(const mrpt::math::TPose2D& T_pallet_base) const;
   bool is_known(const mrpt::math::TPoint2D& p_pallet) const;
 
-  double length_, width_, cut_;  ///< of the body, and of its corners [m]
+  robot::RobotModel model_;
   Trap trap_;
   std::vector<mrpt::math::TPoint2D> obstacles_, known_;  ///< pallet frame
   std::optional<Piece> piece_;

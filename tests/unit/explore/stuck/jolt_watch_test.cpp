@@ -20,8 +20,8 @@ struct Told {
   int from_ahead = 0;
 };
 
-/// Two seconds at `speed` [m/s] of the wheels; `felt`: along the body at a time [m/s^2].
-Told drive(double speed, const std::function<double(double)>& felt) {
+/// Two seconds at `speed` [m/s] of the wheels; `felt`: along the body at a time [m/s^2]; `braked`: when it was told to.
+Told drive(double speed, const std::function<double(double)>& felt, Stamp braked = Stamp::never()) {
   JoltWatch watch;
   Told told;
   for (int i = 1; i <= 100; ++i) {
@@ -31,6 +31,7 @@ Told drive(double speed, const std::function<double(double)>& felt) {
     inputs.accelerations.push_back({now, felt(i * kTick), 0.0});
     if (i % 5 == 0) inputs.odometry.push_back({now, {}, speed, 0.0, false});
     watch.update(inputs);
+    if (now == braked) watch.braked(now);
     told.blows += watch.struck() ? 1 : 0;
     told.from_ahead += watch.struck() && watch.from_ahead() ? 1 : 0;
   }
@@ -57,6 +58,18 @@ TEST(JoltWatch, ABlowThatTakesTheSpeedIsToldOnce) {
 TEST(JoltWatch, BrakingIsNoBlow) {
   const double accel = robot::RobotModel().max_accel;
   EXPECT_EQ(drive(0.4, blow(0.4, 0.4 / accel)).blows, 0);
+}
+
+/// As hard as the base can: the wheels' report comes after the body has stopped.
+TEST(JoltWatch, ItsOwnBrakeIsNoBlow) {
+  const auto felt = blow(0.4, 0.04);
+  const Stamp braked = Stamp::from_seconds(1.0);
+  EXPECT_EQ(drive(0.4, felt, braked).blows, 0);
+  EXPECT_EQ(drive(
+                0.4, [&](double t) { return felt(t - 0.6); }, braked)
+                .blows,
+            1)
+      << "but one that comes later is";
 }
 
 TEST(JoltWatch, AKnockThatTakesLittleOfTheSpeedIsNone) { EXPECT_EQ(drive(0.4, blow(0.15, 0.02)).blows, 0); }

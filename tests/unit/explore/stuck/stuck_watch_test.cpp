@@ -70,6 +70,22 @@ TEST(StuckWatch, SaysHowItWasMet) {
   EXPECT_EQ(met({0.1, -1.0}), Escape::Met::Turning) << "as slow as turns on the spot are kept on it";
 }
 
+/// The wheels are dragged aside then, and stick and slip.
+TEST(StuckWatch, WhatJoltsARobotThatTurnsOnTheSpotIsNoBlow) {
+  const auto blow_at = [](const robot::Drive& drive, bool braked) {
+    Watched robot;
+    robot.drive = drive;
+    EXPECT_FALSE(robot.within(1.0));
+    robot.blow = -8.0;
+    if (braked) robot.watch.braked(robot.now);
+    return robot.within(0.2).has_value();
+  };
+  EXPECT_FALSE(blow_at({0.12, 0.5}, false));
+  EXPECT_TRUE(blow_at({0.3, 0.5}, false));
+  EXPECT_TRUE(blow_at({0.12, 0.0}, false)) << "straight on it is one";
+  EXPECT_FALSE(blow_at({0.3, 0.5}, true)) << "its own brake";
+}
+
 TEST(StuckWatch, TellsLeaningBlowsAndStallsApart) {
   Watched leaning, struck, stalling;
   leaning.lean = deg_to_rad(25.0);
