@@ -93,7 +93,7 @@ int batch(const BatchArguments& arguments) {
   if (arguments.seeds > 0) sweep.seeds.resize(std::min(sweep.seeds.size(), static_cast<std::size_t>(arguments.seeds)));
   options.code = code_version();
   std::vector<Job> jobs = expand(sweep, options.code, overrides);
-  for (Job& job : jobs) permit_command(arguments.mapper, overrides, job.scenario);
+  for (const Job& job : jobs) permit_command(arguments.mapper, overrides, job.kind->scenario);
   options.out = arguments.out.empty() ? "runs/" + sweep.name : arguments.out;
   if (arguments.slurm) return submit(arguments, sweep, jobs, options.out);
   const bool whole = options.shard.count == 1;

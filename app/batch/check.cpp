@@ -46,9 +46,9 @@ std::vector<RunRecord> planned(const std::vector<Job>& jobs) {
   std::vector<RunRecord> runs;
   for (const Job& job : jobs) {
     RunRecord run;
-    run.scenario = job.scenario.name;
-    run.configuration = job.configuration;
-    run.seed = job.scenario.seed;
+    run.scenario = job.kind->scenario.name;
+    run.configuration = job.kind->configuration;
+    run.seed = job.seed;
     runs.push_back(run);
   }
   return runs;
@@ -66,7 +66,7 @@ int check(const CheckArguments& arguments) {
   options.code = code_version();
   const auto overrides = with_mapper(arguments.mapper, parse_sweep_sets(arguments.sets));
   std::vector<Job> jobs = expand(sweep, options.code, overrides);
-  for (Job& job : jobs) permit_command(arguments.mapper, overrides, job.scenario);
+  for (const Job& job : jobs) permit_command(arguments.mapper, overrides, job.kind->scenario);
   require_fit(baseline, planned(jobs));
   options.out = arguments.out.empty() ? "runs/check-" + sweep.name : arguments.out;
   options.workers = arguments.workers > 0 ? arguments.workers : usable_cores();

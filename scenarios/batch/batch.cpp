@@ -60,9 +60,9 @@ Entry entry_of(const Job& job, const TaskResult& result, const BatchOptions& opt
   Entry entry;
   RunRecord& r = entry.record;
   r.run_id = job.run_id;
-  r.scenario = job.scenario.name;
-  r.configuration = job.configuration;
-  r.seed = job.scenario.seed;
+  r.scenario = job.kind->scenario.name;
+  r.configuration = job.kind->configuration;
+  r.seed = job.seed;
   r.folder = "runs/" + job.folder();
   r.code = options.code;
   *r.score = ordered_json::object();
@@ -191,7 +191,7 @@ Runner simulating_runner(bool record) {
     options.out = folder;
     options.record = record;
     options.link_latest = false;
-    const RunReport report = run_scenario(job.scenario, options);
+    const RunReport report = run_scenario(job.scenario(), options);
     return RunOutcome{report.score, report.end, report.failure, report.broken,
                       hash_of_artefacts(folder + "/hashes.json")};
   };

@@ -159,11 +159,17 @@ std::string run_id(const Scenario& scenario, const std::string& configuration, c
 
 }  // namespace
 
+Scenario Job::scenario() const {
+  Scenario own = kind->scenario;
+  own.seed = seed;
+  return own;
+}
+
 std::string Job::folder() const {
-  std::string name = scenario.name + "-" + configuration.substr(0, 80);
+  std::string name = kind->scenario.name + "-" + kind->configuration.substr(0, 80);
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.' && c != '=') c = '_';
-  return name + "-seed" + std::to_string(scenario.seed) + "-" + run_id.substr(0, 8);
+  return name + "-seed" + std::to_string(seed) + "-" + run_id.substr(0, 8);
 }
 
 Sweep load_sweep(const std::string& path, const std::string& shipped) {
@@ -198,9 +204,10 @@ std::vector<Job> expand(const Sweep& sweep, const std::string& code, const std::
         throw InputError(sweep.path + ": configuration '" + configuration.name + "': " + error.what());
       }
       name = scenario.name;
+      const auto kind = std::make_shared<JobKind>(JobKind{configuration.name, scenario});
       for (const auto seed : sweep.seeds) {
         scenario.seed = seed;
-        jobs.push_back({run_id(scenario, configuration.name, code), configuration.name, scenario});
+        jobs.push_back({run_id(scenario, configuration.name, code), seed, kind});
       }
     }
     if (!names.insert(name).second)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,12 +28,21 @@ struct Sweep {
   double run_limit = 900.0;                   ///< wall time after which a run counts as hanging [s]
 };
 
+/// What the runs of one scenario and configuration have in common. It is kept once: a million seeds of it take some
+/// 150 MB, where a scenario for each would take gigabytes.
+struct JobKind {
+  std::string configuration;
+  Scenario scenario;  ///< resolved, but for the seed
+};
+
 /// One run of a sweep.
 struct Job {
   std::string run_id;  ///< 16 hexadecimal digits that name the resolved scenario, the seed and the code
-  std::string configuration;
-  Scenario scenario;  ///< resolved, seed included
+  std::uint64_t seed = 1;
+  std::shared_ptr<JobKind> kind = std::make_shared<JobKind>();
 
+  /// With its seed.
+  Scenario scenario() const;
   /// Name of the run's folder: readable, and unique by its id.
   std::string folder() const;
 };

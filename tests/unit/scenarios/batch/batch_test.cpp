@@ -22,9 +22,9 @@ class Batch : public FolderTest {
     std::vector<Job> jobs;
     for (std::uint64_t seed = 1; seed <= count; ++seed) {
       Job job;
-      job.scenario.name = "arena";
-      job.configuration = "default";
-      job.scenario.seed = seed;
+      job.kind->scenario.name = "arena";
+      job.kind->configuration = "default";
+      job.seed = seed;
       char id[17];
       std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(seed * 0x9e3779b97f4a7c15ull));
       job.run_id = id;
@@ -45,8 +45,7 @@ class Batch : public FolderTest {
     fs::create_directories(folder);
     note(folder, "begin", job);
     RunOutcome outcome;
-    *outcome.score = {{"score", 1.0 / static_cast<double>(job.scenario.seed)},
-                      {"wall_s", static_cast<double>(getpid())}};
+    *outcome.score = {{"score", 1.0 / static_cast<double>(job.seed)}, {"wall_s", static_cast<double>(getpid())}};
     outcome.end = "explored";
     outcome.broken = {"score is 0.1, expected at least 0.5", "wall_s is 12, expected at most 10"};
     note(folder, "end", job);
@@ -54,7 +53,7 @@ class Batch : public FolderTest {
   }
   static void note(const std::string& folder, const std::string& what, const Job& job) {
     std::ofstream(fs::path(folder).parent_path().parent_path() / "made", std::ios::app)
-        << what + " " + std::to_string(job.scenario.seed) + "\n";
+        << what + " " + std::to_string(job.seed) + "\n";
   }
   static std::vector<std::string> sorted_lines(const std::string& text) {
     std::vector<std::string> lines;
@@ -99,12 +98,12 @@ TEST_F(Batch, FailuresAndHangsAreRecordedAndMadeAgainOnlyWhenAsked) {
   BatchOptions with_limit = options("out");
   with_limit.run_limit = 1.0;
   const Runner faulty = [](const Job& job, const std::string& folder) {
-    if (job.scenario.seed == 2) throw InputError("arena 2 has no start");
-    if (job.scenario.seed == 3) std::abort();
-    if (job.scenario.seed == 4)
+    if (job.seed == 2) throw InputError("arena 2 has no start");
+    if (job.seed == 3) std::abort();
+    if (job.seed == 4)
       for (;;) pause();
     RunOutcome outcome = fake(job, folder);
-    if (job.scenario.seed == 5) outcome.failure = "laser lost";
+    if (job.seed == 5) outcome.failure = "laser lost";
     return outcome;
   };
   const auto report = run_batch(jobs(8), faulty, with_limit);

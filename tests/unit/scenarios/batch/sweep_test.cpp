@@ -2,6 +2,7 @@
 #include "slam/paper/paper_mapper.h"
 
 #include <gmock/gmock.h>
+#include <malloc.h>
 
 #include <set>
 
@@ -54,15 +55,15 @@ TEST_F(SweepFile, GridAndNamedSetsMultiply) {
   EXPECT_EQ(s.configurations[7].name, "ours, mapper.particles=300, robot.levelling=false");
   const auto all = expand(s, "code");
   ASSERT_EQ(all.size(), 2u * 8u * 3u);
-  EXPECT_EQ(all[0].scenario.name, "small");
-  EXPECT_EQ(all[0].scenario.seed, 1u);
-  EXPECT_FALSE(all[0].scenario.mapper.as<slam::PaperConfig>().icp);
-  EXPECT_EQ(all[0].scenario.mapper.as<slam::PaperConfig>().particles, 50);
-  EXPECT_EQ(all[0].scenario.mapper.as<slam::PaperConfig>().resolution, 0.1)
+  EXPECT_EQ(all[0].scenario().name, "small");
+  EXPECT_EQ(all[0].seed, 1u);
+  EXPECT_FALSE(all[0].scenario().mapper.as<slam::PaperConfig>().icp);
+  EXPECT_EQ(all[0].scenario().mapper.as<slam::PaperConfig>().particles, 50);
+  EXPECT_EQ(all[0].scenario().mapper.as<slam::PaperConfig>().resolution, 0.1)
       << "a single value sets the key without lengthening the names";
-  EXPECT_FALSE(all[23].scenario.levelling.on);
-  EXPECT_EQ(all[47].scenario.name, "other");
-  EXPECT_EQ(all[47].scenario.seed, 3u);
+  EXPECT_FALSE(all[23].scenario().levelling.on);
+  EXPECT_EQ(all[47].scenario().name, "other");
+  EXPECT_EQ(all[47].seed, 3u);
 }
 
 TEST_F(SweepFile, ConfigurationsAreMeasuredAgainstTheFirstValueOfTheFirstKeyAllElseEqual) {
@@ -80,7 +81,7 @@ TEST_F(SweepFile, ConfigurationsAreMeasuredAgainstTheFirstValueOfTheFirstKeyAllE
 TEST_F(SweepFile, WithoutSetsThereIsOneDefaultConfiguration) {
   const auto all = jobs("scenarios: [small.yaml]\nseeds: 1-2\n");
   ASSERT_EQ(all.size(), 2u);
-  EXPECT_EQ(all[0].configuration, "default");
+  EXPECT_EQ(all[0].kind->configuration, "default");
 }
 
 TEST_F(SweepFile, IdsNameEverythingThatDecidesARun) {
@@ -133,7 +134,7 @@ TEST_F(SweepFile, FoldersOfRunsAreReadableAndUnique) {
 TEST_F(SweepFile, ShippedScenariosAreKnownByName) {
   write("shipped/yellow.yaml", "name: yellow\narena: {generate: {columns: 3, rows: 3}}\n");
   const Sweep s = load_sweep(write("sweep.yaml", "scenarios: [yellow]\nseeds: 1\n"), path("shipped"));
-  EXPECT_EQ(expand(s, "code")[0].scenario.name, "yellow");
+  EXPECT_EQ(expand(s, "code")[0].scenario().name, "yellow");
 }
 
 TEST_F(SweepFile, FaultsAreNamedWithPlaceAndRemedy) {
@@ -170,6 +171,19 @@ TEST_F(SweepFile, WhatIsTooMuchIsSaidBeforeItIsMade) {
   EXPECT_THAT(
       error_of("scenarios: [small.yaml]\nseeds: 1\nset:\n" + million + "  team: " + std::string(10000, 'x') + "\n"),
       HasSubstr("more than 1 GB"));
+}
+
+TEST_F(SweepFile, ASeedTakesNoScenarioOfItsOwn) {
+  const Sweep many = sweep("scenarios: [small.yaml]\nseeds: 1-4000\n");
+  const auto in_use = [] {
+    const auto heap = mallinfo2();
+    return heap.uordblks + heap.hblkhd;
+  };
+  const std::size_t before = in_use();
+  const auto all = expand(many, "code");
+  const auto shard = in_shard(all, {1, 1});
+  EXPECT_LT(in_use() - before, 2 * 200 * all.size()) << "[bytes] a million of them are 200 MB";
+  EXPECT_EQ(shard.back().scenario().seed, 4000u);
 }
 
 }  // namespace
