@@ -269,7 +269,12 @@ ResultSet load_results(const std::string& path) {
   return set;
 }
 
-MergeReport merge(const std::vector<std::string>& sources, const std::string& out) {
+MergeReport merge(const std::vector<std::string>& sources, const std::string& named) {
+  std::error_code error;
+  const bool is_link = fs::is_symlink(fs::symlink_status(named, error));
+  const std::string out = is_link ? fs::weakly_canonical(named, error).string() : named;  // a symbolic link stays one
+  if (is_link && error)
+    throw InputError(named + ": is a link that leads nowhere (" + error.message() + "); give another --out");
   ResultSet all;
   MergeReport report;
   if (fs::exists(out)) {
@@ -294,7 +299,6 @@ MergeReport merge(const std::vector<std::string>& sources, const std::string& ou
   report.runs = all.runs.size();
   report.added = report.runs - before;
   const std::string partial = new_file_beside(out);
-  std::error_code error;
   try {
     write_database(partial, all);
   } catch (const RunError&) {

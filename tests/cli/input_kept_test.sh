@@ -75,6 +75,9 @@ expect_exit 0 "" "$rubble" batch merge batch --out all.sqlite
 echo mine >all.sqlite.partial
 expect_exit 0 "" "$rubble" batch merge batch --out all.sqlite
 [[ $(cat all.sqlite.partial) == mine ]] || fail "merge took somebody's file for its own"
+ln -s there.sqlite linked.sqlite && cp all.sqlite there.sqlite
+expect_exit 0 "" "$rubble" batch merge batch --out linked.sqlite
+[[ -L linked.sqlite ]] && cmp -s all.sqlite there.sqlite || fail "merge put a file in the place of a link"
 
 # --- what the user is told to edit, and pictures of his own
 expect_exit 0 "" "$rubble" arena generate --cells 3x3 --seed 1
