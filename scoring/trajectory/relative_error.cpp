@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include "base/angle.h"
 #include "base/error.h"
@@ -51,6 +54,62 @@ std::vector<std::size_t> milestones(const Poses& poses, double length, const Pos
   }
   return out;
 }
+
+/// Poses in the order of their time, in boxes of twice as many from level to level: a robot moves on, so what follows
+/// in time lies together, and a search of the earliest one near a place leaves out nearly all.
+class PlacesInTime {
+ public:
+  explicit PlacesInTime(std::vector<TPose2D> poses) : poses_(std::move(poses)) {
+    while (leaves_ < poses_.size()) leaves_ *= 2;
+    boxes_.resize(2 * leaves_);
+    for (std::size_t i = 0; i < poses_.size(); ++i)
+      boxes_[leaves_ + i] = {poses_[i].x, poses_[i].x, poses_[i].y, poses_[i].y};
+    for (std::size_t node = leaves_; node-- > 1;) boxes_[node] = around(boxes_[2 * node], boxes_[2 * node + 1]);
+  }
+
+  /// Index of the earliest pose before `end` within `near` [m] of `place`.
+  std::optional<std::size_t> earliest(const TPose2D& place, double near, std::size_t end) const {
+    return earliest(1, 0, leaves_, place, near, end);
+  }
+
+ private:
+  struct Box {
+    double x_min = std::numeric_limits<double>::infinity();
+    double x_max = -std::numeric_limits<double>::infinity();
+    double y_min = std::numeric_limits<double>::infinity();
+    double y_max = -std::numeric_limits<double>::infinity();
+  };
+
+  static Box around(const Box& a, const Box& b) {
+    return {std::min(a.x_min, b.x_min), std::max(a.x_max, b.x_max), std::min(a.y_min, b.y_min),
+            std::max(a.y_max, b.y_max)};
+  }
+
+  /// Never true of a box that holds a pose within `near`, however the last bits are rounded.
+  static bool is_far(const Box& box, const TPose2D& place, double near) {
+    constexpr double kRounding = 1.0 + 1e-9;
+    const double x = std::max({0.0, box.x_min - place.x, place.x - box.x_max});
+    const double y = std::max({0.0, box.y_min - place.y, place.y - box.y_max});
+    return std::hypot(x, y) > near * kRounding;
+  }
+
+  /// Node over the `size` poses from `first` on.
+  std::optional<std::size_t> earliest(std::size_t node, std::size_t first, std::size_t size, const TPose2D& place,
+                                      double near, std::size_t end) const {
+    if (first >= std::min(end, poses_.size()) || is_far(boxes_[node], place, near)) return std::nullopt;
+    if (size == 1) {
+      if (length_of(between(poses_[first], place)) > near) return std::nullopt;
+      return first;
+    }
+    const std::size_t half = size / 2;
+    if (const auto found = earliest(2 * node, first, half, place, near, end)) return found;
+    return earliest(2 * node + 1, first + half, half, place, near, end);
+  }
+
+  std::vector<TPose2D> poses_;
+  std::size_t leaves_ = 1;  ///< a power of two; leaf i is box leaves_ + i
+  std::vector<Box> boxes_;  ///< node n is around nodes 2 n and 2 n + 1, from 1 on
+};
 
 /// Mean, standard deviation and mean square of positive numbers.
 struct Moments {
@@ -113,14 +172,16 @@ std::vector<Relation> relations_of(const Trajectory& truth, double length, doubl
   const auto relation = [&](std::size_t i, std::size_t j) {
     return Relation{truth[i].stamp, truth[j].stamp, between(truth[i].pose, truth[j].pose)};
   };
+  std::vector<TPose2D> places;
+  places.reserve(taken.size());
+  for (const std::size_t i : taken) places.push_back(truth[i].pose);
+  const PlacesInTime earlier(std::move(places));
   std::vector<Relation> out;
   for (std::size_t k = 1; k < taken.size(); ++k) {
     out.push_back(relation(taken[k - 1], taken[k]));
-    for (std::size_t m = 0; m + back <= k; ++m) {
-      if (length_of(between(truth[taken[m]].pose, truth[taken[k]].pose)) > near) continue;
-      out.push_back(relation(taken[m], taken[k]));
-      break;
-    }
+    if (k < back) continue;
+    if (const auto m = earlier.earliest(truth[taken[k]].pose, near, k - back + 1))
+      out.push_back(relation(taken[*m], taken[k]));
   }
   return out;
 }

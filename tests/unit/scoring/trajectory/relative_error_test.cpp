@@ -135,5 +135,59 @@ TEST(Relations, LoopClosuresOfTheTruthAreAmongThem) {
   EXPECT_GT(closures, 10);
 }
 
+/// The definition, pose by pose: each one taken with the earliest one near it that is far back on the path.
+std::vector<Relation> relations_one_by_one(const Trajectory& taken, double near, std::size_t back) {
+  std::vector<Relation> out;
+  const auto add = [&](const StampedPose& from, const StampedPose& to) {
+    out.push_back({from.stamp, to.stamp, to.pose - from.pose});
+  };
+  for (std::size_t k = 1; k < taken.size(); ++k) {
+    add(taken[k - 1], taken[k]);
+    for (std::size_t m = 0; m + back <= k; ++m) {
+      const TPose2D delta = taken[k].pose - taken[m].pose;
+      if (std::hypot(delta.x, delta.y) > near) continue;
+      add(taken[m], taken[k]);
+      break;
+    }
+  }
+  return out;
+}
+
+TEST(Relations, AreThoseOfASearchThroughAllPosesToTheBit) {
+  std::vector<Trajectory> runs = {arc(800, 1.5, 2.0 * kPi / 40),   // twenty laps over each other
+                                  arc(300, 1.5, 0.0),              // never back
+                                  arc(300, 1.5, kPi / 2 + 1e-3)};  // a square of one step, slowly turning
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Rng rng(seed, "walk");
+    Trajectory run;
+    TPose2D pose(rng.uniform(-50.0, 50.0), rng.uniform(-50.0, 50.0), 0.0);
+    for (int i = 0; i < 700; ++i) {
+      run.push_back({Stamp::from_seconds(i), pose});
+      const double forward = rng.uniform(1.0, 1.6);
+      const double turn = rng.uniform(-1.0, 1.0);
+      pose = pose + TPose2D(forward, 0.0, turn);
+    }
+    runs.push_back(run);
+  }
+  std::size_t closures = 0;
+  for (const Trajectory& run : runs) {
+    for (const double near : {0.0, 1.0, 2.5}) {
+      // Every step is longer than `length`, so each pose but the first is taken.
+      const std::vector<Relation> found = relations_of(run, 0.9, near, 10.0);
+      const std::vector<Relation> all = relations_one_by_one(Trajectory(run.begin() + 1, run.end()), near, 12);
+      ASSERT_EQ(found.size(), all.size());
+      closures += found.size() - (run.size() - 2);
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        ASSERT_TRUE(found[i].from == all[i].from && found[i].to == all[i].to);
+        ASSERT_TRUE(found[i].delta.x == all[i].delta.x && found[i].delta.y == all[i].delta.y &&
+                    found[i].delta.phi == all[i].delta.phi);
+      }
+    }
+  }
+  EXPECT_GT(closures, 1000u);
+  EXPECT_TRUE(relations_of({}).empty());
+  EXPECT_TRUE(relations_of(arc(0, 1.0, 0.0)).empty());
+}
+
 }  // namespace
 }  // namespace rubble::scoring
