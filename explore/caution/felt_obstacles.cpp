@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/planar.h"
+#include "explore/plan/traversable.h"
 
 namespace rubble::explore {
 namespace {
@@ -34,15 +35,6 @@ void add_pallet(const TPose2D& T_map_pallet, bool whole, double size, std::vecto
   for (int i = 0; i <= steps; ++i)
     for (int k = 0; k <= steps; ++k)
       points.push_back(T_map_pallet.composePoint(TPoint2D{from + i * step, from + k * step}));
-}
-
-bool wall_between(const OccupancyGrid& known, const TPoint2D& from, const TPoint2D& to) {
-  const int steps = 1 + static_cast<int>(2.0 * distance(from, to) / known.resolution());
-  for (int i = 0; i <= steps; ++i) {
-    const Cell c = known.cell(from + (to - from) * (static_cast<double>(i) / steps));
-    if (known.inside(c) && known[c] == Occupancy::Occupied) return true;
-  }
-  return false;
 }
 
 }  // namespace

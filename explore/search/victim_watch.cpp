@@ -19,12 +19,7 @@ constexpr int kSureOfHoles = 3;    ///< cues
 bool is_behind_wall(const Traversable& floor, const TPoint2D& from, const TPoint2D& to) {
   const TPoint2D way = to - from;
   const double length = way.norm();
-  const double step = 0.5 * floor.frame().resolution;
-  for (double at = 0.0; at < length - kBehind; at += step) {
-    const Cell c = floor.cells.cell(from + way * (at / length));
-    if (floor.cells.inside(c) && floor.cells[c] == Occupancy::Occupied) return true;
-  }
-  return false;
+  return length > kBehind && wall_between(floor.cells, from, from + way * ((length - kBehind) / length));
 }
 
 }  // namespace

@@ -93,9 +93,8 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
   bool wall = false;
   if (move == Move::Back || move == Move::Ahead)
     wall = !room(T_map_base + TPose2D{move == Move::Back ? -kFeeler : kFeeler, 0.0, 0.0});
-  const std::optional<robot::Drive> out = move == Move::Out ? way_out_->drive(T_map_base) : std::nullopt;
-  const bool no_way = (move == Move::Retrace && !way_back.drive(T_map_base)) || (move == Move::Out && !out);
-  if (held || turned || wall || no_way || gets_nowhere(T_map_base, now) || now >= move_until_) {
+  const std::optional<robot::Drive> next = command(T_map_base, trail, way_back);
+  if (held || turned || wall || !next || gets_nowhere(T_map_base, now) || now >= move_until_) {
     if (++at_ == moves_.size()) {
       drive_ = {};
       return Result::Failed;
@@ -103,32 +102,33 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
     start_move(T_map_base, now);
     return Result::UnderWay;
   }
-  drive_ = out ? *out : command(T_map_base, trail, way_back);
+  drive_ = *next;
   return Result::UnderWay;
 }
 
-robot::Drive Escape::command(const TPose2D& T_map_base, const std::vector<TPoint2D>& trail,
-                             const WayBack& way_back) const {
+/// Of the move under way; nothing where it is at its end.
+std::optional<robot::Drive> Escape::command(const TPose2D& T_map_base, const std::vector<TPoint2D>& trail,
+                                            const WayBack& way_back) {
   switch (moves_[at_]) {
     case Move::Left:
-      return {0.0, turn_speed_};
+      return robot::Drive{0.0, turn_speed_};
     case Move::Right:
-      return {0.0, -turn_speed_};
+      return robot::Drive{0.0, -turn_speed_};
     case Move::Ahead:
-      return {kSpeed, 0.0};
+      return robot::Drive{kSpeed, 0.0};
     case Move::Retrace:
-      return way_back.drive(T_map_base).value_or(robot::Drive{});
+      return way_back.drive(T_map_base);
     case Move::Out:
-      return {};
+      return way_out_->drive(T_map_base);
     case Move::Back:
       break;
   }
   const auto behind = std::find_if(trail.rbegin(), trail.rend(),
                                    [&](const TPoint2D& p) { return distance(p, position(T_map_base)) >= kBehind; });
-  if (behind == trail.rend()) return {-kSpeed, 0.0};
+  if (behind == trail.rend()) return robot::Drive{-kSpeed, 0.0};
   const double bearing = std::atan2(behind->y - T_map_base.y, behind->x - T_map_base.x);
   const double error = wrap_angle(bearing - T_map_base.phi - kPi);
-  return {-kSpeed, std::abs(error) < kMostBend ? kBendGain * error : 0.0};
+  return robot::Drive{-kSpeed, std::abs(error) < kMostBend ? kBendGain * error : 0.0};
 }
 
 }  // namespace rubble::explore

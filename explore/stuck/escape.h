@@ -52,8 +52,8 @@ class Escape {
   void start_move(const mrpt::math::TPose2D& T_map_base, Stamp now);
   bool free(const mrpt::math::TPoint2D& p_map) const;
   bool gets_nowhere(const mrpt::math::TPose2D& T_map_base, Stamp now);
-  robot::Drive command(const mrpt::math::TPose2D& T_map_base, const std::vector<mrpt::math::TPoint2D>& trail,
-                       const WayBack& way_back) const;
+  std::optional<robot::Drive> command(const mrpt::math::TPose2D& T_map_base,
+                                      const std::vector<mrpt::math::TPoint2D>& trail, const WayBack& way_back);
 
   double turn_speed_;  ///< [rad/s]
   std::vector<Move> moves_;

@@ -8,8 +8,7 @@ namespace {
 constexpr double kHeld = 0.5;           ///< a tick so long: the robot was held, a device was away [s]
 constexpr double kPatience = 2.0;       ///< then its motors may still be off for a while [s]
 constexpr double kOdometryLate = 0.25;  ///< the wheels are silent [s]
-
-constexpr double kDrives = 0.15;  ///< a robot that turns and is slower only turns [m/s]
+constexpr double kDrives = 0.15;        ///< a robot that turns and is slower only turns [m/s]
 
 }  // namespace
 
@@ -42,7 +41,7 @@ std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_ma
   const bool blow = jolt_.struck() && !turns_slowly;
   if (!tilt_.too_steep() && !blow && !stuck) return std::nullopt;
   const Hold hold{tilt_.too_steep() ? "it leans too much here"
-                  : jolt_.struck()  ? "a blow stops it"
+                  : blow            ? "a blow stops it"
                   : stalled_        ? "the motors stall"
                                     : "it does not move",
                   met(commanded), !tilt_.too_steep() && !blow && !stalled_ && !motion_.rocking()};

@@ -102,8 +102,8 @@ std::vector<std::string> files_of_run(const std::string& path) {
   if (!begun && !empty)
     throw InputError(path +
                      ": is not a run folder (no estimate.tum), so --force does not replace it; give another --out");
-  std::vector<std::string> old;
-  const auto look = [&](const fs::path& folder) {
+  const auto own_files = [&](const fs::path& folder) {
+    std::vector<std::string> files;
     for (const auto& entry : fs::directory_iterator(folder)) {
       if (folder == path && is_own_folder(entry.path())) continue;
       if (!is_ours(entry.path().filename().string()) || entry.symlink_status().type() == fs::file_type::directory)
@@ -112,20 +112,20 @@ std::vector<std::string> files_of_run(const std::string& path) {
       if (was_read(entry.path().string()))
         throw InputError(entry.path().string() +
                          ": is what is read, and would be lost with its folder; give another --out");
-      old.push_back(entry.path().string());
+      files.push_back(entry.path().string());
     }
+    return files;
   };
-  look(path);
+  std::vector<std::string> old = own_files(path);
   const fs::path partial = fs::path(path) / kPartial;
   if (fs::symlink_status(partial).type() == fs::file_type::directory) {
-    look(partial);
+    for (std::string& file : own_files(partial)) old.push_back(std::move(file));
     old.push_back(partial.string());
   }
   // Nothing else may be in what close() removes.
-  const std::vector<std::string> now = old;
   for (const char* name : {kReplaced, kMoving})
-    if (const fs::path aside = fs::path(path) / name; is_own_folder(aside)) look(aside);
-  return now;
+    if (const fs::path aside = fs::path(path) / name; is_own_folder(aside)) own_files(aside);
+  return old;
 }
 
 std::string next_run_folder(const std::string& parent, const std::string& name, std::uint64_t seed) {
