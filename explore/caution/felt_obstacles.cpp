@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/planar.h"
-#include "explore/plan/traversable.h"
+#include "base/wall_between.h"
 
 namespace rubble::explore {
 namespace {

@@ -51,7 +51,4 @@ bool free_strips(Traversable& floor);
 /// Fills the clearance from the obstacles, capped at `cap` [m].
 void measure_clearance(Traversable& floor, double cap);
 
-/// Whether something occupied lies on the line between two places, both ends included.
-bool wall_between(const OccupancyGrid& known, const mrpt::math::TPoint2D& from, const mrpt::math::TPoint2D& to);
-
 }  // namespace rubble::explore

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/planar.h"
+#include "base/wall_between.h"
 
 namespace rubble::explore {
 namespace {
