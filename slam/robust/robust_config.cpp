@@ -82,7 +82,8 @@ void bind(Binder& b, RobustConfig& c) {
     l.number("expected_contradiction", c.loop.expected_contradiction, 0.0, 1.0);
     l.integer("confirmations", c.loop.confirmations, 1, 100);
     l.number("sure_contradiction", c.loop.sure_contradiction, 0.0, 1.0);
-    l.number("apart_path_m", c.loop.apart_path, 0.0, 100.0);
+    l.number("apart_m", c.loop.apart_distance, 0.0, 100.0);
+    l.integer("views", c.loop.views, 1, 100);
     l.number("astray_contradiction", c.loop.astray_contradiction, 0.0, 2.0);
     l.number("astray_window_m", c.loop.astray_window, 0.05, 10.0);
     l.number("astray_angle_rad", c.loop.astray_angle, 0.0, kPi);

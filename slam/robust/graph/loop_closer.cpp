@@ -281,7 +281,8 @@ void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
   if (near || (hardly && task.path < kTightPath))
     accept(loop, true);
   else
-    confirm({loop, contradiction <= config_.sure_contradiction, size_of(moved) <= usual_window(task.path)});
+    confirm(
+        {loop, contradiction <= config_.sure_contradiction, size_of(moved) <= usual_window(task.path), size_of(moved)});
 }
 
 /// Whether the loop would have beams pass through walls; or, null test, whether the pose expected without it does not:
@@ -342,27 +343,31 @@ void LoopCloser::confirm(const Claim& claim) {
 }
 
 /// One of them at least must contradict next to nothing: where cells are alike, a wrong place fits half, and stays the
-/// same wrong place for metres. And what a robot says that turns on the spot is one thing said thrice: that is enough
-/// for what was to be expected after the way there, and for a slide only with a loop from elsewhere.
+/// same wrong place for metres. What is wrong about one old view is wrong each time that it is asked, so loops that
+/// move the robot must lead to several. And what a robot says that turns or shuffles on the spot is one thing said
+/// thrice: that is enough for what was to be expected after the way there, and for a slide only with a loop from
+/// elsewhere.
 bool LoopCloser::believed(const Claim& newest, const std::vector<std::size_t>& group) const {
   const auto enough = [&](int loops) { return loops >= config_.confirmations; };
+  const TPose2D& here = frames_.pose(newest.loop.to);
+  std::set<int> views{newest.loop.from};
   bool clear = newest.clear;
   bool sure = newest.clear && newest.expected;
   int close = 1;
-  double first = frames_[newest.loop.to].path;
-  double last = first;
+  double apart = 0.0;
   for (const std::size_t k : group) {
     const Claim& claim = waiting_[k];
-    const double path = frames_[claim.loop.to].path;
-    first = std::min(first, path);
-    last = std::max(last, path);
+    const TPose2D& there = frames_.pose(claim.loop.to);
+    apart = std::max(apart, length(there.x - here.x, there.y - here.y));
+    views.insert(claim.loop.from);
     clear = clear || claim.clear;
     if (newest.loop.to - claim.loop.to > kConfirmedWithin) continue;
     sure = sure || (claim.clear && claim.expected);
     ++close;
   }
+  if (newest.moves > kExpectedMoves && static_cast<int>(views.size()) < config_.views) return false;
   return (enough(close) && sure) ||
-         (enough(static_cast<int>(group.size()) + 1) && clear && last - first >= config_.apart_path);
+         (enough(static_cast<int>(group.size()) + 1) && clear && apart >= config_.apart_distance);
 }
 
 /// Whether two loops place the newer key frame of `b` alike, as seen from the older one of `a`.

@@ -38,7 +38,8 @@ struct LoopConfig {
   double expected_contradiction = 0.15;  ///< null test: below, the pose expected without the loop stands
   int confirmations = 3;                 ///< loops that must agree before they count ...
   double sure_contradiction = 0.075;     ///< ... one of them contradicting no more than this ...
-  double apart_path = 1.0;               ///< ... and those that move it farther than expected so far apart [m]
+  double apart_distance = 1.0;           ///< ... and those that move it farther than expected so far apart [m] ...
+  int views = 2;                         ///< ... and leading to so many old key frames where they move it at all
   double agree_distance = 0.20;          ///< within this [m]
   double agree_angle = 0.05;             ///< and this [rad]
   double sigma_distance = 0.03;          ///< least error of a loop [m]
@@ -113,6 +114,7 @@ class LoopCloser {
     GraphEdge loop;
     bool clear;     ///< next to nothing contradicts it
     bool expected;  ///< it moves the robot no farther than the way there explains
+    double moves;   ///< how far it moves the robot [m]
   };
   void confirm(const Claim& claim);
   bool believed(const Claim& newest, const std::vector<std::size_t>& group) const;
