@@ -96,9 +96,17 @@ void end_progress() {
   if (isatty(STDERR_FILENO)) std::fprintf(stderr, "\r\033[K");
 }
 
-void print_row(const std::string& label, const std::string& value) {
-  constexpr int kWidth = 34;
-  std::printf("%-*s %s\n", kWidth, one_line(label).c_str(), one_line(value).c_str());
+void print_line(const std::string& line) { std::printf("%s\n", one_line(line).c_str()); }
+
+void print_json(const nlohmann::ordered_json& json) {
+  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
+  std::printf("%s\n", json.dump(2, ' ', true, replace).c_str());
+}
+
+void tell(const std::string& line) { std::fprintf(stderr, "rubble: %s\n", one_line(line).c_str()); }
+
+void print_row(const std::string& label, const std::string& value, int width) {
+  std::printf("%-*s %s\n", width, one_line(label).c_str(), one_line(value).c_str());
 }
 
 void print_not_aligned(const std::string& note) {
@@ -141,7 +149,7 @@ int show(const scenarios::RunReport& report) {
                                   " scans fit nothing mapped: the robot lost its place");
   for (const auto& broken : report.broken) print_row("NOT AS EXPECTED", broken);
   print_row("folder", report.folder);
-  if (!report.failure.empty()) std::fprintf(stderr, "rubble: %s\n", one_line(report.failure).c_str());
+  if (!report.failure.empty()) tell(report.failure);
   if (report.interrupted) return kInterrupted;
   if (!report.failure.empty()) return kFailed;
   return report.broken.empty() ? kOk : kBroken;

@@ -28,8 +28,18 @@ void show_share(const std::string& what, double share);
 /// Wipes the progress line.
 void end_progress();
 
+/// All that is printed may hold names and values of foreign files: what a terminal would obey, or would not show, is
+/// shown as escapes (base/text/words.h). Nothing else prints text that is not our own.
+/// A line on stdout.
+void print_line(const std::string& line);
+/// On stdout: whatever is no plain letter is written as \uXXXX, which every reader of JSON takes.
+void print_json(const nlohmann::ordered_json& json);
+/// A line on stderr, as a message of the program.
+void tell(const std::string& line);
+/// Tables of batches have short labels.
+constexpr int kBatchLabels = 12;
 /// One row of a table on stdout.
-void print_row(const std::string& label, const std::string& value);
+void print_row(const std::string& label, const std::string& value, int width = 34);
 
 /// The row of a map that was not laid on the truth; its label says the note's first words.
 void print_not_aligned(const std::string& note);

@@ -67,7 +67,7 @@ counted() {
 
 has() { [[ " $only " == *" $1 "* ]]; }
 
-has suite && counted "whole suite (Release)" suite "$top/rubble" test
+has suite && counted "whole suite (Release)" suite env RUBBLE_LONG=1 "$top/rubble" test
 if has alone; then  # the other presets compile the files of a folder as one
   start=$SECONDS
   dev=$top/build/dev

@@ -7,6 +7,7 @@
 #include "app/batch/batch_tools.h"
 #include "app/commands.h"
 #include "app/scenario_options.h"
+#include "app/terminal.h"
 #include "base/error.h"
 #include "base/text/text_file.h"
 #include "scenarios/batch/slurm.h"
@@ -65,11 +66,14 @@ int submit(const BatchArguments& arguments, const Sweep& sweep, const std::vecto
   plan.options = arguments.slurm_options;
   const SlurmScripts paths = write_slurm(plan);
   save_note(sweep, jobs_asked, plan.out);
-  std::printf("%-12s %s\n%-12s %s\n", "array job", paths.array.c_str(), "merge job", paths.merge.c_str());
+  print_row("array job", paths.array, kBatchLabels);
+  print_row("merge job", paths.merge, kBatchLabels);
   if (arguments.no_submit) return kOk;
   const SlurmJobs jobs = submit_slurm(paths);
-  std::printf("%-12s %s (%d shards), then %s merges to %s/results.sqlite\n", "submitted", jobs.array.c_str(),
-              plan.shards, jobs.merge.c_str(), plan.out.c_str());
+  print_row("submitted",
+            jobs.array + " (" + std::to_string(plan.shards) + " shards), then " + jobs.merge + " merges to " +
+                plan.out + "/results.sqlite",
+            kBatchLabels);
   return kOk;
 }
 
@@ -79,9 +83,10 @@ void print_summary(const BatchReport& report, const BatchOptions& options) {
   std::printf("%-12s %zu of %zu (%zu made now in %.1f s, %zu found finished)\n", "runs", p.finished(), p.total, p.done,
               p.elapsed_s, p.skipped);
   if (p.failed)
-    std::printf("%-12s %zu; see \"error\" in the results, and workers%s.log\n", "FAILED", p.failed, suffix.c_str());
-  std::printf("%-12s %s/results%s.jsonl\n", "results", options.out.c_str(), suffix.c_str());
-  if (report.interrupted) std::printf("%-12s give the same command again to go on\n", "interrupted");
+    print_row("FAILED", std::to_string(p.failed) + "; see \"error\" in the results, and workers" + suffix + ".log",
+              kBatchLabels);
+  print_row("results", options.out + "/results" + suffix + ".jsonl", kBatchLabels);
+  if (report.interrupted) print_row("interrupted", "give the same command again to go on", kBatchLabels);
 }
 
 int batch(const BatchArguments& arguments) {
@@ -109,7 +114,7 @@ int batch(const BatchArguments& arguments) {
   if (whole) write_report(options.out, place_in(options.out, "report.html"));
   if (!arguments.save_baseline.empty()) {
     save_baseline(make_baseline(sweep.name, results_of(jobs, options.out).runs), arguments.save_baseline);
-    std::printf("%-12s %s\n", "baseline", arguments.save_baseline.c_str());
+    print_row("baseline", arguments.save_baseline, kBatchLabels);
   }
   return report.progress.failed ? kFailed : kOk;
 }

@@ -1,8 +1,8 @@
-#include <cstdio>
 #include <memory>
 
 #include "app/batch/batch_tools.h"
 #include "app/commands.h"
+#include "app/terminal.h"
 #include "scenarios/batch/merge.h"
 
 namespace rubble::app {
@@ -15,7 +15,8 @@ struct BatchMergeArguments {
 
 int batch_merge(const BatchMergeArguments& arguments) {
   const scenarios::MergeReport report = scenarios::merge(arguments.sources, arguments.out);
-  std::printf("%zu runs in %s, %zu of them new\n", report.runs, arguments.out.c_str(), report.added);
+  print_line(std::to_string(report.runs) + " runs in " + arguments.out + ", " + std::to_string(report.added) +
+             " of them new");
   bool whole = true;
   const std::vector<scenarios::RunRecord> merged = scenarios::load_results(arguments.out).runs;
   for (const auto& source : arguments.sources) whole = tell_missing(source, merged) && whole;

@@ -45,10 +45,8 @@ void add_workers(Options& options, int& workers) {
 bool tell_missing(const std::string& folder, const std::vector<RunRecord>& runs) {
   const MissingRuns missing = missing_runs(folder, runs);
   if (missing.missing == 0) return true;
-  std::fprintf(stderr,
-               "rubble: %s: %zu of the %zu runs its sweep asked for are missing; give the batch command again to make "
-               "them\n",
-               folder.c_str(), missing.missing, missing.asked);
+  tell(folder + ": " + std::to_string(missing.missing) + " of the " + std::to_string(missing.asked) +
+       " runs its sweep asked for are missing; give the batch command again to make them");
   return false;
 }
 
@@ -57,7 +55,7 @@ void write_report(const std::string& source, const std::string& page) {
   if (set.runs.empty()) throw InputError(source + ": holds no finished run to report on");
   tell_missing(source, set.runs);
   write_text_file(page, report_html(set, note_of(set, source), fs::path(page).parent_path().string()));
-  std::printf("%-12s %s\n", "report", page.c_str());
+  print_row("report", page, kBatchLabels);
 }
 
 int usable_cores() {

@@ -8,9 +8,10 @@
 #include "app/batch/batch_tools.h"
 #include "app/commands.h"
 #include "app/scenario_options.h"
+#include "app/terminal.h"
 #include "base/error.h"
 #include "base/text/text_file.h"
-#include "base/text/words.h"
+#include "base/text/utf8.h"
 #include "scenarios/batch/sweep_note.h"
 #include "scenarios/evidence/baseline.h"
 
@@ -32,12 +33,12 @@ struct CheckArguments {
 /// What GitHub Actions reads, where its variables exist.
 void tell_github(const std::vector<CheckCase>& cases, const std::string& title) {
   const char* actions = std::getenv("GITHUB_ACTIONS");
-  if (actions && std::string(actions) == "true") std::printf("%s", to_github_annotations(cases).c_str());
+  if (actions && std::string(actions) == "true") std::printf("%s", printable(to_github_annotations(cases)).c_str());
   if (const char* summary = std::getenv("GITHUB_STEP_SUMMARY")) {
     std::ofstream file(summary, std::ios::app);
     file << to_markdown(cases, title);
     file.flush();
-    if (!file) std::fprintf(stderr, "rubble: %s: the job summary cannot be written\n", summary);
+    if (!file) tell(std::string(summary) + ": the job summary cannot be written");
   }
 }
 
@@ -75,7 +76,7 @@ int check(const CheckArguments& arguments) {
   const bool stopped = run_with_progress(jobs, options, false).interrupted;
   save_note(sweep, jobs, options.out);
   if (stopped) {
-    std::printf("%-12s give the same command again to go on\n", "interrupted");
+    print_row("interrupted", "give the same command again to go on", kBatchLabels);
     return kInterrupted;
   }
   ResultSet set = results_of(jobs, options.out);
@@ -87,11 +88,11 @@ int check(const CheckArguments& arguments) {
   }
   const std::vector<CheckCase> cases = check_runs(baseline, set.runs);
   for (const auto& c : cases)
-    if (!c.passed)
-      std::printf("%-12s %s: %s: %s\n", "REGRESSION", one_line(c.group).c_str(), one_line(c.name).c_str(),
-                  one_line(c.detail).c_str());
-  std::printf("%-12s %zu of %zu passed (%zu runs in %s)\n", "checks", cases.size() - failures(cases), cases.size(),
-              jobs.size(), options.out.c_str());
+    if (!c.passed) print_row("REGRESSION", c.group + ": " + c.name + ": " + c.detail, kBatchLabels);
+  print_row("checks",
+            std::to_string(cases.size() - failures(cases)) + " of " + std::to_string(cases.size()) + " passed (" +
+                std::to_string(jobs.size()) + " runs in " + options.out + ")",
+            kBatchLabels);
   if (!arguments.junit.empty()) write_text_file(arguments.junit, to_junit(cases, "rubble." + sweep.name));
   tell_github(cases, "rubble check " + sweep.name);
   return failures(cases) == 0 ? kOk : kBroken;

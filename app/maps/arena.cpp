@@ -56,8 +56,7 @@ constexpr const char* kGeneratorOptions[] = {"--kind",  "--cells", "--seed",  "-
 arenas::Arena load(const std::string& path) {
   if (!arenas::is_raf(path)) return arenas::load_arena(path);
   const arenas::RafImport import = arenas::import_raf(path);
-  for (const std::string& note : import.notes())
-    std::fprintf(stderr, "rubble: %s\n", one_line(path + ": " + note).c_str());
+  for (const std::string& note : import.notes()) tell(path + ": " + note);
   return import.arena;
 }
 
@@ -103,7 +102,7 @@ int arena(const ArenaArguments& arguments) {
   }
   if (arguments.generate()) {
     if (!fs::exists(base + ".yaml") || arguments.force) write_text_file(place_in(out, stem + ".yaml"), yaml);
-    std::printf("%s.yaml\n", base.c_str());
+    print_line(base + ".yaml");
   }
   show_share("draws the arena", 0.0);
   write_png(place_in(out, stem + ".png"), arenas::render(arena, 60.0));
@@ -116,8 +115,8 @@ int arena(const ArenaArguments& arguments) {
       arena, truth, viewer, [](double share) { show_share("looks at it from everywhere", share); });
   write_geotiff(place_in(out, stem + "-visible.tif"), scoring::draw_truth(visible));
   end_progress();
-  std::printf("%s.png\n%s-truth.tif\n%s-visible.tif\n", base.c_str(), base.c_str(), base.c_str());
-  if (!arguments.walls.empty()) std::printf("%s\n", arguments.walls.c_str());
+  for (const char* ending : {".png", "-truth.tif", "-visible.tif"}) print_line(base + ending);
+  if (!arguments.walls.empty()) print_line(arguments.walls);
   return kOk;
 }
 

@@ -1,5 +1,4 @@
 #include <cctype>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -92,7 +91,7 @@ int score(const ScoreArguments& arguments) {
   config.alignment.start = parse_start(arguments.start, arguments.map, verdict.map);
   verdict.truth = scoring::load_map(arguments.truth, {arguments.truth_resolution});
   verdict.reported = scoring::reported_victims(verdict.map, arguments.pois);
-  if (!verdict.reported.note.empty()) std::fprintf(stderr, "rubble: %s\n", verdict.reported.note.c_str());
+  if (!verdict.reported.note.empty()) tell(verdict.reported.note);
   const scoring::TrueVictims victims = scoring::true_victims(arguments.truth, verdict.truth.origin, arguments.victims);
   const OccupancyGrid& truth = verdict.truth.grid;
   const OccupancyGrid grid = pose ? scoring::scaled_frame(verdict.map.grid, pose->scale) : verdict.map.grid;
@@ -104,7 +103,7 @@ int score(const ScoreArguments& arguments) {
   verdict.points = scoring::victim_points(grid, truth, result, verdict.reported, victims);
   const nlohmann::ordered_json json = as_json(verdict, grid);
   if (arguments.json) {
-    std::printf("%s\n", json.dump(2).c_str());
+    print_json(json);
   } else {
     print_table(verdict, json);
   }

@@ -5,6 +5,7 @@
 
 #include "app/maps/score_parts.h"
 #include "app/maps/score_tools.h"
+#include "app/terminal.h"
 #include "base/error.h"
 #include "base/text/words.h"
 #include "scoring/league/league_judge.h"
@@ -47,7 +48,7 @@ void print_ranking(const scoring::League& league, bool warp) {
                   scoring::text_of(*column, column->get(evidence)).c_str());
     std::printf("  %s\n", one_line(e.score.note).c_str());
   }
-  if (!league.left_out.empty()) std::printf("no team's maps: %s\n", one_line(league.left_out).c_str());
+  if (!league.left_out.empty()) print_line("no team's maps: " + league.left_out);
 }
 
 }  // namespace
@@ -66,12 +67,12 @@ int score_league(const ScoreArguments& arguments) {
   config.score.tau = arguments.tau;
   config.map_resolution = arguments.map_resolution;
   config.out = arguments.out;
-  config.tell = [](const std::string& note) { std::fprintf(stderr, "rubble: %s\n", one_line(note).c_str()); };
+  config.tell = [](const std::string& note) { tell(note); };
   const scoring::League league = scoring::judge_league(folder, truth, judge, config);
   print_ranking(league, arguments.warp);
   if (arguments.out.empty()) return kOk;
   scoring::write_league(league, truth, arguments.out);
-  std::printf("written: %s/league.html, league.csv\n", one_line(arguments.out).c_str());
+  print_line("written: " + arguments.out + "/league.html, league.csv");
   return kOk;
 }
 

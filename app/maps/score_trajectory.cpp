@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "app/maps/score_tools.h"
@@ -46,13 +45,13 @@ int score_trajectory(const ScoreArguments& arguments) {
   } else {
     throw UsageError(arguments.truth + ": a trajectory is compared with a .tum or a .relations file");
   }
-  const std::string json = scenarios::known_figures(evidence).dump(2);
+  const nlohmann::ordered_json json = scenarios::known_figures(evidence);
   if (!arguments.out.empty()) {
     make_folder(arguments.out);
-    write_text_file(place_in(arguments.out, "trajectory.json"), json + "\n");
+    write_text_file(place_in(arguments.out, "trajectory.json"), json.dump(2) + "\n");
   }
   if (arguments.json) {
-    std::printf("%s\n", json.c_str());
+    print_json(json);
     return kOk;
   }
   for (const scoring::Figure& figure : scoring::figures())

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/terminal.h"
 #include "base/error.h"
 #include "robot/drivers/port.h"
 #include "robot/drivers/probe/probe.h"
@@ -12,12 +13,13 @@ namespace rubble::app {
 namespace {
 
 constexpr int kPictureRows = 25;
+constexpr int kLabels = 16;
 
 void print(const std::string& port, const robot::FoundDevice& found, double radius) {
-  std::printf("%s: %s\n", port.c_str(), found.called.c_str());
-  for (const auto& [name, value] : found.facts) std::printf("  %-14s %s\n", name.c_str(), value.c_str());
+  print_line(port + ": " + found.called);
+  for (const auto& [name, value] : found.facts) print_row("  " + name, value, kLabels);
   if (!found.scan) return;
-  std::printf("  %-14s %s\n", "scan", robot::scan_summary(*found.scan).c_str());
+  print_row("  scan", robot::scan_summary(*found.scan), kLabels);
   std::printf("%s", robot::scan_picture(*found.scan, radius, kPictureRows).c_str());
 }
 
@@ -27,17 +29,17 @@ bool ask(const std::string& port, double radius, bool only) {
   try {
     const auto found = robot::probe_port(port);
     if (!found) {
-      std::printf("%s: no device that rubble knows answers\n", port.c_str());
+      print_line(port + ": no device that rubble knows answers");
       return false;
     }
     print(port, *found, radius);
     return true;
   } catch (const robot::DeviceLost& lost) {
-    std::printf("%s\n", lost.what());
+    print_line(lost.what());
     return false;
   } catch (const InputError& none) {
     if (only) throw;
-    std::printf("%s\n", none.what());
+    print_line(none.what());
     return false;
   }
 }

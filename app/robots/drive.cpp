@@ -1,6 +1,5 @@
 #include "scenarios/hardware/drive.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -69,7 +68,7 @@ int drive(const DriveArguments& arguments) {
   if (!report.failure.empty() && covered != report.score->end() && covered->is_number() && *covered == 0.0) {
     // It never began: there is nothing to show but why.
     print_row("folder", report.folder + " (nothing is mapped; devices.bytes holds what was said)");
-    std::fprintf(stderr, "rubble: %s\n", report.failure.c_str());
+    tell(report.failure);
     return kFailed;
   }
   return show(report);

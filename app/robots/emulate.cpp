@@ -79,15 +79,15 @@ int emulate(const EmulateArguments& arguments) {
   options.time_limit = arguments.time_limit;
   options.truth = arguments.truth;
   options.ready = [](const std::vector<std::string>& ports) {
-    for (const std::string& port : ports) std::printf("%s\n", port.c_str());
-    std::printf("ready\n");
+    for (const std::string& port : ports) print_line(port);
+    print_line("ready");
     std::fflush(stdout);
   };
   options.tell = [](const std::string& fault) {
-    std::printf("fault %s\n", fault.c_str());
+    print_line("fault " + fault);
     std::fflush(stdout);
   };
-  options.warn = [](const std::string& line) { std::fprintf(stderr, "rubble: %s\n", line.c_str()); };
+  options.warn = tell;
   catch_interrupts();
   options.interrupted = interrupted;
   const scenarios::EmulationReport report = scenarios::emulate(scenario, options);

@@ -97,7 +97,7 @@ scenarios::DriveOptions drive_options(Keyboard& keyboard, bool keys_stop) {
   options.forget_keys = [&keyboard] { keyboard.forget(); };
   options.each_second = print_status;
   options.incomplete = [](const std::string& folder) { print_row("folder", folder + " (not complete)"); };
-  options.tell = [](const std::string& line) { std::fprintf(stderr, "rubble: %s\n", line.c_str()); };
+  options.tell = tell;
   return options;
 }
 

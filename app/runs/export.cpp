@@ -1,9 +1,9 @@
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "app/commands.h"
 #include "app/scenario_options.h"
+#include "app/terminal.h"
 #include "base/error.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
 #include "scenarios/run/map_files.h"
@@ -26,7 +26,7 @@ int export_log(const ExportArguments& arguments) {
     scenarios::export_map(arguments.log, arguments.out);
   else
     robot::export_rawlog(recorded_log(arguments.log), arguments.out);
-  std::printf("%s\n", arguments.out.c_str());
+  print_line(arguments.out);
   return kOk;
 }
 

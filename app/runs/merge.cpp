@@ -1,8 +1,8 @@
-#include <cstdio>
 #include <memory>
 
 #include "app/commands.h"
 #include "app/scenario_options.h"
+#include "app/terminal.h"
 #include "scenarios/run/map_files.h"
 
 namespace rubble::app {
@@ -19,7 +19,7 @@ struct MergeArguments {
 int merge(const MergeArguments& arguments) {
   const scenarios::Scenario scenario = scenarios::default_scenario(parse_sets(arguments.sets));
   scenarios::merge_maps(arguments.first, arguments.second, scenario, arguments.out, arguments.force);
-  std::printf("%s\n", arguments.out.c_str());
+  print_line(arguments.out);
   return kOk;
 }
 

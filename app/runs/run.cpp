@@ -5,7 +5,6 @@
 #include "app/scenario_options.h"
 #include "app/terminal.h"
 #include "base/error.h"
-#include "base/text/words.h"
 
 namespace rubble::app {
 namespace {
@@ -26,8 +25,7 @@ int run(const RunArguments& arguments) {
       end_progress();
       std::fprintf(stderr, "%8.2f s  %s\n", decision.stamp.seconds(), decision.why.c_str());
     };
-  for (const std::string& note : scenarios::arena_notes(scenario))
-    std::fprintf(stderr, "rubble: %s\n", one_line(note).c_str());
+  for (const std::string& note : scenarios::arena_notes(scenario)) tell(note);
   return show(scenarios::run_scenario(scenario, options));
 }
 

@@ -16,6 +16,7 @@
 #include "base/text/json_size.h"
 #include "base/text/text_file.h"
 #include "scenarios/batch/score_version.h"
+#include "scenarios/run/folder_lock.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -275,6 +276,9 @@ MergeReport merge(const std::vector<std::string>& sources, const std::string& na
   const std::string out = is_link ? fs::weakly_canonical(named, error).string() : named;  // a symbolic link stays one
   if (is_link && error)
     throw InputError(named + ": is a link that leads nowhere (" + error.message() + "); give another --out");
+  // Two at once would begin with the same content, and the later one would take away what the other has added.
+  const fs::path folder = fs::path(out).parent_path();
+  const FolderLock alone(folder.empty() ? "." : folder.string(), FolderLock::Busy::Wait);
   ResultSet all;
   MergeReport report;
   if (fs::exists(out)) {

@@ -69,9 +69,9 @@ void redirect_output(const std::string& log) {
                         const std::string& log) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // the parent died before the line above
-  std::signal(SIGINT, SIG_IGN);       // Ctrl-C and a closed terminal reach the whole group; the parent decides
-  std::signal(SIGHUP, SIG_IGN);
-  std::signal(SIGTERM, SIG_DFL);
+  // Ctrl-C, a closed terminal and the polite kill of a service or a scheduler reach the whole group; the parent
+  // decides.
+  for (const int signal : {SIGINT, SIGHUP, SIGTERM}) std::signal(signal, SIG_IGN);
   redirect_output(log);
   std::uint64_t task = 0;
   while (receive_all(socket, &task, sizeof task)) {

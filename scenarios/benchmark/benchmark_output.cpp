@@ -186,7 +186,9 @@ std::string to_json(const Benchmark& benchmark) {
       c["published"].push_back({{"by", p.by}, {"source", p.source}, {"error_m", p.value}});
     cases.push_back(c);
   }
-  return ordered_json{{"name", benchmark.name}, {"about", benchmark.about}, {"cases", cases}}.dump(2) + "\n";
+  return ordered_json{{"name", benchmark.name}, {"about", benchmark.about}, {"cases", cases}}.dump(
+             2, ' ', true, ordered_json::error_handler_t::replace) +
+         "\n";
 }
 
 std::string to_html(const Benchmark& benchmark) {

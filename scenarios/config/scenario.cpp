@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <utility>
 
 #include "arenas/files/include.h"
 #include "arenas/raf/raf.h"
@@ -190,6 +191,7 @@ void check_laser(const YamlMap& map, const robot::LaserModel& laser) {
 }  // namespace
 
 void read_settings(const YamlMap& root, Scenario& s) {
+  constexpr std::size_t kMostLetters = 100;  // [bytes]
   s.seed =
       static_cast<std::uint64_t>(root.integer("seed", std::int64_t{1}, 0, std::numeric_limits<std::int64_t>::max()));
   if (root.has("geo")) {
@@ -200,6 +202,10 @@ void read_settings(const YamlMap& root, Scenario& s) {
   }
   YamlReader reader(root);
   bind_sections(reader, s);
+  for (const auto& [key, text] : {std::pair("team", &s.team), std::pair("mission", &s.mission)})
+    if (text->size() > kMostLetters)
+      root.fail(key, "is written on the map, and " + std::to_string(text->size()) + " bytes long; give at most " +
+                         std::to_string(kMostLetters));
   check_laser(root.map("robot").map("laser"), s.robot.laser);
   if (const std::string mistake = s.explorer.mistake(); !mistake.empty()) root.fail("explorer", mistake);
   s.sim.time_limit = s.time_limit;
@@ -247,7 +253,7 @@ std::string resolved_yaml(const Scenario& scenario) {
   Scenario s = scenario;  // binding needs a mutable object; nothing is changed
   std::string out = "name: " + yaml_quoted(s.name) + "\nseed: " + std::to_string(s.seed) + "\n";
   if (s.has_arena && !s.arena_file.empty()) {
-    out += "arena:\n  file: \"" + s.arena_file + "\"\n";
+    out += "arena:\n  file: " + yaml_quoted(s.arena_file) + "\n";
   } else if (s.has_arena) {
     YamlWriter generate(4);
     bind_generate(generate, s.generate);

@@ -7,6 +7,7 @@
 
 #include "base/angle.h"
 #include "base/error.h"
+#include "base/text/file_name.h"
 #include "base/yaml/binder.h"
 #include "base/yaml/strict_yaml.h"
 #include "robot/drivers/port.h"
@@ -158,9 +159,8 @@ RobotFile load_robot_file(const std::string& path, const std::vector<Override>& 
   file.lidar.port = "/dev/ttyACM0";
   file.robot.base_port = "/dev/ttyUSB0";
   file.robot.levelling_port = "/dev/ttyUSB1";
-  file.settings.name = root.text("name", std::filesystem::path(path).stem().string());
-  if (file.settings.name.empty() || file.settings.name.find_first_of("/\\ ") != std::string::npos)
-    root.fail("name", "is used as a folder name: no spaces or slashes");
+  file.settings.name = root.text("name", as_file_name(std::filesystem::path(path).stem().string()));
+  if (const auto trouble = file_name_trouble(file.settings.name)) root.fail("name", *trouble);
   const YamlMap urg = root.map("devices").map("urg");
   for (const std::string& key : urg.map("parameters").keys()) file.lidar.parameters.emplace_back(key, "");
   // MRPT's drivers lose the codes: what they call invalid may be a black wall close by as well as nothing at all.

@@ -35,6 +35,10 @@ bool is_own_folder(const fs::path& folder) {
   throw RunError(path + ": cannot be written (" + why + "); check the folder, its permissions and the free space");
 }
 
+[[noreturn]] void cannot_create(const std::string& path, const std::error_code& error) {
+  throw InputError(path + ": cannot be created (" + error.message() + "); give a writable folder with --out");
+}
+
 /// The league's list of points of interest: preamble, then one line a detection.
 std::string pois_csv(const Scenario& s, const std::vector<explore::VictimReport>& victims) {
   // Date and time would make two runs of one seed differ, so the preamble carries the start of the epoch.
@@ -131,16 +135,14 @@ std::vector<std::string> files_of_run(const std::string& path) {
 std::string next_run_folder(const std::string& parent, const std::string& name, std::uint64_t seed) {
   std::error_code error;
   fs::create_directories(parent, error);
-  if (error)
-    throw InputError(parent + ": cannot be created (" + error.message() + "); give a writable folder with --out");
+  if (error) cannot_create(parent, error);
   for (int number = 1;; ++number) {
     char suffix[16];
     std::snprintf(suffix, sizeof suffix, "-%03d", number);
     const std::string path = parent + "/" + name + "-seed" + std::to_string(seed) + suffix;
     // To make it is the test: of two runs that start together only one can.
     if (fs::create_directory(path, error)) return path;
-    if (error && error != std::errc::file_exists)
-      throw InputError(path + ": cannot be created (" + error.message() + "); give a writable folder with --out");
+    if (error && error != std::errc::file_exists) cannot_create(path, error);
   }
 }
 
@@ -148,7 +150,10 @@ RunFolder::RunFolder(const std::string& path, bool replace, const std::string& r
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_directory(path, error))
     throw InputError(path + ": is a file; give another folder with --out");
-  if (fs::is_directory(path, error) && !fs::is_empty(path, error)) {
+  fs::create_directories(path, error);
+  if (error) cannot_create(path, error);
+  lock_.emplace(path);
+  if (!fs::is_empty(path, error)) {
     if (!replace) throw InputError(path + ": exists and is not empty; " + remedy);
     set_aside(files_of_run(path));
     replaces_ = true;
@@ -156,7 +161,7 @@ RunFolder::RunFolder(const std::string& path, bool replace, const std::string& r
   fs::create_directories(file(kPartial), error);
   if (error) {
     put_back();
-    throw InputError(path + ": cannot be created (" + error.message() + "); give a writable folder with --out");
+    cannot_create(path, error);
   }
   estimate_.file.open(file("estimate.tum"));
   live_.file.open(file("estimate_live.tum"));

@@ -2,12 +2,14 @@
 
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/trajectory.h"
 #include "explore/victim_report.h"
 #include "scenarios/config/scenario.h"
+#include "scenarios/run/folder_lock.h"
 #include "scoring/maps/league_map.h"
 #include "slam/mapper.h"
 
@@ -22,11 +24,11 @@ scoring::LeagueCells league_cells(const slam::CountMap& map);
 /// mapper has moved poses of the past.
 class RunFolder {
  public:
-  /// Creates the folder. An existing one with content is refused unless `replace` is set and it is a run folder: all of
-  /// its files have names that rubble gives (run_folder_names()), and none of them was read by this process. So what is
-  /// read for a run is read before. Throws InputError (cannot be created, not empty).
-  /// What it takes the place of waits in its `.replaced` until close() and is put back when this ends before that;
-  /// after a kill it is still there. `remedy`: what the user may do about a folder that is not empty.
+  /// Creates the folder and keeps other commands out of it. An existing one with content is refused unless `replace` is
+  /// set and it is a run folder: all of its files have names that rubble gives (run_folder_names()), and none of them
+  /// was read by this process. So what is read for a run is read before. Throws InputError (cannot be created, not
+  /// empty). What it takes the place of waits in its `.replaced` until close() and is put back when this ends before
+  /// that; after a kill it is still there. `remedy`: what the user may do about a folder that is not empty.
   RunFolder(const std::string& path, bool replace,
             const std::string& remedy = "give another folder with --out, or --force to replace it");
 
@@ -73,6 +75,7 @@ class RunFolder {
   void put_back() noexcept;
 
   std::string path_;
+  std::optional<FolderLock> lock_;  ///< two that replace one run would take away each other's files
   Growing truth_;
   Growing estimate_;
   Growing live_;

@@ -92,6 +92,12 @@ PY
 cp shards.sqlite before.sqlite
 "$rubble" batch merge shards --out shards.sqlite | grep -q '0 of them new' || fail "a second merge adds runs"
 cmp shards.sqlite before.sqlite || fail "a second merge changes the file"
+# Of two merges into one folder the second waits: it would begin with what the first one has not finished.
+flock . sleep 2 &
+holder=$!
+sleep 0.3
+"$rubble" batch merge w1 --out waited.sqlite >/dev/null || fail "a merge that waits ended with $?"
+! kill -0 $holder 2>/dev/null || fail "a merge does not wait for another one in its folder"
 
 # Reports and comparison.
 grep -q '<svg' w1/report.html || fail "no plots in the report"

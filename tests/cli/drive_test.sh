@@ -2,8 +2,8 @@
 # A robot in real time: 'rubble emulate' plays its devices, 'rubble drive' maps with it as with a real one.
 source "$(dirname "$0")/lib.sh"
 
-drive= stranger=
-trap 'for it in $emulator $drive $stranger; do kill $it 2>/dev/null; done; rm -rf "$work"' EXIT
+drive=
+trap 'for it in $emulator $drive; do kill $it 2>/dev/null; done; rm -rf "$work"' EXIT
 
 small_scenario small.yaml
 robot=$source/robots/pioneer_urg.yaml
@@ -96,116 +96,6 @@ print(f"driven {driven:.3f}, in process {simulated:.3f}")
 sys.exit(0 if driven >= simulated - 0.05 else 1)
 PY
 "$rubble" replay driven >replay.txt || fail "the driven run does not replay to the same bits: $(tail -3 replay.txt)"
-
-# Encoders that die on the way and stay dead: scans show that the robot moves; it is stopped, and nobody lets it go.
-# shellcheck disable=SC2046
-start_emulator small.yaml $(printf -- "--fault base-encoders@%s " $(seq 9 3 60))
-# shellcheck disable=SC2086
-"$rubble" drive "$robot" $ports --time-limit 50 --out blind --set safety.give_up_s=5 >out.txt 2>err.txt
-code=$?
-stop_emulator
-[[ $code == 4 ]] || fail "a drive whose encoders are dead ends with $code: $(tail -3 err.txt)"
-grep -q "^rubble: base: encoders and scans disagree: its wheels report that they stand, scans show " err.txt && grep -q "see to its encoders" err.txt ||
-  fail "dead encoders are not named: $(cat err.txt)"
-tail -n 1 err.txt | grep -q "encoders and scans disagree.*; nobody has let it go" || fail "the end does not say why: $(tail -3 err.txt)"
-[[ -s blind/score.json && ! -e blind/.partial ]] || fail "the folder of a drive whose encoders died is not complete"
-
-# A base that no order to stop reaches and that somebody else drives on, whatever else is in trouble: the end says so.
-# shellcheck disable=SC2046
-start_emulator small.yaml $(printf -- "--fault levelling-sensor@%s " $(seq 6 0.9 40))
-python3 "$source/tests/cli/disobedient_line.py" "$(sed -n 's/^base tcp://p' emulator.txt)" >line.txt &
-stranger=$!
-for _ in $(seq 100); do
-  grep -q '^port' line.txt && break
-  sleep 0.1
-done
-ports=$(sed "s#--base [^ ]*#--base tcp:127.0.0.1:$(sed -n 's/^port //p' line.txt)#" <<<"$ports")
-# shellcheck disable=SC2086
-"$rubble" drive "$robot" $ports --out driven_on >out.txt 2>err.txt &
-drive=$!
-for _ in $(seq 300); do
-  grep -q 'gives no signal' err.txt && break
-  sleep 0.1
-done
-kill -USR1 $stranger
-sleep 0.3
-kill -INT $drive
-wait $drive
-[[ $? == 130 ]] || fail "a drive whose base does not hear ends otherwise: $(tail -3 err.txt)"
-drive=
-kill $stranger
-wait $stranger 2>/dev/null
-stranger=
-stop_emulator
-grep -q "^rubble: base: its motors stay on though switched off" err.txt || fail "the end is silent about a base that does not stop: $(tail -5 err.txt)"
-
-# A robot that is driven belongs to one: whoever else comes is told so and does not wait, or it would drive the robot on when the
-# first one stops it. First our own drives, then a client that only the device itself can turn away.
-# One of its devices is unplugged meanwhile: it still belongs to the first.
-start_emulator small.yaml --fault base-unplug@8
-# shellcheck disable=SC2086
-"$rubble" drive "$robot" $ports --out first >/dev/null 2>first.txt &
-drive=$!
-for _ in $(seq 300); do
-  grep -q 'motors on' first.txt && break
-  sleep 0.1
-done
-# shellcheck disable=SC2086
-expect_exit 4 "another program uses it; end that first" timeout 100 "$rubble" drive "$robot" $ports --set safety.start_s=200 --out second
-[[ -e second ]] && fail "a drive that is refused leaves a folder"
-# shellcheck disable=SC2086
-expect_exit 4 "another program uses it" timeout 100 "$rubble" calibrate "$robot" $ports --set safety.start_s=200 --out second.yaml
-base=$(sed -n 's/^base //p' emulator.txt)
-"$rubble" devices "$base" >devices.txt 2>&1
-[[ $? == 4 ]] && grep -q "another program uses it" devices.txt || fail "devices asks a base that is driven: $(cat devices.txt)"
-for _ in $(seq 300); do
-  sed -n '/motors on/,$p' first.txt | grep -q 'rubble: base: ' && break
-  sleep 0.1
-done
-# shellcheck disable=SC2086
-expect_exit 4 "another program uses it; end that first" timeout 100 "$rubble" drive "$robot" $ports --set safety.start_s=200 --out second
-for _ in $(seq 300); do
-  sed -n '/motors on/,$p' first.txt | grep -q 'base: reports' && break
-  sleep 0.1
-done
-sed -n '/motors on/,$p' first.txt | grep -q 'base: reports' || fail "the first drive lost its base to another: $(tail -3 first.txt)"
-kill -INT $drive
-wait $drive
-[[ $? == 130 ]] || fail "the first drive was disturbed: $(tail -3 first.txt)"
-drive=
-python3 -c '
-import socket, sys, time
-line = socket.create_connection((sys.argv[1].split(":")[1], int(sys.argv[1].split(":")[2])))
-print("on", flush=True)
-time.sleep(300)' "$base" >stranger.txt &
-stranger=$!
-for _ in $(seq 100); do
-  [[ -s stranger.txt ]] && break
-  sleep 0.1
-done
-# shellcheck disable=SC2086
-timeout 100 "$rubble" drive "$robot" $ports --set safety.start_s=5 --out third >out.txt 2>err.txt
-[[ $? == 4 ]] && tail -n 1 err.txt | grep -qF "base: has not reported yet ($base: the other side hangs up at once; another program uses the device" ||
-  fail "a drive with a base in use waits or does not say so: $(tail -3 err.txt)"
-"$rubble" devices "$base" >devices.txt 2>&1
-[[ $? == 4 ]] && grep -q "another program uses the device" devices.txt || fail "devices at a base in use: $(cat devices.txt)"
-# It is said and waited for; but who is let in when the other leaves does not drive.
-rm -f err.txt  # the drive before said it too
-# shellcheck disable=SC2086
-timeout 100 "$rubble" drive "$robot" $ports --set safety.start_s=60 --out fourth >out.txt 2>err.txt &
-drive=$!
-for _ in $(seq 300); do
-  grep -qs "base: .*hangs up at once" err.txt && break
-  sleep 0.1
-done
-kill $stranger
-wait $stranger 2>/dev/null
-stranger=
-wait $drive
-[[ $? == 4 ]] && tail -n 1 err.txt | grep -q "base: hung up at first" || fail "a drive takes over a robot that was in use: $(tail -3 err.txt)"
-! grep -q "motors on" out.txt err.txt || fail "it switched the motors on"
-drive=
-stop_emulator
 
 # Pictures while it drives; and when a device is lost the map is saved at once: while all is waited for nothing else saves it.
 start_emulator small.yaml

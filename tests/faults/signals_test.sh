@@ -33,6 +33,23 @@ for i in $(seq "$moments"); do
   struck=$((struck + 1))
   [[ $code == 130 || $code == 0 ]] || fail "a second SIGINT ended with $code: $(head -c 300 struck.err)"
 done
+# A scheduler or a service manager ends a batch with its workers, all at once: no run counts as failed by that, and the same
+# command goes on.
+printf 'name: b\nscenarios: [s.yaml]\nseeds: 1-4\n' >sweep.yaml
+for signal in INT TERM HUP; do
+  rm -rf batch
+  for i in $(seq "$moments"); do
+    setsid "$rubble" batch sweep.yaml --out batch --workers 2 >struck.out 2>struck.err &
+    pid=$!
+    sleep "$(awk -v n="$i" -v m="$moments" 'BEGIN { printf "%.3f", 0.1 + 0.8 * n / m }')"
+    kill -"$signal" -- -$pid 2>/dev/null
+    wait $pid
+    code=$?
+    struck=$((struck + 1))
+    [[ $code == 0 || $code == 130 ]] || fail "SIG$signal to a batch and its workers ended with $code: $(head -c 300 struck.out struck.err)"
+    ! grep -qs '"status":"failed"' batch/results.jsonl || fail "SIG$signal to a batch and its workers: $(grep -o '"error":"[^"]*"' batch/results.jsonl | tail -n 1)"
+  done
+done
 # A pipe for errors that nobody reads, which is full, as a terminal that is held by Ctrl-S: who ends work that is not asked
 # twice does not wait for it.
 mkfifo held
