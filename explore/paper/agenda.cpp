@@ -90,11 +90,15 @@ Plan Agenda::choose(const Situation& situation) {
   return std::move(choice.plan);
 }
 
-void Agenda::turn_away(const Plan& plan, double left, const Situation& situation) {
-  if (!choice_.turns_away(plan) || goal() == Goal::Home) return;
-  if (!choice_.kept_away({situation.floor, situation.T_map_base, situation.now, situation.left_alone}, left)) return;
+bool Agenda::turn_away(const Plan& plan, double left, const Situation& situation) {
+  if (!plan.found || !target()) return false;
+  if (!choice_.turns_away(plan)) return length_of(plan) > left + kLongerWay;
+  if (goal() == Goal::Home) return false;
+  if (!choice_.kept_away({situation.floor, situation.T_map_base, situation.now, situation.left_alone}, left))
+    return false;
   note(situation.now, "something new stands in the way");
   leave_target(situation.left_alone, situation.robot());
+  return true;
 }
 
 Order Agenda::decide(Plan plan, bool new_map, const Situation& situation) {

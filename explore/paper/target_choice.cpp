@@ -13,7 +13,6 @@ using mrpt::math::TPose2D;
 
 constexpr double kBesideTheWay = 1.0;  ///< a niche that costs no more is looked into while frontiers are left [m]
 constexpr double kDetourCost = 2.0;    ///< a frontier may cost so much more than the next viewpoint [m]
-constexpr double kLongerWay = 2.0;     ///< [m]
 constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
 
 }  // namespace

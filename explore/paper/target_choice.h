@@ -15,6 +15,8 @@
 
 namespace rubble::explore {
 
+constexpr double kLongerWay = 2.0;  ///< a way that is so much longer is a detour [m]
+
 /// What the robot drives to.
 enum class Goal { Frontier, Place, Home };
 
