@@ -102,7 +102,7 @@ class Agenda {
 
  private:
   Order face_subject(const Situation& situation);
-  Order visited_in_vain(const mrpt::math::TPoint2D& where, const Situation& situation);
+  Order visited_in_vain(const Plan& plan, const Situation& situation);
   Order nothing_left(const Situation& situation);
   bool may_push(const Situation& situation) const;
   Order start_pushing(const Situation& situation);

@@ -16,6 +16,7 @@ using mrpt::math::TPose2D;
 PaperExplorerConfig without_search() {
   PaperExplorerConfig config;
   config.search.on = false;
+  config.felt.pallet = 0.0;  // its rooms are not built of them
   return config;
 }
 
