@@ -36,17 +36,32 @@ bool PathWatch::check(const PathFollower& follower, const std::vector<TPoint2D>&
   blocked_ = hits_on_path(follower.path(), follower.progress(), kAhead + brake_way, radius, hits, T_map_base, model_) >=
              kBlockingHits;
   if (!blocked_ || now < creep_until_) return false;
-  obstacles_.clear();
-  std::copy_if(hits.begin(), hits.end(), std::back_inserter(obstacles_), [&](const TPoint2D& p) {
-    return distance(p, {T_map_base.x, T_map_base.y}) < kReach;
-  });
-  forget_ = now + kMemory;
+  found_ = {{}, now + kMemory};
+  for (const TPoint2D& p : hits)
+    if (distance(p, position(T_map_base)) < kReach) found_.points.emplace_back(Anchor{now, T_map_base}, p);
   return true;
 }
 
-const std::vector<TPoint2D>& PathWatch::obstacles(Stamp now) {
-  if (now >= forget_) obstacles_.clear();
-  return obstacles_;
+std::vector<TPoint2D> PathWatch::obstacles(Stamp now) {
+  if (now >= found_.forget) found_ = {};
+  kept_.erase(std::remove_if(kept_.begin(), kept_.end(), [&](const Found& f) { return now >= f.forget; }), kept_.end());
+  std::vector<TPoint2D> points;
+  const auto add = [&](const Found& found) {
+    for (const AnchoredPoint& p : found.points) points.push_back(p.p_map());
+  };
+  add(found_);
+  std::for_each(kept_.begin(), kept_.end(), add);
+  return points;
+}
+
+void PathWatch::remember(double seconds, Stamp now) {
+  if (!found_.points.empty()) kept_.push_back({found_.points, now + seconds});
+}
+
+void PathWatch::follow(const slam::Mapper& mapper) {
+  for (AnchoredPoint& p : found_.points) p.follow(mapper);
+  for (Found& found : kept_)
+    for (AnchoredPoint& p : found.points) p.follow(mapper);
 }
 
 void PathWatch::creep(Stamp now) { creep_until_ = now + kCreepTime; }

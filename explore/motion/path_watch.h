@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "base/stamp.h"
+#include "explore/anchor.h"
 #include "explore/plan/path_follower.h"
 #include "robot/model.h"
+#include "slam/mapper.h"
 
 namespace rubble::explore {
 
@@ -28,7 +30,12 @@ class PathWatch {
   bool waits(Stamp now) const { return blocked_ && now >= creep_until_; }
 
   /// What is remembered [m, map frame]; forgets what is too old.
-  const std::vector<mrpt::math::TPoint2D>& obstacles(Stamp now);
+  std::vector<mrpt::math::TPoint2D> obstacles(Stamp now);
+  /// Remembers what it found last for `seconds` at least: as long as the robot needs for the way round it. It would
+  /// turn back half-way else, and find it again.
+  void remember(double seconds, Stamp now);
+  /// The mapper corrected its past.
+  void follow(const slam::Mapper& mapper);
 
   /// The map shows a way, the newest scans do not: go and see, slowly, and do not wait for a better one meanwhile.
   void creep(Stamp now);
@@ -38,10 +45,15 @@ class PathWatch {
   robot::Drive limited(robot::Drive drive, Stamp now) const;
 
  private:
+  struct Found {
+    std::vector<AnchoredPoint> points;
+    Stamp forget = Stamp::never();
+  };
+
   robot::RobotModel model_;
   Stamp next_check_ = Stamp::never();
-  std::vector<mrpt::math::TPoint2D> obstacles_;
-  Stamp forget_ = Stamp::never();
+  Found found_;              ///< last
+  std::vector<Found> kept_;  ///< to be remembered for longer
   bool blocked_ = false;
   Stamp creep_until_ = Stamp::never();
   Stamp slow_until_ = Stamp::never();

@@ -62,7 +62,13 @@ class Pilot {
     return watch_.check(follower_, hits, T_map_base, speed, d_min_, now);
   }
   /// What was found in the way and is not forgotten yet [m, map frame].
-  const std::vector<mrpt::math::TPoint2D>& new_things(Stamp now) { return watch_.obstacles(now); }
+  std::vector<mrpt::math::TPoint2D> new_things(Stamp now) { return watch_.obstacles(now); }
+  /// It waits for another way round what was found in this one.
+  bool waits(Stamp now) const { return watch_.waits(now); }
+  /// What was found last is not forgotten for `seconds`.
+  void remember_new_things(double seconds, Stamp now) { watch_.remember(seconds, now); }
+  /// The mapper corrected its past.
+  void follow_map(const slam::Mapper& mapper) { watch_.follow(mapper); }
   /// The map shows a way, the newest scans do not: go and see, slowly.
   void creep(Stamp now) { watch_.creep(now); }
   /// Something is being pushed.

@@ -27,6 +27,7 @@ std::string text(const TPoint2D& p) {
 
 std::string target_text(Goal goal, bool niches, const Plan& plan, double usual_d_min) {
   const char* what = goal == Goal::Home       ? "home"
+                     : plan.doubtful          ? "a wall that may be a ramp"
                      : goal == Goal::Frontier ? "the frontier"
                      : niches                 ? "a place to look into a niche from"
                                               : "a place to search from";
@@ -48,7 +49,8 @@ Order turn(double angle, TurnFor purpose) {
 
 }  // namespace
 
-Agenda::Agenda(const PaperExplorerConfig& config) : config_(config), choice_(config.planner, config.bar_targets) {}
+Agenda::Agenda(const PaperExplorerConfig& config)
+    : config_(config), choice_(config.planner, config.bar_targets, config.felt.pallet) {}
 
 void Agenda::note(Stamp now, const std::string& why) {
   if (decisions_.empty() || decisions_.back().why != why) decisions_.push_back({now, why});
@@ -90,11 +92,15 @@ Plan Agenda::choose(const Situation& situation) {
   return std::move(choice.plan);
 }
 
-void Agenda::turn_away(const Plan& plan, double left, const Situation& situation) {
-  if (!choice_.turns_away(plan) || goal() == Goal::Home) return;
-  if (!choice_.kept_away({situation.floor, situation.T_map_base, situation.now, situation.left_alone}, left)) return;
+bool Agenda::turn_away(const Plan& plan, double left, const Situation& situation) {
+  if (!plan.found || !target()) return false;
+  if (!choice_.turns_away(plan)) return length_of(plan) > left + kLongerWay;
+  if (goal() == Goal::Home) return false;
+  if (!choice_.kept_away({situation.floor, situation.T_map_base, situation.now, situation.left_alone}, left))
+    return false;
   note(situation.now, "something new stands in the way");
   leave_target(situation.left_alone, situation.robot());
+  return true;
 }
 
 Order Agenda::decide(Plan plan, bool new_map, const Situation& situation) {
@@ -108,7 +114,9 @@ Order Agenda::decide(Plan plan, bool new_map, const Situation& situation) {
   const double away = distance(plan.target, position(situation.T_map_base));
   if (goal() == Goal::Home && away < kVisited) return finish(MissionEnd::Home, "home again", situation.now);
   if (goal() == Goal::Place && away < kAtViewpoint) return face_subject(situation);
-  if (goal() == Goal::Frontier && away < kVisited) return visited_in_vain(plan.target, situation);
+  // From a hand's breadth farther down a slope it still looks like a wall.
+  if (goal() == Goal::Frontier && away < (plan.doubtful ? kAtViewpoint : kVisited))
+    return visited_in_vain(plan, situation);
   if (choice_.take(plan))
     note(situation.now, target_text(goal(), !choice_.frontiers_done(), plan, config_.planner.transform.d_min));
   Order order;
@@ -128,15 +136,16 @@ Order Agenda::face_subject(const Situation& situation) {
 }
 
 /// The robot stands at a frontier that does not go away: look around, then bar it.
-Order Agenda::visited_in_vain(const TPoint2D& where, const Situation& situation) {
+Order Agenda::visited_in_vain(const Plan& plan, const Situation& situation) {
   if (situation.turning) return {};
   const TPoint2D here = position(situation.T_map_base);
   if (!looked_from_ || distance(*looked_from_, here) > kVisited) {
     looked_from_ = here;
     return turn(kLookTurn, TurnFor::View);
   }
-  note(situation.now, "the frontier at " + text(where) + " stays although it was visited: left alone");
-  situation.left_alone.bar_for_good(where, situation.robot());
+  const std::string what = plan.doubtful ? "the wall looked at from " : "the frontier at ";
+  note(situation.now, what + text(plan.target) + " stays although it was visited: left alone");
+  situation.left_alone.bar_for_good(plan.target, situation.robot());
   choice_.drop_target();
   return stay_and_plan();
 }

@@ -82,8 +82,9 @@ class Agenda {
   /// The way to the next target; the goal may change with it.
   Plan choose(const Situation& situation);
   /// Something new stands in the way, of which `left` [m] were left: bars a target that it keeps the robot from. The
-  /// robot would turn round again once the new thing is forgotten, and again when it is seen anew.
-  void turn_away(const Plan& plan, double left, const Situation& situation);
+  /// robot would turn round again once the new thing is forgotten, and again when it is seen anew. Says whether the way
+  /// that is left leads round it, by a detour.
+  bool turn_away(const Plan& plan, double left, const Situation& situation);
   /// What follows from a plan.
   Order decide(Plan plan, bool new_map, const Situation& situation);
 
@@ -101,7 +102,7 @@ class Agenda {
 
  private:
   Order face_subject(const Situation& situation);
-  Order visited_in_vain(const mrpt::math::TPoint2D& where, const Situation& situation);
+  Order visited_in_vain(const Plan& plan, const Situation& situation);
   Order nothing_left(const Situation& situation);
   bool may_push(const Situation& situation) const;
   Order start_pushing(const Situation& situation);

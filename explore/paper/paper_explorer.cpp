@@ -22,6 +22,7 @@ constexpr double kNearFrontier = 1.0;  ///< frontier this close at the start: tu
 constexpr double kTurningRoom = 0.06;  ///< beside the robot's swing circle, for stopping a little off [m]
 constexpr double kLittleRoom = 0.01;   ///< likewise, where there is no more [m]
 constexpr double kLongestTick = 0.2;   ///< commands of longer ticks are taken to have ended [s]
+constexpr double kDetourSpeed = 0.15;  ///< a detour is driven so fast at least, turns and stops included [m/s]
 constexpr int kSmoothFloor = 3;        ///< things felt so far where the robot may be fast
 
 }  // namespace
@@ -93,6 +94,7 @@ void PaperExplorer::follow_map(const slam::Mapper& mapper) {
   revision_ = mapper.revision();
   agenda_.follow(mapper, trail_.follow(mapper));
   recovery_.follow(mapper);
+  pilot_.follow_map(mapper);
   left_alone_.follow(mapper);
   if (stage_ == Stage::StraightOn) stage_ = Stage::OnTheWay;  // how far it came is told by poses of two maps
   if (!victims_.follow(mapper)) return;
@@ -250,7 +252,7 @@ Drive PaperExplorer::back_up() {
 
 void PaperExplorer::replan(const slam::Mapper& mapper) {
   const bool new_map = agenda_.begin_plan(mapper.map(), now_);
-  const std::vector<TPoint2D>& new_things = pilot_.new_things(now_);
+  const std::vector<TPoint2D> new_things = pilot_.new_things(now_);
   floor_ = floor_now(mapper, new_things);
   Plan plan = agenda_.choose(situation());
   if (!plan.found && !new_things.empty()) {
@@ -259,7 +261,8 @@ void PaperExplorer::replan(const slam::Mapper& mapper) {
     plan = agenda_.choose(situation());
     if (plan.found) pilot_.creep(now_);
   }
-  if (!new_things.empty()) agenda_.turn_away(plan, pilot_.left(), situation());
+  if (!new_things.empty() && agenda_.turn_away(plan, pilot_.left(), situation()) && pilot_.waits(now_))
+    pilot_.remember_new_things(length_of(plan) / kDetourSpeed, now_);
   obey(agenda_.decide(std::move(plan), new_map, situation()));
 }
 

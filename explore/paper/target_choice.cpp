@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/planar.h"
+#include "explore/paper/doubtful_walls.h"
 
 namespace rubble::explore {
 namespace {
@@ -13,7 +14,6 @@ using mrpt::math::TPose2D;
 
 constexpr double kBesideTheWay = 1.0;  ///< a niche that costs no more is looked into while frontiers are left [m]
 constexpr double kDetourCost = 2.0;    ///< a frontier may cost so much more than the next viewpoint [m]
-constexpr double kLongerWay = 2.0;     ///< [m]
 constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
 
 }  // namespace
@@ -62,7 +62,22 @@ TargetChoice::Choice TargetChoice::weigh(Plan frontier, Plan place) {
 
 Plan TargetChoice::to_frontier(const View& view, const std::optional<TPoint2D>& previous) {
   const auto barred = [&](const TPoint2D& p) { return bar_targets_ && view.left_alone.barred(p, view.now); };
-  return planner_.to_frontier(view.floor, view.T_map_base, barred, previous);
+  Plan plan = planner_.to_frontier(view.floor, view.T_map_base, barred, previous);
+  if (plan.found) return plan;
+  std::vector<Source> sources = doubtful_walls(view.floor, pallet_);
+  const auto place = [&](const Source& source) { return view.floor.cells.centre(source.cell); };
+  sources.erase(std::remove_if(sources.begin(), sources.end(), [&](const Source& s) { return barred(place(s)); }),
+                sources.end());
+  // Of what is driven to as such, a part may vanish on the way: the rest is looked at from there as well.
+  if (previous && doubtful_ && !barred(*previous)) sources.push_back({view.floor.cells.cell(*previous), 0.0});
+  if (sources.empty()) return plan;
+  if (previous)
+    for (Source& source : sources)
+      if (distance(place(source), *previous) > config_.same_target) source.head_start = config_.switch_cost;
+  Plan look = planner_.to_cells(view.floor, view.T_map_base, sources);
+  look.frontier_left = plan.frontier_left;
+  look.doubtful = look.found;
+  return look;
 }
 
 Plan TargetChoice::to_place(const View& view, FloorSearch& search, Subjects subjects) {
@@ -96,6 +111,7 @@ bool TargetChoice::take(const Plan& plan) {
   const bool another = !target_ || turns_away(plan);
   if (another) cost_ = plan.cost;
   target_ = plan.target;
+  doubtful_ = plan.doubtful;
   return another;
 }
 

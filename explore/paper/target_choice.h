@@ -15,12 +15,15 @@
 
 namespace rubble::explore {
 
+constexpr double kLongerWay = 2.0;  ///< a way that is so much longer is a detour [m]
+
 /// What the robot drives to.
 enum class Goal { Frontier, Place, Home };
 
-/// The choice of the next target: a close frontier by the Exploration Transform; the back of a niche where that lies
-/// beside the way; places to search from once no frontier is left; the start in the end. The target being driven to has
-/// a head start, so that the robot does not turn round for a trifle.
+/// The choice of the next target: a close frontier by the Exploration Transform; where none is in reach, a wall that
+/// may hide one and be none; the back of a niche where that lies beside the way; places to search from once no frontier
+/// is left; the start in the end. The target being driven to has a head start, so that the robot does not turn round
+/// for a trifle.
 class TargetChoice {
  public:
   /// What a choice is made on.
@@ -36,9 +39,10 @@ class TargetChoice {
     bool into_reach = false;  ///< a frontier is driven to although all that were in reach had been seen
   };
 
-  /// `bar_targets`: frontiers that could not be had are left alone.
-  TargetChoice(const PlannerConfig& config, bool bar_targets)
-      : config_(config), bar_targets_(bar_targets), planner_(config) {}
+  /// `bar_targets`: frontiers that could not be had are left alone. `pallet`: size of the arena's elements [m]; 0:
+  /// none.
+  TargetChoice(const PlannerConfig& config, bool bar_targets, double pallet = 0.0)
+      : config_(config), bar_targets_(bar_targets), pallet_(pallet), planner_(config) {}
 
   Goal goal() const { return goal_; }
   /// No frontier could be reached in this round: what comes into reach later is a detour of the search.
@@ -84,11 +88,13 @@ class TargetChoice {
 
   PlannerConfig config_;
   bool bar_targets_;
+  double pallet_;
   Planner planner_;
   Anchor home_;
   Goal goal_ = Goal::Frontier;
   bool frontiers_done_ = false;
   std::optional<mrpt::math::TPoint2D> target_;
+  bool doubtful_ = false;  ///< it is before a wall that may be none
   double cost_ = 0.0;
 };
 

@@ -30,6 +30,7 @@ struct Plan {
   mrpt::math::TPoint2D target;    ///< last cell of the path [m]
   double cost = 0.0;              ///< of eq. (3), head starts included [m]
   double d_min = 0.0;             ///< the one the way keeps [m]
+  bool doubtful = false;          ///< the target is a place to look from at a wall that may be none
   std::size_t frontier_left = 0;  ///< frontier clusters that are big enough and hold a cell that is not barred
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/planar.h"
 
@@ -14,6 +15,9 @@ using mrpt::math::TPose2D;
 using robot::CueKind;
 
 constexpr std::size_t kKinds = 4;
+
+/// Cameras tell where a victim is, ears and noses only whereabouts.
+bool places_well(CueKind kind) { return kind == CueKind::Appearance || kind == CueKind::Heat; }
 
 }  // namespace
 
@@ -39,25 +43,77 @@ TPoint2D geometric_median(const std::vector<TPoint2D>& points, const std::vector
 }
 
 /// Whether two places `d` [m] apart, with a sighting of each, are two victims: on the two sides of a wall.
-bool VictimSearch::back_to_back(double d, const Sighting& a, const Sighting& b, const SightFn& in_sight) const {
+bool VictimSearch::back_to_back(double d, const Sighting& a, const Sighting& b, const Sightlines& sight) const {
   if (d < config_.back_to_back) return false;
   const double bearing_a = a.anchor.T_map_base.phi + std::atan2(a.p_base.y, a.p_base.x);
   const double bearing_b = b.anchor.T_map_base.phi + std::atan2(b.p_base.y, b.p_base.x);
   if (std::abs(wrap_angle(bearing_a - bearing_b)) < config_.other_side) return false;
-  return !in_sight({a.anchor.T_map_base.x, a.anchor.T_map_base.y}, {b.anchor.T_map_base.x, b.anchor.T_map_base.y});
+  return !sight.open(position(a.anchor.T_map_base), position(b.anchor.T_map_base));
 }
 
-std::size_t VictimSearch::cluster_near(const Sighting& sighting, const SightFn& in_sight) const {
-  std::size_t best = clusters_.size();
+/// The sighting of a cluster that the same sense had in the same look; null: none. A look of a camera shows each victim
+/// once, and at its place.
+VictimSearch::Sighting* VictimSearch::of_same_look(Cluster& cluster, const Sighting& sighting) const {
+  if (!places_well(sighting.kind)) return nullptr;
+  for (Sighting& other : cluster.sightings)
+    if (other.anchor.stamp == sighting.anchor.stamp && other.kind == sighting.kind &&
+        distance(other.p_map, sighting.p_map) >= config_.back_to_back)
+      return &other;
+  return nullptr;
+}
+
+/// Whether a cue near a cluster cannot be of it.
+bool VictimSearch::is_other(Cluster& cluster, const Sighting& sighting, const Sightlines& sight) const {
+  const double d = distance(cluster.p_map, sighting.p_map);
+  if (back_to_back(d, cluster.sightings.front(), sighting, sight)) return true;
+  if (of_same_look(cluster, sighting) != nullptr) return true;
+  const TPoint2D from = position(sighting.anchor.T_map_base);
+  return places_well(sighting.kind) && d >= config_.back_to_back && sight.hidden(from, cluster.p_map) &&
+         !sight.hidden(from, sighting.p_map);
+}
+
+VictimSearch::Home VictimSearch::home_of(const Sighting& sighting, const Sightlines& sight) {
+  Home home{clusters_.size(), false};
   double best_distance = config_.merge_distance;
+  int others = 0;
+  int near = 0;
   for (std::size_t i = 0; i < clusters_.size(); ++i) {
     const double d = distance(clusters_[i].p_map, sighting.p_map);
+    if (d >= config_.merge_distance) continue;
+    if (is_other(clusters_[i], sighting, sight)) {
+      ++others;
+      continue;
+    }
+    ++near;
     if (d >= best_distance) continue;
-    if (back_to_back(d, clusters_[i].sightings.front(), sighting, in_sight)) continue;
-    best = i;
+    home.index = i;
     best_distance = d;
   }
-  return best;
+  home.sure = others > 0 && near <= 1;
+  return home;
+}
+
+/// Whether two clusters that have come too close to each other are two victims all the same. A single look at a false
+/// alarm beside a victim tells them apart for a while only.
+bool VictimSearch::are_two(Cluster& a, Cluster& b, const Sightlines& sight) {
+  const Stamp now = std::max(a.newest, b.newest);
+  int looks = 0, sure = 0;
+  bool of_late = false;
+  for (const Sighting& s : a.sightings) {
+    if (of_same_look(b, s) == nullptr) continue;
+    ++looks;
+    of_late = of_late || now - s.anchor.stamp <= config_.memory;
+  }
+  if (of_late || looks >= config_.min_cues) return true;
+  const double d = distance(a.p_map, b.p_map);
+  if (d < config_.back_to_back) return false;
+  if (back_to_back(d, a.sightings.front(), b.sightings.front(), sight)) return true;
+  for (const Cluster* cluster : {&a, &b})
+    for (const Sighting& s : cluster->sightings) {
+      sure += s.sure ? 1 : 0;
+      of_late = of_late || (s.sure && now - s.anchor.stamp <= config_.memory);
+    }
+  return of_late || sure >= config_.min_cues;
 }
 
 void VictimSearch::locate(Cluster& cluster) const {
@@ -72,10 +128,15 @@ void VictimSearch::locate(Cluster& cluster) const {
 
 void VictimSearch::confirm(Cluster& cluster, Stamp stamp) {
   if (cluster.id != 0) return;
+  // So near to a victim only what cannot be that one counts.
+  const bool beside_victim = std::any_of(clusters_.begin(), clusters_.end(), [&](const Cluster& other) {
+    return other.id != 0 && distance(other.p_map, cluster.p_map) < config_.merge_distance;
+  });
   int cues = 0;
   double evidence = 0.0;
   for (const Sighting& s : cluster.sightings) {
     if (stamp - s.anchor.stamp > config_.memory || distance(s.p_map, cluster.p_map) > config_.consistency) continue;
+    if (beside_victim && !s.sure) continue;
     ++cues;
     evidence += s.confidence;
   }
@@ -85,11 +146,11 @@ void VictimSearch::confirm(Cluster& cluster, Stamp stamp) {
 }
 
 /// Joins the cluster with another one that its position has come too close to; returns where it is then.
-std::size_t VictimSearch::merge_into_neighbour(std::size_t index, const SightFn& in_sight) {
+std::size_t VictimSearch::merge_into_neighbour(std::size_t index, const Sightlines& sight) {
   for (std::size_t i = 0; i < clusters_.size(); ++i) {
     const double d = distance(clusters_[i].p_map, clusters_[index].p_map);
     if (i == index || d >= config_.merge_distance) continue;
-    if (back_to_back(d, clusters_[i].sightings.front(), clusters_[index].sightings.front(), in_sight)) continue;
+    if (are_two(clusters_[i], clusters_[index], sight)) continue;
     const std::size_t keep = std::min(i, index);
     const std::size_t drop = std::max(i, index);
     Cluster& kept = clusters_[keep];
@@ -106,10 +167,11 @@ std::size_t VictimSearch::merge_into_neighbour(std::size_t index, const SightFn&
 }
 
 void VictimSearch::add(const robot::VictimCue& cue, const TPose2D& T_map_base) {
-  add(cue, Anchor{cue.stamp, T_map_base}, [](const TPoint2D&, const TPoint2D&) { return true; });
+  add(cue, Anchor{cue.stamp, T_map_base},
+      {[](const TPoint2D&, const TPoint2D&) { return true; }, [](const TPoint2D&, const TPoint2D&) { return false; }});
 }
 
-void VictimSearch::add(const robot::VictimCue& cue, const Anchor& anchor, const SightFn& in_sight) {
+void VictimSearch::add(const robot::VictimCue& cue, const Anchor& anchor, const Sightlines& sight) {
   if (!std::isfinite(cue.bearing) || !std::isfinite(cue.range) || !(cue.confidence > 0.0)) return;
   Sighting sighting;
   sighting.kind = cue.kind;
@@ -117,19 +179,41 @@ void VictimSearch::add(const robot::VictimCue& cue, const Anchor& anchor, const 
   sighting.anchor = anchor;
   sighting.p_base = {cue.range * std::cos(cue.bearing), cue.range * std::sin(cue.bearing)};
   sighting.p_map = anchor.T_map_base.composePoint(sighting.p_base);
+  put(std::move(sighting), sight);
+  rebuild_reports();
+}
 
-  std::size_t index = cluster_near(sighting, in_sight);
+void VictimSearch::put(Sighting sighting, const Sightlines& sight) {
+  // The cues of one look come one by one: one that took the place of a nearer one makes room for it.
+  for (Cluster& cluster : clusters_) {
+    const double d = distance(sighting.p_map, cluster.p_map);
+    if (d >= config_.merge_distance) continue;
+    Sighting* const other = of_same_look(cluster, sighting);
+    if (other == nullptr || d >= distance(other->p_map, cluster.p_map)) continue;
+    std::swap(*other, sighting);
+    break;
+  }
+  const Home home = home_of(sighting, sight);
+  sighting.sure = home.sure;
+  for (Cluster& cluster : clusters_) {
+    if (distance(sighting.p_map, cluster.p_map) >= config_.merge_distance) continue;
+    if (Sighting* const other = of_same_look(cluster, sighting)) other->sure = true;
+  }
+  put_into(home.index, sighting, sight);
+}
+
+void VictimSearch::put_into(std::size_t index, const Sighting& sighting, const Sightlines& sight) {
   if (index == clusters_.size()) clusters_.emplace_back();
   clusters_[index].sightings.push_back(sighting);
   locate(clusters_[index]);
-  index = merge_into_neighbour(index, in_sight);
+  clusters_[index].newest = std::max(clusters_[index].newest, sighting.anchor.stamp);
+  index = merge_into_neighbour(index, sight);
   std::vector<Sighting>& sightings = clusters_[index].sightings;
   if (static_cast<int>(sightings.size()) > config_.max_cues)
     sightings.erase(sightings.begin(), sightings.end() - config_.max_cues);
   locate(clusters_[index]);
-  clusters_[index].newest = std::max(clusters_[index].newest, cue.stamp);
-  confirm(clusters_[index], cue.stamp);
-  rebuild_reports();
+  clusters_[index].newest = std::max(clusters_[index].newest, sighting.anchor.stamp);
+  confirm(clusters_[index], sighting.anchor.stamp);
 }
 
 void VictimSearch::follow(const slam::Mapper& mapper) {

@@ -28,14 +28,21 @@ struct VictimSearchConfig {
 /// Whether nothing stands between two places of the map.
 using SightFn = std::function<bool(const mrpt::math::TPoint2D&, const mrpt::math::TPoint2D&)>;
 
-/// Collects victim cues in the map frame into victims. Cues from the two sides of a wall are about two victims, back to
-/// back.
+/// What the map says of the line between two of its places.
+struct Sightlines {
+  SightFn open;    ///< nothing stands between
+  SightFn hidden;  ///< a wall stands before the second
+};
+
+/// Collects victim cues in the map frame into victims. Two that lie nearer than `merge_distance` are told apart by what
+/// no error of a pose can do: they were seen from the two sides of a wall, or both in one look of a camera, or one
+/// where the map has a wall before the other.
 class VictimSearch {
  public:
   explicit VictimSearch(const VictimSearchConfig& config = {}) : config_(config) {}
 
   /// Takes a cue that was sensed from `anchor`.
-  void add(const robot::VictimCue& cue, const Anchor& anchor, const SightFn& in_sight);
+  void add(const robot::VictimCue& cue, const Anchor& anchor, const Sightlines& sight);
   /// The same in a place without walls.
   void add(const robot::VictimCue& cue, const mrpt::math::TPose2D& T_map_base);
   /// The mapper corrected its past.
@@ -54,6 +61,7 @@ class VictimSearch {
     double confidence;
     Anchor anchor;                ///< where it was sensed
     mrpt::math::TPoint2D p_base;  ///< the same place as p_map
+    bool sure = false;            ///< it cannot be of another cluster nearby
   };
   struct Cluster {
     std::vector<Sighting> sightings;
@@ -63,9 +71,20 @@ class VictimSearch {
     Stamp newest = Stamp::never();
   };
 
-  std::size_t cluster_near(const Sighting& sighting, const SightFn& in_sight) const;
-  std::size_t merge_into_neighbour(std::size_t index, const SightFn& in_sight);
-  bool back_to_back(double d, const Sighting& a, const Sighting& b, const SightFn& in_sight) const;
+  /// Where a cue belongs; clusters_.size(): to none of them.
+  struct Home {
+    std::size_t index;
+    bool sure;  ///< another one nearby cannot have been meant
+  };
+
+  void put(Sighting sighting, const Sightlines& sight);
+  void put_into(std::size_t index, const Sighting& sighting, const Sightlines& sight);
+  Home home_of(const Sighting& sighting, const Sightlines& sight);
+  Sighting* of_same_look(Cluster& cluster, const Sighting& sighting) const;
+  std::size_t merge_into_neighbour(std::size_t index, const Sightlines& sight);
+  bool is_other(Cluster& cluster, const Sighting& sighting, const Sightlines& sight) const;
+  bool are_two(Cluster& a, Cluster& b, const Sightlines& sight);
+  bool back_to_back(double d, const Sighting& a, const Sighting& b, const Sightlines& sight) const;
   void locate(Cluster& cluster) const;
   void confirm(Cluster& cluster, Stamp stamp);
   void rebuild_reports();

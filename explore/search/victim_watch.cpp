@@ -36,7 +36,8 @@ bool VictimWatch::hear(const robot::VictimCue& cue, const slam::Mapper& mapper, 
     return in_sight(floor, from, to);
   };
   const std::size_t before = victims_.reports().size();
-  victims_.add(cue, anchor, same_side);
+  const auto hidden = [&](const TPoint2D& from, const TPoint2D& to) { return is_behind_wall(floor, from, to); };
+  victims_.add(cue, anchor, {same_side, hidden});
   ask_for_holes(anchor,
                 anchor.T_map_base.composePoint({cue.range * std::cos(cue.bearing), cue.range * std::sin(cue.bearing)}),
                 floor);

@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "tests/support/planted_mapper.h"
+
 namespace rubble::explore {
 namespace {
 
@@ -56,6 +58,25 @@ TEST(PathWatch, RemembersForTenSecondsWhatItFoundNearby) {
   ASSERT_TRUE(robot.check(hits, 1.0));
   EXPECT_EQ(robot.watch.obstacles(instant(10.9)).size(), kBall.size()) << "what is far away is left to the map";
   EXPECT_TRUE(robot.watch.obstacles(instant(11.0)).empty());
+}
+
+/// The way round is longer than ten seconds: what it leads round is remembered as long, found anew or not, and moves
+/// with the map.
+TEST(PathWatch, RemembersForLongerWhatTheRobotDrivesRound) {
+  StraightAhead robot;
+  ASSERT_TRUE(robot.check(kBall, 1.0));
+  robot.watch.remember(100.0, instant(1.0));
+  EXPECT_FALSE(robot.watch.obstacles(instant(11.0)).empty());
+  robot.watch.unblock();
+  ASSERT_TRUE(robot.check({{0.5, 0.2}, {0.5, 0.15}, {0.5, 0.1}}, 20.0));
+  EXPECT_EQ(robot.watch.obstacles(instant(20.0)).size(), kBall.size() + 3) << "another one does not replace it";
+  test::PlantedMapper mapper;
+  mapper.plant(instant(1.0), {0.0, 2.0, 0.0});
+  robot.watch.follow(mapper);
+  const std::vector<TPoint2D> left = robot.watch.obstacles(instant(100.9));
+  ASSERT_EQ(left.size(), kBall.size());
+  EXPECT_NEAR(left.front().y, kBall.front().y + 2.0, 1e-9);
+  EXPECT_TRUE(robot.watch.obstacles(instant(101.0)).empty());
 }
 
 TEST(PathWatch, CreepsAndDoesNotWaitWhereTheMapShowsTheWay) {

@@ -16,6 +16,7 @@ using mrpt::math::TPose2D;
 PaperExplorerConfig without_search() {
   PaperExplorerConfig config;
   config.search.on = false;
+  config.felt.pallet = 0.0;  // its rooms are not built of them
   return config;
 }
 
@@ -194,6 +195,20 @@ TEST(Agenda, ATargetThatSomethingNewKeepsItFromIsBarredAndNoOther) {
     EXPECT_EQ(robot.left_alone.barred(order.plan.target, robot.now), across);
     EXPECT_EQ(robot.told("something new stands in the way"), across);
   }
+}
+
+/// The other way to the same target is taken to its end: the robot would turn back else once it has forgotten what
+/// stands in the shorter one.
+TEST(Agenda, TheSameTargetByADetourIsLedRoundWhatIsNew) {
+  Ordered robot;
+  test::fill(robot.cells, 6.0, 1.5, 7.0, 2.5, Occupancy::Unknown);
+  const Order order = robot.ask();
+  ASSERT_EQ(order.kind, Order::Kind::Follow);
+  const double way = length_of(order.plan);
+  EXPECT_TRUE(robot.agenda.turn_away(order.plan, way - 2.1, robot.situation()));
+  EXPECT_FALSE(robot.agenda.turn_away(order.plan, way - 1.9, robot.situation()));
+  EXPECT_FALSE(robot.agenda.turn_away({}, 0.0, robot.situation())) << "there is no way";
+  EXPECT_FALSE(robot.left_alone.barred(order.plan.target, robot.now));
 }
 
 TEST(Agenda, WithoutAKnownWayHomeItTakesADetourButNotMoreThanItCame) {

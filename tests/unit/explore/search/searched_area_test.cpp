@@ -217,15 +217,16 @@ robot::VictimCue sure_cue_of(const TPoint2D& victim, const TPose2D& pose, double
           std::hypot(seen.x, seen.y), 0.9};
 }
 
-/// A wall along y = 0.
-bool same_side(const TPoint2D& a, const TPoint2D& b) { return (a.y > 0.0) == (b.y > 0.0); }
+/// A wall along y = 0, and nothing known of the lines to the victims.
+const Sightlines kWall{[](const TPoint2D& a, const TPoint2D& b) { return (a.y > 0.0) == (b.y > 0.0); },
+                       [](const TPoint2D&, const TPoint2D&) { return false; }};
 
 TEST(VictimSearch, TwoBackToBackBehindOneWallStayTwo) {
   VictimSearch search;
   for (int i = 0; i < 6; ++i) {
     const bool north = i % 2 == 0;
     const TPose2D from{0.1 * i, north ? 1.0 : -1.0, 0.0};
-    search.add(sure_cue_of({0.0, north ? 0.15 : -0.15}, from, i), Anchor{Stamp::from_seconds(i), from}, same_side);
+    search.add(sure_cue_of({0.0, north ? 0.15 : -0.15}, from, i), Anchor{Stamp::from_seconds(i), from}, kWall);
   }
   ASSERT_EQ(search.reports().size(), 2u);
   EXPECT_NEAR(std::abs(search.reports()[0].p_map.y - search.reports()[1].p_map.y), 0.3, 1e-6);
@@ -235,7 +236,7 @@ TEST(VictimSearch, OneSeenFromLeftAndRightIsOne) {
   VictimSearch search;
   for (int i = 0; i < 6; ++i) {
     const TPose2D from{i % 2 == 0 ? -1.0 : 1.0, 0.4, 0.0};
-    search.add(sure_cue_of({0.0, 0.1}, from, i), Anchor{Stamp::from_seconds(i), from}, same_side);
+    search.add(sure_cue_of({0.0, 0.1}, from, i), Anchor{Stamp::from_seconds(i), from}, kWall);
   }
   EXPECT_EQ(search.reports().size(), 1u);
 }

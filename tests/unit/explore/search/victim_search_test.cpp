@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -94,20 +95,96 @@ TEST(VictimSearch, ClustersThatGrowTogetherAreOneVictim) {
 /// Two boxes back to back stand at least so far apart as their depths; nearer it is one victim, whatever stands between
 /// the places it was seen from.
 TEST(VictimSearch, SeenFromBothSidesOfAPostItIsOneVictimAndBackToBackAreTwo) {
-  const SightFn never = [](const TPoint2D&, const TPoint2D&) { return false; };
+  const auto never = [](const TPoint2D&, const TPoint2D&) { return false; };
   const auto reports = [&](double between) {
     VictimSearch search;
     for (int i = 0; i < 8; ++i) {
       const bool west = i % 2 == 0;
       const TPose2D from{west ? 1.0 : 3.0, 1.0, west ? 0.0 : kPi};
       const TPoint2D victim{2.0 + (west ? -0.5 : 0.5) * between, 1.0};
-      search.add(cue_of(victim, from, 1.0 + i), {Stamp::from_seconds(1.0 + i), from}, never);
+      search.add(cue_of(victim, from, 1.0 + i), {Stamp::from_seconds(1.0 + i), from}, {never, never});
     }
     return search.reports().size();
   };
   EXPECT_EQ(reports(0.0), 1u);
   EXPECT_EQ(reports(0.1), 1u);
   EXPECT_EQ(reports(0.42), 2u) << "boxes of 0.2 m on the two sides of a wall";
+}
+
+const auto kAlways = [](const TPoint2D&, const TPoint2D&) { return true; };
+const auto kNever = [](const TPoint2D&, const TPoint2D&) { return false; };
+
+/// Two boxes side by side: a look of the camera that shows both shows two, whichever of them it tells first and though
+/// one was seen alone before.
+TEST(VictimSearch, TwoInOneLookAreTwoHoweverNear) {
+  const TPoint2D one{2.0, 1.0};
+  for (const double apart : {0.42, 0.6, 0.79})
+    for (const bool first : {true, false})
+      for (const bool alone_before : {true, false}) {
+        VictimSearch search;
+        const TPose2D pose{0.6, 1.1, 0.0};
+        const TPoint2D other{2.0, 1.0 + apart};
+        if (alone_before) search.add(cue_of(other, pose, 0.0), pose);
+        for (int i = 1; i < 5; ++i) {
+          search.add(cue_of(first ? one : other, pose, i), pose);
+          search.add(cue_of(first ? other : one, pose, i), pose);
+        }
+        SCOPED_TRACE(testing::Message() << apart << " m apart, " << first << ", " << alone_before);
+        ASSERT_EQ(search.reports().size(), 2u);
+        const double y0 = search.reports()[0].p_map.y, y1 = search.reports()[1].p_map.y;
+        EXPECT_NEAR(std::min(y0, y1), one.y, 0.01);
+        EXPECT_NEAR(std::max(y0, y1), other.y, 0.01);
+      }
+}
+
+TEST(VictimSearch, AFalseAlarmBesideAVictimInItsLookMakesNoSecondOne) {
+  VictimSearch search;
+  const TPose2D pose;
+  for (int i = 0; i < 100; ++i) {
+    search.add(cue_of(kVictim, pose, i), pose);
+    if (i == 5 || i == 60) search.add(cue_of({kVictim.x, kVictim.y - 0.5}, pose, i, CueKind::Appearance, 0.6), pose);
+  }
+  ASSERT_EQ(search.reports().size(), 1u);
+  EXPECT_NEAR(search.reports()[0].p_map.y, kVictim.y, 0.01);
+}
+
+/// Ears place a victim so badly that one may be heard in two places.
+TEST(VictimSearch, OneHeardTwiceInALookIsOne) {
+  VictimSearch search;
+  const TPose2D pose;
+  for (int i = 0; i < 20; ++i)
+    for (const double off : {-0.25, 0.25})
+      search.add(cue_of({kVictim.x, kVictim.y + off}, pose, i, CueKind::Sound, 0.8), pose);
+  EXPECT_EQ(search.reports().size(), 1u);
+}
+
+/// In the corner of the next pallet, behind a wall that the map knows: what is seen there is not the first one.
+TEST(VictimSearch, BehindAWallThatHidesTheFirstThereIsASecond) {
+  const auto wall = [](const TPoint2D& from, const TPoint2D& to) { return (from.y > 1.2) != (to.y > 1.2); };
+  for (const bool walled : {true, false}) {
+    VictimSearch search;
+    const Sightlines sight{kAlways, walled ? SightFn(wall) : SightFn(kNever)};
+    for (int i = 0; i < 8; ++i) {
+      const bool south = i < 4;
+      const TPose2D from{0.8, south ? 0.8 : 1.6, 0.0};
+      search.add(cue_of({2.0, south ? 1.0 : 1.42}, from, i), {Stamp::from_seconds(i), from}, sight);
+    }
+    EXPECT_EQ(search.reports().size(), walled ? 2u : 1u);
+  }
+}
+
+/// Through a hole a victim shows behind a wall from everywhere: that says nothing.
+TEST(VictimSearch, BehindAHoleOneStaysOne) {
+  Rng rng(1, "cues");
+  VictimSearch search;
+  const TPose2D pose{0.2, 1.0, 0.0};
+  for (int i = 0; i < 200; ++i) {
+    VictimCue cue = cue_of(kVictim, pose, 0.5 * i);
+    const double range_error = rng.gaussian(0.08);
+    cue.range *= 1.0 + range_error;
+    search.add(cue, {cue.stamp, pose}, {kAlways, kAlways});
+  }
+  EXPECT_EQ(search.reports().size(), 1u);
 }
 
 TEST(VictimSearch, MoreKindsOfCuesRaiseTheConfidence) {

@@ -1,0 +1,119 @@
+#include "explore/paper/doubtful_walls.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "base/planar.h"
+#include "explore/caution/pallet_grid.h"
+#include "explore/search/searched_area.h"
+
+namespace rubble::explore {
+namespace {
+
+using mrpt::math::TPoint2D;
+
+constexpr double kShortest = 0.5;           ///< row [m]
+constexpr int kGap = 2;                     ///< cells that may be missing in a row
+constexpr double kBefore = 0.15;            ///< free floor before it [m]
+constexpr double kBehind = 0.40;            ///< unknown behind it, from twice its thickness on [m]
+constexpr double kThick = 0.10;             ///< [m]
+constexpr double kOffEdges = 0.25;          ///< [m]
+constexpr double kTile = 4.0;               ///< places in a square of this size share a grid of pallets [m]
+constexpr double kLookFrom[] = {0.5, 0.6};  ///< [m]
+constexpr int kStride = 3;                  ///< places to look from are so many cells apart along the wall
+
+/// The grid of the pallets about a place, found once for each square of the map.
+class LocalGrids {
+ public:
+  LocalGrids(const OccupancyGrid& cells, double pallet) : cells_(cells), pallet_(pallet) {}
+  const std::optional<PalletGrid>& at(const TPoint2D& p) {
+    const auto tile = [](double x) { return static_cast<int>(std::floor(x / kTile)); };
+    const std::pair<int, int> key{tile(p.x), tile(p.y)};
+    const auto known = grids_.find(key);
+    if (known != grids_.end()) return known->second;
+    const TPoint2D middle{(key.first + 0.5) * kTile, (key.second + 0.5) * kTile};
+    return grids_.emplace(key, find_pallets(cells_, pallet_, middle)).first->second;
+  }
+
+ private:
+  const OccupancyGrid& cells_;
+  double pallet_;
+  std::map<std::pair<int, int>, std::optional<PalletGrid>> grids_;
+};
+
+bool all(const OccupancyGrid& cells, Cell c, Cell step, int from, int to, Occupancy what) {
+  for (int i = from; i <= to; ++i) {
+    const Cell at{c.x + i * step.x, c.y + i * step.y};
+    if (!cells.inside(at)) return what == Occupancy::Unknown;
+    if (cells[at] != what) return false;
+  }
+  return true;
+}
+
+/// How far a wall at `p` whose normal is `n` stands off the nearest edges of pallets that it could stand on [m].
+double off_edges(const PalletGrid& grid, const TPoint2D& p, Cell n) {
+  const TPoint2D at = grid.to_grid(p);
+  const bool along_x = std::abs(std::cos(grid.angle) * n.x + std::sin(grid.angle) * n.y) > std::sqrt(0.5);
+  const double x = along_x ? at.x : at.y;
+  return grid.size * std::abs(x - std::round(x));
+}
+
+}  // namespace
+
+std::vector<Source> doubtful_walls(const Traversable& floor, double pallet) {
+  std::vector<Source> sources;
+  if (pallet <= 0.0 || floor.cells.width() == 0) return sources;
+  const OccupancyGrid& cells = floor.cells;
+  const double resolution = floor.frame().resolution;
+  const auto in_cells = [&](double length) { return static_cast<int>(std::lround(length / resolution)); };
+  const int before = std::max(1, in_cells(kBefore)), thick = in_cells(kThick), behind = in_cells(kBehind);
+  LocalGrids grids(cells, pallet);
+  // `n` points from the free side into the wall.
+  for (const Cell n : {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}}) {
+    const Cell along{std::abs(n.y), std::abs(n.x)};
+    Grid<std::uint8_t> face(floor.frame());
+    for (int y = 1; y + 1 < cells.height(); ++y)
+      for (int x = 1; x + 1 < cells.width(); ++x)
+        face[{x, y}] = cells[{x, y}] == Occupancy::Occupied &&
+                       all(cells, {x, y}, {-n.x, -n.y}, 1, before, Occupancy::Free) &&
+                       all(cells, {x, y}, n, 1 + thick, behind, Occupancy::Unknown);
+    for (int y = 1; y + 1 < cells.height(); ++y)
+      for (int x = 1; x + 1 < cells.width(); ++x) {
+        if (face[{x, y}] == 0) continue;
+        // A row: on along it, a cell to either side, over small gaps.
+        std::vector<Cell> row{{x, y}};
+        face[{x, y}] = 0;
+        for (bool more = true; more;) {
+          more = false;
+          for (int step = 1; step <= 1 + kGap && !more; ++step)
+            for (const int aside : {0, 1, -1}) {
+              const Cell next{row.back().x + step * along.x + aside * n.x, row.back().y + step * along.y + aside * n.y};
+              if (!cells.inside(next) || face[next] == 0) continue;
+              face[next] = 0;
+              row.push_back(next);
+              more = true;
+              break;
+            }
+        }
+        const int length = std::abs(row.back().x - x) * along.x + std::abs(row.back().y - y) * along.y + 1;
+        if (length < in_cells(kShortest)) continue;
+        const TPoint2D middle = cells.centre(row[row.size() / 2]);
+        const std::optional<PalletGrid>& grid = grids.at(middle);
+        if (!grid || off_edges(*grid, middle, n) < kOffEdges) continue;
+        for (std::size_t i = 0; i < row.size(); i += kStride)
+          for (const double distance : kLookFrom) {
+            const int away = in_cells(distance);
+            const Cell from{row[i].x - away * n.x, row[i].y - away * n.y};
+            if (!cells.inside(from) || cells[from] != Occupancy::Free) continue;
+            if (in_sight(floor, from, {row[i].x - n.x, row[i].y - n.y})) sources.push_back({from, 0.0});
+          }
+      }
+  }
+  return sources;
+}
+
+}  // namespace rubble::explore

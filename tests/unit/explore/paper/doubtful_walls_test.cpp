@@ -1,0 +1,87 @@
+#include "explore/paper/doubtful_walls.h"
+
+#include <gtest/gtest.h>
+
+#include "explore/paper/target_choice.h"
+#include "tests/support/explore_grids.h"
+
+namespace rubble::explore {
+namespace {
+
+constexpr double kPallet = 1.2;
+
+/// A corridor of eight pallets along x, with rooms to the north, shut by a wall at `x` that is `width` [m] wide, with
+/// `behind` it.
+OccupancyGrid corridor(double x, double width, Occupancy behind) {
+  OccupancyGrid cells = test::room(8 * kPallet, 2 * kPallet);
+  test::fill(cells, 0.0, kPallet - 0.03, 8 * kPallet, kPallet + 0.03, Occupancy::Occupied);
+  for (const int k : {1, 2, 4, 5, 7})
+    test::fill(cells, k * kPallet - 0.03, kPallet, k * kPallet + 0.03, 2 * kPallet, Occupancy::Occupied);
+  test::fill(cells, x, 0.06, 8 * kPallet - 0.06, kPallet - 0.06, behind);
+  test::fill(cells, x - 0.03, 0.0, x + 0.03, width, Occupancy::Occupied);
+  return cells;
+}
+
+std::vector<Source> found(double x, double width, Occupancy behind, double pallet = kPallet) {
+  return doubtful_walls(test::measured(corridor(x, width, behind)), pallet);
+}
+
+TEST(DoubtfulWalls, AWallOffTheEdgesOfThePalletsThatHidesGroundMayBeARamp) {
+  const OccupancyGrid cells = corridor(5.6, kPallet, Occupancy::Unknown);
+  const std::vector<Source> places = found(5.6, kPallet, Occupancy::Unknown);
+  ASSERT_FALSE(places.empty());
+  for (const Source& place : places) {
+    const auto p = cells.centre(place.cell);
+    EXPECT_GT(p.x, 5.6 - 0.7);
+    EXPECT_LT(p.x, 5.6 - 0.4);
+    EXPECT_LT(p.y, kPallet);
+  }
+}
+
+TEST(DoubtfulWalls, OtherWallsAreWhatTheySeem) {
+  EXPECT_TRUE(found(4 * kPallet, kPallet, Occupancy::Unknown).empty()) << "on an edge";
+  EXPECT_TRUE(found(4 * kPallet + 0.15, kPallet, Occupancy::Unknown).empty()) << "and a little off it";
+  EXPECT_TRUE(found(5.6, kPallet, Occupancy::Free).empty()) << "seen from both sides";
+  EXPECT_TRUE(found(5.6, 0.42, Occupancy::Unknown).empty()) << "the side of a box";
+  EXPECT_TRUE(found(5.6, kPallet, Occupancy::Unknown, 0.0).empty()) << "an arena without pallets";
+}
+
+/// It is looked at when no frontier is left, once, and left alone when it stays.
+TEST(DoubtfulWalls, AreLookedAtWhenNoFrontierIsInReach) {
+  OccupancyGrid cells = corridor(5.6, kPallet, Occupancy::Unknown);
+  LeftAlone left_alone{FeltConfig{}, PlannerConfig{}.same_target};
+  SearchConfig config;
+  config.on = false;
+  FloorSearch search(config, 0.46, 0.4);
+  TargetChoice choice(PlannerConfig{}, true, kPallet);
+  const mrpt::math::TPose2D pose{2.0, 0.6, 0.0};
+  const Stamp now = Stamp::from_seconds(1.0);
+  const auto chosen = [&] {
+    const Traversable floor = test::measured(cells);
+    return choice.choose({floor, pose, now, left_alone}, search).plan;
+  };
+  const Plan look = chosen();
+  ASSERT_TRUE(look.found);
+  EXPECT_TRUE(look.doubtful);
+  EXPECT_NEAR(look.target.x, 5.05, 0.1);
+  // From nearer only a part of it is left, which is looked at all the same.
+  choice.take(look);
+  const OccupancyGrid before = cells;
+  test::fill(cells, 5.55, 0.4, 5.65, kPallet, Occupancy::Free);
+  test::fill(cells, 5.65, 0.4, 5.7, kPallet, Occupancy::Occupied);
+  test::fill(cells, 5.65, 0.7, 5.7, 0.8, Occupancy::Free);
+  test::fill(cells, 5.7, 0.7, 5.75, 0.8, Occupancy::Occupied);
+  EXPECT_TRUE(chosen().doubtful);
+  cells = before;
+  left_alone.bar_for_good(look.target, {now, pose});
+  EXPECT_FALSE(chosen().found);
+  left_alone.pardon_all(now);
+  test::fill(cells, 0.06, 0.3, 0.4, 0.9, Occupancy::Unknown);
+  const Plan frontier = chosen();
+  ASSERT_TRUE(frontier.found);
+  EXPECT_FALSE(frontier.doubtful);
+  EXPECT_LT(frontier.target.x, 1.0);
+}
+
+}  // namespace
+}  // namespace rubble::explore
