@@ -10,6 +10,7 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <termios.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -311,9 +312,14 @@ class PtyServer : public LineServer {
 
  private:
   void publish() const {
-    const std::string fresh = path_ + ".new";
-    ::unlink(fresh.c_str());
-    if (::symlink(device_.c_str(), fresh.c_str()) != 0 || ::rename(fresh.c_str(), path_.c_str()) != 0)
+    // Beside it under a name that nobody has: what has it may be anybody's.
+    std::string fresh;
+    int made = -1;
+    for (int number = 0; made != 0 && (number == 0 || errno == EEXIST); ++number) {
+      fresh = path_ + "." + std::to_string(getpid()) + "-" + std::to_string(number);
+      made = ::symlink(device_.c_str(), fresh.c_str());
+    }
+    if (made != 0 || ::rename(fresh.c_str(), path_.c_str()) != 0)
       throw RunError(name_ + ": the link cannot be made (" + std::strerror(errno) +
                      "); give a path in a folder that exists and may be written");
   }

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <type_traits>
@@ -121,6 +122,8 @@ class Emulation {
     }
     if (!options.truth.empty()) {
       require_not_read(options.truth);
+      if (std::error_code error; std::filesystem::is_fifo(options.truth, error))
+        throw InputError(options.truth + ": is a pipe, and would be waited at for a reader; give a file");
       truth_.open(options.truth);
       if (!truth_) throw InputError(options.truth + ": cannot be written; give a path in a folder that exists");
     }

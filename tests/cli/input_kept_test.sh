@@ -191,6 +191,14 @@ for signal in TERM INT HUP; do
   kill $watchdog 2>/dev/null
 done
 
+# --- emulated devices
+echo precious >line.new
+"$rubble" emulate s.yaml --urg pty:line --time-limit 0.2 >out.txt 2>err.txt || fail "emulate ended with $?: $(cat err.txt)"
+[[ $(<line.new) == precious ]] || fail "a line that is offered beside a file called line.new took it away"
+[[ ! -e line && -z $(ls | grep '^line\.[0-9]') ]] || fail "an emulator leaves its link: $(ls)"
+mkfifo truth.tum
+prompt "is a pipe" "$rubble" emulate s.yaml --urg pty:line --time-limit 0.2 --truth truth.tum
+
 # --- damaged pictures and logs
 printf '\xff\xd8\xff' >short.jpg
 for size in 0 1 2 3 4 5 6 7 8 11 12 20; do

@@ -19,8 +19,8 @@ json_holds cpp/score.json "j['score'] is not None and j['area_known_m2'] > 8"
 
 # Our own mappers, asked through the protocol, give the same bits.
 for kind in paper robust; do
-  "$rubble" run s.yaml --set mapper.kind=$kind --out $kind >/dev/null || fail "$kind: $?"
-  "$rubble" run s.yaml --out served-$kind --mapper-command "$rubble mapper-process $kind" >/dev/null || fail "served $kind: $?"
+  "$rubble" run s.yaml --set mapper.kind=$kind --set time_limit_s=60 --out $kind >/dev/null || fail "$kind: $?"
+  "$rubble" run s.yaml --set time_limit_s=60 --out served-$kind --mapper-command "$rubble mapper-process $kind" >/dev/null || fail "served $kind: $?"
   for name in map.tif map.png map.pgm estimate.tum truth.tum pois.csv; do
     cmp "$kind/$name" "served-$kind/$name" || fail "$name of the served mapper $kind differs"
   done
@@ -113,12 +113,12 @@ done
 cat >peers.yaml <<YAML
 scenarios: [s.yaml]
 seeds: [5, 3, 4]
-set: {mapper.kind: [mrpt-rbpf, mrpt-icp], time_limit_s: 30}
+set: {mapper.kind: [mrpt-rbpf, mrpt-icp], time_limit_s: 12}
 YAML
 "$rubble" batch peers.yaml --out peers --workers 1 >/dev/null || fail "a batch of peers ended with $?"
 "$rubble" batch peers.yaml --out peers2 --workers 3 >/dev/null || fail "a second batch of peers ended with $?"
 for kind in mrpt-rbpf mrpt-icp; do
-  "$rubble" run s.yaml --out "alone-$kind" --set mapper.kind=$kind --set time_limit_s=30 >/dev/null || fail "$kind: $?"
+  "$rubble" run s.yaml --out "alone-$kind" --set mapper.kind=$kind --set time_limit_s=12 >/dev/null || fail "$kind: $?"
   for file in map.tif estimate.tum; do
     cmp alone-$kind/$file peers/runs/*"$kind"*-seed3-*/$file || fail "$file of $kind depends on what ran before"
     cmp peers/runs/*"$kind"*-seed4-*/$file peers2/runs/*"$kind"*-seed4-*/$file || fail "$file of $kind depends on workers"

@@ -24,6 +24,17 @@ strike() {
   struck=$((struck + 1))
 }
 
+# listens PID: waits until the program has taken over its signals (Ctrl-C among them); before that they are what its starter
+# left them, and a busy machine may take a second to get there.
+listens() {
+  local caught
+  for _ in $(seq 2000); do
+    caught=$(sed -n 's/^SigCgt:[[:space:]]*//p' "/proc/$1/status" 2>/dev/null)
+    [[ -n $caught ]] && ((!(16#$caught & 2))) || return 0
+    sleep 0.01
+  done
+}
+
 # The one line that tests/nightly.sh reads: how often, and how many findings.
 finish_faults() {
   echo "faults: $struck, findings: $failures"

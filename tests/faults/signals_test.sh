@@ -41,7 +41,8 @@ for signal in INT TERM HUP; do
   for i in $(seq "$moments"); do
     setsid "$rubble" batch sweep.yaml --out batch --workers 2 >struck.out 2>struck.err &
     pid=$!
-    sleep "$(awk -v n="$i" -v m="$moments" 'BEGIN { printf "%.3f", 0.1 + 0.8 * n / m }')"
+    listens $pid
+    sleep "$(awk -v n="$i" -v m="$moments" 'BEGIN { printf "%.3f", 0.8 * n / m }')"
     kill -"$signal" -- -$pid 2>/dev/null
     wait $pid
     code=$?
@@ -66,7 +67,8 @@ PY
 for i in $(seq "$moments"); do
   "$rubble" arena generate --cells 50x50 --force --out generated >struck.out 2>&7 7>&- &
   pid=$!
-  sleep "$(awk -v n="$i" 'BEGIN { printf "%.3f", 0.3 + 0.02 * (n % 20) }')"
+  listens $pid
+  sleep "$(awk -v n="$i" 'BEGIN { printf "%.3f", 0.02 * (n % 20) }')"
   kill -INT $pid 2>/dev/null
   for tenth in $(seq 200); do
     kill -0 $pid 2>/dev/null && [[ $(ps -o stat= -p $pid) != Z* ]] || break
