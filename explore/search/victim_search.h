@@ -20,7 +20,7 @@ struct VictimSearchConfig {
   double consistency = 0.5;              ///< a cue supports its cluster when this close to its position [m]
   double merge_distance = 0.8;           ///< closer together: the same victim [m]
   int max_cues = 200;                    ///< per cluster; older ones are forgotten
-  double memory = 40.0;                  ///< only cues younger than this confirm a victim together [s]
+  double memory = 12.0;                  ///< only cues younger than this confirm a victim together [s]
   double other_side = deg_to_rad(90.0);  ///< looked at from so different bearings, it may be another victim [rad]
   double back_to_back = 0.25;            ///< which lies at least so far from the first: box, wall, box [m]
 };

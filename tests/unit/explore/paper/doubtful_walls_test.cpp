@@ -67,10 +67,10 @@ TEST(DoubtfulWalls, AreLookedAtWhenNoFrontierIsInReach) {
   // From nearer only a part of it is left, which is looked at all the same.
   choice.take(look);
   const OccupancyGrid before = cells;
-  test::fill(cells, 5.55, 0.4, 5.65, kPallet, Occupancy::Free);
-  test::fill(cells, 5.65, 0.4, 5.7, kPallet, Occupancy::Occupied);
-  test::fill(cells, 5.65, 0.7, 5.7, 0.8, Occupancy::Free);
-  test::fill(cells, 5.7, 0.7, 5.75, 0.8, Occupancy::Occupied);
+  test::fill(cells, 5.55, 0.4, 5.65, 0.8, Occupancy::Free);
+  test::fill(cells, 5.65, 0.4, 5.7, 0.8, Occupancy::Occupied);
+  test::fill(cells, 5.4, 0.05, 5.45, 0.4, Occupancy::Occupied);
+  test::fill(cells, 5.4, 0.8, 5.45, kPallet, Occupancy::Occupied);
   EXPECT_TRUE(chosen().doubtful);
   cells = before;
   left_alone.bar_for_good(look.target, {now, pose});

@@ -148,6 +148,18 @@ TEST(VictimSearch, AFalseAlarmBesideAVictimInItsLookMakesNoSecondOne) {
   EXPECT_NEAR(search.reports()[0].p_map.y, kVictim.y, 0.01);
 }
 
+/// Two cameras of two looks a second that see something where nothing is twice in a thousand looks do so three times
+/// within 40 s in every other mission of 1500 s, now and then in one place; a robot that stops and looks again has
+/// three cues of a victim within seconds.
+TEST(VictimSearch, FalseAlarmsAQuarterOfAMinuteApartMakeNoVictim) {
+  VictimSearch search;
+  const TPose2D pose;
+  for (int i = 0; i < 3; ++i) search.add(cue_of({kVictim.x, kVictim.y + 0.1 * i}, pose, 13.0 * i), pose);
+  EXPECT_TRUE(search.reports().empty());
+  for (int i = 0; i < 2; ++i) search.add(cue_of(kVictim, pose, 27.0 + i), pose);
+  EXPECT_EQ(search.reports().size(), 1u);
+}
+
 /// Ears place a victim so badly that one may be heard in two places.
 TEST(VictimSearch, OneHeardTwiceInALookIsOne) {
   VictimSearch search;
