@@ -16,23 +16,27 @@ namespace {
 
 using mrpt::math::TPoint2D;
 
-constexpr double kShortest = 0.5;      // line [m]
-constexpr double kLongest = 1.8;       // [m]
-constexpr double kClearEnds = 0.25;    // of walls at both ends [m]
-constexpr double kClearBeside = 0.12;  // open lines have no wall so near, blocked ones are blocked so far aside [m]
-constexpr double kGap = 0.15;          // free space between two pieces of one wall [m]
-constexpr double kHole = 0.55;         // unknown stretch between known ground that says no wall: a halo around one [m]
-constexpr double kPlaceOfWall = 0.1;   // to either side of a wall's middle: what must be known to miss it [m]
-constexpr double kTau = 0.5;           // distance from which a wall is another one [m]
-constexpr double kRaster = 0.5;        // of a cell: what drawing on a raster moves a wall by
-constexpr double kMostRaster = 0.05;   // [m]
-constexpr double kThickness = 0.04;    // what a metre of wrong thickness counts as a metre of wrong place
-constexpr double kFee = 0.25;          // kappa that maps of other arenas reach at their best pose
-constexpr double kPlenty = 30.0;       // places of inner walls from which luck is no greater than this
-constexpr double kMostFee = 0.55;      // what luck reaches where the truth has two or three walls
-constexpr double kPlace = 0.4;         // along a wall [m]
-constexpr double kPrior = 2.0;         // laid-over lines that the mean of all stands for
-constexpr std::size_t kFewest = 40;    // of each kind
+constexpr double kShortest = 0.5;       // line [m]
+constexpr double kLongest = 1.8;        // [m]
+constexpr double kClearEnds = 0.25;     // of walls at both ends [m]
+constexpr double kClearBeside = 0.12;   // open lines have no wall so near, blocked ones are blocked so far aside [m]
+constexpr double kGap = 0.15;           // free space between two pieces of one wall [m]
+constexpr double kHole = 0.55;          // unknown stretch between known ground that says no wall: a halo around one [m]
+constexpr double kPlaceOfWall = 0.1;    // to either side of a wall's middle: what must be known to miss it [m]
+constexpr double kTau = 0.5;            // distance from which a wall is another one [m]
+constexpr double kRaster = 0.5;         // of a cell: what drawing on a raster moves a wall by
+constexpr double kMostRaster = 0.05;    // [m]
+constexpr double kThickness = 0.04;     // what a metre of wrong thickness counts as a metre of wrong place
+constexpr double kFee = 0.25;           // kappa that maps of other arenas reach at their best pose
+constexpr double kPlenty = 30.0;        // places of inner walls from which luck is no greater than this
+constexpr double kMostFee = 0.55;       // what luck reaches where the truth has two or three walls
+constexpr double kPlace = 0.4;          // along a wall [m]
+constexpr double kPrior = 2.0;          // laid-over lines that the mean of all stands for
+constexpr std::size_t kFewest = 40;     // of each kind
+constexpr double kUnseen = 0.1;         // unknown stretch that leaves a line known as a whole [m]
+constexpr double kLinesPerArea = 16.0;  // asked as a whole, of each kind, a square metre of free space
+constexpr double kLeastLines = 1500.0;
+constexpr double kMostLines = 3000.0;
 constexpr std::size_t kBlockedLines = 4500;
 constexpr std::size_t kOpenLines = 9000;  // half of them lie inside a pallet and say nothing
 constexpr int kTries = 30;                // for each line wanted
@@ -56,6 +60,7 @@ struct Stretch {
 struct Sight {
   std::vector<Crossing> walls;
   std::vector<Stretch> unseen;
+  double unknown = 0.0;  ///< all of it [m]
 
   void leave_unseen(double from, double to) {
     const bool goes_on = !unseen.empty() && unseen.back().to >= from;
@@ -79,6 +84,10 @@ struct Ground {
     const Cell c = grid.cell(p);
     return grid.inside(c) && grid[c] == what;
   }
+  bool known(const TPoint2D& p) const {
+    const Cell c = grid.cell(p);
+    return grid.inside(c) && grid[c] != Occupancy::Unknown;
+  }
   /// Walks from a to b, which lie in this map and are `length` apart in the truth.
   void look(const TPoint2D& a, const TPoint2D& b, double length, Sight& out) const;
 
@@ -89,6 +98,7 @@ struct Ground {
 void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& out) const {
   out.walls.clear();
   out.unseen.clear();
+  out.unknown = 0.0;
   const GridFrame& f = grid.frame();
   const int steps = std::max(1, static_cast<int>(std::ceil(2.0 * length / f.resolution)));
   const double step = length / steps;
@@ -104,6 +114,7 @@ void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& ou
     last = c;
     if (!grid.inside(c)) {
       out.leave_unseen(i * step, (i + 1) * step);
+      out.unknown += step;
       continue;
     }
     const std::size_t at = f.index(c);
@@ -115,6 +126,7 @@ void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& ou
       free = 0.0;
     } else if (grid.cells()[at] == Occupancy::Unknown) {
       out.leave_unseen(i * step, (i + 1) * step);
+      out.unknown += step;
     } else {
       free += step;
     }
@@ -138,6 +150,7 @@ class Asker {
   /// Where a line may begin and end.
   const std::vector<TPoint2D>& ends() const { return ends_; }
   const std::vector<TPoint2D>& walls() const { return walls_; }
+  double area() const { return static_cast<double>(ends_.size()) * std::pow(ground_.grid.resolution(), 2); }
 
   /// The line, if it is clearly open or clearly blocked by one wall.
   std::optional<SightLines::Line> ask(const TPoint2D& from, const TPoint2D& to) {
@@ -223,8 +236,9 @@ std::vector<SightLines::Line> spread(Asker& asker, bool blocked, std::size_t wan
 
 /// How often the line is blocked where the truth is laid over itself. An open line that never is says nothing; it
 /// remembers where it is.
-double chance_of(SightLines::Line& line, Asker& asker, const std::vector<TPoint2D>& shifts, double mean) {
-  double blocked = line.blocked ? kPrior * mean : 0.0;
+double chance_of(SightLines::Line& line, Asker& asker, const std::vector<TPoint2D>& shifts, double mean,
+                 SightLines::Credit credit) {
+  double blocked = line.blocked || credit == SightLines::Credit::Whole ? kPrior * mean : 0.0;
   double asked = kPrior;
   for (const TPoint2D& shift : shifts) {
     const std::optional<SightLines::Line> other = asker.ask(line.from + shift, line.to + shift);
@@ -272,39 +286,58 @@ struct Word {
   double right = 0.0;  ///< -known..known
 };
 
+/// What the walls that a map draws on a blocked line are, and how near the best comes to the right one.
+struct Drawn {
+  Drawn(const SightLines::Line& line, const Sight& sight, double raster) {
+    for (const Crossing& wall : sight.walls) {
+      const double off = std::max(0.0, std::abs(wall.middle() - line.middle) - raster) +
+                         kThickness * std::abs(wall.thickness() - line.thickness);
+      const double strength = std::min(1.0, wall.strength / line.strength);
+      all += strength;
+      best = std::max(best, strength * std::clamp(1.0 - off / kTau, 0.0, 1.0));
+    }
+  }
+  /// -1..1. A wall drawn twice is half wrong.
+  double right() const { return 2.0 * best / std::max(1.0, all) - 1.0; }
+  double all = 0.0;
+  double best = 0.0;
+};
+
+double drawn_on_open(const Sight& sight) {
+  double all = 0.0;
+  for (const Crossing& wall : sight.walls) all += wall.strength;
+  return std::min(1.0, all);
+}
+
 /// A wall that is drawn answers in full, seen from one side or both; none does where its place is known.
 Word word_on_blocked(const SightLines::Line& line, const Sight& sight, double raster) {
-  double drawn = 0.0;
-  double best = 0.0;
-  for (const Crossing& wall : sight.walls) {
-    const double off = std::max(0.0, std::abs(wall.middle() - line.middle) - raster) +
-                       kThickness * std::abs(wall.thickness() - line.thickness);
-    const double strength = std::min(1.0, wall.strength / line.strength);
-    drawn += strength;
-    best = std::max(best, strength * std::clamp(1.0 - off / kTau, 0.0, 1.0));
-  }
+  const Drawn drawn(line, sight, raster);
   constexpr double kAsked[] = {-1.0, -0.5, 0.0, 0.5, 1.0};
   double seen = 0.0;
   for (const double side : kAsked) seen += sight.sees(line.middle + side * kPlaceOfWall) ? 1.0 : 0.0;
-  const double known = std::max(seen / static_cast<double>(std::size(kAsked)), std::min(1.0, drawn));
-  // A wall drawn twice is half wrong.
-  return {known, known * (2.0 * best / std::max(1.0, drawn) - 1.0)};
+  const double known = std::max(seen / static_cast<double>(std::size(kAsked)), std::min(1.0, drawn.all));
+  return {known, known * drawn.right()};
 }
 
 /// An open line is known as far as the places are at which a wall might block it.
 Word word_on_open(const SightLines::Line& line, const Sight& sight) {
-  double drawn = 0.0;
-  for (const Crossing& wall : sight.walls) drawn += wall.strength;
-  drawn = std::min(1.0, drawn);
+  const double drawn = drawn_on_open(sight);
   const auto seen = std::count_if(line.doubts.begin(), line.doubts.end(),
                                   [&](float at) { return sight.sees(static_cast<double>(at)); });
   const double open = static_cast<double>(seen) / std::max(1.0, static_cast<double>(line.doubts.size()));
   return {std::max(open, drawn), std::max(-1.0, open - 2.0 * drawn)};
 }
 
+/// A wall seen from one side only, or at the edge of what the map knows, is half a line.
+Word word_on_whole(const SightLines::Line& line, const Sight& sight, double raster, bool from_known, bool to_known) {
+  if (sight.walls.empty() && sight.unknown > kUnseen) return {};
+  const double known = 0.5 * from_known + 0.5 * to_known;
+  return {known, known * (line.blocked ? Drawn(line, sight, raster).right() : 1.0 - 2.0 * drawn_on_open(sight))};
+}
+
 template <class Transform>
 SightAgreement agreement(const std::vector<SightLines::Line>& lines, const SightMap& map, const Transform& T,
-                         double fee) {
+                         double fee, SightLines::Credit credit) {
   const Ground ground(map);
   const double raster = std::min(kMostRaster, kRaster * map.grid.resolution());
   Sight sight;
@@ -317,8 +350,13 @@ SightAgreement agreement(const std::vector<SightLines::Line>& lines, const Sight
     const TPoint2D b = T.inverse(line.to);
     const double length = (line.to - line.from).norm();
     ground.look(a, b, length, sight);
-    sight.close_holes(length);
-    const Word word = line.blocked ? word_on_blocked(line, sight, raster) : word_on_open(line, sight);
+    Word word;
+    if (credit == SightLines::Credit::Whole) {
+      word = word_on_whole(line, sight, raster, ground.known(a), ground.known(b));
+    } else {
+      sight.close_holes(length);
+      word = line.blocked ? word_on_blocked(line, sight, raster) : word_on_open(line, sight);
+    }
     known += line.weight * word.known;
     gain += line.weight * word.right;
   }
@@ -332,15 +370,16 @@ SightAgreement agreement(const std::vector<SightLines::Line>& lines, const Sight
 
 }  // namespace
 
-SightLines::SightLines(const OccupancyGrid& truth) {
+SightLines::SightLines(const OccupancyGrid& truth, Credit credit) : credit_(credit) {
   Asker asker(truth);
   const std::vector<TPoint2D> shifts = lattice_shifts(truth, kShifts);
   const double mean = blocked_share(asker);
+  const auto whole = static_cast<std::size_t>(std::clamp(kLinesPerArea * asker.area(), kLeastLines, kMostLines));
   for (const bool blocked : {false, true}) {
     const std::size_t first = lines_.size();
     double sum = 0.0;
-    for (Line& line : spread(asker, blocked, blocked ? kBlockedLines : kOpenLines)) {
-      const double chance = chance_of(line, asker, shifts, mean);
+    for (Line& line : spread(asker, blocked, credit == Credit::Whole ? whole : blocked ? kBlockedLines : kOpenLines)) {
+      const double chance = chance_of(line, asker, shifts, mean, credit);
       // Lines through a wall were found by its cells: as often as it is thick along them.
       line.weight = blocked ? (1.0 - chance) / std::max(line.thickness, truth.resolution()) : chance;
       if (line.weight <= 0.0) continue;
@@ -358,11 +397,11 @@ SightLines::SightLines(const OccupancyGrid& truth) {
 bool SightLines::usable() const { return count_[0] >= kFewest && count_[1] >= kFewest; }
 
 SightAgreement SightLines::at(const SightMap& map, const PlanarTransform& T_truth_map) const {
-  return agreement(lines_, map, T_truth_map, fee_);
+  return agreement(lines_, map, T_truth_map, fee_, credit_);
 }
 
 SightAgreement SightLines::at(const SightMap& map, const Warp& warp) const {
-  return agreement(lines_, map, warp, fee_);
+  return agreement(lines_, map, warp, fee_, credit_);
 }
 
 }  // namespace rubble::scoring
