@@ -203,29 +203,7 @@ void BM_SharesAndThickness(benchmark::State& state) {
       for (const double angle : {0.3, 1.9, 3.7, 5.2}) parts.push_back(cut_at(truth, angle, angle > 3.0 ? 1.5 : -1.0));
       for (const double share : {0.3, 0.5, 0.8}) parts.push_back(patches_of(truth, share, 17));
       for (const OccupancyGrid& part : parts) {
-        double wall = 0, in = 0, area = 0, ain = 0;
-        for (int y = 0; y < truth.height(); ++y)
-          for (int x = 0; x < truth.width(); ++x) {
-            if (truth[{x, y}] == Occupancy::Unknown) continue;
-            area += 1;
-            ain += part[{x, y}] != Occupancy::Unknown;
-            if (truth[{x, y}] != Occupancy::Occupied) continue;
-            const auto free_at = [&](int dx, int dy) {
-              for (int k = 1; k <= 8; ++k) {
-                const Cell c{x + dx * k, y + dy * k};
-                if (truth.inside(c) && truth[c] == Occupancy::Free) return true;
-              }
-              return false;
-            };
-            const bool inner = (free_at(1, 0) && free_at(-1, 0)) || (free_at(0, 1) && free_at(0, -1));
-            if (!inner) continue;
-            wall += 1;
-            in += part[{x, y}] != Occupancy::Unknown;
-          }
-        const double sc = judge.sights().at(part, PlanarTransform()).score;
-        std::printf(" [w %+.3f a %+.3f]", sc - in / std::max(1.0, wall), sc - ain / area);
         const double error = judge.sights().at(part, PlanarTransform()).score - share_within(judge.sights(), part);
-        std::printf(" [b %+.3f]", sc - share_of_whole_lines(judge.sights(), part));
         off = std::max(off, std::abs(error));
         std::printf(" %+.3f", error);
       }

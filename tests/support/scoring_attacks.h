@@ -41,15 +41,6 @@ inline double share_within(const SightLines& sights, const OccupancyGrid& part) 
   return share;
 }
 
-/// The same by both ends of a line, which leaves out all that cross the border of the part.
-inline double share_of_whole_lines(const SightLines& sights, const OccupancyGrid& part) {
-  double share = 0.0;
-  for (const SightLines::Line& line : sights.lines())
-    if (part[part.cell(line.from)] != Occupancy::Unknown && part[part.cell(line.to)] != Occupancy::Unknown)
-      share += line.weight;
-  return share;
-}
-
 /// An arena out of nothing: the outline and the lattice of `truth`, each inner wall there with probability p.
 inline OccupancyGrid guessed(const OccupancyGrid& truth, double p, std::uint64_t seed) {
   const GridFrame known = known_frame(truth, 0.0).value_or(truth.frame());
