@@ -167,7 +167,7 @@ TEST(Schemes, GainNothingInTheMean) {
       gained += judge(scheme.attack(truths[i], truths[(i + 1) % all.size()], i));
     }
     const bool drawn_on = scheme.name.find("carried on") != std::string::npos;
-    EXPECT_LE(gained / static_cast<double>(all.size()), drawn_on ? 0.02 : 0.01) << scheme.name;
+    EXPECT_LE(gained / static_cast<double>(all.size()), drawn_on ? 0.03 : 0.01) << scheme.name;
   }
 }
 
