@@ -49,6 +49,15 @@ std::vector<Place> ramps(const std::string& kind, int count) {
   return out;
 }
 
+std::vector<Place> large_ones(const std::string& kind, int count) {
+  std::vector<Place> out;
+  for (int i = 0; i < count; ++i) {
+    const Ground ground{kind, 7 + i % 3, 9 - i % 4, 9500 + static_cast<std::uint64_t>(i)};
+    out.push_back({"large " + kind, ground.name(), truth_of(ground)});
+  }
+  return out;
+}
+
 std::vector<Place> small_ones(int count) {
   std::vector<Place> out;
   for (int i = 0; i < count; ++i) {
@@ -78,6 +87,7 @@ const std::vector<Place>& places(benchmark::State& state) {
   const auto add = [](const std::vector<Place>& more) { all.insert(all.end(), more.begin(), more.end()); };
   add(ramps("orange", 20));
   add(ramps("red", 12));
+  add(large_ones("yellow", 12));
   add(small_ones(18));
   add(competitions(*raf));
   for (const LabelledFloor& floor : *floors) all.push_back({"building", floor.floor.name, floor.map});

@@ -63,7 +63,7 @@ constexpr double kSightKappa = 0.75;  // of those, how right it is
 /// What one map says of the other's lines of sight; none where these are too few.
 std::optional<SightAgreement> sights_of(const OccupancyGrid& asked, const OccupancyGrid& other,
                                         const TPose2D& T_other_asked) {
-  const SightLines lines(other);
+  const SightLines lines(other, SightLines::Credit::Whole);
   if (!lines.usable()) return std::nullopt;
   return lines.at(asked, PlanarTransform(T_other_asked));
 }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <utility>
 
 #include "base/angle.h"
 #include "base/distance_transform.h"
@@ -19,7 +21,8 @@ constexpr double kLongest = 1.8;        // [m]
 constexpr double kClearEnds = 0.25;     // of walls at both ends [m]
 constexpr double kClearBeside = 0.12;   // open lines have no wall so near, blocked ones are blocked so far aside [m]
 constexpr double kGap = 0.15;           // free space between two pieces of one wall [m]
-constexpr double kUnseen = 0.1;         // unknown stretch that leaves a line known [m]
+constexpr double kHole = 0.55;          // unknown stretch between known ground that says no wall: a halo around one [m]
+constexpr double kPlaceOfWall = 0.1;    // to either side of a wall's middle: what must be known to miss it [m]
 constexpr double kTau = 0.5;            // distance from which a wall is another one [m]
 constexpr double kRaster = 0.5;         // of a cell: what drawing on a raster moves a wall by
 constexpr double kMostRaster = 0.05;    // [m]
@@ -29,12 +32,15 @@ constexpr double kPlenty = 30.0;        // places of inner walls from which luck
 constexpr double kMostFee = 0.55;       // what luck reaches where the truth has two or three walls
 constexpr double kPlace = 0.4;          // along a wall [m]
 constexpr double kPrior = 2.0;          // laid-over lines that the mean of all stands for
-constexpr double kLinesPerArea = 16.0;  // of each kind, a square metre of free space
 constexpr std::size_t kFewest = 40;     // of each kind
-constexpr double kLeastLines = 1500.0;  // of each kind
+constexpr double kUnseen = 0.1;         // unknown stretch that leaves a line known as a whole [m]
+constexpr double kLinesPerArea = 16.0;  // asked as a whole, of each kind, a square metre of free space
+constexpr double kLeastLines = 1500.0;
 constexpr double kMostLines = 3000.0;
-constexpr int kTries = 30;           // for each line wanted
-constexpr std::size_t kShifts = 24;  // at which the truth is laid over itself
+constexpr std::size_t kBlockedLines = 4500;
+constexpr std::size_t kOpenLines = 9000;  // half of them lie inside a pallet and say nothing
+constexpr int kTries = 30;                // for each line wanted
+constexpr std::size_t kShifts = 24;       // at which the truth is laid over itself
 
 /// One wall on a line, [m] from its start.
 struct Crossing {
@@ -45,9 +51,30 @@ struct Crossing {
   double thickness() const { return to - from; }
 };
 
+struct Stretch {
+  double from = 0.0;
+  double to = 0.0;
+};
+
+/// What a map shows on a line, [m] from its start.
 struct Sight {
   std::vector<Crossing> walls;
-  double unknown = 0.0;  ///< [m]
+  std::vector<Stretch> unseen;
+  double unknown = 0.0;  ///< all of it [m]
+
+  void leave_unseen(double from, double to) {
+    const bool goes_on = !unseen.empty() && unseen.back().to >= from;
+    if (!goes_on) unseen.push_back({from, to});
+    unseen.back().to = to;
+  }
+  /// Short unknown stretches between known ground are open ground: whoever knows both sides of a wall knows the wall.
+  void close_holes(double length) {
+    const auto is_hole = [&](const Stretch& s) { return s.from > 0.0 && s.to < length && s.to - s.from <= kHole; };
+    unseen.erase(std::remove_if(unseen.begin(), unseen.end(), is_hole), unseen.end());
+  }
+  bool sees(double at) const {
+    return std::none_of(unseen.begin(), unseen.end(), [at](const Stretch& s) { return at >= s.from && at <= s.to; });
+  }
 };
 
 /// Looks across a map that is kept elsewhere.
@@ -70,6 +97,7 @@ struct Ground {
 
 void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& out) const {
   out.walls.clear();
+  out.unseen.clear();
   out.unknown = 0.0;
   const GridFrame& f = grid.frame();
   const int steps = std::max(1, static_cast<int>(std::ceil(2.0 * length / f.resolution)));
@@ -85,6 +113,7 @@ void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& ou
     const double slipped = pieces.between(last, c);
     last = c;
     if (!grid.inside(c)) {
+      out.leave_unseen(i * step, (i + 1) * step);
       out.unknown += step;
       continue;
     }
@@ -96,6 +125,7 @@ void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& ou
       out.walls.back().strength = std::max(out.walls.back().strength, wall);
       free = 0.0;
     } else if (grid.cells()[at] == Occupancy::Unknown) {
+      out.leave_unseen(i * step, (i + 1) * step);
       out.unknown += step;
     } else {
       free += step;
@@ -129,7 +159,7 @@ class Asker {
     ground_.look(from, to, length, sight_);
     SightLines::Line line{from, to};
     if (sight_.walls.empty()) {
-      if (sight_.unknown > 0.0 || !clear(from, to, length)) return std::nullopt;
+      if (!sight_.unseen.empty() || !clear(from, to, length)) return std::nullopt;
       return line;
     }
     if (sight_.walls.size() > 1) return std::nullopt;
@@ -204,15 +234,18 @@ std::vector<SightLines::Line> spread(Asker& asker, bool blocked, std::size_t wan
   return out;
 }
 
-/// How often the line is blocked where the truth is laid over itself.
-double chance_of(const SightLines::Line& line, Asker& asker, const std::vector<TPoint2D>& shifts, double mean) {
-  double blocked = kPrior * mean;
+/// How often the line is blocked where the truth is laid over itself. An open line that never is says nothing; it
+/// remembers where it is.
+double chance_of(SightLines::Line& line, Asker& asker, const std::vector<TPoint2D>& shifts, double mean,
+                 SightLines::Credit credit) {
+  double blocked = line.blocked || credit == SightLines::Credit::Whole ? kPrior * mean : 0.0;
   double asked = kPrior;
   for (const TPoint2D& shift : shifts) {
     const std::optional<SightLines::Line> other = asker.ask(line.from + shift, line.to + shift);
     if (!other) continue;
     asked += 1.0;
     blocked += other->blocked ? 1.0 : 0.0;
+    if (other->blocked && !line.blocked) line.doubts.push_back(static_cast<float>(other->middle));
   }
   return blocked / asked;
 }
@@ -247,30 +280,64 @@ std::size_t wall_places(const std::vector<SightLines::Line>& lines) {
   return places.size();
 }
 
-/// -1..1: how far a map's sight along a line says that it is blocked; with the wall in its place.
-double said_blocked(const SightLines::Line& line, const Sight& sight, double raster) {
+/// What a map says about one line.
+struct Word {
+  double known = 0.0;  ///< 0..1: how much of the question it answers
+  double right = 0.0;  ///< -known..known
+};
+
+/// What the walls that a map draws on a blocked line are, and how near the best comes to the right one.
+struct Drawn {
+  Drawn(const SightLines::Line& line, const Sight& sight, double raster) {
+    for (const Crossing& wall : sight.walls) {
+      const double off = std::max(0.0, std::abs(wall.middle() - line.middle) - raster) +
+                         kThickness * std::abs(wall.thickness() - line.thickness);
+      const double strength = std::min(1.0, wall.strength / line.strength);
+      all += strength;
+      best = std::max(best, strength * std::clamp(1.0 - off / kTau, 0.0, 1.0));
+    }
+  }
+  /// -1..1. A wall drawn twice is half wrong.
+  double right() const { return 2.0 * best / std::max(1.0, all) - 1.0; }
   double all = 0.0;
   double best = 0.0;
-  for (const Crossing& wall : sight.walls) {
-    const double off = std::max(0.0, std::abs(wall.middle() - line.middle) - raster) +
-                       kThickness * std::abs(wall.thickness() - line.thickness);
-    const double strength = std::min(1.0, wall.strength / line.strength);
-    all += strength;
-    best = std::max(best, strength * std::clamp(1.0 - off / kTau, 0.0, 1.0));
-  }
-  // A wall drawn twice is half wrong.
-  return 2.0 * best / std::max(1.0, all) - 1.0;
-}
+};
 
-double said_open(const Sight& sight) {
+double drawn_on_open(const Sight& sight) {
   double all = 0.0;
   for (const Crossing& wall : sight.walls) all += wall.strength;
-  return 1.0 - 2.0 * std::min(1.0, all);
+  return std::min(1.0, all);
+}
+
+/// A wall that is drawn answers in full, seen from one side or both; none does where its place is known.
+Word word_on_blocked(const SightLines::Line& line, const Sight& sight, double raster) {
+  const Drawn drawn(line, sight, raster);
+  constexpr double kAsked[] = {-1.0, -0.5, 0.0, 0.5, 1.0};
+  double seen = 0.0;
+  for (const double side : kAsked) seen += sight.sees(line.middle + side * kPlaceOfWall) ? 1.0 : 0.0;
+  const double known = std::max(seen / static_cast<double>(std::size(kAsked)), std::min(1.0, drawn.all));
+  return {known, known * drawn.right()};
+}
+
+/// An open line is known as far as the places are at which a wall might block it.
+Word word_on_open(const SightLines::Line& line, const Sight& sight) {
+  const double drawn = drawn_on_open(sight);
+  const auto seen = std::count_if(line.doubts.begin(), line.doubts.end(),
+                                  [&](float at) { return sight.sees(static_cast<double>(at)); });
+  const double open = static_cast<double>(seen) / std::max(1.0, static_cast<double>(line.doubts.size()));
+  return {std::max(open, drawn), std::max(-1.0, open - 2.0 * drawn)};
+}
+
+/// A wall seen from one side only, or at the edge of what the map knows, is half a line.
+Word word_on_whole(const SightLines::Line& line, const Sight& sight, double raster, bool from_known, bool to_known) {
+  if (sight.walls.empty() && sight.unknown > kUnseen) return {};
+  const double known = 0.5 * from_known + 0.5 * to_known;
+  return {known, known * (line.blocked ? Drawn(line, sight, raster).right() : 1.0 - 2.0 * drawn_on_open(sight))};
 }
 
 template <class Transform>
 SightAgreement agreement(const std::vector<SightLines::Line>& lines, const SightMap& map, const Transform& T,
-                         double fee) {
+                         double fee, SightLines::Credit credit) {
   const Ground ground(map);
   const double raster = std::min(kMostRaster, kRaster * map.grid.resolution());
   Sight sight;
@@ -281,12 +348,17 @@ SightAgreement agreement(const std::vector<SightLines::Line>& lines, const Sight
     all += line.weight;
     const TPoint2D a = T.inverse(line.from);
     const TPoint2D b = T.inverse(line.to);
-    ground.look(a, b, (line.to - line.from).norm(), sight);
-    if (sight.walls.empty() && sight.unknown > kUnseen) continue;
-    // A wall seen from one side only, or at the edge of what the map knows, is half a line.
-    const double weight = line.weight * (0.5 * ground.known(a) + 0.5 * ground.known(b));
-    known += weight;
-    gain += weight * (line.blocked ? said_blocked(line, sight, raster) : said_open(sight));
+    const double length = (line.to - line.from).norm();
+    ground.look(a, b, length, sight);
+    Word word;
+    if (credit == SightLines::Credit::Whole) {
+      word = word_on_whole(line, sight, raster, ground.known(a), ground.known(b));
+    } else {
+      sight.close_holes(length);
+      word = line.blocked ? word_on_blocked(line, sight, raster) : word_on_open(line, sight);
+    }
+    known += line.weight * word.known;
+    gain += line.weight * word.right;
   }
   SightAgreement out;
   if (known <= 0.0) return out;
@@ -298,23 +370,23 @@ SightAgreement agreement(const std::vector<SightLines::Line>& lines, const Sight
 
 }  // namespace
 
-SightLines::SightLines(const OccupancyGrid& truth) {
+SightLines::SightLines(const OccupancyGrid& truth, Credit credit) : credit_(credit) {
   Asker asker(truth);
-  const auto wanted = static_cast<std::size_t>(std::clamp(kLinesPerArea * asker.area(), kLeastLines, kMostLines));
   const std::vector<TPoint2D> shifts = lattice_shifts(truth, kShifts);
   const double mean = blocked_share(asker);
+  const auto whole = static_cast<std::size_t>(std::clamp(kLinesPerArea * asker.area(), kLeastLines, kMostLines));
   for (const bool blocked : {false, true}) {
     const std::size_t first = lines_.size();
-    for (const Line& line : spread(asker, blocked, wanted)) lines_.push_back(line);
-    count_[blocked] = lines_.size() - first;
     double sum = 0.0;
-    for (std::size_t i = first; i < lines_.size(); ++i) {
-      Line& line = lines_[i];
-      const double chance = chance_of(line, asker, shifts, mean);
+    for (Line& line : spread(asker, blocked, credit == Credit::Whole ? whole : blocked ? kBlockedLines : kOpenLines)) {
+      const double chance = chance_of(line, asker, shifts, mean, credit);
       // Lines through a wall were found by its cells: as often as it is thick along them.
       line.weight = blocked ? (1.0 - chance) / std::max(line.thickness, truth.resolution()) : chance;
+      if (line.weight <= 0.0) continue;
       sum += line.weight;
+      lines_.push_back(std::move(line));
     }
+    count_[blocked] = lines_.size() - first;
     for (std::size_t i = first; i < lines_.size(); ++i) lines_[i].weight *= sum > 0.0 ? 0.5 / sum : 0.0;
   }
   // The fewer walls there are to be right about, the more often luck is right about most of them.
@@ -325,11 +397,11 @@ SightLines::SightLines(const OccupancyGrid& truth) {
 bool SightLines::usable() const { return count_[0] >= kFewest && count_[1] >= kFewest; }
 
 SightAgreement SightLines::at(const SightMap& map, const PlanarTransform& T_truth_map) const {
-  return agreement(lines_, map, T_truth_map, fee_);
+  return agreement(lines_, map, T_truth_map, fee_, credit_);
 }
 
 SightAgreement SightLines::at(const SightMap& map, const Warp& warp) const {
-  return agreement(lines_, map, warp, fee_);
+  return agreement(lines_, map, warp, fee_, credit_);
 }
 
 }  // namespace rubble::scoring

@@ -33,14 +33,20 @@ struct SightMap {
 /// Chance is taken off line by line. A line that is blocked although, where the truth is laid over itself, such lines
 /// are blocked in a share c of cases, weighs 1 - c; one that is open weighs c. So whoever draws walls without knowing
 /// the arena earns nothing in the mean, however many he draws; all free and all walls earn 0 exactly; what is unknown
-/// earns and costs nothing; and knowing a part without error earns that part. Two arenas on one lattice agree by luck
-/// at the best of many poses: each known line costs a fee that outweighs this.
+/// earns and costs nothing; and knowing a part without error earns that part: a blocked line lies where its wall is, an
+/// open one where walls stand on it at those shifts. What lies in any arena beyond doubt earns nothing. Two arenas on
+/// one lattice agree by luck at the best of many poses: each known line costs a fee that outweighs this.
 ///
 /// Walls are compared by their middle, so a fat pencil costs little: only lines clear of the truth's walls by 0.25 m at
 /// the ends and 0.12 m beside them count.
 class SightLines {
  public:
-  explicit SightLines(const OccupancyGrid& truth);
+  /// What of a line a map is asked about. `Located`: where its answer lies, for a score that nobody can fill up.
+  /// `Whole`: the line from end to end, in any place, for a judge of whether two maps show the same: its thresholds
+  /// were set with that.
+  enum class Credit { Located, Whole };
+
+  explicit SightLines(const OccupancyGrid& truth, Credit credit = Credit::Located);
 
   /// Too few open or blocked lines to say anything: a single room, or a truth without free space.
   bool usable() const;
@@ -54,14 +60,16 @@ class SightLines {
     mrpt::math::TPoint2D from;
     mrpt::math::TPoint2D to;
     bool blocked = false;
-    double middle = 0.0;     ///< of the wall that blocks it, from `from` [m]
-    double thickness = 0.0;  ///< of that wall along the line [m]
-    double strength = 1.0;   ///< of that wall: less than 1 if it is a small piece
-    double weight = 0.0;     ///< of all blocked (open) lines together 0.5
+    double middle = 0.0;             ///< of the wall that blocks it, from `from` [m]
+    double thickness = 0.0;          ///< of that wall along the line [m]
+    double strength = 1.0;           ///< of that wall: less than 1 if it is a small piece
+    double weight = 0.0;             ///< of all blocked (open) lines together 0.5
+    std::vector<float> doubts = {};  ///< where walls stand on an open line at other shifts, from `from` [m]
   };
   const std::vector<Line>& lines() const { return lines_; }
 
  private:
+  Credit credit_;
   std::vector<Line> lines_;
   double fee_ = 0.0;                    ///< kappa that maps of other arenas reach by luck
   std::array<std::size_t, 2> count_{};  ///< open and blocked

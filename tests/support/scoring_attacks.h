@@ -27,12 +27,17 @@ inline OccupancyGrid half_of(const OccupancyGrid& grid, bool western = true) {
   return out;
 }
 
-/// Share of the counted lines, by weight, that lie in what `part` knows: both ends do.
+/// Share of the counted lines, by weight, that lie in what `part` knows: a blocked one where its wall is, an open one
+/// where walls might be.
 inline double share_within(const SightLines& sights, const OccupancyGrid& part) {
   double share = 0.0;
-  for (const SightLines::Line& line : sights.lines())
-    if (part[part.cell(line.from)] != Occupancy::Unknown && part[part.cell(line.to)] != Occupancy::Unknown)
-      share += line.weight;
+  for (const SightLines::Line& line : sights.lines()) {
+    const TPoint2D along = (line.to - line.from) * (1.0 / (line.to - line.from).norm());
+    const auto known = [&](double at) { return part[part.cell(line.from + along * at)] != Occupancy::Unknown; };
+    if (line.blocked && known(line.middle)) share += line.weight;
+    for (const float at : line.doubts)
+      if (known(static_cast<double>(at))) share += line.weight / static_cast<double>(line.doubts.size());
+  }
   return share;
 }
 

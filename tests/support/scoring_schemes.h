@@ -155,6 +155,25 @@ inline OccupancyGrid haloed(const OccupancyGrid& map, double reach) {
   return out;
 }
 
+/// Free cells within `reach` [m] of where a wall ends become unknown: there it may go on.
+inline OccupancyGrid with_unsure_ends(const OccupancyGrid& map, double reach) {
+  OccupancyGrid out = map;
+  const int cells = static_cast<int>(std::lround(reach / map.resolution()));
+  for (int y = 3; y + 3 < map.height(); ++y)
+    for (int x = 3; x + 3 < map.width(); ++x) {
+      if (map[{x, y}] != Occupancy::Occupied) continue;
+      int around = 0;
+      for (int dy = -3; dy <= 3; ++dy)
+        for (int dx = -3; dx <= 3; ++dx) around += map[{x + dx, y + dy}] == Occupancy::Occupied ? 1 : 0;
+      if (around > 9) continue;  // of a wall of two cells that goes on there are 14
+      for (int dy = -cells; dy <= cells; ++dy)
+        for (int dx = -cells; dx <= cells; ++dx)
+          if (map.inside({x + dx, y + dy}) && map[{x + dx, y + dy}] == Occupancy::Free)
+            out[{x + dx, y + dy}] = Occupancy::Unknown;
+    }
+  return out;
+}
+
 /// The half turned about the middle fills the other one.
 inline OccupancyGrid with_its_half_turn(const OccupancyGrid& map, const TPoint2D& about) {
   OccupancyGrid turned(map.frame());
@@ -239,12 +258,22 @@ inline std::vector<Scheme> schemes() {
        [=](Grid truth, Grid, Seed seed) {
          return filled(part(truth, seed), lattice_of(truth, Occupancy::Unknown, 0.25));
        }},
+      {"part, the rest free but for broad unknown strips", only_part,
+       [=](Grid truth, Grid, Seed seed) {
+         return filled(part(truth, seed), lattice_of(truth, Occupancy::Unknown, 0.5));
+       }},
+      {"part, carried on by 0.5 m", only_part,
+       [=](Grid truth, Grid, Seed seed) { return smeared(part(truth, seed), 0.5); }},
       {"part, carried on by 1.2 m", only_part,
        [=](Grid truth, Grid, Seed seed) { return smeared(part(truth, seed), 1.2); }},
       {"part, the rest its half turn", only_part,
        [=](Grid truth, Grid, Seed seed) { return with_its_half_turn(part(truth, seed), middle_of(truth)); }},
       {"nothing: a full lattice", nothing,
        [](Grid truth, Grid, Seed) { return lattice_of(truth, Occupancy::Occupied, 0.1); }},
+      {"nothing: a dashed lattice", nothing,
+       [](Grid truth, Grid, Seed) { return lattice_of(truth, Occupancy::Occupied, 0.1, 0.2); }},
+      {"nothing: broad unknown strips", nothing,
+       [](Grid truth, Grid, Seed) { return lattice_of(truth, Occupancy::Unknown, 0.5); }},
       {"nothing: unknown strips", nothing,
        [](Grid truth, Grid, Seed) { return lattice_of(truth, Occupancy::Unknown, 0.25); }},
       {"one half slipped or not: both drawn",
@@ -277,6 +306,11 @@ inline std::vector<Scheme> schemes() {
        [=](Grid truth, Grid, Seed seed) { return dashed(worn(truth, seed), 0.1, 0.5); }},
       {"worn: a halo of unknown around walls", only_worn,
        [=](Grid truth, Grid, Seed seed) { return haloed(worn(truth, seed), 0.15); }},
+      {"worn: a halo of 0.2 m", only_worn, [=](Grid truth, Grid, Seed seed) { return haloed(worn(truth, seed), 0.2); }},
+      {"worn: a broad halo of unknown around walls", only_worn,
+       [=](Grid truth, Grid, Seed seed) { return haloed(worn(truth, seed), 0.3); }},
+      {"worn: unknown around the ends of walls", only_worn,
+       [=](Grid truth, Grid, Seed seed) { return with_unsure_ends(worn(truth, seed), 0.35); }},
       {"worn: unknown in a third of the squares", only_worn,
        [=](Grid truth, Grid, Seed seed) { return patches_of(worn(truth, seed), 0.67, seed); }},
       {"worn: walls fatter on one side by 10 cm", only_worn,

@@ -366,7 +366,8 @@ std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
   };
   if (is_unchanged(census_of(image, inverted)))
     return RestoredColours{recoloured(image, inverted), "colours were inverted"};
-  if (40 * std::min(as_is.darker, as_is.checkerboard - as_is.darker) < as_is.pixels)
+  // Greys alone have a curve to the squares and white of the league wherever they were blended.
+  if (has_colour(image) && 40 * std::min(as_is.darker, as_is.checkerboard - as_is.darker) < as_is.pixels)
     if (auto restored = with_tones_of_old(image)) return restored;
   const int white = dimmed_white(image);
   if (white == 255) return std::nullopt;
