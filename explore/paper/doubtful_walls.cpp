@@ -54,6 +54,25 @@ bool all(const OccupancyGrid& cells, Cell c, Cell step, int from, int to, Occupa
   return true;
 }
 
+/// The row of a face that begins at a cell: on along it, a cell to either side, over small gaps. Takes it out of the
+/// face.
+std::vector<Cell> row_from(Cell first, Cell along, Cell n, Grid<std::uint8_t>& face) {
+  const auto next_of = [&](Cell c) -> std::optional<Cell> {
+    for (int step = 1; step <= 1 + kGap; ++step)
+      for (const int aside : {0, 1, -1}) {
+        const Cell next{c.x + step * along.x + aside * n.x, c.y + step * along.y + aside * n.y};
+        if (face.inside(next) && face[next] != 0) return next;
+      }
+    return std::nullopt;
+  };
+  std::vector<Cell> row;
+  for (std::optional<Cell> next = first; next; next = next_of(row.back())) {
+    face[*next] = 0;
+    row.push_back(*next);
+  }
+  return row;
+}
+
 /// How far a wall at `p` whose normal is `n` stands off the nearest edges of pallets that it could stand on [m].
 double off_edges(const PalletGrid& grid, const TPoint2D& p, Cell n) {
   const TPoint2D at = grid.to_grid(p);
@@ -84,21 +103,7 @@ std::vector<Source> doubtful_walls(const Traversable& floor, double pallet) {
     for (int y = 1; y + 1 < cells.height(); ++y)
       for (int x = 1; x + 1 < cells.width(); ++x) {
         if (face[{x, y}] == 0) continue;
-        // A row: on along it, a cell to either side, over small gaps.
-        std::vector<Cell> row{{x, y}};
-        face[{x, y}] = 0;
-        for (bool more = true; more;) {
-          more = false;
-          for (int step = 1; step <= 1 + kGap && !more; ++step)
-            for (const int aside : {0, 1, -1}) {
-              const Cell next{row.back().x + step * along.x + aside * n.x, row.back().y + step * along.y + aside * n.y};
-              if (!cells.inside(next) || face[next] == 0) continue;
-              face[next] = 0;
-              row.push_back(next);
-              more = true;
-              break;
-            }
-        }
+        const std::vector<Cell> row = row_from({x, y}, along, n, face);
         const int length = std::abs(row.back().x - x) * along.x + std::abs(row.back().y - y) * along.y + 1;
         if (length < in_cells(kShortest)) continue;
         const TPoint2D middle = cells.centre(row[row.size() / 2]);

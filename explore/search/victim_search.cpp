@@ -156,6 +156,7 @@ std::size_t VictimSearch::merge_into_neighbour(std::size_t index, const Sightlin
     Cluster& kept = clusters_[keep];
     const Cluster& dropped = clusters_[drop];
     kept.sightings.insert(kept.sightings.end(), dropped.sightings.begin(), dropped.sightings.end());
+    kept.newest = std::max(kept.newest, dropped.newest);
     if (kept.id == 0 || (dropped.id != 0 && dropped.id < kept.id)) {
       kept.id = dropped.id;
       kept.confirmed = dropped.confirmed;
@@ -212,7 +213,6 @@ void VictimSearch::put_into(std::size_t index, const Sighting& sighting, const S
   if (static_cast<int>(sightings.size()) > config_.max_cues)
     sightings.erase(sightings.begin(), sightings.end() - config_.max_cues);
   locate(clusters_[index]);
-  clusters_[index].newest = std::max(clusters_[index].newest, sighting.anchor.stamp);
   confirm(clusters_[index], sighting.anchor.stamp);
 }
 
