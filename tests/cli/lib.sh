@@ -74,3 +74,13 @@ finish() {
   ((failures == 0)) && echo "all checks passed"
   exit $((failures > 0))
 }
+
+# operator_tries WHAT: a part of operator.py, on a drive in a flat room.
+operator_tries() {
+  cat >flat.yaml <<YAML
+name: flat
+arena: {file: $source/arenas/shipped/flat_room.yaml}
+seed: 2
+YAML
+  python3 "$source/tests/cli/operator.py" "$rubble" "$source/robots/pioneer_urg.yaml" flat.yaml "$1" || fail "see above"
+}

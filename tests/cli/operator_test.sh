@@ -2,12 +2,7 @@
 # The operator's means to stop the robot, tried at a terminal: keys and heartbeat. Signals and a robot that was stopped by
 # hand are tests of their own, since each waits in real time.
 source "$(dirname "$0")/lib.sh"
-cat >flat.yaml <<YAML
-name: flat
-arena: {file: $source/arenas/shipped/flat_room.yaml}
-seed: 2
-YAML
-python3 "$source/tests/cli/operator.py" "$rubble" "$source/robots/pioneer_urg.yaml" flat.yaml keys || fail "see above"
+operator_tries keys
 
 # The black box: the drivers say the same again, on bytes of drives with a change of speed, a stop, and a pause.
 for run in teleop heartbeat; do
