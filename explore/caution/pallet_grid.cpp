@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "base/angle.h"
@@ -26,14 +27,37 @@ struct Piece {
   double direction;  ///< [rad]
 };
 
-std::optional<Piece> piece_at(const OccupancyGrid& cells, Cell c) {
+/// The occupied cells of a part of a map, row by row.
+class OccupiedRows {
+ public:
+  OccupiedRows(const OccupancyGrid& cells, Cell low, Cell high) : lowest_(low.y) {
+    for (int y = low.y; y <= high.y; ++y) {
+      first_.push_back(xs_.size());
+      for (int x = low.x; x <= high.x; ++x)
+        if (cells[{x, y}] == Occupancy::Occupied) xs_.push_back(x);
+    }
+    first_.push_back(xs_.size());
+  }
+  int lowest() const { return lowest_; }
+  int highest() const { return lowest_ + static_cast<int>(first_.size()) - 2; }
+  /// Those of row y from x on.
+  const int* from(int y, int x) const { return std::lower_bound(begin(y), end(y), x); }
+  const int* begin(int y) const { return xs_.data() + first_[static_cast<std::size_t>(y - lowest_)]; }
+  const int* end(int y) const { return xs_.data() + first_[static_cast<std::size_t>(y - lowest_) + 1]; }
+
+ private:
+  int lowest_;
+  std::vector<int> xs_;
+  std::vector<std::size_t> first_;  ///< of each row
+};
+
+std::optional<Piece> piece_at(const OccupiedRows& occupied, Cell c, const TPoint2D& centre) {
   TPoint2D sum;
   double xx = 0.0, yy = 0.0, xy = 0.0;
   int count = 0;
-  for (int y = std::max(0, c.y - kReach); y <= std::min(cells.height() - 1, c.y + kReach); ++y)
-    for (int x = std::max(0, c.x - kReach); x <= std::min(cells.width() - 1, c.x + kReach); ++x) {
-      if (cells[{x, y}] != Occupancy::Occupied) continue;
-      const double dx = x - c.x, dy = y - c.y;
+  for (int y = std::max(occupied.lowest(), c.y - kReach); y <= std::min(occupied.highest(), c.y + kReach); ++y)
+    for (const int* x = occupied.from(y, c.x - kReach); x != occupied.end(y) && *x <= c.x + kReach; ++x) {
+      const double dx = *x - c.x, dy = y - c.y;
       sum += TPoint2D{dx, dy};
       xx += dx * dx;
       yy += dy * dy;
@@ -46,7 +70,7 @@ std::optional<Piece> piece_at(const OccupancyGrid& cells, Cell c) {
   xy -= sum.x * sum.y / count;
   const double spread = length(xx - yy, 2.0 * xy);
   if (spread < kStraight * (xx + yy)) return std::nullopt;
-  return Piece{cells.centre(c), 0.5 * std::atan2(2.0 * xy, xx - yy)};
+  return Piece{centre, 0.5 * std::atan2(2.0 * xy, xx - yy)};
 }
 
 /// Mean of angles that stand `turns` times in a circle; nothing where they do not agree.
@@ -94,16 +118,20 @@ double PalletGrid::depth(const TPoint2D& p_map) const {
 std::optional<PalletGrid> find_pallets(const OccupancyGrid& cells, double size, const TPoint2D& around, double radius) {
   std::vector<Piece> pieces;
   CircularMean direction;
+  const auto within = [&](Cell c) {
+    return Cell{std::clamp(c.x, 0, cells.width() - 1), std::clamp(c.y, 0, cells.height() - 1)};
+  };
   const Cell low = cells.cell({around.x - radius, around.y - radius});
   const Cell high = cells.cell({around.x + radius, around.y + radius});
+  if (low.x >= cells.width() || low.y >= cells.height() || high.x < 0 || high.y < 0) return std::nullopt;
+  const OccupiedRows occupied(cells, within({low.x - kReach, low.y - kReach}),
+                              within({high.x + kReach, high.y + kReach}));
   for (int y = std::max(0, low.y); y <= std::min(cells.height() - 1, high.y); ++y)
-    for (int x = std::max(0, low.x); x <= std::min(cells.width() - 1, high.x); ++x) {
-      if (cells[{x, y}] != Occupancy::Occupied) continue;
-      if (const auto piece = piece_at(cells, {x, y})) {
+    for (const int* x = occupied.from(y, low.x); x != occupied.end(y) && *x <= high.x; ++x)
+      if (const auto piece = piece_at(occupied, {*x, y}, cells.centre({*x, y}))) {
         pieces.push_back(*piece);
         direction.add(4.0 * piece->direction);
       }
-    }
   const auto four = direction.mean();
   if (pieces.size() < kPieces || !four) return std::nullopt;
   PalletGrid grid;

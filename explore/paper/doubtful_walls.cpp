@@ -91,32 +91,35 @@ std::vector<Source> doubtful_walls(const Traversable& floor, double pallet) {
   const auto in_cells = [&](double length) { return static_cast<int>(std::lround(length / resolution)); };
   const int before = std::max(1, in_cells(kBefore)), thick = in_cells(kThick), behind = in_cells(kBehind);
   LocalGrids grids(cells, pallet);
+  std::vector<Cell> occupied;
+  for (int y = 1; y + 1 < cells.height(); ++y) {
+    const Occupancy* const row = cells.row(y);
+    for (int x = 1; x + 1 < cells.width(); ++x)
+      if (row[x] == Occupancy::Occupied) occupied.push_back({x, y});
+  }
+  Grid<std::uint8_t> face(floor.frame());
   // `n` points from the free side into the wall.
   for (const Cell n : {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}}) {
     const Cell along{std::abs(n.y), std::abs(n.x)};
-    Grid<std::uint8_t> face(floor.frame());
-    for (int y = 1; y + 1 < cells.height(); ++y)
-      for (int x = 1; x + 1 < cells.width(); ++x)
-        face[{x, y}] = cells[{x, y}] == Occupancy::Occupied &&
-                       all(cells, {x, y}, {-n.x, -n.y}, 1, before, Occupancy::Free) &&
-                       all(cells, {x, y}, n, 1 + thick, behind, Occupancy::Unknown);
-    for (int y = 1; y + 1 < cells.height(); ++y)
-      for (int x = 1; x + 1 < cells.width(); ++x) {
-        if (face[{x, y}] == 0) continue;
-        const std::vector<Cell> row = row_from({x, y}, along, n, face);
-        const int length = std::abs(row.back().x - x) * along.x + std::abs(row.back().y - y) * along.y + 1;
-        if (length < in_cells(kShortest)) continue;
-        const TPoint2D middle = cells.centre(row[row.size() / 2]);
-        const std::optional<PalletGrid>& grid = grids.at(middle);
-        if (!grid || off_edges(*grid, middle, n) < kOffEdges) continue;
-        for (std::size_t i = 0; i < row.size(); i += kStride)
-          for (const double distance : kLookFrom) {
-            const int away = in_cells(distance);
-            const Cell from{row[i].x - away * n.x, row[i].y - away * n.y};
-            if (!cells.inside(from) || cells[from] != Occupancy::Free) continue;
-            if (in_sight(floor, from, {row[i].x - n.x, row[i].y - n.y})) sources.push_back({from, 0.0});
-          }
-      }
+    for (const Cell c : occupied)
+      face[c] = all(cells, c, {-n.x, -n.y}, 1, before, Occupancy::Free) &&
+                all(cells, c, n, 1 + thick, behind, Occupancy::Unknown);
+    for (const Cell c : occupied) {
+      if (face[c] == 0) continue;
+      const std::vector<Cell> row = row_from(c, along, n, face);
+      const int length = std::abs(row.back().x - c.x) * along.x + std::abs(row.back().y - c.y) * along.y + 1;
+      if (length < in_cells(kShortest)) continue;
+      const TPoint2D middle = cells.centre(row[row.size() / 2]);
+      const std::optional<PalletGrid>& grid = grids.at(middle);
+      if (!grid || off_edges(*grid, middle, n) < kOffEdges) continue;
+      for (std::size_t i = 0; i < row.size(); i += kStride)
+        for (const double distance : kLookFrom) {
+          const int away = in_cells(distance);
+          const Cell from{row[i].x - away * n.x, row[i].y - away * n.y};
+          if (!cells.inside(from) || cells[from] != Occupancy::Free) continue;
+          if (in_sight(floor, from, {row[i].x - n.x, row[i].y - n.y})) sources.push_back({from, 0.0});
+        }
+    }
   }
   return sources;
 }

@@ -23,7 +23,8 @@ bool FloorSearch::look(const Traversable& floor, const TPose2D& T_map_base, doub
   if (!config_.on || now < next_look_ || std::abs(turn_rate) > kTurnRate) return false;
   next_look_ = now + kLookPeriod;
   // A look that shows nothing new need not be repeated.
-  if (look_around(floor, T_map_base)) looks_.push_back({{now, T_map_base}, T_map_base});
+  if (look_around(floor, T_map_base))
+    looks_.push_back({{now, T_map_base}, T_map_base, searched_.last(), squarely_.last()});
   return true;
 }
 
@@ -34,24 +35,35 @@ bool FloorSearch::look_around(const Traversable& floor, const TPose2D& T_map_bas
   return squarely_.look(floor, view_) || anyhow;
 }
 
+bool FloorSearch::moved(const Look& look) {
+  const TPose2D& T = look.anchor.T_map_base;
+  return distance({T.x, T.y}, {look.made_at.x, look.made_at.y}) > kMoved ||
+         std::abs(wrap_angle(T.phi - look.made_at.phi)) > kMovedTurn;
+}
+
 bool FloorSearch::follow(const slam::Mapper& mapper) {
-  bool moved = false;
+  bool any = false;
   for (Look& look : looks_) {
     look.anchor.follow(mapper);
-    const TPose2D& T = look.anchor.T_map_base;
-    moved = moved || distance({T.x, T.y}, {look.made_at.x, look.made_at.y}) > kMoved ||
-            std::abs(wrap_angle(T.phi - look.made_at.phi)) > kMovedTurn;
+    any = any || moved(look);
   }
   for (GivenUp& place : given_up_) place.anchor.follow(mapper);
-  return moved;
+  return any;
 }
 
 void FloorSearch::look_again(const Traversable& floor) {
   searched_.clear();
   squarely_.clear();
   for (Look& look : looks_) {
-    look.made_at = look.anchor.T_map_base;
-    look_around(floor, look.made_at);
+    if (moved(look)) {
+      look.made_at = look.anchor.T_map_base;
+      look_around(floor, look.made_at);
+      look.anyhow = searched_.last();
+      look.squarely = squarely_.last();
+    } else {
+      searched_.look(floor.frame(), look.anyhow);
+      squarely_.look(floor.frame(), look.squarely);
+    }
   }
   for (const GivenUp& place : given_up_)
     record(place.squarely)

@@ -32,9 +32,10 @@ class FloorSearch {
   bool look(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, double turn_rate, Stamp now);
   /// Whether the place to face has been looked at.
   bool subject_seen(const Traversable& floor) const;
-  /// The mapper corrected its past. True when a look moved by so much that all must be repeated: `look_again`.
+  /// The mapper corrected its past. True when a look moved by so much that the record must be made anew: `look_again`.
   bool follow(const slam::Mapper& mapper);
-  /// Repeats all looks from where they were made as is known now.
+  /// Makes the record of all looks anew. Those that moved are repeated from where they were made as is known now; what
+  /// the others showed is kept.
   void look_again(const Traversable& floor);
   /// Counts the place to face and what is around it as searched, seen or not, until it is reconsidered.
   void give_up_subject(const Traversable& floor, const Anchor& here);
@@ -86,8 +87,12 @@ class FloorSearch {
   /// A look that showed something new.
   struct Look {
     Anchor anchor;
-    mrpt::math::TPose2D made_at;  ///< when it was last repeated [map frame]
+    mrpt::math::TPose2D made_at;  ///< when what it shows was last looked at [map frame]
+    Glimpse anyhow;
+    Glimpse squarely;
   };
+
+  static bool moved(const Look& look);
 
   SearchConfig config_;
   double room_;

@@ -199,16 +199,17 @@ void see_floor(const Traversable& floor, const SearchConfig& config, const TPose
 }
 
 bool SearchedArea::look(const Traversable& floor, const FloorInView& view) {
-  if (floor.cells.width() == 0) return false;
-  cover(floor.frame());
-  if (view.rays.back().end == 0) return false;
+  glimpse_.width = glimpse_.height = 0;
+  if (floor.cells.width() == 0 || view.rays.back().end == 0) return false;
+  const GridFrame& frame = floor.frame();
   const auto nearest = static_cast<std::size_t>(std::ceil(inspection_.nearest / view.step));
   const auto beyond = static_cast<std::size_t>(inspection_.farthest / view.step) + 1;
   // Rays overlap near the robot: what they see is put together in a small window first.
-  const int width = view.high.x - view.low.x + 1;
-  const int height = view.high.y - view.low.y + 1;
-  window_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
-  Faces* const window = window_.data();
+  glimpse_.corner = {frame.x0 + view.low.x * frame.resolution, frame.y0 + view.low.y * frame.resolution};
+  const int width = glimpse_.width = view.high.x - view.low.x + 1;
+  glimpse_.height = view.high.y - view.low.y + 1;
+  glimpse_.faces.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(glimpse_.height), 0);
+  Faces* const window = glimpse_.faces.data();
   const auto mark = [&](std::size_t first, std::size_t end, Faces faces) {
     for (std::size_t k = first; k < end; ++k) {
       const Cell c = view.cells[k];
@@ -223,13 +224,20 @@ bool SearchedArea::look(const Traversable& floor, const FloorInView& view) {
     mark(near, far, faces_along(ray.dx, ray.dy, inspection_.incidence));
     mark(far, ray.end, kFloor);
   }
-  const Cell shift = shift_from(floor.frame());
+  return look(frame, glimpse_);
+}
+
+bool SearchedArea::look(const GridFrame& frame, const Glimpse& glimpse) {
+  cover(frame);
+  const GridFrame& own = twice_.frame();
+  const auto cell = [&](double at, double from) { return static_cast<int>(std::lround((at - from) / own.resolution)); };
+  const Cell low{cell(glimpse.corner.x, own.x0), cell(glimpse.corner.y, own.y0)};
   Faces news = 0;
-  for (int y = 0; y < height; ++y) {
-    const Faces* const seen = window + y * width;
-    Faces* const once = once_.row(view.low.y + y + shift.y) + view.low.x + shift.x;
-    Faces* const twice = twice_.row(view.low.y + y + shift.y) + view.low.x + shift.x;
-    for (int x = 0; x < width; ++x) {
+  for (int y = 0; y < glimpse.height; ++y) {
+    const Faces* const seen = glimpse.faces.data() + y * glimpse.width;
+    Faces* const once = once_.row(low.y + y) + low.x;
+    Faces* const twice = twice_.row(low.y + y) + low.x;
+    for (int x = 0; x < glimpse.width; ++x) {
       const auto again = static_cast<Faces>(once[x] & seen[x] & ~twice[x]);
       news = static_cast<Faces>(news | again | (seen[x] & ~once[x]));
       twice[x] = static_cast<Faces>(twice[x] | again);

@@ -190,7 +190,7 @@ KeyFrames::Agreement KeyFrames::agreement(const std::vector<OrientedPoint>& poin
     const PlanarTransform to_frame((origin + T_origin_points) - pose(k));
     for (const OrientedPoint& point : points) {
       const TPoint2D p = to_frame({static_cast<double>(point.x), static_cast<double>(point.y)}) - cloud.laser;
-      const SightFan::Verdict verdict = cloud.sight.judge(std::atan2(p.y, p.x), length(p));
+      const SightFan::Verdict verdict = cloud.sight.judge(p);
       if (verdict == SightFan::Verdict::InFront) ++agreement.contradicted;
       if (verdict == SightFan::Verdict::Agrees) ++agreement.supported;
     }

@@ -22,7 +22,7 @@ namespace {
 constexpr std::string_view kStem = "RUBBLE MAP ";
 constexpr std::string_view kMagic = "RUBBLE MAP 2\n";
 constexpr std::size_t kHead = 24;  ///< behind the magic: lengths of the payload, plain and packed, and two sums
-constexpr int kPacking = 6;        ///< zlib's usual level
+constexpr int kPacking = 1;        ///< of 9: ranges shrink by 3 % more at the usual 6, for 1.6 times the work
 // A file may unpack to no more than this: maps pack three to ten times, a bomb a thousand times.
 constexpr std::uint64_t kMostUnpacked = std::uint64_t{2} << 30;
 constexpr std::uint64_t kFreeUnpacked = std::uint64_t{64} << 20;  ///< however small the file ...

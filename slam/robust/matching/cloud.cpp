@@ -41,6 +41,22 @@ int bin_of(double bearing) {
   return ((bin % SightFan::kBins) + SightFan::kBins) % SightFan::kBins;
 }
 
+/// The bin of a direction. A polynomial (Abramowitz and Stegun, Handbook of mathematical functions, 4.4.49: error below
+/// 1e-5 rad) tells the angle well enough, but close to where bins meet.
+int bin_of(double x, double y) {
+  constexpr double kUnsure = 1e-3;  // [deg]
+  const double ax = std::abs(x), ay = std::abs(y);
+  const double t = std::min(ax, ay) / std::max(ax, ay);
+  const double tt = t * t;
+  double angle = t * (0.9998660 + tt * (-0.3302995 + tt * (0.1801410 + tt * (-0.0851330 + tt * 0.0208351))));
+  angle = rad_to_deg(ay > ax ? 0.5 * kPi - angle : angle);
+  if (x < 0.0) angle = 180.0 - angle;
+  if (y < 0.0) angle = 360.0 - angle;
+  const double within = angle - std::floor(angle);
+  if (!(within > kUnsure && within < 1.0 - kUnsure)) return bin_of(std::atan2(y, x));  // also where it is no number
+  return static_cast<int>(angle);
+}
+
 /// Hits of a scan in the order of their beams.
 class Hits {
  public:
@@ -237,8 +253,8 @@ void SightFan::add(double bearing, double range) {
   farthest_[bin] = std::max(farthest_[bin], cm);
 }
 
-SightFan::Verdict SightFan::judge(double bearing, double range) const {
-  const int middle = bin_of(bearing);
+SightFan::Verdict SightFan::judge(const TPoint2D& p) const {
+  const int middle = bin_of(p.x, p.y);
   std::uint16_t nearest = kNothing;
   std::uint16_t farthest = 0;
   for (int side = -1; side <= 1; ++side) {
@@ -247,6 +263,7 @@ SightFan::Verdict SightFan::judge(double bearing, double range) const {
     nearest = std::min(nearest, nearest_[bin]);
     farthest = std::max(farthest, farthest_[bin]);
   }
+  const double range = length(p);
   const double slack = kSightSlack + kSightSlackShare * range;
   if (range < 0.01 * nearest - slack) return Verdict::InFront;
   return range <= 0.01 * farthest + slack ? Verdict::Agrees : Verdict::Behind;

@@ -42,9 +42,9 @@ class SightFan {
   void add(double bearing, double range);
 
   enum class Verdict { Nothing, InFront, Agrees, Behind };
-  /// Where a surface at (bearing, range) would lie in what was seen: in front of it (then the scan should have met it
-  /// and did not), with it, or hidden behind. Nothing where a neighbouring bin is empty.
-  Verdict judge(double bearing, double range) const;
+  /// Where a surface at `p` [m, from the laser, along the base's axes] would lie in what was seen: in front of it (then
+  /// the scan should have met it and did not), with it, or hidden behind. Nothing where a neighbouring bin is empty.
+  Verdict judge(const mrpt::math::TPoint2D& p) const;
 
  private:
   static constexpr std::uint16_t kNothing = std::numeric_limits<std::uint16_t>::max();

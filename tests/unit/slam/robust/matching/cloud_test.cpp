@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "base/angle.h"
 #include "base/planar.h"
+#include "base/rng.h"
 #include "tests/support/slam_key_frames.h"
 
 namespace rubble::slam {
@@ -23,6 +25,8 @@ double distance_to_walls(const slam_test::World& world, const TPoint2D& p) {
   }
   return nearest;
 }
+
+TPoint2D at(double bearing, double range) { return {range * std::cos(bearing), range * std::sin(bearing)}; }
 
 TPoint2D point(const OrientedPoint& p) { return {static_cast<double>(p.x), static_cast<double>(p.y)}; }
 
@@ -149,19 +153,51 @@ TEST(Cloud, AnEmptyScanGivesAnEmptyCloud) {
   EXPECT_TRUE(cloud.points.empty());
   EXPECT_TRUE(cloud.ends.empty());
   EXPECT_TRUE(cloud.filled.empty());
-  EXPECT_EQ(cloud.sight.judge(0.3, 1.0), SightFan::Verdict::Nothing);
-  EXPECT_EQ(sight_of({}).judge(0.3, 1.0), SightFan::Verdict::Nothing);
+  EXPECT_EQ(cloud.sight.judge(at(0.3, 1.0)), SightFan::Verdict::Nothing);
+  EXPECT_EQ(sight_of({}).judge(at(0.3, 1.0)), SightFan::Verdict::Nothing);
 }
 
 TEST(SightFan, TellsInFrontFromBehind) {
   SightFan fan;
   for (int deg = -10; deg <= 10; ++deg) fan.add(deg_to_rad(deg + 0.5), 3.0);
-  EXPECT_EQ(fan.judge(0.0, 2.0), SightFan::Verdict::InFront);
-  EXPECT_EQ(fan.judge(0.0, 3.0), SightFan::Verdict::Agrees);
-  EXPECT_EQ(fan.judge(0.0, 3.1), SightFan::Verdict::Agrees);
-  EXPECT_EQ(fan.judge(0.0, 5.0), SightFan::Verdict::Behind);
-  EXPECT_EQ(fan.judge(deg_to_rad(40.0), 2.0), SightFan::Verdict::Nothing);
-  EXPECT_EQ(fan.judge(deg_to_rad(10.9), 2.0), SightFan::Verdict::Nothing) << "a neighbour saw nothing";
+  EXPECT_EQ(fan.judge(at(0.0, 2.0)), SightFan::Verdict::InFront);
+  EXPECT_EQ(fan.judge(at(0.0, 3.0)), SightFan::Verdict::Agrees);
+  EXPECT_EQ(fan.judge(at(0.0, 3.1)), SightFan::Verdict::Agrees);
+  EXPECT_EQ(fan.judge(at(0.0, 5.0)), SightFan::Verdict::Behind);
+  EXPECT_EQ(fan.judge(at(deg_to_rad(40.0), 2.0)), SightFan::Verdict::Nothing);
+  EXPECT_EQ(fan.judge(at(deg_to_rad(10.9), 2.0)), SightFan::Verdict::Nothing) << "a neighbour saw nothing";
+}
+
+/// The same by the arc tangent and the bins alone.
+SightFan::Verdict verdict_by_bins(const SightFan::Bins& bins, const TPoint2D& p) {
+  const int middle = static_cast<int>(std::floor(rad_to_deg(std::atan2(p.y, p.x)))) + SightFan::kBins;
+  double nearest = 1e9, farthest = 0.0;
+  for (int side = -1; side <= 1; ++side) {
+    const auto& [near, far] = bins[static_cast<std::size_t>((middle + side) % SightFan::kBins)];
+    if (far == 0) return SightFan::Verdict::Nothing;
+    nearest = std::min(nearest, 0.01 * near);
+    farthest = std::max(farthest, 0.01 * far);
+  }
+  if (length(p) < nearest - 1.0) return SightFan::Verdict::InFront;
+  return length(p) > farthest + 1.0 ? SightFan::Verdict::Behind : SightFan::Verdict::Agrees;
+}
+
+TEST(SightFan, JudgesByTheBinThatTheArcTangentTells) {
+  constexpr std::uint64_t kSeed = 7;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  Rng rng(kSeed, "bearings");
+  SightFan fan;
+  for (int bin = 0; bin < SightFan::kBins; ++bin)
+    if (rng.uniform() < 0.8) fan.add(deg_to_rad(bin + 0.5), rng.uniform() < 0.5 ? 10.0 : 30.0);
+  const SightFan::Bins bins = fan.bins();
+  const auto expect_same = [&](const TPoint2D& p) {
+    EXPECT_EQ(fan.judge(p), verdict_by_bins(bins, p)) << p.x << " " << p.y;
+  };
+  for (int k = 0; k < 200'000; ++k) expect_same(at(rng.uniform(-kPi, kPi), 20.0));
+  for (int bin = -180; bin <= 180; ++bin)  // where bins meet
+    for (const double off : {-1e-3, -1e-5, -1e-9, 0.0, 1e-9, 1e-5, 1e-3}) expect_same(at(deg_to_rad(bin + off), 20.0));
+  for (const TPoint2D& p : {TPoint2D{20.0, 0.0}, {0.0, 20.0}, {-20.0, 0.0}, {0.0, -20.0}, {-20.0, -0.0}, {0.0, 0.0}})
+    expect_same(p);
 }
 
 }  // namespace
