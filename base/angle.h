@@ -11,6 +11,7 @@ constexpr double rad_to_deg(double rad) { return rad * (180.0 / kPi); }
 
 /// Wraps an angle to (-pi, pi].
 inline double wrap_angle(double a) {
+  if (std::abs(a) <= kPi) return a <= -kPi ? kPi : a;
   a = std::remainder(a, 2.0 * kPi);
   return a <= -kPi ? a + 2.0 * kPi : a;
 }

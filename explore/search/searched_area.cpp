@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -227,22 +229,40 @@ bool SearchedArea::look(const Traversable& floor, const FloorInView& view) {
   return look(frame, glimpse_);
 }
 
+namespace {
+
+/// Marks what was seen of as many cells as a word has bytes; what is seen again counts as seen twice. Returns what that
+/// changed.
+template <typename Word>
+Word mark(const Faces* seen, Faces* once, Faces* twice) {
+  const auto load = [](const Faces* from) {
+    Word word;
+    std::memcpy(&word, from, sizeof word);
+    return word;
+  };
+  const Word s = load(seen), o = load(once), t = load(twice);
+  const auto again = static_cast<Word>(o & s & ~t), more = static_cast<Word>(s & ~o);
+  const auto now_once = static_cast<Word>(o | s), now_twice = static_cast<Word>(t | again);
+  std::memcpy(once, &now_once, sizeof now_once);
+  std::memcpy(twice, &now_twice, sizeof now_twice);
+  return static_cast<Word>(again | more);
+}
+
+}  // namespace
+
 bool SearchedArea::look(const GridFrame& frame, const Glimpse& glimpse) {
   cover(frame);
   const GridFrame& own = twice_.frame();
   const auto cell = [&](double at, double from) { return static_cast<int>(std::lround((at - from) / own.resolution)); };
   const Cell low{cell(glimpse.corner.x, own.x0), cell(glimpse.corner.y, own.y0)};
-  Faces news = 0;
+  std::uint64_t news = 0;
   for (int y = 0; y < glimpse.height; ++y) {
     const Faces* const seen = glimpse.faces.data() + y * glimpse.width;
     Faces* const once = once_.row(low.y + y) + low.x;
     Faces* const twice = twice_.row(low.y + y) + low.x;
-    for (int x = 0; x < glimpse.width; ++x) {
-      const auto again = static_cast<Faces>(once[x] & seen[x] & ~twice[x]);
-      news = static_cast<Faces>(news | again | (seen[x] & ~once[x]));
-      twice[x] = static_cast<Faces>(twice[x] | again);
-      once[x] = static_cast<Faces>(once[x] | seen[x]);
-    }
+    int x = 0;
+    for (; x + 8 <= glimpse.width; x += 8) news |= mark<std::uint64_t>(seen + x, once + x, twice + x);
+    for (; x < glimpse.width; ++x) news |= mark<Faces>(seen + x, once + x, twice + x);
   }
   return news != 0;
 }
