@@ -171,7 +171,7 @@ bool RobustMapper::Impl::ready(Stamp now) const {
 void RobustMapper::Impl::process(const LaserScan& scan) {
   const Stamp reference = scan.middle();
   ExpectedMotion motion = motion_.expect(scan);
-  std::optional<SweepMotion> sweep = motion_.sweep(scan, motion);
+  std::optional<SweepMotion> sweep = config_.deskew ? motion_.sweep(scan, motion) : std::nullopt;
   const std::optional<ScanTilt> tilt = config_.use_tilt ? tilt_.at(reference) : std::nullopt;
   motion.ramps = tilt.has_value();
   motion.level = !tilt || std::max(std::abs(tilt->pitch), std::abs(tilt->roll)) < kLevel;
@@ -193,7 +193,8 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
         !tracked.held && tracked.odometry_chi2 > config_.tracker.slip_chi2 && tracked.fit.inliers >= kBelieved;
     if (motion.doubt >= 1.0 || contradicted) {
       // The sweep was straightened by a motion that was wrong; now a better one is known.
-      if (const auto found = motion_.sweep_at(scan, tracked.fit.pose - T_frame_last, motion.time)) {
+      if (const auto found = motion_.sweep_at(scan, tracked.fit.pose - T_frame_last, motion.time);
+          found && config_.deskew) {
         sweep = found;
         points = level_scan_.points(scan, &*sweep, tilt ? &*tilt : nullptr);
         cloud = cloud_of(points, config_.cloud);

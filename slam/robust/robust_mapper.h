@@ -28,6 +28,7 @@ struct RobustConfig {
   int map_cells = 800;                 ///< cells a side at the start; the map grows when needed
   double resolution = 0.05;            ///< cell edge [m]
   int max_map_cells = 8000;            ///< the map grows up to so many cells a side
+  bool deskew = true;                  ///< each beam at its own time; false: a scan is taken as one instant
   bool use_tilt = true;                ///< project scans by what the accelerometer says
   double map_distance = 0.15;          ///< a scan enters the map after this much motion [m]
   double map_turn = deg_to_rad(10.0);  ///< or this much turn [rad]

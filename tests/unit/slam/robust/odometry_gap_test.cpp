@@ -103,6 +103,19 @@ TEST(OdometryGap, TourTurnsFarAndFastAndIsMappedWellWithoutAFault) {
   expect_good_in_spite(fast_ticks(1));
 }
 
+TEST(OdometryGap, ScansTakenAsOneInstantBendTheMapOfATourThatTurnsFast) {
+  RobustConfig config;
+  config.deskew = false;
+  RobustMapper bent(RobotModel(), config, 1), straight(RobotModel(), {}, 1);
+  const Ticks ticks = fast_ticks(1);
+  const auto played = [&](RobustMapper& mapper) {
+    return slam_test::play(mapper, ticks, slam_test::furnished_room(), fast_drive().truth);
+  };
+  const slam_test::Outcome b = played(bent), s = played(straight);
+  EXPECT_GT(b.heading, 2.0 * s.heading);
+  EXPECT_GT(b.outside, 5.0 * s.outside + 0.002);
+}
+
 TEST(OdometryGap, SilenceWhileTheRobotTurns) {
   const Ticks ticks = fast_ticks(2);
   for (const Stamp turn : turns(fast_drive().truth, deg_to_rad(80.0)))
