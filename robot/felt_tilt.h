@@ -1,6 +1,9 @@
 #pragma once
 
+#include <mrpt/math/TPoint2D.h>
+
 #include "robot/measurements.h"
+#include "robot/model.h"
 
 namespace rubble::robot {
 
@@ -12,20 +15,42 @@ struct Tilt {
   double roll = 0.0;   ///< left side up positive [rad]
 };
 
-/// Reads the tilt out of what an accelerometer feels. It feels the robot's own motion as tilt, too: 0.3 m/s^2 forward
-/// looks like 1.75 deg nose up. What the wheels say about it comes late by an odometry period, yet takes most of it
+/// How the base moves, as its wheels say.
+struct WheelMotion {
+  double v = 0.0;                  ///< forward speed [m/s]
+  double w = 0.0;                  ///< turn rate [rad/s]
+  double acceleration = 0.0;       ///< of v [m/s^2]
+  double turn_acceleration = 0.0;  ///< of w [rad/s^2]
+};
+
+/// What the wheels do between two odometries, at a stamp within or after them; standing still where these lie more than
+/// kTiltSilence apart.
+WheelMotion wheel_motion(const Odometry& before, const Odometry& after, Stamp at);
+
+/// Where the accelerometer sits, from the turning centre of the base, when all is level [m].
+mrpt::math::TPoint2D accelerometer_place(const RobotModel& model);
+
+/// The tilt that an accelerometer at `place` shows on a base that moves. It feels motion as tilt, too: 0.3 m/s^2
+/// forward looks like 1.75 deg nose up; 0.145 m ahead of the turning centre, 60 deg/s on the spot look like 0.9 deg
+/// nose down. The acceleration at a place r of a rigid body is a + alpha x r + w x (w x r), and the centre's own is
+/// (dv/dt, v w).
+Tilt felt_tilt(const Acceleration& acceleration, const mrpt::math::TPoint2D& place, const WheelMotion& motion);
+
+/// The same as measurements arrive. What the wheels say comes late by an odometry period, yet takes most of the motion
 /// away.
 class FeltTilt {
  public:
+  explicit FeltTilt(const mrpt::math::TPoint2D& place) : place_(place) {}
+
   /// The wheels' latest speeds.
   void follow(const Odometry& odometry);
   /// The tilt that a sample shows, less the wheels' share unless these are silent, or not `asked`.
   Tilt of(const Acceleration& acceleration, bool asked = true) const;
 
  private:
+  mrpt::math::TPoint2D place_;
   Odometry last_{Stamp::never(), {}, 0.0, 0.0, false};
-  double forward_ = 0.0;  ///< [m/s^2]
-  double lateral_ = 0.0;  ///< [m/s^2]
+  WheelMotion motion_;
 };
 
 }  // namespace rubble::robot

@@ -7,7 +7,8 @@
 
 namespace rubble::robot {
 
-Levelling::Levelling(const LevellingConfig& config, AccelerometerMount mount) : config_(config), mount_(mount) {}
+Levelling::Levelling(const LevellingConfig& config, const RobotModel& model)
+    : config_(config), mount_(model.accelerometer_mount), felt_(accelerometer_place(model)) {}
 
 LaserAim Levelling::update(const Inputs& inputs) {
   if (!config_.on) return {};

@@ -25,7 +25,7 @@ struct LevellingConfig {
 /// tilt; clamping u is the anti-windup. Body: u is the negative low-passed tilt.
 class Levelling {
  public:
-  Levelling(const LevellingConfig& config, AccelerometerMount mount);
+  Levelling(const LevellingConfig& config, const RobotModel& model);
   ~Levelling() = default;
 
   /// Digests the tick's accelerations, odometry and servo angles; returns the angles the servos shall take.

@@ -116,7 +116,7 @@ json run_arena(const Scenario& scenario) {
   sim::SimRobot robot(arena, scenario.robot, scenario.sim, scenario.seed);
   const auto mapper = slam::make_here(scenario.mapper, scenario.robot, {scenario.seed, ""});
   const auto explorer = scenario.explorer.make(scenario.robot, {scenario.time_limit});
-  robot::Levelling levelling(scenario.levelling, scenario.robot.accelerometer_mount);
+  robot::Levelling levelling(scenario.levelling, scenario.robot);
   TimedMapper timed(*mapper);
   while (const auto inputs = robot.read()) {
     timed.update(*inputs);

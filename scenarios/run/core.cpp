@@ -21,7 +21,7 @@ double known_area(const slam::CountMap& map) {
 Core::Core(const Scenario& scenario, const robot::RobotModel& model, bool explore, const std::string& run_folder,
            std::shared_ptr<const slam::MapBase> base)
     : mapper_(scenario.mapper.make(model, {scenario.seed, run_folder, std::move(base)})),
-      levelling_(scenario.levelling, model.accelerometer_mount) {
+      levelling_(scenario.levelling, model) {
   if (explore) explorer_ = scenario.explorer.make(model, {scenario.time_limit});
 }
 

@@ -11,6 +11,8 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
+constexpr double kLeastSpread = 1e-6;  ///< of a trajectory that tells a scale, RMS [m]
+
 double position_rmse(const std::vector<PosePair>& pairs, const TPose2D& T_truth_estimate) {
   double sum = 0.0;
   for (const PosePair& pair : pairs) {
@@ -33,6 +35,26 @@ TPose2D best_rigid(const std::vector<PosePair>& pairs) {
   return fit_rigid(estimate, truth);
 }
 
+/// Umeyama 1991, eq. (42) in the plane: what the estimate's size has to be multiplied with, given how it is turned.
+double best_shrink(const std::vector<PosePair>& pairs, double turn) {
+  TPoint2D estimate, truth;
+  for (const PosePair& pair : pairs) {
+    estimate += TPoint2D(pair.estimate.x, pair.estimate.y);
+    truth += TPoint2D(pair.truth.x, pair.truth.y);
+  }
+  const auto n = static_cast<double>(pairs.size());
+  estimate *= 1.0 / n;
+  truth *= 1.0 / n;
+  const double c = std::cos(turn), s = std::sin(turn);
+  double both = 0.0, own = 0.0;
+  for (const PosePair& pair : pairs) {
+    const double x = pair.estimate.x - estimate.x, y = pair.estimate.y - estimate.y;
+    both += (c * x - s * y) * (pair.truth.x - truth.x) + (s * x + c * y) * (pair.truth.y - truth.y);
+    own += x * x + y * y;
+  }
+  return both > 0.0 && own > n * kLeastSpread * kLeastSpread ? both / own : 1.0;
+}
+
 }  // namespace
 
 TrajectoryError trajectory_error(const Trajectory& estimate, const Trajectory& truth) {
@@ -42,7 +64,13 @@ TrajectoryError trajectory_error(const Trajectory& estimate, const Trajectory& t
   if (pairs.empty()) return out;
   const TPose2D T_truth_estimate = pairs.front().truth + (TPose2D(0.0, 0.0, 0.0) - pairs.front().estimate);
   out.ate_first_m = position_rmse(pairs, T_truth_estimate);
-  out.ate_aligned_m = position_rmse(pairs, best_rigid(pairs));
+  const TPose2D best = best_rigid(pairs);
+  out.ate_aligned_m = position_rmse(pairs, best);
+  const double shrink = best_shrink(pairs, best.phi);
+  out.scale = 1.0 / shrink;
+  std::vector<PosePair> shrunk = pairs;
+  for (PosePair& pair : shrunk) pair.estimate = {shrink * pair.estimate.x, shrink * pair.estimate.y, pair.estimate.phi};
+  out.ate_scaled_m = position_rmse(shrunk, best_rigid(shrunk));
   return out;
 }
 

@@ -63,7 +63,7 @@ struct RobustMapper::Impl {
       : config_(config),
         T_base_laser_(model.T_base_laser),
         level_scan_(model.T_base_laser, config.scan),
-        tilt_(config.tilt),
+        tilt_(model, config.tilt),
         motion_(model.laser.scan_period),
         tracker_(config.tracker),
         closer_(config.loop, config.tracker.cell, frames_),

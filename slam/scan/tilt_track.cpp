@@ -11,44 +11,78 @@ namespace rubble::slam {
 namespace {
 
 constexpr double kFarthest = 0.25;    ///< a sample this far from a stamp says nothing about it [s]
-constexpr double kLongestWait = 0.2;  ///< for samples after a scan [s]
+constexpr double kLongestWait = 0.2;  ///< for samples after a scan, and for the wheels after a sample [s]
 constexpr double kSteepest = 0.6;     ///< a robot that leans more lies on its side, or its sensor is broken [rad]
 constexpr double kImplausible = 2.0;  ///< more than so many g is no tilt but a fault
+constexpr double kServoFrame = 0.02;  ///< an RC servo takes a pulse each so often ...
+constexpr double kServoTime = 0.04;   ///< ... and has this time constant on its way there [s]
 
 }  // namespace
 
 void TiltTrack::add(const robot::Inputs& inputs) {
-  for (const robot::Odometry& odometry : inputs.odometry) follow(odometry);
-  for (const robot::Acceleration& acceleration : inputs.accelerations) follow(acceleration);
-  for (const robot::AimState& aim : inputs.aims)
-    if (std::isfinite(aim.pitch) && std::isfinite(aim.roll) && (aims_.empty() || aim.stamp > aims_.back().stamp))
-      aims_.push_back(aim);
+  for (const robot::Odometry& odometry : inputs.odometry)
+    if (std::isfinite(odometry.v) && std::isfinite(odometry.w) &&
+        (wheels_.empty() || odometry.stamp > wheels_.back().stamp))
+      wheels_.push_back(odometry);
+  for (const robot::AimState& aim : inputs.aims) follow(aim);
+  for (const robot::Acceleration& acceleration : inputs.accelerations)
+    if (std::abs(acceleration.x) < kImplausible * robot::kGravity &&
+        std::abs(acceleration.y) < kImplausible * robot::kGravity)
+      waiting_.push_back(acceleration);
+  while (!waiting_.empty()) {
+    const Stamp stamp = waiting_.front().stamp;
+    const bool known = !wheels_.empty() && wheels_.back().stamp >= stamp;
+    if (!known && inputs.now - stamp <= kLongestWait) break;
+    follow(waiting_.front());
+    waiting_.pop_front();
+  }
 }
 
-void TiltTrack::follow(const robot::Odometry& odometry) {
-  if (!std::isfinite(odometry.v) || !std::isfinite(odometry.w)) return;
-  felt_.follow(odometry);
+/// The servo follows its pulses.
+void TiltTrack::follow(const robot::AimState& aim) {
+  if (!std::isfinite(aim.pitch) || !std::isfinite(aim.roll)) return;
+  if (aims_.empty()) {
+    aims_.push_back(aim);
+    return;
+  }
+  const robot::AimState& before = aims_.back();
+  if (aim.stamp <= before.stamp) return;
+  const double share = 1.0 - std::exp(-(aim.stamp - before.stamp) / kServoTime);
+  aims_.push_back(
+      {aim.stamp, before.pitch + share * (aim.pitch - before.pitch), before.roll + share * (aim.roll - before.roll)});
 }
 
 void TiltTrack::follow(const robot::Acceleration& acceleration) {
-  if (!(std::abs(acceleration.x) < kImplausible * robot::kGravity &&
-        std::abs(acceleration.y) < kImplausible * robot::kGravity))
-    return;
   if (!leans_.empty() && acceleration.stamp <= leans_.back().stamp) return;
-  const robot::Tilt tilt = felt_.of(acceleration);
-  Lean lean{acceleration.stamp, tilt.pitch, tilt.roll};
+  const robot::Tilt felt = robot::felt_tilt(acceleration, place_, motion_at(acceleration.stamp));
+  const robot::AimState aim = on_platform_ ? aim_at(acceleration.stamp) : robot::AimState{};
+  Lean lean{acceleration.stamp, felt.pitch - aim.pitch, felt.roll - aim.roll};
   if (!leans_.empty() && acceleration.stamp - leans_.back().stamp <= robot::kTiltSilence) {
     const Lean& before = leans_.back();
     const double share = 1.0 - std::exp(-2.0 * kPi * config_.filter_hz * (acceleration.stamp - before.stamp));
-    lean.pitch = before.pitch + share * (tilt.pitch - before.pitch);
-    lean.roll = before.roll + share * (tilt.roll - before.roll);
+    lean.pitch = before.pitch + share * (lean.pitch - before.pitch);
+    lean.roll = before.roll + share * (lean.roll - before.roll);
   }
   leans_.push_back(lean);
 }
 
+/// Of the two odometries around a stamp, or the last two, which say nothing once they are too old.
+robot::WheelMotion TiltTrack::motion_at(Stamp stamp) const {
+  auto after = std::lower_bound(wheels_.begin(), wheels_.end(), stamp,
+                                [](const robot::Odometry& o, Stamp s) { return o.stamp < s; });
+  if (after == wheels_.end()) {
+    if (wheels_.empty() || stamp - wheels_.back().stamp > robot::kTiltSilence) return {};
+    --after;
+  }
+  if (after->stamp - stamp > robot::kTiltSilence) return {};
+  return robot::wheel_motion(after == wheels_.begin() ? *after : *(after - 1), *after, stamp);
+}
+
 bool TiltTrack::ready(Stamp stamp, Stamp now) const {
-  if (leans_.empty() || leans_.back().stamp >= stamp + config_.lag) return true;
-  return now - stamp > kLongestWait || now - leans_.back().stamp > kLongestWait;
+  if (leans_.empty() && waiting_.empty()) return true;
+  if (!leans_.empty() && leans_.back().stamp >= stamp + config_.lag) return true;
+  const Stamp last = waiting_.empty() ? leans_.back().stamp : waiting_.back().stamp;
+  return now - stamp > config_.lag + kLongestWait || now - last > kLongestWait;
 }
 
 std::optional<ScanTilt> TiltTrack::at(Stamp stamp) const {
@@ -69,20 +103,24 @@ std::optional<ScanTilt> TiltTrack::at(Stamp stamp) const {
   }
   if (std::max(std::abs(pitch), std::abs(roll)) > kSteepest) return std::nullopt;
   const robot::AimState aim = aim_at(stamp);
-  return ScanTilt{pitch, roll, pitch - aim.pitch, roll - aim.roll};
+  return ScanTilt{pitch + aim.pitch, roll + aim.roll, pitch, roll};
 }
 
-/// The servos hold their last angle; zero while none is known.
+/// Half a frame passes until a pulse is taken. The servos hold their last angle; zero while none is known.
 robot::AimState TiltTrack::aim_at(Stamp stamp) const {
-  const auto after = std::upper_bound(aims_.begin(), aims_.end(), stamp,
+  const auto after = std::upper_bound(aims_.begin(), aims_.end(), stamp + -0.5 * kServoFrame,
                                       [](Stamp s, const robot::AimState& aim) { return s < aim.stamp; });
   if (after == aims_.begin()) return aims_.empty() ? robot::AimState{} : aims_.front();
   return *(after - 1);
 }
 
 void TiltTrack::forget_before(Stamp oldest_needed) {
-  while (leans_.size() > 2 && leans_[1].stamp < oldest_needed) leans_.pop_front();
-  while (aims_.size() > 2 && aims_[1].stamp < oldest_needed) aims_.pop_front();
+  const auto forget = [oldest_needed](auto& samples) {
+    while (samples.size() > 2 && samples[1].stamp < oldest_needed) samples.pop_front();
+  };
+  forget(leans_);
+  forget(aims_);
+  forget(wheels_);
 }
 
 }  // namespace rubble::slam

@@ -5,21 +5,26 @@
 
 #include "robot/felt_tilt.h"
 #include "robot/measurements.h"
+#include "robot/model.h"
 #include "slam/scan/level_scan.h"
 
 namespace rubble::slam {
 
 struct TiltConfig {
-  double filter_hz = 2.0;  ///< low pass on what the accelerometer feels
+  double filter_hz = 2.0;  ///< low pass on the body's tilt
   double lag = 0.08;       ///< of that filter: a scan's tilt is read so much later [s]
 };
 
-/// How scan plane and body were inclined at any stamp of the last while. The accelerometer on the levelled platform
-/// feels gravity and motion; what the wheels say about the motion is taken out, the rest is low-passed. The servos'
-/// angles off that leave the body's.
+/// How scan plane and body were inclined at any stamp of the last while. The accelerometer feels gravity and motion;
+/// what the wheels say about the motion before and after is taken out. On the levelled platform it feels the servos as
+/// well: their angles off leave the tilt of the body, which changes slowly and is low-passed; the servos' angles, which
+/// change fast but are known, are added again at the scan.
 class TiltTrack {
  public:
-  explicit TiltTrack(const TiltConfig& config) : config_(config) {}
+  TiltTrack(const robot::RobotModel& model, const TiltConfig& config)
+      : config_(config),
+        place_(robot::accelerometer_place(model)),
+        on_platform_(model.accelerometer_mount == robot::AccelerometerMount::Platform) {}
 
   void add(const robot::Inputs& inputs);
   /// Whether nothing more that arrives could change at(stamp), or what comes is too late to wait for.
@@ -29,19 +34,24 @@ class TiltTrack {
   void forget_before(Stamp oldest_needed);
 
  private:
+  /// Of the body.
   struct Lean {
     Stamp stamp;
     double pitch;
     double roll;
   };
-  void follow(const robot::Odometry& odometry);
+  void follow(const robot::AimState& aim);
   void follow(const robot::Acceleration& acceleration);
+  robot::WheelMotion motion_at(Stamp stamp) const;
   robot::AimState aim_at(Stamp stamp) const;
 
   const TiltConfig config_;
-  robot::FeltTilt felt_;
+  const mrpt::math::TPoint2D place_;
+  const bool on_platform_;
+  std::deque<robot::Odometry> wheels_;
+  std::deque<robot::Acceleration> waiting_;  ///< for what the wheels say of their time
   std::deque<Lean> leans_;
-  std::deque<robot::AimState> aims_;
+  std::deque<robot::AimState> aims_;  ///< where the servos are thought to stand
 };
 
 }  // namespace rubble::slam

@@ -49,7 +49,9 @@ inline std::vector<Sample> run(const robot::LevellingConfig& config, double seco
                                const std::function<Body(double)>& body_at,
                                robot::AccelerometerMount mount = robot::AccelerometerMount::Platform,
                                double noise_deg = 0.1, int late_ms = 0) {
-  robot::Levelling levelling(config, mount);
+  robot::RobotModel model;
+  model.accelerometer_mount = mount;
+  robot::Levelling levelling(config, model);
   Servo servo;
   Rng noise(1, "accelerometer");
   std::vector<Sample> samples;

@@ -42,7 +42,7 @@ Inputs standing(double t, double pitch, double roll) {
 }
 
 TEST(Levelling, LevelRobotKeepsTheLaserStill) {
-  Levelling levelling({}, AccelerometerMount::Platform);
+  Levelling levelling({}, RobotModel());
   for (int i = 0; i < 100; ++i) {
     const LaserAim aim = levelling.update(standing(0.02 * i, 0.0, 0.0));
     EXPECT_EQ(aim.pitch, 0.0);
@@ -164,7 +164,7 @@ TEST(Levelling, FeedForwardTakesMostOfTheFalseTiltAway) {
 }
 
 TEST(Levelling, CurvesDoNotRollTheLaser) {
-  Levelling levelling({}, AccelerometerMount::Platform);
+  Levelling levelling({}, RobotModel());
   LaserAim aim;
   for (int i = 0; i < 200; ++i) {
     Inputs inputs;
@@ -176,10 +176,32 @@ TEST(Levelling, CurvesDoNotRollTheLaser) {
   EXPECT_NEAR(rad_to_deg(aim.roll), 0.0, 0.3);
 }
 
+TEST(Levelling, TurnsOnTheSpotDoNotTiltALaserAheadOfTheirCentre) {
+  // The platform sits 0.145 m ahead: it feels w^2 r backwards and dw/dt r to the left.
+  const double ahead = RobotModel().T_base_laser.x;
+  Levelling levelling({}, RobotModel());
+  double worst_pitch = 0.0, worst_roll = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    const double t = 0.02 * i;
+    const double w = std::sin(t), alpha = std::cos(t);
+    Inputs inputs;
+    inputs.now = Stamp::from_seconds(t);
+    if (i % 5 == 0) inputs.odometry.push_back({inputs.now, {}, 0.0, w, false});
+    inputs.accelerations.push_back({inputs.now, -w * w * ahead, alpha * ahead});
+    const LaserAim aim = levelling.update(inputs);
+    if (t < 1.0) continue;
+    worst_pitch = std::max(worst_pitch, std::abs(aim.pitch));
+    worst_roll = std::max(worst_roll, std::abs(aim.roll));
+  }
+  EXPECT_LT(rad_to_deg(worst_pitch), 0.4);  // without the lever: 0.85 deg
+  EXPECT_LT(rad_to_deg(worst_roll), 0.4);
+}
+
 TEST(Levelling, LeftSideUpTurnsTheLaserLeftSideDown) {
   LevellingConfig config;
-  const AccelerometerMount mount = AccelerometerMount::Body;
-  Levelling levelling(config, mount);
+  RobotModel model;
+  model.accelerometer_mount = AccelerometerMount::Body;
+  Levelling levelling(config, model);
   LaserAim aim;
   for (int i = 0; i < 100; ++i) aim = levelling.update(standing(0.02 * i, deg_to_rad(-4.0), deg_to_rad(6.0)));
   EXPECT_NEAR(rad_to_deg(aim.pitch), 4.0, 0.01);
@@ -197,7 +219,7 @@ TEST(Levelling, BodyMountFollowsTheMeasuredTiltFaster) {
 }
 
 TEST(Levelling, CommandNeverLeavesTheServosTravel) {
-  Levelling levelling({}, AccelerometerMount::Platform);
+  Levelling levelling({}, RobotModel());
   for (int i = 0; i < 500; ++i) {  // sensor on a platform that the servo cannot bring level
     const LaserAim aim = levelling.update(standing(0.02 * i, deg_to_rad(40.0), deg_to_rad(-40.0)));
     EXPECT_LE(std::abs(aim.pitch), deg_to_rad(30.0));
@@ -210,8 +232,9 @@ TEST(Levelling, CommandNeverLeavesTheServosTravel) {
 
 TEST(Levelling, CommandRespectsTheSlewLimit) {
   LevellingConfig config;
-  const AccelerometerMount mount = AccelerometerMount::Body;
-  Levelling levelling(config, mount);
+  RobotModel model;
+  model.accelerometer_mount = AccelerometerMount::Body;
+  Levelling levelling(config, model);
   levelling.update(standing(0.0, 0.0, 0.0));
   double last = 0.0;
   for (int i = 1; i < 50; ++i) {
@@ -222,7 +245,7 @@ TEST(Levelling, CommandRespectsTheSlewLimit) {
 }
 
 TEST(Levelling, StartsFromTheServosAndKeepsStillWithoutASensor) {
-  Levelling levelling({}, AccelerometerMount::Platform);
+  Levelling levelling({}, RobotModel());
   Inputs inputs;
   inputs.aims.push_back({Stamp{0}, 0.1, -0.05});
   EXPECT_EQ(levelling.update(inputs).pitch, 0.1);
@@ -232,7 +255,7 @@ TEST(Levelling, StartsFromTheServosAndKeepsStillWithoutASensor) {
 TEST(Levelling, SwitchedOffHoldsZero) {
   LevellingConfig config;
   config.on = false;
-  Levelling levelling(config, AccelerometerMount::Platform);
+  Levelling levelling(config, RobotModel());
   for (int i = 0; i < 20; ++i) EXPECT_EQ(levelling.update(standing(0.02 * i, 0.3, 0.3)).pitch, 0.0);
 }
 

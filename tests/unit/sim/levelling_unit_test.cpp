@@ -91,7 +91,7 @@ TEST(Accelerometer, OnTheBodyControlAndSimulationAgree) {
     robot::RobotModel model;
     model.accelerometer_mount = mount;
     SimRobot robot(slope(-5, -5, 5, 5, slope_angle), model, exact(), 1);
-    robot::Levelling levelling({}, robot.model().accelerometer_mount);
+    robot::Levelling levelling({}, robot.model());
     double pitch = 0.0;
     for (int tick = 0; tick < 150; ++tick) {
       const auto inputs = robot.read();

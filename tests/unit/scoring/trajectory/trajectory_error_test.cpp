@@ -61,6 +61,44 @@ TEST(TrajectoryError, AHeadingErrorAtTheStartSwingsTheFirstPoseAlignmentOnly) {
   EXPECT_NEAR(error.ate_aligned_m, 0.0, 1e-9);
 }
 
+TEST(TrajectoryError, ASizeIsToldApartFromAllElse) {
+  const Trajectory truth = circle(100, 0.1);
+  for (const double size : {0.5, 0.9975, 1.0, 1.0025, 3.0}) {
+    Trajectory estimate = moved(truth, TPose2D(4.0, -7.0, 2.1));
+    for (StampedPose& stamped : estimate)
+      stamped.pose = {size * stamped.pose.x, size * stamped.pose.y, stamped.pose.phi};
+    const TrajectoryError error = trajectory_error(estimate, truth);
+    EXPECT_NEAR(error.scale, size, 1e-9);
+    EXPECT_NEAR(error.ate_scaled_m, 0.0, 1e-9);
+    // A circle of 3 m that is too large lies so far outside the true one.
+    EXPECT_NEAR(error.ate_aligned_m, 3.0 * std::abs(size - 1.0), 1e-9);
+  }
+}
+
+TEST(TrajectoryError, NoSizeFitsBetterThanTheOneTold) {
+  const Trajectory truth = circle(60, 0.1);
+  Trajectory estimate = moved(truth, TPose2D(1.0, 2.0, -0.5));
+  Rng noise(7, "noise");
+  for (StampedPose& stamped : estimate) {
+    stamped.pose.x = 1.1 * stamped.pose.x + noise.gaussian(0.2);
+    stamped.pose.y = 1.1 * stamped.pose.y + noise.gaussian(0.2);
+  }
+  const TrajectoryError best = trajectory_error(estimate, truth);
+  EXPECT_LT(best.ate_scaled_m, best.ate_aligned_m);
+  for (double other = 0.8; other < 1.4; other += 0.01) {
+    Trajectory shrunk = estimate;
+    for (StampedPose& stamped : shrunk)
+      stamped.pose = {stamped.pose.x / other, stamped.pose.y / other, stamped.pose.phi};
+    EXPECT_GE(trajectory_error(shrunk, truth).ate_aligned_m, best.ate_scaled_m - 1e-12) << other;
+  }
+}
+
+TEST(TrajectoryError, ARobotThatStoodHasNoSize) {
+  Trajectory stood;
+  for (int i = 0; i < 5; ++i) stood.push_back({Stamp::from_seconds(i), TPose2D(1.0, 2.0, 0.3)});
+  EXPECT_EQ(trajectory_error(stood, stood).scale, 1.0);
+}
+
 TEST(TrajectoryError, NoRigidTransformBeatsTheBestOne) {
   const Trajectory truth = circle(60, 0.1);
   Trajectory estimate = moved(truth, TPose2D(1.0, 2.0, -0.5));

@@ -37,7 +37,7 @@ class Platform {
   LevellingWitness witness;
 
  private:
-  Levelling levelling_{LevellingConfig{}, AccelerometerMount::Platform};
+  Levelling levelling_{LevellingConfig{}, RobotModel()};
   LaserAim aim_;
   Stamp now_ = Stamp::from_seconds(10.0);
 };
