@@ -41,7 +41,7 @@ std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_ma
   const bool blow = jolt_.struck() && !turns_slowly;
   if (motion_.on_the_spot(commanded)) slowed_.reset();
   const bool slowed = slowed_.held(jolt_.shaken() && commanded.v != 0.0 && !turns_slowly, T_map_base,
-                                   wheels_.value_or(commanded), dt, now);
+                                   wheels_.value_or(commanded), tilt_.pitch(), dt, now);
   if (!tilt_.too_steep() && !blow && !slowed && !stuck) return std::nullopt;
   const Hold hold{tilt_.too_steep() ? "it leans too much here"
                   : blow            ? "a blow stops it"
