@@ -1,5 +1,6 @@
 #include "explore/search/victim_watch.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/planar.h"
@@ -57,12 +58,13 @@ bool VictimWatch::hear(const robot::VictimCue& cue, const slam::Mapper& mapper, 
 /// A victim in a niche lies before its back, though a cue past the niche's edge may seem to come through it; one that
 /// is seen behind a wall again and again, and hardly ever before it, is seen through a hole.
 void VictimWatch::ask_for_holes(const Anchor& anchor, const TPoint2D& cue, const Traversable& floor) {
-  for (const VictimReport& victim : reports()) {
-    if (distance(victim.p_map, cue) > kOfVictim) continue;
-    Cues& cues = cues_[victim.id];
-    ++(is_within_wall(floor, position(anchor.T_map_base), victim.p_map) ? cues.through_wall : cues.in_sight);
-    if (cues.through_wall >= kSureOfHoles && cues.through_wall > 2 * cues.in_sight) search_.expect_holes();
-  }
+  const auto away = [&](const VictimReport& victim) { return distance(victim.p_map, cue); };
+  const auto victim = std::min_element(reports().begin(), reports().end(),
+                                       [&](const VictimReport& a, const VictimReport& b) { return away(a) < away(b); });
+  if (victim == reports().end() || away(*victim) > kOfVictim) return;
+  Cues& cues = cues_[victim->id];
+  ++(is_within_wall(floor, position(anchor.T_map_base), victim->p_map) ? cues.through_wall : cues.in_sight);
+  if (cues.through_wall >= kSureOfHoles && cues.through_wall > 2 * cues.in_sight) search_.expect_holes();
 }
 
 bool VictimWatch::look(const Traversable& floor, const TPose2D& T_map_base, double turn_rate, Stamp now) {
