@@ -1,5 +1,6 @@
 #include "explore/search/victim_watch.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/planar.h"
@@ -14,6 +15,7 @@ using mrpt::math::TPose2D;
 constexpr double kCueAge = 1.2;    ///< an unconfirmed cue younger than this is worth waiting for [s]
 constexpr double kOfVictim = 0.5;  ///< a cue so near to a confirmed victim is of it [m]
 constexpr double kBehind = 0.08;   ///< a victim lies so far behind the wall, not before it or in its cells [m]
+constexpr double kHand = 0.12;     ///< beside a line of sight through a hole there is wall [m]
 constexpr int kSureOfHoles = 3;    ///< cues
 
 /// Whether a wall stands between, at least kBehind before `to`.
@@ -21,6 +23,15 @@ bool is_behind_wall(const Traversable& floor, const TPoint2D& from, const TPoint
   const TPoint2D way = to - from;
   const double length = way.norm();
   return length > kBehind && wall_between(floor.cells, from, from + way * ((length - kBehind) / length));
+}
+
+/// The same, and not past the edge of that wall: seen aslant, the side of a box covers what lies in it on the map, by a
+/// cell or by the error of the place, and a hand beside the line there is no wall.
+bool is_within_wall(const Traversable& floor, const TPoint2D& from, const TPoint2D& to) {
+  if (!is_behind_wall(floor, from, to)) return false;
+  const TPoint2D way = to - from;
+  const TPoint2D aside = TPoint2D{-way.y, way.x} * (kHand / way.norm());
+  return is_behind_wall(floor, from + aside, to + aside) && is_behind_wall(floor, from - aside, to - aside);
 }
 
 }  // namespace
@@ -47,12 +58,13 @@ bool VictimWatch::hear(const robot::VictimCue& cue, const slam::Mapper& mapper, 
 /// A victim in a niche lies before its back, though a cue past the niche's edge may seem to come through it; one that
 /// is seen behind a wall again and again, and hardly ever before it, is seen through a hole.
 void VictimWatch::ask_for_holes(const Anchor& anchor, const TPoint2D& cue, const Traversable& floor) {
-  for (const VictimReport& victim : reports()) {
-    if (distance(victim.p_map, cue) > kOfVictim) continue;
-    Cues& cues = cues_[victim.id];
-    ++(is_behind_wall(floor, position(anchor.T_map_base), victim.p_map) ? cues.through_wall : cues.in_sight);
-    if (cues.through_wall >= kSureOfHoles && cues.through_wall > 2 * cues.in_sight) search_.expect_holes();
-  }
+  const auto away = [&](const VictimReport& victim) { return distance(victim.p_map, cue); };
+  const auto victim = std::min_element(reports().begin(), reports().end(),
+                                       [&](const VictimReport& a, const VictimReport& b) { return away(a) < away(b); });
+  if (victim == reports().end() || away(*victim) > kOfVictim) return;
+  Cues& cues = cues_[victim->id];
+  ++(is_within_wall(floor, position(anchor.T_map_base), victim->p_map) ? cues.through_wall : cues.in_sight);
+  if (cues.through_wall >= kSureOfHoles && cues.through_wall > 2 * cues.in_sight) search_.expect_holes();
 }
 
 bool VictimWatch::look(const Traversable& floor, const TPose2D& T_map_base, double turn_rate, Stamp now) {

@@ -23,6 +23,8 @@ constexpr double kPlace = 0.06;                  ///< within so much of a place 
 constexpr double kPlaceTurn = deg_to_rad(10.0);  ///< and so much turn [rad]
 constexpr double kPlaceTime = 2.5;               ///< for so long, a move gets nowhere [s]
 constexpr double kFeeler = 0.25;                 ///< room is asked for about a point so far ahead of the motion [m]
+constexpr double kCornerTime = 0.25;             ///< turning, it looks so far ahead [s]
+constexpr double kCornerGap = 0.015;             ///< and brings no corner nearer to a wall [m]
 constexpr double kBehind = 0.35;                 ///< the point of the trail that is steered to [m]
 constexpr double kMostBend = deg_to_rad(60.0);   ///< a trail that bends more is not followed [rad]
 constexpr double kBendGain = 1.2;                ///< turn rate per error [1/s]
@@ -37,6 +39,8 @@ void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures, 
   const Move last = met == Met::Backwards ? Move::Back : Move::Ahead;
   moves_.clear();
   for (int round = 0; round < kRounds; ++round) {
+    // It came in on floor that let it through: where straight back leads off the pallet no plan is better.
+    if (way_out_ && round == 0) moves_.push_back(first);
     if (way_out_) moves_.push_back(Move::Out);
     // Retracing asks for poses to a few centimetres: first what is quick and robust.
     if (round > 0 || failures > 0 || way_out_) moves_.push_back(Move::Retrace);
@@ -66,6 +70,17 @@ bool Escape::free(const TPoint2D& p_map) const {
   return distance(position(begun_), p_map) >= kFree && (!way_out_ || way_out_->out(p_map));
 }
 
+/// The move under way would take the body to a wall that is known.
+bool Escape::meets_wall(const TPose2D& T_map_base, const Around& around) const {
+  const Move move = moves_[at_];
+  if (move == Move::Back || move == Move::Ahead)
+    return !around.room(T_map_base + TPose2D{move == Move::Back ? -kFeeler : kFeeler, 0.0, 0.0});
+  if (move != Move::Left && move != Move::Right) return false;
+  const double soon = turn_speed_ * kCornerTime * (move == Move::Left ? 1.0 : -1.0);
+  const double then = around.gap(T_map_base + TPose2D{0.0, 0.0, soon});
+  return then < kCornerGap && then < around.gap(T_map_base);
+}
+
 /// Retracing poses, the robot may rock to and fro between two that it cannot get to.
 bool Escape::gets_nowhere(const TPose2D& T_map_base, Stamp now) {
   if (distance(position(place_), position(T_map_base)) > kPlace ||
@@ -78,7 +93,7 @@ bool Escape::gets_nowhere(const TPose2D& T_map_base, Stamp now) {
 
 Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& commanded, bool stalled,
                             const std::optional<robot::Drive>& wheels, bool struck, double dt, Stamp now,
-                            const std::vector<TPoint2D>& trail, const WayBack& way_back, const RoomFn& room) {
+                            const std::vector<TPoint2D>& trail, const WayBack& way_back, const Around& around) {
   met_ = false;
   if (free(position(T_map_base))) {
     drive_ = {};
@@ -90,9 +105,7 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
   const bool turned =
       (move == Move::Left || move == Move::Right) && std::abs(wrap_angle(T_map_base.phi - move_begun_.phi)) >= turn_;
   met_ = held;
-  bool wall = false;
-  if (move == Move::Back || move == Move::Ahead)
-    wall = !room(T_map_base + TPose2D{move == Move::Back ? -kFeeler : kFeeler, 0.0, 0.0});
+  const bool wall = meets_wall(T_map_base, around);
   const std::optional<robot::Drive> next = command(T_map_base, trail, way_back);
   if (held || turned || wall || !next || gets_nowhere(T_map_base, now) || now >= move_until_) {
     if (++at_ == moves_.size()) {
@@ -123,8 +136,11 @@ std::optional<robot::Drive> Escape::command(const TPose2D& T_map_base, const std
     case Move::Back:
       break;
   }
-  const auto behind = std::find_if(trail.rbegin(), trail.rend(),
-                                   [&](const TPoint2D& p) { return distance(p, position(T_map_base)) >= kBehind; });
+  // From the place of the trail where it is: what it has backed away from lies farther than that, but ahead.
+  const auto away = [&](const TPoint2D& p) { return distance(p, position(T_map_base)); };
+  const auto here = std::min_element(trail.rbegin(), trail.rend(),
+                                     [&](const TPoint2D& p, const TPoint2D& q) { return away(p) < away(q); });
+  const auto behind = std::find_if(here, trail.rend(), [&](const TPoint2D& p) { return away(p) >= kBehind; });
   if (behind == trail.rend()) return robot::Drive{-kSpeed, 0.0};
   const double bearing = std::atan2(behind->y - T_map_base.y, behind->x - T_map_base.x);
   const double error = wrap_angle(bearing - T_map_base.phi - kPi);

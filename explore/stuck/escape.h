@@ -26,6 +26,12 @@ class Escape {
   enum class Met { Forwards, Backwards, Turning };
   /// Whether half a body has room about a pose, as far as is known.
   using RoomFn = std::function<bool(const mrpt::math::TPose2D&)>;
+  /// How near the body in a pose would be to the walls that are known; below 0: in them [m].
+  using GapFn = std::function<double(const mrpt::math::TPose2D&)>;
+  struct Around {
+    RoomFn room;
+    GapFn gap;
+  };
 
   explicit Escape(double turn_speed) : turn_speed_(turn_speed) {}
 
@@ -40,7 +46,7 @@ class Escape {
   /// blow stopped the robot. `trail`: where it came along, oldest first; `way_back`: the poses.
   Result step(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled,
               const std::optional<robot::Drive>& wheels, bool struck, double dt, Stamp now,
-              const std::vector<mrpt::math::TPoint2D>& trail, const WayBack& way_back, const RoomFn& room);
+              const std::vector<mrpt::math::TPoint2D>& trail, const WayBack& way_back, const Around& around);
   /// The command for the tick to come.
   const robot::Drive& drive() const { return drive_; }
   /// Something was met in this tick: the base shall not push on.
@@ -51,6 +57,7 @@ class Escape {
 
   void start_move(const mrpt::math::TPose2D& T_map_base, Stamp now);
   bool free(const mrpt::math::TPoint2D& p_map) const;
+  bool meets_wall(const mrpt::math::TPose2D& T_map_base, const Around& around) const;
   bool gets_nowhere(const mrpt::math::TPose2D& T_map_base, Stamp now);
   std::optional<robot::Drive> command(const mrpt::math::TPose2D& T_map_base,
                                       const std::vector<mrpt::math::TPoint2D>& trail, const WayBack& way_back);

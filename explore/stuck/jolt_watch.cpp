@@ -12,7 +12,7 @@ constexpr double kLongestStep = 0.1;  ///< between two samples; after a longer g
 }  // namespace
 
 void JoltWatch::update(const robot::Inputs& inputs) {
-  struck_ = false;
+  struck_ = shaken_ = false;
   if (!inputs.odometry.empty()) speed_ = inputs.odometry.back().v;
   for (const robot::Acceleration& sample : inputs.accelerations) {
     const double dt = last_ == Stamp::never() ? 0.0 : sample.stamp - last_;
@@ -32,7 +32,9 @@ void JoltWatch::update(const robot::Inputs& inputs) {
       lost += against * felt.x * dt;
       peak = std::max(peak, against * felt.x);
     }
-    if (peak < config_.peak || lost < config_.share * std::abs(speed_)) continue;
+    if (peak < config_.peak || lost < config_.weak * std::abs(speed_)) continue;
+    shaken_ = true;
+    if (lost < config_.share * std::abs(speed_)) continue;
     struck_ = true;
     deaf_until_ = sample.stamp + kDeaf;
   }

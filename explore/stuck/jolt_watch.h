@@ -10,6 +10,7 @@ struct JoltWatchConfig {
   double peak = 3.0;      ///< harder than any braking [m/s^2]
   double window = 0.12;   ///< a blow lasts no longer [s]
   double share = 0.8;     ///< of the speed that it takes away
+  double weak = 0.4;      ///< the same of one that may be the edge of a ramp as well
   double slowest = 0.08;  ///< slower wheels make no jolt that could be told [m/s]
   double settling = 0.5;  ///< time constant of what counts as rest: a slope's or the levelling's share of gravity [s]
 };
@@ -27,6 +28,8 @@ class JoltWatch {
   void braked(Stamp now);
   /// A blow against the way the wheels turn ended in this tick; it is told once.
   bool struck() const { return struck_; }
+  /// One that took less of the speed, likewise.
+  bool shaken() const { return shaken_; }
   /// It came from ahead, else from behind.
   bool from_ahead() const { return speed_ > 0.0; }
 
@@ -43,6 +46,7 @@ class JoltWatch {
   Stamp last_ = Stamp::never();
   Stamp deaf_until_ = Stamp::never();  ///< one blow is told once
   bool struck_ = false;
+  bool shaken_ = false;
 };
 
 }  // namespace rubble::explore

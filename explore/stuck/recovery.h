@@ -50,6 +50,8 @@ class Recovery {
   int times() const { return times_; }
 
  private:
+  double gap_to_walls(const mrpt::math::TPose2D& pose, const Traversable& floor) const;
+
   robot::RobotModel model_;
   Escape escape_;
   WayBack way_back_;

@@ -14,7 +14,7 @@ constexpr double kDrives = 0.15;        ///< a robot that turns and is slower on
 
 void StuckWatch::update(const robot::Inputs& inputs, double passed, double dt) {
   if (passed > kHeld) {
-    motion_.reset();
+    begin_anew();
     patient_until_ = inputs.now + kPatience;
   }
   if (!inputs.odometry.empty()) {
@@ -39,13 +39,17 @@ std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_ma
   const bool turns_slowly =
       commanded.w != 0.0 && std::abs(commanded.v) < kDrives && wheels_ && std::abs(wheels_->v) < kDrives;
   const bool blow = jolt_.struck() && !turns_slowly;
-  if (!tilt_.too_steep() && !blow && !stuck) return std::nullopt;
+  if (motion_.on_the_spot(commanded)) slowed_.reset();
+  const bool slowed = slowed_.held(jolt_.shaken() && commanded.v != 0.0 && !turns_slowly, T_map_base,
+                                   wheels_.value_or(commanded), tilt_.pitch(), dt, now);
+  if (!tilt_.too_steep() && !blow && !slowed && !stuck) return std::nullopt;
   const Hold hold{tilt_.too_steep() ? "it leans too much here"
                   : blow            ? "a blow stops it"
+                  : slowed          ? "a blow holds it back"
                   : stalled_        ? "the motors stall"
                                     : "it does not move",
-                  met(commanded), !tilt_.too_steep() && !blow && !stalled_ && !motion_.rocking()};
-  motion_.reset();
+                  met(commanded), !tilt_.too_steep() && !blow && !slowed && !stalled_ && !motion_.rocking()};
+  begin_anew();
   tilt_.reset();
   return hold;
 }

@@ -9,15 +9,16 @@
 #include "explore/stuck/escape.h"
 #include "explore/stuck/jolt_watch.h"
 #include "explore/stuck/motion_watch.h"
+#include "explore/stuck/slowed_watch.h"
 #include "explore/stuck/tilt_watch.h"
 #include "robot/commands.h"
 #include "robot/measurements.h"
 
 namespace rubble::explore {
 
-/// Finds out that something holds the robot which the scanner cannot see: it leans, a blow stops it, its motors stall,
-/// or it does not move as told. Not so while nobody knows whether it moves: the base is silent, or the robot was held
-/// for a while (a device was away) and its motors may still be off.
+/// Finds out that something holds the robot which the scanner cannot see: it leans, a blow stops it or holds it back,
+/// its motors stall, or it does not move as told. Not so while nobody knows whether it moves: the base is silent, or
+/// the robot was held for a while (a device was away) and its motors may still be off.
 class StuckWatch {
  public:
   struct Hold {
@@ -36,7 +37,10 @@ class StuckWatch {
   std::optional<Hold> held(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool on_purpose,
                            double dt, Stamp now);
   /// The robot stands by its own will, or has got free: its motion is watched anew.
-  void begin_anew() { motion_.reset(); }
+  void begin_anew() {
+    motion_.reset();
+    slowed_.reset();
+  }
 
   /// The robot brakes as hard as it can: what stops it is no blow.
   void braked(Stamp now) { jolt_.braked(now); }
@@ -54,6 +58,7 @@ class StuckWatch {
   MotionWatch motion_;
   TiltWatch tilt_;
   JoltWatch jolt_;
+  SlowedWatch slowed_;
   bool stalled_ = false;
   std::optional<robot::Drive> wheels_;    ///< what they did when they were heard of last
   std::optional<Stamp> odometry_at_;      ///< when the wheels were heard of last

@@ -121,6 +121,35 @@ TEST(VictimWatch, AFewCuesPastTheEdgeOfANicheTellOfNoHole) {
   EXPECT_FALSE(robot.watch.search().squarely());
 }
 
+/// The robot stood for a dozen cues where it saw into a box aslant, past the edge of its side.
+TEST(VictimWatch, AVictimPastAnEdgeTellsOfNoHoleHoweverOftenItShows) {
+  Watching robot;
+  OccupancyGrid cells = test::room(6.0, 4.0);
+  test::fill(cells, 3.0, 2.3, 3.05, 2.6, Occupancy::Occupied);
+  robot.floor = test::measured(std::move(cells));
+  robot.pose = {2.0, 2.08, 0.24};
+  robot.moved(0.05);
+  for (int i = 0; i < 12; ++i) robot.hear({3.3, 2.4});
+  ASSERT_EQ(robot.watch.reports().size(), 1u);
+  EXPECT_FALSE(robot.watch.search().squarely());
+}
+
+/// Of two boxes side by side the one hides behind the other from where that one's victim shows.
+TEST(VictimWatch, ACueIsOfTheNearestVictimAloneAndTellsOfNoHoleBeforeAnother) {
+  Watching robot;
+  OccupancyGrid cells = test::room(6.0, 4.0);
+  test::fill(cells, 3.2, 2.0, 3.25, 4.0, Occupancy::Occupied);
+  robot.floor = test::measured(std::move(cells));
+  robot.pose = {4.5, 2.5, kPi};
+  robot.moved(0.05);
+  for (int i = 0; i < 4; ++i) robot.hear({3.4, 2.5});
+  robot.pose = {2.0, 2.5, 0.0};
+  robot.moved(0.05);
+  for (int i = 0; i < 20; ++i) robot.hear({3.05, 2.5});
+  ASSERT_EQ(robot.watch.reports().size(), 2u);
+  EXPECT_FALSE(robot.watch.search().squarely());
+}
+
 TEST(VictimWatch, LookingSquarelyCanBeAskedForOrRefused) {
   SearchConfig config;
   config.squarely = SquareLook::Always;

@@ -31,7 +31,7 @@ struct Outcome {
   double seconds = 0.0;
 };
 
-Outcome run(Puppet& puppet, Escape::Met met, const std::vector<TPoint2D>& trail, const Escape::RoomFn& room,
+Outcome run(Puppet& puppet, Escape::Met met, const std::vector<TPoint2D>& trail, const Escape::Around& around,
             int failures = 0, const WayBack& came = {}, std::optional<WayOut> way_out = std::nullopt) {
   Escape escape(deg_to_rad(60.0));
   WayBack way_back = came;
@@ -41,7 +41,7 @@ Outcome run(Puppet& puppet, Escape::Met met, const std::vector<TPoint2D>& trail,
   while (outcome.result == Escape::Result::UnderWay && outcome.seconds < 300.0) {
     way_back.add(now, puppet.pose);
     outcome.result =
-        escape.step(puppet.pose, escape.drive(), false, {}, false, kEscapeTick, now, trail, way_back, room);
+        escape.step(puppet.pose, escape.drive(), false, {}, false, kEscapeTick, now, trail, way_back, around);
     puppet.obey(escape.drive());
     now = now + kEscapeTick;
     outcome.seconds += kEscapeTick;
@@ -49,7 +49,7 @@ Outcome run(Puppet& puppet, Escape::Met met, const std::vector<TPoint2D>& trail,
   return outcome;
 }
 
-const Escape::RoomFn kRoom = [](const TPose2D&) { return true; };
+const Escape::Around kRoom{[](const TPose2D&) { return true; }, [](const TPose2D&) { return 1.0; }};
 
 TEST(Escape, GoesBackHalfAMetreTheWayItCame) {
   Puppet puppet;
@@ -76,14 +76,38 @@ TEST(Escape, TriesOtherWaysWhereTheWayBackIsHeldToo) {
 
 TEST(Escape, DoesNotBackIntoAWallItKnows) {
   Puppet puppet;
-  const Escape::RoomFn room = [](const TPose2D& pose) { return pose.x > -0.3; };
+  const Escape::Around around{[](const TPose2D& pose) { return pose.x > -0.3; }, kRoom.gap};
   double least = 0.0;
   puppet.may = [&](const TPose2D& pose) {
     least = std::min(least, pose.x);
     return true;
   };
-  run(puppet, Escape::Met::Forwards, {}, room);
+  run(puppet, Escape::Met::Forwards, {}, around);
   EXPECT_GT(least, -0.3);
+}
+
+/// A wall stands to its left, so near that its corners do not pass; nothing but a turn to the right leads out.
+TEST(Escape, TurnsNoCornerIntoAWallItKnows) {
+  Puppet puppet;
+  double most_left = 0.0;
+  puppet.may = [&](const TPose2D& next) {
+    most_left = std::max(most_left, next.phi);
+    const bool turns = next.x == puppet.pose.x && next.y == puppet.pose.y;
+    return turns || puppet.pose.phi < deg_to_rad(-50.0);
+  };
+  const Escape::Around around{kRoom.room, [](const TPose2D& pose) { return 0.05 - 0.25 * std::max(0.0, pose.phi); }};
+  EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, around).result, Escape::Result::Free);
+  EXPECT_LT(most_left, 0.05 / 0.25);
+}
+
+TEST(Escape, TurnsAwayFromAWallItTouches) {
+  Puppet puppet;
+  puppet.may = [&](const TPose2D& next) {
+    const bool turns = next.x == puppet.pose.x && next.y == puppet.pose.y;
+    return turns || puppet.pose.phi > deg_to_rad(50.0);
+  };
+  const Escape::Around touching{kRoom.room, [](const TPose2D& pose) { return 0.2 * pose.phi - 0.01; }};
+  EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, touching).result, Escape::Result::Free);
 }
 
 /// Between steps only one direction leads out, and turns of 60 degrees miss it: the next try turns by another angle.
@@ -136,6 +160,27 @@ TEST(Escape, LeavesATrapAllTheWay) {
   puppet.pose = {};
   EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, kRoom).result, Escape::Result::Free);
   EXPECT_TRUE(trap.holds({puppet.pose.x, puppet.pose.y})) << "the case is too easy";
+}
+
+/// Straight back would be quicker, but it came in by a bend between things that stand to both sides of it.
+TEST(Escape, BacksOutOfATrapAlongItsTrailToTheEnd) {
+  Trap trap;
+  trap.size = 1.2;
+  const auto aside = [](const TPose2D& p) { return std::abs(std::hypot(p.x, p.y - 1.2) - 1.2); };
+  std::vector<TPoint2D> trail;
+  for (double a = -75.0; a <= 0.0; a += 5.0)
+    trail.push_back({1.2 * std::sin(deg_to_rad(a)), 1.2 - 1.2 * std::cos(deg_to_rad(a))});
+  Puppet puppet;
+  double most = 0.0, ahead = 0.0;
+  puppet.may = [&](const TPose2D& p) {
+    most = std::max(most, aside(p));
+    ahead = std::max(ahead, p.x - puppet.pose.x);
+    return true;
+  };
+  const WayOut way_out(robot::RobotModel{}, trap, {}, {});
+  EXPECT_EQ(run(puppet, Escape::Met::Forwards, trail, kRoom, 0, {}, way_out).result, Escape::Result::Free);
+  EXPECT_LT(most, 0.08);
+  EXPECT_LT(ahead, 1e-4) << "never ahead";
 }
 
 /// Where no plan leads out, pose by pose the way it came may.

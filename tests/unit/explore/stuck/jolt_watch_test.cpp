@@ -18,6 +18,7 @@ constexpr double kGravity = 9.81;
 struct Told {
   int blows = 0;
   int from_ahead = 0;
+  int shaken = 0;
 };
 
 /// Two seconds at `speed` [m/s] of the wheels; `felt`: along the body at a time [m/s^2]; `braked`: when it was told to.
@@ -33,6 +34,7 @@ Told drive(double speed, const std::function<double(double)>& felt, Stamp braked
     watch.update(inputs);
     if (now == braked) watch.braked(now);
     told.blows += watch.struck() ? 1 : 0;
+    told.shaken += watch.shaken() ? 1 : 0;
     told.from_ahead += watch.struck() && watch.from_ahead() ? 1 : 0;
   }
   return told;
@@ -73,6 +75,15 @@ TEST(JoltWatch, ItsOwnBrakeIsNoBlow) {
 }
 
 TEST(JoltWatch, AKnockThatTakesLittleOfTheSpeedIsNone) { EXPECT_EQ(drive(0.4, blow(0.15, 0.02)).blows, 0); }
+
+TEST(JoltWatch, AKnockThatTakesHalfOfTheSpeedIsAWeakBlow) {
+  for (const double speed : {0.2, 0.4}) {
+    const Told told = drive(speed, blow(0.55 * speed, 0.02));
+    EXPECT_GT(told.shaken, 0) << speed;
+    EXPECT_EQ(told.blows, 0) << speed;
+  }
+  EXPECT_EQ(drive(0.4, blow(0.1, 0.02)).shaken, 0);
+}
 
 TEST(JoltWatch, APushFromBehindIsNone) { EXPECT_EQ(drive(0.3, blow(-0.3, 0.02)).blows, 0); }
 

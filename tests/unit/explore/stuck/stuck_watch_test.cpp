@@ -86,6 +86,24 @@ TEST(StuckWatch, WhatJoltsARobotThatTurnsOnTheSpotIsNoBlow) {
   EXPECT_FALSE(blow_at({0.3, 0.5}, true)) << "its own brake";
 }
 
+/// Half of the speed is lost at the edge of a ramp as well as where a corner meets a step.
+TEST(StuckWatch, AWeakBlowCountsWhereTheRobotFallsBehindItsWheels) {
+  for (const bool goes_on : {true, false}) {
+    Watched robot;
+    robot.drive = {0.3, 0.0};
+    EXPECT_FALSE(robot.within(1.0));
+    robot.blow = -0.55 * robot.drive.v / Watched::kTickTime;
+    EXPECT_FALSE(robot.tick());
+    robot.blow = 0.0;
+    robot.obeys = goes_on;
+    const auto hold = robot.within(0.4);
+    EXPECT_EQ(hold.has_value(), !goes_on);
+    if (!hold) continue;
+    EXPECT_EQ(hold->how, "a blow holds it back");
+    EXPECT_FALSE(hold->stands) << "it knows why";
+  }
+}
+
 TEST(StuckWatch, TellsLeaningBlowsAndStallsApart) {
   Watched leaning, struck, stalling;
   leaning.lean = deg_to_rad(25.0);
