@@ -59,7 +59,7 @@ constexpr double kStartKappa = 0.8;  // of either map's walls: on one lattice st
 // they are none to be trusted: maps of other buildings were right about 0.85 of a seventh of the lines.
 constexpr double kSightKnown = 0.08;  // of each map's lines that the other knows, at least
 constexpr double kSightKappa = 0.75;  // of those, how right it is
-// Where walls meet to the decimetre, other arenas reach 0.34 but for fragments. Mirror images reach 0.95: of them lines
+// Where walls meet to the decimetre, other arenas reach 0.31 but for fragments. Mirror images reach 0.95: of them lines
 // tell nothing.
 constexpr double kSightKappaTight = 0.6;
 
