@@ -177,6 +177,45 @@ void try_arenas(Trial& trial) {
     }
 }
 
+/// Arenas of few pallets look alike.
+void try_small_arenas(Trial& trial) {
+  for (std::uint64_t seed = 7201; seed < 7213; ++seed)
+    for (const auto& [columns, rows] : {std::pair{4, 5}, {5, 5}, {6, 5}}) {
+      const char* kind = seed % 3 == 0 ? "maze" : seed % 3 == 1 ? "yellow" : "orange";
+      const OccupancyGrid truth = truth_of({kind, columns, rows, seed});
+      const OccupancyGrid stranger = truth_of({kind, columns, rows, seed + 500});
+      const TPose2D T_map_truth(1.0, 2.0, 0.41 * static_cast<double>(seed - 7200));
+      const auto put = [&](const OccupancyGrid& map) {
+        return moved(map, T_map_truth.phi, T_map_truth.x, T_map_truth.y);
+      };
+      const std::string name = Ground{kind, columns, rows, seed}.name();
+      const OccupancyGrid worn = with_gaps(with_phantoms(truth, 3, seed), 5, seed);
+      trial("right: small arenas, damaged, turned", name, put(worn), truth, put_at(T_map_truth, truth));
+      trial("small arenas, other seed, turned", name, put(stranger), truth);
+      trial("small arenas, other seed, damaged", name, put(with_gaps(with_phantoms(stranger, 3, seed), 5, seed)),
+            truth);
+      trial("small arenas, own mirror image, damaged", name, put(mirrored(worn)), truth);
+    }
+}
+
+/// Quarters of arenas, which fit somewhere by chance.
+void try_fragments(Trial& trial) {
+  for (std::uint64_t seed = 7301; seed < 7313; ++seed)
+    for (const Ground& ground : {Ground{"maze", 8, 7, seed}, {"yellow", 9, 6, seed}, {"orange", 7, 7, seed}}) {
+      Ground other = ground;
+      other.seed += 1000;
+      const OccupancyGrid truth = truth_of(ground);
+      const TPose2D T_map_truth(1.0, 2.0, 0.4);
+      const auto quarter = [&](const OccupancyGrid& map) {
+        return moved(with_coverage(with_gaps(map, 8, seed), 0.25), T_map_truth.phi, T_map_truth.x, T_map_truth.y);
+      };
+      trial("right: arenas, damaged, quarter, turned", ground.name(), quarter(truth), truth,
+            put_at(T_map_truth, truth));
+      trial("arenas, other seed, quarter, turned", ground.name(), quarter(truth_of(other)), truth);
+      trial("arenas, own mirror image, quarter", ground.name(), quarter(mirrored(truth)), truth);
+    }
+}
+
 /// Buildings on buildings of the other collection and on arenas.
 void try_across(Trial& trial, const SensorMaps& data, const std::vector<LabelledFloor>& floors) {
   for (const auto& [name, map] : data.maps)
@@ -201,6 +240,8 @@ void BM_Strangers(benchmark::State& state) {
   for (auto _ : state) {
     Trial trial;
     try_arenas(trial);
+    try_small_arenas(trial);
+    try_fragments(trial);
     try_floors(trial, *plain, *furnished);
     try_sensor_maps(trial, *data);
     try_across(trial, *data, *plain);

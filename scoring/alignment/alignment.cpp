@@ -59,6 +59,9 @@ constexpr double kStartKappa = 0.8;  // of either map's walls: on one lattice st
 // they are none to be trusted: maps of other buildings were right about 0.85 of a seventh of the lines.
 constexpr double kSightKnown = 0.08;  // of each map's lines that the other knows, at least
 constexpr double kSightKappa = 0.75;  // of those, how right it is
+// Where walls meet to the decimetre, other arenas reach 0.31 but for fragments. Mirror images reach 0.95: of them lines
+// tell nothing.
+constexpr double kSightKappaTight = 0.6;
 
 /// What one map says of the other's lines of sight; none where these are too few.
 std::optional<SightAgreement> sights_of(const OccupancyGrid& asked, const OccupancyGrid& other,
@@ -69,9 +72,10 @@ std::optional<SightAgreement> sights_of(const OccupancyGrid& asked, const Occupa
 }
 
 /// Each map is right about the other's lines of sight.
-bool see_the_same(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map) {
-  const auto is_right = [](const std::optional<SightAgreement>& sights) {
-    return sights && sights->known >= kSightKnown && sights->kappa >= kSightKappa;
+bool see_the_same(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map,
+                  double least_kappa) {
+  const auto is_right = [=](const std::optional<SightAgreement>& sights) {
+    return sights && sights->known >= kSightKnown && sights->kappa >= least_kappa;
   };
   return is_right(sights_of(map, truth, T_truth_map)) && is_right(sights_of(truth, map, TPose2D() - T_truth_map));
 }
@@ -120,10 +124,9 @@ class Aligner {
     const Trust trust = conclude(*best, hypotheses, out);
     out.T_walls = match_.refine(best->T_best, 0.1, 20);
     out.T_walls.phi = wrap_angle(out.T_walls.phi);
-    const bool to_the_decimetre = tight_agreement(best->tight) >= kTightEnough;
-    out.T_truth_map = to_the_decimetre ? out.T_walls : fit_to_the_whole(*best, hypotheses, match_);
+    out.T_truth_map = trust.tight ? out.T_walls : fit_to_the_whole(*best, hypotheses, match_);
     out.T_truth_map.phi = wrap_angle(out.T_truth_map.phi);
-    ask_sights(trust, best->tight, out);
+    ask_others(trust, *best, hypotheses, out);
     return out;
   }
 
@@ -162,12 +165,18 @@ class Aligner {
     return trust;
   }
 
-  /// The second witness, at the pose of `out`: where the walls leave open whether it is right, lines of sight decide;
-  /// where they alone are rather against it, these must not be against it too.
-  void ask_sights(const Trust& trust, const PoseEvidence& tight, Alignment& out) const {
-    if (trust.open && !is_mirror_image(tight) && see_the_same(map_, truth_, out.T_truth_map)) {
+  /// Other witnesses, at the pose of `out`: where the walls leave open whether it is right, lines of sight decide;
+  /// where walls meet to the decimetre, also those walls that do so at this pose or at its rivals only. Where the walls
+  /// are rather against it, lines of sight must not be against it too.
+  void ask_others(const Trust& trust, const Hypothesis& best, const std::vector<Hypothesis>& hypotheses,
+                  Alignment& out) const {
+    if (trust.open && !is_mirror_image(best.tight) && (!trust.tight || is_told_from_rivals(best, hypotheses)) &&
+        see_the_same(map_, truth_, out.T_truth_map, trust.tight && !trust.fragment ? kSightKappaTight : kSightKappa)) {
       out.aligned = true;
-      out.note = "the walls meet loosely, and at another pose about as well; what is open and what is blocked decided";
+      out.note = trust.tight
+                     ? "at another pose, or mirrored, walls meet about as well; those in which the two differ decided"
+                     : "the walls meet loosely, and at another pose about as well; what is open and what is blocked "
+                       "decided";
     }
     if (out.aligned && !trust.tight && out.log_odds < 0.0 && !is_borne_out(map_, truth_, out.T_truth_map)) {
       out.aligned = false;
@@ -196,7 +205,7 @@ class Aligner {
     out.by = out.by | AlignBy::Equation7;
     out.T_truth_map = least.T_truth_map;
     out.T_truth_map.phi = wrap_angle(out.T_truth_map.phi);
-    ask_sights(trust, there.tight, out);
+    ask_others(trust, there, hypotheses, out);
     out.T_walls = out.T_truth_map;
     return out;
   }
@@ -222,6 +231,23 @@ class Aligner {
     return out;
   }
 
+  /// Clearly another pose.
+  bool is_rival(const Hypothesis& h, const Hypothesis& best) const {
+    const double shift = std::max(config_.search.distinct_shift, config_.search.distinct_share * match_.map_extent());
+    return !same_pose(h.T_best, best.T_best, match_.map_centre(), shift, config_.search.distinct_turn);
+  }
+
+  /// Each pose that comes near the best, and each of the mirrored map that does, loses to it where the two differ.
+  bool is_told_from_rivals(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses) const {
+    std::vector<WallMatch::Placement> rivals;
+    for (const Hypothesis& h : hypotheses)
+      if (is_rival(h, best) && is_near(best.tight, h.tight)) rivals.push_back({h.T_best, false});
+    for (const Hypothesis& h : mirrored_->hypotheses)
+      if (is_near(best.tight, h.tight)) rivals.push_back({h.T_best, true});
+    const std::vector<WallDuel> duels = match_.duels({best.T_best}, rivals, config_.search.tau_tight);
+    return std::all_of(duels.begin(), duels.end(), is_won);
+  }
+
   std::string about_rooms() const { return rooms_note_.empty() ? "" : "; " + rooms_note_; }
 
   /// A mirror image that fits to the decimetre, and clearly better than the map itself, is named as what it is. A
@@ -232,8 +258,9 @@ class Aligner {
     const double own = tight_agreement(tight);
     const double most = tight.map.known + tight.truth.known;
     constexpr double kMore = 0.02;  // a symmetric arena is its own mirror image
-    return mirrored_ && mirrored_->tight >= std::max(kTightEnough, own + kMore) &&
-           (mirrored_->tight >= kAhead * own || most - mirrored_->tight <= kLeft * (most - own));
+    if (!mirrored_) return false;
+    const double its = mirrored_->rivals.tight;
+    return its >= std::max(kTightEnough, own + kMore) && (its >= kAhead * own || most - its <= kLeft * (most - own));
   }
 
   std::string why_not(const Trust& trust, const PoseEvidence& tight) const {
@@ -247,11 +274,10 @@ class Aligner {
     out.wide_evidence = best.wide;
     out.tight_evidence = best.tight;
     out.log_odds = log_odds(best.wide, best.tight);
-    const double shift = std::max(config_.search.distinct_shift, config_.search.distinct_share * match_.map_extent());
     Rivals others;
     double highest = -1.0;
     for (const Hypothesis& h : hypotheses) {
-      if (same_pose(h.T_best, best.T_best, match_.map_centre(), shift, config_.search.distinct_turn)) continue;
+      if (!is_rival(h, best)) continue;
       others.meet(h.wide, h.tight);
       if (h.quality <= highest) continue;
       highest = h.quality;
@@ -280,15 +306,19 @@ class Aligner {
   /// how far chance gets with these two maps.
   const Rivals& of_mirrored() {
     if (!mirrored_) mirrored_ = mirrored_beside_.get();
-    return *mirrored_;
+    return mirrored_->rivals;
   }
 
-  Rivals examine_mirrored() const {
-    Rivals out;
+  struct Mirrored {
+    std::vector<Hypothesis> hypotheses;
+    Rivals rivals;
+  };
+  Mirrored examine_mirrored() const {
+    Mirrored out;
     const OccupancyGrid mirrored = mirror_image(map_);
     const WallMatch match(mirrored, truth_, config_.search.reach, config_.search.max_points);
-    for (const Hypothesis& h : examine(correlate(mirrored, truth_, config_.correlation), match, config_.search))
-      out.meet(h.wide, h.tight);
+    out.hypotheses = examine(correlate(mirrored, truth_, config_.correlation), match, config_.search);
+    for (const Hypothesis& h : out.hypotheses) out.rivals.meet(h.wide, h.tight);
     return out;
   }
 
@@ -299,9 +329,9 @@ class Aligner {
   Examiner examiner_;
   std::optional<std::vector<PoseGuess>> by_walls_;
   std::optional<std::vector<PoseGuess>> by_features_;
-  std::optional<Rivals> mirrored_;
+  std::optional<Mirrored> mirrored_;
   std::string rooms_note_;
-  std::future<Rivals> mirrored_beside_;  ///< last: it ends before what it reads does
+  std::future<Mirrored> mirrored_beside_;  ///< last: it ends before what it reads does
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "scoring/alignment/trust.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rubble::scoring {
 namespace {
@@ -19,6 +20,12 @@ constexpr double kFragmentArea = 20.0;       // [m^2]
 constexpr double kFragmentLeastArea = 10.0;  // less of it tells nothing [m^2]
 constexpr double kFragmentKappa = 0.8;
 constexpr double kFragmentUnexplained = 2.0;
+constexpr double kFragmentTelling = 16.0;   // floor of one that other witnesses may be asked about [m^2]
+constexpr double kFragmentBestKappa = 0.9;  // of the better side: gaps cost the other one
+// Of the walls that meet at one of two poses only.
+constexpr double kTimesTheirs = 2.0;
+constexpr double kDeviations = 2.0;  // from even odds, ...
+constexpr double kPiece = 0.6;       // ... pieces of wall so long are right or wrong together: half a pallet [m]
 // Where they agree only loosely.
 constexpr double kLeastLogOdds = -1.2;
 constexpr double kLeastMargin = 0.4;  // of the log odds over those of the best rival
@@ -46,6 +53,11 @@ bool is_fragment(const PoseEvidence& e) {
 
 double least_kappa(const PoseEvidence& e) { return std::min(e.map.kappa(), e.truth.kappa()); }
 
+/// A fragment that is large enough to fit nowhere else, where nearly all walls of one side meet.
+bool is_telling(const PoseEvidence& e) {
+  return e.common_area >= kFragmentTelling && std::max(e.map.kappa(), e.truth.kappa()) >= kFragmentBestKappa;
+}
+
 /// No rival comes near the best.
 bool ahead_of(const PoseEvidence& tight, const Rivals& rivals) {
   const double best = tight_agreement(tight);
@@ -64,6 +76,8 @@ Trust judge_tight(const PoseEvidence& tight, const Rivals& rivals) {
   const bool ahead = ahead_of(tight, rivals);
   const bool mutual = least_kappa(tight) >= kLeastEach;
   out.trusted = ahead && mutual;
+  out.fragment = is_fragment(tight);
+  out.open = !ahead && mutual && (!out.fragment || is_telling(tight));
   if (!mutual)
     out.note = "not aligned: walls of one map are missing in the other";
   else if (!ahead && is_fragment(tight))
@@ -88,6 +102,18 @@ double log_odds(const PoseEvidence& wide, const PoseEvidence& tight) {
   return -5.1 - 31.0 * both(wide, &WallEvidence::contradicted) - 3.9 * both(wide, &WallEvidence::met) -
          25.8 * both(wide, &WallEvidence::chance) + 4.3 * both(tight, &WallEvidence::contradicted) +
          14.75 * wide.free_common + 15.7 * std::min(wide.map.known, wide.truth.known);
+}
+
+bool is_near(const PoseEvidence& tight, const PoseEvidence& rival_tight) {
+  const double best = tight_agreement(tight);
+  const double rival = tight_agreement(rival_tight);
+  const double ratio = unexplained(known_share(tight), best, rival);
+  return (best < kAhead * rival && ratio < kUnexplained) || (is_fragment(tight) && ratio < kFragmentUnexplained);
+}
+
+bool is_won(const WallDuel& duel) {
+  return duel.ours > 0.0 && duel.ours >= kTimesTheirs * duel.theirs &&
+         duel.ours - duel.theirs >= kDeviations * std::sqrt(kPiece * (duel.ours + duel.theirs));
 }
 
 void Rivals::meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence) {

@@ -31,10 +31,16 @@ struct Rivals {
 
 struct Trust {
   bool trusted = false;
-  bool tight = false;  ///< the maps agree to the decimetre, not only to the metre
-  bool open = false;   ///< not trusted, but rather right than wrong, and no rival is better: another witness may decide
-  std::string note;    ///< why not trusted; or what speaks for a pose of which walls alone leave a doubt
+  bool tight = false;     ///< the maps agree to the decimetre, not only to the metre
+  bool fragment = false;  ///< tight, and too little is common to rule out chance by walls alone
+  bool open = false;  ///< not trusted, but rather right than wrong, and no rival is better: other witnesses may decide
+  std::string note;   ///< why not trusted; or what speaks for a pose of which walls alone leave a doubt
 };
+
+/// Two poses of walls that agree to the decimetre: whether the rival comes so near that trust is refused.
+bool is_near(const PoseEvidence& tight, const PoseEvidence& rival_tight);
+/// Where a rival is near: of the walls that tell the two apart, so many more meet at ours that no luck explains it.
+bool is_won(const WallDuel& duel);
 
 /// Decides whether the best pose is the right one. Rules and how they were calibrated: docs/scoring.md.
 Trust judge(const PoseEvidence& wide, const PoseEvidence& tight, const Rivals& rivals);

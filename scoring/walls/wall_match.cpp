@@ -5,6 +5,7 @@
 
 #include "base/grid.h"
 #include "base/rigid.h"
+#include "scoring/walls/overlap.h"
 
 namespace rubble::scoring {
 namespace {
@@ -63,6 +64,13 @@ WallEvidence tally(const std::vector<TPoint2D>& walls, const OccupancyGrid& othe
   return out;
 }
 
+/// Length of wall that each of the points stands for [m].
+double length_of_each(const std::vector<TPoint2D>& walls, const OccupancyGrid& grid) {
+  const auto cells = static_cast<double>(std::count(grid.cells().begin(), grid.cells().end(), Occupancy::Occupied));
+  return ratio(cells * grid.resolution() * grid.resolution(),
+               2.0 * wall_half_thickness(grid) * static_cast<double>(walls.size()));
+}
+
 /// Mean k(d) over what a map knows: what a random wall would find.
 double chance(const std::vector<TPoint2D>& known, const WallField& field, double tau) {
   double met = 0.0;
@@ -118,6 +126,37 @@ PoseEvidence WallMatch::evidence(const Warp& warp, const Kernel& kernel) const {
     if (occupancy_at(truth_.grid, warp(p)) == Occupancy::Free) common += 1.0;
   out.common_area = common * ratio(map_.free_area, static_cast<double>(map_.free.size()));
   out.free_common = std::min(1.0, ratio(out.common_area, std::min(map_.free_area, truth_.free_area)));
+  return out;
+}
+
+std::vector<WallDuel> WallMatch::duels(const Placement& ours, const std::vector<Placement>& others, double tau) const {
+  const double map_length = length_of_each(map_.walls, map_.grid);
+  const double truth_length = length_of_each(truth_.walls, truth_.grid);
+  const GridFrame& f = map_.grid.frame();
+  const double twice_the_axis = 2.0 * f.x0 + f.width * f.resolution;
+  const auto turned_over = [&](const TPoint2D& p, bool mirrored) {
+    return mirrored ? TPoint2D(twice_the_axis - p.x, p.y) : p;
+  };
+  std::vector<WallDuel> out;
+  for (const Placement& theirs : others) {
+    WallDuel duel;
+    const auto ask = [&](const Side& other, const TPoint2D& at_ours, const TPoint2D& at_theirs, double length) {
+      const auto met = [&](const TPoint2D& p) { return std::max(0.0, 1.0 - other.field.distance(p) / tau); };
+      const double here = met(at_ours);
+      const double there = met(at_theirs);
+      if (here == 0.0 && occupancy_at(other.grid, at_ours) == Occupancy::Unknown) return;
+      if (there == 0.0 && occupancy_at(other.grid, at_theirs) == Occupancy::Unknown) return;
+      (here > there ? duel.ours : duel.theirs) += length * std::abs(here - there);
+    };
+    const PlanarTransform T_ours(ours.T_truth_map);
+    const PlanarTransform T_theirs(theirs.T_truth_map);
+    for (const TPoint2D& p : map_.walls)
+      ask(truth_, T_ours(turned_over(p, ours.mirrored)), T_theirs(turned_over(p, theirs.mirrored)), map_length);
+    for (const TPoint2D& q : truth_.walls)
+      ask(map_, turned_over(T_ours.inverse(q), ours.mirrored), turned_over(T_theirs.inverse(q), theirs.mirrored),
+          truth_length);
+    out.push_back(duel);
+  }
   return out;
 }
 

@@ -28,6 +28,13 @@ struct PoseEvidence {
   double common_area = 0.0;  ///< free in both [m^2]
 };
 
+/// Walls of both maps that meet at one of two poses better than at the other [m]: furniture, phantoms and whatever else
+/// meets at neither, or at both, has no say.
+struct WallDuel {
+  double ours = 0.0;
+  double theirs = 0.0;
+};
+
 /// Two maps prepared for comparing them at many poses: wall points, distance fields, free samples of both.
 class WallMatch {
  public:
@@ -45,6 +52,14 @@ class WallMatch {
   Kernel kernel(double tau) const;
 
   PoseEvidence evidence(const Warp& warp, const Kernel& kernel) const;
+
+  /// Where the map is put; `mirrored`: its mirror_image() is.
+  struct Placement {
+    mrpt::math::TPose2D T_truth_map;
+    bool mirrored = false;
+  };
+  /// Of one place with each of the others, by walls that meet within `tau` [m] and are known at both.
+  std::vector<WallDuel> duels(const Placement& ours, const std::vector<Placement>& others, double tau) const;
 
   /// Moves the pose so that walls meet: Gauss-Newton on both distance fields, walls further apart than about `sigma`
   /// [m] pull less and less (Geman-McClure weights).

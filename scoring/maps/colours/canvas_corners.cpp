@@ -13,8 +13,10 @@ namespace {
 constexpr double kBorderUnknown = 0.95;  // share of the region's rim that must be unknown
 constexpr double kBroadRegion = 4.0;     // half width of the region [pixels]: thinner ones are walls at the border
 
-constexpr int kOneGrey = 12;  // of one grey
-constexpr int kBlend = 3;     // pixels that smooth interpolation blends at an edge
+constexpr int kOneGrey = 12;           // of one grey
+constexpr int kRipples = 24;           // of one grey beside an edge in a JPEG
+constexpr double kMostOfBorder = 0.6;  // share of the region's rim that has one grey but for ripples
+constexpr int kBlend = 3;              // pixels that smooth interpolation blends at an edge
 
 /// The ring around a region, `off` pixels off it: the next ones hold an interpolated edge. Empty for regions that are
 /// not broad.
@@ -127,6 +129,23 @@ bool covers_areas(const cv::Mat& mask) {
   return 2 * cv::countNonZero(areas) >= cv::countNonZero(mask);
 }
 
+/// The ring around the region is of one grey, which covers areas. JPEG leaves ripples along the region's rim: most of
+/// the ring has that grey, and all of it where they are smoothed.
+bool lies_in_one_ground(const cv::Mat& grey, const cv::Mat& region, const cv::Mat& ring) {
+  const auto ground = [&](const cv::Mat& picture, int tolerance) {
+    const int level = main_grey(picture, ring);
+    return cv::Mat((picture >= level - tolerance) & (picture <= level + tolerance) & ~region);
+  };
+  const auto encloses = [&](const cv::Mat& beside) {
+    return share_in(ring, beside) >= kBorderUnknown && covers_areas(beside);
+  };
+  if (encloses(ground(grey, kOneGrey))) return true;
+  if (share_in(ring, ground(grey, kRipples)) < kMostOfBorder) return false;
+  cv::Mat smooth;
+  cv::medianBlur(grey, smooth, 5);
+  return encloses(ground(smooth, kRipples));
+}
+
 }  // namespace
 
 void clear_canvas_corners(cv::Mat& classes) {
@@ -157,9 +176,8 @@ cv::Mat canvas_corners(const cv::Mat& grey) {
     const cv::Mat ring = ring_around(region, kBlend);
     if (ring.empty()) continue;
     const int level = main_grey(grey, ring);
-    const cv::Mat beside = (grey >= level - kOneGrey) & (grey <= level + kOneGrey) & ~region;
-    if (share_in(ring, beside) < kBorderUnknown || !covers_areas(beside) ||
-        !is_open(grey, region, grey.at<unsigned char>(corner), level) || has_thin_parts(region))
+    if (!lies_in_one_ground(grey, region, ring) || !is_open(grey, region, grey.at<unsigned char>(corner), level) ||
+        has_thin_parts(region))
       continue;
     cv::Mat grown;
     cv::dilate(region, grown, cv::Mat::ones(5, 5, CV_8U));

@@ -77,6 +77,26 @@ TEST(Strangers, AFragmentOfAnotherArenaIsRefused) {
   }
 }
 
+/// A quarter of these arenas fits at a second place nearly as well, but what is open and what is blocked says which.
+TEST(Strangers, AQuarterOfTheArenaIsToldFromThatOfAnother) {
+  for (const Ground& ground : {Ground{"maze", 8, 7, 524}, {"yellow", 9, 6, 533}, {"orange", 7, 7, 514}}) {
+    SCOPED_TRACE(ground.name());
+    Ground other = ground;
+    other.seed += 1000;
+    const OccupancyGrid truth = crop_to_known(truth_of(ground), 0.0);
+    const TPose2D T_map_truth(1.0, 2.0, 0.4);
+    const auto quarter = [&](const OccupancyGrid& map) {
+      const OccupancyGrid part = with_coverage(with_gaps(map, 8, ground.seed), 0.25);
+      return align(crop_to_known(moved(part, T_map_truth.phi, T_map_truth.x, T_map_truth.y), 0.0), truth);
+    };
+    const Alignment found = quarter(truth_of(ground));
+    EXPECT_TRUE(found.aligned) << found.note;
+    EXPECT_NEAR((found.T_truth_map + T_map_truth).norm(), 0.0, 0.3);
+    EXPECT_FALSE(quarter(truth_of(other)).aligned);
+    EXPECT_FALSE(quarter(mirrored(truth_of(ground))).aligned);
+  }
+}
+
 /// The mirror image of these arenas fits their damaged maps nearly as well on the whole, but not where nothing is
 /// missing or nothing is added.
 TEST(Strangers, AMapThatIsPerfectOneWayIsToldFromItsMirrorImage) {
@@ -101,6 +121,30 @@ TEST(Strangers, TheMirrorImageOfABuildingThatIsNearlySymmetricIsNamed) {
     EXPECT_FALSE(found.aligned);
     EXPECT_NE(found.note.find("mirror image"), std::string::npos) << found.note;
     EXPECT_GT(found.mirrored, 0.9);
+  }
+}
+
+/// What a robot draws beside the walls fits neither way: the walls of one wing only tell the ways apart.
+TEST(Strangers, AFurnishedBuildingThatIsNearlySymmetricIsToldFromItsMirrorImage) {
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    OccupancyGrid truth = maze_of(seed, 12, 7);
+    for (int y = 0; y < truth.height(); ++y)
+      for (int x = 0; x < truth.width() / 2; ++x) truth[{truth.width() - 1 - x, y}] = truth[{x, y}];
+    draw_wall(truth, {8.0, 1.8}, {10.0, 1.8}, 2);
+    draw_wall(truth, {9.0, 3.0}, {9.0, 4.8}, 2);
+    OccupancyGrid furnished = truth;
+    for (int i = 0; i < 36; ++i) {
+      const TPoint2D p(0.9 + 0.36 * i, 0.9 + 0.6 * ((7 * i + static_cast<int>(seed)) % 11));
+      draw_wall(furnished, p, {p.x + 0.5, p.y + 0.3}, 2);
+    }
+    const auto aligned = [&](const OccupancyGrid& map) {
+      return align(crop_to_known(moved(map, 0.4, 1.0, 2.0), 0.0), crop_to_known(truth, 0.0));
+    };
+    const Alignment found = aligned(furnished);
+    EXPECT_TRUE(found.aligned) << found.note;
+    EXPECT_GT(found.mirrored, 0.8);
+    EXPECT_FALSE(aligned(mirrored(furnished)).aligned);
   }
 }
 

@@ -71,7 +71,7 @@ TEST(Trust, NoWitnessIsAskedWhereTheWallsAreRatherAgainstThePose) {
   EXPECT_GT(against_it, 0) << "nor with walls against it";
 }
 
-TEST(Trust, WallsThatMeetToTheDecimetreAtTwoPlacesAreRefusedAndNoWitnessIsAsked) {
+TEST(Trust, WallsThatMeetToTheDecimetreAtTwoPlacesAreRefusedButOtherWitnessesMayDecide) {
   const PoseEvidence tight = loose(0.9, 0.0);
   ASSERT_GE(tight_agreement(tight), kTightEnough);
   Rivals near;
@@ -79,8 +79,33 @@ TEST(Trust, WallsThatMeetToTheDecimetreAtTwoPlacesAreRefusedAndNoWitnessIsAsked)
   const Trust trust = judge(tight, tight, near);
   EXPECT_TRUE(trust.tight);
   EXPECT_FALSE(trust.trusted);
-  EXPECT_FALSE(trust.open);
+  EXPECT_TRUE(trust.open);
   EXPECT_TRUE(judge(tight, tight, Rivals{}).trusted);
+}
+
+TEST(Trust, OfAFragmentThatFitsAtTwoPlacesWitnessesAreAskedOnlyIfItIsLargeAndFitsWell) {
+  const auto fragment = [](double met, double area) {
+    PoseEvidence tight = loose(met, 0.0);
+    tight.map.known = 1.0;
+    tight.truth.known = 0.2;
+    tight.common_area = area;
+    Rivals near;
+    near.tight = 0.99 * tight_agreement(tight);
+    return judge(tight, tight, near);
+  };
+  EXPECT_FALSE(fragment(0.95, 18.0).trusted);
+  EXPECT_TRUE(fragment(0.95, 18.0).fragment);
+  EXPECT_TRUE(fragment(0.95, 18.0).open);
+  EXPECT_FALSE(fragment(0.95, 14.0).open);
+  EXPECT_FALSE(fragment(0.85, 18.0).open);
+}
+
+TEST(Trust, ADuelIsWonByWallsThatAreManyAndClearlyMore) {
+  EXPECT_TRUE(is_won({12.0, 2.0}));
+  EXPECT_FALSE(is_won({12.0, 8.0})) << "furniture may do that";
+  EXPECT_FALSE(is_won({1.2, 0.0})) << "two pieces of wall are soon on one side";
+  EXPECT_FALSE(is_won({2.0, 12.0}));
+  EXPECT_FALSE(is_won({0.0, 0.0})) << "a symmetric arena";
 }
 
 }  // namespace
