@@ -131,7 +131,15 @@ bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, cons
     thing.times = before.times + 1;
     thing.had_its_chance = before.had_its_chance;
     thing.let_go = before.let_go;
-    thing.low = before.low;
+    // The pallet as it is found now may be turned by a quarter.
+    const auto sides = middles_of_sides(thing.pallet(), config_.pallet);
+    const auto old_sides = middles_of_sides(before.pallet(), config_.pallet);
+    for (std::size_t side = 0; side < sides.size(); ++side) {
+      const auto nearest = std::min_element(old_sides.begin(), old_sides.end(), [&](const auto& a, const auto& b) {
+        return distance(a, sides[side]) < distance(b, sides[side]);
+      });
+      thing.low[side] = before.low[static_cast<std::size_t>(nearest - old_sides.begin())];
+    }
     thing.shut = before.shut;
     thing.stubs = thing.stubs || before.stubs || thing.times > 1;
     before = thing;

@@ -3,6 +3,7 @@
 #include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
@@ -89,12 +90,15 @@ class FeltObstacles {
     mrpt::math::TPose2D pallet() const { return anchor.T_map_base + T_base_pallet; }
   };
 
+  static bool has_stubs(const Thing& thing) {
+    return thing.stubs && !std::all_of(thing.low.begin(), thing.low.end(), [](bool low) { return low; });
+  }
   /// Once the robot has left it, all of the pallet is an obstacle.
   bool closes(const Thing& thing) const { return thing.shut || thing.times >= config_.tries; }
   /// All of the pallet is an obstacle.
   bool closed(const Thing& thing) const { return thing.whole || (closes(thing) && !thing.inside); }
   bool counts(const Thing& thing, Stamp now) const {
-    return now < thing.until && (!thing.is_pallet || thing.stubs || closed(thing));
+    return now < thing.until && (!thing.is_pallet || has_stubs(thing) || closed(thing));
   }
   void let_go(Thing& thing, Stamp now) const;
   bool feel_pallet(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,

@@ -118,6 +118,7 @@ double PalletGrid::depth(const TPoint2D& p_map) const {
 std::optional<PalletGrid> find_pallets(const OccupancyGrid& cells, double size, const TPoint2D& around, double radius) {
   std::vector<Piece> pieces;
   CircularMean direction;
+  if (cells.width() == 0 || cells.height() == 0) return std::nullopt;
   const auto within = [&](Cell c) {
     return Cell{std::clamp(c.x, 0, cells.width() - 1), std::clamp(c.y, 0, cells.height() - 1)};
   };

@@ -1,6 +1,8 @@
 #include "explore/search/floor_search.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "base/planar.h"
 
@@ -17,14 +19,31 @@ constexpr double kMoved = 0.05;                 ///< a look that moved less show
 constexpr double kMovedTurn = deg_to_rad(2.0);  ///< likewise
 constexpr double kSubjectRadius = 0.25;         ///< given up together with a place that cannot be seen [m]
 
+/// Of the cells that decide what a look shows: those it showed, and where its rays ended. FNV-1a, a word at a time.
+std::uint64_t sum_over(const Traversable& floor, const Glimpse& glimpse) {
+  const OccupancyGrid& cells = floor.cells;
+  const Cell low = cells.cell(glimpse.corner + TPoint2D(0.5, 0.5) * floor.frame().resolution);
+  const int west = std::max(0, low.x - 1), east = std::min(cells.width(), low.x + glimpse.width + 1);
+  const int south = std::max(0, low.y - 1), north = std::min(cells.height(), low.y + glimpse.height + 1);
+  std::uint64_t sum = 0xcbf29ce484222325u;
+  for (int y = south; y < north; ++y) {
+    const Occupancy* const row = cells.row(y);
+    for (int x = west; x < east; x += 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, row + x, static_cast<std::size_t>(std::min(8, east - x)));
+      sum = (sum ^ word) * 0x100000001b3u;
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 bool FloorSearch::look(const Traversable& floor, const TPose2D& T_map_base, double turn_rate, Stamp now) {
   if (!config_.on || now < next_look_ || std::abs(turn_rate) > kTurnRate) return false;
   next_look_ = now + kLookPeriod;
   // A look that shows nothing new need not be repeated.
-  if (look_around(floor, T_map_base))
-    looks_.push_back({{now, T_map_base}, T_map_base, searched_.last(), squarely_.last()});
+  if (look_around(floor, T_map_base)) looks_.push_back(last_look(floor, {now, T_map_base}));
   return true;
 }
 
@@ -33,6 +52,10 @@ bool FloorSearch::look_around(const Traversable& floor, const TPose2D& T_map_bas
   see_floor(floor, config_, T_map_base, view_);
   const bool anyhow = searched_.look(floor, view_);
   return squarely_.look(floor, view_) || anyhow;
+}
+
+FloorSearch::Look FloorSearch::last_look(const Traversable& floor, const Anchor& from) const {
+  return {from, from.T_map_base, searched_.last(), squarely_.last(), sum_over(floor, searched_.last())};
 }
 
 bool FloorSearch::moved(const Look& look) {
@@ -55,11 +78,9 @@ void FloorSearch::look_again(const Traversable& floor) {
   searched_.clear();
   squarely_.clear();
   for (Look& look : looks_) {
-    if (moved(look)) {
-      look.made_at = look.anchor.T_map_base;
-      look_around(floor, look.made_at);
-      look.anyhow = searched_.last();
-      look.squarely = squarely_.last();
+    if (moved(look) || look.ground != sum_over(floor, look.anyhow)) {
+      look_around(floor, look.anchor.T_map_base);
+      look = last_look(floor, look.anchor);
     } else {
       searched_.look(floor.frame(), look.anyhow);
       squarely_.look(floor.frame(), look.squarely);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -34,8 +35,8 @@ class FloorSearch {
   bool subject_seen(const Traversable& floor) const;
   /// The mapper corrected its past. True when a look moved by so much that the record must be made anew: `look_again`.
   bool follow(const slam::Mapper& mapper);
-  /// Makes the record of all looks anew. Those that moved are repeated from where they were made as is known now; what
-  /// the others showed is kept.
+  /// Makes the record of all looks anew. Those that moved, and those where the floor is another now, are repeated from
+  /// where they were made as is known now; what the others showed stays true.
   void look_again(const Traversable& floor);
   /// Counts the place to face and what is around it as searched, seen or not, until it is reconsidered.
   void give_up_subject(const Traversable& floor, const Anchor& here);
@@ -87,11 +88,13 @@ class FloorSearch {
   /// A look that showed something new.
   struct Look {
     Anchor anchor;
-    mrpt::math::TPose2D made_at;  ///< when what it shows was last looked at [map frame]
-    Glimpse anyhow;
+    mrpt::math::TPose2D made_at;  ///< when it was last repeated [map frame]
+    Glimpse anyhow;               ///< what it showed then ...
     Glimpse squarely;
+    std::uint64_t ground;  ///< ... and a sum over the floor there
   };
 
+  Look last_look(const Traversable& floor, const Anchor& from) const;
   static bool moved(const Look& look);
 
   SearchConfig config_;

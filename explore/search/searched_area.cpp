@@ -255,14 +255,17 @@ bool SearchedArea::look(const GridFrame& frame, const Glimpse& glimpse) {
   const GridFrame& own = twice_.frame();
   const auto cell = [&](double at, double from) { return static_cast<int>(std::lround((at - from) / own.resolution)); };
   const Cell low{cell(glimpse.corner.x, own.x0), cell(glimpse.corner.y, own.y0)};
+  // A map that was corrected may have become smaller.
+  const int south = std::max(0, -low.y), north = std::min(glimpse.height, own.height - low.y);
+  const int west = std::max(0, -low.x), east = std::min(glimpse.width, own.width - low.x);
   std::uint64_t news = 0;
-  for (int y = 0; y < glimpse.height; ++y) {
+  for (int y = south; y < north; ++y) {
     const Faces* const seen = glimpse.faces.data() + y * glimpse.width;
-    Faces* const once = once_.row(low.y + y) + low.x;
-    Faces* const twice = twice_.row(low.y + y) + low.x;
-    int x = 0;
-    for (; x + 8 <= glimpse.width; x += 8) news |= mark<std::uint64_t>(seen + x, once + x, twice + x);
-    for (; x < glimpse.width; ++x) news |= mark<Faces>(seen + x, once + x, twice + x);
+    Faces* const once = once_.row(low.y + y);
+    Faces* const twice = twice_.row(low.y + y);
+    int x = west;
+    for (; x + 8 <= east; x += 8) news |= mark<std::uint64_t>(seen + x, once + low.x + x, twice + low.x + x);
+    for (; x < east; ++x) news |= mark<Faces>(seen + x, once + low.x + x, twice + low.x + x);
   }
   return news != 0;
 }

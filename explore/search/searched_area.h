@@ -83,7 +83,7 @@ class SearchedArea {
 
   /// Marks what is in view of `floor`. Says whether that changed the record.
   bool look(const Traversable& floor, const FloorInView& view);
-  /// The same with what a look showed before, on a map with this frame or one that it grew from.
+  /// The same with what a look showed before, on a map that has this frame now; what lies beyond it is left out.
   bool look(const GridFrame& frame, const Glimpse& glimpse);
   /// What the last look showed.
   const Glimpse& last() const { return glimpse_; }

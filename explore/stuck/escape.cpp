@@ -57,7 +57,10 @@ void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures, 
 
 void Escape::start_move(const TPose2D& T_map_base, Stamp now) {
   move_begun_ = T_map_base;
-  move_until_ = now + (moves_[at_] == Move::Retrace || moves_[at_] == Move::Out ? kRetraceTime : kMoveTime);
+  const Move move = moves_[at_];
+  const bool turns = move == Move::Left || move == Move::Right;
+  const bool far = move == Move::Retrace || move == Move::Out || (way_out_ && !turns);
+  move_until_ = now + (far ? kRetraceTime : kMoveTime);
   old_stall_until_ = now + kOldStall;
   place_ = T_map_base;
   there_since_ = now;
@@ -136,10 +139,11 @@ std::optional<robot::Drive> Escape::command(const TPose2D& T_map_base, const std
     case Move::Back:
       break;
   }
-  // From the place of the trail where it is: what it has backed away from lies farther than that, but ahead.
+  // From the place of the trail where it is: what it has backed away from lies farther than that, but ahead. Of floor
+  // that was driven to and fro the last time counts.
   const auto away = [&](const TPoint2D& p) { return distance(p, position(T_map_base)); };
-  const auto here = std::min_element(trail.rbegin(), trail.rend(),
-                                     [&](const TPoint2D& p, const TPoint2D& q) { return away(p) < away(q); });
+  auto here = trail.rbegin();
+  while (here != trail.rend() && std::next(here) != trail.rend() && away(*std::next(here)) <= away(*here)) ++here;
   const auto behind = std::find_if(here, trail.rend(), [&](const TPoint2D& p) { return away(p) >= kBehind; });
   if (behind == trail.rend()) return robot::Drive{-kSpeed, 0.0};
   const double bearing = std::atan2(behind->y - T_map_base.y, behind->x - T_map_base.x);

@@ -32,7 +32,10 @@ std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_ma
                                                  bool on_purpose, double dt, Stamp now) {
   if (on_purpose) motion_.turns_on_purpose();
   // Nobody knows whether a base that is silent moves: a pulled plug is no obstacle.
-  if (odometry_at_ && now - *odometry_at_ > kOdometryLate) motion_.reset();
+  if (odometry_at_ && now - *odometry_at_ > kOdometryLate) {
+    motion_.reset();
+    slowed_.reset();
+  }
   const bool stuck =
       motion_.stuck(T_map_base, now < patient_until_ ? robot::Drive{} : commanded, stalled_, dt, wheels_);
   // Wheels that are dragged aside as the body turns jolt it too.

@@ -1,5 +1,6 @@
 #include "scoring/trajectory/trajectory_error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -46,13 +47,16 @@ double best_shrink(const std::vector<PosePair>& pairs, double turn) {
   estimate *= 1.0 / n;
   truth *= 1.0 / n;
   const double c = std::cos(turn), s = std::sin(turn);
-  double both = 0.0, own = 0.0;
+  double both = 0.0, own = 0.0, true_own = 0.0;
   for (const PosePair& pair : pairs) {
     const double x = pair.estimate.x - estimate.x, y = pair.estimate.y - estimate.y;
-    both += (c * x - s * y) * (pair.truth.x - truth.x) + (s * x + c * y) * (pair.truth.y - truth.y);
+    const double true_x = pair.truth.x - truth.x, true_y = pair.truth.y - truth.y;
+    both += (c * x - s * y) * true_x + (s * x + c * y) * true_y;
     own += x * x + y * y;
+    true_own += true_x * true_x + true_y * true_y;
   }
-  return both > 0.0 && own > n * kLeastSpread * kLeastSpread ? both / own : 1.0;
+  const bool tells = std::min(own, true_own) > n * kLeastSpread * kLeastSpread;
+  return tells && both > 0.0 ? both / own : 1.0;
 }
 
 }  // namespace

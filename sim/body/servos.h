@@ -10,9 +10,9 @@ namespace rubble::sim {
 /// platform's tilt takes out; zero by default.
 struct ServoParameters {
   double pulse_step = robot::kServoStep;  ///< turn per microsecond of pulse [rad]
-  double frame = 0.02;                    ///< a new pulse is taken every frame [s]
+  double frame = robot::kServoFrame;      ///< a new pulse is taken every frame [s]
   double dead_band = deg_to_rad(0.3);     ///< smaller errors do not move it [rad]
-  double response = 0.04;                 ///< speed = error / response [s]
+  double response = robot::kServoTime;    ///< speed = error / response [s]
   double max_rate = deg_to_rad(300.0);    ///< [rad/s]
   double max_angle = deg_to_rad(30.0);    ///< travel either way [rad]
   double centre_offset = 0.0;             ///< where it stands at 1500 us [rad]

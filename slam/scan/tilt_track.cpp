@@ -14,25 +14,25 @@ constexpr double kFarthest = 0.25;    ///< a sample this far from a stamp says n
 constexpr double kLongestWait = 0.2;  ///< for samples after a scan, and for the wheels after a sample [s]
 constexpr double kSteepest = 0.6;     ///< a robot that leans more lies on its side, or its sensor is broken [rad]
 constexpr double kImplausible = 2.0;  ///< more than so many g is no tilt but a fault
-constexpr double kServoFrame = 0.02;  ///< an RC servo takes a pulse each so often ...
-constexpr double kServoTime = 0.04;   ///< ... and has this time constant on its way there [s]
+constexpr double kAhead = 1.0;        ///< stamps so far in the future are wrong [s]
 
 }  // namespace
 
 void TiltTrack::add(const robot::Inputs& inputs) {
+  const auto stamped_well = [&](const auto& sample) { return sample.stamp - inputs.now <= kAhead; };
   for (const robot::Odometry& odometry : inputs.odometry)
-    if (std::isfinite(odometry.v) && std::isfinite(odometry.w) &&
+    if (stamped_well(odometry) && std::isfinite(odometry.v) && std::isfinite(odometry.w) &&
         (wheels_.empty() || odometry.stamp > wheels_.back().stamp))
       wheels_.push_back(odometry);
-  for (const robot::AimState& aim : inputs.aims) follow(aim);
+  for (const robot::AimState& aim : inputs.aims)
+    if (stamped_well(aim)) follow(aim);
   for (const robot::Acceleration& acceleration : inputs.accelerations)
-    if (std::abs(acceleration.x) < kImplausible * robot::kGravity &&
+    if (stamped_well(acceleration) && std::abs(acceleration.x) < kImplausible * robot::kGravity &&
         std::abs(acceleration.y) < kImplausible * robot::kGravity)
       waiting_.push_back(acceleration);
+  const bool wheels_talk = !wheels_.empty() && inputs.now - wheels_.back().stamp <= kLongestWait;
   while (!waiting_.empty()) {
-    const Stamp stamp = waiting_.front().stamp;
-    const bool known = !wheels_.empty() && wheels_.back().stamp >= stamp;
-    if (!known && inputs.now - stamp <= kLongestWait) break;
+    if (wheels_talk && wheels_.back().stamp < waiting_.front().stamp) break;
     follow(waiting_.front());
     waiting_.pop_front();
   }
@@ -47,7 +47,7 @@ void TiltTrack::follow(const robot::AimState& aim) {
   }
   const robot::AimState& before = aims_.back();
   if (aim.stamp <= before.stamp) return;
-  const double share = 1.0 - std::exp(-(aim.stamp - before.stamp) / kServoTime);
+  const double share = 1.0 - std::exp(-(aim.stamp - before.stamp) / robot::kServoTime);
   aims_.push_back(
       {aim.stamp, before.pitch + share * (aim.pitch - before.pitch), before.roll + share * (aim.roll - before.roll)});
 }
@@ -108,7 +108,7 @@ std::optional<ScanTilt> TiltTrack::at(Stamp stamp) const {
 
 /// Half a frame passes until a pulse is taken. The servos hold their last angle; zero while none is known.
 robot::AimState TiltTrack::aim_at(Stamp stamp) const {
-  const auto after = std::upper_bound(aims_.begin(), aims_.end(), stamp + -0.5 * kServoFrame,
+  const auto after = std::upper_bound(aims_.begin(), aims_.end(), stamp + -0.5 * robot::kServoFrame,
                                       [](Stamp s, const robot::AimState& aim) { return s < aim.stamp; });
   if (after == aims_.begin()) return aims_.empty() ? robot::AimState{} : aims_.front();
   return *(after - 1);

@@ -183,6 +183,30 @@ TEST(Escape, BacksOutOfATrapAlongItsTrailToTheEnd) {
   EXPECT_LT(ahead, 1e-4) << "never ahead";
 }
 
+/// Floor that it had left the other way before: of the two passes the last one counts.
+TEST(Escape, BacksAlongTheLastOfTwoPasses) {
+  Trap trap;
+  trap.size = 1.2;
+  const auto arc = [](double radius, double deg) {
+    return TPoint2D{radius * std::sin(deg_to_rad(deg)), 1.2 - radius * std::cos(deg_to_rad(deg))};
+  };
+  const auto most_aside = [&](const std::vector<TPoint2D>& trail) {
+    Puppet puppet;
+    double most = 0.0;
+    puppet.may = [&](const TPose2D& p) {
+      most = std::max(most, std::abs(std::hypot(p.x, p.y - 1.2) - 1.2));
+      return true;
+    };
+    run(puppet, Escape::Met::Forwards, trail, kRoom, 0, {}, WayOut(robot::RobotModel{}, trap, {}, {}));
+    return most;
+  };
+  std::vector<TPoint2D> once, twice;
+  for (double deg = -75.0; deg <= 0.0; deg += 7.0) once.push_back(arc(1.2, deg));
+  for (double deg = -1.0; deg >= -75.0; deg -= 7.0) twice.push_back(arc(1.21, deg));
+  twice.insert(twice.end(), once.begin(), once.end());
+  EXPECT_LT(most_aside(twice), most_aside(once) + 0.005);
+}
+
 /// Where no plan leads out, pose by pose the way it came may.
 TEST(Escape, RetracesItsWayOutOfATrapWithoutAPlan) {
   Trap trap;

@@ -97,6 +97,11 @@ TEST(TrajectoryError, ARobotThatStoodHasNoSize) {
   Trajectory stood;
   for (int i = 0; i < 5; ++i) stood.push_back({Stamp::from_seconds(i), TPose2D(1.0, 2.0, 0.3)});
   EXPECT_EQ(trajectory_error(stood, stood).scale, 1.0);
+  Rng noise(8, "noise");
+  Trajectory jitters = stood;
+  for (StampedPose& stamped : jitters) stamped.pose.x += noise.gaussian(0.01);
+  EXPECT_EQ(trajectory_error(jitters, stood).scale, 1.0);
+  EXPECT_EQ(trajectory_error(stood, jitters).scale, 1.0);
 }
 
 TEST(TrajectoryError, NoRigidTransformBeatsTheBestOne) {

@@ -144,7 +144,7 @@ TEST(TiltTrack, SilentWheelsAreNotWaitedForAndTakeNothingAway) {
        }()) {
     if (tick.now > Stamp::from_seconds(1.0)) tick.odometry.clear();
     track.add(tick);
-    const Stamp scan = tick.now + -0.3;
+    const Stamp scan = tick.now + -0.12;
     if (scan < Stamp::from_seconds(2.0)) continue;
     ASSERT_TRUE(track.ready(scan, tick.now));
     const auto tilt = track.at(scan);
@@ -153,6 +153,28 @@ TEST(TiltTrack, SilentWheelsAreNotWaitedForAndTakeNothingAway) {
     ++told;
   }
   EXPECT_GT(told, 100);
+}
+
+TEST(TiltTrack, StampsFromTheFutureChangeNothing) {
+  Ride ride;
+  ride.w = [](double t) { return std::sin(1.1 * t); };
+  ride.pitch = [](double) { return deg_to_rad(4.0); };
+  TiltTrack right(RobotModel(), {}), spoiled(RobotModel(), {});
+  for (Inputs tick : sensed(ride, RobotModel(), 6.0)) {
+    right.add(tick);
+    if (tick.now == Stamp::from_seconds(2.0)) {
+      const Stamp ahead = tick.now + 3600.0;
+      tick.odometry.push_back({ahead, {}, 0.1, 0.1, false});
+      tick.accelerations.push_back({ahead, 0.0, 0.0});
+      tick.aims.push_back({ahead, 0.5, 0.5});
+    }
+    spoiled.add(tick);
+  }
+  const Stamp scan = Stamp::from_seconds(5.5);
+  ASSERT_TRUE(right.at(scan));
+  ASSERT_TRUE(spoiled.at(scan));
+  EXPECT_EQ(right.at(scan)->pitch, spoiled.at(scan)->pitch);
+  EXPECT_EQ(right.at(scan)->body_roll, spoiled.at(scan)->body_roll);
 }
 
 TEST(TiltTrack, WithoutAccelerationsNothingIsToldAndNothingWaitedFor) {
