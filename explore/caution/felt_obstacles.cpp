@@ -1,7 +1,6 @@
 #include "explore/caution/felt_obstacles.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -22,20 +21,15 @@ constexpr double kBarStep = 0.1;      ///< [m]
 constexpr double kBeyondEdge = 0.10;  ///< what stopped the body lies less than this ahead of it [m]
 constexpr double kCorner = 0.4;       ///< corners of the body lie so much of its width beside its middle
 constexpr double kInset = 0.02;       ///< a pallet counts but for so much of its rim [m]
-constexpr double kHeldAgain =
-    60.0;                           ///< held on a pallet for the second time within so long, the robot is in a trap [s]
-constexpr double kOnPallet = 0.20;  ///< so far inside its edges the robot's middle stands on a pallet [m]
+constexpr double kOnPallet = 0.20;    ///< so far inside its edges the robot's middle stands on a pallet [m]
 
-/// Where crossing ramps have their high corners.
-std::array<TPoint2D, 4> middles_of_sides(const TPose2D& T_map_pallet, double size) {
+void add_pallet(const TPose2D& T_map_pallet, bool whole, double size, std::vector<TPoint2D>& points) {
   const double half = 0.5 * size;
-  std::array<TPoint2D, 4> sides{TPoint2D{half, 0.0}, TPoint2D{-half, 0.0}, TPoint2D{0.0, half}, TPoint2D{0.0, -half}};
-  for (TPoint2D& side : sides) side = T_map_pallet.composePoint(side);
-  return sides;
-}
-
-void add_all(const TPose2D& T_map_pallet, double size, std::vector<TPoint2D>& points) {
-  const double half = 0.5 * size;
+  if (!whole) {
+    for (const TPoint2D& side : {TPoint2D{half, 0.0}, TPoint2D{-half, 0.0}, TPoint2D{0.0, half}, TPoint2D{0.0, -half}})
+      points.push_back(T_map_pallet.composePoint(side));
+    return;
+  }
   const int steps = static_cast<int>(std::lround((size - 2.0 * kInset) / kBarStep));
   const double from = -half + kInset, step = (size - 2.0 * kInset) / std::max(1, steps);
   for (int i = 0; i <= steps; ++i)
@@ -121,7 +115,7 @@ bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, cons
   thing.is_pallet = true;
   thing.until = kForGood;
   thing.T_base_pallet = TPose2D{middle.x, middle.y, grid.angle} - T_map_base;
-  thing.inside = thing.held_inside = there == own;
+  thing.inside = there == own;
   const bool stood_on = thing.inside || std::any_of(trail.begin(), trail.end(),
                                                     [&](const TPoint2D& p) { return holds(thing, p, kOnPallet); });
   thing.whole = thing.stubs = !stood_on;
@@ -131,15 +125,6 @@ bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, cons
     thing.times = before.times + 1;
     thing.had_its_chance = before.had_its_chance;
     thing.let_go = before.let_go;
-    // The pallet as it is found now may be turned by a quarter.
-    const auto sides = middles_of_sides(thing.pallet(), config_.pallet);
-    const auto old_sides = middles_of_sides(before.pallet(), config_.pallet);
-    for (std::size_t side = 0; side < sides.size(); ++side) {
-      const auto nearest = std::min_element(old_sides.begin(), old_sides.end(), [&](const auto& a, const auto& b) {
-        return distance(a, sides[side]) < distance(b, sides[side]);
-      });
-      thing.low[side] = before.low[static_cast<std::size_t>(nearest - old_sides.begin())];
-    }
     thing.shut = before.shut;
     thing.stubs = thing.stubs || before.stubs || thing.times > 1;
     before = thing;
@@ -149,10 +134,9 @@ bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, cons
   return !stood_on;
 }
 
-std::optional<Trap> FeltObstacles::trap(const TPose2D& T_map_base, Stamp now) {
+std::optional<Trap> FeltObstacles::trap(const TPose2D& T_map_base) {
   for (Thing& thing : things_) {
-    if (!thing.is_pallet || !holds(thing, position(T_map_base), 0.0)) continue;
-    if (!thing.let_go && !(thing.held_inside && now - thing.anchor.stamp < kHeldAgain)) continue;
+    if (!thing.is_pallet || !thing.let_go || !holds(thing, position(T_map_base), 0.0)) continue;
     thing.inside = thing.shut = thing.stubs = true;
     thing.until = kForGood;
     return Trap{thing.anchor, thing.T_base_pallet, config_.pallet};
@@ -167,9 +151,6 @@ void FeltObstacles::passed(const TPose2D& T_map_base, const robot::RobotModel& m
     if (!thing.is_pallet) continue;
     thing.inside = holds(thing, here, 0.0);
     if (holds(thing, here, kOnPallet)) thing.whole = thing.certain = false;
-    const auto sides = middles_of_sides(thing.pallet(), config_.pallet);
-    for (std::size_t side = 0; side < sides.size(); ++side)
-      thing.low[side] = thing.low[side] || distance(sides[side], here) < radius;
   }
   things_.erase(
       std::remove_if(things_.begin(), things_.end(),
@@ -186,13 +167,7 @@ std::vector<TPoint2D> FeltObstacles::points(Stamp now) const {
   for (const Thing& thing : things_) {
     if (!counts(thing, now)) continue;
     if (thing.is_pallet) {
-      if (closed(thing)) {
-        add_all(thing.pallet(), config_.pallet, points);
-        continue;
-      }
-      const auto sides = middles_of_sides(thing.pallet(), config_.pallet);
-      for (std::size_t side = 0; side < sides.size(); ++side)
-        if (!thing.low[side]) points.push_back(sides[side]);
+      add_pallet(thing.pallet(), closed(thing), config_.pallet, points);
       continue;
     }
     for (double aside = -thing.half_bar; aside < thing.half_bar + 0.5 * kBarStep; aside += kBarStep)
@@ -221,18 +196,9 @@ bool FeltObstacles::forget_once(Stamp now) {
   bool any = false;
   for (Thing& thing : things_) {
     if (thing.had_its_chance) continue;
-    if (!thing.is_pallet) {
-      any = any || counts(thing, now);
-      thing.had_its_chance = true;
-      let_go(thing, now);
-      continue;
-    }
-    if (now >= thing.until || (!closed(thing) && !closes(thing))) continue;
-    // It may be driven on, but between its high corners, which stay.
-    thing.had_its_chance = thing.let_go = thing.stubs = true;
-    thing.whole = thing.certain = thing.shut = false;
-    thing.times = 1;
-    any = true;
+    any = any || counts(thing, now);
+    thing.had_its_chance = true;
+    let_go(thing, now);
   }
   return any;
 }
@@ -249,8 +215,8 @@ bool FeltObstacles::pardon(Stamp now) {
   }
   if (any) return true;
   for (Thing& thing : things_) {
-    // Between the high corners of a pallet there is a way, so they stay.
-    if (!counts(thing, now) || thing.is_pallet || thing.times >= config_.certain) continue;
+    const bool certain = thing.is_pallet ? thing.certain || closed(thing) : thing.times >= config_.certain;
+    if (!counts(thing, now) || certain) continue;
     thing.until = now;
     any = true;
   }

@@ -3,8 +3,6 @@
 #include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
-#include <algorithm>
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -41,9 +39,9 @@ class FeltObstacles {
   bool feel(const Anchor& anchor, bool behind, const robot::RobotModel& model,
             const std::optional<PalletGrid>& grid = std::nullopt, const std::vector<mrpt::math::TPoint2D>& trail = {},
             const OccupancyGrid* known = nullptr);
-  /// Something holds the robot here. Where that is on a pallet that was taken for an obstacle and then let go of, or
-  /// that held it just before, it is one: it is left alone once the robot has left it. Returns that pallet.
-  std::optional<Trap> trap(const mrpt::math::TPose2D& T_map_base, Stamp now);
+  /// Something holds the robot here. Where that is on a pallet that was taken for an obstacle and then let go of, it is
+  /// one: it is left alone once the robot has left it. Returns that pallet.
+  std::optional<Trap> trap(const mrpt::math::TPose2D& T_map_base);
   /// The robot stands here in good order: what was felt below the middle of its body is not there, or can be passed; a
   /// pallet it stands on can be driven on.
   void passed(const mrpt::math::TPose2D& T_map_base, const robot::RobotModel& model);
@@ -56,14 +54,13 @@ class FeltObstacles {
   int count(Stamp now) const;
   /// Counts less as an obstacle, for nothing else can be reached: first every bar shrinks to its middle, which leaves a
   /// lane beside it in a corridor, and every pallet to the middles of its sides, where crossing ramps have their high
-  /// corners, until the robot has passed them; felt again it is taken for a step field, for good. The next time bars
-  /// that are not certain are forgotten until they are felt again.
+  /// corners; felt again it is taken for a step field, for good. The next time things that are not certain are
+  /// forgotten until they are felt again.
   /// Says whether anything changed.
   bool pardon(Stamp now);
   /// Forgets everything until it is felt again; says whether anything counted.
   bool forget(Stamp now);
-  /// Forgets what was never forgotten so before: what was felt again since stays. Of pallets the middles of the sides
-  /// stay, as after a pardon. Says whether there was any.
+  /// Forgets what was never forgotten so before: what was felt again since stays. Says whether there was any.
   bool forget_once(Stamp now);
 
  private:
@@ -79,8 +76,6 @@ class FeltObstacles {
     bool certain = false;               ///< it was felt again after a pardon
     bool stubs = false;                 ///< else, whether the middles of its sides count
     bool inside = false;                ///< the robot's middle is on it
-    std::array<bool, 4> low{};          ///< of those middles the ones that the robot's middle has passed
-    bool held_inside = false;           ///< and was when something held it there last
     bool let_go = false;                ///< it was an obstacle, and pardoned or forgotten
     bool shut = false;                  ///< it held the robot after that: it is left alone once left
     bool had_its_chance = false;        ///< it was forgotten once, to be tried again
@@ -90,15 +85,12 @@ class FeltObstacles {
     mrpt::math::TPose2D pallet() const { return anchor.T_map_base + T_base_pallet; }
   };
 
-  static bool has_stubs(const Thing& thing) {
-    return thing.stubs && !std::all_of(thing.low.begin(), thing.low.end(), [](bool low) { return low; });
-  }
-  /// Once the robot has left it, all of the pallet is an obstacle.
-  bool closes(const Thing& thing) const { return thing.shut || thing.times >= config_.tries; }
   /// All of the pallet is an obstacle.
-  bool closed(const Thing& thing) const { return thing.whole || (closes(thing) && !thing.inside); }
+  bool closed(const Thing& thing) const {
+    return thing.whole || ((thing.shut || thing.times >= config_.tries) && !thing.inside);
+  }
   bool counts(const Thing& thing, Stamp now) const {
-    return now < thing.until && (!thing.is_pallet || has_stubs(thing) || closed(thing));
+    return now < thing.until && (!thing.is_pallet || thing.stubs || closed(thing));
   }
   void let_go(Thing& thing, Stamp now) const;
   bool feel_pallet(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,

@@ -41,9 +41,8 @@ class LeftAlone {
   /// map, in which pallets may show. Says whether a whole pallet is left alone for it.
   bool feel(const Anchor& anchor, bool behind, const robot::RobotModel& model, const OccupancyGrid& known,
             const Trail& trail);
-  /// Something holds the robot here: the pallet that it has to get out of, if it is on one that was let go of or held
-  /// it just before.
-  std::optional<Trap> trap(const mrpt::math::TPose2D& T_map_base, Stamp now) { return felt_.trap(T_map_base, now); }
+  /// Something holds the robot here: the pallet that it has to get out of, if it is on one that was let go of.
+  std::optional<Trap> trap(const mrpt::math::TPose2D& T_map_base) { return felt_.trap(T_map_base); }
   /// The robot stands here in good order.
   void passed(const mrpt::math::TPose2D& T_map_base, const robot::RobotModel& model) {
     felt_.passed(T_map_base, model);

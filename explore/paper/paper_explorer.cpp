@@ -209,7 +209,7 @@ void PaperExplorer::get_free_of(const StuckWatch::Hold& hold, const slam::Mapper
 
 /// Nothing where the robot is in no trap.
 std::optional<WayOut> PaperExplorer::way_out(const slam::Mapper& mapper) {
-  const std::optional<Trap> trap = left_alone_.trap(pose_, now_);
+  const std::optional<Trap> trap = left_alone_.trap(pose_);
   if (!trap) return std::nullopt;
   // What was felt on the pallet are its own high corners, as far as anybody knows.
   std::vector<TPoint2D> obstacles;
