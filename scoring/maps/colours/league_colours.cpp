@@ -193,7 +193,10 @@ struct Ink {
   }
   /// Most of it is of the table.
   bool is_known() const { return 10 * known >= 9 * all; }
-  bool is_strange() const { return 2 * known < all; }
+  bool is_strange() const { return all >= kFewest && 2 * known < all; }
+
+ private:
+  static constexpr std::size_t kFewest = 60;  ///< pixels that tell: blended at coarser pixels, a small map keeps fewer
 };
 
 /// Each colour and how often it is there, the most frequent first; nothing of pictures with more than a few thousand.
