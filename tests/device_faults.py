@@ -72,7 +72,7 @@ LATE = 0.35         # a scan's period, the driver's turns, the wheels' lag, the 
 NOTICED = 0.15      # the driver's turn and what a busy machine adds, from when it must notice to set points of zero [s]
 MOUNT_WAY, MOUNT_TURN = 2.0, 12.0  # so far an explorer gets before a wrong mount is found out, at most [m], [rad]
 DRIVES = 0.15       # slower than this says nothing of a stop: the fault is tried again at another moment [m/s]
-TRIES = 4
+TRIES = 8
 WORST_MAP = 0.05    # a map may be so much worse than without a fault
 PLAIN_MAP = 0.9     # and without one it is at least so good
 MOST_CPU, MOST_ANSWER_MS = 0.15, 30.0
@@ -297,15 +297,19 @@ def refusal(rows, path):
 
 def moments(rows, first):
     """When a drive without a fault went straight on at a good speed, so that one that strikes then meets a robot that drives [s]."""
-    found, last = [], -1e9
-    for i in range(0, len(rows), 5):
-        t = rows[i][0] - rows[0][0]
-        if t < first or t - last < 0.7:
-            continue
-        ahead = [motion(rows, j) for j in range(i, min(len(rows), i + 150), 10)]
-        if len(ahead) == 15 and all(v > 0.3 and w < 0.3 for v, w in ahead):
-            found.append(round(t, 1))
-            last = t
+    found = []
+    for steps in (15, 8, 4):  # of 0.2 s each: a drive that does little else than turn has few long ways
+        found, last = [], -1e9
+        for i in range(0, len(rows), 5):
+            t = rows[i][0] - rows[0][0]
+            if t < first or t - last < 0.7:
+                continue
+            ahead = [motion(rows, j) for j in range(i, min(len(rows), i + 10 * steps), 10)]
+            if len(ahead) == steps and all(v > 0.3 and w < 0.3 for v, w in ahead):
+                found.append(round(t, 1))
+                last = t
+        if len(found) >= TRIES:
+            break
     return found
 
 
