@@ -23,8 +23,8 @@ struct WheelMotion {
   double turn_acceleration = 0.0;  ///< of w [rad/s^2]
 };
 
-/// What the wheels do between two odometries, at a stamp within or after them; without acceleration where these lie more
-/// than kTiltSilence apart.
+/// What the wheels do between two odometries, at a stamp within or after them; without acceleration where these lie
+/// more than kTiltSilence apart.
 WheelMotion wheel_motion(const Odometry& before, const Odometry& after, Stamp at);
 
 /// Where the accelerometer sits, from the turning centre of the base, when all is level [m].

@@ -24,8 +24,8 @@ struct SlowedWatchConfig {
 
 /// Finds out what a weak blow was. Where a corner of the body meets a step the blow takes a part of its speed only, as
 /// the edge of a ramp does that it climbs: but then it falls behind its wheels, or is turned aside. Over a crest it may
-/// seem to fall behind, for its scans are not level meanwhile; the servos' angles tell it, so with a laser that is fixed to
-/// the robot a crest may be taken for a step.
+/// seem to fall behind, for its scans are not level meanwhile; the servos' angles tell it, so with a laser that is
+/// fixed to the robot a crest may be taken for a step.
 class SlowedWatch {
  public:
   explicit SlowedWatch(const SlowedWatchConfig& config = {}) : config_(config) {}
