@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angle.h"
+#include "robot/felt_tilt.h"
 #include "robot/hardware_units.h"
 #include "sim/laser/rays.h"
 
@@ -34,8 +35,8 @@ Accelerometer::Accelerometer(const robot::RobotModel& model, const Accelerometer
 Vector3d Accelerometer::specific_force(const WorldState& state, double dt) {
   const Placement base = base_placement(state);
   const bool on_platform = model_.accelerometer_mount == robot::AccelerometerMount::Platform;
-  const mrpt::math::TPose3D& mount = model_.T_base_laser;
-  const Vector3d lever = base.R * Vector3d(on_platform ? mount.x : 0.0, on_platform ? mount.y : 0.0, mount.z);
+  const mrpt::math::TPoint2D place = robot::accelerometer_place(model_);
+  const Vector3d lever = base.R * Vector3d(place.x, place.y, model_.T_base_laser.z);
   Eigen::Matrix3d R = base.R;
   if (on_platform) R = base.R * rotation(0.0, state.aim.pitch, state.aim.roll);
   Vector3d acceleration = Vector3d::Zero();

@@ -124,7 +124,6 @@ std::optional<PalletGrid> find_pallets(const OccupancyGrid& cells, double size, 
   };
   const Cell low = cells.cell({around.x - radius, around.y - radius});
   const Cell high = cells.cell({around.x + radius, around.y + radius});
-  if (low.x >= cells.width() || low.y >= cells.height() || high.x < 0 || high.y < 0) return std::nullopt;
   const OccupiedRows occupied(cells, within({low.x - kReach, low.y - kReach}),
                               within({high.x + kReach, high.y + kReach}));
   for (int y = std::max(0, low.y); y <= std::min(cells.height() - 1, high.y); ++y)

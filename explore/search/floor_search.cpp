@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "base/planar.h"
 
@@ -19,22 +18,19 @@ constexpr double kMoved = 0.05;                 ///< a look that moved less show
 constexpr double kMovedTurn = deg_to_rad(2.0);  ///< likewise
 constexpr double kSubjectRadius = 0.25;         ///< given up together with a place that cannot be seen [m]
 
-/// Of the cells that decide what a look shows: those it showed, and where its rays ended. FNV-1a, a word at a time.
-std::uint64_t sum_over(const Traversable& floor, const Glimpse& glimpse) {
-  const OccupancyGrid& cells = floor.cells;
-  const Cell low = cells.cell(glimpse.corner + TPoint2D(0.5, 0.5) * floor.frame().resolution);
-  const int west = std::max(0, low.x - 1), east = std::min(cells.width(), low.x + glimpse.width + 1);
-  const int south = std::max(0, low.y - 1), north = std::min(cells.height(), low.y + glimpse.height + 1);
-  std::uint64_t sum = 0xcbf29ce484222325u;
-  for (int y = south; y < north; ++y) {
-    const Occupancy* const row = cells.row(y);
-    for (int x = west; x < east; x += 8) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, row + x, static_cast<std::size_t>(std::min(8, east - x)));
-      sum = (sum ^ word) * 0x100000001b3u;
-    }
-  }
-  return sum;
+/// The floor that decides what a look sees: what it saw, and the cells around, where its rays ended.
+OccupancyGrid ground_of(const Grid<Faces>& seen, const OccupancyGrid& floor) {
+  GridFrame frame = seen.frame();
+  frame.x0 -= frame.resolution;
+  frame.y0 -= frame.resolution;
+  frame.width += 2;
+  frame.height += 2;
+  OccupancyGrid ground(frame, Occupancy::Unknown);
+  const Cell low = floor.cell(frame.centre({0, 0}));
+  const int west = std::max(0, -low.x), east = std::min(frame.width, floor.width() - low.x);
+  for (int y = std::max(0, -low.y); y < std::min(frame.height, floor.height() - low.y) && west < east; ++y)
+    std::copy(floor.row(low.y + y) + low.x + west, floor.row(low.y + y) + low.x + east, ground.row(y) + west);
+  return ground;
 }
 
 }  // namespace
@@ -55,7 +51,7 @@ bool FloorSearch::look_around(const Traversable& floor, const TPose2D& T_map_bas
 }
 
 FloorSearch::Look FloorSearch::last_look(const Traversable& floor, const Anchor& from) const {
-  return {from, from.T_map_base, searched_.last(), squarely_.last(), sum_over(floor, searched_.last())};
+  return {from, from.T_map_base, searched_.seen(), squarely_.seen(), ground_of(searched_.seen(), floor.cells)};
 }
 
 bool FloorSearch::moved(const Look& look) {
@@ -78,7 +74,7 @@ void FloorSearch::look_again(const Traversable& floor) {
   searched_.clear();
   squarely_.clear();
   for (Look& look : looks_) {
-    if (moved(look) || look.ground != sum_over(floor, look.anyhow)) {
+    if (moved(look) || look.ground.cells() != ground_of(look.anyhow, floor.cells).cells()) {
       look_around(floor, look.anchor.T_map_base);
       look = last_look(floor, look.anchor);
     } else {

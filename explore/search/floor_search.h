@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -89,9 +88,9 @@ class FloorSearch {
   struct Look {
     Anchor anchor;
     mrpt::math::TPose2D made_at;  ///< when it was last repeated [map frame]
-    Glimpse anyhow;               ///< what it showed then ...
-    Glimpse squarely;
-    std::uint64_t ground;  ///< ... and a sum over the floor there
+    Grid<Faces> anyhow;           ///< what it saw then ...
+    Grid<Faces> squarely;
+    OccupancyGrid ground;  ///< ... and the floor there
   };
 
   Look last_look(const Traversable& floor, const Anchor& from) const;

@@ -201,21 +201,20 @@ void see_floor(const Traversable& floor, const SearchConfig& config, const TPose
 }
 
 bool SearchedArea::look(const Traversable& floor, const FloorInView& view) {
-  glimpse_.width = glimpse_.height = 0;
+  seen_ = Grid<Faces>();
   if (floor.cells.width() == 0 || view.rays.back().end == 0) return false;
-  const GridFrame& frame = floor.frame();
   const auto nearest = static_cast<std::size_t>(std::ceil(inspection_.nearest / view.step));
   const auto beyond = static_cast<std::size_t>(inspection_.farthest / view.step) + 1;
   // Rays overlap near the robot: what they see is put together in a small window first.
-  glimpse_.corner = {frame.x0 + view.low.x * frame.resolution, frame.y0 + view.low.y * frame.resolution};
-  const int width = glimpse_.width = view.high.x - view.low.x + 1;
-  glimpse_.height = view.high.y - view.low.y + 1;
-  glimpse_.faces.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(glimpse_.height), 0);
-  Faces* const window = glimpse_.faces.data();
+  GridFrame window = floor.frame();
+  window.x0 += view.low.x * window.resolution;
+  window.y0 += view.low.y * window.resolution;
+  window.width = view.high.x - view.low.x + 1;
+  window.height = view.high.y - view.low.y + 1;
+  seen_ = Grid<Faces>(window);
   const auto mark = [&](std::size_t first, std::size_t end, Faces faces) {
     for (std::size_t k = first; k < end; ++k) {
-      const Cell c = view.cells[k];
-      Faces& seen = window[(c.y - view.low.y) * width + c.x - view.low.x];
+      Faces& seen = seen_[{view.cells[k].x - view.low.x, view.cells[k].y - view.low.y}];
       seen = static_cast<Faces>(seen | faces);
     }
   };
@@ -226,7 +225,7 @@ bool SearchedArea::look(const Traversable& floor, const FloorInView& view) {
     mark(near, far, faces_along(ray.dx, ray.dy, inspection_.incidence));
     mark(far, ray.end, kFloor);
   }
-  return look(frame, glimpse_);
+  return look(floor.frame(), seen_);
 }
 
 namespace {
@@ -250,22 +249,21 @@ Word mark(const Faces* seen, Faces* once, Faces* twice) {
 
 }  // namespace
 
-bool SearchedArea::look(const GridFrame& frame, const Glimpse& glimpse) {
+bool SearchedArea::look(const GridFrame& frame, const Grid<Faces>& seen) {
   cover(frame);
-  const GridFrame& own = twice_.frame();
-  const auto cell = [&](double at, double from) { return static_cast<int>(std::lround((at - from) / own.resolution)); };
-  const Cell low{cell(glimpse.corner.x, own.x0), cell(glimpse.corner.y, own.y0)};
+  if (seen.width() == 0) return false;
+  const Cell low = shift_from(seen.frame());
   // A map that was corrected may have become smaller.
-  const int south = std::max(0, -low.y), north = std::min(glimpse.height, own.height - low.y);
-  const int west = std::max(0, -low.x), east = std::min(glimpse.width, own.width - low.x);
+  const int south = std::max(0, -low.y), north = std::min(seen.height(), twice_.height() - low.y);
+  const int west = std::max(0, -low.x), east = std::min(seen.width(), twice_.width() - low.x);
   std::uint64_t news = 0;
   for (int y = south; y < north; ++y) {
-    const Faces* const seen = glimpse.faces.data() + y * glimpse.width;
+    const Faces* const row = seen.row(y);
     Faces* const once = once_.row(low.y + y);
     Faces* const twice = twice_.row(low.y + y);
     int x = west;
-    for (; x + 8 <= east; x += 8) news |= mark<std::uint64_t>(seen + x, once + low.x + x, twice + low.x + x);
-    for (; x < east; ++x) news |= mark<Faces>(seen + x, once + low.x + x, twice + low.x + x);
+    for (; x + 8 <= east; x += 8) news |= mark<std::uint64_t>(row + x, once + low.x + x, twice + low.x + x);
+    for (; x < east; ++x) news |= mark<Faces>(row + x, once + low.x + x, twice + low.x + x);
   }
   return news != 0;
 }

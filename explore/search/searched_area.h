@@ -65,14 +65,6 @@ struct FloorInView {
   Cell low, high;           ///< the corners of the rectangle that holds them
 };
 
-/// What a look showed, cell by cell; 0: nothing.
-struct Glimpse {
-  mrpt::math::TPoint2D corner;  ///< of the lowest cell [m, map frame]
-  int width = 0;
-  int height = 0;
-  std::vector<Faces> faces;  ///< row by row, the lowest first
-};
-
 /// The floor and the wall faces the victim sensors have looked at. Places mapped from afar are known but not searched
 /// ("inner exploration"); a wall passed by at a grazing angle is not either, for what hangs on it or stands behind its
 /// holes was not to be seen. A single look may overlook something, so a place counts after two.
@@ -83,10 +75,10 @@ class SearchedArea {
 
   /// Marks what is in view of `floor`. Says whether that changed the record.
   bool look(const Traversable& floor, const FloorInView& view);
-  /// The same with what a look showed before, on a map that has this frame now; what lies beyond it is left out.
-  bool look(const GridFrame& frame, const Glimpse& glimpse);
-  /// What the last look showed.
-  const Glimpse& last() const { return glimpse_; }
+  /// The same with what a look saw before, on a map that has this frame now; what lies beyond it is left out.
+  bool look(const GridFrame& frame, const Grid<Faces>& seen);
+  /// What the last look at a floor saw, in the rectangle that holds it.
+  const Grid<Faces>& seen() const { return seen_; }
   /// Counts `faces` within `radius` of a place that turned out not to be visible as looked at.
   void give_up(const Traversable& floor, const mrpt::math::TPoint2D& place, double radius, Faces faces);
   /// What is left to be looked at in a cell of `floor`.
@@ -105,7 +97,7 @@ class SearchedArea {
   Inspection inspection_;
   Grid<Faces> once_;
   Grid<Faces> twice_;
-  Glimpse glimpse_;
+  Grid<Faces> seen_;
 };
 
 /// What the sensors see from T_map_base; `view` is written anew, and keeps its memory.

@@ -170,13 +170,15 @@ class Aligner {
   /// are rather against it, lines of sight must not be against it too.
   void ask_others(const Trust& trust, const Hypothesis& best, const std::vector<Hypothesis>& hypotheses,
                   Alignment& out) const {
-    if (trust.open && !is_mirror_image(best.tight) && (!trust.tight || is_told_from_rivals(best, hypotheses)) &&
+    const auto rivals = trust.open && trust.tight ? near_rivals(best, hypotheses) : std::vector<WallMatch::Placement>();
+    if (trust.open && !is_mirror_image(best.tight) && wins_all(best, rivals) &&
         see_the_same(map_, truth_, out.T_truth_map, trust.tight && !trust.fragment ? kSightKappaTight : kSightKappa)) {
       out.aligned = true;
-      out.note = trust.tight
-                     ? "at another pose, or mirrored, walls meet about as well; those in which the two differ decided"
-                     : "the walls meet loosely, and at another pose about as well; what is open and what is blocked "
-                       "decided";
+      out.note = !trust.tight     ? "the walls meet loosely, and at another pose about as well"
+                 : rivals.empty() ? "the maps have little in common"
+                                  : "at another pose, or mirrored, walls meet about as well";
+      out.note +=
+          rivals.empty() ? "; what is open and what is blocked decided" : "; those in which the two differ decided";
     }
     if (out.aligned && !trust.tight && out.log_odds < 0.0 && !is_borne_out(map_, truth_, out.T_truth_map)) {
       out.aligned = false;
@@ -237,13 +239,19 @@ class Aligner {
     return !same_pose(h.T_best, best.T_best, match_.map_centre(), shift, config_.search.distinct_turn);
   }
 
-  /// Each pose that comes near the best, and each of the mirrored map that does, loses to it where the two differ.
-  bool is_told_from_rivals(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses) const {
+  /// The poses that come near the best, and those of the mirrored map that do.
+  std::vector<WallMatch::Placement> near_rivals(const Hypothesis& best,
+                                                const std::vector<Hypothesis>& hypotheses) const {
     std::vector<WallMatch::Placement> rivals;
     for (const Hypothesis& h : hypotheses)
       if (is_rival(h, best) && is_near(best.tight, h.tight)) rivals.push_back({h.T_best, false});
     for (const Hypothesis& h : mirrored_->hypotheses)
       if (is_near(best.tight, h.tight)) rivals.push_back({h.T_best, true});
+    return rivals;
+  }
+
+  /// Each of them loses to the best where the two differ.
+  bool wins_all(const Hypothesis& best, const std::vector<WallMatch::Placement>& rivals) const {
     const std::vector<WallDuel> duels = match_.duels({best.T_best}, rivals, config_.search.tau_tight);
     return std::all_of(duels.begin(), duels.end(), is_won);
   }

@@ -58,11 +58,14 @@ bool is_telling(const PoseEvidence& e) {
   return e.common_area >= kFragmentTelling && std::max(e.map.kappa(), e.truth.kappa()) >= kFragmentBestKappa;
 }
 
+/// One agreement is enough ahead of another; `ratio`: of what the two leave unexplained.
+bool is_ahead(double best, double rival, double ratio) { return best >= kAhead * rival || ratio >= kUnexplained; }
+
 /// No rival comes near the best.
 bool ahead_of(const PoseEvidence& tight, const Rivals& rivals) {
   const double best = tight_agreement(tight);
   const double ratio = unexplained(known_share(tight), best, rivals.tight);
-  const bool ahead = best >= kAhead * rivals.tight || ratio >= kUnexplained;
+  const bool ahead = is_ahead(best, rivals.tight, ratio);
   if (is_fragment(tight))
     return ahead && ratio >= kFragmentUnexplained && least_kappa(tight) >= kFragmentKappa &&
            tight.common_area >= kFragmentLeastArea;
@@ -108,7 +111,7 @@ bool is_near(const PoseEvidence& tight, const PoseEvidence& rival_tight) {
   const double best = tight_agreement(tight);
   const double rival = tight_agreement(rival_tight);
   const double ratio = unexplained(known_share(tight), best, rival);
-  return (best < kAhead * rival && ratio < kUnexplained) || (is_fragment(tight) && ratio < kFragmentUnexplained);
+  return !is_ahead(best, rival, ratio) || (is_fragment(tight) && ratio < kFragmentUnexplained);
 }
 
 bool is_won(const WallDuel& duel) {

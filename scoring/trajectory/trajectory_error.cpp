@@ -36,26 +36,21 @@ TPose2D best_rigid(const std::vector<PosePair>& pairs) {
   return fit_rigid(estimate, truth);
 }
 
-/// Umeyama 1991, eq. (42) in the plane: what the estimate's size has to be multiplied with, given how it is turned.
-double best_shrink(const std::vector<PosePair>& pairs, double turn) {
-  TPoint2D estimate, truth;
-  for (const PosePair& pair : pairs) {
-    estimate += TPoint2D(pair.estimate.x, pair.estimate.y);
-    truth += TPoint2D(pair.truth.x, pair.truth.y);
-  }
-  const auto n = static_cast<double>(pairs.size());
-  estimate *= 1.0 / n;
-  truth *= 1.0 / n;
-  const double c = std::cos(turn), s = std::sin(turn);
+/// Umeyama 1991, eq. (42) in the plane: what the estimate's size has to be multiplied with. `best`: the best rigid
+/// alignment, which lays the means on each other.
+double best_shrink(const std::vector<PosePair>& pairs, const TPose2D& best) {
+  TPoint2D mean;
+  for (const PosePair& pair : pairs) mean += TPoint2D(pair.truth.x, pair.truth.y);
+  mean *= 1.0 / static_cast<double>(pairs.size());
   double both = 0.0, own = 0.0, true_own = 0.0;
   for (const PosePair& pair : pairs) {
-    const double x = pair.estimate.x - estimate.x, y = pair.estimate.y - estimate.y;
-    const double true_x = pair.truth.x - truth.x, true_y = pair.truth.y - truth.y;
-    both += (c * x - s * y) * true_x + (s * x + c * y) * true_y;
-    own += x * x + y * y;
-    true_own += true_x * true_x + true_y * true_y;
+    const TPoint2D e = best.composePoint(TPoint2D(pair.estimate.x, pair.estimate.y)) - mean;
+    const TPoint2D t = TPoint2D(pair.truth.x, pair.truth.y) - mean;
+    both += e.x * t.x + e.y * t.y;
+    own += e.x * e.x + e.y * e.y;
+    true_own += t.x * t.x + t.y * t.y;
   }
-  const bool tells = std::min(own, true_own) > n * kLeastSpread * kLeastSpread;
+  const bool tells = std::min(own, true_own) > static_cast<double>(pairs.size()) * kLeastSpread * kLeastSpread;
   return tells && both > 0.0 ? both / own : 1.0;
 }
 
@@ -70,7 +65,7 @@ TrajectoryError trajectory_error(const Trajectory& estimate, const Trajectory& t
   out.ate_first_m = position_rmse(pairs, T_truth_estimate);
   const TPose2D best = best_rigid(pairs);
   out.ate_aligned_m = position_rmse(pairs, best);
-  const double shrink = best_shrink(pairs, best.phi);
+  const double shrink = best_shrink(pairs, best);
   out.scale = 1.0 / shrink;
   std::vector<PosePair> shrunk = pairs;
   for (PosePair& pair : shrunk) pair.estimate = {shrink * pair.estimate.x, shrink * pair.estimate.y, pair.estimate.phi};

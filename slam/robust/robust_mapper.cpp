@@ -24,7 +24,6 @@ using robot::LaserScan;
 
 namespace {
 
-constexpr double kAhead = 1.0;              ///< scans so far in the future are wrong [s]
 constexpr double kEdgeDistance = 0.008;     ///< least error between key frames [m]
 constexpr double kEdgeAngle = 0.003;        ///< [rad]
 constexpr Work kLeastBudget = 300'000;      ///< for work put off, each scan

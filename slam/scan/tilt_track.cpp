@@ -5,6 +5,7 @@
 
 #include "base/angle.h"
 #include "robot/hardware_units.h"
+#include "slam/scan/waiting_scans.h"
 
 namespace rubble::slam {
 
@@ -14,7 +15,6 @@ constexpr double kFarthest = 0.25;    ///< a sample this far from a stamp says n
 constexpr double kLongestWait = 0.2;  ///< for samples after a scan, and for the wheels after a sample [s]
 constexpr double kSteepest = 0.6;     ///< a robot that leans more lies on its side, or its sensor is broken [rad]
 constexpr double kImplausible = 2.0;  ///< more than so many g is no tilt but a fault
-constexpr double kAhead = 1.0;        ///< stamps so far in the future are wrong [s]
 
 }  // namespace
 

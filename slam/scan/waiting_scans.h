@@ -9,6 +9,8 @@
 
 namespace rubble::slam {
 
+constexpr double kAhead = 1.0;  ///< stamps so far in the future are wrong [s]
+
 /// Scans that wait for odometry from after their reference time: their poses are "interpolated by the odometry data
 /// reported right before and right after" (section III.B). Where none comes they are given out all the same.
 class WaitingScans {

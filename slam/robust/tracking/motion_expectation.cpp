@@ -14,7 +14,6 @@ using robot::LaserScan;
 
 namespace {
 
-constexpr double kReportsAhead = 1.0;      ///< reports so far in the future are wrong [s]
 constexpr double kFastest = 10.0;          ///< odometry that goes faster has jumped [m/s]
 constexpr double kFastestTurn = 20.0;      ///< or turns faster [rad/s]
 constexpr double kFastestSweep = 3.0;      ///< the same within one sweep [m/s]
@@ -32,7 +31,7 @@ bool finite(const robot::Odometry& o) {
 }  // namespace
 
 void MotionExpectation::hear(const robot::Odometry& report, Stamp now) {
-  if (finite(report) && report.stamp - now <= kReportsAhead) odometry_.add(report);
+  if (finite(report) && report.stamp - now <= kAhead) odometry_.add(report);
 }
 
 void MotionExpectation::begin_late() {

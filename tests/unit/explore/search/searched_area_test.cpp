@@ -207,10 +207,10 @@ TEST(SearchedArea, OfWhatWasSeenOnALargerMapOnlyWhatLiesInThisOneIsKept) {
   const Traversable floor = room();
   const GridFrame& frame = floor.frame();
   for (const TPoint2D& corner : {TPoint2D{-40.0, -40.0}, {-40.0, 0.0}, {0.0, -40.0}, {-30.0, -30.0}, {60.0, 60.0}}) {
-    Glimpse glimpse{corner, 1000, 1000, std::vector<Faces>(1'000'000, kFloor)};
+    const Grid<Faces> seen({1000, 1000, frame.resolution, corner.x, corner.y}, kFloor);
     SearchedArea area{SearchConfig{}};
-    area.look(frame, glimpse);
-    area.look(frame, glimpse);
+    area.look(frame, seen);
+    area.look(frame, seen);
     for (const TPoint2D& p : {TPoint2D{-1.0, -1.0}, {0.5, 0.5}, {1.0, 1.0}, {1.0, -1.0}}) {
       const bool inside = p.x > corner.x && p.y > corner.y && p.x < corner.x + 50.0 && p.y < corner.y + 50.0;
       EXPECT_EQ(area.missing(floor, floor.cells.cell(p)) & kFloor, inside ? 0 : kFloor) << corner.x << " " << p.x;
