@@ -3,7 +3,7 @@
 source "$(dirname "$0")/lib.sh"
 
 drive= stranger=
-trap 'for it in $emulator $drive $stranger; do kill $it 2>/dev/null; done; rm -rf "$work"' EXIT
+clean_up() { for it in $emulator $drive $stranger; do kill $it 2>/dev/null; done; }
 
 small_scenario small.yaml
 robot=$source/robots/pioneer_urg.yaml

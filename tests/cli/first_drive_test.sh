@@ -3,7 +3,7 @@
 # room to calibrate, a heartbeat that nobody can touch, a full disk.
 source "$(dirname "$0")/lib.sh"
 
-trap '[[ -z $emulator ]] || kill $emulator 2>/dev/null; rm -rf "$work"' EXIT
+clean_up() { [[ -z $emulator ]] || kill $emulator 2>/dev/null; }
 
 small_scenario small.yaml
 robot=$source/robots/pioneer_urg.yaml

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Somebody else drives, 'rubble drive --map-only' maps: with the scanner alone, and with the base's reports that another's line brings.
 source "$(dirname "$0")/lib.sh"
-trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
+clean_up() { kill $(jobs -p) 2>/dev/null; }
 robot=$source/robots/pioneer_urg.yaml
 printf 'name: flat\narena: {file: %s/arenas/shipped/flat_room.yaml}\nseed: 2\nexplorer: {victims: {search: false}}\n' "$source" >flat.yaml
 "$rubble" run flat.yaml --set time_limit_s=60 --out truth >/dev/null || fail "the flat run fails"

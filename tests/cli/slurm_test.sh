@@ -38,7 +38,7 @@ NodeName=n2 NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + 2)) CPUs=1
 PartitionName=all Nodes=n1,n2 Default=YES MaxTime=INFINITE State=UP
 CONF
 export SLURM_CONF=$work/cluster/slurm.conf
-trap 'scontrol shutdown >/dev/null 2>&1; sleep 1; rm -rf "$work"' EXIT
+clean_up() { scontrol shutdown >/dev/null 2>&1; sleep 1; }
 slurmctld -f "$SLURM_CONF" -c
 slurmd -f "$SLURM_CONF" -c -N n1
 slurmd -f "$SLURM_CONF" -c -N n2

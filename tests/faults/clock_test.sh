@@ -2,7 +2,7 @@
 # Somebody sets the computer's clock during a drive, forth and back: nothing is said, nothing waits, no stamp moves. The same
 # bits in simulation.
 . "$(dirname "$0")/lib.sh"
-trap '[[ -z $emulator ]] || kill "$emulator" 2>/dev/null; rm -rf "$work"' EXIT
+clean_up() { [[ -z $emulator ]] || kill "$emulator" 2>/dev/null; }
 cc -shared -fPIC -O1 -o jumps.so "$source/tests/faults/clock_jumps.c" -ldl >cc.txt 2>&1 || fail "the clock's setter does not compile: $(head -3 cc.txt)"
 # A sanitizer wants to be loaded first; beside this it need not.
 set_clock() { env LD_PRELOAD="$work/jumps.so" ASAN_OPTIONS="${ASAN_OPTIONS:-}:verify_asan_link_order=0" CLOCK_JUMPS="$1" "${@:2}"; }

@@ -27,7 +27,7 @@ for command in "export whole copy.rawlog" "score whole/map.tif whole/truth.tif -
   [[ $(cat copy.rawlog page.html) == $'older\nolder' ]] || fail "$command: an older file is lost"
 done
 if [[ $(id -u) == 0 ]] && mkdir -p small && mount -t tmpfs -o size=200k tmpfs small 2>/dev/null; then
-  trap 'umount small 2>/dev/null; rm -rf "$work"' EXIT
+  clean_up() { umount small 2>/dev/null; }
   "$rubble" run s.yaml --out small/run >out.txt 2>err.txt
   told "run on a full tmpfs" $?
   mount -o remount,ro small

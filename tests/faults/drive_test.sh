@@ -2,7 +2,7 @@
 # kill -9 at many moments of a drive: the base stops by itself, what was written stays readable, the next drive finds all
 # devices again.
 . "$(dirname "$0")/lib.sh"
-trap '[[ -z $emulator ]] || kill "$emulator" 2>/dev/null; rm -rf "$work"' EXIT
+clean_up() { [[ -z $emulator ]] || kill "$emulator" 2>/dev/null; }
 small_scenario s.yaml
 robot=$source/robots/pioneer_urg.yaml
 longest=8  # [s]: the start, the look round and the first metres
