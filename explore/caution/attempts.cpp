@@ -1,5 +1,6 @@
 #include "explore/caution/attempts.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/planar.h"
@@ -16,12 +17,14 @@ bool Attempts::overdrawn(const mrpt::math::TPoint2D& target, double cost, double
   for (std::size_t i = 0; i < accounts_.size(); ++i) {
     Account& account = accounts_[i];
     if (distance(account.target.p_map(), target) > same_target_) continue;
-    account.budget -= dt;
+    // Begun from farther away than before.
+    account.budget += kSecondsPerMetre * std::max(0.0, cost - account.cost) - dt;
+    account.cost = std::max(account.cost, cost);
     if (account.budget >= 0.0) return false;
     accounts_.erase(accounts_.begin() + static_cast<std::ptrdiff_t>(i));
     return true;
   }
-  accounts_.push_back({{anchor, target}, kBaseBudget + kSecondsPerMetre * cost - dt});
+  accounts_.push_back({{anchor, target}, kBaseBudget + kSecondsPerMetre * cost - dt, cost});
   return false;
 }
 

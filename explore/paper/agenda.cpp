@@ -50,7 +50,7 @@ Order turn(double angle, TurnFor purpose) {
 }  // namespace
 
 Agenda::Agenda(const PaperExplorerConfig& config)
-    : config_(config), choice_(config.planner, config.bar_targets, config.felt.pallet) {}
+    : config_(config), choice_(config.planner, config.bar_targets, config.felt.pallet), pushing_(config.felt.pallet) {}
 
 void Agenda::note(Stamp now, const std::string& why) {
   if (decisions_.empty() || decisions_.back().why != why) decisions_.push_back({now, why});
@@ -86,6 +86,7 @@ Plan Agenda::choose(const Situation& situation) {
       begin_round(*news, situation.now);
       return choice_.choose_frontier(view);
     }
+    if (push_for_niche(situation)) return std::move(choice.plan);
     choice = choice_.choose_of_all_places(view, situation.search, std::move(choice.plan));
   }
   if (choice.into_reach) note(situation.now, "a frontier has come into reach");
@@ -103,7 +104,29 @@ bool Agenda::turn_away(const Plan& plan, double left, const Situation& situation
   return true;
 }
 
+/// A niche is left, out of reach: before all other faces are searched, which takes most of the time, things in the way
+/// to it are pushed aside, once for each piece of ground gained.
+bool Agenda::push_for_niche(const Situation& situation) {
+  if (push_begun_) return true;
+  if (!situation.search.place_left() || (pushing_.on() && !pushes_for_niche_)) return false;
+  if (!pushing_.on()) {
+    if (known_at_niche_.marked() && !known_at_niche_.grown(situation.floor)) return false;
+    known_at_niche_.mark(situation.floor);
+  }
+  pushes_for_niche_ = pushing_.more();
+  if (pushing_.more())
+    start_pushing(situation, "a niche is out of reach");
+  else
+    pushing_.end();
+  push_begun_ = pushes_for_niche_;
+  return push_begun_;
+}
+
 Order Agenda::decide(Plan plan, bool new_map, const Situation& situation) {
+  if (push_begun_) {
+    push_begun_ = false;
+    return stay_and_plan();
+  }
   frontier_left_ = plan.frontier_left;
   if (!plan.found) {
     choice_.drop_target();
@@ -127,7 +150,7 @@ Order Agenda::decide(Plan plan, bool new_map, const Situation& situation) {
 
 /// At a viewpoint.
 Order Agenda::face_subject(const Situation& situation) {
-  pushing_.end();
+  end_pushing();
   if (situation.turning) return {};
   if (const auto angle = situation.search.turn_to_subject(situation.floor, situation.T_map_base))
     return turn(*angle, TurnFor::Place);
@@ -166,7 +189,8 @@ Order Agenda::nothing_left(const Situation& situation) {
       note(situation.now, "nothing else can be reached: what failed before is tried again");
       return stay_and_plan();
     case Resort::Push:
-      return start_pushing(situation);
+      pushes_for_niche_ = false;
+      return start_pushing(situation, "nothing else can be reached");
     case Resort::ForgetAll:
       note(situation.now, "no way home: all that was felt is forgotten");
       return stay_and_plan();
@@ -175,6 +199,11 @@ Order Agenda::nothing_left(const Situation& situation) {
   }
   if (homeward) return finish(MissionEnd::Explored, "no way home is left", situation.now);
   return goal() == Goal::Place ? finish_searching(situation) : finish_exploring(situation);
+}
+
+void Agenda::end_pushing() {
+  pushing_.end();
+  pushes_for_niche_ = false;
 }
 
 /// Things in the way that were not seen yet when things were pushed aside last: once for each piece of ground gained.
@@ -186,11 +215,12 @@ bool Agenda::may_push(const Situation& situation) const {
   return frontier_left_ > 0 && pushing_.worth(situation.floor);
 }
 
-Order Agenda::start_pushing(const Situation& situation) {
-  static constexpr std::array<const char*, 4> kWhat = {"nothing", "small things that stand alone are",
-                                                       "heaps that stand alone are", "strips that hang in a row are"};
+Order Agenda::start_pushing(const Situation& situation, const std::string& why) {
+  static constexpr std::array<const char*, 5> kWhat = {"nothing", "small things that stand alone are",
+                                                       "heaps that stand alone are", "strips that hang in a row are",
+                                                       "what stands off the pallets' edges is"};
   const auto what = static_cast<std::size_t>(pushing_.start(situation.floor));
-  note(situation.now, std::string("nothing else can be reached: ") + kWhat.at(what) + " pushed aside");
+  note(situation.now, why + ": " + kWhat.at(what) + " pushed aside");
   return stay_and_plan();
 }
 
@@ -200,7 +230,7 @@ Order Agenda::finish_exploring(const Situation& situation) {
   if (frontier_left_ > 1) reason_ += " (" + std::to_string(frontier_left_) + " frontiers cannot be reached)";
   if (!choice_.frontiers_done()) note(situation.now, reason_);
   choice_.set_frontiers_done();
-  pushing_.end();
+  end_pushing();
   if (!situation.search.on()) return finish_searching(situation);
   choice_.search();
   return stay_and_plan();
@@ -222,6 +252,8 @@ void Agenda::begin_round(const std::string& news, Stamp now) {
   note(now, news);
   choice_.explore();
   pushing_.new_round();
+  pushes_for_niche_ = false;
+  known_at_niche_.forget();
   looked_from_.reset();
   plan_soon();
 }
@@ -230,7 +262,7 @@ void Agenda::go_home(const std::string& why, Stamp now) {
   reason_ += (reason_.empty() || why.empty() ? "" : ", ") + why;
   note(now, "drives home: " + (why.empty() ? reason_ : why));
   choice_.go_home();
-  pushing_.end();
+  end_pushing();
   rounds_.go_home();
   plan_soon();
 }

@@ -12,6 +12,7 @@
 #include "explore/caution/left_alone.h"
 #include "explore/explorer.h"
 #include "explore/motion/pilot.h"
+#include "explore/paper/known_ground.h"
 #include "explore/paper/paper_config.h"
 #include "explore/paper/plan_clock.h"
 #include "explore/paper/pushing.h"
@@ -105,7 +106,9 @@ class Agenda {
   Order visited_in_vain(const Plan& plan, const Situation& situation);
   Order nothing_left(const Situation& situation);
   bool may_push(const Situation& situation) const;
-  Order start_pushing(const Situation& situation);
+  Order start_pushing(const Situation& situation, const std::string& why);
+  bool push_for_niche(const Situation& situation);
+  void end_pushing();
   Order finish_exploring(const Situation& situation);
   Order finish_searching(const Situation& situation);
   void begin_round(const std::string& news, Stamp now);
@@ -116,6 +119,9 @@ class Agenda {
   TargetChoice choice_;
   Rounds rounds_;
   Pushing pushing_;
+  KnownGround known_at_niche_;     ///< when things were pushed aside last on the way to a niche
+  bool pushes_for_niche_ = false;  ///< what is pushed aside now is for the sake of one
+  bool push_begun_ = false;        ///< by the plan under way, which is to be made anew
   PlanClock clock_;
   std::size_t frontier_left_ = 0;  ///< of the last plan
   std::optional<mrpt::math::TPoint2D> looked_from_;

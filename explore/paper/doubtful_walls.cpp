@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <optional>
-#include <utility>
 
 #include "base/planar.h"
-#include "explore/caution/pallet_grid.h"
+#include "explore/caution/local_grids.h"
 #include "explore/search/searched_area.h"
 
 namespace rubble::explore {
@@ -22,28 +20,8 @@ constexpr double kBefore = 0.15;            ///< free floor before it [m]
 constexpr double kBehind = 0.40;            ///< unknown behind it, from twice its thickness on [m]
 constexpr double kThick = 0.10;             ///< [m]
 constexpr double kOffEdges = 0.25;          ///< [m]
-constexpr double kTile = 4.0;               ///< places in a square of this size share a grid of pallets [m]
 constexpr double kLookFrom[] = {0.5, 0.6};  ///< [m]
 constexpr int kStride = 3;                  ///< places to look from are so many cells apart along the wall
-
-/// The grid of the pallets about a place, found once for each square of the map.
-class LocalGrids {
- public:
-  LocalGrids(const OccupancyGrid& cells, double pallet) : cells_(cells), pallet_(pallet) {}
-  const std::optional<PalletGrid>& at(const TPoint2D& p) {
-    const auto tile = [](double x) { return static_cast<int>(std::floor(x / kTile)); };
-    const std::pair<int, int> key{tile(p.x), tile(p.y)};
-    const auto known = grids_.find(key);
-    if (known != grids_.end()) return known->second;
-    const TPoint2D middle{(key.first + 0.5) * kTile, (key.second + 0.5) * kTile};
-    return grids_.emplace(key, find_pallets(cells_, pallet_, middle)).first->second;
-  }
-
- private:
-  const OccupancyGrid& cells_;
-  double pallet_;
-  std::map<std::pair<int, int>, std::optional<PalletGrid>> grids_;
-};
 
 bool all(const OccupancyGrid& cells, Cell c, Cell step, int from, int to, Occupancy what) {
   for (int i = from; i <= to; ++i) {

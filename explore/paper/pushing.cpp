@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "base/planar.h"
+#include "explore/paper/off_grid.h"
+#include "explore/plan/loose_things.h"
 
 namespace rubble::explore {
 namespace {
@@ -21,7 +23,8 @@ constexpr double kRoll = 0.15;      ///< farther they do not roll between two lo
 
 void Pushing::free_things(Traversable& floor) const {
   if (on()) free_small_things(floor, what_ == What::Single ? kPaper : kHeap);
-  if (what_ == What::Strips) free_strips(floor);
+  if (what_ >= What::Strips) free_strips(floor);
+  if (what_ == What::OffGrid) free_off_grid(floor, pallet_);
 }
 
 bool Pushing::worth(const Traversable& floor) const {

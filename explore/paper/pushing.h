@@ -11,15 +11,18 @@
 namespace rubble::explore {
 
 /// Things that stand alone and may be crumpled paper are driven at when nothing else can be reached: first single ones,
-/// then heaps of them, then strips that hang in a row. What is being pushed rolls, so the newest scans show it where
-/// the map does not: such hits are no new obstacle.
+/// then heaps of them, then strips that hang in a row, at last all that stands off the grid of the pallets. What is
+/// being pushed rolls, so the newest scans show it where the map does not: such hits are no new obstacle.
 class Pushing {
  public:
-  enum class What { Nothing, Single, Heaps, Strips };  ///< each with those before it
+  enum class What { Nothing, Single, Heaps, Strips, OffGrid };  ///< each with those before it
+
+  /// `pallet`: size of the elements that the arena is built of, 0: of none [m].
+  explicit Pushing(double pallet = 0.0) : pallet_(pallet) {}
   What what() const { return what_; }
   bool on() const { return what_ != What::Nothing; }
   /// More may be driven at than is now.
-  bool more() const { return what_ != What::Strips; }
+  bool more() const { return what_ != What::OffGrid; }
   /// Makes free on `floor` what is driven at.
   void free_things(Traversable& floor) const;
   /// Whether pushing is worth while for the sake of new ground: in this round it was not tried yet, or ground was
@@ -44,6 +47,7 @@ class Pushing {
   bool near_loose_things() const { return !rolling_.empty(); }
 
  private:
+  double pallet_;
   What what_ = What::Nothing;
   std::vector<mrpt::math::TPoint2D> rolling_;  ///< hits on what is being pushed, of the last check [m, map frame]
   KnownGround known_then_;                     ///< when it began last in this round

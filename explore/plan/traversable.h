@@ -17,7 +17,7 @@ struct Traversable {
   Grid<std::uint8_t> obstacle;  ///< 1 where something must be kept away from
   Grid<std::uint8_t> body;      ///< 1 where no scan has looked, but the robot's body stands or stood: free, no frontier
   Grid<float> clearance;        ///< distance to the nearest obstacle [m], capped; empty until measure_clearance
-  std::vector<Cell> loose;      ///< made free by free_small_things and free_strips
+  std::vector<Cell> loose;      ///< made free as what can be pushed aside, or is no wall
 
   const GridFrame& frame() const { return cells.frame(); }
 };
@@ -39,14 +39,6 @@ void free_trail(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& tra
 /// Adds obstacles the map does not show (yet), e.g. the hits of the newest scan. A point within `near` of an obstacle
 /// of the map is taken for that obstacle, displaced by the error of the pose, and left out.
 void add_obstacles(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& points, double near);
-
-/// Makes free what stands alone and is small, no wider than `extent` [m] and nothing else within 0.15 m: paper that
-/// can be pushed aside, as a rule. Says whether there was any.
-bool free_small_things(Traversable& floor, double extent);
-
-/// Makes free what stands in a row with gaps that were seen through, at least four pieces no wider than 0.15 m and up
-/// to 0.3 m apart: strips that hang from a bar (veil walls), if nothing else can be had. Says whether there was any.
-bool free_strips(Traversable& floor);
 
 /// Fills the clearance from the obstacles, capped at `cap` [m].
 void measure_clearance(Traversable& floor, double cap);

@@ -73,6 +73,20 @@ inline void fill(OccupancyGrid& grid, double x0, double y0, double x1, double y1
     }
 }
 
+inline constexpr double kPallet = 1.2;
+
+/// A corridor of eight pallets along x, with rooms to the north, shut by a wall at `x` that is `width` [m] wide, with
+/// `behind` it.
+inline OccupancyGrid corridor_of_pallets(double x, double width, Occupancy behind) {
+  OccupancyGrid cells = room(8 * kPallet, 2 * kPallet);
+  fill(cells, 0.0, kPallet - 0.03, 8 * kPallet, kPallet + 0.03, Occupancy::Occupied);
+  for (const int k : {1, 2, 4, 5, 7})
+    fill(cells, k * kPallet - 0.03, kPallet, k * kPallet + 0.03, 2 * kPallet, Occupancy::Occupied);
+  fill(cells, x, 0.06, 8 * kPallet - 0.06, kPallet - 0.06, behind);
+  fill(cells, x - 0.03, 0.0, x + 0.03, width, Occupancy::Occupied);
+  return cells;
+}
+
 inline explore::Traversable measured(OccupancyGrid grid, double cap = 1.2) {
   explore::Traversable floor = explore::traversable(std::move(grid));
   explore::measure_clearance(floor, cap);

@@ -24,5 +24,18 @@ TEST(Attempts, GoingToAndFroBetweenTargetsDoesNotRenewTheirTime) {
   }
 }
 
+/// Else a frontier that was passed by at 7 m would be given up halfway when it is come back to from 38 m.
+TEST(Attempts, BegunFromFartherAwayItGetsWhatThatIsMore) {
+  const auto time_of = [](double first, double then) {
+    Attempts attempts(0.5);
+    attempts.overdrawn({5.0, 5.0}, first, 0.1, {});
+    double spent = 0.1;
+    while (!attempts.overdrawn({5.0, 5.0}, then, 0.1, {}) && spent < 1000.0) spent += 0.1;
+    return spent;
+  };
+  EXPECT_NEAR(time_of(7.0, 38.0), time_of(38.0, 38.0), 0.2);
+  EXPECT_NEAR(time_of(38.0, 7.0), time_of(38.0, 38.0), 0.2);
+}
+
 }  // namespace
 }  // namespace rubble::explore

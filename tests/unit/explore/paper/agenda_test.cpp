@@ -32,7 +32,9 @@ struct Ordered {
     pose.y = 0.65;
   }
   Agenda::Situation situation() {
-    floor = test::measured(cells);
+    floor = traversable(cells);
+    agenda.pushing().free_things(floor);
+    measure_clearance(floor, 1.2);
     return {now, pose, floor, turning, 0, left_alone, search};
   }
   Order ask() {
@@ -112,6 +114,29 @@ TEST(Agenda, PushesSmallThingsWhenNothingElseHelps) {
   for (int i = 0; i < 40 && robot.agenda.goal() != Goal::Home; ++i) robot.ask();
   EXPECT_TRUE(robot.told("heaps that stand alone are pushed aside"));
   EXPECT_TRUE(robot.told("1 frontier cannot be reached"));
+}
+
+/// The floor of a slope, taken for a wall, keeps it from a niche: it is driven at before all other faces are searched.
+TEST(Agenda, PushesOnToANicheBeforeItSearchesAllElse) {
+  Ordered robot((PaperExplorerConfig()));
+  const double shut = 5.6, niche = 7.8;  // [m]
+  robot.cells = test::corridor_of_pallets(shut, test::kPallet, Occupancy::Free);
+  for (const double side : {-0.19, 0.19})
+    test::fill(robot.cells, niche + side - 0.03, 0.0, niche + side + 0.03, 0.42, Occupancy::Occupied);
+  robot.pose = {2.0, 0.6, 0.0};
+  const auto drives_to = [&](const Order& order) {
+    return order.kind == Order::Kind::Follow ? order.plan.target.x : 0.0;
+  };
+  Order order;
+  for (int i = 0; i < 60 && order.kind != Order::Kind::Follow; ++i) order = robot.ask();
+  EXPECT_GT(drives_to(order), shut);
+  EXPECT_TRUE(robot.told("a niche is out of reach: what stands off the pallets' edges is pushed aside"));
+  // Where it stays out of reach for all that, the rest is searched.
+  test::fill(robot.cells, 4 * test::kPallet - 0.03, 0.0, 4 * test::kPallet + 0.03, test::kPallet, Occupancy::Occupied);
+  order = {};
+  for (int i = 0; i < 60 && order.kind != Order::Kind::Follow; ++i) order = robot.ask();
+  EXPECT_LT(drives_to(order), shut);
+  EXPECT_FALSE(robot.agenda.pushing().on());
 }
 
 TEST(Agenda, OnTheWayHomeThingsAreDrivenRoundAgain) {

@@ -8,26 +8,15 @@
 namespace rubble::explore {
 namespace {
 
-constexpr double kPallet = 1.2;
-
-/// A corridor of eight pallets along x, with rooms to the north, shut by a wall at `x` that is `width` [m] wide, with
-/// `behind` it.
-OccupancyGrid corridor(double x, double width, Occupancy behind) {
-  OccupancyGrid cells = test::room(8 * kPallet, 2 * kPallet);
-  test::fill(cells, 0.0, kPallet - 0.03, 8 * kPallet, kPallet + 0.03, Occupancy::Occupied);
-  for (const int k : {1, 2, 4, 5, 7})
-    test::fill(cells, k * kPallet - 0.03, kPallet, k * kPallet + 0.03, 2 * kPallet, Occupancy::Occupied);
-  test::fill(cells, x, 0.06, 8 * kPallet - 0.06, kPallet - 0.06, behind);
-  test::fill(cells, x - 0.03, 0.0, x + 0.03, width, Occupancy::Occupied);
-  return cells;
-}
+using test::corridor_of_pallets;
+using test::kPallet;
 
 std::vector<Source> found(double x, double width, Occupancy behind, double pallet = kPallet) {
-  return doubtful_walls(test::measured(corridor(x, width, behind)), pallet);
+  return doubtful_walls(test::measured(corridor_of_pallets(x, width, behind)), pallet);
 }
 
 TEST(DoubtfulWalls, AWallOffTheEdgesOfThePalletsThatHidesGroundMayBeARamp) {
-  const OccupancyGrid cells = corridor(5.6, kPallet, Occupancy::Unknown);
+  const OccupancyGrid cells = corridor_of_pallets(5.6, kPallet, Occupancy::Unknown);
   const std::vector<Source> places = found(5.6, kPallet, Occupancy::Unknown);
   ASSERT_FALSE(places.empty());
   for (const Source& place : places) {
@@ -48,7 +37,7 @@ TEST(DoubtfulWalls, OtherWallsAreWhatTheySeem) {
 
 /// It is looked at when no frontier is left, once, and left alone when it stays.
 TEST(DoubtfulWalls, AreLookedAtWhenNoFrontierIsInReach) {
-  OccupancyGrid cells = corridor(5.6, kPallet, Occupancy::Unknown);
+  OccupancyGrid cells = corridor_of_pallets(5.6, kPallet, Occupancy::Unknown);
   LeftAlone left_alone{FeltConfig{}, PlannerConfig{}.same_target};
   SearchConfig config;
   config.on = false;

@@ -25,11 +25,11 @@ Traversable floor_with_ball(const Pushing& pushing) {
   return floor;
 }
 
-TEST(Pushing, BeginsWithSmallThingsAndGoesOnToHeapsAndStrips) {
+TEST(Pushing, BeginsWithSmallThingsAndEndsWithAllThatIsOffTheGrid) {
   Pushing pushing;
   const Traversable floor = floor_with_ball(pushing);
   EXPECT_FALSE(pushing.on());
-  for (const auto what : {Pushing::What::Single, Pushing::What::Heaps, Pushing::What::Strips}) {
+  for (const auto what : {Pushing::What::Single, Pushing::What::Heaps, Pushing::What::Strips, Pushing::What::OffGrid}) {
     EXPECT_TRUE(pushing.more());
     EXPECT_EQ(pushing.start(floor), what);
   }

@@ -1,3 +1,4 @@
+#include "explore/plan/loose_things.h"
 #include "explore/plan/traversable.h"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,21 @@
+#include "explore/caution/local_grids.h"
+
+#include <cmath>
+
+namespace rubble::explore {
+namespace {
+
+constexpr double kTile = 4.0;  ///< places in a square of this size share a grid [m]
+
+}  // namespace
+
+const std::optional<PalletGrid>& LocalGrids::at(const mrpt::math::TPoint2D& p_map) {
+  const auto tile = [](double x) { return static_cast<int>(std::floor(x / kTile)); };
+  const std::pair<int, int> key{tile(p_map.x), tile(p_map.y)};
+  const auto known = grids_.find(key);
+  if (known != grids_.end()) return known->second;
+  const mrpt::math::TPoint2D middle{(key.first + 0.5) * kTile, (key.second + 0.5) * kTile};
+  return grids_.emplace(key, find_pallets(cells_, pallet_, middle)).first->second;
+}
+
+}  // namespace rubble::explore
