@@ -16,6 +16,8 @@ using mrpt::math::TPose2D;
 constexpr double kFree = 0.5;   ///< away from where it was held, the robot is free [m]
 constexpr double kSpeed = 0.2;  ///< [m/s]
 constexpr double kTurns[] = {deg_to_rad(60.0), deg_to_rad(100.0), deg_to_rad(35.0), deg_to_rad(140.0)};  ///< [rad]
+constexpr double kArcSpeed = 0.15;                                                                       ///< [m/s]
+constexpr double kArcTurn = 0.4;                                                                         ///< [rad/s]
 constexpr double kMoveTime = 5.0;                                                                        ///< [s]
 constexpr double kRetraceTime = 15.0;                                                                    ///< [s]
 constexpr double kOldStall = 0.7;                ///< the report of a stall outlives it by less [s]
@@ -44,7 +46,11 @@ void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures, 
     if (way_out_) moves_.push_back(Move::Out);
     // Retracing asks for poses to a few centimetres: first what is quick and robust.
     if (round > 0 || failures > 0 || way_out_) moves_.push_back(Move::Retrace);
-    for (const Move move : {first, Move::Left, first, Move::Right, Move::Right, first, last}) {
+    std::vector<Move> tries{first};
+    // Beside a wall or the side of a box neither a turn on the spot nor straight back leads off it.
+    if (failures > 0) tries.insert(tries.end(), {Move::BackLeft, Move::AheadRight, Move::BackRight, Move::AheadLeft});
+    tries.insert(tries.end(), {Move::Left, first, Move::Right, Move::Right, first, last});
+    for (const Move move : tries) {
       moves_.push_back(move);
       // From elsewhere the plan may be another.
       if (way_out_ && (move == first || move == last)) moves_.push_back(Move::Out);
@@ -132,6 +138,14 @@ std::optional<robot::Drive> Escape::command(const TPose2D& T_map_base, const std
       return robot::Drive{0.0, -turn_speed_};
     case Move::Ahead:
       return robot::Drive{kSpeed, 0.0};
+    case Move::BackLeft:
+      return robot::Drive{-kArcSpeed, kArcTurn};
+    case Move::BackRight:
+      return robot::Drive{-kArcSpeed, -kArcTurn};
+    case Move::AheadLeft:
+      return robot::Drive{kArcSpeed, kArcTurn};
+    case Move::AheadRight:
+      return robot::Drive{kArcSpeed, -kArcTurn};
     case Move::Retrace:
       return way_back.drive(T_map_base);
     case Move::Out:

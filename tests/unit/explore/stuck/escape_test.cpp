@@ -263,6 +263,18 @@ TEST(Escape, AMoveThatRocksInItsPlaceIsGivenUp) {
   EXPECT_LT(t, 4.0);
 }
 
+/// Flush with a wall it neither turns on the spot nor gets anywhere straight on: the next try turns as it rolls.
+TEST(Escape, AfterAFailureItTurnsAsItRolls) {
+  for (const int failures : {0, 1, 2}) {
+    Puppet puppet;
+    puppet.may = [&](const TPose2D& next) {
+      return next.phi != puppet.pose.phi && position(next) != position(puppet.pose);
+    };
+    const Outcome outcome = run(puppet, Escape::Met::Forwards, {}, kRoom, failures);
+    EXPECT_EQ(outcome.result, failures > 0 ? Escape::Result::Free : Escape::Result::Failed) << failures;
+  }
+}
+
 TEST(Escape, SaysSoWhenNothingHelps) {
   Puppet puppet;
   puppet.may = [](const TPose2D&) { return false; };
