@@ -11,13 +11,14 @@ namespace {
 
 constexpr double kBarRadius = 0.60;  ///< [m]
 constexpr double kBarTime = 60.0;    ///< for the first failure [s]
+constexpr double kBarPerMetre = 10;  ///< of the way there, where that is longer [s/m]
 constexpr int kMostDoublings = 6;
 
 }  // namespace
 
-void LeftAlone::bar(const mrpt::math::TPoint2D& target, const Anchor& anchor) {
+void LeftAlone::bar(const mrpt::math::TPoint2D& target, const Anchor& anchor, double cost) {
   const int times = std::min(blacklist_.times_barred(target), kMostDoublings);
-  blacklist_.bar({anchor, target}, kBarRadius, anchor.stamp + kBarTime * std::ldexp(1.0, times));
+  blacklist_.bar({anchor, target}, kBarRadius, anchor.stamp + std::max(kBarTime, kBarPerMetre * cost) * std::ldexp(1.0, times));
 }
 
 void LeftAlone::bar_for_good(const mrpt::math::TPoint2D& target, const Anchor& anchor) {

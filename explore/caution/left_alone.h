@@ -25,8 +25,10 @@ class LeftAlone {
   /// `same_target`: targets closer together are one [m].
   LeftAlone(const FeltConfig& felt, double same_target) : config_(felt), attempts_(same_target), felt_(felt) {}
 
-  /// Bars what lies around a target for a minute, twice as long each time; the robot is at `anchor`.
-  void bar(const mrpt::math::TPoint2D& target, const Anchor& anchor);
+  /// Bars what lies around a target for a minute, twice as long each time; the robot is at `anchor`. What cost `cost`
+  /// [m] when it was chosen is barred for ten seconds a metre if that is longer: else it would be tried again as soon as
+  /// the robot has come back.
+  void bar(const mrpt::math::TPoint2D& target, const Anchor& anchor, double cost = 0.0);
   /// Until all is pardoned.
   void bar_for_good(const mrpt::math::TPoint2D& target, const Anchor& anchor);
   bool barred(const mrpt::math::TPoint2D& p_map, Stamp now) const { return blacklist_.barred(p_map, now); }

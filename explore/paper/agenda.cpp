@@ -288,7 +288,7 @@ void Agenda::leave_target(LeftAlone& left_alone, const Anchor& robot) {
   if (goal() == Goal::Place && choice_.frontiers_done())
     left_alone.bar_for_good(*target(), robot);
   else
-    left_alone.bar(*target(), robot);
+    left_alone.bar(*target(), robot, choice_.cost());
   choice_.drop_target();
   plan_soon();
 }

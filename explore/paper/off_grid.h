@@ -4,8 +4,9 @@
 
 namespace rubble::explore {
 
-/// Makes free what is drawn well inside the arena's pallets and is no side of a box: walls stand on the edges of the
-/// pallets, so it is floor that the laser met from the foot of a slope, or paper beside a wall. Where the walls show no
+/// Makes free what is drawn well inside the arena's pallets and is neither a side of a box nor as wide as a field of
+/// steps: walls stand on the edges of the pallets, so it is floor that the laser met from the foot of a slope, or paper
+/// beside a wall. Where the walls show no
 /// such grid nothing is made free. `pallet`: size of a pallet, 0: there are none [m]. Says whether there was any.
 bool free_off_grid(Traversable& floor, double pallet);
 

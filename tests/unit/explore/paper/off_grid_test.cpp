@@ -49,6 +49,15 @@ TEST(OffGrid, WallsAndTheSidesOfBoxesStay) {
   EXPECT_EQ(freed(5.2, 0.25, 5.5, 0.95, 0.0), 0.0) << "no pallets";
 }
 
+/// As the steps of a red field show, from corner to corner of their pallet.
+TEST(OffGrid, SoDoFieldsOfSteps) {
+  OccupancyGrid cells = corridor_of_pallets(4 * kPallet, 0.0, Occupancy::Free);
+  for (double d = 0.1; d < 1.1; d += 0.07)
+    test::fill(cells, 4.8 + d - 0.05, d - 0.05, 4.8 + d + 0.05, d + 0.05, Occupancy::Occupied);
+  Traversable floor = test::measured(cells);
+  EXPECT_FALSE(free_off_grid(floor, kPallet));
+}
+
 TEST(OffGrid, WhereTheWallsShowNoGridNothingIsMadeFree) {
   OccupancyGrid cells = test::room(6.0, 6.0);
   // At every quarter of a pallet as often as at every other.
