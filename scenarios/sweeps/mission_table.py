@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""The tables of docs/explore.md from results of `rubble batch mission`.
+
+  scenarios/sweeps/mission_table.py FOLDER...    each with a results.jsonl
+"""
+import collections
+import json
+import os
+import statistics
+import sys
+
+
+def rows_of(folders):
+    kinds = collections.defaultdict(list)
+    for folder in folders:
+        with open(os.path.join(folder, "results.jsonl")) as lines:
+            for line in lines:
+                run = json.loads(line)
+                kinds[run["config"]].append(run.get("score"))
+    return kinds
+
+
+def spread(values, digits, worst):
+    return f"{statistics.median(values):.{digits}f}, {worst(values):.{digits}f}"
+
+
+def main():
+    if len(sys.argv) < 2 or sys.argv[1].startswith("-"):
+        sys.exit(__doc__)
+    arenas = rows_of(sys.argv[1:])
+    kinds = collections.defaultdict(list)
+    for name, runs in arenas.items():
+        kinds[name.split("-")[0]] += runs
+    order = ["yellow", "orange", "red"]
+    print("| kind | runs | at home in time | stuck | known, median and worst | victims found of those visible | false | "
+          "contact s, median and most | trajectory error, aligned, median and worst, m | m2 a minute | score, mean |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|")
+    for kind in order:
+        runs = kinds.get(kind)
+        if not runs:
+            continue
+        if None in runs:
+            sys.exit(f"{kind}: {runs.count(None)} runs have no score")
+        of = lambda key: [run[key] for run in runs]
+        found, visible = sum(of("victims_found")), sum(of("victims_visible"))
+        print(f"| {kind} | {len(runs)} | {of('end_code').count('home')} | {of('end_code').count('stuck')} | "
+              f"{spread(of('known'), 3, min)} | {found} of {visible} ({100 * found / visible:.1f} %) | "
+              f"{sum(of('victims_false'))} | {spread(of('contact_s'), 1, max)} | {spread(of('ate_aligned_m'), 3, max)} | "
+              f"{statistics.mean(of('area_per_min')):.1f} | {statistics.mean(of('score')):.3f} |")
+    print("\n| arenas | runs | known, median and worst | victims found of those visible (false) | contact s, median and most | "
+          "trajectory error, median and worst, m |")
+    print("|---|---|---|---|---|---|")
+    for name, runs in arenas.items():
+        kind, size, ramps = name.split("-")
+        of = lambda key: [run[key] for run in runs]
+        false = f" ({sum(of('victims_false'))})" if any(of("victims_false")) else ""
+        print(f"| {kind} {size.replace('x', ' x ')}, {ramps} | {len(runs)} | {spread(of('known'), 3, min)} | "
+              f"{sum(of('victims_found'))} of {sum(of('victims_visible'))}{false} | {spread(of('contact_s'), 1, max)} | "
+              f"{spread(of('ate_aligned_m'), 3, max)} |")
+
+
+main()
