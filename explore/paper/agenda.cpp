@@ -77,16 +77,19 @@ bool Agenda::begin_plan(const slam::CountMap& map, Stamp now) {
 }
 
 Plan Agenda::choose(const Situation& situation) {
-  const TargetChoice::View view{situation.floor, situation.T_map_base, situation.now, situation.left_alone};
+  TargetChoice::View view{situation.floor, situation.T_map_base, situation.now, situation.left_alone};
+  // What is off the grid may be solid after all: it is driven at for the place that is asked for, and for no other.
+  view.places_only = pushing_.what() == Pushing::What::OffGrid;
   TargetChoice::Choice choice = choice_.choose(view, situation.search);
   if (choice.no_niche) {
     frontier_left_ = choice.plan.frontier_left;
-    const auto news = rounds_.before_all_faces(standing(situation), situation.search, situation.left_alone);
+    if (push_for_niche(situation)) return std::move(choice.plan);
+    const auto news = rounds_.before_all_faces(standing(situation), off_grid_is_worth(situation.floor),
+                                               situation.search, situation.left_alone);
     if (news) {
       begin_round(*news, situation.now);
       return choice_.choose_frontier(view);
     }
-    if (push_for_niche(situation)) return std::move(choice.plan);
     choice = choice_.choose_of_all_places(view, situation.search, std::move(choice.plan));
   }
   if (choice.into_reach) note(situation.now, "a frontier has come into reach");
@@ -212,7 +215,15 @@ bool Agenda::may_push(const Situation& situation) const {
   if (goal() == Goal::Home) return true;
   // It came here by pushing, or something rolled into its way: the rest of the arena is to be searched as well.
   if (goal() == Goal::Place) return situation.search.place_left();
-  return frontier_left_ > 0 && pushing_.worth(situation.floor);
+  if (frontier_left_ == 0 || !pushing_.worth(situation.floor)) return false;
+  const bool niches_first = situation.search.on() && !rounds_.tried_before_search();
+  return pushing_.what() != Pushing::What::Strips || (!niches_first && off_grid_is_worth(situation.floor));
+}
+
+/// For the sake of new ground, which as a rule is not to be had so where a field of steps or a steep ramp keeps the
+/// robot from it: once for each piece of ground gained, whatever the round.
+bool Agenda::off_grid_is_worth(const Traversable& floor) const {
+  return !known_off_grid_.marked() || known_off_grid_.grown(floor);
 }
 
 Order Agenda::start_pushing(const Situation& situation, const std::string& why) {
@@ -220,6 +231,7 @@ Order Agenda::start_pushing(const Situation& situation, const std::string& why) 
                                                        "heaps that stand alone are", "strips that hang in a row are",
                                                        "what stands off the pallets' edges is"};
   const auto what = static_cast<std::size_t>(pushing_.start(situation.floor));
+  if (goal() == Goal::Frontier && pushing_.what() == Pushing::What::OffGrid) known_off_grid_.mark(situation.floor);
   note(situation.now, why + ": " + kWhat.at(what) + " pushed aside");
   return stay_and_plan();
 }

@@ -109,6 +109,7 @@ class Agenda {
   Order start_pushing(const Situation& situation, const std::string& why);
   bool push_for_niche(const Situation& situation);
   void end_pushing();
+  bool off_grid_is_worth(const Traversable& floor) const;
   Order finish_exploring(const Situation& situation);
   Order finish_searching(const Situation& situation);
   void begin_round(const std::string& news, Stamp now);
@@ -119,6 +120,7 @@ class Agenda {
   TargetChoice choice_;
   Rounds rounds_;
   Pushing pushing_;
+  KnownGround known_off_grid_;     ///< when things off the grid were driven at last for the sake of new ground
   KnownGround known_at_niche_;     ///< when things were pushed aside last on the way to a niche
   bool pushes_for_niche_ = false;  ///< what is pushed aside now is for the sake of one
   bool push_begun_ = false;        ///< by the plan under way, which is to be made anew

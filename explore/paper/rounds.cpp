@@ -28,9 +28,9 @@ Resort Rounds::next_resort(bool homeward, bool may_push, LeftAlone& left_alone, 
   return Resort::ForgetAll;
 }
 
-std::optional<std::string> Rounds::before_all_faces(const Standing& standing, FloorSearch& search,
+std::optional<std::string> Rounds::before_all_faces(const Standing& standing, bool more, FloorSearch& search,
                                                     LeftAlone& left_alone) {
-  if (standing.frontier_left > 0 && !tried_before_search_ && left_alone.pardon_all(standing.now)) {
+  if (standing.frontier_left > 0 && !tried_before_search_ && (left_alone.pardon_all(standing.now) || more)) {
     tried_before_search_ = true;
     begin();
     return "no niche is left: what could not be reached is tried again before the rest is searched";

@@ -39,8 +39,12 @@ class Rounds {
   Resort next_resort(bool homeward, bool may_push, LeftAlone& left_alone, Stamp now);
 
   /// No niche is left to be searched, but frontiers may be: before the search of all other faces, which takes
-  /// most of the time, what failed is tried again, once a round. Returns the news; nothing: there is nothing to try.
-  std::optional<std::string> before_all_faces(const Standing& standing, FloorSearch& search, LeftAlone& left_alone);
+  /// most of the time, what failed is tried again, once a round, or what was not tried so far (`more`). Returns the
+  /// news; nothing: there is nothing to try.
+  std::optional<std::string> before_all_faces(const Standing& standing, bool more, FloorSearch& search,
+                                              LeftAlone& left_alone);
+  /// It was in this round.
+  bool tried_before_search() const { return tried_before_search_; }
   /// Everything is done: begins another round if one is worth while. Returns the news; nothing: that was the last.
   std::optional<std::string> another(const Standing& standing, FloorSearch& search, LeftAlone& left_alone);
   /// The robot is to go home: what failed is forgiven once more on the way.

@@ -33,6 +33,7 @@ TargetChoice::Choice TargetChoice::choose(const View& view, FloorSearch& search)
   const bool driving = goal_ == Goal::Frontier;
   if (driving && (frontiers_done_ || !search.on())) return {to_frontier(view, target_)};
   Plan frontier = to_frontier(view, driving ? target_ : std::nullopt);
+  if (frontiers_done_ && view.places_only) frontier.found = false;
   Plan niche = to_place(view, search, Subjects::Niches);
   if (frontiers_done_ && !niche.found) return {std::move(frontier), true};
   return weigh(std::move(frontier), std::move(niche));

@@ -32,6 +32,7 @@ class TargetChoice {
     mrpt::math::TPose2D T_map_base;
     Stamp now;
     const LeftAlone& left_alone;
+    bool places_only = false;  ///< in a search frontiers do not come first
   };
   struct Choice {
     Plan plan;

@@ -32,9 +32,9 @@ struct Played {
     now = now + 1.0;
     return rounds.another({now, floor, victims, frontier_left}, search, left_alone).has_value();
   }
-  bool before_all_faces(std::size_t frontiers) {
+  bool before_all_faces(std::size_t frontiers, bool more = false) {
     now = now + 1.0;
-    return rounds.before_all_faces({now, floor, victims, frontiers}, search, left_alone).has_value();
+    return rounds.before_all_faces({now, floor, victims, frontiers}, more, search, left_alone).has_value();
   }
 };
 
@@ -153,6 +153,16 @@ TEST(Rounds, BeforeTheSearchOfAllFacesFrontiersAreTriedOnceARound) {
   ASSERT_TRUE(play.another());
   play.fail();
   EXPECT_TRUE(play.before_all_faces(1));
+}
+
+TEST(Rounds, WhatWasNotTriedSoFarIsAReasonAsWell) {
+  Played play;
+  EXPECT_FALSE(play.before_all_faces(1)) << "nothing failed";
+  EXPECT_FALSE(play.before_all_faces(0, true)) << "there is no frontier";
+  EXPECT_FALSE(play.rounds.tried_before_search());
+  EXPECT_TRUE(play.before_all_faces(1, true));
+  EXPECT_TRUE(play.rounds.tried_before_search());
+  EXPECT_FALSE(play.before_all_faces(1, true)) << "it was tried in this round";
 }
 
 TEST(Rounds, ForSeveralFrontiersEvenWhatIsCertainIsForgottenOnce) {
