@@ -13,8 +13,10 @@ namespace {
 
 using mrpt::math::TPoint2D;
 
-constexpr double kInside = 0.2;  ///< so far inside its pallet nothing is a wall on an edge [m]
-constexpr double kField = 0.6;   ///< a pallet over which things are spread so wide both ways is a field of steps [m]
+constexpr double kInside = 0.2;      ///< so far inside its pallet nothing is a wall on an edge [m]
+constexpr double kBesideEdge = 0.1;  ///< so near to an edge everything is a wall [m]
+constexpr int kJoined = 2;           ///< what is so near hangs together [cells]
+constexpr double kField = 0.6;  ///< a pallet over which things are spread so wide both ways is a field of steps [m]
 constexpr double kSideThick = 0.12;  ///< the side of a box that stands on an edge is no thicker [m]
 constexpr double kSideReach = 0.3;   ///< and reaches no farther beyond kInside [m]
 constexpr double kSideShown = 0.7;   ///< and so much of it shows between there and the edge
@@ -91,25 +93,41 @@ bool is_side_of_box(const OccupancyGrid& cells, const PalletGrid& grid, const Ex
   return shown >= kSideShown * steps;
 }
 
+/// Takes what lies nearer to the edges and hangs together with a thing into it, and out of `inside`.
+void add_what_joins(OccupancyGrid& inside, Thing& thing) {
+  for (std::size_t next = 0; next < thing.cells.size(); ++next) {
+    const Cell c = thing.cells[next];
+    for (int y = std::max(0, c.y - kJoined); y <= std::min(inside.height() - 1, c.y + kJoined); ++y)
+      for (int x = std::max(0, c.x - kJoined); x <= std::min(inside.width() - 1, c.x + kJoined); ++x) {
+        if (inside[{x, y}] != Occupancy::Unknown) continue;
+        inside[{x, y}] = Occupancy::Free;
+        thing.cells.push_back({x, y});
+      }
+  }
+}
+
 }  // namespace
 
 bool free_off_grid(Traversable& floor, double pallet) {
   if (pallet <= 0.0) return false;
   const OccupancyGrid walls = floor.cells;
   LocalGrids grids(walls, pallet);
+  // Occupied: well inside a pallet. Unknown: nearer to its edges than that, as a part of what stands inside may be.
   OccupancyGrid inside(walls.frame(), Occupancy::Free);
   for (int y = 0; y < walls.height(); ++y)
     for (int x = 0; x < walls.width(); ++x) {
       if (walls[{x, y}] != Occupancy::Occupied) continue;
       const TPoint2D p = walls.centre({x, y});
       const std::optional<PalletGrid>& grid = grids.at(p);
-      if (grid && grid->depth(p) > kInside) inside[{x, y}] = Occupancy::Occupied;
+      const double depth = grid ? grid->depth(p) : 0.0;
+      if (depth > kBesideEdge) inside[{x, y}] = depth > kInside ? Occupancy::Occupied : Occupancy::Unknown;
     }
   bool any = false;
-  for (const Thing& thing : things_of(inside, 1)) {
+  for (Thing& thing : things_of(inside, 1)) {
     const TPoint2D at = walls.centre(thing.cells[thing.cells.size() / 2]);
     const std::optional<PalletGrid>& grid = grids.at(at);
     if (!grid || is_field(inside, *grid, at) || is_side_of_box(walls, *grid, extent_of(walls, *grid, thing))) continue;
+    add_what_joins(inside, thing);
     loosen(floor, thing);
     any = true;
   }
