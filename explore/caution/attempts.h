@@ -16,8 +16,8 @@ class Attempts {
   explicit Attempts(double same_target) : same_target_(same_target) {}
 
   /// Spends `dt` seconds on a target that cost `cost` metres when it was first chosen; true when that is more time than
-  /// it deserves. The account is then closed: choosing the target again opens a new one. Chosen again from farther away it
-  /// gets what that is more. The robot is at `anchor`.
+  /// it deserves. The account is then closed: choosing the target again opens a new one. Chosen again from farther away
+  /// it gets what that is more. The robot is at `anchor`.
   bool overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt, const Anchor& anchor);
   /// The mapper corrected its past.
   void follow(const slam::Mapper& mapper);

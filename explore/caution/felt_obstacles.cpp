@@ -6,6 +6,7 @@
 
 #include "base/planar.h"
 #include "base/wall_between.h"
+#include "explore/caution/step_field.h"
 
 namespace rubble::explore {
 namespace {
@@ -83,6 +84,8 @@ Cell FeltObstacles::reached(const Thing& touch, const PalletGrid& grid, const ro
   const double reach = touch.side * (0.5 * model.length + kBeyondEdge);
   const Cell own = grid.pallet(here);
   const Cell ahead = grid.pallet(T_map_base.composePoint(TPoint2D{reach, 0.0}));
+  // Among steps, those it stands on stop it: only the higher ones show.
+  if (known != nullptr && shows_step_field(*known, grid, own)) return own;
   if (!(ahead == own)) return ahead;
   const auto is_at = [&](Cell pallet) {
     return [&, middle = grid.middle(pallet)](const Thing& thing) { return is_pallet_at(thing, middle); };
@@ -119,6 +122,7 @@ bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, cons
   const bool stood_on = thing.inside || std::any_of(trail.begin(), trail.end(),
                                                     [&](const TPoint2D& p) { return holds(thing, p, kOnPallet); });
   thing.whole = thing.stubs = !stood_on;
+  const bool steps = known != nullptr && shows_step_field(*known, grid, there);
   for (Thing& before : things_) {
     if (!is_pallet_at(before, middle)) continue;
     thing.certain = !stood_on && (before.certain || !before.whole);
@@ -127,9 +131,11 @@ bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, cons
     thing.let_go = before.let_go;
     thing.shut = before.shut;
     thing.stubs = thing.stubs || before.stubs || thing.times > 1;
+    thing.shut = thing.shut || steps;
     before = thing;
     return !stood_on;
   }
+  thing.shut = steps;
   things_.push_back(thing);
   return !stood_on;
 }

@@ -18,7 +18,8 @@ constexpr int kMostDoublings = 6;
 
 void LeftAlone::bar(const mrpt::math::TPoint2D& target, const Anchor& anchor, double cost) {
   const int times = std::min(blacklist_.times_barred(target), kMostDoublings);
-  blacklist_.bar({anchor, target}, kBarRadius, anchor.stamp + std::max(kBarTime, kBarPerMetre * cost) * std::ldexp(1.0, times));
+  blacklist_.bar({anchor, target}, kBarRadius,
+                 anchor.stamp + std::max(kBarTime, kBarPerMetre * cost) * std::ldexp(1.0, times));
 }
 
 void LeftAlone::bar_for_good(const mrpt::math::TPoint2D& target, const Anchor& anchor) {

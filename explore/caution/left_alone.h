@@ -26,8 +26,8 @@ class LeftAlone {
   LeftAlone(const FeltConfig& felt, double same_target) : config_(felt), attempts_(same_target), felt_(felt) {}
 
   /// Bars what lies around a target for a minute, twice as long each time; the robot is at `anchor`. What cost `cost`
-  /// [m] when it was chosen is barred for ten seconds a metre if that is longer: else it would be tried again as soon as
-  /// the robot has come back.
+  /// [m] when it was chosen is barred for ten seconds a metre if that is longer: else it would be tried again as soon
+  /// as the robot has come back.
   void bar(const mrpt::math::TPoint2D& target, const Anchor& anchor, double cost = 0.0);
   /// Until all is pardoned.
   void bar_for_good(const mrpt::math::TPoint2D& target, const Anchor& anchor);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "explore/caution/local_grids.h"
+#include "explore/caution/step_field.h"
 #include "explore/plan/loose_things.h"
 
 namespace rubble::explore {
@@ -13,25 +13,11 @@ namespace {
 
 using mrpt::math::TPoint2D;
 
-constexpr double kInside = 0.2;      ///< so far inside its pallet nothing is a wall on an edge [m]
 constexpr double kBesideEdge = 0.1;  ///< so near to an edge everything is a wall [m]
 constexpr int kJoined = 2;           ///< what is so near hangs together [cells]
-constexpr double kField = 0.6;  ///< a pallet over which things are spread so wide both ways is a field of steps [m]
 constexpr double kSideThick = 0.12;  ///< the side of a box that stands on an edge is no thicker [m]
-constexpr double kSideReach = 0.3;   ///< and reaches no farther beyond kInside [m]
+constexpr double kSideReach = 0.3;   ///< and reaches no farther beyond kInsidePallet [m]
 constexpr double kSideShown = 0.7;   ///< and so much of it shows between there and the edge
-
-/// A range of numbers.
-struct Range {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-  void add(double x) {
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
-  double length() const { return high - low; }
-  double middle() const { return 0.5 * (low + high); }
-};
 
 bool occupied_near(const OccupancyGrid& cells, const TPoint2D& p_map) {
   const Cell c = cells.cell(p_map);
@@ -41,34 +27,10 @@ bool occupied_near(const OccupancyGrid& cells, const TPoint2D& p_map) {
   return false;
 }
 
-/// The box around cells along the edges of the pallets [pallets].
-struct Extent {
-  Range x, y;
-  void add(const TPoint2D& p_grid) {
-    x.add(p_grid.x);
-    y.add(p_grid.y);
-  }
-};
-
 Extent extent_of(const OccupancyGrid& cells, const PalletGrid& grid, const Thing& thing) {
   Extent extent;
   for (const Cell c : thing.cells) extent.add(grid.to_grid(cells.centre(c)));
   return extent;
-}
-
-/// Whether what stands `inside` the pallet that holds a place reaches over most of it.
-bool is_field(const OccupancyGrid& inside, const PalletGrid& grid, const TPoint2D& p_map) {
-  const Cell pallet = grid.pallet(p_map);
-  const TPoint2D middle = grid.middle(pallet);
-  const Cell low = inside.cell({middle.x - grid.size, middle.y - grid.size});
-  const Cell high = inside.cell({middle.x + grid.size, middle.y + grid.size});
-  Extent extent;
-  for (int y = std::max(0, low.y); y <= std::min(inside.height() - 1, high.y); ++y)
-    for (int x = std::max(0, low.x); x <= std::min(inside.width() - 1, high.x); ++x) {
-      const TPoint2D p = inside.centre({x, y});
-      if (inside[{x, y}] == Occupancy::Occupied && grid.pallet(p) == pallet) extent.add(grid.to_grid(p));
-    }
-  return grid.size * std::min(extent.x.length(), extent.y.length()) > kField;
 }
 
 /// Whether a thing inside a pallet is the end of a panel that stands upright on an edge of it, as the sides of the
@@ -120,13 +82,15 @@ bool free_off_grid(Traversable& floor, double pallet) {
       const TPoint2D p = walls.centre({x, y});
       const std::optional<PalletGrid>& grid = grids.at(p);
       const double depth = grid ? grid->depth(p) : 0.0;
-      if (depth > kBesideEdge) inside[{x, y}] = depth > kInside ? Occupancy::Occupied : Occupancy::Unknown;
+      if (depth > kBesideEdge) inside[{x, y}] = depth > kInsidePallet ? Occupancy::Occupied : Occupancy::Unknown;
     }
   bool any = false;
   for (Thing& thing : things_of(inside, 1)) {
     const TPoint2D at = walls.centre(thing.cells[thing.cells.size() / 2]);
     const std::optional<PalletGrid>& grid = grids.at(at);
-    if (!grid || is_field(inside, *grid, at) || is_side_of_box(walls, *grid, extent_of(walls, *grid, thing))) continue;
+    if (!grid || shows_step_field(walls, *grid, grid->pallet(at)) ||
+        is_side_of_box(walls, *grid, extent_of(walls, *grid, thing)))
+      continue;
     add_what_joins(inside, thing);
     loosen(floor, thing);
     any = true;

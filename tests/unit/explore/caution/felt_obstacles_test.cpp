@@ -4,6 +4,7 @@
 
 #include "base/angle.h"
 #include "base/planar.h"
+#include "tests/support/explore_grids.h"
 
 namespace rubble::explore {
 namespace {
@@ -122,6 +123,24 @@ TEST(FeltObstacles, AreGoneWhereTheRobotStoodInGoodOrder) {
   EXPECT_EQ(felt.count(at(1.0)), 1);
   felt.passed(TPose2D{0.5 * kModel.length + 0.1, 0.0, 1.0}, kModel);
   EXPECT_EQ(felt.count(at(1.0)), 0);
+}
+
+/// Of a red field of steps the laser sees the higher ones, from corner to corner; the lower ones hold a robot that has
+/// come onto it, which are not the floor of the pallet before it.
+TEST(FeltObstacles, AmongStepsThePalletItStandsOnIsToBlameNotTheNext) {
+  PalletGrid grid;
+  const TPose2D pose{2.1, 0.8, 0.0};  // its front reaches over the edge at 2.4
+  const TPoint2D own{1.8, 0.6}, next{3.0, 0.6};
+  for (const bool shows : {false, true}) {
+    OccupancyGrid known = test::room(6.0, 4.0);
+    for (double d = 0.2; shows && d < 1.0; d += 0.05)
+      test::fill(known, 1.2 + d - 0.04, d - 0.04, 1.2 + d + 0.04, d + 0.04, Occupancy::Occupied);
+    FeltObstacles felt;
+    felt.feel({at(1.0), pose}, false, kModel, grid, {}, &known);
+    EXPECT_EQ(nearest(felt.points(at(2.0)), next) < 0.1, !shows);
+    felt.passed({4.0, 3.0, 0.0}, kModel);  // it is off it
+    EXPECT_EQ(nearest(felt.points(at(2.0)), own) < 0.1, shows) << "then it is left alone";
+  }
 }
 
 }  // namespace
