@@ -15,6 +15,7 @@ using mrpt::math::TPoint2D;
 
 constexpr double kBesideEdge = 0.1;  ///< so near to an edge everything is a wall [m]
 constexpr int kJoined = 2;           ///< what is so near hangs together [cells]
+constexpr double kWide = 0.5;        ///< what is as wide may be a wall, if it is no floor [m]
 constexpr double kSideThick = 0.12;  ///< the side of a box that stands on an edge is no thicker [m]
 constexpr double kSideReach = 0.3;   ///< and reaches no farther beyond kInsidePallet [m]
 constexpr double kSideShown = 0.7;   ///< and so much of it shows between there and the edge
@@ -92,7 +93,8 @@ bool free_off_grid(Traversable& floor, double pallet) {
         is_side_of_box(walls, *grid, extent_of(walls, *grid, thing)))
       continue;
     add_what_joins(inside, thing);
-    loosen(floor, thing);
+    const bool wide = thing.longer_side() * walls.frame().resolution >= kWide;
+    (wide ? doubt : loosen)(floor, thing);
     any = true;
   }
   return any;

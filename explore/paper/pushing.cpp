@@ -17,6 +17,7 @@ constexpr double kPaper = 0.5;      ///< what stands alone and is not wider may 
 constexpr double kHeap = 1.1;       ///< several balls side by side; a panel of wall is 1.2 m wide [m]
 constexpr double kPushReach = 1.0;  ///< things to be pushed aside are watched from here on [m]
 constexpr double kWall = 0.08;      ///< a hit so near to something of the map that is not loose is on that [m]
+constexpr double kSeenOver = 0.6;   ///< floor of a slope is not seen from nearer: by then the robot is on it [m]
 constexpr double kRoll = 0.15;      ///< farther they do not roll between two looks [m]
 
 }  // namespace
@@ -44,15 +45,25 @@ std::vector<TPoint2D> Pushing::without_loose_things(const std::vector<TPoint2D>&
   std::vector<TPoint2D> loose = std::move(rolling_);
   rolling_.clear();
   if (!on()) return hits;
-  for (const Cell c : floor.loose)
-    if (const TPoint2D p = floor.cells.centre(c); distance(p, here) < kPushReach) loose.push_back(p);
+  std::vector<TPoint2D> doubtful;
+  const auto add_near = [&](const std::vector<Cell>& cells, std::vector<TPoint2D>& points) {
+    for (const Cell c : cells)
+      if (const TPoint2D p = floor.cells.centre(c); distance(p, here) < kPushReach) points.push_back(p);
+  };
+  add_near(floor.loose, loose);
+  add_near(floor.doubtful, doubtful);
   std::vector<TPoint2D> rest;
   for (const TPoint2D& hit : hits) {
     const Cell c = floor.clearance.cell(hit);
     const bool wall = floor.clearance.inside(c) && floor.clearance[c] < kWall;
-    const bool rolls = !wall && distance(hit, here) < kPushReach &&
-                       std::any_of(loose.begin(), loose.end(), [&](const auto& p) { return distance(p, hit) < kRoll; });
-    (rolls ? rolling_ : rest).push_back(hit);
+    const double away = distance(hit, here);
+    const auto on = [&](const std::vector<TPoint2D>& points) {
+      return std::any_of(points.begin(), points.end(), [&](const auto& p) { return distance(p, hit) < kRoll; });
+    };
+    if (!wall && away < kPushReach && on(loose))
+      rolling_.push_back(hit);
+    else if (wall || away < kSeenOver || away >= kPushReach || !on(doubtful))
+      rest.push_back(hit);
   }
   return rest;
 }

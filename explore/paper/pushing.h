@@ -38,8 +38,8 @@ class Pushing {
     known_then_.forget();
   }
 
-  /// The hits of the newest scan but for those on what is pushed, of a robot at T_map_base on `floor`, whose loose
-  /// things they are [m, map frame].
+  /// The hits of the newest scan but for those on what is pushed, and on what is hoped to be the floor of a slope
+  /// unless they show that it is none, of a robot at T_map_base on `floor`, whose loose things they are [m, map frame].
   std::vector<mrpt::math::TPoint2D> without_loose_things(const std::vector<mrpt::math::TPoint2D>& hits,
                                                          const mrpt::math::TPose2D& T_map_base,
                                                          const Traversable& floor);

@@ -68,6 +68,13 @@ std::vector<std::size_t> row_through(const OccupancyGrid& cells, const std::vect
   return row;
 }
 
+void make_free(Traversable& floor, const Thing& thing) {
+  for (const Cell c : thing.cells) {
+    floor.cells[c] = Occupancy::Free;
+    floor.obstacle[c] = 0;
+  }
+}
+
 }  // namespace
 
 std::vector<Thing> things_of(const OccupancyGrid& cells, int gap) {
@@ -96,11 +103,13 @@ std::vector<Thing> things_of(const OccupancyGrid& cells, int gap) {
 }
 
 void loosen(Traversable& floor, const Thing& thing) {
-  for (const Cell c : thing.cells) {
-    floor.cells[c] = Occupancy::Free;
-    floor.obstacle[c] = 0;
-  }
+  make_free(floor, thing);
   floor.loose.insert(floor.loose.end(), thing.cells.begin(), thing.cells.end());
+}
+
+void doubt(Traversable& floor, const Thing& thing) {
+  make_free(floor, thing);
+  floor.doubtful.insert(floor.doubtful.end(), thing.cells.begin(), thing.cells.end());
 }
 
 bool free_small_things(Traversable& floor, double extent) {

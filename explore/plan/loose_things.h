@@ -25,6 +25,8 @@ std::vector<Thing> things_of(const OccupancyGrid& cells, int gap);
 
 /// Makes a thing free, as one that can be pushed.
 void loosen(Traversable& floor, const Thing& thing);
+/// Makes a thing free, as one that may be no thing but the floor of a slope.
+void doubt(Traversable& floor, const Thing& thing);
 
 /// Makes free what stands alone and is small, no wider than `extent` [m] and nothing else within 0.15 m: paper that
 /// can be pushed aside, as a rule. Says whether there was any.
