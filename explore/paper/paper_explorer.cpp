@@ -15,13 +15,15 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using robot::Drive;
 
-constexpr double kSameThing = 0.15;    ///< a hit this close to a wall of the map is that wall [m]
-constexpr double kOnEdge = 0.01;       ///< what was felt so near to a pallet is felt on it [m]
-constexpr double kTrailRadius = 0.20;  ///< [m]
-constexpr double kNearFrontier = 1.0;  ///< frontier this close at the start: turn to see it [m]
-constexpr double kTurningRoom = 0.06;  ///< beside the robot's swing circle, for stopping a little off [m]
-constexpr double kLittleRoom = 0.01;   ///< likewise, where there is no more [m]
-constexpr double kLongestTick = 0.2;   ///< commands of longer ticks are taken to have ended [s]
+constexpr double kSameThing = 0.15;              ///< a hit this close to a wall of the map is that wall [m]
+constexpr double kBlindWay = 2.5;                ///< by odometry alone, then it looks back [m]
+constexpr double kLookBack = deg_to_rad(130.0);  ///< with a 240 deg scanner far enough [rad]
+constexpr double kOnEdge = 0.01;                 ///< what was felt so near to a pallet is felt on it [m]
+constexpr double kTrailRadius = 0.20;            ///< [m]
+constexpr double kNearFrontier = 1.0;            ///< frontier this close at the start: turn to see it [m]
+constexpr double kTurningRoom = 0.06;            ///< beside the robot's swing circle, for stopping a little off [m]
+constexpr double kLittleRoom = 0.01;             ///< likewise, where there is no more [m]
+constexpr double kLongestTick = 0.2;             ///< commands of longer ticks are taken to have ended [s]
 constexpr double kDetourSpeed = 0.15;  ///< a detour is driven so fast at least, turns and stops included [m/s]
 constexpr int kSmoothFloor = 3;        ///< things felt so far where the robot may be fast
 
@@ -152,6 +154,7 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
     return {};
   }
   check_path(mapper);
+  look_back(mapper);
   agenda_.spend(dt_, situation());
   // A mapper need not change its map where a robot stands on known ground.
   if (pilot_.arrived() && !pilot_.turning()) agenda_.arrived(now_);
@@ -170,6 +173,17 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
   // A turn in a tight place wanders off its viewpoint; driving back to it and turning again would never end.
   if (step.faced) victims_.search().start_dwell_as_turned(now_);
   return step.drive;
+}
+
+/// Between walls that look the same all along its wheels may spin before a step while all seems well: before the way
+/// that is known by odometry alone becomes long it looks back for where it began.
+void PaperExplorer::look_back(const slam::Mapper& mapper) {
+  const double blind = mapper.blind_way();
+  if (blind < looked_back_at_) looked_back_at_ = 0.0;
+  if (blind < looked_back_at_ + kBlindWay || pilot_.turning()) return;
+  looked_back_at_ = blind;
+  agenda_.note(now_, "nothing but walls alongside for so long: looks back");
+  pilot_.turn(kLookBack, TurnFor::View, now_);
 }
 
 /// Records what the victim sensors see, and stands where they need time for it.

@@ -62,6 +62,7 @@ class PaperExplorer : public Explorer {
   robot::Drive back_up();
 
   bool holds_still();
+  void look_back(const slam::Mapper& mapper);
   void check_path(const slam::Mapper& mapper);
   void get_free_of(const StuckWatch::Hold& hold, const slam::Mapper& mapper);
   std::optional<WayOut> way_out(const slam::Mapper& mapper);
@@ -94,7 +95,8 @@ class PaperExplorer : public Explorer {
   std::uint64_t revision_ = 0;
   Traversable floor_;  ///< of the last plan
   robot::Drive commanded_;
-  bool brakes_ = false;  ///< this tick's command is to stop as hard as the base can
+  bool brakes_ = false;          ///< this tick's command is to stop as hard as the base can
+  double looked_back_at_ = 0.0;  ///< of the mapper's blind way [m]
   std::vector<mrpt::math::TPoint2D> shown_path_;
 };
 

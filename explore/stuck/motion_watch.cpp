@@ -39,6 +39,7 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
     expected_ = wheels ? wheels->v : 0.0;
     place_ = T_map_base;
     last_ = T_map_base;
+    steered_from_ = T_map_base.phi;
   }
   if (!has_reference_ || std::abs(wrap_angle(T_map_base.phi - reference_.phi)) > config_.turned) {
     reference_ = T_map_base;
@@ -78,11 +79,17 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
     // Wheels that spin carry the pose on between two scans, and each scan puts it back: it trembles in its place.
     pushed_ += driven * dt;
   }
+  // The scans tell the heading also where the walls look the same all along and nobody knows how far it came.
+  steered_ += wheels && !on_the_spot(commanded) ? wheels->w * dt : 0.0;
+  if (std::abs(wrap_angle(T_map_base.phi - steered_from_)) > config_.unmoved) {
+    steered_ = 0.0;
+    steered_from_ = T_map_base.phi;
+  }
   // A slow curve turns the robot less than it is told where the floor holds it back: its way is judged, not its turn.
   turn_ += on_the_spot(commanded) ? turning * dt : 0.0;
   stalled_for_ = stalled ? stalled_for_ + dt : 0.0;
-  return rocking() || in_vain || pushed_ > config_.place_patience || turn_ > config_.turn_patience ||
-         stalled_for_ > config_.stall_time;
+  return rocking() || in_vain || steers_in_vain() || pushed_ > config_.place_patience ||
+         turn_ > config_.turn_patience || stalled_for_ > config_.stall_time;
 }
 
 }  // namespace rubble::explore

@@ -21,16 +21,18 @@ struct MotionWatchConfig {
   double led = 0.6;                 ///< by more than this where it is turned aside: a corner of it hangs on something
   double aside = deg_to_rad(10.0);  ///< turned so much against its wheels, or beyond them [rad]
   double turned = deg_to_rad(8.0);  ///< turned this much on the spot, the robot moves [rad]
-  double pivot_rate = 0.15;         ///< turning faster than this
-  double pivot_speed = 0.12;        ///< and driving no faster is a turn on the spot: its way does not count
-  double accel = 0.3;               ///< a commanded speed is expected to be reached so [m/s^2]
-  double turn_patience = 1.2;       ///< turn commanded in vain that means stuck [rad]
-  double place = 0.15;              ///< rocking to and fro within so much of a place [m]
-  double place_patience = 0.45;     ///< way commanded there that means stuck, though the pose trembles [m]
-  double rocking = 6.3;             ///< turned so much more there than came of it means stuck [rad]
-  double standing = 0.02;           ///< slower wheels stand [m/s], [rad/s]
-  double disobedience = 8.0;        ///< wheels that stand so long though told to go are held [s]
-  double stall_time = 0.21;         ///< the motors report a stall for this long [s]
+  double steered = 1.0;             ///< turned so much by wheels that drive on [rad]
+  double unmoved = deg_to_rad(5.0);  ///< while the body turned by no more than this, it is held [rad]
+  double pivot_rate = 0.15;          ///< turning faster than this
+  double pivot_speed = 0.12;         ///< and driving no faster is a turn on the spot: its way does not count
+  double accel = 0.3;                ///< a commanded speed is expected to be reached so [m/s^2]
+  double turn_patience = 1.2;        ///< turn commanded in vain that means stuck [rad]
+  double place = 0.15;               ///< rocking to and fro within so much of a place [m]
+  double place_patience = 0.45;      ///< way commanded there that means stuck, though the pose trembles [m]
+  double rocking = 6.3;              ///< turned so much more there than came of it means stuck [rad]
+  double standing = 0.02;            ///< slower wheels stand [m/s], [rad/s]
+  double disobedience = 8.0;         ///< wheels that stand so long though told to go are held [s]
+  double stall_time = 0.21;          ///< the motors report a stall for this long [s]
 };
 
 /// Finds out that the robot is stuck: it is told to move and its wheels turn, but its pose stays, or its motors stall.
@@ -48,6 +50,8 @@ class MotionWatch {
   void turns_on_purpose() { rocked_ = net_ = 0.0; }
   /// It turns to and fro and gets nowhere: something holds one of its corners.
   bool rocking() const { return rocked_ - std::abs(net_) > config_.rocking; }
+  /// Its wheels turn it as they roll, and its heading stays, wherever its pose seems to go.
+  bool steers_in_vain() const { return std::abs(steered_) > config_.steered; }
   /// Whether a command is a turn on the spot.
   bool on_the_spot(const robot::Drive& commanded) const {
     return std::abs(commanded.w) > config_.pivot_rate && std::abs(commanded.v) <= config_.pivot_speed;
@@ -72,6 +76,8 @@ class MotionWatch {
   double wheel_turn_ = 0.0;
   std::deque<Moment> lately_;  ///< over the last `patience` of way
   double turn_ = 0.0;
+  double steered_ = 0.0;       ///< by the wheels since the body turned last [rad]
+  double steered_from_ = 0.0;  ///< its heading then [rad]
   mrpt::math::TPose2D place_;
   double pushed_ = 0.0;  ///< way commanded there [m]
   double rocked_ = 0.0;  ///< turns commanded there, whichever way [rad]

@@ -46,12 +46,14 @@ std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_ma
   const bool slowed = slowed_.held(jolt_.shaken() && commanded.v != 0.0 && !turns_slowly, T_map_base,
                                    wheels_.value_or(commanded), tilt_.pitch(), dt, now);
   if (!tilt_.too_steep() && !blow && !slowed && !stuck) return std::nullopt;
-  const Hold hold{tilt_.too_steep() ? "it leans too much here"
-                  : blow            ? "a blow stops it"
-                  : slowed          ? "a blow holds it back"
-                  : stalled_        ? "the motors stall"
-                                    : "it does not move",
-                  met(commanded), !tilt_.too_steep() && !blow && !slowed && !stalled_ && !motion_.rocking()};
+  const Hold hold{
+      tilt_.too_steep() ? "it leans too much here"
+      : blow            ? "a blow stops it"
+      : slowed          ? "a blow holds it back"
+      : stalled_        ? "the motors stall"
+                        : "it does not move",
+      met(commanded),
+      !tilt_.too_steep() && !blow && !slowed && !stalled_ && !motion_.rocking() && !motion_.steers_in_vain()};
   begin_anew();
   tilt_.reset();
   return hold;

@@ -41,6 +41,7 @@ class ContinuedMapper : public Mapper {
   const Trajectory& trajectory() const override;
   const Trajectory& live_trajectory() const override { return live_; }
   const std::vector<mrpt::math::TPoint2D>& last_hits() const override;
+  double blind_way() const override { return drive_->blind_way(); }
   const MapperCounts& counts() const override { return counts_; }
   std::vector<MapperFigure> figures() const override;
   const ScanRecords* scan_records() const override { return &records_; }

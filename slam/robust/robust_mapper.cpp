@@ -525,6 +525,7 @@ std::optional<TPose2D> RobustMapper::pose_at(Stamp stamp) const { return impl_->
 const Trajectory& RobustMapper::trajectory() const { return impl_->trajectory(); }
 const Trajectory& RobustMapper::live_trajectory() const { return impl_->live_; }
 const std::vector<TPoint2D>& RobustMapper::last_hits() const { return impl_->last_hits_; }
+double RobustMapper::blind_way() const { return impl_->tracker_.blind_way(); }
 const MapperCounts& RobustMapper::counts() const { return impl_->counts_; }
 
 const ScanRecords* RobustMapper::scan_records() const { return &impl_->diary_.records(); }

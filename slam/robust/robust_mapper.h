@@ -76,6 +76,7 @@ class RobustMapper : public Mapper {
   const Trajectory& trajectory() const override;
   const Trajectory& live_trajectory() const override;
   const std::vector<mrpt::math::TPoint2D>& last_hits() const override;
+  double blind_way() const override;
   const MapperCounts& counts() const override;
   std::vector<MapperFigure> figures() const override;
   const ScanRecords* scan_records() const override;

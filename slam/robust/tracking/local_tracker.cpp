@@ -122,6 +122,10 @@ Tracked LocalTracker::track(const KeyFrames& frames, const Cloud& cloud, const E
   tracked.found = tracked.fit.paired >= kLeastTrackedPairs;
   tracked.lost = doubted && (!tracked.found || tracked.fit.inliers < config_.lost_inliers);
   if (!tracked.found) tracked.fit.pose = prior.pose;
+  if (tracked.found && !along_one_way(tracked.fit))
+    blind_way_ = 0.0;
+  else if (!motion.again)
+    blind_way_ += distance;
   const TPose2D off = tracked.fit.pose - prior.pose;
   const Eigen::Vector3d d(off.x, off.y, wrap_angle(off.phi));
   tracked.odometry_chi2 = d.dot(prior_information(undoubted) * d);

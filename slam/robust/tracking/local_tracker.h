@@ -65,6 +65,9 @@ class LocalTracker {
   /// Finds the scan; `T_frame_last`: the last one, relative to that key frame.
   Tracked track(const KeyFrames& frames, const Cloud& cloud, const ExpectedMotion& motion,
                 const mrpt::math::TPose2D& T_frame_last, Work* work);
+  /// How far odometry says that the robot came since a scan last told how far it came, as between two walls that look
+  /// the same all along [m].
+  double blind_way() const { return blind_way_; }
 
  private:
   /// How far a robot may be from where it is expected.
@@ -103,6 +106,7 @@ class LocalTracker {
 
   const TrackerConfig config_;
   Leap leap_;
+  double blind_way_ = 0.0;             ///< [m]
   std::vector<OrientedPoint> points_;  ///< of the scan that is looked for, ends of walls among them
   std::vector<int> local_;             ///< key frames of the local map, the one whose frame it is in first
   SurfelGrid surfels_;

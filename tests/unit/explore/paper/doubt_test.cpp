@@ -21,6 +21,7 @@ class Doubtful : public slam::Mapper {
  public:
   explicit Doubtful(slam::Mapper& mapper) : mapper_(mapper) {}
   double sigma = 0.0;  ///< of x and y [m]
+  double blind = 0.0;  ///< [m]
 
   void update(const robot::Inputs& inputs) override { mapper_.update(inputs); }
   const slam::CountMap& map() const override { return mapper_.map(); }
@@ -30,6 +31,7 @@ class Doubtful : public slam::Mapper {
     covariance(0, 0) = covariance(1, 1) = sigma * sigma;
     return covariance;
   }
+  double blind_way() const override { return blind; }
   std::uint64_t revision() const override { return mapper_.revision(); }
   std::optional<TPose2D> pose_at(Stamp stamp) const override { return mapper_.pose_at(stamp); }
   const Trajectory& trajectory() const override { return mapper_.trajectory(); }
@@ -91,6 +93,40 @@ TEST(Doubt, ALostPoseMakesNoVictim) { EXPECT_EQ(mission(0.0).victims, 0u); }
 TEST(Doubt, WhatALostRobotPassesIsNotSearchedByThat) {
   const Seen sure = mission(1e9), lost = mission(0.0);
   EXPECT_GT(lost.places, sure.places);
+}
+
+/// Where odometry alone says how far it came, it looks back each 2.5 m of that, and not otherwise.
+TEST(Doubt, BetweenBareWallsTheRobotLooksBack) {
+  const auto looks = [](bool bare) {
+    const test::Maze maze = test::maze({"+--+--+--+--+--+--+--+--+",  //
+                                        "| R                     |",  //
+                                        "+--+--+--+--+--+--+--+--+"});
+    const robot::RobotModel model;
+    test::MazeRobot robot(maze, model);
+    slam::PaperMapper paper(model, test::exact_mapper(), 1);
+    Doubtful mapper(paper);
+    PaperExplorerConfig config;
+    config.search.on = false;
+    config.return_home = false;
+    PaperExplorer explorer(model, config);
+    robot::Commands commands;
+    TPose2D last = robot.pose();
+    while (robot.now().seconds() < 200.0 && !explorer.finished()) {
+      const robot::Inputs inputs = robot.step(commands);
+      mapper.blind += bare ? distance(position(last), position(robot.pose())) : 0.0;
+      last = robot.pose();
+      mapper.update(inputs);
+      commands = explorer.next(mapper, inputs);
+    }
+    EXPECT_TRUE(explorer.finished());
+    const auto& decisions = explorer.decisions();
+    const auto looks = std::count_if(decisions.begin(), decisions.end(),
+                                     [](const Decision& d) { return d.why.find("looks back") != std::string::npos; });
+    EXPECT_LE(2.5 * static_cast<double>(looks), mapper.blind);
+    return looks;
+  };
+  EXPECT_GE(looks(true), 1);
+  EXPECT_EQ(looks(false), 0);
 }
 
 }  // namespace

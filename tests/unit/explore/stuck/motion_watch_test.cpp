@@ -46,6 +46,25 @@ TEST(MotionWatch, ARobotThatCreepsAndWigglesIsNotStuck) {
   }
 }
 
+/// Between walls that look the same all along a mapper believes wheels that spin before a step; but not that they turn.
+TEST(MotionWatch, WheelsThatSteerInVainAreFoundOutWhereverThePoseGoes) {
+  for (const double slip : {0.0, 0.5, 0.8, 1.0}) {
+    MotionWatch watch;
+    double x = 0.0, phi = 0.0, t = 0.0;
+    bool stuck = false;
+    for (; !stuck && t < 20.0; t += 0.02) {
+      x += 0.2 * 0.02;
+      phi += (1.0 - slip) * -0.45 * 0.02;
+      stuck = watch.stuck({x, 0.0, phi}, {0.2, -0.45}, false, 0.02, robot::Drive{0.2, -0.45});
+    }
+    EXPECT_EQ(stuck, slip == 1.0) << "slip " << slip << ", after " << t << " s";
+    EXPECT_EQ(watch.steers_in_vain(), slip == 1.0);
+    if (stuck) {
+      EXPECT_LT(t, 2.5);
+    }
+  }
+}
+
 /// Along bare walls a mapper slides and finds its place again, by as much as the robot went meanwhile.
 TEST(MotionWatch, ACorrectedPoseIsNoRobotThatStands) {
   MotionWatch watch;

@@ -63,6 +63,34 @@ TEST(LocalTracker, EndsOfWallsHoldARobotWhoseWheelsSpin) {
   }
 }
 
+/// Between bare walls nothing tells a robot that drives from one whose wheels spin; a wall across does.
+TEST(LocalTracker, CountsTheWayThatOdometryAloneKnows) {
+  robot::RobotModel model;
+  const slam_test::World bare{{{-20.0, 0.6}, {20.0, 0.6}}, {{-20.0, -0.6}, {20.0, -0.6}}};
+  slam_test::World closed = bare;
+  closed.push_back({{3.0, -0.6}, {3.0, 0.6}});
+  const auto places = slam_test::places_along({{0.0, 0.0}, {1.5, 0.0}}, 0.3);
+  for (const bool wall : {false, true}) {
+    KeyFrames frames;
+    const slam_test::World& world = wall ? closed : bare;
+    for (std::size_t i = 0; i < places.size(); ++i) slam_test::add_key_frame(frames, world, places, 0.0, model);
+    LocalTracker tracker(suited_to(model.laser, {}).tracker);
+    tracker.redraw(frames, frames.last(), nullptr);
+    ExpectedMotion spinning;
+    spinning.T_last_now = TPose2D(0.04, 0.0, 0.0);
+    spinning.time = 0.1;
+    spinning.told = true;
+    TPose2D T_frame_now;
+    for (int scan = 1; scan <= 20; ++scan) {
+      T_frame_now =
+          tracker.track(frames, slam_test::cloud_at(world, places.back(), model), spinning, T_frame_now, nullptr)
+              .fit.pose;
+      EXPECT_NEAR(tracker.blind_way(), wall ? 0.0 : 0.04 * scan, 1e-9);
+    }
+    EXPECT_NEAR(T_frame_now.x, wall ? 0.0 : 0.8, 0.05);
+  }
+}
+
 /// A corridor with a line across it: a wall, or where the laser's plane cuts a ramp.
 slam_test::World corridor_with_line(double x) {
   return {{{-20.0, 0.7}, {20.0, 0.7}}, {{-20.0, -0.7}, {20.0, -0.7}}, {{x, -0.7}, {x, 0.7}}};
