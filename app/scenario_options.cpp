@@ -1,7 +1,9 @@
 #include "app/scenario_options.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <vector>
 
 #include "base/error.h"
 #include "base/text/input_file.h"
@@ -13,8 +15,19 @@ namespace {
 /// `name`, unless it is the bare name of a file in `folder`.
 std::string find_shipped(const std::string& name, const std::string& folder) {
   namespace fs = std::filesystem;
+  std::error_code error;
+  if (fs::exists(name, error) || name.find_first_of("/.") != std::string::npos) return name;
   const std::string shipped = folder + "/" + name + ".yaml";
-  return !fs::exists(name) && name.find('/') == std::string::npos && fs::exists(shipped) ? shipped : name;
+  if (fs::exists(shipped, error)) return shipped;
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (const std::string stem = entry.path().stem().string();
+        entry.path().extension() == ".yaml" && stem.rfind("benchmark", 0) != 0)  // a list of `rubble benchmark`
+      names.push_back(stem);
+  std::sort(names.begin(), names.end());
+  std::string list;
+  for (const std::string& one : names) list += (list.empty() ? "" : ", ") + one;
+  throw InputError(name + ": there is no such file, and none of that name is shipped; shipped are " + list);
 }
 
 }  // namespace

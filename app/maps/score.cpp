@@ -9,6 +9,7 @@
 #include "app/maps/score_tools.h"
 #include "app/terminal.h"
 #include "base/error.h"
+#include "base/text/shell.h"
 #include "base/text/text_file.h"
 #include "scenarios/run/score_json.h"
 #include "scoring/league/league_victims.h"
@@ -73,6 +74,10 @@ void print_table(const Verdict& verdict, const nlohmann::ordered_json& json) {
 }
 
 int score(const ScoreArguments& arguments) {
+  if (arguments.map.empty())
+    throw UsageError(arguments.league.empty()
+                         ? "map is required; see rubble score --help"
+                         : "the truth is missing: rubble score --league " + shell_word(arguments.league) + " TRUTH");
   if (!arguments.league.empty()) return score_league(arguments);
   if (arguments.truth.empty()) throw UsageError("truth is required; see rubble score --help");
   if (!arguments.judge.empty()) throw UsageError("--judge goes with --league only; see rubble score --help");
@@ -141,7 +146,8 @@ Command score_command() {
           "  rubble score runs/latest/estimate.tum runs/latest/truth.tum",
           [](Options& o) -> Action {
             auto a = std::make_shared<ScoreArguments>();
-            o.argument("map", a->map, "GeoTIFF, ROS map.yaml, image with --resolution, or trajectory .tum");
+            o.argument("map", a->map, "GeoTIFF, ROS map.yaml, image with --resolution, or trajectory .tum",
+                       Options::Need::Optional);
             o.argument("truth", a->truth, "Ground truth, same formats (for a trajectory also .relations)",
                        Options::Need::Optional);
             o.text("--pose", a->pose,

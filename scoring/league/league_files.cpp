@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
 #include <map>
 
 #include "base/error.h"
@@ -15,9 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Best first.
-constexpr std::array<const char*, 10> kFormats = {".tif", ".tiff", ".yaml", ".yml", ".png",
-                                                  ".jpg", ".jpeg", ".bmp",  ".pgm", ".ppm"};
+/// Best first; those from kReadable on are refused by name, so that no team is left out without a word.
+constexpr std::array<const char*, 15> kFormats = {".tif", ".tiff", ".yaml", ".yml", ".png", ".jpg", ".jpeg", ".bmp",
+                                                  ".pgm", ".ppm",  ".webp", ".gif", ".tga", ".jp2", ".svg"};
+constexpr std::size_t kReadable = 10;
 
 std::size_t format_of(const fs::path& path) {
   std::string extension = path.extension().string();
@@ -88,9 +90,13 @@ MapsInFolder maps_in(const fs::path& folder, const fs::path& truth) {
   return out;
 }
 
-LeagueFiles team_in(const fs::path& folder, const std::map<std::string, fs::path>& maps) {
+LeagueFiles team_in(const fs::path& folder, std::map<std::string, fs::path> maps) {
   LeagueFiles out;
   out.team = folder.filename().string();
+  const auto is_readable = [](const auto& map) { return format_of(map.second) < kReadable; };
+  // A logo beside the map is none.
+  if (std::any_of(maps.begin(), maps.end(), is_readable))
+    for (auto map = maps.begin(); map != maps.end();) map = is_readable(*map) ? std::next(map) : maps.erase(map);
   const auto named = maps.find("map");
   if (named != maps.end()) {
     out.map = named->second.string();

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/image/rich_tiff.h"
 #include "base/text/number_text.h"
+#include "base/text/shell.h"
 #include "base/text/text_file.h"
 #include "base/text/words.h"
 #include "base/yaml/strict_yaml.h"
@@ -55,6 +56,9 @@ cv::Mat raster_of(const RgbImage& image) {
 
 OccupancyGrid read_ros_map(const std::string& yaml_path) {
   const YamlMap root = YamlMap::load(yaml_path);
+  if (!root.has("image") && (root.has("maze") || root.has("walls")))
+    throw InputError(yaml_path + ": is an arena, not a map; 'rubble arena " + shell_word(yaml_path) +
+                     "' writes its truth map");
   const std::string image_name = root.text("image", std::nullopt);
   const double resolution = root.number("resolution", std::nullopt, 0.001, 10.0);
   const double occupied_thresh = root.number("occupied_thresh", 0.65, 0.0, 1.0);

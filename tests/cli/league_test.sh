@@ -110,6 +110,14 @@ grep -q '^[^,]*,self,.*leads to no file' odd_out/league.csv || fail "a link to i
 mkdir none && cp $truth none/truth.tif
 expect_exit 3 'truth.tif' "$rubble" score --league none $truth
 
+expect_exit 2 'the truth is missing: rubble score --league maps TRUTH' "$rubble" score --league maps
+# A picture of a kind that is not read is no reason to leave a team out without a word; beside a map it is a logo.
+mkdir -p pictures/beta && cp maps/*.tif pictures/ 2>/dev/null
+printf 'RIFF\x10\0\0\0WEBPVP8 ' | tee pictures/gamma.webp >pictures/beta/logo.webp
+cp "$(ls maps/*.tif | head -n 1)" pictures/beta/map.tif
+"$rubble" score --league pictures $truth >out.txt 2>err.txt || fail "a picture that is not read ends a league"
+grep -q 'gamma .*WebP' out.txt || fail "a WebP picture is left out of the league"
+grep -q 'beta .*WebP\|beta .*several' out.txt && fail "a logo beside a map is taken for one"
 expect_exit 2 'truth only' "$rubble" score --league maps $truth $truth
 expect_exit 2 '--pose' "$rubble" score --league maps $truth --pose 1,2,3
 expect_exit 3 'nowhere' "$rubble" score --league nowhere $truth
