@@ -86,6 +86,14 @@ std::string shipped_folder(const std::string& kind) {
 }
 
 std::string find_scenario(const std::string& name) {
+  namespace fs = std::filesystem;
+  // Who names an arena is told what is missing.
+  std::error_code error;
+  const std::string arena = (fs::path(shipped_folder("arenas")) / "shipped" / (name + ".yaml")).string();
+  if (!name.empty() && name.find('/') == std::string::npos && !fs::exists(name, error) &&
+      !fs::exists(fs::path(shipped_folder()) / (name + ".yaml"), error) && fs::exists(arena, error))
+    throw InputError(name + ": is an arena, and what is played is a scenario; write one, of this line: arena: {file: " +
+                     arena + "}");
   return name.empty() ? shipped_folder() + "/yellow.yaml" : find_shipped(name, shipped_folder());
 }
 

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -41,23 +40,12 @@ mrpt::math::TPose2D parse_pose(const std::string& text) {
   return pose;
 }
 
-/// The scenario's file. Who names an arena is told what is missing.
-std::string scenario_file(const std::string& name) {
-  namespace fs = std::filesystem;
-  const std::string file = find_scenario(name);
-  const std::string arena = (fs::path(shipped_folder("arenas")) / "shipped" / (name + ".yaml")).string();
-  if (!fs::exists(file) && name.find('/') == std::string::npos && fs::exists(arena))
-    throw InputError(name + ": is an arena, and what is played is a scenario; write one, of this line: arena: {file: " +
-                     arena + "}");
-  return file;
-}
-
 int emulate(const EmulateArguments& arguments) {
   if (arguments.urg.empty() && arguments.base.empty() && arguments.levelling.empty())
     throw UsageError("emulate: no device is asked for; give --urg, --base or --levelling, see rubble emulate --help");
   auto overrides = parse_sets(arguments.sets);
   if (arguments.seed) overrides.emplace_back("seed", std::to_string(*arguments.seed));
-  const scenarios::Scenario scenario = scenarios::load_scenario(scenario_file(arguments.scenario), overrides);
+  const scenarios::Scenario scenario = scenarios::load_scenario(find_scenario(arguments.scenario), overrides);
   scenarios::EmulateOptions options;
   options.urg = arguments.urg;
   options.base = arguments.base;

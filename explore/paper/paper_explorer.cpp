@@ -16,7 +16,8 @@ using mrpt::math::TPose2D;
 using robot::Drive;
 
 constexpr double kSameThing = 0.15;              ///< a hit this close to a wall of the map is that wall [m]
-constexpr double kBlindWay = 2.5;                ///< by odometry alone, then it looks back [m]
+constexpr double kBlindWay = 5.0;                ///< by odometry alone, then it looks back [m]
+constexpr double kBlindAfterBlow = 1.0;          ///< the same after a blow [m]
 constexpr double kLookBack = deg_to_rad(130.0);  ///< with a 240 deg scanner far enough [rad]
 constexpr double kOnEdge = 0.01;                 ///< what was felt so near to a pallet is felt on it [m]
 constexpr double kTrailRadius = 0.20;            ///< [m]
@@ -175,13 +176,16 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
   return step.drive;
 }
 
-/// Between walls that look the same all along its wheels may spin before a step while all seems well: before the way
-/// that is known by odometry alone becomes long it looks back for where it began.
+/// Between walls that look the same all along its wheels may spin before a step while all seems well. It looks back for
+/// where that way began soon after a blow, and where there was none before the way becomes long.
 void PaperExplorer::look_back(const slam::Mapper& mapper) {
   const double blind = mapper.blind_way();
-  if (blind < looked_back_at_) looked_back_at_ = 0.0;
-  if (blind < looked_back_at_ + kBlindWay || pilot_.turning()) return;
-  looked_back_at_ = blind;
+  if (blind < blind_) look_back_at_.reset();
+  blind_ = blind;
+  if (blind > 0.0 && stuck_watch_.shaken())
+    look_back_at_ = std::min(look_back_at_.value_or(kBlindWay), blind + kBlindAfterBlow);
+  if (blind < look_back_at_.value_or(kBlindWay) || pilot_.turning()) return;
+  look_back_at_ = blind + kBlindWay;
   agenda_.note(now_, "nothing but walls alongside for so long: looks back");
   pilot_.turn(kLookBack, TurnFor::View, now_);
 }

@@ -95,8 +95,9 @@ class PaperExplorer : public Explorer {
   std::uint64_t revision_ = 0;
   Traversable floor_;  ///< of the last plan
   robot::Drive commanded_;
-  bool brakes_ = false;          ///< this tick's command is to stop as hard as the base can
-  double looked_back_at_ = 0.0;  ///< of the mapper's blind way [m]
+  bool brakes_ = false;                 ///< this tick's command is to stop as hard as the base can
+  double blind_ = 0.0;                  ///< the mapper's blind way [m] ...
+  std::optional<double> look_back_at_;  ///< ... at which it looks back, if not as usual [m]
   std::vector<mrpt::math::TPoint2D> shown_path_;
 };
 

@@ -51,6 +51,8 @@ class StuckWatch {
   const std::optional<robot::Drive>& wheels() const { return wheels_; }
   /// A blow stopped the body in this tick.
   bool struck() const { return jolt_.struck(); }
+  /// One did that may have been the edge of a ramp as well.
+  bool shaken() const { return jolt_.shaken(); }
 
  private:
   Escape::Met met(const robot::Drive& commanded) const;

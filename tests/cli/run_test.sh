@@ -63,5 +63,7 @@ expect_exit 0 '' "$rubble" run part.yaml --out part
 mkdir part/.partial && touch part/.partial/map.tif.4711.part part/.partial/map.png.4711-2.part
 expect_exit 0 '' "$rubble" run part.yaml --out part --force
 mkdir part/.partial && touch part/.partial/letter.part
+expect_exit 3 'none of that name is shipped; shipped are equal_cells, on_earth, yellow' "$rubble" run nosuch
+expect_exit 3 'flat_room: is an arena' "$rubble" run flat_room
 expect_exit 3 'letter.part' "$rubble" run part.yaml --out part --force
 finish

@@ -82,6 +82,8 @@ done
 
 # What cannot be read.
 head -c $(($(stat -c %s "$truth") / 2)) "$truth" >cut.tif
+printf 'name: a\nmaze: |\n  +---+\n  | . |\n  +---+\n' >arena.yaml
+expect_exit 3 'is an arena, not a map' "$rubble" score arena.yaml "$truth"
 expect_exit 3 'cut.tif' "$rubble" score cut.tif "$truth"
 gdal_translate -q -of JPEG -co QUALITY=95 "$truth" truth.jpg
 gdal_translate -q -of BMP "$truth" truth.bmp
