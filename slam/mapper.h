@@ -90,7 +90,8 @@ class Mapper {
   virtual const std::vector<mrpt::math::TPoint2D>& last_hits() const = 0;
 
   /// How far the robot came, by its odometry alone, since scans last told how far it came [m]. Between walls that look
-  /// the same all along nobody can tell a robot that drives from one whose wheels spin. 0 where the mapper does not say.
+  /// the same all along nobody can tell a robot that drives from one whose wheels spin. 0 where the mapper does not
+  /// say.
   virtual double blind_way() const { return 0.0; }
 
   virtual const MapperCounts& counts() const = 0;

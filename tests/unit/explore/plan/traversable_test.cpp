@@ -1,5 +1,5 @@
-#include "explore/plan/loose_things.h"
 #include "explore/plan/traversable.h"
+#include "explore/plan/loose_things.h"
 
 #include <gtest/gtest.h>
 
