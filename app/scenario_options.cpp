@@ -7,27 +7,36 @@
 
 #include "base/error.h"
 #include "base/text/input_file.h"
+#include "base/text/words.h"
 #include "robot/logs/foreign/file_bytes.h"
 
 namespace rubble::app {
 namespace {
 
-/// `name`, unless it is the bare name of a file in `folder`.
-std::string find_shipped(const std::string& name, const std::string& folder) {
-  namespace fs = std::filesystem;
+namespace fs = std::filesystem;
+
+bool is_there(const fs::path& path) {
   std::error_code error;
-  if (fs::exists(name, error) || name.find_first_of("/.") != std::string::npos) return name;
-  const std::string shipped = folder + "/" + name + ".yaml";
-  if (fs::exists(shipped, error)) return shipped;
+  return fs::exists(path, error);
+}
+
+/// The bare name of a file in `folder`, and of no file here.
+bool is_shipped(const std::string& name, const fs::path& folder) {
+  return !name.empty() && name.find('/') == std::string::npos && !is_there(name) && is_there(folder / (name + ".yaml"));
+}
+
+/// `name`, unless it is the bare name of a file in `folder`. A bare name of none is told which there are.
+std::string find_shipped(const std::string& name, const fs::path& folder) {
+  if (is_shipped(name, folder)) return (folder / (name + ".yaml")).string();
+  if (is_there(name) || name.find_first_of("/.") != std::string::npos) return name;
   std::vector<std::string> names;
+  std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
     if (const std::string stem = entry.path().stem().string();
         entry.path().extension() == ".yaml" && stem.rfind("benchmark", 0) != 0)  // a list of `rubble benchmark`
       names.push_back(stem);
   std::sort(names.begin(), names.end());
-  std::string list;
-  for (const std::string& one : names) list += (list.empty() ? "" : ", ") + one;
-  throw InputError(name + ": there is no such file, and none of that name is shipped; shipped are " + list);
+  throw InputError(name + ": there is no such file, and none of that name is shipped; shipped are " + joined(names));
 }
 
 }  // namespace
@@ -77,7 +86,6 @@ std::string recorded_log(const std::string& path) {
 }
 
 std::string shipped_folder(const std::string& kind) {
-  namespace fs = std::filesystem;
   if (const char* home = std::getenv("RUBBLE_HOME")) return std::string(home) + "/" + kind;
   std::error_code error;
   const fs::path installed = fs::read_symlink("/proc/self/exe", error).parent_path() / "../share/rubble" / kind;
@@ -86,15 +94,13 @@ std::string shipped_folder(const std::string& kind) {
 }
 
 std::string find_scenario(const std::string& name) {
-  namespace fs = std::filesystem;
+  if (name.empty()) return shipped_folder() + "/yellow.yaml";
   // Who names an arena is told what is missing.
-  std::error_code error;
-  const std::string arena = (fs::path(shipped_folder("arenas")) / "shipped" / (name + ".yaml")).string();
-  if (!name.empty() && name.find('/') == std::string::npos && !fs::exists(name, error) &&
-      !fs::exists(fs::path(shipped_folder()) / (name + ".yaml"), error) && fs::exists(arena, error))
+  const fs::path arenas = fs::path(shipped_folder("arenas")) / "shipped";
+  if (is_shipped(name, arenas) && !is_shipped(name, shipped_folder()))
     throw InputError(name + ": is an arena, and what is played is a scenario; write one, of this line: arena: {file: " +
-                     arena + "}");
-  return name.empty() ? shipped_folder() + "/yellow.yaml" : find_shipped(name, shipped_folder());
+                     (arenas / (name + ".yaml")).string() + "}");
+  return find_shipped(name, shipped_folder());
 }
 
 std::string find_robot(const std::string& name) {

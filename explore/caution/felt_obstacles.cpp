@@ -122,20 +122,18 @@ bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, cons
   const bool stood_on = thing.inside || std::any_of(trail.begin(), trail.end(),
                                                     [&](const TPoint2D& p) { return holds(thing, p, kOnPallet); });
   thing.whole = thing.stubs = !stood_on;
-  const bool steps = known != nullptr && shows_step_field(*known, grid, there);
+  thing.shut = known != nullptr && shows_step_field(*known, grid, there);
   for (Thing& before : things_) {
     if (!is_pallet_at(before, middle)) continue;
     thing.certain = !stood_on && (before.certain || !before.whole);
     thing.times = before.times + 1;
     thing.had_its_chance = before.had_its_chance;
     thing.let_go = before.let_go;
-    thing.shut = before.shut;
+    thing.shut = thing.shut || before.shut;
     thing.stubs = thing.stubs || before.stubs || thing.times > 1;
-    thing.shut = thing.shut || steps;
     before = thing;
     return !stood_on;
   }
-  thing.shut = steps;
   things_.push_back(thing);
   return !stood_on;
 }

@@ -77,7 +77,7 @@ class FeltObstacles {
     bool stubs = false;                 ///< else, whether the middles of its sides count
     bool inside = false;                ///< the robot's middle is on it
     bool let_go = false;                ///< it was an obstacle, and pardoned or forgotten
-    bool shut = false;                  ///< it held the robot after that: it is left alone once left
+    bool shut = false;                  ///< it held the robot after that, or shows steps: it is left alone once left
     bool had_its_chance = false;        ///< it was forgotten once, to be tried again
     mrpt::math::TPose2D T_base_pallet;  ///< of the pallet's middle
 

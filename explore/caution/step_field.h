@@ -27,7 +27,7 @@ struct Range {
 /// The box around cells along the edges of the pallets [pallets].
 struct Extent {
   Range x, y;
-  void add(const TPoint2D& p_grid) {
+  void add(const mrpt::math::TPoint2D& p_grid) {
     x.add(p_grid.x);
     y.add(p_grid.y);
   }

@@ -84,7 +84,7 @@ Plan Agenda::choose(const Situation& situation) {
   if (choice.no_niche) {
     frontier_left_ = choice.plan.frontier_left;
     if (push_for_niche(situation)) return std::move(choice.plan);
-    const auto news = rounds_.before_all_faces(standing(situation), off_grid_is_worth(situation.floor),
+    const auto news = rounds_.before_all_faces(standing(situation), known_off_grid_.worth_a_try(situation.floor),
                                                situation.search, situation.left_alone);
     if (news) {
       begin_round(*news, situation.now);
@@ -113,7 +113,7 @@ bool Agenda::push_for_niche(const Situation& situation) {
   if (push_begun_) return true;
   if (!situation.search.place_left() || (pushing_.on() && !pushes_for_niche_)) return false;
   if (!pushing_.on()) {
-    if (known_at_niche_.marked() && !known_at_niche_.grown(situation.floor)) return false;
+    if (!known_at_niche_.worth_a_try(situation.floor)) return false;
     known_at_niche_.mark(situation.floor);
   }
   pushes_for_niche_ = pushing_.more();
@@ -217,13 +217,9 @@ bool Agenda::may_push(const Situation& situation) const {
   if (goal() == Goal::Place) return situation.search.place_left();
   if (frontier_left_ == 0 || !pushing_.worth(situation.floor)) return false;
   const bool niches_first = situation.search.on() && !rounds_.tried_before_search();
-  return pushing_.what() != Pushing::What::Strips || (!niches_first && off_grid_is_worth(situation.floor));
-}
-
-/// For the sake of new ground, which as a rule is not to be had so where a field of steps or a steep ramp keeps the
-/// robot from it: once for each piece of ground gained, whatever the round.
-bool Agenda::off_grid_is_worth(const Traversable& floor) const {
-  return !known_off_grid_.marked() || known_off_grid_.grown(floor);
+  // New ground is not to be had so, as a rule, where a field of steps or a steep ramp keeps the robot from it: once for
+  // each piece of ground gained, whatever the round.
+  return pushing_.what() != Pushing::What::Strips || (!niches_first && known_off_grid_.worth_a_try(situation.floor));
 }
 
 Order Agenda::start_pushing(const Situation& situation, const std::string& why) {

@@ -109,7 +109,6 @@ class Agenda {
   Order start_pushing(const Situation& situation, const std::string& why);
   bool push_for_niche(const Situation& situation);
   void end_pushing();
-  bool off_grid_is_worth(const Traversable& floor) const;
   Order finish_exploring(const Situation& situation);
   Order finish_searching(const Situation& situation);
   void begin_round(const std::string& news, Stamp now);

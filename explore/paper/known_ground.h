@@ -14,6 +14,8 @@ class KnownGround {
   bool marked() const { return cells_ > 0; }
   /// At least 1 m^2 more is known now.
   bool grown(const Traversable& floor) const;
+  /// Nothing was given up so far, or it has grown since.
+  bool worth_a_try(const Traversable& floor) const { return !marked() || grown(floor); }
 
  private:
   std::size_t cells_ = 0;

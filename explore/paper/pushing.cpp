@@ -28,9 +28,7 @@ void Pushing::free_things(Traversable& floor) const {
   if (what_ == What::OffGrid) free_off_grid(floor, pallet_);
 }
 
-bool Pushing::worth(const Traversable& floor) const {
-  return on() || !known_then_.marked() || known_then_.grown(floor);
-}
+bool Pushing::worth(const Traversable& floor) const { return on() || known_then_.worth_a_try(floor); }
 
 Pushing::What Pushing::start(const Traversable& floor) {
   if (!on()) known_then_.mark(floor);
