@@ -148,6 +148,13 @@ std::vector<Declared> declare(CLI::App& app) {
   return declared;
 }
 
+std::vector<std::string> names_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
 int dispatch(int argc, char** argv) {
   CLI::App app(
       "rubble: simulate, map and score rescue arenas.\n"
@@ -165,8 +172,10 @@ int dispatch(int argc, char** argv) {
       message.replace(most, std::string::npos, " is given more than once, and takes one value");
     std::replace(message.begin(), message.end(), '\n', ' ');
     const auto chosen = app.get_subcommands();
-    if (chosen.empty() && argc > 1 && argv[1][0] != '-')
-      throw UsageError("'" + std::string(argv[1]) + "' is no subcommand; see rubble --help");
+    if (chosen.empty() && argc > 1 && argv[1][0] != '-') {
+      const std::string hint = did_you_mean(argv[1], names_of(app));
+      throw UsageError(in_quotes(argv[1]) + " is no subcommand" + (hint.empty() ? "; see rubble --help" : hint));
+    }
     const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
     throw UsageError(message + "; see rubble" + command + " --help");
   }

@@ -134,7 +134,13 @@ void print_victims(const nlohmann::ordered_json& score) {
 int show(const scenarios::RunReport& report) {
   end_progress();
   const nlohmann::ordered_json& score = *report.score;
+  if (!report.failure.empty() && score["scans"] == 0) {  // figures of nothing are none
+    print_row("folder", report.folder);
+    tell(report.failure);
+    return report.interrupted ? kInterrupted : kFailed;
+  }
   print_row("ended", report.end);
+  if (!report.place.empty()) print_row("place in the map", report.place);
   print_figures(score);
   if (score["aligned"].is_boolean() && !score["aligned"].get<bool>())
     print_not_aligned(score["align_note"].get<std::string>());

@@ -152,6 +152,18 @@ void add_note(std::string& note, const std::string& more) {
   if (!more.empty()) note += (note.empty() ? "" : "; ") + more;
 }
 
+/// The true walls are there, and so are others that cut most lines of sight: who drew them does not see walls in them.
+std::string note_of_crossed_floor(const MapScore& score) {
+  constexpr double kPoor = 0.2, kThere = 0.8;
+  if (score.score >= kPoor || score.recall < kThere || score.precision >= kThere) return {};
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%.0f m of what it draws as walls cross free floor, beside the true ones; a robot's way, text or grid "
+                "lines drawn as dark as walls count as walls",
+                score.errors.phantom_m);
+  return text;
+}
+
 /// All numbers at the pose that `out` holds.
 void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls,
              const ScoreConfig& config) {
@@ -166,6 +178,7 @@ void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth
   constexpr double kWhole = 0.98;  // of a map that lacks nothing to speak of
   if (out.recall < kWhole && out.score < kWhole) add_note(out.note, note_of_coarse_pixels(map, truth));
   out.errors = wall_errors(walls.overlaps, PlanarTransform(out.T_truth_map), config.worst_places);
+  add_note(out.note, note_of_crossed_floor(out));
   if (config.warp) fill_warp(out, map, truth, walls);
   const GridFrame frame = common_frame(map, truth, out.T_truth_map, kCanvasMargin);
   const OccupancyGrid map_on_frame = resample(map, out.T_truth_map, frame);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -6,6 +7,7 @@
 #include <string>
 
 #include "app/commands.h"
+#include "app/maps/score_tools.h"
 #include "app/terminal.h"
 #include "base/error.h"
 #include "base/image/png.h"
@@ -36,6 +38,19 @@ std::optional<mrpt::math::TPoint2D> place(const std::string& option, const std::
   return p;
 }
 
+/// Pixels a cell, so that the cells of a small map can be seen.
+int magnification(const RgbImage& image) {
+  constexpr int kWide = 1000, kMost = 8;  // [pixels]
+  return std::clamp(kWide / std::max(image.width, image.height), 1, kMost);
+}
+
+RgbImage magnified(const RgbImage& image, int times) {
+  RgbImage out(image.width * times, image.height * times);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x) std::copy_n(image.pixel(x / times, y / times), 3, out.pixel(x, y));
+  return out;
+}
+
 int plan(PlanArguments a) {
   explore::TransformConfig& transform = a.config.transform;
   if (a.discomfort == "per_cell") transform.discomfort = explore::Discomfort::PerCell;
@@ -43,14 +58,15 @@ int plan(PlanArguments a) {
   const explore::PlanEnds ends{place("--from", a.from), place("--to", a.to)};
   scoring::LoadOptions options;
   options.resolution = a.resolution;
-  const scoring::LoadedMap map = scoring::load_map(a.map, options);
+  const scoring::LoadedMap map = scoring::load_map(map_file(a.map), options);
   explore::PlanPicture picture;
   try {
     picture = explore::plan_picture(map.grid, a.config, ends);
   } catch (const InputError& error) {
     throw InputError(a.map + ": " + error.what());
   }
-  write_png(a.out, picture.image);
+  const int times = magnification(picture.image);
+  write_png(a.out, times == 1 ? picture.image : magnified(picture.image, times));
 
   if (!ends.to) print_row("frontiers", std::to_string(picture.frontiers));
   if (picture.way) {
@@ -62,7 +78,9 @@ int plan(PlanArguments a) {
     print_row("way", ends.to ? "none: the target cannot be reached from there"
                              : "none: no frontier can be reached from there; give a target with --to X,Y");
   }
-  print_row("picture", a.out);
+  char scale[60];
+  std::snprintf(scale, sizeof scale, ", %g pixels a metre", times / map.grid.resolution());
+  print_row("picture", a.out + scale);
   return kOk;
 }
 

@@ -32,7 +32,7 @@ struct Floor {
 
 Floor floor_of(const std::string& path, const std::optional<double>& resolution, const std::string& method) {
   Floor out;
-  out.map = scoring::load_map(path, {resolution});
+  out.map = scoring::load_map(map_file(path), {resolution});
   out.rooms = scoring::rooms_of_map(out.map.grid, method == "visibility");
   if (out.rooms.too_many_corners)
     throw InputError(path + ": its walls have more corners than a floor plan; give --method visibility");

@@ -1,5 +1,4 @@
 #include <cctype>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -61,7 +60,10 @@ void print_table(const Verdict& verdict, const nlohmann::ordered_json& json) {
   print_row("map", verdict.map.recognised);
   print_row("truth", verdict.truth.recognised);
   const scoring::MapScore& score = verdict.score;
-  if (!score.aligned) print_not_aligned(score.note);
+  if (!score.aligned) {
+    print_not_aligned(score.note);
+    print_row("to go on", "--html PAGE.html lays it by hand in a browser, --pose=X,Y,DEG scores it where you say");
+  }
   if (score.aligned && !score.note.empty()) print_row("aligned", score.note);
   print_contest(verdict.score);
   print_figures(json);
@@ -73,7 +75,7 @@ void print_table(const Verdict& verdict, const nlohmann::ordered_json& json) {
   print_worst_places(verdict.score);
 }
 
-int score(const ScoreArguments& arguments) {
+int score(ScoreArguments arguments) {
   if (arguments.map.empty())
     throw UsageError(arguments.league.empty()
                          ? "map is required; see rubble score --help"
@@ -81,11 +83,10 @@ int score(const ScoreArguments& arguments) {
   if (!arguments.league.empty()) return score_league(arguments);
   if (arguments.truth.empty()) throw UsageError("truth is required; see rubble score --help");
   if (!arguments.judge.empty()) throw UsageError("--judge goes with --league only; see rubble score --help");
+  arguments.map = map_file(arguments.map);
+  arguments.truth = map_file(arguments.truth, "truth.tif");
   if (is_trajectory(arguments.map)) return score_trajectory(arguments);
   const std::optional<GivenPose> pose = parse_pose(arguments.pose);
-  for (const std::string& path : {arguments.map, arguments.truth})
-    if (std::filesystem::is_directory(path))
-      throw InputError(path + ": is a folder; give a map file in it, for example " + path + "/map.tif");
   scoring::ScoreConfig config;
   config.alignment = parse_align(arguments.align);
   config.warp = arguments.warp;
@@ -97,6 +98,10 @@ int score(const ScoreArguments& arguments) {
   verdict.truth = scoring::load_map(arguments.truth, {arguments.truth_resolution});
   verdict.reported = scoring::reported_victims(verdict.map, arguments.pois);
   if (!verdict.reported.note.empty()) tell(verdict.reported.note);
+  if (!verdict.truth.symbols.empty() && verdict.map.symbols.empty())
+    tell(arguments.truth +
+         ": has a robot's victims drawn on it, and the map has none; if the two were exchanged, give " +
+         arguments.truth + " first");
   const scoring::TrueVictims victims = scoring::true_victims(arguments.truth, verdict.truth.origin, arguments.victims);
   const OccupancyGrid& truth = verdict.truth.grid;
   const OccupancyGrid grid = pose ? scoring::scaled_frame(verdict.map.grid, pose->scale) : verdict.map.grid;

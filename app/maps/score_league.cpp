@@ -27,25 +27,25 @@ void print_ranking(const scoring::League& league, bool warp) {
   std::size_t width = 4;
   for (const LeagueEntry& e : league.entries) width = std::max(width, one_line(e.team).size());
   const int w = static_cast<int>(width);
-  std::printf("%4s  %-*s%s", "rank", w, "team", points ? "  points quality location  fine judge victims by" : "");
+  std::printf("%4s  %-*s", "rank", w, "team");
   std::vector<const scoring::Figure*> columns = scoring::figures_with(scoring::kRanking);
   if (warp) columns.push_back(scoring::find_figure("warped_score"));
   for (const scoring::Figure* column : columns) std::printf("  %s", column->label.c_str());
-  std::printf("  note\n");
+  std::printf("%s  note\n", points ? "  points quality location  fine judge victims by" : "");
   for (const LeagueEntry& e : league.entries) {
     std::printf("%4s  %-*s", e.rank_text().c_str(), w, one_line(e.team).c_str());
     if (!e.error.empty()) {
       std::printf("  %s\n", one_line(e.error).c_str());
       continue;
     }
-    if (points)
-      std::printf("  %6.1f %7.1f %8.1f %5.1f %5.1f %-10s", e.total(), e.points ? e.points->quality : 0.0,
-                  e.points ? e.points->location : 0.0, e.points ? e.points->fine : 0.0, e.judge,
-                  scoring::name_of(e.reported.from).c_str());
     const scoring::Evidence evidence = e.evidence();
     for (const scoring::Figure* column : columns)
       std::printf("  %*s", static_cast<int>(column->label.size()),
                   scoring::text_of(*column, column->get(evidence)).c_str());
+    if (points)
+      std::printf("  %6.1f %7.1f %8.1f %5.1f %5.1f %-10s", e.total(), e.points ? e.points->quality : 0.0,
+                  e.points ? e.points->location : 0.0, e.points ? e.points->fine : 0.0, e.judge,
+                  scoring::name_of(e.reported.from).c_str());
     std::printf("  %s\n", one_line(e.score.note).c_str());
   }
   if (!league.left_out.empty()) print_line("no team's maps: " + league.left_out);

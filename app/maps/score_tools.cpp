@@ -25,6 +25,16 @@ void require_near(const std::string& option, double x, double y, double deg) {
 
 }  // namespace
 
+std::string map_file(const std::string& path, const std::string& name) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return path;
+  const std::string inside = (fs::path(path) / name).string();
+  if (!fs::exists(inside, error))
+    throw InputError(path + ": is a folder without " + name + "; give a run folder, or a map file");
+  return inside;
+}
+
 std::optional<GivenPose> parse_pose(const std::string& text) {
   if (text.empty()) return std::nullopt;
   std::vector<double> numbers;

@@ -36,6 +36,9 @@ int score_league(const ScoreArguments& arguments);
 bool is_trajectory(const std::string& path);
 int score_trajectory(const ScoreArguments& arguments);
 
+/// `path`; of a run folder the map in it that has this name. Throws InputError for another folder.
+std::string map_file(const std::string& path, const std::string& name = "map.tif");
+
 /// A pose typed by a person: p_truth = T (scale p_map).
 struct GivenPose {
   mrpt::math::TPose2D T_truth_map;

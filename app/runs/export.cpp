@@ -22,7 +22,11 @@ int export_log(const ExportArguments& arguments) {
   const fs::path folder = fs::path(arguments.out).parent_path();
   if (!folder.empty() && !fs::is_directory(folder))
     throw InputError(arguments.out + ": the folder " + folder.string() + " does not exist; make it first");
-  if (scenarios::is_map_export(arguments.out))
+  const bool is_map = scenarios::is_map_export(arguments.out);
+  if (!is_map && fs::path(arguments.out).extension() != ".rawlog")
+    throw InputError(arguments.out + ": its ending tells no format that can be written; end it in .rawlog (the log), " +
+                     ".g2o or .simplemap (the map)");
+  if (is_map)
     scenarios::export_map(arguments.log, arguments.out);
   else
     robot::export_rawlog(recorded_log(arguments.log), arguments.out);

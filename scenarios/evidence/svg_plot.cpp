@@ -70,8 +70,11 @@ std::string x_axis(const Axis& axis, double top, double bottom, const std::strin
   return out + text_at((axis.from + axis.to) / 2.0, bottom + 36.0, "middle", label);
 }
 
+/// Names of one sweep differ at their ends as often as at their heads: the middle is left out.
 std::string shortened(const std::string& name, std::size_t most) {
-  return name.size() <= most ? name : name.substr(0, most - 3) + "...";
+  if (name.size() <= most) return name;
+  const std::size_t head = (most - 3) / 3, tail = most - 3 - head;
+  return name.substr(0, head) + "..." + name.substr(name.size() - tail);
 }
 
 }  // namespace

@@ -15,7 +15,9 @@ namespace {
 using mrpt::math::TPoint2D;
 
 constexpr int kPanelSide = 360;      ///< longer side of a frame [pixels]
-constexpr int kCaption = 40;         ///< height of what is written below it [pixels]
+constexpr std::size_t kLines = 3;    ///< that are written below it
+constexpr int kLineHeight = 17;      ///< [pixels]
+constexpr int kCaption = 57;         ///< height of all lines [pixels]
 constexpr int kBetween = 10;         ///< two frames [pixels]
 constexpr double kRim = 0.3;         ///< around all that is known [m]
 constexpr double kArrow = 0.35;      ///< length of the robot [m]
@@ -92,11 +94,23 @@ double known_ground(const OccupancyGrid& map) {
 
 void write_below(const FilmFrame& frame, double known, int top, cv::Mat& panel) {
   char words[80];
-  std::snprintf(words, sizeof words, "%.0f s, %.0f m2, %zu victims", frame.time, known, frame.victims.size());
+  const std::size_t victims = frame.victims.size();
+  std::snprintf(words, sizeof words, "%.0f s, %.0f m2, %zu victim%s", frame.time, known, victims,
+                victims == 1 ? "" : "s");
+  std::vector<std::string> lines{words};
   const auto fits = static_cast<std::size_t>(std::max(10, panel.cols / kLetterWidth));
-  const std::string why = frame.why.size() > fits ? frame.why.substr(0, fits - 2) + ".." : frame.why;
-  for (const auto& [text, y] : {std::pair<std::string, int>{words, top + 15}, {why, top + 32}})
-    cv::putText(panel, text, {2, y}, cv::FONT_HERSHEY_SIMPLEX, kLetterSize, kWords, 1, cv::LINE_AA);
+  for (std::string why = frame.why; !why.empty() && lines.size() < kLines;) {
+    const bool is_last = lines.size() + 1 == kLines;
+    std::size_t end = why.size() <= fits ? why.size() : is_last ? fits - 2 : why.rfind(' ', fits);
+    if (end == std::string::npos || end == 0) end = fits;
+    lines.push_back(why.substr(0, end) + (is_last && end < why.size() ? ".." : ""));
+    why.erase(0, std::min(why.size(), why[end] == ' ' ? end + 1 : end));
+  }
+  int y = top + 15;
+  for (const std::string& line : lines) {
+    cv::putText(panel, line, {2, y}, cv::FONT_HERSHEY_SIMPLEX, kLetterSize, kWords, 1, cv::LINE_AA);
+    y += kLineHeight;
+  }
 }
 
 cv::Mat panel_of(const FilmFrame& frame, const Stage& stage) {

@@ -1,8 +1,10 @@
 #include "scenarios/run/run.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -14,6 +16,7 @@
 #include "arenas/model/patch_index.h"
 #include "arenas/truth/truth_map.h"
 #include "arenas/truth/visible.h"
+#include "base/angle.h"
 #include "base/digest.h"
 #include "base/error.h"
 #include "base/text/file_name.h"
@@ -149,7 +152,8 @@ void finish(RunReport& report, scoring::Evidence& evidence, RunFolder& folder, c
   folder.write("score.json", report.score->dump(2) + "\n");
   folder.close(!report.interrupted && report.failure.empty());
   const std::filesystem::path parent = std::filesystem::path(folder.path()).parent_path().filename();
-  if (options.link_latest && (options.out.empty() || parent == "runs")) folder.link_latest();
+  const bool nothing_done = !report.failure.empty() && evidence.run->scans == 0;
+  if (options.link_latest && !nothing_done && (options.out.empty() || parent == "runs")) folder.link_latest();
   report.folder = folder.path();
   report.broken = broken_expectations(scenario, *report.score);
 }
@@ -235,6 +239,16 @@ bool knows_no_place(const slam::Mapper& mapper) {
   });
 }
 
+/// "1.23, -0.45 m, heading 90 deg, at the log's 12.3 s"
+std::string place_found(const slam::Mapper& mapper) {
+  if (mapper.live_trajectory().empty()) return "not found";
+  const StampedPose& first = mapper.live_trajectory().front();
+  std::array<char, 120> text{};
+  std::snprintf(text.data(), text.size(), "%.2f, %.2f m, heading %.0f deg, found at %.1f s", first.pose.x, first.pose.y,
+                rad_to_deg(first.pose.phi), first.stamp.seconds());
+  return text.data();
+}
+
 /// Relations and other programs know the scans of a log by its own stamps.
 void name_as_the_log_does(const RunFolder& folder, const robot::ReplayRobot& robot, const slam::Mapper& mapper) {
   const auto write = [&](const char* name, const Trajectory& trajectory) {
@@ -278,6 +292,7 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   RunReport report;
   report.interrupted = end.interrupted;
   report.failure = end.failure;
+  if (options.base) report.place = place_found(core.mapper());
   finish(report, evidence, folder, resolved, options, start);
   return report;
 }

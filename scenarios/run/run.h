@@ -25,8 +25,9 @@ struct RunOptions {
 
 struct RunReport {
   std::string folder;
-  KeptJson score;   ///< the content of score.json
-  std::string end;  ///< why the run ended, for people
+  KeptJson score;     ///< the content of score.json
+  std::string end;    ///< why the run ended, for people
+  std::string place;  ///< where on the map of an earlier run the robot found itself, for people; empty: no such map
   bool interrupted = false;
   std::string failure;              ///< the robot was lost: the run failed but its folder is complete
   std::vector<std::string> broken;  ///< expectations that were not met, one line each

@@ -187,7 +187,8 @@ LoadedMap load_image(const std::string& path, const LoadOptions& options) {
   if (tags_hold) out.transform = transform;
   if (tags_hold) out.origin = counts_from_the_start(*transform) ? MapOrigin::Local : MapOrigin::Earth;
   out.grid = place(classes.classes, resolution, out.transform);
-  if (classes.is_league) out.symbols = place_symbols(tiff.image, out.grid.frame(), is_south_up(out.transform));
+  const RgbImage& drawn = classes.restored ? *classes.restored : tiff.image;
+  if (classes.is_league) out.symbols = place_symbols(drawn, out.grid.frame(), is_south_up(out.transform));
   out.recognised = source + cv::format(" %g m a pixel, %d x %d, ", resolution, out.grid.width(), out.grid.height()) +
                    classes.recognised;
   read_as_drawing(out);

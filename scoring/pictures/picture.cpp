@@ -401,9 +401,10 @@ void write_side_by_side(const std::string& path, const OccupancyGrid& map, const
   if (marks.what.empty())
     draw_legend(both, {{kInk, "left: the map, right: the truth"}});
   else
-    draw_legend(both, {{Colour(190, 120, 40), cv::format("%s: %zu matched", marks.what.c_str(), marks.pairs.size())},
-                       {kMapOnly, cv::format("%zu of the map alone", marks.map_only.size())},
-                       {kTruthOnly, cv::format("%zu of the truth alone", marks.truth_only.size())}});
+    draw_legend(both,
+                {{kInk, cv::format("%s: %zu matched, each pair in one colour", marks.what.c_str(), marks.pairs.size())},
+                 {kMapOnly, cv::format("%zu of the map alone", marks.map_only.size())},
+                 {kTruthOnly, cv::format("%zu of the truth alone", marks.truth_only.size())}});
   write_png(path, both.image);
 }
 

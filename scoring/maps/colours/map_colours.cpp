@@ -52,6 +52,11 @@ bool are_walls_among_the_drawings(const cv::Mat& before, const cv::Mat& after, c
 
 LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
   cv::Mat grey = grey_of(image);
+  double least = 0.0, most = 0.0;
+  cv::minMaxLoc(grey, &least, &most);
+  if (least == most)
+    return {cv::Mat(grey.size(), CV_8U, cv::Scalar(static_cast<int>(Occupancy::Unknown))),
+            "of one colour: nothing is drawn on it"};
   const cv::Mat as_it_was = grey.clone();
   const bool painted = paint_over_colours(image, nothing, grey);
   const cv::Mat canvas = canvas_corners(grey);
@@ -73,7 +78,7 @@ LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
 ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
   ClassImage out;
   const bool direct = !notes.meaning.empty();
-  const std::optional<RestoredColours> restored = direct ? std::nullopt : restored_league_colours(original);
+  std::optional<RestoredColours> restored = direct ? std::nullopt : restored_league_colours(original);
   const RgbImage& image = restored ? restored->image : original;
   out.is_league = !direct && is_league_map(image);
   const cv::Mat nothing = transparent_pixels(image) | no_data_areas(image, notes);
@@ -95,6 +100,7 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
     const unsigned char* row = classes.ptr<unsigned char>(image.height - 1 - y);
     for (int x = 0; x < image.width; ++x) out.classes[{x, y}] = static_cast<Occupancy>(row[x]);
   }
+  if (restored) out.restored = std::move(restored->image);
   return out;
 }
 

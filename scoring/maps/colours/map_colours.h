@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "base/grid.h"
@@ -13,6 +14,8 @@ struct ClassImage {
   std::string recognised;   ///< "league colours", "grey levels, unknown 205", ...
   std::string refusal;      ///< why this is no map of occupancy, and how to mend it; empty: it is one
   bool is_league = false;   ///< has the league's colours, so that its drawings mean something
+  /// The picture as it was before its colours were changed as a whole (inverted, say); nothing: they were not.
+  std::optional<RgbImage> restored;
 };
 
 /// Reduces any map image to {occupied, free, unknown}. League maps (RoboCupRescue GeoTIFF colours, as hector_geotiff
