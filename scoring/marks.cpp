@@ -10,8 +10,18 @@ namespace {
 
 using mrpt::math::TPoint2D;
 
+std::string room_name(std::size_t index) { return "room " + std::to_string(index + 1); }
+
 Mark mark_of(const Room& room, std::size_t index) {
-  return {room.centre, "room " + std::to_string(index + 1), std::pair(room.box_min, room.box_max)};
+  return {room.centre, room_name(index), std::pair(room.box_min, room.box_max)};
+}
+
+/// Features have no names; rooms, which have boxes, do.
+std::vector<Mark> marks_at(const std::vector<TPoint2D>& places, const std::vector<KindScore::Box>& boxes) {
+  std::vector<Mark> out;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    out.push_back(i < boxes.size() ? Mark{places[i], room_name(i), boxes[i]} : Mark{places[i], "", std::nullopt});
+  return out;
 }
 
 Mark mark_of(const Poi& poi) { return {poi.p_picture, poi.name, std::nullopt}; }
@@ -36,11 +46,8 @@ void add_rest(Marks& marks, const std::vector<Mark>& map, const std::vector<Mark
 Marks marks_of(const KindScore& features) {
   Marks out;
   out.what = name_of(features.kind);
-  std::vector<Mark> map;
-  std::vector<Mark> truth;
-  for (const TPoint2D& p : features.map) map.push_back({p, "", std::nullopt});
-  for (const TPoint2D& p : features.truth) truth.push_back({p, "", std::nullopt});
-  add_rest(out, map, truth, features.match.pairs);
+  add_rest(out, marks_at(features.map, features.map_boxes), marks_at(features.truth, features.truth_boxes),
+           features.match.pairs);
   return out;
 }
 

@@ -122,10 +122,12 @@ ranking() {
   tell "ranking: maps distorted in five ways" "$(value BM_RankAcrossKinds maps)"
   judge "ranking: Spearman, score and trajectory error" "$(value BM_RankAcrossKinds spearman_score)" ">=" 0.959
   tell "ranking: Spearman, psi and trajectory error" "$(value BM_RankAcrossKinds spearman_psi)"
-  tell "ranking: Spearman, features and trajectory error" "$(value BM_RankAcrossKinds spearman_features)"
+  judge "ranking: Spearman, features and trajectory error" "$(value BM_RankAcrossKinds spearman_features)" ">=" 0.8
   tell "ranking: the same of E of eq. (7) alone" "$(value BM_RankAcrossKinds spearman_eq7)"
   tell "features: another arena at its best pose, mean" "$(value BM_FeaturesOfStrangers stranger)"
+  judge "features: the same, worst" "$(value BM_FeaturesOfStrangers stranger_worst)" "<=" 0.25
   tell "features: the arena itself, damaged, mean" "$(value BM_FeaturesOfStrangers damaged)"
+  judge "features: the same, worst" "$(value BM_FeaturesOfStrangers damaged_least)" ">=" 0.35
 }
 
 attacks() {

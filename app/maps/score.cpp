@@ -119,10 +119,11 @@ int score(ScoreArguments arguments) {
   }
   const scoring::Marks marks = scoring::marks_of(verdict.reported.victims, victims.victims, result.T_truth_map);
   if (!arguments.html.empty())
-    write_evaluation_page(arguments.html, verdict.map.grid, truth,
-                          {arguments.map, arguments.truth, command_of(arguments), result.T_truth_map,
-                           pose ? pose->scale : 1.0, config, result.aligned ? "" : result.note,
-                           scoring::marks_on_page(result, in_own_scale(marks, pose ? pose->scale : 1.0))});
+    write_evaluation_page(
+        arguments.html, verdict.map.grid, truth,
+        {arguments.map, arguments.truth, command_of(arguments), result.T_truth_map, pose ? pose->scale : 1.0, config,
+         result.aligned ? "" : result.note,
+         scoring::marks_on_page(result, in_own_scale(marks, pose ? pose->scale : 1.0)), result.score_at_best_pose});
   if (!arguments.out.empty()) {
     // A map that was refused is drawn at the best pose, so that a person can see why; score.json says that too.
     if (result.aligned || result.by != scoring::AlignBy::Auto)

@@ -66,6 +66,7 @@ int score_league(const ScoreArguments& arguments) {
   config.score.warp = arguments.warp;
   config.score.tau = arguments.tau;
   config.map_resolution = arguments.map_resolution;
+  config.truth_resolution = arguments.truth_resolution;
   config.out = arguments.out;
   config.tell = [](const std::string& note) { tell(note); };
   const scoring::League league = scoring::judge_league(folder, truth, judge, config);

@@ -77,11 +77,7 @@ std::optional<scoring::KnownStart> parse_start(const std::string& text, const st
 }
 
 std::string command_of(const ScoreArguments& a) {
-  std::string command = "rubble score " + shell_word(a.map) + " " + shell_word(a.truth);
-  if (a.map_resolution) command += " --resolution " + number_text(*a.map_resolution);
-  if (a.truth_resolution) command += " --truth-resolution " + number_text(*a.truth_resolution);
-  if (a.tau != ScoreArguments().tau) command += " --tau " + number_text(a.tau);
-  return command;
+  return scoring::score_command(a.map, a.truth, a.map_resolution, a.truth_resolution, a.tau);
 }
 
 void make_folder(const std::string& path) {

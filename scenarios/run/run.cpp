@@ -30,6 +30,7 @@
 #include "scenarios/run/score_json.h"
 #include "scoring/league/league_victims.h"
 #include "scoring/maps/normalise.h"
+#include "scoring/marks.h"
 #include "scoring/pictures/picture.h"
 #include "scoring/scorecard.h"
 #include "scoring/trajectory/trajectory_error.h"
@@ -91,10 +92,33 @@ scoring::KnownStart known_start(const scoring::LoadedMap& picture, const std::op
   return {T_truth_start + (mrpt::math::TPose2D() - T_picture_start), start};
 }
 
-/// Scores it. The scenario may anchor the map on Earth; a rigid alignment does not care.
-WrittenMaps score_files(scoring::Evidence& evidence, const RunFolder& folder, const Scenario& scenario,
-                        const mrpt::math::TPose2D& T_truth_start) {
-  WrittenMaps files{scoring::load_map(folder.file("map.tif")), scoring::load_map(folder.file("truth.tif"))};
+/// The victims that were reported, on the picture, and those there are.
+struct VictimLists {
+  scoring::ReportedVictims reported;
+  scoring::TrueVictims there_are;
+};
+
+/// The run's own list counts from where the robot started.
+VictimLists victim_lists(const WrittenMaps& files, const Scenario& scenario, const arenas::Arena& arena,
+                         const std::vector<explore::VictimReport>& victims) {
+  VictimLists out;
+  out.reported.from = scoring::VictimSource::List;
+  out.reported.symbols = files.map.symbols.size();
+  for (const auto& victim : victims)
+    out.reported.victims.push_back({"", in_picture(files.map, victim.p_map, scenario.geo)});
+  out.there_are.path = "arena.yaml";
+  for (const auto& victim : arena.victims)
+    out.there_are.victims.push_back({victim.name, {victim.position.x, victim.position.y}});
+  return out;
+}
+
+WrittenMaps read_written(const RunFolder& folder) {
+  return {scoring::load_map(folder.file("map.tif")), scoring::load_map(folder.file("truth.tif"))};
+}
+
+/// Scores them. The scenario may anchor the map on Earth; a rigid alignment does not care.
+void score_files(scoring::Evidence& evidence, const WrittenMaps& files, const VictimLists& victims,
+                 const RunFolder& folder, const Scenario& scenario, const mrpt::math::TPose2D& T_truth_start) {
   evidence.map_read_as = files.map.recognised;
   evidence.truth_read_as = files.truth.recognised;
   const OccupancyGrid& map = files.map.grid;
@@ -103,32 +127,18 @@ WrittenMaps score_files(scoring::Evidence& evidence, const RunFolder& folder, co
   config.alignment.start = known_start(files.map, scenario.geo, T_truth_start);
   const scoring::MapScore score = scoring::score_map(map, truth, config);
   evidence.score = score;
-  if (!score.aligned && score.by == scoring::AlignBy::Auto) return files;
+  evidence.victims = scoring::victim_figures(
+      victims.reported, scoring::victim_points(map, truth, score, victims.reported, victims.there_are));
+  if (!score.aligned && score.by == scoring::AlignBy::Auto) return;
   folder.publish({"overlay.png"}, [&](const std::string& path) {
     scoring::write_overlay(path + "overlay.png", map, truth, score.T_truth_map,
-                           score.aligned ? "" : "NOT TRUSTED: " + score.note);
+                           score.aligned ? "" : "NOT TRUSTED: " + score.note,
+                           scoring::marks_of(victims.reported.victims, victims.there_are.victims, score.T_truth_map));
   });
-  if (!score.aligned) return files;
+  if (!score.aligned) return;
   folder.publish({"error.png"}, [&](const std::string& path) {
     scoring::write_error_map(path + "error.png", map, truth, score.T_truth_map, scenario.scoring.tau);
   });
-  return files;
-}
-
-/// What the victims that were reported are worth: their list counts from where the robot started.
-scoring::VictimFigures judge_victims(const WrittenMaps& files, const scoring::MapScore& score, const Scenario& scenario,
-                                     const arenas::Arena& arena, const std::vector<explore::VictimReport>& victims) {
-  scoring::ReportedVictims reported;
-  reported.from = scoring::VictimSource::List;
-  reported.symbols = files.map.symbols.size();
-  for (const auto& victim : victims)
-    reported.victims.push_back({"", in_picture(files.map, victim.p_map, scenario.geo)});
-  scoring::TrueVictims there_are;
-  there_are.path = "arena.yaml";
-  for (const auto& victim : arena.victims)
-    there_are.victims.push_back({victim.name, {victim.position.x, victim.position.y}});
-  return scoring::victim_figures(reported,
-                                 scoring::victim_points(files.map.grid, files.truth.grid, score, reported, there_are));
 }
 
 LoopHooks hooks_of(const RunOptions& options) {
@@ -208,10 +218,10 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   }
   scoring::Evidence evidence;
   compare_trajectories(evidence, core.mapper(), simulated.truth());
-  const WrittenMaps files = score_files(evidence, folder, scenario, arena.start);
+  const WrittenMaps files = read_written(folder);
+  score_files(evidence, files, victim_lists(files, scenario, arena, core.victims()), folder, scenario, arena.start);
   evidence.map = &files.map.grid;
   evidence.truth = &files.truth.grid;
-  evidence.victims = judge_victims(files, *evidence.score, scenario, arena, core.victims());
   evidence.run = run_figures(core, end.sim_s, end.reason);
   evidence.mission = mission_figures(arena, simulated.truth(), scenario.robot, core);
   folder.write("decisions.txt", decisions_text(core));

@@ -30,11 +30,12 @@ struct VictimFigures {
   std::size_t total = 0;  ///< victims there are
   std::size_t found = 0;
   std::size_t false_alarms = 0;
-  double error_m = 0.0;   ///< mean over those found [m]
-  double quality = 0.0;   ///< points for the map around them
-  double location = 0.0;  ///< points for where they lie
-  double fine = 0.0;      ///< points that the false reports cost
-  double points() const { return quality + location - fine; }
+  double error_m = 0.0;                                  ///< mean over those found [m]
+  double quality = 0.0;                                  ///< points for the map around them
+  double location = 0.0;                                 ///< points for where they lie
+  double fine = 0.0;                                     ///< points that the false reports cost
+  double unfined() const { return quality + location; }  ///< as the league counts them
+  double points() const { return unfined() - fine; }
 };
 
 /// What a mapper and an explorer did in one run.

@@ -167,6 +167,8 @@ std::vector<Figure> make_table() {
        of_judged_victims(&VictimFigures::quality)},
       {"points_location", "points for location", "", 1, kUp, 0.5, kShown | kLeague,
        of_judged_victims(&VictimFigures::location)},
+      {"points_unfined", "points before the fine", "", 1, kUp, 0.5, kLeague,
+       of_judged_victims(&VictimFigures::unfined)},
       {"points_fine", "points lost by false reports", "", 1, kDown, 0.5, kShown | kLeague,
        of_judged_victims(&VictimFigures::fine)},
       {"points_victims", "points for victims", "", 1, kUp, 0.5, kShown | kLeague,

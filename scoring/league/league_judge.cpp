@@ -9,7 +9,6 @@
 #include "base/error.h"
 #include "base/text/input_file.h"
 #include "base/text/number_text.h"
-#include "base/text/shell.h"
 #include "base/text/text_file.h"
 #include "base/text/words.h"
 #include "scoring/maps/normalise.h"
@@ -71,10 +70,12 @@ LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const Le
   pictures.tool = name + kPage;
   write_text_file(
       place_in(config.out, pictures.tool),
-      evaluation_page(map, truth.grid,
-                      {entry.file, truth.path, "rubble score " + shell_word(entry.file) + " " + shell_word(truth.path),
-                       entry.score.T_truth_map, 1.0, config.score, entry.score.aligned ? "" : entry.score.note,
-                       marks_on_page(entry.score, victims)}));
+      evaluation_page(
+          map, truth.grid,
+          {entry.file, truth.path,
+           score_command(entry.file, truth.path, config.map_resolution, config.truth_resolution, config.score.tau),
+           entry.score.T_truth_map, 1.0, config.score, entry.score.aligned ? "" : entry.score.note,
+           marks_on_page(entry.score, victims), entry.score.score_at_best_pose}));
   return pictures;
 }
 

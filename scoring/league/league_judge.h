@@ -27,6 +27,7 @@ LeagueTruth load_league_truth(const std::string& path, const std::optional<doubl
 struct LeagueConfig {
   ScoreConfig score;
   std::optional<double> map_resolution;          ///< of maps that do not tell their scale [m] a pixel
+  std::optional<double> truth_resolution;        ///< what the truth was read with, for the commands on the pages
   std::string out;                               ///< folder for a page and pictures of each team; empty: none are made
   std::function<void(const std::string&)> tell;  ///< what a person should know of a team's files, one line
 };

@@ -66,6 +66,8 @@ FloodedDrawing flood_drawing(OccupancyGrid grid) {
     out.note = "no unknown cells: what lies outside the walls counts as unknown";
     for (std::size_t i = 0; i < grid.cells().size(); ++i)
       if (outside.data[i] != 0) grid.cells()[i] = Occupancy::Unknown;
+  } else {
+    out.note = "no unknown cells, and the walls enclose little: all that is free counts as seen";
   }
   out.grid = std::move(grid);
   return out;

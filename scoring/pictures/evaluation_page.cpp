@@ -8,7 +8,10 @@
 #include "base/angle.h"
 #include "base/text/html.h"
 #include "base/text/number_text.h"
+#include "base/text/shell.h"
 #include "scoring/pictures/page_assets.h"
+#include "scoring/pictures/picture.h"
+#include "scoring/pose_score.h"
 #include "scoring/walls/overlap.h"
 #include "scoring/walls/resample.h"
 
@@ -54,11 +57,15 @@ std::string grid_json(const OccupancyGrid& grid, const std::string& name) {
          ",\"half\":" + number_text(wall_half_thickness(grid)) + ",\"runs\":\"" + base64(packed_cells(grid)) + "\"}";
 }
 
-/// Centimetres are enough for a mark: [x, y] or [x, y, name].
+/// Centimetres are enough for a mark: [x, y], [x, y, name] or [x, y, name, least x, least y, greatest x, greatest y].
 std::string mark_json(const Mark& mark) {
   const auto centimetres = [](double value) { return number_text(std::round(value * 100.0) / 100.0); };
   return "[" + centimetres(mark.p.x) + "," + centimetres(mark.p.y) +
-         (mark.name.empty() ? "" : "," + quoted(mark.name)) + "]";
+         (mark.name.empty() && !mark.box ? "" : "," + quoted(mark.name)) +
+         (mark.box ? "," + centimetres(mark.box->first.x) + "," + centimetres(mark.box->first.y) + "," +
+                         centimetres(mark.box->second.x) + "," + centimetres(mark.box->second.y)
+                   : "") +
+         "]";
 }
 
 std::string marks_json(const std::vector<Marks>& all) {
@@ -93,13 +100,44 @@ void replace(std::string& page, std::string_view placeholder, std::string_view t
   if (at != std::string::npos) page.replace(at, placeholder.size(), text);
 }
 
+/// What does not move with the maps: the score and the pictures at the pose at start.
+std::string at_start(const OccupancyGrid& map, const OccupancyGrid& truth, const EvaluationStart& start) {
+  const OccupancyGrid grid = scaled_frame(map, start.scale);
+  const auto figure = [](const std::string& png, const std::string& what) {
+    return "<figure><img alt=\"" + what + "\" src=\"data:image/png;base64," + base64(png) + "\"><figcaption>" + what +
+           "</figcaption></figure>\n";
+  };
+  char score[80];
+  std::snprintf(score, sizeof score, "<p>%s <b>%.3f</b></p>\n",
+                start.not_trusted.empty() ? "score" : "score there, not trusted", start.score);
+  const bool has_victims = !start.marks.empty() && start.marks.front().what == "victims";
+  Marks victims = has_victims ? start.marks.front() : Marks{};
+  for (auto& [of_map, of_truth] : victims.pairs) of_map.p *= start.scale;
+  for (Mark& of_map : victims.map_only) of_map.p *= start.scale;
+  return score +
+         figure(overlay_png(grid, truth, start.T_truth_map, "", victims),
+                "walls right (dark, within 5 cm), near (orange), only in the map (red), only in the truth (blue)") +
+         figure(error_map_png(grid, truth, start.T_truth_map, start.config.tau),
+                "distance of phantom walls (to red) and missing ones (to blue)");
+}
+
 }  // namespace
+
+std::string score_command(const std::string& map, const std::string& truth, const std::optional<double>& map_resolution,
+                          const std::optional<double>& truth_resolution, double tau) {
+  std::string command = "rubble score " + shell_word(map) + " " + shell_word(truth);
+  if (map_resolution) command += " --resolution " + number_text(*map_resolution);
+  if (truth_resolution) command += " --truth-resolution " + number_text(*truth_resolution);
+  if (tau != ScoreConfig().tau) command += " --tau " + number_text(tau);
+  return command;
+}
 
 std::string evaluation_page(const OccupancyGrid& map, const OccupancyGrid& truth, const EvaluationStart& start) {
   std::string page(kEvaluationHtml);
   replace(page, "@STYLE@", kEvaluationCss);
   replace(page, "@METRIC@", kMetricJs);
   replace(page, "@TOOL@", kEvaluationJs);
+  replace(page, "@ATSTART@", at_start(map, truth, start));
   replace(page, "@DATA@", data_json(map, truth, start));
   return page;
 }

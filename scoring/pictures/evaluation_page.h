@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPose2D.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,10 @@
 #include "scoring/scorecard.h"
 
 namespace rubble::scoring {
+
+/// The command that scores two maps: `map_resolution`, `truth_resolution` [m a pixel] and `tau` [m] as they were given.
+std::string score_command(const std::string& map, const std::string& truth, const std::optional<double>& map_resolution,
+                          const std::optional<double>& truth_resolution, double tau);
 
 /// What the page starts with.
 struct EvaluationStart {
@@ -21,6 +26,7 @@ struct EvaluationStart {
   ScoreConfig config;
   std::string not_trusted;   ///< why the pose is not to be trusted; empty: it is
   std::vector<Marks> marks;  ///< that can be shown: victims, features, rooms
+  double score = 0.0;        ///< the headline score at the pose, trusted or not
 };
 
 /// The Mapping Evaluation Tool of section IV.B as one HTML page that needs nothing else: two maps that a person moves,

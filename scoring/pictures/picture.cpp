@@ -12,6 +12,7 @@
 
 #include "base/grid.h"
 #include "base/image/png.h"
+#include "base/text/text_file.h"
 #include "scoring/walls/resample.h"
 #include "scoring/walls/wall_field.h"
 
@@ -298,8 +299,8 @@ void paint(Canvas& canvas, const OccupancyGrid& map, const OccupancyGrid& truth,
 
 }  // namespace
 
-void write_overlay(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
-                   const TPose2D& T_truth_map, const std::string& warning, const Marks& victims) {
+std::string overlay_png(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map,
+                        const std::string& warning, const Marks& victims) {
   Canvas canvas(common_frame(map, truth, T_truth_map, 0.5));
   const WallField to_map(map, 0.5);
   const WallField to_truth(truth, 0.5);
@@ -321,11 +322,16 @@ void write_overlay(const std::string& path, const OccupancyGrid& map, const Occu
                        {kNotJudged, "not judged"},
                        {kMapFree, "seen by map only"},
                        {kTruthFree, "not seen by map"}});
-  write_png(path, canvas.image);
+  return png_bytes(canvas.image);
 }
 
-void write_error_map(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
-                     const TPose2D& T_truth_map, double tau) {
+void write_overlay(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
+                   const TPose2D& T_truth_map, const std::string& warning, const Marks& victims) {
+  write_text_file(path, overlay_png(map, truth, T_truth_map, warning, victims));
+}
+
+std::string error_map_png(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map,
+                          double tau) {
   Canvas canvas(common_frame(map, truth, T_truth_map, 0.5));
   const WallField to_map(map, tau);
   const WallField to_truth(truth, tau);
@@ -340,7 +346,12 @@ void write_error_map(const std::string& path, const OccupancyGrid& map, const Oc
           }
         });
   draw_heat_bar(canvas, tau);
-  write_png(path, canvas.image);
+  return png_bytes(canvas.image);
+}
+
+void write_error_map(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
+                     const TPose2D& T_truth_map, double tau) {
+  write_text_file(path, error_map_png(map, truth, T_truth_map, tau));
 }
 
 void write_side_by_side(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,

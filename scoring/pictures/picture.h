@@ -18,6 +18,10 @@ namespace rubble::scoring {
 void write_overlay(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
                    const mrpt::math::TPose2D& T_truth_map, const std::string& warning = "", const Marks& victims = {});
 
+/// The same as bytes, for a page.
+std::string overlay_png(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map,
+                        const std::string& warning = "", const Marks& victims = {});
+
 /// Writes a PNG as the paper's Fig. 12: the map, turned as it lies on the truth, beside the truth; pairs of marks of
 /// one colour joined by a line, outliers as red (map) and blue (truth) crosses, boxes and names where marks have them.
 /// Without a pose the middles of both maps are brought together.
@@ -30,5 +34,8 @@ void write_side_by_side(const std::string& path, const OccupancyGrid& map, const
 /// grey where the truth knows nothing.
 void write_error_map(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
                      const mrpt::math::TPose2D& T_truth_map, double tau);
+/// The same as bytes, for a page.
+std::string error_map_png(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map,
+                          double tau);
 
 }  // namespace rubble::scoring

@@ -5,14 +5,38 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "scoring/walls/overlap.h"
+
 namespace rubble::scoring {
 namespace {
 
-cv::Mat free_mask(const OccupancyGrid& map) {
+cv::Mat mask_of(const OccupancyGrid& map, Occupancy what) {
   cv::Mat mask(map.height(), map.width(), CV_8U);
   for (int y = 0; y < map.height(); ++y)
-    for (int x = 0; x < map.width(); ++x) mask.at<unsigned char>(y, x) = map[{x, y}] == Occupancy::Free ? 255 : 0;
+    for (int x = 0; x < map.width(); ++x) mask.at<unsigned char>(y, x) = map[{x, y}] == what ? 255 : 0;
   return mask;
+}
+
+/// Walls of one cell have holes and steps where a map was turned: they are drawn as three.
+void thicken_thin_walls(const OccupancyGrid& map, cv::Mat& floor) {
+  constexpr double kThin = 0.8;  // half of their thickness [cells]
+  if (wall_half_thickness(map) >= kThin * map.resolution()) return;
+  cv::Mat walls;
+  cv::dilate(mask_of(map, Occupancy::Occupied), walls, cv::Mat::ones(3, 3, CV_8U));
+  floor.setTo(0, walls);
+}
+
+/// Walls of one cell that do not lie along the grid touch by their corners, and contours of the floor would lead
+/// between them: of two such floor cells the lower one is shut.
+void shut_diagonal_gaps(cv::Mat& floor) {
+  for (int y = 0; y + 1 < floor.rows; ++y) {
+    unsigned char* low = floor.ptr(y);
+    unsigned char* high = floor.ptr(y + 1);
+    for (int x = 0; x + 1 < floor.cols; ++x) {
+      if (low[x] == 0 && high[x + 1] == 0 && low[x + 1] != 0 && high[x] != 0) low[x + 1] = 0;
+      if (low[x] != 0 && high[x + 1] != 0 && low[x + 1] == 0 && high[x] == 0) low[x] = 0;
+    }
+  }
 }
 
 /// Connected parts of the non-zero cells of a mask.
@@ -60,10 +84,12 @@ void clear_clutter(cv::Mat& floor, double resolution, const RoomConfig& config) 
 RoomFloor room_floor(const OccupancyGrid& map, const RoomConfig& config) {
   RoomFloor out;
   out.resolution = map.resolution();
-  out.free = free_mask(map);
+  out.free = mask_of(map, Occupancy::Free);
   out.cleared = out.free.clone();
+  shut_diagonal_gaps(out.cleared);
   clear_clutter(out.cleared, out.resolution, config);
   out.open = out.cleared.clone();
+  thicken_thin_walls(map, out.open);
   const int radius = static_cast<int>(std::lround(0.5 * config.slit / out.resolution));
   if (radius > 0) {
     const cv::Mat disc = cv::getStructuringElement(cv::MORPH_RECT, cv::Size(2 * radius + 1, 2 * radius + 1));

@@ -1,5 +1,6 @@
 #include "scoring/rooms/room_picture.h"
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
@@ -7,6 +8,8 @@
 
 namespace rubble::scoring {
 namespace {
+
+constexpr int kWide = 1500, kMostZoom = 4;  ///< [pixels], and a cell's
 
 /// Light colours that differ from label to label: hues a golden angle apart, in three shades.
 cv::Vec3b room_colour(unsigned label) {
@@ -29,18 +32,31 @@ void write_rooms_png(const std::string& path, const OccupancyGrid& map, const Ro
   if (map.cells().empty()) throw RunError(path + ": a map without cells has no picture");
   std::vector<cv::Vec3b> colours;
   for (unsigned label = 0; label <= rooms.rooms.size(); ++label) colours.push_back(room_colour(label));
-  cv::Mat picture(map.height(), map.width(), CV_8UC3);
+  // Names take room: small maps are drawn larger.
+  const int zoom = std::clamp(kWide / std::max(map.width(), map.height()), 1, kMostZoom);
+  cv::Mat cells(map.height(), map.width(), CV_8UC3);
   for (int y = 0; y < map.height(); ++y)
     for (int x = 0; x < map.width(); ++x) {
       const Cell c = rooms.labels.cell(map.centre({x, y}));
       const std::size_t label = rooms.labels.inside(c) ? rooms.labels[c] : 0;
       const Occupancy cell = map[{x, y}];
-      picture.at<cv::Vec3b>(map.height() - 1 - y, x) =
+      cells.at<cv::Vec3b>(map.height() - 1 - y, x) =
           label != 0 && cell != Occupancy::Occupied ? colours[label] : plain_colour(cell);
     }
-  for (const Room& room : rooms.rooms) {
-    const Cell c = map.cell(room.centre);
-    cv::circle(picture, cv::Point(c.x, map.height() - 1 - c.y), 3, cv::Scalar(50, 46, 44), cv::FILLED, cv::LINE_AA);
+  cv::Mat picture;
+  cv::resize(cells, picture, {}, zoom, zoom, cv::INTER_NEAREST);
+  const auto pixel = [&](const mrpt::math::TPoint2D& p) {
+    const Cell c = map.cell(p);
+    return cv::Point(c.x, map.height() - 1 - c.y) * zoom;
+  };
+  const cv::Scalar ink(50, 46, 44);
+  for (std::size_t i = 0; i < rooms.rooms.size(); ++i) {
+    const Room& room = rooms.rooms[i];
+    cv::rectangle(picture, pixel(room.box_min), pixel(room.box_max), cv::Scalar(150, 150, 150));
+    const cv::Point centre = pixel(room.centre);
+    cv::circle(picture, centre, 3, ink, cv::FILLED, cv::LINE_AA);
+    cv::putText(picture, "room " + std::to_string(i + 1), centre + cv::Point(6, -4), cv::FONT_HERSHEY_SIMPLEX, 0.4, ink,
+                1, cv::LINE_AA);
   }
   write_png(path, picture);
 }

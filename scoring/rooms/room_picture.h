@@ -7,7 +7,8 @@
 namespace rubble::scoring {
 
 /// Writes a PNG of the map, north up: each room in a colour of its own, walls dark, free space without a room white,
-/// unknown grey; a dot at each centre of gravity. Throws RunError when it cannot be written.
+/// unknown grey; at each centre of gravity a dot and the name, around each room its box. Small maps are drawn larger.
+/// Throws RunError when it cannot be written.
 void write_rooms_png(const std::string& path, const OccupancyGrid& map, const Rooms& rooms);
 
 }  // namespace rubble::scoring

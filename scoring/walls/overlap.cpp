@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "base/angle.h"
 #include "base/planar.h"
@@ -15,16 +16,43 @@ bool known(const OccupancyGrid& grid, const mrpt::math::TPoint2D& p) {
   return grid.inside(c) && grid[c] != Occupancy::Unknown;
 }
 
+constexpr double kThickest = 0.3;  ///< half of what is built [m]
+
+/// Not zero in wall that is thicker than any that is built, as where a plan fills what lies outside with black: it has
+/// faces, but no thickness.
+Grid<unsigned char> solid_masses(const OccupancyGrid& grid) {
+  Grid<unsigned char> out(grid.frame());
+  if (grid.width() == 0 || grid.height() == 0) return out;
+  const auto reach = static_cast<float>(kThickest / grid.resolution());
+  cv::Mat walls(grid.height(), grid.width(), CV_8U);
+  for (int y = 0; y < grid.height(); ++y)
+    for (int x = 0; x < grid.width(); ++x)
+      walls.at<unsigned char>(y, x) = grid[{x, y}] == Occupancy::Occupied ? 255 : 0;
+  if (cv::countNonZero(walls) == grid.width() * grid.height()) return out;  // nothing has a face
+  cv::Mat depth, off;
+  cv::distanceTransform(walls, depth, cv::DIST_L2, cv::DIST_MASK_5);
+  const cv::Mat core = depth > reach;
+  if (cv::countNonZero(core) == 0) return out;
+  cv::distanceTransform(255 - core, off, cv::DIST_L2, cv::DIST_MASK_5);
+  const cv::Mat masses = (off <= reach + 1.5F) & walls;
+  for (int y = 0; y < grid.height(); ++y) std::copy_n(masses.ptr<unsigned char>(y), grid.width(), out.row(y));
+  return out;
+}
+
 }  // namespace
 
 double wall_half_thickness(const OccupancyGrid& grid) {
+  const Grid<unsigned char> masses = solid_masses(grid);
   const auto occupied = [&](int x, int y) { return grid.inside({x, y}) && grid[{x, y}] == Occupancy::Occupied; };
+  bool has_walls = false;
   std::size_t area = 0;
   std::size_t straight = 0;
   std::size_t diagonal = 0;
   for (int y = 0; y < grid.height(); ++y) {
     for (int x = 0; x < grid.width(); ++x) {
       if (grid[{x, y}] != Occupancy::Occupied) continue;
+      has_walls = true;
+      if (masses[{x, y}] != 0) continue;
       ++area;
       straight += (occupied(x - 1, y) ? 0u : 1u) + (occupied(x + 1, y) ? 0u : 1u) + (occupied(x, y - 1) ? 0u : 1u) +
                   (occupied(x, y + 1) ? 0u : 1u);
@@ -32,7 +60,7 @@ double wall_half_thickness(const OccupancyGrid& grid) {
                   (occupied(x - 1, y + 1) ? 0u : 1u) + (occupied(x + 1, y - 1) ? 0u : 1u);
     }
   }
-  if (area == 0) return 0.0;
+  if (area == 0) return has_walls ? kThickest : 0.0;
   const double boundary = kPi / 8.0 * (static_cast<double>(straight) + static_cast<double>(diagonal) / std::sqrt(2.0));
   return grid.resolution() * static_cast<double>(area) / boundary;
 }

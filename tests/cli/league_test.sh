@@ -56,6 +56,7 @@ anchors = set(re.findall(r'id="([^"]+)"', page))
 assert links and all(l[1:] in anchors if l[0] == '#' else os.path.exists('judged/' + l) for l in links), links
 assert 'next: good' in page and 'previous: twin' in page, page
 assert any(l.endswith('stranger-overlay.png') for l in links), links
+assert float(good['points_unfined']) == 60.0, good
 PY
 grep -qE '^ *1 +twin ' table.txt || fail "the table does not show the first: $(cat table.txt)"
 
@@ -91,6 +92,8 @@ PY
 "$rubble" score --league mixed $truth --align akaze --out akaze_out >/dev/null || fail "league by akaze"
 ! cut -d, -f1-40 akaze_out/league.csv | grep -q ',walls,' || fail "akaze was not asked: $(cat akaze_out/league.csv)"
 expect_exit 2 '--align' "$rubble" score --league mixed $truth --align magic
+"$rubble" score --league mixed $truth --tau 0.3 --out tau_out >/dev/null || fail "league with --tau"
+grep -q -- '--tau 0.3' tau_out/*good.html || fail "the page's command gives other figures than the page: no --tau"
 # Names that only look like pictures of runs take part; a copy of the truth is said to be one, and ranked.
 mkdir named
 for name in search-and-error error arena ground_truth half-visible copied x; do cp maps/coarse.tif named/$name.tif; done

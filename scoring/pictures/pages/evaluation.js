@@ -91,8 +91,21 @@
       context.stroke();
       if (mark[2]) context.fillText(mark[2], x + 8 * d, y - 6 * d);
     };
+    const box = ([, , , x1, y1, x2, y2], place, colour) => {
+      if (x1 === undefined) return;
+      context.strokeStyle = colour;
+      context.lineWidth = d;
+      context.beginPath();
+      for (const corner of [[x1, y1], [x2, y1], [x2, y2], [x1, y2]]) context.lineTo(...place(corner));
+      context.closePath();
+      context.stroke();
+      context.lineWidth = 2 * d;
+    };
+    const ofMap = (p) => pixel(onTruth(p));
     data.marks.forEach((marks, index) => {
       if (!shown.has(index)) return;
+      for (const one of [...marks.map, ...marks.pairs.map(([map]) => map)]) box(one, ofMap, '#d62f2f');
+      for (const one of [...marks.truth, ...marks.pairs.map(([, truth]) => truth)]) box(one, pixel, '#0b3c91');
       for (const [map, truth] of marks.pairs) {
         const a = pixel(onTruth(map)), b = pixel(truth);
         context.strokeStyle = '#1e8c28';
@@ -285,6 +298,8 @@
   $('fit').addEventListener('click', showAll);
   addEventListener('resize', redraw);
 
+  for (const image of document.querySelectorAll('figure img'))
+    image.addEventListener('click', () => image.classList.toggle('large'));
   $('map-name').textContent = data.map.name;
   $('truth-name').textContent = data.truth.name;
   fit();

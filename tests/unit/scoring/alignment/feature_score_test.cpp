@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/angle.h"
 #include "base/planar.h"
 #include "base/rigid.h"
 #include "scoring/scorecard.h"
@@ -38,6 +39,16 @@ TEST(FeatureScore, TheTruthIsOneAndAStrangerFarBelowADamagedMap) {
     ++pairs;
   }
   EXPECT_LE(strangers / pairs, 0.15);
+}
+
+/// Walls of one cell have holes and steps where a map is turned.
+TEST(FeatureScore, ATurnedDrawingKeepsItsFeatures) {
+  const OccupancyGrid truth = truth_of({"yellow", 8, 7, 7502});
+  for (const double deg : {3.0, 13.0, 31.0}) {
+    SCOPED_TRACE(deg);
+    const OccupancyGrid turned = moved(truth, deg_to_rad(deg), 3.0, -1.7);
+    EXPECT_GT(verdict_of(turned, truth, score_map(turned, truth).T_truth_map).score, 0.7);
+  }
 }
 
 TEST(FeatureScore, OutliersAndPairsAreAllFeatures) {

@@ -171,6 +171,15 @@ TEST_F(LoadMap, LeagueMapLosesItsDrawings) {
   EXPECT_THAT(drawn.recognised, ::testing::HasSubstr("league colours"));
 }
 
+TEST_F(LoadMap, APictureOfOneColourShowsNothing) {
+  for (const int grey : {0, 205, 255}) {
+    cv::imwrite(path("blank.png"), cv::Mat(60, 80, CV_8U, cv::Scalar(grey)));
+    const LoadedMap blank = load_map(path("blank.png"), {0.05});
+    EXPECT_THAT(blank.recognised, ::testing::HasSubstr("of one colour"));
+    for (const Occupancy cell : blank.grid.cells()) ASSERT_EQ(cell, Occupancy::Unknown);
+  }
+}
+
 TEST_F(LoadMap, GeoTiffBringsItsOwnScaleAndPlace) {
   const OccupancyGrid grid = maze({4, 4, 4});
   GeoTiff tiff;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scoring/maps/colours/map_colours.h"
 #include "tests/support/symbols_pictures.h"
 
 namespace rubble::scoring {
@@ -43,6 +44,16 @@ Picture hectors(double resolution, const cv::Scalar& colour = kRed) {
     draw_symbol(out.image, resolution, out.victims.back(), colour, Shape::Circle, std::to_string(++number));
   }
   return out;
+}
+
+TEST(VictimSymbols, AnInvertedMapKeepsItsVictims) {
+  const Picture map = hectors(0.025);
+  RgbImage inverted = map.image;
+  for (std::uint8_t& value : inverted.rgb) value = static_cast<std::uint8_t>(255 - value);
+  const ClassImage read = classify(inverted);
+  ASSERT_TRUE(read.restored);
+  EXPECT_EQ(read.restored->rgb, map.image.rgb);
+  expect_found(find_victim_symbols(*read.restored, 0.025), map.victims, 0.75);
 }
 
 TEST(VictimSymbols, HectorsMapGivesItsVictims) {

@@ -29,6 +29,27 @@ TEST(Overlap, EqualMapsScoreOne) {
   EXPECT_EQ(o.score, 1.0);
 }
 
+/// A room of 4 x 3 m, and black for so many metres around it.
+OccupancyGrid room_in_black(double around) {
+  constexpr double kCell = 0.05;
+  const auto cells = [&](double metres) { return static_cast<int>(std::lround(metres / kCell)); };
+  OccupancyGrid grid(GridFrame{cells(4.0 + 2.0 * around), cells(3.0 + 2.0 * around), kCell, -around, -around},
+                     Occupancy::Occupied);
+  for (int y = cells(around); y < cells(3.0 + around); ++y)
+    for (int x = cells(around); x < cells(4.0 + around); ++x) grid[{x, y}] = Occupancy::Free;
+  for (int x = cells(around); x < cells(3.0 + around); ++x)  // a wall within
+    grid[{x, cells(around + 1.5)}] = grid[{x, cells(around + 1.5) + 1}] = Occupancy::Occupied;
+  return grid;
+}
+
+TEST(Overlap, HowMuchBlackLiesAroundAPlanIsNotTheThicknessOfItsWalls) {
+  EXPECT_NEAR(wall_half_thickness(room_in_black(3.0)), 0.05, 0.01);
+  EXPECT_EQ(wall_half_thickness(room_in_black(3.0)), wall_half_thickness(room_in_black(8.0)));
+  const Overlap o = overlap(room_in_black(8.0), room_in_black(3.0), {}, kTau);
+  EXPECT_EQ(o.precision, 1.0);
+  EXPECT_EQ(o.recall, 1.0);
+}
+
 TEST(Overlap, AShiftedWallLosesWhatTheKernelSays) {
   // 0.3 m apart, half a cell of it is the width of the wall: k = 1 - 0.275 / 0.5.
   const Overlap o = overlap(wall_at(2.325), wall_at(2.025), {}, kTau);
