@@ -164,6 +164,19 @@ std::string note_of_crossed_floor(const MapScore& score) {
   return text;
 }
 
+/// Lines of sight end where the truth does: no line crosses the walls around it.
+std::string note_of_unasked_walls(const MapScore& score) {
+  constexpr double kGood = 0.9, kThere = 0.85;
+  if (score.score < kGood || score.recall >= kThere) return {};
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "%.0f m of wall is missing where no line of sight crosses it (around the arena): the score does not know "
+      "that, overlap and recall do",
+      score.errors.missing_m);
+  return text;
+}
+
 /// All numbers at the pose that `out` holds.
 void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls,
              const ScoreConfig& config) {
@@ -179,6 +192,7 @@ void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth
   if (out.recall < kWhole && out.score < kWhole) add_note(out.note, note_of_coarse_pixels(map, truth));
   out.errors = wall_errors(walls.overlaps, PlanarTransform(out.T_truth_map), config.worst_places);
   add_note(out.note, note_of_crossed_floor(out));
+  add_note(out.note, note_of_unasked_walls(out));
   if (config.warp) fill_warp(out, map, truth, walls);
   const GridFrame frame = common_frame(map, truth, out.T_truth_map, kCanvasMargin);
   const OccupancyGrid map_on_frame = resample(map, out.T_truth_map, frame);

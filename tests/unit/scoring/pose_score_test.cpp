@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+
 #include "tests/support/scoring_maze.h"
 
 namespace rubble::scoring {
@@ -20,6 +23,27 @@ TEST(PoseScore, AtThePoseFoundItIsTheScoreOfTheSearch) {
   EXPECT_EQ(there.psi_m, found.psi_m);
   EXPECT_EQ(there.psi_literal_m, found.psi_literal_m);
   EXPECT_EQ(there.known, found.known);
+}
+
+/// Lines of sight do not cross the walls around an arena, and who sees a drawn way does not see a wall in it.
+TEST(PoseScore, WhatTheScoreCannotTellIsSaid) {
+  const OccupancyGrid truth = maze({});
+  EXPECT_EQ(score_map(truth, truth).note, "");
+  const GridFrame& f = truth.frame();
+  const auto rim = static_cast<int>(std::lround(0.8 / f.resolution));  // the margin and the wall around
+  OccupancyGrid open = truth;
+  for (int y = 0; y < f.height; ++y)
+    for (int x = 0; x < f.width; ++x)
+      if ((x < rim || y < rim || x >= f.width - rim || y >= f.height - rim) && open[{x, y}] == Occupancy::Occupied)
+        open[{x, y}] = Occupancy::Free;
+  EXPECT_NE(score_at(open, truth, {}).note.find("around the arena"), std::string::npos)
+      << score_at(open, truth, {}).note;
+  OccupancyGrid crossed = truth;
+  for (int y = rim; y < f.height - rim; ++y)
+    for (int x = rim; x < f.width - rim; ++x)
+      if ((x + y) % 24 < 2 && crossed[{x, y}] == Occupancy::Free) crossed[{x, y}] = Occupancy::Occupied;
+  EXPECT_NE(score_at(crossed, truth, {}).note.find("cross free floor"), std::string::npos)
+      << score_at(crossed, truth, {}).note;
 }
 
 /// Nearest neighbour to pixels wider than the walls drops whole walls; averages and fine pixels need no such word.
