@@ -50,7 +50,9 @@ Order turn(double angle, TurnFor purpose) {
 }  // namespace
 
 Agenda::Agenda(const PaperExplorerConfig& config)
-    : config_(config), choice_(config.planner, config.bar_targets, config.felt.pallet), pushing_(config.felt.pallet) {}
+    : config_(config),
+      choice_(config.planner, config.bar_targets, config.felt.pallet, config.choice, config.priorities),
+      pushing_(config.felt.pallet) {}
 
 void Agenda::note(Stamp now, const std::string& why) {
   if (decisions_.empty() || decisions_.back().why != why) decisions_.push_back({now, why});
@@ -79,6 +81,7 @@ bool Agenda::begin_plan(const slam::CountMap& map, Stamp now) {
 Plan Agenda::choose(const Situation& situation) {
   TargetChoice::View view{situation.floor, situation.T_map_base, situation.now, situation.left_alone};
   // What is off the grid may be solid after all: it is driven at for the place that is asked for, and for no other.
+  view.speed = situation.speed;
   view.places_only = pushing_.what() == Pushing::What::OffGrid;
   TargetChoice::Choice choice = choice_.choose(view, situation.search);
   if (choice.no_niche) {
@@ -88,7 +91,7 @@ Plan Agenda::choose(const Situation& situation) {
                                                situation.search, situation.left_alone);
     if (news) {
       begin_round(*news, situation.now);
-      return choice_.choose_frontier(view);
+      return choice_.choose_frontier(view, situation.search);
     }
     choice = choice_.choose_of_all_places(view, situation.search, std::move(choice.plan));
   }

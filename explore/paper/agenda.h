@@ -50,6 +50,7 @@ class Agenda {
     std::size_t victims;  ///< sure ones so far
     LeftAlone& left_alone;
     FloorSearch& search;
+    double speed = 0.2;  ///< of the robot so far, turns and stops included [m/s]
 
     Anchor robot() const { return {now, T_map_base}; }
   };

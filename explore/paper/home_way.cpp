@@ -32,9 +32,10 @@ double HomeWay::left(Stamp now) const {
   return time_limit_ - (now - start_);
 }
 
+double HomeWay::speed() const { return std::max(kSlowest, (way_ + kUsualSpeed * kUsualTime) / (time_ + kUsualTime)); }
+
 bool HomeWay::must_turn_back(double way_home, Stamp now) const {
-  const double speed = std::max(kSlowest, (way_ + kUsualSpeed * kUsualTime) / (time_ + kUsualTime));
-  return left(now) < kSpare * way_home / speed + kSpareTime;
+  return left(now) < kSpare * way_home / speed() + kSpareTime;
 }
 
 }  // namespace rubble::explore

@@ -9,6 +9,13 @@ void bind(Binder& b, PaperExplorerConfig& c) {
   b.number("d_opt_m", transform.d_opt, 0.0, 5.0);
   b.choice("discomfort", transform.discomfort, {"per_metre", "per_cell"});
   b.boolean("bar_targets", c.bar_targets);
+  b.choice("choice", c.choice.by, {"transform", "nearest", "gain", "value"});
+  b.number("face_weight", c.choice.face_weight, 0.0, 100.0);
+  b.section("priorities", [&](Binder& p) {
+    p.number("niches_m", c.priorities.niches, 0.0, 1000.0);
+    p.number("faces_m", c.priorities.faces, 0.0, 1000.0);
+    p.number("frontiers_m", c.priorities.frontiers, 0.0, 1000.0);
+  });
   b.number("occupied_threshold", c.occupied_threshold, 0.01, 1.0);
   b.integer("min_frontier_cells", c.planner.min_frontier_cells, 1, 10000);
   b.number("replan_period_s", c.replan_period, 0.02, 60.0);

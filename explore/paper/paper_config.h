@@ -5,6 +5,8 @@
 #include "base/angle.h"
 #include "base/yaml/binder.h"
 #include "explore/caution/felt_obstacles.h"
+#include "explore/paper/frontier_worth.h"
+#include "explore/paper/target_choice.h"
 #include "explore/plan/path_follower.h"
 #include "explore/plan/planner.h"
 #include "explore/search/searched_area.h"
@@ -17,6 +19,8 @@ namespace rubble::explore {
 /// share.
 struct PaperExplorerConfig {
   PlannerConfig planner;
+  FrontierChoiceConfig choice;
+  Priorities priorities;
   FollowerConfig follower;
   VictimSearchConfig victims;
   SearchConfig search;

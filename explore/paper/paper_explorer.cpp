@@ -318,7 +318,14 @@ Traversable PaperExplorer::floor_now(const slam::Mapper& mapper, const std::vect
 }
 
 Agenda::Situation PaperExplorer::situation() {
-  return {now_, pose_, floor_, pilot_.turning(), victims_.reports().size(), left_alone_, victims_.search()};
+  return {now_,
+          pose_,
+          floor_,
+          pilot_.turning(),
+          victims_.reports().size(),
+          left_alone_,
+          victims_.search(),
+          home_way_.speed()};
 }
 
 }  // namespace rubble::explore

@@ -12,8 +12,6 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kBesideTheWay = 1.0;  ///< a niche that costs no more is looked into while frontiers are left [m]
-constexpr double kDetourCost = 2.0;    ///< a frontier may cost so much more than the next viewpoint [m]
 constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
 
 }  // namespace
@@ -31,11 +29,15 @@ void TargetChoice::go_home() {
 TargetChoice::Choice TargetChoice::choose(const View& view, FloorSearch& search) {
   if (goal_ == Goal::Home) return {way_home(view.floor, view.T_map_base)};
   const bool driving = goal_ == Goal::Frontier;
-  if (driving && (frontiers_done_ || !search.on())) return {to_frontier(view, target_)};
-  Plan frontier = to_frontier(view, driving ? target_ : std::nullopt);
+  if (driving && (frontiers_done_ || !search.on())) return {to_frontier(view, search, target_)};
+  Plan frontier = to_frontier(view, search, driving ? target_ : std::nullopt);
   if (frontiers_done_ && view.places_only) frontier.found = false;
+  if (!frontiers_done_) {
+    Plan place = beside_the_way(view, search, frontier);
+    return weigh(std::move(frontier), std::move(place));
+  }
   Plan niche = to_place(view, search, Subjects::Niches);
-  if (frontiers_done_ && !niche.found) return {std::move(frontier), true};
+  if (!niche.found) return {std::move(frontier), true};
   return weigh(std::move(frontier), std::move(niche));
 }
 
@@ -45,25 +47,38 @@ TargetChoice::Choice TargetChoice::choose_of_all_places(const View& view, FloorS
   return weigh(std::move(frontier), std::move(place));
 }
 
+/// A way to a place to look at before the next frontier; none is found where that goes first.
+Plan TargetChoice::beside_the_way(const View& view, FloorSearch& search, const Plan& frontier) {
+  Plan niche = to_place(view, search, Subjects::Niches);
+  if (goes_first(niche, frontier, priorities_.niches)) return niche;
+  if (priorities_.faces <= 0.0) return {};
+  Plan face = to_place(view, search, Subjects::All);
+  return goes_first(face, frontier, priorities_.faces) ? std::move(face) : Plan{};
+}
+
+/// What lies beside the way is looked at now: coming back for it costs more.
+bool TargetChoice::goes_first(const Plan& place, const Plan& frontier, double most) const {
+  if (!place.found || !frontier.found || most <= 0.0) return false;
+  return place.cost <= std::min(frontier.cost, most) + (goal_ == Goal::Frontier ? 0.0 : priorities_.frontiers);
+}
+
 /// A way to a frontier against one to a place to search from.
 TargetChoice::Choice TargetChoice::weigh(Plan frontier, Plan place) {
   place.frontier_left = frontier.frontier_left;
   if (!frontiers_done_) {
-    // What lies in a niche beside the way is looked at now: coming back for it costs more.
-    const double most = std::min(frontier.cost, kBesideTheWay) + (goal_ == Goal::Frontier ? 0.0 : kDetourCost);
-    const bool look = place.found && frontier.found && place.cost <= most;
-    goal_ = look ? Goal::Place : Goal::Frontier;
-    return {look ? std::move(place) : std::move(frontier)};
+    goal_ = place.found ? Goal::Place : Goal::Frontier;
+    return {place.found ? std::move(place) : std::move(frontier)};
   }
   // New ground is worth more than the faces that are left, none of which is the back of a niche.
-  if (!frontier.found || (place.found && frontier.cost > place.cost + kDetourCost)) return {std::move(place)};
+  if (!frontier.found || (place.found && frontier.cost > place.cost + priorities_.frontiers)) return {std::move(place)};
   goal_ = Goal::Frontier;
   return {std::move(frontier), false, true};
 }
 
-Plan TargetChoice::to_frontier(const View& view, const std::optional<TPoint2D>& previous) {
+Plan TargetChoice::to_frontier(const View& view, const FloorSearch& search, const std::optional<TPoint2D>& previous) {
   const auto barred = [&](const TPoint2D& p) { return bar_targets_ && view.left_alone.barred(p, view.now); };
-  Plan plan = planner_.to_frontier(view.floor, view.T_map_base, barred, previous);
+  Plan plan = planner_.to_frontier(view.floor, view.T_map_base, barred, previous,
+                                   frontier_worth(by_, config_, view.floor, search, view.speed));
   if (plan.found) return plan;
   std::vector<Source> sources = doubtful_walls(view.floor, pallet_);
   const auto place = [&](const Source& source) { return view.floor.cells.centre(source.cell); };
@@ -72,9 +87,7 @@ Plan TargetChoice::to_frontier(const View& view, const std::optional<TPoint2D>& 
   // Of what is driven to as such, a part may vanish on the way: the rest is looked at from there as well.
   if (previous && doubtful_ && !barred(*previous)) sources.push_back({view.floor.cells.cell(*previous), 0.0});
   if (sources.empty()) return plan;
-  if (previous)
-    for (Source& source : sources)
-      if (distance(place(source), *previous) > config_.same_target) source.head_start = config_.switch_cost;
+  for (Source& source : sources) source.head_start = planner_.head_start(previous, place(source));
   Plan look = planner_.to_cells(view.floor, view.T_map_base, sources);
   look.frontier_left = plan.frontier_left;
   look.doubtful = look.found;
@@ -84,7 +97,7 @@ Plan TargetChoice::to_frontier(const View& view, const std::optional<TPoint2D>& 
 Plan TargetChoice::to_place(const View& view, FloorSearch& search, Subjects subjects) {
   const auto head_start = [&](const TPoint2D& p) -> std::optional<double> {
     if (view.left_alone.barred(p, view.now)) return std::nullopt;
-    return target_ && distance(p, *target_) > config_.same_target ? config_.switch_cost : 0.0;
+    return planner_.head_start(target_, p);
   };
   Plan plan = planner_.to_cells(view.floor, view.T_map_base, search.sources(view.floor, subjects, head_start));
   if (plan.found) search.choose_subject(view.floor.cells.cell(plan.target));

@@ -8,6 +8,7 @@
 #include "base/stamp.h"
 #include "explore/anchor.h"
 #include "explore/caution/left_alone.h"
+#include "explore/paper/frontier_worth.h"
 #include "explore/plan/planner.h"
 #include "explore/plan/traversable.h"
 #include "explore/search/floor_search.h"
@@ -20,10 +21,17 @@ constexpr double kLongerWay = 2.0;  ///< a way that is so much longer is a detou
 /// What the robot drives to.
 enum class Goal { Frontier, Place, Home };
 
-/// The choice of the next target: a close frontier by the Exploration Transform; where none is in reach, a wall that
-/// may hide one and be none; the back of a niche where that lies beside the way; places to search from once no frontier
-/// is left; the start in the end. The target being driven to has a head start, so that the robot does not turn round
-/// for a trifle.
+/// What comes before what, by the way it costs.
+struct Priorities {
+  double niches = 1.0;     ///< one that costs no more, nor more than the next frontier, is looked into before that [m]
+  double faces = 0.0;      ///< the same for all other places to search [m]
+  double frontiers = 2.0;  ///< one may cost so much more than the next place to search and goes before it [m]
+};
+
+/// The choice of the next target: a close frontier by the Exploration Transform (or as `FrontierChoiceConfig` asks);
+/// where none is in reach, a wall that may hide one and be none; the back of a niche where that lies beside the way;
+/// places to search from once no frontier is left; the start in the end. The target being driven to has a head start,
+/// so that the robot does not turn round for a trifle.
 class TargetChoice {
  public:
   /// What a choice is made on.
@@ -33,6 +41,7 @@ class TargetChoice {
     Stamp now;
     const LeftAlone& left_alone;
     bool places_only = false;  ///< in a search frontiers do not come first
+    double speed = 0.2;        ///< of the robot so far, turns and stops included [m/s]
   };
   struct Choice {
     Plan plan;
@@ -42,8 +51,14 @@ class TargetChoice {
 
   /// `bar_targets`: frontiers that could not be had are left alone. `pallet`: size of the arena's elements [m]; 0:
   /// none.
-  TargetChoice(const PlannerConfig& config, bool bar_targets, double pallet = 0.0)
-      : config_(config), bar_targets_(bar_targets), pallet_(pallet), planner_(config) {}
+  TargetChoice(const PlannerConfig& config, bool bar_targets, double pallet = 0.0, const FrontierChoiceConfig& by = {},
+               const Priorities& priorities = {})
+      : config_(config),
+        bar_targets_(bar_targets),
+        pallet_(pallet),
+        by_(by),
+        priorities_(priorities),
+        planner_(config) {}
 
   Goal goal() const { return goal_; }
   /// No frontier could be reached in this round: what comes into reach later is a detour of the search.
@@ -63,7 +78,7 @@ class TargetChoice {
   /// after another round has begun, `choose_frontier` makes it.
   Choice choose(const View& view, FloorSearch& search);
   Choice choose_of_all_places(const View& view, FloorSearch& search, Plan frontier);
-  Plan choose_frontier(const View& view) { return to_frontier(view, std::nullopt); }
+  Plan choose_frontier(const View& view, const FloorSearch& search) { return to_frontier(view, search, std::nullopt); }
   /// A way to the start, or as near to it as can be reached.
   Plan way_home(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
   /// Distance to the start as the crow flies [m].
@@ -83,13 +98,17 @@ class TargetChoice {
   double clearance_cap() const { return planner_.clearance_cap(); }
 
  private:
-  Plan to_frontier(const View& view, const std::optional<mrpt::math::TPoint2D>& previous);
+  Plan to_frontier(const View& view, const FloorSearch& search, const std::optional<mrpt::math::TPoint2D>& previous);
+  Plan beside_the_way(const View& view, FloorSearch& search, const Plan& frontier);
+  bool goes_first(const Plan& place, const Plan& frontier, double most) const;
   Plan to_place(const View& view, FloorSearch& search, Subjects subjects);
   Choice weigh(Plan frontier, Plan place);
 
   PlannerConfig config_;
   bool bar_targets_;
   double pallet_;
+  FrontierChoiceConfig by_;
+  Priorities priorities_;
   Planner planner_;
   Anchor home_;
   Goal goal_ = Goal::Frontier;

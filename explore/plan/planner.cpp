@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "base/planar.h"
 
@@ -87,27 +89,67 @@ Plan Planner::plan(const Traversable& floor, const TPose2D& T_map_base, const st
   }
 }
 
+double Planner::head_start(const std::optional<TPoint2D>& previous, const TPoint2D& other) const {
+  const bool given = previous && config_.transform.discomfort == Discomfort::PerMetre;
+  return given && distance(other, *previous) > config_.same_target ? config_.switch_cost : 0.0;
+}
+
 Plan Planner::to_frontier(const Traversable& floor, const TPose2D& T_map_base, const BarredFn& barred,
-                          const std::optional<TPoint2D>& previous) {
-  const bool head_starts = previous && config_.transform.discomfort == Discomfort::PerMetre;
-  std::vector<Source> sources;
-  std::size_t left = 0;
+                          const std::optional<TPoint2D>& previous, const WorthFn& worth) {
+  const bool head_starts = previous && config_.transform.discomfort == Discomfort::PerMetre && !worth;
+  std::vector<Open> frontiers;
   for (const FrontierCluster& cluster : frontier_clusters(floor, config_.min_frontier_cells)) {
-    const std::size_t before = sources.size();
-    bool of_previous = false;
+    Open open;
+    open.centroid = cluster.centroid;
     for (const Cell c : cluster.cells) {
       const TPoint2D p = floor.cells.centre(c);
       if (barred(p)) continue;
-      of_previous = of_previous || (previous && distance(p, *previous) <= config_.same_target);
-      sources.push_back({c, 0.0});
+      open.of_previous = open.of_previous || (previous && distance(p, *previous) <= config_.same_target);
+      open.cells.push_back({c, 0.0});
     }
-    if (sources.size() > before) ++left;
-    if (!head_starts || of_previous) continue;
-    for (std::size_t i = before; i < sources.size(); ++i) sources[i].head_start = config_.switch_cost;
+    if (open.cells.empty()) continue;
+    if (head_starts && !open.of_previous)
+      for (Source& source : open.cells) source.head_start = config_.switch_cost;
+    frontiers.push_back(std::move(open));
   }
+  std::vector<Source> sources;
+  for (const Open& open : frontiers) sources.insert(sources.end(), open.cells.begin(), open.cells.end());
   Plan found = plan(floor, T_map_base, sources);
-  found.frontier_left = left;
+  if (found.found && worth)
+    if (const Open* best = worth_most(floor, T_map_base, found.d_min, frontiers, worth))
+      found = plan(floor, T_map_base, best->cells);
+  found.frontier_left = frontiers.size();
   return found;
+}
+
+const Planner::Open* Planner::worth_most(const Traversable& floor, const TPose2D& T_map_base, double d_min,
+                                         const std::vector<Open>& frontiers, const WorthFn& worth) {
+  TransformConfig by_length;
+  by_length.alpha = 0.0;
+  by_length.d_min = d_min;
+  const std::vector<Cell> climb = climb_clearance(floor, floor.cells.cell({T_map_base.x, T_map_base.y}), d_min);
+  transform_.run(floor, {{climb.back(), 0.0}}, by_length);
+  const Open* best = nullptr;
+  double most = 0.0;
+  for (const Open& open : frontiers) {
+    double way = std::numeric_limits<double>::infinity();
+    double off = way;
+    Candidate candidate{{}, 0.0, open.of_previous};
+    for (const Source& source : open.cells) {
+      way = std::min(way, transform_.cost(source.cell));
+      const double from_middle = distance(floor.cells.centre(source.cell), open.centroid);
+      if (from_middle >= off) continue;
+      off = from_middle;
+      candidate.middle = source.cell;
+    }
+    if (!std::isfinite(way)) continue;
+    candidate.way = way;
+    const double value = worth(candidate);
+    if (best != nullptr && value <= most) continue;
+    best = &open;
+    most = value;
+  }
+  return best;
 }
 
 Plan Planner::to_point(const Traversable& floor, const TPose2D& T_map_base, const TPoint2D& target, double tolerance) {

@@ -40,6 +40,15 @@ double length_of(const Plan& plan);
 /// What the planner asks about a place: whether it is barred as a target.
 using BarredFn = std::function<bool(const mrpt::math::TPoint2D&)>;
 
+/// A frontier that can be reached.
+struct Candidate {
+  Cell middle;     ///< of the frontier, the cell next to its centroid
+  double way;      ///< to its nearest cell, by length alone [m]
+  bool driven_to;  ///< it is the target already
+};
+/// What a frontier is worth: of those that can be reached the one worth most is driven to, of equals the first one.
+using WorthFn = std::function<double(const Candidate&)>;
+
 /// Finds ways on a Traversable by Exploration Transform (to a close frontier) and path transform (to a point).
 class Planner {
  public:
@@ -52,8 +61,10 @@ class Planner {
 
   /// The cheapest way to a frontier; `previous` is the target being driven to, which is given a head start. With
   /// Discomfort::PerCell there is no head start, as printed.
+  /// `worth`: the cheapest way to the frontier that is worth most, of those that can be reached at the same distance
+  /// from obstacles as the cheapest; head starts are then for `worth` to give.
   Plan to_frontier(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const BarredFn& barred,
-                   const std::optional<mrpt::math::TPoint2D>& previous);
+                   const std::optional<mrpt::math::TPoint2D>& previous, const WorthFn& worth = {});
 
   /// The cheapest way to within `tolerance` of a point.
   Plan to_point(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const mrpt::math::TPoint2D& target,
@@ -64,11 +75,24 @@ class Planner {
     return plan(floor, T_map_base, sources);
   }
 
+  /// How much dearer in ways another target is than the one being driven to, if that is known. With
+  /// Discomfort::PerCell not at all, as printed [m].
+  double head_start(const std::optional<mrpt::math::TPoint2D>& previous, const mrpt::math::TPoint2D& other) const;
+
   /// The transform of the last plan.
   const ExplorationTransform& transform() const { return transform_; }
 
  private:
+  /// A frontier with cells that are not barred.
+  struct Open {
+    std::vector<Source> cells;
+    mrpt::math::TPoint2D centroid;
+    bool of_previous = false;
+  };
+
   Plan plan(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const std::vector<Source>& sources);
+  const Open* worth_most(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, double d_min,
+                         const std::vector<Open>& frontiers, const WorthFn& worth);
 
   static constexpr double kBeyondOptimum = 0.6;  ///< [m]
   static constexpr double kNoCap = 1000.0;       ///< farther than any map is wide [m]

@@ -117,6 +117,23 @@ std::vector<Source> FloorSearch::sources(const Traversable& floor, Subjects subj
   return sources;
 }
 
+double FloorSearch::faces_in_view(const Traversable& floor, Cell from) const {
+  if (!config_.on) return 0.0;
+  const double resolution = floor.frame().resolution;
+  const int reach = static_cast<int>(std::lround(config_.range / resolution));
+  int faces = 0;
+  for (int y = std::max(1, from.y - reach); y <= std::min(floor.cells.height() - 2, from.y + reach); ++y)
+    for (int x = std::max(1, from.x - reach); x <= std::min(floor.cells.width() - 2, from.x + reach); ++x) {
+      const double dx = x - from.x, dy = y - from.y;
+      const double away = length(dx, dy);
+      if (away < 1.0 || away > reach || floor.cells[{x, y}] != Occupancy::Free) continue;
+      const int missing = searched_.missing(floor, {x, y}) & ~kFloor & faces_along(dx / away, dy / away);
+      if (missing == 0 || !in_sight(floor, from, {x, y})) continue;
+      for (const Faces face : {kEastFace, kNorthFace, kWestFace, kSouthFace}) faces += (missing & face) != 0 ? 1 : 0;
+    }
+  return faces * resolution;
+}
+
 void FloorSearch::choose_subject(Cell viewpoint) {
   for (const Viewpoint& view : views_)
     if (view.cell == viewpoint) subject_ = {view.subject, view.faces, views_squarely_};

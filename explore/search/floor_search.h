@@ -46,6 +46,8 @@ class FloorSearch {
   /// centre; without one it is left out.
   std::vector<Source> sources(const Traversable& floor, Subjects subjects,
                               const std::function<std::optional<double>(const mrpt::math::TPoint2D&)>& head_start);
+  /// Length of the wall faces in range and in sight of a cell that are still to be looked at [m].
+  double faces_in_view(const Traversable& floor, Cell from) const;
   /// Whether any such cell was found at the last time, in reach or not.
   bool place_left() const { return !views_.empty(); }
   /// Makes what can be seen from `viewpoint` the place to face.

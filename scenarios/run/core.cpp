@@ -5,7 +5,7 @@
 namespace rubble::scenarios {
 namespace {
 
-constexpr double kAreaPeriod = 5.0;  ///< the known area is measured this often [s]
+constexpr double kNoted = 5.0;  ///< what is known is noted this often [s]
 
 }  // namespace
 
@@ -41,17 +41,9 @@ void Core::watch(const robot::Inputs& inputs) {
     stalled_ = odometry.stalled;
   }
   if (first_ == Stamp::never()) first_ = inputs.now;
-  const double time = inputs.now - first_;
-  if (!explorer_ || (!known_.empty() && time < known_.back().time + kAreaPeriod)) return;
-  known_.push_back({time, known_area(mapper_->map())});
-}
-
-double Core::area_per_minute() const {
-  if (known_.empty()) return 0.0;
-  const double most = known_.back().area;
-  for (const KnownArea& at : known_)
-    if (at.area >= 0.95 * most && at.time > 0.0) return at.area / (at.time / 60.0);
-  return 0.0;
+  if (!explorer_ || inputs.now < next_noted_) return;
+  next_noted_ = inputs.now + kNoted;
+  first_seen_.note(mapper_->map(), inputs.now - first_);
 }
 
 std::vector<explore::VictimReport> Core::victims() const {

@@ -8,6 +8,7 @@
 #include "robot/levelling.h"
 #include "robot/robot.h"
 #include "scenarios/config/scenario.h"
+#include "scenarios/run/first_seen.h"
 #include "slam/map_base.h"
 #include "slam/mapper.h"
 
@@ -32,24 +33,21 @@ class Core {
   std::vector<explore::VictimReport> victims() const;
   /// How often the motors reported a stall that was not reported before.
   int stalls() const { return stalls_; }
-  /// Area mapped per minute until 95 % of what is known now were [m^2/min].
-  double area_per_minute() const;
+  /// When which place was mapped, while it explored [s since the first tick].
+  const FirstSeen& first_seen() const { return first_seen_; }
   /// Null when only mapping.
   const explore::Explorer* explorer() const { return explorer_.get(); }
 
  private:
   std::unique_ptr<slam::Mapper> mapper_;
   robot::Levelling levelling_;
-  struct KnownArea {
-    double time;  ///< since the first tick [s]
-    double area;  ///< [m^2]
-  };
   void watch(const robot::Inputs& inputs);
 
   int stalls_ = 0;
   bool stalled_ = false;
   Stamp first_ = Stamp::never();
-  std::vector<KnownArea> known_;                 ///< every few seconds
+  FirstSeen first_seen_;
+  Stamp next_noted_ = Stamp::never();
   std::unique_ptr<explore::Explorer> explorer_;  ///< null: only mapping
 };
 

@@ -137,6 +137,24 @@ const char* code_of(explore::MissionEnd end) {
   return "time";
 }
 
+double share_of(const OccupancyGrid& truth, const OccupancyGrid& visible) {
+  const auto free = [](const OccupancyGrid& grid) {
+    return std::count(grid.cells().begin(), grid.cells().end(), Occupancy::Free);
+  };
+  const auto all = free(truth);
+  return all == 0 ? 0.0 : static_cast<double>(free(visible)) / static_cast<double>(all);
+}
+
+/// The arena in the map: by where the robot was in both at first.
+TPose2D arena_in_map(const Trajectory& truth, const slam::Mapper& mapper) {
+  if (truth.empty() || mapper.trajectory().empty()) return {};
+  const StampedPose& first = mapper.trajectory().front();
+  const auto after =
+      std::find_if(truth.begin(), truth.end(), [&](const StampedPose& p) { return p.stamp >= first.stamp; });
+  const TPose2D& T_arena_base = after == truth.end() ? truth.back().pose : after->pose;
+  return first.pose + (TPose2D() - T_arena_base);
+}
+
 }  // namespace
 
 scoring::DriveFigures drive_figures(const arenas::Arena& arena, const Trajectory& truth,
@@ -200,12 +218,29 @@ int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model) 
 
 double visible_share(const arenas::Arena& arena, const robot::RobotModel& model) {
   const OccupancyGrid truth = arenas::truth_map(arena);
-  const OccupancyGrid visible = arenas::visible_truth(arena, truth, viewer_of(model));
-  const auto free = [](const OccupancyGrid& grid) {
-    return std::count(grid.cells().begin(), grid.cells().end(), Occupancy::Free);
-  };
-  const auto all = free(truth);
-  return all == 0 ? 0.0 : static_cast<double>(free(visible)) / static_cast<double>(all);
+  return share_of(truth, arenas::visible_truth(arena, truth, viewer_of(model)));
+}
+
+double area_per_minute(const FirstSeen& seen, const OccupancyGrid& visible, const TPose2D& T_map_arena, double end) {
+  constexpr double kAll = 0.95;
+  const PlanarTransform T(T_map_arena);
+  std::vector<double> times;
+  std::size_t cells = 0;
+  for (int y = 0; y < visible.height(); ++y)
+    for (int x = 0; x < visible.width(); ++x) {
+      if (visible[{x, y}] != Occupancy::Free) continue;
+      ++cells;
+      const double time = seen.at(T(visible.centre({x, y})));
+      if (std::isfinite(time)) times.push_back(time);
+    }
+  const auto enough = static_cast<std::size_t>(std::ceil(kAll * static_cast<double>(cells)));
+  if (times.size() >= enough && enough > 0) {
+    std::sort(times.begin(), times.end());
+    end = times[enough - 1];
+    times.resize(enough);
+  }
+  const double area = static_cast<double>(times.size()) * visible.resolution() * visible.resolution();
+  return end > 0.0 ? area / (end / 60.0) : 0.0;
 }
 
 bool off_the_floor(const arenas::PatchIndex& floor, const TPose2D& T_arena_base) {
@@ -219,9 +254,12 @@ scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajec
   if (!truth.empty() && off_the_floor(arenas::PatchIndex(arena), truth.back().pose)) out.end_code = "fell";
   out.drive = drive_figures(arena, truth, model);
   out.stalls = static_cast<std::uint64_t>(core.stalls());
-  out.area_per_min = core.area_per_minute();
+  const OccupancyGrid all = arenas::truth_map(arena);
+  const OccupancyGrid visible = arenas::visible_truth(arena, all, viewer_of(model));
+  const double time = truth.empty() ? 0.0 : truth.back().stamp - truth.front().stamp;
+  out.area_per_min = area_per_minute(core.first_seen(), visible, arena_in_map(truth, core.mapper()), time);
   out.victims_visible = static_cast<std::uint64_t>(visible_victims(arena, model));
-  out.visible_share = visible_share(arena, model);
+  out.visible_share = share_of(all, visible);
   return out;
 }
 

@@ -7,10 +7,12 @@
 #include "arenas/model/arena.h"
 #include "arenas/model/patch_index.h"
 #include "arenas/truth/visible.h"
+#include "base/grid.h"
 #include "base/trajectory.h"
 #include "explore/explorer.h"
 #include "robot/model.h"
 #include "scenarios/run/core.h"
+#include "scenarios/run/first_seen.h"
 #include "scoring/figures/evidence.h"
 
 namespace rubble::scenarios {
@@ -24,6 +26,11 @@ int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model);
 
 /// What of an arena's floor the laser can see from where the robot can get, 0 to 1.
 double visible_share(const arenas::Arena& arena, const robot::RobotModel& model);
+
+/// Floor that became known in a minute until 95 % of all free floor of `visible` (arena frame) were, or as much as was
+/// in the end after `end` seconds [m^2/min].
+double area_per_minute(const FirstSeen& seen, const OccupancyGrid& visible, const mrpt::math::TPose2D& T_map_arena,
+                       double end);
 
 /// What decides where that robot gets and how far it sees.
 arenas::Viewer viewer_of(const robot::RobotModel& model);

@@ -35,6 +35,15 @@ TEST(HomeWay, ASlowRobotTurnsBackEarlier) {
   EXPECT_GT(turns_back_with(slow, 20.0, 1000.0), turns_back_with(fast, 20.0, 1000.0));
 }
 
+TEST(HomeWay, KnowsItsSpeed) {
+  HomeWay home(0.0);
+  EXPECT_NEAR(home.speed(), 0.22, 1e-9) << "as is usual, until it is known";
+  home.moved(400.0, 1000.0, true);
+  EXPECT_NEAR(home.speed(), 0.4, 0.02);
+  home.moved(0.0, 1e6, true);
+  EXPECT_NEAR(home.speed(), 0.08, 1e-9);
+}
+
 TEST(HomeWay, WithoutATimeLimitItNeverPresses) {
   HomeWay home(0.0);
   EXPECT_FALSE(home.due(at(1.0)));

@@ -18,7 +18,9 @@ using mrpt::math::TPose2D;
 
 /// A robot in a room of 8 x 4 m, with unknown ground where a test puts it.
 struct Choosing {
-  explicit Choosing(bool searches = false, bool bar_targets = true) : choice(PlannerConfig{}, bar_targets) {
+  explicit Choosing(bool searches = false, bool bar_targets = true, const PlannerConfig& planner = {},
+                    const Priorities& priorities = {})
+      : choice(planner, bar_targets, 0.0, {}, priorities) {
     config.on = searches;
     search.emplace(config, 0.46, 0.4);
   }
@@ -174,6 +176,63 @@ TEST(TargetChoice, ANicheIsLookedIntoWhereItLiesBesideTheWay) {
     const Plan plan = robot.choose().plan;
     ASSERT_TRUE(plan.found);
     EXPECT_EQ(robot.choice.goal(), x == 4.0 ? Goal::Place : Goal::Frontier) << "the niche is at " << x;
+  }
+}
+
+/// A niche beside the way, as above; and walls alone, none of which was looked at.
+TEST(TargetChoice, PrioritiesSayWhatIsLookedAtBeforeTheNextFrontier) {
+  const auto goal = [](const Priorities& priorities, bool niche) {
+    Choosing robot(true, true, {}, priorities);
+    robot.unknown(7.0, 1.8);
+    for (const double side : {-0.25, 0.15})
+      if (niche) test::fill(robot.cells, 4.0 + side, 3.4, 4.1 + side, 4.0, Occupancy::Occupied);
+    robot.pose.y = 2.8;
+    EXPECT_TRUE(robot.choose().plan.found);
+    return robot.choice.goal();
+  };
+  Priorities priorities;
+  EXPECT_EQ(goal(priorities, true), Goal::Place);
+  EXPECT_EQ(goal(priorities, false), Goal::Frontier);
+  priorities.niches = 0.0;
+  EXPECT_EQ(goal(priorities, true), Goal::Frontier);
+  priorities.faces = 1.0;
+  EXPECT_EQ(goal(priorities, false), Goal::Place);
+}
+
+TEST(TargetChoice, PrioritiesSayHowFarAFrontierMayCallAwayFromTheSearch) {
+  for (const double frontiers : {0.0, 5.0}) {
+    Priorities priorities;
+    priorities.frontiers = frontiers;
+    Choosing robot(true, true, {}, priorities);
+    robot.narrow();
+    robot.choice.set_frontiers_done();
+    robot.choice.search();
+    robot.unknown(6.5, 0.45);
+    TargetChoice::Choice choice = robot.choose();
+    choice = robot.choice.choose_of_all_places(robot.view(), *robot.search, std::move(choice.plan));
+    EXPECT_EQ(robot.choice.goal(), frontiers > 0.0 ? Goal::Frontier : Goal::Place);
+  }
+}
+
+/// Costs as printed know no head starts: the place that is nearer by a trifle is taken, whatever it was driving to.
+TEST(TargetChoice, AsPrintedNoPlaceHasAHeadStart) {
+  for (const Discomfort discomfort : {Discomfort::PerMetre, Discomfort::PerCell}) {
+    PlannerConfig planner;
+    planner.transform.discomfort = discomfort;
+    planner.transform.alpha = 0.0;
+    Choosing robot(true, true, planner);
+    for (const double x : {2.0, 6.0})
+      for (const double side : {-0.25, 0.15})
+        test::fill(robot.cells, x + side, 3.4, x + side + 0.1, 4.0, Occupancy::Occupied);
+    robot.choice.set_frontiers_done();
+    robot.choice.search();
+    robot.pose = {3.85, 2.8, 0.0};
+    const Plan west = robot.choose().plan;
+    ASSERT_TRUE(west.found);
+    ASSERT_LT(west.target.x, 4.0);
+    robot.choice.take(west);
+    robot.pose.x = 4.15;
+    EXPECT_EQ(robot.choose().plan.target.x < 4.0, discomfort == Discomfort::PerMetre);
   }
 }
 

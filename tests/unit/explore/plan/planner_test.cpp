@@ -107,6 +107,38 @@ TEST(Planner, KeepsItsTargetUnlessAnotherIsMuchCheaper) {
   EXPECT_EQ(barred.frontier_left, 1u);
 }
 
+TEST(Planner, GoesToTheFrontierWorthMostOfThoseInReach) {
+  // Open at both ends; a third frontier lies behind a gap that is too narrow.
+  std::vector<std::string> rows{std::string(82, ' '), " " + std::string(80, '#') + " "};
+  for (int i = 0; i < 24; ++i) rows.push_back(" " + std::string(80, '.') + " ");
+  rows.push_back(" " + std::string(39, '#') + ".." + std::string(39, '#') + " ");
+  for (int i = 0; i < 10; ++i) rows.push_back("          " + std::string(60, '.') + "            ");
+  rows.push_back(rows[0]);
+  const Traversable floor = test::measured(test::drawn(rows));
+  Planner planner({});
+  const double middle = 0.05 * (static_cast<double>(rows.size()) - 14.0);
+  std::vector<Candidate> asked;
+  const auto plan = [&](const auto& worth) {
+    asked.clear();
+    return planner.to_frontier(floor, {1.5, middle, 0.0}, kNothingBarred, TPoint2D{4.0, middle},
+                               [&](const Candidate& candidate) {
+                                 asked.push_back(candidate);
+                                 return worth(candidate);
+                               });
+  };
+  const Plan shortest = plan([](const Candidate& c) { return -c.way; });
+  EXPECT_LT(shortest.target.x, 0.2);
+  EXPECT_EQ(shortest.frontier_left, 3u);
+  ASSERT_EQ(asked.size(), 2u) << "the third cannot be reached";
+  EXPECT_GT(plan([](const Candidate& c) { return c.way; }).target.x, 3.8);
+  EXPECT_GT(plan([](const Candidate& c) { return c.driven_to ? 1.0 : 0.0; }).target.x, 3.8);
+  for (const Candidate& c : asked) {
+    const double x = floor.cells.centre(c.middle).x;
+    EXPECT_NEAR(c.way, std::abs(x - 1.5), 0.2);
+    EXPECT_NEAR(floor.cells.centre(c.middle).y, middle, 0.1);
+  }
+}
+
 TEST(Planner, FindsTheWayToAPointAndSaysSoWhenThereIsNone) {
   const Traversable floor = corridor(24);
   Planner planner({});
