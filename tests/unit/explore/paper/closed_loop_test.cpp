@@ -90,6 +90,40 @@ TEST(PaperExplorer, AHeldRobotIsNotTakenForStuck) {
   EXPECT_EQ(holds, 5);
 }
 
+/// Only the order of the frontiers differs.
+TEST(PaperExplorer, SeesTheWholeMazeWhateverTheNextFrontierIsChosenBy) {
+  const Maze maze = test::random_maze(4, 4, 0.3, 6);
+  std::vector<double> ways;
+  for (const FrontierChoice by :
+       {FrontierChoice::Transform, FrontierChoice::Nearest, FrontierChoice::Gain, FrontierChoice::Value}) {
+    PaperExplorerConfig config;
+    config.search.on = false;
+    config.choice.by = by;
+    const Outcome run = explore_maze(maze, config, exact_mapper());
+    EXPECT_TRUE(run.finished) << static_cast<int>(by);
+    EXPECT_EQ(run.pallets_seen, 16) << static_cast<int>(by);
+    EXPECT_EQ(run.touches, 0) << static_cast<int>(by);
+    ways.push_back(run.way);
+  }
+  EXPECT_GT(ways[2], ways[0]) << "for the sake of gain it drives to and fro";
+}
+
+/// Eqs. (3) and (4) with nothing around them, as scenarios/sweeps/transform.yaml sets it.
+TEST(PaperExplorer, SeesTheWholeMazeByTheTransformAsPrinted) {
+  PaperExplorerConfig config;
+  config.search.on = false;
+  config.bar_targets = false;
+  config.planner.transform.discomfort = Discomfort::PerCell;
+  config.planner.transform.alpha = 1.0;
+  config.planner.d_min_floor = config.planner.transform.d_min;
+  config.planner.min_frontier_cells = 1;
+  config.felt.pallet = 0.0;
+  const Outcome run = explore_maze(test::random_maze(4, 4, 0.3, 6), config, exact_mapper());
+  EXPECT_TRUE(run.finished);
+  EXPECT_EQ(run.pallets_seen, 16);
+  EXPECT_EQ(run.touches, 0);
+}
+
 class RandomMaze : public testing::TestWithParam<int> {};
 
 TEST_P(RandomMaze, IsSeenWholeWithoutATouchAndTheExplorerFinishesByItself) {
