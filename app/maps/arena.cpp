@@ -10,6 +10,7 @@
 #include "arenas/generate/generate.h"
 #include "arenas/raf/raf.h"
 #include "arenas/truth/render.h"
+#include "arenas/truth/start_region.h"
 #include "arenas/truth/truth_map.h"
 #include "arenas/truth/visible.h"
 #include "arenas/truth/wall_lines.h"
@@ -52,9 +53,13 @@ void parse_cells(const std::string& cells, arenas::GenerateConfig& config) {
 constexpr const char* kGeneratorOptions[] = {"--kind",  "--cells", "--seed",  "--ramps",
                                              "--rough", "--paper", "--loops", "--victims"};
 
-/// A league's file may have parts nobody knows: they are named, and the rest is shown.
+/// A league's file may have parts nobody knows, any file a poor start: that is told, and the arena is shown.
 arenas::Arena load(const std::string& path) {
-  if (!arenas::is_raf(path)) return arenas::load_arena(path);
+  if (!arenas::is_raf(path)) {
+    arenas::Arena arena = arenas::load_arena(path);
+    if (const auto note = arenas::small_start(arena)) tell(path + ": " + *note);
+    return arena;
+  }
   const arenas::RafImport import = arenas::import_raf(path);
   for (const std::string& note : import.notes()) tell(path + ": " + note);
   return import.arena;

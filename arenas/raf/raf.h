@@ -29,8 +29,9 @@ struct RafImport {
 bool is_raf(const std::string& path);
 
 /// Reads a `.raf` file (XML, one element a part, 1 unit = one pallet of 1.2 m, rotation clockwise in degrees). The
-/// ground is laid inside the outer walls. The robot starts at a part named start..., else inside the largest stretch of
-/// floor it can drive on. Throws InputError with file, line and column.
+/// ground is laid inside the outer walls. The robot starts at a part named start..., where it gets to at least half as
+/// much floor from there as from elsewhere; else inside the largest stretch of floor it can drive on. Throws InputError
+/// with file, line and column.
 RafImport import_raf(const std::string& path);
 
 /// The same from text; `name` stands for the file in messages.

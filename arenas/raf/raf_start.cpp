@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "arenas/truth/start_region.h"
 #include "arenas/truth/truth_map.h"
 #include "arenas/truth/visible.h"
 #include "base/angle.h"
@@ -183,26 +184,28 @@ std::optional<Cell> marked_start(const Layout& layout, const std::vector<Element
 void find_start(const Layout& layout, const std::vector<Element>& elements, const std::string& name,
                 RafImport& import) {
   const Grid<std::uint8_t> enclosed = enclosed_by(layout);
-  const std::vector<Cell> pallets = ranked_pallets(layout, enclosed);
+  std::vector<Cell> pallets = ranked_pallets(layout, enclosed);
   std::string type;
-  if (const auto marked = marked_start(layout, elements, pallets, import.arena, type)) {
-    import.start_note = "the robot starts on pallet " + pallet_name(layout, *marked) + ", at the '" + type + "'";
-    can_start(layout, *marked, import.arena);
-    return;
-  }
+  const auto marked = marked_start(layout, elements, pallets, import.arena, type);
+  if (marked) std::stable_partition(pallets.begin(), pallets.end(), [&](Cell c) { return c == *marked; });
   const std::vector<Region> regions = regions_of(layout, enclosed, pallets, import.arena);
   if (regions.empty())
     throw InputError(name + ": no pallet of the arena has room for the robot to start: add an empty one (" +
                      import.summary() + ")");
   const auto largest = std::max_element(regions.begin(), regions.end(),
                                         [](const Region& a, const Region& b) { return a.inside < b.inside; });
-  const Cell start = start_in(*largest, layout, enclosed, import.arena);
-  import.start_note = "the file names no start: the robot starts on pallet " + pallet_name(layout, start) +
-                      ", in the largest of " + std::to_string(regions.size()) + " parts that can be driven on";
-  if (regions.size() == 1) {
-    import.start_note = "the file names no start: the robot starts on pallet " + pallet_name(layout, start);
+  if (marked && regions.front().inside >= kSmallShare * largest->inside) {
+    import.start_note = "the robot starts on pallet " + pallet_name(layout, *marked) + ", at the '" + type + "'";
+    can_start(layout, *marked, import.arena);
+    return;
   }
+  const Cell start = start_in(*largest, layout, enclosed, import.arena);
   can_start(layout, start, import.arena);
+  import.start_note = (marked ? "the '" + type + "' stands where the robot gets to little of the floor"
+                              : std::string("the file names no start")) +
+                      ": the robot starts on pallet " + pallet_name(layout, start);
+  if (regions.size() > 1)
+    import.start_note += ", in the largest of " + std::to_string(regions.size()) + " parts that can be driven on";
 }
 
 }  // namespace rubble::arenas

@@ -156,9 +156,16 @@ void leave_open(const Arena& arena, OccupancyGrid& known) {
 
 }  // namespace
 
+Grid<float> standing_room(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer) {
+  Grid<float> room = distance_transform(barriers(arena, truth.frame(), viewer), 1.0);
+  for (std::size_t i = 0; i < truth.frame().size(); ++i)
+    if (truth.cells()[i] != Occupancy::Free) room.data()[i] = 0.0F;
+  return room;
+}
+
 Mask reachable_mask(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer) {
   const GridFrame& frame = truth.frame();
-  const Grid<float> clearance = distance_transform(barriers(arena, frame, viewer), 1.0);
+  const Grid<float> clearance = standing_room(arena, truth, viewer);
   const float needed = static_cast<float>(viewer.radius);
   Mask reached(frame);
   std::vector<Cell> open;

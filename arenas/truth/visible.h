@@ -18,6 +18,10 @@ struct Viewer {
   double max_slope = deg_to_rad(22.0);  ///< steeper floor it does not drive on (data sheet of the P3-AT: 40 %) [rad]
 };
 
+/// How far the nearest thing is that the body cannot pass (solids, steps too high, floor too steep), up to 1 m; 0 where
+/// the truth is not free [m]. The robot's middle can stand where that is at least the viewer's radius.
+Grid<float> standing_room(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer = {});
+
 /// Where the robot's middle can stand, reached from the start: non-zero. Cells as those of `truth`.
 Grid<std::uint8_t> reachable_mask(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer = {});
 

@@ -5,8 +5,10 @@
 #include <limits>
 #include <utility>
 
+#include "arenas/files/arena_file.h"
 #include "arenas/files/include.h"
 #include "arenas/raf/raf.h"
+#include "arenas/truth/start_region.h"
 #include "base/angle.h"
 #include "base/error.h"
 #include "base/text/file_name.h"
@@ -277,8 +279,13 @@ std::string resolved_yaml(const Scenario& scenario) {
 }
 
 std::vector<std::string> arena_notes(const Scenario& scenario) {
-  if (!arenas::is_raf(scenario.arena_file)) return {};
-  std::vector<std::string> notes = arenas::import_raf(scenario.arena_file).notes();
+  if (scenario.arena_file.empty()) return {};
+  std::vector<std::string> notes;
+  if (arenas::is_raf(scenario.arena_file)) {
+    notes = arenas::import_raf(scenario.arena_file).notes();
+  } else if (const auto note = arenas::small_start(arenas::load_arena(scenario.arena_file))) {
+    notes.push_back(*note);
+  }
   for (std::string& note : notes) note = scenario.arena_file + ": " + note;
   return notes;
 }

@@ -41,6 +41,13 @@ for bad in '' '<elements>' '<elements><element type="a" x="0"/></elements>' '<el
   expect_exit 3 'bad.raf:1:' "$rubble" arena bad.raf --out out
 done
 
+printf 'maze: |\n  +---+---+---+\n  |S. |.   .  |\n  +---+---+---+\n' >sealed.yaml
+printf 'arena: {file: sealed.yaml}\ntime_limit_s: 2\n' >sealed_run.yaml
+for command in 'arena sealed.yaml --out out' 'run sealed_run.yaml --out sealed_run'; do
+  "$rubble" $command >/dev/null 2>err.txt || fail "a start without a way out stopped rubble $command"
+  grep -q 'sealed.yaml: from the start (0.60, 0.60) the robot gets to .*: move the start$' err.txt || fail "sealed: $(cat err.txt)"
+done
+
 # A room behind a gap too narrow to pass, with a corner nobody can look into: it counts against a map only when asked to.
 cat >gap.yaml <<YAML
 maze: |

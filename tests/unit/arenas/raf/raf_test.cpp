@@ -106,6 +106,22 @@ TEST(Raf, AStartCheckIsTheStart) {
   EXPECT_EQ(import.notes().back(), "the robot starts on pallet x=\"1\" y=\"0\", at the 'start_check'");
 }
 
+/// Rooms of one and of three pallets side by side, the part in the smaller one, which has no door.
+TEST(Raf, AStartPartInASealedRoomIsPassedOver) {
+  std::string rooms = "<element type='start_check' x='0' y='0'/>\n";
+  for (int x = 0; x < 4; ++x)
+    for (const char* side : {"0", "180"})
+      rooms +=
+          "<element type='small_wall' rotation='" + std::string(side) + "' x='" + std::to_string(x) + "' y='0'/>\n";
+  for (const char* x : {"0", "1", "4"})
+    rooms += "<element type='small_wall' rotation='270' x='" + std::string(x) + "' y='0'/>\n";
+  const RafImport import = parse_raf(raf(rooms), "f.raf");
+  EXPECT_NEAR(import.arena.start.x, 1.2, 1e-9);
+  EXPECT_EQ(import.start_note,
+            "the 'start_check' stands where the robot gets to little of the floor: the robot starts on pallet x=\"1\" "
+            "y=\"0\", in the largest of 2 parts that can be driven on");
+}
+
 /// A wall that stands alone far away must not lure the robot out of an arena with a gap.
 TEST(Raf, AnOpenArenaIsEnteredNotCircled) {
   std::string walls = "<element type='small_wall' x='9' y='-3'/>\n";
