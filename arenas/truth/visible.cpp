@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "arenas/model/geometry.h"
@@ -44,9 +45,11 @@ Mask barriers(const Arena& arena, const GridFrame& frame, const Viewer& viewer) 
     });
   }
   for (const Riser& riser : risers(arena, viewer.climbable_step)) {
+    const Stretch stretch = too_high(riser, viewer.climbable_step);  // as the simulator closes it
     const TPoint2D along = riser.b - riser.a;
-    if (std::hypot(along.x, along.y) < kEdgeThickness) continue;
-    for_cells_crossed(frame, strip(riser.a, riser.b, kEdgeThickness), [&](Cell c) { mask[c] = 1; });
+    if (std::hypot(along.x, along.y) * (stretch.to - stretch.from) < kEdgeThickness) continue;
+    const Outline line = strip(riser.a + along * stretch.from, riser.a + along * stretch.to, kEdgeThickness);
+    for_cells_crossed(frame, line, [&](Cell c) { mask[c] = 1; });
   }
   return mask;
 }
@@ -97,16 +100,48 @@ Grid<float> floor_heights(const Arena& arena, const GridFrame& frame) {
   return heights;
 }
 
+constexpr float kNoEdge = -1e9F;
+
+/// Cells that are occupied by a step between two floors alone: the height of its upper floor [m], to a laser above
+/// which it is a drop and no wall. kNoEdge elsewhere.
+Grid<float> edges_of(const Arena& arena, const GridFrame& frame, double slice_height) {
+  Grid<float> tops(frame, kNoEdge);
+  for (const Riser& riser : risers(arena, slice_height)) {
+    const TPoint2D along = riser.b - riser.a;
+    const double size2 = along.x * along.x + along.y * along.y;
+    if (!riser.above_floor || size2 < kEdgeThickness * kEdgeThickness) continue;
+    for_cells_crossed(frame, strip(riser.a, riser.b, kEdgeThickness), [&](Cell c) {
+      const TPoint2D way = frame.centre(c) - riser.a;
+      const double t = std::clamp((way.x * along.x + way.y * along.y) / size2, 0.0, 1.0);
+      tops[c] = std::max(tops[c], static_cast<float>(riser.high_a + t * (riser.high_b - riser.high_a)));
+    });
+  }
+  for (const Solid& solid : arena.solids) {
+    for_cells_crossed(frame, solid.outline, [&](Cell c) {
+      if (static_cast<float>(solid.z_top) > tops[c]) tops[c] = kNoEdge;
+    });
+  }
+  return tops;
+}
+
+/// The heights that decide what a ray meets, cell by cell [m].
+struct Heights {
+  Grid<float> floor;
+  Grid<float> edge;
+};
+
 /// What was seen, and where rays ended at floor as high as the laser.
 struct Seen {
   Mask cells;
   Mask floor_ahead;
+  Grid<float> lowest;  ///< height of the lowest laser that saw the cell [m]
 };
 
-/// Marks what one ray sees: a walk from cell to cell (Amanatides and Woo 1987), up to floor as high as the laser.
-void look(const OccupancyGrid& truth, const Grid<float>& floor, Cell from, double bearing, const Viewer& viewer,
+/// Marks what one ray sees: a walk from cell to cell (Amanatides and Woo 1987), up to floor as high as the laser. It
+/// passes over edges below the laser.
+void look(const OccupancyGrid& truth, const Heights& heights, Cell from, double bearing, const Viewer& viewer,
           Seen& seen) {
-  const float laser = floor[from] + static_cast<float>(viewer.laser_height);
+  const float laser = heights.floor[from] + static_cast<float>(viewer.laser_height);
   const double dx = std::cos(bearing);
   const double dy = std::sin(bearing);
   const double step_x = 1.0 / std::max(1e-12, std::abs(dx));  // [cells of way a column]
@@ -115,12 +150,15 @@ void look(const OccupancyGrid& truth, const Grid<float>& floor, Cell from, doubl
   double next_y = 0.5 * step_y;
   const double end = viewer.range / truth.resolution();
   for (Cell c = from; truth.inside(c);) {
-    if (floor[c] >= laser) {
+    if (heights.floor[c] >= laser) {
       seen.floor_ahead[c] = 1;
       return;
     }
-    seen.cells[c] = 1;
-    if (truth[c] == Occupancy::Occupied || std::min(next_x, next_y) > end) return;
+    const bool is_wall = truth[c] == Occupancy::Occupied;
+    const bool is_drop = is_wall && heights.edge[c] != kNoEdge && heights.edge[c] < laser;
+    if (!is_drop) seen.cells[c] = 1;
+    seen.lowest[c] = std::min(seen.lowest[c], laser);
+    if ((is_wall && !is_drop) || std::min(next_x, next_y) > end) return;
     if (next_x < next_y) {
       c.x += dx > 0.0 ? 1 : -1;
       next_x += step_x;
@@ -132,10 +170,13 @@ void look(const OccupancyGrid& truth, const Grid<float>& floor, Cell from, doubl
 }
 
 /// Whether a free cell beside or at a corner of c is seen: corners of rooms are hidden behind the two walls they join.
-bool touches_seen(const OccupancyGrid& truth, const Mask& seen, Cell c) {
+/// Beside the edge of a floor only from below it: from above there is no wall.
+bool touches_seen(const OccupancyGrid& truth, const Grid<float>& edges, const Seen& seen, Cell c) {
   for (int y = c.y - 1; y <= c.y + 1; ++y) {
     for (int x = c.x - 1; x <= c.x + 1; ++x) {
-      if (truth.inside({x, y}) && seen[{x, y}] != 0 && truth[{x, y}] == Occupancy::Free) return true;
+      const Cell beside{x, y};
+      if (!truth.inside(beside) || seen.cells[beside] == 0 || truth[beside] != Occupancy::Free) continue;
+      if (edges[c] == kNoEdge || seen.lowest[beside] <= edges[c]) return true;
     }
   }
   return false;
@@ -188,15 +229,18 @@ Mask reachable_mask(const Arena& arena, const OccupancyGrid& truth, const Viewer
 
 namespace {
 
-Seen look_around(const Arena& arena, const OccupancyGrid& truth, const Mask& reachable, const Viewer& viewer,
-                 const std::function<void(double)>& progress) {
+Heights heights_of(const Arena& arena, const GridFrame& frame, const Viewer& viewer) {
+  return {floor_heights(arena, frame), edges_of(arena, frame, viewer.laser_height)};
+}
+
+Seen look_around(const Arena& arena, const OccupancyGrid& truth, const Heights& heights, const Mask& reachable,
+                 const Viewer& viewer, const std::function<void(double)>& progress) {
   const GridFrame& frame = truth.frame();
-  const Grid<float> floor = floor_heights(arena, frame);
-  Seen seen{reachable, Mask(frame)};
+  Seen seen{reachable, Mask(frame), Grid<float>(frame, std::numeric_limits<float>::infinity())};
   const int rays = static_cast<int>(std::ceil(2.0 * kPi * std::min(viewer.range, kFull) / frame.resolution));
   const std::vector<Cell> poses = poses_among(reachable, frame.cell({arena.start.x, arena.start.y}));
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    for (int i = 0; i < rays; ++i) look(truth, floor, poses[k], 2.0 * kPi * (i + 0.5) / rays, viewer, seen);
+    for (int i = 0; i < rays; ++i) look(truth, heights, poses[k], 2.0 * kPi * (i + 0.5) / rays, viewer, seen);
     if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(poses.size()));
   }
   return seen;
@@ -231,28 +275,65 @@ void leave_open_before_floor(const Mask& floor_ahead, const Mask& reachable, Occ
     }
 }
 
+/// Cells with a wall somewhere in each of the four directions.
+Mask between_walls(const OccupancyGrid& truth) {
+  Mask directions(truth.frame());
+  const auto sweep = [&](int lines, int length, std::uint8_t bit, auto cell) {
+    for (int line = 0; line < lines; ++line) {
+      bool behind_wall = false;
+      for (int i = 0; i < length; ++i) {
+        const Cell c = cell(line, i);
+        behind_wall = behind_wall || truth[c] == Occupancy::Occupied;
+        if (behind_wall) directions[c] = static_cast<std::uint8_t>(directions[c] | bit);
+      }
+    }
+  };
+  const int width = truth.width();
+  const int height = truth.height();
+  sweep(height, width, 1, [](int y, int x) { return Cell{x, y}; });
+  sweep(height, width, 2, [&](int y, int x) { return Cell{width - 1 - x, y}; });
+  sweep(width, height, 4, [](int x, int y) { return Cell{x, y}; });
+  sweep(width, height, 8, [&](int x, int y) { return Cell{x, height - 1 - y}; });
+  for (std::uint8_t& d : directions.cells()) d = d == 15 ? 1 : 0;
+  return directions;
+}
+
+/// Ground outside the walls, if there are any, is asked for as far as a laser there still sees one of them.
+void leave_open_ground(const OccupancyGrid& truth, double range, OccupancyGrid& known) {
+  const Mask inside = between_walls(truth);
+  Mask walls(truth.frame());
+  for (std::size_t i = 0; i < truth.frame().size(); ++i) walls.data()[i] = truth.data()[i] == Occupancy::Occupied;
+  if (std::count(walls.cells().begin(), walls.cells().end(), 1) == 0) return;
+  const Grid<float> to_wall = distance_transform(walls, 2.0 * range);
+  for (std::size_t i = 0; i < truth.frame().size(); ++i)
+    if (inside.data()[i] == 0 && static_cast<double>(to_wall.data()[i]) > range && known.data()[i] == Occupancy::Free)
+      known.data()[i] = Occupancy::Unknown;
+}
+
 }  // namespace
 
 Mask visible_mask(const Arena& arena, const OccupancyGrid& truth, const Mask& reachable, const Viewer& viewer,
                   const std::function<void(double)>& progress) {
-  return look_around(arena, truth, reachable, viewer, progress).cells;
+  return look_around(arena, truth, heights_of(arena, truth.frame(), viewer), reachable, viewer, progress).cells;
 }
 
 OccupancyGrid visible_truth(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer,
                             const std::function<void(double)>& progress) {
   const Mask reachable = reachable_mask(arena, truth, viewer);
-  const Seen looked = look_around(arena, truth, reachable, viewer, progress);
+  const Heights heights = heights_of(arena, truth.frame(), viewer);
+  const Seen looked = look_around(arena, truth, heights, reachable, viewer, progress);
   const Mask& seen = looked.cells;
   OccupancyGrid known = truth;
   for (int y = 0; y < truth.height(); ++y) {
     for (int x = 0; x < truth.width(); ++x) {
       const Cell c{x, y};
       const bool is_wall = truth[c] == Occupancy::Occupied;
-      if (seen[c] == 0 && !(is_wall && touches_seen(truth, seen, c))) known[c] = Occupancy::Unknown;
+      if (seen[c] == 0 && !(is_wall && touches_seen(truth, heights.edge, looked, c))) known[c] = Occupancy::Unknown;
     }
   }
   leave_open(arena, known);
   leave_open_before_floor(looked.floor_ahead, reachable, known);
+  leave_open_ground(truth, viewer.range, known);
   return known;
 }
 

@@ -26,16 +26,18 @@ Grid<float> standing_room(const Arena& arena, const OccupancyGrid& truth, const 
 Grid<std::uint8_t> reachable_mask(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer = {});
 
 /// What a level laser could ever see from there: non-zero. Rays end at the first occupied cell, which they see, and
-/// before floor that rises to the height of the laser, which is a wall to it.
-/// It looks round from the start and from poses so chosen that every reachable cell is less than 0.4 m from one, with
-/// rays that end a cell apart (at 8 m where the laser reaches farther). `progress` is told the share of the poses that
-/// were looked from: fine grids take minutes.
+/// before floor that rises to the height of the laser, which is a wall to it; the edge of a floor below the laser, a
+/// drop, they pass. It looks round from the start and from poses so chosen that every reachable cell is less than 0.4 m
+/// from one, with rays that end a cell apart (at 8 m where the laser reaches farther). `progress` is told the share of
+/// the poses that were looked from: fine grids take minutes.
 Grid<std::uint8_t> visible_mask(const Arena& arena, const OccupancyGrid& truth, const Grid<std::uint8_t>& reachable,
                                 const Viewer& viewer = {}, const std::function<void(double)>& progress = {});
 
 /// The truth as far as it could ever be mapped: what no reachable pose sees becomes unknown, so that it counts against
-/// no map. So do veils, strips and gaps, and 0.12 m around where rays end at floor that rises past the laser and is
-/// nowhere near what the robot reaches: a map that shows a wall there and one that does not are both right.
+/// no map: so does the edge of a floor that is seen from above only. So do open ground outside the walls (cells without
+/// a wall somewhere in one of the four directions) farther than the range from all of them, veils, strips and gaps, and
+/// 0.12 m around where rays end at floor that rises past the laser and is nowhere near what the robot reaches: a map
+/// that shows a wall there and one that does not are both right.
 OccupancyGrid visible_truth(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer = {},
                             const std::function<void(double)>& progress = {});
 

@@ -82,6 +82,40 @@ TEST(Visible, AStepTooHighIsNotClimbed) {
   EXPECT_EQ(view.at(1.8, 0.6), Occupancy::Free);
 }
 
+/// The steps between the ramps of a crossing are 0.106 m high at the pallet's edge and none in its middle: 3 cm of them
+/// are too high, the rest is driven over, in the simulator and here.
+TEST(Visible, AStepThatIsTooHighOverAShortPieceIsPassedBesideIt) {
+  const View view(parse("  +---+---+---+\n  |S.   .   . |\n  +---+---+---+\n",
+                        "elements:\n  - {type: crossing_ramps, x_m: 1.8, y_m: 0.6}\n"));
+  const Grid<std::uint8_t> reachable = reachable_mask(view.arena, view.truth);
+  EXPECT_EQ(reachable[reachable.frame().cell({3.0, 0.6})], 1);
+  EXPECT_EQ(reachable[reachable.frame().cell({1.8, 0.3})], 1) << "over a step of half the height";
+  EXPECT_EQ(reachable[reachable.frame().cell({1.8, 0.2})], 0) << "the high end, and the wall";
+}
+
+/// A floor two ramps up ends 0.42 m above the pallets beside it, which no laser up there can see as a wall.
+TEST(Visible, ADropIsAWallFromBelowOnly) {
+  const std::string tower = "  |S.   >   >1  .2  .   . |\n";
+  const std::string line = "  +---+---+---+---+---+---+\n";
+  const View above(parse(line + tower + line));
+  ASSERT_EQ(above.truth[above.truth.cell({4.8, 0.6})], Occupancy::Occupied);
+  EXPECT_EQ(above.at(4.8, 0.6), Occupancy::Unknown) << "nobody gets down there to see it";
+  EXPECT_EQ(above.at(4.8, 0.0), Occupancy::Occupied) << "the wall beside it";
+  const View around(
+      parse(line + "  |S.   >   >1  .2  .   . |\n  +   +---+---+---+   +   +\n  | .   .   .   .   .   . |\n" + line));
+  EXPECT_EQ(around.at(4.8, 1.8), Occupancy::Occupied) << "seen from below";
+}
+
+TEST(Visible, OpenGroundCountsAsFarAsAWallIsSeenFromIt) {
+  Arena arena = parse("  +---+\n  |S. |\n  +   +\n", "floors:\n  - {x_m: 0.6, y_m: -6, length_m: 12, width_m: 12}\n");
+  const View view(arena);
+  EXPECT_EQ(view.at(0.6, 0.6), Occupancy::Free) << "inside";
+  EXPECT_EQ(view.at(0.6, -3.5), Occupancy::Free);
+  EXPECT_EQ(view.at(0.6, -4.5), Occupancy::Unknown);
+  arena.solids.clear();
+  EXPECT_EQ(View(arena).at(0.6, -4.5), Occupancy::Free) << "no walls: all there is";
+}
+
 /// Drawn as free floor, for the truth is cut at one height above each floor: but a level laser sees a steep ramp as a
 /// wall where it is as high as the laser, and nothing of the platform behind. A ramp that can be climbed hides nothing.
 TEST(Visible, WhatLiesBehindARampThatNobodyClimbsCountsOnlyBelowTheLaser) {
