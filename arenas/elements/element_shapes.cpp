@@ -55,6 +55,28 @@ void add_quarter(const ElementFrame& frame, const Quarter& q, const char* elemen
   arena.floor.push_back(patch);
 }
 
+/// A box that is open to +y, between two corners in the own frame: back, sides, bottom and lid.
+void add_open_box(const ElementFrame& frame, const TPoint2D& low, const TPoint2D& high, double z0, double z1,
+                  Arena& arena) {
+  const auto add = [&](double x0, double y0, double x1, double y1, double bottom, double top) {
+    add_block(frame, x0, y0, x1, y1, bottom, top, kVictimBoxElement, arena);
+  };
+  constexpr double kSheet = kSheetThickness;
+  add(low.x, low.y, high.x, low.y + kSheet, z0, z1);
+  add(low.x, low.y + kSheet, low.x + kSheet, high.y, z0, z1);
+  add(high.x - kSheet, low.y + kSheet, high.x, high.y, z0, z1);
+  add(low.x + kSheet, low.y + kSheet, high.x - kSheet, high.y, z0, z0 + kSheet);
+  add(low.x + kSheet, low.y + kSheet, high.x - kSheet, high.y, z1 - kSheet, z1);
+}
+
+void add_victim_at(const ElementFrame& frame, double x, double y, double z, Victim victim, Arena& arena) {
+  const TPoint2D p = frame.point(x, y);
+  victim.name = "victim" + std::to_string(arena.victims.size() + 1);
+  victim.position = {p.x, p.y, z};
+  victim.facing = frame.forward();
+  arena.victims.push_back(victim);
+}
+
 double floor_or_ground(const Arena& arena, const TPoint2D& p) {
   const double z = floor_height(arena, p);
   return std::isfinite(z) ? z : 0.0;
@@ -107,6 +129,11 @@ void add_wall(const ElementFrame& frame, double height, const std::vector<Openin
   }
 }
 
+void add_narrow_wall(const ElementFrame& frame, Arena& arena) {
+  add_block(frame, -0.5, kHalfPallet - 0.5 * kBoardThickness, 0.5, kHalfPallet + 0.5 * kBoardThickness, 0.0, 1.2,
+            kWallElement, arena);
+}
+
 void add_half_wall(const ElementFrame& frame, Arena& arena) {
   add_block(frame, 0.0, kHalfPallet - 0.5 * kBoardThickness, kHalfPallet, kHalfPallet + 0.5 * kBoardThickness, 0.0, 1.2,
             kWallElement, arena);
@@ -156,6 +183,11 @@ void add_elevated_floor(const ElementFrame& frame, double height, Arena& arena) 
   add_platform(frame, -kHalfPallet, -kHalfPallet, kHalfPallet, kHalfPallet, height, "elevated_floor", arena);
 }
 
+void add_open_floor(const ElementFrame& frame, double height, Arena& arena) {
+  add_block(frame, -kHalfPallet, -kHalfPallet, kHalfPallet, kHalfPallet, height - kPlateThickness, height,
+            "elevated_floor", arena);
+}
+
 void add_roll_ramp(const ElementFrame& frame, double slope, Arena& arena) {
   const ElementFrame across(frame.point(0.0, 0.0), kPi - frame.forward());  // +y is the other's +x
   add_ramp(across, -kHalfPallet, kHalfPallet, slope * 2.0 * kHalfPallet, arena);
@@ -175,27 +207,31 @@ void add_post(const ElementFrame& frame, double radius, double height, const std
   arena.solids.push_back({frame.outline(round), 0.0, height, element});
 }
 
-void add_free_victim(const ElementFrame& frame, Arena& arena) {
-  const TPoint2D p = frame.point(0.0, 0.0);
-  Victim victim;
-  victim.name = "victim" + std::to_string(arena.victims.size() + 1);
-  victim.position = {p.x, p.y, 0.1};
-  victim.facing = frame.forward();
-  arena.victims.push_back(victim);
+void add_cube_victim(const ElementFrame& frame, Arena& arena) {
+  constexpr double kHalf = 0.2;
+  constexpr double kBottom = 0.2;
+  add_open_box(frame, {-kHalf, -kHalf}, {kHalf, kHalf}, kBottom, kBottom + 2.0 * kHalf, arena);
+  add_victim_at(frame, 0.0, 0.0, kBottom + kHalf, {}, arena);
 }
 
-void add_stairs(const ElementFrame& frame, Arena& arena) {
+void add_stairs(const ElementFrame& frame, bool open_below, Arena& arena) {
   constexpr int kTreads = 5;
   constexpr double kTread = 0.2325;
+  constexpr double kLowest = 0.23;
   constexpr double kRiser = 0.2;
   for (int i = 0; i < kTreads; ++i) {
     const double y = -0.59 + kTread * i;
     const double end = i + 1 < kTreads ? y + kTread : kHalfPallet;
-    add_platform(frame, -0.59, y, 0.59, end, kRiser * (i + 1), "stair", arena);
+    const double z = kLowest + kRiser * i;
+    if (open_below) {
+      add_block(frame, -0.59, y, 0.59, end, z - kPlateThickness, z, "stair", arena);
+    } else {
+      add_platform(frame, -0.59, y, 0.59, end, z, "stair", arena);
+    }
   }
 }
 
-void add_half_barrel(const ElementFrame& frame, double bottom, Arena& arena) {
+void add_half_barrel(const ElementFrame& frame, double bottom, const std::string& element, Arena& arena) {
   constexpr double kRadius = 0.303;
   constexpr double kTall = 0.89;
   constexpr int kCorners = 12;
@@ -204,7 +240,11 @@ void add_half_barrel(const ElementFrame& frame, double bottom, Arena& arena) {
     const double bearing = kPi + kPi * i / kCorners;  // the half on this side of the wall
     half.push_back({kRadius * std::cos(bearing), 0.59 + kRadius * std::sin(bearing)});
   }
-  arena.solids.push_back({frame.outline(half), bottom, bottom + kTall, "fiducial_barrel"});
+  arena.solids.push_back({frame.outline(half), bottom, bottom + kTall, element});
+}
+
+void add_fire_extinguisher(const ElementFrame& frame, Arena& arena) {
+  add_block(frame, -0.32, 0.40, 0.15, kHalfPallet, 0.0, 0.89, "fire_extinguisher", arena);
 }
 
 void add_shelves(const ElementFrame& frame, Arena& arena) {
@@ -222,27 +262,18 @@ void add_hung_victim(const ElementFrame& frame, const Mount& mount, bool heat, b
   constexpr double kTall = 0.20;   // half of 0.40 m
   constexpr double kBack = 0.35;
   constexpr double kFront = 0.59;
-  const double x0 = mount.along - kWidth;
-  const double x1 = mount.along + kWidth;
-  const double z0 = mount.height - kTall;
+  const double z0 = std::max(0.0, mount.height - kTall);  // what would be below the ground is not there
   const double z1 = mount.height + kTall;
-  add_block(frame, x0, kBack, x1, kBack + kSheetThickness, z0, z1, kVictimBoxElement, arena);
-  add_block(frame, x0, kBack + kSheetThickness, x0 + kSheetThickness, kFront, z0, z1, kVictimBoxElement, arena);
-  add_block(frame, x1 - kSheetThickness, kBack + kSheetThickness, x1, kFront, z0, z1, kVictimBoxElement, arena);
-  add_block(frame, x0 + kSheetThickness, kBack + kSheetThickness, x1 - kSheetThickness, kFront, z0,
-            z0 + kSheetThickness, kVictimBoxElement, arena);
-  const TPoint2D p = frame.point(mount.along, 0.5 * (kBack + kFront));
+  add_open_box(frame, {mount.along - kWidth, kBack}, {mount.along + kWidth, kFront}, z0, z1, arena);
   Victim victim;
-  victim.name = "victim" + std::to_string(arena.victims.size() + 1);
-  victim.position = {p.x, p.y, mount.height};
-  victim.facing = frame.forward();
   victim.heat = heat;
   victim.sound = sound;
   victim.co2 = co2;
-  arena.victims.push_back(victim);
+  const double z = mount.height < kTall ? 0.5 * z1 : mount.height;
+  add_victim_at(frame, mount.along, 0.5 * (kBack + kFront), z, victim, arena);
 }
 
-void add_step_field(const ElementFrame& frame, double tallest, Arena& arena) {
+void add_step_field(const ElementFrame& frame, double tallest, double base, Arena& arena) {
   constexpr int kColumns = 10;
   constexpr double kEdge = 0.1;
   const double step = 0.25 * tallest;
@@ -259,7 +290,7 @@ void add_step_field(const ElementFrame& frame, double tallest, Arena& arena) {
   std::size_t next = 0;
   for (int row = 0; row < kColumns; ++row) {
     for (int column = 0; column < kColumns; ++column) {
-      const double height = row == column ? tallest : heights[next++];
+      const double height = base + (row == column ? tallest : heights[next++]);
       const double x = kEdge * column - 0.5;
       const double y = kEdge * row - 0.5;
       if (height > 0.0) add_platform(frame, x, y, x + kEdge, y + kEdge, height, "step_field", arena);

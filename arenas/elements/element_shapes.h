@@ -11,6 +11,7 @@ namespace rubble::arenas {
 
 constexpr double kBoardThickness = 0.01;   ///< of walls [m]
 constexpr double kSheetThickness = 0.015;  ///< of victims' boxes [m]
+constexpr double kPlateThickness = 0.02;   ///< of floors and treads that are open below [m]
 
 /// An element's own frame: origin in the middle of its pallet, walls on the edge y = +0.6 m.
 class ElementFrame {
@@ -50,6 +51,8 @@ void add_platform(const ElementFrame& frame, double x0, double y0, double x1, do
                   const std::string& element, Arena& arena);
 
 void add_wall(const ElementFrame& frame, double height, const std::vector<Opening>& openings, Arena& arena);
+/// A board of 1.0 m: a gap of 0.1 m stays to either side.
+void add_narrow_wall(const ElementFrame& frame, Arena& arena);
 /// The half of a wall to the right of the middle, seen from the pallet.
 void add_half_wall(const ElementFrame& frame, Arena& arena);
 /// From corner to corner of the pallet.
@@ -62,25 +65,31 @@ void add_veil(const ElementFrame& frame, Arena& arena);
 void add_ramp(const ElementFrame& frame, double foot_y, double head_y, double rise, Arena& arena);
 /// Flat, closed below. height: above the ground [m].
 void add_elevated_floor(const ElementFrame& frame, double height, Arena& arena);
+/// The same as a plate that is open below. No wheel stands on it, and the robot drives under it.
+void add_open_floor(const ElementFrame& frame, double height, Arena& arena);
 /// A ramp over the whole pallet that rises towards +x: driven along +y, it rolls the robot.
 void add_roll_ramp(const ElementFrame& frame, double slope, Arena& arena);
 /// A block of 0.10 x 0.30 x 0.10 m to drive over.
 void add_wooden_block(const ElementFrame& frame, Arena& arena);
 /// Something round that stands in the middle of the pallet.
 void add_post(const ElementFrame& frame, double radius, double height, const std::string& element, Arena& arena);
-/// A doll without a box.
-void add_free_victim(const ElementFrame& frame, Arena& arena);
-void add_stairs(const ElementFrame& frame, Arena& arena);
+/// A cube of 0.4 m that hangs 0.2 m above the ground, open to +y, with the victim in its middle.
+void add_cube_victim(const ElementFrame& frame, Arena& arena);
+/// Treads at 0.23, 0.43, ... 1.03 m, rising towards +y; open below they are plates, and no floor.
+void add_stairs(const ElementFrame& frame, bool open_below, Arena& arena);
 /// Half of a barrel that leans on the wall at +y, 0.89 m tall from `bottom` up.
-void add_half_barrel(const ElementFrame& frame, double bottom, Arena& arena);
+void add_half_barrel(const ElementFrame& frame, double bottom, const std::string& element, Arena& arena);
+/// Stands at the wall at +y.
+void add_fire_extinguisher(const ElementFrame& frame, Arena& arena);
 void add_shelves(const ElementFrame& frame, Arena& arena);
 void add_spectator(const ElementFrame& frame, Arena& arena);
-/// A box behind the wall at +y, open to the wall; the victim looks through the hole.
+/// A box with a lid behind the wall at +y, open to the wall; the victim looks through the hole. What would be below the
+/// ground is left out.
 void add_hung_victim(const ElementFrame& frame, const Mount& mount, bool heat, bool sound, bool co2, Arena& arena);
 
 /// 10 x 10 columns of 0.1 m in a frame of 50 mm planks: the diagonal is `tallest` high, the others 0 to 3 quarters of
-/// it. Red 0.4 m, orange 0.2 m.
-void add_step_field(const ElementFrame& frame, double tallest, Arena& arena);
+/// it, all of them on a base. Red 0.4 m on 0.05 m, orange 0.2 m on the ground.
+void add_step_field(const ElementFrame& frame, double tallest, double base, Arena& arena);
 /// Four ramps of half a pallet that rise in turn, each to the side the next begins at: their floors agree nowhere.
 /// slope: rise per metre.
 void add_crossing_ramps(const ElementFrame& frame, double slope, Arena& arena);

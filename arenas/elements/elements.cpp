@@ -39,12 +39,20 @@ Entry holed_wall(const char* what, std::vector<Opening> openings) {
   return entry;
 }
 
-auto barrel(double bottom) {
-  return standing([bottom](const ElementFrame& frame, Arena& arena) { add_half_barrel(frame, bottom, arena); });
+auto barrel(double bottom, const char* element) {
+  return standing([=](const ElementFrame& frame, Arena& arena) { add_half_barrel(frame, bottom, element, arena); });
 }
 
-auto step_field(double tallest) {
-  return standing([tallest](const ElementFrame& frame, Arena& arena) { add_step_field(frame, tallest, arena); });
+auto step_field(double tallest, double base) {
+  return standing([=](const ElementFrame& frame, Arena& arena) { add_step_field(frame, tallest, base, arena); });
+}
+
+auto stairs(bool open_below) {
+  return standing([=](const ElementFrame& frame, Arena& arena) { add_stairs(frame, open_below, arena); });
+}
+
+auto open_floor(double height) {
+  return standing([=](const ElementFrame& frame, Arena& arena) { add_open_floor(frame, height, arena); });
 }
 
 auto elevated_floor(double height) {
@@ -79,7 +87,7 @@ const std::map<std::string, Entry>& table() {
   using K = ElementKind;
   static const std::map<std::string, Entry> entries{
       {"small_wall", {K::Wall, "a board of 1.2 m on the edge at +y", straight_wall(1.2)}},
-      {"small_wall_no_tex", {K::Wall, "a board of 1.2 m without a texture", straight_wall(1.2)}},
+      {"small_wall_no_tex", {K::Wall, "a board of 1.0 m in the middle of the edge at +y", standing(add_narrow_wall)}},
       {"small_wall_qr", {K::Wall, "a board of 1.2 m with a QR code", straight_wall(1.2)}},
       {"small_wall_start_check", {K::Wall, "a board of 1.2 m with the start check", straight_wall(1.2)}},
       {"tall_wall", {K::Wall, "a board of 2.4 m on the edge at +y", straight_wall(2.4)}},
@@ -95,7 +103,8 @@ const std::map<std::string, Entry>& table() {
       {"simple_elev_ramp", ramp("45 deg up to the floor at 1.2 m", true, -kHalfPallet, kHalfPallet, kPallet)},
       {"steep_ramp_35", ramp("35 deg up to the floor at 0.84 m", true, -kHalfPallet, kHalfPallet, kRise35)},
       {"steep_ramp_45", ramp("45 deg up to the floor at 1.2 m", true, -kHalfPallet, kHalfPallet, kPallet)},
-      {"elevated_floor_120", {K::Floor, "a floor at 1.2 m, closed below", elevated_floor(kPallet), true}},
+      {"elevated_floor_120", {K::Floor, "a floor at 1.2 m, open below: to drive under", open_floor(kPallet)}},
+      {"elevated_floor_120_solid", {K::Floor, "a floor at 1.2 m, closed below", elevated_floor(kPallet), true}},
       {"elevated_floor_084", {K::Floor, "a floor at 0.84 m, closed below", elevated_floor(kRise35), true}},
       {"crossing_ramps",
        {K::Floor, "four ramps of 10 deg that agree nowhere: pitches and rolls the robot at once",
@@ -111,17 +120,22 @@ const std::map<std::string, Entry>& table() {
        {K::Floor, "10 deg towards +x: rolls a robot that drives along +y",
         standing([](const ElementFrame& f, Arena& a) { add_roll_ramp(f, kTan10, a); }), true, add_roll_ramp}},
       {"tunnel", {K::Floor, "a ceiling at 0.60 m on two boards, to drive through along y", standing(add_tunnel)}},
-      {"stepfield_orange_diagonal", {K::Floor, "10 x 10 columns of 0 to 0.2 m", step_field(0.2)}},
-      {"stairs_120", {K::Floor, "five risers of 0.2 m towards +y", standing(add_stairs)}},
-      {"stairs_120_solid", {K::Floor, "five risers of 0.2 m towards +y", standing(add_stairs)}},
-      {"stepfield_red_diagonal", {K::Floor, "10 x 10 columns of 0 to 0.4 m", step_field(0.4)}},
-      {"fiducial_barrel", {K::Item, "half a barrel on the wall at +y, from 0.30 m up", barrel(0.30)}},
-      {"fiducial_barrel_high", {K::Item, "half a barrel on the wall at +y, from 1.50 m up", barrel(1.50)}},
+      {"stepfield_orange_diagonal", {K::Floor, "10 x 10 columns of 0 to 0.2 m", step_field(0.2, 0.0)}},
+      {"stairs_120", {K::Floor, "five treads at 0.23 to 1.03 m towards +y, open below", stairs(true)}},
+      {"stairs_120_solid", {K::Floor, "five treads at 0.23 to 1.03 m towards +y, closed below", stairs(false)}},
+      {"stepfield_red_diagonal", {K::Floor, "10 x 10 columns of 0.05 to 0.45 m", step_field(0.4, 0.05)}},
+      {"fiducial_barrel",
+       {K::Item, "half a barrel on the wall at +y, from 0.30 m up", barrel(0.30, "fiducial_barrel")}},
+      {"fiducial_barrel_high",
+       {K::Item, "half a barrel on the wall at +y, from 1.50 m up", barrel(1.50, "fiducial_barrel")}},
       {"wooden_block", {K::Item, "0.10 m high, to drive over", standing(add_wooden_block)}},
-      {"red_barrel", {K::Item, "a post 0.58 m wide and 0.88 m high", post(0.29, 0.88, "red_barrel")}},
-      {"fire_extinguisher", {K::Item, "a post 0.16 m wide and 0.55 m high", post(0.08, 0.55, "fire_extinguisher")}},
-      {"pvc_pipe", {K::Item, "a post 0.11 m wide and 0.6 m high", post(0.055, 0.6, "pvc_pipe")}},
-      {"victim_1", {K::Item, "a victim without a box: appearance and heat", standing(add_free_victim)}},
+      {"red_barrel", {K::Item, "half a barrel on the wall at +y, from 0.30 m up", barrel(0.30, "red_barrel")}},
+      {"fire_extinguisher",
+       {K::Item, "a block of 0.47 x 0.20 x 0.89 m at the wall at +y", standing(add_fire_extinguisher)}},
+      {"pvc_pipe", {K::Item, "a post 0.05 m wide and 0.6 m high", post(0.025, 0.6, "pvc_pipe")}},
+      {"victim_1",
+       {K::Item, "a victim in a cube of 0.4 m, 0.2 m above the ground, open to +y: appearance and heat",
+        standing(add_cube_victim)}},
       {"manip_storage", {K::Item, "shelves at 0.5 and 1.0 m", standing(add_shelves)}},
       {"spectator_120", {K::Item, "a box at 1.07 to 1.70 m, above a level laser", standing(add_spectator)}},
       {"victim_with_box1",
@@ -160,12 +174,13 @@ const Entry* find(const std::string& type) {
   return found != table().end() ? &found->second : nullptr;
 }
 
-/// Where an item hangs: the holes of its wall, as (along, height).
+/// Where an item hangs: the holes of its wall, as (along, height); at a wall without holes its middle is on the ground.
 Mount mount_of(const Element& element, const Element* wall) {
   static const Mount kPoints[] = {{-0.3, 0.9}, {0.3, 0.6}, {-0.3, 0.3}};
   const Entry* behind = wall != nullptr ? find(wall->type) : nullptr;
   const int point = std::max(0, element.mount_point.value_or(0));
-  if (behind == nullptr || !behind->has_holes || point > 2) return {0.0, 0.2};  // stands on the ground
+  if (behind == nullptr) return {0.0, 0.2};  // stands on the ground
+  if (!behind->has_holes || point > 2) return {0.0, 0.0};
   return kPoints[point];
 }
 

@@ -87,12 +87,12 @@ bool lay_tower(int which, Cell top, int direction, Site& site, std::vector<Rough
   set_open(site.maze(), foot, top, true);
   site.take(top, true);
   site.take(foot, true);
-  static const std::array<const char*, 3> kWaysUp{"stairs_120", "steep_ramp_45", "steep_ramp_35"};
+  static const std::array<const char*, 3> kWaysUp{"stairs_120_solid", "steep_ramp_45", "steep_ramp_35"};
   const bool is_low = which == 2;
   const double height = is_low ? kRise35 : kPallet;
   const int turn = turn_of(foot, top);
   laid.push_back({foot, kWaysUp[static_cast<std::size_t>(which)], turn, 0.0, true});
-  laid.push_back({top, is_low ? "elevated_floor_084" : "elevated_floor_120", turn, height, true});
+  laid.push_back({top, is_low ? "elevated_floor_084" : "elevated_floor_120_solid", turn, height, true});
   return true;
 }
 

@@ -55,6 +55,7 @@ const std::map<std::string, Folders>& doors() {
         "arenas/generate/generate.h",
         "arenas/raf/raf.h",
         "arenas/truth/render.h",
+        "arenas/truth/start_region.h",
         "arenas/truth/truth_map.h",
         "arenas/truth/visible.h",
         "arenas/truth/wall_lines.h",

@@ -72,24 +72,76 @@ TEST(Elements, RampsTurnWithTheirElement) {
 
 TEST(Elements, ElevatedRampMeetsTheElevatedFloor) {
   EXPECT_NEAR(floor_height(placed("simple_elev_ramp"), {0.0, 0.6}), 1.2, 1e-12);
-  EXPECT_NEAR(floor_height(placed("elevated_floor_120"), {0.0, -0.6}), 1.2, 1e-12);
+  const Arena floor = placed("elevated_floor_120");
+  EXPECT_TRUE(blocked(floor, 0.0, -0.6, 1.2));
+  EXPECT_FALSE(blocked(floor, 0.0, 0.0, 1.1)) << "open below";
+  EXPECT_TRUE(floor.floor.empty()) << "the ground below is to be driven on";
+  EXPECT_FALSE(covers_pallet("elevated_floor_120"));
 }
 
 TEST(Elements, StairsClimbInEqualRisers) {
-  const Arena arena = placed("stairs_120");
-  ASSERT_EQ(arena.floor.size(), 5u);
-  for (int i = 0; i < 5; ++i) EXPECT_NEAR(floor_height(arena, {0.0, -0.5 + 0.2325 * i}), 0.2 * (i + 1), 1e-12);
+  const Arena solid = placed("stairs_120_solid");
+  ASSERT_EQ(solid.floor.size(), 5u);
+  const Arena open = placed("stairs_120");
+  EXPECT_TRUE(open.floor.empty());
+  for (int i = 0; i < 5; ++i) {
+    const double z = 0.23 + 0.2 * i;
+    EXPECT_NEAR(floor_height(solid, {0.0, -0.5 + 0.2325 * i}), z, 1e-12);
+    EXPECT_TRUE(blocked(open, 0.0, -0.5 + 0.2325 * i, z));
+    EXPECT_FALSE(blocked(open, 0.0, -0.5 + 0.2325 * i, z - 0.05)) << "open below";
+  }
 }
 
-TEST(Elements, RedStepFieldHasTheCountsOfTheLeague) {
-  const Arena arena = placed("stepfield_red_diagonal");
-  std::map<long, int> columns;
-  for (int i = 0; i < 100; ++i) {
-    const double z = floor_height(arena, {-0.45 + 0.1 * (i % 10), -0.45 + 0.1 * (i / 10)});
-    ++columns[std::isfinite(z) ? std::lround(10.0 * z) : 0];
-    EXPECT_TRUE(i % 10 != i / 10 || std::abs(z - 0.4) < 1e-12) << "the diagonal is the highest";
+/// At the wall, where the meshes stand, so that the middle of the pallet is free.
+TEST(Elements, BarrelsAndExtinguishersStandAtTheWall) {
+  for (const char* type : {"fiducial_barrel", "red_barrel"}) {
+    const Arena arena = placed(type);
+    EXPECT_TRUE(blocked(arena, 0.0, 0.30, 0.35)) << type;
+    EXPECT_TRUE(blocked(arena, 0.29, 0.58, 1.18)) << type;
+    EXPECT_FALSE(blocked(arena, 0.0, 0.28, 0.35)) << type;
+    EXPECT_FALSE(blocked(arena, 0.0, 0.5, 0.29)) << type;
   }
-  EXPECT_EQ(columns, (std::map<long, int>{{0, 9}, {1, 27}, {2, 33}, {3, 21}, {4, 10}}));
+  const Arena extinguisher = placed("fire_extinguisher");
+  EXPECT_TRUE(blocked(extinguisher, -0.31, 0.41, 0.0));
+  EXPECT_TRUE(blocked(extinguisher, 0.14, 0.59, 0.88));
+  EXPECT_FALSE(blocked(extinguisher, 0.16, 0.5, 0.5));
+  EXPECT_FALSE(blocked(extinguisher, 0.0, 0.0, 0.1));
+  EXPECT_TRUE(blocked(placed("pvc_pipe"), 0.024, 0.0, 0.3));
+  EXPECT_FALSE(blocked(placed("pvc_pipe"), 0.026, 0.0, 0.3));
+}
+
+TEST(Elements, AWallWithoutATextureIsNarrower) {
+  const Arena arena = placed("small_wall_no_tex");
+  EXPECT_TRUE(blocked(arena, 0.49, 0.6, 0.35));
+  EXPECT_FALSE(blocked(arena, 0.51, 0.6, 0.35));
+}
+
+TEST(Elements, AVictimInACubeLooksAheadFromAboveTheGround) {
+  const Arena arena = placed("victim_1");
+  ASSERT_EQ(arena.victims.size(), 1u);
+  EXPECT_NEAR(arena.victims[0].position.z, 0.4, 1e-12);
+  EXPECT_TRUE(blocked(arena, 0.0, -0.19, 0.4)) << "back";
+  EXPECT_TRUE(blocked(arena, 0.19, 0.0, 0.4)) << "side";
+  EXPECT_TRUE(blocked(arena, 0.0, 0.0, 0.59)) << "lid";
+  EXPECT_FALSE(blocked(arena, 0.0, 0.0, 0.1)) << "it does not touch the ground";
+  EXPECT_FALSE(blocked(arena, 0.0, 0.19, 0.4)) << "open to +y";
+}
+
+TEST(Elements, StepFieldsHaveTheCountsOfTheLeague) {
+  const auto columns = [](const char* type, double unit, double base) {
+    const Arena arena = placed(type);
+    std::map<long, int> counts;
+    for (int i = 0; i < 100; ++i) {
+      const double z = floor_height(arena, {-0.45 + 0.1 * (i % 10), -0.45 + 0.1 * (i / 10)});
+      ++counts[std::isfinite(z) ? std::lround((z - base) / unit) : 0];
+      EXPECT_TRUE(i % 10 != i / 10 || std::abs(z - base - 4.0 * unit) < 1e-12) << "the diagonal is the highest";
+      EXPECT_TRUE(base == 0.0 || z > base - 1e-12) << "no column is lower than the base";
+    }
+    return counts;
+  };
+  const std::map<long, int> league{{0, 9}, {1, 27}, {2, 33}, {3, 21}, {4, 10}};
+  EXPECT_EQ(columns("stepfield_red_diagonal", 0.1, 0.05), league);
+  EXPECT_EQ(columns("stepfield_orange_diagonal", 0.05, 0.0), league);
 }
 
 TEST(Elements, HolesAreOpenAndTheRestOfTheWallIsNot) {
@@ -117,6 +169,11 @@ TEST(Elements, BoxedVictimHangsAtTheHoleItIsMountedAt) {
     EXPECT_NEAR(arena.victims[0].facing, kPi / 2, 1e-12) << "it looks through the wall";
   }
   EXPECT_NEAR(placed("victim_with_box1").victims[0].position.z, 0.2, 1e-12) << "without a wall it stands on the ground";
+  wall.type = "small_wall";
+  const Arena low = placed("victim_with_box1", 0.0, &wall);
+  EXPECT_NEAR(low.victims[0].position.z, 0.1, 1e-12) << "a wall without holes: the upper half of the box";
+  EXPECT_TRUE(blocked(low, 0.0, 0.45, 0.19)) << "lid";
+  EXPECT_FALSE(blocked(low, 0.0, 0.45, 0.21));
 }
 
 TEST(Elements, VeilIsSeenButGivesWay) {

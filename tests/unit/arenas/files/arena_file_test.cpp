@@ -150,7 +150,7 @@ TEST(ArenaFile, LeaguePartsStandWhereTheyArePut) {
                         "  - {type: stepfield_red_diagonal, cell: A}\n"
                         "  - {type: wall_holes1, cell: B, rotation_deg: 180}\n"
                         "  - {type: victim_with_box1, cell: B, rotation_deg: 180, mount_point: 1}\n");
-  EXPECT_NEAR(floor_height(a, {0.15, 0.15}), 0.4, 1e-12);
+  EXPECT_NEAR(floor_height(a, {0.15, 0.15}), 0.45, 1e-12);
   ASSERT_EQ(a.victims.size(), 1u);
   EXPECT_NEAR(a.victims[0].position.z, 0.6, 1e-12) << "at the middle hole";
   EXPECT_NEAR(a.victims[0].facing, -kPi / 2, 1e-12);

@@ -34,6 +34,14 @@ std::string complaint(const Arena& arena) {
 
 TEST(Check, LetsAGoodArenaPass) { EXPECT_EQ(complaint(good()), ""); }
 
+TEST(Check, ABallLiesUnderWhatIsOpenBelow) {
+  Arena arena = good();
+  arena.solids.push_back({rectangle({-1.0, -1.0}, 1.0, 1.0), 1.18, 1.2, "elevated_floor"});
+  EXPECT_EQ(complaint(arena), "");
+  arena.solids.back().z_bottom = 0.1;
+  EXPECT_THAT(complaint(arena), HasSubstr("lies in a solid"));
+}
+
 TEST(Check, NamesTheSourceAndTheRemedyInOneLine) {
   Arena arena = good();
   arena.start.y = 0.8;
