@@ -273,16 +273,16 @@ void add_hung_victim(const ElementFrame& frame, const Mount& mount, bool heat, b
   add_victim_at(frame, mount.along, 0.5 * (kBack + kFront), z, victim, arena);
 }
 
-void add_step_field(const ElementFrame& frame, double tallest, double base, Arena& arena) {
+void add_step_field(const ElementFrame& frame, double tallest, double base, std::uint64_t thrown, Arena& arena) {
   constexpr int kColumns = 10;
   constexpr double kEdge = 0.1;
   const double step = 0.25 * tallest;
-  // The league builds them at random; every field here is the same throw with the league's counts beside the diagonal.
+  // The league builds them at random: its counts beside the diagonal, in any order.
   std::vector<double> heights;
   for (const auto& [steps, count] : {std::pair{0, 9}, {1, 27}, {2, 33}, {3, 21}}) {
     heights.insert(heights.end(), static_cast<std::size_t>(count), step * steps);
   }
-  Rng rng(1, "red step field");
+  Rng rng(thrown, "red step field");
   for (std::size_t i = heights.size(); i > 1; --i) {
     const std::size_t k = rng.below(static_cast<std::uint32_t>(i));
     std::swap(heights[i - 1], heights[k]);

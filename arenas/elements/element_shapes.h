@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPoint2D.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -88,8 +89,9 @@ void add_spectator(const ElementFrame& frame, Arena& arena);
 void add_hung_victim(const ElementFrame& frame, const Mount& mount, bool heat, bool sound, bool co2, Arena& arena);
 
 /// 10 x 10 columns of 0.1 m in a frame of 50 mm planks: the diagonal is `tallest` high, the others 0 to 3 quarters of
-/// it, all of them on a base. Red 0.4 m on 0.05 m, orange 0.2 m on the ground.
-void add_step_field(const ElementFrame& frame, double tallest, double base, Arena& arena);
+/// it in the league's counts, as `thrown` (a seed) has them fall, all on a base. Red 0.4 m on 0.05 m, orange 0.2 m on
+/// the ground.
+void add_step_field(const ElementFrame& frame, double tallest, double base, std::uint64_t thrown, Arena& arena);
 /// Four ramps of half a pallet that rise in turn, each to the side the next begins at: their floors agree nowhere.
 /// slope: rise per metre.
 void add_crossing_ramps(const ElementFrame& frame, double slope, Arena& arena);

@@ -20,6 +20,7 @@ struct Entry {
       nullptr;                                    ///< another slope [rise a metre]
   std::optional<double> friction = std::nullopt;  ///< of its floors; default: the arena's, for all are of wood
   bool has_holes = false;                         ///< a wall at whose mount points items hang
+  std::function<void(const ElementFrame&, std::uint64_t thrown, Arena&)> add_thrown = nullptr;  ///< instead of add
 };
 
 /// Shapes that do not hang on a wall.
@@ -43,8 +44,12 @@ auto barrel(double bottom, const char* element) {
   return standing([=](const ElementFrame& frame, Arena& arena) { add_half_barrel(frame, bottom, element, arena); });
 }
 
-auto step_field(double tallest, double base) {
-  return standing([=](const ElementFrame& frame, Arena& arena) { add_step_field(frame, tallest, base, arena); });
+Entry step_field(const char* what, double tallest, double base) {
+  Entry entry{ElementKind::Floor, what, nullptr};
+  entry.add_thrown = [=](const ElementFrame& frame, std::uint64_t thrown, Arena& arena) {
+    add_step_field(frame, tallest, base, thrown, arena);
+  };
+  return entry;
 }
 
 auto stairs(bool open_below) {
@@ -120,10 +125,10 @@ const std::map<std::string, Entry>& table() {
        {K::Floor, "10 deg towards +x: rolls a robot that drives along +y",
         standing([](const ElementFrame& f, Arena& a) { add_roll_ramp(f, kTan10, a); }), true, add_roll_ramp}},
       {"tunnel", {K::Floor, "a ceiling at 0.60 m on two boards, to drive through along y", standing(add_tunnel)}},
-      {"stepfield_orange_diagonal", {K::Floor, "10 x 10 columns of 0 to 0.2 m", step_field(0.2, 0.0)}},
+      {"stepfield_orange_diagonal", step_field("10 x 10 columns of 0 to 0.2 m", 0.2, 0.0)},
       {"stairs_120", {K::Floor, "five treads at 0.23 to 1.03 m towards +y, open below", stairs(true)}},
       {"stairs_120_solid", {K::Floor, "five treads at 0.23 to 1.03 m towards +y, closed below", stairs(false)}},
-      {"stepfield_red_diagonal", {K::Floor, "10 x 10 columns of 0.05 to 0.45 m", step_field(0.4, 0.05)}},
+      {"stepfield_red_diagonal", step_field("10 x 10 columns of 0.05 to 0.45 m", 0.4, 0.05)},
       {"fiducial_barrel",
        {K::Item, "half a barrel on the wall at +y, from 0.30 m up", barrel(0.30, "fiducial_barrel")}},
       {"fiducial_barrel_high",
@@ -219,6 +224,11 @@ bool has_slope(const std::string& type) {
   return entry != nullptr && entry->add_sloped != nullptr;
 }
 
+bool is_thrown(const std::string& type) {
+  const Entry* entry = find(type);
+  return entry != nullptr && entry->add_thrown != nullptr;
+}
+
 bool has_floor(const std::string& type) {
   Element element;
   element.type = type;
@@ -257,6 +267,8 @@ void place(const Element& element, const Element* wall, Arena& arena) {
   const std::size_t first = arena.floor.size();
   if (element.slope && entry->add_sloped) {
     entry->add_sloped(frame, std::tan(*element.slope), arena);
+  } else if (entry->add_thrown) {
+    entry->add_thrown(frame, element.thrown, arena);
   } else {
     entry->add(frame, mount_of(element, wall), arena);
   }

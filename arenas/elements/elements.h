@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPoint2D.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ struct Element {
   mrpt::math::TPoint2D offset;     ///< shift of a free item on its pallet [m]
   std::optional<double> slope;     ///< of ramps: their angle instead of the model's own [rad]
   std::optional<double> friction;  ///< of its floors instead of the type's
+  std::uint64_t thrown = 1;        ///< of step fields: which throw of the columns, as a seed
 };
 
 /// What is known about a type of element.
@@ -38,6 +40,9 @@ std::vector<std::string> element_types();
 
 /// Whether the type is a ramp whose angle may be given.
 bool has_slope(const std::string& type);
+
+/// Whether the type is a step field, whose columns are thrown.
+bool is_thrown(const std::string& type);
 
 /// Whether wheels can stand on the type, so that its friction may be given.
 bool has_floor(const std::string& type);

@@ -198,6 +198,10 @@ void read_elements(const YamlMap& root, Plan& plan, Arena& arena) {
       if (!has_slope(element.type)) entry.fail("slope_deg", "a '" + element.type + "' has no slope: take the key out");
       element.slope = deg_to_rad(entry.number("slope_deg", std::nullopt, 1.0, 60.0));
     }
+    if (entry.has("throw")) {
+      if (!is_thrown(element.type)) entry.fail("throw", "a '" + element.type + "' has no columns: take the key out");
+      element.thrown = static_cast<std::uint64_t>(entry.integer("throw", std::nullopt, 1, 1000000000));
+    }
     if (entry.has("friction") && !has_floor(element.type))
       entry.fail("friction", "no wheel stands on a '" + element.type + "': take the key out");
     element.friction = friction(entry);

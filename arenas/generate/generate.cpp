@@ -83,13 +83,17 @@ int start_heading(const Maze& maze, Cell start, Rng& rng) {
   return next.y > start.y ? 90 : -90;
 }
 
-std::string elements_text(const std::vector<RoughPallet>& rough) {
+/// Every step field is a throw of its own.
+std::string elements_text(const std::vector<RoughPallet>& rough, Rng& throws) {
+  constexpr std::uint32_t kThrows = 1000000;
   std::string text;
   for (const RoughPallet& pallet : rough) {
     const TPoint2D p = centre_of(pallet.cell);
     text += text.empty() ? "\nelements:\n" : "";
     text += "  - {type: " + pallet.type + ", x_m: " + number(p.x) + ", y_m: " + number(p.y) +
-            ", rotation_deg: " + std::to_string(90 * pallet.turn) + "}\n";
+            ", rotation_deg: " + std::to_string(90 * pallet.turn);
+    if (pallet.type.rfind("stepfield", 0) == 0) text += ", throw: " + std::to_string(1 + throws.below(kThrows));
+    text += "}\n";
   }
   return text;
 }
@@ -168,6 +172,7 @@ std::string generate_arena(const GenerateConfig& config) {
   Rng relief_rng(config.seed, "arena relief");
   Rng maze_rng(config.seed, "arena maze");
   Rng rough_rng(config.seed, "arena rough");
+  Rng throw_rng(config.seed, "arena step fields");
   Rng victim_rng(config.seed, "arena victims");
   Rng paper_rng(config.seed, "arena paper");
 
@@ -198,7 +203,7 @@ std::string generate_arena(const GenerateConfig& config) {
   text += "ramp_deg: " + number(config.ramp_deg) + "\n\nmaze: |\n";
   for (const std::string& line : draw(drawing_of(relief, maze, start))) text += "  " + line + "\n";
   text += "\nstart: {heading_deg: " + std::to_string(heading_deg) + "}\n";
-  text += elements_text(rough) + parapets_text(rough, maze);
+  text += elements_text(rough, throw_rng) + parapets_text(rough, maze);
   return text + victims_text(furniture.victims) + paper_text(furniture);
 }
 

@@ -159,6 +159,25 @@ TEST(Generate, ObstaclesOfOrangeAndRedCutNothingOff) {
 }
 
 /// An edge that is open but rough would let the mapper plan a way the robot cannot drive.
+/// Known from one field is nothing of another.
+TEST(Generate, EveryStepFieldIsAThrowOfItsOwn) {
+  for (const ArenaKind kind : {ArenaKind::Orange, ArenaKind::Red}) {
+    GenerateConfig config;
+    config.kind = kind;
+    config.columns = config.rows = 12;
+    const std::string text = generate_arena(config);
+    std::set<std::string> throws;
+    std::size_t fields = 0;
+    for (std::size_t at = text.find("stepfield"); at != std::string::npos; at = text.find("stepfield", at + 1)) {
+      const std::size_t key = text.find("throw: ", at);
+      throws.insert(text.substr(key, text.find('}', key) - key));
+      ++fields;
+    }
+    EXPECT_GT(fields, 3u);
+    EXPECT_EQ(throws.size(), fields);
+  }
+}
+
 TEST(Generate, WhereThereIsNoWallTheFloorIsSmooth) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(name_of(seed));

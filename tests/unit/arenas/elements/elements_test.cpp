@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -142,6 +143,28 @@ TEST(Elements, StepFieldsHaveTheCountsOfTheLeague) {
   const std::map<long, int> league{{0, 9}, {1, 27}, {2, 33}, {3, 21}, {4, 10}};
   EXPECT_EQ(columns("stepfield_red_diagonal", 0.1, 0.05), league);
   EXPECT_EQ(columns("stepfield_orange_diagonal", 0.05, 0.0), league);
+}
+
+TEST(Elements, EveryThrowOfAStepFieldIsAnother) {
+  const auto heights = [](std::uint64_t thrown) {
+    Element element;
+    element.type = "stepfield_red_diagonal";
+    element.thrown = thrown;
+    Arena arena;
+    place(element, nullptr, arena);
+    std::vector<double> z;
+    for (int i = 0; i < 100; ++i) z.push_back(floor_height(arena, {-0.45 + 0.1 * (i % 10), -0.45 + 0.1 * (i / 10)}));
+    return z;
+  };
+  EXPECT_EQ(heights(7), heights(7));
+  EXPECT_NE(heights(7), heights(8));
+  std::vector<double> a = heights(7);
+  std::vector<double> b = heights(8);
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  EXPECT_EQ(a, b) << "the same columns";
+  EXPECT_TRUE(is_thrown("stepfield_orange_diagonal"));
+  EXPECT_FALSE(is_thrown("crossing_ramps"));
 }
 
 TEST(Elements, HolesAreOpenAndTheRestOfTheWallIsNot) {

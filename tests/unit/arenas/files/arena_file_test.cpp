@@ -155,6 +155,19 @@ TEST(ArenaFile, LeaguePartsStandWhereTheyArePut) {
   EXPECT_NEAR(a.victims[0].position.z, 0.6, 1e-12) << "at the middle hole";
   EXPECT_NEAR(a.victims[0].facing, -kPi / 2, 1e-12);
   EXPECT_THAT(error_of(room("|A.   S |", "elements: [{type: stairs, cell: A}]\n")), HasSubstr("stairs_120"));
+  EXPECT_THAT(error_of(room("|A.   S |", "elements: [{type: flat, cell: A, throw: 2}]\n")), HasSubstr("no columns"));
+}
+
+TEST(ArenaFile, AStepFieldIsThrownAsItsEntrySays) {
+  const auto heights = [](const std::string& entry) {
+    const Arena a = arena({"+---+---+", "|A.  S. |", "+---+---+"},
+                          "elements: [{type: stepfield_orange_diagonal, cell: A" + entry + "}]\n");
+    std::vector<double> z;
+    for (const FloorPatch& patch : a.floor) z.push_back(patch.z);
+    return z;
+  };
+  EXPECT_EQ(heights(""), heights(", throw: 1"));
+  EXPECT_NE(heights(""), heights(", throw: 2"));
 }
 
 TEST(ArenaFile, ErrorsPointIntoTheDrawing) {
