@@ -132,7 +132,15 @@ void list_elements() {
   }
 }
 
+void check_kind(const std::string& kind) {
+  if (kind == arenas::kBlueArena) throw UsageError("--kind blue: " + std::string(arenas::kNoBlueArena));
+  const std::vector<std::string>& kinds = arenas::arena_kinds();
+  if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+    throw UsageError("--kind " + kind + ": is no kind of arena: use yellow, orange or red");
+}
+
 int arena_or_list(ArenaArguments arguments, const Options& options) {
+  check_kind(arguments.kind);
   arguments.config.kind = arenas::arena_kind(arguments.kind);
   if (arguments.generate() && arguments.config.kind == arenas::ArenaKind::Yellow && options.given("--rough"))
     throw UsageError("--rough: a yellow arena has no obstacles; add --kind orange or --kind red");
@@ -150,7 +158,7 @@ int arena_or_list(ArenaArguments arguments, const Options& options) {
 
 void declare_generator(Options& o, ArenaArguments& a) {
   arenas::GenerateConfig& config = a.config;
-  o.choice("--kind", a.kind, arenas::arena_kinds(), "Kind of arena");
+  o.text("--kind", a.kind, "Kind of arena: yellow, orange or red");
   o.text("--cells", a.cells, "Pallets west-east x south-north (default 8x8)");
   o.seed("--seed", config.seed, "Seed of the layout");
   o.number("--ramps", config.ramps, 0.0, 1.0, "Share of pallets that are ramps, 0..1");

@@ -352,6 +352,8 @@ void add_victim(Arena& arena, Victim victim, double size) {
   add_board(centre - forward * aside, kSheetThickness, size);
   add_board(centre + left * aside, size, kSheetThickness);
   add_board(centre - left * aside, size, kSheetThickness);
+  arena.solids.push_back({rectangle(centre, size, size, victim.facing), highest + size - kSheetThickness,
+                          highest + size, kVictimBoxElement});
 }
 
 }  // namespace rubble::arenas

@@ -101,7 +101,7 @@ void add_elevated_ramps(const ElementFrame& frame, double slope, Arena& arena);
 /// -y.
 void add_tunnel(const ElementFrame& frame, Arena& arena);
 
-/// Adds a victim in the middle of its box: a back and two side boards of 15 mm, open to `facing` and to the top.
+/// Adds a victim in the middle of its box: a back, two sides and a lid of 15 mm board, open to `facing`.
 /// The boards reach from the lowest floor below the box to `size` above the highest. position.z of `victim` is taken
 /// as height above the floor there and is replaced by the absolute height. size [m] 0: no box.
 void add_victim(Arena& arena, Victim victim, double size = 0.4);

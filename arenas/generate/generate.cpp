@@ -160,6 +160,7 @@ const std::vector<std::string>& arena_kinds() {
 std::string name_of(ArenaKind kind) { return arena_kinds().at(static_cast<std::size_t>(kind)); }
 
 ArenaKind arena_kind(const std::string& name) {
+  require(name != kBlueArena, kNoBlueArena);
   const auto found = std::find(arena_kinds().begin(), arena_kinds().end(), name);
   require(found != arena_kinds().end(), "unknown kind '" + name + "': use yellow, orange or red");
   return static_cast<ArenaKind>(found - arena_kinds().begin());

@@ -14,6 +14,11 @@ enum class ArenaKind { Yellow, Orange, Red };
 /// "yellow", "orange", "red": as files and options call them, in the order of ArenaKind.
 const std::vector<std::string>& arena_kinds();
 std::string name_of(ArenaKind kind);
+/// The league's fourth kind, and why none is generated.
+inline constexpr const char* kBlueArena = "blue";
+inline constexpr const char* kNoBlueArena =
+    "a blue arena asks to grasp objects and put them down, and the robot has no arm: use yellow, orange or red; "
+    "'objects' of an arena file lays bottles and radios out";
 /// Throws InputError for another name.
 ArenaKind arena_kind(const std::string& name);
 

@@ -146,6 +146,8 @@ void read_arena(const YamlMap& root, const std::string& path, Scenario& s) {
   s.generate_seed_given = generate.has("seed");
   s.generate.seed = static_cast<std::uint64_t>(
       generate.integer("seed", std::int64_t{1}, 0, std::numeric_limits<std::int64_t>::max()));
+  if (generate.has("kind") && generate.text("kind", std::nullopt) == arenas::kBlueArena)
+    generate.fail("kind", arenas::kNoBlueArena);
   YamlReader reader(generate);
   bind_generate(reader, s.generate);
 }

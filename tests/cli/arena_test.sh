@@ -48,6 +48,11 @@ for command in 'arena sealed.yaml --out out' 'run sealed_run.yaml --out sealed_r
   grep -q 'sealed.yaml: from the start (0.60, 0.60) the robot gets to .*: move the start$' err.txt || fail "sealed: $(cat err.txt)"
 done
 
+expect_exit 2 '--kind blue: a blue arena asks to grasp objects' "$rubble" arena generate --kind blue --out out
+expect_exit 2 '--kind pink' "$rubble" arena generate --kind pink --out out
+printf 'arena:\n  generate:\n    kind: blue\n' >blue.yaml
+expect_exit 3 'blue.yaml:3:.*a blue arena asks to grasp objects' "$rubble" run blue.yaml --out blue
+
 # A room behind a gap too narrow to pass, with a corner nobody can look into: it counts against a map only when asked to.
 cat >gap.yaml <<YAML
 maze: |

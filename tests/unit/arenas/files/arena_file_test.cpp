@@ -103,12 +103,14 @@ TEST(ArenaFile, VictimBoxStandsAtItsWallAndIsOpenToTheRoom) {
   EXPECT_NEAR(anna.facing, 0.0, 1e-12);
   EXPECT_TRUE(anna.sound);
   EXPECT_FALSE(anna.appearance || anna.heat || anna.co2);
-  const auto blocked = [&](double x, double y) {
+  const auto blocked = [&](double x, double y, double z = 0.35) {
     for (const Solid& s : a.solids) {
-      if (s.element == "victim_box" && contains(s.outline, {x, y})) return true;
+      if (s.element == "victim_box" && contains(s.outline, {x, y}) && s.z_bottom <= z && z <= s.z_top) return true;
     }
     return false;
   };
+  EXPECT_TRUE(blocked(0.21, 0.6, 0.39)) << "lid";
+  EXPECT_FALSE(blocked(0.21, 0.6, 0.41)) << "above the lid";
   EXPECT_TRUE(blocked(0.015, 0.6)) << "back";
   EXPECT_TRUE(blocked(0.3, 0.405)) << "side";
   EXPECT_TRUE(blocked(0.3, 0.795)) << "side";
