@@ -19,9 +19,16 @@ enum class ExplorerState { Starting, Driving, Searching, BackingUp, GoingHome, F
 /// by something with every way out tried.
 enum class MissionEnd { UnderWay, Explored, Home, Stuck };
 
+/// Which senses for victims a robot has beside its cameras.
+struct OtherSenses {
+  bool microphones = false;
+  bool co2_probe = false;
+};
+
 /// What the mission's frame asks of an explorer.
 struct Mission {
   double time_limit = 0.0;  ///< from the first tick [s]; 0: none
+  OtherSenses senses{};     ///< fitted
 };
 
 /// Why the explorer did what it did, one line.

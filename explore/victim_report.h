@@ -9,6 +9,17 @@
 
 namespace rubble::explore {
 
+/// Covariance of a place in the map [m^2].
+struct PlaceCovariance {
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+
+  PlaceCovariance operator+(const PlaceCovariance& o) const { return {xx + o.xx, xy + o.xy, yy + o.yy}; }
+  PlaceCovariance operator*(double s) const { return {s * xx, s * xy, s * yy}; }
+};
+
+/// Standard deviation along the worse axis [m].
+double worst_sigma(const PlaceCovariance& covariance);
+
 /// A victim as the explorer believes in it.
 struct VictimReport {
   int id = 0;                        ///< 1, 2, ... in the order of confirmation
@@ -16,6 +27,7 @@ struct VictimReport {
   Stamp stamp;                       ///< of the confirmation
   double confidence = 0.0;           ///< 0..1
   std::vector<robot::CueKind> cues;  ///< kinds seen, ascending
+  PlaceCovariance covariance;        ///< of p_map: of its cues, and of the poses they were sensed from
 };
 
 }  // namespace rubble::explore

@@ -41,8 +41,13 @@ bool in_view(const arenas::Victim& victim, const CueSense& sense, const Eigen::V
 
 }  // namespace
 
-bool CameraView::find(const arenas::Victim& victim, const mrpt::math::TPoint3D& floor) const {
-  return in_view(victim, sensors_.appearance, {floor.x, floor.y, floor.z + sensors_.height}, walk_);
+const CueSense& VictimView::sense_for(const arenas::Victim& victim) const {
+  if (victim.appearance || victim.heat) return sensors_.appearance;
+  return victim.co2 ? sensors_.co2 : sensors_.sound;
+}
+
+bool VictimView::find(const arenas::Victim& victim, const mrpt::math::TPoint3D& floor) const {
+  return in_view(victim, sense_for(victim), {floor.x, floor.y, floor.z + sensors_.height}, walk_);
 }
 
 VictimSensor::VictimSensor(const std::vector<arenas::Victim>& victims, const VictimSensorParameters& parameters,

@@ -40,15 +40,19 @@ struct VictimSensorParameters {
   CueSense co2{robot::CueKind::Co2, false, kPi, 0.9, 0.0, deg_to_rad(75.0), deg_to_rad(30.0), 0.3, 0.2, 0.002, 0.5};
 };
 
-/// What the cameras of a level robot can find in an arena, wherever they are turned to.
-class CameraView {
+/// What a level robot can find in an arena, wherever it is turned to: with its cameras, or, of victims that no camera
+/// finds, with the probe or the microphones.
+class VictimView {
  public:
-  explicit CameraView(const arenas::Arena& arena) : walk_(arenas::faces(arena)) {}
-  double reach() const { return sensors_.appearance.range; }  ///< [m]
-  /// Of a robot that stands at `floor` [m]: in reach, on the open side of the box and on a line that no face cuts.
+  explicit VictimView(const arenas::Arena& arena) : walk_(arenas::faces(arena)) {}
+  double reach(const arenas::Victim& victim) const { return sense_for(victim).range; }  ///< [m]
+  /// Of a robot that stands at `floor` [m]: in reach, on the open side of the box and on a line that no face cuts, as
+  /// far as the sense needs that.
   bool find(const arenas::Victim& victim, const mrpt::math::TPoint3D& floor) const;
 
  private:
+  const CueSense& sense_for(const arenas::Victim& victim) const;
+
   VictimSensorParameters sensors_;
   RayWalk walk_;
 };

@@ -50,8 +50,8 @@ void parse_cells(const std::string& cells, arenas::GenerateConfig& config) {
 }
 
 /// Those that say nothing about an arena that is read from a file.
-constexpr const char* kGeneratorOptions[] = {"--kind",  "--cells", "--seed",  "--ramps",
-                                             "--rough", "--paper", "--loops", "--victims"};
+constexpr const char* kGeneratorOptions[] = {"--kind",  "--cells", "--seed",    "--ramps",       "--rough",
+                                             "--paper", "--loops", "--victims", "--sound-alone", "--co2-alone"};
 
 /// A league's file may have parts nobody knows, any file a poor start: that is told, and the arena is shown.
 arenas::Arena load(const std::string& path) {
@@ -166,6 +166,8 @@ void declare_generator(Options& o, ArenaArguments& a) {
   o.number("--paper", config.paper, 0.0, 1.0, "Share of pallets with paper, 0..1");
   o.number("--loops", config.loops, 0.0, 1.0, "Share of inner walls taken away, 0..1");
   o.whole("--victims", config.victims, 0, 1000, "Number of victims");
+  o.number("--sound-alone", config.sound_alone, 0.0, 1.0, "Share of the victims that are heard only, 0..1");
+  o.number("--co2-alone", config.co2_alone, 0.0, 1.0, "Share of the victims that are smelt only, 0..1");
 }
 
 }  // namespace

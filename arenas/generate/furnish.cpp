@@ -150,6 +150,18 @@ std::vector<PlacedVictim> place_victims(const Relief& relief, const Maze& maze, 
   return victims;
 }
 
+void hide_victims(int sound, int co2, Rng& rng, std::vector<PlacedVictim>& victims) {
+  std::vector<PlacedVictim*> order;
+  for (PlacedVictim& victim : victims) order.push_back(&victim);
+  shuffle(order, rng);
+  for (std::size_t i = 0; i < order.size() && i < static_cast<std::size_t>(sound + co2); ++i) {
+    PlacedVictim& victim = *order[i];
+    victim.appearance = victim.heat = false;
+    victim.sound = i < static_cast<std::size_t>(sound);
+    victim.co2 = !victim.sound;
+  }
+}
+
 void scatter_paper(const Relief& relief, std::vector<Cell> taken, int count, Rng& rng, Furniture& furniture) {
   for (const PlacedVictim& victim : furniture.victims) taken.push_back(victim.cell);
   std::vector<Cell> cells = all_but(relief, taken);

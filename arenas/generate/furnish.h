@@ -14,7 +14,7 @@ struct PlacedVictim {
   Cell cell;
   mrpt::math::TPoint2D position;  ///< middle of the box [m]
   int facing = 0;                 ///< quarter turns from east
-  bool heat = true, sound = false, co2 = false;
+  bool appearance = true, heat = true, sound = false, co2 = false;
 };
 
 /// What lies and stands about in a generated arena.
@@ -28,6 +28,9 @@ struct Furniture {
 /// ends and corners come first, flat ones before ramps. Beside a box 0.8 m stay free.
 std::vector<PlacedVictim> place_victims(const Relief& relief, const Maze& maze, const std::vector<Cell>& taken,
                                         int count, Rng& rng);
+
+/// Leaves of `sound` victims the sound alone and of `co2` others the CO2 alone, drawn among all.
+void hide_victims(int sound, int co2, Rng& rng, std::vector<PlacedVictim>& victims);
 
 /// Adds loose sheets (and in about half of the pallets crumpled balls) to `cells` random pallets that are neither
 /// `taken` nor a victim's.

@@ -46,6 +46,8 @@ void check_config(const GenerateConfig& config) {
   require(config.paper >= 0.0 && config.paper <= 1.0, "paper must be a share, 0 to 1");
   require(config.loops >= 0.0 && config.loops <= 1.0, "loops must be a share, 0 to 1");
   require(config.rough >= 0.0 && config.rough <= 1.0, "rough must be a share, 0 to 1");
+  require(config.sound_alone >= 0.0 && config.co2_alone >= 0.0 && config.sound_alone + config.co2_alone <= 1.0,
+          "sound_alone and co2_alone must be shares, together 0 to 1");
   require(config.ramp_deg >= 1.0 && config.ramp_deg <= 45.0, "ramp_deg must be 1 to 45");
 }
 
@@ -118,6 +120,19 @@ std::string parapets_text(const std::vector<RoughPallet>& rough, const Maze& maz
   return text;
 }
 
+/// As a list in square brackets.
+std::string cues_text(const PlacedVictim& victim) {
+  std::string text;
+  const auto add = [&](bool gives, const char* cue) {
+    if (gives) text += (text.empty() ? "" : ", ") + std::string(cue);
+  };
+  add(victim.appearance, "appearance");
+  add(victim.heat, "heat");
+  add(victim.sound, "sound");
+  add(victim.co2, "co2");
+  return "[" + text + "]";
+}
+
 std::string victims_text(const std::vector<PlacedVictim>& victims) {
   std::string text;
   for (std::size_t i = 0; i < victims.size(); ++i) {
@@ -125,8 +140,8 @@ std::string victims_text(const std::vector<PlacedVictim>& victims) {
     text += i == 0 ? "\nvictims:\n" : "";
     text += "  - {name: victim" + std::to_string(i + 1) + ", x_m: " + number(victim.position.x) +
             ", y_m: " + number(victim.position.y) +
-            ", facing_deg: " + std::to_string(victim.facing == 3 ? -90 : 90 * victim.facing) + ", cues: [appearance" +
-            (victim.heat ? ", heat" : "") + (victim.sound ? ", sound" : "") + (victim.co2 ? ", co2" : "") + "]}\n";
+            ", facing_deg: " + std::to_string(victim.facing == 3 ? -90 : 90 * victim.facing) +
+            ", cues: " + cues_text(victim) + "}\n";
   }
   return text;
 }
@@ -148,6 +163,12 @@ std::string paper_text(const Furniture& furniture) {
             ", radius_m: " + number(ball.radius) + "}\n";
   }
   return text;
+}
+
+/// What the head of the file says of victims that no camera finds.
+std::string hidden_text(const GenerateConfig& config) {
+  return (config.sound_alone > 0.0 ? ", sound alone " + number(config.sound_alone) : "") +
+         (config.co2_alone > 0.0 ? ", CO2 alone " + number(config.co2_alone) : "");
 }
 
 }  // namespace
@@ -175,6 +196,7 @@ std::string generate_arena(const GenerateConfig& config) {
   Rng rough_rng(config.seed, "arena rough");
   Rng throw_rng(config.seed, "arena step fields");
   Rng victim_rng(config.seed, "arena victims");
+  Rng signs_rng(config.seed, "arena victim signs");
   Rng paper_rng(config.seed, "arena paper");
 
   const int cells = config.columns * config.rows;
@@ -192,6 +214,9 @@ std::string generate_arena(const GenerateConfig& config) {
   check_victims(config, taken.size());
   Furniture furniture;
   furniture.victims = place_victims(relief, maze, taken, config.victims, victim_rng);
+  const int sound = static_cast<int>(std::llround(config.sound_alone * config.victims));
+  const int co2 = std::min(static_cast<int>(std::llround(config.co2_alone * config.victims)), config.victims - sound);
+  hide_victims(sound, co2, signs_rng, furniture.victims);
   scatter_paper(relief, taken, static_cast<int>(std::llround(config.paper * cells)), paper_rng, furniture);
 
   const std::string size = std::to_string(config.columns) + "x" + std::to_string(config.rows);
@@ -199,7 +224,7 @@ std::string generate_arena(const GenerateConfig& config) {
   const std::string obstacles = config.kind == ArenaKind::Yellow ? "" : ", rough " + number(config.rough);
   std::string text = "# A random " + name_of(config.kind) + " arena: " + size + " pallets, seed " + seed + ", ramps " +
                      number(config.ramps) + obstacles + ", paper " + number(config.paper) + ", loops " +
-                     number(config.loops) + ", victims " + std::to_string(config.victims) + ".\n";
+                     number(config.loops) + ", victims " + std::to_string(config.victims) + hidden_text(config) + ".\n";
   text += "name: " + name_of(config.kind) + "_" + size + "_" + seed + "\n";
   text += "ramp_deg: " + number(config.ramp_deg) + "\n\nmaze: |\n";
   for (const std::string& line : draw(drawing_of(relief, maze, start))) text += "  " + line + "\n";

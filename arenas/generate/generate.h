@@ -33,6 +33,8 @@ struct GenerateConfig {
   double loops = 0.2;   ///< share of the inner walls of a perfect maze taken away, 0..1
   double rough = 0.25;  ///< orange, red: share of pallets with the kind's obstacles (reached as far as the maze allows)
   int victims = 4;
+  double sound_alone = 0.0;  ///< share of the victims that are heard only, neither seen nor warm, 0..1
+  double co2_alone = 0.0;    ///< share that is smelt only; both shares together no more than 1
   double ramp_deg = 10.0;
 };
 

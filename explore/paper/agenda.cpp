@@ -253,7 +253,7 @@ Order Agenda::finish_searching(const Situation& situation) {
     begin_round(*news, situation.now);
     return {};
   }
-  const std::string why = goal() == Goal::Place ? "all visible floor searched" : "";
+  const std::string why = goal() == Goal::Place ? situation.search.done() : "";
   if (!config_.return_home) return finish(MissionEnd::Explored, why, situation.now);
   go_home(why, situation.now);
   return {};

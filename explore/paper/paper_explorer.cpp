@@ -40,7 +40,7 @@ PaperExplorer::PaperExplorer(const robot::RobotModel& model, const PaperExplorer
       straight_on_(model),
       victims_(config.victims, config.search,
                std::max(config.planner.transform.d_min, model.swing_radius()) + kTurningRoom,
-               model.swing_radius() + kLittleRoom),
+               model.swing_radius() + kLittleRoom, mission.senses),
       left_alone_(config.felt, config.planner.same_target),
       home_way_(mission.time_limit) {}
 

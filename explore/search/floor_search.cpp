@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/planar.h"
+#include "base/wall_between.h"
 
 namespace rubble::explore {
 namespace {
@@ -17,6 +18,14 @@ constexpr double kFacing = deg_to_rad(8.0);     ///< [rad]
 constexpr double kMoved = 0.05;                 ///< a look that moved less shows the same, to a cell [m]
 constexpr double kMovedTurn = deg_to_rad(2.0);  ///< likewise
 constexpr double kSubjectRadius = 0.25;         ///< given up together with a place that cannot be seen [m]
+constexpr double kHearing = 1.4;                ///< floor so near is listened to, a little less than sound reaches [m]
+constexpr double kSmelling = 0.85;              ///< and so near it is smelt [m]
+constexpr double kNose = deg_to_rad(160.0);     ///< by a probe that points ahead
+constexpr double kAtSuspect = 4.0;              ///< stands so long for one [s]
+constexpr double kSameSuspect = 0.3;            ///< [m]
+constexpr double kAnotherSide = 0.5;            ///< it is visited again from so far from where it was before [m]
+constexpr double kBox = 0.35;                   ///< a wall so near before a suspect may be the side of its box [m]
+const std::vector<double> kSuspectDistances = {0.6, 0.75, 0.5, 0.9, 1.1};
 
 /// The floor that decides what a look sees: what it saw, and the cells around, where its rays ended.
 OccupancyGrid ground_of(const Grid<Faces>& seen, const OccupancyGrid& floor) {
@@ -35,6 +44,32 @@ OccupancyGrid ground_of(const Grid<Faces>& seen, const OccupancyGrid& floor) {
 
 }  // namespace
 
+FloorSearch::FloorSearch(const SearchConfig& config, double room, double tight, const OtherSenses& others)
+    : config_(config), room_(room), tight_(tight), searched_(config), squarely_(config, kSquarely) {
+  SearchConfig heard = config, smelt = config;
+  heard.faces = false;
+  heard.field_of_view = 2.0 * kPi;
+  heard.range = kHearing;
+  smelt.field_of_view = kNose;
+  smelt.range = kSmelling;
+  if (others.microphones) others_.push_back({Record::Heard, heard, SearchedArea(heard)});
+  if (others.co2_probe) others_.push_back({Record::Smelt, smelt, SearchedArea(smelt)});
+}
+
+SearchedArea& FloorSearch::record(Record record) {
+  for (Other& other : others_)
+    if (other.record == record) return other.area;
+  return record == Record::Squarely ? squarely_ : searched_;
+}
+
+std::string FloorSearch::done() const {
+  std::string text = "all visible floor searched";
+  for (std::size_t i = 0; i < others_.size(); ++i)
+    text += std::string(i + 1 == others_.size() ? " and " : ", ") +
+            (others_[i].record == Record::Heard ? "listened to" : "smelt");
+  return text;
+}
+
 bool FloorSearch::look(const Traversable& floor, const TPose2D& T_map_base, double turn_rate, Stamp now) {
   if (!config_.on || now < next_look_ || std::abs(turn_rate) > kTurnRate) return false;
   next_look_ = now + kLookPeriod;
@@ -47,11 +82,28 @@ bool FloorSearch::look(const Traversable& floor, const TPose2D& T_map_base, doub
 bool FloorSearch::look_around(const Traversable& floor, const TPose2D& T_map_base) {
   see_floor(floor, config_, T_map_base, view_);
   const bool anyhow = searched_.look(floor, view_);
-  return squarely_.look(floor, view_) || anyhow;
+  bool news = squarely_.look(floor, view_) || anyhow;
+  for (Other& other : others_) {
+    see_floor(floor, other.config, T_map_base, other.view);
+    news = other.area.look(floor, other.view) || news;
+  }
+  return news;
 }
 
 FloorSearch::Look FloorSearch::last_look(const Traversable& floor, const Anchor& from) const {
-  return {from, from.T_map_base, searched_.seen(), squarely_.seen(), ground_of(searched_.seen(), floor.cells)};
+  Look look{from, from.T_map_base, searched_.seen(), squarely_.seen(), ground_of(searched_.seen(), floor.cells), {}};
+  for (const Other& other : others_)
+    look.others.push_back({other.area.seen(), ground_of(other.area.seen(), floor.cells)});
+  return look;
+}
+
+/// Whether the floor is as it was when the look was made, wherever it saw.
+bool FloorSearch::same_ground(const Look& look, const Traversable& floor) const {
+  const auto same = [&](const Grid<Faces>& seen, const OccupancyGrid& ground) {
+    return ground.cells() == ground_of(seen, floor.cells).cells();
+  };
+  return same(look.anyhow, look.ground) && std::all_of(look.others.begin(), look.others.end(),
+                                                       [&](const OtherLook& o) { return same(o.seen, o.ground); });
 }
 
 bool FloorSearch::moved(const Look& look) {
@@ -73,18 +125,21 @@ bool FloorSearch::follow(const slam::Mapper& mapper) {
 void FloorSearch::look_again(const Traversable& floor) {
   searched_.clear();
   squarely_.clear();
+  for (Other& other : others_) other.area.clear();
   for (Look& look : looks_) {
-    if (moved(look) || look.ground.cells() != ground_of(look.anyhow, floor.cells).cells()) {
+    if (moved(look) || !same_ground(look, floor)) {
       look_around(floor, look.anchor.T_map_base);
       look = last_look(floor, look.anchor);
     } else {
       searched_.look(floor.frame(), look.anyhow);
       squarely_.look(floor.frame(), look.squarely);
+      for (std::size_t i = 0; i < others_.size(); ++i) others_[i].area.look(floor.frame(), look.others[i].seen);
     }
   }
   for (const GivenUp& place : given_up_)
-    record(place.squarely)
-        .give_up(floor, place.anchor.T_map_base.composePoint(place.p_base), kSubjectRadius, place.faces);
+    if (place.record != Record::Suspect)
+      record(place.record)
+          .give_up(floor, place.anchor.T_map_base.composePoint(place.p_base), kSubjectRadius, place.faces);
 }
 
 bool FloorSearch::reconsider(const Traversable& floor) {
@@ -95,22 +150,30 @@ bool FloorSearch::reconsider(const Traversable& floor) {
 }
 
 bool FloorSearch::subject_seen(const Traversable& floor) const {
+  if (subject_.record == Record::Suspect) return !is_suspect(subject_.at);
   const Cell c = floor.cells.cell(subject_.at);
   if (c.x < 1 || c.y < 1 || c.x + 1 >= floor.cells.width() || c.y + 1 >= floor.cells.height()) return false;
-  return (record(subject_.squarely).missing(floor, c) & subject_.faces) == 0;
+  return (record(subject_.record).missing(floor, c) & subject_.faces) == 0;
 }
 
 void FloorSearch::give_up_subject(const Traversable& floor, const Anchor& here) {
-  given_up_.push_back({here, here.T_map_base.inverseComposePoint(subject_.at), subject_.faces, subject_.squarely});
-  record(subject_.squarely).give_up(floor, subject_.at, kSubjectRadius, subject_.faces);
+  given_up_.push_back({here, here.T_map_base.inverseComposePoint(subject_.at), subject_.faces, subject_.record});
+  if (subject_.record != Record::Suspect)
+    record(subject_.record).give_up(floor, subject_.at, kSubjectRadius, subject_.faces);
 }
 
 std::vector<Source> FloorSearch::sources(const Traversable& floor, Subjects subjects,
                                          const std::function<std::optional<double>(const TPoint2D&)>& head_start) {
-  views_squarely_ = subjects == Subjects::Squarely;
-  views_ = viewpoints(floor, record(views_squarely_), config_, room_, tight_, subjects);
+  const Record cameras = subjects == Subjects::Squarely ? Record::Squarely : Record::Anyhow;
+  views_.clear();
+  add_views(viewpoints(floor, record(cameras), config_, room_, tight_, subjects), cameras);
+  if (subjects == Subjects::All) {
+    for (const Other& other : others_)
+      add_views(viewpoints(floor, other.area, other.config, room_, tight_, subjects), other.record);
+    add_suspects(floor);
+  }
   std::vector<Source> sources;
-  for (const Viewpoint& view : views_) {
+  for (const View& view : views_) {
     if (const std::optional<double> start = head_start(floor.cells.centre(view.cell)))
       sources.push_back({view.cell, *start});
   }
@@ -134,23 +197,72 @@ double FloorSearch::faces_in_view(const Traversable& floor, Cell from) const {
   return faces * resolution;
 }
 
+void FloorSearch::add_views(const std::vector<Viewpoint>& views, Record record) {
+  for (const Viewpoint& view : views) views_.push_back({view, record});
+}
+
+bool FloorSearch::is_suspect(const TPoint2D& place) const {
+  return std::any_of(suspects_.begin(), suspects_.end(),
+                     [&](const Suspect& s) { return distance(s.p_map, place) < kSameSuspect; });
+}
+
+/// From near, where nothing but the side of its box stands between; not from where it was visited before.
+void FloorSearch::add_suspects(const Traversable& floor) {
+  const double cell = floor.frame().resolution;
+  for (const Suspect& suspect : suspects_) {
+    const bool given_up = std::any_of(given_up_.begin(), given_up_.end(), [&](const GivenUp& g) {
+      return g.record == Record::Suspect &&
+             distance(g.anchor.T_map_base.composePoint(g.p_base), suspect.p_map) < kSameSuspect;
+    });
+    if (given_up) continue;
+    const Cell at = floor.cells.cell(suspect.p_map);
+    const std::size_t before = views_.size();
+    for (const double d_min : {room_, tight_}) {
+      if (views_.size() > before) break;
+      for (const Cell step : steps_around(kSuspectDistances, kSuspectDistances.back(), cell)) {
+        const Cell c{at.x + step.x, at.y + step.y};
+        if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free || floor.clearance[c] < d_min) continue;
+        const TPoint2D from = floor.cells.centre(c);
+        const bool again = std::any_of(suspect.visited_from.begin(), suspect.visited_from.end(),
+                                       [&](const TPoint2D& p) { return distance(p, from) < kAnotherSide; });
+        const TPoint2D way = suspect.p_map - from;
+        const double open = std::max(0.0, way.norm() - kBox);
+        if (again || wall_between(floor.cells, from, from + way * (open / way.norm()))) continue;
+        views_.push_back({{c, suspect.p_map, kFloor}, Record::Suspect});
+      }
+    }
+  }
+}
+
+/// How exactly a sense must be turned to a place [rad].
+double FloorSearch::facing(Record record) const {
+  constexpr double kMargin = deg_to_rad(30.0);
+  for (const Other& other : others_)
+    if (other.record == record) return std::max(kFacing, 0.5 * other.config.field_of_view - kMargin);
+  return kFacing;
+}
+
+void FloorSearch::start_dwell(Stamp now) {
+  dwell_until_ = now + (subject_.record == Record::Suspect ? kAtSuspect : config_.dwell);
+}
+
 void FloorSearch::choose_subject(Cell viewpoint) {
-  for (const Viewpoint& view : views_)
-    if (view.cell == viewpoint) subject_ = {view.subject, view.faces, views_squarely_};
+  for (const View& view : views_)
+    if (view.cell == viewpoint) subject_ = {view.subject, view.faces, view.record};
 }
 
 std::optional<double> FloorSearch::turn_to_subject(const Traversable& floor, const TPose2D& T_map_base) {
   double turn = kPi;
-  for (const Viewpoint& view : views_) {
+  for (const View& view : views_) {
     if (distance(floor.cells.centre(view.cell), {T_map_base.x, T_map_base.y}) > kAtViewpoint) continue;
     const double bearing = std::atan2(view.subject.y - T_map_base.y, view.subject.x - T_map_base.x);
     const double to = wrap_angle(bearing - T_map_base.phi);
     if (std::abs(to) >= std::abs(turn)) continue;
     turn = to;
-    subject_ = {view.subject, view.faces, views_squarely_};
+    subject_ = {view.subject, view.faces, view.record};
   }
   turned_to_ = subject_;
-  return std::abs(turn) > kFacing ? std::optional<double>(turn) : std::nullopt;
+  return std::abs(turn) > facing(subject_.record) ? std::optional<double>(turn) : std::nullopt;
 }
 
 void FloorSearch::start_dwell_as_turned(Stamp now) {
@@ -165,7 +277,7 @@ bool FloorSearch::dwelling(const Traversable& floor, const TPose2D& T_map_base, 
   dwell_until_ = Stamp::never();
   dwell_over_ = true;
   look_around(floor, T_map_base);
-  if (!subject_seen(floor)) give_up_subject(floor, {now, T_map_base});
+  if (subject_.record != Record::Suspect && !subject_seen(floor)) give_up_subject(floor, {now, T_map_base});
   return false;
 }
 

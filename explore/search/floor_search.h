@@ -2,22 +2,30 @@
 
 #include <functional>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/stamp.h"
 #include "explore/anchor.h"
+#include "explore/explorer.h"
 #include "explore/plan/exploration_transform.h"
 #include "explore/search/searched_area.h"
 
 namespace rubble::explore {
+
+/// A place that may be a victim's, known by sound or CO2.
+struct Suspect {
+  mrpt::math::TPoint2D p_map;                      ///< [m]
+  std::vector<mrpt::math::TPoint2D> visited_from;  ///< where the robot stood for it before [m]
+};
 
 /// The search of the mapped floor for victims: what was looked at, from where to look next, and holding still there.
 class FloorSearch {
  public:
   /// `room`: clearance a viewpoint should have, for the robot turns on the spot there [m]; `tight`: where none has,
   /// this.
-  FloorSearch(const SearchConfig& config, double room, double tight)
-      : config_(config), room_(room), tight_(tight), searched_(config), squarely_(config, kSquarely) {}
+  FloorSearch(const SearchConfig& config, double room, double tight, const OtherSenses& others = {});
 
   bool on() const { return config_.on; }
   /// Whether faces are looked at squarely as well, when all else was searched.
@@ -26,6 +34,17 @@ class FloorSearch {
   }
   /// There are victims behind holes in walls.
   void expect_holes() { holes_ = true; }
+
+  /// What all the searching comes to, in words.
+  std::string done() const;
+
+  /// The places that may be victims' as far as is known now: they are visited together with what is left to be
+  /// searched.
+  void set_suspects(std::vector<Suspect> suspects) { suspects_ = std::move(suspects); }
+  /// The suspect that the robot stood for, once its dwell is over.
+  std::optional<mrpt::math::TPoint2D> visited_suspect() const {
+    return dwell_over_ && subject_.record == Record::Suspect ? std::optional(subject_.at) : std::nullopt;
+  }
 
   /// Records what the victim sensors see from here, a few times a second, and not while turning (at `turn_rate`
   /// [rad/s]) too fast to see. True when it did.
@@ -56,7 +75,7 @@ class FloorSearch {
   /// [rad]; nothing when it already lies ahead.
   std::optional<double> turn_to_subject(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
 
-  void start_dwell(Stamp now) { dwell_until_ = now + config_.dwell; }
+  void start_dwell(Stamp now);
   /// The same for what the last turn was made to, whatever was planned meanwhile.
   void start_dwell_as_turned(Stamp now);
   /// True while the robot holds still before the place to face. At the end that place counts as searched.
@@ -69,22 +88,44 @@ class FloorSearch {
   bool staring(bool undecided, Stamp now);
 
  private:
+  /// What is to be searched: by cameras anyhow or squarely, by the other senses; or one of the suspects.
+  enum class Record { Anyhow, Squarely, Heard, Smelt, Suspect };
+  /// What a sense beside the cameras has searched.
+  struct Other {
+    Record record;
+    SearchConfig config;
+    SearchedArea area;
+    FloorInView view{};  ///< of the look under way
+  };
+  struct View : Viewpoint {
+    Record record = Record::Anyhow;
+  };
+
   bool look_around(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
-  SearchedArea& record(bool squarely) { return squarely ? squarely_ : searched_; }
-  const SearchedArea& record(bool squarely) const { return squarely ? squarely_ : searched_; }
+  SearchedArea& record(Record record);
+  const SearchedArea& record(Record record) const { return const_cast<FloorSearch*>(this)->record(record); }
+  void add_views(const std::vector<Viewpoint>& views, Record record);
+  void add_suspects(const Traversable& floor);
+  bool is_suspect(const mrpt::math::TPoint2D& place) const;
+  double facing(Record record) const;
 
   /// A place that could not be looked at, kept relative to where the robot gave it up.
   struct GivenUp {
     Anchor anchor;
     mrpt::math::TPoint2D p_base;
     Faces faces;
-    bool squarely;
+    Record record;
   };
   /// The place to face.
   struct Subject {
     mrpt::math::TPoint2D at;  ///< [m, map frame]
     Faces faces = 0;
-    bool squarely = false;
+    Record record = Record::Anyhow;
+  };
+  /// What an other sense found in a look, and the floor there.
+  struct OtherLook {
+    Grid<Faces> seen;
+    OccupancyGrid ground;
   };
   /// A look that showed something new.
   struct Look {
@@ -93,10 +134,12 @@ class FloorSearch {
     Grid<Faces> anyhow;           ///< what it saw then ...
     Grid<Faces> squarely;
     OccupancyGrid ground;  ///< ... and the floor there
+    std::vector<OtherLook> others;
   };
 
   Look last_look(const Traversable& floor, const Anchor& from) const;
   static bool moved(const Look& look);
+  bool same_ground(const Look& look, const Traversable& floor) const;
 
   SearchConfig config_;
   double room_;
@@ -104,8 +147,9 @@ class FloorSearch {
   SearchedArea searched_;
   SearchedArea squarely_;  ///< what was looked at squarely
   FloorInView view_;       ///< of the look under way
-  std::vector<Viewpoint> views_;
-  bool views_squarely_ = false;  ///< they are to look squarely from
+  std::vector<Other> others_;
+  std::vector<Suspect> suspects_;
+  std::vector<View> views_;
   Subject subject_;
   Subject turned_to_;  ///< of the last turn
   std::vector<Look> looks_;

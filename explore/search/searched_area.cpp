@@ -315,9 +315,6 @@ Grid<Faces> SearchedArea::unsearched(const Traversable& floor) const {
   return open;
 }
 
-namespace {
-
-/// Steps from a subject to places around it.
 std::vector<Cell> steps_around(const std::vector<double>& distances, double range, double cell) {
   std::vector<Cell> steps;
   for (const double distance : distances)
@@ -328,8 +325,6 @@ std::vector<Cell> steps_around(const std::vector<double>& distances, double rang
     }
   return steps;
 }
-
-}  // namespace
 
 std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& searched, const SearchConfig& config,
                                   double room, double tight, Subjects subjects) {

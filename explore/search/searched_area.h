@@ -111,6 +111,9 @@ bool in_niche(const Traversable& floor, Cell c, Faces faces);
 /// Which places to find viewpoints for. `Squarely`: faces that were not looked at so.
 enum class Subjects { All, Niches, Squarely };
 
+/// Steps in 16 directions from a place to those around it that are so far away and no farther than `range` [m].
+std::vector<Cell> steps_around(const std::vector<double>& distances, double range, double cell);
+
 constexpr double kAtViewpoint = 0.12;  ///< viewpoints this close are served from where the robot stands [m]
 
 /// A place from which something unsearched can be seen.

@@ -15,6 +15,7 @@ using mrpt::math::TPose2D;
 using robot::CueKind;
 
 constexpr std::size_t kKinds = 4;
+constexpr double kMedianLoss = 1.57;  ///< a median's variance over that of a mean, of normal errors: pi / 2
 
 /// Cameras tell where a victim is, ears and noses only whereabouts.
 bool places_well(CueKind kind) { return kind == CueKind::Appearance || kind == CueKind::Heat; }
@@ -40,6 +41,13 @@ TPoint2D geometric_median(const std::vector<TPoint2D>& points, const std::vector
     median = sum * (1.0 / norm);
   }
   return median;
+}
+
+PlaceCovariance covariance_at(const TPoint2D& place, const TPose2D& T_map_base, const PoseCovariance& covariance) {
+  const double dx = place.x - T_map_base.x, dy = place.y - T_map_base.y;
+  const double xt = covariance(0, 2), yt = covariance(1, 2), tt = covariance(2, 2);
+  return {covariance(0, 0) - 2.0 * dy * xt + dy * dy * tt, covariance(0, 1) + dx * xt - dy * yt - dx * dy * tt,
+          covariance(1, 1) + 2.0 * dx * yt + dx * dx * tt};
 }
 
 /// Whether two places `d` [m] apart, with a sighting of each, are two victims: on the two sides of a wall.
@@ -172,7 +180,8 @@ void VictimSearch::add(const robot::VictimCue& cue, const TPose2D& T_map_base) {
       {[](const TPoint2D&, const TPoint2D&) { return true; }, [](const TPoint2D&, const TPoint2D&) { return false; }});
 }
 
-void VictimSearch::add(const robot::VictimCue& cue, const Anchor& anchor, const Sightlines& sight) {
+void VictimSearch::add(const robot::VictimCue& cue, const Anchor& anchor, const Sightlines& sight,
+                       const PoseCovariance& covariance) {
   if (!std::isfinite(cue.bearing) || !std::isfinite(cue.range) || !(cue.confidence > 0.0)) return;
   Sighting sighting;
   sighting.kind = cue.kind;
@@ -180,6 +189,7 @@ void VictimSearch::add(const robot::VictimCue& cue, const Anchor& anchor, const 
   sighting.anchor = anchor;
   sighting.p_base = {cue.range * std::cos(cue.bearing), cue.range * std::sin(cue.bearing)};
   sighting.p_map = anchor.T_map_base.composePoint(sighting.p_base);
+  sighting.pose = covariance_at(sighting.p_map, anchor.T_map_base, covariance);
   put(std::move(sighting), sight);
   rebuild_reports();
 }
@@ -233,11 +243,36 @@ bool VictimSearch::undecided(Stamp now, double age) const {
   });
 }
 
+void VictimSearch::rename(int id, int older, Stamp confirmed) {
+  for (Cluster& cluster : clusters_)
+    if (cluster.id == id) {
+      cluster.id = older;
+      cluster.confirmed = confirmed;
+    }
+  rebuild_reports();
+}
+
+/// What the cues scatter about their median, and what the poses err that they were sensed from, which all may share.
+PlaceCovariance VictimSearch::covariance_of(const Cluster& cluster) const {
+  PlaceCovariance scatter, poses;
+  double weight = 0.0, squares = 0.0;
+  for (const Sighting& s : cluster.sightings) {
+    const TPoint2D d = s.p_map - cluster.p_map;
+    if (d.norm() > config_.consistency) continue;  // a false alarm
+    scatter = scatter + PlaceCovariance{d.x * d.x, d.x * d.y, d.y * d.y} * s.confidence;
+    poses = poses + s.pose * s.confidence;
+    weight += s.confidence;
+    squares += s.confidence * s.confidence;
+  }
+  if (weight == 0.0) return {};
+  return scatter * (kMedianLoss * squares / (weight * weight * weight)) + poses * (1.0 / weight);
+}
+
 void VictimSearch::rebuild_reports() {
   reports_.clear();
   for (const Cluster& cluster : clusters_) {
     if (cluster.id == 0) continue;
-    VictimReport report{cluster.id, cluster.p_map, cluster.confirmed, 0.0, {}};
+    VictimReport report{cluster.id, cluster.p_map, cluster.confirmed, 0.0, {}, covariance_of(cluster)};
     std::array<double, kKinds> sum{};
     std::array<int, kKinds> count{};
     for (const Sighting& s : cluster.sightings) {

@@ -4,9 +4,11 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "base/angle.h"
+#include "base/pose_covariance.h"
 #include "base/stamp.h"
 #include "explore/anchor.h"
 #include "explore/victim_report.h"
@@ -41,8 +43,9 @@ class VictimSearch {
  public:
   explicit VictimSearch(const VictimSearchConfig& config = {}) : config_(config) {}
 
-  /// Takes a cue that was sensed from `anchor`.
-  void add(const robot::VictimCue& cue, const Anchor& anchor, const Sightlines& sight);
+  /// Takes a cue that was sensed from `anchor`; `covariance`: of that pose.
+  void add(const robot::VictimCue& cue, const Anchor& anchor, const Sightlines& sight,
+           const PoseCovariance& covariance = {});
   /// The same in a place without walls.
   void add(const robot::VictimCue& cue, const mrpt::math::TPose2D& T_map_base);
   /// The mapper corrected its past.
@@ -54,6 +57,11 @@ class VictimSearch {
   /// The confirmed victims by id. Of two that turn out to be one, the older id stays.
   const std::vector<VictimReport>& reports() const { return reports_; }
 
+  /// The id of a victim that was found otherwise.
+  int take_id() { return next_id_++; }
+  /// The victim `id` turned out to be the one that was found otherwise before, as `older`.
+  void rename(int id, int older, Stamp confirmed);
+
  private:
   struct Sighting {
     mrpt::math::TPoint2D p_map;
@@ -62,6 +70,7 @@ class VictimSearch {
     Anchor anchor;                ///< where it was sensed
     mrpt::math::TPoint2D p_base;  ///< the same place as p_map
     bool sure = false;            ///< it cannot be of another cluster nearby
+    PlaceCovariance pose{};       ///< of p_map, by the pose alone
   };
   struct Cluster {
     std::vector<Sighting> sightings;
@@ -88,12 +97,17 @@ class VictimSearch {
   void locate(Cluster& cluster) const;
   void confirm(Cluster& cluster, Stamp stamp);
   void rebuild_reports();
+  PlaceCovariance covariance_of(const Cluster& cluster) const;
 
   VictimSearchConfig config_;
   std::vector<Cluster> clusters_;
   std::vector<VictimReport> reports_;
   int next_id_ = 1;
 };
+
+/// Covariance of a place that is rigidly attached to a pose, which has that covariance.
+PlaceCovariance covariance_at(const mrpt::math::TPoint2D& place, const mrpt::math::TPose2D& T_map_base,
+                              const PoseCovariance& covariance);
 
 /// The point with the least sum of weighted distances to all others (geometric median, Weiszfeld 1937): half of the
 /// points may be anywhere without moving it far.

@@ -12,11 +12,12 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kCueAge = 1.2;    ///< an unconfirmed cue younger than this is worth waiting for [s]
-constexpr double kOfVictim = 0.5;  ///< a cue so near to a confirmed victim is of it [m]
-constexpr double kBehind = 0.08;   ///< a victim lies so far behind the wall, not before it or in its cells [m]
-constexpr double kHand = 0.12;     ///< beside a line of sight through a hole there is wall [m]
-constexpr int kSureOfHoles = 3;    ///< cues
+constexpr double kCueAge = 1.2;     ///< an unconfirmed cue younger than this is worth waiting for [s]
+constexpr double kOfVictim = 0.5;   ///< a cue so near to a confirmed victim is of it [m]
+constexpr double kBehind = 0.08;    ///< a victim lies so far behind the wall, not before it or in its cells [m]
+constexpr double kHand = 0.12;      ///< beside a line of sight through a hole there is wall [m]
+constexpr double kStaredAge = 5.0;  ///< what was smelt so long ago is what the robot stood still for [s]
+constexpr int kSureOfHoles = 3;     ///< cues
 
 /// Whether a wall stands between, at least kBehind before `to`.
 bool is_behind_wall(const Traversable& floor, const TPoint2D& from, const TPoint2D& to) {
@@ -40,6 +41,19 @@ bool VictimWatch::hear(const robot::VictimCue& cue, const slam::Mapper& mapper, 
                        const Traversable& floor) {
   if (doubt_.unsure()) return false;
   const Anchor anchor{cue.stamp, mapper.pose_at(cue.stamp).value_or(T_map_base)};
+  const std::size_t before = reports_.size();
+  if (FaintSearch::takes(cue.kind)) {
+    faint_.add(cue, anchor, covariance_);
+    sort_faint(floor);
+  } else if (take_in(cue, anchor, floor)) {
+    sort_faint(floor);
+  }
+  rebuild_reports();
+  return reports_.size() > before;
+}
+
+/// A cue of a camera. Says whether a victim was confirmed by it.
+bool VictimWatch::take_in(const robot::VictimCue& cue, const Anchor& anchor, const Traversable& floor) {
   const auto same_side = [&](const TPoint2D& a, const TPoint2D& b) {
     const Cell from = floor.cells.cell(a);
     const Cell to = floor.cells.cell(b);
@@ -48,20 +62,68 @@ bool VictimWatch::hear(const robot::VictimCue& cue, const slam::Mapper& mapper, 
   };
   const std::size_t before = victims_.reports().size();
   const auto hidden = [&](const TPoint2D& from, const TPoint2D& to) { return is_behind_wall(floor, from, to); };
-  victims_.add(cue, anchor, {same_side, hidden});
+  victims_.add(cue, anchor, {same_side, hidden}, covariance_);
   ask_for_holes(anchor,
                 anchor.T_map_base.composePoint({cue.range * std::cos(cue.bearing), cue.range * std::sin(cue.bearing)}),
                 floor);
   return victims_.reports().size() > before;
 }
 
+/// What is heard and smelt, to the victims that were seen and to places of its own.
+void VictimWatch::sort_faint(const Traversable& floor) {
+  seen_.clear();
+  for (const VictimReport& victim : victims_.reports()) seen_.push_back({victim.id, victim.p_map});
+  const auto hidden = [&](const TPoint2D& from, const TPoint2D& to) { return is_within_wall(floor, from, to); };
+  const std::vector<FaintSearch::Place> before = faint_.places();
+  faint_.sort(seen_, hidden);
+  for (FaintSearch::Seen& victim : seen_) {
+    const auto same = std::find_if(before.begin(), before.end(), [&](const FaintSearch::Place& place) {
+      return place.id != 0 && place.id == victim.is_also;
+    });
+    if (same == before.end() || same->id > victim.id) continue;
+    victims_.rename(victim.id, same->id, same->confirmed);
+    victim.id = same->id;
+  }
+  for (FaintSearch::Place& place : faint_.places())
+    if (place.sure && place.id == 0) place.id = victims_.take_id();
+  tell_suspects();
+}
+
+void VictimWatch::tell_suspects() {
+  std::vector<Suspect> suspects;
+  for (const FaintSearch::Place& place : faint_.places())
+    if (faint_.suspect(place)) suspects.push_back({place.p_map, place.visited_from});
+  search_.set_suspects(std::move(suspects));
+}
+
+void VictimWatch::rebuild_reports() {
+  reports_ = victims_.reports();
+  for (VictimReport& report : reports_)
+    for (const FaintSearch::Seen& victim : seen_) {
+      if (victim.id != report.id) continue;
+      if (victim.sound > 0) report.cues.push_back(robot::CueKind::Sound);
+      if (victim.co2 > 0) report.cues.push_back(robot::CueKind::Co2);
+      break;
+    }
+  for (const FaintSearch::Place& place : faint_.places()) {
+    if (!place.sure) continue;
+    VictimReport report{
+        place.id, place.p_map, place.confirmed, 1.0 - std::exp(-place.evidence), {}, place.covariance + place.poses};
+    if (place.sound > 0) report.cues.push_back(robot::CueKind::Sound);
+    if (place.co2 > 0) report.cues.push_back(robot::CueKind::Co2);
+    reports_.push_back(std::move(report));
+  }
+  std::sort(reports_.begin(), reports_.end(), [](const VictimReport& a, const VictimReport& b) { return a.id < b.id; });
+}
+
 /// A victim in a niche lies before its back, though a cue past the niche's edge may seem to come through it; one that
 /// is seen behind a wall again and again, and hardly ever before it, is seen through a hole.
 void VictimWatch::ask_for_holes(const Anchor& anchor, const TPoint2D& cue, const Traversable& floor) {
+  const std::vector<VictimReport>& seen = victims_.reports();
   const auto away = [&](const VictimReport& victim) { return distance(victim.p_map, cue); };
-  const auto victim = std::min_element(reports().begin(), reports().end(),
+  const auto victim = std::min_element(seen.begin(), seen.end(),
                                        [&](const VictimReport& a, const VictimReport& b) { return away(a) < away(b); });
-  if (victim == reports().end() || away(*victim) > kOfVictim) return;
+  if (victim == seen.end() || away(*victim) > kOfVictim) return;
   Cues& cues = cues_[victim->id];
   ++(is_within_wall(floor, position(anchor.T_map_base), victim->p_map) ? cues.through_wall : cues.in_sight);
   if (cues.through_wall >= kSureOfHoles && cues.through_wall > 2 * cues.in_sight) search_.expect_holes();
@@ -72,11 +134,30 @@ bool VictimWatch::look(const Traversable& floor, const TPose2D& T_map_base, doub
 }
 
 bool VictimWatch::holds_still(const Traversable& floor, const TPose2D& T_map_base, Stamp now) {
-  return search_.staring(victims_.undecided(now, kCueAge), now) || search_.dwelling(floor, T_map_base, now);
+  const bool smelt = faint_.undecided(now, kCueAge);
+  const bool stared = stares_;
+  stares_ = search_.staring(victims_.undecided(now, kCueAge) || smelt, now);
+  // Standing there for a while is a visit to what was smelt.
+  if (stared && !stares_) {
+    for (const FaintSearch::Place& place : std::vector<FaintSearch::Place>(faint_.places()))
+      if (faint_.suspect(place) && place.smelt != Stamp::never() && now - place.smelt < kStaredAge)
+        faint_.visited(place.p_map, position(T_map_base));
+    tell_suspects();
+  }
+  if (stares_) return true;
+  if (search_.dwelling(floor, T_map_base, now)) return true;
+  if (const auto place = search_.visited_suspect()) {
+    faint_.visited(*place, position(T_map_base));
+    tell_suspects();
+  }
+  return false;
 }
 
 bool VictimWatch::follow(const slam::Mapper& mapper) {
   victims_.follow(mapper);
+  faint_.follow(mapper);
+  rebuild_reports();
+  tell_suspects();
   return search_.follow(mapper);
 }
 

@@ -8,6 +8,7 @@
 #include "base/pose_covariance.h"
 #include "base/stamp.h"
 #include "explore/plan/traversable.h"
+#include "explore/search/faint_search.h"
 #include "explore/search/floor_search.h"
 #include "explore/search/pose_doubt.h"
 #include "explore/search/victim_search.h"
@@ -23,12 +24,14 @@ namespace rubble::explore {
 class VictimWatch {
  public:
   /// `room`, `tight`: clearance of viewpoints (FloorSearch) [m].
-  VictimWatch(const VictimSearchConfig& victims, const SearchConfig& search, double room, double tight)
-      : victims_(victims), search_(search, room, tight) {}
+  VictimWatch(const VictimSearchConfig& victims, const SearchConfig& search, double room, double tight,
+              const OtherSenses& others = {})
+      : victims_(victims), search_(search, room, tight, others) {}
 
   /// The pose after a tick of `dt` [s], and its covariance in the map frame.
   void moved(const mrpt::math::TPose2D& T_map_base, const PoseCovariance& covariance, double dt) {
     doubt_.update(T_map_base, covariance, dt);
+    covariance_ = covariance;
   }
   /// Takes in a cue, of a robot that is at T_map_base now; `floor` tells the sides of walls. Says whether a victim was
   /// confirmed by it.
@@ -44,10 +47,14 @@ class VictimWatch {
   bool follow(const slam::Mapper& mapper);
 
   /// The victims it is sure of, by id.
-  const std::vector<VictimReport>& reports() const { return victims_.reports(); }
+  const std::vector<VictimReport>& reports() const { return reports_; }
   FloorSearch& search() { return search_; }
 
  private:
+  bool take_in(const robot::VictimCue& cue, const Anchor& anchor, const Traversable& floor);
+  void sort_faint(const Traversable& floor);
+  void rebuild_reports();
+  void tell_suspects();
   void ask_for_holes(const Anchor& anchor, const mrpt::math::TPoint2D& cue, const Traversable& floor);
 
   /// Of a confirmed victim, counted by whether a wall of the map stands before it.
@@ -56,7 +63,12 @@ class VictimWatch {
     int in_sight = 0;
   };
   PoseDoubt doubt_;
+  PoseCovariance covariance_;  ///< of the pose
   VictimSearch victims_;
+  FaintSearch faint_;
+  std::vector<FaintSearch::Seen> seen_;  ///< the victims of victims_
+  std::vector<VictimReport> reports_;
+  bool stares_ = false;
   FloorSearch search_;
   std::map<int, Cues> cues_;  ///< of confirmed victims, by id
 };

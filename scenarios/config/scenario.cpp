@@ -122,6 +122,8 @@ void bind_generate(Binder& b, arenas::GenerateConfig& g) {
   b.number("paper", g.paper, 0.0, 1.0);
   b.number("loops", g.loops, 0.0, 1.0);
   b.integer("victims", g.victims, 0, 1000);
+  b.number("sound_alone", g.sound_alone, 0.0, 1.0);
+  b.number("co2_alone", g.co2_alone, 0.0, 1.0);
   b.number("ramp_deg", g.ramp_deg, 0.0, 45.0);
   b.number("rough", g.rough, 0.0, 1.0);
 }

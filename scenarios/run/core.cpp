@@ -22,7 +22,9 @@ Core::Core(const Scenario& scenario, const robot::RobotModel& model, bool explor
            std::shared_ptr<const slam::MapBase> base)
     : mapper_(scenario.mapper.make(model, {scenario.seed, run_folder, std::move(base)})),
       levelling_(scenario.levelling, model) {
-  if (explore) explorer_ = scenario.explorer.make(model, {scenario.time_limit});
+  if (explore)
+    explorer_ =
+        scenario.explorer.make(model, {scenario.time_limit, {scenario.sim.microphones, scenario.sim.co2_probe}});
 }
 
 robot::Commands Core::step(const robot::Inputs& inputs) {

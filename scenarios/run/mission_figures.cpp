@@ -200,16 +200,16 @@ int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model) 
   const OccupancyGrid truth = arenas::truth_map(arena);
   const Grid<std::uint8_t> reachable = arenas::reachable_mask(arena, truth, viewer_of(model));
   const arenas::PatchIndex floor(arena);
-  const sim::CameraView cameras(arena);
-  const double reach = cameras.reach();
+  const sim::VictimView senses(arena);
   const auto seen_from = [&](const arenas::Victim& victim) {
+    const double reach = senses.reach(victim);
     const Cell low = truth.cell({victim.position.x - reach, victim.position.y - reach});
     const Cell high = truth.cell({victim.position.x + reach, victim.position.y + reach});
     for (int y = low.y; y <= high.y; ++y)
       for (int x = low.x; x <= high.x; ++x) {
         if (!reachable.inside({x, y}) || reachable[{x, y}] == 0) continue;
         const TPoint2D p = truth.centre({x, y});
-        if (cameras.find(victim, {p.x, p.y, floor.floor_height(p)})) return true;
+        if (senses.find(victim, {p.x, p.y, floor.floor_height(p)})) return true;
       }
     return false;
   };

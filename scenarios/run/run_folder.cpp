@@ -1,6 +1,7 @@
 #include "scenarios/run/run_folder.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -55,6 +56,23 @@ std::string pois_csv(const Scenario& s, const std::vector<explore::VictimReport>
   return csv;
 }
 
+/// What the league's list has no room for: how sure each victim and its place are, and which senses told of it.
+std::string victims_csv(const std::vector<explore::VictimReport>& victims) {
+  static constexpr std::array<const char*, 4> kKinds = {"appearance", "heat", "sound", "co2"};
+  std::string csv = "id,time_s,x_m,y_m,xx_m2,xy_m2,yy_m2,confidence,senses\n";
+  for (const auto& victim : victims) {
+    const explore::PlaceCovariance& c = victim.covariance;
+    std::array<char, 200> line{};
+    std::snprintf(line.data(), line.size(), "%d,%.2f,%.3f,%.3f,%.5f,%.5f,%.5f,%.3f,", victim.id, victim.stamp.seconds(),
+                  victim.p_map.x, victim.p_map.y, c.xx, c.xy, c.yy, victim.confidence);
+    csv += line.data();
+    for (std::size_t i = 0; i < victim.cues.size(); ++i)
+      csv += (i > 0 ? " " : "") + std::string(kKinds.at(static_cast<std::size_t>(victim.cues[i])));
+    csv += "\n";
+  }
+  return csv;
+}
+
 }  // namespace
 
 scoring::LeagueCells league_cells(const slam::CountMap& map) {
@@ -63,9 +81,9 @@ scoring::LeagueCells league_cells(const slam::CountMap& map) {
 
 const std::vector<std::string>& deterministic_artefacts() {
   static const std::vector<std::string> names = {
-      "arena.yaml",        "arena.png", "truth.tif", "truth.png", "log.rlog", "truth.tum", "estimate.tum",
-      "estimate_live.tum", "map.tif",   "map.tfw",   "map.png",   "map.pgm",  "map.yaml",  "pois.csv",
-      "overlay.png",       "error.png", "map.rmap",  "scans.csv", "scans.png"};
+      "arena.yaml",        "arena.png",   "truth.tif", "truth.png", "log.rlog",  "truth.tum", "estimate.tum",
+      "estimate_live.tum", "map.tif",     "map.tfw",   "map.png",   "map.pgm",   "map.yaml",  "pois.csv",
+      "victims.csv",       "overlay.png", "error.png", "map.rmap",  "scans.csv", "scans.png"};
   return names;
 }
 
@@ -283,6 +301,7 @@ void RunFolder::save_map(const Scenario& scenario, const slam::Mapper& mapper,
                            drawing.occupied_threshold);
   });
   write("pois.csv", pois_csv(scenario, victims));
+  write("victims.csv", victims_csv(victims));
 }
 
 void RunFolder::save_truth(const arenas::Arena& arena, const OccupancyGrid& truth) const {

@@ -47,7 +47,7 @@ class RunFolder {
   void append_estimate(const slam::Mapper& mapper);
   /// Lets estimate.tum hold the trajectory as known now.
   void save_estimate(const slam::Mapper& mapper);
-  /// Replaces map.tif, map.tfw, map.png, map.pgm, map.yaml and pois.csv.
+  /// Replaces map.tif, map.tfw, map.png, map.pgm, map.yaml, pois.csv and victims.csv.
   void save_map(const Scenario& scenario, const slam::Mapper& mapper,
                 const std::vector<explore::VictimReport>& victims) const;
   /// Lets `write` make files of these names below the folder it is given (which ends in a slash), then puts them all in

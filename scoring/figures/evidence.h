@@ -67,7 +67,7 @@ struct MissionFigures {
   DriveFigures drive;
   std::uint64_t stalls = 0;           ///< reported by the motors
   double area_per_min = 0.0;          ///< of floor, until 95 % of all that its laser can see were known [m^2/min]
-  std::uint64_t victims_visible = 0;  ///< that a camera could look at from where the robot can get
+  std::uint64_t victims_visible = 0;  ///< that a sensor could find from where the robot can get
   double visible_share = 0.0;         ///< of the truth's floor, what its laser can see from where it can get
 };
 

@@ -221,6 +221,40 @@ TEST(Generate, MorePaperLeavesTheMazeAsItWas) {
   EXPECT_EQ(maze(plain), maze(papered));
 }
 
+/// Who is hidden from cameras is drawn anew; all else of the arena stays.
+TEST(Generate, SharesOfTheVictimsAreHeardOrSmeltAlone) {
+  std::set<std::string> draws;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE(name_of(seed));
+    GenerateConfig config;
+    config.seed = seed;
+    config.victims = 6;
+    const Arena plain = parse_arena(generate_arena(config), "generated");
+    config.sound_alone = 0.5;
+    config.co2_alone = 1.0 / 3.0;
+    const std::string text = generate_arena(config);
+    EXPECT_EQ(text, generate_arena(config));
+    const Arena arena = parse_arena(text, "generated");
+    ASSERT_EQ(arena.victims.size(), 6u);
+    int heard = 0, smelt = 0, seen = 0;
+    std::string draw;
+    for (std::size_t i = 0; i < 6; ++i) {
+      const Victim& v = arena.victims[i];
+      EXPECT_EQ(v.position.x, plain.victims[i].position.x);
+      EXPECT_EQ(v.facing, plain.victims[i].facing);
+      heard += v.sound && !v.co2 && !v.appearance && !v.heat ? 1 : 0;
+      smelt += v.co2 && !v.sound && !v.appearance && !v.heat ? 1 : 0;
+      seen += v.appearance ? 1 : 0;
+      draw += v.appearance ? 'a' : v.sound ? 's' : 'c';
+    }
+    EXPECT_EQ(heard, 3);
+    EXPECT_EQ(smelt, 2);
+    EXPECT_EQ(seen, 1);
+    draws.insert(draw);
+  }
+  EXPECT_GT(draws.size(), 10u);
+}
+
 TEST(Generate, PerfectMazeHasOneWayBetweenPallets) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     GenerateConfig config;
@@ -314,6 +348,8 @@ TEST(Generate, ValuesOutOfRangeAreInputErrors) {
   refuses([](GenerateConfig& c) { c.loops = NAN; });
   refuses([](GenerateConfig& c) { c.victims = 64; });
   refuses([](GenerateConfig& c) { c.ramp_deg = 0.0; });
+  refuses([](GenerateConfig& c) { c.sound_alone = 0.6, c.co2_alone = 0.6; });
+  refuses([](GenerateConfig& c) { c.co2_alone = -0.1; });
 }
 
 }  // namespace

@@ -97,6 +97,23 @@ TEST_F(RunFolderFiles, ARobotsNameStaysOneFieldOfTheListOfVictims) {
   }
 }
 
+TEST_F(RunFolderFiles, VictimsAreListedWithTheirCovarianceAndSenses) {
+  RunFolder folder(path("run"), false);
+  ToldMapper mapper;
+  mapper.see(0.0, 1.0);
+  explore::VictimReport victim;
+  victim.id = 3;
+  victim.p_map = {1.5, -2.0};
+  victim.stamp = Stamp::from_seconds(12.5);
+  victim.confidence = 0.75;
+  victim.cues = {robot::CueKind::Sound, robot::CueKind::Co2};
+  victim.covariance = {0.04, -0.01, 0.09};
+  folder.save_map(default_scenario({}), mapper, {victim});
+  EXPECT_EQ(read(folder.file("victims.csv")),
+            "id,time_s,x_m,y_m,xx_m2,xy_m2,yy_m2,confidence,senses\n"
+            "3,12.50,1.500,-2.000,0.04000,-0.01000,0.09000,0.750,sound co2\n");
+}
+
 TEST_F(RunFolderFiles, OnlyWhatARunWritesIsReplaced) {
   { const RunFolder made(path("run"), false); }
   const std::string run = path("run") + "/";

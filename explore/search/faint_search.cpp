@@ -1,0 +1,296 @@
+#include "explore/search/faint_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/planar.h"
+#include "explore/search/victim_search.h"
+
+namespace rubble::explore {
+
+using mrpt::math::TPoint2D;
+using robot::CueKind;
+
+namespace {
+
+constexpr double kNearest = 0.2;      ///< a robot is never nearer to a victim [m]
+constexpr double kLeastSigma = 0.05;  ///< no cue and no place is known better [m]
+constexpr double kLongestStep = 0.5;  ///< of the least squares [m]
+constexpr double kTail = 2.0;         ///< errors count as linear from here on [standard deviations]
+constexpr double kMost = 0.9;         ///< a place that explains so many cues of another is that one
+constexpr double kVisit = 0.8;        ///< what lies within this of a place that was visited was visited too [m]
+constexpr int kRounds = 2;            ///< of sorting and fitting after each cue
+
+double along(const PlaceCovariance& c, double x, double y) { return x * x * c.xx + 2.0 * x * y * c.xy + y * y * c.yy; }
+
+PlaceCovariance inverse(const PlaceCovariance& m) {
+  const double det = m.xx * m.yy - m.xy * m.xy;
+  return {m.yy / det, -m.xy / det, m.xx / det};
+}
+
+/// What a cue says about a victim at `p`.
+struct Line {
+  double distance;  ///< [m]
+  double x, y;      ///< direction from the robot
+  double across;    ///< by how much the victim lies to the left of p, by the cue's bearing [m]
+  double beyond;    ///< and beyond it, by its range [m]
+};
+
+Line line_to(const TPoint2D& from, double bearing, double range, const TPoint2D& p) {
+  Line line{};
+  const double dx = p.x - from.x, dy = p.y - from.y;
+  line.distance = std::max(std::hypot(dx, dy), kNearest);
+  line.x = dx / line.distance;
+  line.y = dy / line.distance;
+  line.across = wrap_angle(bearing - std::atan2(dy, dx)) * line.distance;
+  line.beyond = range - line.distance;
+  return line;
+}
+
+double square(double x) { return x * x; }
+
+}  // namespace
+
+double worst_sigma(const PlaceCovariance& c) {
+  const double mean = 0.5 * (c.xx + c.yy);
+  return std::sqrt(std::max(0.0, mean + std::hypot(0.5 * (c.xx - c.yy), c.xy)));
+}
+
+void FaintSearch::add(const robot::VictimCue& cue, const Anchor& anchor, const PoseCovariance& covariance) {
+  if (!std::isfinite(cue.bearing) || !std::isfinite(cue.range) || !(cue.confidence > 0.0)) return;
+  cues_.push_back({cue.kind, cue.bearing, std::max(0.0, cue.range), anchor, covariance});
+}
+
+FaintSearch::Match FaintSearch::match(const Cue& cue, const TPoint2D& p, const PlaceCovariance& covariance) const {
+  const FaintSense& s = sense(cue.kind);
+  const Line line = line_to(cue.from(), cue.bearing_map(), cue.range, p);
+  const double least = square(kLeastSigma);
+  const double across = square(s.bearing_sigma * line.distance) + along(covariance, -line.y, line.x) + least;
+  const double beyond = square(s.range_sigma * line.distance) + along(covariance, line.x, line.y) + least;
+  const double error2 = square(line.across) / across + square(line.beyond) / beyond;
+  return {error2, error2 + std::log(across * beyond)};
+}
+
+/// Whether the sense could tell of a victim at `p` at all.
+bool FaintSearch::possible(const Cue& cue, const TPoint2D& p, const HiddenFn& hidden) const {
+  const double margin = 0.3;  // the place errs
+  if (distance(cue.from(), p) > sense(cue.kind).range + margin) return false;
+  // Sound comes over and through boxes, what is smelt does not.
+  return cue.kind == CueKind::Sound || !hidden(cue.from(), p);
+}
+
+/// Each cue to what explains it best.
+void FaintSearch::assign(const std::vector<Seen>& seen, const HiddenFn& hidden) {
+  for (Cue& cue : cues_) {
+    cue.owner = -1;
+    double least = 1e9;
+    const auto offer = [&](const TPoint2D& p, const PlaceCovariance& covariance, int owner) {
+      if (distance(cue.from(), p) > sense(cue.kind).range + 1.0) return;
+      const Match match = this->match(cue, p, covariance);
+      if (match.error2 >= config_.gate || match.surprise >= least || !possible(cue, p, hidden)) return;
+      least = match.surprise;
+      cue.owner = owner;
+    };
+    for (std::size_t i = 0; i < seen.size(); ++i) offer(seen[i].p_map, {}, -2 - static_cast<int>(i));
+    for (std::size_t i = 0; i < places_.size(); ++i)
+      offer(places_[i].p_map, places_[i].covariance, static_cast<int>(i));
+  }
+}
+
+std::vector<const FaintSearch::Cue*> FaintSearch::cues_of(int owner) const {
+  std::vector<const Cue*> cues;
+  for (const Cue& cue : cues_)
+    if (cue.owner == owner) cues.push_back(&cue);
+  return cues;
+}
+
+/// Least squares over bearings and ranges, from where the place is taken to be (Gauss-Newton, Huber's weights). False
+/// without cues.
+bool FaintSearch::fit(Place& place, const std::vector<const Cue*>& cues) const {
+  if (cues.empty()) return false;
+  for (int iteration = 0; iteration < 5; ++iteration) {
+    PlaceCovariance information;
+    double bx = 0.0, by = 0.0;
+    for (const Cue* cue : cues) {
+      const FaintSense& s = sense(cue->kind);
+      const Line line = line_to(cue->from(), cue->bearing_map(), cue->range, place.p_map);
+      const double across = square(s.bearing_sigma * line.distance) + square(kLeastSigma);
+      const double beyond = square(s.range_sigma * line.distance) + square(kLeastSigma);
+      const double error = std::sqrt(square(line.across) / across + square(line.beyond) / beyond);
+      const double weight = error > kTail ? kTail / error : 1.0;
+      const double wa = weight / across, wb = weight / beyond;
+      information.xx += wa * line.y * line.y + wb * line.x * line.x;
+      information.xy += (wb - wa) * line.x * line.y;
+      information.yy += wa * line.x * line.x + wb * line.y * line.y;
+      bx += -wa * line.across * line.y + wb * line.beyond * line.x;
+      by += wa * line.across * line.x + wb * line.beyond * line.y;
+    }
+    const PlaceCovariance covariance = inverse(information);
+    double dx = covariance.xx * bx + covariance.xy * by, dy = covariance.xy * bx + covariance.yy * by;
+    const double step = std::hypot(dx, dy);
+    if (step > kLongestStep) dx *= kLongestStep / step, dy *= kLongestStep / step;
+    place.p_map = {place.p_map.x + dx, place.p_map.y + dy};
+    place.covariance = covariance + PlaceCovariance{square(kLeastSigma), 0.0, square(kLeastSigma)};
+    if (step < 0.005) break;
+  }
+  return true;
+}
+
+void FaintSearch::remove(std::size_t index) {
+  places_.erase(places_.begin() + static_cast<std::ptrdiff_t>(index));
+  for (Cue& cue : cues_) {
+    if (cue.owner == static_cast<int>(index)) cue.owner = -1;
+    if (cue.owner > static_cast<int>(index)) --cue.owner;
+  }
+}
+
+void FaintSearch::refit() {
+  for (std::size_t i = places_.size(); i-- > 0;)
+    if (!fit(places_[i], cues_of(static_cast<int>(i)))) remove(i);
+}
+
+/// What nothing explains is a place of its own; where most of it agrees comes first.
+void FaintSearch::open_places() {
+  while (true) {
+    const std::vector<const Cue*> left = cues_of(-1);
+    if (left.empty()) return;
+    Place best;
+    double most = 0.0;
+    for (const Cue* cue : left) {
+      const TPoint2D from = cue->from();
+      const TPoint2D p{from.x + cue->range * std::cos(cue->bearing_map()),
+                       from.y + cue->range * std::sin(cue->bearing_map())};
+      double evidence = 0.0;
+      for (const Cue* other : left) evidence += error2(*other, p) < 4.0 ? sense(other->kind).evidence : 0.0;
+      if (evidence <= most) continue;
+      most = evidence;
+      best.p_map = p;
+    }
+    std::vector<const Cue*> own;
+    const int index = static_cast<int>(places_.size());
+    for (Cue& cue : cues_)
+      if (cue.owner == -1 && error2(cue, best.p_map) < 4.0) cue.owner = index;
+    own = cues_of(index);
+    if (own.empty()) return;  // a cue too near to tell anything
+    fit(best, own);
+    places_.push_back(best);
+  }
+}
+
+bool FaintSearch::explains(const TPoint2D& p, const std::vector<const Cue*>& cues, const HiddenFn& hidden) const {
+  const auto fits = std::count_if(cues.begin(), cues.end(), [&](const Cue* cue) {
+    return error2(*cue, p) < config_.gate && possible(*cue, p, hidden);
+  });
+  return static_cast<double>(fits) >= kMost * static_cast<double>(cues.size());
+}
+
+/// A place whose cues another one, or a victim that was seen, explains as well is none of its own.
+void FaintSearch::join_places(std::vector<Seen>& seen, const HiddenFn& hidden) {
+  for (std::size_t i = places_.size(); i-- > 0;) {
+    const std::vector<const Cue*> own = cues_of(static_cast<int>(i));
+    const auto known = std::find_if(seen.begin(), seen.end(), [&](const Seen& s) {
+      return distance(s.p_map, places_[i].p_map) < config_.sound.range && explains(s.p_map, own, hidden);
+    });
+    if (known != seen.end()) {
+      if (places_[i].sure && (known->is_also == 0 || places_[i].id < known->is_also)) known->is_also = places_[i].id;
+      for (Cue& cue : cues_)
+        if (cue.owner == static_cast<int>(i)) cue.owner = -2 - static_cast<int>(known - seen.begin());
+      remove(i);
+      continue;
+    }
+    for (std::size_t k = 0; k < i; ++k) {
+      if (distance(places_[k].p_map, places_[i].p_map) > config_.sound.range) continue;
+      std::vector<const Cue*> both = cues_of(static_cast<int>(k));
+      both.insert(both.end(), own.begin(), own.end());
+      Place joint = places_[k];
+      fit(joint, both);
+      if (!explains(joint.p_map, both, hidden)) continue;
+      const Place& other = places_[i];
+      if (other.sure && (!joint.sure || other.id < joint.id)) {
+        joint.id = other.id;
+        joint.confirmed = other.confirmed;
+      }
+      joint.sure = joint.sure || other.sure;
+      joint.looked_at = std::max(joint.looked_at, other.looked_at);
+      joint.visited_from.insert(joint.visited_from.end(), other.visited_from.begin(), other.visited_from.end());
+      places_[k] = joint;
+      for (Cue& cue : cues_)
+        if (cue.owner == static_cast<int>(i)) cue.owner = static_cast<int>(k);
+      remove(i);
+      break;
+    }
+  }
+}
+
+/// Of each owner's cues the newest stay.
+void FaintSearch::forget() {
+  std::vector<std::pair<int, std::size_t>> count;  // by owner
+  for (std::size_t i = cues_.size(); i-- > 0;) {
+    const int owner = cues_[i].owner;
+    auto own = std::find_if(count.begin(), count.end(), [&](const auto& c) { return c.first == owner; });
+    if (own == count.end()) own = count.insert(count.end(), {owner, 0});
+    if (++own->second > config_.most) cues_.erase(cues_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
+void FaintSearch::judge(Place& place, const std::vector<const Cue*>& cues) const {
+  place.sound = place.co2 = 0;
+  place.evidence = 0.0;
+  place.poses = {};
+  double base = 0.0;
+  for (const Cue* cue : cues) {
+    ++(cue->kind == CueKind::Sound ? place.sound : place.co2);
+    place.evidence += sense(cue->kind).evidence;
+    place.newest = std::max(place.newest, cue->anchor.stamp);
+    if (cue->kind == CueKind::Co2) place.smelt = std::max(place.smelt, cue->anchor.stamp);
+    place.poses = place.poses + covariance_at(place.p_map, cue->anchor.T_map_base, cue->pose) *
+                                    (1.0 / static_cast<double>(cues.size()));
+    base = std::max(base, distance(cue->from(), cues.front()->from()));
+  }
+  if (place.sure || place.evidence < 1.0 || worst_sigma(place.covariance) > config_.sure) return;
+  if (place.co2 == 0 && base < config_.base) return;
+  place.sure = true;
+  place.confirmed = place.newest;
+}
+
+void FaintSearch::sort(std::vector<Seen>& seen, const HiddenFn& hidden) {
+  for (int round = 0; round < kRounds; ++round) {
+    assign(seen, hidden);
+    refit();
+    open_places();
+    join_places(seen, hidden);
+  }
+  forget();
+  for (std::size_t i = 0; i < places_.size(); ++i) judge(places_[i], cues_of(static_cast<int>(i)));
+  for (const Cue& cue : cues_)
+    if (cue.owner < -1) {
+      Seen& victim = seen[static_cast<std::size_t>(-2 - cue.owner)];
+      ++(cue.kind == CueKind::Sound ? victim.sound : victim.co2);
+    }
+}
+
+void FaintSearch::follow(const slam::Mapper& mapper) {
+  for (Cue& cue : cues_) cue.anchor.follow(mapper);
+  refit();
+}
+
+bool FaintSearch::suspect(const Place& place) const {
+  return !place.sure && place.evidence >= config_.worth_look && place.evidence >= place.looked_at + config_.worth_look;
+}
+
+bool FaintSearch::undecided(Stamp now, double age) const {
+  return std::any_of(places_.begin(), places_.end(), [&](const Place& place) {
+    return suspect(place) && place.smelt != Stamp::never() && now - place.smelt < age;
+  });
+}
+
+void FaintSearch::visited(const TPoint2D& place, const TPoint2D& from) {
+  for (Place& p : places_) {
+    if (p.sure || distance(p.p_map, place) > kVisit) continue;
+    p.looked_at = p.evidence;
+    p.visited_from.push_back(from);
+  }
+}
+
+}  // namespace rubble::explore
