@@ -18,7 +18,11 @@ constexpr double kNearest = 0.2;      ///< a robot is never nearer to a victim [
 constexpr double kLeastSigma = 0.05;  ///< no cue and no place is known better [m]
 constexpr double kLongestStep = 0.5;  ///< of the least squares [m]
 constexpr double kTail = 2.0;         ///< errors count as linear from here on [standard deviations]
-constexpr double kMost = 0.9;         ///< a place that explains so many cues of another is that one
+constexpr double kFarOff = 2.0;       ///< errors count up to so many times the gate
+constexpr double kChance = 5.0;       ///< what is rarer than so many standard deviations is no chance
+constexpr double kError = 0.3;        ///< by so much a place may be off [m]
+constexpr double kBeside = 1.0;       ///< what lies so near to a place may be of what its cues err by [m]
+constexpr double kShare = 0.4;        ///< of its evidence, or more, is another victim
 constexpr double kVisit = 0.8;        ///< what lies within this of a place that was visited was visited too [m]
 constexpr int kRounds = 2;            ///< of sorting and fitting after each cue
 
@@ -72,12 +76,15 @@ FaintSearch::Match FaintSearch::match(const Cue& cue, const TPoint2D& p, const P
   return {error2, error2 + std::log(across * beyond)};
 }
 
-/// Whether the sense could tell of a victim at `p` at all.
-bool FaintSearch::possible(const Cue& cue, const TPoint2D& p, const HiddenFn& hidden) const {
-  const double margin = 0.3;  // the place errs
-  if (distance(cue.from(), p) > sense(cue.kind).range + margin) return false;
+/// Whether the sense could tell of a victim at `p` at all, or nearer to the robot by no more than `error` [m].
+bool FaintSearch::possible(const Cue& cue, TPoint2D p, double error, const HiddenFn& hidden) const {
+  const TPoint2D way = p - cue.from();
+  const double far = way.norm();
+  if (far > sense(cue.kind).range + kError) return false;
   // Sound comes over and through boxes, what is smelt does not.
-  return cue.kind == CueKind::Sound || !hidden(cue.from(), p);
+  if (cue.kind == CueKind::Sound || far <= error) return true;
+  p = cue.from() + way * ((far - error) / far);
+  return !hidden(cue.from(), p);
 }
 
 /// Each cue to what explains it best.
@@ -85,16 +92,16 @@ void FaintSearch::assign(const std::vector<Seen>& seen, const HiddenFn& hidden) 
   for (Cue& cue : cues_) {
     cue.owner = -1;
     double least = 1e9;
-    const auto offer = [&](const TPoint2D& p, const PlaceCovariance& covariance, int owner) {
+    const auto offer = [&](const TPoint2D& p, const PlaceCovariance& covariance, double error, int owner) {
       if (distance(cue.from(), p) > sense(cue.kind).range + 1.0) return;
       const Match match = this->match(cue, p, covariance);
-      if (match.error2 >= config_.gate || match.surprise >= least || !possible(cue, p, hidden)) return;
+      if (match.error2 >= config_.gate || match.surprise >= least || !possible(cue, p, error, hidden)) return;
       least = match.surprise;
       cue.owner = owner;
     };
-    for (std::size_t i = 0; i < seen.size(); ++i) offer(seen[i].p_map, {}, -2 - static_cast<int>(i));
+    for (std::size_t i = 0; i < seen.size(); ++i) offer(seen[i].p_map, {}, 0.0, -2 - static_cast<int>(i));
     for (std::size_t i = 0; i < places_.size(); ++i)
-      offer(places_[i].p_map, places_[i].covariance, static_cast<int>(i));
+      offer(places_[i].p_map, places_[i].covariance, kError, static_cast<int>(i));
   }
 }
 
@@ -178,49 +185,64 @@ void FaintSearch::open_places() {
   }
 }
 
-bool FaintSearch::explains(const TPoint2D& p, const std::vector<const Cue*>& cues, const HiddenFn& hidden) const {
-  const auto fits = std::count_if(cues.begin(), cues.end(), [&](const Cue* cue) {
-    return error2(*cue, p) < config_.gate && possible(*cue, p, hidden);
-  });
-  return static_cast<double>(fits) >= kMost * static_cast<double>(cues.size());
+/// Whether a victim at `p` explains all these cues: their errors are no larger than chance makes them. Of two normal
+/// errors the squares come to 2 in the mean, with a standard deviation of 2.
+bool FaintSearch::explains(const TPoint2D& p, double error, const std::vector<const Cue*>& cues,
+                           const HiddenFn& hidden) const {
+  double sum = 0.0;
+  for (const Cue* cue : cues)
+    sum +=
+        possible(*cue, p, error, hidden) ? std::min(error2(*cue, p), kFarOff * config_.gate) : kFarOff * config_.gate;
+  const auto n = static_cast<double>(cues.size());
+  return sum <= 2.0 * n + kChance * 2.0 * std::sqrt(n);
 }
 
-/// A place whose cues another one, or a victim that was seen, explains as well is none of its own.
+/// A place whose cues another one, or a victim that was seen, explains together with its own is none of its own.
 void FaintSearch::join_places(std::vector<Seen>& seen, const HiddenFn& hidden) {
   for (std::size_t i = places_.size(); i-- > 0;) {
-    const std::vector<const Cue*> own = cues_of(static_cast<int>(i));
-    const auto known = std::find_if(seen.begin(), seen.end(), [&](const Seen& s) {
-      return distance(s.p_map, places_[i].p_map) < config_.sound.range && explains(s.p_map, own, hidden);
-    });
-    if (known != seen.end()) {
-      if (places_[i].sure && (known->is_also == 0 || places_[i].id < known->is_also)) known->is_also = places_[i].id;
-      for (Cue& cue : cues_)
-        if (cue.owner == static_cast<int>(i)) cue.owner = -2 - static_cast<int>(known - seen.begin());
-      remove(i);
+    const int own = static_cast<int>(i);
+    const auto explained = [&](int owner, TPoint2D p, Place* joint) {
+      if (distance(p, places_[i].p_map) > config_.sound.range) return false;
+      std::vector<const Cue*> both = cues_of(own);
+      const std::vector<const Cue*> others = cues_of(owner);
+      both.insert(both.end(), others.begin(), others.end());
+      if (joint != nullptr && fit(*joint, both)) p = joint->p_map;
+      return explains(p, joint != nullptr ? kError : 0.0, both, hidden);
+    };
+    std::size_t k = 0;
+    while (k < seen.size() && !explained(-2 - static_cast<int>(k), seen[k].p_map, nullptr)) ++k;
+    if (k < seen.size()) {
+      if (places_[i].sure && (seen[k].is_also == 0 || places_[i].id < seen[k].is_also)) seen[k].is_also = places_[i].id;
+      give(own, -2 - static_cast<int>(k));
       continue;
     }
-    for (std::size_t k = 0; k < i; ++k) {
-      if (distance(places_[k].p_map, places_[i].p_map) > config_.sound.range) continue;
-      std::vector<const Cue*> both = cues_of(static_cast<int>(k));
-      both.insert(both.end(), own.begin(), own.end());
+    for (k = 0; k < i; ++k) {
       Place joint = places_[k];
-      fit(joint, both);
-      if (!explains(joint.p_map, both, hidden)) continue;
-      const Place& other = places_[i];
-      if (other.sure && (!joint.sure || other.id < joint.id)) {
-        joint.id = other.id;
-        joint.confirmed = other.confirmed;
-      }
-      joint.sure = joint.sure || other.sure;
-      joint.looked_at = std::max(joint.looked_at, other.looked_at);
-      joint.visited_from.insert(joint.visited_from.end(), other.visited_from.begin(), other.visited_from.end());
+      if (!explained(static_cast<int>(k), joint.p_map, &joint)) continue;
+      take_over(joint, places_[i]);
       places_[k] = joint;
-      for (Cue& cue : cues_)
-        if (cue.owner == static_cast<int>(i)) cue.owner = static_cast<int>(k);
-      remove(i);
+      give(own, static_cast<int>(k));
       break;
     }
   }
+}
+
+/// What is known of a place that turned out to be the same.
+void FaintSearch::take_over(Place& place, const Place& other) {
+  if (other.sure && (!place.sure || other.id < place.id)) {
+    place.id = other.id;
+    place.confirmed = other.confirmed;
+  }
+  place.sure = place.sure || other.sure;
+  place.looked_at = std::max(place.looked_at, other.looked_at);
+  place.visited_from.insert(place.visited_from.end(), other.visited_from.begin(), other.visited_from.end());
+}
+
+/// All cues of a place to another owner; the place is gone.
+void FaintSearch::give(int place, int owner) {
+  for (Cue& cue : cues_)
+    if (cue.owner == place) cue.owner = owner;
+  remove(static_cast<std::size_t>(place));
 }
 
 /// Of each owner's cues the newest stay.
@@ -234,7 +256,7 @@ void FaintSearch::forget() {
   }
 }
 
-void FaintSearch::judge(Place& place, const std::vector<const Cue*>& cues) const {
+void FaintSearch::count(Place& place, const std::vector<const Cue*>& cues) const {
   place.sound = place.co2 = 0;
   place.evidence = 0.0;
   place.poses = {};
@@ -248,8 +270,20 @@ void FaintSearch::judge(Place& place, const std::vector<const Cue*>& cues) const
                                     (1.0 / static_cast<double>(cues.size()));
     base = std::max(base, distance(cue->from(), cues.front()->from()));
   }
+  place.base = base;
+}
+
+/// A place becomes a victim. A few cues beside one that has many are what these err by, and none.
+void FaintSearch::confirm(Place& place, const std::vector<Seen>& seen) const {
   if (place.sure || place.evidence < 1.0 || worst_sigma(place.covariance) > config_.sure) return;
-  if (place.co2 == 0 && base < config_.base) return;
+  if (place.co2 == 0 && place.base < config_.base) return;
+  double beside = 0.0;
+  for (const Place& other : places_)
+    if (&other != &place && distance(other.p_map, place.p_map) < kBeside) beside = std::max(beside, other.evidence);
+  for (const Seen& victim : seen)
+    if (distance(victim.p_map, place.p_map) < kBeside)
+      beside = std::max(beside, victim.sound * config_.sound.evidence + victim.co2 * config_.co2.evidence);
+  if (place.evidence < kShare * beside) return;
   place.sure = true;
   place.confirmed = place.newest;
 }
@@ -262,12 +296,13 @@ void FaintSearch::sort(std::vector<Seen>& seen, const HiddenFn& hidden) {
     join_places(seen, hidden);
   }
   forget();
-  for (std::size_t i = 0; i < places_.size(); ++i) judge(places_[i], cues_of(static_cast<int>(i)));
   for (const Cue& cue : cues_)
     if (cue.owner < -1) {
       Seen& victim = seen[static_cast<std::size_t>(-2 - cue.owner)];
       ++(cue.kind == CueKind::Sound ? victim.sound : victim.co2);
     }
+  for (std::size_t i = 0; i < places_.size(); ++i) count(places_[i], cues_of(static_cast<int>(i)));
+  for (Place& place : places_) confirm(place, seen);
 }
 
 void FaintSearch::follow(const slam::Mapper& mapper) {

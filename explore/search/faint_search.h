@@ -45,6 +45,7 @@ class FaintSearch {
     PlaceCovariance poses{};     ///< by the poses they were sensed from
     int sound = 0, co2 = 0;      ///< its cues
     double evidence = 0.0;
+    double base = 0.0;  ///< how far apart it was sensed from [m]
     bool sure = false;  ///< it is a victim
     int id = 0;         ///< of that victim, given by whom it is told to
     Stamp confirmed = Stamp::never();
@@ -106,17 +107,21 @@ class FaintSearch {
   };
   Match match(const Cue& cue, const mrpt::math::TPoint2D& p, const PlaceCovariance& covariance) const;
   double error2(const Cue& cue, const mrpt::math::TPoint2D& p) const { return match(cue, p, {}).error2; }
-  bool possible(const Cue& cue, const mrpt::math::TPoint2D& p, const HiddenFn& hidden) const;
+  bool possible(const Cue& cue, mrpt::math::TPoint2D p, double error, const HiddenFn& hidden) const;
   void assign(const std::vector<Seen>& seen, const HiddenFn& hidden);
   bool fit(Place& place, const std::vector<const Cue*>& cues) const;
   std::vector<const Cue*> cues_of(int owner) const;
   void refit();
   void open_places();
   void join_places(std::vector<Seen>& seen, const HiddenFn& hidden);
-  bool explains(const mrpt::math::TPoint2D& p, const std::vector<const Cue*>& cues, const HiddenFn& hidden) const;
+  bool explains(const mrpt::math::TPoint2D& p, double error, const std::vector<const Cue*>& cues,
+                const HiddenFn& hidden) const;
+  static void take_over(Place& place, const Place& other);
+  void give(int place, int owner);
   void remove(std::size_t index);
   void forget();
-  void judge(Place& place, const std::vector<const Cue*>& cues) const;
+  void count(Place& place, const std::vector<const Cue*>& cues) const;
+  void confirm(Place& place, const std::vector<Seen>& seen) const;
 
   FaintSearchConfig config_;
   std::vector<Cue> cues_;

@@ -101,16 +101,16 @@ void VictimWatch::rebuild_reports() {
   for (VictimReport& report : reports_)
     for (const FaintSearch::Seen& victim : seen_) {
       if (victim.id != report.id) continue;
-      if (victim.sound > 0) report.cues.push_back(robot::CueKind::Sound);
-      if (victim.co2 > 0) report.cues.push_back(robot::CueKind::Co2);
+      if (victim.sound > 1) report.cues.push_back(robot::CueKind::Sound);
+      if (victim.co2 > 1) report.cues.push_back(robot::CueKind::Co2);
       break;
     }
   for (const FaintSearch::Place& place : faint_.places()) {
     if (!place.sure) continue;
     VictimReport report{
         place.id, place.p_map, place.confirmed, 1.0 - std::exp(-place.evidence), {}, place.covariance + place.poses};
-    if (place.sound > 0) report.cues.push_back(robot::CueKind::Sound);
-    if (place.co2 > 0) report.cues.push_back(robot::CueKind::Co2);
+    if (place.sound > 1) report.cues.push_back(robot::CueKind::Sound);
+    if (place.co2 > 1) report.cues.push_back(robot::CueKind::Co2);
     reports_.push_back(std::move(report));
   }
   std::sort(reports_.begin(), reports_.end(), [](const VictimReport& a, const VictimReport& b) { return a.id < b.id; });

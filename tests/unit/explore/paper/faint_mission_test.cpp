@@ -19,7 +19,7 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using robot::CueKind;
 
-bool crosses(const test::Segment& wall, const TPoint2D& a, const TPoint2D& b) {
+bool cuts(const test::Segment& wall, const TPoint2D& a, const TPoint2D& b) {
   const auto side = [](const TPoint2D& p, const TPoint2D& q, const TPoint2D& r) {
     return (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x) > 0.0;
   };
@@ -27,7 +27,7 @@ bool crosses(const test::Segment& wall, const TPoint2D& a, const TPoint2D& b) {
 }
 
 /// Microphones and a probe, two looks a second, with the errors that docs/simulator.md gives them.
-struct Senses {
+struct FaintSenses {
   const test::Maze& maze;
   std::vector<TPoint2D> victims;
   CueKind kind;
@@ -42,7 +42,7 @@ struct Senses {
       const double far = std::hypot(at.x, at.y), bearing = std::atan2(at.y, at.x);
       const double missed = rng.uniform(), turn = rng.gaussian(), stretch = rng.gaussian();
       const bool open = std::none_of(maze.walls.begin(), maze.walls.end(),
-                                     [&](const test::Segment& wall) { return crosses(wall, position(pose), victim); });
+                                     [&](const test::Segment& wall) { return cuts(wall, position(pose), victim); });
       if (sound ? far > (open ? 3.0 : 1.5) || missed < 0.3 : far > 0.9 || !open || at.x < 0.0 || missed < 0.2) continue;
       inputs.cues.push_back({inputs.now, kind, bearing + turn * deg_to_rad(sound ? 15.0 : 30.0),
                              std::max(0.0, far * (1.0 + stretch * (sound ? 0.4 : 0.3))), sound ? 0.24 : 0.4});
@@ -53,16 +53,16 @@ struct Senses {
   }
 };
 
-struct Outcome {
+struct FaintOutcome {
   int found = 0, wrong = 0;
   MissionEnd end = MissionEnd::UnderWay;
   std::string reason;
 };
 
 /// Four victims in a maze of 5 x 5 pallets, each at a wall of its pallet.
-Outcome mission(CueKind kind, std::uint64_t seed) {
+FaintOutcome faint_mission(CueKind kind, std::uint64_t seed) {
   const test::Maze maze = test::random_maze(5, 5, 0.2, seed);
-  Senses senses{maze, {}, kind, Rng(seed, "senses")};
+  FaintSenses senses{maze, {}, kind, Rng(seed, "senses")};
   for (const auto& [column, row] : {std::pair<int, int>{4, 4}, {0, 4}, {4, 0}, {2, 2}}) {
     const TPoint2D c = maze.centre(column, row);
     TPoint2D nearest{c.x, c.y};
@@ -83,7 +83,7 @@ Outcome mission(CueKind kind, std::uint64_t seed) {
     mapper.update(inputs);
     commands = explorer.next(mapper, inputs);
   }
-  Outcome run;
+  FaintOutcome run;
   run.end = explorer.end();
   run.reason = explorer.reason();
   std::vector<bool> taken(senses.victims.size(), false);
@@ -93,6 +93,7 @@ Outcome mission(CueKind kind, std::uint64_t seed) {
     for (std::size_t i = 0; i < taken.size() && !right; ++i)
       if (!taken[i] && distance(senses.victims[i], p) < 0.6) taken[i] = right = true;
     run.wrong += right ? 0 : 1;
+    EXPECT_TRUE(right) << "at " << p.x << " " << p.y << ", after " << report.stamp.seconds() << " s";
     EXPECT_EQ(report.cues, std::vector<CueKind>{kind});
     EXPECT_LT(worst_sigma(report.covariance), 0.31);
   }
@@ -103,7 +104,7 @@ Outcome mission(CueKind kind, std::uint64_t seed) {
 TEST(FaintMission, VictimsThatAreOnlyHeardAreFoundAndNoOthers) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     SCOPED_TRACE(seed);
-    const Outcome run = mission(CueKind::Sound, seed);
+    const FaintOutcome run = faint_mission(CueKind::Sound, seed);
     EXPECT_EQ(run.found, 4);
     EXPECT_EQ(run.wrong, 0);
     EXPECT_EQ(run.end, MissionEnd::Home);
@@ -114,7 +115,7 @@ TEST(FaintMission, VictimsThatAreOnlyHeardAreFoundAndNoOthers) {
 TEST(FaintMission, VictimsThatAreOnlySmeltAreFoundAndNoOthers) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     SCOPED_TRACE(seed);
-    const Outcome run = mission(CueKind::Co2, seed);
+    const FaintOutcome run = faint_mission(CueKind::Co2, seed);
     EXPECT_EQ(run.found, 4);
     EXPECT_EQ(run.wrong, 0);
     EXPECT_EQ(run.end, MissionEnd::Home);

@@ -161,6 +161,25 @@ TEST(FaintSearch, SeveralVictimsStayAsManyAsTheyAre) {
   EXPECT_EQ(placed, 120) << "each of them once";
 }
 
+/// In neighbouring pallets, nearer to each other than a single cue errs.
+TEST(FaintSearch, TwoThatCrySideBySideAreTwo) {
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    SCOPED_TRACE(seed);
+    Drive drive(seed, {{3.0, 0.7}, {3.9, 0.8}}, {});
+    for (int i = 0; i < 2; ++i) {
+      drive.go({0.0, 0.0}, {7.0, 0.0});
+      drive.go({7.0, 0.0}, {7.0, 1.6});
+      drive.go({7.0, 1.6}, {0.0, 1.6});
+      drive.go({0.0, 1.6}, {0.0, 0.0});
+    }
+    const auto places = sure(drive.search);
+    EXPECT_LE(places.size(), 2u);
+    found += static_cast<int>(places.size());
+  }
+  EXPECT_GE(found, 58);
+}
+
 TEST(FaintSearch, WhatIsSmeltFromNearIsAVictimAndAFalseAlarmIsNone) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     SCOPED_TRACE(seed);
@@ -217,6 +236,23 @@ TEST(FaintSearch, NothingIsSmeltThroughAWall) {
     search.sort(seen, wall);
   }
   EXPECT_EQ(sure(search).size(), 1u);
+}
+
+/// Before a wall it is placed a little behind it as often as not, and stays one victim.
+TEST(FaintSearch, WhatIsSmeltRightBeforeAWallIsOne) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    SCOPED_TRACE(seed);
+    Senses senses(seed);
+    FaintSearch search;
+    std::vector<FaintSearch::Seen> seen;
+    const auto wall = [](const TPoint2D& a, const TPoint2D& b) { return (a.y < 0.6) != (b.y < 0.52); };
+    for (int i = 0; i < 20; ++i) {
+      const TPose2D pose{0.02 * i, 0.0, 1.0};
+      search.add(senses.cue({0.3, 0.45}, pose, i, CueKind::Co2), {Stamp::from_seconds(i), pose});
+      search.sort(seen, wall);
+    }
+    EXPECT_EQ(sure(search).size(), 1u);
+  }
 }
 
 /// A place that was visited in vain is not visited again until more is told of it.
