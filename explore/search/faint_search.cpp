@@ -21,6 +21,7 @@ constexpr double kTail = 2.0;         ///< errors count as linear from here on [
 constexpr double kFarOff = 2.0;       ///< errors count up to so many times the gate
 constexpr double kChance = 5.0;       ///< what is rarer than so many standard deviations is no chance
 constexpr double kError = 0.3;        ///< by so much a place may be off [m]
+constexpr double kStrictly = 3.0;     ///< the same where two senses have no cue of their own kind in common
 constexpr double kBeside = 1.0;       ///< what lies so near to a place may be of what its cues err by [m]
 constexpr double kShare = 0.4;        ///< of its evidence, or more, is another victim
 constexpr double kVisit = 0.8;        ///< what lies within this of a place that was visited was visited too [m]
@@ -187,14 +188,21 @@ void FaintSearch::open_places() {
 
 /// Whether a victim at `p` explains all these cues: their errors are no larger than chance makes them. Of two normal
 /// errors the squares come to 2 in the mean, with a standard deviation of 2.
-bool FaintSearch::explains(const TPoint2D& p, double error, const std::vector<const Cue*>& cues,
+bool FaintSearch::explains(const TPoint2D& p, double error, double chance, const std::vector<const Cue*>& cues,
                            const HiddenFn& hidden) const {
   double sum = 0.0;
   for (const Cue* cue : cues)
     sum +=
         possible(*cue, p, error, hidden) ? std::min(error2(*cue, p), kFarOff * config_.gate) : kFarOff * config_.gate;
   const auto n = static_cast<double>(cues.size());
-  return sum <= 2.0 * n + kChance * 2.0 * std::sqrt(n);
+  return sum <= 2.0 * n + chance * 2.0 * std::sqrt(n);
+}
+
+/// Whether all cues of one list are of another kind than all of the other.
+bool FaintSearch::unlike(const std::vector<const Cue*>& a, const std::vector<const Cue*>& b) {
+  return std::none_of(a.begin(), a.end(), [&](const Cue* cue) {
+    return std::any_of(b.begin(), b.end(), [&](const Cue* other) { return other->kind == cue->kind; });
+  });
 }
 
 /// A place whose cues another one, or a victim that was seen, explains together with its own is none of its own.
@@ -207,7 +215,11 @@ void FaintSearch::join_places(std::vector<Seen>& seen, const HiddenFn& hidden) {
       const std::vector<const Cue*> others = cues_of(owner);
       both.insert(both.end(), others.begin(), others.end());
       if (joint != nullptr && fit(*joint, both)) p = joint->p_map;
-      return explains(p, joint != nullptr ? kError : 0.0, both, hidden);
+      const double error = joint != nullptr ? kError : 0.0;
+      // Many cues of one sense say nothing of whether few of another fit.
+      if (!others.empty() && unlike(cues_of(own), others) && !explains(p, error, kStrictly, cues_of(own), hidden))
+        return false;
+      return explains(p, error, kChance, both, hidden);
     };
     std::size_t k = 0;
     while (k < seen.size() && !explained(-2 - static_cast<int>(k), seen[k].p_map, nullptr)) ++k;
@@ -275,15 +287,19 @@ void FaintSearch::count(Place& place, const std::vector<const Cue*>& cues) const
 
 /// A place becomes a victim. A few cues beside one that has many are what these err by, and none.
 void FaintSearch::confirm(Place& place, const std::vector<Seen>& seen) const {
-  if (place.sure || place.evidence < 1.0 || worst_sigma(place.covariance) > config_.sure) return;
+  if (place.sure) return;
+  const auto few = [](int own, int others) { return own == 0 || own < kShare * others; };
+  const auto overshadows = [&](const TPoint2D& p, int sound, int co2) {
+    return distance(p, place.p_map) < kBeside && few(place.sound, sound) && few(place.co2, co2);
+  };
+  place.beside = std::any_of(places_.begin(), places_.end(),
+                             [&](const Place& other) {
+                               return &other != &place && overshadows(other.p_map, other.sound, other.co2);
+                             }) ||
+                 std::any_of(seen.begin(), seen.end(),
+                             [&](const Seen& victim) { return overshadows(victim.p_map, victim.sound, victim.co2); });
+  if (place.beside || place.evidence < 1.0 || worst_sigma(place.covariance) > config_.sure) return;
   if (place.co2 == 0 && place.base < config_.base) return;
-  double beside = 0.0;
-  for (const Place& other : places_)
-    if (&other != &place && distance(other.p_map, place.p_map) < kBeside) beside = std::max(beside, other.evidence);
-  for (const Seen& victim : seen)
-    if (distance(victim.p_map, place.p_map) < kBeside)
-      beside = std::max(beside, victim.sound * config_.sound.evidence + victim.co2 * config_.co2.evidence);
-  if (place.evidence < kShare * beside) return;
   place.sure = true;
   place.confirmed = place.newest;
 }
@@ -311,12 +327,14 @@ void FaintSearch::follow(const slam::Mapper& mapper) {
 }
 
 bool FaintSearch::suspect(const Place& place) const {
-  return !place.sure && place.evidence >= config_.worth_look && place.evidence >= place.looked_at + config_.worth_look;
+  return !place.sure && !place.beside && place.visited_from.size() < config_.visits &&
+         place.evidence >= std::max(0.0, place.looked_at) + config_.worth_look;
 }
 
 bool FaintSearch::undecided(Stamp now, double age) const {
   return std::any_of(places_.begin(), places_.end(), [&](const Place& place) {
-    return suspect(place) && place.smelt != Stamp::never() && now - place.smelt < age;
+    return !place.sure && !place.beside && place.evidence > place.looked_at && place.smelt != Stamp::never() &&
+           now - place.smelt < age;
   });
 }
 

@@ -26,11 +26,12 @@ struct FaintSense {
 struct FaintSearchConfig {
   FaintSense sound{deg_to_rad(15.0), 0.4, 3.0, 0.125};
   FaintSense co2{deg_to_rad(30.0), 0.3, 0.9, 0.25};
-  double gate = 9.2;         ///< square of the error, in standard deviations, up to which a cue is of a place (99 %)
-  double sure = 0.30;        ///< a victim's place has no larger standard deviation [m]
-  double base = 0.5;         ///< one that is only heard was heard from places so far apart [m]
-  double worth_look = 0.25;  ///< evidence of a place that is worth a visit
-  std::size_t most = 60;     ///< cues kept of one place
+  double gate = 9.2;        ///< square of the error, in standard deviations, up to which a cue is of a place (99 %)
+  double sure = 0.30;       ///< a victim's place has no larger standard deviation [m]
+  double base = 0.5;        ///< one that is only heard was heard from places so far apart [m]
+  double worth_look = 0.5;  ///< evidence that is new of a place and worth a visit
+  std::size_t visits = 2;   ///< to one place
+  std::size_t most = 60;    ///< cues kept of one place
 };
 
 /// Places what is heard or smelt. A cue of such a sense tells a direction, and a range that may be wrong by half: the
@@ -45,9 +46,10 @@ class FaintSearch {
     PlaceCovariance poses{};     ///< by the poses they were sensed from
     int sound = 0, co2 = 0;      ///< its cues
     double evidence = 0.0;
-    double base = 0.0;  ///< how far apart it was sensed from [m]
-    bool sure = false;  ///< it is a victim
-    int id = 0;         ///< of that victim, given by whom it is told to
+    double base = 0.0;    ///< how far apart it was sensed from [m]
+    bool beside = false;  ///< its cues are too few beside those of a victim nearby
+    bool sure = false;    ///< it is a victim
+    int id = 0;           ///< of that victim, given by whom it is told to
     Stamp confirmed = Stamp::never();
     Stamp newest = Stamp::never();                   ///< its newest cue
     Stamp smelt = Stamp::never();                    ///< its newest one of CO2
@@ -114,8 +116,9 @@ class FaintSearch {
   void refit();
   void open_places();
   void join_places(std::vector<Seen>& seen, const HiddenFn& hidden);
-  bool explains(const mrpt::math::TPoint2D& p, double error, const std::vector<const Cue*>& cues,
+  bool explains(const mrpt::math::TPoint2D& p, double error, double chance, const std::vector<const Cue*>& cues,
                 const HiddenFn& hidden) const;
+  static bool unlike(const std::vector<const Cue*>& a, const std::vector<const Cue*>& b);
   static void take_over(Place& place, const Place& other);
   void give(int place, int owner);
   void remove(std::size_t index);

@@ -19,7 +19,8 @@ constexpr double kMoved = 0.05;                 ///< a look that moved less show
 constexpr double kMovedTurn = deg_to_rad(2.0);  ///< likewise
 constexpr double kSubjectRadius = 0.25;         ///< given up together with a place that cannot be seen [m]
 constexpr double kHearing = 1.4;                ///< floor so near is listened to, a little less than sound reaches [m]
-constexpr double kSmelling = 0.85;              ///< and so near it is smelt [m]
+constexpr double kSmelling = 0.9;               ///< and so near it is smelt [m]
+constexpr int kBoxCells = 40;                   ///< a box has more floor than this
 constexpr double kNose = deg_to_rad(160.0);     ///< by a probe that points ahead
 constexpr double kAtSuspect = 4.0;              ///< stands so long for one [s]
 constexpr double kSameSuspect = 0.3;            ///< [m]
@@ -47,7 +48,9 @@ OccupancyGrid ground_of(const Grid<Faces>& seen, const OccupancyGrid& floor) {
 FloorSearch::FloorSearch(const SearchConfig& config, double room, double tight, const OtherSenses& others)
     : config_(config), room_(room), tight_(tight), searched_(config), squarely_(config, kSquarely) {
   SearchConfig heard = config, smelt = config;
-  heard.faces = false;
+  // The floor in a box is in view from its open side only: what comes out of it comes there.
+  heard.faces = smelt.faces = false;
+  heard.min_cells = smelt.min_cells = std::max(config.min_cells, kBoxCells);
   heard.field_of_view = 2.0 * kPi;
   heard.range = kHearing;
   smelt.field_of_view = kNose;

@@ -140,7 +140,7 @@ bool VictimWatch::holds_still(const Traversable& floor, const TPose2D& T_map_bas
   // Standing there for a while is a visit to what was smelt.
   if (stared && !stares_) {
     for (const FaintSearch::Place& place : std::vector<FaintSearch::Place>(faint_.places()))
-      if (faint_.suspect(place) && place.smelt != Stamp::never() && now - place.smelt < kStaredAge)
+      if (!place.sure && place.smelt != Stamp::never() && now - place.smelt < kStaredAge)
         faint_.visited(place.p_map, position(T_map_base));
     tell_suspects();
   }
