@@ -160,6 +160,41 @@ TEST(VictimWatch, LookingSquarelyCanBeAskedForOrRefused) {
   EXPECT_FALSE(never.search().squarely());
 }
 
+/// What the cues scatter and what the pose errs add up; the second does not shrink with the number of cues.
+TEST(VictimWatch, AVictimHasTheCovarianceOfItsCuesAndOfThePose) {
+  Watching robot;
+  robot.moved(0.2);
+  for (int i = 0; i < 40; ++i) robot.hear({3.0, 2.5 + (i % 2 == 0 ? 0.1 : -0.1)});
+  ASSERT_EQ(robot.watch.reports().size(), 1u);
+  const PlaceCovariance& covariance = robot.watch.reports()[0].covariance;
+  EXPECT_NEAR(covariance.xx, 0.04, 0.001);
+  EXPECT_GT(covariance.yy, 0.04);
+  EXPECT_LT(covariance.yy, 0.042);
+}
+
+/// Floor that the cameras have searched is still to be smelt: from 1.5 m away nothing is.
+TEST(VictimWatch, EachSenseHasToSearchTheFloor) {
+  const Traversable floor = test::measured(test::room(2.4, 1.2));
+  const auto all = [](const TPoint2D&) { return 0.0; };
+  for (const bool probe : {false, true}) {
+    SearchConfig config;
+    config.faces = false;
+    config.field_of_view = 2.0 * kPi;
+    config.range = 3.0;
+    FloorSearch search(config, 0.3, 0.3, {false, probe});
+    double t = 0.0;
+    const auto stand = [&](double x, double heading) {
+      for (int i = 0; i < 3; ++i) search.look(floor, {x, 0.6, heading}, 0.0, Stamp::from_seconds(t += 0.5));
+    };
+    stand(0.6, kPi);
+    EXPECT_EQ(search.sources(floor, Subjects::All, all).empty(), !probe);
+    EXPECT_EQ(search.done(), probe ? "all visible floor searched and smelt" : "all visible floor searched");
+    for (const double x : {0.5, 1.2, 1.9})
+      for (const double heading : {0.0, 1.57, 3.14, -1.57}) stand(x, heading);
+    EXPECT_TRUE(search.sources(floor, Subjects::All, all).empty());
+  }
+}
+
 TEST(VictimWatch, VictimsAndLooksFollowTheMap) {
   Watching robot;
   robot.moved(0.05);
