@@ -173,6 +173,7 @@ TEST(TruthMap, NoWallRunsThroughTheMiddleOfAFreeCell) {
   const Arena a = parse_arena(generate_arena(config), "generated");
   const OccupancyGrid map = truth_map(a, 0.05);
   for (const Solid& solid : a.solids) {
+    if (solid.z_bottom > 0.35) continue;  // the lid of a victim's box, above the slice
     for (std::size_t i = 0; i < solid.outline.size(); ++i) {
       const TPoint2D along = solid.outline[(i + 1) % solid.outline.size()] - solid.outline[i];
       for (int k = 0; k <= 2000; ++k) {

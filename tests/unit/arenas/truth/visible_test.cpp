@@ -124,7 +124,7 @@ TEST(Visible, WhatLiesBehindARampThatNobodyClimbsCountsOnlyBelowTheLaser) {
                       std::string("elements:\n  - {type: ") + ramp +
                           ", x_m: 1.8, y_m: 0.6, rotation_deg: 90}\n  - {type: " + top + ", x_m: 3.0, y_m: 0.6}\n"));
   };
-  const View steep = arena("steep_ramp_45", "elevated_floor_120");
+  const View steep = arena("steep_ramp_45", "elevated_floor_120_solid");
   ASSERT_GT(floor_height(steep.arena, {2.3, 0.6}), 0.8) << "the ramp rises away from the start";
   EXPECT_EQ(steep.at(1.4, 0.6), Occupancy::Free);     // 0.2 m up
   EXPECT_EQ(steep.at(1.7, 0.6), Occupancy::Unknown);  // 0.5 m up
@@ -153,13 +153,29 @@ TEST(Visible, RampsThatCanBeDrivenLeaveNothingOpen) {
 /// The second riser of stairs stands before a laser at their foot; from a ramp beside them another one does.
 TEST(Visible, StairsCountUpToTheRiserThatTheLaserMeets) {
   const View view(parse("  +---+---+---+\n  |S.   .   . |\n  +---+---+---+\n",
-                        "elements:\n  - {type: stairs_120, x_m: 1.8, y_m: 0.6, rotation_deg: 90}\n"));
+                        "elements:\n  - {type: stairs_120_solid, x_m: 1.8, y_m: 0.6, rotation_deg: 90}\n"));
   EXPECT_EQ(view.at(1.0, 0.6), Occupancy::Free);
   int riser = 0;
   while (riser < 40 && floor_height(view.arena, {1.2 + 0.03 * riser, 0.6}) < 0.35) ++riser;
   const double end = 1.2 + 0.03 * riser;
   EXPECT_EQ(view.at(end - 0.06, 0.6), Occupancy::Unknown) << "riser at " << end;
   EXPECT_EQ(view.at(end + 0.1, 0.6), Occupancy::Unknown);
+}
+
+/// Under a floor that is open below the robot drives, and sees; between the treads of open stairs its laser sees
+/// through.
+TEST(Visible, WhatIsOpenBelowHidesNothing) {
+  const View floor(parse("  +---+---+---+\n  |S.   .   . |\n  +---+---+---+\n",
+                         "elements:\n  - {type: elevated_floor_120, x_m: 1.8, y_m: 0.6}\n"));
+  EXPECT_EQ(floor.at(1.8, 0.6), Occupancy::Free);
+  EXPECT_EQ(floor.at(3.0, 0.6), Occupancy::Free);
+  const Grid<std::uint8_t> reachable = reachable_mask(floor.arena, floor.truth);
+  EXPECT_EQ(reachable[reachable.frame().cell({3.0, 0.6})], 1);
+  const View stairs(parse("  +---+---+---+\n  |S.   .   . |\n  +---+---+---+\n",
+                          "elements:\n  - {type: stairs_120, x_m: 1.8, y_m: 0.6, rotation_deg: 90}\n"));
+  EXPECT_EQ(stairs.at(3.0, 0.6), Occupancy::Free);
+  const Grid<std::uint8_t> before = reachable_mask(stairs.arena, stairs.truth);
+  EXPECT_EQ(before[before.frame().cell({3.0, 0.6})], 0) << "no robot gets through the treads";
 }
 
 TEST(Visible, NothingFartherThanTheRangeCounts) {
