@@ -8,6 +8,7 @@
 #include "arenas/model/geometry.h"
 #include "arenas/model/patch_index.h"
 #include "arenas/model/raster.h"
+#include "arenas/model/rims.h"
 #include "arenas/model/risers.h"
 #include "base/angle.h"
 #include "base/distance_transform.h"
@@ -25,7 +26,7 @@ constexpr double kSteepBand = 0.12;      ///< before floor that ends a ray, wher
 constexpr double kBeside = 0.40;  ///< floor so far from all ground that the robot reaches is none to drive on [m]
 constexpr double kFull = 8.0;     ///< up to here neighbouring rays end in neighbouring cells [m]
 
-/// Cells with something the body cannot pass: solids at its height, steps too high to climb, floor too steep.
+/// Cells with something the body cannot pass: solids at its height, steps too high to climb, floor too steep, the rim.
 Mask barriers(const Arena& arena, const GridFrame& frame, const Viewer& viewer) {
   Mask mask(frame);
   const PatchIndex floor(arena);
@@ -51,6 +52,8 @@ Mask barriers(const Arena& arena, const GridFrame& frame, const Viewer& viewer) 
     const Outline line = strip(riser.a + along * stretch.from, riser.a + along * stretch.to, kEdgeThickness);
     for_cells_crossed(frame, line, [&](Cell c) { mask[c] = 1; });
   }
+  for (const Rim& rim : open_rims(arena, viewer.climbable_step))
+    for_cells_crossed(frame, strip(rim.a, rim.b, kEdgeThickness), [&](Cell c) { mask[c] = 1; });
   return mask;
 }
 

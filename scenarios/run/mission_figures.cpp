@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "arenas/model/rims.h"
 #include "arenas/model/risers.h"
 #include "arenas/truth/truth_map.h"
 #include "arenas/truth/visible.h"
@@ -49,6 +50,8 @@ class Edges {
       const TPoint2D to = stretch.to < 1.0 ? riser.a + way * stretch.to : riser.b;
       edges_.push_back({from, to, std::min(riser.low_a, riser.low_b), std::max(riser.high_a, riser.high_b)});
     }
+    for (const arenas::Rim& rim : arenas::open_rims(arena, climbable_step))
+      edges_.push_back({rim.a, rim.b, std::min(rim.z_a, rim.z_b), std::max(rim.z_a, rim.z_b) + 2.0 * robot::kGraze});
     frame_.resolution = kBucket;
     frame_.x0 = arena.min_corner.x - 2.0 * kBucket;
     frame_.y0 = arena.min_corner.y - 2.0 * kBucket;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "arenas/model/rims.h"
 #include "arenas/model/risers.h"
 #include "robot/body.h"
 
@@ -40,6 +41,12 @@ Obstacles::Obstacles(b2World& world, const PlanOrigin& origin, const arenas::Are
     // From above the edge stops the robot too: driving off a cliff is not simulated.
     add_fixture(shape,
                 {std::min(riser.low_a, riser.low_b), std::max(riser.high_a, riser.high_b) + 2.0 * robot::kGraze});
+  }
+  // So does the rim, where there is nothing to drive on: a kerb.
+  for (const arenas::Rim& rim : arenas::open_rims(arena, climbable_step)) {
+    b2EdgeShape shape;
+    shape.SetTwoSided(origin.to_box2d(rim.a), origin.to_box2d(rim.b));
+    add_fixture(shape, {std::min(rim.z_a, rim.z_b), std::max(rim.z_a, rim.z_b) + 2.0 * robot::kGraze});
   }
   world.SetContactListener(this);
 }

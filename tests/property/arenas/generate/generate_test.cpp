@@ -11,6 +11,7 @@
 #include "arenas/files/arena_file.h"
 #include "arenas/model/geometry.h"
 #include "arenas/model/patch_index.h"
+#include "arenas/model/rims.h"
 #include "arenas/truth/truth_map.h"
 #include "base/error.h"
 
@@ -159,6 +160,17 @@ TEST(Generate, ObstaclesOfOrangeAndRedCutNothingOff) {
 }
 
 /// An edge that is open but rough would let the mapper plan a way the robot cannot drive.
+/// So no robot could drive off, and none of the simulator's kerbs stands there.
+TEST(Generate, WallsLeaveNoOpenRim) {
+  for (const ArenaKind kind : {ArenaKind::Yellow, ArenaKind::Orange, ArenaKind::Red}) {
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+      GenerateConfig config = config_of(seed);
+      config.kind = kind;
+      EXPECT_TRUE(open_rims(parse_arena(generate_arena(config), "generated"), 0.1).empty()) << name_of(seed);
+    }
+  }
+}
+
 /// Known from one field is nothing of another.
 TEST(Generate, EveryStepFieldIsAThrowOfItsOwn) {
   for (const ArenaKind kind : {ArenaKind::Orange, ArenaKind::Red}) {
