@@ -145,8 +145,8 @@ std::optional<std::string> ball_trouble(const Arena& arena, const PaperBall& bal
     return "paper ball at " + place(ball.position) + " lies off the floor: move it onto a pallet";
   }
   for (const Solid& solid : arena.solids) {
-    const double ceiling = floor_height(arena, ball.position) + 2.0 * ball.radius;
-    if (distance(solid.outline, ball.position) == 0.0 && solid.z_bottom < ceiling) {
+    if (distance(solid.outline, ball.position) > 0.0) continue;
+    if (solid.z_bottom < floor_height(arena, ball.position) + 2.0 * ball.radius) {
       return "paper ball at " + place(ball.position) + " lies in a solid '" + solid.element + "': move it";
     }
   }
