@@ -60,6 +60,7 @@ void Agenda::note(Stamp now, const std::string& why) {
 
 void Agenda::follow(const slam::Mapper& mapper, double shift) {
   choice_.follow(mapper);
+  if (looked_from_) looked_from_->follow(mapper);
   if (shift > kSmallShift) choice_.drop_target();
   plan_soon();
 }
@@ -168,8 +169,8 @@ Order Agenda::face_subject(const Situation& situation) {
 Order Agenda::visited_in_vain(const Plan& plan, const Situation& situation) {
   if (situation.turning) return {};
   const TPoint2D here = position(situation.T_map_base);
-  if (!looked_from_ || distance(*looked_from_, here) > kVisited) {
-    looked_from_ = here;
+  if (!looked_from_ || distance(looked_from_->p_map(), here) > kVisited) {
+    looked_from_.emplace(situation.robot(), here);
     return turn(kLookTurn, TurnFor::View);
   }
   const std::string what = plan.doubtful ? "the wall looked at from " : "the frontier at ";

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/stamp.h"
+#include "explore/anchor.h"
 #include "explore/caution/left_alone.h"
 #include "explore/explorer.h"
 #include "explore/motion/pilot.h"
@@ -126,7 +127,7 @@ class Agenda {
   bool push_begun_ = false;        ///< by the plan under way, which is to be made anew
   PlanClock clock_;
   std::size_t frontier_left_ = 0;  ///< of the last plan
-  std::optional<mrpt::math::TPoint2D> looked_from_;
+  std::optional<AnchoredPoint> looked_from_;
   MissionEnd end_ = MissionEnd::UnderWay;
   std::string reason_;
   std::vector<Decision> decisions_;

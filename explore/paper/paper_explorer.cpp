@@ -97,6 +97,7 @@ void PaperExplorer::follow_map(const slam::Mapper& mapper) {
   revision_ = mapper.revision();
   agenda_.follow(mapper, trail_.follow(mapper));
   recovery_.follow(mapper);
+  straight_on_.follow(mapper);
   pilot_.follow_map(mapper);
   left_alone_.follow(mapper);
   if (stage_ == Stage::StraightOn) stage_ = Stage::OnTheWay;  // how far it came is told by poses of two maps

@@ -76,6 +76,8 @@ std::string FloorSearch::done() const {
 bool FloorSearch::look(const Traversable& floor, const TPose2D& T_map_base, double turn_rate, Stamp now) {
   if (!config_.on || now < next_look_ || std::abs(turn_rate) > kTurnRate) return false;
   next_look_ = now + kLookPeriod;
+  looked_ = {now, T_map_base};
+  looked_at_ = T_map_base;
   // A look that shows nothing new need not be repeated.
   if (look_around(floor, T_map_base)) looks_.push_back(last_look(floor, {now, T_map_base}));
   return true;
@@ -109,17 +111,26 @@ bool FloorSearch::same_ground(const Look& look, const Traversable& floor) const 
                                                        [&](const OtherLook& o) { return same(o.seen, o.ground); });
 }
 
-bool FloorSearch::moved(const Look& look) {
-  const TPose2D& T = look.anchor.T_map_base;
-  return distance({T.x, T.y}, {look.made_at.x, look.made_at.y}) > kMoved ||
-         std::abs(wrap_angle(T.phi - look.made_at.phi)) > kMovedTurn;
+bool FloorSearch::moved(const Anchor& anchor, const TPose2D& was) {
+  const TPose2D& T = anchor.T_map_base;
+  return distance({T.x, T.y}, {was.x, was.y}) > kMoved || std::abs(wrap_angle(T.phi - was.phi)) > kMovedTurn;
+}
+
+/// While the robot stands before it; on the way to it, another is chosen at once with the plan on the new map.
+void FloorSearch::follow_subject(const slam::Mapper& mapper) {
+  if (dwell_until_ == Stamp::never()) return;
+  looked_.follow(mapper);
+  if (!moved(looked_, looked_at_)) return;
+  subject_.at = looked_.T_map_base.composePoint(looked_at_.inverseComposePoint(subject_.at));
+  looked_at_ = looked_.T_map_base;
 }
 
 bool FloorSearch::follow(const slam::Mapper& mapper) {
+  follow_subject(mapper);
   bool any = false;
   for (Look& look : looks_) {
     look.anchor.follow(mapper);
-    any = any || moved(look);
+    any = any || moved(look.anchor, look.made_at);
   }
   for (GivenUp& place : given_up_) place.anchor.follow(mapper);
   return any;
@@ -130,7 +141,7 @@ void FloorSearch::look_again(const Traversable& floor) {
   squarely_.clear();
   for (Other& other : others_) other.area.clear();
   for (Look& look : looks_) {
-    if (moved(look) || !same_ground(look, floor)) {
+    if (moved(look.anchor, look.made_at) || !same_ground(look, floor)) {
       look_around(floor, look.anchor.T_map_base);
       look = last_look(floor, look.anchor);
     } else {

@@ -138,8 +138,9 @@ class FloorSearch {
   };
 
   Look last_look(const Traversable& floor, const Anchor& from) const;
-  static bool moved(const Look& look);
   bool same_ground(const Look& look, const Traversable& floor) const;
+  static bool moved(const Anchor& anchor, const mrpt::math::TPose2D& was);
+  void follow_subject(const slam::Mapper& mapper);
 
   SearchConfig config_;
   double room_;
@@ -151,7 +152,9 @@ class FloorSearch {
   std::vector<Suspect> suspects_;
   std::vector<View> views_;
   Subject subject_;
-  Subject turned_to_;  ///< of the last turn
+  Subject turned_to_;                  ///< of the last turn
+  Anchor looked_{Stamp::never(), {}};  ///< where it looked last ...
+  mrpt::math::TPose2D looked_at_;      ///< ... in the map in which the place to face lies
   std::vector<Look> looks_;
   std::vector<GivenUp> given_up_;
   Stamp next_look_ = Stamp::never();

@@ -22,8 +22,8 @@ constexpr int kMostFailures = 10;     ///< in a row
 bool Recovery::begin(Escape::Met met, const TPose2D& T_map_base, Stamp now, std::optional<WayOut> way_out) {
   ++times_;
   const TPoint2D here = position(T_map_base);
-  const bool again = place_ && distance(*place_, here) < kSamePlace;
-  place_ = here;
+  const bool again = place_ && distance(place_->p_map(), here) < kSamePlace;
+  place_.emplace(Anchor{now, T_map_base}, here);
   escape_.begin(met, T_map_base, now, failed_, std::move(way_out));
   return again;
 }

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
 #include <optional>
 
 #include "base/stamp.h"
+#include "explore/anchor.h"
 #include "explore/caution/trail.h"
 #include "explore/plan/traversable.h"
 #include "explore/stuck/escape.h"
@@ -32,6 +32,7 @@ class Recovery {
   void follow(const slam::Mapper& mapper) {
     way_back_.follow(mapper);
     escape_.follow(mapper);
+    if (place_) place_->follow(mapper);
   }
 
   /// Something was met and holds the robot, which is to go the `way_out` where that is in a trap. Says whether the
@@ -55,7 +56,7 @@ class Recovery {
   robot::RobotModel model_;
   Escape escape_;
   WayBack way_back_;
-  std::optional<mrpt::math::TPoint2D> place_;  ///< where it was held last
+  std::optional<AnchoredPoint> place_;  ///< where it was held last
   int times_ = 0;
   int failed_ = 0;  ///< in a row
 };

@@ -55,7 +55,7 @@ bool StraightOn::room(const TPose2D& T_map_base, const Traversable& floor, const
 bool StraightOn::worth(const TPose2D& T_map_base, const Traversable& floor, const std::vector<TPoint2D>& hits,
                        Stamp now) const {
   const bool again = std::any_of(tries_.begin(), tries_.end(), [&](const Try& one) {
-    return now - one.at < kNotAgain && distance(one.place, position(T_map_base)) < kSameSpot;
+    return now - one.at < kNotAgain && distance(one.place.p_map(), position(T_map_base)) < kSameSpot;
   });
   return !again && room(T_map_base, floor, hits);
 }
@@ -63,12 +63,16 @@ bool StraightOn::worth(const TPose2D& T_map_base, const Traversable& floor, cons
 void StraightOn::begin(const TPose2D& T_map_base, Stamp now) {
   tries_.erase(std::remove_if(tries_.begin(), tries_.end(), [&](const Try& one) { return now - one.at >= kNotAgain; }),
                tries_.end());
-  tries_.push_back({now, position(T_map_base)});
+  tries_.push_back({now, AnchoredPoint({now, T_map_base}, position(T_map_base))});
+}
+
+void StraightOn::follow(const slam::Mapper& mapper) {
+  for (Try& one : tries_) one.place.follow(mapper);
 }
 
 std::optional<Drive> StraightOn::drive(const TPose2D& T_map_base, Stamp now) const {
   const Try& this_one = tries_.back();
-  if (distance(this_one.place, position(T_map_base)) > kWay || now - this_one.at > kTime) return std::nullopt;
+  if (distance(this_one.place.p_map(), position(T_map_base)) > kWay || now - this_one.at > kTime) return std::nullopt;
   return Drive{speed(), 0.0};
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/stamp.h"
+#include "explore/anchor.h"
 #include "explore/plan/traversable.h"
 #include "robot/commands.h"
 #include "robot/model.h"
@@ -29,6 +30,8 @@ class StraightOn {
   void begin(const mrpt::math::TPose2D& T_map_base, Stamp now);
   /// The command for the tick to come; nothing: it came on, or its time is over.
   std::optional<robot::Drive> drive(const mrpt::math::TPose2D& T_map_base, Stamp now) const;
+  /// The mapper corrected its past.
+  void follow(const slam::Mapper& mapper);
   /// Nothing is in the way before the robot, as far as it takes to stop: the floor is known and free, and no hit lies
   /// there.
   bool room(const mrpt::math::TPose2D& T_map_base, const Traversable& floor,
@@ -37,7 +40,7 @@ class StraightOn {
  private:
   struct Try {
     Stamp at;
-    mrpt::math::TPoint2D place;
+    AnchoredPoint place;
   };
 
   double speed() const;

@@ -5,7 +5,12 @@
 #include "base/planar.h"
 #include "explore/caution/felt_obstacles.h"
 #include "explore/caution/left_alone.h"
+#include "explore/paper/agenda.h"
+#include "explore/search/floor_search.h"
 #include "explore/search/victim_search.h"
+#include "explore/stuck/recovery.h"
+#include "explore/stuck/straight_on.h"
+#include "tests/support/explore_grids.h"
 #include "tests/support/planted_mapper.h"
 
 namespace rubble::explore {
@@ -65,6 +70,79 @@ TEST_F(Anchoring, VictimsFollowThePosesFromWhichTheyWereSeen) {
   mapper.correct(at(5.0), kShift);
   search.follow(mapper);
   EXPECT_NEAR(distance(search.reports()[0].p_map, kShift.composePoint(victim)), 0.0, 1e-6);
+}
+
+TEST_F(Anchoring, ThePlaceThatHeldItFollowsThePoseThatWasHeld) {
+  Recovery recovery(model, deg_to_rad(60.0));
+  const TPose2D held = *mapper.pose_at(at(2.0));
+  EXPECT_FALSE(recovery.begin(Escape::Met::Forwards, held, at(2.0)));
+  const TPose2D far{3.0, 0.0, 0.0};
+  mapper.correct(at(5.0), far);
+  recovery.follow(mapper);
+  EXPECT_TRUE(recovery.begin(Escape::Met::Forwards, far + held, at(8.0)));
+}
+
+TEST_F(Anchoring, WhereItDroveStraightOnFollowsThePoseFromWhichItDid) {
+  StraightOn straight_on(model);
+  const TPose2D tried = *mapper.pose_at(at(2.0));
+  straight_on.begin(tried, at(2.0));
+  const TPose2D far{3.0, 1.5, 0.0};
+  mapper.correct(at(5.0), far);
+  straight_on.follow(mapper);
+  const Traversable floor = test::measured(test::room(8.0, 4.0));
+  EXPECT_FALSE(straight_on.worth(far + tried, floor, {}, at(9.0))) << "it was tried here";
+  EXPECT_TRUE(straight_on.worth({1.0, 1.2, 0.0}, floor, {}, at(9.0))) << "another place lies there now";
+}
+
+/// The frontier stays, and the robot looked at it from here: no second look round because the map was corrected.
+TEST_F(Anchoring, WhereItLookedRoundFollowsThePoseFromWhichItDid) {
+  PaperExplorerConfig config;
+  config.search.on = false;
+  config.felt.pallet = 0.0;
+  Agenda agenda(config);
+  LeftAlone left_alone(config.felt, config.planner.same_target);
+  FloorSearch search(config.search, 0.46, 0.4);
+  slam::CountMap map(10, 10, 0.05);
+  mapper.plant(at(20.0), TPose2D{2.0, 2.0, 0.0});
+  agenda.set_home({at(20.0), *mapper.pose_at(at(20.0))});
+  const auto ask = [&](const TPoint2D& unknown, Stamp now) {
+    OccupancyGrid cells = test::room(8.0, 4.0);
+    test::fill(cells, unknown.x - 0.2, unknown.y - 0.2, unknown.x + 0.2, unknown.y + 0.2, Occupancy::Unknown);
+    Traversable floor = test::measured(std::move(cells));
+    map.stamp({}, {});
+    const bool new_map = agenda.begin_plan(map, now);
+    const Agenda::Situation situation{now, *mapper.pose_at(at(20.0)), floor, false, 0, left_alone, search};
+    Plan plan = agenda.choose(situation);
+    return agenda.decide(std::move(plan), new_map, situation);
+  };
+  ASSERT_EQ(ask({2.2, 2.35}, at(20.0)).kind, Order::Kind::Turn);
+  const TPose2D shift{3.0, 0.0, 0.0};
+  mapper.correct(at(25.0), shift);
+  agenda.follow(mapper, 0.0);
+  EXPECT_EQ(ask({5.2, 2.35}, at(30.0)).kind, Order::Kind::Stay) << "left alone, without another turn";
+  EXPECT_TRUE(left_alone.barred({5.2, 2.3}, at(1e6)));
+}
+
+/// The place to face lies elsewhere after a correction: there it is looked at.
+TEST_F(Anchoring, ThePlaceToFaceFollowsTheLastLook) {
+  FloorSearch search({}, 0.46, 0.4);
+  const Traversable floor = test::measured(test::room(8.0, 4.0));
+  const TPose2D here{2.0, 2.8, 0.0};
+  mapper.plant(at(20.0), here);
+  ASSERT_TRUE(search.look(floor, here, 0.0, at(20.0)));
+  const Cell viewpoint = floor.cells.cell({here.x, here.y});
+  for (const Source& source : search.sources(floor, Subjects::All, [](const TPoint2D&) { return 0.0; }))
+    if (source.cell == viewpoint) search.choose_subject(viewpoint);
+  const auto turn = search.turn_to_subject(floor, here);
+  ASSERT_TRUE(turn);
+  search.start_dwell(at(20.1));
+  const TPose2D shift{3.0, 0.0, 0.0};
+  mapper.correct(at(25.0), shift);
+  search.follow(mapper);
+  const TPose2D facing = shift + here + TPose2D{0.0, 0.0, *turn};
+  EXPECT_FALSE(search.subject_seen(floor));
+  for (const double t : {26.0, 27.0}) ASSERT_TRUE(search.look(floor, facing, 0.0, at(t)));
+  EXPECT_TRUE(search.subject_seen(floor));
 }
 
 }  // namespace
