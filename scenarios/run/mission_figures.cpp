@@ -24,6 +24,7 @@ using mrpt::math::TPose2D;
 constexpr double kContact = 0.012;  ///< nearer, the body touches [m]
 constexpr double kFar = 0.5;        ///< clearances are not told apart beyond [m]
 constexpr double kBucket = 1.2;     ///< [m]
+constexpr double kAtHome = 1.0;     ///< who says that it is home and stands farther from the start is lost [m]
 constexpr double kPeriod = 0.1;     ///< the truth is looked at this often [s]
 
 /// An upright piece of something the body cannot pass.
@@ -189,6 +190,8 @@ scoring::DriveFigures drive_figures(const arenas::Arena& arena, const Trajectory
   return figures;
 }
 
+std::string true_end(const std::string& said, double home) { return said == "home" && home > kAtHome ? "lost" : said; }
+
 arenas::Viewer viewer_of(const robot::RobotModel& model) {
   arenas::Viewer viewer;
   viewer.radius = 0.5 * model.width;
@@ -254,8 +257,9 @@ scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajec
                                         const robot::RobotModel& model, const Core& core) {
   scoring::MissionFigures out;
   out.end_code = core.explorer() != nullptr ? code_of(core.explorer()->end()) : "time";
-  if (!truth.empty() && off_the_floor(arenas::PatchIndex(arena), truth.back().pose)) out.end_code = "fell";
   out.drive = drive_figures(arena, truth, model);
+  out.end_code = true_end(out.end_code, out.drive.home_m);
+  if (!truth.empty() && off_the_floor(arenas::PatchIndex(arena), truth.back().pose)) out.end_code = "fell";
   out.stalls = static_cast<std::uint64_t>(core.stalls());
   const OccupancyGrid all = arenas::truth_map(arena);
   const OccupancyGrid visible = arenas::visible_truth(arena, all, viewer_of(model));

@@ -39,6 +39,10 @@ arenas::Viewer viewer_of(const robot::RobotModel& model);
 /// Whether no floor is below the robot's middle: it drove over the rim.
 bool off_the_floor(const arenas::PatchIndex& floor, const mrpt::math::TPose2D& T_arena_base);
 
+/// How a mission ended that ended `home` [m] from the start, by what the explorer said of it: "home" is what it
+/// believes, and "lost" it is who believes so more than 1 m away.
+std::string true_end(const std::string& said, double home);
+
 /// How the mission went: what the truth and the explorer say.
 scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajectory& truth,
                                         const robot::RobotModel& model, const Core& core);

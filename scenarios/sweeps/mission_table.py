@@ -20,6 +20,11 @@ def rows_of(folders):
     return kinds
 
 
+def at_home(run):
+    """Of a result that was written before there was `lost` as well."""
+    return run["end_code"] == "home" and run["home_m"] <= 1.0
+
+
 def spread(values, digits, worst):
     return f"{statistics.median(values):.{digits}f}, {worst(values):.{digits}f}"
 
@@ -43,7 +48,7 @@ def main():
             sys.exit(f"{kind}: {runs.count(None)} runs have no score")
         of = lambda key: [run[key] for run in runs]
         found, visible = sum(of("victims_found")), sum(of("victims_visible"))
-        print(f"| {kind} | {len(runs)} | {of('end_code').count('home')} | {of('end_code').count('stuck')} | "
+        print(f"| {kind} | {len(runs)} | {sum(map(at_home, runs))} | {of('end_code').count('stuck')} | "
               f"{spread(of('known'), 3, min)} | {found} of {visible} ({100 * found / visible:.1f} %) | "
               f"{sum(of('victims_false'))} | {spread(of('contact_s'), 1, max)} | {spread(of('ate_aligned_m'), 3, max)} | "
               f"{statistics.mean(of('area_per_min')):.1f} | {statistics.mean(of('score')):.3f} |")

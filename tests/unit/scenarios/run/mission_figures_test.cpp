@@ -113,6 +113,13 @@ TEST(VisibleVictims, AcrossATrenchCountAsFarAsTheCamerasReach) {
   EXPECT_EQ(visible_victims(arena, {}), 0);
 }
 
+TEST(TrueEnd, HomeIsWhereTheRobotStartedNotWhereItThinksThatWas) {
+  EXPECT_EQ(true_end("home", 0.3), "home");
+  EXPECT_EQ(true_end("home", 1.0), "home");
+  EXPECT_EQ(true_end("home", 1.01), "lost");
+  for (const char* other : {"explored", "stuck", "time"}) EXPECT_EQ(true_end(other, 5.0), other);
+}
+
 class MissionEnds : public ::testing::Test {
  protected:
   std::string end_code(const Trajectory& truth, bool explores) {
