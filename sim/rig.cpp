@@ -55,7 +55,18 @@ void Rig::forget_old_states() {
 void Rig::follow(World& world, robot::Inputs& inputs) {
   states_.push_back(world.state(index_));
   if (model_.has_levelling_unit) accelerometer_.step(world.state(index_), config_.physics_step);
+  fail_in_time(world);
   measure(world, inputs);
+}
+
+/// The levelling unit fails for good.
+void Rig::fail_in_time(World& world) {
+  if (config_.levelling_fault == fault_) return;
+  const WorldState& state = world.state(index_);
+  if (state.stamp.seconds() < config_.levelling_fault_from) return;
+  if (std::hypot(state.aim.pitch, state.aim.roll) < config_.levelling_fault_tilt) return;
+  fault_ = config_.levelling_fault;
+  if (fault_ != LevellingFault::NoAccelerometer) world.servos(index_).jam();
 }
 
 void Rig::finish(Stamp end, const World& world, robot::Inputs& inputs) {
@@ -78,9 +89,11 @@ void Rig::measure(World& world, robot::Inputs& inputs) {
     odometry_clock_.advance();
   }
   if (model_.has_levelling_unit && unit_clock_.due(state.stamp)) {
-    inputs.accelerations.push_back(accelerometer_.sample(state.stamp));
+    const robot::Acceleration felt = accelerometer_.sample(state.stamp);
     const robot::LaserAim pulses = world.servos(index_).pulses();
-    inputs.aims.push_back({state.stamp, pulses.pitch, pulses.roll});
+    const bool silent = fault_ == LevellingFault::Silent;
+    if (!silent && fault_ != LevellingFault::NoAccelerometer) inputs.accelerations.push_back(felt);
+    if (!silent) inputs.aims.push_back({state.stamp, pulses.pitch, pulses.roll});
     unit_clock_.advance();
   }
   if (victim_clock_.due(state.stamp)) {

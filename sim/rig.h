@@ -47,6 +47,7 @@ class Rig {
 
  private:
   void forget_old_states();
+  void fail_in_time(World& world);
 
   std::size_t index_;
   robot::RobotModel model_;
@@ -61,6 +62,7 @@ class Rig {
   std::vector<WorldState> states_;
   Trajectory truth_;
   robot::Commands in_force_;
+  LevellingFault fault_ = LevellingFault::None;  ///< of the levelling unit, once it has happened
 };
 
 /// Throws InputError unless the physics step is whole milliseconds and divides the robot's tick.

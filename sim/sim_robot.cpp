@@ -5,6 +5,11 @@
 
 namespace rubble::sim {
 
+const std::vector<std::string>& levelling_faults() {
+  static const std::vector<std::string> names = {"none", "silent", "no_accelerometer", "jammed"};
+  return names;
+}
+
 struct SimRobot::Impl {
   Impl(const arenas::Arena& arena, const robot::RobotModel& model, const SimConfig& sim_config, std::uint64_t seed)
       : config(sim_config),

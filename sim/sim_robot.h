@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "arenas/model/arena.h"
@@ -9,6 +10,13 @@
 #include "robot/robot.h"
 
 namespace rubble::sim {
+
+/// How the levelling unit fails: from then on it says nothing and holds its servos; its accelerometer says nothing; its
+/// servos no longer turn, whatever their pulses say.
+enum class LevellingFault { None, Silent, NoAccelerometer, Jammed };
+
+/// "none", "silent", ...: as files call them, in the order of LevellingFault.
+const std::vector<std::string>& levelling_faults();
 
 /// Which effects are simulated and how strongly; defaults are the documented hardware.
 struct SimConfig {
@@ -19,6 +27,9 @@ struct SimConfig {
   bool sweep = true;                ///< each beam from the pose at its own time; false: the whole scan at once
   bool microphones = false;         ///< fitted: sound cues, heard all round and badly placed
   bool co2_probe = false;           ///< fitted: CO2 cues, close by
+  LevellingFault levelling_fault = LevellingFault::None;
+  double levelling_fault_from = 60.0;  ///< it fails then [s], ...
+  double levelling_fault_tilt = 0.0;   ///< ... once it holds the laser so far from the body's own level [rad]
 };
 
 /// The simulated robot in its arena. The truth is offered beside the Robot interface, for the run folder and scoring

@@ -33,6 +33,7 @@ void Servo::step(int milliseconds) {
       frame_ms_ = 0;
       started_ = true;
     }
+    if (jammed_) continue;
     const double error = target() - gear_;
     if (std::abs(error) >= parameters_.dead_band) {
       gear_ += 1e-3 * std::clamp(error / parameters_.response, -parameters_.max_rate, parameters_.max_rate);

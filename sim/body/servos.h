@@ -32,6 +32,8 @@ class Servo {
   double pulse() const { return latched_; }
   /// Where the horn really stands [rad].
   double angle() const { return horn_; }
+  /// From now on the horn stays where it is.
+  void jam() { jammed_ = true; }
 
  private:
   double target() const;
@@ -44,6 +46,7 @@ class Servo {
   double gear_ = 0.0;  ///< the motor side
   double horn_ = 0.0;
   bool started_ = false;
+  bool jammed_ = false;
 };
 
 /// Two servos, one stack: the outer tilts the inner in pitch, the inner carries the platform and tilts it in roll.
@@ -52,6 +55,10 @@ class Servos {
   explicit Servos(const ServoParameters& parameters) : pitch_(parameters), roll_(parameters) {}
   void command(const robot::LaserAim& aim);
   void step(int milliseconds);
+  void jam() {
+    pitch_.jam();
+    roll_.jam();
+  }
   robot::LaserAim pulses() const { return {pitch_.pulse(), roll_.pulse()}; }
   robot::LaserAim angles() const { return {pitch_.angle(), roll_.angle()}; }
 
