@@ -42,7 +42,8 @@ PaperExplorer::PaperExplorer(const robot::RobotModel& model, const PaperExplorer
                std::max(config.planner.transform.d_min, model.swing_radius()) + kTurningRoom,
                model.swing_radius() + kLittleRoom, mission.senses),
       left_alone_(config.felt, config.planner.same_target),
-      home_way_(mission.time_limit) {}
+      home_way_(mission.time_limit),
+      levelling_(model) {}
 
 ExplorerState PaperExplorer::state() const {
   if (agenda_.finished()) return ExplorerState::Finished;
@@ -77,6 +78,8 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   victims_.moved(pose_, mapper.covariance(), passed);
   if (mapper.revision() != revision_) follow_map(mapper);
   if (!inputs.scans.empty()) last_scan_ = now_;
+  levelling_.update(inputs);
+  heed_levelling();
   stuck_watch_.update(inputs, passed, dt_);
   for (const robot::VictimCue& cue : inputs.cues)
     if (victims_.hear(cue, mapper, pose_, floor_))
@@ -90,6 +93,21 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   if (stage_ != Stage::OnTheWay && stage_ != Stage::StraightOn) return;
   left_alone_.passed(pose_, model_);
   trail_.add(now_, pose_);
+}
+
+/// Scans of a plane that nobody holds level show walls where floor is: what is seen of victims cannot be placed, and
+/// new ground cannot be told from walls. Known ground can be driven home on.
+void PaperExplorer::heed_levelling() {
+  victims_.trust_scans(levelling_.works());
+  if (levelling_.jammed()) stuck_watch_.distrust_tilt();
+  if (const std::string news = levelling_.news(); !news.empty()) agenda_.note(now_, news);
+  if (!levelling_.given_up() || stage_ == Stage::Starting || finished()) return;
+  if (!config_.return_home) {
+    obey(agenda_.finish(MissionEnd::Explored, "the laser is not levelled", now_));
+  } else if (agenda_.goal() != Goal::Home) {
+    agenda_.go_home("the laser is not levelled", now_);
+    pilot_.end_turn();
+  }
 }
 
 /// The mapper moved poses of the past: all that is kept moves with them, and the way is planned anew.
@@ -109,6 +127,7 @@ void PaperExplorer::follow_map(const slam::Mapper& mapper) {
 Drive PaperExplorer::decide(const slam::Mapper& mapper) {
   if (finished()) return {};
   if (last_scan_ == Stamp::never() || now_ - last_scan_ > config_.scan_timeout) return {};
+  if (levelling_.waits()) return {};
   switch (stage_) {
     case Stage::Starting:
       return start(mapper);

@@ -11,6 +11,7 @@
 #include "explore/motion/pilot.h"
 #include "explore/paper/agenda.h"
 #include "explore/paper/home_way.h"
+#include "explore/paper/levelling_care.h"
 #include "explore/paper/paper_config.h"
 #include "explore/plan/traversable.h"
 #include "explore/search/victim_watch.h"
@@ -54,6 +55,7 @@ class PaperExplorer : public Explorer {
 
   void observe(const slam::Mapper& mapper, const robot::Inputs& inputs);
   void follow_map(const slam::Mapper& mapper);
+  void heed_levelling();
 
   robot::Drive decide(const slam::Mapper& mapper);
   robot::Drive start(const slam::Mapper& mapper);
@@ -85,6 +87,7 @@ class PaperExplorer : public Explorer {
   LeftAlone left_alone_;
   Trail trail_;
   HomeWay home_way_;
+  LevellingCare levelling_;
 
   Stage stage_ = Stage::Starting;
   Stamp now_ = Stamp::never();

@@ -39,7 +39,7 @@ bool is_within_wall(const Traversable& floor, const TPoint2D& from, const TPoint
 
 bool VictimWatch::hear(const robot::VictimCue& cue, const slam::Mapper& mapper, const TPose2D& T_map_base,
                        const Traversable& floor) {
-  if (doubt_.unsure()) return false;
+  if (unsure()) return false;
   const Anchor anchor{cue.stamp, mapper.pose_at(cue.stamp).value_or(T_map_base)};
   const std::size_t before = reports_.size();
   if (FaintSearch::takes(cue.kind)) {
@@ -130,7 +130,7 @@ void VictimWatch::ask_for_holes(const Anchor& anchor, const TPoint2D& cue, const
 }
 
 bool VictimWatch::look(const Traversable& floor, const TPose2D& T_map_base, double turn_rate, Stamp now) {
-  return !doubt_.unsure() && search_.look(floor, T_map_base, turn_rate, now);
+  return !unsure() && search_.look(floor, T_map_base, turn_rate, now);
 }
 
 bool VictimWatch::holds_still(const Traversable& floor, const TPose2D& T_map_base, Stamp now) {

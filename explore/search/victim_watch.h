@@ -33,6 +33,8 @@ class VictimWatch {
     doubt_.update(T_map_base, covariance, dt);
     covariance_ = covariance;
   }
+  /// Whether scans can be trusted: the pose is in doubt while they cannot.
+  void trust_scans(bool trusted) { scans_trusted_ = trusted; }
   /// Takes in a cue, of a robot that is at T_map_base now; `floor` tells the sides of walls. Says whether a victim was
   /// confirmed by it.
   bool hear(const robot::VictimCue& cue, const slam::Mapper& mapper, const mrpt::math::TPose2D& T_map_base,
@@ -55,6 +57,7 @@ class VictimWatch {
   void sort_faint(const Traversable& floor);
   void rebuild_reports();
   void tell_suspects();
+  bool unsure() const { return doubt_.unsure() || !scans_trusted_; }
   void ask_for_holes(const Anchor& anchor, const mrpt::math::TPoint2D& cue, const Traversable& floor);
 
   /// Of a confirmed victim, counted by whether a wall of the map stands before it.
@@ -64,6 +67,7 @@ class VictimWatch {
   };
   PoseDoubt doubt_;
   PoseCovariance covariance_;  ///< of the pose
+  bool scans_trusted_ = true;
   VictimSearch victims_;
   FaintSearch faint_;
   std::vector<FaintSearch::Seen> seen_;  ///< the victims of victims_

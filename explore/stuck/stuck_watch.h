@@ -45,6 +45,9 @@ class StuckWatch {
   /// The robot brakes as hard as it can: what stops it is no blow.
   void braked(Stamp now) { jolt_.braked(now); }
 
+  /// The servos jammed: how the robot leans is no longer known.
+  void distrust_tilt() { tilt_.distrust(); }
+
   /// The motors report a stall.
   bool stalled() const { return stalled_; }
   /// What the wheels do, where that is known.

@@ -9,8 +9,9 @@ namespace rubble::explore {
 
 void TiltWatch::update(const robot::Inputs& inputs, double dt) {
   const double share = std::min(1.0, dt / config_.smoothing);
-  silent_for_ = inputs.aims.empty() ? silent_for_ + dt : 0.0;
-  if (!inputs.aims.empty()) {
+  const bool told = !inputs.aims.empty() && !distrusted_;
+  silent_for_ = told ? 0.0 : silent_for_ + dt;
+  if (told) {
     pitch_ += share * (-inputs.aims.back().pitch - pitch_);
     roll_ += share * (-inputs.aims.back().roll - roll_);
   } else if (silent_for_ > config_.silence) {

@@ -27,6 +27,8 @@ class TiltWatch {
   double slope() const;
   /// The robot leans more than it should, and has for a while.
   bool too_steep() const { return steep_for_ > config_.patience; }
+  /// The servos jammed: from now on their angles say nothing.
+  void distrust() { distrusted_ = true; }
   void reset() { steep_for_ = 0.0; }
 
  private:
@@ -35,6 +37,7 @@ class TiltWatch {
   double roll_ = 0.0;
   double steep_for_ = 0.0;   ///< [s]
   double silent_for_ = 0.0;  ///< [s]
+  bool distrusted_ = false;
 };
 
 }  // namespace rubble::explore

@@ -36,6 +36,7 @@ constexpr double kLostDistance = 0.5;       ///< uncertainty of a robot that was
 constexpr double kLostAngle = 0.5;          ///< [rad]
 constexpr double kKnownInliers = 0.65;      ///< and what is seen there is what was seen
 constexpr double kKnownMoves = 0.20;        ///< [m]
+constexpr double kSameSlope = 0.4;          ///< the floor slopes as where the robot was so near [m]
 constexpr std::size_t kScanWitnesses = 8;   ///< key frames that are asked whether a scan can be true
 constexpr std::size_t kDoubtedFrames = 8;   ///< doubled key frames of a map that is doubted, at least ...
 constexpr double kDoubtedShare = 0.005;     ///< ... and of all of them; right maps have 0.0013 and less
@@ -72,6 +73,7 @@ struct RobustMapper::Impl {
   void receive(const robot::Inputs& inputs);
   bool ready(Stamp now) const;
   void process(const LaserScan& scan);
+  std::optional<ScanTilt> tilt_of(Stamp reference, const ExpectedMotion& motion) const;
   bool asks_for_frame(const Tracked& tracked) const;
   bool hang_on_old_frame(const Cloud& cloud, Work* work);
   std::optional<int> old_frame_here(Work* work) const;
@@ -96,11 +98,23 @@ struct RobustMapper::Impl {
   TPose2D pose_of(std::size_t scan) const { return frames_.pose(scans_[scan].frame) + scans_[scan].T_frame_base; }
   std::optional<TPose2D> pose_at(Stamp stamp) const;
 
+  /// Of the body; small enough to be turned like a vector.
+  struct Lean {
+    double pitch = 0.0;  ///< nose up [rad]
+    double roll = 0.0;   ///< left side up [rad]
+
+    /// Of a body that stands there turned by `angle` [rad].
+    Lean turned(double angle) const {
+      const double c = std::cos(angle), s = std::sin(angle);
+      return {c * pitch + s * roll, c * roll - s * pitch};
+    }
+  };
   /// Where a scan was taken.
   struct Place {
     Stamp stamp;
     int frame;
     TPose2D T_frame_base;
+    std::optional<Lean> lean;  ///< of the body, as felt
   };
 
   const RobustConfig config_;
@@ -171,7 +185,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
   const Stamp reference = scan.middle();
   ExpectedMotion motion = motion_.expect(scan);
   std::optional<SweepMotion> sweep = config_.deskew ? motion_.sweep(scan, motion) : std::nullopt;
-  const std::optional<ScanTilt> tilt = config_.use_tilt ? tilt_.at(reference) : std::nullopt;
+  const std::optional<ScanTilt> tilt = config_.use_tilt ? tilt_of(reference, motion) : std::nullopt;
   motion.ramps = tilt.has_value();
   motion.level = !tilt || std::max(std::abs(tilt->pitch), std::abs(tilt->roll)) < kLevel;
   ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr, tilt ? &*tilt : nullptr);
@@ -223,7 +237,8 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
     }
   }
   motion_.scan_taken(reference);
-  scans_.push_back({reference, here_, T_frame_base_});
+  scans_.push_back({reference, here_, T_frame_base_, {}});
+  if (const auto felt = tilt_.at(reference)) scans_.back().lean = Lean{felt->body_pitch, felt->body_roll};
 
   // What waits is done bit by bit, the more of it the faster.
   const auto most = static_cast<Work>(config_.budget_ms * 1e6);
@@ -242,6 +257,25 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
   diary_.write({reference, scan, points.hits.size(), seen ? &*seen : nullptr, contradiction, last_work_,
                 pose_covariance(), frames_.size()},
                closer_.counts());
+}
+
+/// Of a scan. Without a word from the levelling unit the scan plane stays where it was on the body, and that leans as
+/// it did in this place before, else as on level floor.
+std::optional<ScanTilt> RobustMapper::Impl::tilt_of(Stamp reference, const ExpectedMotion& motion) const {
+  std::optional<ScanTilt> tilt = tilt_.at(reference);
+  if (tilt || !tilt_.knows_servos()) return tilt;
+  const TPose2D T_map_base = now() + motion.T_last_now;
+  double nearest = kSameSlope;
+  Lean lean;
+  for (std::size_t k = 0; k < scans_.size(); ++k) {
+    if (!scans_[k].lean) continue;
+    const TPose2D then = pose_of(k);
+    const double away = distance(position(then), position(T_map_base));
+    if (away >= nearest) continue;
+    nearest = away;
+    lean = scans_[k].lean->turned(wrap_angle(T_map_base.phi - then.phi));
+  }
+  return tilt_.on_body(lean.pitch, lean.roll, reference);
 }
 
 /// Of now(). A robot that strayed may be anywhere in the window in which it is looked for.

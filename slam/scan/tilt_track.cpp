@@ -19,6 +19,9 @@ constexpr double kImplausible = 2.0;  ///< more than so many g is no tilt but a 
 }  // namespace
 
 void TiltTrack::add(const robot::Inputs& inputs) {
+  const bool turned = !unit_.jammed_at();
+  unit_.update(inputs);
+  if (turned && unit_.jammed_at()) leans_.clear();  // what was taken for the body's was the servos'
   const auto stamped_well = [&](const auto& sample) { return sample.stamp - inputs.now <= kAhead; };
   for (const robot::Odometry& odometry : inputs.odometry)
     if (stamped_well(odometry) && std::isfinite(odometry.v) && std::isfinite(odometry.w) &&
@@ -102,12 +105,17 @@ std::optional<ScanTilt> TiltTrack::at(Stamp stamp) const {
     roll = before.roll + u * (roll - before.roll);
   }
   if (std::max(std::abs(pitch), std::abs(roll)) > kSteepest) return std::nullopt;
+  return on_body(pitch, roll, stamp);
+}
+
+ScanTilt TiltTrack::on_body(double pitch, double roll, Stamp stamp) const {
   const robot::AimState aim = aim_at(stamp);
-  return ScanTilt{pitch + aim.pitch, roll + aim.roll, pitch, roll};
+  return {pitch + aim.pitch, roll + aim.roll, pitch, roll};
 }
 
 /// Half a frame passes until a pulse is taken. The servos hold their last angle; zero while none is known.
 robot::AimState TiltTrack::aim_at(Stamp stamp) const {
+  if (const auto& held = unit_.jammed_at()) return {stamp, held->pitch, held->roll};
   const auto after = std::upper_bound(aims_.begin(), aims_.end(), stamp + -0.5 * robot::kServoFrame,
                                       [](Stamp s, const robot::AimState& aim) { return s < aim.stamp; });
   if (after == aims_.begin()) return aims_.empty() ? robot::AimState{} : aims_.front();

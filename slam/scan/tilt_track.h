@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "robot/felt_tilt.h"
+#include "robot/levelling_watch.h"
 #include "robot/measurements.h"
 #include "robot/model.h"
 #include "slam/scan/level_scan.h"
@@ -18,11 +19,12 @@ struct TiltConfig {
 /// How scan plane and body were inclined at any stamp of the last while. The accelerometer feels gravity and motion;
 /// what the wheels say about the motion before and after is taken out. On the levelled platform it feels the servos as
 /// well: their angles off leave the tilt of the body, which changes slowly and is low-passed; the servos' angles, which
-/// change fast but are known, are added again at the scan.
+/// change fast but are known, are added again at the scan. Servos that jammed are known to stand still.
 class TiltTrack {
  public:
   TiltTrack(const robot::RobotModel& model, const TiltConfig& config)
       : config_(config),
+        unit_(model),
         place_(robot::accelerometer_place(model)),
         on_platform_(model.accelerometer_mount == robot::AccelerometerMount::Platform) {}
 
@@ -31,6 +33,10 @@ class TiltTrack {
   bool ready(Stamp stamp, Stamp now) const;
   /// Nothing where no acceleration lies within a quarter of a second.
   std::optional<ScanTilt> at(Stamp stamp) const;
+  /// Servos hold the scan plane, and hold it still when they say nothing more.
+  bool knows_servos() const { return !aims_.empty(); }
+  /// Of a body that leans so [rad].
+  ScanTilt on_body(double pitch, double roll, Stamp stamp) const;
   void forget_before(Stamp oldest_needed);
 
  private:
@@ -46,6 +52,7 @@ class TiltTrack {
   robot::AimState aim_at(Stamp stamp) const;
 
   const TiltConfig config_;
+  robot::LevellingWatch unit_;
   const mrpt::math::TPoint2D place_;
   const bool on_platform_;
   std::deque<robot::Odometry> wheels_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,8 +25,8 @@ using test::MazeRobot;
 
 /// A mission whose robot and measurements a test may spoil.
 struct Trial {
-  explicit Trial(const Maze& maze, double time_limit = 0.0)
-      : robot(maze, model), mapper(model, exact_mapper(), 1), explorer(model, {}, {time_limit}) {}
+  explicit Trial(const Maze& maze, double time_limit = 0.0, const PaperExplorerConfig& config = {})
+      : robot(maze, model), mapper(model, exact_mapper(), 1), explorer(model, config, {time_limit}) {}
 
   /// Until it finishes or `seconds` have passed. `before`: what happens to the world; `after`: to what was measured.
   void run(double seconds, const std::function<void()>& before = {},
@@ -363,6 +364,147 @@ TEST(BadConditions, WhatHoldsTheRobotIsNotPushedOnARamp) {
   });
   EXPECT_GE(brakes, 1);
   EXPECT_GT(trial.backing, 1);
+}
+
+bool told(const Trial& trial, const std::string& what) {
+  const std::vector<Decision>& decisions = trial.explorer.decisions();
+  return std::any_of(decisions.begin(), decisions.end(),
+                     [&](const Decision& d) { return d.why.find(what) != std::string::npos; });
+}
+
+/// With the angles of a levelling unit that falls silent at `from` [s].
+void run_with_unit(Trial& trial, double from) {
+  trial.run(900.0, {}, [&](robot::Inputs& inputs) {
+    if (inputs.now.seconds() < from) inputs.aims.push_back({inputs.now, 0.0, 0.0});
+  });
+}
+
+TEST(BadConditions, ALevellingUnitThatFallsSilentSendsItHome) {
+  const Maze maze = test::random_maze(5, 5, 0.2, 7);
+  Trial trial(maze);
+  run_with_unit(trial, 30.0);
+  EXPECT_TRUE(told(trial, "the levelling unit is silent"));
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
+  EXPECT_NE(trial.explorer.reason().find("not levelled"), std::string::npos);
+  EXPECT_LT(std::hypot(trial.robot.pose().x - maze.start.x, trial.robot.pose().y - maze.start.y), 0.35);
+  EXPECT_LT(trial.robot.now().seconds(), 120.0);
+}
+
+TEST(BadConditions, ALevellingUnitThatIsBackSoonIsWaitedFor) {
+  Trial trial(test::random_maze(5, 5, 0.2, 7));
+  double moved = 0.0;
+  TPose2D last = trial.robot.pose();
+  trial.run(900.0, {}, [&](robot::Inputs& inputs) {
+    const double now = inputs.now.seconds();
+    if (now < 30.0 || now > 34.0) inputs.aims.push_back({inputs.now, 0.0, 0.0});
+    if (now > 33.0 && now < 34.0)  // it has come to rest by then
+      moved += std::hypot(trial.robot.pose().x - last.x, trial.robot.pose().y - last.y);
+    last = trial.robot.pose();
+  });
+  EXPECT_LT(moved, 0.01);
+  EXPECT_TRUE(told(trial, "the levelling unit talks again"));
+  EXPECT_TRUE(told(trial, "all visible floor searched"));
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
+}
+
+TEST(BadConditions, WithoutAReturnHomeAFailedLevellingUnitIsTheEnd) {
+  PaperExplorerConfig config;
+  config.return_home = false;
+  Trial trial(test::random_maze(5, 5, 0.2, 7), 0.0, config);
+  run_with_unit(trial, 30.0);
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Explored);
+  EXPECT_EQ(trial.explorer.reason(), "the laser is not levelled");
+  EXPECT_LT(trial.robot.now().seconds(), 40.0);
+}
+
+/// Its map bends with the way, and is straight at once when a loop closes: all of the past moves, the half that lies
+/// far from the start by most.
+class ClosingMapper : public slam::Mapper {
+ public:
+  /// Heading is lost by `drift` [rad/m].
+  ClosingMapper(const robot::RobotModel& model, double drift)
+      : bent_(model, exact_mapper(), 1), exact_(model, exact_mapper(), 1), drift_(drift) {}
+
+  void close() { closed_ = true; }
+
+  void update(const robot::Inputs& inputs) override {
+    exact_.update(inputs);
+    robot::Inputs told = inputs;
+    for (robot::Odometry& odometry : told.odometry) {
+      const TPose2D step = odometry.pose - last_;
+      last_ = odometry.pose;
+      last_bent_ = last_bent_ + TPose2D(step.x, step.y, step.phi + drift_ * std::hypot(step.x, step.y));
+      odometry.pose = last_bent_;
+    }
+    bent_.update(told);
+  }
+  const slam::CountMap& map() const override { return now().map(); }
+  TPose2D pose() const override { return now().pose(); }
+  PoseCovariance covariance() const override { return {}; }
+  std::uint64_t revision() const override { return closed_ ? 1 : 0; }
+  std::optional<TPose2D> pose_at(Stamp stamp) const override { return now().pose_at(stamp); }
+  const Trajectory& trajectory() const override { return now().trajectory(); }
+  const Trajectory& live_trajectory() const override { return now().live_trajectory(); }
+  const std::vector<TPoint2D>& last_hits() const override { return now().last_hits(); }
+  const slam::MapperCounts& counts() const override { return now().counts(); }
+
+ private:
+  const slam::PaperMapper& now() const { return closed_ ? exact_ : bent_; }
+
+  slam::PaperMapper bent_, exact_;
+  bool closed_ = false;
+  double drift_;
+  TPose2D last_, last_bent_;  ///< odometry as it was, and as the bent map has it
+};
+
+/// A loop closes while it drives: everything it keeps moves with the map, so it touches nothing, sees all, finds home,
+/// and the victim lies where it was.
+TEST(BadConditions, AMapThatJumpsWhileItDrivesTakesAllThatIsKeptWithIt) {
+  double largest_jump = 0.0;
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const Maze maze = test::random_maze(5, 5, 0.3, seed);
+    const robot::RobotModel model;
+    MazeRobot robot(maze, model);
+    ClosingMapper mapper(model, 0.015);
+    PaperExplorer explorer(model, {}, {1500.0});
+    robot::Commands commands;
+    std::optional<TPoint2D> victim;  // in the maze
+    int touches = 0;
+    while (robot.now().seconds() < 1500.0 && !explorer.finished()) {
+      robot::Inputs inputs = robot.step(commands);
+      const TPose2D pose = robot.pose();
+      const bool drives = commands.drive.v > 0.3;
+      if (!victim && drives && robot.now().seconds() > 60.0) victim = pose.composePoint({0.6, 0.0});
+      if (victim && std::fmod(robot.now().seconds(), 0.5) < model.tick) {
+        const TPoint2D seen = pose.inverseComposePoint(*victim);
+        if (seen.x > 2.0 * std::abs(seen.y) && seen.norm() < 1.0)
+          inputs.cues.push_back(
+              {inputs.now, robot::CueKind::Heat, std::atan2(seen.y, seen.x), std::hypot(seen.x, seen.y), 0.9});
+      }
+      mapper.update(inputs);
+      if (mapper.revision() == 0 && drives && robot.now().seconds() > 80.0) {
+        const TPose2D before = mapper.pose();
+        mapper.close();
+        largest_jump = std::max(largest_jump, std::hypot(mapper.pose().x - before.x, mapper.pose().y - before.y));
+        ASSERT_EQ(explorer.victims().size(), 1u) << "found before the map jumps";
+      }
+      commands = explorer.next(mapper, inputs);
+      touches += robot.touches() ? 1 : 0;
+    }
+    EXPECT_EQ(mapper.revision(), 1u);
+    EXPECT_EQ(explorer.end(), MissionEnd::Home) << explorer.reason();
+    EXPECT_LT(std::hypot(robot.pose().x - maze.start.x, robot.pose().y - maze.start.y), 0.35);
+    EXPECT_EQ(touches, 0);
+    for (int row = 0; row < maze.rows; ++row)
+      for (int column = 0; column < maze.columns; ++column) {
+        const Cell c = mapper.map().frame().cell(maze.start.inverseComposePoint(maze.centre(column, row)));
+        EXPECT_TRUE(mapper.map().frame().inside(c) && mapper.map().seen(c) > 0) << column << ", " << row;
+      }
+    ASSERT_EQ(explorer.victims().size(), 1u);
+    const TPoint2D found = maze.start.composePoint(explorer.victims()[0].p_map);
+    EXPECT_LT(std::hypot(found.x - victim->x, found.y - victim->y), 0.1);
+  }
+  EXPECT_GT(largest_jump, 0.3);
 }
 
 }  // namespace

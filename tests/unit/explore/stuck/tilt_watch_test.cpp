@@ -42,5 +42,16 @@ TEST(TiltWatch, ALevellingUnitThatFailedSaysNothingAboutTheGround) {
   EXPECT_LT(watch.slope(), deg_to_rad(1.0));
 }
 
+/// Servos that jammed are told to turn to the end of their travel.
+TEST(TiltWatch, AnglesThatAreNotBelievedAreNoTilt) {
+  TiltWatch watch;
+  watch.distrust();
+  robot::Inputs inputs;
+  inputs.aims.push_back({Stamp::from_seconds(1.0), deg_to_rad(30.0), 0.0});
+  for (int i = 0; i < 200; ++i) watch.update(inputs, 0.02);
+  EXPECT_FALSE(watch.too_steep());
+  EXPECT_LT(watch.slope(), deg_to_rad(1.0));
+}
+
 }  // namespace
 }  // namespace rubble::explore

@@ -188,5 +188,38 @@ TEST(TiltTrack, WithoutAccelerationsNothingIsToldAndNothingWaitedFor) {
   EXPECT_FALSE(track.at(tick.now));
 }
 
+TEST(TiltTrack, OfASilentUnitTheServosAreKnownToHold) {
+  Ride ride;
+  ride.pitch = [](double) { return deg_to_rad(8.0); };
+  ride.servo = ride.pulse = [](double) { return deg_to_rad(-8.0); };
+  TiltTrack track(RobotModel(), {});
+  EXPECT_FALSE(track.knows_servos());
+  for (const Inputs& tick : sensed(ride, RobotModel(), 3.0)) track.add(tick);
+  const Stamp later = Stamp::from_seconds(10.0);
+  Inputs silent;
+  silent.now = later;
+  track.add(silent);
+  EXPECT_FALSE(track.at(later));
+  ASSERT_TRUE(track.knows_servos());
+  const ScanTilt flat = track.on_body(0.0, deg_to_rad(2.0), later);
+  EXPECT_NEAR(rad_to_deg(flat.pitch), -8.0, 0.1);
+  EXPECT_NEAR(rad_to_deg(flat.roll), 2.0, 0.1);
+  EXPECT_EQ(flat.body_pitch, 0.0);
+}
+
+/// Servos that jammed on a ramp are told to turn to the end of their travel on level floor, and do not.
+TEST(TiltTrack, AnglesOfServosThatJammedAreNoLeanOfTheBody) {
+  Ride ride;
+  ride.pitch = [](double t) { return t < 3.0 ? deg_to_rad(8.0) : 0.0; };
+  ride.servo = [](double) { return deg_to_rad(-8.0); };
+  ride.pulse = [](double t) { return deg_to_rad(t < 3.0 ? -8.0 : std::min(30.0, -8.0 + 40.0 * (t - 3.0))); };
+  TiltTrack track(RobotModel(), {});
+  for (const Inputs& tick : sensed(ride, RobotModel(), 8.0)) track.add(tick);
+  const auto tilt = track.at(Stamp::from_seconds(7.5));
+  ASSERT_TRUE(tilt);
+  EXPECT_NEAR(rad_to_deg(tilt->pitch), -8.0, 1.0);
+  EXPECT_NEAR(rad_to_deg(tilt->body_pitch), 0.0, 1.0);
+}
+
 }  // namespace
 }  // namespace rubble::slam

@@ -1,0 +1,66 @@
+#include "robot/levelling_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rubble::robot {
+namespace {
+
+constexpr double kSilence = 1.0;                ///< without a word for so long it has failed [s]
+constexpr double kTiltFilter = 0.2;             ///< time constant [s]
+constexpr double kLevel = deg_to_rad(1.5);      ///< what levelling leaves where nothing moves
+constexpr double kTilted = deg_to_rad(3.0);     ///< what it never leaves ...
+constexpr double kAimedFar = deg_to_rad(15.0);  ///< ... of a tilt it turned so far against ...
+constexpr double kLevelledFor = 1.0;            ///< ... for longer than servos and loop take [s]
+
+bool is_silent(Stamp last, Stamp now) { return last != Stamp::never() && now - last > kSilence; }
+
+}  // namespace
+
+LevellingWatch::LevellingWatch(const RobotModel& model)
+    : on_platform_(model.accelerometer_mount == AccelerometerMount::Platform), felt_(accelerometer_place(model)) {}
+
+void LevellingWatch::update(const Inputs& inputs) {
+  for (const Odometry& odometry : inputs.odometry) felt_.follow(odometry);
+  for (const AimState& aim : inputs.aims) {
+    if (!std::isfinite(aim.pitch) || !std::isfinite(aim.roll)) continue;
+    aim_ = LaserAim{aim.pitch, aim.roll};
+    last_aim_ = inputs.now;
+  }
+  for (const Acceleration& acceleration : inputs.accelerations) {
+    if (acceleration.stamp > inputs.now || !std::isfinite(acceleration.x) || !std::isfinite(acceleration.y)) continue;
+    last_felt_ = inputs.now;
+    feel(acceleration);
+  }
+  if (state_ == LevellingState::Jammed) return;
+  // What has no servos cannot fail to level: a log with an accelerometer alone.
+  const bool silent = aim_ && (is_silent(last_aim_, inputs.now) || is_silent(last_felt_, inputs.now));
+  state_ = silent ? LevellingState::Silent : LevellingState::Works;
+}
+
+void LevellingWatch::feel(const Acceleration& acceleration) {
+  if (!on_platform_ || !aim_ || jammed_at_) return;
+  const double dt = last_sample_ == Stamp::never() ? kTiltSilence : acceleration.stamp - last_sample_;
+  if (dt <= 0.0) return;
+  last_sample_ = acceleration.stamp;
+  const Tilt tilt = felt_.of(acceleration);
+  const bool pitch = turns_in_vain(pitch_, tilt.pitch, aim_->pitch, dt, acceleration.stamp);
+  const bool roll = turns_in_vain(roll_, tilt.roll, aim_->roll, dt, acceleration.stamp);
+  if (!pitch && !roll) return;
+  jammed_at_ = LaserAim{pitch_.level_aim, roll_.level_aim};
+  state_ = LevellingState::Jammed;
+}
+
+bool LevellingWatch::turns_in_vain(Axis& axis, double tilt, double aim, double dt, Stamp now) const {
+  axis.tilt += (1.0 - std::exp(-dt / kTiltFilter)) * (tilt - axis.tilt);
+  if (std::abs(axis.tilt) < kLevel) axis.level_aim = aim;
+  const double turned = aim - axis.level_aim;
+  const bool in_vain = std::abs(turned) >= kAimedFar && std::abs(axis.tilt) >= kTilted && turned * axis.tilt < 0.0;
+  if (!in_vain || dt >= kTiltSilence)
+    axis.in_vain_since = Stamp::never();
+  else if (axis.in_vain_since == Stamp::never())
+    axis.in_vain_since = now;
+  return axis.in_vain_since != Stamp::never() && now - axis.in_vain_since >= kLevelledFor;
+}
+
+}  // namespace rubble::robot

@@ -1,0 +1,97 @@
+#include "robot/levelling_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/angle.h"
+#include "robot/hardware_units.h"
+#include "robot/levelling.h"
+
+namespace rubble::robot {
+namespace {
+
+constexpr double kTick = 0.02;  // [s]
+
+/// A standing robot with a levelled platform.
+struct Unit {
+  RobotModel model;
+  Levelling levelling{{}, model};
+  LevellingWatch watch{model};
+  double body = 0.0;   ///< pitch [rad]
+  double servo = 0.0;  ///< where it stands [rad]
+  bool turns = true;
+  bool has_aims = true, has_accelerometer = true;
+  Stamp now;
+
+  void run(double seconds) {
+    for (double t = 0.0; t < seconds; t += kTick) {
+      Inputs inputs;
+      inputs.now = now = now + kTick;
+      if (has_accelerometer) inputs.accelerations.push_back({now, kGravity * std::sin(body + servo), 0.0});
+      if (has_aims) inputs.aims.push_back({now, told_.pitch, told_.roll});
+      watch.update(inputs);
+      told_ = levelling.update(inputs);
+      if (turns) servo = told_.pitch;
+    }
+  }
+
+ private:
+  LaserAim told_;
+};
+
+TEST(LevellingWatch, AUnitThatLevelsWorksOnAnyRamp) {
+  Unit unit;
+  for (const double deg : {0.0, 15.0, -15.0, 25.0, -25.0, 3.0}) {
+    unit.body = deg_to_rad(deg);
+    unit.run(3.0);
+    EXPECT_EQ(unit.watch.state(), LevellingState::Works) << deg;
+  }
+}
+
+TEST(LevellingWatch, AfterASecondWithoutAWordItIsSilentUntilItTalksAgain) {
+  Unit unit;
+  unit.run(1.0);
+  unit.has_aims = unit.has_accelerometer = false;
+  unit.run(0.9);
+  EXPECT_EQ(unit.watch.state(), LevellingState::Works);
+  unit.run(0.2);
+  EXPECT_EQ(unit.watch.state(), LevellingState::Silent);
+  unit.has_aims = true;
+  unit.run(0.5);
+  EXPECT_EQ(unit.watch.state(), LevellingState::Silent) << "its accelerometer says nothing";
+  unit.has_accelerometer = true;
+  unit.run(0.1);
+  EXPECT_EQ(unit.watch.state(), LevellingState::Works);
+}
+
+TEST(LevellingWatch, WhereThereNeverWereServosNothingIsMissed) {
+  Unit unit;
+  unit.has_aims = false;
+  unit.run(1.0);
+  unit.has_accelerometer = false;
+  unit.run(10.0);
+  EXPECT_EQ(unit.watch.state(), LevellingState::Works);
+}
+
+TEST(LevellingWatch, ServosThatTakeNoTiltAwayAreJammedWhereTheyWereLevelLast) {
+  Unit unit;
+  unit.body = deg_to_rad(8.0);
+  unit.run(3.0);
+  unit.turns = false;
+  unit.run(5.0);
+  EXPECT_EQ(unit.watch.state(), LevellingState::Works) << "nobody can know yet";
+  unit.body = 0.0;
+  unit.run(3.0);
+  ASSERT_EQ(unit.watch.state(), LevellingState::Jammed);
+  ASSERT_TRUE(unit.watch.jammed_at());
+  // They were told a little more until the tilt was felt.
+  EXPECT_NEAR(unit.watch.jammed_at()->pitch, deg_to_rad(-8.0), deg_to_rad(2.5));
+  EXPECT_NEAR(unit.watch.jammed_at()->roll, 0.0, deg_to_rad(0.5));
+  unit.body = deg_to_rad(8.0);
+  unit.run(5.0);
+  EXPECT_EQ(unit.watch.state(), LevellingState::Jammed) << "for good";
+}
+
+}  // namespace
+}  // namespace rubble::robot

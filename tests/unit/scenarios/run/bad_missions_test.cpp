@@ -1,0 +1,101 @@
+// What can go wrong on a mission in the real simulator: each has a sensible end.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "arenas/files/arena_file.h"
+#include "arenas/generate/generate.h"
+#include "base/angle.h"
+#include "scenarios/run/core.h"
+#include "scenarios/run/mission_figures.h"
+#include "sim/sim_robot.h"
+#include "tests/support/base_files.h"
+
+namespace rubble::scenarios {
+namespace {
+
+struct Mission {
+  std::string end, decisions;
+  scoring::DriveFigures drive;
+  std::size_t victims = 0;
+};
+
+Mission drive(const arenas::Arena& arena, Scenario scenario) {
+  scenario.time_limit = scenario.sim.time_limit = 1500.0;
+  const test::TempFolder folder;
+  sim::SimRobot robot(arena, scenario.robot, scenario.sim, scenario.seed);
+  Core core(scenario, scenario.robot, true, folder.path());
+  while (const auto inputs = robot.read()) {
+    robot.command(core.step(*inputs));
+    if (core.finished()) break;
+  }
+  const scoring::MissionFigures figures = mission_figures(arena, robot.truth(), scenario.robot, core);
+  return {figures.end_code, decisions_text(core), figures.drive, core.victims().size()};
+}
+
+arenas::Arena small_yellow(std::uint64_t seed) {
+  arenas::GenerateConfig config;
+  config.columns = config.rows = 6;
+  config.ramps = 0.4;
+  config.paper = 0.1;
+  config.seed = seed;
+  return arenas::parse_arena(arenas::generate_arena(config), "yellow");
+}
+
+/// From 60 s on, as soon as the servos stand `deg` off the body's own level.
+Mission with_fault(sim::LevellingFault fault, double deg, std::uint64_t seed) {
+  Scenario scenario;
+  scenario.seed = seed;
+  scenario.sim.levelling_fault = fault;
+  scenario.sim.levelling_fault_tilt = deg_to_rad(deg);
+  return drive(small_yellow(seed), scenario);
+}
+
+class ALevellingUnitThatFails : public ::testing::TestWithParam<int> {
+ protected:
+  static void expect_home(const Mission& mission, const std::string& told) {
+    EXPECT_NE(mission.decisions.find(told), std::string::npos) << mission.decisions;
+    const std::size_t failed = mission.decisions.find(told);
+    EXPECT_EQ(mission.decisions.find("confirmed", failed), std::string::npos) << "no victim while scans are doubted";
+    EXPECT_EQ(mission.end, "home") << mission.decisions;
+    EXPECT_LT(mission.drive.home_m, 0.6);
+    EXPECT_LT(mission.drive.contact_s, 3.0);
+  }
+};
+
+TEST_P(ALevellingUnitThatFails, TiltedAndSilentTheRobotGoesHome) {
+  expect_home(with_fault(sim::LevellingFault::Silent, 7.0, static_cast<std::uint64_t>(GetParam())),
+              "the levelling unit is silent");
+}
+
+TEST_P(ALevellingUnitThatFails, LevelAndSilentTheRobotGoesHome) {
+  expect_home(with_fault(sim::LevellingFault::Silent, 0.0, static_cast<std::uint64_t>(GetParam())),
+              "the levelling unit is silent");
+}
+
+TEST_P(ALevellingUnitThatFails, WithServosThatJamTheRobotGoesHome) {
+  expect_home(with_fault(sim::LevellingFault::Jammed, 7.0, static_cast<std::uint64_t>(GetParam())),
+              "the levelling unit does not take the tilt away");
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, ALevellingUnitThatFails, ::testing::Values(1, 2, 3));
+
+TEST(StartOnARamp, IsAMissionLikeAnyOther) {
+  const arenas::Arena arena = arenas::parse_arena(
+      "name: ramp\n"
+      "maze: |\n"
+      "  +---+---+---+---+\n"
+      "  |S>  .1  <   .  |\n"
+      "  +---+---+---+   +\n"
+      "  |.   .   .   .  |\n"
+      "  +---+---+---+---+\n",
+      "ramp");
+  const Mission mission = drive(arena, {});
+  EXPECT_EQ(mission.end, "home") << mission.decisions;
+  EXPECT_LT(mission.drive.home_m, 0.6);
+  EXPECT_LT(mission.drive.contact_s, 3.0);
+}
+
+}  // namespace
+}  // namespace rubble::scenarios
