@@ -25,7 +25,7 @@ struct ScoreConfig {
 /// 1: min(precision, recall). 2: agreement of lines of sight beyond chance. 3: the fee grows where the truth has few
 /// walls. 4: dashes on one line are one wall. 5: what is so in any arena says nothing, a wall seen from one side is
 /// known in full, and a narrow unknown stretch between known ground is open ground.
-constexpr int kScoreVersion = 5;
+constexpr int kScoreVersion = 6;
 
 /// The verdict on one map. Lengths in metres, shares 0..1.
 struct MapScore {

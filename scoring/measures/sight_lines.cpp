@@ -77,6 +77,24 @@ struct Sight {
   }
 };
 
+using Unjudged = std::vector<std::pair<float, float>>;
+
+/// Elements of an arena have faces that the truth does not know, behind the one it does. Near that one all is judged.
+void note_unjudged(SightLines::Line& line, const Sight& sight) {
+  constexpr double kNear = 0.2;  // [m]
+  for (const Stretch& s : sight.unseen) {
+    const double from = s.from >= line.middle ? std::max(s.from, sight.walls[0].to + kNear) : s.from;
+    const double to = s.from >= line.middle ? s.to : std::min(s.to, sight.walls[0].from - kNear);
+    if (from < to) line.unjudged.emplace_back(static_cast<float>(from), static_cast<float>(to));
+  }
+}
+
+bool is_judged(const Unjudged& unjudged, double at) {
+  return std::none_of(unjudged.begin(), unjudged.end(), [at](const std::pair<float, float>& s) {
+    return at >= static_cast<double>(s.first) && at <= static_cast<double>(s.second);
+  });
+}
+
 /// Looks across a map that is kept elsewhere.
 struct Ground {
   explicit Ground(const SightMap& map) : grid(map.grid), pieces(map.pieces) {}
@@ -88,14 +106,15 @@ struct Ground {
     const Cell c = grid.cell(p);
     return grid.inside(c) && grid[c] != Occupancy::Unknown;
   }
-  /// Walks from a to b, which lie in this map and are `length` apart in the truth.
-  void look(const TPoint2D& a, const TPoint2D& b, double length, Sight& out) const;
+  /// Walks from a to b, which lie in this map and are `length` apart in the truth. Walls within `unjudged` are passed
+  /// by.
+  void look(const TPoint2D& a, const TPoint2D& b, double length, Sight& out, const Unjudged& unjudged = {}) const;
 
   const OccupancyGrid& grid;
   const WallPieces& pieces;
 };
 
-void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& out) const {
+void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& out, const Unjudged& unjudged) const {
   out.walls.clear();
   out.unseen.clear();
   out.unknown = 0.0;
@@ -119,12 +138,12 @@ void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& ou
     }
     const std::size_t at = f.index(c);
     const double wall = std::max(slipped, static_cast<double>(pieces.strength.cells()[at]));
-    if (wall > 0.0) {
+    if (wall > 0.0 && is_judged(unjudged, i * step)) {
       if (out.walls.empty() || free > kGap) out.walls.push_back({i * step, i * step, wall});
       out.walls.back().to = i * step;
       out.walls.back().strength = std::max(out.walls.back().strength, wall);
       free = 0.0;
-    } else if (grid.cells()[at] == Occupancy::Unknown) {
+    } else if (wall > 0.0 || grid.cells()[at] == Occupancy::Unknown) {
       out.leave_unseen(i * step, (i + 1) * step);
       out.unknown += step;
     } else {
@@ -167,6 +186,7 @@ class Asker {
     line.middle = sight_.walls[0].middle();
     line.thickness = sight_.walls[0].thickness();
     line.strength = sight_.walls[0].strength;
+    note_unjudged(line, sight_);
     const TPoint2D aside((from.y - to.y) * kClearBeside / length, (to.x - from.x) * kClearBeside / length);
     for (const TPoint2D& side : {aside, aside * -1.0}) {
       ground_.look(from + side, to + side, length, sight_);
@@ -349,7 +369,7 @@ SightAgreement agreement(const std::vector<SightLines::Line>& lines, const Sight
     const TPoint2D a = T.inverse(line.from);
     const TPoint2D b = T.inverse(line.to);
     const double length = (line.to - line.from).norm();
-    ground.look(a, b, length, sight);
+    ground.look(a, b, length, sight, credit == SightLines::Credit::Located ? line.unjudged : Unjudged());
     Word word;
     if (credit == SightLines::Credit::Whole) {
       word = word_on_whole(line, sight, raster, ground.known(a), ground.known(b));

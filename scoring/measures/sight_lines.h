@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "base/grid.h"
@@ -65,6 +66,8 @@ class SightLines {
     double strength = 1.0;           ///< of that wall: less than 1 if it is a small piece
     double weight = 0.0;             ///< of all blocked (open) lines together 0.5
     std::vector<float> doubts = {};  ///< where walls stand on an open line at other shifts, from `from` [m]
+    /// Where the truth knows nothing of a blocked line, from `from` [m]: walls of the map are not judged there.
+    std::vector<std::pair<float, float>> unjudged = {};
   };
   const std::vector<Line>& lines() const { return lines_; }
 
