@@ -14,6 +14,7 @@
 #include <memory>
 #include <new>
 #include <sstream>
+#include <vector>
 
 #include "app/command.h"
 #include "app/terminal.h"

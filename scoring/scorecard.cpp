@@ -171,7 +171,7 @@ std::string note_of_unasked_walls(const MapScore& score) {
   char text[200];
   std::snprintf(
       text, sizeof text,
-      "%.0f m of wall is missing where no line of sight crosses it (around the arena): the score does not know "
+      "%.0f m of wall is missing where no line of sight crosses it (around the arena): the score does not count "
       "that, overlap and recall do",
       score.errors.missing_m);
   return text;

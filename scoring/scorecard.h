@@ -24,7 +24,8 @@ struct ScoreConfig {
 /// Counts up whenever the same map and truth come to another `score`: scores of different versions cannot be compared.
 /// 1: min(precision, recall). 2: agreement of lines of sight beyond chance. 3: the fee grows where the truth has few
 /// walls. 4: dashes on one line are one wall. 5: what is so in any arena says nothing, a wall seen from one side is
-/// known in full, and a narrow unknown stretch between known ground is open ground.
+/// known in full, and a narrow unknown stretch between known ground is open ground. 6: faces behind the one that the
+/// truth knows are no walls drawn twice; black around a plan is no thickness.
 constexpr int kScoreVersion = 6;
 
 /// The verdict on one map. Lengths in metres, shares 0..1.

@@ -31,10 +31,18 @@ struct Verdict {
 };
 
 /// A page scales the map's marks with the map.
-scoring::Marks in_own_scale(scoring::Marks marks, double scale) {
-  for (auto& [map, truth] : marks.pairs) map.p *= 1.0 / scale;
-  for (scoring::Mark& map : marks.map_only) map.p *= 1.0 / scale;
-  return marks;
+std::vector<scoring::Marks> in_own_scale(std::vector<scoring::Marks> all, double scale) {
+  const auto shrink = [scale](scoring::Mark& mark) {
+    mark.p *= 1.0 / scale;
+    if (!mark.box) return;
+    mark.box->first *= 1.0 / scale;
+    mark.box->second *= 1.0 / scale;
+  };
+  for (scoring::Marks& marks : all) {
+    for (auto& [map, truth] : marks.pairs) shrink(map);
+    for (scoring::Mark& map : marks.map_only) shrink(map);
+  }
+  return all;
 }
 
 /// "matches_surf.png" and the like.
@@ -123,7 +131,7 @@ int score(ScoreArguments arguments) {
         arguments.html, verdict.map.grid, truth,
         {arguments.map, arguments.truth, command_of(arguments), result.T_truth_map, pose ? pose->scale : 1.0, config,
          result.aligned ? "" : result.note,
-         scoring::marks_on_page(result, in_own_scale(marks, pose ? pose->scale : 1.0)), result.score_at_best_pose});
+         in_own_scale(scoring::marks_on_page(result, marks), pose ? pose->scale : 1.0), result.score_at_best_pose});
   if (!arguments.out.empty()) {
     // A map that was refused is drawn at the best pose, so that a person can see why; score.json says that too.
     if (result.aligned || result.by != scoring::AlignBy::Auto)

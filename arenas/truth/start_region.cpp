@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include "arenas/truth/truth_map.h"

@@ -81,8 +81,8 @@ bool Agenda::begin_plan(const slam::CountMap& map, Stamp now) {
 
 Plan Agenda::choose(const Situation& situation) {
   TargetChoice::View view{situation.floor, situation.T_map_base, situation.now, situation.left_alone};
-  // What is off the grid may be solid after all: it is driven at for the place that is asked for, and for no other.
   view.speed = situation.speed;
+  // What is off the grid may be solid after all: it is driven at for the place that is asked for, and for no other.
   view.places_only = pushing_.what() == Pushing::What::OffGrid;
   TargetChoice::Choice choice = choice_.choose(view, situation.search);
   if (choice.no_niche) {

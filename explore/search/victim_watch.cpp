@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/planar.h"
 #include "base/wall_between.h"
@@ -16,6 +17,7 @@ constexpr double kCueAge = 1.2;     ///< an unconfirmed cue younger than this is
 constexpr double kOfVictim = 0.5;   ///< a cue so near to a confirmed victim is of it [m]
 constexpr double kBehind = 0.08;    ///< a victim lies so far behind the wall, not before it or in its cells [m]
 constexpr double kHand = 0.12;      ///< beside a line of sight through a hole there is wall [m]
+constexpr double kVisit = 2.0;      ///< shorter stares are none [s]
 constexpr double kStaredAge = 5.0;  ///< what was smelt so long ago is what the robot stood still for [s]
 constexpr int kSureOfHoles = 3;     ///< cues
 
@@ -137,8 +139,10 @@ bool VictimWatch::holds_still(const Traversable& floor, const TPose2D& T_map_bas
   const bool smelt = faint_.undecided(now, kCueAge);
   const bool stared = stares_;
   stares_ = search_.staring(victims_.undecided(now, kCueAge) || smelt, now);
-  // Standing there for a while is a visit to what was smelt.
-  if (stared && !stares_) {
+  if (stares_ && !stared) stares_since_ = smelt_at_ = now;
+  if (stares_ && smelt) smelt_at_ = now;
+  // Standing there for a while, with the nose in it, is a visit to what was smelt.
+  if (stared && !stares_ && smelt_at_ - stares_since_ >= kVisit) {
     for (const FaintSearch::Place& place : std::vector<FaintSearch::Place>(faint_.places()))
       if (!place.sure && place.smelt != Stamp::never() && now - place.smelt < kStaredAge)
         faint_.visited(place.p_map, position(T_map_base));

@@ -73,6 +73,8 @@ class VictimWatch {
   std::vector<FaintSearch::Seen> seen_;  ///< the victims of victims_
   std::vector<VictimReport> reports_;
   bool stares_ = false;
+  Stamp stares_since_ = Stamp::never();
+  Stamp smelt_at_ = Stamp::never();  ///< while it stared
   FloorSearch search_;
   std::map<int, Cues> cues_;  ///< of confirmed victims, by id
 };

@@ -3,7 +3,7 @@
 #include <mrpt/math/TPoint2D.h>
 
 #include "base/grid.h"
-#include "slam/grid/count_map.h"
+#include "slam/mapper.h"
 
 namespace rubble::scenarios {
 

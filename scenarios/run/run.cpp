@@ -249,7 +249,7 @@ bool knows_no_place(const slam::Mapper& mapper) {
   });
 }
 
-/// "1.23, -0.45 m, heading 90 deg, at the log's 12.3 s"
+/// "1.23, -0.45 m, heading 90 deg, found at 12.3 s" on the run's clock
 std::string place_found(const slam::Mapper& mapper) {
   if (mapper.live_trajectory().empty()) return "not found";
   const StampedPose& first = mapper.live_trajectory().front();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <future>
+#include <iterator>
 #include <utility>
 
 #include "base/angle.h"

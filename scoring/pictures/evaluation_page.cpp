@@ -115,7 +115,8 @@ std::string at_start(const OccupancyGrid& map, const OccupancyGrid& truth, const
   for (auto& [of_map, of_truth] : victims.pairs) of_map.p *= start.scale;
   for (Mark& of_map : victims.map_only) of_map.p *= start.scale;
   return score +
-         figure(overlay_png(grid, truth, start.T_truth_map, "", victims),
+         figure(overlay_png(grid, truth, start.T_truth_map,
+                            start.not_trusted.empty() ? "" : "NOT TRUSTED: " + start.not_trusted, victims),
                 "walls right (dark, within 5 cm), near (orange), only in the map (red), only in the truth (blue)") +
          figure(error_map_png(grid, truth, start.T_truth_map, start.config.tau),
                 "distance of phantom walls (to red) and missing ones (to blue)");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
+#include <string>
 
 #include "base/error.h"
 #include "base/image/png.h"

@@ -263,7 +263,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
 /// it did in this place before, else as on level floor.
 std::optional<ScanTilt> RobustMapper::Impl::tilt_of(Stamp reference, const ExpectedMotion& motion) const {
   std::optional<ScanTilt> tilt = tilt_.at(reference);
-  if (tilt || !tilt_.knows_servos()) return tilt;
+  if (tilt || !tilt_.knows_servos() || !tilt_.fell_silent(reference)) return tilt;
   const TPose2D T_map_base = now() + motion.T_last_now;
   double nearest = kSameSlope;
   Lean lean;

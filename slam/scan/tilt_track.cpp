@@ -88,6 +88,13 @@ bool TiltTrack::ready(Stamp stamp, Stamp now) const {
   return now - stamp > config_.lag + kLongestWait || now - last > kLongestWait;
 }
 
+bool TiltTrack::fell_silent(Stamp stamp) const {
+  const Stamp late = stamp + config_.lag;
+  const auto after =
+      std::lower_bound(leans_.begin(), leans_.end(), late, [](const Lean& l, Stamp s) { return l.stamp < s; });
+  return !leans_.empty() && std::abs((after == leans_.end() ? leans_.back() : *after).stamp - late) > kFarthest;
+}
+
 std::optional<ScanTilt> TiltTrack::at(Stamp stamp) const {
   const Stamp late = stamp + config_.lag;
   auto after = std::lower_bound(leans_.begin(), leans_.end(), late, [](const Lean& l, Stamp s) { return l.stamp < s; });

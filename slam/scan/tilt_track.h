@@ -33,6 +33,8 @@ class TiltTrack {
   bool ready(Stamp stamp, Stamp now) const;
   /// Nothing where no acceleration lies within a quarter of a second.
   std::optional<ScanTilt> at(Stamp stamp) const;
+  /// The body's lean was told before, and is not around `stamp`.
+  bool fell_silent(Stamp stamp) const;
   /// Servos hold the scan plane, and hold it still when they say nothing more.
   bool knows_servos() const { return !aims_.empty(); }
   /// Of a body that leans so [rad].

@@ -19,7 +19,7 @@ for argument in "$@"; do [[ $argument == --benchmark_out=* ]] && out=${argument#
 echo '{"benchmarks": [{"run_name": "BM_RankPairs", "pairs": 200, "right": 200},
   {"run_name": "BM_RankAcrossKinds", "maps": 1, "spearman_score": 1, "spearman_psi": 1,
    "spearman_features": 1, "spearman_eq7": 1},
-  {"run_name": "BM_FeaturesOfStrangers", "stranger": 0, "damaged": 1}]}' >"$out"
+  {"run_name": "BM_FeaturesOfStrangers", "stranger": 0, "damaged": 1, "stranger_worst": 0, "damaged_least": 1}]}' >"$out"
 echo "table of the benchmark"
 BENCH
 chmod +x build/bench/scoring_ranking_bench

@@ -1,5 +1,7 @@
 #include "scoring/maps/colours/map_colours.h"
 
+#include <utility>
+
 #include <opencv2/imgproc.hpp>
 
 #include "scoring/maps/colours/added_drawings.h"

@@ -159,7 +159,6 @@ TEST(Generate, ObstaclesOfOrangeAndRedCutNothingOff) {
   }
 }
 
-/// An edge that is open but rough would let the mapper plan a way the robot cannot drive.
 /// So no robot could drive off, and none of the simulator's kerbs stands there.
 TEST(Generate, WallsLeaveNoOpenRim) {
   for (const ArenaKind kind : {ArenaKind::Yellow, ArenaKind::Orange, ArenaKind::Red}) {
@@ -190,6 +189,7 @@ TEST(Generate, EveryStepFieldIsAThrowOfItsOwn) {
   }
 }
 
+/// An edge that is open but rough would let the mapper plan a way the robot cannot drive.
 TEST(Generate, WhereThereIsNoWallTheFloorIsSmooth) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(name_of(seed));

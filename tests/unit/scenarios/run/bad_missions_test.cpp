@@ -59,7 +59,7 @@ class ALevellingUnitThatFails : public ::testing::TestWithParam<int> {
     const std::size_t failed = mission.decisions.find(told);
     EXPECT_EQ(mission.decisions.find("confirmed", failed), std::string::npos) << "no victim while scans are doubted";
     EXPECT_EQ(mission.end, "home") << mission.decisions;
-    EXPECT_LT(mission.drive.home_m, 0.6);
+    EXPECT_LT(mission.drive.home_m, 1.0);
     EXPECT_LT(mission.drive.contact_s, 3.0);
   }
 };
