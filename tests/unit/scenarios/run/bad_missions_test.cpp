@@ -1,7 +1,6 @@
 // What can go wrong on a mission in the real simulator: each has a sensible end.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <string>
 
 #include "arenas/files/arena_file.h"
@@ -18,7 +17,7 @@ namespace {
 struct Mission {
   std::string end, decisions;
   scoring::DriveFigures drive;
-  std::size_t victims = 0;
+  std::size_t victims = 0, true_victims = 0;
 };
 
 Mission drive(const arenas::Arena& arena, Scenario scenario) {
@@ -31,7 +30,7 @@ Mission drive(const arenas::Arena& arena, Scenario scenario) {
     if (core.finished()) break;
   }
   const scoring::MissionFigures figures = mission_figures(arena, robot.truth(), scenario.robot, core);
-  return {figures.end_code, decisions_text(core), figures.drive, core.victims().size()};
+  return {figures.end_code, decisions_text(core), figures.drive, core.victims().size(), arena.victims.size()};
 }
 
 arenas::Arena small_yellow(std::uint64_t seed) {
@@ -54,13 +53,15 @@ Mission with_fault(sim::LevellingFault fault, double deg, std::uint64_t seed) {
 
 class ALevellingUnitThatFails : public ::testing::TestWithParam<int> {
  protected:
-  static void expect_home(const Mission& mission, const std::string& told) {
+  /// `within`: the pose that it drove home by may be off by so much [m].
+  static void expect_home(const Mission& mission, const std::string& told, double within = 0.6) {
     EXPECT_NE(mission.decisions.find(told), std::string::npos) << mission.decisions;
     const std::size_t failed = mission.decisions.find(told);
     EXPECT_EQ(mission.decisions.find("confirmed", failed), std::string::npos) << "no victim while scans are doubted";
     EXPECT_EQ(mission.end, "home") << mission.decisions;
-    EXPECT_LT(mission.drive.home_m, 1.0);
+    EXPECT_LT(mission.drive.home_m, within);
     EXPECT_LT(mission.drive.contact_s, 3.0);
+    EXPECT_LE(mission.victims, mission.true_victims);
   }
 };
 
@@ -76,7 +77,7 @@ TEST_P(ALevellingUnitThatFails, LevelAndSilentTheRobotGoesHome) {
 
 TEST_P(ALevellingUnitThatFails, WithServosThatJamTheRobotGoesHome) {
   expect_home(with_fault(sim::LevellingFault::Jammed, 7.0, static_cast<std::uint64_t>(GetParam())),
-              "the levelling unit does not take the tilt away");
+              "the levelling unit does not take the tilt away", 1.0);  // a jam is seen late: farther is `lost`
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ALevellingUnitThatFails, ::testing::Values(1, 2, 3));
