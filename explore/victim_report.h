@@ -2,6 +2,8 @@
 
 #include <mrpt/math/TPoint2D.h>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/stamp.h"
@@ -18,7 +20,10 @@ struct PlaceCovariance {
 };
 
 /// Standard deviation along the worse axis [m].
-double worst_sigma(const PlaceCovariance& covariance);
+inline double worst_sigma(const PlaceCovariance& c) {
+  const double mean = 0.5 * (c.xx + c.yy);
+  return std::sqrt(std::max(0.0, mean + std::hypot(0.5 * (c.xx - c.yy), c.xy)));
+}
 
 /// A victim as the explorer believes in it.
 struct VictimReport {

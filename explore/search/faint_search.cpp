@@ -57,11 +57,6 @@ double square(double x) { return x * x; }
 
 }  // namespace
 
-double worst_sigma(const PlaceCovariance& c) {
-  const double mean = 0.5 * (c.xx + c.yy);
-  return std::sqrt(std::max(0.0, mean + std::hypot(0.5 * (c.xx - c.yy), c.xy)));
-}
-
 void FaintSearch::add(const robot::VictimCue& cue, const Anchor& anchor, const PoseCovariance& covariance) {
   if (!std::isfinite(cue.bearing) || !std::isfinite(cue.range) || !(cue.confidence > 0.0)) return;
   cues_.push_back({cue.kind, cue.bearing, std::max(0.0, cue.range), anchor, covariance});

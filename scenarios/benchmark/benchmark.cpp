@@ -115,8 +115,7 @@ json run_arena(const Scenario& scenario) {
   const arenas::Arena arena = arenas::parse_arena(yaml, scenario.name);
   sim::SimRobot robot(arena, scenario.robot, scenario.sim, scenario.seed);
   const auto mapper = slam::make_here(scenario.mapper, scenario.robot, {scenario.seed, ""});
-  const auto explorer =
-      scenario.explorer.make(scenario.robot, {scenario.time_limit, {scenario.sim.microphones, scenario.sim.co2_probe}});
+  const auto explorer = scenario.explorer.make(scenario.robot, mission_of(scenario));
   robot::Levelling levelling(scenario.levelling, scenario.robot);
   TimedMapper timed(*mapper);
   while (const auto inputs = robot.read()) {

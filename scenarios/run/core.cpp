@@ -18,13 +18,15 @@ double known_area(const slam::CountMap& map) {
   return static_cast<double>(cells) * map.frame().resolution * map.frame().resolution;
 }
 
+explore::Mission mission_of(const Scenario& scenario) {
+  return {scenario.time_limit, {scenario.sim.microphones, scenario.sim.co2_probe}};
+}
+
 Core::Core(const Scenario& scenario, const robot::RobotModel& model, bool explore, const std::string& run_folder,
            std::shared_ptr<const slam::MapBase> base)
     : mapper_(scenario.mapper.make(model, {scenario.seed, run_folder, std::move(base)})),
       levelling_(scenario.levelling, model) {
-  if (explore)
-    explorer_ =
-        scenario.explorer.make(model, {scenario.time_limit, {scenario.sim.microphones, scenario.sim.co2_probe}});
+  if (explore) explorer_ = scenario.explorer.make(model, mission_of(scenario));
 }
 
 robot::Commands Core::step(const robot::Inputs& inputs) {

@@ -14,6 +14,9 @@
 
 namespace rubble::scenarios {
 
+/// What a scenario asks of an explorer.
+explore::Mission mission_of(const Scenario& scenario);
+
 /// What drives a robot, whichever it is: mapper, levelling and (when asked to explore) explorer. It sees Inputs only.
 class Core {
  public:
