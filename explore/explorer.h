@@ -66,6 +66,8 @@ class Explorer {
   virtual const std::vector<mrpt::math::TPoint2D>& path() const = 0;
   /// The victims it is sure of, by id.
   virtual const std::vector<VictimReport>& victims() const = 0;
+  /// Whether the victim sensors have looked at the floor at a place [map frame, m].
+  virtual bool searched(const mrpt::math::TPoint2D& place) const { return static_cast<void>(place), false; }
   /// What it keeps of a mission's time for the way home, beside what the way itself takes: a time limit that is not
   /// longer explores nothing. 0: it does not drive home [s].
   virtual double time_for_home() const { return 0.0; }

@@ -49,6 +49,8 @@ class FloorSearch {
   /// Records what the victim sensors see from here, a few times a second, and not while turning (at `turn_rate`
   /// [rad/s]) too fast to see. True when it did.
   bool look(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, double turn_rate, Stamp now);
+  /// Whether the cameras have seen the floor at a place [map frame, m].
+  bool saw(const mrpt::math::TPoint2D& place) const { return searched_.saw(place); }
   /// Whether the place to face has been looked at.
   bool subject_seen(const Traversable& floor) const;
   /// The mapper corrected its past. True when a look moved by so much that the record must be made anew: `look_again`.

@@ -282,6 +282,16 @@ void SearchedArea::give_up(const Traversable& floor, const TPoint2D& place, doub
     }
 }
 
+bool SearchedArea::saw(const TPoint2D& place) const {
+  // The cells along walls, which these fill in part, are no floor: those beside them tell. Giving up marks the second
+  // look only.
+  const Cell c = twice_.frame().cell(place);
+  for (int y = c.y - 1; y <= c.y + 1; ++y)
+    for (int x = c.x - 1; x <= c.x + 1; ++x)
+      if (twice_.inside({x, y}) && (once_[{x, y}] & twice_[{x, y}] & kFloor) != 0) return true;
+  return false;
+}
+
 Faces SearchedArea::missing(const Traversable& floor, Cell c) const {
   const auto all = static_cast<Faces>(config_.faces ? faces_of(floor, c) : kFloor);
   if (twice_.width() == 0) return all;

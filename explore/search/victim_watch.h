@@ -51,6 +51,7 @@ class VictimWatch {
   /// The victims it is sure of, by id.
   const std::vector<VictimReport>& reports() const { return reports_; }
   FloorSearch& search() { return search_; }
+  const FloorSearch& search() const { return search_; }
 
  private:
   bool take_in(const robot::VictimCue& cue, const Anchor& anchor, const Traversable& floor);

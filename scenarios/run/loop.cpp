@@ -92,7 +92,9 @@ void Loop::save(double sim_s) {
 
 void Loop::save_now() {
   folder_.save_estimate(core_.mapper());
-  folder_.save_map(scenario_, core_.mapper(), core_.victims());
+  folder_.save_map(scenario_, core_.mapper(), core_.victims(), [this](const mrpt::math::TPoint2D& place) {
+    return core_.explorer() != nullptr && core_.explorer()->searched(place);
+  });
 }
 
 double Loop::seconds_since(Clock::time_point then) const {

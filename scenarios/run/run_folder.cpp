@@ -285,12 +285,14 @@ void RunFolder::save_estimate(const slam::Mapper& mapper) {
 }
 
 void RunFolder::save_map(const Scenario& scenario, const slam::Mapper& mapper,
-                         const std::vector<explore::VictimReport>& victims) const {
+                         const std::vector<explore::VictimReport>& victims,
+                         const std::function<bool(const mrpt::math::TPoint2D&)>& searched) const {
   scoring::LeagueDrawing drawing;
   drawing.occupied_threshold = scenario.explorer.occupied_threshold();
   drawing.title = "RoboCup-" + scenario.team + "-" + scenario.mission + "-map.tif";
   drawing.path = mapper.trajectory();
   for (const explore::VictimReport& victim : victims) drawing.victims.push_back({victim.id, victim.p_map});
+  drawing.searched = searched;
   drawing.geo = scenario.geo;
   const GeoTiff tiff = scoring::draw_league_map(league_cells(mapper.map()), drawing);
   publish({"map.tif", "map.tfw", "map.png", "map.pgm", "map.yaml"}, [&](const std::string& partial) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <mrpt/math/TPoint2D.h>
+
 #include <fstream>
 #include <functional>
 #include <optional>
@@ -47,9 +49,10 @@ class RunFolder {
   void append_estimate(const slam::Mapper& mapper);
   /// Lets estimate.tum hold the trajectory as known now.
   void save_estimate(const slam::Mapper& mapper);
-  /// Replaces map.tif, map.tfw, map.png, map.pgm, map.yaml, pois.csv and victims.csv.
-  void save_map(const Scenario& scenario, const slam::Mapper& mapper,
-                const std::vector<explore::VictimReport>& victims) const;
+  /// Replaces map.tif, map.tfw, map.png, map.pgm, map.yaml, pois.csv and victims.csv. `searched`: what was searched for
+  /// victims (LeagueDrawing).
+  void save_map(const Scenario& scenario, const slam::Mapper& mapper, const std::vector<explore::VictimReport>& victims,
+                const std::function<bool(const mrpt::math::TPoint2D&)>& searched = {}) const;
   /// Lets `write` make files of these names below the folder it is given (which ends in a slash), then puts them all in
   /// their places at once.
   void publish(const std::vector<std::string>& names, const std::function<void(const std::string&)>& write) const;

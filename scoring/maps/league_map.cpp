@@ -27,6 +27,15 @@ int free_grey(double confidence) {
   return grey;
 }
 
+/// Green of a searched cell by confidence.
+Rgb searched_green(double confidence) {
+  Rgb out{};
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = static_cast<std::uint8_t>(
+        std::lround(league::kSearchedUnsure[i] + confidence * (league::kSearched[i] - league::kSearchedUnsure[i])));
+  return out;
+}
+
 /// Places map points on a picture whose up is map x and whose left is map y.
 class Canvas {
  public:
@@ -55,7 +64,8 @@ class Canvas {
   cv::Mat mat_;  // a view of image_
 };
 
-void draw_cells(Canvas& canvas, const LeagueCells& map, double threshold) {
+void draw_cells(Canvas& canvas, const LeagueCells& map, const LeagueDrawing& drawing) {
+  const double threshold = drawing.occupied_threshold;
   RgbImage& image = canvas.image();
   for (int row = 0; row < image.height; ++row)
     for (int column = 0; column < image.width; ++column) {
@@ -71,8 +81,10 @@ void draw_cells(Canvas& canvas, const LeagueCells& map, double threshold) {
       } else {
         const double x2 = std::abs(p.x * 2.0 - std::round(p.x * 2.0)), y2 = std::abs(p.y * 2.0 - std::round(p.y * 2.0));
         const bool line = std::min(x2, y2) * 0.5 < 0.25 / canvas.pixels(0.5);  // half a pixel either side
-        const auto grey = static_cast<std::uint8_t>(free_grey(1.0 - *p_occ / threshold));
-        paint(pixel, line ? league::kGridLine : Rgb{grey, grey, grey});
+        const double confidence = 1.0 - *p_occ / threshold;
+        const auto grey = static_cast<std::uint8_t>(free_grey(confidence));
+        const bool searched = drawing.searched && drawing.searched(p);
+        paint(pixel, line ? league::kGridLine : searched ? searched_green(confidence) : Rgb{grey, grey, grey});
       }
     }
 }
@@ -132,7 +144,7 @@ GeoTiff draw_league_map(const LeagueCells& map, const LeagueDrawing& drawing) {
   double resolution = drawing.resolution;
   while (std::max(box.x1 - box.x0, box.y1 - box.y0) > kMostPixels * resolution) resolution *= 2.0;
   Canvas canvas(box, resolution);
-  draw_cells(canvas, map, drawing.occupied_threshold);
+  draw_cells(canvas, map, drawing);
   draw_scale(canvas, drawing.title);
   draw_path(canvas, drawing.path);
   draw_victims(canvas, drawing.victims);

@@ -31,6 +31,8 @@ struct LeagueDrawing {
   std::string title;                ///< file name printed into the margin
   Trajectory path;                  ///< driven so far, map frame
   std::vector<LeagueVictim> victims;
+  /// Whether the victim sensors have looked at the floor at a place, map frame; empty: nobody searched.
+  std::function<bool(const mrpt::math::TPoint2D&)> searched;
   std::optional<GeoAnchor> geo;  ///< Earth position of the map origin and heading of its x axis
 };
 

@@ -51,6 +51,16 @@ inline cv::Mat league_image(const OccupancyGrid& grid, bool with_drawings) {
   return image;
 }
 
+/// The same with the western half of its floor searched for victims.
+inline cv::Mat with_searched_floor(const cv::Mat& league) {
+  cv::Mat out = league.clone();
+  const cv::Vec3b floor(255, 255, 255);
+  for (int y = 0; y < out.rows; ++y)
+    for (int x = 0; x < out.cols / 2; ++x)
+      if (out.at<cv::Vec3b>(y, x) == floor) out.at<cv::Vec3b>(y, x) = {130, 230, 130};
+  return out;
+}
+
 inline RgbImage to_rgb(const cv::Mat& bgr) {
   RgbImage out(bgr.cols, bgr.rows);
   cv::Mat view(bgr.rows, bgr.cols, CV_8UC3, out.rgb.data());

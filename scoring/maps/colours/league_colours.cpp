@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <map>
 #include <opencv2/imgproc.hpp>
@@ -15,6 +17,7 @@
 #include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/colours/lossy_colours.h"
 #include "scoring/maps/colours/nearest_ground.h"
+#include "scoring/maps/colours/searched_floor.h"
 #include "scoring/maps/colours/tone_curve.h"
 
 namespace rubble::scoring {
@@ -72,10 +75,14 @@ bool is_checkerboard(const Colour& c) {
 bool looks_unexplored(const Colour& c) { return spread(c) <= 6 && c.g >= 216 && c.g <= 245; }
 
 /// Share of wall blue in a mixture with a grey: blue over red grows by 120 from grey to wall, green over red by 40.
+/// With white it is lightest: what is lighter is a symbol's blue on searched floor.
 double wall_share(const Colour& c) {
+  constexpr int kSlack = 35;  // of brightness
   const int blue = c.b - c.r;
   const int green = c.g - c.r;
   if (blue < 24 || 100 * green < 25 * blue || 100 * green > 55 * blue) return 0.0;
+  const int light = (299 * c.r + 587 * c.g + 114 * c.b) / 1000;
+  if (120 * (light - 255 - kSlack) > -218 * std::min(blue, 120)) return 0.0;
   return blue / 120.0;
 }
 
@@ -86,12 +93,16 @@ bool is_searched(const Colour& c) {
 struct Census {
   std::size_t walls = 0;
   std::size_t pure_walls = 0;
+  std::size_t blended_walls = 0;  ///< with other ground
   std::size_t checkerboard = 0;
   std::size_t darker = 0;      ///< of the checkerboard's squares
   std::size_t unexplored = 0;  ///< checkerboard or as light
   std::size_t pixels = 0;
   /// Never turned, scaled or compressed with loss: the colours of the table hold to the digit.
-  bool exact() const { return checkerboard > 0 && 10 * checkerboard >= 9 * unexplored && 10 * pure_walls >= 9 * walls; }
+  bool exact() const {
+    return checkerboard > 0 && 10 * checkerboard >= 9 * unexplored && 10 * pure_walls >= 9 * walls &&
+           5 * blended_walls <= walls;
+  }
 };
 
 /// Calls visit(colour, x, y, length) for each run of pixels of one colour in a row: maps are areas, and to ask what
@@ -143,7 +154,9 @@ void count_colour(const Colour& c, std::size_t count, Census& out) {
   if (is_checkerboard(c)) out.checkerboard += count;
   if (near_colour(c, league::kUnexplored, 0)) out.darker += count;
   if (looks_unexplored(c) && c.b > c.r) out.unexplored += count;
-  if (!near_colour(c, league::kWall, 45) || wall_share(c) <= 0.5) return;
+  const double share = wall_share(c);
+  if (share > 0.2 && share < 0.9) out.blended_walls += count;
+  if (share <= 0.5 || !near_colour(c, league::kWall, 45)) return;
   out.walls += count;
   if (near_colour(c, league::kWall, 0)) out.pure_walls += count;
 }
@@ -180,6 +193,17 @@ bool is_unchanged(const Census& c) {
   return 20 * c.checkerboard >= c.pixels && 5000 * c.pure_walls >= c.pixels && c.exact();
 }
 
+/// Whether a colour is one of the table's, or a mixture of it with searched floor.
+bool is_of_table(const Colour& c, const Colour& own) {
+  constexpr int kSlack = 25;
+  const Colour floor = league::kSearched;
+  const double r = floor.r - own.r, g = floor.g - own.g, b = floor.b - own.b;
+  const double along = (c.r - own.r) * r + (c.g - own.g) * g + (c.b - own.b) * b;
+  const double share = std::clamp(along / std::max(1.0, r * r + g * g + b * b), 0.0, 1.0);
+  const auto mixed = [&](int from, double by) { return static_cast<std::uint8_t>(std::lround(from + share * by)); };
+  return near_colour(c, Rgb{mixed(own.r, r), mixed(own.g, g), mixed(own.b, b)}, kSlack);
+}
+
 /// Dark colours, and those of them that the table has, blended or not.
 struct Ink {
   std::size_t all = 0;
@@ -188,7 +212,7 @@ struct Ink {
     constexpr int kDark = 100;
     if (c.g >= kDark || c.r >= kDark + 50) return;
     all += pixels;
-    const auto near = [&](const NamedColour& named) { return near_colour(c, named.colour, 25); };
+    const auto near = [&](const NamedColour& named) { return is_of_table(c, named.colour); };
     if (wall_share(c) > 0.45 || std::any_of(kPalette.begin(), kPalette.end(), near)) known += pixels;
   }
   /// Most of it is of the table.
@@ -404,8 +428,9 @@ std::string why_colours_are_lost(const RgbImage& image, bool is_league) {
            std::to_string(board.unevenness) +
            " of 255 over the picture, as in a photograph); give it as the robot saved it";
   Ink ink;
-  each_run(image, [&](const Colour& c, int, int, int length) { ink.count(c, static_cast<std::size_t>(length)); });
-  if (ink.is_strange() && !has_run_colours(image))
+  const RgbImage white = without_searched_floor(image);
+  each_run(white, [&](const Colour& c, int, int, int length) { ink.count(c, static_cast<std::size_t>(length)); });
+  if (ink.is_strange() && !has_run_colours(white))
     return "is a league map whose lines have other colours than the league's (as sharpened pictures have); give it as "
            "the robot "
            "saved it";
@@ -417,11 +442,15 @@ bool is_league_map(const RgbImage& image) {
   if (3 * c.walls > c.pixels) return false;  // a ground of that blue
   const auto are_walls = [&](std::size_t count) { return count >= 20 && 5000 * count >= c.pixels; };
   if (20 * c.checkerboard >= c.pixels || are_walls(c.walls)) return true;
-  return has_run_colours(image) && are_walls(static_cast<std::size_t>(cv::countNonZero(walls_by_brightness(image))));
+  const RgbImage white = without_searched_floor(image);
+  return has_run_colours(white) && are_walls(static_cast<std::size_t>(cv::countNonZero(walls_by_brightness(white))));
 }
 
-LabelImage classify_league(const RgbImage& image) {
-  const bool exact = census(image).exact();
+LabelImage classify_league(const RgbImage& as_given) {
+  // Of wall and searched floor blended nobody knows the wall before.
+  const RgbImage unsearched = without_searched_floor(as_given);
+  const bool exact = census(unsearched).exact();
+  const RgbImage& image = exact ? as_given : unsearched;
   LabelImage out;
   out.classes = cv::Mat(image.height, image.width, CV_8U);
   const bool lossy = !exact && has_run_colours(image);

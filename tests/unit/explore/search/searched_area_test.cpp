@@ -54,6 +54,23 @@ TEST(SearchedArea, AWallIsInspectedFromTheFront) {
   EXPECT_EQ(area.missing(floor, c), 0);
 }
 
+TEST(SearchedArea, FloorWasSeenAfterTwoLooksAndNotWhereItWasGivenUp) {
+  const Traversable floor = room();
+  SearchedArea area{SearchConfig{}};
+  const TPose2D eye(0.0, 0.5, deg_to_rad(90.0));
+  const TPoint2D ahead(0.0, 1.2), behind(0.0, -0.5);
+  EXPECT_FALSE(area.saw(ahead));
+  look_once(area, floor, eye);
+  EXPECT_FALSE(area.saw(ahead));
+  look_once(area, floor, eye);
+  EXPECT_TRUE(area.saw(ahead));
+  EXPECT_FALSE(area.saw(behind));
+  area.give_up(floor, behind, 0.3, kFloor);
+  EXPECT_EQ(area.missing(floor, floor.cells.cell(behind)), 0);
+  EXPECT_FALSE(area.saw(behind));
+  EXPECT_FALSE(area.saw({100.0, 0.0}));
+}
+
 TEST(SearchedArea, AWallSeenAtAGrazingAngleIsNotInspected) {
   const Traversable floor = room();
   SearchedArea area{SearchConfig{}};

@@ -144,6 +144,32 @@ TEST(LeagueSymbols, AnyFormatOfTheMapHasTheSame) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_LT((of_tiff[i].p_picture - of_png[i].p_picture).norm(), 1e-6);
 }
 
+TEST(LeagueSymbols, WhatWasSearchedIsGreenAndReadAsBefore) {
+  const test::TempFolder folder;
+  const slam::CountMap map = room_walls();
+  scoring::LeagueDrawing plain = drawing({}, 0.025), searched = plain;
+  searched.searched = [](const TPoint2D& p) { return p.y > 0.0; };
+  const GeoTiff tiff = draw_league_map(league_cells(map), searched);
+  write_geotiff(folder / "searched.tif", tiff);
+  write_geotiff(folder / "plain.tif", draw_league_map(league_cells(map), plain));
+  EXPECT_EQ(scoring::load_map(folder / "searched.tif").grid.cells(),
+            scoring::load_map(folder / "plain.tif").grid.cells());
+  std::size_t green = 0, white = 0;
+  for (int row = 0; row < tiff.image.height; ++row)
+    for (int column = 0; column < tiff.image.width; ++column) {
+      const std::uint8_t* p = tiff.image.pixel(column, row);
+      const double y = -(tiff.transform->c + (column + 0.5) * tiff.transform->a);  // easting is -y
+      const bool is_green = p[1] == 230 && p[0] == p[2] && p[0] >= 130 && p[0] <= 180;
+      const bool is_white = p[0] == 255 && p[1] == 255 && p[2] == 255;
+      green += is_green ? 1 : 0;
+      white += is_white ? 1 : 0;
+      EXPECT_TRUE(!is_green || y > -0.03);
+      EXPECT_TRUE(!is_white || y < 0.03);
+    }
+  EXPECT_GT(green, 20000u);
+  EXPECT_GT(white, 20000u);
+}
+
 TEST(LeagueSymbols, AGreyMapAndAMapWithoutVictimsHaveNone) {
   const test::TempFolder folder;
   const slam::CountMap map = room_walls();
