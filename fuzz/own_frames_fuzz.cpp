@@ -22,6 +22,9 @@ RUBBLE_FUZZ_TARGET {
       case FrameKind::Codes:
         decode_codes(payload);
         break;
+      case FrameKind::Battery:
+        decode_battery(payload);
+        break;
     }
   } catch (const rubble::BadPayload&) {
   }

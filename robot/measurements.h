@@ -80,6 +80,7 @@ struct Inputs {
   std::vector<Acceleration> accelerations;
   std::vector<AimState> aims;
   std::vector<VictimCue> cues;
+  std::optional<double> battery;  ///< its voltage, where the base told it in the tick [V]
   /// In force during the tick: what the motors and servos were last told before it. Nothing: not known (foreign logs).
   std::optional<Commands> command;
 };

@@ -41,6 +41,8 @@ Rig::Rig(const arenas::Arena& arena, const robot::RobotModel& model, const SimCo
       odometry_clock_(model.odometry_period),
       unit_clock_(model.acceleration_period, model.acceleration_period),
       victim_clock_(victims_.period()),
+      battery_(config.battery_wh),
+      battery_clock_(1.0),
       rotor_clock_(model.laser.scan_period) {
   states_.push_back(world.state(index));
   truth_.push_back({Stamp{}, world.state(index).pose});
@@ -56,7 +58,15 @@ void Rig::follow(World& world, robot::Inputs& inputs) {
   states_.push_back(world.state(index_));
   if (model_.has_levelling_unit) accelerometer_.step(world.state(index_), config_.physics_step);
   fail_in_time(world);
+  draw_from_battery(world);
   measure(world, inputs);
+}
+
+/// Motors without current stand, whatever they are told.
+void Rig::draw_from_battery(World& world) {
+  if (config_.battery_wh <= 0.0) return;
+  battery_.draw(in_force_.drive, config_.physics_step);
+  if (!has_current()) world.firmware(index_).command({});
 }
 
 /// The levelling unit fails for good.
@@ -77,7 +87,7 @@ void Rig::finish(Stamp end, const World& world, robot::Inputs& inputs) {
 
 void Rig::command(const robot::Commands& commands, World& world) {
   in_force_ = commands;
-  world.firmware(index_).command(commands.drive);
+  world.firmware(index_).command(has_current() ? commands.drive : robot::Drive{});
   if (commands.brake) world.firmware(index_).brake();
   if (model_.has_levelling_unit) world.servos(index_).command(commands.aim);
 }
@@ -95,6 +105,10 @@ void Rig::measure(World& world, robot::Inputs& inputs) {
     if (!silent && fault_ != LevellingFault::NoAccelerometer) inputs.accelerations.push_back(felt);
     if (!silent) inputs.aims.push_back({state.stamp, pulses.pitch, pulses.roll});
     unit_clock_.advance();
+  }
+  if (config_.battery_wh > 0.0 && battery_clock_.due(state.stamp)) {
+    inputs.battery = battery_.volts();
+    battery_clock_.advance();
   }
   if (victim_clock_.due(state.stamp)) {
     constexpr double kFarthest = 4.0;  // no sense reaches farther, with a robot's half length [m]

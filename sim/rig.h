@@ -7,6 +7,7 @@
 #include "base/trajectory.h"
 #include "robot/measurements.h"
 #include "sim/accelerometer.h"
+#include "sim/battery.h"
 #include "sim/body/world_state.h"
 #include "sim/laser/laser.h"
 #include "sim/sim_robot.h"
@@ -48,6 +49,8 @@ class Rig {
  private:
   void forget_old_states();
   void fail_in_time(World& world);
+  void draw_from_battery(World& world);
+  bool has_current() const { return config_.battery_wh <= 0.0 || !battery_.empty(); }
 
   std::size_t index_;
   robot::RobotModel model_;
@@ -58,6 +61,8 @@ class Rig {
   Clock odometry_clock_;
   Clock unit_clock_;
   Clock victim_clock_;
+  Battery battery_;
+  Clock battery_clock_;
   Clock rotor_clock_;  ///< next: the zero of the sweep that is delivered next
   std::vector<WorldState> states_;
   Trajectory truth_;

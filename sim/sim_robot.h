@@ -27,6 +27,7 @@ struct SimConfig {
   bool sweep = true;                ///< each beam from the pose at its own time; false: the whole scan at once
   bool microphones = false;         ///< fitted: sound cues, heard all round and badly placed
   bool co2_probe = false;           ///< fitted: CO2 cues, close by
+  double battery_wh = 0.0;          ///< it holds so much when it starts; 0: no end of it, and nothing is told [Wh]
   LevellingFault levelling_fault = LevellingFault::None;
   double levelling_fault_from = 60.0;  ///< it fails then [s], ...
   double levelling_fault_tilt = 0.0;   ///< ... once it holds the laser so far from the body's own level [rad]

@@ -43,7 +43,8 @@ PaperExplorer::PaperExplorer(const robot::RobotModel& model, const PaperExplorer
                model.swing_radius() + kLittleRoom, mission.senses),
       left_alone_(config.felt, config.planner.same_target),
       home_way_(mission.time_limit),
-      levelling_(model) {}
+      levelling_(model),
+      battery_(config.battery_home, 0.0) {}
 
 ExplorerState PaperExplorer::state() const {
   if (agenda_.finished()) return ExplorerState::Finished;
@@ -80,6 +81,7 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   if (!inputs.scans.empty()) last_scan_ = now_;
   levelling_.update(inputs);
   heed_levelling();
+  heed_battery(inputs);
   stuck_watch_.update(inputs, passed, dt_);
   for (const robot::VictimCue& cue : inputs.cues)
     if (victims_.hear(cue, mapper, pose_, floor_))
@@ -101,11 +103,21 @@ void PaperExplorer::heed_levelling() {
   victims_.trust_scans(levelling_.works());
   if (levelling_.jammed()) stuck_watch_.distrust_tilt();
   if (const std::string news = levelling_.news(); !news.empty()) agenda_.note(now_, news);
-  if (!levelling_.given_up() || stage_ == Stage::Starting || finished()) return;
+  if (levelling_.given_up()) call_it_a_day("the laser is not levelled");
+}
+
+void PaperExplorer::heed_battery(const robot::Inputs& inputs) {
+  if (inputs.battery) battery_.look(*inputs.battery, now_);
+  if (battery_.low()) call_it_a_day("the battery is low");
+}
+
+/// Nothing more is begun; home, where it is wanted.
+void PaperExplorer::call_it_a_day(const std::string& why) {
+  if (stage_ == Stage::Starting || finished()) return;
   if (!config_.return_home) {
-    obey(agenda_.finish(MissionEnd::Explored, "the laser is not levelled", now_));
+    obey(agenda_.finish(MissionEnd::Explored, why, now_));
   } else if (agenda_.goal() != Goal::Home) {
-    agenda_.go_home("the laser is not levelled", now_);
+    agenda_.go_home(why, now_);
     pilot_.end_turn();
   }
 }

@@ -18,6 +18,7 @@
 #include "explore/stuck/recovery.h"
 #include "explore/stuck/straight_on.h"
 #include "explore/stuck/stuck_watch.h"
+#include "robot/battery_watch.h"
 #include "robot/model.h"
 
 namespace rubble::explore {
@@ -57,6 +58,8 @@ class PaperExplorer : public Explorer {
   void observe(const slam::Mapper& mapper, const robot::Inputs& inputs);
   void follow_map(const slam::Mapper& mapper);
   void heed_levelling();
+  void heed_battery(const robot::Inputs& inputs);
+  void call_it_a_day(const std::string& why);
 
   robot::Drive decide(const slam::Mapper& mapper);
   robot::Drive start(const slam::Mapper& mapper);
@@ -89,6 +92,7 @@ class PaperExplorer : public Explorer {
   Trail trail_;
   HomeWay home_way_;
   LevellingCare levelling_;
+  robot::BatteryWatch battery_;
 
   Stage stage_ = Stage::Starting;
   Stamp now_ = Stamp::never();

@@ -11,12 +11,12 @@
 
 #include "base/lists.h"
 #include "base/text/words.h"
+#include "robot/battery_watch.h"
 #include "robot/drivers/device_thread.h"
 #include "robot/drivers/heartbeat.h"
 #include "robot/drivers/host_clock.h"
 #include "robot/drivers/watch/answer_watch.h"
 #include "robot/drivers/watch/base_watch.h"
-#include "robot/drivers/watch/battery_watch.h"
 #include "robot/drivers/watch/freshness.h"
 #include "robot/drivers/watch/levelling_witness.h"
 #include "robot/drivers/watch/scan_watch.h"
@@ -111,6 +111,8 @@ struct RealRobot::Impl {
   bool armed = false;  ///< all devices have reported: the motors may go on
   BaseWatch base_watch;
   BatteryWatch battery_watch;
+  Stamp battery_told = Stamp::never();
+  std::optional<double> waiting_battery;
   LevellingWitness levelling_witness;
   bool unlevelled = false;  ///< the operator drives on without what levels the scanner the wrong way
   std::vector<Odometry> waiting_odometry;
@@ -267,10 +269,26 @@ struct RealRobot::Impl {
     std::vector<Odometry> reports = base->take_odometry();
     turn.jumps = base->jumps();
     turn.identity = base->who();
-    if (turn.ready) battery_watch.look(base->battery(), now);
+    if (turn.ready) look_at_battery(now);
     if (base_watch.look(turn, reports, now)) base->emergency_stop();
     scan_watch.look(reports);
     append(waiting_odometry, std::move(reports));
+  }
+
+  /// In the base's thread.
+  void look_at_battery(Stamp now) {
+    constexpr double kPeriod = 1.0;  // at which it is told [s]
+    const double volts = base->battery();
+    battery_watch.look(volts, now);
+    if (volts <= 0.0 || (battery_told != Stamp::never() && now - battery_told < kPeriod)) return;
+    battery_told = now;
+    const std::lock_guard<std::mutex> lock(mutex);
+    waiting_battery = volts;
+  }
+
+  std::optional<double> take_battery() {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return std::exchange(waiting_battery, std::nullopt);
   }
 
   /// In the base's thread, after each turn of it: what watch() let pass has been sent.
@@ -544,6 +562,7 @@ struct RealRobot::Impl {
     Inputs inputs;
     inputs.scans = std::exchange(waiting_scans, {});
     inputs.odometry = take_odometry();
+    inputs.battery = take_battery();
     if (unit_thread) {
       unit_thread->with([&] {
         inputs.accelerations = unit.take_accelerations();

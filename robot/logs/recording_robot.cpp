@@ -84,6 +84,7 @@ std::optional<Inputs> RecordingRobot::read() {
     return inputs;
   }
   append_codes_frame(impl_->buffer, *inputs);
+  append_battery_frame(impl_->buffer, *inputs);
   append_tick_frame(impl_->buffer, *inputs, impl_->context);
   const bool due = impl_->flushed == Stamp::never() || inputs->now - impl_->flushed >= kFlushPeriod ||
                    impl_->buffer.size() >= kFlushBytes;

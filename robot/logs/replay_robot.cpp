@@ -33,6 +33,7 @@ class OwnLog {
     decode(next_, [&] { inputs = decode_tick(frames_.payloads[next_], context_); });
     inputs.command = commands_;  // the answers to the ticks before
     hand_out_codes(inputs);
+    inputs.battery = std::exchange(battery_, std::nullopt);
     ++next_;
     take_commands();
     return inputs;
@@ -53,6 +54,8 @@ class OwnLog {
         decode(next_, [&] { commands_ = decode_commands(frames_.payloads[next_]); });
       if (kind_of(frames_.payloads[next_]) == FrameKind::Codes)
         decode(next_, [&] { codes_ = decode_codes(frames_.payloads[next_]); });
+      if (kind_of(frames_.payloads[next_]) == FrameKind::Battery)
+        decode(next_, [&] { battery_ = decode_battery(frames_.payloads[next_]); });
     }
   }
 
@@ -89,6 +92,7 @@ class OwnLog {
   TickContext context_;
   Commands commands_;
   std::vector<std::vector<std::uint8_t>> codes_;  ///< of the scans of the next tick
+  std::optional<double> battery_;                 ///< of the next tick
 };
 
 ForeignLog read_foreign(const std::string& bytes, const std::string& path) {

@@ -91,6 +91,7 @@ void bind(Binder& b, sim::SimConfig& c) {
   b.boolean("sweep", c.sweep);
   b.boolean("microphones", c.microphones);
   b.boolean("co2_probe", c.co2_probe);
+  b.number("battery_wh", c.battery_wh, 0.0, 10000.0);
   b.choice("levelling_fault", c.levelling_fault, sim::levelling_faults());
   b.number("levelling_fault_s", c.levelling_fault_from, 0.0, 1e6);
   b.degrees("levelling_fault_deg", c.levelling_fault_tilt, 0.0, 30.0);

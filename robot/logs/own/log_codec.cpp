@@ -162,6 +162,22 @@ std::vector<std::vector<std::uint8_t>> decode_codes(std::string_view payload) {
   return scans;
 }
 
+void append_battery_frame(std::string& out, const Inputs& inputs) {
+  if (!inputs.battery) return;
+  const std::size_t start = open_frame(out);
+  ByteWriter bytes(out);
+  bytes.u8(static_cast<std::uint8_t>(FrameKind::Battery));
+  bytes.f64(*inputs.battery);
+  close_frame(out, start);
+}
+
+double decode_battery(std::string_view payload) {
+  ByteReader bytes = open_payload(payload);
+  const double volts = bytes.f64();
+  expect_end(bytes);
+  return volts;
+}
+
 void append_tick_frame(std::string& out, const Inputs& inputs, TickContext& context) {
   const std::size_t start = open_frame(out);
   ByteWriter bytes(out);

@@ -11,7 +11,7 @@
 namespace rubble::robot {
 
 /// Kinds of frames; the first byte of a payload. Readers pass over kinds they do not know.
-enum class FrameKind : char { Header = 'H', Tick = 'T', Commands = 'C', Codes = 'K' };
+enum class FrameKind : char { Header = 'H', Tick = 'T', Commands = 'C', Codes = 'K', Battery = 'B' };
 
 /// Appends one whole frame each.
 void append_header_frame(std::string& out, const LogHeader& header);
@@ -24,6 +24,8 @@ struct TickContext {
 };
 /// The codes of the scans of the tick that is appended next; nothing where no scan has any. Written as runs.
 void append_codes_frame(std::string& out, const Inputs& inputs);
+/// The voltage told in the tick that is appended next; nothing where there is none.
+void append_battery_frame(std::string& out, const Inputs& inputs);
 void append_tick_frame(std::string& out, const Inputs& inputs, TickContext& context);
 
 /// The inverse; `payload` with its kind byte. Throws BadPayload.
@@ -31,6 +33,8 @@ LogHeader decode_header(std::string_view payload);
 Commands decode_commands(std::string_view payload);
 /// One list a scan of the tick that follows.
 std::vector<std::vector<std::uint8_t>> decode_codes(std::string_view payload);
+/// Of the tick that follows [V].
+double decode_battery(std::string_view payload);
 Inputs decode_tick(std::string_view payload, TickContext& context);
 
 }  // namespace rubble::robot

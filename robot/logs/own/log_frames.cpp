@@ -35,9 +35,10 @@ void check_magic(std::string_view bytes, const std::string& path) {
 
 [[noreturn]] void fail_damaged(const std::string& path, std::size_t offset, const std::string& what) {
   // The first frame describes the robot: without it nothing that precedes can be read.
-  const std::string keep = offset <= kLogMagic.size() ? ""
-                                                      : ", or keep what precedes the damage: head -c " +
-                                                            std::to_string(offset) + " " + shell_word(path) + " > part.log";
+  const std::string keep = offset <= kLogMagic.size()
+                               ? ""
+                               : ", or keep what precedes the damage: head -c " + std::to_string(offset) + " " +
+                                     shell_word(path) + " > part.log";
   throw InputError(path + ": byte " + std::to_string(offset) + ": " + what + "; copy the log again" + keep);
 }
 

@@ -407,6 +407,31 @@ TEST(BadConditions, ALevellingUnitThatIsBackSoonIsWaitedFor) {
   EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
 }
 
+/// With a battery that has `volts` from `from` to `until` [s], and 12.5 V otherwise.
+void run_with_battery(Trial& trial, double volts, double from, double until) {
+  trial.run(900.0, {}, [&](robot::Inputs& inputs) {
+    const double now = inputs.now.seconds();
+    inputs.battery = now >= from && now < until ? volts : 12.5;
+  });
+}
+
+TEST(BadConditions, ABatteryThatStaysLowSendsItHome) {
+  const Maze maze = test::random_maze(5, 5, 0.2, 7);
+  Trial trial(maze);
+  run_with_battery(trial, 11.4, 30.0, 1000.0);
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
+  EXPECT_NE(trial.explorer.reason().find("the battery is low"), std::string::npos);
+  EXPECT_LT(std::hypot(trial.robot.pose().x - maze.start.x, trial.robot.pose().y - maze.start.y), 0.35);
+  EXPECT_LT(trial.robot.now().seconds(), 120.0);
+}
+
+TEST(BadConditions, ABatteryThatMotorsPullDownForAMomentIsNotLow) {
+  Trial trial(test::random_maze(5, 5, 0.2, 7));
+  run_with_battery(trial, 11.0, 30.0, 38.0);
+  EXPECT_FALSE(told(trial, "the battery is low"));
+  EXPECT_TRUE(told(trial, "all visible floor searched"));
+}
+
 TEST(BadConditions, WithoutAReturnHomeAFailedLevellingUnitIsTheEnd) {
   PaperExplorerConfig config;
   config.return_home = false;

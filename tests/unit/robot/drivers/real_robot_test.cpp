@@ -23,7 +23,7 @@
 #include "robot/drivers/heartbeat.h"
 #include "robot/drivers/host_clock.h"
 #include "robot/drivers/scan_queue.h"
-#include "robot/drivers/watch/battery_watch.h"
+#include "robot/battery_watch.h"
 #include "robot/emulators/arcos_emulator.h"
 #include "robot/emulators/device_server.h"
 #include "robot/emulators/levelling_emulator.h"
@@ -644,7 +644,15 @@ TEST(RealRobot, ABatteryThatIsEmptyHoldsItUntilTheOperatorTakesItOnHimself) {
     for (const Hindrance& one : bench.robot->status().troubles) all += one.line();
     return all;
   };
-  bench.drive(0.1, BatteryWatch::kLasts + 2.0);
+  std::size_t told = 0;
+  double volts = 0.0;
+  for (const Inputs& inputs : bench.drive(0.1, BatteryWatch::kLasts + 2.0)) {
+    told += inputs.battery ? 1 : 0;
+    volts = inputs.battery.value_or(volts);
+  }
+  EXPECT_GE(told, 10u) << "each second";
+  EXPECT_LE(told, 13u);
+  EXPECT_EQ(volts, 11.2);
   EXPECT_THAT(troubles(), testing::HasSubstr("its battery is low: 11.2 V"));
   EXPECT_FALSE(bench.robot->status().held);
   bench.base_server.with([&] { bench.arcos.set_battery(10.8); });

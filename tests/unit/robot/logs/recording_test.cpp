@@ -122,6 +122,23 @@ TEST(Recording, ScannerCodesAndTheCommandInForceAreInputs) {
   }
 }
 
+TEST(Recording, TheBatterysVoltageComesBackInItsTick) {
+  TempFolder folder;
+  std::vector<Inputs> ticks = steady_ticks(0.08, 0.02);
+  ticks[1].battery = 11.75;
+  {
+    ScriptedRobot scripted(ticks);
+    RecordingRobot robot(scripted, folder.file("a.log"), "");
+    while (robot.read()) robot.command({});
+  }
+  ReplayRobot replayed(folder.file("a.log"));
+  for (const Inputs& tick : ticks) {
+    const auto inputs = replayed.read();
+    ASSERT_TRUE(inputs);
+    EXPECT_EQ(inputs->battery, tick.battery);
+  }
+}
+
 TEST(Recording, UnchangedCommandsTakeNoSpace) {
   const TempFolder folder;
   ScriptedRobot robot({});

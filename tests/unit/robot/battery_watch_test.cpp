@@ -1,4 +1,4 @@
-#include "robot/drivers/watch/battery_watch.h"
+#include "robot/battery_watch.h"
 
 #include <gtest/gtest.h>
 
