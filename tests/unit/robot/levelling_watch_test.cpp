@@ -49,6 +49,32 @@ TEST(LevellingWatch, AUnitThatLevelsWorksOnAnyRamp) {
   }
 }
 
+/// As onto a step that it climbs: soon far over, then on and on.
+TEST(LevellingWatch, ARobotThatClimbsOnAndOnIsFollowedNotGivenUp) {
+  for (const double sign : {1.0, -1.0})
+    for (const double deg_per_s : {12.0, 13.0, 15.0}) {
+      Unit unit;
+      unit.run(1.0);
+      while (std::abs(unit.body) < deg_to_rad(33.0)) {
+        const double rate = std::abs(unit.body) < deg_to_rad(16.0) ? 20.0 : deg_per_s;
+        unit.body += sign * deg_to_rad(rate) * kTick;
+        unit.run(kTick);
+        EXPECT_EQ(unit.watch.state(), LevellingState::Works) << deg_per_s << " " << rad_to_deg(unit.body);
+      }
+    }
+}
+
+TEST(LevellingWatch, ServosOfShortTravelAreSeenToBeJammedToo) {
+  Unit unit;
+  LevellingConfig config;
+  config.max_angle = deg_to_rad(18.0);
+  unit.levelling = Levelling{config, unit.model};
+  unit.turns = false;
+  unit.body = deg_to_rad(8.0);
+  unit.run(5.0);
+  EXPECT_EQ(unit.watch.state(), LevellingState::Jammed);
+}
+
 TEST(LevellingWatch, AfterASecondWithoutAWordItIsSilentUntilItTalksAgain) {
   Unit unit;
   unit.run(1.0);
