@@ -16,10 +16,11 @@
 #include "scoring/scorecard.h"
 #include "scoring/walls/resample.h"
 #include "tests/support/scoring_grounds.h"
+#include "tests/support/scoring_halls.h"
 #include "tests/support/scoring_schemes.h"
 
 /// The laws of the score on grounds and by schemes that it was not made for: orange and red arenas full of ramps,
-/// arenas of real competitions (`arenas_raf` of RUBBLE_DATA), buildings (`rooms`). RUBBLE_KIND=TEXT takes only kinds
+/// arenas of real competitions (`arenas_raf` of RUBBLE_DATA), halls, buildings (`rooms`). RUBBLE_KIND=TEXT takes only kinds
 /// with this text.
 namespace rubble::scoring {
 namespace {
@@ -67,6 +68,15 @@ std::vector<Place> small_ones(int count) {
   return out;
 }
 
+std::vector<Place> halls(int count, bool lattice) {
+  std::vector<Place> out;
+  for (int i = 0; i < count; ++i) {
+    const auto seed = static_cast<std::uint64_t>(i);
+    out.push_back({lattice ? "lattice hall" : "hall", "hall " + std::to_string(i), hall_of(seed, lattice)});
+  }
+  return out;
+}
+
 std::vector<Place> competitions(const std::string& folder) {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) files.push_back(entry.path());
@@ -90,6 +100,8 @@ const std::vector<Place>& places(benchmark::State& state) {
   add(large_ones("yellow", 12));
   add(small_ones(18));
   add(competitions(*raf));
+  add(halls(16, false));
+  add(halls(16, true));
   for (const LabelledFloor& floor : *floors) all.push_back({"building", floor.floor.name, floor.map});
   const char* only = std::getenv("RUBBLE_KIND");
   if (only != nullptr)
@@ -243,6 +255,34 @@ void BM_OtherPlaces(benchmark::State& state) {
   state.counters["aligned"] = aligned;
 }
 BENCHMARK(BM_OtherPlaces)->Unit(benchmark::kSecond)->Iterations(1);
+
+/// Each arena of a real competition on each other one, at the best pose of all.
+void BM_CompetitionArenas(benchmark::State& state) {
+  const std::optional<std::string> folder = data_folder(state, "arenas_raf");
+  if (!folder) return;
+  const std::vector<Place> all = competitions(*folder);
+  double sum = 0.0;
+  double worst = 0.0;
+  int pairs = 0;
+  int aligned = 0;
+  for (auto _ : state)
+    for (const Place& truth : all)
+      for (const Place& other : all) {
+        if (other.name == truth.name) continue;
+        const MapScore score = score_map(other.truth, truth.truth);
+        sum += score.score_at_best_pose;
+        worst = std::max(worst, score.score_at_best_pose);
+        aligned += score.aligned ? 1 : 0;
+        ++pairs;
+        if (score.score_at_best_pose > 0.1)
+          std::printf("%s on %s: %.3f\n", other.name.c_str(), truth.name.c_str(), score.score_at_best_pose);
+      }
+  state.counters["pairs"] = pairs;
+  state.counters["mean"] = sum / std::max(1, pairs);
+  state.counters["worst"] = worst;
+  state.counters["aligned"] = aligned;
+}
+BENCHMARK(BM_CompetitionArenas)->Unit(benchmark::kSecond)->Iterations(1);
 
 }  // namespace
 }  // namespace rubble::scoring

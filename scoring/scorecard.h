@@ -25,8 +25,9 @@ struct ScoreConfig {
 /// 1: min(precision, recall). 2: agreement of lines of sight beyond chance. 3: the fee grows where the truth has few
 /// walls. 4: dashes on one line are one wall. 5: what is so in any arena says nothing, a wall seen from one side is
 /// known in full, and a narrow unknown stretch between known ground is open ground. 6: faces behind the one that the
-/// truth knows are no walls drawn twice; black around a plan is no thickness.
-constexpr int kScoreVersion = 6;
+/// truth knows are no walls drawn twice; black around a plan is no thickness. 7: where next to nothing stands inside,
+/// the walls around are asked about as well; the fee is higher up to 44 places of inner walls.
+constexpr int kScoreVersion = 7;
 
 /// The verdict on one map. Lengths in metres, shares 0..1.
 struct MapScore {

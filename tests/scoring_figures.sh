@@ -3,7 +3,8 @@
 #
 #   tests/scoring_figures.sh [-v] [alignment] [strangers] [rooms] [ranking] [attacks] [speed]      (default: all)
 #
-# RUBBLE_DATA   folder with `alignment` and `rooms` (docs/scoring.md), needed by the first three
+# RUBBLE_DATA   folder with `alignment` and `rooms` (docs/scoring.md), needed by the first three; `attacks` also judges
+#               the competition arenas of its `arenas_raf`, where there are any
 # RUBBLE_BUILD  build folder (default: build/release)
 # -v            also prints what the benchmarks print, pair by pair and map by map
 #
@@ -141,6 +142,15 @@ attacks() {
   judge "attacks: another arena at its best pose, mean" "$(value BM_OtherArenas mean)" "<=" 0.1
   judge "attacks: another arena at its best pose, worst" "$(value BM_OtherArenas worst)" "<=" 0.2
   judge "attacks: other arenas said to be aligned" "$(value BM_OtherArenas aligned)" "==" 0
+  if [[ ! -d ${RUBBLE_DATA:-}/arenas_raf ]]; then
+    echo "      attacks: without RUBBLE_DATA/arenas_raf the competition arenas are left out"
+    return
+  fi
+  bench scoring_schemes_bench BM_CompetitionArenas
+  tell "attacks: pairs of competition arenas" "$(value BM_CompetitionArenas pairs)"
+  judge "attacks: one on another at its best pose, mean" "$(value BM_CompetitionArenas mean)" "<=" 0.1
+  judge "attacks: one on another at its best pose, worst" "$(value BM_CompetitionArenas worst)" "<=" 0.2
+  judge "attacks: of these said to be aligned" "$(value BM_CompetitionArenas aligned)" "==" 0
 }
 
 # command_s COMMAND...: the least CPU time of five runs of a program [s].

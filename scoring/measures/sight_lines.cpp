@@ -16,20 +16,25 @@ namespace {
 
 using mrpt::math::TPoint2D;
 
-constexpr double kShortest = 0.5;       // line [m]
-constexpr double kLongest = 1.8;        // [m]
-constexpr double kClearEnds = 0.25;     // of walls at both ends [m]
-constexpr double kClearBeside = 0.12;   // open lines have no wall so near, blocked ones are blocked so far aside [m]
-constexpr double kGap = 0.15;           // free space between two pieces of one wall [m]
-constexpr double kHole = 0.55;          // unknown stretch between known ground that says no wall: a halo around one [m]
-constexpr double kPlaceOfWall = 0.1;    // to either side of a wall's middle: what must be known to miss it [m]
-constexpr double kTau = 0.5;            // distance from which a wall is another one [m]
-constexpr double kRaster = 0.5;         // of a cell: what drawing on a raster moves a wall by
-constexpr double kMostRaster = 0.05;    // [m]
-constexpr double kThickness = 0.04;     // what a metre of wrong thickness counts as a metre of wrong place
-constexpr double kFee = 0.25;           // kappa that maps of other arenas reach at their best pose
-constexpr double kPlenty = 30.0;        // places of inner walls from which luck is no greater than this
-constexpr double kMostFee = 0.55;       // what luck reaches where the truth has two or three walls
+constexpr double kShortest = 0.5;      // line [m]
+constexpr double kLongest = 1.8;       // [m]
+constexpr double kClearEnds = 0.25;    // of walls at both ends [m]
+constexpr double kClearBeside = 0.12;  // open lines have no wall so near, blocked ones are blocked so far aside [m]
+constexpr double kGap = 0.15;          // free space between two pieces of one wall [m]
+constexpr double kHole = 0.55;         // unknown stretch between known ground that says no wall: a halo around one [m]
+constexpr double kPlaceOfWall = 0.1;   // to either side of a wall's middle: what must be known to miss it [m]
+constexpr double kTau = 0.5;           // distance from which a wall is another one [m]
+constexpr double kRaster = 0.5;        // of a cell: what drawing on a raster moves a wall by
+constexpr double kMostRaster = 0.05;   // [m]
+constexpr double kThickness = 0.04;    // what a metre of wrong thickness counts as a metre of wrong place
+constexpr double kFee = 0.25;          // kappa that maps of other arenas reach at their best pose
+constexpr double kPlenty = 44.0;       // places of inner walls from which luck is no greater than this
+constexpr double kMostFee = 0.55;      // what luck reaches where the truth has two or three walls
+constexpr double kBare = 15.0;         // places of inner walls; with fewer, the walls around are asked about, too
+constexpr double kBareLuck = 23.0;     // over the number of all places: the square of what luck reaches then
+constexpr double kBareFee = 0.8;       // walls around a place are few pieces, however long
+constexpr double kMostBareFee = 0.88;
+constexpr double kOneKind = 0.15;       // of a bare truth's open lines count no more than of its walls, but for this
 constexpr double kPlace = 0.4;          // along a wall [m]
 constexpr double kPrior = 2.0;          // laid-over lines that the mean of all stands for
 constexpr std::size_t kFewest = 40;     // of each kind
@@ -155,7 +160,7 @@ void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& ou
 /// The truth, asked which lines across it are worth asking a map about.
 class Asker {
  public:
-  explicit Asker(const OccupancyGrid& truth) : map_(truth), ground_(map_) {
+  Asker(const OccupancyGrid& truth, bool outer) : map_(truth), ground_(map_), outer_(outer) {
     Grid<std::uint8_t> walls(truth.frame());
     for (std::size_t i = 0; i < truth.cells().size(); ++i)
       walls.cells()[i] = truth.cells()[i] == Occupancy::Occupied ? 1 : 0;
@@ -173,7 +178,8 @@ class Asker {
 
   /// The line, if it is clearly open or clearly blocked by one wall.
   std::optional<SightLines::Line> ask(const TPoint2D& from, const TPoint2D& to) {
-    if (!may_end(from) || !may_end(to)) return std::nullopt;
+    const bool leads_out = outer_ && !ground_.known(to);
+    if (!may_end(from) || !(leads_out || may_end(to))) return std::nullopt;
     const double length = (to - from).norm();
     ground_.look(from, to, length, sight_);
     SightLines::Line line{from, to};
@@ -182,6 +188,7 @@ class Asker {
       return line;
     }
     if (sight_.walls.size() > 1) return std::nullopt;
+    if (leads_out && !sight_.unseen.empty() && sight_.unseen[0].from < sight_.walls[0].from) return std::nullopt;
     line.blocked = true;
     line.middle = sight_.walls[0].middle();
     line.thickness = sight_.walls[0].thickness();
@@ -210,6 +217,7 @@ class Asker {
 
   SightMap map_;
   Ground ground_;
+  bool outer_;
   Grid<float> distance_;  ///< to the next wall [m]
   std::vector<TPoint2D> ends_;
   std::vector<TPoint2D> walls_;
@@ -355,17 +363,45 @@ Word word_on_whole(const SightLines::Line& line, const Sight& sight, double rast
   return {known, known * (line.blocked ? Drawn(line, sight, raster).right() : 1.0 - 2.0 * drawn_on_open(sight))};
 }
 
-template <class Transform>
-SightAgreement agreement(const std::vector<SightLines::Line>& lines, const SightMap& map, const Transform& T,
-                         double fee, SightLines::Credit credit) {
-  const Ground ground(map);
-  const double raster = std::min(kMostRaster, kRaster * map.grid.resolution());
-  Sight sight;
+/// What a map says about all lines, by weight.
+struct Sum {
+  void take(const SightLines::Line& line, const Word& word) {
+    all += line.weight;
+    known += line.weight * word.known;
+    gain += line.weight * word.right;
+    all_of[line.blocked] += line.weight;
+    known_of[line.blocked] += line.weight * word.known;
+  }
+  /// The lesser share of the two kinds that is known.
+  double lesser() const {
+    double out = 1.0;
+    for (std::size_t i = 0; i < all_of.size(); ++i)
+      if (all_of[i] > 0.0) out = std::min(out, known_of[i] / all_of[i]);
+    return out;
+  }
   double all = 0.0;
   double known = 0.0;
   double gain = 0.0;
+  std::array<double, 2> all_of{};  ///< of open and of blocked lines
+  std::array<double, 2> known_of{};
+};
+
+/// Luck is wrong about whole walls, an honest map a little about all: where one wall of ten decides, little errors must
+/// not. A patch of free ground fits into any hall: it earns nothing without walls.
+double beyond_bare_luck(const Sum& sum, double fee) {
+  const double wrong = (1.0 - sum.gain / sum.known) / (1.0 - fee);
+  const double known = std::min(sum.known / sum.all, sum.lesser() + kOneKind);
+  return std::clamp(known * (1.0 - wrong * wrong * wrong), 0.0, 1.0);
+}
+
+template <class Transform>
+SightAgreement agreement(const std::vector<SightLines::Line>& lines, const SightMap& map, const Transform& T,
+                         const SightLines::Luck& luck, SightLines::Credit credit) {
+  const Ground ground(map);
+  const double raster = std::min(kMostRaster, kRaster * map.grid.resolution());
+  Sight sight;
+  Sum sum;
   for (const SightLines::Line& line : lines) {
-    all += line.weight;
     const TPoint2D a = T.inverse(line.from);
     const TPoint2D b = T.inverse(line.to);
     const double length = (line.to - line.from).norm();
@@ -377,29 +413,38 @@ SightAgreement agreement(const std::vector<SightLines::Line>& lines, const Sight
       sight.close_holes(length);
       word = line.blocked ? word_on_blocked(line, sight, raster) : word_on_open(line, sight);
     }
-    known += line.weight * word.known;
-    gain += line.weight * word.right;
+    sum.take(line, word);
   }
   SightAgreement out;
-  if (known <= 0.0) return out;
-  out.known = known / all;
-  out.kappa = gain / known;
-  out.score = std::clamp((gain / all - fee * out.known) / (1.0 - fee), 0.0, 1.0);
+  if (sum.known <= 0.0) return out;
+  out.known = sum.known / sum.all;
+  out.kappa = sum.gain / sum.known;
+  out.score = luck.bare ? beyond_bare_luck(sum, luck.fee)
+                        : std::clamp((sum.gain / sum.all - luck.fee * out.known) / (1.0 - luck.fee), 0.0, 1.0);
   return out;
 }
 
 }  // namespace
 
 SightLines::SightLines(const OccupancyGrid& truth, Credit credit) : credit_(credit) {
-  Asker asker(truth);
+  // The fewer walls there are to be right about, the more often luck is right about most of them.
+  const double places = ask(truth, false);
+  luck_ = {std::clamp(kFee * kPlenty / places, kFee, kMostFee), false};
+  if (credit == Credit::Whole || (usable() && places >= kBare)) return;
+  luck_ = {std::clamp(std::sqrt(kBareLuck / ask(truth, true)), kBareFee, kMostBareFee), true};
+}
+
+double SightLines::ask(const OccupancyGrid& truth, bool outer) {
+  Asker asker(truth, outer);
+  lines_.clear();
   const std::vector<TPoint2D> shifts = lattice_shifts(truth, kShifts);
   const double mean = blocked_share(asker);
   const auto whole = static_cast<std::size_t>(std::clamp(kLinesPerArea * asker.area(), kLeastLines, kMostLines));
   for (const bool blocked : {false, true}) {
     const std::size_t first = lines_.size();
     double sum = 0.0;
-    for (Line& line : spread(asker, blocked, credit == Credit::Whole ? whole : blocked ? kBlockedLines : kOpenLines)) {
-      const double chance = chance_of(line, asker, shifts, mean, credit);
+    for (Line& line : spread(asker, blocked, credit_ == Credit::Whole ? whole : blocked ? kBlockedLines : kOpenLines)) {
+      const double chance = chance_of(line, asker, shifts, mean, credit_);
       // Lines through a wall were found by its cells: as often as it is thick along them.
       line.weight = blocked ? (1.0 - chance) / std::max(line.thickness, truth.resolution()) : chance;
       if (line.weight <= 0.0) continue;
@@ -409,19 +454,17 @@ SightLines::SightLines(const OccupancyGrid& truth, Credit credit) : credit_(cred
     count_[blocked] = lines_.size() - first;
     for (std::size_t i = first; i < lines_.size(); ++i) lines_[i].weight *= sum > 0.0 ? 0.5 / sum : 0.0;
   }
-  // The fewer walls there are to be right about, the more often luck is right about most of them.
-  const double places = std::max(1.0, static_cast<double>(wall_places(lines_)));
-  fee_ = std::clamp(kFee * kPlenty / places, kFee, kMostFee);
+  return std::max(1.0, static_cast<double>(wall_places(lines_)));
 }
 
 bool SightLines::usable() const { return count_[0] >= kFewest && count_[1] >= kFewest; }
 
 SightAgreement SightLines::at(const SightMap& map, const PlanarTransform& T_truth_map) const {
-  return agreement(lines_, map, T_truth_map, fee_, credit_);
+  return agreement(lines_, map, T_truth_map, luck_, credit_);
 }
 
 SightAgreement SightLines::at(const SightMap& map, const Warp& warp) const {
-  return agreement(lines_, map, warp, fee_, credit_);
+  return agreement(lines_, map, warp, luck_, credit_);
 }
 
 }  // namespace rubble::scoring

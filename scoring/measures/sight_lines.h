@@ -38,6 +38,9 @@ struct SightMap {
 /// open one where walls stand on it at those shifts. What lies in any arena beyond doubt earns nothing. Two arenas on
 /// one lattice agree by luck at the best of many poses: each known line costs a fee that outweighs this.
 ///
+/// Where next to nothing stands inside (a hall, a corridor), lines that lead out through the walls around are asked,
+/// too: without them two short walls would be all, and any arena is right about those somewhere.
+///
 /// Walls are compared by their middle, so a fat pencil costs little: only lines clear of the truth's walls by 0.25 m at
 /// the ends and 0.12 m beside them count.
 class SightLines {
@@ -49,7 +52,7 @@ class SightLines {
 
   explicit SightLines(const OccupancyGrid& truth, Credit credit = Credit::Located);
 
-  /// Too few open or blocked lines to say anything: a single room, or a truth without free space.
+  /// Too few open or blocked lines to say anything: a truth without free space.
   bool usable() const;
   SightAgreement at(const SightMap& map, const PlanarTransform& T_truth_map) const;
   SightAgreement at(const SightMap& map, const Warp& warp) const;
@@ -71,10 +74,19 @@ class SightLines {
   };
   const std::vector<Line>& lines() const { return lines_; }
 
+  /// What maps of other arenas reach at the best of all poses.
+  struct Luck {
+    double fee = 0.0;   ///< kappa
+    bool bare = false;  ///< so few inner walls that those around are asked about as well
+  };
+
  private:
+  /// Fills the lines, with those through the walls around if `outer`. Returns at how many places walls are asked about.
+  double ask(const OccupancyGrid& truth, bool outer);
+
   Credit credit_;
   std::vector<Line> lines_;
-  double fee_ = 0.0;                    ///< kappa that maps of other arenas reach by luck
+  Luck luck_;
   std::array<std::size_t, 2> count_{};  ///< open and blocked
 };
 
