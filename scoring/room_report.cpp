@@ -17,13 +17,18 @@ void draw_rooms(const std::string& path, const OccupancyGrid& map, const Rooms& 
 }
 
 RoomVerdict judge_rooms(const OccupancyGrid& map, const Rooms& of_map, const OccupancyGrid& truth,
-                        const Rooms& of_truth) {
+                        const Rooms& of_truth, const std::optional<mrpt::math::TPose2D>& T_truth_map) {
   RoomVerdict out;
-  const Alignment found = align(crop_to_known(map, 0.0), crop_to_known(truth, 0.0));
-  out.aligned = found.aligned;
-  out.note = found.note;
-  out.T_truth_map = found.T_truth_map;
-  if (found.aligned) out.match = match_rooms(of_map, of_truth, found.T_truth_map);
+  if (T_truth_map) {
+    out.aligned = true;
+    out.T_truth_map = *T_truth_map;
+  } else {
+    const Alignment found = align(crop_to_known(map, 0.0), crop_to_known(truth, 0.0));
+    out.aligned = found.aligned;
+    out.note = found.note;
+    out.T_truth_map = found.T_truth_map;
+  }
+  if (out.aligned) out.match = match_rooms(of_map, of_truth, out.T_truth_map);
   return out;
 }
 

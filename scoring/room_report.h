@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPose2D.h>
 
+#include <optional>
 #include <string>
 
 #include "base/grid.h"
@@ -24,7 +25,8 @@ struct RoomVerdict {
   mrpt::math::TPose2D T_truth_map;
 };
 
+/// `T_truth_map`: the pose, where it is known; else it is searched.
 RoomVerdict judge_rooms(const OccupancyGrid& map, const Rooms& of_map, const OccupancyGrid& truth,
-                        const Rooms& of_truth);
+                        const Rooms& of_truth, const std::optional<mrpt::math::TPose2D>& T_truth_map = {});
 
 }  // namespace rubble::scoring

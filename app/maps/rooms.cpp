@@ -1,15 +1,20 @@
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/maps/score_tools.h"
 #include "app/terminal.h"
+#include "base/angle.h"
 #include "base/error.h"
 #include "base/text/text_file.h"
 #include "scoring/maps/normalise.h"
 #include "scoring/marks.h"
 #include "scoring/pictures/picture.h"
+#include "scoring/pose_score.h"
 #include "scoring/room_report.h"
 
 namespace rubble::app {
@@ -22,6 +27,8 @@ struct RoomsArguments {
   std::optional<double> truth_resolution;
   std::string method = "passages";
   std::string out;
+  std::string pose;  ///< X,Y,DEG[,SCALE]: compare there instead of aligning
+  bool json = false;
 };
 
 /// A map and its rooms.
@@ -30,9 +37,11 @@ struct Floor {
   scoring::Rooms rooms;
 };
 
-Floor floor_of(const std::string& path, const std::optional<double>& resolution, const std::string& method) {
+Floor floor_of(const std::string& path, const std::optional<double>& resolution, const std::string& method,
+               double scale = 1.0) {
   Floor out;
   out.map = scoring::load_map(map_file(path), {resolution});
+  if (scale != 1.0) out.map.grid = scoring::scaled_frame(out.map.grid, scale);
   out.rooms = scoring::rooms_of_map(out.map.grid, method == "visibility");
   if (out.rooms.too_many_corners)
     throw InputError(path + ": its walls have more corners than a floor plan; give --method visibility");
@@ -70,6 +79,48 @@ void print_match(const scoring::RoomMatch& match) {
   print_row("room score", text("%.3f", match.score));
 }
 
+nlohmann::ordered_json point(const mrpt::math::TPoint2D& p) { return {p.x, p.y}; }
+
+nlohmann::ordered_json as_json(const scoring::Rooms& rooms) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < rooms.rooms.size(); ++i) {
+    const scoring::Room& r = rooms.rooms[i];
+    out.push_back({{"name", name_of(i)},
+                   {"centre_m", point(r.centre)},
+                   {"box_min_m", point(r.box_min)},
+                   {"box_max_m", point(r.box_max)},
+                   {"area_m2", r.area},
+                   {"perimeter_m", r.perimeter}});
+  }
+  return out;
+}
+
+nlohmann::ordered_json as_json(const std::vector<std::size_t>& rooms) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (const std::size_t i : rooms) out.push_back(name_of(i));
+  return out;
+}
+
+/// What the comparison adds.
+void add_match(nlohmann::ordered_json& out, const scoring::RoomVerdict& found) {
+  const mrpt::math::TPose2D& T = found.T_truth_map;
+  out["aligned"] = found.aligned;
+  if (!found.note.empty()) out["align_note"] = found.note;
+  if (!found.aligned) return;
+  out["T_truth_map"] = {{"x_m", T.x}, {"y_m", T.y}, {"yaw_deg", rad_to_deg(T.phi)}};
+  out["pairs"] = nlohmann::ordered_json::array();
+  for (const scoring::RoomPair& p : found.match.pairs)
+    out["pairs"].push_back({{"truth", name_of(p.truth)},
+                            {"map", name_of(p.map)},
+                            {"offset_m", p.offset},
+                            {"area_ratio", p.area_ratio},
+                            {"difference", p.difference}});
+  out["missing"] = as_json(found.match.missing);
+  out["surplus"] = as_json(found.match.surplus);
+  out["room_error_m2"] = found.match.error;
+  out["room_score"] = found.match.score;
+}
+
 std::string as_csv(const scoring::Rooms& rooms) {
   std::string out = "name,centre_x_m,centre_y_m,box_min_x_m,box_min_y_m,box_max_x_m,box_max_y_m,area_m2,perimeter_m\n";
   for (std::size_t i = 0; i < rooms.rooms.size(); ++i) {
@@ -86,7 +137,9 @@ void write_floor(const std::string& folder, const std::string& name, const Floor
 }
 
 int rooms(const RoomsArguments& a) {
-  const Floor map = floor_of(a.map, a.map_resolution, a.method);
+  const std::optional<GivenPose> pose = parse_pose(a.pose);
+  if (pose && a.truth.empty()) throw UsageError("--pose goes with a truth; see rubble rooms --help");
+  const Floor map = floor_of(a.map, a.map_resolution, a.method, pose ? pose->scale : 1.0);
   std::optional<Floor> truth;
   if (!a.truth.empty()) truth = floor_of(a.truth, a.truth_resolution, a.method);
   if (!a.out.empty()) {
@@ -94,17 +147,21 @@ int rooms(const RoomsArguments& a) {
     write_floor(a.out, "rooms", map);
     if (truth) write_floor(a.out, "truth_rooms", *truth);
   }
-  print_rooms(map);
-  if (!truth) return kOk;
-  const scoring::RoomVerdict found = scoring::judge_rooms(map.map.grid, map.rooms, truth->map.grid, truth->rooms);
-  if (!found.aligned) {
-    print_not_aligned(found.note);
-    return kOk;
+  nlohmann::ordered_json json = {{"rooms", as_json(map.rooms)}};
+  if (!a.json) print_rooms(map);
+  if (truth) {
+    const scoring::RoomVerdict found = scoring::judge_rooms(
+        map.map.grid, map.rooms, truth->map.grid, truth->rooms,
+        pose ? std::optional<mrpt::math::TPose2D>(pose->T_truth_map) : std::optional<mrpt::math::TPose2D>());
+    json["truth_rooms"] = as_json(truth->rooms);
+    add_match(json, found);
+    if (!a.json && found.aligned) print_match(found.match);
+    if (!a.json && !found.aligned) print_not_aligned(found.note);
+    if (found.aligned && !a.out.empty())
+      scoring::write_side_by_side(place_in(a.out, "matched_rooms.png"), map.map.grid, truth->map.grid,
+                                  found.T_truth_map, scoring::marks_of(map.rooms, truth->rooms, found.match));
   }
-  print_match(found.match);
-  if (!a.out.empty())
-    scoring::write_side_by_side(place_in(a.out, "matched_rooms.png"), map.map.grid, truth->map.grid, found.T_truth_map,
-                                scoring::marks_of(map.rooms, truth->rooms, found.match));
+  if (a.json) print_json(json);
   return kOk;
 }
 
@@ -113,7 +170,8 @@ int rooms(const RoomsArguments& a) {
 Command rooms_command() {
   return {"rooms", "Find the rooms of a map, and compare them with those of the truth",
           "Examples:\n  rubble rooms plan.png --resolution 0.05 --out rooms\n"
-          "  rubble rooms team.tif truth.tif --method visibility",
+          "  rubble rooms team.tif truth.tif --method visibility\n"
+          "  rubble rooms team.tif truth.tif --pose=1.5,-2,90 --json",
           [](Options& o) -> Action {
             auto a = std::make_shared<RoomsArguments>();
             o.argument("map", a->map, "GeoTIFF, ROS map.yaml, or image with --resolution");
@@ -123,6 +181,9 @@ Command rooms_command() {
             o.choice("--method", a->method, {"passages", "visibility"},
                      "passages, or the paper's clusters of wall control points by what they see");
             o.text("--out", a->out, "Folder for rooms.png and rooms.csv, the truth's, and matched_rooms.png");
+            o.text("--pose", a->pose,
+                   "Compare at this pose, X,Y,DEG[,SCALE], instead of aligning (write --pose=-1,2,90)");
+            o.flag("--json", a->json, "Print JSON");
             return [a] { return rooms(*a); };
           }};
 }
