@@ -155,7 +155,7 @@ double spearman(const std::vector<double>& a, const std::vector<double>& b) {
 FeatureVerdict features_at(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map) {
   const OccupancyGrid map_known = crop_to_known(map, 0.0);
   const OccupancyGrid truth_known = crop_to_known(truth, 0.0);
-  return judge_features(map_known, features_of(map_known), truth_known, features_of(truth_known), T_truth_map);
+  return judge_features(map_known, features_of(map_known), truth_known, truth_features(truth_known), T_truth_map);
 }
 
 std::string text_of(const FeatureVerdict& verdict) {

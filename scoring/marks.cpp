@@ -87,6 +87,12 @@ Marks marks_of(const std::vector<Poi>& reported, const std::vector<Poi>& victims
   return out;
 }
 
+Marks marks_on_overlay(const MapScore& score, const std::vector<Poi>& reported, const std::vector<Poi>& victims) {
+  Marks out = marks_of(reported, victims, score.T_truth_map);
+  if (score.broken.found) out.seam = {score.broken.from, score.broken.to};
+  return out;
+}
+
 std::vector<Marks> marks_on_page(const MapScore& score, const Marks& victims) {
   std::vector<Marks> out;
   if (!victims.pairs.empty() || !victims.map_only.empty() || !victims.truth_only.empty()) out.push_back(victims);

@@ -28,6 +28,8 @@ struct Marks {
   std::vector<std::pair<Mark, Mark>> pairs;  ///< of the map and of the truth
   std::vector<Mark> map_only;                ///< outliers: of the map, without partner
   std::vector<Mark> truth_only;
+  /// Where a map came apart into two parts, in the truth [m].
+  std::optional<std::pair<mrpt::math::TPoint2D, mrpt::math::TPoint2D>> seam{};
 };
 
 Marks marks_of(const KindScore& features);
@@ -35,6 +37,9 @@ Marks marks_of(const Rooms& map, const Rooms& truth, const RoomMatch& match);
 /// Victims reported and true, paired as victims are found: one to one within 1.2 m at the pose.
 Marks marks_of(const std::vector<Poi>& reported, const std::vector<Poi>& victims,
                const mrpt::math::TPose2D& T_truth_map);
+
+/// The victims, and the seam where the map came apart: what stands on the overlay of a map that was scored.
+Marks marks_on_overlay(const MapScore& score, const std::vector<Poi>& reported, const std::vector<Poi>& victims);
 
 /// What a page shows of a map that was scored: victims first, then the features of eq. (7), where they were asked for.
 std::vector<Marks> marks_on_page(const MapScore& score, const Marks& victims);

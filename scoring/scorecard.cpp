@@ -85,10 +85,10 @@ struct Walls {
 
 /// Eqs. (7) and (8) over features instead of walls.
 void fill_features(MapScore& out, const OccupancyGrid& map, const MapFeatures& of_map, const OccupancyGrid& truth,
-                   const MapFeatures& of_truth, const Walls& walls) {
-  out.features = feature_error(of_map, of_truth, EvidenceKind::Surf, out.T_truth_map);
+                   const TruthFeatures& of_truth, const Walls& walls) {
+  out.features = feature_error(of_map, of_truth.features, EvidenceKind::Surf, out.T_truth_map);
   out.by_features = judge_features(map, of_map, truth, of_truth, out.T_truth_map);
-  const FeatureWarp warp = fit_feature_warp(of_map, of_truth, out.T_truth_map, map.frame());
+  const FeatureWarp warp = fit_feature_warp(of_map, of_truth.features, out.T_truth_map, map.frame());
   out.feature_warp_m = warp.size;
   out.feature_warped_score = std::max(out.score, walls.score(warp.warp) * (1.0 - out.detached));
 }
@@ -110,9 +110,11 @@ void fill_break(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& tr
   out.mended_score = score * (1.0 - out.detached);
 }
 
-void fill_warp(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls) {
+void fill_warp(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls,
+               const std::shared_ptr<const TruthFeatures>& known) {
   // None of these waits for another: on other processors, where there are any.
-  auto of_truth = std::async([&] { return features_of(truth); });
+  auto of_truth =
+      std::async([&] { return known ? known : std::make_shared<const TruthFeatures>(truth_features(truth)); });
   auto seam = std::async([&map, &truth, T = out.T_truth_map] { return find_break(map, truth, T); });
   auto of_map = std::async([&] { return features_of(map); });
   const WarpedScore warped = fit_warp(map, truth, walls.overlaps, out.T_truth_map);
@@ -120,7 +122,7 @@ void fill_warp(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& tru
   out.warp_m = warped.size;
   out.warped_score = std::max(out.score, walls.score(warped.warp) * (1.0 - out.detached));
   out.penalised_score = std::max(out.score, out.warped_score * warped.kept);
-  fill_features(out, map, of_map.get(), truth, of_truth.get(), walls);
+  fill_features(out, map, of_map.get(), truth, *of_truth.get(), walls);
   fill_break(out, map, truth, seam.get(), walls);
 }
 
@@ -193,7 +195,7 @@ void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth
   out.errors = wall_errors(walls.overlaps, PlanarTransform(out.T_truth_map), config.worst_places);
   add_note(out.note, note_of_crossed_floor(out));
   add_note(out.note, note_of_unasked_walls(out));
-  if (config.warp) fill_warp(out, map, truth, walls);
+  if (config.warp) fill_warp(out, map, truth, walls, config.of_truth);
   const GridFrame frame = common_frame(map, truth, out.T_truth_map, kCanvasMargin);
   const OccupancyGrid map_on_frame = resample(map, out.T_truth_map, frame);
   const OccupancyGrid truth_on_frame = resample(truth, {}, frame);
@@ -202,6 +204,12 @@ void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth
 }
 
 }  // namespace
+
+ScoreConfig prepared_for(const OccupancyGrid& truth, ScoreConfig config) {
+  if (config.warp && !config.of_truth)
+    config.of_truth = std::make_shared<const TruthFeatures>(truth_features(crop_to_known(truth, 0.0)));
+  return config;
+}
 
 MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const ScoreConfig& config) {
   MapScore out;

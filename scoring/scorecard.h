@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPose2D.h>
 
+#include <memory>
 #include <string>
 
 #include "base/grid.h"
@@ -13,11 +14,15 @@
 
 namespace rubble::scoring {
 
+struct TruthFeatures;
+
 struct ScoreConfig {
   double tau = 0.5;                ///< distance at which a wall cell counts nothing [m]
   double colour_absent_cap = 5.0;  ///< psi of a class that only one map has [m]
   AlignmentConfig alignment;
-  bool warp = false;              ///< also fit eq. (8) and the feature error of eq. (7)
+  bool warp = false;  ///< also fit eq. (8) and the feature error of eq. (7)
+  /// What `warp` asks of the truth, where many maps are scored against one (prepared_for()); null: it is found.
+  std::shared_ptr<const TruthFeatures> of_truth;
   std::size_t worst_places = 10;  ///< listed at the most
 };
 
@@ -66,6 +71,9 @@ struct MapScore {
   MapBreak broken;                    ///< two rigid parts, if that explains more than a bend
   double mended_score = 0.0;          ///< `score` with both parts where they belong; `score` where none is broken off
 };
+
+/// `config` for many maps of this one truth: what they have in common is found once.
+ScoreConfig prepared_for(const OccupancyGrid& truth, ScoreConfig config);
 
 /// Aligns `map` to `truth` without any initial guess and scores it. Never throws on poor maps: see `aligned`, `note`.
 MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const ScoreConfig& config = {});

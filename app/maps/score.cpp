@@ -125,7 +125,7 @@ int score(ScoreArguments arguments) {
   } else {
     print_table(verdict, json);
   }
-  const scoring::Marks marks = scoring::marks_of(verdict.reported.victims, victims.victims, result.T_truth_map);
+  const scoring::Marks marks = scoring::marks_on_overlay(result, verdict.reported.victims, victims.victims);
   if (!arguments.html.empty())
     write_evaluation_page(
         arguments.html, verdict.map.grid, truth,

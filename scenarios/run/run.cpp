@@ -133,7 +133,7 @@ void score_files(scoring::Evidence& evidence, const WrittenMaps& files, const Vi
   folder.publish({"overlay.png"}, [&](const std::string& path) {
     scoring::write_overlay(path + "overlay.png", map, truth, score.T_truth_map,
                            score.aligned ? "" : "NOT TRUSTED: " + score.note,
-                           scoring::marks_of(victims.reported.victims, victims.there_are.victims, score.T_truth_map));
+                           scoring::marks_on_overlay(score, victims.reported.victims, victims.there_are.victims));
   });
   if (!score.aligned) return;
   folder.publish({"error.png"}, [&](const std::string& path) {

@@ -248,13 +248,19 @@ MatchError feature_error(const MapFeatures& map, const MapFeatures& truth, Evide
                      difference_of(map, truth, kind, T_truth_map.phi), feature_cap(kind));
 }
 
+TruthFeatures truth_features(const OccupancyGrid& truth) {
+  TruthFeatures out{features_of(truth), {}};
+  out.redrawn = errors_of_redrawn(truth, out.features);
+  return out;
+}
+
 FeatureVerdict judge_features(const OccupancyGrid& map, const MapFeatures& of_map, const OccupancyGrid& truth,
-                              const MapFeatures& of_truth, const TPose2D& T_truth_map) {
+                              const TruthFeatures& truth_once, const TPose2D& T_truth_map) {
   FeatureVerdict out;
+  const MapFeatures& of_truth = truth_once.features;
   const OccupancyGrid image = mirror_image(map);
   auto wrong_poses = std::async([&] { return poses_of_stranger(image, truth); });  // beside the features
   const MapFeatures of_image = features_of_image(image, of_map);
-  const std::vector<double> redrawn = errors_of_redrawn(truth, of_truth);
   const std::vector<TPose2D> wrong = wrong_poses.get();
   double sum = 0.0;
   double weights = 0.0;
@@ -271,7 +277,7 @@ FeatureVerdict judge_features(const OccupancyGrid& map, const MapFeatures& of_ma
     score.match = feature_error(of_map, of_truth, kind, T_truth_map);
     for (const TPose2D& T : wrong) score.stranger += feature_error(of_image, of_truth, kind, T).error;
     score.stranger = wrong.empty() ? feature_cap(kind) : score.stranger / static_cast<double>(wrong.size());
-    score.redrawn = redrawn[k];
+    score.redrawn = truth_once.redrawn[k];
     const double span = score.stranger - score.redrawn;
     score.usable = says_something(of_truth, kind) && span >= kLeastSpan * feature_cap(kind);
     if (score.usable) {

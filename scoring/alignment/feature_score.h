@@ -38,9 +38,16 @@ MatchError feature_error(const MapFeatures& map, const MapFeatures& truth, Evide
 /// C of a kind: E where nothing is matched [m^2].
 double feature_cap(EvidenceKind kind);
 
+/// What every map of one truth is held against: found once, where there are many.
+struct TruthFeatures {
+  MapFeatures features;
+  std::vector<double> redrawn;  ///< E of each kind between the truth and itself on another raster [m^2]
+};
+TruthFeatures truth_features(const OccupancyGrid& truth);
+
 /// Every kind of features at the pose, held against what strangers reach.
 FeatureVerdict judge_features(const OccupancyGrid& map, const MapFeatures& of_map, const OccupancyGrid& truth,
-                              const MapFeatures& of_truth, const mrpt::math::TPose2D& T_truth_map);
+                              const TruthFeatures& of_truth, const mrpt::math::TPose2D& T_truth_map);
 
 /// Section IV.F from `T_truth_map` on: associations and the least squares fit by turns, while E falls. Corners and SURF
 /// features together, so that maps with few of one kind have a pose.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 #include <filesystem>
 #include <utility>
 
@@ -24,17 +23,33 @@ namespace fs = std::filesystem;
 constexpr const char* kOverlay = "-overlay.png";
 constexpr const char* kErrorMap = "-error.png";
 constexpr const char* kPage = ".html";
+constexpr const char* kNumber = "-map";  ///< before the number of a team's map
 
 constexpr std::size_t kMostOfName = 80;  ///< [bytes] of a team's name in names of files, which end at 255
 
-/// A file name of its own for each team, whatever the team calls itself.
+/// A file name of its own for each team, whatever the team calls itself. The number is none of its rank: it stands
+/// behind the name.
 std::string safe_name(const std::string& team, std::size_t index) {
   std::string name;
   for (const char c : team.substr(0, kMostOfName))
     name += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.' ? c : '_';
-  char number[16];
-  std::snprintf(number, sizeof number, "%03zu-", index + 1);
-  return number + name;
+  return name + kNumber + std::to_string(index + 1);
+}
+
+bool all_digits(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+/// A name by safe_name() with one of our endings; earlier programs put the number first (`001-NAME`).
+bool is_named_by_us(const std::string& name) {
+  for (const char* ending : {kOverlay, kErrorMap, kPage}) {
+    if (!ends_with(name, ending)) continue;
+    const std::string stem = name.substr(0, name.size() - std::string(ending).size());
+    const std::size_t at = stem.rfind(kNumber);
+    if (at != std::string::npos && all_digits(stem.substr(at + std::string(kNumber).size()))) return true;
+    if (stem.size() > 4 && stem[3] == '-' && all_digits(stem.substr(0, 3))) return true;
+  }
+  return false;
 }
 
 /// Pages and pictures of teams from an earlier call: beside its league.csv, named by safe_name().
@@ -42,13 +57,8 @@ void remove_old_pages(const std::string& folder) {
   if (!fs::exists(folder + "/league.csv")) return;
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    const bool numbered = name.size() > 4 && name[3] == '-' && std::all_of(name.begin(), name.begin() + 3, [](char c) {
-                            return std::isdigit(static_cast<unsigned char>(c)) != 0;
-                          });
-    const bool is_ours = numbered && entry.is_regular_file() && !was_read(entry.path().string());
-    if (is_ours && (ends_with(name, kPage) || ends_with(name, kOverlay) || ends_with(name, kErrorMap)))
-      old.push_back(entry.path());
+    const bool is_ours = is_named_by_us(entry.path().filename().string()) && entry.is_regular_file();
+    if (is_ours && !was_read(entry.path().string())) old.push_back(entry.path());
   }
   for (const fs::path& path : old) fs::remove(path);
 }
@@ -57,7 +67,7 @@ LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const Le
                     const LeagueConfig& config, const std::string& name) {
   LeaguePictures pictures;
   pictures.overlay = name + kOverlay;
-  const Marks victims = marks_of(entry.reported.victims, truth.victims.victims, entry.score.T_truth_map);
+  const Marks victims = marks_on_overlay(entry.score, entry.reported.victims, truth.victims.victims);
   if (entry.score.aligned || entry.score.by != AlignBy::Auto)
     write_overlay(place_in(config.out, pictures.overlay), map, truth.grid, entry.score.T_truth_map,
                   entry.score.aligned ? "" : "NOT TRUSTED: " + entry.score.note, victims);
@@ -139,7 +149,9 @@ std::map<std::string, double> judges_points(const std::string& file, const std::
 }
 
 League judge_league(const LeagueFolder& folder, const LeagueTruth& truth, const std::map<std::string, double>& judge,
-                    const LeagueConfig& config) {
+                    const LeagueConfig& given) {
+  LeagueConfig config = given;
+  config.score = prepared_for(truth.grid, config.score);
   if (!config.out.empty()) remove_old_pages(config.out);
   League league;
   std::map<std::pair<std::string, std::string>, LeaguePictures> pictures;  // of team and file

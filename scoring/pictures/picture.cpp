@@ -37,6 +37,7 @@ const Colour kNotJudged(150, 150, 150);
 const Colour kBothFree(255, 255, 255);
 const Colour kMapFree(222, 226, 248);
 const Colour kTruthFree(248, 234, 218);
+const Colour kSeam(170, 40, 150);
 const Colour kUnknown(206, 206, 206);
 const Colour kWall(120, 40, 0);
 
@@ -248,6 +249,17 @@ void draw_victims(Canvas& canvas, const Marks& victims, const TPose2D& T_truth_m
   }
 }
 
+/// Dashes, so that nobody takes it for a wall.
+void draw_seam(Canvas& canvas, const std::pair<TPoint2D, TPoint2D>& seam) {
+  constexpr double kDash = 9.0;  // [pixels]
+  const cv::Point2d a = pixel_of(canvas, seam.first);
+  const cv::Point2d b = pixel_of(canvas, seam.second);
+  const double length = cv::norm(b - a);
+  for (double at = 0.0; at < length; at += 2.0 * kDash)
+    cv::line(canvas.image, a + (b - a) * (at / length), a + (b - a) * (std::min(length, at + kDash) / length),
+             cv::Scalar(kSeam), 3, cv::LINE_AA);
+}
+
 /// A band over the picture's top that nobody overlooks, as many lines as the words take.
 void draw_warning(Canvas& canvas, const std::string& words) {
   constexpr int kLine = 22;
@@ -313,15 +325,15 @@ std::string overlay_png(const OccupancyGrid& map, const OccupancyGrid& truth, co
           const double off = to_wall(to_truth, T_truth_map.composePoint(centre_of_cell(map, p_map)), truth);
           colour = is_judged(in_truth, off) ? wall_colour(off, kMapOnly) : kNotJudged;
         });
+  if (victims.seam) draw_seam(canvas, *victims.seam);
   draw_victims(canvas, victims, T_truth_map);
   draw_warning(canvas, warning);
-  draw_legend(canvas, {{kInk, "walls within 5 cm"},
-                       {kDisplaced, "within 15 cm"},
-                       {kMapOnly, "only in map"},
-                       {kTruthOnly, "only in truth"},
-                       {kNotJudged, "not judged"},
-                       {kMapFree, "seen by map only"},
-                       {kTruthFree, "not seen by map"}});
+  std::vector<LegendEntry> legend = {{kInk, "walls within 5 cm"},    {kDisplaced, "within 15 cm"},
+                                     {kMapOnly, "only in map"},      {kTruthOnly, "only in truth"},
+                                     {kNotJudged, "not judged"},     {kMapFree, "seen by map only"},
+                                     {kTruthFree, "not seen by map"}};
+  if (victims.seam) legend.push_back({kSeam, "seam of two parts"});
+  draw_legend(canvas, legend);
   return png_bytes(canvas.image);
 }
 

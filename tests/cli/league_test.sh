@@ -55,7 +55,7 @@ links = set(re.findall(r'(?:src|href)="([^"]+)"', page))
 anchors = set(re.findall(r'id="([^"]+)"', page))
 assert links and all(l[1:] in anchors if l[0] == '#' else os.path.exists('judged/' + l) for l in links), links
 assert 'next: good' in page and 'previous: twin' in page, page
-assert any(l.endswith('stranger-overlay.png') for l in links), links
+assert any(re.fullmatch(r'stranger-map\d-overlay.png', l) for l in links), links
 assert float(good['points_unfined']) == 60.0, good
 PY
 grep -qE '^ *1 +twin ' table.txt || fail "the table does not show the first: $(cat table.txt)"
@@ -69,6 +69,15 @@ cut -d, -f1,2,5 second/league.csv >ranks.txt
 [[ $(sed -n '2,5p' ranks.txt | cut -d, -f1,2 | tr '\n' ' ') == '1,aa 1,zz 3,0 ,1 ' ]] || fail "ties: $(cat ranks.txt)"
 "$rubble" score --league renamed $truth --out third >/dev/null && cmp second/league.csv third/league.csv ||
   fail "the same league twice gives other figures"
+
+# Files bear the team's name; no number before it looks like a rank. What an earlier program numbered is replaced, too.
+for file in overlay.png error.png; do ls second/aa-map[0-9]-$file second/zz-map[0-9]-$file >/dev/null || fail "no $file of a team: $(ls second)"; done
+ls second/aa-map[0-9].html >/dev/null && ! ls second | grep -qE '^[0-9]{3}-' || fail "names of files: $(ls second)"
+cp second/aa-map*-overlay.png second/001-gone-overlay.png; cp second/aa-map*-overlay.png second/gone-map9-overlay.png
+cp second/aa-map*-overlay.png second/kept-overlay.png
+"$rubble" score --league renamed $truth --out second >/dev/null || fail "second league again"
+[[ -e second/kept-overlay.png && ! -e second/001-gone-overlay.png && ! -e second/gone-map9-overlay.png ]] ||
+  fail "not the pictures of the earlier league were removed: $(ls second)"
 
 # The truth and pictures of runs among the maps are no teams, and the program says so; the options of a single score hold.
 mkdir -p mixed/run mixed/old mixed/judged
@@ -93,7 +102,7 @@ PY
 ! cut -d, -f1-40 akaze_out/league.csv | grep -q ',walls,' || fail "akaze was not asked: $(cat akaze_out/league.csv)"
 expect_exit 2 '--align' "$rubble" score --league mixed $truth --align magic
 "$rubble" score --league mixed $truth --tau 0.3 --out tau_out >/dev/null || fail "league with --tau"
-grep -q -- '--tau 0.3' tau_out/*good.html || fail "the page's command gives other figures than the page: no --tau"
+grep -q -- '--tau 0.3' tau_out/good-map*.html || fail "the page's command gives other figures than the page: no --tau"
 # Names that only look like pictures of runs take part; a copy of the truth is said to be one, and ranked.
 mkdir named
 for name in search-and-error error arena ground_truth half-visible copied x; do cp maps/coarse.tif named/$name.tif; done

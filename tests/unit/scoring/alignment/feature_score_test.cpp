@@ -18,7 +18,7 @@ using namespace testing;
 FeatureVerdict verdict_of(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T) {
   const OccupancyGrid a = crop_to_known(map, 0.0);
   const OccupancyGrid b = crop_to_known(truth, 0.0);
-  return judge_features(a, features_of(a), b, features_of(b), T);
+  return judge_features(a, features_of(a), b, truth_features(b), T);
 }
 
 TEST(FeatureScore, TheTruthIsOneAndAStrangerFarBelowADamagedMap) {
@@ -87,6 +87,22 @@ TEST(FeatureScore, TheWarpFromFeaturesUndoesABend) {
   EXPECT_GT(walls.at(warp.warp).score, walls.at(PlanarTransform(T)).score + 0.02);
   EXPECT_GT(warp.size, 0.05);
   EXPECT_LT(warp.size, 0.4);
+}
+
+/// A league prepares the truth once for all teams.
+TEST(FeatureScore, APreparedTruthGivesTheSameBits) {
+  const OccupancyGrid truth = truth_of({"maze", 6, 5, 7508});
+  ScoreConfig config;
+  config.warp = true;
+  const ScoreConfig prepared = prepared_for(truth, config);
+  ASSERT_NE(prepared.of_truth, nullptr);
+  const OccupancyGrid map = with_gaps(truth, 6, 3);
+  const MapScore a = score_at_pose(map, truth, {}, config);
+  const MapScore b = score_at_pose(map, truth, {}, prepared);
+  EXPECT_GT(a.by_features.score, 0.3);
+  EXPECT_EQ(a.by_features.score, b.by_features.score);
+  EXPECT_EQ(a.features.error, b.features.error);
+  EXPECT_EQ(a.feature_warped_score, b.feature_warped_score);
 }
 
 TEST(FeatureScore, AMapWithoutFeaturesIsNoMatch) {

@@ -177,5 +177,31 @@ TEST_F(Picture, AWarningStandsOverAMapThatIsNotTrusted) {
   EXPECT_EQ(tints(0.5).red, 0) << "only at the top";
 }
 
+TEST_F(Picture, TheSeamOfABrokenMapIsDrawnInDashes) {
+  const auto violet = [&](const Marks& marks) {
+    write_overlay(path_, room(0.0), room(0.0), {}, "", marks);
+    const cv::Mat image = cv::imread(path_);
+    int pixels = 0;
+    int dashes = 0;
+    for (int y = 0; y < rows_of_map(image); ++y) {
+      bool last = false;
+      for (int x = 0; x < image.cols; ++x) {
+        const cv::Vec3b c = image.at<cv::Vec3b>(y, x);
+        const bool here = c[0] > 120 && c[1] < 80 && c[2] > 110;
+        pixels += here ? 1 : 0;
+        dashes += here && !last ? 1 : 0;
+        last = here;
+      }
+    }
+    return std::pair(pixels, dashes);
+  };
+  Marks marks;
+  EXPECT_EQ(violet(marks).first, 0);
+  marks.seam = {{0.5, 1.0}, {2.0, 1.0}};
+  const auto [pixels, runs] = violet(marks);
+  EXPECT_GT(pixels, 100);
+  EXPECT_GT(runs, 6);  // gaps between the dashes
+}
+
 }  // namespace
 }  // namespace rubble::scoring
