@@ -16,25 +16,26 @@ namespace {
 
 using mrpt::math::TPoint2D;
 
-constexpr double kShortest = 0.5;      // line [m]
-constexpr double kLongest = 1.8;       // [m]
-constexpr double kClearEnds = 0.25;    // of walls at both ends [m]
-constexpr double kClearBeside = 0.12;  // open lines have no wall so near, blocked ones are blocked so far aside [m]
-constexpr double kGap = 0.15;          // free space between two pieces of one wall [m]
-constexpr double kHole = 0.55;         // unknown stretch between known ground that says no wall: a halo around one [m]
-constexpr double kPlaceOfWall = 0.1;   // to either side of a wall's middle: what must be known to miss it [m]
-constexpr double kTau = 0.5;           // distance from which a wall is another one [m]
-constexpr double kRaster = 0.5;        // of a cell: what drawing on a raster moves a wall by
-constexpr double kMostRaster = 0.05;   // [m]
-constexpr double kThickness = 0.04;    // what a metre of wrong thickness counts as a metre of wrong place
-constexpr double kFee = 0.25;          // kappa that maps of other arenas reach at their best pose
-constexpr double kPlenty = 44.0;       // places of inner walls from which luck is no greater than this
-constexpr double kMostFee = 0.55;      // what luck reaches where the truth has two or three walls
-constexpr double kBare = 15.0;         // places of inner walls; with fewer, the walls around are asked about, too
-constexpr double kBareLuck = 23.0;     // over the number of all places: the square of what luck reaches then
-constexpr double kBareFee = 0.8;       // walls around a place are few pieces, however long
-constexpr double kMostBareFee = 0.88;
-constexpr double kOneKind = 0.15;       // of a bare truth's open lines count no more than of its walls, but for this
+constexpr double kShortest = 0.5;       // line [m]
+constexpr double kLongest = 1.8;        // [m]
+constexpr double kClearEnds = 0.25;     // of walls at both ends [m]
+constexpr double kClearBeside = 0.12;   // open lines have no wall so near, blocked ones are blocked so far aside [m]
+constexpr double kGap = 0.15;           // free space between two pieces of one wall [m]
+constexpr double kHole = 0.55;          // unknown stretch between known ground that says no wall: a halo around one [m]
+constexpr double kPlaceOfWall = 0.1;    // to either side of a wall's middle: what must be known to miss it [m]
+constexpr double kTau = 0.5;            // distance from which a wall is another one [m]
+constexpr double kRaster = 0.5;         // of a cell: what drawing on a raster moves a wall by
+constexpr double kMostRaster = 0.05;    // [m]
+constexpr double kThickness = 0.04;     // what a metre of wrong thickness counts as a metre of wrong place
+constexpr double kFee = 0.25;           // kappa that maps of other arenas reach at their best pose
+constexpr double kPlenty = 44.0;        // places of inner walls from which luck is no greater than this
+constexpr double kMostFee = 0.55;       // what luck reaches where the truth has two or three walls
+constexpr double kBare = 15.0;          // places of inner walls; with fewer, the walls around are asked about, too
+constexpr double kBareLuck = 23.0;      // over the number of all places: the square of what luck reaches then
+constexpr double kBareFee = 0.8;        // walls around a place are few pieces, however long
+constexpr double kMostBareFee = 0.88;   // of the smallest places
+constexpr double kMoreOfOneKind = 2.0;  // times the known share of a bare truth's other kind of lines
+constexpr double kOfOneKind = 0.05;     // ... and this
 constexpr double kPlace = 0.4;          // along a wall [m]
 constexpr double kPrior = 2.0;          // laid-over lines that the mean of all stands for
 constexpr std::size_t kFewest = 40;     // of each kind
@@ -390,7 +391,7 @@ struct Sum {
 /// not. A patch of free ground fits into any hall: it earns nothing without walls.
 double beyond_bare_luck(const Sum& sum, double fee) {
   const double wrong = (1.0 - sum.gain / sum.known) / (1.0 - fee);
-  const double known = std::min(sum.known / sum.all, sum.lesser() + kOneKind);
+  const double known = std::min(sum.known / sum.all, kMoreOfOneKind * sum.lesser() + kOfOneKind);
   return std::clamp(known * (1.0 - wrong * wrong * wrong), 0.0, 1.0);
 }
 

@@ -77,12 +77,24 @@ int main_grey(const cv::Mat& grey, const cv::Mat& of) {
   return static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
 }
 
+/// A blended edge passes through all greys between two; a wall whose grey lies between them has one.
+bool has_a_line_between(const cv::Mat& grey, const cv::Mat& way, int inside, int beside) {
+  constexpr double kThere = 0.25;  // of the way
+  constexpr double kOneLine = 0.6;
+  const cv::Mat between =
+      way & (grey > std::min(inside, beside) + kOneGrey) & (grey < std::max(inside, beside) - kOneGrey);
+  if (share_in(way, between) < kThere) return false;
+  const int level = main_grey(grey, between);
+  return share_in(between, (grey >= level - kOneGrey) & (grey <= level + kOneGrey)) >= kOneLine;
+}
+
 /// Nothing but blends of two greys lies on the way out of the region: no wall stands between it and what is beside.
 bool is_open(const cv::Mat& grey, const cv::Mat& region, int inside, int beside) {
   constexpr int kOvershoot = 30;  // of smooth interpolation
   cv::Mat way;
   cv::dilate(region, way, cv::Mat::ones(2 * kBlend + 1, 2 * kBlend + 1, CV_8U));
   way &= ~region;
+  if (has_a_line_between(grey, way, inside, beside)) return false;
   return share_in(way, (grey >= std::min(inside, beside) - kOvershoot) &
                            (grey <= std::max(inside, beside) + kOvershoot)) >= kBorderUnknown;
 }

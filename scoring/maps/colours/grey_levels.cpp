@@ -67,6 +67,14 @@ double pale_share(const cv::Mat& even, const cv::Mat& unknown) {
   return all > 0 ? static_cast<double>(pale) / all : 0.0;
 }
 
+/// What was taken for canvas may be ground: a wall between it and free ground looks like their blended border.
+bool are_walls_like_the_rim_of(const cv::Mat& canvas, const cv::Mat& grey, const GreyRoles& roles) {
+  if (roles.unknown >= 0 || cv::countNonZero(canvas) == 0) return false;
+  const double beyond = cv::mean(grey, canvas)[0];
+  const double least = std::min<double>(beyond, roles.free), most = std::max<double>(beyond, roles.free);
+  return roles.wall > least + kUnknownTolerance && roles.wall < most - kUnknownTolerance;
+}
+
 }  // namespace
 
 cv::Mat grey_of(const RgbImage& image) {
@@ -114,7 +122,7 @@ cv::Mat without_noise(const cv::Mat& grey, bool& noisy) {
 
 }  // namespace
 
-LabelImage classify_grey(const cv::Mat& picture, const cv::Mat& apart) {
+LabelImage classify_grey(const cv::Mat& picture, const cv::Mat& apart, const cv::Mat& canvas) {
   bool noisy = false;
   const cv::Mat grey = without_noise(picture, noisy);
   const GreyRoles roles = grey_roles(grey, apart);
@@ -123,7 +131,7 @@ LabelImage classify_grey(const cv::Mat& picture, const cv::Mat& apart) {
   if (roles.areas > kMostAreas)
     out.refusal = "covers areas with " + std::to_string(roles.areas) +
                   " different greys or colours, as an image of room labels does; give the map that it was made from";
-  if (!roles.pure && roles.between)
+  if (!roles.pure && (roles.between || are_walls_like_the_rim_of(canvas, grey, roles)))
     out.refusal =
         "has thin lines of grey " + std::to_string(roles.wall) +
         " between darker and lighter areas, and was blended: walls and borders look the same; save it without "

@@ -20,7 +20,8 @@ cv::Mat transparent_pixels(const RgbImage& image);
 /// Brightness, CV_8U.
 cv::Mat grey_of(const RgbImage& image);
 
-/// By what the greys (CV_8U) stand for (grey_roles()). Pixels `apart` (CV_8U, 255) have no say in that.
-LabelImage classify_grey(const cv::Mat& grey, const cv::Mat& apart);
+/// By what the greys (CV_8U) stand for (grey_roles()). Pixels `apart` (CV_8U, 255) have no say in that; those of the
+/// `canvas` are among them.
+LabelImage classify_grey(const cv::Mat& grey, const cv::Mat& apart, const cv::Mat& canvas);
 
 }  // namespace rubble::scoring

@@ -19,6 +19,7 @@ constexpr int kAlike = 2;               // greys apart
 constexpr double kThin = 2.5;           // mean distance of a wall's pixels to its rim, at the most [pixels]
 constexpr double kThinner = 0.4;        // of the darkest level's, for another level to be the walls
 constexpr double kGround = 1.8;         // mean distance to the rim; fringes of walls have less [pixels]
+constexpr double kClosedGround = 1.6;   // the same without the speckles of a lossy picture; fringes have 1.3
 constexpr double kBroad = 4.0;          // mean distance to the rim in an area [pixels]
 constexpr int kWidest = 16;             // wall that has two sides [pixels]
 constexpr int kFringe = 4;              // pixels between a wall and what lies beside it in a blended picture
@@ -91,8 +92,10 @@ cv::Mat label(const cv::Mat& grey, const cv::Mat& apart, const std::vector<Level
   return out;
 }
 
-double mean_depth(const cv::Mat& labels, std::size_t level) {
+/// `closed`: of the level without speckles in it.
+double mean_depth(const cv::Mat& labels, std::size_t level, bool closed = false) {
   cv::Mat mask = labels == static_cast<int>(level);
+  if (closed) cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8U));
   cv::copyMakeBorder(mask, mask, 1, 1, 1, 1, cv::BORDER_REPLICATE);
   cv::Mat depth;
   cv::distanceTransform(mask, depth, cv::DIST_L2, 3);
@@ -215,7 +218,8 @@ GreyRoles grey_roles(const cv::Mat& grey, const cv::Mat& apart) {
   out.between = wall != 0 && wall + 1 != levels.size();
   std::vector<std::size_t> grounds;
   for (std::size_t i = 0; i < levels.size(); ++i)
-    if (i != wall && levels[i].count >= kShare * total && (out.pure || levels[i].depth >= kGround))
+    if (i != wall && levels[i].count >= kShare * total &&
+        (out.pure || levels[i].depth >= kGround || mean_depth(labels, i, true) >= kClosedGround))
       grounds.push_back(i);
   if (grounds.empty()) {
     out.free = out.wall < 128 ? 255 : 0;

@@ -8,6 +8,7 @@
 #include "scoring/maps/colours/canvas_corners.h"
 #include "scoring/maps/colours/grey_levels.h"
 #include "scoring/maps/colours/league_colours.h"
+#include "scoring/maps/colours/lettering.h"
 
 namespace rubble::scoring {
 
@@ -62,7 +63,7 @@ LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
   const cv::Mat as_it_was = grey.clone();
   const bool painted = paint_over_colours(image, nothing, grey);
   const cv::Mat canvas = canvas_corners(grey);
-  LabelImage out = classify_grey(grey, nothing | canvas);
+  LabelImage out = classify_grey(grey, nothing | canvas, canvas);
   out.classes.setTo(static_cast<int>(Occupancy::Unknown), canvas);
   if (cv::countNonZero(canvas) > 0) out.recognised += ", corners of the canvas are unknown";
   if (painted) out.recognised += ", coloured drawings removed";
@@ -71,6 +72,7 @@ LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
         "has dark lines in colour and pale grey ones, and nothing says which are walls; give it in the league's "
         "colours, or draw walls "
         "in black";
+  if (out.refusal.empty() && erase_lettering(out.classes) > 0) out.recognised += ", words on free ground removed";
   if (clear_around_panel(out.classes)) out.recognised += ", what stands around the map is unknown";
   return out;
 }

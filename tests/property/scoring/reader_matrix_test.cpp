@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <tiffio.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -17,6 +18,7 @@
 #include "base/rigid.h"
 #include "scoring/maps/normalise.h"
 #include "scoring/measures/sight_lines.h"
+#include "scoring/walls/overlap.h"
 #include "tests/support/long_suite.h"
 #include "tests/support/map_pictures.h"
 #include "tests/support/scoring_grounds.h"
@@ -666,7 +668,8 @@ std::vector<Drawing> drawings(const OccupancyGrid& grid) {
           {"grey 0, 150, 225", grey_image(grid, 0, 150, 225)},
           {"other grey 255, 128, 0", grey_image(grid, 255, 128, 0)},
           {"other grey 20, 255, 190", grey_image(grid, 20, 255, 190)},
-          {"other grey 100, 255, 0", grey_image(grid, 100, 255, 0)}};
+          {"other grey 100, 255, 0", grey_image(grid, 100, 255, 0)},
+          {"other grey 128, 0, 255", grey_image(grid, 128, 0, 255)}};
 }
 
 class ReaderMatrix : public ::testing::Test {
@@ -679,6 +682,13 @@ class ReaderMatrix : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
   fs::path folder_;
 };
+
+/// The score as a large arena has it, whose fee is 0.25: how well a file was read does not depend on how many walls
+/// luck might meet on this small ground.
+double read_at(const SightLines& sights, const OccupancyGrid& map, const PlanarTransform& T) {
+  const SightAgreement found = sights.at(map, T);
+  return std::max(0.0, found.known * (found.kappa - 0.25) / 0.75);
+}
 
 /// Where the file's grid lies on the truth from which the drawing of `rows` rows was made.
 PlanarTransform pose_of(const Stored& file, const OccupancyGrid& read, const OccupancyGrid& truth, int rows) {
@@ -702,10 +712,11 @@ TEST_F(ReaderMatrix, EveryFileHasTheScoreOfThePlainPictureOrIsRefusedByName) {
   const OccupancyGrid truth = truth_of({"maze", 7, 5, 5});
   const SightLines sights(truth);
   const OccupancyGrid map = with_gaps(with_phantoms(truth, 3, 5), 5, 5);
-  const double drawn = sights.at(map, PlanarTransform()).score;
+  const double drawn = read_at(sights, map, PlanarTransform());
+  const double drawn_overlap = overlap(map, truth, {}, 0.5).score;
   ASSERT_GT(drawn, 0.6);
   const std::string base = (folder_ / "map").string();
-  int cases = 0, refused = 0, bad = 0;
+  int cases = 0, refused = 0, bad = 0, lost = 0;
   std::size_t turn = 0;
   std::vector<Drawing> all = drawings(map);
   all.push_back({"league, searched", with_searched_floor(all.front().image)});
@@ -715,6 +726,8 @@ TEST_F(ReaderMatrix, EveryFileHasTheScoreOfThePlainPictureOrIsRefusedByName) {
     for (const Format& format : formats()) {
       const bool tried = is_tried(place++) || format.name == "png";  // which the others are held against
       if (!tried || (format.applies && !format.applies(drawing))) continue;
+      // Black ground half a metre wide between a white canvas and white floor is a wall to anybody.
+      if (drawing.name == "other grey 128, 0, 255" && format.name.find("canvas 255") != std::string::npos) continue;
       for (const auto& entry : fs::directory_iterator(folder_)) fs::remove(entry);
       const Stored file = format.write(base, drawing);
       std::string what;
@@ -722,8 +735,17 @@ TEST_F(ReaderMatrix, EveryFileHasTheScoreOfThePlainPictureOrIsRefusedByName) {
       try {
         const LoadedMap read =
             load_map(file.path, {file.tells_scale ? std::optional<double>() : kResolution / file.scale});
-        const double score = sights.at(read.grid, pose_of(file, read.grid, truth, drawing.image.rows)).score;
         what = read.recognised;
+        // Lines of sight do not ask for the walls around; the overlap does.
+        const PlanarTransform T = pose_of(file, read.grid, truth, drawing.image.rows);
+        const double score = read_at(sights, read.grid, T);
+        const double walls = overlap(read.grid, truth, T.pose(), 0.5).score;
+        if (format.refusal.empty() &&
+            std::abs(walls - drawn_overlap) > (read.grid.resolution() > 0.055 ? 0.04 : 0.02)) {
+          ++lost;
+          std::printf("walls around lost: %s of %s: overlap %.3f instead of %.3f; %s\n", format.name.c_str(),
+                      drawing.name.c_str(), walls, drawn_overlap, what.c_str());
+        }
         // Where the drawing has symbols over walls, JPEG costs the wall beside them a little more.
         const bool jpeg = format.name.find("jp") != std::string::npos;
         const bool smeared = drawing.name == "league, all drawings" && jpeg;
@@ -744,7 +766,7 @@ TEST_F(ReaderMatrix, EveryFileHasTheScoreOfThePlainPictureOrIsRefusedByName) {
       } catch (const InputError& error) {
         ++refused;
         // Walls between two areas look like the blended border of these.
-        const bool no_way = drawing.name == "other grey 100, 255, 0" &&
+        const bool no_way = (drawing.name == "other grey 100, 255, 0" || drawing.name == "other grey 128, 0, 255") &&
                             std::string(error.what()).find("save it without interpolation") != std::string::npos;
         if (no_way) continue;
         if (format.refusal.empty() || std::string(error.what()).find(format.refusal) == std::string::npos) {
@@ -754,7 +776,8 @@ TEST_F(ReaderMatrix, EveryFileHasTheScoreOfThePlainPictureOrIsRefusedByName) {
       }
     }
   }
-  std::printf("%d cases, %d refused, %d bad\n", cases, refused, bad);
+  std::printf("%d cases, %d refused, %d bad, %d without walls around\n", cases, refused, bad, lost);
+  EXPECT_LE(lost, 1);
   EXPECT_GE(cases, at_least(900));
 }
 
@@ -762,7 +785,7 @@ TEST_F(ReaderMatrix, EditedPicturesAreReadAsTheyWereOrRefusedWithTheReason) {
   const OccupancyGrid truth = truth_of({"maze", 7, 5, 5});
   const SightLines sights(truth);
   const OccupancyGrid map = with_gaps(with_phantoms(truth, 3, 5), 5, 5);
-  const double expected = sights.at(map, PlanarTransform()).score;
+  const double expected = read_at(sights, map, PlanarTransform());
   GridFrame wider = map.frame();  // ground that was never seen around it, as most maps have
   const int margin = 50;
   wider.width += 2 * margin;
@@ -783,7 +806,7 @@ TEST_F(ReaderMatrix, EditedPicturesAreReadAsTheyWereOrRefusedWithTheReason) {
       ++cases;
       try {
         const LoadedMap read = load_map(file.path, {kResolution});
-        const double score = sights.at(read.grid, pose_of(file, read.grid, canvas, drawing.image.rows)).score;
+        const double score = read_at(sights, read.grid, pose_of(file, read.grid, canvas, drawing.image.rows));
         if (std::abs(score - expected) <= 0.02) {
           ++right;
         } else {
@@ -800,7 +823,7 @@ TEST_F(ReaderMatrix, EditedPicturesAreReadAsTheyWereOrRefusedWithTheReason) {
   }
   std::printf("%d cases, %d right, %d refused, %d wrong\n", cases, right, refused, wrong);
   // Those that are wrong and not told: white clipped away, walls sharpened black, a light map in a deep vignette.
-  EXPECT_GE(right, at_least(278));
+  EXPECT_GE(right, at_least(304));
   EXPECT_LE(wrong, 4);
 }
 

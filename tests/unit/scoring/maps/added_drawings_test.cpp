@@ -32,6 +32,15 @@ cv::Mat map_picture(int unknown) {
   return out;
 }
 
+/// A hall with three walls of 1.2 m, in greys.
+cv::Mat hall_picture() {
+  cv::Mat out(260, 260, CV_8U, cv::Scalar(205));
+  cv::rectangle(out, {20, 20}, {239, 239}, cv::Scalar(0), cv::FILLED);
+  cv::rectangle(out, {22, 22}, {237, 237}, cv::Scalar(254), cv::FILLED);
+  for (const int x : {60, 120, 180}) cv::rectangle(out, {x, 190}, {x + 23, 191}, cv::Scalar(0), cv::FILLED);
+  return out;
+}
+
 /// Cells of `picture` that are read otherwise than those of `map`, which lies in it at `corner` (from the upper left).
 int read_otherwise(const cv::Mat& picture, const cv::Mat& map, cv::Point corner) {
   const ClassImage whole = classify(rgb_of(picture));
@@ -115,6 +124,18 @@ TEST(AddedDrawings, AGridOverTheGroundIsNoUnknownGround) {
   for (int x = 5; x < grid.cols; x += 20) grid.col(x).setTo(190, map.col(x) != 0);
   for (int y = 5; y < grid.rows; y += 20) grid.row(y).setTo(190, map.row(y) != 0);
   EXPECT_LE(read_otherwise(grid, map, {0, 0}), 20) << "where known ground ends at a line";
+}
+
+TEST(AddedDrawings, ANameInTheWallsOwnBlackIsNoWallAndTheProgramSaysSo) {
+  for (const int pen : {cv::LINE_8, cv::LINE_AA}) {
+    SCOPED_TRACE(pen);
+    const cv::Mat map = hall_picture();
+    cv::Mat named = map.clone();
+    cv::putText(named, "TEAM 7", {60, 130}, cv::FONT_HERSHEY_SIMPLEX, 1.0, cv::Scalar(0), 1, pen);
+    EXPECT_LE(read_otherwise(named, map, {0, 0}), 0);
+    EXPECT_NE(classify(rgb_of(named)).recognised.find("words on free ground removed"), std::string::npos);
+    EXPECT_EQ(classify(rgb_of(map)).recognised.find("words"), std::string::npos);
+  }
 }
 
 }  // namespace

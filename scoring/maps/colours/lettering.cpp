@@ -1,0 +1,175 @@
+#include "scoring/maps/colours/lettering.h"
+
+#include <algorithm>
+#include <numeric>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+#include <vector>
+
+#include "base/grid.h"
+
+namespace rubble::scoring {
+namespace {
+
+constexpr int kLeastHeight = 6;       // of a letter [pixels]: less is no writing that anybody reads
+constexpr int kMostHeight = 60;       // [pixels]
+constexpr double kWidest = 2.1;       // heights
+constexpr double kMostFilled = 0.75;  // of its box, but for narrow ones
+constexpr double kNarrow = 0.35;      // heights: i, l, 1
+constexpr double kThickest = 0.34;    // stroke, heights
+constexpr double kOneLine = 0.2;      // heights by which tops or bottoms differ in a word
+constexpr double kAlike = 0.6;        // lower over higher
+constexpr double kApart = 0.8;        // heights between two letters of a word
+constexpr double kBlank = 1.7;        // heights between two words of a line
+constexpr double kMoat = 0.2;         // heights of free ground around a word
+constexpr double kManyStrokes = 2.7;  // crossed by a row and a column together, in the mean: one wall 2, corners 2
+constexpr std::size_t kLeastLetters = 3;
+constexpr double kLeastComplex = 0.34;  // share of a word's letters with many strokes
+
+struct Piece {
+  cv::Rect box;
+  int label = 0;
+  double strokes = 0.0;    ///< crossed by a row and a column, in the mean
+  double thickness = 0.0;  ///< of its strokes [pixels]
+  bool complex() const { return strokes >= kManyStrokes; }
+};
+
+/// Runs of the piece in a row of its box.
+int runs(const int* at, int length, int step, int label) {
+  int out = 0;
+  for (int i = 0; i < length; ++i) out += at[i * step] == label && (i == 0 || at[(i - 1) * step] != label) ? 1 : 0;
+  return out;
+}
+
+Piece piece_of(const cv::Mat& labels, const cv::Rect& box, int label, int area) {
+  Piece out{box, label};
+  int rows = 0;
+  int columns = 0;
+  for (int y = 0; y < box.height; ++y) rows += runs(labels.ptr<int>(box.y + y) + box.x, box.width, 1, label);
+  for (int x = 0; x < box.width; ++x)
+    columns += runs(labels.ptr<int>(box.y) + box.x + x, box.height, static_cast<int>(labels.step1()), label);
+  out.strokes = static_cast<double>(rows) / box.height + static_cast<double>(columns) / box.width;
+  out.thickness = static_cast<double>(area) / std::max(rows, columns);
+  return out;
+}
+
+bool may_be_letter(const Piece& piece, int area) {
+  const double height = piece.box.height;
+  if (height < kLeastHeight || height > kMostHeight || piece.box.width > kWidest * height) return false;
+  if (piece.thickness > kThickest * height) return false;
+  return piece.box.width <= kNarrow * height || area <= kMostFilled * piece.box.area();
+}
+
+/// `b` goes on where `a` ends, at most `reach` heights further.
+bool follows(const Piece& a, const Piece& b, double reach) {
+  const double height = std::max(a.box.height, b.box.height);
+  if (std::min(a.box.height, b.box.height) < kAlike * height) return false;
+  const int gap = std::max(a.box.x, b.box.x) - std::min(a.box.br().x, b.box.br().x);
+  const int tops = std::abs(a.box.y - b.box.y);
+  const int bottoms = std::abs(a.box.br().y - b.box.br().y);
+  const bool one_pen = std::min(a.thickness, b.thickness) >= 0.5 * std::max(a.thickness, b.thickness);
+  return one_pen && gap <= reach * height && gap > -0.5 * height && std::min(tops, bottoms) <= kOneLine * height &&
+         std::max(tops, bottoms) <= 2.5 * kOneLine * height;
+}
+
+std::vector<std::vector<Piece>> words_of(const std::vector<Piece>& letters) {
+  std::vector<std::size_t> word(letters.size());
+  std::iota(word.begin(), word.end(), std::size_t{0});
+  for (std::size_t i = 0; i < letters.size(); ++i)
+    for (std::size_t j = i + 1; j < letters.size(); ++j) {
+      if (word[i] == word[j] || !follows(letters[i], letters[j], kApart)) continue;
+      const std::size_t from = std::max(word[i], word[j]), to = std::min(word[i], word[j]);
+      std::replace(word.begin(), word.end(), from, to);
+    }
+  std::vector<std::vector<Piece>> out(letters.size());
+  for (std::size_t i = 0; i < letters.size(); ++i) out[word[i]].push_back(letters[i]);
+  return out;
+}
+
+/// Free ground around the word, with nothing in it but its own letters and what is smaller (dots).
+bool stands_alone(const cv::Mat& classes, const cv::Mat& labels, const std::vector<Piece>& word, const cv::Rect& box,
+                  int height) {
+  const int moat = std::max(2, static_cast<int>(kMoat * height));
+  const cv::Rect around(box.x - moat, box.y - moat, box.width + 2 * moat, box.height + 2 * moat);
+  if ((around & cv::Rect({0, 0}, classes.size())) != around) return false;
+  for (int y = around.y; y < around.br().y; ++y)
+    for (int x = around.x; x < around.br().x; ++x) {
+      if (classes.at<unsigned char>(y, x) == static_cast<unsigned char>(Occupancy::Free)) continue;
+      const int label = labels.at<int>(y, x);
+      const bool own =
+          label > 0 && std::any_of(word.begin(), word.end(), [&](const Piece& p) { return p.label == label; });
+      if (!own) return false;
+    }
+  return true;
+}
+
+bool is_written(const std::vector<Piece>& word) {
+  if (word.size() < kLeastLetters) return false;
+  const auto complex = std::count_if(word.begin(), word.end(), [](const Piece& p) { return p.complex(); });
+  return static_cast<double>(complex) >= kLeastComplex * static_cast<double>(word.size());
+}
+
+/// All that is written. A number, or a short word, behind a blank cannot be told from walls by itself: it goes with the
+/// word beside it.
+std::vector<std::vector<Piece>> written_in(const std::vector<Piece>& letters) {
+  std::vector<std::vector<Piece>> out;
+  std::vector<std::vector<Piece>> others;
+  for (std::vector<Piece>& word : words_of(letters)) (is_written(word) ? out : others).push_back(std::move(word));
+  for (std::vector<Piece>& word : out)
+    for (std::vector<Piece>& other : others) {
+      const bool goes_on = std::any_of(other.begin(), other.end(), [&](const Piece& b) {
+        return std::any_of(word.begin(), word.end(), [&](const Piece& a) { return follows(a, b, kBlank); });
+      });
+      if (!goes_on) continue;
+      word.insert(word.end(), other.begin(), other.end());
+      other.clear();
+    }
+  return out;
+}
+
+/// Words along the rows.
+int erase_rows(cv::Mat& classes) {
+  cv::Mat labels, stats, centres;
+  const int count = cv::connectedComponentsWithStats(classes == static_cast<int>(Occupancy::Occupied), labels, stats,
+                                                     centres, 8, CV_32S);
+  std::vector<Piece> letters;
+  for (int i = 1; i < count; ++i) {
+    const cv::Rect box(stats.at<int>(i, cv::CC_STAT_LEFT), stats.at<int>(i, cv::CC_STAT_TOP),
+                       stats.at<int>(i, cv::CC_STAT_WIDTH), stats.at<int>(i, cv::CC_STAT_HEIGHT));
+    if (box.height < kLeastHeight || box.height > kMostHeight || box.width > kWidest * box.height) continue;
+    const int area = stats.at<int>(i, cv::CC_STAT_AREA);
+    const Piece piece = piece_of(labels, box, i, area);
+    if (may_be_letter(piece, area)) letters.push_back(piece);
+  }
+  constexpr std::size_t kMost = 2000;  // noise, not writing
+  if (letters.size() > kMost) return 0;
+  int erased = 0;
+  for (const std::vector<Piece>& word : written_in(letters)) {
+    cv::Rect box = word[0].box;
+    int height = 0;
+    for (const Piece& piece : word) {
+      box |= piece.box;
+      height = std::max(height, piece.box.height);
+    }
+    if (!stands_alone(classes, labels, word, box, height)) continue;
+    for (int y = box.y; y < box.br().y; ++y)
+      for (int x = box.x; x < box.br().x; ++x)
+        classes.at<unsigned char>(y, x) = static_cast<unsigned char>(Occupancy::Free);
+    erased += static_cast<int>(word.size());
+  }
+  return erased;
+}
+
+}  // namespace
+
+int erase_lettering(cv::Mat& classes) {
+  if (classes.empty()) return 0;
+  int erased = erase_rows(classes);
+  cv::Mat turned;
+  cv::rotate(classes, turned, cv::ROTATE_90_CLOCKWISE);
+  const int upright = erase_rows(turned);
+  if (upright > 0) cv::rotate(turned, classes, cv::ROTATE_90_COUNTERCLOCKWISE);
+  return erased + upright;
+}
+
+}  // namespace rubble::scoring
