@@ -11,18 +11,20 @@ constexpr double kTiltFilter = 0.2;             ///< time constant [s]
 constexpr double kLevel = deg_to_rad(1.5);      ///< what levelling leaves where nothing moves
 constexpr double kTilted = deg_to_rad(3.0);     ///< what it never leaves ...
 constexpr double kAimedFar = deg_to_rad(15.0);  ///< ... of a tilt it turned so far against ...
-constexpr double kLevelledFor = 1.0;            ///< ... for longer than servos and loop take [s], ...
+constexpr double kLevelledFor = 1.0;            ///< ... for longer than servos and loop take [s] ...
 constexpr double kAimFilter = 0.3;              ///< time constant [s]
-constexpr double kAimMoves = deg_to_rad(1.5);   ///< ... once it turns no more: a robot that climbs leans on and on
-constexpr double kMostLean = deg_to_rad(34.0);  ///< no robot leans by so much ...
-constexpr double kLeansFor = 0.5;               ///< ... for so long [s]
+constexpr double kAimMoves = deg_to_rad(1.5);   ///< ... once it turns no more: a robot that climbs leans on and on; ...
+constexpr double kAtStopFor = 2.2;              ///< ... or, where they can turn no farther, a robot stays so steep [s]
+constexpr double kAtStop = deg_to_rad(1.0);     ///< servos so near to the end of their travel are there
 
 bool is_silent(Stamp last, Stamp now) { return last != Stamp::never() && now - last > kSilence; }
 
 }  // namespace
 
 LevellingWatch::LevellingWatch(const RobotModel& model)
-    : on_platform_(model.accelerometer_mount == AccelerometerMount::Platform), felt_(accelerometer_place(model)) {}
+    : on_platform_(model.accelerometer_mount == AccelerometerMount::Platform),
+      stop_(model.max_aim - kAtStop),
+      felt_(accelerometer_place(model)) {}
 
 void LevellingWatch::update(const Inputs& inputs) {
   for (const Odometry& odometry : inputs.odometry) felt_.follow(odometry);
@@ -56,22 +58,19 @@ void LevellingWatch::feel(const Acceleration& acceleration) {
 }
 
 bool LevellingWatch::turns_in_vain(Axis& axis, double tilt, double aim, double dt, Stamp now) const {
-  const auto lasts = [&](bool is, Stamp& since, double seconds) {
-    if (!is || dt >= kTiltSilence)
-      since = Stamp::never();
-    else if (since == Stamp::never())
-      since = now;
-    return since != Stamp::never() && now - since >= seconds;
-  };
   axis.tilt += (1.0 - std::exp(-dt / kTiltFilter)) * (tilt - axis.tilt);
   axis.aim += (1.0 - std::exp(-dt / kAimFilter)) * (aim - axis.aim);
   if (std::abs(axis.tilt) < kLevel) axis.level_aim = aim;
   const double turned = aim - axis.level_aim;
-  const bool in_vain = std::abs(turned) >= kAimedFar && std::abs(axis.tilt) >= kTilted && turned * axis.tilt < 0.0 &&
-                       std::abs(aim - axis.aim) < kAimMoves;
-  const bool leans = std::abs(axis.tilt - aim) >= kMostLean && std::abs(axis.tilt) >= kTilted;
-  const bool stayed = lasts(in_vain, axis.in_vain_since, kLevelledFor);
-  return lasts(leans, axis.leans_since, kLeansFor) || stayed;
+  const bool in_vain = std::abs(turned) >= kAimedFar && std::abs(axis.tilt) >= kTilted && turned * axis.tilt < 0.0;
+  if (!in_vain || dt >= kTiltSilence)
+    axis.in_vain_since = Stamp::never();
+  else if (axis.in_vain_since == Stamp::never())
+    axis.in_vain_since = now;
+  if (axis.in_vain_since == Stamp::never()) return false;
+  const double seconds = now - axis.in_vain_since;
+  if (std::abs(aim) >= stop_) return seconds >= kAtStopFor;
+  return seconds >= kLevelledFor && std::abs(aim - axis.aim) < kAimMoves;
 }
 
 }  // namespace rubble::robot

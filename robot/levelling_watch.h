@@ -34,12 +34,12 @@ class LevellingWatch {
     double aim = 0.0;        ///< of the servos, likewise [rad]
     double level_aim = 0.0;  ///< when the tilt was small last [rad]
     Stamp in_vain_since = Stamp::never();
-    Stamp leans_since = Stamp::never();  ///< by more than a robot can
   };
   void feel(const Acceleration& acceleration);
   bool turns_in_vain(Axis& axis, double tilt, double aim, double dt, Stamp now) const;
 
   const bool on_platform_;
+  const double stop_;  ///< aimed so far the servos are at the end of their travel [rad]
   FeltTilt felt_;
   Axis pitch_, roll_;
   std::optional<LaserAim> aim_;

@@ -74,10 +74,17 @@ bool is_checkerboard(const Colour& c) {
 /// Light grey as in the checkerboard, or a mixture of its two shades.
 bool looks_unexplored(const Colour& c) { return spread(c) <= 6 && c.g >= 216 && c.g <= 245; }
 
+/// Walls as a sharp filter leaves them (bicubic, Lanczos): it exaggerates their contrast with what is beside them, white
+/// or searched floor, and the darkest colours end at 0.
+bool is_exaggerated_wall(const Colour& c) {
+  return c.r <= 10 && c.g <= 52 && c.b >= 85 && c.b <= 122;
+}
+
 /// Share of wall blue in a mixture with a grey: blue over red grows by 120 from grey to wall, green over red by 40.
 /// With white it is lightest: what is lighter is a symbol's blue on searched floor.
 double wall_share(const Colour& c) {
   constexpr int kSlack = 35;  // of brightness
+  if (is_exaggerated_wall(c)) return 1.0;
   const int blue = c.b - c.r;
   const int green = c.g - c.r;
   if (blue < 24 || 100 * green < 25 * blue || 100 * green > 55 * blue) return 0.0;

@@ -61,6 +61,40 @@ std::vector<Change> changes() {
   return out;
 }
 
+Change resized(double factor, int interpolation) {
+  return {"resized by " + std::to_string(factor) + ", interpolation " + std::to_string(interpolation),
+          [=](const cv::Mat& picture) {
+            cv::Mat out;
+            cv::resize(picture, out, {}, factor, factor, interpolation);
+            return out;
+          }};
+}
+
+/// A map whose walls are two pixels wide, as they are drawn here.
+cv::Mat fine_picture(std::uint64_t seed) {
+  cv::Mat fine;
+  cv::resize(league_image(truth_of({"maze", 7, 5, seed}), false), fine, {}, 2.0, 2.0, cv::INTER_NEAREST);
+  return fine;
+}
+
+// Bicubic and Lanczos filters exaggerate the contrast of walls, whose colour then is none of the league's; plain
+// enlarging without a filter is the oracle.
+TEST(LeagueWalls, OutliveSharpFilters) {
+  const cv::Mat fine = fine_picture(5);
+  for (const bool searched : {false, true})
+    for (const double factor : {0.7, 0.8, 1.25, 1.4})
+      for (const int interpolation : {cv::INTER_CUBIC, cv::INTER_LANCZOS4}) {
+        SCOPED_TRACE(std::to_string(factor) + ", " + std::to_string(interpolation) + (searched ? ", searched" : ""));
+        const cv::Mat picture = searched ? with_searched_floor(fine) : fine;
+        const cv::Mat of_picture = classify_league(to_rgb(resized(factor, interpolation).of(picture))).classes;
+        const cv::Mat plain = classify_league(to_rgb(resized(factor, cv::INTER_NEAREST).of(fine))).classes;
+        constexpr int kWall = 2;
+        cv::Mat beside_wall;
+        cv::dilate(of_picture == kWall, beside_wall, cv::Mat::ones(3, 3, CV_8U));
+        EXPECT_LE(cv::countNonZero((plain == kWall) & ~beside_wall), 0.02 * cv::countNonZero(plain == kWall));
+      }
+}
+
 // The same map with white floor is the oracle.
 TEST(SearchedFloor, IsReadAsOtherFreeFloorHoweverThePictureWasStored) {
   for (const std::uint64_t seed : {5u, 6u}) {
