@@ -51,12 +51,12 @@ inline cv::Mat league_image(const OccupancyGrid& grid, bool with_drawings) {
   return image;
 }
 
-/// The same with the western half of its floor searched for victims.
-inline cv::Mat with_searched_floor(const cv::Mat& league) {
+/// The same with so much of its floor, from the west on, searched for victims.
+inline cv::Mat with_searched_floor(const cv::Mat& league, double share = 0.5) {
   cv::Mat out = league.clone();
   const cv::Vec3b floor(255, 255, 255);
   for (int y = 0; y < out.rows; ++y)
-    for (int x = 0; x < out.cols / 2; ++x)
+    for (int x = 0; x < static_cast<int>(share * out.cols); ++x)
       if (out.at<cv::Vec3b>(y, x) == floor) out.at<cv::Vec3b>(y, x) = {130, 230, 130};
   return out;
 }

@@ -74,11 +74,9 @@ bool is_checkerboard(const Colour& c) {
 /// Light grey as in the checkerboard, or a mixture of its two shades.
 bool looks_unexplored(const Colour& c) { return spread(c) <= 6 && c.g >= 216 && c.g <= 245; }
 
-/// Walls as a sharp filter leaves them (bicubic, Lanczos): it exaggerates their contrast with what is beside them, white
-/// or searched floor, and the darkest colours end at 0.
-bool is_exaggerated_wall(const Colour& c) {
-  return c.r <= 10 && c.g <= 52 && c.b >= 85 && c.b <= 122;
-}
+/// Walls as a sharp filter leaves them (bicubic, Lanczos): it exaggerates their contrast with what is beside them,
+/// white or searched floor, and the darkest colours end at 0.
+bool is_exaggerated_wall(const Colour& c) { return c.r <= 10 && c.g <= 52 && c.b >= 85 && c.b <= 122; }
 
 /// Share of wall blue in a mixture with a grey: blue over red grows by 120 from grey to wall, green over red by 40.
 /// With white it is lightest: what is lighter is a symbol's blue on searched floor.
@@ -243,32 +241,47 @@ std::vector<std::pair<Rgb, std::size_t>> colours_of(const RgbImage& image) {
   return out;
 }
 
+/// What the floor of a picture with such squares may look like: white, or the green of what was searched.
+std::vector<FloorTone> floor_tones(const Rgb& colour, const Rgb& lighter) {
+  constexpr int kGreen = 15;
+  std::vector<FloorTone> out;
+  if (colour[1] >= lighter[1]) out.push_back({colour, league::kFree});
+  if (colour[1] >= std::max(colour[0], colour[2]) + kGreen) out.push_back({colour, league::kSearched});
+  return out;
+}
+
+/// The picture with the tones of before, where `curve` makes of the league's colours those that cover most of it.
+std::optional<RestoredColours> undone(const ToneCurve& curve, const RgbImage& image,
+                                      const std::vector<std::pair<Rgb, std::size_t>>& colours) {
+  Census c;
+  Ink ink;
+  for (const auto& [colour, count] : colours) {
+    const Rgb was = without(curve, colour);
+    count_colour(was, count, c);
+    ink.count(was, count);
+  }
+  if (!is_unchanged(c) || !ink.is_known()) return std::nullopt;
+  std::map<Rgb, Rgb> before;
+  for (const auto& [colour, count] : colours) before[colour] = without(curve, colour);
+  RgbImage out = recoloured(image, [&](const Rgb& colour) { return before.at(colour); });
+  return RestoredColours{std::move(out), "tones had been changed (" + curve.name + ")"};
+}
+
 /// The picture as it was before its brightness, contrast or gamma was changed: where one such change makes of the
 /// league's colours those that cover most of it.
 std::optional<RestoredColours> with_tones_of_old(const RgbImage& image) {
-  constexpr std::size_t kAmong = 6;  // of the most frequent colours are checkerboard and white
+  constexpr std::size_t kAmong = 6;  // of the most frequent colours are checkerboard and floor
   const auto colours = colours_of(image);
   const std::size_t among = std::min(kAmong, colours.size());
-  const auto green = [&](std::size_t i) { return colours[i].first[1]; };
   for (std::size_t dark = 0; dark < among; ++dark)
-    for (std::size_t light = 0; light < among; ++light)
-      for (std::size_t white = 0; white < among; ++white) {
-        if (green(dark) >= green(light) || green(light) > green(white)) continue;
-        for (const ToneCurve& curve : tone_curves(colours[dark].first, colours[light].first, colours[white].first)) {
-          Census c;
-          Ink ink;
-          for (const auto& [colour, count] : colours) {
-            const Rgb was = without(curve, colour);
-            count_colour(was, count, c);
-            ink.count(was, count);
-          }
-          if (!is_unchanged(c) || !ink.is_known()) continue;
-          std::map<Rgb, Rgb> before;
-          for (const auto& [colour, count] : colours) before[colour] = without(curve, colour);
-          RgbImage out = recoloured(image, [&](const Rgb& colour) { return before.at(colour); });
-          return RestoredColours{std::move(out), "tones had been changed (" + curve.name + ")"};
-        }
-      }
+    for (std::size_t light = 0; light < among; ++light) {
+      const Rgb &darker = colours[dark].first, &lighter = colours[light].first;
+      if (darker[1] >= lighter[1]) continue;
+      for (std::size_t at = 0; at < among; ++at)
+        for (const FloorTone& floor : floor_tones(colours[at].first, lighter))
+          for (const ToneCurve& curve : tone_curves(darker, lighter, floor))
+            if (auto restored = undone(curve, image, colours)) return restored;
+    }
   return std::nullopt;
 }
 

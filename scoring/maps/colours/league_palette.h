@@ -9,7 +9,7 @@ namespace rubble::scoring::league {
 constexpr Rgb kWall{0, 40, 120};
 constexpr Rgb kUnexplored{226, 226, 227};  ///< the checkerboard's darker squares
 constexpr Rgb kUnexploredLight{237, 237, 238};
-constexpr Rgb kFree{255, 255, 255};  ///< surely free; less sure: darker greys
+constexpr Rgb kFree{255, 255, 255};      ///< surely free; less sure: darker greys
 constexpr Rgb kSearched{130, 230, 130};  ///< surely free, and searched for victims; less sure: towards the next
 constexpr Rgb kSearchedUnsure{180, 230, 180};
 constexpr Rgb kGridLine{190, 190, 191};

@@ -63,10 +63,14 @@ bool is_floor(const Tint& t, const Shares& shares) {
   return shares.green >= kSomeGreen && t.light > mixed + kSlack;
 }
 
+/// What floor gets: lighter than unexplored ground (246 at most), and with room for the faint blue that JPEG moves from
+/// thin walls into it, by which these are known.
+constexpr double kFloorLight = 251.0;
+
 /// As light as it were on white floor: from wall to floor brightness is stretched. JPEG's green runs into sharp walls,
 /// so what is as dark as wall stays so whatever green it has.
 double light_on_white(const Tint& t, const Shares& shares) {
-  if (is_floor(t, shares)) return 255.0;
+  if (is_floor(t, shares)) return kFloorLight;
   return kWallTint.light +
          (t.light - kWallTint.light) * (255.0 - kWallTint.light) / (floor_light(shares) - kWallTint.light);
 }

@@ -36,24 +36,25 @@ int difference(const Rgb& a, const Rgb& b) {
 
 }  // namespace
 
-std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const Rgb& white) {
+std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const FloorTone& floor) {
   std::vector<ToneCurve> out;
   const auto offer = [&](ToneCurve curve) {
     const bool fits = difference(changed(curve, league::kUnexplored), darker) <= kRounding &&
                       difference(changed(curve, league::kUnexploredLight), lighter) <= kRounding &&
-                      difference(changed(curve, league::kFree), white) <= kRounding;
+                      difference(changed(curve, floor.own), floor.now) <= kRounding;
     const auto same = [&](const ToneCurve& other) { return other.of == curve.of; };
     if (fits && std::none_of(out.begin(), out.end(), same)) out.push_back(std::move(curve));
   };
-  const double dark = darker[0], light = lighter[0], bright = white[0];
-  if (dark > 0.0 && bright == 255.0) {
+  const double dark = darker[0], light = lighter[0], of_floor = floor.now[0];
+  const bool is_gamma = floor.own != league::kFree || of_floor == 255.0;  // which leaves white as it is
+  if (dark > 0.0 && is_gamma) {
     const double power = std::log(dark / 255.0) / std::log(league::kUnexplored[0] / 255.0);
     for (int i = 0; i <= 24; ++i) {  // from the middle outwards
       const double p = power + 0.005 * (i % 2 == 0 ? i / 2 : -(i + 1) / 2);
       offer(curve_of([p](double v) { return 255.0 * std::pow(v / 255.0, p); }, "gamma %.2f", p, 0.0));
     }
   }
-  // A line through the squares and white, or through the two squares where white is clipped.
+  // A line through the squares and the floor, or through the two squares where the floor is clipped.
   const auto lines = [&](double from, double to, double at_from, double at_to) {
     constexpr std::array<double, 7> kRounded{0.0, -0.15, 0.15, -0.3, 0.3, -0.45, 0.45};
     for (const double low : kRounded)
@@ -64,15 +65,16 @@ std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const 
           offer(curve_of([=](double v) { return gain * v + offset; }, "%.2f times the value %+.0f", gain, offset));
       }
   };
-  lines(league::kUnexplored[0], 255.0, dark, bright);
+  lines(league::kUnexplored[0], floor.own[0], dark, of_floor);
   lines(league::kUnexplored[0], league::kUnexploredLight[0], dark, light);
   return out;
 }
 
 Rgb without(const ToneCurve& curve, const Rgb& colour) {
-  for (const Rgb& own : {league::kUnexplored, league::kUnexploredLight, league::kFree, league::kWall, league::kGridLine,
-                         league::kPath, league::kStart, league::kVictim, league::kUnconfirmedVictim, league::kHazard,
-                         league::kQrCode, league::kScale, league::kTitle})
+  for (const Rgb& own :
+       {league::kUnexplored, league::kUnexploredLight, league::kFree, league::kSearched, league::kSearchedUnsure,
+        league::kWall, league::kGridLine, league::kPath, league::kStart, league::kVictim, league::kUnconfirmedVictim,
+        league::kHazard, league::kQrCode, league::kScale, league::kTitle})
     if (difference(changed(curve, own), colour) <= kRounding) return own;
   const auto before = [&](int value) {
     const auto nearer = [value](std::uint8_t a, std::uint8_t b) { return std::abs(a - value) < std::abs(b - value); };

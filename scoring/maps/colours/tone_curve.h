@@ -15,9 +15,15 @@ struct ToneCurve {
   std::string name;                    ///< "gamma 1.5"
 };
 
-/// Curves (gamma; contrast and brightness, clipped at both ends) that make the league's checkerboard and white of three
-/// greys, the likeliest first.
-std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const Rgb& white);
+/// What free floor looks like, and what the league draws it in: white, or searched.
+struct FloorTone {
+  Rgb now;
+  Rgb own;
+};
+
+/// Curves (gamma; contrast and brightness, clipped at both ends) that make two greys of the league's checkerboard and
+/// what is seen now of its floor, the likeliest first.
+std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const FloorTone& floor);
 
 /// The colour before that: the league's own where one of them became it, else of each channel the value that comes
 /// nearest.

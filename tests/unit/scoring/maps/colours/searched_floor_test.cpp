@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -112,6 +114,53 @@ TEST(SearchedFloor, IsReadAsOtherFreeFloorHoweverThePictureWasStored) {
       EXPECT_LE(cv::countNonZero(differ & ~walls), 0.01 * static_cast<double>(of_white.total()));
     }
   }
+}
+
+// One change of all tones, as an editor makes it, on a map that was searched all over and has no white.
+TEST(SearchedFloor, ChangedTonesAreUndone) {
+  const cv::Mat green = with_searched_floor(league_image(truth_of({"maze", 7, 5, 5}), true), 1.0);
+  const cv::Mat expected = classify_league(to_rgb(green)).classes;
+  struct Tone {
+    double gain, offset, gamma;
+  };
+  for (const Tone& tone : {Tone{1.1, -18.0, 1.0},
+                           {1.05, 0.0, 1.0},
+                           {0.95, 0.0, 1.0},
+                           {0.6, 70.0, 1.0},
+                           {0.8, 0.0, 1.0},
+                           {1.0, 0.0, 0.7},
+                           {1.0, 0.0, 1.6}}) {
+    SCOPED_TRACE(::testing::PrintToString(std::vector<double>{tone.gain, tone.offset, tone.gamma}));
+    cv::Mat table(1, 256, CV_8U), changed;
+    for (int i = 0; i < 256; ++i)
+      table.at<unsigned char>(i) = cv::saturate_cast<unsigned char>(
+          255.0 * std::pow(std::clamp((tone.gain * i + tone.offset) / 255.0, 0.0, 1.0), tone.gamma));
+    cv::LUT(green, table, changed);
+    const auto restored = restored_league_colours(to_rgb(changed));
+    ASSERT_TRUE(restored);
+    EXPECT_EQ(cv::countNonZero(classify_league(restored->image).classes != expected), 0);
+  }
+}
+
+// Walls of one pixel, of which JPEG leaves the brightness alone.
+TEST(SearchedFloor, ThinWallsOutliveJpeg) {
+  constexpr int kWall = 2;
+  cv::Mat picture = fine_picture(6);
+  const cv::Mat thick = classify_league(to_rgb(picture)).classes == kWall;
+  // Of each wall the western or northern row of pixels.
+  cv::Mat core;
+  cv::erode(thick, core, cv::Mat::ones(2, 2, CV_8U), {1, 1});
+  const cv::Mat thin = thick & ~core;
+  ASSERT_GT(cv::countNonZero(thin), 1000);
+  picture.setTo(cv::Scalar(255, 255, 255), thick & ~thin);
+  for (const double share : {0.0, 1.0})
+    for (const int quality : {92, 75}) {
+      SCOPED_TRACE(::testing::PrintToString(std::pair(share, quality)));
+      const cv::Mat of_green = classify_league(to_rgb(jpeg(quality).of(with_searched_floor(picture, share)))).classes;
+      cv::Mat near;
+      cv::dilate(of_green == kWall, near, cv::Mat::ones(3, 3, CV_8U));
+      EXPECT_LE(cv::countNonZero(thin & ~near), 0.05 * cv::countNonZero(thin));
+    }
 }
 
 TEST(SearchedFloor, PicturesWithoutItStayAsTheyAre) {
