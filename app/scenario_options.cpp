@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "arenas/generate/generate.h"
 #include "base/error.h"
 #include "base/text/input_file.h"
 #include "base/text/words.h"
@@ -36,7 +37,8 @@ std::string find_shipped(const std::string& name, const fs::path& folder) {
         entry.path().extension() == ".yaml" && stem.rfind("benchmark", 0) != 0)  // a list of `rubble benchmark`
       names.push_back(stem);
   std::sort(names.begin(), names.end());
-  throw InputError(name + ": there is no such file, and none of that name is shipped; shipped are " + joined(names));
+  throw InputError(name + ": there is no such file, and none of that name is shipped" + did_you_mean(name, names) +
+                   "; shipped are " + joined(names));
 }
 
 }  // namespace
@@ -100,6 +102,16 @@ std::string find_scenario(const std::string& name) {
   if (is_shipped(name, arenas) && !is_shipped(name, shipped_folder()))
     throw InputError(name + ": is an arena, and what is played is a scenario; write one, of this line: arena: {file: " +
                      (arenas / (name + ".yaml")).string() + "}");
+  const std::vector<std::string>& kinds = arenas::arena_kinds();
+  if (std::find(kinds.begin(), kinds.end(), name) != kinds.end() && !is_there(name) &&
+      !is_shipped(name, shipped_folder()))
+    throw InputError(
+        name +
+        ": is a kind of arena, and what is played is a scenario; leave it out and say --set arena.generate.kind=" +
+        name);
+  if (fs::path(name).extension() == ".raf" && is_there(name))
+    throw InputError(name + ": is an arena, and what is played is a scenario; write one, of this line: arena: {file: " +
+                     fs::absolute(name).lexically_normal().string() + "}");
   return find_shipped(name, shipped_folder());
 }
 

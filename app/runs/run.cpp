@@ -34,6 +34,7 @@ int run(const RunArguments& arguments) {
 Command run_command() {
   return {"run", "Explore, map and score an arena in simulation",
           "Examples:\n  rubble run\n  rubble run scenarios/yellow.yaml --seed 7\n"
+          "  rubble run --set arena.generate.kind=orange\n"
           "  rubble run --set robot.levelling=false --out runs/no-levelling",
           [](Options& o) -> Action {
             auto a = std::make_shared<RunArguments>();

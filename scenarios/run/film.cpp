@@ -62,12 +62,16 @@ struct Stage {
 
 /// Ground and walls. Where a pixel covers several cells, a wall among them is seen.
 void draw_map(const OccupancyGrid& map, const Stage& stage, cv::Mat& panel) {
+  const GridFrame& frame = map.frame();
+  const auto corner = [&](int x, int y) {
+    return stage.at({frame.x0 + x * frame.resolution, frame.y0 + y * frame.resolution});
+  };
   for (const Occupancy what : {Occupancy::Free, Occupancy::Occupied})
     for (int y = 0; y < map.height(); ++y)
       for (int x = 0; x < map.width(); ++x) {
         if (map[{x, y}] != what) continue;
-        const TPoint2D middle = map.centre({x, y}), half(0.5 * stage.cell, 0.5 * stage.cell);
-        const cv::Point a = stage.at(middle - half), b = stage.at(middle + half);
+        // Corners are reckoned alike for both cells beside them: else rounding leaves gaps between.
+        const cv::Point a = corner(x, y), b = corner(x + 1, y + 1);
         cv::rectangle(panel, a, {std::max(a.x, b.x - 1), std::min(a.y, b.y + 1)},
                       what == Occupancy::Free ? kFreeGround : kWallInk, cv::FILLED);
       }

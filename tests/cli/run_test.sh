@@ -64,6 +64,10 @@ mkdir part/.partial && touch part/.partial/map.tif.4711.part part/.partial/map.p
 expect_exit 0 '' "$rubble" run part.yaml --out part --force
 mkdir part/.partial && touch part/.partial/letter.part
 expect_exit 3 'none of that name is shipped; shipped are equal_cells, on_earth, yellow' "$rubble" run nosuch
+expect_exit 3 "did you mean 'yellow'" "$rubble" run yelow
+expect_exit 3 'say --set arena.generate.kind=orange' "$rubble" run orange
+touch hall.raf
+expect_exit 3 'is an arena, and what is played is a scenario; write one, of this line: arena: {file: ' "$rubble" run hall.raf
 expect_exit 3 'flat_room: is an arena' "$rubble" run flat_room
 expect_exit 3 'letter.part' "$rubble" run part.yaml --out part --force
 finish

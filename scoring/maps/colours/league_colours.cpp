@@ -396,7 +396,9 @@ bool is_grey_league_map(const RgbImage& image) {
     ++levels[image.rgb[i]];
   }
   const std::size_t pixels = image.rgb.size() / 3;
-  return 20 * levels[226] >= pixels && 20 * levels[237] >= pixels && 100 * levels[255] >= pixels;
+  // White floor, or what was searched.
+  const std::size_t floor = std::max(levels[255], levels[188] + levels[189]);
+  return 20 * levels[226] >= pixels && 20 * levels[237] >= pixels && 100 * floor >= pixels;
 }
 
 }  // namespace

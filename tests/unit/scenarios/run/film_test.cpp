@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "base/image/png.h"
 
@@ -77,6 +78,22 @@ TEST(Film, AllPanelsShowTheSameGroundAndStandInRows) {
   EXPECT_GT(count_of(right, 120, 40, 0), 50);
   const double between = middle_of_colour(right, 0, 130, 255).x - middle_of_colour(left, 0, 130, 255).x;
   EXPECT_NEAR(between, 0.0, 12.0) << "the robot stands at the same place of both panels";
+}
+
+TEST(Film, NoGapsAreBetweenCells) {
+  for (int width = 150; width < 330; width += 7) {
+    FilmFrame frame;
+    const OccupancyGrid map(GridFrame{width, 3 * width / 4, 0.05, -0.05 * (width / 3), -1.35}, Occupancy::Free);
+    frame.map = map;
+    frame.pose = {0.0, 0.0, 0.0};
+    const cv::Mat strip = film_strip({frame});
+    cv::Mat grey, ground;
+    cv::inRange(strip, cv::Scalar(220, 220, 220), cv::Scalar(232, 232, 232), grey);
+    cv::morphologyEx(grey, ground, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));  // unknown ground around, and no gap
+    ASSERT_GT(cv::countNonZero(ground), 1000) << width;
+    grey.setTo(0, ground);
+    EXPECT_EQ(cv::countNonZero(grey(cv::boundingRect(ground))), 0) << width;  // the words below are grey, too
+  }
 }
 
 TEST(Film, AMomentWithoutAMapAndNoMomentAtAll) {

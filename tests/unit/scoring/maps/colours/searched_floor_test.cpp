@@ -142,6 +142,15 @@ TEST(SearchedFloor, ChangedTonesAreUndone) {
   }
 }
 
+TEST(SearchedFloor, AGreyCopyIsRefusedAsThatOfAWhiteMapIs) {
+  for (const double share : {0.0, 1.0}) {
+    cv::Mat grey, picture;
+    cv::cvtColor(with_searched_floor(league_image(truth_of({"maze", 7, 5, 5}), true), share), grey, cv::COLOR_BGR2GRAY);
+    cv::cvtColor(grey, picture, cv::COLOR_GRAY2BGR);
+    EXPECT_NE(why_colours_are_lost(to_rgb(picture), false).find("without its colours"), std::string::npos) << share;
+  }
+}
+
 // Walls of one pixel, of which JPEG leaves the brightness alone.
 TEST(SearchedFloor, ThinWallsOutliveJpeg) {
   constexpr int kWall = 2;
