@@ -20,8 +20,8 @@
 #include "tests/support/scoring_schemes.h"
 
 /// The laws of the score on grounds and by schemes that it was not made for: orange and red arenas full of ramps,
-/// arenas of real competitions (`arenas_raf` of RUBBLE_DATA), halls, buildings (`rooms`). RUBBLE_KIND=TEXT takes only kinds
-/// with this text.
+/// arenas of real competitions (`arenas_raf` of RUBBLE_DATA), halls, buildings (`rooms`). RUBBLE_KIND=TEXT takes only
+/// kinds with this text.
 namespace rubble::scoring {
 namespace {
 
