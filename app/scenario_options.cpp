@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <vector>
 
-#include "arenas/generate/generate.h"
 #include "base/error.h"
 #include "base/text/input_file.h"
 #include "base/text/words.h"
@@ -102,7 +101,7 @@ std::string find_scenario(const std::string& name) {
   if (is_shipped(name, arenas) && !is_shipped(name, shipped_folder()))
     throw InputError(name + ": is an arena, and what is played is a scenario; write one, of this line: arena: {file: " +
                      (arenas / (name + ".yaml")).string() + "}");
-  const std::vector<std::string>& kinds = arenas::arena_kinds();
+  const std::vector<std::string>& kinds = scenarios::generated_kinds();
   if (std::find(kinds.begin(), kinds.end(), name) != kinds.end() && !is_there(name) &&
       !is_shipped(name, shipped_folder()))
     throw InputError(

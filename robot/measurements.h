@@ -71,6 +71,13 @@ struct VictimCue {
   double confidence = 1.0;  ///< 0..1
 };
 
+/// What a base tells of its battery.
+struct BatteryState {
+  double volts = 0.0;
+  double low = 0.0;  ///< below it the robot's own battery is low; 0: nobody says so [V]
+  bool operator==(const BatteryState& other) const { return volts == other.volts && low == other.low; }
+};
+
 /// Everything that arrived during one tick; each list is sorted by stamp.
 /// A stamp may lie before the tick (transport latency), never after `now`.
 struct Inputs {
@@ -80,7 +87,7 @@ struct Inputs {
   std::vector<Acceleration> accelerations;
   std::vector<AimState> aims;
   std::vector<VictimCue> cues;
-  std::optional<double> battery;  ///< its voltage, where the base told it in the tick [V]
+  std::optional<BatteryState> battery;  ///< where it was told in the tick
   /// In force during the tick: what the motors and servos were last told before it. Nothing: not known (foreign logs).
   std::optional<Commands> command;
 };

@@ -8,6 +8,8 @@ namespace rubble::sim {
 /// manual (12.8 V full, alarm at 11.5 V, off at 11.0 V); powers and resistance are round figures of ours.
 class Battery {
  public:
+  static constexpr double kLow = 11.5;  ///< the Pioneer's alarm [V]
+
   explicit Battery(double capacity_wh) : capacity_(capacity_wh * 3600.0), left_(capacity_) {}
 
   /// Drives as it is told to for `dt` [s].

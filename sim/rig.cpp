@@ -107,7 +107,7 @@ void Rig::measure(World& world, robot::Inputs& inputs) {
     unit_clock_.advance();
   }
   if (config_.battery_wh > 0.0 && battery_clock_.due(state.stamp)) {
-    inputs.battery = battery_.volts();
+    inputs.battery = {battery_.volts(), Battery::kLow};
     battery_clock_.advance();
   }
   if (victim_clock_.due(state.stamp)) {

@@ -25,7 +25,6 @@ void bind(Binder& b, PaperExplorerConfig& c) {
   b.degrees("turn_in_place_deg", c.follower.turn_in_place, 1.0, 180.0);
   b.number("look_ahead_m", c.follower.look_ahead, 0.05, 5.0);
   b.boolean("return_home", c.return_home);
-  b.number("battery_home_v", c.battery_home, 0.0, 100.0);
   b.number("d_min_floor_m", c.planner.d_min_floor, 0.0, 2.0);
   b.number("switch_cost_m", c.planner.switch_cost, 0.0, 100.0);
   b.number("felt_memory_s", c.felt.memory, 0.0, 1e6);

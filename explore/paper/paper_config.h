@@ -32,7 +32,6 @@ struct PaperExplorerConfig {
   double first_turn = deg_to_rad(130.0);  ///< turn at the start that shows the scanner what is behind [rad]
   bool bar_targets = true;                ///< what could not be had is left alone; false: as in the paper, for ever
   bool return_home = true;                ///< drive back to the start in the end, in time
-  double battery_home = 11.5;             ///< and when the battery has less than this for 10 s; 0: never [V]
 };
 
 /// The keys of `explorer` with `kind: paper`.

@@ -43,8 +43,7 @@ PaperExplorer::PaperExplorer(const robot::RobotModel& model, const PaperExplorer
                model.swing_radius() + kLittleRoom, mission.senses),
       left_alone_(config.felt, config.planner.same_target),
       home_way_(mission.time_limit),
-      levelling_(model),
-      battery_(config.battery_home, 0.0) {}
+      levelling_(model) {}
 
 ExplorerState PaperExplorer::state() const {
   if (agenda_.finished()) return ExplorerState::Finished;
@@ -107,8 +106,11 @@ void PaperExplorer::heed_levelling() {
 }
 
 void PaperExplorer::heed_battery(const robot::Inputs& inputs) {
-  if (inputs.battery) battery_.look(*inputs.battery, now_);
-  if (battery_.low()) call_it_a_day("the battery is low");
+  if (inputs.battery) {
+    if (!battery_) battery_.emplace(inputs.battery->low, 0.0);
+    battery_->look(inputs.battery->volts, now_);
+  }
+  if (battery_ && battery_->low()) call_it_a_day("the battery is low");
 }
 
 /// Nothing more is begun; home, where it is wanted.

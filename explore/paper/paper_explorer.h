@@ -92,7 +92,7 @@ class PaperExplorer : public Explorer {
   Trail trail_;
   HomeWay home_way_;
   LevellingCare levelling_;
-  robot::BatteryWatch battery_;
+  std::optional<robot::BatteryWatch> battery_;  ///< once it is told
 
   Stage stage_ = Stage::Starting;
   Stamp now_ = Stamp::never();

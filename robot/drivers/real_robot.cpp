@@ -112,7 +112,7 @@ struct RealRobot::Impl {
   BaseWatch base_watch;
   BatteryWatch battery_watch;
   Stamp battery_told = Stamp::never();
-  std::optional<double> waiting_battery;
+  std::optional<BatteryState> waiting_battery;
   LevellingWitness levelling_witness;
   bool unlevelled = false;  ///< the operator drives on without what levels the scanner the wrong way
   std::vector<Odometry> waiting_odometry;
@@ -275,18 +275,17 @@ struct RealRobot::Impl {
     append(waiting_odometry, std::move(reports));
   }
 
-  /// In the base's thread.
+  /// In the base's thread, with the mutex taken.
   void look_at_battery(Stamp now) {
     constexpr double kPeriod = 1.0;  // at which it is told [s]
     const double volts = base->battery();
     battery_watch.look(volts, now);
     if (volts <= 0.0 || (battery_told != Stamp::never() && now - battery_told < kPeriod)) return;
     battery_told = now;
-    const std::lock_guard<std::mutex> lock(mutex);
-    waiting_battery = volts;
+    waiting_battery = {volts, settings.safety.battery_low};
   }
 
-  std::optional<double> take_battery() {
+  std::optional<BatteryState> take_battery() {
     const std::lock_guard<std::mutex> lock(mutex);
     return std::exchange(waiting_battery, std::nullopt);
   }

@@ -92,7 +92,7 @@ class OwnLog {
   TickContext context_;
   Commands commands_;
   std::vector<std::vector<std::uint8_t>> codes_;  ///< of the scans of the next tick
-  std::optional<double> battery_;                 ///< of the next tick
+  std::optional<BatteryState> battery_;           ///< of the next tick
 };
 
 ForeignLog read_foreign(const std::string& bytes, const std::string& path) {

@@ -239,6 +239,8 @@ Scenario load(const std::string& path, const std::vector<Override>& overrides, b
 
 }  // namespace
 
+const std::vector<std::string>& generated_kinds() { return arenas::arena_kinds(); }
+
 Scenario load_scenario(const std::string& path, const std::vector<Override>& overrides) {
   return load(path, overrides, false);
 }

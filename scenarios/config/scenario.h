@@ -53,6 +53,9 @@ struct Scenario {
 /// `--set dotted.key=value`.
 using Override = std::pair<std::string, std::string>;
 
+/// What `arena.generate.kind` takes.
+const std::vector<std::string>& generated_kinds();
+
 /// Reads a scenario file strictly; overrides are applied before anything is read. Throws InputError.
 Scenario load_scenario(const std::string& path, const std::vector<Override>& overrides = {});
 

@@ -167,15 +167,20 @@ void append_battery_frame(std::string& out, const Inputs& inputs) {
   const std::size_t start = open_frame(out);
   ByteWriter bytes(out);
   bytes.u8(static_cast<std::uint8_t>(FrameKind::Battery));
-  bytes.f64(*inputs.battery);
+  bytes.f64(inputs.battery->volts);
+  bytes.f64(inputs.battery->low);
   close_frame(out, start);
 }
 
-double decode_battery(std::string_view payload) {
+BatteryState decode_battery(std::string_view payload) {
   ByteReader bytes = open_payload(payload);
-  const double volts = bytes.f64();
+  BatteryState battery;
+  for (double* value : {&battery.volts, &battery.low}) {
+    *value = bytes.f64();
+    if (!(*value >= 0.0)) throw BadPayload("a battery without a voltage");
+  }
   expect_end(bytes);
-  return volts;
+  return battery;
 }
 
 void append_tick_frame(std::string& out, const Inputs& inputs, TickContext& context) {

@@ -24,7 +24,7 @@ struct TickContext {
 };
 /// The codes of the scans of the tick that is appended next; nothing where no scan has any. Written as runs.
 void append_codes_frame(std::string& out, const Inputs& inputs);
-/// The voltage told in the tick that is appended next; nothing where there is none.
+/// What was told of the battery in the tick that is appended next; nothing where there was none.
 void append_battery_frame(std::string& out, const Inputs& inputs);
 void append_tick_frame(std::string& out, const Inputs& inputs, TickContext& context);
 
@@ -33,8 +33,8 @@ LogHeader decode_header(std::string_view payload);
 Commands decode_commands(std::string_view payload);
 /// One list a scan of the tick that follows.
 std::vector<std::vector<std::uint8_t>> decode_codes(std::string_view payload);
-/// Of the tick that follows [V].
-double decode_battery(std::string_view payload);
+/// Of the tick that follows.
+BatteryState decode_battery(std::string_view payload);
 Inputs decode_tick(std::string_view payload, TickContext& context);
 
 }  // namespace rubble::robot

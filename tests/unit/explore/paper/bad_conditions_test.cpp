@@ -408,10 +408,10 @@ TEST(BadConditions, ALevellingUnitThatIsBackSoonIsWaitedFor) {
 }
 
 /// With a battery that has `volts` from `from` to `until` [s], and 12.5 V otherwise.
-void run_with_battery(Trial& trial, double volts, double from, double until) {
+void run_with_battery(Trial& trial, double volts, double from, double until, double low = 11.5) {
   trial.run(900.0, {}, [&](robot::Inputs& inputs) {
     const double now = inputs.now.seconds();
-    inputs.battery = now >= from && now < until ? volts : 12.5;
+    inputs.battery = {now >= from && now < until ? volts : 12.5, low};
   });
 }
 
@@ -423,6 +423,13 @@ TEST(BadConditions, ABatteryThatStaysLowSendsItHome) {
   EXPECT_NE(trial.explorer.reason().find("the battery is low"), std::string::npos);
   EXPECT_LT(std::hypot(trial.robot.pose().x - maze.start.x, trial.robot.pose().y - maze.start.y), 0.35);
   EXPECT_LT(trial.robot.now().seconds(), 120.0);
+}
+
+TEST(BadConditions, WhereNobodySaysWhenABatteryIsLowNoneIs) {
+  Trial trial(test::random_maze(4, 4, 0.2, 7));
+  run_with_battery(trial, 8.4, 0.0, 1000.0, 0.0);
+  EXPECT_FALSE(told(trial, "the battery is low"));
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
 }
 
 TEST(BadConditions, ABatteryThatMotorsPullDownForAMomentIsNotLow) {

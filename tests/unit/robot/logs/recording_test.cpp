@@ -125,7 +125,7 @@ TEST(Recording, ScannerCodesAndTheCommandInForceAreInputs) {
 TEST(Recording, TheBatterysVoltageComesBackInItsTick) {
   TempFolder folder;
   std::vector<Inputs> ticks = steady_ticks(0.08, 0.02);
-  ticks[1].battery = 11.75;
+  ticks[1].battery = {11.75, 11.5};
   {
     ScriptedRobot scripted(ticks);
     RecordingRobot robot(scripted, folder.file("a.log"), "");
