@@ -11,10 +11,9 @@ constexpr double kTiltFilter = 0.2;             ///< time constant [s]
 constexpr double kLevel = deg_to_rad(1.5);      ///< what levelling leaves where nothing moves
 constexpr double kTilted = deg_to_rad(3.0);     ///< what it never leaves ...
 constexpr double kAimedFar = deg_to_rad(15.0);  ///< ... of a tilt it turned so far against ...
-constexpr double kLevelledFor = 1.0;            ///< ... for longer than servos and loop take [s] ...
-constexpr double kAimFilter = 0.3;              ///< time constant [s]
-constexpr double kAimMoves = deg_to_rad(1.5);   ///< ... once it turns no more: a robot that climbs leans on and on; ...
+constexpr double kLevelledFor = 1.5;            ///< ... for longer than servos and loop take [s] ...
 constexpr double kAtStopFor = 2.2;              ///< ... or, where they can turn no farther, a robot stays so steep [s]
+constexpr double kTakenAway = deg_to_rad(0.5);  ///< a tilt that shrinks by so much meanwhile is being levelled
 constexpr double kAtStop = deg_to_rad(1.0);     ///< servos so near to the end of their travel are there
 
 bool is_silent(Stamp last, Stamp now) { return last != Stamp::never() && now - last > kSilence; }
@@ -59,18 +58,17 @@ void LevellingWatch::feel(const Acceleration& acceleration) {
 
 bool LevellingWatch::turns_in_vain(Axis& axis, double tilt, double aim, double dt, Stamp now) const {
   axis.tilt += (1.0 - std::exp(-dt / kTiltFilter)) * (tilt - axis.tilt);
-  axis.aim += (1.0 - std::exp(-dt / kAimFilter)) * (aim - axis.aim);
   if (std::abs(axis.tilt) < kLevel) axis.level_aim = aim;
   const double turned = aim - axis.level_aim;
   const bool in_vain = std::abs(turned) >= kAimedFar && std::abs(axis.tilt) >= kTilted && turned * axis.tilt < 0.0;
-  if (!in_vain || dt >= kTiltSilence)
+  if (!in_vain || dt >= kTiltSilence) {
     axis.in_vain_since = Stamp::never();
-  else if (axis.in_vain_since == Stamp::never())
+  } else if (axis.in_vain_since == Stamp::never() || std::abs(axis.tilt) < axis.in_vain_tilt - kTakenAway) {
     axis.in_vain_since = now;
-  if (axis.in_vain_since == Stamp::never()) return false;
-  const double seconds = now - axis.in_vain_since;
-  if (std::abs(aim) >= stop_) return seconds >= kAtStopFor;
-  return seconds >= kLevelledFor && std::abs(aim - axis.aim) < kAimMoves;
+    axis.in_vain_tilt = std::abs(axis.tilt);
+  }
+  const double patience = std::abs(aim) >= stop_ ? kAtStopFor : kLevelledFor;
+  return axis.in_vain_since != Stamp::never() && now - axis.in_vain_since >= patience;
 }
 
 }  // namespace rubble::robot

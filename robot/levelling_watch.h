@@ -31,9 +31,9 @@ class LevellingWatch {
  private:
   struct Axis {
     double tilt = 0.0;       ///< felt, without its quick part [rad]
-    double aim = 0.0;        ///< of the servos, likewise [rad]
-    double level_aim = 0.0;  ///< when the tilt was small last [rad]
+    double level_aim = 0.0;  ///< when that was small last [rad]
     Stamp in_vain_since = Stamp::never();
+    double in_vain_tilt = 0.0;  ///< without its sign, then [rad]
   };
   void feel(const Acceleration& acceleration);
   bool turns_in_vain(Axis& axis, double tilt, double aim, double dt, Stamp now) const;

@@ -49,6 +49,38 @@ TEST(LevellingWatch, AUnitThatLevelsWorksOnAnyRamp) {
   }
 }
 
+/// From one ramp of 16 deg over its crest and down the next the body swings by 32 deg and the platform lags behind.
+TEST(LevellingWatch, ASlowSwingFromRampToRampIsNoJam) {
+  Unit unit;
+  unit.body = deg_to_rad(16.0);
+  unit.run(3.0);
+  for (double deg = 16.0; deg > -16.0; deg -= 0.5) {  // 25 deg/s
+    unit.body = deg_to_rad(deg);
+    unit.run(kTick);
+    ASSERT_EQ(unit.watch.state(), LevellingState::Works) << deg;
+  }
+  for (double lag = 6.0; lag > 2.5; lag -= 0.05) {  // and the servo closes in slowly
+    unit.turns = false;
+    unit.servo = deg_to_rad(16.0 - lag);
+    unit.run(kTick);
+    ASSERT_EQ(unit.watch.state(), LevellingState::Works) << lag;
+  }
+}
+
+/// With its nose up a ramp of 45 deg the robot leans more than the servos can turn, and backs off.
+TEST(LevellingWatch, ALeanBeyondTheServosTravelIsNoJam) {
+  Unit unit;
+  unit.run(1.0);
+  for (const double deg : {40.0, -40.0}) {
+    unit.body = deg_to_rad(deg);
+    unit.run(2.0);
+    EXPECT_EQ(unit.watch.state(), LevellingState::Works) << deg;
+    unit.body = 0.0;
+    unit.run(2.0);
+    EXPECT_EQ(unit.watch.state(), LevellingState::Works) << "level again after " << deg;
+  }
+}
+
 /// As onto a step that it climbs: soon far over, then on and on.
 TEST(LevellingWatch, ARobotThatClimbsOnAndOnIsFollowedNotGivenUp) {
   for (const double sign : {1.0, -1.0})
