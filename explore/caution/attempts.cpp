@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/planar.h"
 
@@ -25,6 +26,12 @@ bool Attempts::overdrawn(const mrpt::math::TPoint2D& target, double cost, double
     return true;
   }
   accounts_.push_back({{anchor, target}, kBaseBudget + kSecondsPerMetre * cost - dt, cost});
+  return false;
+}
+
+bool Attempts::turned_away(const mrpt::math::TPoint2D& target) {
+  for (Account& account : accounts_)
+    if (distance(account.target.p_map(), target) <= same_target_) return std::exchange(account.turned_away, true);
   return false;
 }
 

@@ -19,6 +19,8 @@ class Attempts {
   /// it deserves. The account is then closed: choosing the target again opens a new one. Chosen again from farther away
   /// it gets what that is more. The robot is at `anchor`.
   bool overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt, const Anchor& anchor);
+  /// New things made the robot turn away to another target; true when they did so before.
+  bool turned_away(const mrpt::math::TPoint2D& target);
   /// The mapper corrected its past.
   void follow(const slam::Mapper& mapper);
 
@@ -27,6 +29,7 @@ class Attempts {
     AnchoredPoint target;
     double budget;  ///< [s]
     double cost;    ///< for which it was granted [m]
+    bool turned_away = false;
   };
   double same_target_;
   std::vector<Account> accounts_;

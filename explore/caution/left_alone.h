@@ -33,11 +33,15 @@ class LeftAlone {
   void bar_for_good(const mrpt::math::TPoint2D& target, const Anchor& anchor);
   bool barred(const mrpt::math::TPoint2D& p_map, Stamp now) const { return blacklist_.barred(p_map, now); }
 
+  bool barred_for_good(const mrpt::math::TPoint2D& p_map) const { return blacklist_.barred_for_good(p_map); }
+
   /// Spends `dt` [s] on a target that cost `cost` [m] when it was first chosen; true when that is more than it
   /// deserves. The robot is at `anchor`.
   bool overdrawn(const mrpt::math::TPoint2D& target, double cost, double dt, const Anchor& anchor) {
     return attempts_.overdrawn(target, cost, dt, anchor);
   }
+  /// New things made the robot turn away from a target to another one; true when they did so before.
+  bool turned_away(const mrpt::math::TPoint2D& target) { return attempts_.turned_away(target); }
 
   /// Something stopped the body at `anchor`, right before it or, when it drove backwards, `behind` it. `known`: the
   /// map, in which pallets may show. Says whether a whole pallet is left alone for it.

@@ -18,4 +18,11 @@ const std::optional<PalletGrid>& LocalGrids::at(const mrpt::math::TPoint2D& p_ma
   return grids_.emplace(key, find_pallets(cells_, pallet_, middle)).first->second;
 }
 
+const std::optional<PalletGrid>& LocalGrids::near(const mrpt::math::TPoint2D& p_map) {
+  for (const mrpt::math::TPoint2D& off :
+       {mrpt::math::TPoint2D{0.0, 0.0}, {kTile, 0.0}, {0.0, kTile}, {-kTile, 0.0}, {0.0, -kTile}})
+    if (const std::optional<PalletGrid>& grid = at(p_map + off)) return grid;
+  return at(p_map);
+}
+
 }  // namespace rubble::explore

@@ -18,6 +18,8 @@ class LocalGrids {
   LocalGrids(const OccupancyGrid& cells, double pallet) : cells_(cells), pallet_(pallet) {}
   /// Nothing where too few walls agree.
   const std::optional<PalletGrid>& at(const mrpt::math::TPoint2D& p_map);
+  /// The same, or that of a square beside it where too few walls agree.
+  const std::optional<PalletGrid>& near(const mrpt::math::TPoint2D& p_map);
 
  private:
   const OccupancyGrid& cells_;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/planar.h"
+#include "explore/paper/prospects.h"
 
 namespace rubble::explore {
 namespace {
@@ -13,6 +14,8 @@ namespace {
 using mrpt::math::TPoint2D;
 
 constexpr double kVisited = 0.30;                ///< closer to its target the robot has been there [m]
+constexpr double kNearTarget = 1.0;              ///< turned away from so near, it was seen not to be had [m]
+constexpr double kBarren = 240.0;                ///< without new ground for so long, the faces go first [s]
 constexpr double kLookTurn = deg_to_rad(270.0);  ///< with a 240 deg scanner more than once around [rad]
 constexpr double kSearchReplan = 2.0;            ///< on the way to a viewpoint [s]
 constexpr double kArrivedReplan = 0.3;           ///< standing at the end of the way [s]
@@ -80,6 +83,10 @@ bool Agenda::begin_plan(const slam::CountMap& map, Stamp now) {
 }
 
 Plan Agenda::choose(const Situation& situation) {
+  if (gained_.worth_a_try(situation.floor)) {
+    gained_.mark(situation.floor);
+    gained_at_ = situation.now;
+  }
   TargetChoice::View view{situation.floor, situation.T_map_base, situation.now, situation.left_alone};
   view.speed = situation.speed;
   // What is off the grid may be solid after all: it is driven at for the place that is asked for, and for no other.
@@ -104,7 +111,9 @@ bool Agenda::turn_away(const Plan& plan, double left, const Situation& situation
   if (!plan.found || !target()) return false;
   if (!choice_.turns_away(plan)) return length_of(plan) > left + kLongerWay;
   if (goal() == Goal::Home) return false;
-  if (!choice_.kept_away({situation.floor, situation.T_map_base, situation.now, situation.left_alone}, left))
+  const bool again = situation.left_alone.turned_away(*target());
+  if (!again && left > kNearTarget &&
+      !choice_.kept_away({situation.floor, situation.T_map_base, situation.now, situation.left_alone}, left))
     return false;
   note(situation.now, "something new stands in the way");
   leave_target(situation.left_alone, situation.robot());
@@ -184,11 +193,13 @@ Order Agenda::visited_in_vain(const Plan& plan, const Situation& situation) {
 Order Agenda::nothing_left(const Situation& situation) {
   if (situation.turning) return {};
   const bool homeward = goal() == Goal::Home;
-  const bool push = may_push(situation);
+  const bool worth = goal() != Goal::Frontier || prospects_of(situation, true) > 0;
+  const bool push = worth && may_push(situation);
   const bool patient = homeward || (goal() == Goal::Frontier && !choice_.frontiers_done());
-  const Resort resort = patient ? rounds_.next_resort(homeward, push, situation.left_alone, situation.now)
+  const Resort resort = patient ? rounds_.next_resort(homeward, push, situation.left_alone, situation.now, worth)
                         : push  ? Resort::Push
                                 : Resort::GiveUp;
+  if (goal() == Goal::Frontier && resort != Resort::LookAround) choice_.leave_pockets(!thorough_);
   switch (resort) {
     case Resort::LookAround:
       return turn(kLookTurn, TurnFor::View);
@@ -250,7 +261,11 @@ Order Agenda::finish_exploring(const Situation& situation) {
 
 /// As long as that gains something and time is left, all of it is tried once more.
 Order Agenda::finish_searching(const Situation& situation) {
-  if (const auto news = rounds_.another(standing(situation), situation.search, situation.left_alone)) {
+  const Rounds::Standing all{situation.now, situation.floor, situation.victims, frontier_left_, frontier_left_};
+  if (const auto news = rounds_.another(all, situation.search, situation.left_alone)) {
+    thorough_ = true;
+    choice_.leave_pockets(false);
+    choice_.be_thorough();
     begin_round(*news, situation.now);
     return {};
   }
@@ -316,7 +331,18 @@ Order Agenda::stay_and_plan() {
 }
 
 Rounds::Standing Agenda::standing(const Situation& situation) const {
-  return {situation.now, situation.floor, situation.victims, frontier_left_};
+  return {situation.now, situation.floor, situation.victims, prospects_of(situation, true),
+          prospects_of(situation, false)};
+}
+
+/// Frontiers that are worth another try; where things are `pushed` aside for it or, else, where what was felt alone
+/// keeps the robot from them. Without a search of faces to go on to all are.
+std::size_t Agenda::prospects_of(const Situation& situation, bool pushed) const {
+  if (thorough_ || !situation.search.on() || !config_.bar_targets) return frontier_left_;
+  if (situation.now - gained_at_ > kBarren) return 0;
+  const auto settled = [&](const TPoint2D& p) { return situation.left_alone.barred_for_good(p); };
+  return prospects(pushed ? with_all_pushed(situation.floor, config_.felt.pallet) : situation.floor,
+                   situation.T_map_base, config_.planner.min_frontier_cells, settled);
 }
 
 }  // namespace rubble::explore

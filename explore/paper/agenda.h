@@ -84,9 +84,10 @@ class Agenda {
   bool begin_plan(const slam::CountMap& map, Stamp now);
   /// The way to the next target; the goal may change with it.
   Plan choose(const Situation& situation);
-  /// Something new stands in the way, of which `left` [m] were left: bars a target that it keeps the robot from. The
-  /// robot would turn round again once the new thing is forgotten, and again when it is seen anew. Says whether the way
-  /// that is left leads round it, by a detour.
+  /// Something new stands in the way, of which `left` [m] were left: bars a target that it keeps the robot from, that
+  /// it shows right before, or that such things made it turn away from before. The robot would turn round again once
+  /// the new thing is forgotten, and again when it is seen anew. Says whether the way that is left leads round it, by a
+  /// detour.
   bool turn_away(const Plan& plan, double left, const Situation& situation);
   /// What follows from a plan.
   Order decide(Plan plan, bool new_map, const Situation& situation);
@@ -116,6 +117,7 @@ class Agenda {
   void begin_round(const std::string& news, Stamp now);
   Order stay_and_plan();
   Rounds::Standing standing(const Situation& situation) const;
+  std::size_t prospects_of(const Situation& situation, bool pushed) const;
 
   PaperExplorerConfig config_;
   TargetChoice choice_;
@@ -127,6 +129,9 @@ class Agenda {
   bool push_begun_ = false;        ///< by the plan under way, which is to be made anew
   PlanClock clock_;
   std::size_t frontier_left_ = 0;  ///< of the last plan
+  KnownGround gained_;             ///< when new ground was seen last ...
+  Stamp gained_at_ = Stamp::never();
+  bool thorough_ = false;  ///< all faces were searched once: what is left to be seen counts, however small
   std::optional<AnchoredPoint> looked_from_;
   MissionEnd end_ = MissionEnd::UnderWay;
   std::string reason_;

@@ -61,7 +61,7 @@ double off_edges(const PalletGrid& grid, const TPoint2D& p, Cell n) {
 
 }  // namespace
 
-std::vector<Source> doubtful_walls(const Traversable& floor, double pallet) {
+std::vector<Source> doubtful_walls(const Traversable& floor, double pallet, const Grid<std::uint8_t>* pockets) {
   std::vector<Source> sources;
   if (pallet <= 0.0 || floor.cells.width() == 0) return sources;
   const OccupancyGrid& cells = floor.cells;
@@ -69,6 +69,7 @@ std::vector<Source> doubtful_walls(const Traversable& floor, double pallet) {
   const auto in_cells = [&](double length) { return static_cast<int>(std::lround(length / resolution)); };
   const int before = std::max(1, in_cells(kBefore)), thick = in_cells(kThick), behind = in_cells(kBehind);
   LocalGrids grids(cells, pallet);
+  const auto is_pocket = [&](Cell c) { return pockets != nullptr && cells.inside(c) && (*pockets)[c] != 0; };
   std::vector<Cell> occupied;
   for (int y = 1; y + 1 < cells.height(); ++y) {
     const Occupancy* const row = cells.row(y);
@@ -81,7 +82,8 @@ std::vector<Source> doubtful_walls(const Traversable& floor, double pallet) {
     const Cell along{std::abs(n.y), std::abs(n.x)};
     for (const Cell c : occupied)
       face[c] = all(cells, c, {-n.x, -n.y}, 1, before, Occupancy::Free) &&
-                all(cells, c, n, 1 + thick, behind, Occupancy::Unknown);
+                all(cells, c, n, 1 + thick, behind, Occupancy::Unknown) &&
+                !is_pocket({c.x + (1 + thick) * n.x, c.y + (1 + thick) * n.y});
     for (const Cell c : occupied) {
       if (face[c] == 0) continue;
       const std::vector<Cell> row = row_from(c, along, n, face);

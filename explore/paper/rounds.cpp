@@ -5,19 +5,19 @@
 namespace rubble::explore {
 namespace {
 
-constexpr int kMaxPardons = 3;               ///< times that what failed is tried again before giving up
-constexpr int kBarrenRounds = 2;             ///< rounds in a row that gain nothing are the last
-constexpr int kForgets = 4;                  ///< times that all that was felt is forgotten for the sake of new ground
-constexpr int kHomeTries = 6;                ///< times that it is on the way home
-constexpr std::size_t kWorthForgetting = 3;  ///< frontiers
+constexpr int kMaxPardons = 3;    ///< times that what failed is tried again before giving up
+constexpr int kBarrenRounds = 2;  ///< rounds in a row that gain nothing are the last
+constexpr int kForgets = 4;       ///< times that all that was felt is forgotten for the sake of new ground
+constexpr int kHomeTries = 6;     ///< times that it is on the way home
 
 }  // namespace
 
-Resort Rounds::next_resort(bool homeward, bool may_push, LeftAlone& left_alone, Stamp now) {
+Resort Rounds::next_resort(bool homeward, bool may_push, LeftAlone& left_alone, Stamp now, bool worth) {
   if (looks_in_vain_ == 0 || (failed_plans_ < 2 && looks_in_vain_ < 2)) {
     ++looks_in_vain_;
     return Resort::LookAround;
   }
+  if (!worth) return Resort::GiveUp;
   if (pardons_ < kMaxPardons && left_alone.pardon(now)) {
     ++pardons_;
     return Resort::TryAgain;
@@ -35,8 +35,7 @@ std::optional<std::string> Rounds::before_all_faces(const Standing& standing, bo
     begin();
     return "no niche is left: what could not be reached is tried again before the rest is searched";
   }
-  if (standing.frontier_left >= kWorthForgetting && forgets_ == 0)
-    return forget_what_was_felt(standing, search, left_alone);
+  if (standing.behind_felt > 0 && forgets_ == 0) return forget_what_was_felt(standing, search, left_alone);
   return std::nullopt;
 }
 
@@ -58,7 +57,7 @@ std::optional<std::string> Rounds::another(const Standing& standing, FloorSearch
 /// even what was felt for certain is tried anew.
 std::optional<std::string> Rounds::forget_what_was_felt(const Standing& standing, FloorSearch& search,
                                                         LeftAlone& left_alone) {
-  if (standing.frontier_left == 0 || forgets_ >= kForgets || !left_alone.forget_once(standing.now)) return std::nullopt;
+  if (standing.behind_felt == 0 || forgets_ >= kForgets || !left_alone.forget_once(standing.now)) return std::nullopt;
   ++forgets_;
   barren_rounds_ = 0;
   search.reconsider(standing.floor);

@@ -27,7 +27,8 @@ class Rounds {
     Stamp now;
     const Traversable& floor;
     std::size_t victims;        ///< sure ones so far
-    std::size_t frontier_left;  ///< frontiers of the last plan
+    std::size_t frontier_left;  ///< frontiers that are worth another try
+    std::size_t behind_felt;    ///< and those that nothing but what was felt keeps the robot from
   };
 
   /// A plan found a way.
@@ -35,8 +36,9 @@ class Rounds {
   /// A plan found none, on a map that was `new_map` or not.
   void no_way(bool new_map) { failed_plans_ += new_map ? 1 : 0; }
   /// What to try now that nothing can be reached, on the way to frontiers or (`homeward`) home; where that is to
-  /// forgive something, that is done. `may_push`: so may things be.
-  Resort next_resort(bool homeward, bool may_push, LeftAlone& left_alone, Stamp now);
+  /// forgive something, that is done. `may_push`: so may things be. `worth`: so may other ground be had, if what keeps
+  /// the robot from it was none; else it looks around and gives up.
+  Resort next_resort(bool homeward, bool may_push, LeftAlone& left_alone, Stamp now, bool worth = true);
 
   /// No niche is left to be searched, but frontiers may be: before the search of all other faces, which takes
   /// most of the time, what failed is tried again, once a round, or what was not tried so far (`more`). Returns the

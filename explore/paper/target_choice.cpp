@@ -1,10 +1,18 @@
 #include "explore/paper/target_choice.h"
 
 #include <algorithm>
+#include <map>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "base/planar.h"
+#include "explore/caution/local_grids.h"
+#include "explore/caution/pallet_grid.h"
+#include "explore/caution/step_field.h"
 #include "explore/paper/doubtful_walls.h"
+#include "explore/paper/prospects.h"
+#include "explore/plan/pockets.h"
 
 namespace rubble::explore {
 namespace {
@@ -13,6 +21,31 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
 constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
+constexpr double kBeside = 0.25;                        ///< [m]
+const std::optional<PalletGrid> kNoGrid;
+
+/// The fields of steps that a map shows, each looked for once.
+class StepFields {
+ public:
+  explicit StepFields(const OccupancyGrid& cells) : cells_(cells) {}
+  bool shown_at(const PalletGrid& grid, const TPoint2D& p_map) {
+    const Cell pallet = grid.pallet(p_map);
+    const Cell middle = cells_.cell(grid.middle(pallet));  // the pallets of two grids are counted apart
+    const auto [at, is_new] = shown_.emplace(std::pair(middle.x, middle.y), false);
+    if (is_new) at->second = shows_step_field(cells_, grid, pallet);
+    return at->second;
+  }
+  /// There or a little beside it: of the last pallet of a field too few steps may show.
+  bool shown_near(const PalletGrid& grid, const TPoint2D& p_map) {
+    for (const TPoint2D& off : {TPoint2D{0.0, 0.0}, {kBeside, 0.0}, {0.0, kBeside}, {-kBeside, 0.0}, {0.0, -kBeside}})
+      if (shown_at(grid, p_map + off)) return true;
+    return false;
+  }
+
+ private:
+  const OccupancyGrid& cells_;
+  std::map<std::pair<int, int>, bool> shown_;
+};
 
 }  // namespace
 
@@ -42,8 +75,10 @@ TargetChoice::Choice TargetChoice::choose(const View& view, FloorSearch& search)
 }
 
 TargetChoice::Choice TargetChoice::choose_of_all_places(const View& view, FloorSearch& search, Plan frontier) {
-  Plan place = to_place(view, search, Subjects::All);
-  if (!place.found && search.squarely()) place = to_place(view, search, Subjects::Squarely);
+  // A face that was looked at squarely was looked at: where that is asked for it need not be done twice.
+  Plan place;
+  if (search.squarely()) place = to_place(view, search, Subjects::Squarely);
+  if (!place.found) place = to_place(view, search, Subjects::All);
   return weigh(std::move(frontier), std::move(place));
 }
 
@@ -76,11 +111,19 @@ TargetChoice::Choice TargetChoice::weigh(Plan frontier, Plan place) {
 }
 
 Plan TargetChoice::to_frontier(const View& view, const FloorSearch& search, const std::optional<TPoint2D>& previous) {
+  const bool tells_pockets = search.on() && bar_targets_;
+  Grid<std::uint8_t> small;
+  if (tells_pockets && leaves_pockets_) small = pockets(view.floor.cells, kPocket);
   const auto barred = [&](const TPoint2D& p) { return bar_targets_ && view.left_alone.barred(p, view.now); };
-  Plan plan = planner_.to_frontier(view.floor, view.T_map_base, barred, previous,
+  const auto left_alone = [&](const TPoint2D& p) {
+    return barred(p) ||
+           (tells_pockets && leaves_pockets_ && !leads_on(view.floor.cells, small, view.floor.cells.cell(p)));
+  };
+  Plan plan = planner_.to_frontier(view.floor, view.T_map_base, left_alone, previous,
                                    frontier_worth(by_, config_, view.floor, search, view.speed));
   if (plan.found) return plan;
-  std::vector<Source> sources = doubtful_walls(view.floor, pallet_);
+  if (tells_pockets && !thorough_ && !leaves_pockets_) small = pockets(view.floor.cells, kPocket);
+  std::vector<Source> sources = doubtful_walls(view.floor, pallet_, tells_pockets && !thorough_ ? &small : nullptr);
   const auto place = [&](const Source& source) { return view.floor.cells.centre(source.cell); };
   sources.erase(std::remove_if(sources.begin(), sources.end(), [&](const Source& s) { return barred(place(s)); }),
                 sources.end());
@@ -99,7 +142,20 @@ Plan TargetChoice::to_place(const View& view, FloorSearch& search, Subjects subj
     if (view.left_alone.barred(p, view.now)) return std::nullopt;
     return planner_.head_start(target_, p);
   };
-  Plan plan = planner_.to_cells(view.floor, view.T_map_base, search.sources(view.floor, subjects, head_start));
+  OccupancyGrid shown = view.floor.cells;
+  for (const std::vector<Cell>& freed : {view.floor.loose, view.floor.doubtful})
+    for (const Cell c : freed) shown[c] = Occupancy::Occupied;
+  LocalGrids grids(shown, pallet_);
+  StepFields fields(shown);
+  // Well inside the pallets stand no walls with holes, and among steps no boxes.
+  const auto idle = [&](const TPoint2D& subject) {
+    const std::optional<PalletGrid>& grid = pallet_ > 0.0 ? grids.near(subject) : kNoGrid;
+    if (!grid) return false;
+    if (subjects == Subjects::Niches) return fields.shown_near(*grid, subject);
+    if (grid->depth(subject) < kInsidePallet) return false;
+    return subjects == Subjects::Squarely || fields.shown_at(*grid, subject);
+  };
+  Plan plan = planner_.to_cells(view.floor, view.T_map_base, search.sources(view.floor, subjects, head_start, idle));
   if (plan.found) search.choose_subject(view.floor.cells.cell(plan.target));
   return plan;
 }

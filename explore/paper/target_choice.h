@@ -67,6 +67,10 @@ class TargetChoice {
   void explore();
   void set_frontiers_done() { frontiers_done_ = true; }
   void search() { goal_ = Goal::Place; }
+  /// Pockets of unknown ground are no targets for now.
+  void leave_pockets(bool leave) { leaves_pockets_ = leave; }
+  /// From now on walls are looked at even where they may hide no more than a pocket.
+  void be_thorough() { thorough_ = true; }
   void go_home();
 
   /// Where the robot started, which is home.
@@ -113,6 +117,8 @@ class TargetChoice {
   Anchor home_;
   Goal goal_ = Goal::Frontier;
   bool frontiers_done_ = false;
+  bool leaves_pockets_ = false;
+  bool thorough_ = false;
   std::optional<mrpt::math::TPoint2D> target_;
   bool doubtful_ = false;  ///< it is before a wall that may be none
   double cost_ = 0.0;

@@ -26,6 +26,8 @@ constexpr double kAtSuspect = 4.0;              ///< stands so long for one [s]
 constexpr double kSameSuspect = 0.3;            ///< [m]
 constexpr double kAnotherSide = 0.5;            ///< it is visited again from so far from where it was before [m]
 constexpr double kBox = 0.35;                   ///< a wall so near before a suspect may be the side of its box [m]
+constexpr double kLookCost = 1.5;               ///< what a look takes, in way, standing still and turning to it [m]
+constexpr double kFullLook = 0.6;               ///< of wall that it shows squarely at best [m]
 const std::vector<double> kSuspectDistances = {0.6, 0.75, 0.5, 0.9, 1.1};
 
 /// The floor that decides what a look sees: what it saw, and the cells around, where its rays ended.
@@ -177,10 +179,15 @@ void FloorSearch::give_up_subject(const Traversable& floor, const Anchor& here) 
 }
 
 std::vector<Source> FloorSearch::sources(const Traversable& floor, Subjects subjects,
-                                         const std::function<std::optional<double>(const TPoint2D&)>& head_start) {
+                                         const std::function<std::optional<double>(const TPoint2D&)>& head_start,
+                                         const std::function<bool(const TPoint2D&)>& idle) {
   const Record cameras = subjects == Subjects::Squarely ? Record::Squarely : Record::Anyhow;
   views_.clear();
-  add_views(viewpoints(floor, record(cameras), config_, room_, tight_, subjects), cameras);
+  std::vector<Viewpoint> views = viewpoints(floor, record(cameras), config_, room_, tight_, subjects);
+  if (idle)
+    views.erase(std::remove_if(views.begin(), views.end(), [&](const Viewpoint& v) { return idle(v.subject); }),
+                views.end());
+  add_views(views, cameras);
   if (subjects == Subjects::All) {
     for (const Other& other : others_)
       add_views(viewpoints(floor, other.area, other.config, room_, tight_, subjects), other.record);
@@ -188,10 +195,46 @@ std::vector<Source> FloorSearch::sources(const Traversable& floor, Subjects subj
   }
   std::vector<Source> sources;
   for (const View& view : views_) {
-    if (const std::optional<double> start = head_start(floor.cells.centre(view.cell)))
-      sources.push_back({view.cell, *start});
+    const std::optional<double> start = head_start(floor.cells.centre(view.cell));
+    if (!start) continue;
+    // A look that shows little has to be made good by others.
+    const double lost = view.record == Record::Squarely ? 1.0 - std::min(1.0, shown(floor, view) / kFullLook) : 0.0;
+    sources.push_back({view.cell, *start + kLookCost * lost});
   }
   return sources;
+}
+
+/// Length of the wall beside the subject of a view that a look at it shows squarely for the first time [m].
+double FloorSearch::shown(const Traversable& floor, const View& view) const {
+  const double cell = floor.frame().resolution;
+  const Cell subject = floor.cells.cell(view.subject);
+  const double cos_view = std::cos(0.5 * config_.field_of_view), cos_square = std::cos(kSquarely.incidence);
+  const double ahead_x = subject.x - view.cell.x, ahead_y = subject.y - view.cell.y;
+  const double ahead = length(ahead_x, ahead_y);
+  int most = 0;
+  for (const auto& [face, normal] :
+       {std::pair<Faces, Cell>{kEastFace, {1, 0}}, {kNorthFace, {0, 1}}, {kWestFace, {-1, 0}}, {kSouthFace, {0, -1}}}) {
+    if ((view.faces & face) == 0) continue;
+    int cells = 0;
+    const int reach = static_cast<int>(kSquarely.farthest / cell);
+    for (int i = -reach; i <= reach; ++i) {
+      // Walls lie slightly askew in the map.
+      for (int off = -1; off <= 1; ++off) {
+        const Cell c{subject.x + i * normal.y + off * normal.x, subject.y + i * normal.x + off * normal.y};
+        if (c.x < 1 || c.y < 1 || c.x + 1 >= floor.cells.width() || c.y + 1 >= floor.cells.height()) continue;
+        if (floor.cells[c] != Occupancy::Free || (squarely_.missing(floor, c) & face) == 0) continue;
+        const double dx = c.x - view.cell.x, dy = c.y - view.cell.y;
+        const double away = length(dx, dy);
+        if (away * cell < kSquarely.nearest || away * cell > kSquarely.farthest) continue;
+        if (dx * normal.x + dy * normal.y < cos_square * away) continue;
+        if (dx * ahead_x + dy * ahead_y < cos_view * away * ahead) continue;
+        ++cells;
+        break;
+      }
+    }
+    most = std::max(most, cells);
+  }
+  return most * cell;
 }
 
 double FloorSearch::faces_in_view(const Traversable& floor, Cell from) const {

@@ -64,9 +64,10 @@ class FloorSearch {
   bool reconsider(const Traversable& floor);
 
   /// The cells from which something unsearched can be seen, each with the head start that `head_start` gives to its
-  /// centre; without one it is left out.
+  /// centre; without one it is left out. `idle`: places where nothing can be for the cameras to see.
   std::vector<Source> sources(const Traversable& floor, Subjects subjects,
-                              const std::function<std::optional<double>(const mrpt::math::TPoint2D&)>& head_start);
+                              const std::function<std::optional<double>(const mrpt::math::TPoint2D&)>& head_start,
+                              const std::function<bool(const mrpt::math::TPoint2D&)>& idle = {});
   /// Length of the wall faces in range and in sight of a cell that are still to be looked at [m].
   double faces_in_view(const Traversable& floor, Cell from) const;
   /// Whether any such cell was found at the last time, in reach or not.
@@ -107,6 +108,7 @@ class FloorSearch {
   SearchedArea& record(Record record);
   const SearchedArea& record(Record record) const { return const_cast<FloorSearch*>(this)->record(record); }
   void add_views(const std::vector<Viewpoint>& views, Record record);
+  double shown(const Traversable& floor, const View& view) const;
   void add_suspects(const Traversable& floor);
   bool is_suspect(const mrpt::math::TPoint2D& place) const;
   double facing(Record record) const;

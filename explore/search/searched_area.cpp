@@ -25,7 +25,7 @@ constexpr int kDirections = 16;      ///< viewpoints tried around a subject
 // Of viewpoints from their subjects [m]. Before a niche there is little choice: its box takes a third of a corridor.
 const std::vector<double> kDistances = {0.5, 0.8, 1.1, 1.4};
 const std::vector<double> kNicheDistances = {0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4};
-const std::vector<double> kSquareDistances = {0.7, 0.8, 0.95, 1.1, 1.3};
+const std::vector<double> kSquareDistances = {0.65, 0.7, 0.8, 0.95, 1.1, 1.3};
 
 /// Cells from c in a direction up to the next wall; nothing when there is none within `most`.
 std::optional<int> to_wall(const Traversable& floor, Cell c, Cell step, int most) {

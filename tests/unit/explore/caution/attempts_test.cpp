@@ -37,5 +37,17 @@ TEST(Attempts, BegunFromFartherAwayItGetsWhatThatIsMore) {
   EXPECT_NEAR(time_of(38.0, 7.0), time_of(38.0, 38.0), 0.2);
 }
 
+TEST(Attempts, OfATargetThatItTurnedAwayFromItIsTheFirstTimeOnce) {
+  Attempts attempts(0.5);
+  EXPECT_FALSE(attempts.turned_away({5.0, 5.0})) << "it was none";
+  attempts.overdrawn({5.0, 5.0}, 2.0, 0.1, {});
+  EXPECT_FALSE(attempts.turned_away({5.2, 5.0}));
+  EXPECT_FALSE(attempts.turned_away({9.0, 5.0})) << "another one";
+  EXPECT_TRUE(attempts.turned_away({5.0, 5.2}));
+  while (!attempts.overdrawn({5.0, 5.0}, 2.0, 1.0, {})) continue;
+  attempts.overdrawn({5.0, 5.0}, 2.0, 0.1, {});
+  EXPECT_FALSE(attempts.turned_away({5.0, 5.0})) << "a new account";
+}
+
 }  // namespace
 }  // namespace rubble::explore

@@ -40,5 +40,19 @@ TEST(Blacklist, PardonOfAllEndsBarsForGoodAsWell) {
   EXPECT_FALSE(list.pardon_all(now)) << "nothing is left to pardon";
 }
 
+/// A place that was visited in vain, pardoned, and visited in vain again.
+TEST(Blacklist, WhatWasBarredForGoodTwiceStaysSo) {
+  const Stamp now = Stamp::from_seconds(10.0);
+  Blacklist list;
+  for (const bool twice : {false, true}) {
+    list.bar_for_good(place(1.0, twice ? 0.3 : 0.0), 0.5);
+    list.bar_for_good(place(twice ? 7.0 : 5.0, 0.0), 0.5);
+    EXPECT_TRUE(list.barred_for_good({1.0, 0.1}));
+    EXPECT_TRUE(list.pardon_all(now)) << "the other one";
+    EXPECT_EQ(list.barred({1.0, 0.1}, now), twice);
+    EXPECT_FALSE(list.barred({5.0, 0.0}, now));
+  }
+}
+
 }  // namespace
 }  // namespace rubble::explore

@@ -222,6 +222,45 @@ TEST(Agenda, ATargetThatSomethingNewKeepsItFromIsBarredAndNoOther) {
   }
 }
 
+/// Else it goes to and fro between two targets with something new before each, for as long as it takes to forget it.
+TEST(Agenda, ATargetThatNewThingsTurnItAwayFromRightBeforeItOrTwiceIsLeftAlone) {
+  for (const double left : {2.0, 0.8}) {
+    Ordered robot;
+    robot.narrow();
+    test::fill(robot.cells, 6.5, 0.4, 7.0, 0.9, Occupancy::Unknown);
+    robot.pose.x = 6.4 - left;
+    const Order order = robot.ask();
+    ASSERT_EQ(order.kind, Order::Kind::Follow);
+    robot.agenda.spend(0.1, robot.situation());
+    test::fill(robot.cells, 6.2, 1.1, 6.3, 1.3, Occupancy::Occupied);  // a way to near it is left
+    Plan other;
+    other.found = true;
+    other.target = {1.0, 0.65};
+    robot.agenda.turn_away(other, left, robot.situation());
+    EXPECT_EQ(robot.left_alone.barred(order.plan.target, robot.now), left < 1.0);
+    if (left < 1.0) continue;
+    robot.agenda.turn_away(other, left, robot.situation());
+    EXPECT_TRUE(robot.left_alone.barred(order.plan.target, robot.now)) << "the second time";
+  }
+}
+
+/// Another round in a room whose frontiers are behind a hole in the wall, in a pocket, and visited in vain.
+TEST(Agenda, WhatCannotBeHadIsNotTriedAgainBeforeTheFacesAreSearched) {
+  for (const bool more : {false, true}) {
+    Ordered robot((PaperExplorerConfig()));
+    test::fill(robot.cells, 6.0, 0.0, 6.1, 4.0, Occupancy::Occupied);
+    test::fill(robot.cells, 6.0, 1.9, 6.1, more ? 2.6 : 2.05, Occupancy::Free);
+    test::fill(robot.cells, 6.5, 1.5, 7.5, 2.5, Occupancy::Unknown);
+    if (more) robot.left_alone.bar({6.3, 2.0}, {robot.now, robot.pose}, 100.0);
+    for (int i = 0; i < 60 && robot.agenda.goal() != Goal::Place; ++i) {
+      const Order order = robot.ask();
+      if (order.kind == Order::Kind::Follow) break;
+    }
+    EXPECT_EQ(robot.told("what failed before is tried again") || robot.told("drives to the frontier"), more);
+    EXPECT_FALSE(!more && robot.told("pushed aside"));
+  }
+}
+
 /// The other way to the same target is taken to its end: the robot would turn back else once it has forgotten what
 /// stands in the shorter one.
 TEST(Agenda, TheSameTargetByADetourIsLedRoundWhatIsNew) {

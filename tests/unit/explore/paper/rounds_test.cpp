@@ -30,11 +30,11 @@ struct Played {
   }
   bool another() {
     now = now + 1.0;
-    return rounds.another({now, floor, victims, frontier_left}, search, left_alone).has_value();
+    return rounds.another({now, floor, victims, frontier_left, frontier_left}, search, left_alone).has_value();
   }
   bool before_all_faces(std::size_t frontiers, bool more = false) {
     now = now + 1.0;
-    return rounds.before_all_faces({now, floor, victims, frontiers}, more, search, left_alone).has_value();
+    return rounds.before_all_faces({now, floor, victims, frontiers, frontiers}, more, search, left_alone).has_value();
   }
 };
 
@@ -63,6 +63,17 @@ TEST(Rounds, ItLooksAroundTwiceUnlessTwoMapsShowedNoWay) {
     play.rounds.no_way(new_map);
     EXPECT_EQ(play.resort(), Resort::LookAround) << "a way was found meanwhile";
   }
+}
+
+/// Where no other ground can be had, whatever is forgiven, it looks around and goes on to the search.
+TEST(Rounds, NothingIsTriedAgainForNothing) {
+  Played play;
+  play.fail();
+  play.rounds.no_way(true);
+  play.rounds.no_way(true);
+  EXPECT_EQ(play.rounds.next_resort(false, true, play.left_alone, play.now, false), Resort::LookAround);
+  EXPECT_EQ(play.rounds.next_resort(false, true, play.left_alone, play.now, false), Resort::GiveUp);
+  EXPECT_TRUE(play.left_alone.barred({1.0, 1.0}, play.now)) << "nothing was forgiven";
 }
 
 TEST(Rounds, ThingsArePushedBeforeAllIsGivenUpAndAfterAllIsForgiven) {

@@ -150,6 +150,60 @@ TEST(TargetChoice, FacesAreLookedAtSquarelyInTheEndWhereHolesAreExpected) {
   EXPECT_TRUE(choose_place().found);
 }
 
+/// Each look from where it shows the most of what is left, a panel of wall as a rule: led to the nearest face that was
+/// not looked at, the robot would creep along beside it, a hand's breadth a look.
+TEST(TargetChoice, ALookSquarelyShowsAFootOfWallInTheMean) {
+  Choosing robot(true);
+  robot.narrow();
+  robot.choice.set_frontiers_done();
+  robot.choice.search();
+  robot.search->expect_holes();
+  int looks = 0;
+  for (; looks < 200; ++looks) {
+    const Plan plan = robot.choice.choose_of_all_places(robot.view(), *robot.search, Plan{}).plan;
+    if (!plan.found) break;
+    robot.choice.take(plan);
+    robot.pose = {plan.target.x, plan.target.y, robot.pose.phi};
+    if (const auto turn = robot.search->turn_to_subject(robot.floor, robot.pose)) robot.pose.phi += *turn;
+    for (int i = 0; i < 2; ++i) robot.search->look(robot.floor, robot.pose, 0.0, robot.now = robot.now + 1.0);
+    robot.search->start_dwell(robot.now);
+    robot.search->dwelling(robot.floor, robot.pose, robot.now = robot.now + 5.0);
+  }
+  EXPECT_LT(looks, 2 * 8.0 / 0.33);
+  EXPECT_GT(looks, 2 * 8.0 / 1.0);
+}
+
+/// The steps of a field show like the sides of boxes.
+TEST(TargetChoice, NoNicheIsLookedForAmongSteps) {
+  for (const bool steps : {false, true}) {
+    Choosing robot(true);
+    robot.choice = TargetChoice({}, true, test::kPallet);
+    robot.cells = test::corridor_of_pallets(9.0, test::kPallet, Occupancy::Free);
+    robot.pose = {2.0, 0.6, 0.0};
+    for (const double side : {-0.25, 0.15})  // at the south wall
+      test::fill(robot.cells, 4.2 + side, 0.0, 4.3 + side, 0.42, Occupancy::Occupied);
+    for (double at = 0.25; steps && at < 1.0; at += 0.2)
+      test::fill(robot.cells, 3.6 + at, at, 3.7 + at, at + 0.1, Occupancy::Occupied);
+    robot.choice.set_frontiers_done();
+    robot.choice.search();
+    EXPECT_EQ(robot.choose().no_niche, steps);
+  }
+}
+
+/// Until the faces were searched, once nothing else was in reach.
+TEST(TargetChoice, PocketsOfUnknownGroundCanBeLeft) {
+  Choosing robot(true);
+  robot.narrow();
+  robot.unknown(5.3, 0.45);
+  EXPECT_TRUE(robot.choose().plan.found);
+  robot.choice.leave_pockets(true);
+  EXPECT_FALSE(robot.choose().plan.found);
+  test::fill(robot.cells, 0.6, 0.3, 1.5, 1.1, Occupancy::Unknown);
+  EXPECT_LT(robot.choose().plan.target.x, 3.0) << "more than a pocket";
+  robot.choice.leave_pockets(false);
+  EXPECT_GT(robot.choose().plan.target.x, 3.0) << "the nearer one";
+}
+
 TEST(TargetChoice, AFrontierThatComesIntoReachGoesBeforeTheSearch) {
   Choosing robot(true);
   robot.narrow();
