@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <utility>
 
 #include "base/error.h"
@@ -52,12 +54,15 @@ bool is_named_by_us(const std::string& name) {
   return false;
 }
 
-/// Pages and pictures of teams from an earlier call: beside its league.csv, named by safe_name().
+/// Pages and pictures of teams from an earlier call: those its league.html leads to or shows, named by safe_name().
 void remove_old_pages(const std::string& folder) {
-  if (!fs::exists(folder + "/league.csv")) return;
+  if (!fs::exists(folder + "/league.csv") || !fs::is_regular_file(folder + "/league.html")) return;
+  std::ifstream page(folder + "/league.html");  // no input: it is written anew
+  const std::string table(std::istreambuf_iterator<char>(page), {});
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    const bool is_ours = is_named_by_us(entry.path().filename().string()) && entry.is_regular_file();
+    const std::string name = entry.path().filename().string();
+    const bool is_ours = is_named_by_us(name) && entry.is_regular_file() && table.find(name) != std::string::npos;
     if (is_ours && !was_read(entry.path().string())) old.push_back(entry.path());
   }
   for (const fs::path& path : old) fs::remove(path);

@@ -74,9 +74,11 @@ cut -d, -f1,2,5 second/league.csv >ranks.txt
 for file in overlay.png error.png; do ls second/aa-map[0-9]-$file second/zz-map[0-9]-$file >/dev/null || fail "no $file of a team: $(ls second)"; done
 ls second/aa-map[0-9].html >/dev/null && ! ls second | grep -qE '^[0-9]{3}-' || fail "names of files: $(ls second)"
 cp second/aa-map*-overlay.png second/001-gone-overlay.png; cp second/aa-map*-overlay.png second/gone-map9-overlay.png
+echo '<a href="001-gone-overlay.png"></a><a href="gone-map9-overlay.png"></a>' >>second/league.html
+echo mine >second/hall-map2.html  # a page of somebody's own, which no table leads to
 cp second/aa-map*-overlay.png second/kept-overlay.png
 "$rubble" score --league renamed $truth --out second >/dev/null || fail "second league again"
-[[ -e second/kept-overlay.png && ! -e second/001-gone-overlay.png && ! -e second/gone-map9-overlay.png ]] ||
+[[ -e second/kept-overlay.png && -e second/hall-map2.html && ! -e second/001-gone-overlay.png && ! -e second/gone-map9-overlay.png ]] ||
   fail "not the pictures of the earlier league were removed: $(ls second)"
 
 # The truth and pictures of runs among the maps are no teams, and the program says so; the options of a single score hold.

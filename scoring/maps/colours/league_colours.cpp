@@ -246,7 +246,8 @@ std::vector<FloorTone> floor_tones(const Rgb& colour, const Rgb& lighter) {
   constexpr int kGreen = 15;
   std::vector<FloorTone> out;
   if (colour[1] >= lighter[1]) out.push_back({colour, league::kFree});
-  if (colour[1] >= std::max(colour[0], colour[2]) + kGreen) out.push_back({colour, league::kSearched});
+  if (colour[1] >= std::max(colour[0], colour[2]) + kGreen)
+    for (const Rgb& own : {league::kSearched, league::kSearchedUnsure}) out.push_back({colour, own});
   return out;
 }
 

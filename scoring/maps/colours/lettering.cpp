@@ -86,19 +86,51 @@ std::vector<std::vector<Piece>> words_of(const std::vector<Piece>& letters) {
   return out;
 }
 
-/// Free ground around the word, with nothing in it but its own letters and what is smaller (dots).
-bool stands_alone(const cv::Mat& classes, const cv::Mat& labels, const std::vector<Piece>& word, const cv::Rect& box,
-                  int height) {
-  const int moat = std::max(2, static_cast<int>(kMoat * height));
-  const cv::Rect around(box.x - moat, box.y - moat, box.width + 2 * moat, box.height + 2 * moat);
+cv::Rect box_of(const cv::Mat& stats, int label) {
+  return {stats.at<int>(label, cv::CC_STAT_LEFT), stats.at<int>(label, cv::CC_STAT_TOP),
+          stats.at<int>(label, cv::CC_STAT_WIDTH), stats.at<int>(label, cv::CC_STAT_HEIGHT)};
+}
+
+cv::Rect widened(const cv::Rect& box, int by) {
+  return {box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};
+}
+
+/// All that belongs to a word.
+struct Written {
+  cv::Rect box;
+  int height = 0;  ///< of its highest letter
+  std::vector<int> labels;
+  int moat() const { return std::max(2, static_cast<int>(kMoat * height)); }
+};
+
+/// A word with its dots and hyphens: what is lower than letters, and beside or among these.
+Written whole(const std::vector<Piece>& word, const cv::Mat& stats) {
+  constexpr double kDotHeight = 0.3, kDotWidth = 0.6;  // heights
+  Written out;
+  out.box = word[0].box;
+  for (const Piece& piece : word) {
+    out.box |= piece.box;
+    out.height = std::max(out.height, piece.box.height);
+    out.labels.push_back(piece.label);
+  }
+  const cv::Rect reach = widened(out.box, out.moat());
+  for (int i = 1; i < stats.rows; ++i) {
+    const cv::Rect dot = box_of(stats, i);
+    if (dot.height > kDotHeight * out.height || dot.width > kDotWidth * out.height || (dot & reach) != dot) continue;
+    out.box |= dot;
+    out.labels.push_back(i);
+  }
+  return out;
+}
+
+/// Free ground around the word, with nothing in it but its own.
+bool stands_alone(const cv::Mat& classes, const cv::Mat& labels, const Written& word) {
+  const cv::Rect around = widened(word.box, word.moat());
   if ((around & cv::Rect({0, 0}, classes.size())) != around) return false;
   for (int y = around.y; y < around.br().y; ++y)
     for (int x = around.x; x < around.br().x; ++x) {
       if (classes.at<unsigned char>(y, x) == static_cast<unsigned char>(Occupancy::Free)) continue;
-      const int label = labels.at<int>(y, x);
-      const bool own =
-          label > 0 && std::any_of(word.begin(), word.end(), [&](const Piece& p) { return p.label == label; });
-      if (!own) return false;
+      if (std::find(word.labels.begin(), word.labels.end(), labels.at<int>(y, x)) == word.labels.end()) return false;
     }
   return true;
 }
@@ -134,8 +166,7 @@ int erase_rows(cv::Mat& classes) {
                                                      centres, 8, CV_32S);
   std::vector<Piece> letters;
   for (int i = 1; i < count; ++i) {
-    const cv::Rect box(stats.at<int>(i, cv::CC_STAT_LEFT), stats.at<int>(i, cv::CC_STAT_TOP),
-                       stats.at<int>(i, cv::CC_STAT_WIDTH), stats.at<int>(i, cv::CC_STAT_HEIGHT));
+    const cv::Rect box = box_of(stats, i);
     if (box.height < kLeastHeight || box.height > kMostHeight || box.width > kWidest * box.height) continue;
     const int area = stats.at<int>(i, cv::CC_STAT_AREA);
     const Piece piece = piece_of(labels, box, i, area);
@@ -144,18 +175,12 @@ int erase_rows(cv::Mat& classes) {
   constexpr std::size_t kMost = 2000;  // noise, not writing
   if (letters.size() > kMost) return 0;
   int erased = 0;
-  for (const std::vector<Piece>& word : written_in(letters)) {
-    cv::Rect box = word[0].box;
-    int height = 0;
-    for (const Piece& piece : word) {
-      box |= piece.box;
-      height = std::max(height, piece.box.height);
-    }
-    if (!stands_alone(classes, labels, word, box, height)) continue;
-    for (int y = box.y; y < box.br().y; ++y)
-      for (int x = box.x; x < box.br().x; ++x)
-        classes.at<unsigned char>(y, x) = static_cast<unsigned char>(Occupancy::Free);
-    erased += static_cast<int>(word.size());
+  for (const std::vector<Piece>& letters_of_word : written_in(letters)) {
+    if (letters_of_word.empty()) continue;
+    const Written word = whole(letters_of_word, stats);
+    if (!stands_alone(classes, labels, word)) continue;
+    classes(word.box).setTo(static_cast<int>(Occupancy::Free));
+    erased += static_cast<int>(letters_of_word.size());
   }
   return erased;
 }

@@ -51,7 +51,7 @@ std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const 
     const double power = std::log(dark / 255.0) / std::log(league::kUnexplored[0] / 255.0);
     for (int i = 0; i <= 24; ++i) {  // from the middle outwards
       const double p = power + 0.005 * (i % 2 == 0 ? i / 2 : -(i + 1) / 2);
-      offer(curve_of([p](double v) { return 255.0 * std::pow(v / 255.0, p); }, "gamma %.2f", p, 0.0));
+      if (p > 0.0) offer(curve_of([p](double v) { return 255.0 * std::pow(v / 255.0, p); }, "gamma %.2f", p, 0.0));
     }
   }
   // A line through the squares and the floor, or through the two squares where the floor is clipped.

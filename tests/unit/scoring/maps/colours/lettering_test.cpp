@@ -48,7 +48,7 @@ cv::Mat hall() {
 
 TEST(Lettering, WordsOnFreeGroundGoAndNothingElse) {
   const cv::Mat before = hall();
-  for (const char* words : {"HECTOR", "Team 7", "start", "arena 2026", "GETBOTS"})
+  for (const char* words : {"HECTOR", "Team 7", "start", "arena 2026", "GETBOTS", "Victim 1", "robin"})
     for (const int font : {cv::FONT_HERSHEY_SIMPLEX, cv::FONT_HERSHEY_COMPLEX})
       for (const bool upright : {false, true}) {
         SCOPED_TRACE(words + std::string(upright ? " upright" : "") + ", font " + std::to_string(font));

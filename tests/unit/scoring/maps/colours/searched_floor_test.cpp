@@ -94,6 +94,9 @@ TEST(LeagueWalls, OutliveSharpFilters) {
         cv::Mat beside_wall;
         cv::dilate(of_picture == kWall, beside_wall, cv::Mat::ones(3, 3, CV_8U));
         EXPECT_LE(cv::countNonZero((plain == kWall) & ~beside_wall), 0.02 * cv::countNonZero(plain == kWall));
+        cv::Mat beside_plain;
+        cv::dilate(plain == kWall, beside_plain, cv::Mat::ones(3, 3, CV_8U));
+        EXPECT_LE(cv::countNonZero((of_picture == kWall) & ~beside_plain), 0.02 * cv::countNonZero(plain == kWall));
       }
 }
 
@@ -169,6 +172,9 @@ TEST(SearchedFloor, ThinWallsOutliveJpeg) {
       cv::Mat near;
       cv::dilate(of_green == kWall, near, cv::Mat::ones(3, 3, CV_8U));
       EXPECT_LE(cv::countNonZero(thin & ~near), 0.05 * cv::countNonZero(thin));
+      cv::Mat beside_thin;
+      cv::dilate(thin, beside_thin, cv::Mat::ones(3, 3, CV_8U));
+      EXPECT_LE(cv::countNonZero((of_green == kWall) & ~beside_thin), 0.05 * cv::countNonZero(thin));
     }
 }
 
