@@ -106,7 +106,7 @@ void PaperExplorer::heed_levelling() {
 }
 
 void PaperExplorer::heed_battery(const robot::Inputs& inputs) {
-  if (inputs.battery) {
+  if (inputs.battery && inputs.battery->low > 0.0) {
     if (!battery_) battery_.emplace(inputs.battery->low, 0.0);
     battery_->look(inputs.battery->volts, now_);
   }

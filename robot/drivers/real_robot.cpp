@@ -282,7 +282,8 @@ struct RealRobot::Impl {
     battery_watch.look(volts, now);
     if (volts <= 0.0 || (battery_told != Stamp::never() && now - battery_told < kPeriod)) return;
     battery_told = now;
-    waiting_battery = {volts, settings.safety.battery_low};
+    // With an empty one the robot is held, and drives on when the operator says so: then he has the say, not its alarm.
+    waiting_battery = {volts, volts < settings.safety.battery_empty ? 0.0 : settings.safety.battery_low};
   }
 
   std::optional<BatteryState> take_battery() {
