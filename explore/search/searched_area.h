@@ -81,7 +81,8 @@ class SearchedArea {
   const Grid<Faces>& seen() const { return seen_; }
   /// Counts `faces` within `radius` of a place that turned out not to be visible as looked at.
   void give_up(const Traversable& floor, const mrpt::math::TPoint2D& place, double radius, Faces faces);
-  /// Whether the floor at a place, or a cell beside it, was looked at [map frame, m]; what was given up after less than one look was not.
+  /// Whether the floor at a place, or a cell beside it, was looked at [map frame, m]; what was given up after less than
+  /// one look was not.
   bool saw(const mrpt::math::TPoint2D& place) const;
   /// What is left to be looked at in a cell of `floor`.
   Faces missing(const Traversable& floor, Cell c) const;
