@@ -67,7 +67,7 @@ class TargetChoice {
   void explore();
   void set_frontiers_done() { frontiers_done_ = true; }
   void search() { goal_ = Goal::Place; }
-  /// Pockets of unknown ground are no targets for now.
+  /// Whether pockets of unknown ground are left out of the targets.
   void leave_pockets(bool leave) { leaves_pockets_ = leave; }
   /// From now on walls are looked at even where they may hide no more than a pocket.
   void be_thorough() { thorough_ = true; }

@@ -72,10 +72,10 @@ LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const Le
                     const LeagueConfig& config, const std::string& name) {
   LeaguePictures pictures;
   pictures.overlay = name + kOverlay;
-  const Marks victims = marks_on_overlay(entry.score, entry.reported.victims, truth.victims.victims);
+  const Marks marks = marks_on_overlay(entry.score, entry.reported.victims, truth.victims.victims);
   if (entry.score.aligned || entry.score.by != AlignBy::Auto)
     write_overlay(place_in(config.out, pictures.overlay), map, truth.grid, entry.score.T_truth_map,
-                  entry.score.aligned ? "" : "NOT TRUSTED: " + entry.score.note, victims);
+                  entry.score.aligned ? "" : "NOT TRUSTED: " + entry.score.note, marks);
   else
     write_side_by_side(place_in(config.out, pictures.overlay), map, truth.grid, std::nullopt, {}, entry.score.note);
   if (entry.score.aligned) {
@@ -90,7 +90,7 @@ LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const Le
           {entry.file, truth.path,
            score_command(entry.file, truth.path, config.map_resolution, config.truth_resolution, config.score.tau),
            entry.score.T_truth_map, 1.0, config.score, entry.score.aligned ? "" : entry.score.note,
-           marks_on_page(entry.score, victims), entry.score.score_at_best_pose}));
+           marks_on_page(entry.score, marks), entry.score.score_at_best_pose}));
   return pictures;
 }
 
