@@ -199,7 +199,7 @@ Order Agenda::nothing_left(const Situation& situation) {
   const Resort resort = patient ? rounds_.next_resort(homeward, push, situation.left_alone, situation.now, worth)
                         : push  ? Resort::Push
                                 : Resort::GiveUp;
-  if (goal() == Goal::Frontier && resort != Resort::LookAround) choice_.leave_pockets(!thorough_);
+  if (goal() == Goal::Frontier && resort != Resort::LookAround) choice_.leave_pockets(!choice_.thorough());
   switch (resort) {
     case Resort::LookAround:
       return turn(kLookTurn, TurnFor::View);
@@ -263,7 +263,6 @@ Order Agenda::finish_exploring(const Situation& situation) {
 Order Agenda::finish_searching(const Situation& situation) {
   const Rounds::Standing all{situation.now, situation.floor, situation.victims, frontier_left_, frontier_left_};
   if (const auto news = rounds_.another(all, situation.search, situation.left_alone)) {
-    thorough_ = true;
     choice_.leave_pockets(false);
     choice_.be_thorough();
     begin_round(*news, situation.now);
@@ -338,7 +337,7 @@ Rounds::Standing Agenda::standing(const Situation& situation) const {
 /// Frontiers that are worth another try; where things are `pushed` aside for it or, else, where what was felt alone
 /// keeps the robot from them. Without a search of faces to go on to all are.
 std::size_t Agenda::prospects_of(const Situation& situation, bool pushed) const {
-  if (thorough_ || !situation.search.on() || !config_.bar_targets) return frontier_left_;
+  if (choice_.thorough() || !situation.search.on() || !config_.bar_targets) return frontier_left_;
   if (situation.now - gained_at_ > kBarren) return 0;
   const auto settled = [&](const TPoint2D& p) { return situation.left_alone.barred_for_good(p); };
   return prospects(pushed ? with_all_pushed(situation.floor, config_.felt.pallet) : situation.floor,

@@ -131,7 +131,6 @@ class Agenda {
   std::size_t frontier_left_ = 0;  ///< of the last plan
   KnownGround gained_;             ///< when new ground was seen last ...
   Stamp gained_at_ = Stamp::never();
-  bool thorough_ = false;  ///< all faces were searched once: what is left to be seen counts, however small
   std::optional<AnchoredPoint> looked_from_;
   MissionEnd end_ = MissionEnd::UnderWay;
   std::string reason_;

@@ -71,6 +71,7 @@ class TargetChoice {
   void leave_pockets(bool leave) { leaves_pockets_ = leave; }
   /// From now on walls are looked at even where they may hide no more than a pocket.
   void be_thorough() { thorough_ = true; }
+  bool thorough() const { return thorough_; }
   void go_home();
 
   /// Where the robot started, which is home.
@@ -118,7 +119,7 @@ class TargetChoice {
   Goal goal_ = Goal::Frontier;
   bool frontiers_done_ = false;
   bool leaves_pockets_ = false;
-  bool thorough_ = false;
+  bool thorough_ = false;  ///< all faces were searched once: what is left to be seen counts, however small
   std::optional<mrpt::math::TPoint2D> target_;
   bool doubtful_ = false;  ///< it is before a wall that may be none
   double cost_ = 0.0;
