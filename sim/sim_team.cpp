@@ -3,6 +3,7 @@
 #include <cmath>
 #include <deque>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "sim/body/world.h"

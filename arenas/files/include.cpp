@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <list>
 #include <set>
+#include <utility>
 
 #include "arenas/files/include_tree.h"
 #include "arenas/files/piece.h"

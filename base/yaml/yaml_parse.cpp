@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "base/text/words.h"
 #include "base/yaml/yaml_node.h"

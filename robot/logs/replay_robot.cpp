@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "base/bytes.h"
 #include "base/error.h"
 #include "robot/logs/foreign/carmen.h"

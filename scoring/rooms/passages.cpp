@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <tuple>
+#include <utility>
 
 #include "base/angle.h"
 #include "scoring/walls/wall_contours.h"

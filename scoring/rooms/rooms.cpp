@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "scoring/rooms/passages.h"
 #include "scoring/rooms/room_clusters.h"

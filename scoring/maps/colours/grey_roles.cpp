@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <functional>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 #include <vector>
 
 namespace rubble::scoring {
