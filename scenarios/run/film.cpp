@@ -23,8 +23,9 @@ constexpr double kRim = 0.3;         ///< around all that is known [m]
 constexpr double kArrow = 0.35;      ///< length of the robot [m]
 constexpr double kLetterSize = 0.4;  ///< of OpenCV's usual size
 constexpr int kLetterWidth = 7;      ///< [pixels]
-const cv::Scalar kUnknownGround(226, 226, 226), kFreeGround(255, 255, 255), kWallInk(120, 40, 0), kWayInk(140, 0, 120),
-    kPlanInk(60, 160, 0), kVictimInk(10, 10, 240), kRobotInk(0, 130, 255), kWords(60, 60, 60);
+const cv::Scalar kUnknownGround(226, 226, 226), kFreeGround(255, 255, 255), kSearchedGround(180, 230, 180),
+    kWallInk(120, 40, 0), kWayInk(140, 0, 120), kPlanInk(60, 160, 0), kVictimInk(10, 10, 240), kRobotInk(0, 130, 255),
+    kWords(60, 60, 60);
 
 /// The ground that all frames show, and how large.
 struct Stage {
@@ -60,21 +61,26 @@ struct Stage {
   double scale = 1.0;  ///< [pixels/m]
 };
 
-/// Ground and walls. Where a pixel covers several cells, a wall among them is seen.
-void draw_map(const OccupancyGrid& map, const Stage& stage, cv::Mat& panel) {
+/// The cells of one kind.
+void draw_cells(const OccupancyGrid& map, Occupancy what, const cv::Scalar& ink, const Stage& stage, cv::Mat& panel) {
   const GridFrame& frame = map.frame();
   const auto corner = [&](int x, int y) {
     return stage.at({frame.x0 + x * frame.resolution, frame.y0 + y * frame.resolution});
   };
-  for (const Occupancy what : {Occupancy::Free, Occupancy::Occupied})
-    for (int y = 0; y < map.height(); ++y)
-      for (int x = 0; x < map.width(); ++x) {
-        if (map[{x, y}] != what) continue;
-        // Corners are reckoned alike for both cells beside them: else rounding leaves gaps between.
-        const cv::Point a = corner(x, y), b = corner(x + 1, y + 1);
-        cv::rectangle(panel, a, {std::max(a.x, b.x - 1), std::min(a.y, b.y + 1)},
-                      what == Occupancy::Free ? kFreeGround : kWallInk, cv::FILLED);
-      }
+  for (int y = 0; y < map.height(); ++y)
+    for (int x = 0; x < map.width(); ++x) {
+      if (map[{x, y}] != what) continue;
+      // Corners are reckoned alike for both cells beside them: else rounding leaves gaps between.
+      const cv::Point a = corner(x, y), b = corner(x + 1, y + 1);
+      cv::rectangle(panel, a, {std::max(a.x, b.x - 1), std::min(a.y, b.y + 1)}, ink, cv::FILLED);
+    }
+}
+
+/// Ground and walls. Where a pixel covers several cells, a wall among them is seen.
+void draw_map(const FilmFrame& frame, const OccupancyGrid& map, const Stage& stage, cv::Mat& panel) {
+  draw_cells(map, Occupancy::Free, kFreeGround, stage, panel);
+  draw_cells(frame.searched.unpacked(), Occupancy::Occupied, kSearchedGround, stage, panel);
+  draw_cells(map, Occupancy::Occupied, kWallInk, stage, panel);
 }
 
 void draw_line(const std::vector<TPoint2D>& points, const Stage& stage, const cv::Scalar& ink, cv::Mat& panel) {
@@ -122,7 +128,7 @@ cv::Mat panel_of(const FilmFrame& frame, const Stage& stage) {
   cv::Mat ground = panel.rowRange(0, stage.height());
   ground.setTo(kUnknownGround);
   const OccupancyGrid map = frame.map.unpacked();
-  if (map.resolution() == stage.cell) draw_map(map, stage, ground);
+  if (map.resolution() == stage.cell) draw_map(frame, map, stage, ground);
   draw_line(frame.way, stage, kWayInk, ground);
   draw_line(frame.plan, stage, kPlanInk, ground);
   for (const TPoint2D& victim : frame.victims)
@@ -161,14 +167,28 @@ void Film::end(const Core& core, double occupied_threshold) {
   if (wanted_ > 0) take(core, occupied_threshold);
 }
 
+namespace {
+
+OccupancyGrid searched_ground(const explore::Explorer& explorer, const OccupancyGrid& map) {
+  OccupancyGrid out(map.frame());
+  for (int y = 0; y < map.height(); ++y)
+    for (int x = 0; x < map.width(); ++x)
+      if (map[{x, y}] == Occupancy::Free && explorer.searched(map.centre({x, y}))) out[{x, y}] = Occupancy::Occupied;
+  return out;
+}
+
+}  // namespace
+
 void Film::take(const Core& core, double occupied_threshold) {
   FilmFrame frame;
   frame.time = first_ == Stamp::never() ? 0.0 : now_ - first_;
-  frame.map = core.mapper().map().classify(occupied_threshold);
+  const OccupancyGrid map = core.mapper().map().classify(occupied_threshold);
+  frame.map = map;
   for (const StampedPose& stamped : core.mapper().trajectory()) frame.way.push_back(position(stamped.pose));
   frame.pose = core.mapper().pose();
   for (const explore::VictimReport& victim : core.victims()) frame.victims.push_back(victim.p_map);
   if (const explore::Explorer* explorer = core.explorer()) {
+    frame.searched = searched_ground(*explorer, map);
     frame.plan = explorer->path();
     if (!explorer->decisions().empty()) frame.why = explorer->decisions().back().why;
     if (explorer->finished()) frame.plan.clear();

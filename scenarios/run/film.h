@@ -20,6 +20,7 @@ namespace rubble::scenarios {
 struct FilmFrame {
   double time = 0.0;                      ///< since the first scan [s]
   PackedMap map;                          ///< a hundred frames of a large one would not fit into memory
+  PackedMap searched;                     ///< occupied: searched for victims; of the same cells as the map, or empty
   std::vector<mrpt::math::TPoint2D> way;  ///< driven so far, as the mapper knows it now
   std::vector<mrpt::math::TPoint2D> plan;
   std::vector<mrpt::math::TPoint2D> victims;
@@ -27,9 +28,10 @@ struct FilmFrame {
   std::string why;  ///< the last decision
 };
 
-/// Frames beside and below each other, all of the same ground, north (the map's y) up: explored ground white, walls
-/// dark blue, the way violet, the plan green, victims red, the robot as an orange arrow; time, area known and the last
-/// decision below. Frames of other cell sizes than the last one's are not drawn. Empty without frames.
+/// Frames beside and below each other, all of the same ground, north (the map's y) up: explored ground white, pale
+/// green where it was searched for victims, walls dark blue, the way violet, the plan green, victims red, the robot as
+/// an orange arrow; time, area known and the last decision below. Frames of other cell sizes than the last one's are
+/// not drawn. Empty without frames.
 cv::Mat film_strip(const std::vector<FilmFrame>& frames);
 
 /// Takes the frames of a film: `wanted` of them, at equal steps of the run's time, the last one at its end.

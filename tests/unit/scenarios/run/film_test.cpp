@@ -80,6 +80,28 @@ TEST(Film, AllPanelsShowTheSameGroundAndStandInRows) {
   EXPECT_NEAR(between, 0.0, 12.0) << "the robot stands at the same place of both panels";
 }
 
+TEST(Film, SearchedFloorIsGreenButItsWallsAreNot) {
+  FilmFrame frame = frame_of_room(-9.0);
+  OccupancyGrid searched(frame.map.frame());
+  for (int y = 0; y < 60; ++y)  // the right half
+    for (int x = 60; x < 120; ++x) searched[{x, y}] = Occupancy::Occupied;
+  const cv::Mat before = film_strip({frame});
+  frame.searched = searched;
+  const cv::Mat strip = film_strip({frame});
+  const cv::Vec3b green(180, 230, 180);
+  int greens = 0, whites = 0, walls = 0;
+  for (int y = 0; y < strip.rows; ++y)
+    for (int x = 0; x < strip.cols; ++x) {
+      if (strip.at<cv::Vec3b>(y, x) == green) ++greens;
+      whites += before.at<cv::Vec3b>(y, x) == cv::Vec3b(255, 255, 255) && strip.at<cv::Vec3b>(y, x) == green ? 1 : 0;
+      walls += strip.at<cv::Vec3b>(y, x) == cv::Vec3b(120, 40, 0) ? 1 : 0;
+    }
+  const double pixels_per_metre = 360.0 / 6.6;
+  EXPECT_NEAR(greens, 3.0 * 3.0 * pixels_per_metre * pixels_per_metre, 0.05 * greens) << "the right half";
+  EXPECT_EQ(greens, whites) << "it was free ground before";
+  EXPECT_EQ(walls, count_of(before, 120, 40, 0));
+}
+
 TEST(Film, NoGapsAreBetweenCells) {
   for (int width = 150; width < 330; width += 7) {
     FilmFrame frame;
