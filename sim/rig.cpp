@@ -65,7 +65,7 @@ void Rig::follow(World& world, robot::Inputs& inputs) {
 /// Motors without current stand, whatever they are told.
 void Rig::draw_from_battery(World& world) {
   if (config_.battery_wh <= 0.0) return;
-  battery_.draw(in_force_.drive, config_.physics_step);
+  battery_.draw(world.firmware(index_).set_point(), config_.physics_step);
   if (!has_current()) world.firmware(index_).command({});
 }
 

@@ -217,6 +217,8 @@ void read_settings(const YamlMap& root, Scenario& s) {
       root.fail(key, "is written on the map, and " + std::to_string(text->size()) + " bytes long; give at most " +
                          std::to_string(kMostLetters));
   check_laser(root.map("robot").map("laser"), s.robot.laser);
+  if (s.sim.levelling_fault != sim::LevellingFault::None && !s.levelling.on)
+    root.map("sim").fail("levelling_fault", "of a robot with 'levelling: false'; there is no unit that could fail");
   if (const std::string mistake = s.explorer.mistake(); !mistake.empty()) root.fail("explorer", mistake);
   s.sim.time_limit = s.time_limit;
 }

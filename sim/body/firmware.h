@@ -30,6 +30,8 @@ class Firmware {
   robot::Odometry reckon(Stamp stamp);
 
   bool stalled() const { return stalled_; }
+  /// What the motors work for now: on the way to the command, or to rest where commands stay away.
+  robot::Drive set_point() const { return {v_, w_}; }
 
  private:
   robot::RobotModel model_;

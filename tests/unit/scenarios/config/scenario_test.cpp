@@ -124,6 +124,11 @@ TEST_F(ScenarioFile, ScannersThatCannotBeAreRefused) {
   EXPECT_THAT(error("scan_period_s: 0.05"), HasSubstr("shorter than the sweep"));
 }
 
+TEST_F(ScenarioFile, AUnitThatIsNotThereCannotFail) {
+  const std::string text = "arena: {generate: {}}\nrobot: {levelling: false}\nsim: {levelling_fault: jammed}\n";
+  EXPECT_THAT(error_of(text), HasSubstr("s.yaml:3:7: of a robot with 'levelling: false'"));
+}
+
 /// The run folder's arena.yaml must not need the files that the arena included.
 TEST_F(ScenarioFile, AnArenaOfSeveralFilesBecomesOne) {
   write("piece.yaml", "maze: |\n  +---+\n  | .\n  +---+\n");
