@@ -51,9 +51,7 @@ std::function<double(std::size_t, std::size_t)> difference_of(const MapFeatures&
   return [&](std::size_t i, std::size_t j) { return room_difference(map.rooms[i], truth.rooms[j]); };
 }
 
-std::vector<CornerFeature> corners_of(const OccupancyGrid& map) {
-  const RoomConfig config;
-  const RoomFloor floor = room_floor(map, config);
+std::vector<CornerFeature> corners_of(const GridFrame& frame, const RoomFloor& floor, const RoomConfig& config) {
   const int scale = std::max(2, static_cast<int>(std::lround(config.turn_scale / floor.resolution)));
   const std::vector<WallContour> contours = wall_contours(floor.cleared);
   std::vector<CornerFeature> out;
@@ -66,8 +64,7 @@ std::vector<CornerFeature> corners_of(const OccupancyGrid& map) {
     const cv::Point2d middle =
         cv::Point2d(back) / std::max(1e-9, cv::norm(back)) + cv::Point2d(on) / std::max(1e-9, cv::norm(on));
     CornerFeature feature;
-    feature.p = {map.frame().x0 + (corner.at.x + 0.5) * floor.resolution,
-                 map.frame().y0 + (corner.at.y + 0.5) * floor.resolution};
+    feature.p = {frame.x0 + (corner.at.x + 0.5) * floor.resolution, frame.y0 + (corner.at.y + 0.5) * floor.resolution};
     feature.into = std::atan2(middle.y, middle.x);
     const double between = std::abs(wrap_angle(std::atan2(static_cast<double>(back.y), static_cast<double>(back.x)) -
                                                std::atan2(static_cast<double>(on.y), static_cast<double>(on.x))));
@@ -235,8 +232,10 @@ MapFeatures features_of(const OccupancyGrid& map) {
   MapFeatures out;
   out.surf = find_features(map, FeatureKind::Surf);
   if (map.cells().empty()) return out;
-  out.corners = corners_of(map);
-  out.rooms = extract_rooms(map).rooms;
+  const RoomConfig config;
+  const RoomFloor floor = room_floor(map, config);
+  out.corners = corners_of(map.frame(), floor, config);
+  out.rooms = extract_rooms(map, floor, config).rooms;
   return out;
 }
 

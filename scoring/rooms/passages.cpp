@@ -1,6 +1,7 @@
 #include "scoring/rooms/passages.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <tuple>
@@ -55,16 +56,19 @@ class NearWalls {
   std::vector<std::vector<Point>> buckets_;
 };
 
-/// Whether a passage from the corner may end at point `i` of a wall: the nearest there, and no way along the same wall.
-bool may_end(const WallCorner& corner, const WallContour& wall, std::size_t i, bool same_wall, double d) {
+int squared(const cv::Point& p) { return p.dot(p); }
+
+/// Whether a passage from the corner may end at point `i` of a wall, as far off as the root of `d2`: the nearest
+/// there, and no way along the same wall.
+bool may_end(const WallCorner& corner, const WallContour& wall, std::size_t i, bool same_wall, int d2) {
   const std::size_t n = wall.size();
-  const auto distance = [&](std::size_t k) { return cv::norm(wall[k % n] - corner.at); };
-  if (distance(i + n - 1) == d) return false;
+  const auto distance2 = [&](std::size_t k) { return squared(wall[k % n] - corner.at); };
+  if (distance2(i + n - 1) == d2) return false;
   for (std::size_t j = 1; j <= kNeighbours; ++j)
-    if (distance(i + j) < d || distance(i + kNeighbours * n - j) < d) return false;
+    if (distance2(i + j) < d2 || distance2(i + kNeighbours * n - j) < d2) return false;
   if (!same_wall) return true;
   const std::size_t along = i > corner.index ? i - corner.index : corner.index - i;
-  return static_cast<double>(std::min(along, n - along)) >= kDetour * d;
+  return static_cast<double>(std::min(along, n - along)) >= kDetour * std::sqrt(d2);
 }
 
 std::vector<WallCorner> corners_of(const std::vector<WallContour>& walls, double resolution, const RoomConfig& config) {
@@ -77,63 +81,75 @@ std::vector<Passage> candidates(const cv::Mat& floor, double resolution, const R
   const NearWalls near(walls, floor.size());
   const double narrowest = config.narrowest / resolution;
   const double widest = config.widest / resolution;
+  const int most2 = static_cast<int>(std::ceil(widest * widest)) + 1;
   std::vector<Passage> out;
   for (const WallCorner& corner : corners_of(walls, resolution, config))
     near.around(corner.at, static_cast<int>(std::ceil(widest)), [&](const NearWalls::Point& point) {
       const WallContour& wall = walls[point.wall];
       const cv::Point& end = wall[point.index];
-      const double d = cv::norm(end - corner.at);
-      if (d < narrowest || d > widest || !may_end(corner, wall, point.index, point.wall == corner.contour, d)) return;
+      const int d2 = squared(end - corner.at);
+      if (d2 > most2) return;
+      const double d = std::sqrt(d2);
+      if (d < narrowest || d > widest || !may_end(corner, wall, point.index, point.wall == corner.contour, d2)) return;
       if (sees(floor, corner.at, end, kEndCells)) out.push_back({corner.at, end, d});
     });
   std::sort(out.begin(), out.end(), narrower);
   return out;
 }
 
-/// The middle of a passage and the direction into one of its sides.
+/// The middle of a passage, the direction into one of its sides, and rays over the half disc there.
 struct Side {
   cv::Point2d middle;
   cv::Point2d into;
+  std::array<cv::Point2d, kRays> rays;
 };
 
 Side side_of(const Passage& passage, double sign) {
   const cv::Point2d along = (cv::Point2d(passage.b) - cv::Point2d(passage.a)) / passage.width;
-  return {0.5 * (cv::Point2d(passage.a) + cv::Point2d(passage.b)), sign * cv::Point2d(-along.y, along.x)};
+  Side out{0.5 * (cv::Point2d(passage.a) + cv::Point2d(passage.b)), sign * cv::Point2d(-along.y, along.x), {}};
+  const double ahead = std::atan2(out.into.y, out.into.x);
+  for (int k = 0; k < kRays; ++k) {
+    const double angle = ahead - 0.5 * kPi + kPi * (k + 0.5) / kRays;
+    out.rays[static_cast<std::size_t>(k)] = {std::cos(angle), std::sin(angle)};
+  }
+  return out;
 }
 
-/// Share of a half disc in front of the passage that can be seen; of several places a little into the room the best,
+/// `share` of the half disc around `origin` is seen. Rays are sent only until that is settled.
+bool is_seen(const cv::Mat& floor, const cv::Point2d& origin, const Side& side, double radius, double share) {
+  constexpr double kRounding = 1e-9;
+  double area = 0.0;
+  int left = kRays;
+  for (const cv::Point2d& ray : side.rays) {
+    const double r = sight(floor, origin, ray.x, ray.y, radius) / radius;
+    area += r * r;
+    if (area / kRays >= share) return true;
+    if ((area + --left) / kRays < share - kRounding) return false;
+  }
+  return false;
+}
+
+/// Enough of a half disc in front of the passage can be seen, from one of several places a little into the room,
 /// because the depth of a door in a thick wall hides the room.
-double openness(const cv::Mat& floor, const Side& side, double radius, double resolution) {
-  const double ahead = std::atan2(side.into.y, side.into.x);
-  double best = 0.0;
+bool is_open(const cv::Mat& floor, const Side& side, double radius, double resolution, double share) {
   for (const double metres : kIntoRoom) {
     const double step = metres / resolution;
-    if (sight(floor, side.middle, side.into.x, side.into.y, step + 0.5) < step) break;
-    const cv::Point2d origin = side.middle + step * side.into;
-    double area = 0.0;
-    for (int k = 0; k < kRays; ++k) {
-      const double angle = ahead - 0.5 * kPi + kPi * (k + 0.5) / kRays;
-      const double r = sight(floor, origin, std::cos(angle), std::sin(angle), radius) / radius;
-      area += r * r;
-    }
-    best = std::max(best, area / kRays);
+    if (sight(floor, side.middle, side.into.x, side.into.y, step + 0.5) < step) return false;
+    if (is_seen(floor, side.middle + step * side.into, side, radius, share)) return true;
   }
-  return best;
+  return false;
 }
 
 bool is_door(const cv::Mat& floor, const Passage& passage, double resolution, const RoomConfig& config) {
   const double radius = std::max(config.least_reach / resolution, passage.width);
-  return openness(floor, side_of(passage, 1.0), radius, resolution) >= config.openness &&
-         openness(floor, side_of(passage, -1.0), radius, resolution) >= config.openness;
+  return is_open(floor, side_of(passage, 1.0), radius, resolution, config.openness) &&
+         is_open(floor, side_of(passage, -1.0), radius, resolution, config.openness);
 }
 
 /// Largest distance to a wall among the places seen on one side [cells].
 double half_width(const cv::Mat& floor, const cv::Mat& clearance, const Side& side, double reach) {
-  const double ahead = std::atan2(side.into.y, side.into.x);
   double best = 0.0;
-  for (int k = 0; k < kRays; ++k) {
-    const double angle = ahead - 0.5 * kPi + kPi * (k + 0.5) / kRays;
-    const cv::Point2d ray(std::cos(angle), std::sin(angle));
+  for (const cv::Point2d& ray : side.rays) {
     const double seen = sight(floor, side.middle, ray.x, ray.y, reach);
     for (double t = 0.0; t < seen; t += 2.0) {
       const cv::Point2d p = side.middle + t * ray;
@@ -149,6 +165,11 @@ bool is_corridor_end(const cv::Mat& floor, const cv::Mat& clearance, const Passa
   if (metres < config.corridor_min || metres > config.corridor_max) return false;
   Side hall = side_of(passage, 1.0);
   Side corridor = side_of(passage, -1.0);
+  const double depth = config.corridor_depth * passage.width;
+  const auto is_deep = [&](const Side& side) {
+    return sight(floor, side.middle, side.into.x, side.into.y, depth) >= depth;
+  };
+  if (!is_deep(hall) && !is_deep(corridor)) return false;  // the quick question first
   double widest = half_width(floor, clearance, hall, config.hall_reach * passage.width);
   const double other = half_width(floor, clearance, corridor, config.hall_reach * passage.width);
   if (other > widest) {
@@ -156,8 +177,7 @@ bool is_corridor_end(const cv::Mat& floor, const cv::Mat& clearance, const Passa
     widest = other;
   }
   if (widest < config.hall_ratio * 0.5 * passage.width) return false;
-  const double depth = config.corridor_depth * passage.width;
-  return sight(floor, corridor.middle, corridor.into.x, corridor.into.y, depth) >= depth;
+  return is_deep(corridor);
 }
 
 }  // namespace

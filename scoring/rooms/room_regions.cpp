@@ -68,6 +68,15 @@ Joined join_small(const std::vector<Door>& doors, std::vector<double>& area, dou
   }
 }
 
+/// First and last cell of each row, of cells row by row: no other is a corner of their hull.
+std::vector<cv::Point> ends_of_rows(const std::vector<cv::Point>& cells) {
+  std::vector<cv::Point> out;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (i == 0 || i + 1 == cells.size() || cells[i - 1].y != cells[i].y || cells[i + 1].y != cells[i].y)
+      out.push_back(cells[i]);
+  return out;
+}
+
 /// The room without what is too narrow to belong to its middle, such as the depth of doors.
 std::vector<cv::Point> core_of(const std::vector<cv::Point>& room, const cv::Rect& box, double radius) {
   cv::Mat mask = cv::Mat::zeros(box.height, box.width, CV_8U);
@@ -200,7 +209,7 @@ void fill_niches(RoomRegions& regions, const RoomFloor& floor, const RoomConfig&
     const cv::Rect tight = cv::boundingRect(own);
     const cv::Rect box = cv::Rect(tight.x - 1, tight.y - 1, tight.width + 2, tight.height + 2) & whole;
     std::vector<cv::Point> hull;
-    cv::convexHull(core_of(own, box, config.niche_core / floor.resolution), hull);
+    cv::convexHull(ends_of_rows(core_of(own, box, config.niche_core / floor.resolution)), hull);
     filled(box).setTo(room, niches_of(regions, floor, room, hull, box, config));
   }
   regions.labels = filled;

@@ -19,16 +19,19 @@ constexpr int kMostRooms = 65535;
 constexpr double kElongationWeight = 0.5;  // of d(f, g) against the area's logarithm
 constexpr double kShapeWeight = 2.0;
 
-/// Cells small enough for a door and large enough for the time there is.
-OccupancyGrid at_working_scale(const OccupancyGrid& map, const RoomConfig& config) {
-  GridFrame frame = map.frame();
+/// By how many cells of the map one is wide that is small enough for a door and large enough for the time there is.
+int cells_in_one(const GridFrame& frame, const RoomConfig& config) {
   int shrink = std::max(1, static_cast<int>(config.finest / frame.resolution + 1e-6));
   const auto cells = [&](int by) { return frame.size() / static_cast<std::size_t>(by) / static_cast<std::size_t>(by); };
   while (cells(shrink) > config.most_cells) ++shrink;
-  if (shrink == 1) return map;
-  frame.resolution *= shrink;
-  frame.width = (frame.width + shrink - 1) / shrink;
-  frame.height = (frame.height + shrink - 1) / shrink;
+  return shrink;
+}
+
+OccupancyGrid shrunk(const OccupancyGrid& map, int by) {
+  GridFrame frame = map.frame();
+  frame.resolution *= by;
+  frame.width = (frame.width + by - 1) / by;
+  frame.height = (frame.height + by - 1) / by;
   return resample(map, {}, frame);
 }
 
@@ -93,12 +96,7 @@ Rooms describe_all(const RoomRegions& regions, const GridFrame& frame) {
   return out;
 }
 
-}  // namespace
-
-Rooms extract_rooms(const OccupancyGrid& map, const RoomConfig& config) {
-  if (map.cells().empty()) return {};
-  const OccupancyGrid grid = at_working_scale(map, config);
-  const RoomFloor floor = room_floor(grid, config);
+Rooms rooms_on(const RoomFloor& floor, const GridFrame& frame, const RoomConfig& config) {
   if (config.method == RoomMethod::Passages &&
       count_corners(floor.open, floor.resolution, config) > config.most_corners) {
     Rooms none;
@@ -110,7 +108,22 @@ Rooms extract_rooms(const OccupancyGrid& map, const RoomConfig& config) {
                             : cluster_rooms(floor, config);
   grow_regions(regions, floor);
   fill_niches(regions, floor, config);
-  return describe_all(regions, grid.frame());
+  return describe_all(regions, frame);
+}
+
+}  // namespace
+
+Rooms extract_rooms(const OccupancyGrid& map, const RoomConfig& config) {
+  if (map.cells().empty()) return {};
+  const int by = cells_in_one(map.frame(), config);
+  if (by == 1) return rooms_on(room_floor(map, config), map.frame(), config);
+  const OccupancyGrid grid = shrunk(map, by);
+  return rooms_on(room_floor(grid, config), grid.frame(), config);
+}
+
+Rooms extract_rooms(const OccupancyGrid& map, const RoomFloor& floor_of_map, const RoomConfig& config) {
+  if (map.cells().empty() || cells_in_one(map.frame(), config) != 1) return extract_rooms(map, config);
+  return rooms_on(floor_of_map, map.frame(), config);
 }
 
 double room_difference(const Room& f, const Room& g) {

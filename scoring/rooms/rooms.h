@@ -8,6 +8,7 @@
 
 #include "base/grid.h"
 #include "scoring/rooms/room_config.h"
+#include "scoring/rooms/room_floor.h"
 
 namespace rubble::scoring {
 
@@ -32,6 +33,9 @@ struct Rooms {
 
 /// Finds the rooms of a map (section IV.E). Unknown cells count as walls. A map without free cells has no rooms.
 Rooms extract_rooms(const OccupancyGrid& map, const RoomConfig& config = {});
+
+/// The same, where room_floor() of the map is there already.
+Rooms extract_rooms(const OccupancyGrid& map, const RoomFloor& floor_of_map, const RoomConfig& config = {});
 
 /// What distinguishes two rooms apart from where they lie: d(f, g) of eq. (7). 0 for equal rooms, symmetric.
 double room_difference(const Room& f, const Room& g);

@@ -54,6 +54,15 @@ std::vector<WallCorner> wall_corners(const std::vector<WallContour>& contours, i
 }
 
 double sight(const cv::Mat& floor, const cv::Point2d& origin, double dx, double dy, double reach) {
+  const auto inside = [&](double x, double y) {
+    return x >= 0.0 && y >= 0.0 && x < floor.cols - 1 && y < floor.rows - 1;
+  };
+  // A ray that begins and ends inside is inside all along: its cells need no looking whether they are.
+  if (inside(origin.x, origin.y) && inside(origin.x + reach * dx, origin.y + reach * dy)) {
+    for (double t = 0.0; t < reach; t += 1.0)
+      if (floor.ptr(nearest_whole(origin.y + t * dy))[nearest_whole(origin.x + t * dx)] == 0) return t;
+    return reach;
+  }
   for (double t = 0.0; t < reach; t += 1.0)
     if (!is_floor(floor, nearest_whole(origin.x + t * dx), nearest_whole(origin.y + t * dy))) return t;
   return reach;
