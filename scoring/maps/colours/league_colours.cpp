@@ -14,6 +14,7 @@
 
 #include "base/grid.h"
 #include "scoring/maps/colours/checkerboard.h"
+#include "scoring/maps/colours/colour_strength.h"
 #include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/colours/lossy_colours.h"
 #include "scoring/maps/colours/nearest_ground.h"
@@ -286,46 +287,10 @@ std::optional<RestoredColours> with_tones_of_old(const RgbImage& image) {
   return std::nullopt;
 }
 
-/// What an editor makes of a colour when it makes colours stronger.
-Rgb saturated(const Rgb& c, double by) {
-  const double light = 0.299 * c[0] + 0.587 * c[1] + 0.114 * c[2];
-  const auto of = [&](std::uint8_t value) {
-    return static_cast<std::uint8_t>(std::lround(std::clamp(light + by * (value - light), 0.0, 255.0)));
-  };
-  return {of(c[0]), of(c[1]), of(c[2])};
-}
-
-/// What a colour was before it was made stronger: the league's own where one of them became it.
-Rgb before_saturation(const Rgb& c, double by) {
-  constexpr int kRounding = 8;
-  for (const NamedColour& named : kPalette) {
-    const Rgb own{static_cast<std::uint8_t>(named.colour.r), static_cast<std::uint8_t>(named.colour.g),
-                  static_cast<std::uint8_t>(named.colour.b)};
-    if (near_colour(c, saturated(own, by), kRounding)) return own;
-  }
-  return saturated(c, 1.0 / by);
-}
-
-/// The picture with colours as strong as the league's, where the dark blue that covers most of it, its walls, is
-/// stronger. Titles and codes of such a blue are few.
 std::optional<RestoredColours> with_paler_colours(const RgbImage& image) {
-  constexpr std::size_t kOneIn = 500;  // pixels are walls
-  constexpr double kLeast = 1.06, kMost = 3.0;
-  std::array<std::size_t, 256> blues{};
-  std::size_t all = 0;
-  each_run(image, [&](const Colour& c, int, int, int length) {
-    const bool is_blue = c.r <= 60 && c.g <= 80 && c.b >= 90 && c.g >= c.r && 4 * (c.g - c.r) >= c.b - c.r - 60;
-    if (!is_blue) return;
-    blues[static_cast<std::size_t>(c.b)] += static_cast<std::size_t>(length);
-    all += static_cast<std::size_t>(length);
-  });
-  if (kOneIn * all < image.rgb.size() / 3) return std::nullopt;
-  std::size_t middle = 0;
-  for (std::size_t below = blues[0]; 2 * below < all;) below += blues[++middle];
-  const double light = 0.587 * league::kWall[1] + 0.114 * league::kWall[2];
-  const double by = (static_cast<double>(middle) - light) / (league::kWall[2] - light);
-  if (by < kLeast || by > kMost || !find_checkerboard(image).is_there()) return std::nullopt;
-  return RestoredColours{recoloured(image, [by](const Rgb& c) { return before_saturation(c, by); }),
+  const double by = colour_strength(image);
+  if (by == 1.0 || !find_checkerboard(image).is_there()) return std::nullopt;
+  return RestoredColours{recoloured(image, [by](const Rgb& c) { return before_strengthening(c, by); }),
                          cv::format("colours had been made stronger (%.2g times)", by)};
 }
 
