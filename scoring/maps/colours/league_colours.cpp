@@ -491,6 +491,7 @@ bool is_league_map(const RgbImage& image) {
   // Canvas may have the grey of one square, not of both.
   if (40 * std::min(c.darker, c.checkerboard - c.darker) >= c.pixels) return true;
   const auto are_walls = [&](std::size_t count) { return count >= 20 && 5000 * count >= c.pixels; };
+  if (c.exact()) return are_walls(c.walls);
   // Colours that ran out of walls leave them black.
   const bool lossy = has_run_colours(without_searched_floor(image));
   const std::size_t walls = lossy ? static_cast<std::size_t>(cv::countNonZero(walls_by_brightness(image))) : c.walls;
