@@ -14,7 +14,7 @@ namespace rubble::scoring {
 namespace {
 
 constexpr int kColour = 60;           // difference of the channels of ink
-constexpr int kTint = 16;             // of what still counts as grey
+constexpr int kTint = 26;             // of what still counts as grey: RViz draws unknown ground in 112,137,134
 constexpr double kLeastInk = 0.0005;  // of all pixels
 constexpr double kMostInk = 0.1;
 constexpr double kGreyRest = 0.995;  // of the pixels that are not ink or beside it

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kUnknownTolerance = 12;  // around the unknown grey, where the picture is not pure
 constexpr int kWallBelow = 140;        // of 0 (wall) to 255 (free): at least 45 % wall
+constexpr int kArea = 9;               // wider than walls [pixels]
 constexpr int kMostAreas = 4;          // that one map has
 constexpr double kPale = 0.85;         // lines that reach less of the walls' grey in their middle are blurred
 constexpr double kMostPale = 0.25;     // share of them that sharp pictures have (where a wall ends)
@@ -166,6 +167,12 @@ LabelImage classify_grey(const cv::Mat& picture, const cv::Mat& apart, const cv:
   const double level = 255.0 * (roles.unknown - roles.wall) / (roles.free - roles.wall);
   unknown |= roles.in_order() ? rim & (even >= 0.55 * level) & (even <= level + kUnknownTolerance)
                               : rim & (even >= kWallBelow);
+  // An area as dark as walls, such as what a viewer shows around the map, is none.
+  for (const int other : roles.others) {
+    cv::Mat area = (grey >= other - kUnknownTolerance) & (grey <= other + kUnknownTolerance) & (even < kWallBelow);
+    cv::morphologyEx(area, area, cv::MORPH_OPEN, cv::Mat::ones(kArea, kArea, CV_8U));
+    unknown |= area;
+  }
   out.classes.setTo(static_cast<int>(Occupancy::Unknown), unknown);
   return out;
 }

@@ -251,6 +251,8 @@ GreyRoles grey_roles(const cv::Mat& grey, const cv::Mat& apart) {
   if (turn_about) std::swap(free, unknown);
   out.free = levels[free].grey;
   out.unknown = levels[unknown].grey;
+  for (const std::size_t i : grounds)
+    if (i != free && i != unknown && levels[i].depth > kThin) out.others.push_back(levels[i].grey);
   for (std::size_t i = 0; out.pure && i < levels.size(); ++i) {
     const int grey = levels[i].grey;
     if (i != wall && i != free && i != unknown && levels[i].depth <= kThin &&

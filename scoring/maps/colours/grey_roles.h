@@ -13,6 +13,7 @@ struct GreyRoles {
   int unknown = -1;   ///< grey level; -1: there is none
   bool pure = false;  ///< all pixels are of a few levels: the picture was never interpolated or compressed with loss
   double sure = 1.0;  ///< share of what the walls say that speaks for this choice, 0..1
+  std::vector<int> others;  ///< greys that cover further areas
   std::vector<int> drawn;  ///< other levels of a pure picture that are thin lines, and nearer to a ground than to walls
   int areas = 0;           ///< levels that cover broad areas: more than three are no occupancy map
   bool between = false;    ///< walls are neither the darkest nor the lightest level

@@ -14,6 +14,7 @@
 
 #include "base/grid.h"
 #include "scoring/maps/colours/checkerboard.h"
+#include "scoring/maps/colours/colour_strength.h"
 #include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/colours/lossy_colours.h"
 #include "scoring/maps/colours/nearest_ground.h"
@@ -286,6 +287,13 @@ std::optional<RestoredColours> with_tones_of_old(const RgbImage& image) {
   return std::nullopt;
 }
 
+std::optional<RestoredColours> with_paler_colours(const RgbImage& image) {
+  const double by = colour_strength(image);
+  if (by == 1.0 || !find_checkerboard(image).is_there()) return std::nullopt;
+  return RestoredColours{recoloured(image, [by](const Rgb& c) { return before_strengthening(c, by); }),
+                         cv::format("colours had been made stronger (%.2g times)", by)};
+}
+
 Label label_of(const Colour& c, bool exact) {
   const int tolerance = exact ? 0 : 3;
   for (const NamedColour& named : kPalette)
@@ -373,6 +381,21 @@ bool has_colour(const RgbImage& image) {
   return 500 * coloured >= image.rgb.size() / 3;
 }
 
+/// Pixels of thin lines in black: the walls of maps in greys, on which something may be drawn in blue.
+std::size_t black_lines(const RgbImage& image) {
+  constexpr int kDark = 60, kGrey = 24, kThick = 9;
+  cv::Mat black = cv::Mat::zeros(image.height, image.width, CV_8U);
+  each_run(image, [&](const Colour& c, int first, int y, int length) {
+    if (c.g < kDark && c.r < kDark && c.b < kDark && spread(c) <= kGrey)
+      std::fill_n(black.ptr<Label>(y) + first, length, Label{255});
+  });
+  cv::Mat areas;
+  cv::copyMakeBorder(black, areas, kThick, kThick, kThick, kThick, cv::BORDER_REPLICATE);
+  cv::morphologyEx(areas, areas, cv::MORPH_OPEN, cv::Mat::ones(kThick, kThick, CV_8U));
+  return static_cast<std::size_t>(
+      cv::countNonZero(black & ~areas(cv::Rect(kThick, kThick, image.width, image.height))));
+}
+
 /// Most light greys are those of the ground in league maps, also where JPEG or blending moved them a little.
 bool has_even_ground(const RgbImage& image) {
   std::size_t all = 0, even = 0;
@@ -406,6 +429,8 @@ bool is_grey_league_map(const RgbImage& image) {
 
 std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
   const Census as_is = census(image);
+  if (as_is.exact() && as_is.pure_walls > 0) return std::nullopt;
+  if (auto restored = with_paler_colours(image)) return restored;
   if (as_is.exact()) return std::nullopt;
   const auto exchanged = [](const Rgb& c) { return Rgb{c[2], c[1], c[0]}; };
   if (is_unchanged(census_of(image, exchanged)))
@@ -463,10 +488,14 @@ std::string why_colours_are_lost(const RgbImage& image, bool is_league) {
 bool is_league_map(const RgbImage& image) {
   const Census c = census(image);
   if (3 * c.walls > c.pixels) return false;  // a ground of that blue
+  // Canvas may have the grey of one square, not of both.
+  if (40 * std::min(c.darker, c.checkerboard - c.darker) >= c.pixels) return true;
   const auto are_walls = [&](std::size_t count) { return count >= 20 && 5000 * count >= c.pixels; };
-  if (20 * c.checkerboard >= c.pixels || are_walls(c.walls)) return true;
-  const RgbImage white = without_searched_floor(image);
-  return has_run_colours(white) && are_walls(static_cast<std::size_t>(cv::countNonZero(walls_by_brightness(white))));
+  if (c.exact()) return are_walls(c.walls);
+  // Colours that ran out of walls leave them black.
+  const bool lossy = has_run_colours(without_searched_floor(image));
+  const std::size_t walls = lossy ? static_cast<std::size_t>(cv::countNonZero(walls_by_brightness(image))) : c.walls;
+  return are_walls(walls) && walls >= black_lines(image);
 }
 
 LabelImage classify_league(const RgbImage& as_given) {
@@ -477,7 +506,7 @@ LabelImage classify_league(const RgbImage& as_given) {
   LabelImage out;
   out.classes = cv::Mat(image.height, image.width, CV_8U);
   const bool lossy = !exact && has_run_colours(image);
-  const cv::Mat dark_walls = lossy ? walls_by_brightness(image) : cv::Mat();
+  const cv::Mat dark_walls = lossy ? walls_by_brightness(as_given) : cv::Mat();
   const cv::Mat unexplored = lossy ? unexplored_by_brightness(image) : cv::Mat();
   std::size_t drawn = 0;
   std::size_t strange = 0;  // without the black canvas of a turned picture
@@ -485,9 +514,10 @@ LabelImage classify_league(const RgbImage& as_given) {
     Label* const row = out.classes.ptr<Label>(y);
     std::fill_n(row + first, length, label_of(c, exact));
     for (int x = first; x < first + length; ++x) {
+      if (lossy && row[x] == kWall) row[x] = kDrawing;
       if (lossy && dark_walls.at<Label>(y, x) != 0)
         row[x] = kWall;
-      else if (lossy && row[x] != kWall && row[x] != kDrawing)
+      else if (lossy && row[x] != kDrawing)
         row[x] = unexplored.at<Label>(y, x) != 0 ? kUnknown : kFree;
       if (row[x] == kDrawing) ++drawn;
       if (row[x] == kDrawing && std::max({c.r, c.g, c.b}) > kBlack) ++strange;

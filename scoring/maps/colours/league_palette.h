@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "base/image/geotiff.h"
 
 /// The colours of league maps (RoboCupRescue GeoTIFF map rules, as hector_geotiff and crosbot draw them), for writing
@@ -22,6 +24,11 @@ constexpr Rgb kQrCode{10, 10, 240};
 constexpr Rgb kScale{0, 50, 140};  ///< and axes
 constexpr Rgb kTitle{0, 44, 207};  ///< file name
 constexpr Rgb kLettering{255, 255, 255};
+
+/// Ground first: of two that are alike after a change it is the likelier.
+constexpr std::array<Rgb, 15> kAll{
+    kUnexplored, kUnexploredLight,   kFree,   kSearched, kSearchedUnsure, kWall, kGridLine, kPath, kStart,
+    kVictim,     kUnconfirmedVictim, kHazard, kQrCode,   kScale,          kTitle};
 
 constexpr double kVictimRadius = 0.175;  ///< of a victim's circle [m]
 

@@ -8,61 +8,114 @@
 namespace rubble::scoring {
 namespace {
 
-/// The pieces of `weak` that have a pixel of `sure` in them.
-cv::Mat grown_from(const cv::Mat& sure, const cv::Mat& weak) {
+/// The pieces of `weak` that have so many pixels of `sure` in them.
+cv::Mat grown_from(const cv::Mat& sure, const cv::Mat& weak, int least = 1) {
   cv::Mat labels;
   const int count = cv::connectedComponents(weak, labels, 8, CV_32S);
-  std::vector<bool> holds(static_cast<std::size_t>(count), false);
+  std::vector<int> holds(static_cast<std::size_t>(count), 0);
   for (int y = 0; y < weak.rows; ++y)
     for (int x = 0; x < weak.cols; ++x)
-      if (sure.at<unsigned char>(y, x) != 0) holds[static_cast<std::size_t>(labels.at<int>(y, x))] = true;
+      if (sure.at<unsigned char>(y, x) != 0) ++holds[static_cast<std::size_t>(labels.at<int>(y, x))];
   cv::Mat out = weak.clone();
   for (int y = 0; y < weak.rows; ++y)
     for (int x = 0; x < weak.cols; ++x)
-      if (!holds[static_cast<std::size_t>(labels.at<int>(y, x))]) out.at<unsigned char>(y, x) = 0;
+      if (holds[static_cast<std::size_t>(labels.at<int>(y, x))] < least) out.at<unsigned char>(y, x) = 0;
   return out;
 }
 
-constexpr float kWhite = 255.0F;
 constexpr float kWallBrightness = 37.0F;  // of 0,40,120
-constexpr float kMostBlue = 80.0F;        // Cb of walls, whose own is 47; of QR codes 115
-constexpr double kWide = 2.5;             // sigma of the wider smear [pixels]
-constexpr int kReach = 12;                // beyond it a smear is cut off [pixels]: 4 sigma and one
-constexpr int kBand = 512;                // rows that are worked on at a time: ten floats a pixel
+constexpr float kWallBlue = 46.8F, kWallRed = -26.3F;
+constexpr float kFloorBlue = -33.1F, kFloorRed = -41.8F;  // of searched floor
+constexpr float kMostBlue = 60.0F;                        // Cb of walls; smeared blue letters keep 65
+constexpr double kWide = 2.5;                             // sigma of the wider smear [pixels]
+constexpr int kReach = 48;  // of all filters together, where a band of rows is cut off [pixels]
+constexpr int kBand = 512;  // rows that are worked on at a time
 
-struct Tinted {
-  cv::Mat ink;   ///< CV_32F, 1: as dark as a wall, 0: white
-  cv::Mat blue;  ///< CV_32F, Cb: 47 in a wall, 50 in the path, -39 in a victim
-  cv::Mat red;   ///< CV_32F, Cr: -26 in a wall, 48 in the path, 115 in a victim
+/// Brightness and the two differences of colour of YCbCr: JPEG keeps the first sharp and smears the others.
+struct Planes {
+  cv::Mat light;  ///< CV_32F
+  cv::Mat blue;   ///< CV_32F, Cb: 47 in a wall, 50 in the path, -39 in a victim, 115 in QR codes, -33 on searched floor
+  cv::Mat red;    ///< CV_32F, Cr: -26 in a wall, 48 in the path, 115 in a victim, -42 on searched floor
 };
 
 /// Of these rows.
-Tinted tints(const RgbImage& image, const cv::Range& rows) {
-  Tinted out;
-  for (cv::Mat* m : {&out.ink, &out.blue, &out.red}) *m = cv::Mat(rows.size(), image.width, CV_32F);
+Planes planes_of(const RgbImage& image, const cv::Range& rows) {
+  Planes out;
+  for (cv::Mat* m : {&out.light, &out.blue, &out.red}) *m = cv::Mat(rows.size(), image.width, CV_32F);
   for (int y = 0; y < rows.size(); ++y)
     for (int x = 0; x < image.width; ++x) {
       const std::uint8_t* p = image.pixel(x, rows.start + y);
-      const float brightness = 0.299F * p[0] + 0.587F * p[1] + 0.114F * p[2];
-      out.ink.at<float>(y, x) = (kWhite - brightness) / (kWhite - kWallBrightness);
-      out.blue.at<float>(y, x) = 0.564F * (p[2] - brightness);
-      out.red.at<float>(y, x) = 0.713F * (p[0] - brightness);
+      const float light = 0.299F * p[0] + 0.587F * p[1] + 0.114F * p[2];
+      out.light.at<float>(y, x) = light;
+      out.blue.at<float>(y, x) = 0.564F * (p[2] - light);
+      out.red.at<float>(y, x) = 0.713F * (p[0] - light);
     }
   return out;
 }
 
-/// The colours around each pixel (Gaussian, `sigma` pixels), summed and divided by the ink that they belong to.
-Tinted around(const Tinted& t, double sigma) {
-  constexpr float kDark = 0.35F;  // ink that counts
-  cv::Mat ink = t.ink.clone();
-  ink.setTo(0.0F, t.ink < kDark);
-  Tinted out;
-  cv::GaussianBlur(ink, out.ink, {}, sigma);
-  out.ink = cv::max(out.ink, 1e-6F);
-  cv::GaussianBlur(t.blue, out.blue, {}, sigma);
-  cv::GaussianBlur(t.red, out.red, {}, sigma);
-  out.blue /= out.ink;
-  out.red /= out.ink;
+/// What the picture would be without lines: as bright as the brightest within a wall's width, and of the colour that
+/// such pixels near by have on the average.
+Planes ground_of(const Planes& picture) {
+  constexpr int kWidestLine = 9;      // [pixels]
+  constexpr float kDarkest = 150.0F;  // of ground
+  constexpr float kAsBright = 24.0F;  // as the ground, or nearly
+  constexpr double kNear = 4.0, kFar = 12.0;
+  Planes out;
+  cv::morphologyEx(picture.light, out.light, cv::MORPH_CLOSE, cv::Mat::ones(kWidestLine, kWidestLine, CV_8U));
+  out.light = cv::max(out.light, kDarkest);
+  cv::Mat bare;  // without the pixels to which a line gave of its colour
+  cv::Mat(picture.light >= out.light - kAsBright).convertTo(bare, CV_32F, 1.0 / 255.0);
+  const auto mean = [&](const cv::Mat& plane) {
+    cv::Mat sum, weight, far_sum, far_weight;
+    cv::GaussianBlur(plane.mul(bare), sum, {}, kNear);
+    cv::GaussianBlur(bare, weight, {}, kNear);
+    cv::GaussianBlur(plane.mul(bare), far_sum, {}, kFar);
+    cv::GaussianBlur(bare, far_weight, {}, kFar);
+    constexpr float kLittle = 0.02F;  // of the nearer ones: those further off say the rest
+    return cv::Mat((sum + kLittle * far_sum) / (weight + kLittle * far_weight + 1e-6F));
+  };
+  out.light = mean(picture.light);  // the brightest are so by the ripples beside lines
+  cv::erode(bare, bare, cv::Mat::ones(3, 3, CV_8U));
+  const cv::Mat blue = mean(picture.blue), red = mean(picture.red);
+  // Ground is grey or searched floor. Of what lines gave it, it keeps nothing: that would count against them.
+  const float both = kWallBlue * kFloorRed - kFloorBlue * kWallRed;
+  const cv::Mat green = cv::max((kWallBlue * red - kWallRed * blue) / both, 0.0F);
+  out.blue = kFloorBlue * green;
+  out.red = kFloorRed * green;
+  return out;
+}
+
+/// The colour of the ink itself: what it adds to the ground's around each pixel (Gaussian, `sigma`), summed and divided
+/// by the ink.
+Planes of_ink(const Planes& picture, const Planes& ground, const cv::Mat& ink, double sigma) {
+  constexpr float kDark = 0.25F;  // ink that counts
+  cv::Mat counted = ink.clone(), around, blue, red;
+  counted.setTo(0.0F, ink < kDark);
+  cv::GaussianBlur(counted, around, {}, sigma);
+  around = cv::max(around, 1e-6F);
+  cv::GaussianBlur(picture.blue - ground.blue, blue, {}, sigma);
+  cv::GaussianBlur(picture.red - ground.red, red, {}, sigma);
+  return {around, ground.blue + blue / around, ground.red + red / around};
+}
+
+/// The middles of thin lines, along one direction at least: no paler than the pixels beside them, and those two
+/// pixels off are less than half as dark. Pictures made smaller have walls that are nowhere as dark as they were.
+cv::Mat thin_lines(const cv::Mat& ink, const cv::Mat& ground) {
+  constexpr float kPalest = 0.25F;
+  constexpr float kGridLine = 190.0F, kDarker = 0.15F;
+  cv::Mat out = cv::Mat::zeros(ink.size(), CV_8U);
+  const auto is_middle = [](float before2, float before, float own, float after, float after2) {
+    return own >= before && own >= after && 2.0F * std::max(before2, after2) < own;
+  };
+  for (int y = 2; y + 2 < ink.rows; ++y)
+    for (int x = 2; x + 2 < ink.cols; ++x) {
+      const auto at = [&](int dx, int dy) { return ink.at<float>(y + dy, x + dx); };
+      const float own = at(0, 0), light = ground.at<float>(y, x);
+      const float of_grid = (light - kGridLine) / (light - kWallBrightness);  // 0.3 on white
+      if (own >= std::max(kPalest, of_grid + kDarker) && (is_middle(at(-2, 0), at(-1, 0), own, at(1, 0), at(2, 0)) ||
+                                                          is_middle(at(0, -2), at(0, -1), own, at(0, 1), at(0, 2))))
+        out.at<unsigned char>(y, x) = 255;
+    }
   return out;
 }
 
@@ -70,21 +123,32 @@ Tinted around(const Tinted& t, double sigma) {
 void dark_in(const RgbImage& image, const cv::Range& band, cv::Mat& weak, cv::Mat& sure) {
   constexpr float kSure = 0.62F;
   constexpr float kWall = 0.48F;
+  constexpr float kSureLine = 0.35F;
+  constexpr float kClearly = 42.0F, kMostMore = 70.0F, kRedder = 12.0F, kBluer = 16.0F;
   const cv::Range rows(std::max(0, band.start - kReach), std::min(image.height, band.end + kReach));
-  const Tinted t = tints(image, rows);
+  const Planes picture = planes_of(image, rows);
+  const Planes ground = ground_of(picture);
+  const cv::Mat ink = (ground.light - picture.light) / (ground.light - kWallBrightness);
   // Between symbols the colour near by is the wall's own, in the open the one around.
-  const Tinted near = around(t, 1.0);
-  const Tinted wide = around(t, kWide);
+  const Planes near = of_ink(picture, ground, ink, 1.0);
+  const Planes wide = of_ink(picture, ground, ink, kWide);
+  const cv::Mat line = thin_lines(ink, ground.light);
   for (int y = 0; y < weak.rows; ++y) {
     const int at = band.start - rows.start + y;
     for (int x = 0; x < weak.cols; ++x) {
-      const float a = t.ink.at<float>(at, x);
-      const auto is = [&](const Tinted& c, float least_blue, float most_red) {
-        const float blue = c.blue.at<float>(at, x);
-        return blue > least_blue && blue < kMostBlue && c.red.at<float>(at, x) < most_red;
+      const float a = ink.at<float>(at, x);
+      // Blue less red is 73 for walls, 2 for the path, 0 for black and 9 for searched floor, to which smears tend, and
+      // more for blue letters.
+      const auto is = [&](const Planes& c, float least, float most_red, float most_blue) {
+        const float blue = c.blue.at<float>(at, x), red = c.red.at<float>(at, x), more = blue - red;
+        const bool plain = more > least && red < most_red && blue < most_blue;
+        return plain || (more > kClearly && more < kMostMore && red < most_red + kRedder && blue < most_blue + kBluer);
       };
-      weak.at<unsigned char>(y, x) = a >= kWall && (is(wide, 12.0F, 12.0F) || is(near, 12.0F, 6.0F)) ? 255 : 0;
-      sure.at<unsigned char>(y, x) = a >= kSure && is(wide, 20.0F, 2.0F) ? 255 : 0;
+      const bool thin = line.at<unsigned char>(at, x) != 0;
+      weak.at<unsigned char>(y, x) =
+          (a >= kWall || thin) && (is(wide, 21.0F, 8.0F, kMostBlue) || is(near, 27.0F, 4.0F, 46.0F)) ? 255 : 0;
+      sure.at<unsigned char>(y, x) =
+          (a >= kSure || (thin && a >= kSureLine)) && is(wide, 31.0F, 2.0F, kMostBlue) ? 255 : 0;
     }
   }
 }
@@ -117,7 +181,8 @@ cv::Mat walls_by_brightness(const RgbImage& image) {
     cv::Mat weak_here = weak.rowRange(band), sure_here = sure.rowRange(band);
     dark_in(image, band, weak_here, sure_here);
   }
-  return grown_from(sure & weak, weak);
+  constexpr int kSpeck = 3;  // pixels of the grid that JPEG made darker and tinted are fewer
+  return grown_from(sure & weak, weak, kSpeck);
 }
 
 cv::Mat unexplored_by_brightness(const RgbImage& image) {

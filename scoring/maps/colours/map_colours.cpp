@@ -1,11 +1,14 @@
 #include "scoring/maps/colours/map_colours.h"
 
-#include <utility>
-
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "scoring/maps/colours/added_drawings.h"
 #include "scoring/maps/colours/canvas_corners.h"
+#include "scoring/maps/colours/even_light.h"
 #include "scoring/maps/colours/grey_levels.h"
 #include "scoring/maps/colours/league_colours.h"
 #include "scoring/maps/colours/lettering.h"
@@ -53,6 +56,18 @@ bool are_walls_among_the_drawings(const cv::Mat& before, const cv::Mat& after, c
   return 2 * cv::countNonZero(drawn & (before < wall - kPaler)) >= count;
 }
 
+/// Areas of it, not only lines.
+bool is_coloured(const RgbImage& image) {
+  constexpr int kColoured = 24;
+  constexpr std::size_t kOneIn = 10;
+  std::size_t coloured = 0;
+  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
+    const auto [low, high] = std::minmax({image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]});
+    coloured += high - low >= kColoured ? 1 : 0;
+  }
+  return kOneIn * coloured >= image.rgb.size() / 3;
+}
+
 LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
   cv::Mat grey = grey_of(image);
   double least = 0.0, most = 0.0;
@@ -60,12 +75,18 @@ LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
   if (least == most)
     return {cv::Mat(grey.size(), CV_8U, cv::Scalar(static_cast<int>(Occupancy::Unknown))),
             "of one colour: nothing is drawn on it"};
+  const std::optional<EvenLight> even = with_even_light(grey);
+  if (even) grey = even->grey;
   const cv::Mat as_it_was = grey.clone();
   const bool painted = paint_over_colours(image, nothing, grey);
   const cv::Mat canvas = canvas_corners(grey);
   LabelImage out = classify_grey(grey, nothing | canvas, canvas);
   out.classes.setTo(static_cast<int>(Occupancy::Unknown), canvas);
   if (cv::countNonZero(canvas) > 0) out.recognised += ", corners of the canvas are unknown";
+  if (even) out.recognised += ", darker by up to " + std::to_string(even->differed) + " towards its rim before";
+  if (even && is_coloured(image))
+    out.refusal = "is not evenly bright (ground of one kind differs by " + std::to_string(even->differed) +
+                  " of 255 over the picture, as in a photograph), and coloured; give it as the robot saved it";
   if (painted) out.recognised += ", coloured drawings removed";
   if (painted && are_walls_among_the_drawings(as_it_was, grey, out.classes == static_cast<int>(Occupancy::Occupied)))
     out.refusal =

@@ -72,10 +72,7 @@ std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const 
 }
 
 Rgb without(const ToneCurve& curve, const Rgb& colour) {
-  for (const Rgb& own :
-       {league::kUnexplored, league::kUnexploredLight, league::kFree, league::kSearched, league::kSearchedUnsure,
-        league::kWall, league::kGridLine, league::kPath, league::kStart, league::kVictim, league::kUnconfirmedVictim,
-        league::kHazard, league::kQrCode, league::kScale, league::kTitle})
+  for (const Rgb& own : league::kAll)
     if (difference(changed(curve, own), colour) <= kRounding) return own;
   const auto before = [&](int value) {
     const auto nearer = [value](std::uint8_t a, std::uint8_t b) { return std::abs(a - value) < std::abs(b - value); };

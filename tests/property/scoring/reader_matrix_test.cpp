@@ -33,6 +33,9 @@ namespace fs = std::filesystem;
 
 constexpr double kResolution = 0.05;  // [m]
 
+/// Large enough for the fee of most arenas: a score that is off here is off as much there.
+const Ground kGround{"maze", 7, 7, 5};
+
 struct Drawing {
   std::string name;
   cv::Mat image;  ///< CV_8UC1, or BGR
@@ -683,13 +686,6 @@ class ReaderMatrix : public ::testing::Test {
   fs::path folder_;
 };
 
-/// The score as a large arena has it, whose fee is 0.25: how well a file was read does not depend on how many walls
-/// luck might meet on this small ground.
-double read_at(const SightLines& sights, const OccupancyGrid& map, const PlanarTransform& T) {
-  const SightAgreement found = sights.at(map, T);
-  return std::max(0.0, found.known * (found.kappa - 0.25) / 0.75);
-}
-
 /// Where the file's grid lies on the truth from which the drawing of `rows` rows was made.
 PlanarTransform pose_of(const Stored& file, const OccupancyGrid& read, const OccupancyGrid& truth, int rows) {
   const double f = kResolution / file.scale;
@@ -709,10 +705,10 @@ PlanarTransform pose_of(const Stored& file, const OccupancyGrid& read, const Occ
 }
 
 TEST_F(ReaderMatrix, EveryFileHasTheScoreOfThePlainPictureOrIsRefusedByName) {
-  const OccupancyGrid truth = truth_of({"maze", 7, 5, 5});
+  const OccupancyGrid truth = truth_of(kGround);
   const SightLines sights(truth);
   const OccupancyGrid map = with_gaps(with_phantoms(truth, 3, 5), 5, 5);
-  const double drawn = read_at(sights, map, PlanarTransform());
+  const double drawn = sights.at(map, PlanarTransform()).score;
   const double drawn_overlap = overlap(map, truth, {}, 0.5).score;
   ASSERT_GT(drawn, 0.6);
   const std::string base = (folder_ / "map").string();
@@ -738,7 +734,7 @@ TEST_F(ReaderMatrix, EveryFileHasTheScoreOfThePlainPictureOrIsRefusedByName) {
         what = read.recognised;
         // Lines of sight do not ask for the walls around; the overlap does.
         const PlanarTransform T = pose_of(file, read.grid, truth, drawing.image.rows);
-        const double score = read_at(sights, read.grid, T);
+        const double score = sights.at(read.grid, T).score;
         const double walls = overlap(read.grid, truth, T.pose(), 0.5).score;
         if (format.refusal.empty() &&
             std::abs(walls - drawn_overlap) > (read.grid.resolution() > 0.055 ? 0.04 : 0.02)) {
@@ -746,14 +742,9 @@ TEST_F(ReaderMatrix, EveryFileHasTheScoreOfThePlainPictureOrIsRefusedByName) {
           std::printf("walls around lost: %s of %s: overlap %.3f instead of %.3f; %s\n", format.name.c_str(),
                       drawing.name.c_str(), walls, drawn_overlap, what.c_str());
         }
-        // Where the drawing has symbols over walls, JPEG costs the wall beside them a little more.
-        const bool jpeg = format.name.find("jp") != std::string::npos;
-        const bool smeared = drawing.name == "league, all drawings" && jpeg;
-        // Blue codes and green floor make the colour of walls.
-        const bool mixed = drawing.name == "league, searched" && (jpeg || format.name.find("blur") == 0);
-        // Cells twice as wide: a gap ends within one of them.
-        const bool coarser = format.name.find("every second") == 0;
-        const double bound = mixed ? 0.05 : smeared || coarser ? 0.025 : 0.02;
+        // Cells twice as wide: a gap ends within one of them. Quality 35 leaves some walls no colour at all.
+        const bool coarser = read.grid.resolution() > 0.055;
+        const double bound = format.name.find("jpg 1 35") != std::string::npos ? 0.035 : coarser ? 0.025 : 0.02;
         if (format.name == "png") {
           expected = score;
           EXPECT_NEAR(score, drawn, 0.02);
@@ -782,10 +773,10 @@ TEST_F(ReaderMatrix, EveryFileHasTheScoreOfThePlainPictureOrIsRefusedByName) {
 }
 
 TEST_F(ReaderMatrix, EditedPicturesAreReadAsTheyWereOrRefusedWithTheReason) {
-  const OccupancyGrid truth = truth_of({"maze", 7, 5, 5});
+  const OccupancyGrid truth = truth_of(kGround);
   const SightLines sights(truth);
   const OccupancyGrid map = with_gaps(with_phantoms(truth, 3, 5), 5, 5);
-  const double expected = read_at(sights, map, PlanarTransform());
+  const double expected = sights.at(map, PlanarTransform()).score;
   GridFrame wider = map.frame();  // ground that was never seen around it, as most maps have
   const int margin = 50;
   wider.width += 2 * margin;
@@ -806,7 +797,7 @@ TEST_F(ReaderMatrix, EditedPicturesAreReadAsTheyWereOrRefusedWithTheReason) {
       ++cases;
       try {
         const LoadedMap read = load_map(file.path, {kResolution});
-        const double score = read_at(sights, read.grid, pose_of(file, read.grid, canvas, drawing.image.rows));
+        const double score = sights.at(read.grid, pose_of(file, read.grid, canvas, drawing.image.rows)).score;
         if (std::abs(score - expected) <= 0.02) {
           ++right;
         } else {
@@ -822,9 +813,9 @@ TEST_F(ReaderMatrix, EditedPicturesAreReadAsTheyWereOrRefusedWithTheReason) {
     }
   }
   std::printf("%d cases, %d right, %d refused, %d wrong\n", cases, right, refused, wrong);
-  // Those that are wrong and not told: white clipped away, walls sharpened black, a light map in a deep vignette.
-  EXPECT_GE(right, at_least(304));
-  EXPECT_LE(wrong, 4);
+  // Those that are wrong and not told: white clipped away, walls sharpened black.
+  EXPECT_GE(right, at_least(310));
+  EXPECT_LE(wrong, 3);
 }
 
 }  // namespace
