@@ -32,7 +32,7 @@ struct ScoreConfig {
 /// known in full, and a narrow unknown stretch between known ground is open ground. 6: faces behind the one that the
 /// truth knows are no walls drawn twice; black around a plan is no thickness. 7: where next to nothing stands inside,
 /// the walls around are asked about as well; the fee is higher up to 44 places of inner walls.
-constexpr int kScoreVersion = 7;
+constexpr int kScoreVersion = 8;
 
 /// The verdict on one map. Lengths in metres, shares 0..1.
 struct MapScore {

@@ -25,6 +25,7 @@ constexpr double kHole = 0.55;          // unknown stretch between known ground 
 constexpr double kPlaceOfWall = 0.1;    // to either side of a wall's middle: what must be known to miss it [m]
 constexpr double kTau = 0.5;            // distance from which a wall is another one [m]
 constexpr double kRaster = 0.5;         // of a cell: what drawing on a raster moves a wall by
+constexpr double kLeastRaster = 0.025;  // finer pixels of the same walls are no finer a map [m]
 constexpr double kMostRaster = 0.05;    // [m]
 constexpr double kThickness = 0.04;     // what a metre of wrong thickness counts as a metre of wrong place
 constexpr double kFee = 0.25;           // kappa that maps of other arenas reach at their best pose
@@ -161,7 +162,7 @@ void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& ou
 /// The truth, asked which lines across it are worth asking a map about.
 class Asker {
  public:
-  Asker(const OccupancyGrid& truth, bool outer) : map_(truth), ground_(map_), outer_(outer) {
+  Asker(const OccupancyGrid& truth, Ragged ragged, bool outer) : map_(truth, ragged), ground_(map_), outer_(outer) {
     Grid<std::uint8_t> walls(truth.frame());
     for (std::size_t i = 0; i < truth.cells().size(); ++i)
       walls.cells()[i] = truth.cells()[i] == Occupancy::Occupied ? 1 : 0;
@@ -399,7 +400,8 @@ template <class Transform>
 SightAgreement agreement(const std::vector<SightLines::Line>& lines, const SightMap& map, const Transform& T,
                          const SightLines::Luck& luck, SightLines::Credit credit) {
   const Ground ground(map);
-  const double raster = std::min(kMostRaster, kRaster * map.grid.resolution());
+  const double least = credit == SightLines::Credit::Located ? kLeastRaster : 0.0;
+  const double raster = std::clamp(kRaster * map.grid.resolution(), least, kMostRaster);
   Sight sight;
   Sum sum;
   for (const SightLines::Line& line : lines) {
@@ -436,7 +438,7 @@ SightLines::SightLines(const OccupancyGrid& truth, Credit credit) : credit_(cred
 }
 
 double SightLines::ask(const OccupancyGrid& truth, bool outer) {
-  Asker asker(truth, outer);
+  Asker asker(truth, ragged(credit_), outer);
   lines_.clear();
   const std::vector<TPoint2D> shifts = lattice_shifts(truth, kShifts);
   const double mean = blocked_share(asker);

@@ -23,7 +23,8 @@ struct SightAgreement {
 
 /// A map prepared to be looked across at many poses. The map must outlive it.
 struct SightMap {
-  explicit SightMap(const OccupancyGrid& source) : grid(source), pieces(wall_pieces(source)) {}
+  explicit SightMap(const OccupancyGrid& source, Ragged ragged = Ragged::AreWalls)
+      : grid(source), pieces(wall_pieces(source, ragged)) {}
   const OccupancyGrid& grid;
   WallPieces pieces;
 };
@@ -57,7 +58,7 @@ class SightLines {
   SightAgreement at(const SightMap& map, const PlanarTransform& T_truth_map) const;
   SightAgreement at(const SightMap& map, const Warp& warp) const;
   SightAgreement at(const OccupancyGrid& map, const PlanarTransform& T_truth_map) const {
-    return at(SightMap(map), T_truth_map);
+    return at(SightMap(map, ragged(credit_)), T_truth_map);
   }
 
   struct Line {
@@ -81,6 +82,9 @@ class SightLines {
   };
 
  private:
+  /// The thresholds of `Whole` were set with walls that wavered left in pieces.
+  static Ragged ragged(Credit credit) { return credit == Credit::Whole ? Ragged::ArePieces : Ragged::AreWalls; }
+
   /// Fills the lines, with those through the walls around if `outer`. Returns at how many places walls are asked about.
   double ask(const OccupancyGrid& truth, bool outer);
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scoring/measures/dashes.h"
+#include "scoring/measures/ragged_walls.h"
 
 namespace rubble::scoring {
 namespace {
@@ -32,6 +33,15 @@ struct Pieces {
   cv::Mat stats;
 };
 
+/// Non-zero: a wall of a piece that is none in full.
+cv::Mat small_pieces(const OccupancyGrid& grid, const Pieces& pieces) {
+  cv::Mat out(grid.height(), grid.width(), CV_8U, cv::Scalar(0));
+  for (std::size_t i = 0; i < grid.cells().size(); ++i)
+    if (grid.cells()[i] == Occupancy::Occupied && pieces.extent(pieces.at(i)) * grid.resolution() < kWholeWall)
+      out.data[i] = 1;
+  return out;
+}
+
 /// Fills the gaps in lines thinner than a cell, up to `longest` cells: no wall in the column (row) here and beside, but
 /// in one before and one behind. Ends stay where they are.
 void bridge(cv::Mat& walls, int longest) {
@@ -57,7 +67,7 @@ void bridge(cv::Mat& walls, int longest) {
 
 }  // namespace
 
-WallPieces wall_pieces(const OccupancyGrid& grid) {
+WallPieces wall_pieces(const OccupancyGrid& grid, Ragged ragged) {
   WallPieces out{Grid<float>(grid.frame())};
   if (grid.cells().empty()) return out;
   cv::Mat walls(grid.height(), grid.width(), CV_8U);
@@ -74,6 +84,9 @@ WallPieces wall_pieces(const OccupancyGrid& grid) {
     if (walls.data[i] != 0 && raw.cells(raw.at(i)) < least_cells && !is_dash[static_cast<std::size_t>(raw.at(i))])
       joined.data[i] = 0;
   for (const auto& [from, to] : dashes) cv::line(joined, {from.x, from.y}, {to.x, to.y}, 255);
+  if (ragged == Ragged::AreWalls)
+    for (const auto& [from, to] : ragged_walls(grid, small_pieces(grid, raw)))
+      cv::line(joined, {from.x, from.y}, {to.x, to.y}, 255);
   const int reach = std::max(1, static_cast<int>(std::lround(kJoin / grid.resolution())));
   if (grid.resolution() > kCoarse) bridge(joined, static_cast<int>(kBridge / grid.resolution()));
   cv::morphologyEx(joined, joined, cv::MORPH_CLOSE,

@@ -19,6 +19,9 @@ struct WallPieces {
   }
 };
 
-WallPieces wall_pieces(const OccupancyGrid& grid);
+/// What becomes of walls that waver so much that they are drawn in dots and strokes (`ragged_walls`).
+enum class Ragged { AreWalls, ArePieces };
+
+WallPieces wall_pieces(const OccupancyGrid& grid, Ragged ragged = Ragged::AreWalls);
 
 }  // namespace rubble::scoring

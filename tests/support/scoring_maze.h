@@ -250,6 +250,31 @@ inline OccupancyGrid with_salt(const OccupancyGrid& source, double share, std::u
   return out;
 }
 
+/// Walls a cell thicker to each side.
+inline OccupancyGrid grown(const OccupancyGrid& source) {
+  OccupancyGrid out = source;
+  for (int y = 0; y < source.height(); ++y)
+    for (int x = 0; x < source.width(); ++x)
+      for (int v = -1; v <= 1; ++v)
+        for (int u = -1; u <= 1; ++u)
+          if (source[{x, y}] == Occupancy::Occupied && out.inside({x + u, y + v}))
+            out[{x + u, y + v}] = Occupancy::Occupied;
+  return out;
+}
+
+/// Gaps between walls closed with a square of three cells.
+inline OccupancyGrid closed(const OccupancyGrid& source) {
+  const OccupancyGrid wide = grown(source);
+  OccupancyGrid out = wide;
+  for (int y = 0; y < wide.height(); ++y)
+    for (int x = 0; x < wide.width(); ++x)
+      for (int v = -1; v <= 1; ++v)
+        for (int u = -1; u <= 1; ++u)
+          if (wide[{x, y}] != Occupancy::Occupied && out.inside({x + u, y + v}))
+            out[{x + u, y + v}] = source[{x + u, y + v}];
+  return out;
+}
+
 /// What a laser map looks like: the walls ragged by up to `cells` cells.
 inline OccupancyGrid ragged(const OccupancyGrid& source, int cells, std::uint64_t seed) {
   OccupancyGrid out = source;
