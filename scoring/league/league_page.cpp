@@ -109,8 +109,9 @@ std::string victim_table(const LeagueEntry& e) {
 std::string league_page(const std::string& truth, bool with_points, const std::vector<LeagueEntry>& entries,
                         const std::vector<LeaguePictures>& pictures, const std::string& left_out) {
   std::string body =
-      "<style>figure.map { width: 26em; } td a, td:nth-child(2) { white-space: nowrap; } td.why { min-width: 20em; "
-      "}</style>\n<h1>League</h1>\n<p "
+      "<style>figure.map { width: 26em; } td a { white-space: nowrap; } #table { font-size: .85em; } #table th, "
+      "#table td { padding: .2em .4em; } #table td:nth-child(2) { max-width: 16em; overflow-wrap: anywhere; } "
+      "td.why { min-width: 16em; }</style>\n<h1>League</h1>\n<p "
       "class=\"note\">" +
       std::to_string(entries.size()) + " maps against " + escape_html(truth) +
       ". Ranked by score (to 0.001), then by points (to 0.1); equal maps share a rank. Score: lines "

@@ -223,13 +223,13 @@ void draw_cross(cv::Mat& image, const cv::Point& at, int reach, const Colour& co
   cv::line(image, at - cv::Point(reach, -reach), at + cv::Point(reach, -reach), cv::Scalar(colour), width, cv::LINE_AA);
 }
 
-void draw_victims(Canvas& canvas, const Marks& victims, const TPose2D& T_truth_map) {
+void draw_victims(Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map) {
   constexpr int kRadius = 8;
   const Colour found(40, 150, 30);
   const auto name = [&](const std::string& words, const cv::Point& at) {
     text(canvas, words, at.x + kRadius + 3, at.y + 4);
   };
-  for (const auto& [map, truth] : victims.pairs) {
+  for (const auto& [map, truth] : marks.pairs) {
     const cv::Point reported = pixel_of(canvas, T_truth_map.composePoint(map.p));
     const cv::Point there = pixel_of(canvas, truth.p);
     cv::line(canvas.image, reported, there, cv::Scalar(found), 1, cv::LINE_AA);
@@ -237,12 +237,12 @@ void draw_victims(Canvas& canvas, const Marks& victims, const TPose2D& T_truth_m
     cv::circle(canvas.image, reported, 3, cv::Scalar(found), cv::FILLED, cv::LINE_AA);
     name(truth.name, there);
   }
-  for (const Mark& missed : victims.truth_only) {
+  for (const Mark& missed : marks.truth_only) {
     const cv::Point at = pixel_of(canvas, missed.p);
     cv::circle(canvas.image, at, kRadius, cv::Scalar(kTruthOnly), 2, cv::LINE_AA);
     name(missed.name + " missed", at);
   }
-  for (const Mark& wrong : victims.map_only) {
+  for (const Mark& wrong : marks.map_only) {
     const cv::Point at = pixel_of(canvas, T_truth_map.composePoint(wrong.p));
     draw_cross(canvas.image, at, kRadius - 2, kMapOnly, 2);
     name("false", at);
@@ -312,7 +312,7 @@ void paint(Canvas& canvas, const OccupancyGrid& map, const OccupancyGrid& truth,
 }  // namespace
 
 std::string overlay_png(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map,
-                        const std::string& warning, const Marks& victims) {
+                        const std::string& warning, const Marks& marks) {
   Canvas canvas(common_frame(map, truth, T_truth_map, 0.5));
   const WallField to_map(map, 0.5);
   const WallField to_truth(truth, 0.5);
@@ -325,21 +325,21 @@ std::string overlay_png(const OccupancyGrid& map, const OccupancyGrid& truth, co
           const double off = to_wall(to_truth, T_truth_map.composePoint(centre_of_cell(map, p_map)), truth);
           colour = is_judged(in_truth, off) ? wall_colour(off, kMapOnly) : kNotJudged;
         });
-  if (victims.seam) draw_seam(canvas, *victims.seam);
-  draw_victims(canvas, victims, T_truth_map);
+  if (marks.seam) draw_seam(canvas, *marks.seam);
+  draw_victims(canvas, marks, T_truth_map);
   draw_warning(canvas, warning);
   std::vector<LegendEntry> legend = {{kInk, "walls within 5 cm"},    {kDisplaced, "within 15 cm"},
                                      {kMapOnly, "only in map"},      {kTruthOnly, "only in truth"},
                                      {kNotJudged, "not judged"},     {kMapFree, "seen by map only"},
                                      {kTruthFree, "not seen by map"}};
-  if (victims.seam) legend.push_back({kSeam, "seam of two parts"});
+  if (marks.seam) legend.push_back({kSeam, "seam of two parts"});
   draw_legend(canvas, legend);
   return png_bytes(canvas.image);
 }
 
 void write_overlay(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
-                   const TPose2D& T_truth_map, const std::string& warning, const Marks& victims) {
-  write_text_file(path, overlay_png(map, truth, T_truth_map, warning, victims));
+                   const TPose2D& T_truth_map, const std::string& warning, const Marks& marks) {
+  write_text_file(path, overlay_png(map, truth, T_truth_map, warning, marks));
 }
 
 std::string error_map_png(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map,

@@ -16,11 +16,11 @@ namespace rubble::scoring {
 /// stands in a red band over it. Victims: found ones green with a line to where they are, false ones crossed red,
 /// missed ones ringed blue. A seam is dashed violet. Throws RunError when it cannot be written.
 void write_overlay(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
-                   const mrpt::math::TPose2D& T_truth_map, const std::string& warning = "", const Marks& victims = {});
+                   const mrpt::math::TPose2D& T_truth_map, const std::string& warning = "", const Marks& marks = {});
 
 /// The same as bytes, for a page.
 std::string overlay_png(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map,
-                        const std::string& warning = "", const Marks& victims = {});
+                        const std::string& warning = "", const Marks& marks = {});
 
 /// Writes a PNG as the paper's Fig. 12: the map, turned as it lies on the truth, beside the truth; pairs of marks of
 /// one colour joined by a line, outliers as red (map) and blue (truth) crosses, boxes and names where marks have them.

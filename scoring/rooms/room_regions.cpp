@@ -83,6 +83,9 @@ std::vector<cv::Point> core_of(const std::vector<cv::Point>& room, const cv::Rec
   for (const cv::Point& p : room) mask.at<unsigned char>(p - box.tl()) = 255;
   cv::Mat distance;
   cv::distanceTransform(mask, distance, cv::DIST_L2, cv::DIST_MASK_5);
+  double widest = 0.0;
+  cv::minMaxLoc(distance, nullptr, &widest);
+  if (widest <= radius) return room;  // all of it is narrow
   const cv::Mat away = distance <= radius;
   cv::distanceTransform(away, distance, cv::DIST_L2, cv::DIST_MASK_5);
   std::vector<cv::Point> core;

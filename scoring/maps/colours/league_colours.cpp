@@ -79,7 +79,13 @@ bool looks_unexplored(const Colour& c) { return spread(c) <= 6 && c.g >= 216 && 
 /// white or searched floor, and the darkest colours end at 0.
 bool is_exaggerated_wall(const Colour& c) { return c.r <= 10 && c.g <= 52 && c.b >= 85 && c.b <= 122; }
 
-/// Share of wall blue in a mixture with a grey: blue over red grows by 120 from grey to wall, green over red by 40.
+/// As bright as a colour looks.
+constexpr int brightness(const Colour& c) { return (299 * c.r + 587 * c.g + 114 * c.b) / 1000; }
+
+constexpr int kBlueOfWall = league::kWall[2] - league::kWall[0];           // blue over red
+constexpr int kWallDarker = league::kFree[0] - brightness(league::kWall);  // than white
+
+/// Share of wall blue in a mixture with a grey: blue over red grows from grey to wall, green over red a third as fast.
 /// With white it is lightest: what is lighter is a symbol's blue on searched floor.
 double wall_share(const Colour& c) {
   constexpr int kSlack = 35;  // of brightness
@@ -87,12 +93,13 @@ double wall_share(const Colour& c) {
   const int blue = c.b - c.r;
   const int green = c.g - c.r;
   if (blue < 24 || 100 * green < 25 * blue || 100 * green > 55 * blue) return 0.0;
-  const int light = (299 * c.r + 587 * c.g + 114 * c.b) / 1000;
-  if (120 * (light - 255 - kSlack) > -218 * std::min(blue, 120)) return 0.0;
-  return blue / 120.0;
+  if (kBlueOfWall * (brightness(c) - 255 - kSlack) > -kWallDarker * std::min(blue, kBlueOfWall)) return 0.0;
+  return blue / static_cast<double>(kBlueOfWall);
 }
 
-bool is_searched(const Colour& c) {
+/// Green enough to be searched floor where that is all that is asked of a pixel; without_searched_floor() asks for
+/// more.
+bool is_light_green(const Colour& c) {
   return c.g - c.r >= 20 && c.g - c.b >= 20 && std::abs(c.r - c.b) <= 20 && c.g >= 190;
 }
 
@@ -300,7 +307,7 @@ Label label_of(const Colour& c, bool exact) {
     if (near_colour(c, named.colour, tolerance)) return named.label;
   const double wall = wall_share(c);
   if (wall >= 0.45) return wall <= 1.3 ? kWall : kDrawing;
-  if (is_searched(c)) return kFree;
+  if (is_light_green(c)) return kFree;
   if (spread(c) > 12 || c.g < 100) return kDrawing;
   return !exact && looks_unexplored(c) ? kUnknown : kFree;
 }
@@ -421,7 +428,8 @@ bool is_grey_league_map(const RgbImage& image) {
   }
   const std::size_t pixels = image.rgb.size() / 3;
   // White floor, or what was searched.
-  const std::size_t floor = std::max(levels[255], levels[188] + levels[189]);
+  constexpr auto kSearched = static_cast<std::size_t>(brightness(league::kSearched));
+  const std::size_t floor = std::max(levels[255], levels[kSearched] + levels[kSearched + 1]);
   return 20 * levels[226] >= pixels && 20 * levels[237] >= pixels && 100 * floor >= pixels;
 }
 

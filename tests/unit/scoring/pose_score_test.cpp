@@ -44,6 +44,13 @@ TEST(PoseScore, WhatTheScoreCannotTellIsSaid) {
       if ((x + y) % 24 < 2 && crossed[{x, y}] == Occupancy::Free) crossed[{x, y}] = Occupancy::Occupied;
   EXPECT_NE(score_at(crossed, truth, {}).note.find("cross free floor"), std::string::npos)
       << score_at(crossed, truth, {}).note;
+  OccupancyGrid ringed = truth;  // as somebody marks a place, with several rings
+  for (int y = 0; y < f.height; ++y)
+    for (int x = 0; x < f.width; ++x) {
+      const double metres = std::hypot(x - 0.5 * f.width, y - 0.5 * f.height) * f.resolution;
+      if (std::fmod(metres, 0.9) < 0.1 && ringed[{x, y}] == Occupancy::Free) ringed[{x, y}] = Occupancy::Occupied;
+    }
+  EXPECT_NE(score_at(ringed, truth, {}).note.find("arrows"), std::string::npos) << score_at(ringed, truth, {}).note;
 }
 
 /// Nearest neighbour to pixels wider than the walls drops whole walls; averages and fine pixels need no such word.
