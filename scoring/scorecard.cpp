@@ -150,10 +150,6 @@ std::string note_of_coarse_pixels(const OccupancyGrid& map, const OccupancyGrid&
   return text;
 }
 
-void add_note(std::string& note, const std::string& more) {
-  if (!more.empty()) note += (note.empty() ? "" : "; ") + more;
-}
-
 /// The true walls are there, and so are others that cut lines of sight: who drew them may not see walls in them.
 std::string note_of_crossed_floor(const MapScore& score) {
   constexpr double kPoor = 0.8, kThere = 0.95, kClean = 0.9;
@@ -183,6 +179,18 @@ std::string note_of_unasked_walls(const MapScore& score) {
   return text;
 }
 
+/// A legend on white is explored ground apart from the arena.
+std::string note_of_what_is_apart(double share) {
+  constexpr double kNothing = 0.005;
+  if (share < kNothing) return {};
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%.0f %% of what the map knows is drawn apart from the arena (a second drawing, or a legend on the "
+                "colour of explored ground?), which takes as much off the score",
+                100.0 * share);
+  return text;
+}
+
 /// All numbers at the pose that `out` holds.
 void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls,
              const ScoreConfig& config) {
@@ -199,6 +207,7 @@ void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth
   out.errors = wall_errors(walls.overlaps, PlanarTransform(out.T_truth_map), config.worst_places);
   add_note(out.note, note_of_crossed_floor(out));
   add_note(out.note, note_of_unasked_walls(out));
+  add_note(out.note, note_of_what_is_apart(out.detached));
   if (config.warp) fill_warp(out, map, truth, walls, config.of_truth);
   const GridFrame frame = common_frame(map, truth, out.T_truth_map, kCanvasMargin);
   const OccupancyGrid map_on_frame = resample(map, out.T_truth_map, frame);
@@ -208,6 +217,10 @@ void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth
 }
 
 }  // namespace
+
+void add_note(std::string& note, const std::string& more) {
+  if (!more.empty()) note += (note.empty() ? "" : "; ") + more;
+}
 
 ScoreConfig prepared_for(const OccupancyGrid& truth, ScoreConfig config) {
   if (config.warp && !config.of_truth)

@@ -72,6 +72,9 @@ struct MapScore {
   double mended_score = 0.0;          ///< `score` with both parts where they belong; `score` where none is broken off
 };
 
+/// Adds to a note; its parts stand behind each other. Nothing to add: nothing changes.
+void add_note(std::string& note, const std::string& more);
+
 /// `config` for many maps of this one truth: what they have in common is found once.
 ScoreConfig prepared_for(const OccupancyGrid& truth, ScoreConfig config);
 

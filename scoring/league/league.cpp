@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 #include <sstream>
 #include <tuple>
+#include <utility>
 
 #include "base/error.h"
 #include "base/text/csv.h"
@@ -68,6 +70,7 @@ std::string league_csv(const std::vector<LeagueEntry>& entries) {
 
 std::map<std::string, double> read_judge(const std::string& path) {
   std::map<std::string, double> out;
+  std::set<std::pair<std::string, std::string>> seen;  // team and victim
   std::stringstream lines(read_text_file(path));
   std::vector<std::string> header;
   int line_number = 0;
@@ -88,6 +91,9 @@ std::map<std::string, double> read_judge(const std::string& path) {
       throw InputError(
           at(path, line_number, 1,
              "needs " + std::to_string(header.size()) + " fields with the points last, from 0 (to 30 for a victim)"));
+    if (header.size() == 3 && !seen.emplace(fields[0], fields[1]).second)
+      throw InputError(at(path, line_number, 1,
+                          "victim '" + fields[1] + "' of team '" + fields[0] + "' stands here twice; keep one row"));
     out[fields[0]] += *points;
   }
   return out;

@@ -41,7 +41,7 @@ std::string league_csv(const std::vector<LeagueEntry>& entries);
 inline constexpr double kJudgesMostPerVictim = 30.0;  ///< points
 
 /// Reads the judge's points: CSV with the header `team,points` or `team,victim,points`; 0 to 30 a victim, rows of one
-/// team added up. Throws InputError with file and line.
+/// team added up. Throws InputError with file and line, also where a victim stands twice for one team.
 std::map<std::string, double> read_judge(const std::string& path);
 
 }  // namespace rubble::scoring

@@ -112,12 +112,22 @@ void judge_map(const LeagueFiles& files, const LeagueTruth& truth, const LeagueC
   entry.reported = victims_of(loaded, files.pois);
   if (!entry.reported.note.empty() && config.tell) config.tell(entry.reported.note);
   entry.score = score_map(loaded.grid, truth.grid, config.score);
-  if (same_content(files.map, truth.path))
-    entry.score.note += std::string(entry.score.note.empty() ? "" : "; ") + "a copy of the truth, byte for byte";
-  if (!entry.reported.note.empty())
-    entry.score.note += std::string(entry.score.note.empty() ? "" : "; ") + entry.reported.note;
+  if (same_content(files.map, truth.path)) add_note(entry.score.note, "a copy of the truth, byte for byte");
+  add_note(entry.score.note, entry.reported.note);
   entry.points = victim_points(loaded.grid, truth.grid, entry.score, entry.reported, truth.victims);
   if (!config.out.empty()) pictures = draw(entry, loaded.grid, truth, config, name);
+}
+
+/// Two teams that handed in one file: said of both.
+void note_copies(std::vector<LeagueEntry>& entries) {
+  for (LeagueEntry& entry : entries) {
+    if (!entry.error.empty()) continue;
+    std::vector<std::string> others;
+    for (const LeagueEntry& other : entries)
+      if (other.team != entry.team && other.error.empty() && same_content(other.file, entry.file))
+        others.push_back(other.team);
+    if (!others.empty()) add_note(entry.score.note, "the same file as the map of " + joined(others));
+  }
 }
 
 }  // namespace
@@ -174,6 +184,7 @@ League judge_league(const LeagueFolder& folder, const LeagueTruth& truth, const 
       }
     league.entries.push_back(std::move(entry));
   }
+  note_copies(league.entries);
   rank_league(league.entries);
   for (const LeagueEntry& entry : league.entries) league.pictures.push_back(pictures.at({entry.team, entry.file}));
   for (const std::string& path : folder.skipped) league.left_out += (league.left_out.empty() ? "" : ", ") + path;

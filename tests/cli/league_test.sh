@@ -66,6 +66,8 @@ cp $truth renamed/zz.tif; cp $truth renamed/aa.tif; cp maps/coarse.tif renamed/0
 touch no_victims.csv && echo 'name,x,y' >no_victims.csv
 "$rubble" score --league renamed $truth --out second >/dev/null || fail "second league"
 cut -d, -f1,2,5 second/league.csv >ranks.txt
+grep -q '^1,aa,.*the same file as the map of zz' second/league.csv && ! grep '^3,0,' second/league.csv | grep -q 'same file' ||
+  fail "equal files are not told: $(cat second/league.csv)"
 [[ $(sed -n '2,5p' ranks.txt | cut -d, -f1,2 | tr '\n' ' ') == '1,aa 1,zz 3,0 ,1 ' ]] || fail "ties: $(cat ranks.txt)"
 "$rubble" score --league renamed $truth --out third >/dev/null && cmp second/league.csv third/league.csv ||
   fail "the same league twice gives other figures"
@@ -141,6 +143,8 @@ printf 'team,points\nnobody,3\n' >wrong.csv
 expect_exit 3 "team 'nobody'" "$rubble" score --league maps $truth --judge wrong.csv
 printf 'team,victim,points\ngood,v1,31\n' >wrong.csv
 expect_exit 3 'wrong.csv:2:1' "$rubble" score --league maps $truth --judge wrong.csv
+printf 'team,victim,points\ngood,v1,30\ntwin,v1,3\ngood,v1,30\n' >wrong.csv
+expect_exit 3 "wrong.csv:4:1: victim 'v1' of team 'good' stands here twice" "$rubble" score --league maps $truth --judge wrong.csv
 printf 'name,x,y\nv1,here,2\n' >wrong.csv
 expect_exit 3 'wrong.csv:2:1' "$rubble" score --league maps $truth --victims wrong.csv
 finish
