@@ -74,36 +74,59 @@ bool FeltObstacles::is_pallet_at(const Thing& thing, const TPoint2D& middle) con
   return thing.is_pallet && distance(position(thing.pallet()), middle) <= 0.5 * config_.pallet;
 }
 
-/// The pallet that the body reaches into: what lies before its middle. Where that is the pallet it stands on, a corner
-/// may have met the edge of the next: the one pallet before a corner that the robot has not stood on, if no wall of the
-/// map is between.
-Cell FeltObstacles::reached(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
-                            const std::vector<TPoint2D>& trail, const OccupancyGrid* known) const {
+bool FeltObstacles::felt_on(const TPoint2D& middle) const {
+  return std::any_of(things_.begin(), things_.end(), [&](const Thing& thing) { return is_pallet_at(thing, middle); });
+}
+
+/// The pallet that the body reaches into: what lies before its middle. A corner of it may have met the edge of another:
+/// the one pallet before a corner counts before that which it stands on, and before one ahead that it has stood on. Of
+/// two that it has not stood on nobody can tell, but that what was felt before is it again.
+std::optional<Cell> FeltObstacles::reached(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
+                                           const std::vector<TPoint2D>& trail, const OccupancyGrid* known) const {
   const TPose2D& T_map_base = touch.anchor.T_map_base;
-  const TPoint2D here = position(T_map_base);
-  const double reach = touch.side * (0.5 * model.length + kBeyondEdge);
-  const Cell own = grid.pallet(here);
+  const double front = touch.side * 0.5 * model.length;
+  const double reach = front + touch.side * kBeyondEdge;
+  const double aside = kCorner * model.width;
+  const Cell own = grid.pallet(position(T_map_base));
   const Cell ahead = grid.pallet(T_map_base.composePoint(TPoint2D{reach, 0.0}));
   // Among steps, those it stands on stop it: only the higher ones show.
   if (known != nullptr && shows_step_field(*known, grid, own)) return own;
-  if (!(ahead == own)) return ahead;
-  const auto is_at = [&](Cell pallet) {
-    return [&, middle = grid.middle(pallet)](const Thing& thing) { return is_pallet_at(thing, middle); };
-  };
-  // Steps were felt on its own one before: it is that again.
-  if (std::any_of(things_.begin(), things_.end(), is_at(own))) return own;
-  std::optional<Cell> other;
-  for (const double aside : {-kCorner * model.width, kCorner * model.width}) {
-    const TPoint2D corner = T_map_base.composePoint(TPoint2D{reach, aside});
-    const Cell pallet = grid.pallet(corner);
+  if (ahead == own) {
+    // Steps were felt on its own one before: it is that again.
+    if (felt_on(grid.middle(own))) return own;
+    const std::vector<Cell> others = new_pallets({{reach, -aside}, {reach, aside}}, T_map_base, grid, trail, known);
+    return others.size() == 1 ? others.front() : own;
+  }
+  const double shoulder = touch.side * kCorner * model.length, side = 0.5 * model.width;
+  const std::vector<Cell> others =
+      new_pallets({{reach, 0.0}, {front, -aside}, {front, aside}, {shoulder, -side}, {shoulder, side}}, T_map_base,
+                  grid, trail, known);
+  if (others.empty()) return ahead;
+  if (others.size() == 1) return others.front();
+  for (const Cell pallet : others)
+    if (felt_on(grid.middle(pallet))) return pallet;
+  return std::nullopt;
+}
+
+/// The pallets below points of the body but its own, if the robot has not stood on them and no wall of the map is
+/// between.
+std::vector<Cell> FeltObstacles::new_pallets(const std::vector<TPoint2D>& points, const TPose2D& T_map_base,
+                                             const PalletGrid& grid, const std::vector<TPoint2D>& trail,
+                                             const OccupancyGrid* known) {
+  const TPoint2D here = position(T_map_base);
+  const Cell own = grid.pallet(here);
+  std::vector<Cell> pallets;
+  for (const TPoint2D& point : points) {
+    const TPoint2D at = T_map_base.composePoint(point);
+    const Cell pallet = grid.pallet(at);
     const auto stood = [&](const TPoint2D& p) { return grid.pallet(p) == pallet && grid.depth(p) > kOnPallet; };
-    if (pallet == own || (known != nullptr && wall_between(*known, here, corner)) ||
+    if (pallet == own || (known != nullptr && wall_between(*known, here, at)) ||
+        std::find(pallets.begin(), pallets.end(), pallet) != pallets.end() ||
         std::any_of(trail.begin(), trail.end(), stood))
       continue;
-    if (other && !(*other == pallet)) return own;
-    other = pallet;
+    pallets.push_back(pallet);
   }
-  return other.value_or(own);
+  return pallets;
 }
 
 /// Puts a touch to the account of the pallet that the body reaches into. True where all of that pallet is taken for an
@@ -112,7 +135,9 @@ bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, cons
                                 const std::vector<TPoint2D>& trail, const OccupancyGrid* known) {
   const TPose2D& T_map_base = touch.anchor.T_map_base;
   const Cell own = grid.pallet(position(T_map_base));
-  const Cell there = reached(touch, grid, model, trail, known);
+  const std::optional<Cell> met = reached(touch, grid, model, trail, known);
+  if (!met) return false;
+  const Cell there = *met;
   const TPoint2D middle = grid.middle(there);
   Thing thing = touch;
   thing.is_pallet = true;

@@ -95,8 +95,12 @@ class FeltObstacles {
   void let_go(Thing& thing, Stamp now) const;
   bool feel_pallet(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
                    const std::vector<mrpt::math::TPoint2D>& trail, const OccupancyGrid* known);
-  Cell reached(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
-               const std::vector<mrpt::math::TPoint2D>& trail, const OccupancyGrid* known) const;
+  std::optional<Cell> reached(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
+                              const std::vector<mrpt::math::TPoint2D>& trail, const OccupancyGrid* known) const;
+  static std::vector<Cell> new_pallets(const std::vector<mrpt::math::TPoint2D>& points,
+                                       const mrpt::math::TPose2D& T_map_base, const PalletGrid& grid,
+                                       const std::vector<mrpt::math::TPoint2D>& trail, const OccupancyGrid* known);
+  bool felt_on(const mrpt::math::TPoint2D& middle) const;
   bool is_pallet_at(const Thing& thing, const mrpt::math::TPoint2D& middle) const;
   bool holds(const Thing& thing, const mrpt::math::TPoint2D& p_map, double margin) const;
 

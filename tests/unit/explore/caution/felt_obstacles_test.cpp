@@ -143,5 +143,43 @@ TEST(FeltObstacles, AmongStepsThePalletItStandsOnIsToBlameNotTheNext) {
   }
 }
 
+/// Aslant beside the corner where four pallets meet, the front reaches into one and a corner of the body into another:
+/// a field of steps in that one shut the only lane to a third of an arena.
+TEST(FeltObstacles, WhereACornerMayHaveMetAnotherPalletNeitherIsShut) {
+  const PalletGrid grid;
+  const TPose2D aslant{2.34, 1.38, deg_to_rad(-114.0)};  // on the pallet at 1.8, 1.8
+  const TPoint2D ahead{1.8, 0.6}, other{3.0, 0.6};
+  const auto shut = [&](const FeltObstacles& felt, const TPoint2D& middle) {
+    return nearest(felt.points(at(2.0)), middle) < 0.1;
+  };
+
+  FeltObstacles felt;
+  EXPECT_FALSE(felt.feel({at(1.0), aslant}, false, kModel, grid));
+  EXPECT_EQ(felt.count(at(2.0)), 1) << "it is a bar";
+  EXPECT_FALSE(shut(felt, ahead));
+  EXPECT_FALSE(shut(felt, other));
+
+  FeltObstacles knows_other;
+  EXPECT_TRUE(knows_other.feel({at(0.0), {3.0, 1.45, deg_to_rad(-90.0)}}, false, kModel, grid));
+  EXPECT_TRUE(knows_other.feel({at(1.0), aslant}, false, kModel, grid)) << "it is that again";
+  EXPECT_FALSE(shut(knows_other, ahead));
+  EXPECT_TRUE(shut(knows_other, other));
+
+  OccupancyGrid walled = test::room(6.0, 4.0);
+  test::fill(walled, 2.4, 0.0, 2.45, 1.2, Occupancy::Occupied);
+  FeltObstacles sees_a_wall;
+  EXPECT_TRUE(sees_a_wall.feel({at(1.0), aslant}, false, kModel, grid, {}, &walled)) << "no corner reaches through it";
+  EXPECT_TRUE(shut(sees_a_wall, ahead));
+
+  FeltObstacles was_there;
+  EXPECT_TRUE(was_there.feel({at(1.0), aslant}, false, kModel, grid, {other}, nullptr)) << "it can be driven on";
+  EXPECT_TRUE(shut(was_there, ahead));
+
+  FeltObstacles was_ahead;
+  EXPECT_TRUE(was_ahead.feel({at(1.0), aslant}, false, kModel, grid, {ahead}, nullptr));
+  EXPECT_FALSE(shut(was_ahead, ahead));
+  EXPECT_TRUE(shut(was_ahead, other)) << "it is the only one left";
+}
+
 }  // namespace
 }  // namespace rubble::explore
