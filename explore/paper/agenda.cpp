@@ -17,6 +17,7 @@ constexpr double kVisited = 0.30;                ///< closer to its target the r
 constexpr double kNearTarget = 1.0;              ///< turned away from so near, it was seen not to be had [m]
 constexpr double kBarren = 240.0;                ///< without new ground for so long, the faces go first [s]
 constexpr double kLookTurn = deg_to_rad(270.0);  ///< with a 240 deg scanner more than once around [rad]
+constexpr double kGlance = deg_to_rad(40.0);     ///< [rad]
 constexpr double kSearchReplan = 2.0;            ///< on the way to a viewpoint [s]
 constexpr double kArrivedReplan = 0.3;           ///< standing at the end of the way [s]
 constexpr double kDetour = 3.0;                  ///< way over distance where no way is known
@@ -180,7 +181,8 @@ Order Agenda::visited_in_vain(const Plan& plan, const Situation& situation) {
   const TPoint2D here = position(situation.T_map_base);
   if (!looked_from_ || distance(looked_from_->p_map(), here) > kVisited) {
     looked_from_.emplace(situation.robot(), here);
-    return turn(kLookTurn, TurnFor::View);
+    // A wall that may be a ramp lies before it, and where its floor is one it slides as it turns.
+    return turn(plan.doubtful ? kGlance : kLookTurn, TurnFor::View);
   }
   const std::string what = plan.doubtful ? "the wall looked at from " : "the frontier at ";
   note(situation.now, what + text(plan.target) + " stays although it was visited: left alone");

@@ -17,19 +17,43 @@ using mrpt::math::TPoint2D;
 constexpr double kShortest = 0.5;           ///< row [m]
 constexpr int kGap = 2;                     ///< cells that may be missing in a row
 constexpr double kBefore = 0.15;            ///< free floor before it [m]
-constexpr double kBehind = 0.40;            ///< unknown behind it, from twice its thickness on [m]
+constexpr double kBehind = 0.80;            ///< within this behind it ... [m]
+constexpr double kHidden = 0.25;            ///< ... so much is unknown [m]
 constexpr double kThick = 0.10;             ///< [m]
+constexpr double kStandsOnEdge = 0.10;      ///< so near to an edge it is a wall [m]
 constexpr double kOffEdges = 0.25;          ///< [m]
 constexpr double kLookFrom[] = {0.5, 0.6};  ///< [m]
 constexpr int kStride = 3;                  ///< places to look from are so many cells apart along the wall
 
-bool all(const OccupancyGrid& cells, Cell c, Cell step, int from, int to, Occupancy what) {
-  for (int i = from; i <= to; ++i) {
-    const Cell at{c.x + i * step.x, c.y + i * step.y};
-    if (!cells.inside(at)) return what == Occupancy::Unknown;
-    if (cells[at] != what) return false;
+bool free_before(const OccupancyGrid& cells, Cell c, Cell n, int cells_before) {
+  for (int i = 1; i <= cells_before; ++i) {
+    const Cell at{c.x - i * n.x, c.y - i * n.y};
+    if (!cells.inside(at) || cells[at] != Occupancy::Free) return false;
   }
   return true;
+}
+
+/// Numbers from 1 on for the pieces of free floor, each in one; 0: no floor.
+Grid<int> pieces_of_floor(const OccupancyGrid& cells) {
+  Grid<int> pieces(cells.frame());
+  int number = 0;
+  std::vector<Cell> open;
+  for (int y = 0; y < cells.height(); ++y)
+    for (int x = 0; x < cells.width(); ++x) {
+      if (cells[{x, y}] != Occupancy::Free || pieces[{x, y}] != 0) continue;
+      pieces[{x, y}] = ++number;
+      open.assign(1, {x, y});
+      while (!open.empty()) {
+        const Cell at = open.back();
+        open.pop_back();
+        for (const Cell c : {Cell{at.x + 1, at.y}, Cell{at.x, at.y + 1}, Cell{at.x - 1, at.y}, Cell{at.x, at.y - 1}}) {
+          if (!cells.inside(c) || cells[c] != Occupancy::Free || pieces[c] != 0) continue;
+          pieces[c] = number;
+          open.push_back(c);
+        }
+      }
+    }
+  return pieces;
 }
 
 /// The row of a face that begins at a cell: on along it, a cell to either side, over small gaps. Takes it out of the
@@ -59,6 +83,44 @@ double off_edges(const PalletGrid& grid, const TPoint2D& p, Cell n) {
   return grid.size * std::abs(x - std::round(x));
 }
 
+/// What lies behind walls. Floor of a slope is drawn as a thick wall or as several, with ground between them that was
+/// seen over the first.
+class Background {
+ public:
+  Background(const OccupancyGrid& cells, LocalGrids& grids, const Grid<std::uint8_t>* pockets)
+      : cells_(cells), grids_(grids), pockets_(pockets), pieces_(pieces_of_floor(cells)) {}
+
+  /// Whether `n` leads from the face of a wall at `c` to unknown ground, and before that neither to the floor that the
+  /// face stands on nor to a wall on an edge.
+  bool hidden(Cell c, Cell n) const {
+    const double resolution = cells_.frame().resolution;
+    const auto in_cells = [&](double length) { return static_cast<int>(std::lround(length / resolution)); };
+    const int here = pieces_[{c.x - n.x, c.y - n.y}];
+    int unknown = 0;
+    for (int i = 1; i <= in_cells(kBehind); ++i) {
+      const Cell at{c.x + i * n.x, c.y + i * n.y};
+      if (!cells_.inside(at)) return true;
+      if (cells_[at] == Occupancy::Occupied && on_edge(at, n)) return false;
+      if (i <= in_cells(kThick)) continue;
+      if (pieces_[at] == here) return false;
+      const bool pocket = pockets_ != nullptr && (*pockets_)[at] != 0;
+      if (cells_[at] == Occupancy::Unknown && !pocket && ++unknown >= in_cells(kHidden)) return true;
+    }
+    return false;
+  }
+
+ private:
+  bool on_edge(Cell c, Cell n) const {
+    const std::optional<PalletGrid>& grid = grids_.at(cells_.centre(c));
+    return !grid || off_edges(*grid, cells_.centre(c), n) < kStandsOnEdge;
+  }
+
+  const OccupancyGrid& cells_;
+  LocalGrids& grids_;
+  const Grid<std::uint8_t>* pockets_;
+  Grid<int> pieces_;
+};
+
 }  // namespace
 
 std::vector<Source> doubtful_walls(const Traversable& floor, double pallet, const Grid<std::uint8_t>* pockets) {
@@ -67,9 +129,9 @@ std::vector<Source> doubtful_walls(const Traversable& floor, double pallet, cons
   const OccupancyGrid& cells = floor.cells;
   const double resolution = floor.frame().resolution;
   const auto in_cells = [&](double length) { return static_cast<int>(std::lround(length / resolution)); };
-  const int before = std::max(1, in_cells(kBefore)), thick = in_cells(kThick), behind = in_cells(kBehind);
+  const int before = std::max(1, in_cells(kBefore));
   LocalGrids grids(cells, pallet);
-  const auto is_pocket = [&](Cell c) { return pockets != nullptr && cells.inside(c) && (*pockets)[c] != 0; };
+  const Background background(cells, grids, pockets);
   std::vector<Cell> occupied;
   for (int y = 1; y + 1 < cells.height(); ++y) {
     const Occupancy* const row = cells.row(y);
@@ -80,10 +142,7 @@ std::vector<Source> doubtful_walls(const Traversable& floor, double pallet, cons
   // `n` points from the free side into the wall.
   for (const Cell n : {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}}) {
     const Cell along{std::abs(n.y), std::abs(n.x)};
-    for (const Cell c : occupied)
-      face[c] = all(cells, c, {-n.x, -n.y}, 1, before, Occupancy::Free) &&
-                all(cells, c, n, 1 + thick, behind, Occupancy::Unknown) &&
-                !is_pocket({c.x + (1 + thick) * n.x, c.y + (1 + thick) * n.y});
+    for (const Cell c : occupied) face[c] = free_before(cells, c, n, before) && background.hidden(c, n);
     for (const Cell c : occupied) {
       if (face[c] == 0) continue;
       const std::vector<Cell> row = row_from(c, along, n, face);

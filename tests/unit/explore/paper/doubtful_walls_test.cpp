@@ -35,6 +35,19 @@ TEST(DoubtfulWalls, OtherWallsAreWhatTheySeem) {
   EXPECT_TRUE(found(5.6, kPallet, Occupancy::Unknown, 0.0).empty()) << "an arena without pallets";
 }
 
+/// Over the first of it the laser sees a strip of the slope, which is no ground that it got to.
+TEST(DoubtfulWalls, FloorThatShowsAsAThickWallOrAsTwoIsOneToo) {
+  OccupancyGrid cells = corridor_of_pallets(5.3, kPallet, Occupancy::Unknown);
+  test::fill(cells, 5.3, 0.05, 5.5, kPallet - 0.05, Occupancy::Occupied);
+  EXPECT_FALSE(doubtful_walls(test::measured(cells), kPallet).empty()) << "thick";
+  test::fill(cells, 5.5, 0.05, 5.65, kPallet - 0.05, Occupancy::Free);
+  test::fill(cells, 5.65, 0.05, 5.7, kPallet - 0.05, Occupancy::Occupied);
+  EXPECT_FALSE(doubtful_walls(test::measured(cells), kPallet).empty()) << "two";
+  test::fill(cells, 5.65, 0.05, 5.95, kPallet - 0.05, Occupancy::Free);
+  test::fill(cells, 5.95, 0.05, 6.0, kPallet - 0.05, Occupancy::Occupied);
+  EXPECT_TRUE(doubtful_walls(test::measured(cells), kPallet).empty()) << "the second is a wall, on an edge";
+}
+
 /// It is looked at when no frontier is left, once, and left alone when it stays.
 TEST(DoubtfulWalls, AreLookedAtWhenNoFrontierIsInReach) {
   OccupancyGrid cells = corridor_of_pallets(5.6, kPallet, Occupancy::Unknown);
