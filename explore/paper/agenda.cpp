@@ -15,7 +15,7 @@ using mrpt::math::TPoint2D;
 
 constexpr double kVisited = 0.30;                ///< closer to its target the robot has been there [m]
 constexpr double kNearTarget = 1.0;              ///< turned away from so near, it was seen not to be had [m]
-constexpr double kBarren = 240.0;                ///< without new ground for so long, the faces go first [s]
+constexpr double kBarren = 240.0;                ///< spent on frontiers in vain for so long, the faces go first [s]
 constexpr double kLookTurn = deg_to_rad(270.0);  ///< with a 240 deg scanner more than once around [rad]
 constexpr double kGlance = deg_to_rad(40.0);     ///< [rad]
 constexpr double kSearchReplan = 2.0;            ///< on the way to a viewpoint [s]
@@ -87,6 +87,7 @@ Plan Agenda::choose(const Situation& situation) {
   if (gained_.worth_a_try(situation.floor)) {
     gained_.mark(situation.floor);
     gained_at_ = situation.now;
+    in_vain_ = 0.0;
   }
   TargetChoice::View view{situation.floor, situation.T_map_base, situation.now, situation.left_alone};
   view.speed = situation.speed;
@@ -306,6 +307,7 @@ Order Agenda::finish(MissionEnd end, const std::string& why, Stamp now) {
 
 void Agenda::spend(double dt, const Situation& situation) {
   if (!target() || goal() == Goal::Home) return;
+  if (goal() == Goal::Frontier) in_vain_ += dt;
   if (!situation.left_alone.overdrawn(*target(), choice_.cost(), dt, situation.robot())) return;
   if (goal() == Goal::Place) situation.search.give_up_subject(situation.floor, situation.robot());
   leave_target(situation.left_alone, situation.robot());
@@ -340,7 +342,8 @@ Rounds::Standing Agenda::standing(const Situation& situation) const {
 /// keeps the robot from them. Without a search of faces to go on to all are.
 std::size_t Agenda::prospects_of(const Situation& situation, bool pushed) const {
   if (choice_.thorough() || !situation.search.on() || !config_.bar_targets) return frontier_left_;
-  if (situation.now - gained_at_ > kBarren) return 0;
+  // Where all walls are looked at squarely the search takes more time than there is: all else waits for it.
+  if ((situation.search.squarely() ? situation.now - gained_at_ : in_vain_) > kBarren) return 0;
   const auto settled = [&](const TPoint2D& p) { return situation.left_alone.barred_for_good(p); };
   return prospects(pushed ? with_all_pushed(situation.floor, config_.felt.pallet) : situation.floor,
                    situation.T_map_base, config_.planner.min_frontier_cells, settled);

@@ -131,6 +131,7 @@ class Agenda {
   std::size_t frontier_left_ = 0;  ///< of the last plan
   KnownGround gained_;             ///< when new ground was seen last ...
   Stamp gained_at_ = Stamp::never();
+  double in_vain_ = 0.0;  ///< spent on the way to frontiers since then [s]
   std::optional<AnchoredPoint> looked_from_;
   MissionEnd end_ = MissionEnd::UnderWay;
   std::string reason_;

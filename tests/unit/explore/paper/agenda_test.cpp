@@ -261,6 +261,23 @@ TEST(Agenda, WhatCannotBeHadIsNotTriedAgainBeforeTheFacesAreSearched) {
   }
 }
 
+/// What the robot does else meanwhile, such as to get free or to look into niches, tells nothing about frontiers.
+TEST(Agenda, TheFacesGoFirstAfterMuchTimeSpentOnFrontiersInVain) {
+  for (const double spent : {200.0, 250.0}) {
+    Ordered robot((PaperExplorerConfig()));
+    robot.narrow();
+    test::fill(robot.cells, 6.4, 0.3, 7.6, 1.0, Occupancy::Unknown);
+    ASSERT_EQ(robot.ask().kind, Order::Kind::Follow);
+    ASSERT_EQ(robot.agenda.goal(), Goal::Frontier);
+    robot.now = robot.now + 250.0;
+    for (const double s : {1.0, spent - 1.0}) robot.agenda.spend(s, robot.situation());
+    ASSERT_FALSE(robot.agenda.target()) << "it is barred";
+    for (int i = 0; i < 60 && robot.agenda.goal() != Goal::Place; ++i)
+      if (robot.ask().kind == Order::Kind::Follow) break;
+    EXPECT_EQ(robot.told("what failed before is tried again"), spent < 240.0);
+  }
+}
+
 /// The other way to the same target is taken to its end: the robot would turn back else once it has forgotten what
 /// stands in the shorter one.
 TEST(Agenda, TheSameTargetByADetourIsLedRoundWhatIsNew) {
