@@ -314,6 +314,7 @@ void PaperExplorer::replan(const slam::Mapper& mapper) {
     plan = agenda_.choose(situation());
     if (plan.found) pilot_.creep(now_);
   }
+  if (agenda_.begins_to_insist()) pilot_.forget_new_things();
   if (!new_things.empty() && agenda_.turn_away(plan, pilot_.left(), situation()) && pilot_.waits(now_))
     pilot_.remember_new_things(length_of(plan) / kDetourSpeed, now_);
   obey(agenda_.decide(std::move(plan), new_map, situation()));
