@@ -52,8 +52,9 @@ bool FeltObstacles::holds(const Thing& thing, const TPoint2D& p_map, double marg
 
 bool FeltObstacles::feel(const Anchor& anchor, bool behind, const robot::RobotModel& model,
                          const std::optional<PalletGrid>& grid, const std::vector<TPoint2D>& trail,
-                         const OccupancyGrid* known) {
+                         const OccupancyGrid* known, bool sure) {
   Thing thing;
+  thing.sure = sure;
   thing.anchor = anchor;
   thing.side = behind ? -1.0 : 1.0;
   thing.reach = 0.5 * model.length + kBeforeBody;
@@ -151,6 +152,7 @@ bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, cons
   for (Thing& before : things_) {
     if (!is_pallet_at(before, middle)) continue;
     thing.certain = !stood_on && (before.certain || !before.whole);
+    thing.sure = thing.sure || before.sure;
     thing.times = before.times + 1;
     thing.had_its_chance = before.had_its_chance;
     thing.let_go = before.let_go;
@@ -236,7 +238,7 @@ bool FeltObstacles::pardon(Stamp now) {
   bool any = false;
   for (Thing& thing : things_) {
     if (!counts(thing, now)) continue;
-    if (thing.is_pallet ? !thing.whole || thing.certain : thing.half_bar <= kNarrowBar) continue;
+    if (thing.is_pallet ? !thing.whole || thing.certain || thing.sure : thing.half_bar <= kNarrowBar) continue;
     thing.half_bar = kNarrowBar;
     thing.let_go = thing.is_pallet;
     thing.whole = false;

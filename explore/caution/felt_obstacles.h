@@ -35,10 +35,11 @@ class FeltObstacles {
 
   /// Something right before the body stopped it, or behind it when it drove backwards. `grid`: the arena's pallets;
   /// `trail`: where the robot's middle has been; `known`: the map, through whose walls no corner of the body reaches.
+  /// `sure`: a blow or a stall says so, not only that the robot stands: such a pallet is not pardoned.
   /// Says whether it takes a whole pallet for an obstacle.
   bool feel(const Anchor& anchor, bool behind, const robot::RobotModel& model,
             const std::optional<PalletGrid>& grid = std::nullopt, const std::vector<mrpt::math::TPoint2D>& trail = {},
-            const OccupancyGrid* known = nullptr);
+            const OccupancyGrid* known = nullptr, bool sure = false);
   /// Something holds the robot here. Where that is on a pallet that was taken for an obstacle and then let go of, it is
   /// one: it is left alone once the robot has left it. Returns that pallet.
   std::optional<Trap> trap(const mrpt::math::TPose2D& T_map_base);
@@ -53,9 +54,9 @@ class FeltObstacles {
   /// How many things count now.
   int count(Stamp now) const;
   /// Counts less as an obstacle, for nothing else can be reached: first every bar shrinks to its middle, which leaves a
-  /// lane beside it in a corridor, and every pallet to the middles of its sides, where crossing ramps have their high
-  /// corners; felt again it is taken for a step field, for good. The next time things that are not certain are
-  /// forgotten until they are felt again.
+  /// lane beside it in a corridor, and every pallet that is not sure to the middles of its sides, where crossing ramps
+  /// have their high corners; felt again it is taken for a step field, for good. The next time things that are not
+  /// certain are forgotten until they are felt again.
   /// Says whether anything changed.
   bool pardon(Stamp now);
   /// Forgets everything until it is felt again; says whether anything counted.
@@ -74,6 +75,7 @@ class FeltObstacles {
     bool is_pallet = false;
     bool whole = false;                 ///< all of the pallet counts
     bool certain = false;               ///< it was felt again after a pardon
+    bool sure = false;                  ///< something struck the body
     bool stubs = false;                 ///< else, whether the middles of its sides count
     bool inside = false;                ///< the robot's middle is on it
     bool let_go = false;                ///< it was an obstacle, and pardoned or forgotten

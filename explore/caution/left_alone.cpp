@@ -27,10 +27,10 @@ void LeftAlone::bar_for_good(const mrpt::math::TPoint2D& target, const Anchor& a
 }
 
 bool LeftAlone::feel(const Anchor& anchor, bool behind, const robot::RobotModel& model, const OccupancyGrid& known,
-                     const Trail& trail) {
+                     const Trail& trail, bool sure) {
   std::optional<PalletGrid> grid;
   if (config_.pallet > 0.0) grid = find_pallets(known, config_.pallet, position(anchor.T_map_base));
-  return felt_.feel(anchor, behind, model, grid, trail.points(), &known);
+  return felt_.feel(anchor, behind, model, grid, trail.points(), &known, sure);
 }
 
 bool LeftAlone::pardon(Stamp now) {

@@ -44,9 +44,9 @@ class LeftAlone {
   bool turned_away(const mrpt::math::TPoint2D& target) { return attempts_.turned_away(target); }
 
   /// Something stopped the body at `anchor`, right before it or, when it drove backwards, `behind` it. `known`: the
-  /// map, in which pallets may show. Says whether a whole pallet is left alone for it.
+  /// map, in which pallets may show; `sure`: something struck it. Says whether a whole pallet is left alone for it.
   bool feel(const Anchor& anchor, bool behind, const robot::RobotModel& model, const OccupancyGrid& known,
-            const Trail& trail);
+            const Trail& trail, bool sure = false);
   /// Something holds the robot here: the pallet that it has to get out of, if it is on one that was let go of.
   std::optional<Trap> trap(const mrpt::math::TPose2D& T_map_base) { return felt_.trap(T_map_base); }
   /// The robot stands here in good order.

@@ -34,6 +34,10 @@ class PathWatch {
   /// Remembers what it found last for `seconds` at least: as long as the robot needs for the way round it. It would
   /// turn back half-way else, and find it again.
   void remember(double seconds, Stamp now);
+  void forget() {
+    found_ = {};
+    kept_.clear();
+  }
   /// The mapper corrected its past.
   void follow(const slam::Mapper& mapper);
 

@@ -65,6 +65,7 @@ class Pilot {
   std::vector<mrpt::math::TPoint2D> new_things(Stamp now) { return watch_.obstacles(now); }
   /// It waits for another way round what was found in this one.
   bool waits(Stamp now) const { return watch_.waits(now); }
+  void forget_new_things() { watch_.forget(); }
   /// What was found last is not forgotten for `seconds`.
   void remember_new_things(double seconds, Stamp now) { watch_.remember(seconds, now); }
   /// The mapper corrected its past.

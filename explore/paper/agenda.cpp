@@ -21,6 +21,8 @@ constexpr double kGlance = deg_to_rad(40.0);     ///< [rad]
 constexpr double kSearchReplan = 2.0;            ///< on the way to a viewpoint [s]
 constexpr double kArrivedReplan = 0.3;           ///< standing at the end of the way [s]
 constexpr double kDetour = 3.0;                  ///< way over distance where no way is known
+constexpr double kFarther = 4.0;                 ///< the next place costs so much more: the way to this one is shut [m]
+constexpr double kWandered = 0.5;                ///< nearer to its place, a turn has carried it off [m]
 constexpr double kSmallShift = 0.10;             ///< of the robot's place by a correction of the map [m]
 
 std::string text(const TPoint2D& p) {
@@ -65,6 +67,7 @@ void Agenda::note(Stamp now, const std::string& why) {
 void Agenda::follow(const slam::Mapper& mapper, double shift) {
   choice_.follow(mapper);
   if (looked_from_) looked_from_->follow(mapper);
+  for (AnchoredPoint& place : insisted_on_) place.follow(mapper);
   if (shift > kSmallShift) choice_.drop_target();
   plan_soon();
 }
@@ -93,6 +96,8 @@ Plan Agenda::choose(const Situation& situation) {
   view.speed = situation.speed;
   // What is off the grid may be solid after all: it is driven at for the place that is asked for, and for no other.
   view.places_only = pushing_.what() == Pushing::What::OffGrid;
+  const bool wanted =
+      choice_.frontiers_done() && goal() == Goal::Place && target() && !situation.search.subject_seen(situation.floor);
   TargetChoice::Choice choice = choice_.choose(view, situation.search);
   if (choice.no_niche) {
     frontier_left_ = choice.plan.frontier_left;
@@ -105,12 +110,33 @@ Plan Agenda::choose(const Situation& situation) {
     }
     choice = choice_.choose_of_all_places(view, situation.search, std::move(choice.plan));
   }
+  insist(wanted, choice.plan, situation);
   if (choice.into_reach) note(situation.now, "a frontier has come into reach");
   return std::move(choice.plan);
 }
 
+/// On the way to a place that is still `wanted` the floor of a slope may be drawn across the way, as seen from its
+/// foot: it drives on all the same, once. From farther off the way would be free again, and the robot drive to and fro.
+void Agenda::insist(bool wanted, const Plan& plan, const Situation& situation) {
+  if (push_begun_) return;
+  const bool shut = !plan.found || plan.cost > cost_left_ + kFarther;
+  if (insists_) {
+    if (!shut) return;
+    end_pushing();
+    push_begun_ = true;
+  } else if (wanted && shut && !pushing_.on() && distance(*target(), position(situation.T_map_base)) > kWandered &&
+             std::none_of(insisted_on_.begin(), insisted_on_.end(), [&](const AnchoredPoint& p) {
+               return distance(p.p_map(), *target()) < config_.planner.same_target;
+             })) {
+    insisted_on_.emplace_back(situation.robot(), *target());
+    pushing_.start_on_slopes();
+    insists_ = push_begun_ = true;
+    note(situation.now, "the way to the place is shut: what may be the floor of a slope is driven at");
+  }
+}
+
 bool Agenda::turn_away(const Plan& plan, double left, const Situation& situation) {
-  if (!plan.found || !target()) return false;
+  if (!plan.found || !target() || push_begun_) return false;
   if (!choice_.turns_away(plan)) return length_of(plan) > left + kLongerWay;
   if (goal() == Goal::Home) return false;
   const bool again = situation.left_alone.turned_away(*target());
@@ -158,6 +184,7 @@ Order Agenda::decide(Plan plan, bool new_map, const Situation& situation) {
   // From a hand's breadth farther down a slope it still looks like a wall.
   if (goal() == Goal::Frontier && away < (plan.doubtful ? kAtViewpoint : kVisited))
     return visited_in_vain(plan, situation);
+  if (!insists_) cost_left_ = plan.cost;
   if (choice_.take(plan))
     note(situation.now, target_text(goal(), !choice_.frontiers_done(), plan, config_.planner.transform.d_min));
   Order order;
@@ -224,7 +251,7 @@ Order Agenda::nothing_left(const Situation& situation) {
 
 void Agenda::end_pushing() {
   pushing_.end();
-  pushes_for_niche_ = false;
+  pushes_for_niche_ = insists_ = false;
 }
 
 /// Things in the way that were not seen yet when things were pushed aside last: once for each piece of ground gained.
@@ -281,7 +308,7 @@ void Agenda::begin_round(const std::string& news, Stamp now) {
   note(now, news);
   choice_.explore();
   pushing_.new_round();
-  pushes_for_niche_ = false;
+  pushes_for_niche_ = insists_ = false;
   known_at_niche_.forget();
   looked_from_.reset();
   plan_soon();

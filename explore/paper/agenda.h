@@ -100,11 +100,15 @@ class Agenda {
   /// The place to search was seen from the way.
   void look_made(const Situation& situation);
 
+  /// From this plan on the robot drives at what has just shut its way: that is no new obstacle.
+  bool begins_to_insist() const { return insists_ && push_begun_; }
+
   Pushing& pushing() { return pushing_; }
   const Pushing& pushing() const { return pushing_; }
   double clearance_cap() const { return choice_.clearance_cap(); }
 
  private:
+  void insist(bool wanted, const Plan& plan, const Situation& situation);
   Order face_subject(const Situation& situation);
   Order visited_in_vain(const Plan& plan, const Situation& situation);
   Order nothing_left(const Situation& situation);
@@ -126,7 +130,10 @@ class Agenda {
   KnownGround known_off_grid_;     ///< when things off the grid were driven at last for the sake of new ground
   KnownGround known_at_niche_;     ///< when things were pushed aside last on the way to a niche
   bool pushes_for_niche_ = false;  ///< what is pushed aside now is for the sake of one
-  bool push_begun_ = false;        ///< by the plan under way, which is to be made anew
+  double cost_left_ = 0.0;         ///< of the last plan, but for those of pushing for its sake [m]
+  bool insists_ = false;           ///< what stands off the grid is driven at, for the place that it was driving to
+  std::vector<AnchoredPoint> insisted_on_;  ///< such places
+  bool push_begun_ = false;                 ///< by the plan under way, which is to be made anew
   PlanClock clock_;
   std::size_t frontier_left_ = 0;  ///< of the last plan
   KnownGround gained_;             ///< when new ground was seen last ...

@@ -71,7 +71,7 @@ void add_what_joins(OccupancyGrid& inside, Thing& thing) {
 
 }  // namespace
 
-bool free_off_grid(Traversable& floor, double pallet) {
+bool free_off_grid(Traversable& floor, double pallet, bool floor_only) {
   if (pallet <= 0.0) return false;
   const OccupancyGrid walls = floor.cells;
   LocalGrids grids(walls, pallet);
@@ -94,6 +94,7 @@ bool free_off_grid(Traversable& floor, double pallet) {
       continue;
     add_what_joins(inside, thing);
     const bool wide = thing.longer_side() * walls.frame().resolution >= kWide;
+    if (floor_only && !wide) continue;
     (wide ? doubt : loosen)(floor, thing);
     any = true;
   }

@@ -251,8 +251,9 @@ void PaperExplorer::get_free_of(const StuckWatch::Hold& hold, const slam::Mapper
   const bool trapped = way_out.has_value();
   const bool again = recovery_.begin(hold.met, pose_, now_, std::move(way_out));
   if (again && agenda_.target() && agenda_.goal() != Goal::Home) agenda_.leave_target(left_alone_, {now_, pose_});
-  const bool pallet = hold.met != Escape::Met::Turning &&
-                      left_alone_.feel({now_, pose_}, hold.met == Escape::Met::Backwards, model_, floor_.cells, trail_);
+  const bool pallet =
+      hold.met != Escape::Met::Turning &&
+      left_alone_.feel({now_, pose_}, hold.met == Escape::Met::Backwards, model_, floor_.cells, trail_, !hold.stands);
   agenda_.note(now_, hold.how + (pallet    ? ": backs off and keeps clear of the pallet ahead"
                                  : trapped ? ": leaves the pallet"
                                            : ": backs off and plans around it"));
@@ -313,6 +314,7 @@ void PaperExplorer::replan(const slam::Mapper& mapper) {
     plan = agenda_.choose(situation());
     if (plan.found) pilot_.creep(now_);
   }
+  if (agenda_.begins_to_insist()) pilot_.forget_new_things();
   if (!new_things.empty() && agenda_.turn_away(plan, pilot_.left(), situation()) && pilot_.waits(now_))
     pilot_.remember_new_things(length_of(plan) / kDetourSpeed, now_);
   obey(agenda_.decide(std::move(plan), new_map, situation()));

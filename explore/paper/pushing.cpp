@@ -23,6 +23,10 @@ constexpr double kRoll = 0.15;      ///< farther they do not roll between two lo
 }  // namespace
 
 void Pushing::free_things(Traversable& floor) const {
+  if (slopes_only_) {
+    free_off_grid(floor, pallet_, true);
+    return;
+  }
   if (on()) free_small_things(floor, what_ == What::Single ? kPaper : kHeap);
   if (what_ >= What::Strips) free_strips(floor);
   if (what_ == What::OffGrid) free_off_grid(floor, pallet_);

@@ -31,7 +31,15 @@ class Pushing {
 
   /// Drives at single things from now on, or at the next kind if it does already. Returns at what.
   What start(const Traversable& floor);
-  void end() { what_ = What::Nothing; }
+  /// Drives from now on at what may be the floor of a slope, off the grid and wide, and at no small things.
+  void start_on_slopes() {
+    what_ = What::OffGrid;
+    slopes_only_ = true;
+  }
+  void end() {
+    what_ = What::Nothing;
+    slopes_only_ = false;
+  }
   /// A new round begins: things are driven round again, and it may be tried again in it.
   void new_round() {
     end();
@@ -49,6 +57,7 @@ class Pushing {
  private:
   double pallet_;
   What what_ = What::Nothing;
+  bool slopes_only_ = false;
   std::vector<mrpt::math::TPoint2D> rolling_;  ///< hits on what is being pushed, of the last check [m, map frame]
   KnownGround known_then_;                     ///< when it began last in this round
 };

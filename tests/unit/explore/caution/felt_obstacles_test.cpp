@@ -143,6 +143,20 @@ TEST(FeltObstacles, AmongStepsThePalletItStandsOnIsToBlameNotTheNext) {
   }
 }
 
+/// Steps are not crossed however often they are tried, and crossing ramps let the robot in and not out again.
+TEST(FeltObstacles, APalletThatStruckTheBodyIsNotPardonedButForgottenOnce) {
+  const PalletGrid grid;
+  const TPoint2D middle{3.0, 0.6};
+  for (const bool sure : {false, true}) {
+    FeltObstacles felt;
+    EXPECT_TRUE(felt.feel({at(0.0), {2.1, 0.6, 0.0}}, false, kModel, grid, {}, nullptr, sure));
+    EXPECT_EQ(felt.pardon(at(1.0)), !sure);
+    EXPECT_EQ(nearest(felt.points(at(2.0)), middle) < 0.1, sure);
+    felt.forget_once(at(3.0));
+    EXPECT_GT(nearest(felt.points(at(4.0)), middle), 0.1);
+  }
+}
+
 /// Aslant beside the corner where four pallets meet, the front reaches into one and a corner of the body into another:
 /// a field of steps in that one shut the only lane to a third of an arena.
 TEST(FeltObstacles, WhereACornerMayHaveMetAnotherPalletNeitherIsShut) {

@@ -139,6 +139,35 @@ TEST(Agenda, PushesOnToANicheBeforeItSearchesAllElse) {
   EXPECT_FALSE(robot.agenda.pushing().on());
 }
 
+/// On the way to a niche the floor of a slope is drawn across its way: once it drives on all the same, for from farther
+/// off the way would be free again, and the robot drive to and fro between this niche and one far away.
+TEST(Agenda, InsistsOnceOnAPlaceWhoseWayIsShutOffTheGrid) {
+  Ordered robot((PaperExplorerConfig()));
+  robot.cells = test::corridor_of_pallets(7.8, 0.0, Occupancy::Free);
+  for (const double niche : {0.5, 9.1})
+    for (const double side : {-0.19, 0.19})
+      test::fill(robot.cells, niche + side - 0.03, 0.0, niche + side + 0.03, 0.42, Occupancy::Occupied);
+  robot.pose = {7.0, 0.6, 0.0};
+  const auto next_way = [&] {
+    Order order;
+    for (int i = 0; i < 60 && order.kind != Order::Kind::Follow; ++i) order = robot.ask();
+    return order.kind == Order::Kind::Follow ? order.plan.target.x : 0.0;
+  };
+  EXPECT_GT(next_way(), 7.8);
+  const OccupancyGrid before = robot.cells;
+  test::fill(robot.cells, 7.77, 0.0, 7.83, test::kPallet, Occupancy::Occupied);
+  EXPECT_GT(next_way(), 7.8);
+  EXPECT_TRUE(robot.agenda.pushing().on());
+  // It is a wall: a wall on an edge is shut, too.
+  test::fill(robot.cells, 7 * test::kPallet - 0.03, 0.0, 7 * test::kPallet + 0.03, test::kPallet, Occupancy::Occupied);
+  EXPECT_LT(next_way(), 7.8);
+  EXPECT_FALSE(robot.agenda.pushing().on());
+  robot.cells = before;
+  EXPECT_GT(next_way(), 7.8);
+  test::fill(robot.cells, 7.77, 0.0, 7.83, test::kPallet, Occupancy::Occupied);
+  EXPECT_LT(next_way(), 7.8) << "once";
+}
+
 TEST(Agenda, OnTheWayHomeThingsAreDrivenRoundAgain) {
   Ordered robot;
   test::fill(robot.cells, 4.0, 0.0, 4.1, 4.0, Occupancy::Occupied);

@@ -42,6 +42,16 @@ TEST(OffGrid, SoIsPaperBesideAWall) {
   EXPECT_GT(freed(5.2, 0.45, 5.45, 0.7), 0.99);
 }
 
+TEST(OffGrid, WhereOnlyFloorIsAskedForSmallThingsStay) {
+  OccupancyGrid cells = corridor_of_pallets(4 * kPallet, 0.0, Occupancy::Free);
+  test::fill(cells, 5.2, 0.25, 5.3, 0.95, Occupancy::Occupied);
+  test::fill(cells, 6.5, 0.4, 6.8, 0.7, Occupancy::Occupied);
+  Traversable floor = test::measured(cells);
+  free_off_grid(floor, kPallet, true);
+  EXPECT_EQ(count(floor, 5.2, 0.25, 5.3, 0.95, Occupancy::Occupied), 0);
+  EXPECT_GT(count(floor, 6.5, 0.4, 6.8, 0.7, Occupancy::Occupied), 0);
+}
+
 TEST(OffGrid, WallsAndTheSidesOfBoxesStay) {
   EXPECT_EQ(freed(4 * kPallet - 0.03, 0.0, 4 * kPallet + 0.03, kPallet), 0.0) << "on an edge";
   EXPECT_EQ(freed(4 * kPallet + 0.08, 0.0, 4 * kPallet + 0.14, kPallet), 0.0) << "and a little off it";
