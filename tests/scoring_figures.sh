@@ -178,7 +178,7 @@ speed() {
   judge "speed: score_map, 800 x 800" "$(value BM_ScoreMap cpu_time)" "<=" 400 ms
   judge "speed: score_map from files" "$(value BM_ScoreFiles cpu_time)" "<=" 400 ms
   judge "speed: score_map with warp and features" "$(value BM_ScoreMapWithWarp cpu_time)" "<=" 1000 ms
-  judge "speed: rubble score" "$(command_s "$build/rubble" score "$work/map.tif" "$work/truth.tif")" "<=" 0.7 s
+  judge "speed: rubble score" "$(command_s "$build/rubble" score "$work/map.tif" "$work/truth.tif")" "<=" 0.4 s
   judge "speed: rubble score --warp" "$(command_s "$build/rubble" score "$work/map.tif" "$work/truth.tif" --warp)" "<=" 1.3 s
   judge "speed: start-up (rubble --version)" "$(command_s "$build/rubble" --version)" "<=" 0.3 s
 }
