@@ -22,6 +22,7 @@ constexpr double kSearchReplan = 2.0;            ///< on the way to a viewpoint 
 constexpr double kArrivedReplan = 0.3;           ///< standing at the end of the way [s]
 constexpr double kDetour = 3.0;                  ///< way over distance where no way is known
 constexpr double kFarther = 4.0;                 ///< the next place costs so much more: the way to this one is shut [m]
+constexpr double kWandered = 0.5;                ///< nearer to its place, a turn has carried it off [m]
 constexpr double kSmallShift = 0.10;             ///< of the robot's place by a correction of the map [m]
 
 std::string text(const TPoint2D& p) {
@@ -123,8 +124,7 @@ void Agenda::insist(bool wanted, const Plan& plan, const Situation& situation) {
     if (!shut) return;
     end_pushing();
     push_begun_ = true;
-  } else if (wanted && shut && !pushing_.on() && !situation.turning &&
-             distance(*target(), position(situation.T_map_base)) > kNearTarget &&
+  } else if (wanted && shut && !pushing_.on() && distance(*target(), position(situation.T_map_base)) > kWandered &&
              std::none_of(insisted_on_.begin(), insisted_on_.end(), [&](const AnchoredPoint& p) {
                return distance(p.p_map(), *target()) < config_.planner.same_target;
              })) {
