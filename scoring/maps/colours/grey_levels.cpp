@@ -150,8 +150,7 @@ LabelImage classify_grey(const cv::Mat& picture, const cv::Mat& apart, const cv:
   out.classes = cv::Mat(grey.size(), CV_8U, cv::Scalar(static_cast<int>(Occupancy::Free)));
   out.classes.setTo(static_cast<int>(Occupancy::Occupied), even < kWallBelow);
   const auto tell_pale = [&](const cv::Mat& not_asked) {
-    if (pale_share(even, not_asked) > kMostPale)
-      out.recognised += ", walls pale as in a picture that was blurred or made smaller: thin ones may be lost";
+    if (pale_share(even, not_asked) > kMostPale) out.recognised += kWallsPale;
   };
   if (roles.unknown < 0) {
     tell_pale(cv::Mat::zeros(grey.size(), CV_8U));

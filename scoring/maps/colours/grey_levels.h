@@ -7,6 +7,10 @@
 
 namespace rubble::scoring {
 
+/// What a reader says of walls that ran into what is beside them.
+inline constexpr const char* kWallsPale =
+    ", walls pale as in a picture that was blurred or made smaller: thin ones may be lost";
+
 /// Occupancy values of an image, CV_8U, row 0 at the top.
 struct LabelImage {
   cv::Mat classes;

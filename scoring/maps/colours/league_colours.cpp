@@ -433,6 +433,17 @@ bool is_grey_league_map(const RgbImage& image) {
   return 20 * levels[226] >= pixels && 20 * levels[237] >= pixels && 100 * floor >= pixels;
 }
 
+/// Much that is bluish and little that is blue enough: walls that ran into the floor beside them.
+bool has_pale_walls(const RgbImage& image, const cv::Mat& labels) {
+  constexpr double kBluish = 0.12;  // share of wall
+  constexpr std::size_t kMost = 3;  // bluish pixels a pixel of wall
+  std::size_t bluish = 0;
+  each_run(image, [&](const Colour& c, int, int, int length) {
+    if (wall_share(c) >= kBluish) bluish += static_cast<std::size_t>(length);
+  });
+  return bluish > kMost * static_cast<std::size_t>(cv::countNonZero(labels == kWall));
+}
+
 }  // namespace
 
 std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
@@ -549,6 +560,7 @@ LabelImage classify_league(const RgbImage& as_given) {
                               : lossy ? " (compressed with loss)"
                                       : " (resampled)",
                               share);
+  if (!exact && has_pale_walls(as_given, out.classes)) out.recognised += kWallsPale;
   return out;
 }
 

@@ -86,11 +86,10 @@ Planes ground_of(const Planes& picture) {
 }
 
 /// The colour of the ink itself: what it adds to the ground's around each pixel (Gaussian, `sigma`), summed and divided
-/// by the ink.
-Planes of_ink(const Planes& picture, const Planes& ground, const cv::Mat& ink, double sigma) {
-  constexpr float kDark = 0.25F;  // ink that counts
+/// by the ink: all that is as dark as `least` counts. JPEG leaves ripples of ink beside lines, blurring skirts of them.
+Planes of_ink(const Planes& picture, const Planes& ground, const cv::Mat& ink, double sigma, float least) {
   cv::Mat counted = ink.clone(), around, blue, red;
-  counted.setTo(0.0F, ink < kDark);
+  counted.setTo(0.0F, ink < least);
   cv::GaussianBlur(counted, around, {}, sigma);
   around = cv::max(around, 1e-6F);
   cv::GaussianBlur(picture.blue - ground.blue, blue, {}, sigma);
@@ -98,22 +97,27 @@ Planes of_ink(const Planes& picture, const Planes& ground, const cv::Mat& ink, d
   return {around, ground.blue + blue / around, ground.red + red / around};
 }
 
-/// The middles of thin lines, along one direction at least: no paler than the pixels beside them, and those two
-/// pixels off are less than half as dark. Pictures made smaller have walls that are nowhere as dark as they were.
-cv::Mat thin_lines(const cv::Mat& ink, const cv::Mat& ground) {
+/// The middles of thin lines, along one direction at least: no paler than the pixels beside them, and those two to
+/// `widest` pixels off are less than half as dark. Pictures made smaller, or blurred, have walls that are nowhere as
+/// dark as they were.
+cv::Mat thin_lines(const cv::Mat& ink, const cv::Mat& ground, int widest) {
   constexpr float kPalest = 0.25F;
   constexpr float kGridLine = 190.0F, kDarker = 0.15F;
   cv::Mat out = cv::Mat::zeros(ink.size(), CV_8U);
-  const auto is_middle = [](float before2, float before, float own, float after, float after2) {
-    return own >= before && own >= after && 2.0F * std::max(before2, after2) < own;
+  const auto is_middle = [&](int x, int y, int dx, int dy) {
+    const auto at = [&](int k) { return ink.at<float>(y + k * dy, x + k * dx); };
+    const float own = at(0);
+    if (own < at(-1) || own < at(1)) return false;
+    for (int k = 2; k <= widest; ++k)
+      if (2.0F * std::max(at(-k), at(k)) < own) return true;
+    return false;
   };
-  for (int y = 2; y + 2 < ink.rows; ++y)
-    for (int x = 2; x + 2 < ink.cols; ++x) {
-      const auto at = [&](int dx, int dy) { return ink.at<float>(y + dy, x + dx); };
-      const float own = at(0, 0), light = ground.at<float>(y, x);
+  for (int y = widest; y + widest < ink.rows; ++y)
+    for (int x = widest; x + widest < ink.cols; ++x) {
+      const float light = ground.at<float>(y, x);
       const float of_grid = (light - kGridLine) / (light - kWallBrightness);  // 0.3 on white
-      if (own >= std::max(kPalest, of_grid + kDarker) && (is_middle(at(-2, 0), at(-1, 0), own, at(1, 0), at(2, 0)) ||
-                                                          is_middle(at(0, -2), at(0, -1), own, at(0, 1), at(0, 2))))
+      if (ink.at<float>(y, x) >= std::max(kPalest, of_grid + kDarker) &&
+          (is_middle(x, y, 1, 0) || is_middle(x, y, 0, 1)))
         out.at<unsigned char>(y, x) = 255;
     }
   return out;
@@ -123,16 +127,20 @@ cv::Mat thin_lines(const cv::Mat& ink, const cv::Mat& ground) {
 void dark_in(const RgbImage& image, const cv::Range& band, cv::Mat& weak, cv::Mat& sure) {
   constexpr float kSure = 0.62F;
   constexpr float kWall = 0.48F;
-  constexpr float kSureLine = 0.35F;
+  constexpr float kSureLine = 0.35F, kBlurredLine = 0.28F;
+  constexpr float kLine = 0.25F, kSkirt = 0.03F;  // ink that counts
   constexpr float kClearly = 42.0F, kMostMore = 70.0F, kRedder = 12.0F, kBluer = 16.0F;
   const cv::Range rows(std::max(0, band.start - kReach), std::min(image.height, band.end + kReach));
   const Planes picture = planes_of(image, rows);
   const Planes ground = ground_of(picture);
   const cv::Mat ink = (ground.light - picture.light) / (ground.light - kWallBrightness);
   // Between symbols the colour near by is the wall's own, in the open the one around.
-  const Planes near = of_ink(picture, ground, ink, 1.0);
-  const Planes wide = of_ink(picture, ground, ink, kWide);
-  const cv::Mat line = thin_lines(ink, ground.light);
+  const Planes near = of_ink(picture, ground, ink, 1.0, kLine);
+  const Planes wide = of_ink(picture, ground, ink, kWide, kLine);
+  const Planes with_skirts = of_ink(picture, ground, ink, kWide, kSkirt);
+  const cv::Mat line = thin_lines(ink, ground.light, 2);
+  const cv::Mat blurred_line = thin_lines(ink, ground.light, 4);
+  cv::Mat blurred = cv::Mat::zeros(weak.size(), CV_8U);
   for (int y = 0; y < weak.rows; ++y) {
     const int at = band.start - rows.start + y;
     for (int x = 0; x < weak.cols; ++x) {
@@ -145,12 +153,18 @@ void dark_in(const RgbImage& image, const cv::Range& band, cv::Mat& weak, cv::Ma
         return plain || (more > kClearly && more < kMostMore && red < most_red + kRedder && blue < most_blue + kBluer);
       };
       const bool thin = line.at<unsigned char>(at, x) != 0;
+      const bool dark = a >= kWall || thin, very_dark = a >= kSure || (thin && a >= kSureLine);
       weak.at<unsigned char>(y, x) =
-          (a >= kWall || thin) && (is(wide, 21.0F, 8.0F, kMostBlue) || is(near, 27.0F, 4.0F, 46.0F)) ? 255 : 0;
-      sure.at<unsigned char>(y, x) =
-          (a >= kSure || (thin && a >= kSureLine)) && is(wide, 31.0F, 2.0F, kMostBlue) ? 255 : 0;
+          dark && (is(wide, 21.0F, 8.0F, kMostBlue) || is(near, 27.0F, 4.0F, 46.0F)) ? 255 : 0;
+      sure.at<unsigned char>(y, x) = very_dark && is(wide, 31.0F, 2.0F, kMostBlue) ? 255 : 0;
+      if (blurred_line.at<unsigned char>(at, x) != 0 && a >= kBlurredLine && is(with_skirts, 31.0F, 2.0F, kMostBlue))
+        blurred.at<unsigned char>(y, x) = 255;
     }
   }
+  // Sharp pictures have such pixels, too: where two walls meet.
+  if (cv::countNonZero(blurred) < 2 * cv::countNonZero(sure)) return;
+  weak |= blurred;
+  sure |= blurred;
 }
 
 }  // namespace
