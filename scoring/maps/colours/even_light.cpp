@@ -2,7 +2,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <functional>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -62,9 +64,21 @@ std::vector<cv::Point> most_uneven(const cv::Mat& smooth) {
   return most >= kUneven ? best : std::vector<cv::Point>();
 }
 
+/// Three greys cover most of it: no light falls off over a drawing, though it may have been blended with what is
+/// beside.
+bool is_of_few_greys(const cv::Mat& grey) {
+  constexpr double kMost = 0.8;
+  std::array<int, 256> count{};
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x) ++count[grey.at<unsigned char>(y, x)];
+  std::partial_sort(count.begin(), count.begin() + 3, count.end(), std::greater<>());
+  return count[0] + count[1] + count[2] >= kMost * static_cast<double>(grey.total());
+}
+
 }  // namespace
 
 std::optional<EvenLight> with_even_light(const cv::Mat& grey) {
+  if (is_of_few_greys(grey)) return std::nullopt;
   cv::Mat smooth;
   cv::medianBlur(grey, smooth, 5);
   const std::vector<cv::Point> ground = most_uneven(smooth);

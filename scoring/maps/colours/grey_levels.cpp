@@ -73,7 +73,8 @@ bool are_walls_like_the_rim_of(const cv::Mat& canvas, const cv::Mat& grey, const
   if (roles.unknown >= 0 || cv::countNonZero(canvas) == 0) return false;
   const double beyond = cv::mean(grey, canvas)[0];
   const double least = std::min<double>(beyond, roles.free), most = std::max<double>(beyond, roles.free);
-  return roles.wall > least + kUnknownTolerance && roles.wall < most - kUnknownTolerance;
+  const double apart = std::max<double>(kUnknownTolerance, 0.2 * (most - least));  // thin walls are pale when blended
+  return roles.wall > least + apart && roles.wall < most - apart;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "scoring/maps/colours/grey_levels.h"
 #include "scoring/maps/colours/league_colours.h"
 #include "scoring/maps/colours/lettering.h"
+#include "scoring/maps/colours/turned_canvas.h"
 
 namespace rubble::scoring {
 
@@ -79,8 +80,14 @@ LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
   if (even) grey = even->grey;
   const cv::Mat as_it_was = grey.clone();
   const bool painted = paint_over_colours(image, nothing, grey);
-  const cv::Mat canvas = canvas_corners(grey);
-  LabelImage out = classify_grey(grey, nothing | canvas, canvas);
+  const TurnedCanvas turned = canvas_of_the_walls_grey(grey);
+  const cv::Mat canvas = turned.mask.empty() ? canvas_corners(grey) : turned.mask;
+  cv::Mat levels = grey.clone(), apart = canvas.clone();
+  if (turned.ground >= 0) {  // the map's margin goes on
+    levels.setTo(turned.ground, canvas);
+    apart.setTo(0);
+  }
+  LabelImage out = classify_grey(levels, nothing | apart, apart);
   out.classes.setTo(static_cast<int>(Occupancy::Unknown), canvas);
   if (cv::countNonZero(canvas) > 0) out.recognised += ", corners of the canvas are unknown";
   if (even) out.recognised += ", darker by up to " + std::to_string(even->differed) + " towards its rim before";
