@@ -68,15 +68,6 @@ bool is_passed_over(const cv::Mat& seen, const cv::Point& corner) {
   return seen.at<unsigned char>(corner.y > 0 ? 1 : 0, corner.x > 0 ? 1 : 0) != 0;
 }
 
-/// The most frequent grey of some pixels.
-int main_grey(const cv::Mat& grey, const cv::Mat& of) {
-  std::array<int, 256> count{};
-  for (int y = 0; y < grey.rows; ++y)
-    for (int x = 0; x < grey.cols; ++x)
-      if (of.at<unsigned char>(y, x) != 0) ++count[grey.at<unsigned char>(y, x)];
-  return static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
-}
-
 /// A blended edge passes through all greys between two; a wall whose grey lies between them has one.
 bool has_a_line_between(const cv::Mat& grey, const cv::Mat& way, int inside, int beside) {
   constexpr double kThere = 0.25;  // of the way
@@ -159,6 +150,14 @@ bool lies_in_one_ground(const cv::Mat& grey, const cv::Mat& region, const cv::Ma
 }
 
 }  // namespace
+
+int main_grey(const cv::Mat& grey, const cv::Mat& of) {
+  std::array<int, 256> count{};
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x)
+      if (of.at<unsigned char>(y, x) != 0) ++count[grey.at<unsigned char>(y, x)];
+  return static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
+}
 
 void clear_canvas_corners(cv::Mat& classes) {
   const auto unknown = static_cast<unsigned char>(Occupancy::Unknown);

@@ -13,4 +13,7 @@ void clear_canvas_corners(cv::Mat& classes);
 /// is convex.
 cv::Mat canvas_corners(const cv::Mat& grey);
 
+/// The most frequent grey (CV_8U) of the pixels that `of` marks (non-zero).
+int main_grey(const cv::Mat& grey, const cv::Mat& of);
+
 }  // namespace rubble::scoring

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/angle.h"
+#include "scoring/maps/colours/canvas_corners.h"
 
 namespace rubble::scoring {
 namespace {
@@ -127,14 +128,6 @@ cv::Mat beyond(const Rectangle& r, const cv::Size& size, double depth) {
       out.at<unsigned char>(y, x) = within < depth ? 255 : 0;
     }
   return out;
-}
-
-int main_grey(const cv::Mat& grey, const cv::Mat& of) {
-  std::array<int, 256> count{};
-  for (int y = 0; y < grey.rows; ++y)
-    for (int x = 0; x < grey.cols; ++x)
-      if (of.at<unsigned char>(y, x) != 0) ++count[grey.at<unsigned char>(y, x)];
-  return static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
 }
 
 cv::Mat near_grey(const cv::Mat& grey, int level) { return (grey >= level - kOneGrey) & (grey <= level + kOneGrey); }
