@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 #include <vector>
 
 namespace rubble::scoring {
