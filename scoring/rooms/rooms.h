@@ -8,9 +8,10 @@
 
 #include "base/grid.h"
 #include "scoring/rooms/room_config.h"
-#include "scoring/rooms/room_floor.h"
 
 namespace rubble::scoring {
+
+struct RoomFloor;
 
 /// One room of a map: the feature of section IV.D. Nothing in it but `centre`, the box and `direction` depends on the
 /// frame.
