@@ -93,23 +93,32 @@ class Background {
   /// Whether `n` leads from the face of a wall at `c` to unknown ground, and before that neither to the floor that the
   /// face stands on nor to a wall on an edge.
   bool hidden(Cell c, Cell n) const {
+    const int steps = steps_to_unknown(c, n);
+    // Last, for to find out where the edges are takes longest.
+    for (int i = 1; i <= steps; ++i) {
+      const Cell at{c.x + i * n.x, c.y + i * n.y};
+      if (cells_.inside(at) && cells_[at] == Occupancy::Occupied && on_edge(at, n)) return false;
+    }
+    return steps > 0;
+  }
+
+ private:
+  /// Cells from `c` on until enough is unknown, or the map ends; 0: the floor before it comes first, or nothing does.
+  int steps_to_unknown(Cell c, Cell n) const {
     const double resolution = cells_.frame().resolution;
     const auto in_cells = [&](double length) { return static_cast<int>(std::lround(length / resolution)); };
     const int here = pieces_[{c.x - n.x, c.y - n.y}];
     int unknown = 0;
     for (int i = 1; i <= in_cells(kBehind); ++i) {
       const Cell at{c.x + i * n.x, c.y + i * n.y};
-      if (!cells_.inside(at)) return true;
-      if (cells_[at] == Occupancy::Occupied && on_edge(at, n)) return false;
+      if (!cells_.inside(at)) return i;
       if (i <= in_cells(kThick)) continue;
-      if (pieces_[at] == here) return false;
+      if (pieces_[at] == here) return 0;
       const bool pocket = pockets_ != nullptr && (*pockets_)[at] != 0;
-      if (cells_[at] == Occupancy::Unknown && !pocket && ++unknown >= in_cells(kHidden)) return true;
+      if (cells_[at] == Occupancy::Unknown && !pocket && ++unknown >= in_cells(kHidden)) return i;
     }
-    return false;
+    return 0;
   }
-
- private:
   bool on_edge(Cell c, Cell n) const {
     const std::optional<PalletGrid>& grid = grids_.at(cells_.centre(c));
     return !grid || off_edges(*grid, cells_.centre(c), n) < kStandsOnEdge;
