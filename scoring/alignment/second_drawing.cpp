@@ -18,8 +18,7 @@ constexpr double kSurvey = 0.5;  // what a map knows so near to the truth's know
 constexpr double kLegend = 0.1;  // of what lies on the truth: less is no drawing
 constexpr double kAlike = 0.25;  // score: strangers reach 0.2 at their best pose
 constexpr double kSizeStep = 1.05;
-constexpr int kSmaller = 7;        // steps, to 0.7 times the size
-constexpr int kLarger = 7;         // to 1.4 times
+constexpr int kSizeSteps = 7;      // to 0.7 and 1.4 times the size
 constexpr std::size_t kPoses = 3;  // the best of each size
 
 /// What the map knows away from the truth, and how much of it there is on and off it [cells].
@@ -52,16 +51,6 @@ Parted part(const OccupancyGrid& map, const OccupancyGrid& truth, const PlanarTr
   return out;
 }
 
-/// Its own size first, then farther and farther from it: 0, -1, 1, -2, ...
-std::vector<int> steps_of_size() {
-  std::vector<int> steps{0};
-  for (int i = 1; i <= std::max(kSmaller, kLarger); ++i) {
-    if (i <= kSmaller) steps.push_back(-i);
-    if (i <= kLarger) steps.push_back(i);
-  }
-  return steps;
-}
-
 /// The drawing agrees with the truth at one of its best poses.
 bool alike(const OccupancyGrid& drawing, const OccupancyGrid& truth, const SightLines& sights) {
   const SearchConfig search;
@@ -82,7 +71,7 @@ double second_drawing_share(const OccupancyGrid& map, const OccupancyGrid& truth
   const Parted parted = part(map, truth, T_truth_map);
   if (parted.cells_on <= 0.0 || parted.cells_off < kLegend * parted.cells_on) return 0.0;
   OccupancyGrid drawing = crop_to_known(without_specks(parted.off), 0.0);
-  for (const int step : steps_of_size()) {
+  for (int step = -kSizeSteps; step <= kSizeSteps; ++step) {
     GridFrame frame = drawing.frame();
     frame.resolution = parted.off.resolution() * std::pow(kSizeStep, step);
     if (alike(with_frame(drawing, frame), truth, sights))
