@@ -291,7 +291,8 @@ Order Agenda::finish_exploring(const Situation& situation) {
 
 /// As long as that gains something and time is left, all of it is tried once more.
 Order Agenda::finish_searching(const Situation& situation) {
-  const Rounds::Standing all{situation.now, situation.floor, situation.victims, frontier_left_, frontier_left_};
+  const auto left = [&] { return frontier_left_; };
+  const Rounds::Standing all{situation.now, situation.floor, situation.victims, left, left};
   if (const auto news = rounds_.another(all, situation.search, situation.left_alone)) {
     choice_.leave_pockets(false);
     choice_.be_thorough();
@@ -361,8 +362,8 @@ Order Agenda::stay_and_plan() {
 }
 
 Rounds::Standing Agenda::standing(const Situation& situation) const {
-  return {situation.now, situation.floor, situation.victims, prospects_of(situation, true),
-          prospects_of(situation, false)};
+  return {situation.now, situation.floor, situation.victims, [&] { return prospects_of(situation, true); },
+          [&] { return prospects_of(situation, false); }};
 }
 
 /// Frontiers that are worth another try; where things are `pushed` aside for it or, else, where what was felt alone
@@ -372,7 +373,7 @@ std::size_t Agenda::prospects_of(const Situation& situation, bool pushed) const 
   // Where all walls are looked at squarely the search takes more time than there is: all else waits for it.
   if ((situation.search.squarely() ? situation.now - gained_at_ : in_vain_) > kBarren) return 0;
   const auto settled = [&](const TPoint2D& p) { return situation.left_alone.barred_for_good(p); };
-  return prospects(pushed ? with_all_pushed(situation.floor, config_.felt.pallet) : situation.floor,
+  return prospects(pushed ? with_all_pushed(situation.floor, config_.felt.pallet, &grids_pushed_) : situation.floor,
                    situation.T_map_base, config_.planner.min_frontier_cells, settled);
 }
 

@@ -132,14 +132,15 @@ class Background {
 
 }  // namespace
 
-std::vector<Source> doubtful_walls(const Traversable& floor, double pallet, const Grid<std::uint8_t>* pockets) {
+std::vector<Source> doubtful_walls(const Traversable& floor, double pallet, const Grid<std::uint8_t>* pockets,
+                                   KnownGrids* known) {
   std::vector<Source> sources;
   if (pallet <= 0.0 || floor.cells.width() == 0) return sources;
   const OccupancyGrid& cells = floor.cells;
   const double resolution = floor.frame().resolution;
   const auto in_cells = [&](double length) { return static_cast<int>(std::lround(length / resolution)); };
   const int before = std::max(1, in_cells(kBefore));
-  LocalGrids grids(cells, pallet);
+  LocalGrids grids(cells, pallet, known);
   const Background background(cells, grids, pockets);
   std::vector<Cell> occupied;
   for (int y = 1; y + 1 < cells.height(); ++y) {
