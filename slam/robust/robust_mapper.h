@@ -18,7 +18,7 @@
 
 namespace rubble::slam {
 
-/// Parameters of the robust mapper; docs/slam.md says what they were chosen by.
+/// Parameters of the robust mapper; docs/robust_mapper.md says what they were chosen by.
 struct RobustConfig {
   RobustConfig() {
     scan.floor_margin = 0.08;
@@ -60,7 +60,7 @@ RobustConfig suited_to(const robot::LaserModel& laser, RobustConfig config);
 LevelScanConfig stamping(const RobustConfig& config);
 
 /// Online SLAM by matching with a local map, key frames and a graph of their poses with verified loops
-/// (docs/slam.md). Poses of the past move when loops close: revision() then rises.
+/// (docs/robust_mapper.md). Poses of the past move when loops close: revision() then rises.
 class RobustMapper : public Mapper {
  public:
   RobustMapper(const robot::RobotModel& model, const RobustConfig& config, std::uint64_t seed);
