@@ -53,7 +53,7 @@ Faces faces_along(double x, double y, double incidence = Inspection{}.incidence)
 Faces faces_of(const Traversable& floor, Cell c);
 
 /// The free floor in view from a pose: in the cone of the victim sensors, in range, nothing occupied or unknown
-/// between.
+/// between, nor what most scans pass over.
 struct FloorInView {
   struct Ray {
     double dx, dy;           ///< its direction
@@ -134,5 +134,7 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
 
 /// True when all cells between two cells of the floor are free (the last one included).
 bool in_sight(const Traversable& floor, Cell from, Cell to);
+/// The same, and nothing that most scans pass over hides the second from a camera.
+bool in_view(const Traversable& floor, Cell from, Cell to);
 
 }  // namespace rubble::explore

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "base/angle.h"
 #include "base/rng.h"
@@ -87,6 +88,26 @@ TEST(Traversable, ALoneWeakCellIsNoObstacleAndAStrongOneIs) {
   stamp(map, {0.02, 0.02}, {speck});
   floor = traversable(map, 0.5);
   EXPECT_EQ(floor.obstacle[floor.cells.cell(speck)], 1);
+}
+
+TEST(Traversable, WhatMostScansPassOverIsFreeAndKnownToBeThere) {
+  const TPoint2D low{1.02, 0.02}, behind{2.02, 0.02};
+  const auto after = [&](int hits, int passes) {
+    CountMap map(160, 160, 0.05);
+    for (int i = 0; i < hits; ++i) stamp(map, {0.02, 0.02}, {{1.02, -0.03}, low, {1.02, 0.07}});
+    for (int i = 0; i < passes; ++i) stamp(map, {0.02, 0.02}, {{2.02, -0.08}, behind, {2.02, 0.12}});
+    return traversable(map, 0.5);
+  };
+  const auto said_of = [&](const Traversable& floor, const TPoint2D& p) {
+    return std::pair(floor.cells[floor.cells.cell(p)], floor.seen_over[floor.cells.cell(p)] != 0);
+  };
+  const Traversable box = after(20, 80);
+  EXPECT_EQ(said_of(box, low), std::pair(Occupancy::Free, true));
+  EXPECT_EQ(said_of(box, behind), std::pair(Occupancy::Occupied, false));
+  EXPECT_EQ(said_of(box, {0.82, 0.02}), std::pair(Occupancy::Free, false));
+  EXPECT_EQ(said_of(after(80, 20), low), std::pair(Occupancy::Occupied, false)) << "a wall";
+  EXPECT_EQ(said_of(after(2, 8), low), std::pair(Occupancy::Free, false)) << "noise";
+  EXPECT_EQ(said_of(after(5, 500), low), std::pair(Occupancy::Free, false)) << "it was there once";
 }
 
 TEST(Traversable, WeakCellsInARowAreAWall) {
