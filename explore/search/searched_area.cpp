@@ -43,12 +43,12 @@ class SightLine {
   bool came_to_it_ = false;
 };
 
-/// Cells from c in a direction up to the next wall, however low; nothing when there is none within `most`.
+/// Cells from c in a direction up to the next wall; nothing when there is none within `most`.
 std::optional<int> to_wall(const Traversable& floor, Cell c, Cell step, int most) {
   for (int i = 1; i <= most; ++i) {
     const Cell next{c.x + i * step.x, c.y + i * step.y};
     if (!floor.cells.inside(next)) return std::nullopt;
-    if (floor.cells[next] == Occupancy::Occupied || floor.seen_over[next] != 0) return i;
+    if (floor.cells[next] == Occupancy::Occupied) return i;
   }
   return std::nullopt;
 }
