@@ -21,6 +21,7 @@ constexpr int kFaceStride = 4;       ///< subjects along a wall likewise
 constexpr int kNicheStride = 2;      ///< and at the back of a niche
 constexpr double kNarrowest = 0.20;  ///< niche [m]; what is narrower is a wall seen twice
 constexpr double kWidest = 0.55;     ///< [m]
+constexpr double kUnseen = 0.5;      ///< floor that is looked for by itself [m2]; less lies behind corners everywhere
 constexpr int kDirections = 16;      ///< viewpoints tried around a subject
 // Of viewpoints from their subjects [m]. Before a niche there is little choice: its box takes a third of a corridor.
 const std::vector<double> kDistances = {0.5, 0.8, 1.1, 1.4};
@@ -404,8 +405,11 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
       add(subject, static_cast<Faces>(searched.missing(floor, subject) & ~kFloor));
     return found;
   }
-  const auto asked = static_cast<Faces>(subjects == Subjects::Squarely ? ~kFloor : ~0);
-  for (const auto& cluster : unsearched_clusters(floor, searched, asked, config.min_cells))
+  const bool unseen = subjects == Subjects::Unseen;
+  const auto asked = static_cast<Faces>(subjects == Subjects::Squarely ? ~kFloor : unseen ? kFloor : ~0);
+  const int min_cells =
+      unseen ? std::max(config.min_cells, static_cast<int>(kUnseen / (cell * cell))) : config.min_cells;
+  for (const auto& cluster : unsearched_clusters(floor, searched, asked, min_cells))
     for (std::size_t i = 0; i < cluster.size(); ++i) {
       const Cell subject = cluster[i];
       const auto missing = static_cast<Faces>(searched.missing(floor, subject) & asked);

@@ -110,6 +110,27 @@ TEST(Traversable, WhatMostScansPassOverIsFreeAndKnownToBeThere) {
   EXPECT_EQ(said_of(after(5, 500), low), std::pair(Occupancy::Free, false)) << "it was there once";
 }
 
+/// From the foot of a slope scans meet its floor, here and there as the robot rocks; from upon it they do not.
+TEST(Traversable, AWideBandThatMostScansPassOverIsSlopeAndNoBoard) {
+  for (const int rows : {1, 2, 5}) {
+    SCOPED_TRACE(testing::Message() << rows << " rows");
+    CountMap map(160, 160, 0.05);
+    const auto stamp_row = [&](double x, int times) {
+      std::vector<TPoint2D> hits;
+      for (int i = -8; i <= 8; ++i) hits.emplace_back(x, 0.02 + 0.04 * i);
+      for (int i = 0; i < times; ++i) stamp(map, {0.02, 0.02}, hits);
+    };
+    for (int i = 0; i < rows; ++i) stamp_row(1.02 + 0.05 * i, 20);
+    stamp_row(2.02, 60);
+    const Traversable floor = traversable(map, 0.5);
+    for (int i = 0; i < rows; ++i) {
+      const Cell c = floor.cells.cell({1.02 + 0.05 * i, 0.02});
+      EXPECT_EQ(floor.cells[c], Occupancy::Free);
+      EXPECT_EQ(floor.seen_over[c], rows < 3 ? 1 : 0);
+    }
+  }
+}
+
 TEST(Traversable, WeakCellsInARowAreAWall) {
   CountMap map(160, 160, 0.05);
   std::vector<TPoint2D> wall;
