@@ -184,6 +184,8 @@ std::vector<Source> FloorSearch::sources(const Traversable& floor, Subjects subj
                                          const std::function<bool(const TPoint2D&)>& idle) {
   const Record cameras = subjects == Subjects::Squarely ? Record::Squarely : Record::Anyhow;
   views_.clear();
+  // Where all floor is smelt or listened to it is gone over anyway.
+  if (subjects == Subjects::Unseen && !others_.empty()) return {};
   std::vector<Viewpoint> views = viewpoints(floor, record(cameras), config_, room_, tight_, subjects);
   if (idle)
     views.erase(std::remove_if(views.begin(), views.end(), [&](const Viewpoint& v) { return idle(v.subject); }),
