@@ -16,6 +16,8 @@ using mrpt::math::TPose2D;
 using slam::CountMap;
 
 constexpr int kWeakHits = 2;
+constexpr int kSeenOverHits = 5;      ///< fewer are noise, or the error of a pose beside a wall
+constexpr int kSeenOverPasses = 10;   ///< likewise so many scans to a hit
 constexpr double kLoneRadius = 0.15;  ///< [m]
 
 /// A rectangle of cells, both corners inside it.
@@ -27,13 +29,16 @@ struct Box {
 
 /// Classifies cells by their counts. Branch-free and on plain arrays, so that compilers use vector code.
 void classify_row(const std::uint16_t* __restrict seen, const std::uint16_t* __restrict hits, int count,
-                  float threshold, Occupancy* __restrict cells, std::uint8_t* __restrict obstacle) {
+                  float threshold, Occupancy* __restrict cells, std::uint8_t* __restrict obstacle,
+                  std::uint8_t* __restrict seen_over) {
   static_assert(static_cast<int>(Occupancy::Free) == 1 && static_cast<int>(Occupancy::Occupied) == 2);
   for (int i = 0; i < count; ++i) {
     const int known = seen[i] != 0;
     const int hit = hits[i] != 0;
     const int often = static_cast<float>(hits[i]) >= threshold * static_cast<float>(seen[i]);
+    const int some = (hits[i] >= kSeenOverHits) & (kSeenOverPasses * hits[i] >= seen[i]);
     obstacle[i] = static_cast<std::uint8_t>(hit & often);
+    seen_over[i] = static_cast<std::uint8_t>(some & ~often);
     cells[i] = static_cast<Occupancy>(known + (hit & often));
   }
 }
@@ -78,6 +83,23 @@ bool stands_alone(const OccupancyGrid& cells, Cell c, int reach) {
   return true;
 }
 
+/// Boards are a cell or two thick; wider is a piece of slope that scans from its foot met, and hides nothing.
+void keep_boards(Grid<std::uint8_t>& seen_over) {
+  const GridFrame& frame = seen_over.frame();
+  std::vector<Cell> middles;
+  for (int y = 1; y + 1 < frame.height; ++y)
+    for_each_set(seen_over.row(y), frame.width, [&](int x) {
+      if (x < 1 || x + 1 >= frame.width) return;
+      int set = 0;
+      for (int v = y - 1; v <= y + 1; ++v)
+        for (int u = x - 1; u <= x + 1; ++u) set += seen_over[{u, v}];
+      if (set == 9) middles.push_back({x, y});
+    });
+  for (const Cell c : middles)
+    for (int v = c.y - 1; v <= c.y + 1; ++v)
+      for (int u = c.x - 1; u <= c.x + 1; ++u) seen_over[{u, v}] = 0;
+}
+
 bool has_obstacle(const Grid<std::uint8_t>& obstacle, const Box& box) {
   for (int y = box.low.y; y <= box.high.y; ++y)
     for (int x = box.low.x; x <= box.high.x; ++x)
@@ -90,7 +112,7 @@ bool has_obstacle(const Grid<std::uint8_t>& obstacle, const Box& box) {
 Traversable traversable(OccupancyGrid known) {
   Traversable floor;
   floor.obstacle = Grid<std::uint8_t>(known.frame());
-  floor.body = Grid<std::uint8_t>(known.frame());
+  floor.body = floor.seen_over = Grid<std::uint8_t>(known.frame());
   std::transform(known.cells().begin(), known.cells().end(), floor.obstacle.cells().begin(),
                  [](Occupancy o) { return static_cast<std::uint8_t>(o == Occupancy::Occupied); });
   floor.cells = std::move(known);
@@ -110,7 +132,7 @@ Traversable traversable(const CountMap& map, double occupied_threshold) {
   Traversable floor;
   floor.cells = OccupancyGrid(frame, Occupancy::Unknown);
   floor.obstacle = Grid<std::uint8_t>(frame);
-  floor.body = Grid<std::uint8_t>(frame);
+  floor.body = floor.seen_over = Grid<std::uint8_t>(frame);
   const float threshold = static_cast<float>(occupied_threshold);
   const int columns = frame.width - 2;
   std::vector<Cell> weak;
@@ -118,11 +140,12 @@ Traversable traversable(const CountMap& map, double occupied_threshold) {
     const int row = y - box.low.y + 1;
     const std::uint16_t* hits = map.occupied_row(y) + box.low.x;
     classify_row(map.seen_row(y) + box.low.x, hits, columns, threshold, floor.cells.row(row) + 1,
-                 floor.obstacle.row(row) + 1);
+                 floor.obstacle.row(row) + 1, floor.seen_over.row(row) + 1);
     for_each_set(floor.obstacle.row(row), frame.width, [&](int x) {
       if (hits[x - 1] <= kWeakHits) weak.push_back({x, row});
     });
   }
+  keep_boards(floor.seen_over);
   const int reach = static_cast<int>(std::lround(kLoneRadius / frame.resolution));
   for (const Cell c : weak)
     if (stands_alone(floor.cells, c, reach)) floor.obstacle[c] = 0;

@@ -15,10 +15,13 @@ namespace rubble::explore {
 struct Traversable {
   OccupancyGrid cells;
   Grid<std::uint8_t> obstacle;  ///< 1 where something must be kept away from
-  Grid<std::uint8_t> body;      ///< 1 where no scan has looked, but the robot's body stands or stood: free, no frontier
-  Grid<float> clearance;        ///< distance to the nearest obstacle [m], capped; empty until measure_clearance
-  std::vector<Cell> doubtful;   ///< made free as what may be the floor of a slope
-  std::vector<Cell> loose;      ///< made free as what can be pushed aside, or is no wall
+  /// 1 where a good part of the scans hit something and the others pass: what is lower than the scan's plane from the
+  /// floor around, as a victim's box beside a ramp is. Free to drive as far as the map tells, but not to look through.
+  Grid<std::uint8_t> seen_over;
+  Grid<std::uint8_t> body;     ///< 1 where no scan has looked, but the robot's body stands or stood: free, no frontier
+  Grid<float> clearance;       ///< distance to the nearest obstacle [m], capped; empty until measure_clearance
+  std::vector<Cell> doubtful;  ///< made free as what may be the floor of a slope
+  std::vector<Cell> loose;     ///< made free as what can be pushed aside, or is no wall
 
   const GridFrame& frame() const { return cells.frame(); }
 };

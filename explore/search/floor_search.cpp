@@ -25,6 +25,7 @@ constexpr double kNose = deg_to_rad(160.0);     ///< by a probe that points ahea
 constexpr double kAtSuspect = 4.0;              ///< stands so long for one [s]
 constexpr double kSameSuspect = 0.3;            ///< [m]
 constexpr double kAnotherSide = 0.5;            ///< it is visited again from so far from where it was before [m]
+constexpr double kSameStare = 0.5;              ///< cues so near to each other are stared at together [m]
 constexpr double kBox = 0.35;                   ///< a wall so near before a suspect may be the side of its box [m]
 constexpr double kLookCost = 1.5;               ///< what a look takes, in way, standing still and turning to it [m]
 constexpr double kFullLook = 0.6;               ///< of wall that it shows squarely at best [m]
@@ -183,6 +184,8 @@ std::vector<Source> FloorSearch::sources(const Traversable& floor, Subjects subj
                                          const std::function<bool(const TPoint2D&)>& idle) {
   const Record cameras = subjects == Subjects::Squarely ? Record::Squarely : Record::Anyhow;
   views_.clear();
+  // Where all floor is smelt or listened to it is gone over anyway.
+  if (subjects == Subjects::Unseen && !others_.empty()) return {};
   std::vector<Viewpoint> views = viewpoints(floor, record(cameras), config_, room_, tight_, subjects);
   if (idle)
     views.erase(std::remove_if(views.begin(), views.end(), [&](const Viewpoint& v) { return idle(v.subject); }),
@@ -248,7 +251,7 @@ double FloorSearch::faces_in_view(const Traversable& floor, Cell from) const {
       const double away = length(dx, dy);
       if (away < 1.0 || away > reach || floor.cells[{x, y}] != Occupancy::Free) continue;
       const int missing = searched_.missing(floor, {x, y}) & ~kFloor & faces_along(dx / away, dy / away);
-      if (missing == 0 || !in_sight(floor, from, {x, y})) continue;
+      if (missing == 0 || !in_view(floor, from, {x, y})) continue;
       for (const Faces face : {kEastFace, kNorthFace, kWestFace, kSouthFace}) faces += (missing & face) != 0 ? 1 : 0;
     }
   return faces * resolution;
@@ -338,11 +341,21 @@ bool FloorSearch::dwelling(const Traversable& floor, const TPose2D& T_map_base, 
   return false;
 }
 
-bool FloorSearch::staring(bool undecided, Stamp now) {
-  if (!config_.on || !undecided) return false;
-  if (now >= next_stare_) {
+bool FloorSearch::staring(const std::vector<TPoint2D>& seen, bool smelt, Stamp now) {
+  if (!config_.on || (seen.empty() && !smelt)) return false;
+  const double pause = 4.0 * config_.stare;
+  // A false alarm somewhere else must not take the stare from a victim that shows a few seconds later.
+  stares_.erase(std::remove_if(stares_.begin(), stares_.end(), [&](const Stare& s) { return now - s.since >= pause; }),
+                stares_.end());
+  for (const TPoint2D& at : seen) {
+    if (std::any_of(stares_.begin(), stares_.end(), [&](const Stare& s) { return distance(s.at, at) < kSameStare; }))
+      continue;
+    stares_.push_back({at, now});
     stare_until_ = now + config_.stare;
-    next_stare_ = now + 4.0 * config_.stare;
+  }
+  if (smelt && now >= next_sniff_) {
+    stare_until_ = now + config_.stare;
+    next_sniff_ = now + pause;
   }
   return now < stare_until_;
 }

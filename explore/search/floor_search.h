@@ -86,9 +86,9 @@ class FloorSearch {
   /// True in the tick in which a dwell ended.
   bool dwell_over() const { return dwell_over_; }
 
-  /// True while the robot holds still for a cue: a first one is no victim yet, a few more looks decide. `undecided`:
-  /// there is a fresh cue that is not.
-  bool staring(bool undecided, Stamp now);
+  /// True while the robot holds still for a cue: a first one is no victim yet, a few more looks decide. `seen`: where
+  /// there are fresh cues that are not, each worth a stare of its own; `smelt`: there is one somewhere.
+  bool staring(const std::vector<mrpt::math::TPoint2D>& seen, bool smelt, Stamp now);
 
  private:
   /// What is to be searched: by cameras anyhow or squarely, by the other senses; or one of the suspects.
@@ -163,8 +163,14 @@ class FloorSearch {
   std::vector<GivenUp> given_up_;
   Stamp next_look_ = Stamp::never();
   Stamp dwell_until_ = Stamp::never();
+  /// What the robot stared at lately.
+  struct Stare {
+    mrpt::math::TPoint2D at;
+    Stamp since;
+  };
+  std::vector<Stare> stares_;
   Stamp stare_until_ = Stamp::never();
-  Stamp next_stare_ = Stamp::never();
+  Stamp next_sniff_ = Stamp::never();
   bool dwell_over_ = false;
   bool holes_ = false;
 };

@@ -21,11 +21,28 @@ constexpr int kFaceStride = 4;       ///< subjects along a wall likewise
 constexpr int kNicheStride = 2;      ///< and at the back of a niche
 constexpr double kNarrowest = 0.20;  ///< niche [m]; what is narrower is a wall seen twice
 constexpr double kWidest = 0.55;     ///< [m]
+constexpr double kUnseen = 0.5;      ///< floor that is looked for by itself [m2]; less lies behind corners everywhere
 constexpr int kDirections = 16;      ///< viewpoints tried around a subject
 // Of viewpoints from their subjects [m]. Before a niche there is little choice: its box takes a third of a corridor.
 const std::vector<double> kDistances = {0.5, 0.8, 1.1, 1.4};
 const std::vector<double> kNicheDistances = {0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4};
 const std::vector<double> kSquareDistances = {0.65, 0.7, 0.8, 0.95, 1.1, 1.3};
+
+/// Follows a line of sight to where it comes down behind something that most scans pass over. That itself is in view;
+/// where the line starts in it, as on a slope that scans met from its foot, it hides nothing.
+class SightLine {
+ public:
+  bool goes_on(bool seen_over) {
+    if (came_to_it_ && !seen_over) return false;
+    clear_ = clear_ || !seen_over;
+    came_to_it_ = clear_ && seen_over;
+    return true;
+  }
+
+ private:
+  bool clear_ = false;
+  bool came_to_it_ = false;
+};
 
 /// Cells from c in a direction up to the next wall; nothing when there is none within `most`.
 std::optional<int> to_wall(const Traversable& floor, Cell c, Cell step, int most) {
@@ -106,7 +123,11 @@ bool in_niche(const Traversable& floor, Cell c, Faces faces) {
          ((faces & (kNorthFace | kSouthFace)) != 0 && between_walls({1, 0}));
 }
 
-bool in_sight(const Traversable& floor, Cell from, Cell to) {
+namespace {
+
+/// Calls visit(c) for the cells between two cells, the last one included, while it says so; says whether it always did.
+template <typename Visit>
+bool along(Cell from, Cell to, Visit visit) {
   const int dx = to.x - from.x;
   const int dy = to.y - from.y;
   // One step a cell along the longer axis, then half a cell more often: no diagonal gap between two walls is slipped
@@ -119,9 +140,22 @@ bool in_sight(const Traversable& floor, Cell from, Cell to) {
   for (int i = 0; i < steps; ++i) {
     x += sx;
     y += sy;
-    if (floor.cells[{static_cast<int>(x), static_cast<int>(y)}] != Occupancy::Free) return false;
+    if (!visit(Cell{static_cast<int>(x), static_cast<int>(y)})) return false;
   }
   return true;
+}
+
+}  // namespace
+
+bool in_sight(const Traversable& floor, Cell from, Cell to) {
+  return along(from, to, [&](Cell c) { return floor.cells[c] == Occupancy::Free; });
+}
+
+bool in_view(const Traversable& floor, Cell from, Cell to) {
+  SightLine line;
+  line.goes_on(floor.seen_over[from] != 0);
+  return along(from, to,
+               [&](Cell c) { return floor.cells[c] == Occupancy::Free && line.goes_on(floor.seen_over[c] != 0); });
 }
 
 Cell SearchedArea::shift_from(const GridFrame& f) const {
@@ -176,6 +210,7 @@ void see_floor(const Traversable& floor, const SearchConfig& config, const TPose
   const double x0 = (T_map_base.x - frame.x0) / frame.resolution;
   const double y0 = (T_map_base.y - frame.y0) / frame.resolution;
   const Occupancy* const cells = floor.cells.data();
+  const std::uint8_t* const seen_over = floor.seen_over.data();
   view.cells.resize(static_cast<std::size_t>(rays + 1) * static_cast<std::size_t>(steps + 1));
   Cell* const seen = view.cells.data();
   std::size_t count = 0;
@@ -186,10 +221,12 @@ void see_floor(const Traversable& floor, const SearchConfig& config, const TPose
     const double dx = std::cos(bearing);
     const double dy = std::sin(bearing);
     const std::size_t first = count;
+    SightLine line;
     for (int k = 0; k <= steps; ++k) {
       const double way = 0.7 * static_cast<double>(k);
       const Cell c{static_cast<int>(std::floor(x0 + way * dx)), static_cast<int>(std::floor(y0 + way * dy))};
       if (!frame.inside(c) || cells[frame.index(c)] != Occupancy::Free) break;
+      if (!line.goes_on(seen_over[frame.index(c)] != 0)) break;
       seen[count++] = c;
       low = {std::min(low.x, c.x), std::min(low.y, c.y)};
       high = {std::max(high.x, c.x), std::max(high.y, c.y)};
@@ -351,7 +388,7 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
       const double way = length(step.x, step.y);
       const auto faces = static_cast<Faces>(missing & faces_along(-step.x / way, -step.y / way, incidence));
       if (faces == 0) continue;
-      if (in_sight(floor, c, subject)) found.push_back({c, floor.cells.centre(subject), faces});
+      if (in_view(floor, c, subject)) found.push_back({c, floor.cells.centre(subject), faces});
     }
     return found.size() > before;
   };
@@ -368,8 +405,11 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
       add(subject, static_cast<Faces>(searched.missing(floor, subject) & ~kFloor));
     return found;
   }
-  const auto asked = static_cast<Faces>(subjects == Subjects::Squarely ? ~kFloor : ~0);
-  for (const auto& cluster : unsearched_clusters(floor, searched, asked, config.min_cells))
+  const bool unseen = subjects == Subjects::Unseen;
+  const auto asked = static_cast<Faces>(subjects == Subjects::Squarely ? ~kFloor : unseen ? kFloor : ~0);
+  const int min_cells =
+      unseen ? std::max(config.min_cells, static_cast<int>(kUnseen / (cell * cell))) : config.min_cells;
+  for (const auto& cluster : unsearched_clusters(floor, searched, asked, min_cells))
     for (std::size_t i = 0; i < cluster.size(); ++i) {
       const Cell subject = cluster[i];
       const auto missing = static_cast<Faces>(searched.missing(floor, subject) & asked);

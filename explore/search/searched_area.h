@@ -53,7 +53,7 @@ Faces faces_along(double x, double y, double incidence = Inspection{}.incidence)
 Faces faces_of(const Traversable& floor, Cell c);
 
 /// The free floor in view from a pose: in the cone of the victim sensors, in range, nothing occupied or unknown
-/// between.
+/// between, nor what most scans pass over.
 struct FloorInView {
   struct Ray {
     double dx, dy;           ///< its direction
@@ -111,8 +111,9 @@ void see_floor(const Traversable& floor, const SearchConfig& config, const mrpt:
 /// that is open on one side, as victims lie in (paper, section II.B), looks so from its open side.
 bool in_niche(const Traversable& floor, Cell c, Faces faces);
 
-/// Which places to find viewpoints for. `Squarely`: faces that were not looked at so.
-enum class Subjects { All, Niches, Squarely };
+/// Which places to find viewpoints for. `Unseen`: half a square metre of floor and more that no look has shown;
+/// `Squarely`: faces that were not looked at so.
+enum class Subjects { All, Niches, Unseen, Squarely };
 
 /// Steps in 16 directions from a place to those around it that are so far away and no farther than `range` [m].
 std::vector<Cell> steps_around(const std::vector<double>& distances, double range, double cell);
@@ -134,5 +135,7 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
 
 /// True when all cells between two cells of the floor are free (the last one included).
 bool in_sight(const Traversable& floor, Cell from, Cell to);
+/// The same, and nothing that most scans pass over hides the second from a camera.
+bool in_view(const Traversable& floor, Cell from, Cell to);
 
 }  // namespace rubble::explore

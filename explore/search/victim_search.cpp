@@ -237,10 +237,12 @@ void VictimSearch::follow(const slam::Mapper& mapper) {
   rebuild_reports();
 }
 
-bool VictimSearch::undecided(Stamp now, double age) const {
-  return std::any_of(clusters_.begin(), clusters_.end(), [&](const Cluster& cluster) {
-    return cluster.id == 0 && cluster.newest != Stamp::never() && now - cluster.newest < age;
-  });
+std::vector<TPoint2D> VictimSearch::undecided(Stamp now, double age) const {
+  std::vector<TPoint2D> places;
+  for (const Cluster& cluster : clusters_)
+    if (cluster.id == 0 && cluster.newest != Stamp::never() && now - cluster.newest < age)
+      places.push_back(cluster.p_map);
+  return places;
 }
 
 void VictimSearch::rename(int id, int older, Stamp confirmed) {

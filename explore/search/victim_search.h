@@ -51,8 +51,8 @@ class VictimSearch {
   /// The mapper corrected its past.
   void follow(const slam::Mapper& mapper);
 
-  /// True when a cue younger than `age` [s] belongs to a victim that is not confirmed yet: worth another look.
-  bool undecided(Stamp now, double age) const;
+  /// Where cues younger than `age` [s] put victims that are not confirmed yet: worth another look [map frame, m].
+  std::vector<mrpt::math::TPoint2D> undecided(Stamp now, double age) const;
 
   /// The confirmed victims by id. Of two that turn out to be one, the older id stays.
   const std::vector<VictimReport>& reports() const { return reports_; }

@@ -138,7 +138,7 @@ bool VictimWatch::look(const Traversable& floor, const TPose2D& T_map_base, doub
 bool VictimWatch::holds_still(const Traversable& floor, const TPose2D& T_map_base, Stamp now) {
   const bool smelt = faint_.undecided(now, kCueAge);
   const bool stared = stares_;
-  stares_ = search_.staring(victims_.undecided(now, kCueAge) || smelt, now);
+  stares_ = search_.staring(victims_.undecided(now, kCueAge), smelt, now);
   if (stares_ && !stared) stares_since_ = smelt_at_ = now;
   if (stares_ && smelt) smelt_at_ = now;
   // Standing there for a while, with the nose in it, is a visit to what was smelt.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "base/angle.h"
 #include "base/rng.h"
@@ -87,6 +88,47 @@ TEST(Traversable, ALoneWeakCellIsNoObstacleAndAStrongOneIs) {
   stamp(map, {0.02, 0.02}, {speck});
   floor = traversable(map, 0.5);
   EXPECT_EQ(floor.obstacle[floor.cells.cell(speck)], 1);
+}
+
+TEST(Traversable, WhatMostScansPassOverIsFreeAndKnownToBeThere) {
+  const TPoint2D low{1.02, 0.02}, behind{2.02, 0.02};
+  const auto after = [&](int hits, int passes) {
+    CountMap map(160, 160, 0.05);
+    for (int i = 0; i < hits; ++i) stamp(map, {0.02, 0.02}, {{1.02, -0.03}, low, {1.02, 0.07}});
+    for (int i = 0; i < passes; ++i) stamp(map, {0.02, 0.02}, {{2.02, -0.08}, behind, {2.02, 0.12}});
+    return traversable(map, 0.5);
+  };
+  const auto said_of = [&](const Traversable& floor, const TPoint2D& p) {
+    return std::pair(floor.cells[floor.cells.cell(p)], floor.seen_over[floor.cells.cell(p)] != 0);
+  };
+  const Traversable box = after(20, 80);
+  EXPECT_EQ(said_of(box, low), std::pair(Occupancy::Free, true));
+  EXPECT_EQ(said_of(box, behind), std::pair(Occupancy::Occupied, false));
+  EXPECT_EQ(said_of(box, {0.82, 0.02}), std::pair(Occupancy::Free, false));
+  EXPECT_EQ(said_of(after(80, 20), low), std::pair(Occupancy::Occupied, false)) << "a wall";
+  EXPECT_EQ(said_of(after(2, 8), low), std::pair(Occupancy::Free, false)) << "noise";
+  EXPECT_EQ(said_of(after(5, 500), low), std::pair(Occupancy::Free, false)) << "it was there once";
+}
+
+/// From the foot of a slope scans meet its floor, here and there as the robot rocks; from upon it they do not.
+TEST(Traversable, AWideBandThatMostScansPassOverIsSlopeAndNoBoard) {
+  for (const int rows : {1, 2, 5}) {
+    SCOPED_TRACE(testing::Message() << rows << " rows");
+    CountMap map(160, 160, 0.05);
+    const auto stamp_row = [&](double x, int times) {
+      std::vector<TPoint2D> hits;
+      for (int i = -8; i <= 8; ++i) hits.emplace_back(x, 0.02 + 0.04 * i);
+      for (int i = 0; i < times; ++i) stamp(map, {0.02, 0.02}, hits);
+    };
+    for (int i = 0; i < rows; ++i) stamp_row(1.02 + 0.05 * i, 20);
+    stamp_row(2.02, 60);
+    const Traversable floor = traversable(map, 0.5);
+    for (int i = 0; i < rows; ++i) {
+      const Cell c = floor.cells.cell({1.02 + 0.05 * i, 0.02});
+      EXPECT_EQ(floor.cells[c], Occupancy::Free);
+      EXPECT_EQ(floor.seen_over[c], rows < 3 ? 1 : 0);
+    }
+  }
 }
 
 TEST(Traversable, WeakCellsInARowAreAWall) {

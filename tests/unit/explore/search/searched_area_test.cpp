@@ -78,6 +78,57 @@ TEST(SearchedArea, AWallSeenAtAGrazingAngleIsNotInspected) {
   EXPECT_EQ(area.missing(floor, at_wall(floor, 0.0)), kNorthFace);
 }
 
+/// The side of a box that scans from a ramp pass over: free in the map, with a hit now and then.
+void add_low_wall(Traversable& floor, const TPoint2D& from, const TPoint2D& to) {
+  const Cell low = floor.cells.cell(from), high = floor.cells.cell(to);
+  for (int y = low.y; y <= high.y; ++y)
+    for (int x = low.x; x <= high.x; ++x) floor.seen_over[{x, y}] = 1;
+}
+
+TEST(SearchedArea, WhatLiesBehindALowWallIsSeenFromItsOpenSideAlone) {
+  const TPose2D aslant(0.22, 0.62, deg_to_rad(42.0)), before(1.22, 0.52, deg_to_rad(90.0));
+  for (const bool box : {false, true}) {
+    Traversable floor = room();
+    if (box) add_low_wall(floor, {1.02, 1.07}, {1.02, 1.42});
+    SearchedArea area{SearchConfig{}};
+    const Cell back = at_wall(floor, 1.22);
+    look_twice(area, floor, aslant);
+    EXPECT_EQ(area.missing(floor, back), box ? kFloor | kNorthFace : 0);
+    EXPECT_EQ(area.missing(floor, floor.cells.cell({1.02, 1.32})) & kFloor, 0) << "the wall itself is in view";
+    look_twice(area, floor, before);
+    EXPECT_EQ(area.missing(floor, back), 0);
+  }
+}
+
+TEST(SearchedArea, ViewpointsBesideALowWallSeeWhatTheyAreFor) {
+  Traversable floor = room();
+  add_low_wall(floor, {1.02, 1.07}, {1.02, 1.42});
+  const SearchConfig config;
+  const std::vector<Viewpoint> views = viewpoints(floor, SearchedArea{config}, config, 0.4, 0.4);
+  bool of_back = false;
+  for (const Viewpoint& view : views) {
+    SearchedArea fresh{config};
+    const TPoint2D from = floor.cells.centre(view.cell);
+    look_twice(fresh, floor, {from.x, from.y, std::atan2(view.subject.y - from.y, view.subject.x - from.x)});
+    EXPECT_EQ(fresh.missing(floor, floor.cells.cell(view.subject)) & view.faces, 0)
+        << "from " << from.x << " " << from.y << " to " << view.subject.x << " " << view.subject.y;
+    of_back = of_back || (view.subject.x > 1.05 && view.subject.y > 1.1);
+  }
+  EXPECT_TRUE(of_back);
+}
+
+/// From the foot of a slope its floor is hit by every scan, from upon it by none: a band across the lane.
+TEST(SearchedArea, ARobotOnABandThatScansPassOverSeesBeyondIt) {
+  Traversable floor = room();
+  add_low_wall(floor, {-1.4, 0.3}, {1.4, 0.6});
+  SearchedArea from_before{SearchConfig{}}, from_upon{SearchConfig{}};
+  const Cell face = at_wall(floor, 0.0);
+  look_twice(from_before, floor, {0.0, 0.0, deg_to_rad(90.0)});
+  EXPECT_EQ(from_before.missing(floor, face), kFloor | kNorthFace);
+  look_twice(from_upon, floor, {0.0, 0.4, deg_to_rad(90.0)});
+  EXPECT_EQ(from_upon.missing(floor, face), 0);
+}
+
 TEST(SearchedArea, WithoutFacesFloorInViewIsAllThatIsAskedFor) {
   const Traversable floor = room();
   SearchConfig config;
@@ -141,6 +192,28 @@ TEST(SearchedArea, EveryViewpointSeesTheFaceItIsFor) {
     look_twice(fresh, floor, {from.x, from.y, std::atan2(view.subject.y - from.y, view.subject.x - from.x)});
     EXPECT_EQ(fresh.missing(floor, floor.cells.cell(view.subject)) & view.faces, 0)
         << "from " << from.x << " " << from.y << " to " << view.subject.x << " " << view.subject.y;
+  }
+}
+
+TEST(SearchedArea, FloorThatNoLookHasShownIsAPlaceOfItsOwnFromHalfASquareMetreOn) {
+  const Traversable floor = room();
+  const SearchConfig config;
+  for (const double side : {0.4, 1.0}) {
+    SearchedArea area{config};
+    Grid<Faces> seen(floor.frame(), kFloor);
+    const Cell low = seen.cell({-1.0, -1.0}), high = seen.cell({-1.0 + side, -1.0 + side});
+    for (int y = low.y; y < high.y; ++y)
+      for (int x = low.x; x < high.x; ++x) seen[{x, y}] = 0;
+    area.look(floor.frame(), seen);
+    area.look(floor.frame(), seen);
+    const std::vector<Viewpoint> views = viewpoints(floor, area, config, 0.4, 0.4, Subjects::Unseen);
+    EXPECT_EQ(views.empty(), side < 0.7);
+    for (const Viewpoint& view : views) {
+      EXPECT_EQ(area.missing(floor, floor.cells.cell(view.subject)) & view.faces, kFloor);
+      EXPECT_LT(view.subject.x, -1.0 + side);
+      EXPECT_LT(view.subject.y, -1.0 + side);
+    }
+    EXPECT_FALSE(viewpoints(floor, area, config, 0.4, 0.4).empty()) << "the faces of the wall are left";
   }
 }
 

@@ -71,6 +71,20 @@ TEST(VictimWatch, AFirstCueHoldsTheRobotForAMoment) {
   EXPECT_FALSE(robot.watch.holds_still(robot.floor, robot.pose, robot.now() + 2.0));
 }
 
+/// It was one false alarm in the wrong moment that took a victim in a corner out of a whole search.
+TEST(VictimWatch, AFalseAlarmTakesNoStareFromWhatShowsElsewhere) {
+  Watching robot;
+  robot.moved(0.05);
+  robot.hear({3.0, 1.0});
+  EXPECT_TRUE(robot.watch.holds_still(robot.floor, robot.pose, robot.now()));
+  robot.seconds += 3.0;
+  EXPECT_FALSE(robot.watch.holds_still(robot.floor, robot.pose, robot.now()));
+  robot.hear({3.1, 1.1});
+  EXPECT_FALSE(robot.watch.holds_still(robot.floor, robot.pose, robot.now())) << "there it stood a moment ago";
+  robot.hear({3.0, 3.0});
+  EXPECT_TRUE(robot.watch.holds_still(robot.floor, robot.pose, robot.now()));
+}
+
 /// Two boxes back to back on the two sides of a wall.
 TEST(VictimWatch, TheFloorTellsTheSidesOfAWall) {
   for (const bool wall : {true, false}) {
