@@ -234,6 +234,10 @@ bool FeltObstacles::forget_once(Stamp now) {
   return any;
 }
 
+bool FeltObstacles::has_chances() const {
+  return std::any_of(things_.begin(), things_.end(), [](const Thing& thing) { return !thing.had_its_chance; });
+}
+
 bool FeltObstacles::pardon(Stamp now) {
   bool any = false;
   for (Thing& thing : things_) {

@@ -63,6 +63,8 @@ class FeltObstacles {
   bool forget(Stamp now);
   /// Forgets what was never forgotten so before: what was felt again since stays. Says whether there was any.
   bool forget_once(Stamp now);
+  /// There is something that was never forgotten so.
+  bool has_chances() const;
 
  private:
   struct Thing {

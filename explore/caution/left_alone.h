@@ -71,6 +71,8 @@ class LeftAlone {
   bool forget(Stamp now) { return felt_.forget(now); }
   /// Forgets what was felt but never forgotten before: each thing gets one chance more, not many.
   bool forget_once(Stamp now) { return felt_.forget_once(now); }
+  /// Something was felt that was never forgotten.
+  bool has_chances() const { return felt_.has_chances(); }
 
  private:
   FeltConfig config_;

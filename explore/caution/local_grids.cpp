@@ -1,6 +1,7 @@
 #include "explore/caution/local_grids.h"
 
 #include <cmath>
+#include <utility>
 
 namespace rubble::explore {
 namespace {
@@ -15,7 +16,14 @@ const std::optional<PalletGrid>& LocalGrids::at(const mrpt::math::TPoint2D& p_ma
   const auto known = grids_.find(key);
   if (known != grids_.end()) return known->second;
   const mrpt::math::TPoint2D middle{(key.first + 0.5) * kTile, (key.second + 0.5) * kTile};
-  return grids_.emplace(key, find_pallets(cells_, pallet_, middle)).first->second;
+  WallsAbout walls(cells_, middle);
+  if (known_ == nullptr) return grids_.emplace(key, walls.pallets(pallet_)).first->second;
+  KnownGrid& before = (*known_)[key];
+  if (!(before.walls == walls)) {
+    before.grid = walls.pallets(pallet_);
+    before.walls = std::move(walls);
+  }
+  return grids_.emplace(key, before.grid).first->second;
 }
 
 const std::optional<PalletGrid>& LocalGrids::near(const mrpt::math::TPoint2D& p_map) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "base/angle.h"
@@ -27,52 +28,6 @@ struct Piece {
   double direction;  ///< [rad]
 };
 
-/// The occupied cells of a part of a map, row by row.
-class OccupiedRows {
- public:
-  OccupiedRows(const OccupancyGrid& cells, Cell low, Cell high) : lowest_(low.y) {
-    for (int y = low.y; y <= high.y; ++y) {
-      first_.push_back(xs_.size());
-      for (int x = low.x; x <= high.x; ++x)
-        if (cells[{x, y}] == Occupancy::Occupied) xs_.push_back(x);
-    }
-    first_.push_back(xs_.size());
-  }
-  int lowest() const { return lowest_; }
-  int highest() const { return lowest_ + static_cast<int>(first_.size()) - 2; }
-  /// Those of row y from x on.
-  const int* from(int y, int x) const { return std::lower_bound(begin(y), end(y), x); }
-  const int* begin(int y) const { return xs_.data() + first_[static_cast<std::size_t>(y - lowest_)]; }
-  const int* end(int y) const { return xs_.data() + first_[static_cast<std::size_t>(y - lowest_) + 1]; }
-
- private:
-  int lowest_;
-  std::vector<int> xs_;
-  std::vector<std::size_t> first_;  ///< of each row
-};
-
-std::optional<Piece> piece_at(const OccupiedRows& occupied, Cell c, const TPoint2D& centre) {
-  TPoint2D sum;
-  double xx = 0.0, yy = 0.0, xy = 0.0;
-  int count = 0;
-  for (int y = std::max(occupied.lowest(), c.y - kReach); y <= std::min(occupied.highest(), c.y + kReach); ++y)
-    for (const int* x = occupied.from(y, c.x - kReach); x != occupied.end(y) && *x <= c.x + kReach; ++x) {
-      const double dx = *x - c.x, dy = y - c.y;
-      sum += TPoint2D{dx, dy};
-      xx += dx * dx;
-      yy += dy * dy;
-      xy += dx * dy;
-      ++count;
-    }
-  if (count < kFewest) return std::nullopt;
-  xx -= sum.x * sum.x / count;
-  yy -= sum.y * sum.y / count;
-  xy -= sum.x * sum.y / count;
-  const double spread = length(xx - yy, 2.0 * xy);
-  if (spread < kStraight * (xx + yy)) return std::nullopt;
-  return Piece{centre, 0.5 * std::atan2(2.0 * xy, xx - yy)};
-}
-
 /// Mean of angles that stand `turns` times in a circle; nothing where they do not agree.
 class CircularMean {
  public:
@@ -92,6 +47,55 @@ class CircularMean {
 };
 
 }  // namespace
+
+/// The occupied cells about one that moves along a row, and what they spread: cells are counted as they come within
+/// reach and as they leave it. Sums of whole numbers, exact.
+class Surroundings {
+ public:
+  /// `y` must be one of the rows.
+  Surroundings(const WallsAbout& walls, int y) {
+    const int top = std::min(walls.highest_, y + kReach);
+    for (int row = std::max(walls.lowest_, y - kReach); row <= top; ++row)
+      rows_.push_back({row - y, walls.begin(row), walls.begin(row), walls.end(row)});
+  }
+  /// Moves to a cell no farther left than before.
+  void move_to(int x) {
+    for (Row& row : rows_) {
+      for (; row.ahead != row.end && *row.ahead <= x + kReach; ++row.ahead) count(*row.ahead, row.dy, 1);
+      for (; row.behind != row.ahead && *row.behind < x - kReach; ++row.behind) count(*row.behind, row.dy, -1);
+    }
+    x_ = x;
+  }
+  /// Direction of the piece of wall that they make up [rad], nothing where they make up none.
+  std::optional<double> direction() const {
+    if (n_ < kFewest) return std::nullopt;
+    const auto dx = static_cast<double>(sum_x_ - n_ * x_), dy = static_cast<double>(sum_y_);
+    const auto n = static_cast<double>(n_);
+    const double xx = static_cast<double>(sum_xx_ - 2 * x_ * sum_x_ + n_ * x_ * x_) - dx * dx / n;
+    const double yy = static_cast<double>(sum_yy_) - dy * dy / n;
+    const double xy = static_cast<double>(sum_xy_ - x_ * sum_y_) - dx * dy / n;
+    const double spread = length(xx - yy, 2.0 * xy);
+    if (spread < kStraight * (xx + yy)) return std::nullopt;
+    return 0.5 * std::atan2(2.0 * xy, xx - yy);
+  }
+
+ private:
+  struct Row {
+    int dy;
+    const int *behind, *ahead, *end;  ///< within reach: from `behind` to before `ahead`
+  };
+  void count(std::int64_t x, std::int64_t dy, std::int64_t sign) {
+    n_ += sign;
+    sum_x_ += sign * x;
+    sum_y_ += sign * dy;
+    sum_xx_ += sign * x * x;
+    sum_yy_ += sign * dy * dy;
+    sum_xy_ += sign * x * dy;
+  }
+
+  std::vector<Row> rows_;
+  std::int64_t x_ = 0, n_ = 0, sum_x_ = 0, sum_y_ = 0, sum_xx_ = 0, sum_yy_ = 0, sum_xy_ = 0;  // dy from the row
+};
 
 TPoint2D PalletGrid::to_grid(const TPoint2D& p) const {
   const double c = std::cos(angle), s = std::sin(angle);
@@ -115,23 +119,35 @@ double PalletGrid::depth(const TPoint2D& p_map) const {
   return size * std::min(to_edge(p.x), to_edge(p.y));
 }
 
-std::optional<PalletGrid> find_pallets(const OccupancyGrid& cells, double size, const TPoint2D& around, double radius) {
+WallsAbout::WallsAbout(const OccupancyGrid& cells, const TPoint2D& around, double radius)
+    : frame_(cells.frame()),
+      low_(cells.cell({around.x - radius, around.y - radius})),
+      high_(cells.cell({around.x + radius, around.y + radius})),
+      lowest_(std::max(0, low_.y - kReach)),
+      highest_(std::min(cells.height() - 1, high_.y + kReach)) {
+  const int left = std::max(0, low_.x - kReach), right = std::min(cells.width() - 1, high_.x + kReach);
+  for (int y = lowest_; y <= highest_; ++y) {
+    first_.push_back(xs_.size());
+    const Occupancy* const cells_of_row = cells.row(y);
+    for (int x = left; x <= right; ++x)
+      if (cells_of_row[x] == Occupancy::Occupied) xs_.push_back(x);
+  }
+  first_.push_back(xs_.size());
+}
+
+std::optional<PalletGrid> WallsAbout::pallets(double size) const {
   std::vector<Piece> pieces;
   CircularMean direction;
-  if (cells.width() == 0 || cells.height() == 0) return std::nullopt;
-  const auto within = [&](Cell c) {
-    return Cell{std::clamp(c.x, 0, cells.width() - 1), std::clamp(c.y, 0, cells.height() - 1)};
-  };
-  const Cell low = cells.cell({around.x - radius, around.y - radius});
-  const Cell high = cells.cell({around.x + radius, around.y + radius});
-  const OccupiedRows occupied(cells, within({low.x - kReach, low.y - kReach}),
-                              within({high.x + kReach, high.y + kReach}));
-  for (int y = std::max(0, low.y); y <= std::min(cells.height() - 1, high.y); ++y)
-    for (const int* x = occupied.from(y, low.x); x != occupied.end(y) && *x <= high.x; ++x)
-      if (const auto piece = piece_at(occupied, {*x, y}, cells.centre({*x, y}))) {
-        pieces.push_back(*piece);
-        direction.add(4.0 * piece->direction);
+  for (int y = std::max(lowest_, low_.y); y <= std::min(highest_, high_.y); ++y) {
+    Surroundings about(*this, y);
+    for (const int* x = std::lower_bound(begin(y), end(y), low_.x); x != end(y) && *x <= high_.x; ++x) {
+      about.move_to(*x);
+      if (const auto along = about.direction()) {
+        pieces.push_back({frame_.centre({*x, y}), *along});
+        direction.add(4.0 * *along);
       }
+    }
+  }
   const auto four = direction.mean();
   if (pieces.size() < kPieces || !four) return std::nullopt;
   PalletGrid grid;
@@ -149,6 +165,10 @@ std::optional<PalletGrid> find_pallets(const OccupancyGrid& cells, double size, 
   grid.east = *across_x / (2.0 * kPi) * size;
   grid.north = *across_y / (2.0 * kPi) * size;
   return grid;
+}
+
+std::optional<PalletGrid> find_pallets(const OccupancyGrid& cells, double size, const TPoint2D& around, double radius) {
+  return WallsAbout(cells, around, radius).pallets(size);
 }
 
 }  // namespace rubble::explore

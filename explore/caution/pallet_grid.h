@@ -2,7 +2,9 @@
 
 #include <mrpt/math/TPoint2D.h>
 
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "base/grid.h"
 
@@ -26,8 +28,36 @@ struct PalletGrid {
   double depth(const mrpt::math::TPoint2D& p_map) const;
 };
 
-/// Finds the grid from the walls of the map within `radius` of a place [m]: their common direction, and where across it
-/// they stand. Nothing where too few walls agree. A map that is bent has a grid of its own in every part.
+/// The walls of a map about a place: all that the grid of the pallets there depends on.
+class WallsAbout {
+ public:
+  WallsAbout() = default;
+  /// Within `radius` of `around` [m].
+  WallsAbout(const OccupancyGrid& cells, const mrpt::math::TPoint2D& around, double radius = 4.0);
+
+  /// The grid that the walls show: their common direction, and where across it they stand. Nothing where too few walls
+  /// agree. `size`: of a pallet [m].
+  std::optional<PalletGrid> pallets(double size) const;
+
+  friend bool operator==(const WallsAbout& a, const WallsAbout& b) {
+    return a.frame_ == b.frame_ && a.low_ == b.low_ && a.high_ == b.high_ && a.first_ == b.first_ && a.xs_ == b.xs_;
+  }
+
+ private:
+  friend class Surroundings;
+  const int* begin(int y) const { return xs_.data() + first_[row(y)]; }
+  const int* end(int y) const { return xs_.data() + first_[row(y) + 1]; }
+  std::size_t row(int y) const { return static_cast<std::size_t>(y - lowest_); }
+
+  GridFrame frame_;
+  Cell low_, high_;                 ///< corners of what lies within `radius`; a little more was looked at
+  int lowest_ = 0, highest_ = -1;   ///< rows looked at
+  std::vector<int> xs_;             ///< of the occupied cells, row by row
+  std::vector<std::size_t> first_;  ///< of each row
+};
+
+/// Finds the grid from the walls of the map within `radius` of a place [m]. A map that is bent has a grid of its own in
+/// every part.
 std::optional<PalletGrid> find_pallets(const OccupancyGrid& cells, double size, const mrpt::math::TPoint2D& around,
                                        double radius = 4.0);
 

@@ -294,7 +294,8 @@ Order Agenda::finish_exploring(const Situation& situation) {
 
 /// As long as that gains something and time is left, all of it is tried once more.
 Order Agenda::finish_searching(const Situation& situation) {
-  const Rounds::Standing all{situation.now, situation.floor, situation.victims, frontier_left_, frontier_left_};
+  const auto left = [&] { return frontier_left_; };
+  const Rounds::Standing all{situation.now, situation.floor, situation.victims, left, left};
   if (const auto news = rounds_.another(all, situation.search, situation.left_alone)) {
     choice_.leave_pockets(false);
     if (!situation.search.faces_left() || ++rounds_cut_short_ > kCutShort) choice_.be_thorough();
@@ -364,8 +365,8 @@ Order Agenda::stay_and_plan() {
 }
 
 Rounds::Standing Agenda::standing(const Situation& situation) const {
-  return {situation.now, situation.floor, situation.victims, prospects_of(situation, true),
-          prospects_of(situation, false)};
+  return {situation.now, situation.floor, situation.victims, [&] { return prospects_of(situation, true); },
+          [&] { return prospects_of(situation, false); }};
 }
 
 /// The same of walls that may hide new ground, where none was gained for a while.
@@ -381,7 +382,7 @@ std::size_t Agenda::prospects_of(const Situation& situation, bool pushed) const 
   // Where all walls are looked at squarely the search takes more time than there is: second tries wait for it.
   if (in_vain_ > kBarren || situation.search.squarely()) return 0;
   const auto settled = [&](const TPoint2D& p) { return situation.left_alone.barred_for_good(p); };
-  return prospects(pushed ? with_all_pushed(situation.floor, config_.felt.pallet) : situation.floor,
+  return prospects(pushed ? with_all_pushed(situation.floor, config_.felt.pallet, &grids_pushed_) : situation.floor,
                    situation.T_map_base, config_.planner.min_frontier_cells, settled);
 }
 

@@ -128,11 +128,12 @@ class Agenda {
   TargetChoice choice_;
   Rounds rounds_;
   Pushing pushing_;
-  KnownGround known_off_grid_;     ///< when things off the grid were driven at last for the sake of new ground
-  KnownGround known_at_niche_;     ///< when things were pushed aside last on the way to a niche
-  bool pushes_for_niche_ = false;  ///< what is pushed aside now is for the sake of one
-  double cost_left_ = 0.0;         ///< of the last plan, but for those of pushing for its sake [m]
-  bool insists_ = false;           ///< what stands off the grid is driven at, for the place that it was driving to
+  mutable KnownGrids grids_pushed_;  ///< of the pallets, with all pushed aside that may be
+  KnownGround known_off_grid_;       ///< when things off the grid were driven at last for the sake of new ground
+  KnownGround known_at_niche_;       ///< when things were pushed aside last on the way to a niche
+  bool pushes_for_niche_ = false;    ///< what is pushed aside now is for the sake of one
+  double cost_left_ = 0.0;           ///< of the last plan, but for those of pushing for its sake [m]
+  bool insists_ = false;             ///< what stands off the grid is driven at, for the place that it was driving to
   std::vector<AnchoredPoint> insisted_on_;  ///< such places
   bool push_begun_ = false;                 ///< by the plan under way, which is to be made anew
   PlanClock clock_;

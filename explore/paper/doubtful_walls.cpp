@@ -88,59 +88,75 @@ double off_edges(const PalletGrid& grid, const TPoint2D& p, Cell n) {
 class Background {
  public:
   Background(const OccupancyGrid& cells, LocalGrids& grids, const Grid<std::uint8_t>* pockets)
-      : cells_(cells), grids_(grids), pockets_(pockets), pieces_(pieces_of_floor(cells)) {}
+      : cells_(cells),
+        grids_(grids),
+        pockets_(pockets),
+        thick_(in_cells(kThick)),
+        behind_(in_cells(kBehind)),
+        hidden_(in_cells(kHidden)) {}
 
   /// Whether `n` leads from the face of a wall at `c` to unknown ground, and before that neither to the floor that the
-  /// face stands on nor to a wall on an edge.
-  bool hidden(Cell c, Cell n) const {
+  /// face stands on nor to a wall on an edge. What takes longest is asked last: whether floor hangs together, for all.
+  bool hidden(Cell c, Cell n) {
     const int steps = steps_to_unknown(c, n);
-    // Last, for to find out where the edges are takes longest.
-    for (int i = 1; i <= steps; ++i) {
-      const Cell at{c.x + i * n.x, c.y + i * n.y};
-      if (cells_.inside(at) && cells_[at] == Occupancy::Occupied && on_edge(at, n)) return false;
-    }
-    return steps > 0;
+    return steps > 0 && !walls_on_edge(c, n, steps) && !same_floor(c, n, steps);
   }
 
  private:
-  /// Cells from `c` on until enough is unknown, or the map ends; 0: the floor before it comes first, or nothing does.
+  int in_cells(double length) const { return static_cast<int>(std::lround(length / cells_.frame().resolution)); }
+
+  /// Cells from `c` on until enough is unknown, or the map ends; 0: neither.
   int steps_to_unknown(Cell c, Cell n) const {
-    const double resolution = cells_.frame().resolution;
-    const auto in_cells = [&](double length) { return static_cast<int>(std::lround(length / resolution)); };
-    const int here = pieces_[{c.x - n.x, c.y - n.y}];
     int unknown = 0;
-    for (int i = 1; i <= in_cells(kBehind); ++i) {
+    for (int i = 1; i <= behind_; ++i) {
       const Cell at{c.x + i * n.x, c.y + i * n.y};
       if (!cells_.inside(at)) return i;
-      if (i <= in_cells(kThick)) continue;
-      if (pieces_[at] == here) return 0;
+      if (i <= thick_ || cells_[at] != Occupancy::Unknown) continue;
       const bool pocket = pockets_ != nullptr && (*pockets_)[at] != 0;
-      if (cells_[at] == Occupancy::Unknown && !pocket && ++unknown >= in_cells(kHidden)) return i;
+      if (!pocket && ++unknown >= hidden_) return i;
     }
     return 0;
+  }
+  bool walls_on_edge(Cell c, Cell n, int steps) const {
+    for (int i = 1; i <= steps; ++i) {
+      const Cell at{c.x + i * n.x, c.y + i * n.y};
+      if (cells_.inside(at) && cells_[at] == Occupancy::Occupied && on_edge(at, n)) return true;
+    }
+    return false;
   }
   bool on_edge(Cell c, Cell n) const {
     const std::optional<PalletGrid>& grid = grids_.at(cells_.centre(c));
     return !grid || off_edges(*grid, cells_.centre(c), n) < kStandsOnEdge;
   }
+  bool same_floor(Cell c, Cell n, int steps) {
+    if (pieces_.width() == 0) pieces_ = pieces_of_floor(cells_);
+    const int here = pieces_[{c.x - n.x, c.y - n.y}];
+    for (int i = thick_ + 1; i <= steps; ++i) {
+      const Cell at{c.x + i * n.x, c.y + i * n.y};
+      if (cells_.inside(at) && pieces_[at] == here) return true;
+    }
+    return false;
+  }
 
   const OccupancyGrid& cells_;
   LocalGrids& grids_;
   const Grid<std::uint8_t>* pockets_;
-  Grid<int> pieces_;
+  int thick_, behind_, hidden_;  ///< [cells]
+  Grid<int> pieces_;             ///< of floor, once they are asked for
 };
 
 }  // namespace
 
-std::vector<Source> doubtful_walls(const Traversable& floor, double pallet, const Grid<std::uint8_t>* pockets) {
+std::vector<Source> doubtful_walls(const Traversable& floor, double pallet, const Grid<std::uint8_t>* pockets,
+                                   KnownGrids* known) {
   std::vector<Source> sources;
   if (pallet <= 0.0 || floor.cells.width() == 0) return sources;
   const OccupancyGrid& cells = floor.cells;
   const double resolution = floor.frame().resolution;
   const auto in_cells = [&](double length) { return static_cast<int>(std::lround(length / resolution)); };
   const int before = std::max(1, in_cells(kBefore));
-  LocalGrids grids(cells, pallet);
-  const Background background(cells, grids, pockets);
+  LocalGrids grids(cells, pallet, known);
+  Background background(cells, grids, pockets);
   std::vector<Cell> occupied;
   for (int y = 1; y + 1 < cells.height(); ++y) {
     const Occupancy* const row = cells.row(y);

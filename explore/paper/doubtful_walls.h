@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/grid.h"
+#include "explore/caution/local_grids.h"
 #include "explore/plan/exploration_transform.h"
 #include "explore/plan/traversable.h"
 
@@ -17,8 +18,8 @@ namespace rubble::explore {
 /// floor on one side and unknown on the other.
 /// `pallet`: size of the arena's elements [m]; 0: nothing. The sources are in raster order of the walls, without head
 /// start; each is 0.5 or 0.6 m before its wall, in free sight of it.
-/// `pockets`: unknown ground that is none worth the look; null: all is.
-std::vector<Source> doubtful_walls(const Traversable& floor, double pallet,
-                                   const Grid<std::uint8_t>* pockets = nullptr);
+/// `pockets`: unknown ground that is none worth the look; null: all is. `known`: grids of earlier calls.
+std::vector<Source> doubtful_walls(const Traversable& floor, double pallet, const Grid<std::uint8_t>* pockets = nullptr,
+                                   KnownGrids* known = nullptr);
 
 }  // namespace rubble::explore

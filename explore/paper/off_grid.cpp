@@ -71,10 +71,10 @@ void add_what_joins(OccupancyGrid& inside, Thing& thing) {
 
 }  // namespace
 
-bool free_off_grid(Traversable& floor, double pallet, bool floor_only) {
+bool free_off_grid(Traversable& floor, double pallet, bool floor_only, KnownGrids* known) {
   if (pallet <= 0.0) return false;
   const OccupancyGrid walls = floor.cells;
-  LocalGrids grids(walls, pallet);
+  LocalGrids grids(walls, pallet, known);
   // Occupied: well inside a pallet. Unknown: nearer to its edges than that, as a part of what stands inside may be.
   OccupancyGrid inside(walls.frame(), Occupancy::Free);
   for (int y = 0; y < walls.height(); ++y)

@@ -40,24 +40,33 @@ Grid<std::uint8_t> within_reach(const OccupancyGrid& cells, Cell from) {
 
 }  // namespace
 
-Traversable with_all_pushed(Traversable floor, double pallet) {
+Traversable with_all_pushed(Traversable floor, double pallet, KnownGrids* known) {
   Pushing all(pallet);
   while (all.more()) all.start(floor);
-  all.free_things(floor);
+  all.free_things(floor, known);
   return floor;
 }
 
 std::size_t prospects(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, int min_cells,
                       const std::function<bool(const mrpt::math::TPoint2D&)>& settled) {
   if (floor.cells.width() == 0) return 0;
+  // What costs least is asked first.
+  std::vector<FrontierCluster> clusters = frontier_clusters(floor, min_cells);
+  const auto keep = [&](const auto& good) {
+    const auto none_good = [&](const FrontierCluster& cluster) {
+      return std::none_of(cluster.cells.begin(), cluster.cells.end(), good);
+    };
+    clusters.erase(std::remove_if(clusters.begin(), clusters.end(), none_good), clusters.end());
+    return !clusters.empty();
+  };
+  const auto wanted = [&](Cell c) { return !settled(floor.cells.centre(c)); };
+  if (!keep(wanted)) return 0;
   const Grid<std::uint8_t> small = pockets(floor.cells, kPocket);
+  const auto leads = [&](Cell c) { return leads_on(floor.cells, small, c) && wanted(c); };
+  if (!keep(leads)) return 0;
   const Grid<std::uint8_t> reached = within_reach(floor.cells, floor.cells.cell({T_map_base.x, T_map_base.y}));
-  const std::vector<FrontierCluster> clusters = frontier_clusters(floor, min_cells);
-  return static_cast<std::size_t>(std::count_if(clusters.begin(), clusters.end(), [&](const FrontierCluster& cluster) {
-    return std::any_of(cluster.cells.begin(), cluster.cells.end(), [&](Cell c) {
-      return reached[c] != 0 && leads_on(floor.cells, small, c) && !settled(floor.cells.centre(c));
-    });
-  }));
+  keep([&](Cell c) { return reached[c] != 0 && leads(c); });
+  return clusters.size();
 }
 
 }  // namespace rubble::explore

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 
+#include "explore/caution/local_grids.h"
 #include "explore/plan/traversable.h"
 
 namespace rubble::explore {
@@ -18,7 +19,8 @@ constexpr double kPocket = 0.5;
 std::size_t prospects(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, int min_cells,
                       const std::function<bool(const mrpt::math::TPoint2D&)>& settled);
 
-/// The floor if all that may be pushed aside was. `pallet`: size of the arena's elements, 0: of none [m].
-Traversable with_all_pushed(Traversable floor, double pallet);
+/// The floor if all that may be pushed aside was. `pallet`: size of the arena's elements, 0: of none [m]. `known`:
+/// grids of earlier calls.
+Traversable with_all_pushed(Traversable floor, double pallet, KnownGrids* known = nullptr);
 
 }  // namespace rubble::explore

@@ -22,14 +22,14 @@ constexpr double kRoll = 0.15;      ///< farther they do not roll between two lo
 
 }  // namespace
 
-void Pushing::free_things(Traversable& floor) const {
+void Pushing::free_things(Traversable& floor, KnownGrids* known) const {
   if (slopes_only_) {
-    free_off_grid(floor, pallet_, true);
+    free_off_grid(floor, pallet_, true, known);
     return;
   }
   if (on()) free_small_things(floor, what_ == What::Single ? kPaper : kHeap);
   if (what_ >= What::Strips) free_strips(floor);
-  if (what_ == What::OffGrid) free_off_grid(floor, pallet_);
+  if (what_ == What::OffGrid) free_off_grid(floor, pallet_, false, known);
 }
 
 bool Pushing::worth(const Traversable& floor) const { return on() || known_then_.worth_a_try(floor); }

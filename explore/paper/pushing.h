@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "explore/caution/local_grids.h"
 #include "explore/paper/known_ground.h"
 #include "explore/plan/traversable.h"
 
@@ -23,8 +24,8 @@ class Pushing {
   bool on() const { return what_ != What::Nothing; }
   /// More may be driven at than is now.
   bool more() const { return what_ != What::OffGrid; }
-  /// Makes free on `floor` what is driven at.
-  void free_things(Traversable& floor) const;
+  /// Makes free on `floor` what is driven at. `known`: grids of pallets of earlier calls.
+  void free_things(Traversable& floor, KnownGrids* known = nullptr) const;
   /// Whether pushing is worth while for the sake of new ground: in this round it was not tried yet, or ground was
   /// gained since then, or it has begun.
   bool worth(const Traversable& floor) const;

@@ -30,12 +30,12 @@ Resort Rounds::next_resort(bool homeward, bool may_push, LeftAlone& left_alone, 
 
 std::optional<std::string> Rounds::before_all_faces(const Standing& standing, bool more, FloorSearch& search,
                                                     LeftAlone& left_alone) {
-  if (standing.frontier_left > 0 && !tried_before_search_ && (left_alone.pardon_all(standing.now) || more)) {
+  if (!tried_before_search_ && standing.frontier_left() > 0 && (left_alone.pardon_all(standing.now) || more)) {
     tried_before_search_ = true;
     begin();
     return "no niche is left: what could not be reached is tried again before the rest is searched";
   }
-  if (standing.behind_felt > 0 && forgets_ == 0) return forget_what_was_felt(standing, search, left_alone);
+  if (forgets_ == 0) return forget_what_was_felt(standing, search, left_alone);
   return std::nullopt;
 }
 
@@ -57,7 +57,9 @@ std::optional<std::string> Rounds::another(const Standing& standing, FloorSearch
 /// even what was felt for certain is tried anew.
 std::optional<std::string> Rounds::forget_what_was_felt(const Standing& standing, FloorSearch& search,
                                                         LeftAlone& left_alone) {
-  if (standing.behind_felt == 0 || forgets_ >= kForgets || !left_alone.forget_once(standing.now)) return std::nullopt;
+  if (forgets_ >= kForgets || !left_alone.has_chances() || standing.behind_felt() == 0 ||
+      !left_alone.forget_once(standing.now))
+    return std::nullopt;
   ++forgets_;
   barren_rounds_ = 0;
   search.reconsider(standing.floor);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -26,9 +27,10 @@ class Rounds {
   struct Standing {
     Stamp now;
     const Traversable& floor;
-    std::size_t victims;        ///< sure ones so far
-    std::size_t frontier_left;  ///< frontiers that are worth another try
-    std::size_t behind_felt;    ///< and those that nothing but what was felt keeps the robot from
+    std::size_t victims;  ///< sure ones so far
+    /// How many frontiers are worth another try; asked for where it matters only, for it takes a while.
+    std::function<std::size_t()> frontier_left;
+    std::function<std::size_t()> behind_felt;  ///< and those that nothing but what was felt keeps the robot from
   };
 
   /// A plan found a way.

@@ -126,7 +126,8 @@ Plan TargetChoice::to_frontier(const View& view, const FloorSearch& search, cons
                                    frontier_worth(by_, config_, view.floor, search, view.speed));
   if (plan.found || view.faces_first) return plan;
   if (tells_pockets && !thorough_ && !leaves_pockets_) small = pockets(view.floor.cells, kPocket);
-  std::vector<Source> sources = doubtful_walls(view.floor, pallet_, tells_pockets && !thorough_ ? &small : nullptr);
+  std::vector<Source> sources =
+      doubtful_walls(view.floor, pallet_, tells_pockets && !thorough_ ? &small : nullptr, &grids_);
   const auto place = [&](const Source& source) { return view.floor.cells.centre(source.cell); };
   sources.erase(std::remove_if(sources.begin(), sources.end(), [&](const Source& s) { return barred(place(s)); }),
                 sources.end());
@@ -148,7 +149,7 @@ Plan TargetChoice::to_place(const View& view, FloorSearch& search, Subjects subj
   OccupancyGrid shown = view.floor.cells;
   for (const std::vector<Cell>& freed : {view.floor.loose, view.floor.doubtful})
     for (const Cell c : freed) shown[c] = Occupancy::Occupied;
-  LocalGrids grids(shown, pallet_);
+  LocalGrids grids(shown, pallet_, &grids_);
   StepFields fields(shown);
   // Well inside the pallets stand no walls with holes, and among steps no boxes.
   const auto idle = [&](const TPoint2D& subject) {

@@ -8,6 +8,7 @@
 #include "base/stamp.h"
 #include "explore/anchor.h"
 #include "explore/caution/left_alone.h"
+#include "explore/caution/local_grids.h"
 #include "explore/paper/frontier_worth.h"
 #include "explore/plan/planner.h"
 #include "explore/plan/traversable.h"
@@ -113,6 +114,7 @@ class TargetChoice {
   PlannerConfig config_;
   bool bar_targets_;
   double pallet_;
+  KnownGrids grids_;  ///< of the pallets, on the newest maps
   FrontierChoiceConfig by_;
   Priorities priorities_;
   Planner planner_;

@@ -8,6 +8,7 @@
 #include "base/planar.h"
 #include "base/rng.h"
 #include "explore/caution/felt_obstacles.h"
+#include "explore/caution/local_grids.h"
 
 namespace rubble::explore {
 namespace {
@@ -78,6 +79,34 @@ TEST(PalletGrid, IsNotMadeUpWhereNoWallsAgree) {
     noise[{x, y}] = Occupancy::Occupied;
   }
   EXPECT_FALSE(find_pallets(noise, kPallet, {4.0, 4.0}));
+}
+
+TEST(LocalGrids, ThoseOfEarlierMapsChangeNothing) {
+  KnownGrids known;
+  Rng rng(4, "walls");
+  OccupancyGrid cells = map_of_walls({0.3, 0.5, 0.2}, rng);
+  std::size_t kept = 0;
+  for (int step = 0; step < 40; ++step) {
+    SCOPED_TRACE(step);
+    // A wall that comes or goes, now and then a map that is turned, or wider.
+    const Cell at{static_cast<int>(rng.uniform() * 140.0), static_cast<int>(rng.uniform() * 140.0)};
+    for (int i = 0; i < 20; ++i) cells[{at.x + i, at.y}] = step % 2 == 0 ? Occupancy::Occupied : Occupancy::Free;
+    if (step % 10 == 9) cells = map_of_walls({0.1 * step, 0.5, 0.02 * step}, rng);
+    if (step == 25) cells = with_frame(cells, {160, 160, 0.05, -1.2, 0.6});
+    const KnownGrids before = known;
+    LocalGrids fresh(cells, kPallet), again(cells, kPallet, &known);
+    for (double x = -1.0; x < 9.0; x += 3.0)
+      for (double y = -1.0; y < 9.0; y += 3.0) {
+        const std::optional<PalletGrid>&a = fresh.at({x, y}), &b = again.at({x, y});
+        ASSERT_EQ(a.has_value(), b.has_value());
+        if (!a) continue;
+        EXPECT_EQ(a->angle, b->angle);
+        EXPECT_EQ(a->east, b->east);
+        EXPECT_EQ(a->north, b->north);
+      }
+    for (const auto& [tile, grid] : before) kept += known.at(tile).walls == grid.walls ? 1 : 0;
+  }
+  EXPECT_GT(kept, 100u) << "most were not found anew";
 }
 
 /// The grid's edges at multiples of 1.2 m; the robot drives east out of pallet (0, 0).

@@ -30,11 +30,15 @@ struct Played {
   }
   bool another() {
     now = now + 1.0;
-    return rounds.another({now, floor, victims, frontier_left, frontier_left}, search, left_alone).has_value();
+    return rounds.another(standing(frontier_left), search, left_alone).has_value();
   }
   bool before_all_faces(std::size_t frontiers, bool more = false) {
     now = now + 1.0;
-    return rounds.before_all_faces({now, floor, victims, frontiers, frontiers}, more, search, left_alone).has_value();
+    return rounds.before_all_faces(standing(frontiers), more, search, left_alone).has_value();
+  }
+  Rounds::Standing standing(std::size_t frontiers) const {
+    const auto left = [frontiers] { return frontiers; };
+    return {now, floor, victims, left, left};
   }
 };
 
