@@ -16,6 +16,8 @@ using mrpt::math::TPoint2D;
 constexpr double kVisited = 0.30;                ///< closer to its target the robot has been there [m]
 constexpr double kNearTarget = 1.0;              ///< turned away from so near, it was seen not to be had [m]
 constexpr double kBarren = 240.0;                ///< spent on frontiers in vain for so long, the faces go first [s]
+constexpr double kBarrenWalls = 90.0;            ///< the same without new ground where walls have holes [s]
+constexpr int kCutShort = 3;                     ///< rounds that left faces out of reach are not the last
 constexpr double kLookTurn = deg_to_rad(270.0);  ///< with a 240 deg scanner more than once around [rad]
 constexpr double kGlance = deg_to_rad(40.0);     ///< [rad]
 constexpr double kSearchReplan = 2.0;            ///< on the way to a viewpoint [s]
@@ -96,12 +98,13 @@ Plan Agenda::choose(const Situation& situation) {
   view.speed = situation.speed;
   // What is off the grid may be solid after all: it is driven at for the place that is asked for, and for no other.
   view.places_only = pushing_.what() == Pushing::What::OffGrid;
+  view.faces_first = faces_go_first(situation);
   const bool wanted =
       choice_.frontiers_done() && goal() == Goal::Place && target() && !situation.search.subject_seen(situation.floor);
   TargetChoice::Choice choice = choice_.choose(view, situation.search);
   if (choice.no_niche) {
     frontier_left_ = choice.plan.frontier_left;
-    if (push_for_niche(situation)) return std::move(choice.plan);
+    if (!situation.search.squarely() && push_for_niche(situation)) return std::move(choice.plan);
     const auto news = rounds_.before_all_faces(standing(situation), known_off_grid_.worth_a_try(situation.floor),
                                                situation.search, situation.left_alone);
     if (news) {
@@ -295,7 +298,7 @@ Order Agenda::finish_searching(const Situation& situation) {
   const Rounds::Standing all{situation.now, situation.floor, situation.victims, left, left};
   if (const auto news = rounds_.another(all, situation.search, situation.left_alone)) {
     choice_.leave_pockets(false);
-    choice_.be_thorough();
+    if (!situation.search.faces_left() || ++rounds_cut_short_ > kCutShort) choice_.be_thorough();
     begin_round(*news, situation.now);
     return {};
   }
@@ -366,12 +369,18 @@ Rounds::Standing Agenda::standing(const Situation& situation) const {
           [&] { return prospects_of(situation, false); }};
 }
 
+/// The same of walls that may hide new ground, where none was gained for a while.
+bool Agenda::faces_go_first(const Situation& situation) const {
+  return !choice_.thorough() && situation.search.on() && config_.bar_targets && situation.search.squarely() &&
+         situation.now - gained_at_ > kBarrenWalls;
+}
+
 /// Frontiers that are worth another try; where things are `pushed` aside for it or, else, where what was felt alone
 /// keeps the robot from them. Without a search of faces to go on to all are.
 std::size_t Agenda::prospects_of(const Situation& situation, bool pushed) const {
   if (choice_.thorough() || !situation.search.on() || !config_.bar_targets) return frontier_left_;
-  // Where all walls are looked at squarely the search takes more time than there is: all else waits for it.
-  if ((situation.search.squarely() ? situation.now - gained_at_ : in_vain_) > kBarren) return 0;
+  // Where all walls are looked at squarely the search takes more time than there is: second tries wait for it.
+  if (in_vain_ > kBarren || situation.search.squarely()) return 0;
   const auto settled = [&](const TPoint2D& p) { return situation.left_alone.barred_for_good(p); };
   return prospects(pushed ? with_all_pushed(situation.floor, config_.felt.pallet, &grids_pushed_) : situation.floor,
                    situation.T_map_base, config_.planner.min_frontier_cells, settled);

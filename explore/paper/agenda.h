@@ -120,6 +120,7 @@ class Agenda {
   Order finish_searching(const Situation& situation);
   void begin_round(const std::string& news, Stamp now);
   Order stay_and_plan();
+  bool faces_go_first(const Situation& situation) const;
   Rounds::Standing standing(const Situation& situation) const;
   std::size_t prospects_of(const Situation& situation, bool pushed) const;
 
@@ -139,7 +140,8 @@ class Agenda {
   std::size_t frontier_left_ = 0;  ///< of the last plan
   KnownGround gained_;             ///< when new ground was seen last ...
   Stamp gained_at_ = Stamp::never();
-  double in_vain_ = 0.0;  ///< spent on the way to frontiers since then [s]
+  double in_vain_ = 0.0;      ///< spent on the way to frontiers since then [s]
+  int rounds_cut_short_ = 0;  ///< that ended while faces were left to be looked at squarely
   std::optional<AnchoredPoint> looked_from_;
   MissionEnd end_ = MissionEnd::UnderWay;
   std::string reason_;

@@ -21,7 +21,8 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
 constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
-constexpr double kBeside = 0.25;                        ///< [m]
+constexpr double kKeep = 3.0;     ///< looks on the way change what a look squarely is worth: times the usual head start
+constexpr double kBeside = 0.25;  ///< [m]
 const std::optional<PalletGrid> kNoGrid;
 
 /// The fields of steps that a map shows, each looked for once.
@@ -69,7 +70,9 @@ TargetChoice::Choice TargetChoice::choose(const View& view, FloorSearch& search)
     Plan place = beside_the_way(view, search, frontier);
     return weigh(std::move(frontier), std::move(place));
   }
-  Plan niche = to_place(view, search, Subjects::Niches);
+  // Where all faces are looked at squarely, niches are faces like others.
+  Plan niche;
+  if (!search.squarely()) niche = to_place(view, search, Subjects::Niches);
   if (!niche.found) return {std::move(frontier), true};
   return weigh(std::move(frontier), std::move(niche));
 }
@@ -123,7 +126,7 @@ Plan TargetChoice::to_frontier(const View& view, const FloorSearch& search, cons
   };
   Plan plan = planner_.to_frontier(view.floor, view.T_map_base, left_alone, previous,
                                    frontier_worth(by_, config_, view.floor, search, view.speed));
-  if (plan.found) return plan;
+  if (plan.found || view.faces_first) return plan;
   if (tells_pockets && !thorough_ && !leaves_pockets_) small = pockets(view.floor.cells, kPocket);
   std::vector<Source> sources =
       doubtful_walls(view.floor, pallet_, tells_pockets && !thorough_ ? &small : nullptr, &grids_);
@@ -143,7 +146,7 @@ Plan TargetChoice::to_frontier(const View& view, const FloorSearch& search, cons
 Plan TargetChoice::to_place(const View& view, FloorSearch& search, Subjects subjects) {
   const auto head_start = [&](const TPoint2D& p) -> std::optional<double> {
     if (view.left_alone.barred(p, view.now)) return std::nullopt;
-    return planner_.head_start(target_, p);
+    return (subjects == Subjects::Squarely ? kKeep : 1.0) * planner_.head_start(target_, p);
   };
   OccupancyGrid shown = view.floor.cells;
   for (const std::vector<Cell>& freed : {view.floor.loose, view.floor.doubtful})

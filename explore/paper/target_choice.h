@@ -42,6 +42,7 @@ class TargetChoice {
     Stamp now;
     const LeftAlone& left_alone;
     bool places_only = false;  ///< in a search frontiers do not come first
+    bool faces_first = false;  ///< walls that may hide new ground come after the faces
     double speed = 0.2;        ///< of the robot so far, turns and stops included [m/s]
   };
   struct Choice {

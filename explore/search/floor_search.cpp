@@ -18,6 +18,7 @@ constexpr double kFacing = deg_to_rad(8.0);     ///< [rad]
 constexpr double kMoved = 0.05;                 ///< a look that moved less shows the same, to a cell [m]
 constexpr double kMovedTurn = deg_to_rad(2.0);  ///< likewise
 constexpr double kSubjectRadius = 0.25;         ///< given up together with a place that cannot be seen [m]
+constexpr double kSquareRadius = 0.12;          ///< the same of what is to be looked at squarely [m]
 constexpr double kHearing = 1.4;                ///< floor so near is listened to, a little less than sound reaches [m]
 constexpr double kSmelling = 0.9;               ///< and so near it is smelt [m]
 constexpr int kBoxCells = 40;                   ///< a box has more floor than this
@@ -28,6 +29,8 @@ constexpr double kAnotherSide = 0.5;            ///< it is visited again from so
 constexpr double kSameStare = 0.5;              ///< cues so near to each other are stared at together [m]
 constexpr double kBox = 0.35;                   ///< a wall so near before a suspect may be the side of its box [m]
 constexpr double kLookCost = 1.5;               ///< what a look takes, in way, standing still and turning to it [m]
+constexpr double kSolidCost = 1.5;              ///< more way than this is driven to a hole that was seen first [m]
+constexpr int kHoleCells = 2;                   ///< so near it lies before the place to look at
 constexpr double kFullLook = 0.6;               ///< of wall that it shows squarely at best [m]
 const std::vector<double> kSuspectDistances = {0.6, 0.75, 0.5, 0.9, 1.1};
 
@@ -156,7 +159,7 @@ void FloorSearch::look_again(const Traversable& floor) {
   for (const GivenUp& place : given_up_)
     if (place.record != Record::Suspect)
       record(place.record)
-          .give_up(floor, place.anchor.T_map_base.composePoint(place.p_base), kSubjectRadius, place.faces);
+          .give_up(floor, place.anchor.T_map_base.composePoint(place.p_base), radius_of(place.record), place.faces);
 }
 
 bool FloorSearch::reconsider(const Traversable& floor) {
@@ -170,19 +173,27 @@ bool FloorSearch::subject_seen(const Traversable& floor) const {
   if (subject_.record == Record::Suspect) return !is_suspect(subject_.at);
   const Cell c = floor.cells.cell(subject_.at);
   if (c.x < 1 || c.y < 1 || c.x + 1 >= floor.cells.width() || c.y + 1 >= floor.cells.height()) return false;
-  return (record(subject_.record).missing(floor, c) & subject_.faces) == 0;
+  const SearchedArea& searched = record(subject_.record);
+  if (subject_.record == Record::Squarely) return (subject_.faces & ~searched.looked_at(floor.frame(), c)) == 0;
+  return (searched.missing(floor, c) & subject_.faces) == 0;
 }
 
 void FloorSearch::give_up_subject(const Traversable& floor, const Anchor& here) {
   given_up_.push_back({here, here.T_map_base.inverseComposePoint(subject_.at), subject_.faces, subject_.record});
   if (subject_.record != Record::Suspect)
-    record(subject_.record).give_up(floor, subject_.at, kSubjectRadius, subject_.faces);
+    record(subject_.record).give_up(floor, subject_.at, radius_of(subject_.record), subject_.faces);
 }
 
-std::vector<Source> FloorSearch::sources(const Traversable& floor, Subjects subjects,
+std::vector<Source> FloorSearch::sources(const Traversable& map, Subjects subjects,
                                          const std::function<std::optional<double>(const TPoint2D&)>& head_start,
                                          const std::function<bool(const TPoint2D&)>& idle) {
   const Record cameras = subjects == Subjects::Squarely ? Record::Squarely : Record::Anyhow;
+  Traversable shut;
+  if (subjects == Subjects::Squarely) {
+    shut.cells = with_holes_shut(map.cells);
+    shut.clearance = map.clearance;
+  }
+  const Traversable& floor = subjects == Subjects::Squarely ? shut : map;
   views_.clear();
   // Where all floor is smelt or listened to it is gone over anyway.
   if (subjects == Subjects::Unseen && !others_.empty()) return {};
@@ -196,15 +207,26 @@ std::vector<Source> FloorSearch::sources(const Traversable& floor, Subjects subj
       add_views(viewpoints(floor, other.area, other.config, room_, tight_, subjects), other.record);
     add_suspects(floor);
   }
+  if (subjects == Subjects::Squarely) faces_left_ = !views_.empty();
   std::vector<Source> sources;
   for (const View& view : views_) {
     const std::optional<double> start = head_start(floor.cells.centre(view.cell));
     if (!start) continue;
     // A look that shows little has to be made good by others.
     const double lost = view.record == Record::Squarely ? 1.0 - std::min(1.0, shown(floor, view) / kFullLook) : 0.0;
-    sources.push_back({view.cell, *start + kLookCost * lost});
+    const bool solid = view.record == Record::Squarely && !beside_hole(map.cells, floor.cells, view);
+    sources.push_back({view.cell, *start + kLookCost * lost + (solid ? kSolidCost : 0.0)});
   }
   return sources;
+}
+
+/// Whether the scanner saw a hole in the wall that a view faces, `shut` in one of the grids, near its subject.
+bool FloorSearch::beside_hole(const OccupancyGrid& cells, const OccupancyGrid& shut, const View& view) {
+  const Cell c = cells.cell(view.subject);
+  for (int y = std::max(0, c.y - kHoleCells); y <= std::min(cells.height() - 1, c.y + kHoleCells); ++y)
+    for (int x = std::max(0, c.x - kHoleCells); x <= std::min(cells.width() - 1, c.x + kHoleCells); ++x)
+      if (shut[{x, y}] == Occupancy::Occupied && cells[{x, y}] != Occupancy::Occupied) return true;
+  return false;
 }
 
 /// Length of the wall beside the subject of a view that a look at it shows squarely for the first time [m].
@@ -311,10 +333,27 @@ void FloorSearch::choose_subject(Cell viewpoint) {
     if (view.cell == viewpoint) subject_ = {view.subject, view.faces, view.record};
 }
 
+/// How far around a place that could not be looked at is given up with it [m].
+double FloorSearch::radius_of(Record record) { return record == Record::Squarely ? kSquareRadius : kSubjectRadius; }
+
+/// Whether a look from where the robot stands would be what the view is for.
+bool FloorSearch::serves(const View& view, const TPose2D& T_map_base) {
+  if (view.record != Record::Squarely) return true;
+  const double dx = view.subject.x - T_map_base.x, dy = view.subject.y - T_map_base.y;
+  const double away = length(dx, dy);
+  return away > kSquarely.nearest && away < kSquarely.farthest &&
+         (faces_along(dx / away, dy / away, kSquarely.incidence) & view.faces) != 0;
+}
+
 std::optional<double> FloorSearch::turn_to_subject(const Traversable& floor, const TPose2D& T_map_base) {
   double turn = kPi;
+  bool any = false;
   for (const View& view : views_) {
     if (distance(floor.cells.centre(view.cell), {T_map_base.x, T_map_base.y}) > kAtViewpoint) continue;
+    const bool serves = FloorSearch::serves(view, T_map_base);
+    if (any && !serves) continue;
+    if (serves && !any) turn = kPi;
+    any = any || serves;
     const double bearing = std::atan2(view.subject.y - T_map_base.y, view.subject.x - T_map_base.x);
     const double to = wrap_angle(bearing - T_map_base.phi);
     if (std::abs(to) >= std::abs(turn)) continue;

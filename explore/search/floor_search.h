@@ -72,6 +72,8 @@ class FloorSearch {
   double faces_in_view(const Traversable& floor, Cell from) const;
   /// Whether any such cell was found at the last time, in reach or not.
   bool place_left() const { return !views_.empty(); }
+  /// Whether there were faces to be looked at squarely when that was asked last, in reach or not.
+  bool faces_left() const { return squarely() && faces_left_; }
   /// Makes what can be seen from `viewpoint` the place to face.
   void choose_subject(Cell viewpoint);
   /// Of all that can be seen from here makes that the place to face which needs the smallest turn; returns the turn
@@ -109,9 +111,12 @@ class FloorSearch {
   const SearchedArea& record(Record record) const { return const_cast<FloorSearch*>(this)->record(record); }
   void add_views(const std::vector<Viewpoint>& views, Record record);
   double shown(const Traversable& floor, const View& view) const;
+  static bool beside_hole(const OccupancyGrid& cells, const OccupancyGrid& shut, const View& view);
+  static bool serves(const View& view, const mrpt::math::TPose2D& T_map_base);
   void add_suspects(const Traversable& floor);
   bool is_suspect(const mrpt::math::TPoint2D& place) const;
   double facing(Record record) const;
+  static double radius_of(Record record);
 
   /// A place that could not be looked at, kept relative to where the robot gave it up.
   struct GivenUp {
@@ -173,6 +178,7 @@ class FloorSearch {
   Stamp next_sniff_ = Stamp::never();
   bool dwell_over_ = false;
   bool holes_ = false;
+  bool faces_left_ = false;
 };
 
 }  // namespace rubble::explore

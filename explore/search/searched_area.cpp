@@ -22,11 +22,16 @@ constexpr int kNicheStride = 2;      ///< and at the back of a niche
 constexpr double kNarrowest = 0.20;  ///< niche [m]; what is narrower is a wall seen twice
 constexpr double kWidest = 0.55;     ///< [m]
 constexpr double kUnseen = 0.5;      ///< floor that is looked for by itself [m2]; less lies behind corners everywhere
-constexpr int kDirections = 16;      ///< viewpoints tried around a subject
+constexpr double kHole = 0.20;       ///< in a wall, at its widest [m]
+constexpr int kManyDirections = 32;  ///< tried around a subject that is to be looked at squarely
 // Of viewpoints from their subjects [m]. Before a niche there is little choice: its box takes a third of a corridor.
 const std::vector<double> kDistances = {0.5, 0.8, 1.1, 1.4};
 const std::vector<double> kNicheDistances = {0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4};
 const std::vector<double> kSquareDistances = {0.65, 0.7, 0.8, 0.95, 1.1, 1.3};
+// The same where the look itself is to be squarely: a robot stops a hand's breadth off its viewpoint.
+const std::vector<double> kSureDistances = {0.75, 0.85, 1.0, 1.15, 1.3, 1.5};
+const std::vector<double> kFarDistances = {1.65};
+constexpr double kSureIncidence = deg_to_rad(15.0);  ///< [rad]
 
 /// Follows a line of sight to where it comes down behind something that most scans pass over. That itself is in view;
 /// where the line starts in it, as on a slope that scans met from its foot, it hides nothing.
@@ -121,6 +126,23 @@ bool in_niche(const Traversable& floor, Cell c, Faces faces) {
   };
   return ((faces & (kEastFace | kWestFace)) != 0 && between_walls({0, 1})) ||
          ((faces & (kNorthFace | kSouthFace)) != 0 && between_walls({1, 0}));
+}
+
+OccupancyGrid with_holes_shut(const OccupancyGrid& cells) {
+  OccupancyGrid shut = cells;
+  const int most = static_cast<int>(std::lround(kHole / cells.frame().resolution));
+  const auto wall = [&](int x, int y) { return cells.inside({x, y}) && cells[{x, y}] == Occupancy::Occupied; };
+  for (int y = 0; y < cells.height(); ++y)
+    for (int x = 0; x < cells.width(); ++x) {
+      if (cells[{x, y}] != Occupancy::Occupied) continue;
+      for (const Cell step : {Cell{1, 0}, Cell{0, 1}}) {
+        int wide = 0;
+        while (wide <= most && !wall(x + (wide + 1) * step.x, y + (wide + 1) * step.y)) ++wide;
+        if (wide > most) continue;
+        for (int i = 1; i <= wide; ++i) shut[{x + i * step.x, y + i * step.y}] = Occupancy::Occupied;
+      }
+    }
+  return shut;
 }
 
 namespace {
@@ -329,12 +351,16 @@ bool SearchedArea::saw(const TPoint2D& place) const {
   return false;
 }
 
+Faces SearchedArea::looked_at(const GridFrame& frame, Cell c) const {
+  if (twice_.width() == 0) return 0;
+  const Cell shift = shift_from(frame);
+  const Cell own{c.x + shift.x, c.y + shift.y};
+  return twice_.inside(own) ? twice_[own] : Faces{0};
+}
+
 Faces SearchedArea::missing(const Traversable& floor, Cell c) const {
   const auto all = static_cast<Faces>(config_.faces ? faces_of(floor, c) : kFloor);
-  if (twice_.width() == 0) return all;
-  const Cell shift = shift_from(floor.frame());
-  const Cell own{c.x + shift.x, c.y + shift.y};
-  return twice_.inside(own) ? static_cast<Faces>(all & ~twice_[own]) : all;
+  return static_cast<Faces>(all & ~looked_at(floor.frame(), c));
 }
 
 Grid<Faces> SearchedArea::unsearched(const Traversable& floor) const {
@@ -362,11 +388,11 @@ Grid<Faces> SearchedArea::unsearched(const Traversable& floor) const {
   return open;
 }
 
-std::vector<Cell> steps_around(const std::vector<double>& distances, double range, double cell) {
+std::vector<Cell> steps_around(const std::vector<double>& distances, double range, double cell, int directions) {
   std::vector<Cell> steps;
   for (const double distance : distances)
-    for (int k = 0; k < kDirections && distance <= range; ++k) {
-      const double bearing = 2.0 * kPi * k / kDirections;
+    for (int k = 0; k < directions && distance <= range; ++k) {
+      const double bearing = 2.0 * kPi * k / directions;
       steps.push_back({static_cast<int>(std::lround(distance * std::cos(bearing) / cell)),
                        static_cast<int>(std::lround(distance * std::sin(bearing) / cell))});
     }
@@ -377,6 +403,12 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
                                   double room, double tight, Subjects subjects) {
   const double cell = floor.frame().resolution;
   const std::vector<Cell> squarely = steps_around(kSquareDistances, config.range, cell);
+  const bool square = subjects == Subjects::Squarely;
+  std::vector<Cell> sure, far;
+  if (square) {
+    sure = steps_around(kSureDistances, config.range, cell, kManyDirections);
+    far = steps_around(kFarDistances, config.range, cell, kManyDirections);
+  }
   const std::vector<Cell> anyhow =
       steps_around(subjects == Subjects::Niches ? kNicheDistances : kDistances, config.range, cell);
   std::vector<Viewpoint> found;
@@ -394,9 +426,12 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
   };
   const auto add = [&](Cell subject, Faces missing) {
     const auto walls = static_cast<Faces>(missing & ~kFloor);
+    for (const double d_min : {room, tight})
+      if (square && add_of(subject, walls, sure, kSureIncidence, d_min)) return;
     for (const double d_min : {room, tight}) {
       if (subjects != Subjects::Niches && walls != 0 && add_of(subject, walls, squarely, kSquarely.incidence, d_min))
         return;
+      if (square && add_of(subject, walls, far, kSureIncidence, d_min)) return;
       if (subjects != Subjects::Squarely && add_of(subject, missing, anyhow, Inspection{}.incidence, d_min)) return;
     }
   };

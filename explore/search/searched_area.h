@@ -45,7 +45,7 @@ struct Inspection {
 };
 /// Squarely, and from not too near: what lies in a box behind a hole in the wall, 0.3 to 0.9 m up, shows to a camera at
 /// 0.5 m within 20 to 30 deg of the hole's axis and 0.75 to 1.5 m away (boxed victims of the competition's arenas).
-constexpr Inspection kSquarely{deg_to_rad(27.0), 0.6, 1.5};
+constexpr Inspection kSquarely{deg_to_rad(27.0), 0.6, 1.75};
 
 /// The faces that can be inspected along a direction (unit vector): those whose normal is within `incidence` of it.
 Faces faces_along(double x, double y, double incidence = Inspection{}.incidence);
@@ -84,6 +84,8 @@ class SearchedArea {
   /// Whether the floor at a place, or a cell beside it, was looked at [map frame, m]; what was given up after less than
   /// one look was not.
   bool saw(const mrpt::math::TPoint2D& place) const;
+  /// What was looked at in a cell of a map.
+  Faces looked_at(const GridFrame& frame, Cell c) const;
   /// What is left to be looked at in a cell of `floor`.
   Faces missing(const Traversable& floor, Cell c) const;
   /// The same of all free cells; the outermost cells are 0.
@@ -115,8 +117,10 @@ bool in_niche(const Traversable& floor, Cell c, Faces faces);
 /// `Squarely`: faces that were not looked at so.
 enum class Subjects { All, Niches, Unseen, Squarely };
 
-/// Steps in 16 directions from a place to those around it that are so far away and no farther than `range` [m].
-std::vector<Cell> steps_around(const std::vector<double>& distances, double range, double cell);
+constexpr int kDirections = 16;  ///< viewpoints tried around a subject
+/// Steps in all directions from a place to those around it that are so far away and no farther than `range` [m].
+std::vector<Cell> steps_around(const std::vector<double>& distances, double range, double cell,
+                               int directions = kDirections);
 
 constexpr double kAtViewpoint = 0.12;  ///< viewpoints this close are served from where the robot stands [m]
 
@@ -132,6 +136,10 @@ struct Viewpoint {
 /// is looked at so once need not be looked at again. `searched`: the record that belongs to `subjects`.
 std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& searched, const SearchConfig& config,
                                   double room, double tight, Subjects subjects = Subjects::All);
+
+/// The cells with the holes in walls as wall: gaps of 0.2 m at the most in a row of occupied cells. Where the scanner
+/// looks through a hole its wall has no face, and what is behind the hole would be left out.
+OccupancyGrid with_holes_shut(const OccupancyGrid& cells);
 
 /// True when all cells between two cells of the floor are free (the last one included).
 bool in_sight(const Traversable& floor, Cell from, Cell to);

@@ -22,19 +22,19 @@ constexpr double kStaredAge = 5.0;  ///< what was smelt so long ago is what the 
 constexpr int kSureOfHoles = 3;     ///< cues
 
 /// Whether a wall stands between, at least kBehind before `to`.
-bool is_behind_wall(const Traversable& floor, const TPoint2D& from, const TPoint2D& to) {
+bool is_behind_wall(const OccupancyGrid& cells, const TPoint2D& from, const TPoint2D& to) {
   const TPoint2D way = to - from;
   const double length = way.norm();
-  return length > kBehind && wall_between(floor.cells, from, from + way * ((length - kBehind) / length));
+  return length > kBehind && wall_between(cells, from, from + way * ((length - kBehind) / length));
 }
 
 /// The same, and not past the edge of that wall: seen aslant, the side of a box covers what lies in it on the map, by a
 /// cell or by the error of the place, and a hand beside the line there is no wall.
-bool is_within_wall(const Traversable& floor, const TPoint2D& from, const TPoint2D& to) {
-  if (!is_behind_wall(floor, from, to)) return false;
+bool is_within_wall(const OccupancyGrid& cells, const TPoint2D& from, const TPoint2D& to) {
+  if (!is_behind_wall(cells, from, to)) return false;
   const TPoint2D way = to - from;
   const TPoint2D aside = TPoint2D{-way.y, way.x} * (kHand / way.norm());
-  return is_behind_wall(floor, from + aside, to + aside) && is_behind_wall(floor, from - aside, to - aside);
+  return is_behind_wall(cells, from + aside, to + aside) && is_behind_wall(cells, from - aside, to - aside);
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ bool VictimWatch::take_in(const robot::VictimCue& cue, const Anchor& anchor, con
     return in_sight(floor, from, to);
   };
   const std::size_t before = victims_.reports().size();
-  const auto hidden = [&](const TPoint2D& from, const TPoint2D& to) { return is_behind_wall(floor, from, to); };
+  const auto hidden = [&](const TPoint2D& from, const TPoint2D& to) { return is_behind_wall(floor.cells, from, to); };
   victims_.add(cue, anchor, {same_side, hidden}, covariance_);
   ask_for_holes(anchor,
                 anchor.T_map_base.composePoint({cue.range * std::cos(cue.bearing), cue.range * std::sin(cue.bearing)}),
@@ -75,7 +75,7 @@ bool VictimWatch::take_in(const robot::VictimCue& cue, const Anchor& anchor, con
 void VictimWatch::sort_faint(const Traversable& floor) {
   seen_.clear();
   for (const VictimReport& victim : victims_.reports()) seen_.push_back({victim.id, victim.p_map});
-  const auto hidden = [&](const TPoint2D& from, const TPoint2D& to) { return is_within_wall(floor, from, to); };
+  const auto hidden = [&](const TPoint2D& from, const TPoint2D& to) { return is_within_wall(floor.cells, from, to); };
   const std::vector<FaintSearch::Place> before = faint_.places();
   faint_.sort(seen_, hidden);
   for (FaintSearch::Seen& victim : seen_) {
@@ -121,13 +121,16 @@ void VictimWatch::rebuild_reports() {
 /// A victim in a niche lies before its back, though a cue past the niche's edge may seem to come through it; one that
 /// is seen behind a wall again and again, and hardly ever before it, is seen through a hole.
 void VictimWatch::ask_for_holes(const Anchor& anchor, const TPoint2D& cue, const Traversable& floor) {
+  if (search_.squarely()) return;
   const std::vector<VictimReport>& seen = victims_.reports();
   const auto away = [&](const VictimReport& victim) { return distance(victim.p_map, cue); };
   const auto victim = std::min_element(seen.begin(), seen.end(),
                                        [&](const VictimReport& a, const VictimReport& b) { return away(a) < away(b); });
   if (victim == seen.end() || away(*victim) > kOfVictim) return;
   Cues& cues = cues_[victim->id];
-  ++(is_within_wall(floor, position(anchor.T_map_base), victim->p_map) ? cues.through_wall : cues.in_sight);
+  // The scanner may have seen the hole.
+  const bool hidden = is_within_wall(with_holes_shut(floor.cells), position(anchor.T_map_base), victim->p_map);
+  ++(hidden ? cues.through_wall : cues.in_sight);
   if (cues.through_wall >= kSureOfHoles && cues.through_wall > 2 * cues.in_sight) search_.expect_holes();
 }
 

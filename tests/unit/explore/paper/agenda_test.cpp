@@ -307,6 +307,21 @@ TEST(Agenda, TheFacesGoFirstAfterMuchTimeSpentOnFrontiersInVain) {
   }
 }
 
+/// Where walls have holes all faces have to be looked at squarely, which takes more time than there is.
+TEST(Agenda, WhereWallsHaveHolesTheFacesGoBeforeAllSecondTries) {
+  for (const bool holes : {false, true}) {
+    Ordered robot((PaperExplorerConfig()));
+    robot.narrow();
+    test::fill(robot.cells, 6.4, 0.3, 7.6, 1.0, Occupancy::Unknown);
+    if (holes) robot.search.expect_holes();
+    robot.left_alone.bar({6.4, 0.65}, {robot.now, robot.pose}, 100.0);
+    for (int i = 0; i < 60 && robot.agenda.goal() != Goal::Place; ++i)
+      if (robot.ask().kind == Order::Kind::Follow) break;
+    EXPECT_EQ(robot.told("is tried again"), !holes);
+    EXPECT_EQ(robot.agenda.goal() == Goal::Place, holes);
+  }
+}
+
 /// The other way to the same target is taken to its end: the robot would turn back else once it has forgotten what
 /// stands in the shorter one.
 TEST(Agenda, TheSameTargetByADetourIsLedRoundWhatIsNew) {

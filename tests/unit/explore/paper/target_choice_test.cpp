@@ -198,6 +198,21 @@ TEST(TargetChoice, ALookSquarelyShowsAFootOfWallInTheMean) {
   EXPECT_GT(looks, 2 * 8.0 / 1.0);
 }
 
+/// The scanner saw a hole in the wall a little farther on: that is looked into before the solid wall beside the robot.
+TEST(TargetChoice, AHoleThatWasSeenIsLookedIntoFirst) {
+  for (const bool hole : {false, true}) {
+    Choosing robot(true);
+    robot.narrow();
+    robot.choice.set_frontiers_done();
+    robot.choice.search();
+    robot.search->expect_holes();
+    if (hole) test::fill(robot.cells, 5.1, 1.2, 5.3, 1.35, Occupancy::Free);
+    const Plan plan = robot.choice.choose_of_all_places(robot.view(), *robot.search, Plan{}).plan;
+    ASSERT_TRUE(plan.found);
+    EXPECT_EQ(std::abs(plan.target.x - 5.2) < 0.4, hole) << plan.target.x;
+  }
+}
+
 /// The steps of a field show like the sides of boxes.
 TEST(TargetChoice, NoNicheIsLookedForAmongSteps) {
   for (const bool steps : {false, true}) {

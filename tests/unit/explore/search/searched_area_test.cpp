@@ -148,11 +148,11 @@ TEST(SearchedArea, SquarelyCountsWithin27DegAndNotFromTooNear) {
   const Cell c = at_wall(floor, 0.0);
   const TPoint2D face = floor.cells.centre(c);
   for (const double off : {0.0, 20.0, -20.0, 35.0, -35.0, 55.0})
-    for (const double away : {0.4, 0.8, 1.2, 1.7}) {
+    for (const double away : {0.4, 0.8, 1.2, 1.6}) {
       SearchedArea squarely{SearchConfig{}, kSquarely};
       const double bearing = deg_to_rad(90.0 + off);
       look_twice(squarely, floor, {face.x - away * std::cos(bearing), face.y - away * std::sin(bearing), bearing});
-      const bool counts = std::abs(off) < 27.0 && away > 0.6 && away < 1.5;
+      const bool counts = std::abs(off) < 27.0 && away > 0.6;
       EXPECT_EQ(squarely.missing(floor, c), counts ? 0 : kNorthFace) << off << " deg, " << away << " m";
     }
 }
@@ -170,6 +170,36 @@ TEST(SearchedArea, ViewpointsToLookSquarelyFromAreSquarelyBeforeAFace) {
     EXPECT_EQ(view.faces & kFloor, 0);
     EXPECT_EQ(fresh.missing(floor, floor.cells.cell(view.subject)) & view.faces, 0)
         << "from " << from.x << " " << from.y << " to " << view.subject.x << " " << view.subject.y;
+  }
+}
+
+/// A robot stops a hand's breadth off the place it drives to.
+TEST(SearchedArea, ALookSquarelyCountsFromBesideItsViewpointToo) {
+  const Traversable floor = room();
+  const SearchConfig config;
+  const SearchedArea squarely{config, kSquarely};
+  const std::vector<Viewpoint> views = viewpoints(floor, squarely, config, 0.4, 0.4, Subjects::Squarely);
+  ASSERT_FALSE(views.empty());
+  for (const Viewpoint& view : views)
+    for (const TPoint2D off : {TPoint2D{0.08, 0.0}, {-0.08, 0.0}, {0.0, 0.08}, {0.0, -0.08}}) {
+      SearchedArea fresh{config, kSquarely};
+      const TPoint2D from = floor.cells.centre(view.cell) + off;
+      if (floor.cells[floor.cells.cell(from)] != Occupancy::Free) continue;
+      look_twice(fresh, floor, {from.x, from.y, std::atan2(view.subject.y - from.y, view.subject.x - from.x)});
+      EXPECT_EQ(fresh.missing(floor, floor.cells.cell(view.subject)) & view.faces, 0)
+          << "from " << from.x << " " << from.y << " to " << view.subject.x << " " << view.subject.y;
+    }
+}
+
+/// What is seen through a hole lies behind the wall's face all the same; a gap as wide as a box is none.
+TEST(SearchedArea, HolesInWallsAreShutAndWiderGapsAreNot) {
+  for (const int wide : {0, 1, 3, 4, 5, 8}) {
+    OccupancyGrid cells = room().cells;
+    const Cell first{30, 61};
+    for (int i = 0; i < wide; ++i) cells[{first.x + i, first.y}] = i % 2 == 0 ? Occupancy::Free : Occupancy::Unknown;
+    const OccupancyGrid shut = with_holes_shut(cells);
+    EXPECT_EQ(shut.cells() == room().cells.cells(), wide <= 4) << wide;
+    EXPECT_EQ(shut.cells() == cells.cells(), wide == 0 || wide > 4) << wide;
   }
 }
 

@@ -119,6 +119,23 @@ TEST(VictimWatch, AVictimBehindAWallTellsThatThereAreHoles) {
   }
 }
 
+/// So it does where the scanner looked through the hole; what lies in a box that is open on one side shows through a
+/// wider gap.
+TEST(VictimWatch, AVictimBehindAHoleThatWasSeenTellsThatThereAreMore) {
+  for (const double wide : {0.15, 0.4}) {
+    Watching robot;
+    OccupancyGrid cells = test::room(6.0, 4.0);
+    test::fill(cells, 3.5, 0.0, 3.55, 4.0, Occupancy::Occupied);
+    test::fill(cells, 3.5, 2.2 - 0.5 * wide, 3.55, 2.2 + 0.5 * wide, Occupancy::Free);
+    robot.floor = test::measured(std::move(cells));
+    robot.pose.y = 2.2;
+    robot.moved(0.05);
+    for (int i = 0; i < 10; ++i) robot.hear({3.7, 2.2});
+    ASSERT_EQ(robot.watch.reports().size(), 1u);
+    EXPECT_EQ(robot.watch.search().squarely(), wide < 0.2) << wide;
+  }
+}
+
 /// Past the edge of a niche a line of sight may cut a cell of its side; most do not.
 TEST(VictimWatch, AFewCuesPastTheEdgeOfANicheTellOfNoHole) {
   Watching robot;
