@@ -10,6 +10,7 @@
 #include "scoring/maps/colours/canvas_corners.h"
 #include "scoring/maps/colours/even_light.h"
 #include "scoring/maps/colours/grey_levels.h"
+#include "scoring/maps/colours/league_classes.h"
 #include "scoring/maps/colours/league_colours.h"
 #include "scoring/maps/colours/lettering.h"
 #include "scoring/maps/colours/turned_canvas.h"

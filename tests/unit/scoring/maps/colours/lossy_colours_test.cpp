@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scoring/maps/colours/league_classes.h"
 #include "scoring/maps/colours/league_colours.h"
 #include "tests/support/map_pictures.h"
 #include "tests/support/scoring_grounds.h"

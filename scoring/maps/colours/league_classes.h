@@ -1,0 +1,12 @@
+#pragma once
+
+#include "base/image/geotiff.h"
+#include "scoring/maps/colours/grey_levels.h"
+
+namespace rubble::scoring {
+
+/// The classes of a league map without its drawings. Colours: the league's GeoTIFF map rules as hector_geotiff and
+/// crosbot draw them (docs/scoring.md has the table).
+LabelImage classify_league(const RgbImage& image);
+
+}  // namespace rubble::scoring
