@@ -137,27 +137,33 @@ void smooth(cv::Mat& labels) {
   labels.setTo(static_cast<int>(kFree), closed & (labels == static_cast<int>(kUnknown)));
 }
 
-/// Much that is bluish and little that is blue enough: walls that ran into the floor beside them.
-bool has_pale_walls(const RgbImage& image, const cv::Mat& labels) {
+/// How many pixels are bluish, further than `reach` from those that are wall, for each that is: many where walls ran
+/// into the floor beside them.
+double paleness(const RgbImage& image, const cv::Mat& labels, int reach) {
   constexpr double kBluish = 0.12;  // share of wall
-  constexpr std::size_t kMost = 3;  // bluish pixels a pixel of wall
+  const cv::Mat walls = labels == kWall;
+  cv::Mat near = cv::Mat::zeros(walls.size(), CV_8U);
+  if (reach > 0) cv::dilate(walls, near, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
   std::size_t bluish = 0;
-  each_run(image, [&](const Colour& c, int, int, int length) {
-    if (wall_share(c) >= kBluish) bluish += static_cast<std::size_t>(length);
+  each_run(image, [&](const Colour& c, int first, int y, int length) {
+    if (wall_share(c) < kBluish) return;
+    const Label* const row = near.ptr<Label>(y);
+    bluish += static_cast<std::size_t>(std::count(row + first, row + first + length, Label{0}));
   });
-  return bluish > kMost * static_cast<std::size_t>(cv::countNonZero(labels == kWall));
+  return static_cast<double>(bluish) / std::max(1, cv::countNonZero(walls));
 }
 
 }  // namespace
 
-LabelImage classify_league(const RgbImage& as_given) {
+LabelImage classify_league(const RgbImage& as_given, const Blur& undone) {
   // Of wall and searched floor blended nobody knows the wall before.
   const RgbImage unsearched = without_searched_floor(as_given);
   const bool exact = league::census(unsearched).exact();
   const RgbImage& image = exact ? as_given : unsearched;
   LabelImage out;
   out.classes = cv::Mat(image.height, image.width, CV_8U);
-  const bool lossy = !exact && has_run_colours(image);
+  const bool was_blurred = undone.sigma > 0.0;
+  const bool lossy = !exact && (!was_blurred || undone.ripples) && has_run_colours(image);
   const cv::Mat dark_walls = lossy ? walls_by_brightness(as_given) : cv::Mat();
   const cv::Mat unexplored = lossy ? unexplored_by_brightness(image) : cv::Mat();
   std::size_t drawn = 0;
@@ -166,10 +172,10 @@ LabelImage classify_league(const RgbImage& as_given) {
     Label* const row = out.classes.ptr<Label>(y);
     std::fill_n(row + first, length, label_of(c, exact));
     for (int x = first; x < first + length; ++x) {
-      if (lossy && row[x] == kWall) row[x] = kDrawing;
+      if (lossy && !was_blurred && row[x] == kWall) row[x] = kDrawing;  // blue that ran
       if (lossy && dark_walls.at<Label>(y, x) != 0)
         row[x] = kWall;
-      else if (lossy && row[x] != kDrawing)
+      else if (lossy && row[x] != kDrawing && row[x] != kWall)
         row[x] = unexplored.at<Label>(y, x) != 0 ? kUnknown : kFree;
       if (row[x] == kDrawing) ++drawn;
       if (row[x] == kDrawing && std::max({c.r, c.g, c.b}) > kBlack) ++strange;
@@ -193,7 +199,17 @@ LabelImage classify_league(const RgbImage& as_given) {
                               : lossy ? " (compressed with loss)"
                                       : " (resampled)",
                               share);
-  if (!exact && has_pale_walls(as_given, out.classes)) out.recognised += kWallsPale;
+  constexpr double kPale = 3.0, kPaleAfterBlur = 0.15;
+  constexpr double kMostBlur = 3.2;  // beyond, walls of a pixel are too pale to be missed [pixels]
+  constexpr int kRim = 2;            // of walls that were sharpened again [pixels]
+  if (exact) return out;
+  if (was_blurred && (undone.sigma > kMostBlur || paleness(image, out.classes, kRim) > kPaleAfterBlur ||
+                      cv::countNonZero(out.classes == kWall) == 0))
+    out.refusal = cv::format(
+        "is a league map that was blurred too much (by %.1f pixels): its walls ran into the floor; give it as the "
+        "robot saved it",
+        undone.sigma);
+  if (paleness(as_given, out.classes, 0) > kPale) out.recognised += kWallsPale;
   return out;
 }
 

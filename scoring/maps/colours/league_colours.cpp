@@ -161,6 +161,13 @@ std::optional<RestoredColours> with_tones_of_old(const RgbImage& image) {
   return std::nullopt;
 }
 
+/// The picture as it was before it was blurred.
+std::optional<RestoredColours> with_sharp_lines(const RgbImage& image) {
+  const Blur blur = blur_of(image);
+  if (blur.sigma == 0.0 || (!find_checkerboard(image).is_there() && !is_league_map(image))) return std::nullopt;
+  return RestoredColours{without_blur(image, blur), cv::format("had been blurred (by %.1f pixels)", blur.sigma), blur};
+}
+
 std::optional<RestoredColours> with_paler_colours(const RgbImage& image) {
   const double by = colour_strength(image);
   if (by == 1.0 || !find_checkerboard(image).is_there()) return std::nullopt;
@@ -230,6 +237,7 @@ std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
   if (as_is.exact() && as_is.pure_walls > 0) return std::nullopt;
   if (auto restored = with_paler_colours(image)) return restored;
   if (as_is.exact()) return std::nullopt;
+  if (auto restored = with_sharp_lines(image)) return restored;
   const auto exchanged = [](const Rgb& c) { return Rgb{c[2], c[1], c[0]}; };
   if (is_unchanged(census_of(image, exchanged)))
     return RestoredColours{recoloured(image, exchanged), "red and blue were exchanged"};

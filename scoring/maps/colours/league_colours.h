@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/image/geotiff.h"
+#include "scoring/maps/colours/blur.h"
 
 namespace rubble::scoring {
 
@@ -14,6 +15,7 @@ bool is_league_map(const RgbImage& image);
 struct RestoredColours {
   RgbImage image;
   std::string how;  ///< what had been done to it
+  Blur blur{};      ///< that of it which was a blur
 };
 
 /// Of pictures whose red and blue were exchanged, that were inverted, or whose contrast was taken down; nothing of
