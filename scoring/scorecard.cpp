@@ -5,9 +5,12 @@
 #include <cstdio>
 #include <future>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "scoring/alignment/alignment.h"
 #include "scoring/alignment/feature_score.h"
+#include "scoring/alignment/other_scale.h"
 #include "scoring/alignment/second_drawing.h"
 #include "scoring/alignment/trust.h"
 #include "scoring/measures/detached.h"
@@ -191,6 +194,19 @@ std::string note_of_what_is_apart(double share) {
   return text;
 }
 
+/// The score stays that of the size that was given.
+std::string note_of_scale(const MapScore& score, const OccupancyGrid& map, const OccupancyGrid& truth,
+                          const SightLines& sights) {
+  constexpr double kPoor = 0.8;
+  if (score.score_at_best_pose >= kPoor) return {};
+  const std::optional<double> scale = better_scale(map, truth, score.T_truth_map, sights, score.score_at_best_pose);
+  if (!scale) return {};
+  char text[120];
+  std::snprintf(text, sizeof text, "walls fit at %.3g of this size: is the resolution %.3g m?", *scale,
+                *scale * map.resolution());
+  return text;
+}
+
 /// All numbers at the pose that `out` holds.
 void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth, const Walls& walls,
              const ScoreConfig& config) {
@@ -205,6 +221,7 @@ void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth
   constexpr double kWhole = 0.98;  // of a map that lacks nothing to speak of
   if (out.recall < kWhole && out.score < kWhole) add_note(out.note, note_of_coarse_pixels(map, truth));
   out.errors = wall_errors(walls.overlaps, PlanarTransform(out.T_truth_map), config.worst_places);
+  add_note(out.note, note_of_scale(out, map, truth, walls.sights));
   add_note(out.note, note_of_crossed_floor(out));
   add_note(out.note, note_of_unasked_walls(out));
   add_note(out.note, note_of_what_is_apart(out.detached));
@@ -247,7 +264,12 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
   out.mirrored = alignment.mirrored;
   if (!out.aligned) {
     fill_psi(out, psi_of_strangers(config.colour_absent_cap));
-    if (alignment.by != AlignBy::Auto) fill_sights(out, truth_known, *prepared.get());
+    std::string of_scale;
+    if (alignment.by != AlignBy::Auto) {
+      const std::unique_ptr<const Walls> walls = prepared.get();
+      fill_sights(out, truth_known, *walls);
+      of_scale = note_of_scale(out, map_known, truth_known, walls->sights);
+    }
     // Walls that do meet, only at too many poses, are of the right scale.
     if (alignment.by != AlignBy::Auto && tight_agreement(alignment.tight_evidence) < kTightEnough)
       out.scale_hint = agreeing_scale(map_known, truth_known, config.alignment);
@@ -255,6 +277,7 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
       out.note = scale_note(out.scale_hint, map.resolution());
     else if (alignment.by != AlignBy::Auto)
       add_note(out.note, note_of_coarse_pixels(map_known, truth_known));
+    if (out.scale_hint == 0.0) add_note(out.note, of_scale);
     return out;
   }
   const std::unique_ptr<const Walls> walls = prepared.get();

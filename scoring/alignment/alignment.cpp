@@ -342,6 +342,19 @@ class Aligner {
   std::future<Mirrored> mirrored_beside_;  ///< last: it ends before what it reads does
 };
 
+/// Where the maps say that it started elsewhere than was given: who gives it may count from another axis.
+std::string start_is_off(const Alignment& best, const KnownStart& start) {
+  if (best.by == AlignBy::Auto || same_pose(best.T_truth_map, start.T_truth_map, start.p_map, kStartShift, kStartTurn))
+    return {};
+  const TPoint2D apart = best.T_truth_map.composePoint(start.p_map) - start.T_truth_map.composePoint(start.p_map);
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the start pose given does not fit: at the pose found it started %.1f m from there, turned by %.0f deg "
+                "(a picture's up is the robot's heading)",
+                std::hypot(apart.x, apart.y), rad_to_deg(wrap_angle(best.T_truth_map.phi - start.T_truth_map.phi)));
+  return text;
+}
+
 }  // namespace
 
 std::string too_many_walls(const OccupancyGrid& map, const OccupancyGrid& truth) {
@@ -389,6 +402,9 @@ Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const Alig
   }
   if (!best.aligned && config.start)
     if (const std::optional<Alignment> at_start = aligner.by_start(best)) return *at_start;
+  if (config.start)
+    if (const std::string off = start_is_off(best, *config.start); !off.empty())
+      best.note += (best.note.empty() ? "" : "; ") + off;
   return best;
 }
 

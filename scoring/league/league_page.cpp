@@ -26,18 +26,20 @@ std::string victims_cell(const LeagueEntry& e) {
 /// Of the entry's section on the page.
 std::string anchor(std::size_t index) { return "team-" + std::to_string(index + 1); }
 
-std::string row(const LeagueEntry& e, std::size_t index, const LeaguePictures& pictures, bool with_points) {
+std::string row(const LeagueEntry& e, std::size_t index, const LeaguePictures& pictures, bool with_points,
+                bool with_warp) {
   const std::string name = pictures.overlay.empty()
                                ? escape_html(e.team)
                                : "<a href=\"#" + anchor(index) + "\">" + escape_html(e.team) + "</a>";
   std::string html = "<tr><td class=\"n\">" + e.rank_text() + "</td><td>" + name + "</td>";
   if (!e.error.empty())
     return html + "<td class=\"failed\" colspan=\"" +
-           std::to_string((with_points ? 6 : 0) + figures_with(kRanking).size() + 2) + "\">" + escape_html(e.error) +
-           "</td></tr>\n";
+           std::to_string((with_points ? 6 : 0) + (with_warp ? 1 : 0) + figures_with(kRanking).size() + 2) + "\">" +
+           escape_html(e.error) + "</td></tr>\n";
   const Evidence evidence = e.evidence();
   for (const Figure* figure : figures_with(kRanking))
     html += "<td class=\"n\">" + text_of(*figure, figure->get(evidence)) + "</td>";
+  if (with_warp) html += e.score.warped ? cell("%.3f", e.score.warped_score) : "<td></td>";
   if (with_points) {
     const double quality = e.points ? e.points->quality : 0.0;
     const double location = e.points ? e.points->location : 0.0;
@@ -119,13 +121,16 @@ std::string league_page(const std::string& truth, bool with_points, const std::v
       "id=\"table\">\n<tr><th "
       "class=\"n\">rank</th><th>team</th>";
   for (const Figure* figure : figures_with(kRanking)) body += "<th class=\"n\">" + escape_html(figure->label) + "</th>";
+  const bool with_warp =
+      std::any_of(entries.begin(), entries.end(), [](const LeagueEntry& e) { return e.score.warped; });
+  if (with_warp) body += "<th class=\"n\">after warp</th>";
   if (with_points)
     body +=
         "<th class=\"n\">points</th><th class=\"n\">map quality</th><th class=\"n\">location</th><th "
         "class=\"n\">fine</th>"
         "<th class=\"n\">judge</th><th class=\"n\">victims</th>";
   body += "<th>note</th><th></th></tr>\n";
-  for (std::size_t i = 0; i < entries.size(); ++i) body += row(entries[i], i, pictures[i], with_points);
+  for (std::size_t i = 0; i < entries.size(); ++i) body += row(entries[i], i, pictures[i], with_points, with_warp);
   body += "</table>\n";
   if (!left_out.empty()) body += "<p class=\"note\">No team's maps: " + escape_html(left_out) + "</p>\n";
   for (std::size_t i = 0; i < entries.size(); ++i) {

@@ -146,16 +146,20 @@ struct LegendEntry {
   std::string words;
 };
 
-void draw_legend(Canvas& canvas, const std::vector<LegendEntry>& entries) {
+std::vector<StripItem> legend_items(Canvas& canvas, const std::vector<LegendEntry>& entries) {
   std::vector<StripItem> items;
   for (const LegendEntry& entry : entries)
-    items.push_back({17 + text_width(entry.words), [&canvas, &entry](int x, int y) {
+    items.push_back({17 + text_width(entry.words), [&canvas, entry](int x, int y) {
                        const cv::Rect box(x, y - 6, 12, 12);
                        cv::rectangle(canvas.image, box, cv::Scalar(entry.colour), cv::FILLED);
                        cv::rectangle(canvas.image, box, cv::Scalar(120, 120, 120));
                        text(canvas, entry.words, x + 17, y + 5);
                      }});
-  put_strip(canvas, items);
+  return items;
+}
+
+void draw_legend(Canvas& canvas, const std::vector<LegendEntry>& entries) {
+  put_strip(canvas, legend_items(canvas, entries));
 }
 
 Colour mixed(const Colour& a, const Colour& b, double share) {
@@ -195,6 +199,10 @@ Colour background(Occupancy map, Occupancy truth) {
   return map_known ? kMapFree : truth_known ? kTruthFree : kUnknown;
 }
 
+/// What is not coloured by a distance.
+const std::vector<LegendEntry> kGrounds = {
+    {kNotJudged, "not judged"}, {kMapFree, "seen by map only"}, {kTruthFree, "not seen by map"}};
+
 void draw_heat_bar(Canvas& canvas, double tau) {
   std::vector<StripItem> items;
   for (const bool of_map : {true, false}) {
@@ -209,6 +217,7 @@ void draw_heat_bar(Canvas& canvas, double tau) {
                        text(canvas, most, x + begin + 66, y + 5);
                      }});
   }
+  for (StripItem& item : legend_items(canvas, kGrounds)) items.push_back(std::move(item));
   put_strip(canvas, items);
 }
 
@@ -223,27 +232,33 @@ void draw_cross(cv::Mat& image, const cv::Point& at, int reach, const Colour& co
   cv::line(image, at - cv::Point(reach, -reach), at + cv::Point(reach, -reach), cv::Scalar(colour), width, cv::LINE_AA);
 }
 
-void draw_victims(Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map) {
+/// At a pose that is not trusted nobody knows which of them were found: all are grey, and said by name only.
+void draw_victims(Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map, bool trusted) {
   constexpr int kRadius = 8;
-  const Colour found(40, 150, 30);
+  const Colour doubtful(110, 110, 110);
+  const Colour found = trusted ? Colour(40, 150, 30) : doubtful;
   const auto name = [&](const std::string& words, const cv::Point& at) {
     text(canvas, words, at.x + kRadius + 3, at.y + 4);
   };
   for (const auto& [map, truth] : marks.pairs) {
     const cv::Point reported = pixel_of(canvas, T_truth_map.composePoint(map.p));
     const cv::Point there = pixel_of(canvas, truth.p);
-    cv::line(canvas.image, reported, there, cv::Scalar(found), 1, cv::LINE_AA);
+    if (trusted) cv::line(canvas.image, reported, there, cv::Scalar(found), 1, cv::LINE_AA);
     cv::circle(canvas.image, there, kRadius, cv::Scalar(found), 2, cv::LINE_AA);
     cv::circle(canvas.image, reported, 3, cv::Scalar(found), cv::FILLED, cv::LINE_AA);
     name(truth.name, there);
   }
   for (const Mark& missed : marks.truth_only) {
     const cv::Point at = pixel_of(canvas, missed.p);
-    cv::circle(canvas.image, at, kRadius, cv::Scalar(kTruthOnly), 2, cv::LINE_AA);
-    name(missed.name + " missed", at);
+    cv::circle(canvas.image, at, kRadius, cv::Scalar(trusted ? kTruthOnly : doubtful), 2, cv::LINE_AA);
+    name(missed.name + (trusted ? " missed" : ""), at);
   }
   for (const Mark& wrong : marks.map_only) {
     const cv::Point at = pixel_of(canvas, T_truth_map.composePoint(wrong.p));
+    if (!trusted) {
+      cv::circle(canvas.image, at, 3, cv::Scalar(doubtful), cv::FILLED, cv::LINE_AA);
+      continue;
+    }
     draw_cross(canvas.image, at, kRadius - 2, kMapOnly, 2);
     name("false", at);
   }
@@ -326,12 +341,13 @@ std::string overlay_png(const OccupancyGrid& map, const OccupancyGrid& truth, co
           colour = is_judged(in_truth, off) ? wall_colour(off, kMapOnly) : kNotJudged;
         });
   if (marks.seam) draw_seam(canvas, *marks.seam);
-  draw_victims(canvas, marks, T_truth_map);
+  draw_victims(canvas, marks, T_truth_map, warning.empty());
   draw_warning(canvas, warning);
-  std::vector<LegendEntry> legend = {{kInk, "walls within 5 cm"},    {kDisplaced, "within 15 cm"},
-                                     {kMapOnly, "only in map"},      {kTruthOnly, "only in truth"},
-                                     {kNotJudged, "not judged"},     {kMapFree, "seen by map only"},
-                                     {kTruthFree, "not seen by map"}};
+  std::vector<LegendEntry> legend = {{kInk, "walls within 5 cm"},
+                                     {kDisplaced, "within 15 cm"},
+                                     {kMapOnly, "only in map"},
+                                     {kTruthOnly, "only in truth"}};
+  legend.insert(legend.end(), kGrounds.begin(), kGrounds.end());
   if (marks.seam) legend.push_back({kSeam, "seam of two parts"});
   draw_legend(canvas, legend);
   return png_bytes(canvas.image);

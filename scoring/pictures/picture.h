@@ -14,7 +14,8 @@ namespace rubble::scoring {
 /// in the map red, only in the truth blue, free space known by both white; walls of the map where the truth knows
 /// nothing (legends, axes, names beside the drawing) grey, as lines of sight and overlap do not count them. `warning`
 /// stands in a red band over it. Victims: found ones green with a line to where they are, false ones crossed red,
-/// missed ones ringed blue. A seam is dashed violet. Throws RunError when it cannot be written.
+/// missed ones ringed blue; with a warning all are grey. A seam is dashed violet. Throws RunError when it cannot be
+/// written.
 void write_overlay(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
                    const mrpt::math::TPose2D& T_truth_map, const std::string& warning = "", const Marks& marks = {});
 

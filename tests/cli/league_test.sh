@@ -91,6 +91,7 @@ cp $truth mixed/run/map.tif; cp $truth mixed/run/truth.tif; cp mixed/error.png m
 cp mixed/overlay.png mixed/old/001-x-overlay.png; cp mixed/error.png mixed/judged/error.png
 cp judged/league.csv mixed; cp judged/league.csv mixed/old; touch mixed/judged/score.json
 "$rubble" score --league mixed $truth --align rooms,features --warp --out mixed_out >table.txt || fail "mixed league"
+grep -q 'after warp</th>' mixed_out/league.html || fail "the page has no column of scores after the warp"
 [[ $(tail -n +2 mixed_out/league.csv | cut -d, -f2 | sort | tr '\n' ' ') == 'good run ' ]] ||
   fail "not only the teams: $(cut -d, -f2 mixed_out/league.csv | tr '\n' ' ')"
 for name in truth.tif overlay.png error.png arena.png run/truth.tif old/001-x-overlay.png; do

@@ -3,7 +3,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "base/grid.h"
 #include "base/image/geotiff.h"
@@ -83,6 +85,27 @@ inline TurnedImage turned(const cv::Mat& image, double degrees, int interpolatio
   out.turn.at<double>(1, 2) += 0.5 * (side - image.rows);
   cv::warpAffine(image, out.image, out.turn, {side, side}, interpolation, cv::BORDER_CONSTANT, canvas);
   return out;
+}
+
+/// Drawn with two pixels a cell.
+inline cv::Mat fine_league_image(const OccupancyGrid& grid, double searched, bool with_drawings = true) {
+  cv::Mat out;
+  cv::resize(league_image(grid, with_drawings), out, {}, 2.0, 2.0, cv::INTER_NEAREST);
+  return with_searched_floor(out, searched);
+}
+
+/// Saved and read again.
+inline cv::Mat as_jpeg(const cv::Mat& picture, int quality) {
+  std::vector<unsigned char> bytes;
+  cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
+  return cv::imdecode(bytes, cv::IMREAD_COLOR);
+}
+
+/// Share of `some` with nothing of `others` beside it.
+inline double apart(const cv::Mat& some, const cv::Mat& others) {
+  cv::Mat near;
+  cv::dilate(others, near, cv::Mat::ones(3, 3, CV_8U));
+  return cv::countNonZero(some & ~near) / std::max(1.0, static_cast<double>(cv::countNonZero(some)));
 }
 
 }  // namespace rubble::scoring::testing

@@ -12,130 +12,26 @@
 #include <utility>
 #include <vector>
 
-#include "base/grid.h"
 #include "scoring/maps/colours/checkerboard.h"
 #include "scoring/maps/colours/colour_strength.h"
 #include "scoring/maps/colours/league_palette.h"
+#include "scoring/maps/colours/league_pixels.h"
 #include "scoring/maps/colours/lossy_colours.h"
-#include "scoring/maps/colours/nearest_ground.h"
 #include "scoring/maps/colours/searched_floor.h"
 #include "scoring/maps/colours/tone_curve.h"
 
 namespace rubble::scoring {
 namespace {
 
-using Label = unsigned char;
-constexpr double kMostDrawn = 40.0;  // of the pixels of a map [%]
-constexpr int kBlack = 30;
-constexpr Label kUnknown = static_cast<Label>(Occupancy::Unknown);
-constexpr Label kFree = static_cast<Label>(Occupancy::Free);
-constexpr Label kWall = static_cast<Label>(Occupancy::Occupied);
-constexpr Label kDrawing = 3;  // takes the class around it
-
-struct Colour {
-  int r = 0, g = 0, b = 0;
-  constexpr Colour(const Rgb& c) : r(c[0]), g(c[1]), b(c[2]) {}
-};
-
-struct NamedColour {
-  Colour colour;
-  Label label;
-};
-
-constexpr std::array<NamedColour, 13> kPalette{{
-    {league::kWall, kWall},
-    {league::kUnexplored, kUnknown},
-    {league::kUnexploredLight, kUnknown},
-    {league::kGridLine, kFree},  // explored grid, only drawn in free space
-    {league::kPath, kDrawing},
-    {league::kStart, kDrawing},
-    {league::kVictim, kDrawing},
-    {league::kUnconfirmedVictim, kDrawing},
-    {league::kHazard, kDrawing},
-    {league::kQrCode, kDrawing},
-    {league::kScale, kDrawing},
-    {league::kTitle, kDrawing},
-    {league::kFree, kFree},
-}};
-
-Rgb rgb_of(const std::uint8_t* p) { return {p[0], p[1], p[2]}; }
-
-Colour colour_of(const std::uint8_t* p) { return rgb_of(p); }
-
-int spread(const Colour& c) { return std::max({c.r, c.g, c.b}) - std::min({c.r, c.g, c.b}); }
-
-bool near_colour(const Colour& a, const Colour& b, int tolerance) {
-  return std::abs(a.r - b.r) <= tolerance && std::abs(a.g - b.g) <= tolerance && std::abs(a.b - b.b) <= tolerance;
-}
-
-bool is_checkerboard(const Colour& c) {
-  return near_colour(c, league::kUnexplored, 0) || near_colour(c, league::kUnexploredLight, 0);
-}
-
-/// Light grey as in the checkerboard, or a mixture of its two shades.
-bool looks_unexplored(const Colour& c) { return spread(c) <= 6 && c.g >= 216 && c.g <= 245; }
-
-/// Walls as a sharp filter leaves them (bicubic, Lanczos): it exaggerates their contrast with what is beside them,
-/// white or searched floor, and the darkest colours end at 0.
-bool is_exaggerated_wall(const Colour& c) { return c.r <= 10 && c.g <= 52 && c.b >= 85 && c.b <= 122; }
-
-/// As bright as a colour looks.
-constexpr int brightness(const Colour& c) { return (299 * c.r + 587 * c.g + 114 * c.b) / 1000; }
-
-constexpr int kBlueOfWall = league::kWall[2] - league::kWall[0];           // blue over red
-constexpr int kWallDarker = league::kFree[0] - brightness(league::kWall);  // than white
-
-/// Share of wall blue in a mixture with a grey: blue over red grows from grey to wall, green over red a third as fast.
-/// With white it is lightest: what is lighter is a symbol's blue on searched floor.
-double wall_share(const Colour& c) {
-  constexpr int kSlack = 35;  // of brightness
-  if (is_exaggerated_wall(c)) return 1.0;
-  const int blue = c.b - c.r;
-  const int green = c.g - c.r;
-  if (blue < 24 || 100 * green < 25 * blue || 100 * green > 55 * blue) return 0.0;
-  if (kBlueOfWall * (brightness(c) - 255 - kSlack) > -kWallDarker * std::min(blue, kBlueOfWall)) return 0.0;
-  return blue / static_cast<double>(kBlueOfWall);
-}
-
-/// Green enough to be searched floor where that is all that is asked of a pixel; without_searched_floor() asks for
-/// more.
-bool is_light_green(const Colour& c) {
-  return c.g - c.r >= 20 && c.g - c.b >= 20 && std::abs(c.r - c.b) <= 20 && c.g >= 190;
-}
-
-struct Census {
-  std::size_t walls = 0;
-  std::size_t pure_walls = 0;
-  std::size_t blended_walls = 0;  ///< with other ground
-  std::size_t checkerboard = 0;
-  std::size_t darker = 0;      ///< of the checkerboard's squares
-  std::size_t unexplored = 0;  ///< checkerboard or as light
-  std::size_t pixels = 0;
-  /// Never turned, scaled or compressed with loss: the colours of the table hold to the digit.
-  bool exact() const {
-    return checkerboard > 0 && 10 * checkerboard >= 9 * unexplored && 10 * pure_walls >= 9 * walls &&
-           5 * blended_walls <= walls;
-  }
-};
-
-/// Calls visit(colour, x, y, length) for each run of pixels of one colour in a row: maps are areas, and to ask what
-/// each pixel means by itself takes most of the time of reading one.
-template <class Visit>
-void each_run(const RgbImage& image, const Visit& visit) {
-  for (int y = 0; y < image.height; ++y) {
-    int first = 0;
-    const auto same = [&](int x) {
-      const std::uint8_t* const p = image.pixel(first, y);
-      const std::uint8_t* const q = image.pixel(x, y);
-      return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
-    };
-    for (int x = 1; x <= image.width; ++x) {
-      if (x < image.width && same(x)) continue;
-      visit(colour_of(image.pixel(first, y)), first, y, x - first);
-      first = x;
-    }
-  }
-}
+using league::Census;
+using league::census;
+using league::census_of;
+using league::Colour;
+using league::each_run;
+using league::near_colour;
+using league::rgb_of;
+using league::spread;
+using league::wall_share;
 
 /// The white of a picture whose contrast was taken down: 255 where the league's two greys do not lie below it as they
 /// do below white.
@@ -160,35 +56,6 @@ int dimmed_white(const RgbImage& image) {
   for (const int pivot : {0, 128})
     if (is_there(league::kUnexplored[0], pivot) && is_there(league::kUnexploredLight[0], pivot)) return white;
   return 255;
-}
-
-void count_colour(const Colour& c, std::size_t count, Census& out) {
-  out.pixels += count;
-  if (is_checkerboard(c)) out.checkerboard += count;
-  if (near_colour(c, league::kUnexplored, 0)) out.darker += count;
-  if (looks_unexplored(c) && c.b > c.r) out.unexplored += count;
-  const double share = wall_share(c);
-  if (share > 0.2 && share < 0.9) out.blended_walls += count;
-  if (share <= 0.5 || !near_colour(c, league::kWall, 45)) return;
-  out.walls += count;
-  if (near_colour(c, league::kWall, 0)) out.pure_walls += count;
-}
-
-/// Of the picture as `change` makes its colours: large ones are not copied for a question.
-template <class Change>
-Census census_of(const RgbImage& image, const Change& change) {
-  Census out;
-  each_run(image, [&](const Colour&, int first, int y, int length) {
-    auto count = static_cast<std::size_t>(length);
-    if (!image.alpha.empty())
-      for (int x = first; x < first + length; ++x) count -= image.alpha[image.index(x, y)] < 128 ? 1 : 0;
-    count_colour(change(rgb_of(image.pixel(first, y))), count, out);
-  });
-  return out;
-}
-
-Census census(const RgbImage& image) {
-  return census_of(image, [](const Rgb& colour) { return colour; });
 }
 
 /// `change` is asked once a run.
@@ -225,8 +92,8 @@ struct Ink {
     constexpr int kDark = 100;
     if (c.g >= kDark || c.r >= kDark + 50) return;
     all += pixels;
-    const auto near = [&](const NamedColour& named) { return is_of_table(c, named.colour); };
-    if (wall_share(c) > 0.45 || std::any_of(kPalette.begin(), kPalette.end(), near)) known += pixels;
+    const auto near = [&](const Rgb& own) { return is_of_table(c, own); };
+    if (wall_share(c) > 0.45 || std::any_of(league::kAll.begin(), league::kAll.end(), near)) known += pixels;
   }
   /// Most of it is of the table.
   bool is_known() const { return 10 * known >= 9 * all; }
@@ -266,7 +133,7 @@ std::optional<RestoredColours> undone(const ToneCurve& curve, const RgbImage& im
   Ink ink;
   for (const auto& [colour, count] : colours) {
     const Rgb was = without(curve, colour);
-    count_colour(was, count, c);
+    c.count(was, count);
     ink.count(was, count);
   }
   if (!is_unchanged(c) || !ink.is_known()) return std::nullopt;
@@ -294,88 +161,18 @@ std::optional<RestoredColours> with_tones_of_old(const RgbImage& image) {
   return std::nullopt;
 }
 
+/// The picture as it was before it was blurred.
+std::optional<RestoredColours> with_sharp_lines(const RgbImage& image) {
+  const Blur blur = blur_of(image);
+  if (blur.sigma == 0.0 || (!find_checkerboard(image).is_there() && !is_league_map(image))) return std::nullopt;
+  return RestoredColours{without_blur(image, blur), cv::format("had been blurred (by %.1f pixels)", blur.sigma), blur};
+}
+
 std::optional<RestoredColours> with_paler_colours(const RgbImage& image) {
   const double by = colour_strength(image);
   if (by == 1.0 || !find_checkerboard(image).is_there()) return std::nullopt;
   return RestoredColours{recoloured(image, [by](const Rgb& c) { return before_strengthening(c, by); }),
                          cv::format("colours had been made stronger (%.2g times)", by)};
-}
-
-Label label_of(const Colour& c, bool exact) {
-  const int tolerance = exact ? 0 : 3;
-  for (const NamedColour& named : kPalette)
-    if (near_colour(c, named.colour, tolerance)) return named.label;
-  const double wall = wall_share(c);
-  if (wall >= 0.45) return wall <= 1.3 ? kWall : kDrawing;
-  if (is_light_green(c)) return kFree;
-  if (spread(c) > 12 || c.g < 100) return kDrawing;
-  return !exact && looks_unexplored(c) ? kUnknown : kFree;
-}
-
-/// Drawings lie on free or unknown ground: each of their pixels takes the class of the nearest such pixel.
-void fill_drawings(cv::Mat& labels) {
-  const cv::Mat no_ground = (labels != static_cast<int>(kFree)) & (labels != static_cast<int>(kUnknown));
-  cv::Mat ground = labels.clone();
-  ground.setTo(static_cast<int>(kUnknown), no_ground);  // where there is no ground at all
-  carry_ground(no_ground, ground);
-  ground.copyTo(labels, labels == static_cast<int>(kDrawing));
-}
-
-/// Pictures made coarser blend a wall thinner than a pixel with the floor, over one pixel or two, and none of them may
-/// be wall enough. Where a line of such pixels runs between pixels without any blue, the bluer one of the two is wall.
-void add_thin_walls(const RgbImage& image, cv::Mat& labels) {
-  constexpr double kSome = 0.2;      // share of wall that a pixel of the line has
-  constexpr double kTogether = 0.4;  // and both that share the wall
-  constexpr double kNone = 0.12;     // share beside the line
-  cv::Mat share(labels.size(), CV_64F);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) share.at<double>(y, x) = wall_share(colour_of(image.pixel(x, y)));
-  const auto at = [&](int x, int y) {
-    return x < 0 || y < 0 || x >= image.width || y >= image.height ? 0.0 : share.at<double>(y, x);
-  };
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      const double own = at(x, y);
-      if (own < kSome || own >= 0.45) continue;
-      for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}}) {
-        const double before = at(x - dx, y - dy), after = at(x + dx, y + dy);
-        const bool alone = before < kNone && after < kNone;
-        const bool first = before < kNone && own >= after && at(x + 2 * dx, y + 2 * dy) < kNone;
-        const bool second = after < kNone && own > before && at(x - 2 * dx, y - 2 * dy) < kNone;
-        const double together = own + (first ? after : second ? before : 0.0);
-        if ((alone || first || second) && together >= kTogether) labels.at<Label>(y, x) = kWall;
-      }
-    }
-  }
-}
-
-/// Blurred lettering and scales look like wall, but lie in unexplored space: a wall that no free pixel touches is none.
-/// A drawing of walls alone has no free pixel.
-void drop_lettering(cv::Mat& labels) {
-  if (cv::countNonZero(labels == static_cast<int>(kFree)) == 0) return;
-  cv::Mat components;
-  const int count = cv::connectedComponents(labels == static_cast<int>(kWall), components, 8, CV_32S);
-  cv::Mat beside_free;
-  cv::dilate(labels == static_cast<int>(kFree), beside_free, cv::Mat::ones(5, 5, CV_8U));
-  std::vector<bool> is_wall(static_cast<std::size_t>(count), false);
-  for (int y = 0; y < labels.rows; ++y)
-    for (int x = 0; x < labels.cols; ++x)
-      if (beside_free.at<Label>(y, x) != 0) is_wall[static_cast<std::size_t>(components.at<int>(y, x))] = true;
-  for (int y = 0; y < labels.rows; ++y)
-    for (int x = 0; x < labels.cols; ++x)
-      if (labels.at<Label>(y, x) == kWall && !is_wall[static_cast<std::size_t>(components.at<int>(y, x))])
-        labels.at<Label>(y, x) = kUnknown;
-}
-
-/// Turned pictures have ragged walls; a ragged rim is a long one, which makes walls seem thinner than they are
-/// (wall_half_thickness()). Notches of a pixel are filled. Their grid lines, blended with white, look unexplored:
-/// unknown lines of up to four pixels inside free space are free.
-void smooth(cv::Mat& labels) {
-  cv::Mat closed;
-  cv::morphologyEx(labels == static_cast<int>(kWall), closed, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8U));
-  labels.setTo(static_cast<int>(kWall), closed);
-  cv::morphologyEx(labels == static_cast<int>(kFree), closed, cv::MORPH_CLOSE, cv::Mat::ones(5, 5, CV_8U));
-  labels.setTo(static_cast<int>(kFree), closed & (labels == static_cast<int>(kUnknown)));
 }
 
 /// More than lines of it are coloured: maps of greys may have walls that look like squares.
@@ -394,7 +191,7 @@ std::size_t black_lines(const RgbImage& image) {
   cv::Mat black = cv::Mat::zeros(image.height, image.width, CV_8U);
   each_run(image, [&](const Colour& c, int first, int y, int length) {
     if (c.g < kDark && c.r < kDark && c.b < kDark && spread(c) <= kGrey)
-      std::fill_n(black.ptr<Label>(y) + first, length, Label{255});
+      std::fill_n(black.ptr<unsigned char>(y) + first, length, static_cast<unsigned char>(255));
   });
   cv::Mat areas;
   cv::copyMakeBorder(black, areas, kThick, kThick, kThick, kThick, cv::BORDER_REPLICATE);
@@ -428,20 +225,9 @@ bool is_grey_league_map(const RgbImage& image) {
   }
   const std::size_t pixels = image.rgb.size() / 3;
   // White floor, or what was searched.
-  constexpr auto kSearched = static_cast<std::size_t>(brightness(league::kSearched));
+  constexpr auto kSearched = static_cast<std::size_t>(league::brightness(league::kSearched));
   const std::size_t floor = std::max(levels[255], levels[kSearched] + levels[kSearched + 1]);
   return 20 * levels[226] >= pixels && 20 * levels[237] >= pixels && 100 * floor >= pixels;
-}
-
-/// Much that is bluish and little that is blue enough: walls that ran into the floor beside them.
-bool has_pale_walls(const RgbImage& image, const cv::Mat& labels) {
-  constexpr double kBluish = 0.12;  // share of wall
-  constexpr std::size_t kMost = 3;  // bluish pixels a pixel of wall
-  std::size_t bluish = 0;
-  each_run(image, [&](const Colour& c, int, int, int length) {
-    if (wall_share(c) >= kBluish) bluish += static_cast<std::size_t>(length);
-  });
-  return bluish > kMost * static_cast<std::size_t>(cv::countNonZero(labels == kWall));
 }
 
 }  // namespace
@@ -451,6 +237,7 @@ std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
   if (as_is.exact() && as_is.pure_walls > 0) return std::nullopt;
   if (auto restored = with_paler_colours(image)) return restored;
   if (as_is.exact()) return std::nullopt;
+  if (auto restored = with_sharp_lines(image)) return restored;
   const auto exchanged = [](const Rgb& c) { return Rgb{c[2], c[1], c[0]}; };
   if (is_unchanged(census_of(image, exchanged)))
     return RestoredColours{recoloured(image, exchanged), "red and blue were exchanged"};
@@ -515,53 +302,6 @@ bool is_league_map(const RgbImage& image) {
   const bool lossy = has_run_colours(without_searched_floor(image));
   const std::size_t walls = lossy ? static_cast<std::size_t>(cv::countNonZero(walls_by_brightness(image))) : c.walls;
   return are_walls(walls) && walls >= black_lines(image);
-}
-
-LabelImage classify_league(const RgbImage& as_given) {
-  // Of wall and searched floor blended nobody knows the wall before.
-  const RgbImage unsearched = without_searched_floor(as_given);
-  const bool exact = census(unsearched).exact();
-  const RgbImage& image = exact ? as_given : unsearched;
-  LabelImage out;
-  out.classes = cv::Mat(image.height, image.width, CV_8U);
-  const bool lossy = !exact && has_run_colours(image);
-  const cv::Mat dark_walls = lossy ? walls_by_brightness(as_given) : cv::Mat();
-  const cv::Mat unexplored = lossy ? unexplored_by_brightness(image) : cv::Mat();
-  std::size_t drawn = 0;
-  std::size_t strange = 0;  // without the black canvas of a turned picture
-  each_run(image, [&](const Colour& c, int first, int y, int length) {
-    Label* const row = out.classes.ptr<Label>(y);
-    std::fill_n(row + first, length, label_of(c, exact));
-    for (int x = first; x < first + length; ++x) {
-      if (lossy && row[x] == kWall) row[x] = kDrawing;
-      if (lossy && dark_walls.at<Label>(y, x) != 0)
-        row[x] = kWall;
-      else if (lossy && row[x] != kDrawing)
-        row[x] = unexplored.at<Label>(y, x) != 0 ? kUnknown : kFree;
-      if (row[x] == kDrawing) ++drawn;
-      if (row[x] == kDrawing && std::max({c.r, c.g, c.b}) > kBlack) ++strange;
-    }
-  });
-  if (!exact && !lossy) add_thin_walls(image, out.classes);
-  fill_drawings(out.classes);
-  drop_lettering(out.classes);
-  if (!exact) smooth(out.classes);
-  const double share =
-      100.0 * static_cast<double>(drawn) / static_cast<double>(std::max<std::size_t>(1, out.classes.total()));
-  const double astray =
-      100.0 * static_cast<double>(strange) / static_cast<double>(std::max<std::size_t>(1, out.classes.total()));
-  if (astray > kMostDrawn)
-    out.refusal = cv::format(
-        "has colours that are none of the league's on %.0f %% of its pixels (noise, a photograph); give it as the "
-        "robot saved it",
-        astray);
-  out.recognised = cv::format("league colours%s, drawings removed from %.1f %% of the pixels",
-                              exact   ? ""
-                              : lossy ? " (compressed with loss)"
-                                      : " (resampled)",
-                              share);
-  if (!exact && has_pale_walls(as_given, out.classes)) out.recognised += kWallsPale;
-  return out;
 }
 
 }  // namespace rubble::scoring

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/image/geotiff.h"
-#include "scoring/maps/colours/grey_levels.h"
+#include "scoring/maps/colours/blur.h"
 
 namespace rubble::scoring {
 
@@ -15,6 +15,7 @@ bool is_league_map(const RgbImage& image);
 struct RestoredColours {
   RgbImage image;
   std::string how;  ///< what had been done to it
+  Blur blur{};      ///< that of it which was a blur
 };
 
 /// Of pictures whose red and blue were exchanged, that were inverted, or whose contrast was taken down; nothing of
@@ -25,9 +26,5 @@ std::optional<RestoredColours> restored_league_colours(const RgbImage& image);
 /// walls (from grey alone: the robot's way) from other lines. Empty: it can, or it is no such picture. `is_league`: of
 /// is_league_map().
 std::string why_colours_are_lost(const RgbImage& image, bool is_league);
-
-/// The classes of a league map without its drawings. Colours: the league's GeoTIFF map rules as hector_geotiff and
-/// crosbot draw them (docs/scoring.md has the table).
-LabelImage classify_league(const RgbImage& image);
 
 }  // namespace rubble::scoring

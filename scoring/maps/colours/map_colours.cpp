@@ -10,6 +10,7 @@
 #include "scoring/maps/colours/canvas_corners.h"
 #include "scoring/maps/colours/even_light.h"
 #include "scoring/maps/colours/grey_levels.h"
+#include "scoring/maps/colours/league_classes.h"
 #include "scoring/maps/colours/league_colours.h"
 #include "scoring/maps/colours/lettering.h"
 #include "scoring/maps/colours/turned_canvas.h"
@@ -112,15 +113,16 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
   const bool direct = !notes.meaning.empty();
   std::optional<RestoredColours> restored = direct ? std::nullopt : restored_league_colours(original);
   const RgbImage& image = restored ? restored->image : original;
-  out.is_league = !direct && is_league_map(image);
+  const Blur undone = restored ? restored->blur : Blur{};
+  out.is_league = undone.sigma > 0.0 || (!direct && is_league_map(image));
   const cv::Mat nothing = transparent_pixels(image) | no_data_areas(image, notes);
   const LabelImage labels = direct          ? classify_direct(image, notes.meaning)
-                            : out.is_league ? classify_league(image)
+                            : out.is_league ? classify_league(image, undone)
                                             : classify_by_grey(image, nothing);
   out.recognised = labels.recognised;
   out.refusal = labels.refusal;
   if (restored) out.recognised += ", " + restored->how;
-  if (!direct)
+  if (!direct && undone.sigma == 0.0)
     if (const std::string why = why_colours_are_lost(image, out.is_league); !why.empty()) out.refusal = why;
   if (image.white > 0)
     out.recognised += ", scaled so that the brightest sample, " + std::to_string(image.white) + ", is white";

@@ -530,6 +530,15 @@ std::vector<Format> formats() {
       cv::GaussianBlur(i, o, {}, sigma);
       return o;
     }));
+  for (const double sigma : {1.4, 1.8, 2.2})
+    out.push_back(changed(
+        "blur " + std::to_string(sigma),
+        [=](const cv::Mat& i) {
+          cv::Mat o;
+          cv::GaussianBlur(i, o, {}, sigma);
+          return o;
+        },
+        "png", [](const Drawing& d) { return !d.is_grey(); }));
   out.push_back(changed(
       "inverted", [](const cv::Mat& i) { return cv::Mat(~i); }, "png", only_grey));
   for (const int interpolation : {cv::INTER_NEAREST, cv::INTER_LINEAR, cv::INTER_CUBIC})

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -185,6 +186,33 @@ TEST(Strangers, AWrongScaleIsNamed) {
     EXPECT_EQ(score.score, 0.0);
     EXPECT_EQ(score.scale_hint, 1.0 / wrong);
     EXPECT_NE(score.note.find("--resolution 0.05"), std::string::npos) << score.note;
+  }
+}
+
+// The score stays that of the size that was given.
+TEST(Strangers, AScaleThatIsOffByAFewPerCentIsNamed) {
+  for (const Ground& ground : {Ground{"yellow", 8, 8, 4021}, {"orange", 7, 8, 4022}, {"maze", 7, 7, 4023}})
+    for (const double wrong : {0.93, 1.07, 1.1}) {
+      SCOPED_TRACE(ground.name() + ", " + std::to_string(wrong) + " times as large");
+      const OccupancyGrid truth = truth_of(ground);
+      const MapScore score = score_map(scaled(truth, wrong), truth);
+      const std::size_t at = score.note.find("walls fit at ");
+      ASSERT_NE(at, std::string::npos) << score.note;
+      EXPECT_NEAR(std::stod(score.note.substr(at + std::string("walls fit at ").size())), 1.0 / wrong, 0.01);
+      EXPECT_LT(score.score, 0.8);
+    }
+}
+
+TEST(Strangers, NoOtherScaleIsNamedWhereTheMapIsOnlyBad) {
+  for (const std::uint64_t seed : {4031u, 4032u}) {
+    const OccupancyGrid truth = truth_of({"yellow", 8, 8, seed});
+    const OccupancyGrid other = truth_of({"yellow", 8, 8, seed + 100});
+    OccupancyGrid worn = truth;  // every third column of a metre lost
+    for (int y = 0; y < worn.height(); ++y)
+      for (int x = 0; x < worn.width(); ++x)
+        if (x / 20 % 3 == 0) worn[{x, y}] = Occupancy::Unknown;
+    for (const OccupancyGrid* map : std::vector<const OccupancyGrid*>{&truth, &other, &worn})
+      EXPECT_EQ(score_map(*map, truth).note.find("walls fit at"), std::string::npos) << score_map(*map, truth).note;
   }
 }
 

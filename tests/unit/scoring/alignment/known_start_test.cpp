@@ -64,6 +64,18 @@ TEST(KnownStart, ChangesNothingWhereThereIsNoDoubt) {
   EXPECT_EQ(with.by, without.by);
 }
 
+TEST(KnownStart, OneThatDoesNotFitIsSaidToBeSo) {
+  const OccupancyGrid truth = crop_to_known(maze_of(7609, 9, 7), 0.0);
+  AlignmentConfig config;
+  config.start = start_at({}, {0.6, 0.6});
+  EXPECT_EQ(align(truth, truth, config).note.find("start pose"), std::string::npos);
+  config.start->T_truth_map = TPose2D(0.0, 0.0, deg_to_rad(90.0));
+  const Alignment turned = align(truth, truth, config);
+  EXPECT_TRUE(turned.aligned);
+  EXPECT_NE(turned.note.find("start pose given does not fit"), std::string::npos) << turned.note;
+  EXPECT_NE(turned.note.find("turned by -90 deg"), std::string::npos) << turned.note;
+}
+
 /// Section IV.F as the way to a pose.
 TEST(Equation7, FindsThePoseOfADamagedMapAndRefusesAStranger) {
   const OccupancyGrid truth = crop_to_known(truth_of({"yellow", 8, 7, 7608}), 0.0);

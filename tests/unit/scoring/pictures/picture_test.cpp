@@ -141,6 +141,28 @@ TEST_F(Picture, FoundFalseAndMissedVictimsAreToldApart) {
   write_overlay(path_, plain, plain, {}, "", {"victims", {}, {}, {here}});
   EXPECT_GT(tints().blue, 0);
   EXPECT_EQ(green() + tints().red, 0);
+  // Nobody knows at a pose that is not trusted.
+  write_overlay(path_, plain, plain, {}, "NOT TRUSTED", {"victims", {{here, here}}, {here}, {here}});
+  EXPECT_EQ(green() + tints(0.3).blue + tints(0.3).red, 0);
+}
+
+TEST_F(Picture, TheLegendOfTheErrorMapNamesItsPaleGrounds) {
+  OccupancyGrid half = room(0.0);
+  for (int y = 0; y < half.height(); ++y)
+    for (int x = 0; x < 30; ++x) half[{x, y}] = Occupancy::Unknown;
+  OccupancyGrid other = room(0.0);
+  for (int y = 0; y < other.height(); ++y)
+    for (int x = 70; x < 100; ++x) other[{x, y}] = Occupancy::Unknown;
+  write_error_map(path_, half, other, {}, 0.5);
+  const cv::Mat image = cv::imread(path_);
+  const int rows = rows_of_map(image);
+  for (const int x : {image.cols / 5, image.cols * 4 / 5}) {
+    const cv::Vec3b ground = image.at<cv::Vec3b>(rows / 2, x);
+    int there = 0;
+    for (int y = rows; y < image.rows; ++y)
+      for (int column = 0; column < image.cols; ++column) there += image.at<cv::Vec3b>(y, column) == ground ? 1 : 0;
+    EXPECT_GE(there, 50) << ground;
+  }
 }
 
 /// As Fig. 12 (h): the outliers of each map on its own side.

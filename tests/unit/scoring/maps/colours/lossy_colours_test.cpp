@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scoring/maps/colours/league_classes.h"
 #include "scoring/maps/colours/league_colours.h"
 #include "tests/support/map_pictures.h"
 #include "tests/support/scoring_grounds.h"
@@ -18,26 +19,11 @@ using namespace testing;
 
 constexpr int kWallOfLeague = 2;
 
-cv::Mat as_jpeg(const cv::Mat& picture, int quality) {
-  std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
-  return cv::imdecode(bytes, cv::IMREAD_COLOR);
-}
-
 cv::Mat walls_of(const cv::Mat& picture) { return classify_league(to_rgb(picture)).classes == kWallOfLeague; }
-
-/// Share of `some` with nothing of `others` beside it.
-double apart(const cv::Mat& some, const cv::Mat& others) {
-  cv::Mat near;
-  cv::dilate(others, near, cv::Mat::ones(3, 3, CV_8U));
-  return cv::countNonZero(some & ~near) / std::max(1.0, static_cast<double>(cv::countNonZero(some)));
-}
 
 /// Walls two pixels wide.
 cv::Mat two_pixel_walls(std::uint64_t seed, double searched) {
-  cv::Mat out;
-  cv::resize(league_image(truth_of({"maze", 7, 5, seed}), true), out, {}, 2.0, 2.0, cv::INTER_NEAREST);
-  return with_searched_floor(out, searched);
+  return fine_league_image(truth_of({"maze", 7, 5, seed}), searched);
 }
 
 // Half as many pixels leave walls half as dark, and JPEG takes most of their colour: the small picture without JPEG is

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "scoring/maps/colours/league_classes.h"
 #include "scoring/maps/colours/league_colours.h"
 #include "tests/support/map_pictures.h"
 #include "tests/support/scoring_grounds.h"
