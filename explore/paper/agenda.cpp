@@ -17,7 +17,7 @@ constexpr double kVisited = 0.30;                ///< closer to its target the r
 constexpr double kNearTarget = 1.0;              ///< turned away from so near, it was seen not to be had [m]
 constexpr double kBarren = 240.0;                ///< spent on frontiers in vain for so long, the faces go first [s]
 constexpr double kBarrenWalls = 90.0;            ///< the same without new ground where walls have holes [s]
-constexpr int kCutShort = 3;                     ///< rounds that left faces out of reach are not the last
+constexpr int kCutShort = 3;                     ///< so many rounds that left faces out of reach are not the last
 constexpr double kLookTurn = deg_to_rad(270.0);  ///< with a 240 deg scanner more than once around [rad]
 constexpr double kGlance = deg_to_rad(40.0);     ///< [rad]
 constexpr double kSearchReplan = 2.0;            ///< on the way to a viewpoint [s]
@@ -104,7 +104,11 @@ Plan Agenda::choose(const Situation& situation) {
   TargetChoice::Choice choice = choice_.choose(view, situation.search);
   if (choice.no_niche) {
     frontier_left_ = choice.plan.frontier_left;
-    if (!situation.search.squarely() && push_for_niche(situation)) return std::move(choice.plan);
+    if (situation.search.squarely()) {  // niches are faces like others now
+      if (pushes_for_niche_) end_pushing();
+    } else if (push_for_niche(situation)) {
+      return std::move(choice.plan);
+    }
     const auto news = rounds_.before_all_faces(standing(situation), known_off_grid_.worth_a_try(situation.floor),
                                                situation.search, situation.left_alone);
     if (news) {
@@ -369,7 +373,7 @@ Rounds::Standing Agenda::standing(const Situation& situation) const {
           [&] { return prospects_of(situation, false); }};
 }
 
-/// The same of walls that may hide new ground, where none was gained for a while.
+/// Where walls have holes and no ground was gained for a while, walls that may be none wait for the faces as well.
 bool Agenda::faces_go_first(const Situation& situation) const {
   return !choice_.thorough() && situation.search.on() && config_.bar_targets && situation.search.squarely() &&
          situation.now - gained_at_ > kBarrenWalls;

@@ -151,7 +151,7 @@ Plan TargetChoice::to_place(const View& view, FloorSearch& search, Subjects subj
   OccupancyGrid shown = view.floor.cells;
   for (const std::vector<Cell>& freed : {view.floor.loose, view.floor.doubtful})
     for (const Cell c : freed) shown[c] = Occupancy::Occupied;
-  LocalGrids grids(shown, pallet_, &grids_);
+  LocalGrids grids(shown, pallet_, &grids_shown_);
   StepFields fields(shown);
   // Well inside the pallets stand no walls with holes, and among steps no boxes.
   const auto idle = [&](const TPoint2D& subject) {

@@ -114,7 +114,8 @@ class TargetChoice {
   PlannerConfig config_;
   bool bar_targets_;
   double pallet_;
-  KnownGrids grids_;  ///< of the pallets, on the newest maps
+  KnownGrids grids_;        ///< of the pallets, on the newest maps ...
+  KnownGrids grids_shown_;  ///< ... and on these with what is pushed aside still there
   FrontierChoiceConfig by_;
   Priorities priorities_;
   Planner planner_;

@@ -26,6 +26,7 @@ constexpr double kNose = deg_to_rad(160.0);     ///< by a probe that points ahea
 constexpr double kAtSuspect = 4.0;              ///< stands so long for one [s]
 constexpr double kSameSuspect = 0.3;            ///< [m]
 constexpr double kAnotherSide = 0.5;            ///< it is visited again from so far from where it was before [m]
+constexpr std::size_t kMostStares = 2;          ///< within four times one of them
 constexpr double kSameStare = 0.5;              ///< cues so near to each other are stared at together [m]
 constexpr double kBox = 0.35;                   ///< a wall so near before a suspect may be the side of its box [m]
 constexpr double kLookCost = 1.5;               ///< what a look takes, in way, standing still and turning to it [m]
@@ -188,12 +189,12 @@ std::vector<Source> FloorSearch::sources(const Traversable& map, Subjects subjec
                                          const std::function<std::optional<double>(const TPoint2D&)>& head_start,
                                          const std::function<bool(const TPoint2D&)>& idle) {
   const Record cameras = subjects == Subjects::Squarely ? Record::Squarely : Record::Anyhow;
-  Traversable shut;
+  std::optional<Traversable> shut;
   if (subjects == Subjects::Squarely) {
-    shut.cells = with_holes_shut(map.cells);
-    shut.clearance = map.clearance;
+    shut = map;
+    shut->cells = with_holes_shut(map.cells);
   }
-  const Traversable& floor = subjects == Subjects::Squarely ? shut : map;
+  const Traversable& floor = shut ? *shut : map;
   views_.clear();
   // Where all floor is smelt or listened to it is gone over anyway.
   if (subjects == Subjects::Unseen && !others_.empty()) return {};
@@ -350,10 +351,10 @@ std::optional<double> FloorSearch::turn_to_subject(const Traversable& floor, con
   bool any = false;
   for (const View& view : views_) {
     if (distance(floor.cells.centre(view.cell), {T_map_base.x, T_map_base.y}) > kAtViewpoint) continue;
-    const bool serves = FloorSearch::serves(view, T_map_base);
-    if (any && !serves) continue;
-    if (serves && !any) turn = kPi;
-    any = any || serves;
+    const bool good = serves(view, T_map_base);
+    if (any && !good) continue;
+    if (good && !any) turn = kPi;
+    any = any || good;
     const double bearing = std::atan2(view.subject.y - T_map_base.y, view.subject.x - T_map_base.x);
     const double to = wrap_angle(bearing - T_map_base.phi);
     if (std::abs(to) >= std::abs(turn)) continue;
@@ -383,13 +384,17 @@ bool FloorSearch::dwelling(const Traversable& floor, const TPose2D& T_map_base, 
 bool FloorSearch::staring(const std::vector<TPoint2D>& seen, bool smelt, Stamp now) {
   if (!config_.on || (seen.empty() && !smelt)) return false;
   const double pause = 4.0 * config_.stare;
-  // A false alarm somewhere else must not take the stare from a victim that shows a few seconds later.
-  stares_.erase(std::remove_if(stares_.begin(), stares_.end(), [&](const Stare& s) { return now - s.since >= pause; }),
-                stares_.end());
+  // A false alarm somewhere else must not take the stare from a victim that shows a few seconds later; many hold the
+  // robot no longer than two do.
+  stared_at_.erase(
+      std::remove_if(stared_at_.begin(), stared_at_.end(), [&](const Stare& s) { return now - s.since >= pause; }),
+      stared_at_.end());
   for (const TPoint2D& at : seen) {
-    if (std::any_of(stares_.begin(), stares_.end(), [&](const Stare& s) { return distance(s.at, at) < kSameStare; }))
+    if (stared_at_.size() >= kMostStares) break;
+    if (std::any_of(stared_at_.begin(), stared_at_.end(),
+                    [&](const Stare& s) { return distance(s.at, at) < kSameStare; }))
       continue;
-    stares_.push_back({at, now});
+    stared_at_.push_back({at, now});
     stare_until_ = now + config_.stare;
   }
   if (smelt && now >= next_sniff_) {

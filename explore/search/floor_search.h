@@ -65,7 +65,7 @@ class FloorSearch {
 
   /// The cells from which something unsearched can be seen, each with the head start that `head_start` gives to its
   /// centre; without one it is left out. `idle`: places where nothing can be for the cameras to see.
-  std::vector<Source> sources(const Traversable& floor, Subjects subjects,
+  std::vector<Source> sources(const Traversable& map, Subjects subjects,
                               const std::function<std::optional<double>(const mrpt::math::TPoint2D&)>& head_start,
                               const std::function<bool(const mrpt::math::TPoint2D&)>& idle = {});
   /// Length of the wall faces in range and in sight of a cell that are still to be looked at [m].
@@ -136,6 +136,11 @@ class FloorSearch {
     Grid<Faces> seen;
     OccupancyGrid ground;
   };
+  /// A cue that the robot stood still for.
+  struct Stare {
+    mrpt::math::TPoint2D at;
+    Stamp since;
+  };
   /// A look that showed something new.
   struct Look {
     Anchor anchor;
@@ -168,12 +173,7 @@ class FloorSearch {
   std::vector<GivenUp> given_up_;
   Stamp next_look_ = Stamp::never();
   Stamp dwell_until_ = Stamp::never();
-  /// What the robot stared at lately.
-  struct Stare {
-    mrpt::math::TPoint2D at;
-    Stamp since;
-  };
-  std::vector<Stare> stares_;
+  std::vector<Stare> stared_at_;  ///< lately
   Stamp stare_until_ = Stamp::never();
   Stamp next_sniff_ = Stamp::never();
   bool dwell_over_ = false;

@@ -23,7 +23,7 @@ struct SearchConfig {
   double field_of_view = deg_to_rad(50.0);  ///< full angle, ahead of the robot; less than the sensor's: poses err
   double range = 1.8;                       ///< [m]; likewise
   int min_cells = 8;                        ///< smaller unsearched places are left alone
-  double stare = 3.0;                       ///< a cue not yet confirmed holds the robot at most this long [s]
+  double stare = 3.0;  ///< a cue not yet confirmed holds the robot so long; two at most in four times that [s]
   SquareLook squarely = SquareLook::Holes;  ///< in the end, look squarely at each face as well
   double dwell = 1.2;                       ///< time at a viewpoint, facing the place to search [s]
 };
@@ -44,7 +44,8 @@ struct Inspection {
   double farthest = 20.0;               ///< [m]
 };
 /// Squarely, and from not too near: what lies in a box behind a hole in the wall, 0.3 to 0.9 m up, shows to a camera at
-/// 0.5 m within 20 to 30 deg of the hole's axis and 0.75 to 1.5 m away (boxed victims of the competition's arenas).
+/// 0.5 m within 20 to 30 deg of the hole's axis and 0.75 to 1.5 m away (boxed victims of the competition's arenas);
+/// viewpoints keep to that, and a robot stops up to a quarter of a metre off its viewpoint.
 constexpr Inspection kSquarely{deg_to_rad(27.0), 0.6, 1.75};
 
 /// The faces that can be inspected along a direction (unit vector): those whose normal is within `incidence` of it.

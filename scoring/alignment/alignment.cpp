@@ -348,10 +348,11 @@ std::string start_is_off(const Alignment& best, const KnownStart& start) {
     return {};
   const TPoint2D apart = best.T_truth_map.composePoint(start.p_map) - start.T_truth_map.composePoint(start.p_map);
   char text[200];
-  std::snprintf(text, sizeof text,
-                "the start pose given does not fit: at the pose found it started %.1f m from there, turned by %.0f deg "
-                "(a picture's up is the robot's heading)",
-                std::hypot(apart.x, apart.y), rad_to_deg(wrap_angle(best.T_truth_map.phi - start.T_truth_map.phi)));
+  std::snprintf(
+      text, sizeof text,
+      "the start pose does not fit: at the pose found the map begins %.1f m from there, turned by %.0f deg; one "
+      "of the two is wrong (for a picture without a pose of its own, up is the robot's heading)",
+      std::hypot(apart.x, apart.y), rad_to_deg(wrap_angle(best.T_truth_map.phi - start.T_truth_map.phi)));
   return text;
 }
 
@@ -402,7 +403,7 @@ Alignment align(const OccupancyGrid& map, const OccupancyGrid& truth, const Alig
   }
   if (!best.aligned && config.start)
     if (const std::optional<Alignment> at_start = aligner.by_start(best)) return *at_start;
-  if (config.start)
+  if (best.aligned && config.start)
     if (const std::string off = start_is_off(best, *config.start); !off.empty())
       best.note += (best.note.empty() ? "" : "; ") + off;
   return best;

@@ -114,7 +114,7 @@ double overshoot(const cv::Mat& plane, const cv::Mat& lightest) {
 }  // namespace
 
 Blur blur_of(const RgbImage& image) {
-  constexpr double kLeast = 1.0, kLeastRippled = 1.2, kMost = 4.0, kFineness = 0.05;  // [pixels]
+  constexpr double kLeast = 1.0, kLeastRippled = 1.2, kFineness = 0.05;  // [pixels]
   constexpr double kMostOvershoot = 0.05;  // of the steps: 0.02 to 0.2 at the right size, 0.4 a fifth of a pixel beyond
   constexpr int kAround = 31;              // [pixels]
   constexpr double kRippled = 0.01;  // of steps in a row: up to 0.0014 of blurred lines, 0.025 and more through JPEG
@@ -132,7 +132,7 @@ Blur blur_of(const RgbImage& image) {
   const auto may_be = [&](double sigma) {
     return overshoot(spectrum.sharpened(sigma), lightest) <= kMostOvershoot * steps.all;
   };
-  double low = out.ripples ? kLeastRippled : kLeast, high = kMost;
+  double low = out.ripples ? kLeastRippled : kLeast, high = Blur::kMost;
   if (!may_be(low)) return {};
   while (high - low > kFineness) {
     const double middle = 0.5 * (low + high);

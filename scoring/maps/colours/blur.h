@@ -6,14 +6,16 @@ namespace rubble::scoring {
 
 /// What blurred a drawing in full colours: a Gaussian, or what is much like one.
 struct Blur {
-  double sigma = 0.0;    ///< standard deviation, 1 to 4 [pixels], 4 also where it is more; 0: none, edges are sharp
+  static constexpr double kMost = 4.0;  ///< [pixels]
+  double sigma =
+      0.0;  ///< standard deviation, 1 to kMost [pixels], kMost also where it is more; 0: none, edges are sharp
   bool ripples = false;  ///< small steps up and down, as JPEG leaves them
 };
 
 /// Pictures with sharp edges are told at once; larger than 16 million pixels are not asked.
 Blur blur_of(const RgbImage& image);
 
-/// The picture with most of that undone (Wiener's filter): as if blurred by half a pixel.
+/// The picture with most of that undone (Wiener's filter): as if blurred by 0.6 pixels.
 RgbImage without_blur(const RgbImage& image, const Blur& blur);
 
 }  // namespace rubble::scoring

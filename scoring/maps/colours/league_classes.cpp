@@ -203,12 +203,13 @@ LabelImage classify_league(const RgbImage& as_given, const Blur& undone) {
   constexpr double kMostBlur = 3.2;  // beyond, walls of a pixel are too pale to be missed [pixels]
   constexpr int kRim = 2;            // of walls that were sharpened again [pixels]
   if (exact) return out;
-  if (was_blurred && (undone.sigma > kMostBlur || paleness(image, out.classes, kRim) > kPaleAfterBlur ||
-                      cv::countNonZero(out.classes == kWall) == 0))
+  if (was_blurred && out.refusal.empty() &&
+      (undone.sigma > kMostBlur || paleness(image, out.classes, kRim) > kPaleAfterBlur ||
+       cv::countNonZero(out.classes == kWall) == 0))
     out.refusal = cv::format(
-        "is a league map that was blurred too much (by %.1f pixels): its walls ran into the floor; give it as the "
+        "is a league map that was blurred too much (by %.1f pixels%s): its walls ran into the floor; give it as the "
         "robot saved it",
-        undone.sigma);
+        undone.sigma, undone.sigma < Blur::kMost ? "" : " or more");
   if (paleness(as_given, out.classes, 0) > kPale) out.recognised += kWallsPale;
   return out;
 }

@@ -18,8 +18,9 @@ struct RestoredColours {
   Blur blur{};      ///< that of it which was a blur
 };
 
-/// Of pictures whose red and blue were exchanged, that were inverted, or whose contrast was taken down; nothing of
-/// others. Exchanged and inverted ones must come out exact, checkerboard and walls.
+/// Of pictures whose red and blue were exchanged, that were inverted, that were blurred, whose colours were made
+/// stronger, or whose contrast was taken down; nothing of others. Exchanged and inverted ones must come out exact,
+/// checkerboard and walls.
 std::optional<RestoredColours> restored_league_colours(const RgbImage& image);
 
 /// Why a picture with the league's checkerboard cannot be read: a change of its colours left nobody who could tell its

@@ -122,8 +122,8 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
   out.recognised = labels.recognised;
   out.refusal = labels.refusal;
   if (restored) out.recognised += ", " + restored->how;
-  if (!direct && undone.sigma == 0.0)
-    if (const std::string why = why_colours_are_lost(image, out.is_league); !why.empty()) out.refusal = why;
+  if (!direct && (undone.sigma == 0.0 || !out.refusal.empty()))
+    if (const std::string why = why_colours_are_lost(image, is_league_map(image)); !why.empty()) out.refusal = why;
   if (image.white > 0)
     out.recognised += ", scaled so that the brightest sample, " + std::to_string(image.white) + ", is white";
   cv::Mat classes = labels.classes;

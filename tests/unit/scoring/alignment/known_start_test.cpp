@@ -72,8 +72,11 @@ TEST(KnownStart, OneThatDoesNotFitIsSaidToBeSo) {
   config.start->T_truth_map = TPose2D(0.0, 0.0, deg_to_rad(90.0));
   const Alignment turned = align(truth, truth, config);
   EXPECT_TRUE(turned.aligned);
-  EXPECT_NE(turned.note.find("start pose given does not fit"), std::string::npos) << turned.note;
+  EXPECT_NE(turned.note.find("start pose does not fit"), std::string::npos) << turned.note;
   EXPECT_NE(turned.note.find("turned by -90 deg"), std::string::npos) << turned.note;
+  const Alignment stranger = align(crop_to_known(maze_of(8109, 9, 7), 0.0), truth, config);
+  EXPECT_FALSE(stranger.aligned);
+  EXPECT_EQ(stranger.note.find("start pose"), std::string::npos) << "its pose is not trusted: " << stranger.note;
 }
 
 /// Section IV.F as the way to a pose.

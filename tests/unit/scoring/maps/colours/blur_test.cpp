@@ -102,5 +102,19 @@ TEST(Blur, WhatIsNotReadWellIsNamed) {
   EXPECT_GT(named, 0);
 }
 
+TEST(Blur, ColoursThatWereLostBeforeItAreWhatIsNamed) {
+  const cv::Mat sharp = maze_drawn(5, 0.5);
+  cv::Mat grey;
+  cv::cvtColor(sharp, grey, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(grey, grey, cv::COLOR_GRAY2BGR);
+  const std::string lost = classify(to_rgb(grey)).refusal;
+  ASSERT_NE(lost, "");
+  for (const double sigma : {0.0, 1.4, 1.8}) {
+    const ClassImage image = classify(to_rgb(blurred(grey, sigma > 0.0 ? sigma : 0.01)));
+    EXPECT_NE(image.refusal, "") << sigma;
+    EXPECT_EQ(image.refusal.find("blurred too much"), std::string::npos) << sigma << ": " << image.refusal;
+  }
+}
+
 }  // namespace
 }  // namespace rubble::scoring
