@@ -14,8 +14,8 @@
 #include "tests/support/scoring_floor_maps.h"
 #include "tests/support/scoring_pairs.h"
 
-/// The public maps that benchmarks of the scoring work on: RUBBLE_DATA names the folder, docs/scoring.md what lies in
-/// it.
+/// The public maps that benchmarks of the scoring work on: RUBBLE_DATA names the folder, docs/scoring_measured.md what
+/// lies in it.
 namespace rubble::scoring {
 
 /// The part `name` of the data; none, and the benchmark is skipped with the remedy, where it is not there.
@@ -23,9 +23,9 @@ inline std::optional<std::string> data_folder(benchmark::State& state, const std
   const char* data = std::getenv("RUBBLE_DATA");
   const std::string folder = (data == nullptr ? std::string() : std::string(data)) + "/" + name;
   if (data == nullptr)
-    state.SkipWithError("set RUBBLE_DATA to the folder with the public data (docs/scoring.md)");
+    state.SkipWithError("set RUBBLE_DATA to the folder with the public data (docs/scoring_measured.md)");
   else if (!std::filesystem::is_directory(folder))
-    state.SkipWithError((folder + ": no such folder; docs/scoring.md says what belongs in it").c_str());
+    state.SkipWithError((folder + ": no such folder; docs/scoring_measured.md says what belongs in it").c_str());
   else
     return folder;
   return std::nullopt;

@@ -3,8 +3,8 @@
 #
 #   tests/scoring_figures.sh [-v] [alignment] [strangers] [rooms] [ranking] [attacks] [speed]      (default: all)
 #
-# RUBBLE_DATA   folder with `alignment` and `rooms` (docs/scoring.md), needed by the first three; `attacks` also judges
-#               the competition arenas of its `arenas_raf`, where there are any
+# RUBBLE_DATA   folder with `alignment` and `rooms` (docs/scoring_measured.md), needed by the first three; `attacks`
+#               also judges the competition arenas of its `arenas_raf`, where there are any
 # RUBBLE_BUILD  build folder (default: build/release)
 # -v            also prints what the benchmarks print, pair by pair and map by map
 #
@@ -24,8 +24,8 @@ stop() {
 }
 
 need_data() {
-  [[ -n ${RUBBLE_DATA:-} ]] || stop "set RUBBLE_DATA to the folder with '$1' (docs/scoring.md, \"Public data\")"
-  [[ -d $RUBBLE_DATA/$1 ]] || stop "$RUBBLE_DATA/$1: no such folder; docs/scoring.md, \"Public data\", says what belongs in it"
+  [[ -n ${RUBBLE_DATA:-} ]] || stop "set RUBBLE_DATA to the folder with '$1' (docs/scoring_measured.md, \"Public data\")"
+  [[ -d $RUBBLE_DATA/$1 ]] || stop "$RUBBLE_DATA/$1: no such folder; docs/scoring_measured.md, \"Public data\", says what belongs in it"
 }
 
 need_program() {

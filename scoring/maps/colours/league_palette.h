@@ -5,7 +5,7 @@
 #include "base/image/geotiff.h"
 
 /// The colours of league maps (RoboCupRescue GeoTIFF map rules, as hector_geotiff and crosbot draw them), for writing
-/// and reading alike. docs/scoring.md has the table.
+/// and reading alike. docs/map_readers.md has the table.
 namespace rubble::scoring::league {
 
 constexpr Rgb kWall{0, 40, 120};
