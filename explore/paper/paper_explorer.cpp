@@ -82,9 +82,12 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   heed_levelling();
   heed_battery(inputs);
   stuck_watch_.update(inputs, passed, dt_);
+  const bool squarely = victims_.search().squarely();
   for (const robot::VictimCue& cue : inputs.cues)
     if (victims_.hear(cue, mapper, pose_, floor_))
       agenda_.note(now_, "victim " + std::to_string(victims_.reports().back().id) + " confirmed");
+  if (!squarely && victims_.search().squarely())
+    agenda_.note(now_, "a victim shows through a hole in a wall: each face is to be looked at squarely");
   // What holds it up on the way will hold it up on the way home as well; what it moves to get free is no way.
   const ExplorerState state = this->state();
   const bool free = state == ExplorerState::Driving || state == ExplorerState::GoingHome;

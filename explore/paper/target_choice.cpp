@@ -81,8 +81,6 @@ TargetChoice::Choice TargetChoice::choose_of_all_places(const View& view, FloorS
   // A face that was looked at squarely was looked at: where that is asked for it need not be done twice.
   Plan place;
   if (search.squarely()) place = to_place(view, search, Subjects::Squarely);
-  // More is to be found where no look has been than at the walls of lanes that it came through.
-  if (!place.found) place = to_place(view, search, Subjects::Unseen);
   if (!place.found) place = to_place(view, search, Subjects::All);
   return weigh(std::move(frontier), std::move(place));
 }

@@ -196,8 +196,6 @@ std::vector<Source> FloorSearch::sources(const Traversable& map, Subjects subjec
   }
   const Traversable& floor = shut ? *shut : map;
   views_.clear();
-  // Where all floor is smelt or listened to it is gone over anyway.
-  if (subjects == Subjects::Unseen && !others_.empty()) return {};
   std::vector<Viewpoint> views = viewpoints(floor, record(cameras), config_, room_, tight_, subjects);
   if (idle)
     views.erase(std::remove_if(views.begin(), views.end(), [&](const Viewpoint& v) { return idle(v.subject); }),

@@ -21,7 +21,6 @@ constexpr int kFaceStride = 4;       ///< subjects along a wall likewise
 constexpr int kNicheStride = 2;      ///< and at the back of a niche
 constexpr double kNarrowest = 0.20;  ///< niche [m]; what is narrower is a wall seen twice
 constexpr double kWidest = 0.55;     ///< [m]
-constexpr double kUnseen = 0.5;      ///< floor that is looked for by itself [m2]; less lies behind corners everywhere
 constexpr double kHole = 0.20;       ///< in a wall, at its widest [m]
 constexpr int kManyDirections = 32;  ///< tried around a subject that is to be looked at squarely
 // Of viewpoints from their subjects [m]. Before a niche there is little choice: its box takes a third of a corridor.
@@ -440,11 +439,8 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
       add(subject, static_cast<Faces>(searched.missing(floor, subject) & ~kFloor));
     return found;
   }
-  const bool unseen = subjects == Subjects::Unseen;
-  const auto asked = static_cast<Faces>(subjects == Subjects::Squarely ? ~kFloor : unseen ? kFloor : ~0);
-  const int min_cells =
-      unseen ? std::max(config.min_cells, static_cast<int>(kUnseen / (cell * cell))) : config.min_cells;
-  for (const auto& cluster : unsearched_clusters(floor, searched, asked, min_cells))
+  const auto asked = static_cast<Faces>(subjects == Subjects::Squarely ? ~kFloor : ~0);
+  for (const auto& cluster : unsearched_clusters(floor, searched, asked, config.min_cells))
     for (std::size_t i = 0; i < cluster.size(); ++i) {
       const Cell subject = cluster[i];
       const auto missing = static_cast<Faces>(searched.missing(floor, subject) & asked);

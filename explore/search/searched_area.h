@@ -114,9 +114,8 @@ void see_floor(const Traversable& floor, const SearchConfig& config, const mrpt:
 /// that is open on one side, as victims lie in (paper, section II.B), looks so from its open side.
 bool in_niche(const Traversable& floor, Cell c, Faces faces);
 
-/// Which places to find viewpoints for. `Unseen`: half a square metre of floor and more that no look has shown;
-/// `Squarely`: faces that were not looked at so.
-enum class Subjects { All, Niches, Unseen, Squarely };
+/// Which places to find viewpoints for. `Squarely`: faces that were not looked at so.
+enum class Subjects { All, Niches, Squarely };
 
 constexpr int kDirections = 16;  ///< viewpoints tried around a subject
 /// Steps in all directions from a place to those around it that are so far away and no farther than `range` [m].

@@ -132,31 +132,6 @@ TEST(TargetChoice, OnceFrontiersAreDonePlacesAreSearchedNichesFirst) {
   EXPECT_NEAR(choice.plan.target.x, 6.2, 0.5);
 }
 
-/// The floor of half a corridor was seen from within it, its side walls from nowhere.
-TEST(TargetChoice, FloorThatNoLookHasShownGoesBeforeWallsBesideTheRobot) {
-  Choosing robot(true);
-  robot.narrow();
-  robot.choice.set_frontiers_done();
-  robot.choice.search();
-  robot.pose.x = 1.0;
-  robot.view();
-  const auto drive_along = [&](double from, double to) {
-    for (double x = from; x < to; x += 0.1)
-      for (const double y : {0.35, 0.65, 0.95})
-        for (const double heading : {0.0, kPi, 0.0, kPi})
-          robot.search->look(robot.floor, {x, y, heading}, 0.0, robot.now = robot.now + 1.0);
-  };
-  drive_along(0.3, 4.0);
-  const auto choose_place = [&] { return robot.choice.choose_of_all_places(robot.view(), *robot.search, Plan{}).plan; };
-  const Plan unseen = choose_place();
-  ASSERT_TRUE(unseen.found);
-  EXPECT_GT(unseen.target.x, 4.0);
-  drive_along(4.0, 7.5);
-  const Plan beside = choose_place();
-  ASSERT_TRUE(beside.found);
-  EXPECT_LT(beside.target.x, 3.0);
-}
-
 /// All was looked at, but a face only from the side: that is a target where holes are expected.
 TEST(TargetChoice, FacesAreLookedAtSquarelyInTheEndWhereHolesAreExpected) {
   Choosing robot(true);

@@ -225,28 +225,6 @@ TEST(SearchedArea, EveryViewpointSeesTheFaceItIsFor) {
   }
 }
 
-TEST(SearchedArea, FloorThatNoLookHasShownIsAPlaceOfItsOwnFromHalfASquareMetreOn) {
-  const Traversable floor = room();
-  const SearchConfig config;
-  for (const double side : {0.4, 1.0}) {
-    SearchedArea area{config};
-    Grid<Faces> seen(floor.frame(), kFloor);
-    const Cell low = seen.cell({-1.0, -1.0}), high = seen.cell({-1.0 + side, -1.0 + side});
-    for (int y = low.y; y < high.y; ++y)
-      for (int x = low.x; x < high.x; ++x) seen[{x, y}] = 0;
-    area.look(floor.frame(), seen);
-    area.look(floor.frame(), seen);
-    const std::vector<Viewpoint> views = viewpoints(floor, area, config, 0.4, 0.4, Subjects::Unseen);
-    EXPECT_EQ(views.empty(), side < 0.7);
-    for (const Viewpoint& view : views) {
-      EXPECT_EQ(area.missing(floor, floor.cells.cell(view.subject)) & view.faces, kFloor);
-      EXPECT_LT(view.subject.x, -1.0 + side);
-      EXPECT_LT(view.subject.y, -1.0 + side);
-    }
-    EXPECT_FALSE(viewpoints(floor, area, config, 0.4, 0.4).empty()) << "the faces of the wall are left";
-  }
-}
-
 /// A corridor along x, 1.2 m wide, with a box of 0.4 m at its north wall that opens to the south.
 Traversable corridor_with_box() {
   GridFrame frame;
