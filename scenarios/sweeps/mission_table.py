@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The tables of docs/explore.md from results of `rubble batch mission`.
+"""The tables of docs/explore_measured.md from results of `rubble batch mission`.
 
   scenarios/sweeps/mission_table.py FOLDER...    each with a results.jsonl
 """
