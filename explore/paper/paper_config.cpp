@@ -41,7 +41,9 @@ void bind(Binder& b, PaperExplorerConfig& c) {
     v.number("range_m", c.search.range, 0.3, 20.0);
     v.integer("min_cells", c.search.min_cells, 1, 100000);
     v.choice("squarely", c.search.squarely, {"never", "holes", "always"});
+    v.boolean("low_walls", c.search.low_walls);
     v.number("stare_s", c.search.stare, 0.0, 60.0);
+    v.integer("stares", c.search.stares, 1, 100);
     v.number("dwell_s", c.search.dwell, 0.0, 60.0);
   });
 }

@@ -26,7 +26,6 @@ constexpr double kNose = deg_to_rad(160.0);     ///< by a probe that points ahea
 constexpr double kAtSuspect = 4.0;              ///< stands so long for one [s]
 constexpr double kSameSuspect = 0.3;            ///< [m]
 constexpr double kAnotherSide = 0.5;            ///< it is visited again from so far from where it was before [m]
-constexpr std::size_t kMostStares = 2;          ///< within four times one of them
 constexpr double kSameStare = 0.5;              ///< cues so near to each other are stared at together [m]
 constexpr double kBox = 0.35;                   ///< a wall so near before a suspect may be the side of its box [m]
 constexpr double kLookCost = 1.5;               ///< what a look takes, in way, standing still and turning to it [m]
@@ -382,13 +381,13 @@ bool FloorSearch::dwelling(const Traversable& floor, const TPose2D& T_map_base, 
 bool FloorSearch::staring(const std::vector<TPoint2D>& seen, bool smelt, Stamp now) {
   if (!config_.on || (seen.empty() && !smelt)) return false;
   const double pause = 4.0 * config_.stare;
-  // A false alarm somewhere else must not take the stare from a victim that shows a few seconds later; many hold the
-  // robot no longer than two do.
+  // A false alarm somewhere else must not take the stare from a victim that shows a few seconds later; no more
+  // than `stares` of them hold the robot, though.
   stared_at_.erase(
       std::remove_if(stared_at_.begin(), stared_at_.end(), [&](const Stare& s) { return now - s.since >= pause; }),
       stared_at_.end());
   for (const TPoint2D& at : seen) {
-    if (stared_at_.size() >= kMostStares) break;
+    if (static_cast<int>(stared_at_.size()) >= config_.stares) break;
     if (std::any_of(stared_at_.begin(), stared_at_.end(),
                     [&](const Stare& s) { return distance(s.at, at) < kSameStare; }))
       continue;

@@ -21,8 +21,14 @@ PoseCovariance off_by(double sigma) {
 }
 
 /// A robot in a room of 6 x 4 m, its victim sensors on one thing.
+SearchConfig staring_at(int places) {
+  SearchConfig config;
+  config.stares = places;
+  return config;
+}
+
 struct Watching {
-  VictimWatch watch{VictimSearchConfig{}, SearchConfig{}, 0.46, 0.4};
+  VictimWatch watch{VictimSearchConfig{}, staring_at(2), 0.46, 0.4};
   test::PlantedMapper mapper;
   Traversable floor = test::measured(test::room(6.0, 4.0));
   TPose2D pose{2.0, 2.0, 0.0};
