@@ -7,8 +7,8 @@ namespace rubble::scoring {
 /// What blurred a drawing in full colours: a Gaussian, or what is much like one.
 struct Blur {
   static constexpr double kMost = 4.0;  ///< [pixels]
-  double sigma =
-      0.0;  ///< standard deviation, 1 to kMost [pixels], kMost also where it is more; 0: none, edges are sharp
+  /// Standard deviation, 1 to kMost [pixels], kMost also where it is more; 0: none, edges are sharp.
+  double sigma = 0.0;
   bool ripples = false;  ///< small steps up and down, as JPEG leaves them
 };
 
