@@ -346,8 +346,7 @@ void PaperExplorer::obey(Order order) {
 }
 
 Traversable PaperExplorer::floor_now(const slam::Mapper& mapper, const std::vector<TPoint2D>& hits) const {
-  Traversable floor = traversable(mapper.map(), config_.occupied_threshold);
-  if (!config_.search.low_walls) floor.seen_over = Grid<std::uint8_t>(floor.frame());
+  Traversable floor = traversable(mapper.map(), config_.occupied_threshold, config_.search.low_walls);
   agenda_.pushing().free_things(floor);
   free_body(floor, pose_, model_.length, model_.width, 0.0);
   free_trail(floor, trail_.points(), kTrailRadius);

@@ -119,7 +119,7 @@ Traversable traversable(OccupancyGrid known) {
   return floor;
 }
 
-Traversable traversable(const CountMap& map, double occupied_threshold) {
+Traversable traversable(const CountMap& map, double occupied_threshold, bool low_walls) {
   const Box box = seen_box(map);
   if (box.empty()) return {};
   const GridFrame& whole = map.frame();
@@ -145,7 +145,10 @@ Traversable traversable(const CountMap& map, double occupied_threshold) {
       if (hits[x - 1] <= kWeakHits) weak.push_back({x, row});
     });
   }
-  keep_boards(floor.seen_over);
+  if (low_walls)
+    keep_boards(floor.seen_over);
+  else
+    floor.seen_over = Grid<std::uint8_t>(frame);
   const int reach = static_cast<int>(std::lround(kLoneRadius / frame.resolution));
   for (const Cell c : weak)
     if (stands_alone(floor.cells, c, reach)) floor.obstacle[c] = 0;

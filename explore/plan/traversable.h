@@ -31,8 +31,9 @@ Traversable traversable(OccupancyGrid known);
 
 /// Cuts the known part out of the map, one unknown cell around it; a 0 x 0 grid when nothing was seen yet.
 /// Lone weak cells (hit at most twice, nothing else occupied within 0.15 m) are mixed pixels or noise more often than
-/// things: the robot does not drive over them, but they are no obstacles to keep away from.
-Traversable traversable(const slam::CountMap& map, double occupied_threshold);
+/// things: the robot does not drive over them, but they are no obstacles to keep away from. `low_walls`: tells what is
+/// `seen_over`; else nothing is.
+Traversable traversable(const slam::CountMap& map, double occupied_threshold, bool low_walls = false);
 
 /// Makes the cells below the robot's body free: it stands there. `reach` widens the body on every side [m].
 void free_body(Traversable& floor, const mrpt::math::TPose2D& T_map_base, double length, double width, double reach);

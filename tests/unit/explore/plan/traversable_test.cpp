@@ -96,7 +96,7 @@ TEST(Traversable, WhatMostScansPassOverIsFreeAndKnownToBeThere) {
     CountMap map(160, 160, 0.05);
     for (int i = 0; i < hits; ++i) stamp(map, {0.02, 0.02}, {{1.02, -0.03}, low, {1.02, 0.07}});
     for (int i = 0; i < passes; ++i) stamp(map, {0.02, 0.02}, {{2.02, -0.08}, behind, {2.02, 0.12}});
-    return traversable(map, 0.5);
+    return traversable(map, 0.5, true);
   };
   const auto said_of = [&](const Traversable& floor, const TPoint2D& p) {
     return std::pair(floor.cells[floor.cells.cell(p)], floor.seen_over[floor.cells.cell(p)] != 0);
@@ -122,7 +122,7 @@ TEST(Traversable, AWideBandThatMostScansPassOverIsSlopeAndNoBoard) {
     };
     for (int i = 0; i < rows; ++i) stamp_row(1.02 + 0.05 * i, 20);
     stamp_row(2.02, 60);
-    const Traversable floor = traversable(map, 0.5);
+    const Traversable floor = traversable(map, 0.5, true);
     for (int i = 0; i < rows; ++i) {
       const Cell c = floor.cells.cell({1.02 + 0.05 * i, 0.02});
       EXPECT_EQ(floor.cells[c], Occupancy::Free);
