@@ -6,6 +6,7 @@
 
 #include "base/distance_transform.h"
 #include "base/planar.h"
+#include "explore/plan/box_sides.h"
 #include "explore/plan/set_bytes.h"
 
 namespace rubble::explore {
@@ -83,23 +84,6 @@ bool stands_alone(const OccupancyGrid& cells, Cell c, int reach) {
   return true;
 }
 
-/// Boards are a cell or two thick; wider is a piece of slope that scans from its foot met, and hides nothing.
-void keep_boards(Grid<std::uint8_t>& seen_over) {
-  const GridFrame& frame = seen_over.frame();
-  std::vector<Cell> middles;
-  for (int y = 1; y + 1 < frame.height; ++y)
-    for_each_set(seen_over.row(y), frame.width, [&](int x) {
-      if (x < 1 || x + 1 >= frame.width) return;
-      int set = 0;
-      for (int v = y - 1; v <= y + 1; ++v)
-        for (int u = x - 1; u <= x + 1; ++u) set += seen_over[{u, v}];
-      if (set == 9) middles.push_back({x, y});
-    });
-  for (const Cell c : middles)
-    for (int v = c.y - 1; v <= c.y + 1; ++v)
-      for (int u = c.x - 1; u <= c.x + 1; ++u) seen_over[{u, v}] = 0;
-}
-
 bool has_obstacle(const Grid<std::uint8_t>& obstacle, const Box& box) {
   for (int y = box.low.y; y <= box.high.y; ++y)
     for (int x = box.low.x; x <= box.high.x; ++x)
@@ -146,7 +130,7 @@ Traversable traversable(const CountMap& map, double occupied_threshold, bool low
     });
   }
   if (low_walls)
-    keep_boards(floor.seen_over);
+    keep_box_sides(floor.seen_over);
   else
     floor.seen_over = Grid<std::uint8_t>(frame);
   const int reach = static_cast<int>(std::lround(kLoneRadius / frame.resolution));

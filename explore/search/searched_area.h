@@ -23,7 +23,7 @@ struct SearchConfig {
   double field_of_view = deg_to_rad(50.0);  ///< full angle, ahead of the robot; less than the sensor's: poses err
   double range = 1.8;                       ///< [m]; likewise
   int min_cells = 8;                        ///< smaller unsearched places are left alone
-  bool low_walls = false;                   ///< no look goes past what most scans pass over (`Traversable::seen_over`)
+  bool low_walls = true;                    ///< no look goes past what most scans pass over (`Traversable::seen_over`)
   double stare = 3.0;                       ///< a cue not yet confirmed holds the robot so long [s]
   int stares = 1;                           ///< cues in different places do, within four times that
   SquareLook squarely = SquareLook::Holes;  ///< in the end, look squarely at each face as well

@@ -94,8 +94,12 @@ TEST(Traversable, WhatMostScansPassOverIsFreeAndKnownToBeThere) {
   const TPoint2D low{1.02, 0.02}, behind{2.02, 0.02};
   const auto after = [&](int hits, int passes) {
     CountMap map(160, 160, 0.05);
-    for (int i = 0; i < hits; ++i) stamp(map, {0.02, 0.02}, {{1.02, -0.03}, low, {1.02, 0.07}});
-    for (int i = 0; i < passes; ++i) stamp(map, {0.02, 0.02}, {{2.02, -0.08}, behind, {2.02, 0.12}});
+    std::vector<TPoint2D> side;
+    for (int i = -5; i <= 5; ++i) side.emplace_back(low.x, low.y + 0.04 * i);
+    for (int i = 0; i < hits; ++i) stamp(map, {0.02, 0.02}, side);
+    std::vector<TPoint2D> wall;
+    for (int i = -10; i <= 10; ++i) wall.emplace_back(behind.x, behind.y + 0.04 * i);
+    for (int i = 0; i < passes; ++i) stamp(map, {0.02, 0.02}, wall);
     return traversable(map, 0.5, true);
   };
   const auto said_of = [&](const Traversable& floor, const TPoint2D& p) {
@@ -117,7 +121,7 @@ TEST(Traversable, AWideBandThatMostScansPassOverIsSlopeAndNoBoard) {
     CountMap map(160, 160, 0.05);
     const auto stamp_row = [&](double x, int times) {
       std::vector<TPoint2D> hits;
-      for (int i = -8; i <= 8; ++i) hits.emplace_back(x, 0.02 + 0.04 * i);
+      for (int i = -12; i <= 12; ++i) hits.emplace_back(x, 0.02 + 0.02 * i * x);
       for (int i = 0; i < times; ++i) stamp(map, {0.02, 0.02}, hits);
     };
     for (int i = 0; i < rows; ++i) stamp_row(1.02 + 0.05 * i, 20);
