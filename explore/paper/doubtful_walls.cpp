@@ -87,18 +87,20 @@ double off_edges(const PalletGrid& grid, const TPoint2D& p, Cell n) {
 /// seen over the first.
 class Background {
  public:
-  Background(const OccupancyGrid& cells, LocalGrids& grids, const Grid<std::uint8_t>* pockets)
+  Background(const OccupancyGrid& cells, double pallet, LocalGrids& grids, const Grid<std::uint8_t>* pockets)
       : cells_(cells),
         grids_(grids),
         pockets_(pockets),
         thick_(in_cells(kThick)),
         behind_(in_cells(kBehind)),
-        hidden_(in_cells(kHidden)) {}
+        hidden_(in_cells(kHidden)),
+        half_element_(in_cells(pallet) * in_cells(pallet) / 2) {}
 
   /// Whether `n` leads from the face of a wall at `c` to unknown ground, and before that neither to the floor that the
   /// face stands on nor to a wall on an edge. What takes longest is asked last: whether floor hangs together, for all.
   bool hidden(Cell c, Cell n) {
-    const int steps = steps_to_unknown(c, n);
+    int steps = steps_to_unknown(c, n);
+    if (steps == 0 && !on_edge(c, n)) steps = steps_to_other_floor(c, n);
     return steps > 0 && !walls_on_edge(c, n, steps) && !same_floor(c, n, steps);
   }
 
@@ -117,6 +119,31 @@ class Background {
     }
     return 0;
   }
+  /// The same until so much of it is floor of another piece, as large as half an element at least: seen from upon the
+  /// slope, and shut off when it was looked up again from its foot.
+  int steps_to_other_floor(Cell c, Cell n) {
+    const int here = piece_before(c, n);
+    int other = 0;
+    for (int i = thick_ + 1; i <= behind_; ++i) {
+      const Cell at{c.x + i * n.x, c.y + i * n.y};
+      if (!cells_.inside(at)) return 0;
+      const int piece = pieces_[at];
+      if (piece != 0 && piece != here && sizes_[static_cast<std::size_t>(piece)] >= half_element_ && ++other >= hidden_)
+        return i;
+    }
+    return 0;
+  }
+  /// The piece of floor that the face of a wall stands on.
+  int piece_before(Cell c, Cell n) {
+    if (pieces_.width() == 0) {
+      pieces_ = pieces_of_floor(cells_);
+      for (const int piece : pieces_.cells()) {
+        if (static_cast<std::size_t>(piece) >= sizes_.size()) sizes_.resize(static_cast<std::size_t>(piece) + 1);
+        ++sizes_[static_cast<std::size_t>(piece)];
+      }
+    }
+    return pieces_[{c.x - n.x, c.y - n.y}];
+  }
   bool walls_on_edge(Cell c, Cell n, int steps) const {
     for (int i = 1; i <= steps; ++i) {
       const Cell at{c.x + i * n.x, c.y + i * n.y};
@@ -129,8 +156,7 @@ class Background {
     return !grid || off_edges(*grid, cells_.centre(c), n) < kStandsOnEdge;
   }
   bool same_floor(Cell c, Cell n, int steps) {
-    if (pieces_.width() == 0) pieces_ = pieces_of_floor(cells_);
-    const int here = pieces_[{c.x - n.x, c.y - n.y}];
+    const int here = piece_before(c, n);
     for (int i = thick_ + 1; i <= steps; ++i) {
       const Cell at{c.x + i * n.x, c.y + i * n.y};
       if (cells_.inside(at) && pieces_[at] == here) return true;
@@ -142,7 +168,9 @@ class Background {
   LocalGrids& grids_;
   const Grid<std::uint8_t>* pockets_;
   int thick_, behind_, hidden_;  ///< [cells]
-  Grid<int> pieces_;             ///< of floor, once they are asked for
+  int half_element_;             ///< [cells]
+  Grid<int> pieces_;             ///< of floor, once they are asked for ...
+  std::vector<int> sizes_;       ///< ... and how large each is [cells]
 };
 
 }  // namespace
@@ -156,7 +184,7 @@ std::vector<Source> doubtful_walls(const Traversable& floor, double pallet, cons
   const auto in_cells = [&](double length) { return static_cast<int>(std::lround(length / resolution)); };
   const int before = std::max(1, in_cells(kBefore));
   LocalGrids grids(cells, pallet, known);
-  Background background(cells, grids, pockets);
+  Background background(cells, pallet, grids, pockets);
   std::vector<Cell> occupied;
   for (int y = 1; y + 1 < cells.height(); ++y) {
     const Occupancy* const row = cells.row(y);

@@ -30,9 +30,22 @@ TEST(DoubtfulWalls, AWallOffTheEdgesOfThePalletsThatHidesGroundMayBeARamp) {
 TEST(DoubtfulWalls, OtherWallsAreWhatTheySeem) {
   EXPECT_TRUE(found(4 * kPallet, kPallet, Occupancy::Unknown).empty()) << "on an edge";
   EXPECT_TRUE(found(4 * kPallet + 0.15, kPallet, Occupancy::Unknown).empty()) << "and a little off it";
-  EXPECT_TRUE(found(5.6, kPallet, Occupancy::Free).empty()) << "seen from both sides";
   EXPECT_TRUE(found(5.6, 0.42, Occupancy::Unknown).empty()) << "the side of a box";
   EXPECT_TRUE(found(5.6, kPallet, Occupancy::Unknown, 0.0).empty()) << "an arena without pallets";
+}
+
+/// Floor on both sides of a wall: the ways to them meet, or it was seen from upon a slope, and the scans from its foot
+/// shut it off.
+TEST(DoubtfulWalls, FloorBehindThatIsReachedAnotherWayIsNoReasonAndFloorShutOffIs) {
+  OccupancyGrid cells = corridor_of_pallets(5.6, kPallet, Occupancy::Free);
+  EXPECT_FALSE(doubtful_walls(test::measured(cells), kPallet).empty()) << "shut off";
+  OccupancyGrid small = cells;
+  test::fill(small, 6.1, 0.06, 8 * kPallet - 0.06, kPallet - 0.06, Occupancy::Occupied);
+  EXPECT_TRUE(doubtful_walls(test::measured(small), kPallet).empty()) << "half a square metre";
+  test::fill(cells, 4.9, kPallet - 0.04, 5.4, kPallet + 0.04, Occupancy::Free);
+  test::fill(cells, 5.8, kPallet - 0.04, 6.0, kPallet + 0.04, Occupancy::Free);
+  test::fill(cells, 5.4, kPallet + 0.04, 6.0, 2 * kPallet - 0.1, Occupancy::Free);
+  EXPECT_TRUE(doubtful_walls(test::measured(cells), kPallet).empty()) << "round about";
 }
 
 /// Over the first of it the laser sees a strip of the slope, which is no ground that it got to.
