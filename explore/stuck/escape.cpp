@@ -20,17 +20,21 @@ constexpr double kArcSpeed = 0.15;                                              
 constexpr double kArcTurn = 0.4;                                                                         ///< [rad/s]
 constexpr double kMoveTime = 5.0;                                                                        ///< [s]
 constexpr double kRetraceTime = 15.0;                                                                    ///< [s]
-constexpr double kOldStall = 0.7;                ///< the report of a stall outlives it by less [s]
-constexpr double kPlace = 0.06;                  ///< within so much of a place [m]
-constexpr double kPlaceTurn = deg_to_rad(10.0);  ///< and so much turn [rad]
-constexpr double kPlaceTime = 2.5;               ///< for so long, a move gets nowhere [s]
-constexpr double kFeeler = 0.25;                 ///< room is asked for about a point so far ahead of the motion [m]
-constexpr double kCornerTime = 0.25;             ///< turning, it looks so far ahead [s]
-constexpr double kCornerGap = 0.015;             ///< and brings no corner nearer to a wall [m]
-constexpr double kBehind = 0.35;                 ///< the point of the trail that is steered to [m]
-constexpr double kMostBend = deg_to_rad(60.0);   ///< a trail that bends more is not followed [rad]
-constexpr double kBendGain = 1.2;                ///< turn rate per error [1/s]
-constexpr int kRounds = 2;                       ///< times that all moves are tried
+constexpr double kOldStall = 0.7;                 ///< the report of a stall outlives it by less [s]
+constexpr double kPlace = 0.06;                   ///< within so much of a place [m]
+constexpr double kPlaceTurn = deg_to_rad(10.0);   ///< and so much turn [rad]
+constexpr double kPlaceTime = 2.5;                ///< for so long, a move gets nowhere [s]
+constexpr double kFeeler = 0.25;                  ///< room is asked for about a point so far ahead of the motion [m]
+constexpr double kCornerTime = 0.25;              ///< turning, it looks so far ahead [s]
+constexpr double kCornerGap = 0.015;              ///< and brings no corner nearer to a wall [m]
+constexpr double kCurved = deg_to_rad(30.0);      ///< from then on a curve may have led off a wall [rad]
+constexpr double kOpenStep = 0.1;                 ///< straight on, room is asked for at each such step [m]
+constexpr double kOpenGap = 0.04;                 ///< to either side [m]
+constexpr double kHeldWithin = deg_to_rad(45.0);  ///< of where it was held straight on is no way out [rad]
+constexpr double kBehind = 0.35;                  ///< the point of the trail that is steered to [m]
+constexpr double kMostBend = deg_to_rad(60.0);    ///< a trail that bends more is not followed [rad]
+constexpr double kBendGain = 1.2;                 ///< turn rate per error [1/s]
+constexpr int kRounds = 2;                        ///< times that all moves are tried
 
 }  // namespace
 
@@ -56,6 +60,8 @@ void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures, 
       if (way_out_ && (move == first || move == last)) moves_.push_back(Move::Out);
     }
   }
+  held_towards_ = T_map_base.phi + (met == Met::Backwards ? kPi : 0.0);
+  straight_in_vain_ = false;
   at_ = 0;
   begun_ = T_map_base;
   start_move(T_map_base, now);
@@ -71,6 +77,7 @@ void Escape::start_move(const TPose2D& T_map_base, Stamp now) {
   place_ = T_map_base;
   there_since_ = now;
   watch_.reset();
+  opened_ = false;
   if (way_out_) way_out_->begin_anew();
   drive_ = {};
 }
@@ -88,6 +95,24 @@ bool Escape::meets_wall(const TPose2D& T_map_base, const Around& around) const {
   const double soon = turn_speed_ * kCornerTime * (move == Move::Left ? 1.0 : -1.0);
   const double then = around.gap(T_map_base + TPose2D{0.0, 0.0, soon});
   return then < kCornerGap && then < around.gap(T_map_base);
+}
+
+/// On a curve: straight on there is room as far as the map tells, or behind it, and not where it was held. Curves lead
+/// off a wall, and on again into the next; at the foot of a slope, beside a wall, it has to leave them in time.
+std::optional<Escape::Move> Escape::opens(const TPose2D& T_map_base, const Around& around) const {
+  const Move move = moves_[at_];
+  if (move != Move::BackLeft && move != Move::BackRight && move != Move::AheadLeft && move != Move::AheadRight)
+    return std::nullopt;
+  if (straight_in_vain_ || std::abs(wrap_angle(T_map_base.phi - move_begun_.phi)) < kCurved) return std::nullopt;
+  for (const Move straight : {Move::Ahead, Move::Back}) {
+    const double sign = straight == Move::Ahead ? 1.0 : -1.0;
+    if (std::abs(wrap_angle(T_map_base.phi + (sign > 0.0 ? 0.0 : kPi) - held_towards_)) < kHeldWithin) continue;
+    bool room = true;
+    for (double way = kOpenStep; room && way <= kFree + kOpenStep; way += kOpenStep)
+      room = around.gap(T_map_base + TPose2D{sign * way, 0.0, 0.0}) >= kOpenGap;
+    if (room) return straight;
+  }
+  return std::nullopt;
 }
 
 /// Retracing poses, the robot may rock to and fro between two that it cannot get to.
@@ -116,7 +141,17 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
   met_ = held;
   const bool wall = meets_wall(T_map_base, around);
   const std::optional<robot::Drive> next = command(T_map_base, trail, way_back);
+  if (const auto straight = opens(T_map_base, around)) {
+    moves_.insert(moves_.begin() + static_cast<std::ptrdiff_t>(at_) + 1, *straight);
+    ++at_;
+    start_move(T_map_base, now);
+    opened_ = true;
+    return Result::UnderWay;
+  }
   if (held || turned || wall || !next || gets_nowhere(T_map_base, now) || now >= move_until_) {
+    // What holds it there the map does not show.
+    straight_in_vain_ =
+        straight_in_vain_ || (opened_ && distance(position(move_begun_), position(T_map_base)) < kOpenStep);
     if (++at_ == moves_.size()) {
       drive_ = {};
       return Result::Failed;

@@ -58,6 +58,7 @@ class Escape {
   void start_move(const mrpt::math::TPose2D& T_map_base, Stamp now);
   bool free(const mrpt::math::TPoint2D& p_map) const;
   bool meets_wall(const mrpt::math::TPose2D& T_map_base, const Around& around) const;
+  std::optional<Move> opens(const mrpt::math::TPose2D& T_map_base, const Around& around) const;
   bool gets_nowhere(const mrpt::math::TPose2D& T_map_base, Stamp now);
   std::optional<robot::Drive> command(const mrpt::math::TPose2D& T_map_base,
                                       const std::vector<mrpt::math::TPoint2D>& trail, const WayBack& way_back);
@@ -65,7 +66,10 @@ class Escape {
   double turn_speed_;  ///< [rad/s]
   std::vector<Move> moves_;
   std::size_t at_ = 0;
-  double turn_ = 0.0;  ///< of Left and Right [rad]
+  bool opened_ = false;            ///< the move is a straight one that a curve has opened
+  bool straight_in_vain_ = false;  ///< such a move got nowhere
+  double held_towards_ = 0.0;      ///< [rad, map frame]
+  double turn_ = 0.0;              ///< of Left and Right [rad]
   std::optional<WayOut> way_out_;
   MotionWatch watch_;
   mrpt::math::TPose2D begun_;       ///< where the escape began

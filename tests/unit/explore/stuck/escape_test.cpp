@@ -275,6 +275,41 @@ TEST(Escape, AfterAFailureItTurnsAsItRolls) {
   }
 }
 
+/// A dead end at the foot of a slope: a wall to its right that it slides down to as it turns, one ahead, one behind,
+/// and the only way out up the slope, to its left. From a curve that leads off the wall it has to go on straight in
+/// time.
+TEST(Escape, GoesOnStraightWhereACurveHasOpenedTheWayOut) {
+  constexpr double kHalf = 0.25, kSide = 0.45, kSlide = 0.2;
+  const auto corners = [](const TPose2D& pose) {
+    std::vector<TPoint2D> all;
+    for (const double x : {-kHalf, kHalf})
+      for (const double y : {-kHalf, kHalf}) all.push_back(pose.composePoint({x, y}));
+    return all;
+  };
+  const auto gap_aside = [&](const TPose2D& pose) {
+    double least = 1.0;
+    for (const TPoint2D& corner : corners(pose)) least = std::min(least, kSide - std::abs(corner.x));
+    return least;
+  };
+  const auto gap_below = [&](const TPose2D& pose) {
+    double least = 1.0;
+    for (const TPoint2D& corner : corners(pose)) least = std::min(least, corner.y + kHalf);
+    return least;
+  };
+  const auto gap = [&](const TPose2D& pose) { return std::min(gap_aside(pose), gap_below(pose)); };
+  Puppet puppet;
+  puppet.may = [&](TPose2D next) {
+    if (next.phi != puppet.pose.phi) next.y -= kSlide * kEscapeTick;
+    next.y -= std::min(0.0, gap_below(next));  // the wall pushes it off
+    if (gap_aside(next) >= 0.0) puppet.pose = next;
+    return false;
+  };
+  const Escape::Around around{[&](const TPose2D& pose) { return std::abs(pose.x) < kSide - kHalf; }, gap};
+  const Outcome outcome = run(puppet, Escape::Met::Turning, {}, around, 1);
+  EXPECT_EQ(outcome.result, Escape::Result::Free);
+  EXPECT_GT(puppet.pose.y, 0.3);
+}
+
 TEST(Escape, SaysSoWhenNothingHelps) {
   Puppet puppet;
   puppet.may = [](const TPose2D&) { return false; };
