@@ -44,7 +44,7 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   if (!has_reference_ || std::abs(wrap_angle(T_map_base.phi - reference_.phi)) > config_.turned) {
     reference_ = T_map_base;
     has_reference_ = true;
-    turn_ = 0.0;
+    turn_ = spun_ = 0.0;
   }
   if (length(T_map_base.x - place_.x, T_map_base.y - place_.y) > config_.place) {
     place_ = T_map_base;
@@ -87,9 +87,10 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   }
   // A slow curve turns the robot less than it is told where the floor holds it back: its way is judged, not its turn.
   turn_ += on_the_spot(commanded) ? turning * dt : 0.0;
+  spun_ += on_the_spot(commanded) && wheels ? wheels->w * dt : 0.0;
   stalled_for_ = stalled ? stalled_for_ + dt : 0.0;
   return rocking() || in_vain || steers_in_vain() || pushed_ > config_.place_patience ||
-         turn_ > config_.turn_patience || stalled_for_ > config_.stall_time;
+         turn_ > config_.turn_patience || std::abs(spun_) > config_.turn_patience || stalled_for_ > config_.stall_time;
 }
 
 }  // namespace rubble::explore

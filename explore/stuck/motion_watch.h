@@ -75,7 +75,8 @@ class MotionWatch {
   double way_ = 0.0;
   double wheel_turn_ = 0.0;
   std::deque<Moment> lately_;  ///< over the last `patience` of way
-  double turn_ = 0.0;
+  double turn_ = 0.0;          ///< commanded on the spot since the body turned, or the robot got elsewhere [rad]
+  double spun_ = 0.0;          ///< by the wheels on the spot since the body turned, wherever its pose slid to [rad]
   double steered_ = 0.0;       ///< by the wheels since the body turned last [rad]
   double steered_from_ = 0.0;  ///< its heading then [rad]
   mrpt::math::TPose2D place_;

@@ -65,6 +65,23 @@ TEST(MotionWatch, WheelsThatSteerInVainAreFoundOutWhereverThePoseGoes) {
   }
 }
 
+/// The same on the spot: as it backs out of its turn its pose slides along the bare walls, and its heading stays.
+TEST(MotionWatch, WheelsThatTurnOnTheSpotInVainAreFoundOutWhereverThePoseGoes) {
+  for (const double share : {0.0, 0.3}) {
+    SCOPED_TRACE(testing::Message() << "it turns by " << share << " of what its wheels do");
+    MotionWatch watch;
+    const robot::Drive told{-0.085, 0.45};
+    bool stuck = false;
+    double t = 0.0;
+    for (; !stuck && t < 20.0; t += 0.02)
+      stuck = watch.stuck({told.v * t, 0.0, share * told.w * t}, told, false, 0.02, told);
+    EXPECT_EQ(stuck, share == 0.0);
+    if (stuck) {
+      EXPECT_LT(t, 3.0);
+    }
+  }
+}
+
 /// Along bare walls a mapper slides and finds its place again, by as much as the robot went meanwhile.
 TEST(MotionWatch, ACorrectedPoseIsNoRobotThatStands) {
   MotionWatch watch;
