@@ -19,6 +19,7 @@ constexpr int kGap = 2;                     ///< cells that may be missing in a 
 constexpr double kBefore = 0.15;            ///< free floor before it [m]
 constexpr double kBehind = 0.80;            ///< within this behind it ... [m]
 constexpr double kHidden = 0.25;            ///< ... so much is unknown [m]
+constexpr double kFrontier = 0.5;           ///< of floor that is shut off [m]
 constexpr double kThick = 0.10;             ///< [m]
 constexpr double kStandsOnEdge = 0.10;      ///< so near to an edge it is a wall [m]
 constexpr double kOffEdges = 0.25;          ///< [m]
@@ -94,7 +95,8 @@ class Background {
         thick_(in_cells(kThick)),
         behind_(in_cells(kBehind)),
         hidden_(in_cells(kHidden)),
-        half_element_(in_cells(pallet) * in_cells(pallet) / 2) {}
+        half_element_(in_cells(pallet) * in_cells(pallet) / 2),
+        frontier_(in_cells(kFrontier)) {}
 
   /// Whether `n` leads from the face of a wall at `c` to unknown ground, and before that neither to the floor that the
   /// face stands on nor to a wall on an edge. What takes longest is asked last: whether floor hangs together, for all.
@@ -105,6 +107,12 @@ class Background {
   }
 
  private:
+  /// How large a piece of floor is, and the frontier it has [cells].
+  struct Piece {
+    int cells = 0;
+    int frontier = 0;
+  };
+
   int in_cells(double length) const { return static_cast<int>(std::lround(length / cells_.frame().resolution)); }
 
   /// Cells from `c` on until enough is unknown, or the map ends; 0: neither.
@@ -119,8 +127,8 @@ class Background {
     }
     return 0;
   }
-  /// The same until so much of it is floor of another piece, as large as half an element at least: seen from upon the
-  /// slope, and shut off when it was looked up again from its foot.
+  /// The same until so much of it is floor of another piece that is worth it: seen from upon the slope, and shut off
+  /// when it was looked up again from its foot.
   int steps_to_other_floor(Cell c, Cell n) {
     const int here = piece_before(c, n);
     int other = 0;
@@ -128,21 +136,32 @@ class Background {
       const Cell at{c.x + i * n.x, c.y + i * n.y};
       if (!cells_.inside(at)) return 0;
       const int piece = pieces_[at];
-      if (piece != 0 && piece != here && sizes_[static_cast<std::size_t>(piece)] >= half_element_ && ++other >= hidden_)
-        return i;
+      if (piece != 0 && piece != here && worth_it(piece) && ++other >= hidden_) return i;
     }
     return 0;
   }
+  /// As large as half an element, with a frontier.
+  bool worth_it(int piece) const {
+    const Piece& it = extents_[static_cast<std::size_t>(piece)];
+    return it.cells >= half_element_ && it.frontier >= frontier_;
+  }
   /// The piece of floor that the face of a wall stands on.
   int piece_before(Cell c, Cell n) {
-    if (pieces_.width() == 0) {
-      pieces_ = pieces_of_floor(cells_);
-      for (const int piece : pieces_.cells()) {
-        if (static_cast<std::size_t>(piece) >= sizes_.size()) sizes_.resize(static_cast<std::size_t>(piece) + 1);
-        ++sizes_[static_cast<std::size_t>(piece)];
-      }
-    }
+    if (pieces_.width() == 0) measure_pieces();
     return pieces_[{c.x - n.x, c.y - n.y}];
+  }
+  void measure_pieces() {
+    pieces_ = pieces_of_floor(cells_);
+    for (int y = 1; y + 1 < cells_.height(); ++y)
+      for (int x = 1; x + 1 < cells_.width(); ++x) {
+        const auto piece = static_cast<std::size_t>(pieces_[{x, y}]);
+        if (piece == 0) continue;
+        if (piece >= extents_.size()) extents_.resize(piece + 1);
+        ++extents_[piece].cells;
+        const bool frontier = cells_[{x + 1, y}] == Occupancy::Unknown || cells_[{x - 1, y}] == Occupancy::Unknown ||
+                              cells_[{x, y + 1}] == Occupancy::Unknown || cells_[{x, y - 1}] == Occupancy::Unknown;
+        extents_[piece].frontier += frontier ? 1 : 0;
+      }
   }
   bool walls_on_edge(Cell c, Cell n, int steps) const {
     for (int i = 1; i <= steps; ++i) {
@@ -169,8 +188,9 @@ class Background {
   const Grid<std::uint8_t>* pockets_;
   int thick_, behind_, hidden_;  ///< [cells]
   int half_element_;             ///< [cells]
-  Grid<int> pieces_;             ///< of floor, once they are asked for ...
-  std::vector<int> sizes_;       ///< ... and how large each is [cells]
+  int frontier_;                 ///< [cells]
+  Grid<int> pieces_;             ///< of floor, once they are asked for
+  std::vector<Piece> extents_;
 };
 
 }  // namespace
