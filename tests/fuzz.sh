@@ -2,6 +2,8 @@
 # tests/fuzz.sh [SECONDS [TARGET...]]: builds the fuzz targets (these only) and runs each for so many seconds of processor
 # time (what the machine does beside it does not count), its corpus (fuzz/corpus/TARGET, tests/fuzz/TARGET) first. One line a
 # target: name, executions, processor seconds, findings, largest memory [MB]. Ends with 1 when there is a finding.
+# As many at a time as there are processors; RUBBLE_FUZZ_JOBS says another number. RUBBLE_FUZZ_SEED makes the inputs the
+# same ones each time, as far as the time goes.
 set -uo pipefail
 seconds=${1:-20}
 shift || true
@@ -18,7 +20,8 @@ mkdir -p "$found"
 # MRPT and OpenCV are not instrumented: what they hold at the end is no finding. What was freed is held back for 32 MB only:
 # the sanitizer's own 256 MB grow through minutes and reach libFuzzer's limit of memory with a parser that leaks nothing.
 export ASAN_OPTIONS=detect_leaks=0:quarantine_size_mb=32
-findings=0
+jobs=${RUBBLE_FUZZ_JOBS:-$(nproc)}
+seed=${RUBBLE_FUZZ_SEED:+-seed=$RUBBLE_FUZZ_SEED}
 
 # cpu_of PID: processor time of a process and of its children that ended [hundredths of a second].
 ticks=$(getconf CLK_TCK)
@@ -34,9 +37,10 @@ used=0
 fuzz() {
   local target=$1 left=$2 code=0 now asked=0
   shift 2
-  "$build/fuzz/fuzz_$target" -timeout=1 -rss_limit_mb=512 -max_len=65536 -print_final_stats=1 -handle_usr1=1 \
-    -artifact_prefix="$found/$target/" "$@" >"$build/$target.log" 2>&1 &
-  local pid=$! patience=$((SECONDS + left + 60))  # a hundred times as long
+  "$build/fuzz/fuzz_$target" $seed -timeout=1 -rss_limit_mb=512 -max_len=65536 -print_final_stats=1 -handle_usr1=1 \
+    -max_total_time=$((left + 60)) -artifact_prefix="$found/$target/" "$@" >"$build/$target.log" 2>&1 &
+  # A hundred times as long; whom nobody watches any more ends then by himself.
+  local pid=$! patience=$((SECONDS + left + 120))
   used=0
   while now=$(cpu_of $pid); do
     used=$now
@@ -65,14 +69,12 @@ machine_was_slow() {
   awk '{exit !($1 + $2 < 1)}' <<<"$cpu" && rm "$input"
 }
 
-printf '%-16s %12s %9s %9s %8s\n' target executions 'CPU s' findings 'max MB'
-for target in "${targets[@]}"; do
-  corpus=$top/fuzz/corpus/$target
+# run TARGET: its line; fails when there is a finding.
+run() {
+  local target=$1 corpus=$top/fuzz/corpus/$1 grown=$build/corpus/$1 left=$((seconds * 100)) spent=0 runs=0 memory=0 here=0 code more peak
   [[ -d $corpus ]] || corpus=$top/tests/fuzz/$target
-  grown=$build/corpus/$target
   mkdir -p "$grown" "$found/$target"
   [[ -d $corpus ]] || corpus=
-  left=$((seconds * 100)) spent=0 runs=0 memory=0 here=0
   while ((!here && left > spent)); do
     fuzz "$target" $((left - spent)) "$grown" $corpus
     code=$?
@@ -84,8 +86,19 @@ for target in "${targets[@]}"; do
     ((code != 0)) || break
     machine_was_slow "$target" || here=1
   done
-  findings=$((findings + here))
-  printf '%-16s %12s %9s %9s %8s\n' "$target" "$runs" $((spent / 100)) "$here" "$memory"
-  ((here)) && grep -E 'ERROR|SUMMARY|Test unit' "$build/$target.log" | head -4 | sed 's/^/    /'
+  local line
+  line=$(printf '%-16s %12s %9s %9s %8s' "$target" "$runs" $((spent / 100)) "$here" "$memory")
+  ((here)) && line+=$'\n'$(grep -E 'ERROR|SUMMARY|Test unit' "$build/$target.log" | head -4 | sed 's/^/    /')
+  printf '%s\n' "$line"
+  return $here
+}
+
+printf '%-16s %12s %9s %9s %8s\n' target executions 'CPU s' findings 'max MB'
+failed=0 under_way=0
+for target in "${targets[@]}"; do
+  ((under_way < jobs)) || { wait -n || failed=1; under_way=$((under_way - 1)); }
+  run "$target" &
+  under_way=$((under_way + 1))
 done
-exit $((findings > 0))
+for ((; under_way > 0; --under_way)); do wait -n || failed=1; done
+exit $failed

@@ -103,6 +103,7 @@ InputFile::InputFile(const std::string& path, const InputRules& rules) : path_(p
     ::close(file_);
     throw InputError(path + trouble);
   }
+  if (!waits_) size_ = static_cast<std::size_t>(status.st_size);
   note_read(file_);
 }
 
@@ -119,8 +120,25 @@ std::size_t InputFile::read(char* to, std::size_t size) {
     const ssize_t got = ::read(file_, to, size);
     if (got >= 0) return static_cast<std::size_t>(got);
     if (errno == EINTR || (errno == EAGAIN && waits_)) continue;
-    throw InputError(path_ + ": cannot be read (" + std::strerror(errno) + "); give the path of " + rules_.thing);
+    fail_read();
   }
+}
+
+std::optional<std::size_t> InputFile::size() const {
+  if (waits_) return std::nullopt;
+  return size_;
+}
+
+std::size_t InputFile::read_at(std::size_t offset, char* to, std::size_t size) const {
+  for (;;) {
+    const ssize_t got = ::pread(file_, to, size, static_cast<off_t>(offset));
+    if (got >= 0) return static_cast<std::size_t>(got);
+    if (errno != EINTR) fail_read();
+  }
+}
+
+void InputFile::fail_read() const {
+  throw InputError(path_ + ": cannot be read (" + std::strerror(errno) + "); give the path of " + rules_.thing);
 }
 
 std::string InputFile::rest() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -46,11 +47,21 @@ class InputFile {
   /// All that is left. Throws InputError when it passes rules.most.
   std::string rest();
 
+  /// Of a file that is no pipe or terminal: what it held when it was opened [bytes].
+  std::optional<std::size_t> size() const;
+  /// Up to `size` bytes from `offset` on of such a file; read() and rest() go on where they were. 0: the end. Throws
+  /// InputError.
+  std::size_t read_at(std::size_t offset, char* to, std::size_t size) const;
+  const std::string& path() const { return path_; }
+
  private:
+  [[noreturn]] void fail_read() const;
+
   std::string path_;
   InputRules rules_;
   int file_ = -1;
-  bool waits_ = false;  ///< a pipe or terminal
+  std::size_t size_ = 0;  ///< when it was opened
+  bool waits_ = false;    ///< a pipe or terminal
 };
 
 /// The whole file.

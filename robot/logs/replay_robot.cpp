@@ -15,87 +15,105 @@ namespace {
 
 FrameKind kind_of(std::string_view payload) { return static_cast<FrameKind>(payload.empty() ? '\0' : payload.front()); }
 
-/// Our own log, decoded as it is played.
+/// Our own log: checked whole, then read again and decoded as it is played.
 class OwnLog {
  public:
-  OwnLog(std::string bytes, const std::string& path)
-      : path_(path), bytes_(std::move(bytes)), frames_(split_frames(bytes_, path)) {
-    if (frames_.payloads.empty())
-      throw InputError(path + ": the log ends at byte " + std::to_string(bytes_.size()) +
+  OwnLog(std::unique_ptr<LogBytes> bytes, const std::string& path)
+      : path_(path), bytes_(std::move(bytes)), reader_(*bytes_, path) {
+    FrameReader check(*bytes_, path);
+    while (check.next()) {
+    }
+    end_ = check.end();
+    torn_ = check.torn();
+    if (end_ == kLogMagic.size())
+      throw InputError(path + ": the log ends at byte " + std::to_string(bytes_->size()) +
                        " before its header is complete; the run died at its start, record it again");
-    if (kind_of(frames_.payloads.front()) != FrameKind::Header) fail(0, "the header is missing");
-    decode(0, [&] { header_ = decode_header(frames_.payloads[0]); });
-    next_ = 1;
+    advance();
+    if (kind_of(*frame_) != FrameKind::Header) fail("the header is missing");
+    decode([&] { header_ = decode_header(*frame_); });
+    advance();
     take_commands();
   }
 
   std::optional<Inputs> read() {
-    if (next_ == frames_.payloads.size()) return std::nullopt;
+    if (!frame_) return std::nullopt;
     Inputs inputs;
-    decode(next_, [&] { inputs = decode_tick(frames_.payloads[next_], context_); });
+    decode([&] { inputs = decode_tick(*frame_, context_); });
     inputs.command = commands_;  // the answers to the ticks before
     hand_out_codes(inputs);
     inputs.battery = std::exchange(battery_, std::nullopt);
-    ++next_;
+    advance();
     take_commands();
     return inputs;
   }
 
   const LogHeader& header() const { return header_; }
   const Commands& commands() const { return commands_; }
-  bool torn() const { return frames_.torn; }
-  double progress() const {
-    return static_cast<double>(frames_.ends[next_ - 1]) / static_cast<double>(frames_.ends.back());
-  }
+  bool torn() const { return torn_; }
+  double progress() const { return static_cast<double>(frame_ ? reader_.begin() : end_) / static_cast<double>(end_); }
 
  private:
+  void advance() {
+    frame_.reset();
+    if (reader_.end() == end_) return;
+    frame_ = reader_.next();
+    if (!frame_) throw InputError(path_ + ": was changed while it was read; copy the log and give the copy");
+  }
+
   // Between two ticks stand the commands that answer the first, then the codes of the second's scans.
   void take_commands() {
-    for (; next_ < frames_.payloads.size() && kind_of(frames_.payloads[next_]) != FrameKind::Tick; ++next_) {
-      if (kind_of(frames_.payloads[next_]) == FrameKind::Commands)
-        decode(next_, [&] { commands_ = decode_commands(frames_.payloads[next_]); });
-      if (kind_of(frames_.payloads[next_]) == FrameKind::Codes)
-        decode(next_, [&] { codes_ = decode_codes(frames_.payloads[next_]); });
-      if (kind_of(frames_.payloads[next_]) == FrameKind::Battery)
-        decode(next_, [&] { battery_ = decode_battery(frames_.payloads[next_]); });
+    for (; frame_ && kind_of(*frame_) != FrameKind::Tick; advance()) {
+      if (kind_of(*frame_) == FrameKind::Commands) decode([&] { commands_ = decode_commands(*frame_); });
+      if (kind_of(*frame_) == FrameKind::Codes) decode([&] { codes_ = decode_codes(*frame_); });
+      if (kind_of(*frame_) == FrameKind::Battery) decode([&] { battery_ = decode_battery(*frame_); });
     }
   }
 
   void hand_out_codes(Inputs& inputs) {
-    if (!codes_.empty() && codes_.size() != inputs.scans.size()) fail(next_, "the codes before it are of other scans");
+    if (!codes_.empty() && codes_.size() != inputs.scans.size()) fail("the codes before it are of other scans");
     for (std::size_t i = 0; i < codes_.size(); ++i) {
       if (!codes_[i].empty() && codes_[i].size() != inputs.scans[i].ranges.size())
-        fail(next_, "a scan's codes are not as many as its beams");
+        fail("a scan's codes are not as many as its beams");
       inputs.scans[i].codes = std::move(codes_[i]);
     }
     codes_.clear();
   }
 
   template <class Decode>
-  void decode(std::size_t frame, Decode&& work) const {
+  void decode(Decode&& work) const {
     try {
       work();
     } catch (const BadPayload& e) {
-      fail(frame, e.what());
+      fail(e.what());
     }
   }
 
-  [[noreturn]] void fail(std::size_t frame, const std::string& what) const {
-    const std::size_t start = frame == 0 ? kLogMagic.size() : frames_.ends[frame - 1];
-    throw InputError(path_ + ": byte " + std::to_string(start) + ": the frame cannot be understood (" + what +
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(path_ + ": byte " + std::to_string(reader_.begin()) + ": the frame cannot be understood (" + what +
                      "); copy the log again, or replay it with the release that recorded it");
   }
 
   std::string path_;
-  std::string bytes_;
-  Frames frames_;  // views into bytes_
+  std::unique_ptr<LogBytes> bytes_;
+  FrameReader reader_;
+  std::optional<std::string_view> frame_;  ///< to be taken next, of reader_
+  std::size_t end_ = 0;                    ///< of the whole frames
+  bool torn_ = false;
   LogHeader header_;
-  std::size_t next_ = 0;
   TickContext context_;
   Commands commands_;
   std::vector<std::vector<std::uint8_t>> codes_;  ///< of the scans of the next tick
   std::optional<BatteryState> battery_;           ///< of the next tick
 };
+
+bool is_own(std::string_view bytes) { return bytes.substr(0, kLogMagicStem.size()) == kLogMagicStem; }
+
+/// Whether the file can be read piece by piece, and is a log of ours that is not packed.
+bool is_own_file(const InputFile& file) {
+  std::string start(kLogMagicStem.size(), '\0');
+  return file.size() && *file.size() >= start.size() && file.read_at(0, start.data(), start.size()) == start.size() &&
+         is_own(start);
+}
 
 ForeignLog read_foreign(const std::string& bytes, const std::string& path) {
   if (is_rawlog(bytes)) return read_rawlog_bytes(bytes, path);
@@ -118,9 +136,17 @@ struct ReplayRobot::Impl {
 };
 
 ReplayRobot::ReplayRobot(const std::string& path) : impl_(std::make_unique<Impl>()) {
-  std::string bytes = unpacked(read_file(path), path);
-  if (std::string_view(bytes).substr(0, kLogMagicStem.size()) == kLogMagicStem) {
-    impl_->own = std::make_unique<OwnLog>(std::move(bytes), path);
+  auto file = std::make_unique<InputFile>(path, log_rules(Pipes::Named));
+  std::unique_ptr<LogBytes> own;
+  std::string bytes;
+  if (is_own_file(*file)) {
+    own = std::make_unique<FileBytes>(std::move(file));
+  } else {
+    bytes = unpacked(read_file(*file), path);
+    if (is_own(bytes)) own = std::make_unique<HeldBytes>(std::move(bytes));
+  }
+  if (own) {
+    impl_->own = std::make_unique<OwnLog>(std::move(own), path);
     impl_->format = "rubble log";
     impl_->model = impl_->own->header().model;
     impl_->note = impl_->own->header().note;

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/text/text_file.h"
+#include "base/text/new_file.h"
 
 namespace rubble::robot {
 namespace {
@@ -110,15 +110,18 @@ void check_inflated(std::size_t inflated, std::size_t packed, const std::string&
                    " MB, which no log does; if it is one, unpack it first and give the result");
 }
 
-InputRules log_rules() {
-  return {"a log", kLargestLog, "the most that is read at once; cut the log into parts", Pipes::None};
+InputRules log_rules(Pipes pipes) {
+  return {"a log", kLargestLog, "the most that is read at once; cut the log into parts", pipes};
 }
 
 std::string read_file(const std::string& path) {
-  InputRules rules = log_rules();
-  rules.pipes = Pipes::Named;
-  std::string bytes = read_input(path, rules);
-  if (bytes.empty()) throw InputError(path + ": is empty; give a log that holds data");
+  InputFile file(path, log_rules(Pipes::Named));
+  return read_file(file);
+}
+
+std::string read_file(InputFile& file) {
+  std::string bytes = file.rest();
+  if (bytes.empty()) throw InputError(file.path() + ": is empty; give a log that holds data");
   return bytes;
 }
 
@@ -138,28 +141,51 @@ std::string unpacked(std::string bytes, const std::string& path) {
   return out;
 }
 
-void write_gzip(const std::string& path, const std::string& bytes) {
+struct GzipFile::Impl {
+  NewFile file;
   z_stream stream{};
-  constexpr int kMemory = 8;  // zlib's usual
-  if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzipOnly, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
-    throw RunError(path + ": cannot be packed for want of memory");
-  std::string packed;
-  std::size_t at = 0;
-  for (int status = Z_OK; status != Z_STREAM_END;) {
-    constexpr std::size_t kChunk = std::size_t{1} << 20;
-    const std::size_t offered = std::min(bytes.size() - at, kChunk);
-    const std::size_t written = packed.size();
-    packed.resize(written + kChunk);
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + at));
-    stream.avail_in = static_cast<uInt>(offered);
-    stream.next_out = reinterpret_cast<Bytef*>(&packed[written]);
-    stream.avail_out = static_cast<uInt>(kChunk);
-    status = deflate(&stream, at + offered == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
-    at += offered - stream.avail_in;
-    packed.resize(written + kChunk - stream.avail_out);
+
+  explicit Impl(const std::string& path) : file(path) {
+    constexpr int kMemory = 8;  // zlib's usual
+    if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzipOnly, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
+      throw RunError(path + ": cannot be packed for want of memory");
   }
-  deflateEnd(&stream);
-  write_text_file(path, packed);
+  ~Impl() { deflateEnd(&stream); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void pack(std::string_view bytes, int flush) {
+    std::string packed(std::size_t{1} << 16, '\0');
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    stream.avail_in = static_cast<uInt>(bytes.size());
+    do {
+      stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+      stream.avail_out = static_cast<uInt>(packed.size());
+      deflate(&stream, flush);
+      file.put(std::string_view(packed).substr(0, packed.size() - stream.avail_out));
+    } while (stream.avail_out == 0);
+  }
+};
+
+GzipFile::GzipFile(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+
+GzipFile::~GzipFile() = default;
+
+void GzipFile::put(std::string_view bytes) {
+  constexpr std::size_t kPiece = std::size_t{1} << 20;  // zlib counts in 32 bits
+  for (; !bytes.empty(); bytes.remove_prefix(std::min(kPiece, bytes.size())))
+    impl_->pack(bytes.substr(0, kPiece), Z_NO_FLUSH);
+}
+
+void GzipFile::keep() {
+  impl_->pack({}, Z_FINISH);
+  impl_->file.keep();
+}
+
+void write_gzip(const std::string& path, const std::string& bytes) {
+  GzipFile file(path);
+  file.put(bytes);
+  file.keep();
 }
 
 }  // namespace rubble::robot

@@ -21,9 +21,10 @@ enum class Fact : std::uint8_t { Entry, Comment, Scan, Odometry, Movement, Unrea
 struct MrptLogs {
   /// Hands out what the entries of a rawlog hold, as records that begin with a Fact.
   void (*tell)(std::string_view bytes, const std::string& path, const std::function<void(std::string_view)>& send);
-  /// A rawlog of what `next` gives until it gives nothing, sorted by stamp, and the comment at its end.
-  std::string (*rawlog)(const std::function<std::optional<Inputs>()>& next, const mrpt::math::TPose3D& T_base_laser,
-                        const std::string& comment);
+  /// Hands `put` the bytes of a rawlog of what `next` gives until it gives nothing, and the comment at its end. Sorted
+  /// by stamp; what comes more than a minute after its stamp stands where it came.
+  void (*rawlog)(const std::function<std::optional<Inputs>()>& next, const mrpt::math::TPose3D& T_base_laser,
+                 const std::string& comment, const std::function<void(std::string_view)>& put);
   std::string (*simplemap)(const std::vector<PosedScan>& scans, const mrpt::math::TPose3D& T_base_laser);
 };
 

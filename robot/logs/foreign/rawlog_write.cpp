@@ -8,8 +8,10 @@ namespace rubble::robot {
 
 void export_rawlog(const std::string& log_path, const std::string& rawlog_path) {
   ReplayRobot replay(log_path);
-  write_gzip(rawlog_path, mrpt_logs().rawlog([&] { return replay.read(); }, replay.model().T_base_laser,
-                                             comment_of_model(replay.model())));
+  GzipFile file(rawlog_path);
+  mrpt_logs().rawlog([&] { return replay.read(); }, replay.model().T_base_laser, comment_of_model(replay.model()),
+                     [&](std::string_view bytes) { file.put(bytes); });
+  file.keep();
 }
 
 void write_simplemap(const std::string& path, const std::vector<PosedScan>& scans,

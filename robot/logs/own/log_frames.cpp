@@ -60,35 +60,56 @@ void close_frame(std::string& out, std::size_t start) {
   out.replace(start, kHeadSize, head);
 }
 
-Frames split_frames(std::string_view bytes, const std::string& path) {
-  check_magic(bytes, path);
-  Frames frames;
-  std::size_t offset = kLogMagic.size();
-  while (offset < bytes.size()) {
-    const std::string_view rest = bytes.substr(offset);
-    // A power cut can leave a tail of zeros where the file system had reserved space.
-    frames.torn = rest.size() < kHeadSize || all_zero(rest);
-    if (frames.torn) break;
-    ByteReader head(rest.substr(0, kHeadSize));
-    const std::size_t length = head.u32();
-    const std::uint32_t payload_crc = head.u32();
-    if (head.u32() != crc32_of(rest.substr(0, kHeadSize - 4))) {
-      frames.torn = all_zero(rest.substr(kHeadSize));
-      if (frames.torn) break;
-      fail_damaged(path, offset, "the frame's head is damaged");
-    }
-    frames.torn = length > rest.size() - kHeadSize;
-    if (frames.torn) break;
-    const std::string_view payload = rest.substr(kHeadSize, length);
-    if (crc32_of(payload) != payload_crc) {
-      frames.torn = all_zero(rest.substr(kHeadSize + length));  // nothing follows: it was being written
-      if (frames.torn) break;
-      fail_damaged(path, offset, "the frame fails its check");
-    }
-    offset += kHeadSize + length;
-    frames.payloads.push_back(payload);
-    frames.ends.push_back(offset);
+FrameReader::FrameReader(LogBytes& bytes, std::string path)
+    : bytes_(&bytes), path_(std::move(path)), begin_(kLogMagic.size()), end_(kLogMagic.size()) {
+  constexpr std::size_t kLongestFirstLine = 100;
+  check_magic(bytes.at(0, std::min(bytes.size(), kLongestFirstLine)), path_);
+}
+
+std::optional<std::string_view> FrameReader::next() {
+  const std::size_t rest = bytes_->size() - end_;
+  if (rest == 0 || torn_) return std::nullopt;
+  // A power cut can leave a tail of zeros where the file system had reserved space.
+  torn_ = rest < kHeadSize || zeros_from(end_);
+  if (torn_) return std::nullopt;
+  const std::string_view head_bytes = bytes_->at(end_, kHeadSize);
+  ByteReader head(head_bytes);
+  const std::size_t length = head.u32();
+  const std::uint32_t payload_crc = head.u32();
+  if (head.u32() != crc32_of(head_bytes.substr(0, kHeadSize - 4))) {
+    torn_ = zeros_from(end_ + kHeadSize);
+    if (torn_) return std::nullopt;
+    fail_damaged(path_, end_, "the frame's head is damaged");
   }
+  torn_ = length > rest - kHeadSize;
+  if (torn_) return std::nullopt;
+  const std::string_view payload = bytes_->at(end_ + kHeadSize, length);
+  if (crc32_of(payload) != payload_crc) {
+    torn_ = zeros_from(end_ + kHeadSize + length);  // nothing follows: it was being written
+    if (torn_) return std::nullopt;
+    fail_damaged(path_, end_, "the frame fails its check");
+  }
+  begin_ = end_;
+  end_ += kHeadSize + length;
+  return payload;
+}
+
+bool FrameReader::zeros_from(std::size_t offset) {
+  constexpr std::size_t kStep = 4096;
+  for (; offset < bytes_->size(); offset += kStep)
+    if (!all_zero(bytes_->at(offset, std::min(kStep, bytes_->size() - offset)))) return false;
+  return true;
+}
+
+Frames split_frames(std::string_view bytes, const std::string& path) {
+  SeenBytes seen(bytes);
+  FrameReader reader(seen, path);
+  Frames frames;
+  while (const auto payload = reader.next()) {
+    frames.payloads.push_back(*payload);
+    frames.ends.push_back(reader.end());
+  }
+  frames.torn = reader.torn();
   return frames;
 }
 

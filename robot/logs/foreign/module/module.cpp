@@ -2,6 +2,6 @@
 
 extern "C" __attribute__((visibility("default"))) const rubble::robot::MrptLogs* rubble_mrpt_logs() {
   using namespace rubble::robot;
-  static const MrptLogs module = {tell_rawlog, packed_rawlog, packed_simplemap};
+  static const MrptLogs module = {tell_rawlog, pack_rawlog, packed_simplemap};
   return &module;
 }

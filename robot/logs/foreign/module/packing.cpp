@@ -10,6 +10,7 @@
 #include <mrpt/serialization/CArchive.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "robot/logs/foreign/module/to_mrpt.h"
 #include "robot/logs/foreign/mrpt_stamp.h"
@@ -20,28 +21,39 @@ namespace {
 
 using mrpt::obs::CObservation;
 
-/// All observations of a log in the order of their stamps; odometry before a scan of the same time.
-std::vector<CObservation::Ptr> observations_of(const std::function<std::optional<Inputs>()>& next,
-                                               const mrpt::math::TPose3D& T_base_laser) {
-  std::vector<CObservation::Ptr> list;
-  while (const auto inputs = next()) {
-    for (const Odometry& odometry : inputs->odometry) {
+/// The observations of a log, handed out in the order of their stamps; odometry before a scan of the same time.
+class Sorted {
+ public:
+  void add(const Inputs& inputs, const mrpt::math::TPose3D& T_base_laser) {
+    for (const Odometry& odometry : inputs.odometry) {
       auto observation = mrpt::obs::CObservationOdometry::Create();
       to_mrpt(odometry, *observation);
       if (odometry.v != 0.0 && odometry.w == 0.0) observation->velocityLocal.omega = kStraightTurnRate;
       observation->sensorLabel = "ODOMETRY";
-      list.push_back(observation);
+      waiting_.push_back(observation);
     }
-    for (const LaserScan& scan : inputs->scans) {
+    for (const LaserScan& scan : inputs.scans) {
       auto observation = mrpt::obs::CObservation2DRangeScan::Create();
       to_mrpt(scan, T_base_laser, *observation);
       observation->sensorLabel = "LASER";
-      list.push_back(observation);
+      waiting_.push_back(observation);
     }
   }
-  std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a->timestamp < b->timestamp; });
-  return list;
-}
+
+  /// Those before `end`, which wait no longer.
+  std::vector<CObservation::Ptr> before(mrpt::Clock::time_point end) {
+    std::stable_sort(waiting_.begin(), waiting_.end(),
+                     [](const auto& a, const auto& b) { return a->timestamp < b->timestamp; });
+    const auto first_left =
+        std::partition_point(waiting_.begin(), waiting_.end(), [&](const auto& o) { return o->timestamp < end; });
+    const std::vector<CObservation::Ptr> out(waiting_.begin(), first_left);
+    waiting_.erase(waiting_.begin(), first_left);
+    return out;
+  }
+
+ private:
+  std::vector<CObservation::Ptr> waiting_;
+};
 
 std::string bytes_of(mrpt::io::CMemoryStream& stream) {
   return {static_cast<const char*>(stream.getRawBufferData()), static_cast<std::size_t>(stream.getTotalBytesCount())};
@@ -49,19 +61,37 @@ std::string bytes_of(mrpt::io::CMemoryStream& stream) {
 
 }  // namespace
 
-std::string packed_rawlog(const std::function<std::optional<Inputs>()>& next, const mrpt::math::TPose3D& T_base_laser,
-                          const std::string& text) {
-  const std::vector<CObservation::Ptr> observations = observations_of(next, T_base_laser);
-  mrpt::io::CMemoryStream stream;
-  stream.setAllocBlockSize(std::uint64_t{1} << 22);
-  auto archive = mrpt::serialization::archiveFrom(stream);
+void pack_rawlog(const std::function<std::optional<Inputs>()>& next, const mrpt::math::TPose3D& T_base_laser,
+                 const std::string& text, const std::function<void(std::string_view)>& put) {
+  constexpr mrpt::Clock::duration kLatest = std::chrono::minutes(1);  // from its stamp to its tick
+  Sorted observations;
+  auto last = to_mrpt_time(Stamp{0});
+  const auto hand_over = [&](const CObservation& observation) {
+    mrpt::io::CMemoryStream stream;
+    mrpt::serialization::archiveFrom(stream) << observation;
+    put(bytes_of(stream));
+  };
+  const auto hand_over_before = [&](mrpt::Clock::time_point end) {
+    for (const CObservation::Ptr& observation : observations.before(end)) {
+      hand_over(*observation);
+      last = observation->timestamp;
+    }
+  };
+  std::optional<mrpt::Clock::time_point> handed_over;
+  while (const auto inputs = next()) {
+    observations.add(*inputs, T_base_laser);
+    const auto now = to_mrpt_time(inputs->now);
+    if (!handed_over) handed_over = now;
+    if (now - *handed_over < 2 * kLatest) continue;
+    handed_over = now - kLatest;
+    hand_over_before(*handed_over);
+  }
+  hand_over_before(mrpt::Clock::time_point::max());
   mrpt::obs::CObservationComment comment;
   comment.text = text;
   comment.sensorLabel = "COMMENT";
-  comment.timestamp = observations.empty() ? to_mrpt_time(Stamp{0}) : observations.back()->timestamp;
-  for (const CObservation::Ptr& observation : observations) archive << *observation;
-  archive << comment;
-  return bytes_of(stream);
+  comment.timestamp = last;
+  hand_over(comment);
 }
 
 std::string packed_simplemap(const std::vector<PosedScan>& scans, const mrpt::math::TPose3D& T_base_laser) {

@@ -1,7 +1,10 @@
+#include <malloc.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <csignal>
 
+#include "robot/logs/foreign/file_bytes.h"
 #include "robot/logs/own/log_frames.h"
 #include "tests/support/robot_inputs.h"
 
@@ -210,6 +213,79 @@ TEST(Recording, ReplayOfAReplayIsTheSameFile) {
     }
   }
   EXPECT_EQ(testing::read_bytes(folder.file("a.log")), testing::read_bytes(folder.file("b.log")));
+}
+
+TEST(Recording, AFileAndTheSameBytesUnpackedArePlayedAlike) {
+  const TempFolder folder;
+  Rng rng(4, "ticks");
+  testing::record(testing::random_ticks(rng, 30), folder.file("a.log"), "note");
+  write_gzip(folder.file("a.log.gz"), testing::read_bytes(folder.file("a.log")));
+  ReplayRobot file(folder.file("a.log")), held(folder.file("a.log.gz"));
+  while (const auto inputs = file.read()) {
+    const auto same = held.read();
+    ASSERT_TRUE(same && testing::same(*inputs, *same));
+    EXPECT_EQ(file.progress(), held.progress());
+  }
+  EXPECT_FALSE(held.read());
+}
+
+TEST(Recording, FramesLongerThanWhatIsHeldOfAFileArePlayed) {
+  const TempFolder folder;
+  std::vector<Inputs> ticks = steady_ticks(1.0, 0.1);
+  Rng rng(5, "ranges");
+  for (Inputs& inputs : ticks) {
+    inputs.scans.resize(1);
+    inputs.scans[0].stamp = inputs.now;
+    for (int i = 0; i < 400'000; ++i) inputs.scans[0].ranges.push_back(static_cast<float>(rng.uniform()));
+  }
+  testing::record(ticks, folder.file("a.log"));
+  ASSERT_GT(std::filesystem::file_size(folder.file("a.log")), 10u << 20);
+  ReplayRobot replay(folder.file("a.log"));
+  for (const Inputs& tick : ticks) {
+    const auto inputs = replay.read();
+    ASSERT_TRUE(inputs && testing::same(*inputs, tick));
+  }
+  EXPECT_FALSE(replay.read());
+}
+
+// A sanitizer's allocator is not asked: there this says 0 both times.
+TEST(Recording, PlayingALongLogTakesNoMemoryOfItsLength) {
+  const auto held = [] {
+    const struct mallinfo2 now = mallinfo2();
+    return now.uordblks + now.hblkhd;
+  };
+  const TempFolder folder;
+  testing::record(steady_ticks(2000.0, 0.01), folder.file("a.log"));
+  ASSERT_GT(std::filesystem::file_size(folder.file("a.log")), 12u << 20);
+  const std::size_t before = held();
+  ReplayRobot replay(folder.file("a.log"));
+  std::size_t most = 0;
+  while (replay.read()) most = std::max(most, held());
+  EXPECT_LT(most, before + (3u << 20));
+}
+
+TEST(Recording, ALogThatIsCutOrChangedWhileItIsPlayedIsTold) {
+  const TempFolder folder;
+  const std::string path = folder.file("a.log");
+  testing::record(steady_ticks(500.0, 0.01), path);
+  const std::string bytes = testing::read_bytes(path);
+  {
+    ReplayRobot replay(path);
+    std::filesystem::resize_file(path, bytes.size() / 2);
+    EXPECT_NE(message_of<InputError>([&] { testing::play(replay); }).find("became shorter"), std::string::npos);
+  }
+  for (const char with : {'\0', 'x'}) {
+    testing::write_bytes(path, bytes);
+    ReplayRobot replay(path);
+    testing::write_bytes(path, bytes.substr(0, bytes.size() / 2) + std::string(bytes.size() - bytes.size() / 2, with));
+    EXPECT_NE(message_of<InputError>([&] { testing::play(replay); }).find("copy the log"), std::string::npos);
+  }
+  {
+    testing::write_bytes(path, bytes);
+    ReplayRobot replay(path);
+    testing::write_bytes(path, bytes + bytes);  // it goes on being written
+    EXPECT_EQ(testing::play(replay).size(), 50'000u);
+  }
 }
 
 TEST(Recording, OtherVersionsAndOtherFilesAreRefused) {

@@ -30,6 +30,27 @@ TEST(FileBytes, GzipComesBackAndIsDeterministic) {
   EXPECT_EQ(unpacked("plain", "a"), "plain");
 }
 
+TEST(FileBytes, GzipInPiecesIsTheSameFile) {
+  const TempFolder folder;
+  const std::string text = long_text().substr(0, 2'000'000);
+  for (const std::size_t piece : {1u, 777u, 1500000u}) {
+    GzipFile file(folder.file("b.gz"));
+    const std::size_t most = piece == 1 ? 5000 : text.size();
+    for (std::size_t at = 0; at < most; at += piece) file.put(std::string_view(text).substr(at, piece));
+    file.keep();
+    EXPECT_EQ(testing::read_bytes(folder.file("b.gz")), gzipped(text.substr(0, most), folder)) << piece;
+  }
+}
+
+TEST(FileBytes, WhatIsNotKeptLeavesTheOlderFileAndNothingBeside) {
+  const TempFolder folder;
+  testing::write_bytes(folder.file("a.gz"), "older");
+  GzipFile(folder.file("a.gz")).put(long_text().substr(0, 1'000'000));
+  EXPECT_EQ(testing::read_bytes(folder.file("a.gz")), "older");
+  const std::filesystem::directory_iterator files(folder.file("."));
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
 TEST(FileBytes, SeveralMembersAndPaddingAreRead) {
   const TempFolder folder;
   const std::string packed = gzipped("one ", folder) + gzipped("two", folder) + std::string(512, '\0');

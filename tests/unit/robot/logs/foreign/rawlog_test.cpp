@@ -1,3 +1,4 @@
+#include <malloc.h>
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
@@ -11,6 +12,7 @@
 #include "base/error.h"
 #include "robot/logs/foreign/file_bytes.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
+#include "robot/logs/foreign/mrpt_logs.h"
 #include "robot/logs/foreign/mrpt_stamp.h"
 #include "tests/support/robot_inputs.h"
 #include "tests/support/sanitized.h"
@@ -100,6 +102,50 @@ TEST(Rawlog, SameLogGivesTheSameFile) {
   export_rawlog(folder.file("a.log"), folder.file("a.rawlog"));
   export_rawlog(folder.file("a.log"), folder.file("b.rawlog"));
   EXPECT_EQ(testing::read_bytes(folder.file("a.rawlog")), testing::read_bytes(folder.file("b.rawlog")));
+}
+
+TEST(Rawlog, ALateScanIsSortedInAndALongLogTakesNoMemoryOfItsLength) {
+  const auto held = [] {
+    const struct mallinfo2 now = mallinfo2();  // under a sanitizer 0
+    return now.uordblks + now.hblkhd;
+  };
+  const TempFolder folder;
+  std::vector<Inputs> ticks;
+  for (int i = 1; i <= 6000; ++i) {
+    Inputs inputs;
+    inputs.now = Stamp::from_seconds(0.2 * i);
+    LaserScan scan;
+    scan.angle_min = -2.0;
+    scan.angle_step = 0.006;
+    scan.range_max = 4.0;
+    scan.ranges.assign(682, 1.0f + 0.001f * static_cast<float>(i % 100));
+    scan.stamp = inputs.now - (i % 100 == 0 ? 50.0 : 0.1);
+    inputs.scans.push_back(scan);
+    ticks.push_back(inputs);
+  }
+  testing::record(ticks, folder.file("a.log"));
+  std::size_t most = 0, bytes = 0;
+  const std::size_t before = held();
+  ReplayRobot replay(folder.file("a.log"));
+  std::vector<Stamp> stamps;
+  mrpt_logs().rawlog([&] { return replay.read(); }, {}, "",
+                     [&](std::string_view piece) {
+                       bytes += piece.size();
+                       most = std::max(most, held());
+                     });
+  EXPECT_GT(bytes, 18u << 20);
+  EXPECT_LT(most, before + (6u << 20));
+  export_rawlog(folder.file("a.log"), folder.file("a.rawlog"));
+  ReplayRobot again(folder.file("a.rawlog"));
+  std::size_t scans = 0;
+  Stamp last = Stamp::never();
+  while (const auto inputs = again.read())
+    for (const LaserScan& scan : inputs->scans) {
+      ASSERT_LT(last, scan.stamp);
+      last = scan.stamp;
+      ++scans;
+    }
+  EXPECT_EQ(scans, ticks.size());
 }
 
 TEST(Rawlog, RawlogEditListsWhatWasExported) {
