@@ -55,11 +55,8 @@ Psi psi_of_strangers(double cap) {
 double agreeing_scale(const OccupancyGrid& map, const OccupancyGrid& truth, const AlignmentConfig& config) {
   AlignmentConfig by_walls = config;
   by_walls.by = AlignBy::Walls;
-  for (const double scale : {0.5, 2.0}) {
-    GridFrame frame = map.frame();
-    frame.resolution *= scale;
-    if (align(with_frame(map, frame), truth, by_walls).aligned) return scale;
-  }
+  for (const double scale : {0.5, 2.0})
+    if (align(at_size(map, scale), truth, by_walls).aligned) return scale;
   return 0.0;
 }
 

@@ -15,6 +15,7 @@
 #include "scoring/maps/normalise.h"
 #include "scoring/marks.h"
 #include "scoring/pictures/picture.h"
+#include "scoring/pictures/sight_picture.h"
 #include "scoring/pose_score.h"
 #include "scoring/scorecard.h"
 
@@ -142,8 +143,10 @@ int score(ScoreArguments arguments) {
     for (const scoring::Marks& features : scoring::marks_on_page(result, {}))
       scoring::write_side_by_side(place_in(arguments.out, file_of(features)), grid, truth, result.T_truth_map, features,
                                   result.aligned ? "" : "NOT TRUSTED: " + result.note);
-    if (result.aligned)
+    if (result.aligned) {
       scoring::write_error_map(place_in(arguments.out, "error.png"), grid, truth, result.T_truth_map, config.tau);
+      scoring::write_sight_map(place_in(arguments.out, "sight.png"), grid, truth, result.T_truth_map);
+    }
     write_text_file(place_in(arguments.out, "score.json"), json.dump(2) + "\n");
   }
   return kOk;
@@ -182,7 +185,7 @@ Command score_command() {
                    "What proposes poses: auto, or walls, rooms and one of features, surf, akaze, orb, joined by "
                    "commas; eq7: of all that, the least error of eq. (7)");
             o.flag("--warp", a->warp, "Also undo the map's distortion, and match its features");
-            o.text("--out", a->out, "Folder for overlay.png, error.png and score.json");
+            o.text("--out", a->out, "Folder for overlay.png, error.png, sight.png and score.json");
             o.flag("--json", a->json, "Print JSON");
             return [a] { return score(*a); };
           }};

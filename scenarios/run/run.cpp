@@ -32,6 +32,7 @@
 #include "scoring/maps/normalise.h"
 #include "scoring/marks.h"
 #include "scoring/pictures/picture.h"
+#include "scoring/pictures/sight_picture.h"
 #include "scoring/scorecard.h"
 #include "scoring/trajectory/trajectory_error.h"
 
@@ -138,6 +139,9 @@ void score_files(scoring::Evidence& evidence, const WrittenMaps& files, const Vi
   if (!score.aligned) return;
   folder.publish({"error.png"}, [&](const std::string& path) {
     scoring::write_error_map(path + "error.png", map, truth, score.T_truth_map, scenario.scoring.tau);
+  });
+  folder.publish({"sight.png"}, [&](const std::string& path) {
+    scoring::write_sight_map(path + "sight.png", map, truth, score.T_truth_map);
   });
 }
 

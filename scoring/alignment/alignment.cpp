@@ -171,7 +171,7 @@ class Aligner {
   void ask_others(const Trust& trust, const Hypothesis& best, const std::vector<Hypothesis>& hypotheses,
                   Alignment& out) const {
     const auto rivals = trust.open && trust.tight ? near_rivals(best, hypotheses) : std::vector<WallMatch::Placement>();
-    if (trust.open && !is_mirror_image(best.tight) && wins_all(best, rivals) &&
+    if (trust.open && !is_mirror_image(best.tight) && wins_all(best, rivals, trust.fragment) &&
         see_the_same(map_, truth_, out.T_truth_map, trust.tight && !trust.fragment ? kSightKappaTight : kSightKappa)) {
       out.aligned = true;
       out.note = !trust.tight     ? "the walls meet loosely, and at another pose about as well"
@@ -250,10 +250,15 @@ class Aligner {
     return rivals;
   }
 
-  /// Each of them loses to the best where the two differ.
-  bool wins_all(const Hypothesis& best, const std::vector<WallMatch::Placement>& rivals) const {
+  /// Each of them loses to the best where the two differ. Of a fragment too few walls differ to look more sharply.
+  bool wins_all(const Hypothesis& best, const std::vector<WallMatch::Placement>& rivals, bool fragment) const {
     const std::vector<WallDuel> duels = match_.duels({best.T_best}, rivals, config_.search.tau_tight);
-    return std::all_of(duels.begin(), duels.end(), is_won);
+    if (std::all_of(duels.begin(), duels.end(), is_won)) return true;
+    if (fragment) return false;
+    const std::vector<WallDuel> sharp = match_.duels({best.T_best}, rivals, kSharp);
+    for (std::size_t i = 0; i < rivals.size(); ++i)
+      if (!is_won(duels[i]) && !is_won_sharply(sharp[i])) return false;
+    return true;
   }
 
   std::string about_rooms() const { return rooms_note_.empty() ? "" : "; " + rooms_note_; }

@@ -21,16 +21,10 @@ struct Scaled {
   double agreement = 0.0;
 };
 
-OccupancyGrid scaled(const OccupancyGrid& map, double scale) {
-  GridFrame frame = map.frame();
-  frame.resolution *= scale;
-  return with_frame(map, frame);
-}
-
 Scaled fit(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map, double scale) {
   const SearchConfig search;
   const GridFrame& frame = map.frame();
-  const WallMatch match(scaled(map, scale), truth, search.reach, search.max_points);
+  const WallMatch match(at_size(map, scale), truth, search.reach, search.max_points);
   const TPoint2D centre = match.map_centre();
   const TPoint2D before(frame.x0 + (centre.x - frame.x0) / scale, frame.y0 + (centre.y - frame.y0) / scale);
   const TPoint2D there = T_truth_map.composePoint(before);
@@ -56,13 +50,11 @@ std::optional<double> better_scale(const OccupancyGrid& map, const OccupancyGrid
     const Scaled now = fit(clean, truth, T, scale);
     if (now.agreement > best.agreement) best = now;
   };
-  for (int step = -kSteps; step <= kSteps; ++step) offer(std::pow(kStep, step), T_truth_map);
-  for (const double by : {kFineStep, kFinestStep}) {
-    const double middle = best.scale;
-    for (const int step : {-2, -1, 1, 2}) offer(middle * std::pow(by, step), T_truth_map);
-  }
+  for (const double scale : sizes_about(1.0, kStep, kSteps)) offer(scale, T_truth_map);
+  for (const double step : {kFineStep, kFinestStep})
+    for (const double scale : sizes_about(best.scale, step, 2)) offer(scale, T_truth_map);
   if (best.agreement < kTightEnough || std::abs(best.scale - 1.0) < kLeast) return std::nullopt;
-  const double there = sights.at(scaled(map, best.scale), PlanarTransform(best.T_truth_map)).score;
+  const double there = sights.at(at_size(map, best.scale), PlanarTransform(best.T_truth_map)).score;
   if (there < kGood || there < score + kMuch) return std::nullopt;
   return best.scale;
 }

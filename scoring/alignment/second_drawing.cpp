@@ -70,14 +70,11 @@ double second_drawing_share(const OccupancyGrid& map, const OccupancyGrid& truth
   if (!sights.usable() || map.cells().empty()) return 0.0;
   const Parted parted = part(map, truth, T_truth_map);
   if (parted.cells_on <= 0.0 || parted.cells_off < kLegend * parted.cells_on) return 0.0;
-  OccupancyGrid drawing = crop_to_known(without_specks(parted.off), 0.0);
-  for (int step = -kSizeSteps; step <= kSizeSteps; ++step) {
-    GridFrame frame = drawing.frame();
-    frame.resolution = parted.off.resolution() * std::pow(kSizeStep, step);
-    if (alike(with_frame(drawing, frame), truth, sights))
-      return parted.cells_off / (parted.cells_on + parted.cells_off);
-  }
-  return 0.0;
+  const OccupancyGrid drawing = crop_to_known(without_specks(parted.off), 0.0);
+  const std::vector<double> sizes = sizes_about(1.0, kSizeStep, kSizeSteps);
+  const bool again = std::any_of(sizes.begin(), sizes.end(),
+                                 [&](double size) { return alike(at_size(drawing, size), truth, sights); });
+  return again ? parted.cells_off / (parted.cells_on + parted.cells_off) : 0.0;
 }
 
 }  // namespace rubble::scoring

@@ -24,8 +24,10 @@ constexpr double kFragmentTelling = 16.0;   // floor of one that other witnesses
 constexpr double kFragmentBestKappa = 0.9;  // of the better side: gaps cost the other one
 // Of the walls that meet at one of two poses only.
 constexpr double kTimesTheirs = 2.0;
-constexpr double kDeviations = 2.0;  // from even odds, ...
-constexpr double kPiece = 0.6;       // ... pieces of wall so long are right or wrong together: half a pallet [m]
+constexpr double kDeviations = 2.0;         // from even odds, ...
+constexpr double kSharpTimesTheirs = 1.75;  // where walls must meet within kSharp
+constexpr double kSharpDeviations = 1.65;   // luck does so once in twenty times
+constexpr double kPiece = 0.6;              // ... pieces of wall so long are right or wrong together: half a pallet [m]
 // Where they agree only loosely.
 constexpr double kLeastLogOdds = -1.2;
 constexpr double kLeastMargin = 0.4;  // of the log odds over those of the best rival
@@ -60,6 +62,11 @@ bool is_telling(const PoseEvidence& e) {
 
 /// One agreement is enough ahead of another; `ratio`: of what the two leave unexplained.
 bool is_ahead(double best, double rival, double ratio) { return best >= kAhead * rival || ratio >= kUnexplained; }
+
+bool is_ahead_by(const WallDuel& duel, double times, double deviations) {
+  return duel.ours > 0.0 && duel.ours >= times * duel.theirs &&
+         duel.ours - duel.theirs >= deviations * std::sqrt(kPiece * (duel.ours + duel.theirs));
+}
 
 /// No rival comes near the best.
 bool ahead_of(const PoseEvidence& tight, const Rivals& rivals) {
@@ -114,10 +121,9 @@ bool is_near(const PoseEvidence& tight, const PoseEvidence& rival_tight) {
   return !is_ahead(best, rival, ratio) || (is_fragment(tight) && ratio < kFragmentUnexplained);
 }
 
-bool is_won(const WallDuel& duel) {
-  return duel.ours > 0.0 && duel.ours >= kTimesTheirs * duel.theirs &&
-         duel.ours - duel.theirs >= kDeviations * std::sqrt(kPiece * (duel.ours + duel.theirs));
-}
+bool is_won(const WallDuel& duel) { return is_ahead_by(duel, kTimesTheirs, kDeviations); }
+
+bool is_won_sharply(const WallDuel& duel) { return is_ahead_by(duel, kSharpTimesTheirs, kSharpDeviations); }
 
 void Rivals::meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence) {
   log_odds = std::max(log_odds, scoring::log_odds(wide, tight_evidence));

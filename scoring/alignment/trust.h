@@ -41,6 +41,10 @@ struct Trust {
 bool is_near(const PoseEvidence& tight, const PoseEvidence& rival_tight);
 /// Where a rival is near: of the walls that tell the two apart, so many more meet at ours that no luck explains it.
 bool is_won(const WallDuel& duel);
+/// The same of walls that must meet within `kSharp`: fewer of those that differ meet at both, and shares that are less
+/// lopsided tell as much.
+constexpr double kSharp = 0.15;  ///< [m]
+bool is_won_sharply(const WallDuel& duel);
 
 /// Decides whether the best pose is the right one. Rules and how they were calibrated: docs/scoring.md.
 Trust judge(const PoseEvidence& wide, const PoseEvidence& tight, const Rivals& rivals);

@@ -59,8 +59,10 @@ bool is_no_map(const fs::path& path, const fs::path& truth) {
   const std::string stem = path.stem().string();
   const fs::path folder = path.parent_path();
   if (stem == "truth" || stem == "overlay") return true;
-  if ((stem == "error" || stem == "arena") && (has_results(folder) || is_image_beside(folder, "map"))) return true;
-  for (const std::string end : {"-truth", "_truth", "-visible", "-overlay", "-error"})
+  if ((stem == "error" || stem == "sight" || stem == "arena") &&
+      (has_results(folder) || is_image_beside(folder, "map")))
+    return true;
+  for (const std::string end : {"-truth", "_truth", "-visible", "-overlay", "-error", "-sight"})
     if (ends_with(stem, end) &&
         (has_results(folder) || is_image_beside(folder, stem.substr(0, stem.size() - end.size()))))
       return true;

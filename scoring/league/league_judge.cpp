@@ -16,6 +16,7 @@
 #include "scoring/marks.h"
 #include "scoring/pictures/evaluation_page.h"
 #include "scoring/pictures/picture.h"
+#include "scoring/pictures/sight_picture.h"
 
 namespace rubble::scoring {
 namespace {
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kOverlay = "-overlay.png";
 constexpr const char* kErrorMap = "-error.png";
+constexpr const char* kSightMap = "-sight.png";
 constexpr const char* kPage = ".html";
 constexpr const char* kNumber = "-map";  ///< before the number of a team's map
 
@@ -44,7 +46,7 @@ bool all_digits(const std::string& text) {
 
 /// A name by safe_name() with one of our endings; earlier programs put the number first (`001-NAME`).
 bool is_named_by_us(const std::string& name) {
-  for (const char* ending : {kOverlay, kErrorMap, kPage}) {
+  for (const char* ending : {kOverlay, kErrorMap, kSightMap, kPage}) {
     if (!ends_with(name, ending)) continue;
     const std::string stem = name.substr(0, name.size() - std::string(ending).size());
     const std::size_t at = stem.rfind(kNumber);
@@ -81,6 +83,8 @@ LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const Le
   if (entry.score.aligned) {
     pictures.error = name + kErrorMap;
     write_error_map(place_in(config.out, pictures.error), map, truth.grid, entry.score.T_truth_map, config.score.tau);
+    pictures.sight = name + kSightMap;
+    write_sight_map(place_in(config.out, pictures.sight), map, truth.grid, entry.score.T_truth_map);
   }
   pictures.tool = name + kPage;
   write_text_file(

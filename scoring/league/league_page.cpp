@@ -141,7 +141,8 @@ std::string league_page(const std::string& truth, bool with_points, const std::v
                    entries[i].score.aligned               ? "laid over the truth"
                    : entries[i].score.by != AlignBy::Auto ? "best pose, not trusted"
                                                           : "beside the truth: no pose was found") +
-            figure(entries[i], pictures[i].error, "distance of its walls") + warp_text(entries[i]) +
+            figure(entries[i], pictures[i].error, "distance of its walls") +
+            figure(entries[i], pictures[i].sight, "its lines of sight") + warp_text(entries[i]) +
             victim_table(entries[i]);
   }
   return html_page("League", body);

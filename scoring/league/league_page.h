@@ -11,6 +11,7 @@ namespace rubble::scoring {
 struct LeaguePictures {
   std::string overlay;
   std::string error;
+  std::string sight;
   std::string tool;
 };
 

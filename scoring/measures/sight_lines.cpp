@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <utility>
 
 #include "base/angle.h"
 #include "base/distance_transform.h"
 #include "scoring/measures/lattice_shifts.h"
-#include "scoring/measures/wall_pieces.h"
+#include "scoring/measures/sight_words.h"
 
 namespace rubble::scoring {
 namespace {
@@ -20,14 +19,6 @@ constexpr double kShortest = 0.5;       // line [m]
 constexpr double kLongest = 1.8;        // [m]
 constexpr double kClearEnds = 0.25;     // of walls at both ends [m]
 constexpr double kClearBeside = 0.12;   // open lines have no wall so near, blocked ones are blocked so far aside [m]
-constexpr double kGap = 0.15;           // free space between two pieces of one wall [m]
-constexpr double kHole = 0.55;          // unknown stretch between known ground that says no wall: a halo around one [m]
-constexpr double kPlaceOfWall = 0.1;    // to either side of a wall's middle: what must be known to miss it [m]
-constexpr double kTau = 0.5;            // distance from which a wall is another one [m]
-constexpr double kRaster = 0.5;         // of a cell: what drawing on a raster moves a wall by
-constexpr double kLeastRaster = 0.025;  // finer pixels of the same walls are no finer a map [m]
-constexpr double kMostRaster = 0.05;    // [m]
-constexpr double kThickness = 0.04;     // what a metre of wrong thickness counts as a metre of wrong place
 constexpr double kFee = 0.25;           // kappa that maps of other arenas reach at their best pose
 constexpr double kPlenty = 44.0;        // places of inner walls from which luck is no greater than this
 constexpr double kMostFee = 0.55;       // what luck reaches where the truth has two or three walls
@@ -49,43 +40,6 @@ constexpr std::size_t kOpenLines = 9000;  // half of them lie inside a pallet an
 constexpr int kTries = 30;                // for each line wanted
 constexpr std::size_t kShifts = 24;       // at which the truth is laid over itself
 
-/// One wall on a line, [m] from its start.
-struct Crossing {
-  double from = 0.0;
-  double to = 0.0;
-  double strength = 0.0;
-  double middle() const { return 0.5 * (from + to); }
-  double thickness() const { return to - from; }
-};
-
-struct Stretch {
-  double from = 0.0;
-  double to = 0.0;
-};
-
-/// What a map shows on a line, [m] from its start.
-struct Sight {
-  std::vector<Crossing> walls;
-  std::vector<Stretch> unseen;
-  double unknown = 0.0;  ///< all of it [m]
-
-  void leave_unseen(double from, double to) {
-    const bool goes_on = !unseen.empty() && unseen.back().to >= from;
-    if (!goes_on) unseen.push_back({from, to});
-    unseen.back().to = to;
-  }
-  /// Short unknown stretches between known ground are open ground: whoever knows both sides of a wall knows the wall.
-  void close_holes(double length) {
-    const auto is_hole = [&](const Stretch& s) { return s.from > 0.0 && s.to < length && s.to - s.from <= kHole; };
-    unseen.erase(std::remove_if(unseen.begin(), unseen.end(), is_hole), unseen.end());
-  }
-  bool sees(double at) const {
-    return std::none_of(unseen.begin(), unseen.end(), [at](const Stretch& s) { return at >= s.from && at <= s.to; });
-  }
-};
-
-using Unjudged = std::vector<std::pair<float, float>>;
-
 /// Elements of an arena have faces that the truth does not know, behind the one it does. Near that one all is judged.
 void note_unjudged(SightLines::Line& line, const Sight& sight) {
   constexpr double kNear = 0.2;  // [m]
@@ -93,69 +47,6 @@ void note_unjudged(SightLines::Line& line, const Sight& sight) {
     const double from = s.from >= line.middle ? std::max(s.from, sight.walls[0].to + kNear) : s.from;
     const double to = s.from >= line.middle ? s.to : std::min(s.to, sight.walls[0].from - kNear);
     if (from < to) line.unjudged.emplace_back(static_cast<float>(from), static_cast<float>(to));
-  }
-}
-
-bool is_judged(const Unjudged& unjudged, double at) {
-  return std::none_of(unjudged.begin(), unjudged.end(), [at](const std::pair<float, float>& s) {
-    return at >= static_cast<double>(s.first) && at <= static_cast<double>(s.second);
-  });
-}
-
-/// Looks across a map that is kept elsewhere.
-struct Ground {
-  explicit Ground(const SightMap& map) : grid(map.grid), pieces(map.pieces) {}
-  bool is(const TPoint2D& p, Occupancy what) const {
-    const Cell c = grid.cell(p);
-    return grid.inside(c) && grid[c] == what;
-  }
-  bool known(const TPoint2D& p) const {
-    const Cell c = grid.cell(p);
-    return grid.inside(c) && grid[c] != Occupancy::Unknown;
-  }
-  /// Walks from a to b, which lie in this map and are `length` apart in the truth. Walls within `unjudged` are passed
-  /// by.
-  void look(const TPoint2D& a, const TPoint2D& b, double length, Sight& out, const Unjudged& unjudged = {}) const;
-
-  const OccupancyGrid& grid;
-  const WallPieces& pieces;
-};
-
-void Ground::look(const TPoint2D& a, const TPoint2D& b, double length, Sight& out, const Unjudged& unjudged) const {
-  out.walls.clear();
-  out.unseen.clear();
-  out.unknown = 0.0;
-  const GridFrame& f = grid.frame();
-  const int steps = std::max(1, static_cast<int>(std::ceil(2.0 * length / f.resolution)));
-  const double step = length / steps;
-  const double x0 = (a.x - f.x0) / f.resolution;
-  const double y0 = (a.y - f.y0) / f.resolution;
-  const double dx = (b.x - a.x) / f.resolution / steps;
-  const double dy = (b.y - a.y) / f.resolution / steps;
-  double free = 0.0;
-  Cell last{static_cast<int>(std::floor(x0)), static_cast<int>(std::floor(y0))};
-  for (int i = 0; i <= steps; ++i) {
-    const Cell c{static_cast<int>(std::floor(x0 + i * dx)), static_cast<int>(std::floor(y0 + i * dy))};
-    const double slipped = pieces.between(last, c);
-    last = c;
-    if (!grid.inside(c)) {
-      out.leave_unseen(i * step, (i + 1) * step);
-      out.unknown += step;
-      continue;
-    }
-    const std::size_t at = f.index(c);
-    const double wall = std::max(slipped, static_cast<double>(pieces.strength.cells()[at]));
-    if (wall > 0.0 && is_judged(unjudged, i * step)) {
-      if (out.walls.empty() || free > kGap) out.walls.push_back({i * step, i * step, wall});
-      out.walls.back().to = i * step;
-      out.walls.back().strength = std::max(out.walls.back().strength, wall);
-      free = 0.0;
-    } else if (wall > 0.0 || grid.cells()[at] == Occupancy::Unknown) {
-      out.leave_unseen(i * step, (i + 1) * step);
-      out.unknown += step;
-    } else {
-      free += step;
-    }
   }
 }
 
@@ -218,7 +109,7 @@ class Asker {
   }
 
   SightMap map_;
-  Ground ground_;
+  SightGround ground_;
   bool outer_;
   Grid<float> distance_;  ///< to the next wall [m]
   std::vector<TPoint2D> ends_;
@@ -310,64 +201,18 @@ std::size_t wall_places(const std::vector<SightLines::Line>& lines) {
   return places.size();
 }
 
-/// What a map says about one line.
-struct Word {
-  double known = 0.0;  ///< 0..1: how much of the question it answers
-  double right = 0.0;  ///< -known..known
-};
-
-/// What the walls that a map draws on a blocked line are, and how near the best comes to the right one.
-struct Drawn {
-  Drawn(const SightLines::Line& line, const Sight& sight, double raster) {
-    for (const Crossing& wall : sight.walls) {
-      const double off = std::max(0.0, std::abs(wall.middle() - line.middle) - raster) +
-                         kThickness * std::abs(wall.thickness() - line.thickness);
-      const double strength = std::min(1.0, wall.strength / line.strength);
-      all += strength;
-      best = std::max(best, strength * std::clamp(1.0 - off / kTau, 0.0, 1.0));
-    }
-  }
-  /// -1..1. A wall drawn twice is half wrong.
-  double right() const { return 2.0 * best / std::max(1.0, all) - 1.0; }
-  double all = 0.0;
-  double best = 0.0;
-};
-
-double drawn_on_open(const Sight& sight) {
-  double all = 0.0;
-  for (const Crossing& wall : sight.walls) all += wall.strength;
-  return std::min(1.0, all);
-}
-
-/// A wall that is drawn answers in full, seen from one side or both; none does where its place is known.
-Word word_on_blocked(const SightLines::Line& line, const Sight& sight, double raster) {
-  const Drawn drawn(line, sight, raster);
-  constexpr double kAsked[] = {-1.0, -0.5, 0.0, 0.5, 1.0};
-  double seen = 0.0;
-  for (const double side : kAsked) seen += sight.sees(line.middle + side * kPlaceOfWall) ? 1.0 : 0.0;
-  const double known = std::max(seen / static_cast<double>(std::size(kAsked)), std::min(1.0, drawn.all));
-  return {known, known * drawn.right()};
-}
-
-/// An open line is known as far as the places are at which a wall might block it.
-Word word_on_open(const SightLines::Line& line, const Sight& sight) {
-  const double drawn = drawn_on_open(sight);
-  const auto seen = std::count_if(line.doubts.begin(), line.doubts.end(),
-                                  [&](float at) { return sight.sees(static_cast<double>(at)); });
-  const double open = static_cast<double>(seen) / std::max(1.0, static_cast<double>(line.doubts.size()));
-  return {std::max(open, drawn), std::max(-1.0, open - 2.0 * drawn)};
-}
-
 /// A wall seen from one side only, or at the edge of what the map knows, is half a line.
-Word word_on_whole(const SightLines::Line& line, const Sight& sight, double raster, bool from_known, bool to_known) {
+SightWord word_on_whole(const SightLines::Line& line, const Sight& sight, double raster, bool from_known,
+                        bool to_known) {
   if (sight.walls.empty() && sight.unknown > kUnseen) return {};
   const double known = 0.5 * from_known + 0.5 * to_known;
-  return {known, known * (line.blocked ? Drawn(line, sight, raster).right() : 1.0 - 2.0 * drawn_on_open(sight))};
+  return {known,
+          known * (line.blocked ? DrawnOnBlocked(line, sight, raster).right() : 1.0 - 2.0 * drawn_on_open(sight))};
 }
 
 /// What a map says about all lines, by weight.
 struct Sum {
-  void take(const SightLines::Line& line, const Word& word) {
+  void take(const SightLines::Line& line, const SightWord& word) {
     all += line.weight;
     known += line.weight * word.known;
     gain += line.weight * word.right;
@@ -399,9 +244,8 @@ double beyond_bare_luck(const Sum& sum, double fee) {
 template <class Transform>
 SightAgreement agreement(const std::vector<SightLines::Line>& lines, const SightMap& map, const Transform& T,
                          const SightLines::Luck& luck, SightLines::Credit credit) {
-  const Ground ground(map);
-  const double least = credit == SightLines::Credit::Located ? kLeastRaster : 0.0;
-  const double raster = std::clamp(kRaster * map.grid.resolution(), least, kMostRaster);
+  const SightGround ground(map);
+  const double raster = raster_of(map.grid, credit);
   Sight sight;
   Sum sum;
   for (const SightLines::Line& line : lines) {
@@ -409,7 +253,7 @@ SightAgreement agreement(const std::vector<SightLines::Line>& lines, const Sight
     const TPoint2D b = T.inverse(line.to);
     const double length = (line.to - line.from).norm();
     ground.look(a, b, length, sight, credit == SightLines::Credit::Located ? line.unjudged : Unjudged());
-    Word word;
+    SightWord word;
     if (credit == SightLines::Credit::Whole) {
       word = word_on_whole(line, sight, raster, ground.known(a), ground.known(b));
     } else {

@@ -4,12 +4,11 @@
 
 #include <array>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include "base/grid.h"
 #include "base/planar.h"
-#include "scoring/measures/wall_pieces.h"
+#include "scoring/measures/sight.h"
 #include "scoring/walls/warp.h"
 
 namespace rubble::scoring {
@@ -19,14 +18,6 @@ struct SightAgreement {
   double score = 0.0;  ///< 0..1: what it knows, times how far it agrees beyond a map that knows only the lattice
   double known = 0.0;  ///< share of the lines, by weight, that the map knows
   double kappa = 0.0;  ///< of those: 1 all right, 0 no better than a guess, -1 all wrong
-};
-
-/// A map prepared to be looked across at many poses. The map must outlive it.
-struct SightMap {
-  explicit SightMap(const OccupancyGrid& source, Ragged ragged = Ragged::AreWalls)
-      : grid(source), pieces(wall_pieces(source, ragged)) {}
-  const OccupancyGrid& grid;
-  WallPieces pieces;
 };
 
 /// Lines between two free places of the truth, 0.5 to 1.8 m apart: open, or blocked by one wall. A map agrees where it
@@ -71,7 +62,7 @@ class SightLines {
     double weight = 0.0;             ///< of all blocked (open) lines together 0.5
     std::vector<float> doubts = {};  ///< where walls stand on an open line at other shifts, from `from` [m]
     /// Where the truth knows nothing of a blocked line, from `from` [m]: walls of the map are not judged there.
-    std::vector<std::pair<float, float>> unjudged = {};
+    Unjudged unjudged = {};
   };
   const std::vector<Line>& lines() const { return lines_; }
 

@@ -11,6 +11,7 @@
 #include "base/text/shell.h"
 #include "scoring/pictures/page_assets.h"
 #include "scoring/pictures/picture.h"
+#include "scoring/pictures/sight_picture.h"
 #include "scoring/pose_score.h"
 #include "scoring/walls/overlap.h"
 #include "scoring/walls/resample.h"
@@ -119,7 +120,11 @@ std::string at_start(const OccupancyGrid& map, const OccupancyGrid& truth, const
                             start.not_trusted.empty() ? "" : "NOT TRUSTED: " + start.not_trusted, victims),
                 "walls right (dark, within 5 cm), near (orange), only in the map (red), only in the truth (blue)") +
          figure(error_map_png(grid, truth, start.T_truth_map, start.config.tau),
-                "distance of phantom walls (to red) and missing ones (to blue)");
+                "distance of phantom walls (to red) and missing ones (to blue)") +
+         figure(
+             sight_map_png(grid, truth, start.T_truth_map),
+             "lines of sight that make the score: right (green), blocked where the way is open (red), walls missing or "
+             "elsewhere (blue), not known (yellow)");
 }
 
 }  // namespace

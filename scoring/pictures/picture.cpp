@@ -1,11 +1,8 @@
 #include "scoring/pictures/picture.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <opencv2/imgproc.hpp>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +10,7 @@
 #include "base/grid.h"
 #include "base/image/png.h"
 #include "base/text/text_file.h"
+#include "scoring/pictures/canvas.h"
 #include "scoring/walls/resample.h"
 #include "scoring/walls/wall_field.h"
 
@@ -21,152 +19,9 @@ namespace {
 
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
-using Colour = cv::Vec3b;  // blue, green, red
 
-constexpr double kAgree = 0.05;   // walls this near count as the same in the overlay [m]
-constexpr double kNear = 0.15;    // walls this near as displaced [m]
-constexpr int kRow = 26;          // height of a row of the legend [pixels]
-constexpr int kLeastWidth = 360;  // of the picture, for its legend [pixels]
-constexpr int kMaxSide = 3000;    // of the picture [pixels]
-
-const Colour kInk(40, 34, 30);
-const Colour kDisplaced(40, 150, 225);
-const Colour kMapOnly(48, 48, 214);
-const Colour kTruthOnly(205, 110, 20);
-const Colour kNotJudged(150, 150, 150);
-const Colour kBothFree(255, 255, 255);
-const Colour kMapFree(222, 226, 248);
-const Colour kTruthFree(248, 234, 218);
-const Colour kSeam(170, 40, 150);
-const Colour kUnknown(206, 206, 206);
-const Colour kWall(120, 40, 0);
-
-/// Pixels a cell such that a map of usual size can be read and a huge one still fits a screenful or two.
-int pixels_per_cell(const GridFrame& frame) {
-  const int side = std::max(frame.width, frame.height);
-  // Small arenas fill the picture, too.
-  return std::max(std::clamp(1800 / std::max(side, 1), 1, 3), std::clamp(1200 / std::max(side, 1), 1, 12));
-}
-
-/// The frame of the picture: large maps are drawn with coarser cells.
-GridFrame picture_frame(GridFrame frame) {
-  const int side = std::max(frame.width, frame.height);
-  const int shrink = (side + kMaxSide - 1) / kMaxSide;
-  if (shrink <= 1) return frame;
-  frame.resolution *= shrink;
-  frame.width = (frame.width + shrink - 1) / shrink;
-  frame.height = (frame.height + shrink - 1) / shrink;
-  return frame;
-}
-
-/// A picture of a metric frame, north up. A legend is put below when all else is drawn.
-struct Canvas {
-  explicit Canvas(const GridFrame& map_frame) : frame(picture_frame(map_frame)), scale(pixels_per_cell(frame)) {
-    const int width = std::max(frame.width * scale, kLeastWidth);
-    image = cv::Mat(frame.height * scale, width, CV_8UC3, cv::Scalar(206, 206, 206));
-  }
-  int map_rows() const { return frame.height * scale; }
-  int map_columns() const { return frame.width * scale; }
-  /// Metric position of the centre of a pixel.
-  TPoint2D point(int column, int row) const {
-    return {frame.x0 + (column + 0.5) * frame.resolution / scale,
-            frame.y0 + (map_rows() - row - 0.5) * frame.resolution / scale};
-  }
-
-  GridFrame frame;
-  int scale;
-  cv::Mat image;
-};
-
-void text(Canvas& canvas, const std::string& words, int x, int y) {
-  cv::putText(canvas.image, words, {x, y}, cv::FONT_HERSHEY_SIMPLEX, 0.42, cv::Scalar(kInk), 1, cv::LINE_AA);
-}
-
-int text_width(const std::string& words) {
-  int base = 0;
-  return cv::getTextSize(words, cv::FONT_HERSHEY_SIMPLEX, 0.42, 1, &base).width;
-}
-
-/// The longest bar of a round number of metres that fits into so many pixels.
-struct ScaleBar {
-  int pixels = 0;
-  std::string words;
-};
-
-ScaleBar scale_bar(const Canvas& canvas, int room) {
-  double length = 0.1;
-  for (const double candidate : {0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0})
-    if (candidate * canvas.scale <= room * canvas.frame.resolution) length = candidate;
-  return {static_cast<int>(std::lround(length * canvas.scale / canvas.frame.resolution)),
-          length < 1.0 ? cv::format("%.1f m", length) : cv::format("%.0f m", length)};
-}
-
-/// A piece of the legend, drawn from `x` on around the row `y`.
-struct StripItem {
-  int width = 0;
-  std::function<void(int x, int y)> draw;
-};
-
-/// Puts the legend below the picture, in as many rows as it takes, and a scale bar at the right of the last one. Only
-/// then is the picture as high as it will be: nothing else is drawn later.
-void put_strip(Canvas& canvas, const std::vector<StripItem>& items) {
-  constexpr int kEdge = 10;
-  constexpr int kBetween = 14;
-  const int bar_room = std::min(240, canvas.image.cols / 5);
-  const ScaleBar bar = scale_bar(canvas, bar_room);
-  std::vector<cv::Point> places;
-  int x = kEdge;
-  int row = 0;
-  const auto place = [&](int width) {
-    if (x > kEdge && x + width + kEdge > canvas.image.cols) {
-      x = kEdge;
-      ++row;
-    }
-    places.emplace_back(x, row);
-    x += width + kBetween;
-  };
-  for (const StripItem& item : items) place(item.width);
-  const int bar_width = bar.pixels + 6 + text_width(bar.words);
-  place(bar_width);
-  const int top = canvas.image.rows;
-  cv::copyMakeBorder(canvas.image, canvas.image, 0, (row + 1) * kRow + 8, 0, 0, cv::BORDER_CONSTANT,
-                     cv::Scalar(250, 250, 250));
-  const auto middle = [&](const cv::Point& at) { return top + 4 + at.y * kRow + kRow / 2; };
-  for (std::size_t i = 0; i < items.size(); ++i) items[i].draw(places[i].x, middle(places[i]));
-  const int y = middle(places.back());
-  const int left = std::max(places.back().x, canvas.image.cols - kEdge - bar_width);
-  const int right = left + bar.pixels;
-  cv::rectangle(canvas.image, {left, y - 2}, {right, y + 2}, cv::Scalar(kInk), cv::FILLED);
-  for (const int end : {left, right}) cv::line(canvas.image, {end, y - 6}, {end, y + 6}, cv::Scalar(kInk));
-  text(canvas, bar.words, right + 6, y + 5);
-}
-
-struct LegendEntry {
-  Colour colour;
-  std::string words;
-};
-
-std::vector<StripItem> legend_items(Canvas& canvas, const std::vector<LegendEntry>& entries) {
-  std::vector<StripItem> items;
-  for (const LegendEntry& entry : entries)
-    items.push_back({17 + text_width(entry.words), [&canvas, entry](int x, int y) {
-                       const cv::Rect box(x, y - 6, 12, 12);
-                       cv::rectangle(canvas.image, box, cv::Scalar(entry.colour), cv::FILLED);
-                       cv::rectangle(canvas.image, box, cv::Scalar(120, 120, 120));
-                       text(canvas, entry.words, x + 17, y + 5);
-                     }});
-  return items;
-}
-
-void draw_legend(Canvas& canvas, const std::vector<LegendEntry>& entries) {
-  put_strip(canvas, legend_items(canvas, entries));
-}
-
-Colour mixed(const Colour& a, const Colour& b, double share) {
-  Colour out;
-  for (int i = 0; i < 3; ++i) out[i] = cv::saturate_cast<unsigned char>((1.0 - share) * a[i] + share * b[i]);
-  return out;
-}
+constexpr double kAgree = 0.05;  // walls this near count as the same in the overlay [m]
+constexpr double kNear = 0.15;   // walls this near as displaced [m]
 
 /// From green to the colour of a wall that only one of the maps has: red for the map's (phantom), blue for the truth's
 /// (missing), so that nobody takes one for the other.
@@ -210,21 +65,15 @@ void draw_heat_bar(Canvas& canvas, double tau) {
     const std::string most = cv::format("%.2g m: ", tau) + (of_map ? "phantom" : "missing");
     const int begin = text_width(words) + 8;
     items.push_back({begin + 66 + text_width(most), [&canvas, of_map, words, most, begin](int x, int y) {
-                       text(canvas, words, x, y + 5);
+                       draw_text(canvas, words, x, y + 5);
                        for (int i = 0; i < 60; ++i)
                          cv::line(canvas.image, {x + begin + i, y - 6}, {x + begin + i, y + 6},
                                   cv::Scalar(heat(i / 59.0, of_map ? kMapOnly : kTruthOnly)));
-                       text(canvas, most, x + begin + 66, y + 5);
+                       draw_text(canvas, most, x + begin + 66, y + 5);
                      }});
   }
   for (StripItem& item : legend_items(canvas, kGrounds)) items.push_back(std::move(item));
   put_strip(canvas, items);
-}
-
-cv::Point pixel_of(const Canvas& canvas, const TPoint2D& p) {
-  const double scale = canvas.scale / canvas.frame.resolution;
-  return {static_cast<int>(std::lround((p.x - canvas.frame.x0) * scale)),
-          canvas.map_rows() - static_cast<int>(std::lround((p.y - canvas.frame.y0) * scale))};
 }
 
 void draw_cross(cv::Mat& image, const cv::Point& at, int reach, const Colour& colour, int width) {
@@ -238,23 +87,23 @@ void draw_victims(Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map
   const Colour doubtful(110, 110, 110);
   const Colour found = trusted ? Colour(40, 150, 30) : doubtful;
   const auto name = [&](const std::string& words, const cv::Point& at) {
-    text(canvas, words, at.x + kRadius + 3, at.y + 4);
+    draw_text(canvas, words, at.x + kRadius + 3, at.y + 4);
   };
   for (const auto& [map, truth] : marks.pairs) {
-    const cv::Point reported = pixel_of(canvas, T_truth_map.composePoint(map.p));
-    const cv::Point there = pixel_of(canvas, truth.p);
+    const cv::Point reported = canvas.pixel(T_truth_map.composePoint(map.p));
+    const cv::Point there = canvas.pixel(truth.p);
     if (trusted) cv::line(canvas.image, reported, there, cv::Scalar(found), 1, cv::LINE_AA);
     cv::circle(canvas.image, there, kRadius, cv::Scalar(found), 2, cv::LINE_AA);
     cv::circle(canvas.image, reported, 3, cv::Scalar(found), cv::FILLED, cv::LINE_AA);
     name(truth.name, there);
   }
   for (const Mark& missed : marks.truth_only) {
-    const cv::Point at = pixel_of(canvas, missed.p);
+    const cv::Point at = canvas.pixel(missed.p);
     cv::circle(canvas.image, at, kRadius, cv::Scalar(trusted ? kTruthOnly : doubtful), 2, cv::LINE_AA);
     name(missed.name + (trusted ? " missed" : ""), at);
   }
   for (const Mark& wrong : marks.map_only) {
-    const cv::Point at = pixel_of(canvas, T_truth_map.composePoint(wrong.p));
+    const cv::Point at = canvas.pixel(T_truth_map.composePoint(wrong.p));
     if (!trusted) {
       cv::circle(canvas.image, at, 3, cv::Scalar(doubtful), cv::FILLED, cv::LINE_AA);
       continue;
@@ -267,34 +116,12 @@ void draw_victims(Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map
 /// Dashes, so that nobody takes it for a wall.
 void draw_seam(Canvas& canvas, const std::pair<TPoint2D, TPoint2D>& seam) {
   constexpr double kDash = 9.0;  // [pixels]
-  const cv::Point2d a = pixel_of(canvas, seam.first);
-  const cv::Point2d b = pixel_of(canvas, seam.second);
+  const cv::Point2d a = canvas.pixel(seam.first);
+  const cv::Point2d b = canvas.pixel(seam.second);
   const double length = cv::norm(b - a);
   for (double at = 0.0; at < length; at += 2.0 * kDash)
     cv::line(canvas.image, a + (b - a) * (at / length), a + (b - a) * (std::min(length, at + kDash) / length),
              cv::Scalar(kSeam), 3, cv::LINE_AA);
-}
-
-/// A band over the picture's top that nobody overlooks, as many lines as the words take.
-void draw_warning(Canvas& canvas, const std::string& words) {
-  constexpr int kLine = 22;
-  constexpr double kSize = 0.5;
-  if (words.empty()) return;
-  const auto width = [](const std::string& line) {
-    int base = 0;
-    return cv::getTextSize(line, cv::FONT_HERSHEY_SIMPLEX, kSize, 1, &base).width;
-  };
-  std::vector<std::string> lines(1);
-  std::stringstream all(words);
-  for (std::string word; all >> word;) {
-    if (!lines.back().empty() && width(lines.back() + " " + word) > canvas.image.cols - 20) lines.emplace_back();
-    lines.back() += (lines.back().empty() ? "" : " ") + word;
-  }
-  const int bottom = static_cast<int>(lines.size()) * kLine + 4;
-  cv::rectangle(canvas.image, {0, 0}, {canvas.image.cols - 1, bottom}, cv::Scalar(kMapOnly), cv::FILLED);
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    cv::putText(canvas.image, lines[i], {10, 18 + static_cast<int>(i) * kLine}, cv::FONT_HERSHEY_SIMPLEX, kSize,
-                cv::Scalar(255, 255, 255), 1, cv::LINE_AA);
 }
 
 TPoint2D middle_of(const OccupancyGrid& grid) {
@@ -403,8 +230,8 @@ void write_side_by_side(const std::string& path, const OccupancyGrid& map, const
     }
   both.image(cv::Rect(columns, 0, kGap, rows)).setTo(cv::Scalar(250, 250, 250));
   const cv::Point east(columns + kGap, 0);
-  const auto on_map = [&](const TPoint2D& p) { return pixel_of(pane, T_truth_map.composePoint(p)); };
-  const auto on_truth = [&](const TPoint2D& p) { return pixel_of(pane, p) + east; };
+  const auto on_map = [&](const TPoint2D& p) { return pane.pixel(T_truth_map.composePoint(p)); };
+  const auto on_truth = [&](const TPoint2D& p) { return pane.pixel(p) + east; };
   const auto draw_box = [&](const Mark& mark, const cv::Scalar& colour, const auto& place) {
     if (!mark.box) return;
     const auto& [low, high] = *mark.box;
@@ -423,18 +250,18 @@ void write_side_by_side(const std::string& path, const OccupancyGrid& map, const
     for (const cv::Point& p : {a, b}) cv::circle(both.image, p, 4, colour, 2, cv::LINE_AA);
     draw_box(of_map, colour, on_map);
     draw_box(of_truth, colour, on_truth);
-    if (!of_map.name.empty()) text(both, of_map.name, a.x + 7, a.y - 5);
-    if (!of_truth.name.empty()) text(both, of_truth.name, b.x + 7, b.y - 5);
+    if (!of_map.name.empty()) draw_text(both, of_map.name, a.x + 7, a.y - 5);
+    if (!of_truth.name.empty()) draw_text(both, of_truth.name, b.x + 7, b.y - 5);
   }
   for (const Mark& mark : marks.map_only) {
     draw_cross(both.image, on_map(mark.p), 4, kMapOnly, 1);
     draw_box(mark, cv::Scalar(kMapOnly), on_map);
-    text(both, mark.name, on_map(mark.p).x + 7, on_map(mark.p).y - 5);
+    draw_text(both, mark.name, on_map(mark.p).x + 7, on_map(mark.p).y - 5);
   }
   for (const Mark& mark : marks.truth_only) {
     draw_cross(both.image, on_truth(mark.p), 4, kTruthOnly, 1);
     draw_box(mark, cv::Scalar(kTruthOnly), on_truth);
-    text(both, mark.name, on_truth(mark.p).x + 7, on_truth(mark.p).y - 5);
+    draw_text(both, mark.name, on_truth(mark.p).x + 7, on_truth(mark.p).y - 5);
   }
   draw_warning(both, warning);
   if (marks.what.empty())

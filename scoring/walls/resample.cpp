@@ -67,6 +67,18 @@ OccupancyGrid mirror_image(const OccupancyGrid& grid) {
   return out;
 }
 
+OccupancyGrid at_size(const OccupancyGrid& map, double times) {
+  GridFrame frame = map.frame();
+  frame.resolution *= times;
+  return with_frame(map, frame);
+}
+
+std::vector<double> sizes_about(double middle, double step, int steps) {
+  std::vector<double> out;
+  for (int i = -steps; i <= steps; ++i) out.push_back(middle * std::pow(step, i));
+  return out;
+}
+
 GridFrame common_frame(const OccupancyGrid& map, const OccupancyGrid& truth, const mrpt::math::TPose2D& T_truth_map,
                        double margin) {
   CellBox box = known_box(truth);

@@ -3,6 +3,7 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <optional>
+#include <vector>
 
 #include "base/grid.h"
 
@@ -17,6 +18,11 @@ OccupancyGrid crop_to_known(const OccupancyGrid& grid, double margin);
 
 /// The grid seen in a mirror: east and west exchanged, same frame.
 OccupancyGrid mirror_image(const OccupancyGrid& grid);
+
+/// The map drawn so many times as large; the corner of its frame stays.
+OccupancyGrid at_size(const OccupancyGrid& map, double times);
+/// `middle` times powers of `step`, from -steps to steps: sizes to try, the smallest first.
+std::vector<double> sizes_about(double middle, double step, int steps);
 
 /// The frame on the lattice of `truth` that holds the known cells of `truth` and those of the moved `map`. It does not
 /// depend on how much unknown canvas lies around either.

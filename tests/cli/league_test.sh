@@ -73,7 +73,7 @@ grep -q '^1,aa,.*the same file as the map of zz' second/league.csv && ! grep '^3
   fail "the same league twice gives other figures"
 
 # Files bear the team's name; no number before it looks like a rank. What an earlier program numbered is replaced, too.
-for file in overlay.png error.png; do ls second/aa-map[0-9]-$file second/zz-map[0-9]-$file >/dev/null || fail "no $file of a team: $(ls second)"; done
+for file in overlay.png error.png sight.png; do ls second/aa-map[0-9]-$file second/zz-map[0-9]-$file >/dev/null || fail "no $file of a team: $(ls second)"; done
 ls second/aa-map[0-9].html >/dev/null && ! ls second | grep -qE '^[0-9]{3}-' || fail "names of files: $(ls second)"
 cp second/aa-map*-overlay.png second/001-gone-overlay.png; cp second/aa-map*-overlay.png second/gone-map9-overlay.png
 echo '<a href="001-gone-overlay.png"></a><a href="gone-map9-overlay.png"></a>' >>second/league.html
@@ -86,7 +86,7 @@ cp second/aa-map*-overlay.png second/kept-overlay.png
 # The truth and pictures of runs among the maps are no teams, and the program says so; the options of a single score hold.
 mkdir -p mixed/run mixed/old mixed/judged
 cp $truth mixed/truth.tif; cp $truth mixed/$(basename $truth); cp $truth mixed/good.tif
-for name in overlay error arena 001-x-overlay; do cp "$(ls judged/*-overlay.png | head -1)" mixed/$name.png; done
+for name in overlay error sight arena 001-x-overlay; do cp "$(ls judged/*-overlay.png | head -1)" mixed/$name.png; done
 cp $truth mixed/run/map.tif; cp $truth mixed/run/truth.tif; cp mixed/error.png mixed/run/error.png
 cp mixed/overlay.png mixed/old/001-x-overlay.png; cp mixed/error.png mixed/judged/error.png
 cp judged/league.csv mixed; cp judged/league.csv mixed/old; touch mixed/judged/score.json
@@ -94,7 +94,7 @@ cp judged/league.csv mixed; cp judged/league.csv mixed/old; touch mixed/judged/s
 grep -q 'after warp</th>' mixed_out/league.html || fail "the page has no column of scores after the warp"
 [[ $(tail -n +2 mixed_out/league.csv | cut -d, -f2 | sort | tr '\n' ' ') == 'good run ' ]] ||
   fail "not only the teams: $(cut -d, -f2 mixed_out/league.csv | tr '\n' ' ')"
-for name in truth.tif overlay.png error.png arena.png run/truth.tif old/001-x-overlay.png; do
+for name in truth.tif overlay.png error.png sight.png arena.png run/truth.tif old/001-x-overlay.png; do
   grep -q "^no team's maps:.*$name" table.txt || fail "does not say that $name was skipped: $(cat table.txt)"
 done
 python3 - <<'PY' || fail "--align and --warp do not reach the league: $(cat mixed_out/league.csv)"

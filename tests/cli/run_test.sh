@@ -4,7 +4,7 @@ small_scenario s.yaml
 "$rubble" run s.yaml --out a >table.txt || fail "run ended with $?"
 grep -q 'times real time' table.txt || fail "no summary table"
 for name in scenario.yaml versions.json arena.yaml arena.png log.rlog truth.tum estimate.tum estimate_live.tum map.tif map.tfw map.png \
-  map.pgm map.yaml pois.csv truth.tif truth.png overlay.png error.png hashes.json score.json; do
+  map.pgm map.yaml pois.csv truth.tif truth.png overlay.png error.png sight.png hashes.json score.json; do
   [[ -s a/$name ]] || fail "a/$name is missing or empty"
 done
 (mkdir -p at && cd at && "$rubble" run ../s.yaml --set time_limit_s=5 >/dev/null)
@@ -52,7 +52,7 @@ own = ('key_frames', 'frames_reused', 'slips', 'relocated', 'unseen', 'odometry_
        'most_work_ms')
 sys.exit(0 if all(a[k] == b[k] for k in same) and [k for k in a if k not in own] == list(b) else 1)
 PY
-[[ -s judged/overlay.png && -s judged/score.json ]] || fail "score --out leaves no pictures"
+[[ -s judged/overlay.png && -s judged/sight.png && -s judged/score.json ]] || fail "score --out leaves no pictures"
 if command -v gdalinfo >/dev/null; then
   gdalinfo a/map.tif | grep -q 'Pixel Size = (0.025' || fail "gdalinfo sees no metric pixel size"
 fi

@@ -106,6 +106,13 @@ TEST(Trust, ADuelIsWonByWallsThatAreManyAndClearlyMore) {
   EXPECT_FALSE(is_won({1.2, 0.0})) << "two pieces of wall are soon on one side";
   EXPECT_FALSE(is_won({2.0, 12.0}));
   EXPECT_FALSE(is_won({0.0, 0.0})) << "a symmetric arena";
+  for (const WallDuel& duel : {WallDuel{12.0, 2.0}, {12.5, 6.6}, {9.0, 4.0}}) {
+    EXPECT_TRUE(is_won_sharply(duel)) << duel.ours << " : " << duel.theirs;
+    EXPECT_FALSE(is_won_sharply({duel.theirs, duel.ours}));
+  }
+  EXPECT_FALSE(is_won_sharply({4.0, 2.6})) << "too few walls";
+  EXPECT_FALSE(is_won_sharply({20.0, 13.0})) << "too even";
+  EXPECT_FALSE(is_won_sharply({0.0, 0.0}));
 }
 
 }  // namespace

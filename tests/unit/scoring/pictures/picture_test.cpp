@@ -6,6 +6,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
+#include "scoring/pictures/sight_picture.h"
+#include "tests/support/scoring_attacks.h"
 #include "tests/support/scoring_maze.h"
 
 namespace rubble::scoring {
@@ -99,6 +101,28 @@ TEST_F(Picture, TheErrorMapTellsPhantomFromMissing) {
   EXPECT_GT(tints().blue, 0);
   write_error_map(path_, room(0.0), room(0.0), {}, 0.5);
   EXPECT_EQ(tints().red + tints().blue, 0);
+}
+
+TEST_F(Picture, TheSightMapShowsErasedAndPhantomWallsWhereTheyAre) {
+  const OccupancyGrid truth = maze_of(1, 7, 7);
+  write_sight_map(path_, truth, truth, {});
+  EXPECT_EQ(tints().red + tints().blue, 0);
+  EXPECT_EQ(tints().orange, 0);
+  write_sight_map(path_, with_gaps(truth, 4, 1), truth, {});
+  EXPECT_EQ(tints().red, 0);
+  EXPECT_GT(tints().blue, 100);
+  write_sight_map(path_, with_phantoms(truth, 4, 1), truth, {});
+  EXPECT_GT(tints().red, 100);
+  EXPECT_EQ(tints().blue, 0);
+  write_sight_map(path_, half_of(truth), truth, {});
+  EXPECT_GT(tints().orange, 100);  // yellow
+  EXPECT_EQ(tints().red + tints().blue, 0);
+}
+
+TEST_F(Picture, TheSightMapOfAGroundWithoutLinesSaysSo) {
+  const OccupancyGrid bare(GridFrame{60, 60, 0.05, 0.0, 0.0}, Occupancy::Unknown);
+  write_sight_map(path_, bare, bare, {});
+  EXPECT_GT(tints().red, 1000);
 }
 
 /// The room with a title, an axis and a box of symbols beside it, as plotting programs draw them.
