@@ -186,7 +186,7 @@ def first_frame(log):
 
 
 def logs(rubble, folder, quick):
-    # The robust mapper solves the whole graph until it has 4,000 key frames, after some 50 minutes here: until then time
+    # The robust mapper solves the whole graph until it has 4,000 key frames, within the first hour or so: until then time
     # grows by the square (docs/robust_mapper.md), and what is asked is what comes after.
     lengths = (0.1, 0.2) if quick else (1, 3, 10)
     grown = []
