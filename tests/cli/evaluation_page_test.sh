@@ -15,8 +15,8 @@ json_holds moved.json "0 < j['overlap'] < 1 and j['score'] < 0.5 and j['psi_m'] 
 json_holds near.json "0.5 < j['score'] < 1 and j['psi_m'] > 0"
 "$rubble" score "$truth" "$truth" --html same.html >/dev/null 2>&1 || fail "no page"
 sed 's/src="data:image[^"]*"//g' same.html | grep -qE "(src|href)=|https?://|import |fetch\(" && fail "the page needs other files"
-[[ $(grep -o 'src="data:image/png;base64,' same.html | wc -l) == 2 ]] && grep -q '<b>1.000</b>' same.html ||
-  fail "the page lacks the score or a picture of the pose at start"
+[[ $(grep -o 'src="data:image/png;base64,' same.html | wc -l) == 3 ]] && grep -q '<b>1.000</b>' same.html ||
+  fail "the page lacks the score or the pictures of the pose and of lines of sight at start"
 mkdir 'two words' && cp "$truth" "two words/it's.tif"
 "$rubble" score "two words/it's.tif" "$truth" --html words.html >/dev/null 2>&1 || fail "a name of two words"
 grep -qF "rubble score 'two words/it'\\u005c''s.tif' a/" words.html || fail "the command is not quoted: $(grep -o 'command":"[^"]*' words.html)"
