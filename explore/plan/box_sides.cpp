@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/angle.h"
 #include "explore/plan/set_bytes.h"
 
 namespace rubble::explore {
@@ -26,7 +27,7 @@ std::array<Slope, kSlopes> make_slopes() {
   for (int i = 0; i < kSlopes; ++i) {
     // East and north first: most walls lie so.
     const int nth = i / 2 + (i % 2) * kSlopes / 2;
-    const double angle = nth * M_PI / kSlopes;
+    const double angle = nth * kPi / kSlopes;
     const auto exact = [](double v) { return std::round(v * 1e9) * 1e-9; };  // 0 and 1, where floor and ceil matter
     const double longer = std::max(std::abs(std::cos(angle)), std::abs(std::sin(angle)));
     slopes[static_cast<std::size_t>(i)] = {exact(std::cos(angle) / longer), exact(std::sin(angle) / longer)};

@@ -23,8 +23,8 @@ struct LeagueFolder {
 /// it (map.tif and the like, victims in pois.csv or map.csv). Of a map in several formats tif counts, then yaml, png,
 /// jpg, pgm. No team's maps are the truth (the file itself in any format, or a copy of it under its name) and what
 /// runs, scorings and arena files leave: truth, overlay, NAME.png beside NAME-truth.tif; NAME-truth, NAME-visible,
-/// NAME-overlay, NAME-error, NAME-sight beside an image NAME; error, sight, arena beside an image `map`; all of these beside score.json or
-/// league.csv. Throws InputError: no folder, no team in it.
+/// NAME-overlay, NAME-error, NAME-sight beside an image NAME; error, sight, arena beside an image `map`; all of these
+/// beside score.json or league.csv. Throws InputError: no folder, no team in it.
 LeagueFolder find_league(const std::string& folder, const std::string& truth);
 
 /// The files hold the same bytes.
