@@ -7,6 +7,7 @@
 
 #include "base/planar.h"
 #include "explore/caution/local_grids.h"
+#include "explore/plan/frontier.h"
 #include "explore/search/searched_area.h"
 
 namespace rubble::explore {
@@ -88,8 +89,9 @@ double off_edges(const PalletGrid& grid, const TPoint2D& p, Cell n) {
 /// seen over the first.
 class Background {
  public:
-  Background(const OccupancyGrid& cells, double pallet, LocalGrids& grids, const Grid<std::uint8_t>* pockets)
-      : cells_(cells),
+  Background(const Traversable& floor, double pallet, LocalGrids& grids, const Grid<std::uint8_t>* pockets)
+      : floor_(floor),
+        cells_(floor.cells),
         grids_(grids),
         pockets_(pockets),
         thick_(in_cells(kThick)),
@@ -152,16 +154,11 @@ class Background {
   }
   void measure_pieces() {
     pieces_ = pieces_of_floor(cells_);
-    for (int y = 1; y + 1 < cells_.height(); ++y)
-      for (int x = 1; x + 1 < cells_.width(); ++x) {
-        const auto piece = static_cast<std::size_t>(pieces_[{x, y}]);
-        if (piece == 0) continue;
-        if (piece >= extents_.size()) extents_.resize(piece + 1);
-        ++extents_[piece].cells;
-        const bool frontier = cells_[{x + 1, y}] == Occupancy::Unknown || cells_[{x - 1, y}] == Occupancy::Unknown ||
-                              cells_[{x, y + 1}] == Occupancy::Unknown || cells_[{x, y - 1}] == Occupancy::Unknown;
-        extents_[piece].frontier += frontier ? 1 : 0;
-      }
+    for (const int piece : pieces_.cells()) {
+      if (static_cast<std::size_t>(piece) >= extents_.size()) extents_.resize(static_cast<std::size_t>(piece) + 1);
+      ++extents_[static_cast<std::size_t>(piece)].cells;
+    }
+    for (const Cell c : frontier_cells(floor_)) ++extents_[static_cast<std::size_t>(pieces_[c])].frontier;
   }
   bool walls_on_edge(Cell c, Cell n, int steps) const {
     for (int i = 1; i <= steps; ++i) {
@@ -183,6 +180,7 @@ class Background {
     return false;
   }
 
+  const Traversable& floor_;
   const OccupancyGrid& cells_;
   LocalGrids& grids_;
   const Grid<std::uint8_t>* pockets_;
@@ -204,7 +202,7 @@ std::vector<Source> doubtful_walls(const Traversable& floor, double pallet, cons
   const auto in_cells = [&](double length) { return static_cast<int>(std::lround(length / resolution)); };
   const int before = std::max(1, in_cells(kBefore));
   LocalGrids grids(cells, pallet, known);
-  Background background(cells, pallet, grids, pockets);
+  Background background(floor, pallet, grids, pockets);
   std::vector<Cell> occupied;
   for (int y = 1; y + 1 < cells.height(); ++y) {
     const Occupancy* const row = cells.row(y);
