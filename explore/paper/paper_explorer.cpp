@@ -86,7 +86,6 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   for (const robot::VictimCue& cue : inputs.cues)
     if (victims_.hear(cue, mapper, pose_, floor_))
       agenda_.note(now_, "victim " + std::to_string(victims_.reports().back().id) + " confirmed");
-  victims_.judge_holes(floor_, now_);
   if (!squarely && victims_.search().squarely())
     agenda_.note(now_, "a victim shows through a hole in a wall: each face is to be looked at squarely");
   // What holds it up on the way will hold it up on the way home as well; what it moves to get free is no way.

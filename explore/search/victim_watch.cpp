@@ -17,12 +17,9 @@ constexpr double kCueAge = 1.2;     ///< an unconfirmed cue younger than this is
 constexpr double kOfVictim = 0.5;   ///< a cue so near to a confirmed victim is of it [m]
 constexpr double kBehind = 0.08;    ///< a victim lies so far behind the wall, not before it or in its cells [m]
 constexpr double kHand = 0.12;      ///< beside a line of sight through a hole there is wall [m]
-constexpr double kAround = 0.5;     ///< holes and hands are looked for so far around a line of sight [m]
-constexpr double kFarthest = 10.0;  ///< no camera tells of a victim from farther away [m]
 constexpr double kVisit = 2.0;      ///< shorter stares are none [s]
 constexpr double kStaredAge = 5.0;  ///< what was smelt so long ago is what the robot stood still for [s]
 constexpr int kSureOfHoles = 3;     ///< cues
-constexpr double kJudged = 2.0;     ///< all cues are judged anew on the newest map this often [s]
 
 /// Whether a wall stands between, at least kBehind before `to`.
 bool is_behind_wall(const OccupancyGrid& cells, const TPoint2D& from, const TPoint2D& to) {
@@ -38,28 +35,6 @@ bool is_within_wall(const OccupancyGrid& cells, const TPoint2D& from, const TPoi
   const TPoint2D way = to - from;
   const TPoint2D aside = TPoint2D{-way.y, way.x} * (kHand / way.norm());
   return is_behind_wall(cells, from + aside, to + aside) && is_behind_wall(cells, from - aside, to - aside);
-}
-
-/// The part of a map around a line.
-OccupancyGrid around(const OccupancyGrid& cells, const TPoint2D& a, const TPoint2D& b) {
-  const Cell low = cells.cell({std::min(a.x, b.x) - kAround, std::min(a.y, b.y) - kAround});
-  const Cell high = cells.cell({std::max(a.x, b.x) + kAround, std::max(a.y, b.y) + kAround});
-  GridFrame frame = cells.frame();
-  frame.x0 += low.x * frame.resolution;
-  frame.y0 += low.y * frame.resolution;
-  frame.width = high.x - low.x + 1;
-  frame.height = high.y - low.y + 1;
-  OccupancyGrid part(frame);
-  for (int y = 0; y < frame.height; ++y)
-    for (int x = 0; x < frame.width; ++x)
-      if (const Cell c{low.x + x, low.y + y}; cells.inside(c)) part[{x, y}] = cells[c];
-  return part;
-}
-
-/// Whether a place is seen through a hole in a wall; the scanner may have seen the hole.
-bool is_through_hole(const OccupancyGrid& cells, const TPoint2D& from, const TPoint2D& to) {
-  if (!(distance(from, to) < kFarthest)) return false;
-  return is_within_wall(with_holes_shut(around(cells, from, to)), from, to);
 }
 
 }  // namespace
@@ -89,8 +64,7 @@ bool VictimWatch::take_in(const robot::VictimCue& cue, const Anchor& anchor, con
   };
   const std::size_t before = victims_.reports().size();
   const auto hidden = [&](const TPoint2D& from, const TPoint2D& to) { return is_behind_wall(floor.cells, from, to); };
-  const auto through = [&](const TPoint2D& from, const TPoint2D& to) { return is_through_hole(floor.cells, from, to); };
-  victims_.add(cue, anchor, {same_side, hidden, through, search_.squarely()}, covariance_);
+  victims_.add(cue, anchor, {same_side, hidden}, covariance_);
   ask_for_holes(anchor,
                 anchor.T_map_base.composePoint({cue.range * std::cos(cue.bearing), cue.range * std::sin(cue.bearing)}),
                 floor);
@@ -144,10 +118,6 @@ void VictimWatch::rebuild_reports() {
   std::sort(reports_.begin(), reports_.end(), [](const VictimReport& a, const VictimReport& b) { return a.id < b.id; });
 }
 
-bool VictimWatch::tell_of_hole(const Cues& cues) {
-  return cues.through_wall >= kSureOfHoles && cues.through_wall > 2 * cues.in_sight;
-}
-
 /// A victim in a niche lies before its back, though a cue past the niche's edge may seem to come through it; one that
 /// is seen behind a wall again and again, and hardly ever before it, is seen through a hole.
 void VictimWatch::ask_for_holes(const Anchor& anchor, const TPoint2D& cue, const Traversable& floor) {
@@ -158,21 +128,10 @@ void VictimWatch::ask_for_holes(const Anchor& anchor, const TPoint2D& cue, const
                                        [&](const VictimReport& a, const VictimReport& b) { return away(a) < away(b); });
   if (victim == seen.end() || away(*victim) > kOfVictim) return;
   Cues& cues = cues_[victim->id];
-  const bool hidden = is_through_hole(floor.cells, position(anchor.T_map_base), victim->p_map);
+  // The scanner may have seen the hole.
+  const bool hidden = is_within_wall(with_holes_shut(floor.cells), position(anchor.T_map_base), victim->p_map);
   ++(hidden ? cues.through_wall : cues.in_sight);
-  if (tell_of_hole(cues)) search_.expect_holes();
-}
-
-/// Driving along a wall for the first time the robot may see a victim before the wall is on the map, and never again.
-void VictimWatch::judge_holes(const Traversable& floor, Stamp now) {
-  if (!search_.on() || search_.squarely() || now < next_judged_) return;
-  next_judged_ = now + kJudged;
-  for (const VictimReport& victim : victims_.reports()) {
-    Cues cues;
-    for (const TPoint2D& from : victims_.seen_from(victim.id))
-      ++(is_through_hole(floor.cells, from, victim.p_map) ? cues.through_wall : cues.in_sight);
-    if (tell_of_hole(cues)) search_.expect_holes();
-  }
+  if (cues.through_wall >= kSureOfHoles && cues.through_wall > 2 * cues.in_sight) search_.expect_holes();
 }
 
 bool VictimWatch::look(const Traversable& floor, const TPose2D& T_map_base, double turn_rate, Stamp now) {

@@ -39,9 +39,6 @@ class VictimWatch {
   /// confirmed by it.
   bool hear(const robot::VictimCue& cue, const slam::Mapper& mapper, const mrpt::math::TPose2D& T_map_base,
             const Traversable& floor);
-  /// Says whether holes in walls are to be expected, now that the map shows walls that it did not when their victims
-  /// were seen.
-  void judge_holes(const Traversable& floor, Stamp now);
   /// Records what is seen from here of the floor, turning at `turn_rate` [rad/s]. Says whether it did: not more often
   /// than the sensors look.
   bool look(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, double turn_rate, Stamp now);
@@ -69,8 +66,6 @@ class VictimWatch {
     int through_wall = 0;
     int in_sight = 0;
   };
-  static bool tell_of_hole(const Cues& cues);
-
   PoseDoubt doubt_;
   PoseCovariance covariance_;  ///< of the pose
   bool scans_trusted_ = true;
@@ -83,7 +78,6 @@ class VictimWatch {
   Stamp smelt_at_ = Stamp::never();  ///< while it stared
   FloorSearch search_;
   std::map<int, Cues> cues_;  ///< of confirmed victims, by id
-  Stamp next_judged_ = Stamp::never();
 };
 
 }  // namespace rubble::explore

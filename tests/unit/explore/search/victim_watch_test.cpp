@@ -156,24 +156,6 @@ TEST(VictimWatch, AVictimBehindAHoleThatWasSeenTellsThatThereAreMore) {
   }
 }
 
-/// Driving along a wall for the first time it may see a victim before the map shows the wall.
-TEST(VictimWatch, AWallThatShowsLaterTellsOfItsHoleAsWell) {
-  for (const bool wall : {true, false}) {
-    Watching robot;
-    robot.moved(0.05);
-    for (int i = 0; i < 4; ++i) robot.hear({3.7, 2.2});
-    ASSERT_EQ(robot.watch.reports().size(), 1u);
-    robot.watch.judge_holes(robot.floor, robot.now());
-    EXPECT_FALSE(robot.watch.search().squarely());
-    OccupancyGrid cells = test::room(6.0, 4.0);
-    if (wall) test::fill(cells, 3.5, 0.0, 3.55, 4.0, Occupancy::Occupied);
-    robot.floor = test::measured(std::move(cells));
-    robot.seconds += 10.0;
-    robot.watch.judge_holes(robot.floor, robot.now());
-    EXPECT_EQ(robot.watch.search().squarely(), wall);
-  }
-}
-
 /// Past the edge of a niche a line of sight may cut a cell of its side; most do not.
 TEST(VictimWatch, AFewCuesPastTheEdgeOfANicheTellOfNoHole) {
   Watching robot;
