@@ -52,6 +52,7 @@ void bind(Binder& b, RobustConfig& c) {
   b.number("budget_ms", c.budget_ms, 0.1, 1e6);
   b.section("matching", [&](Binder& m) {
     m.number("spacing_m", c.cloud.spacing, 0.01, 1.0);
+    m.number("loose_within_m", c.cloud.loose_within, 0.0, 100.0);
     m.number("cell_m", c.tracker.cell, 0.0, 1.0);
     m.integer("frames", c.tracker.frames, 1, 1000);
     m.number("path_m", c.tracker.path, 0.0, 1000.0);
@@ -60,6 +61,8 @@ void bind(Binder& b, RobustConfig& c) {
     m.number("turn_error", c.tracker.turn_error, 0.0, 10.0);
     m.number("least_turn_rad", c.tracker.least_turn, 0.001, 1.0);
     m.number("turn_error_rad_per_m", c.tracker.turn_error_per_m, 0.0, 10.0);
+    m.number("wheel_friction", c.tracker.wheel_friction, 0.0, 10.0);
+    m.number("creep_error", c.tracker.creep_error, 0.0, 10.0);
     m.number("large_step_m", c.tracker.large_step, 0.05, 100.0);
     m.number("large_turn_rad", c.tracker.large_turn, 0.05, 10.0);
     m.number("slip_chi2", c.tracker.slip_chi2, 1.0, 1e9);

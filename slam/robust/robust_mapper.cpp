@@ -14,6 +14,7 @@
 #include "slam/robust/map/stamped_map.h"
 #include "slam/robust/tracking/motion_expectation.h"
 #include "slam/robust/tracking/scan_diary.h"
+#include "slam/robust/tracking/slope_creep.h"
 #include "slam/scan/waiting_scans.h"
 
 namespace rubble::slam {
@@ -64,6 +65,7 @@ struct RobustMapper::Impl {
         T_base_laser_(model.T_base_laser),
         level_scan_(model.T_base_laser, config.scan),
         tilt_(model, config.tilt),
+        creep_(model, config.tracker.wheel_friction),
         motion_(model.laser.scan_period),
         tracker_(config.tracker),
         closer_(config.loop, config.tracker.cell, frames_),
@@ -121,6 +123,7 @@ struct RobustMapper::Impl {
   const mrpt::math::TPose3D T_base_laser_;
   LevelScan level_scan_;
   TiltTrack tilt_;
+  const SlopeCreep creep_;
   MotionExpectation motion_;
   KeyFrames frames_;
   LocalTracker tracker_;
@@ -186,6 +189,12 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
   ExpectedMotion motion = motion_.expect(scan);
   std::optional<SweepMotion> sweep = config_.deskew ? motion_.sweep(scan, motion) : std::nullopt;
   const std::optional<ScanTilt> tilt = config_.use_tilt ? tilt_of(reference, motion) : std::nullopt;
+  if (tilt && motion.told) {
+    const TPoint2D crept = creep_.expected(*tilt, wrap_angle(motion.T_last_now.phi));
+    motion.T_last_now.x += crept.x;
+    motion.T_last_now.y += crept.y;
+    motion.crept = length(crept);
+  }
   motion.ramps = tilt.has_value();
   motion.level = !tilt || std::max(std::abs(tilt->pitch), std::abs(tilt->roll)) < kLevel;
   ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr, tilt ? &*tilt : nullptr);

@@ -34,6 +34,7 @@ constexpr double kEndLength = 0.20;            ///< a wall that tells its end is
 constexpr double kEndRoughness = 0.03;         ///< ... within this [m]
 constexpr double kEndSpacing = 0.06;           ///< hits on it lie no farther apart, for the end is known no better [m]
 constexpr long kMostEnds = 6;                  ///< an end known best counts as so many points
+constexpr double kLooseSize = 0.35;            ///< larger things are none that a robot pushes along [m]
 constexpr float kSameDirection = 0.9F;         ///< cosine between normals of one straight surface
 
 int bin_of(double bearing) {
@@ -232,6 +233,23 @@ std::optional<WallEnd> wall_end(const Hits& hits, std::size_t i, int inwards) {
       spacing};
 }
 
+/// Which hits are on small things that stand free, so near [m] that the robot may push them: a ball that rolls before
+/// it between two bare walls is all that tells how far along it is, and says that it stands.
+std::vector<bool> on_loose_things(const Hits& hits, double near) {
+  std::vector<bool> loose(hits.size(), false);
+  const auto seen_past = [&](std::size_t i, std::size_t beside) {
+    return hits.beams_between(i, beside) > kSilentBeams || hits.range(beside) > hits.range(i) + kEndJump;
+  };
+  for (std::size_t first = 0, last; first < hits.size(); first = last + 1) {
+    for (last = first; last + 1 < hits.size() && hits.joined(last, last + 1);) ++last;
+    if (first == 0 || last + 1 == hits.size() || length(hits.p(first)) > near) continue;
+    if (distance(hits.p(first), hits.p(last)) > kLooseSize) continue;
+    if (seen_past(first, first - 1) && seen_past(last, last + 1))
+      for (std::size_t i = first; i <= last; ++i) loose[i] = true;
+  }
+  return loose;
+}
+
 void add_ends(const Hits& hits, Cloud& cloud) {
   for (std::size_t i = 0; i < hits.size(); ++i) {
     for (const int inwards : {-1, 1}) {
@@ -273,8 +291,10 @@ Cloud cloud_of(const ScanPoints& scan, const CloudConfig& config) {
   Cloud cloud;
   cloud.laser = scan.origin;
   const Hits hits(scan);
+  const std::vector<bool> loose = on_loose_things(hits, config.loose_within);
   std::size_t kept = 0;  // hit of the last point
   for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (loose[i]) continue;
     const TPoint2D& p = hits.p(i);
     const bool goes_on = i > 0 && hits.joined(i - 1, i);
     if (goes_on && distance(p, hits.p(kept)) < config.spacing) continue;

@@ -55,6 +55,7 @@ class SightFan {
 struct CloudConfig {
   double spacing = 0.08;       ///< between matched points [m]
   double wide_spacing = 0.10;  ///< between points filled in where beams are far apart [m]
+  double loose_within = 1.2;   ///< small free things so near may be pushed along, and are not matched with [m]
 };
 
 /// A scan as the matching sees it, in the base frame.
@@ -71,7 +72,7 @@ struct Cloud {
 };
 
 /// Thins the hits of a scan and finds their normals. Mixed pixels - single beams that hang between two depths because
-/// their spot lies on an edge - are left out.
+/// their spot lies on an edge - are left out, and small things that the robot may push along.
 Cloud cloud_of(const ScanPoints& scan, const CloudConfig& config);
 /// How far the scan saw, by the same hits.
 SightFan sight_of(const ScanPoints& scan);

@@ -18,6 +18,8 @@ struct TrackerConfig {
   double turn_error = 0.20;        ///< share of the turn
   double least_turn = 0.02;        ///< [rad]
   double turn_error_per_m = 0.10;  ///< [rad/m]
+  double wheel_friction = 0.8;     ///< of a skid-steered robot, which slides down a slope as it turns; 0: does not
+  double creep_error = 0.5;        ///< share of what it is expected to slide
   double large_step = 0.35;        ///< longer steps between scans are searched first [m]
   double large_turn = 0.2;         ///< and larger turns [rad]
   double slip_chi2 = 16.0;         ///< odometry off by more (squared sigmas) is doubted
@@ -31,9 +33,10 @@ struct TrackerConfig {
 
 /// What is known of the motion since the last scan before the scan is looked at.
 struct ExpectedMotion {
-  mrpt::math::TPose2D T_last_now;  ///< as odometry says
+  mrpt::math::TPose2D T_last_now;  ///< as odometry says, and down the slope that the robot turns on
   /// As the last scans' motion would go on; nothing when they are too long ago to say.
   std::optional<mrpt::math::TPose2D> carried;
+  double crept = 0.0;  ///< how much of it that is [m]
   double time = 0.0;   ///< since the last scan [s]
   double doubt = 0.0;  ///< of the odometry, 0: as good as wheels are, 1: it says nothing
   bool told = false;   ///< it has spoken; what may be doubted is what it says

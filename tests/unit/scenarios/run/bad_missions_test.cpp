@@ -99,10 +99,19 @@ TEST(StartOnARamp, IsAMissionLikeAnyOther) {
       "  |.   .   .   .  |\n"
       "  +---+---+---+---+\n",
       "ramp");
-  const Mission mission = drive(arena, {});
-  EXPECT_EQ(mission.end, "home") << mission.decisions;
-  EXPECT_LT(mission.drive.home_m, 0.6);
-  EXPECT_LT(mission.drive.contact_s, 3.0);
+  std::vector<double> contact_s;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Scenario scenario;
+    scenario.seed = seed;
+    const Mission mission = drive(arena, scenario);
+    EXPECT_EQ(mission.end, "home") << mission.decisions;
+    EXPECT_LT(mission.drive.home_m, 0.6);
+    contact_s.push_back(mission.drive.contact_s);
+  }
+  std::sort(contact_s.begin(), contact_s.end());
+  EXPECT_LT(contact_s[3], 3.0) << "of four of them";
+  EXPECT_LT(contact_s[4], 6.0);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/angle.h"
@@ -146,6 +147,24 @@ TEST(Cloud, CornersAndWallsOutOfSightHaveNoEnds) {
   EXPECT_TRUE(slam_test::cloud_at(room, {}, RobotModel()).ends.empty());
   const slam_test::World corridor{{{-20.0, 0.7}, {20.0, 0.7}}, {{-20.0, -0.7}, {20.0, -0.7}}};
   EXPECT_TRUE(slam_test::cloud_at(corridor, {}, RobotModel()).ends.empty());
+}
+
+/// The robot may push it along; what is larger, farther off or part of a wall stays where it is.
+TEST(Cloud, SmallFreeThingsNearTheRobotAreLeftOut) {
+  const RobotModel model;
+  const auto points_at = [&](double x, double half, bool walled) {
+    slam_test::World world{{{3.0, -3.0}, {3.0, 3.0}}, {{x, -half}, {x, half}}};
+    if (walled) world.push_back({{x, half}, {x, 3.0}});
+    const Cloud cloud = slam_test::cloud_at(world, {}, model);
+    return std::count_if(cloud.points.begin(), cloud.points.end(), [&](const OrientedPoint& p) {
+      return std::abs(point(p).x - x) < 0.01 && std::abs(point(p).y) <= half;
+    });
+  };
+  EXPECT_EQ(points_at(0.6, 0.1, false), 0);
+  EXPECT_EQ(points_at(1.1, 0.15, false), 0);
+  EXPECT_GE(points_at(1.4, 0.1, false), 2);
+  EXPECT_GE(points_at(0.6, 0.25, false), 4);
+  EXPECT_GE(points_at(0.6, 0.1, true), 2);
 }
 
 TEST(Cloud, AnEmptyScanGivesAnEmptyCloud) {

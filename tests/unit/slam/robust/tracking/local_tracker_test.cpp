@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "slam/robust/robust_mapper.h"
 #include "tests/support/slam_key_frames.h"
 
@@ -89,6 +91,38 @@ TEST(LocalTracker, CountsTheWayThatOdometryAloneKnows) {
     }
     EXPECT_NEAR(T_frame_now.x, wall ? 0.0 : 0.8, 0.05);
   }
+}
+
+/// A ball that the robot pushes along between two bare walls is all that tells how far it came, and says that it
+/// stands.
+TEST(LocalTracker, AThingPushedAlongDoesNotHoldTheRobot) {
+  robot::RobotModel model;
+  const auto pushing = [](double x) {  // eight sides of a ball of 0.2 m, before the robot at x
+    slam_test::World world{{{-20.0, 0.6}, {20.0, 0.6}}, {{-20.0, -0.6}, {20.0, -0.6}}};
+    for (int k = 0; k < 8; ++k) {
+      const auto corner = [&](int side) {
+        return mrpt::math::TPoint2D(x + 0.5 + 0.1 * std::cos(side * kPi / 4.0), 0.1 * std::sin(side * kPi / 4.0));
+      };
+      world.push_back({corner(k), corner(k + 1)});
+    }
+    return world;
+  };
+  const auto places = slam_test::places_along({{0.0, 0.0}, {1.5, 0.0}}, 0.3);
+  KeyFrames frames;
+  for (const TPose2D& place : places) slam_test::add_key_frame(frames, pushing(place.x), places, 0.0, model);
+  LocalTracker tracker(suited_to(model.laser, {}).tracker);
+  tracker.redraw(frames, frames.last(), nullptr);
+  ExpectedMotion driving;
+  driving.T_last_now = TPose2D(0.03, 0.0, 0.0);
+  driving.time = 0.1;
+  driving.told = true;
+  TPose2D T_frame_now;
+  for (int scan = 1; scan <= 10; ++scan) {
+    const double x = places.back().x + 0.03 * scan;
+    const Cloud cloud = slam_test::cloud_at(pushing(x), {x, 0.0, 0.0}, model);
+    T_frame_now = tracker.track(frames, cloud, driving, T_frame_now, nullptr).fit.pose;
+  }
+  EXPECT_NEAR(T_frame_now.x, 0.3, 0.02);
 }
 
 /// A corridor with a line across it: a wall, or where the laser's plane cuts a ramp.

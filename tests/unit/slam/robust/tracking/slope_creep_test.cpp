@@ -1,0 +1,79 @@
+#include "slam/robust/tracking/slope_creep.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace rubble::slam {
+namespace {
+
+/// Forces and moment of four sliding wheels of a robot that turns at w, by Coulomb friction, per weight.
+Eigen::Vector3d pull(const robot::RobotModel& model, double friction, double w, const Eigen::Vector3d& slip) {
+  const double a = 0.5 * model.wheelbase;
+  const double b = 0.5 * model.track;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const double x : {a, -a})
+    for (const double y : {b, -b}) {
+      // The rims run by slip.z too fast, ahead on the right and back on the left.
+      Eigen::Vector2d v(slip.x() + (y < 0.0 ? -slip.z() : slip.z()), slip.y() + w * x);
+      const Eigen::Vector2d force = -0.25 * friction * v.normalized();
+      sum += Eigen::Vector3d(force.x(), force.y(), x * force.y() - y * force.x());
+    }
+  return sum;
+}
+
+/// The slip at which friction holds the robot on its slope and nothing turns it faster or slower, by Newton's method on
+/// a slope that grows.
+Eigen::Vector3d steady(const robot::RobotModel& model, double friction, double w, double pitch, double roll) {
+  Eigen::Vector3d slip(0.0, 0.0, 0.05);
+  const Eigen::Vector3d wanted(std::tan(pitch), std::tan(roll), 0.0);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d off = pull(model, friction, w, slip) - std::min(1.0, 0.01 * i) * wanted;
+    Eigen::Matrix3d J;
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d d = 1e-7 * Eigen::Vector3d::Unit(k);
+      J.col(k) = (pull(model, friction, w, slip + d) - pull(model, friction, w, slip - d)) / 2e-7;
+    }
+    slip -= J.inverse() * off;
+  }
+  return slip;
+}
+
+TEST(SlopeCreep, HoldsTheRobotOnItsSlopeByFriction) {
+  robot::RobotModel model;
+  for (const double friction : {0.4, 0.8})
+    for (const double pitch : {0.02, -0.05, 0.0})
+      for (const double roll : {0.0, 0.03, -0.05}) {
+        const double w = 1.0;
+        const Eigen::Vector3d slip = steady(model, friction, w, pitch, roll);
+        const auto creep = SlopeCreep(model, friction).expected({0.0, 0.0, pitch, roll}, 0.1 * w);
+        const double bound = 0.05 * std::hypot(slip.x(), slip.y()) * 0.1 + 1e-9;
+        EXPECT_NEAR(creep.x, 0.1 * slip.x(), bound) << friction << ' ' << pitch << ' ' << roll;
+        EXPECT_NEAR(creep.y, 0.1 * slip.y(), bound) << friction << ' ' << pitch << ' ' << roll;
+      }
+}
+
+TEST(SlopeCreep, IsTheSameForBothSensesOfTurningAndNoneWithoutSlope) {
+  const SlopeCreep creep({}, 0.8);
+  const ScanTilt tilt{0.0, 0.0, 0.1, -0.15};
+  EXPECT_EQ(creep.expected(tilt, 0.1).x, creep.expected(tilt, -0.1).x);
+  EXPECT_EQ(creep.expected(tilt, 0.1).y, creep.expected(tilt, -0.1).y);
+  EXPECT_LT(creep.expected(tilt, 0.1).x, 0.0);  // nose up: back
+  EXPECT_GT(creep.expected(tilt, 0.1).y, 0.0);  // right side up: to the left
+  EXPECT_EQ(creep.expected(tilt, 0.0).y, 0.0);
+  EXPECT_EQ(creep.expected({0.1, 0.1, 0.0, 0.0}, 0.1).y, 0.0);  // it is the body that stands on the slope
+}
+
+TEST(SlopeCreep, WheelsThatTurnAsTheRobotDoesDoNotSlide) {
+  robot::RobotModel castors;
+  castors.effective_track = castors.track;
+  for (const SlopeCreep& creep : {SlopeCreep(castors, 0.8), SlopeCreep({}, 0.0)}) {
+    EXPECT_EQ(creep.expected({0.0, 0.0, 0.2, 0.2}, 0.1).x, 0.0);
+    EXPECT_EQ(creep.expected({0.0, 0.0, 0.2, 0.2}, 0.1).y, 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace rubble::slam
