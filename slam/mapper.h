@@ -85,6 +85,9 @@ class Mapper {
   virtual const Trajectory& trajectory() const = 0;
   /// The same as known at the scan: nothing of it changes later.
   virtual const Trajectory& live_trajectory() const = 0;
+  /// Whether map() shows each scan where pose_at() has it now. After poses of the past moved a map may be drawn anew
+  /// bit by bit, over many updates.
+  virtual bool settled() const { return true; }
   /// The newest scan's hits in the map frame, mapped or not (for pictures and for checking a path against fresh
   /// obstacles).
   virtual const std::vector<mrpt::math::TPoint2D>& last_hits() const = 0;

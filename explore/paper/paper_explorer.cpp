@@ -82,12 +82,9 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   heed_levelling();
   heed_battery(inputs);
   stuck_watch_.update(inputs, passed, dt_);
-  const bool squarely = victims_.search().squarely();
   for (const robot::VictimCue& cue : inputs.cues)
     if (victims_.hear(cue, mapper, pose_, floor_))
       agenda_.note(now_, "victim " + std::to_string(victims_.reports().back().id) + " confirmed");
-  if (!squarely && victims_.search().squarely())
-    agenda_.note(now_, "a victim shows through a hole in a wall: each face is to be looked at squarely");
   // What holds it up on the way will hold it up on the way home as well; what it moves to get free is no way.
   const ExplorerState state = this->state();
   const bool free = state == ExplorerState::Driving || state == ExplorerState::GoingHome;
@@ -310,6 +307,7 @@ void PaperExplorer::replan(const slam::Mapper& mapper) {
   const bool new_map = agenda_.begin_plan(mapper.map(), now_);
   const std::vector<TPoint2D> new_things = pilot_.new_things(now_);
   floor_ = floor_now(mapper, new_things);
+  if (mapper.settled()) judge_holes(mapper.map());
   Plan plan = agenda_.choose(situation());
   if (!plan.found && !new_things.empty()) {
     // The map shows a way, the newest scans do not: go and see, slowly.
@@ -321,6 +319,13 @@ void PaperExplorer::replan(const slam::Mapper& mapper) {
   if (!new_things.empty() && agenda_.turn_away(plan, pilot_.left(), situation()) && pilot_.waits(now_))
     pilot_.remember_new_things(length_of(plan) / kDetourSpeed, now_);
   obey(agenda_.decide(std::move(plan), new_map, situation()));
+}
+
+void PaperExplorer::judge_holes(const slam::CountMap& map) {
+  const bool expected = victims_.search().squarely();
+  victims_.judge_holes(floor_, map, now_);
+  if (!expected && victims_.search().squarely())
+    agenda_.note(now_, "a victim shows through a hole in a wall: each face is to be looked at squarely");
 }
 
 void PaperExplorer::obey(Order order) {

@@ -73,6 +73,7 @@ class PaperExplorer : public Explorer {
   void get_free_of(const StuckWatch::Hold& hold, const slam::Mapper& mapper);
   std::optional<WayOut> way_out(const slam::Mapper& mapper);
   void replan(const slam::Mapper& mapper);
+  void judge_holes(const slam::CountMap& map);
   void obey(Order order);
 
   /// The floor with `hits` [map frame] as further obstacles.

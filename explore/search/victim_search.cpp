@@ -59,6 +59,13 @@ bool VictimSearch::back_to_back(double d, const Sighting& a, const Sighting& b, 
   return !sight.open(position(a.anchor.T_map_base), position(b.anchor.T_map_base));
 }
 
+/// Whether a cluster and what was seen `d` [m] from it, through a hole in a wall or not, are of two boxes behind it.
+bool VictimSearch::side_by_side(double d, const Cluster& cluster, bool through, const Sightlines& sight) const {
+  if (!sight.holes || !through || d < config_.side_by_side) return false;
+  return std::count_if(cluster.sightings.begin(), cluster.sightings.end(),
+                       [](const Sighting& s) { return s.through; }) >= config_.min_cues;
+}
+
 /// The sighting of a cluster that the same sense had in the same look; null: none. A look of a camera shows each victim
 /// once, and at its place.
 VictimSearch::Sighting* VictimSearch::of_same_look(Cluster& cluster, const Sighting& sighting) const {
@@ -74,6 +81,7 @@ VictimSearch::Sighting* VictimSearch::of_same_look(Cluster& cluster, const Sight
 bool VictimSearch::is_other(Cluster& cluster, const Sighting& sighting, const Sightlines& sight) const {
   const double d = distance(cluster.p_map, sighting.p_map);
   if (back_to_back(d, cluster.sightings.front(), sighting, sight)) return true;
+  if (side_by_side(d, cluster, sighting.through, sight)) return true;
   if (of_same_look(cluster, sighting) != nullptr) return true;
   const TPoint2D from = position(sighting.anchor.T_map_base);
   return places_well(sighting.kind) && d >= config_.back_to_back && sight.hidden(from, cluster.p_map) &&
@@ -101,6 +109,10 @@ VictimSearch::Home VictimSearch::home_of(const Sighting& sighting, const Sightli
   return home;
 }
 
+bool VictimSearch::seen_through(const Cluster& cluster) {
+  return std::any_of(cluster.sightings.begin(), cluster.sightings.end(), [](const Sighting& s) { return s.through; });
+}
+
 /// Whether two clusters that have come too close to each other are two victims all the same. A single look at a false
 /// alarm beside a victim tells them apart for a while only.
 bool VictimSearch::are_two(Cluster& a, Cluster& b, const Sightlines& sight) {
@@ -115,7 +127,10 @@ bool VictimSearch::are_two(Cluster& a, Cluster& b, const Sightlines& sight) {
   if (of_late || looks >= config_.min_cues) return true;
   const double d = distance(a.p_map, b.p_map);
   if (d < config_.back_to_back) return false;
+  if (side_by_side(d, a, seen_through(b), sight) || side_by_side(d, b, seen_through(a), sight)) return true;
   if (back_to_back(d, a.sightings.front(), b.sightings.front(), sight)) return true;
+  // Boxes behind walls do not overlap: what told two apart was the error of a pose.
+  if (sight.holes && d < config_.side_by_side && seen_through(a) && seen_through(b)) return false;
   for (const Cluster* cluster : {&a, &b})
     for (const Sighting& s : cluster->sightings) {
       sure += s.sure ? 1 : 0;
@@ -189,6 +204,8 @@ void VictimSearch::add(const robot::VictimCue& cue, const Anchor& anchor, const 
   sighting.anchor = anchor;
   sighting.p_base = {cue.range * std::cos(cue.bearing), cue.range * std::sin(cue.bearing)};
   sighting.p_map = anchor.T_map_base.composePoint(sighting.p_base);
+  sighting.through =
+      sight.through && places_well(cue.kind) && sight.through(position(anchor.T_map_base), sighting.p_map);
   sighting.pose = covariance_at(sighting.p_map, anchor.T_map_base, covariance);
   put(std::move(sighting), sight);
   rebuild_reports();
@@ -242,6 +259,17 @@ std::vector<TPoint2D> VictimSearch::undecided(Stamp now, double age) const {
   for (const Cluster& cluster : clusters_)
     if (cluster.id == 0 && cluster.newest != Stamp::never() && now - cluster.newest < age)
       places.push_back(cluster.p_map);
+  return places;
+}
+
+std::vector<TPoint2D> VictimSearch::seen_from(int id) const {
+  std::vector<TPoint2D> places;
+  for (const Cluster& cluster : clusters_) {
+    if (cluster.id != id) continue;
+    for (const Sighting& s : cluster.sightings)
+      if (places_well(s.kind) && distance(s.p_map, cluster.p_map) <= config_.consistency)
+        places.push_back(position(s.anchor.T_map_base));
+  }
   return places;
 }
 

@@ -25,6 +25,7 @@ struct VictimSearchConfig {
   double memory = 12.0;                  ///< only cues younger than this confirm a victim together [s]
   double other_side = deg_to_rad(90.0);  ///< looked at from so different bearings, it may be another victim [rad]
   double back_to_back = 0.25;            ///< which lies at least so far from the first: box, wall, box [m]
+  double side_by_side = 0.45;            ///< seen through holes in walls, so far apart: two boxes, of 0.5 m each [m]
 };
 
 /// Whether nothing stands between two places of the map.
@@ -32,13 +33,15 @@ using SightFn = std::function<bool(const mrpt::math::TPoint2D&, const mrpt::math
 
 /// What the map says of the line between two of its places.
 struct Sightlines {
-  SightFn open;    ///< nothing stands between
-  SightFn hidden;  ///< a wall stands before the second
+  SightFn open;          ///< nothing stands between
+  SightFn hidden;        ///< a wall stands before the second
+  SightFn through = {};  ///< the second is seen through a hole in a wall; none: nothing is
+  bool holes = false;    ///< it is known that walls have holes
 };
 
 /// Collects victim cues in the map frame into victims. Two that lie nearer than `merge_distance` are told apart by what
 /// no error of a pose can do: they were seen from the two sides of a wall, or both in one look of a camera, or one
-/// where the map has a wall before the other.
+/// where the map has a wall before the other. Seen through holes in walls their boxes tell them apart.
 class VictimSearch {
  public:
   explicit VictimSearch(const VictimSearchConfig& config = {}) : config_(config) {}
@@ -53,6 +56,9 @@ class VictimSearch {
 
   /// Where cues younger than `age` [s] put victims that are not confirmed yet: worth another look [map frame, m].
   std::vector<mrpt::math::TPoint2D> undecided(Stamp now, double age) const;
+
+  /// From where cameras saw a confirmed victim [map frame, m].
+  std::vector<mrpt::math::TPoint2D> seen_from(int id) const;
 
   /// The confirmed victims by id. Of two that turn out to be one, the older id stays.
   const std::vector<VictimReport>& reports() const { return reports_; }
@@ -70,6 +76,7 @@ class VictimSearch {
     Anchor anchor;                ///< where it was sensed
     mrpt::math::TPoint2D p_base;  ///< the same place as p_map
     bool sure = false;            ///< it cannot be of another cluster nearby
+    bool through = false;         ///< a hole in a wall
     PlaceCovariance pose{};       ///< of p_map, by the pose alone
   };
   struct Cluster {
@@ -93,6 +100,8 @@ class VictimSearch {
   std::size_t merge_into_neighbour(std::size_t index, const Sightlines& sight);
   bool is_other(Cluster& cluster, const Sighting& sighting, const Sightlines& sight) const;
   bool are_two(Cluster& a, Cluster& b, const Sightlines& sight);
+  bool side_by_side(double d, const Cluster& cluster, bool through, const Sightlines& sight) const;
+  static bool seen_through(const Cluster& cluster);
   bool back_to_back(double d, const Sighting& a, const Sighting& b, const Sightlines& sight) const;
   void locate(Cluster& cluster) const;
   void confirm(Cluster& cluster, Stamp stamp);

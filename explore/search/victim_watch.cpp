@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/planar.h"
-#include "base/wall_between.h"
+#include "explore/search/behind_wall.h"
 
 namespace rubble::explore {
 namespace {
@@ -14,28 +14,10 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
 constexpr double kCueAge = 1.2;     ///< an unconfirmed cue younger than this is worth waiting for [s]
-constexpr double kOfVictim = 0.5;   ///< a cue so near to a confirmed victim is of it [m]
-constexpr double kBehind = 0.08;    ///< a victim lies so far behind the wall, not before it or in its cells [m]
-constexpr double kHand = 0.12;      ///< beside a line of sight through a hole there is wall [m]
 constexpr double kVisit = 2.0;      ///< shorter stares are none [s]
 constexpr double kStaredAge = 5.0;  ///< what was smelt so long ago is what the robot stood still for [s]
 constexpr int kSureOfHoles = 3;     ///< cues
-
-/// Whether a wall stands between, at least kBehind before `to`.
-bool is_behind_wall(const OccupancyGrid& cells, const TPoint2D& from, const TPoint2D& to) {
-  const TPoint2D way = to - from;
-  const double length = way.norm();
-  return length > kBehind && wall_between(cells, from, from + way * ((length - kBehind) / length));
-}
-
-/// The same, and not past the edge of that wall: seen aslant, the side of a box covers what lies in it on the map, by a
-/// cell or by the error of the place, and a hand beside the line there is no wall.
-bool is_within_wall(const OccupancyGrid& cells, const TPoint2D& from, const TPoint2D& to) {
-  if (!is_behind_wall(cells, from, to)) return false;
-  const TPoint2D way = to - from;
-  const TPoint2D aside = TPoint2D{-way.y, way.x} * (kHand / way.norm());
-  return is_behind_wall(cells, from + aside, to + aside) && is_behind_wall(cells, from - aside, to - aside);
-}
+constexpr double kJudged = 2.0;     ///< all cues are judged anew on the newest map this often [s]
 
 }  // namespace
 
@@ -64,10 +46,10 @@ bool VictimWatch::take_in(const robot::VictimCue& cue, const Anchor& anchor, con
   };
   const std::size_t before = victims_.reports().size();
   const auto hidden = [&](const TPoint2D& from, const TPoint2D& to) { return is_behind_wall(floor.cells, from, to); };
-  victims_.add(cue, anchor, {same_side, hidden}, covariance_);
-  ask_for_holes(anchor,
-                anchor.T_map_base.composePoint({cue.range * std::cos(cue.bearing), cue.range * std::sin(cue.bearing)}),
-                floor);
+  const auto through = [&](const TPoint2D& from, const TPoint2D& to) {
+    return shows_through_hole(floor.cells, from, to);
+  };
+  victims_.add(cue, anchor, {same_side, hidden, through, search_.squarely()}, covariance_);
   return victims_.reports().size() > before;
 }
 
@@ -119,19 +101,19 @@ void VictimWatch::rebuild_reports() {
 }
 
 /// A victim in a niche lies before its back, though a cue past the niche's edge may seem to come through it; one that
-/// is seen behind a wall again and again, and hardly ever before it, is seen through a hole.
-void VictimWatch::ask_for_holes(const Anchor& anchor, const TPoint2D& cue, const Traversable& floor) {
-  if (search_.squarely()) return;
-  const std::vector<VictimReport>& seen = victims_.reports();
-  const auto away = [&](const VictimReport& victim) { return distance(victim.p_map, cue); };
-  const auto victim = std::min_element(seen.begin(), seen.end(),
-                                       [&](const VictimReport& a, const VictimReport& b) { return away(a) < away(b); });
-  if (victim == seen.end() || away(*victim) > kOfVictim) return;
-  Cues& cues = cues_[victim->id];
-  // The scanner may have seen the hole.
-  const bool hidden = is_within_wall(with_holes_shut(floor.cells), position(anchor.T_map_base), victim->p_map);
-  ++(hidden ? cues.through_wall : cues.in_sight);
-  if (cues.through_wall >= kSureOfHoles && cues.through_wall > 2 * cues.in_sight) search_.expect_holes();
+/// is seen behind a wall again and again, and hardly ever before it, is seen through a hole. Driving along a wall for
+/// the first time the robot may see a victim before the wall is on the map, and never again: so all cues count on the
+/// newest map.
+void VictimWatch::judge_holes(const Traversable& floor, const slam::CountMap& map, Stamp now) {
+  if (!search_.on() || search_.squarely() || now < next_judged_ || victims_.reports().empty()) return;
+  next_judged_ = now + kJudged;
+  const OccupancyGrid shut = with_holes_shut(floor.cells);
+  for (const VictimReport& victim : victims_.reports()) {
+    int through = 0, others = 0;
+    for (const TPoint2D& from : victims_.seen_from(victim.id))
+      ++(is_behind_hole(shut, &map, from, victim.p_map) ? through : others);
+    if (through >= kSureOfHoles && through > 2 * others) search_.expect_holes();
+  }
 }
 
 bool VictimWatch::look(const Traversable& floor, const TPose2D& T_map_base, double turn_rate, Stamp now) {

@@ -2,7 +2,6 @@
 
 #include <mrpt/math/TPose2D.h>
 
-#include <map>
 #include <vector>
 
 #include "base/pose_covariance.h"
@@ -39,6 +38,9 @@ class VictimWatch {
   /// confirmed by it.
   bool hear(const robot::VictimCue& cue, const slam::Mapper& mapper, const mrpt::math::TPose2D& T_map_base,
             const Traversable& floor);
+  /// Asks whether holes in walls are to be expected, by where the victims were seen from. `floor` is that of `map`,
+  /// which shows all where it is known to be now: one that is still drawn anew after a correction has walls twice.
+  void judge_holes(const Traversable& floor, const slam::CountMap& map, Stamp now);
   /// Records what is seen from here of the floor, turning at `turn_rate` [rad/s]. Says whether it did: not more often
   /// than the sensors look.
   bool look(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, double turn_rate, Stamp now);
@@ -59,13 +61,7 @@ class VictimWatch {
   void rebuild_reports();
   void tell_suspects();
   bool unsure() const { return doubt_.unsure() || !scans_trusted_; }
-  void ask_for_holes(const Anchor& anchor, const mrpt::math::TPoint2D& cue, const Traversable& floor);
 
-  /// Of a confirmed victim, counted by whether a wall of the map stands before it.
-  struct Cues {
-    int through_wall = 0;
-    int in_sight = 0;
-  };
   PoseDoubt doubt_;
   PoseCovariance covariance_;  ///< of the pose
   bool scans_trusted_ = true;
@@ -77,7 +73,7 @@ class VictimWatch {
   Stamp stares_since_ = Stamp::never();
   Stamp smelt_at_ = Stamp::never();  ///< while it stared
   FloorSearch search_;
-  std::map<int, Cues> cues_;  ///< of confirmed victims, by id
+  Stamp next_judged_ = Stamp::never();
 };
 
 }  // namespace rubble::explore

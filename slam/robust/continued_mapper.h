@@ -37,6 +37,7 @@ class ContinuedMapper : public Mapper {
   mrpt::math::TPose2D pose() const override;
   PoseCovariance covariance() const override;
   std::uint64_t revision() const override;
+  bool settled() const override { return !joined_ || drive_->settled(); }
   std::optional<mrpt::math::TPose2D> pose_at(Stamp stamp) const override;
   const Trajectory& trajectory() const override;
   const Trajectory& live_trajectory() const override { return live_; }

@@ -564,6 +564,7 @@ PoseCovariance RobustMapper::covariance() const {
 }
 
 std::uint64_t RobustMapper::revision() const { return impl_->revision_; }
+bool RobustMapper::settled() const { return impl_->map_.settled(); }
 std::optional<TPose2D> RobustMapper::pose_at(Stamp stamp) const { return impl_->pose_at(stamp); }
 const Trajectory& RobustMapper::trajectory() const { return impl_->trajectory(); }
 const Trajectory& RobustMapper::live_trajectory() const { return impl_->live_; }

@@ -72,6 +72,7 @@ class RobustMapper : public Mapper {
   mrpt::math::TPose2D pose() const override;
   PoseCovariance covariance() const override;
   std::uint64_t revision() const override;
+  bool settled() const override;
   std::optional<mrpt::math::TPose2D> pose_at(Stamp stamp) const override;
   const Trajectory& trajectory() const override;
   const Trajectory& live_trajectory() const override;

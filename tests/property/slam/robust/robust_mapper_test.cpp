@@ -129,6 +129,30 @@ TEST(RobustMapper, KnownGroundAddsNoKeyFramesAndThePlaceStays) {
   }
 }
 
+/// Only a correction of the past unsettles the map; then it is drawn anew bit by bit.
+TEST(RobustMapper, AfterACorrectionTheMapSettles) {
+  const RobotModel model;
+  RobustConfig config;
+  config.budget_ms = 1.0;
+  RobustMapper mapper(model, config, 1);
+  const slam_test::Drive drive = slam_test::drive_through(rounds(4), 0.0);
+  int unsettled = 0;
+  for (const Inputs& tick : slam_test::record(random_room(1), drive, model, 2.0, 0.02, 1)) {
+    const bool settled = mapper.settled();
+    const std::uint64_t revision = mapper.revision();
+    mapper.update(tick);
+    if (mapper.revision() == revision && settled) {
+      EXPECT_TRUE(mapper.settled());
+    }
+    if (!mapper.settled()) ++unsettled;
+  }
+  EXPECT_GT(mapper.revision(), 0u);
+  EXPECT_GT(unsettled, 0);
+  EXPECT_TRUE(mapper.settled()) << "known ground for long";
+  mapper.finish();
+  EXPECT_TRUE(mapper.settled());
+}
+
 TEST(RobustMapper, NewGroundBehindKnownGroundIsMappedAndTied) {
   // Two rooms: the first is known for long when the robot goes on to the second and comes back.
   slam_test::World rooms = {{{4.0, -1.5}, {4.0, 0.0}},   {{4.0, 0.9}, {4.0, 2.5}},  // the wall with its door

@@ -199,6 +199,61 @@ TEST(VictimSearch, BehindAHoleOneStaysOne) {
   EXPECT_EQ(search.reports().size(), 1u);
 }
 
+/// Where walls have holes, boxes of 0.5 m stand side by side behind them.
+TEST(VictimSearch, TwoBoxesBehindAWallWithHolesAreTwo) {
+  for (const double apart : {0.5, 0.6, 0.79, 0.0, 0.2})
+    for (const bool holes : {true, false}) {
+      Rng rng(1, "cues");
+      VictimSearch search;
+      for (int i = 0; i < 24; ++i) {
+        const double off = i / 6 % 2 == 0 ? 0.0 : apart;  // the robot comes by twice
+        const TPose2D pose{0.7, 1.0 + off, 0.0};
+        VictimCue cue = cue_of({2.0, 1.0 + off}, pose, 0.5 * i);
+        const double range_error = rng.gaussian(0.05);
+        const double bearing_error = rng.gaussian(deg_to_rad(2.0));
+        cue.range *= 1.0 + range_error;
+        cue.bearing += bearing_error;
+        search.add(cue, {cue.stamp, pose}, {kAlways, kAlways, kAlways, holes});
+      }
+      EXPECT_EQ(search.reports().size(), holes && apart >= 0.5 ? 2u : 1u) << apart << ' ' << holes;
+    }
+}
+
+/// What tells them apart at first may be the error of a pose.
+TEST(VictimSearch, TwoBehindHolesThatComeTooNearForTwoBoxesAreOne) {
+  for (const double at_last : {0.3, 0.6}) {
+    VictimSearch search;
+    for (int i = 0; i < 30; ++i) {
+      const double off = i < 6 ? 0.0 : i < 12 ? 0.6 : at_last;
+      const TPose2D pose{0.7, 1.0 + off, 0.0};
+      search.add(cue_of({2.0, 1.0 + off}, pose, 0.5 * i), {Stamp::from_seconds(0.5 * i), pose},
+                 {kAlways, kAlways, kAlways, true});
+      if (i == 11) {
+        EXPECT_EQ(search.reports().size(), 2u);
+      }
+    }
+    EXPECT_EQ(search.reports().size(), at_last < 0.45 ? 1u : 2u) << at_last;
+  }
+}
+
+/// The same noise as of one behind a hole, where boxes side by side are told apart.
+TEST(VictimSearch, BehindAHoleOneStaysOneThoughThereMayBeTwo) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Rng rng(seed, "cues");
+    VictimSearch search;
+    const TPose2D pose{0.6, 1.0, 0.0};
+    for (int i = 0; i < 200; ++i) {
+      VictimCue cue = cue_of(kVictim, pose, 0.5 * i);
+      const double range_error = rng.gaussian(0.05);
+      const double bearing_error = rng.gaussian(deg_to_rad(2.0));
+      cue.range *= 1.0 + range_error;
+      cue.bearing += bearing_error;
+      search.add(cue, {cue.stamp, pose}, {kAlways, kAlways, kAlways, true});
+    }
+    EXPECT_EQ(search.reports().size(), 1u) << seed;
+  }
+}
+
 TEST(VictimSearch, MoreKindsOfCuesRaiseTheConfidence) {
   VictimSearch one;
   VictimSearch two;
