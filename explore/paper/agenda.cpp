@@ -75,7 +75,7 @@ void Agenda::follow(const slam::Mapper& mapper, double shift) {
 }
 
 double Agenda::way_home(const Situation& situation, double way_come) {
-  const Plan way = choice_.way_home(situation.floor, situation.T_map_base);
+  const Plan way = choice_.way_home(situation.floor, situation.T_map_base, situation.trail);
   // Blocked at the moment: a detour, but hardly longer than all the way it came.
   return way.found ? length_of(way) : std::min(way_come, kDetour * choice_.distance_home(situation.T_map_base));
 }
@@ -96,6 +96,7 @@ Plan Agenda::choose(const Situation& situation) {
   }
   TargetChoice::View view{situation.floor, situation.T_map_base, situation.now, situation.left_alone};
   view.speed = situation.speed;
+  view.trail = situation.trail;
   // What is off the grid may be solid after all: it is driven at for the place that is asked for, and for no other.
   view.places_only = pushing_.what() == Pushing::What::OffGrid;
   view.faces_first = faces_go_first(situation);

@@ -51,7 +51,8 @@ class Agenda {
     std::size_t victims;  ///< sure ones so far
     LeftAlone& left_alone;
     FloorSearch& search;
-    double speed = 0.2;  ///< of the robot so far, turns and stops included [m/s]
+    double speed = 0.2;            ///< of the robot so far, turns and stops included [m/s]
+    const Trail* trail = nullptr;  ///< where the floor carried the robot, if it did not everywhere
 
     Anchor robot() const { return {now, T_map_base}; }
   };

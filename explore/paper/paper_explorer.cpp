@@ -369,7 +369,8 @@ Agenda::Situation PaperExplorer::situation() {
           victims_.reports().size(),
           left_alone_,
           victims_.search(),
-          home_way_.speed()};
+          home_way_.speed(),
+          recovery_.times() > 0 ? &trail_ : nullptr};
 }
 
 }  // namespace rubble::explore

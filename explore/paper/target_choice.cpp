@@ -21,6 +21,7 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
 constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
+constexpr double kCarried = 0.35;                       ///< from its trail floor carried the robot [m]
 constexpr double kKeep = 3.0;     ///< looks on the way change what a look squarely is worth: times the usual head start
 constexpr double kBeside = 0.25;  ///< [m]
 const std::optional<PalletGrid> kNoGrid;
@@ -61,7 +62,7 @@ void TargetChoice::go_home() {
 }
 
 TargetChoice::Choice TargetChoice::choose(const View& view, FloorSearch& search) {
-  if (goal_ == Goal::Home) return {way_home(view.floor, view.T_map_base)};
+  if (goal_ == Goal::Home) return {way_home(view.floor, view.T_map_base, view.trail)};
   const bool driving = goal_ == Goal::Frontier;
   if (driving && (frontiers_done_ || !search.on())) return {to_frontier(view, search, target_)};
   Plan frontier = to_frontier(view, search, driving ? target_ : std::nullopt);
@@ -164,7 +165,16 @@ Plan TargetChoice::to_place(const View& view, FloorSearch& search, Subjects subj
   return plan;
 }
 
-Plan TargetChoice::way_home(const Traversable& floor, const TPose2D& T_map_base) {
+Plan TargetChoice::way_home(const Traversable& floor, const TPose2D& T_map_base, const Trail* trail) {
+  if (trail != nullptr) {
+    Traversable carried = floor;
+    keep_to_trail(carried, trail->points(), kCarried);
+    if (Plan back = straight_home(carried, T_map_base); back.found) return back;
+  }
+  return straight_home(floor, T_map_base);
+}
+
+Plan TargetChoice::straight_home(const Traversable& floor, const TPose2D& T_map_base) {
   Plan plan;
   for (const double tolerance : kHomeTolerances) {
     plan = planner_.to_point(floor, T_map_base, position(home_.T_map_base), tolerance);

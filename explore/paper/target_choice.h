@@ -9,6 +9,7 @@
 #include "explore/anchor.h"
 #include "explore/caution/left_alone.h"
 #include "explore/caution/local_grids.h"
+#include "explore/caution/trail.h"
 #include "explore/paper/frontier_worth.h"
 #include "explore/plan/planner.h"
 #include "explore/plan/traversable.h"
@@ -41,9 +42,10 @@ class TargetChoice {
     mrpt::math::TPose2D T_map_base;
     Stamp now;
     const LeftAlone& left_alone;
-    bool places_only = false;  ///< in a search frontiers do not come first
-    bool faces_first = false;  ///< walls that may hide new ground come after the faces
-    double speed = 0.2;        ///< of the robot so far, turns and stops included [m/s]
+    bool places_only = false;      ///< in a search frontiers do not come first
+    bool faces_first = false;      ///< walls that may hide new ground come after the faces
+    double speed = 0.2;            ///< of the robot so far, turns and stops included [m/s]
+    const Trail* trail = nullptr;  ///< where the floor carried the robot, if it did not everywhere
   };
   struct Choice {
     Plan plan;
@@ -86,8 +88,9 @@ class TargetChoice {
   Choice choose(const View& view, FloorSearch& search);
   Choice choose_of_all_places(const View& view, FloorSearch& search, Plan frontier);
   Plan choose_frontier(const View& view, const FloorSearch& search) { return to_frontier(view, search, std::nullopt); }
-  /// A way to the start, or as near to it as can be reached.
-  Plan way_home(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
+  /// A way to the start, or as near to it as can be reached. `trail`: over floor that has carried the robot, if there
+  /// is one. What it has not driven on may stop it, when no time is left for another way.
+  Plan way_home(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const Trail* trail);
   /// Distance to the start as the crow flies [m].
   double distance_home(const mrpt::math::TPose2D& T_map_base) const;
 
@@ -105,6 +108,7 @@ class TargetChoice {
   double clearance_cap() const { return planner_.clearance_cap(); }
 
  private:
+  Plan straight_home(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
   Plan to_frontier(const View& view, const FloorSearch& search, const std::optional<mrpt::math::TPoint2D>& previous);
   Plan beside_the_way(const View& view, FloorSearch& search, const Plan& frontier);
   bool goes_first(const Plan& place, const Plan& frontier, double most) const;

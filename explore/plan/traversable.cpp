@@ -175,6 +175,23 @@ void free_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double r
   }
 }
 
+void keep_to_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double radius) {
+  OccupancyGrid kept(floor.frame(), Occupancy::Unknown);
+  const double reach = radius / floor.frame().resolution;
+  for (const TPoint2D& p : trail) {
+    const Cell middle = floor.cells.cell(p);
+    const Box box = cells_around(floor.frame(), p, radius);
+    for (int y = box.low.y; y <= box.high.y; ++y)
+      for (int x = box.low.x; x <= box.high.x; ++x) {
+        const double dx = x - middle.x, dy = y - middle.y;
+        if (dx * dx + dy * dy <= reach * reach) kept[{x, y}] = floor.cells[{x, y}];
+      }
+  }
+  for (int y = 0; y < floor.cells.height(); ++y)
+    for (int x = 0; x < floor.cells.width(); ++x)
+      if (floor.cells[{x, y}] == Occupancy::Free) floor.cells[{x, y}] = kept[{x, y}];
+}
+
 void add_obstacles(Traversable& floor, const std::vector<TPoint2D>& points, double near) {
   const GridFrame& frame = floor.frame();
   std::vector<Cell> news;

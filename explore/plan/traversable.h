@@ -41,6 +41,10 @@ void free_body(Traversable& floor, const mrpt::math::TPose2D& T_map_base, double
 /// Makes unknown cells within `radius` of a place the robot's centre has passed free.
 void free_trail(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& trail, double radius);
 
+/// Makes free cells farther than `radius` from all places the robot's centre has passed unknown: ways then lead over
+/// floor that has carried it.
+void keep_to_trail(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& trail, double radius);
+
 /// Adds obstacles the map does not show (yet), e.g. the hits of the newest scan. A point within `near` of an obstacle
 /// of the map is taken for that obstacle, displaced by the error of the pose, and left out.
 void add_obstacles(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& points, double near);

@@ -347,6 +347,35 @@ TEST(Agenda, WithoutAKnownWayHomeItTakesADetourButNotMoreThanItCame) {
   EXPECT_EQ(robot.agenda.way_home(robot.situation(), 7.0), 7.0);
 }
 
+/// Floor that it has not driven on may stop it, when no time is left for another way.
+TEST(Agenda, WhereSomethingWasFeltItGoesHomeOnFloorThatHasCarriedIt) {
+  for (const double thick : {0.2, 2.0}) {  // the block between two lanes, the nearer of which it has not driven on
+    Ordered robot;
+    robot.cells = test::room(8.0, 2.4 + thick);
+    test::fill(robot.cells, 1.2, 1.2, 6.8, 1.2 + thick, Occupancy::Occupied);
+    robot.pose = {0.6, 0.6, 0.0};
+    robot.agenda.set_home({robot.now, robot.pose});
+    Trail trail;
+    for (const TPoint2D& corner : {TPoint2D(0.6, 1.8 + thick), TPoint2D(7.4, 1.8 + thick), TPoint2D(7.4, 0.6)}) {
+      const TPoint2D from = position(robot.pose);
+      for (int i = 0; i <= 60; ++i) {
+        robot.pose.x = from.x + (corner.x - from.x) * i / 60.0;
+        robot.pose.y = from.y + (corner.y - from.y) * i / 60.0;
+        trail.add(robot.now, robot.pose);
+      }
+    }
+    Agenda::Situation situation = robot.situation();
+    const double near = robot.agenda.way_home(situation, 100.0);
+    EXPECT_NEAR(near, 6.8, 0.3);
+    situation.trail = &trail;
+    EXPECT_NEAR(robot.agenda.way_home(situation, 100.0), 6.8 + 2.0 * (1.2 + thick), 0.9);
+    test::fill(robot.cells, 4.0, 1.2 + thick, 4.1, 2.4 + thick, Occupancy::Occupied);
+    Agenda::Situation blocked = robot.situation();
+    blocked.trail = &trail;
+    EXPECT_NEAR(robot.agenda.way_home(blocked, 100.0), near, 0.3) << "its trail is blocked";
+  }
+}
+
 TEST(Agenda, TheSameDecisionIsToldOnce) {
   Ordered robot;
   robot.agenda.note(robot.now, "a");

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "base/angle.h"
+#include "base/planar.h"
 #include "base/rng.h"
 #include "tests/support/explore_grids.h"
 
@@ -172,6 +174,24 @@ TEST(Traversable, TheTrailFreesOnlyWhatWasNeverSeen) {
   EXPECT_EQ((floor.cells[{6, 1}]), Occupancy::Free);
   EXPECT_EQ((floor.body[{6, 1}]), 1);
   EXPECT_EQ((floor.cells[{9, 1}]), Occupancy::Unknown);
+}
+
+TEST(Traversable, KeptToTheTrailOnlyFloorBesideItIsFree) {
+  const Traversable all = traversable(test::random_grid(60, 40, 3));
+  Traversable floor = all;
+  const std::vector<TPoint2D> trail{{0.5, 0.5}, {1.2, 1.0}, {2.9, 1.9}};
+  keep_to_trail(floor, trail, 0.35);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 60; ++x) {
+      double nearest = 1e9;
+      for (const TPoint2D& p : trail) nearest = std::min(nearest, distance(p, floor.cells.centre({x, y})));
+      if (all.cells[{x, y}] != Occupancy::Free || nearest < 0.3) {
+        EXPECT_EQ((floor.cells[{x, y}]), (all.cells[{x, y}]));
+      } else if (nearest > 0.4) {
+        EXPECT_EQ((floor.cells[{x, y}]), Occupancy::Unknown);
+      }
+      EXPECT_EQ((floor.obstacle[{x, y}]), (all.obstacle[{x, y}]));
+    }
 }
 
 TEST(Traversable, FreshHitsNearAnObstacleAreThatObstacle) {
