@@ -1,6 +1,7 @@
 #include "scoring/maps/colours/added_drawings.h"
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <vector>
@@ -17,6 +18,7 @@ constexpr int kColour = 60;           // difference of the channels of ink
 constexpr int kTint = 26;             // of what still counts as grey: RViz draws unknown ground in 112,137,134
 constexpr double kLeastInk = 0.0005;  // of all pixels
 constexpr double kMostInk = 0.1;
+constexpr int kSmear = 8;            // JPEG smears colours as far [pixels]
 constexpr double kGreyRest = 0.995;  // of the pixels that are not ink or beside it
 constexpr int kWallTolerance = 12;
 constexpr double kLeastWalls = 0.001;  // of all pixels
@@ -57,10 +59,15 @@ cv::Mat ink_of(const RgbImage& image) {
   const cv::Mat tint = colourfulness(image);
   const cv::Mat strong = tint > kColour;
   if (share_of(strong) < kLeastInk || share_of(strong) > kMostInk) return {};
+  const auto is_grey_beyond = [&](int reach) {
+    cv::Mat near;
+    cv::dilate(strong, near, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
+    const cv::Mat rest = ~near;
+    return cv::countNonZero(rest & (tint <= kTint)) >= kGreyRest * cv::countNonZero(rest);
+  };
+  if (!is_grey_beyond(1) && !is_grey_beyond(kSmear)) return {};
   cv::Mat beside;
   cv::dilate(strong, beside, cv::Mat::ones(3, 3, CV_8U));
-  const cv::Mat rest = ~beside;
-  if (cv::countNonZero(rest & (tint <= kTint)) < kGreyRest * cv::countNonZero(rest)) return {};
   return strong | (beside & (tint > kTint));
 }
 
@@ -72,6 +79,36 @@ cv::Mat thin_walls(const cv::Mat& grey, const cv::Mat& not_asked) {
   cv::Mat depth;
   cv::distanceTransform(walls, depth, cv::DIST_L2, 3);
   return cv::mean(depth, walls)[0] <= kThinWalls ? walls : cv::Mat();
+}
+
+/// Most of these walls lie beside the ink: they are its rim, and the coloured lines are the walls.
+bool are_rims_of(const cv::Mat& ink, const cv::Mat& walls) {
+  cv::Mat near;
+  cv::dilate(ink, near, cv::Mat::ones(2 * kSmear + 1, 2 * kSmear + 1, CV_8U));
+  return 4 * cv::countNonZero(walls & ~near) < cv::countNonZero(walls);
+}
+
+/// The ink with what JPEG or blending left of it beside: faintly tinted, and paler than walls are.
+cv::Mat with_rims(const RgbImage& image, const cv::Mat& grey, const cv::Mat& ink, const cv::Mat& walls) {
+  constexpr int kBeside = 7;  // [pixels]
+  constexpr int kFaint = 12;  // difference of the channels
+  constexpr int kPaler = 50;  // than walls
+  const double wall = cv::mean(grey, walls)[0], around = cv::mean(grey, ~walls)[0];
+  const cv::Mat pale = wall < around ? cv::Mat(grey > wall + kPaler) : cv::Mat(grey < wall - kPaler);
+  cv::Mat beside;
+  cv::dilate(ink, beside, cv::Mat::ones(kBeside, kBeside, CV_8U));
+  return ink | (beside & pale & ~walls & (colourfulness(image) > kFaint));
+}
+
+/// Where ink crosses a wall, or covers a piece of it: between two ends of walls in a row or column.
+cv::Mat walls_across(const cv::Mat& walls, const cv::Mat& ink) {
+  constexpr int kWidest = 11;  // [pixels]: less than between the walls of a passage
+  cv::Mat depth, rows, columns;
+  cv::distanceTransform(ink, depth, cv::DIST_L2, 3);
+  const int width = std::min(kWidest, 2 * static_cast<int>(std::lround(2.0 * cv::mean(depth, ink)[0])) + 3);
+  cv::morphologyEx(walls, rows, cv::MORPH_CLOSE, cv::Mat::ones(1, width, CV_8U));
+  cv::morphologyEx(walls, columns, cv::MORPH_CLOSE, cv::Mat::ones(width, 1, CV_8U));
+  return (rows | columns) & ink;
 }
 
 /// Of the pixels of the rectangle's rim those of this class.
@@ -138,16 +175,29 @@ std::optional<cv::Rect> panel_within_frame(const cv::Mat& classes, cv::Rect pane
                                                                                           : std::nullopt;
 }
 
+/// A line around unknown ground is a frame; around free ground it may be a wall.
+cv::Rect without_frame(const cv::Mat& classes, const cv::Rect& panel) {
+  cv::Rect inner = panel;
+  for (int i = 0; i < kThickestFrame && inner.width > kLeastPanelSide && inner.height > kLeastPanelSide; ++i) {
+    if (share_of_rim(classes, inner, kWallClass) < kFramedRim) break;
+    inner = {inner.x + 1, inner.y + 1, inner.width - 2, inner.height - 2};
+  }
+  return share_of_rim(classes, inner, kUnknownClass) >= kUnknownRim ? inner : panel;
+}
+
 }  // namespace
 
 bool paint_over_colours(const RgbImage& image, const cv::Mat& apart, cv::Mat& grey) {
   const cv::Mat ink = ink_of(image);
   if (ink.empty()) return false;
   const cv::Mat walls = thin_walls(grey, ink | apart);
-  if (walls.empty()) return false;
+  if (walls.empty() || are_rims_of(ink, walls)) return false;
+  const cv::Mat all = with_rims(image, grey, ink, walls);
+  const cv::Mat crossed = walls_across(walls, all);
   cv::Mat ground = grey.clone();
-  carry_ground(ink | walls, ground);
-  ground.copyTo(grey, ink);
+  carry_ground(all | walls, ground);
+  ground.copyTo(grey, all);
+  if (cv::countNonZero(crossed) > 0) grey.setTo(cv::mean(grey, walls)[0], crossed);
   return true;
 }
 
@@ -156,7 +206,7 @@ bool clear_around_panel(cv::Mat& classes) {
   if (!outer) return false;
   const std::optional<cv::Rect> inner = panel_within_frame(classes, *outer);
   if (!inner && !is_map(classes, *outer)) return false;
-  const cv::Rect panel = inner.value_or(*outer);
+  const cv::Rect panel = without_frame(classes, inner.value_or(*outer));
   cv::Mat cleared(classes.size(), CV_8U, cv::Scalar(kUnknownClass));
   classes(panel).copyTo(cleared(panel));
   classes = cleared;

@@ -79,15 +79,23 @@ bool has_a_line_between(const cv::Mat& grey, const cv::Mat& way, int inside, int
   return share_in(between, (grey >= level - kOneGrey) & (grey <= level + kOneGrey)) >= kOneLine;
 }
 
+/// Never blended: four greys, as a map and its canvas have, are all.
+bool is_of_few_levels(const cv::Mat& grey) {
+  std::array<bool, 256> there{};
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x) there[grey.at<unsigned char>(y, x)] = true;
+  return std::count(there.begin(), there.end(), true) <= 4;
+}
+
 /// Nothing but blends of two greys lies on the way out of the region: no wall stands between it and what is beside.
 bool is_open(const cv::Mat& grey, const cv::Mat& region, int inside, int beside) {
-  constexpr int kOvershoot = 30;  // of smooth interpolation
+  const int overshoot = is_of_few_levels(grey) ? 0 : 30;  // of smooth interpolation
   cv::Mat way;
   cv::dilate(region, way, cv::Mat::ones(2 * kBlend + 1, 2 * kBlend + 1, CV_8U));
   way &= ~region;
   if (has_a_line_between(grey, way, inside, beside)) return false;
-  return share_in(way, (grey >= std::min(inside, beside) - kOvershoot) &
-                           (grey <= std::max(inside, beside) + kOvershoot)) >= kBorderUnknown;
+  return share_in(way, (grey >= std::min(inside, beside) - overshoot) &
+                           (grey <= std::max(inside, beside) + overshoot)) >= kBorderUnknown;
 }
 
 /// Filled-in corners have no thin parts: one that has is ground of the walls' own grey, and those hang on to it.

@@ -17,7 +17,7 @@ constexpr double kLeast = 0.1;     // of the picture, to be a ground
 constexpr int kDarkest = 60;       // of a ground
 constexpr int kUneven = 20;        // greys, without a twentieth at either end
 constexpr double kMostLeft = 0.4;  // of that, when the surface was taken out
-constexpr int kRounding = 6;       // greys that are left in any case
+constexpr int kLeftInAnyCase = 6;  // greys that are left in any case
 constexpr int kEvery = 16;         // pixels between places from where grounds are looked for
 
 using Surface = Eigen::Matrix<double, 6, 1>;
@@ -106,7 +106,7 @@ std::optional<EvenLight> with_even_light(const cv::Mat& grey) {
     return out;
   };
   const int before = spread_of(greys_of(smooth, ground)), after = spread_of(greys_of(evened(smooth), ground));
-  if (after > std::max<double>(kRounding, kMostLeft * before)) return std::nullopt;
+  if (after > std::max<double>(kLeftInAnyCase, kMostLeft * before)) return std::nullopt;
   return EvenLight{evened(grey), before};
 }
 

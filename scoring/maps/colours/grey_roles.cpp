@@ -136,11 +136,23 @@ double inner(const Sides& sides) {
   return most;
 }
 
+/// The darkest level is what white lines on dark ground leave beside them through JPEG or a sharp filter: it differs
+/// far less from the grounds than they do.
+bool are_ripples_beside(const std::vector<Level>& levels, int fringe) {
+  constexpr int kStronger = 3;
+  const Level &darkest = levels.front(), &lightest = levels.back();
+  if (fringe == 0 || lightest.depth > kThin) return false;
+  int low = 256, high = -1;  // grounds
+  for (const Level& level : levels)
+    if (level.depth > kThin) low = std::min(low, level.grey), high = std::max(high, level.grey);
+  return high >= 0 && lightest.grey - high >= kStronger * (low - darkest.grey);
+}
+
 /// The level of the thin lines: the darkest, unless that covers areas and another one has grounds on both its sides;
 /// then the lightest, or one between.
 std::size_t wall_level(const std::vector<Level>& levels, const cv::Mat& labels, int fringe) {
   const Level& darkest = levels.front();
-  if (darkest.depth <= kThin) return 0;
+  if (darkest.depth <= kThin) return are_ripples_beside(levels, fringe) ? levels.size() - 1 : 0;
   const auto inner_walls = [&](std::size_t i) {
     return levels[i].depth > kThin || levels[i].depth > kThinner * darkest.depth
                ? 0.0

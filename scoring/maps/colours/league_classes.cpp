@@ -10,6 +10,7 @@
 #include "base/grid.h"
 #include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/colours/league_pixels.h"
+#include "scoring/maps/colours/lettering.h"
 #include "scoring/maps/colours/lossy_colours.h"
 #include "scoring/maps/colours/nearest_ground.h"
 #include "scoring/maps/colours/searched_floor.h"
@@ -129,10 +130,12 @@ void drop_lettering(cv::Mat& labels) {
 /// Turned pictures have ragged walls; a ragged rim is a long one, which makes walls seem thinner than they are
 /// (wall_half_thickness()). Notches of a pixel are filled. Their grid lines, blended with white, look unexplored:
 /// unknown lines of up to four pixels inside free space are free.
-void smooth(cv::Mat& labels) {
+void smooth(cv::Mat& labels, bool ragged) {
   cv::Mat closed;
-  cv::morphologyEx(labels == static_cast<int>(kWall), closed, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8U));
-  labels.setTo(static_cast<int>(kWall), closed);
+  if (ragged) {
+    cv::morphologyEx(labels == static_cast<int>(kWall), closed, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8U));
+    labels.setTo(static_cast<int>(kWall), closed);
+  }
   cv::morphologyEx(labels == static_cast<int>(kFree), closed, cv::MORPH_CLOSE, cv::Mat::ones(5, 5, CV_8U));
   labels.setTo(static_cast<int>(kFree), closed & (labels == static_cast<int>(kUnknown)));
 }
@@ -184,14 +187,18 @@ LabelImage classify_league(const RgbImage& as_given, const Blur& undone) {
   if (!exact && !lossy) add_thin_walls(image, out.classes);
   fill_drawings(out.classes);
   drop_lettering(out.classes);
-  if (!exact) smooth(out.classes);
+  // Of a palette each pixel has its own colour, as in the exact picture: what is ragged there was so.
+  constexpr std::size_t kFewColours = 64;
+  if (!exact) smooth(out.classes, !has_few_colours(as_given, kFewColours));
+  const int letters = erase_lettering(out.classes);
   const double share =
       100.0 * static_cast<double>(drawn) / static_cast<double>(std::max<std::size_t>(1, out.classes.total()));
   const double astray =
       100.0 * static_cast<double>(strange) / static_cast<double>(std::max<std::size_t>(1, out.classes.total()));
   if (astray > kMostDrawn)
     out.refusal = cv::format(
-        "has colours that are none of the league's on %.0f %% of its pixels (noise, a photograph); give it as the "
+        "has colours that are none of the league's on %.0f %% of its pixels (noise, a photograph, a dither); give it "
+        "as the "
         "robot saved it",
         astray);
   out.recognised = cv::format("league colours%s, drawings removed from %.1f %% of the pixels",
@@ -199,6 +206,7 @@ LabelImage classify_league(const RgbImage& as_given, const Blur& undone) {
                               : lossy ? " (compressed with loss)"
                                       : " (resampled)",
                               share);
+  if (letters > 0) out.recognised += ", words on free ground removed";
   constexpr double kPale = 3.0, kPaleAfterBlur = 0.15;
   constexpr double kMostBlur = 3.2;  // beyond, walls of a pixel are too pale to be missed [pixels]
   constexpr int kRim = 2;            // of walls that were sharpened again [pixels]

@@ -216,6 +216,43 @@ bool has_even_ground(const RgbImage& image) {
   return 2 * even >= all;
 }
 
+/// Much of it has colours that no ground of a league map has: neither grey nor the green of what was searched. Asked of
+/// the middle of the values in squares of some pixels: lines and noise have no say.
+bool is_covered_with_strange_colours(const RgbImage& image) {
+  constexpr int kSquare = 6, kEvery = 12;  // [pixels]
+  constexpr int kColoured = 30, kOneIn = 4;
+  int strange = 0, all = 0;
+  for (int top = 0; top + kSquare <= image.height; top += kEvery)
+    for (int left = 0; left + kSquare <= image.width; left += kEvery) {
+      std::array<int, 3> middle{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        std::array<std::uint8_t, static_cast<std::size_t>(kSquare * kSquare)> values{};
+        auto to = values.begin();
+        for (int y = top; y < top + kSquare; ++y)
+          for (int x = left; x < left + kSquare; ++x) *to++ = image.pixel(x, y)[i];
+        std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+        middle[i] = values[values.size() / 2];
+      }
+      const auto [low, high] = std::minmax({middle[0], middle[1], middle[2]});
+      const bool green = middle[1] >= std::max(middle[0], middle[2]) + 15 && std::abs(middle[0] - middle[2]) <= 25;
+      ++all;
+      if (high - low >= kColoured && !green) ++strange;
+    }
+  return all > 0 && kOneIn * strange >= all;
+}
+
+/// Squares of two shades, as a tint leaves them. Floors of rooms have colours of their own, and the blocks of a JPEG
+/// differ less.
+bool is_of_one_tint(const Checkerboard& board) {
+  constexpr int kTint = 24, kLeastStep = 5;
+  int step = 0;
+  for (std::size_t i = 0; i < 3; ++i) step = std::max(step, int{board.lighter[i]} - int{board.darker[i]});
+  if (step < kLeastStep) return false;
+  const auto tint = [](const Rgb& c, std::size_t i) { return int{c[i]} - int{c[1]}; };
+  return std::abs(tint(board.darker, 0) - tint(board.lighter, 0)) <= kTint &&
+         std::abs(tint(board.darker, 2) - tint(board.lighter, 2)) <= kTint;
+}
+
 /// Greys alone, with both of the checkerboard.
 bool is_grey_league_map(const RgbImage& image) {
   std::array<std::size_t, 256> levels{};
@@ -272,7 +309,7 @@ std::string why_colours_are_lost(const RgbImage& image, bool is_league) {
            "it as the robot saved it";
   const Checkerboard board = find_checkerboard(image);
   if (!board.is_there()) return "";
-  if (!is_league && has_colour(image))
+  if (!is_league && is_of_one_tint(board) && has_colour(image))
     return "is a league map whose colours were changed (tinted, equalised, filtered): which of its dark lines are "
            "walls, only the "
            "league's colours say; give it as the robot saved it";
@@ -296,6 +333,7 @@ bool is_league_map(const RgbImage& image) {
   if (3 * c.walls > c.pixels) return false;  // a ground of that blue
   // Canvas may have the grey of one square, not of both.
   if (40 * std::min(c.darker, c.checkerboard - c.darker) >= c.pixels) return true;
+  if (is_covered_with_strange_colours(image)) return false;
   const auto are_walls = [&](std::size_t count) { return count >= 20 && 5000 * count >= c.pixels; };
   if (c.exact()) return are_walls(c.walls);
   // Colours that ran out of walls leave them black.

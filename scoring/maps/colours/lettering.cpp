@@ -11,18 +11,18 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr int kLeastHeight = 6;       // of a letter [pixels]: less is no writing that anybody reads
-constexpr int kMostHeight = 60;       // [pixels]
-constexpr double kWidest = 2.1;       // heights
-constexpr double kMostFilled = 0.75;  // of its box, but for narrow ones
-constexpr double kNarrow = 0.35;      // heights: i, l, 1
-constexpr double kThickest = 0.34;    // stroke, heights
-constexpr double kOneLine = 0.2;      // heights by which tops or bottoms differ in a word
-constexpr double kAlike = 0.6;        // lower over higher
-constexpr double kApart = 0.8;        // heights between two letters of a word
-constexpr double kBlank = 1.7;        // heights between two words of a line
-constexpr double kMoat = 0.2;         // heights of free ground around a word
-constexpr double kManyStrokes = 2.7;  // crossed by a row and a column together, in the mean: one wall 2, corners 2
+constexpr int kLeastHeight = 6;        // of a letter [pixels]: less is no writing that anybody reads
+constexpr int kMostHeight = 60;        // [pixels]
+constexpr double kWidestLetter = 2.1;  // heights
+constexpr double kMostFilled = 0.75;   // of its box, but for narrow ones
+constexpr double kNarrow = 0.35;       // heights: i, l, 1
+constexpr double kThickest = 0.34;     // stroke, heights
+constexpr double kOneLine = 0.2;       // heights by which tops or bottoms differ in a word
+constexpr double kAlikeHeight = 0.6;   // lower over higher
+constexpr double kLettersApart = 0.8;  // heights between two letters of a word
+constexpr double kBlank = 1.7;         // heights between two words of a line
+constexpr double kMoat = 0.2;          // heights of free ground around a word
+constexpr double kManyStrokes = 2.7;   // crossed by a row and a column together, in the mean: one wall 2, corners 2
 constexpr std::size_t kLeastLetters = 3;
 constexpr double kLeastComplex = 0.34;  // share of a word's letters with many strokes
 
@@ -55,7 +55,7 @@ Piece piece_of(const cv::Mat& labels, const cv::Rect& box, int label, int area) 
 
 bool may_be_letter(const Piece& piece, int area) {
   const double height = piece.box.height;
-  if (height < kLeastHeight || height > kMostHeight || piece.box.width > kWidest * height) return false;
+  if (height < kLeastHeight || height > kMostHeight || piece.box.width > kWidestLetter * height) return false;
   if (piece.thickness > kThickest * height) return false;
   return piece.box.width <= kNarrow * height || area <= kMostFilled * piece.box.area();
 }
@@ -63,7 +63,7 @@ bool may_be_letter(const Piece& piece, int area) {
 /// `b` goes on where `a` ends, at most `reach` heights further.
 bool follows(const Piece& a, const Piece& b, double reach) {
   const double height = std::max(a.box.height, b.box.height);
-  if (std::min(a.box.height, b.box.height) < kAlike * height) return false;
+  if (std::min(a.box.height, b.box.height) < kAlikeHeight * height) return false;
   const int gap = std::max(a.box.x, b.box.x) - std::min(a.box.br().x, b.box.br().x);
   const int tops = std::abs(a.box.y - b.box.y);
   const int bottoms = std::abs(a.box.br().y - b.box.br().y);
@@ -77,7 +77,7 @@ std::vector<std::vector<Piece>> words_of(const std::vector<Piece>& letters) {
   std::iota(word.begin(), word.end(), std::size_t{0});
   for (std::size_t i = 0; i < letters.size(); ++i)
     for (std::size_t j = i + 1; j < letters.size(); ++j) {
-      if (word[i] == word[j] || !follows(letters[i], letters[j], kApart)) continue;
+      if (word[i] == word[j] || !follows(letters[i], letters[j], kLettersApart)) continue;
       const std::size_t from = std::max(word[i], word[j]), to = std::min(word[i], word[j]);
       std::replace(word.begin(), word.end(), from, to);
     }
@@ -167,7 +167,7 @@ int erase_rows(cv::Mat& classes) {
   std::vector<Piece> letters;
   for (int i = 1; i < count; ++i) {
     const cv::Rect box = box_of(stats, i);
-    if (box.height < kLeastHeight || box.height > kMostHeight || box.width > kWidest * box.height) continue;
+    if (box.height < kLeastHeight || box.height > kMostHeight || box.width > kWidestLetter * box.height) continue;
     const int area = stats.at<int>(i, cv::CC_STAT_AREA);
     const Piece piece = piece_of(labels, box, i, area);
     if (may_be_letter(piece, area)) letters.push_back(piece);

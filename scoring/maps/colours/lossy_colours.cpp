@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <opencv2/imgproc.hpp>
+#include <set>
 #include <vector>
 
 namespace rubble::scoring {
@@ -169,7 +170,22 @@ void dark_in(const RgbImage& image, const cv::Range& band, cv::Mat& weak, cv::Ma
 
 }  // namespace
 
+bool has_few_colours(const RgbImage& image, std::size_t most) {
+  std::set<Rgb> seen;
+  const std::uint8_t* last = nullptr;
+  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
+    const std::uint8_t* const p = &image.rgb[i];
+    if (last != nullptr && std::equal(p, p + 3, last)) continue;
+    last = p;
+    seen.insert({p[0], p[1], p[2]});
+    if (seen.size() > most) return false;
+  }
+  return true;
+}
+
 bool has_run_colours(const RgbImage& image) {
+  constexpr std::size_t kPalette = 256;
+  if (has_few_colours(image, kPalette)) return false;
   constexpr int kFaint = 3;  // spread of the channels
   constexpr int kStrong = 24;
   std::size_t faint = 0;

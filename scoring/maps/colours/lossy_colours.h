@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <opencv2/core.hpp>
 
 #include "base/image/geotiff.h"
 
 namespace rubble::scoring {
+
+/// No more colours than that, as pictures with a palette have.
+bool has_few_colours(const RgbImage& image, std::size_t most);
 
 /// Whether a league map went through JPEG: colours run out of their lines, so that there is about as much faintly
 /// tinted ground as there is ink. Turned or scaled pictures have such pixels only at the rims of lines.

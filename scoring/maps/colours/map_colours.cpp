@@ -8,6 +8,8 @@
 
 #include "scoring/maps/colours/added_drawings.h"
 #include "scoring/maps/colours/canvas_corners.h"
+#include "scoring/maps/colours/coloured_areas.h"
+#include "scoring/maps/colours/dither.h"
 #include "scoring/maps/colours/even_light.h"
 #include "scoring/maps/colours/grey_levels.h"
 #include "scoring/maps/colours/league_classes.h"
@@ -51,11 +53,12 @@ cv::Mat no_data_areas(const RgbImage& image, const SampleNotes& notes) {
 /// Coloured lines were taken for drawings, but what is left for walls is much paler and less than they.
 bool are_walls_among_the_drawings(const cv::Mat& before, const cv::Mat& after, const cv::Mat& walls) {
   constexpr int kPaler = 60;
+  constexpr int kShare = 5;  // one in so many
   const cv::Mat drawn = before != after;
   const int count = cv::countNonZero(walls);
   if (count == 0) return false;
   const double wall = cv::mean(after, walls)[0];
-  return 2 * cv::countNonZero(drawn & (before < wall - kPaler)) >= count;
+  return kShare * cv::countNonZero(drawn & (before < wall - kPaler)) >= count;
 }
 
 /// Areas of it, not only lines.
@@ -71,16 +74,19 @@ bool is_coloured(const RgbImage& image) {
 }
 
 LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
-  cv::Mat grey = grey_of(image);
+  const std::optional<GreyedAreas> areas = greys_of_coloured_areas(image, nothing);
+  cv::Mat grey = areas ? areas->grey : grey_of(image);
   double least = 0.0, most = 0.0;
   cv::minMaxLoc(grey, &least, &most);
   if (least == most)
     return {cv::Mat(grey.size(), CV_8U, cv::Scalar(static_cast<int>(Occupancy::Unknown))),
             "of one colour: nothing is drawn on it"};
+  const std::optional<Undithered> undithered = without_dither(grey);
+  if (undithered) grey = undithered->grey;
   const std::optional<EvenLight> even = with_even_light(grey);
   if (even) grey = even->grey;
   const cv::Mat as_it_was = grey.clone();
-  const bool painted = paint_over_colours(image, nothing, grey);
+  const bool painted = !areas && paint_over_colours(image, nothing, grey);
   const TurnedCanvas turned = canvas_of_the_walls_grey(grey);
   const cv::Mat canvas = turned.mask.empty() ? canvas_corners(grey) : turned.mask;
   cv::Mat levels = grey.clone(), apart = canvas.clone();
@@ -91,7 +97,10 @@ LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
   LabelImage out = classify_grey(levels, nothing | apart, apart);
   out.classes.setTo(static_cast<int>(Occupancy::Unknown), canvas);
   if (cv::countNonZero(canvas) > 0) out.recognised += ", corners of the canvas are unknown";
+  if (undithered && out.refusal.empty()) out.refusal = undithered->lost;
+  if (undithered) out.recognised += ", " + undithered->how;
   if (even) out.recognised += ", darker by up to " + std::to_string(even->differed) + " towards its rim before";
+  if (areas) out.recognised += ", " + areas->how;
   if (even && is_coloured(image))
     out.refusal = "is not evenly bright (ground of one kind differs by " + std::to_string(even->differed) +
                   " of 255 over the picture, as in a photograph), and coloured; give it as the robot saved it";

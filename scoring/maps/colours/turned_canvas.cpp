@@ -12,17 +12,17 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr int kOneGrey = 12;         // of one grey
-constexpr double kStraight = 1.0;    // off a side, at the most [pixels]
-constexpr double kSides = 0.7;       // share of the picture's outline that lies on its sides; walls may cover the rest
-constexpr double kLeastTilt = 3.0;   // of a side over its length [pixels]
-constexpr int kLine = 9;             // walls are thinner [pixels]
-constexpr double kLines = 0.7;       // share of what has the walls' grey that is thinner
-constexpr double kDrawn = 0.005;     // share of the picture that walls cover at the least
-constexpr double kGround = 0.01;     // and a second ground
-constexpr double kSharp = 0.6;       // share of the outermost pixels that is not blended
-constexpr double kMargin = 0.8;      // share of what lies along the sides that is of one ground
-constexpr double kWallAround = 2.0;  // thickness [pixels]
+constexpr int kOneLevel = 12;       // of one grey
+constexpr double kOffSide = 1.0;    // off a side, at the most [pixels]
+constexpr double kSides = 0.7;      // share of the picture's outline that lies on its sides; walls may cover the rest
+constexpr double kLeastTilt = 3.0;  // of a side over its length [pixels]
+constexpr int kLine = 9;            // walls are thinner [pixels]
+constexpr double kLines = 0.7;      // share of what has the walls' grey that is thinner
+constexpr double kDrawn = 0.005;    // share of the picture that walls cover at the least
+constexpr double kSecondGround = 0.01;  // and a second ground
+constexpr double kSharp = 0.6;          // share of the outermost pixels that is not blended
+constexpr double kMargin = 0.8;         // share of what lies along the sides that is of one ground
+constexpr double kWallAround = 2.0;     // thickness [pixels]
 
 /// All pixels that are connected to a corner and of its grey; empty unless all corners are.
 cv::Mat around(const cv::Mat& grey) {
@@ -32,9 +32,9 @@ cv::Mat around(const cv::Mat& grey) {
   cv::Mat mask = cv::Mat::zeros(grey.rows + 2, grey.cols + 2, CV_8U);
   cv::Mat copy = grey;
   for (const cv::Point& corner : corners) {
-    if (std::abs(at(corner) - at(corners.front())) > kOneGrey) return {};
+    if (std::abs(at(corner) - at(corners.front())) > kOneLevel) return {};
     if (mask.at<unsigned char>(corner + cv::Point(1, 1)) == 0)
-      cv::floodFill(copy, mask, corner, cv::Scalar(), nullptr, cv::Scalar(kOneGrey), cv::Scalar(kOneGrey),
+      cv::floodFill(copy, mask, corner, cv::Scalar(), nullptr, cv::Scalar(kOneLevel), cv::Scalar(kOneLevel),
                     4 | cv::FLOODFILL_MASK_ONLY | cv::FLOODFILL_FIXED_RANGE | (255 << 8));
   }
   return mask(cv::Rect(1, 1, grey.cols, grey.rows)).clone();
@@ -78,7 +78,7 @@ Rectangle rectangle_at(double angle, const std::vector<cv::Point>& hull, const c
   out.angle = angle;
   std::vector<double> along(hull.size());
   std::vector<double> off(hull.size(), 0.0);  // of each edge
-  std::vector<double> least(hull.size(), kStraight);
+  std::vector<double> least(hull.size(), kOffSide);
   for (std::size_t i = 0; i < 2; ++i) {
     const cv::Point2d axis = out.axis(i);
     std::transform(hull.begin(), hull.end(), along.begin(), [&](const cv::Point& p) { return axis.dot(p); });
@@ -92,7 +92,7 @@ Rectangle rectangle_at(double angle, const std::vector<cv::Point>& hull, const c
   }
   for (std::size_t k = 0; k < hull.size(); ++k) {
     const cv::Point &a = hull[k], &b = hull[(k + 1) % hull.size()];
-    if (!is_on_frame(a, b, size)) out.on_sides += cv::norm(b - a) * (1.0 - least[k] / kStraight);
+    if (!is_on_frame(a, b, size)) out.on_sides += cv::norm(b - a) * (1.0 - least[k] / kOffSide);
   }
   return out;
 }
@@ -130,22 +130,22 @@ cv::Mat beyond(const Rectangle& r, const cv::Size& size, double depth) {
   return out;
 }
 
-cv::Mat near_grey(const cv::Mat& grey, int level) { return (grey >= level - kOneGrey) & (grey <= level + kOneGrey); }
+cv::Mat near_level(const cv::Mat& grey, int level) { return (grey >= level - kOneLevel) & (grey <= level + kOneLevel); }
 
 struct Grounds {
   int first = 0;  ///< most frequent grey but the walls'
   int second = 0;
   bool two = false;  ///< the second one covers something
-  bool have(int grey) const { return std::abs(grey - first) <= kOneGrey || std::abs(grey - second) <= kOneGrey; }
+  bool have(int grey) const { return std::abs(grey - first) <= kOneLevel || std::abs(grey - second) <= kOneLevel; }
 };
 
 Grounds grounds_of(const cv::Mat& grey, const cv::Mat& picture, int walls) {
   Grounds out;
-  const cv::Mat ground = picture & ~near_grey(grey, walls);
+  const cv::Mat ground = picture & ~near_level(grey, walls);
   out.first = main_grey(grey, ground);
-  const cv::Mat rest = ground & ~near_grey(grey, out.first);
+  const cv::Mat rest = ground & ~near_level(grey, out.first);
   out.second = main_grey(grey, rest);
-  out.two = cv::countNonZero(rest & near_grey(grey, out.second)) >= kGround * cv::countNonZero(picture);
+  out.two = cv::countNonZero(rest & near_level(grey, out.second)) >= kSecondGround * cv::countNonZero(picture);
   return out;
 }
 
@@ -153,8 +153,8 @@ Grounds grounds_of(const cv::Mat& grey, const cv::Mat& picture, int walls) {
 /// least.
 bool draws_lines(const cv::Mat& grey, const cv::Mat& picture, int walls, const Grounds& grounds) {
   const double least = kDrawn * cv::countNonZero(picture);
-  const int darker = cv::countNonZero(picture & (grey < walls - kOneGrey));
-  const int lighter = cv::countNonZero(picture & (grey > walls + kOneGrey));
+  const int darker = cv::countNonZero(picture & (grey < walls - kOneLevel));
+  const int lighter = cv::countNonZero(picture & (grey > walls + kOneLevel));
   if (std::min(darker, lighter) > least) return false;
   int nearest = std::abs(grounds.first - walls);
   if (grounds.two) nearest = std::min(nearest, std::abs(grounds.second - walls));
@@ -168,7 +168,7 @@ bool draws_lines(const cv::Mat& grey, const cv::Mat& picture, int walls, const G
 
 double share_of(const cv::Mat& grey, const cv::Mat& of, int level) {
   const int all = cv::countNonZero(of);
-  return all == 0 ? 0.0 : cv::countNonZero(of & near_grey(grey, level)) / static_cast<double>(all);
+  return all == 0 ? 0.0 : cv::countNonZero(of & near_level(grey, level)) / static_cast<double>(all);
 }
 
 /// Through JPEG it is not: ripples may look like lines.
@@ -204,8 +204,8 @@ TurnedCanvas canvas_of_the_walls_grey(const cv::Mat& grey) {
   if (!draws_lines(grey, ~none, canvas, grounds)) return {};
   const bool sharp = is_sharp(grey, first & ~none & ~outside, grounds);
   const cv::Mat beside = sharp ? first & ~beyond(r, size, 0.25) : next & ~first;
-  const int ground = main_grey(grey, beside & ~near_grey(grey, canvas));
-  const bool is_free = std::abs(ground - grounds.first) <= kOneGrey;  // unless most of the map is unknown
+  const int ground = main_grey(grey, beside & ~near_level(grey, canvas));
+  const bool is_free = std::abs(ground - grounds.first) <= kOneLevel;  // unless most of the map is unknown
   if (share_of(grey, beside, ground) >= kMargin && (grounds.two || !is_free))
     return {sharp ? beyond(r, size, 0.75) : next, ground};
   // Walls around free ground, which may be as dark as what is beyond them.
