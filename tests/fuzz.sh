@@ -95,6 +95,7 @@ run() {
 
 printf '%-16s %12s %9s %9s %8s\n' target executions 'CPU s' findings 'max MB'
 failed=0 under_way=0
+trap 'exit $((failed ? 1 : 124))' TERM  # cut short: what was found counts
 for target in "${targets[@]}"; do
   ((under_way < jobs)) || { wait -n || failed=1; under_way=$((under_way - 1)); }
   run "$target" &

@@ -81,7 +81,8 @@ bool in_panel(const OccupancyGrid& cells, const CountMap* counts, const TPoint2D
     Panel panel;
     follow(panel, cells, counts, p, along);
     follow(panel, cells, counts, p, along * -1.0);
-    if (panel.length >= kPanel && panel.hits >= kHits * panel.seen) return true;
+    if (panel.length >= kPanel && panel.hits >= kHits * panel.seen && (counts == nullptr || panel.seen > 0))
+      return true;
   }
   return false;
 }

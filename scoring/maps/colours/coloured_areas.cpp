@@ -1,7 +1,6 @@
 #include "scoring/maps/colours/coloured_areas.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -91,7 +90,6 @@ std::vector<std::pair<cv::Vec3f, double>> frequent(const cv::Mat& colours, const
       const cv::Vec3d off = bin.sum * (1.0 / bin.count) - centre;
       if (std::max({std::abs(off[0]), std::abs(off[1]), std::abs(off[2])}) > kOneColour) continue;
       all.count += bin.count;
-      all.sum += bin.sum;
       bin = {};
     }
     if (all.count < least) continue;
@@ -364,6 +362,7 @@ std::optional<GreyedAreas> greys_of_coloured_areas(const RgbImage& image, const 
   if (inks.empty()) return std::nullopt;
   cv::Mat ground = broad_labels(areas.label, lines, grounds.size());
   carry_ground(ground == static_cast<int>(kLine), ground);
+  if (cv::countNonZero(ground == static_cast<int>(kLine)) > 0) return std::nullopt;  // no ground is broad anywhere
   const Tone wall = walls_of(inks, areas);
   // What JPEG has smeared greys tell better, or nobody.
   const bool lossy = areas.colour_weight < 1.0F;
@@ -384,6 +383,7 @@ std::optional<GreyedAreas> greys_of_coloured_areas(const RgbImage& image, const 
   cv::Mat beside_free;
   cv::dilate(out.grey == 255, beside_free, cv::Mat::ones(9, 9, CV_8U));
   out.grey.setTo(0, walls & beside_free);
+  if (cv::countNonZero(out.grey == 0) == 0) return std::nullopt;
   return out;
 }
 

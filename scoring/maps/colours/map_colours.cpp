@@ -74,14 +74,17 @@ bool is_coloured(const RgbImage& image) {
 }
 
 LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
-  const std::optional<GreyedAreas> areas = greys_of_coloured_areas(image, nothing);
+  // Larger ones would take more memory than is promised (docs/reliability.md).
+  constexpr std::size_t kMostPixels = 40'000'000;
+  const bool small = image.rgb.size() / 3 <= kMostPixels;
+  const std::optional<GreyedAreas> areas = small ? greys_of_coloured_areas(image, nothing) : std::nullopt;
   cv::Mat grey = areas ? areas->grey : grey_of(image);
   double least = 0.0, most = 0.0;
   cv::minMaxLoc(grey, &least, &most);
   if (least == most)
     return {cv::Mat(grey.size(), CV_8U, cv::Scalar(static_cast<int>(Occupancy::Unknown))),
             "of one colour: nothing is drawn on it"};
-  const std::optional<Undithered> undithered = without_dither(grey);
+  const std::optional<Undithered> undithered = small ? without_dither(grey) : std::nullopt;
   if (undithered) grey = undithered->grey;
   const std::optional<EvenLight> even = with_even_light(grey);
   if (even) grey = even->grey;

@@ -1,14 +1,25 @@
 #include "slam/robust/tracking/slope_creep.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/planar.h"
 
 namespace rubble::slam {
 
+namespace {
+
+constexpr double kSkids = 1.1;  ///< wheels that slide turn so much farther than ones that roll round, at least
+constexpr double kSteepest =
+    0.5;  ///< of the slope on which it would slide without turning: the law is one of small ones
+
+}  // namespace
+
 SlopeCreep::SlopeCreep(const robot::RobotModel& model, double friction) {
+  if (!(friction > 0.0 && model.wheelbase > 0.0 && model.track > 0.0)) return;
   // Wheels that turn as the robot does, as those of two with castors, do not slip.
-  if (friction <= 0.0 || model.effective_track <= model.track) return;
+  if (model.effective_track < kSkids * model.track) return;
+  steepest_ = kSteepest * friction;
   const double a = 0.5 * model.wheelbase;
   const double b = 0.5 * model.track;
   const double p = a / length(a, b);
@@ -18,7 +29,8 @@ SlopeCreep::SlopeCreep(const robot::RobotModel& model, double friction) {
 }
 
 mrpt::math::TPoint2D SlopeCreep::expected(const ScanTilt& tilt, double turn) const {
-  return {-along_ * std::tan(tilt.body_pitch) * std::abs(turn), -across_ * std::tan(tilt.body_roll) * std::abs(turn)};
+  const auto slope = [&](double angle) { return std::clamp(std::tan(angle), -steepest_, steepest_); };
+  return {-along_ * slope(tilt.body_pitch) * std::abs(turn), -across_ * slope(tilt.body_roll) * std::abs(turn)};
 }
 
 }  // namespace rubble::slam

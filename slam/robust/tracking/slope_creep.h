@@ -24,8 +24,9 @@ class SlopeCreep {
   mrpt::math::TPoint2D expected(const ScanTilt& tilt, double turn) const;
 
  private:
-  double along_ = 0.0;   ///< of a slope of 1 [m/rad]
-  double across_ = 0.0;  ///< [m/rad]
+  double along_ = 0.0;     ///< of a slope of 1 [m/rad]
+  double across_ = 0.0;    ///< [m/rad]
+  double steepest_ = 0.0;  ///< slopes count up to this
 };
 
 }  // namespace rubble::slam

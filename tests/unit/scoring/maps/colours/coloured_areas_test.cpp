@@ -50,5 +50,18 @@ TEST(ColouredAreas, GreysWaysAndRoomsWithoutWallsAreNone) {
   EXPECT_FALSE(read_areas(with_rooms(floor, kRooms, 2.0, kBlack, kWhite)).has_value());
 }
 
+/// Three floors, each with every other dot of every other row in the next one's colour: no ground is broad anywhere.
+TEST(ColouredAreas, FloorsThatAreDotsAllOverAreNone) {
+  cv::Mat picture(300, 300, CV_8UC3, cv::Scalar(0, 0, 0));
+  const std::vector<cv::Vec3b> floors{{255, 200, 120}, {120, 255, 120}, {120, 160, 255}};
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < picture.cols; ++x) {
+      if (x % 100 < 3 || y % 100 < 3) continue;
+      const auto floor = static_cast<std::size_t>(x / 100);
+      picture.at<cv::Vec3b>(y, x) = floors[(floor + (x % 2 == 0 && y % 2 == 0 ? 1 : 0)) % 3];
+    }
+  EXPECT_FALSE(read_areas(picture).has_value());
+}
+
 }  // namespace
 }  // namespace rubble::scoring

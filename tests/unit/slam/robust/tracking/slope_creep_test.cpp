@@ -68,10 +68,22 @@ TEST(SlopeCreep, IsTheSameForBothSensesOfTurningAndNoneWithoutSlope) {
 
 TEST(SlopeCreep, WheelsThatTurnAsTheRobotDoesDoNotSlide) {
   robot::RobotModel castors;
-  castors.effective_track = castors.track;
-  for (const SlopeCreep& creep : {SlopeCreep(castors, 0.8), SlopeCreep({}, 0.0)}) {
+  castors.effective_track = castors.track + 0.001;  // as calibrated
+  robot::RobotModel one_axle, no_track;
+  one_axle.wheelbase = 0.0;
+  no_track.track = 0.0;
+  for (const SlopeCreep& creep :
+       {SlopeCreep(castors, 0.8), SlopeCreep(one_axle, 0.8), SlopeCreep(no_track, 0.8), SlopeCreep({}, 0.0)}) {
     EXPECT_EQ(creep.expected({0.0, 0.0, 0.2, 0.2}, 0.1).x, 0.0);
     EXPECT_EQ(creep.expected({0.0, 0.0, 0.2, 0.2}, 0.1).y, 0.0);
+  }
+}
+
+/// A wrong friction or a tilt that no floor has does not carry it away: at most as fast as its wheels slide.
+TEST(SlopeCreep, IsBounded) {
+  for (const double friction : {0.01, 0.1, 0.8}) {
+    const auto creep = SlopeCreep({}, friction).expected({0.0, 0.0, 0.6, -0.6}, 0.1);
+    EXPECT_LE(std::hypot(creep.x, creep.y), 0.1 * 0.3) << friction;
   }
 }
 
