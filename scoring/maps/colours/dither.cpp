@@ -111,7 +111,7 @@ std::vector<int> means_of_grounds(const cv::Mat& mean, const cv::Mat& walls) {
   const double least = kLeastOfGround * static_cast<double>(mean.total());
   while (out.size() < 4) {
     int best = -1;
-    double most = 0.0, sum = 0.0;
+    double most = 0.0;
     for (int g = 0; g < 256; ++g) {
       double here = 0.0;
       for (int k = std::max(0, g - 2); k <= std::min(255, g + 2); ++k) here += count[static_cast<std::size_t>(k)];
@@ -120,10 +120,8 @@ std::vector<int> means_of_grounds(const cv::Mat& mean, const cv::Mat& walls) {
       best = g;
     }
     if (best < 0) break;
-    for (int k = std::max(0, best - kOneGround); k <= std::min(255, best + kOneGround); ++k) {
-      sum += count[static_cast<std::size_t>(k)];
+    for (int k = std::max(0, best - kOneGround); k <= std::min(255, best + kOneGround); ++k)
       count[static_cast<std::size_t>(k)] = 0.0;
-    }
     if (most < least) break;
     out.push_back(best);
   }
