@@ -149,6 +149,11 @@ bool take_record(std::string_view line, MessageReader& in, MapperAnswer& answer)
     return true;  // the line's text is gone, and it was read to its end
   } else if (kind == "mapped") {
     answer.mapped = static_cast<std::uint64_t>(words.whole(0, kAnyStamp));
+  } else if (kind == "settled") {
+    answer.settled = words.whole(0, 1) == 1;
+  } else if (kind == "blind_way") {
+    answer.blind_way = words.number();
+    if (*answer.blind_way < 0.0) throw BadMessage("a way of less than nothing");
   } else if (kind == "figure") {
     answer.figures.push_back(take_figure(words));
     if (answer.figures.size() > kMostFigures) throw BadMessage("more than a hundred figures");
@@ -195,6 +200,12 @@ void append_answer(std::string& text, const MapperAnswer& answer) {
     for (const StampedPose& pose : *answer.corrected) append_stamped(pose);
   }
   if (answer.mapped) text += "mapped " + std::to_string(*answer.mapped) + '\n';
+  if (answer.settled) text += *answer.settled ? "settled 1\n" : "settled 0\n";
+  if (answer.blind_way) {
+    text += "blind_way";
+    append_number(text, *answer.blind_way);
+    text += '\n';
+  }
   for (const MapperFigure& figure : answer.figures) {
     text += "figure " + figure.key;
     append_number(text, figure.value);

@@ -28,6 +28,8 @@ struct MapperAnswer {
   std::vector<StampedPose> at;          ///< T_map_base at scans digested now
   std::optional<Trajectory> corrected;  ///< the whole trajectory: poses of the past have moved
   std::optional<std::uint64_t> mapped;  ///< scans in the map
+  std::optional<bool> settled;          ///< the map shows each scan where the trajectory has it
+  std::optional<double> blind_way;      ///< by odometry alone, since scans last told how far [m]
   std::vector<MapperFigure> figures;
   std::optional<AnsweredMap> map;
 };

@@ -48,6 +48,10 @@ class Teller {
     if (mapper.revision() != revision_) answer.corrected = mapper.trajectory();
     revision_ = mapper.revision();
     answer.mapped = mapper.counts().mapped;
+    if (mapper.settled() != settled_) answer.settled = mapper.settled();
+    settled_ = mapper.settled();
+    if (mapper.blind_way() != blind_way_) answer.blind_way = mapper.blind_way();
+    blind_way_ = mapper.blind_way();
     answer.figures = mapper.figures();
     if (mapper.map().version() != version_) answer.map = whole_map(mapper.map());
     version_ = mapper.map().version();
@@ -58,6 +62,8 @@ class Teller {
   std::size_t poses_ = 0;
   std::uint64_t revision_ = 0;
   std::uint64_t version_ = 0;
+  bool settled_ = true;
+  double blind_way_ = 0.0;
 };
 
 }  // namespace

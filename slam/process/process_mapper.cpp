@@ -132,6 +132,8 @@ void ProcessMapper::take(const MapperAnswer& answer) {
   if (!tells_scans_ && newest_ != Stamp::never() && (poses_.empty() || poses_.back().stamp < newest_))
     poses_.push_back({newest_, pose_});
   if (answer.mapped) counts_.mapped = *answer.mapped;
+  if (answer.settled) settled_ = *answer.settled;
+  if (answer.blind_way) blind_way_ = *answer.blind_way;
   for (const MapperFigure& figure : answer.figures) {
     const std::string key = "mapper_" + figure.key;
     const auto known = std::find_if(figures_.begin(), figures_.end(), [&](const auto& f) { return f.key == key; });

@@ -42,6 +42,8 @@ class ProcessMapper : public Mapper {
   const Trajectory& trajectory() const override { return trajectory_; }
   const Trajectory& live_trajectory() const override { return live_; }
   const std::vector<mrpt::math::TPoint2D>& last_hits() const override { return last_hits_; }
+  bool settled() const override { return settled_; }
+  double blind_way() const override { return blind_way_; }
   const MapperCounts& counts() const override { return counts_; }
   /// What the process says, with `mapper_` before each name.
   std::vector<MapperFigure> figures() const override { return figures_; }
@@ -70,6 +72,8 @@ class ProcessMapper : public Mapper {
   mrpt::math::TPose2D pose_;
   PoseCovariance covariance_;
   std::uint64_t revision_ = 0;
+  bool settled_ = true;
+  double blind_way_ = 0.0;
   Trajectory trajectory_;
   Trajectory live_;
   MapperCounts counts_;

@@ -102,7 +102,9 @@ TEST_F(ProcessMapperTest, AnswersBeforeTheFirstTickAndStartsNothing) {
 TEST_F(ProcessMapperTest, ShowsWhatItIsTold) {
   const auto m =
       mapper(answering("printf 'pose 1 2 0.5\\ncovariance 4 0 0 9 0 1\\nmap 2 2 0.1 -1 -2\\n?.\\n#.\\nmapped 7\\n"
-                       "figure loops 3\\n'"));
+                       "settled 0\\nblind_way 1.5\\nfigure loops 3\\n'"));
+  EXPECT_TRUE(m->settled());
+  EXPECT_EQ(m->blind_way(), 0.0);
   ASSERT_EQ(end_of(*m), "");
   EXPECT_EQ(m->pose().y, 2.0);
   EXPECT_EQ(m->covariance()(1, 1), 9.0);
@@ -110,6 +112,8 @@ TEST_F(ProcessMapperTest, ShowsWhatItIsTold) {
   EXPECT_EQ(m->map().p_occ({0, 1}), 1.0);
   EXPECT_EQ(m->map().seen({0, 0}), 0);
   EXPECT_EQ(m->counts().mapped, 7u);
+  EXPECT_FALSE(m->settled());
+  EXPECT_EQ(m->blind_way(), 1.5);
   ASSERT_EQ(m->figures().size(), 1u);
   EXPECT_EQ(m->figures()[0].key, "mapper_loops");  // no figure of somebody else's can pass for one of ours
 }

@@ -170,6 +170,8 @@ TEST(MapperProtocol, AnswersReadBackToTheSameBits) {
     for (std::int64_t i = 0; i < 5; ++i) told.at.push_back({{i * 100}, {value(), value(), value()}});
     told.corrected = told.at;
     told.mapped = seed;
+    told.settled = rng.uniform(0.0, 1.0) < 0.5;
+    told.blind_way = std::abs(value());
     told.figures = {{"loops_closed", value()}};
     AnsweredMap map;
     map.frame = {1 + static_cast<int>(rng.uniform(0.0, 40.0)), 1 + static_cast<int>(rng.uniform(0.0, 40.0)), 0.05,
@@ -189,6 +191,8 @@ TEST(MapperProtocol, AnswersReadBackToTheSameBits) {
     ASSERT_EQ(heard.corrected->size(), told.corrected->size());
     EXPECT_EQ((*heard.corrected)[4].stamp, (*told.corrected)[4].stamp);
     EXPECT_EQ(heard.mapped, told.mapped);
+    EXPECT_EQ(heard.settled, told.settled);
+    EXPECT_EQ(heard.blind_way, told.blind_way);
     EXPECT_EQ(heard.figures[0].value, told.figures[0].value);
     EXPECT_EQ(heard.map->frame, map.frame);
     EXPECT_EQ(heard.map->seen, map.seen);
