@@ -9,6 +9,7 @@
 #include "base/grid.h"
 #include "scoring/maps/colours/grey_levels.h"
 #include "scoring/maps/colours/grey_roles.h"
+#include "scoring/maps/colours/half_width.h"
 #include "scoring/maps/colours/nearest_ground.h"
 
 namespace rubble::scoring {
@@ -76,9 +77,7 @@ cv::Mat thin_walls(const cv::Mat& grey, const cv::Mat& not_asked) {
   const GreyRoles roles = grey_roles(grey, not_asked);
   cv::Mat walls = (grey >= roles.wall - kWallTolerance) & (grey <= roles.wall + kWallTolerance) & ~not_asked;
   if (share_of(walls) < kLeastWalls) return {};
-  cv::Mat depth;
-  cv::distanceTransform(walls, depth, cv::DIST_L2, 3);
-  return cv::mean(depth, walls)[0] <= kThinWalls ? walls : cv::Mat();
+  return mean_half_width(walls) <= kThinWalls ? walls : cv::Mat();
 }
 
 /// Most of these walls lie beside the ink: they are its rim, and the coloured lines are the walls.
@@ -103,9 +102,8 @@ cv::Mat with_rims(const RgbImage& image, const cv::Mat& grey, const cv::Mat& ink
 /// Where ink crosses a wall, or covers a piece of it: between two ends of walls in a row or column.
 cv::Mat walls_across(const cv::Mat& walls, const cv::Mat& ink) {
   constexpr int kWidest = 11;  // [pixels]: less than between the walls of a passage
-  cv::Mat depth, rows, columns;
-  cv::distanceTransform(ink, depth, cv::DIST_L2, 3);
-  const int width = std::min(kWidest, 2 * static_cast<int>(std::lround(2.0 * cv::mean(depth, ink)[0])) + 3);
+  cv::Mat rows, columns;
+  const int width = std::min(kWidest, 2 * static_cast<int>(std::lround(2.0 * mean_half_width(ink))) + 3);
   cv::morphologyEx(walls, rows, cv::MORPH_CLOSE, cv::Mat::ones(1, width, CV_8U));
   cv::morphologyEx(walls, columns, cv::MORPH_CLOSE, cv::Mat::ones(width, 1, CV_8U));
   return (rows | columns) & ink;

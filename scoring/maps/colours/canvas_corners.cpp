@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/grid.h"
+#include "scoring/maps/colours/grey_levels.h"
 
 namespace rubble::scoring {
 namespace {
@@ -80,12 +81,7 @@ bool has_a_line_between(const cv::Mat& grey, const cv::Mat& way, int inside, int
 }
 
 /// Never blended: four greys, as a map and its canvas have, are all.
-bool is_of_few_levels(const cv::Mat& grey) {
-  std::array<bool, 256> there{};
-  for (int y = 0; y < grey.rows; ++y)
-    for (int x = 0; x < grey.cols; ++x) there[grey.at<unsigned char>(y, x)] = true;
-  return std::count(there.begin(), there.end(), true) <= 4;
-}
+bool is_of_few_levels(const cv::Mat& grey) { return greys_there(grey).size() <= 4; }
 
 /// Nothing but blends of two greys lies on the way out of the region: no wall stands between it and what is beside.
 bool is_open(const cv::Mat& grey, const cv::Mat& region, int inside, int beside) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "scoring/maps/colours/half_width.h"
 #include "scoring/maps/colours/lossy_colours.h"
 #include "scoring/maps/colours/nearest_ground.h"
 
@@ -118,12 +119,6 @@ cv::Mat areas_of(const cv::Mat& colours, const std::vector<cv::Vec3f>& grounds) 
         }
     }
   return out;
-}
-
-double mean_half_width(const cv::Mat& mask) {
-  cv::Mat depth;
-  cv::distanceTransform(mask, depth, cv::DIST_L2, 3);
-  return cv::mean(depth, mask)[0];
 }
 
 /// Those that cover areas: thick walls and ways are even, too.

@@ -8,6 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "scoring/maps/colours/grey_levels.h"
+#include "scoring/maps/colours/half_width.h"
 #include "scoring/maps/colours/nearest_ground.h"
 
 namespace rubble::scoring {
@@ -23,17 +25,6 @@ constexpr int kRounds = 4;               // of looking for walls where dots are 
 constexpr int kSteps = 24;               // of spreading
 constexpr double kLeastOfGround = 0.01;  // of the pixels
 constexpr int kOneGround = 12;           // greys that the means of one ground differ by
-
-/// Greys that are there, the darkest first.
-std::vector<int> greys_there(const cv::Mat& grey) {
-  std::array<bool, 256> there{};
-  for (int y = 0; y < grey.rows; ++y)
-    for (int x = 0; x < grey.cols; ++x) there[grey.at<unsigned char>(y, x)] = true;
-  std::vector<int> out;
-  for (int g = 0; g < 256; ++g)
-    if (there[static_cast<std::size_t>(g)]) out.push_back(g);
-  return out;
-}
 
 /// Pixels that differ from all four around them.
 cv::Mat dots_of(const cv::Mat& grey) {
@@ -206,14 +197,8 @@ bool are_lines_white(const cv::Mat& grey) {
   constexpr double kThinLine = 2.5;  // mean distance to the rim [pixels]
   double least = 0.0, most = 0.0;
   cv::minMaxLoc(grey, &least, &most);
-  const auto half_width = [&](const cv::Mat& of) {
-    const cv::Mat mask = solid(of, kRun);
-    cv::Mat depth;
-    cv::distanceTransform(mask, depth, cv::DIST_L2, 3);
-    return cv::mean(depth, mask)[0];
-  };
-  const double light = half_width(grey == most);
-  return light > 0.0 && light <= kThinLine && half_width(grey == least) > kThinLine;
+  const double light = mean_half_width(solid(grey == most, kRun));
+  return light > 0.0 && light <= kThinLine && mean_half_width(solid(grey == least, kRun)) > kThinLine;
 }
 
 std::optional<Undithered> with_dark_walls(const cv::Mat& grey) {

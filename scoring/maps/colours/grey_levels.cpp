@@ -1,6 +1,7 @@
 #include "scoring/maps/colours/grey_levels.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <opencv2/imgproc.hpp>
 #include <vector>
@@ -78,6 +79,16 @@ bool are_walls_like_the_rim_of(const cv::Mat& canvas, const cv::Mat& grey, const
 }
 
 }  // namespace
+
+std::vector<int> greys_there(const cv::Mat& grey) {
+  std::array<bool, 256> there{};
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x) there[grey.at<unsigned char>(y, x)] = true;
+  std::vector<int> out;
+  for (int g = 0; g < 256; ++g)
+    if (there[static_cast<std::size_t>(g)]) out.push_back(g);
+  return out;
+}
 
 cv::Mat grey_of(const RgbImage& image) {
   cv::Mat grey(image.height, image.width, CV_8U);

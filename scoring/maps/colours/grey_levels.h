@@ -2,6 +2,7 @@
 
 #include <opencv2/core.hpp>
 #include <string>
+#include <vector>
 
 #include "base/image/geotiff.h"
 
@@ -23,6 +24,9 @@ cv::Mat transparent_pixels(const RgbImage& image);
 
 /// Brightness, CV_8U.
 cv::Mat grey_of(const RgbImage& image);
+
+/// The values that occur in it (CV_8U), the darkest first.
+std::vector<int> greys_there(const cv::Mat& grey);
 
 /// By what the greys (CV_8U) stand for (grey_roles()). Pixels `apart` (CV_8U, 255) have no say in that; those of the
 /// `canvas` are among them.

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "scoring/maps/colours/half_width.h"
+
 namespace rubble::scoring {
 namespace {
 
@@ -98,9 +100,7 @@ double mean_depth(const cv::Mat& labels, std::size_t level, bool closed = false)
   cv::Mat mask = labels == static_cast<int>(level);
   if (closed) cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8U));
   cv::copyMakeBorder(mask, mask, 1, 1, 1, 1, cv::BORDER_REPLICATE);
-  cv::Mat depth;
-  cv::distanceTransform(mask, depth, cv::DIST_L2, 3);
-  return cv::mean(depth, mask)[0];
+  return mean_half_width(mask);
 }
 
 /// How many walls have these two levels on their sides.

@@ -9,9 +9,8 @@ namespace rubble::slam {
 
 namespace {
 
-constexpr double kSkids = 1.1;  ///< wheels that slide turn so much farther than ones that roll round, at least
-constexpr double kSteepest =
-    0.5;  ///< of the slope on which it would slide without turning: the law is one of small ones
+constexpr double kSkids = 1.1;     ///< wheels that slide turn so much farther than ones that roll round, at least
+constexpr double kSteepest = 0.5;  ///< part of the friction up to which slopes count: the law is one of small ones
 
 }  // namespace
 

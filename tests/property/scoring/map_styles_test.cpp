@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -18,6 +17,7 @@
 #include "scoring/maps/normalise.h"
 #include "scoring/measures/sight_lines.h"
 #include "scoring/walls/overlap.h"
+#include "tests/support/base_files.h"
 #include "tests/support/long_suite.h"
 #include "tests/support/map_style_colours.h"
 #include "tests/support/map_style_fresh.h"
@@ -30,19 +30,6 @@ namespace rubble::scoring {
 namespace {
 
 using namespace testing;
-namespace fs = std::filesystem;
-
-class MapStyles : public ::testing::Test {
- protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "rubble_styles_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  fs::path folder_;
-};
-
 /// A map on its truth, and what its plain picture would be worth at so many pixels a cell.
 class DrawnMap {
  public:
@@ -103,10 +90,11 @@ PlanarTransform pose_of(const Styled& style, const OccupancyGrid& read, const Oc
   return PlanarTransform(fit_rigid({o, a, b}, {onto(o), onto(a), onto(b)}));
 }
 
-TEST_F(MapStyles, AreReadAsThePlainPictureIsOrRefusedWithTheReason) {
+TEST(MapStyles, AreReadAsThePlainPictureIsOrRefusedWithTheReason) {
   const char* const only = std::getenv("RUBBLE_STYLE");  // a part of their names
   std::vector<Style> styles = styles_of_colours();
   for (const auto& more : {styles_of_pages(), further_styles()}) styles.insert(styles.end(), more.begin(), more.end());
+  const test::TempFolder folder;
   int cases = 0, right = 0, refused = 0, wrong = 0;
   std::size_t turn = 0;
   for (DrawnMap& map : drawn_maps()) {
@@ -115,7 +103,7 @@ TEST_F(MapStyles, AreReadAsThePlainPictureIsOrRefusedWithTheReason) {
       if (!is_tried(place++) || (only != nullptr && style.name.find(only) == std::string::npos)) continue;
       const Styled drawn = style.draw(map.map());
       const DrawnMap::Worth plain = map.plain(drawn.scale);
-      const std::string path = (folder_ / "map").string() + (style.quality > 0 ? ".jpg" : ".png");
+      const std::string path = folder / "map" + (style.quality > 0 ? ".jpg" : ".png");
       std::vector<int> options;
       if (style.quality > 0) options = {cv::IMWRITE_JPEG_QUALITY, style.quality};
       ASSERT_TRUE(cv::imwrite(path, drawn.image, options));
