@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# docs/pictures/make.sh [NAME...]: makes the pictures of README.md and docs/ anew that need nothing but rubble, all or the
+# named: standard film plan arenas league. league takes its pages' pictures with Chromium. RUBBLE: the program, if not ./rubble.
+set -euo pipefail
+top=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
+pictures=$top/docs/pictures
+export RUBBLE_HOME=$top
+rubble=$(realpath -- "${RUBBLE:-$top/rubble}")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+# The run of `./rubble run`, in README.md.
+standard() {
+  "$rubble" run --out standard >/dev/null
+  for name in arena map error; do cp "standard/$name.png" "$pictures/yellow_$name.png"; done
+}
+
+# Nine moments of a run, in README.md.
+film() {
+  "$rubble" run yellow --seed 1003 --set arena.generate.kind=orange --set arena.generate.ramps=0.3 \
+    --set arena.generate.paper=0.2 --set arena.generate.victims=6 --set time_limit_s=1800 --out orange >/dev/null
+  "$rubble" replay orange --out again --film 9 >/dev/null
+  cp again/film.png "$pictures/orange_film.png"
+}
+
+# Fig. 9 of the paper, in docs/explore.md.
+plan() {
+  "$rubble" run yellow --set mapper.kind=robust --set explorer.victims.search=false \
+    --set explorer.return_home=false --set time_limit_s=75 --out plan >/dev/null
+  "$rubble" plan plan/map.yaml --alpha 0 --from 0,0 --out "$pictures/plan_alpha_0.png"
+  "$rubble" plan plan/map.yaml --alpha 20 --from 0,0 --out "$pictures/plan_alpha_20.png"
+  "$rubble" plan plan/map.yaml --alpha 1 --discomfort per_cell --from 0,0 --out "$pictures/plan_per_cell.png"
+}
+
+# Arena files and generated arenas, in docs/arenas.md.
+arenas() {
+  for kind in yellow orange red; do
+    "$rubble" arena generate --kind $kind --cells 10x8 --seed 3 --ramps 0.3 --paper 0.2 --victims 6 --loops 0.2 --out drawn >/dev/null
+    cp drawn/$kind-10x8-seed3.png "$pictures/${kind}_10x8.png"
+  done
+  "$rubble" arena "$pictures/elements.yaml" --out drawn >/dev/null
+  "$rubble" arena "$top/arenas/shipped/four_corners.yaml" --out drawn >/dev/null
+  cp drawn/elements.png drawn/four_corners.png "$pictures"
+}
+
+# photo FILE.html WIDTHxHEIGHT OUT.png
+photo() {
+  chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --virtual-time-budget=5000 --window-size="${2/x/,}" \
+    --screenshot="$3" "file://$work/$1" >/dev/null 2>&1
+}
+
+# A league and the page for judging by hand, in docs/league.md.
+league() {
+  command -v chromium >/dev/null || { echo "make.sh: league needs chromium; apt-get install chromium" >&2; exit 4; }
+  mkdir -p maps/empty
+  "$rubble" run --seed 7 --out truth >/dev/null
+  cp -r truth maps/level
+  cp -r truth maps/twin
+  "$rubble" run --seed 7 --set mapper.kind=paper --set robot.levelling=false --out maps/no-level >/dev/null
+  "$rubble" run --seed 8 --out maps/other >/dev/null
+  head -c 1000 truth/map.tif >maps/cut.tif
+  printf 'team,points\nlevel,30\n' >judge.csv
+  "$rubble" score --league maps truth/truth.tif --judge judge.csv --out league >/dev/null
+  photo league/league.html 1400x1250 "$pictures/league.png"
+  "$rubble" score maps/no-level/map.tif truth/truth.tif --html page.html >/dev/null
+  photo page.html 1400x1100 "$pictures/evaluation_page.png"
+}
+
+for name in "${@:-standard film plan arenas league}"; do
+  for one in $name; do
+    [[ " standard film plan arenas league " == *" $one "* ]] || { echo "make.sh: $one is none of: standard film plan arenas league" >&2; exit 2; }
+    "$one"
+  done
+done
