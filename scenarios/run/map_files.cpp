@@ -155,8 +155,10 @@ void merge_maps(const std::string& first, const std::string& second, const Scena
   if (!content.scans.empty()) model.laser.range_max = content.scans.front().scan.range_max;
   const auto bytes = slam::merged_maps(*a, *b, model, scenario.mapper);
   if (!bytes)
-    throw InputError(second + ": shows no place of " + first +
-                     " for sure; they need a few metres in common, seen with the laser mounted alike");
+    throw InputError(
+        second + ": shows no place of " + first +
+        " for sure; they need a few metres in common, seen with the laser mounted alike, and no walls of one "
+        "where the other looked through");
   const auto both = std::make_shared<slam::MapBase>(slam::MapBase{*bytes, first, true, std::nullopt});
   const auto mapper = scenario.mapper.make(model, {scenario.seed, "", both});
   mapper->finish();

@@ -16,7 +16,8 @@ KeyFrames joined(const KeyFrames& map, const KeyFrames& drive, const FoundPlace&
 
 /// The maps of two robots, or of two runs, as one in the frame of the first, with a graph that holds both; the robot is
 /// where it was at the end of the second. `config` as suited_to() gives it. Nothing where the second shows no place of
-/// the first, or their lasers were mounted differently.
+/// the first, where it seems to but each sees through walls of the other (two arenas), or where their lasers were
+/// mounted differently.
 std::optional<SavedMap> merged(const SavedMap& first, const SavedMap& second, const RobustConfig& config);
 
 /// The robust mapper on a map of an earlier run. A drive begins as one of its own, in its own frame, until it is known

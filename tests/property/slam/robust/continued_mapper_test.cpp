@@ -213,6 +213,38 @@ TEST(MergedMaps, LieInOneFrame) {
   }
 }
 
+/// A floor whose lower rooms are those of `floor`, and above them a hall with screens.
+slam_test::World with_another_hall(const slam_test::Floor& floor) {
+  constexpr double kHall = 1.6;  // above the lower rooms [m]
+  slam_test::World world;
+  for (const auto& wall : floor.world()) {
+    const bool inner = wall.a.y > kHall && wall.b.y > kHall && std::max(wall.a.y, wall.b.y) < 4.4;
+    const bool between = wall.a.x == wall.b.x && std::min(wall.a.y, wall.b.y) > 1.4 && wall.a.x > 0.0 && wall.a.x < 6.0;
+    if (!inner && !between) world.push_back(wall);
+  }
+  for (const double x : {0.0, 3.0, 6.0})
+    for (const double y : {2.2, 3.8}) world.push_back({{x - 0.7, y}, {x + 0.7, y}});
+  return world;
+}
+
+/// What two floors have alike joins their maps, unless the walls of one stand where the other looked through.
+TEST(MergedMaps, OfTwoFloorsAreRefused) {
+  const RobustConfig config = suited_to(RobotModel().laser, {});
+  const std::vector<Cell> below{{0, 0}, {1, 0}, {2, 0}, {1, 0}, {0, 0}};
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const slam_test::Floor floor(seed, 3, 2);
+    const SavedMap first = decode_map(map_of(recorded(floor, kRound, 0.0, seed).ticks), "first");
+    const auto drive_in = [&](const slam_test::World& world, const std::vector<Cell>& rooms) {
+      const slam_test::Drive drive = slam_test::drive_through(floor.way(rooms), 0.0);
+      return decode_map(map_of(slam_test::record(world, drive, RobotModel(), 1.0, 0.01, seed + 50)), "second");
+    };
+    EXPECT_TRUE(merged(first, drive_in(with_another_hall(floor), below), config));
+    EXPECT_TRUE(merged(first, drive_in(floor.world(), kRound), config));
+    EXPECT_FALSE(merged(first, drive_in(with_another_hall(floor), kRound), config));
+  }
+}
+
 TEST(ContinuedMapper, SameInputsSameBits) {
   const slam_test::Floor floor(2, 3, 2);
   const std::string bytes = map_of(recorded(floor, kRound, 0.0, 2).ticks);
