@@ -302,6 +302,15 @@ std::vector<std::string> arena_notes(const Scenario& scenario) {
   return notes;
 }
 
+std::optional<std::string> short_time_note(const Scenario& scenario) {
+  const double for_home = scenario.explorer.make(scenario.robot, {scenario.time_limit})->time_for_home();
+  if (scenario.time_limit <= 0.0 || scenario.time_limit > for_home) return std::nullopt;
+  const auto seconds = [](double s) { return number_text(s) + " s"; };
+  return "time limit: all of the " + seconds(scenario.time_limit) + " are kept for the way home (" + seconds(for_home) +
+         " and the way itself), so little will be explored; better give at least " + seconds(2.0 * for_home) +
+         ", or --set explorer.return_home=false";
+}
+
 std::string arena_yaml(const Scenario& scenario) {
   if (scenario.arena_file.empty()) {
     arenas::GenerateConfig config = scenario.generate;

@@ -526,24 +526,12 @@ class StoppedAtLast {
   const int before_ = std::uncaught_exceptions();
 };
 
-/// A robot that may turn back before it has begun: what the operator should know.
-void warn_of_time_for_home(const Scenario& settings, const DriveOptions& options) {
-  const auto explorer = settings.explorer.make(settings.robot, {settings.time_limit});
-  const double for_home = explorer->time_for_home();
-  if (!options.tell || settings.time_limit <= 0.0 || settings.time_limit > for_home) return;
-  char text[240];
-  std::snprintf(text, sizeof text,
-                "time limit: all of the %g s are kept for the way home (%g s and the way itself), so little will be "
-                "explored; better give at least %g s, or --set explorer.return_home=false",
-                settings.time_limit, for_home, 2.0 * for_home);
-  options.tell(text);
-}
-
 }  // namespace
 
 RunReport drive(const RobotFile& file, const DriveOptions& options) {
   const auto start = Clock::now();
-  if (options.mode == DriveMode::Explore) warn_of_time_for_home(file.settings, options);
+  if (options.mode == DriveMode::Explore && options.tell)
+    if (const auto note = short_time_note(file.settings)) options.tell(*note);
   if (options.mode != DriveMode::MapOnly && file.robot.base_port.empty())
     throw InputError("devices.base: without a base the robot can only be watched; give its port, or add --map-only");
   file.settings.mapper.require_permission();

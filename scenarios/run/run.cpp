@@ -134,7 +134,7 @@ void score_files(scoring::Evidence& evidence, const WrittenMaps& files, const Vi
   folder.publish({"overlay.png"}, [&](const std::string& path) {
     scoring::write_overlay(path + "overlay.png", map, truth, score.T_truth_map,
                            score.aligned ? "" : "NOT TRUSTED: " + score.note,
-                           scoring::marks_on_overlay(score, victims.reported.victims, victims.there_are.victims));
+                           scoring::marks_on_overlay(score, victims.reported.victims, victims.there_are));
   });
   if (!score.aligned) return;
   folder.publish({"error.png"}, [&](const std::string& path) {
@@ -256,10 +256,11 @@ bool knows_no_place(const slam::Mapper& mapper) {
 /// "1.23, -0.45 m, heading 90 deg, found at 12.3 s" on the run's clock
 std::string place_found(const slam::Mapper& mapper) {
   if (mapper.live_trajectory().empty()) return "not found";
+  const char* const given_up = knows_no_place(mapper) ? ", and given up again" : "";
   const StampedPose& first = mapper.live_trajectory().front();
-  std::array<char, 120> text{};
-  std::snprintf(text.data(), text.size(), "%.2f, %.2f m, heading %.0f deg, found at %.1f s", first.pose.x, first.pose.y,
-                rad_to_deg(first.pose.phi), first.stamp.seconds());
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), "%.2f, %.2f m, heading %.0f deg, found at %.1f s%s", first.pose.x,
+                first.pose.y, rad_to_deg(first.pose.phi), first.stamp.seconds(), given_up);
   return text.data();
 }
 
@@ -301,7 +302,7 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   evidence.run = run_figures(core, end.sim_s,
                              end.interrupted || !end.failure.empty() ? end.reason
                              : robot.was_torn()                      ? "the log is cut: its torn last frame was dropped"
-                             : knows_no_place(core.mapper()) ? "the log is over; its place in the map was not found"
+                             : knows_no_place(core.mapper()) ? "the log is over; its place in the map is not known"
                                                              : "the log is over");
   RunReport report;
   report.interrupted = end.interrupted;
