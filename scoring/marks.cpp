@@ -1,6 +1,7 @@
 #include "scoring/marks.h"
 
 #include <cstddef>
+#include <utility>
 
 #include "scoring/league/league_points.h"
 #include "scoring/measures/victims.h"
@@ -87,15 +88,17 @@ Marks marks_of(const std::vector<Poi>& reported, const std::vector<Poi>& victims
   return out;
 }
 
-Marks marks_on_overlay(const MapScore& score, const std::vector<Poi>& reported, const std::vector<Poi>& victims) {
-  Marks out = marks_of(reported, victims, score.T_truth_map);
+Marks marks_on_overlay(const MapScore& score, const std::vector<Poi>& reported, const TrueVictims& victims) {
+  Marks out = marks_of(reported, victims.victims, score.T_truth_map);
+  if (victims.path.empty()) out.unjudged = std::exchange(out.map_only, {});
   if (score.broken.found) out.seam = {score.broken.from, score.broken.to};
   return out;
 }
 
 std::vector<Marks> marks_on_page(const MapScore& score, const Marks& victims) {
   std::vector<Marks> out;
-  if (!victims.pairs.empty() || !victims.map_only.empty() || !victims.truth_only.empty()) out.push_back(victims);
+  if (!victims.pairs.empty() || !victims.map_only.empty() || !victims.truth_only.empty() || !victims.unjudged.empty())
+    out.push_back(victims);
   for (const KindScore& kind : score.by_features.kinds) out.push_back(marks_of(kind));
   return out;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scoring/alignment/feature_verdict.h"
+#include "scoring/league/league_victims.h"
 #include "scoring/maps/pois.h"
 #include "scoring/rooms/room_match.h"
 #include "scoring/scorecard.h"
@@ -28,6 +29,7 @@ struct Marks {
   std::vector<std::pair<Mark, Mark>> pairs;  ///< of the map and of the truth
   std::vector<Mark> map_only;                ///< outliers: of the map, without partner
   std::vector<Mark> truth_only;
+  std::vector<Mark> unjudged{};  ///< of the map, where nobody says what the truth has
   /// Where a map came apart into two parts, in the truth [m].
   std::optional<std::pair<mrpt::math::TPoint2D, mrpt::math::TPoint2D>> seam{};
 };
@@ -39,7 +41,8 @@ Marks marks_of(const std::vector<Poi>& reported, const std::vector<Poi>& victims
                const mrpt::math::TPose2D& T_truth_map);
 
 /// The victims, and the seam where the map came apart: what stands on the overlay of a map that was scored.
-Marks marks_on_overlay(const MapScore& score, const std::vector<Poi>& reported, const std::vector<Poi>& victims);
+/// Without a list of the true victims nothing says which of the reported ones are.
+Marks marks_on_overlay(const MapScore& score, const std::vector<Poi>& reported, const TrueVictims& victims);
 
 /// What a page shows of a map that was scored: victims first, then the features of eq. (7), where they were asked for.
 std::vector<Marks> marks_on_page(const MapScore& score, const Marks& victims);

@@ -42,6 +42,7 @@ std::vector<scoring::Marks> in_own_scale(std::vector<scoring::Marks> all, double
   for (scoring::Marks& marks : all) {
     for (auto& [map, truth] : marks.pairs) shrink(map);
     for (scoring::Mark& map : marks.map_only) shrink(map);
+    for (scoring::Mark& map : marks.unjudged) shrink(map);
   }
   return all;
 }
@@ -112,6 +113,10 @@ int score(ScoreArguments arguments) {
          ": has a robot's victims drawn on it, and the map has none; if the two were exchanged, give " +
          arguments.truth + " first");
   const scoring::TrueVictims victims = scoring::true_victims(arguments.truth, verdict.truth.origin, arguments.victims);
+  if (victims.path.empty() && !verdict.reported.victims.empty())
+    tell(arguments.truth +
+         ": there is no list of the true victims beside it, so the reported ones are not judged; give it with "
+         "--victims (a run keeps it in arena.yaml)");
   const OccupancyGrid& truth = verdict.truth.grid;
   const OccupancyGrid grid = pose ? scoring::scaled_frame(verdict.map.grid, pose->scale) : verdict.map.grid;
   if (pose)
@@ -126,7 +131,7 @@ int score(ScoreArguments arguments) {
   } else {
     print_table(verdict, json);
   }
-  const scoring::Marks marks = scoring::marks_on_overlay(result, verdict.reported.victims, victims.victims);
+  const scoring::Marks marks = scoring::marks_on_overlay(result, verdict.reported.victims, victims);
   if (!arguments.html.empty())
     write_evaluation_page(
         arguments.html, verdict.map.grid, truth,

@@ -80,7 +80,8 @@ std::string marks_json(const std::vector<Marks>& all) {
       return "[" + mark_json(p.first) + "," + mark_json(p.second) + "]";
     };
     return "{\"what\":" + quoted(marks.what) + ",\"pairs\":" + list(marks.pairs, pair) +
-           ",\"map\":" + list(marks.map_only, mark_json) + ",\"truth\":" + list(marks.truth_only, mark_json) + "}";
+           ",\"map\":" + list(marks.map_only, mark_json) + ",\"truth\":" + list(marks.truth_only, mark_json) +
+           ",\"unjudged\":" + list(marks.unjudged, mark_json) + "}";
   });
 }
 
@@ -114,7 +115,8 @@ std::string at_start(const OccupancyGrid& map, const OccupancyGrid& truth, const
   const bool has_victims = !start.marks.empty() && start.marks.front().what == "victims";
   Marks victims = has_victims ? start.marks.front() : Marks{};
   for (auto& [of_map, of_truth] : victims.pairs) of_map.p *= start.scale;
-  for (Mark& of_map : victims.map_only) of_map.p *= start.scale;
+  for (std::vector<Mark>* marks : {&victims.map_only, &victims.unjudged})
+    for (Mark& of_map : *marks) of_map.p *= start.scale;
   return score +
          figure(overlay_png(grid, truth, start.T_truth_map,
                             start.not_trusted.empty() ? "" : "NOT TRUSTED: " + start.not_trusted, victims),

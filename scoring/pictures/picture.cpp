@@ -81,7 +81,8 @@ void draw_cross(cv::Mat& image, const cv::Point& at, int reach, const Colour& co
   cv::line(image, at - cv::Point(reach, -reach), at + cv::Point(reach, -reach), cv::Scalar(colour), width, cv::LINE_AA);
 }
 
-/// At a pose that is not trusted nobody knows which of them were found: all are grey, and said by name only.
+/// At a pose that is not trusted nobody knows which of them were found: all are grey, and said by name only. So are
+/// those that nothing says anything of.
 void draw_victims(Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map, bool trusted) {
   constexpr int kRadius = 8;
   const Colour doubtful(110, 110, 110);
@@ -102,10 +103,18 @@ void draw_victims(Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map
     cv::circle(canvas.image, at, kRadius, cv::Scalar(trusted ? kTruthOnly : doubtful), 2, cv::LINE_AA);
     name(missed.name + (trusted ? " missed" : ""), at);
   }
+  const auto doubt = [&](const cv::Point& at) {
+    cv::circle(canvas.image, at, 3, cv::Scalar(doubtful), cv::FILLED, cv::LINE_AA);
+  };
+  for (const Mark& reported : marks.unjudged) {
+    const cv::Point at = canvas.pixel(T_truth_map.composePoint(reported.p));
+    doubt(at);
+    name("reported", at);
+  }
   for (const Mark& wrong : marks.map_only) {
     const cv::Point at = canvas.pixel(T_truth_map.composePoint(wrong.p));
     if (!trusted) {
-      cv::circle(canvas.image, at, 3, cv::Scalar(doubtful), cv::FILLED, cv::LINE_AA);
+      doubt(at);
       continue;
     }
     draw_cross(canvas.image, at, kRadius - 2, kMapOnly, 2);

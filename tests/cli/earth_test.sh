@@ -9,6 +9,15 @@ sed -e '/^geo:/d' -e "s|\.\./arenas|$source/arenas|" "$source/scenarios/on_earth
 "$rubble" run local.yaml --out local >/dev/null || fail "the same run in a local frame ended with $?"
 cmp earth/estimate.tum local/estimate.tum || fail "the place on Earth changes the run"
 json_holds earth/score.json "j['aligned'] and j['score'] > 0.9 and j['victims_found'] == 1 and j['victims_false'] == 0"
+# Without a list of the true victims none that is reported is called false.
+mkdir alone && cp local/map.t* local/truth.tif alone
+"$rubble" score alone/map.tif alone/truth.tif --html alone/page.html >/dev/null 2>err.txt || fail "score ended with $?"
+grep -qF "alone/truth.tif: there is no list of the true victims beside it" err.txt || fail "not said: $(cat err.txt)"
+python3 - alone/page.html <<'PY' || fail "the page judges victims without a list"
+import re, sys
+marks = re.search(r'"what":"victims","pairs":\[(.*?)\],"map":\[(.*?)\],"truth":\[(.*?)\],"unjudged":\[(.+?)\]\}', open(sys.argv[1]).read())
+assert marks and not any(marks.groups()[:3]), marks
+PY
 
 gdalinfo -json earth/map.tif >info.json
 json_holds info.json "'ID[\"EPSG\",32632]' in j['coordinateSystem']['wkt']"

@@ -69,7 +69,7 @@
     context.fillText(`${length} m`, x, y - 5 * devicePixelRatio);
   }
 
-  // Pairs green and joined, what only the map has red, what only the truth has blue.
+  // Pairs green and joined, what only the map has red, what only the truth has blue, what nobody judges grey.
   const shown = new Set(data.marks.length && data.marks[0].what === 'victims' ? [0] : []);
   function drawMarks() {
     const z = view.zoom * devicePixelRatio, d = devicePixelRatio;
@@ -118,6 +118,7 @@
       }
       for (const one of marks.map) mark(one, pixel(onTruth(one)), '#d62f2f', true);
       for (const one of marks.truth) mark(one, pixel(one), '#0b3c91', false);
+      for (const one of marks.unjudged) mark(one, pixel(onTruth(one)), '#6e6e6e', false);
     });
   }
   data.marks.forEach((marks, index) => {
@@ -129,7 +130,9 @@
       redraw();
     });
     const words = marks.what === 'victims' ? ['found', 'false', 'missed'] : ['matched', 'of the map alone', 'of the truth alone'];
-    label.append(box, ` ${marks.what}: ${marks.pairs.length} ${words[0]}, ${marks.map.length} ${words[1]}, ${marks.truth.length} ${words[2]}`);
+    const counts = marks.unjudged.length ? `${marks.unjudged.length} reported, no list of the true ones`
+      : `${marks.pairs.length} ${words[0]}, ${marks.map.length} ${words[1]}, ${marks.truth.length} ${words[2]}`;
+    label.append(box, ` ${marks.what}: ${counts}`);
     $('marks').append(label);
   });
   if (data.warning) {

@@ -165,6 +165,12 @@ TEST_F(Picture, FoundFalseAndMissedVictimsAreToldApart) {
   write_overlay(path_, plain, plain, {}, "", {"victims", {}, {}, {here}});
   EXPECT_GT(tints().blue, 0);
   EXPECT_EQ(green() + tints().red, 0);
+  // Where there is no list of the true ones.
+  write_overlay(path_, plain, plain, {}, "", {"victims", {}, {}, {}});
+  const cv::Mat without = cv::imread(path_);
+  write_overlay(path_, plain, plain, {}, "", {"victims", {}, {}, {}, {here}});
+  EXPECT_EQ(green() + tints().red + tints().blue, 0);
+  EXPECT_GT(cv::norm(without, cv::imread(path_)), 0.0) << "the report is not shown";
   // Nobody knows at a pose that is not trusted.
   write_overlay(path_, plain, plain, {}, "NOT TRUSTED", {"victims", {{here, here}}, {here}, {here}});
   EXPECT_EQ(green() + tints(0.3).blue + tints(0.3).red, 0);
