@@ -149,6 +149,8 @@ Drive PaperExplorer::decide(const slam::Mapper& mapper) {
       return go_on(mapper);
     case Stage::StraightOn:
       return drive_straight_on(mapper);
+    case Stage::Braking:
+      return brake(mapper);
     case Stage::BackingUp:
       break;
   }
@@ -184,6 +186,13 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
       straight_on_.begin(pose_, now_);
       stage_ = Stage::StraightOn;
       return drive_straight_on(mapper);
+    }
+    if (stuck_watch_.brake_can_tell(*hold, now_)) {
+      doubted_hold_ = *hold;
+      stuck_watch_.begin_brake_test(now_);
+      brakes_ = true;
+      stage_ = Stage::Braking;
+      return {};
     }
     get_free_of(*hold, mapper);
     return {};
@@ -285,6 +294,25 @@ Drive PaperExplorer::drive_straight_on(const slam::Mapper& mapper) {
   if (const auto drive = straight_on_.drive(pose_, now_); drive && !brakes_) return *drive;
   stage_ = Stage::OnTheWay;
   agenda_.plan_soon();
+  return {};
+}
+
+/// Nothing but its pose says that the robot is held: its brake tells.
+Drive PaperExplorer::brake(const slam::Mapper& mapper) {
+  brakes_ = true;
+  switch (stuck_watch_.brake_verdict(now_)) {
+    case BrakeTest::Verdict::Open:
+      break;
+    case BrakeTest::Verdict::Moved:
+      agenda_.note(now_, "its pose stands, but braking it felt that it moved: drives on");
+      stage_ = Stage::OnTheWay;
+      stuck_watch_.doubt_pose(now_);
+      agenda_.plan_soon();
+      break;
+    case BrakeTest::Verdict::Stood:
+      get_free_of(doubted_hold_, mapper);
+      break;
+  }
   return {};
 }
 

@@ -32,6 +32,7 @@ namespace rubble::explore {
 /// |---|---|---|
 /// | Starting | nobody: it waits for the first mapped scan | with a look behind, if there is frontier near |
 /// | Driving, Searching, GoingHome | Agenda, what to do next; Pilot, how | when StuckWatch finds it held |
+/// | the same, Braking | StuckWatch, to tell whether a pose that stays fell behind | on the way again, or BackingUp |
 /// | BackingUp | Recovery | as it was before, or stuck |
 /// | Finished | nobody | |
 ///
@@ -53,7 +54,7 @@ class PaperExplorer : public Explorer {
   double time_for_home() const override { return config_.return_home ? HomeWay::kSpareTime : 0.0; }
 
  private:
-  enum class Stage { Starting, OnTheWay, StraightOn, BackingUp };
+  enum class Stage { Starting, OnTheWay, StraightOn, Braking, BackingUp };
 
   void observe(const slam::Mapper& mapper, const robot::Inputs& inputs);
   void follow_map(const slam::Mapper& mapper);
@@ -65,6 +66,7 @@ class PaperExplorer : public Explorer {
   robot::Drive start(const slam::Mapper& mapper);
   robot::Drive go_on(const slam::Mapper& mapper);
   robot::Drive drive_straight_on(const slam::Mapper& mapper);
+  robot::Drive brake(const slam::Mapper& mapper);
   robot::Drive back_up();
 
   bool holds_still();
@@ -86,6 +88,7 @@ class PaperExplorer : public Explorer {
   Agenda agenda_;
   Pilot pilot_;
   StuckWatch stuck_watch_;
+  StuckWatch::Hold doubted_hold_;  ///< while it brakes to find out
   Recovery recovery_;
   StraightOn straight_on_;
   VictimWatch victims_;

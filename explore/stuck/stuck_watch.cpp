@@ -8,6 +8,7 @@ namespace {
 constexpr double kHeld = 0.5;           ///< a tick so long: the robot was held, a device was away [s]
 constexpr double kPatience = 2.0;       ///< then its motors may still be off for a while [s]
 constexpr double kOdometryLate = 0.25;  ///< the wheels are silent [s]
+constexpr double kPoseDoubted = 2.0;    ///< a pose that fell behind a moving robot may do so again for a while [s]
 constexpr double kDrives = 0.15;        ///< a robot that turns and is slower only turns [m/s]
 
 }  // namespace
@@ -26,6 +27,17 @@ void StuckWatch::update(const robot::Inputs& inputs, double passed, double dt) {
   }
   tilt_.update(inputs, dt);
   jolt_.update(inputs);
+  brake_test_.update(inputs);
+}
+
+void StuckWatch::begin_brake_test(Stamp now) {
+  brake_test_.begin(wheels_->v, now);
+  braked(now);
+}
+
+void StuckWatch::doubt_pose(Stamp now) {
+  begin_anew();
+  pose_doubted_until_ = now + kPoseDoubted;
 }
 
 std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded,
@@ -46,14 +58,16 @@ std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_ma
   const bool slowed = slowed_.held(jolt_.shaken() && commanded.v != 0.0 && !turns_slowly, T_map_base,
                                    wheels_.value_or(commanded), tilt_.pitch(), dt, now);
   if (!tilt_.too_steep() && !blow && !slowed && !stuck) return std::nullopt;
-  const Hold hold{
-      tilt_.too_steep() ? "it leans too much here"
-      : blow            ? "a blow stops it"
-      : slowed          ? "a blow holds it back"
-      : stalled_        ? "the motors stall"
-                        : "it does not move",
-      met(commanded),
-      !tilt_.too_steep() && !blow && !slowed && !stalled_ && !motion_.rocking() && !motion_.steers_in_vain()};
+  const bool by_pose =
+      !tilt_.too_steep() && !blow && !slowed && !stalled_ && !motion_.rocking() && !motion_.steers_in_vain();
+  const Escape::Met met = this->met(commanded);
+  if (by_pose && met != Escape::Met::Turning && now < pose_doubted_until_) return std::nullopt;
+  const Hold hold{tilt_.too_steep() ? "it leans too much here"
+                  : blow            ? "a blow stops it"
+                  : slowed          ? "a blow holds it back"
+                  : stalled_        ? "the motors stall"
+                                    : "it does not move",
+                  met, by_pose};
   begin_anew();
   tilt_.reset();
   return hold;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/stamp.h"
+#include "explore/stuck/brake_test.h"
 #include "explore/stuck/escape.h"
 #include "explore/stuck/jolt_watch.h"
 #include "explore/stuck/motion_watch.h"
@@ -45,6 +46,16 @@ class StuckWatch {
   /// The robot brakes as hard as it can: what stops it is no blow.
   void braked(Stamp now) { jolt_.braked(now); }
 
+  /// Nothing but its pose says that it is held, and braking can tell whether that is so.
+  bool brake_can_tell(const Hold& hold, Stamp now) const {
+    return hold.stands && hold.met != Escape::Met::Turning && wheels_ && brake_test_.can_tell(wheels_->v, now);
+  }
+  /// From now on the robot brakes as hard as it can, until there is a verdict.
+  void begin_brake_test(Stamp now);
+  BrakeTest::Verdict brake_verdict(Stamp now) const { return brake_test_.verdict(now); }
+  /// It moved: its pose falls behind. For a while that alone is no sign of being held.
+  void doubt_pose(Stamp now);
+
   /// The servos jammed: how the robot leans is no longer known.
   void distrust_tilt() { tilt_.distrust(); }
 
@@ -64,10 +75,12 @@ class StuckWatch {
   TiltWatch tilt_;
   JoltWatch jolt_;
   SlowedWatch slowed_;
+  BrakeTest brake_test_;
   bool stalled_ = false;
   std::optional<robot::Drive> wheels_;    ///< what they did when they were heard of last
   std::optional<Stamp> odometry_at_;      ///< when the wheels were heard of last
   Stamp patient_until_ = Stamp::never();  ///< the base may not obey yet
+  Stamp pose_doubted_until_ = Stamp::never();
 };
 
 }  // namespace rubble::explore

@@ -135,6 +135,49 @@ TEST(StuckWatch, AHoldIsToldOnce) {
   EXPECT_TRUE(robot.within(5.0)) << "but found anew while it lasts";
 }
 
+/// A pose that falls behind a robot that moves is no sign for a while; what else tells is one all the same.
+TEST(StuckWatch, WherePosesAreDoubtedOtherSignsCount) {
+  Watched robot;
+  robot.drive = {0.4, 0.0};
+  ASSERT_FALSE(robot.within(1.0));
+  robot.obeys = false;
+  const auto hold = robot.within(2.0);
+  ASSERT_TRUE(hold);
+  EXPECT_TRUE(robot.watch.brake_can_tell(*hold, robot.now));
+  robot.watch.doubt_pose(robot.now);
+  EXPECT_FALSE(robot.within(1.9));
+  EXPECT_TRUE(robot.within(1.0)) << "not for ever";
+
+  robot.watch.doubt_pose(robot.now);
+  robot.stalls = true;
+  const auto stall = robot.within(1.0);
+  ASSERT_TRUE(stall);
+  EXPECT_FALSE(robot.watch.brake_can_tell(*stall, robot.now)) << "there is no doubt";
+
+  robot.stalls = false;
+  robot.drive = {0.0, 1.0};
+  robot.watch.doubt_pose(robot.now);
+  const auto turn = robot.within(1.9);
+  ASSERT_TRUE(turn) << "the heading does not fall behind";
+  EXPECT_FALSE(robot.watch.brake_can_tell(*turn, robot.now));
+}
+
+TEST(StuckWatch, BrakingTellsWhetherTheRobotMoved) {
+  for (const bool moves : {true, false}) {
+    Watched robot;
+    robot.drive = {0.4, 0.0};
+    ASSERT_FALSE(robot.within(1.0));
+    robot.watch.begin_brake_test(robot.now);
+    EXPECT_EQ(robot.watch.brake_verdict(robot.now), BrakeTest::Verdict::Open);
+    robot.drive = {};
+    robot.blow = moves ? -0.4 / (2.0 * Watched::kTickTime) : 0.0;
+    EXPECT_FALSE(robot.within(2.0 * Watched::kTickTime)) << "its own brake is no blow";
+    robot.blow = 0.0;
+    EXPECT_FALSE(robot.within(0.3));
+    EXPECT_EQ(robot.watch.brake_verdict(robot.now), moves ? BrakeTest::Verdict::Moved : BrakeTest::Verdict::Stood);
+  }
+}
+
 TEST(StuckWatch, NobodyKnowsWhetherASilentBaseMoves) {
   Watched robot;
   robot.drive = {0.4, 0.0};
