@@ -24,6 +24,8 @@ constexpr double kFrontier = 0.5;           ///< of floor that is shut off [m]
 constexpr double kThick = 0.10;             ///< [m]
 constexpr double kStandsOnEdge = 0.10;      ///< so near to an edge it is a wall [m]
 constexpr double kOffEdges = 0.25;          ///< [m]
+constexpr double kAsThick = 0.25;           ///< floor of a slope, and a wall is drawn no thicker [m]
+constexpr double kSoft = 0.8;               ///< of a row on an edge that is no sure wall
 constexpr double kLookFrom[] = {0.5, 0.6};  ///< [m]
 constexpr int kStride = 3;                  ///< places to look from are so many cells apart along the wall
 
@@ -168,6 +170,7 @@ class Background {
     return false;
   }
   bool on_edge(Cell c, Cell n) const {
+    if (floor_.unsure[c] != 0) return false;
     const std::optional<PalletGrid>& grid = grids_.at(cells_.centre(c));
     return !grid || off_edges(*grid, cells_.centre(c), n) < kStandsOnEdge;
   }
@@ -190,6 +193,18 @@ class Background {
   Grid<int> pieces_;             ///< of floor, once they are asked for
   std::vector<Piece> extents_;
 };
+
+/// Whether a row of cells and what is drawn right behind it was passed by a good part of the scans.
+bool is_soft(const Traversable& floor, const std::vector<Cell>& row, Cell n, int thick) {
+  const auto soft = std::count_if(row.begin(), row.end(), [&](Cell c) {
+    for (int i = 0; i <= thick; ++i) {
+      const Cell at{c.x + i * n.x, c.y + i * n.y};
+      if (floor.cells.inside(at) && floor.cells[at] == Occupancy::Occupied && floor.unsure[at] == 0) return false;
+    }
+    return true;
+  });
+  return static_cast<double>(soft) >= kSoft * static_cast<double>(row.size());
+}
 
 }  // namespace
 
@@ -221,7 +236,8 @@ std::vector<Source> doubtful_walls(const Traversable& floor, double pallet, cons
       if (length < in_cells(kShortest)) continue;
       const TPoint2D middle = cells.centre(row[row.size() / 2]);
       const std::optional<PalletGrid>& grid = grids.at(middle);
-      if (!grid || off_edges(*grid, middle, n) < kOffEdges) continue;
+      if (!grid) continue;
+      if (off_edges(*grid, middle, n) < kOffEdges && !is_soft(floor, row, n, in_cells(kAsThick))) continue;
       for (std::size_t i = 0; i < row.size(); i += kStride)
         for (const double distance : kLookFrom) {
           const int away = in_cells(distance);

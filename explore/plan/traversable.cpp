@@ -19,6 +19,7 @@ using slam::CountMap;
 constexpr int kWeakHits = 2;
 constexpr int kSeenOverHits = 5;      ///< fewer are noise, or the error of a pose beside a wall
 constexpr int kSeenOverPasses = 10;   ///< likewise so many scans to a hit
+constexpr float kSure = 0.85f;        ///< of the scans that looked at a wall so many hit it, at least
 constexpr double kLoneRadius = 0.15;  ///< [m]
 
 /// A rectangle of cells, both corners inside it.
@@ -31,7 +32,7 @@ struct Box {
 /// Classifies cells by their counts. Branch-free and on plain arrays, so that compilers use vector code.
 void classify_row(const std::uint16_t* __restrict seen, const std::uint16_t* __restrict hits, int count,
                   float threshold, Occupancy* __restrict cells, std::uint8_t* __restrict obstacle,
-                  std::uint8_t* __restrict seen_over) {
+                  std::uint8_t* __restrict seen_over, std::uint8_t* __restrict unsure) {
   static_assert(static_cast<int>(Occupancy::Free) == 1 && static_cast<int>(Occupancy::Occupied) == 2);
   for (int i = 0; i < count; ++i) {
     const int known = seen[i] != 0;
@@ -39,7 +40,9 @@ void classify_row(const std::uint16_t* __restrict seen, const std::uint16_t* __r
     const int often = static_cast<float>(hits[i]) >= threshold * static_cast<float>(seen[i]);
     const int some = (hits[i] >= kSeenOverHits) & (kSeenOverPasses * hits[i] >= seen[i]);
     obstacle[i] = static_cast<std::uint8_t>(hit & often);
+    const int sure = static_cast<float>(hits[i]) >= kSure * static_cast<float>(seen[i]);
     seen_over[i] = static_cast<std::uint8_t>(some & ~often);
+    unsure[i] = static_cast<std::uint8_t>(hit & often & ~sure);
     cells[i] = static_cast<Occupancy>(known + (hit & often));
   }
 }
@@ -96,7 +99,7 @@ bool has_obstacle(const Grid<std::uint8_t>& obstacle, const Box& box) {
 Traversable traversable(OccupancyGrid known) {
   Traversable floor;
   floor.obstacle = Grid<std::uint8_t>(known.frame());
-  floor.body = floor.seen_over = Grid<std::uint8_t>(known.frame());
+  floor.body = floor.seen_over = floor.unsure = Grid<std::uint8_t>(known.frame());
   std::transform(known.cells().begin(), known.cells().end(), floor.obstacle.cells().begin(),
                  [](Occupancy o) { return static_cast<std::uint8_t>(o == Occupancy::Occupied); });
   floor.cells = std::move(known);
@@ -116,7 +119,7 @@ Traversable traversable(const CountMap& map, double occupied_threshold, bool low
   Traversable floor;
   floor.cells = OccupancyGrid(frame, Occupancy::Unknown);
   floor.obstacle = Grid<std::uint8_t>(frame);
-  floor.body = floor.seen_over = Grid<std::uint8_t>(frame);
+  floor.body = floor.seen_over = floor.unsure = Grid<std::uint8_t>(frame);
   const float threshold = static_cast<float>(occupied_threshold);
   const int columns = frame.width - 2;
   std::vector<Cell> weak;
@@ -124,7 +127,7 @@ Traversable traversable(const CountMap& map, double occupied_threshold, bool low
     const int row = y - box.low.y + 1;
     const std::uint16_t* hits = map.occupied_row(y) + box.low.x;
     classify_row(map.seen_row(y) + box.low.x, hits, columns, threshold, floor.cells.row(row) + 1,
-                 floor.obstacle.row(row) + 1, floor.seen_over.row(row) + 1);
+                 floor.obstacle.row(row) + 1, floor.seen_over.row(row) + 1, floor.unsure.row(row) + 1);
     for_each_set(floor.obstacle.row(row), frame.width, [&](int x) {
       if (hits[x - 1] <= kWeakHits) weak.push_back({x, row});
     });

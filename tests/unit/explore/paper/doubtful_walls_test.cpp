@@ -64,6 +64,34 @@ TEST(DoubtfulWalls, FloorThatShowsAsAThickWallOrAsTwoIsOneToo) {
   EXPECT_TRUE(doubtful_walls(test::measured(cells), kPallet).empty()) << "the second is a wall, on an edge";
 }
 
+/// As floor of a slope that the laser's plane meets here and there: drawn where an edge is, or its upper end on one.
+TEST(DoubtfulWalls, OnAnEdgeAWallIsOneThatNearlyAllScansHit) {
+  const auto unsure_within = [](const OccupancyGrid& cells, double x0, double x1) {
+    Traversable floor = test::measured(cells);
+    for (int y = 0; y < cells.height(); ++y)
+      for (int x = 0; x < cells.width(); ++x) {
+        const auto p = cells.centre({x, y});
+        const bool within = p.x > x0 && p.x < x1 && p.y > 0.06 && p.y < kPallet - 0.06;
+        if (within && cells[{x, y}] == Occupancy::Occupied) floor.unsure[{x, y}] = 1;
+      }
+    return doubtful_walls(floor, kPallet);
+  };
+  const double edge = 4 * kPallet;
+  for (const double off : {0.0, 0.15, -0.15}) {
+    OccupancyGrid cells = corridor_of_pallets(edge + off, kPallet, Occupancy::Unknown);
+    EXPECT_FALSE(unsure_within(cells, edge - 0.3, edge + 0.3).empty()) << off;
+    EXPECT_TRUE(unsure_within(cells, 0.0, edge - 0.3).empty()) << off << ": sure";
+    // A wall is drawn thick where poses err: what stands before it is passed, and it is not.
+    test::fill(cells, edge + off + 0.03, 0.06, edge + off + 0.08, kPallet - 0.06, Occupancy::Occupied);
+    EXPECT_TRUE(unsure_within(cells, edge - 0.3, edge + off + 0.03).empty()) << off << ": a sure wall behind";
+  }
+  OccupancyGrid cells = corridor_of_pallets(5.6, kPallet, Occupancy::Unknown);
+  test::fill(cells, 5.63, 0.06, 5.95, kPallet - 0.06, Occupancy::Free);
+  test::fill(cells, 5.95, 0.06, 6.0, kPallet - 0.06, Occupancy::Occupied);
+  EXPECT_TRUE(doubtful_walls(test::measured(cells), kPallet).empty()) << "a wall on the edge behind it";
+  EXPECT_FALSE(unsure_within(cells, 5.5, 6.05).empty()) << "the upper end of the slope";
+}
+
 /// It is looked at when no frontier is left, once, and left alone when it stays.
 TEST(DoubtfulWalls, AreLookedAtWhenNoFrontierIsInReach) {
   OccupancyGrid cells = corridor_of_pallets(5.6, kPallet, Occupancy::Unknown);

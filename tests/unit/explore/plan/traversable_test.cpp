@@ -116,6 +116,23 @@ TEST(Traversable, WhatMostScansPassOverIsFreeAndKnownToBeThere) {
   EXPECT_EQ(said_of(after(5, 500), low), std::pair(Occupancy::Free, false)) << "it was there once";
 }
 
+TEST(Traversable, AWallThatAGoodPartOfTheScansPassedIsUnsure) {
+  const TPoint2D wall{1.02, 0.02}, behind{2.02, 0.02};
+  const auto after = [&](int hits, int passes) {
+    CountMap map(160, 160, 0.05);
+    for (int i = 0; i < hits; ++i) stamp(map, {0.02, 0.02}, {wall});
+    for (int i = 0; i < passes; ++i) stamp(map, {0.02, 0.02}, {behind});
+    const Traversable floor = traversable(map, 0.5);
+    const Cell c = floor.cells.cell(wall);
+    return std::pair(floor.cells[c], floor.unsure[c] != 0);
+  };
+  EXPECT_EQ(after(20, 0), std::pair(Occupancy::Occupied, false));
+  EXPECT_EQ(after(18, 2), std::pair(Occupancy::Occupied, false)) << "errors of poses";
+  EXPECT_EQ(after(16, 4), std::pair(Occupancy::Occupied, true));
+  EXPECT_EQ(after(1, 1), std::pair(Occupancy::Occupied, true));
+  EXPECT_EQ(after(4, 16), std::pair(Occupancy::Free, false)) << "no wall";
+}
+
 /// From the foot of a slope scans meet its floor, here and there as the robot rocks; from upon it they do not.
 TEST(Traversable, AWideBandThatMostScansPassOverIsSlopeAndNoBoard) {
   for (const int rows : {1, 2, 5}) {
