@@ -36,7 +36,9 @@ for name in os.listdir(sections):
     kept[name] = "%s\n\n%s\n\n%s\n\n" % (name, how, made)
 with open(page, "w") as out:
     out.write("# Results of the standard sweeps\n\n"
-              "Each section is made by the command below its heading; what the columns mean is in [batch.md](batch.md).\n\n")
+              "Each section is made by the command below its heading; what the columns mean is in [batch.md](batch.md). "
+              "All sweeps but\n`mappers` are of the paper's mapper (`mapper.kind: paper`), which is not the default one; "
+              "how well that does stands in [robust_mapper.md](robust_mapper.md).\n\n")
     out.write("".join("## " + kept[name] for name in order if name in kept).rstrip() + "\n")
 PY
 echo "docs/results.md is written" >&2
