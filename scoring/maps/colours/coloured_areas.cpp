@@ -15,16 +15,16 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr int kEvenSteps = 10;           // between the channels of pixels of an even area
-constexpr int kBin = 16;                 // width of a bin of colours
-constexpr int kOneColour = 24;           // a channel of pixels of one area
+constexpr int kEvenSteps = 10;           // between pixels of an even area in a channel, with JPEG's ripples
+constexpr int kBin = 16;                 // width of a bin of colours: finer than two grounds that anybody tells apart
+constexpr int kOneColour = 24;           // a channel of pixels of one area: a bin and a half
 constexpr float kSameArea = 28.0F;       // the same, noise with it
 constexpr double kLeastArea = 0.004;     // of the picture
 constexpr std::size_t kMostAreas = 24;   // colours
 constexpr int kColouredGround = 30;      // difference of its channels; RViz draws unknown ground in 112,137,134
 constexpr double kLeastColoured = 0.12;  // of the picture: less is drawn on a map of greys
 constexpr double kMostEven = 0.5;        // of the picture, at the least, are even areas
-constexpr int kBlends = 3;               // pixels that blend two grounds
+constexpr int kBlends = 3;               // pixels that blend two grounds: edges drawn twice as large have two or three
 constexpr float kMixture = 22.0F;        // off the mixtures of two grounds, at the most
 constexpr double kWallLike = 0.45;       // share of wall in a pixel that is wall
 constexpr double kOffWall = 0.3;         // off the mixtures of wall and ground, of their difference
@@ -83,7 +83,7 @@ std::vector<std::pair<cv::Vec3f, double>> frequent(const cv::Mat& colours, const
   while (out.size() < most_colours) {
     const auto best =
         std::max_element(bins.begin(), bins.end(), [](const Bin& a, const Bin& b) { return a.count < b.count; });
-    if (best->count < 0.5 * least || best->count <= 0.0) break;
+    if (best->count < 0.5 * least || best->count <= 0.0) break;  // a colour may lie half in the next bin
     const cv::Vec3d centre = best->sum * (1.0 / best->count);
     Bin all;
     for (Bin& bin : bins) {

@@ -15,14 +15,14 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr std::size_t kMostGreys = 8;    // of a dithered picture
-constexpr double kLeastDots = 0.02;      // of the pixels: greys that differ from all four around
-constexpr double kMostPairs = 0.5;       // of few dots those that touch another: dithers keep them apart, salt does not
-constexpr double kFewDots = 0.12;        // of the pixels around, where that is asked
-constexpr int kRun = 5;                  // pixels of the darkest grey in a line that no dots make
-constexpr int kFarEnough = 25;           // greys of two grounds that dots can tell apart
-constexpr int kRounds = 4;               // of looking for walls where dots are fewer
-constexpr int kSteps = 24;               // of spreading
+constexpr std::size_t kMostGreys = 8;  // of a dithered picture
+constexpr double kLeastDots = 0.02;    // of the pixels: greys that differ from all four around
+constexpr double kMostPairs = 0.5;     // of few dots those that touch another: dithers keep them apart, salt does not
+constexpr double kFewDots = 0.12;      // of the pixels around, where that is asked
+constexpr int kRun = 5;                // pixels of the darkest grey in a line that no dots make
+constexpr int kFarEnough = 25;         // greys of two grounds that dots can tell apart
+constexpr int kRounds = 4;             // of looking for walls: those found make grounds purer, and purer ones show more
+constexpr int kSteps = 24;             // of spreading, each by a pixel: half of a passage of 1.2 m at 0.025 m
 constexpr double kLeastOfGround = 0.01;  // of the pixels
 constexpr int kOneGround = 12;           // greys that the means of one ground differ by
 
@@ -41,19 +41,22 @@ cv::Mat dots_of(const cv::Mat& grey) {
 
 /// Salt falls anywhere: of few dots many touch another one. A dither keeps them as far apart as it can.
 bool keep_apart(const cv::Mat& dots) {
+  constexpr int kAround = 9;           // [pixels]: the periods of ordered dithers, 2 to 8, and no less than a few dots
+  constexpr double kLeastAsked = 0.2;  // of the dots: fewer say nothing
+  constexpr double kNeighbours = 8.0;  // any of which a dot at random may be
   cv::Mat around;
   cv::Mat there;
   dots.convertTo(there, CV_32F, 1.0 / 255.0);
-  cv::boxFilter(there, around, CV_32F, {9, 9});
+  cv::boxFilter(there, around, CV_32F, {kAround, kAround});
   const cv::Mat few = dots & (around < kFewDots);
   const int asked = cv::countNonZero(few);
-  if (asked < static_cast<int>(0.2 * cv::countNonZero(dots))) return true;
+  if (asked < static_cast<int>(kLeastAsked * cv::countNonZero(dots))) return true;
   cv::Mat ring = cv::Mat::ones(3, 3, CV_32F), touching;
   ring.at<float>(1, 1) = 0.0F;
   cv::filter2D(there, touching, CV_32F, ring);
   // As often as at random, or less than half of that.
   const double share = cv::mean(around, few)[0];
-  const double random = 1.0 - std::pow(1.0 - share, 8.0);
+  const double random = 1.0 - std::pow(1.0 - share, kNeighbours);
   return cv::countNonZero(few & (touching > 0.5F)) < kMostPairs * random * asked;
 }
 
@@ -100,12 +103,15 @@ std::vector<int> means_of_grounds(const cv::Mat& mean, const cv::Mat& walls) {
         count[static_cast<std::size_t>(std::clamp(std::lround(mean.at<float>(y, x)), 0L, 255L))] += 1.0;
   std::vector<int> out;
   const double least = kLeastOfGround * static_cast<double>(mean.total());
-  while (out.size() < 4) {
+  constexpr std::size_t kMost = 4;  // free, unknown, a page and a window around
+  constexpr int kSpread = 2;        // of the means of one ground, beside the most frequent
+  while (out.size() < kMost) {
     int best = -1;
     double most = 0.0;
     for (int g = 0; g < 256; ++g) {
       double here = 0.0;
-      for (int k = std::max(0, g - 2); k <= std::min(255, g + 2); ++k) here += count[static_cast<std::size_t>(k)];
+      for (int k = std::max(0, g - kSpread); k <= std::min(255, g + kSpread); ++k)
+        here += count[static_cast<std::size_t>(k)];
       if (here <= most) continue;
       most = here;
       best = g;
@@ -169,6 +175,14 @@ void drop_patches(const std::vector<int>& grounds, const cv::Mat& walls, cv::Mat
 /// lighter than the `next` grey has none.
 cv::Mat crowded(const cv::Mat& dark, const cv::Mat& walls, const cv::Mat& ground, int darkest, int next) {
   constexpr double kNone = 0.02;  // share of dots: of two in 5 x 5 pixels one is none
+  // Dots in 3 x 3 pixels, at the most, of grounds with less than such a share of them: nine times the share and what is
+  // missing to the next whole number, since dithers spread their dots evenly. From 0.56 on nine are nothing strange.
+  struct Bound {
+    double share;
+    int dots;
+  };
+  constexpr std::array<Bound, 6> kBounds{{{0.0, 0}, {0.1, 1}, {0.16, 2}, {0.27, 3}, {0.4, 4}, {0.56, 6}}};
+  constexpr int kAll = 9;
   cv::Mat there, count, wide, out = cv::Mat::zeros(dark.size(), CV_8U);
   dark.convertTo(there, CV_8U, 1.0 / 255.0);
   cv::boxFilter(there, count, CV_8U, {3, 3}, {-1, -1}, false, cv::BORDER_REPLICATE);
@@ -179,13 +193,9 @@ cv::Mat crowded(const cv::Mat& dark, const cv::Mat& walls, const cv::Mat& ground
     for (int x = 0; x < dark.cols; ++x) {
       if (dark.at<unsigned char>(y, x) == 0 || walls.at<unsigned char>(y, x) != 0) continue;
       const double share = static_cast<double>(next - darkest_near.at<unsigned char>(y, x)) / (next - darkest);
-      const int most = share < 0.0    ? 0
-                       : share < 0.1  ? 1
-                       : share < 0.16 ? 2
-                       : share < 0.27 ? 3
-                       : share < 0.4  ? 4
-                       : share < 0.56 ? 6
-                                      : 9;
+      const auto* const bound =
+          std::find_if(kBounds.begin(), kBounds.end(), [share](const Bound& b) { return share < b.share; });
+      const int most = bound == kBounds.end() ? kAll : bound->dots;
       if (count.at<unsigned char>(y, x) > most || (share < kNone && wide.at<unsigned char>(y, x) > 1))
         out.at<unsigned char>(y, x) = 255;
     }

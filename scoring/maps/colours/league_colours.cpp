@@ -33,26 +33,33 @@ using league::rgb_of;
 using league::spread;
 using league::wall_share;
 
+constexpr std::size_t kOneOfWalls = 5000;  // pixels in so many are wall, at the least
+constexpr std::size_t kOneOfSquares = 40;  // the same of either grey of the checkerboard
+
 /// The white of a picture whose contrast was taken down: 255 where the league's two greys do not lie below it as they
 /// do below white.
 int dimmed_white(const RgbImage& image) {
+  constexpr int kGrey = 3;                                  // difference of the channels; the league's greys have 1
+  constexpr int kDimmest = 200;                             // white of less light would be grey ground
+  constexpr int kAsBefore = 250;                            // white that rounding and JPEG leave
+  constexpr std::size_t kOneOfWhite = 50, kOneOfGrey = 25;  // pixels in so many that a map has at least of each
   std::array<std::size_t, 256> levels{};
   for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
     const auto [low, high] = std::minmax({image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]});
-    if (high - low <= 3) ++levels[image.rgb[i + 1]];
+    if (high - low <= kGrey) ++levels[image.rgb[i + 1]];
   }
   const std::size_t pixels = std::max<std::size_t>(1, image.rgb.size() / 3);
   int white = 255;
-  while (white > 200 && 50 * levels[static_cast<std::size_t>(white)] < pixels) --white;
+  while (white > kDimmest && kOneOfWhite * levels[static_cast<std::size_t>(white)] < pixels) --white;
   // Contrast is scaled about a middle grey or about black.
   const auto is_there = [&](int grey, int pivot) {
     const double at = pivot + (grey - pivot) * static_cast<double>(white - pivot) / (255 - pivot);
     std::size_t near = 0;
     for (int level = static_cast<int>(at) - 1; level <= static_cast<int>(at) + 2; ++level)
       near += levels[static_cast<std::size_t>(std::clamp(level, 0, 255))];
-    return 25 * near >= pixels;
+    return kOneOfGrey * near >= pixels;
   };
-  if (white >= 250 || white <= 200) return 255;
+  if (white >= kAsBefore || white <= kDimmest) return 255;
   for (const int pivot : {0, 128})
     if (is_there(league::kUnexplored[0], pivot) && is_there(league::kUnexploredLight[0], pivot)) return white;
   return 255;
@@ -69,13 +76,15 @@ RgbImage recoloured(const RgbImage& image, const Change& change) {
   return out;
 }
 
+/// A twentieth of it is checkerboard, and there are walls: pixels of that blue by chance are fewer.
 bool is_unchanged(const Census& c) {
-  return 20 * c.checkerboard >= c.pixels && 5000 * c.pure_walls >= c.pixels && c.exact();
+  constexpr std::size_t kOneOfBoard = 20;
+  return kOneOfBoard * c.checkerboard >= c.pixels && kOneOfWalls * c.pure_walls >= c.pixels && c.exact();
 }
 
 /// Whether a colour is one of the table's, or a mixture of it with searched floor.
 bool is_of_table(const Colour& c, const Colour& own) {
-  constexpr int kSlack = 25;
+  constexpr int kSlack = 25;  // of a channel, for rounding and JPEG: wall and way differ by 120
   const Colour floor = league::kSearched;
   const double r = floor.r - own.r, g = floor.g - own.g, b = floor.b - own.b;
   const double along = (c.r - own.r) * r + (c.g - own.g) * g + (c.b - own.b) * b;
@@ -89,8 +98,9 @@ struct Ink {
   std::size_t all = 0;
   std::size_t known = 0;
   void count(const Colour& c, std::size_t pixels) {
-    constexpr int kDark = 100;
-    if (c.g >= kDark || c.r >= kDark + 50) return;
+    constexpr int kDark = 100, kMostRed = 150;
+    // What is lighter was blended too far to tell what of.
+    if (c.g >= kDark || c.r >= kMostRed) return;
     all += pixels;
     const auto near = [&](const Rgb& own) { return is_of_table(c, own); };
     if (wall_share(c) > 0.45 || std::any_of(league::kAll.begin(), league::kAll.end(), near)) known += pixels;
@@ -118,7 +128,7 @@ std::vector<std::pair<Rgb, std::size_t>> colours_of(const RgbImage& image) {
 
 /// What the floor of a picture with such squares may look like: white, or the green of what was searched.
 std::vector<FloorTone> floor_tones(const Rgb& colour, const Rgb& lighter) {
-  constexpr int kGreen = 15;
+  constexpr int kGreen = 15;  // over the other channels; searched floor has 50 or 100
   std::vector<FloorTone> out;
   if (colour[1] >= lighter[1]) out.push_back({colour, league::kFree});
   if (colour[1] >= std::max(colour[0], colour[2]) + kGreen)
@@ -129,16 +139,15 @@ std::vector<FloorTone> floor_tones(const Rgb& colour, const Rgb& lighter) {
 /// The picture with the tones of before, where `curve` makes of the league's colours those that cover most of it.
 std::optional<RestoredColours> undone(const ToneCurve& curve, const RgbImage& image,
                                       const std::vector<std::pair<Rgb, std::size_t>>& colours) {
+  const BeforeCurve was_before(curve);
   Census c;
+  for (const auto& [colour, count] : colours) c.count(was_before(colour), count);
+  if (!is_unchanged(c)) return std::nullopt;
   Ink ink;
-  for (const auto& [colour, count] : colours) {
-    const Rgb was = without(curve, colour);
-    c.count(was, count);
-    ink.count(was, count);
-  }
-  if (!is_unchanged(c) || !ink.is_known()) return std::nullopt;
+  for (const auto& [colour, count] : colours) ink.count(was_before(colour), count);
+  if (!ink.is_known()) return std::nullopt;
   std::map<Rgb, Rgb> before;
-  for (const auto& [colour, count] : colours) before[colour] = without(curve, colour);
+  for (const auto& [colour, count] : colours) before[colour] = was_before(colour);
   RgbImage out = recoloured(image, [&](const Rgb& colour) { return before.at(colour); });
   return RestoredColours{std::move(out), "tones had been changed (" + curve.name + ")"};
 }
@@ -177,16 +186,18 @@ std::optional<RestoredColours> with_paler_colours(const RgbImage& image) {
 
 /// More than lines of it are coloured: maps of greys may have walls that look like squares.
 bool has_colour(const RgbImage& image) {
-  constexpr int kColoured = 20;
+  constexpr int kColoured = 20;        // difference of the channels
+  constexpr std::size_t kOneIn = 500;  // pixels: fewer are no drawing
   std::size_t coloured = 0;
   each_run(image, [&](const Colour& c, int, int, int length) {
     if (spread(c) > kColoured) coloured += static_cast<std::size_t>(length);
   });
-  return 500 * coloured >= image.rgb.size() / 3;
+  return kOneIn * coloured >= image.rgb.size() / 3;
 }
 
 /// Pixels of thin lines in black: the walls of maps in greys, on which something may be drawn in blue.
 std::size_t black_lines(const RgbImage& image) {
+  // Brightness of black, blended or through JPEG, and difference of its channels; pixels across areas.
   constexpr int kDark = 60, kGrey = 24, kThick = 9;
   cv::Mat black = cv::Mat::zeros(image.height, image.width, CV_8U);
   each_run(image, [&](const Colour& c, int first, int y, int length) {
@@ -204,7 +215,9 @@ std::size_t black_lines(const RgbImage& image) {
 bool has_even_ground(const RgbImage& image) {
   std::size_t all = 0, even = 0;
   each_run(image, [&](const Colour& c, int, int, int length) {
-    constexpr int kLight = 150, kGrey = 12, kNear = 5;
+    constexpr int kLight = 150;  // the darkest ground, its grid, has 190; darker greys are lines
+    constexpr int kGrey = 12;    // difference of the channels
+    constexpr int kNear = 5;     // less than half of the 11 between the two squares
     if (c.g < kLight || spread(c) > kGrey) return;
     all += static_cast<std::size_t>(length);
     for (const Rgb& own : {league::kUnexplored, league::kUnexploredLight, league::kFree, league::kGridLine})
@@ -219,8 +232,9 @@ bool has_even_ground(const RgbImage& image) {
 /// Much of it has colours that no ground of a league map has: neither grey nor the green of what was searched. Asked of
 /// the middle of the values in squares of some pixels: lines and noise have no say.
 bool is_covered_with_strange_colours(const RgbImage& image) {
-  constexpr int kSquare = 6, kEvery = 12;  // [pixels]
-  constexpr int kColoured = 30, kOneIn = 4;
+  constexpr int kSquare = 6, kEvery = 12;  // [pixels]: a quarter of the picture is asked
+  constexpr int kColoured = 30;            // difference of the channels; RViz's unknown ground has 25
+  constexpr int kOneIn = 4;                // squares; drawings cover less
   int strange = 0, all = 0;
   for (int top = 0; top + kSquare <= image.height; top += kEvery)
     for (int left = 0; left + kSquare <= image.width; left += kEvery) {
@@ -244,7 +258,8 @@ bool is_covered_with_strange_colours(const RgbImage& image) {
 /// Squares of two shades, as a tint leaves them. Floors of rooms have colours of their own, and the blocks of a JPEG
 /// differ less.
 bool is_of_one_tint(const Checkerboard& board) {
-  constexpr int kTint = 24, kLeastStep = 5;
+  constexpr int kTint = 24;      // by which the squares' tints may differ
+  constexpr int kLeastStep = 5;  // between the squares; the league's has 11
   int step = 0;
   for (std::size_t i = 0; i < 3; ++i) step = std::max(step, int{board.lighter[i]} - int{board.darker[i]});
   if (step < kLeastStep) return false;
@@ -285,7 +300,7 @@ std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
   if (is_unchanged(census_of(image, inverted)))
     return RestoredColours{recoloured(image, inverted), "colours were inverted"};
   // Greys alone have a curve to the squares and white of the league wherever they were blended.
-  if (has_colour(image) && 40 * std::min(as_is.darker, as_is.checkerboard - as_is.darker) < as_is.pixels)
+  if (has_colour(image) && kOneOfSquares * std::min(as_is.darker, as_is.checkerboard - as_is.darker) < as_is.pixels)
     if (auto restored = with_tones_of_old(image)) return restored;
   const int white = dimmed_white(image);
   if (white == 255) return std::nullopt;
@@ -299,7 +314,7 @@ std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
 }
 
 std::string why_colours_are_lost(const RgbImage& image, bool is_league) {
-  constexpr int kUneven = 12;  // of the checkerboard's squares, beyond JPEG's
+  constexpr int kUneven = 12;  // of the checkerboard's squares over the picture; they differ by 11 from each other
   if (is_grey_league_map(image))
     return "is a league map without its colours: the robot's way and victims are as dark as walls; save it in colour";
   if (is_league && census(image).exact()) return "";
@@ -332,9 +347,10 @@ bool is_league_map(const RgbImage& image) {
   const Census c = census(image);
   if (3 * c.walls > c.pixels) return false;  // a ground of that blue
   // Canvas may have the grey of one square, not of both.
-  if (40 * std::min(c.darker, c.checkerboard - c.darker) >= c.pixels) return true;
+  if (kOneOfSquares * std::min(c.darker, c.checkerboard - c.darker) >= c.pixels) return true;
   if (is_covered_with_strange_colours(image)) return false;
-  const auto are_walls = [&](std::size_t count) { return count >= 20 && 5000 * count >= c.pixels; };
+  constexpr std::size_t kFewest = 20;  // of walls: half a metre of a line of two pixels at 0.05 m
+  const auto are_walls = [&](std::size_t count) { return count >= kFewest && kOneOfWalls * count >= c.pixels; };
   if (c.exact()) return are_walls(c.walls);
   // Colours that ran out of walls leave them black.
   const bool lossy = has_run_colours(without_searched_floor(image));

@@ -6,8 +6,6 @@
 #include <cstdlib>
 #include <utility>
 
-#include "scoring/maps/colours/league_palette.h"
-
 namespace rubble::scoring {
 namespace {
 
@@ -71,14 +69,22 @@ std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const 
   return out;
 }
 
-Rgb without(const ToneCurve& curve, const Rgb& colour) {
-  for (const Rgb& own : league::kAll)
-    if (difference(changed(curve, own), colour) <= kRounding) return own;
-  const auto before = [&](int value) {
-    const auto nearer = [value](std::uint8_t a, std::uint8_t b) { return std::abs(a - value) < std::abs(b - value); };
-    return static_cast<std::uint8_t>(std::min_element(curve.of.begin(), curve.of.end(), nearer) - curve.of.begin());
-  };
-  return {before(colour[0]), before(colour[1]), before(colour[2])};
+BeforeCurve::BeforeCurve(const ToneCurve& curve) {
+  for (std::size_t value = 0; value < before_.size(); ++value) {
+    const auto nearer = [value = static_cast<int>(value)](std::uint8_t a, std::uint8_t b) {
+      return std::abs(a - value) < std::abs(b - value);
+    };
+    before_[value] =
+        static_cast<std::uint8_t>(std::min_element(curve.of.begin(), curve.of.end(), nearer) - curve.of.begin());
+  }
+  std::transform(league::kAll.begin(), league::kAll.end(), leagues_.begin(),
+                 [&](const Rgb& own) { return changed(curve, own); });
+}
+
+Rgb BeforeCurve::operator()(const Rgb& colour) const {
+  for (std::size_t i = 0; i < leagues_.size(); ++i)
+    if (difference(leagues_[i], colour) <= kRounding) return league::kAll[i];
+  return {before_[colour[0]], before_[colour[1]], before_[colour[2]]};
 }
 
 }  // namespace rubble::scoring

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/image/geotiff.h"
+#include "scoring/maps/colours/league_palette.h"
 
 namespace rubble::scoring {
 
@@ -25,7 +26,16 @@ struct FloorTone {
 /// what is seen now of its floor, the likeliest first.
 std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const FloorTone& floor);
 
-/// The colour before that: the league's own where one of them became it, else of each channel the value that comes
-/// nearest.
-Rgb without(const ToneCurve& curve, const Rgb& colour);
+/// Undoes a curve: the league's own colour where one of them became this, else of each channel the value that comes
+/// nearest. Both are looked up: a JPEG has thousands of colours, and many curves are tried on it.
+class BeforeCurve {
+ public:
+  explicit BeforeCurve(const ToneCurve& curve);
+  Rgb operator()(const Rgb& colour) const;
+
+ private:
+  std::array<std::uint8_t, 256> before_{};
+  std::array<Rgb, league::kAll.size()> leagues_{};  ///< what they became
+};
+
 }  // namespace rubble::scoring
