@@ -16,7 +16,8 @@ namespace rubble::scoring {
 namespace {
 
 constexpr int kColour = 60;           // difference of the channels of ink
-constexpr int kTint = 26;             // of what still counts as grey: RViz draws unknown ground in 112,137,134
+constexpr int kTint = 36;             // of what still counts as grey: RViz draws unknown ground in 112,137,134, and
+                                      // JPEG adds up to 10 to the difference
 constexpr double kLeastInk = 0.0005;  // of all pixels
 constexpr double kMostInk = 0.1;
 constexpr int kSmear = 8;            // JPEG smears colours as far [pixels]
