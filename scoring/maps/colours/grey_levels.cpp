@@ -9,6 +9,7 @@
 #include "base/grid.h"
 #include "scoring/maps/colours/grey_roles.h"
 #include "scoring/maps/colours/nearest_ground.h"
+#include "scoring/maps/colours/reading_doubts.h"
 
 namespace rubble::scoring {
 namespace {
@@ -17,6 +18,9 @@ constexpr int kUnknownTolerance = 12;  // around the unknown grey, where the pic
 constexpr int kWallBelow = 140;        // of 0 (wall) to 255 (free): at least 45 % wall
 constexpr int kArea = 9;               // wider than walls [pixels]
 constexpr int kMostAreas = 4;          // that one map has
+constexpr int kLeastStep = 28;         // of 255, between two classes: levels scatter by 12, and fringes lie between
+constexpr int kLeastPureStep = 4;      // the same where every pixel is of a level: colours may have come as near
+constexpr double kSure = 0.75;         // share of what walls or rim say, for free and unknown ground to be told
 constexpr double kPale = 0.85;         // lines that reach less of the walls' grey in their middle are blurred
 constexpr double kMostPale = 0.25;     // share of them that sharp pictures have (where a wall ends)
 
@@ -28,6 +32,14 @@ cv::Mat in_order(const cv::Mat& grey, const GreyRoles& roles) {
         cv::saturate_cast<unsigned char>(255.0 * (g - roles.wall) / static_cast<double>(roles.free - roles.wall));
   cv::Mat out;
   cv::LUT(grey, table, out);
+  return out;
+}
+
+/// Between two of the greys that were told apart.
+int least_step(const GreyRoles& roles) {
+  int out = std::abs(roles.free - roles.wall);
+  if (roles.unknown >= 0)
+    out = std::min({out, std::abs(roles.unknown - roles.wall), std::abs(roles.unknown - roles.free)});
   return out;
 }
 
@@ -150,7 +162,12 @@ LabelImage classify_grey(const cv::Mat& picture, const cv::Mat& apart, const cv:
         " between darker and lighter areas, and was blended: walls and borders look the same; save it without "
         "interpolation, smoothing or loss";
   if (roles.unknown >= 0) out.recognised += cv::format(" (%.0f %% sure)", 100.0 * roles.sure);
+  if (roles.unknown >= 0 && roles.sure < kSure)
+    out.doubt += kDoubt + std::string("free and unknown ground may be the other way round");
+  if (const int step = least_step(roles); step <= (roles.pure ? kLeastPureStep : kLeastStep))
+    out.doubt += kDoubt + cv::format("two of these greys differ by %d of 255 only", step);
   if (roles.pure) {
+    out.by_level = true;
     out.classes = by_level(grey, roles);
     if (!roles.drawn.empty()) {
       fill_drawn(grey, roles.drawn, out.classes);

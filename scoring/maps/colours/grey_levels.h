@@ -17,6 +17,8 @@ struct LabelImage {
   cv::Mat classes;
   std::string recognised;
   std::string refusal{};  ///< why the image is no map; empty: it is one
+  std::string doubt{};    ///< of what was recognised (reading_doubts.h); empty: none
+  bool by_level = false;  ///< each of its colours was taken for one class
 };
 
 /// 255 where the image is more transparent than not.

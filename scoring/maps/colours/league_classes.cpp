@@ -165,6 +165,7 @@ LabelImage classify_league(const RgbImage& as_given, const Blur& undone) {
   const RgbImage& image = exact ? as_given : unsearched;
   LabelImage out;
   out.classes = cv::Mat(image.height, image.width, CV_8U);
+  out.by_level = exact;
   const bool was_blurred = undone.sigma > 0.0;
   const bool lossy = !exact && (!was_blurred || undone.ripples) && has_run_colours(image);
   const cv::Mat dark_walls = lossy ? walls_by_brightness(as_given) : cv::Mat();

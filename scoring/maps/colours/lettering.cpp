@@ -1,6 +1,7 @@
 #include "scoring/maps/colours/lettering.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <utility>
@@ -11,7 +12,6 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr int kLeastHeight = 6;        // of a letter [pixels]: less is no writing that anybody reads
 constexpr int kMostHeight = 60;        // [pixels]
 constexpr double kWidestLetter = 2.1;  // heights
 constexpr double kMostFilled = 0.75;   // of its box, but for narrow ones
@@ -22,16 +22,35 @@ constexpr double kAlikeHeight = 0.6;   // lower over higher
 constexpr double kLettersApart = 0.8;  // heights between two letters of a word
 constexpr double kBlank = 1.7;         // heights between two words of a line
 constexpr double kMoat = 0.2;          // heights of free ground around a word
-constexpr double kManyStrokes = 2.7;   // crossed by a row and a column together, in the mean: one wall 2, corners 2
 constexpr std::size_t kLeastLetters = 3;
 constexpr double kLeastComplex = 0.34;  // share of a word's letters with many strokes
+
+/// What passes for a letter.
+struct Rules {
+  int least_height = 6;       ///< [pixels]: less is no writing that anybody reads
+  double thickest_pen = 0.0;  ///< that any letter may have, however low it is [pixels]
+  double many_strokes = 2.7;  ///< crossed by a row and a column together, in the mean: one wall 2, corners 2
+  bool joined = false;        ///< letters may run into each other
+};
+
+constexpr Rules kSurely{};
+/// A pen of a pixel leaves 3 where it is smoothed, and joins what it writes; an h has 2.5 strokes. Ragged walls
+/// have pieces like that.
+constexpr Rules kPerhaps{5, 3.0, 2.5, true};
+constexpr double kLeastOfPieces = 0.4;  // that stand in words; of ragged walls some do, most do not
+constexpr double kWidestRun = 8.0;      // heights, of letters that run into each other
+constexpr double kLetterWidth = 0.75;   // heights, with what is between it and the next
+constexpr double kStrokesOfRun = 3.2;   // crossed by a row and a column together, in the mean
+constexpr double kThinnestRun =
+    0.2;  // its stroke, heights: walls of 0.1 m are as thick in what is no larger than 0.5 m
+constexpr double kThickestRun = 0.5;
 
 struct Piece {
   cv::Rect box;
   int label = 0;
   double strokes = 0.0;    ///< crossed by a row and a column, in the mean
   double thickness = 0.0;  ///< of its strokes [pixels]
-  bool complex() const { return strokes >= kManyStrokes; }
+  std::size_t letters = 1;
 };
 
 /// Runs of the piece in a row of its box.
@@ -41,7 +60,7 @@ int runs(const int* at, int length, int step, int label) {
   return out;
 }
 
-Piece piece_of(const cv::Mat& labels, const cv::Rect& box, int label, int area) {
+Piece piece_of(const cv::Mat& labels, const cv::Rect& box, int label, int area, const Rules& rules) {
   Piece out{box, label};
   int rows = 0;
   int columns = 0;
@@ -50,13 +69,17 @@ Piece piece_of(const cv::Mat& labels, const cv::Rect& box, int label, int area) 
     columns += runs(labels.ptr<int>(box.y) + box.x + x, box.height, static_cast<int>(labels.step1()), label);
   out.strokes = static_cast<double>(rows) / box.height + static_cast<double>(columns) / box.width;
   out.thickness = static_cast<double>(area) / std::max(rows, columns);
+  const double length = static_cast<double>(box.width) / box.height, pen = out.thickness / box.height;
+  if (rules.joined && length >= 2.0 * kLetterWidth && out.strokes >= kStrokesOfRun && pen >= kThinnestRun &&
+      pen <= kThickestRun)
+    out.letters = static_cast<std::size_t>(std::lround(length / kLetterWidth));
   return out;
 }
 
-bool may_be_letter(const Piece& piece, int area) {
+bool may_be_letter(const Piece& piece, int area, const Rules& rules) {
   const double height = piece.box.height;
-  if (height < kLeastHeight || height > kMostHeight || piece.box.width > kWidestLetter * height) return false;
-  if (piece.thickness > kThickest * height) return false;
+  if (piece.box.width > (piece.letters > 1 ? kWidestRun : kWidestLetter) * height) return false;
+  if (piece.letters == 1 && piece.thickness > std::max(kThickest * height, rules.thickest_pen)) return false;
   return piece.box.width <= kNarrow * height || area <= kMostFilled * piece.box.area();
 }
 
@@ -135,18 +158,22 @@ bool stands_alone(const cv::Mat& classes, const cv::Mat& labels, const Written& 
   return true;
 }
 
-bool is_written(const std::vector<Piece>& word) {
-  if (word.size() < kLeastLetters) return false;
-  const auto complex = std::count_if(word.begin(), word.end(), [](const Piece& p) { return p.complex(); });
-  return static_cast<double>(complex) >= kLeastComplex * static_cast<double>(word.size());
+bool is_written(const std::vector<Piece>& word, const Rules& rules) {
+  std::size_t letters = 0, complex = 0;
+  for (const Piece& piece : word) {
+    letters += piece.letters;
+    if (piece.strokes >= rules.many_strokes) complex += piece.letters;
+  }
+  return letters >= kLeastLetters && static_cast<double>(complex) >= kLeastComplex * static_cast<double>(letters);
 }
 
 /// All that is written. A number, or a short word, behind a blank cannot be told from walls by itself: it goes with the
 /// word beside it.
-std::vector<std::vector<Piece>> written_in(const std::vector<Piece>& letters) {
+std::vector<std::vector<Piece>> written_in(const std::vector<Piece>& letters, const Rules& rules) {
   std::vector<std::vector<Piece>> out;
   std::vector<std::vector<Piece>> others;
-  for (std::vector<Piece>& word : words_of(letters)) (is_written(word) ? out : others).push_back(std::move(word));
+  for (std::vector<Piece>& word : words_of(letters))
+    (is_written(word, rules) ? out : others).push_back(std::move(word));
   for (std::vector<Piece>& word : out)
     for (std::vector<Piece>& other : others) {
       const bool goes_on = std::any_of(other.begin(), other.end(), [&](const Piece& b) {
@@ -159,29 +186,42 @@ std::vector<std::vector<Piece>> written_in(const std::vector<Piece>& letters) {
   return out;
 }
 
-/// Words along the rows.
-int erase_rows(cv::Mat& classes) {
+int letters_in(const std::vector<Piece>& pieces) {
+  return std::accumulate(pieces.begin(), pieces.end(), 0,
+                         [](int sum, const Piece& p) { return sum + static_cast<int>(p.letters); });
+}
+
+/// Words along the rows: what `found` is told of. Returns how many letters there seem to be, in words or not.
+template <class Found>
+int find_in_rows(const cv::Mat& classes, const Rules& rules, const Found& found) {
   cv::Mat labels, stats, centres;
   const int count = cv::connectedComponentsWithStats(classes == static_cast<int>(Occupancy::Occupied), labels, stats,
                                                      centres, 8, CV_32S);
   std::vector<Piece> letters;
   for (int i = 1; i < count; ++i) {
     const cv::Rect box = box_of(stats, i);
-    if (box.height < kLeastHeight || box.height > kMostHeight || box.width > kWidestLetter * box.height) continue;
+    const double widest = rules.joined ? kWidestRun : kWidestLetter;
+    if (box.height < rules.least_height || box.height > kMostHeight || box.width > widest * box.height) continue;
     const int area = stats.at<int>(i, cv::CC_STAT_AREA);
-    const Piece piece = piece_of(labels, box, i, area);
-    if (may_be_letter(piece, area)) letters.push_back(piece);
+    const Piece piece = piece_of(labels, box, i, area, rules);
+    if (may_be_letter(piece, area, rules)) letters.push_back(piece);
   }
   constexpr std::size_t kMost = 2000;  // noise, not writing
   if (letters.size() > kMost) return 0;
-  int erased = 0;
-  for (const std::vector<Piece>& letters_of_word : written_in(letters)) {
+  for (const std::vector<Piece>& letters_of_word : written_in(letters, rules)) {
     if (letters_of_word.empty()) continue;
     const Written word = whole(letters_of_word, stats);
-    if (!stands_alone(classes, labels, word)) continue;
-    classes(word.box).setTo(static_cast<int>(Occupancy::Free));
-    erased += static_cast<int>(letters_of_word.size());
+    if (stands_alone(classes, labels, word)) found(word.box, letters_in(letters_of_word));
   }
+  return letters_in(letters);
+}
+
+int erase_rows(cv::Mat& classes) {
+  int erased = 0;
+  find_in_rows(classes, kSurely, [&](const cv::Rect& word, int letters) {
+    classes(word).setTo(static_cast<int>(Occupancy::Free));
+    erased += letters;
+  });
   return erased;
 }
 
@@ -195,6 +235,24 @@ int erase_lettering(cv::Mat& classes) {
   const int upright = erase_rows(turned);
   if (upright > 0) cv::rotate(turned, classes, cv::ROTATE_90_COUNTERCLOCKWISE);
   return erased + upright;
+}
+
+int perhaps_words(const cv::Mat& classes) {
+  if (classes.empty()) return 0;
+  int words = 0;
+  const auto in_rows_of = [&words](const cv::Mat& of) {
+    int here = 0, letters = 0;
+    const int all = find_in_rows(of, kPerhaps, [&](const cv::Rect&, int in_word) {
+      ++here;
+      letters += in_word;
+    });
+    if (letters >= kLeastOfPieces * all) words += here;
+  };
+  cv::Mat turned;
+  cv::rotate(classes, turned, cv::ROTATE_90_CLOCKWISE);
+  in_rows_of(classes);
+  in_rows_of(turned);
+  return words;
 }
 
 }  // namespace rubble::scoring

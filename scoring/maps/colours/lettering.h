@@ -10,4 +10,8 @@ namespace rubble::scoring {
 /// many pieces went.
 int erase_lettering(cv::Mat& classes);
 
+/// How many words stay in it that are too low, too much smoothed or joined for erase_lettering() to be sure of; 0
+/// where most small pieces stand in none, as in ragged walls.
+int perhaps_words(const cv::Mat& classes);
+
 }  // namespace rubble::scoring

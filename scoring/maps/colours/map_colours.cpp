@@ -15,6 +15,7 @@
 #include "scoring/maps/colours/league_classes.h"
 #include "scoring/maps/colours/league_colours.h"
 #include "scoring/maps/colours/lettering.h"
+#include "scoring/maps/colours/reading_doubts.h"
 #include "scoring/maps/colours/turned_canvas.h"
 
 namespace rubble::scoring {
@@ -73,10 +74,14 @@ bool is_coloured(const RgbImage& image) {
   return kOneIn * coloured >= image.rgb.size() / 3;
 }
 
-LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
-  // Larger ones would take more memory than is promised (docs/reliability.md).
+/// Larger ones would take more memory than is promised (docs/reliability.md).
+bool small_enough(const RgbImage& image) {
   constexpr std::size_t kMostPixels = 40'000'000;
-  const bool small = image.rgb.size() / 3 <= kMostPixels;
+  return image.rgb.size() / 3 <= kMostPixels;
+}
+
+LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
+  const bool small = small_enough(image);
   const std::optional<GreyedAreas> areas = small ? greys_of_coloured_areas(image, nothing) : std::nullopt;
   cv::Mat grey = areas ? areas->grey : grey_of(image);
   double least = 0.0, most = 0.0;
@@ -104,6 +109,7 @@ LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
   if (undithered) out.recognised += ", " + undithered->how;
   if (even) out.recognised += ", darker by up to " + std::to_string(even->differed) + " towards its rim before";
   if (areas) out.recognised += ", " + areas->how;
+  out.by_level |= areas || undithered;
   if (even && is_coloured(image))
     out.refusal = "is not evenly bright (ground of one kind differs by " + std::to_string(even->differed) +
                   " of 255 over the picture, as in a photograph), and coloured; give it as the robot saved it";
@@ -138,6 +144,9 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
     if (const std::string why = why_colours_are_lost(image, is_league_map(image)); !why.empty()) out.refusal = why;
   if (image.white > 0)
     out.recognised += ", scaled so that the brightest sample, " + std::to_string(image.white) + ", is white";
+  out.recognised += labels.doubt;
+  if (!direct && small_enough(original) && out.refusal.empty())
+    out.recognised += doubts_about(undone.sigma > 0.0 ? image : original, {labels.classes, out.is_league, labels.by_level});
   cv::Mat classes = labels.classes;
   classes.setTo(static_cast<int>(Occupancy::Unknown), nothing);
   clear_canvas_corners(classes);

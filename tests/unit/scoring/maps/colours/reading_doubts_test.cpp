@@ -1,0 +1,74 @@
+#include "scoring/maps/colours/reading_doubts.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "scoring/maps/colours/map_colours.h"
+#include "tests/support/map_pictures.h"
+#include "tests/support/map_style_hard.h"
+#include "tests/support/scoring_maze.h"
+
+namespace rubble::scoring {
+namespace {
+
+using namespace testing;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string said_of(const cv::Mat& picture) {
+  const ClassImage read = classify(to_rgb(picture));
+  return read.refusal.empty() ? read.recognised : "refused: " + read.refusal;
+}
+
+OccupancyGrid arena() { return padded(maze_of(3, 6, 6), 12); }
+
+TEST(ReadingDoubts, PlainPicturesHaveNone) {
+  const OccupancyGrid map = arena();
+  for (const cv::Mat& picture :
+       {in_ros_greys(map), in_ros_greys(map, 3), league_image(map, true), with_searched_floor(league_image(map, false)),
+        as_jpeg(in_ros_greys(map, 2), 70), as_jpeg(fine_league_image(map, 0.5), 80)})
+    EXPECT_THAT(said_of(picture), Not(HasSubstr(kDoubt)));
+}
+
+TEST(ReadingDoubts, CostsAroundWallsAreSeenByTheirSlopesAtAnyScale) {
+  const OccupancyGrid map = arena();
+  for (const int scale : {1, 2, 3}) {
+    const cv::Mat costs = costmap(map, scale, {0.15, 0.7, 4.0},
+                                  [](int cost) { return cost < 0 ? grey(205) : grey(254 - 200 * cost / 100); });
+    EXPECT_THAT(said_of(costs), AnyOf(HasSubstr("run into each other"), HasSubstr("blended"))) << scale;
+  }
+}
+
+TEST(ReadingDoubts, AWayIsDoubtedWhereItRunsOverWallsOnly) {
+  const OccupancyGrid map = arena();
+  cv::Mat beside = in_ros_greys(map, 2), over = beside.clone();
+  cv::polylines(beside, way_of(map, 2), false, cv::Scalar(0, 0, 255), 2);
+  cv::polylines(over, way_over_walls(map, 2, 1), false, cv::Scalar(0, 0, 255), 4);
+  EXPECT_THAT(said_of(beside), Not(HasSubstr("what they hide")));
+  EXPECT_THAT(said_of(over), HasSubstr("what they hide"));
+}
+
+TEST(ReadingDoubts, APaletteThatIsNotTheLeaguesIsNamed) {
+  const cv::Mat league = league_image(arena(), true);
+  EXPECT_THAT(said_of(with_own_palette(league, 7)), HasSubstr("no more than 16 colours"));
+  EXPECT_THAT(said_of(league), Not(HasSubstr("no more than 16 colours")));
+}
+
+TEST(ReadingDoubts, LowWordsAreNamedAndRaggedWallsAreNot) {
+  const OccupancyGrid map = arena();
+  cv::Mat named = in_ros_greys(map, 2);
+  for (int k = 0; k < 3; ++k) write_on(named, "START", 2 * open_place(map, 8, k) - P(14, -6), 0.3, kBlack);
+  const std::string said = said_of(named);
+  EXPECT_TRUE(said.find("as letters") != std::string::npos || said.find("words on free") != std::string::npos) << said;
+  for (const int seed : {1, 2, 3})
+    EXPECT_THAT(said_of(in_ros_greys(ragged(map, 1, static_cast<std::uint64_t>(seed)), 2)),
+                Not(HasSubstr("as letters")))
+        << seed;
+}
+
+}  // namespace
+}  // namespace rubble::scoring
