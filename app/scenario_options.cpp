@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/text/input_file.h"
+#include "base/text/text_file.h"
 #include "base/text/words.h"
-#include "robot/logs/foreign/file_bytes.h"
+#include "scenarios/run/recorded_log.h"
 
 namespace rubble::app {
 namespace {
@@ -25,15 +25,21 @@ bool is_shipped(const std::string& name, const fs::path& folder) {
   return !name.empty() && name.find('/') == std::string::npos && !is_there(name) && is_there(folder / (name + ".yaml"));
 }
 
+bool is_any(const fs::path& /*file*/) { return true; }
+
+/// Beside the sweeps lie scenarios that only they use.
+bool is_sweep(const fs::path& file) { return read_text_file(file.string()).find("\nseeds:") != std::string::npos; }
+
 /// `name`, unless it is the bare name of a file in `folder`. A bare name of none is told which there are.
-std::string find_shipped(const std::string& name, const fs::path& folder) {
+std::string find_shipped(const std::string& name, const fs::path& folder, bool (*is_meant)(const fs::path&) = is_any) {
   if (is_shipped(name, folder)) return (folder / (name + ".yaml")).string();
   if (is_there(name) || name.find_first_of("/.") != std::string::npos) return name;
   std::vector<std::string> names;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
     if (const std::string stem = entry.path().stem().string();
-        entry.path().extension() == ".yaml" && stem.rfind("benchmark", 0) != 0)  // a list of `rubble benchmark`
+        entry.path().extension() == ".yaml" && stem.rfind("benchmark", 0) != 0 &&  // a list of `rubble benchmark`
+        is_meant(entry.path()))
       names.push_back(stem);
   std::sort(names.begin(), names.end());
   throw InputError(name + ": there is no such file, and none of that name is shipped" + did_you_mean(name, names) +
@@ -80,10 +86,8 @@ std::vector<scenarios::Override> RunFolderOptions::overrides() const {
 }
 
 std::string recorded_log(const std::string& path) {
-  const std::string inside = path + "/log.rlog";
-  if (!std::filesystem::exists(inside)) return path;
-  require_input(inside, robot::log_rules());  // a pipe in a foreign folder is not waited for
-  return inside;
+  std::error_code error;
+  return fs::is_directory(path, error) ? scenarios::log_in(path) : path;
 }
 
 std::string shipped_folder(const std::string& kind) {
@@ -119,6 +123,6 @@ std::string find_robot(const std::string& name) {
   return name.empty() ? folder + "/pioneer_urg.yaml" : find_shipped(name, folder);
 }
 
-std::string find_sweep(const std::string& name) { return find_shipped(name, shipped_folder() + "/sweeps"); }
+std::string find_sweep(const std::string& name) { return find_shipped(name, shipped_folder() + "/sweeps", is_sweep); }
 
 }  // namespace rubble::app

@@ -139,7 +139,8 @@ int show(const scenarios::RunReport& report) {
     tell(report.failure);
     return report.interrupted ? kInterrupted : kFailed;
   }
-  print_row("ended", report.end);
+  // A sentence that comes last, on stderr, is not said twice.
+  print_row("ended", report.end == report.failure ? "by a failure; the last line tells it" : report.end);
   if (!report.place.empty()) print_row("place in the map", report.place);
   print_figures(score);
   if (score["aligned"].is_boolean() && !score["aligned"].get<bool>())

@@ -67,6 +67,11 @@ int usable_cores() {
 BatchReport run_with_progress(const std::vector<Job>& jobs, BatchOptions options, bool record) {
   catch_interrupts();
   options.stop = interrupted;
+  // What it costs is told at the start, also where nobody looks at a terminal.
+  const std::size_t runs = in_shard(jobs, options.shard).size();
+  std::string line = std::to_string(runs) + (runs == 1 ? " run" : " runs");
+  if (options.shard.count > 1) line += " of " + std::to_string(jobs.size()) + " in this shard";
+  tell(line + ", " + std::to_string(options.workers) + " at a time, into " + options.out);
   if (isatty(STDERR_FILENO)) options.progress = show_progress;
   BatchReport report = run_batch(jobs, simulating_runner(record), options);
   end_progress();

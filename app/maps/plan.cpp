@@ -38,6 +38,19 @@ std::optional<mrpt::math::TPoint2D> place(const std::string& option, const std::
   return p;
 }
 
+/// The map's extent and axes, for who named a place that is not on its floor.
+std::string extent(const scoring::LoadedMap& map) {
+  const GridFrame& frame = map.grid.frame();
+  const char* axes = map.origin == scoring::MapOrigin::Local   ? "x easting, y northing: of a robot's map -y and x"
+                     : map.origin == scoring::MapOrigin::Ros   ? "x and y of the yaml's frame"
+                     : map.origin == scoring::MapOrigin::Earth ? "x easting, y northing"
+                                                               : "from the lower left corner, x right, y up";
+  std::array<char, 240> text{};
+  std::snprintf(text.data(), text.size(), " (the map reaches from %.2f,%.2f to %.2f,%.2f m; %s)", frame.x0, frame.y0,
+                frame.x0 + frame.width * frame.resolution, frame.y0 + frame.height * frame.resolution, axes);
+  return text.data();
+}
+
 /// Pixels a cell, so that the cells of a small map can be seen.
 int magnification(const RgbImage& image) {
   constexpr int kWide = 1000, kMost = 8;  // [pixels]
@@ -63,7 +76,8 @@ int plan(PlanArguments a) {
   try {
     picture = explore::plan_picture(map.grid, a.config, ends);
   } catch (const InputError& error) {
-    throw InputError(a.map + ": " + error.what());
+    const std::string what = error.what();
+    throw InputError(a.map + ": " + what + (what.rfind("--", 0) == 0 ? extent(map) : ""));
   }
   const int times = magnification(picture.image);
   write_png(a.out, times == 1 ? picture.image : magnified(picture.image, times));

@@ -109,7 +109,9 @@ int calibrate(const CalibrateArguments& arguments) {
     print_row("folder", report.folder);
     run = report.folder;
     if (report.interrupted) return kInterrupted;
-    if (!report.failure.empty()) throw RunError(report.failure);
+    if (!report.failure.empty())
+      throw RunError(arguments.out + ": is not written, the drive was not completed; mend what 'ended' says, then " +
+                     "give the command again");
   }
   const scenarios::CalibratedRobot robot = scenarios::calibrate_from_log(recorded_log(run), in_force, file);
   print_setup(robot);

@@ -12,6 +12,7 @@
 #include "base/text/file_name.h"
 #include "base/yaml/strict_yaml.h"
 #include "base/yaml/yaml_node.h"
+#include "scenarios/config/needed_key.h"
 #include "scenarios/config/seeds.h"
 #include "scenarios/run/run.h"
 
@@ -179,6 +180,11 @@ Sweep load_sweep(const std::string& path, const std::string& shipped) {
   sweep.name = root.text("name", as_file_name(fs::path(path).stem().string()));
   if (const auto trouble = file_name_trouble(sweep.name)) root.fail("name", *trouble);
   sweep.about = root.text("about", std::string());
+  if (root.has("arena") && !root.has("scenarios"))
+    root.fail("arena", "'arena' is of a scenario, and a batch makes the runs of a sweep; write one that names it: " +
+                           ("scenarios: [" + fs::absolute(path).lexically_normal().string() + "]") +
+                           " and 'seeds: 1-24', or give it to 'rubble run'");
+  refuse_misspelt(root, "scenarios");
   sweep.scenarios = read_scenarios(root, fs::path(path).parent_path(), shipped);
   sweep.seeds = read_seeds(root);
   sweep.configurations = read_configurations(root);

@@ -17,6 +17,7 @@
 #include "base/text/words.h"
 #include "base/yaml/binder.h"
 #include "base/yaml/strict_yaml.h"
+#include "scenarios/config/needed_key.h"
 #include "scoring/figures/figures.h"
 
 namespace rubble::scenarios {
@@ -132,10 +133,23 @@ void bind_generate(Binder& b, arenas::GenerateConfig& g) {
   b.number("rough", g.rough, 0.0, 1.0);
 }
 
+/// Who gives an arena file where a scenario is played is told so.
+void refuse_arena_file(const YamlMap& root, const std::string& path) {
+  if (root.has("arena")) return;
+  for (const char* key : {"maze", "floors", "walls", "boxes", "elements", "include", "start"})
+    if (root.has(key))
+      root.fail(key, "'" + std::string(key) +
+                         "' is of an arena, and what is played is a scenario; write one, of this line: arena: {file: " +
+                         std::filesystem::absolute(path).lexically_normal().string() + "}");
+}
+
 void read_arena(const YamlMap& root, const std::string& path, Scenario& s) {
+  refuse_misspelt(root, "arena");
+  refuse_arena_file(root, path);
   const YamlMap arena = root.map("arena");
   if (arena.has("file") == arena.has("generate"))
-    root.fail("arena", "needs exactly one of 'file: arena.yaml' or 'generate: {columns: 8, rows: 8}'");
+    root.fail("arena", std::string(root.has("arena") ? "" : "'arena' is missing: it ") +
+                           "needs exactly one of 'file: arena.yaml' or 'generate: {columns: 8, rows: 8}'");
   if (arena.has("file")) {
     const std::filesystem::path file = arena.text("file", std::nullopt);
     s.arena_file = (file.is_absolute() ? file : std::filesystem::path(path).parent_path() / file).string();

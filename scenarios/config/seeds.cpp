@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "scenarios/config/needed_key.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -31,6 +32,7 @@ std::vector<std::string> one_or_more(const YamlMap& map, const std::string& key)
 
 std::vector<std::uint64_t> read_seeds(const YamlMap& root) {
   const std::string remedy = "; write a range (seeds: 1-24) or a list (seeds: [1, 5, 9])";
+  refuse_misspelt(root, "seeds");
   if (!root.has("seeds")) root.fail("seeds", "'seeds' are needed" + remedy);
   std::vector<std::uint64_t> seeds;
   std::set<std::uint64_t> seen;

@@ -66,6 +66,24 @@ Estimate estimate(const std::string& path) {
   return estimate;
 }
 
+/// To a millionth, a hundredth of what the best drive tells (m, s, deg, or no unit): more digits would only pretend.
+double to_millionth(double value) { return std::round(1e6 * value) / 1e6; }
+
+/// What was found, as it is written.
+RobotFile rounded(RobotFile file) {
+  robot::RealRobotSettings& robot = file.robot;
+  for (double* value : {&robot.base.distance_scale, &robot.base.turn_scale, &file.lidar.delay, &robot.levelling.x.zero,
+                        &robot.levelling.y.zero})
+    *value = to_millionth(*value);
+  for (robot::RobotModel* model : {&file.settings.robot, &robot.model}) {
+    model->T_base_laser.x = to_millionth(model->T_base_laser.x);
+    model->T_base_laser.y = to_millionth(model->T_base_laser.y);
+    model->T_base_laser.yaw = deg_to_rad(to_millionth(rad_to_deg(model->T_base_laser.yaw)));
+    model->effective_track = to_millionth(model->effective_track);
+  }
+  return file;
+}
+
 template <class... Values>
 std::string line(const char* format, Values... values) {
   char text[200];
@@ -142,7 +160,7 @@ std::string calibrated_yaml(const CalibratedRobot& robot, const std::string& log
   if (c.level)
     text += line("# accelerometer: pitch %.2f deg, roll %.2f deg\n", rad_to_deg(c.level->pitch_sigma),
                  rad_to_deg(c.level->roll_sigma));
-  return text + robot_file_yaml(robot.file);
+  return text + robot_file_yaml(rounded(robot.file));
 }
 
 }  // namespace rubble::scenarios

@@ -17,6 +17,7 @@
 #include "robot/logs/foreign/file_bytes.h"
 #include "robot/logs/log.h"
 #include "scenarios/run/film.h"
+#include "scenarios/run/recorded_log.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -95,9 +96,7 @@ std::vector<std::string> comparable(bool ended) {
 }  // namespace
 
 Scenario recorded_scenario(const std::string& path, const std::vector<Override>& overrides) {
-  if (!fs::exists(path + "/log.rlog"))
-    throw InputError(path + ": is not a recorded run (no log.rlog in it); give a folder that 'rubble run' wrote");
-  require_input(path + "/log.rlog", robot::log_rules());
+  log_in(path);
   return load_recorded(path + "/scenario.yaml", overrides);
 }
 

@@ -17,6 +17,16 @@ cmp sorted1 sorted3 || fail "1 and 3 workers differ"
 [[ -e w1/latest || -e w1/runs/latest ]] && fail "a batch must not touch the link latest"
 [[ -e $(ls -d w1/runs/*/ | head -1)/log.rlog ]] && fail "logs are kept without --record"
 
+# What it costs is told before the first run, beside the table, not in it.
+"$rubble" batch sweep.yaml --workers 1 --out w1 >table.txt 2>err.txt || fail "a finished sweep ended with $?"
+[[ $(head -1 err.txt) == 'rubble: 12 runs, 1 at a time, into w1' ]] || fail "the cost is not told: $(cat err.txt)"
+grep -q 'at a time' table.txt && fail "the table holds what is told at the start"
+expect_exit 3 "shipped are" "$rubble" batch nosweep
+grep -q regression_arena err.txt && fail "a scenario is listed as a sweep: $(cat err.txt)"
+expect_exit 3 "'arena' is of a scenario, and a batch makes the runs of a sweep" "$rubble" batch regression_arena
+sed 's/^seeds:/seed:/' sweep.yaml >misspelt.yaml
+expect_exit 3 "misspelt.yaml:2:1: unknown key 'seed', did you mean 'seeds'?" "$rubble" batch misspelt.yaml
+
 # A finished sweep is found finished.
 "$rubble" batch sweep.yaml --out w1 | grep -q '12 of 12 (0 made now' || fail "finished runs are made again"
 

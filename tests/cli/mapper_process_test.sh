@@ -62,9 +62,11 @@ fails() {  # fails TEXT COMMAND
 }
 answer='while read -r word rest; do case $word in end)'
 fails "ended with exit code 127" "no-such-program"
+grep -q 'exit code 127' out.txt && fail "the failure is said twice: $(cat out.txt)"
 # What runs on beside it, without input, has last words of its own, sooner or later: not into the same log.
 fails "its last words: 'ValueError: no luck'" "$python_mapper 2> mapper_beside.log & exec python3 -c 'raise ValueError(\"no luck\")'"
 fails "was ended by signal 9" "echo ready 1; n=0; $answer n=\$((n+1)); [ \$n = 500 ] && kill -9 \$\$; echo end;; esac; done"
+grep -q 'ended by signal 9' out.txt && fail "the failure is said twice: $(cat out.txt)"
 grep -q . f3/estimate.tum || fail "the trajectory up to the death is lost"
 fails "no whole answer within 3 s" "sleep 100"
 fails "where a line of the answer" "echo ready 1; $answer echo hello;; esac; done"

@@ -45,4 +45,11 @@ expect_exit 4 'missing/plan.png' "$rubble" plan room.yaml --out missing/plan.png
 sed -i 's/room.pgm/full.pgm/' room.yaml
 python3 -c "open('full.pgm', 'wb').write(b'P5\n40 40\n255\n' + bytes([0]) * 1600)"
 expect_exit 3 'no frontier' "$rubble" plan room.yaml
+
+# Who names a place that is not there is told where the map is, and in which axes: they differ by the kind of file.
+sed -i 's/full.pgm/room.pgm/' room.yaml
+expect_exit 3 "the map reaches from 0.00,0.00 to 7.00,3.10 m; x and y of the yaml's frame" "$rubble" plan room.yaml --to 90,1
+cp room.pgm scanned.pgm
+expect_exit 3 'to 7.00,3.10 m; from the lower left corner, x right, y up' \
+  "$rubble" plan scanned.pgm --resolution 0.05 --from 90,1
 finish

@@ -69,5 +69,24 @@ expect_exit 3 'say --set arena.generate.kind=orange' "$rubble" run orange
 touch hall.raf
 expect_exit 3 'is an arena, and what is played is a scenario; write one, of this line: arena: {file: ' "$rubble" run hall.raf
 expect_exit 3 'flat_room: is an arena' "$rubble" run flat_room
+expect_exit 3 "'maze' is of an arena, and what is played is a scenario; write one, of this line: arena: {file: /" \
+  "$rubble" run "$source/arenas/shipped/flat_room.yaml"
+sed 's/^arena:/arna:/' part.yaml >misspelt.yaml
+expect_exit 3 "misspelt.yaml:2:1: unknown key 'arna', did you mean 'arena'?" "$rubble" run misspelt.yaml
+echo 'time_limit_s: 3' >none.yaml
+expect_exit 3 "'arena' is missing" "$rubble" run none.yaml
 expect_exit 3 'letter.part' "$rubble" run part.yaml --out part --force
+
+# What holds no log says why, and where one is.
+expect_exit 3 'nofolder: does not exist' "$rubble" replay nofolder
+mkdir beside
+expect_exit 0 '' "$rubble" run part.yaml --out beside/run --set time_limit_s=3
+expect_exit 0 '' "$rubble" map beside/run/log.rlog --out beside/mapped
+for command in 'replay beside/mapped' 'export beside/mapped run.rawlog' 'map beside/mapped --out again'; do
+  # shellcheck disable=SC2086
+  expect_exit 3 "no log.rlog in it; 'rubble map' wrote it" "$rubble" $command
+  grep -q 'the newest beside it is beside/run$' err.txt || fail "$command: the recorded run is not named: $(cat err.txt)"
+done
+[[ -e run.rawlog || -e again ]] && fail "a refused command leaves a file"
+expect_exit 0 '' "$rubble" export beside/run run.rawlog
 finish

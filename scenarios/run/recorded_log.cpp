@@ -1,0 +1,73 @@
+#include "scenarios/run/recorded_log.h"
+
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+
+#include "base/error.h"
+#include "base/text/input_file.h"
+#include "base/text/words.h"
+#include "robot/logs/foreign/file_bytes.h"
+
+namespace rubble::scenarios {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kLog = "log.rlog";
+constexpr std::string_view kMappedBy = "# rubble map ";  ///< how map_log() begins scenario.yaml
+
+/// Whether `rubble map` made this folder.
+bool is_mapped(const fs::path& folder) {
+  const fs::path file = folder / "scenario.yaml";
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return false;
+  std::ifstream in(file);
+  std::string head(kMappedBy.size(), '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return in && head == kMappedBy;
+}
+
+/// The youngest folder beside this one that holds a log; empty: none.
+std::string newest_recorded_beside(const std::string& folder) {
+  std::error_code error;
+  const fs::path parent = fs::canonical(folder, error).parent_path();  // a link's neighbours are its target's
+  fs::path newest;
+  fs::file_time_type youngest = fs::file_time_type::min();
+  for (const fs::directory_entry& entry : fs::directory_iterator(parent, error)) {
+    const fs::path log = entry.path() / kLog;
+    std::error_code unreadable;
+    if (entry.is_symlink(unreadable) || !fs::is_regular_file(log, unreadable)) continue;
+    const fs::file_time_type written = fs::last_write_time(log, unreadable);
+    if (unreadable || written < youngest) continue;
+    const bool first_of_equals = written == youngest && !newest.empty() && newest < entry.path();
+    if (first_of_equals) continue;
+    youngest = written;
+    newest = entry.path();
+  }
+  if (newest.empty()) return "";
+  // As the user would type it, where that is shorter.
+  const fs::path near = newest.lexically_proximate(fs::current_path(error));
+  return near.string().size() < newest.string().size() ? near.string() : newest.string();
+}
+
+}  // namespace
+
+std::string log_in(const std::string& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error))
+    throw InputError(one_line(folder) + ": does not exist; give a folder that 'rubble run' or 'rubble drive' wrote");
+  const std::string log = folder + "/" + kLog;
+  if (!fs::exists(log, error)) {
+    const std::string newest = newest_recorded_beside(folder);
+    throw InputError(one_line(folder) + ": is not a recorded run (no " + kLog + " in it" +
+                     (is_mapped(folder) ? "; 'rubble map' wrote it, and its log is the one that was mapped" : "") +
+                     "); give a folder that 'rubble run' or 'rubble drive' wrote" +
+                     (newest.empty() ? "" : ", the newest beside it is " + one_line(newest)));
+  }
+  require_input(log, robot::log_rules());  // a pipe in a foreign folder is not waited for
+  return log;
+}
+
+}  // namespace rubble::scenarios

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace rubble::scenarios {
+
+/// The log in a run folder. Throws InputError when there is no such folder, or no log in it: then with what it is
+/// instead, and the newest recorded run beside it.
+std::string log_in(const std::string& folder);
+
+}  // namespace rubble::scenarios
