@@ -74,7 +74,11 @@ grep -q '"status":"timeout"' faults/results.jsonl || fail "the run that hangs is
 # Disk full: a clear end, nothing corrupt, and going on afterwards. Needs root for a small file system.
 mkdir full
 if mount -t tmpfs -o size=600k none full 2>/dev/null; then
-  expect_exit 4 'free some space' "$rubble" batch sweep.yaml --out full/out
+  "$rubble" batch sweep.yaml --out full/out >out.txt 2>err.txt
+  [[ $? == 4 ]] || fail "a full disk ends otherwise: $(cat err.txt)"
+  # The cost, then one line of what went wrong.
+  [[ $(wc -l <err.txt) == 2 ]] && head -1 err.txt | grep -q '12 runs' && tail -1 err.txt | grep -q 'free some space' ||
+    fail "a full disk is not told in one line: $(cat err.txt)"
   python3 -c "import json; [json.loads(l) for l in open('full/out/results.jsonl')]" || fail "disk full tore a line"
   mount -o remount,size=200m full
   "$rubble" batch sweep.yaml --out full/out >/dev/null || fail "after a full disk it cannot go on: $?"

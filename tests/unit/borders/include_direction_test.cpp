@@ -45,7 +45,7 @@ const std::map<std::string, Folders>& rooms() {
 const std::map<std::string, Folders>& doors() {
   static const std::map<std::string, Folders> table = {
       // A command that is no run of a scenario shows what one room can do by itself.
-      {"app", {"robot/logs/foreign/file_bytes.h", "slam/process/mapper_server.h", "slam/process/process_mapper.h"}},
+      {"app", {"slam/process/mapper_server.h", "slam/process/process_mapper.h"}},
       {"app/runs", {"robot/logs/foreign/mrpt_bridge.h"}},
       {"app/robots",
        {"robot/commands.h", "robot/drivers/base_driver.h", "robot/drivers/port.h", "robot/drivers/probe/probe.h"}},
