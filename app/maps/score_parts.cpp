@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <sstream>
 
@@ -85,8 +86,10 @@ void print_worst_places(const scoring::MapScore& s) {
   if (s.broken.found) print_row("came apart", break_text(s.broken));
   for (const scoring::WrongPlace& place : s.errors.worst) {
     char text[120];
-    std::snprintf(text, sizeof text, "x %.2f m, y %.2f m: %.1f m phantom, %.1f m missing", place.p_truth.x,
-                  place.p_truth.y, place.phantom_m, place.missing_m);
+    // Rounded first: no place is at -0.00.
+    const auto hundredths = [](double v) { return std::round(100.0 * v) / 100.0 + 0.0; };
+    std::snprintf(text, sizeof text, "x %.2f m, y %.2f m: %.1f m phantom, %.1f m missing", hundredths(place.p_truth.x),
+                  hundredths(place.p_truth.y), place.phantom_m, place.missing_m);
     print_row(&place == &s.errors.worst.front() ? "worst places" : "", text);
   }
 }

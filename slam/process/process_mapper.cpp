@@ -70,7 +70,7 @@ void ProcessMapper::exchange(const std::string& request) {
 void ProcessMapper::lose(const std::string& why) {
   over_ = true;
   child_.reset();
-  std::string where = now_ == Stamp::never() ? "" : " at " + number_text(now_.seconds()) + " s";
+  std::string where = now_ == Stamp::never() ? "" : " at " + number_text(std::round(1e3 * now_.seconds()) / 1e3) + " s";
   throw MapperLost("mapper " + in_quotes(process_.name, 120) + " " + why + where + last_words(process_.log) +
                    (process_.log.empty() ? "" : "; see " + process_.log));
 }
