@@ -88,9 +88,10 @@ Marks marks_of(const std::vector<Poi>& reported, const std::vector<Poi>& victims
   return out;
 }
 
-Marks marks_on_overlay(const MapScore& score, const std::vector<Poi>& reported, const TrueVictims& victims) {
-  Marks out = marks_of(reported, victims.victims, score.T_truth_map);
-  if (victims.path.empty()) out.unjudged = std::exchange(out.map_only, {});
+Marks marks_on_overlay(const MapScore& score, const std::vector<Poi>& reported, const std::vector<Poi>& victims,
+                       bool listed) {
+  Marks out = marks_of(reported, victims, score.T_truth_map);
+  if (!listed) out.unjudged = std::exchange(out.map_only, {});
   if (score.broken.found) out.seam = {score.broken.from, score.broken.to};
   return out;
 }

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "scoring/alignment/feature_verdict.h"
-#include "scoring/league/league_victims.h"
 #include "scoring/maps/pois.h"
 #include "scoring/rooms/room_match.h"
 #include "scoring/scorecard.h"
@@ -41,8 +40,9 @@ Marks marks_of(const std::vector<Poi>& reported, const std::vector<Poi>& victims
                const mrpt::math::TPose2D& T_truth_map);
 
 /// The victims, and the seam where the map came apart: what stands on the overlay of a map that was scored.
-/// Without a list of the true victims nothing says which of the reported ones are.
-Marks marks_on_overlay(const MapScore& score, const std::vector<Poi>& reported, const TrueVictims& victims);
+/// `listed`: there is a list of the true victims; without one nothing says which of the reported ones are.
+Marks marks_on_overlay(const MapScore& score, const std::vector<Poi>& reported, const std::vector<Poi>& victims,
+                       bool listed);
 
 /// What a page shows of a map that was scored: victims first, then the features of eq. (7), where they were asked for.
 std::vector<Marks> marks_on_page(const MapScore& score, const Marks& victims);

@@ -131,7 +131,8 @@ int score(ScoreArguments arguments) {
   } else {
     print_table(verdict, json);
   }
-  const scoring::Marks marks = scoring::marks_on_overlay(result, verdict.reported.victims, victims);
+  const scoring::Marks marks =
+      scoring::marks_on_overlay(result, verdict.reported.victims, victims.victims, !victims.path.empty());
   if (!arguments.html.empty())
     write_evaluation_page(
         arguments.html, verdict.map.grid, truth,

@@ -13,13 +13,18 @@ constexpr double kLongestGap = 0.1;  ///< between two samples; after a longer ga
 void BrakeTest::update(const robot::Inputs& inputs) {
   for (const robot::Acceleration& sample : inputs.accelerations) {
     const double dt = last_ == Stamp::never() ? 0.0 : sample.stamp - last_;
-    const bool follows = last_ != Stamp::never() && dt <= kLongestGap;
+    const bool follows = last_ != Stamp::never() && dt > 0.0 && dt <= kLongestGap;
     last_ = sample.stamp;
-    if (begun_ != Stamp::never() && sample.stamp - begun_ <= config_.time)
+    if (under_way(sample.stamp))
       gained_ += follows ? (sample.x - rest_) * dt : 0.0;
     else
       rest_ = follows ? rest_ + std::min(1.0, dt / config_.settling) * (sample.x - rest_) : sample.x;
   }
+}
+
+/// What was felt before the robot braked and is told late is none of the test.
+bool BrakeTest::under_way(Stamp stamp) const {
+  return begun_ != Stamp::never() && stamp > begun_ && stamp - begun_ <= config_.time;
 }
 
 bool BrakeTest::can_tell(double speed, Stamp now) const {
@@ -33,7 +38,7 @@ void BrakeTest::begin(double speed, Stamp now) {
 }
 
 BrakeTest::Verdict BrakeTest::verdict(Stamp now) const {
-  if (now - begun_ < config_.time) return Verdict::Open;
+  if (begun_ == Stamp::never() || now - begun_ < config_.time) return Verdict::Open;
   // Against the way its wheels turned.
   const double lost = speed_ > 0.0 ? -gained_ : gained_;
   return lost >= config_.share * std::abs(speed_) ? Verdict::Moved : Verdict::Stood;

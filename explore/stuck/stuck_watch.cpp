@@ -69,6 +69,7 @@ std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_ma
                                     : "it does not move",
                   met, by_pose};
   begin_anew();
+  pose_doubted_until_ = Stamp::never();  // it drove into something since
   tilt_.reset();
   return hold;
 }

@@ -134,7 +134,7 @@ void score_files(scoring::Evidence& evidence, const WrittenMaps& files, const Vi
   folder.publish({"overlay.png"}, [&](const std::string& path) {
     scoring::write_overlay(path + "overlay.png", map, truth, score.T_truth_map,
                            score.aligned ? "" : "NOT TRUSTED: " + score.note,
-                           scoring::marks_on_overlay(score, victims.reported.victims, victims.there_are));
+                           scoring::marks_on_overlay(score, victims.reported.victims, victims.there_are.victims, true));
   });
   if (!score.aligned) return;
   folder.publish({"error.png"}, [&](const std::string& path) {

@@ -74,7 +74,8 @@ LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const Le
                     const LeagueConfig& config, const std::string& name) {
   LeaguePictures pictures;
   pictures.overlay = name + kOverlay;
-  const Marks marks = marks_on_overlay(entry.score, entry.reported.victims, truth.victims);
+  const Marks marks =
+      marks_on_overlay(entry.score, entry.reported.victims, truth.victims.victims, !truth.victims.path.empty());
   if (entry.score.aligned || entry.score.by != AlignBy::Auto)
     write_overlay(place_in(config.out, pictures.overlay), map, truth.grid, entry.score.T_truth_map,
                   entry.score.aligned ? "" : "NOT TRUSTED: " + entry.score.note, marks);

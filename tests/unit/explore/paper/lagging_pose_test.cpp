@@ -1,6 +1,7 @@
 // A pose that falls behind a robot that moves as told, as between bare walls.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>

@@ -63,6 +63,7 @@ TEST(BrakeTest, ABodyThatRocksStood) {
 }
 
 /// A levelling unit that knows of the wheels' stop, and not that the body stood, tilts the platform for it.
+/// As in simulated drives: 7.5 deg at 0.13 s after a stop from 0.36 m/s, in proportion to the speed, softly at first.
 TEST(BrakeTest, WhatTheLevellingMakesOfTheStopOfTheWheelsIsNoMotion) {
   for (const double speed : {0.3, 0.4, 0.6}) {
     const auto tilts = [&](double t) {
