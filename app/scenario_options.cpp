@@ -27,8 +27,14 @@ bool is_shipped(const std::string& name, const fs::path& folder) {
 
 bool is_any(const fs::path& /*file*/) { return true; }
 
-/// Beside the sweeps lie scenarios that only they use.
-bool is_sweep(const fs::path& file) { return read_text_file(file.string()).find("\nseeds:") != std::string::npos; }
+/// Beside the sweeps lie scenarios that only they use. What cannot be read is none.
+bool is_sweep(const fs::path& file) {
+  try {
+    return ("\n" + read_text_file(file.string())).find("\nseeds:") != std::string::npos;
+  } catch (const InputError&) {
+    return false;
+  }
+}
 
 /// `name`, unless it is the bare name of a file in `folder`. A bare name of none is told which there are.
 std::string find_shipped(const std::string& name, const fs::path& folder, bool (*is_meant)(const fs::path&) = is_any) {
@@ -36,10 +42,10 @@ std::string find_shipped(const std::string& name, const fs::path& folder, bool (
   if (is_there(name) || name.find_first_of("/.") != std::string::npos) return name;
   std::vector<std::string> names;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (const std::string stem = entry.path().stem().string();
-        entry.path().extension() == ".yaml" && stem.rfind("benchmark", 0) != 0 &&  // a list of `rubble benchmark`
-        is_meant(entry.path()))
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (const std::string stem = entry->path().stem().string();
+        entry->path().extension() == ".yaml" && stem.rfind("benchmark", 0) != 0 &&  // a list of `rubble benchmark`
+        is_meant(entry->path()))
       names.push_back(stem);
   std::sort(names.begin(), names.end());
   throw InputError(name + ": there is no such file, and none of that name is shipped" + did_you_mean(name, names) +

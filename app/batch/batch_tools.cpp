@@ -36,6 +36,20 @@ void show_progress(const BatchProgress& p) {
   std::fflush(stderr);
 }
 
+/// What is left to make, of `all` runs of every shard.
+std::string cost_line(const BatchProgress& p, std::size_t all, const BatchOptions& options) {
+  const std::size_t left = p.total - p.skipped;
+  const std::string in_shard = options.shard.count > 1 ? " in this shard" : "";
+  std::string line = std::to_string(left) + (left == 1 ? " run" : " runs");
+  if (left < p.total) {
+    line += " left of " + std::to_string(p.total) + in_shard;
+  } else if (options.shard.count > 1) {
+    line += " of " + std::to_string(all) + in_shard;
+  }
+  if (left == 0) return line + ", all are in " + options.out;
+  return line + ", " + std::to_string(options.workers) + " at a time, into " + options.out;
+}
+
 }  // namespace
 
 void add_workers(Options& options, int& workers) {
@@ -68,10 +82,7 @@ BatchReport run_with_progress(const std::vector<Job>& jobs, BatchOptions options
   catch_interrupts();
   options.stop = interrupted;
   // What it costs is told at the start, also where nobody looks at a terminal.
-  const std::size_t runs = in_shard(jobs, options.shard).size();
-  std::string line = std::to_string(runs) + (runs == 1 ? " run" : " runs");
-  if (options.shard.count > 1) line += " of " + std::to_string(jobs.size()) + " in this shard";
-  tell(line + ", " + std::to_string(options.workers) + " at a time, into " + options.out);
+  options.start = [&](const BatchProgress& p) { tell(cost_line(p, jobs.size(), options)); };
   if (isatty(STDERR_FILENO)) options.progress = show_progress;
   BatchReport report = run_batch(jobs, simulating_runner(record), options);
   end_progress();

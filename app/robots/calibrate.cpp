@@ -110,8 +110,7 @@ int calibrate(const CalibrateArguments& arguments) {
     run = report.folder;
     if (report.interrupted) return kInterrupted;
     if (!report.failure.empty())
-      throw RunError(arguments.out + ": is not written, the drive was not completed; mend what 'ended' says, then " +
-                     "give the command again");
+      throw RunError(arguments.out + ": is not written, the drive was not completed: " + report.failure);
   }
   const scenarios::CalibratedRobot robot = scenarios::calibrate_from_log(recorded_log(run), in_force, file);
   print_setup(robot);

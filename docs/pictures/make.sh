@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# docs/pictures/make.sh [NAME...]: makes the pictures of README.md and docs/ anew that need nothing but rubble, all or the
-# named: standard film rigid plan arenas league. league takes its pages' pictures with Chromium. RUBBLE: the program, if not ./rubble.
+# docs/pictures/make.sh [NAME...]: makes pictures of README.md and docs/ anew, all of these or the named: standard film
+# rigid plan arenas league. rigid scales its pictures with gdal_translate, and prints the scores of its maps and
+# trajectories; league takes its pages' pictures with Chromium. RUBBLE: the program, if not ./rubble.
 set -euo pipefail
 top=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 pictures=$top/docs/pictures
@@ -31,7 +32,9 @@ rigid() {
   local kind
   for kind in paper robust mrpt-rbpf; do
     "$rubble" map rigid/log.rlog --set mapper.kind=$kind --out rigid-$kind >/dev/null
-    "$rubble" score rigid-$kind/map.tif rigid/truth.tif --out judged-$kind >/dev/null
+    echo "rigid: $kind"
+    "$rubble" score rigid-$kind/map.tif rigid/truth.tif --out judged-$kind
+    "$rubble" score rigid-$kind/estimate.tum rigid/truth.tum
     GDAL_PAM_ENABLED=NO gdal_translate -q -of PNG -outsize 420 0 -r average judged-$kind/error.png \
       "$pictures/rigid_12x12_${kind#mrpt-}.png"
   done
@@ -59,13 +62,18 @@ arenas() {
 
 # photo FILE.html WIDTHxHEIGHT OUT.png
 photo() {
-  chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --virtual-time-budget=5000 --window-size="${2/x/,}" \
-    --screenshot="$3" "file://$work/$1" >/dev/null 2>&1
+  rm -f photo.png
+  if ! chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --virtual-time-budget=5000 --window-size="${2/x/,}" \
+    --screenshot="$work/photo.png" "file://$work/$1" >chromium.txt 2>&1 || [[ ! -s photo.png ]]; then
+    cat chromium.txt >&2
+    echo "make.sh: chromium took no picture of $1" >&2
+    exit 4
+  fi
+  cp photo.png "$3"
 }
 
 # A league and the page for judging by hand, in docs/league.md.
 league() {
-  command -v chromium >/dev/null || { echo "make.sh: league needs chromium; apt-get install chromium" >&2; exit 4; }
   mkdir -p maps/empty
   "$rubble" run --seed 7 --out truth >/dev/null
   cp -r truth maps/level
@@ -80,10 +88,18 @@ league() {
   photo page.html 1400x1100 "$pictures/evaluation_page.png"
 }
 
+# needs NAME PROGRAM PACKAGE
+needs() {
+  command -v "$2" >/dev/null || { echo "make.sh: $1 needs $2; apt-get install $3" >&2; exit 4; }
+}
+
 all="standard film rigid plan arenas league"
-for name in "${@:-$all}"; do
-  for one in $name; do
-    [[ " $all " == *" $one "* ]] || { echo "make.sh: $one is none of: $all" >&2; exit 2; }
-    "$one"
-  done
+read -ra names <<<"${*:-$all}"
+for name in "${names[@]}"; do  # before anything is made
+  case $name in
+    rigid) needs rigid gdal_translate gdal-bin ;;
+    league) needs league chromium chromium ;;
+    *) [[ " $all " == *" $name "* ]] || { echo "make.sh: $name is none of: $all" >&2; exit 2; } ;;
+  esac
 done
+for name in "${names[@]}"; do "$name"; done

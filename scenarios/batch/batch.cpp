@@ -215,6 +215,7 @@ BatchReport run_batch(const std::vector<Job>& all, const Runner& runner, const B
   progress.total = jobs.size();
   progress.skipped = jobs.size() - todo.size();
   progress.failed = found.failed;
+  if (options.start) options.start(progress);
   const auto start = std::chrono::steady_clock::now();
   const auto finished = [&](const TaskResult& result) {
     if (result.end != TaskEnd::Done) check_space(options.out, shard_suffix(options.shard));

@@ -45,8 +45,9 @@ struct BatchOptions {
   Shard shard;
   bool retry = false;  ///< make failed and timed-out runs of earlier calls again
   double run_limit = 900.0;
-  std::string code;            ///< goes into every record
-  std::function<bool()> stop;  ///< true: hand out no more, kill what runs, keep what is finished
+  std::string code;                                 ///< goes into every record
+  std::function<bool()> stop;                       ///< true: hand out no more, kill what runs, keep what is finished
+  std::function<void(const BatchProgress&)> start;  ///< called once, before the first run
   std::function<void(const BatchProgress&)> progress;
 };
 

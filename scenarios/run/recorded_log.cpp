@@ -35,16 +35,17 @@ std::string newest_recorded_beside(const std::string& folder) {
   const fs::path parent = fs::canonical(folder, error).parent_path();  // a link's neighbours are its target's
   fs::path newest;
   fs::file_time_type youngest = fs::file_time_type::min();
-  for (const fs::directory_entry& entry : fs::directory_iterator(parent, error)) {
-    const fs::path log = entry.path() / kLog;
+  // Not a loop over the range, whose increment throws.
+  for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path log = entry->path() / kLog;
     std::error_code unreadable;
-    if (entry.is_symlink(unreadable) || !fs::is_regular_file(log, unreadable)) continue;
+    if (entry->is_symlink(unreadable) || !fs::is_regular_file(log, unreadable)) continue;
     const fs::file_time_type written = fs::last_write_time(log, unreadable);
     if (unreadable || written < youngest) continue;
-    const bool first_of_equals = written == youngest && !newest.empty() && newest < entry.path();
+    const bool first_of_equals = written == youngest && !newest.empty() && newest < entry->path();
     if (first_of_equals) continue;
     youngest = written;
-    newest = entry.path();
+    newest = entry->path();
   }
   if (newest.empty()) return "";
   // As the user would type it, where that is shorter.

@@ -8,7 +8,8 @@ set: {time_limit_s: 60, robot.levelling: [true, false]}
 YAML
 
 for n in 1 2 3; do
-  "$rubble" batch sweep.yaml --workers $n --out w$n >table$n.txt || fail "$n workers ended with $?: $(cat table$n.txt)"
+  "$rubble" batch sweep.yaml --workers $n --out w$n >table$n.txt 2>err$n.txt ||
+    fail "$n workers ended with $?: $(cat table$n.txt err$n.txt)"
   sort w$n/results.jsonl >sorted$n
 done
 [[ $(wc -l <sorted1) == 12 ]] || fail "not 12 runs: $(wc -l <sorted1)"
@@ -17,13 +18,20 @@ cmp sorted1 sorted3 || fail "1 and 3 workers differ"
 [[ -e w1/latest || -e w1/runs/latest ]] && fail "a batch must not touch the link latest"
 [[ -e $(ls -d w1/runs/*/ | head -1)/log.rlog ]] && fail "logs are kept without --record"
 
-# What it costs is told before the first run, beside the table, not in it.
+# What it costs is told before the first run, beside the table, not in it: what is left, not what is there.
+for n in 1 2 3; do
+  [[ $(head -1 err$n.txt) == "rubble: 12 runs, $n at a time, into w$n" ]] || fail "the cost is not told: $(cat err$n.txt)"
+  grep -q 'at a time' table$n.txt && fail "the table holds what is told at the start"
+done
 "$rubble" batch sweep.yaml --workers 1 --out w1 >table.txt 2>err.txt || fail "a finished sweep ended with $?"
-[[ $(head -1 err.txt) == 'rubble: 12 runs, 1 at a time, into w1' ]] || fail "the cost is not told: $(cat err.txt)"
-grep -q 'at a time' table.txt && fail "the table holds what is told at the start"
+[[ $(cat err.txt) == 'rubble: 0 runs left of 12, all are in w1' ]] || fail "nothing is left: $(cat err.txt)"
 expect_exit 3 "shipped are" "$rubble" batch nosweep
 grep -q regression_arena err.txt && fail "a scenario is listed as a sweep: $(cat err.txt)"
 expect_exit 3 "'arena' is of a scenario, and a batch makes the runs of a sweep" "$rubble" batch regression_arena
+# A sweep may begin with its seeds; a neighbour that cannot be read is no sweep, and no hindrance.
+mkdir -p home/scenarios/sweeps/folder.yaml
+printf 'seeds: 1-2\nscenarios: [small.yaml]\n' >home/scenarios/sweeps/seeds_first.yaml
+expect_exit 3 'shipped are seeds_first' env RUBBLE_HOME="$work/home" "$rubble" batch nosweep
 sed 's/^seeds:/seed:/' sweep.yaml >misspelt.yaml
 expect_exit 3 "misspelt.yaml:2:1: unknown key 'seed', did you mean 'seeds'?" "$rubble" batch misspelt.yaml
 
@@ -42,7 +50,9 @@ done
 sort killed/results.jsonl | cmp - sorted1 || fail "after kills the results differ"
 # A torn last line is dropped and its run made again.
 head -c -30 killed/results.jsonl >torn && cp torn killed/results.jsonl
-"$rubble" batch sweep.yaml --out killed | grep -q '12 of 12 (1 made now' || fail "a torn line must cost one run"
+"$rubble" batch sweep.yaml --workers 1 --out killed 2>err.txt | grep -q '12 of 12 (1 made now' ||
+  fail "a torn line must cost one run"
+grep -qx 'rubble: 1 run left of 12, 1 at a time, into killed' err.txt || fail "what is left is not told: $(cat err.txt)"
 sort killed/results.jsonl | cmp - sorted1 || fail "after a torn line the results differ"
 
 # Interrupted: 130, what is finished stays.
@@ -89,7 +99,11 @@ else
 fi
 
 # Shards in one folder, merged: missing ones are told, all give the same content as the whole, and idempotent.
-"$rubble" batch sweep.yaml --shard 1/3 --out shards >/dev/null || fail "shard 1 ended with $?"
+"$rubble" batch sweep.yaml --shard 1/3 --out shards >/dev/null 2>err.txt || fail "shard 1 ended with $?"
+grep -qE '^rubble: [1-9][0-9]* runs? of 12 in this shard, ' err.txt || fail "the shard's part is not told: $(cat err.txt)"
+"$rubble" batch sweep.yaml --shard 1/3 --out shards >/dev/null 2>err.txt || fail "shard 1 again ended with $?"
+grep -qE '^rubble: 0 runs left of [0-9]+ in this shard, all are in shards$' err.txt ||
+  fail "a finished shard is not told: $(cat err.txt)"
 expect_exit 4 'of the 12 runs its sweep asked for are missing' "$rubble" batch merge shards --out part.sqlite
 for i in 2 3; do
   "$rubble" batch sweep.yaml --shard $i/3 --out shards >/dev/null || fail "shard $i ended with $?"

@@ -19,6 +19,10 @@ ports="--urg pty:no1 --base pty:no2 --levelling pty:no3 --set safety.start_s=1"
 # shellcheck disable=SC2086
 "$rubble" calibrate "$robot" $ports --mapper-command "true" --folder typed --out new.yaml >out.txt 2>err.txt
 [[ $? == 4 ]] || fail "calibrate does not take a typed command: $(cat err.txt)"
+# The cause is told where errors are.
+cause=$(sed -n 's/^ended  *//p' out.txt)
+[[ -n $cause && $(grep -cF -- "$cause" err.txt) == 1 ]] || fail "stderr does not tell the cause '$cause': $(cat err.txt)"
+grep -q 'new.yaml: is not written' err.txt || fail "it is not said that no robot file was written: $(cat err.txt)"
 
 # A run that explores turns and drives enough in a flat arena; its truth: distance 1, laser as in the scenario.
 cat >flat.yaml <<YAML

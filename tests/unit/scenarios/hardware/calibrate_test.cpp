@@ -305,11 +305,16 @@ TEST(Calibrate, TheFileIsReadBackWithTheNumbersOfTheDriveAppliedToThoseInForce) 
   const std::string path = scratch.file("calibrated.yaml");
   std::ofstream(path) << calibrated_yaml(robot, log);
   std::ifstream written(path);  // no digits that no drive can tell
+  std::size_t numbers = 0;
   for (std::string line; std::getline(written, line);)
     for (const char* key : {"distance_scale:", "turn_scale:", "x_m:", "y_m:", "yaw_deg:", "zero_duty:", "delay_s:"})
       if (line.find(key) != std::string::npos) {
-        EXPECT_LE(line.size() - std::min(line.size(), line.find('.') + 1), 6U) << line;
+        const std::size_t point = line.find('.');
+        ASSERT_NE(point, std::string::npos) << line;
+        EXPECT_LE(line.size() - point - 1, 6U) << line;
+        ++numbers;
       }
+  EXPECT_GE(numbers, 7U) << "a key is not written";
   const RobotFile back = load_robot_file(path);
   EXPECT_NEAR(back.robot.base.distance_scale, robot.setup.distance_scale, 1e-6);
   EXPECT_NEAR(back.robot.base.turn_scale, robot.setup.turn_scale, 1e-6);
