@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <string>
 #include <utility>
 
 namespace rubble::scoring {
@@ -58,7 +59,7 @@ FloodedDrawing flood_drawing(OccupancyGrid grid) {
   if (only_walls) {
     const bool encloses = inside * grid.resolution() * grid.resolution() >= kLeastInside;
     out.note = encloses ? "walls only: what they enclose counts as free"
-                        : "walls only, and they enclose nothing: free space is not known";
+                        : std::string("walls only, and they enclose nothing: ") + kFreeNotKnown;
     if (encloses)
       for (std::size_t i = 0; i < grid.cells().size(); ++i)
         if (outside.data[i] == 0 && walls.data[i] == 0) grid.cells()[i] = Occupancy::Free;

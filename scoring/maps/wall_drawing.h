@@ -6,6 +6,9 @@
 
 namespace rubble::scoring {
 
+/// Said of walls that enclose nothing: a doubt about what was read.
+inline constexpr const char* kFreeNotKnown = "free space is not known";
+
 /// Drawings (CAD, a plan in a paint program) know two kinds of cells: walls and the rest. What the rest means is told
 /// by flooding from the rim; slits in walls up to 0.2 m hold the flood.
 struct FloodedDrawing {

@@ -15,13 +15,11 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr int kColour = 60;           // difference of the channels of ink
 constexpr int kTint = 36;             // of what still counts as grey: RViz draws unknown ground in 112,137,134, and
                                       // JPEG adds up to 10 to the difference
 constexpr double kLeastInk = 0.0005;  // of all pixels
-constexpr double kMostInk = 0.1;
-constexpr int kSmear = 8;            // JPEG smears colours as far [pixels]
-constexpr double kGreyRest = 0.995;  // of the pixels that are not ink or beside it
+constexpr int kSmear = 8;             // JPEG smears colours as far [pixels]
+constexpr double kGreyRest = 0.995;   // of the pixels that are not ink or beside it
 constexpr int kWallTolerance = 12;
 constexpr double kLeastWalls = 0.001;  // of all pixels
 constexpr double kThinWalls = 2.5;     // mean distance of a wall's pixels to its rim, at the most [pixels]
@@ -59,7 +57,7 @@ cv::Mat colourfulness(const RgbImage& image) {
 /// Coloured pixels that are few, on greys; empty where the picture is otherwise.
 cv::Mat ink_of(const RgbImage& image) {
   const cv::Mat tint = colourfulness(image);
-  const cv::Mat strong = tint > kColour;
+  const cv::Mat strong = tint > kInkColour;
   if (share_of(strong) < kLeastInk || share_of(strong) > kMostInk) return {};
   const auto is_grey_beyond = [&](int reach) {
     cv::Mat near;

@@ -6,6 +6,9 @@
 
 namespace rubble::scoring {
 
+inline constexpr int kInkColour = 60;    ///< difference of the channels of ink: more is coloured
+inline constexpr double kMostInk = 0.1;  ///< of all pixels: drawings are few, more of it are walls or areas
+
 /// Coloured lines and symbols on a map of greys (the way of the robot, poses, marks) take in `grey`, its
 /// brightness, that of the nearest ground. Colours are drawings only where they are few and the greys alone have thin
 /// walls. `apart`: 255 where a pixel has no say. False: there are none.

@@ -149,7 +149,7 @@ std::optional<RestoredColours> undone(const ToneCurve& curve, const RgbImage& im
   std::map<Rgb, Rgb> before;
   for (const auto& [colour, count] : colours) before[colour] = was_before(colour);
   RgbImage out = recoloured(image, [&](const Rgb& colour) { return before.at(colour); });
-  return RestoredColours{std::move(out), "tones had been changed (" + curve.name + ")"};
+  return RestoredColours{std::move(out), "tones had been changed (" + curve.name + ")", {}, true};
 }
 
 /// The picture as it was before its brightness, contrast or gamma was changed: where one such change makes of the
@@ -292,13 +292,13 @@ std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
   if (auto restored = with_sharp_lines(image)) return restored;
   const auto exchanged = [](const Rgb& c) { return Rgb{c[2], c[1], c[0]}; };
   if (is_unchanged(census_of(image, exchanged)))
-    return RestoredColours{recoloured(image, exchanged), "red and blue were exchanged"};
+    return RestoredColours{recoloured(image, exchanged), "red and blue were exchanged", {}, true};
   const auto inverted = [](const Rgb& c) {
     const auto other = [](std::uint8_t value) { return static_cast<std::uint8_t>(255 - value); };
     return Rgb{other(c[0]), other(c[1]), other(c[2])};
   };
   if (is_unchanged(census_of(image, inverted)))
-    return RestoredColours{recoloured(image, inverted), "colours were inverted"};
+    return RestoredColours{recoloured(image, inverted), "colours were inverted", {}, true};
   // Greys alone have a curve to the squares and white of the league wherever they were blended.
   if (has_colour(image) && kOneOfSquares * std::min(as_is.darker, as_is.checkerboard - as_is.darker) < as_is.pixels)
     if (auto restored = with_tones_of_old(image)) return restored;
@@ -310,7 +310,7 @@ std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
     };
     return Rgb{of_old(c[0]), of_old(c[1]), of_old(c[2])};
   };
-  return RestoredColours{recoloured(image, brightened), "white was " + std::to_string(white)};
+  return RestoredColours{recoloured(image, brightened), "white was " + std::to_string(white), {}, true};
 }
 
 std::string why_colours_are_lost(const RgbImage& image, bool is_league) {

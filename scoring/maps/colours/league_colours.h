@@ -14,8 +14,9 @@ bool is_league_map(const RgbImage& image);
 /// A league map whose colours were changed as a whole, with the league's own.
 struct RestoredColours {
   RgbImage image;
-  std::string how;  ///< what had been done to it
-  Blur blur{};      ///< that of it which was a blur
+  std::string how;        ///< what had been done to it
+  Blur blur{};            ///< that of it which was a blur
+  bool as_drawn = false;  ///< its colours are back but for rounding; those of strength and blur are guesses
 };
 
 /// Of pictures whose red and blue were exchanged, that were inverted, that were blurred, whose colours were made

@@ -146,7 +146,9 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
     out.recognised += ", scaled so that the brightest sample, " + std::to_string(image.white) + ", is white";
   out.recognised += labels.doubt;
   if (!direct && small_enough(original) && out.refusal.empty())
-    out.recognised += doubts_about(undone.sigma > 0.0 ? image : original, {labels.classes, out.is_league, labels.by_level});
+    out.recognised +=
+        doubts_about(undone.sigma > 0.0 ? image : original, restored && restored->as_drawn ? image : original,
+                     {labels.classes, out.is_league, labels.by_level});
   cv::Mat classes = labels.classes;
   classes.setTo(static_cast<int>(Occupancy::Unknown), nothing);
   clear_canvas_corners(classes);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/grid.h"
+#include "scoring/maps/colours/added_drawings.h"
 #include "scoring/maps/colours/grey_levels.h"
 #include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/colours/league_pixels.h"
@@ -15,8 +16,6 @@
 
 namespace rubble::scoring {
 namespace {
-
-constexpr int kColour = 60;  // difference of the channels of ink, as for added drawings
 
 double share(const cv::Mat& some, const cv::Mat& of) {
   return cv::countNonZero(some & of) / std::max(1.0, static_cast<double>(cv::countNonZero(of)));
@@ -72,16 +71,23 @@ double sloping_share_of_channels(const RgbImage& image) {
   return out;
 }
 
-/// A palette that is not the league's: lines lost colours to it.
-bool has_colours_of_no_league(const RgbImage& image) {
+/// A palette that is not the league's: it has others, and lacks the wall's to the digit, or both those of free floor
+/// and of the checkerboard, one of which every league map has. What a program's own palette has for them is a mean with
+/// the lines that it took in.
+bool has_palette_of_no_league(const RgbImage& image) {
   constexpr int kTint = 12;     // of greys; those of league maps may be any
   constexpr int kRounding = 3;  // of league colours that programs draw
-  bool out = false;
+  bool others = false, wall = false, free = false, darker = false, lighter = false;
   league::each_run(image, [&](const league::Colour& c, int, int, int) {
-    const auto is_own = [&](const Rgb& own) { return league::near_colour(c, own, kRounding); };
-    out = out || (league::spread(c) > kTint && std::none_of(league::kAll.begin(), league::kAll.end(), is_own));
+    const auto is = [&](const Rgb& own) { return league::near_colour(c, own, 0); };
+    const auto is_about = [&](const Rgb& own) { return league::near_colour(c, own, kRounding); };
+    others = others || (league::spread(c) > kTint && std::none_of(league::kAll.begin(), league::kAll.end(), is_about));
+    wall = wall || is(league::kWall);
+    free = free || is(league::kFree) || is(league::kSearched);
+    darker = darker || is(league::kUnexplored);
+    lighter = lighter || is(league::kUnexploredLight);
   });
-  return out;
+  return others && (!wall || (!free && !(darker && lighter)));
 }
 
 /// Coloured pixels. Of league maps those of the robot's way: symbols belong on walls, and walls on searched floor are
@@ -90,7 +96,7 @@ cv::Mat ink_of(const RgbImage& image, bool is_league) {
   constexpr int kRed = 50, kBlue = 60;  // over green: the way has 120 and 140
   cv::Mat out = cv::Mat::zeros(image.height, image.width, CV_8U);
   league::each_run(image, [&](const league::Colour& c, int first, int y, int length) {
-    const bool is_ink = is_league ? c.r >= c.g + kRed && c.b >= c.g + kBlue : league::spread(c) >= kColour;
+    const bool is_ink = is_league ? c.r >= c.g + kRed && c.b >= c.g + kBlue : league::spread(c) > kInkColour;
     if (is_ink) std::fill_n(out.ptr<unsigned char>(y) + first, length, static_cast<unsigned char>(255));
   });
   return out;
@@ -101,12 +107,11 @@ bool is_of_small_palette(const RgbImage& image, const Reading& read) {
   constexpr std::size_t kPalette = 16;
   constexpr std::size_t kOwnColours = 5;  // three classes, a canvas and a drawing
   if (!has_few_colours(image, kPalette)) return false;
-  return read.is_league ? has_colours_of_no_league(image) : !read.by_level && !has_few_colours(image, kOwnColours);
+  return read.is_league ? has_palette_of_no_league(image) : !read.by_level && !has_few_colours(image, kOwnColours);
 }
 
 /// Share of the walls that drawings lie over or touch; 0 where coloured lines are no drawings, but walls or areas.
 double walls_under_drawings(const RgbImage& image, const Reading& read, const cv::Mat& walls) {
-  constexpr double kMostInk = 0.1;       // of the picture, as for added drawings
   constexpr double kMostColoured = 0.5;  // of the walls: then they are coloured themselves
   const cv::Mat ink = ink_of(image, read.is_league);
   if (cv::countNonZero(ink) > kMostInk * static_cast<double>(ink.total()) || share(ink, walls) > kMostColoured)
@@ -128,7 +133,7 @@ double massive_share(const Reading& read, const cv::Mat& walls) {
 
 }  // namespace
 
-std::string doubts_about(const RgbImage& image, const Reading& read) {
+std::string doubts_about(const RgbImage& image, const RgbImage& as_drawn, const Reading& read) {
   // Of the pixels: a blurred and noisy JPEG with ragged walls has 0.019; JPEG draws colours out, up to 0.037.
   constexpr double kMostSlopes = 0.02, kMostOfColours = 0.05;
   constexpr double kMostHidden = 0.01;  // of the walls
@@ -150,8 +155,8 @@ std::string doubts_about(const RgbImage& image, const Reading& read) {
   if (const int words = perhaps_words(read.classes); words > 0)
     say(cv::format("small pieces in a row at %d place%s, as letters: they count as walls", words,
                    words == 1 ? "" : "s"));
-  if (is_of_small_palette(image, read))
-    say("it has no more than 16 colours: lines in others took the nearest, that of walls or of floor");
+  if (is_of_small_palette(as_drawn, read))
+    say("it has no more than 16 colours: lines in others may have taken the nearest, that of walls or of floor");
   return out;
 }
 

@@ -18,8 +18,9 @@ struct Reading {
 };
 
 /// What of a picture does not fit the classes that it was read as, kDoubt before each sentence; empty: it fits. The
-/// sentences say what was measured, so that they hold whether or not the picture was read rightly: ground that fades
-/// towards its walls (costs around them, blur), drawings over walls, more wall than floor, few colours.
-std::string doubts_about(const RgbImage& image, const Reading& read);
+/// sentences say what was measured: ground that fades towards its walls (costs around them, blur), drawings over walls,
+/// more wall than floor, few colours. `as_drawn`: the same picture with the colours that it was drawn in, where these
+/// were changed since; its colours are counted there.
+std::string doubts_about(const RgbImage& image, const RgbImage& as_drawn, const Reading& read);
 
 }  // namespace rubble::scoring

@@ -3,9 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "scoring/maps/colours/lossy_colours.h"
 #include "scoring/maps/colours/map_colours.h"
 #include "tests/support/map_pictures.h"
 #include "tests/support/map_style_hard.h"
@@ -56,6 +60,28 @@ TEST(ReadingDoubts, APaletteThatIsNotTheLeaguesIsNamed) {
   const cv::Mat league = league_image(arena(), true);
   EXPECT_THAT(said_of(with_own_palette(league, 7)), HasSubstr("no more than 16 colours"));
   EXPECT_THAT(said_of(league), Not(HasSubstr("no more than 16 colours")));
+}
+
+/// The colours were the league's to the digit: no line had to take another's.
+TEST(ReadingDoubts, AnExactPictureInFewColoursIsNotDoubtedForALineOfItsOwnOrAChangeThatWasUndone) {
+  const cv::Mat league = league_image(arena(), true);
+  ASSERT_TRUE(has_few_colours(to_rgb(league), 16));
+  cv::Mat exchanged, gamma, curve(1, 256, CV_8U), lined = league.clone();
+  cv::cvtColor(league, exchanged, cv::COLOR_BGR2RGB);
+  for (int value = 0; value < 256; ++value)
+    curve.at<unsigned char>(value) = cv::saturate_cast<unsigned char>(255.0 * std::pow(value / 255.0, 1.4));
+  cv::LUT(league, curve, gamma);
+  cv::line(lined, {8, 4}, {lined.cols - 8, 4}, cv::Scalar(0, 128, 0));
+  for (const auto& [name, picture] : std::vector<std::pair<std::string, cv::Mat>>{
+           {"exchanged", exchanged}, {"inverted", ~league}, {"gamma", gamma}, {"a line of its own", lined}}) {
+    const std::string said = said_of(picture);
+    EXPECT_THAT(said, HasSubstr("league")) << name;
+    EXPECT_THAT(said, Not(HasSubstr("no more than 16 colours"))) << name;
+    EXPECT_THAT(said, Not(HasSubstr("refused"))) << name;
+  }
+  EXPECT_THAT(said_of(exchanged), HasSubstr("exchanged"));
+  EXPECT_THAT(said_of(~league), HasSubstr("inverted"));
+  EXPECT_THAT(said_of(gamma), HasSubstr("tones had been changed"));
 }
 
 TEST(ReadingDoubts, LowWordsAreNamedAndRaggedWallsAreNot) {
