@@ -33,7 +33,7 @@ printf '<elements><element type="small_wall" x="0" y="0"/>\n<element type="zorp"
 "$rubble" arena league.raf --out out >/dev/null 2>err.txt || fail "an unknown part stopped rubble arena"
 grep -qx 'rubble: league.raf: 1 parts built; UNKNOWN, left out: zorp 1' err.txt || fail "unknown part: $(cat err.txt)"
 grep -q 'the file names no start: the robot starts on pallet' err.txt || fail "start: $(cat err.txt)"
-printf 'arena: {file: league.raf}\ntime_limit_s: 2\n' >league.yaml
+printf 'arena: {file: league.raf}\ntime_limit_s: 2\nexplorer: {return_home: false}\n' >league.yaml
 "$rubble" run league.yaml --out run >/dev/null 2>err.txt || fail "rubble run of a league's file"
 [[ $(wc -l <err.txt) == 2 ]] || fail "two notes wanted: $(cat err.txt)"
 for bad in '' '<elements>' '<elements><element type="a" x="0"/></elements>' '<elements><element type="a" x="0" y=0/></elements>'; do
@@ -42,7 +42,7 @@ for bad in '' '<elements>' '<elements><element type="a" x="0"/></elements>' '<el
 done
 
 printf 'maze: |\n  +---+---+---+\n  |S. |.   .  |\n  +---+---+---+\n' >sealed.yaml
-printf 'arena: {file: sealed.yaml}\ntime_limit_s: 2\n' >sealed_run.yaml
+printf 'arena: {file: sealed.yaml}\ntime_limit_s: 2\nexplorer: {return_home: false}\n' >sealed_run.yaml
 for command in 'arena sealed.yaml --out out' 'run sealed_run.yaml --out sealed_run'; do
   "$rubble" $command >/dev/null 2>err.txt || fail "a start without a way out stopped rubble $command"
   grep -q 'sealed.yaml: from the start (0.60, 0.60) the robot gets to .*: move the start$' err.txt || fail "sealed: $(cat err.txt)"

