@@ -220,6 +220,11 @@ Order Agenda::visited_in_vain(const Plan& plan, const Situation& situation) {
     // A wall that may be a ramp lies before it, and where its floor is one it slides as it turns.
     return turn(plan.doubtful ? kGlance : kLookTurn, TurnFor::View);
   }
+  if (plan.doubtful && situation.close_looks &&
+      situation.close_looks->judge(situation.floor, situation.robot()) == CloseLooks::Verdict::Floor) {
+    note(situation.now, "the wall looked at from " + text(plan.target) + " is the floor of a slope: seen over");
+    return stay_and_plan();
+  }
   const std::string what = plan.doubtful ? "the wall looked at from " : "the frontier at ";
   note(situation.now, what + text(plan.target) + " stays although it was visited: left alone");
   situation.left_alone.bar_for_good(plan.target, situation.robot());

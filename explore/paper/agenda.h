@@ -10,6 +10,7 @@
 
 #include "base/stamp.h"
 #include "explore/anchor.h"
+#include "explore/caution/close_looks.h"
 #include "explore/caution/left_alone.h"
 #include "explore/explorer.h"
 #include "explore/motion/pilot.h"
@@ -51,8 +52,9 @@ class Agenda {
     std::size_t victims;  ///< sure ones so far
     LeftAlone& left_alone;
     FloorSearch& search;
-    double speed = 0.2;            ///< of the robot so far, turns and stops included [m/s]
-    const Trail* trail = nullptr;  ///< where the floor carried the robot, if it did not everywhere
+    double speed = 0.2;                 ///< of the robot so far, turns and stops included [m/s]
+    const Trail* trail = nullptr;       ///< where the floor carried the robot, if it did not everywhere
+    CloseLooks* close_looks = nullptr;  ///< right before walls that may be none
 
     Anchor robot() const { return {now, T_map_base}; }
   };
@@ -94,6 +96,8 @@ class Agenda {
   Order decide(Plan plan, bool new_map, const Situation& situation);
 
   const std::optional<mrpt::math::TPoint2D>& target() const { return choice_.target(); }
+  /// Where it looks at a wall from that may be none, if that is its target.
+  std::optional<mrpt::math::TPoint2D> doubted_wall() const { return choice_.doubtful() ? target() : std::nullopt; }
   /// Spends `dt` [s] on the way to the target; one that costs more time than it deserves is left alone.
   void spend(double dt, const Situation& situation);
   /// The target cannot be had: it is left alone for a while.

@@ -21,6 +21,7 @@ constexpr double kBefore = 0.15;            ///< free floor before it [m]
 constexpr double kBehind = 0.80;            ///< within this behind it ... [m]
 constexpr double kHidden = 0.25;            ///< ... so much is unknown [m]
 constexpr double kFrontier = 0.5;           ///< of floor that is shut off [m]
+constexpr double kHalfBody = 0.25;          ///< a lane that is no wider on either side is none [m]
 constexpr double kThick = 0.10;             ///< [m]
 constexpr double kStandsOnEdge = 0.10;      ///< so near to an edge it is a wall [m]
 constexpr double kOffEdges = 0.25;          ///< [m]
@@ -37,26 +38,38 @@ bool free_before(const OccupancyGrid& cells, Cell c, Cell n, int cells_before) {
   return true;
 }
 
-/// Numbers from 1 on for the pieces of free floor, each in one; 0: no floor.
-Grid<int> pieces_of_floor(const OccupancyGrid& cells) {
+/// Numbers from 1 on for the pieces of free floor, each in one; 0: no floor. What no body gets through does not join
+/// them: all else belongs to the piece that is nearest along the floor.
+Grid<int> pieces_of_floor(const Traversable& floor) {
+  const OccupancyGrid& cells = floor.cells;
   Grid<int> pieces(cells.frame());
   int number = 0;
-  std::vector<Cell> open;
-  for (int y = 0; y < cells.height(); ++y)
-    for (int x = 0; x < cells.width(); ++x) {
-      if (cells[{x, y}] != Occupancy::Free || pieces[{x, y}] != 0) continue;
-      pieces[{x, y}] = ++number;
-      open.assign(1, {x, y});
-      while (!open.empty()) {
-        const Cell at = open.back();
-        open.pop_back();
-        for (const Cell c : {Cell{at.x + 1, at.y}, Cell{at.x, at.y + 1}, Cell{at.x - 1, at.y}, Cell{at.x, at.y - 1}}) {
-          if (!cells.inside(c) || cells[c] != Occupancy::Free || pieces[c] != 0) continue;
-          pieces[c] = number;
-          open.push_back(c);
-        }
+  std::vector<Cell> open, next;
+  const auto grow = [&](bool wide) {
+    for (std::size_t i = 0; i < open.size(); ++i)
+      for (const Cell step : {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}}) {
+        const Cell c{open[i].x + step.x, open[i].y + step.y};
+        if (!cells.inside(c) || cells[c] != Occupancy::Free || pieces[c] != 0) continue;
+        if (wide && floor.clearance[c] < kHalfBody) continue;
+        pieces[c] = pieces[open[i]];
+        open.push_back(c);
       }
-    }
+  };
+  const auto number_all = [&](bool wide) {
+    for (int y = 0; y < cells.height(); ++y)
+      for (int x = 0; x < cells.width(); ++x) {
+        if (cells[{x, y}] != Occupancy::Free || pieces[{x, y}] != 0) continue;
+        if (wide && floor.clearance[{x, y}] < kHalfBody) continue;
+        pieces[{x, y}] = ++number;
+        open.assign(1, {x, y});
+        grow(wide);
+        next.insert(next.end(), open.begin(), open.end());
+      }
+  };
+  number_all(true);
+  open = std::move(next);
+  grow(false);
+  number_all(false);
   return pieces;
 }
 
@@ -155,7 +168,7 @@ class Background {
     return pieces_[{c.x - n.x, c.y - n.y}];
   }
   void measure_pieces() {
-    pieces_ = pieces_of_floor(cells_);
+    pieces_ = pieces_of_floor(floor_);
     for (const int piece : pieces_.cells()) {
       if (static_cast<std::size_t>(piece) >= extents_.size()) extents_.resize(static_cast<std::size_t>(piece) + 1);
       ++extents_[static_cast<std::size_t>(piece)].cells;
@@ -193,6 +206,12 @@ class Background {
   Grid<int> pieces_;             ///< of floor, once they are asked for
   std::vector<Piece> extents_;
 };
+
+/// Whether most of a row was met from near.
+bool is_solid(const Traversable& floor, const std::vector<Cell>& row) {
+  const auto solid = std::count_if(row.begin(), row.end(), [&](Cell c) { return floor.solid[c] != 0; });
+  return 2 * static_cast<std::size_t>(solid) >= row.size();
+}
 
 /// Whether a row of cells and what is drawn right behind it was passed by a good part of the scans.
 bool is_soft(const Traversable& floor, const std::vector<Cell>& row, Cell n, int thick) {
@@ -233,7 +252,7 @@ std::vector<Source> doubtful_walls(const Traversable& floor, double pallet, cons
       if (face[c] == 0) continue;
       const std::vector<Cell> row = row_from(c, along, n, face);
       const int length = std::abs(row.back().x - c.x) * along.x + std::abs(row.back().y - c.y) * along.y + 1;
-      if (length < in_cells(kShortest)) continue;
+      if (length < in_cells(kShortest) || is_solid(floor, row)) continue;
       const TPoint2D middle = cells.centre(row[row.size() / 2]);
       const std::optional<PalletGrid>& grid = grids.at(middle);
       if (!grid) continue;

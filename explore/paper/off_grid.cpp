@@ -95,6 +95,8 @@ bool free_off_grid(Traversable& floor, double pallet, bool floor_only, KnownGrid
     add_what_joins(inside, thing);
     const bool wide = thing.longer_side() * walls.frame().resolution >= kWide;
     if (floor_only && !wide) continue;
+    if (wide && std::any_of(thing.cells.begin(), thing.cells.end(), [&](Cell c) { return floor.solid[c] != 0; }))
+      continue;
     (wide ? doubt : loosen)(floor, thing);
     any = true;
   }

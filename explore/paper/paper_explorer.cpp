@@ -22,6 +22,7 @@ constexpr double kLookBack = deg_to_rad(130.0);  ///< with a 240 deg scanner far
 constexpr double kOnEdge = 0.01;                 ///< what was felt so near to a pallet is felt on it [m]
 constexpr double kTrailRadius = 0.20;            ///< [m]
 constexpr double kNearFrontier = 1.0;            ///< frontier this close at the start: turn to see it [m]
+constexpr double kAtWall = 0.35;                 ///< from where a wall that may be none is looked at [m]
 constexpr double kTurningRoom = 0.06;            ///< beside the robot's swing circle, for stopping a little off [m]
 constexpr double kLittleRoom = 0.01;             ///< likewise, where there is no more [m]
 constexpr double kLongestTick = 0.2;             ///< commands of longer ticks are taken to have ended [s]
@@ -42,6 +43,7 @@ PaperExplorer::PaperExplorer(const robot::RobotModel& model, const PaperExplorer
                std::max(config.planner.transform.d_min, model.swing_radius()) + kTurningRoom,
                model.swing_radius() + kLittleRoom, mission.senses),
       left_alone_(config.felt, config.planner.same_target),
+      close_looks_(config.felt.pallet, {model.T_base_laser.x, model.T_base_laser.y}),
       home_way_(mission.time_limit),
       levelling_(model) {}
 
@@ -77,7 +79,14 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   turned_ = wrap_angle(pose_.phi - before.phi);
   victims_.moved(pose_, mapper.covariance(), passed);
   if (mapper.revision() != revision_) follow_map(mapper);
-  if (!inputs.scans.empty()) last_scan_ = now_;
+  if (!inputs.scans.empty()) {
+    last_scan_ = now_;
+    const auto& wall = agenda_.doubted_wall();
+    if (wall && distance(*wall, position(pose_)) < kAtWall)
+      close_looks_.look(mapper.last_hits(), pose_);
+    else
+      close_looks_.look_away();
+  }
   levelling_.update(inputs);
   heed_levelling();
   heed_battery(inputs);
@@ -132,6 +141,7 @@ void PaperExplorer::follow_map(const slam::Mapper& mapper) {
   straight_on_.follow(mapper);
   pilot_.follow_map(mapper);
   left_alone_.follow(mapper);
+  close_looks_.follow(mapper);
   if (stage_ == Stage::StraightOn) stage_ = Stage::OnTheWay;  // how far it came is told by poses of two maps
   if (!victims_.follow(mapper)) return;
   floor_ = floor_now(mapper, {});
@@ -247,6 +257,7 @@ bool PaperExplorer::holds_still() {
 void PaperExplorer::check_path(const slam::Mapper& mapper) {
   if (!pilot_.check_due(now_)) return;
   const std::vector<TPoint2D> hits = agenda_.pushing().without_loose_things(mapper.last_hits(), pose_, floor_);
+  close_looks_.met(agenda_.pushing().solid_hits(), {now_, pose_});
   if (agenda_.pushing().near_loose_things()) pilot_.slow_down(now_);
   if (pilot_.check(hits, pose_, commanded_.v, now_)) agenda_.plan_soon();
 }
@@ -380,6 +391,7 @@ void PaperExplorer::obey(Order order) {
 
 Traversable PaperExplorer::floor_now(const slam::Mapper& mapper, const std::vector<TPoint2D>& hits) const {
   Traversable floor = traversable(mapper.map(), config_.occupied_threshold, config_.search.low_walls);
+  close_looks_.apply(floor);
   agenda_.pushing().free_things(floor);
   free_body(floor, pose_, model_.length, model_.width, 0.0);
   free_trail(floor, trail_.points(), kTrailRadius);
@@ -398,7 +410,8 @@ Agenda::Situation PaperExplorer::situation() {
           left_alone_,
           victims_.search(),
           home_way_.speed(),
-          recovery_.times() > 0 ? &trail_ : nullptr};
+          recovery_.times() > 0 ? &trail_ : nullptr,
+          &close_looks_};
 }
 
 }  // namespace rubble::explore

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "explore/caution/close_looks.h"
 #include "explore/caution/left_alone.h"
 #include "explore/caution/trail.h"
 #include "explore/explorer.h"
@@ -93,6 +94,7 @@ class PaperExplorer : public Explorer {
   StraightOn straight_on_;
   VictimWatch victims_;
   LeftAlone left_alone_;
+  CloseLooks close_looks_;
   Trail trail_;
   HomeWay home_way_;
   LevellingCare levelling_;

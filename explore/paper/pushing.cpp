@@ -13,12 +13,14 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kPaper = 0.5;      ///< what stands alone and is not wider may be paper [m]
-constexpr double kHeap = 1.1;       ///< several balls side by side; a panel of wall is 1.2 m wide [m]
-constexpr double kPushReach = 1.0;  ///< things to be pushed aside are watched from here on [m]
-constexpr double kWall = 0.08;      ///< a hit so near to something of the map that is not loose is on that [m]
-constexpr double kSeenOver = 0.6;   ///< floor of a slope is not seen from nearer: by then the robot is on it [m]
-constexpr double kRoll = 0.15;      ///< farther they do not roll between two looks [m]
+constexpr double kPaper = 0.5;         ///< what stands alone and is not wider may be paper [m]
+constexpr double kHeap = 1.1;          ///< several balls side by side; a panel of wall is 1.2 m wide [m]
+constexpr double kPushReach = 1.0;     ///< things to be pushed aside are watched from here on [m]
+constexpr double kHopeReach = 2.0;     ///< and what may be the floor of a slope: farther than any check of the way [m]
+constexpr double kWall = 0.08;         ///< a hit so near to something of the map that is not loose is on that [m]
+constexpr double kSeenOver = 0.6;      ///< floor of a slope is not seen from nearer: by then the robot is on it [m]
+constexpr std::size_t kSolidHits = 3;  ///< fewer may be noise
+constexpr double kRoll = 0.15;         ///< farther they do not roll between two looks [m]
 
 }  // namespace
 
@@ -46,14 +48,16 @@ std::vector<TPoint2D> Pushing::without_loose_things(const std::vector<TPoint2D>&
   const TPoint2D here = position(T_map_base);
   std::vector<TPoint2D> loose = std::move(rolling_);
   rolling_.clear();
+  solid_.clear();
+  near_ = false;
   if (!on()) return hits;
   std::vector<TPoint2D> doubtful;
-  const auto add_near = [&](const std::vector<Cell>& cells, std::vector<TPoint2D>& points) {
+  const auto add_near = [&](const std::vector<Cell>& cells, double reach, std::vector<TPoint2D>& points) {
     for (const Cell c : cells)
-      if (const TPoint2D p = floor.cells.centre(c); distance(p, here) < kPushReach) points.push_back(p);
+      if (const TPoint2D p = floor.cells.centre(c); distance(p, here) < reach) points.push_back(p);
   };
-  add_near(floor.loose, loose);
-  add_near(floor.doubtful, doubtful);
+  add_near(floor.loose, kPushReach, loose);
+  add_near(floor.doubtful, kHopeReach, doubtful);
   std::vector<TPoint2D> rest;
   for (const TPoint2D& hit : hits) {
     const Cell c = floor.clearance.cell(hit);
@@ -64,9 +68,16 @@ std::vector<TPoint2D> Pushing::without_loose_things(const std::vector<TPoint2D>&
     };
     if (!wall && away < kPushReach && on(loose))
       rolling_.push_back(hit);
-    else if (wall || away < kSeenOver || away >= kPushReach || !on(doubtful))
+    else if (wall || away >= kHopeReach || !on(doubtful))
       rest.push_back(hit);
+    else if (away < kSeenOver)
+      solid_.push_back(hit);
+    else
+      near_ = near_ || away < kPushReach;
   }
+  near_ = near_ || !rolling_.empty();
+  rest.insert(rest.end(), solid_.begin(), solid_.end());
+  if (solid_.size() < kSolidHits) solid_.clear();
   return rest;
 }
 

@@ -52,15 +52,20 @@ class Pushing {
   std::vector<mrpt::math::TPoint2D> without_loose_things(const std::vector<mrpt::math::TPoint2D>& hits,
                                                          const mrpt::math::TPose2D& T_map_base,
                                                          const Traversable& floor);
-  /// There were such hits.
-  bool near_loose_things() const { return !rolling_.empty(); }
+  /// There were such hits near the robot.
+  bool near_loose_things() const { return near_; }
+  /// Hits from near on what was hoped to be the floor of a slope: it is none [m, map frame].
+  const std::vector<mrpt::math::TPoint2D>& solid_hits() const { return solid_; }
 
  private:
   double pallet_;
   What what_ = What::Nothing;
   bool slopes_only_ = false;
-  std::vector<mrpt::math::TPoint2D> rolling_;  ///< hits on what is being pushed, of the last check [m, map frame]
-  KnownGround known_then_;                     ///< when it began last in this round
+  // Of the last check [m, map frame]:
+  std::vector<mrpt::math::TPoint2D> rolling_;  ///< hits on what is being pushed
+  std::vector<mrpt::math::TPoint2D> solid_;
+  bool near_ = false;
+  KnownGround known_then_;  ///< when it began last in this round
 };
 
 }  // namespace rubble::explore

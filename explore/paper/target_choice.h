@@ -94,6 +94,8 @@ class TargetChoice {
   /// Distance to the start as the crow flies [m].
   double distance_home(const mrpt::math::TPose2D& T_map_base) const;
 
+  /// Whether the target lies before a wall that may be none.
+  bool doubtful() const { return doubtful_; }
   const std::optional<mrpt::math::TPoint2D>& target() const { return target_; }
   /// Of the way to it when it was first chosen, eq. (3) [m].
   double cost() const { return cost_; }

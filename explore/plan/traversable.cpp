@@ -99,7 +99,7 @@ bool has_obstacle(const Grid<std::uint8_t>& obstacle, const Box& box) {
 Traversable traversable(OccupancyGrid known) {
   Traversable floor;
   floor.obstacle = Grid<std::uint8_t>(known.frame());
-  floor.body = floor.seen_over = floor.unsure = Grid<std::uint8_t>(known.frame());
+  floor.body = floor.seen_over = floor.unsure = floor.solid = Grid<std::uint8_t>(known.frame());
   std::transform(known.cells().begin(), known.cells().end(), floor.obstacle.cells().begin(),
                  [](Occupancy o) { return static_cast<std::uint8_t>(o == Occupancy::Occupied); });
   floor.cells = std::move(known);
@@ -119,7 +119,7 @@ Traversable traversable(const CountMap& map, double occupied_threshold, bool low
   Traversable floor;
   floor.cells = OccupancyGrid(frame, Occupancy::Unknown);
   floor.obstacle = Grid<std::uint8_t>(frame);
-  floor.body = floor.seen_over = floor.unsure = Grid<std::uint8_t>(frame);
+  floor.body = floor.seen_over = floor.unsure = floor.solid = Grid<std::uint8_t>(frame);
   const float threshold = static_cast<float>(occupied_threshold);
   const int columns = frame.width - 2;
   std::vector<Cell> weak;

@@ -85,6 +85,28 @@ TEST(Pushing, FollowsWhatRolls) {
       << "what is found elsewhere is another thing";
 }
 
+/// From its foot a slope shows as a wall; what is met from half a metre is none.
+TEST(Pushing, WhatMayBeFloorIsNewWhereItIsMetFromNearOnly) {
+  OccupancyGrid cells = test::corridor_of_pallets(5.6, test::kPallet, Occupancy::Unknown);
+  Pushing pushing(test::kPallet);
+  Traversable floor = test::measured(cells);
+  while (pushing.more()) pushing.start(floor);
+  pushing.free_things(floor);
+  ASSERT_FALSE(floor.doubtful.empty());
+  measure_clearance(floor, 1.2);
+  std::vector<TPoint2D> hits;
+  for (double y = 0.5; y < 0.7; y += 0.02) hits.emplace_back(5.6, y);
+  for (const double away : {1.8, 1.1, 0.8}) {
+    EXPECT_TRUE(pushing.without_loose_things(hits, {5.6 - away, 0.6, 0.0}, floor).empty()) << away;
+    EXPECT_TRUE(pushing.solid_hits().empty()) << away;
+    EXPECT_EQ(pushing.near_loose_things(), away < 1.0) << "it slows down: it may have to stop";
+  }
+  EXPECT_EQ(pushing.without_loose_things(hits, {5.1, 0.6, 0.0}, floor).size(), hits.size());
+  EXPECT_EQ(pushing.solid_hits().size(), hits.size());
+  EXPECT_EQ(pushing.without_loose_things({hits[0], hits[1]}, {5.1, 0.6, 0.0}, floor).size(), 2u);
+  EXPECT_TRUE(pushing.solid_hits().empty()) << "two may be noise";
+}
+
 TEST(KnownGround, HasGrownByASquareMetre) {
   KnownGround ground;
   EXPECT_FALSE(ground.marked());
