@@ -66,6 +66,7 @@ robot::Commands PaperExplorer::next(const slam::Mapper& mapper, const robot::Inp
   observe(mapper, inputs);
   brakes_ = false;
   commanded_ = decide(mapper);
+  if (brakes_) stuck_watch_.braked(now_);
   return {commanded_, {}, brakes_};
 }
 
@@ -222,7 +223,6 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
   const Pilot::Step step =
       pilot_.step(pose_, turned_, stuck_watch_.wheels().value_or(commanded_), floor_, mapper.last_hits(), now_);
   brakes_ = step.brakes;
-  if (brakes_) stuck_watch_.braked(now_);
   if (step.turn_ended) agenda_.plan_soon();
   // A turn in a tight place wanders off its viewpoint; driving back to it and turning again would never end.
   if (step.faced) victims_.search().start_dwell_as_turned(now_);
@@ -301,7 +301,6 @@ Drive PaperExplorer::drive_straight_on(const slam::Mapper& mapper) {
     return {};
   }
   brakes_ = !straight_on_.room(pose_, floor_, mapper.last_hits());
-  if (brakes_) stuck_watch_.braked(now_);
   if (const auto drive = straight_on_.drive(pose_, now_); drive && !brakes_) return *drive;
   stage_ = Stage::OnTheWay;
   agenda_.plan_soon();

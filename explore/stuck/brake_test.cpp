@@ -1,24 +1,14 @@
 #include "explore/stuck/brake_test.h"
 
-#include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace rubble::explore {
-namespace {
-
-constexpr double kLongestGap = 0.1;  ///< between two samples; after a longer gap they do not belong together [s]
-
-}  // namespace
-
 void BrakeTest::update(const robot::Inputs& inputs) {
   for (const robot::Acceleration& sample : inputs.accelerations) {
-    const double dt = last_ == Stamp::never() ? 0.0 : sample.stamp - last_;
-    const bool follows = last_ != Stamp::never() && dt > 0.0 && dt <= kLongestGap;
-    last_ = sample.stamp;
-    if (under_way(sample.stamp))
-      gained_ += follows ? (sample.x - rest_) * dt : 0.0;
-    else
-      rest_ = follows ? rest_ + std::min(1.0, dt / config_.settling) * (sample.x - rest_) : sample.x;
+    const bool brakes = under_way(sample.stamp);
+    const std::optional<double> dt = rest_.update(sample, !brakes);
+    if (brakes && dt) gained_ += rest_.felt() * *dt;
   }
 }
 
@@ -28,7 +18,8 @@ bool BrakeTest::under_way(Stamp stamp) const {
 }
 
 bool BrakeTest::can_tell(double speed, Stamp now) const {
-  return std::abs(speed) >= config_.slowest && last_ != Stamp::never() && now - last_ <= kLongestGap;
+  return std::abs(speed) >= config_.slowest && rest_.last() != Stamp::never() &&
+         now - rest_.last() <= Rest::kLongestGap;
 }
 
 void BrakeTest::begin(double speed, Stamp now) {

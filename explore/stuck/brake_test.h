@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/stamp.h"
+#include "explore/stuck/rest.h"
 #include "robot/measurements.h"
 
 namespace rubble::explore {
@@ -23,7 +24,7 @@ class BrakeTest {
  public:
   enum class Verdict { Open, Moved, Stood };
 
-  explicit BrakeTest(const BrakeTestConfig& config = {}) : config_(config) {}
+  explicit BrakeTest(const BrakeTestConfig& config = {}) : config_(config), rest_(config.settling) {}
 
   /// Takes in what was felt in one tick.
   void update(const robot::Inputs& inputs);
@@ -38,11 +39,10 @@ class BrakeTest {
   bool under_way(Stamp stamp) const;
 
   BrakeTestConfig config_;
-  double rest_ = 0.0;    ///< along the body [m/s^2]; kept as it was while a test is under way
+  Rest rest_;            ///< kept as it was while a test is under way
   double speed_ = 0.0;   ///< of the wheels when the test began [m/s]
   double gained_ = 0.0;  ///< by the body since then [m/s]
   Stamp begun_ = Stamp::never();
-  Stamp last_ = Stamp::never();
 };
 
 }  // namespace rubble::explore

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace rubble::explore {
 namespace {
 
-constexpr double kDeaf = 0.5;         ///< after a blow [s]
-constexpr double kLongestStep = 0.1;  ///< between two samples; after a longer gap they do not belong together [s]
+constexpr double kDeaf = 0.5;  ///< after a blow [s]
 
 }  // namespace
 
@@ -15,21 +15,16 @@ void JoltWatch::update(const robot::Inputs& inputs) {
   struck_ = shaken_ = false;
   if (!inputs.odometry.empty()) speed_ = inputs.odometry.back().v;
   for (const robot::Acceleration& sample : inputs.accelerations) {
-    const double dt = last_ == Stamp::never() ? 0.0 : sample.stamp - last_;
-    if (last_ == Stamp::never() || dt > kLongestStep) {
-      rest_ = sample.x;
-      felt_.clear();
-    }
-    last_ = sample.stamp;
-    felt_.push_back({sample.stamp, sample.x - rest_});
-    rest_ += std::min(1.0, dt / config_.settling) * (sample.x - rest_);
+    const std::optional<double> dt = rest_.update(sample);
+    if (!dt) felt_.clear();
+    felt_.push_back({sample.stamp, rest_.felt()});
     while (sample.stamp - felt_.front().stamp > config_.window) felt_.pop_front();
-    if (std::abs(speed_) < config_.slowest || dt <= 0.0 || dt > kLongestStep) continue;
+    if (std::abs(speed_) < config_.slowest || !dt) continue;
     if (deaf_until_ != Stamp::never() && sample.stamp < deaf_until_) continue;
     const double against = speed_ > 0.0 ? -1.0 : 1.0;
     double lost = 0.0, peak = 0.0;
     for (const Felt& felt : felt_) {
-      lost += against * felt.x * dt;
+      lost += against * felt.x * *dt;
       peak = std::max(peak, against * felt.x);
     }
     if (peak < config_.peak || lost < config_.weak * std::abs(speed_)) continue;

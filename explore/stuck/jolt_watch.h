@@ -2,6 +2,8 @@
 
 #include <deque>
 
+#include "base/stamp.h"
+#include "explore/stuck/rest.h"
 #include "robot/measurements.h"
 
 namespace rubble::explore {
@@ -20,7 +22,7 @@ struct JoltWatchConfig {
 /// sign then.
 class JoltWatch {
  public:
-  explicit JoltWatch(const JoltWatchConfig& config = {}) : config_(config) {}
+  explicit JoltWatch(const JoltWatchConfig& config = {}) : config_(config), rest_(config.settling) {}
 
   /// Takes in what was felt in one tick.
   void update(const robot::Inputs& inputs);
@@ -41,9 +43,8 @@ class JoltWatch {
 
   JoltWatchConfig config_;
   std::deque<Felt> felt_;  ///< within the window
-  double rest_ = 0.0;      ///< [m/s^2]
-  double speed_ = 0.0;     ///< of the wheels [m/s]
-  Stamp last_ = Stamp::never();
+  Rest rest_;
+  double speed_ = 0.0;                 ///< of the wheels [m/s]
   Stamp deaf_until_ = Stamp::never();  ///< one blow is told once
   bool struck_ = false;
   bool shaken_ = false;

@@ -30,11 +30,6 @@ void StuckWatch::update(const robot::Inputs& inputs, double passed, double dt) {
   brake_test_.update(inputs);
 }
 
-void StuckWatch::begin_brake_test(Stamp now) {
-  brake_test_.begin(wheels_->v, now);
-  braked(now);
-}
-
 void StuckWatch::doubt_pose(Stamp now) {
   begin_anew();
   pose_doubted_until_ = now + kPoseDoubted;

@@ -51,7 +51,7 @@ class StuckWatch {
     return hold.stands && hold.met != Escape::Met::Turning && wheels_ && brake_test_.can_tell(wheels_->v, now);
   }
   /// From now on the robot brakes as hard as it can, until there is a verdict.
-  void begin_brake_test(Stamp now);
+  void begin_brake_test(Stamp now) { brake_test_.begin(wheels_->v, now); }
   BrakeTest::Verdict brake_verdict(Stamp now) const { return brake_test_.verdict(now); }
   /// It moved: its pose falls behind. For a while that alone is no sign of being held.
   void doubt_pose(Stamp now);

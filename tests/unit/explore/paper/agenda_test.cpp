@@ -23,7 +23,10 @@ PaperExplorerConfig without_search() {
 /// A robot without a body: it is where its orders lead it, at once, and sees nothing but what a test draws.
 struct Ordered {
   explicit Ordered(const PaperExplorerConfig& config = without_search())
-      : agenda(config), left_alone(config.felt, config.planner.same_target), search(config.search, 0.46, 0.4) {
+      : agenda(config),
+        left_alone(config.felt, config.planner.same_target),
+        search(config.search, 0.46, 0.4),
+        close_looks(config.felt.pallet, {0.145, 0.0}) {
     agenda.set_home({now, pose});
   }
   /// The room becomes a corridor along y = 0.65, with the robot in it.
@@ -33,9 +36,10 @@ struct Ordered {
   }
   Agenda::Situation situation() {
     floor = traversable(cells);
+    close_looks.apply(floor);
     agenda.pushing().free_things(floor);
     measure_clearance(floor, 1.2);
-    return {now, pose, floor, turning, 0, left_alone, search};
+    return {now, pose, floor, turning, 0, left_alone, search, 0.2, nullptr, &close_looks};
   }
   Order ask() {
     now = now + 5.0;
@@ -53,6 +57,7 @@ struct Ordered {
   Agenda agenda;
   LeftAlone left_alone;
   FloorSearch search;
+  CloseLooks close_looks;
   OccupancyGrid cells = test::room(8.0, 4.0);
   Traversable floor;
   slam::CountMap map{10, 10, 0.05};
@@ -101,6 +106,35 @@ TEST(Agenda, AFrontierThatStaysIsLeftAlone) {
   EXPECT_EQ(robot.ask().kind, Order::Kind::Stay);
   EXPECT_TRUE(robot.told("stays although it was visited"));
   EXPECT_TRUE(robot.left_alone.barred({2.2, 2.1}, robot.now + 1e6));
+}
+
+/// A wall off the edges of the pallets: what is seen right before it tells whether it is one.
+TEST(Agenda, AWallThatMayBeASlopeIsDrivenOverWhereTheNewestScansPassOverIt) {
+  for (const bool slope : {true, false}) {
+    PaperExplorerConfig config = without_search();
+    config.felt.pallet = test::kPallet;
+    Ordered robot(config);
+    robot.cells = test::corridor_of_pallets(5.6, test::kPallet, Occupancy::Unknown);
+    robot.pose = {2.0, 0.6, 0.0};
+    Order order = robot.ask();
+    for (int i = 0; i < 3 && order.kind != Order::Kind::Follow; ++i) order = robot.ask();
+    ASSERT_EQ(order.kind, Order::Kind::Follow);
+    ASSERT_TRUE(robot.agenda.doubted_wall());
+    robot.pose = {order.plan.target.x, order.plan.target.y, 0.0};
+    ASSERT_EQ(robot.ask().kind, Order::Kind::Turn);
+    std::vector<TPoint2D> hits;
+    for (double y = -2.0; y < 2.0; y += 0.01) hits.emplace_back(slope ? 8.0 : 5.6, 0.6 + y);
+    for (int i = 0; i < 9; ++i) robot.close_looks.look(hits, robot.pose);
+    robot.ask();
+    EXPECT_EQ(robot.told("is the floor of a slope: seen over"), slope);
+    EXPECT_EQ(robot.told("stays although it was visited"), !slope);
+    EXPECT_EQ(robot.left_alone.barred(position(robot.pose), robot.now), !slope);
+    order = robot.ask();
+    EXPECT_EQ(order.kind == Order::Kind::Follow, slope) << "on, to the ground behind it";
+    if (slope) {
+      EXPECT_GT(order.plan.target.x, 5.4);
+    }
+  }
 }
 
 /// A ball lies in the door to what is not known yet.

@@ -1,0 +1,53 @@
+#include "explore/stuck/rest.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rubble::explore {
+namespace {
+
+constexpr double kSettling = 0.5, kPeriod = 0.02;  // [s]
+
+robot::Acceleration sample(double t, double x) {
+  robot::Acceleration sample{};
+  sample.stamp = Stamp::from_seconds(t);
+  sample.x = x;
+  return sample;
+}
+
+TEST(Rest, OfAStepIsLearnedByItsTimeConstant) {
+  Rest rest(kSettling);
+  EXPECT_FALSE(rest.update(sample(0.0, 0.0)));
+  EXPECT_EQ(rest.felt(), 0.0);
+  for (int i = 1; i <= 100; ++i) {
+    const auto dt = rest.update(sample(i * kPeriod, 1.7));
+    ASSERT_TRUE(dt);
+    EXPECT_NEAR(*dt, kPeriod, 1e-9);
+    EXPECT_NEAR(rest.felt(), 1.7 * std::pow(1.0 - kPeriod / kSettling, i - 1), 1e-9);
+  }
+}
+
+TEST(Rest, BeginsAnewAfterAGapAndWithTimeThatStands) {
+  for (const double gap : {0.0, -0.02, 0.11}) {
+    Rest rest(kSettling);
+    rest.update(sample(1.0, 0.3));
+    EXPECT_FALSE(rest.update(sample(1.0 + gap, 1.7))) << gap;
+    EXPECT_EQ(rest.felt(), 0.0);
+    EXPECT_EQ(rest.last(), Stamp::from_seconds(1.0 + gap));
+  }
+}
+
+TEST(Rest, IsKeptWhereNothingIsToBeLearned) {
+  Rest rest(kSettling);
+  for (int i = 0; i <= 50; ++i) rest.update(sample(i * kPeriod, 0.3));
+  for (int i = 51; i <= 60; ++i) {
+    EXPECT_TRUE(rest.update(sample(i * kPeriod, -2.0), false));
+    EXPECT_NEAR(rest.felt(), -2.3, 1e-9);
+  }
+  EXPECT_FALSE(rest.update(sample(2.0, 0.5), false)) << "a gap";
+  EXPECT_NEAR(rest.felt(), 0.2, 1e-9) << "by what was known before";
+}
+
+}  // namespace
+}  // namespace rubble::explore
