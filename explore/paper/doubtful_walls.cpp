@@ -21,7 +21,7 @@ constexpr double kBefore = 0.15;            ///< free floor before it [m]
 constexpr double kBehind = 0.80;            ///< within this behind it ... [m]
 constexpr double kHidden = 0.25;            ///< ... so much is unknown [m]
 constexpr double kFrontier = 0.5;           ///< of floor that is shut off [m]
-constexpr double kHalfBody = 0.25;          ///< a lane that is no wider on either side is none [m]
+constexpr float kHalfBody = 0.25F;          ///< a lane that is no wider on either side is none [m]
 constexpr double kThick = 0.10;             ///< [m]
 constexpr double kStandsOnEdge = 0.10;      ///< so near to an edge it is a wall [m]
 constexpr double kOffEdges = 0.25;          ///< [m]
@@ -38,38 +38,43 @@ bool free_before(const OccupancyGrid& cells, Cell c, Cell n, int cells_before) {
   return true;
 }
 
-/// Numbers from 1 on for the pieces of free floor, each in one; 0: no floor. What no body gets through does not join
-/// them: all else belongs to the piece that is nearest along the floor.
+/// Numbers from 1 on for the pieces of free floor, each in one; 0: no floor, nor is the rim. What no body gets through
+/// does not join them: all else belongs to the piece that is nearest along the floor.
 Grid<int> pieces_of_floor(const Traversable& floor) {
-  const OccupancyGrid& cells = floor.cells;
-  Grid<int> pieces(cells.frame());
+  constexpr int kWide = -1, kNarrow = -2;
+  Grid<int> pieces(floor.frame());
+  const int width = pieces.width();
+  for (int y = 1; y + 1 < pieces.height(); ++y) {
+    const Occupancy* const cells = floor.cells.row(y);
+    const float* const clearance = floor.clearance.row(y);
+    int* const row = pieces.row(y);
+    for (int x = 1; x + 1 < width; ++x)
+      row[x] = cells[x] != Occupancy::Free ? 0 : clearance[x] >= kHalfBody ? kWide : kNarrow;
+  }
+  int* const piece = pieces.data();
+  std::vector<int> open;  // cells by index, in the order in which they were reached
+  const auto spread = [&](std::size_t from, int what) {
+    for (std::size_t i = from; i < open.size(); ++i)
+      for (const int step : {1, width, -1, -width}) {
+        const int next = open[i] + step;
+        if (piece[next] != what) continue;
+        piece[next] = piece[open[i]];
+        open.push_back(next);
+      }
+  };
   int number = 0;
-  std::vector<Cell> open, next;
-  const auto grow = [&](bool wide) {
-    for (std::size_t i = 0; i < open.size(); ++i)
-      for (const Cell step : {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}}) {
-        const Cell c{open[i].x + step.x, open[i].y + step.y};
-        if (!cells.inside(c) || cells[c] != Occupancy::Free || pieces[c] != 0) continue;
-        if (wide && floor.clearance[c] < kHalfBody) continue;
-        pieces[c] = pieces[open[i]];
-        open.push_back(c);
-      }
+  const auto number_all = [&](int what) {
+    const int last = static_cast<int>(pieces.cells().size());
+    for (int i = 0; i < last; ++i) {
+      if (piece[i] != what) continue;
+      piece[i] = ++number;
+      open.push_back(i);
+      spread(open.size() - 1, what);
+    }
   };
-  const auto number_all = [&](bool wide) {
-    for (int y = 0; y < cells.height(); ++y)
-      for (int x = 0; x < cells.width(); ++x) {
-        if (cells[{x, y}] != Occupancy::Free || pieces[{x, y}] != 0) continue;
-        if (wide && floor.clearance[{x, y}] < kHalfBody) continue;
-        pieces[{x, y}] = ++number;
-        open.assign(1, {x, y});
-        grow(wide);
-        next.insert(next.end(), open.begin(), open.end());
-      }
-  };
-  number_all(true);
-  open = std::move(next);
-  grow(false);
-  number_all(false);
+  number_all(kWide);
+  spread(0, kNarrow);
+  number_all(kNarrow);
   return pieces;
 }
 
