@@ -78,7 +78,9 @@ CloseLooks::Verdict CloseLooks::judge(const Traversable& floor, const Anchor& ro
   for (int y = std::max(0, low.y); y <= std::min(floor.cells.height() - 1, high.y); ++y)
     for (int x = std::max(0, low.x); x <= std::min(floor.cells.width() - 1, high.x); ++x) {
       const TPoint2D p = floor.cells.centre({x, y});
-      if (floor.cells[{x, y}] != Occupancy::Occupied || distance(p, laser) > kNearLaser) continue;
+      // What is solid stays so: it would be found to be floor again and again.
+      if (floor.cells[{x, y}] != Occupancy::Occupied || floor.solid[{x, y}] != 0 || distance(p, laser) > kNearLaser)
+        continue;
       const std::optional<PalletGrid>& grid = grids.at(p);
       if (floor.unsure[{x, y}] == 0 && !(grid && grid->depth(p) > kStandsOnEdge)) continue;
       const Verdict here = judge(p);

@@ -78,6 +78,21 @@ TEST(CloseLooks, WhatTheyMeetIsSolidAndNeitherLookedAtNorDrivenAtAgain) {
   EXPECT_LT(walls_left(untried), walls_left(floor)) << "before it was looked at it was driven at";
 }
 
+/// A wall that is floor for a part and solid beside it: who stands there is not told the same for ever.
+TEST(CloseLooks, EachPieceOfFloorIsNewsOnce) {
+  Looker robot;
+  std::vector<TPoint2D> half;
+  for (const TPoint2D& hit : scan(1.5))
+    if (hit.y > kBefore.T_map_base.y) half.push_back(hit);
+  for (const TPoint2D& hit : scan(0.0))
+    if (hit.y <= kBefore.T_map_base.y) half.push_back(hit);
+  for (int i = 0; i < 9; ++i) robot.looks.look(half, kBefore.T_map_base);
+  EXPECT_EQ(robot.looks.judge(robot.floor(), kBefore), CloseLooks::Verdict::Floor);
+  ASSERT_GT(walls_left(robot.floor()), 0);
+  ASSERT_LT(walls_left(robot.floor()), walls_left(Looker().floor()));
+  EXPECT_NE(robot.looks.judge(robot.floor(), kBefore), CloseLooks::Verdict::Floor);
+}
+
 TEST(CloseLooks, TellNothingWhereTheyDisagreeOrSomethingStandsBefore) {
   Looker torn;
   torn.look(6, 0.0);
