@@ -10,10 +10,10 @@
 
 #include "base/stamp.h"
 #include "explore/anchor.h"
-#include "explore/caution/close_looks.h"
 #include "explore/caution/left_alone.h"
 #include "explore/explorer.h"
 #include "explore/motion/pilot.h"
+#include "explore/paper/close_looks.h"
 #include "explore/paper/known_ground.h"
 #include "explore/paper/paper_config.h"
 #include "explore/paper/plan_clock.h"

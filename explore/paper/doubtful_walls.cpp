@@ -7,6 +7,7 @@
 
 #include "base/planar.h"
 #include "explore/caution/local_grids.h"
+#include "explore/caution/step_field.h"
 #include "explore/plan/frontier.h"
 #include "explore/search/searched_area.h"
 
@@ -23,7 +24,6 @@ constexpr double kHidden = 0.25;            ///< ... so much is unknown [m]
 constexpr double kFrontier = 0.5;           ///< of floor that is shut off [m]
 constexpr float kHalfBody = 0.25F;          ///< a lane that is no wider on either side is none [m]
 constexpr double kThick = 0.10;             ///< [m]
-constexpr double kStandsOnEdge = 0.10;      ///< so near to an edge it is a wall [m]
 constexpr double kOffEdges = 0.25;          ///< [m]
 constexpr double kAsThick = 0.25;           ///< floor of a slope, and a wall is drawn no thicker [m]
 constexpr double kSoft = 0.8;               ///< of a row on an edge that is no sure wall
@@ -190,7 +190,7 @@ class Background {
   bool on_edge(Cell c, Cell n) const {
     if (floor_.unsure[c] != 0) return false;
     const std::optional<PalletGrid>& grid = grids_.at(cells_.centre(c));
-    return !grid || off_edges(*grid, cells_.centre(c), n) < kStandsOnEdge;
+    return !grid || off_edges(*grid, cells_.centre(c), n) < kOnAnEdge;
   }
   bool same_floor(Cell c, Cell n, int steps) {
     const int here = piece_before(c, n);

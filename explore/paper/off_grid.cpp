@@ -13,7 +13,6 @@ namespace {
 
 using mrpt::math::TPoint2D;
 
-constexpr double kBesideEdge = 0.1;  ///< so near to an edge everything is a wall [m]
 constexpr int kJoined = 2;           ///< what is so near hangs together [cells]
 constexpr double kWide = 0.5;        ///< what is as wide may be a wall, if it is no floor [m]
 constexpr double kSideThick = 0.12;  ///< the side of a box that stands on an edge is no thicker [m]
@@ -83,7 +82,7 @@ bool free_off_grid(Traversable& floor, double pallet, bool floor_only, KnownGrid
       const TPoint2D p = walls.centre({x, y});
       const std::optional<PalletGrid>& grid = grids.at(p);
       const double depth = grid ? grid->depth(p) : 0.0;
-      if (depth > kBesideEdge) inside[{x, y}] = depth > kInsidePallet ? Occupancy::Occupied : Occupancy::Unknown;
+      if (depth > kOnAnEdge) inside[{x, y}] = depth > kInsidePallet ? Occupancy::Occupied : Occupancy::Unknown;
     }
   bool any = false;
   for (Thing& thing : things_of(inside, 1)) {

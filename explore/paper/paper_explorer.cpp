@@ -66,7 +66,8 @@ robot::Commands PaperExplorer::next(const slam::Mapper& mapper, const robot::Inp
   observe(mapper, inputs);
   brakes_ = false;
   commanded_ = decide(mapper);
-  if (brakes_) stuck_watch_.braked(now_);
+  // In getting free each move is ended by what it meets: there blows are heard also right after it braked.
+  if (brakes_ && stage_ != Stage::BackingUp) stuck_watch_.braked(now_);
   return {commanded_, {}, brakes_};
 }
 

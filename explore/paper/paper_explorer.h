@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "explore/caution/close_looks.h"
 #include "explore/caution/left_alone.h"
 #include "explore/caution/trail.h"
 #include "explore/explorer.h"
 #include "explore/motion/pilot.h"
 #include "explore/paper/agenda.h"
+#include "explore/paper/close_looks.h"
 #include "explore/paper/home_way.h"
 #include "explore/paper/levelling_care.h"
 #include "explore/paper/paper_config.h"

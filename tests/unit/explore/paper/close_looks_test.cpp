@@ -1,4 +1,4 @@
-#include "explore/caution/close_looks.h"
+#include "explore/paper/close_looks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "explore/caution/close_looks.h"
+#include "explore/paper/close_looks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 
 #include "base/angle.h"
 #include "base/planar.h"
+#include "explore/caution/step_field.h"
 
 namespace rubble::explore {
 namespace {
@@ -16,7 +17,6 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
 constexpr double kNearLaser = 1.3;          ///< [m]
-constexpr double kStandsOnEdge = 0.1;       ///< so near to an edge of a pallet it is a wall [m]
 constexpr std::size_t kMostLooks = 40;      ///< kept
 constexpr int kEnough = 5;                  ///< looks that agree
 constexpr int kAgainstOne = 10;             ///< looks count, one that says otherwise
@@ -82,7 +82,7 @@ CloseLooks::Verdict CloseLooks::judge(const Traversable& floor, const Anchor& ro
       if (floor.cells[{x, y}] != Occupancy::Occupied || floor.solid[{x, y}] != 0 || distance(p, laser) > kNearLaser)
         continue;
       const std::optional<PalletGrid>& grid = grids.at(p);
-      if (floor.unsure[{x, y}] == 0 && !(grid && grid->depth(p) > kStandsOnEdge)) continue;
+      if (floor.unsure[{x, y}] == 0 && !(grid && grid->depth(p) > kOnAnEdge)) continue;
       const Verdict here = judge(p);
       if (here == Verdict::Floor) floor_.emplace_back(robot, p);
       if (here == Verdict::Solid) solid_.emplace_back(robot, p);
