@@ -23,8 +23,8 @@ using namespace scenarios;
 struct BatchArguments {
   std::string sweep;
   std::string out;
-  int workers = 0;  ///< 0: as many as this process may use
-  int seeds = 0;    ///< the first so many of the sweep; 0: all
+  int workers = 0;    ///< 0: as many as this process may use
+  std::string seeds;  ///< so many of the sweep, or others; empty: all
   std::string shard;
   bool retry = false;
   bool record = false;
@@ -46,9 +46,18 @@ Shard parse_shard(const std::string& text) {
   return shard;
 }
 
+void take_seeds(Sweep& sweep, const std::string& text) {
+  if (text.empty()) return;
+  try {
+    choose_seeds(sweep, text);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError("--seeds " + text + ": " + error.what());
+  }
+}
+
 int submit(const BatchArguments& arguments, const Sweep& sweep, const std::vector<Job>& jobs_asked,
            const std::string& out) {
-  if (!arguments.shard.empty() || !arguments.save_baseline.empty() || arguments.seeds > 0)
+  if (!arguments.shard.empty() || !arguments.save_baseline.empty() || !arguments.seeds.empty())
     throw UsageError(
         "--slurm makes all shards and seeds itself and no baseline; leave out --shard, --seeds and --save-baseline");
   SlurmPlan plan;
@@ -95,7 +104,7 @@ int batch(const BatchArguments& arguments) {
   options.shard = parse_shard(arguments.shard);
   const std::vector<Override> overrides = with_mapper(arguments.mapper, parse_sweep_sets(arguments.sets));
   Sweep sweep = load_sweep(find_sweep(arguments.sweep), shipped_folder());
-  if (arguments.seeds > 0) sweep.seeds.resize(std::min(sweep.seeds.size(), static_cast<std::size_t>(arguments.seeds)));
+  take_seeds(sweep, arguments.seeds);
   options.code = code_version();
   std::vector<Job> jobs = expand(sweep, options.code, overrides);
   for (const Job& job : jobs) permit_command(arguments.mapper, overrides, job.kind->scenario);
@@ -132,7 +141,7 @@ Command batch_command() {
             o.argument("sweep", a->sweep, "Sweep file, or the name of a shipped one", Options::Need::Optional);
             add_workers(o, a->workers);
             o.text("--out", a->out, "Folder for the results (default: runs/NAME of the sweep)");
-            o.whole("--seeds", a->seeds, 1, 1000000, "Only the first so many seeds of the sweep");
+            o.text("--seeds", a->seeds, "Only the first so many seeds of the sweep (6), or others instead (101-108)");
             o.text("--shard", a->shard, "Make only part i of N: --shard i/N");
             o.flag("--retry", a->retry, "Make failed and timed-out runs again");
             o.flag("--record", a->record, "Keep the log of each run");

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <stdexcept>
 
 #include "base/digest.h"
 #include "base/error.h"
@@ -158,6 +159,10 @@ std::string run_id(const Scenario& scenario, const std::string& configuration, c
   return sha256_of_text(text).substr(0, 16);
 }
 
+bool too_large(const Sweep& sweep) {
+  return sweep.scenarios.size() * sweep.configurations.size() > kMostRuns / sweep.seeds.size();
+}
+
 }  // namespace
 
 Scenario Job::scenario() const {
@@ -190,9 +195,13 @@ Sweep load_sweep(const std::string& path, const std::string& shipped) {
   sweep.configurations = read_configurations(root);
   sweep.run_limit = root.number("run_limit_s", sweep.run_limit, 1.0, 1e6);
   root.finish();
-  if (sweep.scenarios.size() * sweep.configurations.size() > kMostRuns / sweep.seeds.size())
-    root.fail("", "asks for more than a million runs; split the sweep");
+  if (too_large(sweep)) root.fail("", "asks for more than a million runs; split the sweep");
   return sweep;
+}
+
+void choose_seeds(Sweep& sweep, const std::string& text) {
+  sweep.seeds = chosen_seeds(sweep.seeds, text);
+  if (too_large(sweep)) throw std::invalid_argument("asks for more than a million runs");
 }
 
 std::vector<Job> expand(const Sweep& sweep, const std::string& code, const std::vector<Override>& overrides) {

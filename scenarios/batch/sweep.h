@@ -57,6 +57,10 @@ struct Shard {
 /// Throws InputError.
 Sweep load_sweep(const std::string& path, const std::string& shipped = "");
 
+/// Takes the first so many of its seeds (`text` is 6) or others (101-108). Throws std::invalid_argument, what is wrong
+/// with `text`.
+void choose_seeds(Sweep& sweep, const std::string& text);
+
 /// Every run of the sweep: scenario by scenario, configuration by configuration, seed by seed. `overrides` win over the
 /// sweep's own and do not show in the configuration's name. Throws InputError on a scenario that does not load.
 std::vector<Job> expand(const Sweep& sweep, const std::string& code, const std::vector<Override>& overrides = {});

@@ -161,7 +161,9 @@ PY
 # Bad input.
 expect_exit 2 'sweep file' "$rubble" batch
 expect_exit 2 '--shard' "$rubble" batch sweep.yaml --shard 4/3
-expect_exit 2 "--seeds" "$rubble" batch sweep.yaml --seeds 0
+for bad in 0 -1 1- 8-1 six 1000001 1-2000000; do
+  expect_exit 2 "--seeds $bad: " "$rubble" batch sweep.yaml --seeds=$bad
+done
 expect_exit 2 'seeds' "$rubble" batch sweep.yaml --set seed=3
 expect_exit 3 'nowhere.yaml' "$rubble" batch nowhere.yaml
 printf 'scenarios: [small.yaml]\nseeds: 1-2\nsets: {}\n' >typo.yaml

@@ -39,6 +39,23 @@ class SweepFile : public FolderTest {
   }
 };
 
+TEST_F(SweepFile, TheFirstSeedsOrOthersMayBeChosen) {
+  Sweep some = sweep("scenarios: [small.yaml]\nseeds: [9, 1, 4-5]\n");
+  choose_seeds(some, "9");
+  EXPECT_THAT(some.seeds, ElementsAre(9, 1, 4, 5)) << "there are no more";
+  choose_seeds(some, "3");
+  EXPECT_THAT(some.seeds, ElementsAre(9, 1, 4));
+  choose_seeds(some, "101-103");
+  EXPECT_THAT(some.seeds, ElementsAre(101, 102, 103));
+  for (const char* bad : {"", "0", "-3", "3-", "8-1", "six", "1,2", "1000001", "1-1000001"}) {
+    EXPECT_THROW(choose_seeds(some, bad), std::invalid_argument) << bad;
+    EXPECT_THAT(some.seeds, ElementsAre(101, 102, 103)) << bad;
+  }
+  Sweep two = sweep("scenarios: [small.yaml]\nseeds: 1\nset: {robot.levelling: [false, true]}\n");
+  EXPECT_NO_THROW(choose_seeds(two, "1-500000"));
+  EXPECT_THROW(choose_seeds(two, "1-500001"), std::invalid_argument) << "a million runs";
+}
+
 TEST_F(SweepFile, SeedsAreARangeAListOrOne) {
   EXPECT_THAT(sweep("scenarios: [small.yaml]\nseeds: 2-5\n").seeds, ElementsAre(2, 3, 4, 5));
   EXPECT_THAT(sweep("scenarios: [small.yaml]\nseeds: [9, 1, 4-5]\n").seeds, ElementsAre(9, 1, 4, 5));
