@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 
 #include "app/terminal.h"
 #include "base/error.h"
@@ -25,15 +26,26 @@ std::string clock_text(double seconds) {
   return text;
 }
 
-void show_progress(const BatchProgress& p) {
+std::string progress_line(const BatchProgress& p) {
   std::string line = std::to_string(p.finished()) + " of " + std::to_string(p.total) + " runs, " +
                      std::to_string(p.running) + " running";
   if (p.failed) line += ", " + std::to_string(p.failed) + " FAILED";
   if (p.skipped) line += ", " + std::to_string(p.skipped) + " found finished";
   line += ", " + clock_text(p.elapsed_s) + " gone";
   if (p.remaining_s > 0.0) line += ", " + clock_text(p.remaining_s) + " to go";
-  std::fprintf(stderr, "\r\033[K%s", line.c_str());
-  std::fflush(stderr);
+  return line;
+}
+
+/// On a terminal each line replaces the one before; elsewhere it stays, so there are few.
+std::function<void(const BatchProgress&)> progress_teller() {
+  if (isatty(STDERR_FILENO))
+    return [](const BatchProgress& p) {
+      std::fprintf(stderr, "\r\033[K%s", progress_line(p).c_str());
+      std::fflush(stderr);
+    };
+  return [pace = ProgressPace()](const BatchProgress& p) mutable {
+    if (pace.due(p)) tell(progress_line(p));
+  };
 }
 
 /// What is left to make, of `all` runs of every shard.
@@ -83,7 +95,7 @@ BatchReport run_with_progress(const std::vector<Job>& jobs, BatchOptions options
   options.stop = interrupted;
   // What it costs is told at the start, also where nobody looks at a terminal.
   options.start = [&](const BatchProgress& p) { tell(cost_line(p, jobs.size(), options)); };
-  if (isatty(STDERR_FILENO)) options.progress = show_progress;
+  options.progress = progress_teller();
   BatchReport report = run_batch(jobs, simulating_runner(record), options);
   end_progress();
   return report;

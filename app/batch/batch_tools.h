@@ -21,7 +21,7 @@ void write_report(const std::string& source, const std::string& page);
 /// Cores this process may run on: fewer than the machine's in a container or under a scheduler.
 int usable_cores();
 
-/// Makes the runs with progress on a terminal; Ctrl-C stops it with everything finished kept.
+/// Makes the runs and tells how far they are; Ctrl-C stops it with everything finished kept.
 scenarios::BatchReport run_with_progress(const std::vector<scenarios::Job>& jobs, scenarios::BatchOptions options,
                                          bool record);
 

@@ -197,6 +197,17 @@ Runner simulating_runner(bool record) {
   };
 }
 
+bool ProgressPace::due(const BatchProgress& now) {
+  constexpr double kLeast = 10.0, kMost = 30.0;  // [s]
+  const std::size_t newly = now.done - told_done_;
+  const double since = now.elapsed_s - told_at_;
+  const bool is_tenth = 10 * newly >= now.total - now.skipped;
+  if (newly == 0 || now.finished() == now.total || since < (is_tenth ? kLeast : kMost)) return false;
+  told_done_ = now.done;
+  told_at_ = now.elapsed_s;
+  return true;
+}
+
 BatchReport run_batch(const std::vector<Job>& all, const Runner& runner, const BatchOptions& options) {
   make_folder(options.out);
   ResultsFile file(options.out, shard_suffix(options.shard));

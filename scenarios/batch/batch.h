@@ -39,6 +39,18 @@ struct BatchProgress {
   std::size_t finished() const { return skipped + done; }
 };
 
+/// Picks the moments to tell how far a batch is where each line stays (a file, the log of a CI job): a run has ended
+/// and another tenth of them is done, or half a minute is over; ten seconds apart, and not at the end, which has its
+/// table.
+class ProgressPace {
+ public:
+  bool due(const BatchProgress& now);
+
+ private:
+  std::size_t told_done_ = 0;
+  double told_at_ = 0.0;  ///< [s]
+};
+
 struct BatchOptions {
   std::string out;  ///< folder for results.jsonl, timing.jsonl, workers.log and runs/
   int workers = 1;

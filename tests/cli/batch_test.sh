@@ -81,6 +81,13 @@ YAML
 grep -q '"status":"timeout"' faults/results.jsonl || fail "the run that hangs is not recorded"
 [[ $(wc -l <faults/results.jsonl) == 2 ]] || fail "the sweep did not go on after a run that hangs"
 
+# How far it is, also where no terminal is: in lines of their own, few, and not in the table.
+printf 'scenarios: [long.yaml, small.yaml]\nseeds: 1\nrun_limit_s: 11\n' >slow.yaml
+"$rubble" batch slow.yaml --workers 1 --out slow >table.txt 2>err.txt
+grep -qE '^rubble: 1 of 2 runs, [01] running, 1 FAILED, 0:00:1[0-9] gone, 0:00:1[0-9] to go$' err.txt && [[ $(wc -l <err.txt) == 2 ]] ||
+  fail "how far a batch is is not told: $(cat err.txt)"
+grep -q 'gone' table.txt && fail "the table holds how far the batch was: $(cat table.txt)"
+
 # Disk full: a clear end, nothing corrupt, and going on afterwards. Needs root for a small file system.
 mkdir full
 if mount -t tmpfs -o size=600k none full 2>/dev/null; then

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <random>
 #include <sstream>
 
 #include "base/error.h"
@@ -163,6 +164,51 @@ TEST_F(Batch, AStopKeepsWhatIsFinished) {
   EXPECT_GE(report.progress.done, 5u);
   EXPECT_EQ(load_lines(path("out")).size(), report.progress.done);
   EXPECT_EQ(run_batch(jobs(20), fake, options("out")).progress.skipped, report.progress.done);
+}
+
+/// Where each line stays: over a batch of random pace, nine lines at most of short ones, one in half a minute of long
+/// ones.
+TEST(ProgressPace, TellsEachTenthOrHalfMinuteAndNeverOnceAllIsDone) {
+  for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
+    BatchProgress now;
+    now.total = 20 + below(300);
+    now.skipped = below(10);
+    const std::size_t to_make = now.total - now.skipped;
+    const double mean_s = 0.05 * static_cast<double>(1 + below(400));  // of a run
+    ProgressPace pace;
+    double told_s = 0.0;
+    std::size_t told_done = 0, lines = 0;
+    while (now.finished() < now.total) {
+      now.elapsed_s += 0.1;
+      if (now.elapsed_s >= mean_s * static_cast<double>(now.done + 1) && below(2) == 0) ++now.done;
+      const bool tells = pace.due(now);
+      const double since = now.elapsed_s - told_s;
+      const bool is_tenth = 10 * (now.done - told_done) >= to_make;
+      const bool last = now.finished() == now.total;
+      ASSERT_EQ(tells, !last && now.done > told_done && since >= (is_tenth ? 10.0 : 30.0)) << now.elapsed_s << " s";
+      if (!tells) continue;
+      told_s = now.elapsed_s;
+      told_done = now.done;
+      ++lines;
+    }
+    EXPECT_LE(lines, now.elapsed_s < 100.0 ? 9U : static_cast<std::size_t>(10.0 + now.elapsed_s / 30.0));
+    if (now.elapsed_s > 60.0) {
+      EXPECT_GE(lines, 1U);
+    }
+  }
+}
+
+TEST(ProgressPace, IsSilentWhileNothingEnds) {
+  ProgressPace pace;
+  BatchProgress now;
+  now.total = 3;
+  for (now.elapsed_s = 0.0; now.elapsed_s < 500.0; now.elapsed_s += 1.0) EXPECT_FALSE(pace.due(now));
+  now.done = 1;
+  EXPECT_TRUE(pace.due(now));
+  EXPECT_FALSE(pace.due(now));
 }
 
 TEST_F(Batch, AFolderThatCannotBeMadeIsNamed) {
