@@ -30,6 +30,16 @@ wait $first
 [[ $? == 0 && $(cat first.txt) == ran ]] || fail "the first one: $(cat first.txt first_err.txt)"
 [[ $(grep -c "another build is under way: waits" second_err.txt) == 1 ]] || fail "the second one says: $(cat second_err.txt)"
 ! grep -q waits first_err.txt || fail "the first one says: $(cat first_err.txt)"
+# What a first build waits for and how long that takes is told, on a terminal too; later there is nothing to tell.
+for one in first second; do
+  grep -q "the first one, from nothing, takes some .* minutes" ${one}_err.txt || fail "how long it takes is not told: $(cat ${one}_err.txt)"
+done
+grep -q "^rubble: building (.*: progress is in $work/clone/build/release/build.log$" first_err.txt || fail "the first one says: $(cat first_err.txt)"
+clone/rubble 0 >first.txt 2>first_err.txt
+[[ ! -s first_err.txt ]] || fail "a later one says: $(cat first_err.txt)"
+rm clone/build/release/rubble
+script -qec "clone/rubble 0" /dev/null </dev/null >first.txt 2>&1
+grep -q "^rubble: building (.* minutes.*: \[steps done/all\]" first.txt || fail "on a terminal the first one says: $(cat first.txt)"
 
 # What runs holds nobody up.
 sed -i 's/^sleep 4/sleep 0/' tools/ninja
