@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "base/image/legend.h"
+#include "base/image/png.h"
 #include "base/planar.h"
 #include "explore/plan/exploration_transform.h"
 #include "explore/plan/frontier.h"
@@ -16,8 +21,14 @@ namespace rubble::explore {
 namespace {
 
 using mrpt::math::TPoint2D;
+using Colour = cv::Vec3b;
 
-constexpr int kDarkest = 40, kLightest = 235;  ///< greys of cells at a frontier and farthest from all
+const Colour kWall(0, 0, 0), kUnseen(215, 200, 200), kCutOff(255, 255, 255), kGoal(220, 90, 40), kWay(30, 30, 220);
+constexpr double kDarkest = 40.0, kLightest = 235.0;  ///< greys of cells at a goal and farthest from all
+
+Colour grey(double share) {
+  return Colour::all(static_cast<std::uint8_t>(std::lround(kDarkest + (kLightest - kDarkest) * share)));
+}
 
 /// The map with a rim of unknown cells.
 OccupancyGrid rimmed(const OccupancyGrid& map) {
@@ -43,39 +54,52 @@ Cell free_cell(const char* option, const TPoint2D& place, const Traversable& flo
   return c;
 }
 
-/// Fig. 9: the nearer to a goal the darker; walls black, goals blue, the way red.
-RgbImage draw(const Traversable& floor, const ExplorationTransform& transform, const std::vector<Source>& goals,
-              const std::vector<Cell>& way) {
+struct Drawing {
+  std::string png;
+  double pixels_per_metre = 0.0;
+};
+
+/// Fig. 9: the nearer to a goal the darker.
+Drawing draw(const Traversable& floor, const ExplorationTransform& transform, const std::vector<Source>& goals,
+             const std::vector<Cell>& way, const std::string& what) {
   const int width = floor.cells.width(), height = floor.cells.height();
   double most = 0.0;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       if (transform.reached({x, y})) most = std::max(most, transform.cost({x, y}));
-  RgbImage image(width, height);
-  const auto paint = [&](Cell c, int r, int g, int b) {
-    std::uint8_t* pixel = image.pixel(c.x, height - 1 - c.y);
-    pixel[0] = static_cast<std::uint8_t>(r);
-    pixel[1] = static_cast<std::uint8_t>(g);
-    pixel[2] = static_cast<std::uint8_t>(b);
+  const GridFrame& frame = floor.cells.frame();
+  const int scale = pixels_per_cell(frame);
+  cv::Mat image(height * scale, std::max(width * scale, kLeastWidth), CV_8UC3, cv::Scalar(kUnseen));
+  const auto paint = [&](Cell c, const Colour& colour) {
+    const cv::Rect pixels(c.x * scale, (height - 1 - c.y) * scale, scale, scale);
+    image(pixels).setTo(cv::Scalar(colour));
   };
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const Cell c{x, y};
       if (floor.cells[c] == Occupancy::Occupied) {
-        paint(c, 0, 0, 0);
+        paint(c, kWall);
       } else if (floor.cells[c] == Occupancy::Unknown) {
-        paint(c, 200, 200, 215);
+        paint(c, kUnseen);
       } else if (!transform.reached(c)) {
-        paint(c, 255, 255, 255);
+        paint(c, kCutOff);
       } else {
-        const double share = most > 0.0 ? transform.cost(c) / most : 0.0;
-        const int grey = kDarkest + static_cast<int>(std::lround((kLightest - kDarkest) * share));
-        paint(c, grey, grey, grey);
+        paint(c, grey(most > 0.0 ? transform.cost(c) / most : 0.0));
       }
     }
-  for (const Source& s : goals) paint(s.cell, 40, 90, 220);
-  for (const Cell c : way) paint(c, 220, 30, 30);
-  return image;
+  for (const Source& s : goals) paint(s.cell, kGoal);
+  for (const Cell c : way) paint(c, kWay);
+  put_axes(image, frame, scale);
+  std::vector<StripItem> items{bar_item(image, "cost to the " + what + ": 0", cv::format("%.3g m", most),
+                                        [](double share) { return bgr_of(grey(share)); })};
+  std::vector<LegendEntry> entries{{kGoal, what}};
+  if (!way.empty()) entries.push_back({kWay, "way"});
+  for (const LegendEntry& ground :
+       {LegendEntry{kCutOff, "no way from here"}, LegendEntry{kWall, "wall"}, LegendEntry{kUnseen, "unknown"}})
+    entries.push_back(ground);
+  for (StripItem& item : legend_items(image, entries)) items.push_back(std::move(item));
+  put_strip(image, items, frame, scale);
+  return {png_bytes(image), scale / frame.resolution};
 }
 
 PlannedWay measured(const std::vector<Cell>& way, const Traversable& floor, const ExplorationTransform& transform) {
@@ -112,7 +136,9 @@ PlanPicture plan_picture(const OccupancyGrid& map, const PlannerConfig& config, 
   if (ends.from) way = transform.descend(free_cell("--from", *ends.from, floor, config.transform.d_min));
   if (!way.empty()) out.way = measured(way, floor, transform);
   floor.clearance = {};  // the largest pictures take the memory for what is drawn
-  out.image = draw(floor, transform, goals, way);
+  Drawing drawn = draw(floor, transform, goals, way, ends.to ? "target" : "frontier");
+  out.png = std::move(drawn.png);
+  out.pixels_per_metre = drawn.pixels_per_metre;
   return out;
 }
 

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "base/grid.h"
-#include "base/image/geotiff.h"
 #include "explore/plan/planner.h"
 
 namespace rubble::explore {
@@ -21,8 +20,9 @@ struct PlannedWay {
 
 struct PlanPicture {
   /// Fig. 9 of the paper: the nearer to a frontier the darker, white where none can be reached; walls black, unknown
-  /// grey-blue, frontiers blue, the way red. A pixel a cell, one cell of unknown around the map.
-  RgbImage image;
+  /// grey-blue, frontiers blue, the way red. One cell of unknown around the map; axes in its metres, legend and scale.
+  std::string png;  ///< the bytes of the file
+  double pixels_per_metre = 0.0;
   std::size_t frontiers = 0;
   std::optional<PlannedWay> way;  ///< from the place asked for; nothing: none can be reached from there
 };

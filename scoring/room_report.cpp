@@ -1,7 +1,7 @@
 #include "scoring/room_report.h"
 
 #include "scoring/alignment/alignment.h"
-#include "scoring/rooms/room_picture.h"
+#include "scoring/pictures/room_picture.h"
 #include "scoring/walls/resample.h"
 
 namespace rubble::scoring {

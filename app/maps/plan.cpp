@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -10,7 +9,7 @@
 #include "app/maps/score_tools.h"
 #include "app/terminal.h"
 #include "base/error.h"
-#include "base/image/png.h"
+#include "base/text/text_file.h"
 #include "explore/plan_picture.h"
 #include "scoring/maps/normalise.h"
 #include "scoring/maps/raster_image.h"
@@ -51,19 +50,6 @@ std::string extent(const scoring::LoadedMap& map) {
   return text.data();
 }
 
-/// Pixels a cell, so that the cells of a small map can be seen.
-int magnification(const RgbImage& image) {
-  constexpr int kWide = 1000, kMost = 8;  // [pixels]
-  return std::clamp(kWide / std::max(image.width, image.height), 1, kMost);
-}
-
-RgbImage magnified(const RgbImage& image, int times) {
-  RgbImage out(image.width * times, image.height * times);
-  for (int y = 0; y < out.height; ++y)
-    for (int x = 0; x < out.width; ++x) std::copy_n(image.pixel(x / times, y / times), 3, out.pixel(x, y));
-  return out;
-}
-
 int plan(PlanArguments a) {
   explore::TransformConfig& transform = a.config.transform;
   if (a.discomfort == "per_cell") transform.discomfort = explore::Discomfort::PerCell;
@@ -79,8 +65,7 @@ int plan(PlanArguments a) {
     const std::string what = error.what();
     throw InputError(a.map + ": " + what + (what.rfind("--", 0) == 0 ? extent(map) : ""));
   }
-  const int times = magnification(picture.image);
-  write_png(a.out, times == 1 ? picture.image : magnified(picture.image, times));
+  write_text_file(a.out, picture.png);
 
   if (!ends.to) print_row("frontiers", std::to_string(picture.frontiers));
   if (picture.way) {
@@ -93,7 +78,7 @@ int plan(PlanArguments a) {
                              : "none: no frontier can be reached from there; give a target with --to X,Y");
   }
   char scale[60];
-  std::snprintf(scale, sizeof scale, ", %g pixels a metre", times / map.grid.resolution());
+  std::snprintf(scale, sizeof scale, ", %g pixels a metre", picture.pixels_per_metre);
   print_row("picture", a.out + scale);
   return kOk;
 }

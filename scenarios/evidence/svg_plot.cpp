@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/round_step.h"
 #include "base/text/html.h"
 #include "scenarios/evidence/metrics.h"
 #include "scenarios/evidence/statistics.h"
@@ -84,11 +85,7 @@ std::vector<double> ticks(double low, double high, int wanted) {
     const double room = std::max(std::abs(low) * 0.1, 0.1);
     low -= room, high += room;
   }
-  const double raw = (high - low) / wanted;
-  const double power = std::pow(10.0, std::floor(std::log10(raw)));
-  double step = power;
-  for (const double factor : {2.0, 5.0, 10.0})
-    if (step < raw) step = factor * power;
+  const double step = round_step((high - low) / wanted);
   std::vector<double> marks;
   const auto first = static_cast<long>(std::floor(low / step + 1e-9)),
              last = static_cast<long>(std::ceil(high / step - 1e-9));

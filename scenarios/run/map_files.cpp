@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/image/legend.h"
 #include "base/image/png.h"
+#include "base/round_step.h"
 #include "base/text/text_file.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
 #include "slam/map_exports.h"
@@ -21,11 +23,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kMapFile = "map.rmap";
-constexpr int kWidth = 1000;       ///< of the picture's curves [pixels]
-constexpr int kLeft = 190;         ///< for their names
-constexpr int kPanel = 60;         ///< height of one
-constexpr int kGap = 12;           ///< between two
-constexpr double kLetters = 0.42;  ///< of OpenCV's usual size
+constexpr int kWidth = 1000;  ///< of the picture's curves [pixels]
+constexpr int kLeft = 230;    ///< for their names and values
+constexpr int kTop = 10;
+constexpr int kPanel = 60;  ///< height of one
+constexpr int kGap = 12;    ///< between two
+constexpr int kFoot = 50;   ///< for the times and a line of words
 
 std::string csv_of(const slam::ScanRecords& records) {
   std::string text = "stamp_s";
@@ -73,25 +76,41 @@ Curve curve_of(const slam::ScanRecords& records, std::size_t column) {
   return curve;
 }
 
-void write_words(cv::Mat& picture, const std::string& words, int x, int y) {
-  cv::putText(picture, words, {x, y}, cv::FONT_HERSHEY_SIMPLEX, kLetters, cv::Scalar(60, 60, 60), 1, cv::LINE_AA);
+/// A scale of seconds below the panels, with a faint line up through them at each number.
+void draw_times(cv::Mat& picture, double seconds, int bottom) {
+  constexpr int kApart = 80, kTick = 5;  // [pixels]
+  const double pixels = (kWidth - 1) / seconds;
+  const double step = round_step(kApart / pixels);
+  for (int k = 0; k * step <= seconds; ++k) {
+    const int x = kLeft + static_cast<int>(std::lround(k * step * pixels));
+    cv::line(picture, {x, kTop}, {x, bottom}, cv::Scalar(235, 235, 235));
+    cv::line(picture, {x, bottom}, {x, bottom + kTick}, cv::Scalar(kInkBgr[0], kInkBgr[1], kInkBgr[2]));
+    const std::string words = cv::format("%.6g", k * step);
+    draw_text(picture, words, x - text_width(words) / 2, bottom + kTick + 13);
+  }
+  draw_text(picture, "time [s]", kLeft - 16 - text_width("time [s]"), bottom + kTick + 13);
 }
 
 /// One panel a column, time to the right, from the least to the greatest value (zero always in sight).
 cv::Mat picture_of(const slam::ScanRecords& records) {
   const auto panels = static_cast<int>(records.columns.size());
-  cv::Mat picture(panels * (kPanel + kGap) + 40, kLeft + kWidth + 20, CV_8UC3, cv::Scalar(255, 255, 255));
-  char words[80];
+  const int bottom = kTop + panels * (kPanel + kGap);
+  cv::Mat picture(bottom + kFoot, kLeft + kWidth + 20, CV_8UC3, cv::Scalar(255, 255, 255));
+  draw_times(picture, std::max(1e-9, records.stamps.back() - records.stamps.front()), bottom);
   for (int p = 0; p < panels; ++p) {
     const Curve curve = curve_of(records, static_cast<std::size_t>(p));
-    const int top = 10 + p * (kPanel + kGap);
+    const int top = kTop + p * (kPanel + kGap);
     const auto row = [&](float value) {
       return top + kPanel - 1 - static_cast<int>((value - curve.low) / (curve.high - curve.low) * (kPanel - 1));
     };
     cv::rectangle(picture, {kLeft, top}, {kLeft + kWidth, top + kPanel}, cv::Scalar(225, 225, 225));
-    write_words(picture, records.columns[static_cast<std::size_t>(p)], 8, top + 24);
-    std::snprintf(words, sizeof words, "%.3g .. %.3g", static_cast<double>(curve.low), static_cast<double>(curve.high));
-    write_words(picture, words, 8, top + 44);
+    draw_text(picture, records.columns[static_cast<std::size_t>(p)], 8, top + kPanel / 2 + 4);
+    const auto write_value = [&](float value, int y) {
+      const std::string words = cv::format("%.4g", static_cast<double>(value));
+      draw_text(picture, words, kLeft - 5 - text_width(words), y);
+    };
+    write_value(curve.high, top + 9);
+    write_value(curve.low, top + kPanel);
     int last = -1;
     for (int x = 0; x < kWidth; ++x) {
       const auto& [least, most] = curve.spans[static_cast<std::size_t>(x)];
@@ -103,9 +122,11 @@ cv::Mat picture_of(const slam::ScanRecords& records) {
       last = above;
     }
   }
-  std::snprintf(words, sizeof words, "%.1f s, %zu scans", records.stamps.back() - records.stamps.front(),
-                records.stamps.size());
-  write_words(picture, words, kLeft, picture.rows - 12);
+  draw_text(picture,
+            cv::format("%zu scans; each panel from the least to the greatest value of scans.csv, zero always in sight; "
+                       "key_frames, loops_*, near_edges: counts so far",
+                       records.stamps.size()),
+            8, picture.rows - 10);
   return picture;
 }
 

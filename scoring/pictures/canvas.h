@@ -2,18 +2,17 @@
 
 #include <mrpt/math/TPoint2D.h>
 
-#include <functional>
 #include <opencv2/core.hpp>
 #include <string>
-#include <vector>
 
 #include "base/grid.h"
+#include "base/image/legend.h"
 
 namespace rubble::scoring {
 
 using Colour = cv::Vec3b;  ///< blue, green, red
 
-const Colour kInk(40, 34, 30);
+const Colour kInk(kInkBgr.data());
 const Colour kDisplaced(40, 150, 225);
 const Colour kMapOnly(48, 48, 214);
 const Colour kTruthOnly(205, 110, 20);
@@ -24,9 +23,7 @@ const Colour kTruthFree(248, 234, 218);
 const Colour kSeam(170, 40, 150);
 const Colour kUnknown(206, 206, 206);
 
-constexpr int kLeastWidth = 360;  ///< of a picture, for its legend [pixels]
-
-/// A picture of a metric frame, north up. A legend is put below when all else is drawn.
+/// A picture of a metric frame, north up. Axes and a legend are put around it when all else is drawn.
 struct Canvas {
   explicit Canvas(const GridFrame& map_frame);
   int map_rows() const { return frame.height * scale; }
@@ -46,28 +43,7 @@ struct Canvas {
 /// `share` 0: a, 1: b.
 Colour mixed(const Colour& a, const Colour& b, double share);
 
-void draw_text(Canvas& canvas, const std::string& words, int x, int y);
-int text_width(const std::string& words);  ///< [pixels]
-
 /// A band over the picture's top that nobody overlooks, as many lines as the words take.
 void draw_warning(Canvas& canvas, const std::string& words);
-
-/// A piece of the legend, drawn from `x` on around the row `y`.
-struct StripItem {
-  int width = 0;
-  std::function<void(int x, int y)> draw;
-};
-
-struct LegendEntry {
-  Colour colour;
-  std::string words;
-};
-
-std::vector<StripItem> legend_items(Canvas& canvas, const std::vector<LegendEntry>& entries);
-
-/// Puts the legend below the picture, in as many rows as it takes, and a scale bar at the right of the last one. Only
-/// then is the picture as high as it will be: nothing else is drawn later.
-void put_strip(Canvas& canvas, const std::vector<StripItem>& items);
-void draw_legend(Canvas& canvas, const std::vector<LegendEntry>& entries);
 
 }  // namespace rubble::scoring

@@ -61,19 +61,13 @@ const std::vector<LegendEntry> kGrounds = {
 void draw_heat_bar(Canvas& canvas, double tau) {
   std::vector<StripItem> items;
   for (const bool of_map : {true, false}) {
-    const std::string words = of_map ? "map's wall off: 0" : "truth's wall off: 0";
+    const std::string least = of_map ? "map's wall off: 0" : "truth's wall off: 0";
     const std::string most = cv::format("%.2g m: ", tau) + (of_map ? "phantom" : "missing");
-    const int begin = text_width(words) + 8;
-    items.push_back({begin + 66 + text_width(most), [&canvas, of_map, words, most, begin](int x, int y) {
-                       draw_text(canvas, words, x, y + 5);
-                       for (int i = 0; i < 60; ++i)
-                         cv::line(canvas.image, {x + begin + i, y - 6}, {x + begin + i, y + 6},
-                                  cv::Scalar(heat(i / 59.0, of_map ? kMapOnly : kTruthOnly)));
-                       draw_text(canvas, most, x + begin + 66, y + 5);
-                     }});
+    items.push_back(bar_item(canvas.image, least, most,
+                             [of_map](double share) { return bgr_of(heat(share, of_map ? kMapOnly : kTruthOnly)); }));
   }
-  for (StripItem& item : legend_items(canvas, kGrounds)) items.push_back(std::move(item));
-  put_strip(canvas, items);
+  for (StripItem& item : legend_items(canvas.image, kGrounds)) items.push_back(std::move(item));
+  put_strip(canvas.image, items, canvas.frame, canvas.scale);
 }
 
 void draw_cross(cv::Mat& image, const cv::Point& at, int reach, const Colour& colour, int width) {
@@ -88,7 +82,7 @@ void draw_victims(Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map
   const Colour doubtful(110, 110, 110);
   const Colour found = trusted ? Colour(40, 150, 30) : doubtful;
   const auto name = [&](const std::string& words, const cv::Point& at) {
-    draw_text(canvas, words, at.x + kRadius + 3, at.y + 4);
+    draw_text(canvas.image, words, at.x + kRadius + 3, at.y + 4);
   };
   for (const auto& [map, truth] : marks.pairs) {
     const cv::Point reported = canvas.pixel(T_truth_map.composePoint(map.p));
@@ -185,7 +179,7 @@ std::string overlay_png(const OccupancyGrid& map, const OccupancyGrid& truth, co
                                      {kTruthOnly, "only in truth"}};
   legend.insert(legend.end(), kGrounds.begin(), kGrounds.end());
   if (marks.seam) legend.push_back({kSeam, "seam of two parts"});
-  draw_legend(canvas, legend);
+  draw_legend(canvas.image, legend, canvas.frame, canvas.scale);
   return png_bytes(canvas.image);
 }
 
@@ -259,27 +253,28 @@ void write_side_by_side(const std::string& path, const OccupancyGrid& map, const
     for (const cv::Point& p : {a, b}) cv::circle(both.image, p, 4, colour, 2, cv::LINE_AA);
     draw_box(of_map, colour, on_map);
     draw_box(of_truth, colour, on_truth);
-    if (!of_map.name.empty()) draw_text(both, of_map.name, a.x + 7, a.y - 5);
-    if (!of_truth.name.empty()) draw_text(both, of_truth.name, b.x + 7, b.y - 5);
+    if (!of_map.name.empty()) draw_text(both.image, of_map.name, a.x + 7, a.y - 5);
+    if (!of_truth.name.empty()) draw_text(both.image, of_truth.name, b.x + 7, b.y - 5);
   }
   for (const Mark& mark : marks.map_only) {
     draw_cross(both.image, on_map(mark.p), 4, kMapOnly, 1);
     draw_box(mark, cv::Scalar(kMapOnly), on_map);
-    draw_text(both, mark.name, on_map(mark.p).x + 7, on_map(mark.p).y - 5);
+    draw_text(both.image, mark.name, on_map(mark.p).x + 7, on_map(mark.p).y - 5);
   }
   for (const Mark& mark : marks.truth_only) {
     draw_cross(both.image, on_truth(mark.p), 4, kTruthOnly, 1);
     draw_box(mark, cv::Scalar(kTruthOnly), on_truth);
-    draw_text(both, mark.name, on_truth(mark.p).x + 7, on_truth(mark.p).y - 5);
+    draw_text(both.image, mark.name, on_truth(mark.p).x + 7, on_truth(mark.p).y - 5);
   }
   draw_warning(both, warning);
   if (marks.what.empty())
-    draw_legend(both, {{kInk, "left: the map, right: the truth"}});
+    draw_legend(both.image, {{kInk, "left: the map, right: the truth"}}, both.frame, both.scale);
   else
-    draw_legend(both,
+    draw_legend(both.image,
                 {{kInk, cv::format("%s: %zu matched, each pair in one colour", marks.what.c_str(), marks.pairs.size())},
                  {kMapOnly, cv::format("%zu of the map alone", marks.map_only.size())},
-                 {kTruthOnly, cv::format("%zu of the truth alone", marks.truth_only.size())}});
+                 {kTruthOnly, cv::format("%zu of the truth alone", marks.truth_only.size())}},
+                both.frame, both.scale);
   write_png(path, both.image);
 }
 

@@ -98,13 +98,15 @@ std::string sight_map_png(const OccupancyGrid& map, const OccupancyGrid& truth, 
         colour = kMapWall;
     }
   if (!lines.usable()) draw_warning(canvas, "too few lines of sight: the score is the overlap");
-  draw_legend(canvas, {{kRight, "lines of sight: right"},
-                       {kMapOnly, "blocked on the map, open in truth"},
-                       {kTruthOnly, "wall missing or elsewhere"},
-                       {kNotSaid, "not known to the map"},
-                       {kBothFree, "not asked"},
-                       {kInk, "wall of the truth"},
-                       {kMapWall, "of the map alone"}});
+  draw_legend(canvas.image,
+              {{kRight, "lines of sight: right"},
+               {kMapOnly, "blocked on the map, open in truth"},
+               {kTruthOnly, "wall missing or elsewhere"},
+               {kNotSaid, "not known to the map"},
+               {kBothFree, "not asked"},
+               {kInk, "wall of the truth"},
+               {kMapWall, "of the map alone"}},
+              canvas.frame, canvas.scale);
   return png_bytes(canvas.image);
 }
 

@@ -16,6 +16,14 @@ head -c 4 a.png | grep -q PNG || fail "a.png is no PNG"
 expect_exit 0 '' "$rubble" plan room.yaml --out b.png
 cmp -s a.png b.png || fail "the same map gave another picture"
 
+# Axes and a legend stand around the map, which is as large as is said.
+python3 - "$(sed -n 's/^picture .*, \(.*\) pixels a metre$/\1/p' out.txt)" <<'PY' || fail "no axes and legend around the map"
+import struct, sys
+width, height = struct.unpack('>II', open('a.png', 'rb').read(24)[16:])
+metre = float(sys.argv[1])
+sys.exit(0 if 10 < width - 7.1 * metre < 100 and 40 < height - 3.2 * metre < 200 else 1)
+PY
+
 # The larger alpha, the longer the way from beside the wall and the farther from it, summed either way.
 way() { "$rubble" plan room.yaml --from 1.0,0.6 --d-min 0.3 --out way.png "$@" | awk '/^way/ {print $2, $7}'; }
 for discomfort in per_metre per_cell; do

@@ -10,10 +10,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "base/angle.h"
 #include "base/error.h"
+#include "base/round_step.h"
 #include "base/text/text_file.h"
 #include "slam/robust/map/saved_map.h"
 #include "slam/robust/robust_mapper.h"
@@ -82,6 +84,27 @@ TEST_F(MapFiles, ScansHaveALineEach) {
   }
   EXPECT_FALSE(std::getline(csv, line));
   EXPECT_GT(fs::file_size(path_ + "/scans.png"), 3000u);
+}
+
+/// The picture has an axis of seconds: ticks below the panels, one step apart, the first at the first scan.
+TEST_F(MapFiles, ScansAreDrawnOverAnAxisOfSeconds) {
+  const cv::Mat picture = cv::imread(path_ + "/scans.png");
+  ASSERT_FALSE(picture.empty());
+  const auto dark = [&](int y, int x) { return picture.at<cv::Vec3b>(y, x)[1] < 60; };
+  std::vector<int> ticks;
+  for (int y = picture.rows - 60; y < picture.rows && ticks.size() < 2; ++y) {
+    ticks.clear();
+    for (int x = 0; x < picture.cols; ++x)
+      if (dark(y, x) && dark(y + 1, x) && dark(y + 2, x)) ticks.push_back(x);
+  }
+  ASSERT_GE(ticks.size(), 2u);
+  for (std::size_t i = 2; i < ticks.size(); ++i) EXPECT_NEAR(ticks[i] - ticks[i - 1], ticks[1] - ticks[0], 1);
+  const auto& live = mapper_->live_trajectory();
+  const double seconds = live.back().stamp - live.front().stamp;
+  const double step = (ticks[1] - ticks[0]) * seconds / 999.0;
+  EXPECT_NEAR(round_step(0.99 * step), step, 0.01 * step) << "seconds between two ticks";
+  for (int y = 0; y < picture.rows; ++y)
+    for (int x = 0; x < ticks[0] && x < 8; ++x) ASSERT_FALSE(dark(y, x)) << "a name is cut off at " << y;
 }
 
 /// As g2o defines it: the error of an edge is the pose by which its end misses where the edge would have it, seen from
