@@ -309,6 +309,9 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   report.failure = end.failure;
   if (options.base) report.place = place_found(core.mapper());
   finish(report, evidence, folder, resolved, options, start);
+  if (knows_no_place(core.mapper()))
+    report.broken.push_back("the robot does not know its place in " + options.base->name +
+                            ": give --start, a longer log, or a map of where it drove");
   return report;
 }
 

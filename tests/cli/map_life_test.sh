@@ -31,6 +31,17 @@ cmp -s found/map.rmap first/map.rmap || fail "--localise changed the map"
 "$rubble" map first --localise first --start 0,0,0 --out found2 >/dev/null
 cmp -s found/estimate_live.tum found2/estimate_live.tum || fail "the same again is not the same"
 
+# A log too short for its place to be found: told in one line, in the exit code, and no map or pose is made up.
+"$rubble" run s.yaml --set time_limit_s=8 --set explorer.return_home=false --out brief >/dev/null || fail "a brief run ended with $?"
+for how in --localise --continue; do
+  "$rubble" map brief $how first --out "lost$how" >table.txt 2>err.txt
+  [[ $? == 1 ]] || fail "$how without a place ended otherwise: $(cat table.txt err.txt)"
+  [[ $(grep -c 'NOT AS EXPECTED .*does not know its place in first/map.rmap: give --start' table.txt) == 1 ]] ||
+    fail "$how without a place is not told: $(cat table.txt)"
+  json_holds lost$how/score.json "j['place_known'] == 0"
+  [[ ! -s lost$how/estimate.tum ]] || fail "$how made up poses"
+done
+
 "$rubble" export first graph.g2o >/dev/null && grep -q '^EDGE_SE2' graph.g2o || fail "no graph.g2o"
 "$rubble" export first map.simplemap >/dev/null && [[ -s map.simplemap ]] || fail "no map.simplemap"
 
