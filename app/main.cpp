@@ -188,6 +188,7 @@ int dispatch(int argc, char** argv) {
 
 /// One line whatever stands in it: names and values of foreign files may hold line breaks and terminal escapes.
 int complain(const std::string& message, int code) {
+  end_progress();
   std::fprintf(stderr, "rubble: %s\n", one_line(message).c_str());
   return code;
 }

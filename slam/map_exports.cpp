@@ -21,11 +21,12 @@ MapContent content_of(const MapBase& map) {
 
 std::string graph_as_g2o(const MapBase& map) { return to_g2o(decode_map(map.bytes, map.name).frames.graph()); }
 
-std::optional<std::string> merged_maps(const MapBase& first, const MapBase& second, const robot::RobotModel& model,
-                                       const MapperConfig& mapper) {
+MergedBytes merged_maps(const MapBase& first, const MapBase& second, const robot::RobotModel& model,
+                        const MapperConfig& mapper, const MergeProgress& progress) {
   const RobustConfig config = suited_to(model.laser, mapper.as<RobustConfig>());
-  const auto both = merged(decode_map(first.bytes, first.name), decode_map(second.bytes, second.name), config);
-  return both ? std::optional(encode_map(*both)) : std::nullopt;
+  const MergedMap both =
+      merged(decode_map(first.bytes, first.name), decode_map(second.bytes, second.name), config, progress);
+  return {both.end, both.map ? encode_map(*both.map) : ""};
 }
 
 }  // namespace rubble::slam

@@ -3,7 +3,6 @@
 #include <mrpt/math/TPose2D.h>
 #include <mrpt/math/TPose3D.h>
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,9 +30,15 @@ struct MapContent {
 MapContent content_of(const MapBase& map);
 /// The graph as text for g2o (slam/robust/graph/g2o.h).
 std::string graph_as_g2o(const MapBase& map);
-/// The bytes of one map of two, in the frame of the first; nothing where the second shows no place of the first for
-/// sure. `model` and `mapper`: a robot like theirs, and a mapper of kind robust.
-std::optional<std::string> merged_maps(const MapBase& first, const MapBase& second, const robot::RobotModel& model,
-                                       const MapperConfig& mapper);
+
+/// One map of two, in the frame of the first.
+struct MergedBytes {
+  MergeEnd end;
+  std::string bytes;  ///< of MergeEnd::Whole
+};
+
+/// `model` and `mapper`: a robot like theirs, and a mapper of kind robust.
+MergedBytes merged_maps(const MapBase& first, const MapBase& second, const robot::RobotModel& model,
+                        const MapperConfig& mapper, const MergeProgress& progress);
 
 }  // namespace rubble::slam

@@ -18,7 +18,8 @@ struct MergeArguments {
 
 int merge(const MergeArguments& arguments) {
   const scenarios::Scenario scenario = scenarios::default_scenario(parse_sets(arguments.sets));
-  scenarios::merge_maps(arguments.first, arguments.second, scenario, arguments.out, arguments.force);
+  scenarios::merge_maps(arguments.first, arguments.second, scenario, arguments.out, arguments.force, show_share);
+  end_progress();
   print_line(arguments.out);
   return kOk;
 }

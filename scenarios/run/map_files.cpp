@@ -136,6 +136,24 @@ void write_simplemap(const slam::MapContent& map, const std::string& out) {
   robot::write_simplemap(out, scans, map.T_base_laser);
 }
 
+/// Each cause has its own remedy.
+void require_whole(slam::MergeEnd end, const std::string& first, const std::string& second) {
+  switch (end) {
+    case slam::MergeEnd::Whole:
+      return;
+    case slam::MergeEnd::OtherMount:
+      throw InputError(second + ": was made with the laser mounted otherwise than for " + first +
+                       "; merge maps of robots whose lasers are mounted alike");
+    case slam::MergeEnd::NoPlace:
+      throw InputError(second + ": shows no place of " + first +
+                       " for sure: they have too little in common; map on until both saw the same few metres of way");
+    case slam::MergeEnd::SeenThrough:
+      throw InputError(second + ": is of another arena than " + first +
+                       ": places look alike, but walls of one stand where the other looked through; merge maps of one "
+                       "arena");
+  }
+}
+
 }  // namespace
 
 void save_map_files(const RunFolder& folder, const slam::Mapper& mapper) {
@@ -164,7 +182,7 @@ std::shared_ptr<const slam::MapBase> load_map_base(const std::string& path, bool
 }
 
 void merge_maps(const std::string& first, const std::string& second, const Scenario& scenario, const std::string& out,
-                bool replace) {
+                bool replace, const slam::MergeProgress& progress) {
   if (scenario.mapper.kind() != "robust")
     throw InputError("mapper.kind '" + scenario.mapper.kind() + "': only maps of the robust mapper are merged");
   const auto a = load_map_base(first, true, std::nullopt);
@@ -174,18 +192,15 @@ void merge_maps(const std::string& first, const std::string& second, const Scena
   robot::RobotModel model = scenario.robot;
   model.T_base_laser = content.T_base_laser;
   if (!content.scans.empty()) model.laser.range_max = content.scans.front().scan.range_max;
-  const auto bytes = slam::merged_maps(*a, *b, model, scenario.mapper);
-  if (!bytes)
-    throw InputError(
-        second + ": shows no place of " + first +
-        " for sure; they need a few metres in common, seen with the laser mounted alike, and no walls of one "
-        "where the other looked through");
-  const auto both = std::make_shared<slam::MapBase>(slam::MapBase{*bytes, first, true, std::nullopt});
+  const slam::MergedBytes merged = slam::merged_maps(*a, *b, model, scenario.mapper, progress);
+  require_whole(merged.end, first, second);
+  if (progress) progress("draws the map", 0.0);
+  const auto both = std::make_shared<slam::MapBase>(slam::MapBase{merged.bytes, first, true, std::nullopt});
   const auto mapper = scenario.mapper.make(model, {scenario.seed, "", both});
   mapper->finish();
   RunFolder folder(out, replace);  // not before the work is done: it may take the place of an older one
   folder.write("scenario.yaml", resolved_yaml(scenario));
-  folder.write(kMapFile, *bytes);
+  folder.write(kMapFile, merged.bytes);
   folder.save_map(scenario, *mapper, {});
   folder.close();
 }

@@ -25,9 +25,9 @@ void export_map(const std::string& path, const std::string& out);
 
 /// Makes one map of those of two runs, in the frame of the first, and writes it into a folder of its own: map.rmap and
 /// the pictures. `out`, `replace`: as of RunFolder, which is made when the maps are one. Throws InputError when one of
-/// them is damaged or they show no place in common.
+/// them is damaged, they have too little in common, are of two arenas, or their lasers were mounted differently.
 void merge_maps(const std::string& first, const std::string& second, const Scenario& scenario, const std::string& out,
-                bool replace);
+                bool replace, const slam::MergeProgress& progress = {});
 
 /// Whether export_map() knows the ending of that name.
 bool is_map_export(const std::string& out);

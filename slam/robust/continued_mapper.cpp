@@ -129,15 +129,21 @@ KeyFrames joined(const KeyFrames& map, const KeyFrames& drive, const FoundPlace&
   return all;
 }
 
-std::optional<SavedMap> merged(const SavedMap& first, const SavedMap& second, const RobustConfig& config) {
-  if (!same_mount(first.T_base_laser, second.T_base_laser)) return std::nullopt;
+MergedMap merged(const SavedMap& first, const SavedMap& second, const RobustConfig& config,
+                 const MergeProgress& progress) {
+  const auto tell = [&](const char* what, double share) {
+    if (progress) progress(what, share);
+  };
+  if (!same_mount(first.T_base_laser, second.T_base_laser)) return {MergeEnd::OtherMount, std::nullopt};
   PlaceFinder finder(first.frames, place_config(config), config.tracker.cell);
   Work unlimited = std::numeric_limits<Work>::max();
   for (int i = 0; i < second.frames.size() && !finder.found(); ++i) {
+    tell("looks for a place that both show", static_cast<double>(i) / second.frames.size());
     finder.look(i);
     finder.work(second.frames, unlimited);
   }
-  if (!finder.found()) return std::nullopt;
+  if (!finder.found()) return {MergeEnd::NoPlace, std::nullopt};
+  tell("joins both", 0.0);
   SavedMap both = second;
   both.frames = joined(first.frames, second.frames, *finder.found(), config.loop.least_path);
   const int shift = first.frames.size();
@@ -160,10 +166,12 @@ std::optional<SavedMap> merged(const SavedMap& first, const SavedMap& second, co
     closer.finish();
     both.frame_covariance = closer.covariance();
   }
+  tell("asks whether they contradict each other", 0.0);
   const std::size_t alone = doubled_in(first.frames, config) + doubled_in(second.frames, config);
   const auto share = static_cast<std::size_t>(kMostDoubledShare * static_cast<double>(second.frames.size()));
-  if (doubled_in(both.frames, config) > alone + std::max(kMostDoubled, share)) return std::nullopt;
-  return both;
+  if (doubled_in(both.frames, config) > alone + std::max(kMostDoubled, share))
+    return {MergeEnd::SeenThrough, std::nullopt};
+  return {MergeEnd::Whole, std::move(both)};
 }
 
 ContinuedMapper::ContinuedMapper(const robot::RobotModel& model, const RobustConfig& config,

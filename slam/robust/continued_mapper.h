@@ -15,10 +15,15 @@ namespace rubble::slam {
 KeyFrames joined(const KeyFrames& map, const KeyFrames& drive, const FoundPlace& place, double apart);
 
 /// The maps of two robots, or of two runs, as one in the frame of the first, with a graph that holds both; the robot is
-/// where it was at the end of the second. `config` as suited_to() gives it. Nothing where the second shows no place of
-/// the first, where it seems to but each sees through walls of the other (two arenas), or where their lasers were
-/// mounted differently.
-std::optional<SavedMap> merged(const SavedMap& first, const SavedMap& second, const RobustConfig& config);
+/// where it was at the end of the second.
+struct MergedMap {
+  MergeEnd end;
+  std::optional<SavedMap> map;  ///< of MergeEnd::Whole
+};
+
+/// `config` as suited_to() gives it.
+MergedMap merged(const SavedMap& first, const SavedMap& second, const RobustConfig& config,
+                 const MergeProgress& progress = {});
 
 /// The robust mapper on a map of an earlier run. A drive begins as one of its own, in its own frame, until it is known
 /// where it lies in the map; then it goes on there, from its first scan. Where the map grows, its key frames join those

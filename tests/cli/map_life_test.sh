@@ -50,6 +50,13 @@ for name in map.rmap map.tif map.pgm; do [[ -s both/$name ]] || fail "both/$name
 "$rubble" map first --localise both --start 0,0,0 --out in_both >/dev/null || fail "the merged map is no map"
 json_holds in_both/score.json "j['place_known'] == 1"
 
+# Why two maps are not merged; on a terminal how far the search is, and the reason on a line of its own.
+expect_exit 3 'brief: shows no place of first for sure: they have too little in common' "$rubble" merge first brief --out none
+[[ ! -e none ]] || fail "a merge that is refused leaves a folder"
+script -qec "$rubble merge first brief --out none" /dev/null </dev/null >terminal.txt 2>&1
+grep -qE 'looks for a place that both show  [0-9]+ %' terminal.txt || fail "a terminal is not told how far it is: $(cat terminal.txt)"
+grep -qE $'\r\033\\[Krubble: brief: shows no place' terminal.txt || fail "the reason shares its line: $(cat -v terminal.txt)"
+
 expect_exit 2 '--continue' "$rubble" map first --continue first --localise first
 expect_exit 2 'x,y,heading_deg' "$rubble" map first --continue first --start here
 expect_exit 2 'needs a map' "$rubble" map first --start 0,0,0

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "base/planar.h"
 #include "tests/support/slam_floor.h"
@@ -194,7 +196,7 @@ TEST(MergedMaps, LieInOneFrame) {
     const Recorded second = recorded(floor, {{1, 1}, {0, 1}, {0, 0}, {1, 0}, {2, 0}, {2, 1}}, 1.0, seed + 50);
     const SavedMap a = decode_map(map_of(first.ticks), "first");
     const SavedMap b = decode_map(map_of(second.ticks), "second");
-    const std::optional<SavedMap> both = merged(a, b, config);
+    const std::optional<SavedMap> both = merged(a, b, config).map;
     ASSERT_TRUE(both);
     ASSERT_EQ(both->frames.size(), a.frames.size() + b.frames.size());
     EXPECT_EQ(both->scans.size(), a.scans.size() + b.scans.size());
@@ -206,10 +208,19 @@ TEST(MergedMaps, LieInOneFrame) {
     EXPECT_TRUE(both->frames.graph().walls_direction);
     RobustConfig no_compass = config;
     no_compass.wall_compass = false;
-    EXPECT_FALSE(merged(a, b, no_compass)->frames.graph().walls_direction);
+    EXPECT_FALSE(merged(a, b, no_compass).map->frames.graph().walls_direction);
     EXPECT_TRUE(encode_map(decode_map(encode_map(*both), "both")) == encode_map(*both));
-    EXPECT_FALSE(merged(
-        a, decode_map(map_of(recorded(slam_test::Floor(seed + 20, 3, 2), kRound, 0.0, 1).ticks), "other"), config));
+    const SavedMap other =
+        decode_map(map_of(recorded(slam_test::Floor(seed + 20, 3, 2), kRound, 0.0, 1).ticks), "other");
+    std::vector<double> shares;
+    const MergedMap none = merged(a, other, config, [&](const std::string&, double share) { shares.push_back(share); });
+    EXPECT_EQ(none.end, MergeEnd::NoPlace);
+    EXPECT_FALSE(none.map);
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_EQ(shares.size(), static_cast<std::size_t>(other.frames.size())) << "told at each key frame";
+    SavedMap tilted = b;
+    tilted.T_base_laser.pitch += 0.1;
+    EXPECT_EQ(merged(a, tilted, config).end, MergeEnd::OtherMount);
   }
 }
 
@@ -239,9 +250,11 @@ TEST(MergedMaps, OfTwoFloorsAreRefused) {
       const slam_test::Drive drive = slam_test::drive_through(floor.way(rooms), 0.0);
       return decode_map(map_of(slam_test::record(world, drive, RobotModel(), 1.0, 0.01, seed + 50)), "second");
     };
-    EXPECT_TRUE(merged(first, drive_in(with_another_hall(floor), below), config));
-    EXPECT_TRUE(merged(first, drive_in(floor.world(), kRound), config));
-    EXPECT_FALSE(merged(first, drive_in(with_another_hall(floor), kRound), config));
+    EXPECT_TRUE(merged(first, drive_in(with_another_hall(floor), below), config).map);
+    EXPECT_TRUE(merged(first, drive_in(floor.world(), kRound), config).map);
+    const MergedMap refused = merged(first, drive_in(with_another_hall(floor), kRound), config);
+    EXPECT_FALSE(refused.map);
+    EXPECT_EQ(refused.end, MergeEnd::SeenThrough);
   }
 }
 
