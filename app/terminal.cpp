@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command.h"
+#include "base/text/new_file.h"
 #include "base/text/words.h"
 #include "scenarios/run/score_json.h"
 
@@ -16,14 +17,19 @@ namespace {
 
 volatile std::sig_atomic_t signalled = 0;
 
+[[noreturn]] void end_now() {
+  remove_unfinished_files();
+  _exit(kInterrupted);
+}
+
 constexpr char kEnded[] = "rubble: interrupted\n";
 
 void on_signal_without_rest(int /*signal*/) {
   // A terminal that is held by Ctrl-S, or a full pipe, takes no line: who wants the end does not wait for it.
   pollfd errors{STDERR_FILENO, POLLOUT, 0};
   const bool taken = poll(&errors, 1, 0) == 1 && (errors.revents & POLLOUT) != 0;
-  if (taken && write(STDERR_FILENO, kEnded, sizeof kEnded - 1) < 0) _exit(kInterrupted);
-  _exit(kInterrupted);
+  if (taken && write(STDERR_FILENO, kEnded, sizeof kEnded - 1) < 0) end_now();  // as it does anyway
+  end_now();
 }
 
 void on_signal(int signal) {
@@ -39,7 +45,7 @@ void catch_polite(void (*handler)(int)) {
 }
 
 void on_stop(int /*signal*/) {
-  if (signalled >= 2) _exit(kInterrupted);
+  if (signalled >= 2) end_now();
   signalled = signalled + 1;
 }
 

@@ -8,7 +8,8 @@
 namespace rubble::app {
 
 /// Ctrl-C, a polite kill or a terminal that is closed end the program on the spot with one line and kInterrupted: for
-/// short work that leaves nothing to be completed. Every file is written beside its place, so none is cut.
+/// short work that leaves nothing to be completed. Every file is written beside its place, so none is cut, and what was
+/// not finished is removed.
 void end_by_interrupts();
 
 /// Ctrl-C (and a polite kill) asks the work to end with its folder complete; a second one ends it at once.

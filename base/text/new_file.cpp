@@ -3,7 +3,12 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
+#include <climits>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -13,6 +18,46 @@
 #include "base/text/input_file.h"
 
 namespace rubble {
+
+namespace {
+
+/// A name that a signal handler may read at any moment: it is whole while `owner` is set.
+struct Unfinished {
+  std::atomic<bool> taken{false};
+  std::atomic<pid_t> owner{0};  ///< of a child that was forked meanwhile it is not
+  std::array<char, PATH_MAX> name{};
+};
+
+std::array<Unfinished, 16> unfinished;
+
+/// More at once than there are slots, or with longer names, are only not removed.
+void note_unfinished(const std::string& part) {
+  if (part.size() >= PATH_MAX) return;
+  for (Unfinished& slot : unfinished) {
+    if (slot.taken.exchange(true)) continue;
+    std::copy_n(part.c_str(), part.size() + 1, slot.name.begin());
+    slot.owner = getpid();
+    return;
+  }
+}
+
+/// No signal comes between a file's making and its being noted.
+class SignalsWait {
+ public:
+  SignalsWait() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before_);
+  }
+  ~SignalsWait() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsWait(const SignalsWait&) = delete;
+  SignalsWait& operator=(const SignalsWait&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+}  // namespace
 
 NewFile::NewFile(const std::string& path) : path_(path) {
   namespace fs = std::filesystem;
@@ -40,7 +85,9 @@ NewFile::NewFile(const std::string& path) : path_(path) {
 
 NewFile::~NewFile() {
   if (file_ >= 0) ::close(file_);
-  if (!part_.empty()) std::remove(part_.c_str());
+  if (part_.empty()) return;
+  std::remove(part_.c_str());
+  let_be(part_);
 }
 
 void NewFile::put(std::string_view bytes) {
@@ -60,6 +107,7 @@ void NewFile::keep() {
   std::error_code error;
   std::filesystem::rename(part_, target_, error);
   if (error) fail(error.value());
+  let_be(part_);
   part_.clear();
 }
 
@@ -68,11 +116,26 @@ void NewFile::fail(int error) const {
 }
 
 int create_beside(const std::string& target, std::string& part) {
+  const SignalsWait wait;
   for (int number = 0;; ++number) {
     part = target + "." + std::to_string(getpid()) + (number == 0 ? "" : "-" + std::to_string(number)) + ".part";
     const int file = ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (file >= 0) note_unfinished(part);
     if (file >= 0 || errno != EEXIST || number == 1000) return file;
   }
+}
+
+void let_be(const std::string& part) {
+  for (Unfinished& slot : unfinished) {
+    if (slot.owner != getpid() || part != slot.name.data()) continue;
+    slot.owner = 0;
+    slot.taken = false;
+  }
+}
+
+void remove_unfinished_files() noexcept {
+  for (const Unfinished& slot : unfinished)
+    if (slot.owner == getpid()) unlink(slot.name.data());
 }
 
 }  // namespace rubble

@@ -32,7 +32,11 @@ class NewFile {
 };
 
 /// Makes a file beside `target` that nobody else made: a link or file that was planted under its name is not followed.
-/// Its descriptor, or -1; its name is left in `part`.
+/// Its descriptor, or -1; its name is left in `part`. Until let_be(part) it counts as unfinished.
 int create_beside(const std::string& target, std::string& part);
+void let_be(const std::string& part);
+
+/// Removes what this process has not finished, for a signal handler that ends it: safe there.
+void remove_unfinished_files() noexcept;
 
 }  // namespace rubble

@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/text/input_file.h"
 #include "base/text/json_size.h"
+#include "base/text/new_file.h"
 #include "base/text/text_file.h"
 #include "scenarios/batch/score_version.h"
 #include "scenarios/run/folder_lock.h"
@@ -308,9 +309,11 @@ MergeReport merge(const std::vector<std::string>& sources, const std::string& na
     write_database(partial, all);
   } catch (const RunError&) {
     fs::remove(partial, error);
+    let_be(partial);
     throw;
   }
   fs::rename(partial, out, error);
+  let_be(partial);
   if (error) throw RunError(out + ": cannot be written (" + error.message() + "); give another --out");
   return report;
 }

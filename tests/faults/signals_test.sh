@@ -51,6 +51,30 @@ for signal in INT TERM HUP; do
     ! grep -qs '"status":"failed"' batch/results.jsonl || fail "SIG$signal to a batch and its workers: $(grep -o '"error":"[^"]*"' batch/results.jsonl | tail -n 1)"
   done
 done
+# Short work that writes one large file ends on the spot: the older file stays as it was, and nothing lies beside it.
+"$rubble" run s.yaml --set time_limit_s=400 --out long >/dev/null || fail "a run to export ended with $?"
+mkdir exported
+"$rubble" export long exported/run.rawlog >/dev/null || fail "export ended with $?"
+cp exported/run.rawlog whole.rawlog
+for signal in INT TERM HUP; do
+  for i in $(seq "$moments"); do
+    "$rubble" export long exported/run.rawlog >struck.out 2>struck.err &
+    pid=$!
+    listens $pid
+    for _ in $(seq 500); do  # until it writes, or is done
+      [[ -z $(find exported -name '*.part' -size +0) ]] && kill -0 $pid 2>/dev/null || break
+    done
+    sleep "$(awk -v n="$i" 'BEGIN { printf "%.3f", 0.02 * (n % 10) }')"
+    kill -"$signal" $pid 2>/dev/null
+    wait $pid
+    code=$?
+    struck=$((struck + 1))
+    [[ $code == 0 || $code == 130 ]] || fail "SIG$signal to export ended with $code: $(head -c 300 struck.err)"
+    [[ $(ls exported) == run.rawlog ]] || { fail "SIG$signal to export leaves: $(ls exported)"; rm -f exported/*.part; }
+    cmp -s exported/run.rawlog whole.rawlog || fail "SIG$signal to export cut the file"
+  done
+done
+
 # A pipe for errors that nobody reads, which is full, as a terminal that is held by Ctrl-S: who ends work that is not asked
 # twice does not wait for it.
 mkfifo held
