@@ -96,13 +96,16 @@ Plan Agenda::choose(const Situation& situation) {
   }
   TargetChoice::View view{situation.floor, situation.T_map_base, situation.now, situation.left_alone};
   view.speed = situation.speed;
-  view.trail = situation.trail;
   // What is off the grid may be solid after all: it is driven at for the place that is asked for, and for no other.
   view.places_only = pushing_.what() == Pushing::What::OffGrid;
   view.faces_first = faces_go_first(situation);
   const bool wanted =
       choice_.frontiers_done() && goal() == Goal::Place && target() && !situation.search.subject_seen(situation.floor);
-  TargetChoice::Choice choice = choice_.choose(view, situation.search);
+  TargetChoice::Choice choice;
+  if (goal() == Goal::Home)
+    choice.plan = choice_.way_home(situation.floor, situation.T_map_base, situation.trail);
+  else
+    choice = choice_.choose(view, situation.search);
   if (choice.no_niche) {
     frontier_left_ = choice.plan.frontier_left;
     if (situation.search.squarely()) {  // niches are faces like others now

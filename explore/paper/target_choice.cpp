@@ -1,6 +1,7 @@
 #include "explore/paper/target_choice.h"
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <optional>
 #include <utility>
@@ -62,7 +63,7 @@ void TargetChoice::go_home() {
 }
 
 TargetChoice::Choice TargetChoice::choose(const View& view, FloorSearch& search) {
-  if (goal_ == Goal::Home) return {way_home(view.floor, view.T_map_base, view.trail)};
+  assert(goal_ != Goal::Home);
   const bool driving = goal_ == Goal::Frontier;
   if (driving && (frontiers_done_ || !search.on())) return {to_frontier(view, search, target_)};
   Plan frontier = to_frontier(view, search, driving ? target_ : std::nullopt);

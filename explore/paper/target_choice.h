@@ -42,10 +42,9 @@ class TargetChoice {
     mrpt::math::TPose2D T_map_base;
     Stamp now;
     const LeftAlone& left_alone;
-    bool places_only = false;      ///< in a search frontiers do not come first
-    bool faces_first = false;      ///< walls that may hide new ground come after the faces
-    double speed = 0.2;            ///< of the robot so far, turns and stops included [m/s]
-    const Trail* trail = nullptr;  ///< where the floor carried the robot, if it did not everywhere
+    bool places_only = false;  ///< in a search frontiers do not come first
+    bool faces_first = false;  ///< walls that may hide new ground come after the faces
+    double speed = 0.2;        ///< of the robot so far, turns and stops included [m/s]
   };
   struct Choice {
     Plan plan;
@@ -83,8 +82,8 @@ class TargetChoice {
   /// The mapper corrected its past.
   void follow(const slam::Mapper& mapper) { home_.follow(mapper); }
 
-  /// The next way, and with it the goal. Where the choice says `no_niche` it is not made: `choose_of_all_places` or,
-  /// after another round has begun, `choose_frontier` makes it.
+  /// The next way, and with it the goal, unless that is home: then it is way_home(). Where the choice says `no_niche`
+  /// it is not made: `choose_of_all_places` or, after another round has begun, `choose_frontier` makes it.
   Choice choose(const View& view, FloorSearch& search);
   Choice choose_of_all_places(const View& view, FloorSearch& search, Plan frontier);
   Plan choose_frontier(const View& view, const FloorSearch& search) { return to_frontier(view, search, std::nullopt); }

@@ -65,11 +65,17 @@ FloorSearch::FloorSearch(const SearchConfig& config, double room, double tight, 
   if (others.co2_probe) others_.push_back({Record::Smelt, smelt, SearchedArea(smelt)});
 }
 
-SearchedArea& FloorSearch::record(Record record) {
-  for (Other& other : others_)
+/// To be changed or not, as the search is.
+template <class Search>
+auto& FloorSearch::record_of(Search& search, Record record) {
+  for (auto& other : search.others_)
     if (other.record == record) return other.area;
-  return record == Record::Squarely ? squarely_ : searched_;
+  return record == Record::Squarely ? search.squarely_ : search.searched_;
 }
+
+SearchedArea& FloorSearch::record(Record record) { return record_of(*this, record); }
+
+const SearchedArea& FloorSearch::record(Record record) const { return record_of(*this, record); }
 
 std::string FloorSearch::done() const {
   std::string text = "all visible floor searched";

@@ -108,7 +108,9 @@ class FloorSearch {
 
   bool look_around(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
   SearchedArea& record(Record record);
-  const SearchedArea& record(Record record) const { return const_cast<FloorSearch*>(this)->record(record); }
+  const SearchedArea& record(Record record) const;
+  template <class Search>
+  static auto& record_of(Search& search, Record record);
   void add_views(const std::vector<Viewpoint>& views, Record record);
   double shown(const Traversable& floor, const View& view) const;
   static bool beside_hole(const OccupancyGrid& cells, const OccupancyGrid& shut, const View& view);
