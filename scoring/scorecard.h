@@ -27,12 +27,7 @@ struct ScoreConfig {
 };
 
 /// Counts up whenever the same map and truth come to another `score`: scores of different versions cannot be compared.
-/// 1: min(precision, recall). 2: agreement of lines of sight beyond chance. 3: the fee grows where the truth has few
-/// walls. 4: dashes on one line are one wall. 5: what is so in any arena says nothing, a wall seen from one side is
-/// known in full, and a narrow unknown stretch between known ground is open ground. 6: faces behind the one that the
-/// truth knows are no walls drawn twice; black around a plan is no thickness. 7: where next to nothing stands inside,
-/// the walls around are asked about as well; the fee is higher up to 44 places of inner walls. 8: pixels below 5 cm are
-/// no stricter; walls that waver are walls; second drawings of 0.7 to 1.4 times the size are found.
+/// What each version changed stands in docs/scoring.md.
 constexpr int kScoreVersion = 8;
 
 /// The verdict on one map. Lengths in metres, shares 0..1.

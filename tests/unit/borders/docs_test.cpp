@@ -74,6 +74,25 @@ TEST(Docs, ThePageOfTheBaseListsAllItsHeaders) {
   EXPECT_GT(headers, 25u);
 }
 
+/// The only two places that know the number: the program, and the table of what each version changed.
+TEST(Docs, TheTableOfScoreVersionsEndsWithTheOneThatTheProgramHas) {
+  static const std::regex row(R"re(\n\| (\d+) \| )re"), constant(R"re(kScoreVersion = (\d+);)re");
+  const std::string page = text_of(kTop / "docs/scoring.md");
+  const std::string table = page.substr(page.find("\n### Versions of the score"));
+  const std::vector<std::smatch> rows = all_matches(table, row);
+  const std::string header = text_of(kTop / "scoring/scorecard.h");
+  std::smatch version;
+  ASSERT_TRUE(std::regex_search(header, version, constant));
+  const int versions = std::stoi(version[1]);
+  ASSERT_GE(static_cast<int>(rows.size()), versions);
+  for (int i = 0; i < versions; ++i) EXPECT_EQ(rows[static_cast<std::size_t>(i)][1], std::to_string(i + 1));
+  const std::string next = "\n| " + std::to_string(versions + 1) + " | ";
+  EXPECT_EQ(table.substr(0, table.find("\nSource:")).find(next), std::string::npos) << "a row that no program has";
+  static const std::regex told(R"re(`score_version`[^\n]{0,20}\b\d)re");
+  for (const char* other : {"README.md", "docs/scoring.md", "docs/scenarios.md"})
+    EXPECT_FALSE(std::regex_search(text_of(kTop / other), told)) << other << " tells the number once more";
+}
+
 TEST(Docs, TheFrontPageHasARowForEachFolder) {
   const std::string page = text_of(kTop / "README.md");
   const std::string rows = page.substr(page.find("\n## Folders"));
