@@ -14,6 +14,11 @@ namespace rubble::scoring::testing {
 inline std::vector<Style> further_styles() {
   Styles out;
   const std::vector<Colour> rooms{{180, 200, 250}, {190, 250, 190}, {250, 200, 180}, {170, 240, 250}, {230, 180, 230}};
+  const auto in_rooms = [=](const OccupancyGrid& g, const Colour& unknown, int scale, int how = cv::INTER_NEAREST) {
+    cv::Mat m;
+    cv::resize(with_rooms(g, rooms, 2.4, kBlack, unknown), m, {}, scale, scale, how);
+    return m;
+  };
   const auto rviz = [](const OccupancyGrid& g, int scale) {
     return in_colours(g, kBlack, {134, 137, 112}, grey(230), scale);
   };
@@ -57,10 +62,8 @@ inline std::vector<Style> further_styles() {
             return i;
           },
           3.0, {85});
-  out.add("dark grey walls, light unknown",
-          [](const OccupancyGrid& g) { return in_colours(g, grey(60), grey(232), kWhite); }, 1.0, {90, 60});
-  out.add("low contrast", [](const OccupancyGrid& g) { return in_colours(g, grey(90), grey(140), grey(190)); }, 1.0,
-          {90, 70});
+  out.plain("dark grey walls, light unknown", grey(60), grey(232), kWhite, 1, {90, 60});
+  out.plain("low contrast", grey(90), grey(140), grey(190), 1, {90, 70});
   out.add(
       "palette 16 of a smoothed view",
       [=](const OccupancyGrid& g) {
@@ -90,27 +93,21 @@ inline std::vector<Style> further_styles() {
       2.0);
   out.page("black and white diffused, turned", [](const OccupancyGrid& g) {
     Styled s{in_ros_greys(g, 2), 2.0};
-    const TurnedImage t = turned(s.image, 12, cv::INTER_LINEAR, cv::Scalar(grey(205)));
-    s.image = diffused(t.image, nearest_level(2));
-    s.turn = t.turn;
+    turn(s, 12, grey(205));
+    s.image = diffused(s.image, nearest_level(2));
     return s;
   });
   for (const int degrees : {15, 45})
     out.page("rooms turned by " + std::to_string(degrees),
              [=](const OccupancyGrid& g) {
-               cv::Mat m;
-               cv::resize(with_rooms(g, rooms, 2.4, kBlack, kWhite), m, {}, 2, 2, cv::INTER_NEAREST);
-               Styled s{m, 2.0};
-               const TurnedImage t = turned(m, degrees, cv::INTER_LINEAR, cv::Scalar(kWhite));
-               s.image = t.image;
-               s.turn = t.turn;
+               Styled s{in_rooms(g, kWhite, 2), 2.0};
+               turn(s, degrees, kWhite);
                return s;
              },
              {85});
   out.add("rooms with names",
           [=](const OccupancyGrid& g) {
-            cv::Mat m;
-            cv::resize(with_rooms(g, rooms, 2.4, kBlack, grey(205)), m, {}, 3, 3, cv::INTER_NEAREST);
+            cv::Mat m = in_rooms(g, grey(205), 3);
             for (int k = 0; k < 4; ++k) write_on(m, "Room", 3 * open_place(g, 8, k) - P(22, -8), 0.5, kBlack, 1);
             return m;
           },
@@ -120,17 +117,11 @@ inline std::vector<Style> further_styles() {
             return with_rooms(g, {{120, 60, 40}, {40, 110, 50}, {60, 50, 130}}, 2.4, kWhite, kBlack);
           },
           1.0, {85});
-  out.add("rooms smoothed",
-          [=](const OccupancyGrid& g) {
-            cv::Mat m;
-            cv::resize(with_rooms(g, rooms, 2.4, kBlack, grey(190)), m, {}, 2, 2, cv::INTER_CUBIC);
-            return m;
-          },
-          2.0, {60});
+  out.add("rooms smoothed", [=](const OccupancyGrid& g) { return in_rooms(g, grey(190), 2, cv::INTER_CUBIC); }, 2.0,
+          {60});
   out.page("rooms on a page with a frame",
            [=](const OccupancyGrid& g) {
-             cv::Mat m;
-             cv::resize(with_rooms(g, rooms, 2.4, kBlack, grey(205)), m, {}, 2, 2, cv::INTER_NEAREST);
+             const cv::Mat m = in_rooms(g, grey(205), 2);
              Styled s = framed(m, 2.0, 40, 50, 40, 40, kWhite);
              cv::rectangle(s.image, P(39, 49), P(40 + m.cols, 50 + m.rows), cv::Scalar(kBlack), 1);
              write_on(s.image, "Rooms of the arena", P(60, 30), 0.6, kBlack);
@@ -138,11 +129,7 @@ inline std::vector<Style> further_styles() {
            },
            {85});
   out.page("rooms on a page",
-           [=](const OccupancyGrid& g) {
-             cv::Mat m;
-             cv::resize(with_rooms(g, rooms, 2.4, kBlack, grey(205)), m, {}, 2, 2, cv::INTER_NEAREST);
-             return framed(m, 2.0, 40, 50, 40, 40, kWhite);
-           },
+           [=](const OccupancyGrid& g) { return framed(in_rooms(g, grey(205), 2), 2.0, 40, 50, 40, 40, kWhite); },
            {85});
   out.add("rooms of greens and blues, arrows",
           [=](const OccupancyGrid& g) {
@@ -176,65 +163,51 @@ inline std::vector<Style> further_styles() {
            {85});
   out.page("a frame in blue",
            [](const OccupancyGrid& g) {
-             Styled s = framed(in_ros_greys(g, 2), 2.0, 12, 12, 12, 12, {200, 90, 30});
-             return s;
+             return framed(in_ros_greys(g, 2), 2.0, 12, 12, 12, 12, {200, 90, 30});
            },
            {85});
-  out.add("compass rose in the unknown",
-          [](const OccupancyGrid& g) {
-            cv::Mat m = in_ros_greys(g, 2);
-            cv::circle(m, P(20, 20), 14, cv::Scalar(kBlack), 1, cv::LINE_AA);
-            cv::line(m, P(20, 3), P(20, 37), cv::Scalar(kBlack), 1);
-            cv::line(m, P(3, 20), P(37, 20), cv::Scalar(kBlack), 1);
-            return m;
-          },
-          2.0, {85});
-  out.add("ways of four robots",
-          [](const OccupancyGrid& g) {
-            cv::Mat m = in_ros_greys(g, 2);
-            const std::vector<Colour> pens{{0, 0, 255}, {255, 0, 0}, {0, 170, 0}, {200, 0, 200}};
-            std::vector<P> way = way_of(g, 2);
-            for (std::size_t k = 0; k < 4; ++k)
-              cv::polylines(m,
-                            std::vector<P>(way.begin() + static_cast<std::ptrdiff_t>(k * way.size() / 4),
-                                           way.begin() + static_cast<std::ptrdiff_t>((k + 1) * way.size() / 4)),
-                            false, cv::Scalar(pens[k]), 3, cv::LINE_AA);
-            return m;
-          },
-          2.0, {90, 70});
-  out.add("frontiers in green and red",
-          [](const OccupancyGrid& g) {
-            cv::Mat m = in_ros_greys(g);
-            for (int y = 1; y + 1 < m.rows; ++y)
-              for (int x = 1; x + 1 < m.cols; ++x) {
-                const auto at = [&](int u, int v) { return g[{u, g.height() - 1 - v}]; };
-                if (at(x, y) != Occupancy::Free) continue;
-                if (at(x + 1, y) == Occupancy::Unknown || at(x - 1, y) == Occupancy::Unknown ||
-                    at(x, y + 1) == Occupancy::Unknown || at(x, y - 1) == Occupancy::Unknown)
-                  m.at<Colour>(y, x) = x % 40 < 20 ? Colour(0, 200, 0) : Colour(0, 0, 220);
-              }
-            return m;
-          },
-          1.0, {85});
-  out.add("cloud of poses",
-          [](const OccupancyGrid& g) {
-            cv::Mat m = in_ros_greys(g, 2);
-            cv::RNG random(12);
-            for (int k = 0; k < 60; ++k) {
-              const P at = 2 * open_place(g, 4, k % 6) + P(random.uniform(-6, 7), random.uniform(-6, 7));
-              cv::arrowedLine(m, at, at + P(random.uniform(-6, 7), random.uniform(-6, 7)), {0, 0, 255}, 1, cv::LINE_AA,
-                              0, 0.4);
-            }
-            return m;
-          },
-          2.0, {85});
-  out.add("dark theme",
-          [](const OccupancyGrid& g) {
-            return in_colours(g, grey(230), {34, 30, 30}, {76, 70, 70}, 2);
-          },
-          2.0, {90, 60});
-  out.add("white walls on black, grey free",
-          [](const OccupancyGrid& g) { return in_colours(g, kWhite, kBlack, grey(90), 2); }, 2.0, {90, 60});
+  out.over_ros("compass rose in the unknown", 2,
+               [](cv::Mat& m, const OccupancyGrid&) {
+                 cv::circle(m, P(20, 20), 14, cv::Scalar(kBlack), 1, cv::LINE_AA);
+                 cv::line(m, P(20, 3), P(20, 37), cv::Scalar(kBlack), 1);
+                 cv::line(m, P(3, 20), P(37, 20), cv::Scalar(kBlack), 1);
+               },
+               {85});
+  out.over_ros("ways of four robots", 2,
+               [](cv::Mat& m, const OccupancyGrid& g) {
+                 const std::vector<Colour> pens{{0, 0, 255}, {255, 0, 0}, {0, 170, 0}, {200, 0, 200}};
+                 std::vector<P> way = way_of(g, 2);
+                 for (std::size_t k = 0; k < 4; ++k)
+                   cv::polylines(m,
+                                 std::vector<P>(way.begin() + static_cast<std::ptrdiff_t>(k * way.size() / 4),
+                                                way.begin() + static_cast<std::ptrdiff_t>((k + 1) * way.size() / 4)),
+                                 false, cv::Scalar(pens[k]), 3, cv::LINE_AA);
+               },
+               {90, 70});
+  out.over_ros("frontiers in green and red", 1,
+               [](cv::Mat& m, const OccupancyGrid& g) {
+                 for (int y = 1; y + 1 < m.rows; ++y)
+                   for (int x = 1; x + 1 < m.cols; ++x) {
+                     const auto at = [&](int u, int v) { return g[{u, g.height() - 1 - v}]; };
+                     if (at(x, y) != Occupancy::Free) continue;
+                     if (at(x + 1, y) == Occupancy::Unknown || at(x - 1, y) == Occupancy::Unknown ||
+                         at(x, y + 1) == Occupancy::Unknown || at(x, y - 1) == Occupancy::Unknown)
+                       m.at<Colour>(y, x) = x % 40 < 20 ? Colour(0, 200, 0) : Colour(0, 0, 220);
+                   }
+               },
+               {85});
+  out.over_ros("cloud of poses", 2,
+               [](cv::Mat& m, const OccupancyGrid& g) {
+                 cv::RNG random(12);
+                 for (int k = 0; k < 60; ++k) {
+                   const P at = 2 * open_place(g, 4, k % 6) + P(random.uniform(-6, 7), random.uniform(-6, 7));
+                   cv::arrowedLine(m, at, at + P(random.uniform(-6, 7), random.uniform(-6, 7)), {0, 0, 255}, 1,
+                                   cv::LINE_AA, 0, 0.4);
+                 }
+               },
+               {85});
+  out.plain("dark theme", grey(230), {34, 30, 30}, {76, 70, 70}, 2, {90, 60});
+  out.plain("white walls on black, grey free", kWhite, kBlack, grey(90), 2, {90, 60});
   out.add("see-through squares for unknown",
           [](const OccupancyGrid& g) {
             cv::Mat m = in_colours(g, kBlack, grey(1), grey(240), 2);
@@ -244,11 +217,7 @@ inline std::vector<Style> further_styles() {
             return m;
           },
           2.0, {85});
-  out.add("street map",
-          [](const OccupancyGrid& g) {
-            return in_colours(g, grey(120), {223, 227, 229}, kWhite, 2);
-          },
-          2.0, {90, 60});
+  out.plain("street map", grey(120), {223, 227, 229}, kWhite, 2, {90, 60});
   out.add("watermark",
           [](const OccupancyGrid& g) {
             cv::Mat m = in_ros_greys(g, 2), o = m.clone();
@@ -262,13 +231,12 @@ inline std::vector<Style> further_styles() {
   out.page("scanned from paper",
            [](const OccupancyGrid& g) {
              Styled s = framed(in_ros_greys(g, 3), 3.0, 60, 60, 60, 60, kWhite);
-             const TurnedImage t = turned(s.image, 1.5, cv::INTER_LINEAR, cv::Scalar(kWhite));
-             cv::Mat noise(t.image.size(), CV_16SC3);
+             turn(s, 1.5, kWhite);
+             cv::Mat noise(s.image.size(), CV_16SC3);
              cv::RNG random(4);
              random.fill(noise, cv::RNG::NORMAL, 0.0, 4.0);
-             cv::multiply(t.image, cv::Scalar(0.9, 0.96, 1.0), s.image);
+             cv::multiply(s.image, cv::Scalar(0.9, 0.96, 1.0), s.image);
              cv::add(s.image, noise, s.image, cv::noArray(), CV_8UC3);
-             s.turn = t.turn;
              return s;
            },
            {80});

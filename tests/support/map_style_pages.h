@@ -22,36 +22,28 @@ inline std::vector<Style> styles_of_pages() {
            {"red", {0, 0, 255}}, {"blue", {255, 0, 0}}, {"orange", {0, 140, 255}}}) {
     const Colour c = colour;
     for (const int scale : {1, 2})
-      out.add("arrow " + name + (scale > 1 ? " twice" : ""),
-              [=](const OccupancyGrid& g) {
-                cv::Mat i = in_ros_greys(g, scale);
-                for (int k = 0; k < 3; ++k) arrow(i, scale * open_place(g, 6, k), c, 5 * scale);
-                return i;
-              },
-              scale, {75});
-    out.add("way " + name,
-            [=](const OccupancyGrid& g) {
-              cv::Mat i = in_ros_greys(g, 2);
-              cv::polylines(i, way_of(g, 2), false, cv::Scalar(c), 2, cv::LINE_AA);
-              return i;
-            },
-            2.0, {60});
-    out.add("names on floor " + name,
-            [=](const OccupancyGrid& g) {
-              cv::Mat i = in_ros_greys(g, 3);
-              for (int k = 0; k < 4; ++k)
-                write_on(i, "R" + std::to_string(k + 1), 3 * open_place(g, 7, k) - P(15, -8), 0.6, c, 2);
-              return i;
-            },
-            3.0, {80});
+      out.over_ros("arrow " + name + (scale > 1 ? " twice" : ""), scale,
+                   [=](cv::Mat& i, const OccupancyGrid& g) {
+                     for (int k = 0; k < 3; ++k) arrow(i, scale * open_place(g, 6, k), c, 5 * scale);
+                   },
+                   {75});
+    out.over_ros("way " + name, 2,
+                 [=](cv::Mat& i, const OccupancyGrid& g) {
+                   cv::polylines(i, way_of(g, 2), false, cv::Scalar(c), 2, cv::LINE_AA);
+                 },
+                 {60});
+    out.over_ros("names on floor " + name, 3,
+                 [=](cv::Mat& i, const OccupancyGrid& g) {
+                   for (int k = 0; k < 4; ++k)
+                     write_on(i, "R" + std::to_string(k + 1), 3 * open_place(g, 7, k) - P(15, -8), 0.6, c, 2);
+                 },
+                 {80});
   }
-  out.add("names on floor black",
-          [=](const OccupancyGrid& g) {
-            cv::Mat i = in_ros_greys(g, 3);
-            for (int k = 0; k < 4; ++k) write_on(i, "Room", 3 * open_place(g, 8, k) - P(22, -8), 0.5, kBlack, 1);
-            return i;
-          },
-          3.0, {85});
+  out.over_ros("names on floor black", 3,
+               [=](cv::Mat& i, const OccupancyGrid& g) {
+                 for (int k = 0; k < 4; ++k) write_on(i, "Room", 3 * open_place(g, 8, k) - P(22, -8), 0.5, kBlack, 1);
+               },
+               {85});
   out.add("names on floor in the walls' blue, league",
           [=](const OccupancyGrid& g) {
             cv::Mat i;
@@ -69,33 +61,27 @@ inline std::vector<Style> styles_of_pages() {
             return i;
           },
           3.0, {90});
-  out.add("laser points red",
-          [=](const OccupancyGrid& g) {
-            cv::Mat i = in_ros_greys(g, 2);
-            cv::RNG random(3);
-            for (int y = 0; y < g.height(); ++y)
-              for (int x = 0; x < g.width() / 2; ++x)
-                if (g[{x, g.height() - 1 - y}] == Occupancy::Occupied && random.uniform(0, 3) == 0)
-                  cv::circle(i, 2 * P(x, y), 1, {0, 0, 255}, cv::FILLED);
-            return i;
-          },
-          2.0, {85});
-  out.add("grid over all grey",
-          [=](const OccupancyGrid& g) {
-            cv::Mat i = in_ros_greys(g, 2);
-            for (int x = 0; x < i.cols; x += 40) cv::line(i, {x, 0}, {x, i.rows}, {160, 160, 164}, 1);
-            for (int y = 0; y < i.rows; y += 40) cv::line(i, {0, y}, {i.cols, y}, {160, 160, 164}, 1);
-            return i;
-          },
-          2.0, {85});
-  out.add("grid light blue",
-          [=](const OccupancyGrid& g) {
-            cv::Mat i = in_ros_greys(g, 2);
-            for (int x = 0; x < i.cols; x += 40) cv::line(i, {x, 0}, {x, i.rows}, {255, 200, 120}, 1);
-            for (int y = 0; y < i.rows; y += 40) cv::line(i, {0, y}, {i.cols, y}, {255, 200, 120}, 1);
-            return i;
-          },
-          2.0, {85});
+  out.over_ros("laser points red", 2,
+               [=](cv::Mat& i, const OccupancyGrid& g) {
+                 cv::RNG random(3);
+                 for (int y = 0; y < g.height(); ++y)
+                   for (int x = 0; x < g.width() / 2; ++x)
+                     if (g[{x, g.height() - 1 - y}] == Occupancy::Occupied && random.uniform(0, 3) == 0)
+                       cv::circle(i, 2 * P(x, y), 1, {0, 0, 255}, cv::FILLED);
+               },
+               {85});
+  out.over_ros("grid over all grey", 2,
+               [=](cv::Mat& i, const OccupancyGrid&) {
+                 for (int x = 0; x < i.cols; x += 40) cv::line(i, {x, 0}, {x, i.rows}, {160, 160, 164}, 1);
+                 for (int y = 0; y < i.rows; y += 40) cv::line(i, {0, y}, {i.cols, y}, {160, 160, 164}, 1);
+               },
+               {85});
+  out.over_ros("grid light blue", 2,
+               [=](cv::Mat& i, const OccupancyGrid&) {
+                 for (int x = 0; x < i.cols; x += 40) cv::line(i, {x, 0}, {x, i.rows}, {255, 200, 120}, 1);
+                 for (int y = 0; y < i.rows; y += 40) cv::line(i, {0, y}, {i.cols, y}, {255, 200, 120}, 1);
+               },
+               {85});
 
   // Pages.
   out.page("page scale bar and north arrow below",
@@ -233,17 +219,13 @@ inline std::vector<Style> styles_of_pages() {
              [=](const OccupancyGrid& g) {
                const cv::Mat m = in_ros_greys(g, 2);
                Styled s = framed(m, 2.0, 30, 30, 30, 30, kWhite);
-               const TurnedImage t = turned(s.image, degrees, cv::INTER_LINEAR, cv::Scalar(kWhite));
-               s.image = t.image;
-               s.turn = t.turn;
+               turn(s, degrees, kWhite);
                return s;
              },
              {85});
   out.page("framed and turned on black", [=](const OccupancyGrid& g) {
     Styled s = framed(in_ros_greys(g, 2), 2.0, 3, 3, 3, 3, kBlack);
-    const TurnedImage t = turned(s.image, 9, cv::INTER_LINEAR, cv::Scalar(kBlack));
-    s.image = t.image;
-    s.turn = t.turn;
+    turn(s, 9, kBlack);
     return s;
   });
 
@@ -264,23 +246,21 @@ inline std::vector<Style> styles_of_pages() {
             return i;
           },
           2.0, {85});
-  out.add("probabilities, grades of grey",
-          [=](const OccupancyGrid& g) {
-            cv::Mat i = in_ros_greys(g);
-            cv::RNG random(9);
-            for (int y = 0; y < i.rows; ++y)
-              for (int x = 0; x < i.cols; ++x) {
-                Colour& c = i.at<Colour>(y, x);
-                if (c[0] == 254)
-                  c = grey(215 + random.uniform(0, 40));
-                else if (c[0] == 0)
-                  c = grey(random.uniform(0, 70));
-                else
-                  c = grey(128);
-              }
-            return i;
-          },
-          1.0, {85});
+  out.over_ros("probabilities, grades of grey", 1,
+               [=](cv::Mat& i, const OccupancyGrid&) {
+                 cv::RNG random(9);
+                 for (int y = 0; y < i.rows; ++y)
+                   for (int x = 0; x < i.cols; ++x) {
+                     Colour& c = i.at<Colour>(y, x);
+                     if (c[0] == 254)
+                       c = grey(215 + random.uniform(0, 40));
+                     else if (c[0] == 0)
+                       c = grey(random.uniform(0, 70));
+                     else
+                       c = grey(128);
+                   }
+               },
+               {85});
   out.add("probabilities, free fades to unknown",
           [=](const OccupancyGrid& g) {
             cv::Mat i = in_colours(g, kBlack, grey(127), kWhite), free = i.clone();

@@ -196,6 +196,25 @@ inline std::vector<cv::Point> way_of(const OccupancyGrid& grid, int scale) {
   return out;
 }
 
+inline const Colour kBlack{0, 0, 0}, kWhite{255, 255, 255};
+using P = cv::Point;
+
+inline void write_on(cv::Mat& image, const std::string& text, const P& at, double size, const Colour& colour,
+                     int pen = 1, int line = cv::LINE_AA) {
+  cv::putText(image, text, at, cv::FONT_HERSHEY_SIMPLEX, size, cv::Scalar(colour), pen, line);
+}
+
+inline cv::Mat in_ros_greys(const OccupancyGrid& g, int scale = 1) {
+  return in_colours(g, kBlack, grey(205), grey(254), scale);
+}
+
+/// Turns a picture about its middle onto a canvas of `around`.
+inline void turn(Styled& s, double degrees, const Colour& around) {
+  const TurnedImage t = turned(s.image, degrees, cv::INTER_LINEAR, cv::Scalar(around));
+  s.image = t.image;
+  s.turn = t.turn;
+}
+
 /// Gathers styles, each as PNG and as JPEG of these qualities.
 class Styles {
  public:
@@ -213,19 +232,25 @@ class Styles {
     all.push_back({name, draw, 0});
     for (const int q : qualities) all.push_back({name + ", JPEG " + std::to_string(q), draw, q});
   }
+  /// `pen` draws over a map in ROS' greys of `scale` pixels a cell.
+  void over_ros(const std::string& name, int scale, const std::function<void(cv::Mat&, const OccupancyGrid&)>& pen,
+                const std::vector<int>& qualities = {}) {
+    add(
+        name,
+        [=](const OccupancyGrid& g) {
+          cv::Mat image = in_ros_greys(g, scale);
+          pen(image, g);
+          return image;
+        },
+        scale, qualities);
+  }
+  /// Nothing but three colours, of `scale` pixels a cell.
+  void plain(const std::string& name, const Colour& wall, const Colour& unknown, const Colour& free, int scale,
+             const std::vector<int>& qualities = {}) {
+    add(
+        name, [=](const OccupancyGrid& g) { return in_colours(g, wall, unknown, free, scale); }, scale, qualities);
+  }
   std::vector<Style> all;
 };
-
-inline const Colour kBlack{0, 0, 0}, kWhite{255, 255, 255};
-using P = cv::Point;
-
-inline void write_on(cv::Mat& image, const std::string& text, const P& at, double size, const Colour& colour,
-                     int pen = 1, int line = cv::LINE_AA) {
-  cv::putText(image, text, at, cv::FONT_HERSHEY_SIMPLEX, size, cv::Scalar(colour), pen, line);
-}
-
-inline cv::Mat in_ros_greys(const OccupancyGrid& g, int scale = 1) {
-  return in_colours(g, kBlack, grey(205), grey(254), scale);
-}
 
 }  // namespace rubble::scoring::testing
