@@ -62,7 +62,8 @@ void put_axes(cv::Mat& picture, const GridFrame& frame, int scale) {
   };
   const std::vector<Tick> east = ticks(frame.x0, frame.width * scale);
   const std::vector<Tick> north = ticks(frame.y0, frame.height * scale);
-  int left = text_width("m");
+  const int unit = text_width("m");
+  int left = unit;
   for (const Tick& tick : north) left = std::max(left, text_width(tick.words));
   left += kTick + 6;
   cv::copyMakeBorder(picture, picture, 0, kBelow, left, 0, cv::BORDER_CONSTANT, kMargin);
@@ -76,7 +77,8 @@ void put_axes(cv::Mat& picture, const GridFrame& frame, int scale) {
     const int x = left + tick.at;
     cv::line(picture, {x, bottom}, {x, bottom + kTick - 1}, kInk);
     const int half = text_width(tick.words) / 2;
-    draw_text(picture, tick.words, std::min(x - half, picture.cols - 2 * half - 2), bottom + kTick + 12);
+    const int begin = std::clamp(x - half, unit + 12, std::max(unit + 12, picture.cols - 2 * half - 2));
+    draw_text(picture, tick.words, begin, bottom + kTick + 12);
   }
   draw_text(picture, "m", 3, bottom + kTick + 12);
 }
