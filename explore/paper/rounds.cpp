@@ -44,6 +44,9 @@ std::optional<std::string> Rounds::another(const Standing& standing, FloorSearch
   barren_rounds_ = barren ? barren_rounds_ + 1 : 0;
   known_then_.mark(standing.floor);
   victims_then_ = standing.victims;
+  // Faces out of reach are worth more than another try at what could not be seen.
+  if (search.faces_left())
+    if (auto news = forget_what_was_felt(standing, search, left_alone)) return news;
   if (barren_rounds_ >= kBarrenRounds) return forget_what_was_felt(standing, search, left_alone);
   const bool given_up = search.reconsider(standing.floor);
   const bool failed = left_alone.pardon_all(standing.now);

@@ -25,6 +25,7 @@ constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
 constexpr double kCarried = 0.35;                       ///< from its trail floor carried the robot [m]
 constexpr double kKeep = 3.0;     ///< looks on the way change what a look squarely is worth: times the usual head start
 constexpr double kBeside = 0.25;  ///< [m]
+constexpr double kNarrow = 4.0;   ///< what a way near to walls has to save on one that is not [m]
 const std::optional<PalletGrid> kNoGrid;
 
 /// The fields of steps that a map shows, each looked for once.
@@ -161,8 +162,11 @@ Plan TargetChoice::to_place(const View& view, FloorSearch& search, Subjects subj
     if (grid->depth(subject) < kInsidePallet) return false;
     return subjects == Subjects::Squarely || fields.shown_at(*grid, subject);
   };
-  Plan plan = planner_.to_cells(view.floor, view.T_map_base, search.sources(view.floor, subjects, head_start, idle));
-  if (plan.found) search.choose_subject(view.floor.cells.cell(plan.target));
+  // Looking squarely at all takes more time than there is: what is rich is not left for the end for its narrow way.
+  const auto detour = subjects == Subjects::Squarely ? std::optional(kNarrow) : std::nullopt;
+  Plan plan =
+      planner_.to_cells(view.floor, view.T_map_base, search.sources(view.floor, subjects, head_start, idle), detour);
+  if (plan.found) plan.cost -= search.choose_subject(view.floor.cells.cell(plan.target));
   return plan;
 }
 

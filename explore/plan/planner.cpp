@@ -68,25 +68,37 @@ Plan Planner::plan(const Traversable& floor, const TPose2D& T_map_base, const st
   Plan plan;
   const Cell start = floor.cells.cell({T_map_base.x, T_map_base.y});
   if (sources.empty() || !floor.cells.inside(start)) return plan;
+  for (double d_min = config_.transform.d_min;; d_min = std::max(d_min - config_.d_min_step, least_d_min()))
+    if (keeping(d_min, floor, start, sources, plan) || d_min <= least_d_min() + kClearanceRounding) return plan;
+}
+
+/// Whether there is a way from `start` that keeps `d_min`, and that.
+bool Planner::keeping(double d_min, const Traversable& floor, Cell start, const std::vector<Source>& sources,
+                      Plan& plan) {
   TransformConfig transform = config_.transform;
-  const double floor_of_d_min = std::min(config_.d_min_floor, transform.d_min);
-  for (;;) {
-    const std::vector<Cell> climb = climb_clearance(floor, start, transform.d_min);
-    transform_.run(floor, sources, transform, climb.back());
-    if (transform_.reached(climb.back())) {
-      std::vector<Cell> cells = climb;
-      const std::vector<Cell> way = transform_.descend(climb.back());
-      cells.insert(cells.end(), way.begin() + 1, way.end());
-      plan.found = true;
-      plan.path = smooth_path(floor, cells, transform.d_min);
-      plan.target = floor.cells.centre(cells.back());
-      plan.cost = transform_.cost(climb.back());
-      plan.d_min = transform.d_min;
-      return plan;
-    }
-    if (transform.d_min <= floor_of_d_min + kClearanceRounding) return plan;
-    transform.d_min = std::max(transform.d_min - config_.d_min_step, floor_of_d_min);
-  }
+  transform.d_min = d_min;
+  const std::vector<Cell> climb = climb_clearance(floor, start, d_min);
+  transform_.run(floor, sources, transform, climb.back());
+  if (!transform_.reached(climb.back())) return false;
+  std::vector<Cell> cells = climb;
+  const std::vector<Cell> way = transform_.descend(climb.back());
+  cells.insert(cells.end(), way.begin() + 1, way.end());
+  plan.found = true;
+  plan.path = smooth_path(floor, cells, d_min);
+  plan.target = floor.cells.centre(cells.back());
+  plan.cost = transform_.cost(climb.back());
+  plan.d_min = d_min;
+  return true;
+}
+
+Plan Planner::to_cells(const Traversable& floor, const TPose2D& T_map_base, const std::vector<Source>& sources,
+                       std::optional<double> detour) {
+  Plan found = plan(floor, T_map_base, sources);
+  if (!detour || !found.found || found.cost <= *detour || found.d_min <= least_d_min() + kClearanceRounding)
+    return found;
+  Plan narrow;
+  keeping(least_d_min(), floor, floor.cells.cell({T_map_base.x, T_map_base.y}), sources, narrow);
+  return narrow.found && narrow.cost + *detour < found.cost ? narrow : found;
 }
 
 double Planner::head_start(const std::optional<TPoint2D>& previous, const TPoint2D& other) const {

@@ -70,10 +70,10 @@ class Planner {
   Plan to_point(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const mrpt::math::TPoint2D& target,
                 double tolerance);
 
-  /// The cheapest way to one of several cells.
-  Plan to_cells(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const std::vector<Source>& sources) {
-    return plan(floor, T_map_base, sources);
-  }
+  /// The cheapest way to one of several cells. `detour`: a way nearer to walls is taken where it is so much cheaper,
+  /// too [m]; without it only where there is no other.
+  Plan to_cells(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const std::vector<Source>& sources,
+                std::optional<double> detour = std::nullopt);
 
   /// How much dearer in ways another target is than the one being driven to, if that is known. With
   /// Discomfort::PerCell not at all, as printed [m].
@@ -91,6 +91,8 @@ class Planner {
   };
 
   Plan plan(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const std::vector<Source>& sources);
+  bool keeping(double d_min, const Traversable& floor, Cell start, const std::vector<Source>& sources, Plan& plan);
+  double least_d_min() const { return std::min(config_.d_min_floor, config_.transform.d_min); }
   const Open* worth_most(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, double d_min,
                          const std::vector<Open>& frontiers, const WorthFn& worth);
 

@@ -32,6 +32,10 @@ constexpr double kLookCost = 1.5;               ///< what a look takes, in way, 
 constexpr double kSolidCost = 1.5;              ///< more way than this is driven to a hole that was seen first [m]
 constexpr int kHoleCells = 2;                   ///< so near it lies before the place to look at
 constexpr double kFullLook = 0.6;               ///< of wall that it shows squarely at best [m]
+constexpr double kScrapCost = 16.0;     ///< more way than this is driven to where there is more to be looked at [m]
+constexpr double kPlenty = 1.0;         ///< as much as this, of wall ... [m]
+constexpr double kNeighbours = 1.2;     ///< ... so near to what a look is for [m]
+constexpr double kSubjectsApart = 0.2;  ///< subjects along a wall are, about [m]
 const std::vector<double> kSuspectDistances = {0.6, 0.75, 0.5, 0.9, 1.1};
 
 /// The floor that decides what a look sees: what it saw, and the cells around, where its rays ended.
@@ -212,6 +216,7 @@ std::vector<Source> FloorSearch::sources(const Traversable& map, Subjects subjec
     add_suspects(floor);
   }
   if (subjects == Subjects::Squarely) faces_left_ = !views_.empty();
+  find_scraps();
   std::vector<Source> sources;
   for (const View& view : views_) {
     const std::optional<double> start = head_start(floor.cells.centre(view.cell));
@@ -219,9 +224,29 @@ std::vector<Source> FloorSearch::sources(const Traversable& map, Subjects subjec
     // A look that shows little has to be made good by others.
     const double lost = view.record == Record::Squarely ? 1.0 - std::min(1.0, shown(floor, view) / kFullLook) : 0.0;
     const bool solid = view.record == Record::Squarely && !beside_hole(map.cells, floor.cells, view);
-    sources.push_back({view.cell, *start + kLookCost * lost + (solid ? kSolidCost : 0.0)});
+    sources.push_back({view.cell, *start + kLookCost * lost + view.scrap + (solid ? kSolidCost : 0.0)});
   }
   return sources;
+}
+
+/// Tells of each view how little else there is to be looked at squarely around its subject: scraps here and there would
+/// take all the time that whole lanes at the other end of the arena need.
+void FloorSearch::find_scraps() {
+  std::vector<TPoint2D> subjects;  // the views of each follow one another
+  for (const View& view : views_)
+    if (view.record == Record::Squarely && (subjects.empty() || distance(subjects.back(), view.subject) > 0.0))
+      subjects.push_back(view.subject);
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    View& view = views_[i];
+    if (view.record != Record::Squarely) continue;
+    if (i > 0 && distance(views_[i - 1].subject, view.subject) == 0.0) {
+      view.scrap = views_[i - 1].scrap;
+      continue;
+    }
+    const auto near = std::count_if(subjects.begin(), subjects.end(),
+                                    [&](const TPoint2D& q) { return distance(view.subject, q) < kNeighbours; });
+    view.scrap = kScrapCost * (1.0 - std::min(1.0, kSubjectsApart * static_cast<double>(near) / kPlenty));
+  }
 }
 
 /// Whether the scanner saw a hole in the wall that a view faces, `shut` in one of the grids, near its subject.
@@ -332,9 +357,14 @@ void FloorSearch::start_dwell(Stamp now) {
   dwell_until_ = now + (subject_.record == Record::Suspect ? kAtSuspect : config_.dwell);
 }
 
-void FloorSearch::choose_subject(Cell viewpoint) {
-  for (const View& view : views_)
-    if (view.cell == viewpoint) subject_ = {view.subject, view.faces, view.record};
+double FloorSearch::choose_subject(Cell viewpoint) {
+  double scrap = kScrapCost;
+  for (const View& view : views_) {
+    if (view.cell != viewpoint) continue;
+    subject_ = {view.subject, view.faces, view.record};
+    scrap = std::min(scrap, view.scrap);
+  }
+  return scrap;
 }
 
 /// How far around a place that could not be looked at is given up with it [m].

@@ -74,8 +74,9 @@ class FloorSearch {
   bool place_left() const { return !views_.empty(); }
   /// Whether there were faces to be looked at squarely when that was asked last, in reach or not.
   bool faces_left() const { return squarely() && faces_left_; }
-  /// Makes what can be seen from `viewpoint` the place to face.
-  void choose_subject(Cell viewpoint);
+  /// Makes what can be seen from `viewpoint` the place to face. Returns how much of its head start is no way, look or
+  /// turn but says that little else is left to be looked at around it [m].
+  double choose_subject(Cell viewpoint);
   /// Of all that can be seen from here makes that the place to face which needs the smallest turn; returns the turn
   /// [rad]; nothing when it already lies ahead.
   std::optional<double> turn_to_subject(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
@@ -104,6 +105,7 @@ class FloorSearch {
   };
   struct View : Viewpoint {
     Record record = Record::Anyhow;
+    double scrap = 0.0;  ///< what it costs more for having little to be looked at around it [m]
   };
 
   bool look_around(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
@@ -113,6 +115,7 @@ class FloorSearch {
   static auto& record_of(Search& search, Record record);
   void add_views(const std::vector<Viewpoint>& views, Record record);
   double shown(const Traversable& floor, const View& view) const;
+  void find_scraps();
   static bool beside_hole(const OccupancyGrid& cells, const OccupancyGrid& shut, const View& view);
   static bool serves(const View& view, const mrpt::math::TPose2D& T_map_base);
   void add_suspects(const Traversable& floor);

@@ -148,6 +148,33 @@ TEST(ContinuedMapper, AStartThatIsGivenIsTakenAtOnce) {
   EXPECT_LT(errors(mapper.trajectory(), second.drive.truth, first.drive.truth.front().pose).worst, 0.06);
 }
 
+/// As the drive's own map: unsettled where a correction is drawn bit by bit. Until the place is known the map shown is
+/// that of the run before, which nobody draws anew.
+TEST(ContinuedMapper, SettlesAfterACorrectionOnceThePlaceIsKnown) {
+  RobustConfig slowly;
+  slowly.budget_ms = 1.0;
+  int unsettled = 0;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const slam_test::Floor floor(seed, 3, 2);
+    const Recorded first = recorded(floor, kRound, 0.0, seed);
+    const Recorded second = recorded(floor, kElsewhere, 2.0, seed + 50);
+    ContinuedMapper mapper(RobotModel(), slowly, base(map_of(first.ticks), true));
+    for (const Inputs& tick : second.ticks) {
+      const std::uint64_t revision = mapper.revision();
+      const bool settled = mapper.settled();
+      mapper.update(tick);
+      if (figure(mapper, "place_known") == 0.0 || (settled && mapper.revision() == revision)) {
+        EXPECT_TRUE(mapper.settled());
+      }
+      if (!mapper.settled()) ++unsettled;
+    }
+    mapper.finish();
+    EXPECT_TRUE(mapper.settled());
+  }
+  EXPECT_GT(unsettled, 0);
+}
+
 /// All floors have rooms of one size in one frame: only doors and furniture tell them apart.
 TEST(ContinuedMapper, AForeignBuildingIsNotTakenForTheMap) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {

@@ -157,6 +157,20 @@ TEST(Rounds, WhatWasFeltIsForgottenForTheSakeOfGroundBehindIt) {
   EXPECT_EQ(times_forgotten(2, false), 4) << "others are, four times at most";
 }
 
+/// Before what could not be seen is looked at once more.
+TEST(Rounds, FacesOutOfReachAreAReasonToForgetAtOnce) {
+  for (const bool faces : {false, true}) {
+    Played play;
+    if (faces) play.search.expect_holes();
+    play.search.sources(play.floor, Subjects::Squarely, [](const TPoint2D&) { return std::nullopt; });
+    ASSERT_EQ(play.search.faces_left(), faces);
+    play.fail();
+    for (int k = 0; k < 3; ++k) play.feel();
+    ASSERT_TRUE(play.another());
+    EXPECT_EQ(play.left_alone.obstacles(play.now).empty(), faces);
+  }
+}
+
 TEST(Rounds, BeforeTheSearchOfAllFacesFrontiersAreTriedOnceARound) {
   Played play;
   play.fail();

@@ -173,6 +173,38 @@ TEST(TargetChoice, ALookSquarelyShowsAFootOfWallInTheMean) {
   EXPECT_GT(looks, 2 * 8.0 / 1.0);
 }
 
+/// Half a metre of wall that was left beside the robot does not keep it from the lane that nobody has looked at; but it
+/// is looked at in the end, and its way costs what it is long.
+TEST(TargetChoice, ScrapsOfWallAreLookedAtLast) {
+  Choosing robot(true);
+  robot.narrow();
+  robot.pose.x = 4.6;
+  robot.choice.set_frontiers_done();
+  robot.choice.search();
+  robot.search->expect_holes();
+  robot.view();
+  const auto look = [&](double from, double to, double heading) {
+    for (double x = from; x < to; x += 0.05)
+      for (int looks = 0; looks < 2; ++looks)
+        robot.search->look(robot.floor, {x, 0.65 - 0.25 * std::sin(heading), heading}, 0.0,
+                           robot.now = robot.now + 1.0);
+  };
+  const auto choose_place = [&] { return robot.choice.choose_of_all_places(robot.view(), *robot.search, Plan{}).plan; };
+  for (const double heading : {0.0, kPi}) look(0.4, 7.6, heading);
+  look(2.5, 7.9, -0.5 * kPi);
+  look(2.5, 4.95, 0.5 * kPi);
+  look(6.15, 7.9, 0.5 * kPi);
+  const Plan lane = choose_place();
+  ASSERT_TRUE(lane.found);
+  EXPECT_LT(lane.target.x, 3.0);
+  look(0.1, 2.5, -0.5 * kPi);
+  look(0.1, 2.5, 0.5 * kPi);
+  const Plan scrap = choose_place();
+  ASSERT_TRUE(scrap.found);
+  EXPECT_NEAR(scrap.target.x, 5.5, 0.6);
+  EXPECT_LT(scrap.cost, 5.0);
+}
+
 /// The scanner saw a hole in the wall a little farther on: that is looked into before the solid wall beside the robot.
 TEST(TargetChoice, AHoleThatWasSeenIsLookedIntoFirst) {
   for (const bool hole : {false, true}) {

@@ -67,6 +67,25 @@ TEST(Planner, LowersItsDistanceWhereNothingElseCanBeReachedButNotBelowTheFloor) 
   EXPECT_EQ(closed.frontier_left, 1u);
 }
 
+/// As near to walls as it may for what lies 2 m behind a narrow place, where the rest is 10 m dearer.
+TEST(Planner, TakesANarrowWayWhereThatSavesAsMuchAsIsAsked) {
+  OccupancyGrid cells = test::room(8.0, 1.3);
+  for (const double y : {0.0, 0.95}) test::fill(cells, 2.9, y, 3.1, y + 0.36, Occupancy::Occupied);
+  const Traversable floor = test::measured(cells);
+  const std::vector<Source> sources{{cells.cell({2.0, 0.65}), 0.0}, {cells.cell({6.0, 0.65}), 10.0}};
+  const TPose2D start{4.0, 0.65, 0.0};
+  Planner planner({});
+  const auto wide = [&](std::optional<double> detour) {
+    const Plan plan = planner.to_cells(floor, start, sources, detour);
+    EXPECT_TRUE(plan.found);
+    EXPECT_EQ(plan.target.x > 4.0, plan.d_min == kUsual) << plan.target.x << ", " << plan.d_min;
+    return plan.target.x > 4.0;
+  };
+  EXPECT_TRUE(wide(std::nullopt));
+  EXPECT_FALSE(wide(4.0));
+  EXPECT_TRUE(wide(20.0)) << "it saves less";
+}
+
 TEST(Planner, ClimbsAwayFromTheWallFirst) {
   const Traversable floor = corridor(24);
   const TPose2D at_the_wall{0.6, 0.05 * 4.5, 0.0};
