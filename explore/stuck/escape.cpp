@@ -51,6 +51,8 @@ void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures, 
     // Retracing asks for poses to a few centimetres: first what is quick and robust.
     if (round > 0 || failures > 0 || way_out_) moves_.push_back(Move::Retrace);
     std::vector<Move> tries{first};
+    // On paper a bend spins the outer wheels and lets the inner ones hold the body: with all alike it comes away.
+    if (first == Move::Back) tries.push_back(Move::StraightBack);
     // Beside a wall or the side of a box neither a turn on the spot nor straight back leads off it.
     if (failures > 0) tries.insert(tries.end(), {Move::BackLeft, Move::AheadRight, Move::BackRight, Move::AheadLeft});
     tries.insert(tries.end(), {Move::Left, first, Move::Right, Move::Right, first, last});
@@ -89,8 +91,8 @@ bool Escape::free(const TPoint2D& p_map) const {
 /// The move under way would take the body to a wall that is known.
 bool Escape::meets_wall(const TPose2D& T_map_base, const Around& around) const {
   const Move move = moves_[at_];
-  if (move == Move::Back || move == Move::Ahead)
-    return !around.room(T_map_base + TPose2D{move == Move::Back ? -kFeeler : kFeeler, 0.0, 0.0});
+  if (move == Move::Back || move == Move::StraightBack || move == Move::Ahead)
+    return !around.room(T_map_base + TPose2D{move == Move::Ahead ? kFeeler : -kFeeler, 0.0, 0.0});
   if (move != Move::Left && move != Move::Right) return false;
   const double soon = turn_speed_ * kCornerTime * (move == Move::Left ? 1.0 : -1.0);
   const double then = around.gap(T_map_base + TPose2D{0.0, 0.0, soon});
@@ -173,6 +175,8 @@ std::optional<robot::Drive> Escape::command(const TPose2D& T_map_base, const std
       return robot::Drive{0.0, -turn_speed_};
     case Move::Ahead:
       return robot::Drive{kSpeed, 0.0};
+    case Move::StraightBack:
+      return robot::Drive{-kSpeed, 0.0};
     case Move::BackLeft:
       return robot::Drive{-kArcSpeed, kArcTurn};
     case Move::BackRight:

@@ -53,7 +53,7 @@ class Escape {
   bool met() const { return met_; }
 
  private:
-  enum class Move { Back, Ahead, Left, Right, BackLeft, BackRight, AheadLeft, AheadRight, Retrace, Out };
+  enum class Move { Back, StraightBack, Ahead, Left, Right, BackLeft, BackRight, AheadLeft, AheadRight, Retrace, Out };
 
   void start_move(const mrpt::math::TPose2D& T_map_base, Stamp now);
   bool free(const mrpt::math::TPoint2D& p_map) const;

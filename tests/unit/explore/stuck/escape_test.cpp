@@ -67,6 +67,18 @@ TEST(Escape, FollowsATrailThatBends) {
   EXPECT_GT(puppet.pose.y, 0.04);
 }
 
+/// Between two edges, on paper: the inner wheels of a bend hold it.
+TEST(Escape, BacksOffStraightWhereABendIsHeld) {
+  std::vector<TPoint2D> trail;
+  for (double a = 60.0; a > 0.0; a -= 5.0) trail.push_back({-std::sin(deg_to_rad(a)), 1.0 - std::cos(deg_to_rad(a))});
+  Puppet puppet;
+  puppet.may = [](const TPose2D& pose) { return pose.phi == 0.0 && pose.x < 0.02; };
+  const Outcome outcome = run(puppet, Escape::Met::Forwards, trail, kRoom);
+  EXPECT_EQ(outcome.result, Escape::Result::Free);
+  EXPECT_LT(outcome.seconds, 8.0);
+  EXPECT_NEAR(puppet.pose.x, -0.5, 0.02);
+}
+
 TEST(Escape, TriesOtherWaysWhereTheWayBackIsHeldToo) {
   Puppet puppet;
   puppet.may = [](const TPose2D& pose) { return pose.x > -0.1; };  // a half plane behind it
