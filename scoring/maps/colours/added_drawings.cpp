@@ -15,8 +15,6 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr int kTint = 36;             // of what still counts as grey: RViz draws unknown ground in 112,137,134, and
-                                      // JPEG adds up to 10 to the difference
 constexpr double kLeastInk = 0.0005;  // of all pixels
 constexpr int kSmear = 8;             // JPEG smears colours as far [pixels]
 constexpr double kGreyRest = 0.995;   // of the pixels that are not ink or beside it
@@ -63,12 +61,12 @@ cv::Mat ink_of(const RgbImage& image) {
     cv::Mat near;
     cv::dilate(strong, near, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
     const cv::Mat rest = ~near;
-    return cv::countNonZero(rest & (tint <= kTint)) >= kGreyRest * cv::countNonZero(rest);
+    return cv::countNonZero(rest & (tint <= kMostTint)) >= kGreyRest * cv::countNonZero(rest);
   };
   if (!is_grey_beyond(1) && !is_grey_beyond(kSmear)) return {};
   cv::Mat beside;
   cv::dilate(strong, beside, cv::Mat::ones(3, 3, CV_8U));
-  return strong | (beside & (tint > kTint));
+  return strong | (beside & (tint > kMostTint));
 }
 
 /// The walls of the greys beside `ink`; empty where these are not thin.

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "scoring/maps/colours/grey_levels.h"
 #include "scoring/maps/colours/half_width.h"
 #include "scoring/maps/colours/lossy_colours.h"
 #include "scoring/maps/colours/nearest_ground.h"
@@ -21,7 +22,6 @@ constexpr int kOneColour = 24;           // a channel of pixels of one area: a b
 constexpr float kSameArea = 28.0F;       // the same, noise with it
 constexpr double kLeastArea = 0.004;     // of the picture
 constexpr std::size_t kMostAreas = 24;   // colours
-constexpr int kColouredGround = 30;      // difference of its channels; RViz draws unknown ground in 112,137,134
 constexpr double kLeastColoured = 0.12;  // of the picture: less is drawn on a map of greys
 constexpr double kMostEven = 0.5;        // of the picture, at the least, are even areas
 constexpr int kBlends = 3;               // pixels that blend two grounds: edges drawn twice as large have two or three
@@ -348,8 +348,7 @@ std::optional<GreyedAreas> greys_of_coloured_areas(const RgbImage& image, const 
   areas.label = areas_of(colours, grounds);
   areas.label.setTo(kLine, apart);
   for (std::size_t i = 0; i < grounds.size(); ++i)
-    if (spread_of_channels(grounds[i]) >= kColouredGround)
-      coloured += cv::countNonZero(areas.label == static_cast<int>(i));
+    if (spread_of_channels(grounds[i]) > kMostTint) coloured += cv::countNonZero(areas.label == static_cast<int>(i));
   if (coloured < kLeastColoured * pixels) return std::nullopt;
   for (const cv::Vec3f& ground : grounds) areas.tones.push_back(tone_of(ground, areas.colour_weight));
   const cv::Mat lines = lines_between(colours, areas, apart);

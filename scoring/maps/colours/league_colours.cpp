@@ -14,6 +14,7 @@
 
 #include "scoring/maps/colours/checkerboard.h"
 #include "scoring/maps/colours/colour_strength.h"
+#include "scoring/maps/colours/grey_levels.h"
 #include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/colours/league_pixels.h"
 #include "scoring/maps/colours/lossy_colours.h"
@@ -233,7 +234,6 @@ bool has_even_ground(const RgbImage& image) {
 /// the middle of the values in squares of some pixels: lines and noise have no say.
 bool is_covered_with_strange_colours(const RgbImage& image) {
   constexpr int kSquare = 6, kEvery = 12;  // [pixels]: a quarter of the picture is asked
-  constexpr int kColoured = 30;            // difference of the channels; RViz's unknown ground has 25
   constexpr int kOneIn = 4;                // squares; drawings cover less
   int strange = 0, all = 0;
   for (int top = 0; top + kSquare <= image.height; top += kEvery)
@@ -250,7 +250,7 @@ bool is_covered_with_strange_colours(const RgbImage& image) {
       const auto [low, high] = std::minmax({middle[0], middle[1], middle[2]});
       const bool green = middle[1] >= std::max(middle[0], middle[2]) + 15 && std::abs(middle[0] - middle[2]) <= 25;
       ++all;
-      if (high - low >= kColoured && !green) ++strange;
+      if (high - low > kMostTint && !green) ++strange;
     }
   return all > 0 && kOneIn * strange >= all;
 }

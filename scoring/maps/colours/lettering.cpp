@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/grid.h"
+#include "scoring/maps/colours/cell_lattice.h"
 
 namespace rubble::scoring {
 namespace {
@@ -31,13 +32,19 @@ struct Rules {
   double thickest_pen = 0.0;  ///< that any letter may have, however low it is [pixels]
   double many_strokes = 2.7;  ///< crossed by a row and a column together, in the mean: one wall 2, corners 2
   bool joined = false;        ///< letters may run into each other
+  bool drawn_over = false;    ///< only what no cells of the map make up
 };
 
 constexpr Rules kSurely{};
+/// Share of its edges that no cell of the map has, to be drawn over a map whose cells are squares of pixels. Pens of a
+/// pixel have half of them and more there, walls none; blending and JPEG move some.
+constexpr double kDrawnOver = 0.25;
 /// Letters: those of eight words in a pen of one pixel, 5 to 15 pixels high, sharp and smooth, as they are and through
 /// JPEG of qualities 90 and 70. Their strokes are 1 to 2.5 pixels thick (up to 3.6 where they join), a quarter is
 /// crossed less than 2.4 times. Ragged walls fall into pieces like that, half of them crossed 2.7 times and more.
 constexpr Rules kPerhaps{5, 3.0, 2.5, true};
+/// The same of what is finer than the map's cells: no wall is.
+constexpr Rules kDrawnOverCells{5, 3.0, 2.5, true, true};
 // Share of what looks like letters that stands in words: of words alone nearly always 1, of ragged walls up to 0.16.
 constexpr double kLeastOfPieces = 0.4;
 constexpr double kWidestRun = 8.0;     // heights, of letters that run into each other; those of a short word have 3
@@ -195,18 +202,38 @@ int letters_in(const std::vector<Piece>& pieces) {
                          [](int sum, const Piece& p) { return sum + static_cast<int>(p.letters); });
 }
 
+/// Share of the piece's edges that no cell has.
+double share_off(const CellLattice& lattice, const cv::Mat& labels, const cv::Rect& box, int label) {
+  int all = 0, off = 0;
+  for (int y = box.y; y <= box.br().y; ++y)
+    for (int x = box.x; x <= box.br().x; ++x) {
+      const auto is_of_it = [&](int v, int u) {
+        return v < labels.rows && u < labels.cols && v >= 0 && u >= 0 && labels.at<int>(v, u) == label;
+      };
+      const bool here = is_of_it(y, x);
+      const bool beside = here != is_of_it(y, x - 1), above = here != is_of_it(y - 1, x);
+      all += (beside ? 1 : 0) + (above ? 1 : 0);
+      off += (beside && !lattice.has_column(x) ? 1 : 0) + (above && !lattice.has_row(y) ? 1 : 0);
+    }
+  return all == 0 ? 0.0 : static_cast<double>(off) / all;
+}
+
 /// Words along the rows: `found` is told each and how many letters it seems to have. Returns how many letters there
 /// seem to be, in words or not.
 template <class Found>
-int find_in_rows(const cv::Mat& classes, const Rules& rules, const Found& found) {
+int find_in_rows(const cv::Mat& classes, const CellLattice& lattice, const Rules& rules, const Found& found) {
   cv::Mat labels, stats, centres;
-  const int count = cv::connectedComponentsWithStats(classes == static_cast<int>(Occupancy::Occupied), labels, stats,
-                                                     centres, 8, CV_32S);
+  const cv::Mat walls = classes == static_cast<int>(Occupancy::Occupied);
+  const int count = cv::connectedComponentsWithStats(walls, labels, stats, centres, 8, CV_32S);
   std::vector<Piece> letters;
   for (int i = 1; i < count; ++i) {
     const cv::Rect box = box_of(stats, i);
     const double widest = rules.joined ? kWidestRun : kWidestLetter;
     if (box.height < rules.least_height || box.height > kMostHeight || box.width > widest * box.height) continue;
+    // Ragged walls fall into pieces as low as letters, but of whole cells.
+    const bool may_be_cells =
+        lattice.pixels > 1 && (rules.drawn_over || box.height < rules.least_height * lattice.pixels);
+    if (may_be_cells && share_off(lattice, labels, box, i) < kDrawnOver) continue;
     const int area = stats.at<int>(i, cv::CC_STAT_AREA);
     const Piece piece = piece_of(labels, box, i, area, rules);
     if (may_be_letter(piece, area, rules)) letters.push_back(piece);
@@ -221,12 +248,64 @@ int find_in_rows(const cv::Mat& classes, const Rules& rules, const Found& found)
   return letters_in(letters);
 }
 
-int erase_rows(cv::Mat& classes) {
+cv::Mat walls_of(const cv::Mat& classes) { return classes == static_cast<int>(Occupancy::Occupied); }
+
+/// The same lattice in the picture turned clockwise.
+CellLattice turned_right(const CellLattice& lattice, int rows) {
+  return {lattice.pixels, (rows - lattice.top) % lattice.pixels, lattice.left};
+}
+
+/// Runs of `of` (CV_8U) that a row and a column of it cross, in the mean.
+double crossed_by(const cv::Mat& of) {
+  const auto runs_a_row = [](const cv::Mat& m) {
+    int out = 0;
+    for (int y = 0; y < m.rows; ++y) {
+      const unsigned char* const row = m.ptr<unsigned char>(y);
+      for (int x = 0; x < m.cols; ++x) out += row[x] != 0 && (x == 0 || row[x - 1] == 0) ? 1 : 0;
+    }
+    return static_cast<double>(out) / std::max(1, m.rows);
+  };
+  return runs_a_row(of) + runs_a_row(of.t());
+}
+
+/// Places where many edges near each other are of no cell, and cross rows and columns more often than single lines do.
+int drawn_over(const cv::Mat& walls, const CellLattice& lattice) {
+  constexpr int kNear = 7;     // [pixels]
+  constexpr int kFewest = 20;  // edges
+  // Edges that a row and a column cross, in the mean, the fewer of them and the more: of words mostly 1.35 and 4.2 and
+  // more, of lines askew 2 and 2, where JPEG moved the edges of walls the fewer 1.0 at the most.
+  constexpr double kFewer = 1.2, kMore = 3.8;
+  const cv::Mat off = edges_off(lattice, walls);
+  cv::Mat near, labels, stats, centres;
+  cv::dilate(off > 0, near, cv::Mat::ones(kNear, kNear, CV_8U));
+  const int count = cv::connectedComponentsWithStats(near, labels, stats, centres, 8, CV_32S);
+  int places = 0;
+  for (int i = 1; i < count; ++i) {
+    const cv::Rect box = box_of(stats, i);
+    if (std::min(box.width, box.height) > kMostHeight + kNear) continue;
+    const cv::Mat own = labels(box) == i;
+    const auto inner = [](const cv::Mat& m) {
+      return m(cv::Rect(kNear / 2, kNear / 2, m.cols - kNear + 1, m.rows - kNear + 1));
+    };
+    cv::Mat edges;
+    off(box).copyTo(edges, own);
+    const double all = cv::sum(edges)[0];
+    const double in_row = all / (box.height - kNear + 1), in_column = all / (box.width - kNear + 1);
+    if (all >= kFewest && std::min(in_row, in_column) >= kFewer && std::max(in_row, in_column) >= kMore &&
+        crossed_by(inner(walls(box) & own)) >= kStrokesOfRun)
+      ++places;
+  }
+  return places;
+}
+
+int erase_rows(cv::Mat& classes, const CellLattice& lattice) {
   int erased = 0;
-  find_in_rows(classes, kSurely, [&](const Written& word, int) {
+  const auto erase = [&](const Written& word, int) {
     classes(word.box).setTo(static_cast<int>(Occupancy::Free));
     erased += static_cast<int>(word.labels.size());
-  });
+  };
+  find_in_rows(classes, lattice, kSurely, erase);
+  if (lattice.pixels > 1) find_in_rows(classes, lattice, kDrawnOverCells, erase);
   return erased;
 }
 
@@ -234,20 +313,23 @@ int erase_rows(cv::Mat& classes) {
 
 int erase_lettering(cv::Mat& classes) {
   if (classes.empty()) return 0;
-  int erased = erase_rows(classes);
+  const CellLattice lattice = cell_lattice(walls_of(classes));
+  int erased = erase_rows(classes, lattice);
   cv::Mat turned;
   cv::rotate(classes, turned, cv::ROTATE_90_CLOCKWISE);
-  const int upright = erase_rows(turned);
+  const int upright = erase_rows(turned, turned_right(lattice, classes.rows));
   if (upright > 0) cv::rotate(turned, classes, cv::ROTATE_90_COUNTERCLOCKWISE);
   return erased + upright;
 }
 
 int perhaps_words(const cv::Mat& classes) {
   if (classes.empty()) return 0;
+  const CellLattice lattice = cell_lattice(walls_of(classes));
+  if (lattice.pixels > 1) return drawn_over(walls_of(classes), lattice);
   int words = 0;
   const auto in_rows_of = [&words](const cv::Mat& of) {
     int here = 0, letters = 0;
-    const int all = find_in_rows(of, kPerhaps, [&](const Written&, int in_word) {
+    const int all = find_in_rows(of, {}, kPerhaps, [&](const Written&, int in_word) {
       ++here;
       letters += in_word;
     });

@@ -4,6 +4,7 @@
 
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -112,6 +113,42 @@ TEST(Lettering, WallsBlocksAndNoiseStay) {
       untouched(moved(truth, 0.3 + 0.1 * static_cast<double>(seed), 0.0, 0.0), ground.name() + " turned");
       untouched(moved(truth, 0.0, 0.0, 0.0, 0.02), ground.name() + " fine");
     }
+}
+
+cv::Mat larger(const cv::Mat& classes, int pixels) {
+  cv::Mat out;
+  cv::resize(classes, out, {}, pixels, pixels, cv::INTER_NEAREST);
+  return out;
+}
+
+/// Pieces of ragged walls are as high as letters there, but of whole cells.
+TEST(Lettering, RaggedWallsStayAlsoWhereEachCellIsASquareOfPixels) {
+  for (const auto& [kind, columns, seed] : std::vector<std::tuple<const char*, int, std::uint64_t>>{
+           {"maze", 5, 25}, {"yellow", 5, 29}, {"maze", 5, 39}, {"maze", 7, 50}, {"maze", 5, 57}, {"maze", 7, 106}})
+    for (const int pixels : {2, 3, 4}) {
+      const Ground ground{kind, columns, 6, seed};
+      cv::Mat map = larger(classes_of(ragged(truth_of(ground), 1, seed + 1)), pixels);
+      EXPECT_EQ(erase_lettering(map), 0) << ground.name() << ", " << pixels << " pixels a cell";
+    }
+}
+
+/// In a pen finer than the cells, over walls of any kind: it goes, or what is left of it is told.
+TEST(Lettering, WordsFinerThanTheCellsGoOrAreTold) {
+  for (const std::uint64_t seed : {401U, 402U, 403U})
+    for (const bool worn : {false, true})
+      for (const int pixels : {2, 3}) {
+        SCOPED_TRACE(::testing::Message() << "seed " << seed << (worn ? ", ragged, " : ", ") << pixels << " pixels");
+        const OccupancyGrid truth = truth_of({"maze", 6, 6, seed});
+        const cv::Mat before = larger(classes_of(worn ? ragged(truth, 1, seed) : truth), pixels);
+        EXPECT_EQ(perhaps_words(before), 0);
+        for (const char* words : {"EXIT", "kitchen", "Lab 4", "goal"}) {
+          cv::Mat map =
+              with_words(before.clone(), words, pixels * cv::Point(38, 46), cv::FONT_HERSHEY_SIMPLEX, 0.17 * pixels, 1);
+          ASSERT_GT(cv::countNonZero(map != before), 0);
+          erase_lettering(map);
+          EXPECT_TRUE(cv::countNonZero(map != before) == 0 || perhaps_words(map) > 0) << words;
+        }
+      }
 }
 
 }  // namespace
