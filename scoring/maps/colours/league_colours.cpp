@@ -178,11 +178,24 @@ std::optional<RestoredColours> with_sharp_lines(const RgbImage& image) {
   return RestoredColours{without_blur(image, blur), cv::format("had been blurred (by %.1f pixels)", blur.sigma), blur};
 }
 
+/// How to say that colours were `by` times as strong. Strength leaves greys alone: where the squares of the
+/// checkerboard have moved it was all tones that were changed, which makes colours of lines stronger or paler as well.
+std::string told_of_strength(double by, const Rgb& darker) {
+  constexpr int kMoved = 2;  // more than rounding and JPEG move them
+  const double was = league::kUnexplored[1], now = darker[1];
+  if (std::abs(now - was) <= kMoved || now <= 0.0 || now >= 255.0)
+    return cv::format("colours had been made stronger (%.2g times)", by);
+  return cv::format("tones had been changed (as by a gamma of %.2g), which made colours %.2g times as strong",
+                    std::log(now / 255.0) / std::log(was / 255.0), by);
+}
+
 std::optional<RestoredColours> with_paler_colours(const RgbImage& image) {
   const double by = colour_strength(image);
-  if (by == 1.0 || !find_checkerboard(image).is_there()) return std::nullopt;
+  if (by == 1.0) return std::nullopt;
+  const Checkerboard board = find_checkerboard(image);
+  if (!board.is_there()) return std::nullopt;
   return RestoredColours{recoloured(image, [by](const Rgb& c) { return before_strengthening(c, by); }),
-                         cv::format("colours had been made stronger (%.2g times)", by)};
+                         told_of_strength(by, board.darker)};
 }
 
 /// More than lines of it are coloured: maps of greys may have walls that look like squares.
@@ -287,6 +300,11 @@ bool is_grey_league_map(const RgbImage& image) {
 std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
   const Census as_is = census(image);
   if (as_is.exact() && as_is.pure_walls > 0) return std::nullopt;
+  // Greys alone have a curve to the squares and white of the league wherever they were blended. A curve that makes of
+  // the league's colours those of the picture to the digit says more than how strong one of them is, which it changes.
+  const bool squares_moved = kOneOfSquares * std::min(as_is.darker, as_is.checkerboard - as_is.darker) < as_is.pixels;
+  if (!as_is.exact() && squares_moved && has_colour(image))
+    if (auto restored = with_tones_of_old(image)) return restored;
   if (auto restored = with_paler_colours(image)) return restored;
   if (as_is.exact()) return std::nullopt;
   if (auto restored = with_sharp_lines(image)) return restored;
@@ -299,9 +317,6 @@ std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
   };
   if (is_unchanged(census_of(image, inverted)))
     return RestoredColours{recoloured(image, inverted), "colours were inverted", {}, true};
-  // Greys alone have a curve to the squares and white of the league wherever they were blended.
-  if (has_colour(image) && kOneOfSquares * std::min(as_is.darker, as_is.checkerboard - as_is.darker) < as_is.pixels)
-    if (auto restored = with_tones_of_old(image)) return restored;
   const int white = dimmed_white(image);
   if (white == 255) return std::nullopt;
   const auto brightened = [white](const Rgb& c) {

@@ -84,6 +84,23 @@ TEST(ReadingDoubts, AnExactPictureInFewColoursIsNotDoubtedForALineOfItsOwnOrACha
   EXPECT_THAT(said_of(gamma), HasSubstr("tones had been changed"));
 }
 
+/// A gamma makes colours stronger, too, but moves the greys: strength does not.
+TEST(ReadingDoubts, AGammaIsNotTakenForStrongerColours) {
+  const cv::Mat league = league_image(arena(), true);
+  for (const double power : {0.6, 0.7, 0.8, 0.9})
+    for (const bool own_palette : {false, true}) {
+      SCOPED_TRACE(::testing::Message() << power << (own_palette ? ", own palette" : ""));
+      cv::Mat picture, curve(1, 256, CV_8U);
+      for (int value = 0; value < 256; ++value)
+        curve.at<unsigned char>(value) = cv::saturate_cast<unsigned char>(255.0 * std::pow(value / 255.0, power));
+      cv::LUT(own_palette ? with_own_palette(league, 8) : league, curve, picture);
+      const std::string said = said_of(picture);
+      EXPECT_THAT(said, HasSubstr("tones had been changed"));
+      EXPECT_THAT(said, Not(HasSubstr("stronger")));
+      EXPECT_EQ(said.find(kDoubt) != std::string::npos, own_palette);
+    }
+}
+
 TEST(ReadingDoubts, LowWordsAreNamedAndRaggedWallsAreNot) {
   const OccupancyGrid map = arena();
   cv::Mat named = in_ros_greys(map, 2);
