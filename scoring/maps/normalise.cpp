@@ -215,7 +215,8 @@ LoadedMap load_map(const std::string& path, const LoadOptions& options) {
   if (extension != ".yaml" && extension != ".yml") return load_image(path, options);
   LoadedMap out;
   out.origin = MapOrigin::Ros;
-  out.grid = read_ros_map(path);
+  RosMap ros = read_ros_map(path);
+  out.grid = std::move(ros.grid);
   if (options.resolution && options.overrides) {
     check_resolution(path, *options.resolution);
     GridFrame frame = out.grid.frame();
@@ -223,7 +224,8 @@ LoadedMap load_map(const std::string& path, const LoadOptions& options) {
     out.grid = with_frame(out.grid, frame);
   }
   out.recognised =
-      cv::format("ROS map %g m a pixel, %d x %d", out.grid.resolution(), out.grid.width(), out.grid.height());
+      cv::format("ROS map %g m a pixel, %d x %d", out.grid.resolution(), out.grid.width(), out.grid.height()) +
+      ros.recognised;
   read_as_drawing(out);
   return out;
 }

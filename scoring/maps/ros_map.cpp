@@ -1,11 +1,15 @@
 #include "scoring/maps/ros_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -15,9 +19,12 @@
 #include "base/text/text_file.h"
 #include "base/text/words.h"
 #include "base/yaml/strict_yaml.h"
+#include "scoring/maps/colours/grey_levels.h"
 #include "scoring/maps/colours/league_colours.h"
 #include "scoring/maps/colours/league_palette.h"
+#include "scoring/maps/colours/lettering.h"
 #include "scoring/maps/colours/map_colours.h"
+#include "scoring/maps/colours/reading_doubts.h"
 #include "scoring/maps/known_box.h"
 #include "scoring/maps/raster_image.h"
 
@@ -39,6 +46,18 @@ RichTiff upright_tiff(const std::string& path) {
   return out;
 }
 
+/// Its channels in the order that they have.
+RgbImage rgb_of(const cv::Mat& raster) {
+  RgbImage out(raster.cols, raster.rows);
+  const int channels = raster.channels();
+  for (int y = 0; y < raster.rows; ++y) {
+    const unsigned char* p = raster.ptr<unsigned char>(y);
+    for (int x = 0; x < raster.cols; ++x, p += channels)
+      for (int i = 0; i < 3; ++i) out.pixel(x, y)[i] = p[channels >= 3 ? i : 0];
+  }
+  return out;
+}
+
 /// With a fourth channel where there is opacity.
 cv::Mat raster_of(const RgbImage& image) {
   cv::Mat out(image.height, image.width, image.alpha.empty() ? CV_8UC3 : CV_8UC4);
@@ -52,9 +71,63 @@ cv::Mat raster_of(const RgbImage& image) {
   return out;
 }
 
+/// The greys of a picture that the thresholds took for free ground, each of which covers much of it.
+std::vector<int> broad_greys_of_free(const cv::Mat& grey, const cv::Mat& classes) {
+  constexpr int kOneIn = 20;  // pixels
+  std::array<int, 256> count{};
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x)
+      if (classes.at<unsigned char>(y, x) == static_cast<unsigned char>(Occupancy::Free))
+        ++count[grey.at<unsigned char>(y, x)];
+  std::vector<int> out;
+  for (int level = 0; level < 256; ++level)
+    if (kOneIn * static_cast<std::size_t>(count[static_cast<std::size_t>(level)]) >= grey.total()) out.push_back(level);
+  return out;
+}
+
+/// Samples from 0 to 100 and 255 alone, and more at 0 than near 100: per cent occupied, with unknown ground at 255.
+bool looks_like_per_cent(const cv::Mat& grey) {
+  constexpr int kSure = 66;
+  constexpr int kOneIn = 20;  // pixels that are free
+  const int free = cv::countNonZero(grey == 0), likely = cv::countNonZero((grey >= kSure) & (grey <= 100));
+  return cv::countNonZero((grey > 100) & (grey < 255)) == 0 && likely > 0 && free > likely &&
+         kOneIn * static_cast<std::size_t>(free) >= grey.total();
+}
+
+/// What of the picture does not fit the classes that the yaml makes of it: thresholds and mode of another program, or a
+/// picture that is more than a map. The class of each pixel is the yaml's word; it is not judged by what greys mean.
+std::string doubts_of(const cv::Mat& raster, const OccupancyGrid& grid, const std::string& mode) {
+  constexpr int kApart = 20;               // greys of two grounds
+  constexpr std::size_t kMost = 40000000;  // pixels: larger ones would take more memory than is promised
+  if (raster.total() > kMost) return "";
+  cv::Mat classes(grid.height(), grid.width(), CV_8U);
+  for (int y = 0; y < classes.rows; ++y)
+    for (int x = 0; x < classes.cols; ++x)
+      classes.at<unsigned char>(y, x) = static_cast<unsigned char>(grid[{x, classes.rows - 1 - y}]);
+  const auto has = [&](Occupancy o) { return cv::countNonZero(classes == static_cast<int>(o)) > 0; };
+  std::string out;
+  for (const auto& [what, name] : {std::pair{Occupancy::Occupied, "occupied"}, {Occupancy::Free, "free"}})
+    if (!has(what))
+      out += std::string(kDoubt) + "nothing of it is " + name + " by the yaml (mode " + mode +
+             ", negate, thresholds): does it belong to this picture?";
+  const RgbImage image = rgb_of(raster);
+  const cv::Mat grey = grey_of(image);
+  if (const std::vector<int> free = broad_greys_of_free(grey, classes);
+      mode == "trinary" && !has(Occupancy::Unknown) && free.size() > 1 && free.back() - free.front() >= kApart)
+    out += cv::format(
+        "%sgreys %d and %d are both free by free_thresh, and nothing is unknown: programs save unknown "
+        "ground as 205, which needs a free_thresh of 0.196",
+        kDoubt, free.front(), free.back());
+  if (mode != "raw" && looks_like_per_cent(grey))
+    out += std::string(kDoubt) + "its samples are 0 to 100 and 255, as per cent occupied have them: is it of mode raw?";
+  if (erase_lettering(classes) > 0)
+    out += std::string(kDoubt) + "words stand on free ground: by the yaml they are walls";
+  return out + doubts_about(image, image, {classes, false, true});
+}
+
 }  // namespace
 
-OccupancyGrid read_ros_map(const std::string& yaml_path) {
+RosMap read_ros_map(const std::string& yaml_path) {
   const YamlMap root = YamlMap::load(yaml_path);
   if (!root.has("image") && (root.has("maze") || root.has("walls")))
     throw InputError(yaml_path + ": is an arena, not a map; 'rubble arena " + shell_word(yaml_path) +
@@ -92,8 +165,10 @@ OccupancyGrid read_ros_map(const std::string& yaml_path) {
     const RgbImage& coloured = is_tiff ? tiff.tiff.image : read;
     if (!tiff.notes.meaning.empty() || is_league_map(coloured)) {
       image.release();  // of the largest pictures one copy is enough
-      grid.cells() = classify(coloured, tiff.notes).classes.cells();
-      return grid;
+      ClassImage read = classify(coloured, tiff.notes);
+      if (!read.refusal.empty()) throw InputError(image_path.string() + ": " + read.refusal);
+      grid.cells() = std::move(read.classes.cells());
+      return {std::move(grid), ", " + read.recognised};
     }
   }
   const int channels = image.channels();
@@ -122,7 +197,8 @@ OccupancyGrid read_ros_map(const std::string& yaml_path) {
         grid[{x, y}] = Occupancy::Free;
     }
   }
-  return grid;
+  std::string recognised = (mode == "trinary" ? "" : ", " + mode) + doubts_of(image, grid, mode);
+  return {std::move(grid), std::move(recognised)};
 }
 
 void write_ros_map(const std::string& stem, const OccupancyGrid& grid, double occupied_threshold) {

@@ -6,10 +6,16 @@
 
 namespace rubble::scoring {
 
+struct RosMap {
+  OccupancyGrid grid;
+  std::string recognised;  ///< how it was read and what is doubtful (colours/reading_doubts.h), ", " before each
+};
+
 /// Reads a ROS map: YAML with image, resolution, origin, negate, occupied_thresh, free_thresh, mode (map_server's
 /// rules), and the image beside it; one in league colours is read by these, not by the thresholds. Transparent pixels
-/// are unknown. The yaw of the origin does not turn the grid. Throws InputError with file and line.
-OccupancyGrid read_ros_map(const std::string& yaml_path);
+/// are unknown. The yaw of the origin does not turn the grid. Throws InputError with file and line, or with what the
+/// picture is instead of a map.
+RosMap read_ros_map(const std::string& yaml_path);
 
 /// Writes `stem`.pgm and `stem`.yaml as ROS map_server reads them, cropped to the known area. Throws RunError.
 void write_ros_map(const std::string& stem, const OccupancyGrid& grid, double occupied_threshold);

@@ -8,12 +8,16 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/angle.h"
 #include "base/error.h"
 #include "base/image/geotiff.h"
 #include "scoring/maps/colours/lossy_colours.h"
 #include "scoring/maps/colours/map_colours.h"
+#include "scoring/maps/colours/reading_doubts.h"
 #include "scoring/scorecard.h"
 #include "tests/support/long_suite.h"
 #include "tests/support/map_pictures.h"
@@ -56,6 +60,46 @@ TEST_F(LoadMap, RosMapKeepsClassesScaleAndOrigin) {
   EXPECT_EQ(map.grid.frame(), grid.frame());
   EXPECT_EQ(agreement(map.grid, grid), 1.0);
   EXPECT_THAT(map.recognised, ::testing::HasSubstr("ROS map"));
+}
+
+/// A picture and the yaml beside it: what they say of each other.
+TEST_F(LoadMap, RosMapsAreDoubtedWhereYamlAndPictureDoNotFit) {
+  const OccupancyGrid grid = padded(maze({4, 3, 1}), 12);
+  const cv::Mat usual = grey_image(grid, 0, 205, 254), per_cent = grey_image(grid, 100, 255, 0);
+  const auto said_of = [&](const cv::Mat& picture, const std::string& more) {
+    cv::imwrite(path("map.pgm"), picture);
+    text("map.yaml", "image: map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n" + more);
+    return load_map(path("map.yaml")).recognised;
+  };
+  for (const auto& [picture, more] : std::vector<std::pair<cv::Mat, std::string>>{
+           {usual, ""}, {usual, "mode: scale\n"}, {~usual, "negate: 1\n"}, {per_cent, "mode: raw\n"}})
+    EXPECT_THAT(said_of(picture, more), ::testing::Not(::testing::HasSubstr(kDoubt))) << more;
+  EXPECT_THAT(said_of(per_cent, "mode: raw\n"), ::testing::HasSubstr(", raw"));
+  EXPECT_THAT(said_of(usual, "free_thresh: 0.25\n"), ::testing::HasSubstr("greys 205 and 254 are both free"));
+  EXPECT_THAT(said_of(usual, "mode: raw\n"), ::testing::HasSubstr("nothing of it is occupied"));
+  EXPECT_THAT(said_of(usual, "negate: 1\n"), ::testing::HasSubstr("areas and not lines"));
+  EXPECT_THAT(said_of(per_cent, ""), ::testing::HasSubstr("is it of mode raw?"));
+
+  cv::Mat blurred, named, larger;
+  cv::GaussianBlur(grey_image(grid, 0, 128, 254), blurred, {}, 3.0);
+  for (const char* mode : {"trinary", "scale"})
+    EXPECT_THAT(said_of(blurred, "mode: " + std::string(mode) + "\n"), ::testing::HasSubstr("run into each other"));
+  cv::resize(usual, larger, {}, 3, 3, cv::INTER_NEAREST);
+  named = larger.clone();
+  cv::putText(named, "EXIT", {3 * 40, 3 * 30}, cv::FONT_HERSHEY_SIMPLEX, 0.5, cv::Scalar(0), 1, cv::LINE_AA);
+  EXPECT_THAT(said_of(larger, ""), ::testing::Not(::testing::HasSubstr(kDoubt)));
+  EXPECT_THAT(said_of(named, ""),
+              ::testing::AnyOf(::testing::HasSubstr("words stand on free ground"), ::testing::HasSubstr("as letters")));
+}
+
+/// One in league colours is read by these, and says so.
+TEST_F(LoadMap, RosMapInLeagueColoursSaysWhatWasRecognised) {
+  const OccupancyGrid grid = padded(maze({4, 3, 1}), 12);
+  cv::imwrite(path("map.png"), league_image(grid, false));
+  text("map.yaml", "image: map.png\nresolution: 0.05\norigin: [0, 0, 0]\n");
+  const LoadedMap map = load_map(path("map.yaml"));
+  EXPECT_EQ(agreement(map.grid, grid), 1.0);
+  EXPECT_THAT(map.recognised, ::testing::HasSubstr(", league colours"));
 }
 
 TEST_F(LoadMap, RosMapMayNameATiff) {
