@@ -45,7 +45,8 @@ constexpr double kDrawnOver = 0.25;
 constexpr Rules kPerhaps{5, 3.0, 2.5, true};
 /// The same of what is finer than the map's cells: no wall is.
 constexpr Rules kDrawnOverCells{5, 3.0, 2.5, true, true};
-// Share of what looks like letters that stands in words: of words alone nearly always 1, of ragged walls up to 0.16.
+// Share of what looks like letters, or of edges of no cell, that stands in words: of words alone nearly always 1, of
+// ragged walls up to 0.16.
 constexpr double kLeastOfPieces = 0.4;
 constexpr double kWidestRun = 8.0;     // heights, of letters that run into each other; those of a short word have 3
 constexpr double kLetterWidth = 0.75;  // heights, with what is between it and the next: two that are joined have 1.5
@@ -248,12 +249,12 @@ int find_in_rows(const cv::Mat& classes, const CellLattice& lattice, const Rules
   return letters_in(letters);
 }
 
-cv::Mat walls_of(const cv::Mat& classes) { return classes == static_cast<int>(Occupancy::Occupied); }
-
 /// The same lattice in the picture turned clockwise.
 CellLattice turned_right(const CellLattice& lattice, int rows) {
   return {lattice.pixels, (rows - lattice.top) % lattice.pixels, lattice.left};
 }
+
+cv::Mat walls_of(const cv::Mat& classes) { return classes == static_cast<int>(Occupancy::Occupied); }
 
 /// Runs of `of` (CV_8U) that a row and a column of it cross, in the mean.
 double crossed_by(const cv::Mat& of) {
@@ -268,8 +269,10 @@ double crossed_by(const cv::Mat& of) {
   return runs_a_row(of) + runs_a_row(of.t());
 }
 
-/// Places where many edges near each other are of no cell, and cross rows and columns more often than single lines do.
-int drawn_over(const cv::Mat& walls, const CellLattice& lattice) {
+/// Places on free ground where many edges near each other are of no cell, and cross rows and columns more often than
+/// single lines do.
+int drawn_over(const cv::Mat& classes, const CellLattice& lattice) {
+  const cv::Mat walls = walls_of(classes);
   constexpr int kNear = 7;     // [pixels]
   constexpr int kFewest = 20;  // edges
   // Edges that a row and a column cross, in the mean, the fewer of them and the more: of words mostly 1.35 and 4.2 and
@@ -280,22 +283,29 @@ int drawn_over(const cv::Mat& walls, const CellLattice& lattice) {
   cv::dilate(off > 0, near, cv::Mat::ones(kNear, kNear, CV_8U));
   const int count = cv::connectedComponentsWithStats(near, labels, stats, centres, 8, CV_32S);
   int places = 0;
+  double edges_of_places = 0.0, edges_of_all = 0.0;
   for (int i = 1; i < count; ++i) {
     const cv::Rect box = box_of(stats, i);
-    if (std::min(box.width, box.height) > kMostHeight + kNear) continue;
     const cv::Mat own = labels(box) == i;
+    const auto ground = [&](Occupancy o) { return cv::countNonZero(own & (classes(box) == static_cast<int>(o))); };
+    if (ground(Occupancy::Unknown) > ground(Occupancy::Free)) continue;  // costs nothing there
     const auto inner = [](const cv::Mat& m) {
       return m(cv::Rect(kNear / 2, kNear / 2, m.cols - kNear + 1, m.rows - kNear + 1));
     };
     cv::Mat edges;
     off(box).copyTo(edges, own);
     const double all = cv::sum(edges)[0];
+    edges_of_all += all;
+    const int low = std::min(box.width, box.height);
+    if (low <= kNear || low > kMostHeight + kNear) continue;
     const double in_row = all / (box.height - kNear + 1), in_column = all / (box.width - kNear + 1);
     if (all >= kFewest && std::min(in_row, in_column) >= kFewer && std::max(in_row, in_column) >= kMore &&
-        crossed_by(inner(walls(box) & own)) >= kStrokesOfRun)
+        crossed_by(inner(walls(box) & own)) >= kStrokesOfRun) {
       ++places;
+      edges_of_places += all;
+    }
   }
-  return places;
+  return edges_of_places >= kLeastOfPieces * edges_of_all ? places : 0;
 }
 
 int erase_rows(cv::Mat& classes, const CellLattice& lattice) {
@@ -325,7 +335,7 @@ int erase_lettering(cv::Mat& classes) {
 int perhaps_words(const cv::Mat& classes) {
   if (classes.empty()) return 0;
   const CellLattice lattice = cell_lattice(walls_of(classes));
-  if (lattice.pixels > 1) return drawn_over(walls_of(classes), lattice);
+  if (lattice.pixels > 1) return drawn_over(classes, lattice);
   int words = 0;
   const auto in_rows_of = [&words](const cv::Mat& of) {
     int here = 0, letters = 0;

@@ -9,6 +9,7 @@
 #include "scoring/maps/colours/added_drawings.h"
 #include "scoring/maps/colours/canvas_corners.h"
 #include "scoring/maps/colours/coloured_areas.h"
+#include "scoring/maps/colours/costmap_colours.h"
 #include "scoring/maps/colours/dither.h"
 #include "scoring/maps/colours/even_light.h"
 #include "scoring/maps/colours/grey_levels.h"
@@ -134,13 +135,16 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
   const Blur undone = restored ? restored->blur : Blur{};
   out.is_league = undone.sigma > 0.0 || (!direct && is_league_map(image));
   const cv::Mat nothing = transparent_pixels(image) | no_data_areas(image, notes);
+  const std::optional<LabelImage> costmap =
+      direct || out.is_league || !small_enough(image) ? std::nullopt : classify_costmap(image);
   const LabelImage labels = direct          ? classify_direct(image, notes.meaning)
+                            : costmap       ? *costmap
                             : out.is_league ? classify_league(image, undone)
                                             : classify_by_grey(image, nothing);
   out.recognised = labels.recognised;
   out.refusal = labels.refusal;
   if (restored) out.recognised += ", " + restored->how;
-  if (!direct && (undone.sigma == 0.0 || !out.refusal.empty()))
+  if (!direct && !costmap && (undone.sigma == 0.0 || !out.refusal.empty()))
     if (const std::string why = why_colours_are_lost(image, is_league_map(image)); !why.empty()) out.refusal = why;
   if (image.white > 0)
     out.recognised += ", scaled so that the brightest sample, " + std::to_string(image.white) + ", is white";
@@ -148,7 +152,7 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
   if (!direct && small_enough(original) && out.refusal.empty())
     out.recognised +=
         doubts_about(undone.sigma > 0.0 ? image : original, restored && restored->as_drawn ? image : original,
-                     {labels.classes, out.is_league, labels.by_level});
+                     {labels.classes, out.is_league, labels.by_level, costmap.has_value()});
   cv::Mat classes = labels.classes;
   classes.setTo(static_cast<int>(Occupancy::Unknown), nothing);
   clear_canvas_corners(classes);

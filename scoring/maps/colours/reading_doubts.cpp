@@ -142,12 +142,14 @@ std::string doubts_about(const RgbImage& image, const RgbImage& as_drawn, const 
   const auto say = [&](const std::string& what) { out += kDoubt + what; };
   const cv::Mat walls = read.classes == static_cast<int>(Occupancy::Occupied);
   const double slopes = sloping_share(grey_of(image)), of_colours = sloping_share_of_channels(image);
-  if (slopes >= kMostSlopes || of_colours >= kMostOfColours)
+  constexpr std::size_t kPaletteOfCosts = 512;
+  const bool told = read.by_costs && has_few_colours(image, kPaletteOfCosts);
+  if (!told && (slopes >= kMostSlopes || of_colours >= kMostOfColours))
     say(
         cv::format("greys or colours run into each other on %.0f %% of its pixels, as costs around walls or a blur do: "
-                   "where walls end is a guess",
+                   "where walls end is a guess; of a costmap, give the map that it was made of",
                    100.0 * std::max(slopes, of_colours)));
-  if (const double hidden = walls_under_drawings(image, read, walls); hidden >= kMostHidden)
+  if (const double hidden = read.by_costs ? 0.0 : walls_under_drawings(image, read, walls); hidden >= kMostHidden)
     say(cv::format("coloured drawings lie on or beside %.0f %% of the walls: what they hide is a guess",
                    100.0 * hidden));
   if (const double massive = massive_share(read, walls); massive >= kMostMassive)

@@ -15,6 +15,7 @@ struct Reading {
   cv::Mat classes;         ///< CV_8U, Occupancy values, row 0 at the top
   bool is_league = false;  ///< by the league's colours
   bool by_level = false;   ///< each of its colours was taken for one class: no line between them was guessed
+  bool by_costs = false;   ///< its slopes are costs and were read as such, exactly where JPEG did not change them
 };
 
 /// What of a picture does not fit the classes that it was read as, kDoubt before each sentence; empty: it fits. The
