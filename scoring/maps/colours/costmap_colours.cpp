@@ -49,17 +49,18 @@ cv::Mat inscribed(const RgbImage& image, double opacity) {
   return out;
 }
 
-/// The most frequent light grey, which is the map's floor; 0: none.
-int floor_under_it(const RgbImage& image) {
-  constexpr int kLight = 150;
-  constexpr int kGrey = 8;  // difference of the channels
-  std::array<std::size_t, 256> count{};
-  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
-    const auto [low, high] = std::minmax({image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]});
-    if (low >= kLight && high - low <= kGrey) ++count[image.rgb[i + 1]];
-  }
-  const auto most = std::max_element(count.begin(), count.end());
-  return *most > 0 ? static_cast<int>(most - count.begin()) : 0;
+/// The floor under it: red of cyan comes from there. 0: nothing shows through.
+int floor_under(const RgbImage& image, const cv::Mat& cyan, double opacity) {
+  constexpr double kOpaque = 0.95;
+  double red = 0.0, pixels = 0.0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      if (cyan.at<unsigned char>(y, x) == 0) continue;
+      red += image.pixel(x, y)[0];
+      pixels += 1.0;
+    }
+  if (opacity >= kOpaque || pixels == 0.0) return 0;
+  return std::clamp(static_cast<int>(red / pixels / (1.0 - opacity) + 0.5), 0, 255);
 }
 
 struct Shade {
@@ -104,7 +105,7 @@ std::optional<LabelImage> classify_costmap(const RgbImage& image) {
   const double opacity = opacity_of_obstacles(image);
   if (opacity == 0.0) return std::nullopt;
   const cv::Mat around = inscribed(image, opacity);
-  const std::vector<Shade> shades = shades_of(opacity, floor_under_it(image));
+  const std::vector<Shade> shades = shades_of(opacity, floor_under(image, around, opacity));
   LabelImage out{cv::Mat(image.height, image.width, CV_8U), "a costmap's colours, costs around walls are free"};
   out.by_level = true;
   for (int y = 0; y < image.height; ++y) {

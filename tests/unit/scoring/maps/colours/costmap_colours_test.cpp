@@ -46,7 +46,8 @@ TEST(CostmapColours, ObstaclesAreWallsAndCostsFreeAtAnyOpacityAndScale) {
   for (const std::uint64_t seed : {3U, 4U, 5U}) {
     const OccupancyGrid map = padded(maze_of(seed, 6, 6), 12);
     for (const int scale : {1, 2})
-      for (const Inflation& inflation : {Inflation{0.15, 0.6, 5.0}, Inflation{0.25, 0.9, 3.0}}) {
+      for (const Inflation& inflation :
+           {Inflation{0.15, 0.6, 5.0}, Inflation{0.25, 0.9, 3.0}, Inflation{0.12, 1.2, 2.0}}) {
         SCOPED_TRACE(::testing::Message() << "seed " << seed << ", scale " << scale << ", " << inflation.radius);
         expect_read_as(costmap(map, scale, inflation, rviz_cost), map, scale);
         for (const double opacity : {0.35, 0.5, 0.7}) {
