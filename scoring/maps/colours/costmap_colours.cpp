@@ -80,20 +80,28 @@ std::vector<Shade> shades_of(double opacity, int floor) {
                          {kUnknown, Occupancy::Unknown},
                          {over({0, 255, 255}, floor)},
                          {{0, 0, 0}},
-                         {{floor, floor, floor}}};
+                         {{floor, floor, floor}},
+                         {{230, 230, 230}},  // of a map that shows where costs are 0
+                         {{255, 255, 255}}};
   for (int i = 0; i <= kSteps; ++i) out.push_back({over({255 * i / kSteps, 0, 255 - 255 * i / kSteps}, floor)});
   return out;
 }
 
-Occupancy nearest_of(const std::vector<Shade>& shades, const std::uint8_t* pixel) {
+struct Nearest {
+  Occupancy means = Occupancy::Unknown;
+  bool is_near = false;
+};
+
+Nearest nearest_of(const std::vector<Shade>& shades, const std::uint8_t* pixel) {
+  constexpr int kNear = 3 * kOff * kOff;
   int least = std::numeric_limits<int>::max();
-  Occupancy out = Occupancy::Unknown;
+  Nearest out;
   for (const Shade& shade : shades) {
     int off = 0;
     for (int i = 0; i < 3; ++i) off += (pixel[i] - shade.colour[i]) * (pixel[i] - shade.colour[i]);
     if (off >= least) continue;
     least = off;
-    out = shade.means;
+    out = {shade.means, off <= kNear};
   }
   return out;
 }
@@ -101,23 +109,28 @@ Occupancy nearest_of(const std::vector<Shade>& shades, const std::uint8_t* pixel
 }  // namespace
 
 std::optional<LabelImage> classify_costmap(const RgbImage& image) {
-  constexpr double kBeside = 0.3;  // of what is next to obstacles; unknown ground has no costs
+  constexpr double kBeside = 0.3;        // of what is next to obstacles; unknown ground has no costs
+  constexpr double kMostStrange = 0.05;  // of the pixels: their colours are none of RViz's; blending leaves some
   const double opacity = opacity_of_obstacles(image);
   if (opacity == 0.0) return std::nullopt;
   const cv::Mat around = inscribed(image, opacity);
   const std::vector<Shade> shades = shades_of(opacity, floor_under(image, around, opacity));
   LabelImage out{cv::Mat(image.height, image.width, CV_8U), "a costmap's colours, costs around walls are free"};
   out.by_level = true;
+  std::size_t strange = 0;
   for (int y = 0; y < image.height; ++y) {
     unsigned char* const to = out.classes.ptr<unsigned char>(y);
     const std::uint8_t* last = nullptr;
+    Nearest nearest;
     for (int x = 0; x < image.width; ++x) {  // runs of one colour are asked once
       const std::uint8_t* const p = image.pixel(x, y);
-      to[x] =
-          last != nullptr && std::equal(p, p + 3, last) ? to[x - 1] : static_cast<unsigned char>(nearest_of(shades, p));
+      if (last == nullptr || !std::equal(p, p + 3, last)) nearest = nearest_of(shades, p);
+      to[x] = static_cast<unsigned char>(nearest.means);
+      strange += nearest.is_near ? 0 : 1;
       last = p;
     }
   }
+  if (static_cast<double>(strange) > kMostStrange * static_cast<double>(out.classes.total())) return std::nullopt;
   const cv::Mat walls = out.classes == static_cast<int>(Occupancy::Occupied);
   cv::Mat beside;
   cv::dilate(walls, beside, cv::Mat::ones(3, 3, CV_8U));
