@@ -10,6 +10,9 @@
 
 namespace rubble::explore {
 
+constexpr double kOnAnEdge = 0.1;      ///< so near to an edge of a pallet everything is a wall [m]
+constexpr double kInsidePallet = 0.2;  ///< so far inside its pallet nothing is a wall on an edge [m]
+
 /// The grid of an arena's pallets in the map frame. Rescue arenas are built of square elements side by side (paper,
 /// section II.B), with walls on their edges: what was felt at the edge of one concerns the whole element.
 struct PalletGrid {

@@ -10,9 +10,6 @@
 
 namespace rubble::explore {
 
-constexpr double kOnAnEdge = 0.1;      ///< so near to an edge of a pallet everything is a wall [m]
-constexpr double kInsidePallet = 0.2;  ///< so far inside its pallet nothing is a wall on an edge [m]
-
 /// A range of numbers.
 struct Range {
   double low = std::numeric_limits<double>::infinity();

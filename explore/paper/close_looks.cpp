@@ -8,7 +8,8 @@
 
 #include "base/angle.h"
 #include "base/planar.h"
-#include "explore/caution/step_field.h"
+#include "explore/caution/local_grids.h"
+#include "explore/caution/pallet_grid.h"
 
 namespace rubble::explore {
 namespace {
@@ -22,6 +23,8 @@ constexpr int kEnough = 5;                  ///< looks that agree
 constexpr int kAgainstOne = 10;             ///< looks count, one that says otherwise
 constexpr double kAside = deg_to_rad(1.0);  ///< rays so near to a bearing go there [rad]
 constexpr double kOnIt = 0.1;               ///< a hit so near in range is on it [m]
+constexpr double kBody = 0.3;               ///< so much of a wall has to be passed over, in a row of cells [m]
+constexpr double kSame = 0.004;             ///< places so near are one; less than a cell of the finest map [m]
 constexpr double kPastIt = 0.2;             ///< one so much farther passed over it [m]
 
 }  // namespace
@@ -44,17 +47,19 @@ CloseLooks::Verdict CloseLooks::seen(const Look& look, const TPoint2D& p_map) {
   const TPoint2D way = p_map - look.origin;
   const double away = length(way);
   const double bearing = std::atan2(way.y, way.x);
-  Verdict verdict = Verdict::Open;
+  bool before = false, on = false, past = false;
   for (const double turn : {0.0, -2.0 * kPi, 2.0 * kPi}) {
     const auto first = std::lower_bound(look.rays.begin(), look.rays.end(), bearing + turn - kAside,
                                         [](const Look::Ray& ray, double value) { return ray.bearing < value; });
     for (auto ray = first; ray != look.rays.end() && ray->bearing <= bearing + turn + kAside; ++ray) {
-      if (std::abs(ray->range - away) < kOnIt) return Verdict::Solid;
-      if (ray->range < away) return Verdict::Open;  // something stands before it
-      if (ray->range > away + kPastIt) verdict = Verdict::Floor;
+      const double beyond = ray->range - away;
+      before = before || beyond <= -kOnIt;
+      on = on || std::abs(beyond) < kOnIt;
+      past = past || beyond > kPastIt;
     }
   }
-  return verdict;
+  if (before) return Verdict::Open;  // something hides it
+  return on ? Verdict::Solid : past ? Verdict::Floor : Verdict::Open;
 }
 
 CloseLooks::Verdict CloseLooks::judge(const TPoint2D& p_map) const {
@@ -68,11 +73,12 @@ CloseLooks::Verdict CloseLooks::judge(const TPoint2D& p_map) const {
   return met >= kEnough && met >= kAgainstOne * over ? Verdict::Solid : Verdict::Open;
 }
 
-CloseLooks::Verdict CloseLooks::judge(const Traversable& floor, const Anchor& robot, KnownGrids* known) {
+CloseLooks::Verdict CloseLooks::judge(const Traversable& floor, const Anchor& robot) {
   Verdict verdict = Verdict::Open;
   if (looks_.empty()) return verdict;
   const TPoint2D laser = robot.T_map_base.composePoint(p_base_laser_);
-  LocalGrids grids(floor.cells, pallet_, known);
+  LocalGrids grids(floor.cells, pallet_);
+  std::vector<TPoint2D> over;
   const Cell low = floor.cells.cell({laser.x - kNearLaser, laser.y - kNearLaser});
   const Cell high = floor.cells.cell({laser.x + kNearLaser, laser.y + kNearLaser});
   for (int y = std::max(0, low.y); y <= std::min(floor.cells.height() - 1, high.y); ++y)
@@ -84,15 +90,22 @@ CloseLooks::Verdict CloseLooks::judge(const Traversable& floor, const Anchor& ro
       const std::optional<PalletGrid>& grid = grids.at(p);
       if (floor.unsure[{x, y}] == 0 && !(grid && grid->depth(p) > kOnAnEdge)) continue;
       const Verdict here = judge(p);
-      if (here == Verdict::Floor) floor_.emplace_back(robot, p);
-      if (here == Verdict::Solid) solid_.emplace_back(robot, p);
-      if (verdict != Verdict::Floor && here != Verdict::Open) verdict = here;
+      if (here == Verdict::Floor) over.push_back(p);
+      if (here != Verdict::Solid) continue;
+      solid_.emplace_back(robot, p);
+      verdict = Verdict::Solid;
     }
-  return verdict;
+  if (static_cast<double>(over.size()) * floor.frame().resolution < kBody) return verdict;
+  for (const TPoint2D& p : over) floor_.emplace_back(robot, p);
+  return Verdict::Floor;
 }
 
-void CloseLooks::met(const std::vector<TPoint2D>& hits, const Anchor& robot) {
-  for (const TPoint2D& hit : hits) solid_.emplace_back(robot, hit);
+void CloseLooks::met(const std::vector<TPoint2D>& places, const Anchor& robot) {
+  for (const TPoint2D& p : places) {
+    const bool known = std::any_of(solid_.begin(), solid_.end(),
+                                   [&](const AnchoredPoint& point) { return distance(point.p_map(), p) < kSame; });
+    if (!known) solid_.emplace_back(robot, p);
+  }
 }
 
 void CloseLooks::apply(Traversable& floor) const {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "explore/anchor.h"
-#include "explore/caution/local_grids.h"
 #include "explore/plan/traversable.h"
 #include "slam/mapper.h"
 
@@ -27,12 +26,11 @@ class CloseLooks {
   void look(const std::vector<mrpt::math::TPoint2D>& hits, const mrpt::math::TPose2D& T_map_base);
   /// It stands there no more.
   void look_away() { looks_.clear(); }
-  /// Judges what stands within 1.3 m of the laser well inside the pallets, or is `unsure`, of `floor`: five looks at
-  /// least passed over it and hardly any met it, or the other way round. Floor where there is any. `known`: grids of
-  /// earlier calls.
-  Verdict judge(const Traversable& floor, const Anchor& robot, KnownGrids* known = nullptr);
-  /// Something solid was met by a scan from near [m, map frame].
-  void met(const std::vector<mrpt::math::TPoint2D>& hits, const Anchor& robot);
+  /// Judges what stands about the laser well inside the pallets, or is `unsure`, of `floor`: enough looks passed over
+  /// it and hardly any met it, or the other way round. Floor where as much of it is as a body needs.
+  Verdict judge(const Traversable& floor, const Anchor& robot);
+  /// These places were met by a scan from near: they are solid [m, map frame].
+  void met(const std::vector<mrpt::math::TPoint2D>& places, const Anchor& robot);
   /// Makes free what was found to be floor, and marks what is solid.
   void apply(Traversable& floor) const;
   /// The mapper corrected its past.

@@ -7,7 +7,7 @@
 
 #include "base/planar.h"
 #include "explore/caution/local_grids.h"
-#include "explore/caution/step_field.h"
+#include "explore/caution/pallet_grid.h"
 #include "explore/plan/frontier.h"
 #include "explore/search/searched_area.h"
 

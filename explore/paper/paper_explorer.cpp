@@ -258,7 +258,7 @@ bool PaperExplorer::holds_still() {
 void PaperExplorer::check_path(const slam::Mapper& mapper) {
   if (!pilot_.check_due(now_)) return;
   const std::vector<TPoint2D> hits = agenda_.pushing().without_loose_things(mapper.last_hits(), pose_, floor_);
-  close_looks_.met(agenda_.pushing().solid_hits(), {now_, pose_});
+  close_looks_.met(agenda_.pushing().solid(), {now_, pose_});
   if (agenda_.pushing().near_loose_things()) pilot_.slow_down(now_);
   if (pilot_.check(hits, pose_, commanded_.v, now_)) agenda_.plan_soon();
 }

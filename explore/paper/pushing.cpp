@@ -50,7 +50,7 @@ std::vector<TPoint2D> Pushing::without_loose_things(const std::vector<TPoint2D>&
   rolling_.clear();
   solid_.clear();
   near_ = false;
-  if (!on()) return hits;
+  if (!on() && floor.doubtful.empty()) return hits;
   std::vector<TPoint2D> doubtful;
   const auto add_near = [&](const std::vector<Cell>& cells, double reach, std::vector<TPoint2D>& points) {
     for (const Cell c : cells)
@@ -58,7 +58,7 @@ std::vector<TPoint2D> Pushing::without_loose_things(const std::vector<TPoint2D>&
   };
   add_near(floor.loose, kPushReach, loose);
   add_near(floor.doubtful, kHopeReach, doubtful);
-  std::vector<TPoint2D> rest;
+  std::vector<TPoint2D> rest, met;
   for (const TPoint2D& hit : hits) {
     const Cell c = floor.clearance.cell(hit);
     const bool wall = floor.clearance.inside(c) && floor.clearance[c] < kWall;
@@ -71,13 +71,16 @@ std::vector<TPoint2D> Pushing::without_loose_things(const std::vector<TPoint2D>&
     else if (wall || away >= kHopeReach || !on(doubtful))
       rest.push_back(hit);
     else if (away < kSeenOver)
-      solid_.push_back(hit);
+      met.push_back(hit);
     else
       near_ = near_ || away < kPushReach;
   }
   near_ = near_ || !rolling_.empty();
-  rest.insert(rest.end(), solid_.begin(), solid_.end());
-  if (solid_.size() < kSolidHits) solid_.clear();
+  rest.insert(rest.end(), met.begin(), met.end());
+  if (met.size() < kSolidHits) return rest;
+  for (const TPoint2D& p : doubtful)
+    if (std::any_of(met.begin(), met.end(), [&](const TPoint2D& hit) { return distance(hit, p) < kRoll; }))
+      solid_.push_back(p);
   return rest;
 }
 

@@ -54,8 +54,8 @@ class Pushing {
                                                          const Traversable& floor);
   /// There were such hits near the robot.
   bool near_loose_things() const { return near_; }
-  /// Hits from near on what was hoped to be the floor of a slope: it is none [m, map frame].
-  const std::vector<mrpt::math::TPoint2D>& solid_hits() const { return solid_; }
+  /// What was hoped to be the floor of a slope and was met from near: it is none [m, map frame].
+  const std::vector<mrpt::math::TPoint2D>& solid() const { return solid_; }
 
  private:
   double pallet_;

@@ -19,7 +19,7 @@ void JoltWatch::update(const robot::Inputs& inputs) {
     if (!dt) felt_.clear();
     felt_.push_back({sample.stamp, rest_.felt()});
     while (sample.stamp - felt_.front().stamp > config_.window) felt_.pop_front();
-    if (std::abs(speed_) < config_.slowest || !dt) continue;
+    if (std::abs(speed_) < config_.slowest || !dt || *dt <= 0.0) continue;
     if (deaf_until_ != Stamp::never() && sample.stamp < deaf_until_) continue;
     const double against = speed_ > 0.0 ? -1.0 : 1.0;
     double lost = 0.0, peak = 0.0;

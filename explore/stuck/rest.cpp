@@ -6,7 +6,7 @@ namespace rubble::explore {
 
 std::optional<double> Rest::update(const robot::Acceleration& sample, bool learn) {
   const double dt = last_ == Stamp::never() ? 0.0 : sample.stamp - last_;
-  const bool follows = dt > 0.0 && dt <= kLongestGap;
+  const bool follows = last_ != Stamp::never() && dt >= 0.0 && dt <= kLongestGap;
   last_ = sample.stamp;
   if (!follows && learn) rest_ = sample.x;
   felt_ = sample.x - rest_;

@@ -5,6 +5,7 @@
 #include "explore/paper/doubtful_walls.h"
 #include "explore/paper/off_grid.h"
 #include "tests/support/explore_grids.h"
+#include "tests/support/planted_mapper.h"
 
 namespace rubble::explore {
 namespace {
@@ -121,6 +122,33 @@ TEST(CloseLooks, WallsOnTheEdgesOfPalletsAndInArenasWithoutAreBelieved) {
   elsewhere.looks = CloseLooks(0.0, kLaser);
   elsewhere.look(9, 1.5);
   EXPECT_EQ(elsewhere.looks.judge(elsewhere.floor(), kBefore), CloseLooks::Verdict::Open);
+}
+
+TEST(CloseLooks, MoveWithThePosesThatTheyWereMadeFrom) {
+  test::PlantedMapper mapper;
+  mapper.plant(kBefore.stamp, kBefore.T_map_base);
+  const TPose2D shift{0.0, 2.0 * test::kPallet, 0.0};
+  Looker over, met;
+  over.look(9, 1.5);
+  ASSERT_EQ(over.looks.judge(over.floor(), kBefore), CloseLooks::Verdict::Floor);
+  met.looks.met(scan(0.0), kBefore);
+  over.look(9, 1.5);
+  mapper.correct(Stamp::from_seconds(5.0), shift);
+  for (Looker* robot : {&over, &met}) robot->looks.follow(mapper);
+  EXPECT_GT(walls_left(over.floor()), 0) << "the floor that was found lies elsewhere now";
+  EXPECT_EQ(over.looks.judge(over.floor(), kBefore), CloseLooks::Verdict::Open) << "looks of the old map count no more";
+  EXPECT_FALSE(doubtful_walls(met.floor(), test::kPallet).empty()) << "and so does what is solid";
+}
+
+/// One cell of it that scans passed over makes no wall the floor of a slope.
+TEST(CloseLooks, TakesALittleForNoFloor) {
+  Looker robot;
+  std::vector<TPoint2D> hits;
+  for (const TPoint2D& hit : scan(1.5))
+    if (std::abs(hit.y - kBefore.T_map_base.y) < 0.2) hits.push_back(hit);
+  for (int i = 0; i < 9; ++i) robot.looks.look(hits, kBefore.T_map_base);
+  EXPECT_EQ(robot.looks.judge(robot.floor(), kBefore), CloseLooks::Verdict::Open);
+  EXPECT_EQ(walls_left(robot.floor()), walls_left(Looker().floor()));
 }
 
 /// Met on the way by a single scan, e.g. while it is driven at in the hope that it is none.

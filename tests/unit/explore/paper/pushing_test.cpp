@@ -98,13 +98,26 @@ TEST(Pushing, WhatMayBeFloorIsNewWhereItIsMetFromNearOnly) {
   for (double y = 0.5; y < 0.7; y += 0.02) hits.emplace_back(5.6, y);
   for (const double away : {1.8, 1.1, 0.8}) {
     EXPECT_TRUE(pushing.without_loose_things(hits, {5.6 - away, 0.6, 0.0}, floor).empty()) << away;
-    EXPECT_TRUE(pushing.solid_hits().empty()) << away;
+    EXPECT_TRUE(pushing.solid().empty()) << away;
     EXPECT_EQ(pushing.near_loose_things(), away < 1.0) << "it slows down: it may have to stop";
   }
   EXPECT_EQ(pushing.without_loose_things(hits, {5.1, 0.6, 0.0}, floor).size(), hits.size());
-  EXPECT_EQ(pushing.solid_hits().size(), hits.size());
+  ASSERT_FALSE(pushing.solid().empty());
+  for (const TPoint2D& p : pushing.solid()) EXPECT_EQ(floor.cells[floor.cells.cell(p)], Occupancy::Free) << p;
   EXPECT_EQ(pushing.without_loose_things({hits[0], hits[1]}, {5.1, 0.6, 0.0}, floor).size(), 2u);
-  EXPECT_TRUE(pushing.solid_hits().empty()) << "two may be noise";
+  EXPECT_TRUE(pushing.solid().empty()) << "two may be noise";
+}
+
+/// What was looked over from near is free whatever is pushed: from farther off scans meet it still.
+TEST(Pushing, WhatWasFoundToBeFloorIsNoNewObstacleWhileNothingIsPushed) {
+  Traversable floor = test::measured(test::corridor_of_pallets(5.6, 0.0, Occupancy::Free));
+  for (double y = 0.1; y < 1.1; y += 0.05) floor.doubtful.push_back(floor.cells.cell({5.6, y}));
+  Pushing pushing(test::kPallet);
+  std::vector<TPoint2D> hits;
+  for (double y = 0.5; y < 0.7; y += 0.02) hits.emplace_back(5.6, y);
+  EXPECT_TRUE(pushing.without_loose_things(hits, {4.2, 0.6, 0.0}, floor).empty());
+  EXPECT_EQ(pushing.without_loose_things(hits, {5.1, 0.6, 0.0}, floor).size(), hits.size()) << "met from near";
+  EXPECT_FALSE(pushing.solid().empty());
 }
 
 TEST(KnownGround, HasGrownByASquareMetre) {

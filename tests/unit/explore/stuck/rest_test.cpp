@@ -28,14 +28,26 @@ TEST(Rest, OfAStepIsLearnedByItsTimeConstant) {
   }
 }
 
-TEST(Rest, BeginsAnewAfterAGapAndWithTimeThatStands) {
-  for (const double gap : {0.0, -0.02, 0.11}) {
+TEST(Rest, BeginsAnewAfterAGapAndWithTimeThatRunsBack) {
+  for (const double gap : {-0.02, 0.11}) {
     Rest rest(kSettling);
     rest.update(sample(1.0, 0.3));
     EXPECT_FALSE(rest.update(sample(1.0 + gap, 1.7))) << gap;
     EXPECT_EQ(rest.felt(), 0.0);
     EXPECT_EQ(rest.last(), Stamp::from_seconds(1.0 + gap));
   }
+}
+
+/// As in logs that tell each sample twice.
+TEST(Rest, LearnsNothingWhileTimeStands) {
+  Rest once(kSettling), twice(kSettling);
+  for (int i = 0; i <= 50; ++i) {
+    const robot::Acceleration told = sample(i * kPeriod, i < 10 ? 0.3 : 1.7);
+    once.update(told);
+    twice.update(told);
+    EXPECT_EQ(twice.update(told), std::optional(0.0));
+  }
+  EXPECT_NEAR(twice.felt(), once.felt() * (1.0 - kPeriod / kSettling), 1e-9) << "by the rest that the first one left";
 }
 
 TEST(Rest, IsKeptWhereNothingIsToBeLearned) {
