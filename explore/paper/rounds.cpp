@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kMaxPardons = 3;    ///< times that what failed is tried again before giving up
 constexpr int kBarrenRounds = 2;  ///< rounds in a row that gain nothing are the last
-constexpr int kForgets = 4;       ///< times that all that was felt is forgotten for the sake of new ground
+constexpr int kForgets = 4;       ///< times that all that was felt is forgotten, but on the way home
 constexpr int kHomeTries = 6;     ///< times that it is on the way home
 
 }  // namespace
@@ -35,7 +35,7 @@ std::optional<std::string> Rounds::before_all_faces(const Standing& standing, bo
     begin();
     return "no niche is left: what could not be reached is tried again before the rest is searched";
   }
-  if (forgets_ == 0) return forget_what_was_felt(standing, search, left_alone);
+  if (forgets_ == 0) return forget_what_was_felt(For::Frontiers, standing, search, left_alone);
   return std::nullopt;
 }
 
@@ -44,23 +44,23 @@ std::optional<std::string> Rounds::another(const Standing& standing, FloorSearch
   barren_rounds_ = barren ? barren_rounds_ + 1 : 0;
   known_then_.mark(standing.floor);
   victims_then_ = standing.victims;
-  // Faces out of reach are worth more than another try at what could not be seen.
+  // What was felt may bar the way to them: then a round that forgives all else would be in vain.
   if (search.faces_left())
-    if (auto news = forget_what_was_felt(standing, search, left_alone)) return news;
-  if (barren_rounds_ >= kBarrenRounds) return forget_what_was_felt(standing, search, left_alone);
+    if (auto news = forget_what_was_felt(For::Faces, standing, search, left_alone)) return news;
+  if (barren_rounds_ >= kBarrenRounds) return forget_what_was_felt(For::Frontiers, standing, search, left_alone);
   const bool given_up = search.reconsider(standing.floor);
   const bool failed = left_alone.pardon_all(standing.now);
-  if (!given_up && !failed) return forget_what_was_felt(standing, search, left_alone);
+  if (!given_up && !failed) return forget_what_was_felt(For::Frontiers, standing, search, left_alone);
   tried_before_search_ = false;
   begin();
   return "round " + std::to_string(++rounds_) + ": what could not be reached or seen is tried again";
 }
 
 /// What was felt may bar the only way to half of the arena, and be wrong: where there is ground to be seen behind it,
-/// even what was felt for certain is tried anew.
-std::optional<std::string> Rounds::forget_what_was_felt(const Standing& standing, FloorSearch& search,
+/// or faces are left, even what was felt for certain is tried anew, and what could not be reached or seen with it.
+std::optional<std::string> Rounds::forget_what_was_felt(For what, const Standing& standing, FloorSearch& search,
                                                         LeftAlone& left_alone) {
-  if (forgets_ >= kForgets || !left_alone.has_chances() || standing.behind_felt() == 0 ||
+  if (forgets_ >= kForgets || !left_alone.has_chances() || (what == For::Frontiers && standing.behind_felt() == 0) ||
       !left_alone.forget_once(standing.now))
     return std::nullopt;
   ++forgets_;

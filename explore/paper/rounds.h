@@ -55,7 +55,11 @@ class Rounds {
   void go_home();
 
  private:
-  std::optional<std::string> forget_what_was_felt(const Standing& standing, FloorSearch& search, LeftAlone& left_alone);
+  /// What all that was felt is forgotten for.
+  enum class For { Frontiers, Faces };
+
+  std::optional<std::string> forget_what_was_felt(For what, const Standing& standing, FloorSearch& search,
+                                                  LeftAlone& left_alone);
   void begin();
 
   int failed_plans_ = 0;   ///< in a row, each on a new map
@@ -65,7 +69,7 @@ class Rounds {
   bool tried_before_search_ = false;  ///< in this round
   int rounds_ = 1;                    ///< this one included
   int barren_rounds_ = 0;             ///< that gained nothing, in a row
-  int forgets_ = 0;                   ///< times that all that was felt was forgotten for the sake of new ground
+  int forgets_ = 0;                   ///< times that all that was felt was forgotten
   KnownGround known_then_;            ///< at the end of the last round
   std::size_t victims_then_ = 0;      ///< likewise
 };

@@ -23,6 +23,11 @@ struct Played {
   Stamp now = Stamp::from_seconds(10.0);
 
   void fail() { left_alone.bar({1.0, 1.0}, {now, {}}); }
+  /// There are faces to be looked at squarely.
+  void leave_faces() {
+    search.expect_holes();
+    search.sources(floor, Subjects::Squarely, [](const TPoint2D&) { return std::nullopt; });
+  }
   void feel(double x = 2.0) { left_alone.feel({now, {x, 2.0, 0.0}}, false, {}, floor.cells, {}); }
   Resort resort(bool homeward = false, bool may_push = false) {
     now = now + 1.0;
@@ -137,9 +142,11 @@ TEST(Rounds, WithoutAnythingThatFailedThereIsNoOther) {
   EXPECT_FALSE(play.another());
 }
 
-/// How often all that was felt is forgotten while `frontiers` are left; it is felt in the same place or in others.
-int times_forgotten(std::size_t frontiers, bool same_place) {
+/// How often all that was felt is forgotten while `frontiers` are left, and `faces`; it is felt in the same place or in
+/// others.
+int times_forgotten(std::size_t frontiers, bool same_place, bool faces = false) {
   Played play;
+  if (faces) play.leave_faces();
   play.frontier_left = frontiers;
   int forgotten = 0;
   for (int i = 0; i < 40; ++i) {
@@ -155,20 +162,36 @@ TEST(Rounds, WhatWasFeltIsForgottenForTheSakeOfGroundBehindIt) {
   EXPECT_EQ(times_forgotten(0, false), 0);
   EXPECT_EQ(times_forgotten(2, true), 1) << "felt again it is no mistake";
   EXPECT_EQ(times_forgotten(2, false), 4) << "others are, four times at most";
+  for (const std::size_t frontiers : {0u, 2u}) {
+    EXPECT_EQ(times_forgotten(frontiers, true, true), 1) << "for the sake of faces likewise";
+    EXPECT_EQ(times_forgotten(frontiers, false, true), 4);
+  }
 }
 
-/// Before what could not be seen is looked at once more.
+/// As good a one as ground behind what was felt, and not only after two rounds in vain.
 TEST(Rounds, FacesOutOfReachAreAReasonToForgetAtOnce) {
-  for (const bool faces : {false, true}) {
-    Played play;
-    if (faces) play.search.expect_holes();
-    play.search.sources(play.floor, Subjects::Squarely, [](const TPoint2D&) { return std::nullopt; });
-    ASSERT_EQ(play.search.faces_left(), faces);
-    play.fail();
-    for (int k = 0; k < 3; ++k) play.feel();
-    ASSERT_TRUE(play.another());
-    EXPECT_EQ(play.left_alone.obstacles(play.now).empty(), faces);
-  }
+  for (const std::size_t frontiers : {0u, 1u})
+    for (const bool faces : {false, true}) {
+      Played play;
+      play.frontier_left = frontiers;
+      if (faces) play.leave_faces();
+      ASSERT_EQ(play.search.faces_left(), faces);
+      play.fail();
+      for (int k = 0; k < 3; ++k) play.feel();
+      ASSERT_TRUE(play.another());
+      EXPECT_EQ(play.left_alone.obstacles(play.now).empty(), faces) << frontiers << " frontiers";
+      EXPECT_FALSE(play.left_alone.barred({1.0, 1.0}, play.now)) << "what failed is tried again with it";
+    }
+}
+
+/// Before they are looked at at all, nothing that was felt is forgotten for them.
+TEST(Rounds, FacesAreNoReasonToForgetBeforeTheirSearch) {
+  Played play;
+  play.leave_faces();
+  ASSERT_TRUE(play.search.faces_left());
+  for (int k = 0; k < 3; ++k) play.feel();
+  EXPECT_FALSE(play.before_all_faces(0));
+  EXPECT_FALSE(play.left_alone.obstacles(play.now).empty());
 }
 
 TEST(Rounds, BeforeTheSearchOfAllFacesFrontiersAreTriedOnceARound) {
