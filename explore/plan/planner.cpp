@@ -65,30 +65,30 @@ std::vector<PathPoint> smooth_path(const Traversable& floor, const std::vector<C
 }
 
 Plan Planner::plan(const Traversable& floor, const TPose2D& T_map_base, const std::vector<Source>& sources) {
-  Plan plan;
   const Cell start = floor.cells.cell({T_map_base.x, T_map_base.y});
-  if (sources.empty() || !floor.cells.inside(start)) return plan;
-  for (double d_min = config_.transform.d_min;; d_min = std::max(d_min - config_.d_min_step, least_d_min()))
-    if (keeping(d_min, floor, start, sources, plan) || d_min <= least_d_min() + kClearanceRounding) return plan;
+  if (sources.empty() || !floor.cells.inside(start)) return {};
+  for (double d_min = config_.transform.d_min;; d_min = std::max(d_min - config_.d_min_step, least_d_min())) {
+    Plan plan = keeping(d_min, floor, start, sources);
+    if (plan.found || d_min <= least_d_min() + kClearanceRounding) return plan;
+  }
 }
 
-/// Whether there is a way from `start` that keeps `d_min`, and that.
-bool Planner::keeping(double d_min, const Traversable& floor, Cell start, const std::vector<Source>& sources,
-                      Plan& plan) {
+Plan Planner::keeping(double d_min, const Traversable& floor, Cell start, const std::vector<Source>& sources) {
   TransformConfig transform = config_.transform;
   transform.d_min = d_min;
   const std::vector<Cell> climb = climb_clearance(floor, start, d_min);
   transform_.run(floor, sources, transform, climb.back());
-  if (!transform_.reached(climb.back())) return false;
+  if (!transform_.reached(climb.back())) return {};
   std::vector<Cell> cells = climb;
   const std::vector<Cell> way = transform_.descend(climb.back());
   cells.insert(cells.end(), way.begin() + 1, way.end());
+  Plan plan;
   plan.found = true;
   plan.path = smooth_path(floor, cells, d_min);
   plan.target = floor.cells.centre(cells.back());
   plan.cost = transform_.cost(climb.back());
   plan.d_min = d_min;
-  return true;
+  return plan;
 }
 
 Plan Planner::to_cells(const Traversable& floor, const TPose2D& T_map_base, const std::vector<Source>& sources,
@@ -96,8 +96,7 @@ Plan Planner::to_cells(const Traversable& floor, const TPose2D& T_map_base, cons
   Plan found = plan(floor, T_map_base, sources);
   if (!detour || !found.found || found.cost <= *detour || found.d_min <= least_d_min() + kClearanceRounding)
     return found;
-  Plan narrow;
-  keeping(least_d_min(), floor, floor.cells.cell({T_map_base.x, T_map_base.y}), sources, narrow);
+  Plan narrow = keeping(least_d_min(), floor, floor.cells.cell({T_map_base.x, T_map_base.y}), sources);
   return narrow.found && narrow.cost + *detour < found.cost ? narrow : found;
 }
 

@@ -91,7 +91,8 @@ class Planner {
   };
 
   Plan plan(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const std::vector<Source>& sources);
-  bool keeping(double d_min, const Traversable& floor, Cell start, const std::vector<Source>& sources, Plan& plan);
+  /// The cheapest way from `start` to a source that keeps `d_min` [m], once it has come so far from what is nearer.
+  Plan keeping(double d_min, const Traversable& floor, Cell start, const std::vector<Source>& sources);
   double least_d_min() const { return std::min(config_.d_min_floor, config_.transform.d_min); }
   const Open* worth_most(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, double d_min,
                          const std::vector<Open>& frontiers, const WorthFn& worth);
