@@ -164,8 +164,8 @@ Plan TargetChoice::to_place(const View& view, FloorSearch& search, Subjects subj
   };
   // Looking squarely at all takes more time than there is: what is rich is not left for the end for its narrow way.
   const auto detour = subjects == Subjects::Squarely ? std::optional(kNarrow) : std::nullopt;
-  Plan plan =
-      planner_.to_cells(view.floor, view.T_map_base, search.sources(view.floor, subjects, head_start, idle), detour);
+  Plan plan = planner_.to_cells(view.floor, view.T_map_base, search.sources(view.floor, subjects, head_start, idle),
+                                detour, target_);
   if (plan.found) plan.cost -= search.choose_subject(view.floor.cells.cell(plan.target));
   return plan;
 }

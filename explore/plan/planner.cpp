@@ -92,17 +92,24 @@ Plan Planner::keeping(double d_min, const Traversable& floor, Cell start, const 
 }
 
 Plan Planner::to_cells(const Traversable& floor, const TPose2D& T_map_base, const std::vector<Source>& sources,
-                       std::optional<double> detour) {
+                       std::optional<double> detour, const std::optional<TPoint2D>& previous) {
   Plan found = plan(floor, T_map_base, sources);
-  if (!detour || !found.found || found.cost <= *detour || found.d_min <= least_d_min() + kClearanceRounding)
-    return found;
+  if (!detour || !found.found || found.d_min <= least_d_min() + kClearanceRounding) return found;
+  const bool leaves = previous && !is_target(previous, found.target);
+  if (!leaves && found.cost <= *detour) return found;
   Plan narrow = keeping(least_d_min(), floor, floor.cells.cell({T_map_base.x, T_map_base.y}), sources);
-  return narrow.found && narrow.cost + *detour < found.cost ? narrow : found;
+  const double toll = leaves && is_target(previous, narrow.target) ? 0.0 : *detour;
+  return narrow.found && narrow.cost + toll < found.cost ? narrow : found;
+}
+
+/// Whether a place is the target being driven to, if there is one.
+bool Planner::is_target(const std::optional<TPoint2D>& previous, const TPoint2D& other) const {
+  return previous && distance(other, *previous) <= config_.same_target;
 }
 
 double Planner::head_start(const std::optional<TPoint2D>& previous, const TPoint2D& other) const {
   const bool given = previous && config_.transform.discomfort == Discomfort::PerMetre;
-  return given && distance(other, *previous) > config_.same_target ? config_.switch_cost : 0.0;
+  return given && !is_target(previous, other) ? config_.switch_cost : 0.0;
 }
 
 Plan Planner::to_frontier(const Traversable& floor, const TPose2D& T_map_base, const BarredFn& barred,
@@ -115,7 +122,7 @@ Plan Planner::to_frontier(const Traversable& floor, const TPose2D& T_map_base, c
     for (const Cell c : cluster.cells) {
       const TPoint2D p = floor.cells.centre(c);
       if (barred(p)) continue;
-      open.of_previous = open.of_previous || (previous && distance(p, *previous) <= config_.same_target);
+      open.of_previous = open.of_previous || is_target(previous, p);
       open.cells.push_back({c, 0.0});
     }
     if (open.cells.empty()) continue;

@@ -71,9 +71,11 @@ class Planner {
                 double tolerance);
 
   /// The cheapest way to one of several cells. `detour`: a way nearer to walls is taken where it is so much cheaper,
-  /// too [m]; without it only where there is no other.
+  /// too [m]; without it only where there is no other. `previous`: the target being driven to; such a way to it need
+  /// only be cheaper than one to another.
   Plan to_cells(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const std::vector<Source>& sources,
-                std::optional<double> detour = std::nullopt);
+                std::optional<double> detour = std::nullopt,
+                const std::optional<mrpt::math::TPoint2D>& previous = std::nullopt);
 
   /// How much dearer in ways another target is than the one being driven to, if that is known. With
   /// Discomfort::PerCell not at all, as printed [m].
@@ -91,8 +93,10 @@ class Planner {
   };
 
   Plan plan(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, const std::vector<Source>& sources);
-  /// The cheapest way from `start` to a source that keeps `d_min` [m], once it has come so far from what is nearer.
+  /// The cheapest way from `start` to a source that keeps `d_min` [m], where there is one; nearer to something, the
+  /// robot climbs away from it first.
   Plan keeping(double d_min, const Traversable& floor, Cell start, const std::vector<Source>& sources);
+  bool is_target(const std::optional<mrpt::math::TPoint2D>& previous, const mrpt::math::TPoint2D& other) const;
   double least_d_min() const { return std::min(config_.d_min_floor, config_.transform.d_min); }
   const Open* worth_most(const Traversable& floor, const mrpt::math::TPose2D& T_map_base, double d_min,
                          const std::vector<Open>& frontiers, const WorthFn& worth);

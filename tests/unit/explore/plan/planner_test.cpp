@@ -67,7 +67,8 @@ TEST(Planner, LowersItsDistanceWhereNothingElseCanBeReachedButNotBelowTheFloor) 
   EXPECT_EQ(closed.frontier_left, 1u);
 }
 
-/// As near to walls as it may for what lies 2 m behind a narrow place, where the rest is 10 m dearer.
+/// As near to walls as it may for what lies 2 m behind a narrow place, where the rest is 10 m dearer. While that is
+/// driven to the choice stays, although less and less is saved.
 TEST(Planner, TakesANarrowWayWhereThatSavesAsMuchAsIsAsked) {
   OccupancyGrid cells = test::room(8.0, 1.3);
   for (const double y : {0.0, 0.95}) test::fill(cells, 2.9, y, 3.1, y + 0.36, Occupancy::Occupied);
@@ -75,8 +76,8 @@ TEST(Planner, TakesANarrowWayWhereThatSavesAsMuchAsIsAsked) {
   const std::vector<Source> sources{{cells.cell({2.0, 0.65}), 0.0}, {cells.cell({6.0, 0.65}), 10.0}};
   const TPose2D start{4.0, 0.65, 0.0};
   Planner planner({});
-  const auto wide = [&](std::optional<double> detour) {
-    const Plan plan = planner.to_cells(floor, start, sources, detour);
+  const auto wide = [&](std::optional<double> detour, const std::optional<TPoint2D>& previous = std::nullopt) {
+    const Plan plan = planner.to_cells(floor, start, sources, detour, previous);
     EXPECT_TRUE(plan.found);
     EXPECT_EQ(plan.target.x > 4.0, plan.d_min == kUsual) << plan.target.x << ", " << plan.d_min;
     return plan.target.x > 4.0;
@@ -84,6 +85,24 @@ TEST(Planner, TakesANarrowWayWhereThatSavesAsMuchAsIsAsked) {
   EXPECT_TRUE(wide(std::nullopt));
   EXPECT_FALSE(wide(4.0));
   EXPECT_TRUE(wide(20.0)) << "it saves less";
+  EXPECT_FALSE(wide(20.0, TPoint2D{2.0, 0.65})) << "but is driven to";
+  EXPECT_TRUE(wide(20.0, TPoint2D{6.0, 0.65}));
+  EXPECT_TRUE(wide(std::nullopt, TPoint2D{2.0, 0.65}));
+}
+
+/// A wide way round to the place that is driven to is one to the same place: the narrow one has to save as much.
+TEST(Planner, DrivesRoundToItsTargetWhereANarrowWaySavesTooLittle) {
+  OccupancyGrid cells = test::room(8.0, 4.0);
+  test::fill(cells, 1.5, 1.3, 6.5, 2.6, Occupancy::Occupied);
+  for (const double y : {0.0, 0.95}) test::fill(cells, 2.9, y, 3.1, y + 0.36, Occupancy::Occupied);
+  const Traversable floor = test::measured(cells);
+  const TPoint2D target{2.0, 0.65};
+  Planner planner({});
+  for (const double detour : {4.0, 40.0}) {
+    const Plan plan = planner.to_cells(floor, {4.0, 0.65, 0.0}, {{cells.cell(target), 0.0}}, detour, target);
+    ASSERT_TRUE(plan.found);
+    EXPECT_EQ(plan.d_min == kUsual, detour > 20.0) << plan.d_min << ", " << plan.cost << " m";
+  }
 }
 
 TEST(Planner, ClimbsAwayFromTheWallFirst) {
