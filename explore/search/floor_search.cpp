@@ -32,10 +32,9 @@ constexpr double kLookCost = 1.5;               ///< what a look takes, in way, 
 constexpr double kSolidCost = 1.5;              ///< more way than this is driven to a hole that was seen first [m]
 constexpr int kHoleCells = 2;                   ///< so near it lies before the place to look at
 constexpr double kFullLook = 0.6;               ///< of wall that it shows squarely at best [m]
-constexpr double kScrapCost = 16.0;     ///< more way than this is driven to where there is more to be looked at [m]
-constexpr double kPlenty = 1.0;         ///< as much as this, of wall ... [m]
-constexpr double kNeighbours = 1.2;     ///< ... so near to what a look is for [m]
-constexpr double kSubjectsApart = 0.2;  ///< subjects along a wall are, about [m]
+constexpr double kScrapCost = 16.0;  ///< as much more way is driven to where there is plenty instead of nothing [m]
+constexpr double kPlenty = 1.0;      ///< as much as this, of wall ... [m]
+constexpr double kNeighbours = 1.2;  ///< ... so near to what a look is for, that included [m]
 const std::vector<double> kSuspectDistances = {0.6, 0.75, 0.5, 0.9, 1.1};
 
 /// The floor that decides what a look sees: what it saw, and the cells around, where its rays ended.
@@ -216,7 +215,7 @@ std::vector<Source> FloorSearch::sources(const Traversable& map, Subjects subjec
     add_suspects(floor);
   }
   if (subjects == Subjects::Squarely) faces_left_ = !views_.empty();
-  find_scraps();
+  find_scraps(kFaceStride * map.frame().resolution);
   std::vector<Source> sources;
   for (const View& view : views_) {
     const std::optional<double> start = head_start(floor.cells.centre(view.cell));
@@ -230,8 +229,8 @@ std::vector<Source> FloorSearch::sources(const Traversable& map, Subjects subjec
 }
 
 /// Tells of each view how little else there is to be looked at squarely around its subject: scraps here and there would
-/// take all the time that whole lanes at the other end of the arena need.
-void FloorSearch::find_scraps() {
+/// take all the time that whole lanes at the other end of the arena need. `apart`: two subjects along a wall [m].
+void FloorSearch::find_scraps(double apart) {
   std::vector<TPoint2D> subjects;  // the views of each follow one another
   for (const View& view : views_)
     if (view.record == Record::Squarely && (subjects.empty() || distance(subjects.back(), view.subject) > 0.0))
@@ -245,7 +244,7 @@ void FloorSearch::find_scraps() {
     }
     const auto near = std::count_if(subjects.begin(), subjects.end(),
                                     [&](const TPoint2D& q) { return distance(view.subject, q) < kNeighbours; });
-    view.scrap = kScrapCost * (1.0 - std::min(1.0, kSubjectsApart * static_cast<double>(near) / kPlenty));
+    view.scrap = kScrapCost * (1.0 - std::min(1.0, apart * static_cast<double>(near) / kPlenty));
   }
 }
 

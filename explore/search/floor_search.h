@@ -115,7 +115,7 @@ class FloorSearch {
   static auto& record_of(Search& search, Record record);
   void add_views(const std::vector<Viewpoint>& views, Record record);
   double shown(const Traversable& floor, const View& view) const;
-  void find_scraps();
+  void find_scraps(double apart);
   static bool beside_hole(const OccupancyGrid& cells, const OccupancyGrid& shut, const View& view);
   static bool serves(const View& view, const mrpt::math::TPose2D& T_map_base);
   void add_suspects(const Traversable& floor);

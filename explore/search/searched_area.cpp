@@ -17,7 +17,6 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
 constexpr int kStride = 6;           ///< subjects on open floor are so many cells apart
-constexpr int kFaceStride = 4;       ///< subjects along a wall likewise
 constexpr int kNicheStride = 2;      ///< and at the back of a niche
 constexpr double kNarrowest = 0.20;  ///< niche [m]; what is narrower is a wall seen twice
 constexpr double kWidest = 0.55;     ///< [m]

@@ -126,6 +126,8 @@ std::vector<Cell> steps_around(const std::vector<double>& distances, double rang
 
 constexpr double kAtViewpoint = 0.12;  ///< viewpoints this close are served from where the robot stands [m]
 
+constexpr int kFaceStride = 4;  ///< subjects along a wall are so many cells apart, about
+
 /// A place from which something unsearched can be seen.
 struct Viewpoint {
   Cell cell;
