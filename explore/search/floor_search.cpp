@@ -217,13 +217,14 @@ std::vector<Source> FloorSearch::sources(const Traversable& map, Subjects subjec
   if (subjects == Subjects::Squarely) faces_left_ = !views_.empty();
   find_scraps(kFaceStride * map.frame().resolution);
   std::vector<Source> sources;
-  for (const View& view : views_) {
+  for (View& view : views_) {
     const std::optional<double> start = head_start(floor.cells.centre(view.cell));
     if (!start) continue;
     // A look that shows little has to be made good by others.
     const double lost = view.record == Record::Squarely ? 1.0 - std::min(1.0, shown(floor, view) / kFullLook) : 0.0;
     const bool solid = view.record == Record::Squarely && !beside_hole(map.cells, floor.cells, view);
-    sources.push_back({view.cell, *start + kLookCost * lost + view.scrap + (solid ? kSolidCost : 0.0)});
+    view.cost = *start + kLookCost * lost + view.scrap + (solid ? kSolidCost : 0.0);
+    sources.push_back({view.cell, view.cost});
   }
   return sources;
 }
@@ -357,13 +358,12 @@ void FloorSearch::start_dwell(Stamp now) {
 }
 
 double FloorSearch::choose_subject(Cell viewpoint) {
-  double scrap = kScrapCost;
-  for (const View& view : views_) {
-    if (view.cell != viewpoint) continue;
-    subject_ = {view.subject, view.faces, view.record};
-    scrap = std::min(scrap, view.scrap);
-  }
-  return scrap;
+  const View* best = nullptr;
+  for (const View& view : views_)
+    if (view.cell == viewpoint && (best == nullptr || view.cost <= best->cost)) best = &view;
+  if (best == nullptr) return 0.0;
+  subject_ = {best->subject, best->faces, best->record};
+  return best->scrap;
 }
 
 /// How far around a place that could not be looked at is given up with it [m].

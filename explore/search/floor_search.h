@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -74,8 +75,9 @@ class FloorSearch {
   bool place_left() const { return !views_.empty(); }
   /// Whether there were faces to be looked at squarely when that was asked last, in reach or not.
   bool faces_left() const { return squarely() && faces_left_; }
-  /// Makes what can be seen from `viewpoint` the place to face. Returns how much of its head start is no way, look or
-  /// turn but says that little else is left to be looked at around it [m].
+  /// Makes what is cheapest to be seen from `viewpoint` the place to face: that source which decided what the way there
+  /// costs. Returns how much of its head start is no way, look or turn but says that little else is left to be looked
+  /// at around it [m].
   double choose_subject(Cell viewpoint);
   /// Of all that can be seen from here makes that the place to face which needs the smallest turn; returns the turn
   /// [rad]; nothing when it already lies ahead.
@@ -106,6 +108,7 @@ class FloorSearch {
   struct View : Viewpoint {
     Record record = Record::Anyhow;
     double scrap = 0.0;  ///< what it costs more for having little to be looked at around it [m]
+    double cost = std::numeric_limits<double>::infinity();  ///< head start of its source, if it is one [m]
   };
 
   bool look_around(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);

@@ -45,5 +45,34 @@ TEST(Scraps, AreAsLongAtAnyResolution) {
   }
 }
 
+/// From where a lane and a scrap across from it can be seen, the robot comes for the lane: that is what it faces, and
+/// what its way was reckoned with.
+TEST(Scraps, ThePlaceToFaceIsTheOneThatMadeTheWayCheap) {
+  for (const bool lane_north : {false, true}) {
+    const double south = lane_north ? 0.4 : 3.6, north = lane_north ? 3.6 : 0.4;
+    const Traversable floor = between(south, north);
+    FloorSearch search({}, 0.46, 0.4);
+    const auto sources = search.sources(floor, Subjects::Squarely, kAnywhere);
+    int both = 0;
+    for (const Source& at : sources) {
+      double least = std::numeric_limits<double>::infinity(), most = 0.0;
+      for (const Source& source : sources) {
+        if (source.cell != at.cell) continue;
+        least = std::min(least, source.head_start);
+        most = std::max(most, source.head_start);
+      }
+      if (most - least < 6.0) continue;
+      ++both;
+      FloorSearch there = search;
+      EXPECT_EQ(there.choose_subject(at.cell), 0.0);
+      const TPoint2D p = floor.cells.centre(at.cell);
+      for (int i = 1; i <= 2; ++i)
+        there.look(floor, {p.x, p.y, (lane_north ? 0.5 : -0.5) * kPi}, 0.0, Stamp::from_seconds(i));
+      EXPECT_TRUE(there.subject_seen(floor)) << "from " << p.x << ", " << p.y;
+    }
+    EXPECT_GT(both, 0);
+  }
+}
+
 }  // namespace
 }  // namespace rubble::explore
