@@ -253,6 +253,15 @@ bool knows_no_place(const slam::Mapper& mapper) {
   });
 }
 
+/// The line for a robot that knows no place, with what may help beyond what was given.
+std::string knows_no_place_in(const slam::MapBase& base, bool torn_log) {
+  const char* const log = torn_log ? "the whole log" : "a longer log";
+  return "the robot does not know its place in " + base.name + ": " +
+         (base.start ? std::string("check --start, or give ") + log + " or"
+                     : std::string("give --start, ") + log + ", or") +
+         " a map of where it drove";
+}
+
 /// "1.23, -0.45 m, heading 90 deg, found at 12.3 s" on the run's clock
 std::string place_found(const slam::Mapper& mapper) {
   if (mapper.live_trajectory().empty()) return "not found";
@@ -309,9 +318,9 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   report.failure = end.failure;
   if (options.base) report.place = place_found(core.mapper());
   finish(report, evidence, folder, resolved, options, start);
-  if (knows_no_place(core.mapper()))
-    report.broken.push_back("the robot does not know its place in " + options.base->name +
-                            ": give --start, a longer log, or a map of where it drove");
+  // A run that was cut short had no time to find it.
+  if (knows_no_place(core.mapper()) && !end.interrupted && end.failure.empty())
+    report.broken.push_back(knows_no_place_in(*options.base, robot.was_torn()));
   return report;
 }
 

@@ -41,6 +41,28 @@ for how in --localise --continue; do
   json_holds lost$how/score.json "j['place_known'] == 0"
   [[ ! -s lost$how/estimate.tum ]] || fail "$how made up poses"
 done
+# What was given is not asked for, and a log that is cut is the first thing to mend.
+"$rubble" map brief --localise first --start 8,8,0 --out astray >table.txt
+[[ $? == 1 ]] && grep -q 'NOT AS EXPECTED .*does not know its place .*: check --start, or give a longer log or' table.txt ||
+  fail "a start that does not hold is not told: $(cat table.txt)"
+head -c "$(($(stat -c %s brief/log.rlog) - 100))" brief/log.rlog >torn.rlog
+"$rubble" map torn.rlog --localise first --out torn >table.txt
+[[ $? == 1 ]] && grep -q 'NOT AS EXPECTED .*does not know its place .*: give --start, the whole log, or' table.txt ||
+  fail "a torn log without a place is not told: $(cat table.txt)"
+# Ctrl-C before the place is found: no more is wrong than that. Struck anew where the program was too early or too late.
+for _ in $(seq 30); do
+  rm -rf cut
+  "$rubble" map first --localise first --out cut >table.txt 2>err.txt &
+  mapping=$!
+  until [[ -e cut/versions.json ]] || ! kill -0 $mapping 2>/dev/null; do sleep 0.005; done
+  kill -INT $mapping 2>/dev/null
+  wait $mapping
+  code=$?
+  [[ $code == 130 ]] && grep -q '"place_known": 0' cut/score.json 2>/dev/null && break
+done
+[[ $code == 130 ]] || fail "no Ctrl-C came before the place was found: $code"
+json_holds cut/score.json "j['place_known'] == 0 and j['end'] == 'interrupted'"
+! grep 'NOT AS EXPECTED' table.txt || fail "Ctrl-C counts as a place that is not found"
 
 "$rubble" export first graph.g2o >/dev/null && grep -q '^EDGE_SE2' graph.g2o || fail "no graph.g2o"
 "$rubble" export first map.simplemap >/dev/null && [[ -s map.simplemap ]] || fail "no map.simplemap"
