@@ -141,7 +141,8 @@ Command batch_command() {
             o.argument("sweep", a->sweep, "Sweep file, or the name of a shipped one", Options::Need::Optional);
             add_workers(o, a->workers);
             o.text("--out", a->out, "Folder for the results (default: runs/NAME of the sweep)");
-            o.text("--seeds", a->seeds, "Only the first so many seeds of the sweep (6), or others instead (101-108)");
+            o.text("--seeds", a->seeds,
+                   "Only the first so many seeds of the sweep (6), or others instead (101-108; one: 101-101)");
             o.text("--shard", a->shard, "Make only part i of N: --shard i/N");
             o.flag("--retry", a->retry, "Make failed and timed-out runs again");
             o.flag("--record", a->record, "Keep the log of each run");
