@@ -23,6 +23,9 @@ namespace {
 using mrpt::math::TPoint2D;
 using Colour = cv::Vec3b;
 
+/// Three digits, and all of those before the point.
+std::string cost_text(double metres) { return cv::format(metres < 999.5 ? "%.3g m" : "%.0f m", metres); }
+
 const Colour kWall(0, 0, 0), kUnseen(215, 200, 200), kCutOff(255, 255, 255), kGoal(220, 90, 40), kWay(30, 30, 220);
 constexpr double kDarkest = 40.0, kLightest = 235.0;  ///< greys of cells at a goal and farthest from all
 
@@ -90,7 +93,7 @@ Drawing draw(const Traversable& floor, const ExplorationTransform& transform, co
   for (const Source& s : goals) paint(s.cell, kGoal);
   for (const Cell c : way) paint(c, kWay);
   put_axes(image, frame, scale);
-  std::vector<StripItem> items{bar_item(image, "cost to the " + what + ": 0", cv::format("%.3g m", most),
+  std::vector<StripItem> items{bar_item(image, "cost to the " + what + ": 0", cost_text(most),
                                         [](double share) { return bgr_of(grey(share)); })};
   std::vector<LegendEntry> entries{{kGoal, what}};
   if (!way.empty()) entries.push_back({kWay, "way"});
