@@ -3,6 +3,31 @@
 # before the work has begun, 130 with one line and none.
 . "$(dirname "$0")/lib.sh"
 fault_scenario s.yaml 4000
+
+# strike_amid SIGNAL DELAY SIGN COMMAND...: starts the command, waits until the command SIGN prints something and DELAY
+# seconds more, stops the program, looks again, and lets it go on to the signal. $amid: whether SIGN still printed then.
+strike_amid() {
+  local signal=$1 delay=$2 sign=$3 pid state
+  shift 3
+  "$@" >struck.out 2>struck.err &
+  pid=$!
+  listens $pid
+  while [[ -z $($sign 2>/dev/null) ]] && kill -0 $pid 2>/dev/null; do :; done
+  [[ $delay == 0 ]] || sleep "$delay"
+  kill -STOP $pid 2>/dev/null
+  for _ in $(seq 1000); do  # T: stopped, Z: over
+    state=$(ps -o stat= -p $pid)
+    [[ -n $state && $state != [TZ]* ]] || break
+  done
+  amid=
+  [[ $state != T* ]] || amid=$($sign 2>/dev/null)
+  kill -"$signal" $pid 2>/dev/null
+  kill -CONT $pid 2>/dev/null
+  wait $pid
+  code=$?
+  struck=$((struck + 1))
+}
+
 for signal in INT TERM HUP; do
   for i in $(seq "$moments"); do
     rm -rf run
@@ -19,6 +44,13 @@ for signal in INT TERM HUP; do
     esac
     [[ $(wc -l <struck.err) -le 1 ]] || fail "SIG$signal at moment $i: more than one line: $(head -c 300 struck.err)"
   done
+  # At least one strike hits work that is under way.
+  for _ in $(seq 20); do
+    rm -rf run
+    strike_amid "$signal" 0 "ls run/.partial" "$rubble" run s.yaml --out run
+    [[ $code != 130 || ! -s run/score.json ]] || break
+  done
+  [[ $code == 130 && -s run/score.json && ! -e run/.partial ]] || fail "no SIG$signal ended a run under way: $code"
 done
 for i in $(seq "$moments"); do
   rm -rf run
@@ -56,23 +88,26 @@ done
 mkdir exported
 "$rubble" export long exported/run.rawlog >/dev/null || fail "export ended with $?"
 cp exported/run.rawlog whole.rawlog
+# strike_export SIGNAL DELAY: into its writing, which $mid_write counts, or after its end.
+strike_export() {
+  strike_amid "$1" "$2" "find exported -name *.part -size +0" "$rubble" export long exported/run.rawlog
+  if [[ -n $amid ]]; then
+    mid_write=$((mid_write + 1))
+    [[ $code == 130 ]] || fail "SIG$1 to export that writes ended with $code: $(head -c 300 struck.err)"
+  fi
+  [[ $code == 0 || $code == 130 ]] || fail "SIG$1 to export ended with $code: $(head -c 300 struck.err)"
+  [[ $(ls exported) == run.rawlog ]] || { fail "SIG$1 to export leaves: $(ls exported)"; rm -f exported/*.part; }
+  cmp -s exported/run.rawlog whole.rawlog || fail "SIG$1 to export cut the file"
+}
 for signal in INT TERM HUP; do
+  mid_write=0
   for i in $(seq "$moments"); do
-    "$rubble" export long exported/run.rawlog >struck.out 2>struck.err &
-    pid=$!
-    listens $pid
-    for _ in $(seq 500); do  # until it writes, or is done
-      [[ -z $(find exported -name '*.part' -size +0) ]] && kill -0 $pid 2>/dev/null || break
-    done
-    sleep "$(awk -v n="$i" 'BEGIN { printf "%.3f", 0.02 * (n % 10) }')"
-    kill -"$signal" $pid 2>/dev/null
-    wait $pid
-    code=$?
-    struck=$((struck + 1))
-    [[ $code == 0 || $code == 130 ]] || fail "SIG$signal to export ended with $code: $(head -c 300 struck.err)"
-    [[ $(ls exported) == run.rawlog ]] || { fail "SIG$signal to export leaves: $(ls exported)"; rm -f exported/*.part; }
-    cmp -s exported/run.rawlog whole.rawlog || fail "SIG$signal to export cut the file"
+    strike_export "$signal" "$(awk -v n="$i" 'BEGIN { printf "%.3f", 0.02 * (n % 10) }')"
   done
+  for _ in $(seq 20); do
+    ((mid_write == 0)) && strike_export "$signal" 0
+  done
+  ((mid_write > 0)) || fail "no SIG$signal found export at its writing"
 done
 
 # A pipe for errors that nobody reads, which is full, as a terminal that is held by Ctrl-S: who ends work that is not asked
