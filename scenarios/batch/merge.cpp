@@ -253,6 +253,24 @@ void write_database(const std::string& path, const ResultSet& set) {
   db.execute("COMMIT");
 }
 
+/// A new file beside `out`, removed in the end where it did not become that.
+class Partial {
+ public:
+  explicit Partial(const std::string& out) : path_(new_file_beside(out)) {}
+  ~Partial() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+    let_be(path_);
+  }
+  Partial(const Partial&) = delete;
+  Partial& operator=(const Partial&) = delete;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 }  // namespace
 
 ResultSet load_results(const std::string& path) {
@@ -304,16 +322,9 @@ MergeReport merge(const std::vector<std::string>& sources, const std::string& na
   all.runs = unique_runs(std::move(all.runs), out);
   report.runs = all.runs.size();
   report.added = report.runs - before;
-  const std::string partial = new_file_beside(out);
-  try {
-    write_database(partial, all);
-  } catch (const RunError&) {
-    fs::remove(partial, error);
-    let_be(partial);
-    throw;
-  }
-  fs::rename(partial, out, error);
-  let_be(partial);
+  const Partial partial(out);
+  write_database(partial.path(), all);
+  fs::rename(partial.path(), out, error);
   if (error) throw RunError(out + ": cannot be written (" + error.message() + "); give another --out");
   return report;
 }
