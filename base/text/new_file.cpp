@@ -41,7 +41,8 @@ void note_unfinished(const std::string& part) {
   }
 }
 
-/// No signal comes between a file's making and its being noted.
+/// No signal comes to this thread between a file's making and its being noted. One that another thread takes just then
+/// may leave the file: noted before it is made, a file of someone else could be removed.
 class SignalsWait {
  public:
   SignalsWait() {

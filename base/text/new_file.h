@@ -34,6 +34,7 @@ class NewFile {
 /// Makes a file beside `target` that nobody else made: a link or file that was planted under its name is not followed.
 /// Its descriptor, or -1; its name is left in `part`. Until let_be(part) it counts as unfinished.
 int create_beside(const std::string& target, std::string& part);
+/// It was renamed or removed: remove_unfinished_files() no longer knows `part`.
 void let_be(const std::string& part);
 
 /// Removes what this process has not finished, for a signal handler that ends it: safe there.

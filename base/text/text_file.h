@@ -18,7 +18,8 @@ void write_text_file(const std::string& path, std::string_view text);
 /// InputError.
 std::string place_in(const std::string& folder, const std::string& name);
 
-/// A new empty file beside `path`, of no foreseeable name, to be renamed to it. Throws RunError.
+/// A new empty file beside `path`, of no foreseeable name, to be renamed to it. Until let_be() it counts as unfinished,
+/// see new_file.h. Throws RunError.
 std::string new_file_beside(const std::string& path);
 
 }  // namespace rubble
