@@ -327,11 +327,15 @@ bool LoopCloser::explained_already(const Task& task, const KeyFrames::Agreement&
 }
 
 /// A loop that moves the robot counts when others of the last key frames say the same.
-void LoopCloser::confirm(const Claim& claim) {
+void LoopCloser::confirm(const LoopClaim& claim) {
   std::vector<std::size_t> group;
-  for (std::size_t k = 0; k < waiting_.size(); ++k)
-    if (agree(claim.loop, waiting_[k].loop)) group.push_back(k);
-  if (!believed(claim, group)) {
+  std::vector<LoopClaim> claims;
+  for (std::size_t k = 0; k < waiting_.size(); ++k) {
+    if (!agree(claim.loop, waiting_[k].loop)) continue;
+    group.push_back(k);
+    claims.push_back(waiting_[k]);
+  }
+  if (!believed(config_, frames_, claim, claims)) {
     waiting_.push_back(claim);
     if (waiting_.size() > kMostWaiting) waiting_.pop_front();
     return;
@@ -344,30 +348,30 @@ void LoopCloser::confirm(const Claim& claim) {
 
 /// One of them at least must contradict next to nothing: where cells are alike, a wrong place fits half, and stays the
 /// same wrong place for metres. What is wrong about one old view is wrong each time that it is asked, so loops that
-/// move the robot must lead to several. And what a robot says that turns or shuffles on the spot is one thing said
-/// thrice: that is enough for what was to be expected after the way there, and for a slide only with a loop from
-/// elsewhere.
-bool LoopCloser::believed(const Claim& newest, const std::vector<std::size_t>& group) const {
-  const auto enough = [&](int loops) { return loops >= config_.confirmations; };
-  const TPose2D& here = frames_.pose(newest.loop.to);
-  std::set<int> views{newest.loop.from};
-  bool clear = newest.clear;
+/// move the robot must lead to several, and to each with one that contradicts next to nothing: from a robot that is off
+/// by a quarter of a cell the next cell fits as well as its own does, but for what little differs. And what a robot
+/// says that turns or shuffles on the spot is one thing said thrice: that is enough for what was to be expected after
+/// the way there, and for a slide only with a loop from elsewhere.
+bool believed(const LoopConfig& config, const KeyFrames& frames, const LoopClaim& newest,
+              const std::vector<LoopClaim>& group) {
+  const auto enough = [&](int loops) { return loops >= config.confirmations; };
+  const TPose2D& here = frames.pose(newest.loop.to);
+  std::set<int> clear_views;
+  if (newest.clear) clear_views.insert(newest.loop.from);
   bool sure = newest.clear && newest.expected;
   int close = 1;
   double apart = 0.0;
-  for (const std::size_t k : group) {
-    const Claim& claim = waiting_[k];
-    const TPose2D& there = frames_.pose(claim.loop.to);
+  for (const LoopClaim& claim : group) {
+    const TPose2D& there = frames.pose(claim.loop.to);
     apart = std::max(apart, length(there.x - here.x, there.y - here.y));
-    views.insert(claim.loop.from);
-    clear = clear || claim.clear;
+    if (claim.clear) clear_views.insert(claim.loop.from);
     if (newest.loop.to - claim.loop.to > kConfirmedWithin) continue;
     sure = sure || (claim.clear && claim.expected);
     ++close;
   }
-  if (newest.moves > kExpectedMoves && static_cast<int>(views.size()) < config_.views) return false;
+  if (newest.moves > kExpectedMoves && static_cast<int>(clear_views.size()) < config.views) return false;
   return (enough(close) && sure) ||
-         (enough(static_cast<int>(group.size()) + 1) && clear && apart >= config_.apart_distance);
+         (enough(static_cast<int>(group.size()) + 1) && !clear_views.empty() && apart >= config.apart_distance);
 }
 
 /// Whether two loops place the newer key frame of `b` alike, as seen from the older one of `a`.

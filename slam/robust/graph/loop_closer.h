@@ -64,6 +64,18 @@ struct LoopCounts {
   std::uint64_t astray = 0;        ///< key frames that old ones around contradicted when they came
 };
 
+/// A loop that waits for others to agree.
+struct LoopClaim {
+  GraphEdge loop;
+  bool clear;     ///< next to nothing contradicts it
+  bool expected;  ///< it moves the robot no farther than the way there explains
+  double moves;   ///< how far it moves the robot [m]
+};
+
+/// Whether the newest claim is to be believed together with a group of older ones that say the same of key frames.
+bool believed(const LoopConfig& config, const KeyFrames& frames, const LoopClaim& newest,
+              const std::vector<LoopClaim>& group);
+
 /// Finds loops among the key frames and keeps their graph solved. What a new key frame asks for is queued and done by
 /// work(), in slices; what comes of it is the same for all sizes of slices that keep up with the drive.
 class LoopCloser {
@@ -109,15 +121,7 @@ class LoopCloser {
   void verify(const Task& task, const mrpt::math::TPose2D& start, Work& budget);
   bool sees_through(const Task& task, const mrpt::math::TPose2D& T_old_new, const mrpt::math::TPose2D& T_expected,
                     double* contradiction);
-  /// A loop that waits for others to agree.
-  struct Claim {
-    GraphEdge loop;
-    bool clear;     ///< next to nothing contradicts it
-    bool expected;  ///< it moves the robot no farther than the way there explains
-    double moves;   ///< how far it moves the robot [m]
-  };
-  void confirm(const Claim& claim);
-  bool believed(const Claim& newest, const std::vector<std::size_t>& group) const;
+  void confirm(const LoopClaim& claim);
   bool agree(const GraphEdge& a, const GraphEdge& b) const;
   void accept(const GraphEdge& loop, bool near);
   /// An old key frame that may be close.
@@ -163,7 +167,7 @@ class LoopCloser {
   Correlator correlator_;
   RivalSearch search_;
 
-  std::deque<Claim> waiting_;
+  std::deque<LoopClaim> waiting_;
   std::set<std::pair<int, int>> linked_;  ///< pairs with an edge already
   std::vector<GraphEdge> fresh_;          ///< edges since the last solve
   int frames_since_solve_ = 0;

@@ -229,6 +229,32 @@ TEST(LoopCloser, WhatIsSaidThriceOfOneOldViewIsNotBelieved) {
   }
 }
 
+/// Each old view that is asked has to be led to by a loop that contradicts next to nothing.
+TEST(LoopCloser, OfViewsThatAreHalfContradictedNoneCounts) {
+  const auto places = twice_round();
+  KeyFrames frames;
+  for (std::size_t i = 0; i < 12; ++i) slam_test::add_key_frame(frames, ring_corridor(), places, 0.001, RobotModel());
+  const auto claim = [](int from, int to, bool clear, double moves) {
+    LoopClaim claim{{}, clear, false, moves};
+    claim.loop.from = from;
+    claim.loop.to = to;
+    return claim;
+  };
+  LoopConfig config;
+  config.apart_distance = 0.1;
+  const auto with = [&](const LoopClaim& a, const LoopClaim& b, const LoopClaim& newest) {
+    return believed(config, frames, newest, {a, b});
+  };
+  EXPECT_TRUE(with(claim(0, 7, true, 1.2), claim(1, 9, true, 1.2), claim(1, 11, true, 1.2)));
+  EXPECT_TRUE(with(claim(0, 7, true, 1.2), claim(1, 9, true, 1.2), claim(2, 11, false, 1.2))) << "two are clear";
+  EXPECT_FALSE(with(claim(0, 7, true, 1.2), claim(0, 9, true, 1.2), claim(1, 11, false, 1.2))) << "both of one view";
+  EXPECT_FALSE(with(claim(0, 7, false, 1.2), claim(1, 9, false, 1.2), claim(2, 11, true, 1.2)));
+  EXPECT_FALSE(with(claim(0, 7, false, 0.2), claim(1, 9, false, 0.2), claim(2, 11, false, 0.2)));
+  EXPECT_TRUE(with(claim(0, 7, false, 0.2), claim(1, 9, false, 0.2), claim(2, 11, true, 0.2))) << "it hardly moves";
+  config.views = 1;
+  EXPECT_TRUE(with(claim(0, 7, false, 1.2), claim(1, 9, false, 1.2), claim(2, 11, true, 1.2)));
+}
+
 TEST(LoopCloser, WhatIsSaidOnOneSpotIsNotBelievedOfAnUnexpectedMove) {
   const auto turn = [](int k) { return TPose2D(0.0, 0.0, 0.15 * k); };
   // To and fro: metres of path.
