@@ -4,8 +4,8 @@
 #include <cstdlib>
 
 #include "bench/scoring_data.h"
-#include "scoring/rooms/room_hypotheses.h"
 #include "scoring/pictures/room_picture.h"
+#include "scoring/rooms/room_hypotheses.h"
 
 /// Rooms found on the public floor maps (RUBBLE_DATA/rooms), plain and furnished, against those drawn by hand.
 /// One table a method: bench/scoring_rooms_bench. With RUBBLE_PICTURES=FOLDER the rooms are drawn as well.
