@@ -83,7 +83,7 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   if (mapper.revision() != revision_) follow_map(mapper);
   if (!inputs.scans.empty()) {
     last_scan_ = now_;
-    const auto& wall = agenda_.doubted_wall();
+    const std::optional<TPoint2D> wall = agenda_.doubted_wall();
     if (wall && distance(*wall, position(pose_)) < kAtWall)
       close_looks_.look(mapper.last_hits(), pose_);
     else

@@ -4,6 +4,7 @@
 #include <optional>
 
 namespace rubble::explore {
+
 void BrakeTest::update(const robot::Inputs& inputs) {
   for (const robot::Acceleration& sample : inputs.accelerations) {
     const bool brakes = under_way(sample.stamp);

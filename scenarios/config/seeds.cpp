@@ -4,8 +4,10 @@
 #include <charconv>
 #include <cstddef>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "base/error.h"
 #include "scenarios/config/needed_key.h"
@@ -23,6 +25,16 @@ std::optional<std::uint64_t> whole_number(const std::string& text) {
   return value;
 }
 
+/// First and last of a range of seeds (1-24), or one seed as both; nothing where it is neither. A range is not
+/// backwards.
+std::optional<std::pair<std::uint64_t, std::uint64_t>> seed_range(const std::string& text) {
+  const auto dash = text.find('-');
+  const auto first = whole_number(text.substr(0, dash));
+  const auto last = dash == std::string::npos ? first : whole_number(text.substr(dash + 1));
+  if (!first || !last || *last < *first) return std::nullopt;
+  return std::pair(*first, *last);
+}
+
 }  // namespace
 
 std::vector<std::string> one_or_more(const YamlMap& map, const std::string& key) {
@@ -31,14 +43,6 @@ std::vector<std::string> one_or_more(const YamlMap& map, const std::string& key)
   } catch (const InputError&) {
     return map.texts(key);
   }
-}
-
-std::optional<std::pair<std::uint64_t, std::uint64_t>> seed_range(const std::string& text) {
-  const auto dash = text.find('-');
-  const auto first = whole_number(text.substr(0, dash));
-  const auto last = dash == std::string::npos ? first : whole_number(text.substr(dash + 1));
-  if (!first || !last || *last < *first) return std::nullopt;
-  return std::pair(*first, *last);
 }
 
 std::vector<std::uint64_t> chosen_seeds(const std::vector<std::uint64_t>& seeds, const std::string& text) {

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/yaml/strict_yaml.h"
@@ -12,10 +10,6 @@ namespace rubble::scenarios {
 
 /// The values of a key that may be one value or a list.
 std::vector<std::string> one_or_more(const YamlMap& map, const std::string& key);
-
-/// First and last of a range of seeds (1-24), or one seed as both; nothing where it is neither. A range is not
-/// backwards.
-std::optional<std::pair<std::uint64_t, std::uint64_t>> seed_range(const std::string& text);
 
 /// The seeds that a sweep is made with where the command line names `text`: the first so many of `seeds`, or a range of
 /// others. Throws std::invalid_argument, what is wrong with it.
