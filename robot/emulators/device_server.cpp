@@ -46,8 +46,11 @@ void DeviceServer::fall_silent(double duration) {
   with([&] { faults_.fall_silent(host_now() + duration); });
 }
 
-void DeviceServer::slow_down(double duration) {
-  with([&] { slow_until_ = host_now() + duration; });
+void DeviceServer::slow_down(double duration, double way) {
+  with([&] {
+    slow_until_ = host_now() + duration;
+    slow_way_ = way;
+  });
 }
 
 void DeviceServer::unplug(double duration) {
@@ -93,12 +96,12 @@ void DeviceServer::turn() {
 }
 
 void DeviceServer::hear(std::string bytes, Stamp now) {
-  const Stamp due = now < slow_until_ ? now + kSlowWay : now;
+  const Stamp due = now < slow_until_ ? now + slow_way_ : now;
   incoming_.push_back({incoming_.empty() ? due : std::max(due, incoming_.back().due), std::move(bytes)});
 }
 
 void DeviceServer::queue(const std::vector<std::string>& pieces, Stamp now) {
-  Stamp due = now < slow_until_ ? now + kSlowWay : now;
+  Stamp due = now < slow_until_ ? now + slow_way_ : now;
   if (!outgoing_.empty()) due = std::max(due, outgoing_.back().due);
   for (const std::string& piece : pieces) {
     outgoing_.push_back({due, piece});

@@ -40,8 +40,8 @@ class DeviceServer {
   void spoil(ByteFault fault, double duration);
   /// For `duration` [s] the device neither hears nor speaks.
   void fall_silent(double duration);
-  /// For `duration` [s] every byte, either way, takes kSlowWay; the order of the bytes stays.
-  void slow_down(double duration);
+  /// For `duration` [s] every byte takes `way` [s] either way; the order of the bytes stays.
+  void slow_down(double duration, double way = kSlowWay);
   static constexpr double kSlowWay = 0.5;  ///< [s]
   /// The plug is pulled and comes back after `duration` [s].
   void unplug(double duration);
@@ -72,6 +72,7 @@ class DeviceServer {
   Stamp unplug_until_ = Stamp::never();
   bool unplugged_ = false;
   Stamp slow_until_ = Stamp::never();
+  double slow_way_ = kSlowWay;  ///< [s]
   std::deque<Piece> outgoing_;  ///< the thread's own
   std::deque<Piece> incoming_;  ///< the same, of the client's bytes
   std::thread thread_;
