@@ -81,7 +81,9 @@ bool FeltObstacles::felt_on(const TPoint2D& middle) const {
 
 /// The pallet that the body reaches into: what lies before its middle. A corner of it may have met the edge of another:
 /// the one pallet before a corner counts before that which it stands on, and before one ahead that it has stood on. Of
-/// two that it has not stood on nobody can tell, but that what was felt before is it again.
+/// two that it has not stood on nobody can tell, but that what was felt before is it again. A step field beside a
+/// corner that nothing kept the robot from is it, whatever else it reaches into: cutting that field's corner on the way
+/// into a lane says nothing of the lane.
 std::optional<Cell> FeltObstacles::reached(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
                                            const std::vector<TPoint2D>& trail, const OccupancyGrid* known) const {
   const TPose2D& T_map_base = touch.anchor.T_map_base;
@@ -92,6 +94,8 @@ std::optional<Cell> FeltObstacles::reached(const Thing& touch, const PalletGrid&
   const Cell ahead = grid.pallet(T_map_base.composePoint(TPoint2D{reach, 0.0}));
   // Among steps, those it stands on stop it: only the higher ones show.
   if (known != nullptr && shows_step_field(*known, grid, own)) return own;
+  if (known != nullptr)
+    if (const auto field = field_beside(touch, grid, model, trail, *known)) return field;
   if (ahead == own) {
     // Steps were felt on its own one before: it is that again.
     if (felt_on(grid.middle(own))) return own;
@@ -107,6 +111,25 @@ std::optional<Cell> FeltObstacles::reached(const Thing& touch, const PalletGrid&
   for (const Cell pallet : others)
     if (felt_on(grid.middle(pallet))) return pallet;
   return std::nullopt;
+}
+
+/// The only step field that a front corner of the body is above, or nearly, if it is no obstacle yet.
+std::optional<Cell> FeltObstacles::field_beside(const Thing& touch, const PalletGrid& grid,
+                                                const robot::RobotModel& model, const std::vector<TPoint2D>& trail,
+                                                const OccupancyGrid& known) const {
+  const double reach = touch.side * (0.5 * model.length + kBeyondEdge), aside = kCorner * model.width;
+  const double shoulder = touch.side * kCorner * model.length, side = 0.5 * model.width + kBeyondEdge;
+  std::vector<Cell> fields = new_pallets({{reach, -aside}, {reach, aside}, {shoulder, -side}, {shoulder, side}},
+                                         touch.anchor.T_map_base, grid, trail, &known);
+  const auto is_none = [&](Cell pallet) {
+    const TPoint2D middle = grid.middle(pallet);
+    return !shows_step_field(known, grid, pallet) ||
+           std::any_of(things_.begin(), things_.end(), [&](const Thing& thing) {
+             return is_pallet_at(thing, middle) && counts(thing, touch.anchor.stamp) && closed(thing);
+           });
+  };
+  fields.erase(std::remove_if(fields.begin(), fields.end(), is_none), fields.end());
+  return fields.size() == 1 ? std::optional(fields.front()) : std::nullopt;
 }
 
 /// The pallets below points of the body but its own, if the robot has not stood on them and no wall of the map is

@@ -101,6 +101,8 @@ class FeltObstacles {
                    const std::vector<mrpt::math::TPoint2D>& trail, const OccupancyGrid* known);
   std::optional<Cell> reached(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
                               const std::vector<mrpt::math::TPoint2D>& trail, const OccupancyGrid* known) const;
+  std::optional<Cell> field_beside(const Thing& touch, const PalletGrid& grid, const robot::RobotModel& model,
+                                   const std::vector<mrpt::math::TPoint2D>& trail, const OccupancyGrid& known) const;
   static std::vector<Cell> new_pallets(const std::vector<mrpt::math::TPoint2D>& points,
                                        const mrpt::math::TPose2D& T_map_base, const PalletGrid& grid,
                                        const std::vector<mrpt::math::TPoint2D>& trail, const OccupancyGrid* known);

@@ -143,6 +143,26 @@ TEST(FeltObstacles, AmongStepsThePalletItStandsOnIsToBlameNotTheNext) {
   }
 }
 
+/// On its way round the corner of a field its wheel met the outermost step, and the lane before it was left alone: the
+/// only one to two fifths of a red arena.
+TEST(FeltObstacles, AStepFieldBesideACornerIsToBlameUnlessItIsKeptClearOf) {
+  const PalletGrid grid;
+  const TPose2D cuts_corner{2.25, 1.15, deg_to_rad(-51.0)};  // four pallets meet at (2.4, 1.2)
+  const TPoint2D lane{3.0, 0.6}, field{3.0, 1.8};
+  const std::vector<TPoint2D> trail{{1.8, 1.8}, {1.8, 0.6}};
+  for (const bool shows : {false, true}) {
+    OccupancyGrid known = test::room(6.0, 4.0);
+    for (double d = 0.2; shows && d < 1.0; d += 0.05)
+      test::fill(known, 2.4 + d - 0.04, 2.4 - d - 0.04, 2.4 + d + 0.04, 2.4 - d + 0.04, Occupancy::Occupied);
+    FeltObstacles felt;
+    EXPECT_TRUE(felt.feel({at(1.0), cuts_corner}, false, kModel, grid, trail, &known, true));
+    EXPECT_EQ(nearest(felt.points(at(2.0)), field) < 0.1, shows);
+    EXPECT_EQ(nearest(felt.points(at(2.0)), lane) < 0.1, !shows);
+    felt.feel({at(3.0), cuts_corner}, false, kModel, grid, trail, &known, true);
+    EXPECT_LT(nearest(felt.points(at(4.0)), lane), 0.1) << "it kept clear of the field and was struck all the same";
+  }
+}
+
 /// Steps are not crossed however often they are tried, and crossing ramps let the robot in and not out again.
 TEST(FeltObstacles, APalletThatStruckTheBodyIsNotPardonedButForgottenOnce) {
   const PalletGrid grid;
