@@ -10,7 +10,7 @@
 namespace rubble::slam {
 namespace {
 
-constexpr float kSameSide = 0.6F;
+constexpr float kSameSide = 0.9F;
 
 double d2(const Surfel& q, float x, float y) {
   const double dx = static_cast<double>(q.x - x);
