@@ -191,7 +191,7 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
   if (holds_still()) return {};
   const bool on_purpose = pilot_.turning() || agenda_.goal() == Goal::Place;
   if (const auto hold = stuck_watch_.held(pose_, commanded_, on_purpose, dt_, now_)) {
-    if (hold->stands && straight_on_.explains(commanded_, stuck_watch_.wheels()) &&
+    if (straight_on_.explains(*hold, commanded_, stuck_watch_.wheels()) &&
         straight_on_.worth(pose_, floor_, mapper.last_hits(), now_)) {
       agenda_.note(now_, "its wheels slip in a curve: drives straight on");
       pilot_.stop();

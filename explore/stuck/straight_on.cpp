@@ -24,7 +24,9 @@ constexpr double kLag = 0.1;            ///< from a scan to the brake [s]
 
 }  // namespace
 
-bool StraightOn::explains(const Drive& commanded, const std::optional<Drive>& wheels) const {
+bool StraightOn::explains(const StuckWatch::Hold& hold, const Drive& commanded,
+                          const std::optional<Drive>& wheels) const {
+  if (!hold.stands && !hold.steers_in_vain) return false;
   if (!wheels || commanded.v <= 0.0) return false;
   const double inner = 0.5 * model_.effective_track * std::abs(commanded.w);
   return inner > kCurve * commanded.v && wheels->v > kTurning * commanded.v &&

@@ -9,6 +9,7 @@
 #include "base/stamp.h"
 #include "explore/anchor.h"
 #include "explore/plan/traversable.h"
+#include "explore/stuck/stuck_watch.h"
 #include "robot/commands.h"
 #include "robot/model.h"
 
@@ -21,8 +22,10 @@ class StraightOn {
  public:
   explicit StraightOn(const robot::RobotModel& model) : model_(model) {}
 
-  /// Whether a robot that does not move as `commanded` is held so, by what its wheels do.
-  bool explains(const robot::Drive& commanded, const std::optional<robot::Drive>& wheels) const;
+  /// Whether a robot that does not move as `commanded` is held so, by what its wheels do: its pose stands, or its
+  /// heading alone stays while the pose creeps on; no blow, stall or slope tells of anything else.
+  bool explains(const StuckWatch::Hold& hold, const robot::Drive& commanded,
+                const std::optional<robot::Drive>& wheels) const;
   /// Whether to try it from here: not within a minute of another time in the same place, and there is room(). `hits`:
   /// of the newest scan [m, map frame].
   bool worth(const mrpt::math::TPose2D& T_map_base, const Traversable& floor,

@@ -53,8 +53,9 @@ std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_ma
   const bool slowed = slowed_.held(jolt_.shaken() && commanded.v != 0.0 && !turns_slowly, T_map_base,
                                    wheels_.value_or(commanded), tilt_.pitch(), dt, now);
   if (!tilt_.too_steep() && !blow && !slowed && !stuck) return std::nullopt;
-  const bool by_pose =
-      !tilt_.too_steep() && !blow && !slowed && !stalled_ && !motion_.rocking() && !motion_.steers_in_vain();
+  const bool by_motion = !tilt_.too_steep() && !blow && !slowed && !stalled_ && !motion_.rocking();
+  const bool in_vain = by_motion && motion_.steers_in_vain();
+  const bool by_pose = by_motion && !in_vain;
   const Escape::Met met = this->met(commanded);
   if (by_pose && met != Escape::Met::Turning && now < pose_doubted_until_) return std::nullopt;
   const Hold hold{tilt_.too_steep() ? "it leans too much here"
@@ -62,7 +63,7 @@ std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_ma
                   : slowed          ? "a blow holds it back"
                   : stalled_        ? "the motors stall"
                                     : "it does not move",
-                  met, by_pose};
+                  met, by_pose, in_vain};
   begin_anew();
   pose_doubted_until_ = Stamp::never();  // it drove into something since
   tilt_.reset();

@@ -25,7 +25,8 @@ class StuckWatch {
   struct Hold {
     std::string how;  ///< for people
     Escape::Met met;
-    bool stands = false;  ///< no more is known than that it does not move as told
+    bool stands = false;          ///< no more is known than that it does not move as told
+    bool steers_in_vain = false;  ///< no more than that its wheels turn it and its heading stays
   };
 
   explicit StuckWatch(const TiltWatchConfig& tilt) : tilt_(tilt) {}

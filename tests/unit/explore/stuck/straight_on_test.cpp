@@ -15,17 +15,23 @@ const TPose2D kHere{2.0, 2.0, 0.0};
 
 Stamp at(double seconds) { return Stamp::from_seconds(seconds); }
 
+const StuckWatch::Hold kStands{"it does not move", Escape::Met::Forwards, true};
+
 TEST(StraightOn, ExplainsWheelsThatTurnInACurve) {
   const StraightOn straight_on(kModel);
   const Drive curve{0.15, 0.4};
-  EXPECT_TRUE(straight_on.explains(curve, curve));
-  EXPECT_TRUE(straight_on.explains({0.15, -0.4}, Drive{0.14, -0.38}));
-  EXPECT_FALSE(straight_on.explains(curve, std::nullopt)) << "nobody knows what the wheels do";
-  EXPECT_FALSE(straight_on.explains(curve, Drive{0.02, 0.4})) << "the wheels are held";
-  EXPECT_FALSE(straight_on.explains(curve, Drive{0.15, 0.05})) << "the wheels are held";
-  EXPECT_FALSE(straight_on.explains({0.3, 0.1}, Drive{0.3, 0.1})) << "hardly a curve: something is ahead";
-  EXPECT_FALSE(straight_on.explains({-0.15, 0.4}, Drive{-0.15, 0.4})) << "nobody looks backwards";
-  EXPECT_FALSE(straight_on.explains({0.0, 0.4}, Drive{0.0, 0.4}));
+  const StuckWatch::Hold steers{"it does not move", Escape::Met::Forwards, false, true};
+  const StuckWatch::Hold struck{"a blow stops it", Escape::Met::Forwards};
+  EXPECT_TRUE(straight_on.explains(steers, curve, curve)) << "it creeps on, but does not turn";
+  EXPECT_FALSE(straight_on.explains(struck, curve, curve)) << "something is there";
+  EXPECT_TRUE(straight_on.explains(kStands, curve, curve));
+  EXPECT_TRUE(straight_on.explains(kStands, {0.15, -0.4}, Drive{0.14, -0.38}));
+  EXPECT_FALSE(straight_on.explains(kStands, curve, std::nullopt)) << "nobody knows what the wheels do";
+  EXPECT_FALSE(straight_on.explains(kStands, curve, Drive{0.02, 0.4})) << "the wheels are held";
+  EXPECT_FALSE(straight_on.explains(kStands, curve, Drive{0.15, 0.05})) << "the wheels are held";
+  EXPECT_FALSE(straight_on.explains(kStands, {0.3, 0.1}, Drive{0.3, 0.1})) << "hardly a curve: something is ahead";
+  EXPECT_FALSE(straight_on.explains(kStands, {-0.15, 0.4}, Drive{-0.15, 0.4})) << "nobody looks backwards";
+  EXPECT_FALSE(straight_on.explains(kStands, {0.0, 0.4}, Drive{0.0, 0.4}));
 }
 
 TEST(StraightOn, DrivesOnForAWayOrATime) {

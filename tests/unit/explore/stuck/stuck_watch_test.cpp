@@ -162,6 +162,25 @@ TEST(StuckWatch, WherePosesAreDoubtedOtherSignsCount) {
   EXPECT_FALSE(robot.watch.brake_can_tell(*turn, robot.now));
 }
 
+/// Its pose goes on, so no brake could tell more; that its heading stays is a sign of its own.
+TEST(StuckWatch, SteeringInVainIsToldApartFromStanding) {
+  for (const bool turns : {false, true}) {
+    Watched robot;
+    robot.drive = {0.3, -0.6};
+    robot.obeys = turns;
+    std::optional<StuckWatch::Hold> hold;
+    for (int i = 0; i < 200 && !hold; ++i) {
+      if (!turns) robot.pose.x += 0.8 * robot.drive.v * Watched::kTickTime;
+      hold = robot.tick();
+    }
+    ASSERT_EQ(hold.has_value(), !turns);
+    if (!hold) continue;
+    EXPECT_TRUE(hold->steers_in_vain);
+    EXPECT_FALSE(hold->stands);
+    EXPECT_FALSE(robot.watch.brake_can_tell(*hold, robot.now));
+  }
+}
+
 TEST(StuckWatch, BrakingTellsWhetherTheRobotMoved) {
   for (const bool moves : {true, false}) {
     Watched robot;
