@@ -393,11 +393,15 @@ Traversable PaperExplorer::floor_now(const slam::Mapper& mapper, const std::vect
   Traversable floor = traversable(mapper.map(), config_.occupied_threshold, config_.search.low_walls);
   close_looks_.apply(floor);
   agenda_.pushing().free_things(floor);
+  // The last resort homewards is the way it came, whatever has rolled into it since.
+  const bool same_way = agenda_.goal() == Goal::Home && !agenda_.pushing().more();
+  if (same_way) loosen_trail(floor, trail_.points(), 0.5 * model_.width);
   free_body(floor, pose_, model_.length, model_.width, 0.0);
   free_trail(floor, trail_.points(), kTrailRadius);
   add_obstacles(floor, hits, kSameThing);
   add_obstacles(floor, left_alone_.obstacles(now_), kSameThing);
   measure_clearance(floor, agenda_.clearance_cap());
+  if (same_way) widen_trail(floor, trail_.points(), model_.width);
   return floor;
 }
 

@@ -178,6 +178,39 @@ void free_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double r
   }
 }
 
+void loosen_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double radius) {
+  const GridFrame& frame = floor.frame();
+  for (const TPoint2D& passed : trail) {
+    const Box box = cells_around(frame, passed, radius);
+    for (int y = box.low.y; y <= box.high.y; ++y)
+      for (int x = box.low.x; x <= box.high.x; ++x) {
+        const Cell c{x, y};
+        if (floor.cells[c] != Occupancy::Occupied && floor.obstacle[c] == 0) continue;
+        if (distance(frame.centre(c), passed) > radius) continue;
+        floor.cells[c] = Occupancy::Free;
+        floor.obstacle[c] = 0;
+        floor.loose.push_back(c);
+      }
+  }
+}
+
+void widen_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double clearance) {
+  constexpr double kStep = 0.05;  // a trail has a point every 0.15 m
+  const auto room = static_cast<float>(clearance);
+  const auto widen = [&](const TPoint2D& p) {
+    const Box box = cells_around(floor.frame(), p, 1.5 * floor.frame().resolution);
+    for (int y = box.low.y; y <= box.high.y; ++y)
+      for (int x = box.low.x; x <= box.high.x; ++x)
+        if (floor.obstacle[{x, y}] == 0) floor.clearance[{x, y}] = std::max(floor.clearance[{x, y}], room);
+  };
+  for (std::size_t i = 0; i + 1 < trail.size(); ++i) {
+    const TPoint2D way = trail[i + 1] - trail[i];
+    const int steps = static_cast<int>(std::ceil(length(way.x, way.y) / kStep));
+    if (steps > 10) continue;  // the map moved between
+    for (int k = 0; k <= steps; ++k) widen(trail[i] + way * (static_cast<double>(k) / std::max(1, steps)));
+  }
+}
+
 void keep_to_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double radius) {
   OccupancyGrid kept(floor.frame(), Occupancy::Unknown);
   const double reach = radius / floor.frame().resolution;

@@ -49,6 +49,12 @@ void free_trail(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& tra
 /// floor that has carried it.
 void keep_to_trail(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& trail, double radius);
 
+/// Makes free what lies within `radius` of a place the robot's centre has passed: it was not there then, or it is none.
+void loosen_trail(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& trail, double radius);
+
+/// Says that there is room of `clearance` [m] within a raster cell's diagonal of these places, where the robot passed.
+void widen_trail(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& trail, double clearance);
+
 /// Adds obstacles the map does not show (yet), e.g. the hits of the newest scan. A point within `near` of an obstacle
 /// of the map is taken for that obstacle, displaced by the error of the pose, and left out.
 void add_obstacles(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& points, double near);

@@ -193,6 +193,28 @@ TEST(Traversable, TheTrailFreesOnlyWhatWasNeverSeen) {
   EXPECT_EQ((floor.cells[{9, 1}]), Occupancy::Unknown);
 }
 
+/// A heap that was pushed against the wall of the only lane home, a wall that the robot passed by as near as it can.
+TEST(Traversable, WhatLiesOnTheTrailIsNoObstacleAndTheRobotFitsWhereItPassed) {
+  OccupancyGrid grid = test::room(4.0, 4.0);
+  test::fill(grid, 0.0, 1.26, 4.0, 1.36, Occupancy::Occupied);  // a wall, 0.26 m beside the trail on either side
+  test::fill(grid, 1.8, 0.6, 2.2, 1.30, Occupancy::Occupied);   // the heap
+  std::vector<TPoint2D> trail;
+  for (double x = 0.5; x < 3.5; x += 0.15) trail.push_back({x, 1.0});
+  for (double x = 3.5; x > 0.5; x -= 0.15) trail.push_back({x, 1.62});
+  Traversable floor = traversable(std::move(grid));
+  loosen_trail(floor, trail, 0.25);
+  measure_clearance(floor, 1.2);
+  const auto at = [&](double x, double y) { return floor.clearance[floor.clearance.cell(TPoint2D{x, y})]; };
+  EXPECT_LT(at(2.0, 1.0), 0.3F) << "the heap goes on beside it";
+  widen_trail(floor, trail, 0.5);
+  for (double x = 0.6; x < 3.4; x += 0.05) EXPECT_GE(at(x, 1.0), 0.5F) << x;
+  EXPECT_EQ(floor.cells[floor.cells.cell(TPoint2D{2.0, 1.1})], Occupancy::Free);
+  EXPECT_FALSE(floor.loose.empty()) << "the scanner may go on seeing it";
+  EXPECT_EQ(floor.cells[floor.cells.cell(TPoint2D{2.0, 0.65})], Occupancy::Occupied) << "off the trail";
+  for (double x = 0.1; x < 3.9; x += 0.05)
+    EXPECT_EQ(floor.cells[floor.cells.cell(TPoint2D{x, 1.31})], Occupancy::Occupied) << "no way through the wall";
+}
+
 TEST(Traversable, KeptToTheTrailOnlyFloorBesideItIsFree) {
   const Traversable all = traversable(test::random_grid(60, 40, 3));
   Traversable floor = all;
