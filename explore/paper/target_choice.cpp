@@ -25,6 +25,7 @@ constexpr double kHomeTolerances[] = {0.15, 0.4, 0.8};  ///< [m]
 constexpr double kCarried = 0.35;                       ///< from its trail floor carried the robot [m]
 constexpr double kKeep = 3.0;     ///< looks on the way change what a look squarely is worth: times the usual head start
 constexpr double kBeside = 0.25;  ///< [m]
+constexpr double kBeyond = 0.3;   ///< behind a face its wall's other pallet begins [m]
 constexpr double kNarrow = 4.0;   ///< what a way near to walls has to save on one that is not [m]
 const std::optional<PalletGrid> kNoGrid;
 
@@ -50,6 +51,20 @@ class StepFields {
   const OccupancyGrid& cells_;
   std::map<std::pair<int, int>, bool> shown_;
 };
+
+/// A place behind what a look at a face is for, where that is no wall that all scans hit: a field of steps begins on
+/// the edge of its pallet as well [m].
+std::optional<TPoint2D> behind_unsure_wall(const Traversable& floor, const Viewpoint& look) {
+  for (const auto& [face, step] :
+       {std::pair<Faces, Cell>{kEastFace, {1, 0}}, {kNorthFace, {0, 1}}, {kWestFace, {-1, 0}}, {kSouthFace, {0, -1}}}) {
+    if ((look.faces & face) == 0) continue;
+    const Cell subject = floor.cells.cell(look.subject);
+    const Cell wall{subject.x + step.x, subject.y + step.y};
+    if (!floor.cells.inside(wall) || (floor.cells[wall] == Occupancy::Occupied && floor.unsure[wall] == 0)) continue;
+    return look.subject + TPoint2D(step.x, step.y) * kBeyond;
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -155,12 +170,15 @@ Plan TargetChoice::to_place(const View& view, FloorSearch& search, Subjects subj
   LocalGrids grids(shown, pallet_, &grids_shown_);
   StepFields fields(shown);
   // Well inside the pallets stand no walls with holes, and among steps no boxes.
-  const auto idle = [&](const TPoint2D& subject) {
-    const std::optional<PalletGrid>& grid = pallet_ > 0.0 ? grids.near(subject) : kNoGrid;
+  const auto idle = [&](const Viewpoint& look) {
+    const std::optional<PalletGrid>& grid = pallet_ > 0.0 ? grids.near(look.subject) : kNoGrid;
     if (!grid) return false;
-    if (subjects == Subjects::Niches) return fields.shown_near(*grid, subject);
-    if (grid->depth(subject) < kInsidePallet) return false;
-    return subjects == Subjects::Squarely || fields.shown_at(*grid, subject);
+    if (subjects == Subjects::Niches) return fields.shown_near(*grid, look.subject);
+    if (grid->depth(look.subject) < kInsidePallet) {
+      const std::optional<TPoint2D> beyond = behind_unsure_wall(view.floor, look);
+      return subjects == Subjects::Squarely && beyond && fields.shown_at(*grid, *beyond);
+    }
+    return subjects == Subjects::Squarely || fields.shown_at(*grid, look.subject);
   };
   // Looking squarely at all takes more time than there is: what is rich is not left for the end for its narrow way.
   const auto detour = subjects == Subjects::Squarely ? std::optional(kNarrow) : std::nullopt;

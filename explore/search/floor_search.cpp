@@ -29,8 +29,8 @@ constexpr double kAnotherSide = 0.5;            ///< it is visited again from so
 constexpr double kSameStare = 0.5;              ///< cues so near to each other are stared at together [m]
 constexpr double kBox = 0.35;                   ///< a wall so near before a suspect may be the side of its box [m]
 constexpr double kLookCost = 1.5;               ///< what a look takes, in way, standing still and turning to it [m]
-constexpr double kSolidCost = 1.5;              ///< more way than this is driven to a hole that was seen first [m]
-constexpr int kHoleCells = 2;                   ///< so near it lies before the place to look at
+constexpr double kSolidCost = 4.0;              ///< more way than this is driven to a board with a hole first [m]
+constexpr int kTries = 1;                       ///< that slid off before a place is given up
 constexpr double kFullLook = 0.6;               ///< of wall that it shows squarely at best [m]
 constexpr double kScrapCost = 16.0;  ///< as much more way is driven to where there is plenty instead of nothing [m]
 constexpr double kPlenty = 1.0;      ///< as much as this, of wall ... [m]
@@ -148,6 +148,7 @@ bool FloorSearch::follow(const slam::Mapper& mapper) {
     any = any || moved(look.anchor, look.made_at);
   }
   for (GivenUp& place : given_up_) place.anchor.follow(mapper);
+  for (AnchoredPoint& place : slid_) place.follow(mapper);
   return any;
 }
 
@@ -195,7 +196,7 @@ void FloorSearch::give_up_subject(const Traversable& floor, const Anchor& here) 
 
 std::vector<Source> FloorSearch::sources(const Traversable& map, Subjects subjects,
                                          const std::function<std::optional<double>(const TPoint2D&)>& head_start,
-                                         const std::function<bool(const TPoint2D&)>& idle) {
+                                         const std::function<bool(const Viewpoint&)>& idle) {
   const Record cameras = subjects == Subjects::Squarely ? Record::Squarely : Record::Anyhow;
   std::optional<Traversable> shut;
   if (subjects == Subjects::Squarely) {
@@ -205,25 +206,27 @@ std::vector<Source> FloorSearch::sources(const Traversable& map, Subjects subjec
   const Traversable& floor = shut ? *shut : map;
   views_.clear();
   std::vector<Viewpoint> views = viewpoints(floor, record(cameras), config_, room_, tight_, subjects);
-  if (idle)
-    views.erase(std::remove_if(views.begin(), views.end(), [&](const Viewpoint& v) { return idle(v.subject); }),
-                views.end());
+  if (idle) views.erase(std::remove_if(views.begin(), views.end(), idle), views.end());
   add_views(views, cameras);
   if (subjects == Subjects::All) {
     for (const Other& other : others_)
       add_views(viewpoints(floor, other.area, other.config, room_, tight_, subjects), other.record);
     add_suspects(floor);
   }
-  if (subjects == Subjects::Squarely) faces_left_ = !views_.empty();
-  find_scraps(kFaceStride * map.frame().resolution);
+  if (subjects == Subjects::Squarely) {
+    faces_left_ = !views_.empty();
+    find_holes(map);
+  }
+  const double cell = map.frame().resolution;
+  find_scraps(cells_apart(kFaceStride, cell) * cell);
   std::vector<Source> sources;
   for (View& view : views_) {
     const std::optional<double> start = head_start(floor.cells.centre(view.cell));
     if (!start) continue;
     // A look that shows little has to be made good by others.
     const double lost = view.record == Record::Squarely ? 1.0 - std::min(1.0, shown(floor, view) / kFullLook) : 0.0;
-    const bool solid = view.record == Record::Squarely && !beside_hole(map.cells, floor.cells, view);
-    view.cost = *start + kLookCost * lost + view.scrap + (solid ? kSolidCost : 0.0);
+    view.solid = view.record == Record::Squarely && !view.hole ? kSolidCost : 0.0;
+    view.cost = *start + kLookCost * lost + view.scrap + view.solid;
     sources.push_back({view.cell, view.cost});
   }
   return sources;
@@ -236,26 +239,30 @@ void FloorSearch::find_scraps(double apart) {
   for (const View& view : views_)
     if (view.record == Record::Squarely && (subjects.empty() || distance(subjects.back(), view.subject) > 0.0))
       subjects.push_back(view.subject);
-  for (std::size_t i = 0; i < views_.size(); ++i) {
-    View& view = views_[i];
+  std::size_t subject = 0;
+  double scrap = -1.0;  // of the subject, once it was asked for
+  for (View& view : views_) {
     if (view.record != Record::Squarely) continue;
-    if (i > 0 && distance(views_[i - 1].subject, view.subject) == 0.0) {
-      view.scrap = views_[i - 1].scrap;
-      continue;
+    if (distance(subjects[subject], view.subject) > 0.0) {
+      ++subject;
+      scrap = -1.0;
     }
-    const auto near = std::count_if(subjects.begin(), subjects.end(),
-                                    [&](const TPoint2D& q) { return distance(view.subject, q) < kNeighbours; });
-    view.scrap = kScrapCost * (1.0 - std::min(1.0, apart * static_cast<double>(near) / kPlenty));
+    if (view.hole) continue;  // what is left of a board with holes is no scrap
+    if (scrap < 0.0) {
+      const auto near = std::count_if(subjects.begin(), subjects.end(),
+                                      [&](const TPoint2D& q) { return distance(view.subject, q) < kNeighbours; });
+      scrap = kScrapCost * (1.0 - std::min(1.0, apart * static_cast<double>(near) / kPlenty));
+    }
+    view.scrap = scrap;
   }
 }
 
-/// Whether the scanner saw a hole in the wall that a view faces, `shut` in one of the grids, near its subject.
-bool FloorSearch::beside_hole(const OccupancyGrid& cells, const OccupancyGrid& shut, const View& view) {
-  const Cell c = cells.cell(view.subject);
-  for (int y = std::max(0, c.y - kHoleCells); y <= std::min(cells.height() - 1, c.y + kHoleCells); ++y)
-    for (int x = std::max(0, c.x - kHoleCells); x <= std::min(cells.width() - 1, c.x + kHoleCells); ++x)
-      if (shut[{x, y}] == Occupancy::Occupied && cells[{x, y}] != Occupancy::Occupied) return true;
-  return false;
+/// Tells of each view whether the scanner saw a hole in the board that it faces.
+void FloorSearch::find_holes(const Traversable& floor) {
+  const std::vector<WallHole> holes = wall_holes(floor);
+  for (View& view : views_)
+    view.hole = ((view.faces & (kEastFace | kWestFace)) != 0 && beside_hole(holes, view.subject, {0, 1})) ||
+                ((view.faces & (kNorthFace | kSouthFace)) != 0 && beside_hole(holes, view.subject, {1, 0}));
 }
 
 /// Length of the wall beside the subject of a view that a look at it shows squarely for the first time [m].
@@ -363,16 +370,16 @@ double FloorSearch::choose_subject(Cell viewpoint) {
     if (view.cell == viewpoint && (best == nullptr || view.cost <= best->cost)) best = &view;
   if (best == nullptr) return 0.0;
   subject_ = {best->subject, best->faces, best->record};
-  return best->scrap;
+  return best->scrap + best->solid;
 }
 
 /// How far around a place that could not be looked at is given up with it [m].
 double FloorSearch::radius_of(Record record) { return record == Record::Squarely ? kSquareRadius : kSubjectRadius; }
 
-/// Whether a look from where the robot stands would be what the view is for.
-bool FloorSearch::serves(const View& view, const TPose2D& T_map_base) {
+/// Whether a look from where the robot stands would be what it is for.
+bool FloorSearch::serves(const Subject& view, const TPose2D& T_map_base) {
   if (view.record != Record::Squarely) return true;
-  const double dx = view.subject.x - T_map_base.x, dy = view.subject.y - T_map_base.y;
+  const double dx = view.at.x - T_map_base.x, dy = view.at.y - T_map_base.y;
   const double away = length(dx, dy);
   return away > kSquarely.nearest && away < kSquarely.farthest &&
          (faces_along(dx / away, dy / away, kSquarely.incidence) & view.faces) != 0;
@@ -383,7 +390,7 @@ std::optional<double> FloorSearch::turn_to_subject(const Traversable& floor, con
   bool any = false;
   for (const View& view : views_) {
     if (distance(floor.cells.centre(view.cell), {T_map_base.x, T_map_base.y}) > kAtViewpoint) continue;
-    const bool good = serves(view, T_map_base);
+    const bool good = serves({view.subject, view.faces, view.record}, T_map_base);
     if (any && !good) continue;
     if (good && !any) turn = kPi;
     any = any || good;
@@ -409,8 +416,22 @@ bool FloorSearch::dwelling(const Traversable& floor, const TPose2D& T_map_base, 
   dwell_until_ = Stamp::never();
   dwell_over_ = true;
   look_around(floor, T_map_base);
-  if (subject_.record != Record::Suspect && !subject_seen(floor)) give_up_subject(floor, {now, T_map_base});
+  const Anchor here{now, T_map_base};
+  if (subject_.record != Record::Suspect && !subject_seen(floor) && !try_again(here)) give_up_subject(floor, here);
   return false;
+}
+
+/// Whether the robot did not stand where the place to face shows squarely, as where it slid while it turned on a slope:
+/// that says nothing of the place, but not more often than `kTries` times.
+bool FloorSearch::try_again(const Anchor& here) {
+  if (subject_.record != Record::Squarely || serves({subject_.at, subject_.faces, subject_.record}, here.T_map_base))
+    return false;
+  const auto before = std::count_if(slid_.begin(), slid_.end(), [&](const AnchoredPoint& p) {
+    return distance(p.p_map(), subject_.at) < kSquareRadius;
+  });
+  if (before >= kTries) return false;
+  slid_.emplace_back(here, subject_.at);
+  return true;
 }
 
 bool FloorSearch::staring(const std::vector<TPoint2D>& seen, bool smelt, Stamp now) {

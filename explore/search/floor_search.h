@@ -12,6 +12,7 @@
 #include "explore/explorer.h"
 #include "explore/plan/exploration_transform.h"
 #include "explore/search/searched_area.h"
+#include "explore/search/wall_holes.h"
 
 namespace rubble::explore {
 
@@ -68,7 +69,7 @@ class FloorSearch {
   /// centre; without one it is left out. `idle`: places where nothing can be for the cameras to see.
   std::vector<Source> sources(const Traversable& map, Subjects subjects,
                               const std::function<std::optional<double>(const mrpt::math::TPoint2D&)>& head_start,
-                              const std::function<bool(const mrpt::math::TPoint2D&)>& idle = {});
+                              const std::function<bool(const Viewpoint&)>& idle = {});
   /// Length of the wall faces in range and in sight of a cell that are still to be looked at [m].
   double faces_in_view(const Traversable& floor, Cell from) const;
   /// Whether any such cell was found at the last time, in reach or not.
@@ -76,8 +77,8 @@ class FloorSearch {
   /// Whether there were faces to be looked at squarely when that was asked last, in reach or not.
   bool faces_left() const { return squarely() && faces_left_; }
   /// Makes what is cheapest to be seen from `viewpoint` the place to face: that source which decided what the way there
-  /// costs. Returns how much of its head start is no way, look or turn but says that little else is left to be looked
-  /// at around it [m].
+  /// costs. Returns how much of its head start is no way, look or turn but says that its wall has no hole and that
+  /// little else is left to be looked at around it [m].
   double choose_subject(Cell viewpoint);
   /// Of all that can be seen from here makes that the place to face which needs the smallest turn; returns the turn
   /// [rad]; nothing when it already lies ahead.
@@ -107,8 +108,17 @@ class FloorSearch {
   };
   struct View : Viewpoint {
     Record record = Record::Anyhow;
+    bool hole = false;   ///< the scanner saw one in the board that it faces
     double scrap = 0.0;  ///< what it costs more for having little to be looked at around it [m]
+    double solid = 0.0;  ///< and for having no hole [m]
     double cost = std::numeric_limits<double>::infinity();  ///< head start of its source, if it is one [m]
+  };
+
+  /// The place to face.
+  struct Subject {
+    mrpt::math::TPoint2D at;  ///< [m, map frame]
+    Faces faces = 0;
+    Record record = Record::Anyhow;
   };
 
   bool look_around(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
@@ -118,9 +128,10 @@ class FloorSearch {
   static auto& record_of(Search& search, Record record);
   void add_views(const std::vector<Viewpoint>& views, Record record);
   double shown(const Traversable& floor, const View& view) const;
+  void find_holes(const Traversable& floor);
   void find_scraps(double apart);
-  static bool beside_hole(const OccupancyGrid& cells, const OccupancyGrid& shut, const View& view);
-  static bool serves(const View& view, const mrpt::math::TPose2D& T_map_base);
+  static bool serves(const Subject& view, const mrpt::math::TPose2D& T_map_base);
+  bool try_again(const Anchor& here);
   void add_suspects(const Traversable& floor);
   bool is_suspect(const mrpt::math::TPoint2D& place) const;
   double facing(Record record) const;
@@ -132,12 +143,6 @@ class FloorSearch {
     mrpt::math::TPoint2D p_base;
     Faces faces;
     Record record;
-  };
-  /// The place to face.
-  struct Subject {
-    mrpt::math::TPoint2D at;  ///< [m, map frame]
-    Faces faces = 0;
-    Record record = Record::Anyhow;
   };
   /// What an other sense found in a look, and the floor there.
   struct OtherLook {
@@ -179,6 +184,7 @@ class FloorSearch {
   mrpt::math::TPose2D looked_at_;      ///< ... in the map in which the place to face lies
   std::vector<Look> looks_;
   std::vector<GivenUp> given_up_;
+  std::vector<AnchoredPoint> slid_;  ///< places that the robot did not stand squarely before, though it meant to
   Stamp next_look_ = Stamp::never();
   Stamp dwell_until_ = Stamp::never();
   std::vector<Stare> stared_at_;  ///< lately

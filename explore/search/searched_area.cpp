@@ -16,18 +16,18 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr int kStride = 6;           ///< subjects on open floor are so many cells apart
-constexpr int kNicheStride = 2;      ///< and at the back of a niche
-constexpr double kNarrowest = 0.20;  ///< niche [m]; what is narrower is a wall seen twice
-constexpr double kWidest = 0.55;     ///< [m]
-constexpr double kHole = 0.20;       ///< in a wall, at its widest [m]
-constexpr int kManyDirections = 32;  ///< tried around a subject that is to be looked at squarely
+constexpr double kStride = 0.30;       ///< subjects on open floor are so far apart [m]
+constexpr double kNicheStride = 0.10;  ///< and at the back of a niche [m]
+constexpr double kNarrowest = 0.20;    ///< niche [m]; what is narrower is a wall seen twice
+constexpr double kWidest = 0.55;       ///< [m]
+constexpr double kHole = 0.20;         ///< in a wall, at its widest [m]
+constexpr int kManyDirections = 32;    ///< tried around a subject that is to be looked at squarely
 // Of viewpoints from their subjects [m]. Before a niche there is little choice: its box takes a third of a corridor.
 const std::vector<double> kDistances = {0.5, 0.8, 1.1, 1.4};
 const std::vector<double> kNicheDistances = {0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4};
 const std::vector<double> kSquareDistances = {0.65, 0.7, 0.8, 0.95, 1.1, 1.3};
 // The same where the look itself is to be squarely: a robot stops a hand's breadth off its viewpoint.
-const std::vector<double> kSureDistances = {0.75, 0.85, 1.0, 1.15, 1.3, 1.5};
+const std::vector<double> kSureDistances = {0.65, 0.75, 0.85, 1.0, 1.15, 1.3, 1.5};
 const std::vector<double> kFarDistances = {1.65};
 constexpr double kSureIncidence = deg_to_rad(15.0);  ///< [rad]
 
@@ -60,11 +60,12 @@ std::optional<int> to_wall(const Traversable& floor, Cell c, Cell step, int most
 /// The backs of niches that were not searched, every few cells.
 std::vector<Cell> unsearched_niches(const Traversable& floor, const SearchedArea& searched) {
   const Grid<Faces> open = searched.unsearched(floor);
+  const int stride = cells_apart(kNicheStride, floor.frame().resolution);
   std::vector<Cell> found;
   for (int y = 1; y + 1 < floor.cells.height(); ++y)
     for (int x = 1; x + 1 < floor.cells.width(); ++x) {
       const auto faces = static_cast<Faces>(open[{x, y}] & ~kFloor);
-      if (faces != 0 && (x + y) % kNicheStride == 0 && in_niche(floor, {x, y}, faces)) found.push_back({x, y});
+      if (faces != 0 && (x + y) % stride == 0 && in_niche(floor, {x, y}, faces)) found.push_back({x, y});
     }
   return found;
 }
@@ -93,6 +94,8 @@ std::vector<std::vector<Cell>> unsearched_clusters(const Traversable& floor, con
 }
 
 }  // namespace
+
+int cells_apart(double length, double cell) { return std::max(1, static_cast<int>(std::lround(length / cell))); }
 
 Faces faces_along(double x, double y, double incidence) {
   const double cosine = std::cos(incidence);
@@ -439,13 +442,14 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
     return found;
   }
   const auto asked = static_cast<Faces>(subjects == Subjects::Squarely ? ~kFloor : ~0);
+  const int stride = cells_apart(kStride, cell), face_stride = cells_apart(kFaceStride, cell);
   for (const auto& cluster : unsearched_clusters(floor, searched, asked, config.min_cells))
     for (std::size_t i = 0; i < cluster.size(); ++i) {
       const Cell subject = cluster[i];
       const auto missing = static_cast<Faces>(searched.missing(floor, subject) & asked);
-      // Every few cells, and the first one of each cluster, so that none goes without.
-      const bool on_face = (missing & ~kFloor) != 0 && (subject.x + subject.y) % kFaceStride == 0;
-      if (i != 0 && !on_face && (subject.x % kStride != 0 || subject.y % kStride != 0)) continue;
+      // Every so far, and the first one of each cluster, so that none goes without.
+      const bool on_face = (missing & ~kFloor) != 0 && (subject.x + subject.y) % face_stride == 0;
+      if (i != 0 && !on_face && (subject.x % stride != 0 || subject.y % stride != 0)) continue;
       add(subject, missing);
     }
   return found;

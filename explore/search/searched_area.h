@@ -48,7 +48,7 @@ struct Inspection {
 /// Squarely, and from not too near: what lies in a box behind a hole in the wall, 0.3 to 0.9 m up, shows to a camera at
 /// 0.5 m within 20 to 30 deg of the hole's axis and 0.75 to 1.5 m away (boxed victims of the competition's arenas);
 /// viewpoints keep to that, and a robot stops up to a quarter of a metre off its viewpoint.
-constexpr Inspection kSquarely{deg_to_rad(27.0), 0.6, 1.75};
+constexpr Inspection kSquarely{deg_to_rad(27.0), 0.5, 1.75};
 
 /// The faces that can be inspected along a direction (unit vector): those whose normal is within `incidence` of it.
 Faces faces_along(double x, double y, double incidence = Inspection{}.incidence);
@@ -126,7 +126,9 @@ std::vector<Cell> steps_around(const std::vector<double>& distances, double rang
 
 constexpr double kAtViewpoint = 0.12;  ///< viewpoints this close are served from where the robot stands [m]
 
-constexpr int kFaceStride = 4;  ///< subjects along a wall are so many cells apart, about
+constexpr double kFaceStride = 0.20;  ///< subjects along a wall are so far apart, about [m]
+/// The whole number of cells that is nearest to a length, one at least.
+int cells_apart(double length, double cell);
 
 /// A place from which something unsearched can be seen.
 struct Viewpoint {

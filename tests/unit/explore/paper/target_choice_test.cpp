@@ -205,18 +205,19 @@ TEST(TargetChoice, ScrapsOfWallAreLookedAtLast) {
   EXPECT_LT(scrap.cost, 5.0);
 }
 
-/// The scanner saw a hole in the wall a little farther on: that is looked into before the solid wall beside the robot.
-TEST(TargetChoice, AHoleThatWasSeenIsLookedIntoFirst) {
+/// The scanner saw a hole in the wall farther on: the board around it, which may have more of them higher up, is looked
+/// at before the solid wall beside the robot.
+TEST(TargetChoice, ABoardWithAHoleThatWasSeenIsLookedAtFirst) {
   for (const bool hole : {false, true}) {
     Choosing robot(true);
     robot.narrow();
     robot.choice.set_frontiers_done();
     robot.choice.search();
     robot.search->expect_holes();
-    if (hole) test::fill(robot.cells, 5.1, 1.2, 5.3, 1.35, Occupancy::Free);
+    if (hole) test::fill(robot.cells, 6.1, 1.2, 6.3, 1.35, Occupancy::Free);
     const Plan plan = robot.choice.choose_of_all_places(robot.view(), *robot.search, Plan{}).plan;
     ASSERT_TRUE(plan.found);
-    EXPECT_EQ(std::abs(plan.target.x - 5.2) < 0.4, hole) << plan.target.x;
+    EXPECT_EQ(std::abs(plan.target.x - 6.2) < 1.2, hole) << plan.target.x;
   }
 }
 
@@ -234,6 +235,41 @@ TEST(TargetChoice, NoNicheIsLookedForAmongSteps) {
     robot.choice.set_frontiers_done();
     robot.choice.search();
     EXPECT_EQ(robot.choose().no_niche, steps);
+  }
+}
+
+/// A field of steps begins on the edge of its pallet: scans meet its steps now and then, and it is no wall to be looked
+/// at squarely. A wall before it is one.
+TEST(TargetChoice, TheEdgeOfAFieldOfStepsIsNoWall) {
+  for (const bool wall : {false, true}) {
+    Choosing robot(true);
+    robot.choice = TargetChoice({}, true, test::kPallet);
+    robot.cells = test::corridor_of_pallets(9.0, test::kPallet, Occupancy::Free);
+    robot.pose = {2.0, 0.6, 0.0};
+    const double west = 2.0 * test::kPallet, edge = test::kPallet;
+    for (double at = 0.15; at < 1.1; at += 0.2)
+      test::fill(robot.cells, west + at, edge + at, west + at + 0.11, edge + at + 0.11, Occupancy::Occupied);
+    robot.choice.set_frontiers_done();
+    robot.choice.search();
+    robot.search->expect_holes();
+    bool squarely = false;
+    for (int looks = 0; looks < 100; ++looks) {
+      const TargetChoice::View view = robot.view();
+      for (double x = west + 0.075; x < west + 1.15; x += 0.05)
+        for (const double y : {edge - 0.025, edge + 0.025})
+          robot.floor.unsure[robot.floor.cells.cell({x, y})] = wall ? 0 : 1;
+      const Plan plan = robot.choice.choose_of_all_places(view, *robot.search, Plan{}).plan;
+      if (!plan.found) break;
+      robot.choice.take(plan);
+      robot.pose = {plan.target.x, plan.target.y, robot.pose.phi};
+      if (const auto turn = robot.search->turn_to_subject(robot.floor, robot.pose)) robot.pose.phi += *turn;
+      const double ahead = (edge - robot.pose.y) / std::tan(robot.pose.phi);
+      squarely = squarely || (std::sin(robot.pose.phi) > 0.95 && std::abs(robot.pose.x + ahead - west - 0.6) < 0.4);
+      for (int i = 0; i < 2; ++i) robot.search->look(robot.floor, robot.pose, 0.0, robot.now = robot.now + 1.0);
+      robot.search->start_dwell(robot.now);
+      robot.search->dwelling(robot.floor, robot.pose, robot.now = robot.now + 5.0);
+    }
+    EXPECT_EQ(squarely, wall);
   }
 }
 

@@ -14,6 +14,7 @@ namespace {
 using mrpt::math::TPoint2D;
 
 constexpr double kScrapCost = 16.0;  ///< of a metre of wall that is missing around a face [m]
+constexpr double kSolidCost = 4.0;   ///< of a wall without a hole [m]
 
 const auto kAnywhere = [](const TPoint2D&) { return 0.0; };
 
@@ -39,8 +40,8 @@ TEST(Scraps, AreAsLongAtAnyResolution) {
     const auto sources = search.sources(between(0.0, kLong, resolution), Subjects::Squarely, kAnywhere);
     ASSERT_FALSE(sources.empty());
     for (const Source& source : sources) {
-      const double told = 1.0 - search.choose_subject(source.cell) / kScrapCost;
-      EXPECT_NEAR(told, kLong, kFaceStride * resolution + 1e-9) << resolution;
+      const double told = 1.0 - (search.choose_subject(source.cell) - kSolidCost) / kScrapCost;
+      EXPECT_NEAR(told, kLong, cells_apart(kFaceStride, resolution) * resolution + 1e-9) << resolution;
     }
   }
 }
@@ -64,7 +65,7 @@ TEST(Scraps, ThePlaceToFaceIsTheOneThatMadeTheWayCheap) {
       if (most - least < 6.0) continue;
       ++both;
       FloorSearch there = search;
-      EXPECT_EQ(there.choose_subject(at.cell), 0.0);
+      EXPECT_EQ(there.choose_subject(at.cell), kSolidCost);
       const TPoint2D p = floor.cells.centre(at.cell);
       for (int i = 1; i <= 2; ++i)
         there.look(floor, {p.x, p.y, (lane_north ? 0.5 : -0.5) * kPi}, 0.0, Stamp::from_seconds(i));
