@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/planar.h"
+#include "explore/search/wall_holes.h"
 
 namespace rubble::explore {
 namespace {
@@ -20,7 +21,6 @@ constexpr double kStride = 0.30;       ///< subjects on open floor are so far ap
 constexpr double kNicheStride = 0.10;  ///< and at the back of a niche [m]
 constexpr double kNarrowest = 0.20;    ///< niche [m]; what is narrower is a wall seen twice
 constexpr double kWidest = 0.55;       ///< [m]
-constexpr double kHole = 0.20;         ///< in a wall, at its widest [m]
 constexpr int kManyDirections = 32;    ///< tried around a subject that is to be looked at squarely
 // Of viewpoints from their subjects [m]. Before a niche there is little choice: its box takes a third of a corridor.
 const std::vector<double> kDistances = {0.5, 0.8, 1.1, 1.4};
@@ -131,7 +131,7 @@ bool in_niche(const Traversable& floor, Cell c, Faces faces) {
 
 OccupancyGrid with_holes_shut(const OccupancyGrid& cells) {
   OccupancyGrid shut = cells;
-  const int most = static_cast<int>(std::lround(kHole / cells.frame().resolution));
+  const int most = static_cast<int>(std::lround(kWidestHole / cells.frame().resolution));
   const auto wall = [&](int x, int y) { return cells.inside({x, y}) && cells[{x, y}] == Occupancy::Occupied; };
   for (int y = 0; y < cells.height(); ++y)
     for (int x = 0; x < cells.width(); ++x) {
