@@ -17,7 +17,7 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kStride = 0.30;       ///< subjects on open floor are so far apart [m]
+constexpr double kFloorStride = 0.30;  ///< subjects on open floor are so far apart [m]
 constexpr double kNicheStride = 0.10;  ///< and at the back of a niche [m]
 constexpr double kNarrowest = 0.20;    ///< niche [m]; what is narrower is a wall seen twice
 constexpr double kWidest = 0.55;       ///< [m]
@@ -442,7 +442,7 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
     return found;
   }
   const auto asked = static_cast<Faces>(subjects == Subjects::Squarely ? ~kFloor : ~0);
-  const int stride = cells_apart(kStride, cell), face_stride = cells_apart(kFaceStride, cell);
+  const int stride = cells_apart(kFloorStride, cell), face_stride = cells_apart(kFaceStride, cell);
   for (const auto& cluster : unsearched_clusters(floor, searched, asked, config.min_cells))
     for (std::size_t i = 0; i < cluster.size(); ++i) {
       const Cell subject = cluster[i];
