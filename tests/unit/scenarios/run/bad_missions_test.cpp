@@ -53,14 +53,14 @@ Mission with_fault(sim::LevellingFault fault, double deg, std::uint64_t seed) {
   return drive(small_yellow(seed), scenario);
 }
 
-/// Ten missions each: by a tilted laser some pose is lost and some robot wedged whatever it does, but few are.
+/// Twenty missions each: by a tilted laser some pose is lost and some robot wedged whatever it does, but few are.
 class ALevellingUnitThatFails : public ::testing::Test {
  protected:
   /// `within`: the pose that it drove home by may be off by so much [m].
   static void expect_home(sim::LevellingFault fault, double deg, const std::string& told, double within = 0.6) {
     int home = 0;
     std::vector<double> contact_s;
-    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       SCOPED_TRACE(testing::Message() << "seed " << seed);
       const Mission mission = with_fault(fault, deg, seed);
       const std::size_t failed = mission.decisions.find(told);
@@ -68,11 +68,11 @@ class ALevellingUnitThatFails : public ::testing::Test {
       EXPECT_EQ(mission.decisions.find("confirmed", failed), std::string::npos) << "no victim while scans are doubted";
       EXPECT_LE(mission.victims, mission.true_victims);
       home += mission.end == "home" && mission.drive.home_m < within ? 1 : 0;
-      contact_s.push_back(mission.drive.contact_s);
+      if (seed <= 10) contact_s.push_back(mission.drive.contact_s);
     }
-    EXPECT_GE(home, 9);
+    EXPECT_GE(home, 18);
     std::sort(contact_s.begin(), contact_s.end());
-    EXPECT_LT(contact_s[7], 3.0) << "of eight of them";
+    EXPECT_LT(contact_s[7], 3.0) << "of eight of the first ten";
   }
 };
 
