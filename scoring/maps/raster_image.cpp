@@ -44,12 +44,17 @@ cv::Mat narrowed(const cv::Mat& image, std::uint32_t& white) {
   return out;
 }
 
-/// Transparent pixels fade into the league's grey of unexplored ground, as in a TIFF.
+/// Transparent pixels fade into the league's grey of unexplored ground, as in a TIFF. A layer that is nowhere opaque,
+/// as viewers save it, counts as opaque where it is most so.
 void work_in_alpha(const cv::Mat& bgra, RgbImage& out) {
   out.alpha.resize(bgra.total());
+  int most = 0;
+  for (int y = 0; y < bgra.rows; ++y)
+    for (int x = 0; x < bgra.cols; ++x) most = std::max(most, int{bgra.at<cv::Vec4b>(y, x)[3]});
+  const int opaque = most > 0 ? most : 255;
   for (int y = 0; y < bgra.rows; ++y)
     for (int x = 0; x < bgra.cols; ++x) {
-      const int alpha = bgra.at<cv::Vec4b>(y, x)[3];
+      const int alpha = 255 * bgra.at<cv::Vec4b>(y, x)[3] / opaque;
       out.alpha[out.index(x, y)] = static_cast<std::uint8_t>(alpha);
       std::uint8_t* const p = out.pixel(x, y);
       for (std::size_t c = 0; c < 3; ++c)

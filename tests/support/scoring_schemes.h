@@ -9,6 +9,7 @@
 
 #include "base/rng.h"
 #include "tests/support/scoring_attacks.h"
+#include "tests/support/scoring_grounds.h"
 
 /// Further schemes to earn more than a map knows, each beside what an honest team would hand in. They were written when
 /// the score stood, to try it on what it was not made for.
@@ -209,6 +210,130 @@ inline OccupancyGrid joined_to(const OccupancyGrid& first, const OccupancyGrid& 
   return out;
 }
 
+/// Free floor within the outline of `truth`, with the walls around it or without.
+inline OccupancyGrid hall_like(const OccupancyGrid& truth, bool with_walls) {
+  const GridFrame known = known_frame(truth, 0.0).value_or(truth.frame());
+  OccupancyGrid out(truth.frame());
+  constexpr double kWall = 0.1;  // [m]
+  for (int y = 0; y < out.height(); ++y)
+    for (int x = 0; x < out.width(); ++x) {
+      const TPoint2D p = out.centre({x, y});
+      const double in = std::min({p.x - known.x0, p.y - known.y0, known.x0 + known.width * known.resolution - p.x,
+                                  known.y0 + known.height * known.resolution - p.y});
+      if (in > 0.0) out[{x, y}] = in < kWall && with_walls ? Occupancy::Occupied : Occupancy::Free;
+    }
+  return out;
+}
+
+/// Twelve arenas of about that size, which are not the truth.
+inline std::vector<OccupancyGrid> drawn_arenas(const OccupancyGrid& truth) {
+  const GridFrame known = known_frame(truth, 0.0).value_or(truth.frame());
+  const auto pallets = [&](int cells) {
+    return std::max(3, static_cast<int>(std::lround(cells * known.resolution / kLattice)));
+  };
+  std::vector<OccupancyGrid> out;
+  for (std::uint64_t seed = 60001; seed <= 60012; ++seed)
+    out.push_back(truth_of({"yellow", pallets(known.width), pallets(known.height), seed}));
+  return out;
+}
+
+/// The walls that most of `others` have there, each laid with the middle of its outline on that of `truth`.
+inline OccupancyGrid most_probable(const OccupancyGrid& truth, const std::vector<OccupancyGrid>& others, double least) {
+  OccupancyGrid out = hall_like(truth, true);
+  const TPoint2D m = middle_of(truth);
+  constexpr int kNear = 1;  // cells, by which lattices may be off each other
+  for (int y = 0; y < out.height(); ++y)
+    for (int x = 0; x < out.width(); ++x) {
+      if (out[{x, y}] != Occupancy::Free) continue;
+      int walls = 0;
+      for (const OccupancyGrid& other : others) {
+        const Cell from = other.cell(out.centre({x, y}) - m + middle_of(other));
+        bool wall = false;
+        for (int dy = -kNear; dy <= kNear; ++dy)
+          for (int dx = -kNear; dx <= kNear; ++dx) {
+            const Cell c{from.x + dx, from.y + dy};
+            wall = wall || (other.inside(c) && other[c] == Occupancy::Occupied);
+          }
+        walls += wall ? 1 : 0;
+      }
+      if (walls > least * static_cast<double>(others.size())) out[{x, y}] = Occupancy::Occupied;
+    }
+  return out;
+}
+
+/// Every wall cell thrown about by up to `reach` [m], and as many strokes more beside it.
+inline OccupancyGrid scribbled(const OccupancyGrid& map, double reach, std::uint64_t seed) {
+  OccupancyGrid out = map;
+  Rng rng(seed, "scribbles");
+  for (int y = 0; y < map.height(); ++y)
+    for (int x = 0; x < map.width(); ++x) {
+      if (map[{x, y}] != Occupancy::Occupied || rng.uniform() > 0.3) continue;
+      const Cell to{x + static_cast<int>(std::lround((2.0 * rng.uniform() - 1.0) * reach / map.resolution())),
+                    y + static_cast<int>(std::lround((2.0 * rng.uniform() - 1.0) * reach / map.resolution()))};
+      if (map.inside(to) && map[to] == Occupancy::Free) out[to] = Occupancy::Occupied;
+    }
+  return out;
+}
+
+/// Walls of a single cell, broken into dashes: of each wall the cells with free or unknown ground to the west or south.
+inline OccupancyGrid thin_dashes(const OccupancyGrid& map, double gap, double period) {
+  OccupancyGrid out = map;
+  for (int y = 1; y < map.height(); ++y)
+    for (int x = 1; x < map.width(); ++x) {
+      if (map[{x, y}] != Occupancy::Occupied) continue;
+      const bool first = map[{x - 1, y}] != Occupancy::Occupied || map[{x, y - 1}] != Occupancy::Occupied;
+      if (!first) out[{x, y}] = Occupancy::Free;
+    }
+  return dashed(out, gap, period);
+}
+
+/// On each edge of the lattice that `map` does not know a stroke of `length` [m]: a wall of less strength.
+inline OccupancyGrid strokes_on_lattice(const OccupancyGrid& truth, double length) {
+  const GridFrame known = known_frame(truth, 0.0).value_or(truth.frame());
+  OccupancyGrid out = lattice_of(truth, Occupancy::Occupied, 0.1);
+  for (int y = 0; y < out.height(); ++y)
+    for (int x = 0; x < out.width(); ++x) {
+      if (out[{x, y}] != Occupancy::Occupied) continue;
+      const TPoint2D p = out.centre({x, y});
+      const double u = p.x - known.x0 - 0.05, v = p.y - known.y0 - 0.05;
+      const double off_x = std::abs(std::remainder(u, kLattice)), off_y = std::abs(std::remainder(v, kLattice));
+      const double along = std::max(off_x, off_y);  // 0.6 in the middle of an edge
+      if (0.5 * kLattice - along > 0.5 * length) out[{x, y}] = Occupancy::Free;
+    }
+  return out;
+}
+
+/// What lies within `reach` [m] of the lattice without being near a wall of the map becomes unknown.
+inline OccupancyGrid open_edges_unknown(const OccupancyGrid& map, double width) {
+  const OccupancyGrid strips = lattice_of(map, Occupancy::Unknown, width);
+  const int cells = static_cast<int>(std::lround(0.3 / map.resolution()));
+  OccupancyGrid out = map;
+  for (int y = 0; y < map.height(); ++y)
+    for (int x = 0; x < map.width(); ++x) {
+      if (map[{x, y}] != Occupancy::Free || strips[{x, y}] != Occupancy::Unknown) continue;
+      bool near = false;
+      for (int dy = -cells; dy <= cells && !near; ++dy)
+        for (int dx = -cells; dx <= cells && !near; ++dx)
+          near = map.inside({x + dx, y + dy}) && map[{x + dx, y + dy}] == Occupancy::Occupied;
+      if (!near) out[{x, y}] = Occupancy::Unknown;
+    }
+  return out;
+}
+
+/// Walls all along where free floor meets unknown ground: the outline closed.
+inline OccupancyGrid with_closed_outline(const OccupancyGrid& map) {
+  OccupancyGrid out = map;
+  for (int y = 1; y + 1 < map.height(); ++y)
+    for (int x = 1; x + 1 < map.width(); ++x) {
+      if (map[{x, y}] != Occupancy::Unknown) continue;
+      bool beside = false;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) beside = beside || map[{x + dx, y + dy}] == Occupancy::Free;
+      if (beside) out[{x, y}] = Occupancy::Occupied;
+    }
+  return out;
+}
+
 /// One scheme: what may be handed in honestly (their mean counts: a team that cannot tell its hypotheses apart draws
 /// one of them), and what is handed in instead.
 struct Scheme {
@@ -317,6 +442,42 @@ inline std::vector<Scheme> schemes() {
        [=](Grid truth, Grid, Seed seed) { return fatter_on_one_side(worn(truth, seed), 2); }},
       {"worn: salt in 2 % of the free space", only_worn,
        [=](Grid truth, Grid, Seed seed) { return with_salt(worn(truth, seed), 0.02, seed); }},
+      {"nothing: the walls around", nothing, [](Grid truth, Grid, Seed) { return hall_like(truth, true); }},
+      {"nothing: free floor of the outline", nothing, [](Grid truth, Grid, Seed) { return hall_like(truth, false); }},
+      {"nothing: walls that half of twelve arenas have", nothing,
+       [](Grid truth, Grid, Seed) { return most_probable(truth, drawn_arenas(truth), 0.5); }},
+      {"part, the rest walls that half of twelve arenas have", only_part,
+       [=](Grid truth, Grid, Seed seed) {
+         return filled(part(truth, seed), most_probable(truth, drawn_arenas(truth), 0.5));
+       }},
+      {"nothing: walls that a third of twelve arenas have", nothing,
+       [](Grid truth, Grid, Seed) { return most_probable(truth, drawn_arenas(truth), 0.33); }},
+      {"part, the rest the part moved on by a pallet", only_part,
+       [=](Grid truth, Grid, Seed seed) {
+         OccupancyGrid out = part(truth, seed);
+         const double angle = 0.7 * static_cast<double>(seed);
+         const int way = std::abs(std::cos(angle)) > std::abs(std::sin(angle)) ? 0 : 1;
+         const double sign = (way == 0 ? std::cos(angle) : std::sin(angle)) > 0.0 ? 1.0 : -1.0;
+         for (int k = 0; k < 8; ++k)
+           out = filled(out, displaced(out, way == 0 ? sign * kLattice : 0.0, way == 1 ? sign * kLattice : 0.0, 0.0));
+         return out;
+       }},
+      {"part, the rest strokes of 0.2 m on the lattice", only_part,
+       [=](Grid truth, Grid, Seed seed) { return filled(part(truth, seed), strokes_on_lattice(truth, 0.2)); }},
+      {"part, the rest strokes of 0.1 m on the lattice", only_part,
+       [=](Grid truth, Grid, Seed seed) { return filled(part(truth, seed), strokes_on_lattice(truth, 0.1)); }},
+      {"worn: scribbles within 0.2 m of walls", only_worn,
+       [=](Grid truth, Grid, Seed seed) { return scribbled(worn(truth, seed), 0.2, seed); }},
+      {"worn: scribbles within 0.4 m of walls", only_worn,
+       [=](Grid truth, Grid, Seed seed) { return scribbled(worn(truth, seed), 0.4, seed); }},
+      {"worn: thin dashes", only_worn,
+       [=](Grid truth, Grid, Seed seed) { return thin_dashes(worn(truth, seed), 0.15, 0.3); }},
+      {"worn: thin sparse dashes", only_worn,
+       [=](Grid truth, Grid, Seed seed) { return thin_dashes(worn(truth, seed), 0.3, 0.45); }},
+      {"worn: open edges of the lattice unknown", only_worn,
+       [=](Grid truth, Grid, Seed seed) { return open_edges_unknown(worn(truth, seed), 0.7); }},
+      {"worn: the outline closed", only_worn,
+       [=](Grid truth, Grid, Seed seed) { return with_closed_outline(worn(truth, seed)); }},
   };
 }
 

@@ -196,6 +196,52 @@ bool paint_over_colours(const RgbImage& image, const cv::Mat& apart, cv::Mat& gr
   return true;
 }
 
+bool even_out_coloured_walls(const RgbImage& image, const cv::Mat& apart, cv::Mat& grey) {
+  constexpr int kAlike = 60;            // of the lines' greys, a tenth left out at either end: one pen
+  constexpr double kHalfAsFar = 0.5;    // off the ground as the most around: JPEG smears colours less strongly
+  constexpr int kAround = 5;            // [pixels]
+  constexpr double kWidestLines = 4.0;  // mean distance to their rim [pixels]
+  const cv::Mat ink = ink_of(image);
+  if (ink.empty()) return false;
+  const cv::Mat walls = thin_walls(grey, ink | apart);
+  if (!walls.empty() && !are_rims_of(ink, walls)) return false;
+  cv::Mat ground = grey.clone();
+  cv::Mat near;
+  cv::dilate(ink, near, cv::Mat::ones(3, 3, CV_8U));
+  if (!walls.empty()) near |= walls;
+  carry_ground(near, ground);
+  cv::Mat off(grey.size(), CV_8U), most;
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x) {
+      int far = 0;
+      for (int i = 0; i < 3; ++i) far = std::max(far, std::abs(image.pixel(x, y)[i] - ground.at<unsigned char>(y, x)));
+      off.at<unsigned char>(y, x) = static_cast<unsigned char>(far);
+    }
+  off.setTo(0, ~near);
+  cv::dilate(off, most, cv::Mat::ones(kAround, kAround, CV_8U));
+  cv::Mat least;
+  most.convertTo(least, CV_8U, kHalfAsFar);
+  const cv::Mat lines = near & (off >= least) & (off > kInkColour);
+  if (cv::countNonZero(lines) == 0 || mean_half_width(lines) > kWidestLines) return false;
+  std::vector<unsigned char> greys;
+  for (int y = 0; y < grey.rows; ++y)
+    for (int x = 0; x < grey.cols; ++x)
+      if (lines.at<unsigned char>(y, x) != 0) greys.push_back(grey.at<unsigned char>(y, x));
+  std::sort(greys.begin(), greys.end());
+  if (greys[9 * greys.size() / 10] - greys[greys.size() / 10] < kAlike) return false;
+  const bool on_light = cv::mean(ground)[0] >= 128.0;
+  // Nothing but lines on one ground: what JPEG left of them there is no second one.
+  constexpr int kOneGround = 12;
+  cv::Mat middle;
+  cv::medianBlur(ground, middle, 5);
+  double low = 0.0, high = 0.0;
+  cv::minMaxLoc(middle, &low, &high);
+  if (high - low <= kOneGround) ground.setTo(cv::mean(ground)[0]);
+  ground.copyTo(grey, near);
+  grey.setTo(on_light ? 0 : 255, lines);
+  return true;
+}
+
 bool clear_around_panel(cv::Mat& classes) {
   const std::optional<cv::Rect> outer = panel_within(classes);
   if (!outer) return false;

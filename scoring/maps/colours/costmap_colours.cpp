@@ -14,10 +14,10 @@
 namespace rubble::scoring {
 namespace {
 
-using Colour = cv::Vec3i;  // red, green, blue
+using CostColour = cv::Vec3i;  // red, green, blue
 
 constexpr int kOff = 24;  // of a channel: rounding, and what JPEG adds
-const Colour kUnknown{112, 137, 134};
+const CostColour kUnknownOfCosts{112, 137, 134};
 
 /// Share of RViz's magenta in the obstacles' colour, over the black walls of a map; 0: too few pixels have such a one.
 double opacity_of_obstacles(const RgbImage& image) {
@@ -64,20 +64,20 @@ int floor_under(const RgbImage& image, const cv::Mat& cyan, double opacity) {
 }
 
 struct Shade {
-  Colour colour;
+  CostColour colour;
   Occupancy means = Occupancy::Free;
 };
 
 /// What RViz draws, of that opacity over a map with that floor.
 std::vector<Shade> shades_of(double opacity, int floor) {
   constexpr int kSteps = 12;  // of the costs
-  const auto over = [opacity](const Colour& own, int ground) {
-    Colour out;
+  const auto over = [opacity](const CostColour& own, int ground) {
+    CostColour out;
     for (int i = 0; i < 3; ++i) out[i] = cv::saturate_cast<unsigned char>(opacity * own[i] + (1.0 - opacity) * ground);
     return out;
   };
   std::vector<Shade> out{{over({255, 0, 255}, 0), Occupancy::Occupied},
-                         {kUnknown, Occupancy::Unknown},
+                         {kUnknownOfCosts, Occupancy::Unknown},
                          {over({0, 255, 255}, floor)},
                          {{0, 0, 0}},
                          {{floor, floor, floor}},

@@ -160,7 +160,7 @@ LabelImage classify_grey(const cv::Mat& picture, const cv::Mat& apart, const cv:
     out.refusal =
         "has thin lines of grey " + std::to_string(roles.wall) +
         " between darker and lighter areas, and was blended: walls and borders look the same; save it without "
-        "interpolation, smoothing or loss";
+        "interpolation, smoothing or loss (and of a costmap the map that it was made of)";
   if (roles.unknown >= 0) out.recognised += cv::format(" (%.0f %% sure)", 100.0 * roles.sure);
   if (roles.unknown >= 0 && roles.sure < kSure)
     out.doubt += kDoubt + std::string("free and unknown ground may be the other way round");

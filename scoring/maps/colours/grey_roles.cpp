@@ -103,6 +103,23 @@ double mean_depth(const cv::Mat& labels, std::size_t level, bool closed = false)
   return mean_half_width(mask);
 }
 
+/// What blending left between walls and a ground, where so few greys are left that each is a level: as light as that
+/// ground or nearly, and nowhere but beside walls.
+bool is_fringe(const cv::Mat& labels, const std::vector<Level>& levels, std::size_t level, std::size_t wall) {
+  constexpr int kNearlyGround = 28;     // greys
+  constexpr double kBesideWalls = 0.9;  // of its pixels
+  const Level& own = levels[level];
+  const bool shades = std::any_of(levels.begin(), levels.end(), [&](const Level& ground) {
+    const bool between = (own.grey - levels[wall].grey > 0) == (ground.grey - own.grey > 0);
+    return ground.depth >= kBroad && ground.grey != own.grey && std::abs(ground.grey - own.grey) <= kNearlyGround &&
+           between;
+  });
+  if (level == wall || own.depth > kThin || !shades) return false;
+  cv::Mat beside;
+  cv::dilate(labels == static_cast<int>(wall), beside, cv::Mat::ones(3, 3, CV_8U));
+  return cv::countNonZero(beside & (labels == static_cast<int>(level))) >= kBesideWalls * own.count;
+}
+
 /// How many walls have these two levels on their sides.
 using Sides = std::vector<std::vector<double>>;
 
@@ -231,7 +248,7 @@ GreyRoles grey_roles(const cv::Mat& grey, const cv::Mat& apart) {
   out.between = wall != 0 && wall + 1 != levels.size();
   std::vector<std::size_t> grounds;
   for (std::size_t i = 0; i < levels.size(); ++i)
-    if (i != wall && levels[i].count >= kShare * total &&
+    if (i != wall && levels[i].count >= kShare * total && !is_fringe(labels, levels, i, wall) &&
         (out.pure || levels[i].depth >= kGround || mean_depth(labels, i, true) >= kClosedGround))
       grounds.push_back(i);
   if (grounds.empty()) {

@@ -18,6 +18,8 @@
 #include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/colours/league_pixels.h"
 #include "scoring/maps/colours/lossy_colours.h"
+#include "scoring/maps/colours/lossy_tones.h"
+#include "scoring/maps/colours/reading_doubts.h"
 #include "scoring/maps/colours/searched_floor.h"
 #include "scoring/maps/colours/tone_curve.h"
 
@@ -171,6 +173,22 @@ std::optional<RestoredColours> with_tones_of_old(const RgbImage& image) {
   return std::nullopt;
 }
 
+/// The same of a picture that went through JPEG afterwards, or was blended.
+std::optional<RestoredColours> with_tones_before_loss(const RgbImage& image) {
+  const std::optional<ToneCurve> curve = tone_curve_before_loss(image);
+  if (!curve) return std::nullopt;
+  RgbImage before = before_tones_and_loss(image, *curve);
+  if (!is_league_map(before)) return std::nullopt;
+  RestoredColours out{std::move(before), "tones had been changed (" + curve->name + ")"};
+  constexpr double kPaleWalls = 0.8;
+  if (const double left = wall_colour_left(*curve); left < kPaleWalls)
+    out.doubt = kDoubt + cv::format(
+                             "that left walls %.0f %% of their colour before some of it was lost: pieces of them "
+                             "may be taken for other lines",
+                             100.0 * left);
+  return out;
+}
+
 /// The picture as it was before it was blurred.
 std::optional<RestoredColours> with_sharp_lines(const RgbImage& image) {
   const Blur blur = blur_of(image);
@@ -304,7 +322,8 @@ std::optional<RestoredColours> restored_league_colours(const RgbImage& image) {
   // the league's colours those of the picture to the digit says more than how strong one of them is, which it changes.
   const bool squares_moved = kOneOfSquares * std::min(as_is.darker, as_is.checkerboard - as_is.darker) < as_is.pixels;
   if (!as_is.exact() && squares_moved && has_colour(image))
-    if (auto restored = with_tones_of_old(image)) return restored;
+    for (const auto& with_tones : {with_tones_of_old, with_tones_before_loss})
+      if (auto restored = with_tones(image)) return restored;
   if (auto restored = with_paler_colours(image)) return restored;
   if (as_is.exact()) return std::nullopt;
   if (auto restored = with_sharp_lines(image)) return restored;

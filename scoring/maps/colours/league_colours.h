@@ -17,6 +17,7 @@ struct RestoredColours {
   std::string how;        ///< what had been done to it
   Blur blur{};            ///< that of it which was a blur
   bool as_drawn = false;  ///< its colours are back but for rounding; those of strength and blur are guesses
+  std::string doubt{};    ///< what that may have cost; empty: nothing
 };
 
 /// Of pictures whose red and blue were exchanged, that were inverted, that were blurred, whose colours were made

@@ -282,8 +282,11 @@ int drawn_over(const cv::Mat& classes, const CellLattice& lattice) {
   cv::Mat near, labels, stats, centres;
   cv::dilate(off > 0, near, cv::Mat::ones(kNear, kNear, CV_8U));
   const int count = cv::connectedComponentsWithStats(near, labels, stats, centres, 8, CV_32S);
-  int places = 0;
-  double edges_of_places = 0.0, edges_of_all = 0.0;
+  // Small words run into blots that fewer strokes cross: so many of them, with so much of all such edges, are words.
+  constexpr int kBlots = 3;
+  constexpr double kFewerOfBlots = 1.1, kMoreOfBlots = 3.2;
+  int places = 0, blots = 0;
+  double edges_of_places = 0.0, edges_of_blots = 0.0, edges_of_all = 0.0;
   for (int i = 1; i < count; ++i) {
     const cv::Rect box = box_of(stats, i);
     const cv::Mat own = labels(box) == i;
@@ -299,13 +302,16 @@ int drawn_over(const cv::Mat& classes, const CellLattice& lattice) {
     const int low = std::min(box.width, box.height);
     if (low <= kNear || low > kMostHeight + kNear) continue;
     const double in_row = all / (box.height - kNear + 1), in_column = all / (box.width - kNear + 1);
-    if (all >= kFewest && std::min(in_row, in_column) >= kFewer && std::max(in_row, in_column) >= kMore &&
-        crossed_by(inner(walls(box) & own)) >= kStrokesOfRun) {
-      ++places;
-      edges_of_places += all;
-    }
+    const double fewer = std::min(in_row, in_column), more = std::max(in_row, in_column);
+    if (all < kFewest || fewer < kFewerOfBlots || more < kMoreOfBlots) continue;
+    ++blots;
+    edges_of_blots += all;
+    if (fewer < kFewer || more < kMore || crossed_by(inner(walls(box) & own)) < kStrokesOfRun) continue;
+    ++places;
+    edges_of_places += all;
   }
-  return edges_of_places >= kLeastOfPieces * edges_of_all ? places : 0;
+  if (edges_of_places >= kLeastOfPieces * edges_of_all) return places;
+  return blots >= kBlots && edges_of_blots >= kLeastOfPieces * edges_of_all ? blots : 0;
 }
 
 int erase_rows(cv::Mat& classes, const CellLattice& lattice) {
@@ -335,8 +341,14 @@ int erase_lettering(cv::Mat& classes) {
 int perhaps_words(const cv::Mat& classes) {
   if (classes.empty()) return 0;
   const CellLattice lattice = cell_lattice(walls_of(classes));
-  if (lattice.pixels > 1) return drawn_over(classes, lattice);
   int words = 0;
+  if (lattice.pixels > 1) {
+    // Straight walls two cells wide may lie on a lattice of twice the cells, off which others of them are.
+    for (const int pixels : {lattice.pixels, lattice.pixels / 2})
+      if (pixels > 1 && lattice.pixels % pixels == 0)
+        words = std::max(words, drawn_over(classes, {pixels, lattice.left % pixels, lattice.top % pixels}));
+    return words;
+  }
   const auto in_rows_of = [&words](const cv::Mat& of) {
     int here = 0, letters = 0;
     const int all = find_in_rows(of, {}, kPerhaps, [&](const Written&, int in_word) {

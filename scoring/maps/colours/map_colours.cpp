@@ -1,6 +1,7 @@
 #include "scoring/maps/colours/map_colours.h"
 
 #include <algorithm>
+#include <array>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <string>
@@ -16,12 +17,45 @@
 #include "scoring/maps/colours/league_classes.h"
 #include "scoring/maps/colours/league_colours.h"
 #include "scoring/maps/colours/lettering.h"
+#include "scoring/maps/colours/lossy_tones.h"
 #include "scoring/maps/colours/reading_doubts.h"
 #include "scoring/maps/colours/turned_canvas.h"
 
 namespace rubble::scoring {
 
 namespace {
+
+/// What is transparent is the free ground of a layer over some other picture: the opaque pixels have walls and one
+/// ground, that ground is all around, and what is transparent lies within it. Elsewhere it is unknown.
+bool is_transparent_free(const RgbImage& image, const cv::Mat& transparent) {
+  constexpr double kLeastLayer = 0.02;  // of the picture
+  constexpr double kMostOfRim = 0.02;   // that is transparent
+  constexpr double kGroundOfRim = 0.5;
+  constexpr int kAsGround = 6;            // difference of its pixels
+  constexpr double kLeastOfGround = 0.9;  // of the opaque pixels that are no lines
+  if (cv::countNonZero(transparent) < kLeastLayer * static_cast<double>(transparent.total())) return false;
+  const cv::Mat grey = grey_of(image);
+  std::array<int, 256> rim{};
+  int all = 0, open = 0;
+  const auto ask = [&](int x, int y) {
+    ++all;
+    if (transparent.at<unsigned char>(y, x) != 0)
+      ++open;
+    else
+      ++rim[grey.at<unsigned char>(y, x)];
+  };
+  for (int x = 0; x < grey.cols; ++x) ask(x, 0), ask(x, grey.rows - 1);
+  for (int y = 0; y < grey.rows; ++y) ask(0, y), ask(grey.cols - 1, y);
+  const auto most = std::max_element(rim.begin(), rim.end());
+  if (open > kMostOfRim * all || *most < kGroundOfRim * all) return false;
+  const int ground = static_cast<int>(most - rim.begin());
+  const cv::Mat opaque = ~transparent, of_ground = (grey >= ground - kAsGround) & (grey <= ground + kAsGround) & opaque;
+  cv::Mat areas;
+  constexpr int kLine = 9;  // wider ones are areas [pixels]
+  cv::morphologyEx(opaque, areas, cv::MORPH_OPEN, cv::Mat::ones(kLine, kLine, CV_8U));
+  return cv::countNonZero(of_ground) >= kLeastOfGround * cv::countNonZero(areas) &&
+         cv::countNonZero(opaque & ~of_ground) > 0;
+}
 
 /// Walls black, free ground white, all else unknown: what deep samples were translated to.
 LabelImage classify_direct(const RgbImage& image, const std::string& meaning) {
@@ -96,6 +130,7 @@ LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
   if (even) grey = even->grey;
   const cv::Mat as_it_was = grey.clone();
   const bool painted = !areas && paint_over_colours(image, nothing, grey);
+  const bool many_pens = !areas && !painted && even_out_coloured_walls(image, nothing, grey);
   const TurnedCanvas turned = canvas_of_the_walls_grey(grey);
   const cv::Mat canvas = turned.mask.empty() ? canvas_corners(grey) : turned.mask;
   cv::Mat levels = grey.clone(), apart = canvas.clone();
@@ -115,6 +150,7 @@ LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
     out.refusal = "is not evenly bright (ground of one kind differs by " + std::to_string(even->differed) +
                   " of 255 over the picture, as in a photograph), and coloured; give it as the robot saved it";
   if (painted) out.recognised += ", coloured drawings removed";
+  if (many_pens) out.recognised += ", lines in many colours are walls";
   if (painted && are_walls_among_the_drawings(as_it_was, grey, out.classes == static_cast<int>(Occupancy::Occupied)))
     out.refusal =
         "has dark lines in colour and pale grey ones, and nothing says which are walls; give it in the league's "
@@ -134,7 +170,10 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
   const RgbImage& image = restored ? restored->image : original;
   const Blur undone = restored ? restored->blur : Blur{};
   out.is_league = undone.sigma > 0.0 || (!direct && is_league_map(image));
-  const cv::Mat nothing = transparent_pixels(image) | no_data_areas(image, notes);
+  cv::Mat nothing = transparent_pixels(image);
+  const bool is_layer = !direct && !out.is_league && is_transparent_free(image, nothing);
+  if (is_layer) nothing.setTo(0);  // its pixels have a grey of their own
+  nothing |= no_data_areas(image, notes);
   const std::optional<LabelImage> costmap =
       direct || out.is_league || !small_enough(image) ? std::nullopt : classify_costmap(image);
   const LabelImage labels = direct          ? classify_direct(image, notes.meaning)
@@ -144,11 +183,14 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
   out.recognised = labels.recognised;
   out.refusal = labels.refusal;
   if (restored) out.recognised += ", " + restored->how;
+  if (is_layer) out.recognised += ", what is transparent is ground";
   if (!direct && !costmap && (undone.sigma == 0.0 || !out.refusal.empty()))
     if (const std::string why = why_colours_are_lost(image, is_league_map(image)); !why.empty()) out.refusal = why;
   if (image.white > 0)
     out.recognised += ", scaled so that the brightest sample, " + std::to_string(image.white) + ", is white";
-  out.recognised += labels.doubt;
+  out.recognised += (restored ? restored->doubt : "") + labels.doubt;
+  if (out.is_league && !labels.by_level && small_enough(original) && out.refusal.empty())
+    out.recognised += doubt_about_tones(image);
   if (!direct && small_enough(original) && out.refusal.empty())
     out.recognised +=
         doubts_about(undone.sigma > 0.0 ? image : original, restored && restored->as_drawn ? image : original,

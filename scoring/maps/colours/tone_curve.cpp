@@ -35,12 +35,12 @@ int difference(const Rgb& a, const Rgb& b) {
 
 }  // namespace
 
-std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const FloorTone& floor) {
+std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const FloorTone& floor, int rounding) {
   std::vector<ToneCurve> out;
   const auto offer = [&](ToneCurve curve) {
-    const bool fits = difference(changed(curve, league::kUnexplored), darker) <= kRounding &&
-                      difference(changed(curve, league::kUnexploredLight), lighter) <= kRounding &&
-                      difference(changed(curve, floor.own), floor.now) <= kRounding;
+    const bool fits = difference(changed(curve, league::kUnexplored), darker) <= rounding &&
+                      difference(changed(curve, league::kUnexploredLight), lighter) <= rounding &&
+                      difference(changed(curve, floor.own), floor.now) <= rounding;
     const auto same = [&](const ToneCurve& other) { return other.of == curve.of; };
     if (fits && std::none_of(out.begin(), out.end(), same)) out.push_back(std::move(curve));
   };

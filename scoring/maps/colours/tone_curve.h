@@ -23,8 +23,8 @@ struct FloorTone {
 };
 
 /// Curves (gamma; contrast and brightness, clipped at both ends) that make two greys of the league's checkerboard and
-/// what is seen now of its floor, the likeliest first.
-std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const FloorTone& floor);
+/// what is seen now of its floor, to `rounding` of a channel, the likeliest first.
+std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const FloorTone& floor, int rounding = 1);
 
 /// Undoes a curve: the league's own colour where one of them became this, else of each channel the value that comes
 /// nearest. Both are looked up: a JPEG has thousands of colours, and many curves are tried on it.

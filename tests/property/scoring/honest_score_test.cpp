@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -154,6 +155,22 @@ TEST_P(HonestScore, SurroundingsCostNothing) {
     EXPECT_EQ(score.detached, 0.0);
     EXPECT_GE(score.score, 0.99);
   }
+}
+
+/// Where the walls around are says the floor that is known, seen or not: they earn nothing, and who lacks some of them
+/// is told.
+TEST_P(HonestScore, WallsAroundTheArenaEarnNothingAndAreMissedInWords) {
+  const GridFrame known = *known_frame(truth, 0.0);
+  OccupancyGrid map = truth;
+  const double west = known.x0 + 0.15;  // [m]
+  for (int y = 0; y < map.height(); ++y)
+    for (int x = 0; x < map.width(); ++x)
+      if (map.centre({x, y}).x < west && map[{x, y}] == Occupancy::Occupied) map[{x, y}] = Occupancy::Unknown;
+  const MapScore score = score_at_pose(map, truth, {});
+  EXPECT_GE(score.score, 0.98);
+  EXPECT_LE(score.overlap, 0.95);
+  EXPECT_THAT(score.note, ::testing::HasSubstr("no line of sight crosses"));
+  EXPECT_EQ(score_at_pose(truth, truth, {}).note, "");
 }
 
 /// Walls that waver are walls: closing their gaps, growing them by a cell or drawing them in finer pixels is no better

@@ -26,6 +26,7 @@
 #include "tests/support/map_style_fresh.h"
 #include "tests/support/map_style_hard.h"
 #include "tests/support/map_style_pages.h"
+#include "tests/support/map_style_teams.h"
 #include "tests/support/scoring_grounds.h"
 
 /// Styles of drawing: a map in the style of any program or team is read as its plain picture is, or refused by a
@@ -48,7 +49,7 @@ class DrawnMap {
     return {sights_.at(read, T).score, overlap(read, truth_, T.pose(), 0.5).score};
   }
   Worth plain(double pixels) {
-    const int n = static_cast<int>(pixels);
+    const int n = std::max(1, static_cast<int>(pixels));
     if (plain_.count(n) > 0) return plain_.at(n);
     GridFrame f = map_.frame();
     f.width *= n, f.height *= n, f.resolution /= n;
@@ -65,14 +66,17 @@ class DrawnMap {
   std::map<int, Worth> plain_;
 };
 
-/// A damaged maze, a yellow arena seen in part, and a maze with ragged walls.
+/// A damaged maze, a yellow arena seen in part, and a maze with ragged walls. With RUBBLE_STYLE_SEED=N in the
+/// environment others of the same kinds.
 std::vector<DrawnMap> drawn_maps() {
   std::vector<DrawnMap> out;
-  const OccupancyGrid maze = truth_of({"maze", 5, 7, 9});
-  out.emplace_back("maze", maze, padded(with_gaps(with_phantoms(maze, 2, 3), 3, 6), 16));
-  const OccupancyGrid yellow = truth_of({"yellow", 6, 7, 23});
-  out.emplace_back("yellow", yellow, padded(with_coverage(with_gaps(yellow, 3, 8), 0.75), 12));
-  const OccupancyGrid laser = truth_of({"maze", 6, 7, 31});
+  const char* const text = std::getenv("RUBBLE_STYLE_SEED");
+  const std::uint64_t more = text == nullptr ? 0 : 100 * std::strtoull(text, nullptr, 10);
+  const OccupancyGrid maze = truth_of({"maze", 5, 7, 9 + more});
+  out.emplace_back("maze", maze, padded(with_gaps(with_phantoms(maze, 2, 3 + more), 3, 6 + more), 16));
+  const OccupancyGrid yellow = truth_of({"yellow", 6, 7, 23 + more});
+  out.emplace_back("yellow", yellow, padded(with_coverage(with_gaps(yellow, 3, 8 + more), 0.75), 12));
+  const OccupancyGrid laser = truth_of({"maze", 6, 7, 31 + more});
   out.emplace_back("ragged", laser, padded(ragged(laser, 1, 4), 15));
   return out;
 }
@@ -149,7 +153,7 @@ Outcome outcome_of(std::vector<DrawnMap> maps, const std::vector<Style>& styles)
   return out;
 }
 
-bool are_all_tried() { return std::getenv("RUBBLE_STYLE") == nullptr; }
+bool are_all_tried() { return std::getenv("RUBBLE_STYLE") == nullptr && std::getenv("RUBBLE_STYLE_SEED") == nullptr; }
 
 TEST(MapStyles, AreReadAsThePlainPictureIsOrRefusedWithTheReason) {
   std::vector<Style> styles = styles_of_colours();
@@ -163,6 +167,12 @@ TEST(MapStyles, AreReadAsThePlainPictureIsOrRefusedWithTheReason) {
   // Nor are they many that are refused, or doubted though they are right: who doubts all is never wrong.
   EXPECT_LE(out.refused, is_tried(1) ? 34 : 11);
   EXPECT_LE(out.doubted, is_tried(1) ? 116 : 43);
+}
+
+TEST(MapStyles, WhatTheToolsOfTeamsSaveIsReadOrDoubted) {
+  const Outcome out = outcome_of(drawn_maps(), styles_of_teams());
+  if (!are_all_tried()) return;
+  EXPECT_LE(out.wrong, 0);
 }
 
 TEST(MapStyles, WherePartOfTheMapIsLostThatIsSaid) {

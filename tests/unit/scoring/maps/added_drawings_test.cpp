@@ -118,6 +118,37 @@ TEST(AddedDrawings, WallsInColourAreWalls) {
   EXPECT_EQ(read_otherwise(red, map, {0, 0}), 0);
 }
 
+TEST(AddedDrawings, WallsInAllColoursOfARainbowAreWallsThroughJpegToo) {
+  const cv::Mat map = map_picture(205);
+  cv::Mat twice, hue(2 * map.rows, 2 * map.cols, CV_8U), rainbow, picture;
+  cv::resize(map, twice, {}, 2, 2, cv::INTER_NEAREST);
+  for (int x = 0; x < hue.cols; ++x) hue.col(x) = cv::Scalar(255.0 * x / hue.cols);
+  cv::applyColorMap(hue, rainbow, cv::COLORMAP_JET);
+  cv::cvtColor(twice, picture, cv::COLOR_GRAY2BGR);
+  rainbow.copyTo(picture, twice == 0);
+  EXPECT_LE(read_otherwise(picture, twice, {0, 0}), picture.rows * picture.cols / 1000);
+  EXPECT_LE(read_otherwise(as_jpeg(picture, 85), twice, {0, 0}), picture.rows * picture.cols / 50);
+}
+
+/// A layer over another picture: free ground, or what nobody saw, lets that show through.
+TEST(AddedDrawings, WhatIsTransparentWithinOneGroundIsFreeAndElsewhereUnknown) {
+  const cv::Mat map = map_picture(205);
+  const RgbImage opaque = rgb_of(map);
+  const ClassImage expected = classify(opaque);
+  for (const int transparent : {205, 255}) {
+    RgbImage layer = opaque;
+    layer.alpha.assign(map.total(), 255);
+    for (std::size_t i = 0; i < map.total(); ++i)
+      if (map.data[i] == transparent) {
+        layer.alpha[i] = 0;
+        for (std::size_t k = 0; k < 3; ++k) layer.rgb[3 * i + k] = 226;
+      }
+    const ClassImage read = classify(layer);
+    EXPECT_EQ(read.classes.cells(), expected.classes.cells()) << transparent;
+    EXPECT_EQ(read.recognised.find("what is transparent is ground") != std::string::npos, transparent == 255);
+  }
+}
+
 TEST(AddedDrawings, AGridOverTheGroundIsNoUnknownGround) {
   const cv::Mat map = map_picture(128);
   cv::Mat grid = map.clone();
