@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/rng.h"
@@ -231,8 +233,9 @@ inline std::vector<OccupancyGrid> drawn_arenas(const OccupancyGrid& truth) {
   const auto pallets = [&](int cells) {
     return std::max(3, static_cast<int>(std::lround(cells * known.resolution / kLattice)));
   };
-  std::vector<OccupancyGrid> out;
-  for (std::uint64_t seed = 60001; seed <= 60012; ++seed)
+  static std::map<std::pair<int, int>, std::vector<OccupancyGrid>> drawn;  // several schemes ask for the same
+  std::vector<OccupancyGrid>& out = drawn[{pallets(known.width), pallets(known.height)}];
+  for (std::uint64_t seed = 60001; out.size() < 12; ++seed)
     out.push_back(truth_of({"yellow", pallets(known.width), pallets(known.height), seed}));
   return out;
 }
@@ -240,24 +243,20 @@ inline std::vector<OccupancyGrid> drawn_arenas(const OccupancyGrid& truth) {
 /// The walls that most of `others` have there, each laid with the middle of its outline on that of `truth`.
 inline OccupancyGrid most_probable(const OccupancyGrid& truth, const std::vector<OccupancyGrid>& others, double least) {
   OccupancyGrid out = hall_like(truth, true);
-  const TPoint2D m = middle_of(truth);
-  constexpr int kNear = 1;  // cells, by which lattices may be off each other
-  for (int y = 0; y < out.height(); ++y)
-    for (int x = 0; x < out.width(); ++x) {
-      if (out[{x, y}] != Occupancy::Free) continue;
-      int walls = 0;
-      for (const OccupancyGrid& other : others) {
-        const Cell from = other.cell(out.centre({x, y}) - m + middle_of(other));
-        bool wall = false;
-        for (int dy = -kNear; dy <= kNear; ++dy)
-          for (int dx = -kNear; dx <= kNear; ++dx) {
-            const Cell c{from.x + dx, from.y + dy};
-            wall = wall || (other.inside(c) && other[c] == Occupancy::Occupied);
-          }
-        walls += wall ? 1 : 0;
+  constexpr double kNear = 0.05;  // by which lattices may be off each other [m]
+  Grid<int> walls(out.frame(), 0);
+  for (const OccupancyGrid& other : others) {
+    const OccupancyGrid wide = thickened(other, static_cast<int>(std::lround(kNear / other.resolution())));
+    const TPoint2D off = middle_of(other) - middle_of(truth);
+    for (int y = 0; y < out.height(); ++y)
+      for (int x = 0; x < out.width(); ++x) {
+        const Cell from = wide.cell(out.centre({x, y}) + off);
+        if (wide.inside(from) && wide[from] == Occupancy::Occupied) ++walls[{x, y}];
       }
-      if (walls > least * static_cast<double>(others.size())) out[{x, y}] = Occupancy::Occupied;
-    }
+  }
+  for (std::size_t i = 0; i < out.cells().size(); ++i)
+    if (out.cells()[i] == Occupancy::Free && walls.cells()[i] > least * static_cast<double>(others.size()))
+      out.cells()[i] = Occupancy::Occupied;
   return out;
 }
 
