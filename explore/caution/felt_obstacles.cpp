@@ -113,7 +113,8 @@ std::optional<Cell> FeltObstacles::reached(const Thing& touch, const PalletGrid&
   return std::nullopt;
 }
 
-/// The only step field that a front corner of the body is above, or nearly, if it is no obstacle yet.
+/// The only step field that a corner of the body, on the side to which it drives, is above or nearly so; none that is
+/// an obstacle already.
 std::optional<Cell> FeltObstacles::field_beside(const Thing& touch, const PalletGrid& grid,
                                                 const robot::RobotModel& model, const std::vector<TPoint2D>& trail,
                                                 const OccupancyGrid& known) const {
@@ -121,14 +122,14 @@ std::optional<Cell> FeltObstacles::field_beside(const Thing& touch, const Pallet
   const double shoulder = touch.side * kCorner * model.length, side = 0.5 * model.width + kBeyondEdge;
   std::vector<Cell> fields = new_pallets({{reach, -aside}, {reach, aside}, {shoulder, -side}, {shoulder, side}},
                                          touch.anchor.T_map_base, grid, trail, &known);
-  const auto is_none = [&](Cell pallet) {
+  const auto is_no_new_field = [&](Cell pallet) {
     const TPoint2D middle = grid.middle(pallet);
     return !shows_step_field(known, grid, pallet) ||
            std::any_of(things_.begin(), things_.end(), [&](const Thing& thing) {
              return is_pallet_at(thing, middle) && counts(thing, touch.anchor.stamp) && closed(thing);
            });
   };
-  fields.erase(std::remove_if(fields.begin(), fields.end(), is_none), fields.end());
+  fields.erase(std::remove_if(fields.begin(), fields.end(), is_no_new_field), fields.end());
   return fields.size() == 1 ? std::optional(fields.front()) : std::nullopt;
 }
 

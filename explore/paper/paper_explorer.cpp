@@ -399,9 +399,10 @@ Traversable PaperExplorer::floor_now(const slam::Mapper& mapper, const std::vect
   free_body(floor, pose_, model_.length, model_.width, 0.0);
   free_trail(floor, trail_.points(), kTrailRadius);
   add_obstacles(floor, hits, kSameThing);
-  add_obstacles(floor, left_alone_.obstacles(now_), kSameThing);
+  const std::vector<TPoint2D> felt = left_alone_.obstacles(now_);
+  add_obstacles(floor, felt, kSameThing);
   measure_clearance(floor, agenda_.clearance_cap());
-  if (same_way) widen_trail(floor, trail_.points(), model_.width);
+  if (same_way) widen_trail(floor, trail_.points(), config_.planner.transform.d_min, felt);
   return floor;
 }
 

@@ -19,6 +19,7 @@ using slam::CountMap;
 constexpr int kWeakHits = 2;
 constexpr int kSeenOverHits = 5;      ///< fewer are noise, or the error of a pose beside a wall
 constexpr int kSeenOverPasses = 10;   ///< likewise so many scans to a hit
+constexpr double kOneWay = 0.5;       ///< places of a trail farther apart are not one way: the map moved between [m]
 constexpr float kSure = 0.85f;        ///< of the scans that looked at a wall so many hit it, at least
 constexpr double kLoneRadius = 0.15;  ///< [m]
 
@@ -194,20 +195,24 @@ void loosen_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double
   }
 }
 
-void widen_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double clearance) {
-  constexpr double kStep = 0.05;  // a trail has a point every 0.15 m
+void widen_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double clearance,
+                 const std::vector<TPoint2D>& things) {
+  const double cell = floor.frame().resolution;
   const auto room = static_cast<float>(clearance);
   const auto widen = [&](const TPoint2D& p) {
-    const Box box = cells_around(floor.frame(), p, 1.5 * floor.frame().resolution);
+    if (std::any_of(things.begin(), things.end(), [&](const TPoint2D& q) { return distance(p, q) < clearance; }))
+      return;
+    const Box box = cells_around(floor.frame(), p, 1.5 * cell);
     for (int y = box.low.y; y <= box.high.y; ++y)
       for (int x = box.low.x; x <= box.high.x; ++x)
         if (floor.obstacle[{x, y}] == 0) floor.clearance[{x, y}] = std::max(floor.clearance[{x, y}], room);
   };
   for (std::size_t i = 0; i + 1 < trail.size(); ++i) {
     const TPoint2D way = trail[i + 1] - trail[i];
-    const int steps = static_cast<int>(std::ceil(length(way.x, way.y) / kStep));
-    if (steps > 10) continue;  // the map moved between
-    for (int k = 0; k <= steps; ++k) widen(trail[i] + way * (static_cast<double>(k) / std::max(1, steps)));
+    const double apart = length(way.x, way.y);
+    if (apart > kOneWay) continue;
+    const int steps = std::max(1, static_cast<int>(std::ceil(apart / cell)));
+    for (int k = 0; k <= steps; ++k) widen(trail[i] + way * (static_cast<double>(k) / steps));
   }
 }
 

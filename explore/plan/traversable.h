@@ -25,7 +25,7 @@ struct Traversable {
   Grid<std::uint8_t> body;     ///< 1 where no scan has looked, but the robot's body stands or stood: free, no frontier
   Grid<float> clearance;       ///< distance to the nearest obstacle [m], capped; empty until measure_clearance
   std::vector<Cell> doubtful;  ///< made free as what may be the floor of a slope
-  std::vector<Cell> loose;     ///< made free as what can be pushed aside, or is no wall
+  std::vector<Cell> loose;     ///< made free as what can be pushed aside, lies on the trail, or is no wall
 
   const GridFrame& frame() const { return cells.frame(); }
 };
@@ -52,8 +52,11 @@ void keep_to_trail(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& 
 /// Makes free what lies within `radius` of a place the robot's centre has passed: it was not there then, or it is none.
 void loosen_trail(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& trail, double radius);
 
-/// Says that there is room of `clearance` [m] within a raster cell's diagonal of these places, where the robot passed.
-void widen_trail(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& trail, double clearance);
+/// Where the robot drove it fits again: lifts the clearance of what is no obstacle along the lines between these
+/// places, a cell and a half to either side, to `clearance` [m]. Not within that of `things`, which were met since.
+/// Places more than half a metre apart are not one way.
+void widen_trail(Traversable& floor, const std::vector<mrpt::math::TPoint2D>& trail, double clearance,
+                 const std::vector<mrpt::math::TPoint2D>& things);
 
 /// Adds obstacles the map does not show (yet), e.g. the hits of the newest scan. A point within `near` of an obstacle
 /// of the map is taken for that obstacle, displaced by the error of the pose, and left out.

@@ -16,8 +16,8 @@
 namespace rubble::explore {
 
 /// A skid-steered robot in a curve on loose paper: the outer wheels spin on the paper, a slow inner one that grips
-/// holds it, and it neither turns nor goes on. Nothing is in its way: with all wheels alike it drives on and off the
-/// paper.
+/// holds it: it does not turn, and stands or creeps. Nothing is in its way: with all wheels alike it drives on and off
+/// the paper.
 class StraightOn {
  public:
   explicit StraightOn(const robot::RobotModel& model) : model_(model) {}

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kMargin = 1.0;      ///< around what is covered [m]
 constexpr float kOneSurface = 0.7F;  ///< cosine between normals that are averaged
-/// Cosine between normals that are matched. Points scatter less by the scanner's noise, but for corners: a normal from
+/// Cosine between normals that are matched. They scatter less by the scanner's noise, but for corners: a normal from
 /// both of its walls is neither's, and aslant to a corridor it holds back all that moves along.
 constexpr float kSameSide = 0.9F;
 

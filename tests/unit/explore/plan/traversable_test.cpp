@@ -206,8 +206,16 @@ TEST(Traversable, WhatLiesOnTheTrailIsNoObstacleAndTheRobotFitsWhereItPassed) {
   measure_clearance(floor, 1.2);
   const auto at = [&](double x, double y) { return floor.clearance[floor.clearance.cell(TPoint2D{x, y})]; };
   EXPECT_LT(at(2.0, 1.0), 0.3F) << "the heap goes on beside it";
-  widen_trail(floor, trail, 0.5);
-  for (double x = 0.6; x < 3.4; x += 0.05) EXPECT_GE(at(x, 1.0), 0.5F) << x;
+  const TPoint2D felt{2.9, 1.0};
+  add_obstacles(floor, {felt}, 0.0);
+  measure_clearance(floor, 1.2);
+  widen_trail(floor, trail, 0.4, {felt});
+  for (double x = 0.6; x < 3.4; x += 0.05) {
+    SCOPED_TRACE(x);
+    const double away = std::abs(x - felt.x);
+    EXPECT_TRUE(away < 0.4 || at(x, 1.0) >= 0.4F);
+    EXPECT_TRUE(away > 0.3 || at(x, 1.0) < 0.4F) << "something was met there since";
+  }
   EXPECT_EQ(floor.cells[floor.cells.cell(TPoint2D{2.0, 1.1})], Occupancy::Free);
   EXPECT_FALSE(floor.loose.empty()) << "the scanner may go on seeing it";
   EXPECT_EQ(floor.cells[floor.cells.cell(TPoint2D{2.0, 0.65})], Occupancy::Occupied) << "off the trail";
