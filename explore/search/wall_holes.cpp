@@ -9,7 +9,7 @@ namespace {
 using mrpt::math::TPoint2D;
 
 constexpr double kBoardEnd = 0.20;    ///< wall on both sides of a hole, which boards have at their ends [m]
-constexpr double kSameBoard = 0.75;   ///< from one hole of a board to where the next one ends [m]
+constexpr double kSameBoard = 0.75;   ///< from one hole of a board of 1.2 m to where the next one ends [m]
 constexpr double kBesideWall = 0.15;  ///< what is not farther from a wall lies at it [m]
 
 /// Whether a cell, or the one to either side of its row along a wall, has something of it: walls lie slightly askew.
