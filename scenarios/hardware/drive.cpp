@@ -202,6 +202,9 @@ class Driver {
     hooks.over = [this] { return piloted_out_ ? why_piloted_out() : std::string(); };
     hooks.steer = [this](const robot::Inputs& inputs, const robot::Commands& wanted) { return steer(inputs, wanted); };
     hooks.each_second = [this](double seconds) { each_second(seconds); };
+    hooks.waits = [this](const explore::Decision& waits) {
+      if (options_.tell) options_.tell("the robot " + waits.why);
+    };
     hooks.stop = [this] {
       ended_ = true;
       real_.stop();

@@ -5,7 +5,8 @@
 namespace rubble::scenarios {
 namespace {
 
-constexpr double kNoted = 5.0;  ///< what is known is noted this often [s]
+constexpr double kNoted = 5.0;     ///< what is known is noted this often [s]
+constexpr double kPatient = 10.0;  ///< from the first scan on; our own mappers take less to map one [s]
 
 }  // namespace
 
@@ -45,7 +46,12 @@ void Core::watch(const robot::Inputs& inputs) {
     stalled_ = odometry.stalled;
   }
   if (first_ == Stamp::never()) first_ = inputs.now;
-  if (!explorer_ || inputs.now < next_noted_) return;
+  if (!explorer_) return;
+  if (first_scan_ == Stamp::never() && !inputs.scans.empty()) first_scan_ = inputs.now;
+  if (!waits_ && first_scan_ != Stamp::never() && inputs.now - first_scan_ >= kPatient && mapper_->counts().mapped == 0)
+    waits_ = {inputs.now,
+              "waits for the mapper: it has mapped no scan yet (answers `mapped N`, docs/mapper_protocol.md)"};
+  if (inputs.now < next_noted_) return;
   next_noted_ = inputs.now + kNoted;
   first_seen_.note(mapper_->map(), inputs.now - first_);
 }

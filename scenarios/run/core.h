@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ class Core {
   int stalls() const { return stalls_; }
   /// When which place was mapped, while it explored [s since the first tick].
   const FirstSeen& first_seen() const { return first_seen_; }
+  /// What the robot waited for in vain while it should explore; nothing: it has not had to wait long.
+  const std::optional<explore::Decision>& waits() const { return waits_; }
   /// Null when only mapping.
   const explore::Explorer* explorer() const { return explorer_.get(); }
 
@@ -51,6 +54,8 @@ class Core {
   Stamp first_ = Stamp::never();
   FirstSeen first_seen_;
   Stamp next_noted_ = Stamp::never();
+  Stamp first_scan_ = Stamp::never();
+  std::optional<explore::Decision> waits_;
   std::unique_ptr<explore::Explorer> explorer_;  ///< null: only mapping
 };
 

@@ -70,6 +70,10 @@ void Loop::drive(robot::Robot& robot, LoopEnd& end) {
 }
 
 void Loop::tell_decisions() {
+  if (hooks_.waits && !told_waits_ && core_.waits()) {
+    told_waits_ = true;
+    hooks_.waits(*core_.waits());
+  }
   if (!hooks_.decided || core_.explorer() == nullptr) return;
   const std::vector<explore::Decision>& all = core_.explorer()->decisions();
   for (; told_ < all.size(); ++told_) hooks_.decided(all[told_]);

@@ -32,6 +32,7 @@ struct LoopHooks {
   std::function<void()> stop;                             ///< the last command was given; what follows may take seconds
   std::function<void(const Progress&)> progress;          ///< called a few times a second of wall time
   std::function<void(const explore::Decision&)> decided;  ///< called for each decision of the explorer, in order
+  std::function<void(const explore::Decision&)> waits;    ///< called once when the robot waits in vain, see Core::waits
 };
 
 /// How a loop ended.
@@ -71,7 +72,8 @@ class Loop {
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_save_ = start_;
   Clock::time_point last_report_ = start_;
-  std::size_t told_ = 0;      ///< decisions of the explorer
+  std::size_t told_ = 0;  ///< decisions of the explorer
+  bool told_waits_ = false;
   double save_period_ = 0.0;  ///< grows: a run of a few seconds leaves a map too when it is killed [s]
 };
 

@@ -273,7 +273,12 @@ scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajec
 std::string decisions_text(const Core& core) {
   std::string text;
   if (core.explorer() == nullptr) return text;
-  for (const explore::Decision& decision : core.explorer()->decisions()) {
+  std::vector<explore::Decision> all = core.explorer()->decisions();
+  if (const auto& waits = core.waits()) {
+    const auto later = [](Stamp stamp, const explore::Decision& decision) { return stamp < decision.stamp; };
+    all.insert(std::upper_bound(all.begin(), all.end(), waits->stamp, later), *waits);
+  }
+  for (const explore::Decision& decision : all) {
     std::array<char, 24> time{};
     std::snprintf(time.data(), time.size(), "%8.2f ", decision.stamp.seconds());
     text += time.data() + decision.why + "\n";

@@ -150,6 +150,7 @@ LoopHooks hooks_of(const RunOptions& options) {
   hooks.interrupted = options.interrupted;
   hooks.progress = options.progress;
   hooks.decided = options.decided;
+  hooks.waits = options.waits;
   return hooks;
 }
 

@@ -21,6 +21,7 @@ struct RunOptions {
   std::function<bool()> interrupted;              ///< asked each tick; true ends the run with its folder complete
   std::function<void(const Progress&)> progress;  ///< called a few times a second
   std::function<void(const explore::Decision&)> decided;  ///< called for each decision of the explorer, in order
+  std::function<void(const explore::Decision&)> waits;    ///< called once when the robot waits in vain, see Core::waits
 };
 
 struct RunReport {

@@ -98,6 +98,20 @@ for seed in 1 2 3; do
     fail "a mapper of random answers, seed $seed: ended with $?"
 done
 
+# One that draws and tells poses, but never that a scan is mapped: the robot waits for it, and that is said, once.
+cat >unmapped.py <<'PY'
+import sys
+print("ready 1", flush=True)
+for line in sys.stdin:
+    if line.split()[0] == "end":
+        print("pose 0 0 0\nmap 2 2 0.5 -0.5 -0.5\n..\n..\nend", flush=True)
+PY
+waits='waits for the mapper: it has mapped no scan yet (answers `mapped N`, docs/mapper_protocol.md)'
+expect_exit 0 "$waits" "$rubble" run s.yaml --out unmapped --set time_limit_s=30 --mapper-command "python3 unmapped.py"
+[[ $(grep -cF "$waits" unmapped/decisions.txt) == 1 ]] || fail "decisions.txt: $(cat unmapped/decisions.txt)"
+expect_exit 0 '' "$rubble" run s.yaml --out soon --set time_limit_s=8 --mapper-command "python3 unmapped.py"
+grep -qF 'waits for the mapper' err.txt soon/decisions.txt py/decisions.txt && fail "what need not wait long is said to"
+
 # kill -9 of rubble leaves none of its processes.
 "$rubble" run s.yaml --out killed --set time_limit_s=100000 --mapper-command \
   "sleep 1234 & echo \$! >$work/pid1; (setsid sleep 1234 & echo \$! >$work/pid2); echo \$\$ >$work/pid3; sleep 1234" \
