@@ -101,7 +101,7 @@ int score(ScoreArguments arguments) {
   config.alignment = parse_align(arguments.align);
   config.warp = arguments.warp;
   config.tau = arguments.tau;
-  if (!arguments.out.empty()) make_folder(arguments.out);
+  if (!arguments.out.empty()) make_score_folder(arguments.out, arguments.force);
   Verdict verdict;
   verdict.map = scoring::load_map(arguments.map, {arguments.map_resolution});
   config.alignment.start = parse_start(arguments.start, arguments.map, verdict.map);
@@ -192,6 +192,7 @@ Command score_command() {
                    "commas; eq7: of all that, the least error of eq. (7)");
             o.flag("--warp", a->warp, "Also undo the map's distortion, and match its features");
             o.text("--out", a->out, "Folder for overlay.png, error.png, sight.png and score.json");
+            o.flag("--force", a->force, "Replace the pictures and score.json of a run");
             o.flag("--json", a->json, "Print JSON");
             return [a] { return score(*a); };
           }};

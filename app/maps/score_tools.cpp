@@ -88,6 +88,14 @@ void make_folder(const std::string& path) {
     throw InputError(path + ": cannot be created (" + error.message() + "); give a writable folder with --out");
 }
 
+void make_score_folder(const std::string& path, bool force) {
+  std::error_code error;
+  if (!force && std::filesystem::exists(std::filesystem::path(path) / "estimate.tum", error))
+    throw InputError(path + ": is the folder of a run, whose pictures and score.json these would take the place of; " +
+                     "give another folder with --out, or --force to replace them");
+  make_folder(path);
+}
+
 void write_evaluation_page(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,
                            const scoring::EvaluationStart& start) {
   write_text_file(path, scoring::evaluation_page(map, truth, start));

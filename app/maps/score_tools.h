@@ -21,6 +21,7 @@ struct ScoreArguments {
   bool warp = false;
   double tau = 0.5;
   std::string out;
+  bool force = false;  ///< the pictures and score.json of a run may be replaced
   bool json = false;
   std::string pose;     ///< X,Y,DEG[,SCALE]: score there instead of aligning
   std::string start;    ///< X,Y,DEG in the truth of where the robot started
@@ -57,6 +58,10 @@ std::string command_of(const ScoreArguments& a);
 
 /// Creates the folder of --out. Throws InputError when that is not possible.
 void make_folder(const std::string& path);
+
+/// The same for files that a run's folder has too, with more in them. Throws InputError for such a folder, but with
+/// `force`.
+void make_score_folder(const std::string& path, bool force);
 
 /// Writes the Mapping Evaluation Tool page. Throws RunError.
 void write_evaluation_page(const std::string& path, const OccupancyGrid& map, const OccupancyGrid& truth,

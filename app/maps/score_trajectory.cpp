@@ -31,8 +31,8 @@ scoring::Evidence compared(const Trajectory& estimate, const Trajectory& truth, 
 bool is_trajectory(const std::string& path) { return ends_with(path, ".tum"); }
 
 int score_trajectory(const ScoreArguments& arguments) {
-  if (!arguments.pose.empty() || !arguments.html.empty())
-    throw UsageError("trajectories are scored without --pose and --html; see rubble score --help");
+  if (!arguments.pose.empty() || !arguments.html.empty() || arguments.force)
+    throw UsageError("trajectories are scored without --pose, --html and --force; see rubble score --help");
   const Trajectory estimate = read_tum(arguments.map);
   scoring::Evidence evidence;
   if (ends_with(arguments.truth, ".relations")) {

@@ -61,6 +61,14 @@ for name in plan.png rooms.png overlay.png; do cp run/map.png $name; done
 refused plan.png "$lost" "$rubble" plan plan.png --resolution 0.025
 refused rooms.png "$lost" "$rubble" rooms rooms.png --resolution 0.025 --out .
 refused overlay.png "$lost" "$rubble" score overlay.png run/truth.tif --resolution 0.025 --out .
+# A run's score.json knows its trajectory and how it ended: what a map alone has to say does not take its place unasked.
+cp -r run judged
+refused judged/score.json "judged: is the folder of a run" "$rubble" score run/map.tif run/truth.tif --out judged
+kept judged
+expect_exit 0 "" "$rubble" score run/map.tif run/truth.tif --out judged --force
+cmp -s run/score.json judged/score.json && fail "score --force wrote nothing"
+expect_exit 0 "" "$rubble" score run/map.tif run/truth.tif --out fresh
+expect_exit 0 "" "$rubble" score run/map.tif run/truth.tif --out fresh
 cp run/map.tif h.tif && refused h.tif "$lost" "$rubble" score h.tif run/truth.tif --html h.tif
 cp run/truth.tum own.tum && mkdir t && ln -s ../own.tum t/trajectory.json
 refused own.tum "is a symbolic link" "$rubble" score own.tum run/truth.tum --out t
