@@ -85,7 +85,14 @@ RawReplay replay_raw(const std::string& run_folder) {
   result.bad_sums = box.bad_sums;
   result.jumps = box.jumps;
   result.bad_lines = box.bad_lines;
-  for (const RawReplay::Kind& kind : result.kinds) result.identical = result.identical && kind.same == kind.recorded;
+  std::size_t recorded_in_all = 0;
+  for (const RawReplay::Kind& kind : result.kinds) {
+    result.identical = result.identical && kind.same == kind.recorded;
+    recorded_in_all += kind.recorded;
+  }
+  if (recorded_in_all == 0)
+    throw InputError(run_folder + (entries.empty() ? ": no bytes were recorded" : ": no measurement was recorded") +
+                     ", so there is nothing to compare; give a drive whose devices have reported");
   return result;
 }
 

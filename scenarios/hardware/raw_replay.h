@@ -22,7 +22,7 @@ struct RawReplay {
 };
 
 /// Plays devices.bytes of a run folder to the drivers and compares with the folder's log. Numbers and stamps
-/// must be the same bits. Throws InputError.
+/// must be the same bits. Throws InputError, also where nothing was recorded that could be compared.
 RawReplay replay_raw(const std::string& run_folder);
 
 }  // namespace rubble::scenarios

@@ -48,6 +48,8 @@ for device in urg base levelling; do grep -q "rubble: $device: has not reported 
 [[ $(wc -l <out.txt) == 1 ]] && grep -q "^folder .*nobody (nothing is mapped" out.txt || fail "a drive that never began shows figures: $(cat out.txt)"
 ! grep -q "motors off" err.txt || fail "a drive that never began tells its state: $(cat err.txt)"
 
+expect_exit 3 "nobody: no bytes were recorded" "$rubble" replay --raw nobody
+
 # A robot that somebody holds by its button to the end: the end says so.
 start_emulator small.yaml --fault base-button@3
 # shellcheck disable=SC2086
