@@ -73,9 +73,13 @@ int score_league(const ScoreArguments& arguments) {
   config.tell = [](const std::string& note) { tell(note); };
   const scoring::League league = scoring::judge_league(folder, truth, judge, config);
   print_ranking(league, arguments.warp);
-  if (arguments.out.empty()) return kOk;
-  scoring::write_league(league, truth, arguments.out);
-  print_line("written: " + arguments.out + "/league.html, league.csv");
+  if (!arguments.out.empty()) {
+    scoring::write_league(league, truth, arguments.out);
+    print_line("written: " + arguments.out + "/league.html, league.csv");
+  }
+  const bool any = std::any_of(league.entries.begin(), league.entries.end(),
+                               [](const LeagueEntry& entry) { return entry.error.empty(); });
+  if (!any) throw InputError(arguments.league + ": none of its maps can be read; the table says why");
   return kOk;
 }
 

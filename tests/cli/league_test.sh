@@ -124,6 +124,13 @@ expect_exit 0 "" "$rubble" score --league odd $truth --out odd_out
 grep -q '^1,fine,' odd_out/league.csv || fail "odd names in a league: $(cut -c1-200 odd_out/league.csv)"
 grep -q '^[^,]*,self,.*leads to no file' odd_out/league.csv || fail "a link to itself has no row: $(cut -c1-200 odd_out/league.csv)"
 
+# One map that can be read makes a league, none does not: the table says why, and the exit code that it is none.
+mkdir bad && printf 'II*\0 no map' >bad/one.tif && printf 'no picture' >bad/two.png
+expect_exit 3 'bad: none of its maps can be read' "$rubble" score --league bad $truth --out bad_out
+grep -q ' one ' out.txt && grep -q ' two ' out.txt && [[ -s bad_out/league.html ]] || fail "no table: $(cat out.txt)"
+cp maps/coarse.tif bad/three.tif
+expect_exit 0 '' "$rubble" score --league bad $truth
+
 mkdir none && cp $truth none/truth.tif
 expect_exit 3 'truth.tif' "$rubble" score --league none $truth
 
