@@ -156,6 +156,38 @@ std::vector<std::string> names_of(const CLI::App& app) {
   return names;
 }
 
+/// The command that was being read, "batch merge" below "batch"; none: the program itself.
+const CLI::App& innermost(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? app : innermost(*chosen.back());
+}
+
+/// "'--sed' is no option of run, did you mean '--seed'?"; empty when nothing like it is one.
+std::string option_hint(const CLI::App& app) {
+  const CLI::App& command = innermost(app);
+  std::vector<std::string> options;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  for (const std::string& word : app.remaining(true)) {
+    if (word.rfind("--", 0) != 0) continue;
+    const std::string name = word.substr(0, word.find('='));
+    if (const std::string hint = did_you_mean(name, options); !hint.empty())
+      return in_quotes(name) + " is no option of " + command.get_name() + hint;
+  }
+  return "";
+}
+
+/// What stands on the command line behind the program's name: "help run" is "run --help". CLI11 takes it backwards.
+std::vector<std::string> words_of(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (!words.empty() && words.front() == "help") {
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  }
+  std::reverse(words.begin(), words.end());
+  return words;
+}
+
 int dispatch(int argc, char** argv) {
   CLI::App app(
       "rubble: simulate, map and score rescue arenas.\n"
@@ -163,9 +195,13 @@ int dispatch(int argc, char** argv) {
   app.name("rubble");
   app.set_version_flag("--version", [] { return scenarios::versions().json(-1); });
   app.require_subcommand(1);
+  app.footer(
+      "rubble SUBCOMMAND --help, or help SUBCOMMAND, tells more.\n"
+      "Also: mapper-process KIND   a mapper of ours as a program of its own, see docs/mapper_protocol.md\n"
+      "      test                  in a checkout, ./rubble test builds and runs the tests; ./rubble test --help");
   const std::vector<Declared> declared = declare(app);
   try {
-    app.parse(argc, argv);
+    app.parse(words_of(argc, argv));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     std::string message = error.what();
@@ -177,6 +213,7 @@ int dispatch(int argc, char** argv) {
       const std::string hint = did_you_mean(argv[1], names_of(app));
       throw UsageError(in_quotes(argv[1]) + " is no subcommand" + (hint.empty() ? "; see rubble --help" : hint));
     }
+    if (const std::string hint = option_hint(app); !hint.empty()) throw UsageError(hint);
     const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
     throw UsageError(message + "; see rubble" + command + " --help");
   }

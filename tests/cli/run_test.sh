@@ -66,6 +66,17 @@ expect_exit 0 '' "$rubble" run part.yaml --out part --force
 mkdir part/.partial && touch part/.partial/letter.part
 expect_exit 3 'none of that name is shipped; shipped are equal_cells, on_earth, yellow' "$rubble" run nosuch
 expect_exit 3 "did you mean 'yellow'" "$rubble" run yelow
+expect_exit 2 "'--sed' is no option of run, did you mean '--seed'?" "$rubble" run --sed 3
+expect_exit 2 "'--sed' is no option of run, did you mean '--seed'?" "$rubble" run --sed=3
+expect_exit 2 "'--ou' is no option of merge, did you mean '--out'?" "$rubble" batch merge --ou x y
+expect_exit 2 'see rubble run --help' "$rubble" run --nothing-like-it
+expect_exit 0 '' "$rubble" --help
+cp out.txt help.txt
+for word in mapper-process test; do grep -qw -- "$word" help.txt || fail "--help does not tell of $word"; done
+expect_exit 0 '' "$rubble" help
+cmp -s out.txt help.txt || fail "help is not --help: $(cat out.txt)"
+expect_exit 0 '' "$rubble" help run
+"$rubble" run --help | cmp -s - out.txt || fail "help run is not run --help: $(cat out.txt)"
 expect_exit 3 'say --set arena.generate.kind=orange' "$rubble" run orange
 touch hall.raf
 expect_exit 3 'is an arena, and what is played is a scenario; write one, of this line: arena: {file: ' "$rubble" run hall.raf
