@@ -17,8 +17,10 @@
 #include "base/error.h"
 #include "base/image/geotiff.h"
 #include "base/image/png.h"
+#include "base/text/shell.h"
 #include "base/text/text_file.h"
 #include "base/text/words.h"
+#include "base/yaml/binder.h"
 #include "scoring/maps/league_map.h"
 
 namespace rubble::app {
@@ -80,6 +82,12 @@ void refuse_foreign(const std::string& base, const std::string& yaml) {
     throw InputError(there.front() + ": exists, and not from here (its companions are missing)" + remedy);
 }
 
+/// The line that runs an arena with everything else as in the main job; it holds wherever it is typed.
+std::string how_to_run(const std::string& arena_file) {
+  const std::string path = std::filesystem::absolute(arena_file).lexically_normal().string();
+  return "rubble run --set " + shell_word("arena={file: " + yaml_quoted(path) + "}");
+}
+
 int arena(const ArenaArguments& arguments) {
   namespace fs = std::filesystem;
   const bool is_geojson = ends_with(arguments.walls, ".geojson") || ends_with(arguments.walls, ".json");
@@ -122,6 +130,7 @@ int arena(const ArenaArguments& arguments) {
   end_progress();
   for (const char* ending : {".png", "-truth.tif", "-visible.tif"}) print_line(base + ending);
   if (!arguments.walls.empty()) print_line(arguments.walls);
+  if (arguments.generate()) print_line("to run it: " + how_to_run(base + ".yaml"));
   return kOk;
 }
 

@@ -48,6 +48,13 @@ for command in 'arena sealed.yaml --out out' 'run sealed_run.yaml --out sealed_r
   grep -q 'sealed.yaml: from the start (0.60, 0.60) the robot gets to .*: move the start$' err.txt || fail "sealed: $(cat err.txt)"
 done
 
+# What is generated is run with the line that is printed, wherever that is typed and whatever the folder is called.
+odd="odd, {it's} \$x"
+expect_exit 0 '' "$rubble" arena generate --cells 3x3 --seed 2 --out "$odd"
+line=$(sed -n 's/^to run it: rubble //p' out.txt)
+(mkdir elsewhere && cd elsewhere && eval "$rubble $line --set time_limit_s=2 --out run" >/dev/null 2>&1) || fail "'$line' does not run"
+cmp "$odd/yellow-3x3-seed2.yaml" elsewhere/run/arena.yaml || fail "'$line' runs another arena"
+
 expect_exit 2 '--kind blue: a blue arena asks to grasp objects' "$rubble" arena generate --kind blue --out out
 expect_exit 2 '--kind pink' "$rubble" arena generate --kind pink --out out
 printf 'arena:\n  generate:\n    kind: blue\n' >blue.yaml
