@@ -154,6 +154,29 @@ void require_whole(slam::MergeEnd end, const std::string& first, const std::stri
   }
 }
 
+/// `both`: one map of two, with the first one's `of_first` scans before those of the second.
+MergeReport report_of(const std::vector<slam::MapScan>& both, std::size_t of_first) {
+  constexpr double kTogether = 1.0;  // [m]
+  constexpr double kOneDrive = 2.0;  // scans farther from each other are of two drives [m]
+  MergeReport report;
+  if (both.size() <= of_first) return report;
+  report.T_first_start = both[of_first].T_map_base;
+  const auto apart = [&](std::size_t a, std::size_t b) {
+    return std::hypot(both[a].T_map_base.x - both[b].T_map_base.x, both[a].T_map_base.y - both[b].T_map_base.y);
+  };
+  bool was_near = false;
+  for (std::size_t i = of_first; i < both.size(); ++i) {
+    bool near = false;
+    for (std::size_t k = 0; k < of_first && !near; ++k) near = apart(i, k) <= kTogether;
+    if (const double step = i > of_first ? apart(i - 1, i) : 0.0; step <= kOneDrive) {
+      report.second_m += step;
+      if (near && was_near) report.common_m += step;
+    }
+    was_near = near;
+  }
+  return report;
+}
+
 }  // namespace
 
 void save_map_files(const RunFolder& folder, const slam::Mapper& mapper) {
@@ -181,8 +204,8 @@ std::shared_ptr<const slam::MapBase> load_map_base(const std::string& path, bool
   return base;
 }
 
-void merge_maps(const std::string& first, const std::string& second, const Scenario& scenario, const std::string& out,
-                bool replace, const slam::MergeProgress& progress) {
+MergeReport merge_maps(const std::string& first, const std::string& second, const Scenario& scenario,
+                       const std::string& out, bool replace, const slam::MergeProgress& progress) {
   if (scenario.mapper.kind() != "robust")
     throw InputError("mapper.kind '" + scenario.mapper.kind() + "': only maps of the robust mapper are merged");
   const auto a = load_map_base(first, true, std::nullopt);
@@ -203,6 +226,9 @@ void merge_maps(const std::string& first, const std::string& second, const Scena
   folder.write(kMapFile, merged.bytes);
   folder.save_map(scenario, *mapper, {});
   folder.close();
+  MergeReport report = report_of(slam::content_of(*both).scans, content.scans.size());
+  report.same = a->bytes == b->bytes;
+  return report;
 }
 
 bool is_map_export(const std::string& out) {

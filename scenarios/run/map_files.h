@@ -1,5 +1,7 @@
 #pragma once
 
+#include <mrpt/math/TPose2D.h>
+
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,11 +25,20 @@ std::shared_ptr<const slam::MapBase> load_map_base(const std::string& path, bool
 /// when the file cannot be written.
 void export_map(const std::string& path, const std::string& out);
 
+/// How the maps of two runs were laid on each other.
+struct MergeReport {
+  mrpt::math::TPose2D T_first_start;  ///< where the second run began
+  double common_m = 0.0;              ///< of the second one's way, within 1 m of where the first one was [m]
+  double second_m = 0.0;              ///< all of it [m]
+  bool same = false;                  ///< both maps are the same bytes
+};
+
 /// Makes one map of those of two runs, in the frame of the first, and writes it into a folder of its own: map.rmap and
-/// the pictures. `out`, `replace`: as of RunFolder, which is made when the maps are one. Throws InputError when one of
-/// them is damaged, they have too little in common, are of two arenas, or their lasers were mounted differently.
-void merge_maps(const std::string& first, const std::string& second, const Scenario& scenario, const std::string& out,
-                bool replace, const slam::MergeProgress& progress = {});
+/// the pictures. `out`, `replace`: as of RunFolder, which is made when the maps are one. `progress`: what is done, and
+/// how far it is. Throws InputError when one of them is damaged, they have too little in common, are of two arenas, or
+/// their lasers were mounted differently.
+MergeReport merge_maps(const std::string& first, const std::string& second, const Scenario& scenario,
+                       const std::string& out, bool replace, const slam::MergeProgress& progress = {});
 
 /// Whether export_map() knows the ending of that name.
 bool is_map_export(const std::string& out);

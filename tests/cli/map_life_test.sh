@@ -72,6 +72,26 @@ for name in map.rmap map.tif map.pgm; do [[ -s both/$name ]] || fail "both/$name
 "$rubble" map first --localise both --start 0,0,0 --out in_both >/dev/null || fail "the merged map is no map"
 json_holds in_both/score.json "j['place_known'] == 1"
 
+# A second robot starts where the first one did, turned by a quarter: so its map is told to lie, and what is worked at.
+python3 - <<'PY'
+import re
+text = open('first/arena.yaml').read()
+open('turned.yaml', 'w').write(re.sub(r'(heading_deg: )(-?\d+)', lambda m: m[1] + str(int(m[2]) + 90), text, count=1))
+PY
+cmp -s first/arena.yaml turned.yaml && fail "the arena names no heading"
+"$rubble" run s.yaml --set "arena={file: $work/turned.yaml}" --seed 4 --out rosie >/dev/null || fail "the second robot: $?"
+"$rubble" merge first rosie --out two >merge.txt 2>err.txt || fail "merge ended with $?: $(cat err.txt)"
+python3 - <<'PY' || fail "how the two maps lie is not told: $(cat merge.txt)"
+import re, sys
+text = open('merge.txt').read()
+x, y, turned = map(float, re.search(r'^start of the second in the first +(\S+), (\S+) m, heading (\S+) deg$', text, re.M).groups())
+common, way = map(float, re.search(r"^way in common +(\S+) m of the second one's (\S+) m$", text, re.M).groups())
+sys.exit(0 if abs(x) < 0.1 and abs(y) < 0.1 and abs(turned - 90) < 3 and 1 < common <= way else 1)
+PY
+[[ $(grep -cx 'looks for a place that both show' merge.txt) == 1 ]] || fail "what is done is not told once: $(cat merge.txt)"
+[[ -s err.txt ]] && fail "two maps are said to be one: $(cat err.txt)"
+expect_exit 0 'first: is the same map as first' "$rubble" merge first first --out twice
+
 # Why two maps are not merged; on a terminal how far the search is, and the reason on a line of its own.
 expect_exit 3 'brief: shows no place of first for sure: they have too little in common' "$rubble" merge first brief --out none
 [[ ! -e none ]] || fail "a merge that is refused leaves a folder"
