@@ -25,7 +25,9 @@ bool is_shipped(const std::string& name, const fs::path& folder) {
   return !name.empty() && name.find('/') == std::string::npos && !is_there(name) && is_there(folder / (name + ".yaml"));
 }
 
-bool is_any(const fs::path& /*file*/) { return true; }
+/// The lists of `rubble benchmark` lie beside the scenarios.
+bool is_list(const fs::path& file) { return file.stem().string().rfind("benchmark", 0) == 0; }
+bool is_no_list(const fs::path& file) { return !is_list(file); }
 
 /// Beside the sweeps lie scenarios that only they use. What cannot be read is none.
 bool is_sweep(const fs::path& file) {
@@ -37,15 +39,15 @@ bool is_sweep(const fs::path& file) {
 }
 
 /// `name`, unless it is the bare name of a file in `folder`. A bare name of none is told which there are.
-std::string find_shipped(const std::string& name, const fs::path& folder, bool (*is_meant)(const fs::path&) = is_any) {
+std::string find_shipped(const std::string& name, const fs::path& folder,
+                         bool (*is_meant)(const fs::path&) = is_no_list) {
   if (is_shipped(name, folder)) return (folder / (name + ".yaml")).string();
   if (is_there(name) || name.find_first_of("/.") != std::string::npos) return name;
   std::vector<std::string> names;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (const std::string stem = entry->path().stem().string();
-        entry->path().extension() == ".yaml" && stem.rfind("benchmark", 0) != 0 &&  // a list of `rubble benchmark`
-        is_meant(entry->path()))
+        entry->path().extension() == ".yaml" && is_meant(entry->path()))
       names.push_back(stem);
   std::sort(names.begin(), names.end());
   throw InputError(name + ": there is no such file, and none of that name is shipped" + did_you_mean(name, names) +
@@ -127,6 +129,10 @@ std::string find_scenario(const std::string& name) {
 std::string find_robot(const std::string& name) {
   const std::string folder = shipped_folder("robots");
   return name.empty() ? folder + "/pioneer_urg.yaml" : find_shipped(name, folder);
+}
+
+std::string find_list(const std::string& name) {
+  return name.empty() ? shipped_folder() + "/benchmark.yaml" : find_shipped(name, shipped_folder(), is_list);
 }
 
 std::string find_sweep(const std::string& name) { return find_shipped(name, shipped_folder() + "/sweeps", is_sweep); }

@@ -46,6 +46,9 @@ std::string find_scenario(const std::string& name);
 /// A path, or the bare name of a robot file that ships with rubble; no name: the Pioneer with its URG.
 std::string find_robot(const std::string& name);
 
+/// A path, or the bare name of a list of `rubble benchmark` that ships with rubble; no name: that of public logs.
+std::string find_list(const std::string& name);
+
 /// A path, or the bare name of a sweep that ships with rubble.
 std::string find_sweep(const std::string& name);
 

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <memory>
 
 #include "app/commands.h"
@@ -28,11 +27,6 @@ struct BenchmarkArguments {
   bool json = false;
   MapperChoice mapper;
 };
-
-/// A path, or the list that ships with rubble.
-std::string find_list(const std::string& name) {
-  return name.empty() ? (std::filesystem::path(shipped_folder()) / "benchmark.yaml").string() : name;
-}
 
 /// Keeps the mappers asked for by name.
 void keep_only(BenchmarkList& list, const std::vector<std::string>& names) {
@@ -70,15 +64,22 @@ int benchmark(const BenchmarkArguments& arguments) {
   std::fputs(printable(arguments.json ? to_json(result) : to_text(result)).c_str(), stdout);
   if (interrupted()) return kInterrupted;
   bool any = false, failed = false;
-  for (const BenchmarkRow& row : result.rows)
+  int gone = 0;
+  for (const BenchmarkRow& row : result.rows) {
+    gone += !row.results.empty() && !row.results.front().missing.empty() ? 1 : 0;
     for (const BenchmarkResult& r : row.results) {
       any = any || r.missing.empty();
       failed = failed || !r.failure.empty();
     }
+  }
   if (!any)
     throw InputError(list.path +
                      ": none of its logs and scenarios is there; lay them beside the list, or give their "
                      "folder with --data");
+  if (gone > 0)
+    tell(std::to_string(gone) + " of " + std::to_string(result.rows.size()) +
+         " cases were left out, as what they name is not there; give the folder of the logs with --data "
+         "(scenarios/benchmark.yaml says where public ones are)");
   return failed ? kFailed : kOk;
 }
 

@@ -31,6 +31,10 @@ grep -qE '(src|href)=' b.html && fail "the page refers to other files"
 grep -q 'A paper / with a bar' b.md || fail "the document's table is broken by a bar"
 "$rubble" benchmark list.yaml --mapper robust >b.txt 2>/dev/null || fail "the table ended with $?"
 grep -q 'not there: nowhere.log' b.txt || fail "the table does not tell the missing log"
+expect_exit 0 '1 of 3 cases were left out, as what they name is not there; give the folder of the logs with --data' \
+  "$rubble" benchmark list.yaml --mapper robust
+expect_exit 3 "none of that name is shipped, did you mean 'benchmark'?; shipped are benchmark, benchmark_arenas" \
+  "$rubble" benchmark bencmark
 grep -q 'paper  ' b.txt && fail "--mapper robust ran others"
 
 # Several seeds: medians and the worst, goals of each, and a case with settings of its own.
