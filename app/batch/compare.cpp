@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "app/commands.h"
@@ -24,6 +25,11 @@ int compare(const CompareArguments& arguments) {
   if (arguments.b.empty() && (options.configuration_a.empty() || options.configuration_b.empty()))
     throw UsageError("compare: give two folders, or one with --config-a and --config-b");
   const std::string& b = arguments.b.empty() ? arguments.a : arguments.b;
+  // One that is missing is told where it is read; of two the second would be found only after the first was mended.
+  std::error_code error;
+  if (b != arguments.a && !std::filesystem::exists(arguments.a, error) && !std::filesystem::exists(b, error))
+    throw InputError(arguments.a + ", " + b +
+                     ": do not exist; give the folders of a 'rubble batch' or files of 'rubble batch merge'");
   const Comparison comparison =
       scenarios::compare(load_sweep_results(arguments.a), load_sweep_results(b), arguments.a, b, options);
   std::printf("%s", printable(to_text(comparison)).c_str());

@@ -165,6 +165,8 @@ grep -q 'identical' c.txt || fail "a result compared with itself is not identica
 json_holds c.json "all(m['verdict'] == 'identical' for m in j['groups'][0]['metrics'].values()) and j['pairs'] == 12"
 "$rubble" compare w1 --config-a robot.levelling=false --config-b robot.levelling=true >c.txt || fail "compare: $(cat c.txt)"
 expect_exit 2 '--config-a' "$rubble" compare w1
+expect_exit 3 'nothing1, nothing2: do not exist' "$rubble" compare nothing1 nothing2
+expect_exit 3 'nothing2: does not exist' "$rubble" compare w1 nothing2
 expect_exit 3 "'robot.levelling=false', 'robot.levelling=true'" "$rubble" compare w1 --config-a x --config-b robot.levelling=true
 
 # Regression: unchanged passes, a worse parameter is caught, CI systems are told.
