@@ -40,6 +40,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kLeastRateTime = 0.7;  ///< over less a rate of ten a second says little [s]
+constexpr double kTellHow = 2.0;        ///< nothing has come in so long [s]
 constexpr double kTellAgain = 5.0;  ///< a reason that changed, or a trouble that comes and goes, is told so often [s]
 
 /// So soon a base that is stopped has told so, on a line that is as slow as may be driven with, and one that does not
@@ -256,12 +257,22 @@ class Driver {
     if ((status.held || begun_) && seconds_since(shown_at_) >= 1.0) show(status, status.held ? "held" : "waiting");
     for (const robot::Hindrance& one : status.silent)
       if (is_news(one, status.silent) && options_.tell) options_.tell(one.line());
+    tell_how_to_go_on(status.silent);
     if (begun_ && names(status.silent) != names(told_)) loop_.save_now();
     tell_back(status.silent);
     if (status.held) mind_hold(status);
     held_ = held_ && status.held;
     if (options_.forget_keys) options_.forget_keys();
     return !interrupted_;
+  }
+
+  /// Who has no robot at hand has waited for one by now.
+  void tell_how_to_go_on(const std::vector<robot::Hindrance>& silent) {
+    if (begun_ || told_how_ || silent.empty() || seconds_since(made_at_) < kTellHow) return;
+    told_how_ = true;
+    if (options_.tell)
+      options_.tell("waits for " + joined(names(silent)) +
+                    "; Ctrl-C ends; to try without hardware: rubble emulate (docs/hardware.md)");
   }
 
   static std::string without_numbers(std::string text) {
@@ -400,6 +411,8 @@ class Driver {
   const bool has_base_;
   Loop loop_;
   bool begun_ = false;  ///< something has come in
+  bool told_how_ = false;
+  Clock::time_point made_at_ = Clock::now();
   bool moved_ = false;
   std::optional<mrpt::math::TPose2D> start_;  ///< of the wheels
   double seconds_ = 0.0;                      ///< since the first tick

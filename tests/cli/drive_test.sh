@@ -33,6 +33,8 @@ expect_exit 4 "tcp:127.0.0.1:18940: leads to a device that another port of this 
 "$rubble" drive "$robot" --urg pty:no1 --base tcp:127.0.0.1:9 --levelling none --set safety.start_s=8 --out reason >/dev/null 2>err.txt
 grep -q "^rubble: base: .*nobody answers (Connection refused)" err.txt ||
   fail "why a device is missing is not told before the end: $(cat err.txt)"
+[[ $(grep -cE "^rubble: waits for .*base.*; Ctrl-C ends; to try without hardware: rubble emulate" err.txt) == 1 ]] ||
+  fail "what is waited for, and what else to try, is not told once: $(cat err.txt)"
 expect_exit 3 "nonsense.yaml" "$rubble" drive nonsense.yaml
 # A time that is all needed for the way home is legal, and said.
 "$rubble" drive "$robot" --urg pty:no1 --base pty:no2 --levelling pty:no3 --set safety.start_s=1 --time-limit 12 --out hasty >out.txt 2>err.txt </dev/null
