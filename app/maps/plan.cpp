@@ -88,9 +88,9 @@ int plan(PlanArguments a) {
 Command plan_command() {
   return {"plan", "Picture of the Exploration Transform over a map, and the way to the nearest frontier or a target",
           "Dark: near to a frontier, or to the target. White: none can be reached. Blue: frontiers. Red: the way.\n"
-          "Examples:\n  rubble plan runs/latest/map.tif --alpha 20 --out safe.png\n"
-          "  rubble plan map.yaml --discomfort per_cell --alpha 5 --d-min 0.3 --from 1.5,-2\n"
-          "  rubble plan runs/latest/map.yaml --from 0,0 --to 0.5,8.4",
+          "Examples:\n  rubble plan runs/latest/map.yaml --from 0,0 --to 0.5,8.4 --out way.png\n"
+          "  rubble plan runs/latest/map.yaml --from 0,0 --to 0.5,8.4 --alpha 0 --out short.png\n"
+          "  rubble plan map.yaml --discomfort per_cell --alpha 5 --d-min 0.3 --from 1.5,-2",
           [](Options& o) -> Action {
             auto a = std::make_shared<PlanArguments>();
             explore::TransformConfig& transform = a->config.transform;
