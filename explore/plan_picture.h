@@ -20,10 +20,12 @@ struct PlannedWay {
 
 struct PlanPicture {
   /// Fig. 9 of the paper: the nearer to a frontier the darker, white where none can be reached; walls black, unknown
-  /// grey-blue, frontiers blue, the way red. One cell of unknown around the map; axes in its metres, legend and scale.
+  /// grey-blue, frontiers blue, the way red; discs where it starts (green) and ends (blue, as the target). One cell of
+  /// unknown around the map; axes in its metres, legend and scale.
   std::string png;  ///< the bytes of the file
   double pixels_per_metre = 0.0;
   std::size_t frontiers = 0;
+  bool reached = false;           ///< some floor has a way to a frontier or to the target
   std::optional<PlannedWay> way;  ///< from the place asked for; nothing: none can be reached from there
 };
 

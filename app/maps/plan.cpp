@@ -76,6 +76,9 @@ int plan(PlanArguments a) {
   } else if (ends.from) {
     print_row("way", ends.to ? "none: the target cannot be reached from there"
                              : "none: no frontier can be reached from there; give a target with --to X,Y");
+  } else if (!picture.reached) {
+    print_row("way", ends.to ? "none: the target cannot be reached from anywhere"
+                             : "none: no frontier can be reached from anywhere; give a target with --to X,Y");
   }
   char scale[60];
   std::snprintf(scale, sizeof scale, ", %g pixels a metre", picture.pixels_per_metre);
@@ -88,6 +91,7 @@ int plan(PlanArguments a) {
 Command plan_command() {
   return {"plan", "Picture of the Exploration Transform over a map, and the way to the nearest frontier or a target",
           "Dark: near to a frontier, or to the target. White: none can be reached. Blue: frontiers. Red: the way.\n"
+          "Discs: where it starts (green) and ends (blue).\n"
           "Examples:\n  rubble plan runs/latest/map.yaml --from 0,0 --to 0.5,8.4 --out way.png\n"
           "  rubble plan runs/latest/map.yaml --from 0,0 --to 0.5,8.4 --alpha 0 --out short.png\n"
           "  rubble plan map.yaml --discomfort per_cell --alpha 5 --d-min 0.3 --from 1.5,-2",

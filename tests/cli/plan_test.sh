@@ -14,6 +14,7 @@ PY
 expect_exit 0 '' "$rubble" plan room.yaml --out a.png
 head -c 4 a.png | grep -q PNG || fail "a.png is no PNG"
 expect_exit 0 '' "$rubble" plan room.yaml --out b.png
+cp out.txt a.txt
 cmp -s a.png b.png || fail "the same map gave another picture"
 
 # Axes and a legend stand around the map, which is as large as is said.
@@ -50,6 +51,44 @@ expect_exit 2 'X,Y' "$rubble" plan room.yaml --from here
 expect_exit 2 '--d-opt' "$rubble" plan room.yaml --d-min 0.7
 expect_exit 3 'nowhere.yaml' "$rubble" plan nowhere.yaml
 expect_exit 4 'missing/plan.png' "$rubble" plan room.yaml --out missing/plan.png
+
+# Start and end are marked, in the colours of the legend, the target too where the way ends on it.
+python3 - "$(sed -n 's/^picture .*, \(.*\) pixels a metre$/\1/p' a.txt)" <<'PY' || fail "start and target are not marked"
+import struct, sys, zlib
+def colours(name):
+    data, at, rows = open(name, 'rb').read(), 8, b''
+    while at < len(data):
+        size, kind = struct.unpack('>I4s', data[at:at + 8])
+        if kind == b'IHDR':
+            width, height, depth, colour = struct.unpack('>IIBB', data[at + 8:at + 18])
+            assert depth == 8 and colour == 2
+        if kind == b'IDAT': rows += data[at + 8:at + 8 + size]
+        at += size + 12
+    raw, step, before, count = zlib.decompress(rows), 3 * width + 1, bytearray(3 * width), {}
+    for y in range(height):
+        way, line = raw[y * step], bytearray(raw[y * step + 1:(y + 1) * step])
+        for i in range(3 * width):
+            a, b, c = (line[i - 3] if i > 2 else 0), before[i], (before[i - 3] if i > 2 else 0)
+            p = a + b - c
+            paeth = min((a, b, c), key=lambda v: abs(p - v))
+            line[i] = (line[i] + (0, a, b, (a + b) // 2, paeth)[way]) % 256
+        for x in range(width):
+            pixel = tuple(line[3 * x:3 * x + 3])
+            count[pixel] = count.get(pixel, 0) + 1
+        before = line
+    return count
+start, goal = (40, 170, 60), (40, 90, 220)
+none, both = colours('a.png'), colours('to.png')
+cell = int(float(sys.argv[1]) * 0.05) ** 2
+# Besides the patch of the legend there is a disc of several cells of each.
+sys.exit(0 if start not in none and min(both[start], both[goal]) > 4 * cell else 1)
+PY
+
+# Frontiers that no way leads to: the east end of a passage narrower than twice d_min.
+expect_exit 0 '' "$rubble" plan room.yaml --d-min 1.6 --d-opt 1.7
+grep -q '^frontiers *1$' out.txt || fail "no frontier in: $(cat out.txt)"
+grep -q '^way *none: no frontier can be reached' out.txt || fail "an unreachable frontier: $(cat out.txt)"
+grep -q '^way' a.txt && fail "a way that was not asked for: $(cat a.txt)"
 sed -i 's/room.pgm/full.pgm/' room.yaml
 python3 -c "open('full.pgm', 'wb').write(b'P5\n40 40\n255\n' + bytes([0]) * 1600)"
 expect_exit 3 'no frontier' "$rubble" plan room.yaml
