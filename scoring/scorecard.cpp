@@ -169,19 +169,18 @@ std::string note_of_crossed_floor(const MapScore& score) {
 /// Lines of sight end where the truth does: no line crosses the walls around it.
 std::string note_of_unasked_walls(const MapScore& score) {
   constexpr double kGood = 0.9, kThere = 0.85;
-  // Of maps that are right where they are asked: windows in which a third of a wall and more is missing.
-  constexpr double kVeryGood = 0.97, kThirdOfWall = 0.4, kMuch = 4.0;  // lengths [m]
-  double whole_m = 0.0;
-  for (const WrongPlace& place : score.errors.worst)
-    if (place.missing_m >= kThirdOfWall) whole_m += place.missing_m;
-  const bool much = score.score >= kVeryGood && whole_m >= kMuch;
-  if (!much && (score.score < kGood || score.recall >= kThere)) return {};
+  constexpr double kVeryGood = 0.97, kMuch = 4.0;  // of maps that are right where they are asked [m]
+  constexpr double kSome = 0.5;                    // less is no wall [m]
+  const double gaps_m = score.errors.gaps_m;
+  const bool much = score.score >= kVeryGood && gaps_m >= kMuch;
+  const bool some = score.score >= kGood && score.recall < kThere && gaps_m >= kSome;
+  if (!much && !some) return {};
   char text[200];
   std::snprintf(
       text, sizeof text,
-      "%.0f m of wall is missing where no line of sight crosses it (around the arena): the score does not count "
-      "that, overlap and recall do",
-      score.errors.missing_m);
+      "%.0f m of wall is missing, and the score hardly says so: no line of sight crosses what stands around the "
+      "arena; overlap and recall count it",
+      gaps_m);
   return text;
 }
 

@@ -8,7 +8,7 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr double kWindow = 1.2;       // [m]
+constexpr double kWindow = 1.2;       // a pallet [m]
 constexpr double kWorthSaying = 0.1;  // [m]
 
 using Windows = std::map<std::pair<long, long>, WrongPlace>;
@@ -39,6 +39,9 @@ WallErrors wall_errors(const WallOverlap& walls, const PlanarTransform& T_truth_
     out.ignored_m += (1.0 - hit.k) * walls.map_length_of_cell();
   out.phantom_m = collect(walls.map_hits(T_truth_map), walls.map_length_of_cell(), &WrongPlace::phantom_m, windows);
   out.missing_m = collect(walls.truth_hits(T_truth_map), walls.truth_length_of_cell(), &WrongPlace::missing_m, windows);
+  constexpr double kLeastGap = kWindow / 3.0;  // of a pallet between two others tau takes most of the rest
+  for (const auto& [window, place] : windows)
+    if (place.missing_m >= kLeastGap) out.gaps_m += place.missing_m;
   for (const auto& [window, place] : windows)
     if (place.wrong_m() >= kWorthSaying) out.worst.push_back(place);
   std::stable_sort(out.worst.begin(), out.worst.end(),

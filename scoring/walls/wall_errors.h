@@ -22,6 +22,7 @@ struct WrongPlace {
 struct WallErrors {
   double phantom_m = 0.0;
   double missing_m = 0.0;
+  double gaps_m = 0.0;            ///< of `missing_m` that of windows which miss a third of a pallet and more
   double ignored_m = 0.0;         ///< wall of the map where the truth is unknown: counts neither for nor against it
   std::vector<WrongPlace> worst;  ///< worst first
 };

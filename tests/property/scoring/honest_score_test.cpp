@@ -170,6 +170,9 @@ TEST_P(HonestScore, WallsAroundTheArenaEarnNothingAndAreMissedInWords) {
   EXPECT_GE(score.score, 0.98);
   EXPECT_LE(score.overlap, 0.95);
   EXPECT_THAT(score.note, ::testing::HasSubstr("no line of sight crosses"));
+  ScoreConfig brief;
+  brief.worst_places = 1;
+  EXPECT_EQ(score_at_pose(map, truth, {}, brief).note, score.note);
   EXPECT_EQ(score_at_pose(truth, truth, {}).note, "");
 }
 

@@ -93,6 +93,36 @@ TEST(WallErrors, AWallInTheUnknownIsIgnoredAtItsLength) {
   EXPECT_NEAR(wall_errors(WallOverlap(map, truth, 0.5), PlanarTransform(), 10).ignored_m, 3.0, 0.3);
 }
 
+/// However many places are listed, and whatever else is wrong there.
+TEST(WallErrors, TheLengthOfGapsIsThatOfAllWindows) {
+  const OccupancyGrid truth = room();
+  OccupancyGrid map = truth;
+  for (int y = 0; y < 220; ++y)
+    for (int x = 0; x < 220; ++x)
+      if (map.centre({x, y}).x > 9.8) map[{x, y}] = Occupancy::Free;  // one side of 10 m
+  for (const OccupancyGrid& with : {map, with_phantoms(map, 40, 3)}) {
+    const WallOverlap walls(with, truth, 0.5);
+    const WallErrors all = wall_errors(walls, PlanarTransform(), 1000);
+    double gaps = 0.0;
+    for (const WrongPlace& place : all.worst) gaps += place.missing_m >= 0.4 ? place.missing_m : 0.0;
+    EXPECT_NEAR(all.gaps_m, gaps, 1e-9);
+    EXPECT_GT(all.gaps_m, 8.0);
+    EXPECT_LE(all.gaps_m, all.missing_m);
+    for (const std::size_t places : {0U, 1U, 3U})
+      EXPECT_EQ(wall_errors(walls, PlanarTransform(), places).gaps_m, all.gaps_m) << places;
+  }
+}
+
+TEST(WallErrors, WhatOnlyWaversHasNoGaps) {
+  const OccupancyGrid truth = room();
+  OccupancyGrid map(truth.frame(), Occupancy::Free);
+  for (int y = 0; y < 219; ++y)
+    for (int x = 0; x < 219; ++x) map[{x, y}] = truth[{x + 1, y + 1}];
+  const WallErrors errors = wall_errors(WallOverlap(map, truth, 0.5), PlanarTransform(), 10);
+  EXPECT_GT(errors.missing_m, 0.0);
+  EXPECT_EQ(errors.gaps_m, 0.0);
+}
+
 TEST(WallErrors, ListTheWorstFirstAndNoMoreThanAsked) {
   const OccupancyGrid truth = room();
   const OccupancyGrid map = with_phantoms(truth, 40, 3);
