@@ -247,10 +247,11 @@ class Reader {
            layout_.photometric == PHOTOMETRIC_RGB || layout_.photometric == PHOTOMETRIC_PALETTE;
   }
 
-  /// What stands for white and for opaque. Deep samples are read once more than needed: many hold 0..255 unscaled.
+  /// What stands for white and for opaque. Deep samples are read once more than needed: many hold 0..255 unscaled. So
+  /// is opacity: a layer that is nowhere opaque, as viewers save it, counts as opaque where it is most so.
   void find_white() {
-    white_ = opaque_ = (1u << layout_.bits) - 1;
-    if (layout_.bits <= 8) return;
+    white_ = opaque_ = full_opacity_ = (1u << layout_.bits) - 1;
+    if (layout_.bits <= 8 && layout_.alpha < 0) return;
     std::uint32_t brightest = 0;
     std::uint32_t most_opaque = 0;
     visit_chunks([&](std::uint32_t x0, std::uint32_t y0, const std::vector<Bytes>& planes) {
@@ -262,8 +263,12 @@ class Reader {
         }
       });
     });
-    if (layout_.photometric != PHOTOMETRIC_PALETTE) white_ = white_of(brightest, white_);
-    opaque_ = white_of(most_opaque, opaque_, true);
+    if (layout_.bits > 8 && layout_.photometric != PHOTOMETRIC_PALETTE) white_ = white_of(brightest, white_);
+    if (most_opaque == 0) return;
+    // Colours that were multiplied by their opacity grow with it, but for those scaled by their brightest already.
+    const bool is_scaled = is_odd_white(white_, (1u << layout_.bits) - 1);
+    full_opacity_ = is_scaled ? most_opaque : white_of(most_opaque, opaque_, true);
+    opaque_ = most_opaque;
   }
 
   /// The 8-bit value of every sample value, and the colours of a palette.
@@ -396,7 +401,7 @@ class Reader {
         const std::uint32_t top = opaque_;
         const std::uint32_t alpha = std::min(values[static_cast<std::size_t>(layout_.alpha)], top);
         const std::uint32_t behind = (behind_[c] * (top - alpha) + top / 2) / top;
-        colour = (layout_.premultiplied ? colour : (colour * alpha + top / 2) / top) + behind;
+        colour = (colour * (layout_.premultiplied ? full_opacity_ : alpha) + top / 2) / top + behind;
       }
       rgb[c] = static_cast<std::uint8_t>(std::min(colour, 255u));
     }
@@ -422,8 +427,9 @@ class Reader {
   SampleNotes& notes_;
   Layout layout_;
   std::optional<double> no_data_;
-  std::uint32_t white_ = 255;   ///< sample value
-  std::uint32_t opaque_ = 255;  ///< sample value
+  std::uint32_t white_ = 255;         ///< sample value
+  std::uint32_t opaque_ = 255;        ///< sample value
+  std::uint32_t full_opacity_ = 255;  ///< the sample value by which opacity was multiplied into colours
   Bytes level_;
   std::array<Bytes, 3> palette_;
 };

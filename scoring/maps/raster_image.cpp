@@ -54,7 +54,7 @@ void work_in_alpha(const cv::Mat& bgra, RgbImage& out) {
   const int opaque = most > 0 ? most : 255;
   for (int y = 0; y < bgra.rows; ++y)
     for (int x = 0; x < bgra.cols; ++x) {
-      const int alpha = 255 * bgra.at<cv::Vec4b>(y, x)[3] / opaque;
+      const int alpha = (255 * bgra.at<cv::Vec4b>(y, x)[3] + opaque / 2) / opaque;
       out.alpha[out.index(x, y)] = static_cast<std::uint8_t>(alpha);
       std::uint8_t* const p = out.pixel(x, y);
       for (std::size_t c = 0; c < 3; ++c)

@@ -367,9 +367,10 @@ TEST(GeoTiff, ReadsJpegInTiff) {
   }
 }
 
-/// A 4 x 1 RGBA file, pixels of opacity 0, 1/3, 2/3 and 1. `white` is white and opaque; 0: all bits.
+/// A 4 x 1 RGBA file, pixels of opacity 0, 1/3, 2/3 and 1, all divided by `thinner`. `white` is white and opaque; 0:
+/// all bits.
 void write_rgba(const std::string& path, int bits, std::uint16_t kind, const std::array<int, 3>& colour, bool planes,
-                int white = 0) {
+                int white = 0, int thinner = 1) {
   TIFF* const tiff = TIFFOpen(path.c_str(), "w");
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 4);
   TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 1);
@@ -382,7 +383,7 @@ void write_rgba(const std::string& path, int bits, std::uint16_t kind, const std
   const int top = white > 0 ? white : (1 << bits) - 1;
   const auto sample = [&](int x, int s) {
     const int full = s < 3 ? colour[static_cast<std::size_t>(s)] * top / 255 : top;
-    return s == 3 || kind == EXTRASAMPLE_ASSOCALPHA ? full * x / 3 : full;
+    return s == 3 || kind == EXTRASAMPLE_ASSOCALPHA ? full * x / (3 * thinner) : full;
   };
   for (int plane = 0; plane < (planes ? 4 : 1); ++plane) {
     std::vector<std::uint8_t> bytes;
@@ -410,6 +411,26 @@ TEST(GeoTiff, TransparentPixelsShowWhatIsBehind) {
             const double grey = c == 2 ? 227 : 226;
             EXPECT_NEAR(image.pixel(x, 0)[c], grey + (colour[c] - grey) * x / 3.0, 1.0) << bits << kind << planes;
           }
+      }
+}
+
+/// Viewers save layers that are nowhere opaque.
+TEST(GeoTiff, WhatIsNowhereOpaqueCountsAsOpaqueWhereItIsMostSo) {
+  const test::TempFolder folder;
+  const std::array<int, 3> colour{240, 60, 0};
+  for (const int bits : {8, 16})
+    for (const std::uint16_t kind : std::array<std::uint16_t, 2>{EXTRASAMPLE_ASSOCALPHA, EXTRASAMPLE_UNASSALPHA})
+      for (const bool planes : {false, true}) {
+        write_rgba(folder / "a.tif", bits, kind, colour, planes, 0, 3);
+        const RgbImage image = read_geotiff(folder / "a.tif", {226, 226, 227}).image;
+        for (int x = 0; x < 4; ++x) {
+          EXPECT_NEAR(image.alpha[static_cast<std::size_t>(x)], 85 * x, 2) << bits << kind << planes;  // of 28, 56, 85
+          if (bits == 16 && kind == EXTRASAMPLE_ASSOCALPHA) continue;  // so dark that its brightest counts as white
+          for (std::size_t c = 0; c < 3; ++c) {
+            const double grey = c == 2 ? 227 : 226;
+            EXPECT_NEAR(image.pixel(x, 0)[c], grey + (colour[c] - grey) * x / 3.0, 3.0) << bits << kind << planes;
+          }
+        }
       }
 }
 
