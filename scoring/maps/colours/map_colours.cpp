@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <cstdlib>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <string>
@@ -16,6 +18,7 @@
 #include "scoring/maps/colours/grey_levels.h"
 #include "scoring/maps/colours/league_classes.h"
 #include "scoring/maps/colours/league_colours.h"
+#include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/colours/lettering.h"
 #include "scoring/maps/colours/lossy_tones.h"
 #include "scoring/maps/colours/reading_doubts.h"
@@ -25,15 +28,22 @@ namespace rubble::scoring {
 
 namespace {
 
-/// What is transparent is the free ground of a layer over some other picture: the opaque pixels have walls and one
-/// ground, that ground is all around, and what is transparent lies within it. Elsewhere it is unknown.
-bool is_transparent_free(const RgbImage& image, const cv::Mat& transparent) {
+/// A layer over some other picture, whose free ground lets that show through.
+struct Layer {
+  cv::Mat free;     ///< 255: transparent
+  cv::Mat unknown;  ///< 255: the opaque ground
+  int ground = 0;   ///< its grey
+};
+
+/// The opaque pixels of a layer have walls and one ground, that ground is all around, and what is transparent lies
+/// within it. Elsewhere what is transparent is unknown.
+std::optional<Layer> layer_of(const RgbImage& image, const cv::Mat& transparent) {
   constexpr double kLeastLayer = 0.02;  // of the picture
   constexpr double kMostOfRim = 0.02;   // that is transparent
   constexpr double kGroundOfRim = 0.5;
   constexpr int kAsGround = 6;            // difference of its pixels
   constexpr double kLeastOfGround = 0.9;  // of the opaque pixels that are no lines
-  if (cv::countNonZero(transparent) < kLeastLayer * static_cast<double>(transparent.total())) return false;
+  if (cv::countNonZero(transparent) < kLeastLayer * static_cast<double>(transparent.total())) return std::nullopt;
   const cv::Mat grey = grey_of(image);
   std::array<int, 256> rim{};
   int all = 0, open = 0;
@@ -47,14 +57,27 @@ bool is_transparent_free(const RgbImage& image, const cv::Mat& transparent) {
   for (int x = 0; x < grey.cols; ++x) ask(x, 0), ask(x, grey.rows - 1);
   for (int y = 0; y < grey.rows; ++y) ask(0, y), ask(grey.cols - 1, y);
   const auto most = std::max_element(rim.begin(), rim.end());
-  if (open > kMostOfRim * all || *most < kGroundOfRim * all) return false;
+  if (open > kMostOfRim * all || *most < kGroundOfRim * all) return std::nullopt;
   const int ground = static_cast<int>(most - rim.begin());
   const cv::Mat opaque = ~transparent, of_ground = (grey >= ground - kAsGround) & (grey <= ground + kAsGround) & opaque;
   cv::Mat areas;
   constexpr int kLine = 9;  // wider ones are areas [pixels]
   cv::morphologyEx(opaque, areas, cv::MORPH_OPEN, cv::Mat::ones(kLine, kLine, CV_8U));
-  return cv::countNonZero(of_ground) >= kLeastOfGround * cv::countNonZero(areas) &&
-         cv::countNonZero(opaque & ~of_ground) > 0;
+  const bool is_layer = cv::countNonZero(of_ground) >= kLeastOfGround * cv::countNonZero(areas) &&
+                        cv::countNonZero(opaque & ~of_ground) > 0;
+  return is_layer ? std::optional(Layer{transparent.clone(), of_ground, ground}) : std::nullopt;
+}
+
+/// The grey for what is transparent, by which it is told from the ground around.
+RgbImage shown(const RgbImage& image, const Layer& layer) {
+  constexpr int kTold = 15, kWhite = 255, kGrey = 190;
+  RgbImage out = image;
+  if (std::abs(layer.ground - int{league::kUnexplored[1]}) >= kTold) return out;  // blended it is told already
+  const int grey = kWhite - layer.ground >= kTold ? kWhite : kGrey;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      if (layer.free.at<unsigned char>(y, x) != 0) std::fill_n(out.pixel(x, y), 3, static_cast<std::uint8_t>(grey));
+  return out;
 }
 
 /// Walls black, free ground white, all else unknown: what deep samples were translated to.
@@ -161,6 +184,15 @@ LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
   return out;
 }
 
+/// By its greys, which tell its walls; what else it is says the file.
+LabelImage classify_layer(const RgbImage& image, const Layer& layer, const cv::Mat& nothing) {
+  LabelImage out = classify_by_grey(shown(image, layer), nothing);
+  out.classes.setTo(static_cast<int>(Occupancy::Unknown), layer.unknown);
+  out.classes.setTo(static_cast<int>(Occupancy::Free), layer.free);
+  out.recognised += ", what is transparent is ground";
+  return out;
+}
+
 }  // namespace
 
 ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
@@ -171,19 +203,19 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
   const Blur undone = restored ? restored->blur : Blur{};
   out.is_league = undone.sigma > 0.0 || (!direct && is_league_map(image));
   cv::Mat nothing = transparent_pixels(image);
-  const bool is_layer = !direct && !out.is_league && is_transparent_free(image, nothing);
-  if (is_layer) nothing.setTo(0);  // its pixels have a grey of their own
-  nothing |= no_data_areas(image, notes);
   const std::optional<LabelImage> costmap =
       direct || out.is_league || !small_enough(image) ? std::nullopt : classify_costmap(image);
+  const std::optional<Layer> layer = direct || out.is_league || costmap ? std::nullopt : layer_of(image, nothing);
+  if (layer) nothing.setTo(0);
+  nothing |= no_data_areas(image, notes);
   const LabelImage labels = direct          ? classify_direct(image, notes.meaning)
                             : costmap       ? *costmap
+                            : layer         ? classify_layer(image, *layer, nothing)
                             : out.is_league ? classify_league(image, undone)
                                             : classify_by_grey(image, nothing);
   out.recognised = labels.recognised;
   out.refusal = labels.refusal;
   if (restored) out.recognised += ", " + restored->how;
-  if (is_layer) out.recognised += ", what is transparent is ground";
   if (!direct && !costmap && (undone.sigma == 0.0 || !out.refusal.empty()))
     if (const std::string why = why_colours_are_lost(image, is_league_map(image)); !why.empty()) out.refusal = why;
   if (image.white > 0)

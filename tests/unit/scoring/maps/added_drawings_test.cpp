@@ -149,6 +149,30 @@ TEST(AddedDrawings, WhatIsTransparentWithinOneGroundIsFreeAndElsewhereUnknown) {
   }
 }
 
+/// Whatever grey the opaque ground has: also that in which transparent pixels are shown.
+TEST(AddedDrawings, TheGroundAroundATransparentFloorMayHaveAnyGrey) {
+  for (const int ground : {128, 205, 215, 222, 226, 230, 240, 250}) {
+    const cv::Mat map = map_picture(ground);
+    RgbImage layer = rgb_of(map);
+    layer.alpha.assign(map.total(), 255);
+    for (std::size_t i = 0; i < map.total(); ++i)
+      if (map.data[i] == 255) {
+        layer.alpha[i] = 0;
+        for (std::size_t k = 0; k < 3; ++k) layer.rgb[3 * i + k] = 226;
+      }
+    const ClassImage read = classify(layer);
+    EXPECT_EQ(read.refusal, "") << ground;
+    int wrong = 0;
+    for (int y = 0; y < map.rows; ++y)
+      for (int x = 0; x < map.cols; ++x) {
+        const int grey = map.at<unsigned char>(y, x);
+        const Occupancy own = grey == 0 ? Occupancy::Occupied : grey == 255 ? Occupancy::Free : Occupancy::Unknown;
+        wrong += read.classes[{x, map.rows - 1 - y}] != own ? 1 : 0;
+      }
+    EXPECT_EQ(wrong, 0) << ground << read.recognised;
+  }
+}
+
 TEST(AddedDrawings, AGridOverTheGroundIsNoUnknownGround) {
   const cv::Mat map = map_picture(128);
   cv::Mat grid = map.clone();
