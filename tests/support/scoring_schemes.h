@@ -240,7 +240,8 @@ inline std::vector<OccupancyGrid> drawn_arenas(const OccupancyGrid& truth) {
   return out;
 }
 
-/// The walls that most of `others` have there, each laid with the middle of its outline on that of `truth`.
+/// The walls that more than `least` of `others` (a share) have there, each laid with the middle of its outline on that
+/// of `truth`.
 inline OccupancyGrid most_probable(const OccupancyGrid& truth, const std::vector<OccupancyGrid>& others, double least) {
   OccupancyGrid out = hall_like(truth, true);
   constexpr double kNear = 0.05;  // by which lattices may be off each other [m]
@@ -260,7 +261,8 @@ inline OccupancyGrid most_probable(const OccupancyGrid& truth, const std::vector
   return out;
 }
 
-/// Every wall cell thrown about by up to `reach` [m], and as many strokes more beside it.
+/// The map with specks of wall, as many as a third of its wall cells, on free ground within `reach` [m] of them (per
+/// axis).
 inline OccupancyGrid scribbled(const OccupancyGrid& map, double reach, std::uint64_t seed) {
   OccupancyGrid out = map;
   Rng rng(seed, "scribbles");
@@ -286,7 +288,8 @@ inline OccupancyGrid thin_dashes(const OccupancyGrid& map, double gap, double pe
   return dashed(out, gap, period);
 }
 
-/// On each edge of the lattice that `map` does not know a stroke of `length` [m]: a wall of less strength.
+/// On each edge of the lattice over what the truth knows a stroke of `length` [m] in the middle: a wall of less
+/// strength.
 inline OccupancyGrid strokes_on_lattice(const OccupancyGrid& truth, double length) {
   const GridFrame known = known_frame(truth, 0.0).value_or(truth.frame());
   OccupancyGrid out = lattice_of(truth, Occupancy::Occupied, 0.1);
@@ -302,7 +305,7 @@ inline OccupancyGrid strokes_on_lattice(const OccupancyGrid& truth, double lengt
   return out;
 }
 
-/// What lies within `reach` [m] of the lattice without being near a wall of the map becomes unknown.
+/// Free floor in strips of `width` [m] along the lattice that is not within 0.3 m of a wall of the map becomes unknown.
 inline OccupancyGrid open_edges_unknown(const OccupancyGrid& map, double width) {
   const OccupancyGrid strips = lattice_of(map, Occupancy::Unknown, width);
   const int cells = static_cast<int>(std::lround(0.3 / map.resolution()));

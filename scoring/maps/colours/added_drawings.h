@@ -15,8 +15,8 @@ inline constexpr double kMostInk = 0.1;  ///< of all pixels: drawings are few, m
 bool paint_over_colours(const RgbImage& image, const cv::Mat& apart, cv::Mat& grey);
 
 /// Walls in many colours on grounds of grey (by their place, their height or the scan that saw them) take one grey in
-/// `grey`: where coloured lines are few, the greys alone have no walls, and the lines are as bright as each other
-/// nowhere. `apart`: as above. False: there are none.
+/// `grey`: where coloured lines are few and thin, the greys alone have no walls but the rims of these lines, and the
+/// lines' own greys differ: one pen is told apart by its grey. `apart`: as above. False: there are none.
 bool even_out_coloured_walls(const RgbImage& image, const cv::Mat& apart, cv::Mat& grey);
 
 /// What plotting programs put around a map (margins with axes, titles, frames) is unknown: ground that reaches a whole
