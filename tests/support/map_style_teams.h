@@ -366,6 +366,23 @@ inline void add_gammas(Styles& out) {
                 2.0, {90, 60});
 }
 
+/// League maps whose contrast and brightness a program changed, so that white was clipped or not.
+inline void add_contrasts(Styles& out) {
+  for (const auto& [gain, offset] : {std::pair{1.0, 10.0}, {1.05, -2.0}, {1.2, -30.0}, {0.9, 10.0}})
+    for (const bool searched : {false, true})
+      for (const bool drawings : {false, true})
+        out.add("league of contrast " + std::to_string(gain).substr(0, 4) + " and brightness " +
+                    std::to_string(static_cast<int>(offset)) + (searched ? ", searched" : "") +
+                    (drawings ? ", drawings" : ""),
+                [=, by = gain, more = offset](const OccupancyGrid& g) {
+                  const cv::Mat m = at_scale(league_image(g, drawings), 2.0, cv::INTER_NEAREST);
+                  cv::Mat o;
+                  (searched ? with_searched_floor(m, 0.7) : m).convertTo(o, CV_8U, by, more);
+                  return o;
+                },
+                2.0, {90, 60});
+}
+
 inline std::vector<Style> styles_of_teams() {
   Styles out;
   add_plots(out);
@@ -375,6 +392,7 @@ inline std::vector<Style> styles_of_teams() {
   add_quantities(out);
   add_layers(out);
   add_gammas(out);
+  add_contrasts(out);
   return out.all;
 }
 

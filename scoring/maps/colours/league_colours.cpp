@@ -139,9 +139,20 @@ std::vector<FloorTone> floor_tones(const Rgb& colour, const Rgb& lighter) {
   return out;
 }
 
+/// Of a curve that leaves white less than `told` over the squares.
+std::string doubt_about_white(const ToneCurve& curve, int told) {
+  const int apart = white_over_squares(curve);
+  if (apart >= told) return {};
+  return kDoubt + cv::format(
+                      "that left white %d of 255 over the lighter squares of the checkerboard: free floor and "
+                      "unexplored ground may be taken for each other",
+                      apart);
+}
+
 /// The picture with the tones of before, where `curve` makes of the league's colours those that cover most of it.
 std::optional<RestoredColours> undone(const ToneCurve& curve, const RgbImage& image,
                                       const std::vector<std::pair<Rgb, std::size_t>>& colours) {
+  constexpr int kTold = 3;  // rounding of both
   const BeforeCurve was_before(curve);
   Census c;
   for (const auto& [colour, count] : colours) c.count(was_before(colour), count);
@@ -152,7 +163,8 @@ std::optional<RestoredColours> undone(const ToneCurve& curve, const RgbImage& im
   std::map<Rgb, Rgb> before;
   for (const auto& [colour, count] : colours) before[colour] = was_before(colour);
   RgbImage out = recoloured(image, [&](const Rgb& colour) { return before.at(colour); });
-  return RestoredColours{std::move(out), "tones had been changed (" + curve.name + ")", {}, true};
+  return RestoredColours{
+      std::move(out), "tones had been changed (" + curve.name + ")", {}, true, doubt_about_white(curve, kTold)};
 }
 
 /// The picture as it was before its brightness, contrast or gamma was changed: where one such change makes of the
@@ -181,11 +193,13 @@ std::optional<RestoredColours> with_tones_before_loss(const RgbImage& image) {
   if (!is_league_map(before)) return std::nullopt;
   RestoredColours out{std::move(before), "tones had been changed (" + curve->name + ")"};
   constexpr double kPaleWalls = 0.8;
+  constexpr int kToldByLoss = 6;  // JPEG moves even ground by half of that
   if (const double left = wall_colour_left(*curve); left < kPaleWalls)
     out.doubt = kDoubt + cv::format(
                              "that left walls %.0f %% of their colour before some of it was lost: pieces of them "
                              "may be taken for other lines",
                              100.0 * left);
+  out.doubt += doubt_about_white(*curve, kToldByLoss);
   return out;
 }
 

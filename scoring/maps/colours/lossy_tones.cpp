@@ -18,6 +18,7 @@
 #include "scoring/maps/colours/league_palette.h"
 #include "scoring/maps/colours/league_pixels.h"
 #include "scoring/maps/colours/reading_doubts.h"
+#include "scoring/maps/colours/tint.h"
 
 namespace rubble::scoring {
 namespace {
@@ -68,16 +69,6 @@ std::optional<Squares> squares_of(const RgbImage& image) {
   return Squares{greys[0], greys[1]};
 }
 
-/// Differences of colour of YCbCr, and brightness.
-struct Tinted {
-  double light = 0.0, blue = 0.0, red = 0.0;
-};
-
-Tinted tinted(const Rgb& c) {
-  const double light = 0.299 * c[0] + 0.587 * c[1] + 0.114 * c[2];
-  return {light, 0.564 * (c[2] - light), 0.713 * (c[0] - light)};
-}
-
 Rgb through(const ToneCurve& curve, const Rgb& c) { return {curve.of[c[0]], curve.of[c[1]], curve.of[c[2]]}; }
 
 /// How far a curve misses the squares and the floor.
@@ -86,6 +77,45 @@ int misfit(const ToneCurve& curve, const Squares& squares, const FloorTone& floo
   for (const auto& [own, now] : {std::pair(league::kUnexplored, squares.darker),
                                  std::pair(league::kUnexploredLight, squares.lighter), std::pair(floor.own, floor.now)})
     for (std::size_t i = 0; i < 3; ++i) out += std::abs(int{curve.of[own[i]]} - int{now[i]});
+  return out;
+}
+
+/// What each brightness was. A curve that clips leaves many values at the end of the scale; of what is lighter than the
+/// squares the league has white alone, and mixtures of both, which lie between them as they did.
+std::array<double, 256> brightness_before(const ToneCurve& curve) {
+  std::array<double, 256> out{};
+  for (int value = 0; value < 256; ++value) {
+    const auto nearer = [value](int a, int b) { return std::abs(a - value) < std::abs(b - value); };
+    out[static_cast<std::size_t>(value)] =
+        static_cast<double>(std::min_element(curve.of.begin(), curve.of.end(), nearer) - curve.of.begin());
+  }
+  const int square = league::kUnexploredLight[1], white = league::kFree[1];
+  const int square_now = curve.of[static_cast<std::size_t>(square)],
+            white_now = curve.of[static_cast<std::size_t>(white)];
+  for (int value = square_now + 1; value < 256; ++value)
+    out[static_cast<std::size_t>(value)] =
+        value >= white_now
+            ? white
+            : square + (white - square) * (value - square_now) / static_cast<double>(white_now - square_now);
+  return out;
+}
+
+/// Searched floor is no white, which fits any curve that clips it.
+bool is_green(const Rgb& c) {
+  constexpr int kGreener = 12;  // than the other channels
+  return c[1] >= std::max(c[0], c[2]) + kGreener;
+}
+
+/// How far a curve misses the green that most of the searched floor has; 0 where there is none.
+int misfit_of_green(const ToneCurve& curve, const std::vector<std::pair<Rgb, int>>& colours) {
+  const auto green = std::find_if(colours.begin(), colours.end(), [](const auto& c) { return is_green(c.first); });
+  if (green == colours.end()) return 0;
+  int out = std::numeric_limits<int>::max();
+  for (const Rgb& own : {league::kSearched, league::kSearchedUnsure}) {
+    int off = 0;
+    for (std::size_t i = 0; i < 3; ++i) off += std::abs(int{curve.of[own[i]]} - int{green->first[i]});
+    out = std::min(out, off);
+  }
   return out;
 }
 
@@ -105,30 +135,28 @@ int darkest_lines(const RgbImage& image) {
 }  // namespace
 
 double wall_colour_left(const ToneCurve& curve) {
-  const Tinted own = tinted(league::kWall), now = tinted(through(curve, league::kWall));
+  const Tint own = tint_of(league::kWall), now = tint_of(through(curve, league::kWall));
   return std::hypot(now.blue, now.red) / std::hypot(own.blue, own.red);
 }
 
+int white_over_squares(const ToneCurve& curve) {
+  return curve.of[league::kFree[1]] - curve.of[league::kUnexploredLight[1]];
+}
+
 RgbImage before_tones_and_loss(const RgbImage& image, const ToneCurve& curve) {
-  const Tinted wall = tinted(league::kWall), floor = tinted(league::kSearched);
-  const Tinted wall_now = tinted(through(curve, league::kWall)), floor_now = tinted(through(curve, league::kSearched));
+  constexpr double kLeastArea = 1.0;  // two colours that lie on one line, or are grey: nothing tells their shares
+  const Tint wall = tint_of(league::kWall), floor = tint_of(league::kSearched);
+  const Tint wall_now = tint_of(through(curve, league::kWall)), floor_now = tint_of(through(curve, league::kSearched));
   const double area = wall_now.blue * floor_now.red - floor_now.blue * wall_now.red;
-  std::array<int, 256> before{};
-  for (int value = 0; value < 256; ++value)
-    before[static_cast<std::size_t>(value)] =
-        static_cast<int>(std::min_element(curve.of.begin(), curve.of.end(),
-                                          [value](int a, int b) { return std::abs(a - value) < std::abs(b - value); }) -
-                         curve.of.begin());
+  const bool are_told = std::abs(area) >= kLeastArea;
+  const std::array<double, 256> before = brightness_before(curve);
   RgbImage out = image;
   league::each_run(image, [&](const league::Colour&, int first, int y, int length) {
-    const Tinted c = tinted(league::rgb_of(image.pixel(first, y)));
-    const double walls = (c.blue * floor_now.red - floor_now.blue * c.red) / area;
-    const double floors = (wall_now.blue * c.red - c.blue * wall_now.red) / area;
-    const double light = before[static_cast<std::size_t>(std::clamp(std::lround(c.light), 0L, 255L))];
-    const double blue = walls * wall.blue + floors * floor.blue, red = walls * wall.red + floors * floor.red;
-    const auto value = [](double v) { return static_cast<std::uint8_t>(std::clamp(std::lround(v), 0L, 255L)); };
-    const Rgb now{value(light + red / 0.713), value(light - (0.114 * blue / 0.564 + 0.299 * red / 0.713) / 0.587),
-                  value(light + blue / 0.564)};
+    const Tint c = tint_of(league::rgb_of(image.pixel(first, y)));
+    const double walls = are_told ? (c.blue * floor_now.red - floor_now.blue * c.red) / area : 0.0;
+    const double floors = are_told ? (wall_now.blue * c.red - c.blue * wall_now.red) / area : 0.0;
+    const Rgb now = rgb_of(Tint{before[static_cast<std::size_t>(std::clamp(std::lround(c.light), 0L, 255L))],
+                                walls * wall.blue + floors * floor.blue, walls * wall.red + floors * floor.red});
     for (int x = first; x < first + length; ++x) std::copy(now.begin(), now.end(), out.pixel(x, y));
   });
   return out;
@@ -137,7 +165,7 @@ RgbImage before_tones_and_loss(const RgbImage& image, const ToneCurve& curve) {
 std::optional<ToneCurve> tone_curve_before_loss(const RgbImage& image) {
   constexpr int kLossyRounding = 2;
   constexpr int kDarkerWeighsLess = 4;  // JPEG and blending move lines more than areas
-  constexpr int kGreener = 12;          // searched floor, over its other channels
+  constexpr int kWhiterThan = 12;       // difference of the channels of white
   constexpr int kByChance = 3;          // what it counts that contrast and brightness leave white where it was
   constexpr double kLeastColour = 0.6;  // of walls: a gamma of 1.5 leaves 0.7, one of 2.2 0.4
   const std::optional<Squares> squares = squares_of(image);
@@ -145,10 +173,11 @@ std::optional<ToneCurve> tone_curve_before_loss(const RgbImage& image) {
   const int darkest = darkest_lines(image);
   std::optional<ToneCurve> best;
   int least = std::numeric_limits<int>::max();
-  for (const auto& [now, pixels] : even_colours(image)) {
+  const std::vector<std::pair<Rgb, int>> colours = even_colours(image);
+  for (const auto& [now, pixels] : colours) {
     std::vector<Rgb> own;
-    if (now[1] > squares->lighter[1] && league::spread(now) < kGreener) own.push_back(league::kFree);
-    if (now[1] >= std::max(now[0], now[2]) + kGreener) {
+    if (now[1] > squares->lighter[1] && league::spread(now) < kWhiterThan) own.push_back(league::kFree);
+    if (is_green(now)) {
       own.push_back(league::kSearched);
       own.push_back(league::kSearchedUnsure);
     }
@@ -156,8 +185,10 @@ std::optional<ToneCurve> tone_curve_before_loss(const RgbImage& image) {
       for (const ToneCurve& curve : tone_curves(squares->darker, squares->lighter, {now, floor}, kLossyRounding)) {
         // Curves that are alike in what became of light tones differ in what became of walls.
         const int wall = league::brightness(through(curve, league::kWall));
-        const int chance = curve.name.rfind("gamma", 0) == 0 ? 0 : kByChance;
-        const int off = misfit(curve, *squares, {now, floor}) + std::abs(wall - darkest) / kDarkerWeighsLess + chance;
+        const int chance = curve.kind == ToneCurve::Kind::Gamma ? 0 : kByChance;
+        const int green = floor == league::kFree ? misfit_of_green(curve, colours) : 0;
+        const int off =
+            misfit(curve, *squares, {now, floor}) + green + std::abs(wall - darkest) / kDarkerWeighsLess + chance;
         if (off >= least) continue;
         least = off;
         best = curve;

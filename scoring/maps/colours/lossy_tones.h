@@ -21,6 +21,9 @@ RgbImage before_tones_and_loss(const RgbImage& image, const ToneCurve& curve);
 /// How much of the wall's blue a curve leaves, 1: as much as the league's.
 double wall_colour_left(const ToneCurve& curve);
 
+/// By how much of 255 a curve leaves white lighter than the checkerboard's lighter squares: 18 in the league's colours.
+int white_over_squares(const ToneCurve& curve);
+
 /// What the checkerboard of a league map says against its colours: its squares are not the league's. Empty: nothing.
 std::string doubt_about_tones(const RgbImage& image);
 

@@ -8,20 +8,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "scoring/maps/colours/league_palette.h"
+#include "scoring/maps/colours/tint.h"
 
 namespace rubble::scoring {
 namespace {
-
-/// As JPEG keeps them: brightness sharp, the two differences of colour smeared over up to 16 pixels.
-struct Tint {
-  double light, blue, red;
-};
-
-template <class Channels>
-Tint tint_of(const Channels& rgb) {
-  const double light = 0.299 * rgb[0] + 0.587 * rgb[1] + 0.114 * rgb[2];
-  return {light, 0.564 * (rgb[2] - light), 0.713 * (rgb[0] - light)};
-}
 
 const Tint kWallTint = tint_of(league::kWall);
 const Tint kSearchedTint = tint_of(league::kSearched);
@@ -81,8 +71,6 @@ bool is_searched(const std::uint8_t* p) {
          p[0] >= league::kSearched[0] - kSlack && p[0] <= league::kSearchedUnsure[0] + kSlack;
 }
 
-std::uint8_t level(double value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0))); }
-
 }  // namespace
 
 RgbImage without_searched_floor(const RgbImage& image) {
@@ -102,11 +90,8 @@ RgbImage without_searched_floor(const RgbImage& image) {
       const Shares shares = shares_of(was);
       const double share = shares.green;
       const double light = light_on_white(was, shares);
-      const double red = light + (was.red - share * kSearchedTint.red) / 0.713;
-      const double blue = light + (was.blue - share * kSearchedTint.blue) / 0.564;
-      p[0] = level(red);
-      p[1] = level((light - 0.299 * red - 0.114 * blue) / 0.587);
-      p[2] = level(blue);
+      const Rgb now = rgb_of(Tint{light, was.blue - share * kSearchedTint.blue, was.red - share * kSearchedTint.red});
+      std::copy(now.begin(), now.end(), p);
     }
   return out;
 }

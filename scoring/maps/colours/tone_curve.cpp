@@ -12,8 +12,9 @@ namespace {
 constexpr int kRounding = 1;  // of what editors make of a value
 
 template <class Function>
-ToneCurve curve_of(const Function& f, const char* format, double a, double b) {
+ToneCurve curve_of(ToneCurve::Kind kind, const Function& f, const char* format, double a, double b) {
   ToneCurve out;
+  out.kind = kind;
   for (std::size_t v = 0; v < out.of.size(); ++v)
     out.of[v] = static_cast<std::uint8_t>(std::clamp(std::lround(f(static_cast<double>(v))), 0L, 255L));
   char name[80];
@@ -36,6 +37,7 @@ int difference(const Rgb& a, const Rgb& b) {
 }  // namespace
 
 std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const FloorTone& floor, int rounding) {
+  using Kind = ToneCurve::Kind;
   std::vector<ToneCurve> out;
   const auto offer = [&](ToneCurve curve) {
     const bool fits = difference(changed(curve, league::kUnexplored), darker) <= rounding &&
@@ -50,7 +52,9 @@ std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const 
     const double power = std::log(dark / 255.0) / std::log(league::kUnexplored[0] / 255.0);
     for (int i = 0; i <= 24; ++i) {  // from the middle outwards
       const double p = power + 0.005 * (i % 2 == 0 ? i / 2 : -(i + 1) / 2);
-      if (p > 0.0) offer(curve_of([p](double v) { return 255.0 * std::pow(v / 255.0, p); }, "gamma %.2f", p, 0.0));
+      if (p > 0.0)
+        offer(curve_of(
+            Kind::Gamma, [p](double v) { return 255.0 * std::pow(v / 255.0, p); }, "gamma %.2f", p, 0.0));
     }
   }
   // A line through the squares and the floor, or through the two squares where the floor is clipped.
@@ -61,7 +65,8 @@ std::vector<ToneCurve> tone_curves(const Rgb& darker, const Rgb& lighter, const 
         const double gain = (at_to + high - at_from - low) / (to - from);
         const double offset = at_from + low - gain * from;
         if (gain > 0.1)
-          offer(curve_of([=](double v) { return gain * v + offset; }, "%.2f times the value %+.0f", gain, offset));
+          offer(curve_of(
+              Kind::Line, [=](double v) { return gain * v + offset; }, "%.2f times the value %+.0f", gain, offset));
       }
   };
   lines(league::kUnexplored[0], floor.own[0], dark, of_floor);
@@ -82,8 +87,12 @@ BeforeCurve::BeforeCurve(const ToneCurve& curve) {
 }
 
 Rgb BeforeCurve::operator()(const Rgb& colour) const {
-  for (std::size_t i = 0; i < leagues_.size(); ++i)
-    if (difference(leagues_[i], colour) <= kRounding) return league::kAll[i];
+  // The nearest, and of those the first: clipped, white and the lighter squares may be one value apart.
+  const auto nearest = std::min_element(leagues_.begin(), leagues_.end(), [&](const Rgb& a, const Rgb& b) {
+    return difference(a, colour) < difference(b, colour);
+  });
+  if (difference(*nearest, colour) <= kRounding)
+    return league::kAll[static_cast<std::size_t>(nearest - leagues_.begin())];
   return {before_[colour[0]], before_[colour[1]], before_[colour[2]]};
 }
 

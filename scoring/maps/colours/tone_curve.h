@@ -12,8 +12,10 @@ namespace rubble::scoring {
 
 /// What an image editor may have done to all channels of a league map alike.
 struct ToneCurve {
+  enum class Kind { Gamma, Line };     ///< Line: contrast and brightness
   std::array<std::uint8_t, 256> of{};  ///< what each value became
   std::string name;                    ///< "gamma 1.5"
+  Kind kind = Kind::Line;
 };
 
 /// What free floor looks like, and what the league draws it in: white, or searched.
