@@ -74,8 +74,9 @@ inline void add_costmaps(Styles& out) {
            {"narrow", {0.15, 0.55, 10.0}}, {"wide", {0.1, 0.7, 3.0}}, {"flat", {0.12, 1.2, 2.0}}})
     for (const int scale : {1, 2}) {
       const Inflation i = inflation;
+      const std::string kind = name;  // no compiler of C++17 need let a binding be captured
       const auto add = [&](const std::string& what, const auto& colour_of) {
-        out.add("costs " + what + ", " + name + (scale > 1 ? ", twice" : ""),
+        out.add("costs " + what + ", " + kind + (scale > 1 ? ", twice" : ""),
                 [=](const OccupancyGrid& g) { return costmap(g, scale, i, colour_of); }, scale, {85});
       };
       add("in rviz", rviz_cost);

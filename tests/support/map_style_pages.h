@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/support/map_styles.h"
+#include "tests/support/scoring_maze.h"
 
 /// What is drawn over maps and around them, and walls drawn otherwise.
 namespace rubble::scoring::testing {

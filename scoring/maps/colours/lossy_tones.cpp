@@ -61,7 +61,8 @@ std::optional<Squares> squares_of(const RgbImage& image) {
   for (const auto& [colour, pixels] : even_colours(image)) {
     const bool grey = league::spread(colour) <= kGreyTint && colour[1] < 250;
     if (!grey || kOneOfEither * static_cast<std::size_t>(pixels) < image.rgb.size() / 3) continue;
-    if (std::none_of(greys.begin(), greys.end(), [&](const Rgb& g) { return std::abs(g[1] - colour[1]) < kNearest; }))
+    if (std::none_of(greys.begin(), greys.end(),
+                     [&, c = colour](const Rgb& g) { return std::abs(g[1] - c[1]) < kNearest; }))
       greys.push_back(colour);
   }
   if (greys.size() < 2 || std::abs(greys[0][1] - greys[1][1]) > kFarthest) return std::nullopt;
