@@ -95,6 +95,17 @@ bool has_obstacle(const Grid<std::uint8_t>& obstacle, const Box& box) {
   return false;
 }
 
+/// Calls `use` with each cell within `radius` of one of the places, for each of them.
+template <typename Use>
+void for_cells_near(const GridFrame& frame, const std::vector<TPoint2D>& places, double radius, const Use& use) {
+  for (const TPoint2D& p : places) {
+    const Box box = cells_around(frame, p, radius);
+    for (int y = box.low.y; y <= box.high.y; ++y)
+      for (int x = box.low.x; x <= box.high.x; ++x)
+        if (distance(frame.centre({x, y}), p) <= radius) use(Cell{x, y});
+  }
+}
+
 }  // namespace
 
 Traversable traversable(OccupancyGrid known) {
@@ -164,35 +175,20 @@ void free_body(Traversable& floor, const TPose2D& T_map_base, double length, dou
 }
 
 void free_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double radius) {
-  const GridFrame& frame = floor.frame();
-  for (const TPoint2D& passed : trail) {
-    const Box box = cells_around(frame, passed, radius);
-    for (int y = box.low.y; y <= box.high.y; ++y)
-      for (int x = box.low.x; x <= box.high.x; ++x) {
-        const Cell c{x, y};
-        if (floor.cells[c] != Occupancy::Unknown) continue;
-        const TPoint2D p = frame.centre(c);
-        if (distance(p, passed) > radius) continue;
-        floor.cells[c] = Occupancy::Free;
-        floor.body[c] = 1;
-      }
-  }
+  for_cells_near(floor.frame(), trail, radius, [&](Cell c) {
+    if (floor.cells[c] != Occupancy::Unknown) return;
+    floor.cells[c] = Occupancy::Free;
+    floor.body[c] = 1;
+  });
 }
 
 void loosen_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double radius) {
-  const GridFrame& frame = floor.frame();
-  for (const TPoint2D& passed : trail) {
-    const Box box = cells_around(frame, passed, radius);
-    for (int y = box.low.y; y <= box.high.y; ++y)
-      for (int x = box.low.x; x <= box.high.x; ++x) {
-        const Cell c{x, y};
-        if (floor.cells[c] != Occupancy::Occupied && floor.obstacle[c] == 0) continue;
-        if (distance(frame.centre(c), passed) > radius) continue;
-        floor.cells[c] = Occupancy::Free;
-        floor.obstacle[c] = 0;
-        floor.loose.push_back(c);
-      }
-  }
+  for_cells_near(floor.frame(), trail, radius, [&](Cell c) {
+    if (floor.cells[c] != Occupancy::Occupied && floor.obstacle[c] == 0) return;
+    floor.cells[c] = Occupancy::Free;
+    floor.obstacle[c] = 0;
+    floor.loose.push_back(c);
+  });
 }
 
 void widen_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double clearance,

@@ -426,8 +426,7 @@ bool FloorSearch::dwelling(const Traversable& floor, const TPose2D& T_map_base, 
 /// Whether the robot did not stand where the place to face shows squarely, as where it slid while it turned on a slope:
 /// that says nothing of the place, but not more often than `kTries` times.
 bool FloorSearch::try_again(const Anchor& here) {
-  if (subject_.record != Record::Squarely || serves({subject_.at, subject_.faces, subject_.record}, here.T_map_base))
-    return false;
+  if (subject_.record != Record::Squarely || serves(subject_, here.T_map_base)) return false;
   const auto before = std::count_if(slid_.begin(), slid_.end(), [&](const AnchoredPoint& p) {
     return distance(p.p_map(), subject_.at) < kSquareRadius;
   });
