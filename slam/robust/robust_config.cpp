@@ -62,6 +62,7 @@ void bind(Binder& b, RobustConfig& c) {
     m.number("least_turn_rad", c.tracker.least_turn, 0.001, 1.0);
     m.number("turn_error_rad_per_m", c.tracker.turn_error_per_m, 0.0, 10.0);
     m.number("wheel_friction", c.tracker.wheel_friction, 0.0, 10.0);
+    m.number("vain_error", c.tracker.vain_error, 0.0, 10.0);
     m.number("creep_error", c.tracker.creep_error, 0.0, 10.0);
     m.number("large_step_m", c.tracker.large_step, 0.05, 100.0);
     m.number("large_turn_rad", c.tracker.large_turn, 0.05, 10.0);

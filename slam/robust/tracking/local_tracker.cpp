@@ -85,7 +85,8 @@ Eigen::Matrix3d LocalTracker::prior_information(const ExpectedMotion& motion) co
   const double path = length(motion.T_last_now.x, motion.T_last_now.y);
   const double turn = std::abs(wrap_angle(motion.T_last_now.phi));
   const double distance = config_.least_distance + config_.distance_error * path + 0.02 * turn +
-                          config_.creep_error * motion.crept + motion.doubt * (0.02 + config_.most_speed * motion.time);
+                          config_.vain_error * motion.in_vain * path + config_.creep_error * motion.crept +
+                          motion.doubt * (0.02 + config_.most_speed * motion.time);
   const double angle = config_.least_turn + config_.turn_error * turn + config_.turn_error_per_m * path +
                        motion.doubt * (0.02 + config_.most_turn_rate * motion.time);
   return Eigen::Vector3d(1.0 / (distance * distance), 1.0 / (distance * distance), 1.0 / (angle * angle)).asDiagonal();
@@ -96,7 +97,7 @@ Tracked LocalTracker::track(const KeyFrames& frames, const Cloud& cloud, const E
   const double distance = length(motion.T_last_now.x, motion.T_last_now.y);
   const double turn = std::abs(wrap_angle(motion.T_last_now.phi));
   const bool doubted = motion.doubt >= kDoubted;
-  const PosePrior prior{T_frame_last + motion.T_last_now, prior_information(motion)};
+  const PosePrior prior{T_frame_last + motion.believed(), prior_information(motion)};
   const std::optional<TPose2D> carried = motion.carried ? std::optional(T_frame_last + *motion.carried) : std::nullopt;
   points_ = cloud.points;
   Tracked tracked;

@@ -22,6 +22,9 @@ constexpr double kLeastJump = 0.5;         ///< below, a coarse clock may be to 
 constexpr double kForgiving = 0.6;         ///< what is left of the doubt after each scan that agrees with the odometry
 constexpr double kNoDoubt = 0.05;
 constexpr double kLongestCarry = 0.5;  ///< motion is taken to go on for so long [s]
+constexpr double kTurnsFade = 0.45;    ///< turns of so long ago count by 1/e [s]
+constexpr double kTurning = 0.16;      ///< turns this fast tell whether wheels hold the floor [rad/s] ...
+constexpr double kHolds = 0.5;         ///< ... which they do where the robot turned by this share of them
 
 bool finite(const robot::Odometry& o) {
   return std::isfinite(o.pose.x) && std::isfinite(o.pose.y) && std::isfinite(o.pose.phi) && std::isfinite(o.v) &&
@@ -46,6 +49,7 @@ ExpectedMotion MotionExpectation::expect(const LaserScan& scan) {
   motion.time = reference - *last_scan_;
   motion.carried = carried(motion.time);
   motion.doubt = doubt_;
+  turn_now_ = 0.0;
   if (motion.time < kNoDuration) return motion;
   const double path = length(motion.T_last_now.x, motion.T_last_now.y);
   const double turn = std::abs(wrap_angle(motion.T_last_now.phi));
@@ -58,6 +62,10 @@ ExpectedMotion MotionExpectation::expect(const LaserScan& scan) {
   jumps_ += jumped ? 1 : 0;
   silent_ += silent ? 1 : 0;
   motion.told = T_odom_scan_ && !jumped && !silent;
+  if (motion.told) {
+    turn_now_ = wrap_angle(motion.T_last_now.phi);
+    motion.in_vain = in_vain(motion.time);
+  }
   if (jumped || silent) motion.doubt = 1.0;
   if (jumped) motion.T_last_now = motion.carried.value_or(TPose2D());
   return motion;
@@ -71,6 +79,16 @@ bool MotionExpectation::jumps_within(const LaserScan& scan) const {
   const TPose2D motion = sweep->T_ref_last - sweep->T_ref_first;
   return length(motion.x, motion.y) > 0.05 + kFastestSweep * time ||
          std::abs(wrap_angle(motion.phi)) > 0.05 + kFastestSweepTurn * time;
+}
+
+/// The share of the wheels' way that is none. Nothing but the scan tells how far a robot came, and between two bare
+/// walls not even that; but its heading is always told, and wheels that do not turn the robot do not hold the floor.
+double MotionExpectation::in_vain(double time) const {
+  if (std::abs(turn_now_) < kTurning * time ||
+      turns_told_ * std::exp(-time / kTurnsFade) < kTurning * kTurning * kTurnsFade)
+    return 0.0;
+  const double share = std::clamp(turns_found_ / turns_told_, 0.0, 1.0);
+  return share < kHolds ? 1.0 - share : 0.0;
 }
 
 /// As the last two scans were apart, for `time`.
@@ -100,6 +118,11 @@ std::optional<SweepMotion> MotionExpectation::sweep_at(const LaserScan& scan, co
 void MotionExpectation::found(const TPose2D& step, double time, bool contradicted) {
   last_step_ = step;
   last_step_time_ = time;
+  if (time >= kNoDuration) {
+    const double left = std::exp(-time / kTurnsFade);
+    turns_told_ = left * turns_told_ + turn_now_ * turn_now_ / time;
+    turns_found_ = left * turns_found_ + turn_now_ * wrap_angle(step.phi) / time;
+  }
   doubt_ = contradicted ? 1.0 : doubt_ < kNoDoubt ? 0.0 : kForgiving * doubt_;
 }
 

@@ -53,6 +53,7 @@ class MotionExpectation {
  private:
   bool jumps_within(const robot::LaserScan& scan) const;
   std::optional<mrpt::math::TPose2D> carried(double time) const;
+  double in_vain(double time) const;
 
   const double scan_period_;  ///< [s]
   OdometryTrack odometry_;
@@ -63,6 +64,10 @@ class MotionExpectation {
   mrpt::math::TPose2D last_step_;  ///< between the last two scans, as matched
   double last_step_time_ = 0.0;    ///< [s]
   double doubt_ = 0.0;             ///< of the odometry, by what the last scans said of it
+  double turn_now_ = 0.0;          ///< told since the last scan [rad]
+  // Of the turns of the last moments, fading, by their rates, so that it does not matter how often a scanner scans.
+  double turns_told_ = 0.0;   ///< squares [rad^2/s]
+  double turns_found_ = 0.0;  ///< products with what the scans said of them [rad^2/s]
   std::uint64_t jumps_ = 0;
   std::uint64_t silent_ = 0;
 };
