@@ -16,8 +16,8 @@ void draw_rooms(const std::string& path, const OccupancyGrid& map, const Rooms& 
   write_rooms_png(path, map, rooms);
 }
 
-RoomVerdict judge_rooms(const OccupancyGrid& map, const Rooms& of_map, const OccupancyGrid& truth,
-                        const Rooms& of_truth, const std::optional<mrpt::math::TPose2D>& T_truth_map) {
+RoomVerdict judge_rooms(const OccupancyGrid& map, const OccupancyGrid& truth, const Rooms& of_truth, bool by_sight,
+                        const std::optional<mrpt::math::TPose2D>& T_truth_map) {
   RoomVerdict out;
   if (T_truth_map) {
     out.aligned = true;
@@ -28,7 +28,9 @@ RoomVerdict judge_rooms(const OccupancyGrid& map, const Rooms& of_map, const Occ
     out.note = found.note;
     out.T_truth_map = found.T_truth_map;
   }
-  if (out.aligned) out.match = match_rooms(of_map, of_truth, out.T_truth_map);
+  out.of_map =
+      out.aligned && !by_sight ? extract_rooms_as(map, of_truth, out.T_truth_map) : rooms_of_map(map, by_sight);
+  if (out.aligned) out.match = match_rooms(out.of_map, of_truth, out.T_truth_map);
   return out;
 }
 

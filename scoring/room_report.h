@@ -21,12 +21,14 @@ void draw_rooms(const std::string& path, const OccupancyGrid& map, const Rooms& 
 struct RoomVerdict {
   bool aligned = false;  ///< without a pose that can be trusted nothing is compared
   std::string note;      ///< why not
+  Rooms of_map;          ///< as they were compared; where they lie is not known: by themselves
   RoomMatch match;
   mrpt::math::TPose2D T_truth_map;
 };
 
-/// `T_truth_map`: the pose, where it is known; else it is searched.
-RoomVerdict judge_rooms(const OccupancyGrid& map, const Rooms& of_map, const OccupancyGrid& truth,
-                        const Rooms& of_truth, const std::optional<mrpt::math::TPose2D>& T_truth_map = {});
+/// `T_truth_map`: the pose, where it is known; else it is searched. The map's rooms are divided as the truth's where
+/// both have the same walls, but for those `by_sight`.
+RoomVerdict judge_rooms(const OccupancyGrid& map, const OccupancyGrid& truth, const Rooms& of_truth, bool by_sight,
+                        const std::optional<mrpt::math::TPose2D>& T_truth_map = {});
 
 }  // namespace rubble::scoring

@@ -37,14 +37,17 @@ struct Floor {
   scoring::Rooms rooms;
 };
 
-Floor floor_of(const std::string& path, const std::optional<double>& resolution, const std::string& method,
-               double scale = 1.0) {
+scoring::Rooms checked(scoring::Rooms rooms, const std::string& path) {
+  if (rooms.too_many_corners)
+    throw InputError(path + ": its walls have more corners than a floor plan; give --method visibility");
+  return rooms;
+}
+
+Floor floor_of(const std::string& path, const std::optional<double>& resolution, bool by_sight, double scale = 1.0) {
   Floor out;
   out.map = scoring::load_map(map_file(path), {resolution});
   if (scale != 1.0) out.map.grid = scoring::scaled_frame(out.map.grid, scale);
-  out.rooms = scoring::rooms_of_map(out.map.grid, method == "visibility");
-  if (out.rooms.too_many_corners)
-    throw InputError(path + ": its walls have more corners than a floor plan; give --method visibility");
+  out.rooms = checked(scoring::rooms_of_map(out.map.grid, by_sight), path);
   return out;
 }
 
@@ -139,9 +142,17 @@ void write_floor(const std::string& folder, const std::string& name, const Floor
 int rooms(const RoomsArguments& a) {
   const std::optional<GivenPose> pose = parse_pose(a.pose);
   if (pose && a.truth.empty()) throw UsageError("--pose goes with a truth; see rubble rooms --help");
-  const Floor map = floor_of(a.map, a.map_resolution, a.method, pose ? pose->scale : 1.0);
+  const bool by_sight = a.method == "visibility";
+  Floor map = floor_of(a.map, a.map_resolution, by_sight, pose ? pose->scale : 1.0);
   std::optional<Floor> truth;
-  if (!a.truth.empty()) truth = floor_of(a.truth, a.truth_resolution, a.method);
+  scoring::RoomVerdict found;
+  if (!a.truth.empty()) {
+    truth = floor_of(a.truth, a.truth_resolution, by_sight);
+    found = scoring::judge_rooms(
+        map.map.grid, truth->map.grid, truth->rooms, by_sight,
+        pose ? std::optional<mrpt::math::TPose2D>(pose->T_truth_map) : std::optional<mrpt::math::TPose2D>());
+    map.rooms = checked(found.of_map, a.map);
+  }
   if (!a.out.empty()) {
     make_folder(a.out);
     write_floor(a.out, "rooms", map);
@@ -150,9 +161,6 @@ int rooms(const RoomsArguments& a) {
   nlohmann::ordered_json json = {{"rooms", as_json(map.rooms)}};
   if (!a.json) print_rooms(map);
   if (truth) {
-    const scoring::RoomVerdict found = scoring::judge_rooms(
-        map.map.grid, map.rooms, truth->map.grid, truth->rooms,
-        pose ? std::optional<mrpt::math::TPose2D>(pose->T_truth_map) : std::optional<mrpt::math::TPose2D>());
     json["truth_rooms"] = as_json(truth->rooms);
     add_match(json, found);
     if (!a.json && found.aligned) print_match(found.match);

@@ -190,10 +190,15 @@ std::size_t count_corners(const cv::Mat& floor, double resolution, const RoomCon
   return corners_of(wall_contours(floor), resolution, config).size();
 }
 
-std::vector<Passage> find_passages(const cv::Mat& floor, double resolution, const RoomConfig& config) {
-  const std::vector<Passage> lines = candidates(floor, resolution, config);
+std::vector<Passage> find_passages(const cv::Mat& floor, double resolution, const RoomConfig& config,
+                                   std::vector<Passage> given, const std::function<bool(const Passage&)>& may_be) {
+  std::vector<Passage> lines = candidates(floor, resolution, config);
+  if (may_be)
+    lines.erase(std::remove_if(lines.begin(), lines.end(), [&](const Passage& line) { return !may_be(line); }),
+                lines.end());
   cv::Mat closed = floor.clone();
-  std::vector<Passage> out;
+  close_passages(closed, given);
+  std::vector<Passage> out = std::move(given);
   const auto take = [&](const Passage& line) {
     out.push_back(line);
     close_passages(closed, {line});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -19,7 +20,10 @@ struct Passage {
 /// 2. a door opens into wide space on either side: from it most of a half disc as wide as the door can be seen;
 /// 3. a corridor's end opens into a much wider hall on one side only.
 /// Each passage taken is closed before the next is judged, so that of many lines across one door one remains.
-std::vector<Passage> find_passages(const cv::Mat& floor, double resolution, const RoomConfig& config);
+/// `given` are taken first, and unasked; `may_be` refuses others.
+std::vector<Passage> find_passages(const cv::Mat& floor, double resolution, const RoomConfig& config,
+                                   std::vector<Passage> given = {},
+                                   const std::function<bool(const Passage&)>& may_be = {});
 
 /// Corners of the walls, from which passages may begin: time and memory go with them.
 std::size_t count_corners(const cv::Mat& floor, double resolution, const RoomConfig& config);

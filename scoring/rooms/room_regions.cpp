@@ -31,7 +31,7 @@ class Joined {
 
 /// A passage and the regions at its two sides.
 struct Door {
-  double width = 0.0;
+  Passage passage;
   int left = 0;
   int right = 0;
 };
@@ -58,7 +58,7 @@ Joined join_small(const std::vector<Door>& doors, std::vector<double>& area, dou
       const int left = joined.root(door.left);
       const int right = joined.root(door.right);
       if (left == right || std::min(size(left), size(right)) >= least_area) continue;
-      if (widest == nullptr || door.width > widest->width) widest = &door;
+      if (widest == nullptr || door.passage.width > widest->passage.width) widest = &door;
     }
     if (widest == nullptr) return joined;
     const int into = joined.root(widest->left);
@@ -166,10 +166,12 @@ RoomRegions separate(const RoomFloor& floor, const std::vector<Passage>& passage
     area[static_cast<std::size_t>(i)] = stats.at<int>(i, cv::CC_STAT_AREA) * floor.resolution * floor.resolution;
   std::vector<Door> doors;
   for (const Passage& passage : passages) {
-    const Door door{passage.width, beside(out.labels, passage, 1.0), beside(out.labels, passage, -1.0)};
+    const Door door{passage, beside(out.labels, passage, 1.0), beside(out.labels, passage, -1.0)};
     if (door.left != 0 && door.right != 0 && door.left != door.right) doors.push_back(door);
   }
   const Joined joined = join_small(doors, area, config.least_area);
+  for (const Door& door : doors)
+    if (joined.root(door.left) != joined.root(door.right)) out.doors.push_back(door.passage);
   std::vector<int> number(static_cast<std::size_t>(count), 0);
   for (int i = 1; i < count; ++i)
     if (joined.root(i) == i && area[static_cast<std::size_t>(i)] >= config.least_isolated)

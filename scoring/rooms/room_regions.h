@@ -12,6 +12,7 @@ namespace rubble::scoring {
 struct RoomRegions {
   cv::Mat labels;
   int count = 0;
+  std::vector<Passage> doors;  ///< passages with another room on either side
 };
 
 /// What the passages separate; regions that are too small joined to a neighbour.

@@ -41,6 +41,12 @@ same --json --pose=0,0,0,0.5 >half.json || fail "--pose with a scale ended with 
 json_holds half.json "abs(j['rooms'][0]['area_m2'] - 4.25 * 3.05 / 4) < 0.1"
 "$rubble" rooms truth.pgm --resolution 0.05 --json >alone.json || fail "--json of a map alone ended with $?"
 json_holds alone.json "list(j) == ['rooms'] and len(j['rooms']) == 4"
+# A run's own map of an arena, where rooms end at openings that are nearly as wide as they: divided as the truth is.
+"$rubble" run --seed 3 --out run >/dev/null 2>&1 || fail "no run"
+"$rubble" rooms run/map.tif run/truth.tif --json --out arena >arena.json || fail "rooms of an arena ended with $?"
+json_holds arena.json "j['room_score'] > 0.9 and j['missing'] == j['surplus'] == [] and len(j['rooms']) == len(j['truth_rooms']) > 9"
+[[ $(wc -l <arena/rooms.csv) == $(wc -l <arena/truth_rooms.csv) ]] || fail "the list of rooms is of another division"
+"$rubble" rooms run/map.tif run/truth.tif --method visibility >/dev/null || fail "rooms by sight ended with $?"
 expect_exit 2 "--pose goes with a truth" "$rubble" rooms truth.pgm --resolution 0.05 --pose=0,0,0
 expect_exit 2 "needs the form" same --pose=1
 expect_exit 3 "--resolution" "$rubble" rooms truth.pgm
