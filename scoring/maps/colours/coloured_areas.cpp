@@ -21,7 +21,7 @@ constexpr int kBin = 16;                 // width of a bin of colours: finer tha
 constexpr int kOneColour = 24;           // a channel of pixels of one area: a bin and a half
 constexpr float kSameArea = 28.0F;       // the same, noise with it
 constexpr double kLeastArea = 0.004;     // of the picture
-constexpr std::size_t kMostAreas = 24;   // colours
+constexpr std::size_t kMostAreaColours = 24;   // colours
 constexpr double kLeastColoured = 0.12;  // of the picture: less is drawn on a map of greys
 constexpr double kMostEven = 0.5;        // of the picture, at the least, are even areas
 constexpr int kBlends = 3;               // pixels that blend two grounds: edges drawn twice as large have two or three
@@ -334,11 +334,11 @@ std::optional<GreyedAreas> greys_of_coloured_areas(const RgbImage& image, const 
   const cv::Mat even = even_pixels(smooth) & ~apart;
   std::vector<cv::Vec3f> grounds;
   double coloured = 0.0, covered = 0.0;
-  for (const auto& [colour, count] : frequent(smooth, even, kLeastArea * pixels, kMostAreas + 1)) {
+  for (const auto& [colour, count] : frequent(smooth, even, kLeastArea * pixels, kMostAreaColours + 1)) {
     grounds.push_back(colour);
     covered += count;
   }
-  if (grounds.size() > kMostAreas) return std::nullopt;
+  if (grounds.size() > kMostAreaColours) return std::nullopt;
   grounds = broad_among(smooth, grounds);
   if (grounds.size() < 2 || covered < kMostEven * pixels) return std::nullopt;
   Areas areas;

@@ -11,6 +11,7 @@
 
 #include "scoring/maps/colours/added_drawings.h"
 #include "scoring/maps/colours/canvas_corners.h"
+#include "scoring/maps/colours/colour_scale.h"
 #include "scoring/maps/colours/coloured_areas.h"
 #include "scoring/maps/colours/costmap_colours.h"
 #include "scoring/maps/colours/dither.h"
@@ -198,6 +199,12 @@ LabelImage classify_layer(const RgbImage& image, const Layer& layer, const cv::M
 ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
   ClassImage out;
   const bool direct = !notes.meaning.empty();
+  if (!direct && small_enough(original))
+    if (const std::optional<ScaledValues> values = values_of_colour_scale(original)) {
+      out = classify(values->greys, notes);
+      out.recognised += ", values of the colour scale " + values->name;
+      return out;
+    }
   std::optional<RestoredColours> restored = direct ? std::nullopt : restored_league_colours(original);
   const RgbImage& image = restored ? restored->image : original;
   const Blur undone = restored ? restored->blur : Blur{};
