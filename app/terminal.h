@@ -45,8 +45,9 @@ void print_row(const std::string& label, const std::string& value, int width = 3
 /// The row of a map that was not laid on the truth; its label says the note's first words.
 void print_not_aligned(const std::string& note);
 
-/// Every row of the table of figures that is meant for people and known. `score`: the content of score.json.
-void print_figures(const nlohmann::ordered_json& score);
+/// Every row of the table of figures that is meant for people and known. `score`: the content of score.json;
+/// `explained`: with what each means behind it.
+void print_figures(const nlohmann::ordered_json& score, bool explained = false);
 
 /// How many victims were found, where that is known.
 void print_victims(const nlohmann::ordered_json& score);

@@ -1,4 +1,5 @@
 #include <cctype>
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -76,7 +77,7 @@ void print_table(const Verdict& verdict, const nlohmann::ordered_json& json) {
   }
   if (score.aligned && !score.note.empty()) print_row("aligned", score.note);
   print_contest(verdict.score);
-  print_figures(json);
+  print_figures(json, true);
   const scoring::ReportedVictims& reported = verdict.reported;
   if (reported.from != scoring::VictimSource::None)
     print_row("victims reported", std::to_string(reported.victims.size()) + " from " + name_of(reported.from) + ", " +
@@ -155,7 +156,12 @@ int score(ScoreArguments arguments) {
     }
     write_text_file(place_in(arguments.out, "score.json"), json.dump(2) + "\n");
   }
-  return kOk;
+  if (!arguments.fail_under || (result.aligned && result.score >= *arguments.fail_under)) return kOk;
+  char bound[32];
+  std::snprintf(bound, sizeof bound, "%g", *arguments.fail_under);
+  tell(arguments.map + (result.aligned ? ": the score is below " : ": is not aligned, so its score of 0 is below ") +
+       bound + " (--fail-under)");
+  return kBroken;
 }
 
 }  // namespace
@@ -165,6 +171,7 @@ Command score_command() {
           "Examples:\n  rubble score runs/latest/map.tif runs/latest/truth.tif\n"
           "  rubble score team.png truth.tif --resolution 0.05 --out judged\n"
           "  rubble score team.tif truth.tif --html judge.html\n"
+          "  rubble score team.tif truth.tif --fail-under 0.8\n"
           "  rubble score --league maps/ truth.tif --out judged\n"
           "  rubble score runs/latest/estimate.tum runs/latest/truth.tum",
           [](Options& o) -> Action {
@@ -193,6 +200,9 @@ Command score_command() {
             o.flag("--warp", a->warp, "Also undo the map's distortion, and match its features");
             o.text("--out", a->out, "Folder for overlay.png, error.png, sight.png and score.json");
             o.flag("--force", a->force, "Replace the pictures and score.json of a run");
+            o.number("--fail-under", a->fail_under, 0.0, 1.0,
+                     "End with exit code 1 if the score is lower or the map is not aligned; without it such a map, "
+                     "whose score is 0, ends with 0 as well");
             o.flag("--json", a->json, "Print JSON");
             return [a] { return score(*a); };
           }};

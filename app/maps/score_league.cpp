@@ -19,9 +19,10 @@ void check_options(const ScoreArguments& arguments) {
   if (!arguments.truth.empty())
     throw UsageError("--league needs the truth only: rubble score --league DIR TRUTH; see rubble score --help");
   if (!arguments.pose.empty() || !arguments.pois.empty() || !arguments.html.empty() || arguments.json ||
-      arguments.force)
+      arguments.force || arguments.fail_under)
     throw UsageError(
-        "--league goes without --pose, --pois, --html, --force and --json; pages and CSV are written with --out");
+        "--league goes without --pose, --pois, --html, --force, --fail-under and --json; pages and CSV are written "
+        "with --out");
 }
 
 void print_ranking(const scoring::League& league, bool warp) {

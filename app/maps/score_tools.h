@@ -23,6 +23,7 @@ struct ScoreArguments {
   std::string out;
   bool force = false;  ///< the pictures and score.json of a run may be replaced
   bool json = false;
+  std::optional<double> fail_under;  ///< exit code 1 for a lower score, or a map that is not aligned
   std::string pose;     ///< X,Y,DEG[,SCALE]: score there instead of aligning
   std::string start;    ///< X,Y,DEG in the truth of where the robot started
   std::string html;     ///< the evaluation page to write

@@ -31,8 +31,9 @@ scoring::Evidence compared(const Trajectory& estimate, const Trajectory& truth, 
 bool is_trajectory(const std::string& path) { return ends_with(path, ".tum"); }
 
 int score_trajectory(const ScoreArguments& arguments) {
-  if (!arguments.pose.empty() || !arguments.html.empty() || arguments.force)
-    throw UsageError("trajectories are scored without --pose, --html and --force; see rubble score --help");
+  if (!arguments.pose.empty() || !arguments.html.empty() || arguments.force || arguments.fail_under)
+    throw UsageError(
+        "trajectories are scored without --pose, --html, --force and --fail-under; see rubble score --help");
   const Trajectory estimate = read_tum(arguments.map);
   scoring::Evidence evidence;
   if (ends_with(arguments.truth, ".relations")) {

@@ -76,6 +76,17 @@ expect_score "j['align_tried'] == 'walls' and j['align_measure'] == 'agreement' 
 "$rubble" score "$truth" "$truth" >table.txt || fail "table"
 grep -qE '^proposed by +walls' table.txt && grep -qE '^runner-up pose +0\.[0-9]+ of the best .*by walls' table.txt ||
   fail "the table does not name winner and runner-up: $(cat table.txt)"
+grep -qE '^score +1\.000 +1 the truth, 0 ' table.txt || fail "the table does not say what a score of 1 means: $(cat table.txt)"
+
+# Scripts that shall stop where a map is too bad, or not aligned.
+expect_exit 0 "" "$rubble" score "$truth" "$truth" --fail-under 1
+expect_exit 0 "" "$rubble" score white.pgm "$truth" --resolution 0.05
+expect_exit 1 "is not aligned" "$rubble" score white.pgm "$truth" --resolution 0.05 --fail-under 0
+expect_exit 1 "is not aligned" "$rubble" score white.pgm "$truth" --resolution 0.05 --fail-under 0 --json
+expect_exit 1 "the score is below 0.9" "$rubble" score "$truth" "$truth" --pose=0.2,0,0 --fail-under 0.9
+expect_exit 2 "--fail-under" "$rubble" score "$truth" "$truth" --fail-under 2
+expect_exit 2 "--fail-under" "$rubble" score --league . "$truth" --fail-under 0.5
+
 for wrong in magic rooms,magic auto,rooms surf,orb rooms, ,rooms; do
   expect_exit 2 '--align' "$rubble" score "$truth" "$truth" --align "$wrong"
 done
