@@ -196,17 +196,54 @@ std::string note_of_what_is_apart(double share) {
   return text;
 }
 
-/// The score stays that of the size that was given.
-std::string note_of_scale(const MapScore& score, const OccupancyGrid& map, const OccupancyGrid& truth,
-                          const SightLines& sights) {
+/// How many times as large the map would have to be to have a good score: near the pose it has, else where it lies best
+/// at the sizes that its extent tells. Walls that meet to the decimetre are of the right size.
+std::optional<double> scale_of_walls(const MapScore& score, const OccupancyGrid& map, const OccupancyGrid& truth,
+                                     const SightLines& sights, const AlignmentConfig* search) {
   constexpr double kPoor = 0.8;
-  if (score.score_at_best_pose >= kPoor) return {};
-  const std::optional<double> scale = better_scale(map, truth, score.T_truth_map, sights, score.score_at_best_pose);
+  if (score.score_at_best_pose >= kPoor) return std::nullopt;
+  if (const auto near = better_scale(map, truth, score.T_truth_map, sights, score.score_at_best_pose)) return near;
+  if (search == nullptr || score.contest.agreement >= kTightEnough) return std::nullopt;
+  AlignmentConfig by_walls = *search;
+  by_walls.by = AlignBy::Walls;
+  by_walls.start.reset();
+  for (const double size : sizes_by_extent(map, truth)) {
+    const Alignment there = align(at_size(map, size), truth, by_walls);
+    if (there.by == AlignBy::Auto) continue;
+    if (const auto scale = better_scale(map, truth, there.T_truth_map, sights, score.score_at_best_pose, size))
+      return scale;
+  }
+  return std::nullopt;
+}
+
+/// The score stays that of the size that was given. `search`: how to look for other poses; null: not at all.
+std::string note_of_scale(const MapScore& score, const OccupancyGrid& map, const OccupancyGrid& truth,
+                          const SightLines& sights, const AlignmentConfig* search) {
+  const std::optional<double> scale = scale_of_walls(score, map, truth, sights, search);
   if (!scale) return {};
   char text[120];
   std::snprintf(text, sizeof text, "walls fit at %.3g of this size: is the resolution %.3g m?", *scale,
                 *scale * map.resolution());
   return text;
+}
+
+/// Of a map that is not aligned: whether its size is the reason. Walls that do meet, only at too many poses, are of the
+/// right size.
+void look_for_other_scale(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth,
+                          const PoseEvidence& tight, const SightLines& sights, const AlignmentConfig& config) {
+  if (tight_agreement(tight) < kTightEnough) out.scale_hint = agreeing_scale(map, truth, config);
+  if (out.scale_hint > 0.0) {
+    out.note = scale_note(out.scale_hint, map.resolution());
+    return;
+  }
+  add_note(out.note, note_of_coarse_pixels(map, truth));
+  const std::optional<double> scale = scale_of_walls(out, map, truth, sights, &config);
+  if (!scale) return;
+  out.scale_hint = *scale;
+  char text[120];
+  std::snprintf(text, sizeof text, "not aligned: wrong scale? walls fit at %.3g of this size; give --resolution %.3g",
+                *scale, *scale * map.resolution());
+  out.note = text;
 }
 
 /// All numbers at the pose that `out` holds.
@@ -223,7 +260,8 @@ void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth
   constexpr double kWhole = 0.98;  // of a map that lacks nothing to speak of
   if (out.recall < kWhole && out.score < kWhole) add_note(out.note, note_of_coarse_pixels(map, truth));
   out.errors = wall_errors(walls.overlaps, PlanarTransform(out.T_truth_map), config.worst_places);
-  add_note(out.note, note_of_scale(out, map, truth, walls.sights));
+  add_note(out.note,
+           note_of_scale(out, map, truth, walls.sights, out.by == AlignBy::Hand ? nullptr : &config.alignment));
   add_note(out.note, note_of_crossed_floor(out));
   add_note(out.note, note_of_unasked_walls(out));
   add_note(out.note, note_of_what_is_apart(out.detached));
@@ -266,20 +304,10 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
   out.mirrored = alignment.mirrored;
   if (!out.aligned) {
     fill_psi(out, psi_of_strangers(config.colour_absent_cap));
-    std::string of_scale;
-    if (alignment.by != AlignBy::Auto) {
-      const std::unique_ptr<const Walls> walls = prepared.get();
-      fill_sights(out, truth_known, *walls);
-      of_scale = note_of_scale(out, map_known, truth_known, walls->sights);
-    }
-    // Walls that do meet, only at too many poses, are of the right scale.
-    if (alignment.by != AlignBy::Auto && tight_agreement(alignment.tight_evidence) < kTightEnough)
-      out.scale_hint = agreeing_scale(map_known, truth_known, config.alignment);
-    if (out.scale_hint > 0.0)
-      out.note = scale_note(out.scale_hint, map.resolution());
-    else if (alignment.by != AlignBy::Auto)
-      add_note(out.note, note_of_coarse_pixels(map_known, truth_known));
-    if (out.scale_hint == 0.0) add_note(out.note, of_scale);
+    if (alignment.by == AlignBy::Auto) return out;
+    const std::unique_ptr<const Walls> walls = prepared.get();
+    fill_sights(out, truth_known, *walls);
+    look_for_other_scale(out, map_known, truth_known, alignment.tight_evidence, walls->sights, config.alignment);
     return out;
   }
   const std::unique_ptr<const Walls> walls = prepared.get();

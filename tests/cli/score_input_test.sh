@@ -35,7 +35,12 @@ expect_score "not j['aligned'] and j['score'] == 0" wall.pgm "$truth" --resoluti
 expect_score "j['aligned']" truth.png "$truth" --resolution 0.05
 expect_score "not j['aligned'] and j['scale_hint'] == 0.5 and '--resolution 0.05' in j['align_note']" \
   truth.png "$truth" --resolution 0.1
-expect_score "not j['aligned'] and j['score'] == 0" truth.png "$truth" --resolution 0.025
+expect_score "not j['aligned'] and j['scale_hint'] == 2 and '--resolution 0.05' in j['align_note']" \
+  truth.png "$truth" --resolution 0.025
+for wrong in 0.02 0.03 0.04 0.0625 0.08; do
+  expect_score "not j['aligned'] and j['score'] == 0 and abs(j['scale_hint'] * $wrong - 0.05) < 0.0005 and 'give --resolution 0.05' in j['align_note']" \
+    truth.png "$truth" --resolution $wrong
+done
 "$rubble" arena generate --cells 7x6 --seed 77 --out other >/dev/null || fail "no other arena"
 expect_score "not j['aligned'] and j['score'] == 0 and j['align_note']" other/*-truth.tif "$truth"
 

@@ -9,6 +9,7 @@
 #include "scoring/alignment/alignment.h"
 #include "scoring/scorecard.h"
 #include "scoring/walls/resample.h"
+#include "tests/support/long_suite.h"
 #include "tests/support/scoring_grounds.h"
 
 /// Which maps belong together and which do not, on mazes and arenas that took no part in the calibration of trust.
@@ -200,6 +201,35 @@ TEST(Strangers, AScaleThatIsOffByAFewPerCentIsNamed) {
       ASSERT_NE(at, std::string::npos) << score.note;
       EXPECT_NEAR(std::stod(score.note.substr(at + std::string("walls fit at ").size())), 1.0 / wrong, 0.01);
       EXPECT_LT(score.score, 0.8);
+    }
+}
+
+// As people mix it up who take the resolution of another map, or pixels a metre for centimetres a pixel.
+TEST(Strangers, AScaleThatIsFarOffIsNamedWhetherTooSmallOrTooLarge) {
+  std::size_t place = 0;
+  for (const Ground& ground : {Ground{"yellow", 8, 8, 4041}, {"orange", 7, 8, 4042}, {"maze", 7, 7, 4043}})
+    for (const double wrong : {0.4, 0.6, 0.7, 0.8, 1.25, 1.4, 1.7, 2.5}) {
+      if (!is_tried(place++)) continue;
+      SCOPED_TRACE(ground.name() + ", " + std::to_string(wrong) + " times as large");
+      const OccupancyGrid truth = truth_of(ground);
+      const OccupancyGrid map = with_phantoms(with_gaps(padded(truth, 15), 3, ground.seed), 2, ground.seed);
+      const MapScore score = score_map(scaled(moved(map, 1.9, 3.0, 1.0, 0.025), wrong), truth);
+      EXPECT_FALSE(score.aligned);
+      EXPECT_EQ(score.score, 0.0);
+      EXPECT_NEAR(score.scale_hint * wrong, 1.0, 0.01) << score.note;
+      EXPECT_NE(score.note.find("give --resolution "), std::string::npos) << score.note;
+    }
+}
+
+TEST(Strangers, NoOtherScaleIsNamedForAnotherArenaOfAnySize) {
+  std::size_t place = 0;
+  for (const std::uint64_t seed : {4051u, 4052u, 4053u})
+    for (const double size : {0.5, 0.7, 1.0, 1.3, 2.0}) {
+      if (!is_tried(place++)) continue;
+      const OccupancyGrid truth = truth_of({"yellow", 8, 8, seed});
+      const MapScore score = score_map(scaled(truth_of({"yellow", 8, 8, seed + 100}), size), truth);
+      EXPECT_EQ(score.scale_hint, 0.0) << score.note;
+      EXPECT_EQ(score.note.find("walls fit at"), std::string::npos) << score.note;
     }
 }
 
