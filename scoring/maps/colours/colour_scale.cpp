@@ -20,6 +20,7 @@ namespace {
 struct NamedScale {
   const char* name;
   cv::ColormapTypes type;
+  bool is_even = true;  ///< brightness goes one way: what lies between two of its colours lies between their values
 };
 
 /// Scales that begin or end in greys, or are nearly grey, are not among them: too many other pictures have their
@@ -28,8 +29,8 @@ constexpr std::array<NamedScale, 7> kScales{{{"viridis", cv::COLORMAP_VIRIDIS},
                                              {"plasma", cv::COLORMAP_PLASMA},
                                              {"inferno", cv::COLORMAP_INFERNO},
                                              {"magma", cv::COLORMAP_MAGMA},
-                                             {"jet", cv::COLORMAP_JET},
-                                             {"turbo", cv::COLORMAP_TURBO},
+                                             {"jet", cv::COLORMAP_JET, false},
+                                             {"turbo", cv::COLORMAP_TURBO, false},
                                              {"parula", cv::COLORMAP_PARULA}}};
 
 /// Its colours in order.
@@ -90,8 +91,9 @@ std::vector<std::pair<Rgb, std::size_t>> coarse_colours(const RgbImage& image) {
   return out;
 }
 
-/// Whether a picture's colours are this scale's, and many of them.
-bool is_drawn_in(const Scale& scale, const std::vector<std::pair<Rgb, std::size_t>>& colours) {
+/// Whether a picture's colours are this scale's, and many of them. Of scales that are not even, blended and lossy
+/// pictures say nothing.
+bool is_drawn_in(const Scale& scale, bool is_even, const std::vector<std::pair<Rgb, std::size_t>>& colours) {
   constexpr double kNear = 8.0, kFar = 30.0;            // off the scale; where JPEG and blending move colours
   constexpr double kMostNear = 0.8, kNearlyAll = 0.98;  // of the pixels
   constexpr double kMostColoured = 0.8;                 // have a colour and not only a brightness
@@ -111,8 +113,8 @@ bool is_drawn_in(const Scale& scale, const std::vector<std::pair<Rgb, std::size_
     tenths[static_cast<std::size_t>(value.at / kTenth)] += pixels;
   }
   const auto used = std::count_if(tenths.begin(), tenths.end(), [&](double pixels) { return 100.0 * pixels >= all; });
-  return near >= kMostNear * all && about >= kNearlyAll * all && coloured >= kMostColoured * all &&
-         static_cast<std::size_t>(used) >= kLeastTenths;
+  return near >= (is_even ? kMostNear : kNearlyAll) * all && about >= kNearlyAll * all &&
+         coloured >= kMostColoured * all && static_cast<std::size_t>(used) >= kLeastTenths;
 }
 
 }  // namespace
@@ -121,7 +123,7 @@ std::optional<ScaledValues> values_of_colour_scale(const RgbImage& image) {
   const std::vector<std::pair<Rgb, std::size_t>> colours = coarse_colours(image);
   for (const NamedScale& named : kScales) {
     const Scale scale(named.type);
-    if (!is_drawn_in(scale, colours)) continue;
+    if (!is_drawn_in(scale, named.is_even, colours)) continue;
     ScaledValues out{image, named.name};
     std::unordered_map<std::uint32_t, std::uint8_t> known;
     league::each_run(image, [&](const league::Colour&, int first, int y, int length) {

@@ -194,17 +194,10 @@ LabelImage classify_layer(const RgbImage& image, const Layer& layer, const cv::M
   return out;
 }
 
-}  // namespace
-
-ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
+/// `scale`: the colour scale whose values the picture's greys are; empty: it is as it was given.
+ClassImage classify_as(const RgbImage& original, const SampleNotes& notes, const std::string& scale) {
   ClassImage out;
   const bool direct = !notes.meaning.empty();
-  if (!direct && small_enough(original))
-    if (const std::optional<ScaledValues> values = values_of_colour_scale(original)) {
-      out = classify(values->greys, notes);
-      out.recognised += ", values of the colour scale " + values->name;
-      return out;
-    }
   std::optional<RestoredColours> restored = direct ? std::nullopt : restored_league_colours(original);
   const RgbImage& image = restored ? restored->image : original;
   const Blur undone = restored ? restored->blur : Blur{};
@@ -222,6 +215,7 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
                                             : classify_by_grey(image, nothing);
   out.recognised = labels.recognised;
   out.refusal = labels.refusal;
+  if (!scale.empty()) out.recognised += ", values of the colour scale " + scale;
   if (restored) out.recognised += ", " + restored->how;
   if (!direct && !costmap && (undone.sigma == 0.0 || !out.refusal.empty()))
     if (const std::string why = why_colours_are_lost(image, is_league_map(image)); !why.empty()) out.refusal = why;
@@ -233,7 +227,7 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
   if (!direct && small_enough(original) && out.refusal.empty())
     out.recognised +=
         doubts_about(undone.sigma > 0.0 ? image : original, restored && restored->as_drawn ? image : original,
-                     {labels.classes, out.is_league, labels.by_level, costmap.has_value()});
+                     {labels.classes, out.is_league, labels.by_level, costmap.has_value(), !scale.empty()});
   cv::Mat classes = labels.classes;
   classes.setTo(static_cast<int>(Occupancy::Unknown), nothing);
   clear_canvas_corners(classes);
@@ -244,6 +238,15 @@ ClassImage classify(const RgbImage& original, const SampleNotes& notes) {
   }
   if (restored) out.restored = std::move(restored->image);
   return out;
+}
+
+}  // namespace
+
+ClassImage classify(const RgbImage& image, const SampleNotes& notes) {
+  if (notes.meaning.empty() && small_enough(image))
+    if (const std::optional<ScaledValues> values = values_of_colour_scale(image))
+      return classify_as(values->greys, notes, values->name);
+  return classify_as(image, notes, "");
 }
 
 }  // namespace rubble::scoring

@@ -141,7 +141,10 @@ std::string doubts_about(const RgbImage& image, const RgbImage& as_drawn, const 
   std::string out;
   const auto say = [&](const std::string& what) { out += kDoubt + what; };
   const cv::Mat walls = read.classes == static_cast<int>(Occupancy::Occupied);
-  const double slopes = sloping_share(grey_of(image)), of_colours = sloping_share_of_channels(image);
+  // Values of a scale waver within each class: of them only slopes that lead from class to class count.
+  constexpr double kSteep = 6.0;
+  const double slopes = sloping_share(read.by_scale ? cv::Mat(grey_of(image) / kSteep) : grey_of(image)),
+               of_colours = read.by_scale ? 0.0 : sloping_share_of_channels(image);
   constexpr std::size_t kPaletteOfCosts = 512;
   const bool told = read.by_costs && has_few_colours(image, kPaletteOfCosts);
   if (!told && (slopes >= kMostSlopes || of_colours >= kMostOfColours))

@@ -16,6 +16,7 @@ struct Reading {
   bool is_league = false;  ///< by the league's colours
   bool by_level = false;   ///< each of its colours was taken for one class: no line between them was guessed
   bool by_costs = false;   ///< its slopes are costs and were read as such, exactly where JPEG did not change them
+  bool by_scale = false;   ///< values of a colour scale
 };
 
 /// What of a picture does not fit the classes that it was read as, kDoubt before each sentence; empty: it fits. The
