@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "slam/robust/robust_mapper.h"
 #include "tests/support/slam_key_frames.h"
 
 namespace rubble::slam {
