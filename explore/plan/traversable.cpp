@@ -33,7 +33,7 @@ struct Box {
 /// Classifies cells by their counts. Branch-free and on plain arrays, so that compilers use vector code.
 void classify_row(const std::uint16_t* __restrict seen, const std::uint16_t* __restrict hits, int count,
                   float threshold, Occupancy* __restrict cells, std::uint8_t* __restrict obstacle,
-                  std::uint8_t* __restrict seen_over, std::uint8_t* __restrict unsure) {
+                  std::uint8_t* __restrict seen_over, std::uint8_t* __restrict unsure, std::uint8_t* __restrict scans) {
   static_assert(static_cast<int>(Occupancy::Free) == 1 && static_cast<int>(Occupancy::Occupied) == 2);
   for (int i = 0; i < count; ++i) {
     const int known = seen[i] != 0;
@@ -45,6 +45,7 @@ void classify_row(const std::uint16_t* __restrict seen, const std::uint16_t* __r
     seen_over[i] = static_cast<std::uint8_t>(some & ~often);
     unsure[i] = static_cast<std::uint8_t>(hit & often & ~sure);
     cells[i] = static_cast<Occupancy>(known + (hit & often));
+    scans[i] = static_cast<std::uint8_t>(std::min<std::uint16_t>(seen[i], 255));
   }
 }
 
@@ -111,7 +112,7 @@ void for_cells_near(const GridFrame& frame, const std::vector<TPoint2D>& places,
 Traversable traversable(OccupancyGrid known) {
   Traversable floor;
   floor.obstacle = Grid<std::uint8_t>(known.frame());
-  floor.body = floor.seen_over = floor.unsure = floor.solid = Grid<std::uint8_t>(known.frame());
+  floor.body = floor.seen_over = floor.unsure = floor.solid = floor.scans = Grid<std::uint8_t>(known.frame());
   std::transform(known.cells().begin(), known.cells().end(), floor.obstacle.cells().begin(),
                  [](Occupancy o) { return static_cast<std::uint8_t>(o == Occupancy::Occupied); });
   floor.cells = std::move(known);
@@ -131,7 +132,7 @@ Traversable traversable(const CountMap& map, double occupied_threshold, bool low
   Traversable floor;
   floor.cells = OccupancyGrid(frame, Occupancy::Unknown);
   floor.obstacle = Grid<std::uint8_t>(frame);
-  floor.body = floor.seen_over = floor.unsure = floor.solid = Grid<std::uint8_t>(frame);
+  floor.body = floor.seen_over = floor.unsure = floor.solid = floor.scans = Grid<std::uint8_t>(frame);
   const float threshold = static_cast<float>(occupied_threshold);
   const int columns = frame.width - 2;
   std::vector<Cell> weak;
@@ -139,7 +140,8 @@ Traversable traversable(const CountMap& map, double occupied_threshold, bool low
     const int row = y - box.low.y + 1;
     const std::uint16_t* hits = map.occupied_row(y) + box.low.x;
     classify_row(map.seen_row(y) + box.low.x, hits, columns, threshold, floor.cells.row(row) + 1,
-                 floor.obstacle.row(row) + 1, floor.seen_over.row(row) + 1, floor.unsure.row(row) + 1);
+                 floor.obstacle.row(row) + 1, floor.seen_over.row(row) + 1, floor.unsure.row(row) + 1,
+                 floor.scans.row(row) + 1);
     for_each_set(floor.obstacle.row(row), frame.width, [&](int x) {
       if (hits[x - 1] <= kWeakHits) weak.push_back({x, row});
     });

@@ -22,6 +22,7 @@ struct Traversable {
   /// of tilt, things that rolled away, and walls that the map shows twice.
   Grid<std::uint8_t> unsure;
   Grid<std::uint8_t> solid;    ///< 1 where something was met from so near that it is no floor of a slope
+  Grid<std::uint8_t> scans;    ///< so many scans saw the cell, 255 at the most; 0 everywhere: nobody knows
   Grid<std::uint8_t> body;     ///< 1 where no scan has looked, but the robot's body stands or stood: free, no frontier
   Grid<float> clearance;       ///< distance to the nearest obstacle [m], capped; empty until measure_clearance
   std::vector<Cell> doubtful;  ///< made free as what may be the floor of a slope

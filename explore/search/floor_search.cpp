@@ -37,6 +37,10 @@ constexpr double kFullLook = 0.6;    ///< of wall that it shows squarely at best
 constexpr double kScrapCost = 16.0;  ///< as much more way is driven to where there is plenty instead of nothing [m]
 constexpr double kPlenty = 1.0;      ///< as much as this, of wall ... [m]
 constexpr double kNeighbours = 1.2;  ///< ... so near to what a look is for, that included [m]
+constexpr double kSameScans = 0.10;  ///< the scans count that saw most of the floor so near to a place [m]
+constexpr double kKnownCost = 14.0;  ///< as much more way is driven to what no scan saw instead of what is known [m]
+constexpr double kSamePlace = 0.5;   ///< what lies so near to the place being driven to is that place [m]
+constexpr double kWellKnown = 60.0;  ///< scans; a box would have shown to so many
 const std::vector<double> kSuspectDistances = {0.6, 0.75, 0.5, 0.9, 1.1};
 
 /// The floor that decides what a look sees: what it saw, and the cells around, where its rays ended.
@@ -221,6 +225,8 @@ std::vector<Source> FloorSearch::sources(const Traversable& map, Subjects subjec
   }
   const double cell = map.frame().resolution;
   find_scraps(cells_apart(kFaceStride, cell) * cell);
+  // Where other senses search with the cameras, their places would all come first.
+  if (subjects == Subjects::All && others_.empty()) find_known(map);
   std::vector<Source> sources;
   for (View& view : views_) {
     const std::optional<double> start = head_start(floor.cells.centre(view.cell));
@@ -228,7 +234,7 @@ std::vector<Source> FloorSearch::sources(const Traversable& map, Subjects subjec
     // A look that shows little has to be made good by others.
     const double lost = view.record == Record::Squarely ? 1.0 - std::min(1.0, shown(floor, view) / kFullLook) : 0.0;
     view.solid = view.record == Record::Squarely && !view.hole ? kSolidCost : 0.0;
-    view.cost = *start + kLookCost * lost + view.scrap + view.solid;
+    view.cost = *start + kLookCost * lost + view.scrap + view.solid + view.known;
     sources.push_back({view.cell, view.cost});
   }
   return sources;
@@ -256,6 +262,29 @@ void FloorSearch::find_scraps(double apart) {
       scrap = kScrapCost * (1.0 - std::min(1.0, apart * static_cast<double>(near) / kPlenty));
     }
     view.scrap = scrap;
+  }
+}
+
+/// Tells of each view how well the scanner knows the place. What few scans saw was seen from afar, or from a ramp,
+/// whose plane passes over boxes: there one may stand that the map does not show. Many scans would have shown it.
+void FloorSearch::find_known(const Traversable& floor) {
+  const int around = cells_apart(kSameScans, floor.frame().resolution);
+  const View* before = nullptr;  // the views of each subject follow one another
+  for (View& view : views_) {
+    if (view.record != Record::Anyhow) continue;
+    if (before != nullptr && distance(before->subject, view.subject) == 0.0) {
+      view.known = before->known;
+      continue;
+    }
+    const Cell at = floor.cells.cell(view.subject);
+    int scans = 0;
+    for (int y = std::max(0, at.y - around); y <= std::min(floor.scans.height() - 1, at.y + around); ++y)
+      for (int x = std::max(0, at.x - around); x <= std::min(floor.scans.width() - 1, at.x + around); ++x)
+        if (floor.cells[{x, y}] == Occupancy::Free) scans = std::max<int>(scans, floor.scans[{x, y}]);
+    view.known = kKnownCost * std::min(1.0, scans / kWellKnown);
+    // On the way there the scanner sees more and more of a place: turning back then, the robot would get nowhere.
+    if (distance(view.subject, subject_.at) < kSamePlace) view.known = std::min(view.known, subject_.known);
+    before = &view;
   }
 }
 
@@ -371,8 +400,8 @@ double FloorSearch::choose_subject(Cell viewpoint) {
   for (const View& view : views_)
     if (view.cell == viewpoint && (best == nullptr || view.cost <= best->cost)) best = &view;
   if (best == nullptr) return 0.0;
-  subject_ = {best->subject, best->faces, best->record};
-  return best->scrap + best->solid;
+  subject_ = {best->subject, best->faces, best->record, best->known};
+  return best->scrap + best->solid + best->known;
 }
 
 /// How far around a place that could not be looked at is given up with it [m].
@@ -400,7 +429,7 @@ std::optional<double> FloorSearch::turn_to_subject(const Traversable& floor, con
     const double to = wrap_angle(bearing - T_map_base.phi);
     if (std::abs(to) >= std::abs(turn)) continue;
     turn = to;
-    subject_ = {view.subject, view.faces, view.record};
+    subject_ = {view.subject, view.faces, view.record, view.known};
   }
   turned_to_ = subject_;
   return std::abs(turn) > facing(subject_.record) ? std::optional<double>(turn) : std::nullopt;

@@ -77,8 +77,8 @@ class FloorSearch {
   /// Whether there were faces to be looked at squarely when that was asked last, in reach or not.
   bool faces_left() const { return squarely() && faces_left_; }
   /// Makes what is cheapest to be seen from `viewpoint` the place to face: that source which decided what the way there
-  /// costs. Returns how much of its head start is no way, look or turn but says that its wall has no hole and that
-  /// little else is left to be looked at around it [m].
+  /// costs. Returns how much of its head start is no way, look or turn but says that its wall has no hole, that little
+  /// else is left to be looked at around it, and that many scans saw the place [m].
   double choose_subject(Cell viewpoint);
   /// Of all that can be seen from here makes that the place to face which needs the smallest turn; returns the turn
   /// [rad]; nothing when it already lies ahead.
@@ -111,6 +111,7 @@ class FloorSearch {
     bool hole = false;   ///< the scanner saw one in the board that it faces
     double scrap = 0.0;  ///< what it costs more for having little to be looked at around it [m]
     double solid = 0.0;  ///< and for having no hole [m]
+    double known = 0.0;  ///< and for lying where many scans would have shown a box [m]
     double cost = std::numeric_limits<double>::infinity();  ///< head start of its source, if it is one [m]
   };
 
@@ -119,6 +120,7 @@ class FloorSearch {
     mrpt::math::TPoint2D at;  ///< [m, map frame]
     Faces faces = 0;
     Record record = Record::Anyhow;
+    double known = std::numeric_limits<double>::infinity();  ///< as the view that it was chosen from [m]
   };
 
   bool look_around(const Traversable& floor, const mrpt::math::TPose2D& T_map_base);
@@ -130,6 +132,7 @@ class FloorSearch {
   double shown(const Traversable& floor, const View& view) const;
   void find_holes(const Traversable& floor);
   void find_scraps(double apart);
+  void find_known(const Traversable& floor);
   static bool serves(const Subject& view, const mrpt::math::TPose2D& T_map_base);
   bool try_again(const Anchor& here);
   void add_suspects(const Traversable& floor);

@@ -133,6 +133,21 @@ TEST(Traversable, AWallThatAGoodPartOfTheScansPassedIsUnsure) {
   EXPECT_EQ(after(4, 16), std::pair(Occupancy::Free, false)) << "no wall";
 }
 
+TEST(Traversable, TellsHowManyScansSawACell) {
+  for (const int scans : {1, 7, 60, 255, 256, 300}) {
+    CountMap map(160, 160, 0.05);
+    for (int i = 0; i < scans; ++i) stamp(map, {0.02, 0.02}, circle({0.02, 0.02}, 1.0));
+    for (int i = 0; i < 5; ++i) stamp(map, {0.52, 0.02}, circle({0.52, 0.02}, 1.0));
+    const Traversable floor = traversable(map, 0.5);
+    for (int y = 0; y < floor.cells.height(); ++y)
+      for (int x = 0; x < floor.cells.width(); ++x) {
+        const Cell c = map.frame().cell(floor.cells.centre({x, y}));
+        ASSERT_EQ((floor.scans[{x, y}]), std::min<int>(map.seen_row(c.y)[c.x], 255));
+      }
+    EXPECT_EQ(floor.scans[floor.cells.cell({0.27, 0.02})], std::min(scans + 5, 255)) << "both kinds of scan";
+  }
+}
+
 /// From the foot of a slope scans meet its floor, here and there as the robot rocks; from upon it they do not.
 TEST(Traversable, AWideBandThatMostScansPassOverIsSlopeAndNoBoard) {
   for (const int rows : {1, 2, 5}) {
