@@ -159,8 +159,8 @@ int score(ScoreArguments arguments) {
   if (!arguments.fail_under || (result.aligned && result.score >= *arguments.fail_under)) return kOk;
   char bound[32];
   std::snprintf(bound, sizeof bound, "%g", *arguments.fail_under);
-  tell(arguments.map + (result.aligned ? ": the score is below " : ": is not aligned, so its score of 0 is below ") +
-       bound + " (--fail-under)");
+  tell(arguments.map + (result.aligned ? std::string(": the score is below ") + bound + " (--fail-under)"
+                                       : ": is not aligned (--fail-under)"));
   return kBroken;
 }
 

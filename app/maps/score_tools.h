@@ -24,13 +24,13 @@ struct ScoreArguments {
   bool force = false;  ///< the pictures and score.json of a run may be replaced
   bool json = false;
   std::optional<double> fail_under;  ///< exit code 1 for a lower score, or a map that is not aligned
-  std::string pose;     ///< X,Y,DEG[,SCALE]: score there instead of aligning
-  std::string start;    ///< X,Y,DEG in the truth of where the robot started
-  std::string html;     ///< the evaluation page to write
-  std::string league;   ///< folder of maps to rank; `map` is the truth then
-  std::string judge;    ///< CSV of the judge's points
-  std::string pois;     ///< list of the victims that the map reports; empty: those drawn on it
-  std::string victims;  ///< list of the true victims
+  std::string pose;                  ///< X,Y,DEG[,SCALE]: score there instead of aligning
+  std::string start;                 ///< X,Y,DEG in the truth of where the robot started
+  std::string html;                  ///< the evaluation page to write
+  std::string league;                ///< folder of maps to rank; `map` is the truth then
+  std::string judge;                 ///< CSV of the judge's points
+  std::string pois;                  ///< list of the victims that the map reports; empty: those drawn on it
+  std::string victims;               ///< list of the true victims
 };
 
 // The other kinds of scoring that the command leads to, each in the file of its name.

@@ -39,7 +39,7 @@ constexpr double kPlenty = 1.0;      ///< as much as this, of wall ... [m]
 constexpr double kNeighbours = 1.2;  ///< ... so near to what a look is for, that included [m]
 constexpr double kSameScans = 0.10;  ///< the scans count that saw most of the floor so near to a place [m]
 constexpr double kKnownCost = 14.0;  ///< as much more way is driven to what no scan saw instead of what is known [m]
-constexpr double kSamePlace = 0.5;   ///< what lies so near to the place being driven to is that place [m]
+constexpr double kSamePlace = 0.5;   ///< what lies so near to the place being driven to goes with it [m]
 constexpr double kWellKnown = 60.0;  ///< scans; a box would have shown to so many
 const std::vector<double> kSuspectDistances = {0.6, 0.75, 0.5, 0.9, 1.1};
 
@@ -282,7 +282,8 @@ void FloorSearch::find_known(const Traversable& floor) {
       for (int x = std::max(0, at.x - around); x <= std::min(floor.scans.width() - 1, at.x + around); ++x)
         if (floor.cells[{x, y}] == Occupancy::Free) scans = std::max<int>(scans, floor.scans[{x, y}]);
     view.known = kKnownCost * std::min(1.0, scans / kWellKnown);
-    // On the way there the scanner sees more and more of a place: turning back then, the robot would get nowhere.
+    // On the way there the scanner sees more and more of a place: turning back then, the robot would get nowhere. What
+    // lies beside the last one goes with it as well: the robot is there.
     if (distance(view.subject, subject_.at) < kSamePlace) view.known = std::min(view.known, subject_.known);
     before = &view;
   }

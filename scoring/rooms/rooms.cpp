@@ -161,7 +161,7 @@ class TruthsDivision {
   }
 
  private:
-  static constexpr double kSameWall = 0.3;  // walls so far apart may be one, drawn a little off [m]
+  static constexpr double kSameWall = 0.25;  // walls so far apart may be one, drawn a little off [m]
 
   std::uint16_t room_at(const mrpt::math::TPoint2D& p) const {
     const Cell c = truth_.labels.cell(p);
@@ -169,7 +169,7 @@ class TruthsDivision {
   }
   bool room_ends_near(const mrpt::math::TPoint2D& p, std::uint16_t room) const {
     const double step = truth_.labels.resolution();
-    const int reach = static_cast<int>(kSameWall / step);
+    const int reach = static_cast<int>(std::lround(kSameWall / step));
     for (int y = -reach; y <= reach; ++y)
       for (int x = -reach; x <= reach; ++x)
         if (x * x + y * y <= reach * reach && room_at({p.x + x * step, p.y + y * step}) != room) return true;
@@ -177,7 +177,7 @@ class TruthsDivision {
   }
   std::optional<cv::Point> wall_near(const mrpt::math::TPoint2D& p_map) const {
     const Cell at = frame_.cell(p_map);
-    const int reach = static_cast<int>(kSameWall / frame_.resolution);
+    const int reach = static_cast<int>(std::lround(kSameWall / frame_.resolution));
     int least = reach * reach + 1;
     std::optional<cv::Point> out;
     for (int y = at.y - reach; y <= at.y + reach; ++y)

@@ -193,8 +193,9 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
     const TPoint2D crept = creep_.expected(*tilt, wrap_angle(motion.T_last_now.phi));
     motion.T_last_now.x += crept.x;
     motion.T_last_now.y += crept.y;
-    motion.crept = length(crept);
+    motion.crept = crept;
   }
+  if (config_.tracker.vain_error == 0.0) motion.in_vain = 0.0;
   motion.ramps = tilt.has_value();
   motion.level = !tilt || std::max(std::abs(tilt->pitch), std::abs(tilt->roll)) < kLevel;
   ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr, tilt ? &*tilt : nullptr);

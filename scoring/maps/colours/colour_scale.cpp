@@ -100,21 +100,24 @@ bool is_drawn_in(const Scale& scale, bool is_even, const std::vector<std::pair<R
   constexpr int kColoured = 24;                         // difference of the channels
   constexpr int kTenth = 26;                            // of the scale
   constexpr std::size_t kLeastTenths = 4;               // of which a hundredth of the pixels is
+  constexpr int kLeastColours = 10;                     // with a thousandth each; areas in flat colours have fewer
   double all = 0.0, near = 0.0, about = 0.0, coloured = 0.0;
+  for (const auto& [colour, count] : colours) all += static_cast<double>(count);
+  int many = 0;
   std::array<double, 10> tenths{};
   for (const auto& [colour, count] : colours) {
     const auto pixels = static_cast<double>(count);
     const Scale::Value value = scale.value_of(colour);
     const auto [low, high] = std::minmax({colour[0], colour[1], colour[2]});
-    all += pixels;
+    many += value.off <= kNear && 1000.0 * pixels >= all ? 1 : 0;
     near += value.off <= kNear ? pixels : 0.0;
     about += value.off <= kFar ? pixels : 0.0;
     coloured += high - low >= kColoured ? pixels : 0.0;
     tenths[static_cast<std::size_t>(value.at / kTenth)] += pixels;
   }
   const auto used = std::count_if(tenths.begin(), tenths.end(), [&](double pixels) { return 100.0 * pixels >= all; });
-  return near >= (is_even ? kMostNear : kNearlyAll) * all && about >= kNearlyAll * all &&
-         coloured >= kMostColoured * all && static_cast<std::size_t>(used) >= kLeastTenths;
+  return all > 0.0 && many >= kLeastColours && near >= (is_even ? kMostNear : kNearlyAll) * all &&
+         about >= kNearlyAll * all && coloured >= kMostColoured * all && static_cast<std::size_t>(used) >= kLeastTenths;
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ struct ScaledValues {
   std::string name;  ///< of the scale
 };
 
-/// Where nearly all colours of a picture are those of one of the scales that plotting programs have (viridis, jet, ...):
-/// its values, from 0 at the scale's beginning to 255 at its end.
+/// Where nearly all colours of a picture are those of one of the scales that plotting programs have (viridis, jet,
+/// ...): its values, from 0 at the scale's beginning to 255 at its end.
 std::optional<ScaledValues> values_of_colour_scale(const RgbImage& image);
 
 }  // namespace rubble::scoring

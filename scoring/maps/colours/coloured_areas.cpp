@@ -16,12 +16,12 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr int kEvenSteps = 10;           // between pixels of an even area in a channel, with JPEG's ripples
-constexpr int kBin = 16;                 // width of a bin of colours: finer than two grounds that anybody tells apart
-constexpr int kOneColour = 24;           // a channel of pixels of one area: a bin and a half
-constexpr float kSameArea = 28.0F;       // the same, noise with it
-constexpr double kLeastArea = 0.004;     // of the picture
-constexpr std::size_t kMostAreaColours = 24;   // colours
+constexpr int kEvenSteps = 10;        // between pixels of an even area in a channel, with JPEG's ripples
+constexpr int kBin = 16;              // width of a bin of colours: finer than two grounds that anybody tells apart
+constexpr int kOneColour = 24;        // a channel of pixels of one area: a bin and a half
+constexpr float kSameArea = 28.0F;    // the same, noise with it
+constexpr double kLeastArea = 0.004;  // of the picture
+constexpr std::size_t kMostAreaColours = 24;
 constexpr double kLeastColoured = 0.12;  // of the picture: less is drawn on a map of greys
 constexpr double kMostEven = 0.5;        // of the picture, at the least, are even areas
 constexpr int kBlends = 3;               // pixels that blend two grounds: edges drawn twice as large have two or three

@@ -85,7 +85,7 @@ Eigen::Matrix3d LocalTracker::prior_information(const ExpectedMotion& motion) co
   const double path = length(motion.T_last_now.x, motion.T_last_now.y);
   const double turn = std::abs(wrap_angle(motion.T_last_now.phi));
   const double distance = config_.least_distance + config_.distance_error * path + 0.02 * turn +
-                          config_.vain_error * motion.in_vain * path + config_.creep_error * motion.crept +
+                          config_.vain_error * motion.in_vain * path + config_.creep_error * length(motion.crept) +
                           motion.doubt * (0.02 + config_.most_speed * motion.time);
   const double angle = config_.least_turn + config_.turn_error * turn + config_.turn_error_per_m * path +
                        motion.doubt * (0.02 + config_.most_turn_rate * motion.time);

@@ -18,7 +18,7 @@ struct TrackerConfig {
   double turn_error = 0.20;        ///< share of the turn
   double least_turn = 0.02;        ///< [rad]
   double turn_error_per_m = 0.10;  ///< [rad/m]
-  double vain_error = 1.0;         ///< share of the way that wheels are thought to have rolled in vain
+  double vain_error = 1.0;         ///< share of the way that wheels rolled in vain; 0: they are always believed
   double wheel_friction = 0.8;     ///< of a skid-steered robot, which slides down a slope as it turns; 0: does not
   double creep_error = 0.5;        ///< share of what it is expected to slide
   double large_step = 0.35;        ///< longer steps between scans are searched first [m]
@@ -37,7 +37,7 @@ struct ExpectedMotion {
   mrpt::math::TPose2D T_last_now;  ///< as odometry says, and down the slope that the robot turns on
   /// As the last scans' motion would go on; nothing when they are too long ago to say.
   std::optional<mrpt::math::TPose2D> carried;
-  double crept = 0.0;    ///< how much of it that is [m]
+  mrpt::math::TPoint2D crept{0.0, 0.0};  ///< how much of it that is [m]
   double in_vain = 0.0;  ///< share of their way that the wheels roll in vain, as of the turns of the last moments
   double time = 0.0;     ///< since the last scan [s]
   double doubt = 0.0;    ///< of the odometry, 0: as good as wheels are, 1: it says nothing
@@ -46,9 +46,11 @@ struct ExpectedMotion {
   bool level = true;     ///< the scan was taken level
   bool again = false;    ///< the same scan once more, straightened by a better motion
 
-  /// What is believed of `T_last_now`: wheels that turn the robot in vain roll in vain as well.
+  /// What is believed of `T_last_now`: wheels that turn the robot in vain roll in vain as well. Down the slope it
+  /// slides all the same.
   mrpt::math::TPose2D believed() const {
-    return {(1.0 - in_vain) * T_last_now.x, (1.0 - in_vain) * T_last_now.y, T_last_now.phi};
+    return {T_last_now.x - in_vain * (T_last_now.x - crept.x), T_last_now.y - in_vain * (T_last_now.y - crept.y),
+            T_last_now.phi};
   }
 };
 

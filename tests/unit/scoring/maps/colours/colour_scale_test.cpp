@@ -55,6 +55,15 @@ TEST(ColourScale, ItsValuesComeBack) {
   }
 }
 
+/// Blue, cyan, yellow and red lie on jet's scale, but areas in four flat colours are no values of it.
+TEST(ColourScale, FlatColoursAreNoValues) {
+  const cv::Vec3b flat[] = {{255, 0, 0}, {255, 255, 0}, {0, 255, 255}, {0, 0, 255}};
+  cv::Mat areas(64, 64, CV_8UC3);
+  for (int y = 0; y < areas.rows; ++y)
+    for (int x = 0; x < areas.cols; ++x) areas.at<cv::Vec3b>(y, x) = flat[x / 16];
+  EXPECT_FALSE(values_of_colour_scale(image_of(areas)));
+}
+
 TEST(ColourScale, AMapOfProbabilitiesIsReadAsInGreys) {
   const OccupancyGrid map = padded(truth_of({"yellow", 5, 5, 71}), 12);
   for (const cv::ColormapTypes type : kDrawn)
