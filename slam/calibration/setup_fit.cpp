@@ -17,8 +17,9 @@ constexpr int kParameters = 6;
 constexpr int kMostSteps = 30;
 constexpr double kMedianOfThree = 2.366;  ///< median of chi^2 with three degrees of freedom
 constexpr double kCauchy = 3.0;           ///< at so many sigma a scan counts half
-/// So far the laser's place is off when wheels slip sideways alike in every turn, which the scans cannot tell [m].
-constexpr double kSideSlip = 2e-4;
+/// So far the laser's place is off when wheels slip sideways alike in every turn, which the scans cannot tell [m]: in
+/// the mean of 20 drives of an exploring robot 0.44 mm to the left.
+constexpr double kSideSlip = 4e-4;
 using Parameters = Eigen::Matrix<double, kParameters, 1>;
 using Square = Eigen::Matrix<double, kParameters, kParameters>;
 using Across = Eigen::Matrix<double, 3, kParameters>;
