@@ -62,8 +62,7 @@ double agreeing_scale(const OccupancyGrid& map, const OccupancyGrid& truth, cons
 
 std::string scale_note(double scale, double resolution) {
   char text[160];
-  std::snprintf(text, sizeof text,
-                "not aligned: wrong scale? The maps agree with the map at %g times its size; give --resolution %g",
+  std::snprintf(text, sizeof text, "not aligned: wrong scale? walls fit at %.3g of this size; give --resolution %.3g",
                 scale, scale * resolution);
   return text;
 }
@@ -232,18 +231,11 @@ std::string note_of_scale(const MapScore& score, const OccupancyGrid& map, const
 void look_for_other_scale(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth,
                           const PoseEvidence& tight, const SightLines& sights, const AlignmentConfig& config) {
   if (tight_agreement(tight) < kTightEnough) out.scale_hint = agreeing_scale(map, truth, config);
-  if (out.scale_hint > 0.0) {
+  if (out.scale_hint == 0.0) out.scale_hint = scale_of_walls(out, map, truth, sights, &config).value_or(0.0);
+  if (out.scale_hint > 0.0)
     out.note = scale_note(out.scale_hint, map.resolution());
-    return;
-  }
-  add_note(out.note, note_of_coarse_pixels(map, truth));
-  const std::optional<double> scale = scale_of_walls(out, map, truth, sights, &config);
-  if (!scale) return;
-  out.scale_hint = *scale;
-  char text[120];
-  std::snprintf(text, sizeof text, "not aligned: wrong scale? walls fit at %.3g of this size; give --resolution %.3g",
-                *scale, *scale * map.resolution());
-  out.note = text;
+  else
+    add_note(out.note, note_of_coarse_pixels(map, truth));
 }
 
 /// All numbers at the pose that `out` holds.

@@ -43,11 +43,11 @@ scoring::Rooms checked(scoring::Rooms rooms, const std::string& path) {
   return rooms;
 }
 
-Floor floor_of(const std::string& path, const std::optional<double>& resolution, bool by_sight, double scale = 1.0) {
+/// Without its rooms yet.
+Floor plan_of(const std::string& path, const std::optional<double>& resolution, double scale = 1.0) {
   Floor out;
   out.map = scoring::load_map(map_file(path), {resolution});
   if (scale != 1.0) out.map.grid = scoring::scaled_frame(out.map.grid, scale);
-  out.rooms = checked(scoring::rooms_of_map(out.map.grid, by_sight), path);
   return out;
 }
 
@@ -143,16 +143,17 @@ int rooms(const RoomsArguments& a) {
   const std::optional<GivenPose> pose = parse_pose(a.pose);
   if (pose && a.truth.empty()) throw UsageError("--pose goes with a truth; see rubble rooms --help");
   const bool by_sight = a.method == "visibility";
-  Floor map = floor_of(a.map, a.map_resolution, by_sight, pose ? pose->scale : 1.0);
+  Floor map = plan_of(a.map, a.map_resolution, pose ? pose->scale : 1.0);
   std::optional<Floor> truth;
   scoring::RoomVerdict found;
   if (!a.truth.empty()) {
-    truth = floor_of(a.truth, a.truth_resolution, by_sight);
+    truth = plan_of(a.truth, a.truth_resolution);
+    truth->rooms = checked(scoring::rooms_of_map(truth->map.grid, by_sight), a.truth);
     found = scoring::judge_rooms(
         map.map.grid, truth->map.grid, truth->rooms, by_sight,
         pose ? std::optional<mrpt::math::TPose2D>(pose->T_truth_map) : std::optional<mrpt::math::TPose2D>());
-    map.rooms = checked(found.of_map, a.map);
   }
+  map.rooms = checked(truth ? found.of_map : scoring::rooms_of_map(map.map.grid, by_sight), a.map);
   if (!a.out.empty()) {
     make_folder(a.out);
     write_floor(a.out, "rooms", map);

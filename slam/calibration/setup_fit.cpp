@@ -18,7 +18,7 @@ constexpr int kMostSteps = 30;
 constexpr double kMedianOfThree = 2.366;  ///< median of chi^2 with three degrees of freedom
 constexpr double kCauchy = 3.0;           ///< at so many sigma a scan counts half
 /// So far the laser's place is off when wheels slip sideways alike in every turn, which the scans cannot tell [m]: in
-/// the mean of 20 drives of an exploring robot 0.44 mm to the left.
+/// the means of twice 20 drives of an exploring robot 0.44 and 0.24 mm to the left.
 constexpr double kSideSlip = 4e-4;
 using Parameters = Eigen::Matrix<double, kParameters, 1>;
 using Square = Eigen::Matrix<double, kParameters, kParameters>;
