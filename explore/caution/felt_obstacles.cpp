@@ -180,6 +180,7 @@ bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, cons
     thing.times = before.times + 1;
     thing.had_its_chance = before.had_its_chance;
     thing.let_go = before.let_go;
+    thing.held = before.held;
     thing.shut = thing.shut || before.shut;
     thing.stubs = thing.stubs || before.stubs || thing.times > 1;
     before = thing;
@@ -191,12 +192,26 @@ bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, cons
 
 std::optional<Trap> FeltObstacles::trap(const TPose2D& T_map_base) {
   for (Thing& thing : things_) {
-    if (!thing.is_pallet || !thing.let_go || !holds(thing, position(T_map_base), 0.0)) continue;
+    if (!thing.is_pallet || !(thing.let_go || thing.held) || !holds(thing, position(T_map_base), 0.0)) continue;
     thing.inside = thing.shut = thing.stubs = true;
     thing.until = kForGood;
     return Trap{thing.anchor, thing.T_base_pallet, config_.pallet};
   }
   return std::nullopt;
+}
+
+void FeltObstacles::not_got_free(const Anchor& anchor, const PalletGrid& grid) {
+  const TPoint2D middle = grid.middle(grid.pallet(position(anchor.T_map_base)));
+  auto thing = std::find_if(things_.begin(), things_.end(), [&](const Thing& t) { return is_pallet_at(t, middle); });
+  if (thing == things_.end()) {
+    Thing pallet;
+    pallet.anchor = anchor;
+    pallet.is_pallet = true;
+    pallet.until = kForGood;
+    pallet.T_base_pallet = TPose2D{middle.x, middle.y, grid.angle} - anchor.T_map_base;
+    thing = things_.insert(things_.end(), pallet);
+  }
+  thing->inside = thing->stubs = thing->held = true;
 }
 
 void FeltObstacles::passed(const TPose2D& T_map_base, const robot::RobotModel& model) {

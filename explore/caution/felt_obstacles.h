@@ -40,9 +40,12 @@ class FeltObstacles {
   bool feel(const Anchor& anchor, bool behind, const robot::RobotModel& model,
             const std::optional<PalletGrid>& grid = std::nullopt, const std::vector<mrpt::math::TPoint2D>& trail = {},
             const OccupancyGrid* known = nullptr, bool sure = false);
-  /// Something holds the robot here. Where that is on a pallet that was taken for an obstacle and then let go of, it is
-  /// one: it is left alone once the robot has left it. Returns that pallet.
+  /// Something holds the robot here. Where that is on a pallet that was taken for an obstacle and then let go of, or
+  /// that it did not get free of (`not_got_free`), it is one: it is left alone once the robot has left it. Returns that
+  /// pallet.
   std::optional<Trap> trap(const mrpt::math::TPose2D& T_map_base);
+  /// The robot was held here and did not get away: the pallet below its middle holds it, whatever was met first.
+  void not_got_free(const Anchor& anchor, const PalletGrid& grid);
   /// The robot stands here in good order: what was felt below the middle of its body is not there, or can be passed; a
   /// pallet it stands on can be driven on.
   void passed(const mrpt::math::TPose2D& T_map_base, const robot::RobotModel& model);
@@ -81,6 +84,7 @@ class FeltObstacles {
     bool stubs = false;                 ///< else, whether the middles of its sides count
     bool inside = false;                ///< the robot's middle is on it
     bool let_go = false;                ///< it was an obstacle, and pardoned or forgotten
+    bool held = false;                  ///< the robot did not get free of it
     bool shut = false;                  ///< it held the robot after that, or shows steps: it is left alone once left
     bool had_its_chance = false;        ///< it was forgotten once, to be tried again
     mrpt::math::TPose2D T_base_pallet;  ///< of the pallet's middle

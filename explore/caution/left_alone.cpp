@@ -28,9 +28,16 @@ void LeftAlone::bar_for_good(const mrpt::math::TPoint2D& target, const Anchor& a
 
 bool LeftAlone::feel(const Anchor& anchor, bool behind, const robot::RobotModel& model, const OccupancyGrid& known,
                      const Trail& trail, bool sure) {
-  std::optional<PalletGrid> grid;
-  if (config_.pallet > 0.0) grid = find_pallets(known, config_.pallet, position(anchor.T_map_base));
-  return felt_.feel(anchor, behind, model, grid, trail.points(), &known, sure);
+  return felt_.feel(anchor, behind, model, pallets(anchor, known), trail.points(), &known, sure);
+}
+
+std::optional<PalletGrid> LeftAlone::pallets(const Anchor& anchor, const OccupancyGrid& known) const {
+  if (config_.pallet <= 0.0) return std::nullopt;
+  return find_pallets(known, config_.pallet, position(anchor.T_map_base));
+}
+
+void LeftAlone::not_got_free(const Anchor& anchor, const OccupancyGrid& known) {
+  if (const auto grid = pallets(anchor, known)) felt_.not_got_free(anchor, *grid);
 }
 
 bool LeftAlone::pardon(Stamp now) {

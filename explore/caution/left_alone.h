@@ -12,6 +12,7 @@
 #include "explore/caution/attempts.h"
 #include "explore/caution/blacklist.h"
 #include "explore/caution/felt_obstacles.h"
+#include "explore/caution/pallet_grid.h"
 #include "explore/caution/trail.h"
 #include "robot/model.h"
 #include "slam/mapper.h"
@@ -47,8 +48,11 @@ class LeftAlone {
   /// map, in which pallets may show; `sure`: something struck it. Says whether a whole pallet is left alone for it.
   bool feel(const Anchor& anchor, bool behind, const robot::RobotModel& model, const OccupancyGrid& known,
             const Trail& trail, bool sure = false);
-  /// Something holds the robot here: the pallet that it has to get out of, if it is on one that was let go of.
+  /// Something holds the robot here: the pallet that it has to get out of, if it is on one that was let go of or that
+  /// it did not get free of.
   std::optional<Trap> trap(const mrpt::math::TPose2D& T_map_base) { return felt_.trap(T_map_base); }
+  /// It tried in vain to get away.
+  void not_got_free(const Anchor& anchor, const OccupancyGrid& known);
   /// The robot stands here in good order.
   void passed(const mrpt::math::TPose2D& T_map_base, const robot::RobotModel& model) {
     felt_.passed(T_map_base, model);
@@ -75,6 +79,8 @@ class LeftAlone {
   bool has_chances() const { return felt_.has_chances(); }
 
  private:
+  std::optional<PalletGrid> pallets(const Anchor& anchor, const OccupancyGrid& known) const;
+
   FeltConfig config_;
   Blacklist blacklist_;
   Attempts attempts_;

@@ -332,7 +332,10 @@ Drive PaperExplorer::back_up() {
   brakes_ = recovery_.met();
   if (result == Recovery::Result::UnderWay) return recovery_.drive();
   stage_ = Stage::OnTheWay;
-  if (result != Recovery::Result::Free) agenda_.note(now_, "could not get free");
+  if (result != Recovery::Result::Free) {
+    agenda_.note(now_, "could not get free");
+    if (recovery_.caught()) left_alone_.not_got_free({now_, pose_}, floor_.cells);
+  }
   if (result == Recovery::Result::Stuck) {
     obey(agenda_.finish(MissionEnd::Stuck, "stuck", now_));
     return {};

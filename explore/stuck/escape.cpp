@@ -64,6 +64,8 @@ void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures, 
   }
   held_towards_ = T_map_base.phi + (met == Met::Backwards ? kPi : 0.0);
   straight_in_vain_ = false;
+  scrapes_ = failures > 0;
+  roamed_ = 0.0;
   at_ = 0;
   begun_ = T_map_base;
   start_move(T_map_base, now);
@@ -93,7 +95,9 @@ bool Escape::meets_wall(const TPose2D& T_map_base, const Around& around) const {
   const Move move = moves_[at_];
   if (move == Move::Back || move == Move::StraightBack || move == Move::Ahead)
     return !around.room(T_map_base + TPose2D{move == Move::Ahead ? kFeeler : -kFeeler, 0.0, 0.0});
-  if (move != Move::Left && move != Move::Right) return false;
+  // Flush with a wall every turn does, and yet one leads off it: its corners scrape along, and the wall gives way to
+  // nobody, so the body does.
+  if (scrapes_ || (move != Move::Left && move != Move::Right)) return false;
   const double soon = turn_speed_ * kCornerTime * (move == Move::Left ? 1.0 : -1.0);
   const double then = around.gap(T_map_base + TPose2D{0.0, 0.0, soon});
   return then < kCornerGap && then < around.gap(T_map_base);
@@ -131,6 +135,7 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
                             const std::optional<robot::Drive>& wheels, bool struck, double dt, Stamp now,
                             const std::vector<TPoint2D>& trail, const WayBack& way_back, const Around& around) {
   met_ = false;
+  roamed_ = std::max(roamed_, distance(position(begun_), position(T_map_base)));
   if (free(position(T_map_base))) {
     drive_ = {};
     return Result::Free;

@@ -51,6 +51,8 @@ class Escape {
   const robot::Drive& drive() const { return drive_; }
   /// Something was met in this tick: the base shall not push on.
   bool met() const { return met_; }
+  /// How far from where it was held the robot has been since [m].
+  double roamed() const { return roamed_; }
 
  private:
   enum class Move { Back, StraightBack, Ahead, Left, Right, BackLeft, BackRight, AheadLeft, AheadRight, Retrace, Out };
@@ -68,7 +70,9 @@ class Escape {
   std::size_t at_ = 0;
   bool opened_ = false;            ///< the move is a straight one that a curve has opened
   bool straight_in_vain_ = false;  ///< such a move got nowhere
+  bool scrapes_ = false;           ///< a turn may bring corners to walls: nothing else led off
   double held_towards_ = 0.0;      ///< [rad, map frame]
+  double roamed_ = 0.0;            ///< [m]
   double turn_ = 0.0;              ///< of Left and Right [rad]
   std::optional<WayOut> way_out_;
   MotionWatch watch_;

@@ -47,10 +47,15 @@ class Recovery {
   /// Something was met in this tick: the base shall not push on.
   bool met() const { return escape_.met(); }
 
+  /// It moves, but comes away no farther than a trap lets it.
+  bool caught() const { return escape_.roamed() > kRoams; }
+
   /// How often the robot was held so far.
   int times() const { return times_; }
 
  private:
+  static constexpr double kRoams = 0.1;  ///< a robot that is held fast moves less [m]
+
   double gap_to_walls(const mrpt::math::TPose2D& pose, const Traversable& floor) const;
 
   robot::RobotModel model_;

@@ -252,6 +252,23 @@ TEST_F(FeltPallet, APardonedPalletThatHoldsTheRobotIsATrapAndIsLeftAloneOnceItIs
   EXPECT_TRUE(felt.trap(on_it)) << "and traps it the next time again";
 }
 
+/// It drove in without a blow, and does not get out: what was met there, or before, was no edge of that pallet.
+TEST_F(FeltPallet, APalletThatItDidNotGetFreeOfIsATrap) {
+  const TPose2D on_it{1.8, 0.6, 0.0}, before_it{0.6, 0.6, 0.0};
+  felt.passed(on_it, kRobot);
+  felt.not_got_free({after(1.0), on_it}, grid);
+  EXPECT_FALSE(felt.trap(before_it));
+  const auto trap = felt.trap(on_it);
+  ASSERT_TRUE(trap);
+  EXPECT_TRUE(trap->holds({1.25, 1.15}));
+  EXPECT_GT(nearest(beyond), 0.5) << "it must get out";
+  felt.passed(before_it, kRobot);
+  EXPECT_LT(nearest(beyond), 0.12) << "it is left alone";
+  felt.not_got_free({after(2.0), before_it}, grid);
+  EXPECT_TRUE(felt.trap(before_it));
+  EXPECT_EQ(felt.count(after(3.0)), 2);
+}
+
 TEST_F(FeltPallet, WhatIsMetWithinAPalletOrBehindTheRobotStaysThere) {
   EXPECT_FALSE(felt.feel({after(1.0), TPose2D{0.5, 0.6, 0.0}}, false, kRobot, grid)) << "the middle of its own pallet";
   FeltObstacles behind;

@@ -122,6 +122,21 @@ TEST(Escape, TurnsAwayFromAWallItTouches) {
   EXPECT_EQ(run(puppet, Escape::Met::Forwards, {}, touching).result, Escape::Result::Free);
 }
 
+/// Flush with a wall every turn brings a corner to it, and nothing but a turn leads off: its corner scrapes along.
+TEST(Escape, TurnsAlongAWallThatItIsFlushWithOnceAllElseFailed) {
+  const auto flush = [](const TPose2D& pose) { return -0.25 * std::abs(std::sin(2.0 * pose.phi)); };
+  const auto try_after = [&](int failures) {
+    Puppet puppet;
+    puppet.may = [&](const TPose2D& next) {
+      const bool turns = next.x == puppet.pose.x && next.y == puppet.pose.y;
+      return turns || std::abs(puppet.pose.phi) > deg_to_rad(50.0);
+    };
+    return run(puppet, Escape::Met::Turning, {}, {kRoom.room, flush}, failures).result;
+  };
+  EXPECT_EQ(try_after(0), Escape::Result::Failed) << "walls are spared as long as other ways may do";
+  EXPECT_EQ(try_after(1), Escape::Result::Free);
+}
+
 /// Between steps only one direction leads out, and turns of 60 degrees miss it: the next try turns by another angle.
 TEST(Escape, TriesOtherAnglesAfterItFailed) {
   const double way_out = deg_to_rad(100.0);
