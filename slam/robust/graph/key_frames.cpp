@@ -24,7 +24,7 @@ void KeyFrames::add(KeyFrame frame, const TPose2D& pose, const GraphEdge& edge) 
   frames_.push_back(std::move(frame));
   take_walls(last());
   graph_.nodes.push_back(pose);
-  links_.emplace_back();
+  newest_link_.push_back(-1);
   before_.push_back(size() < 2 ? -1 : edge.from);
   if (size() < 2) return;
   graph_.edges.push_back(edge);
@@ -32,7 +32,10 @@ void KeyFrames::add(KeyFrame frame, const TPose2D& pose, const GraphEdge& edge) 
 }
 
 KeyFrames::KeyFrames(std::vector<KeyFrame> frames, std::vector<int> before, PoseGraph graph)
-    : frames_(std::move(frames)), before_(std::move(before)), graph_(std::move(graph)), links_(frames_.size()) {
+    : frames_(std::move(frames)),
+      before_(std::move(before)),
+      graph_(std::move(graph)),
+      newest_link_(frames_.size(), -1) {
   for (std::size_t k = 0; k < graph_.edges.size(); ++k) {
     const GraphEdge& edge = graph_.edges[k];
     if (edge.on) link(k, edge.loop ? kLoopLength : length(edge.T_from_to.x, edge.T_from_to.y));
@@ -58,8 +61,11 @@ void KeyFrames::add_loop(const GraphEdge& edge, double path) {
 
 void KeyFrames::link(std::size_t index, double length) {
   const GraphEdge& edge = graph_.edges[index];
-  links_[static_cast<std::size_t>(edge.from)].push_back({edge.to, length, index});
-  links_[static_cast<std::size_t>(edge.to)].push_back({edge.from, length, index});
+  for (const auto& [from, to] : {std::pair(edge.from, edge.to), std::pair(edge.to, edge.from)}) {
+    int& newest = newest_link_[static_cast<std::size_t>(from)];
+    links_.push_back({length, to, static_cast<int>(index), newest});
+    newest = static_cast<int>(links_.size()) - 1;
+  }
 }
 
 void KeyFrames::move(const std::vector<TPose2D>& poses) {
@@ -80,8 +86,14 @@ void KeyFrames::switch_off(std::size_t edge) {
   GraphEdge& off = graph_.edges[edge];
   off.on = false;
   for (const int end : {off.from, off.to}) {
-    std::vector<Link>& links = links_[static_cast<std::size_t>(end)];
-    links.erase(std::remove_if(links.begin(), links.end(), [&](const Link& l) { return l.edge == edge; }), links.end());
+    int* next = &newest_link_[static_cast<std::size_t>(end)];
+    while (*next >= 0) {
+      Link& link = links_[static_cast<std::size_t>(*next)];
+      if (link.edge == static_cast<int>(edge))
+        *next = link.next;
+      else
+        next = &link.next;
+    }
   }
 }
 
@@ -168,8 +180,11 @@ std::vector<double> KeyFrames::paths_from(int i, const std::vector<int>& wanted,
     open_.pop_back();
     if (path > paths_[static_cast<std::size_t>(k)]) continue;
     left -= asked_[static_cast<std::size_t>(k)] != 0 ? 1U : 0U;
-    looked_at += kWorkPerVisit + kWorkPerLink * static_cast<Work>(links_[static_cast<std::size_t>(k)].size());
-    for (const Link& link : links_[static_cast<std::size_t>(k)]) {
+    looked_at += kWorkPerVisit;
+    for (int l = newest_link_[static_cast<std::size_t>(k)]; l >= 0;) {
+      const Link& link = links_[static_cast<std::size_t>(l)];
+      l = link.next;
+      looked_at += kWorkPerLink;
       double& known = paths_[static_cast<std::size_t>(link.to)];
       if (path + link.length >= known || path + link.length > most) continue;
       known = path + link.length;
@@ -188,12 +203,9 @@ KeyFrames::Agreement KeyFrames::agreement(const std::vector<OrientedPoint>& poin
   for (const int k : frames) {
     const Cloud& cloud = (*this)[k].cloud;
     const PlanarTransform to_frame((origin + T_origin_points) - pose(k));
-    for (const OrientedPoint& point : points) {
-      const TPoint2D p = to_frame({static_cast<double>(point.x), static_cast<double>(point.y)}) - cloud.laser;
-      const SightFan::Verdict verdict = cloud.sight.judge(p);
-      if (verdict == SightFan::Verdict::InFront) ++agreement.contradicted;
-      if (verdict == SightFan::Verdict::Agrees) ++agreement.supported;
-    }
+    const SightFan::Judged judged = cloud.sight.judge(points, to_frame, cloud.laser);
+    agreement.contradicted += judged.in_front;
+    agreement.supported += judged.agrees;
   }
   return agreement;
 }

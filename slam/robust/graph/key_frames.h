@@ -79,10 +79,13 @@ class KeyFrames {
                       const mrpt::math::TPose2D& origin, const std::vector<int>& frames) const;
 
  private:
+  /// One end of an edge that is on, in the list of its node. All lists lie in one array, in the order in which edges
+  /// came: a search along the drive reads it from front to back, and lists of their own would miss the caches.
   struct Link {
-    int to;
     double length;
-    std::size_t edge;
+    int to;
+    int edge;
+    int next;  ///< of the same node, -1: none
   };
   void link(std::size_t edge, double length);
   void take_walls(int i);
@@ -90,7 +93,8 @@ class KeyFrames {
   std::vector<KeyFrame> frames_;
   std::vector<int> before_;  ///< the one that the robot came by, -1: none
   PoseGraph graph_;
-  std::vector<std::vector<Link>> links_;
+  std::vector<Link> links_;
+  std::vector<int> newest_link_;                      ///< of each key frame, -1: none
   mutable std::vector<double> paths_;                 ///< work space of paths_from()
   mutable std::vector<char> asked_;                   ///< work space of paths_from()
   mutable std::vector<std::pair<double, int>> open_;  ///< work space of paths_from()

@@ -42,20 +42,27 @@ int bin_of(double bearing) {
   return ((bin % SightFan::kBins) + SightFan::kBins) % SightFan::kBins;
 }
 
-/// The bin of a direction. A polynomial (Abramowitz and Stegun, Handbook of mathematical functions, 4.4.49: error below
-/// 1e-5 rad) tells the angle well enough, but close to where bins meet.
-int bin_of(double x, double y) {
-  constexpr double kUnsure = 1e-3;  // [deg]
+/// Of a direction [deg], 0 to 360, but for an error below 1e-5 rad: a polynomial (Abramowitz and Stegun, Handbook of
+/// mathematical functions, 4.4.49). Free of branches, so that compilers use vector code for many.
+inline double about_angle(double x, double y) {
   const double ax = std::abs(x), ay = std::abs(y);
   const double t = std::min(ax, ay) / std::max(ax, ay);
   const double tt = t * t;
-  double angle = t * (0.9998660 + tt * (-0.3302995 + tt * (0.1801410 + tt * (-0.0851330 + tt * 0.0208351))));
-  angle = rad_to_deg(ay > ax ? 0.5 * kPi - angle : angle);
-  if (x < 0.0) angle = 180.0 - angle;
-  if (y < 0.0) angle = 360.0 - angle;
-  const double within = angle - std::floor(angle);
+  const double flat = t * (0.9998660 + tt * (-0.3302995 + tt * (0.1801410 + tt * (-0.0851330 + tt * 0.0208351))));
+  const double steep = 0.5 * kPi - flat;
+  const double right = rad_to_deg(ay > ax ? steep : flat);
+  const double left = 180.0 - right;
+  const double upper = x < 0.0 ? left : right;
+  const double lower = 360.0 - upper;
+  return y < 0.0 ? lower : upper;
+}
+
+/// The bin of a direction, of which the angle is known about: that is well enough, but close to where bins meet.
+int bin_of(double about, double x, double y) {
+  constexpr double kUnsure = 1e-3;  // [deg]
+  const double within = about - std::floor(about);
   if (!(within > kUnsure && within < 1.0 - kUnsure)) return bin_of(std::atan2(y, x));  // also where it is no number
-  return static_cast<int>(angle);
+  return static_cast<int>(about);
 }
 
 /// Hits of a scan in the order of their beams.
@@ -73,6 +80,7 @@ class Hits {
     }
     drop_mixed_pixels();
     for (const double range : range_) farthest_ = std::max(farthest_, range);
+    join();
   }
 
   std::size_t size() const { return p_.size(); }
@@ -81,11 +89,8 @@ class Hits {
   double farthest() const { return farthest_; }
   double step() const { return step_; }
   int beams_between(std::size_t i, std::size_t j) const { return std::abs(beam_[j] - beam_[i]); }
-  /// Whether two hits, at most one missing beam apart, lie on one surface.
-  bool joined(std::size_t i, std::size_t j) const {
-    const int apart = std::abs(beam_[j] - beam_[i]);
-    return apart <= 2 && distance(p_[i], p_[j]) < gap(i) * apart;
-  }
+  /// Whether two neighbours, at most one missing beam apart, lie on one surface, as judged by the range of the first.
+  bool joined(std::size_t i, std::size_t j) const { return (j > i ? joined_to_next_ : joined_to_last_)[i] != 0; }
 
  private:
   double gap(std::size_t i) const { return std::max(kSameSurface, kSameSurfaceSteps * range_[i] * step_); }
@@ -95,6 +100,18 @@ class Hits {
     const double far = gap(i);
     return (range_[i - 1] - range_[i]) * (range_[i + 1] - range_[i]) < 0.0 && distance(p_[i], p_[i - 1]) > far &&
            distance(p_[i], p_[i + 1]) > far;
+  }
+
+  /// Once for all: each pair of neighbours is asked for some ten times.
+  void join() {
+    joined_to_next_.assign(size(), 0);
+    joined_to_last_.assign(size(), 0);
+    for (std::size_t i = 0; i + 1 < size(); ++i) {
+      const int apart = std::abs(beam_[i + 1] - beam_[i]);
+      const double away = distance(p_[i], p_[i + 1]);
+      joined_to_next_[i] = apart <= 2 && away < gap(i) * apart ? 1 : 0;
+      joined_to_last_[i + 1] = apart <= 2 && away < gap(i + 1) * apart ? 1 : 0;
+    }
   }
 
   void drop_mixed_pixels() {
@@ -123,6 +140,8 @@ class Hits {
   std::vector<TPoint2D> p_;
   std::vector<double> range_;
   std::vector<int> beam_;
+  std::vector<char> joined_to_next_;
+  std::vector<char> joined_to_last_;
 };
 
 /// Hits that may lie on one line with a hit: first and last.
@@ -272,19 +291,49 @@ void SightFan::add(double bearing, double range) {
 }
 
 SightFan::Verdict SightFan::judge(const TPoint2D& p) const {
-  const int middle = bin_of(p.x, p.y);
-  std::uint16_t nearest = kNothing;
-  std::uint16_t farthest = 0;
-  for (int side = -1; side <= 1; ++side) {
-    const auto bin = static_cast<std::size_t>((middle + side + kBins) % kBins);
-    if (nearest_[bin] == kNothing) return Verdict::Nothing;
-    nearest = std::min(nearest, nearest_[bin]);
-    farthest = std::max(farthest, farthest_[bin]);
+  return judge(bin_of(about_angle(p.x, p.y), p.x, p.y), length(p));
+}
+
+SightFan::Judged SightFan::judge(const std::vector<OrientedPoint>& points, const PlanarTransform& T_base_points,
+                                 const TPoint2D& laser) const {
+  constexpr std::size_t kBlock = 64;
+  std::array<double, kBlock> x, y, about, range;
+  const double c = T_base_points.cosine(), s = T_base_points.sine();
+  const double x0 = T_base_points.pose().x, y0 = T_base_points.pose().y;
+  Judged judged;
+  for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
+    const std::size_t count = std::min(kBlock, points.size() - begin);
+    const OrientedPoint* const p = points.data() + begin;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double px = static_cast<double>(p[i].x), py = static_cast<double>(p[i].y);
+      x[i] = x0 + c * px - s * py - laser.x;
+      y[i] = y0 + s * px + c * py - laser.y;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      about[i] = about_angle(x[i], y[i]);
+      range[i] = length(x[i], y[i]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const Verdict verdict = judge(bin_of(about[i], x[i], y[i]), range[i]);
+      judged.in_front += verdict == Verdict::InFront ? 1 : 0;
+      judged.agrees += verdict == Verdict::Agrees ? 1 : 0;
+    }
   }
-  const double range = length(p);
+  return judged;
+}
+
+SightFan::Verdict SightFan::judge(int bin, double range) const {
+  const auto left = static_cast<std::size_t>(bin + 1 < kBins ? bin + 1 : 0);
+  const auto right = static_cast<std::size_t>(bin > 0 ? bin - 1 : kBins - 1);
+  const auto middle = static_cast<std::size_t>(bin);
+  const auto [nearest, least_near] = std::minmax({nearest_[left], nearest_[middle], nearest_[right]});
+  const std::uint16_t farthest = std::max({farthest_[left], farthest_[middle], farthest_[right]});
   const double slack = kSightSlack + kSightSlackShare * range;
-  if (range < 0.01 * nearest - slack) return Verdict::InFront;
-  return range <= 0.01 * farthest + slack ? Verdict::Agrees : Verdict::Behind;
+  // All asked at once: which of them it is no branch prediction could tell.
+  const bool in_front = range < 0.01 * nearest - slack;
+  const bool agrees = range <= 0.01 * farthest + slack;
+  const Verdict seen = in_front ? Verdict::InFront : agrees ? Verdict::Agrees : Verdict::Behind;
+  return least_near == kNothing ? Verdict::Nothing : seen;
 }
 
 Cloud cloud_of(const ScanPoints& scan, const CloudConfig& config) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/planar.h"
 #include "slam/grid/count_map.h"
 
 namespace rubble::slam {
@@ -45,8 +46,18 @@ class SightFan {
   /// Where a surface at `p` [m, from the laser, along the base's axes] would lie in what was seen: in front of it (then
   /// the scan should have met it and did not), with it, or hidden behind. Nothing where a neighbouring bin is empty.
   Verdict judge(const mrpt::math::TPoint2D& p) const;
+  /// How many of some points lie in front of what was seen, and with it.
+  struct Judged {
+    int in_front = 0;
+    int agrees = 0;
+  };
+  /// Of points moved into the base frame; `laser`: where it saw from, there.
+  Judged judge(const std::vector<OrientedPoint>& points, const PlanarTransform& T_base_points,
+               const mrpt::math::TPoint2D& laser) const;
 
  private:
+  Verdict judge(int bin, double range) const;
+
   static constexpr std::uint16_t kNothing = std::numeric_limits<std::uint16_t>::max();
   std::array<std::uint16_t, kBins> nearest_;   ///< [cm]
   std::array<std::uint16_t, kBins> farthest_;  ///< [cm]

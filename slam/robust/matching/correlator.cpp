@@ -95,6 +95,24 @@ void Correlator::draw(const std::vector<Surfel>& surfels, double blur) {
   }
 }
 
+namespace {
+
+/// One row of pool(): doubles it and joins it with the one that was doubled `half` rows before, which it replaces.
+/// Plain arrays in one pass: vector code.
+void pool_row(const std::uint8_t* __restrict row, int width, int half, std::uint8_t* __restrict doubled,
+              std::uint8_t* __restrict out) {
+  const auto put = [&](int x, std::uint8_t value) {
+    out[x] = std::max(doubled[x], value);
+    doubled[x] = value;
+  };
+  // What begins at x sees row[x] and, `half` further, row[x + half].
+  for (int x = 0; x < half; ++x) put(x, row[x]);
+  for (int x = half; x < width; ++x) put(x, std::max(row[x], row[x - half]));
+  for (int x = width; x < width + half; ++x) put(x, row[x - half]);
+}
+
+}  // namespace
+
 /// Doubles the squares: first along the rows, then along the columns.
 void Correlator::pool(int level) {
   const int half = 1 << (level - 1);
@@ -105,23 +123,14 @@ void Correlator::pool(int level) {
   std::vector<std::uint8_t>& to = levels_[static_cast<std::size_t>(level)];
   const auto row = [](int y, int w) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(w); };
   to.resize(row(height + half, wide));
-  half_pooled_.assign(row(half + 1, wide), 0);  // the last rows, in a ring; the one behind them stays empty
-  const std::uint8_t* const nothing = &half_pooled_[row(half, wide)];
+  half_pooled_.assign(row(half, wide), 0);  // the last rows, in a ring
   for (int y = 0; y < height + half; ++y) {
-    std::uint8_t* pooled = &half_pooled_[row(y % half, wide)];
-    std::uint8_t* out = &to[row(y, wide)];
-    const std::uint8_t* before = y >= half ? pooled : nothing;
-    if (y >= height) {
-      std::copy(before, before + wide, out);
-      continue;
-    }
-    const std::uint8_t* a = &from[row(y, width)];
-    std::copy(before, before + wide, out);
-    // Row y, doubled: what begins at x sees a[x] and, `half` further, a[x + half].
-    std::copy(a, a + half, pooled);
-    for (int x = half; x < width; ++x) pooled[x] = std::max(a[x], a[x - half]);
-    std::copy(a + width - half, a + width, pooled + width);
-    for (int x = 0; x < wide; ++x) out[x] = std::max(out[x], pooled[x]);
+    std::uint8_t* const doubled = &half_pooled_[row(y % half, wide)];
+    std::uint8_t* const out = &to[row(y, wide)];
+    if (y < height)
+      pool_row(&from[row(y, width)], width, half, doubled, out);
+    else
+      std::copy(doubled, doubled + wide, out);
   }
 }
 
@@ -142,6 +151,10 @@ void Correlator::pool_roots() {
   // Columns of the top level from -kCoarsePad * kCoarse on, with room for the last square.
   const int shift = kCoarsePad * kCoarse - kPad;
   std::vector<std::uint8_t> row(static_cast<std::size_t>(columns * kCoarse + kCoarseSees + shift + width), 0);
+  std::vector<std::uint8_t> sees(static_cast<std::size_t>(columns * kCoarse));  // from each cell of the row on
+  std::array<std::uint8_t, 256> fine{};
+  for (std::uint32_t value = 0; value < fine.size(); ++value)
+    fine[value] = static_cast<std::uint8_t>((value * kFine + 254U) / 255U);
   for (int y = 1; y + 1 < coarse_height_; ++y) {
     std::fill(row.begin(), row.end(), std::uint8_t{0});
     for (const int part : kParts) {
@@ -151,14 +164,14 @@ void Correlator::pool_roots() {
       std::uint8_t* to = row.data() + shift;
       for (int x = 0; x < width; ++x) to[x] = std::max(to[x], from[x]);
     }
-    for (int x = 0; x < columns; ++x) {
-      const std::uint8_t* from = row.data() + x * kCoarse;
-      std::uint8_t& to = coarse_[static_cast<std::size_t>(x % kStep) * plane +
-                                 static_cast<std::size_t>(y) * static_cast<std::size_t>(coarse_stride_) +
-                                 static_cast<std::size_t>(x / kStep + kGroup)];
-      const std::uint32_t most = std::max({from[kParts[0]], from[kParts[1]], from[kParts[2]]});
-      to = static_cast<std::uint8_t>((most * kFine + 254U) / 255U);
-    }
+    const std::uint8_t* const from = row.data();
+    for (int x = 0; x < columns * kCoarse; ++x)
+      sees[static_cast<std::size_t>(x)] = std::max({from[x + kParts[0]], from[x + kParts[1]], from[x + kParts[2]]});
+    std::uint8_t* const to =
+        coarse_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(coarse_stride_) + kGroup;
+    for (int x = 0; x < columns; ++x)
+      to[static_cast<std::size_t>(x % kStep) * plane + static_cast<std::size_t>(x / kStep)] =
+          fine[sees[static_cast<std::size_t>(x * kCoarse)]];
   }
 }
 
@@ -183,37 +196,42 @@ std::optional<std::array<Correlator::Sums, 4>> Correlator::quarters(const std::v
   const int pad = half - 1;
   const int width = width_ + pad;
   const int height = height_ + pad;
-  const auto stride = static_cast<std::size_t>(width);
-  const std::uint8_t* raster = levels_[static_cast<std::size_t>(level)].data();
+  const auto stride = static_cast<std::uint32_t>(width);
+  const std::uint8_t* const raster = levels_[static_cast<std::size_t>(level)].data();
+  const std::uint8_t* const raster_right = raster + half;
+  const std::uint8_t* const raster_up = raster + static_cast<std::size_t>(half) * stride;
+  const std::uint8_t* const raster_both = raster_up + half;
   const auto at = [&](int u, int v) -> std::uint32_t {
     const bool inside = u >= 0 && v >= 0 && u < width && v < height;
-    return inside ? raster[static_cast<std::size_t>(v) * stride + static_cast<std::size_t>(u)] : 0U;
+    return inside ? raster[static_cast<std::uint32_t>(v) * stride + static_cast<std::uint32_t>(u)] : 0U;
   };
+  const int shift_x = x + pad, shift_y = y + pad;
   const auto all_inside_x = static_cast<unsigned>(std::max(0, width - half));
   const auto all_inside_y = static_cast<unsigned>(std::max(0, height - half));
-  const std::size_t step = stride * static_cast<std::size_t>(half);
   std::array<Sums, 4> sums;
   std::uint32_t promised = around.whole;
   for (std::size_t stretch = 0; stretch < kStretches; ++stretch) {
     const std::size_t begin = cells.size() * stretch / kStretches;
     const std::size_t end = cells.size() * (stretch + 1) / kStretches;
-    std::array<std::uint32_t, 4> part{};
-    for (std::size_t k = begin; k < end; ++k) {
-      const int u = cells[k].x + x + pad;
-      const int v = cells[k].y + y + pad;
+    // Sums and corners in variables of their own: so all of the loop fits into registers.
+    std::uint32_t here = 0, right = 0, up = 0, both = 0;
+    for (const Cell *cell = cells.data() + begin, *last = cells.data() + end; cell != last; ++cell) {
+      const int u = cell->x + shift_x;
+      const int v = cell->y + shift_y;
       if (static_cast<unsigned>(u) < all_inside_x && static_cast<unsigned>(v) < all_inside_y) {
-        const std::uint8_t* p = raster + static_cast<std::size_t>(v) * stride + static_cast<std::size_t>(u);
-        part[0] += p[0];
-        part[1] += p[half];
-        part[2] += p[step];
-        part[3] += p[step + static_cast<std::size_t>(half)];
-      } else {
-        part[0] += at(u, v);
-        part[1] += at(u + half, v);
-        part[2] += at(u, v + half);
-        part[3] += at(u + half, v + half);
+        const std::uint32_t p = static_cast<std::uint32_t>(v) * stride + static_cast<std::uint32_t>(u);
+        here += raster[p];
+        right += raster_right[p];
+        up += raster_up[p];
+        both += raster_both[p];
+      } else if (u > -pad - 2 && v > -pad - 2 && u < width && v < height) {
+        here += at(u, v);
+        right += at(u + half, v);
+        up += at(u, v + half);
+        both += at(u + half, v + half);
       }
     }
+    const std::array<std::uint32_t, 4> part{here, right, up, both};
     looked_at += static_cast<Work>(end - begin);
     promised -= around.parts[stretch];
     std::uint32_t most = 0;
@@ -226,6 +244,32 @@ std::optional<std::array<Correlator::Sums, 4>> Correlator::quarters(const std::v
   }
   return sums;
 }
+
+namespace {
+
+/// Upper bounds for kGroup squares side by side, from what lies at these places of the coarse raster and behind.
+std::array<std::uint32_t, kGroup> sums_of_group(const std::uint8_t* raster, const int* at, const int* end) {
+  static_assert(kSafe == 4);
+  std::array<std::uint32_t, kGroup> all{};
+  while (at != end) {
+    std::array<std::uint16_t, kGroup> sums{};
+    const int* const safe = at + std::min<std::ptrdiff_t>(end - at, kSafeSums);
+    // Four at once, for the compiler then keeps the bytes in a register.
+    for (; safe - at >= 4; at += 4) {
+      const std::uint8_t *a = raster + at[0], *b = raster + at[1], *c = raster + at[2], *d = raster + at[3];
+      for (std::size_t i = 0; i < kGroup; ++i)
+        sums[i] = static_cast<std::uint16_t>(sums[i] + static_cast<std::uint8_t>(a[i] + b[i] + c[i] + d[i]));
+    }
+    for (; at != safe; ++at)
+      for (std::size_t i = 0; i < kGroup; ++i)
+        sums[i] = static_cast<std::uint16_t>(sums[i] + raster[*at + static_cast<int>(i)]);
+    for (std::size_t i = 0; i < kGroup; ++i) all[i] += sums[i];
+  }
+  for (std::uint32_t& sum : all) sum = (sum * 255U + kFine - 1U) / kFine;
+  return all;
+}
+
+}  // namespace
 
 void Correlator::roots(const std::vector<Cell>& cells, int x, int y, int columns, int rows, RootWork& work,
                        std::vector<Sums>& out) const {
@@ -246,26 +290,16 @@ void Correlator::roots(const std::vector<Cell>& cells, int x, int y, int columns
     for (int r = 0; r < rows; ++r) {
       for (std::size_t k = 0; k < count; ++k)
         work.at[k] = work.column[k] + std::clamp(work.row[k] + r * kStep, 0, coarse_height_ - 1) * coarse_stride_;
-      Sums* to = &out[static_cast<std::size_t>(r * columns + group)];
+      Sums* const to = &out[static_cast<std::size_t>(r * columns + group)];
+      std::array<std::uint32_t, kGroup> whole{};
       for (std::size_t stretch = 0; stretch < kStretches; ++stretch) {
-        const std::size_t end = count * (stretch + 1) / kStretches;
-        for (std::size_t k = count * stretch / kStretches; k < end;) {
-          std::array<std::uint16_t, kGroup> sums{};
-          for (const std::size_t safe = std::min(end, k + kSafeSums); k < safe;) {
-            std::array<std::uint8_t, kGroup> few{};
-            for (const std::size_t last = std::min(safe, k + kSafe); k < last; ++k) {
-              const std::uint8_t* from = coarse_.data() + work.at[k];
-              for (std::size_t i = 0; i < kGroup; ++i) few[i] = static_cast<std::uint8_t>(few[i] + from[i]);
-            }
-            for (std::size_t i = 0; i < kGroup; ++i) sums[i] = static_cast<std::uint16_t>(sums[i] + few[i]);
-          }
-          for (std::size_t i = 0; i < used; ++i) to[i].parts[stretch] += sums[i];
-        }
-        for (std::size_t i = 0; i < used; ++i) {
-          to[i].parts[stretch] = (to[i].parts[stretch] * 255U + kFine - 1U) / kFine;
-          to[i].whole += to[i].parts[stretch];
-        }
+        const std::array<std::uint32_t, kGroup> part =
+            sums_of_group(coarse_.data(), work.at.data() + count * stretch / kStretches,
+                          work.at.data() + count * (stretch + 1) / kStretches);
+        for (std::size_t i = 0; i < kGroup; ++i) whole[i] += part[i];
+        for (std::size_t i = 0; i < used; ++i) to[i].parts[stretch] = part[i];
       }
+      for (std::size_t i = 0; i < used; ++i) to[i].whole = whole[i];
     }
   }
 }
@@ -289,7 +323,7 @@ void CorrelativeSearch::start(const Correlator& target, const std::vector<Orient
   best_ = floor;
   kept_ = std::min(floor, later_floor);
   found_.reset();
-  turned_.clear();
+  opened_ = 0;
   roots_.clear();
   next_root_ = 0;
   sorted_ = false;
@@ -308,7 +342,7 @@ bool CorrelativeSearch::advance(Work& budget) {
   used_ = 0;
   if (points_.empty()) return true;
   while (used_ < budget) {
-    if (static_cast<int>(turned_.size()) < 2 * angles_ + 1) {
+    if (opened_ < 2 * angles_ + 1) {
       open_angle();
       continue;
     }
@@ -333,15 +367,19 @@ bool CorrelativeSearch::advance(Work& budget) {
 
 /// Turns the points to the next angle and bounds the coarsest squares there.
 void CorrelativeSearch::open_angle() {
-  const int index = static_cast<int>(turned_.size());
+  const int index = opened_++;
   const double phi = window_.centre.phi + (index - angles_) * angle_step_;
   const auto c = static_cast<float>(std::cos(phi));
   const auto s = static_cast<float>(std::sin(phi));
   const auto x = static_cast<float>(window_.centre.x);
   const auto y = static_cast<float>(window_.centre.y);
-  std::vector<Cell>& cells = turned_.emplace_back();
-  cells.reserve(points_.size());
-  for (const OrientedPoint& p : points_) cells.push_back(target_->cell(c * p.x - s * p.y + x, s * p.x + c * p.y + y));
+  if (opened_ > static_cast<int>(turned_.size())) turned_.emplace_back();
+  std::vector<Cell>& cells = turned_[static_cast<std::size_t>(index)];
+  cells.resize(points_.size());
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const OrientedPoint& p = points_[k];
+    cells[k] = target_->cell(c * p.x - s * p.y + x, s * p.x + c * p.y + y);
+  }
   const int side = 2 * cells_ / Correlator::kRootCells + 1;
   target_->roots(cells, -cells_, -cells_, side, side, root_work_, bounds_);
   used_ += static_cast<Work>(cells.size()) * (kWorkPerTurn + side * side / kRootsPerWork + side);

@@ -125,7 +125,8 @@ class CorrelativeSearch {
   double best_ = 0.0;
   double kept_ = 0.0;  ///< roots are kept from this bound
   std::optional<Found> found_;
-  std::vector<std::vector<Cell>> turned_;  ///< cells of the points, for each angle looked at so far
+  std::vector<std::vector<Cell>> turned_;  ///< cells of the points, for each angle; memory that stays
+  int opened_ = 0;                         ///< angles looked at so far
   std::vector<Node> roots_;
   std::size_t next_root_ = 0;
   bool sorted_ = false;

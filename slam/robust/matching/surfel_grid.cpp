@@ -11,6 +11,7 @@ using mrpt::math::TPose2D;
 namespace {
 
 constexpr double kMargin = 1.0;      ///< around what is covered [m]
+constexpr float kSlack = 0.01F;      ///< far more than a mean of points lies outside of their cell by rounding [m]
 constexpr float kOneSurface = 0.7F;  ///< cosine between normals that are averaged
 /// Cosine between normals that are matched. They scatter less by the scanner's noise, but for corners: a normal from
 /// both of its walls is neither's, and aslant to a corridor it holds back all that moves along.
@@ -97,22 +98,35 @@ const Surfel* SurfelGrid::nearest(float x, float y, float nx, float ny, float ra
   const bool any_side = nx == 0.0F && ny == 0.0F;
   float best = radius * radius;
   const Surfel* found = nullptr;
-  for (int v = row - reach; v <= row + reach; ++v) {
+  const auto look_along = [&](int v) {
     const auto middle =
         static_cast<std::uint32_t>(v) * static_cast<std::uint32_t>(width_) + static_cast<std::uint32_t>(column);
     const std::size_t from = rank(middle - static_cast<std::uint32_t>(reach));
     const std::size_t to = rank(middle + static_cast<std::uint32_t>(reach) + 1U);
-    if (from == to) continue;
+    if (from == to) return;
     const Surfel* end = surfels_.data() + first_[to];
     for (const Surfel* surfel = surfels_.data() + first_[from]; surfel != end; ++surfel) {
       const float dx = surfel->x - x;
       const float dy = surfel->y - y;
       const float d2 = dx * dx + dy * dy;
-      if (d2 < best && (any_side || surfel->nx * nx + surfel->ny * ny > kSameSide)) {
-        best = d2;
-        found = surfel;
-      }
+      if (d2 > best || !(any_side || surfel->nx * nx + surfel->ny * ny > kSameSide)) continue;
+      // Of two as near the first in the list, whatever row was asked first.
+      if (d2 == best && (found == nullptr || surfel > found)) continue;
+      best = d2;
+      found = surfel;
     }
+  };
+  // From the middle outwards: rows that begin farther away than the best one need not be asked.
+  look_along(row);
+  const float cell = 1.0F / cells_per_m_;
+  float below = y - (y0_ + static_cast<float>(row) * cell) - kSlack;
+  float above = cell - 2.0F * kSlack - below;
+  for (int step = 1; step <= reach; ++step, below += cell, above += cell) {
+    const bool down = below <= 0.0F || below * below <= best;
+    const bool up = above <= 0.0F || above * above <= best;
+    if (down) look_along(row - step);
+    if (up) look_along(row + step);
+    if (!down && !up) break;
   }
   return found;
 }

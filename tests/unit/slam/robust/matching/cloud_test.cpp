@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "base/angle.h"
 #include "base/planar.h"
@@ -217,6 +218,31 @@ TEST(SightFan, JudgesByTheBinThatTheArcTangentTells) {
     for (const double off : {-1e-3, -1e-5, -1e-9, 0.0, 1e-9, 1e-5, 1e-3}) expect_same(at(deg_to_rad(bin + off), 20.0));
   for (const TPoint2D& p : {TPoint2D{20.0, 0.0}, {0.0, 20.0}, {-20.0, 0.0}, {0.0, -20.0}, {-20.0, -0.0}, {0.0, 0.0}})
     expect_same(p);
+}
+
+TEST(SightFan, JudgesManyAsOneByOne) {
+  Rng rng(8, "points");
+  SightFan fan;
+  for (int bin = 0; bin < SightFan::kBins; ++bin)
+    if (rng.uniform() < 0.9) fan.add(deg_to_rad(bin + 0.5), rng.uniform(1.0, 6.0));
+  const TPoint2D laser(0.3, -0.1);
+  for (const std::size_t count : {0U, 1U, 63U, 64U, 65U, 500U}) {
+    const PlanarTransform T(TPose2D(rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), rng.uniform(-kPi, kPi)));
+    std::vector<OrientedPoint> points(count);
+    for (OrientedPoint& p : points) {
+      p.x = static_cast<float>(rng.uniform(-6.0, 6.0));
+      p.y = static_cast<float>(rng.uniform(-6.0, 6.0));
+    }
+    int in_front = 0, agrees = 0;
+    for (const OrientedPoint& p : points) {
+      const SightFan::Verdict one = fan.judge(T({static_cast<double>(p.x), static_cast<double>(p.y)}) - laser);
+      in_front += one == SightFan::Verdict::InFront ? 1 : 0;
+      agrees += one == SightFan::Verdict::Agrees ? 1 : 0;
+    }
+    const SightFan::Judged all = fan.judge(points, T, laser);
+    EXPECT_EQ(all.in_front, in_front) << count;
+    EXPECT_EQ(all.agrees, agrees) << count;
+  }
 }
 
 }  // namespace
