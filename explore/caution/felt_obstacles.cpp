@@ -167,7 +167,7 @@ bool FeltObstacles::feel_pallet(const Thing& touch, const PalletGrid& grid, cons
   Thing thing = touch;
   thing.is_pallet = true;
   thing.until = kForGood;
-  thing.T_base_pallet = TPose2D{middle.x, middle.y, grid.angle} - T_map_base;
+  thing.T_base_pallet = TPose2D{middle.x, middle.y, grid.angle()} - T_map_base;
   thing.inside = there == own;
   const bool stood_on = thing.inside || std::any_of(trail.begin(), trail.end(),
                                                     [&](const TPoint2D& p) { return holds(thing, p, kOnPallet); });
@@ -208,7 +208,7 @@ void FeltObstacles::not_got_free(const Anchor& anchor, const PalletGrid& grid) {
     pallet.anchor = anchor;
     pallet.is_pallet = true;
     pallet.until = kForGood;
-    pallet.T_base_pallet = TPose2D{middle.x, middle.y, grid.angle} - anchor.T_map_base;
+    pallet.T_base_pallet = TPose2D{middle.x, middle.y, grid.angle()} - anchor.T_map_base;
     thing = things_.insert(things_.end(), pallet);
   }
   thing->inside = thing->stubs = thing->held = true;

@@ -13,6 +13,14 @@ constexpr double kTile = 4.0;  ///< places in a square of this size share a grid
 const std::optional<PalletGrid>& LocalGrids::at(const mrpt::math::TPoint2D& p_map) {
   const auto tile = [](double x) { return static_cast<int>(std::floor(x / kTile)); };
   const std::pair<int, int> key{tile(p_map.x), tile(p_map.y)};
+  if (last_grid_ == nullptr || key != last_key_) {
+    last_grid_ = &of_square(key);
+    last_key_ = key;
+  }
+  return *last_grid_;
+}
+
+const std::optional<PalletGrid>& LocalGrids::of_square(const std::pair<int, int>& key) {
   const auto known = grids_.find(key);
   if (known != grids_.end()) return known->second;
   const mrpt::math::TPoint2D middle{(key.first + 0.5) * kTile, (key.second + 0.5) * kTile};

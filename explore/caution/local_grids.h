@@ -31,10 +31,14 @@ class LocalGrids {
   const std::optional<PalletGrid>& near(const mrpt::math::TPoint2D& p_map);
 
  private:
+  const std::optional<PalletGrid>& of_square(const std::pair<int, int>& key);
+
   const OccupancyGrid& cells_;
   double pallet_;
   KnownGrids* known_;
   std::map<std::pair<int, int>, std::optional<PalletGrid>> grids_;
+  std::pair<int, int> last_key_;                          ///< of the square asked for last ...
+  const std::optional<PalletGrid>* last_grid_ = nullptr;  ///< ... whose neighbours in a row are asked for next
 };
 
 }  // namespace rubble::explore

@@ -97,15 +97,19 @@ class Surroundings {
   std::int64_t x_ = 0, n_ = 0, sum_x_ = 0, sum_y_ = 0, sum_xx_ = 0, sum_yy_ = 0, sum_xy_ = 0;  // dy from the row
 };
 
+void PalletGrid::turn_to(double angle) {
+  angle_ = angle;
+  cosine_ = std::cos(angle);
+  sine_ = std::sin(angle);
+}
+
 TPoint2D PalletGrid::to_grid(const TPoint2D& p) const {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {(c * p.x + s * p.y - east) / size, (c * p.y - s * p.x - north) / size};
+  return {(cosine_ * p.x + sine_ * p.y - east) / size, (cosine_ * p.y - sine_ * p.x - north) / size};
 }
 
 TPoint2D PalletGrid::to_map(const TPoint2D& p_grid) const {
-  const double c = std::cos(angle), s = std::sin(angle);
   const double x = p_grid.x * size + east, y = p_grid.y * size + north;
-  return {c * x - s * y, s * x + c * y};
+  return {cosine_ * x - sine_ * y, sine_ * x + cosine_ * y};
 }
 
 Cell PalletGrid::pallet(const TPoint2D& p_map) const {
@@ -152,11 +156,11 @@ std::optional<PalletGrid> WallsAbout::pallets(double size) const {
   if (pieces.size() < kPieces || !four) return std::nullopt;
   PalletGrid grid;
   grid.size = size;
-  grid.angle = *four / 4.0;
+  grid.turn_to(*four / 4.0);
   std::array<CircularMean, 2> place;  // of walls across x, across y
   for (const Piece& piece : pieces) {
     const TPoint2D p = grid.to_grid(piece.p_map);
-    const double off = wrap_angle(2.0 * (piece.direction - grid.angle)) / 2.0;
+    const double off = wrap_angle(2.0 * (piece.direction - grid.angle())) / 2.0;
     if (std::abs(off) < kAlong) place[1].add(2.0 * kPi * p.y);
     if (std::abs(off) > 0.5 * kPi - kAlong) place[0].add(2.0 * kPi * p.x);
   }

@@ -17,10 +17,14 @@ constexpr double kInsidePallet = 0.2;  ///< so far inside its pallet nothing is 
 /// section II.B), with walls on their edges: what was felt at the edge of one concerns the whole element.
 struct PalletGrid {
   double size = 1.2;   ///< [m]
-  double angle = 0.0;  ///< of the grid's x axis in the map [rad], in (-pi/4, pi/4]
   double east = 0.0;   ///< along the grid's x axis the edges lie at east + k size [m]
   double north = 0.0;  ///< and along its y axis at north + k size [m]
 
+  /// Of the grid's x axis in the map [rad], in (-pi/4, pi/4].
+  double angle() const { return angle_; }
+  void turn_to(double angle);
+  /// Of the grid's x axis in the map; a unit vector.
+  mrpt::math::TPoint2D direction() const { return {cosine_, sine_}; }
   /// In units of pallets: integers are edges.
   mrpt::math::TPoint2D to_grid(const mrpt::math::TPoint2D& p_map) const;
   mrpt::math::TPoint2D to_map(const mrpt::math::TPoint2D& p_grid) const;
@@ -29,6 +33,11 @@ struct PalletGrid {
   mrpt::math::TPoint2D middle(Cell pallet) const { return to_map({pallet.x + 0.5, pallet.y + 0.5}); }
   /// How far a place is inside the edges of its pallet [m].
   double depth(const mrpt::math::TPoint2D& p_map) const;
+
+ private:
+  double angle_ = 0.0;
+  double cosine_ = 1.0;  ///< computed once: each plan asks for the places of thousands of cells
+  double sine_ = 0.0;
 };
 
 /// The walls of a map about a place: all that the grid of the pallets there depends on.

@@ -9,6 +9,7 @@
 #include "explore/caution/local_grids.h"
 #include "explore/caution/pallet_grid.h"
 #include "explore/plan/frontier.h"
+#include "explore/plan/set_bytes.h"
 #include "explore/search/searched_area.h"
 
 namespace rubble::explore {
@@ -48,28 +49,37 @@ Grid<int> pieces_of_floor(const Traversable& floor) {
     const Occupancy* const cells = floor.cells.row(y);
     const float* const clearance = floor.clearance.row(y);
     int* const row = pieces.row(y);
-    for (int x = 1; x + 1 < width; ++x)
-      row[x] = cells[x] != Occupancy::Free ? 0 : clearance[x] >= kHalfBody ? kWide : kNarrow;
+    for (int x = 1; x + 1 < width; ++x) {  // free of branches, so that compilers use vector code
+      const int free = cells[x] == Occupancy::Free ? 1 : 0;
+      const int wide = clearance[x] >= kHalfBody ? 1 : 0;
+      row[x] = free * (kNarrow + wide * (kWide - kNarrow));
+    }
   }
   int* const piece = pieces.data();
-  std::vector<int> open;  // cells by index, in the order in which they were reached
+  // Cells by index, in the order in which they were reached; one more, for what spread() writes in vain.
+  std::vector<int> open(pieces.cells().size() + 1);
+  std::size_t end = 0;
   const auto spread = [&](std::size_t from, int what) {
-    for (std::size_t i = from; i < open.size(); ++i)
+    for (std::size_t i = from; i < end; ++i) {
+      const int number = piece[open[i]];
+      // Without branches: whether a neighbour is new would be mispredicted for every other cell.
       for (const int step : {1, width, -1, -width}) {
         const int next = open[i] + step;
-        if (piece[next] != what) continue;
-        piece[next] = piece[open[i]];
-        open.push_back(next);
+        const bool is_new = piece[next] == what;
+        piece[next] = is_new ? number : piece[next];
+        open[end] = next;
+        end += is_new ? 1 : 0;
       }
+    }
   };
   int number = 0;
   const auto number_all = [&](int what) {
-    const int last = static_cast<int>(pieces.cells().size());
-    for (int i = 0; i < last; ++i) {
-      if (piece[i] != what) continue;
+    const int* const last = piece + pieces.cells().size();
+    for (const int* at = piece; (at = std::find(at, last, what)) != last;) {
+      const auto i = static_cast<std::size_t>(at - piece);
       piece[i] = ++number;
-      open.push_back(i);
-      spread(open.size() - 1, what);
+      open[end++] = static_cast<int>(i);
+      spread(end - 1, what);
     }
   };
   number_all(kWide);
@@ -100,7 +110,7 @@ std::vector<Cell> row_from(Cell first, Cell along, Cell n, Grid<std::uint8_t>& f
 /// How far a wall at `p` whose normal is `n` stands off the nearest edges of pallets that it could stand on [m].
 double off_edges(const PalletGrid& grid, const TPoint2D& p, Cell n) {
   const TPoint2D at = grid.to_grid(p);
-  const bool along_x = std::abs(std::cos(grid.angle) * n.x + std::sin(grid.angle) * n.y) > std::sqrt(0.5);
+  const bool along_x = std::abs(grid.direction().x * n.x + grid.direction().y * n.y) > std::sqrt(0.5);
   const double x = along_x ? at.x : at.y;
   return grid.size * std::abs(x - std::round(x));
 }
@@ -174,9 +184,13 @@ class Background {
   }
   void measure_pieces() {
     pieces_ = pieces_of_floor(floor_);
-    for (const int piece : pieces_.cells()) {
-      if (static_cast<std::size_t>(piece) >= extents_.size()) extents_.resize(static_cast<std::size_t>(piece) + 1);
-      ++extents_[static_cast<std::size_t>(piece)].cells;
+    const std::vector<int>& cells = pieces_.cells();
+    extents_.resize(static_cast<std::size_t>(*std::max_element(cells.begin(), cells.end())) + 1);
+    // Runs of one piece, for the counter of a cell would have to wait for that of the cell before.
+    for (auto run = cells.begin(); run != cells.end();) {
+      const auto end = std::find_if(run, cells.end(), [piece = *run](int other) { return other != piece; });
+      extents_[static_cast<std::size_t>(*run)].cells += static_cast<int>(end - run);
+      run = end;
     }
     for (const Cell c : frontier_cells(floor_)) ++extents_[static_cast<std::size_t>(pieces_[c])].frontier;
   }
@@ -243,11 +257,8 @@ std::vector<Source> doubtful_walls(const Traversable& floor, double pallet, cons
   LocalGrids grids(cells, pallet, known);
   Background background(floor, pallet, grids, pockets);
   std::vector<Cell> occupied;
-  for (int y = 1; y + 1 < cells.height(); ++y) {
-    const Occupancy* const row = cells.row(y);
-    for (int x = 1; x + 1 < cells.width(); ++x)
-      if (row[x] == Occupancy::Occupied) occupied.push_back({x, y});
-  }
+  for (int y = 1; y + 1 < cells.height(); ++y)
+    for_each_occupied(cells.row(y), 1, cells.width() - 1, [&](int x) { occupied.push_back({x, y}); });
   Grid<std::uint8_t> face(floor.frame());
   // `n` points from the free side into the wall.
   for (const Cell n : {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}}) {

@@ -7,6 +7,7 @@
 #include "explore/caution/local_grids.h"
 #include "explore/caution/step_field.h"
 #include "explore/plan/loose_things.h"
+#include "explore/plan/set_bytes.h"
 
 namespace rubble::explore {
 namespace {
@@ -77,13 +78,12 @@ bool free_off_grid(Traversable& floor, double pallet, bool floor_only, KnownGrid
   // Occupied: well inside a pallet. Unknown: nearer to its edges than that, as a part of what stands inside may be.
   OccupancyGrid inside(walls.frame(), Occupancy::Free);
   for (int y = 0; y < walls.height(); ++y)
-    for (int x = 0; x < walls.width(); ++x) {
-      if (walls[{x, y}] != Occupancy::Occupied) continue;
+    for_each_occupied(walls.row(y), 0, walls.width(), [&](int x) {
       const TPoint2D p = walls.centre({x, y});
       const std::optional<PalletGrid>& grid = grids.at(p);
       const double depth = grid ? grid->depth(p) : 0.0;
       if (depth > kOnAnEdge) inside[{x, y}] = depth > kInsidePallet ? Occupancy::Occupied : Occupancy::Unknown;
-    }
+    });
   bool any = false;
   for (Thing& thing : things_of(inside, 1)) {
     const TPoint2D at = walls.centre(thing.cells[thing.cells.size() / 2]);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/planar.h"
+#include "explore/plan/set_bytes.h"
 
 namespace rubble::explore {
 namespace {
@@ -79,26 +80,28 @@ void make_free(Traversable& floor, const Thing& thing) {
 
 std::vector<Thing> things_of(const OccupancyGrid& cells, int gap) {
   const int width = cells.width(), height = cells.height();
-  Grid<std::uint8_t> visited(cells.frame());
+  OccupancyGrid left = cells;  // what belongs to a thing is taken out
   std::vector<Thing> things;
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      if (cells[{x, y}] != Occupancy::Occupied || visited[{x, y}] != 0) continue;
-      visited[{x, y}] = 1;
+    for_each_occupied(left.row(y), 0, width, [&](int x) {
+      left[{x, y}] = Occupancy::Unknown;
       Thing thing{{{x, y}}, {x, y}, {x, y}};
       for (std::size_t next = 0; next < thing.cells.size(); ++next) {
         const Cell c = thing.cells[next];
-        for (int v = std::max(0, c.y - gap); v <= std::min(height - 1, c.y + gap); ++v)
-          for (int u = std::max(0, c.x - gap); u <= std::min(width - 1, c.x + gap); ++u) {
-            if (cells[{u, v}] != Occupancy::Occupied || visited[{u, v}] != 0) continue;
-            visited[{u, v}] = 1;
+        const int west = std::max(0, c.x - gap), east = std::min(width - 1, c.x + gap);
+        for (int v = std::max(0, c.y - gap); v <= std::min(height - 1, c.y + gap); ++v) {
+          Occupancy* const row = left.row(v);
+          for (int u = west; u <= east; ++u) {
+            if (row[u] != Occupancy::Occupied) continue;
+            row[u] = Occupancy::Unknown;
             thing.cells.push_back({u, v});
             thing.low = {std::min(thing.low.x, u), std::min(thing.low.y, v)};
             thing.high = {std::max(thing.high.x, u), std::max(thing.high.y, v)};
           }
+        }
       }
       things.push_back(std::move(thing));
-    }
+    });
   return things;
 }
 

@@ -96,14 +96,16 @@ bool has_obstacle(const Grid<std::uint8_t>& obstacle, const Box& box) {
   return false;
 }
 
-/// Calls `use` with each cell within `radius` of one of the places, for each of them.
-template <typename Use>
-void for_cells_near(const GridFrame& frame, const std::vector<TPoint2D>& places, double radius, const Use& use) {
+/// Calls `use` with each cell within `radius` of one of the places that is `wanted`, for each of them. Few are, so that
+/// is asked first: of a long trail most cells are known already, and their distances need not be taken.
+template <typename Wanted, typename Use>
+void for_cells_near(const GridFrame& frame, const std::vector<TPoint2D>& places, double radius, const Wanted& wanted,
+                    const Use& use) {
   for (const TPoint2D& p : places) {
     const Box box = cells_around(frame, p, radius);
     for (int y = box.low.y; y <= box.high.y; ++y)
       for (int x = box.low.x; x <= box.high.x; ++x)
-        if (distance(frame.centre({x, y}), p) <= radius) use(Cell{x, y});
+        if (wanted(frame.index({x, y})) && distance(frame.centre({x, y}), p) <= radius) use(Cell{x, y});
   }
 }
 
@@ -177,20 +179,25 @@ void free_body(Traversable& floor, const TPose2D& T_map_base, double length, dou
 }
 
 void free_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double radius) {
-  for_cells_near(floor.frame(), trail, radius, [&](Cell c) {
-    if (floor.cells[c] != Occupancy::Unknown) return;
-    floor.cells[c] = Occupancy::Free;
-    floor.body[c] = 1;
-  });
+  const Occupancy* const cells = floor.cells.data();
+  for_cells_near(
+      floor.frame(), trail, radius, [&](std::size_t i) { return cells[i] == Occupancy::Unknown; },
+      [&](Cell c) {
+        floor.cells[c] = Occupancy::Free;
+        floor.body[c] = 1;
+      });
 }
 
 void loosen_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double radius) {
-  for_cells_near(floor.frame(), trail, radius, [&](Cell c) {
-    if (floor.cells[c] != Occupancy::Occupied && floor.obstacle[c] == 0) return;
-    floor.cells[c] = Occupancy::Free;
-    floor.obstacle[c] = 0;
-    floor.loose.push_back(c);
-  });
+  const Occupancy* const cells = floor.cells.data();
+  const std::uint8_t* const obstacle = floor.obstacle.data();
+  for_cells_near(
+      floor.frame(), trail, radius, [&](std::size_t i) { return cells[i] == Occupancy::Occupied || obstacle[i] != 0; },
+      [&](Cell c) {
+        floor.cells[c] = Occupancy::Free;
+        floor.obstacle[c] = 0;
+        floor.loose.push_back(c);
+      });
 }
 
 void widen_trail(Traversable& floor, const std::vector<TPoint2D>& trail, double clearance,

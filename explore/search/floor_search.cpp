@@ -58,6 +58,28 @@ OccupancyGrid ground_of(const Grid<Faces>& seen, const OccupancyGrid& floor) {
   return ground;
 }
 
+/// Whether ground_of() would give the same ground again. All looks are asked this whenever the map was corrected, so no
+/// other grid is made for it.
+bool is_ground_of(const OccupancyGrid& ground, const OccupancyGrid& floor) {
+  const Cell low = floor.cell(ground.frame().centre({0, 0}));
+  const int width = ground.width();
+  const int west = std::clamp(-low.x, 0, width), east = std::clamp(floor.width() - low.x, west, width);
+  const auto unknown = [](const Occupancy* from, const Occupancy* to) {
+    return std::all_of(from, to, [](Occupancy o) { return o == Occupancy::Unknown; });
+  };
+  for (int y = 0; y < ground.height(); ++y) {
+    const Occupancy* const row = ground.row(y);
+    const bool on_map = west < east && low.y + y >= 0 && low.y + y < floor.height();
+    if (!on_map) {
+      if (!unknown(row, row + width)) return false;
+      continue;
+    }
+    if (!unknown(row, row + west) || !unknown(row + east, row + width)) return false;
+    if (!std::equal(row + west, row + east, floor.row(low.y + y) + low.x + west)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 FloorSearch::FloorSearch(const SearchConfig& config, double room, double tight, const OtherSenses& others)
@@ -125,11 +147,9 @@ FloorSearch::Look FloorSearch::last_look(const Traversable& floor, const Anchor&
 
 /// Whether the floor is as it was when the look was made, wherever it saw.
 bool FloorSearch::same_ground(const Look& look, const Traversable& floor) const {
-  const auto same = [&](const Grid<Faces>& seen, const OccupancyGrid& ground) {
-    return ground.cells() == ground_of(seen, floor.cells).cells();
-  };
-  return same(look.anyhow, look.ground) && std::all_of(look.others.begin(), look.others.end(),
-                                                       [&](const OtherLook& o) { return same(o.seen, o.ground); });
+  return is_ground_of(look.ground, floor.cells) &&
+         std::all_of(look.others.begin(), look.others.end(),
+                     [&](const OtherLook& o) { return is_ground_of(o.ground, floor.cells); });
 }
 
 bool FloorSearch::moved(const Anchor& anchor, const TPose2D& was) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/planar.h"
+#include "explore/plan/set_bytes.h"
 #include "explore/search/wall_holes.h"
 
 namespace rubble::explore {
@@ -57,40 +58,65 @@ std::optional<int> to_wall(const Traversable& floor, Cell c, Cell step, int most
   return std::nullopt;
 }
 
+/// A cell with what is left to be looked at in it.
+struct Unsearched {
+  Cell cell;
+  Faces missing;
+};
+
 /// The backs of niches that were not searched, every few cells.
-std::vector<Cell> unsearched_niches(const Traversable& floor, const SearchedArea& searched) {
-  const Grid<Faces> open = searched.unsearched(floor);
+std::vector<Unsearched> unsearched_niches(const Traversable& floor, const SearchedArea& searched) {
+  Grid<Faces> open = searched.unsearched(floor);
+  for (Faces& faces : open.cells()) faces = static_cast<Faces>(faces & ~kFloor);
   const int stride = cells_apart(kNicheStride, floor.frame().resolution);
-  std::vector<Cell> found;
+  std::vector<Unsearched> found;
   for (int y = 1; y + 1 < floor.cells.height(); ++y)
-    for (int x = 1; x + 1 < floor.cells.width(); ++x) {
-      const auto faces = static_cast<Faces>(open[{x, y}] & ~kFloor);
-      if (faces != 0 && (x + y) % stride == 0 && in_niche(floor, {x, y}, faces)) found.push_back({x, y});
-    }
+    for_each_set(open.row(y), floor.cells.width(), [&](int x) {
+      const Faces faces = open[{x, y}];
+      if ((x + y) % stride == 0 && in_niche(floor, {x, y}, faces)) found.push_back({{x, y}, faces});
+    });
   return found;
 }
 
 /// Free cells of which something in `asked` was not searched, as 8-connected clusters of at least `min_cells`.
-std::vector<std::vector<Cell>> unsearched_clusters(const Traversable& floor, const SearchedArea& searched, Faces asked,
-                                                   int min_cells) {
+std::vector<std::vector<Unsearched>> unsearched_clusters(const Traversable& floor, const SearchedArea& searched,
+                                                         Faces asked, int min_cells) {
   Grid<Faces> open = searched.unsearched(floor);
   for (Faces& faces : open.cells()) faces = static_cast<Faces>(faces & asked);
-  std::vector<std::vector<Cell>> clusters;
+  std::vector<std::vector<Unsearched>> clusters;
   for (int y = 1; y + 1 < floor.cells.height(); ++y)
-    for (int x = 1; x + 1 < floor.cells.width(); ++x) {
-      if (open[{x, y}] == 0) continue;
-      std::vector<Cell> cluster{{x, y}};
-      open[{x, y}] = 0;
-      for (std::size_t next = 0; next < cluster.size(); ++next)
-        for (int v = cluster[next].y - 1; v <= cluster[next].y + 1; ++v)
-          for (int u = cluster[next].x - 1; u <= cluster[next].x + 1; ++u) {
-            if (open[{u, v}] == 0) continue;  // the rim is never open, so all neighbours are inside
-            open[{u, v}] = 0;
-            cluster.push_back({u, v});
-          }
+    for_each_set(open.row(y), floor.cells.width(), [&](int x) {  // the rim is never open
+      std::vector<Unsearched> cluster;
+      const auto take = [&](Cell c) {
+        cluster.push_back({c, open[c]});
+        open[c] = 0;
+      };
+      take({x, y});
+      for (std::size_t next = 0; next < cluster.size(); ++next) {
+        const Cell c = cluster[next].cell;
+        for (int v = c.y - 1; v <= c.y + 1; ++v)
+          for (int u = c.x - 1; u <= c.x + 1; ++u)
+            if (open[{u, v}] != 0) take({u, v});
+      }
       if (static_cast<int>(cluster.size()) >= min_cells) clusters.push_back(std::move(cluster));
-    }
+    });
   return clusters;
+}
+
+/// A place beside a subject to look from, and the faces that are inspected from there.
+struct LookFrom {
+  Cell step;
+  Faces faces;
+};
+
+/// Each place with its faces, which are the same beside all subjects.
+std::vector<LookFrom> looks_from(const std::vector<Cell>& steps, double incidence) {
+  std::vector<LookFrom> looks;
+  for (const Cell step : steps) {
+    const double way = length(step.x, step.y);
+    looks.push_back({step, faces_along(-step.x / way, -step.y / way, incidence)});
+  }
+  return looks;
 }
 
 }  // namespace
@@ -364,21 +390,31 @@ Faces SearchedArea::missing(const Traversable& floor, Cell c) const {
   return static_cast<Faces>(all & ~looked_at(floor.frame(), c));
 }
 
+namespace {
+
+/// What there is to be looked at in the free cells of a row, but for the outermost. Branch-free and on plain arrays, so
+/// that compilers use vector code.
+void faces_of_row(const Occupancy* __restrict cells, const Occupancy* __restrict below,
+                  const Occupancy* __restrict above, int width, bool walls, Faces* __restrict row) {
+  const auto asked = static_cast<Faces>(walls ? ~0 : kFloor);
+  const auto face = [](Occupancy o, Faces f) { return static_cast<Faces>(o == Occupancy::Occupied ? f : 0); };
+  for (int x = 1; x + 1 < width; ++x) {
+    const auto all = static_cast<Faces>(kFloor | face(cells[x + 1], kEastFace) | face(above[x], kNorthFace) |
+                                        face(cells[x - 1], kWestFace) | face(below[x], kSouthFace));
+    row[x] = static_cast<Faces>(cells[x] == Occupancy::Free ? all & asked : 0);
+  }
+}
+
+}  // namespace
+
 Grid<Faces> SearchedArea::unsearched(const Traversable& floor) const {
   Grid<Faces> open(floor.frame());
   const Cell shift = twice_.width() == 0 ? Cell{} : shift_from(floor.frame());
   const int width = floor.cells.width();
   for (int y = 1; y + 1 < floor.cells.height(); ++y) {
     const Occupancy* cells = floor.cells.row(y);
-    const Occupancy* below = floor.cells.row(y - 1);
-    const Occupancy* above = floor.cells.row(y + 1);
     Faces* row = open.row(y);
-    const auto face = [&](Occupancy o, Faces f) { return config_.faces && o == Occupancy::Occupied ? f : Faces{0}; };
-    for (int x = 1; x + 1 < width; ++x)
-      row[x] = static_cast<Faces>(cells[x] == Occupancy::Free
-                                      ? kFloor | face(cells[x + 1], kEastFace) | face(above[x], kNorthFace) |
-                                            face(cells[x - 1], kWestFace) | face(below[x], kSouthFace)
-                                      : 0);
+    faces_of_row(cells, floor.cells.row(y - 1), floor.cells.row(y + 1), width, config_.faces, row);
     const int own = y + shift.y;
     if (own < 0 || own >= twice_.height()) continue;
     const Faces* looked_at = twice_.row(own);
@@ -403,24 +439,25 @@ std::vector<Cell> steps_around(const std::vector<double>& distances, double rang
 std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& searched, const SearchConfig& config,
                                   double room, double tight, Subjects subjects) {
   const double cell = floor.frame().resolution;
-  const std::vector<Cell> squarely = steps_around(kSquareDistances, config.range, cell);
+  const std::vector<LookFrom> squarely =
+      looks_from(steps_around(kSquareDistances, config.range, cell), kSquarely.incidence);
   const bool square = subjects == Subjects::Squarely;
-  std::vector<Cell> sure, far;
+  std::vector<LookFrom> sure, far;
   if (square) {
-    sure = steps_around(kSureDistances, config.range, cell, kManyDirections);
-    far = steps_around(kFarDistances, config.range, cell, kManyDirections);
+    sure = looks_from(steps_around(kSureDistances, config.range, cell, kManyDirections), kSureIncidence);
+    far = looks_from(steps_around(kFarDistances, config.range, cell, kManyDirections), kSureIncidence);
   }
-  const std::vector<Cell> anyhow =
-      steps_around(subjects == Subjects::Niches ? kNicheDistances : kDistances, config.range, cell);
+  const std::vector<LookFrom> anyhow =
+      looks_from(steps_around(subjects == Subjects::Niches ? kNicheDistances : kDistances, config.range, cell),
+                 Inspection{}.incidence);
   std::vector<Viewpoint> found;
-  const auto add_of = [&](Cell subject, Faces missing, const std::vector<Cell>& steps, double incidence, double d_min) {
+  const auto add_of = [&](Cell subject, Faces missing, const std::vector<LookFrom>& looks, double d_min) {
     const std::size_t before = found.size();
-    for (const Cell step : steps) {
-      const Cell c{subject.x + step.x, subject.y + step.y};
-      if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free || floor.clearance[c] < d_min) continue;
-      const double way = length(step.x, step.y);
-      const auto faces = static_cast<Faces>(missing & faces_along(-step.x / way, -step.y / way, incidence));
+    for (const LookFrom& look : looks) {
+      const auto faces = static_cast<Faces>(missing & look.faces);
       if (faces == 0) continue;
+      const Cell c{subject.x + look.step.x, subject.y + look.step.y};
+      if (!floor.cells.inside(c) || floor.cells[c] != Occupancy::Free || floor.clearance[c] < d_min) continue;
       if (in_view(floor, c, subject)) found.push_back({c, floor.cells.centre(subject), faces});
     }
     return found.size() > before;
@@ -428,25 +465,22 @@ std::vector<Viewpoint> viewpoints(const Traversable& floor, const SearchedArea& 
   const auto add = [&](Cell subject, Faces missing) {
     const auto walls = static_cast<Faces>(missing & ~kFloor);
     for (const double d_min : {room, tight})
-      if (square && add_of(subject, walls, sure, kSureIncidence, d_min)) return;
+      if (square && add_of(subject, walls, sure, d_min)) return;
     for (const double d_min : {room, tight}) {
-      if (subjects != Subjects::Niches && walls != 0 && add_of(subject, walls, squarely, kSquarely.incidence, d_min))
-        return;
-      if (square && add_of(subject, walls, far, kSureIncidence, d_min)) return;
-      if (subjects != Subjects::Squarely && add_of(subject, missing, anyhow, Inspection{}.incidence, d_min)) return;
+      if (subjects != Subjects::Niches && walls != 0 && add_of(subject, walls, squarely, d_min)) return;
+      if (square && add_of(subject, walls, far, d_min)) return;
+      if (subjects != Subjects::Squarely && add_of(subject, missing, anyhow, d_min)) return;
     }
   };
   if (subjects == Subjects::Niches) {
-    for (const Cell subject : unsearched_niches(floor, searched))
-      add(subject, static_cast<Faces>(searched.missing(floor, subject) & ~kFloor));
+    for (const auto& [subject, missing] : unsearched_niches(floor, searched)) add(subject, missing);
     return found;
   }
   const auto asked = static_cast<Faces>(subjects == Subjects::Squarely ? ~kFloor : ~0);
   const int stride = cells_apart(kFloorStride, cell), face_stride = cells_apart(kFaceStride, cell);
   for (const auto& cluster : unsearched_clusters(floor, searched, asked, config.min_cells))
     for (std::size_t i = 0; i < cluster.size(); ++i) {
-      const Cell subject = cluster[i];
-      const auto missing = static_cast<Faces>(searched.missing(floor, subject) & asked);
+      const auto& [subject, missing] = cluster[i];
       // Every so far, and the first one of each cluster, so that none goes without.
       const bool on_face = (missing & ~kFloor) != 0 && (subject.x + subject.y) % face_stride == 0;
       if (i != 0 && !on_face && (subject.x % stride != 0 || subject.y % stride != 0)) continue;

@@ -22,7 +22,10 @@ constexpr double kBackGain = 2.5;                ///< speed per way left [1/s]
 
 double apart(const TPose2D& a, const TPose2D& b) { return distance(position(a), position(b)); }
 double turned(const TPose2D& a, const TPose2D& b) { return std::abs(wrap_angle(a.phi - b.phi)); }
-bool alike(const TPose2D& a, const TPose2D& b) { return apart(a, b) < kSamePose && turned(a, b) < kSameTurn; }
+bool alike(const TPose2D& a, const TPose2D& b) {
+  if (std::abs(a.x - b.x) > 2.0 * kSamePose) return false;  // for most of a long way this is all that is asked
+  return apart(a, b) < kSamePose && turned(a, b) < kSameTurn;
+}
 
 /// A pose beside the robot, which slipped sideways meanwhile, cannot be driven to: one before it then.
 bool leads_on(const TPose2D& from, const TPose2D& to) {

@@ -100,7 +100,7 @@ TEST(LocalGrids, ThoseOfEarlierMapsChangeNothing) {
         const std::optional<PalletGrid>&a = fresh.at({x, y}), &b = again.at({x, y});
         ASSERT_EQ(a.has_value(), b.has_value());
         if (!a) continue;
-        EXPECT_EQ(a->angle, b->angle);
+        EXPECT_EQ(a->angle(), b->angle());
         EXPECT_EQ(a->east, b->east);
         EXPECT_EQ(a->north, b->north);
       }
