@@ -254,7 +254,8 @@ bool off_the_floor(const arenas::PatchIndex& floor, const TPose2D& T_arena_base)
 }
 
 scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajectory& truth,
-                                        const robot::RobotModel& model, const Core& core) {
+                                        const robot::RobotModel& model, const Core& core,
+                                        const OccupancyGrid* known_visible) {
   scoring::MissionFigures out;
   out.end_code = core.explorer() != nullptr ? code_of(core.explorer()->end()) : "time";
   out.drive = drive_figures(arena, truth, model);
@@ -262,7 +263,8 @@ scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajec
   if (!truth.empty() && off_the_floor(arenas::PatchIndex(arena), truth.back().pose)) out.end_code = "fell";
   out.stalls = static_cast<std::uint64_t>(core.stalls());
   const OccupancyGrid all = arenas::truth_map(arena);
-  const OccupancyGrid visible = arenas::visible_truth(arena, all, viewer_of(model));
+  const OccupancyGrid visible =
+      known_visible != nullptr ? *known_visible : arenas::visible_truth(arena, all, viewer_of(model));
   const double time = truth.empty() ? 0.0 : truth.back().stamp - truth.front().stamp;
   out.area_per_min = area_per_minute(core.first_seen(), visible, arena_in_map(truth, core.mapper()), time);
   out.victims_visible = static_cast<std::uint64_t>(visible_victims(arena, model));

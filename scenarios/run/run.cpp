@@ -200,7 +200,8 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   folder.write("arena.yaml", yaml);
   folder.write("scenario.yaml", resolved_yaml(resolved));
   folder.write("versions.json", versions().json(2) + "\n");
-  folder.save_truth(arena, truth_to_score_with(arena, scenario));
+  const OccupancyGrid truth = truth_to_score_with(arena, scenario);
+  folder.save_truth(arena, truth);
 
   sim::SimRobot simulated(arena, scenario.robot, scenario.sim, scenario.seed);
   Core core(scenario, scenario.robot, true, folder.path());
@@ -228,7 +229,8 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   evidence.map = &files.map.grid;
   evidence.truth = &files.truth.grid;
   evidence.run = run_figures(core, end.sim_s, end.reason);
-  evidence.mission = mission_figures(arena, simulated.truth(), scenario.robot, core);
+  evidence.mission =
+      mission_figures(arena, simulated.truth(), scenario.robot, core, scenario.visible_truth ? &truth : nullptr);
   folder.write("decisions.txt", decisions_text(core));
   if (options.record) save_map_files(folder, core.mapper());
   RunReport report;

@@ -9,6 +9,7 @@
 
 #include "base/grid.h"
 #include "base/image/png.h"
+#include "base/planar.h"
 #include "base/text/text_file.h"
 #include "scoring/pictures/canvas.h"
 #include "scoring/walls/resample.h"
@@ -141,10 +142,11 @@ TPose2D middle_on_middle(const OccupancyGrid& map, const OccupancyGrid& truth) {
 template <class Wall>
 void paint(Canvas& canvas, const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map,
            const Wall& wall) {
+  const PlanarTransform T(T_truth_map);
   for (int row = 0; row < canvas.map_rows(); ++row) {
     for (int column = 0; column < canvas.map_columns(); ++column) {
       const TPoint2D p_truth = canvas.point(column, row);
-      const TPoint2D p_map = T_truth_map.inverseComposePoint(p_truth);
+      const TPoint2D p_map = T.inverse(p_truth);
       const Occupancy in_map = occupancy_at(map, p_map);
       const Occupancy in_truth = occupancy_at(truth, p_truth);
       Colour& colour = canvas.image.at<Colour>(row, column);

@@ -79,7 +79,8 @@ double mean_asked(const Grid<Tile>& tiles) {
 
 std::string sight_map_png(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map) {
   const SightLines lines(truth);
-  const Grid<Tile> tiles = tiles_of(truth, sight_places(lines, SightMap(map), PlanarTransform(T_truth_map)));
+  const PlanarTransform T(T_truth_map);
+  const Grid<Tile> tiles = tiles_of(truth, sight_places(lines, SightMap(map), T));
   const double enough = kFaint * mean_asked(tiles);
   const WallField walls(truth, 0.5);
   Canvas canvas(common_frame(map, truth, T_truth_map, 0.5));
@@ -94,7 +95,7 @@ std::string sight_map_png(const OccupancyGrid& map, const OccupancyGrid& truth, 
       if (in_truth == Occupancy::Occupied)
         colour = kInk;
       else if (in_truth == Occupancy::Free && walls.distance(p_truth) > kSameWall &&
-               occupancy_at(map, T_truth_map.inverseComposePoint(p_truth)) == Occupancy::Occupied)
+               occupancy_at(map, T.inverse(p_truth)) == Occupancy::Occupied)
         colour = kMapWall;
     }
   if (!lines.usable()) draw_warning(canvas, "too few lines of sight: the score is the overlap");
