@@ -600,7 +600,7 @@ RunReport drive(const RobotFile& file, const DriveOptions& options) {
   folder.save_hashes("");
   folder.write("score.json", report.score->dump(2) + "\n");
   folder.close();
-  if (options.out.empty()) folder.link_latest();
+  folder.link_latest(core.mapper());
   report.folder = folder.path();
   tell_who_answers(file, silent, options);
   for (const std::string& device : box.cut_short())

@@ -159,16 +159,13 @@ std::string folder_for(const RunOptions& options, const Scenario& scenario) {
 }
 
 void finish(RunReport& report, scoring::Evidence& evidence, RunFolder& folder, const Scenario& scenario,
-            const RunOptions& options, Clock::time_point start) {
+            Clock::time_point start) {
   report.end = evidence.run->end;
   evidence.machine = scoring::MachineFigures{seconds_since(start), peak_megabytes()};
   *report.score = score_json(evidence);
   folder.save_hashes(without_machine(*report.score).dump(2));
   folder.write("score.json", report.score->dump(2) + "\n");
   folder.close(!report.interrupted && report.failure.empty());
-  const std::filesystem::path parent = std::filesystem::path(folder.path()).parent_path().filename();
-  const bool nothing_done = !report.failure.empty() && evidence.run->scans == 0;
-  if (options.link_latest && !nothing_done && (options.out.empty() || parent == "runs")) folder.link_latest();
   report.folder = folder.path();
   report.broken = broken_expectations(scenario, *report.score);
 }
@@ -236,7 +233,8 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   RunReport report;
   report.interrupted = end.interrupted;
   report.failure = end.failure;
-  finish(report, evidence, folder, scenario, options, start);
+  finish(report, evidence, folder, scenario, start);
+  if (options.link_latest) folder.link_latest(core.mapper());
   return report;
 }
 
@@ -320,9 +318,11 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   report.interrupted = end.interrupted;
   report.failure = end.failure;
   if (options.base) report.place = place_found(core.mapper());
-  finish(report, evidence, folder, resolved, options, start);
+  finish(report, evidence, folder, resolved, start);
+  const bool placeless = knows_no_place(core.mapper());
+  if (options.link_latest && !placeless) folder.link_latest(core.mapper());
   // A run that was cut short had no time to find it.
-  if (knows_no_place(core.mapper()) && !end.interrupted && end.failure.empty())
+  if (placeless && !end.interrupted && end.failure.empty())
     report.broken.push_back(knows_no_place_in(*options.base, robot.was_torn()));
   return report;
 }

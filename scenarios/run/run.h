@@ -17,7 +17,7 @@ struct RunOptions {
   bool replace = false;                           ///< an existing run folder may be replaced
   bool record = true;                             ///< keep log.rlog (a simulated run only)
   std::shared_ptr<const slam::MapBase> base;      ///< map_log(): a map to go on with; null: an empty one
-  bool link_latest = true;                        ///< let `latest` beside the folder point to it
+  bool link_latest = true;                        ///< see RunFolder::link_latest()
   std::function<bool()> interrupted;              ///< asked each tick; true ends the run with its folder complete
   std::function<void(const Progress&)> progress;  ///< called a few times a second
   std::function<void(const explore::Decision&)> decided;  ///< called for each decision of the explorer, in order

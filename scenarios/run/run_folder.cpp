@@ -1,5 +1,7 @@
 #include "scenarios/run/run_folder.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -330,13 +332,20 @@ void RunFolder::close(bool whole) {
   replaces_ = false;
 }
 
-void RunFolder::link_latest() const {
+void RunFolder::link_latest(const slam::Mapper& mapper) const {
+  if (mapper.live_trajectory().empty()) return;
   std::error_code error;
-  const fs::path folder = fs::absolute(path_, error).lexically_normal();
+  fs::path folder = fs::absolute(path_, error).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();  // "runs/mine/"
+  if (folder.parent_path().filename() != "runs") return;
   const fs::path link = folder.parent_path() / "latest";
   if (fs::exists(fs::symlink_status(link, error)) && !fs::is_symlink(link, error)) return;  // somebody's own file
-  fs::remove(link, error);
-  fs::create_directory_symlink(folder.filename(), link, error);
+  const fs::path made = link.parent_path() / (".latest." + std::to_string(getpid()) + ".part");
+  fs::remove(made, error);
+  fs::create_directory_symlink(folder.filename(), made, error);
+  if (error) return;
+  fs::rename(made, link, error);
+  if (error) fs::remove(made, error);
 }
 
 }  // namespace rubble::scenarios

@@ -64,8 +64,9 @@ class RunFolder {
   void close(bool whole = true);
   /// What is written cannot be made again: it stays too when this ends before close().
   void keep_unfinished() { keeps_unfinished_ = true; }
-  /// Lets `latest` beside the folder point to it, where links can be made.
-  void link_latest() const;
+  /// Lets `latest` in `runs` point to this folder of it, where links can be made: whoever reads it meanwhile finds the
+  /// run before or this one. A run whose mapper placed no scan is nothing to go on with and leaves the link as it is.
+  void link_latest(const slam::Mapper& mapper) const;
 
  private:
   /// A trajectory that grows on disk.

@@ -43,6 +43,10 @@ expect_exit 3 "nonsense.yaml" "$rubble" drive nonsense.yaml
   fail "that no key stops it is not said: $(cat err.txt)"
 
 # Nobody there: exit 4, and the device is named.
+mkdir -p runs/before && ln -s before runs/latest
+"$rubble" drive "$robot" --urg pty:no1 --base pty:no2 --levelling pty:no3 --set safety.start_s=1 >/dev/null 2>err.txt
+[[ $? == 4 && -d runs/pioneer_urg-seed1-001 && $(readlink runs/latest) == before ]] ||
+  fail "a drive that never began becomes runs/latest: $(readlink runs/latest), $(cat err.txt)"
 "$rubble" drive "$robot" --urg pty:no1 --base pty:no2 --levelling pty:no3 --set safety.start_s=1 --out nobody \
   >out.txt 2>err.txt
 [[ $? == 4 ]] || fail "a drive without devices must fail with 4: $(cat err.txt)"

@@ -41,6 +41,9 @@ for how in --localise --continue; do
   json_holds lost$how/score.json "j['place_known'] == 0"
   [[ ! -s lost$how/estimate.tum ]] || fail "$how made up poses"
 done
+(mkdir kept && cd kept && "$rubble" map ../brief >/dev/null && "$rubble" map ../brief --localise ../first >/dev/null)
+[[ $(readlink kept/runs/latest) == map-log-seed1-001 && -d kept/runs/map-log-seed1-002 ]] ||
+  fail "a run without a place becomes runs/latest: $(ls -l kept/runs)"
 # What was given is not asked for, and a log that is cut is the first thing to mend.
 "$rubble" map brief --localise first --start 8,8,0 --out astray >table.txt
 [[ $? == 1 ]] && grep -q 'NOT AS EXPECTED .*does not know its place .*: check --start, or give a longer log or' table.txt ||

@@ -9,6 +9,9 @@ for name in scenario.yaml versions.json arena.yaml arena.png log.rlog truth.tum 
 done
 (mkdir -p at && cd at && "$rubble" run ../s.yaml --set time_limit_s=5 >/dev/null)
 [[ -e at/runs/latest/score.json ]] || fail "the link latest does not lead to the run"
+(cd at && "$rubble" run ../s.yaml --mapper-command false >/dev/null 2>&1)
+[[ $(readlink at/runs/latest) == small-seed3-001 && -d at/runs/small-seed3-002 ]] ||
+  fail "a run that maps nothing becomes runs/latest: $(ls -l at/runs)"
 [[ -e latest ]] && fail "a link was put beside a folder given with --out"
 json_holds a/score.json "all(k in j for k in 'score precision recall psi_m aligned ate_first_m ate_aligned_m ate_live_m known \
 victims_found victims_total sim_s wall_s real_time_factor peak_mb'.split())"

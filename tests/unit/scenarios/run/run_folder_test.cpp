@@ -114,6 +114,30 @@ TEST_F(RunFolderFiles, VictimsAreListedWithTheirCovarianceAndSenses) {
             "3,12.50,1.500,-2.000,0.04000,-0.01000,0.09000,0.750,sound co2\n");
 }
 
+TEST_F(RunFolderFiles, LatestIsTheLastRunThatPlacedAScan) {
+  namespace fs = std::filesystem;
+  const fs::path link = path("runs/latest");
+  ToldMapper mapper, blind;
+  mapper.see(0.0, 1.0);
+  RunFolder(path("runs/first"), false).link_latest(mapper);
+  EXPECT_EQ(fs::read_symlink(link), "first");
+  RunFolder(path("runs/second"), false).link_latest(blind);
+  EXPECT_EQ(fs::read_symlink(link), "first") << "nothing can be done with the second";
+  RunFolder(path("runs/third/"), false).link_latest(mapper);
+  EXPECT_EQ(fs::read_symlink(link), "third");
+  RunFolder(path("elsewhere/fourth"), false).link_latest(mapper);
+  EXPECT_EQ(fs::read_symlink(link), "third");
+  EXPECT_FALSE(fs::exists(fs::symlink_status(path("elsewhere/latest"))));
+
+  std::size_t left = 0;
+  for (const auto& entry : fs::directory_iterator(path("runs"))) left += entry.path().filename() != "latest" ? 1 : 0;
+  EXPECT_EQ(left, 3u) << "the new link was made beside the old one";
+  fs::remove(link);
+  std::ofstream(link) << "mine";
+  RunFolder(path("runs/fifth"), false).link_latest(mapper);
+  EXPECT_EQ(read(link.string()), "mine");
+}
+
 TEST_F(RunFolderFiles, OnlyWhatARunWritesIsReplaced) {
   { const RunFolder made(path("run"), false); }
   const std::string run = path("run") + "/";
