@@ -118,7 +118,7 @@ int arena(const ArenaArguments& arguments) {
     print_line(base + ".yaml");
   }
   show_share("draws the arena", 0.0);
-  write_png(place_in(out, stem + ".png"), arenas::render(arena, 60.0));
+  write_png(place_in(out, stem + ".png"), arenas::render_with_legend(arena, 60.0));
   show_share("draws its truth", 0.01);
   const OccupancyGrid truth = arenas::truth_map(arena, arguments.resolution, arguments.slice_height);
   write_geotiff(place_in(out, stem + "-truth.tif"), scoring::draw_truth(truth));

@@ -7,6 +7,7 @@
 #include "arenas/model/patch_index.h"
 #include "arenas/truth/canvas.h"
 #include "base/error.h"
+#include "base/image/legend.h"
 
 namespace rubble::arenas {
 namespace {
@@ -118,18 +119,20 @@ void draw_objects(const Arena& arena, Canvas& canvas) {
   }
 }
 
+const Colour& solid_colour(const Solid& solid, const PatchIndex& floors) {
+  if (solid.element == kVictimBoxElement) return kBox;
+  const double floor = floors.floor_height(middle(solid.outline));
+  if (solid.z_bottom > (std::isfinite(floor) ? floor : 0.0) + 0.3) return kHanging;
+  return solid.element == kWallElement && solid.z_top > kTallFrom ? kTall : kWall;
+}
+
 /// Thin walls are drawn at least 40 mm wide, so that a small picture still shows them.
 void draw_solids(const Arena& arena, Canvas& canvas) {
   const PatchIndex floors(arena);
   for (const Solid& solid : arena.solids) {
-    const bool is_box = solid.element == kVictimBoxElement;
-    const double floor = floors.floor_height(middle(solid.outline));
-    const bool is_hanging = solid.z_bottom > (std::isfinite(floor) ? floor : 0.0) + 0.3;
-    const Colour& colour = is_box                                                     ? kBox
-                           : is_hanging                                               ? kHanging
-                           : solid.element == kWallElement && solid.z_top > kTallFrom ? kTall
-                                                                                      : kWall;
-    const bool is_ceiling = is_hanging && signed_area(solid.outline) > 1.0;  // the floor below it shows through
+    const Colour& colour = solid_colour(solid, floors);
+    const bool is_box = colour == kBox;
+    const bool is_ceiling = colour == kHanging && signed_area(solid.outline) > 1.0;  // the floor below it shows through
     canvas.fill(solid.outline, colour, is_ceiling ? 0.45 : 1.0);
     draw_outline(solid.outline, is_box ? 0.012 : 0.03, colour, 1.0, canvas);
   }
@@ -154,6 +157,38 @@ void draw_start(const Arena& arena, Canvas& canvas) {
   canvas.arrow(p, p + heading * 0.46, 0.055, kStart);
 }
 
+/// As the arena has it: nobody looks for what is not there.
+std::vector<LegendEntry> legend_of(const Arena& arena) {
+  std::vector<LegendEntry> entries;
+  const auto add = [&](bool is_there, const Colour& colour, const std::string& words) {
+    const auto channel = [&](std::size_t i) { return static_cast<std::uint8_t>(std::lround(colour[i])); };
+    if (is_there) entries.emplace_back(Bgr{channel(2), channel(1), channel(0)}, words);
+  };
+  const auto has_solid = [&, floors = PatchIndex(arena)](const Colour& colour) {
+    return std::any_of(arena.solids.begin(), arena.solids.end(),
+                       [&](const Solid& solid) { return solid_colour(solid, floors) == colour; });
+  };
+  const auto has_object = [&](bool bottle) {
+    return std::any_of(arena.objects.begin(), arena.objects.end(),
+                       [&](const LooseObject& object) { return (object.kind == ObjectKind::Bottle) == bottle; });
+  };
+  const auto is_raised = [](const FloorPatch& patch) { return highest(patch) > 0.02; };
+  const auto slopes = [](const FloorPatch& patch) { return std::hypot(patch.gx, patch.gy) >= 0.02; };
+  const bool raised = std::any_of(arena.floor.begin(), arena.floor.end(), is_raised);
+  add(!arena.floor.empty(), scaled(kWood, 0.93), raised ? "floor, the higher the lighter" : "floor");
+  add(std::any_of(arena.floor.begin(), arena.floor.end(), slopes), kUphill, "arrow: uphill");
+  add(has_solid(kWall), kWall, "wall");
+  add(has_solid(kTall), kTall, "wall above 1.5 m");
+  add(has_solid(kHanging), kHanging, "hangs above the floor");
+  add(has_solid(kBox), kBox, "victim's box");
+  add(!arena.sheets.empty() || !arena.balls.empty(), kPaper, "paper");
+  add(has_object(true), kBottle, "bottle");
+  add(has_object(false), kRadio, "radio");
+  add(!arena.victims.empty(), kVictim, "victim and its facing");
+  add(true, kStart, "start and heading");
+  return entries;
+}
+
 }  // namespace
 
 RgbImage render(const Arena& arena, double pixels_per_metre) {
@@ -174,6 +209,14 @@ RgbImage render(const Arena& arena, double pixels_per_metre) {
     draw_start(arena, canvas);
     canvas.copy_to(picture);
   }
+  return picture;
+}
+
+RgbImage render_with_legend(const Arena& arena, double pixels_per_metre) {
+  const TPoint2D size = arena.max_corner - arena.min_corner + TPoint2D{2.0 * kMargin, 2.0 * kMargin};
+  const double wanted = std::clamp(kLeastWidth / size.x, pixels_per_metre, 2.0 * pixels_per_metre);
+  RgbImage picture = render(arena, wanted);
+  draw_legend(picture, legend_of(arena), picture.width / size.x);
   return picture;
 }
 

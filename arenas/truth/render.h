@@ -11,4 +11,8 @@ namespace rubble::arenas {
 /// bands, so that it takes little more memory than the picture.
 RgbImage render(const Arena& arena, double pixels_per_metre = 60.0);
 
+/// The same, and below it what its colours mean (those of what this arena has) and a scale bar. A small arena gets up
+/// to twice as many pixels a metre, for the words to have room.
+RgbImage render_with_legend(const Arena& arena, double pixels_per_metre = 60.0);
+
 }  // namespace rubble::arenas

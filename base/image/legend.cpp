@@ -46,6 +46,14 @@ int text_width(const std::string& words) {
   return cv::getTextSize(words, cv::FONT_HERSHEY_SIMPLEX, 0.42, 1, &base).width;
 }
 
+void draw_label(cv::Mat& picture, const std::string& words, int x, int y) {
+  const cv::Rect around = cv::Rect(x - 2, y - 11, text_width(words) + 4, 15) & cv::Rect({}, picture.size());
+  if (around.empty()) return;
+  cv::Mat ground = picture(around);
+  cv::addWeighted(ground, 0.15, cv::Mat(ground.size(), ground.type(), kMargin), 0.85, 0.0, ground);
+  draw_text(picture, words, x, y);
+}
+
 void put_axes(cv::Mat& picture, const GridFrame& frame, int scale) {
   constexpr int kApart = 60, kTick = 5, kBelow = 22;  // [pixels]
   const double pixels = scale / frame.resolution;
@@ -140,6 +148,16 @@ StripItem bar_item(cv::Mat& picture, const std::string& least, const std::string
 
 void draw_legend(cv::Mat& picture, const std::vector<LegendEntry>& entries, const GridFrame& frame, int scale) {
   put_strip(picture, legend_items(picture, entries), frame, scale);
+}
+
+GridFrame frame_of_pixels(double metre) { return {1, 1, 1.0 / metre, 0.0, 0.0}; }
+
+void draw_legend(RgbImage& picture, const std::vector<LegendEntry>& entries, double metre) {
+  cv::Mat strip(1, picture.width, CV_8UC3, kMargin);  // a row to begin with, that is not taken
+  draw_legend(strip, entries, frame_of_pixels(metre), 1);
+  cv::cvtColor(strip, strip, cv::COLOR_BGR2RGB);
+  picture.rgb.insert(picture.rgb.end(), strip.ptr(1), strip.data + strip.total() * strip.elemSize());
+  picture.height += strip.rows - 1;
 }
 
 }  // namespace rubble

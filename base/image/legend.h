@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/grid.h"
+#include "base/image/geotiff.h"
 
 namespace cv {
 class Mat;
@@ -32,6 +33,8 @@ int pixels_per_cell(const GridFrame& frame);
 
 void draw_text(cv::Mat& picture, const std::string& words, int x, int y);
 int text_width(const std::string& words);  ///< [pixels]
+/// Words on a light ground of their own, that stay legible whatever is drawn there.
+void draw_label(cv::Mat& picture, const std::string& words, int x, int y);
 
 /// Puts axes with the map's metres at the left of a picture, which shows `frame` from its upper left corner on, and
 /// below it. `scale`: pixels a cell.
@@ -61,5 +64,10 @@ StripItem bar_item(cv::Mat& picture, const std::string& least, const std::string
 /// then is the picture as high as it will be: nothing else is drawn later.
 void put_strip(cv::Mat& picture, const std::vector<StripItem>& items, const GridFrame& frame, int scale);
 void draw_legend(cv::Mat& picture, const std::vector<LegendEntry>& entries, const GridFrame& frame, int scale);
+
+/// Below a picture that may be huge and is no OpenCV's, as wide as the picture. `metre`: pixels.
+void draw_legend(RgbImage& picture, const std::vector<LegendEntry>& entries, double metre);
+/// The frame of a picture that is no grid's, of which the scale bar asks only how large a pixel is.
+GridFrame frame_of_pixels(double metre);
 
 }  // namespace rubble

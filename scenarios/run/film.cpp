@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/grid.h"
+#include "base/image/legend.h"
 #include "base/planar.h"
 
 namespace rubble::scenarios {
@@ -14,18 +15,17 @@ namespace {
 
 using mrpt::math::TPoint2D;
 
-constexpr int kPanelSide = 360;      ///< longer side of a frame [pixels]
-constexpr std::size_t kLines = 3;    ///< that are written below it
-constexpr int kLineHeight = 17;      ///< [pixels]
-constexpr int kCaption = 57;         ///< height of all lines [pixels]
-constexpr int kBetween = 10;         ///< two frames [pixels]
-constexpr double kRim = 0.3;         ///< around all that is known [m]
-constexpr double kArrow = 0.35;      ///< length of the robot [m]
-constexpr double kLetterSize = 0.4;  ///< of OpenCV's usual size
-constexpr int kLetterWidth = 7;      ///< [pixels]
-const cv::Scalar kUnknownGround(226, 226, 226), kFreeGround(255, 255, 255), kSearchedGround(180, 230, 180),
-    kWallInk(120, 40, 0), kWayInk(140, 0, 120), kPlanInk(60, 160, 0), kVictimInk(10, 10, 240), kRobotInk(0, 130, 255),
-    kWords(60, 60, 60);
+constexpr int kPanelSide = 360;       ///< longer side of a frame [pixels]
+constexpr std::size_t kLines = 3;     ///< that are written below it
+constexpr int kLineHeight = 17;       ///< [pixels]
+constexpr int kCaption = 57;          ///< height of all lines [pixels]
+constexpr int kBetween = 10;          ///< two frames [pixels]
+constexpr double kRim = 0.3;          ///< around all that is known [m]
+constexpr double kArrow = 0.35;       ///< length of the robot [m]
+constexpr double kLetterWidth = 7.4;  ///< [pixels]
+using Ink = cv::Vec3b;                ///< blue, green, red
+const Ink kUnknownGround(226, 226, 226), kFreeGround(255, 255, 255), kSearchedGround(180, 230, 180),
+    kWallInk(120, 40, 0), kWayInk(140, 0, 120), kPlanInk(60, 160, 0), kVictimInk(10, 10, 240), kRobotInk(0, 130, 255);
 
 /// The ground that all frames show, and how large.
 struct Stage {
@@ -62,7 +62,7 @@ struct Stage {
 };
 
 /// The cells of one kind.
-void draw_cells(const OccupancyGrid& map, Occupancy what, const cv::Scalar& ink, const Stage& stage, cv::Mat& panel) {
+void draw_cells(const OccupancyGrid& map, Occupancy what, const Ink& ink, const Stage& stage, cv::Mat& panel) {
   const GridFrame& frame = map.frame();
   const auto corner = [&](int x, int y) {
     return stage.at({frame.x0 + x * frame.resolution, frame.y0 + y * frame.resolution});
@@ -72,7 +72,7 @@ void draw_cells(const OccupancyGrid& map, Occupancy what, const cv::Scalar& ink,
       if (map[{x, y}] != what) continue;
       // Corners are reckoned alike for both cells beside them: else rounding leaves gaps between.
       const cv::Point a = corner(x, y), b = corner(x + 1, y + 1);
-      cv::rectangle(panel, a, {std::max(a.x, b.x - 1), std::min(a.y, b.y + 1)}, ink, cv::FILLED);
+      cv::rectangle(panel, a, {std::max(a.x, b.x - 1), std::min(a.y, b.y + 1)}, cv::Scalar(ink), cv::FILLED);
     }
 }
 
@@ -83,9 +83,9 @@ void draw_map(const FilmFrame& frame, const OccupancyGrid& map, const Stage& sta
   draw_cells(map, Occupancy::Occupied, kWallInk, stage, panel);
 }
 
-void draw_line(const std::vector<TPoint2D>& points, const Stage& stage, const cv::Scalar& ink, cv::Mat& panel) {
+void draw_line(const std::vector<TPoint2D>& points, const Stage& stage, const Ink& ink, cv::Mat& panel) {
   for (std::size_t i = 1; i < points.size(); ++i)
-    cv::line(panel, stage.at(points[i - 1]), stage.at(points[i]), ink, 1, cv::LINE_AA);
+    cv::line(panel, stage.at(points[i - 1]), stage.at(points[i]), cv::Scalar(ink), 1, cv::LINE_AA);
 }
 
 void draw_robot(const mrpt::math::TPose2D& pose, const Stage& stage, cv::Mat& panel) {
@@ -93,7 +93,7 @@ void draw_robot(const mrpt::math::TPose2D& pose, const Stage& stage, cv::Mat& pa
     return stage.at(PlanarTransform(pose)(TPoint2D(ahead * kArrow, left * kArrow)));
   };
   const std::vector<cv::Point> arrow{corner(0.7, 0.0), corner(-0.5, 0.45), corner(-0.25, 0.0), corner(-0.5, -0.45)};
-  cv::fillPoly(panel, std::vector<std::vector<cv::Point>>{arrow}, kRobotInk, cv::LINE_AA);
+  cv::fillPoly(panel, std::vector<std::vector<cv::Point>>{arrow}, cv::Scalar(kRobotInk), cv::LINE_AA);
 }
 
 double known_ground(const OccupancyGrid& map) {
@@ -105,10 +105,10 @@ double known_ground(const OccupancyGrid& map) {
 void write_below(const FilmFrame& frame, double known, int top, cv::Mat& panel) {
   char words[80];
   const std::size_t victims = frame.victims.size();
-  std::snprintf(words, sizeof words, "%.0f s, %.0f m2, %zu victim%s", frame.time, known, victims,
+  std::snprintf(words, sizeof words, "%.0f s, %.0f m2, %zu victim%s confirmed", frame.time, known, victims,
                 victims == 1 ? "" : "s");
   std::vector<std::string> lines{words};
-  const auto fits = static_cast<std::size_t>(std::max(10, panel.cols / kLetterWidth));
+  const auto fits = static_cast<std::size_t>(std::max(10.0, panel.cols / kLetterWidth));
   for (std::string why = frame.why; !why.empty() && lines.size() < kLines;) {
     const bool is_last = lines.size() + 1 == kLines;
     std::size_t end = why.size() <= fits ? why.size() : is_last ? fits - 2 : why.rfind(' ', fits);
@@ -118,7 +118,7 @@ void write_below(const FilmFrame& frame, double known, int top, cv::Mat& panel) 
   }
   int y = top + 15;
   for (const std::string& line : lines) {
-    cv::putText(panel, line, {2, y}, cv::FONT_HERSHEY_SIMPLEX, kLetterSize, kWords, 1, cv::LINE_AA);
+    draw_text(panel, line, 2, y);
     y += kLineHeight;
   }
 }
@@ -126,14 +126,14 @@ void write_below(const FilmFrame& frame, double known, int top, cv::Mat& panel) 
 cv::Mat panel_of(const FilmFrame& frame, const Stage& stage) {
   cv::Mat panel(stage.height() + kCaption, stage.width(), CV_8UC3, cv::Scalar(255, 255, 255));
   cv::Mat ground = panel.rowRange(0, stage.height());
-  ground.setTo(kUnknownGround);
+  ground.setTo(cv::Scalar(kUnknownGround));
   const OccupancyGrid map = frame.map.unpacked();
   if (map.resolution() == stage.cell) draw_map(frame, map, stage, ground);
   draw_line(frame.way, stage, kWayInk, ground);
   draw_line(frame.plan, stage, kPlanInk, ground);
   for (const TPoint2D& victim : frame.victims)
-    cv::circle(ground, stage.at(victim), std::max(3, static_cast<int>(0.15 * stage.scale)), kVictimInk, cv::FILLED,
-               cv::LINE_AA);
+    cv::circle(ground, stage.at(victim), std::max(3, static_cast<int>(0.15 * stage.scale)), cv::Scalar(kVictimInk),
+               cv::FILLED, cv::LINE_AA);
   draw_robot(frame.pose, stage, ground);
   write_below(frame, known_ground(map), stage.height(), panel);
   return panel;
@@ -154,6 +154,25 @@ cv::Mat film_strip(const std::vector<FilmFrame>& frames) {
     panel.copyTo(strip({kBetween + i % columns * width, kBetween + i / columns * height, panel.cols, panel.rows}));
   }
   return strip;
+}
+
+cv::Mat film_picture(const std::vector<FilmFrame>& frames) {
+  cv::Mat picture = film_strip(frames);
+  if (frames.empty()) return picture;
+  if (picture.cols < kLeastWidth)
+    cv::copyMakeBorder(picture, picture, 0, 0, 0, kLeastWidth - picture.cols, cv::BORDER_CONSTANT,
+                       cv::Scalar(255, 255, 255));
+  draw_legend(picture,
+              {{kWallInk, "wall"},
+               {kFreeGround, "free floor"},
+               {kSearchedGround, "searched for victims"},
+               {kUnknownGround, "unknown"},
+               {kWayInk, "way driven"},
+               {kPlanInk, "plan"},
+               {kRobotInk, "robot"},
+               {kVictimInk, "victim confirmed"}},
+              frame_of_pixels(Stage(frames).scale), 1);
+  return picture;
 }
 
 void Film::see(const Core& core, const robot::Inputs& inputs, double share, double occupied_threshold) {

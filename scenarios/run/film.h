@@ -34,6 +34,9 @@ struct FilmFrame {
 /// not drawn. Empty without frames.
 cv::Mat film_strip(const std::vector<FilmFrame>& frames);
 
+/// The strip, and below it what its colours mean and a scale bar.
+cv::Mat film_picture(const std::vector<FilmFrame>& frames);
+
 /// Takes the frames of a film: `wanted` of them, at equal steps of the run's time, the last one at its end.
 class Film {
  public:

@@ -132,7 +132,7 @@ ReplayReport replay_run(const std::string& path, const Scenario& scenario, const
   if (!end.failure.empty()) throw RunError(end.failure);
   if (film > 0) {
     moments.end(core, threshold);
-    folder.write("film.png", png_bytes(film_strip(moments.frames())));
+    folder.write("film.png", png_bytes(film_picture(moments.frames())));
   }
   // A run that was killed wrote its trajectory up to its last second, an older map, and its last tick perhaps without
   // the command that answered it.

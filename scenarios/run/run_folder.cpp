@@ -313,7 +313,7 @@ void RunFolder::save_truth(const arenas::Arena& arena, const OccupancyGrid& trut
   publish({"truth.tif", "truth.png", "arena.png"}, [&](const std::string& partial) {
     write_geotiff(partial + "truth.tif", tiff);
     write_png(partial + "truth.png", tiff.image);
-    write_png(partial + "arena.png", arenas::render(arena, 40.0));
+    write_png(partial + "arena.png", arenas::render_with_legend(arena, 40.0));
   });
 }
 

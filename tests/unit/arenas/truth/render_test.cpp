@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+
 #include "arenas/truth/canvas.h"
 #include "tests/support/arenas_draw.h"
 
@@ -45,10 +48,34 @@ TEST(Render, PaperIsBrightAndVictimsAreRed) {
 }
 
 TEST(Render, LargeArenaGetsFewerPixelsAMetre) {
-  const Arena a = arena({"+---+---+---+---+---+---+---+---+", "| S   .   .   .   .   .   .   . |", "+---+---+---+---+---+---+---+---+"});
+  const Arena a = arena(
+      {"+---+---+---+---+---+---+---+---+", "| S   .   .   .   .   .   .   . |", "+---+---+---+---+---+---+---+---+"});
   const RgbImage image = render(a, 1e5);
   EXPECT_LE(std::max(image.width, image.height), 6000);
   EXPECT_GT(std::max(image.width, image.height), 5900);
+}
+
+TEST(Render, TheLegendStandsBelowThePlanAndNamesWhatIsThere) {
+  const Arena bare = arena({"+---+---+---+---+", "| S   .   .   . |", "+---+---+---+---+"});
+  const RgbImage plan = render(bare, 100.0), whole = render_with_legend(bare, 100.0);
+  ASSERT_EQ(whole.width, plan.width);
+  ASSERT_GT(whole.height, plan.height + 20);
+  EXPECT_EQ(whole.rgb.size(), 3u * static_cast<std::size_t>(whole.width) * static_cast<std::size_t>(whole.height));
+  EXPECT_TRUE(std::equal(plan.rgb.begin(), plan.rgb.end(), whole.rgb.begin())) << "it hides nothing";
+  const auto shows = [](const RgbImage& image, int from, std::array<int, 3> colour) {
+    for (int row = from; row < image.height; ++row)
+      for (int column = 0; column < image.width; ++column)
+        if (std::equal(colour.begin(), colour.end(), image.pixel(column, row))) return true;
+    return false;
+  };
+  const std::array<int, 3> start{28, 128, 76}, victim{205, 38, 38};
+  EXPECT_TRUE(shows(whole, plan.height, start));
+  EXPECT_FALSE(shows(whole, plan.height, victim)) << "there is none";
+  const Arena peopled = arena({"+---+---+---+---+", "| S  A.   .   . |", "+---+---+---+---+"},
+                              "victims: [{name: v, cell: A, wall: east}]\n");
+  EXPECT_TRUE(shows(render_with_legend(peopled, 100.0), plan.height, victim));
+  const Arena small = arena({"+---+", "| S |", "+---+"});
+  EXPECT_GE(render_with_legend(small, 150.0).width, 300) << "the words have room";
 }
 
 TEST(Render, PaintedInBandsIsTheWholePicture) {

@@ -80,6 +80,21 @@ TEST(Film, AllPanelsShowTheSameGroundAndStandInRows) {
   EXPECT_NEAR(between, 0.0, 12.0) << "the robot stands at the same place of both panels";
 }
 
+TEST(Film, ALegendNamesTheColoursBelowAllPanels) {
+  FilmFrame frame = frame_of_room(-9.0);
+  const cv::Mat strip = film_strip({frame}), whole = film_picture({frame});
+  ASSERT_GT(whole.rows, strip.rows + 20);
+  EXPECT_EQ(cv::norm(whole(cv::Rect({}, strip.size())), strip, cv::NORM_INF), 0.0) << "it hides nothing";
+  const cv::Mat legend = whole.rowRange(strip.rows, whole.rows);
+  for (const cv::Vec3b& colour : {cv::Vec3b(120, 40, 0), cv::Vec3b(180, 230, 180), cv::Vec3b(140, 0, 120),
+                                  cv::Vec3b(60, 160, 0), cv::Vec3b(0, 130, 255), cv::Vec3b(10, 10, 240)}) {
+    cv::Mat there;
+    cv::inRange(legend, colour, colour, there);
+    EXPECT_GT(cv::countNonZero(there), 50) << colour;
+  }
+  EXPECT_TRUE(film_picture({}).empty());
+}
+
 TEST(Film, SearchedFloorIsGreenButItsWallsAreNot) {
   FilmFrame frame = frame_of_room(-9.0);
   OccupancyGrid searched(frame.map.frame());
