@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "base/stamp.h"
@@ -24,6 +25,9 @@ inline double worst_sigma(const PlaceCovariance& c) {
   const double mean = 0.5 * (c.xx + c.yy);
   return std::sqrt(std::max(0.0, mean + std::hypot(0.5 * (c.xx - c.yy), c.xy)));
 }
+
+/// What a victim that was confirmed is called, wherever people read of it.
+inline std::string victim_name(int id) { return "victim " + std::to_string(id); }
 
 /// A victim as the explorer believes in it.
 struct VictimReport {

@@ -44,6 +44,14 @@ void add_rest(Marks& marks, const std::vector<Mark>& map, const std::vector<Mark
 
 }  // namespace
 
+std::string true_victim_name(const std::string& name) {
+  return (name.rfind("victim", 0) == 0 ? "true " : "true victim ") + name;
+}
+
+std::string joined_name(const Mark& map, const Mark& truth) {
+  return map.name.empty() || truth.name.empty() ? map.name + truth.name : map.name + " = " + truth.name;
+}
+
 Marks marks_of(const KindScore& features) {
   Marks out;
   out.what = name_of(features.kind);
@@ -79,6 +87,7 @@ Marks marks_of(const std::vector<Poi>& reported, const std::vector<Poi>& victims
   }
   for (const Poi& poi : victims) {
     truth.push_back(mark_of(poi));
+    truth.back().name = true_victim_name(poi.name);
     p_truth.push_back(poi.p_picture);
   }
   std::vector<std::pair<std::size_t, std::size_t>> pairs;

@@ -33,6 +33,13 @@ struct Marks {
   std::optional<std::pair<mrpt::math::TPoint2D, mrpt::math::TPoint2D>> seam{};
 };
 
+/// What a victim of the truth is called beside those that were reported: "true victim2", "true victim hall". The
+/// truth's own names, as its arena file has them, are no numbers of reports.
+std::string true_victim_name(const std::string& name);
+
+/// "victim 3 = true victim2"; of a report without a name the other's alone.
+std::string joined_name(const Mark& map, const Mark& truth);
+
 Marks marks_of(const KindScore& features);
 Marks marks_of(const Rooms& map, const Rooms& truth, const RoomMatch& match);
 /// Victims reported and true, paired as victims are found: one to one within 1.2 m at the pose.

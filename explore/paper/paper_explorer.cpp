@@ -95,7 +95,7 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   stuck_watch_.update(inputs, passed, dt_);
   for (const robot::VictimCue& cue : inputs.cues)
     if (victims_.hear(cue, mapper, pose_, floor_))
-      agenda_.note(now_, "victim " + std::to_string(victims_.reports().back().id) + " confirmed");
+      agenda_.note(now_, victim_name(victims_.reports().back().id) + " confirmed");
   // What holds it up on the way will hold it up on the way home as well; what it moves to get free is no way.
   const ExplorerState state = this->state();
   const bool free = state == ExplorerState::Driving || state == ExplorerState::GoingHome;

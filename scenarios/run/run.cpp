@@ -21,6 +21,7 @@
 #include "base/error.h"
 #include "base/text/file_name.h"
 #include "base/text/words.h"
+#include "explore/victim_report.h"
 #include "robot/logs/log.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/loop.h"
@@ -106,7 +107,8 @@ VictimLists victim_lists(const WrittenMaps& files, const Scenario& scenario, con
   out.reported.from = scoring::VictimSource::List;
   out.reported.symbols = files.map.symbols.size();
   for (const auto& victim : victims)
-    out.reported.victims.push_back({"", in_picture(files.map, victim.p_map, scenario.geo)});
+    out.reported.victims.push_back(
+        {explore::victim_name(victim.id), in_picture(files.map, victim.p_map, scenario.geo)});
   out.there_are.path = "arena.yaml";
   for (const auto& victim : arena.victims)
     out.there_are.victims.push_back({victim.name, {victim.position.x, victim.position.y}});

@@ -5,6 +5,7 @@
 
 #include "base/angle.h"
 #include "base/text/html.h"
+#include "scoring/marks.h"
 
 namespace rubble::scoring {
 namespace {
@@ -95,12 +96,13 @@ std::string neighbours(const std::vector<LeagueEntry>& entries, const std::vecto
 std::string victim_table(const LeagueEntry& e) {
   if (!e.points || e.points->victims.empty()) return "";
   std::string html =
-      "<table><tr><th>victim</th><th class=\"n\">error [m]</th><th class=\"n\">map quality</th>"
+      "<table><tr><th>victim</th><th>reported as</th><th class=\"n\">error [m]</th><th class=\"n\">map quality</th>"
       "<th class=\"n\">location</th></tr>\n";
   for (const auto& v : e.points->victims) {
-    html += "<tr><td>" + escape_html(v.victim) + "</td>";
-    html += v.found ? cell("%.2f", v.error_m) + cell("%.1f", v.quality) + cell("%.1f", v.location)
-                    : "<td class=\"none\" colspan=\"3\">not found</td>";
+    html += "<tr><td>" + escape_html(true_victim_name(v.victim)) + "</td>";
+    html += v.found ? "<td>" + escape_html(v.report) + "</td>" + cell("%.2f", v.error_m) + cell("%.1f", v.quality) +
+                          cell("%.1f", v.location)
+                    : "<td class=\"none\" colspan=\"4\">missed</td>";
     html += "</tr>\n";
   }
   return html + "</table>\n";

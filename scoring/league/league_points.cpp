@@ -70,10 +70,11 @@ LeaguePoints league_points(const OccupancyGrid& map, const OccupancyGrid& truth,
   const VictimScore matched = score_victims(p_reported, p_victims, T_truth_map, config.worthless);
   LeaguePoints out;
   out.false_alarms = matched.false_alarms;
-  for (const Poi& victim : victims) out.victims.push_back({victim.name, false, 0.0, 0.0, 0.0});
+  for (const Poi& victim : victims) out.victims.push_back({victim.name, "", false, 0.0, 0.0, 0.0});
   for (const VictimMatch& match : matched.matches) {
     VictimPoints& points = out.victims[match.truth];
     points.found = true;
+    points.report = reported[match.reported].name;
     points.error_m = match.error_m;
     points.quality = kPerVictim * local_quality(map, truth, T_truth_map, p_victims[match.truth], config);
     const double lost = (match.error_m - config.perfect) / (config.worthless - config.perfect);

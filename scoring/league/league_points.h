@@ -24,6 +24,7 @@ struct LeaguePointsConfig {
 
 struct VictimPoints {
   std::string victim;     ///< name in the truth
+  std::string report;     ///< name of the report that is it; empty where none is
   bool found = false;     ///< a report of the team lies within `worthless`
   double error_m = 0.0;   ///< of that report, at the one pose of the whole map
   double quality = 0.0;   ///< 0..10: local correctness, the map moved to fit around the victim

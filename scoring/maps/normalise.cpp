@@ -126,7 +126,7 @@ std::vector<Poi> place_symbols(const RgbImage& image, const GridFrame& frame, bo
   std::vector<Poi> out;
   for (const VictimSymbol& symbol : find_victim_symbols(image, frame.resolution)) {
     const double up = south_up ? symbol.row : frame.height - symbol.row;
-    out.push_back({"symbol_" + std::to_string(out.size() + 1),
+    out.push_back({"symbol " + std::to_string(out.size() + 1),
                    {frame.x0 + symbol.column * frame.resolution, frame.y0 + up * frame.resolution}});
   }
   return out;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "arenas/files/arena_file.h"
 #include "base/error.h"
@@ -42,6 +43,14 @@ double coordinate(const std::string& path, int line, const std::string& text) {
   return *value;
 }
 
+/// "victim 3", as all else calls it, for what the list of a run calls victim_3.
+std::string as_it_is_called(const std::string& name) {
+  constexpr std::string_view kListed = "victim_";
+  const bool is_listed = name.rfind(kListed, 0) == 0 && name.size() > kListed.size() &&
+                         name.find_first_not_of("0123456789", kListed.size()) == std::string::npos;
+  return is_listed ? "victim " + name.substr(kListed.size()) : name;
+}
+
 PoiList read_csv(const std::string& path) {
   PoiList out;
   std::optional<Header> header;
@@ -64,7 +73,8 @@ PoiList read_csv(const std::string& path) {
     if (header->type && fields[*header->type] != "victim") continue;
     const double x = coordinate(path, number, fields[header->x]);
     const double y = coordinate(path, number, fields[header->y]);
-    out.pois.push_back({fields[header->name], header->type ? mrpt::math::TPoint2D(-y, x) : mrpt::math::TPoint2D(x, y)});
+    out.pois.push_back({as_it_is_called(fields[header->name]),
+                        header->type ? mrpt::math::TPoint2D(-y, x) : mrpt::math::TPoint2D(x, y)});
   }
   if (!header) throw InputError(path + ": has no header line with name, x and y; is it a list of victims?");
   if (header->type) out.form = PoiForm::League;

@@ -20,6 +20,7 @@ const Colour kNotJudged(150, 150, 150);
 const Colour kBothFree(255, 255, 255);
 const Colour kMapFree(222, 226, 248);
 const Colour kTruthFree(248, 234, 218);
+const Colour kFound(40, 150, 30);  ///< victims
 const Colour kSeam(170, 40, 150);
 const Colour kUnknown(206, 206, 206);
 

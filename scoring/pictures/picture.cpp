@@ -81,9 +81,10 @@ void draw_cross(cv::Mat& image, const cv::Point& at, int reach, const Colour& co
 void draw_victims(Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map, bool trusted) {
   constexpr int kRadius = 8;
   const Colour doubtful(110, 110, 110);
-  const Colour found = trusted ? Colour(40, 150, 30) : doubtful;
+  const Colour found = trusted ? kFound : doubtful;
   const auto name = [&](const std::string& words, const cv::Point& at) {
-    draw_text(canvas.image, words, at.x + kRadius + 3, at.y + 4);
+    const int right = at.x + kRadius + 3, width = text_width(words);
+    draw_label(canvas.image, words, right + width <= canvas.image.cols ? right : at.x - kRadius - 3 - width, at.y + 4);
   };
   for (const auto& [map, truth] : marks.pairs) {
     const cv::Point reported = canvas.pixel(T_truth_map.composePoint(map.p));
@@ -91,7 +92,8 @@ void draw_victims(Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map
     if (trusted) cv::line(canvas.image, reported, there, cv::Scalar(found), 1, cv::LINE_AA);
     cv::circle(canvas.image, there, kRadius, cv::Scalar(found), 2, cv::LINE_AA);
     cv::circle(canvas.image, reported, 3, cv::Scalar(found), cv::FILLED, cv::LINE_AA);
-    name(truth.name, there);
+    name(trusted ? joined_name(map, truth) : truth.name, there);
+    if (!trusted) name(map.name, reported);
   }
   for (const Mark& missed : marks.truth_only) {
     const cv::Point at = canvas.pixel(missed.p);
@@ -104,16 +106,17 @@ void draw_victims(Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map
   for (const Mark& reported : marks.unjudged) {
     const cv::Point at = canvas.pixel(T_truth_map.composePoint(reported.p));
     doubt(at);
-    name("reported", at);
+    name(reported.name + ", not judged", at);
   }
   for (const Mark& wrong : marks.map_only) {
     const cv::Point at = canvas.pixel(T_truth_map.composePoint(wrong.p));
     if (!trusted) {
       doubt(at);
+      name(wrong.name, at);
       continue;
     }
     draw_cross(canvas.image, at, kRadius - 2, kMapOnly, 2);
-    name("false", at);
+    name(wrong.name + " false", at);
   }
 }
 
@@ -180,6 +183,7 @@ std::string overlay_png(const OccupancyGrid& map, const OccupancyGrid& truth, co
                                      {kMapOnly, "only in map"},
                                      {kTruthOnly, "only in truth"}};
   legend.insert(legend.end(), kGrounds.begin(), kGrounds.end());
+  if (!marks.pairs.empty() && warning.empty()) legend.push_back({kFound, "victim found = true one"});
   if (marks.seam) legend.push_back({kSeam, "seam of two parts"});
   draw_legend(canvas.image, legend, canvas.frame, canvas.scale);
   return png_bytes(canvas.image);

@@ -19,6 +19,13 @@ json_holds a/score.json "j['aligned'] and 0.5 < j['score'] <= 1 and j['known'] >
 version=$(sed -n 's/^constexpr int kScoreVersion = \([0-9]*\);$/\1/p' "$source/scoring/scorecard.h")
 json_holds a/score.json "j['overlap'] == min(j['precision'], j['recall']) and j['score_version'] == $version and j['score_at_best_pose'] == j['score']"
 
+# A victim has one number, and its name is the same wherever it is said.
+id=$(sed -n '2s/,.*//p' a/victims.csv)
+[[ $id == 1 ]] && grep -q "^1,.*,victim,victim_1," a/pois.csv && grep -q 'victim 1 confirmed$' a/decisions.txt ||
+  fail "victim 1 has several names: $(tail -1 a/pois.csv a/victims.csv; grep confirmed a/decisions.txt)"
+"$rubble" score a/map.tif a/truth.tif --pois a/pois.csv --html named.html >/dev/null || fail "score of the list ended with $?"
+grep -qF '"victim 1"],[' named.html && grep -qF '"true victim1"]' named.html || fail "the page has other names for victim 1"
+
 "$rubble" run s.yaml --out b >/dev/null || fail "second run ended with $?"
 cmp a/hashes.json b/hashes.json || fail "one seed, two results"
 "$rubble" run s.yaml --seed 4 --out c >/dev/null || fail "third run ended with $?"

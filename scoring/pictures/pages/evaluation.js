@@ -114,7 +114,8 @@
         context.lineTo(...b);
         context.stroke();
         mark(['', '', ''], a, '#1e8c28', false);
-        mark(truth, b, '#1e8c28', false);
+        const name = [map[2], truth[2]].filter(Boolean).join(' = ');
+        mark(marks.what === 'victims' ? [...b, name] : truth, b, '#1e8c28', false);
       }
       for (const one of marks.map) mark(one, pixel(onTruth(one)), '#d62f2f', true);
       for (const one of marks.truth) mark(one, pixel(one), '#0b3c91', false);
@@ -130,7 +131,7 @@
       redraw();
     });
     const words = marks.what === 'victims' ? ['found', 'false', 'missed'] : ['matched', 'of the map alone', 'of the truth alone'];
-    const counts = marks.unjudged.length ? `${marks.unjudged.length} reported, no list of the true ones`
+    const counts = marks.unjudged.length ? `${marks.unjudged.length} reported, not judged: no list of the true ones`
       : `${marks.pairs.length} ${words[0]}, ${marks.map.length} ${words[1]}, ${marks.truth.length} ${words[2]}`;
     label.append(box, ` ${marks.what}: ${counts}`);
     $('marks').append(label);
