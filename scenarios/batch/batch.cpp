@@ -119,6 +119,7 @@ void check_space(const std::string& folder, const std::string& suffix) {
 }
 
 void make_folder(const std::string& path) {
+  refuse_run_folder(path);
   std::error_code error;
   for (const std::string& link : {path + "/runs", path + "/results.jsonl", path + "/workers.log"})
     if (fs::is_symlink(link, error))
@@ -169,6 +170,14 @@ std::string hash_of_artefacts(const std::string& path) {
 }
 
 }  // namespace
+
+void refuse_run_folder(const std::string& path) {
+  std::error_code error;
+  for (const char* name : {"score.json", "log.rlog", "estimate.tum"})
+    if (fs::exists(path + "/" + name, error))
+      throw InputError(path + ": is the folder of a single run (it holds " + name +
+                       "); give the batch a folder of its own with --out");
+}
 
 std::string shard_suffix(const Shard& shard) {
   return shard.count == 1 ? "" : "-" + std::to_string(shard.index) + "of" + std::to_string(shard.count);

@@ -72,6 +72,9 @@ struct BatchReport {
 /// whatever the number of workers and shards. Throws InputError, RunError (disk full: what is finished is kept).
 BatchReport run_batch(const std::vector<Job>& jobs, const Runner& runner, const BatchOptions& options);
 
+/// The results of a batch do not go among the files of a single run or of a scored map. Throws InputError there.
+void refuse_run_folder(const std::string& path);
+
 /// Those results in the folder that belong to these jobs: a folder may hold more than one sweep, or several versions.
 ResultSet results_of(const std::vector<Job>& jobs, const std::string& folder);
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/text/text_file.h"
+#include "scenarios/batch/batch.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -90,6 +91,7 @@ SlurmScripts slurm_scripts(const SlurmPlan& plan) {
 
 SlurmScripts write_slurm(const SlurmPlan& plan) {
   std::error_code error;
+  refuse_run_folder(plan.out);
   fs::create_directories(place_in(plan.out, "slurm"), error);
   if (error) throw InputError(plan.out + ": cannot be created (" + error.message() + "); give a writable --out");
   const SlurmScripts scripts = slurm_scripts(plan);

@@ -42,7 +42,16 @@ bool is_own_folder(const fs::path& folder) {
   throw InputError(path + ": cannot be created (" + error.message() + "); give a writable folder with --out");
 }
 
-/// The league's list of points of interest: preamble, then one line a detection.
+/// --force would not replace it, so it is not offered.
+void refuse_batch_folder(const std::string& path) {
+  std::error_code error;
+  for (const char* name : {"results.jsonl", "workers.log", "slurm"})
+    if (fs::exists(path + "/" + name, error))
+      throw InputError(path + ": is the folder of a batch (it holds " + name +
+                       "); give the run a folder of its own with --out");
+}
+
+/// The league's list of points of interest: preamble, then one line a detection. Its names have no blanks.
 std::string pois_csv(const Scenario& s, const std::vector<explore::VictimReport>& victims) {
   // Date and time would make two runs of one seed differ, so the preamble carries the start of the epoch.
   std::string csv = "\"pois\"\n\"1.3\"\n" + csv_quoted(not_a_formula(s.team)) +
@@ -174,6 +183,7 @@ RunFolder::RunFolder(const std::string& path, bool replace, const std::string& r
   if (error) cannot_create(path, error);
   lock_.emplace(path);
   if (!fs::is_empty(path, error)) {
+    refuse_batch_folder(path);
     if (!replace) throw InputError(path + ": exists and is not empty; " + remedy);
     set_aside(files_of_run(path));
     replaces_ = true;

@@ -35,6 +35,23 @@ expect_exit 3 'shipped are seeds_first' env RUBBLE_HOME="$work/home" "$rubble" b
 sed 's/^seeds:/seed:/' sweep.yaml >misspelt.yaml
 expect_exit 3 "misspelt.yaml:2:1: unknown key 'seed', did you mean 'seeds'?" "$rubble" batch misspelt.yaml
 
+# Runs and batches do not write into each other's folders; neither is touched.
+(cd w1 && find . -type f -exec cksum {} + | sort) >before.txt
+for force in '' --force; do
+  # shellcheck disable=SC2086
+  expect_exit 3 "w1: is the folder of a batch (it holds results.jsonl); give the run a folder of its own with --out" \
+    "$rubble" run small.yaml --out w1 $force
+done
+(cd w1 && find . -type f -exec cksum {} + | sort) | cmp - before.txt || fail "a run was made in the folder of a batch"
+one=$(ls -d w1/runs/*/ | head -1)
+cp -r "$one" single && ls -A single >before.txt
+for how in '' '--slurm --no-submit'; do
+  # shellcheck disable=SC2086
+  expect_exit 3 "single: is the folder of a single run (it holds score.json); give the batch a folder of its own with --out" \
+    "$rubble" batch sweep.yaml --out single $how
+done
+ls -A single | cmp - before.txt || fail "a batch was made in the folder of a run"
+
 # A finished sweep is found finished.
 "$rubble" batch sweep.yaml --out w1 | grep -q '12 of 12 (0 made now' || fail "finished runs are made again"
 
