@@ -5,16 +5,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
-#include "base/image/legend.h"
 #include "base/image/png.h"
-#include "base/round_step.h"
 #include "base/text/text_file.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
+#include "scenarios/run/scan_picture.h"
 #include "slam/map_exports.h"
 
 namespace rubble::scenarios {
@@ -23,12 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kMapFile = "map.rmap";
-constexpr int kWidth = 1000;  ///< of the picture's curves [pixels]
-constexpr int kLeft = 230;    ///< for their names and values
-constexpr int kTop = 10;
-constexpr int kPanel = 60;  ///< height of one
-constexpr int kGap = 12;    ///< between two
-constexpr int kFoot = 50;   ///< for the times and a line of words
 
 std::string csv_of(const slam::ScanRecords& records) {
   std::string text = "stamp_s";
@@ -47,87 +39,6 @@ std::string csv_of(const slam::ScanRecords& records) {
     text += '\n';
   }
   return text;
-}
-
-/// Least and greatest value of each column of pixels, or nothing where no scan fell.
-struct Curve {
-  std::vector<std::pair<float, float>> spans;
-  float low = 0.0F;
-  float high = 0.0F;
-};
-
-Curve curve_of(const slam::ScanRecords& records, std::size_t column) {
-  Curve curve;
-  curve.spans.assign(kWidth, {1.0F, 0.0F});
-  const Stamp first = records.stamps.front();
-  const double time = std::max(1e-9, records.stamps.back() - first);
-  for (std::size_t i = 0; i < records.stamps.size(); ++i) {
-    const float value = records.values[i * records.columns.size() + column];
-    if (!std::isfinite(value)) continue;
-    const auto at = static_cast<std::size_t>((records.stamps[i] - first) / time * (kWidth - 1));
-    auto& [least, most] = curve.spans[std::min<std::size_t>(at, kWidth - 1)];
-    const bool fresh = least > most;
-    least = fresh ? value : std::min(least, value);
-    most = fresh ? value : std::max(most, value);
-    curve.low = std::min(curve.low, value);
-    curve.high = std::max(curve.high, value);
-  }
-  if (curve.high <= curve.low) curve.high = curve.low + 1.0F;
-  return curve;
-}
-
-/// A scale of seconds below the panels, with a faint line up through them at each number.
-void draw_times(cv::Mat& picture, double seconds, int bottom) {
-  constexpr int kApart = 80, kTick = 5;  // [pixels]
-  const double pixels = (kWidth - 1) / seconds;
-  const double step = round_step(kApart / pixels);
-  for (int k = 0; k * step <= seconds; ++k) {
-    const int x = kLeft + static_cast<int>(std::lround(k * step * pixels));
-    cv::line(picture, {x, kTop}, {x, bottom}, cv::Scalar(235, 235, 235));
-    cv::line(picture, {x, bottom}, {x, bottom + kTick}, cv::Scalar(kInkBgr[0], kInkBgr[1], kInkBgr[2]));
-    const std::string words = cv::format("%.6g", k * step);
-    draw_text(picture, words, x - text_width(words) / 2, bottom + kTick + 13);
-  }
-  draw_text(picture, "time [s]", kLeft - 16 - text_width("time [s]"), bottom + kTick + 13);
-}
-
-/// One panel a column, time to the right, from the least to the greatest value (zero always in sight).
-cv::Mat picture_of(const slam::ScanRecords& records) {
-  const auto panels = static_cast<int>(records.columns.size());
-  const int bottom = kTop + panels * (kPanel + kGap);
-  cv::Mat picture(bottom + kFoot, kLeft + kWidth + 20, CV_8UC3, cv::Scalar(255, 255, 255));
-  draw_times(picture, std::max(1e-9, records.stamps.back() - records.stamps.front()), bottom);
-  for (int p = 0; p < panels; ++p) {
-    const Curve curve = curve_of(records, static_cast<std::size_t>(p));
-    const int top = kTop + p * (kPanel + kGap);
-    const auto row = [&](float value) {
-      return top + kPanel - 1 - static_cast<int>((value - curve.low) / (curve.high - curve.low) * (kPanel - 1));
-    };
-    cv::rectangle(picture, {kLeft, top}, {kLeft + kWidth, top + kPanel}, cv::Scalar(225, 225, 225));
-    draw_text(picture, records.columns[static_cast<std::size_t>(p)], 8, top + kPanel / 2 + 4);
-    const auto write_value = [&](float value, int y) {
-      const std::string words = cv::format("%.4g", static_cast<double>(value));
-      draw_text(picture, words, kLeft - 5 - text_width(words), y);
-    };
-    write_value(curve.high, top + 9);
-    write_value(curve.low, top + kPanel);
-    int last = -1;
-    for (int x = 0; x < kWidth; ++x) {
-      const auto& [least, most] = curve.spans[static_cast<std::size_t>(x)];
-      if (least > most) continue;
-      const int above = row(most);
-      const int below = row(least);
-      cv::line(picture, {kLeft + x, last < 0 ? below : std::max(last, below)}, {kLeft + x, above},
-               cv::Scalar(178, 114, 0));
-      last = above;
-    }
-  }
-  draw_text(picture,
-            cv::format("%zu scans; each panel from the least to the greatest value of scans.csv, zero always in sight; "
-                       "key_frames, loops_*, near_edges: counts so far",
-                       records.stamps.size()),
-            8, picture.rows - 10);
-  return picture;
 }
 
 void write_simplemap(const slam::MapContent& map, const std::string& out) {
@@ -184,7 +95,7 @@ void save_map_files(const RunFolder& folder, const slam::Mapper& mapper) {
   const slam::ScanRecords* records = mapper.scan_records();
   if (records == nullptr || records->stamps.empty()) return;
   folder.write("scans.csv", csv_of(*records));
-  folder.write("scans.png", png_bytes(picture_of(*records)));
+  folder.write("scans.png", png_bytes(scan_picture(*records)));
 }
 
 std::shared_ptr<const slam::MapBase> load_map_base(const std::string& path, bool grows,
