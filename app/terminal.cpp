@@ -3,9 +3,9 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "app/command.h"
@@ -56,31 +56,9 @@ void on_end(int /*signal*/) {
   if (signalled == 0) signalled = 1;
 }
 
-/// What a figure of a score means, for who reads one for the first time; docs/scoring.md says it in full.
-std::string meaning_of(const std::string& key) {
-  static const std::map<std::string, std::string> meanings{
-      {"score", "1 the truth, 0 what a guess or another arena earns"},
-      {"sight_known", "of the lines asked about, each between two places, the map shows whether a wall is in between"},
-      {"sight_kappa", "how often it is right about those: 1 always, 0 as often as luck"},
-      {"overlap", "the lesser of the next two"},
-      {"precision", "of the map's walls lie on true ones (the further off the less, from 0.5 m on nothing)"},
-      {"recall", "of the true walls are there in the map, measured the same way"},
-      {"psi_m", "how far a wall or free cell is from the next one of its kind in the other map, in the mean"},
-      {"known", "of the truth's floor and walls, the map has seen"},
-      {"points_quality", "of 10 a victim: how right the walls around the found ones are"},
-      {"points_location", "of 10 a victim: how near the found ones are reported"},
-      {"phantom_m", "the map's walls where the truth has none"},
-      {"missing_m", "true walls that the map has not"},
-      {"ignored_m", "in no other figure"},
-      {"warped_score", "what the score would be without the map's distortion"},
-      {"feature_score", "0 another arena, 1 the truth"}};
-  const auto found = meanings.find(key);
-  return found == meanings.end() ? "" : found->second;
-}
-
 std::string padded(std::string text) {
   constexpr std::size_t kWidth = 10;
-  if (text.size() < kWidth) text.resize(kWidth, ' ');
+  text.resize(std::max(kWidth, text.size() + 2), ' ');
   return text;
 }
 
@@ -153,13 +131,16 @@ void print_not_aligned(const std::string& note) {
   print_row(label, note.rfind(head, 0) == 0 ? note.substr(head.size()) : note);
 }
 
+void print_figure(const scoring::Figure& figure, const std::string& text, bool explained) {
+  print_row(figure.label, explained && !figure.meaning.empty() ? padded(text) + figure.meaning : text);
+}
+
 void print_figures(const nlohmann::ordered_json& score, bool explained) {
   for (const scoring::Figure* figure : scoring::figures_with(scoring::kShown)) {
     const auto found = score.find(figure->key);  // special figures may not be there
     const std::string text = found == score.end() ? "" : scoring::text_of(*figure, scenarios::value_of(found.value()));
     if (text.empty()) continue;
-    const std::string meaning = explained ? meaning_of(figure->key) : "";
-    print_row(figure->label, meaning.empty() ? text : padded(text) + meaning);
+    print_figure(*figure, text, explained);
   }
 }
 

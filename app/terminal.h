@@ -5,6 +5,10 @@
 
 #include "scenarios/run/run.h"
 
+namespace rubble::scoring {
+struct Figure;
+}
+
 namespace rubble::app {
 
 /// Ctrl-C, a polite kill or a terminal that is closed end the program on the spot with one line and kInterrupted: for
@@ -44,6 +48,9 @@ void print_row(const std::string& label, const std::string& value, int width = 3
 
 /// The row of a map that was not laid on the truth; its label says the note's first words.
 void print_not_aligned(const std::string& note);
+
+/// A row of the table of figures. `explained`: with what it means behind it.
+void print_figure(const scoring::Figure& figure, const std::string& text, bool explained);
 
 /// Every row of the table of figures that is meant for people and known. `score`: the content of score.json;
 /// `explained`: with what each means behind it.

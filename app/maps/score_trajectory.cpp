@@ -57,7 +57,7 @@ int score_trajectory(const ScoreArguments& arguments) {
   }
   for (const scoring::Figure& figure : scoring::figures())
     if (const std::string text = scoring::text_of(figure, figure.get(evidence)); !text.empty())
-      print_row(figure.label, text);
+      print_figure(figure, text, true);
   return kOk;
 }
 

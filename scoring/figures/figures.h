@@ -40,6 +40,8 @@ struct Figure {
   double floor = 0.0;  ///< a change of the median smaller than this is of no interest to anybody
   unsigned traits = kPlain;
   std::function<Value(const Evidence&)> get;
+  /// For who reads it for the first time, on a line behind the value; whatever people are shown in a table has one.
+  std::string meaning{};
 
   bool is(Traits trait) const { return (traits & trait) != 0; }
   /// It can get worse: comparisons and checks judge it.

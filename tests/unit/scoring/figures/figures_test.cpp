@@ -24,6 +24,23 @@ TEST(Figures, EveryKeyAndEveryLabelStandsOnce) {
   EXPECT_EQ(find_figure("beauty"), nullptr);
 }
 
+TEST(Figures, WhatPeopleAreShownHasAMeaning) {
+  for (const Figure& figure : figures()) {
+    const bool in_a_table = figure.is(kShown) || figure.is(kReport) || figure.is(kRanking);
+    EXPECT_EQ(in_a_table && figure.meaning.empty(), false) << figure.key;
+    EXPECT_LE(figure.meaning.size(), 100u) << figure.key << ": it stands behind a value, on one line";
+    EXPECT_NE(figure.meaning, figure.label) << figure.key;
+  }
+  for (const char* key : {"victims_found", "victims_total", "victims_false", "victims_error_m"})
+    EXPECT_FALSE(row(key).meaning.empty()) << key << ", which share a line of the terminal";
+  Evidence trajectories;  // what is known of them alone is shown whole
+  trajectories.error = TrajectoryError{2, 0.1, 0.1};
+  trajectories.pieces = PieceErrors();
+  trajectories.relations = RelationError();
+  for (const Figure& figure : figures())
+    EXPECT_FALSE(figure.meaning.empty() && !text_of(figure, figure.get(trajectories)).empty()) << figure.key;
+}
+
 TEST(Figures, KeysEndInTheirUnit) {
   for (const Figure& figure : figures()) {
     std::string unit = figure.unit;
