@@ -25,6 +25,11 @@ def at_home(run):
     return run["end_code"] == "home" and run["home_m"] <= 1.0
 
 
+def value_of(run, key):
+    """Of a map that was not aligned nothing counts as known."""
+    return 0.0 if key == "known" and run[key] is None else run[key]
+
+
 def spread(values, digits, worst):
     return f"{statistics.median(values):.{digits}f}, {worst(values):.{digits}f}"
 
@@ -46,7 +51,7 @@ def main():
             continue
         if None in runs:
             sys.exit(f"{kind}: {runs.count(None)} runs have no score")
-        of = lambda key: [run[key] for run in runs]
+        of = lambda key: [value_of(run, key) for run in runs]
         found, visible = sum(of("victims_found")), sum(of("victims_visible"))
         print(f"| {kind} | {len(runs)} | {sum(map(at_home, runs))} | {of('end_code').count('stuck')} | "
               f"{spread(of('known'), 3, min)} | {found} of {visible} ({100 * found / visible:.1f} %) | "
@@ -57,7 +62,7 @@ def main():
     print("|---|---|---|---|---|---|")
     for name, runs in arenas.items():
         kind, size, ramps = name.split("-")
-        of = lambda key: [run[key] for run in runs]
+        of = lambda key: [value_of(run, key) for run in runs]
         false = f" ({sum(of('victims_false'))})" if any(of("victims_false")) else ""
         print(f"| {kind} {size.replace('x', ' x ')}, {ramps} | {len(runs)} | {spread(of('known'), 3, min)} | "
               f"{sum(of('victims_found'))} of {sum(of('victims_visible'))}{false} | {spread(of('contact_s'), 1, max)} | "

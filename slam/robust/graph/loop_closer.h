@@ -76,6 +76,17 @@ struct LoopClaim {
 bool believed(const LoopConfig& config, const KeyFrames& frames, const LoopClaim& newest,
               const std::vector<LoopClaim>& group);
 
+/// What two sub-maps say of each other: of the points of the newer one, and of those of the older one.
+struct Mutual {
+  KeyFrames::Agreement there;
+  KeyFrames::Agreement back;
+};
+
+/// What the old key frames right where `frame` is and the last ones up to it say of each other, as both lie now;
+/// nothing where there are no old ones. `points`: of the last ones, seen from `frame`.
+std::optional<Mutual> said_here(const KeyFrames& frames, const LoopConfig& config, double surfel_cell, int frame,
+                                const std::vector<OrientedPoint>& points, Work& budget);
+
 /// Finds loops among the key frames and keeps their graph solved. What a new key frame asks for is queued and done by
 /// work(), in slices; what comes of it is the same for all sizes of slices that keep up with the drive.
 class LoopCloser {
@@ -130,7 +141,6 @@ class LoopCloser {
     double away;  ///< [m]
     double path;  ///< through the graph [m]
   };
-  int end_of_old(int frame) const;
   std::vector<Candidate> candidates_within(int frame, int end, double distance, double most_path, Work* work) const;
   double usual_window(double path) const;
   /// Shares of points that are contradicted; 0: too little is seen by both.
@@ -147,6 +157,7 @@ class LoopCloser {
   bool remove_worst_loop(Suspects suspects, Work& budget);
   std::vector<std::size_t> suspects(Suspects which) const;
   bool explained_already(const Task& task, const KeyFrames::Agreement& by_loop) const;
+  bool stands_well(const Task& task, const mrpt::math::TPose2D& T_old_new, Work& budget) const;
   void run_queue();
 
   const LoopConfig config_;

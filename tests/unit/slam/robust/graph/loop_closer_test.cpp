@@ -270,6 +270,37 @@ TEST(LoopCloser, WhatIsSaidOnOneSpotIsNotBelievedOfAnUnexpectedMove) {
   EXPECT_GT(closed_on_a_spot(config, 8, shuffle).there, 0u);
 }
 
+/// In its second round a robot that stands right is shown to do so by what it saw in the first; one that slid by half a
+/// metre, which a loop has to bring back, is not.
+TEST(LoopCloser, OldKeyFramesTellARobotThatStandsRightFromOneThatSlid) {
+  const RobotModel model;
+  const auto places = twice_round();
+  const int first_round = static_cast<int>(places.size()) / 2;
+  const auto said = [&](int more, double slip) {
+    KeyFrames frames;
+    while (frames.size() < first_round + more)
+      if (frames.size() == first_round + 4 && slip > 0.0)
+        add_slipped(frames, places, slip, model);
+      else
+        slam_test::add_key_frame(frames, ring_corridor(), places, 0.0, model);
+    const LoopConfig config;
+    const int last = frames.last();
+    SurfelGrid seen;
+    frames.draw(frames.ending_at(last, config.new_frames, config.new_path), frames.pose(last), kSurfelCell, seen);
+    Work left = 100000000;
+    return said_here(frames, config, kSurfelCell, last, seen.every_nth(1), left);
+  };
+  for (const int more : {10, 16, 20}) {
+    SCOPED_TRACE(more);
+    const auto right = said(more, 0.0), slid = said(more, 0.5);
+    ASSERT_TRUE(right && slid);
+    EXPECT_LT(right->there.contradiction(), 0.03);
+    EXPECT_LT(right->back.contradiction(), 0.03);
+    EXPECT_GT(std::max(slid->there.contradiction(), slid->back.contradiction()), 0.06);
+  }
+  EXPECT_FALSE(said(12 - first_round, 0.0)) << "of the first round nothing is old";
+}
+
 TEST(LoopCloser, NothingToDoTakesNothing) {
   KeyFrames frames;
   LoopCloser closer({}, kSurfelCell, frames);
