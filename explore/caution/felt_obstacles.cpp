@@ -207,11 +207,11 @@ void FeltObstacles::not_got_free(const Anchor& anchor, const PalletGrid& grid) {
     Thing pallet;
     pallet.anchor = anchor;
     pallet.is_pallet = true;
-    pallet.until = kForGood;
     pallet.T_base_pallet = TPose2D{middle.x, middle.y, grid.angle()} - anchor.T_map_base;
     thing = things_.insert(things_.end(), pallet);
   }
   thing->inside = thing->stubs = thing->held = true;
+  thing->until = kForGood;
 }
 
 void FeltObstacles::passed(const TPose2D& T_map_base, const robot::RobotModel& model) {

@@ -25,6 +25,8 @@ class LocalGrids {
   /// changes nothing but the time it takes.
   LocalGrids(const OccupancyGrid& cells, double pallet, KnownGrids* known = nullptr)
       : cells_(cells), pallet_(pallet), known_(known) {}
+  LocalGrids(const LocalGrids&) = delete;
+  LocalGrids& operator=(const LocalGrids&) = delete;
   /// Nothing where too few walls agree.
   const std::optional<PalletGrid>& at(const mrpt::math::TPoint2D& p_map);
   /// The same, or that of a square beside it where too few walls agree.

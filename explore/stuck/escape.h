@@ -70,7 +70,7 @@ class Escape {
   std::size_t at_ = 0;
   bool opened_ = false;            ///< the move is a straight one that a curve has opened
   bool straight_in_vain_ = false;  ///< such a move got nowhere
-  bool scrapes_ = false;           ///< a turn may bring corners to walls: nothing else led off
+  bool scrapes_ = false;           ///< a turn may bring corners to walls: the escape before failed
   double held_towards_ = 0.0;      ///< [rad, map frame]
   double roamed_ = 0.0;            ///< [m]
   double turn_ = 0.0;              ///< of Left and Right [rad]

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "arenas/truth/render.h"
 #include "base/digest.h"
@@ -45,10 +46,17 @@ bool is_own_folder(const fs::path& folder) {
 /// --force would not replace it, so it is not offered.
 void refuse_batch_folder(const std::string& path) {
   std::error_code error;
-  for (const char* name : {"results.jsonl", "workers.log", "slurm"})
-    if (fs::exists(path + "/" + name, error))
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(path, error)) names.insert(entry.path().filename().string());
+  for (const std::string& name : names) {
+    // A shard has its number in its files' names: results-1of4.jsonl.
+    const std::string ending = fs::path(name).extension().string();
+    const bool results = name.rfind("results", 0) == 0 && ending == ".jsonl";
+    const bool log = name.rfind("workers", 0) == 0 && ending == ".log";
+    if (results || log || name == "slurm")
       throw InputError(path + ": is the folder of a batch (it holds " + name +
                        "); give the run a folder of its own with --out");
+  }
 }
 
 /// The league's list of points of interest: preamble, then one line a detection. Its names have no blanks.

@@ -29,7 +29,8 @@ struct PoiList {
 /// - `detection,time,type,name,x,y,...`: the league's, behind its preamble; only rows of type victim; x is up in the
 ///   picture and y to its left;
 /// - `name,x,y`: x to the right and y up.
-/// Or from an arena file (.yaml). Throws InputError with file and line.
+/// Or from an arena file (.yaml). A name like "victim_3", as lists without blanks have it, comes back as "victim 3".
+/// Throws InputError with file and line.
 PoiList read_poi_list(const std::string& path);
 
 }  // namespace rubble::scoring

@@ -37,6 +37,7 @@ constexpr double kStrained = 1.0;          ///< loops off by less (squared sigma
 constexpr double kExplainedWithin = 1.5;   ///< old key frames so close explain what is seen [m]
 constexpr double kAsFar = 0.7;             ///< and are so much of the loop's path away ...
 constexpr double kExplained = 0.8;         ///< when they support so much of what the loop's would ...
+constexpr double kSeenHere = 0.5;          ///< the same of a robot that stands well: what matters is what contradicts
 constexpr double kAsGood = 0.03;           ///< ... and contradict hardly more
 constexpr double kWitnessAway = 2.5;       ///< old key frames so close are asked whether a new one can be true [m] ...
 constexpr std::size_t kLoopWitnesses = 8;  ///< ... so many of them
@@ -50,8 +51,8 @@ double size_of(const TPose2D& T) { return length(T.x, T.y); }
 double disagreement_of(const TPose2D& T) { return size_of(T) + 2.0 * std::abs(wrap_angle(T.phi)); }
 
 /// Without a loop, compared with what speaks for it.
-bool as_good(const KeyFrames::Agreement& now, const KeyFrames::Agreement& by_loop) {
-  return now.supported >= kExplained * by_loop.supported && now.contradiction() <= by_loop.contradiction() + kAsGood;
+bool as_good(const KeyFrames::Agreement& now, const KeyFrames::Agreement& by_loop, double share) {
+  return now.supported >= share * by_loop.supported && now.contradiction() <= by_loop.contradiction() + kAsGood;
 }
 
 /// The first key frame that does not lie far enough back along the drive to close a loop with `frame`.
@@ -333,26 +334,27 @@ bool LoopCloser::explained_already(const Task& task, const KeyFrames::Agreement&
   }
   if (closest < 0) return false;
   const std::vector<int> there = frames_.around(closest, config_.old_frames, config_.old_path, new_frames_.back());
-  return as_good(frames_.agreement(points_, {}, frames_.pose(task.frame), there), by_loop);
+  return as_good(frames_.agreement(points_, {}, frames_.pose(task.frame), there), by_loop, kExplained);
 }
 
 /// Whether the map as it stands shows what the new key frames see, and these what it shows, as well as what the loop
-/// leads to. A place 1.6 m away fitted a robot that stood right, ten times from several old views; one that is off by
-/// half a metre is told by walls that contradict it.
+/// leads to. Only what is older than that is asked: what was seen after a slide has moved along, and tells of nothing.
 bool LoopCloser::stands_well(const Task& task, const TPose2D& T_old_new, Work& budget) const {
-  const auto now = said_here(frames_, config_, surfel_cell_, task.frame, points_, budget);
+  const auto now = agreement_here(frames_, config_, surfel_cell_, task.frame, task.old, points_, budget);
   if (!now) return false;
   const TPose2D& here = frames_.pose(task.frame);
   budget -= kWorkPerJudged * static_cast<Work>(points_.size() + old_points_.size()) *
             static_cast<Work>(new_frames_.size() + old_frames_.size());
-  return as_good(now->there, frames_.agreement(points_, T_old_new, frames_.pose(task.old), old_frames_)) &&
-         as_good(now->back, frames_.agreement(old_points_, TPose2D() - T_old_new, here, new_frames_));
+  return as_good(now->there, frames_.agreement(points_, T_old_new, frames_.pose(task.old), old_frames_), kSeenHere) &&
+         as_good(now->back, frames_.agreement(old_points_, TPose2D() - T_old_new, here, new_frames_), kSeenHere);
 }
 
-std::optional<Mutual> said_here(const KeyFrames& frames, const LoopConfig& config, double surfel_cell, int frame,
-                                const std::vector<OrientedPoint>& points, Work& budget) {
+std::optional<MutualAgreement> agreement_here(const KeyFrames& frames, const LoopConfig& config, double surfel_cell,
+                                              int frame, int end, const std::vector<OrientedPoint>& points,
+                                              Work& budget) {
   const TPose2D& here = frames.pose(frame);
-  const std::vector<int> closest = frames.closest(here, kExplainedWithin, 1, end_of_old(frames, config, frame));
+  const int old_end = std::min(end, end_of_old(frames, config, frame));
+  const std::vector<int> closest = frames.closest(here, kExplainedWithin, 1, old_end);
   if (closest.empty()) return std::nullopt;
   const std::vector<int> late = frames.ending_at(frame, config.new_frames, config.new_path);
   const std::vector<int> old = frames.around(closest.front(), config.old_frames, config.old_path, late.back());
@@ -362,7 +364,7 @@ std::optional<Mutual> said_here(const KeyFrames& frames, const LoopConfig& confi
   budget -= kWorkPerDrawnFrame * static_cast<Work>(old.size()) +
             kWorkPerJudged * static_cast<Work>(points.size() + old_points.size()) *
                 static_cast<Work>(late.size() + old.size());
-  return Mutual{frames.agreement(points, {}, here, old), frames.agreement(old_points, {}, here, late)};
+  return MutualAgreement{frames.agreement(points, {}, here, old), frames.agreement(old_points, {}, here, late)};
 }
 
 /// A loop that moves the robot counts when others of the last key frames say the same.

@@ -56,7 +56,7 @@ struct LoopCounts {
   std::uint64_t searched = 0;      ///< candidates tried
   std::uint64_t ambiguous = 0;     ///< refused: another place fits nearly as well
   std::uint64_t contradicted = 0;  ///< refused: one would have seen through walls
-  std::uint64_t needless = 0;      ///< refused: the expected pose is not contradicted
+  std::uint64_t needless = 0;      ///< refused: the robot stands well where it is
   std::uint64_t closed = 0;        ///< loops that count
   std::uint64_t near_edges = 0;    ///< edges to old key frames where the graph was tight
   std::uint64_t removed = 0;       ///< loops found wrong later
@@ -76,16 +76,17 @@ struct LoopClaim {
 bool believed(const LoopConfig& config, const KeyFrames& frames, const LoopClaim& newest,
               const std::vector<LoopClaim>& group);
 
-/// What two sub-maps say of each other: of the points of the newer one, and of those of the older one.
-struct Mutual {
+/// Of the points of a newer sub-map as an older one judges them, and the reverse.
+struct MutualAgreement {
   KeyFrames::Agreement there;
   KeyFrames::Agreement back;
 };
 
-/// What the old key frames right where `frame` is and the last ones up to it say of each other, as both lie now;
-/// nothing where there are no old ones. `points`: of the last ones, seen from `frame`.
-std::optional<Mutual> said_here(const KeyFrames& frames, const LoopConfig& config, double surfel_cell, int frame,
-                                const std::vector<OrientedPoint>& points, Work& budget);
+/// Of the last key frames up to `frame` with the old ones closest to it that are below `end`, as both lie now; nothing
+/// where there are none. `points`: of the last ones, seen from `frame` [m]; the work is taken off the `budget`.
+std::optional<MutualAgreement> agreement_here(const KeyFrames& frames, const LoopConfig& config, double surfel_cell,
+                                              int frame, int end, const std::vector<OrientedPoint>& points,
+                                              Work& budget);
 
 /// Finds loops among the key frames and keeps their graph solved. What a new key frame asks for is queued and done by
 /// work(), in slices; what comes of it is the same for all sizes of slices that keep up with the drive.

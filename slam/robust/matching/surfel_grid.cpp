@@ -109,7 +109,7 @@ const Surfel* SurfelGrid::nearest(float x, float y, float nx, float ny, float ra
       const float dx = surfel->x - x;
       const float dy = surfel->y - y;
       const float d2 = dx * dx + dy * dy;
-      if (d2 > best || !(any_side || surfel->nx * nx + surfel->ny * ny > kSameSide)) continue;
+      if (!(d2 <= best) || !(any_side || surfel->nx * nx + surfel->ny * ny > kSameSide)) continue;
       // Of two as near the first in the list, whatever row was asked first.
       if (d2 == best && (found == nullptr || surfel > found)) continue;
       best = d2;
