@@ -43,11 +43,11 @@ bool off_the_floor(const arenas::PatchIndex& floor, const mrpt::math::TPose2D& T
 /// believes, and "lost" it is who believes so more than 1 m away.
 std::string true_end(const std::string& said, double home);
 
-/// How the mission went: what the truth and the explorer say. `visible`: the visible truth of the arena, where it is
-/// known already.
+/// How the mission went: what the truth and the explorer say. `known_visible`: the visible truth of the arena, where it
+/// is known already.
 scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajectory& truth,
                                         const robot::RobotModel& model, const Core& core,
-                                        const OccupancyGrid* visible = nullptr);
+                                        const OccupancyGrid* known_visible = nullptr);
 
 /// Why the explorer did what it did: one line each, `seconds reason`.
 std::string decisions_text(const Core& core);

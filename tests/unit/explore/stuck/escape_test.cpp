@@ -123,7 +123,7 @@ TEST(Escape, TurnsAwayFromAWallItTouches) {
 }
 
 /// Flush with a wall every turn brings a corner to it, and nothing but a turn leads off: its corner scrapes along.
-TEST(Escape, TurnsAlongAWallThatItIsFlushWithOnceAllElseFailed) {
+TEST(Escape, TurnsAlongAWallThatItIsFlushWithAfterAnEscapeThatFailed) {
   const auto flush = [](const TPose2D& pose) { return -0.25 * std::abs(std::sin(2.0 * pose.phi)); };
   const auto try_after = [&](int failures) {
     Puppet puppet;
