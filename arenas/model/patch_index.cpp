@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "arenas/model/geometry.h"
 
@@ -13,62 +14,69 @@ using mrpt::math::TPoint2D;
 
 constexpr double kSlack = 1e-3;  ///< patches are entered this much larger, so that their edges belong to them [m]
 
-struct Box {
-  TPoint2D low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  TPoint2D high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  void include(const TPoint2D& p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-  }
-};
-
-Box box_of(const Outline& outline) {
-  Box box;
-  for (const TPoint2D& p : outline) box.include(p);
-  return box;
-}
-
 GridFrame frame_over(const Arena& arena) {
-  Box all;
-  for (const FloorPatch& patch : arena.floor) {
-    for (const TPoint2D& p : patch.outline) all.include(p);
-  }
   if (arena.floor.empty()) return {1, 1, 1.0, 0.0, 0.0};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  TPoint2D low{kInfinity, kInfinity};
+  TPoint2D high{-kInfinity, -kInfinity};
+  for (const FloorPatch& patch : arena.floor) {
+    for (const TPoint2D& p : patch.outline) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+  }
   constexpr double kMostBuckets = 1000.0;  // a side: an arena of any size stays in memory
-  const double edge =
-      std::max({arena.cell_size, (all.high.x - all.low.x) / kMostBuckets, (all.high.y - all.low.y) / kMostBuckets});
-  return {static_cast<int>((all.high.x - all.low.x) / edge) + 1, static_cast<int>((all.high.y - all.low.y) / edge) + 1,
-          edge, all.low.x, all.low.y};
+  const double edge = std::max({arena.cell_size, (high.x - low.x) / kMostBuckets, (high.y - low.y) / kMostBuckets});
+  return {static_cast<int>((high.x - low.x) / edge) + 1, static_cast<int>((high.y - low.y) / edge) + 1, edge, low.x,
+          low.y};
 }
 
 }  // namespace
 
-PatchIndex::PatchIndex(const Arena& arena) : arena_(arena), buckets_(frame_over(arena)) {
-  for (std::size_t i = 0; i < arena.floor.size(); ++i) {
-    const Box box = box_of(arena.floor[i].outline);
-    const Cell low = bucket(box.low - TPoint2D{kSlack, kSlack});
-    const Cell high = bucket(box.high + TPoint2D{kSlack, kSlack});
-    for (int y = low.y; y <= high.y; ++y) {
-      for (int x = low.x; x <= high.x; ++x) buckets_[{x, y}].push_back(i);
-    }
+PatchIndex::Box PatchIndex::box_of(const FloorPatch& patch) {
+  Box box{patch.outline.front(), patch.outline.front()};
+  for (const TPoint2D& p : patch.outline) {
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y)};
   }
+  return {box.low - TPoint2D{kSlack, kSlack}, box.high + TPoint2D{kSlack, kSlack}};
+}
+
+template <class Visit>
+void PatchIndex::for_buckets(const Box& box, const Visit& visit) const {
+  const Cell low = bucket(box.low);
+  const Cell high = bucket(box.high);
+  for (int y = low.y; y <= high.y; ++y)
+    for (int x = low.x; x <= high.x; ++x) visit(frame_.index({x, y}));
+}
+
+PatchIndex::PatchIndex(const Arena& arena) : arena_(arena), frame_(frame_over(arena)), begins_(frame_.size() + 1, 0) {
+  boxes_.reserve(arena.floor.size());
+  for (const FloorPatch& patch : arena.floor) boxes_.push_back(box_of(patch));
+  for (const Box& box : boxes_) for_buckets(box, [&](std::size_t b) { ++begins_[b + 1]; });
+  std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+  entries_.resize(begins_.back());
+  std::vector<std::size_t> ends(begins_.begin(), begins_.end() - 1);
+  for (std::size_t i = 0; i < boxes_.size(); ++i)
+    for_buckets(boxes_[i], [&](std::size_t b) { entries_[ends[b]++] = i; });
 }
 
 Cell PatchIndex::bucket(const TPoint2D& p) const {
-  const Cell c = buckets_.cell(p);
-  return {std::clamp(c.x, 0, buckets_.width() - 1), std::clamp(c.y, 0, buckets_.height() - 1)};
+  const Cell c = frame_.cell(p);
+  return {std::clamp(c.x, 0, frame_.width - 1), std::clamp(c.y, 0, frame_.height - 1)};
 }
 
 std::vector<std::size_t> PatchIndex::near(const TPoint2D& a, const TPoint2D& b) const {
-  const Cell low = bucket({std::min(a.x, b.x), std::min(a.y, b.y)});
-  const Cell high = bucket({std::max(a.x, b.x), std::max(a.y, b.y)});
+  const Box asked{{std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)}};
   std::vector<std::size_t> found;
-  for (int y = low.y; y <= high.y; ++y) {
-    for (int x = low.x; x <= high.x; ++x) {
-      const std::vector<std::size_t>& bucket = buckets_[{x, y}];
-      found.insert(found.end(), bucket.begin(), bucket.end());
+  for_buckets(asked, [&](std::size_t bucket) {
+    for (std::size_t k = begins_[bucket]; k < begins_[bucket + 1]; ++k) {
+      const Box& box = boxes_[entries_[k]];
+      if (box.low.x <= asked.high.x && box.high.x >= asked.low.x && box.low.y <= asked.high.y &&
+          box.high.y >= asked.low.y)
+        found.push_back(entries_[k]);
     }
-  }
+  });
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
@@ -76,8 +84,9 @@ std::vector<std::size_t> PatchIndex::near(const TPoint2D& a, const TPoint2D& b) 
 
 double PatchIndex::floor_height(const TPoint2D& p) const {
   double height = -std::numeric_limits<double>::infinity();
-  for (const std::size_t i : buckets_[bucket(p)]) {
-    const FloorPatch& patch = arena_.floor[i];
+  const std::size_t b = frame_.index(bucket(p));
+  for (std::size_t k = begins_[b]; k < begins_[b + 1]; ++k) {
+    const FloorPatch& patch = arena_.floor[entries_[k]];
     if (contains(patch.outline, p)) height = std::max(height, patch.height(p));
   }
   return height;

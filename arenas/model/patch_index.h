@@ -16,17 +16,28 @@ class PatchIndex {
  public:
   explicit PatchIndex(const Arena& arena);
 
-  /// Patches whose bounding box may touch the box around a and b, in ascending order, each once.
+  /// Patches whose bounding box, 1 mm larger to all sides, touches the box around a and b, in ascending order, each
+  /// once.
   std::vector<std::size_t> near(const mrpt::math::TPoint2D& a, const mrpt::math::TPoint2D& b) const;
 
   /// As floor_height(arena, p).
   double floor_height(const mrpt::math::TPoint2D& p) const;
 
  private:
+  struct Box {
+    mrpt::math::TPoint2D low, high;
+  };
+  static Box box_of(const FloorPatch& patch);
   Cell bucket(const mrpt::math::TPoint2D& p) const;
+  /// Calls visit(index of a bucket) for all that the box touches.
+  template <class Visit>
+  void for_buckets(const Box& box, const Visit& visit) const;
 
   const Arena& arena_;
-  Grid<std::vector<std::size_t>> buckets_;
+  std::vector<Box> boxes_;            ///< of the patches, 1 mm larger to all sides
+  GridFrame frame_;                   ///< of the buckets
+  std::vector<std::size_t> begins_;   ///< where each bucket begins in entries_, and where the last one ends
+  std::vector<std::size_t> entries_;  ///< patches, bucket after bucket, ascending in each
 };
 
 }  // namespace rubble::arenas

@@ -80,11 +80,15 @@ std::vector<Region> regions_of(const Layout& layout, const Grid<std::uint8_t>& e
   Grid<std::uint8_t> known(layout.occupied.frame());
   std::vector<Region> regions;
   std::optional<OccupancyGrid> drawn;  // for the first pallet: without any there is nothing to draw
+  Grid<float> room;
   for (const Cell c : pallets) {
     if (known[c] != 0 || !can_start(layout, c, arena)) continue;
-    if (!drawn) drawn = drawn_map(arena, kCoarse);
+    if (!drawn) {
+      drawn = drawn_map(arena, kCoarse);
+      room = standing_room(arena, *drawn);
+    }
     const OccupancyGrid truth = around_start(arena, *drawn);
-    const Grid<std::uint8_t> reached = reachable_mask(arena, truth);
+    const Grid<std::uint8_t> reached = reachable_mask({arena.start.x, arena.start.y}, truth, room);
     Region region;
     for (int y = 0; y < reached.height(); ++y) {
       for (int x = 0; x < reached.width(); ++x) {

@@ -52,9 +52,9 @@ std::optional<TPoint2D> roomy_place(const Region& region, const Grid<float>& roo
 
 std::optional<std::string> small_start(const Arena& arena, const Viewer& viewer) {
   const OccupancyGrid drawn = drawn_map(arena, kCoarse);
-  const Grid<std::uint8_t> reached = reachable_mask(arena, drawn, viewer);
-  const auto own = static_cast<double>(std::count(reached.cells().begin(), reached.cells().end(), 1));
   const Grid<float> room = standing_room(arena, drawn, viewer);
+  const Grid<std::uint8_t> reached = reachable_mask({arena.start.x, arena.start.y}, drawn, room, viewer);
+  const auto own = static_cast<double>(std::count(reached.cells().begin(), reached.cells().end(), 1));
   const auto needed = static_cast<float>(viewer.radius);
   Grid<std::uint8_t> known = reached;
   Region largest;

@@ -208,18 +208,21 @@ Grid<float> standing_room(const Arena& arena, const OccupancyGrid& truth, const 
 }
 
 Mask reachable_mask(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer) {
+  return reachable_mask({arena.start.x, arena.start.y}, truth, standing_room(arena, truth, viewer), viewer);
+}
+
+Mask reachable_mask(const TPoint2D& start, const OccupancyGrid& truth, const Grid<float>& room, const Viewer& viewer) {
   const GridFrame& frame = truth.frame();
-  const Grid<float> clearance = standing_room(arena, truth, viewer);
   const float needed = static_cast<float>(viewer.radius);
   Mask reached(frame);
   std::vector<Cell> open;
   const auto reach = [&](Cell c, bool is_start) {
     if (!frame.inside(c) || reached[c] != 0 || truth[c] != Occupancy::Free) return;
-    if (!is_start && clearance[c] < needed) return;
+    if (!is_start && room[c] < needed) return;
     reached[c] = 1;
     open.push_back(c);
   };
-  reach(frame.cell({arena.start.x, arena.start.y}), true);
+  reach(frame.cell(start), true);
   while (!open.empty()) {
     const Cell c = open.back();
     open.pop_back();

@@ -25,6 +25,11 @@ Grid<float> standing_room(const Arena& arena, const OccupancyGrid& truth, const 
 /// Where the robot's middle can stand, reached from the start: non-zero. Cells as those of `truth`.
 Grid<std::uint8_t> reachable_mask(const Arena& arena, const OccupancyGrid& truth, const Viewer& viewer = {});
 
+/// The same from another start [m], for many starts on one floor: `room` is standing_room of this truth, or of one that
+/// is free wherever this one is.
+Grid<std::uint8_t> reachable_mask(const mrpt::math::TPoint2D& start, const OccupancyGrid& truth,
+                                  const Grid<float>& room, const Viewer& viewer = {});
+
 /// What a level laser could ever see from there: non-zero. Rays end at the first occupied cell, which they see, and
 /// before floor that rises to the height of the laser, which is a wall to it; the edge of a floor below the laser, a
 /// drop, they pass. It looks round from the start and from poses so chosen that every reachable cell is less than 0.4 m

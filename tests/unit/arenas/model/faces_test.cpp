@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "arenas/model/arena.h"
@@ -128,6 +129,21 @@ TEST(FloorHeight, HigherPatchCarriesAndOutsideThereIsNone) {
   EXPECT_EQ(floor_height(arena, {9.0, 0.0}), -INFINITY);
 }
 
+/// Patches whose bounding box, 1 mm larger, touches that of a and b, by asking all.
+std::vector<std::size_t> patches_near(const Arena& arena, const TPoint2D& a, const TPoint2D& b) {
+  constexpr double kSlack = 1e-3;
+  std::vector<std::size_t> near;
+  for (std::size_t i = 0; i < arena.floor.size(); ++i) {
+    const Outline& o = arena.floor[i].outline;
+    const auto [west, east] = std::minmax_element(o.begin(), o.end(), [](auto& p, auto& q) { return p.x < q.x; });
+    const auto [south, north] = std::minmax_element(o.begin(), o.end(), [](auto& p, auto& q) { return p.y < q.y; });
+    if (west->x - kSlack <= std::max(a.x, b.x) && east->x + kSlack >= std::min(a.x, b.x) &&
+        south->y - kSlack <= std::max(a.y, b.y) && north->y + kSlack >= std::min(a.y, b.y))
+      near.push_back(i);
+  }
+  return near;
+}
+
 TEST(PatchIndex, AgreesWithAskingEveryPatch) {
   Rng rng(7, "patch index");
   Arena arena;
@@ -144,6 +160,9 @@ TEST(PatchIndex, AgreesWithAskingEveryPatch) {
     const double x = rng.uniform(-9.0, 9.0);
     const double y = rng.uniform(-9.0, 9.0);
     EXPECT_EQ(index.floor_height({x, y}), floor_height(arena, {x, y}));
+    const TPoint2D a{x, y};
+    const TPoint2D b{x + rng.uniform(-1.0, 1.0), y + rng.uniform(-1.0, 1.0)};
+    EXPECT_EQ(index.near(a, b), patches_near(arena, a, b));
   }
 }
 
