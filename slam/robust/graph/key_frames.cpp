@@ -198,12 +198,13 @@ std::vector<double> KeyFrames::paths_from(int i, const std::vector<int>& wanted,
 }
 
 KeyFrames::Agreement KeyFrames::agreement(const std::vector<OrientedPoint>& points, const TPose2D& T_origin_points,
-                                          const TPose2D& origin, const std::vector<int>& frames) const {
+                                          const TPose2D& origin, const std::vector<int>& frames,
+                                          SightFan::Slack slack) const {
   Agreement agreement;
   for (const int k : frames) {
     const Cloud& cloud = (*this)[k].cloud;
     const PlanarTransform to_frame((origin + T_origin_points) - pose(k));
-    const SightFan::Judged judged = cloud.sight.judge(points, to_frame, cloud.laser);
+    const SightFan::Judged judged = cloud.sight.judge(points, to_frame, cloud.laser, slack);
     agreement.contradicted += judged.in_front;
     agreement.supported += judged.agrees;
   }

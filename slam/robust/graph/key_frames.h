@@ -76,7 +76,8 @@ class KeyFrames {
     }
   };
   Agreement agreement(const std::vector<OrientedPoint>& points, const mrpt::math::TPose2D& T_origin_points,
-                      const mrpt::math::TPose2D& origin, const std::vector<int>& frames) const;
+                      const mrpt::math::TPose2D& origin, const std::vector<int>& frames,
+                      SightFan::Slack slack = SightFan::Slack::AlongBeam) const;
 
  private:
   /// One end of an edge that is on, in the list of its node. All lists lie in one array, in the order in which edges

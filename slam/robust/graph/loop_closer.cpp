@@ -311,8 +311,9 @@ bool LoopCloser::sees_through(const Task& task, const TPose2D& T_old_new, const 
     return true;
   }
   if (task.kind == Kind::Near || size_of(T_old_new - T_expected) <= kExpectedMoves) return false;
-  const auto expected_there = frames_.agreement(points_, T_expected, old_pose, old_frames_);
-  const auto expected_back = frames_.agreement(old_points_, TPose2D() - T_expected, new_pose, new_frames_);
+  constexpr auto kSlack = SightFan::Slack::AcrossSurface;  // only what a pose off by a little cannot explain counts
+  const auto expected_there = frames_.agreement(points_, T_expected, old_pose, old_frames_, kSlack);
+  const auto expected_back = frames_.agreement(old_points_, TPose2D() - T_expected, new_pose, new_frames_, kSlack);
   const bool overlap = expected_there.supported + expected_back.supported > 0.15 * (there.supported + back.supported);
   const double without = std::max(expected_there.contradiction(), expected_back.contradiction());
   const bool stands = overlap ? without < config_.expected_contradiction : explained_already(task, there);

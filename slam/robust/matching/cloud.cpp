@@ -291,13 +291,14 @@ void SightFan::add(double bearing, double range) {
 }
 
 SightFan::Verdict SightFan::judge(const TPoint2D& p) const {
-  return judge(bin_of(about_angle(p.x, p.y), p.x, p.y), length(p));
+  return judge(bin_of(about_angle(p.x, p.y), p.x, p.y), length(p), 1.0);
 }
 
 SightFan::Judged SightFan::judge(const std::vector<OrientedPoint>& points, const PlanarTransform& T_base_points,
-                                 const TPoint2D& laser) const {
+                                 const TPoint2D& laser, Slack slack) const {
   constexpr std::size_t kBlock = 64;
-  std::array<double, kBlock> x, y, about, range;
+  std::array<double, kBlock> x, y, about, range, across;
+  across.fill(1.0);
   const double c = T_base_points.cosine(), s = T_base_points.sine();
   const double x0 = T_base_points.pose().x, y0 = T_base_points.pose().y;
   Judged judged;
@@ -313,8 +314,13 @@ SightFan::Judged SightFan::judge(const std::vector<OrientedPoint>& points, const
       about[i] = about_angle(x[i], y[i]);
       range[i] = length(x[i], y[i]);
     }
+    for (std::size_t i = 0; slack == Slack::AcrossSurface && i < count; ++i) {
+      const double nx = static_cast<double>(p[i].nx), ny = static_cast<double>(p[i].ny);
+      const bool known = p[i].has_normal() && range[i] > 0.0;
+      across[i] = known ? std::abs(x[i] * (c * nx - s * ny) + y[i] * (s * nx + c * ny)) / range[i] : 1.0;
+    }
     for (std::size_t i = 0; i < count; ++i) {
-      const Verdict verdict = judge(bin_of(about[i], x[i], y[i]), range[i]);
+      const Verdict verdict = judge(bin_of(about[i], x[i], y[i]), range[i], across[i]);
       judged.in_front += verdict == Verdict::InFront ? 1 : 0;
       judged.agrees += verdict == Verdict::Agrees ? 1 : 0;
     }
@@ -322,7 +328,8 @@ SightFan::Judged SightFan::judge(const std::vector<OrientedPoint>& points, const
   return judged;
 }
 
-SightFan::Verdict SightFan::judge(int bin, double range) const {
+/// across: of a metre along the beam, how much of it is at right angles to the surface.
+SightFan::Verdict SightFan::judge(int bin, double range, double across) const {
   const auto left = static_cast<std::size_t>(bin + 1 < kBins ? bin + 1 : 0);
   const auto right = static_cast<std::size_t>(bin > 0 ? bin - 1 : kBins - 1);
   const auto middle = static_cast<std::size_t>(bin);
@@ -330,7 +337,7 @@ SightFan::Verdict SightFan::judge(int bin, double range) const {
   const std::uint16_t farthest = std::max({farthest_[left], farthest_[middle], farthest_[right]});
   const double slack = kSightSlack + kSightSlackShare * range;
   // All asked at once: which of them it is no branch prediction could tell.
-  const bool in_front = range < 0.01 * nearest - slack;
+  const bool in_front = range < 0.01 * nearest - slack / across;
   const bool agrees = range <= 0.01 * farthest + slack;
   const Verdict seen = in_front ? Verdict::InFront : agrees ? Verdict::Agrees : Verdict::Behind;
   return least_near == kNothing ? Verdict::Nothing : seen;

@@ -46,6 +46,10 @@ class SightFan {
   /// Where a surface at `p` [m, from the laser, along the base's axes] would lie in what was seen: in front of it (then
   /// the scan should have met it and did not), with it, or hidden behind. Nothing where a neighbouring bin is empty.
   Verdict judge(const mrpt::math::TPoint2D& p) const;
+  /// How far before what was seen a surface may lie and agree with it: along the beam, or at right angles to the
+  /// surface, where its normal is known. From the next lane both faces of one wall are looked at along it: there a few
+  /// centimetres of the pose are metres of the beam.
+  enum class Slack { AlongBeam, AcrossSurface };
   /// How many of some points lie in front of what was seen, and with it.
   struct Judged {
     int in_front = 0;
@@ -53,10 +57,10 @@ class SightFan {
   };
   /// Of points moved into the base frame; `laser`: where it saw from, there.
   Judged judge(const std::vector<OrientedPoint>& points, const PlanarTransform& T_base_points,
-               const mrpt::math::TPoint2D& laser) const;
+               const mrpt::math::TPoint2D& laser, Slack slack = Slack::AlongBeam) const;
 
  private:
-  Verdict judge(int bin, double range) const;
+  Verdict judge(int bin, double range, double across) const;
 
   static constexpr std::uint16_t kNothing = std::numeric_limits<std::uint16_t>::max();
   std::array<std::uint16_t, kBins> nearest_;   ///< [cm]

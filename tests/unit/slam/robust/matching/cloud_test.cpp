@@ -188,6 +188,35 @@ TEST(SightFan, TellsInFrontFromBehind) {
   EXPECT_EQ(fan.judge(at(deg_to_rad(10.9), 2.0)), SightFan::Verdict::Nothing) << "a neighbour saw nothing";
 }
 
+/// Of a wall seen along it, its other face lies far in front, along the beam; but at right angles it is at hand, and
+/// what stands across the beam is in front both ways.
+TEST(SightFan, TheOtherFaceOfAWallIsInFrontAlongTheBeamOnly) {
+  SightFan fan;
+  for (int deg = 5; deg <= 60; ++deg) fan.add(deg_to_rad(deg + 0.5), 0.60 / std::sin(deg_to_rad(deg + 0.5)));
+  const PlanarTransform T(TPose2D(0.4, -0.3, 2.0));  // of the points, as seen from the base
+  const TPoint2D laser(0.1, 0.05);
+  const auto seen_from_there = [&](const TPoint2D& from_laser, const TPoint2D& normal) {
+    const TPoint2D p = T.inverse(from_laser + laser);
+    const TPoint2D n = T.turned_back(normal.x, normal.y);
+    return OrientedPoint{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(n.x),
+                         static_cast<float>(n.y)};
+  };
+  std::vector<OrientedPoint> other_face, across, no_normals;
+  for (double x = 1.5; x < 3.5; x += 0.1) {
+    other_face.push_back(seen_from_there({x, 0.49}, {0.0, 1.0}));
+    across.push_back(seen_from_there({x, 0.40}, {-1.0, 0.0}));
+    no_normals.push_back(seen_from_there({x, 0.40}, {0.0, 0.0}));
+  }
+  const auto in_front = [&](const std::vector<OrientedPoint>& points, SightFan::Slack slack) {
+    return fan.judge(points, T, laser, slack).in_front;
+  };
+  EXPECT_GT(in_front(other_face, SightFan::Slack::AlongBeam), 12);
+  EXPECT_EQ(in_front(other_face, SightFan::Slack::AcrossSurface), 0);
+  EXPECT_EQ(in_front(across, SightFan::Slack::AcrossSurface), in_front(across, SightFan::Slack::AlongBeam));
+  EXPECT_GT(in_front(across, SightFan::Slack::AcrossSurface), 15);
+  EXPECT_EQ(in_front(no_normals, SightFan::Slack::AcrossSurface), in_front(no_normals, SightFan::Slack::AlongBeam));
+}
+
 /// The same by the arc tangent and the bins alone.
 SightFan::Verdict verdict_by_bins(const SightFan::Bins& bins, const TPoint2D& p) {
   const int middle = static_cast<int>(std::floor(rad_to_deg(std::atan2(p.y, p.x)))) + SightFan::kBins;
