@@ -7,6 +7,7 @@ namespace rubble::explore {
 namespace {
 
 constexpr double kCornerRoom = 0.13;  ///< beside corners that turn [m]
+constexpr double kSlidesOn = 1.3;     ///< of a turn, in which a slope lies across the robot [rad]
 
 }  // namespace
 
@@ -15,7 +16,8 @@ Pilot::Pilot(const robot::RobotModel& model, const FollowerConfig& config)
       watch_(model),
       turn_(model, config.turn_speed),
       pivot_(model.swing_radius() + kCornerRoom),
-      corners_(model) {}
+      corners_(model),
+      creep_(model, robot::kRubberOnWood) {}
 
 void Pilot::turn(double angle, TurnFor purpose, Stamp now) {
   turn_.begin(angle, now);
@@ -36,24 +38,24 @@ void Pilot::stop() {
 }
 
 /// A turn on the spot stays on it, and its corners off the walls.
-CornerRoom::Kept Pilot::kept(const robot::Drive& told, const mrpt::math::TPose2D& T_map_base,
-                             const robot::Drive& moving, const Traversable& floor,
+CornerRoom::Kept Pilot::kept(const robot::Drive& told, const Moment& robot, const Traversable& floor,
                              const std::vector<mrpt::math::TPoint2D>& hits) {
-  const robot::Drive drive = pivot_.keep(told, T_map_base, floor);
-  if (told.v == 0.0 && told.w != 0.0) return corners_.keep(drive, moving, T_map_base, floor, hits);
+  const robot::Drive drive = pivot_.keep(told, robot.T_map_base, floor, creep_.across(robot.lean, kSlidesOn));
+  if (told.v == 0.0 && told.w != 0.0)
+    return corners_.keep(drive, robot.moving, robot.T_map_base, floor, hits, creep_.expected(robot.lean, 1.0));
   corners_.end();
   return {drive};
 }
 
-Pilot::Step Pilot::step(const mrpt::math::TPose2D& T_map_base, double turned, const robot::Drive& moving,
-                        const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits, Stamp now) {
+Pilot::Step Pilot::step(const Moment& robot, const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits,
+                        Stamp now) {
   if (turning()) {
-    const std::optional<robot::Drive> drive = turn_.turn(turned, now);
-    const CornerRoom::Kept turn = kept(drive.value_or(robot::Drive{}), T_map_base, moving, floor, hits);
+    const std::optional<robot::Drive> drive = turn_.turn(robot.turned, now);
+    const CornerRoom::Kept turn = kept(drive.value_or(robot::Drive{}), robot, floor, hits);
     return {turn.drive, turn.brakes, !drive, !drive && purpose_ == TurnFor::Place};
   }
   if (watch_.waits(now)) return {};
-  const CornerRoom::Kept way = kept(follower_.drive(T_map_base), T_map_base, moving, floor, hits);
+  const CornerRoom::Kept way = kept(follower_.drive(robot.T_map_base), robot, floor, hits);
   return {watch_.limited(way.drive, now), way.brakes};
 }
 

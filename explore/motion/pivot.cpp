@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/planar.h"
+
 namespace rubble::explore {
 namespace {
 
@@ -17,12 +19,13 @@ constexpr double kSlow = 0.2;     ///< turns as long as the robot drives towards
 
 }  // namespace
 
-robot::Drive Pivot::keep(robot::Drive drive, const TPose2D& T_map_base, const Traversable& floor) {
+robot::Drive Pivot::keep(robot::Drive drive, const TPose2D& T_map_base, const Traversable& floor,
+                         const TPoint2D& slides) {
   if (drive.v != 0.0 || drive.w == 0.0) {
     spot_.reset();
     return drive;
   }
-  const TPoint2D here{T_map_base.x, T_map_base.y};
+  const TPoint2D here = T_map_base.composePoint(slides);
   const TPoint2D ahead{std::cos(T_map_base.phi), std::sin(T_map_base.phi)};
   const auto clearance = [&](double way) -> double {
     const Cell c = floor.clearance.cell(here + ahead * way);
@@ -39,7 +42,7 @@ robot::Drive Pivot::keep(robot::Drive drive, const TPose2D& T_map_base, const Tr
     spot_ = here;
     return drive;
   }
-  if (!spot_) spot_ = here;
+  if (!spot_) spot_ = position(T_map_base);
   const TPoint2D off = *spot_ - here;
   drive.v = std::clamp(kGain * (off.x * ahead.x + off.y * ahead.y), -kMostSpeed, kMostSpeed);
   return drive;

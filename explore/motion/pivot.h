@@ -20,7 +20,10 @@ class Pivot {
   explicit Pivot(double room) : room_(room) {}
 
   /// The drive for a robot at T_map_base that was to be driven so. What is no turn on the spot is left as it is.
-  robot::Drive keep(robot::Drive drive, const mrpt::math::TPose2D& T_map_base, const Traversable& floor);
+  /// `slides`: how far the slope it stands on will carry it meanwhile [m, base frame]; it keeps so far up from its
+  /// spot, and has room where it will be then.
+  robot::Drive keep(robot::Drive drive, const mrpt::math::TPose2D& T_map_base, const Traversable& floor,
+                    const mrpt::math::TPoint2D& slides = {0.0, 0.0});
 
   /// Drives that only turn, with what `keep` adds, are slower than this [m/s].
   static constexpr double kMostSpeed = 0.12;

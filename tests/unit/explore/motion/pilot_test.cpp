@@ -34,7 +34,7 @@ struct Steered {
   double turned = 0.0;  ///< in the last tick [rad]
 
   Pilot::Step step() {
-    const Pilot::Step step = pilot.step(pose, turned, {}, floor, {}, now);
+    const Pilot::Step step = pilot.step({pose, turned, {}, {}}, floor, {}, now);
     pose = pose + TPose2D{step.drive.v * kTickTime, 0.0, step.drive.w * kTickTime};
     turned = step.drive.w * kTickTime;
     now = now + kTickTime;
