@@ -30,7 +30,7 @@ class SlopeCreep {
 
   /// While it turns by `turn` [rad], inclined like this: in the base frame [m].
   mrpt::math::TPoint2D expected(const Lean& lean, double turn) const;
-  /// The same if the slope lay across it, whichever way it does: there it slides farthest.
+  /// The same if the slope lay across it, whichever way it does: down the slope, in the base frame [m].
   mrpt::math::TPoint2D across(const Lean& lean, double turn) const;
 
  private:

@@ -91,8 +91,8 @@ double CornerRoom::least_gap(const Drive& drive) const {
     now.v = robot::approach(now.v, drive.v, model_.max_accel * kStep);
     now.w = robot::approach(now.w, drive.w, model_.max_turn_accel * kStep);
     const double middle = T_base_then.phi + 0.5 * now.w * kStep;  // the chord of the arc
-    T_base_then.x += now.v * kStep * std::cos(middle) + creep_.x * std::abs(now.w) * kStep;
-    T_base_then.y += now.v * kStep * std::sin(middle) + creep_.y * std::abs(now.w) * kStep;
+    T_base_then.x += now.v * kStep * std::cos(middle);
+    T_base_then.y += now.v * kStep * std::sin(middle);
     T_base_then.phi += now.w * kStep;
     least = std::min(least, gap(T_base_then));
   }
@@ -100,14 +100,13 @@ double CornerRoom::least_gap(const Drive& drive) const {
 }
 
 CornerRoom::Kept CornerRoom::keep(const Drive& drive, const Drive& moving, const TPose2D& T_map_base,
-                                  const Traversable& floor, const std::vector<TPoint2D>& hits, const TPoint2D& creep) {
+                                  const Traversable& floor, const std::vector<TPoint2D>& hits) {
   if (!spot_) {
     spot_ = position(T_map_base);
     to_or_fro_ = 0.0;
   }
   find_walls(T_map_base, floor, hits);
   moving_ = moving;
-  creep_ = creep;
   const bool rolls = std::abs(moving.v) > kRolls;
   if (walls_.empty() || (!rolls && distance(*spot_, position(T_map_base)) > kMostOff)) return {drive};
   const double told = least_gap(drive);

@@ -25,11 +25,9 @@ class CornerRoom {
     bool brakes = false;  ///< as hard as the base can
   };
   /// The drive for a robot at T_map_base that is to turn on the spot, or nearly, by `drive`. `moving`: what its wheels
-  /// do; `hits`: of the newest scan [m, map frame], which show the ends of walls more sharply than the map; `creep`:
-  /// how far a slope carries it as it turns [m/rad, base frame].
+  /// do; `hits`: of the newest scan [m, map frame], which show the ends of walls more sharply than the map.
   Kept keep(const robot::Drive& drive, const robot::Drive& moving, const mrpt::math::TPose2D& T_map_base,
-            const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits,
-            const mrpt::math::TPoint2D& creep = {0.0, 0.0});
+            const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits);
   /// It does not turn on the spot now.
   void end() { spot_.reset(); }
 
@@ -47,7 +45,6 @@ class CornerRoom {
 
   robot::RobotModel model_;
   robot::Drive moving_;
-  mrpt::math::TPoint2D creep_{0.0, 0.0};      ///< [m/rad, base frame]
   std::optional<mrpt::math::TPoint2D> spot_;  ///< where the turn began [m, map frame]
   double to_or_fro_ = 0.0;                    ///< sign of the speed chosen last
   std::vector<Wall> walls_;                   ///< about the robot

@@ -1,5 +1,7 @@
 #include "explore/motion/pilot.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -7,7 +9,7 @@ namespace rubble::explore {
 namespace {
 
 constexpr double kCornerRoom = 0.13;  ///< beside corners that turn [m]
-constexpr double kSlidesOn = 1.3;     ///< of a turn, in which a slope lies across the robot [rad]
+constexpr double kSlidesOn = 0.6;     ///< of a turn, in which a slope carries the robot away unanswered, at most [rad]
 
 }  // namespace
 
@@ -35,14 +37,16 @@ void Pilot::follow(Plan plan) {
 void Pilot::stop() {
   follower_.clear();
   turn_.end();
+  leave_spot();
 }
 
 /// A turn on the spot stays on it, and its corners off the walls.
 CornerRoom::Kept Pilot::kept(const robot::Drive& told, const Moment& robot, const Traversable& floor,
                              const std::vector<mrpt::math::TPoint2D>& hits) {
-  const robot::Drive drive = pivot_.keep(told, robot.T_map_base, floor, creep_.across(robot.lean, kSlidesOn));
-  if (told.v == 0.0 && told.w != 0.0)
-    return corners_.keep(drive, robot.moving, robot.T_map_base, floor, hits, creep_.expected(robot.lean, 1.0));
+  const double left = std::abs(turning() ? turn_.left() : follower_.turn_left());
+  const robot::Drive drive =
+      pivot_.keep(told, robot.T_map_base, floor, creep_.across(robot.lean, std::min(kSlidesOn, left)));
+  if (told.v == 0.0 && told.w != 0.0) return corners_.keep(drive, robot.moving, robot.T_map_base, floor, hits);
   corners_.end();
   return {drive};
 }

@@ -75,13 +75,20 @@ class Pilot {
   /// What was found last is not forgotten for `seconds`.
   void remember_new_things(double seconds, Stamp now) { watch_.remember(seconds, now); }
   /// The mapper corrected its past.
-  void follow_map(const slam::Mapper& mapper) { watch_.follow(mapper); }
+  void follow_map(const slam::Mapper& mapper) {
+    watch_.follow(mapper);
+    leave_spot();
+  }
   /// The map shows a way, the newest scans do not: go and see, slowly.
   void creep(Stamp now) { watch_.creep(now); }
   /// Something is being pushed.
   void slow_down(Stamp now) { watch_.slow_down(now); }
 
  private:
+  void leave_spot() {
+    pivot_.end();
+    corners_.end();
+  }
   CornerRoom::Kept kept(const robot::Drive& told, const Moment& robot, const Traversable& floor,
                         const std::vector<mrpt::math::TPoint2D>& hits);
 

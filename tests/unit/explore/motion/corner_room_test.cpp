@@ -107,27 +107,6 @@ TEST(CornerRoom, ARobotThatRollsTowardsAWallAsItTurnsBrakes) {
 }
 
 /// The map shows a wall in cells; the newest scan shows where it ends. A ball gives way.
-/// A slope that falls towards the wall carries the body there as it turns.
-TEST(CornerRoom, ATurnThatASlopeCarriesToTheWallIsKeptOffIt) {
-  const Traversable floor = test::measured(test::room(kRoomWidth, kRoomWidth));
-  const double slides = 0.12;  // [m/rad]
-  const auto nearest = [&](bool knows) {
-    CornerRoom corners(kCornerBody);
-    Base base{{0.5 * kRoomWidth, kRoomWidth - 0.05 - 0.40, 0.5 * kPi}, {}};
-    double least = kRoomWidth;
-    for (int i = 0; i < 75; ++i) {
-      const TPoint2D down = PlanarTransform(base.pose).turned_back(0.0, slides);
-      const Drive told{0.0, 1.0};
-      const auto kept = corners.keep(told, base.moving, base.pose, floor, {}, knows ? down : TPoint2D{0.0, 0.0});
-      base.go(kept.drive, kept.brakes);
-      base.pose.y += slides * base.moving.w * kCornerTick;
-      least = std::min(least, nearest_wall(base.pose));
-    }
-    return least;
-  };
-  EXPECT_GT(nearest(true), nearest(false) + 0.01);
-}
-
 TEST(CornerRoom, HitsBesideAWallAreOfItAndHitsThatStandAloneAreNot) {
   const Traversable floor = test::measured(test::room(kRoomWidth, kRoomWidth));
   const TPose2D pose{1.5, 0.05 + 0.12 + 0.5 * kCornerBody.width, 0.0};
