@@ -2,7 +2,6 @@
 
 #include "base/angle.h"
 #include "robot/measurements.h"
-#include "robot/slope_creep.h"
 
 namespace rubble::explore {
 
@@ -20,7 +19,10 @@ class TiltWatch {
 
   /// Takes in the servo angles of one tick of `dt` [s].
   void update(const robot::Inputs& inputs, double dt);
-  const robot::Lean& lean() const { return lean_; }
+  /// Nose-up positive [rad].
+  double pitch() const { return pitch_; }
+  /// Left side up positive [rad].
+  double roll() const { return roll_; }
   /// Of the ground below the robot against the horizontal [rad].
   double slope() const;
   /// The robot leans more than it should, and has for a while.
@@ -31,7 +33,8 @@ class TiltWatch {
 
  private:
   TiltWatchConfig config_;
-  robot::Lean lean_;
+  double pitch_ = 0.0;
+  double roll_ = 0.0;
   double steep_for_ = 0.0;   ///< [s]
   double silent_for_ = 0.0;  ///< [s]
   bool distrusted_ = false;
