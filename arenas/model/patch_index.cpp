@@ -14,32 +14,34 @@ using mrpt::math::TPoint2D;
 
 constexpr double kSlack = 1e-3;  ///< patches are entered this much larger, so that their edges belong to them [m]
 
-GridFrame frame_over(const Arena& arena) {
-  if (arena.floor.empty()) return {1, 1, 1.0, 0.0, 0.0};
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  TPoint2D low{kInfinity, kInfinity};
-  TPoint2D high{-kInfinity, -kInfinity};
-  for (const FloorPatch& patch : arena.floor) {
-    for (const TPoint2D& p : patch.outline) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
-  }
-  constexpr double kMostBuckets = 1000.0;  // a side: an arena of any size stays in memory
-  const double edge = std::max({arena.cell_size, (high.x - low.x) / kMostBuckets, (high.y - low.y) / kMostBuckets});
-  return {static_cast<int>((high.x - low.x) / edge) + 1, static_cast<int>((high.y - low.y) / edge) + 1, edge, low.x,
-          low.y};
-}
-
 }  // namespace
 
-PatchIndex::Box PatchIndex::box_of(const FloorPatch& patch) {
-  Box box{patch.outline.front(), patch.outline.front()};
-  for (const TPoint2D& p : patch.outline) {
-    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y)};
-    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y)};
+void PatchIndex::Box::include(const TPoint2D& p) {
+  low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+  high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+}
+
+std::vector<PatchIndex::Box> PatchIndex::boxes_of(const Arena& arena) {
+  std::vector<Box> boxes(arena.floor.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (const TPoint2D& p : arena.floor[i].outline) boxes[i].include(p);
+    boxes[i].low -= TPoint2D{kSlack, kSlack};
+    boxes[i].high += TPoint2D{kSlack, kSlack};
   }
-  return {box.low - TPoint2D{kSlack, kSlack}, box.high + TPoint2D{kSlack, kSlack}};
+  return boxes;
+}
+
+GridFrame PatchIndex::frame_over(const std::vector<Box>& boxes, double cell_size) {
+  if (boxes.empty()) return {1, 1, 1.0, 0.0, 0.0};
+  Box all;
+  for (const Box& box : boxes) {
+    all.include(box.low);
+    all.include(box.high);
+  }
+  constexpr double kMostBuckets = 1000.0;  // a side: an arena of any size stays in memory
+  const TPoint2D size = all.high - all.low;
+  const double edge = std::max({cell_size, size.x / kMostBuckets, size.y / kMostBuckets});
+  return {static_cast<int>(size.x / edge) + 1, static_cast<int>(size.y / edge) + 1, edge, all.low.x, all.low.y};
 }
 
 template <class Visit>
@@ -50,9 +52,11 @@ void PatchIndex::for_buckets(const Box& box, const Visit& visit) const {
     for (int x = low.x; x <= high.x; ++x) visit(frame_.index({x, y}));
 }
 
-PatchIndex::PatchIndex(const Arena& arena) : arena_(arena), frame_(frame_over(arena)), begins_(frame_.size() + 1, 0) {
-  boxes_.reserve(arena.floor.size());
-  for (const FloorPatch& patch : arena.floor) boxes_.push_back(box_of(patch));
+PatchIndex::PatchIndex(const Arena& arena)
+    : arena_(arena),
+      boxes_(boxes_of(arena)),
+      frame_(frame_over(boxes_, arena.cell_size)),
+      begins_(frame_.size() + 1, 0) {
   for (const Box& box : boxes_) for_buckets(box, [&](std::size_t b) { ++begins_[b + 1]; });
   std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
   entries_.resize(begins_.back());
@@ -67,7 +71,9 @@ Cell PatchIndex::bucket(const TPoint2D& p) const {
 }
 
 std::vector<std::size_t> PatchIndex::near(const TPoint2D& a, const TPoint2D& b) const {
-  const Box asked{{std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)}};
+  Box asked;
+  asked.include(a);
+  asked.include(b);
   std::vector<std::size_t> found;
   for_buckets(asked, [&](std::size_t bucket) {
     for (std::size_t k = begins_[bucket]; k < begins_[bucket + 1]; ++k) {

@@ -3,6 +3,7 @@
 #include <mrpt/math/TPoint2D.h>
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "arenas/model/arena.h"
@@ -25,9 +26,14 @@ class PatchIndex {
 
  private:
   struct Box {
-    mrpt::math::TPoint2D low, high;
+    static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    mrpt::math::TPoint2D low{kInfinity, kInfinity};
+    mrpt::math::TPoint2D high{-kInfinity, -kInfinity};
+    void include(const mrpt::math::TPoint2D& p);
   };
-  static Box box_of(const FloorPatch& patch);
+  static std::vector<Box> boxes_of(const Arena& arena);
+  /// Of buckets of one pallet each, or larger ones.
+  static GridFrame frame_over(const std::vector<Box>& boxes, double cell_size);
   Cell bucket(const mrpt::math::TPoint2D& p) const;
   /// Calls visit(index of a bucket) for all that the box touches.
   template <class Visit>

@@ -314,10 +314,12 @@ SightFan::Judged SightFan::judge(const std::vector<OrientedPoint>& points, const
       about[i] = about_angle(x[i], y[i]);
       range[i] = length(x[i], y[i]);
     }
-    for (std::size_t i = 0; slack == Slack::AcrossSurface && i < count; ++i) {
-      const double nx = static_cast<double>(p[i].nx), ny = static_cast<double>(p[i].ny);
-      const bool known = p[i].has_normal() && range[i] > 0.0;
-      across[i] = known ? std::abs(x[i] * (c * nx - s * ny) + y[i] * (s * nx + c * ny)) / range[i] : 1.0;
+    if (slack == Slack::AcrossSurface) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const double nx = static_cast<double>(p[i].nx), ny = static_cast<double>(p[i].ny);
+        const bool known = p[i].has_normal() && range[i] > 0.0;
+        across[i] = known ? std::abs(x[i] * (c * nx - s * ny) + y[i] * (s * nx + c * ny)) / range[i] : 1.0;
+      }
     }
     for (std::size_t i = 0; i < count; ++i) {
       const Verdict verdict = judge(bin_of(about[i], x[i], y[i]), range[i], across[i]);
