@@ -17,6 +17,8 @@ class LookAround {
   void begin(double angle, Stamp now);
   void end() { left_ = 0.0; }
   bool active() const { return left_ != 0.0; }
+  /// [rad], signed; 0: none under way
+  double left() const { return left_; }
 
   /// The command for a robot that turned by `turned` [rad] since the last tick; nothing when the turn is done or takes
   /// too long.

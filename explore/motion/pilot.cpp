@@ -1,5 +1,7 @@
 #include "explore/motion/pilot.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -7,6 +9,7 @@ namespace rubble::explore {
 namespace {
 
 constexpr double kCornerRoom = 0.13;  ///< beside corners that turn [m]
+constexpr double kSlidesOn = 0.6;     ///< of a turn, in which a slope carries the robot away unanswered, at most [rad]
 
 }  // namespace
 
@@ -15,7 +18,8 @@ Pilot::Pilot(const robot::RobotModel& model, const FollowerConfig& config)
       watch_(model),
       turn_(model, config.turn_speed),
       pivot_(model.swing_radius() + kCornerRoom),
-      corners_(model) {}
+      corners_(model),
+      creep_(model, robot::kRubberOnWood) {}
 
 void Pilot::turn(double angle, TurnFor purpose, Stamp now) {
   turn_.begin(angle, now);
@@ -33,27 +37,29 @@ void Pilot::follow(Plan plan) {
 void Pilot::stop() {
   follower_.clear();
   turn_.end();
+  leave_spot();
 }
 
 /// A turn on the spot stays on it, and its corners off the walls.
-CornerRoom::Kept Pilot::kept(const robot::Drive& told, const mrpt::math::TPose2D& T_map_base,
-                             const robot::Drive& moving, const Traversable& floor,
+CornerRoom::Kept Pilot::kept(const robot::Drive& told, const Moment& robot, const Traversable& floor,
                              const std::vector<mrpt::math::TPoint2D>& hits) {
-  const robot::Drive drive = pivot_.keep(told, T_map_base, floor);
-  if (told.v == 0.0 && told.w != 0.0) return corners_.keep(drive, moving, T_map_base, floor, hits);
+  const double left = std::abs(turning() ? turn_.left() : follower_.turn_left());
+  const robot::Drive drive =
+      pivot_.keep(told, robot.T_map_base, floor, creep_.across(robot.lean, std::min(kSlidesOn, left)));
+  if (told.v == 0.0 && told.w != 0.0) return corners_.keep(drive, robot.moving, robot.T_map_base, floor, hits);
   corners_.end();
   return {drive};
 }
 
-Pilot::Step Pilot::step(const mrpt::math::TPose2D& T_map_base, double turned, const robot::Drive& moving,
-                        const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits, Stamp now) {
+Pilot::Step Pilot::step(const Moment& robot, const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits,
+                        Stamp now) {
   if (turning()) {
-    const std::optional<robot::Drive> drive = turn_.turn(turned, now);
-    const CornerRoom::Kept turn = kept(drive.value_or(robot::Drive{}), T_map_base, moving, floor, hits);
+    const std::optional<robot::Drive> drive = turn_.turn(robot.turned, now);
+    const CornerRoom::Kept turn = kept(drive.value_or(robot::Drive{}), robot, floor, hits);
     return {turn.drive, turn.brakes, !drive, !drive && purpose_ == TurnFor::Place};
   }
   if (watch_.waits(now)) return {};
-  const CornerRoom::Kept way = kept(follower_.drive(T_map_base), T_map_base, moving, floor, hits);
+  const CornerRoom::Kept way = kept(follower_.drive(robot.T_map_base), robot, floor, hits);
   return {watch_.limited(way.drive, now), way.brakes};
 }
 

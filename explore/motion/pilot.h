@@ -15,6 +15,7 @@
 #include "explore/plan/traversable.h"
 #include "robot/commands.h"
 #include "robot/model.h"
+#include "robot/slope_creep.h"
 
 namespace rubble::explore {
 
@@ -49,10 +50,15 @@ class Pilot {
     bool turn_ended = false;  ///< in this tick: done, or it took too long
     bool faced = false;       ///< likewise, of a turn to face a place
   };
-  /// One tick in which the robot turned by `turned` [rad]. `moving`: what its wheels do; `hits`: of the
-  /// newest scan [m, map frame].
-  Step step(const mrpt::math::TPose2D& T_map_base, double turned, const robot::Drive& moving, const Traversable& floor,
-            const std::vector<mrpt::math::TPoint2D>& hits, Stamp now);
+  /// What a tick knows of the robot.
+  struct Moment {
+    mrpt::math::TPose2D T_map_base;
+    double turned = 0.0;  ///< in this tick [rad]
+    robot::Drive moving;  ///< what its wheels do
+    robot::Lean lean;     ///< of its body
+  };
+  /// One tick; `hits`: of the newest scan [m, map frame].
+  Step step(const Moment& robot, const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits, Stamp now);
 
   /// Whether the path should be checked now; that then counts as done.
   bool check_due(Stamp now) { return watch_.due(now) && !arrived() && !turning(); }
@@ -69,15 +75,22 @@ class Pilot {
   /// What was found last is not forgotten for `seconds`.
   void remember_new_things(double seconds, Stamp now) { watch_.remember(seconds, now); }
   /// The mapper corrected its past.
-  void follow_map(const slam::Mapper& mapper) { watch_.follow(mapper); }
+  void follow_map(const slam::Mapper& mapper) {
+    watch_.follow(mapper);
+    leave_spot();
+  }
   /// The map shows a way, the newest scans do not: go and see, slowly.
   void creep(Stamp now) { watch_.creep(now); }
   /// Something is being pushed.
   void slow_down(Stamp now) { watch_.slow_down(now); }
 
  private:
-  CornerRoom::Kept kept(const robot::Drive& told, const mrpt::math::TPose2D& T_map_base, const robot::Drive& moving,
-                        const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits);
+  void leave_spot() {
+    pivot_.end();
+    corners_.end();
+  }
+  CornerRoom::Kept kept(const robot::Drive& told, const Moment& robot, const Traversable& floor,
+                        const std::vector<mrpt::math::TPoint2D>& hits);
 
   PathFollower follower_;
   PathWatch watch_;
@@ -85,6 +98,7 @@ class Pilot {
   TurnFor purpose_ = TurnFor::View;
   Pivot pivot_;
   CornerRoom corners_;
+  robot::SlopeCreep creep_;
   double d_min_ = 0.0;  ///< that the path keeps [m]
 };
 

@@ -20,7 +20,13 @@ class Pivot {
   explicit Pivot(double room) : room_(room) {}
 
   /// The drive for a robot at T_map_base that was to be driven so. What is no turn on the spot is left as it is.
-  robot::Drive keep(robot::Drive drive, const mrpt::math::TPose2D& T_map_base, const Traversable& floor);
+  /// `slides`: how far the slope it stands on will carry it in the rest of the turn [m, base frame]; it keeps so far up
+  /// from its spot, as long as its corners have room there.
+  robot::Drive keep(robot::Drive drive, const mrpt::math::TPose2D& T_map_base, const Traversable& floor,
+                    const mrpt::math::TPoint2D& slides = {0.0, 0.0});
+
+  /// The turn is over, or the map has moved: the next one has a spot of its own.
+  void end() { spot_.reset(); }
 
   /// Drives that only turn, with what `keep` adds, are slower than this [m/s].
   static constexpr double kMostSpeed = 0.12;

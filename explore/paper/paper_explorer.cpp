@@ -222,7 +222,8 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
   if (agenda_.due(mapper.map(), now_)) replan(mapper);
   if (finished()) return {};
   const Pilot::Step step =
-      pilot_.step(pose_, turned_, stuck_watch_.wheels().value_or(commanded_), floor_, mapper.last_hits(), now_);
+      pilot_.step({pose_, turned_, stuck_watch_.wheels().value_or(commanded_), stuck_watch_.lean()}, floor_,
+                  mapper.last_hits(), now_);
   brakes_ = step.brakes;
   if (step.turn_ended) agenda_.plan_soon();
   // A turn in a tight place wanders off its viewpoint; driving back to it and turning again would never end.

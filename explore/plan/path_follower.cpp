@@ -82,12 +82,16 @@ TPoint2D PathFollower::aim_point(const TPoint2D& p_map) const {
 Drive PathFollower::drive(const TPose2D& T_map_base) {
   const TPoint2D p_map{T_map_base.x, T_map_base.y};
   if (!path_.empty()) advance(p_map);
+  turn_left_ = 0.0;
   if (arrived()) return {};
 
   const TPoint2D aim = aim_point(p_map);
   const double error = wrap_angle(direction(p_map, aim) - T_map_base.phi);
   turning_ = std::abs(error) > (turning_ ? config_.turn_done : config_.turn_in_place);
-  if (turning_) return turn_on_the_spot(error, config_.turn_speed, turn_brake_);
+  if (turning_) {
+    turn_left_ = error;
+    return turn_on_the_spot(error, config_.turn_speed, turn_brake_);
+  }
 
   const double curvature = 2.0 * std::sin(error) / std::max(distance(p_map, aim), 0.5 * config_.look_ahead);
   // Off the path's direction the speed profile does not hold: slower.

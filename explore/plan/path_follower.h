@@ -52,6 +52,8 @@ class PathFollower {
   double left() const;
   const std::vector<PathPoint>& path() const { return path_; }
   std::size_t progress() const { return progress_; }
+  /// Of the turn on the spot under way [rad], signed; 0: none.
+  double turn_left() const { return turn_left_; }
 
   static constexpr double kArrival = 0.10;  ///< [m]
 
@@ -68,6 +70,7 @@ class PathFollower {
   std::vector<double> speed_;  ///< allowed at each point [m/s]
   std::size_t progress_ = 0;
   bool turning_ = false;
+  double turn_left_ = 0.0;  ///< [rad]
 };
 
 /// The drive that turns the robot on the spot by `angle` and slows down in time.

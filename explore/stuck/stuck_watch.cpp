@@ -51,7 +51,7 @@ std::optional<StuckWatch::Hold> StuckWatch::held(const mrpt::math::TPose2D& T_ma
   const bool blow = jolt_.struck() && !turns_slowly;
   if (motion_.on_the_spot(commanded)) slowed_.reset();
   const bool slowed = slowed_.held(jolt_.shaken() && commanded.v != 0.0 && !turns_slowly, T_map_base,
-                                   wheels_.value_or(commanded), tilt_.pitch(), dt, now);
+                                   wheels_.value_or(commanded), tilt_.lean().pitch, dt, now);
   if (!tilt_.too_steep() && !blow && !slowed && !stuck) return std::nullopt;
   const bool by_motion = !tilt_.too_steep() && !blow && !slowed && !stalled_ && !motion_.rocking();
   const bool in_vain = by_motion && motion_.steers_in_vain();

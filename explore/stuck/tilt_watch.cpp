@@ -12,15 +12,15 @@ void TiltWatch::update(const robot::Inputs& inputs, double dt) {
   const bool told = !inputs.aims.empty() && !distrusted_;
   silent_for_ = told ? 0.0 : silent_for_ + dt;
   if (told) {
-    pitch_ += share * (-inputs.aims.back().pitch - pitch_);
-    roll_ += share * (-inputs.aims.back().roll - roll_);
+    lean_.pitch += share * (-inputs.aims.back().pitch - lean_.pitch);
+    lean_.roll += share * (-inputs.aims.back().roll - lean_.roll);
   } else if (silent_for_ > config_.silence) {
-    pitch_ -= share * pitch_;
-    roll_ -= share * roll_;
+    lean_.pitch -= share * lean_.pitch;
+    lean_.roll -= share * lean_.roll;
   }
   steep_for_ = slope() > config_.too_steep ? steep_for_ + dt : 0.0;
 }
 
-double TiltWatch::slope() const { return length(pitch_, roll_); }
+double TiltWatch::slope() const { return length(lean_.pitch, lean_.roll); }
 
 }  // namespace rubble::explore

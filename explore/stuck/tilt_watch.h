@@ -2,6 +2,7 @@
 
 #include "base/angle.h"
 #include "robot/measurements.h"
+#include "robot/slope_creep.h"
 
 namespace rubble::explore {
 
@@ -19,10 +20,7 @@ class TiltWatch {
 
   /// Takes in the servo angles of one tick of `dt` [s].
   void update(const robot::Inputs& inputs, double dt);
-  /// Nose-up positive [rad].
-  double pitch() const { return pitch_; }
-  /// Left side up positive [rad].
-  double roll() const { return roll_; }
+  const robot::Lean& lean() const { return lean_; }
   /// Of the ground below the robot against the horizontal [rad].
   double slope() const;
   /// The robot leans more than it should, and has for a while.
@@ -33,8 +31,7 @@ class TiltWatch {
 
  private:
   TiltWatchConfig config_;
-  double pitch_ = 0.0;
-  double roll_ = 0.0;
+  robot::Lean lean_;
   double steep_for_ = 0.0;   ///< [s]
   double silent_for_ = 0.0;  ///< [s]
   bool distrusted_ = false;

@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "base/planar.h"
+#include "robot/slope_creep.h"
 #include "slam/robust/graph/key_frames.h"
 #include "slam/robust/graph/known_ground.h"
 #include "slam/robust/graph/wall_compass.h"
 #include "slam/robust/map/stamped_map.h"
 #include "slam/robust/tracking/motion_expectation.h"
 #include "slam/robust/tracking/scan_diary.h"
-#include "slam/robust/tracking/slope_creep.h"
 #include "slam/scan/waiting_scans.h"
 
 namespace rubble::slam {
@@ -123,7 +123,7 @@ struct RobustMapper::Impl {
   const mrpt::math::TPose3D T_base_laser_;
   LevelScan level_scan_;
   TiltTrack tilt_;
-  const SlopeCreep creep_;
+  const robot::SlopeCreep creep_;
   MotionExpectation motion_;
   KeyFrames frames_;
   LocalTracker tracker_;
@@ -190,7 +190,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
   std::optional<SweepMotion> sweep = config_.deskew ? motion_.sweep(scan, motion) : std::nullopt;
   const std::optional<ScanTilt> tilt = config_.use_tilt ? tilt_of(reference, motion) : std::nullopt;
   if (tilt && motion.told) {
-    const TPoint2D crept = creep_.expected(*tilt, wrap_angle(motion.T_last_now.phi));
+    const TPoint2D crept = creep_.expected({tilt->body_pitch, tilt->body_roll}, wrap_angle(motion.T_last_now.phi));
     motion.T_last_now.x += crept.x;
     motion.T_last_now.y += crept.y;
     motion.crept = crept;

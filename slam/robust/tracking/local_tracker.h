@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "robot/slope_creep.h"
 #include "slam/robust/graph/key_frames.h"
 #include "slam/robust/matching/correlator.h"
 #include "slam/robust/matching/scan_fit.h"
@@ -19,17 +20,18 @@ struct TrackerConfig {
   double least_turn = 0.02;        ///< [rad]
   double turn_error_per_m = 0.10;  ///< [rad/m]
   double vain_error = 1.0;         ///< share of the way that wheels rolled in vain; 0: they are always believed
-  double wheel_friction = 0.8;     ///< of a skid-steered robot, which slides down a slope as it turns; 0: does not
-  double creep_error = 0.5;        ///< share of what it is expected to slide
-  double large_step = 0.35;        ///< longer steps between scans are searched first [m]
-  double large_turn = 0.2;         ///< and larger turns [rad]
-  double slip_chi2 = 16.0;         ///< odometry off by more (squared sigmas) is doubted
-  double most_speed = 0.8;         ///< of a robot whose odometry is of no use [m/s] ...
-  double most_turn_rate = 1.8;     ///< ... [rad/s]
-  bool hold_leaps = true;          ///< a match farther off than a robot can move waits for the next ones to agree
-  double lost_inliers = 0.35;      ///< share below which the place counts as lost
-  double search_cell = 0.05;       ///< raster of the search [m]
-  double search_blur = 0.0;        ///< [m]
+  double wheel_friction =
+      robot::kRubberOnWood;     ///< of a skid-steered robot, which slides down a slope as it turns; 0: does not
+  double creep_error = 0.5;     ///< share of what it is expected to slide
+  double large_step = 0.35;     ///< longer steps between scans are searched first [m]
+  double large_turn = 0.2;      ///< and larger turns [rad]
+  double slip_chi2 = 16.0;      ///< odometry off by more (squared sigmas) is doubted
+  double most_speed = 0.8;      ///< of a robot whose odometry is of no use [m/s] ...
+  double most_turn_rate = 1.8;  ///< ... [rad/s]
+  bool hold_leaps = true;       ///< a match farther off than a robot can move waits for the next ones to agree
+  double lost_inliers = 0.35;   ///< share below which the place counts as lost
+  double search_cell = 0.05;    ///< raster of the search [m]
+  double search_blur = 0.0;     ///< [m]
 };
 
 /// What is known of the motion since the last scan before the scan is looked at.

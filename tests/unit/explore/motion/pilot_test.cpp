@@ -2,15 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/angle.h"
 #include "base/planar.h"
+#include "robot/body.h"
+#include "robot/slope_creep.h"
 #include "tests/support/explore_grids.h"
 
 namespace rubble::explore {
 namespace {
 
+using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
 Plan straight(double from, double to) {
@@ -32,11 +36,15 @@ struct Steered {
   TPose2D pose{1.0, 3.0, 0.0};
   Stamp now = Stamp::from_seconds(1.0);
   double turned = 0.0;  ///< in the last tick [rad]
+  double slope = 0.0;   ///< it rises to the north [rad]
+  robot::SlopeCreep creep{model, robot::kRubberOnWood};
 
   Pilot::Step step() {
-    const Pilot::Step step = pilot.step(pose, turned, {}, floor, {}, now);
-    pose = pose + TPose2D{step.drive.v * kTickTime, 0.0, step.drive.w * kTickTime};
+    const robot::Lean lean{slope * std::sin(pose.phi), slope * std::cos(pose.phi)};
+    const Pilot::Step step = pilot.step({pose, turned, {}, lean}, floor, {}, now);
     turned = step.drive.w * kTickTime;
+    const TPoint2D slid = creep.expected(lean, turned);
+    pose = pose + TPose2D{step.drive.v * kTickTime + slid.x, slid.y, turned};
     now = now + kTickTime;
     return step;
   }
@@ -48,6 +56,54 @@ struct Steered {
     return {};
   }
 };
+
+/// Each turn begins where the one before ended: what it stands too high must not add up (3 cm a turn if each one stood as
+/// high as a long one).
+TEST(Pilot, TurnsToAndFroOnASlopeStayWhereTheyBegan) {
+  for (const double heading : {0.5 * kPi, 0.0, -2.0}) {
+    Steered robot;
+    robot.slope = deg_to_rad(10.0);
+    robot.pose = {3.0, 3.0, heading};
+    for (int i = 0; i < 12; ++i) {
+      robot.pilot.turn(i % 2 == 0 ? 0.6 : -0.6, TurnFor::WholeView, robot.now);
+      robot.end_of_turn();
+    }
+    EXPECT_LT(robot.pose.y, 3.10) << heading;
+  }
+}
+
+/// In a lane as wide as a pallet, with a wall above and one below it on the slope, no corner of the body touches one.
+TEST(Pilot, ATurnOnASlopeBetweenTwoWallsTouchesNone) {
+  Steered robot;
+  robot.slope = deg_to_rad(10.0);
+  robot.floor = test::measured(test::room(6.0, 1.3));  // with its walls
+  for (const double heading : {0.5 * kPi, 0.0, -2.0}) {
+    robot.pose = {3.0, 0.65, heading};
+    robot.pilot.stop();
+    robot.pilot.turn(2.0 * kPi, TurnFor::WholeView, robot.now);
+    double least = 1.0;
+    for (bool ended = false; !ended;) {
+      ended = robot.step().turn_ended;
+      for (const TPoint2D& corner : robot::body_outline<TPoint2D, double>(robot.model)) {
+        const double y = robot.pose.composePoint(corner).y;
+        least = std::min({least, y - 0.05, 1.25 - y});
+      }
+    }
+    EXPECT_GT(least, 0.01) << heading;
+  }
+}
+
+/// Carried away in between, it does not drive back to the spot of a turn that was given up.
+TEST(Pilot, AStopForgetsTheSpotOfATurn) {
+  Steered robot;
+  robot.pilot.turn(2.0, TurnFor::WholeView, robot.now);
+  for (int i = 0; i < 20; ++i) robot.step();
+  robot.pilot.stop();
+  robot.pose = {2.0, 3.0, 0.0};
+  robot.pilot.turn(2.0, TurnFor::WholeView, robot.now);
+  robot.end_of_turn();
+  EXPECT_LT(distance(position(robot.pose), {2.0, 3.0}), 0.01);
+}
 
 TEST(Pilot, DrivesAPathToItsEndAndStands) {
   Steered robot;

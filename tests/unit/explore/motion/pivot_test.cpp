@@ -7,6 +7,7 @@
 
 #include "base/angle.h"
 #include "base/planar.h"
+#include "robot/slope_creep.h"
 
 namespace rubble::explore {
 namespace {
@@ -65,6 +66,54 @@ TEST(Pivot, ATurnThatWandersComesToStandNearerToItsSpot) {
     const TPose2D left = turned(nullptr, {2.0, 2.0, 0.3}, 1.5 * kPi, creep, floor);
     EXPECT_LT(distance({kept.x, kept.y}, {2.0, 2.0}), 0.6 * distance({left.x, left.y}, {2.0, 2.0}));
   }
+}
+
+/// How far below its spot a robot gets that turns round twice on a slope of 10 deg [m].
+struct Below {
+  double most = 0.0;
+  double mean = 0.0;
+  double least = 0.0;  ///< above its spot: below 0
+};
+
+/// friction: of the floor; the robot takes it to be rubber on wood.
+Below turned_on_slope(double begin, bool knows, const Traversable& floor, double middle, double friction) {
+  const robot::RobotModel model;
+  const robot::SlopeCreep creep(model, friction), expected(model, robot::kRubberOnWood);
+  Pivot pivot(model.swing_radius() + 0.13);
+  TPose2D pose{3.0, middle, begin};
+  Below below;
+  int ticks = 0;
+  for (double left = 4.0 * kPi; left > 0.0; ++ticks) {
+    // It rises towards -y.
+    const robot::Lean lean{-std::sin(pose.phi) * deg_to_rad(10.0), -std::cos(pose.phi) * deg_to_rad(10.0)};
+    const robot::Drive drive =
+        pivot.keep({0.0, 1.0}, pose, floor, knows ? expected.across(lean, std::min(0.6, left)) : TPoint2D{0.0, 0.0});
+    const double turn = drive.w * kTick;
+    const TPoint2D slid = creep.expected(lean, turn);
+    pose = pose + TPose2D(drive.v * kTick + slid.x, slid.y, turn);
+    left -= turn;
+    below.most = std::max(below.most, pose.y - middle);
+    below.least = std::min(below.least, pose.y - middle);
+    below.mean += pose.y - middle;
+  }
+  below.mean /= ticks;
+  return below;
+}
+
+/// The slope carries it down while it lies across it, and it drives up again while it looks along it: about its spot
+/// where it knows of that, also where the floor is not what it takes it for.
+TEST(Pivot, ATurnOnASlopeStaysAboutItsSpot) {
+  const Traversable wide = floor_with_wall(5.0);
+  for (const double friction : {0.5, 0.8, 1.1})
+    for (const double begin : {0.0, 0.5 * kPi, 2.0}) {
+      SCOPED_TRACE(testing::Message() << "friction " << friction << ", heading " << begin);
+      const Below blind = turned_on_slope(begin, false, wide, 2.0, friction);
+      const Below knowing = turned_on_slope(begin, true, wide, 2.0, friction);
+      EXPECT_GT(blind.mean, 0.06) << "else there is nothing to keep";
+      EXPECT_LT(std::abs(knowing.mean), 0.4 * blind.mean);
+      EXPECT_LT(knowing.most, 0.7 * blind.most);
+      EXPECT_GT(knowing.least, -0.10);
+    }
 }
 
 TEST(Pivot, WhereCornersHaveNoRoomTheTurnLeadsAwayFromTheWall) {

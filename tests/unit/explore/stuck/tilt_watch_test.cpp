@@ -17,7 +17,7 @@ TEST(TiltWatch, TakesTheServosAnglesForTheBodysTiltAndAsksForPatience) {
   tilt.update(inputs, kTiltTick);
   EXPECT_FALSE(tilt.too_steep());
   for (int i = 0; i < 100; ++i) tilt.update(inputs, kTiltTick);
-  EXPECT_NEAR(tilt.pitch(), deg_to_rad(25.0), 0.01);
+  EXPECT_NEAR(tilt.lean().pitch, deg_to_rad(25.0), 0.01);
   EXPECT_TRUE(tilt.too_steep());
   inputs.aims.back().pitch = deg_to_rad(-10.0);  // a ramp of the arena
   for (int i = 0; i < 100; ++i) tilt.update(inputs, kTiltTick);

@@ -3,9 +3,17 @@
 #include <mrpt/math/TPoint2D.h>
 
 #include "robot/model.h"
-#include "slam/scan/level_scan.h"
 
-namespace rubble::slam {
+namespace rubble::robot {
+
+/// Friction of the wheels on the floor of an arena.
+inline constexpr double kRubberOnWood = 0.8;
+
+/// How a body is inclined.
+struct Lean {
+  double pitch = 0.0;  ///< nose up [rad]
+  double roll = 0.0;   ///< left side up [rad]
+};
 
 /// How a skid-steered robot that turns slides down the slope it stands on.
 ///
@@ -18,15 +26,19 @@ namespace rubble::slam {
 class SlopeCreep {
  public:
   /// friction: of its wheels on the floor; 0: it does not creep.
-  SlopeCreep(const robot::RobotModel& model, double friction);
+  SlopeCreep(const RobotModel& model, double friction);
 
   /// While it turns by `turn` [rad], inclined like this: in the base frame [m].
-  mrpt::math::TPoint2D expected(const ScanTilt& tilt, double turn) const;
+  mrpt::math::TPoint2D expected(const Lean& lean, double turn) const;
+  /// The same if the slope lay across it, whichever way it does: down the slope, in the base frame [m].
+  mrpt::math::TPoint2D across(const Lean& lean, double turn) const;
 
  private:
+  double slope(double angle) const;
+
   double along_ = 0.0;     ///< of a slope of 1 [m/rad]
   double across_ = 0.0;    ///< [m/rad]
   double steepest_ = 0.0;  ///< slopes count up to this
 };
 
-}  // namespace rubble::slam
+}  // namespace rubble::robot

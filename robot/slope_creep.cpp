@@ -1,20 +1,21 @@
-#include "slam/robust/tracking/slope_creep.h"
+#include "robot/slope_creep.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/planar.h"
 
-namespace rubble::slam {
-
+namespace rubble::robot {
 namespace {
+
+using mrpt::math::TPoint2D;
 
 constexpr double kSkids = 1.1;     ///< wheels that slide turn so much farther than ones that roll round, at least
 constexpr double kSteepest = 0.5;  ///< part of the friction up to which slopes count: the law is one of small ones
 
 }  // namespace
 
-SlopeCreep::SlopeCreep(const robot::RobotModel& model, double friction) {
+SlopeCreep::SlopeCreep(const RobotModel& model, double friction) {
   if (!(friction > 0.0 && model.wheelbase > 0.0 && model.track > 0.0)) return;
   // Wheels that turn as the robot does, as those of two with castors, do not slip.
   if (model.effective_track < kSkids * model.track) return;
@@ -27,9 +28,14 @@ SlopeCreep::SlopeCreep(const robot::RobotModel& model, double friction) {
   across_ = a / (friction * p * p * q);
 }
 
-mrpt::math::TPoint2D SlopeCreep::expected(const ScanTilt& tilt, double turn) const {
-  const auto slope = [&](double angle) { return std::clamp(std::tan(angle), -steepest_, steepest_); };
-  return {-along_ * slope(tilt.body_pitch) * std::abs(turn), -across_ * slope(tilt.body_roll) * std::abs(turn)};
+double SlopeCreep::slope(double angle) const { return std::clamp(std::tan(angle), -steepest_, steepest_); }
+
+TPoint2D SlopeCreep::expected(const Lean& lean, double turn) const {
+  return {-along_ * slope(lean.pitch) * std::abs(turn), -across_ * slope(lean.roll) * std::abs(turn)};
 }
 
-}  // namespace rubble::slam
+TPoint2D SlopeCreep::across(const Lean& lean, double turn) const {
+  return {-across_ * slope(lean.pitch) * std::abs(turn), -across_ * slope(lean.roll) * std::abs(turn)};
+}
+
+}  // namespace rubble::robot

@@ -1,4 +1,4 @@
-#include "slam/robust/tracking/slope_creep.h"
+#include "robot/slope_creep.h"
 
 #include <gtest/gtest.h>
 
@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-namespace rubble::slam {
+namespace rubble::robot {
 namespace {
 
 /// Forces and moment of four sliding wheels of a robot that turns at w, by Coulomb friction, per weight.
-Eigen::Vector3d pull(const robot::RobotModel& model, double friction, double w, const Eigen::Vector3d& slip) {
+Eigen::Vector3d pull(const RobotModel& model, double friction, double w, const Eigen::Vector3d& slip) {
   const double a = 0.5 * model.wheelbase;
   const double b = 0.5 * model.track;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -26,7 +26,7 @@ Eigen::Vector3d pull(const robot::RobotModel& model, double friction, double w, 
 
 /// The slip at which friction holds the robot on its slope and nothing turns it faster or slower, by Newton's method on
 /// a slope that grows.
-Eigen::Vector3d steady(const robot::RobotModel& model, double friction, double w, double pitch, double roll) {
+Eigen::Vector3d steady(const RobotModel& model, double friction, double w, double pitch, double roll) {
   Eigen::Vector3d slip(0.0, 0.0, 0.05);
   const Eigen::Vector3d wanted(std::tan(pitch), std::tan(roll), 0.0);
   for (int i = 0; i < 200; ++i) {
@@ -42,13 +42,13 @@ Eigen::Vector3d steady(const robot::RobotModel& model, double friction, double w
 }
 
 TEST(SlopeCreep, HoldsTheRobotOnItsSlopeByFriction) {
-  robot::RobotModel model;
+  RobotModel model;
   for (const double friction : {0.4, 0.8})
     for (const double pitch : {0.02, -0.05, 0.0})
       for (const double roll : {0.0, 0.03, -0.05}) {
         const double w = 1.0;
         const Eigen::Vector3d slip = steady(model, friction, w, pitch, roll);
-        const auto creep = SlopeCreep(model, friction).expected({0.0, 0.0, pitch, roll}, 0.1 * w);
+        const auto creep = SlopeCreep(model, friction).expected({pitch, roll}, 0.1 * w);
         const double bound = 0.05 * std::hypot(slip.x(), slip.y()) * 0.1 + 1e-9;
         EXPECT_NEAR(creep.x, 0.1 * slip.x(), bound) << friction << ' ' << pitch << ' ' << roll;
         EXPECT_NEAR(creep.y, 0.1 * slip.y(), bound) << friction << ' ' << pitch << ' ' << roll;
@@ -57,35 +57,40 @@ TEST(SlopeCreep, HoldsTheRobotOnItsSlopeByFriction) {
 
 TEST(SlopeCreep, IsTheSameForBothSensesOfTurningAndNoneWithoutSlope) {
   const SlopeCreep creep({}, 0.8);
-  const ScanTilt tilt{0.0, 0.0, 0.1, -0.15};
-  EXPECT_EQ(creep.expected(tilt, 0.1).x, creep.expected(tilt, -0.1).x);
-  EXPECT_EQ(creep.expected(tilt, 0.1).y, creep.expected(tilt, -0.1).y);
-  EXPECT_LT(creep.expected(tilt, 0.1).x, 0.0);  // nose up: back
-  EXPECT_GT(creep.expected(tilt, 0.1).y, 0.0);  // right side up: to the left
-  EXPECT_EQ(creep.expected(tilt, 0.0).y, 0.0);
-  EXPECT_EQ(creep.expected({0.1, 0.1, 0.0, 0.0}, 0.1).y, 0.0);  // it is the body that stands on the slope
+  EXPECT_EQ(creep.expected({0.1, -0.15}, 0.1).x, creep.expected({0.1, -0.15}, -0.1).x);
+  EXPECT_EQ(creep.expected({0.1, -0.15}, 0.1).y, creep.expected({0.1, -0.15}, -0.1).y);
+  EXPECT_LT(creep.expected({0.1, -0.15}, 0.1).x, 0.0);  // nose up: back
+  EXPECT_GT(creep.expected({0.1, -0.15}, 0.1).y, 0.0);  // right side up: to the left
+  EXPECT_EQ(creep.expected({0.1, -0.15}, 0.0).y, 0.0);
 }
 
 TEST(SlopeCreep, WheelsThatTurnAsTheRobotDoesDoNotSlide) {
-  robot::RobotModel castors;
+  RobotModel castors;
   castors.effective_track = castors.track + 0.001;  // as calibrated
-  robot::RobotModel one_axle, no_track;
+  RobotModel one_axle, no_track;
   one_axle.wheelbase = 0.0;
   no_track.track = 0.0;
   for (const SlopeCreep& creep :
        {SlopeCreep(castors, 0.8), SlopeCreep(one_axle, 0.8), SlopeCreep(no_track, 0.8), SlopeCreep({}, 0.0)}) {
-    EXPECT_EQ(creep.expected({0.0, 0.0, 0.2, 0.2}, 0.1).x, 0.0);
-    EXPECT_EQ(creep.expected({0.0, 0.0, 0.2, 0.2}, 0.1).y, 0.0);
+    EXPECT_EQ(creep.expected({0.2, 0.2}, 0.1).x, 0.0);
+    EXPECT_EQ(creep.expected({0.2, 0.2}, 0.1).y, 0.0);
   }
+}
+
+TEST(SlopeCreep, AcrossASlopeItSlidesAsFarWhicheverWayItLies) {
+  const SlopeCreep creep({}, 0.8);
+  EXPECT_EQ(creep.across({0.0, 0.1}, 1.0).y, creep.expected({0.0, 0.1}, 1.0).y);
+  EXPECT_EQ(creep.across({0.1, 0.0}, 1.0).x, creep.expected({0.0, 0.1}, 1.0).y);
+  EXPECT_LT(std::abs(creep.expected({0.1, 0.0}, 1.0).x), std::abs(creep.across({0.1, 0.0}, 1.0).x));
 }
 
 /// A wrong friction or a tilt that no floor has does not carry it away: at most as fast as its wheels slide.
 TEST(SlopeCreep, IsBounded) {
   for (const double friction : {0.01, 0.1, 0.8}) {
-    const auto creep = SlopeCreep({}, friction).expected({0.0, 0.0, 0.6, -0.6}, 0.1);
+    const auto creep = SlopeCreep({}, friction).expected({0.6, -0.6}, 0.1);
     EXPECT_LE(std::hypot(creep.x, creep.y), 0.1 * 0.3) << friction;
   }
 }
 
 }  // namespace
-}  // namespace rubble::slam
+}  // namespace rubble::robot
