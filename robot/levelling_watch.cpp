@@ -6,15 +6,18 @@
 namespace rubble::robot {
 namespace {
 
-constexpr double kSilence = 1.0;                ///< without a word for so long it has failed [s]
-constexpr double kTiltFilter = 0.2;             ///< time constant [s]
-constexpr double kLevel = deg_to_rad(1.5);      ///< what levelling leaves where nothing moves
-constexpr double kTilted = deg_to_rad(3.0);     ///< what it never leaves ...
-constexpr double kAimedFar = deg_to_rad(15.0);  ///< ... of a tilt it turned so far against ...
-constexpr double kLevelledFor = 1.5;            ///< ... for longer than servos and loop take [s] ...
-constexpr double kAtStopFor = 2.2;              ///< ... or, where they can turn no farther, a robot stays so steep [s]
-constexpr double kTakenAway = deg_to_rad(0.5);  ///< a tilt that shrinks by so much meanwhile is being levelled
-constexpr double kAtStop = deg_to_rad(1.0);     ///< servos so near to the end of their travel are there
+constexpr double kSilence = 1.0;                  ///< without a word for so long it has failed [s]
+constexpr double kTiltFilter = 0.2;               ///< time constant [s]
+constexpr double kLevel = deg_to_rad(1.5);        ///< what levelling leaves where nothing moves
+constexpr double kLevelFor = 0.5;                 ///< where it is level it stays so; one that brakes swings through [s]
+constexpr double kLeans = deg_to_rad(20.0);       ///< no robot stands so for long: aims beyond are of servos in vain
+constexpr double kTilted = deg_to_rad(3.0);       ///< what it never leaves ...
+constexpr double kAimedFar = deg_to_rad(15.0);    ///< ... of a tilt it turned so far against ...
+constexpr double kLevelledFor = 1.5;              ///< ... for longer than servos and loop take [s]
+constexpr double kAimedToStop = deg_to_rad(8.0);  ///< where they can turn no farther so much is enough, ...
+constexpr double kAtStopFor = 2.2;                ///< ... longer than a robot stays so steep [s]
+constexpr double kTakenAway = deg_to_rad(0.5);    ///< a tilt that shrinks by so much meanwhile is being levelled
+constexpr double kAtStop = deg_to_rad(1.0);       ///< servos so near to the end of their travel are there
 
 bool is_silent(Stamp last, Stamp now) { return last != Stamp::never() && now - last > kSilence; }
 
@@ -43,6 +46,10 @@ void LevellingWatch::update(const Inputs& inputs) {
   state_ = silent ? LevellingState::Silent : LevellingState::Works;
 }
 
+bool LevellingWatch::level() const {
+  return state_ == LevellingState::Works && std::abs(pitch_.tilt) < kTilted && std::abs(roll_.tilt) < kTilted;
+}
+
 void LevellingWatch::feel(const Acceleration& acceleration) {
   if (!on_platform_ || !aim_ || jammed_at_) return;
   const double dt = last_sample_ == Stamp::never() ? kTiltSilence : acceleration.stamp - last_sample_;
@@ -58,16 +65,19 @@ void LevellingWatch::feel(const Acceleration& acceleration) {
 
 bool LevellingWatch::turns_in_vain(Axis& axis, double tilt, double aim, double dt, Stamp now) const {
   axis.tilt += (1.0 - std::exp(-dt / kTiltFilter)) * (tilt - axis.tilt);
-  if (std::abs(axis.tilt) < kLevel) axis.level_aim = aim;
+  axis.level_for = std::abs(axis.tilt) < kLevel ? axis.level_for + dt : 0.0;
+  if (axis.level_for >= kLevelFor && std::abs(aim) < kLeans) axis.level_aim = aim;
   const double turned = aim - axis.level_aim;
-  const bool in_vain = std::abs(turned) >= kAimedFar && std::abs(axis.tilt) >= kTilted && turned * axis.tilt < 0.0;
+  const bool at_stop = std::abs(aim) >= stop_;
+  const bool in_vain = std::abs(turned) >= (at_stop ? kAimedToStop : kAimedFar) && std::abs(axis.tilt) >= kTilted &&
+                       turned * axis.tilt < 0.0;
   if (!in_vain || dt >= kTiltSilence) {
     axis.in_vain_since = Stamp::never();
   } else if (axis.in_vain_since == Stamp::never() || std::abs(axis.tilt) < axis.in_vain_tilt - kTakenAway) {
     axis.in_vain_since = now;
     axis.in_vain_tilt = std::abs(axis.tilt);
   }
-  const double patience = std::abs(aim) >= stop_ ? kAtStopFor : kLevelledFor;
+  const double patience = at_stop ? kAtStopFor : kLevelledFor;
   return axis.in_vain_since != Stamp::never() && now - axis.in_vain_since >= patience;
 }
 

@@ -25,13 +25,17 @@ class LevellingWatch {
   /// Takes in what arrived in a tick.
   void update(const Inputs& inputs);
   LevellingState state() const { return state_; }
+  /// The platform feels level: its servos' angles, negated, are how the body leans. Those of servos that turn in vain
+  /// grow long before they are known to.
+  bool level() const;
   /// Where servos that jammed stand: where their platform felt level last. Nothing while they do not.
   const std::optional<LaserAim>& jammed_at() const { return jammed_at_; }
 
  private:
   struct Axis {
     double tilt = 0.0;       ///< felt, without its quick part [rad]
-    double level_aim = 0.0;  ///< when that was small last [rad]
+    double level_for = 0.0;  ///< so long that has been small [s]
+    double level_aim = 0.0;  ///< when that was last [rad]
     Stamp in_vain_since = Stamp::never();
     double in_vain_tilt = 0.0;  ///< without its sign, then [rad]
   };

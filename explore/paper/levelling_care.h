@@ -21,6 +21,8 @@ class LevellingCare {
   /// Also where there is no levelling unit.
   bool works() const { return watch_.state() == robot::LevellingState::Works; }
   bool jammed() const { return watch_.state() == robot::LevellingState::Jammed; }
+  /// It works, and has taken the tilt away.
+  bool level() const { return watch_.level(); }
   /// It may come back: the robot stands.
   bool waits() const { return !works() && !given_up_; }
   /// For good.

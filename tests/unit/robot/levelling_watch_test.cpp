@@ -151,5 +151,51 @@ TEST(LevellingWatch, ServosThatTakeNoTiltAwayAreJammedWhereTheyWereLevelLast) {
   EXPECT_EQ(unit.watch.state(), LevellingState::Jammed) << "for good";
 }
 
+/// A robot that brakes again and again feels its tilted platform swing through level.
+TEST(LevellingWatch, WhatBrakingMakesLookLevelForAMomentIsNotLevel) {
+  Unit unit;
+  unit.run(3.0);
+  unit.turns = false;
+  for (int i = 0; i < 10; ++i) {
+    unit.body = deg_to_rad(6.0);
+    unit.run(0.7);
+    unit.body = 0.0;
+    unit.run(0.3);
+  }
+  unit.body = deg_to_rad(6.0);
+  unit.run(3.0);
+  ASSERT_EQ(unit.watch.state(), LevellingState::Jammed);
+  EXPECT_NEAR(unit.watch.jammed_at()->pitch, 0.0, deg_to_rad(2.5));
+}
+
+/// Below a degree that nobody takes away a loop aims on and on; where that ends no robot leans.
+TEST(LevellingWatch, AnAimThatGrowsWhereItIsNearlyLevelIsNoLean) {
+  Unit unit;
+  unit.run(3.0);
+  unit.turns = false;
+  unit.body = deg_to_rad(1.2);
+  unit.run(20.0);
+  unit.body = deg_to_rad(8.0);
+  unit.run(5.0);
+  EXPECT_EQ(unit.watch.state(), LevellingState::Jammed);
+}
+
+TEST(LevellingWatch, APlatformThatStaysTiltedIsNotLevelBeforeItsServosAreKnownToBeJammed) {
+  Unit unit;
+  unit.body = deg_to_rad(8.0);
+  unit.run(3.0);
+  EXPECT_TRUE(unit.watch.level());
+  unit.turns = false;
+  unit.body = 0.0;
+  unit.run(0.5);
+  EXPECT_EQ(unit.watch.state(), LevellingState::Works);
+  EXPECT_FALSE(unit.watch.level());
+  unit.run(4.0);
+  ASSERT_EQ(unit.watch.state(), LevellingState::Jammed);
+  unit.body = deg_to_rad(8.0);
+  unit.run(2.0);
+  EXPECT_FALSE(unit.watch.level()) << "it happens to feel level, yet nobody levels it";
+}
+
 }  // namespace
 }  // namespace rubble::robot
