@@ -5,11 +5,14 @@
 #include "arenas/raf/raf_layout.h"
 #include "arenas/raf/raf_reader.h"
 #include "arenas/raf/raf_start.h"
+#include "base/error.h"
 #include "base/text/text_file.h"
 #include "base/text/words.h"
 
 namespace rubble::arenas {
 namespace {
+
+constexpr int kMostPallets = 6000;  ///< from the first element to the last; the largest public one has 544
 
 std::string list(const std::map<std::string, int>& counts) {
   std::string text;
@@ -44,6 +47,10 @@ RafImport parse_raf(const std::string& text, const std::string& name) {
   const std::string file = name.substr(name.find_last_of('/') + 1);
   import.arena.name = file.substr(0, file.find_last_of('.'));
   const Layout layout = layout_of(elements);
+  const int wide = layout.occupied.width() - 2, high = layout.occupied.height() - 2;  // without the rim
+  if (wide * high > kMostPallets)
+    throw InputError(name + ": its elements lie " + std::to_string(wide) + " by " + std::to_string(high) +
+                     " pallets apart, and an arena has 6,000 of them at most: take out what lies far off");
   lay_ground(layout, import.arena);
   for (const Element& element : elements) {
     const ElementKind kind = kind_of(element.type);

@@ -215,7 +215,17 @@ TEST(Raf, ErrorsNameLineAndColumn) {
   EXPECT_THAT(error_of(raf("<element type=\"stepfield_red_diagonal\" x=\"0\" y=\"0\"/>\n")), HasSubstr("no pallet"));
 }
 
-/// Any damage to a file ends in an arena or in one line of complaint, never in a crash.
+TEST(Raf, ElementsFarApartAreRefusedByTheFloorBetweenThem) {
+  const auto apart = [](int x, int y) {
+    return raf(kRoom + "<element type=\"start_check\" x=\"1\" y=\"0\"/>\n<element type=\"small_wall\" x=\"" +
+               std::to_string(x) + "\" y=\"" + std::to_string(y) + "\"/>\n");
+  };
+  EXPECT_NO_THROW(parse_raf(apart(99, 49), "f.raf"));
+  EXPECT_EQ(error_of(apart(99, 69)),
+            "f.raf: its elements lie 100 by 70 pallets apart, and an arena has 6,000 of them at most: take out what "
+            "lies far off");
+}
+
 TEST(Raf, FileWithFarTooManyElementsIsRefusedAtOnce) {
   std::string many;
   for (int i = 0; i < 60000; ++i)
@@ -228,6 +238,7 @@ TEST(Raf, FileWithFarTooManyElementsIsRefusedAtOnce) {
   }
 }
 
+/// Any damage to a file ends in an arena or in one line of complaint, never in a crash.
 TEST(Raf, DamagedFilesAreRefusedCleanly) {
   const std::string good = raf(kRoom);
   for (std::size_t cut = 0; cut < good.size(); ++cut) {
