@@ -4,16 +4,12 @@
 
 #include "robot/measurements.h"
 #include "robot/model.h"
+#include "robot/tilt.h"
 
 namespace rubble::robot {
 
 /// Without a sample for so long a sensor counts as silent, and what it said last as nothing [s].
 inline constexpr double kTiltSilence = 0.5;
-
-struct Tilt {
-  double pitch = 0.0;  ///< nose-up positive [rad]
-  double roll = 0.0;   ///< left side up positive [rad]
-};
 
 /// How the base moves, as its wheels say.
 struct WheelMotion {

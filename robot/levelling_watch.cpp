@@ -6,18 +6,17 @@
 namespace rubble::robot {
 namespace {
 
-constexpr double kSilence = 1.0;                  ///< without a word for so long it has failed [s]
-constexpr double kTiltFilter = 0.2;               ///< time constant [s]
-constexpr double kLevel = deg_to_rad(1.5);        ///< what levelling leaves where nothing moves
-constexpr double kLevelFor = 0.5;                 ///< where it is level it stays so; one that brakes swings through [s]
-constexpr double kLeans = deg_to_rad(20.0);       ///< no robot stands so for long: aims beyond are of servos in vain
-constexpr double kTilted = deg_to_rad(3.0);       ///< what it never leaves ...
-constexpr double kAimedFar = deg_to_rad(15.0);    ///< ... of a tilt it turned so far against ...
-constexpr double kLevelledFor = 1.5;              ///< ... for longer than servos and loop take [s]
-constexpr double kAimedToStop = deg_to_rad(8.0);  ///< where they can turn no farther so much is enough, ...
-constexpr double kAtStopFor = 2.2;                ///< ... longer than a robot stays so steep [s]
-constexpr double kTakenAway = deg_to_rad(0.5);    ///< a tilt that shrinks by so much meanwhile is being levelled
-constexpr double kAtStop = deg_to_rad(1.0);       ///< servos so near to the end of their travel are there
+constexpr double kSilence = 1.0;                ///< without a word for so long it has failed [s]
+constexpr double kTiltFilter = 0.2;             ///< time constant [s]
+constexpr double kLevel = deg_to_rad(1.5);      ///< what levelling leaves where nothing moves
+constexpr double kLevelFor = 0.5;               ///< where it is level it stays so; one that brakes swings through [s]
+constexpr double kLeans = deg_to_rad(20.0);     ///< no robot stands so for long: aims beyond are of servos in vain
+constexpr double kTilted = deg_to_rad(3.0);     ///< what it never leaves ...
+constexpr double kAimedFar = deg_to_rad(15.0);  ///< ... of a tilt it turned so far against ...
+constexpr double kLevelledFor = 1.5;            ///< ... for longer than servos and loop take [s]
+constexpr double kAtStopFor = 2.2;  ///< where they can turn no farther, longer than a robot stays so steep [s]
+constexpr double kTakenAway = deg_to_rad(0.5);  ///< a tilt that shrinks by so much meanwhile is being levelled
+constexpr double kAtStop = deg_to_rad(1.0);     ///< servos so near to the end of their travel are there
 
 bool is_silent(Stamp last, Stamp now) { return last != Stamp::never() && now - last > kSilence; }
 
@@ -65,12 +64,13 @@ void LevellingWatch::feel(const Acceleration& acceleration) {
 
 bool LevellingWatch::turns_in_vain(Axis& axis, double tilt, double aim, double dt, Stamp now) const {
   axis.tilt += (1.0 - std::exp(-dt / kTiltFilter)) * (tilt - axis.tilt);
-  axis.level_for = std::abs(axis.tilt) < kLevel ? axis.level_for + dt : 0.0;
+  const bool level = std::abs(axis.tilt) < kLevel && dt < kTiltSilence;  // of what was between nobody knows
+  axis.level_for = level ? axis.level_for + dt : 0.0;
   if (axis.level_for >= kLevelFor && std::abs(aim) < kLeans) axis.level_aim = aim;
   const double turned = aim - axis.level_aim;
   const bool at_stop = std::abs(aim) >= stop_;
-  const bool in_vain = std::abs(turned) >= (at_stop ? kAimedToStop : kAimedFar) && std::abs(axis.tilt) >= kTilted &&
-                       turned * axis.tilt < 0.0;
+  const bool far = std::abs(turned) >= kAimedFar || (at_stop && stop_ > kLeans);
+  const bool in_vain = far && std::abs(axis.tilt) >= kTilted && turned * axis.tilt < 0.0;
   if (!in_vain || dt >= kTiltSilence) {
     axis.in_vain_since = Stamp::never();
   } else if (axis.in_vain_since == Stamp::never() || std::abs(axis.tilt) < axis.in_vain_tilt - kTakenAway) {

@@ -30,11 +30,11 @@ SlopeCreep::SlopeCreep(const RobotModel& model, double friction) {
 
 double SlopeCreep::slope(double angle) const { return std::clamp(std::tan(angle), -steepest_, steepest_); }
 
-TPoint2D SlopeCreep::expected(const Lean& lean, double turn) const {
+TPoint2D SlopeCreep::expected(const Tilt& lean, double turn) const {
   return {-along_ * slope(lean.pitch) * std::abs(turn), -across_ * slope(lean.roll) * std::abs(turn)};
 }
 
-TPoint2D SlopeCreep::across(const Lean& lean, double turn) const {
+TPoint2D SlopeCreep::across(const Tilt& lean, double turn) const {
   return {-across_ * slope(lean.pitch) * std::abs(turn), -across_ * slope(lean.roll) * std::abs(turn)};
 }
 

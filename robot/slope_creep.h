@@ -3,17 +3,12 @@
 #include <mrpt/math/TPoint2D.h>
 
 #include "robot/model.h"
+#include "robot/tilt.h"
 
 namespace rubble::robot {
 
 /// Friction of the wheels on the floor of an arena.
 inline constexpr double kRubberOnWood = 0.8;
-
-/// How a body is inclined.
-struct Lean {
-  double pitch = 0.0;  ///< nose up [rad]
-  double roll = 0.0;   ///< left side up [rad]
-};
 
 /// How a skid-steered robot that turns slides down the slope it stands on.
 ///
@@ -29,9 +24,9 @@ class SlopeCreep {
   SlopeCreep(const RobotModel& model, double friction);
 
   /// While it turns by `turn` [rad], inclined like this: in the base frame [m].
-  mrpt::math::TPoint2D expected(const Lean& lean, double turn) const;
+  mrpt::math::TPoint2D expected(const Tilt& lean, double turn) const;
   /// The same if the slope lay across it, whichever way it does: down the slope, in the base frame [m].
-  mrpt::math::TPoint2D across(const Lean& lean, double turn) const;
+  mrpt::math::TPoint2D across(const Tilt& lean, double turn) const;
 
  private:
   double slope(double angle) const;

@@ -99,16 +99,17 @@ double CornerRoom::least_gap(const Drive& drive) const {
   return least;
 }
 
-CornerRoom::Kept CornerRoom::keep(const Drive& drive, const Drive& moving, const TPose2D& T_map_base,
+CornerRoom::Kept CornerRoom::keep(const Drive& drive, const Drive& moving, const Anchor& robot,
                                   const Traversable& floor, const std::vector<TPoint2D>& hits) {
+  const TPose2D& T_map_base = robot.T_map_base;
   if (!spot_) {
-    spot_ = position(T_map_base);
+    spot_.emplace(robot, position(T_map_base));
     to_or_fro_ = 0.0;
   }
   find_walls(T_map_base, floor, hits);
   moving_ = moving;
   const bool rolls = std::abs(moving.v) > kRolls;
-  if (walls_.empty() || (!rolls && distance(*spot_, position(T_map_base)) > kMostOff)) return {drive};
+  if (walls_.empty() || (!rolls && distance(spot_->p_map(), position(T_map_base)) > kMostOff)) return {drive};
   const double told = least_gap(drive);
   const double here = gap({}), now = std::min(kKeepOff, here);
   if (told >= kKeepOff || told >= now) return {drive};

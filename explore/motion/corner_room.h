@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "explore/anchor.h"
 #include "explore/plan/traversable.h"
 #include "robot/commands.h"
 #include "robot/model.h"
@@ -24,12 +25,16 @@ class CornerRoom {
     robot::Drive drive;
     bool brakes = false;  ///< as hard as the base can
   };
-  /// The drive for a robot at T_map_base that is to turn on the spot, or nearly, by `drive`. `moving`: what its wheels
+  /// The drive for a robot that is to turn on the spot, or nearly, by `drive`. `moving`: what its wheels
   /// do; `hits`: of the newest scan [m, map frame], which show the ends of walls more sharply than the map.
-  Kept keep(const robot::Drive& drive, const robot::Drive& moving, const mrpt::math::TPose2D& T_map_base,
-            const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits);
+  Kept keep(const robot::Drive& drive, const robot::Drive& moving, const Anchor& robot, const Traversable& floor,
+            const std::vector<mrpt::math::TPoint2D>& hits);
   /// It does not turn on the spot now.
   void end() { spot_.reset(); }
+  /// The mapper corrected its past.
+  void follow(const slam::Mapper& mapper) {
+    if (spot_) spot_->follow(mapper);
+  }
 
  private:
   struct Wall {
@@ -45,9 +50,9 @@ class CornerRoom {
 
   robot::RobotModel model_;
   robot::Drive moving_;
-  std::optional<mrpt::math::TPoint2D> spot_;  ///< where the turn began [m, map frame]
-  double to_or_fro_ = 0.0;                    ///< sign of the speed chosen last
-  std::vector<Wall> walls_;                   ///< about the robot
+  std::optional<AnchoredPoint> spot_;  ///< where the turn began
+  double to_or_fro_ = 0.0;             ///< sign of the speed chosen last
+  std::vector<Wall> walls_;            ///< about the robot
 };
 
 }  // namespace rubble::explore

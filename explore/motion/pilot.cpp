@@ -9,7 +9,6 @@ namespace rubble::explore {
 namespace {
 
 constexpr double kCornerRoom = 0.13;  ///< beside corners that turn [m]
-constexpr double kSlidesOn = 0.6;     ///< of a turn, in which a slope carries the robot away unanswered, at most [rad]
 
 }  // namespace
 
@@ -19,7 +18,7 @@ Pilot::Pilot(const robot::RobotModel& model, const FollowerConfig& config)
       turn_(model, config.turn_speed),
       pivot_(model.swing_radius() + kCornerRoom),
       corners_(model),
-      creep_(model, robot::kRubberOnWood) {}
+      slides_(model, robot::kRubberOnWood) {}
 
 void Pilot::turn(double angle, TurnFor purpose, Stamp now) {
   turn_.begin(angle, now);
@@ -42,11 +41,11 @@ void Pilot::stop() {
 
 /// A turn on the spot stays on it, and its corners off the walls.
 CornerRoom::Kept Pilot::kept(const robot::Drive& told, const Moment& robot, const Traversable& floor,
-                             const std::vector<mrpt::math::TPoint2D>& hits) {
+                             const std::vector<mrpt::math::TPoint2D>& hits, Stamp now) {
+  const Anchor here{now, robot.T_map_base};
   const double left = std::abs(turning() ? turn_.left() : follower_.turn_left());
-  const robot::Drive drive =
-      pivot_.keep(told, robot.T_map_base, floor, creep_.across(robot.lean, std::min(kSlidesOn, left)));
-  if (told.v == 0.0 && told.w != 0.0) return corners_.keep(drive, robot.moving, robot.T_map_base, floor, hits);
+  const robot::Drive drive = pivot_.keep(told, here, floor, {slides_.across(robot.lean, 1.0), left});
+  if (told.v == 0.0 && told.w != 0.0) return corners_.keep(drive, robot.moving, here, floor, hits);
   corners_.end();
   return {drive};
 }
@@ -55,11 +54,11 @@ Pilot::Step Pilot::step(const Moment& robot, const Traversable& floor, const std
                         Stamp now) {
   if (turning()) {
     const std::optional<robot::Drive> drive = turn_.turn(robot.turned, now);
-    const CornerRoom::Kept turn = kept(drive.value_or(robot::Drive{}), robot, floor, hits);
+    const CornerRoom::Kept turn = kept(drive.value_or(robot::Drive{}), robot, floor, hits, now);
     return {turn.drive, turn.brakes, !drive, !drive && purpose_ == TurnFor::Place};
   }
   if (watch_.waits(now)) return {};
-  const CornerRoom::Kept way = kept(follower_.drive(robot.T_map_base), robot, floor, hits);
+  const CornerRoom::Kept way = kept(follower_.drive(robot.T_map_base), robot, floor, hits, now);
   return {watch_.limited(way.drive, now), way.brakes};
 }
 

@@ -55,7 +55,7 @@ class Pilot {
     mrpt::math::TPose2D T_map_base;
     double turned = 0.0;  ///< in this tick [rad]
     robot::Drive moving;  ///< what its wheels do
-    robot::Lean lean;     ///< of its body
+    robot::Tilt lean;     ///< of its body
   };
   /// One tick; `hits`: of the newest scan [m, map frame].
   Step step(const Moment& robot, const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits, Stamp now);
@@ -77,7 +77,8 @@ class Pilot {
   /// The mapper corrected its past.
   void follow_map(const slam::Mapper& mapper) {
     watch_.follow(mapper);
-    leave_spot();
+    pivot_.follow(mapper);
+    corners_.follow(mapper);
   }
   /// The map shows a way, the newest scans do not: go and see, slowly.
   void creep(Stamp now) { watch_.creep(now); }
@@ -90,7 +91,7 @@ class Pilot {
     corners_.end();
   }
   CornerRoom::Kept kept(const robot::Drive& told, const Moment& robot, const Traversable& floor,
-                        const std::vector<mrpt::math::TPoint2D>& hits);
+                        const std::vector<mrpt::math::TPoint2D>& hits, Stamp now);
 
   PathFollower follower_;
   PathWatch watch_;
@@ -98,7 +99,7 @@ class Pilot {
   TurnFor purpose_ = TurnFor::View;
   Pivot pivot_;
   CornerRoom corners_;
-  robot::SlopeCreep creep_;
+  robot::SlopeCreep slides_;
   double d_min_ = 0.0;  ///< that the path keeps [m]
 };
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <mrpt/math/TPoint2D.h>
-#include <mrpt/math/TPose2D.h>
 
 #include <optional>
 
+#include "explore/anchor.h"
 #include "explore/plan/traversable.h"
 #include "robot/commands.h"
 
@@ -19,21 +19,31 @@ class Pivot {
   /// `room`: clearance of the robot's middle at which it can turn [m].
   explicit Pivot(double room) : room_(room) {}
 
-  /// The drive for a robot at T_map_base that was to be driven so. What is no turn on the spot is left as it is.
-  /// `slides`: how far the slope it stands on will carry it in the rest of the turn [m, base frame]; it keeps so far up
-  /// from its spot, as long as its corners have room there.
-  robot::Drive keep(robot::Drive drive, const mrpt::math::TPose2D& T_map_base, const Traversable& floor,
-                    const mrpt::math::TPoint2D& slides = {0.0, 0.0});
+  /// What the slope that the robot stands on does to it.
+  struct Slope {
+    mrpt::math::TPoint2D slides{0.0, 0.0};  ///< down it, as it turns across it [m/rad, base frame]
+    double turn = 0.0;                      ///< that is left [rad]
+  };
+  /// The drive for a robot that was to be driven so. What is no turn on the spot is left as it is. On a slope it keeps
+  /// as far up from its spot as it will slide in the rest of the turn, as long as its corners have room there.
+  robot::Drive keep(robot::Drive drive, const Anchor& robot, const Traversable& floor, const Slope& slope);
+  robot::Drive keep(robot::Drive drive, const Anchor& robot, const Traversable& floor) {
+    return keep(drive, robot, floor, {});
+  }
 
-  /// The turn is over, or the map has moved: the next one has a spot of its own.
+  /// The next turn has a spot of its own. So it has where the robot drove; where it only stood it turns on.
   void end() { spot_.reset(); }
+  /// The mapper corrected its past.
+  void follow(const slam::Mapper& mapper) {
+    if (spot_) spot_->follow(mapper);
+  }
 
   /// Drives that only turn, with what `keep` adds, are slower than this [m/s].
   static constexpr double kMostSpeed = 0.12;
 
  private:
   double room_;
-  std::optional<mrpt::math::TPoint2D> spot_;
+  std::optional<AnchoredPoint> spot_;
 };
 
 }  // namespace rubble::explore

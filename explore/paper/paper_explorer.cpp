@@ -222,7 +222,7 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
   if (agenda_.due(mapper.map(), now_)) replan(mapper);
   if (finished()) return {};
   const Pilot::Step step = pilot_.step({pose_, turned_, stuck_watch_.wheels().value_or(commanded_),
-                                        levelling_.level() ? stuck_watch_.lean() : robot::Lean{}},
+                                        levelling_.level() ? stuck_watch_.lean() : robot::Tilt{}},
                                        floor_, mapper.last_hits(), now_);
   brakes_ = step.brakes;
   if (step.turn_ended) agenda_.plan_soon();

@@ -60,7 +60,7 @@ class StuckWatch {
   /// The servos jammed: how the robot leans is no longer known.
   void distrust_tilt() { tilt_.distrust(); }
 
-  const robot::Lean& lean() const { return tilt_.lean(); }
+  const robot::Tilt& lean() const { return tilt_.lean(); }
   /// The motors report a stall.
   bool stalled() const { return stalled_; }
   /// What the wheels do, where that is known.

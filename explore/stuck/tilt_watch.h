@@ -2,7 +2,7 @@
 
 #include "base/angle.h"
 #include "robot/measurements.h"
-#include "robot/slope_creep.h"
+#include "robot/tilt.h"
 
 namespace rubble::explore {
 
@@ -20,7 +20,7 @@ class TiltWatch {
 
   /// Takes in the servo angles of one tick of `dt` [s].
   void update(const robot::Inputs& inputs, double dt);
-  const robot::Lean& lean() const { return lean_; }
+  const robot::Tilt& lean() const { return lean_; }
   /// Of the ground below the robot against the horizontal [rad].
   double slope() const;
   /// The robot leans more than it should, and has for a while.
@@ -31,7 +31,7 @@ class TiltWatch {
 
  private:
   TiltWatchConfig config_;
-  robot::Lean lean_;
+  robot::Tilt lean_;
   double steep_for_ = 0.0;   ///< [s]
   double silent_for_ = 0.0;  ///< [s]
   bool distrusted_ = false;

@@ -15,6 +15,8 @@ constexpr double kTick = 0.02;  // [s]
 
 /// A standing robot with a levelled platform.
 struct Unit {
+  explicit Unit(const RobotModel& robot = {}) : model(robot) {}
+
   RobotModel model;
   Levelling levelling{{}, model};
   LevellingWatch watch{model};
@@ -178,6 +180,38 @@ TEST(LevellingWatch, AnAimThatGrowsWhereItIsNearlyLevelIsNoLean) {
   unit.body = deg_to_rad(8.0);
   unit.run(5.0);
   EXPECT_EQ(unit.watch.state(), LevellingState::Jammed);
+}
+
+/// What a unit did in a gap nobody knows: one sample after it is not half a second.
+TEST(LevellingWatch, OneLevelSampleAfterAGapIsNotLevelForLong) {
+  Unit unit;
+  unit.run(3.0);
+  unit.turns = false;
+  for (int i = 0; i < 10; ++i) {
+    unit.body = deg_to_rad(6.0);
+    unit.run(0.7);
+    unit.has_accelerometer = false;
+    unit.run(0.6);
+    unit.has_accelerometer = true;
+    unit.body = 0.0;
+    unit.run(0.3);
+  }
+  unit.body = deg_to_rad(6.0);
+  unit.run(3.0);
+  EXPECT_EQ(unit.watch.state(), LevellingState::Jammed);
+}
+
+/// Servos that cannot turn far are soon at their stop on a steep ramp, without a fault.
+TEST(LevellingWatch, AtTheStopOfShortTravelAUnitWorks) {
+  RobotModel model;
+  model.max_aim = deg_to_rad(10.0);
+  Unit unit{model};
+  LevellingConfig config;
+  config.max_angle = model.max_aim;
+  unit.levelling = Levelling{config, model};
+  unit.body = deg_to_rad(14.5);
+  unit.run(20.0);
+  EXPECT_EQ(unit.watch.state(), LevellingState::Works);
 }
 
 TEST(LevellingWatch, APlatformThatStaysTiltedIsNotLevelBeforeItsServosAreKnownToBeJammed) {

@@ -57,7 +57,7 @@ Turn turn(Base base, double angle, bool kept) {
   for (double left = angle; std::abs(left) > 0.05 && turn.seconds < 30.0; turn.seconds += kCornerTick) {
     const Drive told{0.0, std::copysign(1.0, left)};
     CornerRoom::Kept now{told};
-    if (kept) now = corners.keep(told, base.moving, base.pose, floor, {});
+    if (kept) now = corners.keep(told, base.moving, {{}, base.pose}, floor, {});
     base.go(now.drive, now.brakes);
     turn.braked = turn.braked || now.brakes;
     left -= base.moving.w * kCornerTick;
@@ -70,7 +70,7 @@ TEST(CornerRoom, WithRoomItTurnsAsTold) {
   const Traversable floor = test::measured(test::room(kRoomWidth, kRoomWidth));
   CornerRoom corners(kCornerBody);
   for (double heading = -3.0; heading < 3.1; heading += 0.25) {
-    const auto kept = corners.keep({0.05, -0.7}, {0.05, -0.7}, {1.5, 1.5, heading}, floor, {});
+    const auto kept = corners.keep({0.05, -0.7}, {0.05, -0.7}, {{}, {1.5, 1.5, heading}}, floor, {});
     EXPECT_EQ(kept.drive.v, 0.05);
     EXPECT_EQ(kept.drive.w, -0.7);
     EXPECT_FALSE(kept.brakes);
@@ -112,7 +112,7 @@ TEST(CornerRoom, HitsBesideAWallAreOfItAndHitsThatStandAloneAreNot) {
   const TPose2D pose{1.5, 0.05 + 0.12 + 0.5 * kCornerBody.width, 0.0};
   const Drive told{0.0, 1.0};
   const auto kept = [&](const std::vector<TPoint2D>& hits) {
-    return CornerRoom(kCornerBody).keep(told, told, pose, floor, hits).drive;
+    return CornerRoom(kCornerBody).keep(told, told, {{}, pose}, floor, hits).drive;
   };
   EXPECT_EQ(kept({}).w, told.w) << "there is room";
   // Before the two corners that swing outwards: behind on the right, ahead on the left.
@@ -131,8 +131,8 @@ TEST(CornerRoom, DoesNotDriveWhereNobodyLooked) {
   // Askew beside a wall, its nose towards it: backwards leads off.
   const TPose2D pose{1.5, 0.05 + 0.33, -0.3};
   const Drive told{0.0, -1.0};
-  EXPECT_LT(CornerRoom(kCornerBody).keep(told, {}, pose, all_seen, {}).drive.v, 0.0);
-  EXPECT_GE(CornerRoom(kCornerBody).keep(told, {}, pose, floor, {}).drive.v, 0.0);
+  EXPECT_LT(CornerRoom(kCornerBody).keep(told, {}, {{}, pose}, all_seen, {}).drive.v, 0.0);
+  EXPECT_GE(CornerRoom(kCornerBody).keep(told, {}, {{}, pose}, floor, {}).drive.v, 0.0);
 }
 
 /// There is no room to be had: it gets round nevertheless.
@@ -148,7 +148,7 @@ TEST(CornerRoom, BetweenTwoWallsItTurnsAllTheSame) {
   Base base{{1.5, 0.35, 0.0}, {}};
   double seconds = 0.0;
   for (; base.pose.phi < 3.0 && seconds < 30.0; seconds += kCornerTick) {
-    const auto kept = corners.keep({0.0, 1.0}, base.moving, base.pose, floor, {});
+    const auto kept = corners.keep({0.0, 1.0}, base.moving, {{}, base.pose}, floor, {});
     base.go(kept.drive, kept.brakes);
   }
   EXPECT_LT(seconds, 12.0);

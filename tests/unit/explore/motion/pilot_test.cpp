@@ -37,11 +37,12 @@ struct Steered {
   Stamp now = Stamp::from_seconds(1.0);
   double turned = 0.0;  ///< in the last tick [rad]
   double slope = 0.0;   ///< it rises to the north [rad]
+  bool knows = true;    ///< of the slope
   robot::SlopeCreep creep{model, robot::kRubberOnWood};
 
   Pilot::Step step() {
-    const robot::Lean lean{slope * std::sin(pose.phi), slope * std::cos(pose.phi)};
-    const Pilot::Step step = pilot.step({pose, turned, {}, lean}, floor, {}, now);
+    const robot::Tilt lean{slope * std::sin(pose.phi), slope * std::cos(pose.phi)};
+    const Pilot::Step step = pilot.step({pose, turned, {}, knows ? lean : robot::Tilt{}}, floor, {}, now);
     turned = step.drive.w * kTickTime;
     const TPoint2D slid = creep.expected(lean, turned);
     pose = pose + TPose2D{step.drive.v * kTickTime + slid.x, slid.y, turned};
@@ -57,8 +58,8 @@ struct Steered {
   }
 };
 
-/// Each turn begins where the one before ended: what it stands too high must not add up (3 cm a turn if each one stood as
-/// high as a long one).
+/// Each turn begins where the one before ended: what it stands too high must not add up (3 cm a turn if each one stood
+/// as high as a long one).
 TEST(Pilot, TurnsToAndFroOnASlopeStayWhereTheyBegan) {
   for (const double heading : {0.5 * kPi, 0.0, -2.0}) {
     Steered robot;
@@ -69,7 +70,25 @@ TEST(Pilot, TurnsToAndFroOnASlopeStayWhereTheyBegan) {
       robot.end_of_turn();
     }
     EXPECT_LT(robot.pose.y, 3.10) << heading;
+    if (std::abs(std::sin(heading)) > 0.9) {
+      EXPECT_GT(robot.pose.y, 2.95) << "it looks along the slope: " << heading;
+    }
   }
+}
+
+/// The turns that a path begins with are the same as others.
+TEST(Pilot, OnASlopeItTurnsToItsPathHigherThanARobotThatKnowsOfNone) {
+  const auto turns_to_path_at = [](bool knows) {
+    Steered robot;
+    robot.slope = deg_to_rad(10.0);
+    robot.knows = knows;
+    robot.pose = {3.0, 3.0, 0.6 * kPi};
+    robot.pilot.follow(straight(3.0, 5.0));
+    for (int i = 0; i < 200 && (i == 0 || robot.turned != 0.0) && std::abs(robot.pose.phi) > 0.5; ++i) robot.step();
+    return robot.pose.y;
+  };
+  EXPECT_LT(turns_to_path_at(false), 2.95) << "else there is nothing to keep";
+  EXPECT_GT(turns_to_path_at(true), turns_to_path_at(false) + 0.02);
 }
 
 /// In a lane as wide as a pallet, with a wall above and one below it on the slope, no corner of the body touches one.
