@@ -1,11 +1,16 @@
 #include "arenas/raf/raf.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
 #include "arenas/elements/elements.h"
 #include "arenas/model/geometry.h"
 #include "arenas/raf/raf_layout.h"
 #include "arenas/raf/raf_reader.h"
 #include "arenas/raf/raf_start.h"
 #include "base/error.h"
+#include "base/planar.h"
 #include "base/text/text_file.h"
 #include "base/text/words.h"
 
@@ -18,6 +23,22 @@ std::string list(const std::map<std::string, int>& counts) {
   std::string text;
   for (const auto& [type, count] : counts) text += (text.empty() ? "" : ", ") + type + " " + std::to_string(count);
   return text;
+}
+
+/// The element that lies farthest from the middle one, as the file has it.
+std::string farthest(const std::vector<Element>& elements) {
+  const auto middle = [&](double mrpt::math::TPoint2D::*axis) {
+    std::vector<double> values;
+    for (const Element& e : elements) values.push_back(e.position.*axis);
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    return values[values.size() / 2];
+  };
+  const mrpt::math::TPoint2D at{middle(&mrpt::math::TPoint2D::x), middle(&mrpt::math::TPoint2D::y)};
+  const auto off = [&](const Element& e) { return rubble::distance(e.position, at); };
+  const Element& e = *std::max_element(elements.begin(), elements.end(),
+                                       [&](const Element& a, const Element& b) { return off(a) < off(b); });
+  const auto pallet = [](double v) { return std::to_string(std::lround(v / kPallet)); };
+  return "'" + e.type + "' at x=\"" + pallet(e.position.x) + "\" y=\"" + pallet(e.position.y) + "\"";
 }
 
 }  // namespace
@@ -50,7 +71,8 @@ RafImport parse_raf(const std::string& text, const std::string& name) {
   const int wide = layout.occupied.width() - 2, high = layout.occupied.height() - 2;  // without the rim
   if (wide * high > kMostPallets)
     throw InputError(name + ": its elements lie " + std::to_string(wide) + " by " + std::to_string(high) +
-                     " pallets apart, and an arena has 6,000 of them at most: take out what lies far off");
+                     " pallets apart, and a .raf may cover " + std::to_string(kMostPallets) + ": take out what lies " +
+                     "far off, as " + farthest(elements) + " does");
   lay_ground(layout, import.arena);
   for (const Element& element : elements) {
     const ElementKind kind = kind_of(element.type);

@@ -42,9 +42,9 @@ def main():
     for name, runs in arenas.items():
         kinds[name.split("-")[0]] += runs
     order = ["yellow", "orange", "red"]
-    print("| kind | runs | at home in time | stuck | known, median and worst | victims found of those visible | false | "
-          "contact s, median and most | trajectory error, aligned, median and worst, m | m2 a minute | score, mean |")
-    print("|---|---|---|---|---|---|---|---|---|---|---|")
+    print("| kind | runs | ends by itself | at home in time | stuck | known, median and worst | victims found of those visible | false | "
+          "contact s, median and most | trajectory error, aligned, median and worst, m | m2 a minute | score, mean | of its floor can be seen, mean |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|---|---|")
     for kind in order:
         runs = kinds.get(kind)
         if not runs:
@@ -53,10 +53,10 @@ def main():
             sys.exit(f"{kind}: {runs.count(None)} runs have no score")
         of = lambda key: [value_of(run, key) for run in runs]
         found, visible = sum(of("victims_found")), sum(of("victims_visible"))
-        print(f"| {kind} | {len(runs)} | {sum(map(at_home, runs))} | {of('end_code').count('stuck')} | "
+        print(f"| {kind} | {len(runs)} | {sum(end != 'time' for end in of('end_code'))} | {sum(map(at_home, runs))} | {of('end_code').count('stuck')} | "
               f"{spread(of('known'), 3, min)} | {found} of {visible} ({100 * found / visible:.1f} %) | "
               f"{sum(of('victims_false'))} | {spread(of('contact_s'), 1, max)} | {spread(of('ate_aligned_m'), 3, max)} | "
-              f"{statistics.mean(of('area_per_min')):.1f} | {statistics.mean(of('score')):.3f} |")
+              f"{statistics.mean(of('area_per_min')):.1f} | {statistics.mean(of('score')):.3f} | {statistics.mean(of('visible_share')):.3f} |")
     print("\n| arenas | runs | known, median and worst | victims found of those visible (false) | contact s, median and most | "
           "trajectory error, median and worst, m |")
     print("|---|---|---|---|---|---|")

@@ -220,10 +220,12 @@ TEST(Raf, ElementsFarApartAreRefusedByTheFloorBetweenThem) {
     return raf(kRoom + "<element type=\"start_check\" x=\"1\" y=\"0\"/>\n<element type=\"small_wall\" x=\"" +
                std::to_string(x) + "\" y=\"" + std::to_string(y) + "\"/>\n");
   };
-  EXPECT_NO_THROW(parse_raf(apart(99, 49), "f.raf"));
-  EXPECT_EQ(error_of(apart(99, 69)),
-            "f.raf: its elements lie 100 by 70 pallets apart, and an arena has 6,000 of them at most: take out what "
-            "lies far off");
+  EXPECT_NO_THROW(parse_raf(apart(99, 59), "f.raf"));
+  EXPECT_THAT(error_of(apart(100, 59)), HasSubstr("101 by 60 pallets"));
+  EXPECT_EQ(
+      error_of(apart(99, 69)),
+      "f.raf: its elements lie 100 by 70 pallets apart, and a .raf may cover 6000: take out what lies far off, as "
+      "'small_wall' at x=\"99\" y=\"69\" does");
 }
 
 TEST(Raf, FileWithFarTooManyElementsIsRefusedAtOnce) {
