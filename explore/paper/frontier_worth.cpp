@@ -6,9 +6,17 @@ namespace rubble::explore {
 namespace {
 
 constexpr double kStay = 1.25;     ///< so many times the area of another the one being driven to counts
+constexpr double kShort = 240.0;   ///< in a mission shorter than this not all of an arena can be seen [s]
 constexpr double kTurnTime = 2.0;  ///< a target costs beside its way [s]
 
 }  // namespace
+
+FrontierChoiceConfig FrontierChoiceConfig::for_mission(double time_limit) const {
+  FrontierChoiceConfig resolved = *this;
+  const bool is_short = time_limit > 0.0 && time_limit < kShort;
+  if (by == FrontierChoice::ByTime) resolved.by = is_short ? FrontierChoice::Value : FrontierChoice::Transform;
+  return resolved;
+}
 
 WorthFn frontier_worth(const FrontierChoiceConfig& config, const PlannerConfig& planner, const Traversable& floor,
                        const FloorSearch& search, double speed) {
@@ -17,6 +25,7 @@ WorthFn frontier_worth(const FrontierChoiceConfig& config, const PlannerConfig& 
   };
   switch (config.by) {
     case FrontierChoice::Transform:
+    case FrontierChoice::ByTime:  // of no mission
       break;
     case FrontierChoice::Nearest:
       return [way](const Candidate& c) { return -way(c); };

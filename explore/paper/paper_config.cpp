@@ -9,7 +9,7 @@ void bind(Binder& b, PaperExplorerConfig& c) {
   b.number("d_opt_m", transform.d_opt, 0.0, 5.0);
   b.choice("discomfort", transform.discomfort, {"per_metre", "per_cell"});
   b.boolean("bar_targets", c.bar_targets);
-  b.choice("choice", c.choice.by, {"transform", "nearest", "gain", "value"});
+  b.choice("choice", c.choice.by, {"transform", "nearest", "gain", "value", "by_time"});
   b.number("face_weight", c.choice.face_weight, 0.0, 100.0);
   b.section("priorities", [&](Binder& p) {
     p.number("niches_m", c.priorities.niches, 0.0, 1000.0);

@@ -19,7 +19,7 @@ namespace rubble::explore {
 /// share.
 struct PaperExplorerConfig {
   PlannerConfig planner;
-  FrontierChoiceConfig choice;
+  FrontierChoiceConfig choice{FrontierChoice::ByTime};
   Priorities priorities;
   FollowerConfig follower;
   VictimSearchConfig victims;

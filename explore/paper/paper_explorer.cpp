@@ -29,12 +29,17 @@ constexpr double kLongestTick = 0.2;             ///< commands of longer ticks a
 constexpr double kDetourSpeed = 0.15;  ///< a detour is driven so fast at least, turns and stops included [m/s]
 constexpr int kSmoothFloor = 3;        ///< things felt so far where the robot may be fast
 
+PaperExplorerConfig for_mission(PaperExplorerConfig config, const Mission& mission) {
+  config.choice = config.choice.for_mission(mission.time_limit);
+  return config;
+}
+
 }  // namespace
 
 PaperExplorer::PaperExplorer(const robot::RobotModel& model, const PaperExplorerConfig& config, const Mission& mission)
     : model_(model),
-      config_(config),
-      agenda_(config),
+      config_(for_mission(config, mission)),
+      agenda_(config_),
       pilot_(model, config.follower),
       stuck_watch_(config.tilt),
       recovery_(model, config.follower.turn_speed),

@@ -104,5 +104,15 @@ TEST(FrontierWorth, FacesToBeSearchedCountByTheirWeight) {
   EXPECT_NEAR(value(3.0), value(0.0) + 3.0 * faces / 10.0, 1e-9);
 }
 
+TEST(FrontierWorth, ByTimeIsByValueInShortMissionsAndByTheTransformInOthers) {
+  const FrontierChoiceConfig by_time{FrontierChoice::ByTime, 2.0};
+  for (const double limit : {1.0, 180.0, 239.0}) EXPECT_EQ(by_time.for_mission(limit).by, FrontierChoice::Value);
+  for (const double limit : {0.0, 240.0, 1800.0}) EXPECT_EQ(by_time.for_mission(limit).by, FrontierChoice::Transform);
+  EXPECT_EQ(by_time.for_mission(180.0).face_weight, 2.0);
+  for (const FrontierChoice by :
+       {FrontierChoice::Transform, FrontierChoice::Nearest, FrontierChoice::Gain, FrontierChoice::Value})
+    EXPECT_EQ(FrontierChoiceConfig{by}.for_mission(180.0).by, by) << "asked for";
+}
+
 }  // namespace
 }  // namespace rubble::explore
