@@ -44,11 +44,11 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   if (!has_reference_ || std::abs(wrap_angle(T_map_base.phi - reference_.phi)) > config_.turned) {
     reference_ = T_map_base;
     has_reference_ = true;
-    turn_ = spun_ = 0.0;
+    turn_ = spun_ = rolled_ = 0.0;
   }
   if (length(T_map_base.x - place_.x, T_map_base.y - place_.y) > config_.place) {
     place_ = T_map_base;
-    rocked_ = net_ = pushed_ = turn_ = 0.0;
+    rocked_ = net_ = pushed_ = turn_ = rolled_ = 0.0;
   }
   const double turned_in_tick = wrap_angle(T_map_base.phi - last_.phi);
   const double moved_in_tick = distance(position(last_), position(T_map_base));
@@ -88,9 +88,12 @@ bool MotionWatch::stuck(const mrpt::math::TPose2D& T_map_base, const robot::Driv
   // A slow curve turns the robot less than it is told where the floor holds it back: its way is judged, not its turn.
   turn_ += on_the_spot(commanded) ? turning * dt : 0.0;
   spun_ += on_the_spot(commanded) && wheels ? wheels->w * dt : 0.0;
+  // Told to drive a little as it turns, a robot that is held may roll its wheels only.
+  rolled_ += on_the_spot(commanded) && wheels ? std::abs(wheels->v) * dt : 0.0;
   stalled_for_ = stalled ? stalled_for_ + dt : 0.0;
   return rocking() || in_vain || steers_in_vain() || pushed_ > config_.place_patience ||
-         turn_ > config_.turn_patience || std::abs(spun_) > config_.turn_patience || stalled_for_ > config_.stall_time;
+         turn_ > config_.turn_patience || std::abs(spun_) > config_.turn_patience || rolled_ > config_.rolled ||
+         stalled_for_ > config_.stall_time;
 }
 
 }  // namespace rubble::explore

@@ -27,6 +27,7 @@ struct MotionWatchConfig {
   double pivot_speed = 0.12;         ///< and driving no faster is a turn on the spot: its way does not count
   double accel = 0.3;                ///< a commanded speed is expected to be reached so [m/s^2]
   double turn_patience = 1.2;        ///< turn commanded in vain that means stuck [rad]
+  double rolled = 0.3;               ///< way of wheels that were to turn it meanwhile, in vain as well [m]
   double place = 0.15;               ///< rocking to and fro within so much of a place [m]
   double place_patience = 0.45;      ///< way commanded there that means stuck, though the pose trembles [m]
   double rocking = 6.3;              ///< turned so much more there than came of it means stuck [rad]
@@ -77,6 +78,7 @@ class MotionWatch {
   std::deque<Moment> lately_;  ///< over the last `patience` of way
   double turn_ = 0.0;          ///< commanded on the spot since the body turned, or the robot got elsewhere [rad]
   double spun_ = 0.0;          ///< by the wheels on the spot since the body turned, wherever its pose slid to [rad]
+  double rolled_ = 0.0;        ///< way of the wheels since then, whatever sense, that were to turn it on the spot [m]
   double steered_ = 0.0;       ///< by the wheels since the body turned last [rad]
   double steered_from_ = 0.0;  ///< its heading then [rad]
   mrpt::math::TPose2D place_;

@@ -83,6 +83,27 @@ TEST(MotionWatch, WheelsThatTurnOnTheSpotInVainAreFoundOutWhereverThePoseGoes) {
 }
 
 /// Along bare walls a mapper slides and finds its place again, by as much as the robot went meanwhile.
+/// Told to drive off a wall as it turns, a robot that hangs on a step rolls its wheels and does neither.
+TEST(MotionWatch, WheelsThatRollInVainInATurnOnTheSpotAreFoundOut) {
+  for (const double v : {-0.06, 0.1}) {
+    MotionWatch held;
+    double t = 0.0;
+    while (!held.stuck({4.87, -1.87 + 0.005 * std::sin(t), 1.55}, {std::copysign(0.12, v), -0.2}, false, 0.02,
+                       robot::Drive{v, 0.0}))
+      ASSERT_LT(t += 0.02, 6.0) << v;
+    MotionWatch turns;
+    for (int i = 0; i < 1000; ++i)
+      ASSERT_FALSE(turns.stuck({0.0, 0.05 * std::sin(0.04 * i), -0.2 * 0.02 * i}, {std::copysign(0.12, v), -0.2}, false,
+                               0.02, robot::Drive{v, -0.2}))
+          << i;
+    MotionWatch leaves;
+    for (int i = 0; i < 1000; ++i)
+      ASSERT_FALSE(leaves.stuck({0.8 * v * 0.02 * i, 0.0, 0.0}, {std::copysign(0.12, v), -0.2}, false, 0.02,
+                                robot::Drive{v, 0.0}))
+          << i;
+  }
+}
+
 TEST(MotionWatch, ACorrectedPoseIsNoRobotThatStands) {
   MotionWatch watch;
   for (int i = 0; i < 2000; ++i) {
