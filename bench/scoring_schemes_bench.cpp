@@ -18,10 +18,11 @@
 #include "tests/support/scoring_grounds.h"
 #include "tests/support/scoring_halls.h"
 #include "tests/support/scoring_schemes.h"
+#include "tests/support/scoring_schemes_more.h"
 
 /// The laws of the score on grounds and by schemes that it was not made for: orange and red arenas full of ramps,
 /// arenas of real competitions (`arenas_raf` of RUBBLE_DATA), halls, buildings (`rooms`). RUBBLE_KIND=TEXT takes only
-/// kinds with this text.
+/// kinds with this text, RUBBLE_SCHEME=TEXT only schemes with this one.
 namespace rubble::scoring {
 namespace {
 
@@ -143,10 +144,13 @@ struct Tally {
   int count = 0;
 };
 
-void BM_Schemes(benchmark::State& state) {
-  const std::vector<Place>& all = places(state);
-  if (all.empty()) return;
-  const std::vector<Scheme> tried = schemes();
+/// What each scheme earns beside the honest maps, kind by kind.
+void tell_gains(benchmark::State& state, const std::vector<Place>& all, std::vector<Scheme> tried) {
+  const char* only = std::getenv("RUBBLE_SCHEME");
+  if (only != nullptr)
+    tried.erase(std::remove_if(tried.begin(), tried.end(),
+                               [&](const Scheme& s) { return s.name.find(only) == std::string::npos; }),
+                tried.end());
   std::vector<Tally> tallies;
   double most_gained = -1.0;
   for (auto _ : state) {
@@ -181,13 +185,32 @@ void BM_Schemes(benchmark::State& state) {
   for (const Tally& t : tallies) {
     const double gain = (t.attack - t.honest) / t.count;
     most_gained = std::max(most_gained, gain);
+    const auto of_kind = state.counters.emplace("most_gained_" + t.kind, gain).first;
+    of_kind->second = std::max(of_kind->second.value, gain);
     std::printf("| %s (%d) | %s | %.3f | %.3f | %+.3f | %+.3f | %s |%s\n", t.kind.c_str(), t.count, t.scheme.c_str(),
                 t.honest / t.count, t.attack / t.count, gain, t.most, t.where.c_str(), gain > 0.01 ? " GAINS" : "");
   }
   state.counters["most_gained"] = most_gained;
   state.counters["places"] = static_cast<double>(all.size());
 }
+void BM_Schemes(benchmark::State& state) {
+  const std::vector<Place>& all = places(state);
+  if (!all.empty()) tell_gains(state, all, schemes());
+}
 BENCHMARK(BM_Schemes)->Unit(benchmark::kSecond)->Iterations(1);
+
+void BM_MoreSchemes(benchmark::State& state) {
+  const std::vector<Place>& all = places(state);
+  if (!all.empty()) tell_gains(state, all, more_schemes());
+}
+BENCHMARK(BM_MoreSchemes)->Unit(benchmark::kSecond)->Iterations(1);
+
+/// What is more than a guess: it gains, and the documentation says how much.
+void BM_Conclusions(benchmark::State& state) {
+  const std::vector<Place>& all = places(state);
+  if (!all.empty()) tell_gains(state, all, conclusions());
+}
+BENCHMARK(BM_Conclusions)->Unit(benchmark::kSecond)->Iterations(1);
 
 /// Fat walls, and parts of other shapes than halves.
 void BM_SharesAndThickness(benchmark::State& state) {
@@ -255,6 +278,28 @@ void BM_OtherPlaces(benchmark::State& state) {
   state.counters["aligned"] = aligned;
 }
 BENCHMARK(BM_OtherPlaces)->Unit(benchmark::kSecond)->Iterations(1);
+
+/// The place next door on the same canvas, joined by a strip, is no second drawing.
+void BM_NextDoor(benchmark::State& state) {
+  const std::vector<Place>& all = places(state);
+  if (all.empty()) return;
+  int pairs = 0;
+  int taken = 0;
+  for (auto _ : state)
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const OccupancyGrid& truth = all[i].truth;
+      const Place& other = stranger_of(all, i);
+      const SightLines sights(truth);
+      if (!sights.usable() || other.truth.resolution() != truth.resolution()) continue;
+      ++pairs;
+      if (second_drawing_share(joined_to(truth, other.truth), truth, PlanarTransform(), sights) <= 0.0) continue;
+      ++taken;
+      std::printf("%s beside %s: taken for a second drawing\n", other.name.c_str(), all[i].name.c_str());
+    }
+  state.counters["pairs"] = pairs;
+  state.counters["taken"] = taken;
+}
+BENCHMARK(BM_NextDoor)->Unit(benchmark::kSecond)->Iterations(1);
 
 /// Each arena of a real competition on each other one, at the best pose of all.
 void BM_CompetitionArenas(benchmark::State& state) {

@@ -1,11 +1,14 @@
 #include "scoring/alignment/second_drawing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "base/distance_transform.h"
+#include "base/rigid.h"
 #include "scoring/alignment/pose_search.h"
 #include "scoring/proposals/correlation.h"
 #include "scoring/walls/resample.h"
@@ -20,6 +23,12 @@ constexpr double kAlike = 0.25;  // score: strangers reach 0.2 at their best pos
 constexpr double kSizeStep = 1.05;
 constexpr int kSizeSteps = 7;      // to 0.7 and 1.4 times the size
 constexpr std::size_t kPoses = 3;  // the best of each size
+// Of a drawing that came apart.
+constexpr std::size_t kHalfPoses = 5;  // the best of each half
+constexpr double kHalvesAlike = 0.4;   // both scores: halves of strangers reach 0.37
+constexpr double kApart = 1.6;         // halves that lie further apart are none of one drawing [m]
+constexpr double kTurned = 0.25;       // [rad]
+constexpr double kShownTwice = 0.5;    // of the ground that the halves show, what the first drawing shows, too
 
 /// What the map knows away from the truth, and how much of it there is on and off it [cells].
 struct Parted {
@@ -51,15 +60,95 @@ Parted part(const OccupancyGrid& map, const OccupancyGrid& truth, const PlanarTr
   return out;
 }
 
-/// The drawing agrees with the truth at one of its best poses.
-bool alike(const OccupancyGrid& drawing, const OccupancyGrid& truth, const SightLines& sights) {
+/// Where a drawing lies on the truth, and how far it agrees there.
+struct Placed {
+  PlanarTransform T_truth_drawing;
+  double score = 0.0;
+};
+
+std::vector<Placed> best_places(const OccupancyGrid& drawing, const OccupancyGrid& truth, const SightLines& sights,
+                                std::size_t most) {
+  std::vector<Placed> out;
   const SearchConfig search;
   const WallMatch match(drawing, truth, search.reach, search.max_points);
-  if (!match.usable()) return false;
+  if (!match.usable()) return out;
   const SightMap seen(drawing);
   const std::vector<Hypothesis> hypotheses = examine(correlate(drawing, truth, {}), match, search);
-  for (std::size_t i = 0; i < std::min(kPoses, hypotheses.size()); ++i)
-    if (sights.at(seen, PlanarTransform(hypotheses[i].T_best)).score >= kAlike) return true;
+  for (std::size_t i = 0; i < std::min(most, hypotheses.size()); ++i) {
+    const PlanarTransform T(hypotheses[i].T_best);
+    out.push_back({T, sights.at(seen, T).score});
+  }
+  return out;
+}
+
+/// The drawing agrees with the truth at one of its best poses.
+bool alike(const OccupancyGrid& drawing, const OccupancyGrid& truth, const SightLines& sights) {
+  const std::vector<Placed> places = best_places(drawing, truth, sights, kPoses);
+  return std::any_of(places.begin(), places.end(), [](const Placed& at) { return at.score >= kAlike; });
+}
+
+struct Halves {
+  OccupancyGrid first;
+  OccupancyGrid second;
+};
+
+/// Cut where half of what the drawing knows lies to either side: west and east, or south and north.
+Halves halves_of(const OccupancyGrid& drawing, bool west_east) {
+  std::vector<int> along;
+  for (int y = 0; y < drawing.height(); ++y)
+    for (int x = 0; x < drawing.width(); ++x)
+      if (drawing[{x, y}] != Occupancy::Unknown) along.push_back(west_east ? x : y);
+  Halves out{OccupancyGrid(drawing.frame()), OccupancyGrid(drawing.frame())};
+  if (along.empty()) return out;
+  const auto middle = along.begin() + static_cast<std::ptrdiff_t>(along.size() / 2);
+  std::nth_element(along.begin(), middle, along.end());
+  for (int y = 0; y < drawing.height(); ++y)
+    for (int x = 0; x < drawing.width(); ++x)
+      ((west_east ? x : y) < *middle ? out.first : out.second)[{x, y}] = drawing[{x, y}];
+  out.first = crop_to_known(out.first, 0.0);
+  out.second = crop_to_known(out.second, 0.0);
+  return out;
+}
+
+bool is_known(const OccupancyGrid& grid, const mrpt::math::TPoint2D& p) {
+  const Cell c = grid.cell(p);
+  return grid.inside(c) && grid[c] != Occupancy::Unknown;
+}
+
+/// Share of the truth's ground shown by either half that the map shows where it lies on the truth, too.
+double shown_twice(const Halves& halves, const Placed& first, const Placed& second, const OccupancyGrid& map,
+                   const PlanarTransform& T_truth_map, const OccupancyGrid& truth) {
+  double shown = 0.0;
+  double twice = 0.0;
+  for (int y = 0; y < truth.height(); ++y)
+    for (int x = 0; x < truth.width(); ++x) {
+      const mrpt::math::TPoint2D p = truth.centre({x, y});
+      if (truth[{x, y}] == Occupancy::Unknown) continue;
+      if (!is_known(halves.first, first.T_truth_drawing.inverse(p)) &&
+          !is_known(halves.second, second.T_truth_drawing.inverse(p)))
+        continue;
+      shown += 1.0;
+      twice += is_known(map, T_truth_map.inverse(p)) ? 1.0 : 0.0;
+    }
+  return shown > 0.0 ? twice / shown : 0.0;
+}
+
+/// A drawing that came apart agrees with the truth nowhere as a whole. Its halves do, at two poses that are near each
+/// other: by luck one half of a stranger agrees somewhere, but hardly both at such poses.
+bool alike_in_halves(const OccupancyGrid& drawing, const OccupancyGrid& map, const PlanarTransform& T_truth_map,
+                     const OccupancyGrid& truth, const SightLines& sights) {
+  const mrpt::math::TPoint2D middle = drawing.centre({drawing.width() / 2, drawing.height() / 2});
+  for (const bool west_east : {true, false}) {
+    const Halves halves = halves_of(drawing, west_east);
+    const std::vector<Placed> firsts = best_places(halves.first, truth, sights, kHalfPoses);
+    const std::vector<Placed> seconds = best_places(halves.second, truth, sights, kHalfPoses);
+    for (const Placed& first : firsts)
+      for (const Placed& second : seconds) {
+        if (first.score + second.score < kHalvesAlike) continue;
+        if (!same_pose(first.T_truth_drawing.pose(), second.T_truth_drawing.pose(), middle, kApart, kTurned)) continue;
+        if (shown_twice(halves, first, second, map, T_truth_map, truth) >= kShownTwice) return true;
+      }
+  }
   return false;
 }
 
@@ -73,7 +162,8 @@ double second_drawing_share(const OccupancyGrid& map, const OccupancyGrid& truth
   const OccupancyGrid drawing = crop_to_known(without_specks(parted.off), 0.0);
   const std::vector<double> sizes = sizes_about(1.0, kSizeStep, kSizeSteps);
   const bool again = std::any_of(sizes.begin(), sizes.end(),
-                                 [&](double size) { return alike(at_size(drawing, size), truth, sights); });
+                                 [&](double size) { return alike(at_size(drawing, size), truth, sights); }) ||
+                     alike_in_halves(drawing, map, T_truth_map, truth, sights);
   return again ? parted.cells_off / (parted.cells_on + parted.cells_off) : 0.0;
 }
 

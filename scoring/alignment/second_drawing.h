@@ -8,8 +8,10 @@ namespace rubble::scoring {
 
 /// Share of the map's known area that lies off the truth and draws the truth again: another hypothesis on the same
 /// canvas, joined to the first so that it is no piece of its own. It is looked for where a tenth or more of what lies
-/// on the truth lies off it, at 0.7 to 1.4 times its own size, in steps of 5 %. What merely surrounds an arena
-/// (a hall seen through its entrance) does not agree with its lines of sight anywhere, and does not count.
+/// on the truth lies off it, at 0.7 to 1.4 times its own size, in steps of 5 %; of its own size its two halves
+/// may agree each by itself, at poses near each other, since a drawing that came apart agrees nowhere as a whole. What
+/// merely surrounds an arena (a hall seen through its entrance) does not agree with its lines of sight anywhere, and
+/// does not count.
 double second_drawing_share(const OccupancyGrid& map, const OccupancyGrid& truth, const PlanarTransform& T_truth_map,
                             const SightLines& sights);
 
