@@ -17,6 +17,7 @@
 #include "scoring/walls/resample.h"
 #include "tests/support/scoring_grounds.h"
 #include "tests/support/scoring_halls.h"
+#include "tests/support/scoring_hedges.h"
 #include "tests/support/scoring_schemes.h"
 #include "tests/support/scoring_schemes_more.h"
 
@@ -204,6 +205,27 @@ void BM_MoreSchemes(benchmark::State& state) {
   if (!all.empty()) tell_gains(state, all, more_schemes());
 }
 BENCHMARK(BM_MoreSchemes)->Unit(benchmark::kSecond)->Iterations(1);
+
+/// On arenas that no other bench has: twelve yellow, twelve orange, all of competitions.
+void tell_gains_on_fresh_ones(benchmark::State& state, const std::vector<Scheme>& tried) {
+  const std::optional<std::string> raf = data_folder(state, "arenas_raf");
+  if (!raf) return;
+  std::vector<Place> all;
+  for (const char* kind : {"yellow", "orange"})
+    for (std::uint64_t i = 0; i < 12; ++i) {
+      const int more = static_cast<int>(i % 3);
+      const Ground ground{kind, 7 + more, 8 - more, 15001 + i};
+      all.push_back({kind, ground.name(), truth_of(ground)});
+    }
+  for (Place& place : competitions(*raf)) all.push_back(std::move(place));
+  tell_gains(state, all, tried);
+}
+void BM_Hedges(benchmark::State& state) { tell_gains_on_fresh_ones(state, hedges()); }
+BENCHMARK(BM_Hedges)->Unit(benchmark::kSecond)->Iterations(1);
+
+/// Both of two hypotheses a few centimetres apart: they gain, and the documentation says how much.
+void BM_NearCopies(benchmark::State& state) { tell_gains_on_fresh_ones(state, near_copies()); }
+BENCHMARK(BM_NearCopies)->Unit(benchmark::kSecond)->Iterations(1);
 
 /// What is more than a guess: it gains, and the documentation says how much.
 void BM_Conclusions(benchmark::State& state) {
