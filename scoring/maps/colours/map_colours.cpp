@@ -24,6 +24,7 @@
 #include "scoring/maps/colours/lossy_tones.h"
 #include "scoring/maps/colours/reading_doubts.h"
 #include "scoring/maps/colours/turned_canvas.h"
+#include "scoring/maps/colours/window_frame.h"
 
 namespace rubble::scoring {
 
@@ -240,13 +241,47 @@ ClassImage classify_as(const RgbImage& original, const SampleNotes& notes, const
   return out;
 }
 
-}  // namespace
-
-ClassImage classify(const RgbImage& image, const SampleNotes& notes) {
+/// Of a picture that is all map, or nearly.
+ClassImage classify_map(const RgbImage& image, const SampleNotes& notes) {
   if (notes.meaning.empty() && small_enough(image))
     if (const std::optional<ScaledValues> values = values_of_colour_scale(image))
       return classify_as(values->greys, notes, values->name);
   return classify_as(image, notes, "");
+}
+
+/// The picture that was in the view with nothing but unexplored ground around.
+RgbImage set_into(const RgbImage& around, const cv::Rect& view, const RgbImage& within) {
+  RgbImage out(around.width, around.height);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x) {
+      const bool is_within = view.contains({x, y});
+      const std::uint8_t* const from = is_within ? within.pixel(x - view.x, y - view.y) : league::kUnexplored.data();
+      std::copy_n(from, 3, out.pixel(x, y));
+    }
+  return out;
+}
+
+/// What is around the view is unknown: the map keeps the picture's size, and with it its place.
+ClassImage classify_view(const RgbImage& image, const SampleNotes& notes, const cv::Rect& view) {
+  const RgbImage within = cut_out(image, view);
+  ClassImage out = classify_map(within, cut_out(notes, image, view));
+  out.recognised = told_of_frame(image, view) + out.recognised;
+  if (!out.refusal.empty()) return out;
+  Grid<Occupancy> classes(GridFrame{image.width, image.height, 1.0, 0.0, 0.0}, Occupancy::Unknown);
+  const int low = image.height - view.y - view.height;
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x < view.width; ++x) classes[{view.x + x, low + y}] = out.classes[{x, y}];
+  out.classes = std::move(classes);
+  if (out.is_league) out.restored = set_into(image, view, out.restored ? *out.restored : within);
+  return out;
+}
+
+}  // namespace
+
+ClassImage classify(const RgbImage& image, const SampleNotes& notes) {
+  if (notes.meaning.empty() && small_enough(image))
+    if (const std::optional<cv::Rect> view = view_in_window(image)) return classify_view(image, notes, *view);
+  return classify_map(image, notes);
 }
 
 }  // namespace rubble::scoring
