@@ -26,7 +26,7 @@ constexpr int kLeastSide = 60;           // of the view [pixels]
 constexpr int kLeastFrame = 8;           // on its broadest side [pixels]
 constexpr double kBroaderThanWalls = 3.0;
 constexpr double kUnbroken = 0.98;  // of a side of the view that is unknown ground
-constexpr int kSmearOfFrame = 8;    // beside the frame through JPEG [pixels]
+constexpr int kSmearOfFrame = 16;   // of its colours into the view through JPEG, at the most [pixels]
 constexpr double kMuchOfFrame = 0.1, kMostOfFrame = 0.4;
 constexpr std::size_t kMostFrameColours = 10;
 constexpr double kNothingWithin = 0.003;  // of the view
@@ -273,7 +273,7 @@ Meetings meetings_of(const cv::Mat& colours, const cv::Mat& labels, const Tone& 
 
 /// A line in the walls' colour runs along the view, with another colour beyond it: the walls around an arena.
 bool is_walled(const cv::Mat& colours, const cv::Rect& view, const Tone& wall) {
-  constexpr int kAsWall = 45, kBeside = 10, kBeyond = 6;
+  constexpr int kAsWall = 45, kBeside = 20, kBeyond = 6;
   constexpr double kMost = 0.8;
   const std::array<int, 4> frame = frame_of(colours.size(), view);
   int walled = 0;
@@ -281,9 +281,10 @@ bool is_walled(const cv::Mat& colours, const cv::Rect& view, const Tone& wall) {
     const auto as_wall = [&](int beyond) {
       return filled_share(near_tone(colours(line_along(view, side, -beyond)), wall, kAsWall));
     };
+    // With nothing beyond it is the border of a window.
     bool here = false;
-    for (int d = 1; d <= std::min(kBeside, frame[side]) && !here; ++d)
-      here = as_wall(d) >= kMost && (d + kBeyond > frame[side] || as_wall(d + kBeyond) < kMost);
+    for (int d = 1; d <= std::min(kBeside, frame[side] - 1) && !here; ++d)
+      here = as_wall(d) >= kMost && as_wall(std::min(d + kBeyond, frame[side])) < kMost;
     walled += here ? 1 : 0;
   }
   return walled >= 2;
