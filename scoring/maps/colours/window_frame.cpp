@@ -6,8 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <map>
 #include <opencv2/imgproc.hpp>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "scoring/maps/colours/half_width.h"
@@ -180,18 +182,18 @@ bool ends_all_around(const cv::Mat& ground, const cv::Rect& view) {
   });
 }
 
-/// What the frame is made of covers nothing within the view.
-bool has_colours_of_its_own(const cv::Mat& colours, const cv::Rect& view) {
-  constexpr int kSame = 6;
+/// What is beyond `box`, the view with the lines that the frame has smeared into, covers nothing within the view.
+bool has_colours_of_its_own(const cv::Mat& colours, const cv::Rect& box, const cv::Rect& view) {
+  constexpr int kSame = 3, kThickLine = 9;
   cv::Mat frame(colours.size(), CV_8U, cv::Scalar(255));
-  frame(view).setTo(0);
+  frame(box).setTo(0);
   const double all = cv::countNonZero(frame);
   const std::vector<Tone> main = frequent_tones(colours, frame, kMuchOfFrame * all, kMostFrameColours);
   double covered = 0.0;
   for (const Tone& tone : main) {
     covered += cv::countNonZero(near_tone(colours, tone, kGroundSpread) & frame);
     cv::Mat within = near_tone(colours(view), tone, kSame);
-    cv::morphologyEx(within, within, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
+    cv::morphologyEx(within, within, cv::MORPH_OPEN, cv::Mat::ones(kThickLine, kThickLine, CV_8U));
     if (filled_share(within) > kNothingWithin) return false;
   }
   return covered >= kMostOfFrame * all;
@@ -281,10 +283,16 @@ bool is_walled(const cv::Mat& colours, const cv::Rect& view, const Tone& wall) {
     const auto as_wall = [&](int beyond) {
       return filled_share(near_tone(colours(line_along(view, side, -beyond)), wall, kAsWall));
     };
+    const auto mean = [&](int beyond) {
+      const cv::Scalar of = cv::mean(colours(line_along(view, side, -beyond)));
+      return Tone(static_cast<float>(of[0]), static_cast<float>(of[1]), static_cast<float>(of[2]));
+    };
     // With nothing beyond it is the border of a window.
     bool here = false;
-    for (int d = 1; d <= std::min(kBeside, frame[side] - 1) && !here; ++d)
-      here = as_wall(d) >= kMost && as_wall(std::min(d + kBeyond, frame[side])) < kMost;
+    for (int d = 1; d <= std::min(kBeside, frame[side] - 1) && !here; ++d) {
+      const int beyond = std::min(d + kBeyond, frame[side]);
+      here = as_wall(d) >= kMost && as_wall(beyond) < kMost && tone_step(mean(d), mean(beyond)) > kOtherColour;
+    }
     walled += here ? 1 : 0;
   }
   return walled >= 2;
@@ -313,10 +321,44 @@ std::vector<Tone> bars_of(const cv::Mat& colours, const cv::Rect& view) {
   return out;
 }
 
+/// A colour that may be the unknown ground's.
+struct Candidate {
+  Tone tone;
+  int spread = kGroundSpread;
+};
+
+/// The colours of the picture's areas: to the digit, as a screenshot has them, and with what JPEG leaves of them.
+std::vector<Candidate> candidates_in(const cv::Mat& colours) {
+  constexpr int kLeastRun = 8, kDigit = 3;
+  const double least = kLeastGround * static_cast<double>(colours.total());
+  std::map<int, double> count;  // of pixels in runs of one colour
+  for (int y = 0; y < colours.rows; ++y) {
+    const cv::Vec3b* const row = colours.ptr<cv::Vec3b>(y);
+    for (int x = 0; x < colours.cols;) {
+      const int first = x;
+      while (x < colours.cols && row[x] == row[first]) ++x;
+      if (x - first >= kLeastRun) count[row[first][0] << 16 | row[first][1] << 8 | row[first][2]] += x - first;
+    }
+  }
+  std::vector<std::pair<double, int>> most;
+  for (const auto& [colour, pixels] : count)
+    if (pixels >= least) most.emplace_back(pixels, colour);
+  std::sort(most.rbegin(), most.rend());
+  if (most.size() > kMostGrounds) most.resize(kMostGrounds);
+  std::vector<Candidate> out;
+  for (const auto& [pixels, colour] : most)
+    out.push_back({Tone(static_cast<float>(colour >> 16), static_cast<float>(colour >> 8 & 255),
+                        static_cast<float>(colour & 255)),
+                   kDigit});
+  for (const Tone& tone : frequent_tones(colours, {}, least, kMostGrounds)) out.push_back({tone});
+  return out;
+}
+
 /// The view that begins with this ground.
-std::optional<cv::Rect> view_on(const cv::Mat& colours, const Tone& tone) {
+std::optional<cv::Rect> view_on(const cv::Mat& colours, const Candidate& candidate) {
+  const Tone& tone = candidate.tone;
   constexpr double kThickLines = 3.0;  // half the width of ground is more [pixels]
-  const cv::Mat ground = near_tone(colours, tone, kGroundSpread);
+  const cv::Mat ground = near_tone(colours, tone, candidate.spread);
   cv::Mat connected;
   const std::optional<cv::Rect> reach = reach_of(ground, connected);
   if (!reach) return std::nullopt;
@@ -325,14 +367,14 @@ std::optional<cv::Rect> view_on(const cv::Mat& colours, const Tone& tone) {
   const cv::Rect view = unblended_box(colours, tone, *unbroken);
   const std::array<int, 4> frame = frame_of(colours.size(), view);
   const int broadest = *std::max_element(frame.begin(), frame.end());
-  if (broadest < kLeastFrame || !ends_all_around(ground, view)) return std::nullopt;
+  if (broadest < kLeastFrame || !ends_all_around(ground, *reach)) return std::nullopt;
   const cv::Mat within = colours(view);
   cv::Mat labels(view.size(), CV_8U, cv::Scalar(kNeither));
   const cv::Mat free = other_areas(within, ground(view));
-  labels.setTo(kUnknownGround, ground(view));
+  labels.setTo(kUnknownGround, connected(view));
   labels.setTo(kFreeGround, free);
   if (filled_share(free) < kLeastFree || mean_half_width(connected(view)) <= kThickLines ||
-      !has_colours_of_its_own(colours, view))
+      !has_colours_of_its_own(colours, *reach, view))
     return std::nullopt;
   const Meetings meetings = meetings_of(within, labels, tone);
   if (bars_of(colours, view).size() >= 2) return view;
@@ -349,9 +391,8 @@ std::optional<cv::Rect> view_in_window(const RgbImage& image) {
   cv::Mat colours(image.height, image.width, CV_8UC3);
   std::copy(image.rgb.begin(), image.rgb.end(), colours.data);
   std::optional<cv::Rect> out;
-  for (const Tone& tone :
-       frequent_tones(colours, {}, kLeastGround * static_cast<double>(colours.total()), kMostGrounds))
-    if (const std::optional<cv::Rect> view = view_on(colours, tone); view && (!out || view->area() < out->area()))
+  for (const Candidate& candidate : candidates_in(colours))
+    if (const std::optional<cv::Rect> view = view_on(colours, candidate); view && (!out || view->area() < out->area()))
       out = view;
   return out;
 }
