@@ -166,8 +166,9 @@ inline std::vector<Window> other_windows() {
            }},
           {"desktop around", [](const cv::Mat& m) {
              Styled s = framed(m, 1.0, 62, 90, 62, 62, rgb(70, 120, 125));
-             cv::rectangle(s.image, P(50, 50), P(s.image.cols - 50, s.image.rows - 50), cv::Scalar(rgb(236, 236, 236)),
-                           cv::FILLED);
+             cv::Mat inner = s.image(cv::Rect(50, 50, s.image.cols - 100, s.image.rows - 100));
+             inner.setTo(cv::Scalar(grey(236)));
+             m.copyTo(s.image(cv::Rect(62, 90, m.cols, m.rows)));
              cv::rectangle(s.image, P(50, 50), P(s.image.cols - 50, 78), cv::Scalar(rgb(205, 205, 210)), cv::FILLED);
              knobs(s.image, P(66, 64), 20);
              write_on(s.image, "Preview", P(150, 69), 0.45, grey(50));

@@ -354,8 +354,17 @@ std::vector<Candidate> candidates_in(const cv::Mat& colours) {
   return out;
 }
 
+/// A rectangle that may be the view.
+struct View {
+  cv::Rect box;
+  bool has_walls = false;  ///< stand between its two grounds; else bars along the picture's sides say that it is one
+  bool is_better_than(const View& other) const {
+    return has_walls != other.has_walls ? has_walls : box.area() < other.box.area();
+  }
+};
+
 /// The view that begins with this ground.
-std::optional<cv::Rect> view_on(const cv::Mat& colours, const Candidate& candidate) {
+std::optional<View> view_on(const cv::Mat& colours, const Candidate& candidate) {
   const Tone& tone = candidate.tone;
   constexpr double kThickLines = 3.0;  // half the width of ground is more [pixels]
   const cv::Mat ground = near_tone(colours, tone, candidate.spread);
@@ -370,18 +379,20 @@ std::optional<cv::Rect> view_on(const cv::Mat& colours, const Candidate& candida
   if (broadest < kLeastFrame || !ends_all_around(ground, *reach)) return std::nullopt;
   const cv::Mat within = colours(view);
   cv::Mat labels(view.size(), CV_8U, cv::Scalar(kNeither));
-  const cv::Mat free = other_areas(within, ground(view));
+  // Words through JPEG leave even pixels nearly of the ground's colour beside them.
+  const cv::Mat free = other_areas(within, near_tone(within, tone, kGroundSpread));
   labels.setTo(kUnknownGround, connected(view));
   labels.setTo(kFreeGround, free);
   if (filled_share(free) < kLeastFree || mean_half_width(connected(view)) <= kThickLines ||
       !has_colours_of_its_own(colours, *reach, view))
     return std::nullopt;
   const Meetings meetings = meetings_of(within, labels, tone);
-  if (bars_of(colours, view).size() >= 2) return view;
+  const bool has_bars = bars_of(colours, view).size() >= 2;
+  if (has_bars && meetings.walls + meetings.direct >= kFewestMeetings) return View{view, meetings.are_walls()};
   if (!meetings.are_walls() || broadest < kBroaderThanWalls * meetings.thickness / meetings.walls ||
       is_walled(colours, view, meetings.wall()))
     return std::nullopt;
-  return view;
+  return View{view, true};
 }
 
 }  // namespace
@@ -390,11 +401,11 @@ std::optional<cv::Rect> view_in_window(const RgbImage& image) {
   if (std::min(image.width, image.height) < kLeastSide) return std::nullopt;
   cv::Mat colours(image.height, image.width, CV_8UC3);
   std::copy(image.rgb.begin(), image.rgb.end(), colours.data);
-  std::optional<cv::Rect> out;
+  std::optional<View> out;
   for (const Candidate& candidate : candidates_in(colours))
-    if (const std::optional<cv::Rect> view = view_on(colours, candidate); view && (!out || view->area() < out->area()))
+    if (const std::optional<View> view = view_on(colours, candidate); view && (!out || view->is_better_than(*out)))
       out = view;
-  return out;
+  return out ? std::optional(out->box) : std::nullopt;
 }
 
 std::string told_of_frame(const RgbImage& image, const cv::Rect& view) {
