@@ -191,18 +191,24 @@ Tally tally(const std::vector<Ground>& grounds, const std::vector<MapColours>& c
   return out;
 }
 
+/// Of what is right without a window next to nothing is lost in it, and less without a word.
+void expect_few_lost(const Tally& t) {
+  if (std::getenv("RUBBLE_WINDOW") != nullptr) return;
+  EXPECT_GE(t.bare_right, at_least(1500));
+  EXPECT_LE(100 * (t.lost_refused + t.lost_told + t.lost_wrong), 2 * t.bare_right);
+  EXPECT_LE(200 * t.lost_wrong, t.bare_right);
+}
+
 TEST(WindowFrame, AMapInAWindowIsReadAsTheSamePictureWithout) {
   const Tally t = tally({{"yellow", 6, 7, 401}, {"maze", 6, 5, 402}}, map_colours(), windows());
-  if (std::getenv("RUBBLE_WINDOW") != nullptr) return;
-  EXPECT_EQ(t.lost_wrong, 0);
+  expect_few_lost(t);
 }
 
 /// Colours and windows with which the reader was not made, on other arenas.
 TEST(WindowFrame, InOtherColoursAndWindowsToo) {
   const Tally t = tally({{"orange", 5, 6, 9101}, {"yellow", 7, 5, 9102}, {"maze", 5, 6, 9103}}, other_map_colours(),
                         other_windows());
-  if (std::getenv("RUBBLE_WINDOW") != nullptr) return;
-  EXPECT_EQ(t.lost_wrong, 0);
+  expect_few_lost(t);
 }
 
 /// Known cells as far as `margin` cells from each side; less than 0: the rim is cut off.
