@@ -120,6 +120,9 @@ Answer answer(const std::string& folder, const File& file, const cv::Mat& image,
   }
 }
 
+/// A ninth of the cases daily: a picture takes a quarter of a second.
+bool is_tried_here(std::size_t turn) { return is_tried(turn) && (is_tried(1) || turn / 3 % 3 == 0); }
+
 struct Tally {
   int cases = 0;
   int bare_right = 0;                                   ///< the same picture without a window
@@ -154,7 +157,7 @@ Tally tally(const std::vector<Ground>& grounds, const std::vector<MapColours>& c
           for (const Window& window : windows) {
             const std::string name =
                 ground.name() + ", " + colour.name + ", " + zoom.name + ", " + file.name + ", " + window.name;
-            if (!is_tried(turn++) || (only != nullptr && name.find(only) == std::string::npos)) continue;
+            if (!is_tried_here(turn++) || (only != nullptr && name.find(only) == std::string::npos)) continue;
             if (!without) without = answer(base, file, large, cv::Rect({0, 0}, large.size()), drawn);
             const Styled styled = window.around(zoom.with_window ? bare : large);
             const double f = zoom.with_window ? zoom.scale : 1.0;
@@ -194,9 +197,9 @@ Tally tally(const std::vector<Ground>& grounds, const std::vector<MapColours>& c
 /// Of what is right without a window next to nothing is lost in it, and less without a word.
 void expect_few_lost(const Tally& t) {
   if (std::getenv("RUBBLE_WINDOW") != nullptr) return;
-  EXPECT_GE(t.bare_right, at_least(1500));
+  EXPECT_GE(t.bare_right, is_tried(1) ? 1500 : 1500 / 9);
   EXPECT_LE(100 * (t.lost_refused + t.lost_told + t.lost_wrong), 2 * t.bare_right);
-  EXPECT_LE(200 * t.lost_wrong, t.bare_right);
+  EXPECT_LE(200 * t.lost_wrong, std::max(200, t.bare_right)) << "one of two hundred; one in all daily";
 }
 
 TEST(WindowFrame, AMapInAWindowIsReadAsTheSamePictureWithout) {
@@ -245,7 +248,7 @@ TEST(WindowFrame, NothingIsTakenOffWhereThereIsNoWindow) {
         std::size_t place = turn++;
         for (const MapColours& colour : all)
           for (const Zoom& zoom : zooms()) {
-            if (zoom.with_window || !is_tried(place++)) continue;
+            if (zoom.with_window || !is_tried_here(place++)) continue;
             const cv::Mat picture = zoomed(in_colours(map, colour.wall, colour.unknown, colour.free), zoom);
             for (const cv::Mat& image : {picture, as_jpeg(picture, 80)}) {
               ++cases;
