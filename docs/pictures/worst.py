@@ -12,7 +12,7 @@ import sys
 
 from PIL import Image, ImageDraw
 
-SIDE = 420  # of a map [pixels]
+SIDE = 560  # of a map [pixels]
 
 
 def badness(score):
