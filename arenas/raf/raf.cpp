@@ -17,7 +17,7 @@
 namespace rubble::arenas {
 namespace {
 
-constexpr int kMostPallets = 6000;  ///< from the first element to the last; the largest public one has 544
+constexpr int kMostPallets = 6000;  ///< from the first element to the last; rc_2015_arena_big has 544
 
 std::string list(const std::map<std::string, int>& counts) {
   std::string text;

@@ -20,11 +20,6 @@ def badness(score):
     return (1.0 - known) / 0.05 + score["victims_visible"] - score["victims_found"] + score["contact_s"] / 30.0
 
 
-def folder_of(top, run):
-    begin = f"{run['scenario']}-{run['config']}-seed{run['seed']}-"
-    return next(os.path.join(top, "runs", f) for f in sorted(os.listdir(os.path.join(top, "runs"))) if f.startswith(begin))
-
-
 def main():
     if len(sys.argv) not in (2, 3) or sys.argv[1].startswith("-"):
         sys.exit(__doc__)
@@ -32,6 +27,8 @@ def main():
     out = sys.argv[2] if len(sys.argv) == 3 else os.path.dirname(os.path.abspath(__file__))
     with open(os.path.join(top, "results.jsonl")) as lines:
         runs = [json.loads(line) for line in lines]
+    if any(run.get("score") is None for run in runs):
+        sys.exit(f"{top}: some runs have no score")
     for kind in ("yellow", "orange", "red"):
         worst = sorted((r for r in runs if r["config"].startswith(kind)), key=lambda r: (-badness(r["score"]), r["seed"]))[:5]
         if not worst:
@@ -42,11 +39,12 @@ def main():
             s = run["score"]
             line = f"{run['config']} {run['seed']}: known {s['known'] or 0.0:.3f}, {s['victims_found']} of {s['victims_visible']}, {s['contact_s']:.0f} s"
             print(line)
-            picture = Image.open(os.path.join(folder_of(top, run), "overlay.png")).convert("RGB")
+            picture = Image.open(os.path.join(top, run["folder"], "overlay.png")).convert("RGB")
             picture.thumbnail((SIDE, SIDE))
             sheet.paste(picture, (SIDE * i + (SIDE - picture.width) // 2, 18 + (SIDE - picture.height) // 2))
             draw.text((SIDE * i + 6, 3), line, fill="black")
         sheet.quantize(64).save(os.path.join(out, f"{kind}_worst.png"), optimize=True)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -1,6 +1,5 @@
 #include "explore/motion/pilot.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>

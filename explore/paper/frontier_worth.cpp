@@ -25,7 +25,7 @@ WorthFn frontier_worth(const FrontierChoiceConfig& config, const PlannerConfig& 
   };
   switch (config.by) {
     case FrontierChoice::Transform:
-    case FrontierChoice::ByTime:  // of no mission
+    case FrontierChoice::ByTime:
       break;
     case FrontierChoice::Nearest:
       return [way](const Candidate& c) { return -way(c); };

@@ -16,14 +16,14 @@ enum class FrontierChoice {
 };
 
 struct FrontierChoiceConfig {
-  FrontierChoice by = FrontierChoice::Transform;
+  FrontierChoice by = FrontierChoice::ByTime;
   double face_weight = 0.5;  ///< by value, what a metre of wall face to be searched is worth in new area [m^2/m]
 
   /// The same without ByTime, for a mission of so many seconds; 0: without a limit.
   FrontierChoiceConfig for_mission(double time_limit) const;
 };
 
-/// Empty where the transform chooses. The target being driven to has a head start, of `planner.switch_cost` [m] of way
+/// Empty where the transform chooses, as it does by time where nobody told the mission. The target being driven to has a head start, of `planner.switch_cost` [m] of way
 /// where ways count. `speed`: of the robot so far, turns and stops included [m/s]. Refers to `floor` and `search`.
 WorthFn frontier_worth(const FrontierChoiceConfig& config, const PlannerConfig& planner, const Traversable& floor,
                        const FloorSearch& search, double speed);

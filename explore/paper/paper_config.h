@@ -19,7 +19,7 @@ namespace rubble::explore {
 /// share.
 struct PaperExplorerConfig {
   PlannerConfig planner;
-  FrontierChoiceConfig choice{FrontierChoice::ByTime};
+  FrontierChoiceConfig choice;
   Priorities priorities;
   FollowerConfig follower;
   VictimSearchConfig victims;

@@ -9,6 +9,8 @@ import os
 import statistics
 import sys
 
+BY_ITSELF = ("home", "explored", "lost", "stuck")  # not `time`, nor `fell`
+
 
 def rows_of(folders):
     kinds = collections.defaultdict(list)
@@ -53,7 +55,7 @@ def main():
             sys.exit(f"{kind}: {runs.count(None)} runs have no score")
         of = lambda key: [value_of(run, key) for run in runs]
         found, visible = sum(of("victims_found")), sum(of("victims_visible"))
-        print(f"| {kind} | {len(runs)} | {sum(end != 'time' for end in of('end_code'))} | {sum(map(at_home, runs))} | {of('end_code').count('stuck')} | "
+        print(f"| {kind} | {len(runs)} | {sum(end in BY_ITSELF for end in of('end_code'))} | {sum(map(at_home, runs))} | {of('end_code').count('stuck')} | "
               f"{spread(of('known'), 3, min)} | {found} of {visible} ({100 * found / visible:.1f} %) | "
               f"{sum(of('victims_false'))} | {spread(of('contact_s'), 1, max)} | {spread(of('ate_aligned_m'), 3, max)} | "
               f"{statistics.mean(of('area_per_min')):.1f} | {statistics.mean(of('score')):.3f} | {statistics.mean(of('visible_share')):.3f} |")

@@ -1,7 +1,6 @@
 #include "scoring/alignment/second_drawing.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -100,15 +100,17 @@ TEST(Pilot, ATurnOnASlopeBetweenTwoWallsTouchesNone) {
     robot.pose = {3.0, 0.65, heading};
     robot.pilot.stop();
     robot.pilot.turn(2.0 * kPi, TurnFor::WholeView, robot.now);
-    double least = 1.0;
+    double least = 1.0, turned = 0.0;
     for (bool ended = false; !ended;) {
       ended = robot.step().turn_ended;
+      turned += robot.turned;
       for (const TPoint2D& corner : robot::body_outline<TPoint2D, double>(robot.model)) {
         const double y = robot.pose.composePoint(corner).y;
         least = std::min({least, y - 0.05, 1.25 - y});
       }
     }
     EXPECT_GT(least, 0.01) << heading;
+    EXPECT_GT(turned, 2.0 * kPi - 0.1) << "its time was over, heading " << heading;
   }
 }
 

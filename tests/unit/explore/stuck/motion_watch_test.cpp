@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/angle.h"
+#include "explore/motion/pivot.h"
 
 namespace rubble::explore {
 namespace {
@@ -82,7 +83,6 @@ TEST(MotionWatch, WheelsThatTurnOnTheSpotInVainAreFoundOutWhereverThePoseGoes) {
   }
 }
 
-/// Along bare walls a mapper slides and finds its place again, by as much as the robot went meanwhile.
 /// Told to drive off a wall as it turns, a robot that hangs on a step rolls its wheels and does neither.
 TEST(MotionWatch, WheelsThatRollInVainInATurnOnTheSpotAreFoundOut) {
   for (const double v : {-0.06, 0.1}) {
@@ -104,6 +104,12 @@ TEST(MotionWatch, WheelsThatRollInVainInATurnOnTheSpotAreFoundOut) {
   }
 }
 
+/// The turns that a robot is kept on its spot in are judged as such.
+TEST(MotionWatch, WhatKeepsARobotOnItsSpotIsSlowerThanADrive) {
+  EXPECT_TRUE(MotionWatch().on_the_spot({Pivot::kMostSpeed, 0.2}));
+}
+
+/// Along bare walls a mapper slides and finds its place again, by as much as the robot went meanwhile.
 TEST(MotionWatch, ACorrectedPoseIsNoRobotThatStands) {
   MotionWatch watch;
   for (int i = 0; i < 2000; ++i) {

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "base/planar.h"
+#include "robot/slope_creep.h"
 #include "slam/robust/robust_mapper.h"
 #include "tests/support/sim_arena.h"
 
@@ -44,6 +45,11 @@ TEST(TurnOnASlope, TheMapperKnowsThatTheRobotSlidesDown) {
     EXPECT_LT(expected.error, 0.6 * unexpected.error);
     EXPECT_GT(unexpected.error, 0.6 * unexpected.slid);
   }
+}
+
+/// What the robot takes the floor to be like.
+TEST(TurnOnASlope, ArenasAreOfTheFrictionThatTheRobotExpects) {
+  EXPECT_EQ(arenas::Arena().floor_friction, robot::kRubberOnWood);
 }
 
 }  // namespace
