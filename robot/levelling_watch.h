@@ -25,8 +25,8 @@ class LevellingWatch {
   /// Takes in what arrived in a tick.
   void update(const Inputs& inputs);
   LevellingState state() const { return state_; }
-  /// It works, and the platform feels level, where it can: its servos' angles, negated, are how the body leans. Those of
-  /// servos that turn in vain grow long before they are known to.
+  /// It works, and the platform feels level, where it can: its servos' angles, negated, are how the body leans. Those
+  /// of servos that turn in vain grow long before they are known to.
   bool level() const;
   /// Where servos that jammed stand: where their platform felt level last. Nothing while they do not.
   const std::optional<LaserAim>& jammed_at() const { return jammed_at_; }

@@ -23,8 +23,9 @@ struct FrontierChoiceConfig {
   FrontierChoiceConfig for_mission(double time_limit) const;
 };
 
-/// Empty where the transform chooses, as it does by time where nobody told the mission. The target being driven to has a head start, of `planner.switch_cost` [m] of way
-/// where ways count. `speed`: of the robot so far, turns and stops included [m/s]. Refers to `floor` and `search`.
+/// Empty where the transform chooses, as it does by time where nobody told the mission. The target being driven to has
+/// a head start, of `planner.switch_cost` [m] of way where ways count. `speed`: of the robot so far, turns and stops
+/// included [m/s]. Refers to `floor` and `search`.
 WorthFn frontier_worth(const FrontierChoiceConfig& config, const PlannerConfig& planner, const Traversable& floor,
                        const FloorSearch& search, double speed);
 
