@@ -153,36 +153,39 @@ TEST(LevellingWatch, ServosThatTakeNoTiltAwayAreJammedWhereTheyWereLevelLast) {
   EXPECT_EQ(unit.watch.state(), LevellingState::Jammed) << "for good";
 }
 
-/// Of a unit whose servos jam: its body leans by 6 deg, and seems level for a moment ten times, each after so long
-/// without a word of its accelerometer.
-LevellingWatch jammed_and_shaken(double gap) {
+/// A robot that brakes again and again feels its tilted platform swing through level.
+TEST(LevellingWatch, WhatBrakingMakesLookLevelForAMomentIsNotLevel) {
   Unit unit;
   unit.run(3.0);
   unit.turns = false;
   for (int i = 0; i < 10; ++i) {
     unit.body = deg_to_rad(6.0);
     unit.run(0.7);
-    unit.has_accelerometer = false;
-    unit.run(gap);
-    unit.has_accelerometer = true;
     unit.body = 0.0;
     unit.run(0.3);
   }
   unit.body = deg_to_rad(6.0);
   unit.run(3.0);
-  return unit.watch;
-}
-
-/// A robot that brakes again and again feels its tilted platform swing through level.
-TEST(LevellingWatch, WhatBrakingMakesLookLevelForAMomentIsNotLevel) {
-  const LevellingWatch watch = jammed_and_shaken(0.0);
-  ASSERT_EQ(watch.state(), LevellingState::Jammed);
-  EXPECT_NEAR(watch.jammed_at()->pitch, 0.0, deg_to_rad(2.5));
+  ASSERT_EQ(unit.watch.state(), LevellingState::Jammed);
+  EXPECT_NEAR(unit.watch.jammed_at()->pitch, 0.0, deg_to_rad(2.5));
 }
 
 /// What a unit did in a gap nobody knows: one sample after it is not half a second.
 TEST(LevellingWatch, OneLevelSampleAfterAGapIsNotLevelForLong) {
-  EXPECT_EQ(jammed_and_shaken(0.6).state(), LevellingState::Jammed);
+  Unit unit;
+  unit.run(3.0);
+  unit.turns = false;
+  unit.body = deg_to_rad(6.0);
+  unit.run(0.5);
+  unit.has_accelerometer = false;
+  unit.run(0.6);
+  unit.has_accelerometer = true;
+  unit.body = 0.0;
+  unit.run(kTick);
+  unit.body = deg_to_rad(6.0);
+  unit.run(6.0);
+  ASSERT_EQ(unit.watch.state(), LevellingState::Jammed);
+  EXPECT_NEAR(unit.watch.jammed_at()->pitch, 0.0, deg_to_rad(2.5));
 }
 
 /// Below a degree that nobody takes away a loop aims on and on; where that ends no robot leans.
