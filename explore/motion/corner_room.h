@@ -25,8 +25,8 @@ class CornerRoom {
     robot::Drive drive;
     bool brakes = false;  ///< as hard as the base can
   };
-  /// The drive for a robot that is to turn on the spot, or nearly, by `drive`. `moving`: what its wheels
-  /// do; `hits`: of the newest scan [m, map frame], which show the ends of walls more sharply than the map.
+  /// The drive for a robot that is to turn on the spot, or nearly, by `drive`. `moving`: what its wheels do; `hits`: of
+  /// the newest scan [m, map frame], which show the ends of walls more sharply than the map.
   Kept keep(const robot::Drive& drive, const robot::Drive& moving, const Anchor& robot, const Traversable& floor,
             const std::vector<mrpt::math::TPoint2D>& hits);
   /// It does not turn on the spot now.
