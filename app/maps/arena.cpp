@@ -12,11 +12,13 @@
 #include "arenas/truth/render.h"
 #include "arenas/truth/start_region.h"
 #include "arenas/truth/truth_map.h"
+#include "arenas/truth/unseen.h"
 #include "arenas/truth/visible.h"
 #include "arenas/truth/wall_lines.h"
 #include "base/error.h"
 #include "base/image/geotiff.h"
 #include "base/image/png.h"
+#include "base/text/number_text.h"
 #include "base/text/shell.h"
 #include "base/text/text_file.h"
 #include "base/text/words.h"
@@ -127,9 +129,12 @@ int arena(const ArenaArguments& arguments) {
   const OccupancyGrid visible = arenas::visible_truth(
       arena, truth, viewer, [](double share) { show_share("looks at it from everywhere", share); });
   write_geotiff(place_in(out, stem + "-visible.tif"), scoring::draw_truth(visible));
+  const std::vector<arenas::Unseen> unseen = arenas::unseen_by_cause(arena, truth, visible, viewer);
   end_progress();
   for (const char* ending : {".png", "-truth.tif", "-visible.tif"}) print_line(base + ending);
   if (!arguments.walls.empty()) print_line(arguments.walls);
+  for (const arenas::Unseen& cause : unseen)
+    print_line("not to be seen: " + metres_text(100.0 * cause.share) + " % " + cause.why);
   if (arguments.generate()) print_line("to run it: " + how_to_run(base + ".yaml"));
   return kOk;
 }
