@@ -32,6 +32,13 @@ def value_of(run, key):
     return 0.0 if key == "known" and run[key] is None else run[key]
 
 
+def rooms(runs):
+    """Empty for results that were written before rooms were counted."""
+    if not all("rooms_entered" in run for run in runs):
+        return ""
+    return f"{sum(run['rooms_entered'] for run in runs)} of {sum(run['rooms_reachable'] for run in runs)}"
+
+
 def spread(values, digits, worst):
     return f"{statistics.median(values):.{digits}f}, {worst(values):.{digits}f}"
 
@@ -45,8 +52,8 @@ def main():
         kinds[name.split("-")[0]] += runs
     order = ["yellow", "orange", "red"]
     print("| kind | runs | ends by itself | at home in time | stuck | known, median and worst | victims found of those visible | false | "
-          "contact s, median and most | trajectory error, aligned, median and worst, m | m2 a minute | score, mean | of its floor can be seen, mean |")
-    print("|---|---|---|---|---|---|---|---|---|---|---|---|---|")
+          "contact s, median and most | trajectory error, aligned, median and worst, m | m2 a minute | score, mean | of its floor can be seen, mean | rooms entered of those that can be |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|")
     for kind in order:
         runs = kinds.get(kind)
         if not runs:
@@ -58,7 +65,7 @@ def main():
         print(f"| {kind} | {len(runs)} | {sum(end in BY_ITSELF for end in of('end_code'))} | {sum(map(at_home, runs))} | {of('end_code').count('stuck')} | "
               f"{spread(of('known'), 3, min)} | {found} of {visible} ({100 * found / visible:.1f} %) | "
               f"{sum(of('victims_false'))} | {spread(of('contact_s'), 1, max)} | {spread(of('ate_aligned_m'), 3, max)} | "
-              f"{statistics.mean(of('area_per_min')):.1f} | {statistics.mean(of('score')):.3f} | {statistics.mean(of('visible_share')):.3f} |")
+              f"{statistics.mean(of('area_per_min')):.1f} | {statistics.mean(of('score')):.3f} | {statistics.mean(of('visible_share')):.3f} | {rooms(runs)} |")
     print("\n| arenas | runs | known, median and worst | victims found of those visible (false) | contact s, median and most | "
           "trajectory error, median and worst, m |")
     print("|---|---|---|---|---|---|")

@@ -69,6 +69,8 @@ struct MissionFigures {
   double area_per_min = 0.0;          ///< of floor, until 95 % of all that its laser can see were known [m^2/min]
   std::uint64_t victims_visible = 0;  ///< that a sensor could find from where the robot can get
   double visible_share = 0.0;         ///< of the truth's floor, what its laser can see from where it can get
+  std::uint64_t rooms_reachable = 0;  ///< whose floor the robot's middle can get to
+  std::uint64_t rooms_entered = 0;    ///< of these
 };
 
 /// What a real robot's devices did.
