@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -134,7 +135,7 @@ int arena(const ArenaArguments& arguments) {
   for (const char* ending : {".png", "-truth.tif", "-visible.tif"}) print_line(base + ending);
   if (!arguments.walls.empty()) print_line(arguments.walls);
   for (const arenas::Unseen& cause : unseen)
-    print_line("not to be seen: " + metres_text(100.0 * cause.share) + " % " + cause.why);
+    print_line("not to be seen: " + metres_text(0.01 * std::round(1e4 * cause.share)) + " % " + cause.why);
   if (arguments.generate()) print_line("to run it: " + how_to_run(base + ".yaml"));
   return kOk;
 }

@@ -14,11 +14,12 @@ constexpr double kTrailStep = 0.15;  ///< [m]
 
 }  // namespace
 
-void Trail::add(Stamp now, const TPose2D& T_map_base) {
+void Trail::add(Stamp now, const TPose2D& T_map_base, double slope) {
   if (!points_.empty() && distance(points_.back(), position(T_map_base)) <= kTrailStep) return;
   anchors_.push_back({now, T_map_base});
   points_.push_back(position(T_map_base));
-  passed_.add(points_.back());
+  slopes_.push_back(slope);
+  passed_.add(points_.back(), slope);
 }
 
 double Trail::follow(const slam::Mapper& mapper) {
@@ -28,7 +29,7 @@ double Trail::follow(const slam::Mapper& mapper) {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     anchors_[i].follow(mapper);
     points_[i] = position(anchors_[i].T_map_base);
-    passed_.add(points_[i]);
+    passed_.add(points_[i], slopes_[i]);
   }
   return distance(points_.back(), last);
 }

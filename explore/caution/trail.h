@@ -3,6 +3,7 @@
 #include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
+#include <optional>
 #include <vector>
 
 #include "base/stamp.h"
@@ -16,8 +17,8 @@ namespace rubble::explore {
 /// poses, so that it moves with the map. Where the robot was, there is floor, though no scan may have shown it.
 class Trail {
  public:
-  /// Takes in where the robot is.
-  void add(Stamp now, const mrpt::math::TPose2D& T_map_base);
+  /// Takes in where the robot is, and how much the floor leans there [rad].
+  void add(Stamp now, const mrpt::math::TPose2D& T_map_base, double slope = 0.0);
   /// The mapper corrected its past. Returns by how much the end of the trail moved [m], without limit when there is
   /// none.
   double follow(const slam::Mapper& mapper);
@@ -25,12 +26,13 @@ class Trail {
   const std::vector<mrpt::math::TPoint2D>& points() const { return points_; }
   /// Way along it [m].
   double length() const;
-  /// The robot was near p_map (PassedFloor).
-  bool passed(const mrpt::math::TPoint2D& p_map) const { return passed_.holds(p_map); }
+  /// The steepest slope it met near p_map [rad]; nothing where it was not (PassedFloor).
+  std::optional<double> slope(const mrpt::math::TPoint2D& p_map) const { return passed_.slope(p_map); }
 
  private:
   std::vector<Anchor> anchors_;
   std::vector<mrpt::math::TPoint2D> points_;  ///< the anchors' places
+  std::vector<double> slopes_;                ///< of the floor at them [rad]
   PassedFloor passed_;                        ///< these again
 };
 

@@ -14,7 +14,7 @@ constexpr double kCornerRoom = 0.13;  ///< beside corners that turn [m]
 Pilot::Pilot(const robot::RobotModel& model, const FollowerConfig& config)
     : follower_(model, config),
       watch_(model),
-      turn_(model, config.turn_speed),
+      turn_(model),
       pivot_(model.swing_radius() + kCornerRoom),
       corners_(model),
       slides_(model, robot::kRubberOnWood) {}
@@ -51,13 +51,14 @@ CornerRoom::Kept Pilot::kept(const robot::Drive& told, const Moment& robot, cons
 
 Pilot::Step Pilot::step(const Moment& robot, const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits,
                         Stamp now) {
+  const double slope = robot::slope(robot.lean);
   if (turning()) {
-    const std::optional<robot::Drive> drive = turn_.turn(robot.turned, now);
+    const std::optional<robot::Drive> drive = turn_.turn(robot.turned, follower_.turn_speed_on(slope), now);
     const CornerRoom::Kept turn = kept(drive.value_or(robot::Drive{}), robot, floor, hits, now);
     return {turn.drive, turn.brakes, !drive, !drive && purpose_ == TurnFor::Place};
   }
   if (watch_.waits(now)) return {};
-  const CornerRoom::Kept way = kept(follower_.drive(robot.T_map_base), robot, floor, hits, now);
+  const CornerRoom::Kept way = kept(follower_.drive(robot.T_map_base, slope), robot, floor, hits, now);
   return {watch_.limited(way.drive, now), way.brakes};
 }
 

@@ -21,7 +21,10 @@ void bind(Binder& b, PaperExplorerConfig& c) {
   b.number("replan_period_s", c.replan_period, 0.02, 60.0);
   b.number("cruise_speed", c.follower.cruise_speed, 0.01, 2.0);
   b.number("passed_speed", c.follower.passed_speed, 0.01, 2.0);
+  b.number("rough_speed", c.follower.rough_speed, 0.01, 2.0);
+  b.number("slope_speed", c.follower.slope_speed, 0.01, 2.0);
   b.degrees("turn_speed_deg", c.follower.turn_speed, 1.0, 360.0);
+  b.degrees("slope_turn_deg", c.follower.slope_turn, 1.0, 360.0);
   b.degrees("turn_in_place_deg", c.follower.turn_in_place, 1.0, 180.0);
   b.number("look_ahead_m", c.follower.look_ahead, 0.05, 5.0);
   b.boolean("return_home", c.return_home);

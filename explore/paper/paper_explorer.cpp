@@ -26,8 +26,9 @@ constexpr double kAtWall = 0.35;                 ///< from where a wall that may
 constexpr double kTurningRoom = 0.06;            ///< beside the robot's swing circle, for stopping a little off [m]
 constexpr double kLittleRoom = 0.01;             ///< likewise, where there is no more [m]
 constexpr double kLongestTick = 0.2;             ///< commands of longer ticks are taken to have ended [s]
-constexpr double kDetourSpeed = 0.15;  ///< a detour is driven so fast at least, turns and stops included [m/s]
-constexpr int kSmoothFloor = 3;        ///< things felt so far where the robot may be fast
+constexpr double kDetourSpeed = 0.15;   ///< a detour is driven so fast at least, turns and stops included [m/s]
+constexpr double kWaitForMapper = 3.0;  ///< the robot stands for a pose in doubt, then it goes on [s]
+constexpr int kSmoothFloor = 3;         ///< things felt so far where the robot may be fast
 
 PaperExplorerConfig for_mission(PaperExplorerConfig config, const Mission& mission) {
   config.choice = config.choice.for_mission(mission.time_limit);
@@ -109,7 +110,7 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   recovery_.moved(now_, pose_);
   if (stage_ != Stage::OnTheWay && stage_ != Stage::StraightOn) return;
   left_alone_.passed(pose_, model_);
-  trail_.add(now_, pose_);
+  trail_.add(now_, pose_, robot::slope(lean()));
 }
 
 /// Scans of a plane that nobody holds level show walls where floor is: what is seen of victims cannot be placed, and
@@ -194,6 +195,10 @@ Drive PaperExplorer::start(const slam::Mapper& mapper) {
 /// On the way to a frontier, to a place to search, or home.
 Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
   if (holds_still()) return {};
+  if (waits_for_mapper()) {
+    stuck_watch_.begin_anew();
+    return {};
+  }
   const bool on_purpose = pilot_.turning() || agenda_.goal() == Goal::Place;
   if (const auto hold = stuck_watch_.held(pose_, commanded_, on_purpose, dt_, now_)) {
     if (straight_on_.explains(*hold, commanded_, stuck_watch_.wheels()) &&
@@ -226,9 +231,8 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
   }
   if (agenda_.due(mapper.map(), now_)) replan(mapper);
   if (finished()) return {};
-  const Pilot::Step step = pilot_.step({pose_, turned_, stuck_watch_.wheels().value_or(commanded_),
-                                        levelling_.level() ? stuck_watch_.lean() : robot::Tilt{}},
-                                       floor_, mapper.last_hits(), now_);
+  const Pilot::Step step = pilot_.step({pose_, turned_, stuck_watch_.wheels().value_or(commanded_), lean()}, floor_,
+                                       mapper.last_hits(), now_);
   brakes_ = step.brakes;
   if (step.turn_ended) agenda_.plan_soon();
   // A turn in a tight place wanders off its viewpoint; driving back to it and turning again would never end.
@@ -259,6 +263,17 @@ bool PaperExplorer::holds_still() {
   }
   if (victims_.search().dwell_over()) agenda_.plan_soon();
   return false;
+}
+
+/// A pose that has lost its place may find it again by the scans to come: driving on, the robot would only get farther
+/// from where it was sure. One that stays lost is no reason to stand for ever.
+bool PaperExplorer::waits_for_mapper() {
+  if (!victims_.doubts_pose()) {
+    doubts_since_.reset();
+    return false;
+  }
+  if (!doubts_since_) doubts_since_ = now_;
+  return now_ - *doubts_since_ < kWaitForMapper;
 }
 
 void PaperExplorer::check_path(const slam::Mapper& mapper) {
@@ -379,9 +394,7 @@ void PaperExplorer::judge_holes(const slam::CountMap& map) {
 void PaperExplorer::obey(Order order) {
   switch (order.kind) {
     case Order::Kind::Follow:
-      // Where several things were felt the floor has more of them than the trail's width tells.
-      if (recovery_.times() <= kSmoothFloor)
-        for (PathPoint& point : order.plan.path) point.passed = trail_.passed(point.p_map);
+      for (PathPoint& point : order.plan.path) look_up_ground(point);
       pilot_.follow(std::move(order.plan));
       break;
     case Order::Kind::Stay:
@@ -396,6 +409,13 @@ void PaperExplorer::obey(Order order) {
   }
   shown_path_.clear();
   for (const PathPoint& point : pilot_.path()) shown_path_.push_back(point.p_map);
+}
+
+/// Where several things were felt the floor has more of them than the trail's width tells.
+void PaperExplorer::look_up_ground(PathPoint& point) const {
+  const std::optional<double> slope = trail_.slope(point.p_map);
+  point.slope = slope.value_or(0.0);
+  point.ground = recovery_.times() > kSmoothFloor ? Ground::Rough : slope ? Ground::Passed : Ground::New;
 }
 
 Traversable PaperExplorer::floor_now(const slam::Mapper& mapper, const std::vector<TPoint2D>& hits) const {

@@ -13,8 +13,10 @@ using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using robot::Drive;
 
-constexpr double kCurvatureSpan = 0.20;  ///< the path's direction is taken over this length on either side [m]
-constexpr double kEndSpeed = 0.10;       ///< [m/s]
+constexpr double kCurvatureSpan = 0.20;     ///< the path's direction is taken over this length on either side [m]
+constexpr double kEndSpeed = 0.10;          ///< [m/s]
+constexpr double kFlat = deg_to_rad(3.0);   ///< slopes up to this are none [rad]
+constexpr double kSteep = deg_to_rad(9.0);  ///< from here on slope_speed holds: ramps of arenas have 10 deg [rad]
 
 double direction(const TPoint2D& from, const TPoint2D& to) { return std::atan2(to.y - from.y, to.x - from.x); }
 
@@ -29,8 +31,11 @@ PathFollower::PathFollower(const robot::RobotModel& model, const FollowerConfig&
     : config_(config), brake_(0.8 * model.max_accel), turn_brake_(0.6 * model.max_turn_accel) {
   config_.cruise_speed = std::min(config_.cruise_speed, model.max_v);
   config_.turn_speed = std::min(config_.turn_speed, model.max_w);
+  config_.slope_turn = std::min(config_.slope_turn, config_.turn_speed);
   config_.passed_speed =
       std::clamp(config_.passed_speed, config_.cruise_speed, std::max(model.max_v, config_.cruise_speed));
+  config_.rough_speed = std::min(config_.rough_speed, config_.cruise_speed);
+  config_.slope_speed = std::min(config_.slope_speed, config_.cruise_speed);
   config_.slow_speed = std::min(config_.slow_speed, config_.cruise_speed);
 }
 
@@ -50,8 +55,12 @@ void PathFollower::plan_speeds() {
   for (std::size_t i = 0; i < path_.size(); ++i) {
     while (way_[i] - way_[before] > kCurvatureSpan) ++before;
     while (after + 1 < path_.size() && way_[after] - way_[i] < kCurvatureSpan) ++after;
-    speed_[i] = ramp(path_[i].clearance, config_.slow_clearance, config_.full_clearance, config_.slow_speed,
-                     path_[i].passed ? config_.passed_speed : config_.cruise_speed);
+    const double full = path_[i].ground == Ground::Passed  ? config_.passed_speed
+                        : path_[i].ground == Ground::Rough ? config_.rough_speed
+                                                           : config_.cruise_speed;
+    speed_[i] =
+        std::min(ramp(path_[i].clearance, config_.slow_clearance, config_.full_clearance, config_.slow_speed, full),
+                 speed_on(path_[i].slope));
     if (before == i || after == i) continue;
     const double turn = std::abs(
         wrap_angle(direction(path_[i].p_map, path_[after].p_map) - direction(path_[before].p_map, path_[i].p_map)));
@@ -61,6 +70,16 @@ void PathFollower::plan_speeds() {
   if (!speed_.empty()) speed_.back() = std::min(speed_.back(), kEndSpeed);
   for (std::size_t i = path_.size(); i-- > 1;)
     speed_[i - 1] = std::min(speed_[i - 1], std::sqrt(speed_[i] * speed_[i] + 2.0 * brake_ * (way_[i] - way_[i - 1])));
+}
+
+/// The highest speed on a slope: from ramp to ramp the laser's platform has to follow, and the wheels slip more.
+double PathFollower::speed_on(double slope) const {
+  return ramp(slope, kFlat, kSteep, config_.passed_speed, config_.slope_speed);
+}
+
+/// From 85 deg/s it turns on by 60 deg before it stands; beside a wall to which it slides that is too much.
+double PathFollower::turn_speed_on(double slope) const {
+  return ramp(slope, kFlat, kSteep, config_.turn_speed, config_.slope_turn);
 }
 
 double PathFollower::left() const { return path_.empty() ? 0.0 : way_.back() - way_[progress_]; }
@@ -79,7 +98,7 @@ TPoint2D PathFollower::aim_point(const TPoint2D& p_map) const {
   return path_.back().p_map;
 }
 
-Drive PathFollower::drive(const TPose2D& T_map_base) {
+Drive PathFollower::drive(const TPose2D& T_map_base, double slope) {
   const TPoint2D p_map{T_map_base.x, T_map_base.y};
   if (!path_.empty()) advance(p_map);
   turn_left_ = 0.0;
@@ -90,12 +109,13 @@ Drive PathFollower::drive(const TPose2D& T_map_base) {
   turning_ = std::abs(error) > (turning_ ? config_.turn_done : config_.turn_in_place);
   if (turning_) {
     turn_left_ = error;
-    return turn_on_the_spot(error, config_.turn_speed, turn_brake_);
+    return turn_on_the_spot(error, turn_speed_on(slope), turn_brake_);
   }
 
   const double curvature = 2.0 * std::sin(error) / std::max(distance(p_map, aim), 0.5 * config_.look_ahead);
   // Off the path's direction the speed profile does not hold: slower.
-  double v = speed_[progress_] * ramp(std::abs(error), 0.5 * config_.turn_in_place, config_.turn_in_place, 1.0, 0.5);
+  double v = std::min(speed_[progress_], speed_on(slope)) *
+             ramp(std::abs(error), 0.5 * config_.turn_in_place, config_.turn_in_place, 1.0, 0.5);
   if (std::abs(v * curvature) > config_.turn_speed) v = config_.turn_speed / std::abs(curvature);
   return {v, v * curvature};
 }

@@ -12,19 +12,27 @@
 
 namespace rubble::explore {
 
+/// What is known of the floor: nothing; the robot was there, and nothing lies on it that it would have felt; or it felt
+/// so much in this arena that the next step is to be expected anywhere.
+enum class Ground { New, Passed, Rough };
+
 /// A point of a planned way and how far the nearest obstacle is from it.
 struct PathPoint {
   mrpt::math::TPoint2D p_map;  ///< [m]
   double clearance = 0.0;      ///< [m]
-  bool passed = false;         ///< the robot was there: nothing lies on the floor that it would have felt
+  Ground ground = Ground::New;
+  double slope = 0.0;  ///< of the floor, where the robot met it [rad]
 };
 
 constexpr double kLeastTurn = 0.20;  ///< skid steering does not turn more slowly than this [rad/s]
 
 struct FollowerConfig {
-  double cruise_speed = 0.4;                ///< [m/s]
-  double passed_speed = 0.6;                ///< likewise, where the robot was before [m/s]
-  double turn_speed = deg_to_rad(60.0);     ///< [rad/s]
+  double cruise_speed = 0.6;                ///< [m/s]
+  double passed_speed = 0.7;                ///< likewise, where the robot was before [m/s]
+  double rough_speed = 0.4;                 ///< on rough ground at most [m/s]
+  double slope_speed = 0.4;                 ///< on steep slopes at most [m/s]
+  double turn_speed = deg_to_rad(85.0);     ///< [rad/s]
+  double slope_turn = deg_to_rad(60.0);     ///< of turns on the spot on steep slopes at most [rad/s]
   double turn_in_place = deg_to_rad(35.0);  ///< heading error above which the robot turns on the spot [rad]
   double look_ahead = 0.35;                 ///< distance of the point steered to [m]
   double turn_done = deg_to_rad(8.0);       ///< heading error at which a turn on the spot ends [rad]
@@ -43,11 +51,14 @@ class PathFollower {
   void set_path(std::vector<PathPoint> path);
   void clear() { set_path({}); }
 
-  /// The command for a robot at T_map_base; zero when there is no path or its end is reached.
-  robot::Drive drive(const mrpt::math::TPose2D& T_map_base);
+  /// The command for a robot at T_map_base that leans by `slope` [rad]; zero when there is no path or its end is
+  /// reached.
+  robot::Drive drive(const mrpt::math::TPose2D& T_map_base, double slope = 0.0);
 
   /// The robot is within 0.1 m of the end, or there is no path.
   bool arrived() const { return progress_ >= path_.size() || left() < kArrival; }
+  /// How fast it turns on the spot on a slope [rad], [rad/s].
+  double turn_speed_on(double slope) const;
   /// Way left along the path from the point nearest to the robot [m].
   double left() const;
   const std::vector<PathPoint>& path() const { return path_; }
@@ -59,6 +70,7 @@ class PathFollower {
 
  private:
   void plan_speeds();
+  double speed_on(double slope) const;
   void advance(const mrpt::math::TPoint2D& p_map);
   mrpt::math::TPoint2D aim_point(const mrpt::math::TPoint2D& p_map) const;
 

@@ -32,6 +32,8 @@ class VictimWatch {
     doubt_.update(T_map_base, covariance, dt);
     covariance_ = covariance;
   }
+  /// The pose has become doubtful (PoseDoubt).
+  bool doubts_pose() const { return doubt_.unsure(); }
   /// Whether scans can be trusted: the pose is in doubt while they cannot.
   void trust_scans(bool trusted) { scans_trusted_ = trusted; }
   /// Takes in a cue, of a robot that is at T_map_base now; `floor` tells the sides of walls. Says whether a victim was

@@ -21,6 +21,6 @@ void TiltWatch::update(const robot::Inputs& inputs, double dt) {
   steep_for_ = slope() > config_.too_steep ? steep_for_ + dt : 0.0;
 }
 
-double TiltWatch::slope() const { return length(lean_.pitch, lean_.roll); }
+double TiltWatch::slope() const { return robot::slope(lean_); }
 
 }  // namespace rubble::explore

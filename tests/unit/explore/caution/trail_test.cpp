@@ -34,9 +34,24 @@ TEST(Trail, KeepsAPointWheneverTheRobotHasMovedOn) {
 TEST(Trail, HasPassedWhatIsBesideItAndNothingElse) {
   Trail trail;
   for (int i = 0; i <= 100; ++i) trail.add(second(i), {0.02 * i, 0.0, 0.0});
-  EXPECT_TRUE(trail.passed({1.0, 0.1}));
-  EXPECT_FALSE(trail.passed({1.0, 0.5}));
-  EXPECT_FALSE(trail.passed({3.0, 0.0}));
+  EXPECT_TRUE(trail.slope({1.0, 0.1}));
+  EXPECT_FALSE(trail.slope({1.0, 0.5}));
+  EXPECT_FALSE(trail.slope({3.0, 0.0}));
+}
+
+TEST(Trail, SlopesMoveWithTheirPoses) {
+  test::PlantedMapper mapper;
+  Trail trail;
+  for (int i = 0; i < 10; ++i) {
+    mapper.plant(second(i), {1.0 * i, 0.0, 0.0});
+    trail.add(second(i), {1.0 * i, 0.0, 0.0}, 0.01 * i);
+  }
+  EXPECT_EQ(trail.slope({3.0, 0.0}), 0.03);
+  mapper.correct(second(5), {0.0, 2.0, 0.0});
+  trail.follow(mapper);
+  EXPECT_FALSE(trail.slope({3.0, 0.0}));
+  EXPECT_EQ(trail.slope({3.0, 2.0}), 0.03);
+  EXPECT_EQ(trail.slope({7.0, 0.0}), 0.07);
 }
 
 TEST(Trail, MovesWithThePosesOfItsMoments) {
@@ -54,8 +69,8 @@ TEST(Trail, MovesWithThePosesOfItsMoments) {
   ASSERT_EQ(trail.points().size(), before.size());
   for (std::size_t i = 0; i < before.size(); ++i)
     EXPECT_NEAR(distance(trail.points()[i], i < 5 ? shift.composePoint(before[i]) : before[i]), 0.0, 1e-9);
-  EXPECT_FALSE(trail.passed(before[3]));
-  EXPECT_TRUE(trail.passed(shift.composePoint(before[3])));
+  EXPECT_FALSE(trail.slope(before[3]));
+  EXPECT_TRUE(trail.slope(shift.composePoint(before[3])));
   mapper.correct(second(20), {0.0, 0.3, 0.0});
   EXPECT_NEAR(trail.follow(mapper), 0.3, 1e-9);
 }

@@ -95,6 +95,30 @@ TEST(Doubt, WhatALostRobotPassesIsNotSearchedByThat) {
   EXPECT_GT(lost.places, sure.places);
 }
 
+TEST(Doubt, TheRobotWaitsForItsMapperAndThenGoesOn) {
+  const test::Maze maze = test::random_maze(5, 5, 0.2, 4);
+  const robot::RobotModel model;
+  test::MazeRobot robot(maze, model);
+  slam::PaperMapper paper(model, test::exact_mapper(), 1);
+  Doubtful mapper(paper);
+  PaperExplorer explorer(model, {});
+  robot::Commands commands;
+  int told = 0;         ///< to move, in the first three seconds of doubt
+  double driven = 0.0;  ///< after these [m]
+  while (robot.now().seconds() < 22.0) {
+    const TPose2D before = robot.pose();
+    const robot::Inputs inputs = robot.step(commands);
+    const double t = inputs.now.seconds();
+    mapper.sigma = t < 12.0 ? 0.0 : 1.5;
+    mapper.update(inputs);
+    commands = explorer.next(mapper, inputs);
+    if (t > 12.2 && t < 14.9 && (commands.drive.v != 0.0 || commands.drive.w != 0.0)) ++told;
+    if (t > 15.2) driven += distance(position(before), position(robot.pose()));
+  }
+  EXPECT_EQ(told, 0) << "while there is hope";
+  EXPECT_GT(driven, 0.5) << "not for ever";
+}
+
 /// A mission in a bare corridor of ten pallets: where the robot looked back, as the way that odometry alone tells [m].
 /// `blow_at`: something jolts it there.
 std::vector<double> looks_back(bool bare, std::optional<double> blow_at) {
@@ -114,14 +138,15 @@ std::vector<double> looks_back(bool bare, std::optional<double> blow_at) {
   std::vector<double> looks;
   std::size_t told = 0;
   int jolted = 0;
+  double v = 0.0;
   while (robot.now().seconds() < 200.0 && !explorer.finished()) {
     robot::Inputs inputs = robot.step(commands);
     mapper.blind += bare ? distance(position(last), position(robot.pose())) : 0.0;
     last = robot.pose();
-    // A third of its speed in two samples.
+    // Half of its speed in two samples.
     const bool jolt = blow_at && mapper.blind >= *blow_at && jolted < 2;
     jolted += jolt ? 1 : 0;
-    const double v = inputs.odometry.empty() ? 0.0 : inputs.odometry.back().v;
+    if (!inputs.odometry.empty()) v = inputs.odometry.back().v;
     inputs.accelerations = {{inputs.now, jolt ? std::min(-3.2, -0.5 * v / 0.04) : 0.0}};
     mapper.update(inputs);
     commands = explorer.next(mapper, inputs);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "base/angle.h"
 #include "base/rng.h"
@@ -75,7 +77,8 @@ TEST(PathFollower, IsFasterOnlyWhereTheRobotWasBefore) {
   const RobotModel model;
   PathFollower follower(model, {});
   std::vector<PathPoint> path = straight(6.0);
-  for (PathPoint& point : path) point.passed = point.p_map.x > 1.0 && point.p_map.x < 4.0;
+  for (PathPoint& point : path)
+    if (point.p_map.x > 1.0 && point.p_map.x < 4.0) point.ground = Ground::Passed;
   follower.set_path(path);
   Unicycle robot;
   double fastest = 0.0;
@@ -87,6 +90,64 @@ TEST(PathFollower, IsFasterOnlyWhereTheRobotWasBefore) {
         << robot.pose.x;
   }
   EXPECT_NEAR(fastest, FollowerConfig().passed_speed, 0.01);
+}
+
+/// Drives the whole path; the fastest between 2 and 4 m, and elsewhere.
+std::pair<double, double> fastest_on(const std::vector<PathPoint>& path) {
+  const RobotModel model;
+  PathFollower follower(model, {});
+  follower.set_path(path);
+  Unicycle robot;
+  double there = 0.0, elsewhere = 0.0;
+  for (int i = 0; i < 2500 && !follower.arrived(); ++i) {
+    robot.step(follower.drive(robot.pose), model);
+    double& fastest = robot.pose.x > 2.0 && robot.pose.x < 4.0 ? there : elsewhere;
+    fastest = std::max(fastest, robot.drive.v);
+  }
+  EXPECT_TRUE(follower.arrived());
+  return {there, elsewhere};
+}
+
+TEST(PathFollower, IsSlowerWhereTheFloorIsSteep) {
+  const FollowerConfig config;
+  double last = config.cruise_speed;
+  for (const double slope : {2.0, 5.0, 7.0, 9.0, 16.0}) {
+    std::vector<PathPoint> path = straight(6.0);
+    for (PathPoint& point : path)
+      if (point.p_map.x > 1.9 && point.p_map.x < 4.1) point.slope = deg_to_rad(slope);
+    const auto [there, elsewhere] = fastest_on(path);
+    EXPECT_LE(there, last + 1e-9) << slope;
+    EXPECT_NEAR(elsewhere, config.cruise_speed, 0.01) << slope;
+    last = there;
+  }
+  EXPECT_NEAR(last, config.slope_speed, 0.01);
+}
+
+TEST(PathFollower, IsSlowerOnRoughGround) {
+  std::vector<PathPoint> path = straight(6.0);
+  for (PathPoint& point : path)
+    if (point.p_map.x > 1.9 && point.p_map.x < 4.1) point.ground = Ground::Rough;
+  const auto [there, elsewhere] = fastest_on(path);
+  EXPECT_NEAR(there, FollowerConfig().rough_speed, 0.01);
+  EXPECT_NEAR(elsewhere, FollowerConfig().cruise_speed, 0.01);
+}
+
+TEST(PathFollower, IsSlowerWhileItLeansWhateverIsKnownOfTheFloor) {
+  PathFollower follower({}, {});
+  follower.set_path(straight(6.0));
+  EXPECT_NEAR(follower.drive({0.5, 0.0, 0.0}).v, FollowerConfig().cruise_speed, 1e-9);
+  EXPECT_NEAR(follower.drive({0.5, 0.0, 0.0}, deg_to_rad(2.0)).v, FollowerConfig().cruise_speed, 1e-9);
+  EXPECT_NEAR(follower.drive({0.5, 0.0, 0.0}, deg_to_rad(10.0)).v, FollowerConfig().slope_speed, 1e-9);
+}
+
+TEST(PathFollower, TurnsMoreSlowlyOnASlope) {
+  PathFollower follower({}, {});
+  for (const double heading : {120.0, -120.0}) {
+    follower.set_path(straight(3.0));
+    const TPose2D pose{0.0, 0.0, deg_to_rad(heading)};
+    EXPECT_NEAR(std::abs(follower.drive(pose).w), FollowerConfig().turn_speed, 1e-9);
+    EXPECT_NEAR(std::abs(follower.drive(pose, deg_to_rad(10.0)).w), FollowerConfig().slope_turn, 1e-9);
+  }
 }
 
 TEST(PathFollower, TurnsOnTheSpotWhileTheHeadingIsFarOff) {
@@ -158,14 +219,14 @@ TEST(PathFollower, IsSlowerWhereItIsNarrowAndBrakesBeforeIt) {
   const RobotModel model;
   std::vector<PathPoint> path = straight(4.0);
   for (PathPoint& p : path)
-    if (p.p_map.x > 2.0 && p.p_map.x < 2.5) p.clearance = 0.28;
+    if (p.p_map.x > 2.0 && p.p_map.x < 2.5) p.clearance = FollowerConfig().slow_clearance;
   PathFollower follower(model, {});
   follower.set_path(path);
   Unicycle robot;
   for (int i = 0; i < 2500 && !follower.arrived(); ++i) {
     robot.step(follower.drive(robot.pose), model);
     if (robot.pose.x > 2.05 && robot.pose.x < 2.45) {
-      ASSERT_LT(robot.drive.v, 0.20);
+      ASSERT_LT(robot.drive.v, FollowerConfig().slow_speed + 0.03);
     }
   }
   EXPECT_TRUE(follower.arrived());
