@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -19,7 +19,6 @@
 #include "base/error.h"
 #include "base/image/geotiff.h"
 #include "base/image/png.h"
-#include "base/text/number_text.h"
 #include "base/text/shell.h"
 #include "base/text/text_file.h"
 #include "base/text/words.h"
@@ -130,12 +129,16 @@ int arena(const ArenaArguments& arguments) {
   const OccupancyGrid visible = arenas::visible_truth(
       arena, truth, viewer, [](double share) { show_share("looks at it from everywhere", share); });
   write_geotiff(place_in(out, stem + "-visible.tif"), scoring::draw_truth(visible));
+  show_share("asks what cannot be seen", 0.99);
   const std::vector<arenas::Unseen> unseen = arenas::unseen_by_cause(arena, truth, visible, viewer);
   end_progress();
   for (const char* ending : {".png", "-truth.tif", "-visible.tif"}) print_line(base + ending);
   if (!arguments.walls.empty()) print_line(arguments.walls);
-  for (const arenas::Unseen& cause : unseen)
-    print_line("not to be seen: " + metres_text(0.01 * std::round(1e4 * cause.share)) + " % " + cause.why);
+  for (const arenas::Unseen& cause : unseen) {
+    std::array<char, 16> share{};
+    std::snprintf(share.data(), share.size(), "%.2f %%", 100.0 * cause.share);
+    print_line("not asked for: " + std::string(share.data()) + " " + cause.why);
+  }
   if (arguments.generate()) print_line("to run it: " + how_to_run(base + ".yaml"));
   return kOk;
 }

@@ -1,14 +1,17 @@
 #include "arenas/truth/unseen.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <functional>
 #include <utility>
+
+#include "base/angle.h"
+#include "base/grid.h"
 namespace rubble::arenas {
 namespace {
 
 constexpr double kAnySlope = deg_to_rad(89.0);  ///< [rad]
-constexpr double kAnyStep = 100.0;              ///< [m]
 constexpr double kAnyGap = 0.01;                ///< radius of a body that fits through [m]
 
 std::string with_number(const char* format, double value) {
@@ -39,7 +42,7 @@ std::vector<Unseen> unseen_by_cause(const Arena& arena, const OccupancyGrid& tru
   };
   if (!left.empty()) {
     const Grid<std::uint8_t> seen = visible_mask(arena, truth, reachable_mask(arena, truth, viewer), viewer);
-    explain("right to show and not to show: veils, the foot of steep floor, open ground",
+    explain("veils, the foot of steep floor, open ground: a map may show them or not",
             [&](std::size_t i) { return seen.data()[i] != 0; });
   }
   Viewer abler = viewer;
@@ -50,11 +53,11 @@ std::vector<Unseen> unseen_by_cause(const Arena& arena, const OccupancyGrid& tru
   };
   abler.max_slope = kAnySlope;
   explain_by(with_number("behind slopes of more than %.0f deg", rad_to_deg(viewer.max_slope)));
+  abler.climbable_step = std::max(viewer.climbable_step, viewer.height);
+  explain_by(with_number("behind steps and blocks of more than %.2f m", viewer.climbable_step));
   abler.radius = kAnyGap;
   explain_by(with_number("behind gaps of less than %.2f m", 2.0 * viewer.radius));
-  abler.climbable_step = kAnyStep;
-  explain_by(with_number("behind steps and blocks of more than %.2f m", viewer.climbable_step));
-  explain("where no level laser looks", [](std::size_t) { return true; });
+  explain("behind walls and steps as high as the robot", [](std::size_t) { return true; });
   return out;
 }
 

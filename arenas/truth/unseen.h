@@ -14,9 +14,9 @@ struct Unseen {
 };
 
 /// Explains each cell of `truth` that `visible` (visible_truth by the same viewer) lacks by the first of these that
-/// holds: a ray gets there, but what it meets says nothing; it shows to a robot that climbs any slope; to one that fits
-/// through any gap as well; to one that climbs any step as well; no level laser sees it. Those without a cell are left
-/// out, and the shares add up to what `visible` lacks.
+/// holds: a ray gets there, but a map may show it or not; it shows to a robot that climbs any slope; to one that also
+/// climbs steps as high as itself; to one that also fits through any gap; to none of these. Those without a cell are
+/// left out, and the shares add up to what `visible` lacks.
 std::vector<Unseen> unseen_by_cause(const Arena& arena, const OccupancyGrid& truth, const OccupancyGrid& visible,
                                     const Viewer& viewer = {});
 

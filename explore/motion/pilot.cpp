@@ -51,14 +51,13 @@ CornerRoom::Kept Pilot::kept(const robot::Drive& told, const Moment& robot, cons
 
 Pilot::Step Pilot::step(const Moment& robot, const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits,
                         Stamp now) {
-  const double slope = robot::slope(robot.lean);
   if (turning()) {
-    const std::optional<robot::Drive> drive = turn_.turn(robot.turned, follower_.turn_speed_on(slope), now);
+    const std::optional<robot::Drive> drive = turn_.turn(robot.turned, follower_.turn_speed_on(robot.slope), now);
     const CornerRoom::Kept turn = kept(drive.value_or(robot::Drive{}), robot, floor, hits, now);
     return {turn.drive, turn.brakes, !drive, !drive && purpose_ == TurnFor::Place};
   }
   if (watch_.waits(now)) return {};
-  const CornerRoom::Kept way = kept(follower_.drive(robot.T_map_base, slope), robot, floor, hits, now);
+  const CornerRoom::Kept way = kept(follower_.drive(robot.T_map_base, robot.slope), robot, floor, hits, now);
   return {watch_.limited(way.drive, now), way.brakes};
 }
 

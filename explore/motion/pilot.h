@@ -55,7 +55,8 @@ class Pilot {
     mrpt::math::TPose2D T_map_base;
     double turned = 0.0;  ///< in this tick [rad]
     robot::Drive moving;  ///< what its wheels do
-    robot::Tilt lean;     ///< of its body
+    robot::Tilt lean;     ///< of its body, where that is known now
+    double slope = 0.0;   ///< of the floor, as it was known last [rad]
   };
   /// One tick; `hits`: of the newest scan [m, map frame].
   Step step(const Moment& robot, const Traversable& floor, const std::vector<mrpt::math::TPoint2D>& hits, Stamp now);

@@ -28,6 +28,7 @@ constexpr double kLittleRoom = 0.01;             ///< likewise, where there is n
 constexpr double kLongestTick = 0.2;             ///< commands of longer ticks are taken to have ended [s]
 constexpr double kDetourSpeed = 0.15;   ///< a detour is driven so fast at least, turns and stops included [m/s]
 constexpr double kWaitForMapper = 3.0;  ///< the robot stands for a pose in doubt, then it goes on [s]
+constexpr double kWaitAgain = 20.0;     ///< from the beginning of one such wait to the next [s]
 constexpr int kSmoothFloor = 3;         ///< things felt so far where the robot may be fast
 
 PaperExplorerConfig for_mission(PaperExplorerConfig config, const Mission& mission) {
@@ -86,6 +87,7 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   pose_ = mapper.pose();
   turned_ = wrap_angle(pose_.phi - before.phi);
   victims_.moved(pose_, mapper.covariance(), passed);
+  if (!victims_.doubts_pose()) waits_since_.reset();
   if (mapper.revision() != revision_) follow_map(mapper);
   if (!inputs.scans.empty()) {
     last_scan_ = now_;
@@ -99,6 +101,9 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   heed_levelling();
   heed_battery(inputs);
   stuck_watch_.update(inputs, passed, dt_);
+  // From ramp to ramp the platform lags behind, and its servos do not tell how the body leans.
+  if (levelling_.level()) slope_ = robot::slope(stuck_watch_.lean());
+  if (levelling_.given_up()) slope_ = 0.0;
   for (const robot::VictimCue& cue : inputs.cues)
     if (victims_.hear(cue, mapper, pose_, floor_))
       agenda_.note(now_, victim_name(victims_.reports().back().id) + " confirmed");
@@ -110,7 +115,7 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   recovery_.moved(now_, pose_);
   if (stage_ != Stage::OnTheWay && stage_ != Stage::StraightOn) return;
   left_alone_.passed(pose_, model_);
-  trail_.add(now_, pose_, robot::slope(lean()));
+  trail_.add(now_, pose_, slope_);
 }
 
 /// Scans of a plane that nobody holds level show walls where floor is: what is seen of victims cannot be placed, and
@@ -231,8 +236,9 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
   }
   if (agenda_.due(mapper.map(), now_)) replan(mapper);
   if (finished()) return {};
-  const Pilot::Step step = pilot_.step({pose_, turned_, stuck_watch_.wheels().value_or(commanded_), lean()}, floor_,
-                                       mapper.last_hits(), now_);
+  const Pilot::Step step = pilot_.step({pose_, turned_, stuck_watch_.wheels().value_or(commanded_),
+                                        levelling_.level() ? stuck_watch_.lean() : robot::Tilt{}, slope_},
+                                       floor_, mapper.last_hits(), now_);
   brakes_ = step.brakes;
   if (step.turn_ended) agenda_.plan_soon();
   // A turn in a tight place wanders off its viewpoint; driving back to it and turning again would never end.
@@ -268,12 +274,14 @@ bool PaperExplorer::holds_still() {
 /// A pose that has lost its place may find it again by the scans to come: driving on, the robot would only get farther
 /// from where it was sure. One that stays lost is no reason to stand for ever.
 bool PaperExplorer::waits_for_mapper() {
-  if (!victims_.doubts_pose()) {
-    doubts_since_.reset();
-    return false;
+  if (!victims_.doubts_pose()) return false;
+  if (!waits_since_) {
+    if (next_wait_ != Stamp::never() && now_ < next_wait_) return false;
+    waits_since_ = now_;
+    next_wait_ = now_ + kWaitAgain;
+    agenda_.note(now_, "the mapper has lost its place: waits for it");
   }
-  if (!doubts_since_) doubts_since_ = now_;
-  return now_ - *doubts_since_ < kWaitForMapper;
+  return now_ - *waits_since_ < kWaitForMapper;
 }
 
 void PaperExplorer::check_path(const slam::Mapper& mapper) {

@@ -80,8 +80,6 @@ class PaperExplorer : public Explorer {
   void judge_holes(const slam::CountMap& map);
   void obey(Order order);
   void look_up_ground(PathPoint& point) const;
-  /// Of the body; none while the laser's platform has not taken it away and does not tell.
-  robot::Tilt lean() const { return levelling_.level() ? stuck_watch_.lean() : robot::Tilt{}; }
 
   /// The floor with `hits` [map frame] as further obstacles.
   Traversable floor_now(const slam::Mapper& mapper, const std::vector<mrpt::math::TPoint2D>& hits) const;
@@ -109,8 +107,10 @@ class PaperExplorer : public Explorer {
   double dt_ = 0.0;  ///< of commands: a robot that was held meanwhile did not follow them
   Stamp last_scan_ = Stamp::never();
   mrpt::math::TPose2D pose_;
-  std::optional<Stamp> doubts_since_;  ///< the pose, all the time
-  double turned_ = 0.0;                ///< since the last tick [rad]
+  std::optional<Stamp> waits_since_;  ///< for the mapper, in the doubt under way
+  Stamp next_wait_ = Stamp::never();  ///< not before this
+  double slope_ = 0.0;                ///< as known last [rad]
+  double turned_ = 0.0;               ///< since the last tick [rad]
   std::uint64_t revision_ = 0;
   Traversable floor_;  ///< of the last plan
   robot::Drive commanded_;

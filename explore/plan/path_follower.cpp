@@ -35,7 +35,7 @@ PathFollower::PathFollower(const robot::RobotModel& model, const FollowerConfig&
   config_.passed_speed =
       std::clamp(config_.passed_speed, config_.cruise_speed, std::max(model.max_v, config_.cruise_speed));
   config_.rough_speed = std::min(config_.rough_speed, config_.cruise_speed);
-  config_.slope_speed = std::min(config_.slope_speed, config_.cruise_speed);
+  config_.slope_speed = std::min(config_.slope_speed, config_.passed_speed);
   config_.slow_speed = std::min(config_.slow_speed, config_.cruise_speed);
 }
 

@@ -27,11 +27,11 @@ struct PathPoint {
 constexpr double kLeastTurn = 0.20;  ///< skid steering does not turn more slowly than this [rad/s]
 
 struct FollowerConfig {
-  double cruise_speed = 0.6;                ///< [m/s]
-  double passed_speed = 0.7;                ///< likewise, where the robot was before [m/s]
+  double cruise_speed = 0.4;                ///< [m/s]
+  double passed_speed = 0.6;                ///< likewise, where the robot was before [m/s]
   double rough_speed = 0.4;                 ///< on rough ground at most [m/s]
-  double slope_speed = 0.4;                 ///< on steep slopes at most [m/s]
-  double turn_speed = deg_to_rad(85.0);     ///< [rad/s]
+  double slope_speed = 0.5;                 ///< on steep slopes at most [m/s]
+  double turn_speed = deg_to_rad(60.0);     ///< [rad/s]
   double slope_turn = deg_to_rad(60.0);     ///< of turns on the spot on steep slopes at most [rad/s]
   double turn_in_place = deg_to_rad(35.0);  ///< heading error above which the robot turns on the spot [rad]
   double look_ahead = 0.35;                 ///< distance of the point steered to [m]

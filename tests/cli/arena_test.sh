@@ -48,6 +48,12 @@ for command in 'arena sealed.yaml --out out' 'run sealed_run.yaml --out sealed_r
   grep -q 'sealed.yaml: from the start (0.60, 0.60) the robot gets to .*: move the start$' err.txt || fail "sealed: $(cat err.txt)"
 done
 
+# What of an arena the robot cannot see is said with its cause, and nothing where all can be seen.
+"$rubble" arena generate --kind red --cells 6x6 --seed 3 --ramps 0.4 --out red >told.txt 2>&1 || fail "a red arena"
+grep -qE '^not asked for: [0-9.]+ % behind (slopes of more than 22 deg|steps and blocks of more than 0.10 m)$' told.txt ||
+  fail "what cannot be seen: $(cat told.txt)"
+"$rubble" arena generate --kind yellow --cells 4x4 --seed 3 --out plain | grep -q 'not asked for' && fail "all of it can be seen"
+
 # What is generated is run with the line that is printed, wherever that is typed and whatever the folder is called.
 odd="odd, {it's} \$x"
 expect_exit 0 '' "$rubble" arena generate --cells 3x3 --seed 2 --out "$odd"

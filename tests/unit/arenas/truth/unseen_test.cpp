@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "arenas/files/arena_file.h"
 #include "arenas/generate/generate.h"
 #include "arenas/truth/truth_map.h"
+#include "base/angle.h"
 #include "tests/support/sim_arena.h"
 
 namespace rubble::arenas {
@@ -68,6 +70,30 @@ TEST(Unseen, BehindABlockRoundTheCornerIsToldAsThat) {
   sim::test::add_wall(arena, 1.4, 1.2, 1.5, 2.4, 0.2);
   const Told told(arena);
   EXPECT_GT(told.of("steps and blocks of more than 0.10 m"), 0.1);
+}
+
+/// The floor rises by 30 deg at x = 2, on to a platform of 1.2 m.
+TEST(Unseen, BehindARampThatIsTooSteepIsToldAsThat) {
+  const double rise = std::tan(deg_to_rad(30.0)), foot = 2.0, top = foot + 1.2 / rise;
+  Arena whole = sim::test::room(-1.0, -1.0, 7.0, 1.0);
+  whole.floor = {{sim::test::rectangle(-1.0, -1.0, foot, 1.0), 0.0, 0.0, 0.0, "flat"},
+                 {sim::test::rectangle(foot, -1.0, top, 1.0), 0.0, rise, 0.0, "ramp"},
+                 {sim::test::rectangle(top, -1.0, 7.0, 1.0), 1.2, 0.0, 0.0, "platform"}};
+  const Told told(whole);
+  EXPECT_GT(told.of("slopes of more than 22 deg"), 0.2);
+  Viewer climber;
+  climber.max_slope = deg_to_rad(35.0);
+  EXPECT_EQ(Told(whole, climber).of("slopes"), 0.0);
+}
+
+TEST(Unseen, AVeilIsToldAsOpen) {
+  const Arena arena = parse_arena(
+      "maze: |\n  +---+---+\n  |S.   . |\n  +---+---+\nelements:\n"
+      "  - {type: veil_wall, x_m: 0.6, y_m: 0.6, rotation_deg: 90}\n",
+      "drawn");
+  const Told told(arena);
+  EXPECT_GT(told.of("veils"), 0.0);
+  EXPECT_NEAR(told.of("veils"), told.lacking, 1e-12);
 }
 
 /// Whatever the arena, each cell that is lacking has one cause.

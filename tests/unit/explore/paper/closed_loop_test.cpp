@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -128,34 +129,112 @@ TEST(PaperExplorer, ChoosesByTheTimeOfItsMission) {
   EXPECT_EQ(end_of(FrontierChoice::ByTime, 1200.0), transform);
 }
 
-/// The fastest of 20 s in a straight lane, on a slope of 10 deg as the servos tell that hold the laser level, or, when
-/// the platform is `tilted`, do not.
-double fastest_on_slope(double tilted) {
-  const Maze maze = test::maze({"+--+--+--+--+--+--+--+--+",  //
-                                "| R                     |",  //
-                                "+--+--+--+--+--+--+--+--+"});
-  const robot::RobotModel model;
-  MazeRobot robot(maze, model);
-  slam::PaperMapper mapper(model, exact_mapper(), 1);
-  PaperExplorerConfig config;
-  config.search.on = config.return_home = false;
-  PaperExplorer explorer(model, config);
+/// Faster than what slopes and rough ground allow.
+FollowerConfig hasty() {
+  FollowerConfig config;
+  config.cruise_speed = 0.6;
+  config.passed_speed = 0.7;
+  config.slope_speed = 0.4;
+  return config;
+}
+
+/// A robot in a straight lane of ten pallets, whose servos hold the laser level and tell how it leans.
+struct InALane {
+  Maze maze = test::maze({"+--+--+--+--+--+--+--+--+--+--+",  //
+                          "| R                           |",  //
+                          "+--+--+--+--+--+--+--+--+--+--+"});
+  robot::RobotModel model;
+  MazeRobot robot{maze, model};
+  slam::PaperMapper mapper{model, exact_mapper(), 1};
+  PaperExplorer explorer;
   robot::Commands commands;
-  double fastest = 0.0;
-  while (robot.now().seconds() < 20.0) {
+
+  explicit InALane(bool goes_home = false) : explorer(model, config(goes_home)) {}
+  /// Nothing that it feels shuts the lane.
+  static PaperExplorerConfig config(bool goes_home) {
+    PaperExplorerConfig out;
+    out.search.on = false;
+    out.return_home = goes_home;
+    out.felt.memory = out.felt.pallet = 0.0;
+    out.follower = hasty();
+    return out;
+  }
+  /// Along the lane, from the start [m].
+  double at() const { return robot.pose().x - maze.start.x; }
+  /// One tick on a slope of `lean` [rad]; the platform itself is `tilted` [rad].
+  void step(double lean, double tilted = 0.0) {
     robot::Inputs inputs = robot.step(commands);
-    inputs.aims.push_back({inputs.now, deg_to_rad(-10.0), 0.0});
+    inputs.aims.push_back({inputs.now, -lean, 0.0});
     inputs.accelerations.push_back({inputs.now, robot::kGravity * std::sin(tilted), 0.0});
     mapper.update(inputs);
     commands = explorer.next(mapper, inputs);
-    fastest = std::max(fastest, commands.drive.v);
   }
+};
+
+TEST(PaperExplorer, IsSlowerOnASlope) {
+  InALane lane;
+  double fastest = 0.0;
+  while (lane.robot.now().seconds() < 15.0) {
+    lane.step(deg_to_rad(10.0));
+    fastest = std::max(fastest, lane.commands.drive.v);
+  }
+  EXPECT_NEAR(fastest, hasty().slope_speed, 0.02);
+}
+
+/// From ramp to ramp the platform lags behind, and its angles do not tell how the body leans.
+TEST(PaperExplorer, StaysSlowWhileItsPlatformLagsBehind) {
+  InALane lane;
+  double fastest = 0.0;
+  while (lane.robot.now().seconds() < 15.0) {
+    const bool lags = lane.robot.now().seconds() > 8.0;
+    lane.step(lags ? 0.0 : deg_to_rad(10.0), lags ? deg_to_rad(8.0) : 0.0);
+    if (lane.robot.now().seconds() > 8.5) fastest = std::max(fastest, lane.commands.drive.v);
+  }
+  EXPECT_GT(fastest, 0.2);
+  EXPECT_LT(fastest, hasty().slope_speed + 0.06);
+}
+
+/// How fast it comes back to where the floor leant by `lean` [rad] on the way out, between 2 and 4 m.
+double speed_before_slope(double lean) {
+  InALane lane(true);
+  double fastest = 0.0, farthest = 0.0;
+  while (lane.robot.now().seconds() < 400.0 && !lane.explorer.finished()) {
+    const double at = lane.at();
+    farthest = std::max(farthest, at);
+    lane.step(at > 2.0 && at < 4.0 ? lean : 0.0);
+    if (farthest > 6.0 && at > 4.0 && at < 4.2) fastest = std::max(fastest, lane.commands.drive.v);
+  }
+  EXPECT_TRUE(lane.explorer.finished());
   return fastest;
 }
 
-TEST(PaperExplorer, IsSlowerOnSlopesAsLongAsItsServosTellThem) {
-  EXPECT_NEAR(fastest_on_slope(0.0), FollowerConfig().slope_speed, 0.02);
-  EXPECT_NEAR(fastest_on_slope(deg_to_rad(8.0)), FollowerConfig().cruise_speed, 0.02);
+TEST(PaperExplorer, BrakesBeforeASlopeThatItMetBefore) {
+  EXPECT_GT(speed_before_slope(0.0), hasty().cruise_speed);
+  const double slow = speed_before_slope(deg_to_rad(10.0));
+  EXPECT_GT(slow, 0.2);
+  EXPECT_LT(slow, hasty().slope_speed + 0.05);
+}
+
+TEST(PaperExplorer, IsSlowerOnceItWasHeldSeveralTimes) {
+  InALane lane;
+  double before = 0.0, after = 0.0;
+  int times = 0;
+  Stamp again = Stamp::never();
+  while (lane.robot.now().seconds() < 400.0 && lane.at() < 8.0 && !lane.explorer.finished()) {
+    const bool backs_up = lane.explorer.state() == ExplorerState::BackingUp;
+    if (lane.robot.held && backs_up) {
+      ++times;
+      again = lane.robot.now() + 4.0;
+    }
+    const bool waits = again != Stamp::never() && lane.robot.now() < again;
+    lane.robot.held = times < 4 && !backs_up && !waits && lane.commands.drive.v > 0.25;
+    lane.step(0.0);
+    if (times == 0) before = std::max(before, lane.commands.drive.v);
+    if (times == 4 && !waits && !backs_up) after = std::max(after, lane.commands.drive.v);
+  }
+  EXPECT_EQ(times, 4);
+  EXPECT_GT(after, 0.2);
+  EXPECT_LT(after, hasty().rough_speed + 0.01);
 }
 
 /// Eqs. (3) and (4) with nothing around them, as scenarios/sweeps/transform.yaml sets it.

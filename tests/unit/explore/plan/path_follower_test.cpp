@@ -92,10 +92,20 @@ TEST(PathFollower, IsFasterOnlyWhereTheRobotWasBefore) {
   EXPECT_NEAR(fastest, FollowerConfig().passed_speed, 0.01);
 }
 
+/// Faster than what slopes and rough ground allow.
+FollowerConfig hasty() {
+  FollowerConfig config;
+  config.cruise_speed = 0.6;
+  config.passed_speed = 0.7;
+  config.slope_speed = 0.4;
+  config.turn_speed = deg_to_rad(85.0);
+  return config;
+}
+
 /// Drives the whole path; the fastest between 2 and 4 m, and elsewhere.
 std::pair<double, double> fastest_on(const std::vector<PathPoint>& path) {
   const RobotModel model;
-  PathFollower follower(model, {});
+  PathFollower follower(model, hasty());
   follower.set_path(path);
   Unicycle robot;
   double there = 0.0, elsewhere = 0.0;
@@ -109,7 +119,7 @@ std::pair<double, double> fastest_on(const std::vector<PathPoint>& path) {
 }
 
 TEST(PathFollower, IsSlowerWhereTheFloorIsSteep) {
-  const FollowerConfig config;
+  const FollowerConfig config = hasty();
   double last = config.cruise_speed;
   for (const double slope : {2.0, 5.0, 7.0, 9.0, 16.0}) {
     std::vector<PathPoint> path = straight(6.0);
@@ -128,25 +138,25 @@ TEST(PathFollower, IsSlowerOnRoughGround) {
   for (PathPoint& point : path)
     if (point.p_map.x > 1.9 && point.p_map.x < 4.1) point.ground = Ground::Rough;
   const auto [there, elsewhere] = fastest_on(path);
-  EXPECT_NEAR(there, FollowerConfig().rough_speed, 0.01);
-  EXPECT_NEAR(elsewhere, FollowerConfig().cruise_speed, 0.01);
+  EXPECT_NEAR(there, hasty().rough_speed, 0.01);
+  EXPECT_NEAR(elsewhere, hasty().cruise_speed, 0.01);
 }
 
 TEST(PathFollower, IsSlowerWhileItLeansWhateverIsKnownOfTheFloor) {
-  PathFollower follower({}, {});
+  PathFollower follower({}, hasty());
   follower.set_path(straight(6.0));
-  EXPECT_NEAR(follower.drive({0.5, 0.0, 0.0}).v, FollowerConfig().cruise_speed, 1e-9);
-  EXPECT_NEAR(follower.drive({0.5, 0.0, 0.0}, deg_to_rad(2.0)).v, FollowerConfig().cruise_speed, 1e-9);
-  EXPECT_NEAR(follower.drive({0.5, 0.0, 0.0}, deg_to_rad(10.0)).v, FollowerConfig().slope_speed, 1e-9);
+  EXPECT_NEAR(follower.drive({0.5, 0.0, 0.0}).v, hasty().cruise_speed, 1e-9);
+  EXPECT_NEAR(follower.drive({0.5, 0.0, 0.0}, deg_to_rad(2.0)).v, hasty().cruise_speed, 1e-9);
+  EXPECT_NEAR(follower.drive({0.5, 0.0, 0.0}, deg_to_rad(10.0)).v, hasty().slope_speed, 1e-9);
 }
 
 TEST(PathFollower, TurnsMoreSlowlyOnASlope) {
-  PathFollower follower({}, {});
+  PathFollower follower({}, hasty());
   for (const double heading : {120.0, -120.0}) {
     follower.set_path(straight(3.0));
     const TPose2D pose{0.0, 0.0, deg_to_rad(heading)};
-    EXPECT_NEAR(std::abs(follower.drive(pose).w), FollowerConfig().turn_speed, 1e-9);
-    EXPECT_NEAR(std::abs(follower.drive(pose, deg_to_rad(10.0)).w), FollowerConfig().slope_turn, 1e-9);
+    EXPECT_NEAR(std::abs(follower.drive(pose).w), hasty().turn_speed, 1e-9);
+    EXPECT_NEAR(std::abs(follower.drive(pose, deg_to_rad(10.0)).w), hasty().slope_turn, 1e-9);
   }
 }
 
