@@ -13,7 +13,7 @@
 #include "base/angle.h"
 #include "base/planar.h"
 #include "robot/body.h"
-#include "scenarios/run/rooms_entered.h"
+#include "scoring/figures/rooms_entered.h"
 #include "sim/victim_sensor.h"
 
 namespace rubble::scenarios {
@@ -270,7 +270,8 @@ scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajec
   out.area_per_min = area_per_minute(core.first_seen(), visible, arena_in_map(truth, core.mapper()), time);
   out.victims_visible = static_cast<std::uint64_t>(visible_victims(arena, model));
   out.visible_share = share_of(all, visible);
-  const RoomsEntered rooms = rooms_entered(all, arenas::reachable_mask(arena, all, viewer_of(model)), truth);
+  const scoring::RoomsEntered rooms =
+      scoring::rooms_entered(all, arenas::reachable_mask(arena, all, viewer_of(model)), truth);
   out.rooms_reachable = rooms.reachable;
   out.rooms_entered = rooms.entered;
   return out;

@@ -57,6 +57,7 @@ const std::map<std::string, Folders>& doors() {
         "arenas/truth/render.h",
         "arenas/truth/start_region.h",
         "arenas/truth/truth_map.h",
+        "arenas/truth/unseen.h",
         "arenas/truth/visible.h",
         "arenas/truth/wall_lines.h",
         "explore/plan_picture.h",

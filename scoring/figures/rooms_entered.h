@@ -5,7 +5,7 @@
 #include "base/grid.h"
 #include "base/trajectory.h"
 
-namespace rubble::scenarios {
+namespace rubble::scoring {
 
 /// How many rooms of an arena a robot could have entered, and how many of these it did.
 struct RoomsEntered {
@@ -18,4 +18,4 @@ struct RoomsEntered {
 /// `path`: poses of the base in the frame of `truth`.
 RoomsEntered rooms_entered(const OccupancyGrid& truth, const Grid<std::uint8_t>& reachable, const Trajectory& path);
 
-}  // namespace rubble::scenarios
+}  // namespace rubble::scoring

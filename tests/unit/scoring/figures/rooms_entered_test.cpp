@@ -1,4 +1,4 @@
-#include "scenarios/run/rooms_entered.h"
+#include "scoring/figures/rooms_entered.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include "arenas/truth/visible.h"
 #include "tests/support/sim_arena.h"
 
-namespace rubble::scenarios {
+namespace rubble::scoring {
 namespace {
 
 /// Three rooms of 3 x 3 m in a row, with doors of 1 m between them.
@@ -53,4 +53,4 @@ TEST(RoomsEntered, OfAnArenaWithoutFloorAreNone) {
 }
 
 }  // namespace
-}  // namespace rubble::scenarios
+}  // namespace rubble::scoring

@@ -1,10 +1,10 @@
-#include "scenarios/run/rooms_entered.h"
+#include "scoring/figures/rooms_entered.h"
 
 #include <vector>
 
 #include "scoring/rooms/rooms.h"
 
-namespace rubble::scenarios {
+namespace rubble::scoring {
 namespace {
 
 constexpr double kFloorToStandOn = 0.25;  ///< of the robot's middle [m^2]
@@ -12,7 +12,7 @@ constexpr double kFloorToStandOn = 0.25;  ///< of the robot's middle [m^2]
 }  // namespace
 
 RoomsEntered rooms_entered(const OccupancyGrid& truth, const Grid<std::uint8_t>& reachable, const Trajectory& path) {
-  const scoring::Rooms found = scoring::extract_rooms(truth);
+  const Rooms found = extract_rooms(truth);
   std::vector<double> floor(found.rooms.size() + 1, 0.0);
   std::vector<bool> was_in(floor.size(), false);
   const auto room_at = [&](const mrpt::math::TPoint2D& p) -> std::size_t {
@@ -34,4 +34,4 @@ RoomsEntered rooms_entered(const OccupancyGrid& truth, const Grid<std::uint8_t>&
   return out;
 }
 
-}  // namespace rubble::scenarios
+}  // namespace rubble::scoring
