@@ -154,7 +154,7 @@ void check_kind(const std::string& kind) {
   if (kind == arenas::kBlueArena) throw UsageError("--kind blue: " + std::string(arenas::kNoBlueArena));
   const std::vector<std::string>& kinds = arenas::arena_kinds();
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
-    throw UsageError("--kind " + kind + ": is no kind of arena: use yellow, orange or red");
+    throw UsageError("--kind " + kind + " is no kind of arena: use yellow, orange or red");
 }
 
 int arena_or_list(ArenaArguments arguments, const Options& options) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <vector>
 
@@ -169,6 +170,7 @@ scoring::DriveFigures drive_figures(const arenas::Arena& arena, const Trajectory
   if (truth.empty()) return figures;
   const Edges edges(arena, model.climbable_step);
   bool touches = false;
+  std::int64_t contact_ns = 0;
   StampedPose last = truth.front();
   for (const StampedPose& at : truth) {
     const double dt = at.stamp - last.stamp;
@@ -179,13 +181,14 @@ scoring::DriveFigures drive_figures(const arenas::Arena& arena, const Trajectory
     figures.min_clearance_m = std::min(figures.min_clearance_m, nearest);
     const bool touched = touches;
     touches = nearest < kContact;
-    if (touches) figures.contact_s += dt;
+    if (touches) contact_ns += at.stamp.ns - last.stamp.ns;
     if (touches && !touched) {
       ++figures.contacts;
       figures.contact_speed = std::max(figures.contact_speed, way / dt);
     }
     last = at;
   }
+  figures.contact_s = 1e-9 * static_cast<double>(contact_ns);
   const TPose2D& end = truth.back().pose;
   figures.home_m = distance({arena.start.x, arena.start.y}, {end.x, end.y});
   return figures;
@@ -285,12 +288,14 @@ std::string decisions_text(const Core& core) {
     const auto later = [](Stamp stamp, const explore::Decision& decision) { return stamp < decision.stamp; };
     all.insert(std::upper_bound(all.begin(), all.end(), waits->stamp, later), *waits);
   }
-  for (const explore::Decision& decision : all) {
-    std::array<char, 24> time{};
-    std::snprintf(time.data(), time.size(), "%8.2f ", decision.stamp.seconds());
-    text += time.data() + decision.why + "\n";
-  }
+  for (const explore::Decision& decision : all) text += decision_line(decision);
   return text;
+}
+
+std::string decision_line(const explore::Decision& decision) {
+  std::array<char, 24> time{};
+  std::snprintf(time.data(), time.size(), "%8.2f ", decision.stamp.seconds());
+  return time.data() + decision.why + "\n";
 }
 
 }  // namespace rubble::scenarios

@@ -51,5 +51,7 @@ scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajec
 
 /// Why the explorer did what it did: one line each, `seconds reason`.
 std::string decisions_text(const Core& core);
+/// One of these lines.
+std::string decision_line(const explore::Decision& decision);
 
 }  // namespace rubble::scenarios

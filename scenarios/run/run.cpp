@@ -230,7 +230,12 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   evidence.run = run_figures(core, end.sim_s, end.reason);
   evidence.mission =
       mission_figures(arena, simulated.truth(), scenario.robot, core, scenario.visible_truth ? &truth : nullptr);
-  folder.write("decisions.txt", decisions_text(core));
+  std::string decisions = decisions_text(core);
+  if (end.interrupted && evidence.mission->end_code == "time") {
+    evidence.mission->end_code = "interrupted";
+    if (!simulated.truth().empty()) decisions += decision_line({simulated.truth().back().stamp, "ends: interrupted"});
+  }
+  folder.write("decisions.txt", decisions);
   if (options.record) save_map_files(folder, core.mapper());
   RunReport report;
   report.interrupted = end.interrupted;

@@ -63,7 +63,7 @@ struct DriveFigures {
 
 /// How the mission of a simulated run went.
 struct MissionFigures {
-  std::string end_code;  ///< "explored", "home", "time", "stuck", "lost" or "fell"
+  std::string end_code;  ///< "explored", "home", "time", "stuck", "lost", "fell" or "interrupted"
   DriveFigures drive;
   std::uint64_t stalls = 0;           ///< reported by the motors
   double area_per_min = 0.0;          ///< of floor, until 95 % of all that its laser can see were known [m^2/min]

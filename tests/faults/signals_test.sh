@@ -51,6 +51,8 @@ for signal in INT TERM HUP; do
     [[ $code != 130 || ! -s run/score.json ]] || break
   done
   [[ $code == 130 && -s run/score.json && ! -e run/.partial ]] || fail "no SIG$signal ended a run under way: $code"
+  grep -q '"end_code": "interrupted"' run/score.json || fail "SIG$signal: $(grep end_code run/score.json)"
+  tail -1 run/decisions.txt | grep -q ' ends: interrupted$' || fail "SIG$signal: $(tail -1 run/decisions.txt)"
 done
 for i in $(seq "$moments"); do
   rm -rf run
