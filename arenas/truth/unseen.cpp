@@ -8,6 +8,7 @@
 
 #include "base/angle.h"
 #include "base/grid.h"
+
 namespace rubble::arenas {
 namespace {
 
