@@ -10,20 +10,23 @@ namespace {
 /// The turns of the thread that led the conversation with a device.
 class Conversation {
  public:
-  explicit Conversation(Device& device) : device_(device) {}
+  /// `turns_told`: the box has the turns in which there was nothing to read.
+  Conversation(Device& device, bool turns_told) : device_(device), turns_told_(turns_told) {}
 
   void play(const BlackBoxEntry& entry) {
     if (entry.direction == Direction::Opened) {
       until_ = entry.stamp;
       return device_.opened(entry.stamp, line_kind(entry));
     }
-    pass_time(entry.stamp);
+    if (!turns_told_) pass_time(entry.stamp);
     if (entry.direction == Direction::Lost) {
       until_ = Stamp::never();  // nobody turns before the next port is open
       return;
     }
     if (entry.direction == Direction::FromDevice) device_.receive(entry.bytes, entry.stamp);
-    turn(entry.stamp);
+    // What was sent, and the rate it was sent at, came of a turn that stands before it.
+    const bool came_of_turn = entry.direction == Direction::ToDevice || entry.direction == Direction::BitRate;
+    if (!turns_told_ || !came_of_turn) turn(entry.stamp);
   }
 
  private:
@@ -49,8 +52,15 @@ class Conversation {
   }
 
   Device& device_;
+  bool turns_told_;
   Stamp until_ = Stamp::never();  ///< time has passed
 };
+
+bool tells_turns(const std::vector<BlackBoxEntry>& entries, const std::string& device) {
+  return std::any_of(entries.begin(), entries.end(), [&](const BlackBoxEntry& entry) {
+    return entry.device == device && entry.direction == Direction::Turn;
+  });
+}
 
 /// Whether the driver began by listening whether somebody else talks with the base: else its first question leaves as
 /// soon as the line is open.
@@ -75,7 +85,7 @@ ReplayedBox replay_black_box(const std::vector<BlackBoxEntry>& entries, const st
   settings.listen = listened(entries);
   const std::unique_ptr<BaseDriver> played = make_base(driver, settings);
   LevellingUnit unit(levelling);
-  Conversation with_base(*played), with_unit(unit);
+  Conversation with_base(*played, tells_turns(entries, "base")), with_unit(unit, tells_turns(entries, "levelling"));
   ReplayedBox replayed;
   for (const BlackBoxEntry& entry : entries) {
     if (entry.device == "base") with_base.play(entry);

@@ -111,6 +111,8 @@ void DeviceThread::converse() {
     const Arrival arrival = port_->read(bytes.data(), bytes.size(), 0.0);
     const std::size_t got = arrival.size;
     const Stamp now = arrival.stamp;
+    // What was due, and when, cannot be told from the bytes: a thread that is late reads what came meanwhile first.
+    if (got == 0 && box_ != nullptr) box_->add(name_, Direction::Turn, {}, now);
     std::string out;
     int baud = 0;
     const Stamp deadline = with([&] {

@@ -1,4 +1,4 @@
-// Device clocks against the computer's: drift, jitter, wraps and restarts.
+// TickingDevice clocks against the computer's: drift, jitter, wraps and restarts.
 #include "robot/drivers/clock_map.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ constexpr double kLeastDelay = 0.075;
 const Stamp kStart = Stamp::from_seconds(1.7e9);
 
 /// A device whose clock reads `device` whole milliseconds at host time `host`, and messages about it.
-struct Device {
+struct TickingDevice {
   double drift;   ///< it runs slow by so much [s/s]
   double offset;  ///< host time since kStart of its zero [s]
   Rng rng;
@@ -41,13 +41,13 @@ struct Errors {
 /// The simulator's motor turns ten times a second of the computer's clock; a real one wanders.
 enum class Motor { Exact, Wanders };
 
-double turn_time(Device& device, Motor motor) {
+double turn_time(TickingDevice& device, Motor motor) {
   if (motor == Motor::Exact) return kPeriod / (1.0 + device.drift);
   return kPeriod + device.rng.gaussian(50e-6);
 }
 
 Errors errors_after_a_minute(double drift, Jitter jitter, Motor motor, std::uint64_t seed, bool anchored) {
-  Device device{drift, 12.3456, Rng{seed, "device"}};
+  TickingDevice device{drift, 12.3456, Rng{seed, "device"}};
   ClockMapConfig config;
   config.usual_delay = kLeastDelay;
   ClockMap map(config);
@@ -56,13 +56,13 @@ Errors errors_after_a_minute(double drift, Jitter jitter, Motor motor, std::uint
     for (int i = 0; i < 12; ++i) {
       exact += device.rng.uniform(0.0005, 0.0015);
       const Stamp at = device.host_of(exact);
-      map.anchor(Device::cut(exact), at - device.rng.uniform(0.00005, 0.0002),
+      map.anchor(TickingDevice::cut(exact), at - device.rng.uniform(0.00005, 0.0002),
                  at + device.rng.uniform(0.00005, 0.0002));
     }
   std::vector<double> errors;
   for (int turn = 0; turn < 2400; ++turn) {
     exact += turn_time(device, motor);
-    const double stamp = Device::cut(exact);
+    const double stamp = TickingDevice::cut(exact);
     map.add(stamp, device.host_of(exact) + (kLeastDelay + draw(device.rng, jitter)));
     if (turn >= 600) errors.push_back(map.host(stamp) - device.host_of(exact));
   }
@@ -96,7 +96,7 @@ TEST(ClockMap, StampsAreRightAfterAMinuteOfJitterAndDrift) {
 
 TEST(ClockMap, DriftIsFound) {
   for (const double drift : {-80e-6, 0.0, 120e-6}) {
-    Device device{drift, 0.0, Rng{7, "device"}};
+    TickingDevice device{drift, 0.0, Rng{7, "device"}};
     ClockMap map({});
     for (int turn = 1; turn < 900; ++turn)
       map.add(turn * kPeriod, device.host_of(turn * kPeriod) + device.rng.uniform(0.0, 0.005));
@@ -105,7 +105,7 @@ TEST(ClockMap, DriftIsFound) {
 }
 
 TEST(ClockMap, WithoutJitterItIsExactFromTheFirstMessage) {
-  Device device{0.0, 5.0, Rng{1, "device"}};
+  TickingDevice device{0.0, 5.0, Rng{1, "device"}};
   ClockMapConfig config;
   config.resolution = 0.0;
   config.usual_delay = 0.02;
@@ -118,25 +118,25 @@ TEST(ClockMap, WithoutJitterItIsExactFromTheFirstMessage) {
 }
 
 TEST(ClockMap, AnchorTellsTheLeastDelay) {
-  Device device{0.0, 5.0, Rng{3, "device"}};
+  TickingDevice device{0.0, 5.0, Rng{3, "device"}};
   ClockMap map({});
   double exact = 1.0;
   for (int i = 0; i < 12; ++i) {
     exact += 0.00127;
-    map.anchor(Device::cut(exact), device.host_of(exact) - 1e-4, device.host_of(exact) + 1e-4);
+    map.anchor(TickingDevice::cut(exact), device.host_of(exact) - 1e-4, device.host_of(exact) + 1e-4);
   }
   ASSERT_TRUE(map.doubt().has_value());
   EXPECT_LT(*map.doubt(), 0.0004);
   // The stamp is of a moment 43 ms before the message leaves: what usual_delay would have had to be told.
   for (int turn = 0; turn < 200; ++turn) {
     exact += kPeriod * (1.0 + 1e-4);
-    map.add(Device::cut(exact), device.host_of(exact) + (0.043 + device.rng.uniform(0.0, 0.001)));
+    map.add(TickingDevice::cut(exact), device.host_of(exact) + (0.043 + device.rng.uniform(0.0, 0.001)));
   }
   EXPECT_NEAR(map.least_delay(), 0.043, 0.0005);
 }
 
 TEST(ClockMap, WildArrivalsMoveNothing) {
-  Device device{30e-6, 0.0, Rng{5, "device"}};
+  TickingDevice device{30e-6, 0.0, Rng{5, "device"}};
   ClockMapConfig config;
   config.resolution = 0.0;
   ClockMap map(config);

@@ -95,10 +95,13 @@ TEST(DeviceThread, AQuestionGoesOutAtTheBitRateItIsMeantFor) {
   }
   std::string rate;
   int questions = 0;
+  Stamp turned = Stamp::never();
   for (const BlackBoxEntry& entry : read_black_box(folder + "/bytes")) {
     if (entry.direction == Direction::BitRate) rate = entry.bytes;
+    if (entry.direction == Direction::Turn) turned = entry.stamp;
     if (entry.direction != Direction::ToDevice) continue;
     EXPECT_EQ(entry.bytes, rate) << "question " << questions;
+    EXPECT_EQ(entry.stamp.ns, turned.ns) << "the turn in which it was due stands before it";
     ++questions;
   }
   EXPECT_GE(questions, 4);
