@@ -25,8 +25,8 @@ struct SimConfig {
   double acceleration_noise = 1.0;  ///< factor on the ADXL202 noise
   double time_limit = 1200.0;       ///< read() ends after this much simulated time [s]
   bool sweep = true;                ///< each beam from the pose at its own time; false: the whole scan at once
-  bool microphones = false;         ///< fitted: sound cues, heard all round and badly placed
-  bool co2_probe = false;           ///< fitted: CO2 cues, close by
+  bool microphones = true;          ///< fitted: sound cues, heard all round and badly placed
+  bool co2_probe = true;            ///< fitted: CO2 cues, close by
   double battery_wh = 0.0;          ///< it holds so much when it starts; 0: no end of it, and nothing is told [Wh]
   LevellingFault levelling_fault = LevellingFault::None;
   double levelling_fault_from = 60.0;  ///< it fails then [s], ...

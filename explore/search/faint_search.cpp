@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <set>
 #include <utility>
 
 #include "base/planar.h"
@@ -10,22 +12,34 @@
 namespace rubble::explore {
 
 using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
 using robot::CueKind;
 
 namespace {
 
-constexpr double kNearest = 0.2;      ///< a robot is never nearer to a victim [m]
-constexpr double kLeastSigma = 0.05;  ///< no cue and no place is known better [m]
-constexpr double kLongestStep = 0.5;  ///< of the least squares [m]
-constexpr double kTail = 2.0;         ///< errors count as linear from here on [standard deviations]
-constexpr double kFarOff = 2.0;       ///< errors count up to so many times the gate
-constexpr double kChance = 5.0;       ///< what is rarer than so many standard deviations is no chance
-constexpr double kError = 0.3;        ///< by so much a place may be off [m]
-constexpr double kStrictly = 3.0;     ///< the same where two senses have no cue of their own kind in common
-constexpr double kBeside = 1.0;       ///< what lies so near to a place may be of what its cues err by [m]
-constexpr double kShare = 0.4;        ///< of its evidence, or more, is another victim
-constexpr double kVisit = 0.8;        ///< what lies within this of a place that was visited was visited too [m]
-constexpr int kRounds = 2;            ///< of sorting and fitting after each cue
+constexpr double kNearest = 0.2;        ///< a robot is never nearer to a victim [m]
+constexpr double kLeastSigma = 0.05;    ///< no cue and no place is known better [m]
+constexpr double kLongestStep = 0.5;    ///< of the least squares [m]
+constexpr double kTail = 2.0;           ///< errors count as linear from here on [standard deviations]
+constexpr double kFarOff = 2.0;         ///< errors count up to so many times the gate
+constexpr double kChance = 5.0;         ///< what is rarer than so many standard deviations is no chance
+constexpr double kError = 0.3;          ///< by so much a place may be off at the most ... [m]
+constexpr double kLeastError = 0.1;     ///< ... and at the least [m]
+constexpr double kTold = 18.0;          ///< cues that fit another place by so much better are of another victim
+constexpr double kStand = 0.6;          ///< what was sensed from poses so near to each other is from one stand [m]
+constexpr std::size_t kLeastStand = 3;  ///< cues
+constexpr double kBeside = 1.0;         ///< what lies so near to a place may be of what its cues err by [m]
+constexpr double kOneSense = 0.75;      ///< of a victim's evidence is of one sense
+constexpr double kSameStand = 0.15;     ///< a robot that moved less stood [m]
+constexpr double kSameHeading = deg_to_rad(15.0);  ///< and turned less
+constexpr double kSurelyHeard = 1.2;  ///< from so near a victim is heard in most looks, through walls as well [m]
+constexpr double kSurelySmelt = 0.7;  ///< from so near it is smelt, ahead and without a wall between [m] ...
+constexpr double kBeforeNose = deg_to_rad(75.0);
+constexpr double kTellsOf = 0.2;  ///< in fewer of these looks nothing is told of a victim
+constexpr double kShare = 0.4;    ///< of its evidence, or more, is another victim
+constexpr double kKept = 0.5;     ///< of a victim's evidence: it is one no longer when less is left
+constexpr double kVisit = 0.8;    ///< what lies within this of a place that was visited was visited too [m]
+constexpr int kRounds = 2;        ///< of sorting and fitting after each cue
 
 double along(const PlaceCovariance& c, double x, double y) { return x * x * c.xx + 2.0 * x * y * c.xy + y * y * c.yy; }
 
@@ -72,6 +86,10 @@ FaintSearch::Match FaintSearch::match(const Cue& cue, const TPoint2D& p, const P
   return {error2, error2 + std::log(across * beyond)};
 }
 
+double FaintSearch::slack(const Place& place) {
+  return std::clamp(2.0 * worst_sigma(place.covariance), kLeastError, kError);
+}
+
 /// Whether the sense could tell of a victim at `p` at all, or nearer to the robot by no more than `error` [m].
 bool FaintSearch::possible(const Cue& cue, TPoint2D p, double error, const HiddenFn& hidden) const {
   const TPoint2D way = p - cue.from();
@@ -97,7 +115,7 @@ void FaintSearch::assign(const std::vector<Seen>& seen, const HiddenFn& hidden) 
     };
     for (std::size_t i = 0; i < seen.size(); ++i) offer(seen[i].p_map, {}, 0.0, -2 - static_cast<int>(i));
     for (std::size_t i = 0; i < places_.size(); ++i)
-      offer(places_[i].p_map, places_[i].covariance, kError, static_cast<int>(i));
+      offer(places_[i].p_map, places_[i].covariance, slack(places_[i]), static_cast<int>(i));
   }
 }
 
@@ -161,9 +179,7 @@ void FaintSearch::open_places() {
     Place best;
     double most = 0.0;
     for (const Cue* cue : left) {
-      const TPoint2D from = cue->from();
-      const TPoint2D p{from.x + cue->range * std::cos(cue->bearing_map()),
-                       from.y + cue->range * std::sin(cue->bearing_map())};
+      const TPoint2D p = tip(*cue);
       double evidence = 0.0;
       for (const Cue* other : left) evidence += error2(*other, p) < 4.0 ? sense(other->kind).evidence : 0.0;
       if (evidence <= most) continue;
@@ -183,54 +199,126 @@ void FaintSearch::open_places() {
 
 /// Whether a victim at `p` explains all these cues: their errors are no larger than chance makes them. Of two normal
 /// errors the squares come to 2 in the mean, with a standard deviation of 2.
-bool FaintSearch::explains(const TPoint2D& p, double error, double chance, const std::vector<const Cue*>& cues,
+bool FaintSearch::explains(const TPoint2D& p, double error, const std::vector<const Cue*>& cues,
                            const HiddenFn& hidden) const {
-  double sum = 0.0;
-  for (const Cue* cue : cues)
-    sum +=
-        possible(*cue, p, error, hidden) ? std::min(error2(*cue, p), kFarOff * config_.gate) : kFarOff * config_.gate;
   const auto n = static_cast<double>(cues.size());
-  return sum <= 2.0 * n + chance * 2.0 * std::sqrt(n);
+  return errors2(p, error, cues, hidden) <= 2.0 * n + kChance * 2.0 * std::sqrt(n);
 }
 
-/// Whether all cues of one list are of another kind than all of the other.
-bool FaintSearch::unlike(const std::vector<const Cue*>& a, const std::vector<const Cue*>& b) {
-  return std::none_of(a.begin(), a.end(), [&](const Cue* cue) {
-    return std::any_of(b.begin(), b.end(), [&](const Cue* other) { return other->kind == cue->kind; });
-  });
+std::vector<const FaintSearch::Cue*> FaintSearch::of_kind(CueKind kind, const std::vector<const Cue*>& cues) {
+  std::vector<const Cue*> own;
+  std::copy_if(cues.begin(), cues.end(), std::back_inserter(own), [&](const Cue* cue) { return cue->kind == kind; });
+  return own;
 }
 
-/// A place whose cues another one, or a victim that was seen, explains together with its own is none of its own.
+double FaintSearch::errors2(const TPoint2D& p, double error, const std::vector<const Cue*>& cues,
+                            const HiddenFn& hidden) const {
+  double sum = 0.0;
+  for (const Cue* cue : cues) {
+    const double most = kFarOff * config_.gate;
+    sum += possible(*cue, p, error, hidden) ? std::min(error2(*cue, p), most) : most;
+  }
+  return sum;
+}
+
+/// Whether these cues, each of which may well be of a victim at `p`, are together of one that lies elsewhere: that is
+/// much likelier. Of one victim the squares differ by those of two normal errors, and more than `kTold` once in
+/// 8,000.
+bool FaintSearch::tell_of_another(const std::vector<const Cue*>& cues, const TPoint2D& p, double error,
+                                  const HiddenFn& hidden) const {
+  if (cues.empty()) return false;
+  const double here = errors2(p, error, cues, hidden);
+  if (here <= kTold) return false;
+  Place other;
+  for (const Cue* cue : cues) other.p_map = other.p_map + tip(*cue) * (1.0 / static_cast<double>(cues.size()));
+  return fit(other, cues) && here - errors2(other.p_map, kError, cues, hidden) > kTold;
+}
+
+/// Whether what was smelt of two places is much likelier to be of two victims than of one at `p`. Sorted to the nearer
+/// of two places the cues of one victim fit better as well, by less than one square each.
+bool FaintSearch::are_two(const std::vector<const Cue*>& a, const TPoint2D& p_a, const std::vector<const Cue*>& b,
+                          const TPoint2D& p_b, const TPoint2D& p, const HiddenFn& hidden) const {
+  const double one = errors2(p, kError, a, hidden) + errors2(p, kError, b, hidden);
+  const double two = errors2(p_a, kError, a, hidden) + errors2(p_b, kError, b, hidden);
+  return !a.empty() && one - two > kTold + static_cast<double>(a.size() + b.size());
+}
+
+/// Takes from places, and from victims that were seen, what was smelt of others: a wide gate lets such cues through one
+/// by one. Sound is heard from so far that other stands tell.
+void FaintSearch::set_apart(const std::vector<Seen>& seen, const HiddenFn& hidden) {
+  std::vector<Cue*> stand;
+  const auto judge = [&] {
+    std::set<int> owners;
+    for (const Cue* cue : stand) owners.insert(cue->owner);
+    owners.erase(-1);
+    for (const int owner : owners) {
+      const bool is_place = owner >= 0;
+      const TPoint2D p =
+          is_place ? places_[static_cast<std::size_t>(owner)].p_map : seen[static_cast<std::size_t>(-2 - owner)].p_map;
+      const double error = is_place ? slack(places_[static_cast<std::size_t>(owner)]) : 0.0;
+      // What it does not explain at all was sensed together with what it may.
+      std::vector<const Cue*> cues;
+      std::copy_if(stand.begin(), stand.end(), std::back_inserter(cues),
+                   [&](const Cue* cue) { return cue->owner == owner || cue->owner == -1; });
+      if (cues.size() < kLeastStand || !tell_of_another(cues, p, error, hidden)) continue;
+      for (Cue* cue : stand)
+        if (cue->owner == owner) cue->owner = -1;
+    }
+    stand.clear();
+  };
+  for (Cue& cue : cues_) {
+    if (cue.kind != CueKind::Co2) continue;
+    if (!stand.empty() && distance(stand.front()->from(), cue.from()) > kStand) judge();
+    stand.push_back(&cue);
+  }
+  judge();
+}
+
+/// A place whose cues another one, or a victim that was seen, explains together with its own is none of its own. Where
+/// that holds of what is heard alone, what is smelt stays.
 void FaintSearch::join_places(std::vector<Seen>& seen, const HiddenFn& hidden) {
   for (std::size_t i = places_.size(); i-- > 0;) {
     const int own = static_cast<int>(i);
-    const auto explained = [&](int owner, TPoint2D p, Place* joint) {
-      if (distance(p, places_[i].p_map) > config_.sound.range) return false;
-      std::vector<const Cue*> both = cues_of(own);
+    const std::vector<const Cue*> all = cues_of(own), heard = of_kind(CueKind::Sound, all);
+    const auto explained = [&](int owner, TPoint2D p, Place* joint, const std::vector<const Cue*>& cues) {
+      if (cues.empty() || distance(p, places_[i].p_map) > config_.sound.range) return false;
       const std::vector<const Cue*> others = cues_of(owner);
+      std::vector<const Cue*> both = cues;
       both.insert(both.end(), others.begin(), others.end());
+      const TPoint2D before = p;
       if (joint != nullptr && fit(*joint, both)) p = joint->p_map;
-      const double error = joint != nullptr ? kError : 0.0;
-      // Many cues of one sense say nothing of whether few of another fit.
-      if (!others.empty() && unlike(cues_of(own), others) && !explains(p, error, kStrictly, cues_of(own), hidden))
+      const double error = joint != nullptr ? slack(*joint) : 0.0;
+      // Many cues of one sense say nothing of whether few of another fit. Sound carries: where it is heard at all it
+      // is heard from many places, which tell together.
+      const auto of_another = [&](CueKind kind) { return tell_of_another(of_kind(kind, cues), p, error, hidden); };
+      const std::vector<const Cue*> smelt_there = of_kind(CueKind::Co2, others);
+      if (smelt_there.empty() ? of_another(CueKind::Co2)
+                              : are_two(of_kind(CueKind::Co2, cues), places_[i].p_map, smelt_there, before, p, hidden))
         return false;
-      return explains(p, error, kChance, both, hidden);
+      if (!others.empty() && of_kind(CueKind::Sound, others).empty() && of_another(CueKind::Sound)) return false;
+      return explains(p, error, both, hidden);
     };
-    std::size_t k = 0;
-    while (k < seen.size() && !explained(-2 - static_cast<int>(k), seen[k].p_map, nullptr)) ++k;
-    if (k < seen.size()) {
-      if (places_[i].sure && (seen[k].is_also == 0 || places_[i].id < seen[k].is_also)) seen[k].is_also = places_[i].id;
-      give(own, -2 - static_cast<int>(k));
-      continue;
-    }
-    for (k = 0; k < i; ++k) {
-      Place joint = places_[k];
-      if (!explained(static_cast<int>(k), joint.p_map, &joint)) continue;
-      take_over(joint, places_[i]);
-      places_[k] = joint;
-      give(own, static_cast<int>(k));
-      break;
-    }
+    const auto join = [&](const std::vector<const Cue*>& cues) {
+      const bool whole = cues.size() == all.size();
+      for (std::size_t k = 0; k < seen.size(); ++k) {
+        const int owner = -2 - static_cast<int>(k);
+        if (!explained(owner, seen[k].p_map, nullptr, cues)) continue;
+        if (places_[i].sure && (seen[k].is_also == 0 || places_[i].id < seen[k].is_also))
+          seen[k].is_also = places_[i].id;
+        give(own, owner, whole);
+        return true;
+      }
+      for (std::size_t k = 0; k < i; ++k) {
+        Place joint = places_[k];
+        if (!explained(static_cast<int>(k), joint.p_map, &joint, cues)) continue;
+        take_over(joint, places_[i]);
+        places_[k] = joint;
+        give(own, static_cast<int>(k), whole);
+        return true;
+      }
+      return false;
+    };
+    if (!join(all) && heard.size() < all.size()) join(heard);
   }
 }
 
@@ -245,11 +333,16 @@ void FaintSearch::take_over(Place& place, const Place& other) {
   place.visited_from.insert(place.visited_from.end(), other.visited_from.begin(), other.visited_from.end());
 }
 
-/// All cues of a place to another owner; the place is gone.
-void FaintSearch::give(int place, int owner) {
+/// All cues of a place to another owner, and the place is gone; or what is heard alone, and it is that of what is
+/// smelt.
+void FaintSearch::give(int place, int owner, bool whole) {
   for (Cue& cue : cues_)
-    if (cue.owner == place) cue.owner = owner;
-  remove(static_cast<std::size_t>(place));
+    if (cue.owner == place && (whole || cue.kind == CueKind::Sound)) cue.owner = owner;
+  if (whole) return remove(static_cast<std::size_t>(place));
+  Place& left = places_[static_cast<std::size_t>(place)];
+  left.sure = false;
+  if (owner >= 0 && left.id == places_[static_cast<std::size_t>(owner)].id) left.id = 0;
+  fit(left, cues_of(place));
 }
 
 /// Of each owner's cues the newest stay.
@@ -280,8 +373,38 @@ void FaintSearch::count(Place& place, const std::vector<const Cue*>& cues) const
   place.base = base;
 }
 
+void FaintSearch::stood(const Anchor& anchor) {
+  if (!stands_.empty()) {
+    Stand& last = stands_.back();
+    const double turned = std::abs(wrap_angle(anchor.T_map_base.phi - last.anchor.T_map_base.phi));
+    if (distance(position(anchor.T_map_base), position(last.anchor.T_map_base)) < kSameStand && turned < kSameHeading) {
+      ++last.looks;
+      return;
+    }
+  }
+  stands_.push_back({anchor, 1});
+}
+
+/// Whether a sense told too seldom of a place for a victim there, from where nothing keeps it from telling.
+bool FaintSearch::refuted(const Place& place, CueKind kind, const HiddenFn& hidden) const {
+  int looks = 0;
+  for (const Stand& stand : stands_) {
+    const TPose2D& pose = stand.anchor.T_map_base;
+    const double far = distance(position(pose), place.p_map);
+    if (kind == CueKind::Sound) {
+      looks += far < kSurelyHeard ? stand.looks : 0;
+      continue;
+    }
+    const TPoint2D at = pose.inverseComposePoint(place.p_map);
+    const bool smelt = far < kSurelySmelt && std::abs(std::atan2(at.y, at.x)) < kBeforeNose;
+    looks += smelt && !hidden(position(pose), place.p_map) ? stand.looks : 0;
+  }
+  return (kind == CueKind::Sound ? place.sound : place.co2) < kTellsOf * looks;
+}
+
 /// A place becomes a victim. A few cues beside one that has many are what these err by, and none.
-void FaintSearch::confirm(Place& place, const std::vector<Seen>& seen) const {
+void FaintSearch::confirm(Place& place, const std::vector<Seen>& seen, const HiddenFn& hidden) const {
+  place.sure = place.sure && place.evidence >= kKept;
   if (place.sure) return;
   const auto few = [](int own, int others) { return own == 0 || own < kShare * others; };
   const auto overshadows = [&](const TPoint2D& p, int sound, int co2) {
@@ -293,7 +416,13 @@ void FaintSearch::confirm(Place& place, const std::vector<Seen>& seen) const {
                              }) ||
                  std::any_of(seen.begin(), seen.end(),
                              [&](const Seen& victim) { return overshadows(victim.p_map, victim.sound, victim.co2); });
-  if (place.beside || place.evidence < 1.0 || worst_sigma(place.covariance) > config_.sure) return;
+  const double heard = place.sound * config_.sound.evidence, smelt = place.co2 * config_.co2.evidence;
+  // Stray cues of two senses meet somewhere.
+  if (place.beside || heard + smelt < 1.0 || std::max(heard, smelt) < kOneSense) return;
+  if (worst_sigma(place.covariance) > config_.sure) return;
+  const double told =
+      (refuted(place, CueKind::Sound, hidden) ? 0.0 : heard) + (refuted(place, CueKind::Co2, hidden) ? 0.0 : smelt);
+  if (told < kOneSense) return;
   if (place.co2 == 0 && place.base < config_.base) return;
   place.sure = true;
   place.confirmed = place.newest;
@@ -302,6 +431,7 @@ void FaintSearch::confirm(Place& place, const std::vector<Seen>& seen) const {
 void FaintSearch::sort(std::vector<Seen>& seen, const HiddenFn& hidden) {
   for (int round = 0; round < kRounds; ++round) {
     assign(seen, hidden);
+    set_apart(seen, hidden);
     refit();
     open_places();
     join_places(seen, hidden);
@@ -313,11 +443,12 @@ void FaintSearch::sort(std::vector<Seen>& seen, const HiddenFn& hidden) {
       ++(cue.kind == CueKind::Sound ? victim.sound : victim.co2);
     }
   for (std::size_t i = 0; i < places_.size(); ++i) count(places_[i], cues_of(static_cast<int>(i)));
-  for (Place& place : places_) confirm(place, seen);
+  for (Place& place : places_) confirm(place, seen, hidden);
 }
 
 void FaintSearch::follow(const slam::Mapper& mapper) {
   for (Cue& cue : cues_) cue.anchor.follow(mapper);
+  for (Stand& stand : stands_) stand.anchor.follow(mapper);
   refit();
 }
 

@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPoint2D.h>
 
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <vector>
@@ -72,6 +73,8 @@ class FaintSearch {
   static bool takes(robot::CueKind kind) { return kind == robot::CueKind::Sound || kind == robot::CueKind::Co2; }
   /// Takes a cue that was sensed from `anchor`; `covariance`: of that pose.
   void add(const robot::VictimCue& cue, const Anchor& anchor, const PoseCovariance& covariance = {});
+  /// The robot's senses were at work for a moment, told of or not: they would have told of a victim close by.
+  void stood(const Anchor& anchor);
   /// Sorts all cues to the victims seen and to places of their own.
   void sort(std::vector<Seen>& seen, const HiddenFn& hidden);
   /// The mapper corrected its past.
@@ -101,6 +104,12 @@ class FaintSearch {
   const FaintSense& sense(robot::CueKind kind) const {
     return kind == robot::CueKind::Sound ? config_.sound : config_.co2;
   }
+  /// Where a cue by itself puts what it is of.
+  static mrpt::math::TPoint2D tip(const Cue& cue) {
+    return cue.from() + mrpt::math::TPoint2D(std::cos(cue.bearing_map()), std::sin(cue.bearing_map())) * cue.range;
+  }
+  /// By how much a place may be off [m].
+  static double slack(const Place& place);
   /// How well a place explains a cue.
   struct Match {
     double error2;  ///< square of the error, in standard deviations
@@ -116,17 +125,32 @@ class FaintSearch {
   void refit();
   void open_places();
   void join_places(std::vector<Seen>& seen, const HiddenFn& hidden);
-  bool explains(const mrpt::math::TPoint2D& p, double error, double chance, const std::vector<const Cue*>& cues,
+  double errors2(const mrpt::math::TPoint2D& p, double error, const std::vector<const Cue*>& cues,
+                 const HiddenFn& hidden) const;
+  bool explains(const mrpt::math::TPoint2D& p, double error, const std::vector<const Cue*>& cues,
                 const HiddenFn& hidden) const;
-  static bool unlike(const std::vector<const Cue*>& a, const std::vector<const Cue*>& b);
+  static std::vector<const Cue*> of_kind(robot::CueKind kind, const std::vector<const Cue*>& cues);
+  bool tell_of_another(const std::vector<const Cue*>& cues, const mrpt::math::TPoint2D& p, double error,
+                       const HiddenFn& hidden) const;
+  bool are_two(const std::vector<const Cue*>& a, const mrpt::math::TPoint2D& p_a, const std::vector<const Cue*>& b,
+               const mrpt::math::TPoint2D& p_b, const mrpt::math::TPoint2D& p, const HiddenFn& hidden) const;
+  void set_apart(const std::vector<Seen>& seen, const HiddenFn& hidden);
   static void take_over(Place& place, const Place& other);
-  void give(int place, int owner);
+  void give(int place, int owner, bool whole);
   void remove(std::size_t index);
   void forget();
   void count(Place& place, const std::vector<const Cue*>& cues) const;
-  void confirm(Place& place, const std::vector<Seen>& seen) const;
+  void confirm(Place& place, const std::vector<Seen>& seen, const HiddenFn& hidden) const;
+
+  /// Moments in which the robot stood at about the same place.
+  struct Stand {
+    Anchor anchor;
+    int looks;
+  };
+  bool refuted(const Place& place, robot::CueKind kind, const HiddenFn& hidden) const;
 
   FaintSearchConfig config_;
+  std::vector<Stand> stands_;
   std::vector<Cue> cues_;
   std::vector<Place> places_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "base/planar.h"
 #include "base/wall_between.h"
@@ -21,7 +22,7 @@ constexpr double kSubjectRadius = 0.25;         ///< given up together with a pl
 constexpr double kSquareRadius = 0.12;          ///< the same of what is to be looked at squarely [m]
 constexpr double kHearing = 1.4;                ///< floor so near is listened to, a little less than sound reaches [m]
 constexpr double kSmelling = 0.9;               ///< and so near it is smelt [m]
-constexpr int kBoxCells = 40;                   ///< a box has more floor than this
+constexpr int kBoxCells = 20;                   ///< a box has more floor than this
 constexpr double kNose = deg_to_rad(160.0);     ///< by a probe that points ahead
 constexpr double kAtSuspect = 4.0;              ///< stands so long for one [s]
 constexpr double kSameSuspect = 0.3;            ///< [m]
@@ -75,7 +76,10 @@ bool is_ground_of(const OccupancyGrid& ground, const OccupancyGrid& floor) {
       continue;
     }
     if (!unknown(row, row + west) || !unknown(row + east, row + width)) return false;
-    if (!std::equal(row + west, row + east, floor.row(low.y + y) + low.x + west)) return false;
+    // std::equal compares values of an enumeration one by one.
+    static_assert(sizeof(Occupancy) == 1);
+    const auto bytes = static_cast<std::size_t>(east - west);
+    if (std::memcmp(row + west, floor.row(low.y + y) + low.x + west, bytes) != 0) return false;
   }
   return true;
 }
@@ -92,6 +96,7 @@ FloorSearch::FloorSearch(const SearchConfig& config, double room, double tight, 
   heard.range = kHearing;
   smelt.field_of_view = kNose;
   smelt.range = kSmelling;
+  if (config.others == OtherSearch::Suspects) return;
   if (others.microphones) others_.push_back({Record::Heard, heard, SearchedArea(heard)});
   if (others.co2_probe) others_.push_back({Record::Smelt, smelt, SearchedArea(smelt)});
 }

@@ -16,6 +16,10 @@ namespace rubble::explore {
 /// wall, for there will be more of them.
 enum class SquareLook { Never, Holes, Always };
 
+/// How far microphones and a CO2 probe make the robot drive: to what they may have told of only, or until all floor was
+/// listened to and smelt as well.
+enum class OtherSearch { Suspects, Everywhere };
+
 /// What the explorer counts on from the robot's victim sensors.
 struct SearchConfig {
   bool on = true;                           ///< look for victims everywhere before finishing
@@ -27,6 +31,7 @@ struct SearchConfig {
   double stare = 3.0;                       ///< a cue not yet confirmed holds the robot so long [s]
   int stares = 1;                           ///< cues in different places do, within four times that
   SquareLook squarely = SquareLook::Holes;  ///< in the end, look squarely at each face as well
+  OtherSearch others = OtherSearch::Suspects;
   double dwell = 1.2;                       ///< time at a viewpoint, facing the place to search [s]
 };
 

@@ -117,7 +117,9 @@ void VictimWatch::judge_holes(const Traversable& floor, const slam::CountMap& ma
 }
 
 bool VictimWatch::look(const Traversable& floor, const TPose2D& T_map_base, double turn_rate, Stamp now) {
-  return !unsure() && search_.look(floor, T_map_base, turn_rate, now);
+  if (unsure() || !search_.look(floor, T_map_base, turn_rate, now)) return false;
+  faint_.stood({now, T_map_base});
+  return true;
 }
 
 bool VictimWatch::holds_still(const Traversable& floor, const TPose2D& T_map_base, Stamp now) {

@@ -129,6 +129,8 @@ void settle(RobotFile& file, const robot::RobotModel& devices) {
   model.T_base_laser.yaw = devices.T_base_laser.yaw;
   model.has_levelling_unit = devices.has_levelling_unit;
   file.settings.has_arena = false;
+  // No driver tells of victims: floor that nothing can hear or smell is not to be searched so.
+  file.settings.sim.microphones = file.settings.sim.co2_probe = false;
   file.settings.levelling.on = file.settings.levelling.on && model.has_levelling_unit;
   robot::RealRobotSettings& robot = file.robot;
   robot.model = model;

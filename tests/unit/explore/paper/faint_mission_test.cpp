@@ -75,7 +75,9 @@ FaintOutcome faint_mission(CueKind kind, std::uint64_t seed) {
   const robot::RobotModel model;
   test::MazeRobot robot(maze, model);
   slam::PaperMapper mapper(model, test::exact_mapper(), 1);
-  PaperExplorer explorer(model, {}, {1500.0, {kind == CueKind::Sound, kind == CueKind::Co2}});
+  PaperExplorerConfig config;
+  config.search.others = OtherSearch::Everywhere;
+  PaperExplorer explorer(model, config, {1500.0, {kind == CueKind::Sound, kind == CueKind::Co2}});
   robot::Commands commands;
   while (robot.now().seconds() < 1500.0 && !explorer.finished()) {
     robot::Inputs inputs = robot.step(commands);

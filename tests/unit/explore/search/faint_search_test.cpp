@@ -52,6 +52,12 @@ struct Drive {
       look({p.x, p.y, std::atan2(way.y, way.x)});
     }
   }
+  /// A false alarm of the probe that stands at `pose`, as if `place` was smelt.
+  void smell_what_is_not(const TPose2D& pose, const TPoint2D& place) {
+    seconds_ += 0.5;
+    const TPoint2D at = pose.inverseComposePoint(place);
+    add({Stamp::from_seconds(seconds_), CueKind::Co2, std::atan2(at.y, at.x), at.norm(), 0.2}, pose);
+  }
   void stand(const TPose2D& pose, int looks) {
     for (int i = 0; i < looks; ++i) look(pose);
   }
@@ -275,6 +281,86 @@ TEST(FaintSearch, WhatIsSmeltIsNotTakenForWhatIsHeardNearby) {
     two += places.size() == 2 && has({3.0, 0.9}) && has({3.0, -0.5}) ? 1 : 0;
   }
   EXPECT_GE(two, 28);
+}
+
+/// Each of its cues may well be of the victim that cries a metre away; together they are not.
+TEST(FaintSearch, WhatIsSmeltFromOneStandIsSetApartFromWhatCriesNearby) {
+  int two = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const TPoint2D heard{3.3, 0.75}, smelt{3.7, -0.1};
+    Drive drive(seed, {heard}, {smelt});
+    drive.go({0.0, 0.0}, {2.9, 0.0});
+    drive.stand({2.95, 0.0, 0.2}, 12);
+    drive.go({2.9, 0.0}, {0.0, 0.0});
+    const auto places = sure(drive.search);
+    const auto has = [&](const TPoint2D& v) {
+      return std::any_of(places.begin(), places.end(),
+                         [&](const FaintSearch::Place& place) { return distance(v, place.p_map) < 0.5; });
+    };
+    two += places.size() == 2 && has(heard) && has(smelt) ? 1 : 0;
+  }
+  EXPECT_GE(two, 34);
+}
+
+/// What two false alarms leave beside a victim that cries takes a share of its cues, and gives it back.
+TEST(FaintSearch, StrayCo2DoesNotMakeTwoOfOneThatCries) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    Drive drive(seed, {{3.0, 1.0}}, {});
+    drive.go({0.0, 0.0}, {3.0, 0.0});
+    drive.smell_what_is_not({3.0, 0.0, 0.0}, {3.6, 0.3});
+    for (int i = 0; i < 3; ++i) {
+      drive.go({3.0, 0.0}, {6.0, 0.0});
+      drive.go({6.0, 0.0}, {0.0, 0.0});
+      drive.go({0.0, 0.0}, {3.0, 0.0});
+      drive.smell_what_is_not({3.0, 0.0, 0.0}, {3.5, 0.4});
+    }
+    const auto places = sure(drive.search);
+    ASSERT_EQ(places.size(), 1u);
+    EXPECT_LT(distance(places[0].p_map, {3.0, 1.0}), 0.5);
+  }
+}
+
+/// Stray cues of two senses that meet somewhere are no victim.
+TEST(FaintSearch, AFewCuesOfTwoSensesAreNoVictim) {
+  FaintSearch search;
+  std::vector<FaintSearch::Seen> seen;
+  const TPoint2D place{1.0, 0.5};
+  int i = 0;
+  const auto sense = [&](CueKind kind, const TPose2D& pose) {
+    const TPoint2D at = pose.inverseComposePoint(place);
+    search.add({Stamp::from_seconds(++i), kind, std::atan2(at.y, at.x), std::hypot(at.x, at.y), 0.3},
+               {Stamp::from_seconds(i), pose});
+    search.sort(seen, kOpen);
+  };
+  for (const double x : {0.0, 0.7, 1.4, 2.0}) sense(CueKind::Sound, {x, 0.0, 0.0});
+  for (const double x : {0.6, 1.2}) sense(CueKind::Co2, {x, 0.0, 0.0});
+  ASSERT_EQ(search.places().size(), 1u);
+  EXPECT_GE(search.places()[0].evidence, 1.0);
+  EXPECT_FALSE(search.places()[0].sure);
+  sense(CueKind::Co2, {1.0, 0.0, 0.0});
+  EXPECT_TRUE(search.places()[0].sure);
+}
+
+/// False alarms of hours meet somewhere; a victim there would be told of whenever the robot is close.
+TEST(FaintSearch, APlaceThatIsSilentFromNearIsNoVictim) {
+  for (const CueKind kind : {CueKind::Sound, CueKind::Co2})
+    for (const bool silent : {false, true}) {
+      SCOPED_TRACE(silent);
+      FaintSearch search;
+      std::vector<FaintSearch::Seen> seen;
+      const TPoint2D place{1.0, 0.4};
+      int i = 0;
+      for (const double x : {0.6, 1.4, 0.7, 1.3, 0.65, 1.35, 0.75, 1.25, 0.8, 1.2}) {
+        const TPose2D pose{x, 0.0, 0.5 * kPi};
+        for (int look = 0; look < (silent ? 8 : 2); ++look) search.stood({Stamp::from_seconds(++i), pose});
+        const TPoint2D at = pose.inverseComposePoint(place);
+        search.add({Stamp::from_seconds(i), kind, std::atan2(at.y, at.x), at.norm(), 0.3},
+                   {Stamp::from_seconds(i), pose});
+        search.sort(seen, kOpen);
+      }
+      EXPECT_EQ(sure(search).size(), silent ? 0u : 1u);
+    }
 }
 
 /// A place that was visited in vain is not visited again until more is told of it.
