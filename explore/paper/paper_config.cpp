@@ -44,7 +44,7 @@ void bind(Binder& b, PaperExplorerConfig& c) {
     v.number("range_m", c.search.range, 0.3, 20.0);
     v.integer("min_cells", c.search.min_cells, 1, 100000);
     v.choice("squarely", c.search.squarely, {"never", "holes", "always"});
-    v.choice("other_senses", c.search.others, {"suspects", "everywhere"});
+    v.choice("other_senses", c.search.other_senses, {"suspects", "everywhere"});
     v.boolean("low_walls", c.search.low_walls);
     v.number("stare_s", c.search.stare, 0.0, 60.0);
     v.integer("stares", c.search.stares, 1, 100);

@@ -32,10 +32,11 @@ constexpr double kBeside = 1.0;         ///< what lies so near to a place may be
 constexpr double kOneSense = 0.75;      ///< of a victim's evidence is of one sense
 constexpr double kSameStand = 0.15;     ///< a robot that moved less stood [m]
 constexpr double kSameHeading = deg_to_rad(15.0);  ///< and turned less
+constexpr double kSameTime = 5.0;                  ///< no stand is longer [s]
 constexpr double kSurelyHeard = 1.2;  ///< from so near a victim is heard in most looks, through walls as well [m]
 constexpr double kSurelySmelt = 0.7;  ///< from so near it is smelt, ahead and without a wall between [m] ...
 constexpr double kBeforeNose = deg_to_rad(75.0);
-constexpr double kTellsOf = 0.2;  ///< in fewer of these looks nothing is told of a victim
+constexpr double kTellsOf = 0.2;  ///< cues a tick of the search, of which a sense looks in 0.7: fewer are no victim's
 constexpr double kShare = 0.4;    ///< of its evidence, or more, is another victim
 constexpr double kKept = 0.5;     ///< of a victim's evidence: it is one no longer when less is left
 constexpr double kVisit = 0.8;    ///< what lies within this of a place that was visited was visited too [m]
@@ -62,6 +63,10 @@ Line line_to(const TPoint2D& from, double bearing, double range, const TPoint2D&
   line.distance = std::max(std::hypot(dx, dy), kNearest);
   line.x = dx / line.distance;
   line.y = dy / line.distance;
+  if (dx == 0.0 && dy == 0.0) {  // on the spot: the cue's own direction
+    line.x = std::cos(bearing);
+    line.y = std::sin(bearing);
+  }
   line.across = wrap_angle(bearing - std::atan2(dy, dx)) * line.distance;
   line.beyond = range - line.distance;
   return line;
@@ -186,6 +191,7 @@ void FaintSearch::open_places() {
       most = evidence;
       best.p_map = p;
     }
+    if (most == 0.0) return;  // cues too near to tell anything
     std::vector<const Cue*> own;
     const int index = static_cast<int>(places_.size());
     for (Cue& cue : cues_)
@@ -303,7 +309,7 @@ void FaintSearch::join_places(std::vector<Seen>& seen, const HiddenFn& hidden) {
       for (std::size_t k = 0; k < seen.size(); ++k) {
         const int owner = -2 - static_cast<int>(k);
         if (!explained(owner, seen[k].p_map, nullptr, cues)) continue;
-        if (places_[i].sure && (seen[k].is_also == 0 || places_[i].id < seen[k].is_also))
+        if (hands_over_number(places_[i], whole) && (seen[k].is_also == 0 || places_[i].id < seen[k].is_also))
           seen[k].is_also = places_[i].id;
         give(own, owner, whole);
         return true;
@@ -311,7 +317,7 @@ void FaintSearch::join_places(std::vector<Seen>& seen, const HiddenFn& hidden) {
       for (std::size_t k = 0; k < i; ++k) {
         Place joint = places_[k];
         if (!explained(static_cast<int>(k), joint.p_map, &joint, cues)) continue;
-        take_over(joint, places_[i]);
+        take_over(joint, places_[i], whole);
         places_[k] = joint;
         give(own, static_cast<int>(k), whole);
         return true;
@@ -322,27 +328,39 @@ void FaintSearch::join_places(std::vector<Seen>& seen, const HiddenFn& hidden) {
   }
 }
 
-/// What is known of a place that turned out to be the same.
-void FaintSearch::take_over(Place& place, const Place& other) {
-  if (other.sure && (!place.sure || other.id < place.id)) {
-    place.id = other.id;
-    place.confirmed = other.confirmed;
+/// Whether a victim's number goes with what is given away: with all of its cues, or with what was heard where that made
+/// it a victim.
+bool FaintSearch::hands_over_number(const Place& place, bool whole) const {
+  return place.sure && (whole || place.co2 * config_.co2.evidence < 1.0);
+}
+
+/// What is known of a place that turned out to be the same, or in part.
+void FaintSearch::take_over(Place& place, const Place& other, bool whole) const {
+  if (hands_over_number(other, whole)) {
+    if (!place.sure || other.id < place.id) {
+      place.id = other.id;
+      place.confirmed = other.confirmed;
+    }
+    place.sure = true;
   }
-  place.sure = place.sure || other.sure;
+  if (!whole) return;  // nobody went there for what was heard
   place.looked_at = std::max(place.looked_at, other.looked_at);
   place.visited_from.insert(place.visited_from.end(), other.visited_from.begin(), other.visited_from.end());
 }
 
-/// All cues of a place to another owner, and the place is gone; or what is heard alone, and it is that of what is
-/// smelt.
+/// All cues of a place to another owner, and the place is gone; or what was heard alone, and what was smelt stays.
 void FaintSearch::give(int place, int owner, bool whole) {
   for (Cue& cue : cues_)
     if (cue.owner == place && (whole || cue.kind == CueKind::Sound)) cue.owner = owner;
   if (whole) return remove(static_cast<std::size_t>(place));
   Place& left = places_[static_cast<std::size_t>(place)];
-  left.sure = false;
-  if (owner >= 0 && left.id == places_[static_cast<std::size_t>(owner)].id) left.id = 0;
-  fit(left, cues_of(place));
+  if (hands_over_number(left, whole)) {
+    left.sure = false;
+    left.id = 0;
+  }
+  const std::vector<const Cue*> smelt = cues_of(place);
+  fit(left, smelt);
+  count(left, smelt);
 }
 
 /// Of each owner's cues the newest stay.
@@ -374,32 +392,39 @@ void FaintSearch::count(Place& place, const std::vector<const Cue*>& cues) const
 }
 
 void FaintSearch::stood(const Anchor& anchor) {
+  const TPoint2D here = position(anchor.T_map_base);
+  if (std::none_of(places_.begin(), places_.end(),
+                   [&](const Place& place) { return !place.sure && distance(place.p_map, here) < kSurelyHeard; }))
+    return;
   if (!stands_.empty()) {
     Stand& last = stands_.back();
     const double turned = std::abs(wrap_angle(anchor.T_map_base.phi - last.anchor.T_map_base.phi));
-    if (distance(position(anchor.T_map_base), position(last.anchor.T_map_base)) < kSameStand && turned < kSameHeading) {
-      ++last.looks;
+    if (distance(here, position(last.anchor.T_map_base)) < kSameStand && turned < kSameHeading &&
+        anchor.stamp - last.anchor.stamp < kSameTime) {
+      ++last.ticks;
       return;
     }
   }
   stands_.push_back({anchor, 1});
 }
 
-/// Whether a sense told too seldom of a place for a victim there, from where nothing keeps it from telling.
-bool FaintSearch::refuted(const Place& place, CueKind kind, const HiddenFn& hidden) const {
-  int looks = 0;
+/// Whether a sense told too seldom of a place for a victim there, from where nothing keeps it from telling: since the
+/// oldest of the cues that it is known by.
+bool FaintSearch::refuted(const Place& place, CueKind kind, const std::vector<const Cue*>& cues,
+                          const HiddenFn& hidden) const {
+  if (cues.empty()) return false;
+  const Stamp since = cues.front()->anchor.stamp;  // cues are kept in the order in which they came
+  int ticks = 0;
   for (const Stand& stand : stands_) {
     const TPose2D& pose = stand.anchor.T_map_base;
     const double far = distance(position(pose), place.p_map);
-    if (kind == CueKind::Sound) {
-      looks += far < kSurelyHeard ? stand.looks : 0;
-      continue;
-    }
+    if (stand.anchor.stamp < since || far > (kind == CueKind::Sound ? kSurelyHeard : kSurelySmelt)) continue;
     const TPoint2D at = pose.inverseComposePoint(place.p_map);
-    const bool smelt = far < kSurelySmelt && std::abs(std::atan2(at.y, at.x)) < kBeforeNose;
-    looks += smelt && !hidden(position(pose), place.p_map) ? stand.looks : 0;
+    const bool tells = kind == CueKind::Sound ||
+                       (std::abs(std::atan2(at.y, at.x)) < kBeforeNose && !hidden(position(pose), place.p_map));
+    ticks += tells ? stand.ticks : 0;
   }
-  return (kind == CueKind::Sound ? place.sound : place.co2) < kTellsOf * looks;
+  return static_cast<double>(cues.size()) < kTellsOf * ticks;
 }
 
 /// A place becomes a victim. A few cues beside one that has many are what these err by, and none.
@@ -416,14 +441,17 @@ void FaintSearch::confirm(Place& place, const std::vector<Seen>& seen, const Hid
                              }) ||
                  std::any_of(seen.begin(), seen.end(),
                              [&](const Seen& victim) { return overshadows(victim.p_map, victim.sound, victim.co2); });
-  const double heard = place.sound * config_.sound.evidence, smelt = place.co2 * config_.co2.evidence;
+  const double heard = place.sound * config_.sound.evidence;
+  // A single one may be of a neighbour, or of nobody.
+  const double smelt = place.co2 > 1 ? place.co2 * config_.co2.evidence : 0.0;
   // Stray cues of two senses meet somewhere.
   if (place.beside || heard + smelt < 1.0 || std::max(heard, smelt) < kOneSense) return;
   if (worst_sigma(place.covariance) > config_.sure) return;
-  const double told =
-      (refuted(place, CueKind::Sound, hidden) ? 0.0 : heard) + (refuted(place, CueKind::Co2, hidden) ? 0.0 : smelt);
+  if (smelt < kOneSense && place.base < config_.base) return;
+  const std::vector<const Cue*> cues = cues_of(static_cast<int>(&place - places_.data()));
+  const double told = (refuted(place, CueKind::Sound, of_kind(CueKind::Sound, cues), hidden) ? 0.0 : heard) +
+                      (refuted(place, CueKind::Co2, of_kind(CueKind::Co2, cues), hidden) ? 0.0 : smelt);
   if (told < kOneSense) return;
-  if (place.co2 == 0 && place.base < config_.base) return;
   place.sure = true;
   place.confirmed = place.newest;
 }
@@ -449,7 +477,10 @@ void FaintSearch::sort(std::vector<Seen>& seen, const HiddenFn& hidden) {
 void FaintSearch::follow(const slam::Mapper& mapper) {
   for (Cue& cue : cues_) cue.anchor.follow(mapper);
   for (Stand& stand : stands_) stand.anchor.follow(mapper);
+  for (Place& place : places_)
+    for (Anchor& from : place.visited_from) from.follow(mapper);
   refit();
+  for (std::size_t i = 0; i < places_.size(); ++i) count(places_[i], cues_of(static_cast<int>(i)));
 }
 
 bool FaintSearch::suspect(const Place& place) const {
@@ -464,7 +495,7 @@ bool FaintSearch::undecided(Stamp now, double age) const {
   });
 }
 
-void FaintSearch::visited(const TPoint2D& place, const TPoint2D& from) {
+void FaintSearch::visited(const TPoint2D& place, const Anchor& from) {
   for (Place& p : places_) {
     if (p.sure || distance(p.p_map, place) > kVisit) continue;
     p.looked_at = p.evidence;

@@ -55,7 +55,7 @@ class FaintSearch {
     Stamp newest = Stamp::never();                   ///< its newest cue
     Stamp smelt = Stamp::never();                    ///< its newest one of CO2
     double looked_at = -1.0;                         ///< its evidence when it was visited last; < 0: never
-    std::vector<mrpt::math::TPoint2D> visited_from;  ///< [m]
+    std::vector<Anchor> visited_from;
   };
   /// A victim that was seen, and what of its cues was heard or smelt.
   struct Seen {
@@ -73,9 +73,9 @@ class FaintSearch {
   static bool takes(robot::CueKind kind) { return kind == robot::CueKind::Sound || kind == robot::CueKind::Co2; }
   /// Takes a cue that was sensed from `anchor`; `covariance`: of that pose.
   void add(const robot::VictimCue& cue, const Anchor& anchor, const PoseCovariance& covariance = {});
-  /// The robot's senses were at work for a moment, told of or not: they would have told of a victim close by.
+  /// A tick of the search: the senses were at work, and would have told of a victim close by.
   void stood(const Anchor& anchor);
-  /// Sorts all cues to the victims seen and to places of their own.
+  /// Sorts all cues to the victims seen (whose counts are 0) and to places of their own.
   void sort(std::vector<Seen>& seen, const HiddenFn& hidden);
   /// The mapper corrected its past.
   void follow(const slam::Mapper& mapper);
@@ -87,7 +87,7 @@ class FaintSearch {
   /// True when something was smelt within the last `age` [s] that may be a victim.
   bool undecided(Stamp now, double age) const;
   /// The robot stood at `from` for a while, near a place that may be a victim.
-  void visited(const mrpt::math::TPoint2D& place, const mrpt::math::TPoint2D& from);
+  void visited(const mrpt::math::TPoint2D& place, const Anchor& from);
 
  private:
   struct Cue {
@@ -99,6 +99,12 @@ class FaintSearch {
 
     mrpt::math::TPoint2D from() const { return {anchor.T_map_base.x, anchor.T_map_base.y}; }
     double bearing_map() const { return wrap_angle(anchor.T_map_base.phi + bearing); }
+  };
+
+  /// Moments in which the robot stood at about the same place.
+  struct Stand {
+    Anchor anchor;
+    int ticks;  ///< of the search, some three a second
   };
 
   const FaintSense& sense(robot::CueKind kind) const {
@@ -135,19 +141,16 @@ class FaintSearch {
   bool are_two(const std::vector<const Cue*>& a, const mrpt::math::TPoint2D& p_a, const std::vector<const Cue*>& b,
                const mrpt::math::TPoint2D& p_b, const mrpt::math::TPoint2D& p, const HiddenFn& hidden) const;
   void set_apart(const std::vector<Seen>& seen, const HiddenFn& hidden);
-  static void take_over(Place& place, const Place& other);
+  bool hands_over_number(const Place& place, bool whole) const;
+  void take_over(Place& place, const Place& other, bool whole) const;
   void give(int place, int owner, bool whole);
   void remove(std::size_t index);
   void forget();
   void count(Place& place, const std::vector<const Cue*>& cues) const;
   void confirm(Place& place, const std::vector<Seen>& seen, const HiddenFn& hidden) const;
 
-  /// Moments in which the robot stood at about the same place.
-  struct Stand {
-    Anchor anchor;
-    int looks;
-  };
-  bool refuted(const Place& place, robot::CueKind kind, const HiddenFn& hidden) const;
+  bool refuted(const Place& place, robot::CueKind kind, const std::vector<const Cue*>& cues,
+               const HiddenFn& hidden) const;
 
   FaintSearchConfig config_;
   std::vector<Stand> stands_;

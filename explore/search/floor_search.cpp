@@ -96,7 +96,7 @@ FloorSearch::FloorSearch(const SearchConfig& config, double room, double tight, 
   heard.range = kHearing;
   smelt.field_of_view = kNose;
   smelt.range = kSmelling;
-  if (config.others == OtherSearch::Suspects) return;
+  if (config.other_senses == OtherSearch::Suspects) return;
   if (others.microphones) others_.push_back({Record::Heard, heard, SearchedArea(heard)});
   if (others.co2_probe) others_.push_back({Record::Smelt, smelt, SearchedArea(smelt)});
 }

@@ -31,8 +31,8 @@ struct SearchConfig {
   double stare = 3.0;                       ///< a cue not yet confirmed holds the robot so long [s]
   int stares = 1;                           ///< cues in different places do, within four times that
   SquareLook squarely = SquareLook::Holes;  ///< in the end, look squarely at each face as well
-  OtherSearch others = OtherSearch::Suspects;
-  double dwell = 1.2;                       ///< time at a viewpoint, facing the place to search [s]
+  OtherSearch other_senses = OtherSearch::Suspects;  ///< what they make the robot drive to
+  double dwell = 1.2;                                ///< time at a viewpoint, facing the place to search [s]
 };
 
 /// What has to be looked at in a cell of free floor, and what was: the floor itself, and the face of a wall at each of

@@ -75,8 +75,12 @@ void VictimWatch::sort_faint(const Traversable& floor) {
 
 void VictimWatch::tell_suspects() {
   std::vector<Suspect> suspects;
-  for (const FaintSearch::Place& place : faint_.places())
-    if (faint_.suspect(place)) suspects.push_back({place.p_map, place.visited_from});
+  for (const FaintSearch::Place& place : faint_.places()) {
+    if (!faint_.suspect(place)) continue;
+    Suspect suspect{place.p_map, {}};
+    for (const Anchor& from : place.visited_from) suspect.visited_from.push_back(position(from.T_map_base));
+    suspects.push_back(std::move(suspect));
+  }
   search_.set_suspects(std::move(suspects));
 }
 
@@ -132,13 +136,13 @@ bool VictimWatch::holds_still(const Traversable& floor, const TPose2D& T_map_bas
   if (stared && !stares_ && smelt_at_ - stares_since_ >= kVisit) {
     for (const FaintSearch::Place& place : std::vector<FaintSearch::Place>(faint_.places()))
       if (!place.sure && place.smelt != Stamp::never() && now - place.smelt < kStaredAge)
-        faint_.visited(place.p_map, position(T_map_base));
+        faint_.visited(place.p_map, {now, T_map_base});
     tell_suspects();
   }
   if (stares_) return true;
   if (search_.dwelling(floor, T_map_base, now)) return true;
   if (const auto place = search_.visited_suspect()) {
-    faint_.visited(*place, position(T_map_base));
+    faint_.visited(*place, {now, T_map_base});
     tell_suspects();
   }
   return false;

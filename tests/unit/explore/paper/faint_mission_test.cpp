@@ -60,7 +60,7 @@ struct FaintOutcome {
 };
 
 /// Four victims in a maze of 5 x 5 pallets, each at a wall of its pallet.
-FaintOutcome faint_mission(CueKind kind, std::uint64_t seed) {
+FaintOutcome faint_mission(CueKind kind, std::uint64_t seed, OtherSearch search = OtherSearch::Everywhere) {
   const test::Maze maze = test::random_maze(5, 5, 0.2, seed);
   FaintSenses senses{maze, {}, kind, Rng(seed, "senses")};
   for (const auto& [column, row] : {std::pair<int, int>{4, 4}, {0, 4}, {4, 0}, {2, 2}}) {
@@ -76,7 +76,7 @@ FaintOutcome faint_mission(CueKind kind, std::uint64_t seed) {
   test::MazeRobot robot(maze, model);
   slam::PaperMapper mapper(model, test::exact_mapper(), 1);
   PaperExplorerConfig config;
-  config.search.others = OtherSearch::Everywhere;
+  config.search.other_senses = search;
   PaperExplorer explorer(model, config, {1500.0, {kind == CueKind::Sound, kind == CueKind::Co2}});
   robot::Commands commands;
   while (robot.now().seconds() < 1500.0 && !explorer.finished()) {
@@ -112,6 +112,24 @@ TEST(FaintMission, VictimsThatAreOnlyHeardAreFoundAndNoOthers) {
     EXPECT_EQ(run.end, MissionEnd::Home);
     EXPECT_NE(run.reason.find("all visible floor searched and listened to"), std::string::npos) << run.reason;
   }
+}
+
+/// What these senses tell of on the way is visited, and nothing else is driven to for them.
+TEST(FaintMission, ByItselfTheRobotGoesWhereTheseSensesPointTo) {
+  ASSERT_EQ(PaperExplorerConfig{}.search.other_senses, OtherSearch::Suspects);
+  int heard = 0, smelt = 0;
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    SCOPED_TRACE(seed);
+    for (const CueKind kind : {CueKind::Sound, CueKind::Co2}) {
+      const FaintOutcome run = faint_mission(kind, seed, OtherSearch::Suspects);
+      (kind == CueKind::Sound ? heard : smelt) += run.found;
+      EXPECT_EQ(run.wrong, 0);
+      EXPECT_EQ(run.end, MissionEnd::Home);
+      EXPECT_NE(run.reason.find("all visible floor searched, home again"), std::string::npos) << run.reason;
+    }
+  }
+  EXPECT_EQ(heard, 12);
+  EXPECT_GE(smelt, 6);
 }
 
 TEST(FaintMission, VictimsThatAreOnlySmeltAreFoundAndNoOthers) {

@@ -65,6 +65,7 @@ struct Drive {
  private:
   void look(const TPose2D& pose) {
     seconds_ += 0.5;
+    search.stood({Stamp::from_seconds(seconds_), pose});
     const auto sense = [&](const std::vector<TPoint2D>& victims, CueKind kind, double range, double miss,
                            double alarm) {
       for (const TPoint2D& victim : victims) {
@@ -342,6 +343,62 @@ TEST(FaintSearch, AFewCuesOfTwoSensesAreNoVictim) {
   EXPECT_TRUE(search.places()[0].sure);
 }
 
+/// What cries beside one that is smelt, and is seen later, gets its cues; the smelt one keeps its number for itself.
+TEST(FaintSearch, OneThatIsSeenDoesNotTakeTheNumberOfOneThatIsSmelt) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    const TPoint2D cries{3.0, 1.3}, smelt{3.0, -0.1};
+    Drive drive(seed, {cries}, {smelt});
+    drive.go({0.0, 0.0}, {2.5, 0.0});
+    drive.stand({2.5, 0.0, 0.0}, 12);
+    int number = 0;
+    for (FaintSearch::Place& place : drive.search.places())
+      if (place.sure) place.id = ++number;
+    drive.seen.push_back({100, cries});
+    for (int i = 0; i < 3; ++i) {
+      drive.go({2.5, 0.0}, {0.0, 0.0});
+      drive.go({0.0, 0.0}, {2.5, 0.0});
+    }
+    const auto places = sure(drive.search);
+    for (const FaintSearch::Place& place : places) {
+      EXPECT_TRUE(place.id == 0 || place.id != drive.seen[0].is_also) << place.id;
+      for (const FaintSearch::Place& other : places)
+        EXPECT_TRUE(&place == &other || place.id == 0 || place.id != other.id);
+    }
+  }
+}
+
+/// However long the robot waits beside it: only the newest cues are kept, and only what was silent meanwhile counts.
+TEST(FaintSearch, OneThatCriesForLongIsFound) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    Drive drive(seed, {{3.0, 0.8}}, {});
+    drive.stand({3.0, 0.0, 0.0}, 400);
+    EXPECT_TRUE(sure(drive.search).empty()) << "heard from one place alone";
+    drive.go({3.0, 0.0}, {4.5, 0.0});
+    EXPECT_EQ(sure(drive.search).size(), 1u);
+  }
+}
+
+/// A cue of CO2 from elsewhere does not stand for a second place to hear from.
+TEST(FaintSearch, ASingleCueOfCo2SaysNothing) {
+  FaintSearch search;
+  std::vector<FaintSearch::Seen> seen;
+  const TPoint2D place{0.7, 0.2};
+  const TPose2D pose{0.0, 0.0, 0.0};
+  int i = 0;
+  const auto sense = [&](CueKind kind) {
+    search.add({Stamp::from_seconds(++i), kind, std::atan2(place.y, place.x), place.norm(), 0.3},
+               {Stamp::from_seconds(i), pose});
+    search.sort(seen, kOpen);
+  };
+  for (int k = 0; k < 7; ++k) sense(CueKind::Sound);
+  sense(CueKind::Co2);
+  ASSERT_EQ(search.places().size(), 1u);
+  EXPECT_GE(search.places()[0].evidence, 1.0);
+  EXPECT_FALSE(search.places()[0].sure);
+}
+
 /// False alarms of hours meet somewhere; a victim there would be told of whenever the robot is close.
 TEST(FaintSearch, APlaceThatIsSilentFromNearIsNoVictim) {
   for (const CueKind kind : {CueKind::Sound, CueKind::Co2})
@@ -379,7 +436,7 @@ TEST(FaintSearch, ASuspectIsVisitedOnce) {
   EXPECT_FALSE(search.undecided(Stamp::from_seconds(2.0), 1.2));
   smell(1);
   EXPECT_TRUE(search.suspect(search.places()[0]));
-  search.visited({0.6, 0.0}, position(pose));
+  search.visited({0.6, 0.0}, {Stamp::from_seconds(1.0), pose});
   EXPECT_FALSE(search.suspect(search.places()[0]));
   EXPECT_FALSE(search.undecided(Stamp::from_seconds(1.0), 1.2));
 }
@@ -402,6 +459,25 @@ TEST(FaintSearch, PlacesFollowThePosesTheyWereHeardFrom) {
   mapper.correct(Stamp::from_seconds(100.0), shift);
   search.follow(mapper);
   EXPECT_NEAR(distance(search.places()[0].p_map, shift.composePoint(before)), 0.0, 0.01);
+}
+
+TEST(FaintSearch, WhereAPlaceWasVisitedFromFollowsTheMap) {
+  test::PlantedMapper mapper;
+  FaintSearch search;
+  std::vector<FaintSearch::Seen> seen;
+  const TPose2D pose{1.0, 0.0, 0.0};
+  mapper.plant(Stamp::from_seconds(1.0), pose);
+  for (int i = 0; i < 2; ++i) {
+    search.add({Stamp::from_seconds(1.0), CueKind::Co2, 0.1, 0.6, 0.4}, {Stamp::from_seconds(1.0), pose});
+    search.sort(seen, kOpen);
+  }
+  search.visited(search.places()[0].p_map, {Stamp::from_seconds(1.0), pose});
+  const TPose2D shift{0.4, -0.3, deg_to_rad(12.0)};
+  mapper.correct(Stamp::from_seconds(100.0), shift);
+  search.follow(mapper);
+  ASSERT_EQ(search.places()[0].visited_from.size(), 1u);
+  EXPECT_NEAR(distance(position(search.places()[0].visited_from[0].T_map_base), shift.composePoint({1.0, 0.0})), 0.0,
+              1e-9);
 }
 
 }  // namespace

@@ -286,7 +286,7 @@ TEST(VictimWatch, EachSenseHasToSearchTheFloor) {
     config.faces = false;
     config.field_of_view = 2.0 * kPi;
     config.range = 3.0;
-    config.others = OtherSearch::Everywhere;
+    config.other_senses = OtherSearch::Everywhere;
     FloorSearch search(config, 0.3, 0.3, {false, probe});
     double t = 0.0;
     const auto stand = [&](double x, double heading) {

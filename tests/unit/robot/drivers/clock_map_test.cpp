@@ -1,4 +1,4 @@
-// TickingDevice clocks against the computer's: drift, jitter, wraps and restarts.
+// Device clocks against the computer's: drift, jitter, wraps and restarts.
 #include "robot/drivers/clock_map.h"
 
 #include <gtest/gtest.h>

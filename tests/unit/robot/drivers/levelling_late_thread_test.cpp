@@ -67,8 +67,14 @@ void expect_the_same(const LateDrive& drive) {
   for (std::size_t i = 0; i < replayed.accelerations.size(); ++i) {
     EXPECT_EQ(replayed.accelerations[i].stamp.ns, drive.accelerations[i].stamp.ns) << i;
     EXPECT_EQ(replayed.accelerations[i].x, drive.accelerations[i].x) << i;
+    EXPECT_EQ(replayed.accelerations[i].y, drive.accelerations[i].y) << i;
   }
   ASSERT_EQ(replayed.aims.size(), drive.aims.size());
+  for (std::size_t i = 0; i < replayed.aims.size(); ++i) {
+    EXPECT_EQ(replayed.aims[i].stamp.ns, drive.aims[i].stamp.ns) << i;
+    EXPECT_EQ(replayed.aims[i].pitch, drive.aims[i].pitch) << i;
+    EXPECT_EQ(replayed.aims[i].roll, drive.aims[i].roll) << i;
+  }
 }
 
 /// It reads first what came meanwhile; at its deadline, by the clock, the driver would have given the unit up.
