@@ -3,7 +3,9 @@
 #include <mrpt/math/TPoint2D.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -38,5 +40,14 @@ struct VictimReport {
   std::vector<robot::CueKind> cues;  ///< kinds seen, ascending
   PlaceCovariance covariance;        ///< of p_map: of its cues, and of the poses they were sensed from
 };
+
+/// The senses that told of a victim: "appearance heat".
+inline std::string senses(const VictimReport& victim) {
+  static constexpr std::array<const char*, 4> kKinds = {"appearance", "heat", "sound", "co2"};
+  std::string text;
+  for (const robot::CueKind kind : victim.cues)
+    text += (text.empty() ? "" : " ") + std::string(kKinds.at(static_cast<std::size_t>(kind)));
+  return text;
+}
 
 }  // namespace rubble::explore

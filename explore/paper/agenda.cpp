@@ -27,21 +27,16 @@ constexpr double kFarther = 4.0;                 ///< the next place costs so mu
 constexpr double kWandered = 0.5;                ///< nearer to its place, a turn has carried it off [m]
 constexpr double kSmallShift = 0.10;             ///< of the robot's place by a correction of the map [m]
 
-std::string text(const TPoint2D& p) {
-  std::array<char, 40> line{};
-  std::snprintf(line.data(), line.size(), "(%.1f, %.1f)", p.x, p.y);
-  return line.data();
-}
-
-std::string target_text(Goal goal, bool niches, const Plan& plan, double usual_d_min) {
+/// `search`: what a place to search from is for.
+std::string target_text(Goal goal, bool niches, const char* search, const Plan& plan, double usual_d_min) {
   const char* what = goal == Goal::Home       ? "home"
                      : plan.doubtful          ? "a wall that may be a ramp"
                      : goal == Goal::Frontier ? "the frontier"
                      : niches                 ? "a place to look into a niche from"
-                                              : "a place to search from";
+                                              : search;
   std::array<char, 60> more{};
   std::snprintf(more.data(), more.size(), ", cost %.1f m", plan.cost);
-  const std::string line = std::string("drives to ") + what + " at " + text(plan.target) + more.data();
+  const std::string line = std::string("drives to ") + what + " at " + place_text(plan.target) + more.data();
   if (plan.d_min >= usual_d_min) return line;
   std::snprintf(more.data(), more.size(), ", as near as %.2f m to walls", plan.d_min);
   return line + more.data();
@@ -56,6 +51,12 @@ Order turn(double angle, TurnFor purpose) {
 }
 
 }  // namespace
+
+std::string place_text(const TPoint2D& p) {
+  std::array<char, 40> line{};
+  std::snprintf(line.data(), line.size(), "(%.1f, %.1f)", p.x, p.y);
+  return line.data();
+}
 
 Agenda::Agenda(const PaperExplorerConfig& config)
     : config_(config),
@@ -197,7 +198,8 @@ Order Agenda::decide(Plan plan, bool new_map, const Situation& situation) {
     return visited_in_vain(plan, situation);
   if (!insists_) cost_left_ = plan.cost;
   if (choice_.take(plan))
-    note(situation.now, target_text(goal(), !choice_.frontiers_done(), plan, config_.planner.transform.d_min));
+    note(situation.now, target_text(goal(), !choice_.frontiers_done(), situation.search.purpose(), plan,
+                                    config_.planner.transform.d_min));
   Order order;
   order.kind = Order::Kind::Follow;
   order.plan = std::move(plan);
@@ -225,11 +227,11 @@ Order Agenda::visited_in_vain(const Plan& plan, const Situation& situation) {
   }
   if (plan.doubtful && situation.close_looks &&
       situation.close_looks->judge(situation.floor, situation.robot()) == CloseLooks::Verdict::Floor) {
-    note(situation.now, "the wall looked at from " + text(plan.target) + " is the floor of a slope: seen over");
+    note(situation.now, "the wall looked at from " + place_text(plan.target) + " is the floor of a slope: seen over");
     return stay_and_plan();
   }
   const std::string what = plan.doubtful ? "the wall looked at from " : "the frontier at ";
-  note(situation.now, what + text(plan.target) + " stays although it was visited: left alone");
+  note(situation.now, what + place_text(plan.target) + " stays although it was visited: left alone");
   situation.left_alone.bar_for_good(plan.target, situation.robot());
   choice_.drop_target();
   return stay_and_plan();

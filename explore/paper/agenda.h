@@ -36,6 +36,9 @@ struct Order {
   TurnFor purpose = TurnFor::View;
 };
 
+/// For decisions: "(1.2, -3.4)".
+std::string place_text(const mrpt::math::TPoint2D& p);
+
 /// What there is to do, in order: frontiers, with the niches beside the way; what failed before; all places that were
 /// not looked at; another round; home. Of each plan it makes the next order, and tells in words why.
 ///

@@ -104,9 +104,8 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   // From ramp to ramp the platform lags behind, and its servos do not tell how the body leans.
   if (levelling_.level()) slope_ = robot::slope(stuck_watch_.lean());
   if (levelling_.given_up()) slope_ = 0.0;
-  for (const robot::VictimCue& cue : inputs.cues)
-    if (victims_.hear(cue, mapper, pose_, floor_))
-      agenda_.note(now_, victim_name(victims_.reports().back().id) + " confirmed");
+  for (const robot::VictimCue& cue : inputs.cues) victims_.hear(cue, mapper, pose_, floor_);
+  if (!inputs.cues.empty()) tell_victims();
   // What holds it up on the way will hold it up on the way home as well; what it moves to get free is no way.
   const ExplorerState state = this->state();
   const bool free = state == ExplorerState::Driving || state == ExplorerState::GoingHome;
@@ -116,6 +115,21 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   if (stage_ != Stage::OnTheWay && stage_ != Stage::StraightOn) return;
   left_alone_.passed(pose_, model_);
   trail_.add(now_, pose_, slope_);
+}
+
+/// Which victims are new, and which are none any more: what told of them is of another, or of nobody.
+void PaperExplorer::tell_victims() {
+  std::vector<int> ids;
+  for (const VictimReport& victim : victims_.reports()) {
+    ids.push_back(victim.id);
+    if (!std::binary_search(told_victims_.begin(), told_victims_.end(), victim.id))
+      agenda_.note(now_,
+                   victim_name(victim.id) + " confirmed at " + place_text(victim.p_map) + " by " + senses(victim));
+  }
+  for (const int id : told_victims_)
+    if (!std::binary_search(ids.begin(), ids.end(), id))
+      agenda_.note(now_, victim_name(id) + " was another one, or none");
+  told_victims_ = std::move(ids);
 }
 
 /// Scans of a plane that nobody holds level show walls where floor is: what is seen of victims cannot be placed, and
@@ -279,7 +293,7 @@ bool PaperExplorer::waits_for_mapper() {
     if (next_wait_ != Stamp::never() && now_ < next_wait_) return false;
     waits_since_ = now_;
     next_wait_ = now_ + kWaitAgain;
-    agenda_.note(now_, "the mapper has lost its place: waits for it");
+    agenda_.note(now_, "the pose is in doubt: waits for the mapper");
   }
   return now_ - *waits_since_ < kWaitForMapper;
 }

@@ -59,6 +59,7 @@ class PaperExplorer : public Explorer {
 
   void observe(const slam::Mapper& mapper, const robot::Inputs& inputs);
   void follow_map(const slam::Mapper& mapper);
+  void tell_victims();
   void heed_levelling();
   void heed_battery(const robot::Inputs& inputs);
   void call_it_a_day(const std::string& why);
@@ -118,6 +119,7 @@ class PaperExplorer : public Explorer {
   double blind_ = 0.0;                  ///< the mapper's blind way [m] ...
   std::optional<double> look_back_at_;  ///< ... at which it looks back, if not as usual [m]
   std::vector<mrpt::math::TPoint2D> shown_path_;
+  std::vector<int> told_victims_;  ///< ids, ascending
 };
 
 }  // namespace rubble::explore

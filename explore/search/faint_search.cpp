@@ -357,6 +357,7 @@ void FaintSearch::give(int place, int owner, bool whole) {
   if (hands_over_number(left, whole)) {
     left.sure = false;
     left.id = 0;
+    left.confirmed = Stamp::never();
   }
   const std::vector<const Cue*> smelt = cues_of(place);
   fit(left, smelt);
@@ -453,7 +454,7 @@ void FaintSearch::confirm(Place& place, const std::vector<Seen>& seen, const Hid
                       (refuted(place, CueKind::Co2, of_kind(CueKind::Co2, cues), hidden) ? 0.0 : smelt);
   if (told < kOneSense) return;
   place.sure = true;
-  place.confirmed = place.newest;
+  if (place.confirmed == Stamp::never()) place.confirmed = place.newest;
 }
 
 void FaintSearch::sort(std::vector<Seen>& seen, const HiddenFn& hidden) {

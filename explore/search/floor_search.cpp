@@ -96,6 +96,7 @@ FloorSearch::FloorSearch(const SearchConfig& config, double room, double tight, 
   heard.range = kHearing;
   smelt.field_of_view = kNose;
   smelt.range = kSmelling;
+  by_cameras_ = config.other_senses == OtherSearch::Suspects && (others.microphones || others.co2_probe);
   if (config.other_senses == OtherSearch::Suspects) return;
   if (others.microphones) others_.push_back({Record::Heard, heard, SearchedArea(heard)});
   if (others.co2_probe) others_.push_back({Record::Smelt, smelt, SearchedArea(smelt)});
@@ -113,8 +114,25 @@ SearchedArea& FloorSearch::record(Record record) { return record_of(*this, recor
 
 const SearchedArea& FloorSearch::record(Record record) const { return record_of(*this, record); }
 
+const char* FloorSearch::purpose() const {
+  switch (subject_.record) {
+    case Record::Heard:
+      return "a place to listen from";
+    case Record::Smelt:
+      return "a place to smell from";
+    case Record::Suspect:
+      return "what was heard or smelt and may be a victim,";
+    case Record::Squarely:
+      return "a place to look squarely from";
+    case Record::Anyhow:
+      break;
+  }
+  return "a place to search from";
+}
+
 std::string FloorSearch::done() const {
   std::string text = "all visible floor searched";
+  if (by_cameras_) text += " by cameras";
   for (std::size_t i = 0; i < others_.size(); ++i)
     text += std::string(i + 1 == others_.size() ? " and " : ", ") +
             (others_[i].record == Record::Heard ? "listened to" : "smelt");

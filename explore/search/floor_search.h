@@ -37,6 +37,8 @@ class FloorSearch {
   /// There are victims behind holes in walls.
   void expect_holes() { holes_ = true; }
 
+  /// What the place to face is looked at for, in words: "a place to search from".
+  const char* purpose() const;
   /// What all the searching comes to, in words.
   std::string done() const;
 
@@ -178,6 +180,7 @@ class FloorSearch {
   SearchedArea searched_;
   SearchedArea squarely_;  ///< what was looked at squarely
   FloorInView view_;       ///< of the look under way
+  bool by_cameras_ = false;  ///< the robot has other senses, with which it does not search everywhere
   std::vector<Other> others_;
   std::vector<Suspect> suspects_;
   std::vector<View> views_;

@@ -149,7 +149,8 @@ void read_arena(const YamlMap& root, const std::string& path, Scenario& s) {
   const YamlMap arena = root.map("arena");
   if (arena.has("file") == arena.has("generate"))
     root.fail("arena", std::string(root.has("arena") ? "" : "'arena' is missing: it ") +
-                           "needs exactly one of 'file: arena.yaml' or 'generate: {columns: 8, rows: 8}'");
+                           "needs exactly one of 'file: arena.yaml' or 'generate: {columns: 8, rows: 8}'" +
+                           (arena.has("file") ? "; --set 'arena={file: arena.yaml}' takes the place of both" : ""));
   if (arena.has("file")) {
     const std::filesystem::path file = arena.text("file", std::nullopt);
     s.arena_file = (file.is_absolute() ? file : std::filesystem::path(path).parent_path() / file).string();

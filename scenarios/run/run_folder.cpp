@@ -77,17 +77,13 @@ std::string pois_csv(const Scenario& s, const std::vector<explore::VictimReport>
 
 /// What the league's list has no room for: how sure each victim and its place are, and which senses told of it.
 std::string victims_csv(const std::vector<explore::VictimReport>& victims) {
-  static constexpr std::array<const char*, 4> kKinds = {"appearance", "heat", "sound", "co2"};
   std::string csv = "id,time_s,x_m,y_m,xx_m2,xy_m2,yy_m2,confidence,senses\n";
   for (const auto& victim : victims) {
     const explore::PlaceCovariance& c = victim.covariance;
     std::array<char, 200> line{};
     std::snprintf(line.data(), line.size(), "%d,%.2f,%.3f,%.3f,%.5f,%.5f,%.5f,%.3f,", victim.id, victim.stamp.seconds(),
                   victim.p_map.x, victim.p_map.y, c.xx, c.xy, c.yy, victim.confidence);
-    csv += line.data();
-    for (std::size_t i = 0; i < victim.cues.size(); ++i)
-      csv += (i > 0 ? " " : "") + std::string(kKinds.at(static_cast<std::size_t>(victim.cues[i])));
-    csv += "\n";
+    csv += line.data() + senses(victim) + "\n";
   }
   return csv;
 }

@@ -38,7 +38,7 @@ with open(page, "w") as out:
     out.write("# Results of the standard sweeps\n\n"
               "Each section is made by the command below its heading; what the columns mean is in [batch.md](batch.md). "
               "All sweeps but\n`mappers` are of the paper's mapper (`mapper.kind: paper`), which is not the default one; "
-              "how well that does stands in [robust_mapper.md](robust_mapper.md).\n\n")
+              "how well that does stands in [robust_mapper.md](robust_mapper.md).\nAll are driven with cameras alone, so that no drive depends on what is heard.\n\n")
     out.write("".join("## " + kept[name] for name in order if name in kept).rstrip() + "\n")
 PY
 echo "docs/results.md is written" >&2

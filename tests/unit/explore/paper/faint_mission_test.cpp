@@ -125,7 +125,7 @@ TEST(FaintMission, ByItselfTheRobotGoesWhereTheseSensesPointTo) {
       (kind == CueKind::Sound ? heard : smelt) += run.found;
       EXPECT_EQ(run.wrong, 0);
       EXPECT_EQ(run.end, MissionEnd::Home);
-      EXPECT_NE(run.reason.find("all visible floor searched, home again"), std::string::npos) << run.reason;
+      EXPECT_NE(run.reason.find("all visible floor searched by cameras, home again"), std::string::npos) << run.reason;
     }
   }
   EXPECT_EQ(heard, 12);

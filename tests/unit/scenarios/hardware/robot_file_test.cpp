@@ -59,6 +59,16 @@ TEST_F(RobotFileTest, APermittedSilenceIsPermittedByTheDriversToo) {
   EXPECT_GE(file.robot.levelling.silence, 4.0);
 }
 
+/// No driver tells of victims.
+TEST_F(RobotFileTest, ARealRobotHasNeitherMicrophonesNorAProbe) {
+  for (const char* yaml : {"safety: {}\n", "sim: {microphones: true, co2_probe: true}\n"}) {
+    const RobotFile file = load(yaml);
+    EXPECT_FALSE(file.settings.sim.microphones || file.settings.sim.co2_probe) << yaml;
+    const RobotFile kept = load(robot_file_yaml(file));
+    EXPECT_FALSE(kept.settings.sim.microphones || kept.settings.sim.co2_probe) << yaml;
+  }
+}
+
 TEST_F(RobotFileTest, WhatMountHallAndBatteryAreIsKept) {
   const RobotFile usual = load("name: here\n");
   EXPECT_FALSE(usual.lidar.upside_down);
