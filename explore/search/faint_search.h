@@ -52,9 +52,9 @@ class FaintSearch {
     bool sure = false;    ///< it is a victim
     int id = 0;           ///< of that victim, given by whom it is told to
     Stamp confirmed = Stamp::never();
-    Stamp newest = Stamp::never();                   ///< its newest cue
-    Stamp smelt = Stamp::never();                    ///< its newest one of CO2
-    double looked_at = -1.0;                         ///< its evidence when it was visited last; < 0: never
+    Stamp newest = Stamp::never();  ///< its newest cue
+    Stamp smelt = Stamp::never();   ///< its newest one of CO2
+    double looked_at = -1.0;        ///< its evidence when it was visited last; < 0: never
     std::vector<Anchor> visited_from;
   };
   /// A victim that was seen, and what of its cues was heard or smelt.
@@ -128,7 +128,8 @@ class FaintSearch {
   void assign(const std::vector<Seen>& seen, const HiddenFn& hidden);
   bool fit(Place& place, const std::vector<const Cue*>& cues) const;
   std::vector<const Cue*> cues_of(int owner) const;
-  void refit();
+  void refit(std::vector<Place>& gone);
+  void adopt(const std::vector<Place>& gone, std::vector<Seen>& seen);
   void open_places();
   void join_places(std::vector<Seen>& seen, const HiddenFn& hidden);
   double errors2(const mrpt::math::TPoint2D& p, double error, const std::vector<const Cue*>& cues,

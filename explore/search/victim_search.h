@@ -65,6 +65,8 @@ class VictimSearch {
 
   /// The id of a victim that was found otherwise.
   int take_id() { return next_id_++; }
+  /// One that nobody was told of.
+  void give_id_back(int id) { next_id_ -= id == next_id_ - 1 ? 1 : 0; }
   /// The victim `id` turned out to be the one that was found otherwise before, as `older`.
   void rename(int id, int older, Stamp confirmed);
 

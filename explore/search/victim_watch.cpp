@@ -66,6 +66,8 @@ void VictimWatch::sort_faint(const Traversable& floor) {
     });
     if (same == before.end() || same->id > victim.id) continue;
     victims_.rename(victim.id, same->id, same->confirmed);
+    if (std::none_of(reports_.begin(), reports_.end(), [&](const VictimReport& told) { return told.id == victim.id; }))
+      victims_.give_id_back(victim.id);
     victim.id = same->id;
   }
   for (FaintSearch::Place& place : faint_.places())

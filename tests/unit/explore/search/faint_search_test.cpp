@@ -368,6 +368,30 @@ TEST(FaintSearch, OneThatIsSeenDoesNotTakeTheNumberOfOneThatIsSmelt) {
   }
 }
 
+/// Cues may go from a place to one that explains them better: the victim stays the one it was.
+TEST(FaintSearch, AVictimWhosePlaceIsGoneKeepsItsNumber) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    Drive drive(seed, {{3.0, 0.9}}, {{3.0, 0.9}});
+    int next = 0;
+    const auto number = [&] {
+      for (FaintSearch::Place& place : drive.search.places())
+        if (place.sure && place.id == 0) place.id = ++next;
+    };
+    for (int i = 0; i < 30; ++i) {
+      drive.go({2.0, 0.0}, {2.8, 0.2});
+      number();
+      drive.stand({2.8, 0.2, 0.5}, 1);
+      number();
+      drive.go({2.8, 0.2}, {4.0, 0.3});
+      number();
+    }
+    const auto places = sure(drive.search);
+    ASSERT_EQ(places.size(), 1u);
+    EXPECT_EQ(places[0].id, 1);
+  }
+}
+
 /// However long the robot waits beside it: only the newest cues are kept, and only what was silent meanwhile counts.
 TEST(FaintSearch, OneThatCriesForLongIsFound) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
