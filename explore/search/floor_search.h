@@ -178,8 +178,8 @@ class FloorSearch {
   double room_;
   double tight_;
   SearchedArea searched_;
-  SearchedArea squarely_;  ///< what was looked at squarely
-  FloorInView view_;       ///< of the look under way
+  SearchedArea squarely_;    ///< what was looked at squarely
+  FloorInView view_;         ///< of the look under way
   bool by_cameras_ = false;  ///< the robot has other senses, with which it does not search everywhere
   std::vector<Other> others_;
   std::vector<Suspect> suspects_;
