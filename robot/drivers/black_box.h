@@ -19,8 +19,8 @@ namespace rubble::robot {
 /// First line of a black box; the number is the format's version.
 constexpr const char* kBlackBoxMagic = "RUBBLE BYTES 1\n";
 
-/// Turn: the thread of the device looked at the line, had nothing to read, and did what was due. Boxes of older versions
-/// have none.
+/// Turn: the thread of the device looked at the line, had nothing to read, and did what was due. Boxes of older
+/// versions have none.
 enum class Direction : std::uint8_t { FromDevice = 0, ToDevice = 1, Opened = 2, Lost = 3, BitRate = 4, Turn = 5 };
 
 /// Some bytes on the line of a device.
