@@ -37,10 +37,11 @@ constexpr double kSurelyHeard = 1.2;  ///< from so near a victim is heard in mos
 constexpr double kSurelySmelt = 0.7;  ///< from so near it is smelt, ahead and without a wall between [m] ...
 constexpr double kBeforeNose = deg_to_rad(75.0);
 constexpr double kTellsOf = 0.2;  ///< cues a tick of the search, of which a sense looks in 0.7: fewer are no victim's
-constexpr double kShare = 0.4;    ///< of its evidence, or more, is another victim
-constexpr double kKept = 0.5;     ///< of a victim's evidence: it is one no longer when less is left
-constexpr double kVisit = 0.8;    ///< what lies within this of a place that was visited was visited too [m]
-constexpr int kRounds = 2;        ///< of sorting and fitting after each cue
+constexpr double kSeenError = 0.15;  ///< by so much one that was seen may be off [m]
+constexpr double kShare = 0.4;       ///< of its evidence, or more, is another victim
+constexpr double kKept = 0.5;        ///< of a victim's evidence: it is one no longer when less is left
+constexpr double kVisit = 0.8;       ///< what lies within this of a place that was visited was visited too [m]
+constexpr int kRounds = 2;           ///< of sorting and fitting after each cue
 
 double along(const PlaceCovariance& c, double x, double y) { return x * x * c.xx + 2.0 * x * y * c.xy + y * y * c.yy; }
 
@@ -453,8 +454,28 @@ bool FaintSearch::refuted(const Place& place, CueKind kind, const std::vector<co
   return static_cast<double>(cues.size()) < kTellsOf * ticks;
 }
 
+/// Whether a place is most likely what its cues err by about a victim that was seen: it lies near by, and most of its
+/// cues could be of that one.
+bool FaintSearch::is_of(const Place& place, const Seen& victim, const HiddenFn& hidden) const {
+  if (distance(victim.p_map, place.p_map) >= kBeside) return false;
+  const std::vector<const Cue*> cues = cues_of(static_cast<int>(&place - places_.data()));
+  const auto could = std::count_if(cues.begin(), cues.end(),
+                                   [&](const Cue* cue) { return possible(*cue, victim.p_map, kSeenError, hidden); });
+  return 2 * could > static_cast<std::ptrdiff_t>(cues.size());
+}
+
 /// A place becomes a victim. A few cues beside one that has many are what these err by, and none.
-void FaintSearch::confirm(Place& place, const std::vector<Seen>& seen, const HiddenFn& hidden) const {
+void FaintSearch::confirm(Place& place, std::vector<Seen>& seen, const HiddenFn& hidden) const {
+  const auto own =
+      std::find_if(seen.begin(), seen.end(), [&](const Seen& victim) { return is_of(place, victim, hidden); });
+  if (own != seen.end()) {
+    if (place.sure && (own->is_also == 0 || place.id < own->is_also)) own->is_also = place.id;
+    place.sure = false;
+    place.id = 0;
+    place.confirmed = Stamp::never();
+    place.beside = true;
+    return;
+  }
   place.sure = place.sure && place.evidence >= kKept;
   if (place.sure) return;
   const auto few = [](int own, int others) { return own == 0 || own < kShare * others; };

@@ -148,7 +148,8 @@ class FaintSearch {
   void remove(std::size_t index);
   void forget();
   void count(Place& place, const std::vector<const Cue*>& cues) const;
-  void confirm(Place& place, const std::vector<Seen>& seen, const HiddenFn& hidden) const;
+  bool is_of(const Place& place, const Seen& victim, const HiddenFn& hidden) const;
+  void confirm(Place& place, std::vector<Seen>& seen, const HiddenFn& hidden) const;
 
   bool refuted(const Place& place, robot::CueKind kind, const std::vector<const Cue*>& cues,
                const HiddenFn& hidden) const;

@@ -392,6 +392,27 @@ TEST(FaintSearch, AVictimWhosePlaceIsGoneKeepsItsNumber) {
   }
 }
 
+/// What was smelt before a victim was seen, and placed a little off, is that victim.
+TEST(FaintSearch, WhatIsSmeltBesideOneThatIsSeenIsNoOther) {
+  Senses senses(1);
+  FaintSearch search;
+  std::vector<FaintSearch::Seen> seen;
+  const TPose2D pose{3.0, 0.0, 1.5};
+  int i = 0;
+  const auto smell = [&] {
+    search.add(senses.cue({2.6, 0.5}, pose, ++i, CueKind::Co2), {Stamp::from_seconds(i), pose});
+    search.sort(seen, kOpen);
+  };
+  while (sure(search).empty()) smell();
+  search.places()[0].id = 1;
+  seen.push_back({2, {3.4, 0.6}});
+  smell();
+  EXPECT_TRUE(sure(search).empty());
+  EXPECT_EQ(seen[0].is_also, 1) << "it keeps the number that people know";
+  for (int k = 0; k < 20; ++k) smell();
+  EXPECT_TRUE(sure(search).empty());
+}
+
 /// However long the robot waits beside it: only the newest cues are kept, and only what was silent meanwhile counts.
 TEST(FaintSearch, OneThatCriesForLongIsFound) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
