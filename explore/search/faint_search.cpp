@@ -172,33 +172,9 @@ void FaintSearch::remove(std::size_t index) {
   }
 }
 
-/// Victims whose cues have all gone to others are added to `gone`.
-void FaintSearch::refit(std::vector<Place>& gone) {
-  for (std::size_t i = places_.size(); i-- > 0;) {
-    if (fit(places_[i], cues_of(static_cast<int>(i)))) continue;
-    if (places_[i].sure) gone.push_back(places_[i]);
-    remove(i);
-  }
-}
-
-/// What lies where a victim was that is gone has its cues, and is it.
-void FaintSearch::adopt(const std::vector<Place>& gone, std::vector<Seen>& seen) {
-  for (const Place& place : gone) {
-    const auto nearest = [&](const auto& victims) {
-      const auto best = std::min_element(victims.begin(), victims.end(), [&](const auto& a, const auto& b) {
-        return distance(a.p_map, place.p_map) < distance(b.p_map, place.p_map);
-      });
-      const double far = best == victims.end() ? kVisit : distance(best->p_map, place.p_map);
-      return std::pair(static_cast<std::size_t>(best - victims.begin()), far);
-    };
-    const auto [other, far] = nearest(places_);
-    const auto [victim, far_seen] = nearest(seen);
-    if (std::min(far, far_seen) >= kVisit) continue;
-    if (far <= far_seen)
-      take_over(places_[other], place, true);
-    else if (seen[victim].is_also == 0 || place.id < seen[victim].is_also)
-      seen[victim].is_also = place.id;
-  }
+void FaintSearch::refit() {
+  for (std::size_t i = places_.size(); i-- > 0;)
+    if (!fit(places_[i], cues_of(static_cast<int>(i)))) remove(i);
 }
 
 /// What nothing explains is a place of its own; where most of it agrees comes first.
@@ -504,15 +480,13 @@ void FaintSearch::confirm(Place& place, std::vector<Seen>& seen, const HiddenFn&
 }
 
 void FaintSearch::sort(std::vector<Seen>& seen, const HiddenFn& hidden) {
-  std::vector<Place> gone;
   for (int round = 0; round < kRounds; ++round) {
     assign(seen, hidden);
     set_apart(seen, hidden);
-    refit(gone);
+    refit();
     open_places();
     join_places(seen, hidden);
   }
-  adopt(gone, seen);
   forget();
   for (const Cue& cue : cues_)
     if (cue.owner < -1) {
@@ -528,8 +502,7 @@ void FaintSearch::follow(const slam::Mapper& mapper) {
   for (Stand& stand : stands_) stand.anchor.follow(mapper);
   for (Place& place : places_)
     for (Anchor& from : place.visited_from) from.follow(mapper);
-  std::vector<Place> gone;  // none: no cue goes
-  refit(gone);
+  refit();
   for (std::size_t i = 0; i < places_.size(); ++i) count(places_[i], cues_of(static_cast<int>(i)));
 }
 

@@ -128,8 +128,7 @@ class FaintSearch {
   void assign(const std::vector<Seen>& seen, const HiddenFn& hidden);
   bool fit(Place& place, const std::vector<const Cue*>& cues) const;
   std::vector<const Cue*> cues_of(int owner) const;
-  void refit(std::vector<Place>& gone);
-  void adopt(const std::vector<Place>& gone, std::vector<Seen>& seen);
+  void refit();
   void open_places();
   void join_places(std::vector<Seen>& seen, const HiddenFn& hidden);
   double errors2(const mrpt::math::TPoint2D& p, double error, const std::vector<const Cue*>& cues,
