@@ -32,11 +32,12 @@ cpu_of() {
 }
 
 # fuzz TARGET HUNDREDTHS FOLDER...: one run of so much processor time, which is left in $used; what it says goes to the
-# target's log.
-used=0
+# target's log. Whether it had to be killed is left in $killed.
+used=0 killed=0
 fuzz() {
   local target=$1 left=$2 code=0 now asked=0
   shift 2
+  killed=0
   "$build/fuzz/fuzz_$target" $seed -timeout=1 -rss_limit_mb=512 -max_len=65536 -print_final_stats=1 -handle_usr1=1 \
     -max_total_time=$((left + 60)) -artifact_prefix="$found/$target/" "$@" >"$build/$target.log" 2>&1 &
   # A hundred times as long; whom nobody watches any more ends then by himself.
@@ -52,7 +53,7 @@ fuzz() {
       patience=$((SECONDS + 60))
     fi
     # Its own alarm may strike within malloc and then waits for itself for ever.
-    ((SECONDS < patience)) || kill -9 $pid 2>/dev/null
+    ((SECONDS < patience)) || { kill -9 $pid 2>/dev/null && killed=1; }
     sleep 0.2
     [[ $(ps -o stat= -p $pid) == Z* ]] && break
   done
@@ -71,9 +72,16 @@ machine_was_slow() {
   awk '{exit !($1 + $2 < 1)}' <<<"$cpu" && rm "$input"
 }
 
+# fell_silent TARGET: the run was killed for it waited without a word of an error: its alarm had struck within malloc. Once
+# or twice that is the machine, which stalled for the second after which it strikes; what does so each time is a finding.
+fell_silent() {
+  ((killed && ++silences < 3)) && ! grep -qE 'ERROR|SUMMARY' "$build/$1.log"
+}
+
 # run TARGET: its line; fails when there is a finding.
 run() {
-  local target=$1 corpus=$top/fuzz/corpus/$1 grown=$build/corpus/$1 left=$((seconds * 100)) spent=0 runs=0 memory=0 here=0 code more peak
+  local target=$1 corpus=$top/fuzz/corpus/$1 grown=$build/corpus/$1 left=$((seconds * 100)) spent=0 runs=0 memory=0 here=0
+  local silences=0 code more peak
   [[ -d $corpus ]] || corpus=$top/tests/fuzz/$target
   mkdir -p "$grown" "$found/$target"
   [[ -d $corpus ]] || corpus=
@@ -86,11 +94,13 @@ run() {
     runs=$((runs + ${more:-0}))
     memory=$((${peak:-0} > memory ? ${peak:-0} : memory))
     ((code != 0)) || break
-    machine_was_slow "$target" || here=1
+    machine_was_slow "$target" || fell_silent "$target" || here=1
   done
   local line
   line=$(printf '%-16s %12s %9s %9s %8s' "$target" "$runs" $((spent / 100)) "$here" "$memory")
-  ((here)) && line+=$'\n'$(grep -E 'ERROR|SUMMARY|Test unit' "$build/$target.log" | head -4 | sed 's/^/    /')
+  # Without an error its last words tell what ended it.
+  ((here)) && line+=$'\n'$({ grep -E 'ERROR|SUMMARY|Test unit' "$build/$target.log" || { echo "ended with $code"; tail -n 3 "$build/$target.log"; }; } |
+    head -4 | cut -c1-200 | sed 's/^/    /')
   printf '%s\n' "$line"
   return $here
 }
