@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <new>
 #include <optional>
 #include <vector>
 
@@ -23,6 +26,24 @@ constexpr std::uint32_t kMaxSide = 20000;
 constexpr std::uint64_t kMaxPixels = 100000000;
 constexpr std::uint32_t kMaxSamples = 16;
 constexpr std::uint64_t kMaxChunk = 64u << 20;  ///< [bytes] of one strip or tile, unpacked, or twice the picture
+
+/// The most bytes that one stored byte can stand for: by the formats of deflate (RFC 1951: 258 bytes by two bits), LZW
+/// (the longest string of a table of 4096 codes) and PackBits; 0: not bounded, or not known.
+std::uint64_t most_expansion(std::uint16_t compression) {
+  switch (compression) {
+    case COMPRESSION_NONE:
+      return 1;
+    case COMPRESSION_PACKBITS:
+      return 64;
+    case COMPRESSION_LZW:
+      return 4096;
+    case COMPRESSION_DEFLATE:
+    case COMPRESSION_ADOBE_DEFLATE:
+      return 1032;
+    default:
+      return 0;
+  }
+}
 
 /// How the samples of a TIFF are stored.
 struct Layout {
@@ -45,17 +66,18 @@ class Reader {
   RgbImage read() {
     read_layout();
     check_chunks();
+    if (!is_measure() && !is_simple()) return read_by_libtiff();
+    // Of a damaged file nothing can be unpacked, as a rule: that is known before memory is taken for a large picture.
+    if (picture_bytes() > kMaxChunk) read_first_chunk();
     RgbImage image(static_cast<int>(layout_.width), static_cast<int>(layout_.height));
     find_no_data();
     if (is_measure()) {
       read_measures(image);
-    } else if (is_simple()) {
+    } else {
       find_white();
       if (is_odd_white(white_, (1u << layout_.bits) - 1)) image.white = white_;
       read_tables();
       read_chunks(image);
-    } else {
-      read_by_libtiff(image);
     }
     return image;
   }
@@ -128,18 +150,28 @@ class Reader {
     struct stat status {};
     if (fstat(TIFFFileno(tiff_), &status) != 0) return;
     const std::uint32_t count = layout_.tiled ? TIFFNumberOfTiles(tiff_) : TIFFNumberOfStrips(tiff_);
+    std::uint64_t stored = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint64_t offset = TIFFGetStrileOffset(tiff_, i);
       const std::uint64_t size = TIFFGetStrileByteCount(tiff_, i);
       const auto end = static_cast<std::uint64_t>(status.st_size);
       if (size > end || offset > end - size) fail("is truncated: its pixels end after the file; copy it again");
+      stored += size;
     }
+    std::uint16_t compression = COMPRESSION_NONE;
+    TIFFGetFieldDefaulted(tiff_, TIFFTAG_COMPRESSION, &compression);
+    if (const std::uint64_t most = most_expansion(compression); most > 0 && stored < picture_bytes() / most)
+      fail("is damaged: " + std::to_string(layout_.width) + " x " + std::to_string(layout_.height) +
+           " pixels cannot be packed into " + std::to_string(stored) + " bytes; copy it again");
     const auto chunk = static_cast<std::uint64_t>(layout_.tiled ? TIFFTileSize64(tiff_) : TIFFStripSize64(tiff_));
-    const auto row = static_cast<std::uint64_t>(TIFFScanlineSize64(tiff_));
-    const std::uint64_t picture =
-        row * layout_.height * (layout_.planes == PLANARCONFIG_SEPARATE ? layout_.samples : 1);
-    if (chunk == 0 || chunk > std::max(kMaxChunk, 2 * picture))
+    if (chunk == 0 || chunk > std::max(kMaxChunk, 2 * picture_bytes()))
       fail("has strips or tiles of an absurd size; it is damaged");
+  }
+
+  /// Of all samples, unpacked.
+  std::uint64_t picture_bytes() const {
+    const auto row = static_cast<std::uint64_t>(TIFFScanlineSize64(tiff_));
+    return row * layout_.height * (layout_.planes == PLANARCONFIG_SEPARATE ? layout_.samples : 1);
   }
 
   /// Signed, floating or 32-bit: not colours but what was measured.
@@ -318,11 +350,20 @@ class Reader {
     });
   }
 
+  void read_first_chunk() const {
+    Bytes bytes(chunk_size());
+    read_chunk(0, 0, 0, bytes);
+  }
+
+  std::size_t chunk_size() const {
+    return static_cast<std::size_t>(layout_.tiled ? TIFFTileSize(tiff_) : TIFFStripSize(tiff_));
+  }
+
   /// Unpacks strip after strip or tile after tile: `take` gets its corner and its planes.
   template <class Take>
   void visit_chunks(const Take& take) const {
     const bool separate = layout_.planes == PLANARCONFIG_SEPARATE;
-    const auto size = static_cast<std::size_t>(layout_.tiled ? TIFFTileSize(tiff_) : TIFFStripSize(tiff_));
+    const std::size_t size = chunk_size();
     std::vector<Bytes> planes(separate ? layout_.samples : 1);
     for (std::size_t plane = 0; plane < planes.size(); ++plane)
       if (is_used(plane)) planes[plane].resize(size);
@@ -407,17 +448,23 @@ class Reader {
     }
   }
 
-  void read_by_libtiff(RgbImage& image) {
+  RgbImage read_by_libtiff() {
     TIFFSetField(tiff_, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
-    std::vector<std::uint32_t> raster(static_cast<std::size_t>(layout_.width) * layout_.height);
-    if (TIFFReadRGBAImageOriented(tiff_, layout_.width, layout_.height, raster.data(), ORIENTATION_TOPLEFT, 1) != 1)
+    const std::size_t pixels = static_cast<std::size_t>(layout_.width) * layout_.height;
+    // Zeros that the system hands out when they are touched: a damaged file takes none.
+    const std::unique_ptr<std::uint32_t[], void (*)(void*)> raster(
+        static_cast<std::uint32_t*>(std::calloc(pixels, sizeof(std::uint32_t))), std::free);
+    if (!raster) throw std::bad_alloc();
+    if (TIFFReadRGBAImageOriented(tiff_, layout_.width, layout_.height, raster.get(), ORIENTATION_TOPLEFT, 1) != 1)
       fail("cannot be read (" + complaint_.text +
            "); convert it to RGB: gdal_translate -expand rgb, or any image tool");
-    for (std::size_t i = 0; i < raster.size(); ++i) {
+    RgbImage image(static_cast<int>(layout_.width), static_cast<int>(layout_.height));
+    for (std::size_t i = 0; i < pixels; ++i) {
       image.rgb[3 * i] = static_cast<std::uint8_t>(TIFFGetR(raster[i]));
       image.rgb[3 * i + 1] = static_cast<std::uint8_t>(TIFFGetG(raster[i]));
       image.rgb[3 * i + 2] = static_cast<std::uint8_t>(TIFFGetB(raster[i]));
     }
+    return image;
   }
 
   TIFF* tiff_;

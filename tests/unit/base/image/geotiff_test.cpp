@@ -1,8 +1,11 @@
 #include "base/image/geotiff.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
 #include <tiffio.h>
+#include <zlib.h>
 #include <GeographicLib/LocalCartesian.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 
@@ -23,6 +26,7 @@ namespace rubble {
 namespace {
 
 using test::run;
+using testing::HasSubstr;
 
 /// Four colours in blocks, so that every variant of the file must keep them.
 RgbImage picture(int width, int height, bool grey = false) {
@@ -561,6 +565,50 @@ TEST(GeoTiff, ATileIsNotMuchLargerThanThePicture) {
   };
   EXPECT_EQ(with_tiles_of(4096), 10);
   EXPECT_THROW(with_tiles_of(16384), InputError);
+}
+
+// 618 bytes that said 9543 x 8374 pixels took 240 MB before it showed that there are none.
+TEST(GeoTiff, AFileThatIsTooSmallForItsPictureIsRefusedBeforeMemoryIsTaken) {
+  const test::TempFolder folder;
+  const std::string path = folder / "small.tif";
+  const auto packed = [&](int compression, int photometric, std::uint32_t side, const std::string& bytes) {
+    TIFF* const tiff = TIFFOpen(path.c_str(), "w");
+    for (const auto& [tag, value] : {std::pair(TIFFTAG_IMAGEWIDTH, side), std::pair(TIFFTAG_IMAGELENGTH, side),
+                                     std::pair(TIFFTAG_ROWSPERSTRIP, side)})
+      TIFFSetField(tiff, static_cast<std::uint32_t>(tag), value);
+    for (const auto& [tag, value] :
+         {std::pair(TIFFTAG_BITSPERSAMPLE, 8), std::pair(TIFFTAG_SAMPLESPERPIXEL, 3),
+          std::pair(TIFFTAG_PHOTOMETRIC, photometric), std::pair(TIFFTAG_COMPRESSION, compression)})
+      TIFFSetField(tiff, static_cast<std::uint32_t>(tag), value);
+    std::string copy = bytes;
+    TIFFWriteRawStrip(tiff, 0, copy.data(), static_cast<tmsize_t>(copy.size()));
+    TIFFClose(tiff);
+    return error_of([&] { read_geotiff(path); });
+  };
+  const auto peak_mb = [] {
+    struct rusage usage {};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss / 1024;
+  };
+  const auto before = peak_mb();
+  const std::string junk(600, 'x');
+  for (const int compression : {COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS})
+    EXPECT_THAT(packed(compression, PHOTOMETRIC_RGB, 9000, junk), HasSubstr("cannot be packed into 600 bytes"));
+  EXPECT_THAT(packed(COMPRESSION_NONE, PHOTOMETRIC_RGB, 9000, junk), HasSubstr("is truncated"));
+  EXPECT_THAT(packed(COMPRESSION_LZMA, PHOTOMETRIC_RGB, 6000, junk), HasSubstr("is damaged or truncated"));
+  EXPECT_THAT(packed(COMPRESSION_CCITTFAX4, PHOTOMETRIC_YCBCR, 9000, junk), HasSubstr("cannot be read"));
+  EXPECT_LT(peak_mb() - before, 200);
+  // The most that deflate can pack is read: zeros.
+  const std::string zeros(3u * 3000 * 3000, '\0');
+  std::string best(100000, '\0');
+  uLongf size = best.size();
+  ASSERT_EQ(compress2(reinterpret_cast<Bytef*>(best.data()), &size, reinterpret_cast<const Bytef*>(zeros.data()),
+                      zeros.size(), 9),
+            Z_OK);
+  best.resize(size);
+  EXPECT_GT(zeros.size() / size, 1000u);
+  packed(COMPRESSION_ADOBE_DEFLATE, PHOTOMETRIC_RGB, 3000, best);
+  EXPECT_EQ(read_geotiff(path).image.width, 3000);
 }
 
 TEST(GeoTiff, AnUnwritablePathIsARunError) {
