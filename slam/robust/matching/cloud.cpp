@@ -34,7 +34,10 @@ constexpr double kEndLength = 0.20;            ///< a wall that tells its end is
 constexpr double kEndRoughness = 0.03;         ///< ... within this [m]
 constexpr double kEndSpacing = 0.06;           ///< hits on it lie no farther apart, for the end is known no better [m]
 constexpr long kMostEnds = 6;                  ///< an end known best counts as so many points
-constexpr double kLooseSize = 0.35;            ///< larger things are none that a robot pushes along [m]
+constexpr double kLooseSize = 0.35;            ///< wider things are none that a robot pushes along [m] ...
+constexpr double kPushedSize = 0.46;           ///< ... but for a large ball right ahead [m],
+constexpr double kPushedAhead = 0.7;           ///< so near to the middle of the base [m]
+constexpr double kPushedAside = 0.45;          ///< and to its way: half a body and the ball's radius [m]
 constexpr float kSameDirection = 0.9F;         ///< cosine between normals of one straight surface
 
 int bin_of(double bearing) {
@@ -259,18 +262,27 @@ std::vector<bool> on_loose_things(const Hits& hits, double near) {
   const auto seen_past = [&](std::size_t i, std::size_t beside) {
     return hits.beams_between(i, beside) > kSilentBeams || hits.range(beside) > hits.range(i) + kEndJump;
   };
+  const auto right_ahead = [&](std::size_t first, std::size_t last) {
+    const TPoint2D middle = (hits.p(first) + hits.p(last)) * 0.5;
+    double nearest = middle.x;
+    for (std::size_t i = first; i <= last; ++i) nearest = std::min(nearest, hits.p(i).x);
+    return nearest > 0.0 && nearest < kPushedAhead && std::abs(middle.y) < kPushedAside;
+  };
   for (std::size_t first = 0, last; first < hits.size(); first = last + 1) {
     for (last = first; last + 1 < hits.size() && hits.joined(last, last + 1);) ++last;
     if (first == 0 || last + 1 == hits.size() || length(hits.p(first)) > near) continue;
-    if (distance(hits.p(first), hits.p(last)) > kLooseSize) continue;
+    const double size = distance(hits.p(first), hits.p(last));
+    if (size > kPushedSize || (size > kLooseSize && !right_ahead(first, last))) continue;
     if (seen_past(first, first - 1) && seen_past(last, last + 1))
       for (std::size_t i = first; i <= last; ++i) loose[i] = true;
   }
   return loose;
 }
 
-void add_ends(const Hits& hits, Cloud& cloud) {
+/// Of walls, not of loose things: the edge of a large ball is as straight as the end of a wall.
+void add_ends(const Hits& hits, const std::vector<bool>& loose, Cloud& cloud) {
   for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (loose[i]) continue;
     for (const int inwards : {-1, 1}) {
       const std::optional<WallEnd> end = wall_end(hits, i, inwards);
       if (!end) continue;
@@ -362,7 +374,7 @@ Cloud cloud_of(const ScanPoints& scan, const CloudConfig& config) {
     cloud.points.push_back(point);
     kept = i;
   }
-  add_ends(hits, cloud);
+  add_ends(hits, loose, cloud);
   return cloud;
 }
 

@@ -164,7 +164,15 @@ TEST(Cloud, SmallFreeThingsNearTheRobotAreLeftOut) {
   EXPECT_EQ(points_at(0.6, 0.1, false), 0);
   EXPECT_EQ(points_at(1.1, 0.15, false), 0);
   EXPECT_GE(points_at(1.4, 0.1, false), 2);
+  EXPECT_EQ(points_at(0.6, 0.21, false), 0) << "a large ball right before the robot";
+  EXPECT_GE(points_at(0.9, 0.21, false), 4);
   EXPECT_GE(points_at(0.6, 0.25, false), 4);
+  const slam_test::World beside{{{3.0, -3.0}, {3.0, 3.0}}, {{-3.0, 3.0}, {3.0, 3.0}}, {{-0.2, 0.6}, {0.2, 0.6}}};
+  const Cloud cloud = slam_test::cloud_at(beside, {}, model);
+  EXPECT_GE(std::count_if(cloud.points.begin(), cloud.points.end(),
+                          [](const OrientedPoint& p) { return std::abs(point(p).y - 0.6) < 0.01; }),
+            3)
+      << "what is as large beside the robot it does not push";
   EXPECT_GE(points_at(0.6, 0.1, true), 2);
 }
 

@@ -97,32 +97,35 @@ TEST(LocalTracker, CountsTheWayThatOdometryAloneKnows) {
 /// stands.
 TEST(LocalTracker, AThingPushedAlongDoesNotHoldTheRobot) {
   robot::RobotModel model;
-  const auto pushing = [](double x) {  // eight sides of a ball of 0.2 m, before the robot at x
-    slam_test::World world{{{-20.0, 0.6}, {20.0, 0.6}}, {{-20.0, -0.6}, {20.0, -0.6}}};
-    for (int k = 0; k < 8; ++k) {
-      const auto corner = [&](int side) {
-        return mrpt::math::TPoint2D(x + 0.5 + 0.1 * std::cos(side * kPi / 4.0), 0.1 * std::sin(side * kPi / 4.0));
-      };
-      world.push_back({corner(k), corner(k + 1)});
+  for (const double radius : {0.1, 0.22}) {
+    const auto pushing = [&](double x) {  // eight sides of a ball before the robot at x
+      slam_test::World world{{{-20.0, 0.6}, {20.0, 0.6}}, {{-20.0, -0.6}, {20.0, -0.6}}};
+      for (int k = 0; k < 8; ++k) {
+        const auto corner = [&](int side) {
+          return mrpt::math::TPoint2D(x + 0.4 + radius + radius * std::cos(side * kPi / 4.0),
+                                      radius * std::sin(side * kPi / 4.0));
+        };
+        world.push_back({corner(k), corner(k + 1)});
+      }
+      return world;
+    };
+    const auto places = slam_test::places_along({{0.0, 0.0}, {1.5, 0.0}}, 0.3);
+    KeyFrames frames;
+    for (const TPose2D& place : places) slam_test::add_key_frame(frames, pushing(place.x), places, 0.0, model);
+    LocalTracker tracker(suited_to(model.laser, {}).tracker);
+    tracker.redraw(frames, frames.last(), nullptr);
+    ExpectedMotion driving;
+    driving.T_last_now = TPose2D(0.03, 0.0, 0.0);
+    driving.time = 0.1;
+    driving.told = true;
+    TPose2D T_frame_now;
+    for (int scan = 1; scan <= 10; ++scan) {
+      const double x = places.back().x + 0.03 * scan;
+      const Cloud cloud = slam_test::cloud_at(pushing(x), {x, 0.0, 0.0}, model);
+      T_frame_now = tracker.track(frames, cloud, driving, T_frame_now, nullptr).fit.pose;
     }
-    return world;
-  };
-  const auto places = slam_test::places_along({{0.0, 0.0}, {1.5, 0.0}}, 0.3);
-  KeyFrames frames;
-  for (const TPose2D& place : places) slam_test::add_key_frame(frames, pushing(place.x), places, 0.0, model);
-  LocalTracker tracker(suited_to(model.laser, {}).tracker);
-  tracker.redraw(frames, frames.last(), nullptr);
-  ExpectedMotion driving;
-  driving.T_last_now = TPose2D(0.03, 0.0, 0.0);
-  driving.time = 0.1;
-  driving.told = true;
-  TPose2D T_frame_now;
-  for (int scan = 1; scan <= 10; ++scan) {
-    const double x = places.back().x + 0.03 * scan;
-    const Cloud cloud = slam_test::cloud_at(pushing(x), {x, 0.0, 0.0}, model);
-    T_frame_now = tracker.track(frames, cloud, driving, T_frame_now, nullptr).fit.pose;
+    EXPECT_NEAR(T_frame_now.x, 0.3, 0.02) << radius;
   }
-  EXPECT_NEAR(T_frame_now.x, 0.3, 0.02);
 }
 
 /// A corridor with a line across it: a wall, or where the laser's plane cuts a ramp.
