@@ -21,7 +21,6 @@ void HomeWay::moved(double way, double dt, bool driving) {
 }
 
 bool HomeWay::due(Stamp now) {
-  if (start_ == Stamp::never()) start_ = now;
   if (time_limit_ <= 0.0 || now < next_) return false;
   next_ = now + kMeasured;
   return true;

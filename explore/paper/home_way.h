@@ -12,6 +12,10 @@ class HomeWay {
   /// `time_limit` [s] from the first tick; 0: none.
   explicit HomeWay(double time_limit) : time_limit_(time_limit) {}
 
+  /// A tick: the first one begins the mission.
+  void begin(Stamp now) {
+    if (start_ == Stamp::never()) start_ = now;
+  }
   /// One tick of `dt` [s] in which the robot moved by `way` [m]; `driving`: on its way or getting free on it, not
   /// searching or turning.
   void moved(double way, double dt, bool driving);

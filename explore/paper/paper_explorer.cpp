@@ -82,9 +82,12 @@ robot::Commands PaperExplorer::next(const slam::Mapper& mapper, const robot::Inp
 void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inputs) {
   const double passed = now_ == Stamp::never() ? 0.0 : inputs.now - now_;
   dt_ = std::min(passed, kLongestTick);
+  const Stamp last = now_;
   now_ = inputs.now;
-  const TPose2D before = pose_;
+  TPose2D before = pose_;
   pose_ = mapper.pose();
+  // A correction of the map is neither a turn nor a way: both are measured on the map as it is now.
+  if (mapper.revision() != revision_ && last != Stamp::never()) before = mapper.pose_at(last).value_or(before);
   turned_ = wrap_angle(pose_.phi - before.phi);
   victims_.moved(pose_, mapper.covariance(), passed);
   if (!victims_.doubts_pose()) waits_since_.reset();
@@ -97,6 +100,7 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
     else
       close_looks_.look_away();
   }
+  home_way_.begin(now_);
   levelling_.update(inputs);
   heed_levelling();
   heed_battery(inputs);
@@ -306,7 +310,8 @@ void PaperExplorer::check_path(const slam::Mapper& mapper) {
   if (pilot_.check(hits, pose_, commanded_.v, now_)) agenda_.plan_soon();
 }
 
-/// Something holds the robot that the scanner cannot see: it is remembered, and the robot gets free of it.
+/// Something holds the robot that the scanner cannot see: it is remembered, and the robot gets free of it. Which corner
+/// met it in a turn nobody knows: that is not remembered, but where it holds it twice the target is left alone.
 void PaperExplorer::get_free_of(const StuckWatch::Hold& hold, const slam::Mapper& mapper) {
   // On its ramp the base would push on for a second, and every turn of the wheels in vain is a lie of the odometry.
   brakes_ = true;
@@ -318,9 +323,10 @@ void PaperExplorer::get_free_of(const StuckWatch::Hold& hold, const slam::Mapper
   const bool pallet =
       hold.met != Escape::Met::Turning &&
       left_alone_.feel({now_, pose_}, hold.met == Escape::Met::Backwards, model_, floor_.cells, trail_, !hold.stands);
-  agenda_.note(now_, hold.how + (pallet    ? ": backs off and keeps clear of the pallet ahead"
-                                 : trapped ? ": leaves the pallet"
-                                           : ": backs off and plans around it"));
+  agenda_.note(now_, hold.how + (pallet                             ? ": backs off and keeps clear of the pallet ahead"
+                                 : trapped                          ? ": leaves the pallet"
+                                 : hold.met == Escape::Met::Turning ? ": tries to get away"
+                                                                    : ": backs off and plans around it"));
   stage_ = Stage::BackingUp;
 }
 

@@ -62,23 +62,29 @@ void Escape::begin(Met met, const TPose2D& T_map_base, Stamp now, int failures, 
       if (way_out_ && (move == first || move == last)) moves_.push_back(Move::Out);
     }
   }
-  held_towards_ = T_map_base.phi + (met == Met::Backwards ? kPi : 0.0);
+  held_behind_ = met == Met::Backwards;
   straight_in_vain_ = false;
   scrapes_ = failures > 0;
   roamed_ = 0.0;
   at_ = 0;
-  begun_ = T_map_base;
+  begun_ = {now, T_map_base};
   start_move(T_map_base, now);
 }
 
+void Escape::follow(const slam::Mapper& mapper) {
+  if (way_out_) way_out_->follow(mapper);
+  for (Anchor* const anchor : {&begun_, &move_begun_, &place_}) anchor->follow(mapper);
+  watch_.reset();  // by the pose alone it would have moved
+}
+
 void Escape::start_move(const TPose2D& T_map_base, Stamp now) {
-  move_begun_ = T_map_base;
+  move_begun_ = {now, T_map_base};
   const Move move = moves_[at_];
   const bool turns = move == Move::Left || move == Move::Right;
   const bool far = move == Move::Retrace || move == Move::Out || (way_out_ && !turns);
   move_until_ = now + (far ? kRetraceTime : kMoveTime);
   old_stall_until_ = now + kOldStall;
-  place_ = T_map_base;
+  place_ = {now, T_map_base};
   there_since_ = now;
   watch_.reset();
   opened_ = false;
@@ -87,7 +93,7 @@ void Escape::start_move(const TPose2D& T_map_base, Stamp now) {
 }
 
 bool Escape::free(const TPoint2D& p_map) const {
-  return distance(position(begun_), p_map) >= kFree && (!way_out_ || way_out_->out(p_map));
+  return distance(position(begun_.T_map_base), p_map) >= kFree && (!way_out_ || way_out_->out(p_map));
 }
 
 /// The move under way would take the body to a wall that is known.
@@ -109,10 +115,12 @@ std::optional<Escape::Move> Escape::opens(const TPose2D& T_map_base, const Aroun
   const Move move = moves_[at_];
   if (move != Move::BackLeft && move != Move::BackRight && move != Move::AheadLeft && move != Move::AheadRight)
     return std::nullopt;
-  if (straight_in_vain_ || std::abs(wrap_angle(T_map_base.phi - move_begun_.phi)) < kCurved) return std::nullopt;
+  if (straight_in_vain_ || std::abs(wrap_angle(T_map_base.phi - move_begun_.T_map_base.phi)) < kCurved)
+    return std::nullopt;
+  const double held_towards = begun_.T_map_base.phi + (held_behind_ ? kPi : 0.0);
   for (const Move straight : {Move::Ahead, Move::Back}) {
     const double sign = straight == Move::Ahead ? 1.0 : -1.0;
-    if (std::abs(wrap_angle(T_map_base.phi + (sign > 0.0 ? 0.0 : kPi) - held_towards_)) < kHeldWithin) continue;
+    if (std::abs(wrap_angle(T_map_base.phi + (sign > 0.0 ? 0.0 : kPi) - held_towards)) < kHeldWithin) continue;
     bool room = true;
     for (double way = kOpenStep; room && way <= kFree + kOpenStep; way += kOpenStep)
       room = around.gap(T_map_base + TPose2D{sign * way, 0.0, 0.0}) >= kOpenGap;
@@ -123,9 +131,9 @@ std::optional<Escape::Move> Escape::opens(const TPose2D& T_map_base, const Aroun
 
 /// Retracing poses, the robot may rock to and fro between two that it cannot get to.
 bool Escape::gets_nowhere(const TPose2D& T_map_base, Stamp now) {
-  if (distance(position(place_), position(T_map_base)) > kPlace ||
-      std::abs(wrap_angle(T_map_base.phi - place_.phi)) > kPlaceTurn) {
-    place_ = T_map_base;
+  if (distance(position(place_.T_map_base), position(T_map_base)) > kPlace ||
+      std::abs(wrap_angle(T_map_base.phi - place_.T_map_base.phi)) > kPlaceTurn) {
+    place_ = {now, T_map_base};
     there_since_ = now;
   }
   return now - there_since_ > kPlaceTime;
@@ -135,7 +143,7 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
                             const std::optional<robot::Drive>& wheels, bool struck, double dt, Stamp now,
                             const std::vector<TPoint2D>& trail, const WayBack& way_back, const Around& around) {
   met_ = false;
-  roamed_ = std::max(roamed_, distance(position(begun_), position(T_map_base)));
+  roamed_ = std::max(roamed_, distance(position(begun_.T_map_base), position(T_map_base)));
   if (free(position(T_map_base))) {
     drive_ = {};
     return Result::Free;
@@ -143,8 +151,8 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
   const Move move = moves_[at_];
   if (!stalled) old_stall_until_ = now;
   const bool held = watch_.stuck(T_map_base, commanded, stalled && now > old_stall_until_, dt, wheels) || struck;
-  const bool turned =
-      (move == Move::Left || move == Move::Right) && std::abs(wrap_angle(T_map_base.phi - move_begun_.phi)) >= turn_;
+  const bool turned = (move == Move::Left || move == Move::Right) &&
+                      std::abs(wrap_angle(T_map_base.phi - move_begun_.T_map_base.phi)) >= turn_;
   met_ = held;
   const bool wall = meets_wall(T_map_base, around);
   const std::optional<robot::Drive> next = command(T_map_base, trail, way_back);
@@ -158,7 +166,7 @@ Escape::Result Escape::step(const TPose2D& T_map_base, const robot::Drive& comma
   if (held || turned || wall || !next || gets_nowhere(T_map_base, now) || now >= move_until_) {
     // What holds it there the map does not show.
     straight_in_vain_ =
-        straight_in_vain_ || (opened_ && distance(position(move_begun_), position(T_map_base)) < kOpenStep);
+        straight_in_vain_ || (opened_ && distance(position(move_begun_.T_map_base), position(T_map_base)) < kOpenStep);
     if (++at_ == moves_.size()) {
       drive_ = {};
       return Result::Failed;

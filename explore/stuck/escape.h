@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/stamp.h"
+#include "explore/anchor.h"
 #include "explore/stuck/motion_watch.h"
 #include "explore/stuck/way_back.h"
 #include "explore/stuck/way_out.h"
@@ -38,10 +39,8 @@ class Escape {
   /// `failures`: escapes in a row that failed just before; each turns by another angle. `way_out`: of a trap it is in.
   void begin(Met met, const mrpt::math::TPose2D& T_map_base, Stamp now, int failures = 0,
              std::optional<WayOut> way_out = std::nullopt);
-  /// The mapper corrected its past.
-  void follow(const slam::Mapper& mapper) {
-    if (way_out_) way_out_->follow(mapper);
-  }
+  /// The mapper corrected its past: where it was held, and where it began to move, lie elsewhere now.
+  void follow(const slam::Mapper& mapper);
   /// One tick of `dt` [s] under the command that was in force. `wheels`: what they do, where that is known. `struck`: a
   /// blow stopped the robot. `trail`: where it came along, oldest first; `way_back`: the poses.
   Result step(const mrpt::math::TPose2D& T_map_base, const robot::Drive& commanded, bool stalled,
@@ -71,16 +70,16 @@ class Escape {
   bool opened_ = false;            ///< the move is a straight one that a curve has opened
   bool straight_in_vain_ = false;  ///< such a move got nowhere
   bool scrapes_ = false;           ///< a turn may bring corners to walls: the escape before failed
-  double held_towards_ = 0.0;      ///< [rad, map frame]
+  bool held_behind_ = false;       ///< it was held driving backwards
   double roamed_ = 0.0;            ///< [m]
   double turn_ = 0.0;              ///< of Left and Right [rad]
   std::optional<WayOut> way_out_;
   MotionWatch watch_;
-  mrpt::math::TPose2D begun_;       ///< where the escape began
-  mrpt::math::TPose2D move_begun_;  ///< where the present move began
+  Anchor begun_{};       ///< where the escape began
+  Anchor move_begun_{};  ///< where the present move began
   Stamp move_until_ = Stamp::never();
   Stamp old_stall_until_ = Stamp::never();  ///< the motors may still report what held them before the move
-  mrpt::math::TPose2D place_;               ///< it has been about here
+  Anchor place_{};                          ///< it has been about here
   Stamp there_since_ = Stamp::never();
   robot::Drive drive_;
   bool met_ = false;

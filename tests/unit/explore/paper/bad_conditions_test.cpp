@@ -511,6 +511,65 @@ class ClosingMapper : public slam::Mapper {
   TPose2D last_, last_bent_;  ///< odometry as it was, and as the bent map has it
 };
 
+/// The map of an exact mapper, turned about the start when the test asks for it.
+class TurnedMapper : public slam::Mapper {
+ public:
+  explicit TurnedMapper(const robot::RobotModel& model) : exact_(model, exact_mapper(), 1) {}
+
+  void turn(double angle) {
+    T_turned_ = TPose2D(0.0, 0.0, angle);
+    ++revision_;
+  }
+
+  void update(const robot::Inputs& inputs) override { exact_.update(inputs); }
+  const slam::CountMap& map() const override { return exact_.map(); }
+  TPose2D pose() const override { return T_turned_ + exact_.pose(); }
+  PoseCovariance covariance() const override { return {}; }
+  std::uint64_t revision() const override { return revision_; }
+  std::optional<TPose2D> pose_at(Stamp stamp) const override {
+    const auto pose = exact_.pose_at(stamp);
+    return pose ? std::optional(T_turned_ + *pose) : std::nullopt;
+  }
+  const Trajectory& trajectory() const override { return exact_.trajectory(); }
+  const Trajectory& live_trajectory() const override { return exact_.live_trajectory(); }
+  const std::vector<TPoint2D>& last_hits() const override { return exact_.last_hits(); }
+  const slam::MapperCounts& counts() const override { return exact_.counts(); }
+
+ private:
+  slam::PaperMapper exact_;
+  TPose2D T_turned_;
+  std::uint64_t revision_ = 0;
+};
+
+/// A loop that closes while it looks around turns the map, not the robot: it turns on for what it has to see.
+TEST(BadConditions, AMapThatTurnsWhileItLooksAroundIsNoTurnOfTheRobot) {
+  for (const double correction : {0.0, 1.0, -1.0}) {
+    const robot::RobotModel model;
+    MazeRobot robot(test::random_maze(5, 5, 0.3, 1), model);
+    TurnedMapper mapper(model);
+    PaperExplorer explorer(model, {}, {1500.0});
+    robot::Commands commands;
+    double turned = 0.0;  // [rad]
+    bool begun = false, corrected = false;
+    while (robot.now().seconds() < 30.0) {
+      const TPose2D before = robot.pose();
+      const robot::Inputs inputs = robot.step(commands);
+      turned += std::abs(wrap_angle(robot.pose().phi - before.phi));
+      if (!corrected && turned > 0.5) {
+        mapper.turn(correction);
+        corrected = true;
+      }
+      mapper.update(inputs);
+      commands = explorer.next(mapper, inputs);
+      const bool turns = commands.drive.w != 0.0 && commands.drive.v == 0.0;
+      if (begun && !turns) break;
+      begun = begun || turns;
+    }
+    EXPECT_TRUE(corrected);
+    EXPECT_NEAR(rad_to_deg(turned), 130.0, 10.0) << correction;
+  }
+}
+
 /// A loop closes while it drives: everything it keeps moves with the map, so it touches nothing, sees all, finds home,
 /// and the victim lies where it was.
 TEST(BadConditions, AMapThatJumpsWhileItDrivesTakesAllThatIsKeptWithIt) {

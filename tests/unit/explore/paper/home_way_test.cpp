@@ -18,7 +18,7 @@ double turns_back_with(HomeWay& home, double way_home, double limit) {
 
 TEST(HomeWay, LeavesTimeForTheWayAndMoreForALongerOne) {
   HomeWay home(1000.0);
-  home.due(at(0.0));
+  home.begin(at(0.0));
   const double near = turns_back_with(home, 2.0, 1000.0);
   const double far = turns_back_with(home, 40.0, 1000.0);
   EXPECT_GT(far, near);
@@ -27,12 +27,21 @@ TEST(HomeWay, LeavesTimeForTheWayAndMoreForALongerOne) {
 
 TEST(HomeWay, ASlowRobotTurnsBackEarlier) {
   HomeWay fast(1000.0), slow(1000.0);
-  fast.due(at(0.0));
-  slow.due(at(0.0));
+  fast.begin(at(0.0));
+  slow.begin(at(0.0));
   fast.moved(120.0, 400.0, true);
   slow.moved(40.0, 400.0, true);
   slow.moved(100.0, 1.0, false);  // not on its way: does not count
   EXPECT_GT(turns_back_with(slow, 20.0, 1000.0), turns_back_with(fast, 20.0, 1000.0));
+}
+
+/// A mapper may take its first scan a minute late: the judge's clock runs all the same.
+TEST(HomeWay, TheTimeRunsFromTheFirstTickNotFromTheFirstQuestion) {
+  HomeWay home(300.0);
+  home.begin(at(5.0));
+  home.begin(at(6.0));
+  EXPECT_TRUE(home.due(at(65.0)));
+  EXPECT_DOUBLE_EQ(home.left(at(65.0)), 240.0);
 }
 
 TEST(HomeWay, KnowsItsSpeed) {

@@ -82,6 +82,26 @@ TEST_F(Anchoring, ThePlaceThatHeldItFollowsThePoseThatWasHeld) {
   EXPECT_TRUE(recovery.begin(Escape::Met::Forwards, far + held, at(8.0)));
 }
 
+/// A robot that is held fast is not free because a loop closed.
+TEST_F(Anchoring, AnEscapeFollowsThePoseThatWasHeld) {
+  const Escape::Around room{[](const TPose2D&) { return true; }, [](const TPose2D&) { return 1.0; }};
+  Escape escape(deg_to_rad(60.0));
+  const TPose2D held = *mapper.pose_at(at(2.0));
+  escape.begin(Escape::Met::Forwards, held, at(2.0));
+  const auto step = [&](const TPose2D& pose, double seconds) {
+    return escape.step(pose, escape.drive(), false, {}, false, 0.02, at(seconds), {}, {}, room);
+  };
+  EXPECT_EQ(step(held, 2.02), Escape::Result::UnderWay);
+  const TPose2D far{0.6, 0.3, 0.2};
+  mapper.correct(at(5.0), far);
+  escape.follow(mapper);
+  EXPECT_EQ(step(far + held, 2.04), Escape::Result::UnderWay);
+  EXPECT_LT(escape.roamed(), 0.01);
+  // Half a metre from there is what it was before.
+  EXPECT_EQ(step(far + held + TPose2D(-0.45, 0.0, 0.0), 2.06), Escape::Result::UnderWay);
+  EXPECT_EQ(step(far + held + TPose2D(-0.51, 0.0, 0.0), 2.08), Escape::Result::Free);
+}
+
 TEST_F(Anchoring, WhereItDroveStraightOnFollowsThePoseFromWhichItDid) {
   StraightOn straight_on(model);
   const TPose2D tried = *mapper.pose_at(at(2.0));
