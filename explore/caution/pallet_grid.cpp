@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "base/angle.h"
@@ -25,15 +26,19 @@ constexpr double kAlong = 0.2;       ///< a piece this far off the grid's axes i
 /// A piece of wall about one occupied cell.
 struct Piece {
   TPoint2D p_map;
-  double direction;  ///< [rad]
+  TPoint2D twice;  ///< unit vector at twice the angle of its direction: the same both ways along it
 };
 
-/// Mean of angles that stand `turns` times in a circle; nothing where they do not agree.
+/// The unit vector at twice the angle of one.
+TPoint2D doubled(const TPoint2D& unit) { return {unit.x * unit.x - unit.y * unit.y, 2.0 * unit.x * unit.y}; }
+
+/// Mean of angles in a circle; nothing where they do not agree.
 class CircularMean {
  public:
-  void add(double angle) {
-    x_ += std::cos(angle);
-    y_ += std::sin(angle);
+  void add(double angle) { add(TPoint2D{std::cos(angle), std::sin(angle)}); }
+  void add(const TPoint2D& unit) {
+    x_ += unit.x;
+    y_ += unit.y;
     ++count_;
   }
   std::optional<double> mean() const {
@@ -66,8 +71,9 @@ class Surroundings {
     }
     x_ = x;
   }
-  /// Direction of the piece of wall that they make up [rad], nothing where they make up none.
-  std::optional<double> direction() const {
+  /// The piece of wall that they make up: unit vector at twice the angle of its direction. Nothing where they make up
+  /// none.
+  std::optional<TPoint2D> twice_the_direction() const {
     if (n_ < kFewest) return std::nullopt;
     const auto dx = static_cast<double>(sum_x_ - n_ * x_), dy = static_cast<double>(sum_y_);
     const auto n = static_cast<double>(n_);
@@ -76,7 +82,7 @@ class Surroundings {
     const double xy = static_cast<double>(sum_xy_ - x_ * sum_y_) - dx * dy / n;
     const double spread = length(xx - yy, 2.0 * xy);
     if (spread < kStraight * (xx + yy)) return std::nullopt;
-    return 0.5 * std::atan2(2.0 * xy, xx - yy);
+    return TPoint2D{(xx - yy) / spread, 2.0 * xy / spread};
   }
 
  private:
@@ -132,9 +138,15 @@ WallsAbout::WallsAbout(const OccupancyGrid& cells, const TPoint2D& around, doubl
   const int left = std::max(0, low_.x - kReach), right = std::min(cells.width() - 1, high_.x + kReach);
   for (int y = lowest_; y <= highest_; ++y) {
     first_.push_back(xs_.size());
-    const Occupancy* const cells_of_row = cells.row(y);
-    for (int x = left; x <= right; ++x)
-      if (cells_of_row[x] == Occupancy::Occupied) xs_.push_back(x);
+    // Most cells are none of a wall: memchr passes over many at a time.
+    const Occupancy* const of_row = cells.row(y);
+    const auto next = [&](int x) {
+      const void* const found = x > right ? nullptr
+                                          : std::memchr(of_row + x, static_cast<int>(Occupancy::Occupied),
+                                                        static_cast<std::size_t>(right - x + 1));
+      return found == nullptr ? right + 1 : static_cast<int>(static_cast<const Occupancy*>(found) - of_row);
+    };
+    for (int x = next(left); x <= right; x = next(x + 1)) xs_.push_back(x);
   }
   first_.push_back(xs_.size());
 }
@@ -146,9 +158,9 @@ std::optional<PalletGrid> WallsAbout::pallets(double size) const {
     Surroundings about(*this, y);
     for (const int* x = std::lower_bound(begin(y), end(y), low_.x); x != end(y) && *x <= high_.x; ++x) {
       about.move_to(*x);
-      if (const auto along = about.direction()) {
-        pieces.push_back({frame_.centre({*x, y}), *along});
-        direction.add(4.0 * *along);
+      if (const auto twice = about.twice_the_direction()) {
+        pieces.push_back({frame_.centre({*x, y}), *twice});
+        direction.add(doubled(*twice));
       }
     }
   }
@@ -158,11 +170,13 @@ std::optional<PalletGrid> WallsAbout::pallets(double size) const {
   grid.size = size;
   grid.turn_to(*four / 4.0);
   std::array<CircularMean, 2> place;  // of walls across x, across y
+  const TPoint2D axis = doubled(grid.direction());
+  const double along = std::cos(2.0 * kAlong);
   for (const Piece& piece : pieces) {
     const TPoint2D p = grid.to_grid(piece.p_map);
-    const double off = wrap_angle(2.0 * (piece.direction - grid.angle())) / 2.0;
-    if (std::abs(off) < kAlong) place[1].add(2.0 * kPi * p.y);
-    if (std::abs(off) > 0.5 * kPi - kAlong) place[0].add(2.0 * kPi * p.x);
+    const double off = axis.x * piece.twice.x + axis.y * piece.twice.y;  // cosine of twice the angle between them
+    if (off > along) place[1].add(2.0 * kPi * p.y);
+    if (off < -along) place[0].add(2.0 * kPi * p.x);
   }
   const auto across_x = place[0].mean(), across_y = place[1].mean();
   if (!across_x || !across_y) return std::nullopt;

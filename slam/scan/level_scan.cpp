@@ -134,7 +134,11 @@ ScanPoints LevelScan::points(const robot::LaserScan& scan, const SweepMotion* mo
     if (motion != nullptr) end = base_at_beam.to(beam)(end);
     if (!points.rays.empty()) points.rays.back().joined = beam == last_beam + 1;
     last_beam = beam;
-    points.rays.push_back({end, hit, false, static_cast<int>(beam)});
+    // Field by field: a ray that is made elsewhere and copied waits each time until its bytes have been stored.
+    ScanRay& ray = points.rays.emplace_back();
+    ray.end = end;
+    ray.hit = hit;
+    ray.beam = static_cast<int>(beam);
     (hit ? points.hits : points.passes).push_back(end);
   }
   if (upside_down_) {  // the beams run clockwise in the base frame
