@@ -9,6 +9,14 @@ import os
 import statistics
 import sys
 
+# What is wanted of each kind: share that ends by itself, most that get stuck of 48, known (median, worst), share of the
+# visible victims, most false ones in 48 runs, median of the contact [s], share at home in time.
+GOALS = {
+    "yellow": (1.0, 0, 0.999, 0.98, 0.99, 0, 0.5, 0.98),
+    "orange": (0.98, 1, 0.98, 0.85, 0.92, 1, 15.0, 0.90),
+    "red": (0.98, 1, 0.97, 0.85, 0.90, 1, 10.0, 0.90),
+}
+
 BY_ITSELF = ("home", "explored", "lost", "stuck")  # not `time`, nor `fell`
 
 
@@ -43,6 +51,33 @@ def spread(values, digits, worst):
     return f"{statistics.median(values):.{digits}f}, {worst(values):.{digits}f}"
 
 
+def against_goals(kind, runs):
+    """Cells of one row: what was reached, what was wanted, and whether that is met."""
+    of = lambda key: [value_of(run, key) for run in runs]
+    ends, stuck, median, worst, found, false, contact, home = GOALS[kind]
+    count, shown = len(runs), []
+
+    def cell(text, met):
+        shown.append(met)
+        return text if met else f"**{text}: missed**"
+
+    ended = sum(end in BY_ITSELF for end in of("end_code"))
+    at = sum(map(at_home, runs))
+    share = sum(of("victims_found")) / sum(of("victims_visible"))
+    known = of("known")
+    cells = [
+        cell(f"{100 * ended / count:.0f} (>= {100 * ends:.0f})", ended >= ends * count),
+        cell(f"{of('end_code').count('stuck')} (<= {stuck})", of("end_code").count("stuck") <= stuck * count / 48),
+        cell(f"{statistics.median(known):.3f} (>= {median})", statistics.median(known) >= median),
+        cell(f"{min(known):.3f} (>= {worst})", min(known) >= worst),
+        cell(f"{100 * share:.1f} (>= {100 * found:.0f})", share >= found),
+        cell(f"{sum(of('victims_false'))} (<= {false})", sum(of("victims_false")) <= false * count / 48),
+        cell(f"{statistics.median(of('contact_s')):.1f} (<= {contact})", statistics.median(of("contact_s")) <= contact),
+        cell(f"{100 * at / count:.0f} (>= {100 * home:.0f})", at >= home * count),
+    ]
+    return cells + ["yes" if all(shown) else "no"]
+
+
 def main():
     if len(sys.argv) < 2 or sys.argv[1].startswith("-"):
         sys.exit(__doc__)
@@ -66,6 +101,12 @@ def main():
               f"{spread(of('known'), 3, min)} | {found} of {visible} ({100 * found / visible:.1f} %) | "
               f"{sum(of('victims_false'))} | {spread(of('contact_s'), 1, max)} | {spread(of('ate_aligned_m'), 3, max)} | "
               f"{statistics.mean(of('area_per_min')):.1f} | {statistics.mean(of('score')):.3f} | {statistics.mean(of('visible_share')):.3f} | {rooms(runs)} |")
+    print("\n| kind | ends by itself, % (goal) | stuck | known, median | known, worst | victims found of those visible, % | false | "
+          "contact s, median | at home in time, % | all met |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
+    for kind in order:
+        if kinds.get(kind):
+            print(f"| {kind} | " + " | ".join(against_goals(kind, kinds[kind])) + " |")
     print("\n| arenas | runs | known, median and worst | victims found of those visible (false) | contact s, median and most | "
           "trajectory error, median and worst, m |")
     print("|---|---|---|---|---|---|")
