@@ -17,6 +17,8 @@ using robot::Drive;
 
 constexpr double kSameThing = 0.15;              ///< a hit this close to a wall of the map is that wall [m]
 constexpr double kBlindWay = 5.0;                ///< by odometry alone, then it looks back [m]
+constexpr double kAskEach = 1.0;                 ///< such way, the brake is asked whether it moves [m]
+constexpr double kStandsStill = 0.2;             ///< of its speed: who feels no more of it go as it brakes stood
 constexpr double kBlindAfterBlow = 1.0;          ///< the same after a blow [m]
 constexpr double kLookBack = deg_to_rad(130.0);  ///< with a 240 deg scanner far enough [rad]
 constexpr double kOnEdge = 0.01;                 ///< what was felt so near to a pallet is felt on it [m]
@@ -29,6 +31,7 @@ constexpr double kLongestTick = 0.2;             ///< commands of longer ticks a
 constexpr double kDetourSpeed = 0.15;   ///< a detour is driven so fast at least, turns and stops included [m/s]
 constexpr double kWaitForMapper = 3.0;  ///< the robot stands for a pose in doubt, then it goes on [s]
 constexpr double kWaitAgain = 20.0;     ///< from the beginning of one such wait to the next [s]
+constexpr double kOtherPlace = 0.3;     ///< a victim that has moved so far is told of again [m]
 constexpr int kSmoothFloor = 3;         ///< things felt so far where the robot may be fast
 
 PaperExplorerConfig for_mission(PaperExplorerConfig config, const Mission& mission) {
@@ -121,19 +124,26 @@ void PaperExplorer::observe(const slam::Mapper& mapper, const robot::Inputs& inp
   trail_.add(now_, pose_, slope_);
 }
 
-/// Which victims are new, and which are none any more: what told of them is of another, or of nobody.
+/// Which victims are new, which lie elsewhere than was told or were told of by another sense, and which are none any
+/// more: what told of them is of another, or of nobody.
 void PaperExplorer::tell_victims() {
-  std::vector<int> ids;
+  std::vector<VictimReport> told;
+  const auto of = [](const std::vector<VictimReport>& victims, int id) {
+    const auto at = std::find_if(victims.begin(), victims.end(), [&](const VictimReport& v) { return v.id == id; });
+    return at == victims.end() ? nullptr : &*at;
+  };
   for (const VictimReport& victim : victims_.reports()) {
-    ids.push_back(victim.id);
-    if (!std::binary_search(told_victims_.begin(), told_victims_.end(), victim.id))
-      agenda_.note(now_,
-                   victim_name(victim.id) + " confirmed at " + place_text(victim.p_map) + " by " + senses(victim));
+    const VictimReport* const before = of(told_victims_, victim.id);
+    const bool news = before == nullptr || distance(before->p_map, victim.p_map) > kOtherPlace ||
+                      before->cues.size() != victim.cues.size();
+    if (news)
+      agenda_.note(now_, victim_name(victim.id) + (before == nullptr ? " confirmed at " : " is at ") +
+                             place_text(victim.p_map) + (before == nullptr ? " by " : " now, by ") + senses(victim));
+    told.push_back(news ? victim : *before);
   }
-  for (const int id : told_victims_)
-    if (!std::binary_search(ids.begin(), ids.end(), id))
-      agenda_.note(now_, victim_name(id) + " was another one, or none");
-  told_victims_ = std::move(ids);
+  for (const VictimReport& before : told_victims_)
+    if (of(told, before.id) == nullptr) agenda_.note(now_, victim_name(before.id) + " was another one, or none");
+  told_victims_ = std::move(told);
 }
 
 /// Scans of a plane that nobody holds level show walls where floor is: what is seen of victims cannot be placed, and
@@ -234,12 +244,18 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
     }
     if (stuck_watch_.brake_can_tell(*hold, now_)) {
       doubted_hold_ = *hold;
+      asks_blindly_ = false;
       stuck_watch_.begin_brake_test(now_);
       brakes_ = true;
       stage_ = Stage::Braking;
       return {};
     }
     get_free_of(*hold, mapper);
+    return {};
+  }
+  if (asks_its_brake(mapper)) {
+    brakes_ = true;
+    stage_ = Stage::Braking;
     return {};
   }
   check_path(mapper);
@@ -264,6 +280,22 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
   return step.drive;
 }
 
+/// Between walls that look the same all along its wheels may spin before a step that it met slowly: no scan and no blow
+/// tells. Its brake does.
+bool PaperExplorer::asks_its_brake(const slam::Mapper& mapper) {
+  const double blind = mapper.blind_way();
+  if (blind < asked_at_) asked_at_ = 0.0;
+  if (blind < asked_at_ + kAskEach || pilot_.turning()) return false;
+  const StuckWatch::Hold hold{"braking it felt that it stands",
+                              commanded_.v < 0.0 ? Escape::Met::Backwards : Escape::Met::Forwards, true};
+  if (!stuck_watch_.brake_can_tell(hold, now_)) return false;
+  asked_at_ = blind;
+  doubted_hold_ = hold;
+  asks_blindly_ = true;
+  stuck_watch_.begin_brake_test(now_);
+  return true;
+}
+
 /// Between walls that look the same all along its wheels may spin before a step while all seems well. It looks back for
 /// where that way began soon after a blow, and where there was none before the way becomes long.
 void PaperExplorer::look_back(const slam::Mapper& mapper) {
@@ -275,7 +307,7 @@ void PaperExplorer::look_back(const slam::Mapper& mapper) {
   if (blind < look_back_at_.value_or(kBlindWay) || pilot_.turning()) return;
   look_back_at_ = blind + kBlindWay;
   agenda_.note(now_, "nothing but walls alongside for so long: looks back");
-  pilot_.turn(kLookBack, TurnFor::View, now_);
+  pilot_.turn(kLookBack, TurnFor::WholeView, now_);
 }
 
 /// Records what the victim sensors see, and stands where they need time for it.
@@ -364,12 +396,20 @@ Drive PaperExplorer::brake(const slam::Mapper& mapper) {
     case BrakeTest::Verdict::Open:
       break;
     case BrakeTest::Verdict::Moved:
-      agenda_.note(now_, "its pose stands, but braking it felt that it moved: drives on");
+      brake_tells_ = true;
       stage_ = Stage::OnTheWay;
+      if (asks_blindly_) break;
+      agenda_.note(now_, "its pose stands, but braking it felt that it moved: drives on");
       stuck_watch_.doubt_pose(now_);
       agenda_.plan_soon();
       break;
     case BrakeTest::Verdict::Stood:
+      // A base that cannot stop at once feels little as well, and one that tips over a crest.
+      if (asks_blindly_ && (!brake_tells_ || stuck_watch_.lost_by_braking() > kStandsStill)) {
+        stage_ = Stage::OnTheWay;
+        break;
+      }
+      if (asks_blindly_) look_back_at_ = mapper.blind_way();  // its pose has driven on: soon it looks for where it is
       get_free_of(doubted_hold_, mapper);
       break;
   }

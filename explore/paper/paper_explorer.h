@@ -73,6 +73,7 @@ class PaperExplorer : public Explorer {
 
   bool holds_still();
   bool waits_for_mapper();
+  bool asks_its_brake(const slam::Mapper& mapper);
   void look_back(const slam::Mapper& mapper);
   void check_path(const slam::Mapper& mapper);
   void get_free_of(const StuckWatch::Hold& hold, const slam::Mapper& mapper);
@@ -93,6 +94,9 @@ class PaperExplorer : public Explorer {
   Pilot pilot_;
   StuckWatch stuck_watch_;
   StuckWatch::Hold doubted_hold_;  ///< while it brakes to find out
+  bool asks_blindly_ = false;      ///< it brakes though nothing says that it is held
+  bool brake_tells_ = false;       ///< its brake told of a motion once
+  double asked_at_ = 0.0;          ///< blind way at which it asked its brake last [m]
   Recovery recovery_;
   StraightOn straight_on_;
   VictimWatch victims_;
@@ -119,7 +123,7 @@ class PaperExplorer : public Explorer {
   double blind_ = 0.0;                  ///< the mapper's blind way [m] ...
   std::optional<double> look_back_at_;  ///< ... at which it looks back, if not as usual [m]
   std::vector<mrpt::math::TPoint2D> shown_path_;
-  std::vector<int> told_victims_;  ///< ids, ascending
+  std::vector<VictimReport> told_victims_;  ///< as they were told of last, ids ascending
 };
 
 }  // namespace rubble::explore

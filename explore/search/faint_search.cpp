@@ -29,7 +29,8 @@ constexpr double kTold = 18.0;          ///< cues that fit another place by so m
 constexpr double kStand = 0.6;          ///< what was sensed from poses so near to each other is from one stand [m]
 constexpr std::size_t kLeastStand = 3;  ///< cues
 constexpr double kBeside = 1.0;         ///< what lies so near to a place may be of what its cues err by [m]
-constexpr double kOneSense = 0.75;      ///< of a victim's evidence is of one sense
+constexpr double kEnough = 1.4;         ///< evidence of a victim that was not seen
+constexpr double kOneSense = 0.75;      ///< of it, or more, is of one sense
 constexpr double kSameStand = 0.15;     ///< a robot that moved less stood [m]
 constexpr double kSameHeading = deg_to_rad(15.0);  ///< and turned less
 constexpr double kSameTime = 5.0;                  ///< no stand is longer [s]
@@ -468,7 +469,7 @@ void FaintSearch::confirm(Place& place, std::vector<Seen>& seen, const HiddenFn&
   // A single one may be of a neighbour, or of nobody.
   const double smelt = place.co2 > 1 ? place.co2 * config_.co2.evidence : 0.0;
   // Stray cues of two senses meet somewhere.
-  if (place.beside || heard + smelt < 1.0 || std::max(heard, smelt) < kOneSense) return;
+  if (place.beside || heard + smelt < kEnough || std::max(heard, smelt) < kOneSense) return;
   if (worst_sigma(place.covariance) > config_.sure) return;
   if (smelt < kOneSense && place.base < config_.base) return;
   const std::vector<const Cue*> cues = cues_of(static_cast<int>(&place - places_.data()));

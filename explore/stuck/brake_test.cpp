@@ -29,11 +29,14 @@ void BrakeTest::begin(double speed, Stamp now) {
   begun_ = now;
 }
 
+double BrakeTest::lost_share() const {
+  // Against the way its wheels turned.
+  return speed_ == 0.0 ? 0.0 : -gained_ / speed_;
+}
+
 BrakeTest::Verdict BrakeTest::verdict(Stamp now) const {
   if (begun_ == Stamp::never() || now - begun_ < config_.time) return Verdict::Open;
-  // Against the way its wheels turned.
-  const double lost = speed_ > 0.0 ? -gained_ : gained_;
-  return lost >= config_.share * std::abs(speed_) ? Verdict::Moved : Verdict::Stood;
+  return lost_share() >= config_.share ? Verdict::Moved : Verdict::Stood;
 }
 
 }  // namespace rubble::explore

@@ -34,6 +34,8 @@ class BrakeTest {
   void begin(double speed, Stamp now);
   /// Open before a test has begun.
   Verdict verdict(Stamp now) const;
+  /// How much of the speed of its wheels the body has lost; what stood loses none but for noise.
+  double lost_share() const;
 
  private:
   bool under_way(Stamp stamp) const;

@@ -54,6 +54,8 @@ class StuckWatch {
   /// From now on the robot brakes as hard as it can, until there is a verdict.
   void begin_brake_test(Stamp now) { brake_test_.begin(wheels_->v, now); }
   BrakeTest::Verdict brake_verdict(Stamp now) const { return brake_test_.verdict(now); }
+  /// How much of its speed it felt itself lose in the test.
+  double lost_by_braking() const { return brake_test_.lost_share(); }
   /// It moved: its pose falls behind. For a while that alone is no sign of being held.
   void doubt_pose(Stamp now);
 

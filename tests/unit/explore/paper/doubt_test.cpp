@@ -22,10 +22,11 @@ class Doubtful : public slam::Mapper {
   explicit Doubtful(slam::Mapper& mapper) : mapper_(mapper) {}
   double sigma = 0.0;  ///< of x and y [m]
   double blind = 0.0;  ///< [m]
+  double ahead = 0.0;  ///< its pose is so far ahead of the robot [m]
 
   void update(const robot::Inputs& inputs) override { mapper_.update(inputs); }
   const slam::CountMap& map() const override { return mapper_.map(); }
-  TPose2D pose() const override { return mapper_.pose(); }
+  TPose2D pose() const override { return mapper_.pose() + TPose2D(ahead, 0.0, 0.0); }
   PoseCovariance covariance() const override {
     PoseCovariance covariance;
     covariance(0, 0) = covariance(1, 1) = sigma * sigma;
@@ -165,6 +166,77 @@ TEST(Doubt, BetweenBareWallsTheRobotLooksBackSoonAfterABlow) {
   EXPECT_NEAR(jolted.front(), 2.5, 0.1);
   EXPECT_TRUE(looks_back(false, 1.5).empty()) << "scans tell how far it came";
 }
+
+/// A mission in a bare corridor in which the robot is held, softly, after 2.3 m, while its wheels roll on and the pose
+/// with them. `feels`: its accelerometer feels it brake.
+struct Held {
+  double rolled = 0.0;       ///< by its wheels in vain until it knew [m]
+  bool knew = false;         ///< ... that it stands
+  bool looked_back = false;  ///< soon after that
+};
+
+Held held_softly(bool feels) {
+  const test::Maze maze = test::maze({"+--+--+--+--+--+--+--+--+--+--+",  //
+                                      "| R                           |",  //
+                                      "+--+--+--+--+--+--+--+--+--+--+"});
+  const robot::RobotModel model;
+  test::MazeRobot robot(maze, model);
+  slam::PaperMapper paper(model, test::exact_mapper(), 1);
+  Doubtful mapper(paper);
+  PaperExplorerConfig config;
+  config.search.on = false;
+  config.return_home = false;
+  PaperExplorer explorer(model, config);
+  robot::Commands commands;
+  Held held;
+  std::size_t told = 0;
+  double last_v = 0.0;
+  Stamp soft_until = Stamp::never();
+  std::optional<Stamp> knew_at;
+  while (robot.now().seconds() < 60.0 && !explorer.finished()) {
+    const TPose2D before = robot.pose();
+    robot::Inputs inputs = robot.step(commands);
+    const double v = before.inverseComposePoint(position(robot.pose())).x / model.tick;
+    const double wheels = !robot.held || commands.brake ? 0.0 : commands.drive.v;
+    const bool soft = soft_until != Stamp::never() && inputs.now < soft_until;
+    inputs.accelerations = {{inputs.now, feels && !soft ? (v - last_v) / model.tick : 0.0}};
+    last_v = v;
+    paper.update(inputs);
+    mapper.blind += (std::abs(v) + std::abs(wheels)) * model.tick;
+    mapper.ahead += wheels * model.tick;
+    if (!held.knew) held.rolled += std::abs(wheels) * model.tick;
+    if (robot.held && !inputs.odometry.empty()) {
+      inputs.odometry.back().v = wheels;
+      inputs.odometry.back().pose = inputs.odometry.back().pose + TPose2D(mapper.ahead, 0.0, 0.0);
+    }
+    if (!robot.held && !held.knew && mapper.blind > 2.3) {
+      robot.held = true;
+      soft_until = inputs.now + 0.5;
+    }
+    commands = explorer.next(mapper, inputs);
+    for (; told < explorer.decisions().size(); ++told) {
+      const std::string& why = explorer.decisions()[told].why;
+      if (why.find("braking it felt that it stands") != std::string::npos && !held.knew) {
+        held.knew = true;
+        knew_at = inputs.now;
+        robot.held = false;
+      }
+      if (knew_at && why.find("looks back") != std::string::npos && inputs.now - *knew_at < 10.0)
+        held.looked_back = true;
+    }
+  }
+  return held;
+}
+
+TEST(Doubt, BetweenBareWallsARobotThatIsHeldSoftlyLearnsItFromItsBrake) {
+  const Held held = held_softly(true);
+  EXPECT_TRUE(held.knew);
+  EXPECT_LT(held.rolled, 1.2);
+  EXPECT_TRUE(held.looked_back);
+}
+
+/// A base that cannot stop at once feels nothing of it either.
+TEST(Doubt, ABrakeThatNeverToldOfAMotionIsNotBelieved) { EXPECT_FALSE(held_softly(false).knew); }
 
 }  // namespace
 }  // namespace rubble::explore
