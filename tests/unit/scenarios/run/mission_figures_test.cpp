@@ -142,7 +142,7 @@ TEST_F(MissionEnds, ARobotThatEndsBeyondTheRimFell) {
   }
 }
 
-/// Only the end counts: where the robot was on the way is drive_figures()' concern.
+/// Only the end counts: a robot that stands on a floor has not fallen, wherever it was before.
 TEST_F(MissionEnds, ARobotThatCameBackDidNotFall) {
   const Trajectory back{
       {Stamp{0}, {}}, {Stamp::from_seconds(1.0), {5.2, 0.0, 0.0}}, {Stamp::from_seconds(2.0), {4.0, 0.0, 0.0}}};
