@@ -191,7 +191,48 @@ struct Balls {
   }
 };
 
-TEST(BadConditions, ABallBeforeTheOnlyDoorIsPushedAside) {
+/// Two rooms and a door as wide as a pallet between them: two pieces of wall with a gap.
+Maze two_rooms() {
+  return test::maze({"+--+--+--+--+",  //
+                     "|     |     |",  //
+                     "+  +  +  +  +",  //
+                     "| R         |",  //
+                     "+  +  +  +  +",  //
+                     "|     |     |",  //
+                     "+--+--+--+--+"});
+}
+
+/// With something in the only door: the robot is home in the end, and was in the other room and saw all of it.
+void expect_door_pushed_open(const std::vector<TPoint2D>& balls_from_middle) {
+  const Maze maze = two_rooms();
+  const TPoint2D door{1.5 * Maze::kPallet, maze.start.y};
+  std::vector<TPoint2D> at;
+  for (const TPoint2D& ball : balls_from_middle) at.push_back(door + ball);
+  Maze blocked = maze;
+  Balls balls(blocked, at);
+  Trial trial(blocked);
+  double farthest = maze.start.x;
+  trial.run(900.0, [&] {
+    balls.meet(trial);
+    farthest = std::max(farthest, trial.robot.pose().x);
+  });
+  EXPECT_TRUE(balls.pushed);
+  EXPECT_GT(farthest, door.x + trial.model.length) << "not through the door";
+  for (int row = 0; row < maze.rows; ++row)
+    for (int column = 0; column < maze.columns; ++column)
+      EXPECT_TRUE(is_seen(trial, maze.centre(column, row))) << column << ", " << row;
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
+  EXPECT_LT(std::hypot(trial.robot.pose().x - maze.start.x, trial.robot.pose().y - maze.start.y), 0.35);
+}
+
+TEST(BadConditions, ABallInTheOnlyDoorIsPushedAside) { expect_door_pushed_open({{0.0, 0.03}}); }
+
+/// Three balls abreast, so close that they look like one thing of 0.7 m, which a single ball is not.
+TEST(BadConditions, AHeapInTheOnlyDoorIsPushedAside) {
+  expect_door_pushed_open({{0.0, -0.24}, {0.05, 0.0}, {0.0, 0.24}});
+}
+
+TEST(BadConditions, ABallInACorridorIsPushedAside) {
   Maze maze = test::maze({"+--+--+--+--+",  //
                           "| R         |",  //
                           "+--+--+--+--+"});
@@ -200,10 +241,10 @@ TEST(BadConditions, ABallBeforeTheOnlyDoorIsPushedAside) {
   trial.run(900.0, [&] { balls.meet(trial); });
   EXPECT_TRUE(balls.pushed);
   EXPECT_TRUE(is_seen(trial, maze.centre(3, 0)));
-  EXPECT_TRUE(trial.explorer.finished());
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
 }
 
-/// Three balls abreast, so close that they look like one thing of 0.7 m, which a single ball is not.
+/// Three balls abreast, as in the door.
 TEST(BadConditions, AHeapInACorridorIsPushedAside) {
   Maze maze = test::maze({"+--+--+--+--+--+",  //
                           "| R            |",  //
@@ -214,7 +255,7 @@ TEST(BadConditions, AHeapInACorridorIsPushedAside) {
   trial.run(900.0, [&] { balls.meet(trial); });
   EXPECT_TRUE(balls.pushed);
   EXPECT_TRUE(is_seen(trial, maze.centre(4, 0)));
-  EXPECT_TRUE(trial.explorer.finished());
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
 }
 
 /// Something rolled into the way by which the robot came: what lies behind it is searched all the same.
@@ -350,19 +391,31 @@ TEST(BadConditions, WithoutScansForTwoSecondsTheRobotStandsAndThenGoesOn) {
   EXPECT_EQ(trial.explorer.end(), MissionEnd::Home) << trial.explorer.reason();
 }
 
-/// The wheels' counters stop, so the mapper takes the robot for standing: it may not go on pushing.
+/// The wheels' counters stop, so the mapper takes the robot for standing: it may not go on pushing. Each drive ends
+/// after some decimetres, ahead or back, and the way out of each hold it finds comes to an end as well.
 TEST(BadConditions, FrozenOdometryIsTakenForBeingStuck) {
   const Maze maze = test::random_maze(5, 5, 0.2, 9);
   Trial trial(maze);
   std::vector<robot::Odometry> frozen;
   double way_since = 0.0;
+  double in_one_go = 0.0, longest = 0.0;  // without a stop or a change between ahead and back
+  double last_v = 0.0;
   trial.run(400.0, {}, [&](robot::Inputs& inputs) {
     if (inputs.now.seconds() > 30.0 && !inputs.odometry.empty()) {
       if (frozen.empty()) frozen.push_back(inputs.odometry.back());
       inputs.odometry.back().pose = frozen.back().pose;
     }
-    if (!frozen.empty()) way_since += std::abs(trial.commands.drive.v) * trial.model.tick;
+    if (frozen.empty()) return;
+    const double v = trial.commands.drive.v;
+    const double way = std::abs(v) * trial.model.tick;
+    way_since += way;
+    in_one_go = v * last_v > 0.0 ? in_one_go + way : way;
+    longest = std::max(longest, in_one_go);
+    last_v = v;
   });
+  EXPECT_GT(longest, 0.1);
+  EXPECT_LT(longest, 0.45);
+  EXPECT_LT(way_since, 45.0) << "of ten holds";
   EXPECT_GT(trial.backing, 0);
   EXPECT_EQ(trial.explorer.end(), MissionEnd::Stuck) << trial.explorer.reason();
   EXPECT_LT(trial.robot.now().seconds(), 400.0);
