@@ -2,42 +2,86 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "arenas/files/arena_file.h"
 #include "arenas/generate/generate.h"
+#include "arenas/truth/truth_map.h"
 #include "base/angle.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/mission_figures.h"
+#include "scoring/trajectory/trajectory_error.h"
 #include "sim/sim_robot.h"
 #include "tests/support/base_files.h"
 
 namespace rubble::scenarios {
 namespace {
 
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+
 struct Mission {
   std::string end, decisions;
   scoring::DriveFigures drive;
   std::size_t victims = 0, true_victims = 0;
+  double ate_m = 0.0;     ///< of the mapper's trajectory, aligned
+  double phantoms = 0.0;  ///< share of its map's walls that are nowhere near a true one
 };
 
-Mission drive(const arenas::Arena& arena, Scenario scenario) {
+/// Share of the occupied cells of a map that have no wall within 0.2 m in truth.
+double phantom_share(const slam::CountMap& map, const arenas::Arena& arena) {
+  constexpr int kNear = 4;  // cells of the truth, of 5 cm
+  const OccupancyGrid truth = arenas::truth_map(arena);
+  const auto wall_near = [&](const Cell& c) {
+    for (int y = c.y - kNear; y <= c.y + kNear; ++y)
+      for (int x = c.x - kNear; x <= c.x + kNear; ++x)
+        if (truth.inside({x, y}) && truth[{x, y}] == Occupancy::Occupied) return true;
+    return false;
+  };
+  int walls = 0, phantoms = 0;
+  for (int y = 0; y < map.frame().height; ++y)
+    for (int x = 0; x < map.frame().width; ++x) {
+      const Cell c{x, y};
+      if (map.seen(c) < 3 || 2 * map.occupied(c) < map.seen(c)) continue;
+      ++walls;
+      phantoms += wall_near(truth.cell(arena.start.composePoint(map.frame().centre(c)))) ? 0 : 1;
+    }
+  return walls == 0 ? 1.0 : static_cast<double>(phantoms) / walls;
+}
+
+/// What happens to the measurements of a tick, which the robot drove by these commands.
+using Spoil = std::function<void(robot::Inputs&, const robot::Commands&)>;
+
+Mission drive(const arenas::Arena& arena, Scenario scenario, const Spoil& spoil = {}) {
   scenario.time_limit = scenario.sim.time_limit = 1500.0;
   const test::TempFolder folder;
   sim::SimRobot robot(arena, scenario.robot, scenario.sim, scenario.seed);
   Core core(scenario, scenario.robot, true, folder.path());
-  while (const auto inputs = robot.read()) {
-    robot.command(core.step(*inputs));
+  robot::Commands commands;
+  while (auto inputs = robot.read()) {
+    if (spoil) spoil(*inputs, commands);
+    commands = core.step(*inputs);
+    robot.command(commands);
     if (core.finished()) break;
   }
   const scoring::MissionFigures figures = mission_figures(arena, robot.truth(), scenario.robot, core);
-  return {figures.end_code, decisions_text(core), figures.drive, core.victims().size(), arena.victims.size()};
+  return {figures.end_code,
+          decisions_text(core),
+          figures.drive,
+          core.victims().size(),
+          arena.victims.size(),
+          scoring::trajectory_error(core.mapper().trajectory(), robot.truth()).ate_aligned_m,
+          phantom_share(core.mapper().map(), arena)};
 }
 
-arenas::Arena small_yellow(std::uint64_t seed) {
+arenas::Arena small_yellow(std::uint64_t seed, int pallets = 6) {
   arenas::GenerateConfig config;
-  config.columns = config.rows = 6;
+  config.columns = config.rows = pallets;
   config.ramps = 0.4;
   config.paper = 0.1;
   config.seed = seed;
@@ -113,6 +157,64 @@ TEST(StartOnARamp, IsAMissionLikeAnyOther) {
   }
   std::sort(contact_s.begin(), contact_s.end());
   EXPECT_LT(contact_s[7], 3.0) << "of eight of them";
+}
+
+/// A spell in the middle of a mission: from 60 s on, as soon as the robot is told to drive fast.
+class Spell {
+ public:
+  explicit Spell(double seconds) : seconds_(seconds) {}
+
+  /// In each tick, in order.
+  bool on(Stamp now, const robot::Commands& commands) {
+    if (!from_ && now.seconds() > 60.0 && commands.drive.v > 0.3) from_ = now;
+    const bool is_on = from_ && now - *from_ < seconds_;
+    if (is_on) told_way_ += std::abs(commands.drive.v) * kTick;
+    return is_on;
+  }
+  bool came() const { return from_.has_value(); }
+  /// That the robot was told to drive meanwhile [m].
+  double told_way() const { return told_way_; }
+
+ private:
+  const double kTick = robot::RobotModel().tick;
+  double seconds_;
+  std::optional<Stamp> from_;
+  double told_way_ = 0.0;
+};
+
+/// A fault that passes, with the mapper that drives a mission unless another is asked for.
+class AFaultThatPasses : public ::testing::Test {
+ protected:
+  static constexpr std::uint64_t kSeeds = 4;
+
+  void drive_spoilt(std::uint64_t seed, const Spoil& spoil) {
+    Scenario scenario;
+    scenario.seed = seed;
+    ASSERT_EQ(scenario.mapper.kind(), "robust");
+    arena_ = small_yellow(seed, 5);
+    mission_ = drive(arena_, scenario, spoil);
+  }
+  void expect_good_mission() const {
+    EXPECT_EQ(mission_.end, "home") << mission_.decisions;
+    EXPECT_EQ(mission_.victims, mission_.true_victims);
+    EXPECT_LT(mission_.phantoms, 0.05);
+  }
+  arenas::Arena arena_;
+  Mission mission_;
+};
+
+TEST_F(AFaultThatPasses, ALaserThatIsSilentFor2SecondsStopsTheRobotAndSpoilsNothing) {
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Spell silent(2.0);
+    drive_spoilt(seed, [&](robot::Inputs& inputs, const robot::Commands& commands) {
+      if (silent.on(inputs.now, commands)) inputs.scans.clear();
+    });
+    ASSERT_TRUE(silent.came());
+    expect_good_mission();
+    EXPECT_LT(mission_.ate_m, 0.03);
+    EXPECT_LT(silent.told_way(), 0.3) << "drives blindly";
+  }
 }
 
 }  // namespace
