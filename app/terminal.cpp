@@ -147,6 +147,10 @@ void print_figures(const nlohmann::ordered_json& score, bool explained) {
 void print_victims(const nlohmann::ordered_json& score) {
   if (!score.at("victims_found").is_number()) return;
   std::string text = score["victims_found"].dump() + " of " + score["victims_total"].dump();
+  // Nobody can find what no pose on the floor it can reach shows.
+  if (const auto seen = score.find("victims_visible");
+      seen != score.end() && seen->is_number() && *seen != score["victims_total"])
+    text += " (" + seen->dump() + " can be seen)";
   text += ", " + score["victims_false"].dump() + " false";
   if (const auto& error = score["victims_error_m"]; error.is_number())
     text += ", " + scoring::text_of(*scoring::find_figure("victims_error_m"), scenarios::value_of(error)) + " off";

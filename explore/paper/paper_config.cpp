@@ -1,5 +1,7 @@
 #include "explore/paper/paper_config.h"
 
+#include "base/text/number_text.h"
+
 namespace rubble::explore {
 
 void bind(Binder& b, PaperExplorerConfig& c) {
@@ -53,8 +55,10 @@ void bind(Binder& b, PaperExplorerConfig& c) {
 }
 
 std::string mistake(const PaperExplorerConfig& config) {
-  if (config.planner.transform.d_opt < config.planner.transform.d_min)
-    return "d_opt_m must not be smaller than d_min_m";
+  const TransformConfig& transform = config.planner.transform;
+  if (transform.d_opt < transform.d_min)
+    return "d_opt_m, " + number_text(transform.d_opt) + ", must not be smaller than d_min_m, " +
+           number_text(transform.d_min);
   return "";
 }
 

@@ -23,7 +23,11 @@ BY_ITSELF = ("home", "explored", "lost", "stuck")  # not `time`, nor `fell`
 def rows_of(folders):
     kinds = collections.defaultdict(list)
     for folder in folders:
-        with open(os.path.join(folder, "results.jsonl")) as lines:
+        results = os.path.join(folder, "results.jsonl")
+        if not os.path.exists(results):
+            sys.exit(f"mission_table.py: {results}: is not there; name the folder that `rubble batch mission --out` wrote, "
+                     "of shards the one that `rubble batch merge` made of them")
+        with open(results) as lines:
             for line in lines:
                 run = json.loads(line)
                 kinds[run["config"]].append(run.get("score"))
