@@ -11,8 +11,11 @@ constexpr double kUsualSpeed = 0.22;  ///< turns and stops included, until the r
 constexpr double kSlowest = 0.08;     ///< [m/s]
 constexpr double kUsualTime = 60.0;   ///< the usual speed counts as if driven for so long [s]
 constexpr double kSpare = 1.4;        ///< the way may take so much longer than the mean speed says
+constexpr double kSpareShare = 0.125, kLeastSpare = 12.0, kMostSpare = 25.0;  ///< share of the limit, and within [s]
 
 }  // namespace
+
+double HomeWay::spare_time() const { return std::clamp(kSpareShare * time_limit_, kLeastSpare, kMostSpare); }
 
 void HomeWay::moved(double way, double dt, bool driving) {
   if (!driving) return;
@@ -34,7 +37,7 @@ double HomeWay::left(Stamp now) const {
 double HomeWay::speed() const { return std::max(kSlowest, (way_ + kUsualSpeed * kUsualTime) / (time_ + kUsualTime)); }
 
 bool HomeWay::must_turn_back(double way_home, Stamp now) const {
-  return left(now) < kSpare * way_home / speed() + kSpareTime;
+  return left(now) < kSpare * way_home / speed() + spare_time();
 }
 
 }  // namespace rubble::explore

@@ -7,7 +7,8 @@ namespace rubble::explore {
 /// Knows when it is time to drive home: from the length of the way and how fast the robot has come along so far.
 class HomeWay {
  public:
-  static constexpr double kSpareTime = 25.0;  ///< kept beside what the way takes [s]
+  /// What is kept of a mission's time beside what the way takes: less of a short one [s].
+  double spare_time() const;
 
   /// `time_limit` [s] from the first tick; 0: none.
   explicit HomeWay(double time_limit) : time_limit_(time_limit) {}

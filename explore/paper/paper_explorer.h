@@ -52,7 +52,7 @@ class PaperExplorer : public Explorer {
   const std::vector<VictimReport>& victims() const override { return victims_.reports(); }
   bool searched(const mrpt::math::TPoint2D& place) const override { return victims_.search().saw(place); }
   /// So much of the time limit is kept for the way home, beside the way itself [s].
-  double time_for_home() const override { return config_.return_home ? HomeWay::kSpareTime : 0.0; }
+  double time_for_home() const override { return config_.return_home ? home_way_.spare_time() : 0.0; }
 
  private:
   enum class Stage { Starting, OnTheWay, StraightOn, Braking, BackingUp };

@@ -120,20 +120,30 @@ TEST(Doubt, TheRobotWaitsForItsMapperAndThenGoesOn) {
   EXPECT_GT(driven, 0.5) << "not for ever";
 }
 
-/// A mission in a bare corridor of ten pallets: where the robot looked back, as the way that odometry alone tells [m].
-/// `blow_at`: something jolts it there.
-std::vector<double> looks_back(bool bare, std::optional<double> blow_at) {
+PaperExplorerConfig all_that_can_be_known() {
+  PaperExplorerConfig config;
+  config.search.on = false;
+  config.return_home = false;
+  return config;
+}
+
+/// A corridor of ten pallets whose walls tell nothing of the way along them, and who is in it.
+struct BareCorridor {
   const test::Maze maze = test::maze({"+--+--+--+--+--+--+--+--+--+--+",  //
                                       "| R                           |",  //
                                       "+--+--+--+--+--+--+--+--+--+--+"});
   const robot::RobotModel model;
-  test::MazeRobot robot(maze, model);
-  slam::PaperMapper paper(model, test::exact_mapper(), 1);
-  Doubtful mapper(paper);
-  PaperExplorerConfig config;
-  config.search.on = false;
-  config.return_home = false;
-  PaperExplorer explorer(model, config);
+  test::MazeRobot robot{maze, model};
+  slam::PaperMapper paper{model, test::exact_mapper(), 1};
+  Doubtful mapper{paper};
+  PaperExplorer explorer{model, all_that_can_be_known()};
+};
+
+/// A mission in a bare corridor: where the robot looked back, as the way that odometry alone tells [m].
+/// `blow_at`: something jolts it there.
+std::vector<double> looks_back(bool bare, std::optional<double> blow_at) {
+  BareCorridor corridor;
+  auto& [maze, model, robot, paper, mapper, explorer] = corridor;
   robot::Commands commands;
   TPose2D last = robot.pose();
   std::vector<double> looks;
@@ -176,17 +186,8 @@ struct Held {
 };
 
 Held held_softly(bool feels) {
-  const test::Maze maze = test::maze({"+--+--+--+--+--+--+--+--+--+--+",  //
-                                      "| R                           |",  //
-                                      "+--+--+--+--+--+--+--+--+--+--+"});
-  const robot::RobotModel model;
-  test::MazeRobot robot(maze, model);
-  slam::PaperMapper paper(model, test::exact_mapper(), 1);
-  Doubtful mapper(paper);
-  PaperExplorerConfig config;
-  config.search.on = false;
-  config.return_home = false;
-  PaperExplorer explorer(model, config);
+  BareCorridor corridor;
+  auto& [maze, model, robot, paper, mapper, explorer] = corridor;
   robot::Commands commands;
   Held held;
   std::size_t told = 0;

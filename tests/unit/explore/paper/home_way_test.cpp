@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 namespace rubble::explore {
 namespace {
@@ -23,6 +24,18 @@ TEST(HomeWay, LeavesTimeForTheWayAndMoreForALongerOne) {
   const double far = turns_back_with(home, 40.0, 1000.0);
   EXPECT_GT(far, near);
   EXPECT_GT(far, 40.0 / 0.4);
+}
+
+/// An eighth of the time, 12 s at least and 25 s at most: at home for good with half of 100 s left is no mission.
+TEST(HomeWay, AShortMissionKeepsLessTimeForNothing) {
+  const double way_there = 1.4 * 5.0 / 0.22;
+  for (const auto& [limit, spare] :
+       {std::pair{60.0, 12.0}, {100.0, 12.5}, {160.0, 20.0}, {200.0, 25.0}, {1800.0, 25.0}}) {
+    HomeWay home(limit);
+    home.begin(at(0.0));
+    EXPECT_NEAR(turns_back_with(home, 5.0, limit), way_there + spare, 1.0) << limit;
+    EXPECT_DOUBLE_EQ(home.spare_time(), spare);
+  }
 }
 
 TEST(HomeWay, ASlowRobotTurnsBackEarlier) {
