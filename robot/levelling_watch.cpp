@@ -14,7 +14,7 @@ constexpr double kLeans = deg_to_rad(20.0);     ///< no robot stands so for long
 constexpr double kTilted = deg_to_rad(3.0);     ///< what it never leaves ...
 constexpr double kAimedFar = deg_to_rad(15.0);  ///< ... of a tilt it turned so far against ...
 constexpr double kLevelledFor = 1.5;            ///< ... for longer than servos and loop take [s]
-constexpr double kAtStopFor = 4.5;  ///< where they can turn no farther; one that hangs on an edge gets free sooner [s]
+constexpr double kAtStopFor = 2.2;  ///< where they can turn no farther, longer than a robot stays so steep [s]
 constexpr double kTakenAway = deg_to_rad(0.5);  ///< a tilt that shrinks by so much meanwhile is being levelled
 constexpr double kAtStop = deg_to_rad(1.0);     ///< servos so near to the end of their travel are there
 
