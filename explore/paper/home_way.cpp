@@ -6,11 +6,12 @@
 namespace rubble::explore {
 namespace {
 
-constexpr double kMeasured = 4.0;     ///< the way home is measured this often [s]
-constexpr double kUsualSpeed = 0.22;  ///< turns and stops included, until the robot's own is known [m/s]
-constexpr double kSlowest = 0.08;     ///< [m/s]
-constexpr double kUsualTime = 60.0;   ///< the usual speed counts as if driven for so long [s]
-constexpr double kSpare = 1.4;        ///< the way may take so much longer than the mean speed says
+constexpr double kMeasured = 4.0;             ///< the way home is measured this often [s]
+constexpr double kUsualSpeed = 0.22;          ///< turns and stops included, until the robot's own is known [m/s]
+constexpr double kSlowest = 0.08;             ///< [m/s]
+constexpr double kUsualTime = 60.0;           ///< the usual speed counts as if driven for so long [s]
+constexpr double kSpare = 1.4;                ///< the way may take so much longer than the mean speed says
+constexpr double kHurry = 1.2, kLook = 10.0;  ///< the same where it hurries, and what looking around takes [s]
 constexpr double kSpareShare = 0.125, kLeastSpare = 12.0, kMostSpare = 25.0;  ///< share of the limit, and within [s]
 
 }  // namespace
@@ -39,5 +40,7 @@ double HomeWay::speed() const { return std::max(kSlowest, (way_ + kUsualSpeed * 
 bool HomeWay::must_turn_back(double way_home, Stamp now) const {
   return left(now) < kSpare * way_home / speed() + spare_time();
 }
+
+bool HomeWay::hurries(double way_left, Stamp now) const { return left(now) < kHurry * way_left / speed() + kLook; }
 
 }  // namespace rubble::explore

@@ -24,6 +24,8 @@ class HomeWay {
   bool due(Stamp now);
   /// Whether a robot whose way home is so long [m] must turn back now.
   bool must_turn_back(double way_home, Stamp now) const;
+  /// Whether a robot on its way home, with so much of it left [m], has no time for anything else.
+  bool hurries(double way_left, Stamp now) const;
   /// How fast the robot has come along so far, turns and stops included [m/s].
   double speed() const;
   /// Time left of the mission [s].

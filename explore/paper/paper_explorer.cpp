@@ -305,6 +305,7 @@ void PaperExplorer::look_back(const slam::Mapper& mapper) {
   if (blind > 0.0 && stuck_watch_.shaken())
     look_back_at_ = std::min(look_back_at_.value_or(kBlindWay), blind + kBlindAfterBlow);
   if (blind < look_back_at_.value_or(kBlindWay) || pilot_.turning()) return;
+  if (agenda_.goal() == Goal::Home && home_way_.hurries(pilot_.left(), now_)) return;
   look_back_at_ = blind + kBlindWay;
   agenda_.note(now_, "nothing but walls alongside for so long: looks back");
   pilot_.turn(kLookBack, TurnFor::WholeView, now_);

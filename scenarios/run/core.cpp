@@ -34,7 +34,10 @@ robot::Commands Core::step(const robot::Inputs& inputs) {
   mapper_->update(inputs);
   watch(inputs);
   robot::Commands commands;
-  if (explorer_) commands = explorer_->next(*mapper_, inputs);
+  if (explorer_) {
+    commands = explorer_->next(*mapper_, inputs);
+    withdrawn_.note(explorer_->victims());
+  }
   commands.aim = levelling_.update(inputs);
   return commands;
 }

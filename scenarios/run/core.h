@@ -10,6 +10,7 @@
 #include "robot/robot.h"
 #include "scenarios/config/scenario.h"
 #include "scenarios/run/first_seen.h"
+#include "scenarios/run/withdrawn_victims.h"
 #include "slam/map_base.h"
 #include "slam/mapper.h"
 
@@ -37,6 +38,8 @@ class Core {
   std::vector<explore::VictimReport> victims() const;
   /// How often the motors reported a stall that was not reported before.
   int stalls() const { return stalls_; }
+  /// How many victims it was sure of and later no more: to a judge they were false reports.
+  int victims_withdrawn() const { return withdrawn_.count(); }
   /// When which place was mapped, while it explored [s since the first tick].
   const FirstSeen& first_seen() const { return first_seen_; }
   /// What the robot waited for in vain while it should explore; nothing: it has not had to wait long.
@@ -49,6 +52,7 @@ class Core {
   robot::Levelling levelling_;
   void watch(const robot::Inputs& inputs);
 
+  WithdrawnVictims withdrawn_;
   int stalls_ = 0;
   bool stalled_ = false;
   Stamp first_ = Stamp::never();

@@ -266,6 +266,7 @@ scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajec
   out.end_code = true_end(out.end_code, out.drive.home_m);
   if (!truth.empty() && off_the_floor(arenas::PatchIndex(arena), truth.back().pose)) out.end_code = "fell";
   out.stalls = static_cast<std::uint64_t>(core.stalls());
+  out.victims_withdrawn = static_cast<std::uint64_t>(core.victims_withdrawn());
   const OccupancyGrid all = arenas::truth_map(arena);
   const OccupancyGrid visible =
       known_visible != nullptr ? *known_visible : arenas::visible_truth(arena, all, viewer_of(model));

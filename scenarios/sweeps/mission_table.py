@@ -51,6 +51,14 @@ def rooms(runs):
     return f"{sum(run['rooms_entered'] for run in runs)} of {sum(run['rooms_reachable'] for run in runs)}"
 
 
+def false_of(runs):
+    """With the victims that it was sure of on the way and later no more, where they were counted."""
+    text = str(sum(run["victims_false"] for run in runs))
+    if all("victims_withdrawn" in run for run in runs):
+        text += f" ({sum(run['victims_withdrawn'] for run in runs)})"
+    return text
+
+
 def spread(values, digits, worst):
     return f"{statistics.median(values):.{digits}f}, {worst(values):.{digits}f}"
 
@@ -90,7 +98,7 @@ def main():
     for name, runs in arenas.items():
         kinds[name.split("-")[0]] += runs
     order = ["yellow", "orange", "red"]
-    print("| kind | runs | ends by itself | at home in time | stuck | known, median and worst | victims found of those visible | false | "
+    print("| kind | runs | ends by itself | at home in time | stuck | known, median and worst | victims found of those visible | false (taken back on the way) | "
           "contact s, median and most | trajectory error, aligned, median and worst, m | m2 a minute | score, mean | of its floor can be seen, mean | rooms entered of those that can be |")
     print("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|")
     for kind in order:
@@ -103,7 +111,7 @@ def main():
         found, visible = sum(of("victims_found")), sum(of("victims_visible"))
         print(f"| {kind} | {len(runs)} | {sum(end in BY_ITSELF for end in of('end_code'))} | {sum(map(at_home, runs))} | {of('end_code').count('stuck')} | "
               f"{spread(of('known'), 3, min)} | {found} of {visible} ({100 * found / visible:.1f} %) | "
-              f"{sum(of('victims_false'))} | {spread(of('contact_s'), 1, max)} | {spread(of('ate_aligned_m'), 3, max)} | "
+              f"{false_of(runs)} | {spread(of('contact_s'), 1, max)} | {spread(of('ate_aligned_m'), 3, max)} | "
               f"{statistics.mean(of('area_per_min')):.1f} | {statistics.mean(of('score')):.3f} | {statistics.mean(of('visible_share')):.3f} | {rooms(runs)} |")
     print("\n| kind | ends by itself, % (goal) | stuck | known, median | known, worst | victims found of those visible, % | false | "
           "contact s, median | at home in time, % | all met |")

@@ -288,6 +288,8 @@ std::vector<Figure> make_table() {
       {"area_per_min", "area a minute [m2]", "", 1, kUp, 0.5, kPlain, of_mission(&MissionFigures::area_per_min)},
       {"victims_visible", "victims that can be seen", "", 0, kNone, 0.0, kPlain,
        of_mission(&MissionFigures::victims_visible)},
+      {"victims_withdrawn", "victims taken back", "", 0, kDown, 1.0, kPlain,
+       of_mission(&MissionFigures::victims_withdrawn), "that it was sure of on the way and later no more"},
       {"visible_share", "floor that can be seen", "%", 3, kNone, 0.0, kPlain,
        of_mission(&MissionFigures::visible_share)},
       {"rooms_reachable", "rooms that can be entered", "", 0, kNone, 0.0, kPlain,

@@ -57,6 +57,19 @@ TEST(HomeWay, TheTimeRunsFromTheFirstTickNotFromTheFirstQuestion) {
   EXPECT_DOUBLE_EQ(home.left(at(65.0)), 240.0);
 }
 
+/// 10 s for a look, and a fifth more than the way should take.
+TEST(HomeWay, HurriesWhereNoTimeIsLeftForALook) {
+  HomeWay home(300.0);
+  home.begin(at(0.0));
+  home.moved(66.0, 300.0, true);  // 0.22 m/s
+  const double spare = 1.2 * 11.0 / 0.22 + 10.0;
+  EXPECT_FALSE(home.hurries(11.0, at(300.0 - spare - 0.1)));
+  EXPECT_TRUE(home.hurries(11.0, at(300.0 - spare + 0.1)));
+  HomeWay unlimited(0.0);
+  unlimited.begin(at(0.0));
+  EXPECT_FALSE(unlimited.hurries(1e6, at(1e6)));
+}
+
 TEST(HomeWay, KnowsItsSpeed) {
   HomeWay home(0.0);
   EXPECT_NEAR(home.speed(), 0.22, 1e-9) << "as is usual, until it is known";
