@@ -5,6 +5,7 @@
 #include "app/scenario_options.h"
 #include "app/terminal.h"
 #include "base/error.h"
+#include "scenarios/config/notes.h"
 
 namespace rubble::app {
 namespace {

@@ -54,27 +54,39 @@ std::optional<std::string> small_start(const Arena& arena, const Viewer& viewer)
   const OccupancyGrid drawn = drawn_map(arena, kCoarse);
   const Grid<float> room = standing_room(arena, drawn, viewer);
   const Grid<std::uint8_t> reached = reachable_mask({arena.start.x, arena.start.y}, drawn, room, viewer);
-  const auto own = static_cast<double>(std::count(reached.cells().begin(), reached.cells().end(), 1));
+  const auto own = static_cast<std::size_t>(std::count(reached.cells().begin(), reached.cells().end(), 1));
   const auto needed = static_cast<float>(viewer.radius);
   Grid<std::uint8_t> known = reached;
-  Region largest;
+  std::size_t all = own;
+  std::vector<Region> larger;
   for (int y = 0; y < room.height(); ++y) {
     for (int x = 0; x < room.width(); ++x) {
       if (known[{x, y}] != 0 || room[{x, y}] < needed) continue;
       Region region = grow(room, needed, {x, y}, known);
-      if (region.size() > largest.size()) largest = std::move(region);
+      all += region.size();
+      if (region.size() > own) larger.push_back(std::move(region));
     }
   }
-  if (own >= kSmallShare * static_cast<double>(largest.size())) return std::nullopt;
-  const auto better = roomy_place(largest, room, arena);
-  if (!better) return std::nullopt;
-  std::array<char, 240> text{};
-  std::snprintf(text.data(), text.size(),
-                "from the start (%.2f, %.2f) the robot gets to %.1f m2 of floor, a wall or step all round; from (%.2f, "
-                "%.2f) it would get to %.1f m2: move the start",
-                arena.start.x, arena.start.y, kCellArea * own, better->x, better->y,
-                kCellArea * static_cast<double>(largest.size()));
-  return text.data();
+  if (static_cast<double>(own) >= kSmallShare * static_cast<double>(all)) return std::nullopt;
+  const auto area = [](std::size_t cells) { return kCellArea * static_cast<double>(cells); };
+  std::array<char, 160> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "from the start (%.2f, %.2f) the robot gets to %.1f m2 of floor, %.0f %% of %.1f m2, a wall or step all "
+      "round; ",
+      arena.start.x, arena.start.y, area(own), 100.0 * static_cast<double>(own) / static_cast<double>(all), area(all));
+  const std::string what = text.data();
+  std::stable_sort(larger.begin(), larger.end(), [](const Region& a, const Region& b) { return a.size() > b.size(); });
+  for (const Region& region : larger) {
+    const auto better = roomy_place(region, room, arena);
+    if (!better) continue;
+    std::snprintf(
+        text.data(), text.size(),
+        "with start: {x_m: %.2f, y_m: %.2f}, or the drawing's S there, it would get to %.1f m2: move the start",
+        better->x, better->y, area(region.size()));
+    return what + text.data();
+  }
+  return what + "no larger part has room for a start: open a wall or lay a ramp to the rest";
 }
 
 }  // namespace rubble::arenas

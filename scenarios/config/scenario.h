@@ -71,13 +71,6 @@ Scenario default_scenario(const std::vector<Override>& overrides = {});
 /// All values, defaults included, as YAML that load_scenario reads back to the same scenario.
 std::string resolved_yaml(const Scenario& scenario);
 
-/// What the user should know about the arena's file, one line each: of a .raf file parts left out, and where
-/// the robot starts; of another a start from which it gets to little of the floor.
-std::vector<std::string> arena_notes(const Scenario& scenario);
-
-/// What to know before a run whose robot may turn back before it has begun; nothing where there is time enough.
-std::optional<std::string> short_time_note(const Scenario& scenario);
-
 /// The arena's YAML text: the file's with all it includes, or the generated one. Throws InputError.
 std::string arena_yaml(const Scenario& scenario);
 

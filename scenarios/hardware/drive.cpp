@@ -25,6 +25,7 @@
 #include "robot/drivers/scip/scip_scanner.h"
 #include "robot/drivers/watch/base_watch.h"
 #include "robot/logs/log.h"
+#include "scenarios/config/notes.h"
 #include "scenarios/hardware/port_mix_up.h"
 #include "scenarios/hardware/scanner_check.h"
 #include "scenarios/run/core.h"

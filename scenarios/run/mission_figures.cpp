@@ -14,6 +14,7 @@
 #include "base/angle.h"
 #include "base/planar.h"
 #include "robot/body.h"
+#include "scenarios/config/viewer.h"
 #include "scoring/figures/rooms_entered.h"
 #include "sim/victim_sensor.h"
 
@@ -195,16 +196,6 @@ scoring::DriveFigures drive_figures(const arenas::Arena& arena, const Trajectory
 }
 
 std::string true_end(const std::string& said, double home) { return said == "home" && home > kAtHome ? "lost" : said; }
-
-arenas::Viewer viewer_of(const robot::RobotModel& model) {
-  arenas::Viewer viewer;
-  viewer.radius = 0.5 * model.width;
-  viewer.height = robot::body_height(model);
-  viewer.laser_height = model.T_base_laser.z;
-  viewer.climbable_step = model.climbable_step;
-  viewer.range = model.laser.range_max;
-  return viewer;
-}
 
 int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model) {
   const OccupancyGrid truth = arenas::truth_map(arena);

@@ -6,7 +6,6 @@
 
 #include "arenas/model/arena.h"
 #include "arenas/model/patch_index.h"
-#include "arenas/truth/visible.h"
 #include "base/grid.h"
 #include "base/trajectory.h"
 #include "explore/explorer.h"
@@ -32,9 +31,6 @@ double visible_share(const arenas::Arena& arena, const robot::RobotModel& model)
 /// in the end after `end` seconds [m^2/min].
 double area_per_minute(const FirstSeen& seen, const OccupancyGrid& visible, const mrpt::math::TPose2D& T_map_arena,
                        double end);
-
-/// What decides where that robot gets and how far it sees.
-arenas::Viewer viewer_of(const robot::RobotModel& model);
 
 /// Whether no floor is below the robot's middle: it drove over the rim.
 bool off_the_floor(const arenas::PatchIndex& floor, const mrpt::math::TPose2D& T_arena_base);

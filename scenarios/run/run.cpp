@@ -23,6 +23,7 @@
 #include "base/text/words.h"
 #include "explore/victim_report.h"
 #include "robot/logs/log.h"
+#include "scenarios/config/viewer.h"
 #include "scenarios/run/core.h"
 #include "scenarios/run/loop.h"
 #include "scenarios/run/map_files.h"

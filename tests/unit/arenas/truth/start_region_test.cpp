@@ -11,6 +11,7 @@
 namespace rubble::arenas {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 std::optional<std::string> note_of(const std::string& maze) {
@@ -21,6 +22,28 @@ TEST(StartRegion, ASealedRoomIsToldWithABetterPlace) {
   const auto note = note_of("  +---+---+---+\n  |S. |.   .  |\n  +---+---+---+\n");
   ASSERT_TRUE(note);
   EXPECT_THAT(*note, HasSubstr("from the start (0.60, 0.60) the robot gets to 0.5 m2"));
+  EXPECT_THAT(*note, HasSubstr("move the start"));
+}
+
+TEST(StartRegion, TheShareOfTheFloorAndTheKeyAreNamed) {
+  const auto note = note_of("  +---+---+---+\n  |S. |.   .  |\n  +---+---+---+\n");
+  ASSERT_TRUE(note);
+  EXPECT_THAT(*note, ContainsRegex("gets to 0\\.5 m2 of floor, 2[0-9] % of 1\\.[0-9] m2"));
+  EXPECT_THAT(*note, ContainsRegex("with start: \\{x_m: [12]\\.[0-9]+, y_m: 0\\.[0-9]+\\}"));
+}
+
+TEST(StartRegion, OneOfManyRoomsAlikeIsToldThoughNoneIsBetter) {
+  const auto note = note_of("  +---+---+---+\n  |S. | . | . |\n  +---+---+---+\n");
+  ASSERT_TRUE(note);
+  EXPECT_THAT(*note, HasSubstr("no larger part has room for a start"));
+}
+
+TEST(StartRegion, ARoomOfLessThanHalfOfTheFloorIsToldAlsoBesideNoneTwiceAsLarge) {
+  const auto note = note_of(
+      "  +---+---+---+---+---+---+---+---+\n"
+      "  |S.   .   . | .   .   .   . | . |\n"
+      "  +---+---+---+---+---+---+---+---+\n");
+  ASSERT_TRUE(note);
   EXPECT_THAT(*note, HasSubstr("move the start"));
 }
 
