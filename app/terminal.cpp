@@ -172,6 +172,7 @@ int show(const scenarios::RunReport& report) {
   if (score["aligned"].is_boolean() && !score["aligned"].get<bool>())
     print_not_aligned(score["align_note"].get<std::string>());
   print_victims(score);
+  if (!report.unseen_victims.empty()) print_row("victims out of sight", kOutOfSight + joined(report.unseen_victims));
   if (const auto lost = score["hits_outside"].get<std::uint64_t>(); lost > 0)
     print_row("NOT MAPPED", std::to_string(lost) + " laser hits lay beyond the largest map (mapper.max_map_cells)");
   if (const auto dropped = score["scans_out_of_order"].get<std::uint64_t>(); dropped > 0)

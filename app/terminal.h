@@ -56,6 +56,8 @@ void print_figure(const scoring::Figure& figure, const std::string& text, bool e
 /// `explained`: with what each means behind it.
 void print_figures(const nlohmann::ordered_json& score, bool explained = false);
 
+/// What names of victims stand behind that nobody can find.
+inline constexpr const char* kOutOfSight = "cannot be seen from floor the robot reaches: ";
 /// How many victims were found, where that is known.
 void print_victims(const nlohmann::ordered_json& score);
 

@@ -23,6 +23,7 @@
 #include "base/text/text_file.h"
 #include "base/text/words.h"
 #include "base/yaml/binder.h"
+#include "scenarios/run/mission_figures.h"
 #include "scoring/maps/league_map.h"
 
 namespace rubble::app {
@@ -139,6 +140,7 @@ int arena(const ArenaArguments& arguments) {
     std::snprintf(share.data(), share.size(), "%.2f %%", 100.0 * cause.share);
     print_line("not asked for: " + std::string(share.data()) + " " + cause.why);
   }
+  if (const auto names = scenarios::unseen_victims(arena, {}); !names.empty()) print_line(kOutOfSight + joined(names));
   if (arguments.generate()) print_line("to run it: " + how_to_run(base + ".yaml"));
   return kOk;
 }

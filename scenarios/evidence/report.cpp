@@ -141,6 +141,16 @@ std::string local_link(const std::string& path) {
   return out;
 }
 
+/// "cannot be seen: true victim2"; nothing where all victims can be, or where an older program did not say.
+std::string out_of_sight(const RunRecord& run) {
+  const auto found = run.score->find("unseen_victims");
+  if (found == run.score->end() || !found->is_array()) return "";
+  std::string names;
+  for (const auto& name : *found)
+    if (name.is_string()) names += (names.empty() ? "" : ", ") + name.get<std::string>();
+  return names.empty() ? "" : "<br>cannot be seen from floor the robot reaches: " + escape_html(names);
+}
+
 std::string figure_of(const RunRecord& run, const ResultSet& set, const std::string& page_folder) {
   const std::string folder = set.folder + "/" + run.folder;
   const bool is_inside = is_below(run.folder);
@@ -152,7 +162,8 @@ std::string figure_of(const RunRecord& run, const ResultSet& set, const std::str
   out += picture.empty() ? "(no picture)" : "<img src=\"" + picture + "\" alt=\"map over truth\">";
   if (!link.empty() && is_inside) out += "</a>";
   return out + "<figcaption>score " + figure(run.metric("score")) + "<br>" + escape_html(run.scenario) + ", seed " +
-         std::to_string(run.seed) + "<br>" + escape_html(run.configuration) + "</figcaption></figure>\n";
+         std::to_string(run.seed) + "<br>" + escape_html(run.configuration) + out_of_sight(run) +
+         "</figcaption></figure>\n";
 }
 
 std::string thumbnails(const ResultSet& set, const std::string& page_folder) {

@@ -197,7 +197,7 @@ scoring::DriveFigures drive_figures(const arenas::Arena& arena, const Trajectory
 
 std::string true_end(const std::string& said, double home) { return said == "home" && home > kAtHome ? "lost" : said; }
 
-int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model) {
+std::vector<std::string> unseen_victims(const arenas::Arena& arena, const robot::RobotModel& model) {
   const OccupancyGrid truth = arenas::truth_map(arena);
   const Grid<std::uint8_t> reachable = arenas::reachable_mask(arena, truth, viewer_of(model));
   const arenas::PatchIndex floor(arena);
@@ -214,7 +214,14 @@ int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model) 
       }
     return false;
   };
-  return static_cast<int>(std::count_if(arena.victims.begin(), arena.victims.end(), seen_from));
+  std::vector<std::string> names;
+  for (const arenas::Victim& victim : arena.victims)
+    if (!seen_from(victim)) names.push_back(victim.name);
+  return names;
+}
+
+int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model) {
+  return static_cast<int>(arena.victims.size() - unseen_victims(arena, model).size());
 }
 
 double visible_share(const arenas::Arena& arena, const robot::RobotModel& model) {
@@ -263,7 +270,8 @@ scoring::MissionFigures mission_figures(const arenas::Arena& arena, const Trajec
       known_visible != nullptr ? *known_visible : arenas::visible_truth(arena, all, viewer_of(model));
   const double time = truth.empty() ? 0.0 : truth.back().stamp - truth.front().stamp;
   out.area_per_min = area_per_minute(core.first_seen(), visible, arena_in_map(truth, core.mapper()), time);
-  out.victims_visible = static_cast<std::uint64_t>(visible_victims(arena, model));
+  out.unseen_victims = unseen_victims(arena, model);
+  out.victims_visible = arena.victims.size() - out.unseen_victims.size();
   out.visible_share = share_of(all, visible);
   const scoring::RoomsEntered rooms =
       scoring::rooms_entered(all, arenas::reachable_mask(arena, all, viewer_of(model)), truth);

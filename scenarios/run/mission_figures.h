@@ -3,6 +3,7 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <string>
+#include <vector>
 
 #include "arenas/model/arena.h"
 #include "arenas/model/patch_index.h"
@@ -23,6 +24,9 @@ scoring::DriveFigures drive_figures(const arenas::Arena& arena, const Trajectory
 /// How many victims could be looked at by a camera from where the robot's middle can get; of those that are heard or
 /// smelt only, how many could be.
 int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model);
+
+/// The names of the others.
+std::vector<std::string> unseen_victims(const arenas::Arena& arena, const robot::RobotModel& model);
 
 /// What of an arena's floor the laser can see from where the robot can get, 0 to 1.
 double visible_share(const arenas::Arena& arena, const robot::RobotModel& model);

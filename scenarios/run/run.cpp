@@ -241,6 +241,8 @@ RunReport run_scenario(const Scenario& scenario, const RunOptions& options) {
   RunReport report;
   report.interrupted = end.interrupted;
   report.failure = end.failure;
+  for (const std::string& name : evidence.mission->unseen_victims)
+    report.unseen_victims.push_back(scoring::true_victim_name(name));
   finish(report, evidence, folder, scenario, start);
   if (options.link_latest) folder.link_latest(core.mapper());
   return report;

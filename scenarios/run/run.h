@@ -32,6 +32,8 @@ struct RunReport {
   bool interrupted = false;
   std::string failure;              ///< the robot was lost: the run failed but its folder is complete
   std::vector<std::string> broken;  ///< expectations that were not met, one line each
+  /// Victims of the truth that no sensor finds from where the robot can get: by their names, as pictures have them.
+  std::vector<std::string> unseen_victims{};
 };
 
 /// Simulates, explores, maps and scores one scenario. Throws InputError, RunError.

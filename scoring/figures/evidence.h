@@ -65,13 +65,14 @@ struct DriveFigures {
 struct MissionFigures {
   std::string end_code;  ///< "explored", "home", "time", "stuck", "lost", "fell" or "interrupted"
   DriveFigures drive;
-  std::uint64_t stalls = 0;             ///< reported by the motors
-  double area_per_min = 0.0;            ///< of floor, until 95 % of all that its laser can see were known [m^2/min]
-  std::uint64_t victims_withdrawn = 0;  ///< that it was sure of and later no more
-  std::uint64_t victims_visible = 0;    ///< that a sensor could find from where the robot can get
-  double visible_share = 0.0;           ///< of the truth's floor, what its laser can see from where it can get
-  std::uint64_t rooms_reachable = 0;    ///< whose floor the robot's middle can get to
-  std::uint64_t rooms_entered = 0;      ///< of these
+  std::uint64_t stalls = 0;                 ///< reported by the motors
+  double area_per_min = 0.0;                ///< of floor, until 95 % of all that its laser can see were known [m^2/min]
+  std::uint64_t victims_withdrawn = 0;      ///< that it was sure of and later no more
+  std::uint64_t victims_visible = 0;        ///< that a sensor could find from where the robot can get
+  std::vector<std::string> unseen_victims;  ///< the names of the others, as the arena has them
+  double visible_share = 0.0;               ///< of the truth's floor, what its laser can see from where it can get
+  std::uint64_t rooms_reachable = 0;        ///< whose floor the robot's middle can get to
+  std::uint64_t rooms_entered = 0;          ///< of these
 };
 
 /// What a real robot's devices did.

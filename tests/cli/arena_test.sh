@@ -48,6 +48,25 @@ for command in 'arena sealed.yaml --out out' 'run sealed_run.yaml --out sealed_r
   grep -q 'sealed.yaml: from the start (0.60, 0.60) the robot gets to .* % of .*with start: {x_m: .*: move the start$' err.txt || fail "sealed: $(cat err.txt)"
 done
 
+# Victims that no camera can find from floor the robot gets to are named, also in the table of a run.
+cat >hidden.yaml <<YAML
+maze: |
+  +---+---+---+---+---+
+  |S.   .   .  A.  B. |
+  +---+---+---+---+---+
+victims:
+  - {name: anna, cell: A, wall: north}
+  - {name: bert, cell: B, wall: east}
+walls: [{from_m: [4.81, 0], to_m: [4.81, 1.2]}]
+YAML
+expect_exit 0 '' "$rubble" arena hidden.yaml --out out
+grep -qx 'cannot be seen from floor the robot reaches: bert' out.txt || fail "who is hidden: $(cat out.txt)"
+printf 'arena: {file: hidden.yaml}\ntime_limit_s: 2\nexplorer: {return_home: false}\n' >hidden_run.yaml
+expect_exit 0 '' "$rubble" run hidden_run.yaml --out hidden_run
+grep -qE '^victims out of sight +cannot be seen from floor the robot reaches: true victim bert$' out.txt ||
+  fail "who is hidden in a run: $(cat out.txt)"
+json_holds hidden_run/score.json "j['victims_visible'] == 1 and j['victims_total'] == 2"
+
 # What of an arena the robot cannot see is said with its cause, and nothing where all can be seen.
 "$rubble" arena generate --kind red --cells 6x6 --seed 3 --ramps 0.4 --out red >told.txt 2>&1 || fail "a red arena"
 grep -qE '^not asked for: [0-9.]+ % behind (slopes of more than 22 deg|steps and blocks of more than 0.10 m)$' told.txt ||

@@ -124,6 +124,17 @@ TEST_F(Batch, FailuresAndHangsAreRecordedAndMadeAgainOnlyWhenAsked) {
   for (const auto& record : load_lines(with_limit.out)) EXPECT_TRUE(record.ok()) << record.seed;
 }
 
+TEST_F(Batch, VictimsThatNobodyCanSeeAreKeptBesideTheFigures) {
+  const auto runner = [](const Job& job, const std::string& folder) {
+    RunOutcome outcome = fake(job, folder);
+    if (job.seed == 2) outcome.unseen_victims = {"true victim2"};
+    return outcome;
+  };
+  run_batch(jobs(2), runner, options("out"));
+  for (const RunRecord& run : load_lines(path("out")))
+    EXPECT_EQ(run.score->contains("unseen_victims"), run.seed == 2) << run.score->dump();
+}
+
 TEST_F(Batch, ExpectationsAboutTheMachineAreNoPartOfTheResult) {
   run_batch(jobs(1), fake, options("out"));
   EXPECT_THAT(load_lines(path("out"))[0].broken, testing::ElementsAre("score is 0.1, expected at least 0.5"));

@@ -54,6 +54,15 @@ TEST_F(Report, StandsOnItsOwn) {
   EXPECT_EQ(plots, 3u);
 }
 
+TEST_F(Report, VictimsThatNobodyCanSeeAreNamed) {
+  ResultSet set = results();
+  EXPECT_THAT(report_html(set, note_of(set, folder_), folder_), Not(HasSubstr("cannot be seen")));
+  for (RunRecord& run : set.runs)
+    if (run.ok()) (*run.score)["unseen_victims"] = {"true victim2", "true <b>"};
+  EXPECT_THAT(report_html(set, note_of(set, folder_), folder_),
+              HasSubstr("cannot be seen from floor the robot reaches: true victim2, true &lt;b&gt;"));
+}
+
 TEST_F(Report, LinksFollowThePage) {
   const ResultSet set = results();
   std::filesystem::create_directories(path("pages"));

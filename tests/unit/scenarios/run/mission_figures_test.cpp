@@ -89,6 +89,17 @@ TEST(VisibleVictims, BehindAWallAreNone) {
   EXPECT_EQ(visible_victims(arena, {}), 0);
 }
 
+TEST(UnseenVictims, AreNamedAndAreAllThatAreNotVisible) {
+  arenas::Arena arena = room();
+  arena.victims = {victim(4.9, 0.0, kPi), victim(4.9, 1.0, 0.0), victim(4.9, -1.0, kPi)};
+  for (const auto& [i, name] : {std::pair{0, "anna"}, {1, "bert"}, {2, "carl"}})
+    arena.victims[static_cast<std::size_t>(i)].name = name;
+  EXPECT_EQ(unseen_victims(arena, {}), std::vector<std::string>{"bert"}) << "it opens to the wall";
+  EXPECT_EQ(visible_victims(arena, {}), 2);
+  sim::test::add_wall(arena, 2.0, -2.0, 2.02, 2.0);
+  EXPECT_EQ(unseen_victims(arena, {}), (std::vector<std::string>{"anna", "bert", "carl"}));
+}
+
 /// A box whose lid is open at the top alone: the plan shows a way in that no camera at 0.5 m has.
 TEST(VisibleVictims, BehindAWallThatIsOpenAboveTheCamerasAreNone) {
   arenas::Arena arena = room();
