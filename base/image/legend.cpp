@@ -29,6 +29,42 @@ ScaleBar scale_bar(const GridFrame& frame, int scale, int room) {
           length < 1.0 ? cv::format("%.1f m", length) : cv::format("%.0f m", length)};
 }
 
+void draw_arrow(cv::Mat& picture, const cv::Point& tail, const cv::Point& tip, const cv::Scalar& colour) {
+  cv::arrowedLine(picture, tail, tip, colour, 2, cv::LINE_AA, 0, 0.4);
+}
+
+void draw_sign(cv::Mat& picture, const LegendEntry& entry, const cv::Rect& box) {
+  const cv::Scalar colour = scalar(entry.colour), rim(120, 120, 120);
+  const cv::Point middle(box.x + box.width / 2, box.y + box.height / 2), last = box.br() - cv::Point(1, 1);
+  switch (entry.sign) {
+    case Sign::Ring:
+      return cv::circle(picture, middle, 5, colour, 2, cv::LINE_AA);
+    case Sign::Dot:
+      cv::circle(picture, middle, 4, colour, cv::FILLED, cv::LINE_AA);
+      return cv::circle(picture, middle, 4, rim, 1, cv::LINE_AA);
+    case Sign::Cross:
+      cv::line(picture, box.tl(), last, colour, 2, cv::LINE_AA);
+      return cv::line(picture, {box.x, last.y}, {last.x, box.y}, colour, 2, cv::LINE_AA);
+    case Sign::Arrow:
+      return draw_arrow(picture, {middle.x, last.y}, {middle.x, box.y}, colour);
+    case Sign::Arrows:
+      for (const int x : {box.x + 2, last.x - 2}) draw_arrow(picture, {x, last.y}, {x, box.y}, colour);
+      return;
+    case Sign::Field:
+    case Sign::Quarters:
+    case Sign::Grid:
+    case Sign::Stripes:
+      break;
+  }
+  cv::rectangle(picture, box, colour, cv::FILLED);
+  const int apart = entry.sign == Sign::Quarters ? 6 : entry.sign == Sign::Field ? box.width : 3;
+  for (int at = apart; at < box.width; at += apart) {
+    cv::line(picture, {box.x, box.y + at}, {last.x, box.y + at}, rim);
+    if (entry.sign != Sign::Stripes) cv::line(picture, {box.x + at, box.y}, {box.x + at, last.y}, rim);
+  }
+  cv::rectangle(picture, box, rim);
+}
+
 }  // namespace
 
 int pixels_per_cell(const GridFrame& frame) {
@@ -126,9 +162,7 @@ std::vector<StripItem> legend_items(cv::Mat& picture, const std::vector<LegendEn
   std::vector<StripItem> items;
   for (const LegendEntry& entry : entries)
     items.push_back({17 + text_width(entry.words), [&picture, entry](int x, int y) {
-                       const cv::Rect box(x, y - 6, 12, 12);
-                       cv::rectangle(picture, box, scalar(entry.colour), cv::FILLED);
-                       cv::rectangle(picture, box, cv::Scalar(120, 120, 120));
+                       draw_sign(picture, entry, {x, y - 6, 12, 12});
                        draw_text(picture, entry.words, x + 17, y + 5);
                      }});
   return items;

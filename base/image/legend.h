@@ -46,12 +46,18 @@ struct StripItem {
   std::function<void(int x, int y)> draw;
 };
 
+/// How a colour is shown, as the picture draws what it stands for: a field of it, a field in four or sixteen parts or
+/// with stripes, a ring, a dot, a cross, an arrow, two of them.
+enum class Sign { Field, Quarters, Grid, Stripes, Ring, Dot, Cross, Arrow, Arrows };
+
 struct LegendEntry {
   template <class Colour>
-  LegendEntry(const Colour& shown, std::string meaning) : colour(bgr_of(shown)), words(std::move(meaning)) {}
+  LegendEntry(const Colour& shown, std::string meaning, Sign drawn = Sign::Field)
+      : colour(bgr_of(shown)), words(std::move(meaning)), sign(drawn) {}
 
   Bgr colour;
   std::string words;
+  Sign sign;
 };
 
 std::vector<StripItem> legend_items(cv::Mat& picture, const std::vector<LegendEntry>& entries);

@@ -12,6 +12,7 @@
 #include "base/planar.h"
 #include "base/text/text_file.h"
 #include "scoring/pictures/canvas.h"
+#include "scoring/pictures/labels.h"
 #include "scoring/walls/resample.h"
 #include "scoring/walls/wall_field.h"
 
@@ -21,8 +22,9 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-constexpr double kAgree = 0.05;  // walls this near count as the same in the overlay [m]
-constexpr double kNear = 0.15;   // walls this near as displaced [m]
+constexpr double kAgree = 0.05;         // walls this near count as the same in the overlay [m]
+constexpr double kNear = 0.15;          // walls this near as displaced [m]
+const Colour kDoubtful(110, 110, 110);  // victims of which nothing says whether they are right
 
 /// From green to the colour of a wall that only one of the maps has: red for the map's (phantom), blue for the truth's
 /// (missing), so that nobody takes one for the other.
@@ -79,45 +81,52 @@ void draw_cross(cv::Mat& image, const cv::Point& at, int reach, const Colour& co
 /// At a pose that is not trusted nobody knows which of them were found: all are grey, and said by name only. So are
 /// those that nothing says anything of.
 void draw_victims(Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map, bool trusted) {
-  constexpr int kRadius = 8;
-  const Colour doubtful(110, 110, 110);
-  const Colour found = trusted ? kFound : doubtful;
-  const auto name = [&](const std::string& words, const cv::Point& at) {
-    const int right = at.x + kRadius + 3, width = text_width(words);
-    draw_label(canvas.image, words, right + width <= canvas.image.cols ? right : at.x - kRadius - 3 - width, at.y + 4);
+  constexpr int kRing = 8, kDot = 3;
+  const Colour found = trusted ? kFound : kDoubtful;
+  Labels names(canvas.image.size());
+  const auto ring = [&](const cv::Point& at, const Colour& colour, const std::string& name) {
+    cv::circle(canvas.image, at, kRing, cv::Scalar(colour), 2, cv::LINE_AA);
+    names.add(name, at, kRing + 1);
+  };
+  const auto dot = [&](const cv::Point& at, const Colour& colour, const std::string& name) {
+    cv::circle(canvas.image, at, kDot, cv::Scalar(colour), cv::FILLED, cv::LINE_AA);
+    names.add(name, at, kDot);
   };
   for (const auto& [map, truth] : marks.pairs) {
     const cv::Point reported = canvas.pixel(T_truth_map.composePoint(map.p));
     const cv::Point there = canvas.pixel(truth.p);
     if (trusted) cv::line(canvas.image, reported, there, cv::Scalar(found), 1, cv::LINE_AA);
-    cv::circle(canvas.image, there, kRadius, cv::Scalar(found), 2, cv::LINE_AA);
-    cv::circle(canvas.image, reported, 3, cv::Scalar(found), cv::FILLED, cv::LINE_AA);
-    name(trusted ? joined_name(map, truth) : truth.name, there);
-    if (!trusted) name(map.name, reported);
+    ring(there, found, trusted ? joined_name(map, truth) : truth.name);
+    dot(reported, found, trusted ? "" : map.name);
   }
-  for (const Mark& missed : marks.truth_only) {
-    const cv::Point at = canvas.pixel(missed.p);
-    cv::circle(canvas.image, at, kRadius, cv::Scalar(trusted ? kTruthOnly : doubtful), 2, cv::LINE_AA);
-    name(missed.name + (trusted ? " missed" : ""), at);
-  }
-  const auto doubt = [&](const cv::Point& at) {
-    cv::circle(canvas.image, at, 3, cv::Scalar(doubtful), cv::FILLED, cv::LINE_AA);
-  };
-  for (const Mark& reported : marks.unjudged) {
-    const cv::Point at = canvas.pixel(T_truth_map.composePoint(reported.p));
-    doubt(at);
-    name(reported.name + ", not judged", at);
-  }
+  for (const Mark& missed : marks.truth_only)
+    ring(canvas.pixel(missed.p), trusted ? kTruthOnly : kDoubtful, missed.name + (trusted ? " missed" : ""));
+  for (const Mark& reported : marks.unjudged)
+    dot(canvas.pixel(T_truth_map.composePoint(reported.p)), kDoubtful, reported.name + ", not judged");
   for (const Mark& wrong : marks.map_only) {
     const cv::Point at = canvas.pixel(T_truth_map.composePoint(wrong.p));
     if (!trusted) {
-      doubt(at);
-      name(wrong.name, at);
+      dot(at, kDoubtful, wrong.name);
       continue;
     }
-    draw_cross(canvas.image, at, kRadius - 2, kMapOnly, 2);
-    name(wrong.name + " false", at);
+    draw_cross(canvas.image, at, kRing - 2, kMapOnly, 2);
+    names.add(wrong.name + " false", at, kRing);
   }
+  draw_labels(canvas.image, names);
+}
+
+/// What draw_victims() has drawn.
+std::vector<LegendEntry> victim_entries(const Marks& marks, bool trusted) {
+  std::vector<LegendEntry> entries;
+  const auto add = [&](bool drawn, const Colour& colour, const char* words, Sign sign) {
+    if (drawn) entries.emplace_back(colour, words, sign);
+  };
+  const bool any = !marks.pairs.empty() || !marks.map_only.empty() || !marks.truth_only.empty();
+  add(trusted && !marks.pairs.empty(), kFound, "victim found = true one", Sign::Ring);
+  add(trusted && !marks.truth_only.empty(), kTruthOnly, "true victim missed", Sign::Ring);
+  add(trusted && !marks.map_only.empty(), kMapOnly, "false victim", Sign::Cross);
+  add(!marks.unjudged.empty() || (!trusted && any), kDoubtful, "victim not judged", Sign::Dot);
+  return entries;
 }
 
 /// Dashes, so that nobody takes it for a wall.
@@ -183,7 +192,7 @@ std::string overlay_png(const OccupancyGrid& map, const OccupancyGrid& truth, co
                                      {kMapOnly, "only in map"},
                                      {kTruthOnly, "only in truth"}};
   legend.insert(legend.end(), kGrounds.begin(), kGrounds.end());
-  if (!marks.pairs.empty() && warning.empty()) legend.push_back({kFound, "victim found = true one"});
+  for (LegendEntry& entry : victim_entries(marks, warning.empty())) legend.push_back(std::move(entry));
   if (marks.seam) legend.push_back({kSeam, "seam of two parts"});
   draw_legend(canvas.image, legend, canvas.frame, canvas.scale);
   return png_bytes(canvas.image);

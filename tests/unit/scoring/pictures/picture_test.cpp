@@ -167,13 +167,54 @@ TEST_F(Picture, FoundFalseAndMissedVictimsAreToldApart) {
   EXPECT_EQ(green() + tints().red, 0);
   // Where there is no list of the true ones.
   write_overlay(path_, plain, plain, {}, "", {"victims", {}, {}, {}});
-  const cv::Mat without = cv::imread(path_);
+  const auto above_the_legend = [&] {
+    const cv::Mat image = cv::imread(path_);
+    return image.rowRange(0, rows_of_map(image)).clone();
+  };
+  const cv::Mat without = above_the_legend();
   write_overlay(path_, plain, plain, {}, "", {"victims", {}, {}, {}, {here}});
   EXPECT_EQ(green() + tints().red + tints().blue, 0);
-  EXPECT_GT(cv::norm(without, cv::imread(path_)), 0.0) << "the report is not shown";
+  EXPECT_GT(cv::norm(without, above_the_legend()), 0.0) << "the report is not shown";
   // Nobody knows at a pose that is not trusted.
   write_overlay(path_, plain, plain, {}, "NOT TRUSTED", {"victims", {{here, here}}, {here}, {here}});
   EXPECT_EQ(green() + tints(0.3).blue + tints(0.3).red, 0);
+}
+
+/// What is drawn round and on victims stands in the legend, as it is drawn, and nothing else does.
+TEST_F(Picture, TheLegendNamesWhatIsDrawnOfVictims) {
+  const OccupancyGrid plain = room(0.0, false);
+  const Mark here{{1.0, 1.0}, "v", std::nullopt};
+  const auto legend = [&](const Marks& marks, const std::string& warning = "") {
+    write_overlay(path_, plain, plain, {}, warning, marks);
+    const cv::Mat image = cv::imread(path_);
+    const int rows = rows_of_map(image);
+    return image.rowRange(rows, image.rows).clone();
+  };
+  const auto tinted = [](const cv::Mat& strip, int more, int less) {
+    int count = 0;
+    for (int y = 0; y < strip.rows; ++y)
+      for (int x = 0; x < strip.cols; ++x) {
+        const cv::Vec3b c = strip.at<cv::Vec3b>(y, x);
+        count += c[more] - c[less] > 80 ? 1 : 0;
+      }
+    return count;
+  };
+  const cv::Mat none = legend({"victims", {}, {}, {}});
+  const auto more_than_none = [&](const cv::Mat& strip, int more, int less) {
+    return tinted(strip, more, less) - tinted(none, more, less);
+  };
+  const cv::Mat missed = legend({"victims", {}, {}, {here}});
+  EXPECT_GT(more_than_none(missed, 0, 2), 15) << "a blue ring";
+  EXPECT_LT(more_than_none(missed, 0, 2), 120) << "no field";
+  EXPECT_EQ(more_than_none(missed, 2, 0), 0);
+  EXPECT_GT(more_than_none(legend({"victims", {}, {here}, {}}), 2, 0), 15) << "a red cross";
+  EXPECT_GT(more_than_none(legend({"victims", {{here, here}}, {}, {}}), 1, 0), 15) << "a green ring";
+  const cv::Mat doubted = legend({"victims", {{here, here}}, {here}, {here}}, "NOT TRUSTED");
+  EXPECT_EQ(more_than_none(doubted, 0, 2) + more_than_none(doubted, 2, 0), 0) << "all are grey";
+  EXPECT_NE(
+      tinted(doubted, 0, 2) == tinted(none, 0, 2) && doubted.size() == none.size() && cv::norm(doubted, none) == 0.0,
+      true)
+      << "and said to be";
 }
 
 TEST_F(Picture, TheLegendOfTheErrorMapNamesItsPaleGrounds) {
