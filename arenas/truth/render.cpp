@@ -160,32 +160,51 @@ void draw_start(const Arena& arena, Canvas& canvas) {
 /// As the arena has it: nobody looks for what is not there.
 std::vector<LegendEntry> legend_of(const Arena& arena) {
   std::vector<LegendEntry> entries;
-  const auto add = [&](bool is_there, const Colour& colour, const std::string& words) {
+  const auto add = [&](bool is_there, const Colour& colour, const std::string& words, Sign sign = Sign::Field) {
     const auto channel = [&](std::size_t i) { return static_cast<std::uint8_t>(std::lround(colour[i])); };
-    if (is_there) entries.emplace_back(Bgr{channel(2), channel(1), channel(0)}, words);
+    if (is_there) entries.emplace_back(Bgr{channel(2), channel(1), channel(0)}, words, sign);
   };
-  const auto has_solid = [&, floors = PatchIndex(arena)](const Colour& colour) {
-    return std::any_of(arena.solids.begin(), arena.solids.end(),
-                       [&](const Solid& solid) { return solid_colour(solid, floors) == colour; });
+  const auto has_solid = [&, floors = PatchIndex(arena)](const Colour& colour, bool is_wall = true) {
+    return std::any_of(arena.solids.begin(), arena.solids.end(), [&](const Solid& solid) {
+      return solid_colour(solid, floors) == colour && (is_wall || solid.element != kWallElement);
+    });
   };
   const auto has_object = [&](bool bottle) {
     return std::any_of(arena.objects.begin(), arena.objects.end(),
                        [&](const LooseObject& object) { return (object.kind == ObjectKind::Bottle) == bottle; });
   };
-  const auto is_raised = [](const FloorPatch& patch) { return highest(patch) > 0.02; };
-  const auto slopes = [](const FloorPatch& patch) { return std::hypot(patch.gx, patch.gy) >= 0.02; };
-  const bool raised = std::any_of(arena.floor.begin(), arena.floor.end(), is_raised);
-  add(!arena.floor.empty(), scaled(kWood, 0.93), raised ? "floor, the higher the lighter" : "floor");
-  add(std::any_of(arena.floor.begin(), arena.floor.end(), slopes), kUphill, "arrow: uphill");
-  add(has_solid(kWall), kWall, "wall");
+  const auto has_floor = [&](const auto& is_such) {
+    return std::any_of(arena.floor.begin(), arena.floor.end(), is_such);
+  };
+  const auto has_part = [&](const char* element) {
+    return has_floor([&](const FloorPatch& patch) { return patch.element == element; });
+  };
+  const auto slope = [](const FloorPatch& patch) { return std::hypot(patch.gx, patch.gy); };
+  const Colour wood = scaled(kWood, 0.93);
+  const bool raised = has_floor([](const FloorPatch& patch) { return highest(patch) > 0.02; });
+  add(!arena.floor.empty(), wood, raised ? "floor, the higher the lighter" : "floor");
+  add(true, kGround, "no floor");
+  add(has_floor([&](const FloorPatch& patch) { return slope(patch) >= 0.02; }), kUphill, "uphill", Sign::Arrow);
+  add(has_floor([&](const FloorPatch& patch) { return slope(patch) > kSteep; }), kUphill, "uphill, steeper than 27 deg",
+      Sign::Arrows);
+  add(has_part("step_field"), wood, "step field", Sign::Grid);
+  const bool crossing = has_part("crossing_ramp"), elevated = has_part("elevated_ramp");
+  add(crossing || elevated, wood,
+      crossing && elevated ? "crossing or elevated ramps"
+      : crossing           ? "crossing ramps"
+                           : "elevated ramps",
+      Sign::Quarters);
+  add(has_part("stair"), wood, "stairs", Sign::Stripes);
+  add(has_solid(kWall), kWall, has_solid(kWall, false) ? "wall, block or other part" : "wall");
   add(has_solid(kTall), kTall, "wall above 1.5 m");
   add(has_solid(kHanging), kHanging, "hangs above the floor");
   add(has_solid(kBox), kBox, "victim's box");
-  add(!arena.sheets.empty() || !arena.balls.empty(), kPaper, "paper");
-  add(has_object(true), kBottle, "bottle");
-  add(has_object(false), kRadio, "radio");
-  add(!arena.victims.empty(), kVictim, "victim and its facing");
-  add(true, kStart, "start and heading");
+  add(!arena.sheets.empty(), kPaper, "paper");
+  add(!arena.balls.empty(), kPaper, "paper ball", Sign::Dot);
+  add(has_object(true), kBottle, "bottle", Sign::Dot);
+  add(has_object(false), kRadio, "radio", Sign::Dot);
+  add(!arena.victims.empty(), kVictim, "victim and its facing", Sign::Ring);
+  add(true, kStart, "start and heading", Sign::Arrow);
   return entries;
 }
 

@@ -78,6 +78,27 @@ TEST(Render, TheLegendStandsBelowThePlanAndNamesWhatIsThere) {
   EXPECT_GE(render_with_legend(small, 150.0).width, 300) << "the words have room";
 }
 
+/// Step fields and ramps that cross are wood as all floor is: each has a sign of its own beside the floor's.
+TEST(Render, TheLegendNamesTheLeaguesFields) {
+  const auto wood = [](const std::string& element) {
+    const Arena a = arena({"+---+---+---+---+", "| S   .   .   . |", "+---+---+---+---+"},
+                          element.empty() ? "" : "elements: [{type: " + element + ", x_m: 3.0, y_m: 0.6}]\n");
+    const RgbImage plan = render(a, 100.0), whole = render_with_legend(a, 100.0);
+    const std::array<int, 3> colour{199, 177, 141};  // of floor on the ground
+    int count = 0;
+    for (int row = plan.height; row < whole.height; ++row)
+      for (int column = 0; column < whole.width; ++column)
+        count += std::equal(colour.begin(), colour.end(), whole.pixel(column, row)) ? 1 : 0;
+    return count;
+  };
+  const int floor = wood("");
+  ASSERT_GT(floor, 50);
+  EXPECT_EQ(wood("wooden_block"), floor);
+  for (const char* element :
+       {"stepfield_orange_diagonal", "stepfield_red_diagonal", "crossing_ramps", "elevated_ramps", "stairs_120_solid"})
+    EXPECT_GT(wood(element), floor + 20) << element;
+}
+
 TEST(Render, PaintedInBandsIsTheWholePicture) {
   const auto paint = [](int band) {
     RgbImage picture;
