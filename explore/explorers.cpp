@@ -5,12 +5,16 @@
 namespace rubble::explore {
 namespace {
 
-/// Parameters kept in a plain struct `Config` with a field occupied_threshold, which functions bind(Binder&, Config&)
-/// and mistake(const Config&) beside it know, of an explorer whose constructor takes (model, config, mission).
+/// Parameters kept in a plain struct `Config` with a field occupied_threshold, which functions bind(Binder&, Config&),
+/// mistake(const Config&) and notes(const Config&, model, mission) beside it know, of an explorer whose constructor
+/// takes (model, config, mission).
 template <class Config, class Mine>
 class ParametersOf : public ParametersIn<ExplorerParameters, Config> {
  public:
   std::string mistake() const override { return explore::mistake(this->config); }
+  std::vector<std::string> notes(const robot::RobotModel& model, const Mission& mission) const override {
+    return explore::notes(this->config, model, mission);
+  }
   double occupied_threshold() const override { return this->config.occupied_threshold; }
   std::unique_ptr<Explorer> make(const robot::RobotModel& model, const Mission& mission) const override {
     return std::make_unique<Mine>(model, this->config, mission);

@@ -19,6 +19,8 @@ class ExplorerParameters {
   virtual void bind(Binder& binder) = 0;
   /// What is wrong with the parameters taken together, for people; empty: nothing.
   virtual std::string mistake() const = 0;
+  /// What of them has no effect with that robot and mission, for people, one line each.
+  virtual std::vector<std::string> notes(const robot::RobotModel& model, const Mission& mission) const = 0;
   /// p_occ from which a cell is an obstacle, for maps drawn as the explorer sees them.
   virtual double occupied_threshold() const = 0;
   virtual std::unique_ptr<Explorer> make(const robot::RobotModel& model, const Mission& mission) const = 0;
@@ -36,6 +38,9 @@ class ExplorerConfig : public KindChoice<ExplorerParameters> {
   ExplorerConfig() : KindChoice("explorer", explorer_kinds()) {}
 
   std::string mistake() const { return parameters().mistake(); }
+  std::vector<std::string> notes(const robot::RobotModel& model, const Mission& mission) const {
+    return parameters().notes(model, mission);
+  }
   double occupied_threshold() const { return parameters().occupied_threshold(); }
   std::unique_ptr<Explorer> make(const robot::RobotModel& model, const Mission& mission) const {
     return parameters().make(model, mission);

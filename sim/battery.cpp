@@ -6,7 +6,6 @@
 namespace rubble::sim {
 namespace {
 
-constexpr double kStanding = 35.0;     ///< electronics, laser, computer [W]
 constexpr double kDriving = 80.0;      ///< on a carpet [W at 1 m/s]
 constexpr double kTurning = 60.0;      ///< skid steering drags its wheels sideways [W at 1 rad/s]
 constexpr double kFull = 12.8;         ///< at rest [V]

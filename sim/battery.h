@@ -10,6 +10,8 @@ class Battery {
  public:
   static constexpr double kLow = 11.5;  ///< the Pioneer's alarm [V]
 
+  static constexpr double kStanding = 35.0;  ///< electronics, laser, computer [W]
+
   explicit Battery(double capacity_wh) : capacity_(capacity_wh * 3600.0), left_(capacity_) {}
 
   /// Drives as it is told to for `dt` [s].

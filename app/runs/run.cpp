@@ -27,6 +27,7 @@ int run(const RunArguments& arguments) {
       std::fprintf(stderr, "%8.2f s  %s\n", decision.stamp.seconds(), decision.why.c_str());
     };
   for (const std::string& note : scenarios::arena_notes(scenario)) tell(note);
+  for (const std::string& note : scenarios::setting_notes(scenario)) tell(note);
   if (const auto note = scenarios::short_time_note(scenario)) tell(*note);
   return show(scenarios::run_scenario(scenario, options));
 }

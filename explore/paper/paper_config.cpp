@@ -1,5 +1,9 @@
 #include "explore/paper/paper_config.h"
 
+#include <cmath>
+#include <initializer_list>
+#include <utility>
+
 #include "base/text/number_text.h"
 
 namespace rubble::explore {
@@ -59,7 +63,40 @@ std::string mistake(const PaperExplorerConfig& config) {
   if (transform.d_opt < transform.d_min)
     return "d_opt_m, " + number_text(transform.d_opt) + ", must not be smaller than d_min_m, " +
            number_text(transform.d_min);
+  // The default of one does not make a mistake of the other.
+  const double floor = config.planner.d_min_floor;
+  if (floor > transform.d_min && floor != PlannerConfig().d_min_floor)
+    return "d_min_floor_m, " + number_text(floor) + ", must not be larger than d_min_m, " +
+           number_text(transform.d_min) + ", which falls to it";
   return "";
+}
+
+std::vector<std::string> notes(const PaperExplorerConfig& config, const robot::RobotModel& model,
+                               const Mission& mission) {
+  std::vector<std::string> notes;
+  const FollowerConfig usual;
+  const auto add_fast = [&](const char* limit_key, double limit, double unit,
+                            std::initializer_list<std::pair<const char*, double FollowerConfig::*>> speeds) {
+    const auto in_unit = [&](double value) { return number_text(std::round(1e6 * value / unit) / 1e6); };
+    std::string fast;
+    for (const auto& [key, speed] : speeds)
+      if (config.follower.*speed > limit + 1e-9 && config.follower.*speed != usual.*speed)
+        fast += (fast.empty() ? "explorer." : ", ") + std::string(key) + "=" + in_unit(config.follower.*speed);
+    if (!fast.empty()) notes.push_back(fast + ": the robot drives no faster than " + limit_key + "=" + in_unit(limit));
+  };
+  add_fast("robot.max_v", model.max_v, 1.0,
+           {{"cruise_speed", &FollowerConfig::cruise_speed},
+            {"passed_speed", &FollowerConfig::passed_speed},
+            {"rough_speed", &FollowerConfig::rough_speed},
+            {"slope_speed", &FollowerConfig::slope_speed}});
+  add_fast("robot.max_w_deg", model.max_w, deg_to_rad(1.0),
+           {{"turn_speed_deg", &FollowerConfig::turn_speed}, {"slope_turn_deg", &FollowerConfig::slope_turn}});
+  if (config.search.other_senses == OtherSearch::Everywhere && !mission.senses.microphones && !mission.senses.co2_probe)
+    notes.push_back(
+        "explorer.victims.other_senses=everywhere: the robot has neither microphones nor a CO2 probe to search with, "
+        "so "
+        "it searches by its cameras alone");
+  return notes;
 }
 
 }  // namespace rubble::explore

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/angle.h"
 #include "base/yaml/binder.h"
 #include "explore/caution/felt_obstacles.h"
+#include "explore/explorer.h"
 #include "explore/paper/frontier_worth.h"
 #include "explore/paper/target_choice.h"
 #include "explore/plan/path_follower.h"
@@ -12,6 +14,7 @@
 #include "explore/search/searched_area.h"
 #include "explore/search/victim_search.h"
 #include "explore/stuck/tilt_watch.h"
+#include "robot/model.h"
 
 namespace rubble::explore {
 
@@ -39,5 +42,10 @@ void bind(Binder& binder, PaperExplorerConfig& config);
 
 /// What is wrong with the parameters taken together, for people; empty: nothing.
 std::string mistake(const PaperExplorerConfig& config);
+
+/// What of them has no effect with that robot and mission, one line each: speeds above its limits, a search by senses
+/// that it has not. Defaults are not told of: a robot may be slower than them.
+std::vector<std::string> notes(const PaperExplorerConfig& config, const robot::RobotModel& model,
+                               const Mission& mission);
 
 }  // namespace rubble::explore

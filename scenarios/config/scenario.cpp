@@ -1,6 +1,8 @@
 #include "scenarios/config/scenario.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <utility>
@@ -16,8 +18,10 @@
 #include "base/text/words.h"
 #include "base/yaml/binder.h"
 #include "base/yaml/strict_yaml.h"
+#include "robot/battery_watch.h"
 #include "scenarios/config/needed_key.h"
 #include "scoring/figures/figures.h"
+#include "sim/battery.h"
 
 namespace rubble::scenarios {
 namespace {
@@ -212,6 +216,18 @@ void check_laser(const YamlMap& map, const robot::LaserModel& laser) {
   if (laser.range_max <= laser.range_min) map.fail("max_range_m", "max_range_m must be above min_range_m");
 }
 
+/// One that is empty before the robot could notice that it is low is a slip of the unit.
+void check_battery(const YamlMap& map, double battery_wh) {
+  const double lasts = battery_wh * 3600.0 / sim::Battery::kStanding;  // [s]
+  if (battery_wh <= 0.0 || lasts >= robot::BatteryWatch::kLasts) return;
+  std::array<char, 200> text{};
+  std::snprintf(text.data(), text.size(),
+                "%g Wh last %.2g s where the robot stands (%.0f W), and that a battery is low shows after %.0f s; give "
+                "some Wh, or 0 for one that never ends",
+                battery_wh, lasts, sim::Battery::kStanding, robot::BatteryWatch::kLasts);
+  map.fail("battery_wh", text.data());
+}
+
 }  // namespace
 
 void read_settings(const YamlMap& root, Scenario& s) {
@@ -233,6 +249,7 @@ void read_settings(const YamlMap& root, Scenario& s) {
   check_laser(root.map("robot").map("laser"), s.robot.laser);
   if (s.sim.levelling_fault != sim::LevellingFault::None && !s.levelling.on)
     root.map("sim").fail("levelling_fault", "of a robot with 'levelling: false'; there is no unit that could fail");
+  check_battery(root.map("sim"), s.sim.battery_wh);
   if (const std::string mistake = s.explorer.mistake(); !mistake.empty()) root.fail("explorer", mistake);
   s.sim.time_limit = s.time_limit;
 }

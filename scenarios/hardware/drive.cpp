@@ -547,8 +547,10 @@ class StoppedAtLast {
 
 RunReport drive(const RobotFile& file, const DriveOptions& options) {
   const auto start = Clock::now();
-  if (options.mode == DriveMode::Explore && options.tell)
+  if (options.mode == DriveMode::Explore && options.tell) {
+    for (const std::string& note : setting_notes(file.settings)) options.tell(note);
     if (const auto note = short_time_note(file.settings)) options.tell(*note);
+  }
   if (options.mode != DriveMode::MapOnly && file.robot.base_port.empty())
     throw InputError("devices.base: without a base the robot can only be watched; give its port, or add --map-only");
   file.settings.mapper.require_permission();

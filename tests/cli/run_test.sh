@@ -99,6 +99,20 @@ echo 'time_limit_s: 3' >none.yaml
 expect_exit 3 "'arena' is missing" "$rubble" run none.yaml
 expect_exit 3 'letter.part' "$rubble" run part.yaml --out part --force
 
+# Settings that can only be mistakes are refused; those without effect are told in a line, and the run is made.
+expect_exit 3 'sim.battery_wh: 0.001 Wh last 0.1 s' "$rubble" run part.yaml --out refused --set sim.battery_wh=0.001
+expect_exit 3 'd_min_floor_m, 0.6, must not be larger than d_min_m, 0.4' \
+  "$rubble" run part.yaml --out refused --set explorer.d_min_floor_m=0.6
+[[ -e refused ]] && fail "a refused run leaves a folder"
+expect_exit 0 'explorer.cruise_speed=1.5: the robot drives no faster than robot.max_v=0.7' \
+  "$rubble" run part.yaml --out fast --set time_limit_s=3 --set explorer.return_home=false --set explorer.cruise_speed=1.5
+expect_exit 0 'explorer.victims.other_senses=everywhere: the robot has neither microphones nor a CO2 probe' \
+  "$rubble" run part.yaml --out deaf --set time_limit_s=3 --set explorer.return_home=false \
+  --set explorer.victims.other_senses=everywhere --set sim.microphones=false --set sim.co2_probe=false
+expect_exit 0 ', to be heard only: it lacks the sense; give it sim.microphones=true' \
+  "$rubble" run part.yaml --out mute --set time_limit_s=3 --set explorer.return_home=false \
+  --set arena.generate.victims=2 --set arena.generate.sound_alone=1 --set sim.microphones=false
+
 # What holds no log says why, and where one is.
 expect_exit 3 'nofolder: does not exist' "$rubble" replay nofolder
 mkdir beside
