@@ -51,6 +51,9 @@ std::function<void(const BatchProgress&)> progress_teller() {
 /// What is left to make, of `all` runs of every shard.
 std::string cost_line(const BatchProgress& p, std::size_t all, const BatchOptions& options) {
   const std::size_t left = p.total - p.skipped;
+  if (p.total == 0 && all > 0)  // runs are dealt by their ids, not in turn
+    return "shard " + std::to_string(options.shard.index) + " of " + std::to_string(options.shard.count) +
+           " is empty: none of the " + std::to_string(all) + " runs fell to it, there is nothing to do";
   const std::string in_shard = options.shard.count > 1 ? " in this shard" : "";
   std::string line = std::to_string(left) + (left == 1 ? " run" : " runs");
   if (left < p.total) {

@@ -163,6 +163,15 @@ bool too_large(const Sweep& sweep) {
   return sweep.scenarios.size() * sweep.configurations.size() > kMostRuns / sweep.seeds.size();
 }
 
+/// The scenario's name; where that is a kind of arena and the configuration makes another, that kind: a folder must not
+/// say yellow of an orange one.
+std::string arena_name(const Scenario& scenario) {
+  const auto& kinds = generated_kinds();
+  const std::string& name = scenario.name;
+  const bool says_kind = std::find(kinds.begin(), kinds.end(), name) != kinds.end();
+  return says_kind && scenario.arena_file.empty() ? arenas::name_of(scenario.generate.kind) : name;
+}
+
 }  // namespace
 
 Scenario Job::scenario() const {
@@ -172,7 +181,11 @@ Scenario Job::scenario() const {
 }
 
 std::string Job::folder() const {
-  std::string name = kind->scenario.name + "-" + kind->configuration.substr(0, 80);
+  const std::string arena = arena_name(kind->scenario), configuration = kind->configuration.substr(0, 80);
+  const bool begins = configuration.rfind(arena, 0) == 0;
+  const bool named = begins && (configuration.size() == arena.size() ||
+                                !std::isalnum(static_cast<unsigned char>(configuration[arena.size()])));
+  std::string name = named ? configuration : arena + "-" + configuration;
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.' && c != '=') c = '_';
   return name + "-seed" + std::to_string(seed) + "-" + run_id.substr(0, 8);

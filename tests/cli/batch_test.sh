@@ -140,6 +140,12 @@ grep -qE '^rubble: [1-9][0-9]* runs? of 12 in this shard, ' err.txt || fail "the
 "$rubble" batch sweep.yaml --shard 1/3 --out shards >/dev/null 2>err.txt || fail "shard 1 again ended with $?"
 grep -qE '^rubble: 0 runs left of [0-9]+ in this shard, all are in shards$' err.txt ||
   fail "a finished shard is not told: $(cat err.txt)"
+for i in 2 3 4; do
+  "$rubble" batch sweep.yaml --seeds 1 --shard $i/4 --set time_limit_s=2 --set robot.levelling=true --out few >/dev/null 2>err$i.txt ||
+    fail "shard $i of a batch of few runs ended with $?: $(cat err$i.txt)"
+done
+grep -qxE 'rubble: shard [2-4] of 4 is empty: none of the [0-9]+ runs fell to it, there is nothing to do' err[2-4].txt ||
+  fail "an empty shard is not told: $(cat err[2-4].txt)"
 expect_exit 3 "shards: is the folder of a batch (it holds results-1of3.jsonl)" "$rubble" run small.yaml --out shards
 expect_exit 4 'of the 12 runs its sweep asked for are missing' "$rubble" batch merge shards --out part.sqlite
 for i in 2 3; do

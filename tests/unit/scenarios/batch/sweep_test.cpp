@@ -14,6 +14,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 class SweepFile : public FolderTest {
  protected:
@@ -146,6 +147,23 @@ TEST_F(SweepFile, FoldersOfRunsAreReadableAndUnique) {
     EXPECT_THAT(job.folder(), HasSubstr("small-"));
   }
   EXPECT_EQ(folders.size(), all.size());
+}
+
+TEST_F(SweepFile, AFolderSaysYellowOfNoOrangeArenaAndNoKindTwice) {
+  write("yellow.yaml", "name: yellow\narena: {generate: {columns: 3, rows: 3}}\n");
+  const auto folder = [&](const std::string& configs) {
+    return jobs("scenarios: [yellow.yaml]\nseeds: 1-1\n" + configs).at(0).folder();
+  };
+  EXPECT_THAT(folder(""), StartsWith("yellow-default-seed1-"));
+  EXPECT_THAT(folder("configs: {yellow: {time_limit_s: 9}}\n"), StartsWith("yellow-seed1-"));
+  EXPECT_THAT(folder("configs: {orange: {arena.generate.kind: orange}}\n"), StartsWith("orange-seed1-"));
+  EXPECT_THAT(folder("configs: {orange-deaf: {arena.generate.kind: orange}}\n"), StartsWith("orange-deaf-seed1-"));
+  EXPECT_THAT(folder("configs: {orange: {arena.generate.kind: orange}}\nset: {time_limit_s: [8, 9]}\n"),
+              StartsWith("orange__time_limit_s=8-seed1-"));
+  EXPECT_THAT(folder("configs: {yellowish: {time_limit_s: 9}}\n"), StartsWith("yellow-yellowish-seed1-"));
+  EXPECT_THAT(folder("configs: {usual: {arena.generate.kind: red}}\n"), StartsWith("red-usual-seed1-"));
+  const auto all = jobs("scenarios: [yellow.yaml]\nseeds: 1-1\nconfigs: {orange: {arena.generate.kind: orange}}\n");
+  EXPECT_EQ(all.at(0).kind->scenario.name, "yellow") << "results are paired by it";
 }
 
 TEST_F(SweepFile, ShippedScenariosAreKnownByName) {
