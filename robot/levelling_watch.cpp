@@ -11,6 +11,7 @@ constexpr double kTiltFilter = 0.2;             ///< time constant [s]
 constexpr double kLevel = deg_to_rad(1.5);      ///< what levelling leaves where nothing moves
 constexpr double kLevelFor = 0.5;               ///< where it is level it stays so; one that brakes swings through [s]
 constexpr double kLeans = deg_to_rad(20.0);     ///< no robot stands so for long: aims beyond are of servos in vain
+constexpr double kLeansFor = 8.0;               ///< levelled at such an aim for so long [s]
 constexpr double kTilted = deg_to_rad(3.0);     ///< what it never leaves ...
 constexpr double kAimedFar = deg_to_rad(15.0);  ///< ... of a tilt it turned so far against ...
 constexpr double kLevelledFor = 1.5;            ///< ... for longer than servos and loop take [s]
@@ -67,6 +68,9 @@ bool LevellingWatch::turns_in_vain(Axis& axis, double tilt, double aim, double d
   const bool level = std::abs(axis.tilt) < kLevel && dt < kTiltSilence;  // of what was between nobody knows
   axis.level_for = level ? axis.level_for + dt : 0.0;
   if (axis.level_for >= kLevelFor && std::abs(aim) < kLeans) axis.level_aim = aim;
+  // Jammed on a ramp, its aim ends far off. Back on level ground the platform is level, and nothing calls that aim
+  // back.
+  axis.leans_for = level && std::abs(aim) >= kLeans ? axis.leans_for + dt : 0.0;
   const double turned = aim - axis.level_aim;
   const bool at_stop = std::abs(aim) >= stop_;
   const bool far = std::abs(turned) >= kAimedFar || (at_stop && stop_ > kLeans);
@@ -78,7 +82,7 @@ bool LevellingWatch::turns_in_vain(Axis& axis, double tilt, double aim, double d
     axis.in_vain_tilt = std::abs(axis.tilt);
   }
   const double patience = at_stop ? kAtStopFor : kLevelledFor;
-  return axis.in_vain_since != Stamp::never() && now - axis.in_vain_since >= patience;
+  return axis.leans_for >= kLeansFor || (axis.in_vain_since != Stamp::never() && now - axis.in_vain_since >= patience);
 }
 
 }  // namespace rubble::robot

@@ -35,6 +35,7 @@ class LevellingWatch {
   struct Axis {
     double tilt = 0.0;       ///< felt, without its quick part [rad]
     double level_for = 0.0;  ///< so long that has been small [s]
+    double leans_for = 0.0;  ///< so long it has been level, aimed farther than robots lean [s]
     double level_aim = 0.0;  ///< when that was last [rad]
     Stamp in_vain_since = Stamp::never();
     double in_vain_tilt = 0.0;  ///< without its sign, then [rad]

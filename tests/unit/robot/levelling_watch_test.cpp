@@ -153,6 +153,34 @@ TEST(LevellingWatch, ServosThatTakeNoTiltAwayAreJammedWhereTheyWereLevelLast) {
   EXPECT_EQ(unit.watch.state(), LevellingState::Jammed) << "for good";
 }
 
+/// Jammed level, it aims as far as it can on a ramp that the robot backs off from at once, and nothing calls that back.
+TEST(LevellingWatch, LevelAtAnAimAtWhichNoRobotLeansForLongItIsJammed) {
+  for (const double sign : {1.0, -1.0}) {
+    Unit unit;
+    unit.run(3.0);
+    unit.turns = false;
+    unit.body = sign * deg_to_rad(12.0);
+    unit.run(1.2);
+    unit.body = 0.0;
+    unit.run(5.0);
+    EXPECT_EQ(unit.watch.state(), LevellingState::Works) << "a robot may hang somewhere";
+    unit.run(4.0);
+    ASSERT_EQ(unit.watch.state(), LevellingState::Jammed);
+    EXPECT_NEAR(unit.watch.jammed_at()->pitch, 0.0, deg_to_rad(1.5));
+  }
+}
+
+TEST(LevellingWatch, ARobotThatHangsForSomeSecondsIsFollowed) {
+  Unit unit;
+  unit.run(3.0);
+  unit.body = deg_to_rad(28.0);
+  unit.run(7.0);
+  EXPECT_EQ(unit.watch.state(), LevellingState::Works);
+  unit.body = 0.0;
+  unit.run(20.0);
+  EXPECT_EQ(unit.watch.state(), LevellingState::Works);
+}
+
 /// A robot that brakes again and again feels its tilted platform swing through level.
 TEST(LevellingWatch, WhatBrakingMakesLookLevelForAMomentIsNotLevel) {
   Unit unit;
