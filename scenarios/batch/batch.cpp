@@ -29,19 +29,18 @@ using nlohmann::ordered_json;
 constexpr std::size_t kProbeBytes = 4u << 20;
 
 std::string pack(const RunOutcome& outcome) {
-  return ordered_json{{"score", *outcome.score},  {"end", outcome.end},   {"failure", outcome.failure},
-                      {"broken", outcome.broken}, {"hash", outcome.hash}, {"unseen_victims", outcome.unseen_victims}}
+  return ordered_json{{"score", *outcome.score},
+                      {"end", outcome.end},
+                      {"failure", outcome.failure},
+                      {"broken", outcome.broken},
+                      {"hash", outcome.hash}}
       .dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 RunOutcome unpack(const std::string& text) {
   const ordered_json json = ordered_json::parse(text);
-  return {KeptJson(json["score"]),
-          json["end"],
-          json["failure"],
-          json["broken"].get<std::vector<std::string>>(),
-          json["hash"],
-          json["unseen_victims"].get<std::vector<std::string>>()};
+  return {KeptJson(json["score"]), json["end"], json["failure"], json["broken"].get<std::vector<std::string>>(),
+          json["hash"]};
 }
 
 bool depends_on_machine(const std::string& key) {
@@ -86,8 +85,6 @@ Entry entry_of(const Job& job, const TaskResult& result, const BatchOptions& opt
   r.hash = outcome.hash;
   for (const auto& [key, value] : outcome.score->items())
     if (key != "end") (depends_on_machine(key) ? entry.timing : *r.score)[key] = value;
-  // Beside the figures: a page names them, nothing compares them.
-  if (!outcome.unseen_victims.empty()) (*r.score)["unseen_victims"] = outcome.unseen_victims;
   for (const auto& line : outcome.broken) {
     if (about_machine(line)) {
       entry.timing["broken"].push_back(line);
@@ -204,9 +201,8 @@ Runner simulating_runner(bool record) {
     options.record = record;
     options.link_latest = false;
     const RunReport report = run_scenario(job.scenario(), options);
-    return RunOutcome{
-        report.score,         report.end, report.failure, report.broken, hash_of_artefacts(folder + "/hashes.json"),
-        report.unseen_victims};
+    return RunOutcome{report.score, report.end, report.failure, report.broken,
+                      hash_of_artefacts(folder + "/hashes.json")};
   };
 }
 

@@ -15,10 +15,9 @@ namespace rubble::scenarios {
 struct RunOutcome {
   KeptJson score;  ///< the content of score.json, times included
   std::string end;
-  std::string failure;                        ///< not empty: the run failed although it has results
-  std::vector<std::string> broken;            ///< expectations that were not met
-  std::string hash;                           ///< of the run's artefacts
-  std::vector<std::string> unseen_victims{};  ///< as RunReport has them
+  std::string failure;              ///< not empty: the run failed although it has results
+  std::vector<std::string> broken;  ///< expectations that were not met
+  std::string hash;                 ///< of the run's artefacts
 };
 
 /// Does one run into a folder. Called in worker processes; what it throws makes the run "failed".

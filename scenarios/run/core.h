@@ -38,7 +38,7 @@ class Core {
   std::vector<explore::VictimReport> victims() const;
   /// How often the motors reported a stall that was not reported before.
   int stalls() const { return stalls_; }
-  /// How many victims it was sure of and later no more: to a judge they were false reports.
+  /// How many victims it was sure of and later no more, under no number (WithdrawnVictims).
   int victims_withdrawn() const { return withdrawn_.count(); }
   /// When which place was mapped, while it explored [s since the first tick].
   const FirstSeen& first_seen() const { return first_seen_; }

@@ -166,6 +166,8 @@ void finish(RunReport& report, scoring::Evidence& evidence, RunFolder& folder, c
   report.end = evidence.run->end;
   evidence.machine = scoring::MachineFigures{seconds_since(start), peak_megabytes()};
   *report.score = score_json(evidence);
+  // Beside the figures: people read them, nothing compares them.
+  if (!report.unseen_victims.empty()) (*report.score)["unseen_victims"] = report.unseen_victims;
   folder.save_hashes(without_machine(*report.score).dump(2));
   folder.write("score.json", report.score->dump(2) + "\n");
   folder.close(!report.interrupted && report.failure.empty());

@@ -17,6 +17,8 @@ json_holds a/score.json "all(k in j for k in 'score precision recall psi_m align
 victims_found victims_total sim_s wall_s real_time_factor peak_mb'.split())"
 json_holds a/score.json "j['aligned'] and 0.5 < j['score'] <= 1 and j['known'] > 0.7"
 version=$(sed -n 's/^constexpr int kScoreVersion = \([0-9]*\);$/\1/p' "$source/scoring/scorecard.h")
+json_holds a/score.json "j['victims_withdrawn'] >= 0 and j['victims_visible'] <= j['victims_total'] and \
+('unseen_victims' in j) == (j['victims_visible'] < j['victims_total'])"
 json_holds a/score.json "j['overlap'] == min(j['precision'], j['recall']) and j['score_version'] == $version and j['score_at_best_pose'] == j['score']"
 
 # A victim has one number, and its name is the same wherever it is said.

@@ -127,7 +127,7 @@ TEST_F(Batch, FailuresAndHangsAreRecordedAndMadeAgainOnlyWhenAsked) {
 TEST_F(Batch, VictimsThatNobodyCanSeeAreKeptBesideTheFigures) {
   const auto runner = [](const Job& job, const std::string& folder) {
     RunOutcome outcome = fake(job, folder);
-    if (job.seed == 2) outcome.unseen_victims = {"true victim2"};
+    if (job.seed == 2) (*outcome.score)["unseen_victims"] = {"true victim2"};
     return outcome;
   };
   run_batch(jobs(2), runner, options("out"));
