@@ -78,14 +78,14 @@ def against_goals(kind, runs):
     share = sum(of("victims_found")) / sum(of("victims_visible"))
     known = of("known")
     cells = [
-        cell(f"{100 * ended / count:.0f} (>= {100 * ends:.0f})", ended >= ends * count),
+        cell(f"{100 * ended / count:.1f} (>= {100 * ends:.0f})", ended >= ends * count),
         cell(f"{of('end_code').count('stuck')} (<= {stuck})", of("end_code").count("stuck") <= stuck * count / 48),
         cell(f"{statistics.median(known):.3f} (>= {median})", statistics.median(known) >= median),
         cell(f"{min(known):.3f} (>= {worst})", min(known) >= worst),
-        cell(f"{100 * share:.1f} (>= {100 * found:.0f})", share >= found),
+        cell(f"{100 * share:.2f} (>= {100 * found:.0f})", share >= found),
         cell(f"{sum(of('victims_false'))} (<= {false})", sum(of("victims_false")) <= false * count / 48),
         cell(f"{statistics.median(of('contact_s')):.1f} (<= {contact})", statistics.median(of("contact_s")) <= contact),
-        cell(f"{100 * at / count:.0f} (>= {100 * home:.0f})", at >= home * count),
+        cell(f"{100 * at / count:.1f} (>= {100 * home:.0f})", at >= home * count),
     ]
     return cells + ["yes" if all(shown) else "no"]
 

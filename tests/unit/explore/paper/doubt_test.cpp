@@ -177,6 +177,45 @@ TEST(Doubt, BetweenBareWallsTheRobotLooksBackSoonAfterABlow) {
   EXPECT_TRUE(looks_back(false, 1.5).empty()) << "scans tell how far it came";
 }
 
+/// How often it looks back on its way home through a bare corridor, when so much of its time is left then [s].
+int looks_on_the_way_home(double left) {
+  constexpr double kLimit = 400.0;
+  const BareCorridor corridor;
+  test::MazeRobot robot(corridor.maze, corridor.model);
+  slam::PaperMapper paper(corridor.model, test::exact_mapper(), 1);
+  Doubtful mapper(paper);
+  PaperExplorerConfig config;
+  config.search.on = false;
+  PaperExplorer explorer(corridor.model, config, {kLimit});
+  robot::Commands commands;
+  TPose2D last = robot.pose();
+  bool goes_home = false;
+  int looks = 0;
+  std::size_t told = 0;
+  while (robot.now().seconds() < kLimit && !explorer.finished()) {
+    const robot::Inputs inputs = robot.step(commands);
+    mapper.blind += distance(position(last), position(robot.pose()));
+    last = robot.pose();
+    mapper.update(inputs);
+    commands = explorer.next(mapper, inputs);
+    for (; told < explorer.decisions().size(); ++told) {
+      const std::string& why = explorer.decisions()[told].why;
+      looks += goes_home && why.find("looks back") != std::string::npos ? 1 : 0;
+      if (goes_home || why.find("drives to home") == std::string::npos) continue;
+      goes_home = true;
+      mapper.blind = 4.0;
+      robot.wait(kLimit - left - robot.now().seconds());
+    }
+  }
+  EXPECT_TRUE(goes_home);
+  return looks;
+}
+
+TEST(Doubt, WithNoTimeForItTheRobotDoesNotLookBackOnItsWayHome) {
+  EXPECT_GT(looks_on_the_way_home(200.0), 0);
+  EXPECT_EQ(looks_on_the_way_home(15.0), 0);
+}
+
 /// A mission in a bare corridor in which the robot is held, softly, after 2.3 m, while its wheels roll on and the pose
 /// with them. `feels`: its accelerometer feels it brake.
 struct Held {
