@@ -329,4 +329,50 @@ inline std::vector<Style> styles_of_pages() {
   return out.all;
 }
 
+/// League maps on white pages, whose legends and scale bars are in the league's colours too.
+inline std::vector<Style> styles_of_league_legends() {
+  Styles out;
+  const Colour blue{120, 40, 0};
+  for (const int scale : {1, 2}) {
+    const std::string size = scale == 1 ? "" : " twice";
+    const auto on_page = [=](const OccupancyGrid& g) {
+      cv::Mat m;
+      cv::resize(league_image(g, true), m, {}, scale, scale, cv::INTER_NEAREST);
+      return framed(m, scale, 40 * scale, 40 * scale, 70 * scale, 40 * scale, kWhite);
+    };
+    out.page("league swatch" + size,
+             [=](const OccupancyGrid& g) {
+               Styled s = on_page(g);
+               const P at(s.image.cols - 50 * scale, 60 * scale);
+               cv::rectangle(s.image, cv::Rect(at.x, at.y, 21 * scale, 11 * scale), cv::Scalar(blue), cv::FILLED);
+               return s;
+             },
+             {85});
+    out.page("league scale bar" + size,
+             [=](const OccupancyGrid& g) {
+               Styled s = on_page(g);
+               const P at(s.image.cols - 150 * scale, s.image.rows - 25 * scale);
+               cv::rectangle(s.image, cv::Rect(at.x, at.y, 61 * scale, 4 * scale), cv::Scalar(blue), cv::FILLED);
+               write_on(s.image, "3 m", at + P(66 * scale, 6), 0.4, blue);
+               return s;
+             },
+             {85});
+    out.page("league legend" + size,
+             [=](const OccupancyGrid& g) {
+               Styled s = on_page(g);
+               const std::vector<std::pair<std::string, Colour>> rows{
+                   {"wall", blue}, {"free", kWhite}, {"unknown", Colour(227, 226, 226)}};
+               for (std::size_t k = 0; k < rows.size(); ++k) {
+                 const P at(s.image.cols - 65 * scale, (50 + 22 * static_cast<int>(k)) * scale);
+                 cv::rectangle(s.image, at, at + P(16 * scale, 10 * scale), cv::Scalar(rows[k].second), cv::FILLED);
+                 cv::rectangle(s.image, at, at + P(16 * scale, 10 * scale), cv::Scalar(blue), scale);
+                 write_on(s.image, rows[k].first, at + P(19 * scale, 9 * scale), 0.3 * scale, blue);
+               }
+               return s;
+             },
+             {85});
+  }
+  return out.all;
+}
+
 }  // namespace rubble::scoring::testing

@@ -28,7 +28,7 @@ constexpr double kFullPanel = 0.97;     // of its bounding box
 constexpr double kLeastKnown = 0.02;    // of the panel, to be a map
 constexpr double kLeastUnknown = 0.02;  // of the panel
 constexpr double kUnknownRim = 0.5;     // of the panel's rim
-constexpr double kFramedRim = 0.95;
+constexpr double kWholeRim = 0.95;
 constexpr int kLetter = 9;  // strokes and ticks are thinner [pixels]
 constexpr int kLeastPanelSide = 4 * kLetter;
 constexpr int kThickestFrame = 8;  // that has another margin within [pixels]
@@ -154,7 +154,7 @@ bool is_map(const cv::Mat& classes, const cv::Rect& panel) {
   const cv::Mat part = classes(panel);
   return share_of(part == kFreeClass) >= kLeastKnown && share_of(part == kUnknownClass) >= kLeastUnknown &&
          (share_of_rim(classes, panel, kUnknownClass) >= kUnknownRim ||
-          share_of_rim(classes, panel, kWallClass) >= kFramedRim);
+          share_of_rim(classes, panel, kWallClass) >= kWholeRim);
 }
 
 /// A margin within the frame: what it leaves begins with unknown ground.
@@ -174,10 +174,17 @@ std::optional<cv::Rect> panel_within_frame(const cv::Mat& classes, cv::Rect pane
 cv::Rect without_frame(const cv::Mat& classes, const cv::Rect& panel) {
   cv::Rect inner = panel;
   for (int i = 0; i < kThickestFrame && inner.width > kLeastPanelSide && inner.height > kLeastPanelSide; ++i) {
-    if (share_of_rim(classes, inner, kWallClass) < kFramedRim) break;
+    if (share_of_rim(classes, inner, kWallClass) < kWholeRim) break;
     inner = {inner.x + 1, inner.y + 1, inner.width - 2, inner.height - 2};
   }
   return share_of_rim(classes, inner, kUnknownClass) >= kUnknownRim ? inner : panel;
+}
+
+/// What is around the panel is unknown.
+void keep_only(cv::Mat& classes, const cv::Rect& panel) {
+  cv::Mat cleared(classes.size(), CV_8U, cv::Scalar(kUnknownClass));
+  classes(panel).copyTo(cleared(panel));
+  classes = cleared;
 }
 
 }  // namespace
@@ -247,10 +254,14 @@ bool clear_around_panel(cv::Mat& classes) {
   if (!outer) return false;
   const std::optional<cv::Rect> inner = panel_within_frame(classes, *outer);
   if (!inner && !is_map(classes, *outer)) return false;
-  const cv::Rect panel = without_frame(classes, inner.value_or(*outer));
-  cv::Mat cleared(classes.size(), CV_8U, cv::Scalar(kUnknownClass));
-  classes(panel).copyTo(cleared(panel));
-  classes = cleared;
+  keep_only(classes, without_frame(classes, inner.value_or(*outer)));
+  return true;
+}
+
+bool clear_around_league_map(cv::Mat& classes) {
+  const std::optional<cv::Rect> panel = panel_within(classes);
+  if (!panel || !is_map(classes, *panel) || share_of_rim(classes, *panel, kUnknownClass) < kWholeRim) return false;
+  keep_only(classes, *panel);
   return true;
 }
 

@@ -24,4 +24,8 @@ bool even_out_coloured_walls(const RgbImage& image, const cv::Mat& apart, cv::Ma
 /// `classes`: CV_8U, Occupancy. False: there is nothing of that kind.
 bool clear_around_panel(cv::Mat& classes);
 
+/// The same around a league map on a page, where a legend and a scale bar may have the walls' own blue: the whole rim
+/// of the rectangle is unknown ground. Free ground that an arena's own walls bound is never taken for a page.
+bool clear_around_league_map(cv::Mat& classes);
+
 }  // namespace rubble::scoring

@@ -232,6 +232,7 @@ ClassImage classify_as(const RgbImage& original, const SampleNotes& notes, const
   cv::Mat classes = labels.classes;
   classes.setTo(static_cast<int>(Occupancy::Unknown), nothing);
   clear_canvas_corners(classes);
+  if (out.is_league && clear_around_league_map(classes)) out.recognised += ", what stands around the map is unknown";
   out.classes = Grid<Occupancy>(GridFrame{image.width, image.height, 1.0, 0.0, 0.0});
   for (int y = 0; y < image.height; ++y) {
     const unsigned char* row = classes.ptr<unsigned char>(image.height - 1 - y);

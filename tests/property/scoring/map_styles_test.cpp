@@ -188,6 +188,11 @@ TEST(MapStyles, WhatTheToolsOfTeamsSaveIsReadOrDoubtedOnOtherArenasToo) {
   EXPECT_LE(out.doubted, is_tried(1) ? 121 : 40);
 }
 
+TEST(MapStyles, LegendsInTheLeaguesOwnColoursAreNoPartOfTheMap) {
+  const Outcome out = outcome_of(drawn_maps(), styles_of_league_legends());
+  EXPECT_EQ(out.right, out.cases);
+}
+
 TEST(MapStyles, WherePartOfTheMapIsLostThatIsSaid) {
   const Outcome out = outcome_of(drawn_maps(), hard_styles());
   if (!are_all_tried()) return;

@@ -83,6 +83,32 @@ TEST(AddedDrawings, FreeGroundThatReachesTheRimOfAMapStays) {
   classes.setTo(static_cast<int>(Occupancy::Occupied), map == 0);
   const cv::Mat before = classes.clone();
   EXPECT_FALSE(clear_around_panel(classes));
+  EXPECT_FALSE(clear_around_league_map(classes));
+  EXPECT_EQ(cv::countNonZero(classes != before), 0);
+}
+
+/// A page's legend in the walls' own blue, as large as a legend is: nothing of it is read as the map's.
+TEST(AddedDrawings, ALegendBesideALeagueMapIsNoPartOfIt) {
+  const cv::Mat map = league_image(padded(maze({5, 4, 1}), 12), false);
+  cv::Mat page;
+  cv::copyMakeBorder(map, page, 50, 50, 50, 60, cv::BORDER_CONSTANT, cv::Scalar::all(255));
+  EXPECT_EQ(read_otherwise(page, map, {50, 50}), 0);
+  const cv::Scalar blue(120, 40, 0);
+  cv::Mat swatch = page.clone(), bar = page.clone();
+  cv::rectangle(swatch, cv::Rect(page.cols - 40, 70, 21, 11), blue, cv::FILLED);
+  EXPECT_EQ(read_otherwise(swatch, map, {50, 50}), 0);
+  cv::rectangle(bar, cv::Rect(page.cols - 140, page.rows - 25, 61, 4), blue, cv::FILLED);
+  EXPECT_EQ(read_otherwise(bar, map, {50, 50}), 0);
+}
+
+/// Free ground around an arena whose own walls bound it is the arena's surroundings, not a page.
+TEST(AddedDrawings, FreeGroundAroundTheWallsOfALeagueMapStays) {
+  cv::Mat classes(120, 160, CV_8U, cv::Scalar(static_cast<int>(Occupancy::Free)));
+  const cv::Rect arena(20, 20, 120, 80);
+  cv::rectangle(classes, arena, cv::Scalar(static_cast<int>(Occupancy::Occupied)), 2);
+  classes(cv::Rect(60, 40, 40, 40)).setTo(static_cast<int>(Occupancy::Unknown));
+  const cv::Mat before = classes.clone();
+  EXPECT_FALSE(clear_around_league_map(classes));
   EXPECT_EQ(cv::countNonZero(classes != before), 0);
 }
 
