@@ -29,4 +29,21 @@ RUBBLE_BUILD=$work/build figures -v ranking ranking >log.txt || fail "ranking en
 RUBBLE_BUILD=$work/build figures ranking >log.txt || fail "ranking ended with $?"
 ! grep -q '^table' log.txt || fail "the tables are printed without -v"
 
+# Right maps that are refused are judged too: nine of 342 may be, ten may not.
+mkdir -p data/alignment data/rooms
+for bench in scoring_alignment_bench scoring_strangers_bench; do
+  cat >build/bench/$bench <<'BENCH'
+#!/bin/bash
+for argument in "$@"; do [[ $argument == --benchmark_out=* ]] && out=${argument#*=}; done
+echo '{"benchmarks": [{"run_name": "BM_AlignStrangers", "tried": 100, "wrongly_aligned": 0},
+  {"run_name": "BM_Strangers", "strangers": 1000, "wrongly_aligned": 0, "right": 342, "right_aligned": '"$ALIGNED"',
+   "right_misplaced": 0}]}' >"$out"
+BENCH
+  chmod +x build/bench/$bench
+done
+strangers() { ALIGNED=$1 RUBBLE_DATA=$work/data RUBBLE_BUILD=$work/build "$source/tests/scoring_figures.sh" strangers; }
+strangers 333 >log.txt || fail "nine lost ended with $?: $(cat log.txt)"
+strangers 332 >log.txt && fail "ten lost are not told"
+grep -q '^MISS .*of these said to be aligned .*97' log.txt || fail "ten lost are not told: $(cat log.txt)"
+
 finish
