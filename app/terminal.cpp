@@ -136,7 +136,10 @@ void print_figure(const scoring::Figure& figure, const std::string& text, bool e
 }
 
 void print_figures(const nlohmann::ordered_json& score, bool explained) {
+  const auto aligned = score.find("aligned");
+  const bool refused = aligned != score.end() && aligned->is_boolean() && !aligned->get<bool>();
   for (const scoring::Figure* figure : scoring::figures_with(scoring::kShown)) {
+    if (refused && figure->is(scoring::kPlaced)) continue;
     const auto found = score.find(figure->key);  // special figures may not be there
     const std::string text = found == score.end() ? "" : scoring::text_of(*figure, scenarios::value_of(found.value()));
     if (text.empty()) continue;

@@ -28,6 +28,7 @@ enum Traits : unsigned {
   kMachine = 1u << 4,  ///< depends on the machine, not on the seed: kept out of hashes and comparisons
   kText = 1u << 5,     ///< words; cannot be bounded by `expect`
   kSpecial = 1u << 6,  ///< only of a real drive, or where trajectories alone are compared: else left out of score.json
+  kPlaced = 1u << 7,   ///< measured where the map lies; of a refused map the worst there is, which no table shows
 };
 
 /// A row of the table.

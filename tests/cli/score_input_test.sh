@@ -62,6 +62,8 @@ done
 for map in white.pgm wall.pgm upside_down.ppm other/*-truth.tif; do
   "$rubble" score $map "$truth" --resolution 0.05 >table.txt 2>err.txt || fail "$map ended with $?"
   [[ $(grep -c '^not aligned ' table.txt) == 1 && ! -s err.txt ]] || fail "$map: no reason in one line: $(cat table.txt err.txt)"
+  grep -qE '^(overlap|precision|recall|psi) ' table.txt && fail "$map: figures that nobody measured: $(cat table.txt)"
+  grep -qE '^score +0\.000' table.txt || fail "$map: no score: $(cat table.txt)"
 done
 
 # Walls that the truth knows nothing about are in no score, but counted.
