@@ -78,6 +78,17 @@ void draw_cross(cv::Mat& image, const cv::Point& at, int reach, const Colour& co
   cv::line(image, at - cv::Point(reach, -reach), at + cv::Point(reach, -reach), cv::Scalar(colour), width, cv::LINE_AA);
 }
 
+const Colour kDoubtful(110, 110, 110);
+
+/// Victims that are reported where the picture does not reach.
+int reported_outside(const Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map) {
+  const cv::Rect picture(0, 0, canvas.image.cols, canvas.image.rows);
+  int out = 0;
+  for (const std::vector<Mark>* all : {&marks.map_only, &marks.unjudged})
+    for (const Mark& mark : *all) out += picture.contains(canvas.pixel(T_truth_map.composePoint(mark.p))) ? 0 : 1;
+  return out;
+}
+
 /// At a pose that is not trusted nobody knows which of them were found: all are grey, and said by name only. So are
 /// those that nothing says anything of.
 void draw_victims(Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map, bool trusted) {
@@ -185,6 +196,7 @@ std::string overlay_png(const OccupancyGrid& map, const OccupancyGrid& truth, co
           colour = is_judged(in_truth, off) ? wall_colour(off, kMapOnly) : kNotJudged;
         });
   if (marks.seam) draw_seam(canvas, *marks.seam);
+  const int outside = reported_outside(canvas, marks, T_truth_map);
   draw_victims(canvas, marks, T_truth_map, warning.empty());
   draw_warning(canvas, warning);
   std::vector<LegendEntry> legend = {{kInk, "walls within 5 cm"},
@@ -193,6 +205,11 @@ std::string overlay_png(const OccupancyGrid& map, const OccupancyGrid& truth, co
                                      {kTruthOnly, "only in truth"}};
   legend.insert(legend.end(), kGrounds.begin(), kGrounds.end());
   for (LegendEntry& entry : victim_entries(marks, warning.empty())) legend.push_back(std::move(entry));
+  if (outside > 0) {
+    const bool are_false = warning.empty() && marks.unjudged.empty();
+    legend.push_back({are_false ? kMapOnly : kDoubtful,
+                      cv::format("%d %sreported outside the picture", outside, are_false ? "false, " : "")});
+  }
   if (marks.seam) legend.push_back({kSeam, "seam of two parts"});
   draw_legend(canvas.image, legend, canvas.frame, canvas.scale);
   return png_bytes(canvas.image);

@@ -217,6 +217,30 @@ TEST_F(Picture, TheLegendNamesWhatIsDrawnOfVictims) {
       << "and said to be";
 }
 
+/// Nothing of the picture shows them: the legend says how many they are.
+TEST_F(Picture, VictimsReportedOutsideThePictureAreToldInTheLegend) {
+  const OccupancyGrid plain = room(0.0, false);
+  const Mark here{{1.0, 1.0}, "v", std::nullopt}, far{{50.0, -30.0}, "w", std::nullopt};
+  const auto drawn = [&](const std::string& warning, const Marks& marks) {
+    write_overlay(path_, plain, plain, {}, warning, marks);
+    return cv::imread(path_);
+  };
+  const auto is_told = [&](const cv::Mat& without, const cv::Mat& with) {
+    const int rows = rows_of_map(without);
+    EXPECT_EQ(rows_of_map(with), rows);
+    EXPECT_EQ(cv::norm(without.rowRange(0, rows), with.rowRange(0, rows)), 0.0);
+    return without.size() != with.size() || cv::norm(without, with) > 0.0;
+  };
+  for (const std::string warning : {"", "NOT TRUSTED"}) {
+    const cv::Mat none = drawn(warning, {"victims", {}, {}, {}});
+    EXPECT_TRUE(is_told(none, drawn(warning, {"victims", {}, {far}, {}})));
+    EXPECT_TRUE(is_told(none, drawn(warning, {"victims", {}, {}, {}, {far}})));
+  }
+  const cv::Mat one = drawn("", {"victims", {}, {here}, {}}), two = drawn("", {"victims", {}, {here, far}, {}});
+  EXPECT_TRUE(is_told(one, two));
+  EXPECT_TRUE(is_told(two, drawn("", {"victims", {}, {here, far, far}, {}})));
+}
+
 TEST_F(Picture, TheLegendOfTheErrorMapNamesItsPaleGrounds) {
   OccupancyGrid half = room(0.0);
   for (int y = 0; y < half.height(); ++y)
