@@ -135,11 +135,11 @@ int score(ScoreArguments arguments) {
   const scoring::Marks marks =
       scoring::marks_on_overlay(result, verdict.reported.victims, victims.victims, !victims.path.empty());
   if (!arguments.html.empty())
-    write_evaluation_page(
-        arguments.html, verdict.map.grid, truth,
-        {arguments.map, arguments.truth, command_of(arguments), result.T_truth_map, pose ? pose->scale : 1.0, config,
-         result.aligned ? "" : result.note,
-         in_own_scale(scoring::marks_on_page(result, marks), pose ? pose->scale : 1.0), result.score_at_best_pose});
+    write_evaluation_page(arguments.html, verdict.map.grid, truth,
+                          {arguments.map, arguments.truth, command_of(arguments), result.T_truth_map,
+                           pose ? pose->scale : 1.0, config, result.aligned ? "" : result.note,
+                           in_own_scale(scoring::marks_on_page(result, marks), pose ? pose->scale : 1.0),
+                           result.score_at_best_pose, marks.seam});
   if (!arguments.out.empty()) {
     // A map that was refused is drawn at the best pose, so that a person can see why; score.json says that too.
     if (result.aligned || result.by != scoring::AlignBy::Auto)

@@ -95,7 +95,7 @@ LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const Le
           {entry.file, truth.path,
            score_command(entry.file, truth.path, config.map_resolution, config.truth_resolution, config.score.tau),
            entry.score.T_truth_map, 1.0, config.score, entry.score.aligned ? "" : entry.score.note,
-           marks_on_page(entry.score, marks), entry.score.score_at_best_pose}));
+           marks_on_page(entry.score, marks), entry.score.score_at_best_pose, marks.seam}));
   return pictures;
 }
 

@@ -114,6 +114,7 @@ std::string at_start(const OccupancyGrid& map, const OccupancyGrid& truth, const
                 start.not_trusted.empty() ? "score" : "score there, not trusted", start.score);
   const bool has_victims = !start.marks.empty() && start.marks.front().what == "victims";
   Marks victims = has_victims ? start.marks.front() : Marks{};
+  victims.seam = start.seam;
   for (auto& [of_map, of_truth] : victims.pairs) of_map.p *= start.scale;
   for (std::vector<Mark>* marks : {&victims.map_only, &victims.unjudged})
     for (Mark& of_map : *marks) of_map.p *= start.scale;

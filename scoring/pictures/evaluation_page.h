@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/grid.h"
@@ -27,6 +28,8 @@ struct EvaluationStart {
   std::string not_trusted;   ///< why the pose is not to be trusted; empty: it is
   std::vector<Marks> marks;  ///< that can be shown: victims, features, rooms
   double score = 0.0;        ///< the headline score at the pose, trusted or not
+  /// Where the map came apart, in the truth [m].
+  std::optional<std::pair<mrpt::math::TPoint2D, mrpt::math::TPoint2D>> seam{};
 };
 
 /// The Mapping Evaluation Tool of section IV.B as one HTML page that needs nothing else: two maps that a person moves,
