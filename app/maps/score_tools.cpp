@@ -78,7 +78,7 @@ std::optional<scoring::KnownStart> parse_start(const std::string& text, const st
 }
 
 std::string command_of(const ScoreArguments& a) {
-  return scoring::score_command(a.map, a.truth, a.map_resolution, a.truth_resolution, a.tau);
+  return scoring::words_of({a.map, a.truth, a.map_resolution, a.truth_resolution, a.tau, a.pois, a.victims});
 }
 
 void make_folder(const std::string& path) {

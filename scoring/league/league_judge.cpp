@@ -70,8 +70,9 @@ void remove_old_pages(const std::string& folder) {
   for (const fs::path& path : old) fs::remove(path);
 }
 
+/// `pois`: the team's list of victims.
 LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const LeagueTruth& truth,
-                    const LeagueConfig& config, const std::string& name) {
+                    const LeagueConfig& config, const std::string& name, const std::string& pois) {
   LeaguePictures pictures;
   pictures.overlay = name + kOverlay;
   const Marks marks =
@@ -93,7 +94,8 @@ LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const Le
       evaluation_page(
           map, truth.grid,
           {entry.file, truth.path,
-           score_command(entry.file, truth.path, config.map_resolution, config.truth_resolution, config.score.tau),
+           words_of({entry.file, truth.path, config.map_resolution, config.truth_resolution, config.score.tau,
+                     entry.reported.from == VictimSource::List ? pois : "", truth.victims.path}),
            entry.score.T_truth_map, 1.0, config.score, entry.score.aligned ? "" : entry.score.note,
            marks_on_page(entry.score, marks), entry.score.score_at_best_pose, marks.seam}));
   return pictures;
@@ -120,7 +122,7 @@ void judge_map(const LeagueFiles& files, const LeagueTruth& truth, const LeagueC
   if (same_content(files.map, truth.path)) add_note(entry.score.note, "a copy of the truth, byte for byte");
   add_note(entry.score.note, entry.reported.note);
   entry.points = victim_points(loaded.grid, truth.grid, entry.score, entry.reported, truth.victims);
-  if (!config.out.empty()) pictures = draw(entry, loaded.grid, truth, config, name);
+  if (!config.out.empty()) pictures = draw(entry, loaded.grid, truth, config, name, files.pois);
 }
 
 /// Two teams that handed in one file: said of both.

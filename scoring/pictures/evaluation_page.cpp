@@ -132,13 +132,14 @@ std::string at_start(const OccupancyGrid& map, const OccupancyGrid& truth, const
 
 }  // namespace
 
-std::string score_command(const std::string& map, const std::string& truth, const std::optional<double>& map_resolution,
-                          const std::optional<double>& truth_resolution, double tau) {
-  std::string command = "rubble score " + shell_word(map) + " " + shell_word(truth);
-  if (map_resolution) command += " --resolution " + number_text(*map_resolution);
-  if (truth_resolution) command += " --truth-resolution " + number_text(*truth_resolution);
-  if (tau != ScoreConfig().tau) command += " --tau " + number_text(tau);
-  return command;
+std::string words_of(const ScoreCommand& command) {
+  std::string words = "rubble score " + shell_word(command.map) + " " + shell_word(command.truth);
+  if (command.map_resolution) words += " --resolution " + number_text(*command.map_resolution);
+  if (command.truth_resolution) words += " --truth-resolution " + number_text(*command.truth_resolution);
+  if (command.tau != ScoreConfig().tau) words += " --tau " + number_text(command.tau);
+  if (!command.pois.empty()) words += " --pois " + shell_word(command.pois);
+  if (!command.victims.empty()) words += " --victims " + shell_word(command.victims);
+  return words;
 }
 
 std::string evaluation_page(const OccupancyGrid& map, const OccupancyGrid& truth, const EvaluationStart& start) {

@@ -13,9 +13,19 @@
 
 namespace rubble::scoring {
 
-/// The command that scores two maps: `map_resolution`, `truth_resolution` [m a pixel] and `tau` [m] as they were given.
-std::string score_command(const std::string& map, const std::string& truth, const std::optional<double>& map_resolution,
-                          const std::optional<double>& truth_resolution, double tau);
+/// What the command that scores two maps was given.
+struct ScoreCommand {
+  std::string map;
+  std::string truth;
+  std::optional<double> map_resolution;  ///< [m a pixel]
+  std::optional<double> truth_resolution;
+  double tau = ScoreConfig().tau;  ///< [m]
+  std::string pois;                ///< list of the victims that the map reports; empty: none was given
+  std::string victims;             ///< list of the true victims; empty: none was given
+};
+
+/// The command, quoted as a shell needs it.
+std::string words_of(const ScoreCommand& command);
 
 /// What the page starts with.
 struct EvaluationStart {

@@ -20,6 +20,11 @@ sed 's/src="data:image[^"]*"//g' same.html | grep -qE "(src|href)=|https?://|imp
 mkdir 'two words' && cp "$truth" "two words/it's.tif"
 "$rubble" score "two words/it's.tif" "$truth" --html words.html >/dev/null 2>&1 || fail "a name of two words"
 grep -qF "rubble score 'two words/it'\\u005c''s.tif' a/" words.html || fail "the command is not quoted: $(grep -o 'command":"[^"]*' words.html)"
+printf 'name,x,y\nv,1,1\n' >'my victims.csv'
+"$rubble" score "$truth" "$truth" --pois 'my victims.csv' --victims 'my victims.csv' --html listed.html >/dev/null 2>&1 ||
+  fail "a page with lists of victims"
+grep -qF -- "--pois 'my victims.csv' --victims 'my victims.csv'" listed.html ||
+  fail "the command gives other victims than the page: $(grep -o 'command":"[^"]*' listed.html)"
 expect_exit 4 '/proc/page.html' "$rubble" score "$truth" "$truth" --html /proc/page.html
 ((failures == 0)) || finish
 

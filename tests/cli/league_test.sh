@@ -108,6 +108,12 @@ PY
 expect_exit 2 '--align' "$rubble" score --league mixed $truth --align magic
 "$rubble" score --league mixed $truth --tau 0.3 --out tau_out >/dev/null || fail "league with --tau"
 grep -q -- '--tau 0.3' tau_out/good-map*.html || fail "the page's command gives other figures than the page: no --tau"
+mkdir victims && cp $truth victims/drawn.tif && cp $truth victims/listed.tif
+printf 'name,x,y\nv,1,1\n' >victims/listed.csv && cp victims/listed.csv true.csv
+"$rubble" score --league victims $truth --victims true.csv --out victims_out >/dev/null || fail "league with lists of victims"
+grep -qF -- "--pois victims/listed.csv --victims true.csv" victims_out/listed-map*.html ||
+  fail "the page's command gives other victims than the page: $(grep -o 'command":"[^"]*' victims_out/listed-map*.html)"
+grep -o 'command":"[^"]*' victims_out/drawn-map*.html | grep -q -- '--pois' && fail "a list that the team has not"
 # Names that only look like pictures of runs take part; a copy of the truth is said to be one, and ranked.
 mkdir named
 for name in search-and-error error arena ground_truth half-visible copied x; do cp maps/coarse.tif named/$name.tif; done
