@@ -98,6 +98,8 @@ int score(ScoreArguments arguments) {
   arguments.truth = map_file(arguments.truth, "truth.tif");
   if (is_trajectory(arguments.map)) return score_trajectory(arguments);
   const std::optional<GivenPose> pose = parse_pose(arguments.pose);
+  if (pose && (arguments.align != "auto" || !arguments.start.empty()))
+    throw UsageError("--pose goes without --align and --start, which look for a pose; see rubble score --help");
   scoring::ScoreConfig config;
   config.alignment = parse_align(arguments.align);
   config.warp = arguments.warp;

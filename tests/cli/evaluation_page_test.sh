@@ -6,6 +6,8 @@ map=$(echo b/*truth.tif) truth=$(echo a/*truth.tif)
 expect_exit 2 '--pose 1,2' "$rubble" score "$truth" "$truth" --pose 1,2
 expect_exit 2 '--pose 1,2,x' "$rubble" score "$truth" "$truth" --pose 1,2,x
 expect_exit 2 '0.1 to 10' "$rubble" score "$truth" "$truth" --pose 1,2,3,0
+expect_exit 2 '--pose goes without --align and --start' "$rubble" score "$truth" "$truth" --pose=0,0,0 --align walls
+expect_exit 2 '--pose goes without --align and --start' "$rubble" score "$truth" "$truth" --pose=0,0,0 --start=0,0,0
 expect_exit 2 'truth is required' "$rubble" score "$truth"
 "$rubble" score "$truth" "$truth" --pose=0,0,0 --json >same.json || fail "a map at its own pose"
 json_holds same.json "j['score'] == 1 and j['psi_m'] == 0 and j['known'] == 1"
