@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <memory>
@@ -67,13 +68,29 @@ nlohmann::ordered_json as_json(const Verdict& verdict, const OccupancyGrid& grid
   return scenarios::score_json(evidence);
 }
 
-void print_table(const Verdict& verdict, const nlohmann::ordered_json& json) {
+/// What a person can do with a map that was refused; nothing helps one that has no walls. `knows_start`: --start was
+/// given.
+std::string how_to_go_on(const Verdict& verdict, bool knows_start) {
+  const auto& cells = verdict.map.grid.cells();
+  if (std::find(cells.begin(), cells.end(), Occupancy::Occupied) == cells.end()) return {};
+  std::string out = "--html PAGE.html lays it by hand in a browser, --pose=X,Y,DEG scores it where you say";
+  const scoring::MapOrigin origin = verdict.map.origin;
+  const bool from_start = origin == scoring::MapOrigin::Ros || origin == scoring::MapOrigin::Local;
+  if (from_start && !knows_start && verdict.score.by != scoring::AlignBy::Auto)
+    out +=
+        "; --start=X,Y,DEG says where in the truth the robot started, which decides between poses that fit about as "
+        "well";
+  return out;
+}
+
+/// `knows_start`: --start was given.
+void print_table(const Verdict& verdict, const nlohmann::ordered_json& json, bool knows_start) {
   print_row("map", verdict.map.recognised);
   print_row("truth", verdict.truth.recognised);
   const scoring::MapScore& score = verdict.score;
   if (!score.aligned) {
     print_not_aligned(score.note);
-    print_row("to go on", "--html PAGE.html lays it by hand in a browser, --pose=X,Y,DEG scores it where you say");
+    if (const std::string how = how_to_go_on(verdict, knows_start); !how.empty()) print_row("to go on", how);
   }
   if (score.aligned && !score.note.empty()) print_row("aligned", score.note);
   print_contest(verdict.score);
@@ -132,7 +149,7 @@ int score(ScoreArguments arguments) {
   if (arguments.json) {
     print_json(json);
   } else {
-    print_table(verdict, json);
+    print_table(verdict, json, !arguments.start.empty());
   }
   const scoring::Marks marks =
       scoring::marks_on_overlay(result, verdict.reported.victims, victims.victims, !victims.path.empty());

@@ -66,6 +66,17 @@ for map in white.pgm wall.pgm upside_down.ppm other/*-truth.tif; do
   grep -qE '^score +0\.000' table.txt || fail "$map: no score: $(cat table.txt)"
 done
 
+# What can be done about a refusal: nothing of a map without walls; --start of one that counts from there.
+"$rubble" score white.pgm "$truth" --resolution 0.05 >table.txt || fail "white.pgm"
+grep -q '^to go on' table.txt && fail "a map without walls is laid by hand: $(cat table.txt)"
+"$rubble" score upside_down.ppm "$truth" --resolution 0.05 >table.txt || fail "upside_down.ppm"
+grep -q '^to go on .*--html.*--pose' table.txt || fail "a refused map has no way on: $(cat table.txt)"
+grep -q '^to go on .*--start' table.txt && fail "--start of a picture that does not count from there: $(cat table.txt)"
+"$rubble" score other/*-truth.tif "$truth" >table.txt || fail "another arena"
+grep -q '^to go on .*--html.*--pose.*--start=X,Y,DEG' table.txt || fail "--start is not named: $(cat table.txt)"
+"$rubble" score other/*-truth.tif "$truth" --start=0,0,0 >table.txt || fail "another arena with a start"
+grep -q '^to go on .*--start' table.txt && fail "--start was given: $(cat table.txt)"
+
 # Walls that the truth knows nothing about are in no score, but counted.
 expect_score "j['ignored_m'] == 0" "$truth" "$truth"
 gdal_translate -q -srcwin 0 0 $(($(gdalinfo "$truth" | sed -n 's/^Size is \([0-9]*\), \([0-9]*\)/\1 * 7 \/ 10/p'))) \
