@@ -79,7 +79,7 @@ void print_match(const scoring::RoomMatch& match) {
   for (const std::size_t i : match.missing) print_row(name_of(i) + " of the truth", "not in the map");
   for (const std::size_t i : match.surplus) print_row(name_of(i) + " of the map", "not in the truth");
   print_row("room error, eq. (7)", text("%.3f m^2 (0 to 2)", match.error));
-  print_row("room score", text("%.3f", match.score));
+  print_row("room agreement", text("%.3f", match.score));
 }
 
 nlohmann::ordered_json point(const mrpt::math::TPoint2D& p) { return {p.x, p.y}; }
@@ -121,7 +121,7 @@ void add_match(nlohmann::ordered_json& out, const scoring::RoomVerdict& found) {
   out["missing"] = as_json(found.match.missing);
   out["surplus"] = as_json(found.match.surplus);
   out["room_error_m2"] = found.match.error;
-  out["room_score"] = found.match.score;
+  out["room_agreement"] = found.match.score;
 }
 
 std::string as_csv(const scoring::Rooms& rooms) {

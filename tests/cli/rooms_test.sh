@@ -28,15 +28,15 @@ grep -qE '^room 1 .*box 4\.[67][05], 2\.[789][05] to 8\.95, 5\.95 m' <("$rubble"
   fail "the largest room has another box: $("$rubble" rooms truth.pgm --resolution 0.05)"
 "$rubble" rooms truth.pgm truth.pgm --resolution 0.05 --truth-resolution 0.05 --out same >same.txt || fail "same: $?"
 [[ -s same/matched_rooms.png ]] || fail "no picture of the rooms that belong together"
-grep -qE '^room score +1\.000$' same.txt || fail "a map has its own rooms wrong: $(cat same.txt)"
+grep -qE '^room agreement +1\.000$' same.txt || fail "a map has its own rooms wrong: $(cat same.txt)"
 
 # At the pose that is found, and where a person says.
 same() { "$rubble" rooms truth.pgm truth.pgm --resolution 0.05 --truth-resolution 0.05 "$@"; }
 same --json >same.json || fail "--json ended with $?"
-json_holds same.json "j['aligned'] and j['room_score'] > 0.999 and len(j['rooms']) == len(j['truth_rooms']) == len(j['pairs']) == 4"
+json_holds same.json "j['aligned'] and j['room_agreement'] > 0.999 and len(j['rooms']) == len(j['truth_rooms']) == len(j['pairs']) == 4"
 json_holds same.json "j['rooms'][0]['name'] == 'room 1' and abs(j['rooms'][0]['area_m2'] - 4.25 * 3.05) < 0.2 and j['missing'] == j['surplus'] == []"
 same --json --pose=0.5,0,0 >off.json || fail "--pose ended with $?"
-json_holds off.json "all(abs(p['offset_m'] - 0.5) < 1e-6 for p in j['pairs']) and j['T_truth_map']['x_m'] == 0.5 and j['room_score'] < 0.95"
+json_holds off.json "all(abs(p['offset_m'] - 0.5) < 1e-6 for p in j['pairs']) and j['T_truth_map']['x_m'] == 0.5 and j['room_agreement'] < 0.95"
 same --json --pose=0,0,0,0.5 >half.json || fail "--pose with a scale ended with $?"
 json_holds half.json "abs(j['rooms'][0]['area_m2'] - 4.25 * 3.05 / 4) < 0.1"
 "$rubble" rooms truth.pgm --resolution 0.05 --json >alone.json || fail "--json of a map alone ended with $?"
@@ -44,7 +44,7 @@ json_holds alone.json "list(j) == ['rooms'] and len(j['rooms']) == 4"
 # A run's own map of an arena, where rooms end at openings that are nearly as wide as they: divided as the truth is.
 "$rubble" run --seed 3 --out run >/dev/null 2>&1 || fail "no run"
 "$rubble" rooms run/map.tif run/truth.tif --json --out arena >arena.json || fail "rooms of an arena ended with $?"
-json_holds arena.json "j['room_score'] > 0.9 and j['missing'] == j['surplus'] == [] and len(j['rooms']) == len(j['truth_rooms']) > 9"
+json_holds arena.json "j['room_agreement'] > 0.9 and j['missing'] == j['surplus'] == [] and len(j['rooms']) == len(j['truth_rooms']) > 9"
 [[ $(wc -l <arena/rooms.csv) == $(wc -l <arena/truth_rooms.csv) ]] || fail "the list of rooms is of another division"
 "$rubble" rooms run/map.tif run/truth.tif --method visibility >/dev/null || fail "rooms by sight ended with $?"
 expect_exit 2 "--pose goes with a truth" "$rubble" rooms truth.pgm --resolution 0.05 --pose=0,0,0
