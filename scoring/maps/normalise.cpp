@@ -162,7 +162,7 @@ LoadedMap load_image(const std::string& path, const LoadOptions& options) {
   }
   check_image_size(path, tiff.image.width, tiff.image.height);
 
-  std::string source = is_tiff ? "GeoTIFF" : "image";
+  std::string source = !is_tiff ? "image" : tiff.transform ? "GeoTIFF" : "TIFF";
   if (is_tiff && rich.pages > 1)
     source += ", page " + std::to_string(rich.page) + " of " + std::to_string(rich.pages) + ",";
   if (beside) source = is_tiff ? "TIFF with world file" : "image with world file";
