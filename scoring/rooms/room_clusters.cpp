@@ -120,8 +120,7 @@ void flood(cv::Mat& labels, const cv::Mat& floor) {
   }
 }
 
-}  // namespace
-
+/// Points every `spacing` along the walls, `offset` inside the floor; at most `most_points`.
 std::vector<cv::Point> wall_control_points(const RoomFloor& floor, const RoomConfig& config) {
   const std::vector<WallContour> walls = wall_contours(floor.open);
   std::size_t total = 0;
@@ -139,6 +138,8 @@ std::vector<cv::Point> wall_control_points(const RoomFloor& floor, const RoomCon
   }
   return points;
 }
+
+}  // namespace
 
 VisibilityMatrix visibility(const RoomFloor& floor, const std::vector<cv::Point>& points, const RoomConfig& config) {
   VisibilityMatrix seen;

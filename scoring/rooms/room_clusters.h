@@ -9,9 +9,6 @@
 
 namespace rubble::scoring {
 
-/// Points every `spacing` along the walls, `offset` inside the floor; at most `most_points`.
-std::vector<cv::Point> wall_control_points(const RoomFloor& floor, const RoomConfig& config);
-
 /// Symmetric matrix of which points see each other, each row a bit set of 64-bit words (A of section IV.E).
 struct VisibilityMatrix {
   std::size_t size = 0;

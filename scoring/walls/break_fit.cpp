@@ -153,9 +153,11 @@ void find_ends(const OccupancyGrid& map, const Seam& seam, TPoint2D& from, TPoin
   to = {seam.offset * n.x - high * n.y, seam.offset * n.y + high * n.x};
 }
 
-}  // namespace
+bool is_in_second(const MapBreak& seam, const TPoint2D& p_map) {
+  return along(p_map, seam.normal) >= along(seam.p_seam, seam.normal);
+}
 
-bool MapBreak::in_second(const TPoint2D& p_map) const { return along(p_map, normal) >= along(p_seam, normal); }
+}  // namespace
 
 MapBreak find_break(const OccupancyGrid& map, const OccupancyGrid& truth, const TPose2D& T_truth_map) {
   MapBreak out;
@@ -177,7 +179,7 @@ MapBreak find_break(const OccupancyGrid& map, const OccupancyGrid& truth, const 
   out.turned_rad = wrap_angle(seam.T_second.phi - seam.T_first.phi);
   out.apart_m = (seam.T_second.composePoint(out.p_seam) - seam.T_first.composePoint(out.p_seam)).norm();
   std::size_t in_second = 0;
-  for (const TPoint2D& p : parts.walls()) in_second += out.in_second(p) ? 1 : 0;
+  for (const TPoint2D& p : parts.walls()) in_second += is_in_second(out, p) ? 1 : 0;
   const TPose2D& larger = 2 * in_second > parts.walls().size() ? seam.T_second : seam.T_first;
   out.from = larger.composePoint(from);
   out.to = larger.composePoint(to);
@@ -191,7 +193,7 @@ OccupancyGrid mended(const OccupancyGrid& map, const OccupancyGrid& truth, const
   OccupancyGrid second = map;
   for (int y = 0; y < map.height(); ++y)
     for (int x = 0; x < map.width(); ++x)
-      (seam.in_second(map.centre({x, y})) ? first : second)[{x, y}] = Occupancy::Unknown;
+      (is_in_second(seam, map.centre({x, y})) ? first : second)[{x, y}] = Occupancy::Unknown;
   // Of the map's own fineness, so that its walls do not become fatter.
   GridFrame frame = common_frame(second, truth, seam.T_truth_second, 0.5);
   const GridFrame other = common_frame(first, truth, seam.T_truth_first, 0.5);

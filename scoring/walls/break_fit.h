@@ -20,8 +20,6 @@ struct MapBreak {
   double turned_rad = 0.0;    ///< of the second part against the first
   mrpt::math::TPoint2D from;  ///< ends of the seam within the map, as the larger part places them: truth frame [m]
   mrpt::math::TPoint2D to;
-
-  bool in_second(const mrpt::math::TPoint2D& p_map) const;
 };
 
 /// Looks for the seam, of any direction and place, on whose sides the map's walls meet the truth's best once each side
