@@ -239,6 +239,12 @@ class Reader {
                        [&](std::uint32_t v) { return is_no_data(static_cast<double>(v)); });
   }
 
+  /// Of single precision as people write it: 0.05, not 0.05000000074505806.
+  static std::string brief(double value) {
+    constexpr double kDigits = 1e6;
+    return number_text(std::round(value * kDigits) / kDigits + 0.0);
+  }
+
   void read_measures(RgbImage& image) const {
     double least = std::numeric_limits<double>::infinity();
     double most = -least;
@@ -254,8 +260,8 @@ class Reader {
     const bool probable = most <= 1.0 + kSlack;
     const bool percent = !probable && most <= 100.0 + kSlack;
     if (probable || percent)
-      notes_.meaning = std::string(probable ? "P(occupied)" : "per cent occupied") + " from " + number_text(least) +
-                       " to " + number_text(most);
+      notes_.meaning =
+          std::string(probable ? "P(occupied)" : "per cent occupied") + " from " + brief(least) + " to " + brief(most);
     notes_.no_data.resize(image.rgb.size() / 3);
     visit_measures([&](int x, int y, double value) {
       constexpr double kFree = 0.4, kOccupied = 0.6;
