@@ -21,6 +21,13 @@ gdal_translate -q -ot UInt16 -scale 0 255 0 65535 "$truth" deep.tif
 gdal_translate -q -ot UInt16 "$truth" unscaled.tif
 for map in tiled.tif planes.tif deep.tif unscaled.tif; do expect_score "j['aligned'] and j['score'] > 0.99" "$map" "$truth"; done
 
+# What it is called: by its tags; shares as people write them, though the file holds 0.0500000007.
+gdal_translate -q -co PROFILE=BASELINE "$truth" bare.tif 2>/dev/null
+rm -f bare.tfw bare.tif.aux.xml
+gdal_translate -q -b 1 -ot Float32 -scale 0 255 0.05 0.95 "$truth" shares.tif
+expect_score "j['map'].startswith('TIFF 0.05 m') and j['truth'].startswith('GeoTIFF 0.05 m')" bare.tif "$truth" --resolution 0.05
+expect_score "'from 0.05 to 0.95' in j['map']" shares.tif "$truth"
+
 # A mirror image, another arena, a wrong scale, no wall at all.
 python3 <<'PY'
 open("white.pgm", "wb").write(b"P5 300 300 255\n" + b"\xff" * 90000)
