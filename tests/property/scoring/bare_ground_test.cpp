@@ -104,6 +104,8 @@ double at_best_pose(const OccupancyGrid& map, const OccupancyGrid& truth) {
   return score.score_at_best_pose;
 }
 
+/// Two halls that say so; halls that differ in one side by a pallet earn up to 0.67 (docs/scoring_measured.md, "Bare
+/// truths"), since three of four walls are right.
 TEST(BareGroundOfStrangers, AnotherHallEarnsNextToNothing) {
   for (const bool lattice : {false, true})
     for (const std::uint64_t seed : {0, 3})
