@@ -20,6 +20,7 @@ constexpr double kBlindWay = 5.0;                ///< by odometry alone, then it
 constexpr double kAskEach = 1.0;                 ///< such way, the brake is asked whether it moves [m]
 constexpr double kStandsStill = 0.2;             ///< of its speed: who feels no more of it go as it brakes stood
 constexpr double kBlindAfterBlow = 1.0;          ///< the same after a blow [m]
+constexpr double kEmptyBelowLow = 0.5;           ///< a Pioneer is low at 11.5 V and switches itself off at 11.0 V [V]
 constexpr double kLookBack = deg_to_rad(130.0);  ///< with a 240 deg scanner far enough [rad]
 constexpr double kOnEdge = 0.01;                 ///< what was felt so near to a pallet is felt on it [m]
 constexpr double kTrailRadius = 0.20;            ///< [m]
@@ -157,9 +158,11 @@ void PaperExplorer::heed_levelling() {
 
 void PaperExplorer::heed_battery(const robot::Inputs& inputs) {
   if (inputs.battery && inputs.battery->low > 0.0) {
-    if (!battery_) battery_.emplace(inputs.battery->low, 0.0);
+    if (!battery_) battery_.emplace(inputs.battery->low, inputs.battery->low - kEmptyBelowLow);
     battery_->look(inputs.battery->volts, now_);
   }
+  if (battery_ && battery_->empty() && stage_ == Stage::BackingUp)  // it does not move, and nothing will make it
+    obey(agenda_.finish(MissionEnd::Stuck, "the battery is empty", now_));
   if (battery_ && battery_->low()) call_it_a_day("the battery is low");
 }
 
@@ -265,7 +268,10 @@ Drive PaperExplorer::go_on(const slam::Mapper& mapper) {
   if (pilot_.arrived() && !pilot_.turning()) agenda_.arrived(now_);
   if (config_.return_home && agenda_.goal() != Goal::Home && home_way_.due(now_) &&
       home_way_.must_turn_back(agenda_.way_home(situation(), trail_.length()), now_)) {
-    agenda_.go_home("the time left is for the way home", now_);
+    const bool searches = agenda_.goal() == Goal::Place;
+    agenda_.go_home(
+        searches ? "not all is searched: the time left is for the way home" : "the time left is for the way home",
+        now_);
     pilot_.end_turn();
   }
   if (agenda_.due(mapper.map(), now_)) replan(mapper);

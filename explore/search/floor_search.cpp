@@ -136,6 +136,9 @@ std::string FloorSearch::done() const {
   for (std::size_t i = 0; i < others_.size(); ++i)
     text += std::string(i + 1 == others_.size() ? " and " : ", ") +
             (others_[i].record == Record::Heard ? "listened to" : "smelt");
+  if (!given_up_.empty())
+    text += " but for " + std::to_string(given_up_.size()) + (given_up_.size() == 1 ? " place" : " places") +
+            " out of reach";
   return text;
 }
 

@@ -78,8 +78,6 @@ void draw_cross(cv::Mat& image, const cv::Point& at, int reach, const Colour& co
   cv::line(image, at - cv::Point(reach, -reach), at + cv::Point(reach, -reach), cv::Scalar(colour), width, cv::LINE_AA);
 }
 
-const Colour kDoubtful(110, 110, 110);
-
 /// Victims that are reported where the picture does not reach.
 int reported_outside(const Canvas& canvas, const Marks& marks, const TPose2D& T_truth_map) {
   const cv::Rect picture(0, 0, canvas.image.cols, canvas.image.rows);

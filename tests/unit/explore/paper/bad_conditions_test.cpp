@@ -500,6 +500,20 @@ TEST(BadConditions, ABatteryThatStaysLowSendsItHome) {
   EXPECT_LT(trial.robot.now().seconds(), 120.0);
 }
 
+/// Its motors stand, and escapes do not help.
+TEST(BadConditions, WithAnEmptyBatteryTheMissionEndsWhereTheRobotStands) {
+  Trial trial(test::random_maze(5, 5, 0.2, 7));
+  trial.run(900.0, {}, [&](robot::Inputs& inputs) {
+    const double now = inputs.now.seconds();
+    inputs.battery = {now < 20.0 ? 12.5 : now < 32.0 ? 11.4 : 10.5, 11.5};
+    trial.robot.held = now >= 32.0;
+  });
+  EXPECT_TRUE(told(trial, "the battery is low"));
+  EXPECT_EQ(trial.explorer.end(), MissionEnd::Stuck) << trial.explorer.reason();
+  EXPECT_NE(trial.explorer.reason().find("the battery is empty"), std::string::npos) << trial.explorer.reason();
+  EXPECT_LT(trial.robot.now().seconds(), 75.0);
+}
+
 TEST(BadConditions, WhereNobodySaysWhenABatteryIsLowNoneIs) {
   Trial trial(test::random_maze(4, 4, 0.2, 7));
   run_with_battery(trial, 8.4, 0.0, 1000.0, 0.0);
