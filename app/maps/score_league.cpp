@@ -42,11 +42,8 @@ void print_ranking(const scoring::League& league, bool warp) {
       continue;
     }
     const scoring::Evidence evidence = e.evidence();
-    for (const scoring::Figure* column : columns) {
-      const bool known = e.score.aligned || !column->is(scoring::kPlaced);
-      std::printf("  %*s", static_cast<int>(column->label.size()),
-                  known ? scoring::text_of(*column, column->get(evidence)).c_str() : "");
-    }
+    for (const scoring::Figure* column : columns)
+      std::printf("  %*s", static_cast<int>(column->label.size()), e.text_of(*column, evidence).c_str());
     if (points)
       std::printf("  %6.1f %7.1f %8.1f %5.1f %5.1f %-10s", e.total(), e.points ? e.points->quality : 0.0,
                   e.points ? e.points->location : 0.0, e.points ? e.points->fine : 0.0, e.judge,

@@ -43,6 +43,10 @@ void rank_league(std::vector<LeagueEntry>& entries) {
 
 std::string LeagueEntry::rank_text() const { return rank == 0 ? "-" : std::to_string(rank); }
 
+std::string LeagueEntry::text_of(const Figure& figure, const Evidence& of_this) const {
+  return !score.aligned && figure.is(kPlaced) ? "" : scoring::text_of(figure, figure.get(of_this));
+}
+
 Evidence LeagueEntry::evidence() const {
   Evidence out;
   if (!error.empty()) return out;

@@ -25,6 +25,8 @@ struct LeagueEntry {
   std::string note() const { return error.empty() ? score.note : error; }
   /// What the table of figures reads.
   Evidence evidence() const;
+  /// As people read it: empty where only the map's place would tell, and nobody knows that.
+  std::string text_of(const Figure& figure, const Evidence& of_this) const;
   double total() const { return judge + (points ? points->points() : 0.0); }
 };
 

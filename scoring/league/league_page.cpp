@@ -39,7 +39,7 @@ std::string row(const LeagueEntry& e, std::size_t index, const LeaguePictures& p
            escape_html(e.error) + "</td></tr>\n";
   const Evidence evidence = e.evidence();
   for (const Figure* figure : figures_with(kRanking))
-    html += "<td class=\"n\">" + text_of(*figure, figure->get(evidence)) + "</td>";
+    html += "<td class=\"n\">" + e.text_of(*figure, evidence) + "</td>";
   if (with_warp) html += e.score.warped ? cell("%.3f", e.score.warped_score) : "<td></td>";
   if (with_points) {
     const double quality = e.points ? e.points->quality : 0.0;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "scoring/league/league_page.h"
 #include "tests/support/scoring_maze.h"
 
 namespace rubble::scoring {
@@ -39,6 +40,17 @@ TEST(League, RanksDependNeitherOnOrderNorOnNames) {
     ASSERT_EQ(order, "bcadef");  // score first, then points; equal figures by name; what cannot be read last
     ASSERT_EQ(ranks, "113440");
   } while (std::next_permutation(names.begin(), names.end()));
+}
+
+/// Precision and psi of a map that lies nowhere are no measurements.
+TEST(League, ThePageShowsNoFigureOfAPlaceThatNobodyKnows) {
+  LeagueEntry refused = entry("lost", 0.0);
+  refused.score.psi_m = 5.0;
+  const auto page = [&] { return league_page("truth.tif", false, {refused}, {{}}, ""); };
+  EXPECT_EQ(page().find("5.000 m"), std::string::npos) << page();
+  EXPECT_NE(page().find("<td class=\"n\"></td>"), std::string::npos);
+  refused.score.aligned = true;
+  EXPECT_NE(page().find("5.000 m"), std::string::npos) << page();
 }
 
 TEST(LeaguePoints, PerfectMapEarnsTwentyAVictim) {
