@@ -286,12 +286,12 @@ bool Agenda::may_push(const Situation& situation) const {
 }
 
 Order Agenda::start_pushing(const Situation& situation, const std::string& why) {
-  static constexpr std::array<const char*, 5> kWhat = {"nothing", "small things that stand alone are",
-                                                       "heaps that stand alone are", "strips that hang in a row are",
-                                                       "what stands off the pallets' edges is"};
+  static constexpr std::array<const char*, 5> kWhat = {"nothing", "small things that stand alone",
+                                                       "heaps that stand alone", "strips that hang in a row",
+                                                       "what stands off the pallets' edges"};
   const auto what = static_cast<std::size_t>(pushing_.start(situation.floor));
   if (goal() == Goal::Frontier && pushing_.what() == Pushing::What::OffGrid) known_off_grid_.mark(situation.floor);
-  note(situation.now, why + ": " + kWhat.at(what) + " pushed aside");
+  note(situation.now, why + ": " + kWhat.at(what) + " may be pushed aside");
   return stay_and_plan();
 }
 
