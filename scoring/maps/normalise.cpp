@@ -21,8 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMinResolution = 0.001;  // [m] a pixel
-constexpr double kMaxResolution = 2.0;
 constexpr double kSquare = 0.01;  // sides of a pixel may differ by this share
 
 std::string lower(std::string text) {

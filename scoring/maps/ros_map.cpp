@@ -133,7 +133,7 @@ RosMap read_ros_map(const std::string& yaml_path) {
     throw InputError(yaml_path + ": is an arena, not a map; 'rubble arena " + shell_word(yaml_path) +
                      "' writes its truth map");
   const std::string image_name = root.text("image", std::nullopt);
-  const double resolution = root.number("resolution", std::nullopt, 0.001, 10.0);
+  const double resolution = root.number("resolution", std::nullopt, kMinResolution, kMaxResolution);
   const double occupied_thresh = root.number("occupied_thresh", 0.65, 0.0, 1.0);
   const double free_thresh = root.number("free_thresh", 0.196, 0.0, 1.0);
   const std::vector<double> origin = root.numbers("origin");

@@ -6,6 +6,10 @@
 
 namespace rubble::scoring {
 
+/// Scales of a building's map [m a pixel].
+inline constexpr double kMinResolution = 0.001;
+inline constexpr double kMaxResolution = 2.0;
+
 struct RosMap {
   OccupancyGrid grid;
   std::string recognised;  ///< how it was read and what is doubtful (colours/reading_doubts.h), ", " before each

@@ -120,6 +120,9 @@ done
 head -c $(($(stat -c %s "$truth") / 2)) "$truth" >cut.tif
 printf 'name: a\nmaze: |\n  +---+\n  | . |\n  +---+\n' >arena.yaml
 expect_exit 3 'is an arena, not a map' "$rubble" score arena.yaml "$truth"
+printf 'image: wall.pgm\nresolution: 2.5\norigin: [0, 0, 0]\n' >centimetres.yaml
+expect_exit 3 'centimetres.yaml:2:' "$rubble" score centimetres.yaml "$truth" --pose=0,0,0
+grep -qF '2.5' err.txt || fail "the scale that is none is not named: $(cat err.txt)"
 expect_exit 3 'cut.tif' "$rubble" score cut.tif "$truth"
 gdal_translate -q -of JPEG -co QUALITY=95 "$truth" truth.jpg
 gdal_translate -q -of BMP "$truth" truth.bmp
