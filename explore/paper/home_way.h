@@ -7,12 +7,11 @@ namespace rubble::explore {
 /// Knows when it is time to drive home: from the length of the way and how fast the robot has come along so far.
 class HomeWay {
  public:
-  /// What is kept of a mission's time beside what the way takes: less of a short one [s].
-  double spare_time() const;
-
   /// `time_limit` [s] from the first tick; 0: none.
   explicit HomeWay(double time_limit) : time_limit_(time_limit) {}
 
+  /// What is kept of a mission's time beside what the way takes: less of a short one [s].
+  double spare_time() const;
   /// A tick: the first one begins the mission.
   void begin(Stamp now) {
     if (start_ == Stamp::never()) start_ = now;

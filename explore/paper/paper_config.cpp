@@ -94,8 +94,7 @@ std::vector<std::string> notes(const PaperExplorerConfig& config, const robot::R
   if (config.search.other_senses == OtherSearch::Everywhere && !mission.senses.microphones && !mission.senses.co2_probe)
     notes.push_back(
         "explorer.victims.other_senses=everywhere: the robot has neither microphones nor a CO2 probe to search with, "
-        "so "
-        "it searches by its cameras alone");
+        "so it searches by its cameras alone");
   return notes;
 }
 

@@ -220,10 +220,6 @@ std::vector<std::string> unseen_victims(const arenas::Arena& arena, const robot:
   return names;
 }
 
-int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model) {
-  return static_cast<int>(arena.victims.size() - unseen_victims(arena, model).size());
-}
-
 double visible_share(const arenas::Arena& arena, const robot::RobotModel& model) {
   const OccupancyGrid truth = arenas::truth_map(arena);
   return share_of(truth, arenas::visible_truth(arena, truth, viewer_of(model)));

@@ -21,11 +21,8 @@ namespace rubble::scenarios {
 scoring::DriveFigures drive_figures(const arenas::Arena& arena, const Trajectory& truth,
                                     const robot::RobotModel& model);
 
-/// How many victims could be looked at by a camera from where the robot's middle can get; of those that are heard or
-/// smelt only, how many could be.
-int visible_victims(const arenas::Arena& arena, const robot::RobotModel& model);
-
-/// The names of the others.
+/// The names of the victims that no camera could look at from where the robot's middle can get; of those that are heard
+/// or smelt only, that could not be.
 std::vector<std::string> unseen_victims(const arenas::Arena& arena, const robot::RobotModel& model);
 
 /// What of an arena's floor the laser can see from where the robot can get, 0 to 1.

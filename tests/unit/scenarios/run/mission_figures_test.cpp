@@ -71,22 +71,26 @@ TEST(VisibleShare, GrowsWithAGapTooNarrowToPass) {
 
 TEST(VisibleShare, OfAnArenaWithoutFloorIsNone) { EXPECT_EQ(visible_share(arenas::Arena(), {}), 0.0); }
 
+std::size_t visible_victims(const arenas::Arena& arena, const robot::RobotModel& model) {
+  return arena.victims.size() - unseen_victims(arena, model).size();
+}
+
 TEST(VisibleVictims, AreThoseThatOpenToWhereTheRobotGets) {
   arenas::Arena arena = room();
-  EXPECT_EQ(visible_victims(arena, {}), 0);
+  EXPECT_EQ(visible_victims(arena, {}), 0u);
   arena.victims = {victim(4.9, 0.0, kPi)};  // in the far wall, open to the room
-  EXPECT_EQ(visible_victims(arena, {}), 1);
+  EXPECT_EQ(visible_victims(arena, {}), 1u);
   arena.victims = {victim(4.9, 0.0, 0.0)};  // open to the wall: nobody gets between
-  EXPECT_EQ(visible_victims(arena, {}), 0);
+  EXPECT_EQ(visible_victims(arena, {}), 0u);
   arena.victims = {victim(4.9, 0.0, kPi), victim(4.9, 1.0, kPi), victim(4.9, -1.0, 0.0)};
-  EXPECT_EQ(visible_victims(arena, {}), 2);
+  EXPECT_EQ(visible_victims(arena, {}), 2u);
 }
 
 TEST(VisibleVictims, BehindAWallAreNone) {
   arenas::Arena arena = room();
   arena.victims = {victim(4.9, 0.0, kPi)};
   sim::test::add_wall(arena, 2.0, -2.0, 2.02, 2.0);
-  EXPECT_EQ(visible_victims(arena, {}), 0);
+  EXPECT_EQ(visible_victims(arena, {}), 0u);
 }
 
 TEST(UnseenVictims, AreNamedAndAreAllThatAreNotVisible) {
@@ -95,7 +99,7 @@ TEST(UnseenVictims, AreNamedAndAreAllThatAreNotVisible) {
   for (const auto& [i, name] : {std::pair{0, "anna"}, {1, "bert"}, {2, "carl"}})
     arena.victims[static_cast<std::size_t>(i)].name = name;
   EXPECT_EQ(unseen_victims(arena, {}), std::vector<std::string>{"bert"}) << "it opens to the wall";
-  EXPECT_EQ(visible_victims(arena, {}), 2);
+  EXPECT_EQ(visible_victims(arena, {}), 2u);
   sim::test::add_wall(arena, 2.0, -2.0, 2.02, 2.0);
   EXPECT_EQ(unseen_victims(arena, {}), (std::vector<std::string>{"anna", "bert", "carl"}));
 }
@@ -106,11 +110,11 @@ TEST(VisibleVictims, BehindAWallThatIsOpenAboveTheCamerasAreNone) {
   arena.victims = {victim(4.9, 0.0, kPi)};
   arena.victims.front().position.z = 0.3;
   sim::test::add_wall(arena, 4.5, -2.0, 4.52, 2.0, 0.2);
-  EXPECT_EQ(visible_victims(arena, {}), 1) << "over a sill of 0.2 m";
+  EXPECT_EQ(visible_victims(arena, {}), 1u) << "over a sill of 0.2 m";
   sim::test::add_wall(arena, 4.5, -2.0, 4.52, 2.0, 0.8);
-  EXPECT_EQ(visible_victims(arena, {}), 0) << "over a sill of 0.8 m";
+  EXPECT_EQ(visible_victims(arena, {}), 0u) << "over a sill of 0.8 m";
   arena.victims.front().position.z = 0.9;
-  EXPECT_EQ(visible_victims(arena, {}), 1) << "raised above the sill";
+  EXPECT_EQ(visible_victims(arena, {}), 1u) << "raised above the sill";
 }
 
 /// Cameras reach 2 m: a victim that stands farther behind a trench than that is out of their reach.
@@ -119,9 +123,9 @@ TEST(VisibleVictims, AcrossATrenchCountAsFarAsTheCamerasReach) {
   arena.floor.push_back({sim::test::rectangle(3.0, -1.0, 8.0, 1.0), 0.0, 0.0, 0.0, "flat"});
   arena.max_corner = {8.0, 1.0};
   arena.victims = {victim(3.3, 0.0, kPi)};
-  EXPECT_EQ(visible_victims(arena, {}), 1);
+  EXPECT_EQ(visible_victims(arena, {}), 1u);
   arena.victims = {victim(4.5, 0.0, kPi)};
-  EXPECT_EQ(visible_victims(arena, {}), 0);
+  EXPECT_EQ(visible_victims(arena, {}), 0u);
 }
 
 TEST(TrueEnd, HomeIsWhereTheRobotStartedNotWhereItThinksThatWas) {
