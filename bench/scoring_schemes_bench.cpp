@@ -20,6 +20,7 @@
 #include "tests/support/scoring_hedges.h"
 #include "tests/support/scoring_schemes.h"
 #include "tests/support/scoring_schemes_more.h"
+#include "tests/support/scoring_second_drawings.h"
 
 /// The laws of the score on grounds and by schemes that it was not made for: orange and red arenas full of ramps,
 /// arenas of real competitions (`arenas_raf` of RUBBLE_DATA), halls, buildings (`rooms`). RUBBLE_KIND=TEXT takes only
@@ -90,6 +91,13 @@ std::vector<Place> competitions(const std::string& folder) {
   return out;
 }
 
+void keep_chosen(std::vector<Place>& all) {
+  const char* only = std::getenv("RUBBLE_KIND");
+  if (only == nullptr) return;
+  const auto other = [&](const Place& place) { return place.kind.find(only) == std::string::npos; };
+  all.erase(std::remove_if(all.begin(), all.end(), other), all.end());
+}
+
 const std::vector<Place>& places(benchmark::State& state) {
   static std::vector<Place> all;
   if (!all.empty()) return all;
@@ -105,11 +113,7 @@ const std::vector<Place>& places(benchmark::State& state) {
   add(halls(16, false));
   add(halls(16, true));
   for (const LabelledFloor& floor : *floors) all.push_back({"building", floor.floor.name, floor.map});
-  const char* only = std::getenv("RUBBLE_KIND");
-  if (only != nullptr)
-    all.erase(
-        std::remove_if(all.begin(), all.end(), [&](const Place& p) { return p.kind.find(only) == std::string::npos; }),
-        all.end());
+  keep_chosen(all);
   return all;
 }
 
@@ -218,10 +222,15 @@ void tell_gains_on_fresh_ones(benchmark::State& state, const std::vector<Scheme>
       all.push_back({kind, ground.name(), truth_of(ground)});
     }
   for (Place& place : competitions(*raf)) all.push_back(std::move(place));
+  keep_chosen(all);
   tell_gains(state, all, tried);
 }
 void BM_Hedges(benchmark::State& state) { tell_gains_on_fresh_ones(state, hedges()); }
 BENCHMARK(BM_Hedges)->Unit(benchmark::kSecond)->Iterations(1);
+
+/// Two drawings on one canvas, joined, of which the other is of another size, stretched, mirrored or came apart.
+void BM_SecondDrawings(benchmark::State& state) { tell_gains_on_fresh_ones(state, second_drawings()); }
+BENCHMARK(BM_SecondDrawings)->Unit(benchmark::kSecond)->Iterations(1);
 
 /// Both of two hypotheses a few centimetres apart: they gain, and the documentation says how much.
 void BM_NearCopies(benchmark::State& state) { tell_gains_on_fresh_ones(state, near_copies()); }
@@ -301,7 +310,7 @@ void BM_OtherPlaces(benchmark::State& state) {
 }
 BENCHMARK(BM_OtherPlaces)->Unit(benchmark::kSecond)->Iterations(1);
 
-/// The place next door on the same canvas, joined by a strip, is no second drawing.
+/// The place next door on the same canvas, joined by a strip, is no second drawing. The next three of its kind.
 void BM_NextDoor(benchmark::State& state) {
   const std::vector<Place>& all = places(state);
   if (all.empty()) return;
@@ -310,13 +319,18 @@ void BM_NextDoor(benchmark::State& state) {
   for (auto _ : state)
     for (std::size_t i = 0; i < all.size(); ++i) {
       const OccupancyGrid& truth = all[i].truth;
-      const Place& other = stranger_of(all, i);
       const SightLines sights(truth);
-      if (!sights.usable() || other.truth.resolution() != truth.resolution()) continue;
-      ++pairs;
-      if (second_drawing_share(joined_to(truth, other.truth), truth, PlanarTransform(), sights) <= 0.0) continue;
-      ++taken;
-      std::printf("%s beside %s: taken for a second drawing\n", other.name.c_str(), all[i].name.c_str());
+      if (!sights.usable()) continue;
+      int neighbours = 0;
+      for (std::size_t k = 1; k < all.size() && neighbours < 3; ++k) {
+        const Place& other = all[(i + k) % all.size()];
+        if (other.kind != all[i].kind || other.truth.resolution() != truth.resolution()) continue;
+        ++neighbours;
+        ++pairs;
+        if (second_drawing_share(joined_to(truth, other.truth), truth, PlanarTransform(), sights) <= 0.0) continue;
+        ++taken;
+        std::printf("%s beside %s: taken for a second drawing\n", other.name.c_str(), all[i].name.c_str());
+      }
     }
   state.counters["pairs"] = pairs;
   state.counters["taken"] = taken;

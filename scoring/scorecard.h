@@ -28,7 +28,7 @@ struct ScoreConfig {
 
 /// Counts up whenever the same map and truth come to another `score`: scores of different versions cannot be compared.
 /// What each version changed stands in docs/scoring.md.
-constexpr int kScoreVersion = 9;
+constexpr int kScoreVersion = 10;
 
 /// The verdict on one map. Lengths in metres, shares 0..1.
 struct MapScore {

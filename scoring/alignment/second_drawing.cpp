@@ -4,10 +4,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <opencv2/imgproc.hpp>
+#include <optional>
 #include <vector>
 
 #include "base/distance_transform.h"
 #include "base/rigid.h"
+#include "scoring/alignment/drawing_sizes.h"
 #include "scoring/alignment/pose_search.h"
 #include "scoring/proposals/correlation.h"
 #include "scoring/walls/resample.h"
@@ -16,21 +19,26 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr double kSurvey = 0.5;  // what a map knows so near to the truth's known ground belongs to it [m]
-constexpr double kLegend = 0.1;  // of what lies on the truth: less is no drawing
-constexpr double kAlike = 0.25;  // score: strangers reach 0.2 at their best pose
+constexpr double kSurvey = 0.5;    // what a map knows so near to the truth's known ground belongs to it [m]
+constexpr double kLegend = 0.1;    // of what lies on the truth: less is no drawing
+constexpr double kAlike = 0.25;    // score: strangers reach 0.2 at their best pose
+constexpr double kClear = 0.6;     // the same that leaves no doubt about the size
+constexpr double kMirrored = 0.5;  // the same of a mirror image, lest there be twice as much luck
 constexpr double kSizeStep = 1.05;
-constexpr int kSizeSteps = 7;      // to 0.7 and 1.4 times the size
-constexpr std::size_t kPoses = 3;  // the best of each size
+constexpr int kSizeSteps = 19;     // to 0.4 and 2.5 times the size
+constexpr int kSizeStepsTold = 1;  // about each size that extents tell
+constexpr std::size_t kPoses = 3;  // the best of each size ...
+constexpr int kGuesses = 6;        // ... of so many
 // Of a drawing that came apart.
 constexpr std::size_t kHalfPoses = 5;  // the best of each half
 constexpr double kHalvesAlike = 0.4;   // both scores: halves of strangers reach 0.37
-constexpr double kApart = 1.6;         // halves that lie further apart are none of one drawing [m]
-constexpr double kTurned = 0.25;       // [rad]
+constexpr double kApart = 2.5;         // halves that lie further apart are none of one drawing [m]
+constexpr double kTurned = 0.6;        // [rad]
 constexpr double kShownTwice = 0.5;    // of the ground that the halves show, what the first drawing shows, too
 
-/// What the map knows away from the truth, and how much of it there is on and off it [cells].
+/// What the map knows on the truth and away from it, and how much there is of either [cells].
 struct Parted {
+  OccupancyGrid on;
   OccupancyGrid off;
   double cells_on = 0.0;
   double cells_off = 0.0;
@@ -47,14 +55,32 @@ Parted part(const OccupancyGrid& map, const OccupancyGrid& truth, const PlanarTr
   for (int y = 0; y < truth.height(); ++y)
     for (int x = 0; x < truth.width(); ++x) known[{x + rim, y + rim}] = truth[{x, y}] != Occupancy::Unknown ? 1 : 0;
   const Grid<float> away = distance_transform(known, 2.0 * kSurvey);
-  Parted out{OccupancyGrid(map.frame())};
+  Parted out{OccupancyGrid(map.frame()), OccupancyGrid(map.frame())};
   for (int y = 0; y < map.height(); ++y)
     for (int x = 0; x < map.width(); ++x) {
       if (map[{x, y}] == Occupancy::Unknown) continue;
       const Cell c = away.cell(T_truth_map(map.centre({x, y})));
       const bool on = away.inside(c) && static_cast<double>(away[c]) <= kSurvey;
       (on ? out.cells_on : out.cells_off) += 1.0;
-      if (!on) out.off[{x, y}] = map[{x, y}];
+      (on ? out.on : out.off)[{x, y}] = map[{x, y}];
+    }
+  return out;
+}
+
+/// What is left without pieces of less than a hundredth of it: ends of strips, rays that went astray.
+OccupancyGrid without_crumbs(const OccupancyGrid& drawing) {
+  constexpr double kCrumb = 0.01;
+  cv::Mat known(drawing.height(), drawing.width(), CV_8U);
+  for (std::size_t i = 0; i < drawing.cells().size(); ++i)
+    known.data[i] = drawing.cells()[i] != Occupancy::Unknown ? 255 : 0;
+  cv::Mat labels, stats, centres;
+  const int pieces = cv::connectedComponentsWithStats(known, labels, stats, centres, 8);
+  const double least = kCrumb * cv::countNonZero(known);
+  OccupancyGrid out = drawing;
+  for (int y = 0; y < drawing.height(); ++y)
+    for (int x = 0; x < drawing.width(); ++x) {
+      const int piece = labels.at<int>(y, x);
+      if (pieces > 1 && piece > 0 && stats.at<int>(piece, cv::CC_STAT_AREA) < least) out[{x, y}] = Occupancy::Unknown;
     }
   return out;
 }
@@ -66,13 +92,13 @@ struct Placed {
 };
 
 std::vector<Placed> best_places(const OccupancyGrid& drawing, const OccupancyGrid& truth, const SightLines& sights,
-                                std::size_t most) {
+                                std::size_t most, const CorrelationConfig& guesses = {}) {
   std::vector<Placed> out;
   const SearchConfig search;
   const WallMatch match(drawing, truth, search.reach, search.max_points);
   if (!match.usable()) return out;
   const SightMap seen(drawing);
-  const std::vector<Hypothesis> hypotheses = examine(correlate(drawing, truth, {}), match, search);
+  const std::vector<Hypothesis> hypotheses = examine(correlate(drawing, truth, guesses), match, search);
   for (std::size_t i = 0; i < std::min(most, hypotheses.size()); ++i) {
     const PlanarTransform T(hypotheses[i].T_best);
     out.push_back({T, sights.at(seen, T).score});
@@ -80,10 +106,43 @@ std::vector<Placed> best_places(const OccupancyGrid& drawing, const OccupancyGri
   return out;
 }
 
-/// The drawing agrees with the truth at one of its best poses.
-bool alike(const OccupancyGrid& drawing, const OccupancyGrid& truth, const SightLines& sights) {
-  const std::vector<Placed> places = best_places(drawing, truth, sights, kPoses);
-  return std::any_of(places.begin(), places.end(), [](const Placed& at) { return at.score >= kAlike; });
+/// The best that the drawing earns at one of its best poses.
+double best_score(const OccupancyGrid& drawing, const OccupancyGrid& truth, const SightLines& sights) {
+  CorrelationConfig few;
+  few.guesses = kGuesses;
+  double best = 0.0;
+  for (const Placed& at : best_places(drawing, truth, sights, kPoses, few)) best = std::max(best, at.score);
+  return best;
+}
+
+/// How many times as much ground the drawing covers at the size at which it draws the truth again.
+std::optional<double> ground_where_alike(const OccupancyGrid& drawing, const OccupancyGrid& on,
+                                         const OccupancyGrid& truth, const SightLines& sights) {
+  std::vector<double> sizes = sizes_about(1.0, kSizeStep, kSizeSteps);
+  std::vector<AxisSizes> stretches;
+  for (const OccupancyGrid* const other : {&truth, &on}) {
+    const ToldSizes told = sizes_told(drawing, *other);
+    for (const double size : told.sizes)
+      for (const double near : sizes_about(size, kSizeStep, kSizeStepsTold))
+        if (near < sizes.front() / kSizeStep || near > kSizeStep / sizes.front()) sizes.push_back(near);
+    stretches.insert(stretches.end(), told.stretches.begin(), told.stretches.end());
+  }
+  double best = 0.0;
+  double ground = 0.0;
+  const auto offer = [&](const OccupancyGrid& as, double times) {
+    const double score = best_score(as, truth, sights);
+    if (score <= best) return;
+    best = score;
+    ground = times;
+  };
+  for (const double size : sizes)
+    if (size * size * known_m2(drawing) >= kAlike * known_m2(truth))  // else it cannot earn that
+      offer(at_size(drawing, size), size * size);
+  if (best < kClear)
+    for (const AxisSizes& by : stretches) offer(stretched(drawing, by), by.along * by.across);
+  if (best >= kAlike) return ground;
+  if (best_score(mirror_image(drawing), truth, sights) >= kMirrored) return 1.0;
+  return std::nullopt;
 }
 
 struct Halves {
@@ -158,12 +217,13 @@ double second_drawing_share(const OccupancyGrid& map, const OccupancyGrid& truth
   if (!sights.usable() || map.cells().empty()) return 0.0;
   const Parted parted = part(map, truth, T_truth_map);
   if (parted.cells_on <= 0.0 || parted.cells_off < kLegend * parted.cells_on) return 0.0;
-  const OccupancyGrid drawing = crop_to_known(without_specks(parted.off), 0.0);
-  const std::vector<double> sizes = sizes_about(1.0, kSizeStep, kSizeSteps);
-  const bool again = std::any_of(sizes.begin(), sizes.end(),
-                                 [&](double size) { return alike(at_size(drawing, size), truth, sights); }) ||
-                     alike_in_halves(drawing, map, T_truth_map, truth, sights);
-  return again ? parted.cells_off / (parted.cells_on + parted.cells_off) : 0.0;
+  const OccupancyGrid drawing = crop_to_known(without_crumbs(without_specks(parted.off)), 0.0);
+  std::optional<double> ground = ground_where_alike(drawing, parted.on, truth, sights);
+  if (!ground && alike_in_halves(drawing, map, T_truth_map, truth, sights)) ground = 1.0;
+  if (!ground) return 0.0;
+  // A small drawing is as much of a guess as a large one.
+  const double off = parted.cells_off * std::max(1.0, *ground);
+  return off / (parted.cells_on + off);
 }
 
 }  // namespace rubble::scoring

@@ -16,6 +16,7 @@
 #include "tests/support/scoring_grounds.h"
 #include "tests/support/scoring_schemes.h"
 #include "tests/support/scoring_schemes_more.h"
+#include "tests/support/scoring_second_drawings.h"
 
 /// The laws that keep the headline score from being gamed, over generated arenas. With RUBBLE_ARENA_SEEDS=N in the
 /// environment over N seeds a shape.
@@ -129,6 +130,25 @@ TEST_P(HonestScore, ASecondDrawingJoinedToTheFirstCosts) {
     const double share = size * size / (1.0 + size * size);  // of the area
     EXPECT_GE(score.detached, 0.95 * share) << "of size " << size;
     EXPECT_LE(score.score, 1.0 - 0.95 * share) << "of size " << size;
+  }
+}
+
+/// A small drawing is as much of a guess as a large one, and a drawing is one in a mirror and out of proportion, too.
+TEST_P(HonestScore, ASecondDrawingOfAnySizeAndShapeIsOneGuessMore) {
+  const std::pair<double, double> sizes[] = {{0.45, 0.45}, {0.67, 0.67}, {2.2, 2.2}, {0.75, 1.0}, {1.0, 1.5}};
+  for (const auto& [wide, high] : sizes) {
+    const MapScore score = score_at_pose(joined_to(truth, drawn_at(truth, wide, high)), truth, {});
+    EXPECT_LE(score.score, 0.52) << wide << " times as wide, " << high << " times as high";
+  }
+  EXPECT_LE(score_at_pose(joined_to(truth, mirror_image(truth)), truth, {}).score, 0.52) << "in a mirror";
+}
+
+/// Its parts may lie far from each other.
+TEST_P(HonestScore, ASecondDrawingThatCameFarApartCosts) {
+  for (const auto& [metres, turn] : {std::pair(0.5, 0.5), {1.2, 0.2}, {2.0, 0.1}}) {
+    const MapScore score = score_at_pose(joined_to(truth, came_apart(truth, metres, turn)), truth, {});
+    EXPECT_GE(score.detached, 0.45) << metres << " m, " << turn << " rad";
+    EXPECT_LE(score.score, 0.55) << metres << " m, " << turn << " rad";
   }
 }
 
