@@ -245,11 +245,63 @@ class Reader {
     return number_text(std::round(value * kDigits) / kDigits + 0.0);
   }
 
+  /// 0 (wall), 255 (free) and 128 (neither), of P(occupied) or per cent.
+  static std::uint8_t usual_grey(double value, bool probable) {
+    constexpr double kFree = 0.4, kOccupied = 0.6;
+    if (std::isnan(value) || value == -1.0) return 128;
+    const double p = probable ? value : 0.01 * value;
+    return p <= kFree ? 255 : p >= kOccupied ? 0 : 128;
+  }
+
+  /// More than these are no labels.
+  static constexpr std::size_t kMostLabels = 8;
+
+  /// The whole numbers that samples have, in order; nothing where there are too many, or others.
+  class WholeNumbers {
+   public:
+    void add(double value) {
+      if (!few_ || value == last_) return;
+      last_ = value;
+      const auto at = std::lower_bound(values_.begin(), values_.end(), value);
+      if (at != values_.end() && *at == value) return;
+      few_ = values_.size() < kMostLabels && value == std::round(value);
+      if (few_) values_.insert(at, value);
+    }
+    std::vector<double> values() const { return few_ ? values_ : std::vector<double>(); }
+
+   private:
+    std::vector<double> values_;
+    double last_ = std::nan("");
+    bool few_ = true;
+  };
+
+  /// Whole numbers that are labels: not those of greys, but where three of them are next to each other, and not those
+  /// of walls alone or of free ground alone.
+  std::vector<SampleLabel> labels_of(const std::vector<double>& values, bool probable, bool percent) const {
+    std::vector<SampleLabel> out;
+    bool wall = false, free = false;
+    for (const double v : values) {
+      const std::uint8_t grey = usual_grey(v, probable);
+      out.push_back({v, grey});
+      wall = wall || grey == 0;
+      free = free || grey == 255;
+    }
+    constexpr double kNext = 12.0;  // of 255: nearer greys are alike
+    bool crowded = false;
+    for (std::size_t i = 2; i < values.size(); ++i) crowded = crowded || values[i] - values[i - 2] <= kNext;
+    if (!probable && !percent && !(crowded && values.size() >= 4)) return {};
+    if (values.size() < 3 && probable && !(wall && free)) return {};
+    return values.size() < 2 ? std::vector<SampleLabel>() : out;
+  }
+
   void read_measures(RgbImage& image) const {
     double least = std::numeric_limits<double>::infinity();
     double most = -least;
+    WholeNumbers whole;
     visit_measures([&](int, int, double value) {
-      if (std::isnan(value) || value == -1.0) return;
+      if (std::isnan(value)) return;
+      whole.add(value);
+      if (value == -1.0) return;
       least = std::min(least, value);
       most = std::max(most, value);
     });
@@ -259,20 +311,24 @@ class Reader {
            ", which are neither P(occupied) from 0 to 1 nor per cent from 0 to 100 nor grey levels; convert it");
     const bool probable = most <= 1.0 + kSlack;
     const bool percent = !probable && most <= 100.0 + kSlack;
-    if (probable || percent)
+    notes_.labels = labels_of(whole.values(), probable, percent);
+    const auto has = [&](int grey) {
+      return std::any_of(notes_.labels.begin(), notes_.labels.end(),
+                         [&](const SampleLabel& label) { return label.grey == grey; });
+    };
+    if ((probable || percent) && (notes_.labels.empty() || (has(0) && has(255))))
       notes_.meaning =
           std::string(probable ? "P(occupied)" : "per cent occupied") + " from " + brief(least) + " to " + brief(most);
     notes_.no_data.resize(image.rgb.size() / 3);
     visit_measures([&](int x, int y, double value) {
-      constexpr double kFree = 0.4, kOccupied = 0.6;
-      constexpr int kBetween = 128;
-      int grey = kBetween;
-      if (std::isnan(value) || value == -1.0) {
+      int grey = 128;
+      if (std::isnan(value) || (value == -1.0 && notes_.labels.empty())) {
         notes_.no_data[image.index(x, y)] = 1;
+      } else if (!notes_.labels.empty()) {
+        grey = 0;
+        while (notes_.labels[static_cast<std::size_t>(grey)].value < value) ++grey;
       } else if (probable || percent) {
-        const double p = probable ? value : 0.01 * value;
-        if (p <= kFree) grey = 255;
-        if (p >= kOccupied) grey = 0;
+        grey = usual_grey(value, probable);
       } else {
         grey = static_cast<int>(std::lround(value));
       }

@@ -163,7 +163,7 @@ RosMap read_ros_map(const std::string& yaml_path) {
   if (image.channels() >= 3) {
     const RgbImage read = is_tiff ? RgbImage() : read_rgb(image_path.string());
     const RgbImage& coloured = is_tiff ? tiff.tiff.image : read;
-    if (!tiff.notes.meaning.empty() || is_league_map(coloured)) {
+    if (tiff.notes.are_measured() || is_league_map(coloured)) {
       image.release();  // of the largest pictures one copy is enough
       ClassImage read = classify(coloured, tiff.notes);
       if (!read.refusal.empty()) throw InputError(image_path.string() + ": " + read.refusal);

@@ -69,27 +69,34 @@ bool is_passed_over(const cv::Mat& seen, const cv::Point& corner) {
   return seen.at<unsigned char>(corner.y > 0 ? 1 : 0, corner.x > 0 ? 1 : 0) != 0;
 }
 
-/// A blended edge passes through all greys between two; a wall whose grey lies between them has one.
-bool has_a_line_between(const cv::Mat& grey, const cv::Mat& way, int inside, int beside) {
-  constexpr double kThere = 0.25;  // of the way
-  constexpr double kOneLine = 0.6;
-  const cv::Mat between =
-      way & (grey > std::min(inside, beside) + kOneGrey) & (grey < std::max(inside, beside) - kOneGrey);
-  if (share_in(way, between) < kThere) return false;
-  const int level = main_grey(grey, between);
-  return share_in(between, (grey >= level - kOneGrey) & (grey <= level + kOneGrey)) >= kOneLine;
+/// Never blended: four greys, as a map and its canvas have, are all.
+bool is_of_few_levels(const std::vector<int>& greys) { return greys.size() <= 4; }
+
+/// Greys that count as one: of a picture of few levels only those nearer than any two that it has.
+int alike_of(const std::vector<int>& greys) {
+  int out = kOneGrey;
+  for (std::size_t i = 1; i < greys.size() && is_of_few_levels(greys); ++i)
+    out = std::min(out, (greys[i] - greys[i - 1]) / 2);
+  return out;
 }
 
-/// Never blended: four greys, as a map and its canvas have, are all.
-bool is_of_few_levels(const cv::Mat& grey) { return greys_there(grey).size() <= 4; }
+/// A blended edge passes through all greys between two; a wall whose grey lies between them has one.
+bool has_a_line_between(const cv::Mat& grey, const cv::Mat& way, int inside, int beside, int alike) {
+  constexpr double kThere = 0.25;  // of the way
+  constexpr double kOneLine = 0.6;
+  const cv::Mat between = way & (grey > std::min(inside, beside) + alike) & (grey < std::max(inside, beside) - alike);
+  if (share_in(way, between) < kThere) return false;
+  const int level = main_grey(grey, between);
+  return share_in(between, (grey >= level - alike) & (grey <= level + alike)) >= kOneLine;
+}
 
 /// Nothing but blends of two greys lies on the way out of the region: no wall stands between it and what is beside.
-bool is_open(const cv::Mat& grey, const cv::Mat& region, int inside, int beside) {
-  const int overshoot = is_of_few_levels(grey) ? 0 : 30;  // of smooth interpolation
+bool is_open(const cv::Mat& grey, const cv::Mat& region, int inside, int beside, bool few, int alike) {
+  const int overshoot = few ? 0 : 30;  // of smooth interpolation
   cv::Mat way;
   cv::dilate(region, way, cv::Mat::ones(2 * kBlend + 1, 2 * kBlend + 1, CV_8U));
   way &= ~region;
-  if (has_a_line_between(grey, way, inside, beside)) return false;
+  if (has_a_line_between(grey, way, inside, beside, alike)) return false;
   return share_in(way, (grey >= std::min(inside, beside) - overshoot) &
                            (grey <= std::max(inside, beside) + overshoot)) >= kBorderUnknown;
 }
@@ -138,7 +145,7 @@ bool covers_areas(const cv::Mat& mask) {
 
 /// The ring around the region is of one grey, which covers areas. JPEG leaves ripples along the region's rim: most of
 /// the ring has that grey, and all of it where they are smoothed.
-bool lies_in_one_ground(const cv::Mat& grey, const cv::Mat& region, const cv::Mat& ring) {
+bool lies_in_one_ground(const cv::Mat& grey, const cv::Mat& region, const cv::Mat& ring, int alike) {
   const auto ground = [&](const cv::Mat& picture, int tolerance) {
     const int level = main_grey(picture, ring);
     return cv::Mat((picture >= level - tolerance) & (picture <= level + tolerance) & ~region);
@@ -146,7 +153,8 @@ bool lies_in_one_ground(const cv::Mat& grey, const cv::Mat& region, const cv::Ma
   const auto encloses = [&](const cv::Mat& beside) {
     return share_in(ring, beside) >= kBorderUnknown && covers_areas(beside);
   };
-  if (encloses(ground(grey, kOneGrey))) return true;
+  if (encloses(ground(grey, alike))) return true;
+  if (alike < kOneGrey) return false;  // two of its few levels are as near to each other as ripples
   if (share_in(ring, ground(grey, kRipples)) < kMostOfBorder) return false;
   cv::Mat smooth;
   cv::medianBlur(grey, smooth, 5);
@@ -182,16 +190,19 @@ void clear_canvas_corners(cv::Mat& classes) {
 cv::Mat canvas_corners(const cv::Mat& grey) {
   cv::Mat out = cv::Mat::zeros(grey.size(), CV_8U);
   if (grey.empty()) return out;
+  const std::vector<int> greys = greys_there(grey);
+  const int alike = alike_of(greys);
   cv::Mat copy = grey;
   cv::Mat seen = cv::Mat::zeros(2, 2, CV_8U);
   for (const cv::Point& corner : corners_of(grey)) {
     if (out.at<unsigned char>(corner) != 0 || is_passed_over(seen, corner)) continue;
-    const cv::Mat region = region_at(copy, corner, kOneGrey);
+    const cv::Mat region = region_at(copy, corner, alike);
     pass_over(grey, region, corner, seen);
     const cv::Mat ring = ring_around(region, kBlend);
     if (ring.empty()) continue;
     const int level = main_grey(grey, ring);
-    if (!lies_in_one_ground(grey, region, ring) || !is_open(grey, region, grey.at<unsigned char>(corner), level) ||
+    if (!lies_in_one_ground(grey, region, ring, alike) ||
+        !is_open(grey, region, grey.at<unsigned char>(corner), level, is_of_few_levels(greys), alike) ||
         has_thin_parts(region))
       continue;
     cv::Mat grown;

@@ -16,6 +16,7 @@
 #include "scoring/maps/colours/costmap_colours.h"
 #include "scoring/maps/colours/dither.h"
 #include "scoring/maps/colours/even_light.h"
+#include "scoring/maps/colours/free_mask.h"
 #include "scoring/maps/colours/grey_levels.h"
 #include "scoring/maps/colours/league_classes.h"
 #include "scoring/maps/colours/league_colours.h"
@@ -23,6 +24,7 @@
 #include "scoring/maps/colours/lettering.h"
 #include "scoring/maps/colours/lossy_tones.h"
 #include "scoring/maps/colours/reading_doubts.h"
+#include "scoring/maps/colours/sample_classes.h"
 #include "scoring/maps/colours/turned_canvas.h"
 #include "scoring/maps/colours/window_frame.h"
 
@@ -82,18 +84,6 @@ RgbImage shown(const RgbImage& image, const Layer& layer) {
   return out;
 }
 
-/// Walls black, free ground white, all else unknown: what deep samples were translated to.
-LabelImage classify_direct(const RgbImage& image, const std::string& meaning) {
-  LabelImage out{cv::Mat(image.height, image.width, CV_8U, cv::Scalar(static_cast<int>(Occupancy::Unknown))), meaning};
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const int grey = image.pixel(x, y)[0];
-      if (grey == 0) out.classes.at<unsigned char>(y, x) = static_cast<unsigned char>(Occupancy::Occupied);
-      if (grey == 255) out.classes.at<unsigned char>(y, x) = static_cast<unsigned char>(Occupancy::Free);
-    }
-  return out;
-}
-
 /// Pixels that the file says are no data. Tags that programs set unasked also cover the walls: thin lines stay.
 cv::Mat no_data_areas(const RgbImage& image, const SampleNotes& notes) {
   cv::Mat out = cv::Mat::zeros(image.height, image.width, CV_8U);
@@ -140,6 +130,34 @@ bool small_enough(const RgbImage& image) {
   return image.rgb.size() / 3 <= kMostPixels;
 }
 
+/// Walls and ground that was never seen have one grey.
+LabelImage classify_mask(const FreeMask& mask) {
+  LabelImage out{cv::Mat(mask.free.size(), CV_8U, cv::Scalar(static_cast<int>(Occupancy::Unknown))), mask.recognised};
+  out.classes.setTo(static_cast<int>(Occupancy::Free), mask.free);
+  out.classes.setTo(static_cast<int>(Occupancy::Occupied), mask.walls);
+  out.doubt = kDoubt + mask.doubt;
+  out.by_level = true;
+  return out;
+}
+
+/// Of evenly bright greys, their canvas taken off. `given`: as they were before any colour was changed; empty: there
+/// are too many, or they were dots.
+LabelImage classify_levels(const cv::Mat& grey, const cv::Mat& given, const cv::Mat& nothing) {
+  const TurnedCanvas turned = canvas_of_the_walls_grey(grey);
+  if (turned.mask.empty() && !given.empty())
+    if (const std::optional<FreeMask> mask = free_mask(given, nothing)) return classify_mask(*mask);
+  const cv::Mat canvas = turned.mask.empty() ? canvas_corners(grey) : turned.mask;
+  cv::Mat levels = grey.clone(), apart = canvas.clone();
+  if (turned.ground >= 0) {  // the map's margin goes on
+    levels.setTo(turned.ground, canvas);
+    apart.setTo(0);
+  }
+  LabelImage out = classify_grey(levels, nothing | apart, apart);
+  out.classes.setTo(static_cast<int>(Occupancy::Unknown), canvas);
+  if (cv::countNonZero(canvas) > 0) out.recognised += ", corners of the canvas are unknown";
+  return out;
+}
+
 LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
   const bool small = small_enough(image);
   const std::optional<GreyedAreas> areas = small ? greys_of_coloured_areas(image, nothing) : std::nullopt;
@@ -156,16 +174,7 @@ LabelImage classify_by_grey(const RgbImage& image, const cv::Mat& nothing) {
   const cv::Mat as_it_was = grey.clone();
   const bool painted = !areas && paint_over_colours(image, nothing, grey);
   const bool many_pens = !areas && !painted && even_out_coloured_walls(image, nothing, grey);
-  const TurnedCanvas turned = canvas_of_the_walls_grey(grey);
-  const cv::Mat canvas = turned.mask.empty() ? canvas_corners(grey) : turned.mask;
-  cv::Mat levels = grey.clone(), apart = canvas.clone();
-  if (turned.ground >= 0) {  // the map's margin goes on
-    levels.setTo(turned.ground, canvas);
-    apart.setTo(0);
-  }
-  LabelImage out = classify_grey(levels, nothing | apart, apart);
-  out.classes.setTo(static_cast<int>(Occupancy::Unknown), canvas);
-  if (cv::countNonZero(canvas) > 0) out.recognised += ", corners of the canvas are unknown";
+  LabelImage out = classify_levels(grey, small && !undithered ? grey_of(image) : cv::Mat(), nothing);
   if (undithered && out.refusal.empty()) out.refusal = undithered->lost;
   if (undithered) out.recognised += ", " + undithered->how;
   if (even) out.recognised += ", darker by up to " + std::to_string(even->differed) + " towards its rim before";
@@ -198,7 +207,7 @@ LabelImage classify_layer(const RgbImage& image, const Layer& layer, const cv::M
 /// `scale`: the colour scale whose values the picture's greys are; empty: it is as it was given.
 ClassImage classify_as(const RgbImage& original, const SampleNotes& notes, const std::string& scale) {
   ClassImage out;
-  const bool direct = !notes.meaning.empty();
+  const bool direct = notes.are_measured();
   std::optional<RestoredColours> restored = direct ? std::nullopt : restored_league_colours(original);
   const RgbImage& image = restored ? restored->image : original;
   const Blur undone = restored ? restored->blur : Blur{};
@@ -209,7 +218,7 @@ ClassImage classify_as(const RgbImage& original, const SampleNotes& notes, const
   const std::optional<Layer> layer = direct || out.is_league || costmap ? std::nullopt : layer_of(image, nothing);
   if (layer) nothing.setTo(0);
   nothing |= no_data_areas(image, notes);
-  const LabelImage labels = direct          ? classify_direct(image, notes.meaning)
+  const LabelImage labels = direct          ? classify_samples(image, notes)
                             : costmap       ? *costmap
                             : layer         ? classify_layer(image, *layer, nothing)
                             : out.is_league ? classify_league(image, undone)
@@ -244,7 +253,7 @@ ClassImage classify_as(const RgbImage& original, const SampleNotes& notes, const
 
 /// Of a picture that is all map, or nearly.
 ClassImage classify_map(const RgbImage& image, const SampleNotes& notes) {
-  if (notes.meaning.empty() && small_enough(image))
+  if (!notes.are_measured() && small_enough(image))
     if (const std::optional<ScaledValues> values = values_of_colour_scale(image))
       return classify_as(values->greys, notes, values->name);
   return classify_as(image, notes, "");
@@ -280,7 +289,7 @@ ClassImage classify_view(const RgbImage& image, const SampleNotes& notes, const 
 }  // namespace
 
 ClassImage classify(const RgbImage& image, const SampleNotes& notes) {
-  if (notes.meaning.empty() && small_enough(image))
+  if (!notes.are_measured() && small_enough(image))
     if (const std::optional<cv::Rect> view = view_in_window(image)) return classify_view(image, notes, *view);
   return classify_map(image, notes);
 }

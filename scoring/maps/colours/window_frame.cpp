@@ -430,6 +430,7 @@ RgbImage cut_out(const RgbImage& image, const cv::Rect& view) {
 SampleNotes cut_out(const SampleNotes& notes, const RgbImage& image, const cv::Rect& view) {
   SampleNotes out;
   out.meaning = notes.meaning;
+  out.labels = notes.labels;
   for (int y = 0; y < view.height && !notes.no_data.empty(); ++y) {
     const auto first = notes.no_data.begin() + static_cast<std::ptrdiff_t>(image.index(view.x, view.y + y));
     out.no_data.insert(out.no_data.end(), first, first + view.width);
