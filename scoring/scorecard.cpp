@@ -136,6 +136,12 @@ void fill_sights(MapScore& out, const OccupancyGrid& truth, const Walls& walls) 
   out.score_at_best_pose = score * (1.0 - out.detached);
 }
 
+/// How right the map is about what it knows, where another arena at its best pose has 0; 1 is wholly.
+double beyond_luck(const MapScore& score) {
+  const double most = score.sight_known * (1.0 - score.detached);
+  return most > 0.0 ? score.score_at_best_pose / most : 0.0;
+}
+
 /// Pixels wider than the truth's walls may have dropped whole ones: said, since nothing in the picture tells.
 std::string note_of_coarse_pixels(const OccupancyGrid& map, const OccupancyGrid& truth) {
   constexpr double kWider = 1.15;
@@ -267,6 +273,11 @@ void measure(MapScore& out, const OccupancyGrid& map, const OccupancyGrid& truth
 
 }  // namespace
 
+std::string reason_of(const std::string& note) {
+  const std::string head = "not aligned: ";
+  return note.rfind(head, 0) == 0 ? note.substr(head.size()) : note;
+}
+
 void add_note(std::string& note, const std::string& more) {
   if (!more.empty()) note += (note.empty() ? "" : "; ") + more;
 }
@@ -299,6 +310,8 @@ MapScore score_map(const OccupancyGrid& map, const OccupancyGrid& truth, const S
     if (alignment.by == AlignBy::Auto) return out;
     const std::unique_ptr<const Walls> walls = prepared.get();
     fill_sights(out, truth_known, *walls);
+    if (alignment.near.any() && walls->sights.usable())
+      out.note = why_rivalled(alignment.near, beyond_luck(out)) + alignment.aside;
     look_for_other_scale(out, map_known, truth_known, alignment.tight_evidence, walls->sights, config.alignment);
     return out;
   }

@@ -68,6 +68,9 @@ struct MapScore {
   double mended_score = 0.0;          ///< `score` with both parts where they belong; `score` where none is broken off
 };
 
+/// The reason alone of a note that says why a map is not aligned.
+std::string reason_of(const std::string& note);
+
 /// Adds to a note; its parts stand behind each other. Nothing to add: nothing changes.
 void add_note(std::string& note, const std::string& more);
 

@@ -159,9 +159,21 @@ class Aligner {
 
  private:
   Trust conclude(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses, Alignment& out) {
-    const Trust trust = judge(best.wide, best.tight, describe(best, hypotheses, out));
+    const Contenders rivals = describe(best, hypotheses, out);
+    const Trust trust = judge(best.wide, best.tight, rivals.all());
     out.aligned = trust.trusted && !is_mirror_image(best.tight);
-    out.note = out.aligned ? trust.note : why_not(trust, best.tight) + about_rooms();
+    out.note = trust.note;
+    if (out.aligned) return trust;
+    out.aside = about_rooms();
+    if (is_mirror_image(best.tight)) {
+      out.note = "not aligned: the map is a mirror image of the truth; flip it and score it again";
+    } else if (trust.rivalled) {
+      out.near = {!judge(best.wide, best.tight, rivals.own).trusted,
+                  !judge(best.wide, best.tight, rivals.mirrored).trusted};
+      if (!out.near.any()) out.near = {true, true};  // neither alone
+      out.note = why_rivalled(out.near, std::nullopt);
+    }
+    out.note += out.aside;
     return trust;
   }
 
@@ -174,6 +186,7 @@ class Aligner {
     if (trust.open && !is_mirror_image(best.tight) && wins_all(best, rivals, trust.fragment) &&
         see_the_same(map_, truth_, out.T_truth_map, trust.tight && !trust.fragment ? kSightKappaTight : kSightKappa)) {
       out.aligned = true;
+      out.near = {};
       out.note = !trust.tight     ? "the walls meet loosely, and at another pose about as well"
                  : rivals.empty() ? "the maps have little in common"
                                   : "at another pose, or mirrored, walls meet about as well";
@@ -276,13 +289,19 @@ class Aligner {
     return its >= std::max(kTightEnough, own + kMore) && (its >= kAhead * own || most - its <= kLeft * (most - own));
   }
 
-  std::string why_not(const Trust& trust, const PoseEvidence& tight) const {
-    return is_mirror_image(tight) ? "not aligned: the map is a mirror image of the truth; flip it and score it again"
-                                  : trust.note;
-  }
+  /// Who the best pose has to be ahead of.
+  struct Contenders {
+    Rivals own;
+    Rivals mirrored;
+    Rivals all() const {
+      Rivals out = own;
+      out.join(mirrored);
+      return out;
+    }
+  };
 
   /// Fills in the contest and returns the rivals.
-  Rivals describe(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses, Alignment& out) {
+  Contenders describe(const Hypothesis& best, const std::vector<Hypothesis>& hypotheses, Alignment& out) {
     out.by = best.by;
     out.wide_evidence = best.wide;
     out.tight_evidence = best.tight;
@@ -304,8 +323,7 @@ class Aligner {
         out.contest.by_agreement ? out.contest.agreement - others.tight : out.log_odds - others.log_odds;
     const Rivals& mirrored = of_mirrored();
     out.mirrored = relative(mirrored, best.tight, out.log_odds);
-    others.join(mirrored);
-    return others;
+    return {others, mirrored};
   }
 
   /// How near the rivals come to the best, by the measure that `judge` uses.

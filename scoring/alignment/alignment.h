@@ -7,6 +7,7 @@
 
 #include "base/grid.h"
 #include "scoring/alignment/pose_search.h"
+#include "scoring/alignment/trust.h"
 #include "scoring/proposals/correlation.h"
 #include "scoring/proposals/feature_kind.h"
 #include "scoring/walls/wall_match.h"
@@ -42,6 +43,8 @@ struct Contest {
 struct Alignment {
   bool aligned = false;             ///< the transform can be trusted
   std::string note;                 ///< why not, or what decided where walls alone leave a doubt; one line
+  NearRivals near;                  ///< for which it is not trusted; none: it is, or not for them
+  std::string aside;                ///< what follows in `note` on why_rivalled()
   AlignBy by = AlignBy::Auto;       ///< what proposed it; Auto: nothing did
   mrpt::math::TPose2D T_truth_map;  ///< the best pose found, also when it cannot be trusted
   mrpt::math::TPose2D T_walls;      ///< the same, drawn to where most walls coincide; equal for undistorted maps

@@ -34,6 +34,9 @@ constexpr double kLeastMargin = 0.4;  // of the log odds over those of the best 
 constexpr double kMostMargin = 3.0;   // more of it tells no more
 constexpr double kLeastSum = 1.6;     // of the log odds and twice the margin
 constexpr double kLeastKappa = 0.3;   // below, walls meet no more often than chance would have it
+// Other arenas at their best pose are right about lines of sight by less than this beyond luck.
+constexpr double kAgreesWell = 0.25;
+constexpr const char* kNowhere = "; probably another arena, or too little of this one, or too damaged";
 
 double net(const WallEvidence& e, double chance, double contradiction) {
   return e.known * (e.met - chance - contradiction * e.contradicted);
@@ -80,6 +83,11 @@ bool ahead_of(const PoseEvidence& tight, const Rivals& rivals) {
                    (side_ahead(tight.map, rivals.map_tight) || side_ahead(tight.truth, rivals.truth_tight)));
 }
 
+void refuse_for_rivals(Trust& out) {
+  out.rivalled = true;
+  out.note = why_rivalled({true, true}, std::nullopt);
+}
+
 Trust judge_tight(const PoseEvidence& tight, const Rivals& rivals) {
   Trust out;
   out.tight = true;
@@ -93,7 +101,7 @@ Trust judge_tight(const PoseEvidence& tight, const Rivals& rivals) {
   else if (!ahead && is_fragment(tight))
     out.note = "not aligned: the maps have too little in common; such a fragment fits at some place by chance";
   else if (!ahead)
-    out.note = "not aligned: another pose, or a mirror image, fits about as well";
+    refuse_for_rivals(out);
   return out;
 }
 
@@ -125,6 +133,24 @@ bool is_won(const WallDuel& duel) { return is_ahead_by(duel, kTimesTheirs, kDevi
 
 bool is_won_sharply(const WallDuel& duel) { return is_ahead_by(duel, kSharpTimesTheirs, kSharpDeviations); }
 
+std::string why_rivalled(const NearRivals& rivals, const std::optional<double>& beyond_luck) {
+  std::string out = "not aligned: ";
+  if (!beyond_luck) {
+    if (!rivals.mirrored) return out + "another pose fits about as well";
+    return out + (rivals.another_pose ? "another pose, or a mirror image, fits about as well"
+                                      : "mirrored, the map fits about as well");
+  }
+  if (*beyond_luck < kAgreesWell) {
+    out += std::string("agrees nowhere with the truth, even at its best pose hardly better than a guess") + kNowhere;
+    return out + (rivals.mirrored ? ", or a flipped picture" : "");
+  }
+  const std::string how = ", for the arena repeats itself: --start or --pose says where it lies";
+  if (!rivals.mirrored) return out + "agrees well at several poses" + how;
+  if (rivals.another_pose) return out + "agrees well at several poses, and as well mirrored" + how;
+  return out + "agrees well, and as well mirrored, for the arena is nearly its own mirror image: --start or --pose " +
+         "says where it lies, if the picture is not flipped";
+}
+
 void Rivals::meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence) {
   log_odds = std::max(log_odds, scoring::log_odds(wide, tight_evidence));
   tight = std::max(tight, tight_agreement(tight_evidence));
@@ -145,11 +171,12 @@ Trust judge(const PoseEvidence& wide, const PoseEvidence& tight, const Rivals& r
   const double odds = log_odds(wide, tight);
   const double margin = odds - rivals.log_odds;
   if (std::max(tight.map.kappa(), tight.truth.kappa()) < kLeastKappa)
-    out.note = "not aligned: at no pose do the walls of both maps meet more often than by chance";
+    out.note =
+        std::string("not aligned: at no pose do the walls of both maps meet more often than by chance") + kNowhere;
   else if (odds < kLeastLogOdds)
-    out.note = "not aligned: the walls of one map run through the free space of the other";
+    out.note = std::string("not aligned: the walls of one map run through the free space of the other") + kNowhere;
   else if (margin < kLeastMargin || odds + 2.0 * std::min(margin, kMostMargin) < kLeastSum) {
-    out.note = "not aligned: another pose, or a mirror image, fits about as well";
+    refuse_for_rivals(out);
     out.open = margin > 0.0 && odds > 0.0;
   } else {
     out.trusted = true;

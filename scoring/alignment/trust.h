@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "scoring/walls/wall_match.h"
@@ -33,9 +34,22 @@ struct Trust {
   bool trusted = false;
   bool tight = false;     ///< the maps agree to the decimetre, not only to the metre
   bool fragment = false;  ///< tight, and too little is common to rule out chance by walls alone
+  bool rivalled = false;  ///< not trusted because a rival comes so near; nothing else speaks against it
   bool open = false;  ///< not trusted, but rather right than wrong, and no rival is better: other witnesses may decide
   std::string note;   ///< why not trusted; or what speaks for a pose of which walls alone leave a doubt
 };
+
+/// Which rivals come so near the best pose that a map is refused for them.
+struct NearRivals {
+  bool another_pose = false;  ///< of the map itself
+  bool mirrored = false;      ///< of its mirror image
+  bool any() const { return another_pose || mirrored; }
+};
+
+/// Why a map is refused for its rivals. On a lattice of pallets strangers have such rivals, too, and so has an arena
+/// that repeats itself: `beyond_luck`, how right the map is at its best pose about those lines of sight of the truth
+/// that it knows (1 wholly, 0 like another arena), tells the two apart; nothing where nobody asked or could.
+std::string why_rivalled(const NearRivals& rivals, const std::optional<double>& beyond_luck);
 
 /// Two poses of walls that agree to the decimetre: whether the rival comes so near that trust is refused.
 bool is_near(const PoseEvidence& tight, const PoseEvidence& rival_tight);

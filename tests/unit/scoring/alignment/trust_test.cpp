@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string>
+
 namespace rubble::scoring {
 namespace {
 
@@ -98,6 +101,37 @@ TEST(Trust, OfAFragmentThatFitsAtTwoPlacesWitnessesAreAskedOnlyIfItIsLargeAndFit
   EXPECT_TRUE(fragment(0.95, 18.0).open);
   EXPECT_FALSE(fragment(0.95, 14.0).open);
   EXPECT_FALSE(fragment(0.85, 18.0).open);
+}
+
+TEST(Trust, ARefusalForRivalsSaysWhichAndWhetherTheMapAgreesAtAll) {
+  const auto says = [](const std::string& note, const char* words) { return note.find(words) != std::string::npos; };
+  const NearRivals another{true, false}, mirrored{false, true}, both{true, true};
+  for (const NearRivals& rivals : {another, mirrored, both}) {
+    const std::string nowhere = why_rivalled(rivals, 0.05);
+    const std::string well = why_rivalled(rivals, 0.8);
+    const std::string unasked = why_rivalled(rivals, std::nullopt);
+    for (const std::string& note : {nowhere, well, unasked}) EXPECT_EQ(note.find("not aligned: "), 0u) << note;
+    EXPECT_TRUE(says(nowhere, "nowhere") && says(nowhere, "probably another arena")) << nowhere;
+    EXPECT_FALSE(says(nowhere, "--start")) << nowhere;
+    EXPECT_EQ(says(nowhere, "flip"), rivals.mirrored) << nowhere;
+    EXPECT_TRUE(says(well, "agrees well") && says(well, "--start or --pose")) << well;
+    EXPECT_FALSE(says(well, "another arena")) << well;
+    EXPECT_EQ(says(well, "several poses"), rivals.another_pose) << well;
+    EXPECT_EQ(says(well, "as well mirrored"), rivals.mirrored) << well;
+    EXPECT_FALSE(says(unasked, "another arena") || says(unasked, "--start")) << unasked;
+    EXPECT_EQ(says(unasked, "another pose"), rivals.another_pose) << unasked;
+    EXPECT_EQ(says(unasked, "mirror"), rivals.mirrored) << unasked;
+  }
+}
+
+TEST(Trust, OnlyWhereARivalAloneSpeaksAgainstThePoseItIsToBlame) {
+  EXPECT_TRUE(judge(kWide, kTight, behind_by(0.2)).rivalled);
+  EXPECT_FALSE(judge(kWide, kTight, behind_by(2.0)).rivalled);
+  const PoseEvidence against = loose(0.5, 0.9);
+  ASSERT_LT(log_odds(against, kTight), -1.2);
+  const Trust trust = judge(against, kTight, Rivals{});
+  EXPECT_FALSE(trust.rivalled);
+  EXPECT_NE(trust.note.find("probably another arena"), std::string::npos) << trust.note;
 }
 
 TEST(Trust, ADuelIsWonByWallsThatAreManyAndClearlyMore) {
