@@ -17,11 +17,10 @@ Mark mark_of(const Room& room, std::size_t index) {
   return {room.centre, room_name(index), std::pair(room.box_min, room.box_max)};
 }
 
-/// Features have no names; rooms, which have boxes, do.
-std::vector<Mark> marks_at(const std::vector<TPoint2D>& places, const std::vector<KindScore::Box>& boxes) {
+/// Features have no names.
+std::vector<Mark> marks_at(const std::vector<TPoint2D>& places) {
   std::vector<Mark> out;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    out.push_back(i < boxes.size() ? Mark{places[i], room_name(i), boxes[i]} : Mark{places[i], "", std::nullopt});
+  for (const TPoint2D& place : places) out.push_back({place, "", std::nullopt});
   return out;
 }
 
@@ -55,8 +54,7 @@ std::string joined_name(const Mark& map, const Mark& truth) {
 Marks marks_of(const KindScore& features) {
   Marks out;
   out.what = name_of(features.kind);
-  add_rest(out, marks_at(features.map, features.map_boxes), marks_at(features.truth, features.truth_boxes),
-           features.match.pairs);
+  add_rest(out, marks_at(features.map), marks_at(features.truth), features.match.pairs);
   return out;
 }
 
@@ -105,11 +103,12 @@ Marks marks_on_overlay(const MapScore& score, const std::vector<Poi>& reported, 
   return out;
 }
 
-std::vector<Marks> marks_on_page(const MapScore& score, const Marks& victims) {
+std::vector<Marks> marks_on_page(const MapScore& score, const Marks& victims, const Marks& rooms) {
   std::vector<Marks> out;
   if (!victims.pairs.empty() || !victims.map_only.empty() || !victims.truth_only.empty() || !victims.unjudged.empty())
     out.push_back(victims);
-  for (const KindScore& kind : score.by_features.kinds) out.push_back(marks_of(kind));
+  for (const KindScore& kind : score.by_features.kinds)
+    out.push_back(kind.kind == EvidenceKind::Rooms ? rooms : marks_of(kind));
   return out;
 }
 

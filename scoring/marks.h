@@ -51,7 +51,8 @@ Marks marks_of(const std::vector<Poi>& reported, const std::vector<Poi>& victims
 Marks marks_on_overlay(const MapScore& score, const std::vector<Poi>& reported, const std::vector<Poi>& victims,
                        bool listed);
 
-/// What a page shows of a map that was scored: victims first, then the features of eq. (7), where they were asked for.
-std::vector<Marks> marks_on_page(const MapScore& score, const Marks& victims);
+/// What a page shows of a map that was scored: victims first, then the features of eq. (7), where they were asked for;
+/// of these `rooms` as room_marks() has them.
+std::vector<Marks> marks_on_page(const MapScore& score, const Marks& victims, const Marks& rooms);
 
 }  // namespace rubble::scoring

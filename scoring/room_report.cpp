@@ -1,8 +1,7 @@
 #include "scoring/room_report.h"
 
-#include "scoring/alignment/alignment.h"
 #include "scoring/pictures/room_picture.h"
-#include "scoring/walls/resample.h"
+#include "scoring/scorecard.h"
 
 namespace rubble::scoring {
 
@@ -23,7 +22,7 @@ RoomVerdict judge_rooms(const OccupancyGrid& map, const OccupancyGrid& truth, co
     out.aligned = true;
     out.T_truth_map = *T_truth_map;
   } else {
-    const Alignment found = align(crop_to_known(map, 0.0), crop_to_known(truth, 0.0));
+    const MapScore found = score_map(map, truth);
     out.aligned = found.aligned;
     out.note = found.note;
     out.T_truth_map = found.T_truth_map;
@@ -32,6 +31,12 @@ RoomVerdict judge_rooms(const OccupancyGrid& map, const OccupancyGrid& truth, co
       out.aligned && !by_sight ? extract_rooms_as(map, of_truth, out.T_truth_map) : rooms_of_map(map, by_sight);
   if (out.aligned) out.match = match_rooms(out.of_map, of_truth, out.T_truth_map);
   return out;
+}
+
+Marks room_marks(const OccupancyGrid& map, const OccupancyGrid& truth, const Rooms& of_truth,
+                 const mrpt::math::TPose2D& T_truth_map) {
+  const RoomVerdict found = judge_rooms(map, truth, of_truth, false, T_truth_map);
+  return marks_of(found.of_map, of_truth, found.match);
 }
 
 }  // namespace rubble::scoring

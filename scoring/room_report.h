@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/grid.h"
+#include "scoring/marks.h"
 #include "scoring/rooms/room_match.h"
 #include "scoring/rooms/rooms.h"
 
@@ -26,9 +27,13 @@ struct RoomVerdict {
   mrpt::math::TPose2D T_truth_map;
 };
 
-/// `T_truth_map`: the pose, where it is known; else it is searched. The map's rooms are divided as the truth's where
-/// both have the same walls, but for those `by_sight`.
+/// `T_truth_map`: the pose, where it is known; else it is that at which score_map() scores. The map's rooms are divided
+/// as the truth's where both have the same walls, but for those `by_sight`.
 RoomVerdict judge_rooms(const OccupancyGrid& map, const OccupancyGrid& truth, const Rooms& of_truth, bool by_sight,
                         const std::optional<mrpt::math::TPose2D>& T_truth_map = {});
+
+/// What pages and pictures show of the rooms of a map that was scored at this pose: the same by passages.
+Marks room_marks(const OccupancyGrid& map, const OccupancyGrid& truth, const Rooms& of_truth,
+                 const mrpt::math::TPose2D& T_truth_map);
 
 }  // namespace rubble::scoring

@@ -19,6 +19,7 @@
 #include "scoring/pictures/picture.h"
 #include "scoring/pictures/sight_picture.h"
 #include "scoring/pose_score.h"
+#include "scoring/room_report.h"
 #include "scoring/scorecard.h"
 
 namespace rubble::app {
@@ -153,22 +154,25 @@ int score(ScoreArguments arguments) {
   }
   const scoring::Marks marks =
       scoring::marks_on_overlay(result, verdict.reported.victims, victims.victims, !victims.path.empty());
+  scoring::Marks rooms;
+  if (result.warped && (!arguments.html.empty() || !arguments.out.empty()))
+    rooms = scoring::room_marks(grid, truth, scoring::rooms_of_map(truth, false), result.T_truth_map);
   if (!arguments.html.empty())
     write_evaluation_page(arguments.html, verdict.map.grid, truth,
                           {arguments.map, arguments.truth, command_of(arguments), result.T_truth_map,
-                           pose ? pose->scale : 1.0, config, result.aligned ? "" : result.note,
-                           in_own_scale(scoring::marks_on_page(result, marks), pose ? pose->scale : 1.0),
+                           pose ? pose->scale : 1.0, config, result.aligned ? "" : scoring::reason_of(result.note),
+                           in_own_scale(scoring::marks_on_page(result, marks, rooms), pose ? pose->scale : 1.0),
                            result.score_at_best_pose, marks.seam});
   if (!arguments.out.empty()) {
     // A map that was refused is drawn at the best pose, so that a person can see why; score.json says that too.
     if (result.aligned || result.by != scoring::AlignBy::Auto)
       scoring::write_overlay(place_in(arguments.out, "overlay.png"), grid, truth, result.T_truth_map,
-                             result.aligned ? "" : "NOT TRUSTED: " + result.note, marks);
+                             result.aligned ? "" : "NOT TRUSTED: " + scoring::reason_of(result.note), marks);
     else
       scoring::write_side_by_side(place_in(arguments.out, "overlay.png"), grid, truth, std::nullopt, {}, result.note);
-    for (const scoring::Marks& features : scoring::marks_on_page(result, {}))
+    for (const scoring::Marks& features : scoring::marks_on_page(result, {}, rooms))
       scoring::write_side_by_side(place_in(arguments.out, file_of(features)), grid, truth, result.T_truth_map, features,
-                                  result.aligned ? "" : "NOT TRUSTED: " + result.note);
+                                  result.aligned ? "" : "NOT TRUSTED: " + scoring::reason_of(result.note));
     if (result.aligned) {
       scoring::write_error_map(place_in(arguments.out, "error.png"), grid, truth, result.T_truth_map, config.tau);
       scoring::write_sight_map(place_in(arguments.out, "sight.png"), grid, truth, result.T_truth_map);

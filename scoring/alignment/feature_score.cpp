@@ -120,12 +120,6 @@ std::vector<double> errors_of_redrawn(const OccupancyGrid& truth, const MapFeatu
 /// themselves); SURF descriptors (0.56) and rooms (0.15), of which a gap in a wall makes one, tell strangers.
 double weight_of(EvidenceKind kind) { return kind == EvidenceKind::Corners ? 0.8 : 0.1; }
 
-std::vector<KindScore::Box> boxes_of(const std::vector<Room>& rooms) {
-  std::vector<KindScore::Box> out;
-  for (const Room& room : rooms) out.emplace_back(room.box_min, room.box_max);
-  return out;
-}
-
 /// Enough in the truth; a map that lacks them all is wrong about them.
 bool says_something(const MapFeatures& truth, EvidenceKind kind) {
   return truth.places(kind).size() >= (kind == EvidenceKind::Rooms ? kLeastRooms : kLeastPoints);
@@ -269,10 +263,6 @@ FeatureVerdict judge_features(const OccupancyGrid& map, const MapFeatures& of_ma
     score.kind = kind;
     score.map = of_map.places(kind);
     score.truth = of_truth.places(kind);
-    if (kind == EvidenceKind::Rooms) {
-      score.map_boxes = boxes_of(of_map.rooms);
-      score.truth_boxes = boxes_of(of_truth.rooms);
-    }
     score.match = feature_error(of_map, of_truth, kind, T_truth_map);
     for (const TPose2D& T : wrong) score.stranger += feature_error(of_image, of_truth, kind, T).error;
     score.stranger = wrong.empty() ? feature_cap(kind) : score.stranger / static_cast<double>(wrong.size());

@@ -2,7 +2,6 @@
 
 #include <mrpt/math/TPoint2D.h>
 
-#include <utility>
 #include <vector>
 
 #include "scoring/alignment/match_error.h"
@@ -16,14 +15,10 @@ const char* name_of(EvidenceKind kind);
 /// Eq. (7) between what strangers reach and what the truth itself reaches when it is drawn anew. Even a good map
 /// repeats only a part of the truth's features, and some meet by chance wherever the map lies: E alone says little.
 struct KindScore {
-  using Box = std::pair<mrpt::math::TPoint2D, mrpt::math::TPoint2D>;
-
   EvidenceKind kind = EvidenceKind::Surf;
   std::vector<mrpt::math::TPoint2D> map;    ///< the map's features, own frame [m]
   std::vector<mrpt::math::TPoint2D> truth;  ///< the truth's
-  std::vector<Box> map_boxes;               ///< of rooms: their least and greatest corners; empty for other kinds
-  std::vector<Box> truth_boxes;
-  MatchError match;       ///< at the pose
+  MatchError match;                         ///< at the pose
   double stranger = 0.0;  ///< mean E of the map's mirror image at its best poses, all of which are wrong [m^2]
   double redrawn = 0.0;   ///< E of the truth itself on another raster, turned by 17 deg [m^2]
   bool usable = false;    ///< enough features of this kind in the truth, and they tell it from strangers

@@ -17,6 +17,7 @@
 #include "scoring/pictures/evaluation_page.h"
 #include "scoring/pictures/picture.h"
 #include "scoring/pictures/sight_picture.h"
+#include "scoring/room_report.h"
 
 namespace rubble::scoring {
 namespace {
@@ -79,7 +80,7 @@ LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const Le
       marks_on_overlay(entry.score, entry.reported.victims, truth.victims.victims, !truth.victims.path.empty());
   if (entry.score.aligned || entry.score.by != AlignBy::Auto)
     write_overlay(place_in(config.out, pictures.overlay), map, truth.grid, entry.score.T_truth_map,
-                  entry.score.aligned ? "" : "NOT TRUSTED: " + entry.score.note, marks);
+                  entry.score.aligned ? "" : "NOT TRUSTED: " + reason_of(entry.score.note), marks);
   else
     write_side_by_side(place_in(config.out, pictures.overlay), map, truth.grid, std::nullopt, {}, entry.score.note);
   if (entry.score.aligned) {
@@ -89,6 +90,9 @@ LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const Le
     write_sight_map(place_in(config.out, pictures.sight), map, truth.grid, entry.score.T_truth_map);
   }
   pictures.tool = name + kPage;
+  Marks rooms;
+  if (entry.score.warped && config.truth_rooms)
+    rooms = room_marks(map, truth.grid, *config.truth_rooms, entry.score.T_truth_map);
   write_text_file(
       place_in(config.out, pictures.tool),
       evaluation_page(
@@ -96,8 +100,8 @@ LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const Le
           {entry.file, truth.path,
            words_of({entry.file, truth.path, config.map_resolution, config.truth_resolution, config.score.tau,
                      entry.reported.from == VictimSource::List ? pois : "", truth.victims.path}),
-           entry.score.T_truth_map, 1.0, config.score, entry.score.aligned ? "" : entry.score.note,
-           marks_on_page(entry.score, marks), entry.score.score_at_best_pose, marks.seam}));
+           entry.score.T_truth_map, 1.0, config.score, entry.score.aligned ? "" : reason_of(entry.score.note),
+           marks_on_page(entry.score, marks, rooms), entry.score.score_at_best_pose, marks.seam}));
   return pictures;
 }
 
@@ -174,6 +178,8 @@ League judge_league(const LeagueFolder& folder, const LeagueTruth& truth, const 
                     const LeagueConfig& given) {
   LeagueConfig config = given;
   config.score = prepared_for(truth.grid, config.score);
+  if (config.score.warp && !config.out.empty())
+    config.truth_rooms = std::make_shared<const Rooms>(rooms_of_map(truth.grid, false));
   if (!config.out.empty()) remove_old_pages(config.out);
   League league;
   std::map<std::pair<std::string, std::string>, LeaguePictures> pictures;  // of team and file

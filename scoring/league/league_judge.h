@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,11 +25,14 @@ struct LeagueTruth {
 LeagueTruth load_league_truth(const std::string& path, const std::optional<double>& resolution,
                               const std::string& victims);
 
+struct Rooms;
+
 struct LeagueConfig {
   ScoreConfig score;
   std::optional<double> map_resolution;          ///< of maps that do not tell their scale [m] a pixel
   std::optional<double> truth_resolution;        ///< what the truth was read with, for the commands on the pages
   std::string out;                               ///< folder for a page and pictures of each team; empty: none are made
+  std::shared_ptr<const Rooms> truth_rooms;      ///< where pages show rooms; null: judge_league() finds them
   std::function<void(const std::string&)> tell;  ///< what a person should know of a team's files, one line
 };
 

@@ -46,6 +46,23 @@ json_holds alone.json "list(j) == ['rooms'] and len(j['rooms']) == 4"
 "$rubble" rooms run/map.tif run/truth.tif --json --out arena >arena.json || fail "rooms of an arena ended with $?"
 json_holds arena.json "j['room_agreement'] > 0.9 and j['missing'] == j['surplus'] == [] and len(j['rooms']) == len(j['truth_rooms']) > 9"
 [[ $(wc -l <arena/rooms.csv) == $(wc -l <arena/truth_rooms.csv) ]] || fail "the list of rooms is of another division"
+# What the page and the pictures of rubble score --warp show of rooms is the same, also where many are wrong.
+counts() {
+  python3 - "$1" "$2" <<'PY'
+import json, re, sys
+rooms = json.load(open(sys.argv[1]))
+page = json.loads(re.search(r'<script id="data" type="application/json">(.*?)</script>', open(sys.argv[2]).read(), re.S).group(1))
+[marks] = [m for m in page['marks'] if m['what'] == 'rooms']
+assert sorted((m[2], t[2]) for m, t in marks['pairs']) == sorted((p['map'], p['truth']) for p in rooms['pairs']), marks['pairs']
+assert [m[2] for m in marks['map']] == rooms['surplus'] and [t[2] for t in marks['truth']] == rooms['missing']
+PY
+}
+"$rubble" map run/log.rlog --set mapper.kind=paper --out paper >/dev/null 2>&1 || fail "no map by the paper's mapper"
+for map in run paper; do
+  "$rubble" rooms $map/map.tif run/truth.tif --json >rooms.json || fail "rooms of $map ended with $?"
+  "$rubble" score $map/map.tif run/truth.tif --warp --html page.html >/dev/null 2>&1 || fail "page of $map ended with $?"
+  counts rooms.json page.html || fail "$map: the page counts other rooms"
+done
 "$rubble" rooms run/map.tif run/truth.tif --method visibility >/dev/null || fail "rooms by sight ended with $?"
 expect_exit 2 "--pose goes with a truth" "$rubble" rooms truth.pgm --resolution 0.05 --pose=0,0,0
 expect_exit 2 "needs the form" same --pose=1
