@@ -162,7 +162,7 @@ int score(ScoreArguments arguments) {
                           {arguments.map, arguments.truth, command_of(arguments), result.T_truth_map,
                            pose ? pose->scale : 1.0, config, result.aligned ? "" : scoring::reason_of(result.note),
                            in_own_scale(scoring::marks_on_page(result, marks, rooms), pose ? pose->scale : 1.0),
-                           result.score_at_best_pose, marks.seam});
+                           result.score_at_best_pose, result.by, marks.seam});
   if (!arguments.out.empty()) {
     // A map that was refused is drawn at the best pose, so that a person can see why; score.json says that too.
     if (result.aligned || result.by != scoring::AlignBy::Auto)

@@ -101,7 +101,7 @@ LeaguePictures draw(const LeagueEntry& entry, const OccupancyGrid& map, const Le
            words_of({entry.file, truth.path, config.map_resolution, config.truth_resolution, config.score.tau,
                      entry.reported.from == VictimSource::List ? pois : "", truth.victims.path}),
            entry.score.T_truth_map, 1.0, config.score, entry.score.aligned ? "" : reason_of(entry.score.note),
-           marks_on_page(entry.score, marks, rooms), entry.score.score_at_best_pose, marks.seam}));
+           marks_on_page(entry.score, marks, rooms), entry.score.score_at_best_pose, entry.score.by, marks.seam}));
   return pictures;
 }
 

@@ -102,24 +102,38 @@ void replace(std::string& page, std::string_view placeholder, std::string_view t
   if (at != std::string::npos) page.replace(at, placeholder.size(), text);
 }
 
-/// What does not move with the maps: the score and the pictures at the pose at start.
+std::string figure_of(double value, const std::string& what, const std::string& where, const char* kind = "main") {
+  char text[400];
+  std::snprintf(text, sizeof text, "<div class=\"%s\"><b>%.3f</b> <span>%s</span><small>%s</small></div>\n", kind,
+                value, what.c_str(), where.c_str());
+  return text;
+}
+
+/// What the program says: it does not move with the maps.
+std::string verdict(const EvaluationStart& start) {
+  const bool given = start.by == AlignBy::Hand;
+  if (start.not_trusted.empty())
+    return figure_of(start.score, "score", given ? "at the pose that was given" : "at the pose that the program found");
+  std::string out = figure_of(0.0, "score", "of a map whose pose is not trusted");
+  if (start.by != AlignBy::Auto)
+    out += figure_of(start.score, "score there", "at the best pose found; it does not count", "aside");
+  return out;
+}
+
+/// What does not move with the maps: the pictures at the pose at start.
 std::string at_start(const OccupancyGrid& map, const OccupancyGrid& truth, const EvaluationStart& start) {
   const OccupancyGrid grid = scaled_frame(map, start.scale);
   const auto figure = [](const std::string& png, const std::string& what) {
     return "<figure><img alt=\"" + what + "\" src=\"data:image/png;base64," + base64(png) + "\"><figcaption>" + what +
            "</figcaption></figure>\n";
   };
-  char score[80];
-  std::snprintf(score, sizeof score, "<p>%s <b>%.3f</b></p>\n",
-                start.not_trusted.empty() ? "score" : "score there, not trusted", start.score);
   const bool has_victims = !start.marks.empty() && start.marks.front().what == "victims";
   Marks victims = has_victims ? start.marks.front() : Marks{};
   victims.seam = start.seam;
   for (auto& [of_map, of_truth] : victims.pairs) of_map.p *= start.scale;
   for (std::vector<Mark>* marks : {&victims.map_only, &victims.unjudged})
     for (Mark& of_map : *marks) of_map.p *= start.scale;
-  return score +
-         figure(overlay_png(grid, truth, start.T_truth_map,
+  return figure(overlay_png(grid, truth, start.T_truth_map,
                             start.not_trusted.empty() ? "" : "NOT TRUSTED: " + start.not_trusted, victims),
                 "walls right (dark, within 5 cm), near (orange), only in the map (red), only in the truth (blue)") +
          figure(error_map_png(grid, truth, start.T_truth_map, start.config.tau),
@@ -147,6 +161,7 @@ std::string evaluation_page(const OccupancyGrid& map, const OccupancyGrid& truth
   replace(page, "@STYLE@", kEvaluationCss);
   replace(page, "@METRIC@", kMetricJs);
   replace(page, "@TOOL@", kEvaluationJs);
+  replace(page, "@VERDICT@", verdict(start));
   replace(page, "@ATSTART@", at_start(map, truth, start));
   replace(page, "@DATA@", data_json(map, truth, start));
   return page;

@@ -35,9 +35,10 @@ struct EvaluationStart {
   mrpt::math::TPose2D T_truth_map;
   double scale = 1.0;  ///< of the map: p_truth = T (scale p_map)
   ScoreConfig config;
-  std::string not_trusted;   ///< why the pose is not to be trusted; empty: it is
-  std::vector<Marks> marks;  ///< that can be shown: victims, features, rooms
-  double score = 0.0;        ///< the headline score at the pose, trusted or not
+  std::string not_trusted;      ///< why the pose is not to be trusted; empty: it is
+  std::vector<Marks> marks;     ///< that can be shown: victims, features, rooms
+  double score = 0.0;           ///< at the pose, trusted or not; of a map that is not trusted the headline is 0
+  AlignBy by = AlignBy::Walls;  ///< what proposed the pose; Hand: it was given; Auto: there is none
   /// Where the map came apart, in the truth [m].
   std::optional<std::pair<mrpt::math::TPoint2D, mrpt::math::TPoint2D>> seam{};
 };

@@ -19,6 +19,16 @@ json_holds near.json "0.5 < j['score'] < 1 and j['psi_m'] > 0"
 sed 's/src="data:image[^"]*"//g' same.html | grep -qE "(src|href)=|https?://|import |fetch\(" && fail "the page needs other files"
 [[ $(grep -o 'src="data:image/png;base64,' same.html | wc -l) == 3 ]] && grep -q '<b>1.000</b>' same.html ||
   fail "the page lacks the score or the pictures of the pose and of lines of sight at start"
+# Of a refused map: not trusted and why, score 0, the score at the best pose.
+"$rubble" score "$map" "$truth" --html refused.html --json >refused.json 2>/dev/null || fail "no page of another arena"
+json_holds refused.json "not j['aligned'] and j['align_note'].startswith('not aligned: ') and 'probably another arena' in j['align_note']"
+python3 - <<'PY' || fail "the page of a refused map begins otherwise"
+import json
+page, j = open('refused.html').read(), json.load(open('refused.json'))
+first, second = page.index('<b>0.000</b> <span>score</span>'), page.index('<b>%.3f</b> <span>score there</span>' % j['score_at_best_pose'])
+assert page.index('id="warning"') < first < second < page.index('id="figure-overlap"')
+assert '"warning":"%s"' % j['align_note'].removeprefix('not aligned: ') in page
+PY
 mkdir 'two words' && cp "$truth" "two words/it's.tif"
 "$rubble" score "two words/it's.tif" "$truth" --html words.html >/dev/null 2>&1 || fail "a name of two words"
 grep -qF "rubble score 'two words/it'\\u005c''s.tif' a/" words.html || fail "the command is not quoted: $(grep -o 'command":"[^"]*' words.html)"

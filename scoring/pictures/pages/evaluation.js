@@ -6,7 +6,7 @@
   data.truth = Metric.decode(data.truth);
   data.fields = {};
   const ROWS = [
-    ['overlap', 'overlap', 3, ''], ['precision', 'precision', 3, ''], ['recall', 'recall', 3, ''],
+    ['precision', 'precision', 3, ''], ['recall', 'recall', 3, ''],
     ['psi_m', 'psi', 3, ' m'], ['psi_literal_m', 'psi, eq. (5)', 3, ' m'],
     ['psi_occupied_map_m', 'psi, walls of the map', 3, ' m'],
     ['psi_occupied_truth_m', 'psi, walls of the truth', 3, ' m'], ['known', 'known', 3, ''],
@@ -133,7 +133,8 @@
     const words = marks.what === 'victims' ? ['found', 'false', 'missed'] : ['matched', 'of the map alone', 'of the truth alone'];
     const counts = marks.unjudged.length ? `${marks.unjudged.length} reported, not judged: no list of the true ones`
       : `${marks.pairs.length} ${words[0]}, ${marks.map.length} ${words[1]}, ${marks.truth.length} ${words[2]}`;
-    label.append(box, ` ${marks.what}: ${counts}`);
+    const doubt = data.warning ? ' (at a pose that is not trusted)' : '';
+    label.append(box, ` ${marks.what}${doubt}: ${counts}`);
     $('marks').append(label);
   });
   if (data.warning) {
@@ -168,12 +169,18 @@
     view.zoom = 0.94 * Math.min(canvas.clientWidth / (x2 - x1), canvas.clientHeight / (y2 - y1));
   }
 
+  function stale(yes) {
+    $('figures').classList.toggle('stale', yes);
+    $('figure-overlap').parentElement.classList.toggle('stale', yes);
+  }
   function showFigures() {
     const figures = Metric.figures(data, pose);
     $('figures').innerHTML = ROWS.map(([key, label, digits, unit]) =>
-      `<tr class="${key === 'overlap' ? 'main' : ''}"><th>${label}</th>` +
+      `<tr><th>${label}</th>` +
       `<td id="figure-${key}" data-value="${figures[key]}">${figures[key].toFixed(digits)}${unit}</td></tr>`).join('');
-    $('figures').classList.remove('stale');
+    $('figure-overlap').dataset.value = figures.overlap;
+    $('figure-overlap').textContent = figures.overlap.toFixed(3);
+    stale(false);
   }
 
   const text = (value, digits) => String(Number(value.toFixed(digits)));
@@ -189,6 +196,9 @@
       if (document.activeElement !== $(id)) $(id).value = text(value, digits);
     const numbers = [text(pose.x, 4), text(pose.y, 4), text(pose.deg, 6)];
     if (pose.scale !== 1) numbers.push(text(pose.scale, 6));
+    const apart = (key) => Math.abs(pose[key] - data.pose[key]);
+    const moved = ['x', 'y', 'scale'].some((key) => apart(key) > 1e-9) || Math.abs(Math.sin(apart('deg') * Math.PI / 360)) > 1e-9;
+    $('by-hand').textContent = `at the pose by hand, ${moved ? 'as the maps lie now' : 'which is still the pose at start'}`;
     $('command').textContent = `${data.command} --pose=${numbers.join(',')}`;
   }
 
@@ -206,7 +216,7 @@
       draw();
       clearTimeout(waiting);
       if (cost < 30) return measure();
-      $('figures').classList.add('stale');
+      stale(true);
       waiting = setTimeout(measure, 80);
     });
   }

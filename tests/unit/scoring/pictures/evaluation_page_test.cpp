@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <string>
+#include <vector>
+
 #include "base/text/html.h"
 #include "scoring/pictures/picture.h"
 #include "tests/support/scoring_maze.h"
@@ -20,6 +23,40 @@ TEST(EvaluationPage, NamesCannotBreakThePage) {
   EXPECT_THAT(page, Not(HasSubstr("</script><b>")));
   EXPECT_THAT(page, Not(HasSubstr("@DATA@")));
   EXPECT_THAT(page, HasSubstr("\\u003c/script\\u003e\\u003cb\\u003e\\u0022x\\u005c"));
+}
+
+/// A judge reads from the top.
+void expect_in_order(const std::string& page, const std::vector<std::string>& parts) {
+  std::size_t at = 0;
+  for (const std::string& part : parts) {
+    const std::size_t found = page.find(part, at);
+    ASSERT_NE(found, std::string::npos) << part << " is not there, or not behind what stands before it";
+    at = found + part.size();
+  }
+}
+
+TEST(EvaluationPage, TheScoreOfTheProgramStandsBeforeTheOverlapByHand) {
+  EvaluationStart start;
+  start.score = 0.9;
+  const std::string hand = "id=\"figure-overlap\"";
+  expect_in_order(evaluation_page(maze({}), maze({}), start),
+                  {"<b>0.900</b> <span>score</span><small>at the pose that the program found", hand,
+                   "The score of the pose by hand comes from the command line", "id=\"command\"", "id=\"figures\""});
+  start.by = AlignBy::Hand;
+  expect_in_order(evaluation_page(maze({}), maze({}), start),
+                  {"<b>0.900</b> <span>score</span><small>at the pose that was given", hand});
+}
+
+TEST(EvaluationPage, OfARefusedMapTheReasonComesFirstThenScoreZeroThenTheScoreThere) {
+  EvaluationStart start;
+  start.score = 0.07;
+  start.not_trusted = "agrees nowhere";
+  const std::string page = evaluation_page(maze({}), maze({}), start);
+  expect_in_order(page, {"id=\"warning\"", "<b>0.000</b> <span>score</span>", "<b>0.070</b> <span>score there</span>",
+                         "id=\"figure-overlap\""});
+  EXPECT_THAT(page, HasSubstr("\"warning\":\"agrees nowhere\""));
+  start.by = AlignBy::Auto;
+  EXPECT_THAT(evaluation_page(maze({}), maze({}), start), Not(HasSubstr("score there"))) << "there is no pose";
 }
 
 /// Victims or not.
