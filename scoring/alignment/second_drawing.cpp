@@ -26,6 +26,7 @@ constexpr double kClear = 0.6;     // the same that leaves no doubt about the si
 constexpr double kMirrored = 0.5;  // the same of a mirror image, lest there be twice as much luck
 constexpr double kSizeStep = 1.05;
 constexpr int kSizeSteps = 19;     // to 0.4 and 2.5 times the size
+constexpr int kSizeStepsBare = 7;  // to 0.7 and 1.4 times: an empty hall is any other one at another size
 constexpr int kSizeStepsTold = 1;  // about each size that extents tell
 constexpr std::size_t kPoses = 3;  // the best of each size ...
 constexpr int kGuesses = 6;        // ... of so many
@@ -34,6 +35,8 @@ constexpr std::size_t kHalfPoses = 5;  // the best of each half
 constexpr double kHalvesAlike = 0.4;   // both scores: halves of strangers reach 0.37
 constexpr double kApart = 2.5;         // halves that lie further apart are none of one drawing [m]
 constexpr double kTurned = 0.6;        // [rad]
+constexpr double kApartBare = 1.6;     // the same on a bare truth
+constexpr double kTurnedBare = 0.25;   // [rad]
 constexpr double kShownTwice = 0.5;    // of the ground that the halves show, what the first drawing shows, too
 
 /// What the map knows on the truth and away from it, and how much there is of either [cells].
@@ -118,9 +121,10 @@ double best_score(const OccupancyGrid& drawing, const OccupancyGrid& truth, cons
 /// How many times as much ground the drawing covers at the size at which it draws the truth again.
 std::optional<double> ground_where_alike(const OccupancyGrid& drawing, const OccupancyGrid& on,
                                          const OccupancyGrid& truth, const SightLines& sights) {
-  std::vector<double> sizes = sizes_about(1.0, kSizeStep, kSizeSteps);
+  std::vector<double> sizes = sizes_about(1.0, kSizeStep, sights.bare() ? kSizeStepsBare : kSizeSteps);
   std::vector<AxisSizes> stretches;
   for (const OccupancyGrid* const other : {&truth, &on}) {
+    if (sights.bare()) break;
     const ToldSizes told = sizes_told(drawing, *other);
     for (const double size : told.sizes)
       for (const double near : sizes_about(size, kSizeStep, kSizeStepsTold))
@@ -141,7 +145,7 @@ std::optional<double> ground_where_alike(const OccupancyGrid& drawing, const Occ
   if (best < kClear)
     for (const AxisSizes& by : stretches) offer(stretched(drawing, by), by.along * by.across);
   if (best >= kAlike) return ground;
-  if (best_score(mirror_image(drawing), truth, sights) >= kMirrored) return 1.0;
+  if (!sights.bare() && best_score(mirror_image(drawing), truth, sights) >= kMirrored) return 1.0;
   return std::nullopt;
 }
 
@@ -195,6 +199,8 @@ double shown_twice(const Halves& halves, const Placed& first, const Placed& seco
 /// other: by luck one half of a stranger agrees somewhere, but hardly both at such poses.
 bool alike_in_halves(const OccupancyGrid& drawing, const OccupancyGrid& map, const PlanarTransform& T_truth_map,
                      const OccupancyGrid& truth, const SightLines& sights) {
+  const double apart = sights.bare() ? kApartBare : kApart;
+  const double turned = sights.bare() ? kTurnedBare : kTurned;
   const mrpt::math::TPoint2D middle = drawing.centre({drawing.width() / 2, drawing.height() / 2});
   for (const bool west_east : {true, false}) {
     const Halves halves = halves_of(drawing, west_east);
@@ -203,7 +209,7 @@ bool alike_in_halves(const OccupancyGrid& drawing, const OccupancyGrid& map, con
     for (const Placed& first : firsts)
       for (const Placed& second : seconds) {
         if (first.score + second.score < kHalvesAlike) continue;
-        if (!same_pose(first.T_truth_drawing.pose(), second.T_truth_drawing.pose(), middle, kApart, kTurned)) continue;
+        if (!same_pose(first.T_truth_drawing.pose(), second.T_truth_drawing.pose(), middle, apart, turned)) continue;
         if (shown_twice(halves, first, second, map, T_truth_map, truth) >= kShownTwice) return true;
       }
   }

@@ -46,6 +46,8 @@ class SightLines {
 
   /// Too few open or blocked lines to say anything: a truth without free space.
   bool usable() const;
+  /// So few inner walls that those around are asked about as well: luck is soon right about most.
+  bool bare() const { return luck_.bare; }
   SightAgreement at(const SightMap& map, const PlanarTransform& T_truth_map) const;
   SightAgreement at(const SightMap& map, const Warp& warp) const;
   SightAgreement at(const OccupancyGrid& map, const PlanarTransform& T_truth_map) const {
