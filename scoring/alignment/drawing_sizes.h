@@ -26,7 +26,8 @@ struct ToldSizes {
 /// it to something.
 ToldSizes sizes_told(const OccupancyGrid& drawing, const OccupancyGrid& other);
 
-/// The drawing turned so that `direction` is that of x, and stretched; no wall is lost between its cells.
+/// The drawing turned so that `direction` is that of x, and stretched. No wall is lost where rows fall together; turned
+/// by an angle, walls of one cell may have holes of a cell.
 OccupancyGrid stretched(const OccupancyGrid& drawing, const AxisSizes& by);
 
 }  // namespace rubble::scoring

@@ -25,11 +25,13 @@ constexpr double kAlike = 0.25;    // score: strangers reach 0.2 at their best p
 constexpr double kClear = 0.6;     // the same that leaves no doubt about the size
 constexpr double kMirrored = 0.5;  // the same of a mirror image, lest there be twice as much luck
 constexpr double kSizeStep = 1.05;
-constexpr int kSizeSteps = 19;     // to 0.4 and 2.5 times the size
-constexpr int kSizeStepsBare = 7;  // to 0.7 and 1.4 times: an empty hall is any other one at another size
-constexpr int kSizeStepsTold = 1;  // about each size that extents tell
-constexpr std::size_t kPoses = 3;  // the best of each size ...
-constexpr int kGuesses = 6;        // ... of so many
+constexpr int kSizeSteps = 19;       // to 0.4 and 2.5 times the size
+constexpr int kSizeStepsBare = 7;    // to 0.7 and 1.4 times: an empty hall is any other one at another size
+constexpr int kSizeStepsTold = 1;    // about each size that extents tell
+constexpr double kNearSize = 0.36;   // of the logarithm: 0.7 to 1.4 times, tried however much ground there is
+constexpr double kMostGround = 4.0;  // of the truth's, that a drawing of another size covers
+constexpr std::size_t kPoses = 3;    // the best of each size ...
+constexpr int kGuesses = 6;          // ... of so many
 // Of a drawing that came apart.
 constexpr std::size_t kHalfPoses = 5;  // the best of each half
 constexpr double kHalvesAlike = 0.4;   // both scores: halves of strangers reach 0.37
@@ -131,6 +133,9 @@ std::optional<double> ground_where_alike(const OccupancyGrid& drawing, const Occ
         if (near < sizes.front() / kSizeStep || near > kSizeStep / sizes.front()) sizes.push_back(near);
     stretches.insert(stretches.end(), told.stretches.begin(), told.stretches.end());
   }
+  // With less ground it cannot earn that; with much more it is not what it is at its own size.
+  const double own = known_m2(drawing) / known_m2(truth);
+  const auto may_draw_all = [&](double times) { return times * own >= kAlike && times * own <= kMostGround; };
   double best = 0.0;
   double ground = 0.0;
   const auto offer = [&](const OccupancyGrid& as, double times) {
@@ -140,10 +145,10 @@ std::optional<double> ground_where_alike(const OccupancyGrid& drawing, const Occ
     ground = times;
   };
   for (const double size : sizes)
-    if (size * size * known_m2(drawing) >= kAlike * known_m2(truth))  // else it cannot earn that
-      offer(at_size(drawing, size), size * size);
+    if (may_draw_all(size * size) || std::abs(std::log(size)) < kNearSize) offer(at_size(drawing, size), size * size);
   if (best < kClear)
-    for (const AxisSizes& by : stretches) offer(stretched(drawing, by), by.along * by.across);
+    for (const AxisSizes& by : stretches)
+      if (may_draw_all(by.along * by.across)) offer(stretched(drawing, by), by.along * by.across);
   if (best >= kAlike) return ground;
   if (!sights.bare() && best_score(mirror_image(drawing), truth, sights) >= kMirrored) return 1.0;
   return std::nullopt;

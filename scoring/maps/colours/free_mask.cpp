@@ -6,14 +6,14 @@
 #include <opencv2/imgproc.hpp>
 
 #include "scoring/maps/colours/canvas_corners.h"
+#include "scoring/maps/colours/half_width.h"
 #include "scoring/maps/colours/two_class_lines.h"
 
 namespace rubble::scoring {
 namespace {
 
 constexpr double kOfRim = 0.5;           // of the picture's rim that the rest has
-constexpr double kRestAreas = 0.02;      // of the picture that the rest covers in areas
-constexpr int kLeastMaskLines = 20;      // lines
+constexpr int kLeastSquare = 9;          // of ground that was never seen [pixels]
 constexpr double kEnclosedByPlan = 0.2;  // of the free ground, that walls of a drawing enclose
 constexpr int kMaskSlit = 5;             // in these [pixels]
 
@@ -45,15 +45,6 @@ double share_of_rim(const cv::Mat& mask, const cv::Mat& apart) {
   return all > 0.0 ? here / all : 0.0;
 }
 
-bool rest_covers_areas(const cv::Mat& rest, int width) {
-  cv::Mat areas;
-  const int side = std::max(9, 2 * width + 1);
-  cv::copyMakeBorder(rest, areas, side, side, side, side, cv::BORDER_REPLICATE);
-  cv::morphologyEx(areas, areas, cv::MORPH_OPEN, cv::Mat::ones(side, side, CV_8U));
-  return cv::countNonZero(areas(cv::Rect(side, side, rest.cols, rest.rows))) >=
-         kRestAreas * static_cast<double>(rest.total());
-}
-
 /// A drawing of walls on a page, in a canvas of the walls' grey: without the canvas its walls enclose free ground.
 bool is_drawing_on_canvas(const cv::Mat& grey, const cv::Mat& rest, const cv::Mat& free) {
   const cv::Mat canvas = canvas_corners(grey);
@@ -76,8 +67,9 @@ std::optional<FreeMask> free_mask(const cv::Mat& grey, const cv::Mat& apart) {
   const bool is_dark = share_of_rim(dark, apart) >= kOfRim;
   const cv::Mat &rest = is_dark ? dark : light, &free = is_dark ? light : dark;
   const ClassLines walls = lines_of(rest, free), ways = lines_of(free, rest);
-  if (walls.crossed < kLeastMaskLines || (2 * ways.crossed >= walls.crossed && ways.width <= walls.width) ||
-      !rest_covers_areas(rest, walls.width) || is_drawing_on_canvas(grey, rest, free))
+  if (walls.crossed < kLeastLines || (2 * ways.crossed >= walls.crossed && ways.width <= walls.width) ||
+      0.5 * walls.width > kThinLine * mean_half_width(free) ||
+      !covers_ground(rest, std::max(kLeastSquare, 2 * walls.width + 1), true) || is_drawing_on_canvas(grey, rest, free))
     return std::nullopt;
   FreeMask out;
   out.free = free;
@@ -90,7 +82,7 @@ std::optional<FreeMask> free_mask(const cv::Mat& grey, const cv::Mat& apart) {
                    " thick, what lies behind them is unknown";
   out.doubt =
       "walls and ground that was never seen have one grey: wherever free ground ends a wall was taken, also where "
-      "none stands";
+      "none stands; if the other grey is free ground, invert the picture";
   return out;
 }
 

@@ -14,14 +14,13 @@
 #include "scoring/maps/colours/free_mask.h"
 #include "scoring/maps/colours/half_width.h"
 #include "scoring/maps/colours/reading_doubts.h"
+#include "scoring/maps/colours/two_class_lines.h"
 
 namespace rubble::scoring {
 namespace {
 
 constexpr unsigned char kNoClass = 255;  // pixels of no class
-constexpr int kWidestClass = 16;         // wall that has two sides [pixels]
-constexpr int kLeastCrossings = 20;      // walls with two sides: fewer say nothing
-constexpr double kThinClass = 0.6;       // of the ground's mean distance to its rim, that walls have at the most
+constexpr int kUnknownSquare = 9;        // of ground that is unknown [pixels]
 constexpr double kSureOfGround = 0.75;   // of free and unknown ground
 constexpr double kMoreOfRim = 0.5;       // of the rim, that one ground has more of than the other
 constexpr double kAlikeThin = 1.5;       // times as thick: another class may be the walls
@@ -38,7 +37,7 @@ void count_crossings(const unsigned char* at, int length, Crossings& out) {
     const int begin = i;
     const unsigned char own = at[begin];
     while (i < length && at[i] == own) ++i;
-    if (own == kNoClass || i - begin > kWidestClass || begin == 0 || i == length) continue;
+    if (own == kNoClass || i - begin > kWidestLine || begin == 0 || i == length) continue;
     const unsigned char before = at[begin - 1];
     if (before != kNoClass && before == at[i]) ++out[own][before];
   }
@@ -78,6 +77,8 @@ std::vector<double> rim_shares(const cv::Mat& classes, std::size_t count) {
 struct Told {
   std::size_t wall = 0, free = 0;
   double sure_of_walls = 0.0, sure_of_ground = 1.0;
+  bool lies_in_free = false;      ///< free ground has most of the rim, as no map has it that lies in what is unknown
+  bool is_unknown_ground = true;  ///< what is unknown covers areas, or there is none: it is no lines or dots
 };
 
 /// The thinnest class with one ground on both its sides; nothing where there is none, or another is like it.
@@ -89,7 +90,7 @@ std::optional<std::size_t> walls_among(const Crossings& crossed, const std::vect
   };
   const auto may_be = [&](std::size_t i) {
     const std::size_t other = most(i);
-    return crossed[i][other] >= kLeastCrossings && depth[i] <= kThinClass * depth[other];
+    return crossed[i][other] >= kLeastLines && depth[i] <= kThinLine * depth[other];
   };
   for (std::size_t i = 0; i < crossed.size(); ++i)
     if (may_be(i) && (!out || depth[i] < depth[*out])) out = i;
@@ -130,10 +131,11 @@ std::optional<Told> told_by_shapes(const cv::Mat& classes, std::size_t count) {
         pixels >= kFurtherLines * static_cast<double>(classes.total()))
       return std::nullopt;
   }
+  out.lies_in_free = rim[out.free] >= kMoreOfRim;
   if (next == out.free) return out;
   double by_walls = within[out.free] / std::max(1.0, all);
   // A map lies in what is unknown, and not in what is free.
-  if (rim[out.free] - rim[next] >= kMoreOfRim && within[next] >= kLeastCrossings) {
+  if (rim[out.free] - rim[next] >= kMoreOfRim && within[next] >= kLeastLines) {
     std::swap(out.free, next);
     by_walls = within[out.free] / std::max(1.0, all);
   }
@@ -141,6 +143,10 @@ std::optional<Told> told_by_shapes(const cv::Mat& classes, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i)
     if (i != out.wall && i != out.free) unknown_rim += rim[i];
   out.sure_of_ground = std::max(by_walls, unknown_rim);
+  cv::Mat unknown = cv::Mat::zeros(classes.size(), CV_8U);
+  for (std::size_t i = 0; i < count; ++i)
+    if (i != out.wall && i != out.free) unknown |= classes == static_cast<int>(i);
+  out.is_unknown_ground = covers_ground(unknown, kUnknownSquare, false);
   return out;
 }
 
@@ -180,8 +186,9 @@ LabelImage classify_shares(const cv::Mat& grey, const cv::Mat& none, const std::
   classes.setTo(0, wall);
   classes.setTo(1, free);
   const std::optional<Told> told = told_by_shapes(classes, 2);
-  if (told && told->wall == 1) {
+  if (told && told->wall == 1 && !told->lies_in_free) {
     std::swap(wall, free);
+    out.doubt = kDoubt + std::string("if it holds the shares of walls, walls and free ground are exchanged");
     out.recognised = of_free + " and not P(occupied): low values are thin lines with high ones on both sides (" +
                      sure_text(told->sure_of_walls) + ")";
   }
@@ -214,7 +221,8 @@ LabelImage classify_labels(const cv::Mat& places, const cv::Mat& none, const Sam
   const std::optional<Told> told = told_by_shapes(classes, labels.size());
   const bool as_usual = told && labels[told->wall].grey == kWallGrey && labels[told->free].grey == kFreeGrey;
   LabelImage out = unknown_ground(places.size());
-  if (!notes.meaning.empty() && (!told || as_usual || told->sure_of_ground < kSureOfGround)) {
+  if (!notes.meaning.empty() &&
+      (!told || as_usual || told->sure_of_ground < kSureOfGround || !told->is_unknown_ground || told->lies_in_free)) {
     out.recognised = notes.meaning;
     set_class(out, Occupancy::Occupied, usual == kWallGrey);
     set_class(out, Occupancy::Free, usual == kFreeGrey);
@@ -235,7 +243,7 @@ LabelImage classify_labels(const cv::Mat& places, const cv::Mat& none, const Sam
     std::string comma;
     for (std::size_t i = 0; i < labels.size(); ++i)
       if (i != told->wall && i != told->free) out.recognised += comma + " " + number_text(labels[i].value), comma = ",";
-    if (told->sure_of_ground < kSureOfGround)
+    if (told->sure_of_ground < kSureOfGround || !told->is_unknown_ground)
       out.doubt = kDoubt + std::string("free and unknown ground may be the other way round");
   }
   return out;

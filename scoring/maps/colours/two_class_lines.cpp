@@ -2,11 +2,10 @@
 
 #include <array>
 #include <cstddef>
+#include <opencv2/imgproc.hpp>
 
 namespace rubble::scoring {
 namespace {
-
-constexpr int kWidestLine = 16;  // line that has two sides [pixels]
 
 using LineWidths = std::array<int, kWidestLine + 1>;
 
@@ -32,6 +31,15 @@ ClassLines lines_of(const cv::Mat& some, const cv::Mat& others) {
   for (int below = 0; out.width < kWidestLine && 2 * below < out.crossed;)
     below += widths[static_cast<std::size_t>(++out.width)];
   return out;
+}
+
+bool covers_ground(const cv::Mat& some, int side, bool goes_on) {
+  constexpr double kLeast = 0.02;  // of the picture
+  cv::Mat areas;
+  cv::copyMakeBorder(some, areas, side, side, side, side, goes_on ? cv::BORDER_REPLICATE : cv::BORDER_CONSTANT);
+  cv::morphologyEx(areas, areas, cv::MORPH_OPEN, cv::Mat::ones(side, side, CV_8U));
+  return cv::countNonZero(areas(cv::Rect(side, side, some.cols, some.rows))) >=
+         kLeast * static_cast<double>(some.total());
 }
 
 }  // namespace rubble::scoring

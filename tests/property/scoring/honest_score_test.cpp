@@ -181,7 +181,9 @@ TEST_P(HonestScore, SurroundingsCostNothing) {
   Ground next_door = GetParam();
   next_door.seed += 700;
   const OccupancyGrid two = joined_to(truth, truth_of(next_door));
-  const OccupancyGrid* const maps[] = {&hall, &two};
+  next_door.columns = 4, next_door.rows = 3;
+  const OccupancyGrid annex = joined_to(truth, truth_of(next_door));
+  const OccupancyGrid* const maps[] = {&hall, &two, &annex};
   for (const OccupancyGrid* const map : maps) {
     const MapScore score = score_at_pose(*map, truth, {});
     EXPECT_EQ(score.detached, 0.0);

@@ -108,13 +108,17 @@ const std::vector<Ground> kGrounds = {{"maze", 7, 7, 5}, {"yellow", 6, 7, 11}, {
 
 /// A mask does not tell walls from ground that was never seen; the walls around may have gaps or none.
 TEST_F(MeasuredFiles, MasksOfFreeGroundHaveTheScoreOfTheirMapAndSayWhatTheyLeaveOpen) {
-  std::size_t place = 0;
-  for (const Ground& ground : kGrounds)
-    for (const int gaps : {0, 5, 12, 30})
-      for (const int margin : {0, 10, 50}) {
+  const std::vector<int> all_gaps = {0, 5, 12, 30}, margins = {0, 10, 50};
+  const std::vector<std::pair<int, int>> greys = {{255, 0}, {0, 255}, {254, 205}, {200, 90}};
+  for (std::size_t g = 0; g < kGrounds.size(); ++g)
+    for (std::size_t i = 0; i < all_gaps.size(); ++i)
+      for (std::size_t m = 0; m < margins.size(); ++m) {
+        const Ground& ground = kGrounds[g];
+        const int gaps = all_gaps[i], margin = margins[m];
         const Pair pair(ground, gaps, margin);
-        for (const auto& [free, rest] : {std::pair{255, 0}, {0, 255}, {254, 205}, {200, 90}}) {
-          if (!is_tried(place++)) continue;
+        for (std::size_t k = 0; k < greys.size(); ++k) {
+          if (!is_tried(g + i + m + k)) continue;
+          const auto& [free, rest] = greys[k];
           const LoadedMap read = load_map(picture_of(pair.map, free, rest, "png"), {0.05});
           SCOPED_TRACE(ground.name() + ", " + std::to_string(gaps) + " gaps, margin " + std::to_string(margin) + ", " +
                        std::to_string(free) + " on " + std::to_string(rest) + ": " + read.recognised);
@@ -150,12 +154,14 @@ TEST_F(MeasuredFiles, LabelsAreToldByTheirShapesInAnyOrder) {
       all.push_back(order);
   all.insert(all.end(),
              {{1, 0, 2, "0"}, {2, 0, 1, "0"}, {0, 255, 1, "255"}, {1, 255, 0, "255"}, {1, 127, 2}, {10, 0, 20}});
-  std::size_t place = 0;
-  for (const Ground& ground : kGrounds) {
+  for (std::size_t g = 0; g < kGrounds.size(); ++g) {
+    const Ground& ground = kGrounds[g];
     const Pair pair(ground);
-    for (const Kind& kind : kinds)
-      for (const Values& v : all) {
-        if (!is_tried(place++)) continue;
+    for (std::size_t k = 0; k < kinds.size(); ++k)
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!is_tried(g + k + i)) continue;
+        const Kind& kind = kinds[k];
+        const Values& v = all[i];
         if (!kind.can_hold(v.wall) || !kind.can_hold(v.unknown) || !kind.can_hold(v.free)) continue;
         SCOPED_TRACE(ground.name() + ", " + kind.name + ": wall " + std::to_string(v.wall) + ", unknown " +
                      std::to_string(v.unknown) + ", free " + std::to_string(v.free) + ", no data " + v.no_data);
@@ -178,6 +184,36 @@ TEST_F(MeasuredFiles, LabelsWithoutLinesAreRefused) {
   // What such samples usually mean stays so.
   EXPECT_THAT(load_map(tiff_of(map, kFloat, {100, -1, 0}), {0.05}).recognised,
               ::testing::HasSubstr("per cent occupied from 0 to 100"));
+}
+
+/// Tunnels of half a metre in solid rock are thin lines of free ground, and the rock goes on to the rim.
+TEST_F(MeasuredFiles, ShapesDoNotOverruleWhatSamplesUsuallyMeanWhereRockIsAllAround) {
+  OccupancyGrid rock(GridFrame{200, 160, 0.05, 0.0, 0.0}, Occupancy::Occupied);
+  for (int y = 10; y < 150; ++y)
+    for (int x = 10; x < 190; ++x)
+      if (x % 40 < 10 || y % 40 < 10) rock[{x, y}] = Occupancy::Free;
+  const LoadedMap read = load_map(tiff_of(rock, kFloat, {1.0, 0.5, 0.0}), {0.05});
+  EXPECT_EQ(read.grid[read.grid.cell({0.1, 0.1})], Occupancy::Occupied) << read.recognised;
+  EXPECT_EQ(read.grid[read.grid.cell({2.2, 3.0})], Occupancy::Free) << read.recognised;
+}
+
+/// A hall cropped to its walls, with specks or dashes of unknown ground: dots are no walls.
+TEST_F(MeasuredFiles, DotsOfUnknownGroundAreNoWalls) {
+  OccupancyGrid hall(GridFrame{240, 180, 0.05, 0.0, 0.0}, Occupancy::Free);
+  for (int y = 0; y < hall.height(); ++y)
+    for (int x = 0; x < hall.width(); ++x)
+      if (x < 2 || y < 2 || x >= hall.width() - 2 || y >= hall.height() - 2 || (x >= 60 && x < 90 && y >= 40 && y < 44))
+        hall[{x, y}] = Occupancy::Occupied;
+  OccupancyGrid specks = hall, dashes = hall;
+  for (int i = 0; i < 150; ++i) specks[{10 + (i * 37) % 220, 50 + (i * 53) % 120}] = Occupancy::Unknown;
+  for (int y = 8; y < 170; y += 14)
+    for (int x = 10; x < 230; ++x)
+      if (x / 7 % 3 == 0 && dashes[{x, y}] == Occupancy::Free) dashes[{x, y}] = Occupancy::Unknown;
+  for (const OccupancyGrid* const map : {&specks, &dashes}) {
+    const LoadedMap read = load_map(tiff_of(*map, {"signed bytes", 8, SAMPLEFORMAT_INT}, {100, -1, 0}), {0.05});
+    EXPECT_EQ(read.grid[read.grid.cell({3.5, 2.1})], Occupancy::Occupied) << read.recognised;
+    EXPECT_EQ(read.grid[read.grid.cell({1.0, 1.0})], Occupancy::Free) << read.recognised;
+  }
 }
 
 TEST_F(MeasuredFiles, ProbabilitiesOfFreeGroundAreToldFromThoseOfWalls) {

@@ -41,6 +41,14 @@ TEST(FreeMask, IsNoDrawingOfWallsOnAPage) {
   EXPECT_FALSE(free_mask(~picture, nothing(picture)).has_value());
 }
 
+/// Racks in a store: obstacles on free ground, with aisles between them hardly narrower than they are wide.
+TEST(FreeMask, IsNoPlanOfRacks) {
+  cv::Mat picture(180, 240, CV_8U, cv::Scalar(255));
+  for (int x = 20; x < 220; x += 22) picture(cv::Rect(x, 20, 12, 140)).setTo(0);
+  EXPECT_FALSE(free_mask(picture, nothing(picture)).has_value());
+  EXPECT_FALSE(free_mask(~picture, nothing(picture)).has_value());
+}
+
 /// The page lies on black, upright: without that its walls enclose free ground.
 TEST(FreeMask, IsNoPageOnACanvasOfTheWallsGrey) {
   cv::Mat picture;
