@@ -36,6 +36,7 @@ constexpr double kLeastSum = 1.6;     // of the log odds and twice the margin
 constexpr double kLeastKappa = 0.3;   // below, walls meet no more often than chance would have it
 // Other arenas at their best pose are right about lines of sight by less than this beyond luck.
 constexpr double kAgreesWell = 0.25;
+constexpr const char* kStartIf = " (--start where the map counts from the robot's start)";
 constexpr const char* kNowhere = "; probably another arena, or too little of this one, or too damaged";
 
 double net(const WallEvidence& e, double chance, double contradiction) {
@@ -141,14 +142,15 @@ std::string why_rivalled(const NearRivals& rivals, const std::optional<double>& 
                                       : "mirrored, the map fits about as well");
   }
   if (*beyond_luck < kAgreesWell) {
-    out += std::string("agrees nowhere with the truth, even at its best pose hardly better than a guess") + kNowhere;
+    out += std::string("agrees nowhere with the truth, even at its best pose little better than a guess") + kNowhere;
     return out + (rivals.mirrored ? ", or a flipped picture" : "");
   }
-  const std::string how = ", for the arena repeats itself: --start or --pose says where it lies";
+  const std::string how =
+      std::string(", for the arena repeats itself: --start or --pose says where it lies") + kStartIf;
   if (!rivals.mirrored) return out + "agrees well at several poses" + how;
   if (rivals.another_pose) return out + "agrees well at several poses, and as well mirrored" + how;
-  return out + "agrees well, and as well mirrored, for the arena is nearly its own mirror image: --start or --pose " +
-         "says where it lies, if the picture is not flipped";
+  return out + "agrees well, and as well mirrored, for the arena is nearly its own mirror image or the map came " +
+         "apart: --start or --pose says where it lies" + kStartIf + ", if the picture is not flipped";
 }
 
 void Rivals::meet(const PoseEvidence& wide, const PoseEvidence& tight_evidence) {

@@ -123,6 +123,26 @@ TEST_P(HonestScore, ASecondDrawingOnTheCanvasCosts) {
   EXPECT_LE(at_true_pose(beside_copies(truth, {1.0}), truth), 0.55 * alone);
 }
 
+/// Nor does it help to cut another arena beside it into pieces, each too small to count by itself.
+TEST_P(HonestScore, AnotherArenaInPiecesOnTheCanvasCosts) {
+  Ground other = GetParam();
+  other.seed += 700;
+  OccupancyGrid second = truth_of(other);
+  const int across = second.width() / 5, along = second.height() / 5;
+  for (int y = 0; y < second.height(); ++y)
+    for (int x = 0; x < second.width(); ++x)
+      if (x % across < 3 || y % along < 3) second[{x, y}] = Occupancy::Unknown;
+  OccupancyGrid both = joined_to(truth, second);
+  const GridFrame first = *known_frame(truth, 0.0);
+  const double east = first.x0 + first.width * first.resolution;  // [m]
+  for (int y = 0; y < both.height(); ++y)
+    for (int x = 0; x < both.width(); ++x) {
+      const double beyond = both.centre({x, y}).x - east;
+      if (beyond > 0.0 && beyond < 16 * both.resolution()) both[{x, y}] = Occupancy::Unknown;
+    }
+  EXPECT_LE(at_true_pose(both, truth), 0.65);
+}
+
 /// Joined by a strip of free space the two are one piece, and are told by what they draw.
 TEST_P(HonestScore, ASecondDrawingJoinedToTheFirstCosts) {
   for (const double size : {0.76, 0.82, 0.9, 1.0, 1.1, 1.27}) {
