@@ -11,6 +11,7 @@
 #include "arenas/truth/truth_map.h"
 #include "bench/scoring_data.h"
 #include "scoring/alignment/second_drawing.h"
+#include "scoring/measures/beyond_walls.h"
 #include "scoring/measures/detached.h"
 #include "scoring/measures/sight_lines.h"
 #include "scoring/scorecard.h"
@@ -128,8 +129,9 @@ class Judge {
  public:
   explicit Judge(const OccupancyGrid& truth) : truth_(truth), sights_(truth) {}
   double operator()(const OccupancyGrid& map) const {
-    const double twice = std::max(detached_share(map, truth_, PlanarTransform()),
-                                  second_drawing_share(map, truth_, PlanarTransform(), sights_));
+    const PlanarTransform T;
+    const double twice = std::max({detached_share(map, truth_, T), share_beyond_walls(map, truth_, T),
+                                   second_drawing_share(map, truth_, T, sights_)});
     return sights_.at(map, PlanarTransform()).score * (1.0 - twice);
   }
   const SightLines& sights() const { return sights_; }

@@ -13,6 +13,7 @@
 #include "scoring/alignment/other_scale.h"
 #include "scoring/alignment/second_drawing.h"
 #include "scoring/alignment/trust.h"
+#include "scoring/measures/beyond_walls.h"
 #include "scoring/measures/detached.h"
 #include "scoring/measures/psi.h"
 #include "scoring/measures/sight_lines.h"
@@ -130,8 +131,9 @@ void fill_sights(MapScore& out, const OccupancyGrid& truth, const Walls& walls) 
   const SightAgreement sights = walls.sights.at(walls.seen, PlanarTransform(out.T_truth_map));
   out.sight_known = sights.known;
   out.sight_kappa = sights.kappa;
-  out.detached = std::max(detached_share(walls.map, truth, PlanarTransform(out.T_truth_map)),
-                          second_drawing_share(walls.map, truth, PlanarTransform(out.T_truth_map), walls.sights));
+  const PlanarTransform T(out.T_truth_map);
+  out.detached = std::max({detached_share(walls.map, truth, T), share_beyond_walls(walls.map, truth, T),
+                           second_drawing_share(walls.map, truth, T, walls.sights)});
   const double score = walls.sights.usable() ? sights.score : walls.overlaps.at(PlanarTransform(out.T_truth_map)).score;
   out.score_at_best_pose = score * (1.0 - out.detached);
 }

@@ -125,9 +125,11 @@ std::optional<double> ground_where_alike(const OccupancyGrid& drawing, const Occ
                                          const OccupancyGrid& truth, const SightLines& sights) {
   std::vector<double> sizes = sizes_about(1.0, kSizeStep, sights.bare() ? kSizeStepsBare : kSizeSteps);
   std::vector<AxisSizes> stretches;
+  std::vector<double> mirrored = {1.0};
   for (const OccupancyGrid* const other : {&truth, &on}) {
     if (sights.bare()) break;
     const ToldSizes told = sizes_told(drawing, *other);
+    mirrored.insert(mirrored.end(), told.sizes.begin(), told.sizes.end());
     for (const double size : told.sizes)
       for (const double near : sizes_about(size, kSizeStep, kSizeStepsTold))
         if (near < sizes.front() / kSizeStep || near > kSizeStep / sizes.front()) sizes.push_back(near);
@@ -150,7 +152,10 @@ std::optional<double> ground_where_alike(const OccupancyGrid& drawing, const Occ
     for (const AxisSizes& by : stretches)
       if (may_draw_all(by.along * by.across)) offer(stretched(drawing, by), by.along * by.across);
   if (best >= kAlike) return ground;
-  if (!sights.bare() && best_score(mirror_image(drawing), truth, sights) >= kMirrored) return 1.0;
+  const OccupancyGrid image = mirror_image(drawing);
+  for (const double size : mirrored)
+    if (!sights.bare() && may_draw_all(size * size) && best_score(at_size(image, size), truth, sights) >= kMirrored)
+      return size * size;
   return std::nullopt;
 }
 

@@ -189,6 +189,18 @@ TEST_P(HonestScore, FinerPixelsChangeNothing) {
   EXPECT_NEAR(judge(moved(map, 0.0, 0.0, 0.0, 0.5 * map.resolution())), judge(map), 0.01);
 }
 
+/// The truth with a way out to the east, where joined_to() draws its strip.
+OccupancyGrid with_a_door(const OccupancyGrid& truth, const OccupancyGrid& next_door) {
+  const GridFrame a = *known_frame(truth, 0.0);
+  const GridFrame b = *known_frame(next_door, 0.0);
+  const Cell low = truth.cell({a.x0 + 0.5 * a.resolution, a.y0 + 0.5 * a.resolution});
+  const int row = low.y + std::min(a.height, b.height) / 2;
+  OccupancyGrid out = truth;
+  for (int y = row - 8; y < row + 8; ++y)
+    for (int x = low.x + a.width - 6; x < low.x + a.width; ++x) out[{x, y}] = Occupancy::Free;
+  return out;
+}
+
 /// What surrounds an arena is no second drawing, however large: a hall around it, or the arena next door.
 TEST_P(HonestScore, SurroundingsCostNothing) {
   const int rim = static_cast<int>(std::lround(3.0 / truth.resolution()));
@@ -198,17 +210,30 @@ TEST_P(HonestScore, SurroundingsCostNothing) {
       const bool wall = x < 3 || y < 3 || x >= hall.width() - 3 || y >= hall.height() - 3;
       if (hall[{x, y}] == Occupancy::Unknown) hall[{x, y}] = wall ? Occupancy::Occupied : Occupancy::Free;
     }
+  const MapScore in_hall = score_at_pose(hall, truth, {});
+  EXPECT_EQ(in_hall.detached, 0.0);
+  EXPECT_GE(in_hall.score, 0.99);
   Ground next_door = GetParam();
   next_door.seed += 700;
-  const OccupancyGrid two = joined_to(truth, truth_of(next_door));
-  next_door.columns = 4, next_door.rows = 3;
-  const OccupancyGrid annex = joined_to(truth, truth_of(next_door));
-  const OccupancyGrid* const maps[] = {&hall, &two, &annex};
-  for (const OccupancyGrid* const map : maps) {
-    const MapScore score = score_at_pose(*map, truth, {});
+  for (const bool is_annex : {false, true}) {
+    if (is_annex) next_door.columns = 4, next_door.rows = 3;
+    const OccupancyGrid other = truth_of(next_door);
+    const OccupancyGrid open = with_a_door(truth, other);
+    const MapScore score = score_at_pose(joined_to(open, other), open, {});
     EXPECT_EQ(score.detached, 0.0);
     EXPECT_GE(score.score, 0.99);
   }
+}
+
+/// Where walls close the truth all around nobody can have seen an arena next door, whatever it shows: it is one guess
+/// more.
+TEST_P(HonestScore, AnArenaBeyondClosedWallsCosts) {
+  Ground next_door = GetParam();
+  next_door.seed += 700;
+  EXPECT_LE(score_at_pose(joined_to(truth, truth_of(next_door)), truth, {}).score, 0.55);
+  const OccupancyGrid bowed = bent(padded(truth, 40), 3.0);
+  EXPECT_LE(score_at_pose(joined_to(truth, bowed), truth, {}).score, 0.6);
+  EXPECT_LE(score_at_pose(joined_to(truth, drawn_at(mirror_image(truth), 0.5, 0.5)), truth, {}).score, 0.55);
 }
 
 /// Where the walls around are says the floor that is known, seen or not: they earn nothing, and who lacks some of them
