@@ -126,10 +126,7 @@ void print_row(const std::string& label, const std::string& value, int width) {
   std::printf("%-*s %s\n", width, one_line(label).c_str(), one_line(value).c_str());
 }
 
-void print_not_aligned(const std::string& note) {
-  const std::string label = "not aligned", head = label + ": ";
-  print_row(label, note.rfind(head, 0) == 0 ? note.substr(head.size()) : note);
-}
+void print_not_aligned(const std::string& note) { print_row("not aligned", scoring::reason_of(note)); }
 
 void print_figure(const scoring::Figure& figure, const std::string& text, bool explained) {
   print_row(figure.label, explained && !figure.meaning.empty() ? padded(text) + figure.meaning : text);

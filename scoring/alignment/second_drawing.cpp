@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <vector>
 
-#include "base/distance_transform.h"
 #include "base/rigid.h"
 #include "scoring/alignment/drawing_sizes.h"
 #include "scoring/alignment/pose_search.h"
+#include "scoring/measures/off_truth.h"
 #include "scoring/proposals/correlation.h"
 #include "scoring/walls/resample.h"
 #include "scoring/walls/specks.h"
@@ -19,16 +18,15 @@
 namespace rubble::scoring {
 namespace {
 
-constexpr double kSurvey = 0.5;    // what a map knows so near to the truth's known ground belongs to it [m]
 constexpr double kLegend = 0.1;    // of what lies on the truth: less is no drawing
 constexpr double kAlike = 0.25;    // score: strangers reach 0.2 at their best pose
 constexpr double kClear = 0.6;     // the same that leaves no doubt about the size
 constexpr double kMirrored = 0.5;  // the same of a mirror image, lest there be twice as much luck
 constexpr double kSizeStep = 1.05;
 constexpr int kSizeSteps = 19;       // to 0.4 and 2.5 times the size
-constexpr int kSizeStepsBare = 7;    // to 0.7 and 1.4 times: an empty hall is any other one at another size
+constexpr int kSizeStepsNear = 7;    // to 0.7 and 1.4 times: tried however much ground there is; of a bare truth no
+                                     // others, for an empty hall is any other one at another size
 constexpr int kSizeStepsTold = 1;    // about each size that extents tell
-constexpr double kNearSize = 0.36;   // of the logarithm: 0.7 to 1.4 times, tried however much ground there is
 constexpr double kMostGround = 4.0;  // of the truth's, that a drawing of another size covers
 constexpr std::size_t kPoses = 3;    // the best of each size ...
 constexpr int kGuesses = 6;          // ... of so many
@@ -50,22 +48,12 @@ struct Parted {
 };
 
 Parted part(const OccupancyGrid& map, const OccupancyGrid& truth, const PlanarTransform& T_truth_map) {
-  GridFrame frame = truth.frame();
-  const int rim = static_cast<int>(std::ceil(kSurvey / frame.resolution)) + 1;
-  frame.x0 -= rim * frame.resolution;
-  frame.y0 -= rim * frame.resolution;
-  frame.width += 2 * rim;
-  frame.height += 2 * rim;
-  Grid<std::uint8_t> known(frame);
-  for (int y = 0; y < truth.height(); ++y)
-    for (int x = 0; x < truth.width(); ++x) known[{x + rim, y + rim}] = truth[{x, y}] != Occupancy::Unknown ? 1 : 0;
-  const Grid<float> away = distance_transform(known, 2.0 * kSurvey);
+  const OffTruth off_truth(truth, kSurvey);
   Parted out{OccupancyGrid(map.frame()), OccupancyGrid(map.frame())};
   for (int y = 0; y < map.height(); ++y)
     for (int x = 0; x < map.width(); ++x) {
       if (map[{x, y}] == Occupancy::Unknown) continue;
-      const Cell c = away.cell(T_truth_map(map.centre({x, y})));
-      const bool on = away.inside(c) && static_cast<double>(away[c]) <= kSurvey;
+      const bool on = off_truth(T_truth_map(map.centre({x, y}))) <= kSurvey;
       (on ? out.cells_on : out.cells_off) += 1.0;
       (on ? out.on : out.off)[{x, y}] = map[{x, y}];
     }
@@ -123,7 +111,7 @@ double best_score(const OccupancyGrid& drawing, const OccupancyGrid& truth, cons
 /// How many times as much ground the drawing covers at the size at which it draws the truth again.
 std::optional<double> ground_where_alike(const OccupancyGrid& drawing, const OccupancyGrid& on,
                                          const OccupancyGrid& truth, const SightLines& sights) {
-  std::vector<double> sizes = sizes_about(1.0, kSizeStep, sights.bare() ? kSizeStepsBare : kSizeSteps);
+  std::vector<double> sizes = sizes_about(1.0, kSizeStep, sights.bare() ? kSizeStepsNear : kSizeSteps);
   std::vector<AxisSizes> stretches;
   std::vector<double> mirrored = {1.0};
   for (const OccupancyGrid* const other : {&truth, &on}) {
@@ -138,6 +126,8 @@ std::optional<double> ground_where_alike(const OccupancyGrid& drawing, const Occ
   // With less ground it cannot earn that; with much more it is not what it is at its own size.
   const double own = known_m2(drawing) / known_m2(truth);
   const auto may_draw_all = [&](double times) { return times * own >= kAlike && times * own <= kMostGround; };
+  const double nearest_beyond = std::pow(kSizeStep, kSizeStepsNear + 0.5);
+  const auto is_near = [&](double size) { return std::max(size, 1.0 / size) < nearest_beyond; };
   double best = 0.0;
   double ground = 0.0;
   const auto offer = [&](const OccupancyGrid& as, double times) {
@@ -147,7 +137,7 @@ std::optional<double> ground_where_alike(const OccupancyGrid& drawing, const Occ
     ground = times;
   };
   for (const double size : sizes)
-    if (may_draw_all(size * size) || std::abs(std::log(size)) < kNearSize) offer(at_size(drawing, size), size * size);
+    if (may_draw_all(size * size) || is_near(size)) offer(at_size(drawing, size), size * size);
   if (best < kClear)
     for (const AxisSizes& by : stretches)
       if (may_draw_all(by.along * by.across)) offer(stretched(drawing, by), by.along * by.across);

@@ -1,21 +1,19 @@
 #include "scoring/measures/beyond_walls.h"
 
 #include <cmath>
-#include <cstdint>
 #include <opencv2/imgproc.hpp>
 
-#include "base/distance_transform.h"
+#include "scoring/measures/off_truth.h"
 #include "scoring/measures/sight_lines.h"
 #include "scoring/walls/resample.h"
 
 namespace rubble::scoring {
 namespace {
 
-constexpr double kSeam = 0.15;     // in walls: rasters leave such [m]
-constexpr double kLeaks = 0.01;    // of the free ground, that a way out would reach
-constexpr double kSurveyed = 0.5;  // what a map knows so near to the truth's known ground belongs to it [m]
-constexpr double kBeyond = 2.0;    // [m]
-constexpr double kMuchFar = 0.1;   // of what lies on the truth
+constexpr double kSeam = 0.15;    // in walls: rasters leave such [m]
+constexpr double kLeaks = 0.01;   // of the free ground, that a way out would reach
+constexpr double kBeyond = 2.0;   // [m]
+constexpr double kMuchFar = 0.1;  // of what lies on the truth
 
 /// No way leads from the rim of the canvas to the free ground but through walls.
 bool is_closed(const OccupancyGrid& truth) {
@@ -37,24 +35,14 @@ bool is_closed(const OccupancyGrid& truth) {
 }  // namespace
 
 double share_beyond_walls(const OccupancyGrid& map, const OccupancyGrid& truth, const PlanarTransform& T_truth_map) {
-  GridFrame frame = truth.frame();
-  const int rim = static_cast<int>(std::ceil(kBeyond / frame.resolution)) + 1;
-  frame.x0 -= rim * frame.resolution;
-  frame.y0 -= rim * frame.resolution;
-  frame.width += 2 * rim;
-  frame.height += 2 * rim;
-  Grid<std::uint8_t> known(frame);
-  for (int y = 0; y < truth.height(); ++y)
-    for (int x = 0; x < truth.width(); ++x) known[{x + rim, y + rim}] = truth[{x, y}] != Occupancy::Unknown ? 1 : 0;
-  const Grid<float> away = distance_transform(known, 2.0 * kBeyond);
+  const OffTruth off_truth(truth, kBeyond);
   OccupancyGrid beyond(map.frame());
   double on = 0.0, off = 0.0, far = 0.0;
   for (int y = 0; y < map.height(); ++y)
     for (int x = 0; x < map.width(); ++x) {
       if (map[{x, y}] == Occupancy::Unknown) continue;
-      const Cell c = away.cell(T_truth_map(map.centre({x, y})));
-      const double distance = away.inside(c) ? static_cast<double>(away[c]) : 2.0 * kBeyond;
-      if (distance <= kSurveyed) {
+      const double distance = off_truth(T_truth_map(map.centre({x, y})));
+      if (distance <= kSurvey) {
         on += 1.0;
         continue;
       }

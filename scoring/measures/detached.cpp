@@ -4,11 +4,12 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "scoring/measures/sight.h"
+
 namespace rubble::scoring {
 namespace {
 
 constexpr double kLegend = 0.1;  // of what lies on the truth: less is a legend or specks
-constexpr double kStrip = 0.55;  // of unknown ground between pieces of one drawing [m]
 
 }  // namespace
 
@@ -38,7 +39,7 @@ double detached_share(const OccupancyGrid& map, const OccupancyGrid& truth, cons
       const int piece = labels.at<int>(y, x);
       if (piece > 0 && !touches[static_cast<std::size_t>(piece)]) apart.at<unsigned char>(y, x) = 255;
     }
-  const int reach = static_cast<int>(std::ceil(0.5 * kStrip / map.resolution()));
+  const int reach = static_cast<int>(std::ceil(0.5 * kNarrowUnknown / map.resolution()));
   cv::Mat grown, groups;
   cv::dilate(apart, grown, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
   std::vector<double> areas(static_cast<std::size_t>(cv::connectedComponents(grown, groups, 8)), 0.0);

@@ -11,6 +11,9 @@
 
 namespace rubble::scoring {
 
+constexpr double kNarrowUnknown =
+    0.55;  ///< unknown ground between known ground hides nothing: a halo around a wall [m]
+
 /// A map prepared to be looked across at many poses. The map must outlive it.
 struct SightMap {
   explicit SightMap(const OccupancyGrid& source, Ragged ragged = Ragged::AreWalls)
@@ -46,8 +49,9 @@ struct Sight {
   }
   /// Short unknown stretches between known ground are open ground: whoever knows both sides of a wall knows the wall.
   void close_holes(double length) {
-    constexpr double kHole = 0.55;  // a halo around a wall [m]
-    const auto is_hole = [&](const Stretch& s) { return s.from > 0.0 && s.to < length && s.to - s.from <= kHole; };
+    const auto is_hole = [&](const Stretch& s) {
+      return s.from > 0.0 && s.to < length && s.to - s.from <= kNarrowUnknown;
+    };
     unseen.erase(std::remove_if(unseen.begin(), unseen.end(), is_hole), unseen.end());
   }
   bool sees(double at) const {
