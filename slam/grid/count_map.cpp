@@ -42,8 +42,8 @@ Extent growth(double low, double high, int size, int max_cells) {
 }
 
 template <class T>
-void move_plane(std::vector<T>& plane, const GridFrame& from, const GridFrame& to, Extent x, Extent y) {
-  std::vector<T> grown(to.size(), T{0});
+void move_plane(LargeVector<T>& plane, const GridFrame& from, const GridFrame& to, Extent x, Extent y) {
+  LargeVector<T> grown(to.size(), T{0});
   for (int row = 0; row < from.height; ++row) {
     const auto source = plane.begin() + static_cast<std::ptrdiff_t>(from.index({0, row}));
     std::copy(source, source + from.width, grown.begin() + static_cast<std::ptrdiff_t>(to.index({x.low, row + y.low})));
@@ -75,18 +75,19 @@ void CountMap::clear_hits(const std::vector<Cell>& cells) {
   ++version_;
 }
 
-void CountMap::assign(const GridFrame& frame, std::vector<std::uint16_t> seen, std::vector<std::uint16_t> occupied) {
+void CountMap::assign(const GridFrame& frame, const std::vector<std::uint16_t>& seen,
+                      const std::vector<std::uint16_t>& occupied) {
   if (frame.width <= 0 || frame.height <= 0 || !(frame.resolution > 0.0) || seen.size() != frame.size() ||
       occupied.size() != frame.size())
     throw std::invalid_argument("CountMap: two planes of the frame's size are needed");
-  std::vector<std::uint8_t> p_occ(frame.size(), 0);
+  LargeVector<std::uint8_t> p_occ(frame.size(), 0);
   for (std::size_t cell = 0; cell < seen.size(); ++cell) {
     if (occupied[cell] > seen[cell]) throw std::invalid_argument("CountMap: occupied more often than seen");
     if (occupied[cell] > 0) p_occ[cell] = ratio(occupied[cell], seen[cell]);
   }
   frame_ = frame;
-  seen_ = std::move(seen);
-  occupied_ = std::move(occupied);
+  seen_.assign(seen.begin(), seen.end());
+  occupied_.assign(occupied.begin(), occupied.end());
   p_occ_ = std::move(p_occ);
   ++version_;
 }

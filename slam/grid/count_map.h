@@ -8,6 +8,7 @@
 
 #include "base/angle.h"
 #include "base/grid.h"
+#include "base/large_pages.h"
 #include "slam/grid/bit_raster.h"
 #include "slam/grid/scan_polygon.h"
 
@@ -57,7 +58,8 @@ class CountMap {
   /// Takes over a whole map that was counted elsewhere; both planes are frame.size() counts, row-major. Throws
   /// std::invalid_argument when a plane has another size, the frame is empty, or a cell was occupied more often than
   /// seen.
-  void assign(const GridFrame& frame, std::vector<std::uint16_t> seen, std::vector<std::uint16_t> occupied);
+  void assign(const GridFrame& frame, const std::vector<std::uint16_t>& seen,
+              const std::vector<std::uint16_t>& occupied);
 
   /// Makes cells free that were hit: their hits no longer count.
   void clear_hits(const std::vector<Cell>& cells);
@@ -88,9 +90,9 @@ class CountMap {
 
   GridFrame frame_;
   int max_cells_;
-  std::vector<std::uint16_t> seen_;
-  std::vector<std::uint16_t> occupied_;
-  std::vector<std::uint8_t> p_occ_;
+  LargeVector<std::uint16_t> seen_;  // each time the map grows these are new memory
+  LargeVector<std::uint16_t> occupied_;
+  LargeVector<std::uint8_t> p_occ_;
   std::uint64_t version_ = 0;
   std::uint64_t dropped_hits_ = 0;
   BitRaster passed_;           ///< work space of stamp(); windows begin at whole words, so that two can be compared
