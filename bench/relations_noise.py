@@ -12,7 +12,8 @@ import numpy as np
 import scipy.sparse as sparse
 from scipy.sparse.linalg import splu
 
-SIGMA_M, SIGMA_RAD = 0.01, 0.005  # only their ratio matters
+SIGMA_M, SIGMA_RAD = 0.01, 0.005  # about those of Intel; it is their ratio that matters
+LATEST = 0.01  # the estimate must have a pose so close to each stamp [s]
 CONFIRMED = 0.9  # leverage: beyond, a relation is all that ties its poses
 
 
@@ -23,7 +24,10 @@ def read_estimate(path):
 
 def nearest(stamps, asked):
     after = np.clip(np.searchsorted(stamps, asked), 1, len(stamps) - 1)
-    return np.where(stamps[after] - asked < asked - stamps[after - 1], after, after - 1)
+    found = np.where(stamps[after] - asked < asked - stamps[after - 1], after, after - 1)
+    if (late := np.abs(stamps[found] - asked).max()) > LATEST:
+        sys.exit(f"the estimate has no pose within {LATEST} s of each stamp (worst: {late:.3f} s): is it of another log?")
+    return found
 
 
 def residuals(poses, first, second, measured):
@@ -85,8 +89,8 @@ def main(relations_path, estimate_path):
     left = residuals(poses, first, second, measured)
     freedom = len(relations) - len(poses) + pieces(len(poses), first, second)
     sigma = np.sqrt((left[:, :2] ** 2).sum() / (2 * freedom))
-    rows = J[:2 * len(relations)].toarray()
-    leverage = np.array([row @ factor.solve(row) for row in rows]).reshape(2, -1).mean(axis=0)
+    rows = J[:2 * len(relations)]
+    leverage = np.array([row @ factor.solve(row.toarray().ravel()) for row in rows]).reshape(2, -1).mean(axis=0)
     confirmed = leverage < CONFIRMED
     own = np.hypot(*left[:, :2].T) / np.sqrt(np.maximum(1 - leverage, 1e-9))
     gap = np.abs(relations[:, 1] - relations[:, 0])

@@ -101,6 +101,9 @@ class Mapper {
   virtual std::vector<MapperFigure> figures() const { return {}; }
   /// Null: this kind keeps none.
   virtual const ScanRecords* scan_records() const { return nullptr; }
+  /// CSV: a line for each place that a search for loops found, with the tests it stood; empty from mappers that look
+  /// for none.
+  virtual std::string loop_table() const { return {}; }
   /// The map with all that a mapper needs to go on with it in another run, as bytes (slam/robust/map/saved_map.h).
   /// Empty: this kind cannot, or nothing is mapped.
   virtual std::string saved_map() const { return {}; }

@@ -18,6 +18,7 @@ struct MapArguments {
   std::string go_on;
   std::string localise;
   std::string start;
+  std::string relations;
   RunFolderOptions folder;
 };
 
@@ -43,6 +44,7 @@ int map(const MapArguments& arguments) {
     throw UsageError("--start: needs a map; give it with --continue or --localise");
   const auto start = start_of(arguments.start);
   if (!map.empty()) options.base = scenarios::load_map_base(map, !arguments.go_on.empty(), start);
+  options.relations = arguments.relations;
   return show(scenarios::map_log(recorded_log(arguments.log), scenario, options));
 }
 
@@ -51,6 +53,7 @@ int map(const MapArguments& arguments) {
 Command map_command() {
   return {"map", "Map a recorded log (own log, MRPT .rawlog, CARMEN, CoreSLAM .dat)",
           "Examples:\n  rubble map intel.log.gz\n  rubble map lab.rawlog --set mapper.resolution_m=0.1\n"
+          "  rubble map intel.clf.bz2 --relations intel.relations\n"
           "  rubble map tuesday.rawlog --continue runs/monday\n  rubble map tuesday.rawlog --localise runs/monday",
           [](Options& o) -> Action {
             auto a = std::make_shared<MapArguments>();
@@ -62,6 +65,8 @@ Command map_command() {
             o.text("--localise", a->localise, "Find the robot in the map of this run, and leave the map as it is");
             o.text("--start", a->start, "Where in that map the robot starts: x,y,heading_deg");
             o.excludes("--continue", "--localise");
+            o.text("--relations", a->relations,
+                   "Judge the trajectory by these relations between moments of the log (Kuemmerle et al. 2009)");
             a->folder.declare(o);
             return [a] { return map(*a); };
           }};

@@ -247,12 +247,19 @@ BenchmarkResult summary(const std::vector<BenchmarkResult>& runs) {
 }
 
 void judge(const BenchmarkCase& what, BenchmarkResult& result) {
-  const auto ask = [&](const std::optional<double>& goal, const std::optional<double>& value) {
-    if (goal && value) result.goal_met = result.goal_met.value_or(true) && *value <= *goal;
+  const auto ask = [&](const std::optional<double>& goal, const std::optional<double>& value, const char* column) {
+    if (!goal || !value) return;
+    const bool met = *value <= *goal;
+    result.goal_met = result.goal_met.value_or(true) && met;
+    if (!met) result.goals_missed.emplace_back(column);
   };
-  ask(what.goal, result.error_m);
-  ask(what.live_goal, result.live_error_m);
-  ask(what.worst_goal, result.worst_m);
+  ask(what.goal, result.error_m, "error");
+  ask(what.worst_goal, result.worst_m, "worst");
+  ask(what.live_goal, result.live_error_m, "known at the scan");
+  if (result.scans == 0) return;
+  if (what.speed_goal) ask(-*what.speed_goal, -result.scans_per_second, "scans/s");
+  ask(what.slow_goal, result.slow_ms, "99 % ms");
+  ask(what.worst_time_goal, result.worst_ms, "worst ms");
 }
 
 /// Where the files of a case lie.

@@ -28,7 +28,8 @@ struct BenchmarkResult {
   double peak_mb = 0.0;
   std::optional<double> loops_closed;
   std::optional<double> loops_removed;
-  std::optional<bool> goal_met;  ///< all of the case's; nothing: it has none, or nothing was measured
+  std::optional<bool> goal_met;           ///< all of the case's; nothing: it has none, or nothing was measured
+  std::vector<std::string> goals_missed;  ///< the columns that are not
 };
 
 struct BenchmarkRow {

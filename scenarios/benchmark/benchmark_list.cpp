@@ -48,6 +48,9 @@ BenchmarkCase read_case(const YamlMap& map) {
   c.goal = goal("goal_m");
   c.live_goal = goal("live_goal_m");
   c.worst_goal = goal("worst_goal_m");
+  c.speed_goal = goal("scans_per_s_goal");
+  c.slow_goal = goal("ms_99_goal");
+  c.worst_time_goal = goal("worst_ms_goal");
   if (c.worst_goal && c.seeds.size() < 2) map.fail("worst_goal_m", "is of several seeds; give 'seeds' beside it");
   for (const YamlMap& row : map.maps("published"))
     c.published.push_back({row.text("by", std::nullopt), row.text("source", std::nullopt),

@@ -96,6 +96,7 @@ void save_map_files(const RunFolder& folder, const slam::Mapper& mapper) {
   if (records == nullptr || records->stamps.empty()) return;
   folder.write("scans.csv", csv_of(*records));
   folder.write("scans.png", png_bytes(scan_picture(*records)));
+  if (const std::string loops = mapper.loop_table(); !loops.empty()) folder.write("loops.csv", loops);
 }
 
 std::shared_ptr<const slam::MapBase> load_map_base(const std::string& path, bool grows,

@@ -36,6 +36,7 @@
 #include "scoring/pictures/picture.h"
 #include "scoring/pictures/sight_picture.h"
 #include "scoring/scorecard.h"
+#include "scoring/trajectory/relative_error.h"
 #include "scoring/trajectory/trajectory_error.h"
 
 namespace rubble::scenarios {
@@ -303,6 +304,8 @@ void name_as_the_log_does(const RunFolder& folder, const robot::ReplayRobot& rob
 RunReport map_log(const std::string& log, const Scenario& scenario, const RunOptions& options) {
   const auto start = Clock::now();
   scenario.mapper.require_permission();
+  std::vector<scoring::Relation> relations;
+  if (!options.relations.empty()) relations = scoring::read_relations(options.relations);
   robot::ReplayRobot robot(log);
   Scenario resolved = scenario;
   if (resolved.name == "map") resolved.name = as_file_name("map-" + std::filesystem::path(log).stem().stem().string());
@@ -321,6 +324,8 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   save_map_files(folder, core.mapper());
   scoring::Evidence evidence;
   if (!robot.reference().empty()) compare_trajectories(evidence, core.mapper(), robot.reference());
+  if (!relations.empty())
+    evidence.relations = scoring::relation_error(robot.in_own_stamps(core.mapper().trajectory()), relations);
   evidence.run = run_figures(core, end.sim_s,
                              end.interrupted || !end.failure.empty() ? end.reason
                              : robot.was_torn()                      ? "the log is cut: its torn last frame was dropped"
@@ -333,6 +338,9 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   finish(report, evidence, folder, resolved, start);
   const bool placeless = knows_no_place(core.mapper());
   if (options.link_latest && !placeless) folder.link_latest(core.mapper());
+  if (evidence.relations && evidence.relations->relations == 0 && !end.interrupted)
+    report.broken.push_back(options.relations + ": none of its relations lies in the time of " + log +
+                            "; give those of the same log");
   // A run that was cut short had no time to find it.
   if (placeless && !end.interrupted && end.failure.empty())
     report.broken.push_back(knows_no_place_in(*options.base, robot.was_torn()));

@@ -17,6 +17,7 @@ struct RunOptions {
   bool replace = false;                           ///< an existing run folder may be replaced
   bool record = true;                             ///< keep log.rlog (a simulated run only)
   std::shared_ptr<const slam::MapBase> base;      ///< map_log(): a map to go on with; null: an empty one
+  std::string relations;                          ///< map_log(): a file of relations to be judged by; empty: none
   bool link_latest = true;                        ///< see RunFolder::link_latest()
   std::function<bool()> interrupted;              ///< asked each tick; true ends the run with its folder complete
   std::function<void(const Progress&)> progress;  ///< called a few times a second

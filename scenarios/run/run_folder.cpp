@@ -96,9 +96,10 @@ scoring::LeagueCells league_cells(const slam::CountMap& map) {
 
 const std::vector<std::string>& deterministic_artefacts() {
   static const std::vector<std::string> names = {
-      "arena.yaml",        "arena.png",   "truth.tif", "truth.png", "log.rlog", "truth.tum", "estimate.tum",
-      "estimate_live.tum", "map.tif",     "map.tfw",   "map.png",   "map.pgm",  "map.yaml",  "pois.csv",
-      "victims.csv",       "overlay.png", "error.png", "sight.png", "map.rmap", "scans.csv", "scans.png"};
+      "arena.yaml",   "arena.png",         "truth.tif",   "truth.png",   "log.rlog",  "truth.tum",
+      "estimate.tum", "estimate_live.tum", "map.tif",     "map.tfw",     "map.png",   "map.pgm",
+      "map.yaml",     "pois.csv",          "victims.csv", "overlay.png", "error.png", "sight.png",
+      "map.rmap",     "scans.csv",         "scans.png",   "loops.csv"};
   return names;
 }
 

@@ -85,9 +85,11 @@ void CountMap::assign(const GridFrame& frame, const std::vector<std::uint16_t>& 
     if (occupied[cell] > seen[cell]) throw std::invalid_argument("CountMap: occupied more often than seen");
     if (occupied[cell] > 0) p_occ[cell] = ratio(occupied[cell], seen[cell]);
   }
+  LargeVector<std::uint16_t> all_seen(seen.begin(), seen.end());
+  LargeVector<std::uint16_t> all_occupied(occupied.begin(), occupied.end());
   frame_ = frame;
-  seen_.assign(seen.begin(), seen.end());
-  occupied_.assign(occupied.begin(), occupied.end());
+  seen_ = std::move(all_seen);
+  occupied_ = std::move(all_occupied);
   p_occ_ = std::move(p_occ);
   ++version_;
 }

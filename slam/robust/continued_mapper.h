@@ -52,6 +52,7 @@ class ContinuedMapper : public Mapper {
   const MapperCounts& counts() const override { return counts_; }
   std::vector<MapperFigure> figures() const override;
   const ScanRecords* scan_records() const override { return &records_; }
+  std::string loop_table() const override { return drive_->loop_table(); }
   std::string saved_map() const override;
 
  private:

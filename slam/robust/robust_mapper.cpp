@@ -574,6 +574,7 @@ double RobustMapper::blind_way() const { return impl_->tracker_.blind_way(); }
 const MapperCounts& RobustMapper::counts() const { return impl_->counts_; }
 
 const ScanRecords* RobustMapper::scan_records() const { return &impl_->diary_.records(); }
+std::string RobustMapper::loop_table() const { return csv_of(impl_->closer_.records()); }
 const KeyFrames& RobustMapper::key_frames() const { return impl_->frames_; }
 std::string RobustMapper::saved_map() const { return impl_->frames_.empty() ? std::string() : encode_map(saved()); }
 

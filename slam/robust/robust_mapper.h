@@ -81,6 +81,7 @@ class RobustMapper : public Mapper {
   const MapperCounts& counts() const override;
   std::vector<MapperFigure> figures() const override;
   const ScanRecords* scan_records() const override;
+  std::string loop_table() const override;
   std::string saved_map() const override;
 
   const KeyFrames& key_frames() const;

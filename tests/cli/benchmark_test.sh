@@ -42,7 +42,7 @@ cat >seeds.yaml <<'YAML'
 mappers: [{kind: robust}]
 cases:
   - {name: three, scenario: s.yaml, seeds: 3-5, goal_m: 5, worst_goal_m: 5, live_goal_m: 5}
-  - {name: strict, scenario: s.yaml, seeds: 3-5, goal_m: 5, worst_goal_m: 0.00001}
+  - {name: strict, scenario: s.yaml, seeds: 3-5, goal_m: 5, worst_goal_m: 0.00001, scans_per_s_goal: 1e9, ms_99_goal: 1e6, worst_ms_goal: 0}
   - {name: first, scenario: s.yaml, seed: 3}
   - {name: second, scenario: s.yaml, seed: 4}
   - {name: third, scenario: s.yaml, seed: 5}
@@ -53,6 +53,8 @@ json_holds seeds.json "[c['results'][0]['runs'] for c in j['cases']] == [3, 3, 1
 json_holds seeds.json "(lambda e, r: (r['error_m'], r['worst_m']) == (e[1], e[2]))(sorted(c['results'][0]['error_m'] for c in j['cases'][2:5]), j['cases'][0]['results'][0])"
 json_holds seeds.json "j['cases'][0]['results'][0]['scans'] == sum(c['results'][0]['scans'] for c in j['cases'][2:5])"
 json_holds seeds.json "[c['results'][0]['goal_met'] for c in j['cases'][:3]] == [True, False, None]"
+json_holds seeds.json "j['cases'][1]['results'][0]['goals_missed'] == ['worst', 'scans/s', 'worst ms']"
+json_holds seeds.json "j['cases'][0]['results'][0]['goals_missed'] == [] and j['cases'][1]['scans_per_s_goal'] == 1e9"
 json_holds seeds.json "j['cases'][2]['results'][0]['worst_m'] is None"
 json_holds seeds.json "j['cases'][5]['results'][0]['scans'] < j['cases'][2]['results'][0]['scans']"
 printf 'mappers: [{kind: robust}]\ncases: [{name: a, log: x, seeds: 1-3}]\n' >logs.yaml

@@ -258,11 +258,26 @@ bool LoopCloser::draw_both(const Task& task) {
 
 void LoopCloser::go_on(Work& budget) {
   if (!search_.advance(budget) || !search_.best()) return;
+  const CorrelativeSearch::Found& best = *search_.best();
+  const TPose2D moved = best.pose - (frames_.pose(task_.frame) - frames_.pose(task_.old));
+  LoopRecord record;
+  record.stamp = frames_[task_.frame].stamp;
+  record.old_stamp = frames_[task_.old].stamp;
+  record.path = task_.path;
+  record.window = task_.window;
+  record.score = best.score;
+  record.moves = size_of(moved);
+  record.turns = std::abs(wrap_angle(moved.phi));
+  record.end = search_.rival() ? LoopRecord::End::Ambiguous : LoopRecord::End::Unfit;
+  records_.push_back(record);
   if (search_.rival())
     ++counts_.ambiguous;
   else
-    verify(task_, search_.best()->pose, budget);
+    verify(task_, best.pose, budget);
 }
+
+/// Of a search that found a place; near edges are not told one by one.
+LoopRecord* LoopCloser::record_of(const Task& task) { return task.kind == Kind::Wide ? &records_.back() : nullptr; }
 
 void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
   const bool near = task.kind == Kind::Near;
@@ -270,16 +285,23 @@ void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
   const ScanFit fit = fit_scan(old_surfels_, points_, start, {start, 1e-3 * Eigen::Matrix3d::Identity()},
                                near ? near_fit_ : wide_fit_, &used);
   budget -= used;
+  LoopRecord* const record = record_of(task);
+  if (record != nullptr) record->inliers = fit.inliers;
   if (fit.inliers < config_.least_inliers || fit.paired < kLeastLoopPairs || !well_conditioned(fit)) return;
   const TPose2D expected = frames_.pose(task.frame) - frames_.pose(task.old);
   const TPose2D moved = fit.pose - expected;
   if (near && size_of(moved) > 1.5 * task.window) return;
+  if (record != nullptr) {
+    record->moves = size_of(moved);
+    record->turns = std::abs(wrap_angle(moved.phi));
+  }
   budget -= kWorkPerJudged * static_cast<Work>(points_.size() + old_points_.size()) *
             static_cast<Work>(new_frames_.size() + old_frames_.size());
   double contradiction = 0.0;
   if (sees_through(task, fit.pose, expected, &contradiction)) return;
   if (!near && size_of(moved) > kExpectedMoves && stands_well(task, fit.pose, budget)) {
     ++counts_.needless;
+    record->end = LoopRecord::End::Needless;
     return;
   }
 
@@ -290,11 +312,14 @@ void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
   loop.information = limited(fit.information, config_.sigma_distance, config_.sigma_angle);
   loop.loop = true;
   const bool hardly = size_of(moved) < kHardlyMoves && std::abs(wrap_angle(moved.phi)) < kHardlyTurns;
-  if (near || (hardly && task.path < kTightPath))
+  if (near || (hardly && task.path < kTightPath)) {
     accept(loop, true);
-  else
-    confirm(
-        {loop, contradiction <= config_.sure_contradiction, size_of(moved) <= usual_window(task.path), size_of(moved)});
+    if (record != nullptr) record->end = LoopRecord::End::Closed;
+  } else {
+    record->end = LoopRecord::End::Waits;
+    confirm({loop, contradiction <= config_.sure_contradiction, size_of(moved) <= usual_window(task.path),
+             size_of(moved), records_.size() - 1});
+  }
 }
 
 /// Whether the loop would have beams pass through walls; or, null test, whether the pose expected without it does not:
@@ -306,8 +331,11 @@ bool LoopCloser::sees_through(const Task& task, const TPose2D& T_old_new, const 
   const auto there = frames_.agreement(points_, T_old_new, old_pose, old_frames_);
   const auto back = frames_.agreement(old_points_, TPose2D() - T_old_new, new_pose, new_frames_);
   *contradiction = std::max(there.contradiction(), back.contradiction());
+  LoopRecord* const record = record_of(task);
+  if (record != nullptr) record->contradiction = *contradiction;
   if (*contradiction > config_.most_contradiction) {
     ++counts_.contradicted;
+    if (record != nullptr) record->end = LoopRecord::End::Contradicted;
     return true;
   }
   if (task.kind == Kind::Near || size_of(T_old_new - T_expected) <= kExpectedMoves) return false;
@@ -317,7 +345,11 @@ bool LoopCloser::sees_through(const Task& task, const TPose2D& T_old_new, const 
   const bool overlap = expected_there.supported + expected_back.supported > 0.15 * (there.supported + back.supported);
   const double without = std::max(expected_there.contradiction(), expected_back.contradiction());
   const bool stands = overlap ? without < config_.expected_contradiction : explained_already(task, there);
-  counts_.needless += stands ? 1 : 0;
+  record->expected_contradiction = without;
+  if (stands) {
+    ++counts_.needless;
+    record->end = LoopRecord::End::Needless;
+  }
   return stands;
 }
 
@@ -383,7 +415,11 @@ void LoopCloser::confirm(const LoopClaim& claim) {
     return;
   }
   accept(claim.loop, false);
-  for (const std::size_t k : group) accept(waiting_[k].loop, false);
+  records_[claim.record].end = LoopRecord::End::Closed;
+  for (const std::size_t k : group) {
+    accept(waiting_[k].loop, false);
+    records_[waiting_[k].record].end = LoopRecord::End::Closed;
+  }
   for (auto k = group.rbegin(); k != group.rend(); ++k)
     waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(*k));
 }
@@ -510,6 +546,11 @@ bool LoopCloser::remove_worst_loop(Suspects which, Work& budget) {
   if (!worst) return false;
   frames_.switch_off(*worst);
   ++counts_.removed;
+  const GraphEdge& loop = frames_.graph().edges[*worst];
+  for (LoopRecord& record : records_)
+    if (record.stamp == frames_[loop.to].stamp && record.old_stamp == frames_[loop.from].stamp &&
+        record.end == LoopRecord::End::Closed)
+      record.end = LoopRecord::End::Removed;
   return true;
 }
 

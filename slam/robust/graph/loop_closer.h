@@ -9,6 +9,7 @@
 
 #include "slam/robust/graph/graph_solver.h"
 #include "slam/robust/graph/key_frames.h"
+#include "slam/robust/graph/loop_record.h"
 #include "slam/robust/matching/correlator.h"
 #include "slam/robust/matching/scan_fit.h"
 
@@ -67,9 +68,10 @@ struct LoopCounts {
 /// A loop that waits for others to agree.
 struct LoopClaim {
   GraphEdge loop;
-  bool clear;     ///< next to nothing contradicts it
-  bool expected;  ///< it moves the robot no farther than the way there explains
-  double moves;   ///< how far it moves the robot [m]
+  bool clear;              ///< next to nothing contradicts it
+  bool expected;           ///< it moves the robot no farther than the way there explains
+  double moves;            ///< how far it moves the robot [m]
+  std::size_t record = 0;  ///< its place in LoopCloser::records()
 };
 
 /// Whether the newest claim is to be believed together with a group of older ones that say the same of key frames.
@@ -104,6 +106,8 @@ class LoopCloser {
   void finish();
 
   const LoopCounts& counts() const { return counts_; }
+  /// The searches that found a place, one by one.
+  const std::vector<LoopRecord>& records() const { return records_; }
   std::size_t queued() const { return tasks_.size(); }
   /// Whether old key frames around contradicted the newest one when it came: the robot is not where it seems to be.
   bool astray() const { return astray_; }
@@ -136,6 +140,7 @@ class LoopCloser {
   void confirm(const LoopClaim& claim);
   bool agree(const GraphEdge& a, const GraphEdge& b) const;
   void accept(const GraphEdge& loop, bool near);
+  LoopRecord* record_of(const Task& task);
   /// An old key frame that may be close.
   struct Candidate {
     int frame;
@@ -188,6 +193,7 @@ class LoopCloser {
   int covariance_frame_ = 0;  ///< whose covariance it is
   bool astray_ = false;       ///< the newest key frame
   LoopCounts counts_;
+  std::vector<LoopRecord> records_;  ///< the last one is of the task under way, where that is a search
 };
 
 }  // namespace rubble::slam

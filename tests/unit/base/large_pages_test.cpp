@@ -8,6 +8,8 @@
 #include <new>
 #include <numeric>
 
+#include "tests/support/sanitized.h"
+
 namespace rubble {
 namespace {
 
@@ -25,6 +27,7 @@ TEST(LargePages, AVectorGrowsOverTheSizeFromWhichPagesAreLargeAndKeepsWhatItHold
 }
 
 TEST(LargePages, LargeMemoryBeginsAtALargePage) {
+  if (test::kAddressSanitizer) GTEST_SKIP() << "sanitizers hand out memory of their own";
   constexpr std::size_t kPage = std::size_t{1} << 21U;
   for (const std::size_t bytes : {kPage, kPage + 1, 5 * kPage - 1}) {
     void* const memory = allocate_large(bytes);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -94,6 +95,37 @@ TEST(LoopCloser, SlicesThatKeepUpGiveTheSameGraph) {
     for (int k = 0; k < whole.size(); ++k) ASSERT_EQ(whole.pose(k), sliced.pose(k));
   }
   EXPECT_GT(at_once.counts().solved, 3u);
+}
+
+TEST(LoopCloser, TellsOfEachLoopWhichTestsItStood) {
+  KeyFrames frames;
+  const LoopConfig config;
+  LoopCloser closer(config, kSurfelCell, frames);
+  drive(frames, closer, 1000000000);
+  closer.finish();
+  const auto ended = [&](LoopRecord::End end) {
+    return std::count_if(closer.records().begin(), closer.records().end(),
+                         [end](const LoopRecord& record) { return record.end == end; });
+  };
+  EXPECT_GT(ended(LoopRecord::End::Closed), 3);
+  EXPECT_EQ(static_cast<std::uint64_t>(ended(LoopRecord::End::Ambiguous)), closer.counts().ambiguous);
+  for (const LoopRecord& record : closer.records()) {
+    EXPECT_GT(record.stamp, record.old_stamp);
+    EXPECT_GE(record.path, config.least_path);
+    EXPECT_GE(record.score, config.least_score);
+    EXPECT_EQ(record.inliers.has_value(), record.end != LoopRecord::End::Ambiguous);
+    if (record.end != LoopRecord::End::Closed && record.end != LoopRecord::End::Waits) continue;
+    EXPECT_GE(record.inliers.value(), config.least_inliers);
+    EXPECT_LE(record.contradiction.value(), config.most_contradiction);
+  }
+  // Those that count are edges between these two key frames.
+  for (const LoopRecord& record : closer.records()) {
+    if (record.end != LoopRecord::End::Closed) continue;
+    EXPECT_TRUE(std::any_of(frames.graph().edges.begin(), frames.graph().edges.end(), [&](const GraphEdge& edge) {
+      return edge.loop && edge.on && frames[edge.to].stamp == record.stamp &&
+             frames[edge.from].stamp == record.old_stamp;
+    }));
+  }
 }
 
 TEST(LoopCloser, AFalseLoopPlantedByHandIsRemoved) {

@@ -1,0 +1,63 @@
+#include "slam/robust/graph/loop_record.h"
+
+#include <cstdio>
+
+#include "base/angle.h"
+
+namespace rubble::slam {
+
+namespace {
+
+const char* loop_end_name(LoopRecord::End end) {
+  switch (end) {
+    case LoopRecord::End::Ambiguous:
+      return "ambiguous";
+    case LoopRecord::End::Unfit:
+      return "unfit";
+    case LoopRecord::End::Contradicted:
+      return "contradicted";
+    case LoopRecord::End::Needless:
+      return "needless";
+    case LoopRecord::End::Waits:
+      return "waits";
+    case LoopRecord::End::Closed:
+      return "closed";
+    case LoopRecord::End::Removed:
+      return "removed";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string csv_of(const std::vector<LoopRecord>& records) {
+  std::string text =
+      "stamp_s,old_stamp_s,path_m,window_m,score,inliers,contradiction,expected_contradiction,moves_m,turns_deg,end\n";
+  char number[160];
+  const auto seconds = [&](Stamp stamp) {
+    std::snprintf(number, sizeof number, "%lld.%09lld,", static_cast<long long>(stamp.ns / 1000000000),
+                  static_cast<long long>(stamp.ns % 1000000000));
+    text += number;
+  };
+  const auto share = [&](const std::optional<double>& value) {
+    if (value) {
+      std::snprintf(number, sizeof number, "%.4f", *value);
+      text += number;
+    }
+    text += ',';
+  };
+  for (const LoopRecord& record : records) {
+    seconds(record.stamp);
+    seconds(record.old_stamp);
+    std::snprintf(number, sizeof number, "%.3f,%.3f,%.4f,", record.path, record.window, record.score);
+    text += number;
+    share(record.inliers);
+    share(record.contradiction);
+    share(record.expected_contradiction);
+    std::snprintf(number, sizeof number, "%.4f,%.3f,", record.moves, rad_to_deg(record.turns));
+    text += number + std::string(loop_end_name(record.end)) + "\n";
+  }
+  return text;
+}
+
+}  // namespace rubble::slam
