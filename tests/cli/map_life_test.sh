@@ -21,6 +21,27 @@ for name in map.rmap scans.csv scans.png loops.csv; do [[ -s first/$name ]] || f
 [[ $(head -c 12 first/map.rmap) == "RUBBLE MAP 2" ]] || fail "map.rmap does not begin with its name"
 [[ $(wc -l <first/scans.csv) -gt 100 ]] || fail "scans.csv has but $(wc -l <first/scans.csv) lines"
 "$rubble" map first --out mapped >/dev/null || fail "map ended with $?"
+# Relations between moments of the log judge a map: those of its own poses are met, others are not, and of another time none.
+python3 - <<'PYTHON'
+import math
+rows = [[float(w) for w in l.split()] for l in open('mapped/estimate.tum')]
+a, b = rows[10], rows[len(rows) // 2]
+yaw = lambda row: 2 * math.atan2(row[6], row[7])
+c, s, dx, dy = math.cos(yaw(a)), math.sin(yaw(a)), b[1] - a[1], b[2] - a[2]
+line = lambda x, y: f'{a[0]:.6f} {b[0]:.6f} {x} {y} 0 0 0 {yaw(b) - yaw(a)}\n'
+open('own.relations', 'w').write(line(c * dx + s * dy, c * dy - s * dx))
+open('off.relations', 'w').write(line(c * dx + s * dy + 0.5, c * dy - s * dx))
+open('other.relations', 'w').write('1e6 1000010 1 0 0 0 0 0\n')
+PYTHON
+"$rubble" map first --relations own.relations --out own >own.txt || fail "--relations ended with $?"
+json_holds own/score.json "j['relations'] == 1 and j['relation_m'] < 0.001"
+grep -q '^error of a relation  *0.000' own.txt || fail "the error of the relation is not shown: $(cat own.txt)"
+"$rubble" map first --relations off.relations --out off >/dev/null || fail "--relations ended with $?"
+json_holds off/score.json "abs(j['relation_m'] - 0.5) < 0.001"
+expect_exit 1 "" "$rubble" map first --relations other.relations --out other
+"$rubble" map first --relations other.relations --out other --force | grep -q 'none of its relations lies in the time' ||
+  fail "relations of another time are not told"
+expect_exit 3 "nowhere.relations" "$rubble" map first --relations nowhere.relations --out none
 "$rubble" map first --continue mapped --out more --start 0,0,0 >/dev/null || fail "--continue ended with $?"
 json_holds more/score.json "j['place_known'] == 1"
 near more/estimate.tum first/estimate.tum
