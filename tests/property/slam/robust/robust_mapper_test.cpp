@@ -223,6 +223,29 @@ TEST(RobustMapper, APureRotationDoesNotMoveThePose) {
   }
 }
 
+/// Twice round a floor, so that loops are searched, closed and solved. A unit of work is about a nanosecond.
+TEST(RobustMapper, NoScanTakesMoreWorkThanTwentyMilliseconds) {
+  const std::vector<Cell> large{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {3, 2}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+  const std::vector<Cell> small{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  RobotModel fine;
+  fine.laser.beams = 10000;
+  fine.laser.angle_step = 4.0 / 10000;
+  fine.laser.angle_min = -2.0;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed)
+    for (const auto& [model, round] : {std::pair(RobotModel(), large), std::pair(fine, small)}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", beams " + std::to_string(model.laser.beams));
+      std::vector<Cell> rooms = round;
+      rooms.insert(rooms.end(), round.begin(), round.end());
+      rooms.push_back(round.front());
+      const slam_test::Floor floor(seed, 4, 3);
+      RobustMapper mapper(model, {}, 1);
+      play(mapper,
+           slam_test::record(floor.world(), slam_test::drive_through(floor.way(rooms), 0.0), model, 1.0, 0.01, seed));
+      EXPECT_LT(figure(mapper, "most_work_ms"), 20.0);
+      EXPECT_GT(figure(mapper, "graph_solved"), 2.0);
+    }
+}
+
 TEST(RobustMapper, SameInputsSameBits) {
   const RobotModel model;
   const auto ticks =
