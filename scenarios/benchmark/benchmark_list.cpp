@@ -11,6 +11,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kLargestError = 1e4;  // [m]
+constexpr double kMostSpeed = 1e9;     // [1/s]
+constexpr double kLongest = 1e6;       // [ms]
 
 BenchmarkMapper read_mapper(const YamlMap& map) {
   BenchmarkMapper mapper;
@@ -42,15 +44,15 @@ BenchmarkCase read_case(const YamlMap& map) {
   if (c.log.empty() == c.scenario.empty()) map.fail("name", "a case needs either 'log' or 'scenario'");
   if (!c.relations.empty() && c.log.empty()) map.fail("relations", "belong to a log; give 'log' beside them");
   c.measure = c.relations.empty() ? BenchmarkMeasure::Aligned : BenchmarkMeasure::Relations;
-  const auto goal = [&](const char* key) {
-    return map.has(key) ? std::optional<double>(map.number(key, std::nullopt, 0.0, kLargestError)) : std::nullopt;
+  const auto goal = [&](const char* key, double most = kLargestError) {
+    return map.has(key) ? std::optional<double>(map.number(key, std::nullopt, 0.0, most)) : std::nullopt;
   };
   c.goal = goal("goal_m");
   c.live_goal = goal("live_goal_m");
   c.worst_goal = goal("worst_goal_m");
-  c.speed_goal = goal("scans_per_s_goal");
-  c.slow_goal = goal("ms_99_goal");
-  c.worst_time_goal = goal("worst_ms_goal");
+  c.speed_goal = goal("scans_per_s_goal", kMostSpeed);
+  c.slow_goal = goal("ms_99_goal", kLongest);
+  c.worst_time_goal = goal("worst_ms_goal", kLongest);
   if (c.worst_goal && c.seeds.size() < 2) map.fail("worst_goal_m", "is of several seeds; give 'seeds' beside it");
   for (const YamlMap& row : map.maps("published"))
     c.published.push_back({row.text("by", std::nullopt), row.text("source", std::nullopt),
