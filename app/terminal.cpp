@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -174,13 +173,6 @@ int show(const scenarios::RunReport& report) {
     print_not_aligned(score["align_note"].get<std::string>());
   print_victims(score);
   if (!report.unseen_victims.empty()) print_row("victims out of sight", kOutOfSight + joined(report.unseen_victims));
-  if (score["relation_m"].is_number()) {
-    std::array<char, 100> text{};
-    std::snprintf(text.data(), text.size(), "%.4f m, %.3f deg, in the mean of %llu", score["relation_m"].get<double>(),
-                  score["relation_deg"].get<double>(),
-                  static_cast<unsigned long long>(score["relations"].get<std::uint64_t>()));
-    print_row("error of a relation", text.data());
-  }
   if (const auto lost = score["hits_outside"].get<std::uint64_t>(); lost > 0)
     print_row("NOT MAPPED", std::to_string(lost) + " laser hits lay beyond the largest map (mapper.max_map_cells)");
   if (const auto dropped = score["scans_out_of_order"].get<std::uint64_t>(); dropped > 0)

@@ -5,21 +5,15 @@
 #include <cstdint>
 #include <new>
 
+#include "base/sanitized.h"
+
 namespace rubble {
 
 namespace {
 
 constexpr std::size_t kPage = std::size_t{1} << 21U;
-// Sanitizers watch over what operator new hands out, so there it hands out all.
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kWatched = true;
-#elif defined(__has_feature)
-constexpr bool kWatched = __has_feature(address_sanitizer);
-#else
-constexpr bool kWatched = false;
-#endif
-/// From here on a page is worth what is left over of it.
-constexpr std::size_t kLarge = kWatched ? SIZE_MAX : kPage / 4;
+/// From here on a page is worth what is left over of it; under a sanitizer, which watches over operator new, never.
+constexpr std::size_t kLarge = kAddressSanitizer ? SIZE_MAX : kPage / 4;
 
 std::size_t whole_pages(std::size_t bytes) { return (bytes + kPage - 1) / kPage * kPage; }
 

@@ -93,16 +93,21 @@ std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& tr
   return pairs;
 }
 
+std::string stamp_text(Stamp stamp) {
+  char text[40];
+  const bool is_negative = stamp.ns < 0;
+  const auto ns = is_negative ? -static_cast<std::uint64_t>(stamp.ns) : static_cast<std::uint64_t>(stamp.ns);
+  std::snprintf(text, sizeof text, "%s%" PRIu64 ".%09" PRIu64, is_negative ? "-" : "", ns / 1000000000u,
+                ns % 1000000000u);
+  return text;
+}
+
 std::string tum_line(const StampedPose& stamped) {
-  char line[160];
+  char pose[130];
   const double half = 0.5 * wrap_angle(stamped.pose.phi);
-  const bool is_negative = stamped.stamp.ns < 0;
-  const auto ns =
-      is_negative ? -static_cast<std::uint64_t>(stamped.stamp.ns) : static_cast<std::uint64_t>(stamped.stamp.ns);
-  std::snprintf(line, sizeof line, "%s%" PRIu64 ".%09" PRIu64 " %.6f %.6f 0.000000 0.000000 0.000000 %.9f %.9f",
-                is_negative ? "-" : "", ns / 1000000000u, ns % 1000000000u, stamped.pose.x, stamped.pose.y,
+  std::snprintf(pose, sizeof pose, " %.6f %.6f 0.000000 0.000000 0.000000 %.9f %.9f", stamped.pose.x, stamped.pose.y,
                 std::sin(half), std::cos(half));
-  return line;
+  return stamp_text(stamped.stamp) + pose;
 }
 
 Trajectory read_tum(const std::string& path) {

@@ -33,6 +33,9 @@ struct PosePair {
 /// Pairs each pose of the estimate with the truth at its stamp; those outside the time of the truth have no partner.
 std::vector<PosePair> associate(const Trajectory& estimate, const Trajectory& truth);
 
+/// Seconds with nine decimals, as TUM text and tables have them.
+std::string stamp_text(Stamp stamp);
+
 /// One line of TUM text, `time x y z qx qy qz qw`, one space, no trailing space (as evo reads it). z = 0.
 std::string tum_line(const StampedPose& stamped);
 

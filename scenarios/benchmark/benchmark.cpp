@@ -257,6 +257,7 @@ void judge(const BenchmarkCase& what, BenchmarkResult& result) {
   ask(what.worst_goal, result.worst_m, "worst");
   ask(what.live_goal, result.live_error_m, "known at the scan");
   if (result.scans == 0) return;
+  // At least, where all others are at most.
   if (what.speed_goal) ask(-*what.speed_goal, -result.scans_per_second, "scans/s");
   ask(what.slow_goal, result.slow_ms, "99 % ms");
   ask(what.worst_time_goal, result.worst_ms, "worst ms");

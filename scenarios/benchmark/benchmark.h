@@ -29,7 +29,7 @@ struct BenchmarkResult {
   std::optional<double> loops_closed;
   std::optional<double> loops_removed;
   std::optional<bool> goal_met;           ///< all of the case's; nothing: it has none, or nothing was measured
-  std::vector<std::string> goals_missed;  ///< the columns that are not
+  std::vector<std::string> goals_missed;  ///< columns whose goal is not
 };
 
 struct BenchmarkRow {

@@ -28,9 +28,7 @@ std::string csv_of(const slam::ScanRecords& records) {
   text += '\n';
   char number[40];
   for (std::size_t i = 0; i < records.stamps.size(); ++i) {
-    std::snprintf(number, sizeof number, "%lld.%09lld", static_cast<long long>(records.stamps[i].ns / 1000000000),
-                  static_cast<long long>(records.stamps[i].ns % 1000000000));
-    text += number;
+    text += stamp_text(records.stamps[i]);
     for (std::size_t k = 0; k < records.columns.size(); ++k) {
       std::snprintf(number, sizeof number, ",%.6g",
                     static_cast<double>(records.values[i * records.columns.size() + k]));

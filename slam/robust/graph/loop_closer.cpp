@@ -277,7 +277,7 @@ void LoopCloser::go_on(Work& budget) {
 }
 
 /// Of a search that found a place; near edges are not told one by one.
-LoopRecord* LoopCloser::record_of(const Task& task) { return task.kind == Kind::Wide ? &records_.back() : nullptr; }
+LoopRecord& LoopCloser::record_of(const Task& task) { return task.kind == Kind::Wide ? records_.back() : near_record_; }
 
 void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
   const bool near = task.kind == Kind::Near;
@@ -285,23 +285,21 @@ void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
   const ScanFit fit = fit_scan(old_surfels_, points_, start, {start, 1e-3 * Eigen::Matrix3d::Identity()},
                                near ? near_fit_ : wide_fit_, &used);
   budget -= used;
-  LoopRecord* const record = record_of(task);
-  if (record != nullptr) record->inliers = fit.inliers;
+  LoopRecord& record = record_of(task);
+  record.inliers = fit.inliers;
   if (fit.inliers < config_.least_inliers || fit.paired < kLeastLoopPairs || !well_conditioned(fit)) return;
   const TPose2D expected = frames_.pose(task.frame) - frames_.pose(task.old);
   const TPose2D moved = fit.pose - expected;
   if (near && size_of(moved) > 1.5 * task.window) return;
-  if (record != nullptr) {
-    record->moves = size_of(moved);
-    record->turns = std::abs(wrap_angle(moved.phi));
-  }
+  record.moves = size_of(moved);
+  record.turns = std::abs(wrap_angle(moved.phi));
   budget -= kWorkPerJudged * static_cast<Work>(points_.size() + old_points_.size()) *
             static_cast<Work>(new_frames_.size() + old_frames_.size());
   double contradiction = 0.0;
   if (sees_through(task, fit.pose, expected, &contradiction)) return;
   if (!near && size_of(moved) > kExpectedMoves && stands_well(task, fit.pose, budget)) {
     ++counts_.needless;
-    record->end = LoopRecord::End::Needless;
+    record.end = LoopRecord::End::Needless;
     return;
   }
 
@@ -314,9 +312,9 @@ void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
   const bool hardly = size_of(moved) < kHardlyMoves && std::abs(wrap_angle(moved.phi)) < kHardlyTurns;
   if (near || (hardly && task.path < kTightPath)) {
     accept(loop, true);
-    if (record != nullptr) record->end = LoopRecord::End::Closed;
+    record.end = LoopRecord::End::Closed;
   } else {
-    record->end = LoopRecord::End::Waits;
+    record.end = LoopRecord::End::Waits;
     confirm({loop, contradiction <= config_.sure_contradiction, size_of(moved) <= usual_window(task.path),
              size_of(moved), records_.size() - 1});
   }
@@ -331,11 +329,11 @@ bool LoopCloser::sees_through(const Task& task, const TPose2D& T_old_new, const 
   const auto there = frames_.agreement(points_, T_old_new, old_pose, old_frames_);
   const auto back = frames_.agreement(old_points_, TPose2D() - T_old_new, new_pose, new_frames_);
   *contradiction = std::max(there.contradiction(), back.contradiction());
-  LoopRecord* const record = record_of(task);
-  if (record != nullptr) record->contradiction = *contradiction;
+  LoopRecord& record = record_of(task);
+  record.contradiction = *contradiction;
   if (*contradiction > config_.most_contradiction) {
     ++counts_.contradicted;
-    if (record != nullptr) record->end = LoopRecord::End::Contradicted;
+    record.end = LoopRecord::End::Contradicted;
     return true;
   }
   if (task.kind == Kind::Near || size_of(T_old_new - T_expected) <= kExpectedMoves) return false;
@@ -345,10 +343,10 @@ bool LoopCloser::sees_through(const Task& task, const TPose2D& T_old_new, const 
   const bool overlap = expected_there.supported + expected_back.supported > 0.15 * (there.supported + back.supported);
   const double without = std::max(expected_there.contradiction(), expected_back.contradiction());
   const bool stands = overlap ? without < config_.expected_contradiction : explained_already(task, there);
-  record->expected_contradiction = without;
+  record.expected_contradiction = without;
   if (stands) {
     ++counts_.needless;
-    record->end = LoopRecord::End::Needless;
+    record.end = LoopRecord::End::Needless;
   }
   return stands;
 }

@@ -140,7 +140,7 @@ class LoopCloser {
   void confirm(const LoopClaim& claim);
   bool agree(const GraphEdge& a, const GraphEdge& b) const;
   void accept(const GraphEdge& loop, bool near);
-  LoopRecord* record_of(const Task& task);
+  LoopRecord& record_of(const Task& task);
   /// An old key frame that may be close.
   struct Candidate {
     int frame;
@@ -194,6 +194,7 @@ class LoopCloser {
   bool astray_ = false;       ///< the newest key frame
   LoopCounts counts_;
   std::vector<LoopRecord> records_;  ///< the last one is of the task under way, where that is a search
+  LoopRecord near_record_;           ///< of a near edge, which nobody asks for
 };
 
 }  // namespace rubble::slam

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "base/angle.h"
+#include "base/trajectory.h"
 
 namespace rubble::slam {
 
@@ -34,11 +35,6 @@ std::string csv_of(const std::vector<LoopRecord>& records) {
   std::string text =
       "stamp_s,old_stamp_s,path_m,window_m,score,inliers,contradiction,expected_contradiction,moves_m,turns_deg,end\n";
   char number[160];
-  const auto seconds = [&](Stamp stamp) {
-    std::snprintf(number, sizeof number, "%lld.%09lld,", static_cast<long long>(stamp.ns / 1000000000),
-                  static_cast<long long>(stamp.ns % 1000000000));
-    text += number;
-  };
   const auto share = [&](const std::optional<double>& value) {
     if (value) {
       std::snprintf(number, sizeof number, "%.4f", *value);
@@ -47,9 +43,8 @@ std::string csv_of(const std::vector<LoopRecord>& records) {
     text += ',';
   };
   for (const LoopRecord& record : records) {
-    seconds(record.stamp);
-    seconds(record.old_stamp);
-    std::snprintf(number, sizeof number, "%.3f,%.3f,%.4f,", record.path, record.window, record.score);
+    text += stamp_text(record.stamp) + "," + stamp_text(record.old_stamp);
+    std::snprintf(number, sizeof number, ",%.3f,%.3f,%.4f,", record.path, record.window, record.score);
     text += number;
     share(record.inliers);
     share(record.contradiction);

@@ -10,12 +10,12 @@
 #include <sys/resource.h>
 
 #include "base/error.h"
+#include "base/sanitized.h"
 #include "robot/logs/foreign/file_bytes.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
 #include "robot/logs/foreign/mrpt_logs.h"
 #include "robot/logs/foreign/mrpt_stamp.h"
 #include "tests/support/robot_inputs.h"
-#include "tests/support/sanitized.h"
 
 namespace rubble::robot {
 namespace {
@@ -364,7 +364,7 @@ TEST(Rawlog, AnyDamageIsALogOrOneLineAndBoundedMemory) {
   EXPECT_GT(refused, 100);
   rusage use{};
   getrusage(RUSAGE_CHILDREN, &use);
-  if (!test::kAddressSanitizer) {
+  if (!kAddressSanitizer) {
     EXPECT_LT(use.ru_maxrss, 512 * 1024) << "kB in the largest child";
   }
 }

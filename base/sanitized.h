@@ -1,8 +1,8 @@
 #pragma once
 
-namespace rubble::test {
+namespace rubble {
 
-/// Whether AddressSanitizer is compiled in: it holds freed memory back, so that what a process takes says nothing.
+/// Whether AddressSanitizer is compiled in: it watches over what operator new hands out, and holds freed memory back.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kAddressSanitizer = true;
 #elif defined(__has_feature)
@@ -11,4 +11,4 @@ constexpr bool kAddressSanitizer = __has_feature(address_sanitizer);
 constexpr bool kAddressSanitizer = false;
 #endif
 
-}  // namespace rubble::test
+}  // namespace rubble
