@@ -41,6 +41,13 @@ struct MapperFigure {
   double value = 0.0;
 };
 
+/// What a closed loop says: the base at `to` seen from the base at `from`, long before.
+struct ClosedLoop {
+  Stamp from;
+  Stamp to;
+  mrpt::math::TPose2D T_from_to;
+};
+
 /// Numbers about each scan, for a file and a picture of it (docs/slam.md says what they mean).
 struct ScanRecords {
   std::vector<std::string> columns;  ///< names, with their units
@@ -104,6 +111,8 @@ class Mapper {
   /// CSV: a line for each place that a search for loops found, with the tests it stood; empty from mappers that look
   /// for none.
   virtual std::string loop_table() const { return {}; }
+  /// Those that hold by now: without what was removed again. Empty from mappers that close none, or do not tell.
+  virtual std::vector<ClosedLoop> closed_loops() const { return {}; }
   /// The map with all that a mapper needs to go on with it in another run, as bytes (slam/robust/map/saved_map.h).
   /// Empty: this kind cannot, or nothing is mapped.
   virtual std::string saved_map() const { return {}; }

@@ -85,6 +85,10 @@ void add_aligned(json& out, const slam::Mapper& mapper, const Trajectory& truth)
   if (error.matched < 2) return;
   out["error_m"] = error.ate_aligned_m;
   out["live_error_m"] = live.ate_aligned_m;
+  if (!out.contains(slam::MapperFigure::kLoopsClosed)) return;
+  std::vector<scoring::Relation> claimed;
+  for (const slam::ClosedLoop& loop : mapper.closed_loops()) claimed.push_back({loop.from, loop.to, loop.T_from_to});
+  out["loops_false"] = scoring::false_relations(claimed, truth);
 }
 
 json run_log(const std::string& log, const std::string& relations, const Scenario& scenario) {
@@ -193,6 +197,7 @@ void take(BenchmarkResult& result, const ChildAnswer& answer) {
   result.error_deg = number("error_deg");
   result.loops_closed = number(slam::MapperFigure::kLoopsClosed);
   result.loops_removed = number(slam::MapperFigure::kLoopsRemoved);
+  result.loops_false = number("loops_false");
   result.scans = said["scans"].get<std::uint64_t>();
   result.scans_per_second = said["scans_per_second"].get<double>();
   result.usual_ms = said["usual_ms"].get<double>();
@@ -243,6 +248,7 @@ BenchmarkResult summary(const std::vector<BenchmarkResult>& runs) {
   };
   all.loops_closed = sum(&BenchmarkResult::loops_closed);
   all.loops_removed = sum(&BenchmarkResult::loops_removed);
+  all.loops_false = sum(&BenchmarkResult::loops_false);
   return all;
 }
 
@@ -256,6 +262,7 @@ void judge(const BenchmarkCase& what, BenchmarkResult& result) {
   ask(what.goal, result.error_m, "error");
   ask(what.worst_goal, result.worst_m, "worst");
   ask(what.live_goal, result.live_error_m, "known at the scan");
+  ask(what.false_loops_goal, result.loops_false, "false loops");
   if (result.scans == 0) return;
   // At least, where all others are at most.
   if (what.speed_goal) ask(-*what.speed_goal, -result.scans_per_second, "scans/s");

@@ -28,6 +28,7 @@ struct BenchmarkResult {
   double peak_mb = 0.0;
   std::optional<double> loops_closed;
   std::optional<double> loops_removed;
+  std::optional<double> loops_false;      ///< that hold and the truth contradicts (scoring::false_relations)
   std::optional<bool> goal_met;           ///< all of the case's; nothing: it has none, or nothing was measured
   std::vector<std::string> goals_missed;  ///< columns whose goal is not
 };

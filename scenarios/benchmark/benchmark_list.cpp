@@ -50,6 +50,7 @@ BenchmarkCase read_case(const YamlMap& map) {
   c.goal = goal("goal_m");
   c.live_goal = goal("live_goal_m");
   c.worst_goal = goal("worst_goal_m");
+  c.false_loops_goal = goal("false_loops_goal");
   c.speed_goal = goal("scans_per_s_goal", kMostSpeed);
   c.slow_goal = goal("ms_99_goal", kLongest);
   c.worst_time_goal = goal("worst_ms_goal", kLongest);

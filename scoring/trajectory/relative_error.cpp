@@ -18,6 +18,9 @@ namespace {
 
 using mrpt::math::TPose2D;
 
+constexpr double kFalseFrom = 0.3;      ///< [m]
+constexpr double kFalseTurnFrom = 0.2;  ///< [rad]
+
 double length_of(const TPose2D& pose) { return std::hypot(pose.x, pose.y); }
 
 /// b seen from a.
@@ -126,6 +129,14 @@ struct Moments {
   }
 };
 
+/// How far the trajectory is from a relation; nothing where one of its stamps lies outside.
+std::optional<TPose2D> difference(const Trajectory& trajectory, const Relation& relation) {
+  const auto from = pose_at(trajectory, relation.from);
+  const auto to = pose_at(trajectory, relation.to);
+  if (!from || !to) return std::nullopt;
+  return between(relation.delta, between(*from, *to));
+}
+
 }  // namespace
 
 RelativeError rpe_frames(const Trajectory& estimate, const Trajectory& truth) {
@@ -148,22 +159,27 @@ RelationError relation_error(const Trajectory& estimate, const std::vector<Relat
   Moments metres;
   Moments radians;
   for (const Relation& relation : relations) {
-    const auto from = pose_at(estimate, relation.from);
-    const auto to = pose_at(estimate, relation.to);
-    if (!from || !to) {
+    const std::optional<TPose2D> error = difference(estimate, relation);
+    if (!error) {
       ++out.missing;
       continue;
     }
-    const TPose2D error = between(relation.delta, between(*from, *to));
     ++out.relations;
-    metres.add(length_of(error));
-    radians.add(std::abs(wrap_angle(error.phi)));
+    metres.add(length_of(*error));
+    radians.add(std::abs(wrap_angle(error->phi)));
   }
   if (out.relations == 0) return out;
   const double n = static_cast<double>(out.relations);
   metres.store(n, out.mean_m, out.std_m, out.mean_m2);
   radians.store(n, out.mean_rad, out.std_rad, out.mean_rad2);
   return out;
+}
+
+std::size_t false_relations(const std::vector<Relation>& claimed, const Trajectory& truth) {
+  return static_cast<std::size_t>(std::count_if(claimed.begin(), claimed.end(), [&](const Relation& relation) {
+    const std::optional<TPose2D> error = difference(truth, relation);
+    return error && (length_of(*error) > kFalseFrom || std::abs(wrap_angle(error->phi)) > kFalseTurnFrom);
+  }));
 }
 
 std::vector<Relation> relations_of(const Trajectory& truth, double length, double near, double loop) {

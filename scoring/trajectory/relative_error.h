@@ -48,6 +48,10 @@ struct RelationError {
 /// The estimate is interpolated at the stamps of the relations.
 RelationError relation_error(const Trajectory& estimate, const std::vector<Relation>& relations);
 
+/// Of relations that somebody claims, those that the truth contradicts by more than 0.3 m or 0.2 rad: a loop so far off
+/// leads to another place. Nothing is said of those with a stamp outside the time of the truth.
+std::size_t false_relations(const std::vector<Relation>& claimed, const Trajectory& truth);
+
 /// Relations a true trajectory implies: from each pose taken every `length` [m] of path to the next, and to the
 /// earliest taken one that lies within `near` [m] and at least `loop` [m] of path back.
 std::vector<Relation> relations_of(const Trajectory& truth, double length = 1.0, double near = 1.0, double loop = 10.0);

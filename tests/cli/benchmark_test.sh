@@ -26,6 +26,7 @@ json_holds b.json "all(r['scans'] > 100 and r['goal_met'] is None for r in j['ca
 json_holds b.json "all(r['missing'] == 'nowhere.log' and r['error_m'] is None and r['goal_met'] is None for r in j['cases'][2]['results'])"
 json_holds b.json "j['cases'][1]['published'][0]['error_m'] == 0.5"
 json_holds b.json "j['cases'][0]['results'][2]['loops_closed'] == 0"
+json_holds b.json "[r['loops_false'] for r in j['cases'][0]['results']] == [None, 0, 0]"
 grep -q '&lt;by&gt;' b.html || fail "the page does not escape what the list says"
 grep -qE '(src|href)=' b.html && fail "the page refers to other files"
 grep -q 'A paper / with a bar' b.md || fail "the document's table is broken by a bar"
@@ -41,7 +42,7 @@ grep -q 'paper  ' b.txt && fail "--mapper robust ran others"
 cat >seeds.yaml <<'YAML'
 mappers: [{kind: robust}]
 cases:
-  - {name: three, scenario: s.yaml, seeds: 3-5, goal_m: 5, worst_goal_m: 5, live_goal_m: 5}
+  - {name: three, scenario: s.yaml, seeds: 3-5, goal_m: 5, worst_goal_m: 5, live_goal_m: 5, false_loops_goal: 0}
   - {name: strict, scenario: s.yaml, seeds: 3-5, goal_m: 5, worst_goal_m: 0.00001, scans_per_s_goal: 1e9, ms_99_goal: 1e6, worst_ms_goal: 0}
   - {name: first, scenario: s.yaml, seed: 3}
   - {name: second, scenario: s.yaml, seed: 4}

@@ -266,6 +266,7 @@ void LoopCloser::go_on(Work& budget) {
   record.path = task_.path;
   record.window = task_.window;
   record.score = best.score;
+  record.T_old_new = best.pose;
   record.moves = size_of(moved);
   record.turns = std::abs(wrap_angle(moved.phi));
   record.end = search_.rival() ? LoopRecord::End::Ambiguous : LoopRecord::End::Unfit;
@@ -291,6 +292,7 @@ void LoopCloser::verify(const Task& task, const TPose2D& start, Work& budget) {
   const TPose2D expected = frames_.pose(task.frame) - frames_.pose(task.old);
   const TPose2D moved = fit.pose - expected;
   if (near && size_of(moved) > 1.5 * task.window) return;
+  record.T_old_new = fit.pose;
   record.moves = size_of(moved);
   record.turns = std::abs(wrap_angle(moved.phi));
   budget -= kWorkPerJudged * static_cast<Work>(points_.size() + old_points_.size()) *

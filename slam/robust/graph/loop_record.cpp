@@ -33,7 +33,8 @@ const char* loop_end_name(LoopRecord::End end) {
 
 std::string csv_of(const std::vector<LoopRecord>& records) {
   std::string text =
-      "stamp_s,old_stamp_s,path_m,window_m,score,inliers,contradiction,expected_contradiction,moves_m,turns_deg,end\n";
+      "stamp_s,old_stamp_s,path_m,window_m,score,inliers,contradiction,expected_contradiction,moves_m,turns_deg,"
+      "x_m,y_m,heading_deg,end\n";
   char number[160];
   const auto share = [&](const std::optional<double>& value) {
     if (value) {
@@ -50,6 +51,9 @@ std::string csv_of(const std::vector<LoopRecord>& records) {
     share(record.contradiction);
     share(record.expected_contradiction);
     std::snprintf(number, sizeof number, "%.4f,%.3f,", record.moves, rad_to_deg(record.turns));
+    text += number;
+    const mrpt::math::TPose2D& place = record.T_old_new;
+    std::snprintf(number, sizeof number, "%.4f,%.4f,%.3f,", place.x, place.y, rad_to_deg(wrap_angle(place.phi)));
     text += number + std::string(loop_end_name(record.end)) + "\n";
   }
   return text;

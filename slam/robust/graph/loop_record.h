@@ -1,5 +1,7 @@
 #pragma once
 
+#include <mrpt/math/TPose2D.h>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,13 +14,14 @@ namespace rubble::slam {
 struct LoopRecord {
   enum class End { Ambiguous, Unfit, Contradicted, Needless, Waits, Closed, Removed };
 
-  Stamp stamp;          ///< of the newer key frame
-  Stamp old_stamp;      ///< of the older one; in a map that was gone on with by the clock of its own drive
-  double path = 0.0;    ///< from one to the other through the graph [m]
-  double window = 0.0;  ///< half width of the search [m]
-  double score = 0.0;   ///< of the place found, 0..1
-  double moves = 0.0;   ///< how far it lies from where the robot was expected [m]
-  double turns = 0.0;   ///< [rad]
+  Stamp stamp;                    ///< of the newer key frame
+  Stamp old_stamp;                ///< of the older one; in a map that was gone on with by the clock of its own drive
+  double path = 0.0;              ///< from one to the other through the graph [m]
+  double window = 0.0;            ///< half width of the search [m]
+  double score = 0.0;             ///< of the place found, 0..1
+  mrpt::math::TPose2D T_old_new;  ///< the place: the newer key frame as seen from the older one
+  double moves = 0.0;             ///< how far it lies from where the robot was expected [m]
+  double turns = 0.0;             ///< [rad]
   End end = End::Unfit;
   // Nothing where the tests before were not stood.
   std::optional<double> inliers;                 ///< share of the points

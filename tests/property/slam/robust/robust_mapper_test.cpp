@@ -223,6 +223,28 @@ TEST(RobustMapper, APureRotationDoesNotMoveThePose) {
   }
 }
 
+/// What is told of them: where the robot was then, as seen from where it was long before.
+TEST(RobustMapper, ClosedLoopsSayWhatIsTrue) {
+  const std::vector<Cell> round{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {3, 2}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+  std::vector<Cell> rooms = round;
+  rooms.insert(rooms.end(), round.begin(), round.begin() + 4);
+  const slam_test::Floor floor(1, 4, 3);
+  const slam_test::Drive drive = slam_test::drive_through(floor.way(rooms), 0.0);
+  RobustMapper mapper(RobotModel(), {}, 1);
+  play(mapper, slam_test::record(floor.world(), drive, RobotModel(), 1.0, 0.01, 1));
+  const std::vector<ClosedLoop> loops = mapper.closed_loops();
+  ASSERT_FALSE(loops.empty());
+  for (const ClosedLoop& loop : loops) {
+    EXPECT_LT(loop.from, loop.to);
+    const auto from = pose_at(drive.truth, loop.from);
+    const auto to = pose_at(drive.truth, loop.to);
+    ASSERT_TRUE(from && to);
+    const TPose2D off = loop.T_from_to - (*to - *from);
+    EXPECT_LT(length(off.x, off.y), 0.1);
+    EXPECT_LT(std::abs(wrap_angle(off.phi)), 0.05);
+  }
+}
+
 /// Twice round a floor, so that loops are searched, closed and solved. A unit of work is about a nanosecond.
 TEST(RobustMapper, NoScanTakesMoreWorkThanTwentyMilliseconds) {
   const std::vector<Cell> large{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {3, 2}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};

@@ -54,6 +54,25 @@ TEST(RelativeError, RigidMotionOfTheRunIsNoError) {
   EXPECT_NEAR(relations.mean_m + relations.mean_rad, 0.0, 1e-9);
 }
 
+TEST(RelativeError, ClaimsFarFromTheTruthAreFalse) {
+  const Trajectory truth = random_run(2, 300);
+  const Trajectory seen = moved_run(truth, {-4.0, 1.0, -1.2});
+  std::vector<Relation> claimed = relations_of(truth);
+  ASSERT_GT(claimed.size(), 12u);
+  EXPECT_EQ(false_relations(claimed, seen), 0u) << "where the truth's frame lies does not matter";
+  claimed[1].delta = claimed[1].delta + TPose2D(0.29, 0.0, 0.0);
+  claimed[3].delta = claimed[3].delta + TPose2D(0.0, 0.0, -0.19);
+  EXPECT_EQ(false_relations(claimed, seen), 0u);
+  claimed[5].delta = claimed[5].delta + TPose2D(0.0, -0.31, 0.0);
+  claimed[7].delta = claimed[7].delta + TPose2D(0.0, 0.0, 0.21);
+  EXPECT_EQ(false_relations(claimed, seen), 2u);
+  claimed[9].to = truth.back().stamp + 1.0;
+  claimed[9].delta = TPose2D(50.0, 0.0, 0.0);
+  EXPECT_EQ(false_relations(claimed, seen), 2u) << "the truth does not know it";
+  for (Relation& claim : claimed) claim.delta = TPose2D() - claim.delta;
+  EXPECT_GT(false_relations(claimed, seen), claimed.size() / 2) << "seen the other way round";
+}
+
 TEST(RelativeError, ScaleErrorOfOdometryIsItsShareOfEveryStep) {
   // Steps of 0.55 m instead of 0.5 m on a straight line: 0.05 m a frame; a pair of 1.1 m is 0.1 m too long.
   const Trajectory truth = arc(40, 0.5, 0.0);
