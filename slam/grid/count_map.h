@@ -23,6 +23,7 @@ struct ScanPoints {
   /// Hits and passes together, counter-clockwise around the origin, one turn at most. May be left empty by who does not
   /// know the beams: the ends are then sorted by bearing and joined where they lie closer than 1.5 beam widths.
   std::vector<ScanRay> rays;
+  std::vector<int> floor_beams;  ///< numbers of beams left out because they met the floor, ascending
 };
 
 /// The paper's occupancy map, section III.B: one plane counts how often a cell was seen, one how often it was occupied.

@@ -31,6 +31,8 @@ constexpr Work kLeastBudget = 300'000;      ///< for work put off, each scan
 constexpr Work kUsualShare = 8;             ///< the usual budget is such a part of the largest ...
 constexpr Work kHurry = 4;                  ///< ... and grows by itself with so many tasks that wait
 constexpr double kLevel = deg_to_rad(5.0);  ///< of the scan plane
+constexpr double kSteady = 0.01;            ///< it tilted by no more than this [rad] ...
+constexpr double kSteadyFor = 0.1;          ///< ... in so long [s]
 constexpr double kBelieved = 0.5;           ///< share of inliers with which a scan overrules the odometry
 constexpr double kLongestLost = 3.0;        ///< then the map goes on from where the robot is thought to be [s]
 constexpr double kLostDistance = 0.5;       ///< uncertainty of a robot that was lost [m]
@@ -76,6 +78,7 @@ struct RobustMapper::Impl {
   bool ready(Stamp now) const;
   void process(const LaserScan& scan);
   std::optional<ScanTilt> tilt_of(Stamp reference, const ExpectedMotion& motion) const;
+  bool level_and_steady(const ScanTilt& tilt, Stamp reference) const;
   bool asks_for_frame(const Tracked& tracked) const;
   bool hang_on_old_frame(const Cloud& cloud, Work* work);
   std::optional<int> old_frame_here(Work* work) const;
@@ -197,7 +200,7 @@ void RobustMapper::Impl::process(const LaserScan& scan) {
   }
   if (config_.tracker.vain_error == 0.0) motion.in_vain = 0.0;
   motion.ramps = tilt.has_value();
-  motion.level = !tilt || std::max(std::abs(tilt->pitch), std::abs(tilt->roll)) < kLevel;
+  motion.level = !tilt || level_and_steady(*tilt, reference);
   ScanPoints points = level_scan_.points(scan, sweep ? &*sweep : nullptr, tilt ? &*tilt : nullptr);
   Cloud cloud = cloud_of(points, config_.cloud);
   Work work = 0;
@@ -286,6 +289,13 @@ std::optional<ScanTilt> RobustMapper::Impl::tilt_of(Stamp reference, const Expec
     lean = scans_[k].lean->turned(wrap_angle(T_map_base.phi - then.phi));
   }
   return tilt_.on_body(lean.pitch, lean.roll, reference);
+}
+
+/// A scan plane that swings through level is not: what it sees of a ramp moves.
+bool RobustMapper::Impl::level_and_steady(const ScanTilt& tilt, Stamp reference) const {
+  if (std::max(std::abs(tilt.pitch), std::abs(tilt.roll)) >= kLevel) return false;
+  const std::optional<ScanTilt> before = tilt_.at(reference + -kSteadyFor);
+  return !before || std::max(std::abs(tilt.pitch - before->pitch), std::abs(tilt.roll - before->roll)) < kSteady;
 }
 
 /// Of now(). A robot that strayed may be anywhere in the window in which it is looked for.

@@ -127,7 +127,10 @@ ScanPoints LevelScan::points(const robot::LaserScan& scan, const SweepMotion* mo
     Direction d = directions_[beam];
     if (tilt != nullptr) {
       if (!hit) length = std::min(length, config_.miss_climb / std::abs(plane.climb(d.x, d.y)));
-      if (laser_height_ + length * plane.climb(d.x, d.y) < config_.floor_margin) continue;  // the floor
+      if (laser_height_ + length * plane.climb(d.x, d.y) < config_.floor_margin) {  // the floor
+        if (hit) points.floor_beams.push_back(static_cast<int>(beam));
+        continue;
+      }
       d = {plane.x(d.x, d.y), plane.y(d.y)};
     }
     TPoint2D end{laser.x + length * d.x, laser.y + length * d.y};

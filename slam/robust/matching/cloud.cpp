@@ -71,7 +71,7 @@ int bin_of(double about, double x, double y) {
 /// Hits of a scan in the order of their beams.
 class Hits {
  public:
-  Hits(const ScanPoints& scan) : step_(scan.beam_width) {
+  Hits(const ScanPoints& scan) : step_(scan.beam_width), floor_beams_(scan.floor_beams) {
     p_.reserve(scan.rays.size());
     range_.reserve(scan.rays.size());
     beam_.reserve(scan.rays.size());
@@ -92,6 +92,11 @@ class Hits {
   double farthest() const { return farthest_; }
   double step() const { return step_; }
   int beams_between(std::size_t i, std::size_t j) const { return std::abs(beam_[j] - beam_[i]); }
+  bool floor_between(std::size_t i, std::size_t j) const {
+    const auto [first, last] = std::minmax(beam_[i], beam_[j]);
+    const auto floor = std::upper_bound(floor_beams_.begin(), floor_beams_.end(), first);
+    return floor != floor_beams_.end() && *floor < last;
+  }
   /// Whether two neighbours, at most one missing beam apart, lie on one surface, as judged by the range of the first.
   bool joined(std::size_t i, std::size_t j) const { return (j > i ? joined_to_next_ : joined_to_last_)[i] != 0; }
 
@@ -139,6 +144,7 @@ class Hits {
   }
 
   double step_;
+  const std::vector<int>& floor_beams_;
   double farthest_ = 0.0;
   std::vector<TPoint2D> p_;
   std::vector<double> range_;
@@ -226,12 +232,13 @@ struct WallEnd {
 
 /// The end of a wall at hit `i`, from where it goes on by `inwards` (-1 or 1) in the list. Only where more is seen
 /// beside it, or nothing up to where the scanner sees: where less is seen, the wall is hidden by something nearer, and
-/// its end is nowhere.
+/// its end is nowhere; and where the scan plane dips into the floor the wall goes on behind.
 std::optional<WallEnd> wall_end(const Hits& hits, std::size_t i, int inwards) {
   const auto at = [&](int steps) { return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + steps); };
   const auto exists = [&](int steps) { return at(steps) < hits.size(); };  // below the first wraps to a large number
   if (!exists(-inwards) || hits.joined(i, at(-inwards))) return std::nullopt;
-  bool open = hits.beams_between(i, at(-inwards)) > kSilentBeams && hits.range(i) < kWithinSight * hits.farthest();
+  bool open = hits.beams_between(i, at(-inwards)) > kSilentBeams && !hits.floor_between(i, at(-inwards)) &&
+              hits.range(i) < kWithinSight * hits.farthest();
   for (int k = 1; k <= kBesideEnd && exists(-k * inwards) && !open; ++k)
     open = hits.beams_between(i, at(-k * inwards)) <= kBesideEnd + 1 &&
            hits.range(at(-k * inwards)) > hits.range(i) + kEndJump;

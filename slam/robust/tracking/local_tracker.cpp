@@ -38,8 +38,10 @@ constexpr double kSlidePerTurn = 0.1;   ///< [m/rad]
 constexpr double kBeyondSpeed = 0.05;   ///< where wheels say nothing: beyond the most that the robot drives [m]
 constexpr double kSameLeap = 0.02;      ///< two scans ask for the same correction [m]
 constexpr double kSameLeapTurn = 0.05;  ///< [rad]
-constexpr int kAskedLongEnough = 5;     ///< scans on end
-constexpr int kHeldLongEnough = 10;     ///< scans on end, whatever they ask for
+constexpr int kAskedLongEnough = 5;     ///< scans on end ...
+constexpr double kAskedTime = 0.45;     ///< ... that take so long, however many a second there are [s]
+constexpr int kHeldLongEnough = 10;     ///< scans on end, whatever they ask for ...
+constexpr double kHeldTime = 0.95;      ///< ... and so long [s]
 constexpr double kWorthALeap = 0.25;    ///< a level scan that loses so many inliers by staying is believed at once
 constexpr double kFirm = 100.0;         ///< times the odometry's information, where a looser prior leaps as well
 
@@ -180,15 +182,22 @@ void LocalTracker::hold_leap(const ExpectedMotion& motion, const PosePrior& odom
     const TPose2D& last = leap_.correction;
     const bool same = length(correction.x - last.x, correction.y - last.y) < kSameLeap &&
                       std::abs(wrap_angle(correction.phi - last.phi)) < kSameLeapTurn;
-    leap_.asked = same && leap_.asked > 0 ? leap_.asked + 1 : 1;
+    const bool again = same && leap_.asked > 0;
+    leap_.asked = again ? leap_.asked + 1 : 1;
+    leap_.asked_for = again ? leap_.asked_for + motion.time : motion.time;
     leap_.correction = correction;
   }
   const bool worth = motion.level && stay.inliers < tracked.fit.inliers - kWorthALeap;
-  if (worth || leap_.asked >= kAskedLongEnough || leap_.held >= kHeldLongEnough) {
+  const bool asked = leap_.asked >= kAskedLongEnough && leap_.asked_for >= kAskedTime;
+  const bool held_long = leap_.held >= kHeldLongEnough && leap_.held_for >= kHeldTime;
+  if (worth || asked || held_long) {
     leap_ = {};
     return;
   }
-  if (!motion.again) ++leap_.held;
+  if (!motion.again) {
+    ++leap_.held;
+    leap_.held_for += motion.time;
+  }
   tracked.fit = stay;
   tracked.held = true;
 }

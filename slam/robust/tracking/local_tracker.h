@@ -45,7 +45,7 @@ struct ExpectedMotion {
   double doubt = 0.0;    ///< of the odometry, 0: as good as wheels are, 1: it says nothing
   bool told = false;     ///< it has spoken; what may be doubted is what it says
   bool ramps = false;    ///< the tilt is known, so there may be ramps: leaps are held
-  bool level = true;     ///< the scan was taken level
+  bool level = true;     ///< the scan was taken level, by a scan plane that held still
   bool again = false;    ///< the same scan once more, straightened by a better motion
 
   /// What is believed of `T_last_now`: wheels that turn the robot in vain roll in vain as well. Down the slope it
@@ -114,8 +114,10 @@ class LocalTracker {
   /// A correction that matches ask for, in the frame of the local map.
   struct Leap {
     mrpt::math::TPose2D correction;
-    int asked = 0;  ///< by so many scans on end
-    int held = 0;   ///< scans on end in which some leap was held
+    int asked = 0;           ///< by so many scans on end
+    int held = 0;            ///< scans on end in which some leap was held
+    double asked_for = 0.0;  ///< the time of these scans [s]
+    double held_for = 0.0;   ///< [s]
   };
 
   const TrackerConfig config_;

@@ -80,6 +80,22 @@ TEST(LevelScan, AMissIsFollowedWhileItsBeamStaysLow) {
   EXPECT_NEAR(along, 0.85, 0.01);
 }
 
+/// Nose down by 10 deg the beam ahead meets the floor after 2 m; what returns from there is no wall, and is told.
+TEST(LevelScan, ReturnsFromTheFloorAreToldByTheirBeams) {
+  LevelScanConfig config;
+  config.floor_margin = 0.08;
+  LevelScan level_scan(TPose3D(0.0, 0.0, 0.35, 0.0, 0.0, 0.0), config);
+  ScanTilt tilt;
+  tilt.pitch = deg_to_rad(-10.0);
+  const ScanPoints floor = level_scan.points(four_beams({1.0f, 2.0f, 1.0f}), nullptr, &tilt);
+  EXPECT_EQ(floor.hits.size(), 2u);
+  EXPECT_EQ(floor.floor_beams, std::vector<int>{1});
+  const ScanPoints wall = level_scan.points(four_beams({1.0f, 1.0f, 1.0f}), nullptr, &tilt);
+  EXPECT_EQ(wall.hits.size(), 3u);
+  EXPECT_TRUE(wall.floor_beams.empty());
+  EXPECT_TRUE(level_scan.points(four_beams({1.0f, kMiss, 1.0f}), nullptr, &tilt).floor_beams.empty());
+}
+
 TEST(LevelScan, RangeCapTurnsFarReturnsIntoNothing) {
   LevelScanConfig config;
   config.max_range = 2.0;

@@ -150,6 +150,33 @@ TEST(Cloud, CornersAndWallsOutOfSightHaveNoEnds) {
   EXPECT_TRUE(slam_test::cloud_at(corridor, {}, RobotModel()).ends.empty());
 }
 
+/// Where a tilted scan plane dips into the floor nothing is left of the beams; the wall goes on behind.
+TEST(Cloud, AWallDoesNotEndWhereTheFloorBegins) {
+  const auto wall = [](const std::vector<int>& floor_beams, bool clockwise) {
+    ScanPoints scan;
+    scan.beam_width = deg_to_rad(0.5);
+    for (int beam = 0; beam < 120; ++beam) {
+      const double bearing = deg_to_rad(0.5 * beam - 30.0);
+      const TPoint2D across(1.0, std::tan(bearing));
+      const TPoint2D far(3.5 * std::cos(bearing), 3.5 * std::sin(bearing));
+      if (beam >= 60 && beam < 110) continue;  // nothing beside the wall, and far off something again
+      scan.rays.push_back({beam < 60 ? across : far, true, true, beam});
+    }
+    for (const ScanRay& ray : scan.rays) scan.hits.push_back(ray.end);
+    if (clockwise) std::reverse(scan.rays.begin(), scan.rays.end());
+    scan.floor_beams = floor_beams;
+    return cloud_of(scan, {});
+  };
+  for (const bool clockwise : {false, true}) {
+    const Cloud silence = wall({}, clockwise);
+    ASSERT_FALSE(silence.ends.empty()) << "nothing was at stake";
+    EXPECT_NEAR(silence.ends.front().y, 0.0, 0.02);
+    EXPECT_TRUE(wall({60}, clockwise).ends.empty());
+    EXPECT_TRUE(wall({75, 109}, clockwise).ends.empty());
+    EXPECT_FALSE(wall({20, 112}, clockwise).ends.empty()) << "floor elsewhere hides no end";
+  }
+}
+
 /// The robot may push it along; what is larger, farther off or part of a wall stays where it is.
 TEST(Cloud, SmallFreeThingsNearTheRobotAreLeftOut) {
   const RobotModel model;

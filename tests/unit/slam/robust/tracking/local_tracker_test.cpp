@@ -151,7 +151,7 @@ class LeapingLine : public ::testing::Test {
       slam_test::add_key_frame(frames_, corridor_with_line(2.0), places, 0.0, model_);
   }
   /// Where the robot is thought to be after each scan [m]; the wheels say `step` each, the line is seen at `ahead[i]`.
-  std::vector<double> follow(double step, const std::vector<double>& ahead, bool hold) const {
+  std::vector<double> follow(double step, const std::vector<double>& ahead, bool hold, double scan_period = 0.1) const {
     TrackerConfig config = suited_to(model_.laser, {}).tracker;
     config.hold_leaps = hold;
     LocalTracker tracker(config);
@@ -160,7 +160,9 @@ class LeapingLine : public ::testing::Test {
     TPose2D T_frame_now;
     for (const double line : ahead) {
       const Cloud cloud = slam_test::cloud_at(corridor_with_line(line), TPose2D(), model_);
-      T_frame_now = tracker.track(frames_, cloud, rolled(step), T_frame_now, nullptr).fit.pose;
+      ExpectedMotion motion = rolled(step);
+      motion.time = scan_period;
+      T_frame_now = tracker.track(frames_, cloud, motion, T_frame_now, nullptr).fit.pose;
       at.push_back(T_frame_now.x);
     }
     return at;
@@ -189,6 +191,13 @@ TEST_F(LeapingLine, ThatStaysIsAWall) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(at[i], 0.0, 0.03) << "scan " << i;
   EXPECT_GT(at[4], 0.08);
   EXPECT_NEAR(at.back(), 0.15, 0.03);
+}
+
+/// A scanner of 40 Hz asks as often in an eighth of a second: what tilts needs as long to come back.
+TEST_F(LeapingLine, IsHeldAsLongByAFastScanner) {
+  const std::vector<double> at = follow(0.0, std::vector<double>(24, 1.85), true, 0.025);
+  for (std::size_t i = 0; i < 17; ++i) EXPECT_NEAR(at[i], 0.0, 0.03) << "scan " << i;
+  EXPECT_GT(at[18], 0.08);
 }
 
 /// Wheels that spin before a wall: between not at all and as they say the robot may have moved, so nothing is held.
