@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/planar.h"
@@ -66,6 +69,20 @@ Errors errors(const Trajectory& estimate, const Trajectory& truth, const TPose2D
   }
   e.rmse = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, estimate.size())));
   return e;
+}
+
+/// Share of the occupied cells that lie more than 0.1 m off the walls.
+double walls_off(const OccupancyGrid& grid, const slam_test::World& world, const TPose2D& T_world_map) {
+  int off = 0;
+  int occupied = 0;
+  for (int y = 0; y < grid.height(); ++y)
+    for (int x = 0; x < grid.width(); ++x) {
+      if (grid[{x, y}] != Occupancy::Occupied) continue;
+      ++occupied;
+      off += slam_test::distance_to(world, T_world_map.composePoint(grid.centre({x, y}))) > 0.1 ? 1 : 0;
+    }
+  EXPECT_GT(occupied, 300);
+  return static_cast<double>(off) / std::max(1, occupied);
 }
 
 TEST(ContinuedMapper, ALogCutInTwoIsMappedAsWellAsInOnePiece) {
@@ -190,6 +207,82 @@ TEST(ContinuedMapper, AForeignBuildingIsNotTakenForTheMap) {
       EXPECT_TRUE(mapper.saved_map() == bytes) << "the map has changed";
     }
   }
+}
+
+/// Measurements of a drive that are wrong here and there, each kind alone.
+std::vector<std::pair<std::string, Ticks>> spoiled(const Ticks& good) {
+  static constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+  std::vector<std::pair<std::string, Ticks>> all;
+  const auto with = [&](const std::string& name, const std::function<void(Inputs&, std::size_t)>& change) {
+    all.emplace_back(name, good);
+    for (std::size_t i = 0; i < good.size(); ++i) change(all.back().second[i], i);
+  };
+  const auto scans = [&](const std::string& name, const std::function<void(robot::LaserScan&, std::size_t)>& change) {
+    with(name, [&](Inputs& tick, std::size_t i) {
+      for (robot::LaserScan& scan : tick.scans) change(scan, i);
+    });
+  };
+  scans("blind at first", [](auto& scan, std::size_t i) {
+    if (i < 8) scan.ranges.assign(scan.ranges.size(), kNothing);
+  });
+  scans("blind now and then", [](auto& scan, std::size_t i) {
+    if (i % 5 == 2) scan.ranges.assign(scan.ranges.size(), kNothing);
+  });
+  scans("one beam now and then", [](auto& scan, std::size_t i) {
+    if (i % 3 == 1) scan.ranges.resize(1);
+  });
+  scans("no angle now and then", [](auto& scan, std::size_t i) {
+    if (i % 4 == 1) scan.angle_step = std::numeric_limits<double>::quiet_NaN();
+  });
+  with("time runs backwards", [](Inputs& tick, std::size_t i) {
+    if (i < 40 || i % 7 != 0) return;
+    tick.scans.front().stamp = tick.scans.front().stamp - 1.5;
+    tick.odometry.front().stamp = tick.odometry.front().stamp - 1.5;
+  });
+  with("a stamp far ahead", [](Inputs& tick, std::size_t i) {
+    if (i == 50) tick.scans.front().stamp = tick.scans.front().stamp + 3600.0;
+  });
+  with("a gap of three seconds", [](Inputs& tick, std::size_t i) {
+    if (i < 60 || i >= 90) return;
+    tick.scans.clear();
+    tick.odometry.clear();
+  });
+  with("doubled scans", [](Inputs& tick, std::size_t) { tick.scans.push_back(tick.scans.front()); });
+  with("odometry that jumps", [](Inputs& tick, std::size_t i) {
+    if (i % 25 == 20) tick.odometry.front().pose = tick.odometry.front().pose + TPose2D(4.0, -3.0, 1.0);
+  });
+  with("odometry that starts anew", [&](Inputs& tick, std::size_t i) {
+    const TPose2D then = good[80].odometry.front().pose;
+    if (i >= 80) tick.odometry.front().pose = tick.odometry.front().pose - then;
+  });
+  with("no odometry", [](Inputs& tick, std::size_t) { tick.odometry.clear(); });
+  return all;
+}
+
+/// A base map is neither spoiled nor lost by what is wrong in the drive that goes on in it.
+TEST(ContinuedMapper, BadInputSpoilsNeitherTheMapNorThePlace) {
+  const slam_test::Floor floor(2, 3, 2);
+  const Recorded first = recorded(floor, kRound, 0.0, 2);
+  const Recorded second = recorded(floor, kElsewhere, -1.0, 52);
+  const TPose2D& T_world_map = first.drive.truth.front().pose;
+  const std::string bytes = map_of(first.ticks);
+  for (const auto& [name, ticks] : spoiled(second.ticks))
+    for (const bool grows : {true, false}) {
+      SCOPED_TRACE(name + (grows ? ", gone on with" : ", localised"));
+      ContinuedMapper mapper(RobotModel(), {}, base(bytes, grows));
+      play(mapper, ticks);
+      EXPECT_EQ(figure(mapper, "place_known"), 1.0);
+      const Errors all = errors(mapper.trajectory(), second.drive.truth, T_world_map);
+      EXPECT_GT(mapper.trajectory().size(), second.ticks.size() / 2);
+      EXPECT_LT(all.rmse, 0.05);
+      EXPECT_LT(all.worst_heading, deg_to_rad(5.0));
+      if (grows) {
+        EXPECT_GE(decode_map(mapper.saved_map(), "both").frames.size(), decode_map(bytes, "first").frames.size());
+        EXPECT_LT(walls_off(mapper.map().classify(), floor.world(), T_world_map), 0.02);
+      } else {
+        EXPECT_TRUE(mapper.saved_map() == bytes) << "the map has changed";
+      }
+    }
 }
 
 TEST(ContinuedMapper, ARobotThatIsCarriedOffFindsItsPlaceAgain) {
