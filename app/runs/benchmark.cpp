@@ -69,7 +69,7 @@ int benchmark(const BenchmarkArguments& arguments) {
     gone += !row.results.empty() && !row.results.front().missing.empty() ? 1 : 0;
     for (const BenchmarkResult& r : row.results) {
       any = any || r.missing.empty();
-      failed = failed || !r.failure.empty();
+      failed = failed || (!r.failure.empty() && !r.stopped);
     }
   }
   if (!any)

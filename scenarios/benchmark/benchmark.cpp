@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <ctime>
 #include <nlohmann/json.hpp>
@@ -139,9 +140,10 @@ json run_arena(const Scenario& scenario) {
 struct ChildAnswer {
   std::string text;
   double peak_mb = 0.0;
+  bool stopped = false;  ///< at the limit of its CPU time
 };
 
-ChildAnswer in_child(const std::function<json()>& work) {
+ChildAnswer in_child(const std::function<json()>& work, const std::optional<int>& cpu_limit) {
   int ends[2];
   if (pipe(ends) != 0) throw RunError("a pipe cannot be made; close other programs and try again");
   std::fflush(nullptr);
@@ -149,6 +151,10 @@ ChildAnswer in_child(const std::function<json()>& work) {
   if (child < 0) throw RunError("a process cannot be made; close other programs and try again");
   if (child == 0) {
     close(ends[0]);
+    if (cpu_limit) {
+      const rlimit limit{static_cast<rlim_t>(*cpu_limit), static_cast<rlim_t>(*cpu_limit) + 1};
+      setrlimit(RLIMIT_CPU, &limit);
+    }
     json answer;
     try {
       answer = work();
@@ -177,11 +183,17 @@ ChildAnswer in_child(const std::function<json()>& work) {
   while (wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
   }
   answer.peak_mb = static_cast<double>(usage.ru_maxrss) / 1024.0;
+  answer.stopped = WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || (cpu_limit && WTERMSIG(status) == SIGKILL));
   return answer;
 }
 
-void take(BenchmarkResult& result, const ChildAnswer& answer) {
+void take(BenchmarkResult& result, const ChildAnswer& answer, const std::optional<int>& cpu_limit) {
   result.runs = 1;
+  result.stopped = answer.stopped;
+  if (result.stopped) {
+    result.failure = "stopped after " + std::to_string(*cpu_limit) + " s of CPU time";
+    return;
+  }
   const json said = json::parse(answer.text, nullptr, false);
   if (!said.is_object()) {
     result.failure = "its process ended without an answer";
@@ -305,7 +317,7 @@ Scenario scenario_of(const BenchmarkCase& what, const BenchmarkMapper& mapper, c
   return scenario;
 }
 
-BenchmarkResult run_one(const BenchmarkCase& what, const BenchmarkMapper& mapper,
+BenchmarkResult run_one(const BenchmarkCase& what, const BenchmarkMapper& mapper, const std::optional<int>& cpu_limit,
                         const std::vector<std::string>& folders, const BenchmarkOptions& options) {
   BenchmarkResult result;
   result.mapper = mapper.name;
@@ -318,9 +330,10 @@ BenchmarkResult run_one(const BenchmarkCase& what, const BenchmarkMapper& mapper
     if (!runs.empty() && options.interrupted && options.interrupted()) break;
     scenario.seed = seed;
     BenchmarkResult run;
-    take(run, in_child([&] {
-           return files.log.empty() ? run_arena(scenario) : run_log(files.log, files.relations, scenario);
-         }));
+    const auto work = [&] {
+      return files.log.empty() ? run_arena(scenario) : run_log(files.log, files.relations, scenario);
+    };
+    take(run, in_child(work, cpu_limit), cpu_limit);
     if (run.failure.empty() && what.goal && !run.error_m) run.failure = "its trajectory cannot be judged";
     if (!run.failure.empty() && what.seeds.size() > 1) run.failure += " (seed " + std::to_string(seed) + ")";
     runs.push_back(std::move(run));
@@ -348,7 +361,7 @@ Benchmark run_benchmark(const BenchmarkList& list, const BenchmarkOptions& optio
     for (const BenchmarkMapper& mapper : list.mappers) {
       if (options.interrupted && options.interrupted()) break;
       if (options.progress) options.progress(what.name + ", " + mapper.name);
-      row.results.push_back(run_one(what, mapper, folders, options));
+      row.results.push_back(run_one(what, mapper, list.cpu_limit, folders, options));
     }
     if (!row.results.empty()) benchmark.rows.push_back(std::move(row));
   }

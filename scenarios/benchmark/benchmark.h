@@ -14,6 +14,7 @@ struct BenchmarkResult {
   std::string mapper;
   std::string missing;                 ///< a file that is not there: nothing was run; says which
   std::string failure;                 ///< the mapper was lost or the input refused; says why
+  bool stopped = false;                ///< the failure is that it took longer than the list lets a mapper take
   std::size_t runs = 0;                ///< one for each seed; where there are several, errors are medians
   std::optional<double> error_m;       ///< the case's measure, of the final trajectory [m]
   std::optional<double> worst_m;       ///< the same of the worst of several runs [m]

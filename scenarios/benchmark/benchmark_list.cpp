@@ -13,6 +13,7 @@ namespace fs = std::filesystem;
 constexpr double kLargestError = 1e4;  // [m]
 constexpr double kMostSpeed = 1e9;     // [1/s]
 constexpr double kLongest = 1e6;       // [ms]
+constexpr int kLongestRun = 1000000;   // [s]
 
 BenchmarkMapper read_mapper(const YamlMap& map) {
   BenchmarkMapper mapper;
@@ -70,6 +71,7 @@ BenchmarkList load_benchmark(const std::string& path) {
   list.folder = fs::path(path).parent_path().string();
   list.name = root.text("name", fs::path(path).stem().string());
   list.about = root.text("about", "");
+  if (root.has("cpu_limit_s")) list.cpu_limit = static_cast<int>(root.integer("cpu_limit_s", 0, 1, kLongestRun));
   std::set<std::string> names;
   for (const YamlMap& row : root.maps("mappers")) {
     list.mappers.push_back(read_mapper(row));

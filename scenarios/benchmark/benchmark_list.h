@@ -51,8 +51,9 @@ struct BenchmarkCase {
 struct BenchmarkList {
   std::string name;
   std::string about;
-  std::string path;    ///< for messages
-  std::string folder;  ///< of the file: paths are relative to it
+  std::string path;              ///< for messages
+  std::string folder;            ///< of the file: paths are relative to it
+  std::optional<int> cpu_limit;  ///< of one mapper on one case and seed: then it is stopped [s]
   std::vector<BenchmarkMapper> mappers;
   std::vector<BenchmarkCase> cases;
 };

@@ -33,7 +33,7 @@ std::string measure_name(BenchmarkMeasure measure) {
 
 std::string error_of(const BenchmarkResult& result) {
   if (!result.missing.empty()) return "not there: " + result.missing;
-  if (!result.failure.empty()) return "failed: " + result.failure;
+  if (!result.failure.empty()) return (result.stopped ? "" : "failed: ") + result.failure;
   return optional_number(result.error_m, "%.4f");
 }
 

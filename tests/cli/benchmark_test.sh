@@ -83,6 +83,20 @@ PY
 "$rubble" benchmark short.yaml --json >short.json 2>err.txt || fail "the shipped list ended with $?: $(cat err.txt)"
 json_holds short.json "len(j['cases']) >= 7 and all(r['runs'] == 2 for c in j['cases'] for r in c['results'])"
 
+# A mapper that takes too long is stopped, the others are not.
+cat >slow.yaml <<YAML
+cpu_limit_s: 1
+mappers: [{kind: robust}]
+cases:
+  - {name: long, scenario: s.yaml, seed: 3, set: {time_limit_s: 36000, arena.generate.columns: 16, arena.generate.rows: 16}}
+  - {name: short, scenario: s.yaml, seed: 3, set: {time_limit_s: 20}}
+YAML
+"$rubble" benchmark slow.yaml --json >slow.json 2>err.txt || fail "benchmark with a limit ended with $?: $(cat err.txt)"
+json_holds slow.json "'stopped after 1 s of CPU time' in j['cases'][0]['results'][0]['failure']"
+json_holds slow.json "'failure' not in j['cases'][1]['results'][0] and j['cases'][1]['results'][0]['scans'] > 10"
+printf 'cpu_limit_s: 0\nmappers: [{kind: robust}]\ncases: [{name: a, log: x}]\n' >limit.yaml
+expect_exit 3 'limit.yaml:1' "$rubble" benchmark limit.yaml
+
 expect_exit 2 '--mapper nobody' "$rubble" benchmark list.yaml --mapper nobody
 expect_exit 3 'nowhere.yaml' "$rubble" benchmark nowhere.yaml
 printf 'mappers: [{kind: robust}]\n' >none.yaml
