@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # docs/pictures/make.sh [NAME...]: makes pictures of README.md and docs/ anew, all of these or the named: standard film
-# rigid plan arenas league. rigid scales its pictures with gdal_translate, and prints the scores of its maps and
-# trajectories; league takes its pages' pictures with Chromium. RUBBLE: the program, if not ./rubble.
+# rigid plan arenas league; only where it is named, logs: its logs (docs/benchmark.md) lie in $RUBBLE_DATA/logs. rigid
+# and logs scale their pictures with gdal_translate, and rigid prints the scores of its maps and trajectories; league
+# takes its pages' pictures with Chromium. RUBBLE: the program, if not ./rubble.
 set -euo pipefail
 top=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 pictures=$top/docs/pictures
@@ -37,6 +38,20 @@ rigid() {
     "$rubble" score rigid-$kind/estimate.tum rigid/truth.tum
     GDAL_PAM_ENABLED=NO gdal_translate -q -of PNG -outsize 420 0 -r average judged-$kind/error.png \
       "$pictures/rigid_12x12_${kind#mrpt-}.png"
+  done
+}
+
+# Two mappers on logs of real robots, in README.md and docs/slam.md. (intel_rbpf.png is of what mrpt-rbpf kept in the
+# end, after hours.)
+logs() {
+  local log kind
+  for log in intel-raw.clf.bz2 exp1.dat; do
+    for kind in paper robust; do
+      "$rubble" map "$RUBBLE_DATA/logs/$log" --set mapper.kind=$kind --out "log-$kind" >/dev/null
+      GDAL_PAM_ENABLED=NO gdal_translate -q -of PNG -outsize 420 0 -r average "log-$kind/map.png" \
+        "$pictures/${log%%[-.]*}_$kind.png"
+      rm -r "log-$kind"
+    done
   done
 }
 
@@ -98,6 +113,10 @@ read -ra names <<<"${*:-$all}"
 for name in "${names[@]}"; do  # before anything is made
   case $name in
     rigid) needs rigid gdal_translate gdal-bin ;;
+    logs)
+      needs logs gdal_translate gdal-bin
+      [[ -d ${RUBBLE_DATA:-}/logs ]] || { echo "make.sh: logs needs RUBBLE_DATA, the folder that has logs/" >&2; exit 3; }
+      ;;
     league) needs league chromium chromium ;;
     *) [[ " $all " == *" $name "* ]] || { echo "make.sh: $name is none of: $all" >&2; exit 2; } ;;
   esac
