@@ -22,7 +22,7 @@ struct BenchmarkResult {
   std::optional<double> error_deg;     ///< of relations [deg]
   std::uint64_t scans = 0;
   double scans_per_second = 0.0;  ///< CPU time of update(), all in all
-  double usual_ms = 0.0;          ///< of a scan: the median,
+  double usual_ms = 0.0;          ///< of a scan, its share of the update that placed it: the median,
   double slow_ms = 0.0;           ///< what 99 of 100 stay below,
   double worst_ms = 0.0;          ///< and the worst [ms]; of several runs the largest of each
   double finish_ms = 0.0;         ///< after the last scan [ms]

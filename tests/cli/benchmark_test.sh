@@ -69,6 +69,14 @@ expect_exit 3 'nothing' "$rubble" benchmark key.yaml
 # A key that one of the mappers lacks costs no run of the others.
 printf 'mappers: [{kind: robust}, {kind: paper}]\ncases: [{name: a, scenario: s.yaml}, {name: b, scenario: s.yaml, set: {mapper.loop_search.window_m: 2}}]\n' >late.yaml
 expect_exit 3 'loop_search' timeout 2 "$rubble" benchmark late.yaml
+# Four scans of a UTM come in one tick: the time of one is its share, so that scans/s of it are about as many as all.
+cat >utm.yaml <<'YAML'
+mappers: [{kind: robust}]
+cases: [{name: utm, scenario: s.yaml, seed: 3, set: {robot.laser.model: UTM-30LX, time_limit_s: 60}}]
+YAML
+"$rubble" benchmark utm.yaml --json >utm.json 2>err.txt || fail "benchmark of a UTM ended with $?: $(cat err.txt)"
+json_holds utm.json "(lambda r: r['scans'] > 1000 and r['usual_ms'] * r['scans_per_second'] < 2000)(j['cases'][0]['results'][0])"
+
 # The list of arenas that ships can be run: here for a second of two seeds each.
 python3 - "$source/scenarios" >short.yaml <<'PY'
 import re, sys
