@@ -28,6 +28,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr const char* kMostWork = "most_work_ms";  ///< figure of the robust mapper: 1e6 counted units, not time
+
 /// CPU time of this process with all its threads: a mapper may have some [s].
 double cpu_seconds() {
   timespec now{};
@@ -68,8 +70,8 @@ class TimedMapper {
                 {"worst_ms", ms_.empty() ? 0.0 : ms_.back()},
                 {"finish_ms", 1e3 * finish_}};
     for (const slam::MapperFigure& figure : mapper_.figures())
-      if (figure.key == slam::MapperFigure::kLoopsClosed || figure.key == slam::MapperFigure::kLoopsRemoved)
-        out[figure.key] = figure.value;
+      for (const char* key : {slam::MapperFigure::kLoopsClosed, slam::MapperFigure::kLoopsRemoved, kMostWork})
+        if (figure.key == key) out[key] = figure.value;
     return out;
   }
 
@@ -208,6 +210,7 @@ void take(BenchmarkResult& result, const ChildAnswer& answer, const std::optiona
   result.error_m = number("error_m");
   result.live_error_m = number("live_error_m");
   result.error_deg = number("error_deg");
+  result.most_work_ms = number(kMostWork);
   result.loops_closed = number(slam::MapperFigure::kLoopsClosed);
   result.loops_removed = number(slam::MapperFigure::kLoopsRemoved);
   result.loops_false = number("loops_false");
@@ -243,6 +246,8 @@ BenchmarkResult summary(const std::vector<BenchmarkResult>& runs) {
   all.live_error_m = median(values(&BenchmarkResult::live_error_m));
   all.error_deg = median(values(&BenchmarkResult::error_deg));
   if (runs.size() > 1 && !errors.empty()) all.worst_m = errors.back();
+  const std::vector<double> works = values(&BenchmarkResult::most_work_ms);
+  if (!works.empty()) all.most_work_ms = works.back();
   double seconds = 0.0;
   all.scans = 0;
   for (const BenchmarkResult& run : runs) {

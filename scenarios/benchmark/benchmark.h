@@ -25,7 +25,9 @@ struct BenchmarkResult {
   double usual_ms = 0.0;          ///< of a scan, its share of the update that placed it: the median,
   double slow_ms = 0.0;           ///< what 99 of 100 stay below,
   double worst_ms = 0.0;          ///< and the worst [ms]; of several runs the largest of each
-  double finish_ms = 0.0;         ///< after the last scan [ms]
+  /// The most work of a scan, in millions of units that the mapper counts; of several runs the largest.
+  std::optional<double> most_work_ms;
+  double finish_ms = 0.0;  ///< after the last scan [ms]
   double peak_mb = 0.0;
   std::optional<double> loops_closed;
   std::optional<double> loops_removed;

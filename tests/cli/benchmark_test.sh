@@ -27,10 +27,16 @@ json_holds b.json "all(r['missing'] == 'nowhere.log' and r['error_m'] is None an
 json_holds b.json "j['cases'][1]['published'][0]['error_m'] == 0.5"
 json_holds b.json "j['cases'][0]['results'][2]['loops_closed'] == 0"
 json_holds b.json "[r['loops_false'] for r in j['cases'][0]['results']] == [None, 0, 0]"
+json_holds b.json "[None if r['most_work_ms'] is None else 0.01 < r['most_work_ms'] < 20 for r in j['cases'][0]['results']] == [None, True, True]"
+json_holds b.json "list(j['cases'][0]['results'][0]).index('most_work_ms') == list(j['cases'][0]['results'][0]).index('worst_ms') + 1"
+for page in b.html b.md; do
+  tr '\n' ' ' <$page | grep -qE 'worst ms( \| |</th><th>)most work( \| |</th><th>)finish ms' || fail "$page does not tell the work beside the times"
+done
 grep -q '&lt;by&gt;' b.html || fail "the page does not escape what the list says"
 grep -qE '(src|href)=' b.html && fail "the page refers to other files"
 grep -q 'A paper / with a bar' b.md || fail "the document's table is broken by a bar"
 "$rubble" benchmark list.yaml --mapper robust >b.txt 2>/dev/null || fail "the table ended with $?"
+grep -q 'worst ms  most work  finish ms' b.txt || fail "the table does not tell the work beside the times"
 grep -q 'not there: nowhere.log' b.txt || fail "the table does not tell the missing log"
 expect_exit 0 '1 of 3 cases were left out, as what they name is not there; give the folder of the logs with --data' \
   "$rubble" benchmark list.yaml --mapper robust
@@ -53,6 +59,7 @@ YAML
 json_holds seeds.json "[c['results'][0]['runs'] for c in j['cases']] == [3, 3, 1, 1, 1, 1]"
 json_holds seeds.json "(lambda e, r: (r['error_m'], r['worst_m']) == (e[1], e[2]))(sorted(c['results'][0]['error_m'] for c in j['cases'][2:5]), j['cases'][0]['results'][0])"
 json_holds seeds.json "j['cases'][0]['results'][0]['scans'] == sum(c['results'][0]['scans'] for c in j['cases'][2:5])"
+json_holds seeds.json "j['cases'][0]['results'][0]['most_work_ms'] == max(c['results'][0]['most_work_ms'] for c in j['cases'][2:5])"
 json_holds seeds.json "[c['results'][0]['goal_met'] for c in j['cases'][:3]] == [True, False, None]"
 json_holds seeds.json "j['cases'][1]['results'][0]['goals_missed'] == ['worst', 'scans/s', 'worst ms']"
 json_holds seeds.json "j['cases'][0]['results'][0]['goals_missed'] == [] and j['cases'][1]['scans_per_s_goal'] == 1e9"
