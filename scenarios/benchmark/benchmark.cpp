@@ -278,6 +278,7 @@ void judge(const BenchmarkCase& what, BenchmarkResult& result) {
     if (!met) result.goals_missed.emplace_back(column);
   };
   ask(what.goal, result.error_m, "error");
+  ask(what.heading_goal, result.error_deg, "deg");
   ask(what.worst_goal, result.worst_m, "worst");
   ask(what.live_goal, result.live_error_m, "known at the scan");
   ask(what.false_loops_goal, result.loops_false, "false loops");

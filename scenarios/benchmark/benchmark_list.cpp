@@ -10,10 +10,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLargestError = 1e4;  // [m]
-constexpr double kMostSpeed = 1e9;     // [1/s]
-constexpr double kLongest = 1e6;       // [ms]
-constexpr int kLongestRun = 1000000;   // [s]
+constexpr double kLargestError = 1e4;   // [m]
+constexpr double kLargestTurn = 180.0;  // [deg]
+constexpr double kMostSpeed = 1e9;      // [1/s]
+constexpr double kLongest = 1e6;        // [ms]
+constexpr int kLongestRun = 1000000;    // [s]
 
 BenchmarkMapper read_mapper(const YamlMap& map) {
   BenchmarkMapper mapper;
@@ -49,6 +50,7 @@ BenchmarkCase read_case(const YamlMap& map) {
     return map.has(key) ? std::optional<double>(map.number(key, std::nullopt, 0.0, most)) : std::nullopt;
   };
   c.goal = goal("goal_m");
+  c.heading_goal = goal("goal_deg", kLargestTurn);
   c.live_goal = goal("live_goal_m");
   c.worst_goal = goal("worst_goal_m");
   c.false_loops_goal = goal("false_loops_goal");
@@ -56,6 +58,7 @@ BenchmarkCase read_case(const YamlMap& map) {
   c.slow_goal = goal("ms_99_goal", kLongest);
   c.worst_time_goal = goal("worst_ms_goal", kLongest);
   if (c.worst_goal && c.seeds.size() < 2) map.fail("worst_goal_m", "is of several seeds; give 'seeds' beside it");
+  if (c.heading_goal && c.relations.empty()) map.fail("goal_deg", "is of relations; give 'relations' beside it");
   for (const YamlMap& row : map.maps("published"))
     c.published.push_back({row.text("by", std::nullopt), row.text("source", std::nullopt),
                            row.number("error_m", std::nullopt, 0.0, kLargestError)});

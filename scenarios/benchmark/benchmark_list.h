@@ -39,6 +39,7 @@ struct BenchmarkCase {
   std::vector<Override> overrides;      ///< of the scenario, for this case
   BenchmarkMeasure measure = BenchmarkMeasure::Aligned;
   std::optional<double> goal;              ///< of the measure, at most; of several seeds for the median [m]
+  std::optional<double> heading_goal;      ///< of the heading of relations [deg]
   std::optional<double> live_goal;         ///< the same of the poses as known at each scan [m]
   std::optional<double> worst_goal;        ///< of the worst of several seeds [m]
   std::optional<double> false_loops_goal;  ///< closed loops that lead to another place, of all seeds together

@@ -43,6 +43,7 @@ std::string goals_of(const BenchmarkCase& what) {
   const auto add = [&](const std::optional<double>& goal, const char* of) {
     if (goal) text += (text.empty() ? "" : ", ") + std::string(of) + " " + number(*goal, "%g");
   };
+  if (what.heading_goal) text += (text.empty() ? "" : ", ") + number(*what.heading_goal, "%g") + " deg";
   add(what.worst_goal, "worst");
   add(what.live_goal, "known at the scan");
   add(what.false_loops_goal, "false loops");
@@ -181,6 +182,7 @@ std::string to_json(const Benchmark& benchmark) {
   for (const BenchmarkRow& row : benchmark.rows) {
     ordered_json c = {{"name", row.what.name}, {"measure", measure_name(row.what.measure)}};
     set(c, "goal_m", row.what.goal);
+    set(c, "goal_deg", row.what.heading_goal);
     set(c, "live_goal_m", row.what.live_goal);
     set(c, "worst_goal_m", row.what.worst_goal);
     set(c, "false_loops_goal", row.what.false_loops_goal);

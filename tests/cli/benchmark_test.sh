@@ -44,6 +44,35 @@ expect_exit 3 "none of that name is shipped, did you mean 'benchmark'?; shipped 
   "$rubble" benchmark bencmark
 grep -q 'paper  ' b.txt && fail "--mapper robust ran others"
 
+# Relations are judged by their distance and by their heading: here those of the true path, and the same turned a bit.
+python3 - <<'PY'
+import math
+poses = []
+for line in open('run/truth.tum'):
+    t, x, y, _, _, _, z, w = map(float, line.split())
+    if t >= 2 and (not poses or t >= poses[-1][0] + 5): poses.append((t, x, y, 2 * math.atan2(z, w)))
+for name, turn in (('true', 0), ('turned', 0.05)):
+    with open(name + '.relations', 'w') as out:
+        for (t, x, y, h), (u, v, w, k) in zip(poses, poses[1:]):
+            c, s = math.cos(h), math.sin(h)
+            out.write(f'{t} {u} {c * (v - x) + s * (w - y)} {c * (w - y) - s * (v - x)} 0 0 0 {k - h + turn}\n')
+PY
+cat >relations.yaml <<'YAML'
+mappers: [{kind: robust}]
+cases:
+  - {name: by the truth, log: run/log.rlog, relations: true.relations, goal_m: 0.2, goal_deg: 2}
+  - {name: by another, log: run/log.rlog, relations: turned.relations, goal_m: 0.2, goal_deg: 2}
+  - {name: of the heading alone, log: run/log.rlog, relations: turned.relations, goal_deg: 2}
+YAML
+"$rubble" benchmark relations.yaml --json --markdown relations.md >relations.json 2>err.txt || fail "benchmark of relations ended with $?: $(cat err.txt)"
+json_holds relations.json "[c['results'][0]['goals_missed'] for c in j['cases']] == [[], ['deg'], ['deg']]"
+json_holds relations.json "[c['results'][0]['goal_met'] for c in j['cases']] == [True, False, False] and j['cases'][0]['goal_deg'] == 2"
+json_holds relations.json "abs(j['cases'][1]['results'][0]['error_deg'] - 2.865) < 0.6"
+grep -q '| 0.2, 2 deg | no: deg |' relations.md || fail "the goal of the heading is not told: $(cat relations.md)"
+grep -q '| 2 deg | no: deg |' relations.md || fail "a goal of the heading alone is not told: $(cat relations.md)"
+printf 'mappers: [{kind: robust}]\ncases: [{name: a, log: x, goal_deg: 1}]\n' >heading.yaml
+expect_exit 3 "give 'relations'" "$rubble" benchmark heading.yaml
+
 # Several seeds: medians and the worst, goals of each, and a case with settings of its own.
 cat >seeds.yaml <<'YAML'
 mappers: [{kind: robust}]
