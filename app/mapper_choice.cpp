@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <set>
 
-#include "app/terminal.h"
+#include "base/text/words.h"
 #include "slam/process/process_mapper.h"
 
 namespace rubble::app {
@@ -21,7 +21,7 @@ std::vector<scenarios::Override> with_mapper(const MapperChoice& choice, std::ve
 }
 
 void permit_command(const MapperChoice& choice, const std::vector<scenarios::Override>& overrides,
-                    scenarios::Scenario& scenario) {
+                    scenarios::Scenario& scenario, std::FILE* told_on) {
   const std::string command = scenario.mapper.command();
   if (command.empty()) return;
   std::string typed = choice.command;
@@ -29,14 +29,14 @@ void permit_command(const MapperChoice& choice, const std::vector<scenarios::Ove
     if (key == "mapper.command") typed = value;
   if (choice.allow_commands || command == typed) scenario.mapper.permit_command();
   scenario.mapper.require_permission();
-  tell_command(command);
+  tell_command(command, told_on);
 }
 
-void tell_command(const std::string& command) {
+void tell_command(const std::string& command, std::FILE* told_on) {
   static std::set<std::string> told;
   if (!told.insert(command).second) return;
-  print_row("mapper command", command, 30);
-  std::fflush(stdout);
+  std::fprintf(told_on, "%-30s %s\n", "mapper command", one_line(command).c_str());
+  std::fflush(told_on);
 }
 
 }  // namespace rubble::app

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -21,11 +22,12 @@ void add_mapper(Options& options, MapperChoice& choice);
 std::vector<scenarios::Override> with_mapper(const MapperChoice& choice, std::vector<scenarios::Override> overrides);
 
 /// Permits the scenario's command when the user gave it on the command line (also by --set mapper.command=...) or
-/// allowed those of files; prints it. Throws InputError for one that may not run: nothing is started then.
+/// allowed those of files; prints it, to stderr where stdout is data. Throws InputError for one that may not run:
+/// nothing is started then.
 void permit_command(const MapperChoice& choice, const std::vector<scenarios::Override>& overrides,
-                    scenarios::Scenario& scenario);
+                    scenarios::Scenario& scenario, std::FILE* told_on = stdout);
 
 /// Prints a command that will run, each once.
-void tell_command(const std::string& command);
+void tell_command(const std::string& command, std::FILE* told_on);
 
 }  // namespace rubble::app

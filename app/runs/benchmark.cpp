@@ -56,7 +56,7 @@ int benchmark(const BenchmarkArguments& arguments) {
   if (isatty(STDERR_FILENO))
     options.progress = [](const std::string& what) { std::fprintf(stderr, "%s\n", one_line(what).c_str()); };
   options.permit = [&](Scenario& scenario) {
-    permit_command(arguments.mapper, with_mapper(arguments.mapper, {}), scenario);
+    permit_command(arguments.mapper, with_mapper(arguments.mapper, {}), scenario, arguments.json ? stderr : stdout);
   };
   const Benchmark result = run_benchmark(list, options);
   if (!arguments.html.empty()) write_text_file(arguments.html, to_html(result));
