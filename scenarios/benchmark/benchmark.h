@@ -21,14 +21,15 @@ struct BenchmarkResult {
   std::optional<double> live_error_m;  ///< the same of the poses as known at each scan [m]
   std::optional<double> error_deg;     ///< of relations [deg]
   std::uint64_t scans = 0;
-  double scans_per_second = 0.0;  ///< CPU time of update(), all in all
-  double usual_ms = 0.0;          ///< of a scan, its share of the update that placed it: the median,
-  double slow_ms = 0.0;           ///< what 99 of 100 stay below,
-  double worst_ms = 0.0;          ///< and the worst [ms]; of several runs the largest of each
+  // Of a program whose processes cannot be seen, times and memory are not known.
+  std::optional<double> scans_per_second;  ///< CPU time of update(), all in all
+  std::optional<double> usual_ms;          ///< of a scan, its share of the update that placed it: the median,
+  std::optional<double> slow_ms;           ///< what 99 of 100 stay below,
+  std::optional<double> worst_ms;          ///< and the worst [ms]; of several runs the largest of each
   /// The most work of a scan, in millions of units that the mapper counts; of several runs the largest.
   std::optional<double> most_work_ms;
-  double finish_ms = 0.0;  ///< after the last scan [ms]
-  double peak_mb = 0.0;
+  std::optional<double> finish_ms;  ///< after the last scan [ms]
+  std::optional<double> peak_mb;
   std::optional<double> loops_closed;
   std::optional<double> loops_removed;
   std::optional<double> loops_false;      ///< that hold and the truth contradicts (scoring::false_relations)

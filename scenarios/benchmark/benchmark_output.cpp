@@ -70,7 +70,6 @@ Table results_table(const Benchmark& benchmark) {
   for (const BenchmarkRow& row : benchmark.rows)
     for (const BenchmarkResult& r : row.results) {
       const bool ran = r.missing.empty() && r.failure.empty();
-      const auto timed = [&](double value, const char* format) { return ran ? number(value, format) : std::string(); };
       table.rows.push_back({row.what.name,
                             measure_name(row.what.measure),
                             r.mapper,
@@ -81,13 +80,13 @@ Table results_table(const Benchmark& benchmark) {
                             optional_number(r.error_deg, "%.3f"),
                             goals_of(row.what),
                             goal_met(r),
-                            timed(r.scans_per_second, "%.0f"),
-                            timed(r.usual_ms, "%.2f"),
-                            timed(r.slow_ms, "%.2f"),
-                            timed(r.worst_ms, "%.1f"),
+                            optional_number(r.scans_per_second, "%.0f"),
+                            optional_number(r.usual_ms, "%.2f"),
+                            optional_number(r.slow_ms, "%.2f"),
+                            optional_number(r.worst_ms, "%.1f"),
                             optional_number(r.most_work_ms, "%.1f"),
-                            timed(r.finish_ms, "%.0f"),
-                            timed(r.peak_mb, "%.0f"),
+                            optional_number(r.finish_ms, "%.0f"),
+                            optional_number(r.peak_mb, "%.0f"),
                             optional_number(r.loops_closed, "%.0f"),
                             optional_number(r.loops_removed, "%.0f"),
                             optional_number(r.loops_false, "%.0f")});
@@ -203,13 +202,13 @@ std::string to_json(const Benchmark& benchmark) {
       j["goal_met"] = r.goal_met ? ordered_json(*r.goal_met) : ordered_json();
       j["goals_missed"] = r.goals_missed;
       j["scans"] = r.scans;
-      j["scans_per_second"] = r.scans_per_second;
-      j["usual_ms"] = r.usual_ms;
-      j["slow_ms"] = r.slow_ms;
-      j["worst_ms"] = r.worst_ms;
+      set(j, "scans_per_second", r.scans_per_second);
+      set(j, "usual_ms", r.usual_ms);
+      set(j, "slow_ms", r.slow_ms);
+      set(j, "worst_ms", r.worst_ms);
       set(j, "most_work_ms", r.most_work_ms);
-      j["finish_ms"] = r.finish_ms;
-      j["peak_mb"] = r.peak_mb;
+      set(j, "finish_ms", r.finish_ms);
+      set(j, "peak_mb", r.peak_mb);
       set(j, "loops_closed", r.loops_closed);
       set(j, "loops_removed", r.loops_removed);
       set(j, "loops_false", r.loops_false);

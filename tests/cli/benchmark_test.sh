@@ -117,6 +117,48 @@ YAML
 "$rubble" benchmark utm.yaml --json >utm.json 2>err.txt || fail "benchmark of a UTM ended with $?: $(cat err.txt)"
 json_holds utm.json "(lambda r: r['scans'] > 1000 and r['usual_ms'] * r['scans_per_second'] < 2000)(j['cases'][0]['results'][0])"
 
+# Of a mapper that is another program its own processes are measured: 20 ms of each scan, once 300 ms in a process that
+# ends, 100 MB in it and as much in another beside it.
+python3 - "$source/examples/python_mapper.py" >busy.py <<'PY'
+import sys
+text = open(sys.argv[1]).read()
+scan, main = "                last_scan = scan[0]\n", '\n\nif __name__ == "__main__":'
+assert text.count(scan) == 1 and text.count(main) == 1
+text = text.replace(scan, scan + "                work()\n")
+print(text.replace(main, """
+import subprocess
+import time
+
+HELD = b"1" * (100 << 20)
+BESIDE = subprocess.Popen([sys.executable, "-c", "import time; held = b'1' * (100 << 20); time.sleep(1000)"])
+BURN = "import time\\nwhile time.process_time() < 0.3: pass"
+worked = 0
+
+
+def work():
+    global worked
+    worked += 1
+    if worked == 20:
+        subprocess.run([sys.executable, "-c", BURN])
+    end = time.process_time() + 0.02
+    while time.process_time() < end:
+        pass
+""" + main))
+PY
+cat >program.yaml <<'YAML'
+mappers: [{kind: robust}]
+cases:
+  - {name: arena, scenario: s.yaml, seed: 3, set: {time_limit_s: 15}}
+  - {name: drive, log: drive.rawlog}
+YAML
+"$rubble" benchmark program.yaml --mapper-command "python3 busy.py" --json >program.json 2>err.txt || fail "benchmark of a program ended with $?: $(cat err.txt)"
+grep -q '^mapper command  *python3 busy.py$' err.txt || fail "the command is not told beside the JSON: $(cat err.txt)"
+json_holds program.json "all([r['mapper'] for r in c['results']] == ['robust', 'process'] and c['results'][1]['scans'] > 30 for c in j['cases'])"
+json_holds program.json "all(20 <= c['results'][1]['usual_ms'] < 200 and c['results'][1]['scans_per_second'] < 50 for c in j['cases'])"
+json_holds program.json "all(300 <= c['results'][1]['worst_ms'] < 3000 and 0 <= c['results'][1]['finish_ms'] < 1000 for c in j['cases'])"
+json_holds program.json "all(200 < c['results'][1]['peak_mb'] < 400 for c in j['cases'])"
+json_holds program.json "all(c['results'][0]['usual_ms'] < 10 and c['results'][1]['most_work_ms'] is None for c in j['cases'])"
+
 # The list of arenas that ships can be run: here for a second of two seeds each.
 python3 - "$source/scenarios" >short.yaml <<'PY'
 import re, sys
