@@ -368,7 +368,7 @@ BenchmarkResult run_one(const BenchmarkCase& what, const BenchmarkMapper& mapper
   }
   result = summary(runs);
   result.mapper = mapper.name;
-  if (result.runs == what.seeds.size()) judge(what, result);
+  if (result.failure.empty() && result.runs == what.seeds.size()) judge(what, result);
   return result;
 }
 

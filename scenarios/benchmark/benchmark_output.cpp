@@ -70,6 +70,9 @@ Table results_table(const Benchmark& benchmark) {
   for (const BenchmarkRow& row : benchmark.rows)
     for (const BenchmarkResult& r : row.results) {
       const bool ran = r.missing.empty() && r.failure.empty();
+      const auto timed = [&](const std::optional<double>& value, const char* format) {
+        return ran ? optional_number(value, format) : std::string();
+      };
       table.rows.push_back({row.what.name,
                             measure_name(row.what.measure),
                             r.mapper,
@@ -80,13 +83,13 @@ Table results_table(const Benchmark& benchmark) {
                             optional_number(r.error_deg, "%.3f"),
                             goals_of(row.what),
                             goal_met(r),
-                            optional_number(r.scans_per_second, "%.0f"),
-                            optional_number(r.usual_ms, "%.2f"),
-                            optional_number(r.slow_ms, "%.2f"),
-                            optional_number(r.worst_ms, "%.1f"),
-                            optional_number(r.most_work_ms, "%.1f"),
-                            optional_number(r.finish_ms, "%.0f"),
-                            optional_number(r.peak_mb, "%.0f"),
+                            timed(r.scans_per_second, "%.0f"),
+                            timed(r.usual_ms, "%.2f"),
+                            timed(r.slow_ms, "%.2f"),
+                            timed(r.worst_ms, "%.1f"),
+                            timed(r.most_work_ms, "%.1f"),
+                            timed(r.finish_ms, "%.0f"),
+                            timed(r.peak_mb, "%.0f"),
                             optional_number(r.loops_closed, "%.0f"),
                             optional_number(r.loops_removed, "%.0f"),
                             optional_number(r.loops_false, "%.0f")});

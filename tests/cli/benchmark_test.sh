@@ -174,6 +174,12 @@ PY
 json_holds short.json "all(c['worst_ms_goal'] == 20 and (c['name'] != 'yellow 8x8' or c['scans_per_s_goal'] == 8000) for c in j['cases'])"
 json_holds short.json "len(j['cases']) >= 7 and all(r['runs'] == 2 for c in j['cases'] for r in c['results'])"
 
+# A run that cannot be judged meets no goal.
+printf 'mappers: [{kind: robust}]\ncases: [{name: a, scenario: s.yaml, seed: 3, goal_m: 1, worst_ms_goal: 1e6, set: {time_limit_s: 5}}]\n' >unjudged.yaml
+"$rubble" benchmark unjudged.yaml --json >unjudged.json 2>err.txt
+[[ $? == 4 ]] || fail "a run that cannot be judged must end with 4: $(cat err.txt)"
+json_holds unjudged.json "(lambda r: 'cannot be judged' in r['failure'] and r['goal_met'] is None)(j['cases'][0]['results'][0])"
+
 # A mapper that takes too long is stopped, the others are not.
 cat >slow.yaml <<YAML
 cpu_limit_s: 1
