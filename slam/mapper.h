@@ -4,6 +4,7 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +48,9 @@ struct ClosedLoop {
   Stamp to;
   mrpt::math::TPose2D T_from_to;
 };
+
+/// What files call the scan of that stamp, where it has another name outside.
+using StampName = std::function<Stamp(Stamp)>;
 
 /// Numbers about each scan, for a file and a picture of it (docs/slam.md says what they mean).
 struct ScanRecords {
@@ -109,8 +113,8 @@ class Mapper {
   /// Null: this kind keeps none.
   virtual const ScanRecords* scan_records() const { return nullptr; }
   /// CSV: a line for each place that a search for loops found, with the tests it stood; empty from mappers that look
-  /// for none.
-  virtual std::string loop_table() const { return {}; }
+  /// for none. `name`: what it calls the key frames.
+  virtual std::string loop_table(const StampName& /*name*/) const { return {}; }
   /// Those that hold by now: without what was removed again. Empty from mappers that close none, or do not tell.
   virtual std::vector<ClosedLoop> closed_loops() const { return {}; }
   /// The map with all that a mapper needs to go on with it in another run, as bytes (slam/robust/map/saved_map.h).

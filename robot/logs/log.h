@@ -58,6 +58,8 @@ class ReplayRobot : public Robot {
   /// them. Only CARMEN logs whose clock jitters are delivered with others; sorted, of equal stamps the first.
   Trajectory in_own_stamps(const Trajectory& trajectory) const;
   /// True when a torn last frame of our own log was dropped.
+  /// The same of one scan's stamp; one that no scan was delivered with stays.
+  Stamp own_stamp(Stamp delivered) const;
   bool was_torn() const;
   /// Share of the log played so far, 0..1.
   double progress() const;

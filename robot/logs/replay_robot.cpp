@@ -123,6 +123,17 @@ ForeignLog read_foreign(const std::string& bytes, const std::string& path) {
                    "a CARMEN .log (.gz, .bz2), or a CoreSLAM .dat");
 }
 
+/// Stamps of few digits tell no two scans apart: such a log's own names are of no use.
+bool tell_scans_apart(const std::vector<OwnStamp>& names) {
+  constexpr std::size_t kMostLost = 100;  // one in so many
+  std::vector<Stamp> own;
+  own.reserve(names.size());
+  for (const OwnStamp& name : names) own.push_back(name.in_log);
+  std::sort(own.begin(), own.end());
+  const auto lost = own.end() - std::unique(own.begin(), own.end());
+  return static_cast<std::size_t>(lost) <= names.size() / kMostLost;
+}
+
 }  // namespace
 
 struct ReplayRobot::Impl {
@@ -153,6 +164,7 @@ ReplayRobot::ReplayRobot(const std::string& path) : impl_(std::make_unique<Impl>
     return;
   }
   impl_->foreign = read_foreign(bytes, path);
+  if (!tell_scans_apart(impl_->foreign.own_stamps)) impl_->foreign.own_stamps.clear();
   impl_->format = impl_->foreign.format;
   impl_->model = impl_->foreign.model;
 }
@@ -176,22 +188,20 @@ const Commands& ReplayRobot::recorded_commands() const {
 }
 const Trajectory& ReplayRobot::reference() const { return impl_->foreign.reference; }
 Trajectory ReplayRobot::in_own_stamps(const Trajectory& trajectory) const {
-  const std::vector<OwnStamp>& names = impl_->foreign.own_stamps;
   Trajectory renamed = trajectory;
-  for (StampedPose& stamped : renamed) {
-    const auto name = std::lower_bound(names.begin(), names.end(), stamped.stamp,
-                                       [](const OwnStamp& n, Stamp s) { return n.delivered < s; });
-    if (name != names.end() && name->delivered == stamped.stamp) stamped.stamp = name->in_log;
-  }
+  for (StampedPose& stamped : renamed) stamped.stamp = own_stamp(stamped.stamp);
   const auto earlier = [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; };
   const auto same = [](const StampedPose& a, const StampedPose& b) { return a.stamp == b.stamp; };
   std::stable_sort(renamed.begin(), renamed.end(), earlier);
-  // Stamps of few digits tell no two scans apart: such a log's own names are of no use.
-  constexpr std::size_t kMostLost = 100;  // one in so many
-  const auto end = std::unique(renamed.begin(), renamed.end(), same);
-  if (static_cast<std::size_t>(renamed.end() - end) > trajectory.size() / kMostLost) return trajectory;
-  renamed.erase(end, renamed.end());
+  renamed.erase(std::unique(renamed.begin(), renamed.end(), same), renamed.end());
   return renamed;
+}
+
+Stamp ReplayRobot::own_stamp(Stamp delivered) const {
+  const std::vector<OwnStamp>& names = impl_->foreign.own_stamps;
+  const auto name = std::lower_bound(names.begin(), names.end(), delivered,
+                                     [](const OwnStamp& n, Stamp s) { return n.delivered < s; });
+  return name != names.end() && name->delivered == delivered ? name->in_log : delivered;
 }
 
 bool ReplayRobot::was_torn() const { return impl_->own && impl_->own->torn(); }

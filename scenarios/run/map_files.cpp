@@ -22,13 +22,13 @@ namespace fs = std::filesystem;
 
 constexpr const char* kMapFile = "map.rmap";
 
-std::string csv_of(const slam::ScanRecords& records) {
+std::string csv_of(const slam::ScanRecords& records, const slam::StampName& name) {
   std::string text = "stamp_s";
   for (const std::string& column : records.columns) text += "," + column;
   text += '\n';
   char number[40];
   for (std::size_t i = 0; i < records.stamps.size(); ++i) {
-    text += stamp_text(records.stamps[i]);
+    text += stamp_text(name(records.stamps[i]));
     for (std::size_t k = 0; k < records.columns.size(); ++k) {
       std::snprintf(number, sizeof number, ",%.6g",
                     static_cast<double>(records.values[i * records.columns.size() + k]));
@@ -88,13 +88,17 @@ MergeReport report_of(const std::vector<slam::MapScan>& both, std::size_t of_fir
 
 }  // namespace
 
-void save_map_files(const RunFolder& folder, const slam::Mapper& mapper) {
+slam::StampName as_measured() {
+  return [](Stamp stamp) { return stamp; };
+}
+
+void save_map_files(const RunFolder& folder, const slam::Mapper& mapper, const slam::StampName& name) {
   if (const std::string bytes = mapper.saved_map(); !bytes.empty()) folder.write(kMapFile, bytes);
   const slam::ScanRecords* records = mapper.scan_records();
   if (records == nullptr || records->stamps.empty()) return;
-  folder.write("scans.csv", csv_of(*records));
+  folder.write("scans.csv", csv_of(*records, name));
   folder.write("scans.png", png_bytes(scan_picture(*records)));
-  if (const std::string loops = mapper.loop_table(); !loops.empty()) folder.write("loops.csv", loops);
+  if (const std::string loops = mapper.loop_table(name); !loops.empty()) folder.write("loops.csv", loops);
 }
 
 std::shared_ptr<const slam::MapBase> load_map_base(const std::string& path, bool grows,

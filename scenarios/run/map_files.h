@@ -12,9 +12,13 @@
 
 namespace rubble::scenarios {
 
+/// Stamps stay what they are.
+slam::StampName as_measured();
+
 /// Writes what a mapper keeps beside the pictures of its map: map.rmap, the map with its graph; scans.csv, what it made
-/// of each scan; scans.png, a picture of that. A mapper that keeps none leaves none.
-void save_map_files(const RunFolder& folder, const slam::Mapper& mapper);
+/// of each scan; scans.png, a picture of that; loops.csv. A mapper that keeps none leaves none. `name`: what both
+/// tables call a scan's stamp.
+void save_map_files(const RunFolder& folder, const slam::Mapper& mapper, const slam::StampName& name = as_measured());
 
 /// Reads the map of a run folder, or a map file. Throws InputError.
 std::shared_ptr<const slam::MapBase> load_map_base(const std::string& path, bool grows,

@@ -321,7 +321,7 @@ RunReport map_log(const std::string& log, const Scenario& scenario, const RunOpt
   if (core.mapper().counts().scans == 0 && !end.interrupted && end.failure.empty())
     throw InputError(log + ": holds no laser scan; a log to map needs scans (and odometry)");
   name_as_the_log_does(folder, robot, core.mapper());
-  save_map_files(folder, core.mapper());
+  save_map_files(folder, core.mapper(), [&](Stamp delivered) { return robot.own_stamp(delivered); });
   scoring::Evidence evidence;
   if (!robot.reference().empty()) compare_trajectories(evidence, core.mapper(), robot.reference());
   if (!relations.empty())

@@ -584,7 +584,7 @@ double RobustMapper::blind_way() const { return impl_->tracker_.blind_way(); }
 const MapperCounts& RobustMapper::counts() const { return impl_->counts_; }
 
 const ScanRecords* RobustMapper::scan_records() const { return &impl_->diary_.records(); }
-std::string RobustMapper::loop_table() const { return csv_of(impl_->closer_.records()); }
+std::string RobustMapper::loop_table(const StampName& name) const { return csv_of(impl_->closer_.records(), name); }
 std::vector<ClosedLoop> RobustMapper::closed_loops() const {
   std::vector<ClosedLoop> closed;
   for (const LoopRecord& record : impl_->closer_.records())

@@ -81,7 +81,7 @@ class RobustMapper : public Mapper {
   const MapperCounts& counts() const override;
   std::vector<MapperFigure> figures() const override;
   const ScanRecords* scan_records() const override;
-  std::string loop_table() const override;
+  std::string loop_table(const StampName& name) const override;
   std::vector<ClosedLoop> closed_loops() const override;
   std::string saved_map() const override;
 

@@ -31,7 +31,7 @@ const char* loop_end_name(LoopRecord::End end) {
 
 }  // namespace
 
-std::string csv_of(const std::vector<LoopRecord>& records) {
+std::string csv_of(const std::vector<LoopRecord>& records, const std::function<Stamp(Stamp)>& name) {
   std::string text =
       "stamp_s,old_stamp_s,path_m,window_m,score,inliers,contradiction,expected_contradiction,moves_m,turns_deg,"
       "x_m,y_m,heading_deg,end\n";
@@ -44,7 +44,7 @@ std::string csv_of(const std::vector<LoopRecord>& records) {
     text += ',';
   };
   for (const LoopRecord& record : records) {
-    text += stamp_text(record.stamp) + "," + stamp_text(record.old_stamp);
+    text += stamp_text(name(record.stamp)) + "," + stamp_text(name(record.old_stamp));
     std::snprintf(number, sizeof number, ",%.3f,%.3f,%.4f,", record.path, record.window, record.score);
     text += number;
     share(record.inliers);

@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPose2D.h>
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,7 +30,7 @@ struct LoopRecord {
   std::optional<double> expected_contradiction;  ///< the same, were the robot where it was expected (the null test)
 };
 
-/// CSV, a line each.
-std::string csv_of(const std::vector<LoopRecord>& records);
+/// CSV, a line each; `name`: what it calls a scan's stamp.
+std::string csv_of(const std::vector<LoopRecord>& records, const std::function<Stamp(Stamp)>& name);
 
 }  // namespace rubble::slam
