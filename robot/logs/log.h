@@ -36,7 +36,8 @@ class RecordingRobot : public Robot {
 };
 
 /// Plays a log back, tick by tick; commands go nowhere. Formats by content: our own log, MRPT .rawlog (observation-only
-/// and action/frame form), CARMEN .log (FLASER, ROBOTLASER1, ODOM), CoreSLAM .dat; each gzip-compressed or not.
+/// and action/frame form), CARMEN .log (FLASER, ROBOTLASER1, ODOM), CoreSLAM .dat; each packed
+/// with gzip or bzip2, or not.
 class ReplayRobot : public Robot {
  public:
   /// Throws InputError with place and remedy: missing, unknown format, wrong line, cut in the middle (foreign formats).
@@ -57,9 +58,9 @@ class ReplayRobot : public Robot {
   /// The trajectory of its scans under the stamps the log itself gives them, by which relations and other programs know
   /// them. Only CARMEN logs whose clock jitters are delivered with others; sorted, of equal stamps the first.
   Trajectory in_own_stamps(const Trajectory& trajectory) const;
-  /// True when a torn last frame of our own log was dropped.
   /// The same of one scan's stamp; one that no scan was delivered with stays.
   Stamp own_stamp(Stamp delivered) const;
+  /// True when a torn last frame of our own log was dropped.
   bool was_torn() const;
   /// Share of the log played so far, 0..1.
   double progress() const;

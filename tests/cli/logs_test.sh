@@ -30,4 +30,12 @@ expect_exit 3 'a transfer as text' "$rubble" map text.rlog
 expect_exit 3 'byte 13: ' "$rubble" map torn.rlog
 grep -q 'head -c' err.txt && fail "advises to keep nothing: $(cat err.txt)"
 "$rubble" map run.rawlog --out from-rawlog >/dev/null || fail "our own export cannot be mapped"
+# Packed with bzip2 a log gives the same; one that is cut is told in one line.
+python3 -c "import bz2, gzip; open('run.rawlog.bz2', 'wb').write(bz2.compress(gzip.open('run.rawlog').read()))"
+"$rubble" map run.rawlog.bz2 --out from-bz2 >/dev/null || fail "a log in bzip2 ended with $?"
+for name in estimate.tum scans.csv map.pgm; do
+  cmp -s from-rawlog/$name from-bz2/$name || fail "$name of a log in bzip2 differs from that of the plain one"
+done
+head -c $(($(wc -c <run.rawlog.bz2) / 2)) run.rawlog.bz2 >cut.rawlog.bz2
+expect_exit 3 'cut.rawlog.bz2: the bzip2 data stop at byte ' "$rubble" map cut.rawlog.bz2
 finish

@@ -1,5 +1,7 @@
 #include "robot/logs/foreign/file_bytes.h"
 
+#include <bzlib.h>
+
 #include "base/error.h"
 #include "tests/support/robot_inputs.h"
 
@@ -18,6 +20,39 @@ std::string long_text() {
 std::string gzipped(const std::string& text, const TempFolder& folder) {
   write_gzip(folder.file("a.gz"), text);
   return testing::read_bytes(folder.file("a.gz"));
+}
+
+std::string bzipped(std::string text) {
+  auto size = static_cast<unsigned>(text.size() + text.size() / 100 + 600);  // as bzlib's manual asks for
+  std::string packed(size, '\0');
+  EXPECT_EQ(BZ2_bzBuffToBuffCompress(packed.data(), &size, text.data(), static_cast<unsigned>(text.size()), 9, 0, 0),
+            BZ_OK);
+  packed.resize(size);
+  return packed;
+}
+
+TEST(FileBytes, Bzip2ComesBackAlsoInSeveralMembers) {
+  const std::string text = long_text();
+  const std::string packed = bzipped(text);
+  EXPECT_LT(packed.size(), text.size());
+  EXPECT_EQ(unpacked(packed, "a.bz2"), text);
+  EXPECT_EQ(unpacked(bzipped("one ") + bzipped("two"), "a.bz2"), "one two");
+}
+
+TEST(FileBytes, CutBzip2SaysWhereItEnds) {
+  const std::string packed = bzipped(long_text().substr(0, 200000));
+  for (std::size_t size = 4; size < packed.size(); size += packed.size() / 40) {
+    const std::string message = message_of<InputError>([&] { unpacked(packed.substr(0, size), "a.bz2"); });
+    EXPECT_EQ(message.find("a.bz2: the bzip2 data stop at byte " + std::to_string(size)), 0u) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+}
+
+TEST(FileBytes, DamagedBzip2IsRefused) {
+  std::string packed = bzipped(long_text().substr(0, 200000));
+  packed[packed.size() / 2] = static_cast<char>(packed[packed.size() / 2] ^ 0x55);
+  EXPECT_THROW(unpacked(packed, "a.bz2"), InputError);
+  EXPECT_THROW(unpacked(bzipped("text") + "behind", "a.bz2"), InputError);
 }
 
 TEST(FileBytes, GzipComesBackAndIsDeterministic) {
