@@ -76,26 +76,30 @@ TEST(RobustMapper, WithNoiseTheTrajectoryIsFarBetterThanTheOdometry) {
   }
 }
 
+/// Of ranges without noise what differs is the cells that points are gathered in: at most 4.7 mm and 0.0019 rad
+/// measured. Noise of 1 cm falls into them otherwise: 20.6 mm and 0.0061 rad.
 TEST(RobustMapper, AMirroredWorldGivesAMirroredResult) {
   const RobotModel model;
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    const auto ticks =
-        slam_test::record(random_room(seed), slam_test::drive_through(kTour, 0.0), model, 1.0, 0.01, seed);
-    RobustMapper mapper(model, {}, 1);
-    RobustMapper other(model, {}, 1);
-    play(mapper, ticks);
-    play(other, mirrored(ticks));
-    ASSERT_EQ(mapper.trajectory().size(), other.trajectory().size());
-    double most = 0.0;
-    for (std::size_t i = 0; i < mapper.trajectory().size(); ++i) {
-      const TPose2D& a = mapper.trajectory()[i].pose;
-      const TPose2D& b = other.trajectory()[i].pose;
-      most = std::max(most, length(a.x - b.x, a.y + b.y));
-      EXPECT_NEAR(wrap_angle(a.phi + b.phi), 0.0, 0.02);
+  struct Bounds {
+    double range_noise, apart, turned;
+  };
+  for (const Bounds& bounds : {Bounds{0.0, 0.008, 0.004}, Bounds{0.01, 0.03, 0.012}})
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", noise " + std::to_string(bounds.range_noise));
+      const auto ticks = slam_test::record(random_room(seed), slam_test::drive_through(kTour, 0.0), model, 1.0,
+                                           bounds.range_noise, seed);
+      RobustMapper mapper(model, {}, 1);
+      RobustMapper other(model, {}, 1);
+      play(mapper, ticks);
+      play(other, mirrored(ticks));
+      ASSERT_EQ(mapper.trajectory().size(), other.trajectory().size());
+      for (std::size_t i = 0; i < mapper.trajectory().size(); ++i) {
+        const TPose2D& a = mapper.trajectory()[i].pose;
+        const TPose2D& b = other.trajectory()[i].pose;
+        EXPECT_LT(length(a.x - b.x, a.y + b.y), bounds.apart);
+        EXPECT_NEAR(wrap_angle(a.phi + b.phi), 0.0, bounds.turned);
+      }
     }
-    EXPECT_LT(most, 0.03);
-  }
 }
 
 std::vector<TPoint2D> rounds(int count) {
