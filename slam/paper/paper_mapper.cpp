@@ -23,6 +23,7 @@ void bind(Binder& b, PaperConfig& c) {
   b.number("rotation_error", c.motion_error.rotation, 0.0, 1.0);
   b.degrees("heading_error_deg_per_m", c.motion_error.heading_per_m, 0.0, 90.0);
   b.number("distance_error", c.motion_error.distance, 0.0, 1.0);
+  b.number("distance_error_m_per_rad", c.motion_error.distance_per_rad, 0.0, 1.0);
   b.number("gate_distance_m", c.gate_distance, 0.0, 2.0);
   b.degrees("gate_turn_deg", c.gate_turn, 0.0, 180.0);
   b.choice("gated", c.gated, {"step", "resampling"});

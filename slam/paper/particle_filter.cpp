@@ -145,6 +145,7 @@ Particles drift(Particles particles, const TPose2D& T_last_now, const MotionErro
   const double sigma_start = error.rotation * std::abs(turn);
   const double sigma_scale = path > 0.0 ? error.distance : 0.0;
   const double sigma_end = error.heading_per_m * path;
+  const double sigma_slide = error.distance_per_rad * std::abs(turn);
   for (Particle& particle : particles) {
     const double start = rng.gaussian(sigma_start);        // initial orientation
     const double scale = 1.0 + rng.gaussian(sigma_scale);  // distance
@@ -155,6 +156,10 @@ Particles drift(Particles particles, const TPose2D& T_last_now, const MotionErro
     particle.T_map_base.x += scale * (c * T_last_now.x - s * T_last_now.y);
     particle.T_map_base.y += scale * (s * T_last_now.x + c * T_last_now.y);
     particle.T_map_base.phi = wrap_angle(heading + turn + end);
+    if (sigma_slide > 0.0) {  // else not a draw: the paper's bits
+      particle.T_map_base.x += rng.gaussian(sigma_slide);
+      particle.T_map_base.y += rng.gaussian(sigma_slide);
+    }
   }
   return particles;
 }

@@ -19,11 +19,12 @@ struct Particle {
 };
 using Particles = std::vector<Particle>;
 
-/// The three error sources of section III.B, Fig. 5, each the standard deviation of a Gaussian.
+/// The three error sources of section III.B, Fig. 5, and one of ours, each the standard deviation of a Gaussian.
 struct MotionError {
   double rotation = 0.05;                  ///< initial rotation error, share of the turn
   double heading_per_m = deg_to_rad(5.0);  ///< rotation error while driving [rad/m]
   double distance = 0.15;                  ///< translation error, share of the distance
+  double distance_per_rad = 0.0;           ///< translation error while turning, in x and in y [m/rad]; the paper: none
 };
 
 /// `count` particles at one pose, all of the same weight.

@@ -117,6 +117,47 @@ TEST(Drift, InitialRotationErrorIsFivePerCentOfTheTurn) {
   EXPECT_NEAR(rad_to_deg(phi.sigma), 3.0, 0.06);
 }
 
+/// 0.1 m/rad on 60 deg: 0.105 m each way, whatever the heading; with 0 nothing moves on the spot, as printed.
+TEST(Drift, ATurnOnTheSpotSpreadsTheParticlesByItsDistanceError) {
+  for (const double turn : {60.0, -60.0}) {
+    Rng rng(15, "drift");
+    MotionError error;
+    error.distance_per_rad = 0.1;
+    const TPose2D motion{0.0, 0.0, deg_to_rad(turn)};
+    const Particles particles = drift(particles_at({1.0, 2.0, 0.7}, 20000), motion, error, rng);
+    const Spread x = spread(particles, [](const TPose2D& T) { return T.x; });
+    const Spread y = spread(particles, [](const TPose2D& T) { return T.y; });
+    EXPECT_NEAR(x.mean, 1.0, 0.003);
+    EXPECT_NEAR(y.mean, 2.0, 0.003);
+    EXPECT_NEAR(x.sigma, 0.1047, 0.002);
+    EXPECT_NEAR(y.sigma, 0.1047, 0.002);
+    Rng other(15, "drift");
+    for (const Particle& p : drift(particles_at({1.0, 2.0, 0.7}, 300), motion, {}, other)) {
+      EXPECT_EQ(p.T_map_base.x, 1.0);
+      EXPECT_EQ(p.T_map_base.y, 2.0);
+    }
+  }
+}
+
+/// Nothing is drawn for an error of 0 or without a turn: what comes after has the same bits.
+TEST(Drift, AnErrorOfTurnsThatIsNoneLeavesTheOtherDraws) {
+  const TPose2D straight{0.4, -0.1, 0.0};
+  Rng printed(16, "drift");
+  Rng ours(16, "drift");
+  MotionError error;
+  error.distance_per_rad = 0.2;
+  const Particles a = drift(particles_at({1.0, 2.0, 3.0}, 300), straight, {}, printed);
+  const Particles b = drift(particles_at({1.0, 2.0, 3.0}, 300), straight, error, ours);
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].T_map_base, b[i].T_map_base);
+  // Three draws a particle, as printed: rotation, distance, end of the turn.
+  const TPose2D bent{0.4, -0.1, 0.7};
+  error.distance_per_rad = 0.0;
+  drift(particles_at({1.0, 2.0, 3.0}, 300), bent, error, printed);
+  Rng counted(16, "drift");
+  for (int i = 0; i < 2 * 3 * 300; ++i) counted.gaussian();
+  EXPECT_EQ(printed.next_u32(), counted.next_u32());
+}
+
 TEST(Drift, EachParticleMovesAlongItsOwnHeading) {
   Rng rng(14, "drift");
   Particles particles = particles_at(TPose2D(), 2);
