@@ -22,7 +22,7 @@ constexpr double kWidestSearch = 1.0;   ///< [m]
 constexpr double kDoubted = 0.5;        ///< so much doubt, and the odometry is but one of several starts
 constexpr double kDoubt = 0.01;         ///< what is left of the odometry's information once it is doubted
 constexpr double kAsWell = 0.05;        ///< inliers that decide nothing
-constexpr double kCheaper = 0.95;       ///< of the cost from the expected place: below, another start is right
+constexpr double kCheaper = 0.5;        ///< another start must cost so much less than the expected place
 constexpr double kFound = 0.6;          ///< inliers (or score) that leave no doubt
 constexpr double kFoundAgain = 0.5;     ///< inliers after a search of all headings
 constexpr double kRunnerUp = 0.85;      ///< another place may score so much of the best
@@ -263,7 +263,7 @@ ScanFit LocalTracker::best_of_several(const Cloud& cloud, const PosePrior& prior
   for (const auto& start : {first, second}) {
     if (!start) continue;
     const ScanFit other = fit_scan(surfels_, points_, start->pose, prior, {}, work);
-    if (other.cost < kCheaper * fit.cost) fit = other;
+    if (other.cost < fit.cost - kCheaper) fit = other;
   }
   return fit;
 }
