@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <ctime>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <stdexcept>
 
 #include "arenas/files/arena_file.h"
 #include "base/angle.h"
@@ -38,10 +38,17 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+/// The list lets no mapper take so long.
+struct TookTooLong : std::runtime_error {
+  explicit TookTooLong(int limit) : std::runtime_error("stopped after " + std::to_string(limit) + " s of CPU time") {}
+};
+
 /// The mapper inside, with the time that each scan takes. Of one that is another program it is that program's time.
 class TimedMapper {
  public:
-  TimedMapper(slam::Mapper& mapper, bool is_program) : mapper_(mapper) {
+  /// cpu_limit: update() throws TookTooLong once all of them together took longer [s].
+  TimedMapper(slam::Mapper& mapper, bool is_program, const std::optional<int>& cpu_limit)
+      : mapper_(mapper), cpu_limit_(cpu_limit) {
     if (is_program) program_.emplace();
   }
 
@@ -63,6 +70,8 @@ class TimedMapper {
       all_ += taken;
       share_out(taken, before);
     }
+    // Not by RLIMIT_CPU: under one the process's CPU clock goes by the scheduler's ticks, 4 ms.
+    if (cpu_limit_ && all_ > *cpu_limit_) throw TookTooLong(*cpu_limit_);
   }
   void finish() {
     const double start = program_ ? all_ : cpu_seconds();
@@ -99,6 +108,7 @@ class TimedMapper {
   }
 
   slam::Mapper& mapper_;
+  const std::optional<int> cpu_limit_;
   std::optional<ProgramMeter> program_;
   std::vector<double> ms_;
   std::size_t scans_ = 0;
@@ -118,10 +128,11 @@ void add_aligned(json& out, const slam::Mapper& mapper, const Trajectory& truth)
   out["loops_false"] = scoring::false_relations(claimed, truth);
 }
 
-json run_log(const std::string& log, const std::string& relations, const Scenario& scenario) {
+json run_log(const std::string& log, const std::string& relations, const Scenario& scenario,
+             const std::optional<int>& cpu_limit) {
   robot::ReplayRobot robot(log);
   const auto mapper = slam::make_here(scenario.mapper, robot.model(), {scenario.seed, ""});
-  TimedMapper timed(*mapper, !scenario.mapper.command().empty());
+  TimedMapper timed(*mapper, !scenario.mapper.command().empty(), cpu_limit);
   while (const auto inputs = robot.read()) timed.update(*inputs);
   timed.finish();
   json out = timed.figures();
@@ -141,14 +152,14 @@ json run_log(const std::string& log, const std::string& relations, const Scenari
 }
 
 /// The robot explores by its own map: another mapper sees another drive.
-json run_arena(const Scenario& scenario) {
+json run_arena(const Scenario& scenario, const std::optional<int>& cpu_limit) {
   const std::string yaml = arena_yaml(scenario);
   const arenas::Arena arena = arenas::parse_arena(yaml, scenario.name);
   sim::SimRobot robot(arena, scenario.robot, scenario.sim, scenario.seed);
   const auto mapper = slam::make_here(scenario.mapper, scenario.robot, {scenario.seed, ""});
   const auto explorer = scenario.explorer.make(scenario.robot, mission_of(scenario));
   robot::Levelling levelling(scenario.levelling, scenario.robot);
-  TimedMapper timed(*mapper, !scenario.mapper.command().empty());
+  TimedMapper timed(*mapper, !scenario.mapper.command().empty(), cpu_limit);
   while (const auto inputs = robot.read()) {
     timed.update(*inputs);
     robot::Commands commands = explorer->next(*mapper, *inputs);
@@ -166,10 +177,9 @@ json run_arena(const Scenario& scenario) {
 struct ChildAnswer {
   std::string text;
   double peak_mb = 0.0;
-  bool stopped = false;  ///< at the limit of its CPU time
 };
 
-ChildAnswer in_child(const std::function<json()>& work, const std::optional<int>& cpu_limit) {
+ChildAnswer in_child(const std::function<json()>& work) {
   int ends[2];
   if (pipe(ends) != 0) throw RunError("a pipe cannot be made; close other programs and try again");
   std::fflush(nullptr);
@@ -177,13 +187,11 @@ ChildAnswer in_child(const std::function<json()>& work, const std::optional<int>
   if (child < 0) throw RunError("a process cannot be made; close other programs and try again");
   if (child == 0) {
     close(ends[0]);
-    if (cpu_limit) {
-      const rlimit limit{static_cast<rlim_t>(*cpu_limit), static_cast<rlim_t>(*cpu_limit) + 1};
-      setrlimit(RLIMIT_CPU, &limit);
-    }
     json answer;
     try {
       answer = work();
+    } catch (const TookTooLong& error) {
+      answer = {{"failure", error.what()}, {"stopped", true}};
     } catch (const std::exception& error) {
       answer = {{"failure", error.what()}};
     }
@@ -209,23 +217,18 @@ ChildAnswer in_child(const std::function<json()>& work, const std::optional<int>
   while (wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
   }
   answer.peak_mb = static_cast<double>(usage.ru_maxrss) / 1024.0;
-  answer.stopped = WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || (cpu_limit && WTERMSIG(status) == SIGKILL));
   return answer;
 }
 
-void take(BenchmarkResult& result, const ChildAnswer& answer, const std::optional<int>& cpu_limit) {
+void take(BenchmarkResult& result, const ChildAnswer& answer) {
   result.runs = 1;
-  result.stopped = answer.stopped;
-  if (result.stopped) {
-    result.failure = "stopped after " + std::to_string(*cpu_limit) + " s of CPU time";
-    return;
-  }
   const json said = json::parse(answer.text, nullptr, false);
   if (!said.is_object()) {
     result.failure = "its process ended without an answer";
     return;
   }
   result.failure = said.value("failure", "");
+  result.stopped = said.value("stopped", false);
   if (!result.failure.empty()) return;
   const auto number = [&](const char* key) {
     return said.contains(key) ? std::optional<double>(said[key].get<double>()) : std::nullopt;
@@ -359,9 +362,10 @@ BenchmarkResult run_one(const BenchmarkCase& what, const BenchmarkMapper& mapper
     scenario.seed = seed;
     BenchmarkResult run;
     const auto work = [&] {
-      return files.log.empty() ? run_arena(scenario) : run_log(files.log, files.relations, scenario);
+      return files.log.empty() ? run_arena(scenario, cpu_limit)
+                               : run_log(files.log, files.relations, scenario, cpu_limit);
     };
-    take(run, in_child(work, cpu_limit), cpu_limit);
+    take(run, in_child(work));
     if (run.failure.empty() && what.goal && !run.error_m) run.failure = "its trajectory cannot be judged";
     if (!run.failure.empty() && what.seeds.size() > 1) run.failure += " (seed " + std::to_string(seed) + ")";
     runs.push_back(std::move(run));

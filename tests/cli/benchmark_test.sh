@@ -191,6 +191,7 @@ YAML
 "$rubble" benchmark slow.yaml --json >slow.json 2>err.txt || fail "benchmark with a limit ended with $?: $(cat err.txt)"
 json_holds slow.json "'stopped after 1 s of CPU time' in j['cases'][0]['results'][0]['failure']"
 json_holds slow.json "'failure' not in j['cases'][1]['results'][0] and j['cases'][1]['results'][0]['scans'] > 10"
+json_holds slow.json "0.01 < j['cases'][1]['results'][0]['usual_ms']"  # a limit must not make the clock coarse
 printf 'cpu_limit_s: 0\nmappers: [{kind: robust}]\ncases: [{name: a, log: x}]\n' >limit.yaml
 expect_exit 3 'limit.yaml:1' "$rubble" benchmark limit.yaml
 
