@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <set>
 
-#include "base/text/words.h"
+#include "app/terminal.h"
 #include "slam/process/process_mapper.h"
 
 namespace rubble::app {
@@ -35,7 +35,7 @@ void permit_command(const MapperChoice& choice, const std::vector<scenarios::Ove
 void tell_command(const std::string& command, std::FILE* told_on) {
   static std::set<std::string> told;
   if (!told.insert(command).second) return;
-  std::fprintf(told_on, "%-30s %s\n", "mapper command", one_line(command).c_str());
+  print_row("mapper command", command, 30, told_on);
   std::fflush(told_on);
 }
 

@@ -122,8 +122,8 @@ void print_json(const nlohmann::ordered_json& json) {
 
 void tell(const std::string& line) { std::fprintf(stderr, "rubble: %s\n", one_line(line).c_str()); }
 
-void print_row(const std::string& label, const std::string& value, int width) {
-  std::printf("%-*s %s\n", width, one_line(label).c_str(), one_line(value).c_str());
+void print_row(const std::string& label, const std::string& value, int width, std::FILE* out) {
+  std::fprintf(out, "%-*s %s\n", width, one_line(label).c_str(), one_line(value).c_str());
 }
 
 void print_not_aligned(const std::string& note) { print_row("not aligned", scoring::reason_of(note)); }

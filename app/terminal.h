@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -44,7 +45,7 @@ void tell(const std::string& line);
 /// Tables of batches have short labels.
 constexpr int kBatchLabels = 12;
 /// One row of a table on stdout.
-void print_row(const std::string& label, const std::string& value, int width = 34);
+void print_row(const std::string& label, const std::string& value, int width = 34, std::FILE* out = stdout);
 
 /// The row of a map that was not laid on the truth; its label says the note's first words.
 void print_not_aligned(const std::string& note);

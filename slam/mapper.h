@@ -37,6 +37,7 @@ struct MapperFigure {
   static constexpr const char* kPlaceKnown = "place_known";  ///< 1: it knows where it is on an earlier run's map
   static constexpr const char* kLoopsClosed = "loops_closed";
   static constexpr const char* kLoopsRemoved = "loops_removed";
+  static constexpr const char* kMostWork = "most_work_ms";  ///< of a scan, in millions of counted units, not time
 
   std::string key;
   double value = 0.0;

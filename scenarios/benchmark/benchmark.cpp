@@ -29,8 +29,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kMostWork = "most_work_ms";  ///< figure of the robust mapper: 1e6 counted units, not time
-
 /// CPU time of this process with all its threads: a mapper may have some [s].
 double cpu_seconds() {
   timespec now{};
@@ -85,7 +83,8 @@ class TimedMapper {
     if (program_) out["is_program"] = true;
     if (program_ && program_->peak_mb()) out["program_peak_mb"] = *program_->peak_mb();
     for (const slam::MapperFigure& figure : mapper_.figures())
-      for (const char* key : {slam::MapperFigure::kLoopsClosed, slam::MapperFigure::kLoopsRemoved, kMostWork})
+      for (const char* key :
+           {slam::MapperFigure::kLoopsClosed, slam::MapperFigure::kLoopsRemoved, slam::MapperFigure::kMostWork})
         if (figure.key == key) out[key] = figure.value;
     return out;
   }
@@ -236,7 +235,7 @@ void take(BenchmarkResult& result, const ChildAnswer& answer) {
   result.error_m = number("error_m");
   result.live_error_m = number("live_error_m");
   result.error_deg = number("error_deg");
-  result.most_work_ms = number(kMostWork);
+  result.most_work_ms = number(slam::MapperFigure::kMostWork);
   result.loops_closed = number(slam::MapperFigure::kLoopsClosed);
   result.loops_removed = number(slam::MapperFigure::kLoopsRemoved);
   result.loops_false = number("loops_false");

@@ -636,7 +636,7 @@ std::vector<MapperFigure> RobustMapper::figures() const {
           {"graph_solved", static_cast<double>(loops.solved)},
           {"last_work_ms", static_cast<double>(impl_->last_work_) * 1e-6},
           {"work_ms", static_cast<double>(impl_->all_work_) * 1e-6},
-          {"most_work_ms", static_cast<double>(impl_->most_work_) * 1e-6}};
+          {MapperFigure::kMostWork, static_cast<double>(impl_->most_work_) * 1e-6}};
 }
 
 }  // namespace rubble::slam

@@ -183,9 +183,9 @@ void LocalTracker::hold_leap(const ExpectedMotion& motion, const PosePrior& odom
     const TPose2D& last = leap_.correction;
     const bool same = length(correction.x - last.x, correction.y - last.y) < kSameLeap &&
                       std::abs(wrap_angle(correction.phi - last.phi)) < kSameLeapTurn;
-    const bool again = same && leap_.asked > 0;
-    leap_.asked = again ? leap_.asked + 1 : 1;
-    leap_.asked_for = again ? leap_.asked_for + motion.time : motion.time;
+    const bool on_end = same && leap_.asked > 0;
+    leap_.asked = on_end ? leap_.asked + 1 : 1;
+    leap_.asked_for = on_end ? leap_.asked_for + motion.time : motion.time;
     leap_.correction = correction;
   }
   const bool worth = motion.level && stay.inliers < tracked.fit.inliers - kWorthALeap;
