@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "base/distance_transform.h"
@@ -49,28 +50,22 @@ void classify_row(const std::uint16_t* __restrict seen, const std::uint16_t* __r
   }
 }
 
-/// Free of branches, so that compilers use vector code.
-bool any_seen(const std::uint16_t* seen, int from, int to) {
-  std::uint16_t any = 0;
-  for (int x = from; x < to; ++x) any = static_cast<std::uint16_t>(any | seen[x]);
-  return any != 0;
-}
-
 Box seen_box(const CountMap& map) {
   const GridFrame& frame = map.frame();
   Box box{{frame.width, frame.height}, {-1, -1}};
-  for (int y = 0; y < frame.height; ++y) {
-    const std::uint16_t* seen = map.seen_row(y);
-    const bool left = any_seen(seen, 0, box.low.x);
-    const bool middle = any_seen(seen, box.low.x, box.high.x + 1);
-    const bool right = any_seen(seen, std::max(box.low.x, box.high.x + 1), frame.width);
-    if (!left && !middle && !right) continue;
-    box.low.y = std::min(box.low.y, y);
-    box.high.y = y;
-    if (left) box.low.x = static_cast<int>(std::find_if(seen, seen + box.low.x, [](auto n) { return n != 0; }) - seen);
-    for (int x = frame.width - 1; (right || !middle) && x > box.high.x; --x)
-      if (seen[x] != 0) box.high.x = x;
-  }
+  for (int y = 0; y < frame.height; ++y)
+    map.for_seen(y, 0, frame.width, [&](int x, int count, const std::uint16_t* seen, const std::uint16_t*) {
+      const bool inside = box.low.x <= x && x + count <= box.high.x + 1;  // no news but of the row
+      const auto known = [](std::uint16_t n) { return n != 0; };
+      const std::uint16_t* const first = std::find_if(seen, seen + count, known);
+      if (first == seen + count) return;
+      box.low.y = std::min(box.low.y, y);
+      box.high.y = y;
+      if (inside) return;
+      const auto last = std::find_if(std::make_reverse_iterator(seen + count), std::make_reverse_iterator(seen), known);
+      box.low.x = std::min(box.low.x, x + static_cast<int>(first - seen));
+      box.high.x = std::max(box.high.x, x + static_cast<int>(last.base() - seen) - 1);
+    });
   return box;
 }
 
@@ -136,16 +131,18 @@ Traversable traversable(const CountMap& map, double occupied_threshold, bool low
   floor.obstacle = Grid<std::uint8_t>(frame);
   floor.body = floor.seen_over = floor.unsure = floor.solid = floor.scans = Grid<std::uint8_t>(frame);
   const float threshold = static_cast<float>(occupied_threshold);
-  const int columns = frame.width - 2;
   std::vector<Cell> weak;
   for (int y = box.low.y; y <= box.high.y; ++y) {
     const int row = y - box.low.y + 1;
-    const std::uint16_t* hits = map.occupied_row(y) + box.low.x;
-    classify_row(map.seen_row(y) + box.low.x, hits, columns, threshold, floor.cells.row(row) + 1,
-                 floor.obstacle.row(row) + 1, floor.seen_over.row(row) + 1, floor.unsure.row(row) + 1,
-                 floor.scans.row(row) + 1);
+    map.for_seen(y, box.low.x, box.high.x + 1,
+                 [&](int x, int count, const std::uint16_t* seen, const std::uint16_t* hits) {
+                   const int column = x - box.low.x + 1;
+                   classify_row(seen, hits, count, threshold, floor.cells.row(row) + column,
+                                floor.obstacle.row(row) + column, floor.seen_over.row(row) + column,
+                                floor.unsure.row(row) + column, floor.scans.row(row) + column);
+                 });
     for_each_set(floor.obstacle.row(row), frame.width, [&](int x) {
-      if (hits[x - 1] <= kWeakHits) weak.push_back({x, row});
+      if (map.occupied({x - 1 + box.low.x, y}) <= kWeakHits) weak.push_back({x, row});
     });
   }
   if (low_walls)

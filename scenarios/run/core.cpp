@@ -12,10 +12,10 @@ constexpr double kPatient = 10.0;  ///< from the first scan on; our own mappers 
 
 double known_area(const slam::CountMap& map) {
   std::size_t cells = 0;
-  for (int y = 0; y < map.frame().height; ++y) {
-    const std::uint16_t* seen = map.seen_row(y);
-    for (int x = 0; x < map.frame().width; ++x) cells += seen[x] != 0 ? 1u : 0u;
-  }
+  for (int y = 0; y < map.frame().height; ++y)
+    map.for_seen(y, 0, map.frame().width, [&](int, int count, const std::uint16_t* seen, const std::uint16_t*) {
+      for (int i = 0; i < count; ++i) cells += seen[i] != 0 ? 1u : 0u;
+    });
   return static_cast<double>(cells) * map.frame().resolution * map.frame().resolution;
 }
 

@@ -27,10 +27,12 @@ void FirstSeen::note(const slam::CountMap& map, double time) {
   cover(map.frame());
   const auto now = static_cast<float>(time);
   for (int y = 0; y < first_.height(); ++y) {
-    const std::uint16_t* seen = map.seen_row(y);
-    float* first = first_.row(y);
-    // A cell that stays is written as well: free of branches, so that compilers use vector code.
-    for (int x = 0; x < first_.width(); ++x) first[x] = seen[x] != 0 && first[x] == kNever ? now : first[x];
+    float* const row = first_.row(y);
+    map.for_seen(y, 0, first_.width(), [&](int x, int count, const std::uint16_t* seen, const std::uint16_t*) {
+      float* const first = row + x;
+      // A cell that stays is written as well: free of branches, so that compilers use vector code.
+      for (int i = 0; i < count; ++i) first[i] = seen[i] != 0 && first[i] == kNever ? now : first[i];
+    });
   }
 }
 

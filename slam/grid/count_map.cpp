@@ -17,7 +17,8 @@ using mrpt::math::TPose2D;
 namespace {
 
 constexpr int kBlock = 128;  ///< cells by which the map grows
-constexpr int kWord = 64;    ///< cells in a word of a raster
+constexpr int kWord = 64;    ///< cells in a word of a raster, which is a row of a tile
+static_assert(kWord == CountTiles::kSide && kBlock % kWord == 0);
 constexpr std::uint16_t kFull = std::numeric_limits<std::uint16_t>::max();
 
 /// Eq. (1), rounded to 1/255.
@@ -41,19 +42,48 @@ Extent growth(double low, double high, int size, int max_cells) {
   return {below, above};
 }
 
-template <class T>
-void move_plane(LargeVector<T>& plane, const GridFrame& from, const GridFrame& to, Extent x, Extent y) {
-  LargeVector<T> grown(to.size(), T{0});
-  for (int row = 0; row < from.height; ++row) {
-    const auto source = plane.begin() + static_cast<std::ptrdiff_t>(from.index({0, row}));
-    std::copy(source, source + from.width, grown.begin() + static_cast<std::ptrdiff_t>(to.index({x.low, row + y.low})));
+using Tile = CountTiles::Tile;
+
+/// Counts that would overflow are halved, both alike.
+void make_room(Tile& tile, std::size_t cell) {
+  if (tile.seen[cell] != kFull) return;
+  tile.seen[cell] = static_cast<std::uint16_t>(tile.seen[cell] / 2);
+  tile.occupied[cell] = static_cast<std::uint16_t>(tile.occupied[cell] / 2);
+}
+
+void rate(Tile& tile, std::size_t cell) {
+  tile.occupied[cell] = std::min(tile.occupied[cell], tile.seen[cell]);  // counts that were halved may not add up
+  tile.p_occ[cell] = tile.occupied[cell] == 0 ? std::uint8_t{0} : ratio(tile.occupied[cell], tile.seen[cell]);
+}
+
+void count_hit(Tile& tile, std::size_t cell) {
+  make_room(tile, cell);
+  ++tile.seen[cell];
+  ++tile.occupied[cell];
+  tile.p_occ[cell] = ratio(tile.occupied[cell], tile.seen[cell]);
+}
+
+void count_passes(Tile& tile, std::size_t begin, std::size_t end, bool may_be_full) {
+  if (may_be_full) {
+    for (std::size_t cell = begin; cell < end; ++cell) make_room(tile, cell);
   }
-  plane = std::move(grown);
+  for (std::size_t cell = begin; cell < end; ++cell) ++tile.seen[cell];
+  for (std::size_t cell = begin; cell < end;) {
+    std::uint64_t eight = 1;
+    if (cell + sizeof eight <= end) std::memcpy(&eight, &tile.p_occ[cell], sizeof eight);
+    if (eight == 0) {  // most of what beams pass was never hit
+      cell += sizeof eight;
+      continue;
+    }
+    if (tile.p_occ[cell] != 0) tile.p_occ[cell] = ratio(tile.occupied[cell], tile.seen[cell]);
+    ++cell;
+  }
 }
 
 }  // namespace
 
-CountMap::CountMap(int width, int height, double resolution, int max_cells) : max_cells_(max_cells) {
+CountMap::CountMap(int width, int height, double resolution, int max_cells)
+    : max_cells_(max_cells), tiles_(std::max(width, 1), std::max(height, 1)) {
   if (width <= 0 || height <= 0 || !(resolution > 0.0)) {
     throw std::invalid_argument("CountMap: width, height and resolution must be positive");
   }
@@ -62,15 +92,13 @@ CountMap::CountMap(int width, int height, double resolution, int max_cells) : ma
   frame_.resolution = resolution;
   frame_.x0 = -0.5 * width * resolution;
   frame_.y0 = -0.5 * height * resolution;
-  seen_.assign(frame_.size(), 0);
-  occupied_.assign(frame_.size(), 0);
-  p_occ_.assign(frame_.size(), 0);
 }
 
 void CountMap::clear_hits(const std::vector<Cell>& cells) {
   for (const Cell c : cells) {
-    occupied_[frame_.index(c)] = 0;
-    rate(frame_.index(c));
+    Tile& tile = tiles_.at(c);
+    tile.occupied[CountTiles::place(c)] = 0;
+    rate(tile, CountTiles::place(c));
   }
   ++version_;
 }
@@ -80,34 +108,34 @@ void CountMap::assign(const GridFrame& frame, const std::vector<std::uint16_t>& 
   if (frame.width <= 0 || frame.height <= 0 || !(frame.resolution > 0.0) || seen.size() != frame.size() ||
       occupied.size() != frame.size())
     throw std::invalid_argument("CountMap: two planes of the frame's size are needed");
-  LargeVector<std::uint8_t> p_occ(frame.size(), 0);
-  for (std::size_t cell = 0; cell < seen.size(); ++cell) {
+  for (std::size_t cell = 0; cell < seen.size(); ++cell)
     if (occupied[cell] > seen[cell]) throw std::invalid_argument("CountMap: occupied more often than seen");
-    if (occupied[cell] > 0) p_occ[cell] = ratio(occupied[cell], seen[cell]);
-  }
-  LargeVector<std::uint16_t> all_seen(seen.begin(), seen.end());
-  LargeVector<std::uint16_t> all_occupied(occupied.begin(), occupied.end());
   frame_ = frame;
-  seen_ = std::move(all_seen);
-  occupied_ = std::move(all_occupied);
-  p_occ_ = std::move(p_occ);
+  tiles_.clear(frame.width, frame.height);
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x) {
+      const std::size_t from = frame.index({x, y});
+      if (seen[from] == 0) continue;
+      Tile& tile = tiles_.at({x, y});
+      const std::size_t cell = CountTiles::place({x, y});
+      tile.seen[cell] = seen[from];
+      tile.occupied[cell] = occupied[from];
+      rate(tile, cell);
+    }
   ++version_;
 }
 
 void CountMap::begin_anew(double dx, double dy) {
   frame_.x0 += dx;
   frame_.y0 += dy;
-  std::fill(seen_.begin(), seen_.end(), std::uint16_t{0});
-  std::fill(occupied_.begin(), occupied_.end(), std::uint16_t{0});
-  std::fill(p_occ_.begin(), p_occ_.end(), std::uint8_t{0});
+  tiles_.clear(frame_.width, frame_.height);
   dropped_hits_ = 0;
   ++version_;
 }
 
 double CountMap::p_occ(Cell c) const {
   if (!frame_.inside(c)) return 0.0;
-  const std::size_t cell = frame_.index(c);
-  return seen_[cell] == 0 ? 0.0 : static_cast<double>(occupied_[cell]) / seen_[cell];  // eq. (1)
+  return seen(c) == 0 ? 0.0 : static_cast<double>(occupied(c)) / seen(c);  // eq. (1)
 }
 
 bool CountMap::draw(const TPose2D& T_map_base, const ScanPoints& scan) {
@@ -151,40 +179,26 @@ void CountMap::stamp(const TPose2D& T_map_base, const ScanPoints& scan) {
         std::count_if(rays_.begin(), rays_.end(), [](const ScanRay& ray) { return ray.hit; }));
     return;
   }
-  dropped_hits_ += each_hit([this](std::size_t cell) {
-    make_room(cell);
-    ++seen_[cell];
-    ++occupied_[cell];
-    p_occ_[cell] = ratio(occupied_[cell], seen_[cell]);
-  });
+  dropped_hits_ += each_hit([this](Cell c) { count_hit(tiles_.at(c), CountTiles::place(c)); });
   const bool may_be_full = version_ >= kFull;
-  each_pass([&](std::size_t begin, std::size_t end) {
-    if (may_be_full) {
-      for (std::size_t cell = begin; cell < end; ++cell) make_room(cell);
-    }
-    for (std::size_t cell = begin; cell < end; ++cell) ++seen_[cell];
-    for (std::size_t cell = begin; cell < end;) {
-      std::uint64_t eight = 1;
-      if (cell + sizeof eight <= end) std::memcpy(&eight, &p_occ_[cell], sizeof eight);
-      if (eight == 0) {  // most of what beams pass was never hit
-        cell += sizeof eight;
-        continue;
-      }
-      if (p_occ_[cell] != 0) p_occ_[cell] = ratio(occupied_[cell], seen_[cell]);
-      ++cell;
+  each_pass([&](Tile& tile, std::size_t first, std::uint64_t bits) {
+    std::size_t at = 0;
+    while (bits != 0) {  // by runs of set ones
+      const auto skipped = static_cast<std::size_t>(__builtin_ctzll(bits));
+      at += skipped;
+      bits >>= skipped;
+      const std::size_t run = ~bits == 0 ? std::size_t{kWord} : static_cast<std::size_t>(__builtin_ctzll(~bits));
+      count_passes(tile, first + at, first + at + run, may_be_full);
+      at += run;
+      bits = run < kWord ? bits >> run : 0;
     }
   });
-}
-
-void CountMap::rate(std::size_t cell) {
-  occupied_[cell] = std::min(occupied_[cell], seen_[cell]);  // counts that were halved may not add up
-  p_occ_[cell] = occupied_[cell] == 0 ? std::uint8_t{0} : ratio(occupied_[cell], seen_[cell]);
 }
 
 void CountMap::restamp(const TPose2D& T_map_before, const TPose2D& T_map_base, const ScanPoints& scan) {
   ++version_;
   const auto mark = [&](const TPose2D& T) {
-    if (draw(T, scan)) return each_hit([](std::size_t) {});
+    if (draw(T, scan)) return each_hit([](Cell) {});
     passed_.reset({0, 0}, 0, 0);
     hit_.reset({0, 0}, 0, 0);
     return static_cast<std::uint64_t>(
@@ -218,15 +232,17 @@ void CountMap::restamp(const TPose2D& T_map_before, const TPose2D& T_map_base, c
       const std::uint64_t seen_later = hit_later | word(passed_later_, y, w);
       for (std::uint64_t changed = (hit ^ hit_later) | (seen ^ seen_later); changed != 0; changed &= changed - 1) {
         const std::uint64_t bit = changed & (~changed + 1);
-        const std::size_t cell = frame_.index({w * kWord + __builtin_ctzll(bit), y});
-        if ((seen & bit) != 0 && seen_[cell] > 0) --seen_[cell];
-        if ((hit & bit) != 0 && occupied_[cell] > 0) --occupied_[cell];
+        const Cell c{w * kWord + __builtin_ctzll(bit), y};
+        Tile& tile = tiles_.at(c);
+        const std::size_t cell = CountTiles::place(c);
+        if ((seen & bit) != 0 && tile.seen[cell] > 0) --tile.seen[cell];
+        if ((hit & bit) != 0 && tile.occupied[cell] > 0) --tile.occupied[cell];
         if ((seen_later & bit) != 0) {
-          make_room(cell);
-          ++seen_[cell];
+          make_room(tile, cell);
+          ++tile.seen[cell];
         }
-        if ((hit_later & bit) != 0) ++occupied_[cell];
-        rate(cell);
+        if ((hit_later & bit) != 0) ++tile.occupied[cell];
+        rate(tile, cell);
       }
     }
 }
@@ -251,7 +267,7 @@ std::uint64_t CountMap::each_hit(const Count& count) {
     if (hit_.test(c)) continue;  // counts once per scan
     hit_.set(c);
     passed_.clear(c);  // a hit cell is not freed by other beams of the scan
-    count(frame_.index(c));
+    count(c);
   }
   return beyond;
 }
@@ -260,35 +276,12 @@ template <class Count>
 void CountMap::each_pass(const Count& count) {
   for (int y = 0; y < passed_.height(); ++y) {
     const std::uint64_t* words = passed_.row(y);
-    const std::size_t row = frame_.index({passed_.low().x, passed_.low().y + y});
-    const int width = passed_.width();
-    for (int x = 0; x < width;) {
-      const std::uint64_t rest = words[x >> 6] >> (x & 63);
-      if (rest == 0) {
-        x = (x | 63) + 1;
-        continue;
-      }
-      x += __builtin_ctzll(rest);
-      int end = x;
-      while (end < width) {  // to the end of the run of set bits, over word borders
-        const std::uint64_t clear = ~words[end >> 6] >> (end & 63);
-        if (clear != 0) {
-          end += __builtin_ctzll(clear);
-          break;
-        }
-        end = (end | 63) + 1;
-      }
-      end = std::min(end, width);
-      count(row + static_cast<std::size_t>(x), row + static_cast<std::size_t>(end));
-      x = end;
+    for (int w = 0; w < passed_.words_per_row(); ++w) {
+      if (words[w] == 0) continue;
+      const Cell first{passed_.low().x + w * kWord, passed_.low().y + y};
+      count(tiles_.at(first), CountTiles::place(first), words[w]);
     }
   }
-}
-
-void CountMap::make_room(std::size_t cell) {
-  if (seen_[cell] != kFull) return;
-  seen_[cell] = static_cast<std::uint16_t>(seen_[cell] / 2);
-  occupied_[cell] = static_cast<std::uint16_t>(occupied_[cell] / 2);
 }
 
 void CountMap::grow_to_hold(const TPoint2D& low, const TPoint2D& high) {
@@ -303,19 +296,18 @@ void CountMap::grow_to_hold(const TPoint2D& low, const TPoint2D& high) {
   grown.height += y.low + y.high;
   grown.x0 -= x.low * cell;
   grown.y0 -= y.low * cell;
-  move_plane(seen_, frame_, grown, x, y);
-  move_plane(occupied_, frame_, grown, x, y);
-  move_plane(p_occ_, frame_, grown, x, y);
+  tiles_.grow(x.low, y.low, grown.width, grown.height);
   frame_ = grown;
 }
 
 OccupancyGrid CountMap::classify(double threshold) const {
   OccupancyGrid grid(frame_, Occupancy::Unknown);
-  Occupancy* out = grid.data();
-  for (std::size_t cell = 0; cell < seen_.size(); ++cell) {
-    if (seen_[cell] == 0) continue;
-    out[cell] = occupied_[cell] >= threshold * seen_[cell] ? Occupancy::Occupied : Occupancy::Free;
-  }
+  for (int y = 0; y < frame_.height; ++y)
+    for_seen(y, 0, frame_.width, [&](int x, int count, const std::uint16_t* seen, const std::uint16_t* occupied) {
+      Occupancy* const out = grid.row(y) + x;
+      for (int i = 0; i < count; ++i)
+        if (seen[i] != 0) out[i] = occupied[i] >= threshold * seen[i] ? Occupancy::Occupied : Occupancy::Free;
+    });
   return grid;
 }
 

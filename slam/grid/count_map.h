@@ -3,13 +3,14 @@
 #include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "base/angle.h"
 #include "base/grid.h"
-#include "base/large_pages.h"
 #include "slam/grid/bit_raster.h"
+#include "slam/grid/count_tiles.h"
 #include "slam/grid/scan_polygon.h"
 
 namespace rubble::slam {
@@ -35,15 +36,18 @@ class CountMap {
   CountMap(int width, int height, double resolution, int max_cells = 8000);
 
   const GridFrame& frame() const { return frame_; }
-  std::uint16_t seen(Cell c) const { return seen_[frame_.index(c)]; }
-  std::uint16_t occupied(Cell c) const { return occupied_[frame_.index(c)]; }
-  /// Row `y` of the planes: frame().width counts, for code that reads many cells.
-  const std::uint16_t* seen_row(int y) const { return seen_.data() + frame_.index({0, y}); }
-  const std::uint16_t* occupied_row(int y) const { return occupied_.data() + frame_.index({0, y}); }
+  std::uint16_t seen(Cell c) const { return tiles_.of(c).seen[CountTiles::place(c)]; }
+  std::uint16_t occupied(Cell c) const { return tiles_.of(c).occupied[CountTiles::place(c)]; }
+  /// Calls `use(x, count, seen, occupied)` with each stretch of `count` cells from column `x` on, west to east, of row
+  /// `y` between columns `from` and `to` where anything may have been seen, and with their counts.
+  template <class Use>
+  void for_seen(int y, int from, int to, const Use& use) const;
   /// p_occ = occupied / seen (eq. 1); 0 for unseen cells and outside.
   double p_occ(Cell c) const;
-  /// p_occ in 1/255, 0 where unseen: the plane the particle weights read.
-  const std::uint8_t* p_occ_plane() const { return p_occ_.data(); }
+  /// p_occ in 1/255, 0 where unseen.
+  std::uint8_t p_occ_255(Cell c) const { return tiles_.of(c).p_occ[CountTiles::place(c)]; }
+  /// Where the particle weights read it.
+  const CountTiles& tiles() const { return tiles_; }
 
   /// Stamps a scan taken at T_map_base: each touched cell counts once; a cell hit in this scan is not freed by its
   /// other beams. A cell is touched when it holds a hit, or when its centre lies inside the scan polygon and no surface
@@ -83,17 +87,13 @@ class CountMap {
   /// Calls `count` with each hit cell once, and takes these out of `passed_`; returns the hits beyond the map.
   template <class Count>
   std::uint64_t each_hit(const Count& count);
-  /// Calls `count` with the first cell and the end of each run of passed cells.
+  /// Calls `count` with each word of passed cells: their tile, where its first cell lies in it, and the bits.
   template <class Count>
   void each_pass(const Count& count);
-  void make_room(std::size_t cell);
-  void rate(std::size_t cell);
 
   GridFrame frame_;
   int max_cells_;
-  LargeVector<std::uint16_t> seen_;  // each time the map grows these are new memory
-  LargeVector<std::uint16_t> occupied_;
-  LargeVector<std::uint8_t> p_occ_;
+  CountTiles tiles_;
   std::uint64_t version_ = 0;
   std::uint64_t dropped_hits_ = 0;
   BitRaster passed_;           ///< work space of stamp(); windows begin at whole words, so that two can be compared
@@ -102,5 +102,17 @@ class CountMap {
   BitRaster hit_later_;        ///< work space of restamp()
   std::vector<ScanRay> rays_;  ///< work space of stamp()
 };
+
+template <class Use>
+void CountMap::for_seen(int y, int from, int to, const Use& use) const {
+  for (int x = from; x < to;) {
+    const int end = std::min(to, (x / CountTiles::kSide + 1) * CountTiles::kSide);
+    if (const CountTiles::Tile* const tile = tiles_.counted({x, y})) {
+      const std::size_t first = CountTiles::place({x, y});
+      use(x, end - x, &tile->seen[first], &tile->occupied[first]);
+    }
+    x = end;
+  }
+}
 
 }  // namespace rubble::slam

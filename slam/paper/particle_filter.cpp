@@ -58,29 +58,35 @@ struct BeamTransform {
   float c, s, x, y;
 };
 
-/// Cell indices of the beam ends of a particle all of whose beams end inside the map. Coordinates are positive, so
-/// truncation is floor. Built twice from the same source: all operations are exact or rounded alike, so both give the
-/// same bits.
-__attribute__((always_inline)) inline void index_cells(const BeamTransform& T, const Beams& beams, int width,
+/// Where a cell's p_occ lies: the number of its tile, and its place in it in the low bits.
+constexpr int kTileBits = 6;
+constexpr int kPlaceBits = 2 * kTileBits;
+static_assert(CountTiles::kSide == 1 << kTileBits);
+
+/// Of the beam ends of a particle all of whose beams end inside the map. Coordinates are positive, so truncation is
+/// floor. Built twice from the same source: all operations are exact or rounded alike, so both give the same bits.
+__attribute__((always_inline)) inline void index_cells(const BeamTransform& T, const Beams& beams, int across,
                                                        std::int32_t* __restrict cell) {
+  constexpr std::int32_t kInTile = CountTiles::kSide - 1;
   const std::size_t n = beams.x.size();
   const float* __restrict x = beams.x.data();
   const float* __restrict y = beams.y.data();
   for (std::size_t k = 0; k < n; ++k) {
     const std::int32_t column = static_cast<std::int32_t>(T.c * x[k] - T.s * y[k] + T.x);
     const std::int32_t row = static_cast<std::int32_t>(T.s * x[k] + T.c * y[k] + T.y);
-    cell[k] = row * width + column;
+    const std::int32_t tile = (row >> kTileBits) * across + (column >> kTileBits);
+    cell[k] = (tile << kPlaceBits) | ((row & kInTile) << kTileBits) | (column & kInTile);
   }
 }
 
-void index_cells_anywhere(const BeamTransform& T, const Beams& beams, int width, std::int32_t* cell) {
-  index_cells(T, beams, width, cell);
+void index_cells_anywhere(const BeamTransform& T, const Beams& beams, int across, std::int32_t* cell) {
+  index_cells(T, beams, across, cell);
 }
 
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) void index_cells_avx2(const BeamTransform& T, const Beams& beams, int width,
+__attribute__((target("avx2"))) void index_cells_avx2(const BeamTransform& T, const Beams& beams, int across,
                                                       std::int32_t* cell) {
-  index_cells(T, beams, width, cell);
+  index_cells(T, beams, across, cell);
 }
 const bool kHasAvx2 = __builtin_cpu_supports("avx2");
 const auto index_cells_here = kHasAvx2 ? index_cells_avx2 : index_cells_anywhere;
@@ -89,23 +95,27 @@ const auto index_cells_here = index_cells_anywhere;
 #endif
 
 /// Eq. (2) for a particle all of whose beams end inside the map.
-std::uint32_t sum_inside(const BeamTransform& T, const Beams& beams, const std::uint8_t* plane, int width,
+std::uint32_t sum_inside(const BeamTransform& T, const Beams& beams, const CountTiles& tiles,
                          std::vector<std::int32_t>& cells) {
-  index_cells_here(T, beams, width, cells.data());
+  index_cells_here(T, beams, tiles.across(), cells.data());
+  const CountTiles::Tile* const* const all = tiles.all();
+  const auto p_occ = [&](std::int32_t cell) {
+    return all[cell >> kPlaceBits]->p_occ[static_cast<std::size_t>(cell) % CountTiles::kCells];
+  };
   const std::int32_t* cell = cells.data();
   std::array<std::uint32_t, 4> sums{};  // four chains: the loads need not wait for each other's additions
   const std::size_t n = cells.size();
   std::size_t k = 0;
   for (; k + 4 <= n; k += 4) {
-    for (std::size_t i = 0; i < 4; ++i) sums[i] += plane[cell[k + i]];
+    for (std::size_t i = 0; i < 4; ++i) sums[i] += p_occ(cell[k + i]);
   }
-  for (; k < n; ++k) sums[0] += plane[cell[k]];
+  for (; k < n; ++k) sums[0] += p_occ(cell[k]);
   return sums[0] + sums[1] + sums[2] + sums[3];
 }
 
 /// The same where beams may end outside.
-std::uint32_t sum_checked(const BeamTransform& T, const Beams& beams, const std::uint8_t* plane,
-                          const GridFrame& frame) {
+std::uint32_t sum_checked(const BeamTransform& T, const Beams& beams, const CountMap& map) {
+  const GridFrame& frame = map.frame();
   std::uint32_t sum = 0;
   for (std::size_t k = 0; k < beams.x.size(); ++k) {
     const float column = std::floor(T.c * beams.x[k] - T.s * beams.y[k] + T.x);
@@ -114,7 +124,7 @@ std::uint32_t sum_checked(const BeamTransform& T, const Beams& beams, const std:
           row < static_cast<float>(frame.height))) {
       continue;
     }
-    sum += plane[frame.index({static_cast<int>(column), static_cast<int>(row)})];  // eq. (2)
+    sum += map.p_occ_255({static_cast<int>(column), static_cast<int>(row)});  // eq. (2)
   }
   return sum;
 }
@@ -176,8 +186,8 @@ Particles measure(Particles particles, const std::vector<TPoint2D>& hits, const 
     const BeamTransform beam_transform{static_cast<float>(std::cos(T.phi)), static_cast<float>(std::sin(T.phi)),
                                        static_cast<float>(x), static_cast<float>(y)};
     const bool inside = x > margin && y > margin && x + margin < frame.width && y + margin < frame.height;
-    const std::uint32_t sum = inside ? sum_inside(beam_transform, beams, map.p_occ_plane(), frame.width, cells)
-                                     : sum_checked(beam_transform, beams, map.p_occ_plane(), frame);
+    const std::uint32_t sum =
+        inside ? sum_inside(beam_transform, beams, map.tiles(), cells) : sum_checked(beam_transform, beams, map);
     particle.weight = static_cast<double>(sum);
   }
   return particles;

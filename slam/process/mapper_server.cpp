@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <stdexcept>
@@ -27,11 +28,13 @@ void write_all(int descriptor, const std::string& text) {
 }
 
 AnsweredMap whole_map(const CountMap& map) {
-  AnsweredMap answered{map.frame(), {}, {}};
-  const std::uint16_t* const seen = map.seen_row(0);
-  const std::uint16_t* const occupied = map.occupied_row(0);
-  answered.seen.assign(seen, seen + map.frame().size());
-  answered.occupied.assign(occupied, occupied + map.frame().size());
+  const GridFrame& frame = map.frame();
+  AnsweredMap answered{frame, std::vector<std::uint16_t>(frame.size(), 0), std::vector<std::uint16_t>(frame.size(), 0)};
+  for (int y = 0; y < frame.height; ++y)
+    map.for_seen(y, 0, frame.width, [&](int x, int count, const std::uint16_t* seen, const std::uint16_t* occupied) {
+      std::copy_n(seen, count, &answered.seen[frame.index({x, y})]);
+      std::copy_n(occupied, count, &answered.occupied[frame.index({x, y})]);
+    });
   return answered;
 }
 

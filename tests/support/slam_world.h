@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "base/trajectory.h"
 #include "robot/measurements.h"
 #include "robot/model.h"
+#include "slam/grid/count_map.h"
 
 namespace rubble::slam_test {
 
@@ -192,6 +194,15 @@ inline double first_pose_rmse(const Trajectory& estimate, const Trajectory& trut
     ++n;
   }
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, n)));
+}
+
+/// p_occ of all cells in 1/255, row by row.
+inline std::vector<std::uint8_t> p_occ_of(const slam::CountMap& map) {
+  std::vector<std::uint8_t> plane;
+  plane.reserve(map.frame().size());
+  for (int y = 0; y < map.frame().height; ++y)
+    for (int x = 0; x < map.frame().width; ++x) plane.push_back(map.p_occ_255({x, y}));
+  return plane;
 }
 
 }  // namespace rubble::slam_test

@@ -23,9 +23,9 @@ constexpr double kSamePlace = 0.5;       ///< "there": within this [m]
 constexpr double kOtherPlace = 0.25;     ///< places from which a thing was seen are kept so far apart [m]
 constexpr double kUnderRobot = 0.10;     ///< the middle of a robot that was so close was where the thing was [m]
 
-bool is_wall(const CountMap& map, std::size_t cell) {
-  const int occupied = map.occupied_row(0)[cell];
-  return occupied > 0 && 2 * occupied >= map.seen_row(0)[cell];
+bool is_wall(const CountMap& map, Cell c) {
+  const int occupied = map.occupied(c);
+  return occupied > 0 && 2 * occupied >= map.seen(c);
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ GoneThings::GoneThings(const CountMap& map) : frame_(map.frame()) {
   for (int y = 0; y < frame_.height; ++y)
     for (int x = 0; x < frame_.width; ++x) {
       const std::size_t first = frame_.index({x, y});
-      if (visited[first] || !is_wall(map, first)) continue;
+      if (visited[first] || !is_wall(map, {x, y})) continue;
       visited[first] = true;
       cluster.assign(1, {x, y});
       Cell low = cluster[0], high = cluster[0];
@@ -48,7 +48,7 @@ GoneThings::GoneThings(const CountMap& map) : frame_(map.frame()) {
         for (int v = std::max(0, c.y - 1); v <= std::min(frame_.height - 1, c.y + 1); ++v)
           for (int u = std::max(0, c.x - 1); u <= std::min(frame_.width - 1, c.x + 1); ++u) {
             const std::size_t beside = frame_.index({u, v});
-            if (visited[beside] || !is_wall(map, beside)) continue;
+            if (visited[beside] || !is_wall(map, {u, v})) continue;
             visited[beside] = true;
             cluster.push_back({u, v});
           }

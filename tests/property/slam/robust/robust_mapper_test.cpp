@@ -286,8 +286,7 @@ TEST(RobustMapper, SameInputsSameBits) {
     EXPECT_EQ(a.live_trajectory()[i].pose, b.live_trajectory()[i].pose);
   }
   ASSERT_EQ(a.map().frame(), b.map().frame());
-  EXPECT_EQ(std::vector<std::uint8_t>(a.map().p_occ_plane(), a.map().p_occ_plane() + a.map().frame().size()),
-            std::vector<std::uint8_t>(b.map().p_occ_plane(), b.map().p_occ_plane() + b.map().frame().size()));
+  EXPECT_EQ(slam_test::p_occ_of(a.map()), slam_test::p_occ_of(b.map()));
 }
 
 TEST(RobustMapper, TheWorldsPlaceAndHeadingDoNotMatter) {

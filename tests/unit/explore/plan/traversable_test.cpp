@@ -142,7 +142,7 @@ TEST(Traversable, TellsHowManyScansSawACell) {
     for (int y = 0; y < floor.cells.height(); ++y)
       for (int x = 0; x < floor.cells.width(); ++x) {
         const Cell c = map.frame().cell(floor.cells.centre({x, y}));
-        ASSERT_EQ((floor.scans[{x, y}]), std::min<int>(map.seen_row(c.y)[c.x], 255));
+        ASSERT_EQ((floor.scans[{x, y}]), std::min<int>(map.seen(c), 255));
       }
     EXPECT_EQ(floor.scans[floor.cells.cell({0.27, 0.02})], std::min(scans + 5, 255)) << "both kinds of scan";
   }

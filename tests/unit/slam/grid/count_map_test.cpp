@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
+#include <vector>
 
 #include "base/rng.h"
 #include "slam/scan/level_scan.h"
@@ -160,14 +162,13 @@ ScanPoints room_scan(const TPose2D& T_world_base, std::uint64_t seed) {
 TEST(CountMap, RatioIsEquationOneAndThePlaneRoundsIt) {
   CountMap map(400, 400, 0.05);
   for (std::uint64_t k = 0; k < 40; ++k) map.stamp(TPose2D(0.01 * static_cast<double>(k), 0.0, 0.0), room_scan({}, k));
-  const std::uint8_t* plane = map.p_occ_plane();
   int seen = 0;
   for (int y = 0; y < 400; ++y) {
     for (int x = 0; x < 400; ++x) {
       const Cell c{x, y};
       const double ratio = map.seen(c) == 0 ? 0.0 : static_cast<double>(map.occupied(c)) / map.seen(c);  // eq. (1)
       EXPECT_EQ(map.p_occ(c), ratio);
-      EXPECT_NEAR(plane[map.frame().index(c)] / 255.0, ratio, 0.5 / 255.0 + 1e-12);
+      EXPECT_NEAR(map.p_occ_255(c) / 255.0, ratio, 0.5 / 255.0 + 1e-12);
       EXPECT_LE(map.occupied(c), map.seen(c));
       seen += map.seen(c) > 0;
     }
@@ -231,8 +232,8 @@ TEST(CountMap, BeamsOfUnknownOrderGiveTheSameMapAsOrderedOnes) {
   CountMap b(400, 400, 0.05);
   a.stamp(TPose2D(0.1, 0.2, 0.3), ordered);
   b.stamp(TPose2D(0.1, 0.2, 0.3), shuffled);
+  EXPECT_EQ(slam_test::p_occ_of(a), slam_test::p_occ_of(b));
   int differing = 0;
-  for (std::size_t i = 0; i < a.frame().size(); ++i) differing += a.p_occ_plane()[i] != b.p_occ_plane()[i];
   for (int y = 0; y < 400; ++y) {
     for (int x = 0; x < 400; ++x) differing += a.seen({x, y}) != b.seen({x, y});
   }
@@ -328,9 +329,75 @@ TEST(CountMap, RestampingIsTakingBackAndStampingAnew) {
       for (int x = 0; x < one.frame().width; ++x) {
         ASSERT_EQ(one.seen({x, y}), other.seen({x, y})) << x << ' ' << y;
         ASSERT_EQ(one.occupied({x, y}), other.occupied({x, y})) << x << ' ' << y;
-        ASSERT_EQ(one.p_occ_plane()[one.frame().index({x, y})], other.p_occ_plane()[one.frame().index({x, y})]);
       }
+    ASSERT_EQ(slam_test::p_occ_of(one), slam_test::p_occ_of(other));
   }
+}
+
+void expect_the_same_cells(const CountMap& one, const CountMap& other) {
+  ASSERT_EQ(one.frame(), other.frame());
+  for (int y = 0; y < one.frame().height; ++y)
+    for (int x = 0; x < one.frame().width; ++x) {
+      ASSERT_EQ(one.seen({x, y}), other.seen({x, y})) << x << ' ' << y;
+      ASSERT_EQ(one.occupied({x, y}), other.occupied({x, y})) << x << ' ' << y;
+    }
+  EXPECT_EQ(slam_test::p_occ_of(one), slam_test::p_occ_of(other));
+}
+
+TEST(CountMap, StretchesOfARowHoldWhatItsCellsCounted) {
+  CountMap map(300, 100, 0.05);  // not whole tiles
+  for (int k = 0; k < 5; ++k) map.stamp({2.0 * k, -1.5 * k, 0.3 * k}, room_scan({}, static_cast<std::uint64_t>(k)));
+  const GridFrame& frame = map.frame();
+  Rng rng(1, "stretches");
+  for (int y = 0; y < frame.height; ++y) {
+    const int from = static_cast<int>(rng.uniform(0.0, frame.width));
+    const int to = static_cast<int>(rng.uniform(from, frame.width + 1.0));
+    std::vector<int> seen(static_cast<std::size_t>(frame.width), 0), occupied = seen;
+    int last = from;
+    map.for_seen(y, from, to, [&](int x, int count, const std::uint16_t* n, const std::uint16_t* hits) {
+      ASSERT_GE(x, last);
+      ASSERT_LE(x + count, to);
+      last = x + count;
+      std::copy_n(n, count, seen.begin() + x);
+      std::copy_n(hits, count, occupied.begin() + x);
+    });
+    for (int x = 0; x < frame.width; ++x) {
+      const bool asked = x >= from && x < to;
+      ASSERT_EQ(seen[static_cast<std::size_t>(x)], asked ? map.seen({x, y}) : 0) << x << ' ' << y;
+      ASSERT_EQ(occupied[static_cast<std::size_t>(x)], asked ? map.occupied({x, y}) : 0) << x << ' ' << y;
+    }
+  }
+}
+
+TEST(CountMap, TakesMemoryOnlyWhereSomethingWasSeen) {
+  CountMap map(64, 64, 0.05);
+  for (int k = 0; k < 400; ++k)  // along two corridors of 200 m, round a corner
+    map.stamp({std::min(k, 200) * 1.0, std::max(0, k - 200) * 1.0, 0.0}, room_scan({}, 7));
+  const GridFrame& frame = map.frame();
+  EXPECT_GT(frame.width, 4000);
+  EXPECT_GT(frame.height, 4000);
+  std::size_t tiles = 0;
+  for (int y = 0; y < frame.height; y += CountTiles::kSide)
+    for (int x = 0; x < frame.width; x += CountTiles::kSide) tiles += map.tiles().counted({x, y}) != nullptr ? 1 : 0;
+  // Scans reach 4.5 m: a way of 400 m has seen at most 3,700 m2, its edges touch three tiles for each along it.
+  EXPECT_LT(tiles, 3700 / (3.2 * 3.2) + 2 * 400 / 3.2 + 20);
+  EXPECT_GT(tiles, 400u / 3);
+}
+
+TEST(CountMap, BegunAnewOrCopiedItKeepsNothingOfBefore) {
+  CountMap used(100, 100, 0.05);
+  for (int k = 0; k < 6; ++k) used.stamp({3.0 * k, 1.0, 0.5 * k}, room_scan({}, 11));
+  const CountMap before = used;
+  const std::vector<std::uint8_t> known = slam_test::p_occ_of(used);
+  ASSERT_GT(std::count(known.begin(), known.end(), 255), 50);
+  used.begin_anew(0.0, 0.0);
+  for (const std::uint8_t p_occ : slam_test::p_occ_of(used)) ASSERT_EQ(p_occ, 0);
+  EXPECT_EQ(slam_test::p_occ_of(before), known) << "a copy has memory of its own";
+  CountMap fresh(used.frame().width, used.frame().height, 0.05);
+  fresh.begin_anew(used.frame().x0 - fresh.frame().x0, used.frame().y0 - fresh.frame().y0);
+  for (CountMap* const map : {&used, &fresh})
+    for (int k = 0; k < 6; ++k) map->stamp({2.0 * k, 0.5, -0.5 * k}, room_scan({}, 12));
+  expect_the_same_cells(used, fresh);
 }
 
 TEST(CountMap, ImpossibleSizesAreRefused) {

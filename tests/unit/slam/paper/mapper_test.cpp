@@ -74,8 +74,7 @@ TEST(PaperMapper, SameSeedSameBits) {
   ASSERT_EQ(a.trajectory().size(), b.trajectory().size());
   for (std::size_t i = 0; i < a.trajectory().size(); ++i) EXPECT_EQ(a.trajectory()[i].pose, b.trajectory()[i].pose);
   ASSERT_EQ(a.map().frame(), b.map().frame());
-  EXPECT_EQ(std::vector<std::uint8_t>(a.map().p_occ_plane(), a.map().p_occ_plane() + a.map().frame().size()),
-            std::vector<std::uint8_t>(b.map().p_occ_plane(), b.map().p_occ_plane() + b.map().frame().size()));
+  EXPECT_EQ(slam_test::p_occ_of(a.map()), slam_test::p_occ_of(b.map()));
   EXPECT_NE(a.trajectory().back().pose, other.trajectory().back().pose);
 }
 

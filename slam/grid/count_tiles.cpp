@@ -1,0 +1,85 @@
+#include "slam/grid/count_tiles.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace rubble::slam {
+
+namespace {
+
+/// Fill 2 MB, a page of the largest size.
+constexpr std::size_t kSlab = (std::size_t{1} << 21U) / sizeof(CountTiles::Tile);
+const CountTiles::Tile kNothing{};
+
+int tiles_over(int cells) { return (cells + CountTiles::kSide - 1) / CountTiles::kSide; }
+
+}  // namespace
+
+CountTiles::CountTiles(int width, int height) {
+  lay_out(width, height);
+  slabs_.emplace_back(std::min(tiles_.size(), kSlab));
+  left_ = slabs_.back().size();
+}
+
+CountTiles::CountTiles(const CountTiles& other)
+    : across_(other.across_),
+      down_(other.down_),
+      tiles_(other.tiles_.size(), nullptr),
+      shown_(other.tiles_.size(), &kNothing) {
+  for (std::size_t i = 0; i < tiles_.size(); ++i)
+    if (other.tiles_[i] != nullptr) open(i) = *other.tiles_[i];
+}
+
+CountTiles& CountTiles::operator=(const CountTiles& other) {
+  CountTiles copy(other);
+  return *this = std::move(copy);
+}
+
+void CountTiles::lay_out(int width, int height) {
+  across_ = tiles_over(width);
+  down_ = tiles_over(height);
+  const std::size_t count = static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_);
+  tiles_.assign(count, nullptr);
+  shown_.assign(count, &kNothing);
+}
+
+CountTiles::Tile& CountTiles::open(std::size_t number) {
+  Tile* tile = nullptr;
+  if (!given_back_.empty()) {
+    tile = given_back_.back();
+    given_back_.pop_back();
+    *tile = Tile{};
+  } else {
+    if (left_ == 0) {
+      slabs_.emplace_back(kSlab);
+      left_ = kSlab;
+    }
+    LargeVector<Tile>& slab = slabs_.back();
+    tile = &slab[slab.size() - left_--];
+  }
+  tiles_[number] = tile;
+  shown_[number] = tile;
+  return *tile;
+}
+
+void CountTiles::clear(int width, int height) {
+  for (Tile* const tile : tiles_)
+    if (tile != nullptr) given_back_.push_back(tile);
+  lay_out(width, height);
+}
+
+void CountTiles::grow(int dx, int dy, int width, int height) {
+  const std::vector<Tile*> before = std::move(tiles_);
+  const int across = across_, down = down_;
+  lay_out(width, height);
+  for (int y = 0; y < down; ++y)
+    for (int x = 0; x < across; ++x) {
+      Tile* const tile = before[static_cast<std::size_t>(y * across + x)];
+      if (tile == nullptr) continue;
+      const std::size_t now = number({x * kSide + dx, y * kSide + dy});
+      tiles_[now] = tile;
+      shown_[now] = tile;
+    }
+}
+
+}  // namespace rubble::slam
