@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <new>
+#include <utility>
 
 #include "base/sanitized.h"
 
@@ -39,6 +40,25 @@ void free_large(void* memory, std::size_t bytes) noexcept {
     ::operator delete(memory);
   else
     munmap(memory, whole_pages(bytes));
+}
+
+LargeBuffer::LargeBuffer(LargeBuffer&& other) noexcept
+    : memory_(std::exchange(other.memory_, nullptr)), bytes_(std::exchange(other.bytes_, 0)) {}
+
+LargeBuffer& LargeBuffer::operator=(LargeBuffer&& other) noexcept {
+  std::swap(memory_, other.memory_);
+  std::swap(bytes_, other.bytes_);
+  return *this;
+}
+
+std::uint8_t* LargeBuffer::hold(std::size_t bytes) {
+  if (bytes > bytes_) {
+    free_large(std::exchange(memory_, nullptr), std::exchange(bytes_, 0));
+    const std::size_t roomy = bytes + bytes / 2;  // what grows bit by bit is not taken anew each time
+    memory_ = allocate_large(roomy);
+    bytes_ = roomy;
+  }
+  return static_cast<std::uint8_t*>(memory_);
 }
 
 }  // namespace rubble

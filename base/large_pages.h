@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace rubble {
@@ -33,5 +34,24 @@ struct LargePages {
 
 template <class T>
 using LargeVector = std::vector<T, LargePages<T>>;
+
+/// Such memory for work that is done again and again on more and less of it. It stays when less is asked for: what is
+/// given back and taken anew must be touched first each time.
+class LargeBuffer {
+ public:
+  LargeBuffer() = default;
+  LargeBuffer(LargeBuffer&& other) noexcept;
+  LargeBuffer& operator=(LargeBuffer&& other) noexcept;
+  LargeBuffer(const LargeBuffer&) = delete;
+  LargeBuffer& operator=(const LargeBuffer&) = delete;
+  ~LargeBuffer() { free_large(memory_, bytes_); }
+
+  /// So many bytes at least, of any values. Throws std::bad_alloc, and then holds nothing.
+  std::uint8_t* hold(std::size_t bytes);
+
+ private:
+  void* memory_ = nullptr;
+  std::size_t bytes_ = 0;
+};
 
 }  // namespace rubble

@@ -43,22 +43,28 @@ bool better(const Node& a, const Node& b) {
   return a.y != b.y ? a.y < b.y : a.x < b.x;
 }
 
+int whole_groups(int cells) { return (cells + kGroup - 1) / kGroup * kGroup; }
+
+std::size_t plane(int width, int height) { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+
 }  // namespace
 
 void Correlator::build(const std::vector<Surfel>& surfels, double resolution, double blur, Work* work) {
   resolution_ = resolution;
   per_m_ = static_cast<float>(1.0 / resolution);
-  draw(surfels, blur);
+  const int reach = std::max(1, static_cast<int>(std::ceil(kBlurReach * blur / resolution_)));
+  lay_out(surfels, reach);
+  draw(surfels, blur, reach);
   for (int level = 1; level < kLevels; ++level) pool(level);
   pool_roots();
   if (work != nullptr) {
-    *work += kLevels * static_cast<Work>(levels_[0].size()) / kCellsPerWork;
+    *work += kLevels * static_cast<Work>(plane(width_, height_)) / kCellsPerWork;
     *work += kWorkPerSurfel * static_cast<Work>(surfels.size());
   }
 }
 
-void Correlator::draw(const std::vector<Surfel>& surfels, double blur) {
-  const int reach = std::max(1, static_cast<int>(std::ceil(kBlurReach * blur / resolution_)));
+/// How large the planes are, and where they lie.
+void Correlator::lay_out(const std::vector<Surfel>& surfels, int reach) {
   float low_x = std::numeric_limits<float>::max(), low_y = low_x;
   float high_x = std::numeric_limits<float>::lowest(), high_y = high_x;
   for (const Surfel& q : surfels) {
@@ -72,10 +78,27 @@ void Correlator::draw(const std::vector<Surfel>& surfels, double blur) {
   x0_ = low_x - border;
   y0_ = low_y - border;
   const int side = 2 * reach + 1;
-  const int row = (side + kGroup - 1) / kGroup * kGroup;  // whole groups of bytes are drawn at once
-  width_ = static_cast<int>((high_x - x0_) * per_m_) + reach + 2 + row - side;
+  width_ = static_cast<int>((high_x - x0_) * per_m_) + reach + 2 + whole_groups(side) - side;
   height_ = static_cast<int>((high_y - y0_) * per_m_) + reach + 2;
-  levels_[0].assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0);
+  coarse_columns_ = (width_ - 1) / kCoarse + 1 + kCoarsePad;
+  coarse_height_ = (height_ - 1) / kCoarse + 1 + kCoarsePad + 2;  // an empty row below and above
+  coarse_stride_ = (coarse_columns_ + kStep - 1) / kStep + 2 * kGroup;
+
+  std::array<std::size_t, kLevels + 1> begin{};
+  for (int level = 0; level < kLevels; ++level) {
+    const int pad = (1 << level) - 1;
+    begin[static_cast<std::size_t>(level) + 1] =
+        begin[static_cast<std::size_t>(level)] + plane(width_ + pad, height_ + pad);
+  }
+  std::uint8_t* const memory = memory_.hold(begin[kLevels] + kStep * plane(coarse_stride_, coarse_height_));
+  for (std::size_t level = 0; level < levels_.size(); ++level) levels_[level] = memory + begin[level];
+  coarse_ = memory + begin[kLevels];
+}
+
+void Correlator::draw(const std::vector<Surfel>& surfels, double blur, int reach) {
+  const int side = 2 * reach + 1;
+  const int row = whole_groups(side);  // of bytes, which are drawn at once
+  std::fill_n(levels_[0], plane(width_, height_), std::uint8_t{0});
 
   std::vector<std::uint8_t> spot(static_cast<std::size_t>(side * row), 0);
   for (int v = -reach; v <= reach; ++v)
@@ -119,10 +142,9 @@ void Correlator::pool(int level) {
   const int width = width_ + half - 1;
   const int height = height_ + half - 1;
   const int wide = width + half;
-  const std::vector<std::uint8_t>& from = levels_[static_cast<std::size_t>(level - 1)];
-  std::vector<std::uint8_t>& to = levels_[static_cast<std::size_t>(level)];
+  const std::uint8_t* const from = levels_[static_cast<std::size_t>(level - 1)];
+  std::uint8_t* const to = levels_[static_cast<std::size_t>(level)];
   const auto row = [](int y, int w) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(w); };
-  to.resize(row(height + half, wide));
   half_pooled_.assign(row(half, wide), 0);  // the last rows, in a ring
   for (int y = 0; y < height + half; ++y) {
     std::uint8_t* const doubled = &half_pooled_[row(y % half, wide)];
@@ -142,12 +164,10 @@ void Correlator::pool_roots() {
   static_assert(kCoarseSees <= 3 * kSees && kCoarseSees >= 2 * kSees);
   const int width = width_ + kPad;
   const int height = height_ + kPad;
-  const std::vector<std::uint8_t>& top = levels_[kTopLevel];
-  const int columns = (width_ - 1) / kCoarse + 1 + kCoarsePad;
-  coarse_height_ = (height_ - 1) / kCoarse + 1 + kCoarsePad + 2;  // an empty row below and above
-  coarse_stride_ = (columns + kStep - 1) / kStep + 2 * kGroup;
-  const std::size_t plane = static_cast<std::size_t>(coarse_height_) * static_cast<std::size_t>(coarse_stride_);
-  coarse_.assign(kStep * plane, 0);
+  const std::uint8_t* const top = levels_[kTopLevel];
+  const int columns = coarse_columns_;
+  const std::size_t coarse_plane = plane(coarse_stride_, coarse_height_);
+  std::fill_n(coarse_, kStep * coarse_plane, std::uint8_t{0});
   // Columns of the top level from -kCoarsePad * kCoarse on, with room for the last square.
   const int shift = kCoarsePad * kCoarse - kPad;
   std::vector<std::uint8_t> row(static_cast<std::size_t>(columns * kCoarse + kCoarseSees + shift + width), 0);
@@ -167,10 +187,9 @@ void Correlator::pool_roots() {
     const std::uint8_t* const from = row.data();
     for (int x = 0; x < columns * kCoarse; ++x)
       sees[static_cast<std::size_t>(x)] = std::max({from[x + kParts[0]], from[x + kParts[1]], from[x + kParts[2]]});
-    std::uint8_t* const to =
-        coarse_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(coarse_stride_) + kGroup;
+    std::uint8_t* const to = coarse_ + static_cast<std::size_t>(y) * static_cast<std::size_t>(coarse_stride_) + kGroup;
     for (int x = 0; x < columns; ++x)
-      to[static_cast<std::size_t>(x % kStep) * plane + static_cast<std::size_t>(x / kStep)] =
+      to[static_cast<std::size_t>(x % kStep) * coarse_plane + static_cast<std::size_t>(x / kStep)] =
           fine[sees[static_cast<std::size_t>(x * kCoarse)]];
   }
 }
@@ -179,7 +198,7 @@ double Correlator::value(const std::vector<Cell>& cells, int x, int y, int level
   const int pad = (1 << level) - 1;
   const auto width = static_cast<unsigned>(width_ + pad);
   const auto height = static_cast<unsigned>(height_ + pad);
-  const std::uint8_t* raster = levels_[static_cast<std::size_t>(level)].data();
+  const std::uint8_t* raster = levels_[static_cast<std::size_t>(level)];
   std::uint32_t sum = 0;
   for (const Cell& c : cells) {
     const auto u = static_cast<unsigned>(c.x + x + pad);
@@ -197,7 +216,7 @@ std::optional<std::array<Correlator::Sums, 4>> Correlator::quarters(const std::v
   const int width = width_ + pad;
   const int height = height_ + pad;
   const auto stride = static_cast<std::uint32_t>(width);
-  const std::uint8_t* const raster = levels_[static_cast<std::size_t>(level)].data();
+  const std::uint8_t* const raster = levels_[static_cast<std::size_t>(level)];
   const std::uint8_t* const raster_right = raster + half;
   const std::uint8_t* const raster_up = raster + static_cast<std::size_t>(half) * stride;
   const std::uint8_t* const raster_both = raster_up + half;
@@ -294,7 +313,7 @@ void Correlator::roots(const std::vector<Cell>& cells, int x, int y, int columns
       std::array<std::uint32_t, kGroup> whole{};
       for (std::size_t stretch = 0; stretch < kStretches; ++stretch) {
         const std::array<std::uint32_t, kGroup> part =
-            sums_of_group(coarse_.data(), work.at.data() + count * stretch / kStretches,
+            sums_of_group(coarse_, work.at.data() + count * stretch / kStretches,
                           work.at.data() + count * (stretch + 1) / kStretches);
         for (std::size_t i = 0; i < kGroup; ++i) whole[i] += part[i];
         for (std::size_t i = 0; i < used; ++i) to[i].parts[stretch] = part[i];

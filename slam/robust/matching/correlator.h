@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/large_pages.h"
 #include "slam/robust/matching/surfel_grid.h"
 #include "slam/robust/matching/work.h"
 
@@ -52,7 +53,8 @@ class Correlator {
              std::vector<Sums>& out) const;
 
  private:
-  void draw(const std::vector<Surfel>& surfels, double blur);
+  void lay_out(const std::vector<Surfel>& surfels, int reach);
+  void draw(const std::vector<Surfel>& surfels, double blur, int reach);
   void pool(int level);
   void pool_roots();
 
@@ -60,11 +62,13 @@ class Correlator {
   float per_m_ = 20.0F;
   float x0_ = 0.0F, y0_ = 0.0F;
   int width_ = 0, height_ = 0;
-  std::array<std::vector<std::uint8_t>, kLevels> levels_;  ///< level l: padded by 2^l - 1 cells below and left
+  LargeBuffer memory_;                           ///< of the planes
+  std::array<std::uint8_t*, kLevels> levels_{};  ///< level l: padded by 2^l - 1 cells below and left
   std::vector<std::uint8_t> half_pooled_;
   // For the roots, four cells make one: values of squares that hold all that kRootCells from any of its cells on see.
   // Every fourth of a row lies side by side, as neighbouring squares ask for them: plane after plane, row after row.
-  std::vector<std::uint8_t> coarse_;
+  std::uint8_t* coarse_ = nullptr;
+  int coarse_columns_ = 0;
   int coarse_height_ = 0;
   int coarse_stride_ = 0;  ///< with a margin of a whole group of squares to each side
 };

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <new>
 #include <numeric>
+#include <utility>
 
 #include "base/sanitized.h"
 
@@ -34,6 +36,22 @@ TEST(LargePages, LargeMemoryBeginsAtALargePage) {
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory) % kPage, 0U) << bytes;
     free_large(memory, bytes);
   }
+}
+
+TEST(LargePages, ABufferStaysWhereItIsUnlessItMustGrow) {
+  LargeBuffer buffer;
+  std::uint8_t* const first = buffer.hold(4'000'000);
+  std::fill_n(first, 4'000'000, std::uint8_t{7});
+  EXPECT_EQ(buffer.hold(100), first);
+  EXPECT_EQ(buffer.hold(4'000'000), first);
+  EXPECT_EQ(std::count(first, first + 4'000'000, 7), 4'000'000);
+  LargeBuffer other = std::move(buffer);
+  EXPECT_EQ(other.hold(1), first);
+  buffer = LargeBuffer();
+  std::fill_n(buffer.hold(30'000'000), 30'000'000, std::uint8_t{1});
+  std::fill_n(other.hold(20'000'000), 20'000'000, std::uint8_t{2});
+  buffer = std::move(other);
+  EXPECT_EQ(std::count(buffer.hold(1), buffer.hold(1) + 20'000'000, 2), 20'000'000);
 }
 
 TEST(LargePages, WhatNoMachineHasIsRefused) {
