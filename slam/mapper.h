@@ -43,11 +43,21 @@ struct MapperFigure {
   double value = 0.0;
 };
 
-/// What a closed loop says: the base at `to` seen from the base at `from`, long before.
-struct ClosedLoop {
+/// A place that a search for loops found: the base at `to` seen from the base at `from`, long before.
+struct FoundLoop {
+  static constexpr const char* kClosed = "closed";
+
   Stamp from;
   Stamp to;
   mrpt::math::TPose2D T_from_to;
+  std::string end;  ///< what became of it, in the words of loops.csv (docs/slam.md)
+  // The tests, shares of the points; nothing where it was not asked.
+  std::optional<double> inliers;
+  std::optional<double> contradiction;           ///< seen through walls there
+  std::optional<double> expected_contradiction;  ///< where the robot was expected
+
+  /// It holds: it closes a loop, and was not removed again.
+  bool closed() const { return end == kClosed; }
 };
 
 /// What files call the scan of that stamp, where it has another name outside.
@@ -116,8 +126,8 @@ class Mapper {
   /// CSV: a line for each place that a search for loops found, with the tests it stood; empty from mappers that look
   /// for none. `name`: what it calls the key frames.
   virtual std::string loop_table(const StampName& /*name*/) const { return {}; }
-  /// Those that hold by now: without what was removed again. Empty from mappers that close none, or do not tell.
-  virtual std::vector<ClosedLoop> closed_loops() const { return {}; }
+  /// The same, line by line. Empty from mappers that look for none, or do not tell.
+  virtual std::vector<FoundLoop> found_loops() const { return {}; }
   /// The map with all that a mapper needs to go on with it in another run, as bytes (slam/robust/map/saved_map.h).
   /// Empty: this kind cannot, or nothing is mapped.
   virtual std::string saved_map() const { return {}; }

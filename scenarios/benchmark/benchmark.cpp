@@ -123,7 +123,8 @@ void add_aligned(json& out, const slam::Mapper& mapper, const Trajectory& truth)
   out["live_error_m"] = live.ate_aligned_m;
   if (!out.contains(slam::MapperFigure::kLoopsClosed)) return;
   std::vector<scoring::Relation> claimed;
-  for (const slam::ClosedLoop& loop : mapper.closed_loops()) claimed.push_back({loop.from, loop.to, loop.T_from_to});
+  for (const slam::FoundLoop& loop : mapper.found_loops())
+    if (loop.closed()) claimed.push_back({loop.from, loop.to, loop.T_from_to});
   out["loops_false"] = scoring::false_relations(claimed, truth);
 }
 

@@ -12,6 +12,7 @@
 #include "base/image/png.h"
 #include "base/text/text_file.h"
 #include "robot/logs/foreign/mrpt_bridge.h"
+#include "scenarios/run/loop_picture.h"
 #include "scenarios/run/scan_picture.h"
 #include "slam/map_exports.h"
 
@@ -99,6 +100,8 @@ void save_map_files(const RunFolder& folder, const slam::Mapper& mapper, const s
   folder.write("scans.csv", csv_of(*records, name));
   folder.write("scans.png", png_bytes(scan_picture(*records)));
   if (const std::string loops = mapper.loop_table(name); !loops.empty()) folder.write("loops.csv", loops);
+  if (const auto loops = mapper.found_loops(); !loops.empty())
+    folder.write("loops.png", png_bytes(loop_picture(mapper, loops)));
 }
 
 std::shared_ptr<const slam::MapBase> load_map_base(const std::string& path, bool grows,

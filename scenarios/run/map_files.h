@@ -16,8 +16,8 @@ namespace rubble::scenarios {
 slam::StampName as_measured();
 
 /// Writes what a mapper keeps beside the pictures of its map: map.rmap, the map with its graph; scans.csv, what it made
-/// of each scan; scans.png, a picture of that; loops.csv. A mapper that keeps none leaves none. `name`: what both
-/// tables call a scan's stamp.
+/// of each scan; scans.png, a picture of that; loops.csv, and loops.png where any was found. A mapper that keeps none
+/// leaves none. `name`: what both tables call a scan's stamp.
 void save_map_files(const RunFolder& folder, const slam::Mapper& mapper, const slam::StampName& name = as_measured());
 
 /// Reads the map of a run folder, or a map file. Throws InputError.

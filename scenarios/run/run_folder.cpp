@@ -99,7 +99,7 @@ const std::vector<std::string>& deterministic_artefacts() {
       "arena.yaml",   "arena.png",         "truth.tif",   "truth.png",   "log.rlog",  "truth.tum",
       "estimate.tum", "estimate_live.tum", "map.tif",     "map.tfw",     "map.png",   "map.pgm",
       "map.yaml",     "pois.csv",          "victims.csv", "overlay.png", "error.png", "sight.png",
-      "map.rmap",     "scans.csv",         "scans.png",   "loops.csv"};
+      "map.rmap",     "scans.csv",         "scans.png",   "loops.csv",   "loops.png"};
   return names;
 }
 

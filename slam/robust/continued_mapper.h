@@ -53,7 +53,7 @@ class ContinuedMapper : public Mapper {
   std::vector<MapperFigure> figures() const override;
   const ScanRecords* scan_records() const override { return &records_; }
   std::string loop_table(const StampName& name) const override { return drive_->loop_table(name); }
-  std::vector<ClosedLoop> closed_loops() const override { return drive_->closed_loops(); }
+  std::vector<FoundLoop> found_loops() const override { return drive_->found_loops(); }
   std::string saved_map() const override;
 
  private:

@@ -585,11 +585,12 @@ const MapperCounts& RobustMapper::counts() const { return impl_->counts_; }
 
 const ScanRecords* RobustMapper::scan_records() const { return &impl_->diary_.records(); }
 std::string RobustMapper::loop_table(const StampName& name) const { return csv_of(impl_->closer_.records(), name); }
-std::vector<ClosedLoop> RobustMapper::closed_loops() const {
-  std::vector<ClosedLoop> closed;
+std::vector<FoundLoop> RobustMapper::found_loops() const {
+  std::vector<FoundLoop> found;
   for (const LoopRecord& record : impl_->closer_.records())
-    if (record.end == LoopRecord::End::Closed) closed.push_back({record.old_stamp, record.stamp, record.T_old_new});
-  return closed;
+    found.push_back({record.old_stamp, record.stamp, record.T_old_new, name_of(record.end), record.inliers,
+                     record.contradiction, record.expected_contradiction});
+  return found;
 }
 const KeyFrames& RobustMapper::key_frames() const { return impl_->frames_; }
 std::string RobustMapper::saved_map() const { return impl_->frames_.empty() ? std::string() : encode_map(saved()); }

@@ -82,7 +82,7 @@ class RobustMapper : public Mapper {
   std::vector<MapperFigure> figures() const override;
   const ScanRecords* scan_records() const override;
   std::string loop_table(const StampName& name) const override;
-  std::vector<ClosedLoop> closed_loops() const override;
+  std::vector<FoundLoop> found_loops() const override;
   std::string saved_map() const override;
 
   const KeyFrames& key_frames() const;

@@ -17,7 +17,7 @@ PYTHON
 
 small_scenario s.yaml
 "$rubble" run s.yaml --out first >/dev/null || fail "the run ended with $?"
-for name in map.rmap scans.csv scans.png loops.csv; do [[ -s first/$name ]] || fail "first/$name is missing"; done
+for name in map.rmap scans.csv scans.png loops.csv loops.png; do [[ -s first/$name ]] || fail "first/$name is missing"; done
 [[ $(head -c 12 first/map.rmap) == "RUBBLE MAP 2" ]] || fail "map.rmap does not begin with its name"
 [[ $(wc -l <first/scans.csv) -gt 100 ]] || fail "scans.csv has but $(wc -l <first/scans.csv) lines"
 "$rubble" map first --out mapped >/dev/null || fail "map ended with $?"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "slam/mapper.h"
@@ -27,6 +28,7 @@ class PlantedMapper : public slam::Mapper {
   const slam::MapperCounts& counts() const override { return counts_; }
 
   void plant(Stamp stamp, const mrpt::math::TPose2D& pose) { poses_.push_back({stamp, pose}); }
+  void show(slam::CountMap map) { map_ = std::move(map); }
   /// Closes a loop: what was before `until` moves by `correction`, on the left.
   void correct(Stamp until, const mrpt::math::TPose2D& correction) {
     for (StampedPose& entry : poses_)

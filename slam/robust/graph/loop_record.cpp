@@ -7,9 +7,7 @@
 
 namespace rubble::slam {
 
-namespace {
-
-const char* loop_end_name(LoopRecord::End end) {
+const char* name_of(LoopRecord::End end) {
   switch (end) {
     case LoopRecord::End::Ambiguous:
       return "ambiguous";
@@ -28,8 +26,6 @@ const char* loop_end_name(LoopRecord::End end) {
   }
   return "";
 }
-
-}  // namespace
 
 std::string csv_of(const std::vector<LoopRecord>& records, const std::function<Stamp(Stamp)>& name) {
   std::string text =
@@ -54,7 +50,7 @@ std::string csv_of(const std::vector<LoopRecord>& records, const std::function<S
     text += number;
     const mrpt::math::TPose2D& place = record.T_old_new;
     std::snprintf(number, sizeof number, "%.4f,%.4f,%.3f,", place.x, place.y, rad_to_deg(wrap_angle(place.phi)));
-    text += number + std::string(loop_end_name(record.end)) + "\n";
+    text += number + std::string(name_of(record.end)) + "\n";
   }
   return text;
 }

@@ -30,6 +30,9 @@ struct LoopRecord {
   std::optional<double> expected_contradiction;  ///< the same, were the robot where it was expected (the null test)
 };
 
+/// As the CSV has it.
+const char* name_of(LoopRecord::End end);
+
 /// CSV, a line each; `name`: what it calls a scan's stamp.
 std::string csv_of(const std::vector<LoopRecord>& records, const std::function<Stamp(Stamp)>& name);
 
